@@ -1,0 +1,152 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// The C interface: finds the law, checks what it is given, loops. No arithmetic of its own.
+#include "epdem.h"
+
+#include <cmath>
+#include <cstring>
+
+#include "epdem/impact.hpp"
+#include "epdem/laws.hpp"
+
+#define EPDEM_EXPORT extern "C" __attribute__((visibility("default")))
+
+namespace {
+
+using namespace epdem;
+
+struct LawInfo {
+  const char* name;
+  int n_parameters;
+  const Parameter* parameters;
+};
+
+#define EPDEM_INFO(Class, name, id) {#name, Class::n_parameters, Class::parameters},
+const LawInfo laws[] = {EPDEM_LAWS(EPDEM_INFO)};
+#undef EPDEM_INFO
+constexpr int n_laws = int(sizeof(laws) / sizeof(laws[0]));
+
+const Parameter* parameter(int law, int k) {
+  if (law < 0 || law >= n_laws || k < 0 || k >= laws[law].n_parameters) return nullptr;
+  return &laws[law].parameters[k];
+}
+
+bool positive(double x) { return std::isfinite(x) && x > 0.0; }
+
+int check(int law, double E_star, const double* parameters) {
+  if (law < 0 || law >= n_laws) return EPDEM_UNKNOWN_LAW;
+  if (!positive(E_star)) return EPDEM_BAD_PARAMETER;
+  for (int k = 0; k < laws[law].n_parameters; ++k)
+    if (!positive(parameters[k])) return EPDEM_BAD_PARAMETER;
+  return EPDEM_OK;
+}
+
+/// Calls `body(law object)` for the law of that index: the one place where an index becomes a type.
+template <class Body>
+int with_law(int index, double E_star, const double* parameters, const Body& body) {
+  if (const int status = check(index, E_star, parameters)) return status;
+  int i = 0;
+#define EPDEM_CASE(Class, name, id)                              \
+  if (index == i++) {                                            \
+    if (!Class::valid(parameters)) return EPDEM_BAD_PARAMETER;   \
+    return body(Class(E_star, parameters));                      \
+  }
+  EPDEM_LAWS(EPDEM_CASE)
+#undef EPDEM_CASE
+  return EPDEM_UNKNOWN_LAW;
+}
+
+static_assert(sizeof(epdem_impact_input) == sizeof(ImpactInput), "the C struct mirrors the C++ one");
+static_assert(sizeof(epdem_impact_output) == sizeof(ImpactOutput), "the C struct mirrors the C++ one");
+
+}  // namespace
+
+EPDEM_EXPORT int epdem_abi(void) { return EPDEM_ABI; }
+EPDEM_EXPORT const char* epdem_version(void) { return EPDEM_VERSION; }
+
+EPDEM_EXPORT const char* epdem_message(int status) {
+  switch (status) {
+    case EPDEM_OK: return "ok";
+    case EPDEM_UNKNOWN_LAW: return "no law of that index";
+    case EPDEM_BAD_PARAMETER: return "E_star and every law parameter must be finite, > 0 and in the law's range";
+    case EPDEM_BAD_INPUT: return "R_star, m_star, speed and time_step must be finite and > 0, gap and steps >= 0";
+    default: return "unknown status";
+  }
+}
+
+EPDEM_EXPORT size_t epdem_size_of(const char* name) {
+  if (!std::strcmp(name, "epdem_step_result")) return sizeof(epdem_step_result);
+  if (!std::strcmp(name, "epdem_impact_input")) return sizeof(epdem_impact_input);
+  if (!std::strcmp(name, "epdem_impact_output")) return sizeof(epdem_impact_output);
+  return 0;
+}
+
+EPDEM_EXPORT int epdem_law_count(void) { return n_laws; }
+EPDEM_EXPORT const char* epdem_law_name(int law) { return law < 0 || law >= n_laws ? nullptr : laws[law].name; }
+EPDEM_EXPORT int epdem_law_parameter_count(int law) { return law < 0 || law >= n_laws ? -1 : laws[law].n_parameters; }
+
+EPDEM_EXPORT const char* epdem_law_parameter_name(int law, int k) {
+  const Parameter* p = parameter(law, k);
+  return p ? p->name : nullptr;
+}
+EPDEM_EXPORT const char* epdem_law_parameter_property(int law, int k) {
+  const Parameter* p = parameter(law, k);
+  return p ? p->property : nullptr;
+}
+EPDEM_EXPORT const char* epdem_law_parameter_unit(int law, int k) {
+  const Parameter* p = parameter(law, k);
+  return p ? p->unit : nullptr;
+}
+EPDEM_EXPORT double epdem_law_parameter_default(int law, int k) {
+  const Parameter* p = parameter(law, k);
+  return p ? p->fallback : std::nan("");
+}
+
+EPDEM_EXPORT int epdem_step(int law, double E_star, const double* parameters, double R_star, size_t n,
+                            const double* delta_max, const double* delta, epdem_step_result* out) {
+  if (!positive(R_star)) return EPDEM_BAD_INPUT;
+  return with_law(law, E_star, parameters, [&](const auto& l) {
+    for (size_t i = 0; i < n; ++i) {
+      const auto now = step(l, R_star, remember(l, R_star, delta_max[i]), delta[i]);
+      out[i] = {now.force, now.radius, now.after.delta_max};
+    }
+    return int(EPDEM_OK);
+  });
+}
+
+EPDEM_EXPORT int epdem_backbone(int law, double E_star, const double* parameters, double R_star, size_t n,
+                                const double* delta, double* force, double* radius, double* work,
+                                double* plastic_work_out) {
+  if (!positive(R_star)) return EPDEM_BAD_INPUT;
+  return with_law(law, E_star, parameters, [&](const auto& l) {
+    for (size_t i = 0; i < n; ++i) {
+      const auto now = step(l, R_star, {}, delta[i]);
+      force[i] = now.force;
+      radius[i] = now.radius;
+      work[i] = l.work(R_star, delta[i]);
+      plastic_work_out[i] = plastic_work(l, R_star, delta[i]);
+    }
+    return int(EPDEM_OK);
+  });
+}
+
+EPDEM_EXPORT int epdem_impacts(int law, double E_star, const double* parameters, size_t n, const epdem_impact_input* in,
+                               epdem_impact_output* out, size_t stride, double* overlap, double* force,
+                               double* velocity) {
+  for (size_t i = 0; i < n; ++i) {
+    const epdem_impact_input& c = in[i];
+    const bool samples = overlap || force || velocity;
+    if (!positive(c.R_star) || !positive(c.m_star) || !positive(c.speed) || !positive(c.time_step) ||
+        !std::isfinite(c.gap) || c.gap < 0.0 || c.steps < 0 || (samples && size_t(c.steps) + 1 > stride))
+      return EPDEM_BAD_INPUT;
+  }
+  return with_law(law, E_star, parameters, [&](const auto& l) {
+    for (size_t i = 0; i < n; ++i) {
+      const epdem_impact_input& c = in[i];
+      const Path path{overlap ? overlap + i * stride : nullptr, force ? force + i * stride : nullptr,
+                      velocity ? velocity + i * stride : nullptr};
+      const ImpactOutput o = impact(l, {c.R_star, c.m_star, c.speed, c.time_step, c.gap, c.steps}, path);
+      out[i] = {o.rebound_speed, o.force_max, o.overlap_max, o.last_overlap, o.first, o.last, o.steps};
+    }
+    return int(EPDEM_OK);
+  });
+}

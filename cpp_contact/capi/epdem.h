@@ -1,0 +1,81 @@
+/* SPDX-License-Identifier: GPL-2.0-or-later
+ *
+ * C interface of the contact laws. SI units. No function keeps state, allocates or throws.
+ * Functions that can fail return an epdem_status; epdem_message() says what it means.
+ */
+#ifndef EPDEM_H
+#define EPDEM_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+#ifdef __cplusplus
+extern "C" {
+#endif
+
+#define EPDEM_ABI 1
+#define EPDEM_MAX_PARAMETERS 8
+
+typedef enum {
+  EPDEM_OK = 0,
+  EPDEM_UNKNOWN_LAW = 1,
+  EPDEM_BAD_PARAMETER = 2,
+  EPDEM_BAD_INPUT = 3
+} epdem_status;
+
+typedef struct {
+  double force;     /* [N] */
+  double radius;    /* contact radius [m] */
+  double delta_max; /* what the contact remembers after this step [m] */
+} epdem_step_result;
+
+typedef struct {
+  double R_star;    /* [m] */
+  double m_star;    /* [kg] */
+  double speed;     /* approach speed [m/s] */
+  double time_step; /* [s] */
+  double gap;       /* before first touch [m] */
+  int64_t steps;    /* at most so many */
+} epdem_impact_input;
+
+typedef struct {
+  double rebound_speed; /* [m/s] */
+  double force_max;     /* largest sample [N] */
+  double overlap_max;   /* largest sample [m] */
+  double last_overlap;  /* at the last loaded sample [m] */
+  int64_t first, last;  /* first and last step with a force, -1 if none */
+  int64_t steps;        /* taken */
+} epdem_impact_output;
+
+/* Who is it. */
+int epdem_abi(void);
+const char* epdem_version(void);
+const char* epdem_message(int status);
+size_t epdem_size_of(const char* struct_name); /* 0 if there is no such struct */
+
+/* Laws, by index 0 .. epdem_law_count()-1, and their parameters. NULL or -1 outside the range. */
+int epdem_law_count(void);
+const char* epdem_law_name(int law);
+int epdem_law_parameter_count(int law);
+const char* epdem_law_parameter_name(int law, int k);
+const char* epdem_law_parameter_property(int law, int k); /* LIGGGHTS property/global */
+const char* epdem_law_parameter_unit(int law, int k);
+double epdem_law_parameter_default(int law, int k);       /* NaN: must be given */
+
+/* n steps, each from its own delta_max and delta; `parameters` as in epdem_law_parameter_name. */
+int epdem_step(int law, double E_star, const double* parameters, double R_star, size_t n, const double* delta_max,
+               const double* delta, epdem_step_result* out);
+
+/* The backbone at n overlaps: force [N], radius [m], work [J], plastic work of a contact that got there [J]. */
+int epdem_backbone(int law, double E_star, const double* parameters, double R_star, size_t n, const double* delta,
+                   double* force, double* radius, double* work, double* plastic_work);
+
+/* n independent two-body impacts. overlap, force and velocity may be NULL, or hold n * stride samples
+ * (stride >= steps + 1 of every impact); the samples after the end of an impact are left as they were. */
+int epdem_impacts(int law, double E_star, const double* parameters, size_t n, const epdem_impact_input* in,
+                  epdem_impact_output* out, size_t stride, double* overlap, double* force, double* velocity);
+
+#ifdef __cplusplus
+}
+#endif
+#endif

@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#pragma once
+
+#include "backbone.hpp"
+
+namespace epdem {
+
+/// Elastic, perfectly plastic contact with a truncated Hertz pressure (Thornton 1997, J. Appl. Mech. 64, 383).
+/// Hertz to alpha_y = a_y^2/R*, a_y = pi R* p_y/(2E*); then F = F_y + pi p_y R* (alpha - alpha_y), a^2 = R* alpha.
+/// Its restitution is eq. 8.83, its yield speed eq. 8.84.
+struct Thornton {
+  static constexpr const char* name = "thornton";
+  static constexpr bool yields = true;
+  static constexpr bool flattens = false;
+  static constexpr Parameter parameters[] = {
+      {"yield_pressure", "yieldPressure", "Pa", std::numeric_limits<double>::quiet_NaN()}};
+  static constexpr int n_parameters = 1;
+
+  double E_star;
+  double yield_ratio;   // alpha_y/R*
+  double slope_ratio;   // pi p_y: slope of the plastic line over R*
+  double offset_ratio;  // (pi p_y alpha_y - F_y)/R*^2: F = (slope_ratio alpha - offset_ratio R*) R*
+
+  /// Whether positive, finite parameters also make sense together.
+  static bool valid(const double*) noexcept { return true; }
+
+  Thornton() noexcept : E_star(0.0), yield_ratio(0.0), slope_ratio(0.0), offset_ratio(0.0) {}
+  Thornton(double E_star_, const double* parameter) noexcept : E_star(E_star_) {
+    const double p_y = parameter[0], q = pi * p_y / (2.0 * E_star_);
+    yield_ratio = q * q;
+    slope_ratio = pi * p_y;
+    offset_ratio = slope_ratio * yield_ratio / 3.0;  // F_y = (2/3) pi p_y R* alpha_y
+  }
+
+  double elastic_overlap(double R_star) const noexcept { return yield_ratio * R_star; }
+
+  Point load(double R_star, double delta) const noexcept {
+    return {(slope_ratio * delta - offset_ratio * R_star) * R_star, std::sqrt(R_star * delta), 0.0};
+  }
+
+  double work(double R_star, double delta) const noexcept {
+    const double delta_y = elastic_overlap(R_star);
+    if (!(delta > delta_y)) return hertz_work(E_star, R_star, delta);
+    const double F_y = (slope_ratio - slope_ratio / 3.0) * delta_y * R_star, x = delta - delta_y;
+    return hertz_work(E_star, R_star, delta_y) + (F_y + 0.5 * slope_ratio * R_star * x) * x;
+  }
+};
+
+}  // namespace epdem
