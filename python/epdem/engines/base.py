@@ -1,0 +1,92 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""What an engine is: it takes a plan and gives a trajectory. Its own words end here."""
+
+import subprocess
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Protocol
+
+import numpy as np
+
+from ..errors import EngineError
+from ..plan import Plan
+
+
+@dataclass(frozen=True)
+class Trajectory:
+    """Samples of n impacts, every step; arrays of shape (n, samples), SI. Force and overlap belong together.
+
+    overlap [m] is negative while apart, force [N] is never negative, velocity [m/s] is that of approach.
+    NaN after the end of an impact. `seconds` is the engine's own account of its time.
+    """
+
+    time_step: float
+    overlap: np.ndarray
+    force: np.ndarray
+    velocity: np.ndarray
+    seconds: dict[str, float] = field(default_factory=dict)
+
+
+class Engine(Protocol):
+    """One way to run a plan."""
+
+    name: str
+
+    def missing(self) -> str | None:
+        """None if the engine can run here, else a sentence with the command that installs it."""
+
+    def version(self) -> str:
+        """One line: the engine's version, and that of our part in it."""
+
+    def write(self, plan: Plan, folder: Path) -> list[Path]:
+        """The deck and its data files, in `folder`; they run by hand there."""
+
+    def run(self, plan: Plan, folder: Path, *, ranks: int = 1) -> Trajectory:
+        """Run what `write` wrote. Raises EngineError with the engine's last words."""
+
+
+def last_words(log: Path, lines: int = 3) -> str:
+    """The last ERROR line of a log, or else its last lines; '' if there are none."""
+    if not log.exists():
+        return ""
+    text = [t for t in log.read_text(errors="replace").splitlines() if t.strip()]
+    errors = [t for t in text if t.startswith("ERROR") or "Error:" in t]
+    return errors[-1] if errors else " | ".join(text[-lines:])
+
+
+def call(command: list[str], folder: Path, *, log: str, seconds: float, env: dict[str, str] | None = None) -> None:
+    """Run `command` in `folder`, both streams into `log`. Raises EngineError if it fails, hangs or is not there."""
+    path = folder / log
+    with path.open("wb") as stream:
+        try:
+            process = subprocess.Popen(command, cwd=folder, stdin=subprocess.DEVNULL, stdout=stream,
+                                       stderr=subprocess.STDOUT, env=env, start_new_session=True)  # fmt: skip
+        except OSError as error:
+            raise EngineError(f"{command[0]}: cannot be started ({error})") from None
+        try:
+            status = process.wait(timeout=seconds)
+        except BaseException as error:  # a time-out or Ctrl-C: no orphan stays behind
+            kill(process)
+            if isinstance(error, subprocess.TimeoutExpired):
+                words = last_words(path)
+                raise EngineError(f"{command[0]} did not end within {seconds:g} s and was stopped; {path}: {words}") from None
+            raise
+    if status:
+        how = f"signal {-status}" if status < 0 else f"exit code {status}"
+        raise EngineError(f"{command[0]} failed ({how}); {path}: {last_words(path)}")
+
+
+def kill(process: subprocess.Popen) -> None:
+    """Stop a process and all that it started."""
+    import os
+    import signal
+
+    for sign, patience in ((signal.SIGTERM, 5), (signal.SIGKILL, 5)):
+        try:
+            os.killpg(process.pid, sign)
+            process.wait(timeout=patience)
+            return
+        except ProcessLookupError:
+            return
+        except subprocess.TimeoutExpired:
+            continue

@@ -1,0 +1,18 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""What can go wrong, by exit code. Every message gives place, value, limit and next step."""
+
+
+class EpdemError(Exception):
+    """Base of all errors that a user can mend."""
+
+    exit_code = 2
+
+
+class CaseError(EpdemError):
+    """A case file, an option or a parameter is wrong (exit code 2); nothing was written."""
+
+
+class EngineError(EpdemError):
+    """An engine is missing, died or hung (exit code 3); its files are kept."""
+
+    exit_code = 3

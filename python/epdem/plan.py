@@ -1,0 +1,41 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""The impacts to run: every speed from every starting phase, with one time step for all."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from .experiment import Experiment
+from .predict import Prediction
+
+
+@dataclass(frozen=True)
+class Plan:
+    """n = speeds x phases impacts, speed by speed; arrays of shape (n,), SI.
+
+    The body starts `gap` before first touch; a phase is the share of a step at which the contact then begins.
+    One step serves all speeds (contact time goes only as v^-0.2): the fastest gets steps_in_contact.
+    """
+
+    experiment: Experiment
+    time_step: float
+    steps: int
+    phases: int
+    speed: np.ndarray
+    gap: np.ndarray
+
+    @property
+    def n(self) -> int:
+        return self.speed.size
+
+
+def plan(experiment: Experiment, prediction: Prediction, *, time_step: float | None = None) -> Plan:
+    """The plan of `experiment`; `time_step` [s] replaces the one that follows from steps_in_contact."""
+    numerics = experiment.case.numerics
+    dt = float(prediction.contact_time.min() / numerics.steps_in_contact) if time_step is None else time_step
+    phase = (np.arange(numerics.phases) + 0.5) / numerics.phases
+    speed = np.repeat(experiment.speed, numerics.phases)
+    gap = np.tile(phase, experiment.speed.size) * speed * dt
+    # a few steps more than the longest contact: integration errors stretch it, and its end must be seen
+    steps = int(np.ceil(1.02 * prediction.contact_time.max() / dt)) + 8
+    return Plan(experiment, dt, steps, numerics.phases, speed, gap)

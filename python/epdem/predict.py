@@ -1,0 +1,55 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""What theory says of an experiment, before anything runs."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from .experiment import Experiment
+from .theory import restitution
+
+SMALL_DEFORMATION = 0.3  # a_max/R* above which Hertz's half-space is a poor picture
+
+
+@dataclass(frozen=True)
+class Prediction:
+    """Theory for each speed, arrays of shape (n,), SI."""
+
+    speed: np.ndarray
+    e_n: np.ndarray
+    contact_time: np.ndarray
+    force_max: np.ndarray
+    overlap_max: np.ndarray
+    residual_overlap: np.ndarray
+    work_in: np.ndarray
+    work_out: np.ndarray
+    plastic_work: np.ndarray
+    strain_ratio: np.ndarray  # a_max/R*
+    yields: tuple[str, ...]  # materials that yield somewhere in the range of speeds
+
+    COLUMNS = ("speed", "e_n", "contact_time", "force_max", "overlap_max", "residual_overlap", "work_in", "work_out",
+               "plastic_work", "strain_ratio")  # fmt: skip
+
+    def warnings(self) -> list[str]:
+        """Where theory leaves its own domain, in words."""
+        beyond = self.speed[self.strain_ratio > SMALL_DEFORMATION]
+        if not beyond.size:
+            return []
+        return [
+            f"a_max/R* reaches {self.strain_ratio.max():.2f} (> {SMALL_DEFORMATION}) from {beyond.min():.3g} m/s on: "
+            "small-deformation theory is an extrapolation there"
+        ]
+
+
+def predict(experiment: Experiment) -> Prediction:
+    """The prediction of `experiment` from theory alone; the C++ laws are not called."""
+    law = experiment.theory()
+    impact = restitution.impact(law, m_star=experiment.m_star, speed=experiment.speed)
+    names = Prediction.COLUMNS[1:]
+    columns = {n: np.asarray(getattr(impact, n), float) for n in names}
+    softer = min(experiment.law.strengths)
+    yields = ()
+    if columns["overlap_max"].max() > law.yield_overlap:
+        bodies = zip((experiment.body, experiment.target), experiment.law.strengths, strict=True)
+        yields = tuple(dict.fromkeys(b.material for b, strength in bodies if strength == softer))
+    return Prediction(speed=experiment.speed, yields=yields, **columns)

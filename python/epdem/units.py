@@ -1,0 +1,56 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Quantities as people write them ("208 GPa") become SI floats, once, at the door."""
+
+import math
+import re
+from functools import cache
+
+# number, blank, unit; checked before pint sees it, because pint evaluates what it is given
+_NUMBER = r"[+-]?(?:\d+(?:\.\d*)?|\.\d+)(?:[eE][+-]?\d{1,3})?"
+_NAME = r"[A-Za-zµ°%]{1,20}"
+_FACTOR = rf"{_NAME}(?:(?:\^|\*\*)-?\d)?"
+_QUANTITY = re.compile(rf"({_NUMBER})(?: +({_FACTOR}(?: ?[*/·] ?{_FACTOR}|/\d)*))?")
+
+
+@cache
+def _registry():
+    import pint  # half a second: only when a case is read
+
+    return pint.UnitRegistry(autoconvert_offset_to_baseunit=True)
+
+
+@cache
+def _factor(unit: str, si: str) -> float:
+    import pint
+
+    registry = _registry()
+    try:
+        return registry.Quantity(1.0, unit.replace("·", "*")).to(si).magnitude
+    except pint.UndefinedUnitError as error:
+        raise ValueError(f"unknown unit {unit!r}") from error
+    except pint.DimensionalityError as error:
+        raise ValueError(f"the unit {unit!r} has the wrong dimension; expected a unit like {si!r}") from error
+
+
+def to_si(text: object, si: str) -> float:
+    """The value of `text`, a quantity as "208 GPa", in the SI unit `si`; a plain number if `si` is "1".
+
+    Raises ValueError that says what is expected: number, blank, unit; finite; the right dimension.
+    """
+    if si == "1":
+        if isinstance(text, bool) or not isinstance(text, int | float):
+            raise ValueError(f"expected a plain number, got {text!r}")
+        value = float(text)
+    else:
+        if not isinstance(text, str):
+            raise ValueError(f'expected a quantity with a unit in quotes, as "1 {si}", got {text!r}')
+        match = _QUANTITY.fullmatch(text.strip()) if len(text) < 80 else None
+        if match is None:
+            raise ValueError(f'{text[:60]!r} is not number, blank, unit, as "1 {si}"')
+        number, unit = match.groups()
+        if unit is None:
+            raise ValueError(f'{text!r} has no unit; write "{text.strip()} {si}" if that is what is meant')
+        value = float(number) * _factor(unit, si)
+    if not math.isfinite(value):
+        raise ValueError(f"{text!r} is not a finite number")
+    return value
