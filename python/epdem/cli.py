@@ -1,0 +1,113 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""The command `epdem`: functions of a few lines that call the library.
+
+Exit codes: 0 all within tolerance, 1 a check failed, 2 bad input, 3 an engine failed.
+"""
+
+import json
+import sys
+from pathlib import Path
+from typing import Annotated
+
+import typer
+from rich.console import Console
+
+from .errors import EpdemError
+
+app = typer.Typer(add_completion=False, no_args_is_help=True, pretty_exceptions_enable=False, help=__doc__,
+                  context_settings={"help_option_names": ["-h", "--help"]})  # fmt: skip
+
+CasePath = Annotated[Path, typer.Argument(metavar="CASE", help="case file (TOML)")]
+Engines = Annotated[list[str] | None, typer.Option("--engine", "-e", help="embedded, liggghts, yade; repeat for more")]
+Laws = Annotated[list[str] | None, typer.Option("--law", "-l", help="replaces the case's law; repeat for more")]
+Out = Annotated[Path | None, typer.Option("--out", "-o", help="folder for the results")]
+AsJson = Annotated[bool, typer.Option("--json", help="print one JSON document and nothing else")]
+
+
+def _console() -> Console:
+    console = Console()
+    return console if console.is_terminal else Console(width=140)
+
+
+@app.command()
+def run(
+    case: CasePath,
+    engine: Engines = None,
+    law: Laws = None,
+    ranks: Annotated[int, typer.Option(min=1, max=1024, help="MPI ranks of LIGGGHTS")] = 1,
+    out: Out = None,
+    fresh: Annotated[bool, typer.Option(help="run again what is already stored")] = False,
+    as_json: AsJson = False,
+) -> None:
+    """Run a case and check it against theory (default engine: liggghts)."""
+    from . import report
+    from .run import run as run_case
+
+    status = Console(stderr=True)
+    with status.status("") as line:
+        outcome = run_case(case, engines=engine or ["liggghts"], laws=law or [], out=out, ranks=ranks, fresh=fresh,
+                           progress=line.update)  # fmt: skip
+        line.update("figure")
+        report.figure(outcome)
+    if as_json:
+        print(report.run_json(outcome))
+    else:
+        report.show(outcome, _console())
+    raise typer.Exit(0 if outcome.passed else 1)
+
+
+@app.command()
+def deck(case: CasePath, out: Annotated[Path, typer.Option("--out", "-o", help="folder for the deck")],
+         engine: Annotated[str, typer.Option("--engine", "-e")] = "liggghts", law: Laws = None,
+         as_json: AsJson = False) -> None:  # fmt: skip
+    """Write the deck of a case; it runs by hand."""
+    from .case import load
+    from .engines import engine as find
+    from .experiment import experiment
+    from .plan import plan
+    from .predict import predict
+
+    tool = find(engine)
+    x = experiment(load(case), law[0] if law else None)
+    files = tool.write(plan(x, predict(x)), out)
+    names = [str(f) for f in files]
+    print(json.dumps({"files": names}) if as_json else "\n".join(names))
+
+
+@app.command()
+def predict(case: CasePath, law: Laws = None, as_json: AsJson = False) -> None:
+    """What theory says of a case; nothing runs."""
+    from . import show
+    from .case import load
+    from .experiment import experiment
+    from .predict import predict as predict_experiment
+
+    experiments = [experiment(load(case), name) for name in (law or [None])]
+    show.predictions([(x, predict_experiment(x)) for x in experiments], as_json, _console())
+
+
+@app.command()
+def doctor(as_json: AsJson = False) -> None:
+    """Which engines are here, their versions, whether the plugin loads, and what to do if not."""
+    from . import show
+    from .doctor import examine
+
+    findings = examine()
+    show.findings(findings, as_json, _console())
+    raise typer.Exit(0 if all(f.ok for f in findings if f.needed) else 3)
+
+
+def main() -> None:
+    """Entry point: errors that a user can mend become one sentence and an exit code."""
+    try:
+        app()
+    except EpdemError as error:
+        print(f"epdem: {error}", file=sys.stderr)
+        sys.exit(error.exit_code)
+    except KeyboardInterrupt:
+        print("epdem: stopped; what was finished is stored", file=sys.stderr)
+        sys.exit(130)
+
+
+if __name__ == "__main__":
+    main()
