@@ -13,7 +13,7 @@ struct Johnson {
   static constexpr bool yields = true;
   static constexpr bool flattens = false;
   static constexpr Parameter parameters[] = {
-      {"mean_pressure", "yieldPressure", "Pa", std::numeric_limits<double>::quiet_NaN()}};
+      {"yield_pressure", "yieldPressure", "Pa", std::numeric_limits<double>::quiet_NaN()}};
   static constexpr int n_parameters = 1;
 
   double E_star;

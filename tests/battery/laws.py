@@ -1,0 +1,61 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Random contacts of every law, for the battery: whatever the law, it must pass the same tests."""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from hypothesis import strategies as st
+
+from epdem import law as claw
+
+NAMES = tuple(claw.laws())
+YIELDING = tuple(n for n in NAMES if claw.laws()[n].parameters)
+
+
+@dataclass(frozen=True)
+class Contact:
+    """A law with numbers, and overlaps on the scale of its own yield."""
+
+    law: claw.Law
+    E_star: float
+    R_star: float
+    strength: float
+    delta_y: float  # end of the elastic branch [m]; R* 1e-3 for hertz
+
+    def step(self, delta_max, delta):
+        return self.law.step(R_star=self.R_star, delta_max=delta_max, delta=delta)
+
+    def backbone(self, delta):
+        return self.law.backbone(R_star=self.R_star, delta=delta)
+
+
+def yield_overlap(name: str, E_star: float, R_star: float, strength: float) -> float:
+    """End of the elastic branch [m], from the laws' definitions (not from the code)."""
+    pressure = {"thornton": strength, "johnson": 3 * strength, "cavity": 1.6 * strength}.get(name)
+    if pressure is None:
+        return 1e-3 * R_star
+    return R_star * (math.pi * pressure / (2 * E_star)) ** 2
+
+
+def contact(name: str, E_star: float, R_star: float, ratio: float) -> Contact:
+    """A contact with strength = ratio E*."""
+    parameters = claw.laws()[name].parameters
+    strength = ratio * E_star
+    law = claw.Law(name, E_star=E_star, **({parameters[0].name: strength} if parameters else {}))
+    return Contact(law, E_star, R_star, strength, yield_overlap(name, E_star, R_star, strength))
+
+
+def log_floats(low: float, high: float):
+    return st.floats(math.log(low), math.log(high)).map(math.exp)
+
+
+def contacts(names=NAMES):
+    """E* 1 kPa to 10 TPa, R* 100 nm to 10 m, strength 1e-6 to 0.05 of E*."""
+    return st.builds(contact, st.sampled_from(names), log_floats(1e3, 1e13), log_floats(1e-7, 10.0), log_floats(1e-6, 0.05))
+
+
+def paths(contact: Contact, fractions: list[float]) -> np.ndarray:
+    """Overlaps [m] from numbers in [-0.1, 1]: below 0.5 elastic territory, above up to 1e4 times yield."""
+    f = np.asarray(fractions)
+    return contact.delta_y * np.where(f < 0.5, 2 * f, np.exp((f - 0.5) * 2 * math.log(1e4)))

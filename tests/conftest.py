@@ -1,0 +1,21 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Shared by all tests: repeatable hypothesis, and skips of engines that are not here."""
+
+import os
+import shutil
+
+import pytest
+from hypothesis import HealthCheck, settings
+
+settings.register_profile("epdem", derandomize=True, deadline=None, suppress_health_check=list(HealthCheck))
+settings.load_profile("epdem")
+
+ENGINES = {"liggghts": "apt-get install liggghts libliggghts-dev libopenmpi-dev", "yade": "apt-get install yade"}
+
+
+def pytest_collection_modifyitems(items):
+    """An engine test is skipped, with its reason, only where the engine is not installed; never in CI."""
+    for item in items:
+        for name, command in ENGINES.items():
+            if item.get_closest_marker(name) and not shutil.which(name) and not os.environ.get("CI"):
+                item.add_marker(pytest.mark.skip(reason=f"{name} is not installed ({command})"))
