@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Where the installed parts are: compiled libraries, templates, the LIGGGHTS launcher."""
 
+import os
 import shutil
 import sys
 import sysconfig
@@ -33,7 +34,9 @@ def templates() -> Path:
 
 @cache
 def launcher() -> Path | None:
-    """`epdem-liggghts`: LIGGGHTS with our models, or None if it was not built."""
+    """`epdem-liggghts`: LIGGGHTS with our models, or None if it was not built; EPDEM_LAUNCHER names another one."""
+    if named := os.environ.get("EPDEM_LAUNCHER"):
+        return Path(named)
     beside = Path(sys.executable).parent / "epdem-liggghts"
     if beside.exists():
         return beside

@@ -1,0 +1,123 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Case files: what is refused, and how the sentence reads; nothing is written for a bad one."""
+
+import copy
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+
+from epdem.case import load, parse, read_toml
+from epdem.errors import CaseError
+from epdem.experiment import experiment
+from epdem.units import to_si
+
+CASES = Path(__file__).parents[2] / "cases"
+STEEL = read_toml(CASES / "steel_wall.toml")
+
+
+def changed(place: str, value):
+    data = copy.deepcopy(STEEL)
+    at = data
+    *path, last = place.split(".")
+    for key in path:
+        at = at.setdefault(key, {})
+    if value is KeyError:
+        del at[last]
+    else:
+        at[last] = value
+    return data
+
+
+@pytest.mark.parametrize("path", sorted(CASES.glob("*.toml")), ids=lambda p: p.stem)
+def test_every_case_of_the_project_is_valid(path):
+    data = read_toml(path)
+    if "impact" in data:
+        assert experiment(load(path)).case.name == path.stem
+
+
+@pytest.mark.parametrize(
+    ("text", "unit", "value"),
+    [
+        ("208 GPa", "Pa", 208e9),
+        ("7850 kg/m^3", "kg/m^3", 7850.0),
+        ("7.85 g/cm**3", "kg/m^3", 7850.0),
+        ("1e-2 m", "m", 1e-2),
+        ("36 km/hour", "m/s", 10.0),
+        ("-3 um", "m", -3e-6),
+    ],
+)
+def test_a_quantity_is_number_blank_unit(text, unit, value):
+    assert to_si(text, unit) == pytest.approx(value, rel=1e-15)
+
+
+@pytest.mark.parametrize("text", ["9**9**9 m", "1 m + 1 m", "1", "m", "nan m", "inf m", "1e999 m", "1 kg", "1 furlong_x", "", "1 m;", 3, True, None, "1 " + "m" * 500])
+def test_anything_else_is_refused_at_once(text):
+    start = time.monotonic()
+    with pytest.raises(ValueError):
+        to_si(text, "m")
+    assert time.monotonic() - start < 5  # pint alone would compute 9**9**9
+
+
+@pytest.mark.parametrize(
+    ("place", "value", "says"),
+    [
+        ("materials.steel.poisson_ratio", 30, "materials.steel.poisson_ratio = 30, must lie in (-1, 0.5]; percent?"),
+        ("materials.steel.young_modulus", "208 kg", "wrong dimension"),
+        ("materials.steel.young_modulus", "-1 GPa", "must lie in (0, inf) Pa"),
+        ("materials.steel.young_modulus", float("nan"), "expected a quantity with a unit"),
+        ("materials.steel.poisson_ratio", float("nan"), "not a finite number"),
+        ("materials.steel.colour", "blue", "unknown key"),
+        ("materials.rigid", STEEL["materials"]["steel"], "kept for a rigid target"),
+        ("materials.steel.yield_stress", KeyError, "yield_stress"),
+        ("impact.body.radius", "0 m", "must lie in (0, inf) m"),
+        ("impact.body.material", "brass", "add [materials.brass]"),
+        ("impact.target.radius", "1 m", "must not have a radius"),
+        ("impact.kind", "sphere-cube", "sphere-wall"),
+        ("impact.speeds", ["1 m/s", "fast"], "impact.speeds.1"),
+        ("impact.speeds", [], "impact.speeds"),
+        ("impact.speeds.count", 10**9, "less than or equal to 1000"),
+        ("impact.speeds.to", "1 mm/s", "must exceed 'from'"),
+        ("impact.speeds.count", 1000, "at most 4096"),
+        ("numerics.phases", 65, "less than or equal to 64"),
+        ("numerics.steps_in_contact", 10**7, "less than or equal to 100000"),
+        ("numerics.steps_in_contact", 100.5, "valid integer"),
+        ("case.title", "a title & ", "swallow the next line"),
+        ("case.title", "two\nlines", "one printable line"),
+        ("case.source", "bell \a", "one printable line"),
+        ("case.name", "../../etc", "pattern"),
+        ("case", KeyError, "case is missing"),
+        ("law.name", "hook", "there are hertz, thornton"),
+        ("law.stiffness", 1.0, "has no such parameter; it has yield_pressure, yield_pressure_ratio"),
+        ("law.yield_pressure", "1 GPa", "keep one"),
+        ("law.yield_pressure_ratio", -1.0, "must be > 0"),
+        ("check.e_n", 0, "must lie in (0, inf)"),
+    ],
+)
+def test_a_mistake_is_named_with_place_value_and_limit(place, value, says):
+    with pytest.raises(CaseError) as caught:
+        experiment(parse(changed(place, value), "f.toml"))
+    assert says in str(caught.value)
+
+
+def test_bad_input_exits_with_2_one_line_and_writes_nothing(tmp_path):
+    bad = tmp_path / "bad.toml"
+    bad.write_text((CASES / "steel_wall.toml").read_text().replace("0.3", "30"))
+    done = subprocess.run([sys.executable, "-m", "epdem.cli", "run", str(bad)], cwd=tmp_path, capture_output=True, text=True)
+    assert done.returncode == 2
+    assert done.stderr.startswith("epdem: ") and done.stderr.count("\n") == 1 and "poisson_ratio = 30" in done.stderr
+    assert [p.name for p in tmp_path.iterdir()] == ["bad.toml"]
+
+
+def test_another_law_drops_the_parameters_of_the_first():
+    x = experiment(parse(STEEL, "f"), "cavity")
+    assert x.law.parameters == {"yield_stress": 1e9, "first_yield_ratio": 1.6, "plastic_ratio": 2.8}
+
+
+def test_the_softer_body_gives_the_strength_of_the_pair():
+    data = changed("materials.brass", dict(STEEL["materials"]["steel"], yield_stress="200 MPa"))
+    data["impact"]["target"]["material"] = "brass"
+    x = experiment(parse(data, "f"))
+    assert x.law.strengths == (2.8e9, 2.8 * 200e6) and x.law.parameters["yield_pressure"] == 2.8 * 200e6
