@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pandas as pd
 from rich.console import Console
+from rich.markup import escape
 from rich.table import Table
 
 from .compare import CHECKED
@@ -49,7 +50,7 @@ def run_table(outcome: Outcome) -> Table:
     heads = ["v [m/s]", "engine", *(["law"] if laws else []), "e_n", "theory", "error", "t_c [us]", "F_max [N]",
              "overlap [um]", "steps", "pass"]  # fmt: skip
     for head in heads:
-        table.add_column(head, justify="left" if head in ("engine", "law") else "right", no_wrap=True)
+        table.add_column(escape(head), justify="left" if head in ("engine", "law") else "right", no_wrap=True)
     ordered = outcome.results.comparison.sort_values(["law", "speed", "engine"], kind="stable")
     for row in ordered.to_dict("records"):
         cells = [f"{row['speed']:.4g}", row["engine"], *([row["law"]] if laws else []), f"{row['e_n']:.6f}",
