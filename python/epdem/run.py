@@ -17,7 +17,7 @@ from . import __version__, paths, store
 from .case import Case, load
 from .compare import compare, impacts_table
 from .engines import Engine, engine
-from .errors import EngineError
+from .errors import CaseError, EngineError
 from .experiment import experiment
 from .measure import measure
 from .plan import Plan, plan
@@ -66,6 +66,14 @@ def _stage(plan: Plan, tool: Engine, folder: Path, ranks: int) -> tuple[pd.DataF
     return table, seconds, {f.name: f.read_text() for f in files if f.suffix != ".data"}
 
 
+def _stored(path: Path) -> store.Results:
+    """What an earlier run left, or nothing; a file of another version is simply made anew."""
+    try:
+        return store.read(path)
+    except CaseError:
+        return store.Results()
+
+
 def run(case_path: Path | str, *, engines: list[str], laws: list[str], out: Path | None = None, ranks: int = 1,
         fresh: bool = False, progress: Callable[[str], None] = lambda text: None) -> Outcome:  # fmt: skip
     """Run a case on every engine with every law (none given: the case's own). Raises CaseError or EngineError.
@@ -88,7 +96,7 @@ def run(case_path: Path | str, *, engines: list[str], laws: list[str], out: Path
 
     folder = out or Path("runs") / case.name
     stored = folder / "results.h5"
-    old = store.read(stored) if stored.exists() and not fresh else store.Results()
+    old = store.Results() if fresh else _stored(stored)
     results = store.Results(case_text=Path(case_path).read_text(), attributes={"case": case.name, "epdem": __version__}
                             | {f"version_{k}": v for k, v in versions.items()})  # fmt: skip
     outcome = Outcome(case, folder, results, predictions)

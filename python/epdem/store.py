@@ -87,16 +87,15 @@ def read(path: Path | str) -> Results:
     try:
         with h5py.File(path) as file:
             found = Results(file["case"][()].decode(), dict(file.attrs), _read_table(file["comparison"]))
-            for law, group in file["predictions"].items():
+            for law, group in file.get("predictions", {}).items():
                 found.predictions[law] = _read_table(group)
-            for law, engines in file["impacts"].items():
+            for law, engines in file.get("impacts", {}).items():
                 for engine, group in engines.items():
                     key = f"{law}/{engine}"
                     found.impacts[key] = _read_table(group)
                     found.runs[key] = {k: v for k, v in group.attrs.items() if k != "columns"}
-            file.get("decks", {}) and file["decks"].visititems(
-                lambda key, node: found.decks.__setitem__(key, node[()].decode()) if isinstance(node, h5py.Dataset) else None
-            )
+                    for name, text in file.get(f"decks/{key}", {}).items():
+                        found.decks[f"{key}/{name}"] = text[()].decode()
             return found
     except FileNotFoundError:
         raise CaseError(f"{path}: no such file; 'epdem run CASE' writes it") from None

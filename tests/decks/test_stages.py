@@ -1,0 +1,116 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Each stage by itself, on made-up data whose answer is known."""
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from epdem import store
+from epdem.case import Check, load
+from epdem.compare import CHECKED, compare
+from epdem.engines.base import Trajectory
+from epdem.errors import CaseError, EngineError
+from epdem.experiment import experiment
+from epdem.measure import Measured, measure
+from epdem.plan import plan
+from epdem.predict import predict
+from epdem.run import run
+
+STEEL = Path(__file__).parents[2] / "cases" / "steel_wall.toml"
+
+
+@pytest.fixture(scope="module")
+def steel():
+    x = experiment(load(STEEL))
+    prediction = predict(x)
+    return x, prediction, plan(x, prediction)
+
+
+def test_the_prediction_is_the_chapters_table_of_reference_values(steel):
+    """Sphere R = 10 mm on a plane, v_y = 0.559430455498519 m/s; e_n of eq. 8.83 printed with 13 digits."""
+    x, _, _ = steel
+    speeds = [0.05, 0.2, 1.0, 5.0, 20.0, 50.0]
+    e_n = predict(replace(x, speed=np.array(speeds))).e_n
+    table = [1, 1, 0.9476311322744, 0.6763264338717, 0.4830544367755, 0.3849048136277]
+    assert e_n == pytest.approx(table, abs=1e-13)
+    assert x.m_star == pytest.approx(0.032882003107573169, rel=1e-14)
+    assert x.E_star == pytest.approx(1.1428571428571429e11, rel=1e-14)
+
+
+def test_phases_cover_the_step_evenly_and_the_fastest_impact_gets_the_steps(steel):
+    _, prediction, p = steel
+    phase = (p.gap / (p.speed * p.time_step)).reshape(-1, 8)
+    assert phase == pytest.approx(np.broadcast_to((np.arange(8) + 0.5) / 8, phase.shape), rel=1e-12)
+    assert prediction.contact_time.min() / p.time_step == pytest.approx(400, rel=1e-12)
+    assert p.steps * p.time_step > prediction.contact_time.max()
+
+
+def made_up(steel, dent_share=0.25):
+    """A path with a known dent: F^(2/3) falls linearly to 0 at the dent, between two samples."""
+    x, _, p = steel
+    one = replace(p, speed=p.speed[:1], gap=np.array([0.5 * p.speed[0] * p.time_step]))
+    delta = np.concatenate([np.arange(-0.5, 100), np.arange(98.5, -60, -1)]) * p.speed[0] * p.time_step
+    top, dent = delta.max(), dent_share * delta.max()
+    rising = np.arange(delta.size) < 101
+    share = np.where(rising, delta / top, (delta - dent) / (top - dent))
+    force = np.clip(share, 0, None) ** 1.5
+    velocity = np.where(rising, p.speed[0], -p.speed[0])
+    return one, Trajectory(p.time_step, delta[None], force[None], velocity[None]), dent, top
+
+
+def test_the_dent_and_the_end_of_contact_are_found_between_samples(steel):
+    one, path, dent, top = made_up(steel)
+    found = measure(one, path)
+    step = one.speed[0] * one.time_step
+    assert found.residual_overlap[0] == pytest.approx(dent, rel=1e-12)
+    end = 100 + (99.5 * step - dent) / step  # steps at one speed: from the peak sample down to the dent
+    assert found.contact_time[0] / one.time_step == pytest.approx(end - 0.5, abs=1e-9)
+    assert found.e_n[0] == 1.0 and found.overlap_max[0] == top
+
+
+def test_a_contact_that_never_ends_is_an_engine_error(steel):
+    one, path, _, _ = made_up(steel)
+    with pytest.raises(EngineError, match="still in contact"):
+        measure(one, replace(path, **{k: getattr(path, k)[:, :120] for k in ("overlap", "force", "velocity")}))
+    with pytest.raises(EngineError, match="never touched"):
+        measure(one, replace(path, force=0 * path.force))
+
+
+def test_the_error_of_a_speed_is_that_of_its_worst_phase(steel):
+    x, prediction, p = steel
+    n = prediction.speed.size
+    columns = {name: np.repeat(getattr(prediction, name), 8) for name in CHECKED}
+    columns |= {name: np.zeros(8 * n) for name in Measured.COLUMNS if name not in CHECKED}
+    columns["e_n"] = columns["e_n"] * (1 + 1e-2 * (np.arange(8 * n) % 8 == 3))
+    rows = compare("embedded", "thornton", pd.DataFrame(columns), prediction, Check())
+    assert rows["e_n_error"].to_numpy() == pytest.approx(1e-2, rel=1e-9)
+    assert rows["e_n_rms"].to_numpy() == pytest.approx(1e-2 / 8**0.5, rel=1e-9)
+    assert not rows["passed"].any() and rows["contact_time_error"].max() == 0
+
+
+def test_a_stored_result_is_used_only_while_its_inputs_are_the_same(tmp_path):
+    text = STEEL.read_text().replace("count = 32", "count = 3")
+    (tmp_path / "a.toml").write_text(text)
+    words = {"engines": ["embedded"], "laws": [], "out": tmp_path / "out"}
+    assert run(tmp_path / "a.toml", **words).reused == []
+    assert run(tmp_path / "a.toml", **words).reused == ["thornton/embedded"]
+    (tmp_path / "a.toml").write_text(text.replace("yield_pressure_ratio = 2.8", "yield_pressure_ratio = 2.7"))
+    assert run(tmp_path / "a.toml", **words).reused == []
+
+
+def test_a_write_that_fails_leaves_the_old_results(tmp_path):
+    path = tmp_path / "results.h5"
+    store.write(path, store.Results("one"))
+    with pytest.raises(TypeError):
+        store.write(path, store.Results("two", attributes={"bad": object()}))
+    assert store.read(path).case_text == "one"
+    assert sorted(p.name for p in tmp_path.iterdir()) == ["results.csv", "results.h5"]
+
+
+def test_a_file_that_is_no_result_is_refused(tmp_path):
+    (tmp_path / "x.h5").write_text("hello")
+    with pytest.raises(CaseError, match="not a results file"):
+        store.read(tmp_path / "x.h5")

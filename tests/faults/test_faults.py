@@ -1,0 +1,138 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""A test that cannot fail is a defect: each fault planted here must turn the named test red.
+
+A fault is an exact replacement of text in a copy of the project, which is then built and tested. Text that is not
+there any more fails the test. Nothing in the product knows of faults.
+"""
+
+import os
+import shutil
+import subprocess
+import sys
+from dataclasses import dataclass
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[2]
+LAWS, CAPI, PLUGIN, PYTHON = "cpp_contact/include/epdem", "cpp_contact/capi", "cpp_contact/liggghts", "python/epdem"
+
+
+@dataclass(frozen=True)
+class Fault:
+    """`file`: `old` becomes `new`; `test` (pytest node, then -k expression) must fail."""
+
+    name: str
+    file: str
+    old: str
+    new: str
+    test: str
+    only: str = ""
+
+
+STEP, IMPACTS = "tests/battery/test_step.py", "tests/engines/test_impacts.py"
+FAULTS = [
+    Fault("plastic line starts at the wrong force", f"{LAWS}/thornton.hpp", "slope_ratio * yield_ratio / 3.0",
+          "slope_ratio * yield_ratio / 2.0", STEP, "continuous"),
+    Fault("unloading is too stiff", f"{LAWS}/unloading.hpp", "stiffness / (0.75 * peak.force)",
+          "stiffness / (0.70 * peak.force)", STEP, "stiffness_of_the_peak"),
+    Fault("flat unloading lost its factor", f"{LAWS}/unloading.hpp", "A = 0.75 * (1.0 - tau), B = 2.0 / pi * tau;",
+          "A = 0.75 * (1.0 - tau), B = 1.0 / pi * tau;", STEP, "stiffness_of_the_peak"),
+    Fault("one digit of the segment function", f"{LAWS}/unloading.hpp", "0.15627588828780442", "0.15627588828880442",
+          "tests/battery", "agree"),
+    Fault("history forgotten on the way back", f"{LAWS}/law.hpp", "law.load(R_star, before.delta_max), before.delta_max, delta);\n      return {p.force, p.radius, before};",
+          "law.load(R_star, before.delta_max), before.delta_max, delta);\n      return {p.force, p.radius, {delta}};", STEP, "retrace"),
+    Fault("memory grows although the step is elastic", f"{LAWS}/law.hpp", "after.delta_max = delta_max;",
+          "after.delta_max = 2 * delta_max;", STEP, "not hertz and hertz or energy or retrace or nan"),
+    Fault("work of the fully plastic phase", f"{LAWS}/cavity.hpp", "pi * R_star * c_P * Y * (delta - delta_P) * (delta + delta_P)",
+          "pi * R_star * c_P * Y * (delta - delta_P) * delta", STEP, "slope_of_the_work"),
+    Fault("forward Euler instead of velocity Verlet", f"{LAWS}/impact.hpp", "if (n > 0) v -= half * now.force;",
+          "if (n > 0) v -= 0 * now.force;", IMPACTS, "restitution_of_thornton and embedded"),
+    Fault("(1-nu)^2 for 1-nu^2 in the plugin", f"{LAWS}/pair.hpp", "(1.0 - i.poisson_ratio * i.poisson_ratio)",
+          "(1.0 - i.poisson_ratio) * (1.0 - i.poisson_ratio)", IMPACTS, "agree_with_theory and liggghts"),
+    Fault("pressure of the harder body", f"{PYTHON}/experiment.py", "parameters[p.name] = min(strengths)",
+          "parameters[p.name] = max(strengths)", "tests/decks/test_case_files.py", "softer"),
+    Fault("error is a mean over the phases", f"{PYTHON}/compare.py", "deviation.max(axis=1), np.sqrt",
+          "deviation.mean(axis=1), np.sqrt", "tests/decks/test_stages.py", "worst_phase"),
+    Fault("contact ends with the overlap", f"{PYTHON}/measure.py", "loaded = sampled & (force > 0)",
+          "loaded = sampled & (overlap > 0)", IMPACTS, "agree_with_theory and embedded"),
+    Fault("the end of contact is not extrapolated", f"{PYTHON}/measure.py", "residual = overlap[row, last] - share *",
+          "residual = overlap[row, last] + 0 * share *", "tests/decks/test_stages.py", "dent"),
+    Fault("all impacts start at the same phase", f"{PYTHON}/plan.py", "(np.arange(numerics.phases) + 0.5) / numerics.phases",
+          "(np.zeros(numerics.phases) + 0.5)", "tests/decks/test_stages.py", "phases"),
+    Fault("numbers lose digits in the deck", f"{PYTHON}/deck.py", "else repr(float(x))", "else format(float(x), '.6g')",
+          "tests/decks/test_decks.py", "digits"),
+    Fault("a stored result is taken whatever changed", f"{PYTHON}/run.py", '.get("inputs") == inputs', '.get("inputs")',
+          "tests/decks/test_stages.py", "stored"),
+]  # fmt: skip
+
+
+@pytest.fixture(scope="session")
+def copy(tmp_path_factory):
+    """A copy of the project with its compiled parts where the package looks first."""
+    folder = tmp_path_factory.mktemp("copy")
+    for name in ("cpp_contact", "python", "templates", "tests", "cases"):
+        shutil.copytree(ROOT / name, folder / name, ignore=shutil.ignore_patterns("__pycache__"))
+    for name in ("pyproject.toml", "CMakeLists.txt", "ARCHITECTURE.md"):
+        shutil.copy(ROOT / name, folder)
+    return folder
+
+
+def build(folder: Path, plugin: bool) -> None:
+    """Compile what a change of C++ reaches: the C library, and the LIGGGHTS parts if asked."""
+    native = folder / PYTHON / "native"
+    native.mkdir(exist_ok=True)
+    if not plugin:
+        command = ["g++", "-std=c++17", "-O1", "-fPIC", "-shared", f"-I{folder}/cpp_contact/include", '-DEPDEM_VERSION="fault"',
+                   *map(str, (folder / CAPI).glob("*.cpp")), "-o", str(native / "libepdem.so")]  # fmt: skip
+        subprocess.run(command, check=True)
+        return
+    tree = folder / "build"
+    subprocess.run(["cmake", "-S", folder, "-B", tree, "-DCMAKE_CXX_FLAGS_RELEASE=-O1"], check=True, stdout=subprocess.DEVNULL)
+    subprocess.run(["cmake", "--build", tree, "-j2"], check=True, stdout=subprocess.DEVNULL)
+    for pattern in ("libepdem*.so",):
+        for found in tree.rglob(pattern):
+            shutil.copy(found, native)
+
+
+def pytest_in(folder: Path, test: str, only: str) -> subprocess.CompletedProcess:
+    """Run one test of the copy against the copy, not against the installed package."""
+    code = (
+        "import sys; sys.meta_path[:] = [f for f in sys.meta_path if 'Scikit' not in type(f).__name__]; "
+        f"sys.path.insert(0, {str(folder / 'python')!r}); import pytest, epdem; assert epdem.__file__.startswith({str(folder)!r}); "
+        f"sys.exit(pytest.main(['-q', '-x', '-p', 'no:cacheprovider', '-p', 'no:xdist', {test!r}, '-k', {only!r}]))"
+    )
+    env = os.environ | {"PYTHONPATH": str(folder / "python"), "PYTHONDONTWRITEBYTECODE": "1"}
+    launcher = next((folder / "build").rglob("epdem-liggghts"), None) if (folder / "build").exists() else None
+    if launcher:
+        env["EPDEM_LAUNCHER"] = str(launcher)
+    return subprocess.run([sys.executable, "-c", code], cwd=folder, env=env, capture_output=True, text=True, timeout=600)
+
+
+def needs_plugin(fault: Fault) -> bool:
+    return fault.file.startswith(PLUGIN) or fault.file.endswith("pair.hpp")
+
+
+@pytest.mark.parametrize("fault", FAULTS, ids=lambda f: f.name)
+def test_a_planted_fault_turns_its_test_red(fault, copy):
+    if needs_plugin(fault) and not shutil.which("liggghts"):
+        pytest.skip("liggghts is not installed (apt-get install liggghts libliggghts-dev libopenmpi-dev)")
+    path = copy / fault.file
+    good = path.read_text()
+    assert good.count(fault.old) >= 1, f"{fault.file} does not contain {fault.old!r} any more; update the fault"
+    path.write_text(good.replace(fault.old, fault.new))
+    try:
+        if fault.file.startswith("cpp_contact") or not (copy / PYTHON / "native").exists():
+            build(copy, needs_plugin(fault))
+        done = pytest_in(copy, fault.test, fault.only)
+        assert done.returncode == 1, f"the test did not fail:\n{done.stdout[-2000:]}\n{done.stderr[-2000:]}"
+    finally:
+        path.write_text(good)
+        shutil.rmtree(copy / PYTHON / "native", ignore_errors=True)  # the next fault starts from sound parts
+        shutil.rmtree(copy / "build", ignore_errors=True)
+
+
+def test_without_a_fault_the_copy_is_green(copy):
+    build(copy, plugin=False)
+    done = pytest_in(copy, STEP, "")
+    assert done.returncode == 0, done.stdout[-2000:]
