@@ -125,8 +125,17 @@ class LawChoice(BaseModel):
 
 
 class Numerics(Frozen):
+    """Steps of the shortest contact, or the largest relative `error` of e_n, for which the step is then searched."""
+
     steps_in_contact: Annotated[int, Field(ge=5, le=100_000)] = 400
+    error: Annotated[float, Field(ge=1e-9, le=0.1)] | None = None
     phases: Annotated[int, Field(ge=1, le=64)] = 8
+
+    @model_validator(mode="after")
+    def _one_of_two(self):
+        if self.error is not None and "steps_in_contact" in self.model_fields_set:
+            raise ValueError("both 'error' and 'steps_in_contact' are given; keep one")
+        return self
 
 
 class Check(Frozen):
@@ -181,7 +190,9 @@ def _explain(path: object, data: dict, error: ValidationError) -> str:
     problems = [p for p in problems if not (p["loc"][:2] == ("impact", "speeds") and len(p["loc"]) > 2
                                             and not str(p["loc"][2]).startswith(shape))] or problems  # fmt: skip
     problem = problems[0]
-    location = tuple(k for k in problem["loc"] if k in ("from",) or not str(k).startswith(("SpeedRange", "list[", "function-")))
+    location = tuple(
+        k for k in problem["loc"] if k in ("from",) or not str(k).startswith(("SpeedRange", "list[", "function-"))
+    )
     place, value = ".".join(map(str, location)), _value_at(data, location)
     text = problem["msg"].removeprefix("Value error, ")
     if problem["type"] == "extra_forbidden":

@@ -48,7 +48,9 @@ def _plugin() -> Finding:
     """Load the plugin into the installed LIGGGHTS and let it create every model of ours."""
     plugin = paths.native("libepdem_liggghts.so")
     if plugin is None or paths.launcher() is None:
-        return Finding("plugin", False, "not built", "apt-get install liggghts libliggghts-dev libopenmpi-dev; make setup")
+        return Finding(
+            "plugin", False, "not built", "apt-get install liggghts libliggghts-dev libopenmpi-dev; make setup"
+        )
     with tempfile.TemporaryDirectory() as folder:
         deck = Path(folder) / "in.doctor"
         models = "\n".join(f"pair_style gran model ep/{name} tangential off" for name in claw.laws())
@@ -59,7 +61,9 @@ def _plugin() -> Finding:
     if done.returncode == 0:
         return Finding("plugin", True, f"loads, models {', '.join('ep/' + n for n in claw.laws())}: {plugin}")
     words = [t for t in (done.stdout + done.stderr).splitlines() if t.strip()][-1:]
-    return Finding("plugin", False, f"does not load: {' '.join(words)}", "it was built for another LIGGGHTS; run 'make setup'")
+    return Finding(
+        "plugin", False, f"does not load: {' '.join(words)}", "it was built for another LIGGGHTS; run 'make setup'"
+    )
 
 
 def examine() -> list[Finding]:

@@ -50,7 +50,9 @@ class LawSpec:
     def ratios(self) -> dict[str, float]:
         """The dimensionless parameters that differ from the law's own defaults, by LIGGGHTS property name."""
         info = claw.laws()[self.name].parameters
-        return {p.property: self.parameters[p.name] for p in info if p.unit == "1" and self.parameters[p.name] != p.default}
+        return {
+            p.property: self.parameters[p.name] for p in info if p.unit == "1" and self.parameters[p.name] != p.default
+        }
 
 
 @dataclass(frozen=True)
@@ -129,7 +131,9 @@ def choose_law(case: Case, bodies: tuple[Body, Body], name: str | None = None) -
         parameters[p.name] = min(strengths)
     if given:
         known = [n for p in info.parameters for n in ((p.name, p.name + "_ratio") if p.unit == "Pa" else (p.name,))]
-        raise CaseError(f"law.{next(iter(given))}: law {name} has no such parameter; it has {', '.join(known) or 'none'}")
+        raise CaseError(
+            f"law.{next(iter(given))}: law {name} has no such parameter; it has {', '.join(known) or 'none'}"
+        )
     return LawSpec(name, parameters, strengths)
 
 

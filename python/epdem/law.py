@@ -6,7 +6,7 @@ The library never sees units or case files: SI in, SI out. Arrays are numpy, flo
 
 import ctypes
 import math
-from ctypes import POINTER, Structure, c_char_p, c_double, c_int, c_int64, c_size_t
+from ctypes import POINTER, Structure, c_char_p, c_double, c_int, c_size_t
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
@@ -165,7 +165,14 @@ class Law:
         results = out.ctypes.data_as(POINTER(_StepResult))
         self._check(
             library().epdem_step(
-                self.info.index, self.E_star, self._parameters, R_star, now.size, _pointer(before), _pointer(now), results
+                self.info.index,
+                self.E_star,
+                self._parameters,
+                R_star,
+                now.size,
+                _pointer(before),
+                _pointer(now),
+                results,
             )
         )
         return out[:, 0], out[:, 1], out[:, 2]

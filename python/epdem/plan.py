@@ -7,6 +7,7 @@ import numpy as np
 
 from .experiment import Experiment
 from .predict import Prediction
+from .timestep import search
 
 
 @dataclass(frozen=True)
@@ -14,7 +15,8 @@ class Plan:
     """n = speeds x phases impacts, speed by speed; arrays of shape (n,), SI.
 
     The body starts `gap` before first touch; a phase is the share of a step at which the contact then begins.
-    One step serves all speeds (contact time goes only as v^-0.2): the fastest gets steps_in_contact.
+    One step serves all speeds (contact time goes only as v^-0.2): the fastest gets steps_in_contact, or all of them
+    the step that keeps e_n within the case's target error.
     """
 
     experiment: Experiment
@@ -30,9 +32,14 @@ class Plan:
 
 
 def plan(experiment: Experiment, prediction: Prediction, *, time_step: float | None = None) -> Plan:
-    """The plan of `experiment`; `time_step` [s] replaces the one that follows from steps_in_contact."""
+    """The plan of `experiment`; `time_step` [s] replaces the one that follows from steps_in_contact or error."""
     numerics = experiment.case.numerics
-    dt = float(prediction.contact_time.min() / numerics.steps_in_contact) if time_step is None else time_step
+    if time_step is not None:
+        dt = time_step
+    elif numerics.error is not None:
+        dt = search(experiment, prediction, numerics.error).time_step
+    else:
+        dt = float(prediction.contact_time.min() / numerics.steps_in_contact)
     phase = (np.arange(numerics.phases) + 0.5) / numerics.phases
     speed = np.repeat(experiment.speed, numerics.phases)
     gap = np.tile(phase, experiment.speed.size) * speed * dt

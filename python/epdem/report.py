@@ -66,9 +66,14 @@ def summary(outcome: Outcome) -> str:
     rows = outcome.results.comparison
     failed = int((~rows["passed"]).sum())
     times = ", ".join(f"{k} {v:.2f} s" for k, v in outcome.seconds.items())
-    stored = f" ({len(outcome.reused)} of {len(outcome.results.runs)} from {outcome.folder}/results.h5)" if outcome.reused else ""
+    stored = (
+        f" ({len(outcome.reused)} of {len(outcome.results.runs)} from {outcome.folder}/results.h5)"
+        if outcome.reused
+        else ""
+    )
     verdict = "all within tolerance" if not failed else f"{failed} of {len(rows)} rows outside tolerance"
-    return f"{outcome.case.name}: {verdict}; largest e_n error {rows['e_n_error'].max():.1e}; {times}{stored}; see {outcome.folder}/"
+    worst = f"largest e_n error {rows['e_n_error'].max():.1e}"
+    return f"{outcome.case.name}: {verdict}; {worst}; {times}{stored}; see {outcome.folder}/"
 
 
 def show(outcome: Outcome, console: Console) -> None:
@@ -86,14 +91,19 @@ def figure(outcome: Outcome) -> Path:
     matplotlib.use("Agg")
     import matplotlib.pyplot as plt
 
-    fig, (above, below) = plt.subplots(
-        2, 1, sharex=True, figsize=(7, 6), height_ratios=(3, 1.3), layout="constrained"
-    )
+    fig, (above, below) = plt.subplots(2, 1, sharex=True, figsize=(7, 6), height_ratios=(3, 1.3), layout="constrained")
     rows = outcome.results.comparison
     for i, (law, prediction) in enumerate(outcome.predictions.items()):
         above.plot(prediction.speed, prediction.e_n, "-", color=f"C{i}", lw=1.2, label=f"theory, {law}")
         for (name, part), marker in zip(rows[rows["law"] == law].groupby("engine", sort=False), "ox+^sD", strict=False):
-            style = {"color": f"C{i}", "ls": "none", "marker": marker, "ms": 5, "mfc": "none", "label": f"{name}, {law}"}
+            style = {
+                "color": f"C{i}",
+                "ls": "none",
+                "marker": marker,
+                "ms": 5,
+                "mfc": "none",
+                "label": f"{name}, {law}",
+            }
             above.plot(part["speed"], part["e_n"], **style)
             below.plot(part["speed"], part["e_n_error"], **style)
     below.axhline(outcome.case.check.e_n, color="0.6", lw=0.8, ls="--", label="tolerance")

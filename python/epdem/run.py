@@ -54,7 +54,9 @@ def _digest(plan: Plan, tool: Engine, version: str, ranks: int) -> str:
     return sha.hexdigest()
 
 
-def _stage(plan: Plan, tool: Engine, folder: Path, ranks: int) -> tuple[pd.DataFrame, dict[str, object], dict[str, str]]:
+def _stage(
+    plan: Plan, tool: Engine, folder: Path, ranks: int
+) -> tuple[pd.DataFrame, dict[str, object], dict[str, str]]:
     """Run one engine on one plan: (table of impacts, seconds, deck texts)."""
     start = time.perf_counter()
     folder.mkdir(parents=True, exist_ok=True)

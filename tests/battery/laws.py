@@ -52,7 +52,9 @@ def log_floats(low: float, high: float):
 
 def contacts(names=NAMES):
     """E* 1 kPa to 10 TPa, R* 100 nm to 10 m, strength 1e-6 to 0.05 of E*."""
-    return st.builds(contact, st.sampled_from(names), log_floats(1e3, 1e13), log_floats(1e-7, 10.0), log_floats(1e-6, 0.05))
+    return st.builds(
+        contact, st.sampled_from(names), log_floats(1e3, 1e13), log_floats(1e-7, 10.0), log_floats(1e-6, 0.05)
+    )
 
 
 def paths(contact: Contact, fractions: list[float]) -> np.ndarray:

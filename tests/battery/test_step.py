@@ -67,7 +67,11 @@ def test_no_attraction_and_no_nan_on_any_path(c, f):
         state = after
 
 
-@given(st.sampled_from(NAMES), st.floats(allow_nan=False, allow_infinity=False), st.floats(allow_nan=False, allow_infinity=False))
+@given(
+    st.sampled_from(NAMES),
+    st.floats(allow_nan=False, allow_infinity=False),
+    st.floats(allow_nan=False, allow_infinity=False),
+)
 @settings(max_examples=500)
 def test_force_is_never_nan_for_any_finite_overlap_and_memory(name, delta_max, delta):
     """Denormal overlaps, negative ones, memories of another law's restart or of nobody: a number comes out."""
@@ -84,7 +88,9 @@ def test_no_path_of_overlaps_gives_more_energy_than_it_took(c, f):
     state, here, work, scale = 0.0, 0.0, 0.0, 0.0
     for target in [*paths(c, f), 0.0]:
         # the integrand is smooth between the dent, yield and alpha_max only: many short pieces
-        marks = np.unique([here, target, *(m for m in (0.0, c.delta_y, state) if min(here, target) < m < max(here, target))])
+        marks = np.unique(
+            [here, target, *(m for m in (0.0, c.delta_y, state) if min(here, target) < m < max(here, target))]
+        )
         marks = marks if target >= here else marks[::-1]
         for a, b in zip(marks[:-1], marks[1:], strict=True):
             for lo, hi in zip(np.linspace(a, b, 9)[:-1], np.linspace(a, b, 9)[1:], strict=True):
@@ -133,7 +139,9 @@ def test_restitution_falls_with_speed_and_never_exceeds_one(name):
     m, t_c = 0.0329, None
     v_y = math.sqrt(2 * c.backbone(c.delta_y)[2][0] / m)
     speed = np.geomspace(0.1 * v_y, 1e4 * v_y, 60)
-    t_c = 2.87 * (m**2 / (c.R_star * c.E_star**2 * speed)) ** 0.2  # the elastic contact time, an upper bound for the scale
+    t_c = (
+        2.87 * (m**2 / (c.R_star * c.E_star**2 * speed)) ** 0.2
+    )  # the elastic contact time, an upper bound for the scale
     out = c.law.impacts(R_star=c.R_star, m_star=m, speed=speed, time_step=t_c / 4000, steps=40000)
     e_n = out["rebound_speed"] / speed
     assert np.all(e_n <= 1 + 2e-6)

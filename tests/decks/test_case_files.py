@@ -53,7 +53,26 @@ def test_a_quantity_is_number_blank_unit(text, unit, value):
     assert to_si(text, unit) == pytest.approx(value, rel=1e-15)
 
 
-@pytest.mark.parametrize("text", ["9**9**9 m", "1 m + 1 m", "1", "m", "nan m", "inf m", "1e999 m", "1 kg", "1 furlong_x", "", "1 m;", 3, True, None, "1 " + "m" * 500])
+@pytest.mark.parametrize(
+    "text",
+    [
+        "9**9**9 m",
+        "1 m + 1 m",
+        "1",
+        "m",
+        "nan m",
+        "inf m",
+        "1e999 m",
+        "1 kg",
+        "1 furlong_x",
+        "",
+        "1 m;",
+        3,
+        True,
+        None,
+        "1 " + "m" * 500,
+    ],
+)
 def test_anything_else_is_refused_at_once(text):
     start = time.monotonic()
     with pytest.raises(ValueError):
@@ -105,7 +124,9 @@ def test_a_mistake_is_named_with_place_value_and_limit(place, value, says):
 def test_bad_input_exits_with_2_one_line_and_writes_nothing(tmp_path):
     bad = tmp_path / "bad.toml"
     bad.write_text((CASES / "steel_wall.toml").read_text().replace("0.3", "30"))
-    done = subprocess.run([sys.executable, "-m", "epdem.cli", "run", str(bad)], cwd=tmp_path, capture_output=True, text=True)
+    done = subprocess.run(
+        [sys.executable, "-m", "epdem.cli", "run", str(bad)], cwd=tmp_path, capture_output=True, text=True
+    )
     assert done.returncode == 2
     assert done.stderr.startswith("epdem: ") and done.stderr.count("\n") == 1 and "poisson_ratio = 30" in done.stderr
     assert [p.name for p in tmp_path.iterdir()] == ["bad.toml"]

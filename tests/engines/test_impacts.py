@@ -108,7 +108,13 @@ def test_a_wrong_modulus_is_seen_although_restitution_may_be_right(tmp_path):
     factor = 1.5
     law = replace(x.law, parameters={"yield_pressure": x.law.parameters["yield_pressure"] * factor**0.8})
     wrong = replace(p, experiment=replace(x, E_star=x.E_star * factor, law=law))
-    rows = compare("embedded", "thornton", impacts_table(p, measure(p, engine("embedded").run(wrong, tmp_path))), prediction, Check())
+    rows = compare(
+        "embedded",
+        "thornton",
+        impacts_table(p, measure(p, engine("embedded").run(wrong, tmp_path))),
+        prediction,
+        Check(),
+    )
     assert rows["e_n_error"].max() < 1e-4
     for quantity in CHECKED[1:]:
         assert rows[quantity + "_error"].max() > 0.05
@@ -116,7 +122,9 @@ def test_a_wrong_modulus_is_seen_although_restitution_may_be_right(tmp_path):
 
 
 def epdem(*words, cwd):
-    return subprocess.run([sys.executable, "-m", "epdem.cli", *words], cwd=cwd, capture_output=True, text=True, timeout=300)
+    return subprocess.run(
+        [sys.executable, "-m", "epdem.cli", *words], cwd=cwd, capture_output=True, text=True, timeout=300
+    )
 
 
 def test_run_json_prints_one_document_with_the_promised_keys(tmp_path):

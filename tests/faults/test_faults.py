@@ -88,7 +88,9 @@ def build(folder: Path, plugin: bool) -> None:
         subprocess.run(command, check=True)
         return
     tree = folder / "build"
-    subprocess.run(["cmake", "-S", folder, "-B", tree, "-DCMAKE_CXX_FLAGS_RELEASE=-O1"], check=True, stdout=subprocess.DEVNULL)
+    subprocess.run(
+        ["cmake", "-S", folder, "-B", tree, "-DCMAKE_CXX_FLAGS_RELEASE=-O1"], check=True, stdout=subprocess.DEVNULL
+    )
     subprocess.run(["cmake", "--build", tree, "-j2"], check=True, stdout=subprocess.DEVNULL)
     for pattern in ("libepdem*.so",):
         for found in tree.rglob(pattern):
@@ -106,7 +108,9 @@ def pytest_in(folder: Path, test: str, only: str) -> subprocess.CompletedProcess
     launcher = next((folder / "build").rglob("epdem-liggghts"), None) if (folder / "build").exists() else None
     if launcher:
         env["EPDEM_LAUNCHER"] = str(launcher)
-    return subprocess.run([sys.executable, "-c", code], cwd=folder, env=env, capture_output=True, text=True, timeout=600)
+    return subprocess.run(
+        [sys.executable, "-c", code], cwd=folder, env=env, capture_output=True, text=True, timeout=600
+    )
 
 
 def needs_plugin(fault: Fault) -> bool:

@@ -69,7 +69,9 @@ def call(command: list[str], folder: Path, *, log: str, seconds: float, env: dic
             kill(process)
             if isinstance(error, subprocess.TimeoutExpired):
                 words = last_words(path)
-                raise EngineError(f"{command[0]} did not end within {seconds:g} s and was stopped; {path}: {words}") from None
+                raise EngineError(
+                    f"{command[0]} did not end within {seconds:g} s and was stopped; {path}: {words}"
+                ) from None
             raise
     if status:
         how = f"signal {-status}" if status < 0 else f"exit code {status}"

@@ -76,7 +76,9 @@ def _properties(plan: Plan) -> tuple[Property, ...]:
         ("poissonsRatio", "peratomtype", [b.poisson_ratio for b, _ in types], "1"),
     ]
     if law.strength_property:
-        rows.append((law.strength_property, "peratomtype", [_finite(s) for _, s in types], "Pa, the softer body's counts"))
+        rows.append(
+            (law.strength_property, "peratomtype", [_finite(s) for _, s in types], "Pa, the softer body's counts")
+        )
     rows += [(name, "scalar", [value], "1") for name, value in law.ratios().items()]
     return tuple(Property(f"m{i}", n, s, tuple(v), c) for i, (n, s, v, c) in enumerate(rows, 1))
 
@@ -93,7 +95,9 @@ class Liggghts:
         return None
 
     def version(self) -> str:
-        log = subprocess.run([str(paths.launcher()), "-h"], capture_output=True, text=True, errors="replace", timeout=60)
+        log = subprocess.run(
+            [str(paths.launcher()), "-h"], capture_output=True, text=True, errors="replace", timeout=60
+        )
         found = re.search(r"LIGGGHTS[-\w ]*?(\d+\.\d+\.\d+)", log.stdout + log.stderr)
         return f"LIGGGHTS {found.group(1) if found else '(version unknown)'}"
 

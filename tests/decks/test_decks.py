@@ -1,0 +1,91 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Decks are words around numbers that Python decided: stored renderings, full precision, nothing undefined."""
+
+from pathlib import Path
+
+import jinja2
+import pytest
+
+from epdem import deck
+from epdem.case import parse, read_toml
+from epdem.engines.liggghts import Liggghts
+from epdem.errors import CaseError
+from epdem.experiment import experiment
+from epdem.plan import plan
+from epdem.predict import predict
+
+HERE = Path(__file__).parent
+CASES = HERE.parents[1] / "cases"
+BRASS = {"young_modulus": "100 GPa", "poisson_ratio": 0.35, "density": "8500 kg/m^3", "yield_stress": "0.3 GPa"}
+SPHERE = {"kind": "sphere-sphere", "target": {"material": "brass", "radius": "4 mm"}}
+VARIANTS = {
+    "wall_thornton": ({}, None),
+    "wall_hertz": ({}, "hertz"),
+    "wall_cavity": ({}, "cavity"),
+    "rigid_wall": ({"target": {"material": "rigid"}}, None),
+    "unequal_spheres": (SPHERE, None),
+}
+
+
+def planned(changes, law=None):
+    data = read_toml(CASES / "steel_wall.toml")
+    data["materials"]["brass"] = BRASS
+    data["impact"] |= changes
+    x = experiment(parse(data, "test"), law)
+    return plan(x, predict(x))
+
+
+@pytest.mark.parametrize("name", VARIANTS)
+def test_the_deck_is_as_stored(name, tmp_path):
+    """A change of a deck is seen in review: to store it anew, delete the file in `stored` and run twice."""
+    Liggghts().write(planned(*VARIANTS[name]), tmp_path)
+    text, stored = (tmp_path / "in.impact").read_text(), HERE / "stored" / f"{name}.in"
+    if not stored.exists():
+        stored.parent.mkdir(exist_ok=True)
+        stored.write_text(text)
+        pytest.fail(f"{stored} did not exist and was written; look at it and run again")
+    assert text == stored.read_text()
+
+
+def test_numbers_keep_all_their_digits(tmp_path):
+    p = planned({})
+    Liggghts().write(p, tmp_path)
+    words = (tmp_path / "in.impact").read_text().split()
+    assert float(words[words.index("timestep") + 1]) == p.time_step
+    rows = (tmp_path / "impact.data").read_text().split("Velocities\n\n")
+    assert [-float(r.split()[3]) for r in rows[1].splitlines()] == list(p.speed)
+    z = [float(r.split()[6]) for r in rows[0].split("Atoms\n\n")[1].splitlines() if r]
+    assert z == [0.01 + g for g in p.gap]
+
+
+def test_the_centre_of_mass_of_two_spheres_rests(tmp_path):
+    p = planned(SPHERE)
+    Liggghts().write(p, tmp_path)
+    v = [float(r.split()[3]) for r in (tmp_path / "impact.data").read_text().split("Velocities\n\n")[1].splitlines()]
+    x = p.experiment
+    for body, target, speed in zip(v[: p.n], v[p.n :], p.speed, strict=True):
+        assert body * x.body.mass + target * x.target.mass == pytest.approx(0, abs=1e-15 * abs(body) * x.body.mass)
+        assert target - body == pytest.approx(speed, rel=1e-15)
+
+
+def test_an_undefined_name_in_a_template_stops_with_its_name(tmp_path, monkeypatch):
+    (tmp_path / "bad.j2").write_text("timestep {{ deck.tmestep }}\n")
+    environment = jinja2.Environment(loader=jinja2.FileSystemLoader(tmp_path), undefined=jinja2.StrictUndefined)
+    monkeypatch.setattr(deck, "environment", lambda: environment)
+    with pytest.raises(CaseError, match=r"bad\.j2.*tmestep"):
+        deck.render("bad.j2", deck={})
+
+
+def test_a_negative_poisson_ratio_is_refused_for_liggghts_only():
+    data = read_toml(CASES / "steel_wall.toml")
+    data["materials"]["steel"]["poisson_ratio"] = -0.2
+    x = experiment(parse(data, "test"))
+    with pytest.raises(CaseError, match="use --engine embedded"):
+        Liggghts().deck(plan(x, predict(x)))
+
+
+def test_templates_hold_no_arithmetic():
+    for path in (HERE.parents[1] / "templates").rglob("*.j2"):
+        for expression in path.read_text().split("{{")[1:]:
+            inside = expression.split("}}")[0]
+            assert not set(inside.split('"')[0]) & set("*/+"), f"{path.name}: {{{{{inside}}}}}"
