@@ -1,0 +1,50 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Commands about accuracy, cost and stability; `cli.py` registers them."""
+
+import json
+from pathlib import Path
+from typing import Annotated
+
+import typer
+from rich.console import Console
+
+CasePath = Annotated[Path, typer.Argument(metavar="CASE", help="case file (TOML)")]
+Engines = Annotated[list[str] | None, typer.Option("--engine", "-e", help="embedded, liggghts, yade; repeat for more")]
+Laws = Annotated[list[str] | None, typer.Option("--law", "-l", help="replaces the case's law; repeat for more")]
+AsJson = Annotated[bool, typer.Option("--json", help="print one JSON document and nothing else")]
+Out = Annotated[Path | None, typer.Option("--out", "-o", help="folder for the results")]
+
+
+def _console() -> Console:
+    console = Console()
+    return console if console.is_terminal else Console(width=140)
+
+
+def timestep(
+    case: CasePath,
+    error: Annotated[float, typer.Option(min=1e-9, max=0.1, help="largest relative error of e_n")] = 1e-3,
+    law: Laws = None,
+    as_json: AsJson = False,
+) -> None:
+    """The time step of a case for a target error, found by running the embedded engine."""
+    from .case import load
+    from .experiment import experiment
+    from .predict import predict
+    from .timestep import search
+
+    found = []
+    for name in law or [None]:
+        x = experiment(load(case), name)
+        found.append((x, search(x, predict(x), error)))
+    if as_json:
+        documents = [{"case": x.case.name, "law": x.law.name, "target": f.target, "time_step": f.time_step,
+                      "error": f.error, "rms": f.rms, "steps_in_contact": f.steps_in_contact,
+                      "reference": vars(f.reference), "share": f.shares()} for x, f in found]  # fmt: skip
+        print(json.dumps(documents[0] if len(documents) == 1 else documents, indent=1))
+        return
+    for x, f in found:
+        share = f.shares()
+        print(f"{x.case.name}, law {x.law.name}: timestep {f.time_step:.4g} s for e_n within {f.target:g} "
+              f"(largest {f.error:.2g}, rms {f.rms:.2g}; {f.steps_in_contact:.0f} steps in the shortest contact)\n"
+              f"  {share['stability']:.2%} of the stability limit, {share['rayleigh']:.2%} of the Rayleigh time, "
+              f"{share['hertz']:.2%} of the elastic contact time")  # fmt: skip
