@@ -36,4 +36,7 @@ inline double reduced(double a, double b) noexcept {
   return small / (1.0 + small / large);
 }
 
+/// The same for two finite values, in a contact loop: a b/(a + b).
+inline double reduced_finite(double a, double b) noexcept { return a * b / (a + b); }
+
 }  // namespace epdem

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include "host.hpp"
+
+#include <cstring>
+#include <string>
+
+#include "domain.h"
+#include "epdem/laws.hpp"
+#include "library.h"
+#include "universe.h"
+
+namespace epdem::liggghts {
+
+namespace {
+
+constexpr const char* built_for = "LIGGGHTS-PUBLIC 3.8.0";
+
+/// The library carries no symbol versions: compare its version and where it says that two members lie.
+void check_library(LAMMPS_NS::LAMMPS* lmp) {
+  const bool same = std::strstr(lmp->universe->version, built_for) &&
+                    lammps_extract_global(lmp, const_cast<char*>("dt")) == static_cast<void*>(&lmp->update->dt) &&
+                    lammps_extract_global(lmp, const_cast<char*>("boxxlo")) == static_cast<void*>(&lmp->domain->boxlo[0]);
+  if (same) return;
+  const std::string text = std::string("epdem was built for ") + built_for + ", but the library in use says \"" +
+                           lmp->universe->version + "\" or has another memory layout; build epdem again on this machine";
+  lmp->error->all(FLERR, text.c_str());
+}
+
+}  // namespace
+
+void greet(LAMMPS_NS::LAMMPS* lmp) {
+  static LAMMPS_NS::LAMMPS* known = nullptr;
+  if (known == lmp) return;
+  known = lmp;
+  check_library(lmp);
+  if (lmp->comm->me != 0) return;
+  constexpr const char* line = "epdem " EPDEM_VERSION ":"
+#define EPDEM_NAME(Class, name, id) " ep/" #name
+      EPDEM_LAWS(EPDEM_NAME)
+#undef EPDEM_NAME
+      "\n";
+  if (lmp->screen) std::fputs(line, lmp->screen);
+  if (lmp->logfile) std::fputs(line, lmp->logfile);
+}
+
+}  // namespace epdem::liggghts

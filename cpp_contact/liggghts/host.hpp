@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// LIGGGHTS's headers in the one order that compiles, and the guard against a library they do not belong to.
+#pragma once
+
+// fix_insert_stream_predefined.h lacks this include and an include guard
+#include "fix_insert_stream.h"
+// the tangential models use these without including them
+#include "fix_mesh_surface.h"
+#include "fix_property_atom.h"
+#include "neighbor.h"
+#include "update.h"
+
+#include "contact_models.h"
+#include "fix_wall_gran_base.h"
+#include "pair_gran_base.h"
+
+namespace epdem::liggghts {
+
+// The library is built without non-spherical particles; with them the structure has 392 bytes and every access fails.
+static_assert(sizeof(LIGGGHTS::ContactModels::SurfacesIntersectData) == 368,
+              "compile definitions differ from those of the packaged LIGGGHTS library");
+
+/// Ends the run if the library in use is not the one that the headers describe; names the models once.
+void greet(LAMMPS_NS::LAMMPS* lmp);
+
+/// Lets an error about an unknown model ep/... name those that exist. To be called after LIGGGHTS has started, which
+/// sets its own selector of models then: possible in the launcher, not in a preloaded library.
+void explain_wrong_names();
+
+}  // namespace epdem::liggghts

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// epdem-liggghts: LIGGGHTS with epdem's models, nothing to preload. Arguments and exit codes are those of liggghts.
+#include <mpi.h>
+
+#include <csignal>
+#include <cstdlib>
+
+#include "host.hpp"
+#include "input.h"
+#include "lammps.h"
+#include "signal_handling.h"
+
+namespace {
+
+/// LIGGGHTS ends a run in good order on these, as its own main program does.
+void handle_signals() {
+  std::signal(SIGINT, LAMMPS_NS::SignalHandler::int_handler);
+  std::signal(SIGTERM, LAMMPS_NS::SignalHandler::int_handler);
+  std::signal(SIGUSR1, LAMMPS_NS::SignalHandler::usr1_handler);
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  // Outside mpirun Open MPI forks a daemon and probes networks: 0.3 s that one process has no use for.
+  if (!std::getenv("OMPI_COMM_WORLD_SIZE")) {
+    setenv("OMPI_MCA_ess_singleton_isolated", "1", 0);
+    setenv("OMPI_MCA_pml", "ob1", 0);
+  }
+  MPI_Init(&argc, &argv);
+  handle_signals();
+  {
+    LAMMPS_NS::LAMMPS lammps(argc, argv, MPI_COMM_WORLD);
+    epdem::liggghts::explain_wrong_names();
+    lammps.input->file();
+  }
+  MPI_Finalize();
+  return 0;
+}

@@ -1,0 +1,192 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include "materials.hpp"
+
+#include <cmath>
+#include <cstdio>
+#include <string>
+
+#include "epdem/tangential.hpp"
+#include "force.h"
+#include "global_properties.h"
+
+namespace epdem::liggghts {
+
+namespace {
+
+constexpr double unlimited = std::numeric_limits<double>::infinity();
+
+std::string number(double x) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.9g", x);
+  return text;
+}
+
+std::string unit_of(const char* unit) { return std::string(unit) == "1" ? "" : std::string(" [") + unit + "]"; }
+
+/// A half-open range (low, high] or [low, high] of a property.
+struct Range {
+  double low, high;
+  bool low_included;
+
+  bool holds(double x) const {
+    return std::isfinite(x) && (x > low || (low_included && x == low)) && x <= high;
+  }
+  std::string text() const {
+    const std::string start = low_included ? "[" : "(";
+    return high == unlimited ? "must be finite and > " + number(low) : "must lie in " + start + number(low) + ", " + number(high) + "]";
+  }
+};
+
+class Reader {
+ public:
+  Reader(LAMMPS_NS::LAMMPS* lmp, PropertyRegistry& registry, const Declaration& law)
+      : lmp_(lmp), law_(law), n_(registry.max_type()) {}
+
+  int types() const { return n_; }
+
+  [[noreturn]] void fail(const std::string& what) const {
+    lmp_->error->all(FLERR, (std::string("model ") + law_.model + ": " + what).c_str());
+    std::abort();  // not reached: error->all ends the run
+  }
+
+  FixPropertyGlobal* find(const char* name, const char* style) const {
+    const int rows = style[0] == 's' ? 0 : n_, columns = std::string(style) == "peratomtypepair" ? n_ : 0;
+    return static_cast<FixPropertyGlobal*>(
+        lmp_->modify->find_fix_property(name, "property/global", style, rows, columns, law_.model, false));
+  }
+
+  double checked(const char* name, const char* unit, const std::string& where, double x, Range range) const {
+    if (!range.holds(x))
+      fail(std::string(name) + " = " + number(x) + unit_of(unit) + " of " + where + ", " + range.text());
+    return x;
+  }
+
+  std::vector<double> per_type(const char* name, const char* unit, Range range) const {
+    const FixPropertyGlobal* fix = find(name, "peratomtype");
+    if (!fix)
+      fail(std::string("property ") + name + unit_of(unit) + " is missing; give one value per atom type: fix ID all property/global " +
+           name + " peratomtype VALUE ...");
+    std::vector<double> values(n_ + 1, 0.0);
+    for (int i = 1; i <= n_; ++i)
+      values[i] = checked(name, unit, "type " + std::to_string(i), const_cast<FixPropertyGlobal*>(fix)->compute_vector(i - 1), range);
+    return values;
+  }
+
+ private:
+  LAMMPS_NS::LAMMPS* lmp_;
+  const Declaration& law_;
+  int n_;
+};
+
+std::string both(int i, int j) { return "types " + std::to_string(i) + " and " + std::to_string(j); }
+
+/// A law's parameter for every pair of types. A value per type is that of the softer body: the body with the smaller
+/// first parameter yields, and its other parameters go with it.
+class ParameterTable {
+ public:
+  ParameterTable(const Reader& reader, const Parameter& p) : reader_(reader), p_(p) {
+    const Range range{0.0, unlimited, false};
+    if (!std::isnan(p.fallback)) {
+      if (FixPropertyGlobal* scalar = reader.find(p.property, "scalar")) {
+        common_ = reader.checked(p.property, p.unit, "all types", scalar->compute_scalar(), range);
+        return;
+      }
+    }
+    pairs_ = reader.find(p.property, "peratomtypepair");
+    if (pairs_) return;
+    if (!std::isnan(p.fallback) && !reader.find(p.property, "peratomtype")) {
+      common_ = p.fallback;
+      return;
+    }
+    values_ = reader.per_type(p.property, p.unit, range);
+  }
+
+  bool per_pair() const { return pairs_ != nullptr; }
+  bool per_type() const { return !values_.empty(); }
+  double of_type(int i) const { return values_[i]; }
+
+  double at(int i, int j) const {
+    if (!pairs_) return common_;
+    const double x = pairs_->compute_array(i - 1, j - 1), y = pairs_->compute_array(j - 1, i - 1);
+    if (x != y) reader_.fail(std::string(p_.property) + " of " + both(i, j) + " is not symmetric: " + number(x) + " and " + number(y));
+    return reader_.checked(p_.property, p_.unit, both(i, j), x, {0.0, unlimited, false});
+  }
+
+ private:
+  const Reader& reader_;
+  const Parameter& p_;
+  FixPropertyGlobal* pairs_ = nullptr;
+  std::vector<double> values_;
+  double common_ = 0.0;
+};
+
+std::vector<double> parameters_of(const Reader& reader, const Declaration& law, const std::vector<ParameterTable>& tables, int i, int j) {
+  std::vector<double> values;
+  // equal strength: the smaller type number, so that swapping i and j changes nothing
+  const int low = std::min(i, j), high = std::max(i, j);
+  const bool strength_per_type = !tables.empty() && tables[0].per_type();
+  const int softer = strength_per_type && tables[0].of_type(high) < tables[0].of_type(low) ? high : low;
+  for (int k = 0; k < law.count; ++k) {
+    const ParameterTable& t = tables[k];
+    if (!t.per_type()) {
+      values.push_back(t.at(i, j));
+      continue;
+    }
+    if (!strength_per_type && t.of_type(i) != t.of_type(j))
+      reader.fail(std::string(law.parameters[k].property) + " per type and " + law.parameters[0].property +
+                  " per pair leave open which body of " + both(i, j) + " is the softer one; give both per pair");
+    values.push_back(t.of_type(softer));
+  }
+  if (law.valid(values.data())) return values;
+  std::string text;
+  for (int k = 0; k < law.count; ++k)
+    text += std::string(k ? ", " : "") + law.parameters[k].property + " = " + number(values[k]);
+  reader.fail(text + " of " + both(i, j) + " do not go together: the law would create energy at yield");
+}
+
+std::vector<double> damping_numbers(const Reader& reader, Dashpot dashpot) {
+  const int n = reader.types();
+  std::vector<double> beta((n + 1) * (n + 1), 0.0);
+  if (dashpot == Dashpot::off) return beta;
+  FixPropertyGlobal* e = reader.find("coefficientRestitution", "peratomtypepair");
+  if (!e) {
+    if (dashpot == Dashpot::required)
+      reader.fail("tangential no_history needs coefficientRestitution (peratomtypepair): its only force is the dashpot that "
+                  "follows from it; the normal force does not use it");
+    return beta;
+  }
+  for (int i = 1; i <= n; ++i)
+    for (int j = 1; j <= n; ++j)
+      beta[i * (n + 1) + j] = damping_number(
+          reader.checked("coefficientRestitution", "1", both(i, j), e->compute_array(i - 1, j - 1), {0.0, 1.0, false}));
+  return beta;
+}
+
+}  // namespace
+
+Materials read_materials(LAMMPS_NS::LAMMPS* lmp, PropertyRegistry& registry, const Declaration& law, Dashpot dashpot) {
+  const Reader reader(lmp, registry, law);
+  const int n = reader.types(), width = n + 1;
+  const std::vector<double> E = reader.per_type("youngsModulus", "Pa", {0.0, unlimited, false});
+  const std::vector<double> nu = reader.per_type("poissonsRatio", "1", {0.0, 0.5, true});
+  // LIGGGHTS's own limits on the modulus (soft_particles, hard_particles) hold for every model of a simulation
+  registry.registerProperty("youngsModulus", &MODEL_PARAMS::createYoungsModulus, law.model);
+  registry.getVectorProperty("youngsModulus", law.model);
+
+  std::vector<ParameterTable> tables;
+  for (int k = 0; k < law.count; ++k) tables.emplace_back(reader, law.parameters[k]);
+  const std::vector<double> beta = damping_numbers(reader, dashpot);
+
+  const double pascal = 1.0 / lmp->force->nktv2p;  // pressure unit of the deck in force/length^2
+  Materials materials{width, std::vector<PairOfTypes>(width * width)};
+  for (int i = 1; i <= n; ++i)
+    for (int j = 1; j <= n; ++j) {
+      std::vector<double> values = parameters_of(reader, law, tables, i, j);
+      for (int k = 0; k < law.count; ++k)
+        if (std::string(law.parameters[k].unit) == "Pa") values[k] *= pascal;
+      materials.pairs[i * width + j] = {{E[i] * pascal, nu[i]}, {E[j] * pascal, nu[j]}, values, beta[i * width + j]};
+    }
+  return materials;
+}
+
+}  // namespace epdem::liggghts

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// The material properties of a simulation, read from LIGGGHTS by name and checked before a law sees them.
+#pragma once
+
+#include <vector>
+
+#include "epdem/backbone.hpp"
+
+class PropertyRegistry;
+namespace LAMMPS_NS {
+class LAMMPS;
+}
+
+namespace epdem::liggghts {
+
+/// What the dashpot of the tangential model makes of coefficientRestitution.
+enum class Dashpot {
+  off,       // not asked for
+  optional,  // used if the property is there, else no dashpot
+  required,  // the dashpot is the whole tangential model
+};
+
+/// What a law declares about its parameters.
+struct Declaration {
+  const char* model;  // "ep/thornton"
+  const Parameter* parameters;
+  int count;
+  bool (*valid)(const double*);
+};
+
+/// One pair of atom types.
+struct PairOfTypes {
+  Elastic i, j;
+  std::vector<double> parameters;
+  double damping_number;
+};
+
+/// Rows and columns 1..max_type (row and column 0 are empty: LIGGGHTS counts types from 1).
+struct Materials {
+  int width = 0;
+  std::vector<PairOfTypes> pairs;
+};
+
+/// Reads every type in use; a value that is missing or out of range ends the run with an error that names model,
+/// property, value and range. Collective: every rank must call it.
+Materials read_materials(LAMMPS_NS::LAMMPS* lmp, PropertyRegistry& registry, const Declaration& law, Dashpot dashpot);
+
+}  // namespace epdem::liggghts

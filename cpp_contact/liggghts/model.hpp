@@ -1,0 +1,166 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// A law together with LIGGGHTS's surface, cohesion, tangential and rolling models: one contact model.
+#pragma once
+
+#include <memory>
+
+#include "normal.hpp"
+
+namespace epdem::liggghts {
+
+/// Which models a contact combines; LIGGGHTS packs them into its hash code, which is stored in restart files.
+struct Ids {
+  int normal, tangential, cohesion, rolling, surface;
+
+  static Ids of(int64_t hash) {
+    const auto six_bits = [hash](int at) { return static_cast<int>((hash >> at) & 63); };
+    return {six_bits(0), six_bits(6), six_bits(12), six_bits(18), six_bits(24)};
+  }
+  int64_t hash() const {
+    return LIGGGHTS::Utils::generate_gran_hashcode(normal, tangential, cohesion, rolling, surface);
+  }
+};
+
+/// A model that is known at compile time.
+template <class Part>
+class Fixed : public Part {
+ public:
+  Fixed(LAMMPS_NS::LAMMPS* lmp, LIGGGHTS::IContactHistorySetup* setup, ContactModelBase* c, const Ids&) : Part(lmp, setup, c) {}
+};
+
+/// A model that is chosen by its id when the simulation starts. Choose returns a shared_ptr because LIGGGHTS's base
+/// classes have no virtual destructor, and a shared_ptr remembers the class that it was made of.
+template <class Base, std::shared_ptr<Base> (*choose)(LAMMPS_NS::LAMMPS*, LIGGGHTS::IContactHistorySetup*, ContactModelBase*, const Ids&)>
+class Chosen {
+ public:
+  Chosen(LAMMPS_NS::LAMMPS* lmp, LIGGGHTS::IContactHistorySetup* setup, ContactModelBase* c, const Ids& ids)
+      : part_(choose(lmp, setup, c, ids)) {}
+
+  void registerSettings(::Settings& s) { part_->registerSettings(s); }
+  void postSettings(LIGGGHTS::IContactHistorySetup* setup, ContactModelBase* c) { part_->postSettings(setup, c); }
+  void connectToProperties(PropertyRegistry& r) { part_->connectToProperties(r); }
+  bool checkSurfaceIntersect(SurfacesIntersectData& s) { return part_->checkSurfaceIntersect(s); }
+  void surfacesIntersect(SurfacesIntersectData& s, ForceData& i, ForceData& j) { part_->surfacesIntersect(s, i, j); }
+  void surfacesClose(SurfacesCloseData& s, ForceData& i, ForceData& j) { part_->surfacesClose(s, i, j); }
+  void endSurfacesIntersect(SurfacesIntersectData& s, LAMMPS_NS::TriMesh* mesh, double* F) { part_->endSurfacesIntersect(s, mesh, F); }
+  void endSurfacesIntersect(SurfacesIntersectData& s, ForceData& i, ForceData& j) { part_->endSurfacesIntersect(s, i, j); }
+  void beginPass(SurfacesIntersectData& s, ForceData& i, ForceData& j) { part_->beginPass(s, i, j); }
+  void endPass(SurfacesIntersectData& s, ForceData& i, ForceData& j) { part_->endPass(s, i, j); }
+  void tally_pp(double x, int i, int j, int k) { part_->tally_pp(x, i, j, k); }
+  void tally_pw(double x, int i, int j, int k) { part_->tally_pw(x, i, j, k); }
+
+ private:
+  std::shared_ptr<Base> part_;
+};
+
+/// What LIGGGHTS's pair and wall loops call. The order of the parts is that of LIGGGHTS's own models.
+template <class Law, bool wall, class Surface, class Cohesion, class Tangential, class Rolling>
+class Model : public ContactModelBase {
+ public:
+  Model(LAMMPS_NS::LAMMPS* lmp, LIGGGHTS::IContactHistorySetup* setup, bool is_wall, const int64_t hash)
+      : ContactModelBase(lmp, is_wall),
+        ids_(greeted(lmp, hash)),
+        surface_(lmp, setup, this, ids_),
+        normal_(lmp, setup),
+        cohesion_(lmp, setup, this, ids_),
+        tangential_(lmp, setup, this, ids_),
+        rolling_(lmp, setup, this, ids_) {}
+
+  int64_t hashcode() { return ids_.hash(); }
+
+  void registerSettings(::Settings& settings) {
+    surface_.registerSettings(settings);
+    normal_.registerSettings(settings);
+    cohesion_.registerSettings(settings);
+    tangential_.registerSettings(settings);
+    rolling_.registerSettings(settings);
+  }
+
+  void postSettings(LIGGGHTS::IContactHistorySetup* setup) {
+    surface_.postSettings(setup, this);
+    normal_.postSettings();
+    cohesion_.postSettings(setup, this);
+    tangential_.postSettings(setup, this);
+    rolling_.postSettings(setup, this);
+  }
+
+  void connectToProperties(PropertyRegistry& registry) {
+    surface_.connectToProperties(registry);
+    normal_.connectToProperties(registry, dashpot());
+    cohesion_.connectToProperties(registry);
+    tangential_.connectToProperties(registry);
+    rolling_.connectToProperties(registry);
+  }
+
+  void beginPass(SurfacesIntersectData& s, ForceData& i, ForceData& j) {
+    surface_.beginPass(s, i, j);
+    normal_.beginPass(s);
+    cohesion_.beginPass(s, i, j);
+    tangential_.beginPass(s, i, j);
+    rolling_.beginPass(s, i, j);
+  }
+
+  void endPass(SurfacesIntersectData& s, ForceData& i, ForceData& j) {
+    rolling_.endPass(s, i, j);
+    tangential_.endPass(s, i, j);
+    cohesion_.endPass(s, i, j);
+    surface_.endPass(s, i, j);
+  }
+
+  double stressStrainExponent() { return normal_.stressStrainExponent(); }
+  void tally_pp(double x, int i, int j, int k) override { surface_.tally_pp(x, i, j, k); }
+  void tally_pw(double x, int i, int j, int k) override { surface_.tally_pw(x, i, j, k); }
+  bool checkSurfaceIntersect(SurfacesIntersectData& s) { return surface_.checkSurfaceIntersect(s); }
+
+  void surfacesIntersect(SurfacesIntersectData& s, ForceData& i, ForceData& j) {
+    surface_.surfacesIntersect(s, i, j);
+    normal_.surfacesIntersect(s, i, j);
+    cohesion_.surfacesIntersect(s, i, j);
+    tangential_.surfacesIntersect(s, i, j);
+    rolling_.surfacesIntersect(s, i, j);
+  }
+
+  void endSurfacesIntersect(SurfacesIntersectData& s, LAMMPS_NS::TriMesh* mesh, ForceData& i, ForceData& j) {
+    surface_.endSurfacesIntersect(s, mesh, i.delta_F);
+    cohesion_.endSurfacesIntersect(s, i, j);
+  }
+
+  void surfacesClose(SurfacesCloseData& s, ForceData& i, ForceData& j) {
+    surface_.surfacesClose(s, i, j);
+    normal_.surfacesClose(s);
+    cohesion_.surfacesClose(s, i, j);
+    tangential_.surfacesClose(s, i, j);
+    rolling_.surfacesClose(s, i, j);
+  }
+
+  bool contact_match(const std::string& kind, const std::string& model) {
+    auto& names = LIGGGHTS::ContactModels::Factory::instance();
+    if (kind == "surface") return ids_.surface == names.getSurfaceModelId(model);
+    if (kind == "normal") return ids_.normal == names.getNormalModelId(model);
+    if (kind == "cohesion") return ids_.cohesion == names.getCohesionModelId(model);
+    if (kind == "tangential") return ids_.tangential == names.getTangentialModelId(model);
+    if (kind == "rolling_friction") return ids_.rolling == names.getRollingModelId(model);
+    return false;
+  }
+
+ private:
+  /// Before the first part is built: a foreign library must not be touched.
+  static Ids greeted(LAMMPS_NS::LAMMPS* lmp, int64_t hash) {
+    greet(lmp);
+    return Ids::of(hash);
+  }
+
+  Dashpot dashpot() const {
+    if (ids_.tangential == TANGENTIAL_OFF) return Dashpot::off;
+    return ids_.tangential == TANGENTIAL_NO_HISTORY ? Dashpot::required : Dashpot::optional;
+  }
+
+  const Ids ids_;
+  Surface surface_;
+  Normal<Law, wall> normal_;
+  Cohesion cohesion_;
+  Tangential tangential_;
+  Rolling rolling_;
+};
+
+}  // namespace epdem::liggghts

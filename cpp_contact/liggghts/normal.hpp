@@ -1,0 +1,179 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// A law as LIGGGHTS sees it: reads the contact, calls step(), writes force and stiffness. No physics in here.
+#pragma once
+
+#include <cstring>
+#include <string>
+#include <vector>
+
+#include "epdem/law.hpp"
+#include "epdem/tangential.hpp"
+#include "host.hpp"
+#include "materials.hpp"
+
+namespace epdem::liggghts {
+
+using namespace LIGGGHTS::ContactModels;
+
+/// Normal model of one law for pairs (wall = false) or walls.
+///
+/// History of a law that yields: what the law remembers (doubles), and for pairs the step of the last evaluation that
+/// was kept. LIGGGHTS tells a pair nothing when it parts, so a contact whose last evaluation is older than one step is
+/// a new one. Walls are told, and need no step.
+template <class Law, bool wall>
+class Normal : protected LAMMPS_NS::Pointers {
+  static constexpr bool remembers = Law::yields;
+  static constexpr bool stamped = remembers && !wall;
+  static constexpr int memory = remembers ? static_cast<int>(sizeof(State<Law>) / sizeof(double)) : 0;
+
+ public:
+  Normal(LAMMPS_NS::LAMMPS* lmp, LIGGGHTS::IContactHistorySetup* setup)
+      : Pointers(lmp), model_("ep/" + std::string(Law::name)), context_("model " + model_) {
+    static_assert(std::is_trivially_copyable_v<State<Law>>);
+    if constexpr (remembers) {
+      // Flag "0": an even quantity; "1" would change its sign when the pair is stored from the other side.
+      static const char* const slot[] = {"delta_max", "force_max", "radius_max", "flatness_max"};
+      static_assert(memory <= 4, "name the new history value here");
+      offset_ = setup->add_history_value(slot[0], "0");
+      for (int k = 1; k < memory; ++k) setup->add_history_value(slot[k], "0");
+    }
+    if constexpr (stamped) {
+      setup->add_history_value("last_step", "0");
+      pair_ = dynamic_cast<LAMMPS_NS::PairGran*>(setup);
+      clock_ = update->ntimestep;
+    }
+  }
+
+  void registerSettings(::Settings& settings) {
+    settings.registerOnOff("tangential_damping", tangential_damping_, true);
+    settings.registerOnOff("limitForce", limit_force_, false);
+    settings.registerOnOff("heating_normal_hertz", heating_, false);
+    settings.registerOnOff("heating_tracking", heating_tracking_, false);
+    settings.registerOnOff("computeElasticPotential", elastic_potential_, false);
+    settings.registerOnOff("computeDissipatedEnergy", dissipated_energy_, false);
+    settings.registerOnOff("disableNormalWhenBonded", disable_when_bonded_, false);
+  }
+
+  void postSettings() {
+    // limitForce and heating_tracking change nothing: the force is never negative, the law makes no viscous heat
+    if (heating_) refuse("heating_normal_hertz", "it is the heat of a viscous normal force, and this law has none");
+    if (elastic_potential_) refuse("computeElasticPotential", "LIGGGHTS integrates nothing for it");
+    if (dissipated_energy_)
+      refuse("computeDissipatedEnergy", "it counts viscous and frictional forces and would miss the plastic work");
+    if (disable_when_bonded_) refuse("disableNormalWhenBonded", "bonds are not part of the public LIGGGHTS");
+  }
+
+  void connectToProperties(PropertyRegistry& registry, Dashpot dashpot) {
+    // Rebuilt at every init: LIGGGHTS frees all properties there, and the user may have changed them.
+    if (!tangential_damping_ && dashpot == Dashpot::optional) dashpot = Dashpot::off;
+    const Materials m = read_materials(lmp, registry, {model_.c_str(), Law::parameters, Law::n_parameters, &Law::valid}, dashpot);
+    width_ = m.width;
+    table_.assign(m.pairs.size(), Entry{});
+    for (int i = 1; i < width_; ++i)
+      for (int j = 1; j < width_; ++j) {
+        const PairOfTypes& p = m.pairs[i * width_ + j];
+        table_[i * width_ + j] = {Law(effective_modulus(p.i, p.j), p.parameters.data()),
+                                  effective_shear_modulus(p.i, p.j), p.damping_number};
+      }
+    // A law without memory leaves parting to LIGGGHTS, which then tells of pairs closer than this factor.
+    if (!remembers) neighbor->register_contact_dist_factor(1.001);
+  }
+
+  double stressStrainExponent() const { return 1.5; }
+
+  /// LIGGGHTS calls it before the loop over all pairs, never for walls.
+  void beginPass(const SurfacesIntersectData& s) {
+    if constexpr (stamped) {
+      const bool keep = s.computeflag && s.shearupdate;
+      const bigint expected = clock_ + (keep ? 1 : 0);
+      if (update->ntimestep != expected) move_clock(update->ntimestep - expected);
+      clock_ = update->ntimestep;
+      now_ = static_cast<double>(clock_);
+    } else {
+      (void)s;
+    }
+  }
+
+  void surfacesIntersect(SurfacesIntersectData& s, ForceData& fi, ForceData& fj) {
+    if (s.contact_flags) *s.contact_flags |= CONTACT_NORMAL_MODEL;
+    const Entry& t = table_[s.itype * width_ + s.jtype];
+    const double R_star = wall ? s.radi : reduced_finite(s.radi, s.radj);
+    const double delta = wall ? s.deltan : s.radsum - s.r;
+    const bool keep = s.computeflag && s.shearupdate;
+
+    State<Law> before{};
+    double* history = nullptr;
+    if constexpr (remembers) {
+      history = s.contact_history + offset_;
+      std::memcpy(static_cast<void*>(&before), history, sizeof before);
+      if constexpr (stamped) {
+        if (now_ - history[memory] > 1.0) before = parted(history, keep);
+      }
+    }
+
+    const Step<Law> now = step(t.law, R_star, before, delta);
+
+    if constexpr (remembers) {
+      if (keep) {
+        std::memcpy(history, &now.after, sizeof now.after);
+        if constexpr (stamped) history[memory] = now_;
+      }
+    }
+
+    s.Fn = now.force;
+    s.kn = 4.0 / 3.0 * t.law.E_star * now.radius;  // LIGGGHTS's convention for rolling friction: F/alpha of Hertz
+    s.kt = tangential_stiffness(t.G_star, now.radius);
+    s.gamman = 0.0;
+    s.gammat = t.damping_number > 0.0 ? tangential_damping(t.damping_number, s.kt, s.meff) : 0.0;
+
+    const double share = wall ? now.force * s.area_ratio : now.force;
+    for (int k = 0; k < 3; ++k) {
+      fi.delta_F[k] += share * s.en[k];
+      if constexpr (!wall) fj.delta_F[k] -= share * s.en[k];
+    }
+  }
+
+  void surfacesClose(SurfacesCloseData& s) {
+    if (s.contact_flags) *s.contact_flags &= ~CONTACT_NORMAL_MODEL;
+    if (remembers && s.contact_history) std::fill_n(s.contact_history + offset_, memory + (stamped ? 1 : 0), 0.0);
+  }
+
+ private:
+  struct Entry {
+    Law law;
+    double G_star = 0.0, damping_number = 0.0;
+  };
+
+  /// The pair parted since its last evaluation: it is a new contact, for the other models as well.
+  State<Law> parted(double* history, bool keep) const {
+    if (keep) std::fill_n(history, pair_->dnum_pair() - offset_, 0.0);
+    return {};
+  }
+
+  /// reset_timestep came between two runs: the stored steps move with it.
+  void move_clock(bigint shift) const {
+    const LAMMPS_NS::NeighList* lists[] = {pair_->list, pair_->listgranhistory};
+    if (!lists[0] || !lists[1]) return;
+    const int width = pair_->dnum();
+    for (int n = 0; n < lists[0]->inum; ++n) {
+      const int i = lists[0]->ilist[n];
+      for (int k = 0; k < lists[0]->numneigh[i]; ++k)
+        lists[1]->firstdouble[i][k * width + offset_ + memory] += static_cast<double>(shift);
+    }
+  }
+
+  void refuse(const char* setting, const char* reason) const {
+    error->all(FLERR, (context_ + ": setting " + setting + " on is not available: " + reason).c_str());
+  }
+
+  const std::string model_, context_;
+  std::vector<Entry> table_;
+  int width_ = 0, offset_ = -1;
+  LAMMPS_NS::PairGran* pair_ = nullptr;
+  bigint clock_ = 0;  // step of the last pass
+  double now_ = 0.0;
+  bool tangential_damping_ = true, limit_force_ = false, heating_ = false, heating_tracking_ = false;
+  bool elastic_potential_ = false, dissipated_energy_ = false, disable_when_bonded_ = false;
+};
+
+}  // namespace epdem::liggghts

@@ -1,0 +1,192 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// Makes the laws known to LIGGGHTS when the library (or the launcher) is loaded.
+#include <cstdio>
+#include <cstring>
+#include <iostream>
+#include <string>
+
+#include "epdem/laws.hpp"
+#include "model.hpp"
+
+namespace epdem::liggghts {
+
+namespace {
+
+using LAMMPS_NS::FixWallGran;
+using LAMMPS_NS::LAMMPS;
+using LAMMPS_NS::PairGran;
+using LIGGGHTS::IContactHistorySetup;
+namespace PairStyles = LIGGGHTS::PairStyles;
+namespace Walls = LIGGGHTS::Walls;
+
+constexpr int tangentials[] = {TANGENTIAL_OFF, TANGENTIAL_NO_HISTORY, TANGENTIAL_HISTORY, TANGENTIAL_LUDING};
+constexpr int cohesions[] = {COHESION_OFF, COHESION_SJKR, COHESION_SJKR2, COHESION_WASHINO_CAPILLARY_VISCOUS,
+                             COHESION_EASO_CAPILLARY_VISCOUS};
+constexpr int rollings[] = {ROLLING_OFF, ROLLING_CDT, ROLLING_EPSD, ROLLING_EPSD2, ROLLING_EPSD3, ROLLING_LUDING};
+constexpr int surfaces[] = {SURFACE_DEFAULT, SURFACE_MULTICONTACT, SURFACE_SUPERQUADRIC};
+constexpr int unknown_law = 63;  // normal id of a name that starts with ep/ and is none of ours
+
+/// Luding's models need slots of Luding's normal model; capillary forces and superquadrics bring their own contact law.
+bool available(const Ids& ids) {
+  return ids.tangential != TANGENTIAL_LUDING && ids.rolling != ROLLING_LUDING && ids.cohesion <= COHESION_SJKR2 &&
+         ids.surface != SURFACE_SUPERQUADRIC;
+}
+
+template <class Base, class Part>
+std::shared_ptr<Base> make(LAMMPS* lmp, IContactHistorySetup* setup, ContactModelBase* c) {
+  return std::make_shared<Part>(lmp, setup, c);
+}
+
+std::shared_ptr<SurfaceModelBase> choose_surface(LAMMPS* l, IContactHistorySetup* s, ContactModelBase* c, const Ids& ids) {
+  if (ids.surface == SURFACE_MULTICONTACT) return make<SurfaceModelBase, SurfaceModel<SURFACE_MULTICONTACT>>(l, s, c);
+  return make<SurfaceModelBase, SurfaceModel<SURFACE_DEFAULT>>(l, s, c);
+}
+
+std::shared_ptr<CohesionModelBase> choose_cohesion(LAMMPS* l, IContactHistorySetup* s, ContactModelBase* c, const Ids& ids) {
+  if (ids.cohesion == COHESION_SJKR) return make<CohesionModelBase, CohesionModel<COHESION_SJKR>>(l, s, c);
+  if (ids.cohesion == COHESION_SJKR2) return make<CohesionModelBase, CohesionModel<COHESION_SJKR2>>(l, s, c);
+  return make<CohesionModelBase, CohesionModel<COHESION_OFF>>(l, s, c);
+}
+
+std::shared_ptr<TangentialModelBase> choose_tangential(LAMMPS* l, IContactHistorySetup* s, ContactModelBase* c, const Ids& ids) {
+  if (ids.tangential == TANGENTIAL_HISTORY) return make<TangentialModelBase, TangentialModel<TANGENTIAL_HISTORY>>(l, s, c);
+  if (ids.tangential == TANGENTIAL_NO_HISTORY)
+    return make<TangentialModelBase, TangentialModel<TANGENTIAL_NO_HISTORY>>(l, s, c);
+  return make<TangentialModelBase, TangentialModel<TANGENTIAL_OFF>>(l, s, c);
+}
+
+std::shared_ptr<RollingModelBase> choose_rolling(LAMMPS* l, IContactHistorySetup* s, ContactModelBase* c, const Ids& ids) {
+  switch (ids.rolling) {
+    case ROLLING_CDT: return make<RollingModelBase, RollingModel<ROLLING_CDT>>(l, s, c);
+    case ROLLING_EPSD: return make<RollingModelBase, RollingModel<ROLLING_EPSD>>(l, s, c);
+    case ROLLING_EPSD2: return make<RollingModelBase, RollingModel<ROLLING_EPSD2>>(l, s, c);
+    case ROLLING_EPSD3: return make<RollingModelBase, RollingModel<ROLLING_EPSD3>>(l, s, c);
+    default: return make<RollingModelBase, RollingModel<ROLLING_OFF>>(l, s, c);
+  }
+}
+
+template <class Part>
+PairStyles::IGranularPairStyle* new_pair(LAMMPS* lmp, PairGran* parent, int64_t hash) {
+  return new PairStyles::Granular<Part>(lmp, parent, hash);
+}
+
+template <class Part>
+Walls::IGranularWall* new_wall(LAMMPS* lmp, FixWallGran* parent, int64_t hash) {
+  return new Walls::Granular<Part>(lmp, parent, hash);
+}
+
+template <class Interface, class Parent>
+Interface* refuse(LAMMPS* lmp, Parent*, int64_t hash) {
+  constexpr const char* known = "the models of epdem are"
+#define EPDEM_NAME(Class, name, id) " ep/" #name
+      EPDEM_LAWS(EPDEM_NAME);
+#undef EPDEM_NAME
+  const std::string text =
+      Ids::of(hash).normal == unknown_law
+          ? std::string("unknown normal model: ") + known
+          : "epdem's models combine with tangential off, no_history, history; cohesion off, sjkr, sjkr2; rolling_friction off, "
+            "cdt, epsd, epsd2, epsd3; surface default, multicontact; nothing else";
+  lmp->error->all(FLERR, text.c_str());
+  return nullptr;
+}
+
+void add(const Ids& ids, PairStyles::IGranularPairStyle* (*pair)(LAMMPS*, PairGran*, int64_t),
+         Walls::IGranularWall* (*wall)(LAMMPS*, FixWallGran*, int64_t)) {
+  PairStyles::Factory::instance().addStyle("gran", static_cast<int>(ids.hash()), pair);
+  Walls::Factory::instance().addStyle("gran", static_cast<int>(ids.hash()), wall);
+}
+
+void add_refusal(const Ids& ids) { add(ids, &refuse<PairStyles::IGranularPairStyle, PairGran>, &refuse<Walls::IGranularWall, FixWallGran>); }
+
+/// The combinations that most decks use, each compiled on its own: no virtual call in the loop.
+template <class Law, int tangential, int rolling>
+bool add_fast(const Ids& ids) {
+  if (ids.tangential != tangential || ids.rolling != rolling || ids.cohesion != COHESION_OFF || ids.surface != SURFACE_DEFAULT)
+    return false;
+  using Surface = Fixed<SurfaceModel<SURFACE_DEFAULT>>;
+  using Cohesion = Fixed<CohesionModel<COHESION_OFF>>;
+  using Tangential = Fixed<TangentialModel<tangential>>;
+  using Rolling = Fixed<RollingModel<rolling>>;
+  add(ids, &new_pair<Model<Law, false, Surface, Cohesion, Tangential, Rolling>>,
+      &new_wall<Model<Law, true, Surface, Cohesion, Tangential, Rolling>>);
+  return true;
+}
+
+/// All others: cohesion, tangential, rolling and surface model behind virtual calls.
+template <class Law>
+void add_general(const Ids& ids) {
+  using Surface = Chosen<SurfaceModelBase, choose_surface>;
+  using Cohesion = Chosen<CohesionModelBase, choose_cohesion>;
+  using Tangential = Chosen<TangentialModelBase, choose_tangential>;
+  using Rolling = Chosen<RollingModelBase, choose_rolling>;
+  add(ids, &new_pair<Model<Law, false, Surface, Cohesion, Tangential, Rolling>>,
+      &new_wall<Model<Law, true, Surface, Cohesion, Tangential, Rolling>>);
+}
+
+template <class Law>
+void add_combination(const Ids& ids) {
+  if (!available(ids)) return add_refusal(ids);
+  if (add_fast<Law, TANGENTIAL_OFF, ROLLING_OFF>(ids)) return;
+  if (add_fast<Law, TANGENTIAL_NO_HISTORY, ROLLING_OFF>(ids)) return;
+  if (add_fast<Law, TANGENTIAL_HISTORY, ROLLING_OFF>(ids)) return;
+  if (add_fast<Law, TANGENTIAL_HISTORY, ROLLING_CDT>(ids)) return;
+  if (add_fast<Law, TANGENTIAL_HISTORY, ROLLING_EPSD2>(ids)) return;
+  add_general<Law>(ids);
+}
+
+template <class Law>
+void add_law(const char* name, int id) {
+  static_assert(sizeof(int) >= 4, "LIGGGHTS's tables are indexed by int");
+  LIGGGHTS::ContactModels::Factory::instance().addNormalModel(name, id);
+  for (int t : tangentials)
+    for (int c : cohesions)
+      for (int r : rollings)
+        for (int s : surfaces) add_combination<Law>({id, t, c, r, s});
+}
+
+/// LIGGGHTS calls every wrong name "Invalid model"; a name that starts with ep/ deserves the list of what exists.
+int64_t select(int& narg, char**& arg, LAMMPS_NS::Custom_contact_models custom) {
+  for (int k = 0; k + 1 < narg; ++k) {
+    if (std::strcmp(arg[k], "model") != 0 || std::strncmp(arg[k + 1], "ep", 2) != 0) continue;
+    bool known = false;
+#define EPDEM_KNOWN(Class, name, id) known = known || std::strcmp(arg[k + 1], "ep/" #name) == 0;
+    EPDEM_LAWS(EPDEM_KNOWN)
+#undef EPDEM_KNOWN
+    if (!known) return Ids{unknown_law, TANGENTIAL_OFF, COHESION_OFF, ROLLING_OFF, SURFACE_DEFAULT}.hash();
+  }
+  return LIGGGHTS::ContactModels::Factory::select(narg, arg, custom);
+}
+
+/// LIGGGHTS writes a warning about every name that is set twice; this one is meant.
+class Quiet {
+ public:
+  Quiet() : kept_(std::cerr.rdbuf(nullptr)) {}
+  ~Quiet() {
+    std::cerr.rdbuf(kept_);
+    std::cerr.clear();
+  }
+
+ private:
+  std::streambuf* kept_;
+};
+
+const struct Registration {
+  Registration() {
+    // error->one ends in MPI_Abort without flushing: on a pipe or in a file the message would be lost
+    std::setvbuf(stdout, nullptr, _IOLBF, 0);
+#define EPDEM_ADD(Class, name, id) add_law<Class>("ep/" #name, id);
+    EPDEM_LAWS(EPDEM_ADD)
+#undef EPDEM_ADD
+    add_refusal({unknown_law, TANGENTIAL_OFF, COHESION_OFF, ROLLING_OFF, SURFACE_DEFAULT});
+  }
+} registration;
+
+}  // namespace
+
+void explain_wrong_names() {
+  const Quiet quiet;
+  PairStyles::Factory::instance().addVariantSelector("gran", &select);
+  Walls::Factory::instance().addVariantSelector("gran", &select);
+}
+
+}  // namespace epdem::liggghts
