@@ -17,12 +17,14 @@ constexpr const char* built_for = "LIGGGHTS-PUBLIC 3.8.0";
 
 /// The library carries no symbol versions: compare its version and where it says that two members lie.
 void check_library(LAMMPS_NS::LAMMPS* lmp) {
-  const bool same = std::strstr(lmp->universe->version, built_for) &&
-                    lammps_extract_global(lmp, const_cast<char*>("dt")) == static_cast<void*>(&lmp->update->dt) &&
-                    lammps_extract_global(lmp, const_cast<char*>("boxxlo")) == static_cast<void*>(&lmp->domain->boxlo[0]);
-  if (same) return;
+  const auto found_at = [lmp](const char* name, const void* here) {
+    return lammps_extract_global(lmp, const_cast<char*>(name)) == here;
+  };
+  if (std::strstr(lmp->universe->version, built_for) && found_at("dt", &lmp->update->dt) &&
+      found_at("boxxlo", &lmp->domain->boxlo[0]))
+    return;
   const std::string text = std::string("epdem was built for ") + built_for + ", but the library in use says \"" +
-                           lmp->universe->version + "\" or has another memory layout; build epdem again on this machine";
+                           lmp->universe->version + "\" or has another memory layout; build epdem on this machine";
   lmp->error->all(FLERR, text.c_str());
 }
 

@@ -32,8 +32,8 @@ struct Range {
     return std::isfinite(x) && (x > low || (low_included && x == low)) && x <= high;
   }
   std::string text() const {
-    const std::string start = low_included ? "[" : "(";
-    return high == unlimited ? "must be finite and > " + number(low) : "must lie in " + start + number(low) + ", " + number(high) + "]";
+    if (high == unlimited) return "must be finite and > " + number(low);
+    return std::string("must lie in ") + (low_included ? "[" : "(") + number(low) + ", " + number(high) + "]";
   }
 };
 
@@ -62,13 +62,13 @@ class Reader {
   }
 
   std::vector<double> per_type(const char* name, const char* unit, Range range) const {
-    const FixPropertyGlobal* fix = find(name, "peratomtype");
+    FixPropertyGlobal* fix = find(name, "peratomtype");
     if (!fix)
-      fail(std::string("property ") + name + unit_of(unit) + " is missing; give one value per atom type: fix ID all property/global " +
-           name + " peratomtype VALUE ...");
+      fail(std::string("property ") + name + unit_of(unit) + " is missing; give one value per atom type: " +
+           "fix ID all property/global " + name + " peratomtype VALUE ...");
     std::vector<double> values(n_ + 1, 0.0);
     for (int i = 1; i <= n_; ++i)
-      values[i] = checked(name, unit, "type " + std::to_string(i), const_cast<FixPropertyGlobal*>(fix)->compute_vector(i - 1), range);
+      values[i] = checked(name, unit, "type " + std::to_string(i), fix->compute_vector(i - 1), range);
     return values;
   }
 
@@ -108,7 +108,9 @@ class ParameterTable {
   double at(int i, int j) const {
     if (!pairs_) return common_;
     const double x = pairs_->compute_array(i - 1, j - 1), y = pairs_->compute_array(j - 1, i - 1);
-    if (x != y) reader_.fail(std::string(p_.property) + " of " + both(i, j) + " is not symmetric: " + number(x) + " and " + number(y));
+    if (x != y)
+      reader_.fail(std::string(p_.property) + " of " + both(i, j) + " is not symmetric: " + number(x) + " and " +
+                   number(y));
     return reader_.checked(p_.property, p_.unit, both(i, j), x, {0.0, unlimited, false});
   }
 
@@ -120,7 +122,8 @@ class ParameterTable {
   double common_ = 0.0;
 };
 
-std::vector<double> parameters_of(const Reader& reader, const Declaration& law, const std::vector<ParameterTable>& tables, int i, int j) {
+std::vector<double> parameters_of(const Reader& reader, const Declaration& law,
+                                  const std::vector<ParameterTable>& tables, int i, int j) {
   std::vector<double> values;
   // equal strength: the smaller type number, so that swapping i and j changes nothing
   const int low = std::min(i, j), high = std::max(i, j);
@@ -151,8 +154,8 @@ std::vector<double> damping_numbers(const Reader& reader, Dashpot dashpot) {
   FixPropertyGlobal* e = reader.find("coefficientRestitution", "peratomtypepair");
   if (!e) {
     if (dashpot == Dashpot::required)
-      reader.fail("tangential no_history needs coefficientRestitution (peratomtypepair): its only force is the dashpot that "
-                  "follows from it; the normal force does not use it");
+      reader.fail("tangential no_history needs coefficientRestitution (peratomtypepair): its only force is the "
+                  "dashpot that follows from it; the normal force does not use it");
     return beta;
   }
   for (int i = 1; i <= n; ++i)

@@ -21,20 +21,27 @@ struct Ids {
   }
 };
 
+/// What LIGGGHTS's models are built from.
+struct Site {
+  LAMMPS_NS::LAMMPS* lmp;
+  LIGGGHTS::IContactHistorySetup* history;
+  ContactModelBase* contact;
+  Ids ids;
+};
+
 /// A model that is known at compile time.
 template <class Part>
 class Fixed : public Part {
  public:
-  Fixed(LAMMPS_NS::LAMMPS* lmp, LIGGGHTS::IContactHistorySetup* setup, ContactModelBase* c, const Ids&) : Part(lmp, setup, c) {}
+  explicit Fixed(const Site& site) : Part(site.lmp, site.history, site.contact) {}
 };
 
-/// A model that is chosen by its id when the simulation starts. Choose returns a shared_ptr because LIGGGHTS's base
+/// A model that is chosen by its id when the simulation starts; choose returns a shared_ptr because LIGGGHTS's base
 /// classes have no virtual destructor, and a shared_ptr remembers the class that it was made of.
-template <class Base, std::shared_ptr<Base> (*choose)(LAMMPS_NS::LAMMPS*, LIGGGHTS::IContactHistorySetup*, ContactModelBase*, const Ids&)>
+template <class Base, std::shared_ptr<Base> (*choose)(const Site&)>
 class Chosen {
  public:
-  Chosen(LAMMPS_NS::LAMMPS* lmp, LIGGGHTS::IContactHistorySetup* setup, ContactModelBase* c, const Ids& ids)
-      : part_(choose(lmp, setup, c, ids)) {}
+  explicit Chosen(const Site& site) : part_(choose(site)) {}
 
   void registerSettings(::Settings& s) { part_->registerSettings(s); }
   void postSettings(LIGGGHTS::IContactHistorySetup* setup, ContactModelBase* c) { part_->postSettings(setup, c); }
@@ -42,8 +49,12 @@ class Chosen {
   bool checkSurfaceIntersect(SurfacesIntersectData& s) { return part_->checkSurfaceIntersect(s); }
   void surfacesIntersect(SurfacesIntersectData& s, ForceData& i, ForceData& j) { part_->surfacesIntersect(s, i, j); }
   void surfacesClose(SurfacesCloseData& s, ForceData& i, ForceData& j) { part_->surfacesClose(s, i, j); }
-  void endSurfacesIntersect(SurfacesIntersectData& s, LAMMPS_NS::TriMesh* mesh, double* F) { part_->endSurfacesIntersect(s, mesh, F); }
-  void endSurfacesIntersect(SurfacesIntersectData& s, ForceData& i, ForceData& j) { part_->endSurfacesIntersect(s, i, j); }
+  void endSurfacesIntersect(SurfacesIntersectData& s, LAMMPS_NS::TriMesh* mesh, double* F) {
+    part_->endSurfacesIntersect(s, mesh, F);
+  }
+  void endSurfacesIntersect(SurfacesIntersectData& s, ForceData& i, ForceData& j) {
+    part_->endSurfacesIntersect(s, i, j);
+  }
   void beginPass(SurfacesIntersectData& s, ForceData& i, ForceData& j) { part_->beginPass(s, i, j); }
   void endPass(SurfacesIntersectData& s, ForceData& i, ForceData& j) { part_->endPass(s, i, j); }
   void tally_pp(double x, int i, int j, int k) { part_->tally_pp(x, i, j, k); }
@@ -60,11 +71,11 @@ class Model : public ContactModelBase {
   Model(LAMMPS_NS::LAMMPS* lmp, LIGGGHTS::IContactHistorySetup* setup, bool is_wall, const int64_t hash)
       : ContactModelBase(lmp, is_wall),
         ids_(greeted(lmp, hash)),
-        surface_(lmp, setup, this, ids_),
+        surface_({lmp, setup, this, ids_}),
         normal_(lmp, setup),
-        cohesion_(lmp, setup, this, ids_),
-        tangential_(lmp, setup, this, ids_),
-        rolling_(lmp, setup, this, ids_) {}
+        cohesion_({lmp, setup, this, ids_}),
+        tangential_({lmp, setup, this, ids_}),
+        rolling_({lmp, setup, this, ids_}) {}
 
   int64_t hashcode() { return ids_.hash(); }
 

@@ -66,7 +66,8 @@ class Normal : protected LAMMPS_NS::Pointers {
   void connectToProperties(PropertyRegistry& registry, Dashpot dashpot) {
     // Rebuilt at every init: LIGGGHTS frees all properties there, and the user may have changed them.
     if (!tangential_damping_ && dashpot == Dashpot::optional) dashpot = Dashpot::off;
-    const Materials m = read_materials(lmp, registry, {model_.c_str(), Law::parameters, Law::n_parameters, &Law::valid}, dashpot);
+    const Declaration law{model_.c_str(), Law::parameters, Law::n_parameters, &Law::valid};
+    const Materials m = read_materials(lmp, registry, law, dashpot);
     width_ = m.width;
     table_.assign(m.pairs.size(), Entry{});
     for (int i = 1; i < width_; ++i)

@@ -15,7 +15,6 @@ namespace {
 using LAMMPS_NS::FixWallGran;
 using LAMMPS_NS::LAMMPS;
 using LAMMPS_NS::PairGran;
-using LIGGGHTS::IContactHistorySetup;
 namespace PairStyles = LIGGGHTS::PairStyles;
 namespace Walls = LIGGGHTS::Walls;
 
@@ -32,36 +31,35 @@ bool available(const Ids& ids) {
          ids.surface != SURFACE_SUPERQUADRIC;
 }
 
-template <class Base, class Part>
-std::shared_ptr<Base> make(LAMMPS* lmp, IContactHistorySetup* setup, ContactModelBase* c) {
-  return std::make_shared<Part>(lmp, setup, c);
+template <class Part>
+std::shared_ptr<Part> make(const Site& s) {
+  return std::make_shared<Part>(s.lmp, s.history, s.contact);
 }
 
-std::shared_ptr<SurfaceModelBase> choose_surface(LAMMPS* l, IContactHistorySetup* s, ContactModelBase* c, const Ids& ids) {
-  if (ids.surface == SURFACE_MULTICONTACT) return make<SurfaceModelBase, SurfaceModel<SURFACE_MULTICONTACT>>(l, s, c);
-  return make<SurfaceModelBase, SurfaceModel<SURFACE_DEFAULT>>(l, s, c);
+std::shared_ptr<SurfaceModelBase> choose_surface(const Site& s) {
+  if (s.ids.surface == SURFACE_MULTICONTACT) return make<SurfaceModel<SURFACE_MULTICONTACT>>(s);
+  return make<SurfaceModel<SURFACE_DEFAULT>>(s);
 }
 
-std::shared_ptr<CohesionModelBase> choose_cohesion(LAMMPS* l, IContactHistorySetup* s, ContactModelBase* c, const Ids& ids) {
-  if (ids.cohesion == COHESION_SJKR) return make<CohesionModelBase, CohesionModel<COHESION_SJKR>>(l, s, c);
-  if (ids.cohesion == COHESION_SJKR2) return make<CohesionModelBase, CohesionModel<COHESION_SJKR2>>(l, s, c);
-  return make<CohesionModelBase, CohesionModel<COHESION_OFF>>(l, s, c);
+std::shared_ptr<CohesionModelBase> choose_cohesion(const Site& s) {
+  if (s.ids.cohesion == COHESION_SJKR) return make<CohesionModel<COHESION_SJKR>>(s);
+  if (s.ids.cohesion == COHESION_SJKR2) return make<CohesionModel<COHESION_SJKR2>>(s);
+  return make<CohesionModel<COHESION_OFF>>(s);
 }
 
-std::shared_ptr<TangentialModelBase> choose_tangential(LAMMPS* l, IContactHistorySetup* s, ContactModelBase* c, const Ids& ids) {
-  if (ids.tangential == TANGENTIAL_HISTORY) return make<TangentialModelBase, TangentialModel<TANGENTIAL_HISTORY>>(l, s, c);
-  if (ids.tangential == TANGENTIAL_NO_HISTORY)
-    return make<TangentialModelBase, TangentialModel<TANGENTIAL_NO_HISTORY>>(l, s, c);
-  return make<TangentialModelBase, TangentialModel<TANGENTIAL_OFF>>(l, s, c);
+std::shared_ptr<TangentialModelBase> choose_tangential(const Site& s) {
+  if (s.ids.tangential == TANGENTIAL_HISTORY) return make<TangentialModel<TANGENTIAL_HISTORY>>(s);
+  if (s.ids.tangential == TANGENTIAL_NO_HISTORY) return make<TangentialModel<TANGENTIAL_NO_HISTORY>>(s);
+  return make<TangentialModel<TANGENTIAL_OFF>>(s);
 }
 
-std::shared_ptr<RollingModelBase> choose_rolling(LAMMPS* l, IContactHistorySetup* s, ContactModelBase* c, const Ids& ids) {
-  switch (ids.rolling) {
-    case ROLLING_CDT: return make<RollingModelBase, RollingModel<ROLLING_CDT>>(l, s, c);
-    case ROLLING_EPSD: return make<RollingModelBase, RollingModel<ROLLING_EPSD>>(l, s, c);
-    case ROLLING_EPSD2: return make<RollingModelBase, RollingModel<ROLLING_EPSD2>>(l, s, c);
-    case ROLLING_EPSD3: return make<RollingModelBase, RollingModel<ROLLING_EPSD3>>(l, s, c);
-    default: return make<RollingModelBase, RollingModel<ROLLING_OFF>>(l, s, c);
+std::shared_ptr<RollingModelBase> choose_rolling(const Site& s) {
+  switch (s.ids.rolling) {
+    case ROLLING_CDT: return make<RollingModel<ROLLING_CDT>>(s);
+    case ROLLING_EPSD: return make<RollingModel<ROLLING_EPSD>>(s);
+    case ROLLING_EPSD2: return make<RollingModel<ROLLING_EPSD2>>(s);
+    case ROLLING_EPSD3: return make<RollingModel<ROLLING_EPSD3>>(s);
+    default: return make<RollingModel<ROLLING_OFF>>(s);
   }
 }
 
@@ -84,8 +82,8 @@ Interface* refuse(LAMMPS* lmp, Parent*, int64_t hash) {
   const std::string text =
       Ids::of(hash).normal == unknown_law
           ? std::string("unknown normal model: ") + known
-          : "epdem's models combine with tangential off, no_history, history; cohesion off, sjkr, sjkr2; rolling_friction off, "
-            "cdt, epsd, epsd2, epsd3; surface default, multicontact; nothing else";
+          : "epdem's models combine with tangential off, no_history, history; cohesion off, sjkr, sjkr2; "
+            "rolling_friction off, cdt, epsd, epsd2, epsd3; surface default, multicontact; nothing else";
   lmp->error->all(FLERR, text.c_str());
   return nullptr;
 }
@@ -96,13 +94,15 @@ void add(const Ids& ids, PairStyles::IGranularPairStyle* (*pair)(LAMMPS*, PairGr
   Walls::Factory::instance().addStyle("gran", static_cast<int>(ids.hash()), wall);
 }
 
-void add_refusal(const Ids& ids) { add(ids, &refuse<PairStyles::IGranularPairStyle, PairGran>, &refuse<Walls::IGranularWall, FixWallGran>); }
+void add_refusal(const Ids& ids) {
+  add(ids, &refuse<PairStyles::IGranularPairStyle, PairGran>, &refuse<Walls::IGranularWall, FixWallGran>);
+}
 
 /// The combinations that most decks use, each compiled on its own: no virtual call in the loop.
 template <class Law, int tangential, int rolling>
 bool add_fast(const Ids& ids) {
-  if (ids.tangential != tangential || ids.rolling != rolling || ids.cohesion != COHESION_OFF || ids.surface != SURFACE_DEFAULT)
-    return false;
+  const Ids mine{ids.normal, tangential, COHESION_OFF, rolling, SURFACE_DEFAULT};
+  if (ids.hash() != mine.hash()) return false;
   using Surface = Fixed<SurfaceModel<SURFACE_DEFAULT>>;
   using Cohesion = Fixed<CohesionModel<COHESION_OFF>>;
   using Tangential = Fixed<TangentialModel<tangential>>;
