@@ -146,3 +146,12 @@ def test_restitution_falls_with_speed_and_never_exceeds_one(name):
     e_n = out["rebound_speed"] / speed
     assert np.all(e_n <= 1 + 2e-6)
     assert np.all(np.diff(e_n) <= 4e-6)
+
+
+@given(contacts(), fractions)
+def test_the_memory_is_the_largest_overlap_so_far(c, f):
+    state, largest = 0.0, 0.0
+    for delta in paths(c, f):
+        state = c.step(state, delta)[2][0]
+        largest = max(largest, delta)
+        assert state == largest

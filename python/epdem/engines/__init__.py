@@ -3,17 +3,21 @@
 
 from ..errors import CaseError
 from .base import Engine, Trajectory
+from .builtin import BuiltinHertz, ThorntonNing
 from .embedded import Embedded
 from .liggghts import Liggghts
 
 ENGINES: dict[str, type[Engine]] = {"embedded": Embedded, "liggghts": Liggghts}
+# LIGGGHTS's own models, for comparisons; `run` takes them by name as well.
+OTHERS: dict[str, type[Engine]] = {tool.name: tool for tool in (BuiltinHertz, ThorntonNing)}
 
 
 def engine(name: str) -> Engine:
     """The engine of that name. Raises CaseError."""
-    if name not in ENGINES:
-        raise CaseError(f"--engine {name!r} does not exist; there are {', '.join(ENGINES)}")
-    return ENGINES[name]()
+    known = ENGINES | OTHERS
+    if name not in known:
+        raise CaseError(f"--engine {name!r} does not exist; there are {', '.join(known)}")
+    return known[name]()
 
 
-__all__ = ["ENGINES", "Engine", "Trajectory", "engine"]
+__all__ = ["ENGINES", "OTHERS", "Engine", "Trajectory", "engine"]

@@ -69,18 +69,29 @@ def _types(plan: Plan) -> list[tuple[Body, float]]:
     return types
 
 
-def _properties(plan: Plan) -> tuple[Property, ...]:
-    law, types = plan.experiment.law, _types(plan)
-    rows = [
+def elastic_rows(plan: Plan) -> list[tuple]:
+    """(name, style, values, comment) of the elastic properties of the plan's atom types."""
+    types = _types(plan)
+    return [
         ("youngsModulus", "peratomtype", [_finite(b.young_modulus) for b, _ in types], "Pa"),
         ("poissonsRatio", "peratomtype", [b.poisson_ratio for b, _ in types], "1"),
     ]
+
+
+def numbered(rows: list[tuple]) -> tuple[Property, ...]:
+    """The lines of a deck from rows as in elastic_rows."""
+    return tuple(Property(f"m{i}", n, s, tuple(v), c) for i, (n, s, v, c) in enumerate(rows, 1))
+
+
+def _properties(plan: Plan) -> tuple[Property, ...]:
+    law, types = plan.experiment.law, _types(plan)
+    rows = elastic_rows(plan)
     if law.strength_property:
         rows.append(
             (law.strength_property, "peratomtype", [_finite(s) for _, s in types], "Pa, the softer body's counts")
         )
     rows += [(name, "scalar", [value], "1") for name, value in law.ratios().items()]
-    return tuple(Property(f"m{i}", n, s, tuple(v), c) for i, (n, s, v, c) in enumerate(rows, 1))
+    return numbered(rows)
 
 
 class Liggghts:
@@ -104,6 +115,9 @@ class Liggghts:
     def model(self, plan: Plan) -> str:
         return f"ep/{plan.experiment.law.name}"
 
+    def properties(self, plan: Plan) -> tuple[Property, ...]:
+        return _properties(plan)
+
     def deck(self, plan: Plan) -> Deck:
         """The deck of a plan. Raises CaseError for what LIGGGHTS cannot do."""
         x, types = plan.experiment, _types(plan)
@@ -117,7 +131,7 @@ class Liggghts:
             summary=f"{x.speed.size} speeds x {plan.phases} phases = {plan.n} independent impacts, law {x.law.name}",
             hard=max(moduli) > HARD, soft=min(moduli) < SOFT, data="impact.data",
             skin=0.2 * min(x.body.radius, x.target.radius), types=tuple(b.material for b, _ in types),
-            properties=_properties(plan), model=self.model(plan), tangential="off",
+            properties=self.properties(plan), model=self.model(plan), tangential="off",
             wall_type=len(types) if math.isinf(x.target.radius) else None,
             time_step=plan.time_step, path="path.bin", steps=plan.steps,
         )  # fmt: skip
