@@ -10,6 +10,10 @@
 
 #define EPDEM_EXPORT extern "C" __attribute__((visibility("default")))
 
+/// In long_double.cpp: input already checked; false if there is no such law.
+bool epdem_long_double_batch(int law, double E_star, const double* parameters, size_t n, const epdem_impact_input* in,
+                             epdem_impact_output* out);
+
 namespace {
 
 using namespace epdem;
@@ -55,6 +59,17 @@ int with_law(int index, double E_star, const double* parameters, const Body& bod
   return EPDEM_UNKNOWN_LAW;
 }
 
+bool sane(const epdem_impact_input& c) {
+  return positive(c.R_star) && positive(c.m_star) && positive(c.speed) && positive(c.time_step) &&
+         std::isfinite(c.gap) && c.steps >= 0;
+}
+
+ImpactInput input(const epdem_impact_input& c) { return {c.R_star, c.m_star, c.speed, c.time_step, c.gap, c.steps}; }
+
+epdem_impact_output output(const ImpactOutput& o) {
+  return {o.rebound_speed, o.force_max, o.overlap_max, o.last_overlap, o.first, o.last, o.steps};
+}
+
 static_assert(sizeof(epdem_impact_input) == sizeof(ImpactInput), "the C struct mirrors the C++ one");
 static_assert(sizeof(epdem_impact_output) == sizeof(ImpactOutput), "the C struct mirrors the C++ one");
 
@@ -68,7 +83,7 @@ EPDEM_EXPORT const char* epdem_message(int status) {
     case EPDEM_OK: return "ok";
     case EPDEM_UNKNOWN_LAW: return "no law of that index";
     case EPDEM_BAD_PARAMETER: return "E_star and every law parameter must be finite, > 0 and in the law's range";
-    case EPDEM_BAD_INPUT: return "R_star, m_star, speed and time_step must be finite and > 0, gap and steps >= 0";
+    case EPDEM_BAD_INPUT: return "R_star, m_star, speed and time_step must be finite and > 0, gap finite, steps >= 0";
     default: return "unknown status";
   }
 }
@@ -135,18 +150,32 @@ EPDEM_EXPORT int epdem_impacts(int law, double E_star, const double* parameters,
   for (size_t i = 0; i < n; ++i) {
     const epdem_impact_input& c = in[i];
     const bool samples = overlap || force || velocity;
-    if (!positive(c.R_star) || !positive(c.m_star) || !positive(c.speed) || !positive(c.time_step) ||
-        !std::isfinite(c.gap) || c.gap < 0.0 || c.steps < 0 || (samples && size_t(c.steps) + 1 > stride))
-      return EPDEM_BAD_INPUT;
+    if (!sane(c) || (samples && size_t(c.steps) + 1 > stride)) return EPDEM_BAD_INPUT;
   }
   return with_law(law, E_star, parameters, [&](const auto& l) {
     for (size_t i = 0; i < n; ++i) {
-      const epdem_impact_input& c = in[i];
       const Path path{overlap ? overlap + i * stride : nullptr, force ? force + i * stride : nullptr,
                       velocity ? velocity + i * stride : nullptr};
-      const ImpactOutput o = impact(l, {c.R_star, c.m_star, c.speed, c.time_step, c.gap, c.steps}, path);
-      out[i] = {o.rebound_speed, o.force_max, o.overlap_max, o.last_overlap, o.first, o.last, o.steps};
+      out[i] = output(impact(l, input(in[i]), path));
     }
+    return int(EPDEM_OK);
+  });
+}
+
+EPDEM_EXPORT int epdem_impacts_long_double(int law, double E_star, const double* parameters, size_t n,
+                                           const epdem_impact_input* in, epdem_impact_output* out) {
+  for (size_t i = 0; i < n; ++i)
+    if (!sane(in[i])) return EPDEM_BAD_INPUT;
+  return with_law(law, E_star, parameters, [&](const auto&) {  // the checks are those of double
+    return epdem_long_double_batch(law, E_star, parameters, n, in, out) ? int(EPDEM_OK) : int(EPDEM_UNKNOWN_LAW);
+  });
+}
+
+EPDEM_EXPORT int epdem_bounces(int law, double E_star, const double* parameters, const epdem_impact_input* first,
+                               int64_t count, epdem_impact_output* out, double* speeds) {
+  if (!sane(*first) || count < 0) return EPDEM_BAD_INPUT;
+  return with_law(law, E_star, parameters, [&](const auto& l) {
+    *out = output(bounces(l, input(*first), count, speeds));
     return int(EPDEM_OK);
   });
 }

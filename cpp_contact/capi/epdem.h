@@ -13,7 +13,7 @@
 extern "C" {
 #endif
 
-#define EPDEM_ABI 1
+#define EPDEM_ABI 2
 #define EPDEM_MAX_PARAMETERS 8
 
 typedef enum {
@@ -34,7 +34,7 @@ typedef struct {
   double m_star;    /* [kg] */
   double speed;     /* approach speed [m/s] */
   double time_step; /* [s] */
-  double gap;       /* before first touch [m] */
+  double gap;       /* before first touch [m]; negative: overlap at the start */
   int64_t steps;    /* at most so many */
 } epdem_impact_input;
 
@@ -74,6 +74,15 @@ int epdem_backbone(int law, double E_star, const double* parameters, double R_st
  * (stride >= steps + 1 of every impact); the samples after the end of an impact are left as they were. */
 int epdem_impacts(int law, double E_star, const double* parameters, size_t n, const epdem_impact_input* in,
                   epdem_impact_output* out, size_t stride, double* overlap, double* force, double* velocity);
+
+/* The same impacts computed in long double and rounded once, at the end: what is left to double is round-off. */
+int epdem_impacts_long_double(int law, double E_star, const double* parameters, size_t n, const epdem_impact_input* in,
+                              epdem_impact_output* out);
+
+/* `count` impacts of one contact that keeps its memory, each at the rebound speed of the one before; speeds may be
+ * NULL or takes `count` rebound speeds [m/s]; out is the last impact, its steps those of all. */
+int epdem_bounces(int law, double E_star, const double* parameters, const epdem_impact_input* first, int64_t count,
+                  epdem_impact_output* out, double* speeds);
 
 #ifdef __cplusplus
 }

@@ -16,7 +16,7 @@ import numpy as np
 from . import paths
 from .errors import CaseError, EngineError
 
-ABI = 1
+ABI = 2
 _D = POINTER(c_double)
 
 
@@ -34,6 +34,8 @@ IMPACT_OUTPUT = np.dtype(
 )
 
 _SIGNATURES = {
+    "epdem_impacts_long_double": (c_int, [c_int, c_double, _D, c_size_t, ctypes.c_void_p, ctypes.c_void_p]),
+    "epdem_bounces": (c_int, [c_int, c_double, _D, ctypes.c_void_p, ctypes.c_int64, ctypes.c_void_p, _D]),
     "epdem_abi": (c_int, []),
     "epdem_version": (c_char_p, []),
     "epdem_message": (c_char_p, [c_int]),
@@ -188,17 +190,23 @@ class Law:
         )
         return tuple(out)
 
-    def impacts(self, *, R_star, m_star, speed, time_step, gap=0.0, steps: int, paths: bool = False):
-        """Two-body impacts by velocity Verlet; all arguments but `steps` and `paths` broadcast to (n,).
-
-        Returns a structured array (IMPACT_OUTPUT) and, with paths=True, overlap [m], force [N] and approach
-        velocity [m/s] of shape (n, steps + 1), NaN after the end of an impact.
-        """
+    @staticmethod
+    def _cases(R_star, m_star, speed, time_step, gap, steps: int) -> np.ndarray:
         columns = np.broadcast_arrays(*map(_array, (R_star, m_star, speed, time_step, gap)))
         cases = np.empty(columns[0].shape, IMPACT_INPUT)
         for name, column in zip(("R_star", "m_star", "speed", "time_step", "gap"), columns, strict=True):
             cases[name] = column
         cases["steps"] = steps
+        return cases
+
+    def impacts(self, *, R_star, m_star, speed, time_step, gap=0.0, steps: int, paths: bool = False):
+        """Two-body impacts by velocity Verlet; all arguments but `steps` and `paths` broadcast to (n,).
+
+        gap [m] is the distance before first touch (negative: overlap at the start). Returns a structured array
+        (IMPACT_OUTPUT) and, with paths=True, overlap [m], force [N] and approach velocity [m/s] of shape
+        (n, steps + 1), NaN after the end of an impact.
+        """
+        cases = self._cases(R_star, m_star, speed, time_step, gap, steps)
         out = np.empty(cases.shape, IMPACT_OUTPUT)
         samples = [np.full((cases.size, steps + 1), np.nan) if paths else None for _ in range(3)]
         self._check(
@@ -208,3 +216,25 @@ class Law:
             )
         )  # fmt: skip
         return (out, *samples) if paths else out
+
+    def impacts_long_double(self, *, R_star, m_star, speed, time_step, gap=0.0, steps: int) -> np.ndarray:
+        """The same impacts computed in long double, IMPACT_OUTPUT rounded at the end: a reference for round-off."""
+        cases = self._cases(R_star, m_star, speed, time_step, gap, steps)
+        out = np.empty(cases.shape, IMPACT_OUTPUT)
+        self._check(
+            library().epdem_impacts_long_double(
+                self.info.index, self.E_star, self._parameters, cases.size, cases.ctypes.data, out.ctypes.data
+            )
+        )
+        return out
+
+    def bounces(self, count: int, *, R_star: float, m_star: float, speed: float, time_step: float, steps: int):
+        """`count` impacts of one contact, each at the rebound speed of the one before, at most `steps` steps each.
+
+        Returns the last impact (IMPACT_OUTPUT, its `steps` those of all impacts) and the rebound speeds [m/s].
+        """
+        first = self._cases(R_star, m_star, speed, time_step, 0.0, steps).ctypes.data
+        out, speeds = np.empty(1, IMPACT_OUTPUT), np.full(count, np.nan)
+        law = (self.info.index, self.E_star, self._parameters)
+        self._check(library().epdem_bounces(*law, first, count, out.ctypes.data, _pointer(speeds)))
+        return out[0], speeds

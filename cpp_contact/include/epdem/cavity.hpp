@@ -14,26 +14,26 @@ struct Cavity {
   static constexpr bool yields = true;
   static constexpr bool flattens = true;
   static constexpr Parameter parameters[] = {
-      {"yield_stress", "yieldStress", "Pa", std::numeric_limits<double>::quiet_NaN()},
+      {"yield_stress", "yieldStress", "Pa", std::numeric_limits<real>::quiet_NaN()},
       {"first_yield_ratio", "firstYieldRatio", "1", 1.60},
       {"plastic_ratio", "plasticRatio", "1", 2.8}};
   static constexpr int n_parameters = 3;
 
-  double E_star, Y, c_Y, c_P;
-  double yield_ratio;    // alpha_Y/R*
-  double plastic_ratio;  // alpha_P/R*
-  double log_s_P, beta;
-  double a_ratio;        // a_Y/R*
+  real E_star, Y, c_Y, c_P;
+  real yield_ratio;    // alpha_Y/R*
+  real plastic_ratio;  // alpha_P/R*
+  real log_s_P, beta;
+  real a_ratio;        // a_Y/R*
 
   /// Whether positive, finite parameters also make sense together.
-  static bool valid(const double* parameter) noexcept {
+  static bool valid(const real* parameter) noexcept {
     return parameter[2] > parameter[1] && yield_excess(parameter[1], parameter[2]) <= 2.5;
   }
 
   Cavity() noexcept
       : E_star(0.0), Y(0.0), c_Y(0.0), c_P(0.0), yield_ratio(0.0), plastic_ratio(0.0), log_s_P(1.0), beta(0.0),
         a_ratio(0.0) {}
-  Cavity(double E_star_, const double* parameter) noexcept
+  Cavity(real E_star_, const real* parameter) noexcept
       : E_star(E_star_), Y(parameter[0]), c_Y(parameter[1]), c_P(parameter[2]) {
     a_ratio = pi * c_Y * Y / (2.0 * E_star);
     yield_ratio = a_ratio * a_ratio;
@@ -43,31 +43,31 @@ struct Cavity {
   }
 
   /// Left side of the condition that no energy is created just above yield; it must not exceed 2.5.
-  static double yield_excess(double c_Y, double c_P) noexcept {
-    const double log_s = 3.0 * (c_P - 2.0 * c_Y / 3.0) - std::log(2.0), b = std::log(2.0) / log_s;
+  static real yield_excess(real c_Y, real c_P) noexcept {
+    const real log_s = 3.0 * (c_P - 2.0 * c_Y / 3.0) - std::log(2.0), b = std::log(2.0) / log_s;
     return 2.0 * (1.0 + b) * (1.0 + 1.0 / (2.0 * c_Y)) - 0.5 * (1.0 + b) - 0.125 / log_s;
   }
 
-  double elastic_overlap(double R_star) const noexcept { return yield_ratio * R_star; }
+  real elastic_overlap(real R_star) const noexcept { return yield_ratio * R_star; }
 
-  Point load(double R_star, double delta) const noexcept {
+  Point load(real R_star, real delta) const noexcept {
     if (delta >= plastic_ratio * R_star)
       return {2.0 * pi * R_star * c_P * Y * delta, std::sqrt(2.0 * R_star * delta), 1.0};
-    const double log_s = std::log(delta / (yield_ratio * R_star));
-    const double a = a_ratio * R_star * std::exp(0.5 * (1.0 + beta) * log_s);
-    const double p_m = Y * (2.0 / 3.0 * c_Y + (1.0 + beta) / 3.0 * log_s);
+    const real log_s = std::log(delta / (yield_ratio * R_star));
+    const real a = a_ratio * R_star * std::exp(0.5 * (1.0 + beta) * log_s);
+    const real p_m = Y * (2.0 / 3.0 * c_Y + (1.0 + beta) / 3.0 * log_s);
     return {pi * a * a * p_m, a, log_s / log_s_P};
   }
 
-  double work(double R_star, double delta) const noexcept {
-    const double delta_Y = elastic_overlap(R_star), delta_P = plastic_ratio * R_star;
+  real work(real R_star, real delta) const noexcept {
+    const real delta_Y = elastic_overlap(R_star), delta_P = plastic_ratio * R_star;
     if (!(delta > delta_Y)) return hertz_work(E_star, R_star, delta);
-    const double a_Y = a_ratio * R_star, A = 2.0 / 3.0 * c_Y, B = (1.0 + beta) / 3.0, n = 2.0 + beta;
-    const double log_s = std::min(std::log(delta / delta_Y), log_s_P);
+    const real a_Y = a_ratio * R_star, A = 2.0 / 3.0 * c_Y, B = (1.0 + beta) / 3.0, n = 2.0 + beta;
+    const real log_s = std::min(std::log(delta / delta_Y), log_s_P);
     // (s^n - 1)/n and (s^n ln s)/n - (s^n - 1)/n^2, the first by expm1 to stay exact near yield
-    const double grow = std::expm1(n * log_s), I0 = grow / n;
-    const double I1 = ((grow + 1.0) * log_s - I0) / n;
-    const double W = hertz_work(E_star, R_star, delta_Y) + pi * a_Y * a_Y * delta_Y * Y * (A * I0 + B * I1);
+    const real grow = std::expm1(n * log_s), I0 = grow / n;
+    const real I1 = ((grow + 1.0) * log_s - I0) / n;
+    const real W = hertz_work(E_star, R_star, delta_Y) + pi * a_Y * a_Y * delta_Y * Y * (A * I0 + B * I1);
     if (!(delta > delta_P)) return W;
     return W + pi * R_star * c_P * Y * (delta - delta_P) * (delta + delta_P);
   }

@@ -13,20 +13,20 @@ struct Hertz {
   static constexpr Parameter parameters[] = {{nullptr, nullptr, nullptr, 0.0}};
   static constexpr int n_parameters = 0;
 
-  double E_star;
+  real E_star;
 
   /// Whether positive, finite parameters also make sense together.
-  static bool valid(const double*) noexcept { return true; }
+  static bool valid(const real*) noexcept { return true; }
 
   Hertz() noexcept : E_star(0.0) {}
-  Hertz(double E_star_, const double*) noexcept : E_star(E_star_) {}
+  Hertz(real E_star_, const real*) noexcept : E_star(E_star_) {}
 
   /// Largest overlap of the elastic branch [m].
-  double elastic_overlap(double) const noexcept { return std::numeric_limits<double>::infinity(); }
+  real elastic_overlap(real) const noexcept { return std::numeric_limits<real>::infinity(); }
   /// The backbone at `delta` > elastic_overlap.
-  Point load(double R_star, double delta) const noexcept { return hertz_point(E_star, R_star, delta); }
+  Point load(real R_star, real delta) const noexcept { return hertz_point(E_star, R_star, delta); }
   /// Work along the backbone to `delta` [J].
-  double work(double R_star, double delta) const noexcept { return hertz_work(E_star, R_star, delta); }
+  real work(real R_star, real delta) const noexcept { return hertz_work(E_star, R_star, delta); }
 };
 
 }  // namespace epdem

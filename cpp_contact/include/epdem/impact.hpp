@@ -10,35 +10,36 @@ namespace epdem {
 
 /// One impact: the relative approach obeys m* alpha'' = -F.
 struct ImpactInput {
-  double R_star;         // [m]
-  double m_star;         // [kg]
-  double speed;          // approach speed [m/s]
-  double time_step;      // [s]
-  double gap;            // distance before first touch [m]; the phase of the impact is gap/(speed time_step)
+  real R_star;         // [m]
+  real m_star;         // [kg]
+  real speed;          // approach speed [m/s]
+  real time_step;      // [s]
+  real gap;            // distance before first touch [m]; the phase of the impact is gap/(speed time_step);
+                       // negative: they overlap already
   std::int64_t steps;  // at most so many steps are taken
 };
 
 struct ImpactOutput {
-  double rebound_speed;            // [m/s]
-  double force_max, overlap_max;   // largest sampled values [N], [m]
-  double last_overlap;             // overlap at the last loaded sample [m]
+  real rebound_speed;            // [m/s]
+  real force_max, overlap_max;   // largest sampled values [N], [m]
+  real last_overlap;             // overlap at the last loaded sample [m]
   std::int64_t first, last;      // first and last step with a force
   std::int64_t steps;            // steps taken
 };
 
 /// Samples of the path, written if the pointers are set; room for steps + 1 values each.
 struct Path {
-  double* overlap = nullptr;   // [m], negative while apart
-  double* force = nullptr;     // [N]
-  double* velocity = nullptr;  // of approach [m/s]
+  real* overlap = nullptr;   // [m], negative while apart
+  real* force = nullptr;     // [N]
+  real* velocity = nullptr;  // of approach [m/s]
 };
 
-/// Integrates until the bodies have parted (no force for two steps after contact) or `steps` is reached.
+/// Integrates until the bodies have parted (no force for two steps after contact) or `steps` is reached;
+/// `state` is what the contact remembers, before and after.
 template <class Law>
-inline ImpactOutput impact(const Law& law, const ImpactInput& in, const Path& path) noexcept {
-  const double half = 0.5 * in.time_step / in.m_star;
-  State<Law> state{};
-  double alpha = -in.gap, v = in.speed, force = 0.0;
+inline ImpactOutput impact(const Law& law, const ImpactInput& in, const Path& path, State<Law>& state) noexcept {
+  const real half = 0.5 * in.time_step / in.m_star;
+  real alpha = -in.gap, v = in.speed, force = 0.0;
   ImpactOutput out{in.speed, 0.0, 0.0, 0.0, -1, -1, 0};
   std::int64_t n = 0;
   for (;; ++n) {
@@ -64,6 +65,40 @@ inline ImpactOutput impact(const Law& law, const ImpactInput& in, const Path& pa
   }
   out.rebound_speed = -v;
   out.steps = n;
+  return out;
+}
+
+/// The first impact of a contact.
+template <class Law>
+inline ImpactOutput impact(const Law& law, const ImpactInput& in, const Path& path) noexcept {
+  State<Law> state{};
+  return impact(law, in, path, state);
+}
+
+/// `count` impacts of one contact that keeps its memory, each at the rebound speed of the one before: as between two
+/// walls without loss. Phases follow the golden ratio. `speeds` may be null, or takes the `count` rebound speeds.
+/// Returns the last impact, `steps` being those of all; it ends early if a contact does not end.
+template <class Law>
+inline ImpactOutput bounces(const Law& law, const ImpactInput& first, std::int64_t count, real* speeds) noexcept {
+  State<Law> state{};
+  ImpactInput in = first;
+  ImpactOutput out{first.speed, 0.0, 0.0, 0.0, -1, -1, 0};
+  std::int64_t steps = 0;
+  real phase = 0.5;
+  for (std::int64_t k = 0; k < count; ++k) {
+    const bool dented = state.delta_max > law.elastic_overlap(in.R_star);
+    const real dent =
+        dented ? state.delta_max - recovered_overlap(law.E_star, law.load(in.R_star, state.delta_max)) : 0.0;
+    in.gap = phase * in.speed * in.time_step - dent;
+    out = impact(law, in, {}, state);
+    steps += out.steps;
+    if (speeds) speeds[k] = out.rebound_speed;
+    if (!(out.rebound_speed > 0.0)) break;
+    in.speed = out.rebound_speed;
+    phase += 0.6180339887498949;
+    if (phase >= 1.0) phase -= 1.0;
+  }
+  out.steps = steps;
   return out;
 }
 

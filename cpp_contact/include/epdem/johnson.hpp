@@ -13,31 +13,31 @@ struct Johnson {
   static constexpr bool yields = true;
   static constexpr bool flattens = false;
   static constexpr Parameter parameters[] = {
-      {"yield_pressure", "yieldPressure", "Pa", std::numeric_limits<double>::quiet_NaN()}};
+      {"yield_pressure", "yieldPressure", "Pa", std::numeric_limits<real>::quiet_NaN()}};
   static constexpr int n_parameters = 1;
 
-  double E_star;
-  double yield_ratio;  // alpha_c/R*
-  double slope_ratio;  // 2 pi p_m
+  real E_star;
+  real yield_ratio;  // alpha_c/R*
+  real slope_ratio;  // 2 pi p_m
 
   /// Whether positive, finite parameters also make sense together.
-  static bool valid(const double*) noexcept { return true; }
+  static bool valid(const real*) noexcept { return true; }
 
   Johnson() noexcept : E_star(0.0), yield_ratio(0.0), slope_ratio(0.0) {}
-  Johnson(double E_star_, const double* parameter) noexcept : E_star(E_star_) {
-    const double p_m = parameter[0], q = 3.0 * pi * p_m / (2.0 * E_star_);
+  Johnson(real E_star_, const real* parameter) noexcept : E_star(E_star_) {
+    const real p_m = parameter[0], q = 3.0 * pi * p_m / (2.0 * E_star_);
     yield_ratio = q * q;
     slope_ratio = 2.0 * pi * p_m;
   }
 
-  double elastic_overlap(double R_star) const noexcept { return yield_ratio * R_star; }
+  real elastic_overlap(real R_star) const noexcept { return yield_ratio * R_star; }
 
-  Point load(double R_star, double delta) const noexcept {
+  Point load(real R_star, real delta) const noexcept {
     return {slope_ratio * R_star * delta, std::sqrt(2.0 * R_star * delta), 0.0};
   }
 
-  double work(double R_star, double delta) const noexcept {
-    const double delta_c = elastic_overlap(R_star);
+  real work(real R_star, real delta) const noexcept {
+    const real delta_c = elastic_overlap(R_star);
     if (!(delta > delta_c)) return hertz_work(E_star, R_star, delta);
     return hertz_work(E_star, R_star, delta_c) + 0.5 * slope_ratio * R_star * (delta - delta_c) * (delta + delta_c);
   }

@@ -13,12 +13,12 @@ namespace epdem {
 
 /// A contact's memory: the largest overlap so far [m].
 struct Maximum {
-  double delta_max = 0.0;
+  real delta_max = 0.0;
 };
 
 /// The same for a law with an expensive backbone, which keeps the backbone's values at delta_max beside it.
 struct Peak {
-  double delta_max = 0.0;
+  real delta_max = 0.0;
   Point point{0.0, 0.0, 0.0};
 };
 
@@ -27,7 +27,7 @@ using State = std::conditional_t<Law::flattens, Peak, Maximum>;
 
 /// The memory of a contact whose largest overlap is known.
 template <class Law>
-inline State<Law> remember(const Law& law, double R_star, double delta_max) noexcept {
+inline State<Law> remember(const Law& law, real R_star, real delta_max) noexcept {
   if constexpr (Law::flattens) {
     if (!(delta_max > law.elastic_overlap(R_star))) return {delta_max, {0.0, 0.0, 0.0}};
     return {delta_max, law.load(R_star, delta_max)};
@@ -40,23 +40,23 @@ inline State<Law> remember(const Law& law, double R_star, double delta_max) noex
 
 template <class Law>
 struct Step {
-  double force;      // F [N], never negative
-  double radius;     // contact radius a [m]; the stiffnesses are k_n = 2 E* a and k_t = 8 G* a
+  real force;      // F [N], never negative
+  real radius;     // contact radius a [m]; the stiffnesses are k_n = 2 E* a and k_t = 8 G* a
   State<Law> after;  // what the contact remembers if this step counts
 };
 
 /// Force and contact radius at overlap `delta` [m] of a contact that remembers `before`.
 /// Never NaN for finite input; zero force for delta <= 0. The memory only grows: forgetting is the host's decision.
 template <class Law>
-inline Step<Law> step(const Law& law, double R_star, const State<Law>& before, double delta) noexcept {
+inline Step<Law> step(const Law& law, real R_star, const State<Law>& before, real delta) noexcept {
   if (!(delta > 0.0)) return {0.0, 0.0, before};
   if constexpr (!Law::yields) {
     const Point p = hertz_point(law.E_star, R_star, delta);
     return {p.force, p.radius, {delta > before.delta_max ? delta : before.delta_max}};
   } else {
-    const double delta_y = law.elastic_overlap(R_star);
+    const real delta_y = law.elastic_overlap(R_star);
     const bool grows = delta > before.delta_max;
-    const double delta_max = grows ? delta : before.delta_max;
+    const real delta_max = grows ? delta : before.delta_max;
     if (delta_max <= delta_y) {
       const Point p = hertz_point(law.E_star, R_star, delta);
       State<Law> after = before;
@@ -82,7 +82,7 @@ inline Step<Law> step(const Law& law, double R_star, const State<Law>& before, d
 
 /// Work lost for good by a contact that reached delta_max [J]: backbone work less the recoverable part.
 template <class Law>
-inline double plastic_work(const Law& law, double R_star, double delta_max) noexcept {
+inline real plastic_work(const Law& law, real R_star, real delta_max) noexcept {
   if (!(delta_max > law.elastic_overlap(R_star))) return 0.0;
   return law.work(R_star, delta_max) - recovered_work(law.E_star, law.load(R_star, delta_max));
 }

@@ -13,35 +13,35 @@ struct Thornton {
   static constexpr bool yields = true;
   static constexpr bool flattens = false;
   static constexpr Parameter parameters[] = {
-      {"yield_pressure", "yieldPressure", "Pa", std::numeric_limits<double>::quiet_NaN()}};
+      {"yield_pressure", "yieldPressure", "Pa", std::numeric_limits<real>::quiet_NaN()}};
   static constexpr int n_parameters = 1;
 
-  double E_star;
-  double yield_ratio;   // alpha_y/R*
-  double slope_ratio;   // pi p_y: slope of the plastic line over R*
-  double offset_ratio;  // (pi p_y alpha_y - F_y)/R*^2: F = (slope_ratio alpha - offset_ratio R*) R*
+  real E_star;
+  real yield_ratio;   // alpha_y/R*
+  real slope_ratio;   // pi p_y: slope of the plastic line over R*
+  real offset_ratio;  // (pi p_y alpha_y - F_y)/R*^2: F = (slope_ratio alpha - offset_ratio R*) R*
 
   /// Whether positive, finite parameters also make sense together.
-  static bool valid(const double*) noexcept { return true; }
+  static bool valid(const real*) noexcept { return true; }
 
   Thornton() noexcept : E_star(0.0), yield_ratio(0.0), slope_ratio(0.0), offset_ratio(0.0) {}
-  Thornton(double E_star_, const double* parameter) noexcept : E_star(E_star_) {
-    const double p_y = parameter[0], q = pi * p_y / (2.0 * E_star_);
+  Thornton(real E_star_, const real* parameter) noexcept : E_star(E_star_) {
+    const real p_y = parameter[0], q = pi * p_y / (2.0 * E_star_);
     yield_ratio = q * q;
     slope_ratio = pi * p_y;
     offset_ratio = slope_ratio * yield_ratio / 3.0;  // F_y = (2/3) pi p_y R* alpha_y
   }
 
-  double elastic_overlap(double R_star) const noexcept { return yield_ratio * R_star; }
+  real elastic_overlap(real R_star) const noexcept { return yield_ratio * R_star; }
 
-  Point load(double R_star, double delta) const noexcept {
+  Point load(real R_star, real delta) const noexcept {
     return {(slope_ratio * delta - offset_ratio * R_star) * R_star, std::sqrt(R_star * delta), 0.0};
   }
 
-  double work(double R_star, double delta) const noexcept {
-    const double delta_y = elastic_overlap(R_star);
+  real work(real R_star, real delta) const noexcept {
+    const real delta_y = elastic_overlap(R_star);
     if (!(delta > delta_y)) return hertz_work(E_star, R_star, delta);
-    const double F_y = (slope_ratio - slope_ratio / 3.0) * delta_y * R_star, x = delta - delta_y;
+    const real F_y = (slope_ratio - slope_ratio / 3.0) * delta_y * R_star, x = delta - delta_y;
     return hertz_work(E_star, R_star, delta_y) + (F_y + 0.5 * slope_ratio * R_star * x) * x;
   }
 };

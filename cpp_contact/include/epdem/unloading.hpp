@@ -11,12 +11,12 @@ namespace detail {
 
 /// [acos y - y sqrt(1-y^2)]/u^1.5 with u = 1 - y in [0, 1]: analytic there, so it keeps full relative accuracy
 /// where the difference itself cancels. Minimax polynomial in t = 2u - 1, largest relative error 4e-16.
-inline double segment(double u) noexcept {
-  const double t = 2.0 * u - 1.0, t2 = t * t, t4 = t2 * t2, t8 = t4 * t4;
-  const double c0 = (1.7371770873806556 - 0.15627588828780442 * t) + (-0.008779284872239073 - 0.0010977312731426958 * t) * t2;
-  const double c1 = (-0.00018258110274334128 - 3.541558286543854e-05 * t) + (-7.571561566503503e-06 - 1.7315768282685705e-06 * t) * t2;
-  const double c2 = (-4.1606712085594747e-07 - 1.0385134222493257e-07 * t) + (-2.6801506584044284e-08 - 7.066182450797425e-09 * t) * t2;
-  const double c3 = (-1.7955643189145686e-09 - 4.897422784724471e-10 * t) + (-2.0040271807734243e-10 - 5.670711059879121e-11 * t) * t2;
+inline real segment(real u) noexcept {
+  const real t = 2.0 * u - 1.0, t2 = t * t, t4 = t2 * t2, t8 = t4 * t4;
+  const real c0 = (1.7371770873806556 - 0.15627588828780442 * t) + (-0.008779284872239073 - 0.0010977312731426958 * t) * t2;
+  const real c1 = (-0.00018258110274334128 - 3.541558286543854e-05 * t) + (-7.571561566503503e-06 - 1.7315768282685705e-06 * t) * t2;
+  const real c2 = (-4.1606712085594747e-07 - 1.0385134222493257e-07 * t) + (-2.6801506584044284e-08 - 7.066182450797425e-09 * t) * t2;
+  const real c3 = (-1.7955643189145686e-09 - 4.897422784724471e-10 * t) + (-2.0040271807734243e-10 - 5.670711059879121e-11 * t) * t2;
   return (c0 + c1 * t4) + (c2 + c3 * t4) * t8;
 }
 
@@ -25,33 +25,33 @@ inline double segment(double u) noexcept {
 /// Force and contact radius at `delta` after unloading from `peak` at `delta_max` >= delta.
 /// Flattens = false is the case tau = 0, compiled apart.
 template <bool Flattens>
-inline Point unload(double E_star, const Point& peak, double delta_max, double delta) noexcept {
-  const double stiffness = E_star * peak.radius;
+inline Point unload(real E_star, const Point& peak, real delta_max, real delta) noexcept {
+  const real stiffness = E_star * peak.radius;
   if constexpr (!Flattens) {
-    const double x = 1.0 - (delta_max - delta) * stiffness / (0.75 * peak.force);  // share of the recovery still stored
+    const real x = 1.0 - (delta_max - delta) * stiffness / (0.75 * peak.force);  // share of the recovery still stored
     if (!(x > 0.0)) return {0.0, 0.0, 0.0};
-    const double root = std::sqrt(x);
+    const real root = std::sqrt(x);
     return {peak.force * x * root, peak.radius * root, 0.0};
   } else {
-    const double w = (delta_max - delta) * stiffness / peak.force;
-    const double tau = peak.flatness, A = 0.75 * (1.0 - tau), B = 2.0 / pi * tau;
-    const double S = B + std::sqrt(B * B + 4.0 * A * w), u = (S - 2.0 * w) / S;  // u = 1 - y
+    const real w = (delta_max - delta) * stiffness / peak.force;
+    const real tau = peak.flatness, A = 0.75 * (1.0 - tau), B = 2.0 / pi * tau;
+    const real S = B + std::sqrt(B * B + 4.0 * A * w), u = (S - 2.0 * w) / S;  // u = 1 - y
     if (!(u > 0.0)) return {0.0, 0.0, tau};
-    const double disc = u * (2.0 - u), root = std::sqrt(disc);  // 1 - y^2
-    const double share = (1.0 - tau) * disc * root + B * u * std::sqrt(u) * detail::segment(u);
+    const real disc = u * (2.0 - u), root = std::sqrt(disc);  // 1 - y^2
+    const real share = (1.0 - tau) * disc * root + B * u * std::sqrt(u) * detail::segment(u);
     return {peak.force * share, peak.radius * root, tau};
   }
 }
 
 /// Overlap given back on full unloading [m]: delta_e = (A + B) F_max/(E* a_max).
-inline double recovered_overlap(double E_star, const Point& peak) noexcept {
+inline real recovered_overlap(real E_star, const Point& peak) noexcept {
   return (0.75 * (1.0 - peak.flatness) + 2.0 / pi * peak.flatness) * peak.force / (E_star * peak.radius);
 }
 
 /// Energy given back on full unloading [J]: kappa F_max^2/(a_max E*).
-inline double recovered_work(double E_star, const Point& peak) noexcept {
-  const double t = peak.flatness, r = 1.0 - t;
-  const double kappa = 0.3 * r * r + 0.5625 * t * r + 8.0 / (3.0 * pi * pi) * t * t;
+inline real recovered_work(real E_star, const Point& peak) noexcept {
+  const real t = peak.flatness, r = 1.0 - t;
+  const real kappa = 0.3 * r * r + 0.5625 * t * r + 8.0 / (3.0 * pi * pi) * t * t;
   return kappa * peak.force * peak.force / (peak.radius * E_star);
 }
 

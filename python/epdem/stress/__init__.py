@@ -1,0 +1,6 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Stability on stiff and extreme cases: a fixed set by rule, every engine and law, and where each breaks."""
+
+from .cases import Extreme, extremes
+
+__all__ = ["Extreme", "extremes"]
