@@ -1,0 +1,29 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""`make docs`: every generated page and figure of docs/, each by the command that a reader can run."""
+
+import subprocess
+import sys
+from pathlib import Path
+
+ROOT = Path(__file__).parents[1]
+BIN = Path(sys.executable).parent
+COMMANDS = {
+    "figures/steel_wall.png": [BIN / "epdem", "run", "cases/steel_wall.toml", "-e", "liggghts", "-e", "liggghts-thornton_ning",
+                               "--out", "runs/docs"],
+}  # fmt: skip
+
+
+def main() -> None:
+    """Run the commands whose page is named on the command line, or all."""
+    (ROOT / "docs/figures").mkdir(exist_ok=True)
+    for page, command in COMMANDS.items():
+        if len(sys.argv) > 1 and page not in sys.argv[1:]:
+            continue
+        print(f"docs/{page}: {' '.join(str(c) for c in command).replace(str(BIN) + '/', '')}", flush=True)
+        subprocess.run(list(map(str, command)), cwd=ROOT, stdout=subprocess.DEVNULL)
+        if page == "figures/steel_wall.png":
+            (ROOT / "docs" / page).write_bytes((ROOT / "runs/docs/e_n.png").read_bytes())
+
+
+if __name__ == "__main__":
+    main()
