@@ -35,6 +35,7 @@ def run(
     engine: Engines = None,
     law: Laws = None,
     ranks: Annotated[int, typer.Option(min=1, max=1024, help="MPI ranks of LIGGGHTS")] = 1,
+    steps: Annotated[int | None, typer.Option(help="replaces the case's steps in contact")] = None,
     out: Out = None,
     fresh: Annotated[bool, typer.Option(help="run again what is already stored")] = False,
     as_json: AsJson = False,
@@ -45,7 +46,7 @@ def run(
 
     status = Console(stderr=True)
     with status.status("") as line:
-        outcome = run_case(case, engines=engine or ["liggghts"], laws=law or [], out=out, ranks=ranks, fresh=fresh,
+        outcome = run_case(case, engines=engine or ["liggghts"], laws=law or [], out=out, ranks=ranks, steps=steps, fresh=fresh,
                            progress=line.update)  # fmt: skip
         line.update("figure")
         report.figure(outcome)

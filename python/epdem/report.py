@@ -93,18 +93,14 @@ def figure(outcome: Outcome) -> Path:
 
     fig, (above, below) = plt.subplots(2, 1, sharex=True, figsize=(7, 6), height_ratios=(3, 1.3), layout="constrained")
     rows = outcome.results.comparison
+    several = len(outcome.predictions) > 1  # colours tell laws apart, or else engines
     for i, (law, prediction) in enumerate(outcome.predictions.items()):
-        above.plot(prediction.speed, prediction.e_n, "-", color=f"C{i}", lw=1.2, label=f"theory, {law}")
-        for (name, part), marker in zip(rows[rows["law"] == law].groupby("engine", sort=False), "ox+^sD", strict=False):
-            style = {
-                "color": f"C{i}",
-                "ls": "none",
-                "marker": marker,
-                "ms": 5,
-                "mfc": "none",
-                "label": f"{name}, {law}",
-            }
-            above.plot(part["speed"], part["e_n"], **style)
+        colour = f"C{i}" if several else "0.3"
+        above.plot(prediction.speed, prediction.e_n, "-", color=colour, lw=1.2, label=f"theory, {law}")
+        engines = rows[rows["law"] == law].groupby("engine", sort=False)
+        for k, ((name, part), marker) in enumerate(zip(engines, "ox+^sD", strict=False)):
+            style = {"color": colour if several else f"C{k}", "ls": "none", "marker": marker, "ms": 5, "mfc": "none"}
+            above.plot(part["speed"], part["e_n"], label=f"{name}, {law}", **style)
             below.plot(part["speed"], part["e_n_error"], **style)
     below.axhline(outcome.case.check.e_n, color="0.6", lw=0.8, ls="--", label="tolerance")
     above.set(ylabel="coefficient of restitution e_n", title=outcome.case.case.title, xscale="log")

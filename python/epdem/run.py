@@ -14,7 +14,7 @@ from pathlib import Path
 import pandas as pd
 
 from . import __version__, paths, store
-from .case import Case, load
+from .case import Case, parse, read_toml
 from .compare import compare, impacts_table
 from .engines import Engine, engine
 from .errors import CaseError, EngineError
@@ -77,12 +77,18 @@ def _stored(path: Path) -> store.Results:
 
 
 def run(case_path: Path | str, *, engines: list[str], laws: list[str], out: Path | None = None, ranks: int = 1,
-        fresh: bool = False, progress: Callable[[str], None] = lambda text: None) -> Outcome:  # fmt: skip
+        steps: int | None = None, fresh: bool = False, progress: Callable[[str], None] = lambda text: None,
+        ) -> Outcome:  # fmt: skip
     """Run a case on every engine with every law (none given: the case's own). Raises CaseError or EngineError.
 
-    All input is checked and every engine looked for before anything is written or started.
+    `steps` replaces the case's steps in contact. All input is checked and every engine looked for before anything is
+    written or started.
     """
-    case = load(case_path)
+    data = read_toml(case_path)
+    if steps is not None:
+        data["numerics"] = data.get("numerics", {}) | {"steps_in_contact": steps}
+        data["numerics"].pop("error", None)
+    case = parse(data, case_path)
     tools = [engine(name) for name in dict.fromkeys(engines)]
     experiments = [experiment(case, law) for law in (list(dict.fromkeys(laws)) or [None])]
     for tool in tools:

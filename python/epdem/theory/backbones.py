@@ -59,7 +59,7 @@ class Backbone:
 
     def overlap_of_work(self, W):
         low = np.zeros_like(W) + 1e-300
-        high = np.full_like(W, 1e3) 
+        high = np.full_like(W, 1e3)
         for _ in range(2000):
             mid = np.sqrt(low * high)
             big = self.work(mid) > W
