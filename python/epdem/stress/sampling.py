@@ -1,0 +1,80 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Impacts of one extreme case in one engine at one time step; what an engine cannot represent is said, not run."""
+
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Protocol
+
+import numpy as np
+
+from ..engines import Engine
+from ..experiment import Experiment
+from ..plan import Plan
+
+EPS = np.finfo(float).eps
+
+
+@dataclass(frozen=True)
+class Sample:
+    """n impacts: rebound over approach speed, largest overlap [m]; NaN where a contact never ended, inf as it came."""
+
+    e_n: np.ndarray
+    overlap_max: np.ndarray
+    steps: int
+
+
+class Sampler(Protocol):
+    """Runs impacts of an experiment with one speed from the gaps [m] (negative: overlap at the start)."""
+
+    name: str
+    most_steps: int  # of one impact: keeps every run within the time limit of a case
+    phases: int
+
+    def __call__(self, x: Experiment, time_step: float, gap: np.ndarray, steps: int) -> Sample: ...
+
+
+class EmbeddedSampler:
+    name, most_steps, phases = "embedded", 20_000_000, 16
+
+    def __call__(self, x: Experiment, time_step: float, gap: np.ndarray, steps: int) -> Sample:
+        out = x.native_law().impacts(R_star=x.R_star, m_star=x.m_star, speed=x.speed[0], time_step=time_step, gap=gap,
+                                     steps=steps)  # fmt: skip
+        ended = (out["steps"] < steps) & (out["last"] >= 0)
+        e_n = np.where(ended, out["rebound_speed"] / x.speed[0], np.nan)
+        return Sample(e_n, out["overlap_max"], int(out["steps"].sum()))
+
+
+class PositionSampler:
+    """An engine whose overlap is a difference of positions."""
+
+    most_steps, phases = 20_000, 8
+
+    def __init__(self, engine: Engine, folder: Path):
+        self.engine, self.folder, self.name = engine, folder, engine.name
+
+    def __call__(self, x: Experiment, time_step: float, gap: np.ndarray, steps: int) -> Sample:
+        plan = Plan(x, time_step, steps, gap.size, np.full(gap.size, x.speed[0]), gap)
+        self.engine.write(plan, self.folder)
+        path = self.engine.run(plan, self.folder)
+        force, velocity = path.force, path.velocity
+        loaded = np.where(np.isfinite(force), force, 0.0) > 0
+        end = path.force.shape[1] - 1 - np.argmax(np.isfinite(force)[:, ::-1], axis=1)
+        row = np.arange(gap.size)
+        ended = loaded.any(axis=1) & ~loaded[row, end]
+        e_n = np.where(ended, -velocity[row, end] / x.speed[0], np.nan)
+        peak = np.nanmax(np.where(loaded, path.overlap, 0.0), axis=1)
+        return Sample(e_n, peak, int(steps * gap.size))
+
+
+def not_representable(x: Experiment, overlap_max: float) -> str | None:
+    """Why a position-based engine cannot hold this contact, or None.
+
+    Overlap is a difference of numbers as large as the larger radius: it is known to eps R. Beyond half the smaller
+    radius the spheres' centres come so near that contact detection and normal lose their sense.
+    """
+    radii = [r for r in (x.body.radius, x.target.radius) if np.isfinite(r)]
+    if overlap_max > min(radii) / 2:
+        return f"alpha_max = {overlap_max:.2g} m exceeds half the smaller radius"
+    if overlap_max < 1e4 * EPS * max(radii):
+        return f"alpha_max = {overlap_max:.2g} m is below 1e4 eps R = {1e4 * EPS * max(radii):.2g} m"
+    return None
