@@ -55,7 +55,8 @@ inline Step<Law> step(const Law& law, real R_star, const State<Law>& before, rea
     return {p.force, p.radius, {delta > before.delta_max ? delta : before.delta_max}};
   } else {
     const real delta_y = law.elastic_overlap(R_star);
-    const bool grows = delta > before.delta_max;
+    // also at equality: evaluating the same step twice then gives the same bits
+    const bool grows = delta >= before.delta_max;
     const real delta_max = grows ? delta : before.delta_max;
     if (delta_max <= delta_y) {
       const Point p = hertz_point(law.E_star, R_star, delta);
