@@ -7,7 +7,8 @@ setup:
 demo: setup
 	.venv/bin/epdem run cases/steel_wall.toml --engine embedded --engine liggghts
 
-test: setup
+test:
+	@scripts/setup yade
 	.venv/bin/python -m pytest -n 2
 
 bench: setup

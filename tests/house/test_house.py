@@ -1,0 +1,78 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""The rules of the house that a machine can hold."""
+
+import ast
+import re
+import subprocess
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[2]
+PYTHON = ROOT / "python" / "epdem"
+SOURCES = [p for pattern in ("python/**/*.py", "tests/**/*.py", "bench/*.py", "docs/*.py", "cpp_contact/**/*.[hc]pp",
+                             "cpp_contact/**/*.h", "templates/**/*.j2") for p in sorted(ROOT.glob(pattern))
+           if "native" not in p.parts]  # fmt: skip
+
+
+def imports(path: Path) -> set[str]:
+    """Modules that a file imports, relative ones written from the package's root."""
+    found, package = set(), path.relative_to(PYTHON.parent).with_suffix("").parts
+    for node in ast.walk(ast.parse(path.read_text())):
+        if isinstance(node, ast.Import):
+            found |= {alias.name for alias in node.names}
+        elif isinstance(node, ast.ImportFrom):
+            base = ".".join(package[: len(package) - node.level]) if node.level else ""
+            module = ".".join(filter(None, (base, node.module)))
+            found |= {module} | {f"{module}.{alias.name}" for alias in node.names}
+    return found
+
+
+@pytest.mark.parametrize("path", SOURCES, ids=lambda p: str(p.relative_to(ROOT)))
+def test_a_file_is_read_in_one_sitting(path):
+    assert len(path.read_text().splitlines()) <= 320, "is a room missing?"
+
+
+@pytest.mark.parametrize("path", sorted((PYTHON / "theory").glob("*.py")), ids=lambda p: p.name)
+def test_theory_needs_numpy_alone_and_never_calls_the_law(path):
+    allowed = ("numpy", "epdem.theory", "dataclasses", "functools", "typing", "collections", "math", "itertools", "inspect")
+    for module in imports(path):
+        assert module.startswith(allowed), module
+
+
+def test_laws_include_no_host():
+    for path in (ROOT / "cpp_contact/include/epdem").glob("*.hpp"):
+        for name in re.findall(r"#include [<\"]([^>\"]+)", path.read_text()):
+            assert "/" not in name or name.startswith("epdem/"), f"{path.name} includes {name}"
+            assert name.endswith(".hpp") or name in {"algorithm", "cmath", "cstdint", "limits", "type_traits"}, name
+
+
+def test_adapters_leave_powers_and_roots_to_the_laws():
+    """A formula in an adapter is a second copy of the physics."""
+    for path in [*(ROOT / "cpp_contact/liggghts").glob("*.[hc]pp"), *(ROOT / "cpp_contact/capi").glob("*.cpp")]:
+        for call in re.findall(r"\b(?:std::)?(sqrt|pow|exp|log|cbrt)\s*\(", path.read_text()):
+            assert call is None, f"{path.name} calls {call}()"
+
+
+def test_every_source_states_its_licence():
+    for path in SOURCES:
+        if path.suffix in (".py", ".hpp", ".cpp", ".h"):
+            assert "SPDX-License-Identifier: GPL-2.0-or-later" in path.read_text()[:200], path
+
+
+def test_lint_is_clean():
+    done = subprocess.run(["ruff", "check", "--output-format", "concise", "python", "tests", "bench", "docs"], cwd=ROOT,
+                          capture_output=True, text=True, env={"PATH": f"{ROOT}/.venv/bin:/usr/bin:/bin"})  # fmt: skip
+    assert done.returncode == 0, done.stdout
+
+
+def test_links_between_documents_lead_somewhere():
+    for page in [*ROOT.glob("*.md"), *ROOT.glob("docs/*.md")]:
+        for target in re.findall(r"\]\(([^)#:]+)(?:#[^)]*)?\)", page.read_text()):
+            assert (page.parent / target).exists(), f"{page.name} -> {target}"
+
+
+def test_nothing_is_left_unfinished():
+    words = re.compile(r"\b(TO" + r"DO|FIX" + r"ME|X" + r"XX|NotImplemented" + r"Error)\b")
+    for path in SOURCES:
+        assert not words.search(path.read_text()), path
