@@ -12,22 +12,12 @@ from typing import Annotated
 import typer
 from rich.console import Console
 
+from . import cli_crosscheck, cli_numerics
+from .cli_options import AsJson, CasePath, Engines, Laws, Out, console
 from .errors import EpdemError
 
 app = typer.Typer(add_completion=False, no_args_is_help=True, pretty_exceptions_enable=False, help=__doc__,
                   context_settings={"help_option_names": ["-h", "--help"]})  # fmt: skip
-
-CasePath = Annotated[Path, typer.Argument(metavar="CASE", help="case file (TOML)")]
-Engines = Annotated[list[str] | None, typer.Option("--engine", "-e", help="embedded, liggghts, yade; repeat for more")]
-Laws = Annotated[list[str] | None, typer.Option("--law", "-l", help="replaces the case's law; repeat for more")]
-Out = Annotated[Path | None, typer.Option("--out", "-o", help="folder for the results")]
-AsJson = Annotated[bool, typer.Option("--json", help="print one JSON document and nothing else")]
-
-
-def _console() -> Console:
-    console = Console()
-    return console if console.is_terminal else Console(width=140)
-
 
 @app.command()
 def run(
@@ -53,7 +43,7 @@ def run(
     if as_json:
         print(report.run_json(outcome))
     else:
-        report.show(outcome, _console())
+        report.show(outcome, console())
     raise typer.Exit(0 if outcome.passed else 1)
 
 
@@ -84,7 +74,7 @@ def predict(case: CasePath, law: Laws = None, as_json: AsJson = False) -> None:
     from .predict import predict as predict_experiment
 
     experiments = [experiment(load(case), name) for name in (law or [None])]
-    show.predictions([(x, predict_experiment(x)) for x in experiments], as_json, _console())
+    show.predictions([(x, predict_experiment(x)) for x in experiments], as_json, console())
 
 
 @app.command()
@@ -94,8 +84,12 @@ def doctor(as_json: AsJson = False) -> None:
     from .doctor import examine
 
     findings = examine()
-    show.findings(findings, as_json, _console())
+    show.findings(findings, as_json, console())
     raise typer.Exit(0 if all(f.ok for f in findings if f.needed) else 3)
+
+
+for command in (cli_crosscheck.crosscheck, cli_numerics.timestep):
+    app.command()(command)
 
 
 def main() -> None:

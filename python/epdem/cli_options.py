@@ -1,0 +1,20 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Options that several commands share, and the console they print on."""
+
+from pathlib import Path
+from typing import Annotated
+
+import typer
+from rich.console import Console
+
+CasePath = Annotated[Path, typer.Argument(metavar="CASE", help="case file (TOML)")]
+Engines = Annotated[list[str] | None, typer.Option("--engine", "-e", help="embedded, liggghts, yade; repeat for more")]
+Laws = Annotated[list[str] | None, typer.Option("--law", "-l", help="replaces the case's law; repeat for more")]
+Out = Annotated[Path | None, typer.Option("--out", "-o", help="folder for the results")]
+AsJson = Annotated[bool, typer.Option("--json", help="print one JSON document and nothing else")]
+
+
+def console() -> Console:
+    """As wide as the terminal, or wide enough for our tables in a pipe."""
+    found = Console()
+    return found if found.is_terminal else Console(width=170)
