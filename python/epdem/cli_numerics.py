@@ -48,3 +48,43 @@ def timestep(
               f"(largest {f.error:.2g}, rms {f.rms:.2g}; {f.steps_in_contact:.0f} steps in the shortest contact)\n"
               f"  {share['stability']:.2%} of the stability limit, {share['rayleigh']:.2%} of the Rayleigh time, "
               f"{share['hertz']:.2%} of the elastic contact time")  # fmt: skip
+
+
+def stress(
+    engine: Engines = None,
+    law: Laws = None,
+    group: Annotated[list[str] | None, typer.Option("--group", "-g", help="only these groups of cases")] = None,
+    every: Annotated[int, typer.Option(min=1, help="only every n-th case")] = 1,
+    steps: Annotated[int, typer.Option(min=1000, help="steps of the drift by repeated bounces")] = 10**9,
+    out: Annotated[Path | None, typer.Option("--out", "-o", help="CSV file of all verdicts")] = None,
+    docs: Annotated[Path | None, typer.Option("--docs", help="write the page of the documentation there")] = None,
+    as_json: AsJson = False,
+) -> None:
+    """Stability on stiff and extreme cases, and where dt breaks each (default engine: embedded)."""
+    import sys
+
+    from . import stress as suite
+    from .report import records
+    from .show import _table
+    from .store import atomic
+    from .stress.document import document
+    from .stress.suite import summary
+
+    with Console(stderr=True).status("") as line:
+        outcome = suite.run(engine or ["embedded"], law or [], groups=group, every=every, steps=steps,
+                            progress=line.update)  # fmt: skip
+    if out:
+        with atomic(out) as temporary:
+            outcome.verdicts.to_csv(temporary, index=False)
+    if docs:
+        with atomic(docs) as temporary:
+            temporary.write_text(document(outcome, "epdem " + " ".join(sys.argv[1:])))
+    if as_json:
+        print(json.dumps({"passed": outcome.passed, "rows": records(outcome.verdicts),
+                          "roundoff": records(outcome.roundoff)}, indent=1))  # fmt: skip
+    else:
+        console = _console()
+        console.print(_table("extreme cases; steps as shares of the stability limit", summary(outcome.verdicts)))
+        for v in outcome.verdicts[outcome.verdicts["status"] == "failed"].itertuples():
+            console.print(f"failed: {v.engine}, {v.law}, {v.case}: {v.reason}", style="red", highlight=False)
+    raise typer.Exit(0 if outcome.passed else 1)

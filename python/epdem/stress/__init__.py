@@ -2,5 +2,6 @@
 """Stability on stiff and extreme cases: a fixed set by rule, every engine and law, and where each breaks."""
 
 from .cases import Extreme, extremes
+from .suite import Outcome, run
 
-__all__ = ["Extreme", "extremes"]
+__all__ = ["Extreme", "Outcome", "extremes", "run"]

@@ -16,11 +16,15 @@ EPS = np.finfo(float).eps
 
 @dataclass(frozen=True)
 class Sample:
-    """n impacts: rebound over approach speed, largest overlap [m]; NaN where a contact never ended, inf as it came."""
+    """n impacts: rebound over approach speed, NaN where a contact never ended; largest overlap [m].
+
+    `finite`: no force, overlap or velocity was anything but a number.
+    """
 
     e_n: np.ndarray
     overlap_max: np.ndarray
     steps: int
+    finite: bool
 
 
 class Sampler(Protocol):
@@ -41,7 +45,8 @@ class EmbeddedSampler:
                                      steps=steps)  # fmt: skip
         ended = (out["steps"] < steps) & (out["last"] >= 0)
         e_n = np.where(ended, out["rebound_speed"] / x.speed[0], np.nan)
-        return Sample(e_n, out["overlap_max"], int(out["steps"].sum()))
+        finite = all(np.isfinite(out[n]).all() for n in ("rebound_speed", "force_max", "overlap_max"))
+        return Sample(e_n, out["overlap_max"], int(out["steps"].sum()), finite)
 
 
 class PositionSampler:
@@ -63,7 +68,9 @@ class PositionSampler:
         ended = loaded.any(axis=1) & ~loaded[row, end]
         e_n = np.where(ended, -velocity[row, end] / x.speed[0], np.nan)
         peak = np.nanmax(np.where(loaded, path.overlap, 0.0), axis=1)
-        return Sample(e_n, peak, int(steps * gap.size))
+        # an engine with positions samples every step to the end: a NaN is a fault, not the end of an impact
+        finite = all(np.isfinite(a).all() for a in (force, velocity, path.overlap))
+        return Sample(e_n, peak, int(steps * gap.size), finite)
 
 
 def not_representable(x: Experiment, overlap_max: float) -> str | None:
