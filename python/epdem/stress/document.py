@@ -63,8 +63,9 @@ step up to 1.5 times the limit is a failure; every case is bounded in its number
 ## Where it breaks
 
 `useless at / breaks at`: the smallest share of the stability limit, of those tried ({tried};
-engines with positions: {fewer}), at which e_n is off by more than {wrong:.0%}, and at which more than
-{broken:.0%} of the energy is created or the contact does not end. A dash: not up to 1.5 times the limit. `large`: a_max/R* > 0.3, outside small-deformation theory; the case runs and is flagged.
+engines with positions: {fewer}), at which e_n is off by more than {wrong:.0%}, and at which more than {broken:.0%} of
+the energy is created or the contact does not end. A dash: not up to 1.5 times the limit. `large`: a_max/R* > 0.3,
+outside small-deformation theory; the case runs and is flagged.
 `n.r.`: not representable (below). `n.a.`: embedded engine only.
 
 **In practice:** {practice}
@@ -74,7 +75,7 @@ engines with positions: {fewer}), at which e_n is off by more than {wrong:.0%}, 
 ## Round-off and what positions cannot represent
 
 An engine knows an overlap as a difference of positions. Each step rounds a position to eps R, a displacement that no
-velocity knows of; over N steps in contact that leaves, as the largest of ten phases,
+velocity knows of; over N steps in contact that leaves, as the largest of ten phases (delta_e: elastic recovery),
 
     error of e_n = {formula}
 

@@ -8,17 +8,18 @@ from .cases import Extreme, build
 from .running import Setting, setting
 from .sampling import EPS, Sampler
 
-FORMULA = "0.5 sqrt(N) eps R/alpha_max"
+FORMULA = "0.5 sqrt(N) eps R/delta_e"
 
 
-def position_floor(*, radius: float, overlap_max: float, steps: float) -> float:
+def position_floor(*, radius: float, recovered: float, steps: float) -> float:
     """Relative error of e_n left by overlaps that are differences of positions as large as `radius` [m].
 
-    Every step rounds a position to ulp(R) <= eps R, which is a displacement that no velocity knows of, and does the
-    work F r on the side. N independent r, uniform in +-ulp/2, under a Hertz force add up to a standard deviation of
-    0.24 sqrt(N) ulp/alpha_max of e_n; 0.5 eps is twice that: the largest of some ten phases.
+    Every step rounds a position to ulp(R) <= eps R, a displacement that no velocity knows of, and does the work F r on
+    the side. N independent r, uniform in +-ulp/2, leave sqrt(N/12) ulp F_rms, over twice the energy of the rebound,
+    2/5 F_max delta_e: for a Hertz force (F_rms = 0.66 F_max) 0.24 sqrt(N) ulp/delta_e as a standard deviation, and
+    twice that as the largest of some ten phases. `recovered` is the elastic recovery delta_e [m], alpha_max below yield.
     """
-    return 0.5 * np.sqrt(steps) * EPS * radius / overlap_max
+    return 0.5 * np.sqrt(steps) * EPS * radius / recovered
 
 
 def with_positions(s: Setting, time_step: float, gap: np.ndarray, steps: int) -> np.ndarray:
@@ -44,7 +45,7 @@ def in_long_double(s: Setting, time_step: float, gap: np.ndarray, steps: int) ->
 
 
 def floors(law: str, samplers: list[Sampler], *, times=(1e-4, 1e-2, 3.0, 1e2), share: float = 0.01) -> pd.DataFrame:
-    """One row per speed: eps R/alpha_max, steps, and the largest deviation of e_n from long double over 8 phases.
+    """One row per speed: overlap_max, recovered overlap [m], steps, and the largest deviation of e_n from long double over 8 phases.
 
     Columns: `double` (embedded), `positions` (this module's own), each engine's, and `formula`.
     """
@@ -59,9 +60,9 @@ def floors(law: str, samplers: list[Sampler], *, times=(1e-4, 1e-2, 3.0, 1e2), s
                                           gap=gap, steps=steps)["rebound_speed"] / s.x.speed[0]  # fmt: skip
         found = {"double": double, "positions": with_positions(s, dt, gap, steps)}
         found |= {sampler.name: sampler(s.x, dt, gap, steps).e_n for sampler in samplers}
-        row = {"law": law, "times_yield": t, "overlap_max": s.overlap_max, "steps": s.contact_time / dt,
-               "unit": EPS * s.x.R_star / s.overlap_max}  # fmt: skip
+        row = {"law": law, "times_yield": t, "overlap_max": s.overlap_max, "recovered": s.recovered,
+               "steps": s.contact_time / dt}  # fmt: skip
         row |= {name: float(np.abs(e / exact - 1).max()) for name, e in found.items()}
-        row["formula"] = position_floor(radius=s.x.R_star, overlap_max=s.overlap_max, steps=row["steps"])
+        row["formula"] = position_floor(radius=s.x.R_star, recovered=s.recovered, steps=row["steps"])
         rows.append(row)
     return pd.DataFrame(rows)

@@ -57,6 +57,7 @@ class Setting:
     start: float | None  # overlap at t = 0, None: apart
     energy: float  # kinetic and stored at t = 0
     overlap_max: float
+    recovered: float  # elastic recovery delta_e
     e_n: float
     limit: float
     contact_time: float
@@ -73,9 +74,11 @@ def setting(extreme: Extreme, law: str) -> Setting:
     if start:
         top = float(theory.overlap_of_work(np.array([energy]))[0])
     peak = np.array([top])
-    out = energy if top <= theory.yield_overlap else float(theory.recovered_work(peak)[0])
+    elastic = top <= theory.yield_overlap
+    out = energy if elastic else float(theory.recovered_work(peak)[0])
+    recovered = top if elastic else float(theory.recovered_overlap(peak)[0])
     return Setting(
-        x, start, energy, top, float(np.sqrt(out / kinetic)), float(stability_limit(x, top)),
+        x, start, energy, top, recovered, float(np.sqrt(out / kinetic)), float(stability_limit(x, top)),
         float(prediction.contact_time[0]), float(theory.radius(peak)[0] / x.R_star),
     )  # fmt: skip
 
@@ -130,7 +133,7 @@ def floor(s: Setting, sampler: Sampler, share: float) -> float:
     if sampler.name == "embedded":
         return own
     radius = max(r for r in (s.x.body.radius, s.x.target.radius) if np.isfinite(r))
-    return own + 0.5 * np.sqrt(steps) * EPS * radius / s.overlap_max  # derived in roundoff.position_floor
+    return own + 0.5 * np.sqrt(steps) * EPS * radius / s.recovered  # derived in roundoff.position_floor
 
 
 def slope(shares: list[float], errors: list[float], noise: float) -> float:
