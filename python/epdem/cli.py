@@ -19,6 +19,7 @@ from .errors import EpdemError
 app = typer.Typer(add_completion=False, no_args_is_help=True, pretty_exceptions_enable=False, help=__doc__,
                   context_settings={"help_option_names": ["-h", "--help"]})  # fmt: skip
 
+
 @app.command()
 def run(
     case: CasePath,

@@ -77,7 +77,9 @@ class _Scene:
                 numbers = (2 * body.radius, body.density, *xyz)
                 rows.append(f"{k} {kind} " + " ".join(map(decks.number, numbers)))
                 speeds.append(f"{k} " + " ".join(map(decks.number, vxyz)) + " 0 0 0")
-        box = [f"{decks.number(lo)} {decks.number(hi)} {a}lo {a}hi" for a, (lo, hi) in zip("xyz", self.box, strict=True)]
+        box = [
+            f"{decks.number(lo)} {decks.number(hi)} {a}lo {a}hi" for a, (lo, hi) in zip("xyz", self.box, strict=True)
+        ]
         types = len(self.deck.types)
         head = ["pairs: id type diameter density x y z", "", f"{k} atoms", f"{types} atom types", *box, ""]
         return "\n".join([*head, "Atoms", "", *rows, "", "Velocities", "", *speeds, ""])
