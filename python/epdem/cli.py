@@ -37,8 +37,8 @@ def run(
 
     status = Console(stderr=True)
     with status.status("") as line:
-        outcome = run_case(case, engines=engine or ["liggghts"], laws=law or [], out=out, ranks=ranks, steps=steps, fresh=fresh,
-                           progress=line.update)  # fmt: skip
+        outcome = run_case(case, engines=engine or ["liggghts"], laws=law or [], out=out, ranks=ranks, steps=steps,
+                           fresh=fresh, progress=line.update)  # fmt: skip
         line.update("figure")
         report.figure(outcome)
     if as_json:

@@ -59,11 +59,12 @@ class _Scene:
         self.drift = 0.05 * reach / (self.middle * p.time_step) * np.array([1.0, 0.0, 1.0])
         y = 5.2 * reach * np.arange(n)[:, None] * np.array([0.0, 1.0, 0.0])
         share = x.m_star / x.body.mass
+        rest = 1 - share
         start = y - self.drift * self.middle * p.time_step
         gap, v = p.gap[:, None], p.speed[:, None]
         self.bodies = [
             (1, x.body, start + AXIS * (x.body.radius + share * gap), -share * v * AXIS),
-            (len(self.deck.types), x.target, start - AXIS * (x.target.radius + (1 - share) * gap), (1 - share) * v * AXIS),
+            (len(self.deck.types), x.target, start - AXIS * (x.target.radius + rest * gap), rest * v * AXIS),
         ]  # fmt: skip
         travel = p.steps * p.time_step * (p.speed.max() + self.drift[0]) + 4 * reach
         self.box = [(-travel, travel), (-travel, float(y.max()) + travel), (-travel, travel)]
