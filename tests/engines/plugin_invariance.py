@@ -1,0 +1,161 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""The same impacts told to LIGGGHTS in other ways: which contact model gives the same answer?
+
+One scene: 12 oblique impacts of unequal spheres and 12 of spheres on a wall, all drifting across x = CENTRE while they
+touch. Each way of telling it (swapped ids, sorted atoms, two ranks, a periodic face, ...) must not change the outcome.
+`bench/liggghts_invariance.py` writes the table of all models; the tests assert it for the models of epdem.
+"""
+
+from dataclasses import replace
+
+import numpy as np
+from plugin_decks import DUMP, P_Y, Bodies, Y, contact, good, head, materials, plate
+
+CENTRE = 0.09375  # 1.5/16 m: on both sides of a face the coordinates have the same spacing of doubles
+BOX = ((-CENTRE, 3 * CENTRE), (-0.02, 0.12), (-0.01, 0.14))
+PERIODIC = ((-CENTRE, CENTRE), *BOX[1:])
+DRIFT, DT, STEPS, MIDDLE, N = 20.0, 2e-8, 2000, 450, 12
+EVERY_STEP = "neigh_modify every 1 delay 0 check no\n"
+SELDOM = "neigh_modify every 1 delay 0 check yes\n"
+
+
+def scene():
+    """2 N spheres in pairs and N above the wall; contacts begin within 100 steps and last 300 to 1500."""
+    rng = np.random.default_rng(7)
+    kinds = rng.integers(1, 4, 2 * N)
+    radius = rng.uniform(1e-3, 2e-3, 2 * N)
+    x, v = np.empty((3 * N, 3)), np.empty((3 * N, 3))
+    crossing = CENTRE - DRIFT * DT * MIDDLE
+    for k in range(N):
+        n = np.array([rng.uniform(-0.03, 0.03), 1.0, rng.uniform(-0.2, 0.2)])
+        n /= np.linalg.norm(n)
+        a, b = 2 * k, 2 * k + 1
+        speed = rng.uniform(5, 15)
+        distance = radius[a] + radius[b] + rng.uniform(0, 100) * speed * DT
+        contact_point = np.array([crossing, 0.0, 0.02 + 0.009 * k])
+        x[a], x[b] = contact_point - radius[a] * n, contact_point + (distance - radius[a]) * n
+        v[a], v[b] = 0.5 * speed * n, -0.5 * speed * n
+    wall_radius = rng.uniform(1e-3, 2e-3, N)
+    for k in range(N):
+        speed = rng.uniform(5, 15)
+        offset = rng.uniform(-1e-4, 1e-4)
+        x[2 * N + k] = (crossing + offset, 0.025 + 0.005 * k, wall_radius[k] + rng.uniform(0, 100) * speed * DT)
+        v[2 * N + k] = (0.0, 0.0, -speed)
+    v += rng.uniform(-2, 2, v.shape) * np.array([1, 0.3, 0.3])
+    v[:, 0] += DRIFT
+    types = np.concatenate([kinds, rng.integers(1, 4, N)])
+    return Bodies(types, np.concatenate([radius, wall_radius]), x, v, rng.uniform(-2e3, 2e3, v.shape))
+
+
+def deck(model, *, box="box.data", before="", neigh=SELDOM, wall="primitive", body=None, restart=None, style=True, **top):
+    """The scene's deck; `restart` continues from a file instead of reading the data, `style` = False trusts its models."""
+    atoms = f"read_restart {restart}\n" if restart else f"read_data {box}\n"
+    words = contact(model, wall=wall)
+    if not style:
+        words = "\n".join(line for line in words.splitlines() if not line.startswith("pair_")) + "\n"
+    return (
+        head(**top) + atoms + "neighbor 5e-4 bin\nneigh_modify binsize 0.02\n" + neigh + materials(model) + words
+        + f"timestep {DT!r}\nfix move all nve/sphere\nthermo_modify lost error norm no\n"
+        + before + (body or f"run {STEPS}\n") + DUMP.format(every=1) + "run 0\n"
+    )
+
+
+class Suite:
+    """All ways to tell the scene with one model, each a run; `deviations()` compares them with the plain one."""
+
+    def __init__(self, model, folder):
+        self.model, self.folder, self.bodies = model, folder, scene()
+        self.plain = self.outcome("plain", deck(model))
+
+    def outcome(self, name, text, *, bodies=None, box=BOX, ranks=1, files=None):
+        """Velocity and spin of every body after the run, in the order of the scene."""
+        bodies = bodies or self.bodies
+        files = {"box.data": bodies.data(box), "plate.stl": plate(x=(0.05, 0.14), y=(-0.01, 0.11)), **(files or {})}
+        frames = good(self.folder / name, text, ranks=ranks, files=files).last
+        assert len(frames) == len(bodies.radius), f"{name}: LIGGGHTS lost particles"
+        return frames[bodies.ids - 1, 4:]
+
+    def momentum(self, outcome):
+        """Change of each pair's momentum over the impact, relative to the momentum that the bodies exchanged."""
+        change = (self.bodies.mass[:, None] * (outcome[:, :3] - self.bodies.v))[: 2 * N].reshape(N, 2, 3)
+        return (np.abs(change.sum(axis=1)).max(axis=1) / np.abs(change).max(axis=(1, 2))).max()
+
+    def second_impact(self, *, fast):
+        """Deviation of three impacts in one neighbour list from those with a new list every step.
+
+        Spheres fall on fixed ones and gravity brings them back before the list is due. `fast`: soft bodies that part
+        by more than a thousandth of their size in one step, so that no contact distance factor sees them part.
+        """
+        rng = np.random.default_rng(11)
+        radius = rng.uniform(1e-3, 1.5e-3, 2 * N)
+        x = np.array([[0.01 * (k // 2), 0.0, 0.05] for k in range(2 * N)])
+        x[1::2, 2] += radius[0::2] + radius[1::2] + 1e-5
+        v = np.zeros_like(x)
+        v[1::2] = rng.uniform(-1, 1, (N, 3)) * [0.3, 0.3, 0] + [0, 0, -1.0]
+        gravity, dt, skin, steps = (1e3, 1e-5, 4e-3, 1200) if fast else (2e3, 5e-8, 1e-3, 80000)
+        types = np.full(2 * N, 3)
+        types[0::2] = np.arange(N) % 2 + 1
+        bodies, box = Bodies(types, radius, x, v), ((-0.02, 0.14), (-0.02, 0.02), (0.0, 0.1))
+        properties = materials(self.model)
+        for hard, soft in (("70000000000.0 208000000000.0 5000000000.0", "7e7 2e8 5e6"), (" ".join(map(repr, P_Y.tolist())), "1e6 1e6 2e4"),
+                           (" ".join(map(repr, Y.tolist())), "4e5 4e5 8e3")):
+            if fast:
+                properties = properties.replace(hard, soft)
+        text = (head() + f"read_data box.data\nneighbor {skin!r} bin\nneigh_modify binsize 0.02\n{{neigh}}" + properties
+                + contact(self.model) + f"timestep {dt!r}\nthermo_modify lost error norm no\n"
+                + "group up id " + " ".join(map(str, bodies.ids[1::2])) + "\nfix move up nve/sphere\n"
+                + f"fix g up gravity {gravity!r} vector 0 0 -1\nrun {steps}\n" + DUMP.format(every=1) + "run 0\n")
+        never = "neigh_modify delay 1000000 check no\n"
+        kind = "fast" if fast else "slow"
+        one, other = (self.outcome(f"second-{kind}-{k}", text.format(neigh=n), bodies=bodies, box=box)
+                      for k, n in enumerate((never, EVERY_STEP)))
+        return np.abs(one - other)[:, :3].max()
+
+    def ways(self):
+        """name -> outcome; the names are the rows of the table in the documentation."""
+        m, b = self.model, self.bodies
+        swapped = replace(b, ids=b.ids[::-1].copy())
+        local = ("compute c all pair/gran/local id force_normal history delta\n"
+                 "dump l all local 10 local.txt c_c[1] c_c[4]\n")
+        return {
+            "swap of i and j": lambda: self.outcome("swap", deck(m), bodies=swapped),
+            "neighbour list built every step": lambda: self.outcome("every", deck(m, neigh=EVERY_STEP)),
+            "atoms sorted while touching": lambda: self.outcome("sort", deck(m, neigh=EVERY_STEP, sort="1 0.0125")),
+            "migration between 2 ranks": lambda: self.outcome(
+                "ranks", deck(m, neigh=EVERY_STEP, ranks=(2, 1, 1)), ranks=2),
+            "periodic face": lambda: self.outcome(
+                "periodic", deck(m, neigh=EVERY_STEP, boundary="p f f"), box=PERIODIC),
+            "run split in two": lambda: self.outcome("split", deck(m, body=f"run {MIDDLE}\nrun {STEPS - MIDDLE}\n")),
+            "reset_timestep while touching": lambda: self.outcome(
+                "reset", deck(m, body=f"run {MIDDLE}\nreset_timestep 7\nrun {STEPS - MIDDLE}\n")),
+            "local computes every 10 steps": lambda: self.outcome("local", deck(m, before=local)),
+            "restart while touching": lambda: self.restart(),
+            "restart, models from the file": lambda: self.restart(style=False),
+            "restart from 1 rank to 2": lambda: self.restart(ranks=2),
+            "wall as a mesh": lambda: self.outcome("mesh", deck(m, wall="mesh")),
+            "mesh wall, restart while touching": lambda: self.restart(wall="mesh"),
+            "mesh wall, 2 ranks": lambda: self.outcome(
+                "mesh2", deck(m, wall="mesh", neigh=EVERY_STEP, ranks=(2, 1, 1)), ranks=2),
+        }
+
+    def restart(self, *, ranks=1, style=True, wall="primitive"):
+        name = f"restart-{ranks}-{style}-{wall}"
+        stop = deck(self.model, wall=wall, body=f"run {MIDDLE}\nwrite_restart ../{name}.restart\n")
+        self.outcome(f"{name}-first", stop)
+        go_on = deck(self.model, wall=wall, restart=f"../{name}.restart", style=style, body=f"run {STEPS - MIDDLE}\n",
+                     ranks=(ranks, 1, 1))
+        return self.outcome(name, go_on, ranks=ranks)
+
+    def deviations(self):
+        """name -> largest deviation of (pairs, wall impacts), relative to the largest velocity or spin."""
+        scale = np.repeat([np.abs(self.plain[:, :3]).max(), np.abs(self.plain[:, 3:]).max()], 3)
+        rows = {"momentum of a pair": (self.momentum(self.plain), None)}
+        for name, way in self.ways().items():
+            outcome = way()
+            off = np.abs(outcome - self.plain) / scale
+            rows[name] = (off[: 2 * N].max(), off[2 * N :].max())
+            if name == "migration between 2 ranks":
+                rows["momentum of a pair on 2 ranks"] = (self.momentum(outcome), None)
+        rows["second impact in one list"] = (self.second_impact(fast=False), None)
+        rows["second impact, fast parting"] = (self.second_impact(fast=True), None)
+        return rows
