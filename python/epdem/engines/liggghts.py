@@ -42,6 +42,7 @@ class Deck:
     title: str
     source: str
     summary: str
+    remembers: bool  # the law has a contact history
     hard: bool
     soft: bool
     data: str
@@ -129,7 +130,7 @@ class Liggghts:
         return Deck(
             title=x.case.case.title, source=x.case.case.source,
             summary=f"{x.speed.size} speeds x {plan.phases} phases = {plan.n} independent impacts, law {x.law.name}",
-            hard=max(moduli) > HARD, soft=min(moduli) < SOFT, data="impact.data",
+            remembers=x.law.strength_property is not None, hard=max(moduli) > HARD, soft=min(moduli) < SOFT, data="impact.data",
             skin=0.2 * min(x.body.radius, x.target.radius), types=tuple(b.material for b, _ in types),
             properties=self.properties(plan), model=self.model(plan), tangential="off",
             wall_type=len(types) if math.isinf(x.target.radius) else None,

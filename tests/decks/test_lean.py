@@ -1,0 +1,62 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Nothing stands in an impact deck that its case does not need: each line is removed in turn.
+
+The removal must break the run or change a result, but for comments, the output that was asked for, and guards, which
+carry their reason in the deck.
+"""
+
+import shutil
+import subprocess
+from pathlib import Path
+
+import pytest
+
+from epdem import paths
+from epdem.case import Numerics, parse, read_toml
+from epdem.engines import engine
+from epdem.experiment import experiment
+from epdem.plan import plan
+from epdem.predict import predict
+
+pytestmark = pytest.mark.liggghts
+CASES = Path(__file__).parents[2] / "cases"
+IMPACTS = [p for p in sorted(CASES.glob("*.toml")) if "impact" in read_toml(p)]
+
+
+def small(path: Path, law: str | None):
+    """Two speeds in one phase at 40 steps: enough to see any line work."""
+    data = read_toml(path)
+    speeds = parse(data, path).impact.speed_values()
+    data["impact"]["speeds"] = [f"{speeds[0]} m/s", f"{speeds[-1]} m/s"]
+    case = parse(data, path).model_copy(update={"numerics": Numerics(steps_in_contact=40, phases=1)})
+    x = experiment(case, law)
+    return plan(x, predict(x))
+
+
+def result(folder: Path) -> bytes | None:
+    """The dump that a deck leaves, or None if LIGGGHTS refused it."""
+    dump = folder / "path.bin"
+    dump.unlink(missing_ok=True)
+    command = [str(paths.launcher()), "-in", "in.impact", "-log", "none"]
+    done = subprocess.run(command, cwd=folder, stdin=subprocess.DEVNULL, capture_output=True, timeout=60)
+    return dump.read_bytes() if done.returncode == 0 and dump.exists() else None
+
+
+@pytest.mark.parametrize("law", [None, "hertz"])
+@pytest.mark.parametrize("path", IMPACTS, ids=lambda p: p.stem)
+def test_every_line_of_the_deck_is_needed(path, law, tmp_path):
+    p = small(path, law)
+    engine("liggghts").write(p, tmp_path / "whole")
+    whole, lines = result(tmp_path / "whole"), (tmp_path / "whole/in.impact").read_text().splitlines()
+    assert whole is not None and result(tmp_path / "whole") == whole  # the engine repeats itself to the last bit
+    needless = []
+    for k, line in enumerate(lines):
+        if not line.strip() or line.startswith("#") or "# guard: " in line:
+            continue
+        without = tmp_path / "without"
+        shutil.rmtree(without, ignore_errors=True)
+        shutil.copytree(tmp_path / "whole", without)
+        (without / "in.impact").write_text("\n".join([*lines[:k], *lines[k + 1 :], ""]))
+        if result(without) == whole:
+            needless.append(line)
+    assert not needless
