@@ -1,0 +1,43 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""What must hold for a scene by routes that do not go through the contact law."""
+
+import numpy as np
+import pandas as pd
+
+from .case import SceneCase
+from .deck import Deck
+
+
+def _row(name: str, value: float, expected: float, tolerance: float) -> dict:
+    error = abs(value / expected - 1.0) if expected else abs(value)
+    return {"check": name, "value": value, "expected": expected, "error": error, "tolerance": tolerance,
+            "passed": bool(error <= tolerance)}  # fmt: skip
+
+
+def _kept(case: SceneCase, d: Deck, tables: dict[str, pd.DataFrame]) -> list[dict]:
+    if d.loses:
+        return []
+    return [_row("spheres in the room at the end", float(tables["rows"]["particles"].iloc[-1]), float(case.scene.count), 0.0)]
+
+
+def floor_load(case: SceneCase, tables: dict[str, pd.DataFrame]) -> tuple[float, float]:
+    """(mean floor load over the last fifth of the run, weight of the spheres) [N]."""
+    rows, last = tables["rows"], tables["particles"]
+    mass = last[last["step"] == last["step"].max()]["mass"].sum()
+    tail = rows[rows["step"] > 0.8 * rows["step"].max()]
+    return float(tail["floor_load"].mean()), float(mass * case.scene.gravity)
+
+
+def checks(case: SceneCase, d: Deck, tables: dict[str, pd.DataFrame]) -> pd.DataFrame:
+    """One row per check: value, expected, relative error, tolerance, passed."""
+    found = _kept(case, d, tables)
+    smooth = case.contact.wall_friction == 0.0 or (case.contact.friction == 0.0 and case.contact.wall_friction is None)
+    if case.scene.kind == "settle" and "floor_load" in tables["rows"] and "particles" in tables and smooth:
+        load, weight = floor_load(case, tables)
+        found.append(_row("floor load / weight (smooth walls: hydrostatic)", load, weight, 0.02))
+    return pd.DataFrame(found, columns=["check", "value", "expected", "error", "tolerance", "passed"])
+
+
+def fraction(volume: float, spheres: pd.DataFrame) -> float:
+    """Volume share of spheres in `volume` [m^3]."""
+    return float(4.0 / 3.0 * np.pi * (spheres["radius"] ** 3).sum() / volume)

@@ -1,0 +1,238 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Everything that the templates of a scene write; every number is decided here."""
+
+import itertools
+import math
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+
+from .. import deck as decks
+from ..engines.liggghts import HARD, SOFT, Property
+from ..errors import CaseError
+from . import meshes
+from .case import SceneCase
+from .model import Model, model, time_step
+
+SMALL = 1e-12  # volume [m^3] below which LIGGGHTS refuses a template unless told
+MOST_FILLED = 0.34  # volume share that random insertion of equal spheres reaches without long searches
+SKIN = 0.25  # of the smallest radius: rebuilds cost less than idle neighbours
+
+
+@dataclass(frozen=True)
+class Template:
+    """A particle template; `small`: LIGGGHTS wants to be told that its volume is meant."""
+
+    id: str
+    seed: int
+    type: int
+    density: float
+    radius: float
+    share: float
+    small: bool
+
+
+@dataclass(frozen=True)
+class Insertion:
+    """One `fix insert`: a distribution of templates, filled into a region at once or as a stream."""
+
+    id: str
+    seed: int
+    distribution: str
+    distribution_seed: int
+    templates: tuple[Template, ...]
+    region: str
+    count: int
+    rate: float | None = None
+    every: int | None = None
+    velocity: float = 0.0
+    phase: str = ""
+
+
+@dataclass(frozen=True)
+class Phase:
+    """A part of the run up to step `end`; the template knows by its name what changes at its begin and end."""
+
+    name: str
+    end: int
+
+
+@dataclass(frozen=True)
+class Deck:
+    """What the templates read."""
+
+    title: str
+    source: str
+    summary: str
+    kind: str
+    hard: bool
+    soft: bool
+    boundary: str
+    box: tuple[float, ...]
+    n_types: int
+    skin: float
+    types: tuple[str, ...]
+    properties: tuple[Property, ...]
+    model: str
+    tangential: str
+    cohesion: str | None
+    rolling_friction: str | None
+    settings: tuple[str, ...]
+    wall_type: int
+    planes: tuple[tuple[str, str, float], ...]
+    meshes: tuple[str, ...]
+    gravity: float
+    insertions: tuple[Insertion, ...]
+    time_step: float
+    phases: tuple[Phase, ...]
+    every: int
+    sampling: int
+    frames: int
+    contacts: int
+    vtk: int
+    pictures: int
+    restarts: int
+    energy: bool
+    loads: bool
+    spins: bool
+    loses: bool
+    motion: dict[str, float]
+    from_restart: str | None = None
+    resumed_phase: int = 0
+
+    @property
+    def steps(self) -> int:
+        return self.phases[-1].end
+
+
+def primes():
+    """Seeds as LIGGGHTS wants them: different primes above 10000."""
+    n = 15485863
+    while True:
+        if all(n % k for k in range(3, math.isqrt(n) + 1, 2)):
+            yield n
+        n += 2
+
+
+def _templates(parts, m: Model, case: SceneCase, first: int, seeds) -> tuple[Template, ...]:
+    sizes = [(p, radius, share) for p in parts for radius, share in p.sizes()]
+    return tuple(
+        Template(f"template{i}", next(seeds), m.type_of(p.material), case.materials[p.material].density, radius, share,
+                 4.0 / 3.0 * math.pi * radius**3 < SMALL)
+        for i, (p, radius, share) in enumerate(sizes, first)
+    )  # fmt: skip
+
+
+def _mean_volume(parts, case: SceneCase) -> float:
+    """Mean volume [m^3] of a sphere when the sizes are drawn by their share of the mass."""
+    sizes = [(case.materials[p.material].density, radius, share) for p in parts for radius, share in p.sizes()]
+    volumes = [4.0 / 3.0 * math.pi * radius**3 for _, radius, _ in sizes]
+    weights = [share / (rho * v) for (rho, _, share), v in zip(sizes, volumes, strict=True)]
+    return float(np.average(volumes, weights=weights))
+
+
+def _fits(place: str, count: int, parts, case: SceneCase, volume: float, limit: float = MOST_FILLED) -> None:
+    share = count * _mean_volume(parts, case) / volume
+    if share > limit:
+        most = int(count * limit / share)
+        raise CaseError(f"{place} = {count}: the spheres would fill {share:.0%} of the room that they are poured into, "
+                        f"at most {limit:.0%} ({most} spheres); enlarge the room")  # fmt: skip
+
+
+def _intervals(case: SceneCase, total: float, dt: float) -> tuple[int, int]:
+    """(rows, steps per row): enough rows that the last one is also a frame of particles."""
+    out = case.output
+    frames = max(out.particles, 1)
+    rows = frames * math.ceil(out.rows / frames)
+    every = max(1, math.ceil(total / dt / rows))
+    tens = 10 ** max(0, len(str(every)) - 2)  # round numbers: samples divide a row, and a person reads them
+    return rows, tens * math.ceil(every / tens)
+
+
+def _every(case_count: int, rows: int, every: int) -> int:
+    return 0 if case_count == 0 else every * max(1, rows // case_count)
+
+
+def deck(case: SceneCase) -> Deck:
+    """The deck of a scene. Raises CaseError for what does not fit."""
+    from . import kinds
+
+    m, dt, s = model(case), time_step(case), case.scene
+    seeds = itertools.islice(primes(), 100 * (case.numerics.seed - 1), None)
+    parts = [*s.particles, *getattr(s, "bed", [])]
+    smallest = min(p.radii()[0] for p in parts)
+    layout = kinds.layout(case)
+    rows, every = _intervals(case, layout.duration, dt)
+    phases, end = [], 0
+    for name, seconds in layout.phases:
+        end += every * max(1, round(seconds / dt / every))
+        phases.append(Phase(name, end))
+    phases[-1] = Phase(phases[-1].name, max(rows * every, end)) if len(phases) > 1 else Phase(phases[0].name, rows * every)
+    insertions, first = [], 1
+    for i, fill in enumerate(layout.fills, 1):
+        templates = _templates(fill.parts, m, case, first, seeds)
+        first += len(templates)
+        if fill.room is not None:
+            _fits(fill.place, fill.count, fill.parts, case, fill.room)
+        interval = None if fill.rate is None else max(1, math.ceil(fill.every / dt))
+        insertions.append(Insertion(f"fill{i}", next(seeds), f"mix{i}", next(seeds), templates, fill.region, fill.count,
+                                    fill.rate, interval, fill.velocity, fill.phase or phases[0].name))  # fmt: skip
+    moduli = m.rows[0].values
+    out = case.output
+    return Deck(
+        title=case.case.title, source=case.case.source,
+        summary=f"{s.kind}: {s.count} spheres, law {m.law}, {phases[-1].end} steps of {dt:g} s",
+        kind=s.kind, hard=max(moduli) > HARD, soft=min(moduli) < SOFT, boundary=layout.boundary, box=layout.box,
+        n_types=len(m.types), skin=_two_digits(SKIN * smallest), types=tuple(t.name for t in m.types),
+        properties=tuple(Property(f"m{i}", r.name, r.style, r.values, r.comment) for i, r in enumerate(m.rows, 1)),
+        model=f"ep/{m.law}", tangential=m.tangential, cohesion=m.cohesion, rolling_friction=m.rolling,
+        settings=("computePlasticWork on",) if out.energy and m.yields else (), wall_type=m.wall_type,
+        planes=layout.planes, meshes=tuple(layout.meshes), gravity=s.gravity, insertions=tuple(insertions), time_step=dt,
+        phases=tuple(phases), every=every, sampling=_divisor(every, 50),
+        frames=_every(out.particles, rows, every),
+        contacts=_every(out.contacts or (out.particles if out.energy else 0), rows, every),
+        vtk=_every(out.vtk, rows, every), pictures=_every(out.pictures, rows, every),
+        restarts=_every(out.restarts, rows, every), energy=out.energy, loads=out.loads,
+        spins=m.tangential != "off" or m.rolling is not None, loses=layout.loses, motion=layout.motion,
+    )  # fmt: skip
+
+
+def _divisor(n: int, parts: int) -> int:
+    """The largest divisor of n that leaves at least `parts` parts (1 if there is none)."""
+    return next(d for d in range(max(1, n // parts), 0, -1) if n % d == 0)
+
+
+def _two_digits(x: float) -> float:
+    return float(f"{x:.1e}")
+
+
+def texts(case: SceneCase, d: Deck | None = None) -> dict[str, str]:
+    """The text files of a scene's deck by name, without its meshes."""
+    d = d or deck(case)
+    return {"in.scene": decks.render("liggghts/scene.in.j2", deck=d),
+            "setup.in": decks.render("liggghts/scene_setup.in.j2", deck=d)}  # fmt: skip
+
+
+def write(case: SceneCase, folder: Path) -> list[Path]:
+    """The deck of a scene with its meshes, in `folder`; it runs by hand there."""
+    from . import kinds
+
+    folder.mkdir(parents=True, exist_ok=True)
+    files = []
+    for name, text in texts(case).items():
+        files.append(folder / name)
+        files[-1].write_text(text)
+    for name, triangles in kinds.layout(case).meshes.items():
+        files.append(folder / f"{name}.stl")
+        meshes.write_stl(files[-1], name, triangles)
+    return files
+
+
+def write_resume(case: SceneCase, folder: Path, restart: str, step: int) -> Path:
+    """in.resume, which continues from the restart file `restart` written at `step`."""
+    d = deck(case)
+    phase = next((i for i, p in enumerate(d.phases) if step < p.end), len(d.phases))
+    path = folder / "in.resume"
+    path.write_text(decks.render("liggghts/scene_resume.in.j2", deck=replace(d, from_restart=restart, resumed_phase=phase)))
+    return path

@@ -1,0 +1,134 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""A scene from case file to results.h5: deck, run with progress, tables, ledger, checks; and its continuation."""
+
+import hashlib
+import re
+import time
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from pathlib import Path
+
+from .. import __version__, paths
+from ..errors import CaseError, EngineError
+from . import progress, results, tables
+from .case import SceneCase, load
+from .deck import Deck, deck, write, write_resume
+
+Tell = Callable[[int, int], None]  # (step, of so many)
+
+
+@dataclass
+class SceneOutcome:
+    """What a run gives its caller."""
+
+    case: SceneCase
+    deck: Deck
+    folder: Path
+    results: results.SceneResults
+    seconds: float
+    reused: bool = False
+    resumed_from: int | None = None
+    warnings: list[str] = field(default_factory=list)
+
+    @property
+    def passed(self) -> bool:
+        checks = self.results.tables.get("checks")
+        return checks is None or bool(checks["passed"].all())
+
+
+def _inputs(folder_text: str, ranks: int) -> str:
+    """Hash of all that a result depends on: deck, our binaries, sources."""
+    sha = hashlib.sha256(f"{folder_text}{ranks}{__version__}".encode())
+    sources = sorted(Path(__file__).parent.glob("*.py"))
+    for path in [*filter(None, [paths.native("libepdem_liggghts.so"), paths.launcher()]), *sources]:
+        sha.update(path.read_bytes())
+    return sha.hexdigest()
+
+
+def last_restart(folder: Path) -> tuple[Path, int] | None:
+    """The newest whole restart file: the thermo row of its step was written after it."""
+    log = folder / progress.OUT
+    if not log.exists():
+        return None
+    seen = {int(m.group(1)) for line in log.read_bytes().splitlines() if (m := progress.ROW.match(line))}
+    found = [(int(re.search(r"(\d+)\.bin$", p.name).group(1)), p) for p in folder.glob("restart.*.bin")]
+    whole = [(step, p) for step, p in found if step in seen]
+    return (max(whole)[1], max(whole)[0]) if whole else None
+
+
+def _clear(folder: Path) -> None:
+    """Remove what an earlier run of the same folder left, and only that."""
+    for pattern in ("particles.*.bin", "contacts.*.txt", "wall_contacts*.txt", "restart.*.bin", "scene_*.vtk", "picture.*.ppm",
+                    "in.resume"):  # fmt: skip
+        for path in folder.glob(pattern):
+            path.unlink()
+
+
+def run(path: Path | str, *, out: Path | None = None, ranks: int = 1, fresh: bool = False, resume: bool = False,
+        tell: Tell = lambda step, steps: None) -> SceneOutcome:  # fmt: skip
+    """Run the scene in a case file, or continue it from its last restart file. Raises CaseError, EngineError."""
+    case = load(path)
+    d = deck(case)
+    folder = out or Path("runs") / case.name
+    stored = folder / "results.h5"
+    start = time.perf_counter()
+    if resume:
+        found = last_restart(folder)
+        if found is None:
+            raise CaseError(f"{folder}: no restart file to continue from; set output.restarts in the case and run it")
+        if not _same_deck(case, folder):
+            raise CaseError(f"{folder}: the case has changed since the run that is to be continued; run it anew (--fresh)")
+        restart, step = found
+        if step < d.steps:
+            name = write_resume(case, folder, restart.name, step).name
+            progress.run(name, folder, ranks=ranks, append=True, tell=lambda s: tell(s, d.steps))
+        return _finish(path, case, d, folder, ranks, start, step)
+    if not fresh and stored.exists():
+        old = _old(stored)
+        if old is not None and old.attributes.get("inputs") == _inputs(_texts(case), ranks):
+            return SceneOutcome(case, d, folder, old, 0.0, reused=True)
+    if progress.paths.launcher() is None:
+        raise EngineError("LIGGGHTS with our models was not found; run 'make setup'")
+    folder.mkdir(parents=True, exist_ok=True)
+    _clear(folder)
+    write(case, folder)
+    progress.run("in.scene", folder, ranks=ranks, tell=lambda s: tell(s, d.steps))
+    return _finish(path, case, d, folder, ranks, start, None)
+
+
+def _old(stored: Path) -> results.SceneResults | None:
+    try:
+        return results.read(stored)
+    except CaseError:
+        return None  # of another version: made anew
+
+
+def _texts(case: SceneCase) -> str:
+    from .deck import texts
+
+    return "\n".join(f"{name}\n{text}" for name, text in texts(case).items())
+
+
+def _same_deck(case: SceneCase, folder: Path) -> bool:
+    from .deck import texts
+
+    return all((folder / name).exists() and (folder / name).read_text() == text for name, text in texts(case).items())
+
+
+def _finish(path, case, d, folder, ranks, start, resumed) -> SceneOutcome:
+    from . import checks, ledger
+
+    found = results.SceneResults(Path(path).read_text(), {"case": case.name, "epdem": __version__, "ranks": ranks,
+                                 "time_step": d.time_step, "steps": d.steps, "inputs": _inputs(_texts(case), ranks)})  # fmt: skip
+    found.tables["rows"] = tables.rows(folder / progress.OUT, d.time_step)
+    if d.frames:
+        found.tables["particles"] = tables.particles(folder, d)
+    if d.contacts:
+        found.tables["contacts"] = ledger.contacts(case, d, folder, found.tables["particles"])
+    if case.output.energy:
+        found.tables["ledger"] = ledger.ledger(case, d, found.tables)
+    found.tables["checks"] = checks.checks(case, d, found.tables)
+    found.decks = {f.name: f.read_text() for f in sorted(folder.glob("*.in")) + sorted(folder.glob("in.*"))}
+    found.attributes["seconds"] = time.perf_counter() - start
+    results.write(folder / "results.h5", found)
+    return SceneOutcome(case, d, folder, found, found.attributes["seconds"], resumed_from=resumed)
