@@ -65,9 +65,8 @@ def stress(
 
     from . import stress as suite
     from .report import records
-    from .show import _table
     from .store import atomic
-    from .stress.document import document
+    from .stress.document import document, table
     from .stress.suite import summary
 
     with Console(stderr=True).status("") as line:
@@ -84,7 +83,50 @@ def stress(
                           "roundoff": records(outcome.roundoff)}, indent=1))  # fmt: skip
     else:
         console = _console()
-        console.print(_table("extreme cases; steps as shares of the stability limit", summary(outcome.verdicts)))
+        console.print(table("extreme cases; steps as shares of the stability limit", summary(outcome.verdicts)))
         for v in outcome.verdicts[outcome.verdicts["status"] == "failed"].itertuples():
             console.print(f"failed: {v.engine}, {v.law}, {v.case}: {v.reason}", style="red", highlight=False)
     raise typer.Exit(0 if outcome.passed else 1)
+
+
+def cost(
+    case: CasePath,
+    engine: Engines = None,
+    law: Laws = None,
+    repetitions: Annotated[int, typer.Option(min=1, max=100, help="of every timed run, interleaved")] = 5,
+    bulk: Annotated[bool, typer.Option(help="a bulk scene in LIGGGHTS as well")] = False,
+    out: Out = None,
+    docs: Annotated[Path | None, typer.Option("--docs", help="write the page of the documentation there")] = None,
+    as_json: AsJson = False,
+) -> None:
+    """Error against run time at 10 to 3000 steps in contact (default engines: embedded and liggghts)."""
+    import sys
+
+    from . import cost as study
+    from . import cost_report
+    from .report import records
+    from .store import atomic
+
+    scene = None
+    with Console(stderr=True).status("") as line:
+        outcome = study.run(case, engines=engine or ["embedded", "liggghts"], laws=law or [], repetitions=repetitions,
+                            progress=line.update)  # fmt: skip
+        if bulk:
+            from .stress.bulk import dissipation_cost
+
+            scene = dissipation_cost(progress=line.update)
+    folder = out or Path("runs") / outcome.case.name / "cost"
+    files = cost_report.write(outcome, folder)
+    if docs:
+        cost_report.figure(outcome, docs.parent / "figures" / "cost.png")
+        with atomic(docs) as temporary:
+            temporary.write_text(cost_report.document(outcome, scene, "epdem " + " ".join(sys.argv[1:])))
+    if as_json:
+        document = {"case": outcome.case.name, "seconds": outcome.seconds, "files": [str(f) for f in files],
+                    "rows": records(outcome.rows), "contenders": records(outcome.contenders)}  # fmt: skip
+        print(json.dumps(document | ({} if scene is None else {"bulk": records(scene)}), indent=1))
+    else:
+        cost_report.show(outcome, _console())
+        if scene is not None:
+            print(scene.to_string(index=False))
+        print(f"see {folder}/")

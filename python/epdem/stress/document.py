@@ -3,6 +3,7 @@
 
 import numpy as np
 import pandas as pd
+from rich.table import Table
 
 from .cases import extremes
 from .repeats import BOUNCE_SHARE, DRIFT
@@ -35,6 +36,16 @@ def limits(verdicts: pd.DataFrame) -> pd.DataFrame:
             row[f"{v.engine} {v.law}"] = text or f"{cell(v.useless_at)} / {cell(v.breaks_at)}"
         rows.append(row)
     return pd.DataFrame(rows).fillna("")
+
+
+def table(title: str, frame: pd.DataFrame) -> Table:
+    """A frame for the terminal; long headings wrap."""
+    shown = Table(title=title)
+    for name in frame.columns:
+        shown.add_column(str(name), justify="right", min_width=6)
+    for row in frame.itertuples(index=False):
+        shown.add_row(*map(cell, row))
+    return shown
 
 
 TEXT = """# Stability on stiff and extreme cases

@@ -17,7 +17,7 @@ def position_floor(*, radius: float, recovered: float, steps: float) -> float:
     Every step rounds a position to ulp(R) <= eps R, a displacement that no velocity knows of, and does the work F r on
     the side. N independent r, uniform in +-ulp/2, leave sqrt(N/12) ulp F_rms, over twice the energy of the rebound,
     2/5 F_max delta_e: for a Hertz force (F_rms = 0.66 F_max) 0.24 sqrt(N) ulp/delta_e as a standard deviation, and
-    twice that as the largest of some ten phases. `recovered` is the elastic recovery delta_e [m], alpha_max below yield.
+    twice that as the largest of ten phases. `recovered`: the elastic recovery delta_e [m] (below yield alpha_max).
     """
     return 0.5 * np.sqrt(steps) * EPS * radius / recovered
 
@@ -45,7 +45,8 @@ def in_long_double(s: Setting, time_step: float, gap: np.ndarray, steps: int) ->
 
 
 def floors(law: str, samplers: list[Sampler], *, times=(1e-4, 1e-2, 3.0, 1e2), share: float = 0.01) -> pd.DataFrame:
-    """One row per speed: overlap_max, recovered overlap [m], steps, and the largest deviation of e_n from long double over 8 phases.
+    """One row per speed: overlap_max, recovered overlap [m], steps, and the largest deviation of e_n from long
+    double over 8 phases.
 
     Columns: `double` (embedded), `positions` (this module's own), each engine's, and `formula`.
     """
