@@ -1,0 +1,36 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""YADE's conical-damage law as the carrier of our laws: its formula and the four numbers that steer it.
+
+`Law2_ScGeom_MindlinPhysCDM_HertzMindlinCDM` (YADE 2023.02a) computes, at overlap u,
+
+    uN = u + (radius - R) alphaFac      F = 4/3 E sqrt(R uN) uN      a = sqrt(R uN)      k_t = 8 G a
+
+and where 2E/pi sqrt(uN/R) > sigmaMax it first grows R to (u + radius alphaFac)/(h + alphaFac),
+h = (pi sigmaMax/(2E))^2, and sets isYielding. So R and (R - radius) alphaFac = dent make any Hertz branch,
+sigmaMax places its end, and alphaFac, otherwise free, gives the slope beyond that end.
+"""
+
+from math import pi, sqrt
+
+# Shortest increment for a secant, relative to the overlap: below it F_next/F - 1 would be all round-off.
+SMALL = 1e-6
+
+
+def force(E_star: float, R: float, radius: float, growth: float, u: float) -> float:
+    """What YADE's law gives at overlap u [m] with these numbers, after any growth of R [N]."""
+    depth = u + (radius - R) * growth
+    return 4.0 / 3.0 * E_star * sqrt(R * depth) * depth if depth > 0.0 else 0.0
+
+
+def damage_limit(E_star: float, R: float, dent: float, delta_max: float) -> tuple[float, float]:
+    """(h, sigmaMax): the branch (R, dent) ends at delta_max."""
+    h = (delta_max - dent) / R
+    return h, 2.0 * E_star / pi * sqrt(h)
+
+
+def growth_by_secant(R: float, h: float, step: float, rise: float) -> float:
+    """alphaFac with which the force beyond the end of the branch rises by the share `rise` over `step` [m].
+
+    F grows there as R^2, and R by step/(h + alphaFac): hence R sqrt(1 + rise) = R + step/(h + alphaFac).
+    """
+    return step * (sqrt(1.0 + rise) + 1.0) / (R * rise) - h

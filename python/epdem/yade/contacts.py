@@ -1,0 +1,261 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Elastic-plastic contacts in a YADE script:
+
+    from epdem.yade.contacts import Contacts
+
+    contacts = Contacts("thornton")
+    steel = contacts.material("steel", young_modulus=208e9, poisson_ratio=0.3, density=7850, friction=0.3,
+                              yield_pressure=2.8e9)
+    O.bodies.append([wall(0, axis=2, material=steel), sphere((0, 0, 0.02), 0.01, material=steel)])
+    O.engines = [ForceResetter(), InsertionSortCollider([Bo1_Sphere_Aabb(), Bo1_Wall_Aabb()]),
+                 *contacts.engines(), NewtonIntegrator(damping=0)]
+
+YADE's own C++ (see cone.py) computes every contact. Between its interaction loop and the integrator `visit` looks for
+contacts that have just yielded, adds the difference to the law's force and steers their next step. For `cavity`, whose
+elastic branch is not Hertz's once it has yielded, it also visits those that have moved.
+
+O.save keeps all history (see contact.py) and the law's name; a loaded scene goes on by itself wherever this module
+can be imported. As everywhere in YADE a contact forgets when the bodies part (overlap < 0).
+"""
+
+import builtins
+import warnings
+from itertools import compress
+from math import asin, atan, inf, isfinite, pi
+from operator import attrgetter
+
+import numpy as np
+from yade import O
+from yade.wrapper import (
+    FrictMatCDM,
+    Ig2_Facet_Sphere_ScGeom,
+    Ig2_Sphere_Sphere_ScGeom,
+    Ig2_Wall_Sphere_ScGeom,
+    InsertionSortCollider,
+    InteractionLoop,
+    Ip2_FrictMatCDM_FrictMatCDM_MindlinPhysCDM,
+    Law2_ScGeom_MindlinPhysCDM_HertzMindlinCDM,
+    PyRunner,
+)
+
+from . import cone
+from .contact import FAR, NEVER, Contact, effective_radius, trigger_pressure
+from .law import LAWS
+
+LABEL = "epdem_visit"  # of our PyRunner: YADE binds it anew whenever a scene is loaded
+RIGID = 1e30  # modulus [Pa] of a rigid body; YADE cannot take infinity
+NO_FRICTION = 1e-9  # YADE's law needs a friction angle > 0
+
+_yielding, _depth, _real = attrgetter("isYielding"), attrgetter("penetrationDepth"), attrgetter("isReal")
+_managers: dict[tuple, "Contacts"] = {}
+
+
+def visit(*key) -> None:
+    """What our PyRunner calls every step; `key` is enough to go on with a loaded scene."""
+    manager = _managers.get(key)
+    if manager is None:
+        law, interval, tolerance, *ratios = key
+        manager = Contacts(law, interval, tolerance, **dict(zip(LAWS[law].ratios, ratios, strict=True)))
+        _managers[key] = manager
+    manager.visit()
+
+
+class Contacts:
+    """All contacts of a scene under one law.
+
+    law        hertz, thornton, johnson or cavity; `ratios` are its dimensionless parameters (first_yield_ratio, ...)
+    interval   steps between two searches for new contacts. 1 misses none; with more, a contact that is found beyond
+               half its yield overlap gives a warning, and from then on the search is made every step
+    tolerance  share of the law's force below which a difference is left as it is; 0: the law's force to round-off
+    """
+
+    def __init__(self, law: str, interval: int = 1, tolerance: float = 0.0, **ratios: float):
+        if law not in LAWS:
+            raise ValueError(f"law {law!r} does not exist; there are {', '.join(LAWS)}")
+        self.kind = LAWS[law]
+        for name in ratios:
+            if name not in self.kind.ratios:
+                raise ValueError(f"law {law} has no parameter {name!r}; it has {', '.join(self.kind.ratios) or 'none'}")
+        probe = self.kind(1.0, 1e-3, **ratios)  # refuses ratios that do not fit together
+        self.factor = probe.trigger_factor
+        if interval < 1:
+            raise ValueError(f"interval = {interval!r} steps, must be >= 1")
+        self.ratios, self.interval, self.tolerance = ratios, interval, tolerance
+        self.key = (law, interval, tolerance, *(ratios[n] for n in self.kind.ratios if n in ratios))
+        self.visits = 0  # of contacts, by Python
+        self._laws: dict[tuple[float, float], object] = {}
+        self._runner: object = None
+
+    def material(self, label: str, *, young_modulus: float, poisson_ratio: float, density: float, friction: float = 0.0,
+                 **strength: float) -> FrictMatCDM:  # fmt: skip
+        """Add a material, SI; `strength` is the law's yield_pressure or yield_stress (inf: never yields).
+
+        young_modulus = inf is a rigid body. Of two materials the weaker one's strength counts.
+        """
+        name = self.kind.strength_name
+        if set(strength) != ({name} - {None}):
+            given = ", ".join(strength) or "none"
+            raise TypeError(f"law {self.kind.name} needs {name or 'no strength'}, given: {given}")
+        young, value = min(young_modulus, RIGID), strength.get(name, inf)
+        like = 0.5 * young / (1.0 - poisson_ratio**2)  # E* of two bodies of this material
+        trigger, alpha = NEVER * young, 0.5
+        if name and isfinite(value):
+            trigger = self.factor * value
+            if not trigger < 0.9 * NEVER * young:
+                limit = 0.9 * NEVER * young / self.factor
+                raise ValueError(f"{label}: {name} = {value!r} Pa, YADE's law needs less than {limit:.4g} Pa")
+            # tangent at first yield, so that a contact that yields before its first visit starts on course
+            h = (0.5 * pi * trigger / like) ** 2
+            law = self._law(like, value)
+            rise = law.load(1.0, h * (1.0 + cone.SMALL))[0] / cone.force(like, 1.0, 1.0, 0.0, h) - 1.0
+            alpha = asin(1.0 / (1.0 + cone.growth_by_secant(1.0, h, cone.SMALL * h, rise)))
+        material = FrictMatCDM(label=label, young=young, poisson=poisson_ratio, density=density, sigmaMax=trigger,
+                               alpha=alpha, frictionAngle=max(atan(friction), NO_FRICTION))  # fmt: skip
+        O.materials.append(material)
+        return material
+
+    def engines(self) -> list:
+        """YADE's interaction loop and our runner, to stand in this order before the integrator."""
+        _managers[self.key] = self
+        command = f"from {__name__} import visit; visit{self.key!r}"
+        return [
+            InteractionLoop(
+                [
+                    Ig2_Sphere_Sphere_ScGeom(),
+                    Ig2_Wall_Sphere_ScGeom(hertzian=True),  # else R* = R/2
+                    Ig2_Facet_Sphere_ScGeom(hertzian=True),
+                ],
+                [Ip2_FrictMatCDM_FrictMatCDM_MindlinPhysCDM()],
+                [Law2_ScGeom_MindlinPhysCDM_HertzMindlinCDM()],
+            ),
+            PyRunner(command=command, iterPeriod=1, initRun=True, label=LABEL),
+        ]
+
+    def visit(self) -> None:
+        """Between forces and motion of one step: make the forces the law's."""
+        runner = builtins.__dict__.get(LABEL)
+        if runner is not self._runner:
+            self._begin(runner)
+        self._age += 1
+        if self._age >= self.interval:
+            self._search()
+        for contact in list(compress(self._watched, map(_yielding, self._phys))):
+            if contact.place < 0 and contact.alive:
+                self._move(contact, contact.geom.penetrationDepth)
+        if self._flat:
+            self._follow()
+
+    def _begin(self, runner: object) -> None:
+        """Another scene than in the last visit: only what YADE saves counts."""
+        self._runner, self._age = runner, self.interval
+        self._collider = next((e for e in O.engines if isinstance(e, InsertionSortCollider)), None)
+        self._state: object = None
+        self._contacts: list[Contact] = []
+        self._sort()
+
+    def _search(self) -> None:
+        """Meet new contacts and drop old ones. While the collider rests the pairs are the same, and only those without
+        a contact can get one; the number of contacts then tells whether any has ended."""
+        self._age = 0
+        state = self._collider and (self._collider.numAction, len(O.interactions))
+        if state is None or state != self._state:
+            self._state = state
+            self._contacts = [c for c in self._contacts if c.alive]
+            known = {(c.interaction.id1, c.interaction.id2) for c in self._contacts}
+            self._apart = [i for i in O.interactions.all() if (i.id1, i.id2) not in known]
+            self._sort()
+        if born := list(compress(self._apart, map(_real, self._apart))):
+            for interaction in born:
+                self._meet(interaction)
+            self._apart = [i for i in self._apart if not i.isReal]
+        if O.interactions.countReal() != len(self._contacts):
+            self._apart += [c.interaction for c in self._contacts if not c.alive]
+            self._contacts = [c for c in self._contacts if c.alive]
+            self._sort()
+
+    def _sort(self) -> None:
+        """The contacts by the way they are looked at: by YADE's flag, or (flattened ones) by their overlap."""
+        self._watched, self._phys, self._flat, self._geoms = [], [], [], []
+        self._low = self._high = np.empty(0)
+        for contact in self._contacts:
+            self._enter(contact)
+
+    def _law(self, E_star: float, strength: float):
+        found = self._laws.get((E_star, strength))
+        if found is None:
+            found = self._laws[E_star, strength] = self.kind(E_star, strength, **self.ratios)
+        return found
+
+    def _enter(self, contact: Contact) -> None:
+        if contact.yield_overlap == inf:
+            return
+        if contact.law.flattens and contact.delta_max > 0.0:
+            contact.place = len(self._flat)
+            self._flat.append(contact)
+            self._geoms.append(contact.geom)
+            low, high = contact.bounds()
+            self._low, self._high = np.append(self._low, low), np.append(self._high, high)
+        else:
+            self._watched.append(contact)
+            self._phys.append(contact.phys)
+
+    def _meet(self, interaction) -> None:
+        phys, new = interaction.phys, not interaction.phys.initD > 0.0
+        if new:
+            trigger = min(trigger_pressure(O.bodies[k].material) for k in (interaction.id1, interaction.id2))
+            phys.initD = effective_radius(interaction)
+            phys.maxBendPl = trigger / self.factor if trigger < inf else FAR
+        yields = phys.maxBendPl < FAR
+        contact = Contact(interaction, self._law(phys.E, phys.maxBendPl if yields else inf), phys.initD)
+        if new:
+            self._greet(contact)
+        self._contacts.append(contact)
+        self._enter(contact)
+
+    def _greet(self, contact: Contact) -> None:
+        """The first visit: the force of this step, and the course from here."""
+        u = contact.geom.penetrationDepth
+        computed, limit, reached = contact.computed(u), contact.yield_overlap, contact.reached()
+        if contact.born < O.iter and max(u, reached) > 0.5 * limit:
+            warnings.warn(f"epdem: a contact was found at overlap {u:.4g} m, its yield overlap is {limit:.4g} m: "
+                          f"interval = {self.interval} steps is too long for this speed. From here on new contacts are "
+                          "searched every step; one that has yielded already had YADE's own force until now",
+                          RuntimeWarning, stacklevel=2)  # fmt: skip
+            self.interval = 1
+        if reached > max(u, limit) * (1.0 + 1e-9):
+            contact.remember(reached)
+            force = contact.unload(u)
+        else:
+            force = contact.load(u) if u > limit else contact.virgin(u)
+        self._correct(contact, force, computed)
+
+    def _correct(self, contact: Contact, force: float, computed: float) -> None:
+        self.visits += 1
+        if abs(force - computed) > self.tolerance * force:
+            contact.add(force - computed)
+
+    def _move(self, contact: Contact, u: float) -> None:
+        """A contact that has yielded in this step, or a flattened one that has left its branch."""
+        computed = contact.computed(u)
+        if u > max(contact.delta_max, contact.yield_overlap):
+            force = contact.load(u)
+        elif contact.place >= 0:
+            force = contact.unload(u)
+        else:
+            return  # within round-off of its limit
+        self._correct(contact, force, computed)
+        if contact.law.flattens:
+            if contact.place < 0:
+                self._enter(contact)  # it leaves the watched ones when they are sorted
+            else:
+                self._low[contact.place], self._high[contact.place] = contact.bounds()
+
+    def _follow(self) -> None:
+        """Visit the flattened contacts that have left the overlaps for which their branch is good."""
+        u = np.fromiter(map(_depth, self._geoms), float, len(self._geoms))
+        for k in np.flatnonzero((u < self._low) | (u > self._high)).tolist():
+            contact = self._flat[k]
+            if contact.alive:
+                self._move(contact, float(u[k]))
+            else:  # its numbers stay as they were until the next search
+                self._low[k], self._high[k] = -inf, inf
