@@ -1,0 +1,69 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Theory and C++ are two routes to one number: they agree for every law, on every branch."""
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from laws import NAMES, YIELDING, contacts
+
+from epdem.theory import backbones
+
+ROUND_OFF = 1e-12  # of the largest value: exp, log and powers of numbers near 1, once on each route
+
+
+def theory(c):
+    """The theory's law with the same numbers."""
+    cls = backbones.LAWS[c.law.name]
+    strength = {cls.keywords[c.law.info.parameters[0].name]: c.strength} if c.law.info.parameters else {}
+    return cls(E_star=c.E_star, R_star=c.R_star, **strength)
+
+
+def test_both_know_the_same_laws():
+    assert set(backbones.LAWS) == set(NAMES)
+
+
+@given(contacts(), st.lists(st.floats(1e-3, 5e3), min_size=1, max_size=20))
+def test_backbones_agree(c, s):
+    delta = np.array(s) * c.delta_y
+    delta = delta[np.abs(delta / c.delta_y - 1) > 1e-9]  # johnson's radius jumps there
+    if not delta.size:
+        return
+    force, radius, work, plastic = c.backbone(delta)
+    law = theory(c)
+    assert force == pytest.approx(law.force(delta), rel=ROUND_OFF)
+    assert radius == pytest.approx(law.radius(delta), rel=ROUND_OFF)
+    assert work == pytest.approx(law.work(delta), rel=ROUND_OFF)
+    lost = np.where(delta > c.delta_y, law.work(delta) - law.recovered_work(delta), 0.0)
+    assert np.all(np.abs(plastic - lost) <= ROUND_OFF * work)
+
+
+@given(contacts(YIELDING), st.floats(1.001, 5e3), st.lists(st.floats(0, 1), min_size=1, max_size=20))
+def test_unloading_branches_agree(c, s, shares):
+    """Absolute in the peak force: near the dent the theory's acos y - y sqrt(1-y^2) keeps absolute accuracy only."""
+    law, peak = theory(c), s * c.delta_y
+    delta = np.array(shares) * peak
+    force = c.step(peak, delta)[0]
+    assert np.all(np.abs(force - law.unloading_force(delta, peak)) <= 4 * ROUND_OFF * law.force(peak))
+
+
+@given(contacts(("cavity",)), st.floats(1.01, 5e3), st.floats(1e-8, 1.0))
+def test_the_last_of_the_unloading_force_keeps_its_relative_accuracy(c, s, share):
+    """Just above the dent F = F_max [(1-tau)(1-y^2)^1.5 + tau (2/pi)(acos y - y sqrt(1-y^2))] with 50 digits."""
+    import mpmath
+
+    law, peak = theory(c), s * c.delta_y
+    tau, F, a = (float(f(peak)) for f in (law.flatness, law.force, law.radius))
+    with mpmath.workdps(50):
+        E, A, B = mpmath.mpf(c.E_star), mpmath.mpf(0.75) * (1 - mpmath.mpf(tau)), 2 * mpmath.mpf(tau) / mpmath.pi
+        delta = peak - float((A + B) * F / (E * a)) * (1 - share)
+        w = (mpmath.mpf(peak) - mpmath.mpf(delta)) * E * a / F
+        y = 2 * w / (B + mpmath.sqrt(B * B + 4 * A * w))
+        if delta <= 0 or y >= 1:
+            return
+        segment = mpmath.acos(y) - y * mpmath.sqrt(1 - y * y)
+        exact = F * ((1 - mpmath.mpf(tau)) * (1 - y * y) ** mpmath.mpf(1.5) + B * segment)
+        slope = float(1.5 / (1 - y) * 2)  # how much a rounding of w is amplified in (1-y)^1.5
+        force = float(c.step(peak, delta)[0][0])
+    scale = peak * c.E_star * a / F  # w is a difference of overlaps: its rounding is eps alpha E* a/F
+    assert force == pytest.approx(float(exact), rel=1e-13 + 2e-15 * slope * max(scale, 1.0))

@@ -1,0 +1,95 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""LIGGGHTS carries 256 spheres along prescribed overlaps with a wall: force and memory are the law's own."""
+
+import subprocess
+
+import numpy as np
+import pytest
+from laws import NAMES
+
+from epdem import law as claw
+from epdem import paths
+from epdem.engines.liggghts import read_dump
+from epdem.theory import pair
+
+pytestmark = pytest.mark.liggghts
+N, STEPS, R, E, NU, Y = 256, 600, 0.01, 208e9, 0.3, 1e9
+STRENGTH = {"thornton": 2.8 * Y, "johnson": 3.0 * Y, "cavity": Y}
+
+# Sphere k starts 1e-6 m apart and moves by beats of its own: deep and shallow, several reloads, some partings.
+DECK = """atom_style granular
+boundary f f f
+newton off
+communicate single vel yes
+hard_particles yes
+read_data path.data
+neighbor 2e-3 bin
+neigh_modify delay 0
+fix m1 all property/global youngsModulus peratomtype {E!r}
+fix m2 all property/global poissonsRatio peratomtype {NU!r}
+{strength}
+pair_style gran model ep/{law} tangential off
+pair_coeff * *
+fix target all wall/gran model ep/{law} tangential off primitive type 1 zplane 0.0
+variable t equal step*0.01
+variable depth atom 1e-6+(2e-6+8e-4*(id/{N})^3)*(1+0.4*sin((1+0.01*id)*v_t))
+variable dz atom -v_depth*sin((0.9+0.003*id)*v_t)
+variable vz atom 0
+fix move all move variable NULL NULL v_dz NULL NULL v_vz
+timestep 1e-8
+dump path all custom 1 path.bin id z fz
+run {STEPS}
+"""
+
+
+def carried(law: str, folder):
+    """Overlap [m] and force [N] at every step, shape (STEPS + 1, N)."""
+    side, place = 16, 0.03
+    atoms = [
+        f"{k + 1} 1 {2 * R!r} 7850.0 {place * (k % side)!r} {place * (k // side)!r} {R + 1e-6!r}" for k in range(N)
+    ]
+    box = f"-0.03 {place * side!r} xlo xhi\n-0.03 {place * side!r} ylo yhi\n-0.02 0.05 zlo zhi"
+    data = f"paths\n\n{N} atoms\n1 atom types\n{box}\n\nAtoms\n\n" + "\n".join(atoms) + "\n"
+    (folder / "path.data").write_text(data)
+    info = claw.laws()[law].parameters
+    strength = f"fix m3 all property/global {info[0].property} peratomtype {STRENGTH[law]!r}" if info else ""
+    (folder / "in.path").write_text(DECK.format(law=law, strength=strength, E=E, NU=NU, N=N, STEPS=STEPS))
+    done = subprocess.run([str(paths.launcher()), "-in", "in.path"], cwd=folder, capture_output=True, text=True)
+    assert done.returncode == 0, done.stdout[-500:]
+    z, force = np.moveaxis(read_dump(folder / "path.bin", 3), 2, 0)
+    return R - z, force
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_liggghts_has_the_laws_force_on_256_paths(name, tmp_path):
+    """To 1e-15 of the largest force where nothing cancels; a step below the peak adds the rounding of alpha_max - alpha."""
+    overlap, force = carried(name, tmp_path)
+    parameters = {claw.laws()[name].parameters[0].name: STRENGTH[name]} if name in STRENGTH else {}
+    law = claw.Law(name, E_star=float(pair.E_star(E, NU, E, NU)), **parameters)
+    state = np.zeros(N)
+    reloads = 0
+    for step in range(STEPS + 1):
+        state = np.where(overlap[step] > 0, state, 0.0)  # parted: LIGGGHTS forgets, so does the reference
+        expected, _, after = law.step(R_star=R, delta_max=state, delta=overlap[step])
+        reloads += int(((after == state) & (expected > 0)).sum())
+        if step < STEPS:  # setup's evaluation of step 0 and every kept one store their memory
+            state = after if step else state
+        largest = law.step(R_star=R, delta_max=0.0, delta=np.maximum(after, 1e-300))[0]
+        assert np.all(np.abs(force[step] - expected) <= 1e-15 * largest * np.where(after > overlap[step], 8, 4)), step
+    assert reloads > 20_000 or name == "hertz"  # of 153,600 samples
+    assert (overlap > 0).any(axis=0).all()
+
+
+def test_hertz_equals_liggghts_own_without_damping(tmp_path):
+    """An independent check of E* and of the force direction: LIGGGHTS's hertz was not written by us."""
+    overlap, ours = carried("hertz", tmp_path)
+    deck = (tmp_path / "in.path").read_text().replace("model ep/hertz", "model hertz")
+    deck = deck.replace(
+        "pair_style", "fix m4 all property/global coefficientRestitution peratomtypepair 1 1.0\npair_style"
+    )
+    (tmp_path / "in.path").write_text(deck)
+    done = subprocess.run([str(paths.launcher()), "-in", "in.path"], cwd=tmp_path, capture_output=True, text=True)
+    assert done.returncode == 0, done.stdout[-500:]
+    z, theirs = np.moveaxis(read_dump(tmp_path / "path.bin", 3), 2, 0)
+    assert np.array_equal(R - z, overlap)
+    assert np.abs(ours - theirs).max() <= 1e-14 * np.abs(theirs).max()
