@@ -170,7 +170,13 @@ class Compaction(Common):
     box: tuple[Length, Length, Length] | Annotated[list[Length], Field(min_length=3, max_length=3)]
     height: Length  # of the gap between the plates at the end of loading
     back: Length  # stroke of unloading
-    speed: Speed  # of the upper plate
+    speed: Speed  # of the upper plate, loading
+    back_speed: Speed | None = None  # unloading; default: a tenth, for it is over within a short way
+
+    @property
+    def release(self) -> float:
+        """Speed of the upper plate while unloading [m/s]."""
+        return self.back_speed or 0.1 * self.speed
 
     @model_validator(mode="after")
     def _order(self):

@@ -14,6 +14,11 @@ def _row(name: str, value: float, expected: float, tolerance: float) -> dict:
             "passed": bool(error <= tolerance)}  # fmt: skip
 
 
+def _below(name: str, value: float, limit: float, tolerance: float) -> dict:
+    return {"check": name, "value": value, "expected": limit, "error": max(0.0, value / limit - 1.0),
+            "tolerance": tolerance, "passed": bool(value <= limit * (1 + tolerance))}  # fmt: skip
+
+
 def _kept(case: SceneCase, d: Deck, tables: dict[str, pd.DataFrame]) -> list[dict]:
     if d.loses:
         return []
@@ -28,6 +33,26 @@ def floor_load(case: SceneCase, tables: dict[str, pd.DataFrame]) -> tuple[float,
     return float(tail["floor_load"].mean()), float(mass * case.scene.gravity)
 
 
+def stiffness(case: SceneCase, d: Deck, rows: pd.DataFrame) -> tuple[float, float]:
+    """Secant stiffness [N/m] of (loading, unloading) between half the largest plate force and that force."""
+    turn = d.phases[0].end
+    load, unload = rows[rows["step"] <= turn], rows[rows["step"] > turn]
+    way_up, up = load["plate_z"].to_numpy()[::-1], load["plate_force"].to_numpy()[::-1]
+    way_down, down = unload["plate_z"].to_numpy(), unload["plate_force"].to_numpy()
+    bottom, top = way_up[0], up[0]
+    below = int(np.argmax(up < 0.5 * top)), int(np.argmax(down < 0.5 * top))
+    return (float((top - up[below[0]]) / (way_up[below[0]] - bottom)),
+            float((top - down[below[1]]) / (way_down[below[1]] - bottom)))  # fmt: skip
+
+
+def recovered(case: SceneCase, d: Deck, rows: pd.DataFrame) -> tuple[float, float]:
+    """Work [J] that the plate (put in, got back): its force, a mean over each interval, times its way."""
+    loading = rows["step"].to_numpy() <= d.phases[0].end
+    speed = np.where(loading, case.scene.speed, case.scene.release)
+    work = rows["plate_force"].to_numpy() * speed * np.diff(rows["step"], prepend=0) * d.time_step
+    return float(work[loading].sum()), float(work[~loading].sum())
+
+
 def checks(case: SceneCase, d: Deck, tables: dict[str, pd.DataFrame]) -> pd.DataFrame:
     """One row per check: value, expected, relative error, tolerance, passed."""
     found = _kept(case, d, tables)
@@ -35,6 +60,11 @@ def checks(case: SceneCase, d: Deck, tables: dict[str, pd.DataFrame]) -> pd.Data
     if case.scene.kind == "settle" and "floor_load" in tables["rows"] and "particles" in tables and smooth:
         load, weight = floor_load(case, tables)
         found.append(_row("floor load / weight (smooth walls: hydrostatic)", load, weight, 0.02))
+    if case.scene.kind == "compaction":
+        load, unload = stiffness(case, d, tables["rows"])
+        found.append(_below("loading / unloading stiffness", load, unload, 0.0))
+        put_in, back = recovered(case, d, tables["rows"])
+        found.append(_below("work got back / put in", back, put_in, 0.0))
     return pd.DataFrame(found, columns=["check", "value", "expected", "error", "tolerance", "passed"])
 
 

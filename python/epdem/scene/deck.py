@@ -16,7 +16,7 @@ from .case import SceneCase
 from .model import Model, model, time_step
 
 SMALL = 1e-12  # volume [m^3] below which LIGGGHTS refuses a template unless told
-MOST_FILLED = 0.34  # volume share that random insertion of equal spheres reaches without long searches
+MOST_FILLED = 0.26  # volume share that LIGGGHTS's random insertion reaches with its own number of attempts
 SKIN = 0.25  # of the smallest radius: rebuilds cost less than idle neighbours
 
 

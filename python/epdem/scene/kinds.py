@@ -112,9 +112,9 @@ def _compaction(s: Compaction) -> Layout:
     limits = (-lx / 2, lx / 2, -ly / 2, ly / 2, 0.0, lz)
     fill = Fill(s.particles, s.count, _block(*limits), "scene.count", lx * ly * lz)
     return Layout((*limits[:5], 1.05 * lz), "p p f", (("floor", "zplane", 0.0),), [fill],
-                  [("load", (lz - s.height) / s.speed), ("unload", s.back / s.speed)],
+                  [("load", (lz - s.height) / s.speed), ("unload", s.back / s.release)],
                   {"plate": meshes.plate(1.2 * lx, 1.2 * ly, lz)},
-                  {"speed": s.speed})  # fmt: skip
+                  {"load": s.speed, "unload": s.release})  # fmt: skip
 
 
 def _peening(s: Peening) -> Layout:

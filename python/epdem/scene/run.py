@@ -121,6 +121,8 @@ def _finish(path, case, d, folder, ranks, start, resumed) -> SceneOutcome:
     found = results.SceneResults(Path(path).read_text(), {"case": case.name, "epdem": __version__, "ranks": ranks,
                                  "time_step": d.time_step, "steps": d.steps, "inputs": _inputs(_texts(case), ranks)})  # fmt: skip
     found.tables["rows"] = tables.rows(folder / progress.OUT, d.time_step)
+    if case.scene.kind == "compaction":
+        tables.add_plate(case, d, found.tables["rows"])
     if d.frames:
         found.tables["particles"] = tables.particles(folder, d)
     if d.contacts:

@@ -9,6 +9,7 @@ import numpy as np
 import pandas as pd
 
 from ..errors import EngineError
+from .case import SceneCase
 from .deck import Deck
 
 PARTICLES = ["id", "type", "radius", "mass", "x", "y", "z", "vx", "vy", "vz"]
@@ -37,6 +38,19 @@ def rows(log: Path, time_step: float) -> pd.DataFrame:
     table.insert(0, "step", table.index.to_numpy())
     table.insert(1, "time", table["step"] * time_step)
     return table.reset_index(drop=True)
+
+
+def plate_height(case: SceneCase, deck: Deck, time: np.ndarray) -> np.ndarray:
+    """Height [m] of the moving plate of a compaction."""
+    s, turn = case.scene, deck.phases[0].end * deck.time_step
+    return s.box[2] - s.speed * np.minimum(time, turn) + s.release * np.maximum(time - turn, 0.0)
+
+
+def add_plate(case: SceneCase, deck: Deck, table: pd.DataFrame) -> None:
+    """Columns plate_z [m] (middle of the interval that the force is a mean of) and stress [Pa]."""
+    middle = (table["step"] - 0.5 * deck.every).clip(lower=0) * deck.time_step
+    table["plate_z"] = plate_height(case, deck, middle.to_numpy())
+    table["stress"] = table["plate_force"] / (case.scene.box[0] * case.scene.box[1])
 
 
 def _frame(path: Path, columns: int) -> tuple[int, np.ndarray]:
