@@ -9,7 +9,10 @@ from typing import Protocol
 import numpy as np
 
 from ..errors import EngineError
+from ..experiment import Experiment
 from ..plan import Plan
+
+EPS = float(np.finfo(float).eps)
 
 
 @dataclass(frozen=True)
@@ -92,3 +95,17 @@ def kill(process: subprocess.Popen) -> None:
             return
         except subprocess.TimeoutExpired:
             continue
+
+
+def not_representable(x: Experiment, overlap_max: float) -> str | None:
+    """Why a position-based engine cannot hold this contact, or None.
+
+    Overlap is a difference of numbers as large as the larger radius: it is known to eps R. Beyond half the smaller
+    radius the spheres' centres come so near that contact detection and normal lose their sense.
+    """
+    radii = [r for r in (x.body.radius, x.target.radius) if np.isfinite(r)]
+    if overlap_max > min(radii) / 2:
+        return f"alpha_max = {overlap_max:.2g} m exceeds half the smaller radius"
+    if overlap_max < 1e4 * EPS * max(radii):
+        return f"alpha_max = {overlap_max:.2g} m is below 1e4 eps R = {1e4 * EPS * max(radii):.2g} m"
+    return None

@@ -6,12 +6,13 @@ from dataclasses import dataclass, field
 
 import numpy as np
 
+from ..engines.base import EPS, not_representable
 from ..errors import EpdemError
 from ..experiment import Experiment, experiment
 from ..predict import SMALL_DEFORMATION, predict
 from ..timestep import stability_limit
 from .cases import Extreme
-from .sampling import EPS, Sampler, not_representable
+from .sampling import Sampler
 
 FINE = (0.16, 0.08, 0.04, 0.02, 0.01)  # shares of the stability limit: convergence
 COARSE = (0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 1.0, 1.1, 1.2, 1.35, 1.5)  # and beyond: where it breaks

@@ -71,17 +71,3 @@ class PositionSampler:
         # an engine with positions samples every step to the end: a NaN is a fault, not the end of an impact
         finite = all(np.isfinite(a).all() for a in (force, velocity, path.overlap))
         return Sample(e_n, peak, int(steps * gap.size), finite)
-
-
-def not_representable(x: Experiment, overlap_max: float) -> str | None:
-    """Why a position-based engine cannot hold this contact, or None.
-
-    Overlap is a difference of numbers as large as the larger radius: it is known to eps R. Beyond half the smaller
-    radius the spheres' centres come so near that contact detection and normal lose their sense.
-    """
-    radii = [r for r in (x.body.radius, x.target.radius) if np.isfinite(r)]
-    if overlap_max > min(radii) / 2:
-        return f"alpha_max = {overlap_max:.2g} m exceeds half the smaller radius"
-    if overlap_max < 1e4 * EPS * max(radii):
-        return f"alpha_max = {overlap_max:.2g} m is below 1e4 eps R = {1e4 * EPS * max(radii):.2g} m"
-    return None
