@@ -16,6 +16,11 @@ from math import pi, sqrt
 SMALL = 1e-6
 
 
+# sigmaMax over Young's modulus: of a material that never yields (YADE refuses 1 and more), and the most that one may have
+# that does.
+NEVER, STRONGEST = 0.4, 0.36
+
+
 def force(E_star: float, R: float, radius: float, growth: float, u: float) -> float:
     """What YADE's law gives at overlap u [m] with these numbers, after any growth of R [N]."""
     depth = u + (radius - R) * growth

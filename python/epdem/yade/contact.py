@@ -17,7 +17,6 @@ from yade.wrapper import Facet, Sphere, Wall
 from . import cone
 from .law import hertz_branch, recovered_overlap, unload
 
-NEVER = 0.4  # YADE's sigmaMax over E of a material that does not yield: the law refuses E and more
 FAR = 1e99  # sigmaMax [Pa] of a contact that never yields
 REACH = 1e-5  # how far a contact may move from its branch's touching point, over its elastic depth: 1e-10 of the force
 PARTED = -1.0  # touching point of a contact that has parted inside its dent
@@ -36,7 +35,7 @@ def effective_radius(interaction) -> float:
 
 def trigger_pressure(material) -> float:
     """Hertz pressure at which a material yields first [Pa]; inf: never."""
-    return inf if material.sigmaMax >= 0.99 * NEVER * material.young else material.sigmaMax
+    return inf if material.sigmaMax >= cone.STRONGEST * material.young else material.sigmaMax
 
 
 class Contact:
@@ -73,7 +72,7 @@ class Contact:
     def reached(self) -> float:
         """Largest overlap so far as YADE alone remembers it, 0 if it saw no yield."""
         phys = self.phys
-        if phys.R <= self.radius:
+        if self.radius >= phys.R:
             return 0.0
         h = (0.5 * pi * phys.sigmaMax / self.E) ** 2
         return (h + self.growth) * phys.R - self.radius * self.growth

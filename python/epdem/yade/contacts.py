@@ -39,7 +39,7 @@ from yade.wrapper import (
 )
 
 from . import cone
-from .contact import FAR, NEVER, Contact, effective_radius, trigger_pressure
+from .contact import FAR, Contact, effective_radius, trigger_pressure
 from .law import LAWS
 
 LABEL = "epdem_visit"  # of our PyRunner: YADE binds it anew whenever a scene is loaded
@@ -98,11 +98,11 @@ class Contacts:
             raise TypeError(f"law {self.kind.name} needs {name or 'no strength'}, given: {given}")
         young, value = min(young_modulus, RIGID), strength.get(name, inf)
         like = 0.5 * young / (1.0 - poisson_ratio**2)  # E* of two bodies of this material
-        trigger, alpha = NEVER * young, 0.5
+        trigger, alpha = cone.NEVER * young, 0.5
         if name and isfinite(value):
             trigger = self.factor * value
-            if not trigger < 0.9 * NEVER * young:
-                limit = 0.9 * NEVER * young / self.factor
+            if not trigger < cone.STRONGEST * young:
+                limit = cone.STRONGEST * young / self.factor
                 raise ValueError(f"{label}: {name} = {value!r} Pa, YADE's law needs less than {limit:.4g} Pa")
             # tangent at first yield, so that a contact that yields before its first visit starts on course
             h = (0.5 * pi * trigger / like) ** 2
