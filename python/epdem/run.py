@@ -17,6 +17,7 @@ from . import __version__, paths, store
 from .case import Case, parse, read_toml
 from .compare import compare, impacts_table
 from .engines import Engine, engine
+from .engines.base import not_representable
 from .errors import CaseError, EngineError
 from .experiment import experiment
 from .measure import measure
@@ -68,6 +69,17 @@ def _stage(
     return table, seconds, {f.name: f.read_text() for f in files if f.suffix != ".data"}
 
 
+def _refuse(tool: Engine, plan: Plan, prediction: Prediction) -> None:
+    """Raise CaseError if `tool` cannot run `plan` as it is."""
+    if tool.name == "embedded":
+        return
+    if hasattr(tool, "deck"):
+        tool.deck(plan)
+    for speed, overlap in zip(prediction.speed, prediction.overlap_max, strict=True):
+        if why := not_representable(plan.experiment, float(overlap)):
+            raise CaseError(f"{speed:.4g} m/s is not representable by positions ({why}); use --engine embedded for it")
+
+
 def _stored(path: Path) -> store.Results:
     """What an earlier run left, or nothing; a file of another version is simply made anew."""
     try:
@@ -97,10 +109,9 @@ def run(case_path: Path | str, *, engines: list[str], laws: list[str], out: Path
     versions = {tool.name: tool.version() for tool in tools}
     predictions = {x.law.name: predict(x) for x in experiments}
     plans = [plan(x, predictions[x.law.name]) for x in experiments]
-    for p in plans:
+    for p in plans:  # what an engine cannot do is said before any engine runs
         for tool in tools:
-            if hasattr(tool, "deck"):
-                tool.deck(p)  # what an engine cannot do is said before any engine runs
+            _refuse(tool, p, predictions[p.experiment.law.name])
 
     folder = out or Path("runs") / case.name
     stored = folder / "results.h5"

@@ -4,9 +4,10 @@
 import numpy as np
 import pandas as pd
 
+from ..engines.base import EPS
 from .cases import Extreme, build
 from .running import Setting, setting
-from .sampling import EPS, Sampler
+from .sampling import Sampler
 
 FORMULA = "0.5 sqrt(N) eps R/delta_e"
 

@@ -11,8 +11,6 @@ from ..engines import Engine
 from ..experiment import Experiment
 from ..plan import Plan
 
-EPS = np.finfo(float).eps
-
 
 @dataclass(frozen=True)
 class Sample:
