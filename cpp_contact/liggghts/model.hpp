@@ -64,6 +64,18 @@ class Chosen {
   std::shared_ptr<Base> part_;
 };
 
+/// Whether a model may keep history of its own; to be denied only for those that are known to keep none.
+template <class Part>
+inline constexpr bool remembers = true;
+template <>
+inline constexpr bool remembers<Fixed<TangentialModel<TANGENTIAL_OFF>>> = false;
+template <>
+inline constexpr bool remembers<Fixed<TangentialModel<TANGENTIAL_NO_HISTORY>>> = false;
+template <>
+inline constexpr bool remembers<Fixed<RollingModel<ROLLING_OFF>>> = false;
+template <>
+inline constexpr bool remembers<Fixed<RollingModel<ROLLING_CDT>>> = false;
+
 /// What LIGGGHTS's pair and wall loops call. The order of the parts is that of LIGGGHTS's own models.
 template <class Law, bool wall, class Surface, class Cohesion, class Tangential, class Rolling>
 class Model : public ContactModelBase {
@@ -168,7 +180,7 @@ class Model : public ContactModelBase {
 
   const Ids ids_;
   Surface surface_;
-  Normal<Law, wall> normal_;
+  Normal<Law, wall, remembers<Tangential> || remembers<Rolling>> normal_;
   Cohesion cohesion_;
   Tangential tangential_;
   Rolling rolling_;

@@ -17,13 +17,13 @@ using namespace LIGGGHTS::ContactModels;
 
 /// Normal model of one law for pairs (wall = false) or walls.
 ///
-/// History of a law that yields: what the law remembers (doubles), and for pairs the step of the last evaluation that
-/// was kept. LIGGGHTS tells a pair nothing when it parts, so a contact whose last evaluation is older than one step is
-/// a new one. Walls are told, and need no step.
-template <class Law, bool wall>
+/// History: what a law that yields remembers (doubles), and for pairs the step of the last evaluation that was kept.
+/// LIGGGHTS tells nobody that a pair parted, so a contact whose last evaluation is older than one step is a new one,
+/// for the law and for all models that remember something beside it. Walls are told, and need no step.
+template <class Law, bool wall, bool others_remember>
 class Normal : protected LAMMPS_NS::Pointers {
   static constexpr bool remembers = Law::yields;
-  static constexpr bool stamped = remembers && !wall;
+  static constexpr bool stamped = !wall && (remembers || others_remember);
   static constexpr int memory = remembers ? static_cast<int>(sizeof(State<Law>) / sizeof(double)) : 0;
 
  public:
@@ -38,7 +38,7 @@ class Normal : protected LAMMPS_NS::Pointers {
       for (int k = 1; k < memory; ++k) setup->add_history_value(slot[k], "0");
     }
     if constexpr (stamped) {
-      setup->add_history_value("last_step", "0");
+      stamp_ = setup->add_history_value("last_step", "0");
       pair_ = dynamic_cast<LAMMPS_NS::PairGran*>(setup);
       clock_ = update->ntimestep;
     }
@@ -76,8 +76,6 @@ class Normal : protected LAMMPS_NS::Pointers {
         table_[i * width_ + j] = {Law(effective_modulus(p.i, p.j), p.parameters.data()),
                                   effective_shear_modulus(p.i, p.j), p.damping_number};
       }
-    // A law without memory leaves parting to LIGGGHTS, which then tells of pairs closer than this factor.
-    if (!remembers) neighbor->register_contact_dist_factor(1.001);
   }
 
   double stressStrainExponent() const { return 1.5; }
@@ -103,22 +101,16 @@ class Normal : protected LAMMPS_NS::Pointers {
     const bool keep = s.computeflag && s.shearupdate;
 
     State<Law> before{};
-    double* history = nullptr;
-    if constexpr (remembers) {
-      history = s.contact_history + offset_;
-      std::memcpy(static_cast<void*>(&before), history, sizeof before);
-      if constexpr (stamped) {
-        if (now_ - history[memory] > 1.0) before = parted(history, keep);
-      }
-    }
+    double* const history = s.contact_history;
+    if constexpr (remembers) std::memcpy(static_cast<void*>(&before), history + offset_, sizeof before);
+    if constexpr (stamped)
+      if (now_ - history[stamp_] > 1.0) before = parted(history, keep);
 
     const Step<Law> now = step(t.law, R_star, before, delta);
 
-    if constexpr (remembers) {
-      if (keep) {
-        std::memcpy(history, &now.after, sizeof now.after);
-        if constexpr (stamped) history[memory] = now_;
-      }
+    if (keep) {
+      if constexpr (remembers) std::memcpy(history + offset_, &now.after, sizeof now.after);
+      if constexpr (stamped) history[stamp_] = now_;
     }
 
     s.Fn = now.force;
@@ -136,7 +128,7 @@ class Normal : protected LAMMPS_NS::Pointers {
 
   void surfacesClose(SurfacesCloseData& s) {
     if (s.contact_flags) *s.contact_flags &= ~CONTACT_NORMAL_MODEL;
-    if (remembers && s.contact_history) std::fill_n(s.contact_history + offset_, memory + (stamped ? 1 : 0), 0.0);
+    if (remembers && s.contact_history) std::fill_n(s.contact_history + offset_, memory, 0.0);
   }
 
  private:
@@ -147,7 +139,8 @@ class Normal : protected LAMMPS_NS::Pointers {
 
   /// The pair parted since its last evaluation: it is a new contact, for the other models as well.
   State<Law> parted(double* history, bool keep) const {
-    if (keep) std::fill_n(history, pair_->dnum_pair() - offset_, 0.0);
+    const int first = stamp_ - memory;
+    if (keep) std::fill_n(history + first, pair_->dnum_pair() - first, 0.0);
     return {};
   }
 
@@ -159,7 +152,7 @@ class Normal : protected LAMMPS_NS::Pointers {
     for (int n = 0; n < lists[0]->inum; ++n) {
       const int i = lists[0]->ilist[n];
       for (int k = 0; k < lists[0]->numneigh[i]; ++k)
-        lists[1]->firstdouble[i][k * width + offset_ + memory] += static_cast<double>(shift);
+        lists[1]->firstdouble[i][k * width + stamp_] += static_cast<double>(shift);
     }
   }
 
@@ -169,7 +162,7 @@ class Normal : protected LAMMPS_NS::Pointers {
 
   const std::string model_, context_;
   std::vector<Entry> table_;
-  int width_ = 0, offset_ = -1;
+  int width_ = 0, offset_ = -1, stamp_ = -1;
   LAMMPS_NS::PairGran* pair_ = nullptr;
   bigint clock_ = 0;  // step of the last pass
   double now_ = 0.0;
