@@ -1,0 +1,9 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+import pytest
+from workshop import copy_of_project
+
+
+@pytest.fixture(scope="module")
+def copy(tmp_path_factory):
+    """A copy of the project, with no compiled parts."""
+    return copy_of_project(tmp_path_factory.mktemp("copy"))
