@@ -6,7 +6,7 @@ import time
 import numpy as np
 
 from ..errors import EpdemError
-from ..experiment import Experiment
+from ..theory.backbones import Backbone
 from .cases import Extreme
 from .running import BROKEN, CREATED, LEAST_ORDER, Setting, Verdict, setting, slope
 
@@ -56,13 +56,12 @@ def reloads(v: Verdict, s: Setting, cycles: int) -> None:
         v.fail(f"work of a cycle: {v.created:.2g} of the energy")
 
 
-def stored(x: Experiment, alpha: np.ndarray, top: np.ndarray) -> np.ndarray:
+def stored(theory: Backbone, alpha: np.ndarray, top: np.ndarray) -> np.ndarray:
     """Elastic and plastic work in a contact [J] at overlap alpha that reached `top`; arrays of one shape.
 
     On the elastic branch: what was put in less what came back from `top` to alpha, by Gauss points in the angle of
     the contact circle, in which the branch is smooth.
     """
-    theory = x.theory()
     alpha, top = np.maximum(alpha, 0.0), np.maximum(top, 1e-300)
     work = theory.work(top)
     recovered = theory.recovered_overlap(top)
@@ -103,7 +102,7 @@ def squeeze_path(s: Setting, shares: np.ndarray, steps: int) -> tuple[np.ndarray
 
 def balance(s: Setting, alphas: np.ndarray, tops: np.ndarray, velocity: np.ndarray) -> np.ndarray:
     """Kinetic, stored and plastic energy over that at the start, shape of `velocity`."""
-    total = 0.5 * s.x.m_star * velocity**2 + sum(stored(s.x, a, t) for a, t in zip(alphas, tops, strict=True))
+    total = 0.5 * s.x.m_star * velocity**2 + sum(stored(s.x.theory(), a, t) for a, t in zip(alphas, tops, strict=True))
     return total / total[0]
 
 

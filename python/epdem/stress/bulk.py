@@ -1,0 +1,143 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Write and run stiff bulk scenes in LIGGGHTS and keep their energy ledger."""
+
+import math
+import os
+from pathlib import Path
+from types import SimpleNamespace
+
+import numpy as np
+import pandas as pd
+
+from .. import deck as decks
+from .. import law as claw
+from .. import paths
+from ..engines.base import call
+from ..engines.liggghts import SOFT, loop_seconds, numbered, read_dump
+from .repeats import stored
+from .scenes import DENSITY, POISSON, STRENGTH, Scene
+
+FRAMES = 40
+LIMIT = 120.0  # seconds a scene may take
+
+
+def write(scene: Scene, folder: Path, *, time_step: float, frames: int = FRAMES, contacts: bool = True):
+    """Deck, data and meshes of a scene; returns what the template saw."""
+    folder.mkdir(parents=True, exist_ok=True)
+    steps = math.ceil(scene.duration / time_step)
+    every = max(1, steps // frames)
+    info = claw.laws()[scene.law]
+    moduli = [E for E, _ in scene.materials]
+    rows = [("youngsModulus", "peratomtype", moduli, "Pa")]
+    rows += [("poissonsRatio", "peratomtype", [POISSON] * len(moduli), "1")]
+    rows += [(p.property, "peratomtype", [STRENGTH[p.property] * p_y for _, p_y in scene.materials], "Pa")
+             for p in info.parameters if p.unit == "Pa"]  # fmt: skip
+    memory = memory_size(scene.law)
+    deck = SimpleNamespace(
+        title=scene.title, plates=scene.plate_speed > 0, plate_speed=scene.plate_speed, soft=min(moduli) < SOFT,
+        skin=0.25 * scene.radius, properties=numbered(rows), model=f"ep/{scene.law}", tangential="off",
+        time_step=time_step, steps=every * math.ceil(steps / every), every=every, frames=frames, contacts=contacts,
+        pair_columns=range(1, 6 + memory + (memory > 0) + 2), wall_columns=range(1, 6 + memory + 2), plastic=None,
+    )  # fmt: skip
+    environment = decks.environment(Path(__file__).parent)
+    (folder / "in.bulk").write_text(environment.get_template("bulk.in.j2").render(deck=deck))
+    (folder / "bulk.data").write_text(_data(scene, deck.plates))
+    if deck.plates:
+        for name, z in (("floor", 0.0), ("plate", float(scene.box[2]))):
+            (folder / f"{name}.stl").write_text(_square(name, scene.box[0], scene.box[1], z))
+    return deck
+
+
+def memory_size(law: str) -> int:
+    """How many numbers a contact of that law remembers in LIGGGHTS."""
+    return {"hertz": 0, "cavity": 4}.get(law, 1)
+
+
+def _data(scene: Scene, plates: bool) -> str:
+    number, R = decks.number, scene.radius
+    margin = 0.5 * R if plates else 0.0  # the box is wider than the gap between the plates
+    head = [scene.title, "", f"{len(scene.position)} atoms", f"{len(scene.materials)} atom types"]
+    head += [f"{number(-margin * (a == 'z'))} {number(float(b) + margin * (a == 'z'))} {a}lo {a}hi"
+             for a, b in zip("xyz", scene.box, strict=True)]  # fmt: skip
+    atoms = [f"{i} {k} {number(2 * R)} {number(DENSITY)} {' '.join(map(number, p))}"
+             for i, (k, p) in enumerate(zip(scene.kind, scene.position, strict=True), 1)]  # fmt: skip
+    speeds = [f"{i} {' '.join(map(number, v))} 0 0 0" for i, v in enumerate(scene.velocity, 1)]
+    return "\n".join([*head, "", "Atoms", "", *atoms, "", "Velocities", "", *speeds, ""])
+
+
+def _square(name: str, lx: float, ly: float, z: float) -> str:
+    corners = [(0.0, 0.0), (lx, 0.0), (lx, ly), (0.0, ly)]
+    lines = [f"solid {name}"]
+    for triangle in ((0, 1, 2), (0, 2, 3)):
+        vertices = [f"vertex {' '.join(map(decks.number, (*corners[i], z)))}" for i in triangle]
+        lines += ["facet normal 0 0 1", "outer loop", *vertices, "endloop", "endfacet"]
+    return "\n".join([*lines, f"endsolid {name}", ""])
+
+
+def execute(folder: Path, *, ranks: int = 1, seconds: float = LIMIT) -> float:
+    """Run in.bulk; the engine's own loop time [s]. Raises EngineError if it fails or exceeds the time limit."""
+    command = [str(paths.launcher()), "-in", "in.bulk", "-log", "log.liggghts"]
+    if ranks > 1:
+        extra = ["--allow-run-as-root"] if os.geteuid() == 0 else []
+        command = ["mpirun", "-np", str(ranks), "--oversubscribe", *extra, *command]
+    call(command, folder, log="out.liggghts", seconds=seconds, env=dict(os.environ) | {"OMP_NUM_THREADS": "1"})
+    return loop_seconds(folder / "log.liggghts")
+
+
+def frames(folder: Path) -> np.ndarray:
+    """Type, position (3) and velocity (3) of every sphere by id, shape (frames, n, 7)."""
+    return read_dump(folder / "atoms.bin", 8)
+
+
+def _local(folder: Path, kind: str, step: int) -> np.ndarray:
+    """Rows of a local dump at a step; empty if there are none."""
+    lines = (folder / f"{kind}.{step}.txt").read_text().splitlines()
+    start = next(i for i, line in enumerate(lines) if line.startswith("ITEM: ENTRIES")) + 1
+    return np.array([line.split() for line in lines[start:]], float)
+
+
+def _elastic(theory, alpha: np.ndarray, top: np.ndarray) -> float:
+    """Elastic energy in contacts of one pair of types [J]."""
+    plastic = np.where(top > theory.yield_overlap, theory.work(top) - theory.recovered_work(top), 0.0)
+    return float((stored(theory, alpha, top) - plastic).sum())
+
+
+def ledger(scene: Scene, deck: SimpleNamespace, folder: Path) -> pd.DataFrame:
+    """Energies at every frame [J]: kinetic, elastic (overlap and memory of each contact), brought in by the plate."""
+    atoms, memory = frames(folder), memory_size(scene.law)
+    rows, brought = [], 0.0
+    push = _pushes(folder) if deck.plates else {}
+    for k, frame in enumerate(atoms):
+        step = k * deck.every
+        kinetic = 0.5 * scene.mass * float((frame[:, 4:7] ** 2).sum())
+        elastic = 0.0
+        for kind, first in (("pairs", 6), ("walls", 6)):
+            if kind == "walls" and not deck.plates:
+                continue
+            table = _local(folder, kind, step)
+            if not table.size:
+                continue
+            alpha = table[:, -1]
+            top = np.maximum(table[:, first] if memory else alpha, alpha)
+            ids = table[:, :2].astype(int) - 1 if kind == "pairs" else None
+            i = frame[ids[:, 0], 0] if kind == "pairs" else frame[table[:, 2].astype(int) - 1, 0]
+            j = frame[ids[:, 1], 0] if kind == "pairs" else np.ones_like(i)
+            for a, b in {(int(p), int(q)) for p, q in zip(i, j, strict=True)}:
+                chosen = (i == a) & (j == b)
+                elastic += _elastic(scene.theory(a, b, plate=kind == "walls"), alpha[chosen], top[chosen])
+        if k and deck.plates:
+            brought += push[step] * scene.plate_speed * deck.every * deck.time_step
+        rows.append({"step": step, "spheres": len(frame), "kinetic": kinetic, "elastic": elastic, "brought": brought})
+    table = pd.DataFrame(rows)
+    table["total"] = table["kinetic"] + table["elastic"] - table["brought"]
+    return table
+
+
+def _pushes(folder: Path) -> dict[int, float]:
+    """Mean force of the spheres on the plate [N] over the steps before each frame, upward positive."""
+    found = {}
+    for line in (folder / "log.liggghts").read_text().splitlines():
+        words = line.split()
+        if len(words) == 4 and words[0].isdigit() and words[1].isdigit():
+            found[int(words[0])] = float(words[3])
+    return found

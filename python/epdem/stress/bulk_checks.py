@@ -1,0 +1,129 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""What stiff bulk scenes must hold: no energy from nothing, no sphere lost, ranks agree; and what accuracy costs."""
+
+import shutil
+import tempfile
+import time
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+
+from ..engines import engine
+from ..errors import EngineError
+from .bulk import FRAMES, execute, frames, ledger, write
+from .scenes import SCENES, Scene, shock, with_law
+
+RISE = 1e-4  # of the energy brought in: what the total may rise from frame to frame; e_n is within 1e-4 at this step
+GROWTH = 1e6  # by which a difference may grow from frame to frame: exponential, no jump
+AGREE = 0.02  # of the kinetic energy, in which ranks may differ when paths have nothing in common any more
+
+
+@dataclass
+class BulkVerdict:
+    """One scene with one law. Energies over the energy brought in, differences over the radius."""
+
+    scene: str
+    law: str
+    spheres: int
+    steps: int
+    seconds: float
+    lost: int
+    rise: float  # largest rise of the total energy between two frames
+    dissipated: float
+    first_difference: float  # between 1 and 2 ranks, largest over the spheres, a quarter through the scene
+    last_difference: float
+    energy_difference: float
+    passed: bool = True
+    reason: str = ""
+
+
+def differences(one: np.ndarray, two: np.ndarray, radius: float) -> np.ndarray:
+    """Largest distance of the same sphere in two runs, over the radius, per frame."""
+    return np.abs(one[:, :, 1:4] - two[:, :, 1:4]).max(axis=(1, 2)) / radius
+
+
+def judge_scene(scene: Scene, folder: Path, *, ranks: int = 2) -> BulkVerdict:
+    """Run a scene on 1 and on `ranks` ranks and check it. Raises EngineError if LIGGGHTS fails."""
+    dt = scene.time_step()
+    deck = write(scene, folder, time_step=dt)
+    begin = time.perf_counter()
+    execute(folder)
+    seconds = time.perf_counter() - begin
+    table, one = ledger(scene, deck, folder), frames(folder)
+    write(scene, folder / "ranks", time_step=dt, contacts=False)
+    execute(folder / "ranks", ranks=ranks)
+    two = frames(folder / "ranks")
+    brought = table["kinetic"].iloc[0] + table["brought"].iloc[-1]
+    apart = differences(one, two, scene.radius)
+    kinetic = [(0.5 * scene.mass * run[-1, :, 4:7] ** 2).sum() for run in (one, two)]
+    v = BulkVerdict(
+        scene.name, scene.law, len(scene.position), deck.steps, seconds, len(scene.position) - one.shape[1],
+        float(table["total"].diff().max() / brought), float(-np.diff(table["total"].iloc[[0, -1]])[0] / brought),
+        float(apart[len(apart) // 4]), float(apart[-1]), float(abs(kinetic[1] / kinetic[0] - 1)),
+    )  # fmt: skip
+    reasons = []
+    if v.lost:
+        reasons.append(f"{v.lost} spheres lost")
+    if not v.rise <= RISE:
+        reasons.append(f"total energy rises by {v.rise:.2g}")
+    growth = apart[1:] / np.maximum(apart[:-1], 1e-16)
+    if not growth.max() <= GROWTH:
+        reasons.append(f"ranks part by a factor {growth.max():.2g} from one frame to the next")
+    if not v.energy_difference <= AGREE:
+        reasons.append(f"kinetic energies of the ranks differ by {v.energy_difference:.2g}")
+    v.passed, v.reason = not reasons, "; ".join(reasons)
+    return v
+
+
+def run(laws: list[str], *, progress: Callable[[str], None] = lambda text: None) -> pd.DataFrame:
+    """The verdicts on every scene with every law, one row each."""
+    if reason := engine("liggghts").missing():
+        raise EngineError(f"engine liggghts: {reason}")
+    rows = []
+    with tempfile.TemporaryDirectory(prefix="epdem-bulk-") as scratch:
+        for name, build in SCENES.items():
+            for law in laws:
+                progress(f"{name}, {law}")
+                rows.append(vars(judge_scene(with_law(build(), law), Path(scratch))))
+                shutil.rmtree(scratch)
+                Path(scratch).mkdir()
+    return pd.DataFrame(rows)
+
+
+def dissipation_cost(*, law: str = "thornton", repetitions: int = 3, shares=(0.4, 0.2, 0.1, 0.05, 0.025),
+                     progress: Callable[[str], None] = lambda text: None) -> pd.DataFrame:  # fmt: skip
+    """Error of the mean dissipated energy of two colliding blocks against seconds, one row per time step.
+
+    The blocks meet for about two collisions a sphere: long enough to be a bulk, too short for round-off to grow.
+    The reference is a run at a quarter of the finest step; `order` is that between neighbouring rows.
+    """
+    scene = with_law(shock((8, 8, 8)), law)
+    limit = scene.time_step() / 0.02
+    with tempfile.TemporaryDirectory(prefix="epdem-bulk-") as scratch:
+        folder = Path(scratch)
+
+        def lost(share: float) -> tuple[float, float]:
+            """(mean dissipated energy [J], loop time [s])"""
+            progress(f"bulk cost: {share:g} of the limit")
+            deck = write(scene, folder, time_step=share * limit, frames=1)
+            loop = execute(folder)
+            total = ledger(scene, deck, folder)["total"]
+            return float(total.iloc[0] - total.iloc[-1]) / len(scene.position), loop
+
+        reference, _ = lost(shares[-1] / 4)
+        found = {share: [lost(share) for _ in range(repetitions)] for share in shares}
+    rows = []
+    for share, runs in found.items():
+        seconds = np.array([loop for _, loop in runs])
+        rows.append({"spheres": len(scene.position), "share of the limit": share, "seconds": float(np.median(seconds)),
+                     "spread": float(np.ptp(seconds)), "error": abs(runs[0][0] / reference - 1)})  # fmt: skip
+    table = pd.DataFrame(rows)
+    ratio = np.log(table["share of the limit"]).diff()
+    table["order"] = np.log(table["error"]).diff() / ratio
+    return table
+
+
+__all__ = ["FRAMES", "BulkVerdict", "dissipation_cost", "judge_scene", "run"]
