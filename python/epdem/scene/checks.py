@@ -4,8 +4,10 @@
 import numpy as np
 import pandas as pd
 
+from ..predict import predict
 from .case import SceneCase
 from .deck import Deck
+from .model import wall_impact
 
 
 def _row(name: str, value: float, expected: float, tolerance: float) -> dict:
@@ -53,6 +55,45 @@ def recovered(case: SceneCase, d: Deck, rows: pd.DataFrame) -> tuple[float, floa
     return float(work[loading].sum()), float(work[~loading].sum())
 
 
+def discharge(case: SceneCase, d: Deck, spheres: pd.DataFrame) -> tuple[float, float]:
+    """Mass flow [kg/s] through the outlet, between a fifth and 3/5 of the filling, and Beverloo's, with the bulk
+    density of the bin when the outlet opens: W = 0.58 rho_b sqrt(g) (D - 1.4 d)^2.5."""
+    s, outlet, steps = case.scene, d.motion["outlet"], spheres["step"].unique()
+    opened = steps[steps <= d.phases[0].end].max()
+    total = spheres[spheres["step"] == opened]["mass"].sum()
+    out = spheres[spheres["z"] < outlet].groupby("step")["mass"].sum().reindex(steps, fill_value=0.0)
+    steady = out[(out > 0.2 * total) & (out < 0.6 * total)]
+    rate = np.polyfit(steady.index.to_numpy() * d.time_step, steady.to_numpy(), 1)[0]
+    full = spheres[spheres["step"] == opened]
+    top = np.quantile(full["z"], 0.95)
+    inside = full[(full["z"] > 0.2 * top) & (full["z"] < 0.7 * top)]
+    area = np.pi / 4 * s.bin_diameter**2
+    bulk = inside["mass"].sum() / (area * 0.5 * top)
+    diameter = 2 * float(full["radius"].mean())
+    return float(rate), float(0.58 * bulk * np.sqrt(s.gravity) * (s.outlet - 1.4 * diameter) ** 2.5)
+
+
+def single_rebound(case: SceneCase) -> float:
+    """Speed [m/s] at which one shot leaves a flat target, by theory alone."""
+    material = case.scene.particles[0].material
+    wall = case.scene.bed[0].material if case.scene.bed else case.scene.walls
+    x = wall_impact(case, material, case.scene.particles[0].radii()[0], wall, case.scene.speed)
+    return float(predict(x).e_n[-1] * case.scene.speed)
+
+
+def rebounds(case: SceneCase, spheres: pd.DataFrame) -> tuple[float, int]:
+    """(speed [m/s] farthest from the single shot's, count) of the shot that met the target and nothing else.
+
+    Only those go straight up: a hit between two shots is never central.
+    """
+    side = np.hypot(spheres["vx"], spheres["vy"])
+    straight = spheres[(spheres["vz"] > 0) & (side < 1e-9 * case.scene.speed)]
+    speeds = straight.groupby("id")["vz"].max().to_numpy()
+    if not speeds.size:
+        return np.nan, 0
+    return float(speeds[np.argmax(np.abs(speeds - single_rebound(case)))]), speeds.size
+
+
 def checks(case: SceneCase, d: Deck, tables: dict[str, pd.DataFrame]) -> pd.DataFrame:
     """One row per check: value, expected, relative error, tolerance, passed."""
     found = _kept(case, d, tables)
@@ -60,6 +101,11 @@ def checks(case: SceneCase, d: Deck, tables: dict[str, pd.DataFrame]) -> pd.Data
     if case.scene.kind == "settle" and "floor_load" in tables["rows"] and "particles" in tables and smooth:
         load, weight = floor_load(case, tables)
         found.append(_row("floor load / weight (smooth walls: hydrostatic)", load, weight, 0.02))
+    if case.scene.kind == "hopper" and case.output.particles >= 20:
+        found.append(_row("mass flow / Beverloo", *discharge(case, d, tables["particles"]), 0.2))
+    if case.scene.kind == "peening" and not case.scene.bed and case.output.particles >= 20:
+        speed, count = rebounds(case, tables["particles"])
+        found.append(_row(f"rebound of {count} shots that met the plate alone / e_n v", speed, single_rebound(case), 1e-3))
     if case.scene.kind == "compaction":
         load, unload = stiffness(case, d, tables["rows"])
         found.append(_below("loading / unloading stiffness", load, unload, 0.0))

@@ -83,14 +83,15 @@ def _hopper(s: Hopper) -> Layout:
     r, top = s.bin_diameter / 2, s.bin_height
     depth = (s.bin_diameter - s.outlet) / 2 / math.tan(s.half_angle)
     margin = 0.1 * r
-    box = (-r - margin, r + margin, -r - margin, r + margin, -depth - s.drop, top)
+    low = float(f"{-depth - s.drop:.10g}")
+    depth = -low - s.drop
+    box = (-r - margin, r + margin, -r - margin, r + margin, low, top)
     rim = r - _largest(s.particles)
     fill = Fill(s.particles, s.count, f"cylinder z 0 0 {rim:.10g} 0 {top:.10g}", "scene.count", math.pi * rim**2 * top)
     sides = _sides(box[1] - box[0], box[3] - box[2])
     return Layout(
-        box, "f f f", (("floor", "zplane", -depth - s.drop), *sides), [fill], [("fill", s.fill), ("discharge", s.duration)],
-        {"hopper": meshes.hopper(s.bin_diameter, s.bin_height, s.outlet, depth),
-         "shutter": meshes.disc(s.outlet * 1.02, -depth)},
+        box, "f f f", (("floor", "zplane", low), *sides), [fill], [("fill", s.fill), ("discharge", s.duration)],
+        {"hopper": meshes.hopper(s.bin_diameter, s.bin_height, s.outlet, depth)}, {"outlet": -depth},
     )  # fmt: skip
 
 

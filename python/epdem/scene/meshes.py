@@ -37,11 +37,6 @@ def hopper(bin_diameter: float, bin_height: float, outlet: float, depth: float) 
     return _tube([(outlet / 2, -depth), (bin_diameter / 2, 0.0), (bin_diameter / 2, bin_height)])
 
 
-def disc(diameter: float, z: float) -> np.ndarray:
-    """A horizontal disc, no corner in its middle where particles fall: a square frame of two triangles."""
-    return plate(diameter, diameter, z)
-
-
 def drum(diameter: float, length: float) -> np.ndarray:
     """A tube about the y axis, open at its ends."""
     tube = _tube([(diameter / 2, -length / 2), (diameter / 2, length / 2)])

@@ -215,33 +215,40 @@ def time_step(case: SceneCase) -> float:
     v = highest_speed(case)
     best = math.inf
     parts = [*case.scene.particles, *getattr(case.scene, "bed", [])]
-    strong, ratios = strengths(case), _ratios(case)
-    name = next((p.name for p in claw.laws()[case.law.name].parameters if p.unit == "Pa"), None)
     bodies = {(p.material, p.radii()[0]) for p in parts}
     for material, radius in sorted(bodies):
         for other in sorted({m for m, _ in bodies} | {case.scene.walls}):
-            x = _impact(case, material, radius, other, v, strong, ratios, name)
+            x = sphere_impact(case, material, radius, other, v)
             prediction = predict(x)
             found = search(x, prediction, case.numerics.error).time_step
             best = min(best, found, BED_SHARE * stability_limit(x, float(prediction.overlap_max.max())))
     return _round_down(best)
 
 
-def _impact(case, material, radius, other, v, strong, ratios, strength):
-    """The impact of a sphere on a sphere of `other` of the same radius, at speeds up to v."""
+def sphere_impact(case: SceneCase, material: str, radius: float, other: str, v: float):
+    """The impact of a sphere on one of `other` of the same radius, at speeds up to v: the shortest of a scene."""
+    return _impact(case, material, other, v, {"kind": "sphere-sphere", "body": {"radius": f"{radius!r} m", "material": material},
+                                              "target": {"radius": f"{radius!r} m", "material": other}})  # fmt: skip
+
+
+def wall_impact(case: SceneCase, material: str, radius: float, other: str, v: float):
+    """The impact of a sphere on a flat wall of `other`, at speeds up to v."""
+    return _impact(case, material, other, v, {"kind": "sphere-wall", "body": {"radius": f"{radius!r} m", "material": material},
+                                              "target": {"material": other}})  # fmt: skip
+
+
+def _impact(case: SceneCase, material: str, other: str, v: float, bodies: dict):
     def table(name):
         m = case.materials[name]
         return {"young_modulus": f"{m.young_modulus!r} Pa", "poisson_ratio": float(m.poisson_ratio),
                 "density": f"{m.density!r} kg/m^3"}  # fmt: skip
 
-    law = {"name": case.law.name, **ratios}
-    if strength:
+    law, strong = {"name": case.law.name, **_ratios(case)}, strengths(case)
+    if strength := next((p.name for p in claw.laws()[case.law.name].parameters if p.unit == "Pa"), None):
         law[strength] = f"{min(strong[material], strong[other])!r} Pa"
-    speeds = {"from": f"{v / 100!r} m/s", "to": f"{v!r} m/s", "count": 5}
     data = {"case": {"name": "step", "title": "step", "source": "scene"},
             "materials": {name: table(name) for name in {material, other}}, "law": law,
-            "impact": {"kind": "sphere-sphere", "body": {"radius": f"{radius!r} m", "material": material},
-                       "target": {"radius": f"{radius!r} m", "material": other}, "speeds": speeds}}  # fmt: skip
+            "impact": bodies | {"speeds": {"from": f"{v / 100!r} m/s", "to": f"{v!r} m/s", "count": 5}}}  # fmt: skip
     return experiment(impacts.parse(data, case.name))
 
 
