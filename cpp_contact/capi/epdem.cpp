@@ -61,10 +61,12 @@ int with_law(int index, double E_star, const double* parameters, const Body& bod
 
 bool sane(const epdem_impact_input& c) {
   return positive(c.R_star) && positive(c.m_star) && positive(c.speed) && positive(c.time_step) &&
-         std::isfinite(c.gap) && c.steps >= 0;
+         std::isfinite(c.gap) && c.steps >= 0 && std::isfinite(c.viscous) && c.viscous >= 0.0;
 }
 
-ImpactInput input(const epdem_impact_input& c) { return {c.R_star, c.m_star, c.speed, c.time_step, c.gap, c.steps}; }
+ImpactInput input(const epdem_impact_input& c) {
+  return {c.R_star, c.m_star, c.speed, c.time_step, c.gap, c.steps, c.viscous};
+}
 
 epdem_impact_output output(const ImpactOutput& o) {
   return {o.rebound_speed, o.force_max, o.overlap_max, o.last_overlap, o.first, o.last, o.steps};
@@ -114,6 +116,10 @@ EPDEM_EXPORT const char* epdem_law_parameter_unit(int law, int k) {
 EPDEM_EXPORT double epdem_law_parameter_default(int law, int k) {
   const Parameter* p = parameter(law, k);
   return p ? p->fallback : std::nan("");
+}
+
+EPDEM_EXPORT double epdem_viscous_number(double restitution) {
+  return restitution >= viscous_restitution_min && restitution <= 1.0 ? viscous_number(restitution) : std::nan("");
 }
 
 EPDEM_EXPORT int epdem_step(int law, double E_star, const double* parameters, double R_star, size_t n,

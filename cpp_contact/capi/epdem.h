@@ -13,7 +13,7 @@
 extern "C" {
 #endif
 
-#define EPDEM_ABI 2
+#define EPDEM_ABI 3
 #define EPDEM_MAX_PARAMETERS 8
 
 typedef enum {
@@ -36,6 +36,7 @@ typedef struct {
   double time_step; /* [s] */
   double gap;       /* before first touch [m]; negative: overlap at the start */
   int64_t steps;    /* at most so many */
+  double viscous;   /* epdem_viscous_number of the pair, 0: no dashpot */
 } epdem_impact_input;
 
 typedef struct {
@@ -65,6 +66,9 @@ double epdem_law_parameter_default(int law, int k);       /* NaN: must be given 
 /* n steps, each from its own delta_max and delta; `parameters` as in epdem_law_parameter_name. */
 int epdem_step(int law, double E_star, const double* parameters, double R_star, size_t n, const double* delta_max,
                const double* delta, epdem_step_result* out);
+
+/* Dashpot number of a restitution at low speed in [0.14, 1]; NaN outside. */
+double epdem_viscous_number(double restitution);
 
 /* The backbone at n overlaps: force [N], radius [m], work [J], plastic work of a contact that got there [J]. */
 int epdem_backbone(int law, double E_star, const double* parameters, double R_star, size_t n, const double* delta,

@@ -6,6 +6,7 @@
 #include <string>
 
 #include "epdem/tangential.hpp"
+#include "epdem/viscous.hpp"
 #include "force.h"
 #include "global_properties.h"
 
@@ -165,9 +166,25 @@ std::vector<double> damping_numbers(const Reader& reader, Dashpot dashpot) {
   return beta;
 }
 
+std::vector<double> viscous_numbers(const Reader& reader, bool viscous) {
+  const int n = reader.types();
+  std::vector<double> numbers((n + 1) * (n + 1), 0.0);
+  if (!viscous) return numbers;
+  FixPropertyGlobal* e = reader.find("coefficientRestitution", "peratomtypepair");
+  if (!e)
+    reader.fail("viscous on needs coefficientRestitution (peratomtypepair), the restitution of slow impacts that do "
+                "not yield");
+  for (int i = 1; i <= n; ++i)
+    for (int j = 1; j <= n; ++j)
+      numbers[i * (n + 1) + j] = viscous_number(reader.checked(
+          "coefficientRestitution", "1", both(i, j), e->compute_array(i - 1, j - 1), {viscous_restitution_min, 1.0, true}));
+  return numbers;
+}
+
 }  // namespace
 
-Materials read_materials(LAMMPS_NS::LAMMPS* lmp, PropertyRegistry& registry, const Declaration& law, Dashpot dashpot) {
+Materials read_materials(LAMMPS_NS::LAMMPS* lmp, PropertyRegistry& registry, const Declaration& law, Dashpot dashpot,
+                         bool viscous) {
   const Reader reader(lmp, registry, law);
   const int n = reader.types(), width = n + 1;
   const std::vector<double> E = reader.per_type("youngsModulus", "Pa", {0.0, unlimited, false});
@@ -178,7 +195,7 @@ Materials read_materials(LAMMPS_NS::LAMMPS* lmp, PropertyRegistry& registry, con
 
   std::vector<ParameterTable> tables;
   for (int k = 0; k < law.count; ++k) tables.emplace_back(reader, law.parameters[k]);
-  const std::vector<double> beta = damping_numbers(reader, dashpot);
+  const std::vector<double> beta = damping_numbers(reader, dashpot), dashpots = viscous_numbers(reader, viscous);
 
   const double pascal = 1.0 / lmp->force->nktv2p;  // pressure unit of the deck in force/length^2
   Materials materials{width, std::vector<PairOfTypes>(width * width)};
@@ -187,7 +204,8 @@ Materials read_materials(LAMMPS_NS::LAMMPS* lmp, PropertyRegistry& registry, con
       std::vector<double> values = parameters_of(reader, law, tables, i, j);
       for (int k = 0; k < law.count; ++k)
         if (std::string(law.parameters[k].unit) == "Pa") values[k] *= pascal;
-      materials.pairs[i * width + j] = {{E[i] * pascal, nu[i]}, {E[j] * pascal, nu[j]}, values, beta[i * width + j]};
+      materials.pairs[i * width + j] = {{E[i] * pascal, nu[i]}, {E[j] * pascal, nu[j]}, values, beta[i * width + j],
+                                      dashpots[i * width + j]};
     }
   return materials;
 }

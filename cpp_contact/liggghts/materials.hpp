@@ -33,6 +33,7 @@ struct PairOfTypes {
   Elastic i, j;
   std::vector<double> parameters;
   double damping_number;
+  double viscous_number;
 };
 
 /// Rows and columns 1..max_type (row and column 0 are empty: LIGGGHTS counts types from 1).
@@ -43,6 +44,7 @@ struct Materials {
 
 /// Reads every type in use; a value that is missing or out of range ends the run with an error that names model,
 /// property, value and range. Collective: every rank must call it.
-Materials read_materials(LAMMPS_NS::LAMMPS* lmp, PropertyRegistry& registry, const Declaration& law, Dashpot dashpot);
+Materials read_materials(LAMMPS_NS::LAMMPS* lmp, PropertyRegistry& registry, const Declaration& law, Dashpot dashpot,
+                         bool viscous);
 
 }  // namespace epdem::liggghts

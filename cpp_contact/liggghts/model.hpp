@@ -135,7 +135,9 @@ class Model : public ContactModelBase {
   void tally_pw(double x, int i, int j, int k) override { surface_.tally_pw(x, i, j, k); }
   bool checkSurfaceIntersect(SurfacesIntersectData& s) { return surface_.checkSurfaceIntersect(s); }
 
-  void surfacesIntersect(SurfacesIntersectData& s, ForceData& i, ForceData& j) {
+  /// The loop: all parts inlined, and what LIGGGHTS asks at run time settled where the class already knows it.
+  [[gnu::flatten]] void surfacesIntersect(SurfacesIntersectData& s, ForceData& i, ForceData& j) {
+    if (s.is_wall != wall) __builtin_unreachable();
     surface_.surfacesIntersect(s, i, j);
     normal_.surfacesIntersect(s, i, j);
     cohesion_.surfacesIntersect(s, i, j);

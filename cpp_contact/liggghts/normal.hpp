@@ -8,6 +8,7 @@
 
 #include "epdem/law.hpp"
 #include "epdem/tangential.hpp"
+#include "epdem/viscous.hpp"
 #include "host.hpp"
 #include "materials.hpp"
 
@@ -46,6 +47,7 @@ class Normal : protected LAMMPS_NS::Pointers {
 
   void registerSettings(::Settings& settings) {
     settings.registerOnOff("tangential_damping", tangential_damping_, true);
+    settings.registerOnOff("viscous", viscous_, false);
     settings.registerOnOff("limitForce", limit_force_, false);
     settings.registerOnOff("heating_normal_hertz", heating_, false);
     settings.registerOnOff("heating_tracking", heating_tracking_, false);
@@ -67,14 +69,14 @@ class Normal : protected LAMMPS_NS::Pointers {
     // Rebuilt at every init: LIGGGHTS frees all properties there, and the user may have changed them.
     if (!tangential_damping_ && dashpot == Dashpot::optional) dashpot = Dashpot::off;
     const Declaration law{model_.c_str(), Law::parameters, Law::n_parameters, &Law::valid};
-    const Materials m = read_materials(lmp, registry, law, dashpot);
+    const Materials m = read_materials(lmp, registry, law, dashpot, viscous_);
     width_ = m.width;
     table_.assign(m.pairs.size(), Entry{});
     for (int i = 1; i < width_; ++i)
       for (int j = 1; j < width_; ++j) {
         const PairOfTypes& p = m.pairs[i * width_ + j];
         table_[i * width_ + j] = {Law(effective_modulus(p.i, p.j), p.parameters.data()),
-                                  effective_shear_modulus(p.i, p.j), p.damping_number};
+                                  effective_shear_modulus(p.i, p.j), p.damping_number, p.viscous_number};
       }
   }
 
@@ -113,13 +115,17 @@ class Normal : protected LAMMPS_NS::Pointers {
       if constexpr (stamped) history[stamp_] = now_;
     }
 
-    s.Fn = now.force;
+    double force = now.force;
+    if (t.viscous_number > 0.0)
+      force = damped_force(t.law, R_star, before, now, t.viscous_number, s.meff, -s.vn);
+
+    s.Fn = force;
     s.kn = 4.0 / 3.0 * t.law.E_star * now.radius;  // LIGGGHTS's convention for rolling friction: F/alpha of Hertz
     s.kt = tangential_stiffness(t.G_star, now.radius);
     s.gamman = 0.0;
     s.gammat = t.damping_number > 0.0 ? tangential_damping(t.damping_number, s.kt, s.meff) : 0.0;
 
-    const double share = wall ? now.force * s.area_ratio : now.force;
+    const double share = wall ? force * s.area_ratio : force;
     for (int k = 0; k < 3; ++k) {
       fi.delta_F[k] += share * s.en[k];
       if constexpr (!wall) fj.delta_F[k] -= share * s.en[k];
@@ -134,7 +140,7 @@ class Normal : protected LAMMPS_NS::Pointers {
  private:
   struct Entry {
     Law law;
-    double G_star = 0.0, damping_number = 0.0;
+    double G_star = 0.0, damping_number = 0.0, viscous_number = 0.0;
   };
 
   /// The pair parted since its last evaluation: it is a new contact, for the other models as well.
@@ -166,7 +172,7 @@ class Normal : protected LAMMPS_NS::Pointers {
   LAMMPS_NS::PairGran* pair_ = nullptr;
   bigint clock_ = 0;  // step of the last pass
   double now_ = 0.0;
-  bool tangential_damping_ = true, limit_force_ = false, heating_ = false, heating_tracking_ = false;
+  bool viscous_ = false, tangential_damping_ = true, limit_force_ = false, heating_ = false, heating_tracking_ = false;
   bool elastic_potential_ = false, dissipated_energy_ = false, disable_when_bonded_ = false;
 };
 

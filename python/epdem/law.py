@@ -16,7 +16,7 @@ import numpy as np
 from . import paths
 from .errors import CaseError, EngineError
 
-ABI = 2
+ABI = 3
 _D = POINTER(c_double)
 
 
@@ -25,7 +25,7 @@ class _StepResult(Structure):
 
 
 IMPACT_INPUT = np.dtype(
-    [(n, "f8") for n in ("R_star", "m_star", "speed", "time_step", "gap")] + [("steps", "i8")], align=True
+    [(n, "f8") for n in ("R_star", "m_star", "speed", "time_step", "gap")] + [("steps", "i8"), ("viscous", "f8")], align=True
 )
 IMPACT_OUTPUT = np.dtype(
     [(n, "f8") for n in ("rebound_speed", "force_max", "overlap_max", "last_overlap")]
@@ -40,6 +40,7 @@ _SIGNATURES = {
     "epdem_version": (c_char_p, []),
     "epdem_message": (c_char_p, [c_int]),
     "epdem_size_of": (c_size_t, [c_char_p]),
+    "epdem_viscous_number": (c_double, [c_double]),
     "epdem_law_count": (c_int, []),
     "epdem_law_name": (c_char_p, [c_int]),
     "epdem_law_parameter_count": (c_int, [c_int]),
@@ -126,6 +127,14 @@ def laws() -> dict[str, LawInfo]:
     return found
 
 
+def viscous_number(restitution: float) -> float:
+    """Dashpot number of a pair with that restitution at low speed; CaseError outside [0.14, 1]."""
+    number = library().epdem_viscous_number(restitution)
+    if math.isnan(number):
+        raise CaseError(f"viscous.restitution = {restitution}, must lie in [0.14, 1]")
+    return number
+
+
 def _array(x) -> np.ndarray:
     return np.ascontiguousarray(np.atleast_1d(x), dtype=np.float64)
 
@@ -191,22 +200,24 @@ class Law:
         return tuple(out)
 
     @staticmethod
-    def _cases(R_star, m_star, speed, time_step, gap, steps: int) -> np.ndarray:
+    def _cases(R_star, m_star, speed, time_step, gap, steps: int, viscous: float = 0.0) -> np.ndarray:
         columns = np.broadcast_arrays(*map(_array, (R_star, m_star, speed, time_step, gap)))
         cases = np.empty(columns[0].shape, IMPACT_INPUT)
         for name, column in zip(("R_star", "m_star", "speed", "time_step", "gap"), columns, strict=True):
             cases[name] = column
-        cases["steps"] = steps
+        cases["steps"], cases["viscous"] = steps, viscous
         return cases
 
-    def impacts(self, *, R_star, m_star, speed, time_step, gap=0.0, steps: int, paths: bool = False):
+    def impacts(self, *, R_star, m_star, speed, time_step, gap=0.0, steps: int, viscous: float = 0.0,
+                paths: bool = False):  # fmt: skip
         """Two-body impacts by velocity Verlet; all arguments but `steps` and `paths` broadcast to (n,).
 
-        gap [m] is the distance before first touch (negative: overlap at the start). Returns a structured array
+        gap [m] is the distance before first touch (negative: overlap at the start); viscous is a dashpot number
+        (viscous_number, 0: none). Returns a structured array
         (IMPACT_OUTPUT) and, with paths=True, overlap [m], force [N] and approach velocity [m/s] of shape
         (n, steps + 1), NaN after the end of an impact.
         """
-        cases = self._cases(R_star, m_star, speed, time_step, gap, steps)
+        cases = self._cases(R_star, m_star, speed, time_step, gap, steps, viscous)
         out = np.empty(cases.shape, IMPACT_OUTPUT)
         samples = [np.full((cases.size, steps + 1), np.nan) if paths else None for _ in range(3)]
         self._check(

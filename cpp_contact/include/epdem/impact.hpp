@@ -4,7 +4,7 @@
 
 #include <cstdint>
 
-#include "law.hpp"
+#include "viscous.hpp"
 
 namespace epdem {
 
@@ -17,6 +17,7 @@ struct ImpactInput {
   real gap;            // distance before first touch [m]; the phase of the impact is gap/(speed time_step);
                        // negative: they overlap already
   std::int64_t steps;  // at most so many steps are taken
+  real viscous;        // viscous_number of the pair, 0: no dashpot
 };
 
 struct ImpactOutput {
@@ -44,8 +45,11 @@ inline ImpactOutput impact(const Law& law, const ImpactInput& in, const Path& pa
   std::int64_t n = 0;
   for (;; ++n) {
     const Step<Law> now = step(law, in.R_star, state, alpha);
-    if (n > 0) v -= half * now.force;
-    force = now.force;
+    // the dashpot sees the speed of the middle of the last step, as in an engine that moves before it finds contacts
+    const bool damped = in.viscous > 0.0 && alpha > 0.0;
+    const real F = damped ? damped_force(law, in.R_star, state, now, in.viscous, in.m_star, v) : now.force;
+    if (n > 0) v -= half * F;
+    force = F;
     state = now.after;
     if (path.overlap) path.overlap[n] = alpha;
     if (path.force) path.force[n] = force;
