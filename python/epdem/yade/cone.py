@@ -16,8 +16,7 @@ from math import pi, sqrt
 SMALL = 1e-6
 
 
-# sigmaMax over Young's modulus: of a material that never yields (YADE refuses 1 and more), and the most that one may have
-# that does.
+# sigmaMax over Young's modulus: of a material that never yields (YADE refuses 1 and more), and the most of one that does.
 NEVER, STRONGEST = 0.4, 0.36
 
 

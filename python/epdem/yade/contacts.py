@@ -36,6 +36,7 @@ from yade.wrapper import (
     Ip2_FrictMatCDM_FrictMatCDM_MindlinPhysCDM,
     Law2_ScGeom_MindlinPhysCDM_HertzMindlinCDM,
     PyRunner,
+    Sphere,
 )
 
 from . import cone
@@ -55,7 +56,7 @@ def visit(*key) -> None:
     manager = _managers.get(key)
     if manager is None:
         law, interval, tolerance, *ratios = key
-        manager = Contacts(law, interval, tolerance, **dict(zip(LAWS[law].ratios, ratios, strict=True)))
+        manager = Contacts(law, interval, tolerance, **dict(ratios))
         _managers[key] = manager
     manager.visit()
 
@@ -64,8 +65,9 @@ class Contacts:
     """All contacts of a scene under one law.
 
     law        hertz, thornton, johnson or cavity; `ratios` are its dimensionless parameters (first_yield_ratio, ...)
-    interval   steps between two searches for new contacts. 1 misses none; with more, a contact that is found beyond
-               half its yield overlap gives a warning, and from then on the search is made every step
+    interval   steps between two searches for new contacts. 1 misses none. More is for slow flows: as often, the fastest
+               body is looked up, and where it might pass half the shortest yield overlap meanwhile there is a warning
+               and the search is made every step as long as that lasts
     tolerance  share of the law's force below which a difference is left as it is; 0: the law's force to round-off
     """
 
@@ -81,7 +83,7 @@ class Contacts:
         if interval < 1:
             raise ValueError(f"interval = {interval!r} steps, must be >= 1")
         self.ratios, self.interval, self.tolerance = ratios, interval, tolerance
-        self.key = (law, interval, tolerance, *(ratios[n] for n in self.kind.ratios if n in ratios))
+        self.key = (law, interval, tolerance, *sorted(ratios.items()))
         self.visits = 0  # of contacts, by Python
         self._laws: dict[tuple[float, float], object] = {}
         self._runner: object = None
@@ -138,6 +140,8 @@ class Contacts:
             self._begin(runner)
         self._age += 1
         if self._age >= self.interval:
+            self._age, self._hurry = 0, self.interval > 1 and self._too_fast()
+        if self._age == 0 or self._hurry:
             self._search()
         for contact in list(compress(self._watched, map(_yielding, self._phys))):
             if contact.place < 0 and contact.alive:
@@ -147,16 +151,40 @@ class Contacts:
 
     def _begin(self, runner: object) -> None:
         """Another scene than in the last visit: only what YADE saves counts."""
-        self._runner, self._age = runner, self.interval
+        self._runner, self._age, self._hurry = runner, self.interval, False
         self._collider = next((e for e in O.engines if isinstance(e, InsertionSortCollider)), None)
         self._state: object = None
         self._contacts: list[Contact] = []
         self._sort()
 
+    def _too_fast(self) -> bool:
+        """Whether two bodies may yield each other before the next search; says so once."""
+        shortest, speed = self._survey()
+        path = 2.0 * speed * self.interval * O.dt
+        if path <= 0.5 * shortest:
+            return False
+        most = max(1, int(0.25 * shortest / (speed * O.dt)))
+        warnings.warn(f"epdem: interval = {self.interval} steps is too long: at {speed:.4g} m/s bodies approach by "
+                      f"{path:.4g} m meanwhile, the shortest yield overlap is {shortest:.4g} m. New contacts are "
+                      f"searched every step until it fits; take at most {most}", RuntimeWarning, stacklevel=2)  # fmt: skip
+        return True
+
+    def _survey(self) -> tuple[float, float]:
+        """(shortest yield overlap that two bodies can have [m], speed of the fastest [m/s])."""
+        R_min, speed, kinds = inf, 0.0, set()
+        for body in O.bodies:
+            speed = max(speed, body.state.vel.squaredNorm())
+            material = body.material
+            if isinstance(material, FrictMatCDM) and not body.isClump:
+                kinds.add((material.young / (1.0 - material.poisson**2), trigger_pressure(material)))
+                if isinstance(body.shape, Sphere):
+                    R_min = min(R_min, body.shape.radius)
+        ratios = [(0.5 * pi * min(s, t) * (1.0 / E + 1.0 / F)) ** 2 for E, s in kinds for F, t in kinds]
+        return 0.5 * R_min * min(ratios, default=inf), speed**0.5
+
     def _search(self) -> None:
         """Meet new contacts and drop old ones. While the collider rests the pairs are the same, and only those without
         a contact can get one; the number of contacts then tells whether any has ended."""
-        self._age = 0
         state = self._collider and (self._collider.numAction, len(O.interactions))
         if state is None or state != self._state:
             self._state = state
@@ -216,12 +244,9 @@ class Contacts:
         """The first visit: the force of this step, and the course from here."""
         u = contact.geom.penetrationDepth
         computed, limit, reached = contact.computed(u), contact.yield_overlap, contact.reached()
-        if contact.born < O.iter and max(u, reached) > 0.5 * limit:
-            warnings.warn(f"epdem: a contact was found at overlap {u:.4g} m, its yield overlap is {limit:.4g} m: "
-                          f"interval = {self.interval} steps is too long for this speed. From here on new contacts are "
-                          "searched every step; one that has yielded already had YADE's own force until now",
-                          RuntimeWarning, stacklevel=2)  # fmt: skip
-            self.interval = 1
+        if contact.born < O.iter and max(u, reached) > limit:
+            warnings.warn(f"epdem: a contact had yielded (overlap {u:.4g} m) before it was found and had YADE's own "
+                          "force until now; take interval = 1", RuntimeWarning, stacklevel=2)  # fmt: skip
         if reached > max(u, limit) * (1.0 + 1e-9):
             contact.remember(reached)
             force = contact.unload(u)
