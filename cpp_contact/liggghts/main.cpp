@@ -26,6 +26,8 @@ int main(int argc, char** argv) {
   if (!std::getenv("OMPI_COMM_WORLD_SIZE")) {
     setenv("OMPI_MCA_ess_singleton_isolated", "1", 0);
     setenv("OMPI_MCA_pml", "ob1", 0);
+    // processes that start and end at the same time would race for one directory in /tmp, and one of them would die
+    setenv("OMPI_MCA_orte_create_session_dirs", "0", 0);
   }
   MPI_Init(&argc, &argv);
   handle_signals();
