@@ -6,8 +6,9 @@ from .base import Engine, Trajectory
 from .builtin import BuiltinHertz, ThorntonNing
 from .embedded import Embedded
 from .liggghts import Liggghts
+from .yade import Yade
 
-ENGINES: dict[str, type[Engine]] = {"embedded": Embedded, "liggghts": Liggghts}
+ENGINES: dict[str, type[Engine]] = {"embedded": Embedded, "liggghts": Liggghts, "yade": Yade}
 # LIGGGHTS's own models, for comparisons; `run` takes them by name as well.
 OTHERS: dict[str, type[Engine]] = {tool.name: tool for tool in (BuiltinHertz, ThorntonNing)}
 
