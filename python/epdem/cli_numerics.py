@@ -80,12 +80,14 @@ def stress(
             temporary.write_text(document(outcome, "epdem " + " ".join(sys.argv[1:])))
     if as_json:
         print(json.dumps({"passed": outcome.passed, "rows": records(outcome.verdicts),
-                          "roundoff": records(outcome.roundoff)}, indent=1))  # fmt: skip
+                          "roundoff": records(outcome.roundoff), "bulk": records(outcome.bulk)}, indent=1))  # fmt: skip
     else:
         console = _console()
         console.print(table("extreme cases; steps as shares of the stability limit", summary(outcome.verdicts)))
         for v in outcome.verdicts[outcome.verdicts["status"] == "failed"].itertuples():
             console.print(f"failed: {v.engine}, {v.law}, {v.case}: {v.reason}", style="red", highlight=False)
+        if not outcome.bulk.empty:
+            console.print(table("stiff bulk scenes in LIGGGHTS", outcome.bulk))
     raise typer.Exit(0 if outcome.passed else 1)
 
 
@@ -112,7 +114,7 @@ def cost(
         outcome = study.run(case, engines=engine or ["embedded", "liggghts"], laws=law or [], repetitions=repetitions,
                             progress=line.update)  # fmt: skip
         if bulk:
-            from .stress.bulk import dissipation_cost
+            from .stress.bulk_checks import dissipation_cost
 
             scene = dissipation_cost(progress=line.update)
     folder = out or Path("runs") / outcome.case.name / "cost"

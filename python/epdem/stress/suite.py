@@ -11,6 +11,7 @@ import pandas as pd
 from .. import law as claw
 from ..engines import engine
 from ..errors import EngineError
+from . import bulk_checks
 from .cases import extremes
 from .repeats import judge_repeats
 from .roundoff import floors
@@ -22,14 +23,15 @@ POSITION_COARSE = (0.3, 0.5, 0.7, 1.0, 1.5)  # an engine's start-up costs more t
 
 @dataclass(frozen=True)
 class Outcome:
-    """verdicts: one row per case, engine and law; roundoff: one row per law and speed."""
+    """verdicts: one row per case, engine and law; roundoff: per law and speed; bulk: per stiff scene and law."""
 
     verdicts: pd.DataFrame
     roundoff: pd.DataFrame
+    bulk: pd.DataFrame
 
     @property
     def passed(self) -> bool:
-        return bool((self.verdicts["status"] != "failed").all())
+        return bool((self.verdicts["status"] != "failed").all() and (self.bulk.empty or self.bulk["passed"].all()))
 
 
 def samplers(names: list[str], folder: Path) -> list[Sampler]:
@@ -47,7 +49,8 @@ def run(engines: list[str], laws: list[str], *, groups: list[str] | None = None,
         cycles: int = 10_000, progress: Callable[[str], None] = lambda text: None) -> Outcome:  # fmt: skip
     """Judge every `every`-th case of the `groups` (none: all) with every law in every engine.
 
-    `steps` is the length of the drift by bounces, `cycles` the number of reloads. Laws none given: all.
+    `steps` is the length of the drift by bounces, `cycles` the number of reloads. Laws none given: all. Without
+    `groups` the round-off floor is measured and, with LIGGGHTS, the stiff bulk scenes run.
     """
     laws = laws or list(claw.laws())
     chosen = [e for e in extremes() if not groups or e.group in groups][::every]
@@ -68,7 +71,8 @@ def run(engines: list[str], laws: list[str], *, groups: list[str] | None = None,
             tables = [floors(law, others) for law in laws]
     verdicts = pd.DataFrame([asdict(v) for v in rows])
     verdicts["notes"] = verdicts["notes"].map("; ".join)
-    return Outcome(verdicts, pd.concat(tables, ignore_index=True) if tables else pd.DataFrame())
+    bulk = bulk_checks.run(laws, progress=progress) if "liggghts" in engines and not groups else pd.DataFrame()
+    return Outcome(verdicts, pd.concat(tables, ignore_index=True) if tables else pd.DataFrame(), bulk)
 
 
 def summary(verdicts: pd.DataFrame) -> pd.DataFrame:
