@@ -1,23 +1,44 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Quantities of a pair of bodies."""
+"""Quantities of a pair of bodies (Johnson 1985, sections 4.2 and 7.3). All arguments broadcast."""
 
 import numpy as np
 
+from .checks import number, poisson_ratio
+
 
 def E_star(E1, nu1, E2, nu2):
+    """Effective modulus [Pa]: 1/E* = (1-nu1^2)/E1 + (1-nu2^2)/E2.
+
+    E1, E2 [Pa] > 0, infinite for a rigid body; nu1, nu2 in (-1, 0.5]. ValueError outside.
+    """
+    E1, E2 = number("E1", E1, infinite=True), number("E2", E2, infinite=True)
+    nu1, nu2 = poisson_ratio("nu1", nu1), poisson_ratio("nu2", nu2)
     return 1 / ((1 - nu1**2) / E1 + (1 - nu2**2) / E2)
 
 
 def G_star(E1, nu1, E2, nu2):
+    """Effective shear modulus [Pa]: 1/G* = (2-nu1)/G1 + (2-nu2)/G2 with G = E/(2(1+nu)); arguments as in E_star."""
+    E1, E2 = number("E1", E1, infinite=True), number("E2", E2, infinite=True)
+    nu1, nu2 = poisson_ratio("nu1", nu1), poisson_ratio("nu2", nu2)
     return 1 / (2 * (2 - nu1) * (1 + nu1) / E1 + 2 * (2 - nu2) * (1 + nu2) / E2)
 
 
+def _reduced(name: str, a, b):
+    a, b = number(name + "1", a, infinite=True), number(name + "2", b, infinite=True)
+    small, large = np.minimum(a, b), np.maximum(a, b)
+    return small / (1 + small / large)  # no loss for a plane (inf) or very unequal bodies
+
+
 def R_star(R1, R2):
-    return 1 / (1 / R1 + 1 / R2) if np.isfinite(R2) else R1
+    """Effective radius [m]: 1/R* = 1/R1 + 1/R2; R1, R2 [m] > 0, infinite for a plane."""
+    return _reduced("R", R1, R2)
 
 
-m_star = R_star
+def m_star(m1, m2):
+    """Effective mass [kg]: 1/m* = 1/m1 + 1/m2; m1, m2 [kg] > 0, infinite for a fixed body."""
+    return _reduced("m", m1, m2)
 
 
 def sphere_mass(*, radius, density):
-    return 4 / 3 * np.pi * radius**3 * density
+    """Mass of a solid sphere [kg]; radius [m] > 0, density [kg/m^3] > 0."""
+    return 4 / 3 * np.pi * number("radius", radius) ** 3 * number("density", density)

@@ -1,0 +1,23 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Arguments are checked once, as whole arrays; the message names the argument and its range."""
+
+import numpy as np
+
+
+def number(name: str, value, *, low: float = 0.0, high: float = np.inf, low_ok: bool = False, infinite: bool = False):
+    """`value` as a float array in (low, high] or [low, high]; infinite=True lets +inf pass.
+
+    Raises ValueError that names the argument, the first bad value and the range.
+    """
+    x = np.asarray(value, dtype=float)
+    good = (x >= low if low_ok else x > low) & (x <= high) & (np.isfinite(x) | (infinite & (x == np.inf)))
+    if not np.all(good):
+        worst = x[~good].flat[0] if x.ndim else x
+        left, right = "[" if low_ok else "(", "inf)" if np.isinf(high) and not infinite else f"{high:g}]"
+        raise ValueError(f"{name} = {worst:g}, must lie in {left}{low:g}, {right}")
+    return x if x.ndim else float(x)
+
+
+def poisson_ratio(name: str, value):
+    """`value` in (-1, 0.5]."""
+    return number(name, value, low=-1.0, high=0.5)
