@@ -81,7 +81,7 @@ class Contact(Frozen):
 
     friction: quantity("1", ge=0.0) = 0.0
     wall_friction: quantity("1", ge=0.0) | None = None
-    pairs: list[Between] = []
+    pairs: tuple[Between, ...] = ()
     tangential_restitution: Share | None = None  # of the dashpot beside the tangential spring
     rolling: Rolling | None = None
     cohesion: quantity("J/m^3", above=0.0) | None = None  # energy density (sjkr)
@@ -195,7 +195,7 @@ class Peening(Common):
     side: Length  # of the square that the stream hits
     speed: Speed
     rate: quantity("Hz", above=0.0)  # spheres per second
-    bed: list[Particles] = []
+    bed: tuple[Particles, ...] = ()
     bed_count: Annotated[int, Field(ge=0, le=10_000_000)] = 0
     bed_fill: Time | None = None
 
@@ -263,7 +263,9 @@ def parse(data: dict, path: object = "case") -> SceneCase:
         elif problem["type"].startswith("union_tag"):
             text = f"kind = {kind!r}, must be one of settle, hopper, drum, compaction, peening"
         value = problem["input"]
-        shown = "" if value is None or isinstance(value, dict | list) or "missing" in problem["type"] else f" = {value!r}"
+        shown = (
+            "" if value is None or isinstance(value, dict | list) or "missing" in problem["type"] else f" = {value!r}"
+        )
         raise CaseError(f"{path}: {place}{shown}{', ' if shown else ' ' if place else ''}{text}") from None
 
 

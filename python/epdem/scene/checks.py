@@ -12,19 +12,35 @@ from .model import wall_impact
 
 def _row(name: str, value: float, expected: float, tolerance: float) -> dict:
     error = abs(value / expected - 1.0) if expected else abs(value)
-    return {"check": name, "value": value, "expected": expected, "error": error, "tolerance": tolerance,
-            "passed": bool(error <= tolerance)}  # fmt: skip
+    return {
+        "check": name,
+        "value": value,
+        "expected": expected,
+        "error": error,
+        "tolerance": tolerance,
+        "passed": bool(error <= tolerance),
+    }
 
 
 def _below(name: str, value: float, limit: float, tolerance: float) -> dict:
-    return {"check": name, "value": value, "expected": limit, "error": max(0.0, value / limit - 1.0),
-            "tolerance": tolerance, "passed": bool(value <= limit * (1 + tolerance))}  # fmt: skip
+    return {
+        "check": name,
+        "value": value,
+        "expected": limit,
+        "error": max(0.0, value / limit - 1.0),
+        "tolerance": tolerance,
+        "passed": bool(value <= limit * (1 + tolerance)),
+    }
 
 
 def _kept(case: SceneCase, d: Deck, tables: dict[str, pd.DataFrame]) -> list[dict]:
     if d.loses:
         return []
-    return [_row("spheres in the room at the end", float(tables["rows"]["particles"].iloc[-1]), float(case.scene.count), 0.0)]
+    return [
+        _row(
+            "spheres in the room at the end", float(tables["rows"]["particles"].iloc[-1]), float(case.scene.count), 0.0
+        )
+    ]
 
 
 def floor_load(case: SceneCase, tables: dict[str, pd.DataFrame]) -> tuple[float, float]:
@@ -43,8 +59,10 @@ def stiffness(case: SceneCase, d: Deck, rows: pd.DataFrame) -> tuple[float, floa
     way_down, down = unload["plate_z"].to_numpy(), unload["plate_force"].to_numpy()
     bottom, top = way_up[0], up[0]
     below = int(np.argmax(up < 0.5 * top)), int(np.argmax(down < 0.5 * top))
-    return (float((top - up[below[0]]) / (way_up[below[0]] - bottom)),
-            float((top - down[below[1]]) / (way_down[below[1]] - bottom)))  # fmt: skip
+    return (
+        float((top - up[below[0]]) / (way_up[below[0]] - bottom)),
+        float((top - down[below[1]]) / (way_down[below[1]] - bottom)),
+    )
 
 
 def recovered(case: SceneCase, d: Deck, rows: pd.DataFrame) -> tuple[float, float]:
@@ -105,7 +123,9 @@ def checks(case: SceneCase, d: Deck, tables: dict[str, pd.DataFrame]) -> pd.Data
         found.append(_row("mass flow / Beverloo", *discharge(case, d, tables["particles"]), 0.2))
     if case.scene.kind == "peening" and not case.scene.bed and case.output.particles >= 20:
         speed, count = rebounds(case, tables["particles"])
-        found.append(_row(f"rebound of {count} shots that met the plate alone / e_n v", speed, single_rebound(case), 1e-3))
+        found.append(
+            _row(f"rebound of {count} shots that met the plate alone / e_n v", speed, single_rebound(case), 1e-3)
+        )
     if case.scene.kind == "compaction":
         load, unload = stiffness(case, d, tables["rows"])
         found.append(_below("loading / unloading stiffness", load, unload, 0.0))

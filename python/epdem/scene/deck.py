@@ -105,6 +105,12 @@ class Deck:
     def steps(self) -> int:
         return self.phases[-1].end
 
+    @property
+    def row_words(self) -> tuple[str, ...]:
+        """Thermo words beside step, atoms and kinetic energy, which LIGGGHTS shows unasked."""
+        floor = self.loads and any(p[0] == "floor" for p in self.planes)
+        return (*(["f_load"] if floor else []), *(["f_press_z"] if "plate" in self.meshes else []))
+
 
 def primes():
     """Seeds as LIGGGHTS wants them: different primes above 10000."""
@@ -118,10 +124,17 @@ def primes():
 def _templates(parts, m: Model, case: SceneCase, first: int, seeds) -> tuple[Template, ...]:
     sizes = [(p, radius, share) for p in parts for radius, share in p.sizes()]
     return tuple(
-        Template(f"template{i}", next(seeds), m.type_of(p.material), case.materials[p.material].density, radius, share,
-                 4.0 / 3.0 * math.pi * radius**3 < SMALL)
+        Template(
+            f"template{i}",
+            next(seeds),
+            m.type_of(p.material),
+            case.materials[p.material].density,
+            radius,
+            share,
+            4.0 / 3.0 * math.pi * radius**3 < SMALL,
+        )
         for i, (p, radius, share) in enumerate(sizes, first)
-    )  # fmt: skip
+    )
 
 
 def _mean_volume(parts, case: SceneCase) -> float:
@@ -136,8 +149,10 @@ def _fits(place: str, count: int, parts, case: SceneCase, volume: float, limit: 
     share = count * _mean_volume(parts, case) / volume
     if share > limit:
         most = int(count * limit / share)
-        raise CaseError(f"{place} = {count}: the spheres would fill {share:.0%} of the room that they are poured into, "
-                        f"at most {limit:.0%} ({most} spheres); enlarge the room")  # fmt: skip
+        raise CaseError(
+            f"{place} = {count}: the spheres would fill {share:.0%} of the room that they are poured into, "
+            f"at most {limit:.0%} ({most} spheres); enlarge the room"
+        )
 
 
 def _intervals(case: SceneCase, total: float, dt: float) -> tuple[int, int]:
@@ -168,7 +183,9 @@ def deck(case: SceneCase) -> Deck:
     for name, seconds in layout.phases:
         end += every * max(1, round(seconds / dt / every))
         phases.append(Phase(name, end))
-    phases[-1] = Phase(phases[-1].name, max(rows * every, end)) if len(phases) > 1 else Phase(phases[0].name, rows * every)
+    phases[-1] = (
+        Phase(phases[-1].name, max(rows * every, end)) if len(phases) > 1 else Phase(phases[0].name, rows * every)
+    )
     insertions, first = [], 1
     for i, fill in enumerate(layout.fills, 1):
         templates = _templates(fill.parts, m, case, first, seeds)
@@ -176,26 +193,61 @@ def deck(case: SceneCase) -> Deck:
         if fill.room is not None:
             _fits(fill.place, fill.count, fill.parts, case, fill.room)
         interval = None if fill.rate is None else max(1, math.ceil(fill.every / dt))
-        insertions.append(Insertion(f"fill{i}", next(seeds), f"mix{i}", next(seeds), templates, fill.region, fill.count,
-                                    fill.rate, interval, fill.velocity, fill.phase or phases[0].name))  # fmt: skip
+        insertions.append(
+            Insertion(
+                f"fill{i}",
+                next(seeds),
+                f"mix{i}",
+                next(seeds),
+                templates,
+                fill.region,
+                fill.count,
+                fill.rate,
+                interval,
+                fill.velocity,
+                fill.phase or phases[0].name,
+            )
+        )
     moduli = m.rows[0].values
     out = case.output
     return Deck(
-        title=case.case.title, source=case.case.source,
+        title=case.case.title,
+        source=case.case.source,
         summary=f"{s.kind}: {s.count} spheres, law {m.law}, {phases[-1].end} steps of {dt:g} s",
-        kind=s.kind, hard=max(moduli) > HARD, soft=min(moduli) < SOFT, boundary=layout.boundary, box=layout.box,
-        n_types=len(m.types), skin=_two_digits(SKIN * smallest), types=tuple(t.name for t in m.types),
+        kind=s.kind,
+        hard=max(moduli) > HARD,
+        soft=min(moduli) < SOFT,
+        boundary=layout.boundary,
+        box=layout.box,
+        n_types=len(m.types),
+        skin=_two_digits(SKIN * smallest),
+        types=tuple(t.name for t in m.types),
         properties=tuple(Property(f"m{i}", r.name, r.style, r.values, r.comment) for i, r in enumerate(m.rows, 1)),
-        model=f"ep/{m.law}", tangential=m.tangential, cohesion=m.cohesion, rolling_friction=m.rolling,
-        settings=("computePlasticWork on",) if out.energy and m.yields else (), wall_type=m.wall_type,
-        planes=layout.planes, meshes=tuple(layout.meshes), gravity=s.gravity, insertions=tuple(insertions), time_step=dt,
-        phases=tuple(phases), every=every, sampling=_divisor(every, 50),
+        model=f"ep/{m.law}",
+        tangential=m.tangential,
+        cohesion=m.cohesion,
+        rolling_friction=m.rolling,
+        settings=("computePlasticWork on",) if out.energy and m.yields else (),
+        wall_type=m.wall_type,
+        planes=layout.planes,
+        meshes=tuple(layout.meshes),
+        gravity=s.gravity,
+        insertions=tuple(insertions),
+        time_step=dt,
+        phases=tuple(phases),
+        every=every,
+        sampling=_divisor(every, 50),
         frames=_every(out.particles, rows, every),
         contacts=_every(out.contacts or (out.particles if out.energy else 0), rows, every),
-        vtk=_every(out.vtk, rows, every), pictures=_every(out.pictures, rows, every),
-        restarts=_every(out.restarts, rows, every), energy=out.energy, loads=out.loads,
-        spins=m.tangential != "off" or m.rolling is not None, loses=layout.loses, motion=layout.motion,
-    )  # fmt: skip
+        vtk=_every(out.vtk, rows, every),
+        pictures=_every(out.pictures, rows, every),
+        restarts=_every(out.restarts, rows, every),
+        energy=out.energy,
+        loads=out.loads,
+        spins=m.tangential != "off" or m.rolling is not None,
+        loses=layout.loses,
+        motion=layout.motion,
+    )
 
 
 def _divisor(n: int, parts: int) -> int:
@@ -210,8 +262,10 @@ def _two_digits(x: float) -> float:
 def texts(case: SceneCase, d: Deck | None = None) -> dict[str, str]:
     """The text files of a scene's deck by name, without its meshes."""
     d = d or deck(case)
-    return {"in.scene": decks.render("liggghts/scene.in.j2", deck=d),
-            "setup.in": decks.render("liggghts/scene_setup.in.j2", deck=d)}  # fmt: skip
+    return {
+        "in.scene": decks.render("liggghts/scene.in.j2", deck=d),
+        "setup.in": decks.render("liggghts/scene_setup.in.j2", deck=d),
+    }
 
 
 def write(case: SceneCase, folder: Path) -> list[Path]:
@@ -234,5 +288,7 @@ def write_resume(case: SceneCase, folder: Path, restart: str, step: int) -> Path
     d = deck(case)
     phase = next((i for i, p in enumerate(d.phases) if step < p.end), len(d.phases))
     path = folder / "in.resume"
-    path.write_text(decks.render("liggghts/scene_resume.in.j2", deck=replace(d, from_restart=restart, resumed_phase=phase)))
+    path.write_text(
+        decks.render("liggghts/scene_resume.in.j2", deck=replace(d, from_restart=restart, resumed_phase=phase))
+    )
     return path

@@ -56,7 +56,12 @@ def _block(*limits: float) -> str:
 
 
 def _sides(lx: float, ly: float) -> tuple[Plane, ...]:
-    return (("left", "xplane", -lx / 2), ("right", "xplane", lx / 2), ("front", "yplane", -ly / 2), ("back", "yplane", ly / 2))
+    return (
+        ("left", "xplane", -lx / 2),
+        ("right", "xplane", lx / 2),
+        ("front", "yplane", -ly / 2),
+        ("back", "yplane", ly / 2),
+    )
 
 
 def _settle(s: Settle) -> Layout:
@@ -73,8 +78,9 @@ def _settle(s: Settle) -> Layout:
         if s.count / s.rate > s.duration:
             raise CaseError(f"scene.duration = {s.duration:g} s ends before all are poured ({s.count / s.rate:g} s)")
     sides = () if s.periodic else _sides(lx, ly)
-    return Layout(limits, "p p f" if s.periodic else "f f f", (("floor", "zplane", 0.0), *sides), [fill],
-                  [("settle", s.duration)])  # fmt: skip
+    return Layout(
+        limits, "p p f" if s.periodic else "f f f", (("floor", "zplane", 0.0), *sides), [fill], [("settle", s.duration)]
+    )
 
 
 def _hopper(s: Hopper) -> Layout:
@@ -90,9 +96,14 @@ def _hopper(s: Hopper) -> Layout:
     fill = Fill(s.particles, s.count, f"cylinder z 0 0 {rim:.10g} 0 {top:.10g}", "scene.count", math.pi * rim**2 * top)
     sides = _sides(box[1] - box[0], box[3] - box[2])
     return Layout(
-        box, "f f f", (("floor", "zplane", low), *sides), [fill], [("fill", s.fill), ("discharge", s.duration)],
-        {"hopper": meshes.hopper(s.bin_diameter, s.bin_height, s.outlet, depth)}, {"outlet": -depth},
-    )  # fmt: skip
+        box,
+        "f f f",
+        (("floor", "zplane", low), *sides),
+        [fill],
+        [("fill", s.fill), ("discharge", s.duration)],
+        {"hopper": meshes.hopper(s.bin_diameter, s.bin_height, s.outlet, depth)},
+        {"outlet": -depth},
+    )
 
 
 def _drum(s: Drum) -> Layout:
@@ -103,19 +114,30 @@ def _drum(s: Drum) -> Layout:
     # a block inside the circle
     a = 0.7 * rim
     fill = Fill(s.particles, s.count, _block(-a, a, -half, half, -a, a), "scene.count", 4 * a * a * s.length)
-    return Layout(box, "f f f", (("front", "yplane", -half), ("back", "yplane", half)), [fill],
-                  [("fill", s.fill), ("turn", s.duration)], {"drum": meshes.drum(s.diameter, s.length * 1.02)},
-                  {"period": 2 * math.pi / s.turn})  # fmt: skip
+    return Layout(
+        box,
+        "f f f",
+        (("front", "yplane", -half), ("back", "yplane", half)),
+        [fill],
+        [("fill", s.fill), ("turn", s.duration)],
+        {"drum": meshes.drum(s.diameter, s.length * 1.02)},
+        {"period": 2 * math.pi / s.turn},
+    )
 
 
 def _compaction(s: Compaction) -> Layout:
     lx, ly, lz = s.box
     limits = (-lx / 2, lx / 2, -ly / 2, ly / 2, 0.0, lz)
     fill = Fill(s.particles, s.count, _block(*limits), "scene.count", lx * ly * lz)
-    return Layout((*limits[:5], 1.05 * lz), "p p f", (("floor", "zplane", 0.0),), [fill],
-                  [("load", (lz - s.height) / s.speed), ("unload", s.back / s.release)],
-                  {"plate": meshes.plate(1.2 * lx, 1.2 * ly, lz)},
-                  {"load": s.speed, "unload": s.release})  # fmt: skip
+    return Layout(
+        (*limits[:5], 1.05 * lz),
+        "p p f",
+        (("floor", "zplane", 0.0),),
+        [fill],
+        [("load", (lz - s.height) / s.speed), ("unload", s.back / s.release)],
+        {"plate": meshes.plate(1.2 * lx, 1.2 * ly, lz)},
+        {"load": s.speed, "unload": s.release},
+    )
 
 
 def _peening(s: Peening) -> Layout:
@@ -137,8 +159,12 @@ def _peening(s: Peening) -> Layout:
 
 
 _KINDS: dict[type, Callable[..., Layout]] = {
-    Settle: _settle, Hopper: _hopper, Drum: _drum, Compaction: _compaction, Peening: _peening
-}  # fmt: skip
+    Settle: _settle,
+    Hopper: _hopper,
+    Drum: _drum,
+    Compaction: _compaction,
+    Peening: _peening,
+}
 
 
 def layout(case: SceneCase) -> Layout:

@@ -28,7 +28,9 @@ def _tube(profile: list[tuple[float, float]]) -> np.ndarray:
         n = max(1, round(math.hypot(r1 - r0, z1 - z0) / (3 * edge)))
         for k in range(n):
             s, t = k / n, (k + 1) / n
-            bands.append(_band(_ring(r0 + s * (r1 - r0), z0 + s * (z1 - z0)), _ring(r0 + t * (r1 - r0), z0 + t * (z1 - z0))))
+            bands.append(
+                _band(_ring(r0 + s * (r1 - r0), z0 + s * (z1 - z0)), _ring(r0 + t * (r1 - r0), z0 + t * (z1 - z0)))
+            )
     return np.concatenate(bands)
 
 

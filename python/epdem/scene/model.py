@@ -136,14 +136,17 @@ def model(case: SceneCase) -> Model:
     for t, x in zip(types, m, strict=True):
         if x.poisson_ratio < 0:
             raise CaseError(f"materials.{t.material}.poisson_ratio = {x.poisson_ratio}, LIGGGHTS takes [0, 0.5] only")
-    rows = [Row("youngsModulus", "peratomtype", tuple(x.young_modulus for x in m), "Pa"),
-            Row("poissonsRatio", "peratomtype", tuple(x.poisson_ratio for x in m), "1")]  # fmt: skip
+    rows = [
+        Row("youngsModulus", "peratomtype", tuple(x.young_modulus for x in m), "Pa"),
+        Row("poissonsRatio", "peratomtype", tuple(x.poisson_ratio for x in m), "1"),
+    ]
     info = claw.laws()[case.law.name].parameters
     if strength := next((p.property for p in info if p.unit == "Pa"), None):
         values = tuple(t.strength for t in types)
         rows.append(Row(strength, "peratomtype", values, "Pa" if n == 1 else "Pa, the softer body's counts"))
-    rows += [Row(p.property, "scalar", (ratios[p.name],), "1") for p in info
-             if p.unit == "1" and ratios[p.name] != p.default]  # fmt: skip
+    rows += [
+        Row(p.property, "scalar", (ratios[p.name],), "1") for p in info if p.unit == "1" and ratios[p.name] != p.default
+    ]
 
     def square(f) -> tuple[float, ...]:
         return (n, *(f(a, b) for a in types for b in types))
@@ -166,8 +169,15 @@ def model(case: SceneCase) -> Model:
     if contact.cohesion:
         density = square(lambda a, b: contact.cohesion)
         rows.append(Row("cohesionEnergyDensity", "peratomtypepair", density, "J/m^3"))
-    return Model(case.law.name, tuple(types), tuple(rows), "history" if sliding else "off",
-                 contact.rolling.model if contact.rolling else None, "sjkr" if contact.cohesion else None, ratios)  # fmt: skip
+    return Model(
+        case.law.name,
+        tuple(types),
+        tuple(rows),
+        "history" if sliding else "off",
+        contact.rolling.model if contact.rolling else None,
+        "sjkr" if contact.cohesion else None,
+        ratios,
+    )
 
 
 def _friction(case: SceneCase, a: Type, b: Type) -> float:
@@ -198,8 +208,13 @@ def highest_speed(case: SceneCase) -> float:
     if case.numerics.highest_speed is not None:
         return case.numerics.highest_speed
     s = case.scene
-    fall = {"settle": lambda: s.box[2], "hopper": lambda: s.bin_height + s.drop + s.bin_diameter,
-            "drum": lambda: s.diameter, "compaction": lambda: s.box[2], "peening": lambda: 0.0}[s.kind]()  # fmt: skip
+    fall = {
+        "settle": lambda: s.box[2],
+        "hopper": lambda: s.bin_height + s.drop + s.bin_diameter,
+        "drum": lambda: s.diameter,
+        "compaction": lambda: s.box[2],
+        "peening": lambda: 0.0,
+    }[s.kind]()
     v = math.sqrt(2.0 * s.gravity * fall)
     if s.kind == "drum":
         v += s.turn * s.diameter / 2
@@ -227,28 +242,52 @@ def time_step(case: SceneCase) -> float:
 
 def sphere_impact(case: SceneCase, material: str, radius: float, other: str, v: float):
     """The impact of a sphere on one of `other` of the same radius, at speeds up to v: the shortest of a scene."""
-    return _impact(case, material, other, v, {"kind": "sphere-sphere", "body": {"radius": f"{radius!r} m", "material": material},
-                                              "target": {"radius": f"{radius!r} m", "material": other}})  # fmt: skip
+    return _impact(
+        case,
+        material,
+        other,
+        v,
+        {
+            "kind": "sphere-sphere",
+            "body": {"radius": f"{radius!r} m", "material": material},
+            "target": {"radius": f"{radius!r} m", "material": other},
+        },
+    )
 
 
 def wall_impact(case: SceneCase, material: str, radius: float, other: str, v: float):
     """The impact of a sphere on a flat wall of `other`, at speeds up to v."""
-    return _impact(case, material, other, v, {"kind": "sphere-wall", "body": {"radius": f"{radius!r} m", "material": material},
-                                              "target": {"material": other}})  # fmt: skip
+    return _impact(
+        case,
+        material,
+        other,
+        v,
+        {
+            "kind": "sphere-wall",
+            "body": {"radius": f"{radius!r} m", "material": material},
+            "target": {"material": other},
+        },
+    )
 
 
 def _impact(case: SceneCase, material: str, other: str, v: float, bodies: dict):
     def table(name):
         m = case.materials[name]
-        return {"young_modulus": f"{m.young_modulus!r} Pa", "poisson_ratio": float(m.poisson_ratio),
-                "density": f"{m.density!r} kg/m^3"}  # fmt: skip
+        return {
+            "young_modulus": f"{m.young_modulus!r} Pa",
+            "poisson_ratio": float(m.poisson_ratio),
+            "density": f"{m.density!r} kg/m^3",
+        }
 
     law, strong = {"name": case.law.name, **_ratios(case)}, strengths(case)
     if strength := next((p.name for p in claw.laws()[case.law.name].parameters if p.unit == "Pa"), None):
         law[strength] = f"{min(strong[material], strong[other])!r} Pa"
-    data = {"case": {"name": "step", "title": "step", "source": "scene"},
-            "materials": {name: table(name) for name in {material, other}}, "law": law,
-            "impact": bodies | {"speeds": {"from": f"{v / 100!r} m/s", "to": f"{v!r} m/s", "count": 5}}}  # fmt: skip
+    data = {
+        "case": {"name": "step", "title": "step", "source": "scene"},
+        "materials": {name: table(name) for name in {material, other}},
+        "law": law,
+        "impact": bodies | {"speeds": {"from": f"{v / 100!r} m/s", "to": f"{v!r} m/s", "count": 5}},
+    }
     return experiment(impacts.parse(data, case.name))
 
 
@@ -256,4 +295,3 @@ def _round_down(x: float) -> float:
     """Two significant digits, so that the deck is readable."""
     power = 10.0 ** (math.floor(math.log10(x)) - 1)
     return float(np.float64(f"{math.floor(x / power) * power:.1e}"))
-

@@ -28,8 +28,9 @@ def command(deck: str, ranks: int) -> list[str]:
     return ["mpirun", "-np", str(ranks), "--oversubscribe", *root, *words]
 
 
-def run(deck: str, folder: Path, *, ranks: int = 1, append: bool = False,
-        tell: Callable[[int], None] = lambda step: None) -> float:  # fmt: skip
+def run(
+    deck: str, folder: Path, *, ranks: int = 1, append: bool = False, tell: Callable[[int], None] = lambda step: None
+) -> float:
     """Run a deck to its end, `tell` every thermo row's step; seconds taken.
 
     Both streams go into out.liggghts (continued with `append`). Raises EngineError with LIGGGHTS's last words. On any
@@ -39,8 +40,15 @@ def run(deck: str, folder: Path, *, ranks: int = 1, append: bool = False,
     environment = dict(os.environ, OMP_NUM_THREADS="1")
     with path.open("ab" if append else "wb") as log:
         try:
-            process = subprocess.Popen(command(deck, ranks), cwd=folder, stdin=subprocess.DEVNULL, env=environment,
-                                       stdout=subprocess.PIPE, stderr=subprocess.STDOUT, start_new_session=True)  # fmt: skip
+            process = subprocess.Popen(
+                command(deck, ranks),
+                cwd=folder,
+                stdin=subprocess.DEVNULL,
+                env=environment,
+                stdout=subprocess.PIPE,
+                stderr=subprocess.STDOUT,
+                start_new_session=True,
+            )
         except OSError as error:
             raise EngineError(f"LIGGGHTS cannot be started ({error})") from None
         try:

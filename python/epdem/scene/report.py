@@ -14,12 +14,21 @@ from .run import SceneOutcome
 def as_json(outcome: SceneOutcome) -> str:
     """The document of `epdem run --json` for a scene."""
     return json.dumps(
-        {"case": outcome.case.name, "kind": outcome.case.scene.kind, "passed": outcome.passed, "steps": outcome.deck.steps,
-         "time_step": outcome.deck.time_step, "seconds": outcome.seconds, "reused": outcome.reused,
-         "resumed_from": outcome.resumed_from, "warnings": outcome.warnings,
-         "checks": records(outcome.results.tables["checks"]), "last_row": records(outcome.results.tables["rows"].tail(1))[0]},
+        {
+            "case": outcome.case.name,
+            "kind": outcome.case.scene.kind,
+            "passed": outcome.passed,
+            "steps": outcome.deck.steps,
+            "time_step": outcome.deck.time_step,
+            "seconds": outcome.seconds,
+            "reused": outcome.reused,
+            "resumed_from": outcome.resumed_from,
+            "warnings": outcome.warnings,
+            "checks": records(outcome.results.tables["checks"]),
+            "last_row": records(outcome.results.tables["rows"].tail(1))[0],
+        },
         indent=1,
-    )  # fmt: skip
+    )
 
 
 def show(outcome: SceneOutcome, console: Console) -> None:
@@ -28,9 +37,15 @@ def show(outcome: SceneOutcome, console: Console) -> None:
     for head in ("check", "value", "expected", "error", "tolerance", "pass"):
         table.add_column(head, justify="left" if head == "check" else "right")
     for row in outcome.results.tables["checks"].to_dict("records"):
-        table.add_row(row["check"], f"{row['value']:.5g}", f"{row['expected']:.5g}", f"{row['error']:.1e}",
-                      f"{row['tolerance']:.1e}", "yes" if row["passed"] else "NO",
-                      style=None if row["passed"] else "red")  # fmt: skip
+        table.add_row(
+            row["check"],
+            f"{row['value']:.5g}",
+            f"{row['expected']:.5g}",
+            f"{row['error']:.1e}",
+            f"{row['tolerance']:.1e}",
+            "yes" if row["passed"] else "NO",
+            style=None if row["passed"] else "red",
+        )
     console.print(table)
     for warning in outcome.warnings:
         console.print(f"warning: {warning}", style="yellow", highlight=False)
@@ -38,8 +53,12 @@ def show(outcome: SceneOutcome, console: Console) -> None:
     came = " (from results.h5)" if outcome.reused else ""
     if outcome.resumed_from is not None:
         came = f" (continued from step {outcome.resumed_from})"
-    console.print(f"{outcome.case.name}: {int(rows['particles'].iloc[-1])} spheres, {d.steps} steps of {d.time_step:g} s, "
-                  f"{outcome.seconds:.1f} s{came}; see {outcome.folder}/", highlight=False, soft_wrap=True)  # fmt: skip
+    console.print(
+        f"{outcome.case.name}: {int(rows['particles'].iloc[-1])} spheres, {d.steps} steps of {d.time_step:g} s, "
+        f"{outcome.seconds:.1f} s{came}; see {outcome.folder}/",
+        highlight=False,
+        soft_wrap=True,
+    )
 
 
 def figures(outcome: SceneOutcome) -> None:
@@ -51,10 +70,18 @@ def figures(outcome: SceneOutcome) -> None:
 
     rows = outcome.results.tables["rows"]
     shown = [c for c in ("kinetic_energy", "floor_load", "plate_force") if c in rows]
-    fig, axes = plt.subplots(len(shown), 1, sharex=True, figsize=(7, 2.4 * len(shown) + 0.6), layout="constrained", squeeze=False)
+    fig, axes = plt.subplots(
+        len(shown), 1, sharex=True, figsize=(7, 2.4 * len(shown) + 0.6), layout="constrained", squeeze=False
+    )
     for axis, name in zip(axes[:, 0], shown, strict=True):
         axis.plot(rows["time"], rows[name], lw=1.2)
-        axis.set(ylabel={"kinetic_energy": "kinetic energy [J]", "floor_load": "floor load [N]", "plate_force": "plate force [N]"}[name])
+        axis.set(
+            ylabel={
+                "kinetic_energy": "kinetic energy [J]",
+                "floor_load": "floor load [N]",
+                "plate_force": "plate force [N]",
+            }[name]
+        )
         axis.grid(alpha=0.3)
     axes[0, 0].set_title(outcome.case.case.title)
     axes[-1, 0].set_xlabel("time [s]")

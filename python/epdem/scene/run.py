@@ -6,6 +6,7 @@ import re
 import time
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from itertools import pairwise
 from pathlib import Path
 
 from .. import __version__, paths
@@ -46,42 +47,73 @@ def _inputs(folder_text: str, ranks: int) -> str:
 
 
 def last_restart(folder: Path) -> tuple[Path, int] | None:
-    """The newest whole restart file: the thermo row of its step was written after it."""
+    """The newest whole restart file: LIGGGHTS went on after it, so its row stands twice in succession."""
     log = folder / progress.OUT
     if not log.exists():
         return None
-    seen = {int(m.group(1)) for line in log.read_bytes().splitlines() if (m := progress.ROW.match(line))}
-    found = [(int(re.search(r"(\d+)\.bin$", p.name).group(1)), p) for p in folder.glob("restart.*.bin")]
-    whole = [(step, p) for step, p in found if step in seen]
-    return (max(whole)[1], max(whole)[0]) if whole else None
+    rows = [int(m.group(1)) for line in log.read_bytes().splitlines() if (m := progress.ROW.match(line))]
+    gone_on = {a for a, b in pairwise(rows) if a == b}
+    whole = [(step, p) for step, p in _restarts(folder) if step in gone_on]
+    return (whole[-1][1], whole[-1][0]) if whole else None
+
+
+def _restarts(folder: Path) -> list[tuple[int, Path]]:
+    return sorted((int(re.search(r"(\d+)\.bin$", p.name).group(1)), p) for p in folder.glob("restart.*.bin"))
+
+
+def _prune(folder: Path) -> None:
+    """Keep the two newest restart files: the last one may still be incomplete."""
+    for _, path in _restarts(folder)[:-2]:
+        path.unlink(missing_ok=True)
 
 
 def _clear(folder: Path) -> None:
     """Remove what an earlier run of the same folder left, and only that."""
-    for pattern in ("particles.*.bin", "contacts.*.txt", "wall_contacts*.txt", "restart.*.bin", "scene_*.vtk", "picture.*.ppm",
-                    "in.resume"):  # fmt: skip
+    for pattern in (
+        "particles.*.bin",
+        "contacts.*.txt",
+        "wall_contacts*.txt",
+        "restart.*.bin",
+        "scene_*.vtk",
+        "picture.*.ppm",
+        "in.resume",
+    ):
         for path in folder.glob(pattern):
             path.unlink()
 
 
-def run(path: Path | str, *, out: Path | None = None, ranks: int = 1, fresh: bool = False, resume: bool = False,
-        tell: Tell = lambda step, steps: None) -> SceneOutcome:  # fmt: skip
+def run(
+    path: Path | str,
+    *,
+    out: Path | None = None,
+    ranks: int = 1,
+    fresh: bool = False,
+    resume: bool = False,
+    tell: Tell = lambda step, steps: None,
+) -> SceneOutcome:
     """Run the scene in a case file, or continue it from its last restart file. Raises CaseError, EngineError."""
     case = load(path)
     d = deck(case)
     folder = out or Path("runs") / case.name
     stored = folder / "results.h5"
     start = time.perf_counter()
+
+    def row(step: int) -> None:
+        _prune(folder)
+        tell(step, d.steps)
+
     if resume:
         found = last_restart(folder)
         if found is None:
             raise CaseError(f"{folder}: no restart file to continue from; set output.restarts in the case and run it")
         if not _same_deck(case, folder):
-            raise CaseError(f"{folder}: the case has changed since the run that is to be continued; run it anew (--fresh)")
+            raise CaseError(
+                f"{folder}: the case has changed since the run that is to be continued; run it anew (--fresh)"
+            )
         restart, step = found
         if step < d.steps:
             name = write_resume(case, folder, restart.name, step).name
-            progress.run(name, folder, ranks=ranks, append=True, tell=lambda s: tell(s, d.steps))
+            progress.run(name, folder, ranks=ranks, append=True, tell=row)
         return _finish(path, case, d, folder, ranks, start, step)
     if not fresh and stored.exists():
         old = _old(stored)
@@ -92,7 +124,7 @@ def run(path: Path | str, *, out: Path | None = None, ranks: int = 1, fresh: boo
     folder.mkdir(parents=True, exist_ok=True)
     _clear(folder)
     write(case, folder)
-    progress.run("in.scene", folder, ranks=ranks, tell=lambda s: tell(s, d.steps))
+    progress.run("in.scene", folder, ranks=ranks, tell=row)
     return _finish(path, case, d, folder, ranks, start, None)
 
 
@@ -118,8 +150,17 @@ def _same_deck(case: SceneCase, folder: Path) -> bool:
 def _finish(path, case, d, folder, ranks, start, resumed) -> SceneOutcome:
     from . import checks, ledger
 
-    found = results.SceneResults(Path(path).read_text(), {"case": case.name, "epdem": __version__, "ranks": ranks,
-                                 "time_step": d.time_step, "steps": d.steps, "inputs": _inputs(_texts(case), ranks)})  # fmt: skip
+    found = results.SceneResults(
+        Path(path).read_text(),
+        {
+            "case": case.name,
+            "epdem": __version__,
+            "ranks": ranks,
+            "time_step": d.time_step,
+            "steps": d.steps,
+            "inputs": _inputs(_texts(case), ranks),
+        },
+    )
     found.tables["rows"] = tables.rows(folder / progress.OUT, d.time_step)
     if case.scene.kind == "compaction":
         tables.add_plate(case, d, found.tables["rows"])

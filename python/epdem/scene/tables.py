@@ -15,8 +15,13 @@ from .deck import Deck
 PARTICLES = ["id", "type", "radius", "mass", "x", "y", "z", "vx", "vy", "vz"]
 SPINS = ["omega_x", "omega_y", "omega_z"]
 # thermo words of the deck: column and unit
-ROWS = {"Step": ("step", "1"), "Atoms": ("particles", "1"), "KinEng": ("kinetic_energy", "J"),
-        "load": ("floor_load", "N"), "press_z": ("plate_force", "N")}  # fmt: skip
+ROWS = {
+    "Step": ("step", "1"),
+    "Atoms": ("particles", "1"),
+    "KinEng": ("kinetic_energy", "J"),
+    "load": ("floor_load", "N"),
+    "press_z": ("plate_force", "N"),
+}
 
 
 def rows(log: Path, time_step: float) -> pd.DataFrame:
@@ -35,6 +40,7 @@ def rows(log: Path, time_step: float) -> pd.DataFrame:
         raise EngineError(f"{log}: no thermo rows; the run ended before its first step")
     table = pd.DataFrame.from_dict(found, orient="index", columns=names[1:] if names else None).sort_index()
     table.columns = [ROWS.get(n, (n, ""))[0] for n in table.columns]
+    table = table.drop(columns="CPU", errors="ignore")  # LIGGGHTS's own choice when it is not asked for columns
     table.insert(0, "step", table.index.to_numpy())
     table.insert(1, "time", table["step"] * time_step)
     return table.reset_index(drop=True)

@@ -1,0 +1,72 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Nothing stands in a deck that its scene does not need: each line of every case's deck is removed in turn."""
+
+from pathlib import Path
+
+import pytest
+
+from epdem import case as impacts
+from epdem.engines import engine
+from epdem.experiment import experiment
+from epdem.plan import plan
+from epdem.predict import predict
+from epdem.scene import deck, explain, lean
+from epdem.scene.case import is_scene, parse
+
+CASES = sorted((Path(__file__).parents[2] / "cases").glob("*.toml"))
+
+# The same decks with few spheres and steps; every wall is still touched.
+SMALL = {
+    "settle": {"box": ["12 mm", "12 mm", "30 mm"], "count": 70, "duration": "0.08 s"},
+    "compaction": {"box": ["0.5 mm", "0.5 mm", "0.8 mm"], "count": 60, "height": "0.3 mm", "speed": "3 m/s",
+                   "back_speed": "3 m/s"},
+    "hopper": {"count": 150, "bin_height": "20 mm", "bin_diameter": "20 mm", "outlet": "12 mm", "fill": "0.06 s",
+               "drop": "5 mm", "duration": "0.1 s"},
+    "drum": {"count": 60, "diameter": "30 mm", "length": "5 mm", "fill": "0.05 s", "duration": "0.1 s"},
+    "peening": {"count": 20, "side": "4 mm", "duration": "0.5 ms"},
+}  # fmt: skip
+
+
+def small(data: dict) -> dict:
+    """The TOML data of a scene with the numbers of SMALL."""
+    return data | {"scene": data["scene"] | SMALL[data["scene"]["kind"]]}
+
+
+def decks_of(path: Path, folder: Path) -> tuple[str, list[str]]:
+    """Write a case's deck: (file to run, files whose lines are removed)."""
+    data = impacts.read_toml(path)
+    if is_scene(data):
+        deck.write(parse(small(data)), folder)
+        return "in.scene", ["in.scene", "setup.in"]
+    data = data | {"numerics": {"steps_in_contact": 40, "phases": 2}}  # the same lines, in a tenth of the time
+    x = experiment(impacts.parse(data))
+    engine("liggghts").write(plan(x, predict(x)), folder)
+    return "in.impact", ["in.impact"]
+
+
+@pytest.mark.liggghts
+@pytest.mark.parametrize("path", CASES, ids=lambda p: p.stem)
+def test_removing_any_line_of_a_deck_breaks_the_run_or_changes_what_it_puts_out(path, tmp_path):
+    run, files = decks_of(path, tmp_path / "deck")
+    found = lean.removals(tmp_path / "deck", tmp_path / "without", run, files)
+    useless = [r.line for r in found if r.effect == "nothing"]
+    assert not useless, f"{path.name}: lines that do nothing: {useless}"
+    assert sum(r.effect == "guard" for r in found) <= 4
+    assert len(found) > 8
+
+
+@pytest.mark.liggghts
+def test_a_line_that_does_nothing_is_found(tmp_path):
+    run, files = decks_of(next(p for p in CASES if p.stem.startswith("settle")), tmp_path / "deck")
+    text = (tmp_path / "deck/setup.in").read_text()
+    (tmp_path / "deck/setup.in").write_text(text + "compute idle all ke\n")
+    found = lean.removals(tmp_path / "deck", tmp_path / "without", run, ["setup.in"])
+    assert [r.line for r in found if r.effect == "nothing"] == ["compute idle all ke"]
+
+
+@pytest.mark.parametrize("path", CASES, ids=lambda p: p.stem)
+def test_every_line_of_a_deck_has_a_reason(path, tmp_path):
+    _, files = decks_of(path, tmp_path)
+    lines = explain.explain({name: (tmp_path / name).read_text() for name in files})
+    assert [line for _, line, reason in lines if reason is None] == []
+    assert len(lines) > 8
