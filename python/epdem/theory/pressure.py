@@ -1,0 +1,79 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Contact pressure: profiles, means and integrals (8.81, 8.82, figures 8.15 to 8.17). r and a in one unit, p in Pa."""
+
+import numpy as np
+
+from .checks import number
+
+
+def hertz(r, *, p_0, a):
+    """Hertz's half-ellipse p_0 sqrt(1 - r^2/a^2) [Pa]; 0 outside the circle."""
+    x = np.asarray(r, float) / number("a", a)
+    return number("p_0", p_0) * np.sqrt(np.maximum(1 - x * x, 0.0))
+
+
+def hertz_peak(*, E_star, R_star, a):
+    """Peak pressure of a Hertz contact of radius a: p_0 = 2 E* a/(pi R*) [Pa]; the mean is two thirds of it."""
+    return 2 * number("E_star", E_star) * number("a", a) / (np.pi * number("R_star", R_star))
+
+
+def truncated(r, *, p_0, a, p_y):
+    """Thornton's flattened profile while loading: min(Hertz, p_y) with the Hertzian a (figure 8.15; Thornton 1997)."""
+    return np.minimum(hertz(r, p_0=p_0, a=a), number("p_y", p_y))
+
+
+def truncated_force(*, p_0, a, p_y):
+    """Integral of the truncated profile over the circle [N]: 2/3 pi a^2 p_0 less the cut-off cap."""
+    p_0, a, p_y = number("p_0", p_0), number("a", a), number("p_y", p_y)
+    cap = np.where(p_0 > p_y, 2 / 3 * np.pi * a**2 * p_0 * (1 - np.minimum(p_y / p_0, 1.0) ** 3), 0.0)
+    plateau = np.pi * a**2 * p_y * np.maximum(1 - (p_y / p_0) ** 2, 0.0)
+    return 2 / 3 * np.pi * a**2 * p_0 - cap + plateau
+
+
+def cavity_mean(x):
+    """Mean pressure p_m/Y of the expanding-cavity model, x = E* a/(Y R*); eq. 8.81, Johnson 1985, section 6.3.
+
+    (2/3) [1 + ln(x/3)]; between about x = 2.5 (first yield) and 40 (fully plastic): see `regime`.
+    """
+    return 2 / 3 * (1 + np.log(number("x", x) / 3))
+
+
+def elastic_mean(x):
+    """Mean pressure p_m/Y of an elastic contact, x = E* a/(Y R*): 4 x/(3 pi) (figure 8.16)."""
+    return 4 * number("x", x) / (3 * np.pi)
+
+
+def mean(x, *, plastic=2.8):
+    """p_m/Y over all three regimes of figure 8.16: elastic to 1.07, expanding cavity, fully plastic at `plastic`."""
+    x = number("x", x)
+    middle = np.maximum(cavity_mean(x), 1.07)
+    return np.where(elastic_mean(x) <= 1.07, elastic_mean(x), np.minimum(middle, plastic))
+
+
+def regime(x, *, plastic=2.8):
+    """0 elastic, 1 elastic-plastic, 2 fully plastic, at x = E* a/(Y R*)."""
+    p = mean(x, plastic=plastic)
+    return np.where(elastic_mean(x) <= 1.07, 0, np.where(p < plastic, 1, 2))
+
+
+def unloading(r, *, a, a_max, p):
+    """Pressure while a uniformly loaded circle unloads [Pa]; eq. 8.82, Mesarovic and Johnson 2000.
+
+    (2p/pi) asin sqrt((a^2 - r^2)/(a*^2 - r^2)) for r <= a <= a* = a_max; p [Pa] and a_max belong to the start of
+    unloading. a = a_max gives p everywhere; 0 outside a. ValueError if a exceeds a_max.
+    """
+    a, a_max, p = number("a", a), number("a_max", a_max), number("p", p)
+    if np.any(a > a_max):
+        raise ValueError(f"a = {np.max(a):g}, must lie in (0, a_max = {np.min(a_max):g}]")
+    r = np.asarray(r, float)
+    inside = np.maximum(a**2 - r**2, 0.0)
+    base = np.maximum(a_max**2 - r**2, 0.0)
+    share = np.divide(inside, base, out=np.where(r <= a, 1.0, 0.0) + 0 * inside, where=base > 0)
+    return 2 * p / np.pi * np.arcsin(np.sqrt(np.minimum(share, 1.0)))
+
+
+def unloading_force(*, a, a_max, p):
+    """Integral of `unloading` over the circle [N]: p a*^2 2 [acos y - y sqrt(1-y^2)], y = sqrt(1 - a^2/a*^2)."""
+    a, a_max = number("a", a), number("a_max", a_max)
+    y = np.sqrt(np.maximum(1 - (a / a_max) ** 2, 0.0))
+    return 2 * number("p", p) * a_max**2 * (np.arccos(y) - y * np.sqrt(1 - y * y))

@@ -1,0 +1,82 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""The equations of restitution as the chapter prints them, each within its own domain: NaN outside, and `why_not`."""
+
+import numpy as np
+
+from .checks import number
+
+
+def yield_speed(*, p_y, E_star, R_star, m_star):
+    """Impact speed at which the peak pressure reaches p_y [m/s]; eq. 8.84, Thornton 1997.
+
+    With p_y = 2.8 Y it is v_y, with 1.60 Y v_y0 = v_y/4.0513. p_y, E_star [Pa], R_star [m], m_star [kg] > 0.
+    """
+    p_y, E_star = number("p_y", p_y), number("E_star", E_star)
+    R_star, m_star = number("R_star", R_star), number("m_star", m_star)
+    return (np.pi / (2 * E_star)) ** 2 * np.sqrt(8 * np.pi * R_star**3 * p_y**5 / (15 * m_star))
+
+
+def thornton(speed, *, v_y):
+    """Restitution of the truncated Hertz pressure; eq. 8.83, Thornton 1997. speed, v_y [m/s] > 0; 1 up to v_y.
+
+    With r = v_y/v: sqrt(6 sqrt(3)/5) sqrt(1 - r^2/6) [r/(r + 2 sqrt(6/5 - r^2/5))]^(1/4).
+    """
+    r = np.minimum(number("v_y", v_y) / number("speed", speed), 1.0)
+    root = np.sqrt(6 / 5 - r * r / 5)
+    e_n = np.sqrt(6 * np.sqrt(3) / 5) * np.sqrt(1 - r * r / 6) * (r / (r + 2 * root)) ** 0.25
+    return np.where(r >= 1, 1.0, e_n)
+
+
+def johnson(speed, *, p_m, E_star, R_star, m_star):
+    """Fully plastic restitution; eq. 8.86, Johnson 1985. NaN where it exceeds 1: it is meant for v >> v_y.
+
+    e_n^2 = (3 sqrt2 pi^(5/4)/5) (p_m/E*) (m* v^2/(2 p_m R*^3))^(-1/4); p_m, E_star [Pa], R_star [m], m_star [kg].
+    """
+    p_m, E_star = number("p_m", p_m), number("E_star", E_star)
+    energy = number("m_star", m_star) * number("speed", speed) ** 2 / (2 * p_m * number("R_star", R_star) ** 3)
+    e_n = np.sqrt(3 * np.sqrt(2) * np.pi**1.25 / 5 * p_m / E_star * energy**-0.25)
+    return np.where(e_n <= 1, e_n, np.nan)
+
+
+def johnson_plane(speed, *, p_m, E_star, density):
+    """Sphere on a plane, fully plastic; eq. 8.87: 1.718 (p_m^5/(E*^4 rho))^(1/8) v^(-1/4). NaN where it exceeds 1.
+
+    The radius drops out. density [kg/m^3]; 1.718 is the printed rounding of 8.86's constant.
+    """
+    p_m, E_star = number("p_m", p_m), number("E_star", E_star)
+    e_n = 1.718 * (p_m**5 / (E_star**4 * number("density", density))) ** 0.125 * number("speed", speed) ** -0.25
+    return np.where(e_n <= 1, e_n, np.nan)
+
+
+def wu(speed, *, v_y0):
+    """Finite-element fit 2.08 (v/v_y0)^(-1/4); eq. 8.88, Wu et al. 2003. NaN below v/v_y0 = 100.
+
+    v_y0 [m/s] is the speed of first yield (1.60 Y), not that of 2.8 Y.
+    """
+    ratio = number("speed", speed) / number("v_y0", v_y0)
+    return np.where(ratio >= 100, 2.08 * ratio**-0.25, np.nan)
+
+
+def bridges(speed):
+    """Ice at 200 K, spheres of 5 cm; eq. 8.89, Bridges et al. 1984: 0.32 v^(-0.234), v in cm/s (speed in m/s here).
+
+    NaN outside 0.015 to 5.1 cm/s. (The text prints the exponent rounded to 0.23.)
+    """
+    v = 100 * number("speed", speed)
+    return np.where((v > 0.015) & (v < 5.1), 0.32 * v**-0.234, np.nan)
+
+
+DOMAINS = {
+    "8.83": "any speed > 0; 1 up to the yield speed",
+    "8.86": "fully plastic impact: where the printed e_n does not exceed 1 (above about 27 v_y0)",
+    "8.87": "fully plastic impact: where the printed e_n does not exceed 1 (above about 27 v_y0)",
+    "8.88": "v/v_y0 >= 100, v_y0 the speed of first yield at 1.60 Y",
+    "8.89": "0.015 cm/s < v < 5.1 cm/s",
+}
+
+
+def why_not(equation: str) -> str:
+    """The domain of a printed equation, in words: why it gave NaN. ValueError for an unknown number."""
+    if equation not in DOMAINS:
+        raise ValueError(f"equation = {equation!r}, must be one of {', '.join(DOMAINS)}")
+    return f"eq. {equation} holds for {DOMAINS[equation]}; outside it is NaN, not an extrapolation"

@@ -1,0 +1,95 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""When and where a contact yields: criteria, first yield under a sphere, fully plastic range, which body (8.76-8.80)."""
+
+import numpy as np
+
+from .checks import number, poisson_ratio
+from .printed import yield_speed
+
+FIRST_YIELD_ROUNDED = 1.60  # p_0/Y at first yield, nu = 0.3; eq. 8.78
+FIRST_YIELD_MEAN_ROUNDED = 1.10  # p_m/Y at first yield; eq. 8.79
+FULLY_PLASTIC = (2.8, 3.0)  # p_m/Y; eq. 8.80
+
+
+def principal(stress):
+    """Principal stresses, shape (..., 3), ascending, of symmetric tensors of shape (..., 3, 3)."""
+    stress = np.asarray(stress, float)
+    if stress.shape[-2:] != (3, 3):
+        raise ValueError(f"stress has shape {stress.shape}, must end in (3, 3)")
+    return np.linalg.eigvalsh(stress)
+
+
+def von_mises(s1, s2, s3):
+    """Equivalent stress sqrt(3 J2) of principal stresses; eq. 8.76: yield when it reaches Y.
+
+    J2 = [(s1-s2)^2 + (s2-s3)^2 + (s3-s1)^2]/6 = k^2 = Y^2/3.
+    """
+    s1, s2, s3 = (np.asarray(s, float) for s in (s1, s2, s3))
+    return np.sqrt(((s1 - s2) ** 2 + (s2 - s3) ** 2 + (s3 - s1) ** 2) / 2)
+
+
+def tresca(s1, s2, s3):
+    """Largest difference of principal stresses; eq. 8.77: yield when it reaches 2k = Y."""
+    s = np.stack(np.broadcast_arrays(*(np.asarray(x, float) for x in (s1, s2, s3))))
+    return s.max(axis=0) - s.min(axis=0)
+
+
+CRITERIA = {"von_mises": von_mises, "tresca": tresca}
+
+
+def equivalent(stress, criterion: str):
+    """Equivalent stress of tensors (..., 3, 3) by "von_mises" or "tresca". ValueError for another name."""
+    if criterion not in CRITERIA:
+        raise ValueError(f"criterion = {criterion!r}, must be one of {', '.join(CRITERIA)}")
+    p = principal(stress)
+    return CRITERIA[criterion](p[..., 0], p[..., 1], p[..., 2])
+
+
+def axis_difference(z, nu):
+    """s_z - s_r on the axis of a Hertz contact at depth z (in a), in units of -p_0: what both criteria see there."""
+    z, nu = np.asarray(z, float), poisson_ratio("nu", nu)
+    deep = np.maximum(z, 1e-300)
+    s_r = -(1 + nu) * (1 - deep * np.arctan(1 / deep)) + 1 / (2 * (1 + z * z))
+    return s_r + 1 / (1 + z * z)
+
+
+def first_yield(nu):
+    """(p_0/Y, depth z/a) of first yield on the axis under a sphere, exactly; eq. 8.78. nu in (-1, 0.5], any shape.
+
+    Both criteria coincide on the axis: p_0/Y = 1/max(s_r - s_z). (Johnson 1985, section 6.1.)
+    """
+    nu = poisson_ratio("nu", nu)
+    low, high = np.zeros(np.shape(nu)) + 0.05, np.zeros(np.shape(nu)) + 1.5
+
+    def slope(z):  # of axis_difference by z, in closed form
+        return (1 + nu) * (np.arctan(1 / z) - z / (1 + z * z)) - 3 * z / (1 + z * z) ** 2
+
+    for _ in range(60):
+        middle = 0.5 * (low + high)
+        rising = slope(middle) > 0
+        low, high = np.where(rising, middle, low), np.where(rising, high, middle)
+    z = 0.5 * (low + high)
+    return 1 / axis_difference(z, nu), z
+
+
+def first_yield_mean(nu):
+    """Mean pressure p_m/Y at first yield: two thirds of p_0/Y; eq. 8.79 rounds it to 1.10."""
+    return 2 / 3 * first_yield(nu)[0]
+
+
+def yielding_bodies(Y1, Y2, *, E_star, R_star, m_star, ratio=FIRST_YIELD_ROUNDED, plastic_ratio=FULLY_PLASTIC[0]):
+    """Which bodies yield, and from which speeds (section 8.2.2).
+
+    Y1, Y2 [Pa] > 0 (inf: never). Returns (v1, v2) [m/s]: the impact speed of each body's own first yield at ratio Y.
+    The pressure cannot exceed plastic_ratio times the softer Y: a body with ratio Y above that never yields (inf),
+    i.e. the harder one yields at all only if it has less than 1.75 times the softer one's yield stress.
+    """
+    Y1, Y2 = number("Y1", Y1, infinite=True), number("Y2", Y2, infinite=True)
+    ceiling = plastic_ratio * np.minimum(Y1, Y2)
+    speeds = []
+    for Y in (Y1, Y2):
+        reached = ratio * Y <= ceiling
+        p = np.where(reached, ratio * Y, 1.0)
+        v = yield_speed(p_y=p, E_star=E_star, R_star=R_star, m_star=m_star)
+        speeds.append(np.where(reached, v, np.inf))
+    return tuple(speeds)
