@@ -15,7 +15,7 @@ from epdem.measure import measure
 from epdem.plan import plan
 from epdem.predict import predict
 
-CASES = sorted((Path(__file__).parents[2] / "cases").glob("*.toml"))
+CASES = sorted(p for p in (Path(__file__).parents[2] / "cases").glob("*.toml") if "impact" in read_toml(p))
 STEEL = Path(__file__).parents[2] / "cases/steel_wall.toml"
 
 

@@ -59,18 +59,18 @@ def reloads(v: Verdict, s: Setting, cycles: int) -> None:
 def stored(theory: Backbone, alpha: np.ndarray, top: np.ndarray) -> np.ndarray:
     """Elastic and plastic work in a contact [J] at overlap alpha that reached `top`; arrays of one shape.
 
-    On the elastic branch: what was put in less what came back from `top` to alpha, by Gauss points in the angle of
-    the contact circle, in which the branch is smooth.
+    On the elastic branch: what was put in less what came back from `top` to alpha, by Gauss points in an angle in
+    which the branch is smooth at both of its ends.
     """
     alpha, top = np.maximum(alpha, 0.0), np.maximum(top, 1e-300)
-    work = theory.work(top)
     recovered = theory.recovered_overlap(top)
-    fraction = np.clip((top - alpha) / recovered, 0.0, 1.0)
-    # alpha = top - recovered * t^2, t in [0, sqrt(fraction)]
-    t = np.sqrt(fraction)[..., None] * (GAUSS_X + 1) / 2
-    points = top[..., None] - recovered[..., None] * t**2
+    # alpha = top - recovered sin^2(angle)
+    last = np.arcsin(np.sqrt(np.clip((top - alpha) / recovered, 0.0, 1.0)))
+    angle = last[..., None] * (GAUSS_X + 1) / 2
+    points = top[..., None] - recovered[..., None] * np.sin(angle) ** 2
     force = theory.unloading_force(np.maximum(points, 0.0), top[..., None])
-    back = (force * 2 * t * recovered[..., None]) @ GAUSS_W * np.sqrt(fraction) / 2
+    back = (force * np.sin(2 * angle)) @ GAUSS_W * recovered * last / 2
+    work = theory.work(top)
     return np.where(top <= theory.yield_overlap, theory.work(alpha), work - back)
 
 

@@ -90,7 +90,7 @@ def phased(s: Setting, dt: float, phases: int) -> list[tuple[float, np.ndarray]]
     A contact that is there at t = 0 has no phase at its beginning: steps up to a fifth smaller vary that of its end.
     """
     if s.start is not None:
-        return [(dt * (1 - 0.2 * k / phases), np.array([-s.start])) for k in range(phases)]
+        return [(dt * (1 - 0.2 * k / phases), np.array([-s.start])) for k in range(0, phases, 2)]
     return [(dt, (np.arange(phases) + 0.5) / phases * s.x.speed[0] * dt)]
 
 
