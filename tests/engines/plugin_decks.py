@@ -169,15 +169,15 @@ fix m2 all property/global poissonsRatio peratomtype {' '.join(map(repr, NU.toli
 {per_pair("coefficientFriction", friction)}{own}"""
 
 
-def contact(model, *, tangential="history", wall=None, settings=""):
-    """Pair style and, if `wall` names one, the wall at z = 0 of type 2."""
-    words = f"model {model} tangential {tangential} {settings}"
-    text = f"pair_style gran {words}\npair_coeff * *\n"
+def contact(model, *, tangential="history", wall=None, models="", settings=""):
+    """Pair style and, if `wall` names one, the wall at z = 0 of type 2; a wall's settings come last."""
+    words = f"model {model} tangential {tangential} {models}"
+    text = f"pair_style gran {words} {settings}\npair_coeff * *\n"
     if wall == "primitive":
-        text += f"fix wall all wall/gran {words} primitive type 2 zplane 0.0\n"
+        text += f"fix wall all wall/gran {words} primitive type 2 zplane 0.0 {settings}\n"
     if wall == "mesh":
         text += "fix plate all mesh/surface file plate.stl type 2\n"
-        text += f"fix wall all wall/gran {words} mesh n_meshes 1 meshes plate\n"
+        text += f"fix wall all wall/gran {words} mesh n_meshes 1 meshes plate {settings}\n"
     return text
 
 
