@@ -22,7 +22,7 @@ SMALL = {
                    "back_speed": "3 m/s"},
     "hopper": {"count": 150, "bin_height": "20 mm", "bin_diameter": "20 mm", "outlet": "12 mm", "fill": "0.06 s",
                "drop": "5 mm", "duration": "0.1 s"},
-    "drum": {"count": 60, "diameter": "30 mm", "length": "5 mm", "fill": "0.05 s", "duration": "0.1 s"},
+    "drum": {"count": 60, "diameter": "30 mm", "length": "5 mm", "duration": "0.12 s"},
     "peening": {"count": 20, "side": "4 mm", "duration": "0.5 ms"},
 }  # fmt: skip
 

@@ -152,13 +152,16 @@ class Hopper(Common):
 
 
 class Drum(Common):
-    """A drum of triangles turning about y, with flat ends; `fill` is the time before it turns."""
+    """A drum of triangles turning about y, with flat ends.
+
+    It is round, so its surface moves and its triangles stay: the same to a sphere, without rebuilding lists, and a
+    continued run meets the wall's velocity at its first step, which LIGGGHTS's move/mesh only knows a step later.
+    """
 
     kind: Literal["drum"]
     diameter: Length
     length: Length
     turn: quantity("rad/s", above=0.0)  # "20 rpm"
-    fill: Time
 
 
 class Compaction(Common):

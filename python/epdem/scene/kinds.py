@@ -109,7 +109,7 @@ def _hopper(s: Hopper) -> Layout:
 def _drum(s: Drum) -> Layout:
     r, half, big = s.diameter / 2, s.length / 2, _largest(s.particles)
     margin = 0.05 * r
-    box = (-r - margin, r + margin, -half, half, -r - margin, r + margin)
+    box = (-r - margin, r + margin, -half - margin, half + margin, -r - margin, r + margin)
     rim = r - big
     # a block inside the circle
     a = 0.7 * rim
@@ -119,9 +119,9 @@ def _drum(s: Drum) -> Layout:
         "f f f",
         (("front", "yplane", -half), ("back", "yplane", half)),
         [fill],
-        [("fill", s.fill), ("turn", s.duration)],
+        [("turn", s.duration)],
         {"drum": meshes.drum(s.diameter, s.length * 1.02)},
-        {"period": 2 * math.pi / s.turn},
+        {"omega": s.turn},
     )
 
 
@@ -135,27 +135,31 @@ def _compaction(s: Compaction) -> Layout:
         (("floor", "zplane", 0.0),),
         [fill],
         [("load", (lz - s.height) / s.speed), ("unload", s.back / s.release)],
-        {"plate": meshes.plate(1.2 * lx, 1.2 * ly, lz)},
+        {"plate": meshes.plate(lx, ly, lz)},
         {"load": s.speed, "unload": s.release},
     )
 
 
 def _peening(s: Peening) -> Layout:
-    big = _largest(s.particles)
-    height = 12 * big
-    top = s.side  # of the bed's fill
-    base = top if s.bed else 0.0
-    a = s.side / 2
-    box = (-a, a, -a, a, 0.0, base + height)
-    stream = (-a, a, -a, a, base + 6 * big, base + height)
-    # one lot leaves the region before the next comes
-    fills = []
-    if s.bed:
-        fills.append(Fill(s.bed, s.bed_count, _block(-a, a, -a, a, 0.0, top), "scene.bed_count", s.side**3))
-    pause = 6 * big / s.speed
-    fills.append(Fill(s.particles, s.count, _block(*stream), "scene.count", None, s.rate, pause, s.speed, "peen"))
-    phases = [("fill", s.bed_fill)] if s.bed else []
-    return Layout(box, "p p f", (("floor", "zplane", 0.0),), fills, [*phases, ("peen", s.duration)], loses=True)
+    """The stream is a column of shot on its way: what hits at time t starts speed * t above the target.
+
+    LIGGGHTS's own streams place spheres by random numbers that a restart file does not hold.
+    """
+    gap = 4 * _largest(s.particles)
+    base = s.side if s.bed else 0.0
+    foot, a = base + gap, s.side / 2
+    top = foot + s.speed * s.count / s.rate
+    column = (-a, a, -a, a, foot, top)
+    room = s.side**2 * (top - foot)
+    stream = Fill(s.particles, s.count, _block(*column), "scene.count", room, velocity=s.speed, phase="peen")
+    if not s.bed:
+        fills, phases = [stream], []
+    else:
+        fills = [Fill(s.bed, s.bed_count, _block(-a, a, -a, a, 0.0, base), "scene.bed_count", s.side**3), stream]
+        phases = [("fill", s.bed_fill)]
+    box = (-a, a, -a, a, 0.0, float(f"{top + gap:.10g}"))
+    phases.append(("peen", s.duration))
+    return Layout(box, "p p f", (("floor", "zplane", 0.0),), fills, phases, loses=True)
 
 
 _KINDS: dict[type, Callable[..., Layout]] = {
