@@ -124,6 +124,12 @@ class LawChoice(BaseModel):
         return dict(self.model_extra or {})
 
 
+class Viscous(Frozen):
+    """A dashpot on the elastic branches: `restitution` of impacts that do not yield."""
+
+    restitution: quantity("1", ge=0.14, le=1.0, hint="1 is no dashpot, below 0.14 none is strong enough")
+
+
 class Numerics(Frozen):
     """Steps of the shortest contact, or the largest relative `error` of e_n, for which the step is then searched."""
 
@@ -153,6 +159,7 @@ class Case(Frozen):
     materials: dict[Name, Material]
     impact: Impact
     law: LawChoice
+    viscous: Viscous | None = None
     numerics: Numerics = Numerics()
     check: Check = Check()
 

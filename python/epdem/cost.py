@@ -104,7 +104,8 @@ def seconds(c: Contender, p: Plan, folder: Path) -> dict[str, float]:
         begin = time.perf_counter()
         law = x.native_law()
         ready = time.perf_counter()
-        law.impacts(R_star=x.R_star, m_star=x.m_star, speed=p.speed, time_step=p.time_step, gap=p.gap, steps=p.steps)
+        law.impacts(R_star=x.R_star, m_star=x.m_star, speed=p.speed, time_step=p.time_step, gap=p.gap, steps=p.steps,
+                    viscous=x.viscous_number)  # fmt: skip
         return {"startup": 0.0, "setup": ready - begin, "stepping": time.perf_counter() - ready}
     if isinstance(tool, Liggghts):
         return _liggghts_seconds(tool, p, folder)

@@ -68,6 +68,7 @@ class Experiment:
     G_star: float
     R_star: float
     m_star: float
+    viscous_restitution: float | None = None  # of impacts that do not yield; None: no dashpot
 
     def theory(self):
         """The law's backbone as the theory knows it."""
@@ -78,6 +79,11 @@ class Experiment:
     def native_law(self) -> claw.Law:
         """The same law in C++."""
         return claw.Law(self.law.name, E_star=self.E_star, **self.law.parameters)
+
+    @property
+    def viscous_number(self) -> float:
+        """The dashpot as the C++ laws take it; 0: none."""
+        return 0.0 if self.viscous_restitution is None else claw.viscous_number(self.viscous_restitution)
 
 
 def _body(case: Case, material: str, radius: float | None) -> Body:
@@ -149,6 +155,7 @@ def experiment(case: Case, law: str | None = None) -> Experiment:
         case=case, law=spec, body=body, target=target, speed=case.impact.speed_values(),
         E_star=float(pair.E_star(*elastic)), G_star=float(pair.G_star(*elastic)),
         R_star=float(pair.R_star(body.radius, target.radius)), m_star=float(pair.m_star(body.mass, target.mass)),
+        viscous_restitution=case.viscous.restitution if case.viscous else None,
     )  # fmt: skip
     e.native_law()  # parameters that make no sense together are refused here
     e.theory()

@@ -25,7 +25,8 @@ class _StepResult(Structure):
 
 
 IMPACT_INPUT = np.dtype(
-    [(n, "f8") for n in ("R_star", "m_star", "speed", "time_step", "gap")] + [("steps", "i8"), ("viscous", "f8")], align=True
+    [(n, "f8") for n in ("R_star", "m_star", "speed", "time_step", "gap")] + [("steps", "i8"), ("viscous", "f8")],
+    align=True,
 )
 IMPACT_OUTPUT = np.dtype(
     [(n, "f8") for n in ("rebound_speed", "force_max", "overlap_max", "last_overlap")]

@@ -16,7 +16,7 @@ class Measured:
 
     energy_residual compares the sampled work in and out with the law's plastic work at the sampled peak,
     relative to the kinetic energy: unlike the sum of F d alpha against the change of kinetic energy, which velocity
-    Verlet fulfils for any force, it is evidence for the law.
+    Verlet fulfils for any force, it is evidence for the law. NaN with a dashpot, whose work the samples do not tell.
     """
 
     e_n: np.ndarray
@@ -48,9 +48,11 @@ def measure(plan: Plan, path: Trajectory) -> Measured:
         if bad.any():
             raise EngineError(f"the impact at {plan.speed[bad][0]:.6g} m/s {what}; the run is too short or went wrong")
 
-    # Contact ends where F, not the overlap, reaches 0. Near the end F^(2/3) falls linearly with overlap and time.
+    # Contact ends where F, not the overlap, reaches 0. Near the end F^(2/3) falls linearly with overlap and time;
+    # with a dashpot, which cuts the force off early, F itself does.
+    dashpot = plan.experiment.viscous_number > 0
     before = np.maximum(last - 1, 0)
-    root_last, root_before = np.cbrt(force[row, last]) ** 2, np.cbrt(force[row, before]) ** 2
+    root_last, root_before = (force[row, k] if dashpot else np.cbrt(force[row, k]) ** 2 for k in (last, before))
     share = np.divide(root_last, root_before - root_last, out=np.full(plan.n, 0.5), where=root_before > root_last)
     share = np.minimum(share, 1.0)  # the next sample is unloaded
     contact_time = (last + share) * path.time_step - plan.gap / plan.speed
@@ -69,6 +71,6 @@ def measure(plan: Plan, path: Trajectory) -> Measured:
         force_max=force_max,
         overlap_max=peak,
         residual_overlap=residual,
-        energy_residual=(work.sum(axis=1) - plastic) / energy,
+        energy_residual=np.full(plan.n, np.nan) if dashpot else (work.sum(axis=1) - plastic) / energy,
         steps_in_contact=loaded.sum(axis=1),
     )

@@ -45,7 +45,8 @@ class Outcome:
 def _digest(plan: Plan, tool: Engine, version: str, ranks: int) -> str:
     """Hash of all that the result of a stage depends on: plan, engine, our binaries, templates."""
     x, sha = plan.experiment, hashlib.sha256()
-    numbers = [x.E_star, x.R_star, x.m_star, plan.time_step, plan.steps, x.body, x.target, x.law, __version__]
+    numbers = [x.E_star, x.R_star, x.m_star, plan.time_step, plan.steps, x.body, x.target, x.law,
+               x.viscous_restitution, __version__]
     sha.update(json.dumps([tool.name, version, ranks, repr(numbers)]).encode())
     sha.update(plan.speed.tobytes() + plan.gap.tobytes())
     binaries = [paths.native("libepdem.so"), paths.native("libepdem_liggghts.so"), paths.launcher()]

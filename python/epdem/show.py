@@ -2,6 +2,7 @@
 """Small tables and their JSON for the commands that run nothing."""
 
 import json
+import math
 from dataclasses import asdict
 
 import pandas as pd
@@ -31,9 +32,14 @@ def predictions(pairs: list[tuple[Experiment, Prediction]], as_json: bool, conso
         yields = f"yields: {', '.join(p.yields)}" if p.yields else "nothing yields"
         if as_json:
             document.append({"case": x.case.name, "law": x.law.name, "parameters": x.law.parameters, "yields": p.yields,
+                             "yield_speeds": {k: v if math.isfinite(v) else None for k, v in p.yield_speeds.items()},
                              "warnings": p.warnings(), "rows": records(frame)})  # fmt: skip
         else:
             console.print(_table(f"{x.case.case.title}: law {x.law.name} (SI units; {yields})", frame))
+            for material, speed in p.yield_speeds.items():
+                never = "never: the softer body limits the pressure"
+                when = f"from {speed:.4g} m/s on" if math.isfinite(speed) else never
+                console.print(f"{material} yields beneath its surface (1.60 Y) {when}", highlight=False)
             for warning in p.warnings():
                 console.print(f"warning: {warning}", style="yellow", highlight=False)
     if as_json:

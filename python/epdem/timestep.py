@@ -11,6 +11,7 @@ import numpy as np
 from .errors import CaseError
 from .experiment import Experiment
 from .predict import Prediction
+from .theory import timestep as times
 
 PHASES = 32  # four times the 8 of a case, so that the search does not miss the worst phase
 LADDER = 2**0.25  # ratio of neighbouring steps tried; an error of second order changes by 1.41
@@ -47,7 +48,7 @@ class Found:
 def stability_limit(x: Experiment, overlap_max: float) -> float:
     """Largest stable step of velocity Verlet at the stiffest point of a contact [s], by the law's own radius."""
     a = float(x.theory().radius(np.array([overlap_max]))[0])
-    return 2.0 * np.sqrt(x.m_star / (2.0 * x.E_star * a))
+    return float(times.stability_limit(E_star=x.E_star, m_star=x.m_star, radius=a))
 
 
 def reference(x: Experiment, prediction: Prediction) -> Reference:
@@ -55,10 +56,10 @@ def reference(x: Experiment, prediction: Prediction) -> Reference:
     rayleigh = np.inf
     for body in (x.body, x.target):
         if np.isfinite(body.radius) and not body.rigid:
-            shear = body.young_modulus / (2.0 * (1.0 + body.poisson_ratio))
-            time = np.pi * body.radius * np.sqrt(body.density / shear) / (0.1631 * body.poisson_ratio + 0.8766)
-            rayleigh = min(rayleigh, time)
-    hertz = 2.868265 * (x.m_star**2 / (x.R_star * x.E_star**2 * x.speed.max())) ** 0.2
+            time = times.rayleigh_time(radius=body.radius, density=body.density, young_modulus=body.young_modulus,
+                                       poisson_ratio_=body.poisson_ratio)  # fmt: skip
+            rayleigh = min(rayleigh, float(time))
+    hertz = times.hertz_time(E_star=x.E_star, R_star=x.R_star, m_star=x.m_star, speed=x.speed.max())
     return Reference(
         stability=float(stability_limit(x, prediction.overlap_max.max())), rayleigh=float(rayleigh), hertz=float(hertz),
         contact=float(prediction.contact_time.min()),
@@ -72,7 +73,7 @@ def restitution_errors(x: Experiment, prediction: Prediction, time_step: float, 
     speed = np.broadcast_to(x.speed[:, None], gap.shape)
     steps = int(np.ceil(1.5 * prediction.contact_time.max() / time_step)) + 20
     out = x.native_law().impacts(R_star=x.R_star, m_star=x.m_star, speed=speed.ravel(), time_step=time_step,
-                                 gap=gap.ravel(), steps=steps)  # fmt: skip
+                                 gap=gap.ravel(), steps=steps, viscous=x.viscous_number)  # fmt: skip
     e_n = (out["rebound_speed"] / speed.ravel()).reshape(gap.shape)
     ended = (out["last"] >= 0) & (out["steps"] < steps)
     error = np.abs(e_n / prediction.e_n[:, None] - 1.0)

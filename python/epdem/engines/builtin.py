@@ -12,6 +12,7 @@ class BuiltinHertz(Liggghts):
     """LIGGGHTS's `hertz` without damping: the elastic limit."""
 
     name = "liggghts-hertz"
+    takes_dashpot = False
 
     def model(self, plan: Plan) -> str:
         return "hertz"
@@ -27,6 +28,7 @@ class ThorntonNing(Liggghts):
     """LIGGGHTS's `thornton_ning` without adhesion, with the yield pressure of the plan's `thornton` law."""
 
     name = "liggghts-thornton_ning"
+    takes_dashpot = False
 
     def model(self, plan: Plan) -> str:
         if plan.experiment.law.name != "thornton":

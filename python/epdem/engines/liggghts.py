@@ -51,6 +51,7 @@ class Deck:
     properties: tuple[Property, ...]
     model: str
     tangential: str
+    settings: tuple[str, ...]
     wall_type: int | None
     time_step: float
     path: str
@@ -92,6 +93,9 @@ def _properties(plan: Plan) -> tuple[Property, ...]:
             (law.strength_property, "peratomtype", [_finite(s) for _, s in types], "Pa, the softer body's counts")
         )
     rows += [(name, "scalar", [value], "1") for name, value in law.ratios().items()]
+    if plan.experiment.viscous_restitution is not None:
+        values = [len(types), *[plan.experiment.viscous_restitution] * len(types) ** 2]
+        rows.append(("coefficientRestitution", "peratomtypepair", values, "of impacts that do not yield"))
     return numbered(rows)
 
 
@@ -100,6 +104,7 @@ class Liggghts:
 
     name = "liggghts"
     template = "liggghts/impact.in.j2"
+    takes_dashpot = True
 
     def missing(self) -> str | None:
         if shutil.which("liggghts") is None or paths.launcher() is None:
@@ -124,15 +129,20 @@ class Liggghts:
         x, types = plan.experiment, _types(plan)
         for b, _ in types:
             if b.poisson_ratio < 0:
-                raise CaseError(f"materials.{b.material}.poisson_ratio = {b.poisson_ratio}, LIGGGHTS takes [0, 0.5] only; "
-                                "use --engine embedded")  # fmt: skip
+                raise CaseError(f"materials.{b.material}.poisson_ratio = {b.poisson_ratio}, LIGGGHTS takes [0, 0.5] "
+                                "only; use --engine embedded")  # fmt: skip
+        dashpot = x.viscous_restitution is not None
+        if dashpot and not self.takes_dashpot:
+            raise CaseError(f"viscous: engine {self.name} does not know our dashpot; use --engine liggghts or embedded")
         moduli = [_finite(b.young_modulus) for b, _ in types]
         return Deck(
             title=x.case.case.title, source=x.case.case.source,
             summary=f"{x.speed.size} speeds x {plan.phases} phases = {plan.n} independent impacts, law {x.law.name}",
-            remembers=x.law.strength_property is not None, hard=max(moduli) > HARD, soft=min(moduli) < SOFT, data="impact.data",
+            remembers=x.law.strength_property is not None, hard=max(moduli) > HARD, soft=min(moduli) < SOFT,
+            data="impact.data",
             skin=0.2 * min(x.body.radius, x.target.radius), types=tuple(b.material for b, _ in types),
             properties=self.properties(plan), model=self.model(plan), tangential="off",
+            settings=("viscous on",) if dashpot else (),
             wall_type=len(types) if math.isinf(x.target.radius) else None,
             time_step=plan.time_step, path="path.bin", steps=plan.steps,
         )  # fmt: skip

@@ -103,6 +103,8 @@ class Yade:
     def deck(self, plan: Plan) -> Deck:
         """The deck of a plan. Raises CaseError for what YADE cannot do."""
         x, wall = plan.experiment, isinf(plan.experiment.target.radius)
+        if x.viscous_restitution is not None:
+            raise CaseError("viscous: engine yade has no dashpot; use --engine liggghts or embedded")
         materials = {x.target.material: _material(x, x.target, x.law.strengths[1]),
                      x.body.material: _material(x, x.body, x.law.strengths[0])}  # fmt: skip
         bodies = [Group("body.data", x.body.radius, x.body.material)]

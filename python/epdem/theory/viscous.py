@@ -1,50 +1,53 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Impacts of a law with a dashpot on its elastic branches: the equation of motion, solved to 1e-10.
 
-m* alpha'' = -max(0, F(alpha) + c(a) alpha'),  c = 2 sqrt(5/6) zeta sqrt(2 E* a m*), and no dashpot while the contact
-yields (there F lies on the backbone). zeta makes the restitution of an impact that does not yield a constant of the
-pair (Tsuji, Tanaka and Ishida 1992, with the force cut off at 0): zeta = sin phi, e = exp(-(pi - 2 phi) tan phi).
+m* alpha'' = -max(0, F(alpha) + c alpha'), c = 2 sqrt(5/6) zeta sqrt(2 E* a m*), and no dashpot while the contact
+yields (there F lies on the backbone). zeta makes the restitution of an impact that does not yield a constant of the pair
+(Tsuji, Tanaka and Ishida 1992, with the force cut off at 0): zeta = sin phi, e = exp(-(pi - 2 phi) tan phi).
 
-Near first touch and near the dent the force goes as the 1/4 power of the overlap x above the dent. With x = L q^4 and
+Near first touch and near the dent sqrt(a) goes as the 1/4 power of the overlap x above the dent. With x = L q^4 and
 dt = 4 (L/V) q^3 dtheta the motion is smooth there and at the turning point: dq/dtheta = alpha'/V.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 
 import numpy as np
 
-from . import restitution
+from . import restitution as undamped
+from .backbones import Backbone
+from .checks import number
 
 RESTITUTION_MIN = 0.14  # the formula's limit for zeta -> 1 is exp(-2) = 0.135
-_H = 1 / 16  # step in theta; the extrapolation below then leaves 1e-13
+_STEP = 1 / 8  # of theta; the extrapolation below then leaves 1e-12
+_X, _W = np.polynomial.legendre.leggauss(32)
+_X, _W = 0.5 * (_X + 1), 0.5 * _W  # on [0, 1]
+
+
+@dataclass(frozen=True)
+class Impact(undamped.Impact):
+    """As without a dashpot, but force_max and residual_overlap are those of the whole force, dashpot and all."""
+
+    viscous_work: np.ndarray  # lost beside plastic_work [J]: to the dashpot, or still stored when the bodies part
 
 
 def damping_ratio(e):
-    """zeta of a Hertz contact with restitution e in [0.14, 1], any shape; NaN outside. Bisection to round-off."""
-    e = np.asarray(e, float)
+    """zeta of a Hertz contact with restitution e in [0.14, 1], any shape. Raises ValueError outside."""
+    e = np.asarray(number("restitution", e, low=RESTITUTION_MIN, high=1.0, low_ok=True))
     low, high = np.zeros_like(e), np.full_like(e, np.pi / 2)
     for _ in range(60):
         phi = 0.5 * (low + high)
         above = np.exp(-(np.pi - 2 * phi) * np.tan(phi)) > e
         low, high = np.where(above, phi, low), np.where(above, high, phi)
-    return np.where((e >= RESTITUTION_MIN) & (e <= 1), np.sin(0.5 * (low + high)), np.nan)
+    return np.where(e < 1, np.sin(low), 0.0)
 
 
-@dataclass(frozen=True)
-class DampedImpact(restitution.Impact):
-    """As restitution.Impact; force_max is that of the whole force, residual_overlap where the whole force ends."""
-
-    viscous_work: np.ndarray  # what is lost beside the plastic work [J]: m* v^2 (1 - e_n^2)/2 - plastic_work
-
-
-def _extrapolated(f, y, h):
-    """One step h (shape (n,)) of y' = f(y), y of shape (k, n): modified midpoint rule, extrapolated to order 16."""
-    rows = []
+def _advance(f, y, h):
+    """One step h (scalar or (n,)) of y' = f(y), y (k, n): modified midpoint rule, extrapolated to order 16."""
+    rows: list[list[np.ndarray]] = []
     for j in range(1, 9):
-        n = 2 * j
-        d = h / n
+        d = h / (2 * j)
         before, now = y, y + d * f(y)
-        for _ in range(n - 1):
+        for _ in range(2 * j - 1):
             before, now = now, before + 2 * d * f(now)
         row = [0.5 * (before + now + d * f(now))]
         for k in range(1, j):
@@ -53,38 +56,131 @@ def _extrapolated(f, y, h):
     return rows[-1][-1]
 
 
-def _integrate(f, y, event, peak):
-    """Follow y from theta = 0 to the first zero of event(y), event > 0 before; peak(y) is a force to be maximised.
+def _path(f, y, going):
+    """States from y (k, n) on until going(y) <= 0 in every column, shape (steps + 1, k, n); a column then stands."""
+    path = [y]
+    while np.any(active := going(path[-1]) > 0):
+        path.append(np.where(active, _advance(f, path[-1], _STEP), path[-1]))
+    return np.array(path)
 
-    y is (k, n); returns (y at the event, largest peak). The event is not looked for before the first step is over.
-    """
-    n = y.shape[1]
-    done, end = np.zeros(n, bool), y.copy()
-    best_y, best_h, best = y.copy(), np.zeros(n), peak(y)
-    for _ in range(100_000):
-        new = _extrapolated(f, y, np.full(n, _H))
-        crossed = ~done & (event(new) <= 0)
-        h = np.full(n, _H)
-        if crossed.any():
-            low, high = np.zeros(n), np.full(n, _H)
-            for _ in range(50):
-                h = 0.5 * (low + high)
-                positive = event(_extrapolated(f, y, h)) > 0
-                low, high = np.where(positive, h, low), np.where(positive, high, h)
-            h = np.where(crossed, 0.5 * (low + high), _H)
-            end = np.where(crossed, _extrapolated(f, y, h), end)
-        here = np.where(done, -np.inf, peak(np.where(crossed, end, new)))
-        better = here > best
-        best_y, best_h, best = np.where(better, y, best_y), np.where(better, h, best_h), np.maximum(best, here)
-        done |= crossed
-        if done.all():
-            break
-        y = np.where(done, y, new)
-    # the largest sample is the end of the step from best_y: the summit is in this step or in the next one
-    low, high = np.zeros(n), 2 * best_h
-    golden = 0.5 * (np.sqrt(5) - 1)
-    for _ in range(60):
+
+def _first_zero(f, path, g):
+    """The state of each column where g first ceases to be positive after the start; its last one if it never does."""
+    ended = np.array([g(y) <= 0 for y in path[1:]])
+    start = np.where(ended.any(axis=0), ended.argmax(axis=0), len(path) - 2)
+    y = np.take_along_axis(path, start[None, None, :], axis=0)[0]
+    low, high = np.zeros(y.shape[1]), np.full(y.shape[1], _STEP)
+    for _ in range(52):
+        h = 0.5 * (low + high)
+        positive = g(_advance(f, y, h)) > 0
+        low, high = np.where(positive, h, low), np.where(positive, high, h)
+    return np.where(ended.any(axis=0), _advance(f, y, high), path[-1])
+
+
+def _largest(f, path, g):
+    """The largest g along the path: sampled, then by golden section in the two steps around the largest sample."""
+    samples = np.array([g(y) for y in path])
+    start = np.maximum(samples.argmax(axis=0) - 1, 0)
+    y = np.take_along_axis(path, start[None, None, :], axis=0)[0]
+    low, high, golden = np.zeros(y.shape[1]), np.full(y.shape[1], 2 * _STEP), 0.5 * (np.sqrt(5) - 1)
+    for _ in range(40):  # the value is flat at its summit: 1e-8 of the place is 1e-16 of the value
         left, right = high - golden * (high - low), low + golden * (high - low)
-        rises = peak(_extrapolated(f, best_y, left)) < peak(_extrapolated(f, best_y, right))
+        rises = g(_advance(f, y, left)) < g(_advance(f, y, right))
         low, high = np.where(rises, left, low), np.where(rises, high, right)
-    return end, best, (best_y, 0.5 * (low + high))
+    return g(_advance(f, y, 0.5 * (low + high)))
+
+
+def _yielding_time(law: Backbone, m, start, top):
+    """Time on the backbone from overlap `start` to rest at `top`: quadrature in c, alpha = top - (top - start) c^2."""
+    marks = [start, *(np.clip(mark, start, top) for mark in law.marks()), top]
+    total = np.zeros_like(top)
+    for a, b in zip(marks[:-1], marks[1:], strict=True):
+        far, near = (np.sqrt((top - x) / (top - start)) for x in (a, b))
+        c = near[:, None] + (far - near)[:, None] * _X
+        width = np.maximum((top - start)[:, None] * c * c, np.finfo(float).tiny)  # a piece may be empty
+        alpha = top[:, None] - width
+        mean = sum(w * law.force(alpha + width * x) for x, w in zip(_X, _W, strict=True))
+        exact = (law.work(top)[:, None] - law.work(alpha)) / width  # loses digits near the top, kinks spoil the other
+        mean = np.where(width < 1e-3 * top[:, None], mean, exact)
+        total += (far - near) * ((2 * np.sqrt((top - start)[:, None] * m[:, None] / (2 * mean))) @ _W)
+    return total
+
+
+def _elastic(share, dashpot, q_yield):
+    """Hertz contact from touch in units of L and of the impact speed; share = (L/its own undamped peak)^(5/4)."""
+    k, d = 1.25 * share**2, dashpot * np.sqrt(15 / 8) * share
+
+    def force(y):
+        q, v, _ = y
+        return q * (k * q**5 + d * v)
+
+    def rate(y):
+        q, v, _ = y
+        return np.array([v, -4 * q**3 * force(y), 4 * q**3])
+
+    def loaded(y):
+        q, v, _ = y
+        return np.minimum(q_yield - q, np.where(v > 0, 1.0, k * q**5 + d * v))
+
+    path = _path(rate, np.array([np.zeros_like(share), np.ones_like(share), np.zeros_like(share)]), loaded)
+    end, turn = _first_zero(rate, path, loaded), _first_zero(rate, path, lambda y: np.minimum(y[1], q_yield - y[0]))
+    inside = _largest(rate, path, lambda y: np.where(y[0] <= q_yield, force(y), 0.0))
+    return end, turn, np.maximum(inside, force(end))
+
+
+def _unload(law: Backbone, top, L, V, m, dashpot):
+    """The elastic branch from rest at `top`, in units of the elastic recovery (L) and of the undamped rebound (V)."""
+
+    def forces(q, v):
+        F, a = law.unloading(np.minimum(top - L * (1 - q**4), top), top)
+        return F * L / (m * V * V) + dashpot * np.sqrt(2 * law.E_star * a / m) * L / V * v
+
+    def rate(y):
+        q, v, _ = y
+        return np.array([v, -4 * q**3 * forces(q, v), 4 * q**3])
+
+    def loaded(y):
+        return np.where(y[0] > 0, forces(y[0], y[1]), -1.0)
+
+    path = _path(rate, np.array([np.ones_like(top), np.zeros_like(top), np.zeros_like(top)]), loaded)
+    return _first_zero(rate, path, loaded)
+
+
+def impact(law: Backbone, *, m_star, speed, restitution: float) -> Impact:
+    """Everything theory says of an impact at `speed` [m/s] > 0 with effective mass m_star [kg] > 0; they broadcast.
+
+    restitution in [0.14, 1] is that of impacts that do not yield. Raises ValueError for values outside.
+    """
+    zeta = float(damping_ratio(restitution))
+    m, v = np.broadcast_arrays(number("m_star", m_star), number("speed", speed))
+    plain = undamped.impact(law, m_star=m, speed=v)
+    if zeta == 0.0:
+        return Impact(**{f.name: getattr(plain, f.name) for f in fields(plain)}, viscous_work=np.zeros(v.shape))
+    shape, m, v = v.shape, m.ravel(), v.ravel()
+    dashpot, W = 2 * np.sqrt(5 / 6) * zeta, 0.5 * m * v * v
+
+    own = (15 * m * v * v / (16 * law.E_star * np.sqrt(law.R_star))) ** 0.4  # peak overlap of Hertz without a dashpot
+    L = np.minimum(own, law.yield_overlap)
+    end, turn, peak = _elastic((L / own) ** 1.25, dashpot, (law.yield_overlap / L) ** 0.25)
+    top, back, time, parting = L * turn[0] ** 4, -v * end[1], L / v * end[2], L * end[0] ** 4
+    force_max, W_plastic = peak * m * v * v / L, np.zeros_like(v)
+
+    yielded = end[1] > 0
+    if yielded.any():
+        y, m_y = law.yield_overlap, m[yielded]
+        kinetic = 0.5 * m_y * (v * end[1])[yielded] ** 2
+        summit = law.overlap_of_work(law.work(y) + kinetic)
+        given, recovery = law.recovered_work(summit), law.recovered_overlap(summit)
+        V = np.sqrt(2 * given / m_y)
+        out = _unload(law, summit, recovery, V, m_y, dashpot)
+        time[yielded] += _yielding_time(law, m_y, np.full(summit.shape, y), summit) + recovery / V * out[2]
+        top[yielded], back[yielded], parting[yielded] = summit, -V * out[1], summit - recovery * (1 - out[0] ** 4)
+        force_max[yielded] = np.maximum(force_max[yielded], law.force(summit))
+        W_plastic[yielded] = law.work(summit) - given
+    work_out, radius = 0.5 * m * back * back, law.radius(top)
+    columns = {
+        "e_n": back / v, "contact_time": time, "force_max": force_max, "overlap_max": top, "radius_max": radius,
+        "residual_overlap": parting, "work_in": W, "work_out": work_out, "plastic_work": W_plastic,
+        "strain_ratio": radius / law.R_star, "viscous_work": W - work_out - W_plastic,
+    }  # fmt: skip
+    return Impact(**{name: np.reshape(column, shape) for name, column in columns.items()})
