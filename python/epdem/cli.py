@@ -12,7 +12,7 @@ from typing import Annotated
 import typer
 from rich.console import Console
 
-from . import cli_crosscheck, cli_numerics
+from . import cli_crosscheck, cli_numerics, cli_theory
 from .cli_options import AsJson, CasePath, Engines, Laws, Out, console
 from .errors import EpdemError
 
@@ -89,7 +89,14 @@ def doctor(as_json: AsJson = False) -> None:
     raise typer.Exit(0 if all(f.ok for f in findings if f.needed) else 3)
 
 
-for command in (cli_crosscheck.crosscheck, cli_numerics.timestep):
+for command in (
+    cli_crosscheck.crosscheck,
+    cli_theory.theory,
+    cli_theory.figures,
+    cli_numerics.timestep,
+    cli_numerics.cost,
+    cli_numerics.stress,
+):
     app.command()(command)
 
 

@@ -5,16 +5,18 @@ Overlaps [m] and parameters broadcast. A law is one class; `keywords` maps the n
 in C++ to those of the constructor, `default_ratio` is its strength in units of the softer body's yield stress.
 """
 
+from typing import ClassVar
+
 import numpy as np
 
 from .checks import number
 
 
 class Backbone:
-    """What all laws share: the elastic start and, below alpha_max, superposed rigid punches (Mesarovic, Johnson 2000)."""
+    """What all laws share: the elastic start and, below alpha_max, superposed rigid punches (Mesarovic and Johnson)."""
 
     name: str
-    keywords: dict[str, str] = {}
+    keywords: ClassVar[dict[str, str]] = {}
     default_ratio = 1.0
     yield_overlap: np.ndarray | float  # end of the elastic branch [m]
 
@@ -116,13 +118,13 @@ class Hertz(Backbone):
 
 
 class Thornton(Backbone):
-    """Truncated Hertz pressure (Thornton 1997): Hertz to a_y = pi R* p_y/(2E*), then F = F_y + pi p_y R* (alpha - alpha_y).
+    """Truncated Hertz pressure (Thornton 1997): F = F_y + pi p_y R* (alpha - alpha_y) past a_y = pi R* p_y/(2E*).
 
     a^2 = R* alpha throughout; p_y [Pa] > 0, 2.8 Y by default.
     """
 
     name = "thornton"
-    keywords = {"yield_pressure": "p_y"}
+    keywords: ClassVar = {"yield_pressure": "p_y"}
     default_ratio = 2.8
 
     def __init__(self, *, E_star, R_star, p_y):
@@ -159,7 +161,7 @@ class Johnson(Backbone):
     """
 
     name = "johnson"
-    keywords = {"yield_pressure": "p_m"}
+    keywords: ClassVar = {"yield_pressure": "p_m"}
     default_ratio = 3.0
 
     def __init__(self, *, E_star, R_star, p_m):

@@ -4,6 +4,8 @@
 This project's own composition of the chapter's ingredients; nothing in it is fitted.
 """
 
+from typing import ClassVar
+
 import numpy as np
 
 from .backbones import LAWS, Backbone
@@ -18,7 +20,7 @@ class Cavity(Backbone):
     """
 
     name = "cavity"
-    keywords = {"yield_stress": "Y", "first_yield_ratio": "c_Y", "plastic_ratio": "c_P"}
+    keywords: ClassVar = {"yield_stress": "Y", "first_yield_ratio": "c_Y", "plastic_ratio": "c_P"}
 
     def __init__(self, *, E_star, R_star, Y, c_Y=1.60, c_P=2.8):
         super().__init__(E_star, R_star)

@@ -19,8 +19,8 @@ _T, _WEIGHT = 0.5 * (_T + 1), 0.5 * _WEIGHT
 def subsurface(x, y, z, *, mu, nu):
     """Stress tensor, shape (..., 3, 3), in units of p_0 at points (x, y, z) in units of a; z >= 0.02.
 
-    mu >= 0 (0: Hertz's field alone), nu in (-1, 0.5]. Nearer to the surface the quadrature loses digits: ValueError; on it
-    use `surface`. Relative accuracy 1e-8 at z = 0.05, 1e-13 from z = 0.2 on.
+    mu >= 0 (0: Hertz's field alone), nu in (-1, 0.5]. Nearer to the surface the quadrature loses digits: ValueError; on
+    it use `surface`. Relative accuracy 1e-8 at z = 0.05, 1e-13 from z = 0.2 on.
     """
     mu, nu = number("mu", mu, low_ok=True), poisson_ratio("nu", nu)
     x, y, z = np.broadcast_arrays(np.asarray(x, float), np.asarray(y, float), number("z", z, low=0.02, low_ok=True))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""When and where a contact yields: criteria, first yield under a sphere, fully plastic range, which body (8.76-8.80)."""
+"""When and where a contact yields: criteria, first yield under a sphere, fully plastic range, which body."""
 
 import numpy as np
 
