@@ -80,7 +80,8 @@ def stress(
             temporary.write_text(document(outcome, "epdem " + " ".join(sys.argv[1:])))
     if as_json:
         print(json.dumps({"passed": outcome.passed, "rows": records(outcome.verdicts),
-                          "roundoff": records(outcome.roundoff), "bulk": records(outcome.bulk)}, indent=1))  # fmt: skip
+                          "roundoff": records(outcome.roundoff), "bulk": records(outcome.bulk),
+                          "precisions": records(outcome.precisions)}, indent=1))  # fmt: skip
     else:
         console = _console()
         console.print(table("extreme cases; steps as shares of the stability limit", summary(outcome.verdicts)))

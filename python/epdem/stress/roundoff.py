@@ -5,6 +5,7 @@ import numpy as np
 import pandas as pd
 
 from ..engines.base import EPS
+from ..errors import EpdemError
 from .cases import Extreme, build
 from .running import Setting, setting
 from .sampling import Sampler
@@ -61,10 +62,18 @@ def floors(law: str, samplers: list[Sampler], *, times=(1e-4, 1e-2, 3.0, 1e2), s
         double = s.x.native_law().impacts(R_star=s.x.R_star, m_star=s.x.m_star, speed=s.x.speed[0], time_step=dt,
                                           gap=gap, steps=steps)["rebound_speed"] / s.x.speed[0]  # fmt: skip
         found = {"double": double, "positions": with_positions(s, dt, gap, steps)}
-        found |= {sampler.name: sampler(s.x, dt, gap, steps).e_n for sampler in samplers}
+        found |= {sampler.name: _tried(sampler, s, dt, gap, steps) for sampler in samplers}
         row = {"law": law, "times_yield": t, "overlap_max": s.overlap_max, "recovered": s.recovered,
                "steps": s.contact_time / dt}  # fmt: skip
         row |= {name: float(np.abs(e / exact - 1).max()) for name, e in found.items()}
         row["formula"] = position_floor(radius=s.x.R_star, recovered=s.recovered, steps=row["steps"])
         rows.append(row)
     return pd.DataFrame(rows)
+
+
+def _tried(sampler: Sampler, s: Setting, time_step: float, gap: np.ndarray, steps: int) -> np.ndarray:
+    """e_n of an engine, NaN where it cannot: that it failed stands in the verdicts."""
+    try:
+        return sampler(s.x, time_step, gap, steps).e_n
+    except EpdemError:
+        return np.full_like(gap, np.nan)

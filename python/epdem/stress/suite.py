@@ -11,7 +11,7 @@ import pandas as pd
 from .. import law as claw
 from ..engines import engine
 from ..errors import EngineError
-from . import bulk_checks
+from . import bulk_checks, precisions
 from .cases import Extreme, extremes
 from .repeats import judge_repeats
 from .roundoff import floors
@@ -24,11 +24,15 @@ SLOW = ("yade",)  # ten seconds a case: the first and last of each group only
 
 @dataclass(frozen=True)
 class Outcome:
-    """verdicts: one row per case, engine and law; roundoff: per law and speed; bulk: per stiff scene and law."""
+    """verdicts: one row per case, engine and law; roundoff: per law and speed; bulk: per stiff scene and law;
+
+    precisions: round-off in YADE's builds of other precisions, per speed. Empty where they did not run.
+    """
 
     verdicts: pd.DataFrame
     roundoff: pd.DataFrame
     bulk: pd.DataFrame
+    precisions: pd.DataFrame
 
     @property
     def passed(self) -> bool:
@@ -51,7 +55,8 @@ def run(engines: list[str], laws: list[str], *, groups: list[str] | None = None,
     """Judge every `every`-th case of the `groups` (none: all) with every law in every engine.
 
     `steps` is the length of the drift by bounces, `cycles` the number of reloads. Laws none given: all. Without
-    `groups` the round-off floor is measured and, with LIGGGHTS, the stiff bulk scenes run.
+    `groups` the round-off floor is measured (with YADE in its other precisions too) and, with LIGGGHTS, the stiff bulk
+    scenes run.
     """
     laws = laws or list(claw.laws())
     chosen = [e for e in extremes() if not groups or e.group in groups][::every]
@@ -73,7 +78,9 @@ def run(engines: list[str], laws: list[str], *, groups: list[str] | None = None,
     verdicts = pd.DataFrame([asdict(v) for v in rows])
     verdicts["notes"] = verdicts["notes"].map("; ".join)
     bulk = bulk_checks.run(laws, progress=progress) if "liggghts" in engines and not groups else pd.DataFrame()
-    return Outcome(verdicts, pd.concat(tables, ignore_index=True) if tables else pd.DataFrame(), bulk)
+    finer = "yade" in engines and not groups and precisions.available()
+    return Outcome(verdicts, pd.concat(tables, ignore_index=True) if tables else pd.DataFrame(), bulk,
+                   precisions.floors() if finer else pd.DataFrame())  # fmt: skip
 
 
 def ends(chosen: list[Extreme]) -> list[Extreme]:
