@@ -77,8 +77,8 @@ step up to 1.5 times the limit is a failure; every case is bounded in its number
 engines with positions: {fewer}), at which e_n is off by more than {wrong:.0%}, and at which more than {broken:.0%} of
 the energy is created or the contact does not end. A dash: not up to 1.5 times the limit. `large`: a_max/R* > 0.3,
 outside small-deformation theory; the case runs and is flagged.
-`n.r.`: not representable (below). `n.a.`: embedded engine only. Empty: not run (YADE needs ten seconds a case and runs
-the first and the last of each group).
+`n.r.`: not representable (below). `n.a.`: embedded engine only. Empty: not run (YADE needs ten seconds a case: it runs
+the first and the last of each group, with one law).
 
 **In practice:** {practice}
 
