@@ -3,11 +3,14 @@
 
 import json
 from pathlib import Path
+from typing import Annotated
 
+import typer
 from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
 
 from .case import read_toml
+from .errors import CaseError
 from .scene import case as scene_case
 
 
@@ -16,18 +19,37 @@ def is_scene(path: Path) -> bool:
     return scene_case.is_scene(read_toml(path))
 
 
-def run_scene(case: Path, *, out: Path | None = None, ranks: int = 1, fresh: bool = False, resume: bool = False,
-              as_json: bool = False) -> int:  # fmt: skip
+def run_scene(
+    case: Path,
+    *,
+    out: Path | None = None,
+    ranks: int = 1,
+    fresh: bool = False,
+    resume: bool = False,
+    as_json: bool = False,
+) -> int:
     """Run a scene with a progress bar; print its checks. Exit code: 0, or 1 if a check failed."""
     from .scene import report
     from .scene.run import run
 
-    bar = Progress(TextColumn("{task.description}"), BarColumn(), TextColumn("{task.completed}/{task.total} steps"),
-                   TimeElapsedColumn(), TimeRemainingColumn(), console=Console(stderr=True))  # fmt: skip
+    bar = Progress(
+        TextColumn("{task.description}"),
+        BarColumn(),
+        TextColumn("{task.completed}/{task.total} steps"),
+        TimeElapsedColumn(),
+        TimeRemainingColumn(),
+        console=Console(stderr=True),
+    )
     with bar:
         task = bar.add_task(Path(case).stem, total=None)
-        outcome = run(case, out=out, ranks=ranks, fresh=fresh, resume=resume,
-                      tell=lambda step, steps: bar.update(task, completed=step, total=steps))  # fmt: skip
+        outcome = run(
+            case,
+            out=out,
+            ranks=ranks,
+            fresh=fresh,
+            resume=resume,
+            tell=lambda step, steps: bar.update(task, completed=step, total=steps),
+        )
     report.figures(outcome)
     if as_json:
         print(report.as_json(outcome))
@@ -43,3 +65,111 @@ def deck_scene(case: Path, out: Path, *, as_json: bool = False) -> None:
 
     names = [str(f) for f in write(scene_case.load(case), out)]
     print(json.dumps({"files": names}) if as_json else "\n".join(names))
+
+
+Case = Annotated[Path, typer.Argument(metavar="CASE", help="case file (TOML)")]
+Out = Annotated[Path | None, typer.Option("--out", "-o", help="file or folder to write")]
+AsJson = Annotated[bool, typer.Option("--json", help="print one JSON document and nothing else")]
+
+
+def explain(case: Case, as_json: AsJson = False) -> None:
+    """Why each line of a case's LIGGGHTS deck is in it."""
+    from .scene.explain import explain as explain_lines
+
+    lines = explain_lines(_texts(case))
+    if as_json:
+        print(json.dumps([{"file": f, "line": text, "reason": reason} for f, text, reason in lines], indent=1))
+        return
+    file = None
+    for name, text, reason in lines:
+        if name != file:
+            print(f"{name}:")
+            file = name
+        print(f"  {text.split('  # ')[0].rstrip()}\n      {reason}")
+
+
+def _texts(case: Path) -> dict[str, str]:
+    if is_scene(case):
+        from .scene.deck import texts
+
+        return texts(scene_case.load(case))
+    from . import deck as decks
+    from .case import load
+    from .engines.liggghts import Liggghts
+    from .experiment import experiment
+    from .plan import plan
+    from .predict import predict
+
+    tool, x = Liggghts(), experiment(load(case))
+    return {"in.impact": decks.render(tool.template, deck=tool.deck(plan(x, predict(x))))}
+
+
+def soften(
+    case: Case,
+    factor: Annotated[
+        float, typer.Option("--factor", "-k", help="E is divided by it; the step grows by its 0.4th power")
+    ],
+    out: Out = None,
+    as_json: AsJson = False,
+) -> None:
+    """A softened twin of a case with the same e_n at every speed, and larger time steps."""
+    from .soften import soften as twin_of
+
+    twin = twin_of(case, factor)
+    target = out or case.with_name(f"{case.stem}_soft{factor:g}.toml")
+    target.write_text(twin.text)
+    if as_json:
+        print(
+            json.dumps(
+                {
+                    "file": str(target),
+                    "changes": [vars(c) for c in twin.changes],
+                    "warnings": twin.warnings,
+                    "strain_ratio": twin.strain_ratio,
+                    "time_step_factor": twin.time_step_factor,
+                },
+                indent=1,
+            )
+        )
+        return
+    for c in twin.changes:
+        print(f"{c.place}: {c.before} -> {c.after}")
+    print(
+        f"time step {twin.time_step_factor:.3g} times larger; a_max/R* {twin.strain_ratio[0]:.3f} -> "
+        f"{twin.strain_ratio[1]:.3f}; e_n of every speed stays; written to {target}"
+    )
+    for warning in twin.warnings:
+        print(f"warning: {warning}")
+
+
+def calibrate(
+    case: Case,
+    e_n: Annotated[float | None, typer.Option("--e-n", help="measured coefficient of restitution")] = None,
+    speed: Annotated[str | None, typer.Option(help='speed of that impact, as "2 m/s"')] = None,
+    hv: Annotated[float | None, typer.Option(help="Vickers hardness instead")] = None,
+    hb: Annotated[float | None, typer.Option(help="Brinell hardness instead")] = None,
+    dent_ratio: Annotated[float, typer.Option(help="dent over ball diameter of the Brinell test")] = 0.375,
+    as_json: AsJson = False,
+) -> None:
+    """The strength of the case's law from one measured e_n, or from a hardness."""
+    from . import calibrate as c
+    from .units import to_si
+
+    if (e_n is None) == (hv is None and hb is None):
+        raise CaseError("give one measurement: --e-n with --speed, or --hv, or --hb")
+    if e_n is not None:
+        try:
+            found = c.from_restitution(case, e_n, to_si(speed, "m/s"))
+        except ValueError as error:
+            raise CaseError(f"--speed {speed!r}: {error}") from None
+    else:
+        pressure = c.pressure_of_hardness(vickers=hv, brinell=hb, dent_ratio=dent_ratio)
+        found = c.from_hardness(case, pressure, f"HV {hv:g}" if hv is not None else f"HB {hb:g}")
+    if as_json:
+        print(json.dumps(vars(found), indent=1))
+        return
+    print(
+        f"law {found.law}, {found.source}: {found.parameter} = {found.value / 1e6:.6g} MPa, "
+        f"that is yield_stress = {found.yield_stress / 1e6:.6g} MPa, yield speed {found.yield_speed:.4g} m/s\n"
+        f'in the case file, under [law]: {found.parameter} = "{found.value / 1e6:.6g} MPa"'
+    )
