@@ -110,7 +110,7 @@ def test_energy_is_split_without_remainder_and_nothing_is_won(law):
 def test_equation_of_motion_of_a_yielding_impact_by_plain_time_steps(name):
     """Runge-Kutta of fourth order on alpha(t), written down anew from the law's branches; 4,000 steps.
 
-    The kinks at yield and at the peak leave it near 1e-5 in restitution.
+    The kinks at yield and at the peak leave it near 1e-5 in restitution, more in the overlap.
     """
     law, e, v = LAWS[name](**STEEL, **STRENGTH[name]), 0.7, 6.0
     found = viscous.impact(law, m_star=M, speed=v, restitution=e)
@@ -139,4 +139,4 @@ def test_equation_of_motion_of_a_yielding_impact_by_plain_time_steps(name):
         top, t = max(top, alpha), t + dt
     assert -speed / v == pytest.approx(float(found.e_n), abs=2e-5)
     assert t == pytest.approx(float(found.contact_time), abs=1.1 * dt)  # seen at the step after
-    assert top == pytest.approx(float(found.overlap_max), rel=1e-5)
+    assert top == pytest.approx(float(found.overlap_max), rel=1e-4)  # the force jumps inside a step
