@@ -173,3 +173,11 @@ def calibrate(
         f"that is yield_stress = {found.yield_stress / 1e6:.6g} MPa, yield speed {found.yield_speed:.4g} m/s\n"
         f'in the case file, under [law]: {found.parameter} = "{found.value / 1e6:.6g} MPa"'
     )
+
+
+def deck_template(template: Path, case: Path, sets: list[str], out: Path, *, as_json: bool = False) -> None:
+    """Write a deck from a template of the user's own and the values of a case."""
+    from .scene.template import settings, write
+
+    names = [str(f) for f in write(template, case, settings(sets), out)]
+    print(json.dumps({"files": names}) if as_json else "\n".join(names))

@@ -96,6 +96,7 @@ class Deck:
     energy: bool
     loads: bool
     spins: bool
+    remembers: bool
     loses: bool
     motion: dict[str, float]
     from_restart: str | None = None
@@ -244,6 +245,7 @@ def deck(case: SceneCase) -> Deck:
         restarts=_every(out.restarts, rows, every),
         energy=out.energy,
         loads=out.loads,
+        remembers=m.yields or m.tangential != "off" or m.rolling is not None,
         spins=m.tangential != "off" or m.rolling is not None,
         loses=layout.loses,
         motion=layout.motion,

@@ -1,0 +1,93 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Own templates: the case's values and our macros, so that a wall cannot have another model than the pairs."""
+
+import subprocess
+from pathlib import Path
+
+import pytest
+
+from epdem import paths
+from epdem.errors import CaseError
+from epdem.scene.template import settings, write
+
+ROOT = Path(__file__).parents[2]
+SETTLE, STEEL = ROOT / "cases/settle_glass.toml", ROOT / "cases/steel_wall.toml"
+
+OWN = """{% import "liggghts/macros.j2" as macros %}
+units si
+atom_style granular
+boundary f f f
+newton off
+communicate single vel yes
+region box block -0.01 0.01 -0.01 0.01 0 {{ height }} units box
+create_box {{ deck.n_types }} box
+neighbor {{ deck.skin | number }} bin
+neigh_modify delay 0
+{{ macros.properties(deck) }}
+{{ macros.pair(deck) }}
+{{ macros.wall(deck, "bottom", "primitive type 1 zplane 0.0") }}
+fix motion all nve/sphere
+fix gravity all gravity 9.81 vector 0 0 -1
+timestep {{ deck.time_step | number }}
+create_atoms 1 single 0 0 {{ 0.5 * height }} units box
+set group all diameter 0.002 density 2500
+thermo {{ steps }}
+run {{ steps }}
+"""
+
+
+@pytest.fixture
+def own(tmp_path):
+    path = tmp_path / "own.in.j2"
+    path.write_text(OWN)
+    return path
+
+
+@pytest.mark.liggghts
+def test_a_deck_of_ones_own_runs_with_the_materials_and_the_model_of_a_case(own, tmp_path):
+    files = write(own, SETTLE, settings(["height=0.02", "steps=500"]), tmp_path / "out")
+    assert [f.name for f in files] == ["own.in"]
+    done = subprocess.run([str(paths.launcher()), "-in", "own.in"], cwd=tmp_path / "out", capture_output=True)
+    assert done.returncode == 0, done.stdout[-500:]
+
+
+def test_pair_and_wall_of_ones_own_deck_have_one_model(own, tmp_path):
+    text = write(own, SETTLE, settings(["height=0.02", "steps=1"]), tmp_path / "out")[0].read_text()
+    pair = next(x for x in text.splitlines() if x.startswith("pair_style gran "))
+    wall = next(x for x in text.splitlines() if "wall/gran" in x)
+    model = pair.removeprefix("pair_style gran ")
+    assert model == "model ep/thornton tangential history"
+    assert f"wall/gran {model} primitive" in wall
+
+
+def test_an_undefined_name_stops_and_is_named(own, tmp_path):
+    with pytest.raises(CaseError, match="'steps' is undefined"):
+        write(own, SETTLE, settings(["height=0.02"]), tmp_path / "out")
+    assert not (tmp_path / "out").exists()
+
+
+def test_a_name_that_the_template_does_not_use_stops(own, tmp_path):
+    with pytest.raises(CaseError, match="hieght"):
+        write(own, SETTLE, settings(["height=0.02", "steps=1", "hieght=3"]), tmp_path / "out")
+
+
+def test_an_unknown_value_of_the_case_stops(own, tmp_path):
+    own.write_text("{{ deck.friction_of_the_moon }}")
+    with pytest.raises(CaseError, match="friction_of_the_moon"):
+        write(own, STEEL, {}, tmp_path / "out")
+
+
+def test_an_impact_case_brings_its_data_file(own, tmp_path):
+    own.write_text("read_data {{ deck.data }}\n")
+    files = write(own, STEEL, {}, tmp_path / "out")
+    assert [f.name for f in files] == ["own.in", "impact.data"]
+
+
+@pytest.mark.parametrize("pair", ["height", "=3", "a b=3", "deck=1"])
+def test_settings_that_are_none_are_refused(pair):
+    with pytest.raises(CaseError, match="--set"):
+        settings([pair])
+
+
+def test_settings_read_as_numbers_where_they_are_numbers():
+    assert settings(["a=1", "b=1e-3", "c=top"]) == {"a": 1, "b": 1e-3, "c": "top"}
