@@ -14,10 +14,11 @@ from epdem.law import Law
 from epdem.stress import bulk, bulk_checks, roundoff
 from epdem.stress.cases import build, extremes
 from epdem.stress.document import document
-from epdem.stress.repeats import balance, judge_repeats, squeeze_path, stored
+from epdem.stress.repeats import judge_repeats
 from epdem.stress.running import judge, measure, setting
 from epdem.stress.sampling import EmbeddedSampler, PositionSampler, Sample
 from epdem.stress.scenes import SCENES, with_law
+from epdem.stress.squeezed import balance, path, stored
 
 LAWS = ("hertz", "thornton", "johnson", "cavity")
 BY_NAME = {e.name: e for e in extremes()}
@@ -51,7 +52,8 @@ def test_every_extreme_impact_is_finite_second_order_and_creates_no_energy(law):
 @pytest.mark.parametrize("law", LAWS)
 def test_one_contact_bounced_reloaded_and_squeezed_neither_gains_nor_drifts(law):
     """1e6 steps here, 1e9 in `epdem stress`; drift goes with dt^3 and is 6e-11 a bounce at this step."""
-    verdicts = [judge_repeats(e, law, "embedded", steps=10**6, cycles=300) for e in extremes() if e.kind != "impact"]
+    chosen = [e for e in extremes() if e.kind != "impact"]
+    verdicts = [judge_repeats(e, law, EmbeddedSampler(), steps=10**6, cycles=300) for e in chosen]
     assert len(verdicts) == 5 and [(v.case, v.reason) for v in verdicts if v.status != "passed"] == []
 
 
@@ -97,10 +99,21 @@ def test_stored_energy_is_the_work_along_loading_and_back_to_the_dent():
 
 def test_a_squeezed_sphere_keeps_its_energy_but_not_with_a_wrong_mass():
     s = setting(BY_NAME["squeeze_3e0"], "thornton")
-    path = squeeze_path(s, np.array([0.01]), 1000)
-    assert np.abs(balance(s, *path) - 1).max() < 1e-4
+    samples = path(s, EmbeddedSampler(), 0.01)
+    assert np.abs(balance(s, *samples) - 1).max() < 1e-4
     wrong = replace(s, x=replace(s.x, m_star=1.01 * s.x.m_star))
-    assert np.abs(balance(wrong, *path) - 1).max() > 1e-3
+    assert np.abs(balance(wrong, *samples) - 1).max() > 1e-3
+
+
+@pytest.mark.liggghts
+def test_liggghts_takes_the_steps_of_the_embedded_engine_with_a_sphere_between_two_walls(tmp_path):
+    """Same scheme: without memory only the round-off of positions differs; with it the balance of both holds."""
+    sampler = PositionSampler(engine("liggghts"), tmp_path)
+    s = setting(BY_NAME["squeeze_3e0"], "hertz")
+    ours, theirs = path(s, EmbeddedSampler(), 0.05), path(s, sampler, 0.05)
+    assert np.abs(ours[0][1:] - theirs[0]).max() < 1e-9 * s.overlap_max
+    s = setting(BY_NAME["squeeze_3e0"], "cavity")
+    assert np.abs(balance(s, *path(s, sampler, 0.01)) - 1).max() < 1e-4
 
 
 def test_double_and_long_double_agree_to_a_few_eps_per_thousand_steps():
@@ -147,9 +160,10 @@ def test_round_off_of_liggghts_is_that_of_positions_and_of_nothing_else(tmp_path
 @pytest.mark.liggghts
 @pytest.mark.parametrize("name", list(SCENES))
 def test_energy_of_stiff_bulk_scenes_never_rises_none_is_lost_and_ranks_agree(name, tmp_path):
-    """Some 250 spheres here, 2,000 in `epdem stress`; tolerances are those of the scenes at full size."""
-    small = {"plate": (6, 6, 7), "mixture": (6, 6, 7), "shock": (5, 5, 10)}[name]
-    verdict = bulk_checks.judge_scene(with_law(SCENES[name](small), "cavity"), tmp_path)
+    """Some 150 spheres for half the time here, 2,000 in `epdem stress`; the tolerances are those of full size."""
+    small = {"plate": (5, 5, 6), "mixture": (6, 5, 5), "shock": (4, 4, 10)}[name]
+    scene = with_law(SCENES[name](small), "cavity")
+    verdict = bulk_checks.judge_scene(replace(scene, duration=scene.duration / 2), tmp_path)
     assert verdict.passed, verdict.reason
     assert verdict.dissipated > 0.05
 

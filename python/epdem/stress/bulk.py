@@ -14,8 +14,8 @@ from .. import law as claw
 from .. import paths
 from ..engines.base import call
 from ..engines.liggghts import SOFT, loop_seconds, numbered, read_dump
-from .repeats import stored
 from .scenes import DENSITY, POISSON, STRENGTH, Scene
+from .squeezed import plastic, stored
 
 FRAMES = 40
 LIMIT = 120.0  # seconds a scene may take
@@ -80,7 +80,9 @@ def execute(folder: Path, *, ranks: int = 1, seconds: float = LIMIT) -> float:
     if ranks > 1:
         extra = ["--allow-run-as-root"] if os.geteuid() == 0 else []
         command = ["mpirun", "-np", str(ranks), "--oversubscribe", *extra, *command]
-    call(command, folder, log="out.liggghts", seconds=seconds, env=dict(os.environ) | {"OMP_NUM_THREADS": "1"})
+    # waiting ranks give way: on a busy machine they would otherwise take the time of those that work
+    env = dict(os.environ) | {"OMP_NUM_THREADS": "1", "OMPI_MCA_mpi_yield_when_idle": "1"}
+    call(command, folder, log="out.liggghts", seconds=seconds, env=env)
     return loop_seconds(folder / "log.liggghts")
 
 
@@ -98,8 +100,7 @@ def _local(folder: Path, kind: str, step: int) -> np.ndarray:
 
 def _elastic(theory, alpha: np.ndarray, top: np.ndarray) -> float:
     """Elastic energy in contacts of one pair of types [J]."""
-    plastic = np.where(top > theory.yield_overlap, theory.work(top) - theory.recovered_work(top), 0.0)
-    return float((stored(theory, alpha, top) - plastic).sum())
+    return float((stored(theory, alpha, top) - plastic(theory, top)).sum())
 
 
 def ledger(scene: Scene, deck: SimpleNamespace, folder: Path) -> pd.DataFrame:

@@ -71,7 +71,7 @@ def run(engines: list[str], laws: list[str], *, groups: list[str] | None = None,
                     if extreme.kind == "impact":
                         rows.append(judge(extreme, law, sampler, coarse))
                     else:
-                        rows.append(judge_repeats(extreme, law, sampler.name, steps=steps, cycles=cycles))
+                        rows.append(judge_repeats(extreme, law, sampler, steps=steps, cycles=cycles))
         if not groups:
             progress("round-off")
             others = [s for s in samplers(engines, Path(scratch)) if s.name != "embedded"]
