@@ -157,8 +157,8 @@ O.engines, O.dt = engines(watch("check()")), 1e-7
 for part in range(6):
     O.run(1500, True)
     ball(0.007 + 0.007 * part, 0.041, 0.041, "brass", 5.0)  # one comes, one goes
-    balls = [k for k in kinds if O.bodies[k] and isinstance(O.bodies[k].shape, Sphere) and not O.bodies[k].isClumpMember]
-    O.bodies.erase(balls[-4])
+    known = [O.bodies[k] for k in kinds if O.bodies[k]]
+    O.bodies.erase([b.id for b in known if isinstance(b.shape, Sphere) and not b.isClumpMember][-4])
 answer(**worst, steps=total["steps"], **{k: len(total[k]) for k in ("contacts", "yielded")})
 """
 

@@ -16,7 +16,7 @@ from math import pi, sqrt
 SMALL = 1e-6
 
 
-# sigmaMax over Young's modulus: of a material that never yields (YADE refuses 1 and more), and the most of one that does.
+# sigmaMax over Young's modulus: of a material that never yields (YADE refuses 1 and more); the most of one that does
 NEVER, STRONGEST = 0.4, 0.36
 
 
@@ -27,9 +27,9 @@ def force(E_star: float, R: float, radius: float, growth: float, u: float) -> fl
 
 
 def damage_limit(E_star: float, R: float, dent: float, delta_max: float) -> tuple[float, float]:
-    """(h, sigmaMax): the branch (R, dent) ends at delta_max."""
+    """(h, sigmaMax): the branch (R, dent) ends at delta_max; a contact that rests there must not yield by round-off."""
     h = (delta_max - dent) / R
-    return h, 2.0 * E_star / pi * sqrt(h)
+    return h, 2.0 * E_star / pi * sqrt(h) * (1.0 + 2e-15)
 
 
 def growth_by_secant(R: float, h: float, step: float, rise: float) -> float:

@@ -12,7 +12,7 @@ All history lives in attributes of YADE's `phys` that its conical-damage law doe
 from math import inf, pi
 
 from yade import O
-from yade.wrapper import Facet, Sphere, Wall
+from yade.wrapper import Facet, FrictMatCDM, Sphere, Wall
 
 from . import cone
 from .law import hertz_branch, recovered_overlap, unload
@@ -38,20 +38,35 @@ def trigger_pressure(material) -> float:
     return inf if material.sigmaMax >= cone.STRONGEST * material.young else material.sigmaMax
 
 
+def survey() -> tuple[float, float]:
+    """(shortest yield overlap that two bodies of the scene can have [m], speed of the fastest [m/s])."""
+    R_min, speed, kinds = inf, 0.0, set()
+    for body in O.bodies:
+        speed = max(speed, body.state.vel.squaredNorm())
+        material = body.material
+        if isinstance(material, FrictMatCDM) and not body.isClump:
+            kinds.add((material.young / (1.0 - material.poisson**2), trigger_pressure(material)))
+            if isinstance(body.shape, Sphere):
+                R_min = min(R_min, body.shape.radius)
+    ratios = [(0.5 * pi * min(s, t) * (1.0 / E + 1.0 / F)) ** 2 for E, s in kinds for F, t in kinds]
+    return 0.5 * R_min * min(ratios, default=inf), speed**0.5
+
+
 class Contact:
     """A contact that can yield. Overlaps u in m, forces in N."""
 
-    __slots__ = ("E", "R_star", "born", "delta_max", "geom", "growth", "interaction", "law", "levers", "peak", "phys",
-                 "place", "radius")  # fmt: skip
+    __slots__ = ("E", "R_star", "bodies", "born", "delta_max", "geom", "growth", "interaction", "law", "levers", "peak",
+                 "phys", "place", "radius", "yield_overlap")  # fmt: skip
 
     def __init__(self, interaction, law, R_star: float):
         phys = interaction.phys
         self.interaction, self.geom, self.phys = interaction, interaction.geom, phys
         self.born, self.law, self.E, self.R_star = interaction.iterMadeReal, law, law.E_star, R_star
         self.radius, self.growth, self.place = phys.radius, phys.alphaFac, -1
+        self.yield_overlap = law.yield_ratio * R_star
         # a normal force turns no sphere; the torque on other shapes is the sum that YADE keeps for them
-        bodies = interaction.id1, interaction.id2
-        self.levers = tuple(k for k in (0, 1) if not isinstance(O.bodies[bodies[k]].shape, Sphere))
+        self.bodies = interaction.id1, interaction.id2
+        self.levers = tuple(k for k in (0, 1) if not isinstance(O.bodies[self.bodies[k]].shape, Sphere))
         self.delta_max, self.peak = phys.adhesionForce, None
         if self.delta_max > 0.0:
             self.peak = law.load(R_star, self.delta_max)
@@ -60,10 +75,6 @@ class Contact:
     def alive(self) -> bool:
         """False once YADE has dropped the contact, or made another one of the same interaction."""
         return self.interaction.iterMadeReal == self.born
-
-    @property
-    def yield_overlap(self) -> float:
-        return self.law.yield_ratio * self.R_star
 
     def computed(self, u: float) -> float:
         """What YADE has just applied at overlap u; its loop may have grown R."""
@@ -145,13 +156,13 @@ class Contact:
         reach = REACH * (touch - dent)
         return touch - reach, min(touch + reach, self.delta_max)
 
-    def add(self, force: float) -> None:
-        """Add a normal force to what YADE applied in this step."""
-        vector = self.geom.normal * force
-        bodies = self.interaction.id1, self.interaction.id2
-        O.forces.addF(bodies[0], -vector)
-        O.forces.addF(bodies[1], vector)
+    def correct(self, force: float, difference: float) -> None:
+        """Make `force` of what YADE applied in this step, which was less by `difference`."""
+        normal, (first, second) = self.geom.normal, self.bodies
+        vector = normal * difference
+        O.forces.addF(first, -vector)
+        O.forces.addF(second, vector)
         for k in self.levers:
-            arm = self.geom.contactPoint - O.bodies[bodies[k]].state.pos
-            O.forces.addT(bodies[k], arm.cross(vector if k else -vector))
-        self.phys.normalForce += vector
+            arm = self.geom.contactPoint - O.bodies[self.bodies[k]].state.pos
+            O.forces.addT(self.bodies[k], arm.cross(vector if k else -vector))
+        self.phys.normalForce = normal * force

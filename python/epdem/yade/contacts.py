@@ -36,18 +36,18 @@ from yade.wrapper import (
     Ip2_FrictMatCDM_FrictMatCDM_MindlinPhysCDM,
     Law2_ScGeom_MindlinPhysCDM_HertzMindlinCDM,
     PyRunner,
-    Sphere,
 )
 
 from . import cone
-from .contact import FAR, Contact, effective_radius, trigger_pressure
+from .contact import FAR, Contact, effective_radius, survey, trigger_pressure
 from .law import LAWS
 
+PATIENCE = 100  # most steps between two looks at the speeds
 LABEL = "epdem_visit"  # of our PyRunner: YADE binds it anew whenever a scene is loaded
 RIGID = 1e30  # modulus [Pa] of a rigid body; YADE cannot take infinity
 NO_FRICTION = 1e-9  # YADE's law needs a friction angle > 0
 
-_yielding, _depth, _real = attrgetter("isYielding"), attrgetter("penetrationDepth"), attrgetter("isReal")
+_yielding, _depth, _real, _birth = map(attrgetter, ("isYielding", "penetrationDepth", "isReal", "iterMadeReal"))
 _managers: dict[tuple, "Contacts"] = {}
 
 
@@ -65,13 +65,14 @@ class Contacts:
     """All contacts of a scene under one law.
 
     law        hertz, thornton, johnson or cavity; `ratios` are its dimensionless parameters (first_yield_ratio, ...)
-    interval   steps between two searches for new contacts. 1 misses none. More is for slow flows: as often, the fastest
-               body is looked up, and where it might pass half the shortest yield overlap meanwhile there is a warning
-               and the search is made every step as long as that lasts
+    interval   most steps between two thorough searches for new contacts (a change of their number is seen at once, a
+               birth and a death in one step only so). None: as often as the fastest body demands. Where a given
+               interval would let a body pass half the shortest yield overlap there is a warning, and a search in
+               every step for as long as that lasts
     tolerance  share of the law's force below which a difference is left as it is; 0: the law's force to round-off
     """
 
-    def __init__(self, law: str, interval: int = 1, tolerance: float = 0.0, **ratios: float):
+    def __init__(self, law: str, interval: int | None = None, tolerance: float = 0.0, **ratios: float):
         if law not in LAWS:
             raise ValueError(f"law {law!r} does not exist; there are {', '.join(LAWS)}")
         self.kind = LAWS[law]
@@ -80,7 +81,7 @@ class Contacts:
                 raise ValueError(f"law {law} has no parameter {name!r}; it has {', '.join(self.kind.ratios) or 'none'}")
         probe = self.kind(1.0, 1e-3, **ratios)  # refuses ratios that do not fit together
         self.factor = probe.trigger_factor
-        if interval < 1:
+        if interval is not None and interval < 1:
             raise ValueError(f"interval = {interval!r} steps, must be >= 1")
         self.ratios, self.interval, self.tolerance = ratios, interval, tolerance
         self.key = (law, interval, tolerance, *sorted(ratios.items()))
@@ -139,74 +140,79 @@ class Contacts:
         if runner is not self._runner:
             self._begin(runner)
         self._age += 1
-        if self._age >= self.interval:
-            self._age, self._hurry = 0, self.interval > 1 and self._too_fast()
-        if self._age == 0 or self._hurry:
-            self._search()
+        if self._age >= self._lasts:
+            self._age, (self._every, self._lasts) = 0, self._pace()
+        self._search(self._age % self._every == 0)
         for contact in list(compress(self._watched, map(_yielding, self._phys))):
-            if contact.place < 0 and contact.alive:
+            if contact.place < 0 and contact.alive:  # a contact that ended keeps its last flag
                 self._move(contact, contact.geom.penetrationDepth)
         if self._flat:
             self._follow()
 
     def _begin(self, runner: object) -> None:
         """Another scene than in the last visit: only what YADE saves counts."""
-        self._runner, self._age, self._hurry = runner, self.interval, False
+        self._runner, self._age, self._lasts = runner, 0, 1
         self._collider = next((e for e in O.engines if isinstance(e, InsertionSortCollider)), None)
         self._state: object = None
         self._contacts: list[Contact] = []
+        self._apart: list = []  # pairs that the collider sees and that do not touch
         self._sort()
 
-    def _too_fast(self) -> bool:
-        """Whether two bodies may yield each other before the next search; says so once."""
-        shortest, speed = self._survey()
-        path = 2.0 * speed * self.interval * O.dt
-        if path <= 0.5 * shortest:
-            return False
-        most = max(1, int(0.25 * shortest / (speed * O.dt)))
-        warnings.warn(f"epdem: interval = {self.interval} steps is too long: at {speed:.4g} m/s bodies approach by "
-                      f"{path:.4g} m meanwhile, the shortest yield overlap is {shortest:.4g} m. New contacts are "
-                      f"searched every step until it fits; take at most {most}", RuntimeWarning, stacklevel=2)  # fmt: skip
-        return True
+    def _pace(self) -> tuple[int, int]:
+        """(steps between thorough searches, steps until this is looked at again)."""
+        if self.interval == 1:
+            return 1, PATIENCE
+        shortest, speed = survey()
+        allowed = 0.25 * shortest / (speed * O.dt) if speed > 0.0 else inf  # half of it, at twice the speed
+        if self.interval is None:
+            every = int(min(max(allowed, 1), PATIENCE))
+        elif self.interval <= allowed:
+            every = self.interval
+        else:
+            every = 1
+            warnings.warn(
+                f"epdem: interval = {self.interval} steps is too long: at {speed:.4g} m/s bodies approach by "
+                f"{2.0 * speed * self.interval * O.dt:.4g} m in it, the shortest yield overlap is {shortest:.4g} m. "
+                f"New contacts are searched every step; take interval = {max(1, int(allowed))} or None",
+                RuntimeWarning,
+                stacklevel=2,
+            )
+        return every, max(every, 20)
 
-    def _survey(self) -> tuple[float, float]:
-        """(shortest yield overlap that two bodies can have [m], speed of the fastest [m/s])."""
-        R_min, speed, kinds = inf, 0.0, set()
-        for body in O.bodies:
-            speed = max(speed, body.state.vel.squaredNorm())
-            material = body.material
-            if isinstance(material, FrictMatCDM) and not body.isClump:
-                kinds.add((material.young / (1.0 - material.poisson**2), trigger_pressure(material)))
-                if isinstance(body.shape, Sphere):
-                    R_min = min(R_min, body.shape.radius)
-        ratios = [(0.5 * pi * min(s, t) * (1.0 / E + 1.0 / F)) ** 2 for E, s in kinds for F, t in kinds]
-        return 0.5 * R_min * min(ratios, default=inf), speed**0.5
-
-    def _search(self) -> None:
-        """Meet new contacts and drop old ones. While the collider rests the pairs are the same, and only those without
-        a contact can get one; the number of contacts then tells whether any has ended."""
+    def _search(self, thorough: bool) -> None:
+        """Meet new contacts and drop old ones. While the collider rests the pairs are the same: then there is something
+        new only if the number of contacts is not that of the known ones, or one of these has ended."""
         state = self._collider and (self._collider.numAction, len(O.interactions))
-        if state is None or state != self._state:
-            self._state = state
-            self._contacts = [c for c in self._contacts if c.alive]
-            known = {(c.interaction.id1, c.interaction.id2) for c in self._contacts}
-            self._apart = [i for i in O.interactions.all() if (i.id1, i.id2) not in known]
+        renewed = state is None or state != self._state
+        same = not renewed and O.interactions.countReal() == len(self._contacts)
+        if same and not (thorough and sum(map(_birth, self._interactions)) != self._births):
+            return
+        if renewed:
+            pairs = O.interactions.all()
+            present = {(i.id1, i.id2): i.iterMadeReal for i in pairs}  # a body may have been erased with its contacts
+            self._contacts = [c for c in self._contacts if present.get(c.bodies) == c.born]
+            known = {c.bodies for c in self._contacts}
+            self._state, self._apart = state, [i for i in pairs if (i.id1, i.id2) not in known]
             self._sort()
-        if born := list(compress(self._apart, map(_real, self._apart))):
-            for interaction in born:
-                self._meet(interaction)
-            self._apart = [i for i in self._apart if not i.isReal]
-        if O.interactions.countReal() != len(self._contacts):
-            self._apart += [c.interaction for c in self._contacts if not c.alive]
-            self._contacts = [c for c in self._contacts if c.alive]
-            self._sort()
+        else:  # those that have ended stay where they are looked at until the next sorting, and do no harm
+            births = list(map(_birth, self._interactions))
+            self._apart += [c.interaction for c, born in zip(self._contacts, births, strict=True) if born != c.born]
+            self._contacts = [c for c, born in zip(self._contacts, births, strict=True) if born == c.born]
+            self._list()
+        for interaction in list(compress(self._apart, map(_real, self._apart))):
+            self._meet(interaction)
+        self._apart = [i for i in self._apart if not i.isReal]
+
+    def _list(self) -> None:
+        self._interactions = [c.interaction for c in self._contacts]
+        self._births = sum(c.born for c in self._contacts)  # YADE sets it to -1 where a contact ends
 
     def _sort(self) -> None:
         """The contacts by the way they are looked at: by YADE's flag, or (flattened ones) by their overlap."""
         self._watched, self._phys, self._flat, self._geoms = [], [], [], []
-        self._low = self._high = np.empty(0)
-        for contact in self._contacts:
-            self._enter(contact)
+        self._list()
+        bounds = [b for c in self._contacts if (b := self._enter(c))]
+        self._low, self._high = np.array(bounds).reshape(-1, 2).T.copy()
 
     def _law(self, E_star: float, strength: float):
         found = self._laws.get((E_star, strength))
@@ -214,18 +220,22 @@ class Contacts:
             found = self._laws[E_star, strength] = self.kind(E_star, strength, **self.ratios)
         return found
 
-    def _enter(self, contact: Contact) -> None:
+    def _enter(self, contact: Contact) -> tuple[float, float] | None:
+        """Put a contact where it is looked at; of a flattened one the bounds of its branch."""
         if contact.yield_overlap == inf:
-            return
+            return None
         if contact.law.flattens and contact.delta_max > 0.0:
             contact.place = len(self._flat)
             self._flat.append(contact)
             self._geoms.append(contact.geom)
-            low, high = contact.bounds()
-            self._low, self._high = np.append(self._low, low), np.append(self._high, high)
-        else:
-            self._watched.append(contact)
-            self._phys.append(contact.phys)
+            return contact.bounds()
+        self._watched.append(contact)
+        self._phys.append(contact.phys)
+        return None
+
+    def _add(self, contact: Contact) -> None:
+        if bounds := self._enter(contact):
+            self._low, self._high = np.append(self._low, bounds[0]), np.append(self._high, bounds[1])
 
     def _meet(self, interaction) -> None:
         phys, new = interaction.phys, not interaction.phys.initD > 0.0
@@ -238,7 +248,9 @@ class Contacts:
         if new:
             self._greet(contact)
         self._contacts.append(contact)
-        self._enter(contact)
+        self._interactions.append(interaction)
+        self._births += contact.born
+        self._add(contact)
 
     def _greet(self, contact: Contact) -> None:
         """The first visit: the force of this step, and the course from here."""
@@ -257,7 +269,7 @@ class Contacts:
     def _correct(self, contact: Contact, force: float, computed: float) -> None:
         self.visits += 1
         if abs(force - computed) > self.tolerance * force:
-            contact.add(force - computed)
+            contact.correct(force, force - computed)
 
     def _move(self, contact: Contact, u: float) -> None:
         """A contact that has yielded in this step, or a flattened one that has left its branch."""
@@ -271,7 +283,7 @@ class Contacts:
         self._correct(contact, force, computed)
         if contact.law.flattens:
             if contact.place < 0:
-                self._enter(contact)  # it leaves the watched ones when they are sorted
+                self._add(contact)  # it leaves the watched ones when they are sorted
             else:
                 self._low[contact.place], self._high[contact.place] = contact.bounds()
 
