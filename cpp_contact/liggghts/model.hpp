@@ -133,7 +133,14 @@ class Model : public ContactModelBase {
   double stressStrainExponent() { return normal_.stressStrainExponent(); }
   void tally_pp(double x, int i, int j, int k) override { surface_.tally_pp(x, i, j, k); }
   void tally_pw(double x, int i, int j, int k) override { surface_.tally_pw(x, i, j, k); }
-  bool checkSurfaceIntersect(SurfacesIntersectData& s) { return surface_.checkSurfaceIntersect(s); }
+
+  /// The first that LIGGGHTS asks of a pair: its history, and that of the pairs that follow, can be on its way from
+  /// memory while the distance is still being computed.
+  bool checkSurfaceIntersect(SurfacesIntersectData& s) {
+    __builtin_prefetch(s.contact_history, 1);
+    __builtin_prefetch(s.contact_history + 24, 1);
+    return surface_.checkSurfaceIntersect(s);
+  }
 
   /// The loop: all parts inlined, and what LIGGGHTS asks at run time settled where the class already knows it.
   [[gnu::flatten]] void surfacesIntersect(SurfacesIntersectData& s, ForceData& i, ForceData& j) {

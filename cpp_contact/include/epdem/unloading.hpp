@@ -27,13 +27,12 @@ inline real segment(real u) noexcept {
 template <bool Flattens>
 inline Point unload(real E_star, const Point& peak, real delta_max, real delta) noexcept {
   if constexpr (!Flattens) {
-    // share of the recovery still stored; the division does not wait for the root in the radius
-    const real x = 1.0 - (delta_max - delta) * E_star / (0.75 * peak.force) * peak.radius;
-    if (!(x > 0.0)) return {0.0, 0.0, 0.0};
+    // share of the recovery still stored; the division need not wait for delta, which a loop over contacts has last
+    const real x = std::max(real(0.0), 1.0 - (delta_max - delta) * (E_star * peak.radius / (0.75 * peak.force)));
     const real root = std::sqrt(x);
     return {peak.force * x * root, peak.radius * root, 0.0};
   } else {
-    const real w = (delta_max - delta) * E_star * peak.radius / peak.force;
+    const real w = (delta_max - delta) * (E_star * peak.radius / peak.force);
     const real tau = peak.flatness, A = 0.75 * (1.0 - tau), B = 2.0 / pi * tau;
     const real S = B + std::sqrt(B * B + 4.0 * A * w), u = (S - 2.0 * w) / S;  // u = 1 - y
     if (!(u > 0.0)) return {0.0, 0.0, tau};
