@@ -123,7 +123,7 @@ difference of a sphere's place between 1 and 2 ranks at the end; over the kineti
 
 def practice(verdicts: pd.DataFrame) -> str:
     """The sentence a user needs."""
-    ran = verdicts[verdicts["order"].notna()]
+    ran = verdicts[verdicts["useless_at"].notna()]
     return (f"up to 1 % of the limit e_n is within {ran['e_n_error'].max():.1g} in every case that ran; "
             f"from {ran['useless_at'].min():g} of the limit on it can be off by more than 10 %, and from "
             f"{ran['breaks_at'].min():g} on more than 1 % of the energy can come from nothing. `epdem timestep` finds "
