@@ -88,4 +88,13 @@ inline real plastic_work(const Law& law, real R_star, real delta_max) noexcept {
   return law.work(R_star, delta_max) - recovered_work(law.E_star, law.load(R_star, delta_max));
 }
 
+/// Elastic energy [J] of a contact at overlap `delta` that remembers `before`; it returns on separation.
+template <class Law>
+inline real elastic_energy(const Law& law, real R_star, const State<Law>& before, real delta) noexcept {
+  if (!(delta > 0.0)) return 0.0;
+  const real delta_max = std::max(delta, before.delta_max);
+  if (!Law::yields || delta_max <= law.elastic_overlap(R_star)) return hertz_work(law.E_star, R_star, delta);
+  return stored_work<Law::flattens>(law.E_star, law.load(R_star, delta_max), delta_max, delta);
+}
+
 }  // namespace epdem

@@ -54,4 +54,26 @@ inline real recovered_work(real E_star, const Point& peak) noexcept {
   return kappa * peak.force * peak.force / (peak.radius * E_star);
 }
 
+/// Elastic energy [J] still stored at `delta` after unloading from `peak` at `delta_max`: the force integrated from here
+/// to parting, F_max^2/(E* a_max) times the integral of f(y) (2 A y + B) from y to 1, in closed form with y = cos theta.
+template <bool Flattens>
+inline real stored_work(real E_star, const Point& peak, real delta_max, real delta) noexcept {
+  const real scale = peak.force * peak.force / (E_star * peak.radius);
+  const real w = (delta_max - delta) * (E_star * peak.radius / peak.force);
+  if constexpr (!Flattens) {
+    const real x = std::max(real(0.0), 1.0 - w / 0.75);
+    return 0.3 * scale * x * x * std::sqrt(x);
+  } else {
+    const real tau = peak.flatness, A = 0.75 * (1.0 - tau), B = 2.0 / pi * tau;
+    const real y = 2.0 * w / (B + std::sqrt(B * B + 4.0 * A * w));
+    if (w > 0.0 && !(y < 1.0)) return 0.0;
+    const real t = std::acos(w > 0.0 ? y : real(0.0)), s = std::sin(t), c = std::cos(t);
+    const real s2 = std::sin(2.0 * t), s4 = std::sin(4.0 * t), cube = s * s * s;
+    // integrals of (1-y^2)^1.5 and of g = acos y - y sqrt(1-y^2), each with weight 2y and with weight 1
+    const real ellipse_2y = 0.4 * cube * s * s, ellipse = 0.375 * t - 0.25 * s2 + s4 / 32.0;
+    const real g_2y = 0.25 * s2 - 0.5 * t * std::cos(2.0 * t) - 0.25 * t + s4 / 16.0, g = s - t * c - cube / 3.0;
+    return scale * ((1.0 - tau) * (A * ellipse_2y + B * ellipse) + tau * (2.0 / pi) * (A * g_2y + B * g));
+  }
+}
+
 }  // namespace epdem
