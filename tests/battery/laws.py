@@ -5,19 +5,52 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
+import pytest
 from hypothesis import strategies as st
 
 from epdem import law as claw
+from epdem.theory import backbones
 
 NAMES = tuple(claw.laws())
 YIELDING = tuple(n for n in NAMES if claw.laws()[n].parameters)
+
+
+# Routes to a law's numbers that take prescribed overlaps; for engines see test_embedded and test_liggghts_paths.
+routes = pytest.mark.parametrize("route", ["c++", "theory"])
+
+
+class TheoryLaw:
+    """A law of the theory library behind the calls of claw.Law: a step as its branches say it."""
+
+    def __init__(self, name: str, *, E_star: float, **parameters: float):
+        self.cls = backbones.LAWS[name]
+        self.numbers = {"E_star": E_star} | {self.cls.keywords[k]: v for k, v in parameters.items()}
+
+    def step(self, *, R_star, delta_max, delta):
+        law = self.cls(R_star=R_star, **self.numbers)
+        before, delta = np.broadcast_arrays(np.atleast_1d(delta_max).astype(float), np.atleast_1d(delta).astype(float))
+        touches = delta > 0
+        after = np.where(touches, np.maximum(before, delta), before)
+        first = (after <= law.yield_overlap) | (delta >= after)  # on the backbone, or on its elastic start
+        force, radius = np.zeros(delta.shape), np.zeros(delta.shape)
+        up, down = touches & first, touches & ~first
+        force[up], radius[up] = law.force(delta[up]), law.radius(delta[up])
+        if down.any():
+            force[down], radius[down] = law.unloading(delta[down], after[down])
+        return force, radius, after
+
+    def backbone(self, *, R_star, delta):
+        law, delta = self.cls(R_star=R_star, **self.numbers), np.atleast_1d(delta)
+        lost = np.where(delta > law.yield_overlap, law.work(delta) - law.recovered_work(delta), 0.0)
+        return law.force(delta), law.radius(delta), law.work(delta), lost
 
 
 @dataclass(frozen=True)
 class Contact:
     """A law with numbers, and overlaps on the scale of its own yield."""
 
-    law: claw.Law
+    name: str
+    law: claw.Law | TheoryLaw
     E_star: float
     R_star: float
     strength: float
@@ -29,6 +62,10 @@ class Contact:
     def backbone(self, delta):
         return self.law.backbone(R_star=self.R_star, delta=delta)
 
+    def by(self, route: str) -> "Contact":
+        """The same contact by another route."""
+        return contact(self.name, self.E_star, self.R_star, self.strength / self.E_star, route)
+
 
 def yield_overlap(name: str, E_star: float, R_star: float, strength: float) -> float:
     """End of the elastic branch [m], from the laws' definitions (not from the code)."""
@@ -38,12 +75,13 @@ def yield_overlap(name: str, E_star: float, R_star: float, strength: float) -> f
     return R_star * (math.pi * pressure / (2 * E_star)) ** 2
 
 
-def contact(name: str, E_star: float, R_star: float, ratio: float) -> Contact:
+def contact(name: str, E_star: float, R_star: float, ratio: float, route: str = "c++") -> Contact:
     """A contact with strength = ratio E*."""
     parameters = claw.laws()[name].parameters
     strength = ratio * E_star
-    law = claw.Law(name, E_star=E_star, **({parameters[0].name: strength} if parameters else {}))
-    return Contact(law, E_star, R_star, strength, yield_overlap(name, E_star, R_star, strength))
+    make = {"c++": claw.Law, "theory": TheoryLaw}[route]
+    law = make(name, E_star=E_star, **({parameters[0].name: strength} if parameters else {}))
+    return Contact(name, law, E_star, R_star, strength, yield_overlap(name, E_star, R_star, strength))
 
 
 def log_floats(low: float, high: float):

@@ -14,7 +14,7 @@ ROUND_OFF = 1e-12  # of the largest value: exp, log and powers of numbers near 1
 
 def theory(c):
     """The theory's law with the same numbers."""
-    cls = backbones.LAWS[c.law.name]
+    cls = backbones.LAWS[c.name]
     strength = {cls.keywords[c.law.info.parameters[0].name]: c.strength} if c.law.info.parameters else {}
     return cls(E_star=c.E_star, R_star=c.R_star, **strength)
 

@@ -5,12 +5,12 @@ import subprocess
 
 import numpy as np
 import pytest
-from laws import NAMES
+from laws import NAMES, yield_overlap
 
 from epdem import law as claw
 from epdem import paths
 from epdem.engines.liggghts import read_dump
-from epdem.theory import pair
+from epdem.theory import pair, viscous
 
 pytestmark = pytest.mark.liggghts
 N, STEPS, R, E, NU, Y = 256, 600, 0.01, 208e9, 0.3, 1e9
@@ -28,22 +28,22 @@ neigh_modify delay 0
 fix m1 all property/global youngsModulus peratomtype {E!r}
 fix m2 all property/global poissonsRatio peratomtype {NU!r}
 {strength}
-pair_style gran model ep/{law} tangential off
+pair_style gran model ep/{law} tangential off{settings}
 pair_coeff * *
-fix target all wall/gran model ep/{law} tangential off primitive type 1 zplane 0.0
+fix target all wall/gran model ep/{law} tangential off primitive type 1 zplane 0.0{settings}
 variable t equal step*0.01
 variable depth atom 1e-6+(2e-6+8e-4*(id/{N})^3)*(1+0.4*sin((1+0.01*id)*v_t))
 variable dz atom -v_depth*sin((0.9+0.003*id)*v_t)
-variable vz atom 0
+variable vz atom {speed}
 fix move all move variable NULL NULL v_dz NULL NULL v_vz
 timestep 1e-8
-dump path all custom 1 path.bin id z fz
+dump path all custom 1 path.bin id z vz fz
 run {STEPS}
 """
 
 
-def carried(law: str, folder):
-    """Overlap [m] and force [N] at every step, shape (STEPS + 1, N)."""
+def carried(law: str, folder, restitution: float | None = None, speed: str = "0"):
+    """Overlap [m], force [N] and approach speed [m/s] at every step, shape (STEPS + 1, N); `restitution`: a dashpot."""
     side, place = 16, 0.03
     atoms = [
         f"{k + 1} 1 {2 * R!r} 7850.0 {place * (k % side)!r} {place * (k // side)!r} {R + 1e-6!r}" for k in range(N)
@@ -53,17 +53,22 @@ def carried(law: str, folder):
     (folder / "path.data").write_text(data)
     info = claw.laws()[law].parameters
     strength = f"fix m3 all property/global {info[0].property} peratomtype {STRENGTH[law]!r}" if info else ""
-    (folder / "in.path").write_text(DECK.format(law=law, strength=strength, E=E, NU=NU, N=N, STEPS=STEPS))
+    settings = ""
+    if restitution is not None:
+        settings = " viscous on"
+        strength += f"\nfix m4 all property/global coefficientRestitution peratomtypepair 1 {restitution!r}"
+    deck = DECK.format(law=law, strength=strength, settings=settings, speed=speed, E=E, NU=NU, N=N, STEPS=STEPS)
+    (folder / "in.path").write_text(deck)
     done = subprocess.run([str(paths.launcher()), "-in", "in.path"], cwd=folder, capture_output=True, text=True)
     assert done.returncode == 0, done.stdout[-500:]
-    z, force = np.moveaxis(read_dump(folder / "path.bin", 3), 2, 0)
-    return R - z, force
+    z, velocity, force = np.moveaxis(read_dump(folder / "path.bin", 4), 2, 0)
+    return R - z, force, -velocity
 
 
 @pytest.mark.parametrize("name", NAMES)
 def test_liggghts_has_the_laws_force_on_256_paths(name, tmp_path):
-    """To 1e-15 of the largest force where nothing cancels; a step below the peak adds the rounding of alpha_max - alpha."""
-    overlap, force = carried(name, tmp_path)
+    """To 1e-15 of the largest force where nothing cancels, times four roundings; alpha_max - alpha adds its own."""
+    overlap, force, _ = carried(name, tmp_path)
     parameters = {claw.laws()[name].parameters[0].name: STRENGTH[name]} if name in STRENGTH else {}
     law = claw.Law(name, E_star=float(pair.E_star(E, NU, E, NU)), **parameters)
     state = np.zeros(N)
@@ -82,7 +87,7 @@ def test_liggghts_has_the_laws_force_on_256_paths(name, tmp_path):
 
 def test_hertz_equals_liggghts_own_without_damping(tmp_path):
     """An independent check of E* and of the force direction: LIGGGHTS's hertz was not written by us."""
-    overlap, ours = carried("hertz", tmp_path)
+    overlap, ours, _ = carried("hertz", tmp_path)
     deck = (tmp_path / "in.path").read_text().replace("model ep/hertz", "model hertz")
     deck = deck.replace(
         "pair_style", "fix m4 all property/global coefficientRestitution peratomtypepair 1 1.0\npair_style"
@@ -90,6 +95,29 @@ def test_hertz_equals_liggghts_own_without_damping(tmp_path):
     (tmp_path / "in.path").write_text(deck)
     done = subprocess.run([str(paths.launcher()), "-in", "in.path"], cwd=tmp_path, capture_output=True, text=True)
     assert done.returncode == 0, done.stdout[-500:]
-    z, theirs = np.moveaxis(read_dump(tmp_path / "path.bin", 3), 2, 0)
+    z, _, theirs = np.moveaxis(read_dump(tmp_path / "path.bin", 4), 2, 0)
     assert np.array_equal(R - z, overlap)
     assert np.abs(ours - theirs).max() <= 1e-14 * np.abs(theirs).max()
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_liggghts_has_the_dashpots_force_on_256_paths(name, tmp_path):
+    """Below the backbone max(0, F + 2 sqrt(5/6) zeta sqrt(2 E* a m*) v), on it F alone, at speeds of either sign."""
+    overlap, force, v = carried(name, tmp_path, 0.7, "2*cos(0.013*id+0.7*v_t)")
+    parameters = {claw.laws()[name].parameters[0].name: STRENGTH[name]} if name in STRENGTH else {}
+    E_star, mass = float(pair.E_star(E, NU, E, NU)), float(pair.sphere_mass(radius=R, density=7850.0))
+    law, number = claw.Law(name, E_star=E_star, **parameters), 2 * np.sqrt(5 / 6) * float(viscous.damping_ratio(0.7))
+    delta_y = yield_overlap(name, E_star, R, STRENGTH[name]) if name in STRENGTH else np.inf
+    state, cut = np.zeros(N), 0
+    for step in range(STEPS + 1):
+        state = np.where(overlap[step] > 0, state, 0.0)
+        elastic, radius, after = law.step(R_star=R, delta_max=state, delta=overlap[step])
+        flows = (after > state) & (after > delta_y)
+        whole = elastic + number * np.sqrt(2 * E_star * radius * mass) * v[step]
+        expected = np.where(flows | (overlap[step] <= 0), elastic, np.maximum(whole, 0.0))
+        cut += int((~flows & (whole < 0)).sum())
+        if step:
+            state = after
+            scale = np.abs(expected).max()
+            assert np.abs(force[step] - expected).max() <= 2e-14 * scale, step
+    assert cut > 100
