@@ -39,23 +39,24 @@ def e_n(law: Backbone, *, m_star, speed):
     return np.where(top <= law.yield_overlap, 1.0, np.sqrt(law.recovered_work(top) / W))
 
 
+def _nodes(shape):
+    """Quadrature nodes on [0, 1] along a new first axis, so that a law's own parameters still broadcast."""
+    return _X.reshape(-1, *[1] * len(shape))
+
+
 def _loading_time(law: Backbone, m_star, W, top):
     """Integral of d alpha/sqrt(2 (W(top) - W(alpha))/m*): alpha = top sin^2 theta takes both end singularities."""
-    edges = [
-        np.zeros_like(top),
-        *(np.arcsin(np.sqrt(np.clip(m / top, 0, 1))) for m in law.marks()),
-        np.pi / 2 + 0 * top,
-    ]
-    total = np.zeros_like(top)
+    marks = [np.arcsin(np.sqrt(np.clip(m / top, 0, 1))) for m in law.marks()]
+    edges = [np.zeros_like(top), *marks, np.full_like(top, np.pi / 2)]
+    x, total = _nodes(top.shape), np.zeros_like(top)
     for left, right in zip(edges[:-1], edges[1:], strict=True):
-        theta = left[..., None] + (right - left)[..., None] * _X
-        alpha = top[..., None] * np.sin(theta) ** 2
+        theta = left + (right - left) * x
+        alpha = top * np.sin(theta) ** 2
         # W(top) - W(alpha) as an integral where it is a small difference: F between them by 8-point Gauss
-        width = top[..., None] * np.cos(theta) ** 2
-        rest = np.where(width < 1e-3 * top[..., None], _work_between(law, alpha, width), W[..., None] - law.work(alpha))
-        speed = np.sqrt(2 * rest / m_star[..., None])
-        rate = 2 * top[..., None] * np.sin(theta) * np.cos(theta) / speed
-        total += (right - left) * (rate @ _W)
+        width = top * np.cos(theta) ** 2
+        rest = np.where(width < 1e-3 * top, _work_between(law, alpha, width), W - law.work(alpha))
+        rate = 2 * top * np.sin(theta) * np.cos(theta) / np.sqrt(2 * rest / m_star)
+        total = total + (right - left) * np.tensordot(_W, rate, 1)
     return total
 
 
@@ -66,27 +67,23 @@ def _work_between(law: Backbone, alpha, width):
 
 def _unloading_time(law: Backbone, m_star, top, work_out):
     """Time from the peak to zero force; closed for tau = 0, else by quadrature in y of the opening circle."""
-    speed_out = np.sqrt(2 * work_out / m_star)
-    closed = UNLOADING_TIME * law.recovered_overlap(top) / speed_out
+    closed = UNLOADING_TIME * law.recovered_overlap(top) / np.sqrt(2 * work_out / m_star)
     tau = np.asarray(law.flatness(top), float)
     if not np.any(tau > 0):
         return closed
-    a = law.radius(top)
-    A, B = 0.75 * (1 - tau)[..., None], (2 / np.pi * tau)[..., None]
-    y = _X**2  # speed rises from 0 like sqrt y
-    given = _given_back(y, A, B, tau[..., None])
-    rate = (2 * A * y + B) * 2 * _X / np.sqrt(given)
-    flat = np.sqrt(m_star / (2 * law.E_star * a)) * (rate @ _W)
+    A, B, x = 0.75 * (1 - tau), 2 / np.pi * tau, _nodes(top.shape)
+    y = x * x  # speed rises from 0 like sqrt y
+    rate = (2 * A * y + B) * 2 * x / np.sqrt(_given_back(y, A, B, tau))
+    flat = np.sqrt(m_star / (2 * law.E_star * law.radius(top))) * np.tensordot(_W, rate, 1)
     return np.where(tau > 0, flat, closed)
 
 
 def _given_back(y, A, B, tau):
-    """Energy given back while the circle opens to y, in F_max^2/(E* a_max): integral of f (2 A y + B) dy from 0."""
+    """Energy given back while the circle opens to y, in F_max^2/(E* a_max): integral of f (2 A t + B) dt from 0 to y."""
     x, w = np.polynomial.legendre.leggauss(24)
     total = 0.0
     for xk, wk in zip(0.5 * (x + 1), 0.5 * w, strict=True):
-        # t = y z(2 - z): dense towards y = 1, where f ~ (1-y)^1.5
-        t = y * xk * (2 - xk)
+        t = y * xk * (2 - xk)  # dense towards y = 1, where f ~ (1-y)^1.5
         f = (1 - tau) * (1 - t * t) ** 1.5 + 2 / np.pi * tau * (np.arccos(t) - t * np.sqrt(1 - t * t))
         total = total + wk * y * 2 * (1 - xk) * f * (2 * A * t + B)
     return total
@@ -94,12 +91,12 @@ def _given_back(y, A, B, tau):
 
 def impact(law: Backbone, *, m_star, speed) -> Impact:
     """Everything theory says of an impact at `speed` [m/s] > 0 with effective mass m_star [kg] > 0; they broadcast."""
-    m, v = np.broadcast_arrays(number("m_star", m_star), number("speed", speed))
+    m, v, _ = np.broadcast_arrays(number("m_star", m_star), number("speed", speed), law.E_star * law.yield_overlap)
     W = 0.5 * m * v * v
     top = np.asarray(law.overlap_of_work(W), float)
     elastic = top <= law.yield_overlap
     out = np.where(elastic, W, law.recovered_work(top))
-    time = _loading_time(law, np.atleast_1d(m), np.atleast_1d(W), np.atleast_1d(top)).reshape(top.shape)
+    time = _loading_time(law, m, W, top)
     back = np.where(elastic, time, _unloading_time(law, m, top, out))
     radius = law.radius(top)
     return Impact(
