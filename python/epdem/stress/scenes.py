@@ -6,7 +6,8 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from .. import law as claw
-from ..theory import backbones
+from ..theory import backbones, pair
+from ..theory.timestep import stability_limit
 
 DENSITY, POISSON = 7800.0, 0.3
 STEEL = (208e9, 3.0e9)  # E [Pa], p_y [Pa]
@@ -34,12 +35,12 @@ class Scene:
     @property
     def mass(self) -> float:
         """Of one sphere [kg]."""
-        return 4 / 3 * np.pi * self.radius**3 * DENSITY
+        return float(pair.sphere_mass(radius=self.radius, density=DENSITY))
 
     def theory(self, i: int, j: int, *, plate: bool = False) -> backbones.Backbone:
         """The backbone of types i and j (from 1); of a sphere on a plate of type 1 if `plate`."""
         (Ei, pi), (Ej, pj) = self.materials[i - 1], self.materials[j - 1]
-        E_star = 1 / ((1 - POISSON**2) * (1 / Ei + 1 / Ej))
+        E_star = float(pair.E_star(Ei, POISSON, Ej, POISSON))
         cls, info = backbones.LAWS[self.law], claw.laws()[self.law]
         strength = {cls.keywords[p.name]: STRENGTH[p.property] * min(pi, pj) for p in info.parameters if p.unit == "Pa"}
         return cls(E_star=E_star, R_star=self.radius if plate else self.radius / 2, **strength)
@@ -50,9 +51,9 @@ class Scene:
         for i in range(1, len(self.materials) + 1):
             law = self.theory(i, i)
             work = np.array([0.25 * self.mass * self.highest_speed**2])
-            a = float(law.radius(law.overlap_of_work(work))[0])
-            limits.append(2 * np.sqrt(0.5 * self.mass / (2 * law.E_star * a)))
-        return SHARE * min(limits)
+            a = law.radius(law.overlap_of_work(work))
+            limits.append(stability_limit(E_star=law.E_star, m_star=0.5 * self.mass, radius=a)[0])
+        return SHARE * float(min(limits))
 
 
 def _lattice(n: tuple[int, int, int], spacing: float) -> np.ndarray:
