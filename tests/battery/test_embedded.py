@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""What any law must do in the embedded engine, where an impact chooses its path of overlaps; with and without dashpot."""
+"""What any law must do in the embedded engine, where an impact chooses its path of overlaps; with a dashpot or not."""
 
 import math
 

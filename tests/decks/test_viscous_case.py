@@ -1,0 +1,90 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""A dashpot and two materials in a case file: what reaches the deck, what is refused, who yields at what speed."""
+
+import math
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from epdem.case import parse, read_toml
+from epdem.engines import engine
+from epdem.errors import CaseError
+from epdem.experiment import experiment
+from epdem.plan import plan
+from epdem.predict import predict
+
+CASES = Path(__file__).parents[2] / "cases"
+# yield stresses of the pair and how often the harder body's is the softer's
+SOFT, HARD = 0.4e9, {"1.3 times": 0.52e9, "1.7 times": 0.68e9, "1.8 times": 0.72e9}
+
+
+def viscous(changes=None):
+    data = read_toml(CASES / "viscous_steel.toml")
+    data["viscous"] |= changes or {}
+    return data
+
+
+def two_materials(hard, law):
+    data = read_toml(CASES / "steel_wall.toml")
+    base = data["materials"]["steel"]
+    data["materials"] = {"hard": base | {"yield_stress": f"{hard} Pa"}, "soft": base | {"yield_stress": f"{SOFT} Pa"}}
+    data["impact"] |= {"body": {"radius": "10 mm", "material": "hard"}, "target": {"material": "soft"}}
+    data["law"] = {"name": law}
+    return experiment(parse(data, "test"))
+
+
+def test_a_deck_has_a_dashpot_only_if_the_case_asks(tmp_path):
+    for file, expected in (("viscous_steel", True), ("steel_wall", False)):
+        x = experiment(parse(read_toml(CASES / f"{file}.toml"), file))
+        engine("liggghts").write(plan(x, predict(x)), tmp_path)
+        deck = (tmp_path / "in.impact").read_text()
+        assert deck.count("viscous on") == (2 if expected else 0)  # pair and wall agree
+        assert ("coefficientRestitution peratomtypepair 1 0.9" in deck) is expected
+
+
+@pytest.mark.parametrize("value", [0.1, 1.5, "nan", -0.9])
+def test_a_restitution_that_no_dashpot_has_is_refused_with_its_range(value):
+    with pytest.raises(CaseError, match=r"viscous\.restitution = ") as error:
+        parse(viscous({"restitution": value}), "test")
+    assert value == "nan" or "[0.14, 1]" in str(error.value)
+
+
+@pytest.mark.parametrize("name", ["yade", "liggghts-hertz", "liggghts-thornton_ning"])
+def test_an_engine_without_our_dashpot_says_so(name):
+    x = experiment(parse(viscous(), "test"), "thornton")
+    with pytest.raises(CaseError, match="--engine"):
+        engine(name).deck(plan(x, predict(x)))
+
+
+@pytest.mark.parametrize("law", ["thornton", "johnson"])
+def test_while_elastic_each_body_yields_at_the_speed_of_its_own_pressure(law):
+    """Eq. 8.84 with 1.60 Y of each body; the softer one's plastic pressure (2.8 or 3.0 Y) is not yet reached."""
+    x = two_materials(HARD["1.7 times"], law)
+    E, R, m = x.E_star, x.R_star, x.m_star
+    speeds = predict(x).yield_speeds
+    for name, Y in (("soft", SOFT), ("hard", HARD["1.7 times"])):
+        p = 1.60 * Y
+        v = (math.pi / (2 * E)) ** 2 * math.sqrt(8 * math.pi * R**3 * p**5 / (15 * m))
+        assert speeds[name] == pytest.approx(v, rel=1e-12)
+
+
+@pytest.mark.parametrize("law", ["thornton", "cavity"])
+def test_a_body_1_8_times_as_strong_never_yields(law):
+    """2.8 Y_soft = 1.60 Y_hard at Y_hard = 1.75 Y_soft: beyond it the softer body alone flows."""
+    p = predict(two_materials(HARD["1.8 times"], law))
+    assert p.yield_speeds["hard"] == math.inf
+    assert p.yields == ("soft",)
+    assert predict(two_materials(HARD["1.7 times"], law)).yield_speeds["hard"] < math.inf
+
+
+def test_in_the_cavity_phase_the_harder_body_yields_later_than_hertz_would_have_it():
+    """There pressure grows more slowly with speed; the harder body's 1.60 Y comes at a higher speed than 8.84 says."""
+    x = two_materials(HARD["1.3 times"], "cavity")
+    speeds = predict(x).yield_speeds
+    assert speeds["hard"] > speeds["soft"] * 1.3**2.5
+    law = x.theory()
+    top = law.overlap_of_work(np.array([0.5 * x.m_star * speeds["hard"] ** 2]))
+    tau, mean = law.flatness(top), law.force(top) / (np.pi * law.radius(top) ** 2)
+    # centre of half-ellipse and uniform pressure, each with its share of the mean
+    assert mean * (1.5 * (1 - tau) + tau) == pytest.approx(1.60 * HARD["1.3 times"], rel=1e-9)
