@@ -10,6 +10,7 @@
 #include "epdem/tangential.hpp"
 #include "epdem/viscous.hpp"
 #include "host.hpp"
+#include "ledger.hpp"
 #include "materials.hpp"
 
 namespace epdem::liggghts {
@@ -46,6 +47,7 @@ class Normal : protected LAMMPS_NS::Pointers {
   }
 
   void registerSettings(::Settings& settings) {
+    settings.registerOnOff("computePlasticWork", plastic_work_, false);
     settings.registerOnOff("tangential_damping", tangential_damping_, true);
     settings.registerOnOff("viscous", viscous_, false);
     settings.registerOnOff("limitForce", limit_force_, false);
@@ -59,10 +61,11 @@ class Normal : protected LAMMPS_NS::Pointers {
   void postSettings() {
     // limitForce and heating_tracking change nothing: the force is never negative, the law makes no viscous heat
     if (heating_) refuse("heating_normal_hertz", "it is the heat of a viscous normal force, and this law has none");
-    if (elastic_potential_) refuse("computeElasticPotential", "LIGGGHTS integrates nothing for it");
-    if (dissipated_energy_)
-      refuse("computeDissipatedEnergy", "it counts viscous and frictional forces and would miss the plastic work");
+    if (elastic_potential_)
+      refuse("computeElasticPotential", "LIGGGHTS integrates nothing for it (use computePlasticWork)");
+    if (dissipated_energy_) refuse("computeDissipatedEnergy", "it would miss the plastic work (use computePlasticWork)");
     if (disable_when_bonded_) refuse("disableNormalWhenBonded", "bonds are not part of the public LIGGGHTS");
+    if (plastic_work_ && !wall) ledger_.create(lmp);
   }
 
   void connectToProperties(PropertyRegistry& registry, Dashpot dashpot) {
@@ -78,20 +81,20 @@ class Normal : protected LAMMPS_NS::Pointers {
         table_[i * width_ + j] = {Law(effective_modulus(p.i, p.j), p.parameters.data()),
                                   effective_shear_modulus(p.i, p.j), p.damping_number, p.viscous_number};
       }
+    if (plastic_work_) ledger_.connect(lmp, model_);
   }
 
   double stressStrainExponent() const { return 1.5; }
 
   /// LIGGGHTS calls it before the loop over all pairs, never for walls.
   void beginPass(const SurfacesIntersectData& s) {
+    const bool keep = s.computeflag && s.shearupdate;
+    if (plastic_work_ && keep) ledger_.open(atom->nlocal);
     if constexpr (stamped) {
-      const bool keep = s.computeflag && s.shearupdate;
       const bigint expected = clock_ + (keep ? 1 : 0);
       if (update->ntimestep != expected) move_clock(update->ntimestep - expected);
       clock_ = update->ntimestep;
       now_ = static_cast<double>(clock_);
-    } else {
-      (void)s;
     }
   }
 
@@ -111,6 +114,8 @@ class Normal : protected LAMMPS_NS::Pointers {
     const Step<Law> now = step(t.law, R_star, before, delta);
 
     if (keep) {
+      if (plastic_work_)
+        ledger_.template book<wall>(t.law, R_star, before, now.after, delta, {s.i, s.j, atom->nlocal});
       if constexpr (remembers) std::memcpy(history + offset_, &now.after, sizeof now.after);
       if constexpr (stamped) history[stamp_] = now_;
     }
@@ -172,6 +177,8 @@ class Normal : protected LAMMPS_NS::Pointers {
   LAMMPS_NS::PairGran* pair_ = nullptr;
   bigint clock_ = 0;  // step of the last pass
   double now_ = 0.0;
+  Ledger ledger_;
+  bool plastic_work_ = false;
   bool viscous_ = false, tangential_damping_ = true, limit_force_ = false, heating_ = false, heating_tracking_ = false;
   bool elastic_potential_ = false, dissipated_energy_ = false, disable_when_bonded_ = false;
 };

@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// Setting computePlasticWork: what contacts took for good and what they hold, booked to the bodies.
+#pragma once
+
+#include <algorithm>
+#include <string>
+
+#include "epdem/law.hpp"
+#include "host.hpp"
+
+namespace epdem::liggghts {
+
+/// Two per-atom properties: plasticWork [J] sums up every growth of plastic work since the start, elasticEnergy [J] is
+/// what the contacts of this step can give back. Half of a pair's energy belongs to each body, all of a wall's to the
+/// sphere. LIGGGHTS evaluates a pair that spans two ranks on both of them, so each books its own body only.
+class Ledger {
+ public:
+  /// Indices of the bodies, and from which index on a body belongs to another rank.
+  struct Bodies {
+    int i, j, nlocal;
+  };
+
+  /// For the pair style, whose settings come first: creates the properties.
+  void create(LAMMPS_NS::LAMMPS* lmp) {
+    for (const char* name : {work_name, energy_name}) {
+      const char* words[] = {name, "all", "property/atom", name, "scalar", "yes", "no", "no", "0.0"};
+      if (!find(lmp, name, name)) lmp->modify->add_fix_property_atom(9, const_cast<char**>(words), name);
+    }
+  }
+
+  /// Before each run, for pairs and walls.
+  void connect(LAMMPS_NS::LAMMPS* lmp, const std::string& model) {
+    work_ = find(lmp, work_name, model.c_str());
+    energy_ = find(lmp, energy_name, model.c_str());
+    if (work_ && energy_) return;
+    const std::string text = "model " + model + ": computePlasticWork on of a wall needs it for the pair style as well";
+    lmp->error->all(FLERR, text.c_str());
+  }
+
+  /// At the start of a kept pass over all pairs: what the contacts hold is counted anew.
+  void open(int nlocal) { std::fill_n(energy_->vector_atom, nlocal, 0.0); }
+
+  template <bool wall, class Law>
+  void book(const Law& law, double R_star, const State<Law>& before, const State<Law>& after, double delta,
+            const Bodies& bodies) {
+    double grown = 0.0;
+    if (after.delta_max > before.delta_max)
+      grown = plastic_work(law, R_star, after.delta_max) - plastic_work(law, R_star, before.delta_max);
+    const double stored = elastic_energy(law, R_star, before, delta), share = wall ? 1.0 : 0.5;
+    credit(bodies.i, share * grown, share * stored);
+    if (!wall && bodies.j < bodies.nlocal) credit(bodies.j, share * grown, share * stored);
+  }
+
+ private:
+  static constexpr const char* work_name = "plasticWork";
+  static constexpr const char* energy_name = "elasticEnergy";
+
+  static LAMMPS_NS::FixPropertyAtom* find(LAMMPS_NS::LAMMPS* lmp, const char* name, const char* caller) {
+    return static_cast<LAMMPS_NS::FixPropertyAtom*>(
+        lmp->modify->find_fix_property(name, "property/atom", "scalar", 0, 0, caller, false));
+  }
+
+  void credit(int body, double grown, double stored) {
+    work_->vector_atom[body] += grown;
+    energy_->vector_atom[body] += stored;
+  }
+
+  LAMMPS_NS::FixPropertyAtom* work_ = nullptr;
+  LAMMPS_NS::FixPropertyAtom* energy_ = nullptr;
+};
+
+}  // namespace epdem::liggghts

@@ -1,0 +1,62 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Setting computePlasticWork: kinetic, stored and plastic energy of a frictionless bulk scene add up at all times."""
+
+import numpy as np
+import pytest
+from plugin_decks import LAWS, Bodies, good, head, materials, run
+
+pytestmark = pytest.mark.liggghts
+
+BOX = ((-0.001, 0.026), (-0.001, 0.026), (-0.001, 0.026))
+SIDES = [(f"{axis}plane", at) for axis in "xyz" for at in (0.0, 0.025)]
+
+
+def gas(speed=8.0):
+    """5 x 5 x 5 spheres of three materials and several sizes in a box, each with a velocity of its own."""
+    rng = np.random.default_rng(2)
+    n = 125
+    x = (np.stack(np.meshgrid(*[np.arange(5)] * 3, indexing="ij"), -1).reshape(-1, 3) + 0.5) * 0.005
+    return Bodies(rng.integers(1, 4, n), rng.uniform(1.5e-3, 2.4e-3, n), x, rng.uniform(-speed, speed, (n, 3)))
+
+
+def deck(law, *, steps, every, ranks=(1, 1, 1), wall_setting="computePlasticWork on", pair_setting="computePlasticWork on"):
+    words = f"model ep/{law} tangential off"
+    walls = "".join(f"fix w{k} all wall/gran {words} primitive type 2 {side} {at!r} {wall_setting}\n"
+                    for k, (side, at) in enumerate(SIDES))
+    return (head(ranks=ranks) + "read_data box.data\nneighbor 1e-3 bin\nneigh_modify delay 0\n" + materials("ep/any")
+            + f"pair_style gran {words} {pair_setting}\npair_coeff * *\n{walls}timestep 5e-8\nfix move all nve/sphere\n"
+            "compute s all reduce sum f_plasticWork f_elasticEnergy\ncompute k all ke\n"
+            f"thermo_style custom step c_k c_s[1] c_s[2]\nthermo {every}\n"
+            f"thermo_modify lost error norm no format float %.17g\nrun {steps}\n")
+
+
+def balance(folder, text, ranks=1):
+    """Rows of step, kinetic, plastic, elastic energy [J]; the kinetic energy at the start first."""
+    lines = good(folder, text, ranks=ranks, files={"box.data": gas().data(BOX)}).text.splitlines()
+    rows = [line.split() for line in lines]
+    return np.array([row for row in rows if len(row) == 4 and all(c[0].isdigit() for c in row)], float)
+
+
+@pytest.mark.parametrize("law", LAWS)
+def test_the_energy_balance_closes_over_1e5_steps(tmp_path, law):
+    rows = balance(tmp_path, deck(law, steps=100000, every=97))
+    kinetic, plastic, elastic = rows[:, 1:].T
+    start = kinetic[0]
+    total = kinetic + plastic + elastic
+    assert np.abs(total / start - 1).max() < 1e-3
+    assert elastic.max() > 1e-2 * start  # some frames catch contacts at work
+    assert (np.diff(plastic) >= -1e-13 * start).all()  # LIGGGHTS adds up the atoms in changing order
+    assert plastic[-1] == 0 if law == "hertz" else 0.1 < plastic[-1] / start < 1
+
+
+def test_two_ranks_book_the_same_energy(tmp_path):
+    one = balance(tmp_path / "one", deck("thornton", steps=4000, every=50))
+    two = balance(tmp_path / "two", deck("thornton", steps=4000, every=50, ranks=(2, 1, 1)), ranks=2)
+    assert np.allclose(one, two, rtol=1e-12, atol=1e-18) and one[-1, 2] > 0
+
+
+def test_a_wall_alone_is_told_that_the_pair_style_keeps_the_books(tmp_path):
+    text = deck("thornton", steps=10, every=10, pair_setting="")
+    text = text.replace("compute s", "# ").replace("c_s[1] c_s[2]", "")
+    result = run(tmp_path, text, files={"box.data": gas().data(BOX)})
+    assert result.code == 1 and "computePlasticWork" in result.error and "pair style" in result.error
