@@ -7,6 +7,7 @@ import pandas as pd
 from ..predict import predict
 from .case import SceneCase
 from .deck import Deck
+from .ledger import closure
 from .model import wall_impact
 
 
@@ -131,6 +132,8 @@ def checks(case: SceneCase, d: Deck, tables: dict[str, pd.DataFrame]) -> pd.Data
         found.append(_below("loading / unloading stiffness", load, unload, 0.0))
         put_in, back = recovered(case, d, tables["rows"])
         found.append(_below("work got back / put in", back, put_in, 0.0))
+    if "ledger" in tables and "friction" not in tables["ledger"]:
+        found.append(_row("energy: all terms but none as remainder", closure(case, tables["ledger"]), 0.0, 0.01))
     return pd.DataFrame(found, columns=["check", "value", "expected", "error", "tolerance", "passed"])
 
 

@@ -97,6 +97,9 @@ class Deck:
     loads: bool
     spins: bool
     remembers: bool
+    yields: bool
+    memory: int
+    wall_memory: int
     loses: bool
     motion: dict[str, float]
     from_restart: str | None = None
@@ -110,7 +113,16 @@ class Deck:
     def row_words(self) -> tuple[str, ...]:
         """Thermo words beside step, atoms and kinetic energy, which LIGGGHTS shows unasked."""
         floor = self.loads and any(p[0] == "floor" for p in self.planes)
-        return (*(["f_load"] if floor else []), *(["f_press_z"] if "plate" in self.meshes else []))
+        return (
+            *(["f_load"] if floor else []),
+            *(["f_press_z"] if "plate" in self.meshes else []),
+            *(["f_torque"] if self.torque else []),
+        )
+
+    @property
+    def torque(self) -> bool:
+        """Whether the torque of a drum is asked for."""
+        return "drum" in self.meshes and (self.loads or self.energy)
 
 
 def primes():
@@ -245,6 +257,9 @@ def deck(case: SceneCase) -> Deck:
         restarts=_every(out.restarts, rows, every),
         energy=out.energy,
         loads=out.loads,
+        yields=m.yields,
+        memory=memory(m),
+        wall_memory=memory(m, wall=True),
         remembers=m.yields or m.tangential != "off" or m.rolling is not None,
         spins=m.tangential != "off" or m.rolling is not None,
         loses=layout.loses,
@@ -255,6 +270,17 @@ def deck(case: SceneCase) -> Deck:
 def _divisor(n: int, parts: int) -> int:
     """The largest divisor of n that leaves at least `parts` parts (1 if there is none)."""
     return next(d for d in range(max(1, n // parts), 0, -1) if n % d == 0)
+
+
+LAW_MEMORY = {"hertz": 0, "thornton": 1, "johnson": 1, "cavity": 4}  # values that a law keeps of a contact
+
+
+def memory(m: Model, *, wall: bool = False) -> int:
+    """History values of one contact in LIGGGHTS, the law's first: those of the law, step, shear spring, rolling."""
+    law = LAW_MEMORY[m.law]
+    others = 3 * (m.tangential == "history") + 3 * (m.rolling in ("epsd", "epsd2"))
+    stamp = 0 if wall else int(law + others > 0)
+    return law + stamp + others
 
 
 def _two_digits(x: float) -> float:

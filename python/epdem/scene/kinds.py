@@ -78,9 +78,9 @@ def _settle(s: Settle) -> Layout:
         if s.count / s.rate > s.duration:
             raise CaseError(f"scene.duration = {s.duration:g} s ends before all are poured ({s.count / s.rate:g} s)")
     sides = () if s.periodic else _sides(lx, ly)
-    return Layout(
-        limits, "p p f" if s.periodic else "f f f", (("floor", "zplane", 0.0), *sides), [fill], [("settle", s.duration)]
-    )
+    room = (*limits[:5], 1.5 * lz)  # the walls go on above the box: what bounces high falls back
+    boundary, planes = "p p f" if s.periodic else "f f f", (("floor", "zplane", 0.0), *sides)
+    return Layout(room, boundary, planes, [fill], [("settle", s.duration)])
 
 
 def _hopper(s: Hopper) -> Layout:

@@ -148,7 +148,7 @@ def _same_deck(case: SceneCase, folder: Path) -> bool:
 
 
 def _finish(path, case, d, folder, ranks, start, resumed) -> SceneOutcome:
-    from . import checks, ledger
+    from . import checks, contacts, ledger
 
     found = results.SceneResults(
         Path(path).read_text(),
@@ -167,7 +167,7 @@ def _finish(path, case, d, folder, ranks, start, resumed) -> SceneOutcome:
     if d.frames:
         found.tables["particles"] = tables.particles(folder, d)
     if d.contacts:
-        found.tables["contacts"] = ledger.contacts(case, d, folder, found.tables["particles"])
+        found.tables["contacts"] = contacts.contacts(case, d, folder, found.tables["particles"])
     if case.output.energy:
         found.tables["ledger"] = ledger.ledger(case, d, found.tables)
     found.tables["checks"] = checks.checks(case, d, found.tables)

@@ -21,6 +21,7 @@ ROWS = {
     "KinEng": ("kinetic_energy", "J"),
     "load": ("floor_load", "N"),
     "press_z": ("plate_force", "N"),
+    "torque": ("torque", "N m"),
 }
 
 
@@ -82,7 +83,9 @@ def _steps(folder: Path, pattern: str) -> list[tuple[int, Path]]:
 
 def particles(folder: Path, deck: Deck, *, upto: int | None = None) -> pd.DataFrame:
     """Every particle of every frame, sorted by step and id: SI."""
-    names = [*PARTICLES, *(SPINS if deck.spins else []), *(["plastic_work"] if deck.settings else [])]
+    names = [*PARTICLES, *(SPINS if deck.spins else [])]
+    names += [f"delta_max_{p[0]}" for p in deck.planes] if deck.contacts and deck.yields else []
+    names += ["plastic_work"] if deck.settings else []
     frames = []
     for step, path in _steps(folder, "particles.*.bin"):
         if upto is not None and step > upto:

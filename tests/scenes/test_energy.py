@@ -1,0 +1,81 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""The ledger of bulk scenes: with frictionless contacts all terms together leave nothing over.
+
+They come by different routes: kinetic and potential energy from LIGGGHTS's particles, elastic energy from the law's
+force integrated over the stored overlaps, the work of a plate from LIGGGHTS's own mesh forces.
+"""
+
+import re
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from epdem.scene.run import run
+
+pytestmark = pytest.mark.liggghts
+CASES = Path(__file__).parents[2] / "cases"
+
+
+def frictionless(name: str, folder: Path, law: str, scene: dict[str, str], frames: int = 20) -> Path:
+    """A case without [contact], with its ledger."""
+    text = re.sub(r"\[contact\]\n(.+\n)+", "", (CASES / f"{name}.toml").read_text())
+    text = re.sub(r'(\[law\]\nname = )"\w+"', rf'\1"{law}"', text)
+    text = re.sub(r"particles = \d+\n", f"particles = {frames}\nenergy = true\n", text)
+    text = re.sub(r"error = .*", "error = 1e-3", text)
+    for key, value in scene.items():
+        text = re.sub(rf"^{key} = .*$", f"{key} = {value}", text, flags=re.MULTILINE)
+    path = folder / "case.toml"
+    path.write_text(text)
+    return path
+
+
+SETTLE = {"box": '["16 mm", "16 mm", "60 mm"]', "count": "180", "duration": '"0.15 s"'}
+PRESS = {"box": '["0.6 mm", "0.6 mm", "1.8 mm"]', "count": "300", "height": '"0.65 mm"'}
+
+
+def with_contacts(law: str, folder: Path) -> Path:
+    """A press with contact tables and no ledger."""
+    path = frictionless("compaction_powder", folder, law, PRESS, frames=50)
+    path.write_text(path.read_text().replace("energy = true", "contacts = 50"))
+    return path
+
+
+def test_elastic_spheres_falling_into_a_box_keep_their_energy(tmp_path):
+    outcome = run(frictionless("settle_glass", tmp_path, "hertz", SETTLE), out=tmp_path / "out")
+    table = outcome.results.ledger
+    fallen = table["gravity"].iloc[0] - table["gravity"].min()
+    # velocity Verlet at the step for e_n within 1e-3; a second-order error, no drift
+    assert table["balance"].abs().max() < 1e-3 * fallen
+    assert table["elastic"].max() > 0.01 * fallen, "the bed was under load in some frame"
+    assert "friction" not in table
+
+
+def test_the_work_of_a_press_on_elastic_spheres_is_all_in_them(tmp_path):
+    outcome = run(frictionless("compaction_powder", tmp_path, "hertz", PRESS), out=tmp_path / "out")
+    table = outcome.results.ledger
+    # the work is a sum over steps of force times way, first order in the step
+    assert table["balance"].abs().max() < 0.01 * table["work"].max()
+    assert table["elastic"].max() > 0.2 * table["work"].max()
+
+
+def test_forces_of_the_contact_table_are_those_that_move_the_plate(tmp_path):
+    outcome = run(with_contacts("thornton", tmp_path), out=tmp_path / "out")
+    found, rows = outcome.results.contacts, outcome.results.rows.set_index("step")
+    plate = found[found["wall"] == "plate"].groupby("step")["force"].sum()
+    plate = plate[plate > 0.2 * plate.max()]
+    assert len(plate) >= 3
+    # the rows hold means over an interval, the table the instant at its end
+    ratio = plate / rows.loc[plate.index, "plate_force"]
+    assert np.abs(ratio - 1).max() < 0.1
+    assert (found["plastic_work"] >= 0).all() and found["plastic_work"].max() > 0
+    dented = found[found["plastic_work"] > 0]
+    assert (dented["residual_overlap"] > 0).all() and (dented["residual_overlap"] < dented["delta_max"]).all()
+    assert (dented["dent_radius"] > 0).all()
+
+
+@pytest.mark.parametrize("law", ["johnson", "cavity"])
+def test_the_contact_table_reads_every_law_s_memory(law, tmp_path):
+    found = run(with_contacts(law, tmp_path), out=tmp_path / "out").results.contacts
+    assert (found["delta_max"] >= found["overlap"]).all()
+    assert (found["overlap"] > 0).all() and found["overlap"].max() < 50e-6
