@@ -68,7 +68,7 @@ def unloading(r, *, a, a_max, p):
     r = np.asarray(r, float)
     inside = np.maximum(a**2 - r**2, 0.0)
     base = np.maximum(a_max**2 - r**2, 0.0)
-    share = np.divide(inside, base, out=np.where(r <= a, 1.0, 0.0) + 0 * inside, where=base > 0)
+    share = np.divide(inside, base, out=np.array(np.where(r <= a, 1.0, 0.0) + 0 * inside), where=base > 0)
     return 2 * p / np.pi * np.arcsin(np.sqrt(np.minimum(share, 1.0)))
 
 

@@ -1,0 +1,151 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Waves, oblique impact, printed equations and reference times."""
+
+import numpy as np
+import pytest
+
+from epdem.theory import energy, oblique, pair, printed, restitution, timestep
+from epdem.theory.backbones import Hertz, Thornton
+
+E, NU = 208e9, 0.3
+E_STAR, G_STAR = pair.E_star(E, NU, E, NU), pair.G_star(E, NU, E, NU)
+M = pair.sphere_mass(radius=0.01, density=7850)
+STEEL = {"E_star": E_STAR, "R_star": 0.01, "m_star": M}
+
+
+def test_wave_constant_and_the_share_of_the_rayleigh_pole():
+    """5 printed digits; Miller and Pursey 1955 give 67 % in Rayleigh waves at nu = 0.25."""
+    nu = np.array([0, 0.2, 0.25, 0.3, 0.4, 0.45])
+    assert energy.wave_constant(nu) == pytest.approx([0.60518, 0.59439, 0.58555, 0.57531, 0.55401, 0.54558], abs=6e-6)
+    assert energy.rayleigh_share(nu) == pytest.approx([0.760, 0.693, 0.674, 0.654, 0.608, 0.580], abs=6e-4)
+    assert energy.rayleigh_share(0.25) == pytest.approx(0.67, abs=0.01)
+
+
+def test_elastic_impact_radiates_1_11_v_over_c_to_the_0_6():
+    """Hunter 1957 prints 1.04; 1.11 follows from the same integral with the exact constant."""
+    c_0 = np.sqrt(E / 7850)
+    for v in (0.01, 1.0):
+        fraction = energy.elastic_wave_fraction(v, E=E, nu=0.25, density=7850)
+        assert fraction == pytest.approx(1.11 * (v / c_0) ** 0.6, rel=3e-3)
+
+
+def test_radiated_energy_of_a_sampled_force_agrees_with_the_closed_share():
+    """Hertz's impact by theory's own overlap against time, in 4000 samples."""
+    v, law = 0.1, Hertz(E_star=E / (2 * (1 - 0.25**2)), R_star=0.01)
+    t, alpha, force = restitution.history(law, m_star=M, speed=v, samples=4000)
+    radiated = energy.radiated(force, t, E=E, nu=0.25, density=7850)
+    share = energy.elastic_wave_fraction(v, E=E, nu=0.25, density=7850)
+    assert radiated / (0.5 * M * v**2) == pytest.approx(share, rel=1e-3)
+
+
+def test_steel_near_70_metres_a_second_loses_about_3_percent_to_waves():
+    """Hutchings 1979: hard steel sphere on mild steel, e_n = 0.4, p_d near 3 GPa; and 6.95 (p_d/E)^1.5 at nu = 0.3."""
+    assert energy.plastic_wave_fraction(3e9, E=E, nu=0.3, e_n=0.4) == pytest.approx(0.03, abs=0.01)
+    assert energy.plastic_wave_fraction(3e9, E=E, nu=0.3) == pytest.approx(6.95 * (3e9 / E) ** 1.5, rel=1e-3)
+
+
+@pytest.mark.parametrize("law", [Thornton(E_star=E_STAR, R_star=0.01, p_y=2.8e9), Hertz(E_star=E_STAR, R_star=0.01)])
+def test_force_and_overlap_against_time_obey_the_equation_of_motion(law):
+    """m* alpha'' = -F by differences of 201 samples, (pi/200)^2/12 off where no phase changes; impulse m* v (1 + e_n)."""
+    t, alpha, force = restitution.history(law, m_star=M, speed=3.0, samples=201)
+    x = restitution.impact(law, m_star=M, speed=3.0)
+    h = t[1] - t[0]
+    off = np.abs(M * np.diff(alpha, 2) / h**2 + force[1:-1]) / force.max()
+    assert np.median(off) < 1e-3 and np.sort(off)[-8] < 5e-3  # the start, yield and the turning point stand out
+    assert t[-1] == pytest.approx(float(x.contact_time), rel=1e-9)
+    assert np.trapezoid(force, t) == pytest.approx(M * 3.0 * (1 + float(x.e_n)), rel=2e-4)
+    assert force.max() == pytest.approx(float(x.force_max), rel=2e-4) and alpha.max() <= float(x.overlap_max)
+
+
+def test_printed_equations_give_nan_outside_their_domain_and_say_why():
+    assert np.isnan(printed.wu(99.0, v_y0=1.0)) and printed.wu(100.0, v_y0=1.0) == pytest.approx(2.08 * 100**-0.25)
+    v_y0 = printed.yield_speed(p_y=1.6e9, **STEEL)
+    assert np.isnan(printed.johnson(26.8 * v_y0, p_m=3e9, **STEEL))
+    assert float(printed.johnson(26.9 * v_y0, p_m=3e9, **STEEL)) == pytest.approx(1, abs=2e-3)  # 26.85 v_y0
+    assert np.isnan(printed.bridges(0.06)) and printed.bridges(0.01) == pytest.approx(0.32)
+    for equation in printed.DOMAINS:
+        assert equation in printed.why_not(equation)
+    with pytest.raises(ValueError, match="must be one of"):
+        printed.why_not("8.1")
+
+
+def test_equation_8_87_is_8_86_for_a_sphere_on_a_plane():
+    """Its printed constant 1.718 has four digits."""
+    v = np.array([10.0, 100.0])
+    plane = printed.johnson_plane(v, p_m=3e9, E_star=E_STAR, density=7850)
+    assert plane == pytest.approx(printed.johnson(v, p_m=3e9, **STEEL), rel=5e-4)
+
+
+def test_yield_speeds_of_the_reference_case():
+    assert printed.yield_speed(p_y=2.8e9, **STEEL) == pytest.approx(0.559430455498519, rel=1e-12)
+    assert printed.yield_speed(p_y=1.6e9, **STEEL) == pytest.approx(0.138086424357753, rel=1e-12)
+
+
+def oblique_impact(law, mu, tangents, v_n=1.0):
+    theta = np.arctan(np.asarray(tangents))
+    return oblique.impact(law, mass=M, R=0.01, mu=mu, G_star=G_STAR, v_n=v_n, theta=theta)
+
+
+@pytest.mark.parametrize(("law", "v_n"), [(Hertz(E_star=E_STAR, R_star=0.01), 1.0),
+                                          (Thornton(E_star=E_STAR, R_star=0.01, p_y=2.8e9), 5.0)])  # fmt: skip
+def test_above_the_sliding_angle_friction_takes_all_it_can(law, v_n):
+    """f = mu there; below it the patch sticks for a while and f < mu."""
+    mu = 0.3
+    e_n = float(restitution.e_n(law, m_star=M, speed=v_n))
+    limit = np.tan(oblique.sliding_angle(mu, e_n=e_n, nu=NU))
+    x = oblique_impact(law, mu, [0.8 * limit, 1.03 * limit, 2 * limit], v_n)
+    assert x.f[0] < 0.999 * mu
+    assert x.f[1:] == pytest.approx(mu, rel=1e-3)  # 2000 steps, 200 springs
+    assert x.e_t[2] == pytest.approx(1 - mu * (1 + e_n) / (2 * limit), rel=1e-3)
+
+
+def test_elastic_sliding_angle_is_maw_barber_and_fawcetts():
+    assert np.tan(oblique.sliding_angle(0.2, e_n=1.0, nu=0.3)) == pytest.approx(0.2 * (7 - 1 / oblique.kappa(0.3)))
+
+
+def test_elastic_rebound_of_the_patch_has_maw_barber_and_fawcetts_shape():
+    """psi_2(psi_1) at nu = 0.3 (1976, figure 3): reversed most between psi_1 = 3 and 4, slightly positive near the normal,
+    and rising with slope 1 once it slides throughout, from psi_1 = 7 kappa - 1 on."""
+    mu, k = 0.2, oblique.kappa(NU)
+    psi = np.array([0.3, 1.0, 2.0, 3.0, 4.0, 7.0, 9.0])
+    x = oblique_impact(Hertz(E_star=E_STAR, R_star=0.01), mu, psi * mu / k)
+    rebound = x.patch * k / mu
+    assert rebound[0] > 0 > rebound[2]
+    assert -1.6 < rebound.min() < -1.2 and rebound.argmin() in (3, 4)
+    assert rebound[6] - rebound[5] == pytest.approx(2.0, rel=1e-3)
+
+
+def test_half_the_stability_limit_of_a_mass_on_a_spring():
+    """T/pi with T = 2 pi sqrt(m/k), k = 2 E* a; reference times scale as their formulas say."""
+    T = 2 * np.pi * np.sqrt(M / (2 * E_STAR * 1e-3))
+    assert timestep.stability_limit(E_star=E_STAR, m_star=M, radius=1e-3) == pytest.approx(T / np.pi)
+    hertz = timestep.hertz_time(**STEEL, speed=2.0)
+    exact = restitution.impact(Hertz(E_star=E_STAR, R_star=0.01), m_star=M, speed=2.0).contact_time
+    assert hertz == pytest.approx(float(exact), rel=1e-6)
+
+
+@pytest.mark.parametrize(("call", "name"), [
+    (lambda: pair.E_star(-1, 0.3, 1e9, 0.3), "E1"), (lambda: pair.E_star(1e9, 0.51, 1e9, 0.3), "nu1"),
+    (lambda: pair.R_star(0.0, 1.0), "R1"), (lambda: pair.sphere_mass(radius=1.0, density=np.nan), "density"),
+    (lambda: Thornton(E_star=1e11, R_star=0.01, p_y=-1), "p_y"), (lambda: Hertz(E_star=np.inf, R_star=1), "E_star"),
+    (lambda: restitution.e_n(Hertz(E_star=1e9, R_star=1), m_star=1, speed=np.array([1.0, -2.0])), "speed = -2"),
+    (lambda: oblique.sliding_angle(-0.1, e_n=1, nu=0.3), "mu"), (lambda: energy.wave_constant(0.5), "nu"),
+])  # fmt: skip
+def test_bad_input_is_named_with_its_range(call, name):
+    with pytest.raises(ValueError, match="must lie in") as caught:
+        call()
+    assert name in str(caught.value)
+
+
+@pytest.mark.parametrize("scale", [(3.0, 0.5, 7.0), (1e-3, 1e6, 1e-4)])
+def test_a_change_of_base_units_changes_nothing_but_the_numbers(scale):
+    """Length, mass and time in other units: declared units are the ones that come out."""
+    L, K, T = scale
+    pressure, force = K / (L * T**2), K * L / T**2
+    here = restitution.impact(Thornton(E_star=E_STAR, R_star=0.01, p_y=2.8e9), m_star=M, speed=5.0)
+    law = Thornton(E_star=E_STAR * pressure, R_star=0.01 * L, p_y=2.8e9 * pressure)
+    there = restitution.impact(law, m_star=M * K, speed=5.0 * L / T)
+    units = {"e_n": 1, "contact_time": T, "force_max": force, "overlap_max": L, "radius_max": L, "residual_overlap": L,
+             "work_in": force * L, "work_out": force * L, "plastic_work": force * L, "strain_ratio": 1}  # fmt: skip
+    for name, unit in units.items():
+        assert float(getattr(there, name)) / unit == pytest.approx(float(getattr(here, name)), rel=1e-10), name

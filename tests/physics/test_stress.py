@@ -1,0 +1,134 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Yield, pressures and stresses: the chapter's tables, and mathematics that the fields must obey."""
+
+import mpmath as mp
+import numpy as np
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from epdem.theory import pressure, sliding, yielding
+
+NU = [0, 0.1, 0.2, 0.25, 0.3, 0.35, 0.4, 0.5]
+P_Y0 = [1.29931, 1.39448, 1.49859, 1.55435, 1.61280, 1.67411, 1.73848, 1.87724]
+DEPTH = [0.3819, 0.4149, 0.4478, 0.4643, 0.4809, 0.4975, 0.5142, 0.5479]
+MU = [0, 0.1, 0.2, 0.25, 0.3, 0.4, 0.5]
+BELOW = {"von_mises": [1.61280, 1.60142, 1.56822, 1.54418, 1.51571, 1.44731, 1.36600],
+         "tresca": [1.61280, 1.60050, 1.56460, 1.53858, 1.50774, 1.43339]}  # fmt: skip
+ABOVE = {"von_mises": [4.33013, 2.76781, 1.97902, 1.72627, 1.52906, 1.24257, 1.04528],
+         "tresca": [3.75000, 2.49885, 1.87370, 1.66539, 1.46586, 1.15061, 0.94416]}  # fmt: skip
+
+
+def test_first_yield_under_a_sphere_for_any_poisson_ratio():
+    p_0, depth = yielding.first_yield(np.array(NU))
+    assert p_0 == pytest.approx(P_Y0, abs=6e-6)  # 5 printed decimals
+    assert depth == pytest.approx(DEPTH, abs=6e-5)
+    assert round(float(yielding.first_yield(0.3)[0]), 1) == 1.6 == yielding.FIRST_YIELD_ROUNDED
+    assert yielding.first_yield_mean(0.3) == pytest.approx(yielding.FIRST_YIELD_MEAN_ROUNDED, abs=0.03)  # 8.79 rounds
+
+
+@given(st.tuples(*[st.floats(-1e3, 1e3)] * 3), st.floats(-1e3, 1e3))
+def test_criteria_see_neither_hydrostatic_pressure_nor_order(s, p):
+    for criterion in (yielding.von_mises, yielding.tresca):
+        value = criterion(*s)
+        assert criterion(s[2], s[0], s[1]) == pytest.approx(value, abs=1e-12)
+        assert criterion(*(x + p for x in s)) == pytest.approx(value, abs=1e-9)
+        assert criterion(value, 0, 0) == pytest.approx(value)  # uniaxial: yield at Y
+    assert yielding.von_mises(*s) <= yielding.tresca(*s) + 1e-9 <= 2 / np.sqrt(3) * yielding.von_mises(*s) + 2e-9
+
+
+@pytest.mark.parametrize("criterion", ["von_mises", "tresca"])
+def test_pressure_at_first_yield_of_a_sliding_contact(criterion):
+    """5 digits from point-load integration, nu = 0.3."""
+    below = [sliding.first_yield_below(mu, 0.3, criterion)[0] for mu in MU[: len(BELOW[criterion])]]
+    above = [sliding.first_yield_surface(mu, 0.3, criterion)[0] for mu in MU]
+    assert below == pytest.approx(BELOW[criterion], abs=6e-6)
+    assert above == pytest.approx(ABOVE[criterion], abs=6e-6)
+
+
+@pytest.mark.parametrize(("nu", "criterion", "mu"), [(0.3, "von_mises", 0.3047), (0.3, "tresca", 0.2879),
+                                                     (0.25, "von_mises", 0.2776), (0.25, "tresca", 0.2454)])  # fmt: skip
+def test_first_yield_comes_to_the_surface_as_friction_grows(nu, criterion, mu):
+    """The printed friction, to its 4 digits."""
+    assert sliding.first_sliding_yield(mu - 1e-4, nu, criterion)[1][2] > 0.3
+    place = sliding.first_sliding_yield(mu + 1e-4, nu, criterion)[1]
+    assert place[2] == 0
+    # the trailing edge, or for Tresca and nu = 0.3 the printed x = -0.59 a
+    assert place[0] == (pytest.approx(-0.59, abs=0.03) if (nu, criterion) == (0.3, "tresca") else -1.0)
+
+
+def test_without_a_local_summit_below_the_surface_nothing_is_made_up():
+    assert sliding.first_yield_below(0.5, 0.3, "tresca")[0] == np.inf
+
+
+@settings(max_examples=30)
+@given(st.floats(-1.5, 1.5), st.floats(-1.5, 1.5), st.floats(0.3, 2), st.floats(0, 1), st.floats(0, 0.5))
+def test_the_sliding_field_is_in_equilibrium(x, y, z, mu, nu):
+    """div sigma = 0 by central differences; their error is h^2 = 1e-8 times third derivatives of order 100."""
+    h = 1e-4
+    force = np.zeros(3)
+    for axis in range(3):
+        step = h * np.eye(3)[axis]
+        up = sliding.subsurface(x + step[0], y + step[1], z + step[2], mu=mu, nu=nu)
+        down = sliding.subsurface(x - step[0], y - step[1], z - step[2], mu=mu, nu=nu)
+        force += (up - down)[axis] / (2 * h)
+    assert np.abs(force).max() < 2e-6
+
+
+def test_the_field_carries_the_traction_it_came_from():
+    """Stresses on a plane z = const add up to the load: P = 2/3 pi p_0 a^2 and mu P; the rest lies beyond r = 60."""
+    mu, z = 0.4, 1.0
+    r = np.concatenate([np.linspace(0, 6, 400), np.geomspace(6, 4000, 400)[1:]])
+    phi = (np.arange(24) + 0.5) / 24 * 2 * np.pi
+    s = sliding.subsurface(r[:, None] * np.cos(phi), r[:, None] * np.sin(phi), z, mu=mu, nu=0.3)
+    ring = s.mean(axis=1) * (2 * np.pi * r)[:, None, None]
+    total = np.trapezoid(ring, r, axis=0)
+    assert -total[2, 2] == pytest.approx(2 / 3 * np.pi, rel=1e-3)  # trapezoids
+    assert -total[0, 2] == pytest.approx(mu * 2 / 3 * np.pi, rel=2e-3)
+
+
+def test_subsurface_field_tends_to_the_closed_surface_stresses():
+    x = np.array([-0.7, -0.2, 0.0, 0.5])
+    for mu in (0.0, 0.5):
+        near = sliding.subsurface(x, 0.0, np.array([[0.04], [0.02]]), mu=mu, nu=0.3)
+        there = 2 * near[1] - near[0]  # linear in z to second order
+        assert there == pytest.approx(sliding.surface(x, mu=mu, nu=0.3), abs=5e-3)
+
+
+def test_on_the_axis_the_field_is_hertz():
+    """s_z = -p_0/(1+z^2), and the difference that both criteria see there."""
+    z = np.array([0.1, 0.48, 1.0, 3.0])
+    s = sliding.subsurface(0.0, 0.0, z, mu=0.0, nu=0.3)
+    assert s[:, 2, 2] == pytest.approx(-1 / (1 + z * z), rel=1e-7)
+    assert s[:, 0, 0] - s[:, 2, 2] == pytest.approx(yielding.axis_difference(z, 0.3), rel=1e-7)
+
+
+@pytest.mark.parametrize("share", [0.2, 0.7, 1.0])
+def test_unloading_pressure_integrates_to_the_contact_force(share):
+    """Eq. 8.82 over the disc, by mpmath, against the closed force; and to the law's own unloading of a flat contact."""
+    p, a_max = 2.8, 2.68
+    a = share * a_max
+    integral = mp.quad(lambda r: float(pressure.unloading(float(r), a=a, a_max=a_max, p=p)) * 2 * np.pi * r, [0, a])
+    assert float(pressure.unloading_force(a=a, a_max=a_max, p=p)) == pytest.approx(float(integral), rel=1e-6)
+    whole = pressure.unloading(np.linspace(0, 0.99, 5) * a_max, a=a_max, a_max=a_max, p=p)
+    assert whole == pytest.approx(p)
+
+
+@given(st.floats(0.1, 10), st.floats(0.1, 10))
+def test_truncated_pressure_integrates_to_its_force(p_0, p_y):
+    exact = mp.quad(lambda r: min(p_0 * mp.sqrt(1 - r * r), p_y) * 2 * mp.pi * r,
+                    sorted({0, 1, float(np.sqrt(max(1 - (p_y / p_0) ** 2, 0)))}))  # fmt: skip
+    assert float(pressure.truncated_force(p_0=p_0, a=1.0, p_y=p_y)) == pytest.approx(float(exact), rel=1e-10)
+
+
+def test_mean_pressure_has_three_regimes_and_the_cavity_slope():
+    """d(p_m/Y)/d ln a = 2/3; elastic up to 1.07 at x = 2.5, fully plastic from x = 74 at 2.8 (printed: about 40)."""
+    assert pressure.cavity_mean(np.e * 10) - pressure.cavity_mean(10) == pytest.approx(2 / 3)
+    assert list(pressure.regime(np.array([1.0, 2.4, 10.0, 1000.0]))) == [0, 0, 1, 2]
+    assert float(pressure.mean(2.52)) == pytest.approx(1.07, abs=2e-3)
+
+
+def test_the_harder_body_yields_only_below_1_75_times_the_softer_ones_stress():
+    both = {"E_star": 1.14e11, "R_star": 0.01, "m_star": 0.0329}
+    assert np.isfinite(yielding.yielding_bodies(1e9, 1.74e9, **both)).all()
+    assert np.isinf(yielding.yielding_bodies(1e9, 1.76e9, **both)[1])
