@@ -12,9 +12,9 @@ from typing import Annotated
 import typer
 from rich.console import Console
 
-from . import cli_crosscheck, cli_numerics, cli_theory
+from . import cli_crosscheck, cli_numerics, cli_scene, cli_theory
 from .cli_options import AsJson, CasePath, Engines, Laws, Out, console
-from .errors import EpdemError
+from .errors import CaseError, EpdemError
 
 app = typer.Typer(add_completion=False, no_args_is_help=True, pretty_exceptions_enable=False, help=__doc__,
                   context_settings={"help_option_names": ["-h", "--help"]})  # fmt: skip
@@ -29,9 +29,20 @@ def run(
     steps: Annotated[int | None, typer.Option(help="replaces the case's steps in contact")] = None,
     out: Out = None,
     fresh: Annotated[bool, typer.Option(help="run again what is already stored")] = False,
+    resume: Annotated[
+        bool, typer.Option("--resume", help="continue an interrupted scene from its last restart")
+    ] = False,
     as_json: AsJson = False,
 ) -> None:
-    """Run a case and check it against theory (default engine: liggghts)."""
+    """Run a case and check it against theory, or run a bulk scene (default engine: liggghts)."""
+    if cli_scene.is_scene(case):
+        if engine not in (None, ["liggghts"]) or law or steps:
+            raise CaseError(
+                "a scene has its own law and time step and runs on LIGGGHTS; leave out --engine, --law, --steps"
+            )
+        raise typer.Exit(cli_scene.run_scene(case, out=out, ranks=ranks, fresh=fresh, resume=resume, as_json=as_json))
+    if resume:
+        raise CaseError("--resume continues bulk scenes; an impact case takes finished stages from its store by itself")
     from . import report
     from .run import run as run_case
 
@@ -49,10 +60,26 @@ def run(
 
 
 @app.command()
-def deck(case: CasePath, out: Annotated[Path, typer.Option("--out", "-o", help="folder for the deck")],
-         engine: Annotated[str, typer.Option("--engine", "-e")] = "liggghts", law: Laws = None,
-         as_json: AsJson = False) -> None:  # fmt: skip
-    """Write the deck of a case; it runs by hand."""
+def deck(
+    file: Annotated[Path, typer.Argument(metavar="CASE|TEMPLATE", help="case file (TOML), or an own template (.j2)")],
+    out: Annotated[Path, typer.Option("--out", "-o", help="folder for the deck")],
+    engine: Annotated[str, typer.Option("--engine", "-e")] = "liggghts",
+    law: Laws = None,
+    case: Annotated[Path | None, typer.Option("--case", help="the case behind an own template")] = None,
+    given: Annotated[list[str] | None, typer.Option("--set", metavar="KEY=VALUE", help="for an own template")] = None,
+    as_json: AsJson = False,
+) -> None:
+    """Write the deck of a case, or of an own template with a case's values; it runs by hand."""
+    if file.suffix == ".j2":
+        if case is None:
+            raise CaseError(f"{file}: an own template needs the values of a case; add --case CASE")
+        cli_scene.deck_template(file, case, given or [], out, as_json=as_json)
+        return
+    if case or given:
+        raise CaseError(f"{file}: --case and --set go with an own template (.j2)")
+    if cli_scene.is_scene(file):
+        cli_scene.deck_scene(file, out, as_json=as_json)
+        return
     from .case import load
     from .engines import engine as find
     from .experiment import experiment
@@ -60,9 +87,8 @@ def deck(case: CasePath, out: Annotated[Path, typer.Option("--out", "-o", help="
     from .predict import predict
 
     tool = find(engine)
-    x = experiment(load(case), law[0] if law else None)
-    files = tool.write(plan(x, predict(x)), out)
-    names = [str(f) for f in files]
+    x = experiment(load(file), law[0] if law else None)
+    names = [str(f) for f in tool.write(plan(x, predict(x)), out)]
     print(json.dumps({"files": names}) if as_json else "\n".join(names))
 
 
@@ -96,6 +122,9 @@ for command in (
     cli_numerics.timestep,
     cli_numerics.cost,
     cli_numerics.stress,
+    cli_scene.explain,
+    cli_scene.soften,
+    cli_scene.calibrate,
 ):
     app.command()(command)
 

@@ -14,6 +14,7 @@ RANGES = re.compile(r"\b(8\.(\d\d)) to 8\.(\d\d)\b|\b8\.(\d\d)-8\.(\d\d)\b")
 
 
 def _numbers(text: str) -> set[str]:
+    text = re.sub(r"figures? 8\.\d\d( to 8\.\d\d|(, 8\.\d\d)* and 8\.\d\d)?", "", text)
     found = set(NUMBERS.findall(text))
     for match in RANGES.finditer(text):
         low, high = (int(g) for g in ((match[2], match[3]) if match[1] else (match[4], match[5])))

@@ -58,7 +58,7 @@ def wu(speed, *, v_y0):
 
 
 def bridges(speed):
-    """Ice at 200 K, spheres of 5 cm; eq. 8.89, Bridges et al. 1984: 0.32 v^(-0.234), v in cm/s (speed in m/s here).
+    """Ice spheres; eq. 8.89, Bridges et al. 1984: 0.32 v^(-0.234), v in cm/s (speed in m/s here).
 
     NaN outside 0.015 to 5.1 cm/s. (The text prints the exponent rounded to 0.23.)
     """
