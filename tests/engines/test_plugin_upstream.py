@@ -1,0 +1,78 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""The decks of docs/upstream.md, run as they stand there with the unmodified liggghts: each shows its fault."""
+
+import re
+from pathlib import Path
+
+import numpy as np
+import pytest
+from plugin_decks import run
+
+pytestmark = pytest.mark.liggghts
+
+PAGE = Path(__file__).resolve().parents[2] / "docs" / "upstream.md"
+DECKS = dict(re.findall(r"```deck (.+?)\n(.*?)```", PAGE.read_text(), re.S))
+
+
+def result(folder, name, edit=lambda text: text):
+    done = run(folder, edit(DECKS["head"] + DECKS[name]), command="liggghts")
+    found = re.findall(r"^RESULT (\S+)", done.text, re.M)
+    assert found, done.error or done.text[-800:]
+    return float(found[-1])
+
+
+def test_every_deck_of_the_page_is_tested():
+    assert set(DECKS) == {"head", "periodic thornton_ning", "periodic edinburgh", "no_history", "rolling", "shear",
+                          "restitution", "segfault"}
+
+
+@pytest.mark.parametrize("model", ["thornton_ning", "edinburgh"])
+def test_momentum_is_made_at_a_periodic_face(tmp_path, model):
+    def inside(text):  # the same impact away from the face
+        return text.replace("single 0.0986", "single 0.0486").replace("single 0.0991", "single 0.0491")
+
+    assert abs(result(tmp_path / "face", f"periodic {model}")) > 1e-3
+    assert abs(result(tmp_path / "inside", f"periodic {model}", inside)) < 1e-12
+
+
+def test_no_history_of_thornton_ning_pushes(tmp_path):
+    assert result(tmp_path / "ning", "no_history") > 1.0
+    assert result(tmp_path / "hertz", "no_history", lambda t: t.replace("thornton_ning", "hertz")) < 1.0
+
+
+def test_cdt_is_without_effect_beside_thornton_ning(tmp_path):
+    def off(text):
+        return text.replace("rolling_friction cdt", "rolling_friction off")
+
+    def hertz(text):
+        return text.replace("thornton_ning", "hertz")
+
+    assert result(tmp_path / "a", "rolling") == result(tmp_path / "b", "rolling", off)
+    assert result(tmp_path / "c", "rolling", hertz) != result(tmp_path / "d", "rolling", lambda t: hertz(off(t)))
+
+
+def test_shear_spring_outlives_its_contact(tmp_path):
+    def every_step(text):
+        return text.replace("neigh_modify delay 1000000 check no\n", "")
+
+    old, new = result(tmp_path / "old", "shear"), result(tmp_path / "new", "shear", every_step)
+    assert abs(old / new - 1) > 1e-4
+
+
+def test_thornton_ning_rebounds_too_slowly_at_any_step(tmp_path):
+    """Yield ratio 0.05 is a_y/R: v_y = sqrt(0.8 E* 0.05^5/(pi rho)); eq. 8.83 at 10 v_y gives 0.6019."""
+    E_star = 1e8 / (2 * (1 - 0.3**2))
+    speed = 10 * np.sqrt(0.8 * E_star * 0.05**5 / (np.pi * 2500))
+    r = 0.1
+    theory = np.sqrt(6 * np.sqrt(3) / 5) * np.sqrt(1 - r**2 / 6) * (r / (r + 2 * np.sqrt(6 / 5 - r**2 / 5))) ** 0.25
+    for step in ("2e-7", "1e-7"):
+        def edit(text, step=step):
+            return text.replace("SPEED", repr(float(speed))).replace("timestep 2e-7", f"timestep {step}")
+
+        e_n = result(tmp_path / step, "restitution", edit)
+        assert -0.1 < e_n / theory - 1 < -0.04
+
+
+def test_elastic_potential_of_a_primitive_wall_crashes(tmp_path):
+    done = run(tmp_path, DECKS["head"] + DECKS["segfault"], command="liggghts")
+    assert done.code not in (0, 1) and "RESULT" not in done.text
