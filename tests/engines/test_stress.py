@@ -165,7 +165,7 @@ def test_energy_of_stiff_bulk_scenes_never_rises_none_is_lost_and_ranks_agree(na
     scene = with_law(SCENES[name](small), "cavity")
     verdict = bulk_checks.judge_scene(replace(scene, duration=scene.duration / 2), tmp_path)
     assert verdict.passed, verdict.reason
-    assert verdict.dissipated > 0.05
+    assert verdict.plastic > 0.02
 
 
 @pytest.mark.liggghts
@@ -175,10 +175,10 @@ def test_the_bulk_ledger_sees_spheres_that_come_back_too_fast(tmp_path):
     deck = bulk.write(scene, tmp_path, time_step=scene.time_step())
     bulk.execute(tmp_path)
     table = bulk.ledger(scene, deck, tmp_path)
-    assert table["total"].diff().max() <= 0
-    half = len(table) // 2
-    wrong = table["total"] + np.where(table.index >= half, 0.0201 * table["kinetic"].iloc[half] * 20, 0.0)
-    assert wrong.diff().max() > 0
+    brought, half = table["kinetic"].iloc[0], len(table) // 2
+    assert np.abs(table["total"] - table["total"].iloc[0]).max() <= bulk_checks.SWING * brought
+    wrong = table["total"] + np.where(table.index >= half, 0.0201 * table["kinetic"], 0.0)
+    assert wrong.diff().max() > bulk_checks.SWING * brought
 
 
 def test_the_page_of_the_documentation_names_its_command_and_every_case():

@@ -37,7 +37,8 @@ def write(scene: Scene, folder: Path, *, time_step: float, frames: int = FRAMES,
         title=scene.title, plates=scene.plate_speed > 0, plate_speed=scene.plate_speed, soft=min(moduli) < SOFT,
         skin=0.25 * scene.radius, properties=numbered(rows), model=f"ep/{scene.law}", tangential="off",
         time_step=time_step, steps=every * math.ceil(steps / every), every=every, frames=frames, contacts=contacts,
-        pair_columns=range(1, 6 + memory + (memory > 0) + 2), wall_columns=range(1, 6 + memory + 2), plastic=None,
+        pair_columns=range(1, 6 + memory + (memory > 0) + 2), wall_columns=range(1, 6 + memory + 2),
+        settings=("computePlasticWork on",) if memory else (),
     )  # fmt: skip
     environment = decks.environment(Path(__file__).parent)
     (folder / "in.bulk").write_text(environment.get_template("bulk.in.j2").render(deck=deck))
@@ -86,9 +87,9 @@ def execute(folder: Path, *, ranks: int = 1, seconds: float = LIMIT) -> float:
     return loop_seconds(folder / "log.liggghts")
 
 
-def frames(folder: Path) -> np.ndarray:
-    """Type, position (3) and velocity (3) of every sphere by id, shape (frames, n, 7)."""
-    return read_dump(folder / "atoms.bin", 8)
+def frames(folder: Path, law: str) -> np.ndarray:
+    """Type, position (3), velocity (3) and, if the law yields, plastic work [J] of all spheres: (frames, n, 7 or 8)."""
+    return read_dump(folder / "atoms.bin", 9 if memory_size(law) else 8)
 
 
 def _local(folder: Path, kind: str, step: int) -> np.ndarray:
@@ -104,8 +105,11 @@ def _elastic(theory, alpha: np.ndarray, top: np.ndarray) -> float:
 
 
 def ledger(scene: Scene, deck: SimpleNamespace, folder: Path) -> pd.DataFrame:
-    """Energies at every frame [J]: kinetic, elastic (overlap and memory of each contact), brought in by the plate."""
-    atoms, memory = frames(folder), memory_size(scene.law)
+    """Energies at every frame [J]: kinetic, elastic (theory's, from overlap and memory of each contact), plastic (what
+    the plugin has booked), brought in by the plate; no term is the remainder. `total` is their sum.
+    """
+    memory = memory_size(scene.law)
+    atoms = frames(folder, scene.law)
     rows, brought = [], 0.0
     push = _pushes(folder) if deck.plates else {}
     for k, frame in enumerate(atoms):
@@ -127,18 +131,21 @@ def ledger(scene: Scene, deck: SimpleNamespace, folder: Path) -> pd.DataFrame:
                 chosen = (i == a) & (j == b)
                 elastic += _elastic(scene.theory(a, b, plate=kind == "walls"), alpha[chosen], top[chosen])
         if k and deck.plates:
-            brought += push[step] * scene.plate_speed * deck.every * deck.time_step
-        rows.append({"step": step, "spheres": len(frame), "kinetic": kinetic, "elastic": elastic, "brought": brought})
+            # trapezoids: the mean is over the steps since the last frame, the two ends count half
+            ends = 0.5 * (push[step][1] - push[step - deck.every][1])
+            brought += (push[step][0] * deck.every - ends) * scene.plate_speed * deck.time_step
+        rows.append({"step": step, "spheres": len(frame), "kinetic": kinetic, "elastic": elastic,
+                     "plastic": float(frame[:, 7].sum()) if memory else 0.0, "brought": brought})  # fmt: skip
     table = pd.DataFrame(rows)
-    table["total"] = table["kinetic"] + table["elastic"] - table["brought"]
+    table["total"] = table["kinetic"] + table["elastic"] + table["plastic"] - table["brought"]
     return table
 
 
-def _pushes(folder: Path) -> dict[int, float]:
-    """Mean force of the spheres on the plate [N] over the steps before each frame, upward positive."""
+def _pushes(folder: Path) -> dict[int, tuple[float, float]]:
+    """Force of the spheres on the plate [N] by step, upward positive: mean since the last frame, and now."""
     found = {}
     for line in (folder / "log.liggghts").read_text().splitlines():
         words = line.split()
-        if len(words) == 4 and words[0].isdigit() and words[1].isdigit():
-            found[int(words[0])] = float(words[3])
+        if len(words) == 5 and words[0].isdigit() and words[1].isdigit():
+            found[int(words[0])] = (float(words[3]), float(words[4]))
     return found
