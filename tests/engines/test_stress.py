@@ -11,7 +11,7 @@ from epdem import stress
 from epdem.engines import engine
 from epdem.experiment import experiment
 from epdem.law import Law
-from epdem.stress import bulk, bulk_checks, roundoff
+from epdem.stress import bulk, bulk_checks, precisions, roundoff
 from epdem.stress.cases import build, extremes
 from epdem.stress.document import document
 from epdem.stress.repeats import judge_repeats
@@ -130,6 +130,15 @@ def test_round_off_of_positions_stays_below_its_formula_and_above_a_tenth_of_it(
     table = roundoff.floors("hertz", [], times=(1e-4, 1e-2, 1.0, 1e2))
     assert np.all(table["positions"] < table["formula"]) and np.all(table["positions"] > 0.1 * table["formula"])
     assert table["double"].max() < 1e-14
+
+
+@pytest.mark.yade
+@pytest.mark.skipif(not precisions.available(), reason="YADE's builds of other precisions are not installed")
+def test_eleven_more_bits_lower_the_floor_of_yade_two_thousandfold():
+    """Round-off and nothing else: 2^11 = 2048 up to the scatter of 8 phases, a factor of 3."""
+    row = precisions.floors(times=(1e-2,)).iloc[0]
+    assert 2**11 / 3 < row["yade"] / row["yade-longdouble"] < 3 * 2**11
+    assert row["yade"] < row["formula"]
 
 
 def test_overlap_at_the_start_stores_its_work():

@@ -115,9 +115,9 @@ a loose lattice, compressed by a plate at 20 m/s to two thirds of its height; 1 
 flying about at 1 m/s; two blocks of steel spheres meeting at 300 m/s. The step is 2 % of the stability limit at the
 highest speed. The total is kinetic energy, elastic energy (from theory, overlap and memory of every contact) and
 plastic work (booked by the plugin's `computePlasticWork`) less the work of the plate; no term is the remainder. Over
-the energy brought in: its largest `rise` between two of 40 frames, the largest distance it is `off` its start, and the `plastic`
-work. Over the radius: largest difference of a sphere's place between 1 and 2 ranks at the end; over the kinetic energy:
-its difference. Both may grow from round-off, as paths of colliding spheres do.
+the energy brought in: its largest `rise` between two of 40 frames, the largest distance it is `off` its start, and the
+`plastic` work. Over the radius: largest difference of a sphere's place between 1 and 2 ranks at the end; over the
+kinetic energy: its difference. Both may grow from round-off, as paths of colliding spheres do.
 
 {table}
 """
