@@ -4,7 +4,7 @@
 Run: .venv/bin/python bench/liggghts_speed.py [--quick]
 
 Every model sees the same deck and the same positions; the models take turns, and each keeps the fastest of many short
-runs, because on a shared machine the noise only adds. Instruction counts (callgrind) repeat exactly and are the number to watch.
+runs of two steps, because on a shared machine the noise only adds. Instruction counts (callgrind) repeat exactly and are the number to watch.
 """
 
 import argparse
@@ -71,7 +71,7 @@ def packing(cells, spacing, jitter, speed=0.0):
 def deck(model, *, steps, chunks=1, dt="1e-13", warm=2, unload=True, restitution=True, ranks=1):
     foreign = model == "thornton_ning"
     return DECK.format(
-        model=model, runs=f"run {steps}\n" * chunks, dt=dt, warm=warm,
+        model=model, runs=f"run {steps}\n" + f"run {steps} pre no\n" * (chunks - 1), dt=dt, warm=warm,
         processors="processors 2 1 1\n" if ranks == 2 else "",
         restitution=per_pair("coefficientRestitution", 0.7, 1) if restitution or not model.startswith("ep/") else "",
         friction=per_pair("coefficientFriction", 0.5, 1),
@@ -96,7 +96,7 @@ def seconds(text):
     return np.array([min(map(float, loops)), min(map(float, pairs))])
 
 
-def timed(folder, scene, models, repeats, steps=20, chunks=12):
+def timed(folder, scene, models, repeats, steps=2, chunks=120):
     """model -> fastest (loop, pair) in ms per step; the models take turns."""
     data = packing(*SCENES[scene]["data"])
     options = SCENES[scene]["run"]
