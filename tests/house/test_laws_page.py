@@ -1,0 +1,32 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""docs/laws.md names every law, property, parameter and default as the laws themselves declare them."""
+
+import math
+import re
+from pathlib import Path
+
+import pytest
+
+from epdem import law as claw
+from epdem.theory.backbones import LAWS
+
+ROOT = Path(__file__).parents[2]
+PAGE = (ROOT / "docs/laws.md").read_text()
+
+
+@pytest.mark.parametrize("name", claw.laws())
+def test_the_page_states_the_properties_and_defaults_of_every_law(name):
+    row = next(line for line in PAGE.splitlines() if line.startswith(f"| `{name}` |") and line.count("|") == 5
+               and not re.search(r"\| [\d.]+ \|", line))  # fmt: skip
+    for p in claw.laws()[name].parameters:
+        assert f"`{p.property}`" in row
+        assert f"`{p.name}`" in PAGE
+        if math.isfinite(p.default):
+            assert f"`{p.property}` ({p.default:g})" in row
+        elif p.name == "yield_pressure":
+            assert f"{LAWS[name].default_ratio:.1f} Y" in row
+
+
+def test_the_commands_and_files_of_the_page_exist():
+    for path in re.findall(r"(?:cases|tests|docs|bench)/[\w/]+\.(?:toml|py|png)", PAGE):
+        assert (ROOT / path).exists(), path
