@@ -155,7 +155,7 @@ def check():
 
 O.engines, O.dt = engines(watch("check()")), 1e-7
 for part in range(6):
-    O.run(1500, True)
+    O.run(1000, True)
     ball(0.007 + 0.007 * part, 0.041, 0.041, "brass", 5.0)  # one comes, one goes
     known = [O.bodies[k] for k in kinds if O.bodies[k]]
     O.bodies.erase([b.id for b in known if isinstance(b.shape, Sphere) and not b.isClumpMember][-4])
@@ -169,7 +169,7 @@ def test_every_contact_of_a_changing_crowd_follows_the_law(law, tmp_path):
     """Two materials, many sizes, walls, facets, a clump, bodies that come and go: each force in each step, and that
     the sum of the contact forces is what moves the bodies."""
     found = yade(tmp_path, law, SOUP)
-    assert found["contacts"] > 30 and found["yielded"] > 20 and found["steps"] == 9000
+    assert found["contacts"] > 30 and found["yielded"] > 20 and found["steps"] == 6000
     assert found["force"] <= (1e-8 if law == "cavity" else 1e-11)  # overlaps are differences of positions
     assert found["sum"] <= 1e-9
 
@@ -247,7 +247,7 @@ answer(e_n=O.bodies[1].state.vel[2] / v)
 @pytest.mark.yade
 def test_a_search_that_comes_too_late_is_said_and_mended(tmp_path):
     """v = 20 m/s passes the yield overlap within 8 steps; e_n = 0.48305 is that of eq. 8.83."""
-    for interval, late in ((100, True), (3, True), (1, False)):
+    for interval, late in ((100, True), (1, False)):
         found = yade(tmp_path, "thornton", LATE, interval=interval)
         assert (f"interval = {interval} steps is too long" in found["log"]) == late
         assert abs(found["e_n"] / 0.4830544367755 - 1) < 2e-5

@@ -27,7 +27,7 @@ def record():
         impulse[i.id2] += F
         moment[i.id2] += F * i.geom.penetrationDepth
 
-O.engines, O.dt = engines(watch("record()")), 5e-8
+O.engines, O.dt = engines(watch("record()")), 1e-7
 moving = range(1, len(O.bodies))
 while any(O.bodies[k].state.vel[2] < 0 for k in moving) or O.interactions.countReal():
     O.run(20, True)
@@ -78,18 +78,18 @@ def spring(law, G_star, mass, v_n, theta, dt):
 
 @pytest.mark.yade
 def test_where_a_contact_sticks_yade_has_one_spring_and_no_partial_slip(tmp_path):
-    """It is the spring above to 2e-4; against Cattaneo and Mindlin e_t is 0.16 too high at 10 degrees, 0.07 at 20,
+    """It is the spring above; against Cattaneo and Mindlin e_t is 0.16 too high at 10 degrees, 0.07 at 20,
     0.03 at 30 and 0.008 at 40 (v_n = 2 m/s), and right where all slides."""
     e_n, e_t, spin, _ = impacts("thornton", tmp_path)
     E, nu = 208e9, 0.3
     E_star, G_star = 0.5 * E / (1 - nu**2), float(pair.G_star(E, nu, E, nu))
     mass, theta = float(pair.sphere_mass(radius=R, density=7850.0)), np.radians(ANGLES)
     law = numbers.Thornton(E_star, 2.8e9)
-    plain = np.array([spring(law, G_star, mass, SPEEDS[0], angle, 5e-8) for angle in theta])
-    assert np.abs(e_t[0] - plain[:, 0]).max() < 2e-4
+    plain = np.array([spring(law, G_star, mass, SPEEDS[0], angle, 1e-7) for angle in theta])
+    assert np.abs(e_t[0] - plain[:, 0]).max() < 5e-4  # of first order in the time step
     assert np.abs(spin[0] - plain[:, 1]).max() < 2e-3 * plain[:, 1].max()
 
     backbone = backbones.LAWS["thornton"](E_star=E_star, R_star=R, p_y=2.8e9)
     theory = oblique.impact(backbone, mass=mass, R=R, mu=MU, G_star=G_star, v_n=SPEEDS[0], theta=theta)
-    assert np.abs(e_n[0] / theory.e_n - 1).max() < 1e-6
+    assert np.abs(e_n[0] / theory.e_n - 1).max() < 1e-5
     assert np.allclose(e_t[0] - theory.e_t, [0.163, 0.074, 0.030, 0.008, 0.0, 0.0, 0.0], atol=2e-3)
