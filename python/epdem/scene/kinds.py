@@ -91,7 +91,7 @@ def _hopper(s: Hopper) -> Layout:
     margin = 0.1 * r
     low = float(f"{-depth - s.drop:.10g}")
     depth = -low - s.drop
-    box = (-r - margin, r + margin, -r - margin, r + margin, low, top)
+    box = (-r - margin, r + margin, -r - margin, r + margin, low, 1.5 * top)  # what bounces high stays in the room
     rim = r - _largest(s.particles)
     fill = Fill(s.particles, s.count, f"cylinder z 0 0 {rim:.10g} 0 {top:.10g}", "scene.count", math.pi * rim**2 * top)
     sides = _sides(box[1] - box[0], box[3] - box[2])

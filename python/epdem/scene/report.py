@@ -89,3 +89,29 @@ def figures(outcome: SceneOutcome) -> None:
     with atomic(path) as temporary:
         fig.savefig(temporary, dpi=130)
     plt.close(fig)
+    if "ledger" in outcome.results.tables:
+        _ledger_figure(outcome, plt)
+
+
+def _ledger_figure(outcome: SceneOutcome, plt) -> None:
+    """energy.png: every term of the ledger against time."""
+    table = outcome.results.tables["ledger"]
+    colors = {"kinetic": "C0", "elastic": "C2", "plastic": "C3", "friction": "C1", "left": "C5"}
+    terms = [name for name in colors if name in table and table[name].abs().max() > 0]
+    fig, axis = plt.subplots(figsize=(7, 4), layout="constrained")
+    gravity = table["gravity"] - table["gravity"].min()
+    if gravity.max() > 0:
+        axis.plot(table["time"], gravity, color="C4", label="gravity, above its lowest")
+    for name in terms:
+        label = "friction (remainder)" if name == "friction" else name
+        axis.plot(table["time"], table[name], color=colors[name], label=label)
+    if table["work"].abs().max() > 0:
+        axis.plot(table["time"], table["work"], "k--", lw=0.8, label="work of the walls")
+    if "friction" not in table:
+        axis.plot(table["time"], table["balance"], color="0.5", lw=0.8, label="left over")
+    axis.set(xlabel="time [s]", ylabel="energy [J]", title=outcome.case.case.title)
+    axis.grid(alpha=0.3)
+    axis.legend(fontsize=8)
+    with atomic(outcome.folder / "energy.png") as temporary:
+        fig.savefig(temporary, dpi=130)
+    plt.close(fig)
