@@ -33,8 +33,8 @@ TAIL = """
 Why the others fail: `thornton_ning` and `edinburgh` register even quantities (largest overlap, force, flags) with the
 newton flag 1, so LIGGGHTS negates them when a pair is stored from its other side, and they register no contact
 distance factor, so nothing tells them that a pair parted before the next neighbour list. The shear spring of `hertz`
-with `tangential history` survives for the same reason. Their viscous force reads velocities in the middle of a step, so a split run differs slightly; `hertz` also leaves its
-setting `tangential_damping` unset when a restart file creates it.
+with `tangential history` survives for the same reason. Their viscous force reads velocities in the middle of a step, so
+a split run differs slightly; `hertz` also leaves its setting `tangential_damping` unset when a restart file creates it.
 """
 
 

@@ -3,8 +3,9 @@
 
 Run: .venv/bin/python bench/liggghts_speed.py [--quick]
 
-Every model sees the same deck and the same positions; the models take turns, and each keeps the fastest of many short
-runs of two steps, because on a shared machine the noise only adds. Instruction counts (callgrind) repeat exactly and are the number to watch.
+Every model sees the same deck and the same positions; the models take turns, and each keeps the fastest of many runs
+of two steps, because on a shared machine the noise only adds. Instruction counts (callgrind)
+repeat exactly and are the number to watch.
 """
 
 import argparse
@@ -62,8 +63,12 @@ def packing(cells, spacing, jitter, speed=0.0):
     v = rng.uniform(-speed, speed, x.shape)
     lines = ["packing", "", f"{len(x)} atoms", "1 atom types", ""]
     lines += [f"0.0 {cells * edge!r} {c}lo {c}hi" for c in "xyz"]
-    lines += ["", "Atoms", "", *(f"{i + 1} 1 {2 * RADIUS} 2500.0 {p[0]!r} {p[1]!r} {p[2]!r}" for i, p in
-                                enumerate(x.tolist()))]
+    lines += [
+        "",
+        "Atoms",
+        "",
+        *(f"{i + 1} 1 {2 * RADIUS} 2500.0 {p[0]!r} {p[1]!r} {p[2]!r}" for i, p in enumerate(x.tolist())),
+    ]
     lines += ["", "Velocities", "", *(f"{i + 1} {p[0]!r} {p[1]!r} {p[2]!r} 0 0 0" for i, p in enumerate(v.tolist()))]
     return "\n".join([*lines, ""])
 
@@ -71,7 +76,10 @@ def packing(cells, spacing, jitter, speed=0.0):
 def deck(model, *, steps, chunks=1, dt="1e-13", warm=2, unload=True, restitution=True, ranks=1):
     foreign = model == "thornton_ning"
     return DECK.format(
-        model=model, runs=f"run {steps}\n" + f"run {steps} pre no\n" * (chunks - 1), dt=dt, warm=warm,
+        model=model,
+        runs=f"run {steps}\n" + f"run {steps} pre no\n" * (chunks - 1),
+        dt=dt,
+        warm=warm,
         processors="processors 2 1 1\n" if ranks == 2 else "",
         restitution=per_pair("coefficientRestitution", 0.7, 1) if restitution or not model.startswith("ep/") else "",
         friction=per_pair("coefficientFriction", 0.5, 1),
@@ -103,8 +111,12 @@ def timed(folder, scene, models, repeats, steps=2, chunks=120):
     best = {}
     for _ in range(repeats):
         for model in models:
-            result = good(folder, deck(model, steps=steps, chunks=chunks, **options), files={"packing.data": data},
-                          ranks=options.get("ranks", 1))
+            result = good(
+                folder,
+                deck(model, steps=steps, chunks=chunks, **options),
+                files={"packing.data": data},
+                ranks=options.get("ranks", 1),
+            )
             now = seconds(result.text) / steps * 1e3
             best[model] = np.minimum(best.get(model, now), now)
     return best
@@ -116,8 +128,10 @@ def instructions(folder, model):
     command = shutil.which("valgrind")
     script = folder / "count.sh"
     folder.mkdir(parents=True, exist_ok=True)
-    script.write_text(f"#!/bin/sh\nexec {command} --tool=callgrind --callgrind-out-file=/dev/null "
-                      f"--toggle-collect='LAMMPS_NS::PairGranProxy::compute_force*' {launcher()} \"$@\"\n")
+    script.write_text(
+        f"#!/bin/sh\nexec {command} --tool=callgrind --callgrind-out-file=/dev/null "
+        f"--toggle-collect='LAMMPS_NS::PairGranProxy::compute_force*' {launcher()} \"$@\"\n"
+    )
     script.chmod(0o755)
     for steps in (2, 12):
         text = good(folder, deck(model, steps=steps), files=files, command=str(script), timeout=300).text
@@ -141,8 +155,11 @@ def main():
                 limit = LIMITS.get((scene, model))
                 verdict = "" if limit is None else f" (limit {limit}: {'kept' if loop <= limit else 'EXCEEDED'})"
                 failed |= limit is not None and loop > limit
-                print(f"| {scene} | {model} | {best[model][0]:.3f} | {loop:.3f}{verdict} | {best[model][1]:.3f} | "
-                      f"{pair:.3f} |", flush=True)
+                print(
+                    f"| {scene} | {model} | {best[model][0]:.3f} | {loop:.3f}{verdict} | {best[model][1]:.3f} | "
+                    f"{pair:.3f} |",
+                    flush=True,
+                )
         if not quick and shutil.which("valgrind"):
             print("\n| model | instructions in the pair loop per step, 2048 spheres | x hertz |\n|---|---|---|")
             count = {model: instructions(folder, model) for model in models}

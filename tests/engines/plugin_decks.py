@@ -20,8 +20,8 @@ Y = np.array([0.2e9, 1.0e9, 0.06e9])
 P_Y = 2.8 * Y
 
 OWN = f"""
-fix p1 all property/global yieldPressure peratomtype {' '.join(map(repr, P_Y.tolist()))}
-fix p2 all property/global yieldStress peratomtype {' '.join(map(repr, Y.tolist()))}
+fix p1 all property/global yieldPressure peratomtype {" ".join(map(repr, P_Y.tolist()))}
+fix p2 all property/global yieldStress peratomtype {" ".join(map(repr, Y.tolist()))}
 """
 
 
@@ -33,10 +33,14 @@ def per_pair(name, value, n=3):
 # What LIGGGHTS's own plastic models need beside the elastic constants, at strengths like those above.
 FOREIGN = {
     "hertz": per_pair("coefficientRestitution", 0.7),
-    "thornton_ning": per_pair("coefficientRestitution", 0.999) + per_pair("surfaceEnergy", 0.0)
+    "thornton_ning": per_pair("coefficientRestitution", 0.999)
+    + per_pair("surfaceEnergy", 0.0)
     + "fix yr all property/global coefficientYieldRatio peratomtype 0.01 0.01 0.01\n",
-    "edinburgh": per_pair("coefficientRestitution", 0.999) + per_pair("coefficientAdhesionStiffness", 0.0)
-    + per_pair("UnloadingStiffness", 5.0) + per_pair("surfaceEnergy", 0.0) + per_pair("pullOffForce", 0.0)
+    "edinburgh": per_pair("coefficientRestitution", 0.999)
+    + per_pair("coefficientAdhesionStiffness", 0.0)
+    + per_pair("UnloadingStiffness", 5.0)
+    + per_pair("surfaceEnergy", 0.0)
+    + per_pair("pullOffForce", 0.0)
     + "fix ae all property/global adhesionExponent scalar 1.5\n"
     + "fix oe all property/global overlapExponent scalar 1.5\n",
 }
@@ -81,8 +85,17 @@ def run(folder, deck, *, ranks=1, files=None, command=None, preload=None, timeou
         env["LD_PRELOAD"] = preload
     if ranks > 1:
         extra = ["--allow-run-as-root"] if os.geteuid() == 0 else []
-        line = ["mpirun", *extra, "--oversubscribe", "--mca", "btl_base_warn_component_unused", "0",
-                "-np", str(ranks), *line]
+        line = [
+            "mpirun",
+            *extra,
+            "--oversubscribe",
+            "--mca",
+            "btl_base_warn_component_unused",
+            "0",
+            "-np",
+            str(ranks),
+            *line,
+        ]
     done = subprocess.run(line, cwd=folder, env=env, capture_output=True, timeout=timeout)
     text = (done.stdout + done.stderr).decode(errors="replace")
     return Run(folder, done.returncode, text)
@@ -157,15 +170,15 @@ newton off
 communicate single vel yes
 units si
 {options}
-processors {' '.join(map(str, ranks))}
+processors {" ".join(map(str, ranks))}
 """
 
 
 def materials(model, *, friction=0.3):
     """Properties of the three types for any model."""
     own = OWN if model.startswith("ep/") else FOREIGN[model]
-    return f"""fix m1 all property/global youngsModulus peratomtype {' '.join(map(repr, E.tolist()))}
-fix m2 all property/global poissonsRatio peratomtype {' '.join(map(repr, NU.tolist()))}
+    return f"""fix m1 all property/global youngsModulus peratomtype {" ".join(map(repr, E.tolist()))}
+fix m2 all property/global poissonsRatio peratomtype {" ".join(map(repr, NU.tolist()))}
 {per_pair("coefficientFriction", friction)}{own}"""
 
 

@@ -48,16 +48,26 @@ def scene():
     return Bodies(types, np.concatenate([radius, wall_radius]), x, v, rng.uniform(-2e3, 2e3, v.shape))
 
 
-def deck(model, *, box="box.data", before="", neigh=SELDOM, wall="primitive", body=None, restart=None, style=True, **top):
-    """The scene's deck; `restart` continues from a file instead of reading the data, `style` = False trusts its models."""
+def deck(
+    model, *, box="box.data", before="", neigh=SELDOM, wall="primitive", body=None, restart=None, style=True, **top
+):
+    """The scene's deck; `restart` continues from a file, without `style` with the models of that file."""
     atoms = f"read_restart {restart}\n" if restart else f"read_data {box}\n"
     words = contact(model, wall=wall)
     if not style:
         words = "\n".join(line for line in words.splitlines() if not line.startswith("pair_")) + "\n"
     return (
-        head(**top) + atoms + "neighbor 5e-4 bin\nneigh_modify binsize 0.02\n" + neigh + materials(model) + words
+        head(**top)
+        + atoms
+        + "neighbor 5e-4 bin\nneigh_modify binsize 0.02\n"
+        + neigh
+        + materials(model)
+        + words
         + f"timestep {DT!r}\nfix move all nve/sphere\nthermo_modify lost error norm no\n"
-        + before + (body or f"run {STEPS}\n") + DUMP.format(every=1) + "run 0\n"
+        + before
+        + (body or f"run {STEPS}\n")
+        + DUMP.format(every=1)
+        + "run 0\n"
     )
 
 
@@ -92,7 +102,7 @@ class Suite:
         x = np.array([[0.01 * (k // 2), 0.0, 0.05] for k in range(2 * N)])
         x[1::2, 2] += radius[0::2] + radius[1::2] + 1e-5
         v = np.zeros_like(x)
-        v[1::2] = rng.uniform(-0.02, 0.02, (N, 3)) + [0, 0, -1.0]
+        v[1::2] = rng.uniform(-0.02, 0.02, (N, 3)) + np.array([0, 0, -1.0])
         w = rng.uniform(-50, 50, (2 * N, 3))
         gravity, dt, skin, steps = (1e3, 1e-5, 4e-3, 500) if fast else (2e3, 5e-8, 1e-3, 50000)
         types = np.full(2 * N, 3)
@@ -103,33 +113,48 @@ class Suite:
             soft = {"m1": "7e7 2e8 5e6", "p1": "3e6 3e6 3e5", "p2": "1e6 1e6 1e5"}
             for fix, values in soft.items():
                 properties = re.sub(rf"(fix {fix} .* peratomtype) .*", rf"\1 {values}", properties)
-        text = (head() + f"read_data box.data\nneighbor {skin!r} bin\nneigh_modify binsize 0.02\n{{neigh}}" + properties
-                + contact(self.model) + f"timestep {dt!r}\nthermo_modify lost error norm no\n"
-                + "group up id " + " ".join(map(str, bodies.ids[1::2])) + "\nfix move up nve/sphere\n"
-                + f"fix g up gravity {gravity!r} vector 0 0 -1\nrun {steps}\n" + DUMP.format(every=1) + "run 0\n")
+        text = (
+            head()
+            + f"read_data box.data\nneighbor {skin!r} bin\nneigh_modify binsize 0.02\n{{neigh}}"
+            + properties
+            + contact(self.model)
+            + f"timestep {dt!r}\nthermo_modify lost error norm no\n"
+            + "group up id "
+            + " ".join(map(str, bodies.ids[1::2]))
+            + "\nfix move up nve/sphere\n"
+            + f"fix g up gravity {gravity!r} vector 0 0 -1\nrun {steps}\n"
+            + DUMP.format(every=1)
+            + "run 0\n"
+        )
         never = "neigh_modify delay 1000000 check no\n"
         kind = "fast" if fast else "slow"
-        one, other = (self.outcome(f"second-{kind}-{k}", text.format(neigh=n), bodies=bodies, box=box)
-                      for k, n in enumerate((never, EVERY_STEP)))
+        one, other = (
+            self.outcome(f"second-{kind}-{k}", text.format(neigh=n), bodies=bodies, box=box)
+            for k, n in enumerate((never, EVERY_STEP))
+        )
         return np.abs(one - other)[:, :3].max()
 
     def ways(self):
         """name -> outcome; the names are the rows of the table in the documentation."""
         m, b = self.model, self.bodies
         swapped = replace(b, ids=b.ids[::-1].copy())
-        local = ("compute c all pair/gran/local id force_normal history delta\n"
-                 "dump l all local 10 local.txt c_c[1] c_c[4]\n")
+        local = (
+            "compute c all pair/gran/local id force_normal history delta\ndump l all local 10 local.txt c_c[1] c_c[4]\n"
+        )
         return {
             "swap of i and j": lambda: self.outcome("swap", deck(m), bodies=swapped),
             "neighbour list built every step": lambda: self.outcome("every", deck(m, neigh=EVERY_STEP)),
             "atoms sorted while touching": lambda: self.outcome("sort", deck(m, neigh=EVERY_STEP, sort="1 0.0125")),
             "migration between 2 ranks": lambda: self.outcome(
-                "ranks", deck(m, neigh=EVERY_STEP, ranks=(2, 1, 1)), ranks=2),
+                "ranks", deck(m, neigh=EVERY_STEP, ranks=(2, 1, 1)), ranks=2
+            ),
             "periodic face": lambda: self.outcome(
-                "periodic", deck(m, neigh=EVERY_STEP, boundary="p f f"), box=PERIODIC),
+                "periodic", deck(m, neigh=EVERY_STEP, boundary="p f f"), box=PERIODIC
+            ),
             "run split in two": lambda: self.outcome("split", deck(m, body=f"run {MIDDLE}\nrun {STEPS - MIDDLE}\n")),
             "reset_timestep while touching": lambda: self.outcome(
-                "reset", deck(m, body=f"run {MIDDLE}\nreset_timestep 7\nrun {STEPS - MIDDLE}\n")),
+                "reset", deck(m, body=f"run {MIDDLE}\nreset_timestep 7\nrun {STEPS - MIDDLE}\n")
+            ),
             "local computes every 10 steps": lambda: self.outcome("local", deck(m, before=local)),
             "restart while touching": lambda: self.restart(),
             "restart, models from the file": lambda: self.restart(style=False),
@@ -137,15 +162,22 @@ class Suite:
             "wall as a mesh": lambda: self.outcome("mesh", deck(m, wall="mesh")),
             "mesh wall, restart while touching": lambda: self.restart(wall="mesh"),
             "mesh wall, 2 ranks": lambda: self.outcome(
-                "mesh2", deck(m, wall="mesh", neigh=EVERY_STEP, ranks=(2, 1, 1)), ranks=2),
+                "mesh2", deck(m, wall="mesh", neigh=EVERY_STEP, ranks=(2, 1, 1)), ranks=2
+            ),
         }
 
     def restart(self, *, ranks=1, style=True, wall="primitive"):
         name = f"restart-{ranks}-{style}-{wall}"
         stop = deck(self.model, wall=wall, body=f"run {MIDDLE}\nwrite_restart ../{name}.restart\n")
         self.outcome(f"{name}-first", stop)
-        go_on = deck(self.model, wall=wall, restart=f"../{name}.restart", style=style, body=f"run {STEPS - MIDDLE}\n",
-                     ranks=(ranks, 1, 1))
+        go_on = deck(
+            self.model,
+            wall=wall,
+            restart=f"../{name}.restart",
+            style=style,
+            body=f"run {STEPS - MIDDLE}\n",
+            ranks=(ranks, 1, 1),
+        )
         return self.outcome(name, go_on, ranks=ranks)
 
     def deviations(self):

@@ -19,15 +19,23 @@ def gas(speed=8.0):
     return Bodies(rng.integers(1, 4, n), rng.uniform(1.5e-3, 2.4e-3, n), x, rng.uniform(-speed, speed, (n, 3)))
 
 
-def deck(law, *, steps, every, ranks=(1, 1, 1), wall_setting="computePlasticWork on", pair_setting="computePlasticWork on"):
+def deck(
+    law, *, steps, every, ranks=(1, 1, 1), wall_setting="computePlasticWork on", pair_setting="computePlasticWork on"
+):
     words = f"model ep/{law} tangential off"
-    walls = "".join(f"fix w{k} all wall/gran {words} primitive type 2 {side} {at!r} {wall_setting}\n"
-                    for k, (side, at) in enumerate(SIDES))
-    return (head(ranks=ranks) + "read_data box.data\nneighbor 1e-3 bin\nneigh_modify delay 0\n" + materials("ep/any")
-            + f"pair_style gran {words} {pair_setting}\npair_coeff * *\n{walls}timestep 5e-8\nfix move all nve/sphere\n"
-            "compute s all reduce sum f_plasticWork f_elasticEnergy\ncompute k all ke\n"
-            f"thermo_style custom step c_k c_s[1] c_s[2]\nthermo {every}\n"
-            f"thermo_modify lost error norm no format float %.17g\nrun {steps}\n")
+    walls = "".join(
+        f"fix w{k} all wall/gran {words} primitive type 2 {side} {at!r} {wall_setting}\n"
+        for k, (side, at) in enumerate(SIDES)
+    )
+    return (
+        head(ranks=ranks)
+        + "read_data box.data\nneighbor 1e-3 bin\nneigh_modify delay 0\n"
+        + materials("ep/any")
+        + f"pair_style gran {words} {pair_setting}\npair_coeff * *\n{walls}timestep 5e-8\nfix move all nve/sphere\n"
+        "compute s all reduce sum f_plasticWork f_elasticEnergy\ncompute k all ke\n"
+        f"thermo_style custom step c_k c_s[1] c_s[2]\nthermo {every}\n"
+        f"thermo_modify lost error norm no format float %.17g\nrun {steps}\n"
+    )
 
 
 def balance(folder, text, ranks=1):

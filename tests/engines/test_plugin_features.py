@@ -21,23 +21,46 @@ def spheres(n=8, speed=2.0):
 
 
 def deck(law, *, wall="mesh", before="", after="", steps=400, integrate="fix move all nve/sphere\n", ranks=(1, 1, 1)):
-    return (head(ranks=ranks) + "read_data box.data\nneighbor 1e-3 bin\n" + materials("ep/any") + before
-            + contact(f"ep/{law}", wall=wall) + "timestep 1e-7\n" + integrate
-            + "thermo_modify lost error norm no\n" + after + f"run {steps}\n")
+    return (
+        head(ranks=ranks)
+        + "read_data box.data\nneighbor 1e-3 bin\n"
+        + materials("ep/any")
+        + before
+        + contact(f"ep/{law}", wall=wall)
+        + "timestep 1e-7\n"
+        + integrate
+        + "thermo_modify lost error norm no\n"
+        + after
+        + f"run {steps}\n"
+    )
 
 
 def start(folder, text, *, n=8, ranks=1, **files):
-    return good(folder, text, ranks=ranks, files={"box.data": spheres(n).data(BOX), "plate.stl": plate(
-        x=(-0.045, 0.045), y=(-0.04, 0.04), cells=2), **files})
+    return good(
+        folder,
+        text,
+        ranks=ranks,
+        files={
+            "box.data": spheres(n).data(BOX),
+            "plate.stl": plate(x=(-0.045, 0.045), y=(-0.04, 0.04), cells=2),
+            **files,
+        },
+    )
 
 
 @pytest.mark.parametrize("law", YIELDING)
 def test_force_on_a_stressed_mesh_is_minus_the_sum_of_the_stored_forces(tmp_path, law):
-    text = deck(law, steps=60).replace("mesh/surface file", "mesh/surface/stress file").replace(
-        "meshes plate", "meshes plate store_force yes")
-    text += ("variable fz equal f_plate[3]\ncompute s all reduce sum f_force_wall[1] f_force_wall[2] f_force_wall[3]\n"
-             "thermo_style custom step f_plate[1] c_s[1] f_plate[3] c_s[3]\nthermo_modify lost error norm no format float %.15g\n"
-             "run 1\n")
+    text = (
+        deck(law, steps=60)
+        .replace("mesh/surface file", "mesh/surface/stress file")
+        .replace("meshes plate", "meshes plate store_force yes")
+    )
+    text += (
+        "compute s all reduce sum f_force_wall[1] f_force_wall[2] f_force_wall[3]\n"
+        "thermo_style custom step f_plate[1] c_s[1] f_plate[3] c_s[3]\n"
+        "thermo_modify lost error norm no format float %.15g\n"
+        "run 1\n"
+    )
     lines = start(tmp_path, text).text.splitlines()
     last = [line for line in lines if line.split()[:1] == ["61"]][-1].split()
     mesh_x, sum_x, mesh_z, sum_z = map(float, last[1:])
@@ -47,11 +70,17 @@ def test_force_on_a_stressed_mesh_is_minus_the_sum_of_the_stored_forces(tmp_path
 
 def test_a_moving_mesh_drives_the_spheres(tmp_path):
     """A plate that comes up at 1 m/s is the same as spheres that come down: relative rebound equal to 1e-9."""
-    still = start(tmp_path / "still", deck("thornton", steps=1200, after=(
-        "velocity all set 0 0 -1.0\n")) + "dump d all custom 1 out.bin id z vz\nrun 0\n").last
+    still = start(
+        tmp_path / "still",
+        deck("thornton", steps=1200, after=("velocity all set 0 0 -1.0\n"))
+        + "dump d all custom 1 out.bin id z vz\nrun 0\n",
+    ).last
     up = "fix up all move/mesh mesh plate linear 0.0 0.0 1.0\n"
-    rising = start(tmp_path / "up", deck("thornton", steps=1200, after=(
-        "velocity all set 0 0 0\n" + up)) + "dump d all custom 1 out.bin id z vz\nrun 0\n").last
+    rising = start(
+        tmp_path / "up",
+        deck("thornton", steps=1200, after=("velocity all set 0 0 0\n" + up))
+        + "dump d all custom 1 out.bin id z vz\nrun 0\n",
+    ).last
     hit = still[:, 2] > 0
     assert hit.sum() > 30
     assert np.allclose(rising[hit, 2] - 1.0, still[hit, 2], atol=1e-9)
@@ -60,20 +89,28 @@ def test_a_moving_mesh_drives_the_spheres(tmp_path):
 def test_clumps_bounce_and_lose_energy(tmp_path):
     """fix multisphere: two overlapping spheres per clump; the law reads the clump's mass."""
     clump = "0.0 0.0 -0.0006 0.0015\n0.0 0.0 0.0006 0.0015\n"
-    text = (head() + "region box block -0.05 0.05 -0.05 0.05 -0.02 0.1 units box\ncreate_box 3 box\nneighbor 1e-3 bin\n"
-            + materials("ep/any") + contact("ep/thornton", wall="primitive")
-            + "timestep 1e-7\nregion in block -0.02 0.02 -0.02 0.02 0.004 0.03 units box\n"
-            "fix t all particletemplate/multisphere 15485863 atom_type 1 density constant 2500 nspheres 2 ntry 100000 "
-            "spheres file clump.txt scale 1.0 type 1\n"
-            "fix d all particledistribution/discrete 15485867 1 t 1.0\n"
-            "fix move all multisphere\n"
-            "fix in all insert/pack seed 32452843 distributiontemplate d vel constant 0. 0. -3.0 insert_every once "
-            "overlapcheck yes all_in yes particles_in_region 20 region in\n"
-            "compute k all ke/multisphere\nthermo_style custom step atoms c_k\nthermo 20000\n"
-            "thermo_modify lost error norm no format float %.15g\nrun 1\nrun 100000\n")
+    text = (
+        head()
+        + "region box block -0.05 0.05 -0.05 0.05 -0.02 0.1 units box\ncreate_box 3 box\nneighbor 1e-3 bin\n"
+        + materials("ep/any")
+        + contact("ep/thornton", wall="primitive")
+        + "timestep 1e-7\nregion in block -0.02 0.02 -0.02 0.02 0.004 0.03 units box\n"
+        "fix t all particletemplate/multisphere 15485863 atom_type 1 density constant 2500 nspheres 2 ntry 100000 "
+        "spheres file clump.txt scale 1.0 type 1\n"
+        "fix d all particledistribution/discrete 15485867 1 t 1.0\n"
+        "fix move all multisphere\n"
+        "fix in all insert/pack seed 32452843 distributiontemplate d vel constant 0. 0. -3.0 insert_every once "
+        "overlapcheck yes all_in yes particles_in_region 20 region in\n"
+        "compute k all ke/multisphere\nthermo_style custom step atoms c_k\nthermo 20000\n"
+        "thermo_modify lost error norm no format float %.15g\nrun 1\nrun 100000\n"
+    )
     for type in (2, 3):  # LIGGGHTS wants every type up to the wall's to be in use
-        text = text.replace("timestep", f"create_atoms {type} single 0.04 0.04 {0.01 * type} units box\n"
-                            "set group all diameter 0.002\nset group all density 1000\ntimestep", 1)
+        text = text.replace(
+            "timestep",
+            f"create_atoms {type} single 0.04 0.04 {0.01 * type} units box\n"
+            "set group all diameter 0.002\nset group all density 1000\ntimestep",
+            1,
+        )
     text = text.replace("fix move all multisphere", "group loose type 2 3\nfix move all multisphere")
     lines = good(tmp_path, text, files={"clump.txt": clump}).text.splitlines()
     rows = [line.split() for line in lines if len(line.split()) == 3 and line.split()[0].isdigit()]
@@ -86,16 +123,22 @@ def test_clumps_bounce_and_lose_energy(tmp_path):
 def test_inserted_spheres_of_two_types(tmp_path, how, ranks):
     rate = "nparticles 100 particlerate 100000 insert_every 1000" if "rate" in how else "insert_every once"
     many = "" if "rate" in how else "particles_in_region 100"
-    text = (head(ranks=(ranks, 1, 1)) + "region box block -0.05 0.05 -0.05 0.05 -0.02 0.1 units box\ncreate_box 3 box\n"
-            "neighbor 1e-3 bin\n" + materials("ep/any") + contact("ep/cavity", wall="primitive")
-            + "timestep 5e-7\nregion in block -0.02 0.02 -0.02 0.02 0.004 0.03 units box\n"
-            + "".join(f"fix t{k} all particletemplate/sphere {s} atom_type {k} density constant 2500 radius constant {r}\n"
-                      for k, (s, r) in enumerate(((15485863, 0.001), (86028121, 0.0015), (67867979, 0.0012)), 1))
-            + "fix d all particledistribution/discrete 32452843 3 t1 0.4 t2 0.3 t3 0.3\nfix move all nve/sphere\n"
-            f"fix in all {how} seed 49979687 distributiontemplate d vel constant 0. 0. -3.0 {rate} "
-            f"overlapcheck yes all_in yes {many} region in\n"
-            "compute k all ke\nthermo_style custom step atoms c_k\nthermo 10000\n"
-            "thermo_modify lost error norm no format float %.15g\nrun 1\nrun 30000\n")
+    text = (
+        head(ranks=(ranks, 1, 1)) + "region box block -0.05 0.05 -0.05 0.05 -0.02 0.1 units box\ncreate_box 3 box\n"
+        "neighbor 1e-3 bin\n"
+        + materials("ep/any")
+        + contact("ep/cavity", wall="primitive")
+        + "timestep 5e-7\nregion in block -0.02 0.02 -0.02 0.02 0.004 0.03 units box\n"
+        + "".join(
+            f"fix t{k} all particletemplate/sphere {s} atom_type {k} density constant 2500 radius constant {r}\n"
+            for k, (s, r) in enumerate(((15485863, 0.001), (86028121, 0.0015), (67867979, 0.0012)), 1)
+        )
+        + "fix d all particledistribution/discrete 32452843 3 t1 0.4 t2 0.3 t3 0.3\nfix move all nve/sphere\n"
+        f"fix in all {how} seed 49979687 distributiontemplate d vel constant 0. 0. -3.0 {rate} "
+        f"overlapcheck yes all_in yes {many} region in\n"
+        "compute k all ke\nthermo_style custom step atoms c_k\nthermo 10000\n"
+        "thermo_modify lost error norm no format float %.15g\nrun 1\nrun 30000\n"
+    )
     lines = good(tmp_path, text, ranks=ranks).text.splitlines()
     rows = [line.split() for line in lines if len(line.split()) == 3 and line.split()[0].isdigit()]
     assert int(rows[-1][1]) >= 80
@@ -103,10 +146,12 @@ def test_inserted_spheres_of_two_types(tmp_path, how, ranks):
 
 
 def test_the_usual_computes_and_checks_run(tmp_path):
-    after = ("fix check all check/timestep/gran 100 0.9 0.9\ncompute p all pair/gran/local id pos force force_normal "
-             "history contactArea delta\ncompute n all contact/atom\ncompute e all erotate/sphere\n"
-             "compute t all reduce sum c_n\nthermo_style custom step atoms ke c_e c_t f_check[1] f_check[2]\n"
-             "dump l all local 50 local.txt c_p[1] c_p[2]\ndump c all custom 50 c.txt id c_n f_force_wall[3]\n")
+    after = (
+        "fix check all check/timestep/gran 100 0.9 0.9\ncompute p all pair/gran/local id pos force force_normal "
+        "history contactArea delta\ncompute n all contact/atom\ncompute e all erotate/sphere\n"
+        "compute t all reduce sum c_n\nthermo_style custom step atoms ke c_e c_t f_check[1] f_check[2]\n"
+        "dump l all local 50 local.txt c_p[1] c_p[2]\ndump c all custom 50 c.txt id c_n f_force_wall[3]\n"
+    )
     text = deck("thornton", after=after).replace("meshes plate", "meshes plate store_force yes")
     text = text.replace("compute p all", "compute w all wall/gran/local id force history\ncompute p all")
     text = text.replace("dump l all", "dump w all local 50 wall.txt c_w[1] c_w[2]\ndump l all")

@@ -54,7 +54,12 @@ def test_a_second_impact_is_a_new_contact_whatever_the_neighbour_list(rows, law)
 def test_liggghts_own_plastic_models_lose_history_when_pairs_change_sides(rows, model):
     """The main failures of the table in docs/invariance.md; their scalars carry the newton flag 1."""
     off = rows(model)
-    for name in ("atoms sorted while touching", "migration between 2 ranks", "periodic face", "restart from 1 rank to 2"):
+    for name in (
+        "atoms sorted while touching",
+        "migration between 2 ranks",
+        "periodic face",
+        "restart from 1 rank to 2",
+    ):
         assert off[name][0] > 1e-3, name
     assert off["momentum of a pair on 2 ranks"][0] > 1e-3
     assert model == "edinburgh" or off["second impact in one list"][0] > 1e-2

@@ -36,11 +36,23 @@ def bodies():
     return Bodies(np.array([1, 2, 3]), np.full(3, 5e-3), x, np.tile([0.3, 0, -1.0], (3, 1)))
 
 
-def deck(model="ep/thornton", *, edit=lambda text: text, properties=None, models="", settings="",
-         tangential="history", steps=50):
-    text = (head() + "read_data box.data\nneighbor 1e-3 bin\n" + (properties or materials("ep/any"))
-            + contact(model, wall="primitive", models=models, settings=settings, tangential=tangential)
-            + f"timestep 1e-7\nfix move all nve/sphere\nthermo_modify lost error norm no\nrun {steps}\n")
+def deck(
+    model="ep/thornton",
+    *,
+    edit=lambda text: text,
+    properties=None,
+    models="",
+    settings="",
+    tangential="history",
+    steps=50,
+):
+    text = (
+        head()
+        + "read_data box.data\nneighbor 1e-3 bin\n"
+        + (properties or materials("ep/any"))
+        + contact(model, wall="primitive", models=models, settings=settings, tangential=tangential)
+        + f"timestep 1e-7\nfix move all nve/sphere\nthermo_modify lost error norm no\nrun {steps}\n"
+    )
     return edit(text)
 
 
@@ -103,7 +115,9 @@ def test_a_wrong_name_is_told_what_exists(tmp_path):
     assert "Invalid model" in told(tmp_path / "c", deck("hertzz"))
 
 
-@pytest.mark.parametrize("extra", ["rolling_friction luding", "cohesion washino/capillary/viscous", "surface superquadric"])
+@pytest.mark.parametrize(
+    "extra", ["rolling_friction luding", "cohesion washino/capillary/viscous", "surface superquadric"]
+)
 def test_a_combination_that_does_not_exist_is_refused_with_those_that_do(tmp_path, extra):
     assert "epdem's models combine with" in told(tmp_path, deck(models=extra))
 
@@ -121,9 +135,15 @@ def test_all_combinations_run_for_pair_and_wall(tmp_path):
     """Must 9: 90 combinations; the law changes from one to the next, so that each law meets most of them."""
     more = materials("ep/any") + "".join(
         f"fix {k} all property/global {name} peratomtypepair 3 {' '.join([str(value)] * 9)}\n"
-        for k, (name, value) in enumerate({"coefficientRestitution": 0.8, "cohesionEnergyDensity": 1e4,
-                                           "coefficientRollingFriction": 0.1,
-                                           "coefficientRollingViscousDamping": 0.1}.items()))
+        for k, (name, value) in enumerate(
+            {
+                "coefficientRestitution": 0.8,
+                "cohesionEnergyDensity": 1e4,
+                "coefficientRollingFriction": 0.1,
+                "coefficientRollingViscousDamping": 0.1,
+            }.items()
+        )
+    )
     more += "fix s all property/global rollingStiffness scalar 2.25\n"
 
     def attempt(number):
@@ -144,7 +164,12 @@ def test_all_combinations_run_for_pair_and_wall(tmp_path):
 
 def test_rolling_friction_acts_because_kn_is_set(tmp_path):
     """Must 3: without sidata.kn rolling_friction cdt changes nothing."""
-    spin = materials("ep/any") + "fix r all property/global coefficientRollingFriction peratomtypepair 3" + " 0.3" * 9 + "\n"
+    spin = (
+        materials("ep/any")
+        + "fix r all property/global coefficientRollingFriction peratomtypepair 3"
+        + " 0.3" * 9
+        + "\n"
+    )
 
     def final(name, settings):
         text = deck(models=settings, properties=spin, steps=100)
@@ -171,7 +196,9 @@ def test_an_absurd_property_is_refused_with_model_property_value_and_range(tmp_p
         assert "model ep/thornton" in error and f"{name} = {said}" in error and limits in error and "type 2" in error
 
 
-@pytest.mark.parametrize(("law", "name"), [("thornton", "yieldPressure"), ("johnson", "yieldPressure"), ("cavity", "yieldStress")])
+@pytest.mark.parametrize(
+    ("law", "name"), [("thornton", "yieldPressure"), ("johnson", "yieldPressure"), ("cavity", "yieldStress")]
+)
 def test_a_missing_property_is_named_with_the_line_to_write(tmp_path, law, name):
     without = "\n".join(line for line in materials("ep/any").splitlines() if name not in line) + "\n"
     error = told(tmp_path, deck(f"ep/{law}", properties=without))
@@ -201,18 +228,27 @@ def test_moduli_keep_the_limits_that_hold_for_all_models(tmp_path):
     assert "hard_particles" in told(tmp_path, soft_only)
 
 
-@pytest.mark.parametrize("setting", ["tangential_damping off", "limitForce on", "heating_tracking on",
-                                     "heating_normal_hertz off", "computeElasticPotential off"])
+@pytest.mark.parametrize(
+    "setting",
+    [
+        "tangential_damping off",
+        "limitForce on",
+        "heating_tracking on",
+        "heating_normal_hertz off",
+        "computeElasticPotential off",
+    ],
+)
 @pytest.mark.parametrize("law", ("hertz", "cavity"))
 def test_settings_of_hertz_in_an_existing_deck_are_accepted(tmp_path, law, setting):
     started(tmp_path, deck(f"ep/{law}", settings=setting))
 
 
-@pytest.mark.parametrize("setting", ["heating_normal_hertz", "computeElasticPotential", "computeDissipatedEnergy",
-                                     "disableNormalWhenBonded"])
+@pytest.mark.parametrize(
+    "setting", ["heating_normal_hertz", "computeElasticPotential", "computeDissipatedEnergy", "disableNormalWhenBonded"]
+)
 def test_other_settings_of_hertz_are_refused_by_name(tmp_path, setting):
     error = told(tmp_path, deck(settings=f"{setting} on"))
-    assert setting in error and "because" in error or "not available" in error
+    assert setting in error and "not available" in error
 
 
 def test_an_unused_type_costs_nothing(tmp_path):
@@ -239,3 +275,11 @@ def test_the_plugin_exports_nothing(tmp_path):
 
 def test_library_and_launcher_stay_small():
     assert Path(library()).stat().st_size < 3e6 and Path(launcher()).stat().st_size < 3e6
+
+
+def test_the_deck_of_the_user_page_prints_what_the_page_says(tmp_path):
+    page = (Path(__file__).resolve().parents[2] / "docs" / "liggghts.md").read_text()
+    text = re.search(r"```deck\n(.*?)```", page, re.S).group(1)
+    said = re.search(r"It prints (\S+),", page).group(1)
+    got = re.search(r"^restitution (\S+)", good(tmp_path, text).text, re.M).group(1)
+    assert f"{float(got):.4f}" == said == "0.9476"

@@ -22,8 +22,11 @@ def g_star(i, j):
 def thornton_restitution(v, v_y):
     """Eq. 8.83."""
     r = np.minimum(v_y / v, 1.0)
-    return np.where(r < 1, np.sqrt(6 * np.sqrt(3) / 5) * np.sqrt(1 - r**2 / 6)
-                    * (r / (r + 2 * np.sqrt(6 / 5 - r**2 / 5))) ** 0.25, 1.0)
+    return np.where(
+        r < 1,
+        np.sqrt(6 * np.sqrt(3) / 5) * np.sqrt(1 - r**2 / 6) * (r / (r + 2 * np.sqrt(6 / 5 - r**2 / 5))) ** 0.25,
+        1.0,
+    )
 
 
 def yield_speed(p_y, E_s, R_s, m_s):
@@ -31,16 +34,36 @@ def yield_speed(p_y, E_s, R_s, m_s):
     return (np.pi / (2 * E_s)) ** 2 * np.sqrt(8 * np.pi * R_s**3 * p_y**5 / (15 * m_s))
 
 
-def wall_impacts(folder, model, types, v, w=None, *, dt=2e-8, steps=8000, friction=0.0, dump="", properties=None,
-                 tangential="history"):
+def wall_impacts(
+    folder,
+    model,
+    types,
+    v,
+    w=None,
+    *,
+    dt=2e-8,
+    steps=8000,
+    friction=0.0,
+    dump="",
+    properties=None,
+    tangential="history",
+):
     """Spheres of radius R on the wall of type 2; final frame with columns id x y z v w."""
     n = len(types)
     x = np.array([[0.012 * k, 0.0, R + 0.5 * dt * abs(v[k][2])] for k in range(n)])
     bodies = Bodies(np.array(types), np.full(n, R), x, np.asarray(v, float), w)
-    text = (head() + "read_data box.data\nneighbor 1e-3 bin\nneigh_modify delay 0\n"
-            + (properties or materials(model, friction=friction))
-            + contact(model, wall="primitive", tangential=tangential) + f"timestep {dt!r}\nfix move all nve/sphere\n"
-            + "thermo_modify lost error norm no\n" + dump + f"run {steps}\n" + DUMP.format(every=1) + "run 0\n")
+    text = (
+        head()
+        + "read_data box.data\nneighbor 1e-3 bin\nneigh_modify delay 0\n"
+        + (properties or materials(model, friction=friction))
+        + contact(model, wall="primitive", tangential=tangential)
+        + f"timestep {dt!r}\nfix move all nve/sphere\n"
+        + "thermo_modify lost error norm no\n"
+        + dump
+        + f"run {steps}\n"
+        + DUMP.format(every=1)
+        + "run 0\n"
+    )
     return good(folder, text, files={"box.data": bodies.data(BOX)})
 
 
@@ -60,24 +83,38 @@ def test_thornton_restitution_of_three_materials_over_three_decades(tmp_path):
 def test_cavity_and_johnson_against_the_reference_table(tmp_path):
     """Sphere of 10 mm on a plane, both E = 208 GPa, nu = 0.3, Y = 1 GPa, rho = 7850."""
     table = {  # v: cavity, johnson (p_m = 3Y); e_n from 30-digit quadrature
-        0.2: (0.9835348647963, 1.0), 1.0: (0.8593720083638, 1.0), 5.0: (0.7167680993893, 1.0),
-        20.0: (0.6001427773615, 0.6723365058094), 50.0: (0.4837161666937, 0.5239170209996),
+        0.2: (0.9835348647963, 1.0),
+        1.0: (0.8593720083638, 1.0),
+        5.0: (0.7167680993893, 1.0),
+        20.0: (0.6001427773615, 0.6723365058094),
+        50.0: (0.4837161666937, 0.5239170209996),
     }
     v = np.array([(0, 0, -s) for s in table])
     x = np.array([[0.03 * k, 0, 0.01] for k in range(len(v))])
     for column, law in enumerate(("cavity", "johnson")):
         bodies = Bodies(np.full(len(v), 2), np.full(len(v), 0.01), x, v)
         bodies.type[0] = 1  # LIGGGHTS wants every type below the largest in use: here all are the same material
-        same = "\n".join(f"fix m{k} all property/global {name} peratomtype {value} {value}" for k, (name, value) in
-                         enumerate({"youngsModulus": 208e9, "poissonsRatio": 0.3, "yieldStress": 1e9,
-                                    "yieldPressure": 3e9}.items())) + "\n"
+        same = (
+            "\n".join(
+                f"fix m{k} all property/global {name} peratomtype {value} {value}"
+                for k, (name, value) in enumerate(
+                    {"youngsModulus": 208e9, "poissonsRatio": 0.3, "yieldStress": 1e9, "yieldPressure": 3e9}.items()
+                )
+            )
+            + "\n"
+        )
         bodies_text = bodies.data(((-0.02, 0.2), (-0.02, 0.02), (-0.001, 0.2)), types=2)
         steel = f"1 1 0.02 {float(RHO[0])!r}"
         bodies_text = bodies_text.replace(steel, "1 1 0.02 7850.0")
-        text = (head() + "read_data box.data\nneighbor 1e-3 bin\n" + same
-                + contact(f"ep/{law}", wall="primitive", tangential="off")
-                + "timestep 2e-8\nfix move all nve/sphere\nthermo_modify lost error norm no\nrun 10000\n"
-                + DUMP.format(every=1) + "run 0\n")
+        text = (
+            head()
+            + "read_data box.data\nneighbor 1e-3 bin\n"
+            + same
+            + contact(f"ep/{law}", wall="primitive", tangential="off")
+            + "timestep 2e-8\nfix move all nve/sphere\nthermo_modify lost error norm no\nrun 10000\n"
+            + DUMP.format(every=1)
+            + "run 0\n"
+        )
         got = good(tmp_path / law, text, files={"box.data": bodies_text}).last[:, 6] / -v[:, 2]
         assert np.allclose(got, [row[column] for row in table.values()], rtol=2e-4, atol=0), law
 
@@ -116,11 +153,17 @@ def test_friction_never_exceeds_its_limit_and_the_normal_force_never_pulls(tmp_p
 def press(folder, law, *, depth=2e-4, back=1e-5, side=1e-6):
     """A steel sphere is pressed in, lifted by `back`, moved sideways: (F_n, F_t) at depth, and after each move."""
     move = "fix move all move linear {} 0 {}\nrun {}\nunfix move\n"
-    text = (head() + "read_data box.data\nneighbor 1e-3 bin\nneigh_modify delay 0\n" + materials(f"ep/{law}", friction=50.0)
-            + contact(f"ep/{law}", wall="primitive") + "timestep 1e-7\nthermo_modify lost error norm no\n"
-            + "dump out all custom 1000 f.bin id x y z fx fy fz\n"
-            + move.format(0, repr(-depth / 1e-4), 1000) + move.format(0, repr(back / 1e-4), 1000)
-            + move.format(repr(side / 1e-4), 0, 1000))
+    text = (
+        head()
+        + "read_data box.data\nneighbor 1e-3 bin\nneigh_modify delay 0\n"
+        + materials(f"ep/{law}", friction=50.0)
+        + contact(f"ep/{law}", wall="primitive")
+        + "timestep 1e-7\nthermo_modify lost error norm no\n"
+        + "dump out all custom 1000 f.bin id x y z fx fy fz\n"
+        + move.format(0, repr(-depth / 1e-4), 1000)
+        + move.format(0, repr(back / 1e-4), 1000)
+        + move.format(repr(side / 1e-4), 0, 1000)
+    )
     x = np.array([[0.0, 0, R], [0.1, 0, 0.1]])
     bodies = Bodies(np.array([2, 1]), np.full(2, R), x, np.zeros((2, 3)))
     frames = good(folder, text, files={"box.data": bodies.data(BOX)}).frames("f.bin")[1]
@@ -149,7 +192,8 @@ def test_softer_body_decides_per_type_and_a_pair_value_wins(tmp_path):
     assert same[0] == softer[0] and same[2] == softer[2] and same[1] > softer[1]
     weakest = np.minimum.outer(P_Y, P_Y).ravel()
     pairs = "\n".join(line for line in base.splitlines() if "yieldPressure" not in line) + (
-        "\nfix p9 all property/global yieldPressure peratomtypepair 3 " + " ".join(map(repr, weakest.tolist())) + "\n")
+        "\nfix p9 all property/global yieldPressure peratomtypepair 3 " + " ".join(map(repr, weakest.tolist())) + "\n"
+    )
     assert (wall_impacts(tmp_path / "c", "ep/thornton", [1, 2, 3], v, properties=pairs).last[:, 6] == softer).all()
 
 
@@ -157,8 +201,11 @@ def test_parameters_with_a_fallback_may_be_given_or_left_out(tmp_path):
     v = [(0, 0, -5.0), (0, 0, -5.0), (0, 0, -5.0)]
     base = materials("ep/cavity", friction=0.0)
     left_out = wall_impacts(tmp_path / "a", "ep/cavity", [1, 2, 3], v, properties=base).last[:, 6]
-    given = base + "fix q1 all property/global firstYieldRatio scalar 1.6\n" + (
-        "fix q2 all property/global plasticRatio peratomtype 2.8 2.8 2.8\n")
+    given = (
+        base
+        + "fix q1 all property/global firstYieldRatio scalar 1.6\n"
+        + ("fix q2 all property/global plasticRatio peratomtype 2.8 2.8 2.8\n")
+    )
     assert (wall_impacts(tmp_path / "b", "ep/cavity", [1, 2, 3], v, properties=given).last[:, 6] == left_out).all()
     harder = base + "fix q2 all property/global plasticRatio peratomtype 3.0 3.0 3.0\n"
     assert (wall_impacts(tmp_path / "c", "ep/cavity", [1, 2, 3], v, properties=harder).last[:, 6] != left_out).all()
@@ -180,8 +227,9 @@ def test_dashpot_of_no_history_is_that_of_the_restitution_given(tmp_path):
     spin = {}
     for e in (1.0, 0.8, 0.5):
         properties = materials("ep/thornton", friction=5.0) + per_pair("coefficientRestitution", e)
-        final = wall_impacts(tmp_path / str(e), "ep/thornton", [1, 2, 3], v, properties=properties,
-                             tangential="no_history").last
+        final = wall_impacts(
+            tmp_path / str(e), "ep/thornton", [1, 2, 3], v, properties=properties, tangential="no_history"
+        ).last
         spin[e] = final[:, 8]
         if e == 1.0:
             normal = final[:, 6]

@@ -22,8 +22,16 @@ def result(folder, name, edit=lambda text: text):
 
 
 def test_every_deck_of_the_page_is_tested():
-    assert set(DECKS) == {"head", "periodic thornton_ning", "periodic edinburgh", "no_history", "rolling", "shear",
-                          "restitution", "segfault"}
+    assert set(DECKS) == {
+        "head",
+        "periodic thornton_ning",
+        "periodic edinburgh",
+        "no_history",
+        "rolling",
+        "shear",
+        "restitution",
+        "segfault",
+    }
 
 
 @pytest.mark.parametrize("model", ["thornton_ning", "edinburgh"])
@@ -66,6 +74,7 @@ def test_thornton_ning_rebounds_too_slowly_at_any_step(tmp_path):
     r = 0.1
     theory = np.sqrt(6 * np.sqrt(3) / 5) * np.sqrt(1 - r**2 / 6) * (r / (r + 2 * np.sqrt(6 / 5 - r**2 / 5))) ** 0.25
     for step in ("2e-7", "1e-7"):
+
         def edit(text, step=step):
             return text.replace("SPEED", repr(float(speed))).replace("timestep 2e-7", f"timestep {step}")
 
