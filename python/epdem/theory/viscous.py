@@ -2,7 +2,7 @@
 """Impacts of a law with a dashpot on its elastic branches: the equation of motion, solved to 1e-10.
 
 m* alpha'' = -max(0, F(alpha) + c alpha'), c = 2 sqrt(5/6) zeta sqrt(2 E* a m*), and no dashpot while the contact
-yields (there F lies on the backbone). zeta makes the restitution of an impact that does not yield a constant of the pair
+yields (there F lies on the backbone). zeta makes the restitution of impacts that do not yield a constant of the pair
 (Tsuji, Tanaka and Ishida 1992, with the force cut off at 0): zeta = sin phi, e = exp(-(pi - 2 phi) tan phi).
 
 Near first touch and near the dent sqrt(a) goes as the 1/4 power of the overlap x above the dent. With x = L q^4 and
