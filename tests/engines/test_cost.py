@@ -45,6 +45,8 @@ def test_order_is_that_of_a_known_power_and_none_where_nothing_converges():
 def test_table_figure_and_data_are_written_and_the_page_names_its_command(embedded, tmp_path):
     data, figure = cost_report.write(embedded, tmp_path)
     assert len(pd.read_csv(data)) == len(embedded.rows) == 8 and figure.stat().st_size > 10_000
+    bulk = pd.DataFrame({"spheres": [512], "share of the limit": [0.1], "seconds": [0.01], "error": [1e-4]})
+    assert "512 steel spheres" in cost_report.document(embedded, bulk, "epdem cost CASE")
     text = cost_report.document(embedded, None, "epdem cost CASE")
     assert "`epdem cost CASE`" in text and "embedded, cavity" in text
     assert json.dumps(embedded.contenders.to_dict("list"))
