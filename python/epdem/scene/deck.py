@@ -88,6 +88,7 @@ class Deck:
     phases: tuple[Phase, ...]
     every: int
     sampling: int
+    samples: int
     frames: int
     contacts: int
     vtk: int
@@ -250,6 +251,7 @@ def deck(case: SceneCase) -> Deck:
         phases=tuple(phases),
         every=every,
         sampling=_divisor(every, 50),
+        samples=every // _divisor(every, 50),
         frames=_every(out.particles, rows, every),
         contacts=_every(out.contacts or (out.particles if out.energy else 0), rows, every),
         vtk=_every(out.vtk, rows, every),
@@ -309,14 +311,3 @@ def write(case: SceneCase, folder: Path) -> list[Path]:
         files.append(folder / f"{name}.stl")
         meshes.write_stl(files[-1], name, triangles)
     return files
-
-
-def write_resume(case: SceneCase, folder: Path, restart: str, step: int) -> Path:
-    """in.resume, which continues from the restart file `restart` written at `step`."""
-    d = deck(case)
-    phase = next((i for i, p in enumerate(d.phases) if step < p.end), len(d.phases))
-    path = folder / "in.resume"
-    path.write_text(
-        decks.render("liggghts/scene_resume.in.j2", deck=replace(d, from_restart=restart, resumed_phase=phase))
-    )
-    return path

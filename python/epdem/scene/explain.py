@@ -50,6 +50,7 @@ _REASONS = (
     (r"unfix shutter", "opens the outlet"),
     (r"unfix press", "loading ends"),
     (r"compute load|fix load ", "output.loads: mean force on the floor between two rows"),
+    (r"fix torque", "mean torque on the drum between two rows: the work it does"),
     (r"fix press_z", "mean force on the plate between two rows"),
     (r"thermo_style", "what the rows of the table hold"),
     (r"thermo_modify lost ignore", "shot that rebounds leaves the room, which is no error here"),

@@ -1,0 +1,117 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Each scene as its case asks for it against the same with every sub-model on: writes docs/lean.md.
+
+    .venv/bin/python bench/lean.py [--out docs/lean.md] [--repeats 5]
+
+The full deck has friction, tangential dashpot, rolling friction, cohesion and the ledger, with coefficients so small
+that the spheres do the same. Both run to 95 % of the scene once; the rest is then repeated in turns from the restart
+files, so that what else the machine does hits both, and the shortest time counts.
+"""
+
+import argparse
+import re
+import shutil
+import subprocess
+import tempfile
+from pathlib import Path
+
+from epdem import paths
+from epdem.case import read_toml
+from epdem.scene import case as scenes
+from epdem.scene import deck
+
+ROOT = Path(__file__).parents[1]
+NOTHING = 1e-9
+COARSE = {"error": 0.1}
+
+
+def lean(data: dict) -> dict:
+    """The case without asked-for extras: the least that its physics needs."""
+    return data | {"output": {"rows": 20, "particles": 1, "restarts": 20}, "numerics": COARSE}
+
+
+def full(data: dict) -> dict:
+    """The case with every sub-model and the ledger."""
+    nothing = {"friction": NOTHING, "tangential_restitution": 0.999, "cohesion": f"{NOTHING} J/m^3"}
+    rolling = {"rolling": {"model": "epsd2", "coefficient": NOTHING}}
+    output = {"rows": 20, "particles": 1, "restarts": 20, "energy": True, "loads": True}
+    return data | {"contact": nothing | rolling | data.get("contact", {}), "output": output, "numerics": COARSE}
+
+
+def loop_seconds(folder: Path, name: str) -> float:
+    """Seconds per step in LIGGGHTS's loops."""
+    command = [str(paths.launcher()), "-in", name, "-log", "none"]
+    done = subprocess.run(command, cwd=folder, capture_output=True, check=True)
+    loops = re.findall(r"Loop time of (\S+) on \d+ procs for (\d+) steps", done.stdout.decode(errors="replace"))
+    return sum(float(t) for t, _ in loops) / max(1, sum(int(n) for _, n in loops))
+
+
+def lines(folder: Path) -> int:
+    """Lines of the deck that do something."""
+    text = (folder / "in.scene").read_text() + (folder / "setup.in").read_text()
+    return sum(1 for line in text.splitlines() if line.strip() and not line.startswith("#"))
+
+
+def measure(path: Path, repeats: int, scratch: Path) -> dict:
+    """The numbers of one scene."""
+    found: dict = {"name": path.stem}
+    folders = {}
+    for name, make in (("lean", lean), ("full", full)):
+        case = scenes.parse(make(read_toml(path)), path)
+        folders[name] = folder = scratch / f"{path.stem}_{name}"
+        deck.write(case, folder)
+        found[f"{name}_lines"], found[f"{name}_bytes"] = lines(folder), 8 * deck.deck(case).memory
+        loop_seconds(folder, "in.scene")
+        steps = sorted(int(p.name.split(".")[1]) for p in folder.glob("restart.*.bin"))
+        last = [s for s in steps if s < deck.deck(case).steps][-1]
+        deck.write_resume(case, folder, f"restart.{last}.bin", last)
+    times: dict[str, list[float]] = {name: [] for name in folders}
+    for _ in range(repeats):
+        for name, folder in folders.items():
+            times[name].append(loop_seconds(folder, "in.resume"))
+    return found | {f"{name}_seconds": min(values) for name, values in times.items()}
+
+
+HEAD = """# What a scene does not need, and what it would cost
+
+Made by `.venv/bin/python bench/lean.py`. *Full* is the same scene with every sub-model on (friction, tangential dashpot,
+rolling friction, cohesion, plastic-work ledger, wall loads) at coefficients of 1e-9 where the case has none; *lean* is
+what the case's physics asks for. Time of the last 5 % of each scene, one rank, the shortest of several runs in turns.
+
+| scene | deck lines full | lean | history bytes per contact full | lean | us per step full | lean | ratio |
+|---|---|---|---|---|---|---|---|
+"""
+TAIL = """
+`epdem explain CASE` says of each line of a deck why it is in it; `tests/scenes/test_lean.py` removes each line of every
+case's deck in turn and runs it again.
+"""
+
+
+def page(rows: list[dict]) -> str:
+    """The page of the documentation."""
+    body = []
+    for r in rows:
+        a, b = r["full_seconds"] * 1e6, r["lean_seconds"] * 1e6
+        cells = (r["name"], r["full_lines"], r["lean_lines"], r["full_bytes"], r["lean_bytes"], f"{a:.4g}", f"{b:.4g}")
+        body.append("| " + " | ".join(map(str, cells)) + f" | {a / b:.2f} |\n")
+    return HEAD + "".join(body) + TAIL
+
+
+def main() -> None:
+    """Measure every scene in cases/ and write the page."""
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--out", type=Path, default=ROOT / "docs/lean.md")
+    parser.add_argument("--repeats", type=int, default=5)
+    options = parser.parse_args()
+    scratch = Path(tempfile.mkdtemp(prefix="epdem_lean_"))
+    try:
+        rows = [measure(p, options.repeats, scratch) for p in sorted((ROOT / "cases").glob("*.toml"))
+                if scenes.is_scene(read_toml(p))]  # fmt: skip
+    finally:
+        shutil.rmtree(scratch, ignore_errors=True)
+    options.out.write_text(page(rows))
+    print(options.out.read_text())
+
+
+if __name__ == "__main__":
+    main()
