@@ -15,7 +15,7 @@ from test_lean import CASES, small
 
 from epdem.case import read_toml
 from epdem.errors import CaseError
-from epdem.scene import deck, progress, results, tables
+from epdem.scene import deck, progress, results, resume, tables
 from epdem.scene.case import is_scene, parse
 from epdem.scene.run import last_restart, run
 
@@ -44,7 +44,7 @@ def test_a_continued_run_ends_bitwise_where_the_uninterrupted_one_does(path, tmp
     for step in (steps[2], steps[6]):
         for frame in tmp_path.glob("particles.*.bin"):
             frame.unlink()
-        deck.write_resume(case, tmp_path, f"restart.{step}.bin", step)
+        resume.write_resume(case, tmp_path, f"restart.{step}.bin", step)
         progress.run("in.resume", tmp_path)
         continued = last_frame(case, tmp_path)
         assert continued.shape == whole.shape

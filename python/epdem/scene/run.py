@@ -13,7 +13,8 @@ from .. import __version__, paths
 from ..errors import CaseError, EngineError
 from . import progress, results, tables
 from .case import SceneCase, load
-from .deck import Deck, deck, write, write_resume
+from .deck import Deck, deck, write
+from .resume import write_resume
 
 Tell = Callable[[int, int], None]  # (step, of so many)
 

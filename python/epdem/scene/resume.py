@@ -1,0 +1,20 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""The deck that continues a scene from a restart file."""
+
+from dataclasses import replace
+from pathlib import Path
+
+from .. import deck as decks
+from .case import SceneCase
+from .deck import deck
+
+
+def write_resume(case: SceneCase, folder: Path, restart: str, step: int) -> Path:
+    """in.resume, which continues from the restart file `restart` written at `step`."""
+    d = deck(case)
+    phase = next((i for i, p in enumerate(d.phases) if step < p.end), len(d.phases))
+    path = folder / "in.resume"
+    path.write_text(
+        decks.render("liggghts/scene_resume.in.j2", deck=replace(d, from_restart=restart, resumed_phase=phase))
+    )
+    return path
