@@ -68,10 +68,13 @@ class Contact:
 
 
 def yield_overlap(name: str, E_star: float, R_star: float, strength: float) -> float:
-    """End of the elastic branch [m], from the laws' definitions (not from the code)."""
+    """End of the elastic branch [m], from the laws' definitions, not from the code; a new law's theory is believed."""
     pressure = {"thornton": strength, "johnson": 3 * strength, "cavity": 1.6 * strength}.get(name)
-    if pressure is None:
+    if name == "hertz":
         return 1e-3 * R_star
+    if pressure is None:
+        (keyword,) = backbones.LAWS[name].keywords.values()
+        return backbones.LAWS[name](E_star=E_star, R_star=R_star, **{keyword: strength}).yield_overlap
     return R_star * (math.pi * pressure / (2 * E_star)) ** 2
 
 
