@@ -95,9 +95,13 @@ def document(outcome: Outcome, bulk: pd.DataFrame | None, command: str) -> str:
 
     text = f"""# Error against run time
 
-Written by `{command}` (case `{outcome.case.name}`, {outcome.seconds:.0f} s). Errors are those of the worst speed and
-phase of the case; times are medians of interleaved runs that record nothing, stepping alone (the engine's own loop
-time). Absolute times belong to one machine; the ratio to LIGGGHTS's own elastic `hertz` (`{YARDSTICK}`) in the same run
+Written by
+
+    {command}
+
+(case `{outcome.case.name}`, {outcome.seconds:.0f} s). Errors are those of the worst speed and phase of the case; times are medians of interleaved
+runs that record nothing, stepping alone (the engine's own loop time). Absolute times belong to one machine and what
+else it did; the ratio to LIGGGHTS's own elastic `hertz` (`{YARDSTICK}`) in the same run
 is the figure of merit (median and half the distance of the quartiles, from 300 steps in contact on).
 
 {markdown(cheapest_table(outcome.contenders))}
