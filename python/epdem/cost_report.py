@@ -99,7 +99,8 @@ Written by
 
     {command}
 
-(case `{outcome.case.name}`, {outcome.seconds:.0f} s). Errors are those of the worst speed and phase of the case; times are medians of interleaved
+(case `{outcome.case.name}`, {outcome.seconds:.0f} s). Errors are those of
+the worst speed and phase of the case; times are medians of interleaved
 runs that record nothing, stepping alone (the engine's own loop time). Absolute times belong to one machine and what
 else it did; the ratio to LIGGGHTS's own elastic `hertz` (`{YARDSTICK}`) in the same run
 is the figure of merit (median and half the distance of the quartiles, from 300 steps in contact on).

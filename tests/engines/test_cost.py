@@ -48,7 +48,7 @@ def test_table_figure_and_data_are_written_and_the_page_names_its_command(embedd
     bulk = pd.DataFrame({"spheres": [512], "share of the limit": [0.1], "seconds": [0.01], "error": [1e-4]})
     assert "512 steel spheres" in cost_report.document(embedded, bulk, "epdem cost CASE")
     text = cost_report.document(embedded, None, "epdem cost CASE")
-    assert "`epdem cost CASE`" in text and "embedded, cavity" in text
+    assert "\n    epdem cost CASE\n" in text and "embedded, cavity" in text
     assert json.dumps(embedded.contenders.to_dict("list"))
 
 
