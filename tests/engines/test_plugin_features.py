@@ -176,3 +176,13 @@ def test_newton_on_is_refused_by_liggghts_itself(tmp_path):
     text = deck("thornton", wall="primitive").replace("newton off", "newton on")
     result = run(tmp_path, text, files={"box.data": spheres().data(BOX)})
     assert result.code == 1 and "newton" in result.error
+
+
+@pytest.mark.parametrize("law", YIELDING)
+def test_an_evaluation_that_is_not_kept_leaves_no_trace(tmp_path, law):
+    """Must 6: `run 0` at a deeper overlap evaluates every contact, and must not dent it."""
+    end = "run 400\ndump d all custom 1 out.bin id vx vy vz\nrun 0\n"
+    detour = "displace_atoms all move 0 0 -2e-5 units box\nrun 0\ndisplace_atoms all move 0 0 2e-5 units box\n"
+    plain = start(tmp_path / "plain", deck(law, wall="primitive", steps=40) + end).last
+    other = start(tmp_path / "detour", deck(law, wall="primitive", steps=40) + detour + end).last
+    assert np.allclose(other, plain, rtol=1e-9, atol=1e-9)
