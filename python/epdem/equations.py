@@ -54,9 +54,15 @@ def entries() -> list[tuple[str, str, str, str, str]]:
 
 def page() -> str:
     """The page in Markdown."""
-    lines = ["# Equations", "", "Numbers are those of the chapter \"Interaction of Elastic-Plastic Particles\"; functions live in",
-             "`epdem.theory`. Made by `python -m epdem.equations > docs/equations.md`.", "",
-             "| eq. | statement | function | C++ | tests |", "|---|---|---|---|---|"]  # fmt: skip
+    lines = [
+        "# Equations",
+        "",
+        'Numbers are those of the chapter "Interaction of Elastic-Plastic Particles"; functions live in `epdem.theory`.',
+        "Made by `python -m epdem.equations > docs/equations.md`.",
+        "",
+        "| eq. | statement | function | C++ | tests |",
+        "|---|---|---|---|---|",
+    ]
     for number, statement, function, cpp, tests in entries():
         text = statement.replace("|", "\\|")
         lines.append(f"| {number} | {text} | `{function}` | {cpp or '-'} | {tests or '-'} |")

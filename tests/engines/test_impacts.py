@@ -135,9 +135,9 @@ def test_run_json_prints_one_document_with_the_promised_keys(tmp_path):
     assert done.returncode == 0, done.stderr
     document = json.loads(done.stdout)
     assert {"case", "passed", "seconds", "rows"} <= document.keys() and len(document["rows"]) == 32
-    keys = {"engine", "law", "speed", "e_n", "e_n_theory", "e_n_error", "contact_time", "contact_time_theory", "force_max",
-            "force_max_theory", "overlap_max", "overlap_max_theory", "residual_overlap", "residual_overlap_theory",
-            "energy_residual", "steps_in_contact"}  # fmt: skip
+    keys = {"engine", "law", "speed", "energy_residual", "steps_in_contact"}
+    for quantity in ("e_n", "contact_time", "force_max", "overlap_max", "residual_overlap"):
+        keys |= {quantity, quantity + "_theory", quantity + "_error"}
     assert keys <= document["rows"][0].keys()
 
 

@@ -28,8 +28,8 @@ STEP, IMPACTS = "tests/battery/test_step.py", "tests/engines/test_impacts.py"
 FAULTS = [
     Fault("plastic line starts at the wrong force", f"{LAWS}/thornton.hpp", "slope_ratio * yield_ratio / 3.0",
           "slope_ratio * yield_ratio / 2.0", STEP, "continuous"),
-    Fault("unloading is too stiff", f"{LAWS}/unloading.hpp", "stiffness / (0.75 * peak.force)",
-          "stiffness / (0.70 * peak.force)", STEP, "stiffness_of_the_peak"),
+    Fault("unloading is too stiff", f"{LAWS}/unloading.hpp", "peak.radius / (0.75 * peak.force)",
+          "peak.radius / (0.70 * peak.force)", STEP, "stiffness_of_the_peak"),
     Fault("flat unloading lost its factor", f"{LAWS}/unloading.hpp", "A = 0.75 * (1.0 - tau), B = 2.0 / pi * tau;",
           "A = 0.75 * (1.0 - tau), B = 1.0 / pi * tau;", STEP, "stiffness_of_the_peak"),
     Fault("one digit of the segment function", f"{LAWS}/unloading.hpp", "0.15627588828780442", "0.15627588928780442",
@@ -40,8 +40,18 @@ FAULTS = [
           "after.delta_max = 2 * delta_max;", STEP, "largest_overlap"),
     Fault("work of the fully plastic phase", f"{LAWS}/cavity.hpp", "pi * R_star * c_P * Y * (delta - delta_P) * (delta + delta_P)",
           "pi * R_star * c_P * Y * (delta - delta_P) * delta", STEP, "slope_of_the_work"),
-    Fault("forward Euler instead of velocity Verlet", f"{LAWS}/impact.hpp", "if (n > 0) v -= half * now.force;",
-          "if (n > 0) v -= 0 * now.force;", IMPACTS, "restitution_of_thornton and embedded"),
+    Fault("forward Euler instead of velocity Verlet", f"{LAWS}/impact.hpp", "if (n > 0) v -= half * F;",
+          "if (n > 0) v -= 0 * F;", IMPACTS, "restitution_of_thornton and embedded"),
+    Fault("the dashpot acts while the contact yields", f"{LAWS}/viscous.hpp", "> before.delta_max && now.after",
+          "> 2 * before.delta_max && now.after", "tests/engines/test_laws.py", "dashpot and embedded and thornton"),
+    Fault("the dashpot attracts", f"{LAWS}/viscous.hpp", "return force > 0.0 ? force : 0.0;",
+          "return force;", "tests/battery/test_embedded.py", "never_attracts"),
+    Fault("the dashpot grows with a instead of its root", f"{LAWS}/viscous.hpp", "std::sqrt(2.0 * law.E_star * now.radius * m_star)",
+          "2.0 * law.E_star * now.radius * std::sqrt(m_star)", "tests/battery/test_embedded.py", "that_of_the_dashpot"),
+    Fault("theory forgets that the force is cut off", f"{PYTHON}/theory/viscous.py", "np.where(v > 0, 1.0, k * q**5 + d * v)",
+          "np.where(v > 0, 1.0, q)", "tests/physics/test_viscous.py", "any_speed"),
+    Fault("theory of the dashpot forgets the elastic work", f"{PYTHON}/theory/viscous.py", "law.overlap_of_work(law.work(y) + kinetic)",
+          "law.overlap_of_work(kinetic)", "tests/physics/test_viscous.py", "plain_time"),
     Fault("(1-nu)^2 for 1-nu^2 in the plugin", f"{LAWS}/pair.hpp", "(1.0 - i.poisson_ratio * i.poisson_ratio)",
           "(1.0 - i.poisson_ratio) * (1.0 - i.poisson_ratio)", IMPACTS, "agree_with_theory and liggghts"),
     Fault("pressure of the harder body", f"{PYTHON}/experiment.py", "parameters[p.name] = min(strengths)",
@@ -59,6 +69,17 @@ FAULTS = [
     Fault("a stored result is taken whatever changed", f"{PYTHON}/run.py", '.get("inputs") == inputs', '.get("inputs")',
           "tests/decks/test_stages.py", "stored"),
 ]  # fmt: skip
+
+PLUGIN_TESTS = "tests/engines/test_plugin_invariance.py"
+FAULTS += [
+    Fault("history changes its sign with the side", f"{PLUGIN}/normal.hpp", 'offset_ = setup->add_history_value(slot[0], "0");',
+          'offset_ = setup->add_history_value(slot[0], "1");', PLUGIN_TESTS, "no_bit and thornton and not ning"),
+    Fault("a pair does not notice that it parted", f"{PLUGIN}/normal.hpp", "if (now_ - history[stamp_] > 1.0)", "if (false)",
+          PLUGIN_TESTS, "second_impact and thornton and not ning"),
+    Fault("the force on j is forgotten", f"{PLUGIN}/normal.hpp", "fj.delta_F[k] -= share * s.en[k];", "fj.delta_F[k] -= 0.0 * s.en[k];",
+          PLUGIN_TESTS, "momentum and thornton and not ning"),
+]  # fmt: skip
+
 
 
 def needs_plugin(fault: Fault) -> bool:

@@ -46,7 +46,7 @@ def test_steel_near_70_metres_a_second_loses_about_3_percent_to_waves():
 
 @pytest.mark.parametrize("law", [Thornton(E_star=E_STAR, R_star=0.01, p_y=2.8e9), Hertz(E_star=E_STAR, R_star=0.01)])
 def test_force_and_overlap_against_time_obey_the_equation_of_motion(law):
-    """m* alpha'' = -F by differences of 201 samples, (pi/200)^2/12 off where no phase changes; impulse m* v (1 + e_n)."""
+    """m* alpha'' = -F by differences of 201 samples, (pi/200)^2/12 off in a phase; impulse m* v (1 + e_n)."""
     t, alpha, force = restitution.history(law, m_star=M, speed=3.0, samples=201)
     x = restitution.impact(law, m_star=M, speed=3.0)
     h = t[1] - t[0]
@@ -104,8 +104,8 @@ def test_elastic_sliding_angle_is_maw_barber_and_fawcetts():
 
 
 def test_elastic_rebound_of_the_patch_has_maw_barber_and_fawcetts_shape():
-    """psi_2(psi_1) at nu = 0.3 (1976, figure 3): reversed most between psi_1 = 3 and 4, slightly positive near the normal,
-    and rising with slope 1 once it slides throughout, from psi_1 = 7 kappa - 1 on."""
+    """psi_2(psi_1) at nu = 0.3 (1976, figure 3): reversed most between psi_1 = 3 and 4, slightly positive near the
+    normal, and rising with slope 1 once it slides throughout, from psi_1 = 7 kappa - 1 on."""
     mu, k = 0.2, oblique.kappa(NU)
     psi = np.array([0.3, 1.0, 2.0, 3.0, 4.0, 7.0, 9.0])
     x = oblique_impact(Hertz(E_star=E_STAR, R_star=0.01), mu, psi * mu / k)

@@ -47,7 +47,8 @@ def test_pressure_at_first_yield_of_a_sliding_contact(criterion):
 
 
 @pytest.mark.parametrize(("nu", "criterion", "mu"), [(0.3, "von_mises", 0.3047), (0.3, "tresca", 0.2879),
-                                                     (0.25, "von_mises", 0.2776), (0.25, "tresca", 0.2454)])  # fmt: skip
+                                                     (0.25, "von_mises", 0.2776),
+                                                     (0.25, "tresca", 0.2454)])  # fmt: skip
 def test_first_yield_comes_to_the_surface_as_friction_grows(nu, criterion, mu):
     """The printed friction, to its 4 digits."""
     assert sliding.first_sliding_yield(mu - 1e-4, nu, criterion)[1][2] > 0.3

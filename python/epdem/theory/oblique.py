@@ -63,8 +63,8 @@ def impact(law: Backbone, *, mass, R, mu, G_star, v_n, theta, steps=2000, spring
     Cattaneo-Mindlin friction for any load history by independent springs along the contact (Jaeger 1993; the method
     of dimensionality reduction, Popov and Hess 2015): per length 4 G* tangentially, and a normal load that goes as
     a^2 - x^2 (exact for Hertz and for unloading with tau = 0; the half-ellipse is kept while the law yields). Each
-    sticks until it carries mu times its load. mass [kg], R [m], G_star [Pa], v_n [m/s] > 0, theta [rad] in [0, pi/2) of any
-    shape; `steps` in the contact (error about 1/steps^2) and `springs` over its radius.
+    sticks until it carries mu times its load. mass [kg], R [m], G_star [Pa], v_n [m/s] > 0, theta [rad] in [0, pi/2)
+    of any shape; `steps` in the contact (error about 1/steps^2) and `springs` over its radius.
     """
     from .restitution import impact as normal_impact
 

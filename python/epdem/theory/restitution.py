@@ -79,7 +79,7 @@ def _unloading_time(law: Backbone, m_star, top, work_out):
 
 
 def _given_back(y, A, B, tau):
-    """Energy given back while the circle opens to y, in F_max^2/(E* a_max): integral of f (2 A t + B) dt from 0 to y."""
+    """Energy given back while the circle opens to y, in F_max^2/(E* a_max): integral of f (2 A t + B) dt."""
     x, w = np.polynomial.legendre.leggauss(24)
     total = 0.0
     for xk, wk in zip(0.5 * (x + 1), 0.5 * w, strict=True):
@@ -118,12 +118,11 @@ def history(law: Backbone, *, m_star, speed, samples=1001):
     h = theta[1] - theta[0]
     middle = 0.5 * (theta[1:] + theta[:-1])
     # alpha = low + (top - low) sin^2 theta on each way; time grows smoothly with theta
-    forth = top * np.sin(middle) ** 2
-    there = law.force(forth)
+    there = law.force(top * np.sin(middle) ** 2)
     back = dent + (top - dent) * np.sin(middle) ** 2
     here = law.unloading_force(back, top) if dent > 0 else law.force(back)
     ways = []
-    for low, alpha, force, energy in ((0.0, forth, there, float(x.work_in)), (dent, back, here, float(x.work_out))):
+    for low, force, energy in ((0.0, there, float(x.work_in)), (dent, here, float(x.work_out))):
         piece = force * 2 * (top - low) * np.sin(middle) * np.cos(middle) * h
         left = np.append(np.cumsum(piece[::-1])[::-1], 0.0)  # work between theta and the top
         left *= energy / left[0]
