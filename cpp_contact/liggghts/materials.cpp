@@ -176,8 +176,9 @@ std::vector<double> viscous_numbers(const Reader& reader, bool viscous) {
                 "not yield");
   for (int i = 1; i <= n; ++i)
     for (int j = 1; j <= n; ++j)
-      numbers[i * (n + 1) + j] = viscous_number(reader.checked(
-          "coefficientRestitution", "1", both(i, j), e->compute_array(i - 1, j - 1), {viscous_restitution_min, 1.0, true}));
+      numbers[i * (n + 1) + j] =
+          viscous_number(reader.checked("coefficientRestitution", "1", both(i, j), e->compute_array(i - 1, j - 1),
+                                        {viscous_restitution_min, 1.0, true}));
   return numbers;
 }
 

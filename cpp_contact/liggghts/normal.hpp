@@ -63,7 +63,8 @@ class Normal : protected LAMMPS_NS::Pointers {
     if (heating_) refuse("heating_normal_hertz", "it is the heat of a viscous normal force, and this law has none");
     if (elastic_potential_)
       refuse("computeElasticPotential", "LIGGGHTS integrates nothing for it (use computePlasticWork)");
-    if (dissipated_energy_) refuse("computeDissipatedEnergy", "it would miss the plastic work (use computePlasticWork)");
+    if (dissipated_energy_)
+      refuse("computeDissipatedEnergy", "it would miss the plastic work (use computePlasticWork)");
     if (disable_when_bonded_) refuse("disableNormalWhenBonded", "bonds are not part of the public LIGGGHTS");
     if (plastic_work_ && !wall) ledger_.create(lmp);
   }
