@@ -57,7 +57,7 @@ def page() -> str:
     lines = [
         "# Equations",
         "",
-        'Numbers are those of the chapter "Interaction of Elastic-Plastic Particles"; functions live in `epdem.theory`.',
+        'Numbers as in the chapter "Interaction of Elastic-Plastic Particles"; functions are in `epdem.theory`.',
         "Made by `python -m epdem.equations > docs/equations.md`.",
         "",
         "| eq. | statement | function | C++ | tests |",

@@ -1,8 +1,11 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Waves, oblique impact, printed equations and reference times."""
 
+import mpmath as mp
 import numpy as np
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 from epdem.theory import energy, oblique, pair, printed, restitution, timestep
 from epdem.theory.backbones import Hertz, Thornton
@@ -137,7 +140,7 @@ def test_bad_input_is_named_with_its_range(call, name):
     assert name in str(caught.value)
 
 
-@pytest.mark.parametrize("scale", [(3.0, 0.5, 7.0), (1e-3, 1e6, 1e-4)])
+@given(st.tuples(*[st.floats(-6, 6).map(lambda p: 10.0**p)] * 3))
 def test_a_change_of_base_units_changes_nothing_but_the_numbers(scale):
     """Length, mass and time in other units: declared units are the ones that come out."""
     L, K, T = scale
@@ -149,3 +152,31 @@ def test_a_change_of_base_units_changes_nothing_but_the_numbers(scale):
              "work_in": force * L, "work_out": force * L, "plastic_work": force * L, "strain_ratio": 1}  # fmt: skip
     for name, unit in units.items():
         assert float(getattr(there, name)) / unit == pytest.approx(float(getattr(here, name)), rel=1e-10), name
+
+
+def test_the_energy_of_an_impact_is_split_without_a_remainder():
+    """Recovered and plastic work add up to what came in; waves are an estimate beside them, a few percent at most."""
+    law = Thornton(E_star=E_STAR, R_star=0.01, p_y=2.8e9)
+    for speed in (0.1, 5.0, 50.0):
+        split = energy.split(law, m_star=M, speed=speed, E=E, nu=NU, density=7850)
+        e_n = float(restitution.e_n(law, m_star=M, speed=speed))
+        assert split["recovered"] == pytest.approx(e_n**2, rel=1e-12)
+        assert split["recovered"] + split["plastic"] == pytest.approx(1, rel=1e-12)
+        assert 0 < split["waves"] < 0.05
+
+
+def test_effective_quantities_are_exact_for_any_poisson_ratio():
+    """30 digits over E 1 kPa to 1 TPa, nu 0 to 0.5, radii 1 um to 10 m."""
+    rng = np.random.default_rng(3)
+    for _ in range(200):
+        E1, E2 = 10 ** rng.uniform(3, 12, 2)
+        n1, n2 = rng.uniform(0, 0.5, 2)
+        R1, R2 = 10 ** rng.uniform(-6, 1, 2)
+        with mp.workdps(30):
+            a, b, c, d = map(mp.mpf, (E1, n1, E2, n2))
+            e_star = 1 / ((1 - b**2) / a + (1 - d**2) / c)
+            g_star = 1 / (2 * (2 - b) * (1 + b) / a + 2 * (2 - d) * (1 + d) / c)
+            r_star = 1 / (1 / mp.mpf(R1) + 1 / mp.mpf(R2))
+        assert pair.E_star(E1, n1, E2, n2) == pytest.approx(float(e_star), rel=1e-14)
+        assert pair.G_star(E1, n1, E2, n2) == pytest.approx(float(g_star), rel=1e-14)
+        assert pair.R_star(R1, R2) == pytest.approx(float(r_star), rel=1e-14)

@@ -105,3 +105,19 @@ def plastic_wave_fraction(p_d, *, E, nu, e_n=None):
     p_d, E = number("p_d", p_d), number("E", E)
     loading = np.pi / 2 * (2 * np.pi) ** 1.5 / np.sqrt(4 * np.pi / 3) * wave_constant(nu) * (p_d / E) ** 1.5
     return loading if e_n is None else loading * (1 + 0.811 / number("e_n", e_n, high=1.0))
+
+
+def split(law, *, m_star, speed, E, nu, density) -> dict[str, float]:
+    """Shares of the kinetic energy of one impact: "recovered" (e_n^2), "plastic" (the rest), and "waves".
+
+    The law's work is split between the first two without a remainder; waves radiated into a half-space of E [Pa], nu
+    and density [kg/m^3] by the law's force history are an estimate beside them (W_in = recovered + plastic + waves
+    holds for the real impact, where they come out of the recovered part). Scalars only.
+    """
+    from .restitution import history, impact
+
+    x = impact(law, m_star=m_star, speed=speed)
+    time, _, force = history(law, m_star=m_star, speed=speed, samples=2001)
+    waves = radiated(force, time, E=E, nu=nu, density=density) / float(x.work_in)
+    recovered = float(x.work_out / x.work_in)
+    return {"recovered": recovered, "plastic": 1 - recovered, "waves": waves}

@@ -17,6 +17,11 @@ def hertz_peak(*, E_star, R_star, a):
     return 2 * number("E_star", E_star) * number("a", a) / (np.pi * number("R_star", R_star))
 
 
+def hertz_force(*, p_0, a):
+    """Integral of Hertz's pressure over the circle [N]: 2/3 pi a^2 p_0; the mean pressure is 2/3 p_0."""
+    return 2 / 3 * np.pi * number("a", a) ** 2 * number("p_0", p_0)
+
+
 def truncated(r, *, p_0, a, p_y):
     """Thornton's flattened profile while loading: min(Hertz, p_y) with the Hertzian a (figure 8.15; Thornton 1997)."""
     return np.minimum(hertz(r, p_0=p_0, a=a), number("p_y", p_y))
