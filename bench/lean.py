@@ -18,7 +18,7 @@ from pathlib import Path
 from epdem import paths
 from epdem.case import read_toml
 from epdem.scene import case as scenes
-from epdem.scene import deck
+from epdem.scene import deck, resume
 
 ROOT = Path(__file__).parents[1]
 NOTHING = 1e-9
@@ -64,7 +64,7 @@ def measure(path: Path, repeats: int, scratch: Path) -> dict:
         loop_seconds(folder, "in.scene")
         steps = sorted(int(p.name.split(".")[1]) for p in folder.glob("restart.*.bin"))
         last = [s for s in steps if s < deck.deck(case).steps][-1]
-        deck.write_resume(case, folder, f"restart.{last}.bin", last)
+        resume.write_resume(case, folder, f"restart.{last}.bin", last)
     times: dict[str, list[float]] = {name: [] for name in folders}
     for _ in range(repeats):
         for name, folder in folders.items():
@@ -74,8 +74,8 @@ def measure(path: Path, repeats: int, scratch: Path) -> dict:
 
 HEAD = """# What a scene does not need, and what it would cost
 
-Made by `.venv/bin/python bench/lean.py`. *Full* is the same scene with every sub-model on (friction, tangential dashpot,
-rolling friction, cohesion, plastic-work ledger, wall loads) at coefficients of 1e-9 where the case has none; *lean* is
+Made by `.venv/bin/python bench/lean.py`. *Full* is the same scene with every sub-model on (friction, dashpot, rolling
+friction, cohesion, plastic-work ledger, wall loads) at coefficients of 1e-9 where the case has none; *lean* is
 what the case's physics asks for. Time of the last 5 % of each scene, one rank, the shortest of several runs in turns.
 
 | scene | deck lines full | lean | history bytes per contact full | lean | us per step full | lean | ratio |

@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from ..engines.base import EPS, not_representable
-from ..errors import EpdemError
+from ..errors import EngineError, EpdemError
 from ..experiment import Experiment, experiment
 from ..predict import SMALL_DEFORMATION, predict
 from ..timestep import stability_limit
@@ -96,13 +96,16 @@ def phased(s: Setting, dt: float, phases: int) -> list[tuple[float, np.ndarray]]
 
 @dataclass(frozen=True)
 class Rung:
-    """One share of the limit: largest error of e_n and largest energy created (inf: a contact did not end)."""
+    """One share of the limit: largest error of e_n and largest energy created; inf: a contact did not end, or the
+    engine died (`words`: its last ones), as it may when a sphere is thrown out of the box.
+    """
 
     share: float
     error: float
     created: float
     steps: int
-    finite: bool
+    finite: bool = True
+    words: str = ""
 
 
 def measure(s: Setting, sampler: Sampler, share: float, phases: int | None = None) -> Rung | None:
@@ -115,7 +118,10 @@ def measure(s: Setting, sampler: Sampler, share: float, phases: int | None = Non
     steps = int(1.5 * s.contact_time / dt) + 20
     if steps > sampler.most_steps:
         return None
-    got = [sampler(s.x, h, gap, int(steps * dt / h)) for h, gap in phased(s, dt, phases or sampler.phases)]
+    try:
+        got = [sampler(s.x, h, gap, int(steps * dt / h)) for h, gap in phased(s, dt, phases or sampler.phases)]
+    except EngineError as error:
+        return Rung(share, np.inf, np.inf, 0, words=str(error))
     e_n, peak = (np.concatenate([getattr(g, name) for g in got]) for name in ("e_n", "overlap_max"))
     theory, kinetic = s.x.theory(), 0.5 * s.x.m_star * float(s.x.speed[0]) ** 2
     with np.errstate(all="ignore"):
@@ -187,6 +193,10 @@ def _ladder(v: Verdict, s: Setting, sampler: Sampler, coarse) -> None:
     rungs = [rung for share in coarse if (rung := measure(s, sampler, share))]
     v.useless_at = min((r.share for r in rungs if not r.error <= WRONG), default=np.nan)
     v.breaks_at = min((r.share for r in rungs if not r.created <= BROKEN), default=np.nan)
+    for rung in fine:
+        if rung.words:
+            v.fail(f"at {rung.share:g} of the limit: {rung.words}")
+    v.notes += [f"at {r.share:g} of the limit: {r.words}" for r in rungs if r.words]
     everything = [*fine, *rungs, *filter(None, [finest])]
     v.steps = sum(r.steps for r in everything)
     if wild := [r.share for r in everything if not r.finite]:
