@@ -92,7 +92,7 @@ velocity knows of; over N steps in contact that leaves, as the largest of ten ph
     error of e_n = {formula}
 
 An engine with positions says 'not representable' and does not run where alpha_max < 1e4 eps max(R) (at 200 steps the
-floor would be above 1e-3) or alpha_max > min(R)/2 (the centres come so near that detection and normal lose their
+floor comes to 7e-4) or alpha_max > min(R)/2 (the centres come so near that detection and normal lose their
 sense). Measured deviations of e_n from the same impacts in long double; `double`: the embedded engine, whose unknown is
 the overlap itself; `positions`: the same integration on the sphere's position:
 
