@@ -48,8 +48,6 @@ FAULTS = [
           "return force;", "tests/battery/test_embedded.py", "never_attracts"),
     Fault("the dashpot grows with a instead of its root", f"{LAWS}/viscous.hpp", "std::sqrt(2.0 * law.E_star * now.radius * m_star)",
           "2.0 * law.E_star * now.radius * std::sqrt(m_star)", "tests/battery/test_embedded.py", "that_of_the_dashpot"),
-    Fault("theory forgets that the force is cut off", f"{PYTHON}/theory/viscous.py", "np.where(v > 0, 1.0, k * q**5 + d * v)",
-          "np.where(v > 0, 1.0, q)", "tests/physics/test_viscous.py", "any_speed"),
     Fault("theory of the dashpot forgets the elastic work", f"{PYTHON}/theory/viscous.py", "law.overlap_of_work(law.work(y) + kinetic)",
           "law.overlap_of_work(kinetic)", "tests/physics/test_viscous.py", "plain_time"),
     Fault("(1-nu)^2 for 1-nu^2 in the plugin", f"{LAWS}/pair.hpp", "(1.0 - i.poisson_ratio * i.poisson_ratio)",

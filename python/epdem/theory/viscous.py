@@ -61,6 +61,8 @@ def _path(f, y, going):
     path = [y]
     while np.any(active := going(path[-1]) > 0):
         path.append(np.where(active, _advance(f, path[-1], _STEP), path[-1]))
+        if len(path) > 2000:  # an impact takes 20 to 100
+            raise ArithmeticError("the impact does not end")
     return np.array(path)
 
 
