@@ -11,6 +11,7 @@ from typing import Annotated
 
 import typer
 from rich.console import Console
+from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
 
 from . import cli_crosscheck, cli_numerics, cli_scene, cli_theory
 from .cli_options import AsJson, CasePath, Engines, Laws, Out, console
@@ -46,11 +47,14 @@ def run(
     from . import report
     from .run import run as run_case
 
-    status = Console(stderr=True)
-    with status.status("") as line:
-        outcome = run_case(case, engines=engine or ["liggghts"], laws=law or [], out=out, ranks=ranks, steps=steps,
-                           fresh=fresh, progress=line.update)  # fmt: skip
-        line.update("figure")
+    engines = engine or ["liggghts"]
+    stages = len(set(engines)) * max(len(set(law or [])), 1) + 1  # and the figure
+    with Progress(TextColumn("{task.description}"), BarColumn(), TimeElapsedColumn(), console=Console(stderr=True),
+                  transient=True, disable=not sys.stderr.isatty()) as bar:  # fmt: skip
+        task = bar.add_task("", total=stages)
+        outcome = run_case(case, engines=engines, laws=law or [], out=out, ranks=ranks, steps=steps, fresh=fresh,
+                           progress=lambda text: bar.update(task, advance=1, description=text))  # fmt: skip
+        bar.update(task, advance=1, description="figure")
         report.figure(outcome)
     if as_json:
         print(report.run_json(outcome))
