@@ -160,6 +160,29 @@ def test_contact_time_is_the_time_integral_of_the_motion(name, speed):
     assert float(found.contact_time) == pytest.approx(float(total), rel=1e-9)
 
 
+@pytest.mark.parametrize(("name", "mark"), [("thornton", 0), ("johnson", 0), ("cavity", 0), ("cavity", 1)])
+@pytest.mark.parametrize("beyond", [1e-6, 3e-4])
+def test_loading_time_keeps_its_digits_where_the_law_has_just_changed_its_formula(name, mark, beyond):
+    """The kink of the force lies next to the turning point. 1e-10: what is asked of contact times."""
+    strength = {"thornton": 2.8e9, "johnson": 3e9, "cavity": 1e9}[name]
+    law = steel(name)
+    top = float(law.marks()[mark]) * (1 + beyond)
+    found = restitution.impact(law, m_star=M, speed=np.sqrt(2 * law.work(top) / M))
+    back = restitution._unloading_time(law, M, np.asarray(found.overlap_max), np.asarray(found.work_out))
+    with mp.workdps(22):
+        exact, top = Exact(name, *STEEL.values(), strength), mp.mpf(float(found.overlap_max))
+        kinks = [top - k for k in exact.marks if k < top]  # as widths below the top
+
+        def rate(u):  # alpha = top - u^2; the work is summed from the top down, so that nothing cancels
+            width = max(u * u, mp.mpf(10) ** -18 * top)
+            parts = [0, *sorted(k for k in kinks if k < width), width]
+            energy = mp.quad(lambda q: exact.point(max(top - q, mp.mpf(0)))[0], parts, maxdegree=4)
+            return 2 * mp.sqrt(width * M / (2 * energy))
+
+        total = mp.quad(rate, [0, *sorted(mp.sqrt(k) for k in kinks), mp.sqrt(top)], maxdegree=5)
+    assert float(found.contact_time - back) == pytest.approx(float(total), rel=1e-10)
+
+
 def test_elastic_contact_time_is_hertz_classical_constant():
     """t_c = 2.9432751843 alpha_max/v = 2.868265 (m*^2/(R* E*^2 v))^(1/5)."""
     speed = np.geomspace(1e-6, 1e3, 50)

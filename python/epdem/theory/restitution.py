@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""A normal impact of any law: restitution, times, peaks; and the chapter's printed equations 8.83-8.89."""
+"""A normal impact of any law: restitution, times, peaks, and the motion (section 8.2.3)."""
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -10,6 +11,7 @@ from .checks import number
 
 _X, _W = np.polynomial.legendre.leggauss(48)
 _X, _W = 0.5 * (_X + 1), 0.5 * _W  # on [0, 1]
+_SHORT = np.polynomial.legendre.leggauss(8)
 UNLOADING_TIME = 1.4716375921623947  # (2/5) B(2/5, 1/2): t_unload e_n v/delta_e for tau = 0
 
 
@@ -39,30 +41,41 @@ def e_n(law: Backbone, *, m_star, speed):
     return np.where(top <= law.yield_overlap, 1.0, np.sqrt(law.recovered_work(top) / W))
 
 
-def _nodes(shape):
-    """Quadrature nodes on [0, 1] along a new first axis, so that a law's own parameters still broadcast."""
-    return _X.reshape(-1, *[1] * len(shape))
-
-
-def _loading_time(law: Backbone, m_star, W, top):
-    """Integral of d alpha/sqrt(2 (W(top) - W(alpha))/m*): alpha = top sin^2 theta takes both end singularities."""
-    marks = [np.arcsin(np.sqrt(np.clip(m / top, 0, 1))) for m in law.marks()]
-    edges = [np.zeros_like(top), *marks, np.full_like(top, np.pi / 2)]
-    x, total = _nodes(top.shape), np.zeros_like(top)
-    for left, right in zip(edges[:-1], edges[1:], strict=True):
-        theta = left + (right - left) * x
-        alpha = top * np.sin(theta) ** 2
-        # W(top) - W(alpha) as an integral where it is a small difference: F between them by 8-point Gauss
-        width = top * np.cos(theta) ** 2
-        rest = np.where(width < 1e-3 * top, _work_between(law, alpha, width), W - law.work(alpha))
-        rate = 2 * top * np.sin(theta) * np.cos(theta) / np.sqrt(2 * rest / m_star)
-        total = total + (right - left) * np.tensordot(_W, rate, 1)
+def _integral(rate, shape):
+    """Integral over x in [0, 1] of rate(x), arrays of `shape`; nodes in blocks, so that a million impacts fit."""
+    total, block = 0.0, max(1, 200_000 // max(1, math.prod(shape)))
+    for k in range(0, len(_X), block):  # along a new first axis, so that a law's own parameters still broadcast
+        x, w = _X[k : k + block], _W[k : k + block]
+        total = total + np.tensordot(w, rate(x.reshape(-1, *[1] * len(shape))), 1)
     return total
 
 
-def _work_between(law: Backbone, alpha, width):
-    x, w = np.polynomial.legendre.leggauss(8)
-    return width * sum(0.5 * wk * law.force(alpha + width * 0.5 * (xk + 1)) for xk, wk in zip(x, w, strict=True))
+def _work_between(law: Backbone, low, high, width):
+    """W(high) - W(low) within one formula of the law; width = high - low. By Gauss where a difference would cancel."""
+    x, w = _SHORT
+    near = width * sum(0.5 * wk * law.force(high - width * 0.5 * (xk + 1)) for xk, wk in zip(x, w, strict=True))
+    return np.where(width < 1e-3 * high, near, law.work(high) - law.work(low))
+
+
+def _loading_time(law: Backbone, m_star, top):
+    """Integral of d alpha/sqrt(2 (W(top) - W(alpha))/m*): alpha = top sin^2 theta takes both end singularities.
+
+    Split where the law changes its formula: no piece of the work is integrated across a kink.
+    """
+    edges = [np.zeros_like(top), *(np.minimum(mark, top) for mark in law.marks()), top]
+    total, above = np.zeros_like(top), np.zeros_like(top)  # above: work from the upper edge of the piece to the top
+    for low, high in reversed(list(zip(edges[:-1], edges[1:], strict=True))):
+        left, right = (np.arcsin(np.sqrt(edge / top)) for edge in (low, high))
+
+        def rate(x, high=high, above=above, left=left, right=right):
+            theta, rest = left + (right - left) * x, (right - left) * (1 - x)
+            alpha, width = top * np.sin(theta) ** 2, top * np.sin(rest) * np.sin(right + theta)
+            speed = np.sqrt(2 * (above + _work_between(law, alpha, high, width)) / m_star)
+            return np.divide(2 * top * np.sin(theta) * np.cos(theta), speed, out=np.zeros_like(alpha), where=speed > 0)
+
+        total = total + (right - left) * _integral(rate, top.shape)
+        above = above + _work_between(law, low, high, high - low)
+    return total
 
 
 def _unloading_time(law: Backbone, m_star, top, work_out):
@@ -71,10 +84,13 @@ def _unloading_time(law: Backbone, m_star, top, work_out):
     tau = np.asarray(law.flatness(top), float)
     if not np.any(tau > 0):
         return closed
-    A, B, x = 0.75 * (1 - tau), 2 / np.pi * tau, _nodes(top.shape)
-    y = x * x  # speed rises from 0 like sqrt y
-    rate = (2 * A * y + B) * 2 * x / np.sqrt(_given_back(y, A, B, tau))
-    flat = np.sqrt(m_star / (2 * law.E_star * law.radius(top))) * np.tensordot(_W, rate, 1)
+    A, B = 0.75 * (1 - tau), 2 / np.pi * tau
+
+    def rate(x):
+        y = x * x  # speed rises from 0 like sqrt y
+        return (2 * A * y + B) * 2 * x / np.sqrt(_given_back(y, A, B, tau))
+
+    flat = np.sqrt(m_star / (2 * law.E_star * law.radius(top))) * _integral(rate, top.shape)
     return np.where(tau > 0, flat, closed)
 
 
@@ -96,7 +112,7 @@ def impact(law: Backbone, *, m_star, speed) -> Impact:
     top = np.asarray(law.overlap_of_work(W), float)
     elastic = top <= law.yield_overlap
     out = np.where(elastic, W, law.recovered_work(top))
-    time = _loading_time(law, m, W, top)
+    time = _loading_time(law, m, top)
     back = np.where(elastic, time, _unloading_time(law, m, top, out))
     radius = law.radius(top)
     return Impact(
