@@ -99,8 +99,8 @@ class Deck:
     spins: bool
     remembers: bool
     yields: bool
-    memory: int
-    wall_memory: int
+    memory_column: int
+    wall_memory_column: int
     loses: bool
     motion: dict[str, float]
     from_restart: str | None = None
@@ -260,8 +260,8 @@ def deck(case: SceneCase) -> Deck:
         energy=out.energy,
         loads=out.loads,
         yields=m.yields,
-        memory=memory(m),
-        wall_memory=memory(m, wall=True),
+        memory_column=4 + memory(m),
+        wall_memory_column=4 + memory(m, wall=True),
         remembers=m.yields or m.tangential != "off" or m.rolling is not None,
         spins=m.tangential != "off" or m.rolling is not None,
         loses=layout.loses,
