@@ -11,9 +11,11 @@ from pathlib import Path
 
 from .. import __version__, paths
 from ..errors import CaseError, EngineError
+from ..predict import predict
 from . import progress, results, tables
 from .case import SceneCase, load
 from .deck import Deck, deck, write
+from .model import highest_speed, wall_impact
 from .resume import write_resume
 
 Tell = Callable[[int, int], None]  # (step, of so many)
@@ -119,7 +121,7 @@ def run(
     if not fresh and stored.exists():
         old = _old(stored)
         if old is not None and old.attributes.get("inputs") == _inputs(_texts(case), ranks):
-            return SceneOutcome(case, d, folder, old, 0.0, reused=True)
+            return SceneOutcome(case, d, folder, old, 0.0, reused=True, warnings=_warnings(case))
     if progress.paths.launcher() is None:
         raise EngineError("LIGGGHTS with our models was not found; run 'make setup'")
     folder.mkdir(parents=True, exist_ok=True)
@@ -175,4 +177,14 @@ def _finish(path, case, d, folder, ranks, start, resumed) -> SceneOutcome:
     found.decks = {f.name: f.read_text() for f in sorted(folder.glob("*.in")) + sorted(folder.glob("in.*"))}
     found.attributes["seconds"] = time.perf_counter() - start
     results.write(folder / "results.h5", found)
-    return SceneOutcome(case, d, folder, found, found.attributes["seconds"], resumed_from=resumed)
+    return SceneOutcome(
+        case, d, folder, found, found.attributes["seconds"], resumed_from=resumed, warnings=_warnings(case)
+    )
+
+
+def _warnings(case: SceneCase) -> list[str]:
+    """Where the scene leaves the domain of theory, in words: impacts on the walls at its highest speed."""
+    first = case.scene.particles[0]
+    return predict(
+        wall_impact(case, first.material, first.radii()[0], case.scene.walls, highest_speed(case))
+    ).warnings()
