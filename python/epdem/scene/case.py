@@ -81,7 +81,7 @@ class Contact(Frozen):
 
     friction: quantity("1", ge=0.0) = 0.0
     wall_friction: quantity("1", ge=0.0) | None = None
-    pairs: tuple[Between, ...] = ()
+    pairs: Annotated[list[Between], Field(default_factory=list)]
     tangential_restitution: Share | None = None  # of the dashpot beside the tangential spring
     rolling: Rolling | None = None
     cohesion: quantity("J/m^3", above=0.0) | None = None  # energy density (sjkr)
@@ -198,7 +198,7 @@ class Peening(Common):
     side: Length  # of the square that the stream hits
     speed: Speed
     rate: quantity("Hz", above=0.0)  # spheres per second
-    bed: tuple[Particles, ...] = ()
+    bed: Annotated[list[Particles], Field(default_factory=list)]
     bed_count: Annotated[int, Field(ge=0, le=10_000_000)] = 0
     bed_fill: Time | None = None
 

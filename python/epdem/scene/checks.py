@@ -117,6 +117,7 @@ def checks(case: SceneCase, d: Deck, tables: dict[str, pd.DataFrame]) -> pd.Data
     """One row per check: value, expected, relative error, tolerance, passed."""
     found = _kept(case, d, tables)
     smooth = case.contact.wall_friction == 0.0 or (case.contact.friction == 0.0 and case.contact.wall_friction is None)
+    smooth = smooth and not any("wall" in p.between for p in case.contact.pairs) and not case.contact.cohesion
     if case.scene.kind == "settle" and "floor_load" in tables["rows"] and "particles" in tables and smooth:
         load, weight = floor_load(case, tables)
         found.append(_row("floor load / weight (smooth walls: hydrostatic)", load, weight, 0.02))

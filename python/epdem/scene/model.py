@@ -46,6 +46,7 @@ class Model:
     """What the contact model of a scene consists of."""
 
     law: str
+    walls: str
     types: tuple[Type, ...]
     rows: tuple[Row, ...]
     tangential: str
@@ -59,7 +60,7 @@ class Model:
 
     @property
     def wall_type(self) -> int:
-        return len(self.types) if self.types[-1].name == WALL else self.type_of(self.types[-1].name)
+        return self.type_of(WALL if self.types[-1].name == WALL else self.walls)
 
     @property
     def yields(self) -> bool:
@@ -115,7 +116,8 @@ def _ratios(case: SceneCase) -> dict[str, float]:
 
 
 def _materials_used(case: SceneCase) -> list[str]:
-    parts = [*case.scene.particles, *getattr(case.scene, "bed", [])]
+    # a bed comes first: while it alone is there, LIGGGHTS wants its types to begin at 1
+    parts = [*getattr(case.scene, "bed", []), *case.scene.particles]
     return list(dict.fromkeys(p.material for p in parts))
 
 
@@ -129,8 +131,6 @@ def model(case: SceneCase) -> Model:
     own_friction = contact.wall_friction is not None and contact.wall_friction != contact.friction
     if case.scene.walls not in used or own_friction or pairs_with_wall:
         types.append(Type(WALL, case.scene.walls, strong[case.scene.walls]))
-    elif types[-1].name != case.scene.walls:  # the walls' type is the last one
-        types.sort(key=lambda t: t.name == case.scene.walls)
     n, ratios = len(types), _ratios(case)
     m = [case.materials[t.material] for t in types]
     for t, x in zip(types, m, strict=True):
@@ -171,6 +171,7 @@ def model(case: SceneCase) -> Model:
         rows.append(Row("cohesionEnergyDensity", "peratomtypepair", density, "J/m^3"))
     return Model(
         case.law.name,
+        case.scene.walls,
         tuple(types),
         tuple(rows),
         "history" if sliding else "off",

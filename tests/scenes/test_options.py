@@ -1,0 +1,68 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Options that no case in cases/ uses: they run, and their lines are in the deck only then."""
+
+from pathlib import Path
+
+import pytest
+
+from epdem.case import read_toml
+from epdem.errors import CaseError
+from epdem.scene import deck, explain, lean
+from epdem.scene.case import parse
+
+CASES = Path(__file__).parents[2] / "cases"
+
+
+def poured() -> dict:
+    """Sticky, rolling beads poured one after the other, with every output."""
+    data = read_toml(CASES / "settle_glass.toml")
+    scene = {"box": ["16 mm", "16 mm", "30 mm"], "count": 60, "rate": "2000 Hz", "duration": "0.08 s"}
+    contact = {"friction": 0.4, "cohesion": "1e3 J/m^3", "tangential_restitution": 0.5,
+               "pairs": [{"between": ["glass", "wall"], "friction": 0.1}],
+               "rolling": {"model": "epsd", "coefficient": 0.05, "damping": 0.3}}  # fmt: skip
+    output = {"rows": 20, "particles": 2, "vtk": 2, "pictures": 2, "restarts": 2, "energy": True, "loads": True}
+    return data | {"scene": data["scene"] | scene, "contact": contact, "output": output, "numerics": {"error": 0.1}}
+
+
+def bed() -> dict:
+    """Shot on a bed of another material than the shot."""
+    data = read_toml(CASES / "peening_steel.toml")
+    scene = {"side": "6 mm", "count": 12, "duration": "0.3 ms", "gravity": "9.81 m/s^2", "bed_count": 30, "bed_fill": "1 ms",
+             "bed": [{"material": "plate", "radius": "0.5 mm"}]}  # fmt: skip
+    return data | {"scene": data["scene"] | scene, "output": {"rows": 20, "particles": 2}, "numerics": {"error": 0.1}}
+
+
+@pytest.mark.liggghts
+@pytest.mark.parametrize("data", [poured(), bed()], ids=["poured", "bed"])
+def test_a_deck_with_rare_options_runs_and_repeats_itself(data, tmp_path):
+    deck.write(parse(data), tmp_path / "deck")
+    lines = explain.explain({n: (tmp_path / "deck" / n).read_text() for n in ("in.scene", "setup.in")})
+    assert [line for _, line, reason in lines if reason is None] == []
+    found = lean.fingerprint(tmp_path / "deck", "in.scene")
+    assert found is not None
+    written = {p.suffix for p in (tmp_path / "deck").iterdir()}
+    if "vtk" in data["output"]:
+        assert {".vtk", ".ppm", ".bin", ".txt"} <= written
+
+
+def test_the_walls_keep_their_material_whatever_the_order_of_types():
+    d = deck.deck(parse(bed()))
+    strength = next(p for p in d.properties if p.name == "yieldPressure")
+    assert d.types == ("plate", "shot")
+    assert d.types[d.wall_type - 1] == "plate"
+    assert strength.values[0] < strength.values[1]
+
+
+@pytest.mark.parametrize(("place", "value", "words"), [
+    (("scene", "count"), 100_000, "enlarge the room"),
+    (("scene", "kind"), "sieve", "must be one of"),
+    (("scene", "walls"), "cheese", "add \\[materials.cheese\\]"),
+    (("scene", "box"), ["1 mm", "1 mm", "1 s"], "dimension"),
+    (("contact", "wall_friction"), -0.1, "must lie in"),
+    (("output", "pictures"), True, "pictures"),
+])  # fmt: skip
+def test_mistakes_are_named_before_anything_runs(place, value, words):
+    data = read_toml(CASES / "settle_glass.toml")
+    data[place[0]] = data[place[0]] | {place[1]: value}
+    with pytest.raises(CaseError, match=words):
+        deck.deck(parse(data, "case.toml"))
