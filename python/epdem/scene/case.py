@@ -72,7 +72,7 @@ class Rolling(Frozen):
 class Between(Frozen):
     """Values of one pair of materials that differ from the common ones; "wall" names the walls."""
 
-    between: tuple[Name, Name] | Annotated[list[Name], Field(min_length=2, max_length=2)]
+    between: Annotated[list[Name], Field(min_length=2, max_length=2)]
     friction: quantity("1", ge=0.0)
 
 
@@ -134,7 +134,7 @@ class Settle(Common):
     """Spheres poured into a box (x, y, z inside) with its floor at z = 0."""
 
     kind: Literal["settle"]
-    box: tuple[Length, Length, Length] | Annotated[list[Length], Field(min_length=3, max_length=3)]
+    box: Annotated[list[Length], Field(min_length=3, max_length=3)]
     periodic: bool = False  # in x and y, instead of side walls
     rate: quantity("Hz", above=0.0) | None = None  # spheres per second; none: all at once
 
@@ -170,7 +170,7 @@ class Compaction(Common):
     kind: Literal["compaction"]
     gravity: quantity("m/s^2", ge=0.0) = 0.0
     duration: Time | None = None
-    box: tuple[Length, Length, Length] | Annotated[list[Length], Field(min_length=3, max_length=3)]
+    box: Annotated[list[Length], Field(min_length=3, max_length=3)]
     height: Length  # of the gap between the plates at the end of loading
     back: Length  # stroke of unloading
     speed: Speed  # of the upper plate, loading
