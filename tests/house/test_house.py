@@ -76,3 +76,9 @@ def test_nothing_is_left_unfinished():
     words = re.compile(r"\b(TO" + r"DO|FIX" + r"ME|X" + r"XX|NotImplemented" + r"Error)\b")
     for path in SOURCES:
         assert not words.search(path.read_text()), path
+
+
+def test_no_two_test_files_share_a_name():
+    """pytest imports tests by file name: two of one name hide each other."""
+    names = [p.name for p in (ROOT / "tests").rglob("*.py") if p.name != "conftest.py"]
+    assert len(names) == len(set(names))
