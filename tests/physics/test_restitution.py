@@ -68,12 +68,15 @@ class Exact:
         return F * ((1 - tau) * (1 - y * y) ** mp.mpf(1.5) + B * (mp.acos(y) - y * mp.sqrt(1 - y * y)))
 
     def work(self, top):
-        return mp.quad(lambda q: self.point(q)[0], [0, *[m for m in self.marks if m < top], top])
+        unit = self.point(top)[0]  # mpmath stops at an absolute error: the integral must be of order 1
+        parts = [0, *[m / top for m in self.marks if m < top], 1]
+        return unit * top * mp.quad(lambda x: self.point(top * x)[0] / unit, parts)
 
     def given_back(self, top):
         F, a, tau = self.point(top)
-        dent = top - (mp.mpf(3) / 4 * (1 - tau) + 2 / mp.pi * tau) * F / (self.E * a)
-        return mp.quad(lambda q: self.unloading(q, top), mp.linspace(dent, top, 5))
+        recovery = (mp.mpf(3) / 4 * (1 - tau) + 2 / mp.pi * tau) * F / (self.E * a)
+        share = mp.quad(lambda x: self.unloading(top - recovery * x, top) / F, mp.linspace(0, 1, 5))
+        return F * recovery * share
 
 
 @pytest.mark.parametrize(("column", "name"), [(1, "thornton"), (2, "johnson"), (3, "cavity")])
@@ -87,7 +90,7 @@ def test_reference_peaks_of_cavity():
     """8 to 10 printed digits."""
     x = restitution.impact(steel("cavity"), m_star=M, speed=SPEEDS)
     for k, values in ((4, x.overlap_max), (5, x.force_max), (6, x.radius_max)):
-        assert values == pytest.approx([row[k] for row in TABLE], rel=5e-8)
+        assert values == pytest.approx([row[k] for row in TABLE], rel=5e-8, abs=0)
 
 
 def test_thornton_law_and_equation_8_83_are_the_same_number():
@@ -95,7 +98,7 @@ def test_thornton_law_and_equation_8_83_are_the_same_number():
     v_y = printed.yield_speed(p_y=2.8e9, m_star=M, **STEEL)
     speed = v_y * np.geomspace(1e-6, 1e6, 400)
     e_n = restitution.e_n(steel("thornton"), m_star=M, speed=speed)
-    assert e_n == pytest.approx(printed.thornton(speed, v_y=v_y), rel=1e-13)
+    assert e_n == pytest.approx(printed.thornton(speed, v_y=v_y), rel=1e-13, abs=0)
 
 
 @settings(max_examples=25)
@@ -117,11 +120,11 @@ def test_restitution_is_the_quadrature_of_the_law(name, log_E, log_R, log_ratio,
     with mp.workdps(30):
         exact, top = Exact(name, E, R, strength), mp.mpf(float(found.overlap_max))
         work, back = exact.work(top), exact.given_back(top)
-        assert float(found.work_in) == pytest.approx(float(work), rel=1e-12)
+        assert float(found.work_in) == pytest.approx(float(work), rel=1e-12, abs=0)
         if abs(float(top / exact.y) - 1) > 1e-9:
             e_n = float(mp.sqrt(back / work)) if top > exact.y else 1.0
             # the inverse W -> alpha and kappa F^2/(aE*): a few roundings of powers
-            assert float(found.e_n) == pytest.approx(e_n, rel=1e-12)
+            assert float(found.e_n) == pytest.approx(e_n, rel=1e-12, abs=0)
 
 
 @pytest.mark.parametrize("name", ["hertz", "thornton", "johnson", "cavity"])
@@ -157,7 +160,7 @@ def test_contact_time_is_the_time_integral_of_the_motion(name, speed):
         total = sum(time(forth, low, high) for low, high in zip(marks[:-1], marks[1:], strict=True))
         total += time(back, dent, top)
     # tiny leaves out 1e-10 of each way
-    assert float(found.contact_time) == pytest.approx(float(total), rel=1e-9)
+    assert float(found.contact_time) == pytest.approx(float(total), rel=1e-9, abs=0)
 
 
 @pytest.mark.parametrize(("name", "mark"), [("thornton", 0), ("johnson", 0), ("cavity", 0), ("cavity", 1)])
@@ -180,27 +183,28 @@ def test_loading_time_keeps_its_digits_where_the_law_has_just_changed_its_formul
             return 2 * mp.sqrt(width * M / (2 * energy))
 
         total = mp.quad(rate, [0, *sorted(mp.sqrt(k) for k in kinks), mp.sqrt(top)], maxdegree=5)
-    assert float(found.contact_time - back) == pytest.approx(float(total), rel=1e-10)
+    assert float(found.contact_time - back) == pytest.approx(float(total), rel=1e-10, abs=0)
 
 
 def test_elastic_contact_time_is_hertz_classical_constant():
     """t_c = 2.9432751843 alpha_max/v = 2.868265 (m*^2/(R* E*^2 v))^(1/5)."""
     speed = np.geomspace(1e-6, 1e3, 50)
     x = restitution.impact(steel("hertz"), m_star=M, speed=speed)
-    assert x.contact_time == pytest.approx(2.9432751843 * x.overlap_max / speed, rel=1e-10)
+    assert x.contact_time == pytest.approx(2.9432751843 * x.overlap_max / speed, rel=1e-10, abs=0)
 
 
 def test_thornton_unloading_time_has_a_closed_constant():
     """1.4716375922 = (2/5) B(2/5, 1/2): the unloading branch is a Hertz contact of another radius."""
-    exact = mp.mpf(2) / 5 * mp.beta(mp.mpf(2) / 5, mp.mpf(1) / 2)
-    assert float(exact) == pytest.approx(restitution.UNLOADING_TIME, rel=1e-15)
+    with mp.workdps(30):
+        exact = mp.mpf(2) / 5 * mp.beta(mp.mpf(2) / 5, mp.mpf(1) / 2)
+    assert float(exact) == pytest.approx(restitution.UNLOADING_TIME, rel=1e-15, abs=0)
 
 
 @pytest.mark.parametrize("name", ["thornton", "johnson", "cavity"])
 def test_restitution_falls_as_minus_quarter_power_far_above_yield(name):
     ratio = np.array([1e5, 16e5])
     e_n = restitution.e_n(steel(name), m_star=M, speed=0.138 * ratio)
-    assert e_n[1] / e_n[0] == pytest.approx(0.5, rel=2e-3)  # the elastic start still counts 1e-3 there
+    assert e_n[1] / e_n[0] == pytest.approx(0.5, rel=2e-3, abs=0)  # the elastic start still counts 1e-3 there
 
 
 def test_cavity_predicts_the_constant_of_the_finite_element_fit():
@@ -218,7 +222,7 @@ def test_parameters_broadcast_with_speeds():
     x = restitution.impact(law, m_star=M, speed=SPEEDS)
     assert x.e_n.shape == x.contact_time.shape == (2, 6)
     single = restitution.impact(Thornton(**STEEL, p_y=2e9), m_star=M, speed=SPEEDS)
-    assert x.contact_time[1] == pytest.approx(single.contact_time, rel=1e-14)
+    assert x.contact_time[1] == pytest.approx(single.contact_time, rel=1e-14, abs=0)
 
 
 def test_two_spheres_are_a_sphere_on_a_plane_with_the_effective_quantities():

@@ -12,7 +12,7 @@ from .checks import number
 _X, _W = np.polynomial.legendre.leggauss(48)
 _X, _W = 0.5 * (_X + 1), 0.5 * _W  # on [0, 1]
 _SHORT = np.polynomial.legendre.leggauss(8)
-UNLOADING_TIME = 1.4716375921623947  # (2/5) B(2/5, 1/2): t_unload e_n v/delta_e for tau = 0
+UNLOADING_TIME = 1.4716375921623523  # (2/5) B(2/5, 1/2): t_unload e_n v/delta_e for tau = 0
 
 
 @dataclass(frozen=True)
