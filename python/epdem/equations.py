@@ -1,54 +1,97 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The map of equations, from the code itself: number, what it says, function, C++ header, tests.
+"""The map of equations, from the code itself: number, formula, source, function, line of C++, tests.
 
-`python -m epdem.equations > docs/equations.md` writes it from a checkout; a test keeps it true.
+`python -m epdem.equations > docs/equations.md` writes it from a checkout; a test keeps it true. A docstring states an
+equation as `Eq. 8.84 [Thornton 1997]: v_y = ...`, to the end of the paragraph; a C++ header names it in a comment, and
+the declaration below the comment is the place.
 """
 
 import ast
 import re
+from collections.abc import Iterator
+from dataclasses import dataclass
 from pathlib import Path
 
+from .theory.sources import SOURCES
+
 ROOT = Path(__file__).resolve().parents[2]
-NUMBERS = re.compile(r"\b8\.\d\d\b")
-RANGES = re.compile(r"\b(8\.(\d\d)) to 8\.(\d\d)\b|\b8\.(\d\d)-8\.(\d\d)\b")
+STATEMENT = re.compile(r"^Eq\. (8\.\d\d) \[(.+?)\]: (.+?)(?=\n\n|\Z)", re.DOTALL | re.MULTILINE)
+MENTION = re.compile(r"\b8\.\d\d\b")
+HEADERS, THEORY, TESTS = "cpp_contact/include/epdem", "python/epdem/theory", "tests"
 
 
-def _numbers(text: str) -> set[str]:
-    text = re.sub(r"figures? 8\.\d\d( to 8\.\d\d|(, 8\.\d\d)* and 8\.\d\d)?", "", text)
-    found = set(NUMBERS.findall(text))
-    for match in RANGES.finditer(text):
-        low, high = (int(g) for g in ((match[2], match[3]) if match[1] else (match[4], match[5])))
-        found |= {f"8.{n}" for n in range(low, high + 1)}
+@dataclass(frozen=True, order=True)
+class Entry:
+    """One equation in one function; `cpp` and `tests` are paths inside the project, with a line or a test's name."""
+
+    number: str
+    function: str
+    formula: str
+    source: str
+    cpp: tuple[str, ...]
+    tests: tuple[str, ...]
+
+
+def _functions(path: Path) -> Iterator[tuple[str, str, str]]:
+    """(name as callers write it, name on the page, docstring) of every public function, method and class."""
+    for node in ast.parse(path.read_text()).body:
+        if isinstance(node, ast.FunctionDef | ast.ClassDef) and not node.name.startswith("_"):
+            yield f"{path.stem}.{node.name}", f"{path.stem}.{node.name}", ast.get_docstring(node) or ""
+            for part in getattr(node, "body", []):
+                if isinstance(node, ast.ClassDef) and isinstance(part, ast.FunctionDef):
+                    yield f".{part.name}", f"{path.stem}.{node.name}.{part.name}", ast.get_docstring(part) or ""
+
+
+def _places(root: Path) -> dict[str, list[str]]:
+    """Number -> header:line of the first declaration below each comment that names it."""
+    found: dict[str, list[str]] = {}
+    for path in sorted(root.glob("*.hpp")):
+        lines = path.read_text().splitlines()
+        for k, line in enumerate(lines):
+            if line.lstrip().startswith("//"):
+                code = (n for n in range(k, len(lines)) if re.match(r"\s*(template|struct|inline|real)\b", lines[n]))
+                place = f"{path.name}:{next(code, k) + 1}"
+                for number in MENTION.findall(line):
+                    if place not in found.setdefault(number, []):
+                        found[number].append(place)
     return found
 
 
-def _functions(path: Path):
-    """(qualified name, docstring) of every public function and class of a module."""
-    for node in ast.walk(ast.parse(path.read_text())):
-        if isinstance(node, ast.FunctionDef | ast.ClassDef) and not node.name.startswith("_"):
-            yield node.name, ast.get_docstring(node) or ""
+def _tests_of(name: str, tests: dict[str, str]) -> tuple[str, ...]:
+    """Tests that call a function as `module.name` or by its name imported from the module, or a method as `.name(`."""
+    module, _, word = name.rpartition(".")
+    imported = re.compile(rf"from epdem\.theory\.{module} import .*\b{word}\b") if module else None
+    called = re.compile(rf"{re.escape(name)}\b" if module else rf"{re.escape(name)}\(")
+    bare = re.compile(rf"(?<![\w.\"]){word}\(")
+    return tuple(
+        place
+        for place, text in tests.items()
+        if called.search(text) or (imported and imported.search(text.partition("\0")[0]) and bare.search(text))
+    )
 
 
-def _tests_of(name: str) -> list[str]:
-    """Test files that name a function, as `module.name` or imported."""
-    pattern = re.compile(rf"\b{re.escape(name)}\b")
-    files = sorted((ROOT / "tests").rglob("test_*.py"))
-    return [f"{p.parent.name}/{p.name}" for p in files if pattern.search(p.read_text())]
+def _test_functions() -> dict[str, str]:
+    """file.py::test_name -> the file's imports and helpers, and the test's own text."""
+    found = {}
+    for path in sorted((ROOT / TESTS / "physics").glob("test_*.py")):
+        text = path.read_text()
+        body = ast.parse(text).body
+        imports = "\n".join(ast.unparse(n) for n in body if isinstance(n, ast.Import | ast.ImportFrom))
+        for node in body:
+            if isinstance(node, ast.FunctionDef) and node.name.startswith("test_"):
+                found[f"{path.name}::{node.name}"] = imports + "\0" + ast.get_source_segment(text, node)
+    return found
 
 
-def entries() -> list[tuple[str, str, str, str, str]]:
-    """(number, statement, function, C++ header, tests), by number."""
-    headers: dict[str, list[str]] = {}
-    for path in sorted((ROOT / "cpp_contact/include/epdem").glob("*.hpp")):
-        for number in _numbers(path.read_text()):
-            headers.setdefault(number, []).append(path.name)
-    rows = []
-    for path in sorted((ROOT / "python/epdem/theory").glob("*.py")):
-        for name, doc in _functions(path):
-            first = " ".join(doc.split("\n\n")[0].split())
-            for number in sorted(_numbers(doc)):
-                cpp, tests = ", ".join(headers.get(number, [])), ", ".join(_tests_of(name))
-                rows.append((number, first, f"{path.stem}.{name}", cpp, tests))
+def entries() -> list[Entry]:
+    """All equations that docstrings of the theory state, by number. KeyError for a source that is not in SOURCES."""
+    places, tests, rows = _places(ROOT / HEADERS), _test_functions(), []
+    for path in sorted((ROOT / THEORY).glob("*.py")):
+        for name, shown, doc in _functions(path):
+            for number, source, formula in STATEMENT.findall(doc):
+                cpp = tuple(places.get(number, ()))
+                rows.append(Entry(number, shown, " ".join(formula.split()), source, cpp, _tests_of(name, tests)))
+                SOURCES[source]
     return sorted(rows)
 
 
@@ -57,15 +100,18 @@ def page() -> str:
     lines = [
         "# Equations",
         "",
-        'Numbers as in the chapter "Interaction of Elastic-Plastic Particles"; functions are in `epdem.theory`.',
-        "Made by `python -m epdem.equations > docs/equations.md`.",
+        'Numbers as in the chapter "Interaction of Elastic-Plastic Particles"; functions are in `epdem.theory`, headers',
+        f"in `{HEADERS}`, tests in `{TESTS}/physics`. Made by `python -m epdem.equations > docs/equations.md`.",
         "",
-        "| eq. | statement | function | C++ | tests |",
-        "|---|---|---|---|---|",
+        "| eq. | formula | source | function | C++ | tests |",
+        "|---|---|---|---|---|---|",
     ]
-    for number, statement, function, cpp, tests in entries():
-        text = statement.replace("|", "\\|")
-        lines.append(f"| {number} | {text} | `{function}` | {cpp or '-'} | {tests or '-'} |")
+    for e in entries():
+        formula = e.formula.replace("|", "\\|")
+        tests = "<br>".join(f"`{t}`" for t in e.tests)
+        cpp = ", ".join(f"`{c}`" for c in e.cpp)
+        lines.append(f"| {e.number} | `{formula}` | {e.source} | `{e.function}` | {cpp or '-'} | {tests or '-'} |")
+    lines += ["", "## Sources", "", *(f"- {key}: {text}" for key, text in SOURCES.items())]
     return "\n".join(lines) + "\n"
 
 

@@ -225,6 +225,15 @@ def test_parameters_broadcast_with_speeds():
     assert x.contact_time[1] == pytest.approx(single.contact_time, rel=1e-14, abs=0)
 
 
+def test_fully_plastic_force_is_a_uniform_pressure_on_the_circle_that_the_overlap_cuts_out():
+    """8.85 by geometry: a plane cuts a circle of a^2 = 2 R* alpha out of the sphere (alpha << R*), p_m acts on it."""
+    law, R_star, p_m = Johnson(**STEEL, p_m=3e9), STEEL["R_star"], 3e9
+    alpha = law.yield_overlap * np.array([1.5, 10.0, 1e3])
+    circle = np.pi * (2 * R_star * alpha)
+    assert law.force(alpha) == pytest.approx(p_m * circle, rel=1e-13, abs=0)  # round-off of three products
+    assert np.pi * law.radius(alpha) ** 2 == pytest.approx(circle, rel=1e-13, abs=0)
+
+
 def test_two_spheres_are_a_sphere_on_a_plane_with_the_effective_quantities():
     assert pair.R_star(0.01, np.inf) == 0.01 and pair.R_star(0.02, 0.02) == 0.01
     assert pair.m_star(1.0, np.inf) == 1.0 and pair.E_star(2e11, 0.3, np.inf, 0.3) == pytest.approx(2e11 / 0.91)

@@ -27,6 +27,17 @@ def test_first_yield_under_a_sphere_for_any_poisson_ratio():
     assert yielding.first_yield_mean(0.3) == pytest.approx(yielding.FIRST_YIELD_MEAN_ROUNDED, abs=0.03)  # 8.79 rounds
 
 
+def test_fully_plastic_pressure_lies_where_the_expanding_cavity_ends():
+    """8.80 against 8.81: from E* a/(Y R*) of about 40, within a sixth, the cavity's pressure reaches 2.8 to 3.0 Y."""
+    low, high = yielding.fully_plastic_mean(np.array([1e9, 2e9]))
+    assert low == pytest.approx([2.8e9, 5.6e9]) and high == pytest.approx([3e9, 6e9])
+    assert pressure.cavity_mean(40.0) == pytest.approx(2.4, abs=0.02)  # (2/3)(1 + ln(40/3)), still below
+    x = 3 * np.exp(1.5 * 2.8 - 1)  # 8.81 solved for p_m = 2.8 Y
+    assert pressure.cavity_mean(x) == pytest.approx(2.8, rel=1e-14)
+    with pytest.raises(ValueError, match="Y"):
+        yielding.fully_plastic_mean(-1.0)
+
+
 @given(st.tuples(*[st.floats(-1e3, 1e3)] * 3), st.floats(-1e3, 1e3))
 def test_criteria_see_neither_hydrostatic_pressure_nor_order(s, p):
     for criterion in (yielding.von_mises, yielding.tresca):

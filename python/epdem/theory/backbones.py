@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The laws: loading backbones F(alpha), a(alpha), W(alpha) (eqs. 8.81, 8.85) and the unloading that they share (8.82).
+"""The laws: loading backbones F(alpha), a(alpha), W(alpha) and the unloading that they share.
 
 Overlaps [m] and parameters broadcast. A law is one class; `keywords` maps the names of its parameters in case files and
 in C++ to those of the constructor, `default_ratio` is its strength in units of the softer body's yield stress.
@@ -70,7 +70,11 @@ class Backbone:
         return kappa * self.force(alpha_max) ** 2 / (self.radius(alpha_max) * self.E_star)
 
     def unloading(self, alpha, alpha_max):
-        """Force [N] and contact radius [m] at alpha <= alpha_max on the elastic branch from alpha_max (eq. 8.82)."""
+        """Force [N] and contact radius [m] at alpha <= alpha_max on the elastic branch from alpha_max.
+
+        Eq. 8.82 [Mesarovic and Johnson 2000]: F/F_max = (1-tau)(1-y^2)^1.5 + (2/pi) tau (acos y - y sqrt(1-y^2)),
+        a = a_max sqrt(1-y^2), A y^2 + B y = (alpha_max-alpha) E* a_max/F_max, A = 3/4 (1-tau), B = (2/pi) tau
+        """
         alpha, alpha_max = np.asarray(alpha, float), np.asarray(alpha_max, float)
         F, a, tau = self.force(alpha_max), self.radius(alpha_max), self.flatness(alpha_max)
         w = (alpha_max - alpha) * self.E_star * a / F
@@ -155,9 +159,11 @@ class Thornton(Backbone):
 
 
 class Johnson(Backbone):
-    """Fully plastic contact, eq. 8.85: F = 2 pi R* p_m alpha, a^2 = 2 R* alpha; Hertz while that is the smaller force.
+    """Fully plastic contact; Hertz while that is the smaller force (section 11.5).
 
-    The radius jumps by sqrt 2 at alpha_c = R* (3 pi p_m/(2E*))^2. p_m [Pa] > 0, 3.0 Y by default. (Johnson 1985, 11.5.)
+    Eq. 8.85 [Johnson 1985]: F = 2 pi R* p_m alpha, a^2 = 2 R* alpha
+
+    The radius jumps by sqrt 2 at alpha_c = R* (3 pi p_m/(2E*))^2. p_m [Pa] > 0, 3.0 Y by default.
     """
 
     name = "johnson"

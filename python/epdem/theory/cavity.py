@@ -15,8 +15,8 @@ from .checks import number
 class Cavity(Backbone):
     """s = alpha/alpha_Y; 1 < s < s_P: a = a_Y s^((1+beta)/2), p_m = Y [2 c_Y/3 + (1+beta)/3 ln s], tau = ln s/ln s_P.
 
-    Y [Pa] > 0; c_Y = 1.60 and c_P = 2.8 by default (eqs. 8.78, 8.80). ValueError where the law would create energy at
-    yield: 2 (1+beta)(1 + 1/(2 c_Y)) - (1+beta)/2 - 0.125/ln s_P must not exceed 2.5.
+    Y [Pa] > 0; c_Y = 1.60 (first yield) and c_P = 2.8 (fully plastic) by default. ValueError where the law would create
+    energy at yield: 2 (1+beta)(1 + 1/(2 c_Y)) - (1+beta)/2 - 0.125/ln s_P must not exceed 2.5.
     """
 
     name = "cavity"

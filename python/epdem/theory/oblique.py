@@ -36,7 +36,7 @@ def patch_rebound(f, *, e_n, theta):
 def sliding_angle(mu, *, e_n, nu):
     """Angle [rad] from which the patch slides throughout: tan theta = mu [(7/2)(1+e_n) - e_n/kappa].
 
-    For e_n = 1 it is Maw, Barber and Fawcett's mu (7 - 1/kappa).
+    For e_n = 1 it is mu (7 - 1/kappa) (Maw, Barber and Fawcett 1976).
     """
     return np.arctan(number("mu", mu, low_ok=True) * (3.5 * (1 + e_n) - e_n / kappa(nu)))
 

@@ -36,9 +36,11 @@ def truncated_force(*, p_0, a, p_y):
 
 
 def cavity_mean(x):
-    """Mean pressure p_m/Y of the expanding-cavity model, x = E* a/(Y R*); eq. 8.81, Johnson 1985, section 6.3.
+    """Mean pressure p_m/Y of the expanding-cavity model, x = E* a/(Y R*) > 0, any shape (section 6.3).
 
-    (2/3) [1 + ln(x/3)]; between about x = 2.5 (first yield) and 40 (fully plastic): see `regime`.
+    Eq. 8.81 [Johnson 1985]: p_m/Y = (2/3) [1 + ln((1/3) (E*/Y) (a/R*))]
+
+    Between about x = 2.5 (first yield) and 40 (fully plastic): see `regime`.
     """
     return 2 / 3 * (1 + np.log(number("x", x) / 3))
 
@@ -62,10 +64,12 @@ def regime(x, *, plastic=2.8):
 
 
 def unloading(r, *, a, a_max, p):
-    """Pressure while a uniformly loaded circle unloads [Pa]; eq. 8.82, Mesarovic and Johnson 2000.
+    """Pressure while a uniformly loaded circle unloads [Pa].
 
-    (2p/pi) asin sqrt((a^2 - r^2)/(a*^2 - r^2)) for r <= a <= a* = a_max; p [Pa] and a_max belong to the start of
-    unloading. a = a_max gives p everywhere; 0 outside a. ValueError if a exceeds a_max.
+    Eq. 8.82 [Mesarovic and Johnson 2000]: p(r) = (2p/pi) asin sqrt((a^2 - r^2)/(a*^2 - r^2)), r <= a <= a*
+
+    p [Pa] and a_max = a* belong to the start of unloading. a = a_max gives p everywhere; 0 outside a. ValueError if a
+    exceeds a_max.
     """
     a, a_max, p = number("a", a), number("a_max", a_max), number("p", p)
     if np.any(a > a_max):

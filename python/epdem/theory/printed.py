@@ -7,7 +7,9 @@ from .checks import number
 
 
 def yield_speed(*, p_y, E_star, R_star, m_star):
-    """Impact speed at which the peak pressure reaches p_y [m/s]; eq. 8.84, Thornton 1997.
+    """Impact speed at which the peak pressure reaches p_y [m/s].
+
+    Eq. 8.84 [Thornton 1997]: v_y = (pi/(2E*))^2 sqrt(8 pi R*^3 p_y^5/(15 m*))
 
     With p_y = 2.8 Y it is v_y, with 1.60 Y v_y0 = v_y/4.0513. p_y, E_star [Pa], R_star [m], m_star [kg] > 0.
     """
@@ -17,9 +19,9 @@ def yield_speed(*, p_y, E_star, R_star, m_star):
 
 
 def thornton(speed, *, v_y):
-    """Restitution of the truncated Hertz pressure; eq. 8.83, Thornton 1997. speed, v_y [m/s] > 0; 1 up to v_y.
+    """Restitution of the truncated Hertz pressure; speed, v_y [m/s] > 0; 1 up to v_y.
 
-    With r = v_y/v: sqrt(6 sqrt(3)/5) sqrt(1 - r^2/6) [r/(r + 2 sqrt(6/5 - r^2/5))]^(1/4).
+    Eq. 8.83 [Thornton 1997]: e_n = sqrt(6 sqrt(3)/5) sqrt(1 - r^2/6) [r/(r + 2 sqrt(6/5 - r^2/5))]^(1/4), r = v_y/v
     """
     r = np.minimum(number("v_y", v_y) / number("speed", speed), 1.0)
     root = np.sqrt(6 / 5 - r * r / 5)
@@ -28,9 +30,11 @@ def thornton(speed, *, v_y):
 
 
 def johnson(speed, *, p_m, E_star, R_star, m_star):
-    """Fully plastic restitution; eq. 8.86, Johnson 1985. NaN where it exceeds 1: it is meant for v >> v_y.
+    """Fully plastic restitution. NaN where it exceeds 1: it is meant for v >> v_y.
 
-    e_n^2 = (3 sqrt2 pi^(5/4)/5) (p_m/E*) (m* v^2/(2 p_m R*^3))^(-1/4); p_m, E_star [Pa], R_star [m], m_star [kg].
+    Eq. 8.86 [Johnson 1985]: e_n^2 = (3 sqrt2 pi^(5/4)/5) (p_m/E*) (m* v^2/(2 p_m R*^3))^(-1/4)
+
+    speed [m/s], p_m, E_star [Pa], R_star [m], m_star [kg].
     """
     p_m, E_star = number("p_m", p_m), number("E_star", E_star)
     energy = number("m_star", m_star) * number("speed", speed) ** 2 / (2 * p_m * number("R_star", R_star) ** 3)
@@ -39,9 +43,11 @@ def johnson(speed, *, p_m, E_star, R_star, m_star):
 
 
 def johnson_plane(speed, *, p_m, E_star, density):
-    """Sphere on a plane, fully plastic; eq. 8.87: 1.718 (p_m^5/(E*^4 rho))^(1/8) v^(-1/4). NaN where it exceeds 1.
+    """Sphere on a plane, fully plastic. NaN where it exceeds 1.
 
-    The radius drops out. density [kg/m^3]; 1.718 is the printed rounding of 8.86's constant.
+    Eq. 8.87 [Johnson 1985]: e_n = 1.718 (p_m^5/(E*^4 rho))^(1/8) v^(-1/4)
+
+    The radius drops out. density [kg/m^3]; 1.718 is the printed rounding of the general equation's constant.
     """
     p_m, E_star = number("p_m", p_m), number("E_star", E_star)
     e_n = 1.718 * (p_m**5 / (E_star**4 * number("density", density))) ** 0.125 * number("speed", speed) ** -0.25
@@ -49,7 +55,9 @@ def johnson_plane(speed, *, p_m, E_star, density):
 
 
 def wu(speed, *, v_y0):
-    """Finite-element fit 2.08 (v/v_y0)^(-1/4); eq. 8.88, Wu et al. 2003. NaN below v/v_y0 = 100.
+    """Finite-element fit. NaN below v/v_y0 = 100.
+
+    Eq. 8.88 [Wu et al. 2003]: e_n = 2.08 (v/v_y0)^(-1/4), v/v_y0 >= 100
 
     v_y0 [m/s] is the speed of first yield (1.60 Y), not that of 2.8 Y.
     """
@@ -58,9 +66,11 @@ def wu(speed, *, v_y0):
 
 
 def bridges(speed):
-    """Ice spheres; eq. 8.89, Bridges et al. 1984: 0.32 v^(-0.234), v in cm/s (speed in m/s here).
+    """Ice spheres; speed in m/s here. NaN outside the measured range.
 
-    NaN outside 0.015 to 5.1 cm/s. (The text prints the exponent rounded to 0.23.)
+    Eq. 8.89 [Bridges et al. 1984]: e_n = 0.32 v^(-0.234), v in cm/s, 0.015 < v < 5.1
+
+    (The text prints the exponent rounded to 0.23.)
     """
     v = 100 * number("speed", speed)
     return np.where((v > 0.015) & (v < 5.1), 0.32 * v**-0.234, np.nan)

@@ -115,7 +115,7 @@ def first_yield_surface(mu, nu, criterion="von_mises"):
         height = equivalent(surface(x, mu=mu, nu=nu), criterion)
         k = int(np.argmax(height))
         low, high = max(-1.0, x[max(k - 2, 0)]), min(1.0, x[min(k + 2, 200)])
-    return float(1 / height[k]), (float(x[k]), 0.0, 0.0)
+    return float(1 / height[k]) if height[k] > 0 else np.inf, (float(x[k]), 0.0, 0.0)
 
 
 def first_sliding_yield(mu, nu, criterion="von_mises"):

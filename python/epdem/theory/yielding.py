@@ -8,7 +8,7 @@ from .printed import yield_speed
 
 FIRST_YIELD_ROUNDED = 1.60  # p_0/Y at first yield, nu = 0.3; eq. 8.78
 FIRST_YIELD_MEAN_ROUNDED = 1.10  # p_m/Y at first yield; eq. 8.79
-FULLY_PLASTIC = (2.8, 3.0)  # p_m/Y; eq. 8.80
+FULLY_PLASTIC = (2.8, 3.0)  # p_m/Y; see fully_plastic_mean
 
 
 def principal(stress):
@@ -20,16 +20,19 @@ def principal(stress):
 
 
 def von_mises(s1, s2, s3):
-    """Equivalent stress sqrt(3 J2) of principal stresses; eq. 8.76: yield when it reaches Y.
+    """Equivalent stress sqrt(3 J2) of principal stresses [Pa]: yield when it reaches Y. Any shapes that broadcast.
 
-    J2 = [(s1-s2)^2 + (s2-s3)^2 + (s3-s1)^2]/6 = k^2 = Y^2/3.
+    Eq. 8.76 [Johnson 1985]: J2 = [(s1-s2)^2 + (s2-s3)^2 + (s3-s1)^2]/6 = k^2 = Y^2/3
     """
     s1, s2, s3 = (np.asarray(s, float) for s in (s1, s2, s3))
     return np.sqrt(((s1 - s2) ** 2 + (s2 - s3) ** 2 + (s3 - s1) ** 2) / 2)
 
 
 def tresca(s1, s2, s3):
-    """Largest difference of principal stresses; eq. 8.77: yield when it reaches 2k = Y."""
+    """Largest difference of principal stresses [Pa]: yield when it reaches Y. Any shapes that broadcast.
+
+    Eq. 8.77 [Johnson 1985]: max(|s1-s2|, |s2-s3|, |s3-s1|) = 2k = Y
+    """
     s = np.stack(np.broadcast_arrays(*(np.asarray(x, float) for x in (s1, s2, s3))))
     return s.max(axis=0) - s.min(axis=0)
 
@@ -54,9 +57,11 @@ def axis_difference(z, nu):
 
 
 def first_yield(nu):
-    """(p_0/Y, depth z/a) of first yield on the axis under a sphere, exactly; eq. 8.78. nu in (-1, 0.5], any shape.
+    """(p_0/Y, depth z/a) of first yield on the axis under a sphere, exactly. nu in (-1, 0.5], else ValueError; any shape.
 
-    Both criteria coincide on the axis: p_0/Y = 1/max(s_r - s_z). (Johnson 1985, section 6.1.)
+    Eq. 8.78 [Johnson 1985]: p_0 = Y/max(s_r - s_z), 1.60 Y at nu = 0.3
+
+    Both criteria coincide on the axis (section 6.1).
     """
     nu = poisson_ratio("nu", nu)
     low, high = np.zeros(np.shape(nu)) + 0.05, np.zeros(np.shape(nu)) + 1.5
@@ -73,8 +78,20 @@ def first_yield(nu):
 
 
 def first_yield_mean(nu):
-    """Mean pressure p_m/Y at first yield: two thirds of p_0/Y; eq. 8.79 rounds it to 1.10."""
+    """Mean pressure p_m/Y at first yield, exactly. nu in (-1, 0.5], any shape; ValueError outside.
+
+    Eq. 8.79 [Johnson 1985]: p_m = 2/3 p_0, rounded to 1.10 Y
+    """
     return 2 / 3 * first_yield(nu)[0]
+
+
+def fully_plastic_mean(Y):
+    """Mean pressure of fully plastic contact (low, high) [Pa]; Y [Pa] > 0, any shape; ValueError outside.
+
+    Eq. 8.80 [Johnson 1985]: p_m = 2.8 Y to 3.0 Y
+    """
+    Y = number("Y", Y)
+    return tuple(ratio * Y for ratio in FULLY_PLASTIC)
 
 
 def yielding_bodies(Y1, Y2, *, E_star, R_star, m_star, ratio=FIRST_YIELD_ROUNDED, plastic_ratio=FULLY_PLASTIC[0]):
@@ -82,7 +99,8 @@ def yielding_bodies(Y1, Y2, *, E_star, R_star, m_star, ratio=FIRST_YIELD_ROUNDED
 
     Y1, Y2 [Pa] > 0 (inf: never). Returns (v1, v2) [m/s]: the impact speed of each body's own first yield at ratio Y.
     The pressure cannot exceed plastic_ratio times the softer Y: a body with ratio Y above that never yields (inf),
-    i.e. the harder one yields at all only if it has less than 1.75 times the softer one's yield stress.
+    i.e. the harder one yields at all only if it has less than 1.75 times the softer one's yield stress. Up to there the
+    pressure is Hertz's, as law thornton has it: a softer body that flattens before makes the harder one's speed larger.
     """
     Y1, Y2 = number("Y1", Y1, infinite=True), number("Y2", Y2, infinite=True)
     ceiling = plastic_ratio * np.minimum(Y1, Y2)

@@ -1,0 +1,22 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""The sources that docstrings of the theory name, in full."""
+
+SOURCES = {
+    "Bridges et al. 1984": "F. G. Bridges, A. Hatzes, D. N. C. Lin, Nature 309 (1984) 333",
+    "Bryant and Keer 1982": "M. D. Bryant, L. M. Keer, J. Appl. Mech. 49 (1982) 345",
+    "Hamilton 1983": "G. M. Hamilton, Proc. Inst. Mech. Eng. 197C (1983) 53",
+    "Hamilton and Goodman 1966": "G. M. Hamilton, L. E. Goodman, J. Appl. Mech. 33 (1966) 371",
+    "Hertz 1882": "H. Hertz, J. reine angew. Math. 92 (1882) 156",
+    "Hunter 1957": "S. C. Hunter, J. Mech. Phys. Solids 5 (1957) 162",
+    "Hutchings 1979": "I. M. Hutchings, J. Phys. D 12 (1979) 1819",
+    "Jaeger 1993": "J. Jaeger, Arch. Appl. Mech. 63 (1993) 402",
+    "Johnson 1985": "K. L. Johnson, Contact Mechanics, Cambridge University Press (1985)",
+    "Johnson and Jefferis 1963": "K. L. Johnson, J. A. Jefferis, Symp. Rolling Contact, Inst. Mech. Eng. (1963) 54",
+    "Maw, Barber and Fawcett 1976": "N. Maw, J. R. Barber, J. N. Fawcett, Wear 38 (1976) 101",
+    "Mesarovic and Johnson 2000": "S. Dj. Mesarovic, K. L. Johnson, J. Mech. Phys. Solids 48 (2000) 2009",
+    "Miller and Pursey 1955": "G. F. Miller, H. Pursey, Proc. R. Soc. A 233 (1955) 55",
+    "Popov and Hess 2015": "V. L. Popov, M. Hess, Method of Dimensionality Reduction, Springer (2015)",
+    "Thornton 1997": "C. Thornton, J. Appl. Mech. 64 (1997) 383",
+    "Tsuji, Tanaka and Ishida 1992": "Y. Tsuji, T. Tanaka, T. Ishida, Powder Technol. 71 (1992) 239",
+    "Wu et al. 2003": "C.-Y. Wu, L.-Y. Li, C. Thornton, Int. J. Impact Eng. 28 (2003) 929",
+}
