@@ -100,8 +100,8 @@ def page() -> str:
     lines = [
         "# Equations",
         "",
-        'Numbers as in the chapter "Interaction of Elastic-Plastic Particles"; functions are in `epdem.theory`, headers',
-        f"in `{HEADERS}`, tests in `{TESTS}/physics`. Made by `python -m epdem.equations > docs/equations.md`.",
+        'Numbers as in the chapter "Interaction of Elastic-Plastic Particles"; functions are in `epdem.theory`,',
+        f"headers in `{HEADERS}`, tests in `{TESTS}/physics`. Made by `python -m epdem.equations > docs/equations.md`.",
         "",
         "| eq. | formula | source | function | C++ | tests |",
         "|---|---|---|---|---|---|",

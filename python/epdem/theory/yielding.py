@@ -57,7 +57,7 @@ def axis_difference(z, nu):
 
 
 def first_yield(nu):
-    """(p_0/Y, depth z/a) of first yield on the axis under a sphere, exactly. nu in (-1, 0.5], else ValueError; any shape.
+    """(p_0/Y, depth z/a) of first yield on the axis under a sphere, exactly. nu in (-1, 0.5], of any shape.
 
     Eq. 8.78 [Johnson 1985]: p_0 = Y/max(s_r - s_z), 1.60 Y at nu = 0.3
 
