@@ -79,6 +79,21 @@ def test_equation_8_87_is_8_86_for_a_sphere_on_a_plane():
     assert plane == pytest.approx(printed.johnson(v, p_m=3e9, **STEEL), rel=5e-4, abs=0)
 
 
+def test_equation_8_86_is_the_work_of_a_uniform_pressure_against_hertz_recovery():
+    """Work in: p_m on the volume pi a^4/(4 R*) of the dent; work out: 3 F^2/(10 a E*). Round-off only."""
+    v, p_m, R = np.array([20.0, 200.0]), 3e9, STEEL["R_star"]
+    work = M * v**2 / 2
+    a = (4 * R * work / (np.pi * p_m)) ** 0.25
+    out = 0.3 * (np.pi * a**2 * p_m) ** 2 / (a * E_STAR)
+    assert printed.johnson(v, p_m=p_m, **STEEL) == pytest.approx(np.sqrt(out / work), rel=1e-14, abs=0)
+
+
+def test_fits_to_elements_and_ice_at_points_worked_out_by_hand():
+    """8.88: 2.08/100^(1/4) and 2.08/10; 8.89: 0.32 at 1 cm/s, and a tenth of the speed raises e_n by 10^0.234."""
+    assert printed.wu(np.array([13.0, 1300.0]), v_y0=0.13) == pytest.approx([0.65775, 0.208], abs=1e-5)
+    assert printed.bridges(np.array([0.01, 0.001])) == pytest.approx([0.32, 0.32 * 1.71396], abs=1e-5)
+
+
 def test_yield_speeds_of_the_reference_case():
     assert printed.yield_speed(p_y=2.8e9, **STEEL) == pytest.approx(0.559430455498519, rel=1e-12, abs=0)
     assert printed.yield_speed(p_y=1.6e9, **STEEL) == pytest.approx(0.138086424357753, rel=1e-12, abs=0)
