@@ -28,8 +28,10 @@ STEP, IMPACTS = "tests/battery/test_step.py", "tests/engines/test_impacts.py"
 FAULTS = [
     Fault("plastic line starts at the wrong force", f"{LAWS}/thornton.hpp", "slope_ratio * yield_ratio / 3.0",
           "slope_ratio * yield_ratio / 2.0", STEP, "continuous"),
-    Fault("unloading is too stiff", f"{LAWS}/unloading.hpp", "peak.radius / (0.75 * peak.force)",
-          "peak.radius / (0.70 * peak.force)", STEP, "stiffness_of_the_peak"),
+    Fault("unloading is too stiff", f"{LAWS}/unloading.hpp", "E_star / (0.75 * peak.force)",
+          "E_star / (0.70 * peak.force)", STEP, "stiffness_of_the_peak"),
+    Fault("fully plastic unloading is too stiff", f"{LAWS}/unloading.hpp", "1.0 - 0.5 * pi * w",
+          "1.0 - 0.51 * pi * w", STEP, "stiffness_of_the_peak"),
     Fault("flat unloading lost its factor", f"{LAWS}/unloading.hpp", "A = 0.75 * (1.0 - tau), B = 2.0 / pi * tau;",
           "A = 0.75 * (1.0 - tau), B = 1.0 / pi * tau;", STEP, "stiffness_of_the_peak"),
     Fault("one digit of the segment function", f"{LAWS}/unloading.hpp", "0.15627588828780442", "0.15627588928780442",

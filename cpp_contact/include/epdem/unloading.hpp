@@ -27,13 +27,21 @@ inline real segment(real u) noexcept {
 template <bool Flattens>
 inline Point unload(real E_star, const Point& peak, real delta_max, real delta) noexcept {
   if constexpr (!Flattens) {
-    // share of the recovery still stored; the division need not wait for delta, which a loop over contacts has last
-    const real x = std::max(real(0.0), 1.0 - (delta_max - delta) * (E_star * peak.radius / (0.75 * peak.force)));
+    // Share of the recovery still stored. The division waits neither for delta, which a loop over contacts has last, nor
+    // for the root in the radius.
+    const real x = std::max(real(0.0), 1.0 - (delta_max - delta) * (peak.radius * (E_star / (0.75 * peak.force))));
     const real root = std::sqrt(x);
     return {peak.force * x * root, peak.radius * root, 0.0};
   } else {
     const real w = (delta_max - delta) * (E_star * peak.radius / peak.force);
-    const real tau = peak.flatness, A = 0.75 * (1.0 - tau), B = 2.0 / pi * tau;
+    const real tau = peak.flatness;
+    if (tau == 1.0) {  // fully plastic: A = 0, the equation for y is linear
+      const real u = 1.0 - 0.5 * pi * w;
+      if (!(u > 0.0)) return {0.0, 0.0, tau};
+      const real share = 2.0 / pi * u * std::sqrt(u) * detail::segment(u);
+      return {peak.force * share, peak.radius * std::sqrt(u * (2.0 - u)), tau};
+    }
+    const real A = 0.75 * (1.0 - tau), B = 2.0 / pi * tau;
     const real S = B + std::sqrt(B * B + 4.0 * A * w), u = (S - 2.0 * w) / S;  // u = 1 - y
     if (!(u > 0.0)) return {0.0, 0.0, tau};
     const real disc = u * (2.0 - u), root = std::sqrt(disc);  // 1 - y^2
