@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""What LIGGGHTS decks use beside a contact model: clumps, insertion, moving meshes, stored forces, local computes."""
+"""What LIGGGHTS decks use beside a contact model: clumps, moving meshes, stored forces, local computes."""
 
 import numpy as np
 import pytest
@@ -116,33 +116,6 @@ def test_clumps_bounce_and_lose_energy(tmp_path):
     rows = [line.split() for line in lines if len(line.split()) == 3 and line.split()[0].isdigit()]
     energy = [float(row[2]) for row in rows]
     assert 0 < energy[-1] < 0.9 * energy[1]
-
-
-@pytest.mark.parametrize("how", ["insert/pack", "insert/rate/region"])
-@pytest.mark.parametrize("ranks", [1, 2])
-def test_inserted_spheres_of_two_types(tmp_path, how, ranks):
-    rate = "nparticles 100 particlerate 100000 insert_every 1000" if "rate" in how else "insert_every once"
-    many = "" if "rate" in how else "particles_in_region 100"
-    text = (
-        head(ranks=(ranks, 1, 1)) + "region box block -0.05 0.05 -0.05 0.05 -0.02 0.1 units box\ncreate_box 3 box\n"
-        "neighbor 1e-3 bin\n"
-        + materials("ep/any")
-        + contact("ep/cavity", wall="primitive")
-        + "timestep 5e-7\nregion in block -0.02 0.02 -0.02 0.02 0.004 0.03 units box\n"
-        + "".join(
-            f"fix t{k} all particletemplate/sphere {s} atom_type {k} density constant 2500 radius constant {r}\n"
-            for k, (s, r) in enumerate(((15485863, 0.001), (86028121, 0.0015), (67867979, 0.0012)), 1)
-        )
-        + "fix d all particledistribution/discrete 32452843 3 t1 0.4 t2 0.3 t3 0.3\nfix move all nve/sphere\n"
-        f"fix in all {how} seed 49979687 distributiontemplate d vel constant 0. 0. -3.0 {rate} "
-        f"overlapcheck yes all_in yes {many} region in\n"
-        "compute k all ke\nthermo_style custom step atoms c_k\nthermo 10000\n"
-        "thermo_modify lost error norm no format float %.15g\nrun 1\nrun 30000\n"
-    )
-    lines = good(tmp_path, text, ranks=ranks).text.splitlines()
-    rows = [line.split() for line in lines if len(line.split()) == 3 and line.split()[0].isdigit()]
-    assert int(rows[-1][1]) >= 80
-    assert float(rows[-1][2]) < float(rows[2 if how != "insert/pack" else 1][2]) * 1.2
 
 
 def test_the_usual_computes_and_checks_run(tmp_path):
