@@ -8,16 +8,7 @@ from typing import Annotated
 import typer
 from rich.console import Console
 
-CasePath = Annotated[Path, typer.Argument(metavar="CASE", help="case file (TOML)")]
-Engines = Annotated[list[str] | None, typer.Option("--engine", "-e", help="embedded, liggghts, yade; repeat for more")]
-Laws = Annotated[list[str] | None, typer.Option("--law", "-l", help="replaces the case's law; repeat for more")]
-AsJson = Annotated[bool, typer.Option("--json", help="print one JSON document and nothing else")]
-Out = Annotated[Path | None, typer.Option("--out", "-o", help="folder for the results")]
-
-
-def _console() -> Console:
-    console = Console()
-    return console if console.is_terminal else Console(width=140)
+from .cli_options import AsJson, CasePath, Engines, Laws, Out, console
 
 
 def timestep(
@@ -83,12 +74,12 @@ def stress(
                           "roundoff": records(outcome.roundoff), "bulk": records(outcome.bulk),
                           "precisions": records(outcome.precisions)}, indent=1))  # fmt: skip
     else:
-        console = _console()
-        console.print(table("extreme cases; steps as shares of the stability limit", summary(outcome.verdicts)))
+        screen = console()
+        screen.print(table("extreme cases; steps as shares of the stability limit", summary(outcome.verdicts)))
         for v in outcome.verdicts[outcome.verdicts["status"] == "failed"].itertuples():
-            console.print(f"failed: {v.engine}, {v.law}, {v.case}: {v.reason}", style="red", highlight=False)
+            screen.print(f"failed: {v.engine}, {v.law}, {v.case}: {v.reason}", style="red", highlight=False)
         if not outcome.bulk.empty:
-            console.print(table("stiff bulk scenes in LIGGGHTS", outcome.bulk))
+            screen.print(table("stiff bulk scenes in LIGGGHTS", outcome.bulk))
     raise typer.Exit(0 if outcome.passed else 1)
 
 
@@ -115,9 +106,9 @@ def cost(
         outcome = study.run(case, engines=engine or ["embedded", "liggghts"], laws=law or [], repetitions=repetitions,
                             progress=line.update)  # fmt: skip
         if bulk:
-            from .stress.bulk_checks import dissipation_cost
+            from .stress import bulk_cost
 
-            scene = dissipation_cost(progress=line.update)
+            scene = bulk_cost.run(law or [outcome.case.law.name], progress=line.update)
     folder = out or Path("runs") / outcome.case.name / "cost"
     files = cost_report.write(outcome, folder)
     if docs:
@@ -129,7 +120,5 @@ def cost(
                     "rows": records(outcome.rows), "contenders": records(outcome.contenders)}  # fmt: skip
         print(json.dumps(document | ({} if scene is None else {"bulk": records(scene)}), indent=1))
     else:
-        cost_report.show(outcome, _console())
-        if scene is not None:
-            print(scene.to_string(index=False))
+        cost_report.show(outcome, scene, console())
         print(f"see {folder}/")

@@ -157,8 +157,15 @@ def _timings(everyone: list[Contender], steps: tuple[int, ...], repetitions: int
     return pd.DataFrame(rows)
 
 
-def _spread(x: pd.Series) -> float:
+def spread(x: pd.Series) -> float:
+    """Distance of the quartiles."""
     return float(x.quantile(0.75) - x.quantile(0.25))
+
+
+def to_yardstick(times: pd.DataFrame, value: str, keys: list[str]) -> pd.Series:
+    """Column `value` over that of the yardstick in the row with the same `keys`; NaN without a yardstick."""
+    yard = times[times["contender"] == YARDSTICK].set_index(keys)[value]
+    return times[value] / yard.reindex(pd.MultiIndex.from_frame(times[keys])).to_numpy()
 
 
 def run(case_path: Path | str, *, engines: list[str], laws: list[str], steps: tuple[int, ...] = STEPS,
@@ -180,14 +187,10 @@ def run(case_path: Path | str, *, engines: list[str], laws: list[str], steps: tu
 
 def _combine(rows: pd.DataFrame, times: pd.DataFrame) -> tuple[pd.DataFrame, pd.DataFrame]:
     """Medians and quartile distances beside the errors; then one row per contender."""
-    if YARDSTICK in set(times["contender"]):
-        yard = times[times["contender"] == YARDSTICK].set_index(["repetition", "steps"])["ns_per_step"]
-        times["ratio"] = times["ns_per_step"] / times.set_index(["repetition", "steps"]).index.map(yard)
-    else:
-        times["ratio"] = np.nan
+    times["ratio"] = to_yardstick(times, "ns_per_step", ["repetition", "steps"])
     groups = times.groupby(["contender", "steps"])
     middle = groups[["startup", "setup", "stepping", "ns_per_step", "ratio"]].median()
-    middle["stepping_spread"] = groups["stepping"].apply(_spread)
+    middle["stepping_spread"] = groups["stepping"].apply(spread)
     rows = rows.merge(middle.reset_index(), on=["contender", "steps"])
     rows["ns_per_impact"] = rows["stepping"] / rows["impacts"] * 1e9
     summary = []
@@ -196,7 +199,7 @@ def _combine(rows: pd.DataFrame, times: pd.DataFrame) -> tuple[pd.DataFrame, pd.
         fine = times[times["contender"] == label] if fine.empty else fine
         row = {"contender": label, "order": order(part["steps"].to_numpy(), part["e_n_error"].to_numpy()),
                "best_error": part["e_n_error"].min(), "ns_per_step": fine["ns_per_step"].median(),
-               "ratio_to_hertz": fine["ratio"].median(), "ratio_spread": _spread(fine["ratio"]),
+               "ratio_to_hertz": fine["ratio"].median(), "ratio_spread": spread(fine["ratio"]),
                "startup": part["startup"].median(), "setup": part["setup"].median()}  # fmt: skip
         for target in TARGETS:
             best = cheapest(part, target)

@@ -21,24 +21,30 @@ FRAMES = 40
 LIMIT = 120.0  # seconds a scene may take
 
 
-def write(scene: Scene, folder: Path, *, time_step: float, frames: int = FRAMES, contacts: bool = True):
-    """Deck, data and meshes of a scene; returns what the template saw."""
+def write(scene: Scene, folder: Path, *, time_step: float, frames: int = FRAMES, contacts: bool = True,
+          model: str | None = None):  # fmt: skip
+    """Deck, data and meshes of a scene; returns what the template saw.
+
+    Without `frames` nothing is recorded or booked. `model`: one of LIGGGHTS's own, elastic ones instead of the law's.
+    """
     folder.mkdir(parents=True, exist_ok=True)
     steps = math.ceil(scene.duration / time_step)
-    every = max(1, steps // frames)
+    every = max(1, steps // (frames or 1))
     info = claw.laws()[scene.law]
     moduli = [E for E, _ in scene.materials]
     rows = [("youngsModulus", "peratomtype", moduli, "Pa")]
     rows += [("poissonsRatio", "peratomtype", [POISSON] * len(moduli), "1")]
     rows += [(p.property, "peratomtype", [STRENGTH[p.property] * p_y for _, p_y in scene.materials], "Pa")
              for p in info.parameters if p.unit == "Pa"]  # fmt: skip
+    if model:
+        rows.append(("coefficientRestitution", "peratomtypepair", [len(moduli), *[1.0] * len(moduli) ** 2], "undamped"))
     memory = memory_size(scene.law)
     deck = SimpleNamespace(
         title=scene.title, plates=scene.plate_speed > 0, plate_speed=scene.plate_speed, soft=min(moduli) < SOFT,
-        skin=0.25 * scene.radius, properties=numbered(rows), model=f"ep/{scene.law}", tangential="off",
+        skin=0.25 * scene.radius, properties=numbered(rows), model=model or f"ep/{scene.law}", tangential="off",
         time_step=time_step, steps=every * math.ceil(steps / every), every=every, frames=frames, contacts=contacts,
         pair_columns=range(1, 6 + memory + (memory > 0) + 2), wall_columns=range(1, 6 + memory + 2),
-        settings=("computePlasticWork on",) if memory else (),
+        settings=("computePlasticWork on",) if memory and frames else (),
     )  # fmt: skip
     environment = decks.environment(Path(__file__).parent)
     (folder / "in.bulk").write_text(environment.get_template("bulk.in.j2").render(deck=deck))

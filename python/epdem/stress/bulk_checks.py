@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""What stiff bulk scenes must hold: no energy from nothing, no sphere lost, ranks agree; and what accuracy costs."""
+"""What stiff bulk scenes must hold: no energy from nothing, no sphere lost, ranks agree."""
 
 import shutil
 import tempfile
@@ -14,7 +14,7 @@ import pandas as pd
 from ..engines import engine
 from ..errors import EngineError
 from .bulk import FRAMES, execute, frames, ledger, write
-from .scenes import SCENES, Scene, shock, with_law
+from .scenes import SCENES, Scene, with_law
 
 # Of the energy brought in, what the total may move: velocity Verlet lets the energy of a contact in progress swing by
 # (omega dt)^2/4 = share^2 of the stability limit, 4e-4 at 2 %.
@@ -100,36 +100,4 @@ def run(laws: list[str], *, progress: Callable[[str], None] = lambda text: None)
     return pd.DataFrame(rows)
 
 
-def dissipation_cost(*, law: str = "thornton", repetitions: int = 3, shares=(0.4, 0.2, 0.1, 0.05, 0.025),
-                     progress: Callable[[str], None] = lambda text: None) -> pd.DataFrame:  # fmt: skip
-    """Error of the mean dissipated energy of two colliding blocks against seconds, one row per time step.
-
-    The blocks meet for about two collisions a sphere: long enough to be a bulk, too short for round-off to grow.
-    The reference is a run at a quarter of the finest step; `order` is that between neighbouring rows.
-    """
-    scene = with_law(shock((8, 8, 8)), law)
-    limit = scene.time_step() / 0.02
-    with tempfile.TemporaryDirectory(prefix="epdem-bulk-") as scratch:
-        folder = Path(scratch)
-
-        def lost(share: float) -> tuple[float, float]:
-            """(mean dissipated energy [J], loop time [s])"""
-            progress(f"bulk cost: {share:g} of the limit")
-            deck = write(scene, folder, time_step=share * limit, frames=1)
-            loop = execute(folder)
-            return float(ledger(scene, deck, folder)["plastic"].iloc[-1]) / len(scene.position), loop
-
-        reference, _ = lost(shares[-1] / 4)
-        found = {share: [lost(share) for _ in range(repetitions)] for share in shares}
-    rows = []
-    for share, runs in found.items():
-        seconds = np.array([loop for _, loop in runs])
-        rows.append({"spheres": len(scene.position), "share of the limit": share, "seconds": float(np.median(seconds)),
-                     "spread": float(np.ptp(seconds)), "error": abs(runs[0][0] / reference - 1)})  # fmt: skip
-    table = pd.DataFrame(rows)
-    ratio = np.log(table["share of the limit"]).diff()
-    table["order"] = np.log(table["error"]).diff() / ratio
-    return table
-
-
-__all__ = ["FRAMES", "BulkVerdict", "dissipation_cost", "judge_scene", "run"]
+__all__ = ["FRAMES", "BulkVerdict", "judge_scene", "run"]
