@@ -7,7 +7,7 @@ from typing import Annotated, Literal
 from pydantic import ConfigDict, Field, ValidationError, model_validator
 
 from .. import case as impact_case
-from ..case import Frozen, Header, LawChoice, Material, Name, quantity
+from ..case import Frozen, Header, LawChoice, Material, Name, Viscous, quantity
 from ..errors import CaseError
 
 Length = quantity("m", above=0.0)
@@ -221,6 +221,7 @@ class SceneCase(Frozen):
     materials: dict[Name, SceneMaterial]
     law: LawChoice
     scene: Annotated[Kinds, Field(discriminator="kind")]
+    viscous: Viscous | None = None
     contact: Contact = Contact()
     output: Output = Output()
     numerics: SceneNumerics = SceneNumerics()
@@ -233,6 +234,12 @@ class SceneCase(Frozen):
         for place, name in used:
             if name not in self.materials:
                 raise ValueError(f"{place} = {name!r} is not defined; add [materials.{name}]")
+        tangential = self.contact.tangential_restitution
+        if self.viscous and tangential not in (None, self.viscous.restitution):
+            raise ValueError(
+                f"contact.tangential_restitution = {tangential:g}: LIGGGHTS has one restitution for both dashpots; "
+                f"give that of viscous ({self.viscous.restitution:g}), or remove it (then no tangential dashpot)"
+            )
         for pair in self.contact.pairs:
             for name in pair.between:
                 if name not in self.materials and name != "wall":

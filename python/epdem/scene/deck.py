@@ -1,53 +1,18 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Everything that the templates of a scene write; every number is decided here."""
 
-import itertools
 import math
 from dataclasses import dataclass
 from pathlib import Path
 
-import numpy as np
-
 from .. import deck as decks
 from ..engines.liggghts import HARD, SOFT, Property
-from ..errors import CaseError
 from . import meshes
 from .case import SceneCase
+from .insertions import Insertion, insertions
 from .model import Model, model, time_step
 
-SMALL = 1e-12  # volume [m^3] below which LIGGGHTS refuses a template unless told
-MOST_FILLED = 0.26  # volume share that LIGGGHTS's random insertion reaches with its own number of attempts
 SKIN = 0.25  # of the smallest radius: rebuilds cost less than idle neighbours
-
-
-@dataclass(frozen=True)
-class Template:
-    """A particle template; `small`: LIGGGHTS wants to be told that its volume is meant."""
-
-    id: str
-    seed: int
-    type: int
-    density: float
-    radius: float
-    share: float
-    small: bool
-
-
-@dataclass(frozen=True)
-class Insertion:
-    """One `fix insert`: a distribution of templates, filled into a region at once or as a stream."""
-
-    id: str
-    seed: int
-    distribution: str
-    distribution_seed: int
-    templates: tuple[Template, ...]
-    region: str
-    count: int
-    rate: float | None = None
-    every: int | None = None
-    velocity: float = 0.0
-    phase: str = ""
 
 
 @dataclass(frozen=True)
@@ -121,52 +86,14 @@ class Deck:
         )
 
     @property
+    def loses_energy(self) -> bool:
+        """Whether contacts lose energy that no table holds: to friction or dashpots."""
+        return self.tangential != "off" or self.rolling_friction is not None or "viscous on" in self.settings
+
+    @property
     def torque(self) -> bool:
         """Whether the torque of a drum is asked for."""
         return "drum" in self.meshes and (self.loads or self.energy)
-
-
-def primes():
-    """Seeds as LIGGGHTS wants them: different primes above 10000."""
-    n = 15485863
-    while True:
-        if all(n % k for k in range(3, math.isqrt(n) + 1, 2)):
-            yield n
-        n += 2
-
-
-def _templates(parts, m: Model, case: SceneCase, first: int, seeds) -> tuple[Template, ...]:
-    sizes = [(p, radius, share) for p in parts for radius, share in p.sizes()]
-    return tuple(
-        Template(
-            f"template{i}",
-            next(seeds),
-            m.type_of(p.material),
-            case.materials[p.material].density,
-            radius,
-            share,
-            4.0 / 3.0 * math.pi * radius**3 < SMALL,
-        )
-        for i, (p, radius, share) in enumerate(sizes, first)
-    )
-
-
-def _mean_volume(parts, case: SceneCase) -> float:
-    """Mean volume [m^3] of a sphere when the sizes are drawn by their share of the mass."""
-    sizes = [(case.materials[p.material].density, radius, share) for p in parts for radius, share in p.sizes()]
-    volumes = [4.0 / 3.0 * math.pi * radius**3 for _, radius, _ in sizes]
-    weights = [share / (rho * v) for (rho, _, share), v in zip(sizes, volumes, strict=True)]
-    return float(np.average(volumes, weights=weights))
-
-
-def _fits(place: str, count: int, parts, case: SceneCase, volume: float, limit: float = MOST_FILLED) -> None:
-    share = count * _mean_volume(parts, case) / volume
-    if share > limit:
-        most = int(count * limit / share)
-        raise CaseError(
-            f"{place} = {count}: the spheres would fill {share:.0%} of the room that they are poured into, "
-            f"at most {limit:.0%} ({most} spheres); enlarge the room"
-        )
 
 
 def _intervals(case: SceneCase, total: float, dt: float) -> tuple[int, int]:
@@ -188,7 +115,6 @@ def deck(case: SceneCase) -> Deck:
     from . import kinds
 
     m, dt, s = model(case), time_step(case), case.scene
-    seeds = itertools.islice(primes(), 100 * (case.numerics.seed - 1), None)
     parts = [*s.particles, *getattr(s, "bed", [])]
     smallest = min(p.radii()[0] for p in parts)
     layout = kinds.layout(case)
@@ -200,28 +126,6 @@ def deck(case: SceneCase) -> Deck:
     phases[-1] = (
         Phase(phases[-1].name, max(rows * every, end)) if len(phases) > 1 else Phase(phases[0].name, rows * every)
     )
-    insertions, first = [], 1
-    for i, fill in enumerate(layout.fills, 1):
-        templates = _templates(fill.parts, m, case, first, seeds)
-        first += len(templates)
-        if fill.room is not None:
-            _fits(fill.place, fill.count, fill.parts, case, fill.room)
-        interval = None if fill.rate is None else max(1, math.ceil(fill.every / dt))
-        insertions.append(
-            Insertion(
-                f"fill{i}",
-                next(seeds),
-                f"mix{i}",
-                next(seeds),
-                templates,
-                fill.region,
-                fill.count,
-                fill.rate,
-                interval,
-                fill.velocity,
-                fill.phase or phases[0].name,
-            )
-        )
     moduli = m.rows[0].values
     out = case.output
     return Deck(
@@ -241,12 +145,12 @@ def deck(case: SceneCase) -> Deck:
         tangential=m.tangential,
         cohesion=m.cohesion,
         rolling_friction=m.rolling,
-        settings=("computePlasticWork on",) if out.energy and m.yields else (),
+        settings=_settings(case, m),
         wall_type=m.wall_type,
         planes=layout.planes,
         meshes=tuple(layout.meshes),
         gravity=s.gravity,
-        insertions=tuple(insertions),
+        insertions=insertions(case, m, layout.fills, phases[0].name, dt),
         time_step=dt,
         phases=tuple(phases),
         every=every,
@@ -267,6 +171,17 @@ def deck(case: SceneCase) -> Deck:
         loses=layout.loses,
         motion=layout.motion,
     )
+
+
+def _settings(case: SceneCase, m: Model) -> tuple[str, ...]:
+    """Settings of pair and walls; a dashpot along the normal alone needs the tangential one switched off."""
+    alone = case.viscous and m.tangential != "off" and case.contact.tangential_restitution is None
+    wanted = {
+        "viscous on": case.viscous,
+        "tangential_damping off": alone,
+        "computePlasticWork on": case.output.energy and m.yields,
+    }
+    return tuple(words for words, asked in wanted.items() if asked)
 
 
 def _divisor(n: int, parts: int) -> int:

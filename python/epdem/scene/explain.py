@@ -23,6 +23,10 @@ _REASONS = (
     (r"fix \S+ all property/global (yieldPressure|yieldStress)", "the law yields; the softer body's value counts"),
     (r"fix \S+ all property/global coefficientFriction", "contact.friction: limit of the tangential force"),
     (
+        r"fix \S+ all property/global coefficientRestitution.*do not yield",
+        "viscous.restitution, on the elastic branches",
+    ),
+    (
         r"fix \S+ all property/global coefficientRestitution",
         "contact.tangential_restitution: dashpot beside the tangential spring; the normal law needs none",
     ),

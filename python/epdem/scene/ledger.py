@@ -67,7 +67,7 @@ def ledger(case: SceneCase, deck: Deck, tables: dict[str, pd.DataFrame]) -> pd.D
     total = table[["kinetic", "gravity", "elastic", "plastic", "left"]].sum(axis=1) - table["work"]
     table["balance"] = total - total.iloc[start]
     table = table.iloc[start:].reset_index(drop=True)
-    if deck.tangential != "off" or deck.rolling_friction:
+    if deck.loses_energy:
         table["friction"] = -table["balance"]
     return table
 

@@ -85,7 +85,7 @@ def particles(folder: Path, deck: Deck, *, upto: int | None = None) -> pd.DataFr
     """Every particle of every frame, sorted by step and id: SI."""
     names = [*PARTICLES, *(SPINS if deck.spins else [])]
     names += [f"delta_max_{p[0]}" for p in deck.planes] if deck.contacts and deck.yields else []
-    names += ["plastic_work"] if deck.settings else []
+    names += ["plastic_work"] if deck.energy and deck.yields else []
     frames = []
     for step, path in _steps(folder, "particles.*.bin"):
         if upto is not None and step > upto:
