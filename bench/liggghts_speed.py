@@ -37,7 +37,7 @@ communicate single vel yes
 units si
 {processors}read_data packing.data
 neighbor {skin} bin
-neigh_modify delay 0
+neigh_modify delay 0{lists}
 fix m1 all property/global youngsModulus peratomtype 1e8
 fix m2 all property/global poissonsRatio peratomtype 0.3
 {restitution}{friction}fix p1 all property/global yieldPressure peratomtype 1e6
@@ -80,13 +80,14 @@ def packing(cells, spacing, jitter, speed=0.0, shear=0.0):
     return "\n".join([*lines, ""])
 
 
-def deck(model, *, steps, chunks=1, dt="1e-13", warm=2, unload=True, restitution=True, ranks=1, skin="8e-4"):
+def deck(model, *, steps, chunks=1, dt="1e-13", warm=2, unload=True, restitution=True, ranks=1, skin="8e-4", lists=""):
     foreign = model == "thornton_ning"
     return DECK.format(
         model=model,
         runs=f"run {steps}\n" + f"run {steps} pre no\n" * (chunks - 1),
         dt=dt,
         skin=skin,
+        lists=f" {lists}" if lists else "",
         warm=warm,
         processors="processors 2 1 1\n" if ranks == 2 else "",
         restitution=per_pair("coefficientRestitution", 0.7, 1) if restitution or not model.startswith("ep/") else "",
@@ -98,7 +99,8 @@ def deck(model, *, steps, chunks=1, dt="1e-13", warm=2, unload=True, restitution
 
 FROZEN = {"data": (17, 1.01, 0.03), "steps": 2, "chunks": 120}
 DYNAMIC = {"data": (17, 0.985, 0.002, 0.05), "steps": 100, "chunks": 3}
-SHEARED = {"data": (17, 0.985, 0.002, 0.05, 2.0), "steps": 100, "chunks": 3}
+SHEARED = {"data": (17, 0.985, 0.002, 0.05, 0.5), "steps": 100, "chunks": 3}
+THIN = {"skin": "1e-4", "lists": "every 18 check no"}
 MOVING = {"dt": "2e-6", "unload": False, "warm": 50}
 SCENES = {
     # spacing 1.01 and jitter 0.03: about half of the neighbours touch; loaded, then unloaded by a third
@@ -107,9 +109,9 @@ SCENES = {
     "frozen, 2 ranks": FROZEN | {"run": {"ranks": 2}},
     "moving": DYNAMIC | {"run": MOVING},
     "moving, 2 ranks": DYNAMIC | {"run": MOVING | {"ranks": 2}},
-    # a thin skin: the neighbour lists are made anew every 20 steps or so
-    "moving, sheared": SHEARED | {"run": MOVING | {"skin": "1e-4"}},
-    "moving, sheared, 2 ranks": SHEARED | {"run": MOVING | {"skin": "1e-4", "ranks": 2}},
+    # a thin skin, and the neighbour lists made anew every 18 steps for every model
+    "moving, sheared": SHEARED | {"run": MOVING | THIN},
+    "moving, sheared, 2 ranks": SHEARED | {"run": MOVING | THIN | {"ranks": 2}},
 }
 
 
