@@ -51,10 +51,10 @@ def test_a_dashpot_that_liggghts_cannot_have_is_refused_before_anything_runs(dat
         deck.deck(parse(data, "case.toml"))
 
 
-def test_a_strong_dashpot_makes_the_step_of_a_bed_smaller():
-    """An explicit step of a damped oscillator is stable below (2/omega) (sqrt(1 + z^2) - z)."""
-    steps = [time_step(parse(beads(e) | {"numerics": {"error": 0.1}})) for e in (None, 0.9, 0.3)]
-    assert steps[0] > steps[1] > steps[2] > 0.05 * steps[0]
+def test_a_strong_dashpot_makes_the_step_smaller():
+    """The engine knows the speed half a step late, so its error grows with the dashpot; undamped it has none of this."""
+    steps = [time_step(parse(beads(e) | {"numerics": {"error": 0.01}})) for e in (None, 0.9, 0.3)]
+    assert steps[0] > steps[1] > 2 * steps[2]
 
 
 @pytest.mark.liggghts

@@ -12,7 +12,6 @@ from ..errors import CaseError
 from ..experiment import experiment
 from ..predict import predict
 from ..theory import backbones
-from ..theory.viscous import damping_ratio
 from ..timestep import search, stability_limit
 from ..units import to_si
 from .case import SceneCase
@@ -233,7 +232,7 @@ def time_step(case: SceneCase) -> float:
     if case.numerics.time_step is not None:
         return case.numerics.time_step
     v = highest_speed(case)
-    best, share = math.inf, BED_SHARE * _damped(case)
+    best = math.inf
     parts = [*case.scene.particles, *getattr(case.scene, "bed", [])]
     bodies = {(p.material, p.radii()[0]) for p in parts}
     for material, radius in sorted(bodies):
@@ -241,20 +240,8 @@ def time_step(case: SceneCase) -> float:
             x = sphere_impact(case, material, radius, other, v)
             prediction = predict(x)
             found = search(x, prediction, case.numerics.error).time_step
-            best = min(best, found, share * stability_limit(x, float(prediction.overlap_max.max())))
+            best = min(best, found, BED_SHARE * stability_limit(x, float(prediction.overlap_max.max())))
     return _round_down(best)
-
-
-def _damped(case: SceneCase) -> float:
-    """The part of the stable step that dashpots leave: velocity Verlet knows the speed half a step late.
-
-    sqrt(1 + z^2) - z, z the damping ratio of the fastest motion of a bed: twice the frequency of one contact, and so
-    twice its damping ratio sqrt(5/6) zeta.
-    """
-    if not case.viscous:
-        return 1.0
-    z = 2.0 * math.sqrt(5.0 / 6.0) * float(damping_ratio(case.viscous.restitution))
-    return math.hypot(1.0, z) - z
 
 
 def sphere_impact(case: SceneCase, material: str, radius: float, other: str, v: float):
