@@ -37,11 +37,13 @@ def run(
 ) -> None:
     """Run a case and check it against theory, or run a bulk scene (default engine: liggghts)."""
     if cli_scene.is_scene(case):
-        if engine not in (None, ["liggghts"]) or law or steps:
-            raise CaseError(
-                "a scene has its own law and time step and runs on LIGGGHTS; leave out --engine, --law, --steps"
-            )
-        raise typer.Exit(cli_scene.run_scene(case, out=out, ranks=ranks, fresh=fresh, resume=resume, as_json=as_json))
+        if len(engine or []) > 1 or law or steps:
+            raise CaseError("a scene has its own law and time step and runs on one engine; leave out --law, --steps")
+        chosen = engine[0] if engine else "liggghts"
+        code = cli_scene.run_scene(
+            case, engine=chosen, out=out, ranks=ranks, fresh=fresh, resume=resume, as_json=as_json
+        )
+        raise typer.Exit(code)
     if resume:
         raise CaseError("--resume continues bulk scenes; an impact case takes finished stages from its store by itself")
     from . import report
@@ -82,7 +84,7 @@ def deck(
     if case or given:
         raise CaseError(f"{file}: --case and --set go with an own template (.j2)")
     if cli_scene.is_scene(file):
-        cli_scene.deck_scene(file, out, as_json=as_json)
+        cli_scene.deck_scene(file, out, engine=engine, as_json=as_json)
         return
     from .case import load
     from .engines import engine as find

@@ -22,6 +22,7 @@ def is_scene(path: Path) -> bool:
 def run_scene(
     case: Path,
     *,
+    engine: str = "liggghts",
     out: Path | None = None,
     ranks: int = 1,
     fresh: bool = False,
@@ -44,6 +45,7 @@ def run_scene(
         task = bar.add_task(Path(case).stem, total=None)
         outcome = run(
             case,
+            engine=engine,
             out=out,
             ranks=ranks,
             fresh=fresh,
@@ -59,11 +61,15 @@ def run_scene(
     return 0 if outcome.passed else 1
 
 
-def deck_scene(case: Path, out: Path, *, as_json: bool = False) -> None:
+def deck_scene(case: Path, out: Path, *, engine: str = "liggghts", as_json: bool = False) -> None:
     """Write the deck of a scene; it runs by hand."""
-    from .scene.deck import write
+    from .scene import deck, yade
 
-    names = [str(f) for f in write(scene_case.load(case), out)]
+    if engine not in ("liggghts", "yade"):
+        raise CaseError(f"--engine {engine}: a scene runs on liggghts or yade")
+    scene = scene_case.load(case)
+    files = yade.write(yade.texts(scene), out) if engine == "yade" else deck.write(scene, out)
+    names = [str(f) for f in files]
     print(json.dumps({"files": names}) if as_json else "\n".join(names))
 
 

@@ -27,6 +27,11 @@ def contacts(case: SceneCase, deck: Deck, folder: Path, spheres: pd.DataFrame) -
     raw = pd.concat([p for p in parts if len(p)], ignore_index=True) if any(len(p) for p in parts) else None
     if raw is None:
         return pd.DataFrame(columns=COLUMNS)
+    return complete(case, deck, raw, spheres)
+
+
+def complete(case: SceneCase, deck: Deck, raw: pd.DataFrame, spheres: pd.DataFrame) -> pd.DataFrame:
+    """`raw` (step, wall, i, j, overlap, delta_max) with all that follows by the law, sorted."""
     known = spheres.set_index(["step", "id"])[["radius", "type"]]
     first = known.reindex(pd.MultiIndex.from_frame(raw[["step", "i"]].astype("int64")))
     second = known.reindex(pd.MultiIndex.from_frame(raw[["step", "j"]].astype("int64")))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""LIGGGHTS running: its own thermo lines as progress, its end in good order whatever happens here."""
+"""An engine running: its own thermo lines as progress, its end in good order whatever happens here."""
 
 import os
 import re
@@ -31,26 +31,40 @@ def command(deck: str, ranks: int) -> list[str]:
 def run(
     deck: str, folder: Path, *, ranks: int = 1, append: bool = False, tell: Callable[[int], None] = lambda step: None
 ) -> float:
-    """Run a deck to its end, `tell` every thermo row's step; seconds taken.
-
-    Both streams go into out.liggghts (continued with `append`). Raises EngineError with LIGGGHTS's last words. On any
-    exception, Ctrl-C too, LIGGGHTS and all its ranks are stopped first; what they wrote stays.
-    """
-    path, start = folder / OUT, time.perf_counter()
+    """Run a LIGGGHTS deck to its end, its words into out.liggghts (continued with `append`); see `follow`."""
     environment = dict(os.environ, OMP_NUM_THREADS="1")
+    return follow(command(deck, ranks), folder, OUT, name="LIGGGHTS", env=environment, append=append, tell=tell)
+
+
+def follow(
+    words: list[str],
+    folder: Path,
+    out: str,
+    *,
+    name: str,
+    env: dict[str, str],
+    append: bool = False,
+    tell: Callable[[int], None] = lambda step: None,
+) -> float:
+    """Run a command in `folder` to its end, `tell` every thermo row's step; seconds taken.
+
+    Both streams go into the file `out` (continued with `append`). Raises EngineError with the engine's last words. On
+    any exception, Ctrl-C too, the engine and all its ranks are stopped first; what they wrote stays.
+    """
+    path, start = folder / out, time.perf_counter()
     with path.open("ab" if append else "wb") as log:
         try:
             process = subprocess.Popen(
-                command(deck, ranks),
+                words,
                 cwd=folder,
                 stdin=subprocess.DEVNULL,
-                env=environment,
+                env=env,
                 stdout=subprocess.PIPE,
                 stderr=subprocess.STDOUT,
                 start_new_session=True,
             )
         except OSError as error:
-            raise EngineError(f"LIGGGHTS cannot be started ({error})") from None
+            raise EngineError(f"{name} cannot be started ({error})") from None
         try:
             with process.stdout as stream:
                 for line in stream:
@@ -64,5 +78,5 @@ def run(
             raise
     if status:
         how = f"signal {-status}" if status < 0 else f"exit code {status}"
-        raise EngineError(f"LIGGGHTS failed ({how}); {path}: {last_words(path)}")
+        raise EngineError(f"{name} failed ({how}); {path}: {last_words(path)}")
     return time.perf_counter() - start

@@ -12,7 +12,7 @@ from pathlib import Path
 from .. import __version__, paths
 from ..errors import CaseError, EngineError
 from ..predict import predict
-from . import progress, results, tables
+from . import checks, contacts, ledger, progress, results, tables, yade, yade_tables
 from .case import SceneCase, load
 from .deck import Deck, deck, write
 from .model import highest_speed, wall_impact
@@ -80,6 +80,8 @@ def _clear(folder: Path) -> None:
         "scene_*.vtk",
         "picture.*.ppm",
         "in.resume",
+        "particles.*.npy",
+        "contacts.*.npy",
     ):
         for path in folder.glob(pattern):
             path.unlink()
@@ -88,6 +90,7 @@ def _clear(folder: Path) -> None:
 def run(
     path: Path | str,
     *,
+    engine: str = "liggghts",
     out: Path | None = None,
     ranks: int = 1,
     fresh: bool = False,
@@ -96,6 +99,10 @@ def run(
 ) -> SceneOutcome:
     """Run the scene in a case file, or continue it from its last restart file. Raises CaseError, EngineError."""
     case = load(path)
+    if engine == "yade":
+        return _run_yade(path, case, out, ranks, fresh, resume, tell)
+    if engine != "liggghts":
+        raise CaseError(f"--engine {engine}: a scene runs on liggghts or yade")
     d = deck(case)
     folder = out or Path("runs") / case.name
     stored = folder / "results.h5"
@@ -151,35 +158,53 @@ def _same_deck(case: SceneCase, folder: Path) -> bool:
 
 
 def _finish(path, case, d, folder, ranks, start, resumed) -> SceneOutcome:
-    from . import checks, contacts, ledger
-
-    found = results.SceneResults(
-        Path(path).read_text(),
-        {
-            "case": case.name,
-            "epdem": __version__,
-            "ranks": ranks,
-            "time_step": d.time_step,
-            "steps": d.steps,
-            "inputs": _inputs(_texts(case), ranks),
-        },
-    )
-    found.tables["rows"] = tables.rows(folder / progress.OUT, d.time_step)
-    if case.scene.kind == "compaction":
-        tables.add_plate(case, d, found.tables["rows"])
+    found = {"rows": tables.rows(folder / progress.OUT, d.time_step)}
     if d.frames:
-        found.tables["particles"] = tables.particles(folder, d)
+        found["particles"] = tables.particles(folder, d)
     if d.contacts:
-        found.tables["contacts"] = contacts.contacts(case, d, folder, found.tables["particles"])
-    if case.output.energy:
-        found.tables["ledger"] = ledger.ledger(case, d, found.tables)
-    found.tables["checks"] = checks.checks(case, d, found.tables)
-    found.decks = {f.name: f.read_text() for f in sorted(folder.glob("*.in")) + sorted(folder.glob("in.*"))}
-    found.attributes["seconds"] = time.perf_counter() - start
-    results.write(folder / "results.h5", found)
-    return SceneOutcome(
-        case, d, folder, found, found.attributes["seconds"], resumed_from=resumed, warnings=_warnings(case)
+        found["contacts"] = contacts.contacts(case, d, folder, found["particles"])
+    decks = sorted(folder.glob("*.in")) + sorted(folder.glob("in.*"))
+    attributes = {"engine": "liggghts", "ranks": ranks, "inputs": _inputs(_texts(case), ranks)}
+    return _store(path, case, d, folder, found, decks, attributes, start, resumed)
+
+
+def _store(path, case, d, folder, found, decks, attributes, start, resumed=None, said=()) -> SceneOutcome:
+    """Complete the tables of a run of any engine by ledger and checks, and write results.h5."""
+    kept = results.SceneResults(
+        Path(path).read_text(),
+        {"case": case.name, "epdem": __version__, "time_step": d.time_step, "steps": d.steps, **attributes},
+        found,
+        {f.name: f.read_text() for f in decks},
     )
+    if case.scene.kind == "compaction":
+        tables.add_plate(case, d, found["rows"])
+    if case.output.energy:
+        found["ledger"] = ledger.ledger(case, d, found)
+    found["checks"] = checks.checks(case, d, found)
+    seconds = kept.attributes["seconds"] = time.perf_counter() - start
+    results.write(folder / "results.h5", kept)
+    return SceneOutcome(case, d, folder, kept, seconds, resumed_from=resumed, warnings=[*said, *_warnings(case)])
+
+
+def _run_yade(path, case, out, ranks, fresh, resume, tell) -> SceneOutcome:
+    """The same in YADE, in its own folder."""
+    if ranks > 1 or resume:
+        option = f"--ranks {ranks}" if ranks > 1 else "--resume"
+        raise CaseError(f"{option}: a scene in YADE runs on one core from its start; leave it out")
+    start = time.perf_counter()
+    texts, d, said = yade.texts(case), deck(case), yade.warnings(case)
+    yade.missing()
+    folder = out or Path("runs") / case.name / "yade"
+    inputs, stored = _inputs("\n".join([yade.version(), *texts.values()]), ranks), folder / "results.h5"
+    if not fresh and (old := _old(stored)) is not None and old.attributes.get("inputs") == inputs:
+        return SceneOutcome(case, d, folder, old, 0.0, reused=True, warnings=[*said, *_warnings(case)])
+    folder.mkdir(parents=True, exist_ok=True)
+    _clear(folder)
+    yade.write(texts, folder)
+    yade.run(folder, lambda step: tell(step, d.steps))
+    attributes = {"engine": "yade", "ranks": ranks, "inputs": inputs}
+    found = yade_tables.read(case, d, folder)
+    return _store(path, case, d, folder, found, [folder / yade.SCRIPT], attributes, start, said=said)
 
 
 def _warnings(case: SceneCase) -> list[str]:
