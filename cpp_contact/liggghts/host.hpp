@@ -23,8 +23,4 @@ static_assert(sizeof(LIGGGHTS::ContactModels::SurfacesIntersectData) == 368,
 /// Ends the run if the library in use is not the one that the headers describe; names the models once.
 void greet(LAMMPS_NS::LAMMPS* lmp);
 
-/// Lets an error about an unknown model ep/... name those that exist. To be called after LIGGGHTS has started, which
-/// sets its own selector of models then: possible in the launcher, not in a preloaded library.
-void explain_wrong_names();
-
 }  // namespace epdem::liggghts

@@ -5,7 +5,6 @@
 #include <csignal>
 #include <cstdlib>
 
-#include "host.hpp"
 #include "input.h"
 #include "lammps.h"
 #include "signal_handling.h"
@@ -33,7 +32,6 @@ int main(int argc, char** argv) {
   handle_signals();
   {
     LAMMPS_NS::LAMMPS lammps(argc, argv, MPI_COMM_WORLD);
-    epdem::liggghts::explain_wrong_names();
     lammps.input->file();
   }
   MPI_Finalize();

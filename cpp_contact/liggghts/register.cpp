@@ -2,7 +2,6 @@
 // Makes the laws known to LIGGGHTS when the library (or the launcher) is loaded.
 #include <cstdio>
 #include <cstring>
-#include <iostream>
 #include <string>
 
 #include "epdem/laws.hpp"
@@ -144,31 +143,14 @@ void add_law(const char* name, int id) {
         for (int s : surfaces) add_combination<Law>({id, t, c, r, s});
 }
 
-/// LIGGGHTS calls every wrong name "Invalid model"; a name that starts with ep/ deserves the list of what exists.
-int64_t select(int& narg, char**& arg, LAMMPS_NS::Custom_contact_models custom) {
-  for (int k = 0; k + 1 < narg; ++k) {
-    if (std::strcmp(arg[k], "model") != 0 || std::strncmp(arg[k + 1], "ep", 2) != 0) continue;
-    bool known = false;
-#define EPDEM_KNOWN(Class, name, id) known = known || std::strcmp(arg[k + 1], "ep/" #name) == 0;
-    EPDEM_LAWS(EPDEM_KNOWN)
+bool unknown_name(const char* name) {
+  if (std::strncmp(name, "ep", 2) != 0) return false;
+#define EPDEM_KNOWN(Class, known, id) \
+  if (std::strcmp(name, "ep/" #known) == 0) return false;
+  EPDEM_LAWS(EPDEM_KNOWN)
 #undef EPDEM_KNOWN
-    if (!known) return Ids{unknown_law, TANGENTIAL_OFF, COHESION_OFF, ROLLING_OFF, SURFACE_DEFAULT}.hash();
-  }
-  return LIGGGHTS::ContactModels::Factory::select(narg, arg, custom);
+  return true;
 }
-
-/// LIGGGHTS writes a warning about every name that is set twice; this one is meant.
-class Quiet {
- public:
-  Quiet() : kept_(std::cerr.rdbuf(nullptr)) {}
-  ~Quiet() {
-    std::cerr.rdbuf(kept_);
-    std::cerr.clear();
-  }
-
- private:
-  std::streambuf* kept_;
-};
 
 const struct Registration {
   Registration() {
@@ -183,10 +165,16 @@ const struct Registration {
 
 }  // namespace
 
-void explain_wrong_names() {
-  const Quiet quiet;
-  PairStyles::Factory::instance().addVariantSelector("gran", &select);
-  Walls::Factory::instance().addVariantSelector("gran", &select);
-}
-
 }  // namespace epdem::liggghts
+
+/// In place of LIGGGHTS's own, which calls every wrong name "Invalid model specified": a name that starts with ep
+/// deserves the list of what exists. LIGGGHTS takes this function's address through the dynamic linker, which finds
+/// the launcher or a preloaded library first; it is the one symbol that the plugin exports.
+[[gnu::visibility("default")]] int64_t LIGGGHTS::ContactModels::Factory::select(
+    int& narg, char**& arg, LAMMPS_NS::Custom_contact_models custom) {
+  using namespace epdem::liggghts;
+  for (int k = 0; k + 1 < narg; ++k)
+    if (std::strcmp(arg[k], "model") == 0 && unknown_name(arg[k + 1]))
+      return Ids{unknown_law, TANGENTIAL_OFF, COHESION_OFF, ROLLING_OFF, SURFACE_DEFAULT}.hash();
+  return instance().select_model(narg, arg, custom);
+}
