@@ -11,7 +11,7 @@ from epdem import stress
 from epdem.engines import engine
 from epdem.experiment import experiment
 from epdem.law import Law
-from epdem.stress import bulk, bulk_checks, precisions, roundoff
+from epdem.stress import bulk, bulk_checks, precisions, repeats, roundoff
 from epdem.stress.cases import build, extremes
 from epdem.stress.document import document
 from epdem.stress.repeats import judge_repeats
@@ -105,15 +105,44 @@ def test_a_squeezed_sphere_keeps_its_energy_but_not_with_a_wrong_mass():
     assert np.abs(balance(wrong, *samples) - 1).max() > 1e-3
 
 
-@pytest.mark.liggghts
-def test_liggghts_takes_the_steps_of_the_embedded_engine_with_a_sphere_between_two_walls(tmp_path):
+ENGINES = [pytest.param(name, marks=getattr(pytest.mark, name)) for name in ("liggghts", "yade")]
+
+
+@pytest.mark.parametrize("name", ENGINES)
+def test_engines_take_the_steps_of_the_embedded_one_with_a_sphere_between_two_walls(name, tmp_path):
     """Same scheme: without memory only the round-off of positions differs; with it the balance of both holds."""
-    sampler = PositionSampler(engine("liggghts"), tmp_path)
+    sampler = PositionSampler(engine(name), tmp_path)
     s = setting(BY_NAME["squeeze_3e0"], "hertz")
     ours, theirs = path(s, EmbeddedSampler(), 0.05), path(s, sampler, 0.05)
-    assert np.abs(ours[0][1:] - theirs[0]).max() < 1e-9 * s.overlap_max
+    assert np.abs(ours[0][-theirs[0].size :] - theirs[0]).max() < 1e-9 * s.overlap_max
     s = setting(BY_NAME["squeeze_3e0"], "cavity")
     assert np.abs(balance(s, *path(s, sampler, 0.01)) - 1).max() < 1e-4
+
+
+@pytest.mark.parametrize("name", ENGINES)
+def test_reloads_in_an_engine_repeat_the_laws_force_to_the_last_bit(name, tmp_path):
+    """100 here, 10^4 in `epdem stress`; a carried sphere has the same overlaps, bit for bit, in every cycle."""
+    verdict = judge_repeats(
+        BY_NAME["reloads_1e4"], "cavity", PositionSampler(engine(name), tmp_path), steps=0, cycles=100
+    )
+    assert (verdict.status, verdict.reason) == ("passed", "")
+    assert verdict.steps == 100 * 65 and verdict.e_n_error < 1e-8
+
+
+@pytest.mark.parametrize(("fault", "word"), [(1e-15, "cycle to cycle"), (0.0, "off the law's"), (None, "work")])
+def test_the_judge_of_reloads_sees_a_last_bit_a_wrong_branch_and_a_loop(fault, word, monkeypatch):
+    """Planted in what the embedded engine gives: a change per cycle, a force of another law, a hysteresis."""
+    good = repeats.embedded_cycles
+
+    def wrong(s, cycles):
+        overlap, force = good(s, cycles)
+        if fault is None:
+            return overlap, force * np.where(np.arange(force.shape[1]) > force.shape[1] // 2, 1 + 1e-9, 1.0)
+        return overlap, force * (1.0 + fault * np.arange(cycles)[:, None]) * (1.0 if fault else 1 + 1e-7)
+
+    monkeypatch.setattr(repeats, "embedded_cycles", wrong)
+    verdict = judge_repeats(BY_NAME["reloads_1e4"], "thornton", EmbeddedSampler(), steps=0, cycles=10)
+    assert verdict.status == "failed" and word in verdict.reason
 
 
 def test_double_and_long_double_agree_to_a_few_eps_per_thousand_steps():

@@ -6,7 +6,7 @@ import pandas as pd
 from rich.table import Table
 
 from .cases import extremes
-from .repeats import BOUNCE_SHARE, DRIFT
+from .repeats import BOUNCE_SHARE, DRIFT, FORCE
 from .roundoff import FORMULA
 from .running import BROKEN, COARSE, CREATED, ERROR, FINE, FINEST, LEAST_ORDER, WRONG
 from .suite import POSITION_COARSE, Outcome, summary
@@ -64,7 +64,8 @@ All steps are shares of the stability limit 2 sqrt(m*/k_n), k_n = 2E* a_max, of 
 - the error falls with at least order {order} from {coarsest} to {finest} of the limit, where it stands above round-off;
 - the same accuracy is kept at {tiny:g} of the limit (embedded engine);
 - 1e9 steps of bounces at {bounce} of the limit change the speed by less than {drift:g} (measured: it goes with dt^3);
-- 10^4 reloads repeat force and memory to the last bit, and a closed cycle does no work.
+- 10^4 reloads repeat every force to the last bit, it is the law's within {force:g} of the largest, and a closed cycle
+  does no work (engines with positions: the sphere is carried along the overlaps).
 
 {summary}
 
@@ -77,8 +78,8 @@ step up to 1.5 times the limit is a failure; every case is bounded in its number
 engines with positions: {fewer}), at which e_n is off by more than {wrong:.0%}, and at which more than {broken:.0%} of
 the energy is created or the contact does not end. A dash: not up to 1.5 times the limit. `large`: a_max/R* > 0.3,
 outside small-deformation theory; the case runs and is flagged.
-`n.r.`: not representable (below). `n.a.`: embedded engine only. Empty: not run (YADE needs ten seconds a case: it runs
-the first and the last of each group, with one law).
+`n.r.`: not representable (below). `n.a.`: not run; 1e9 steps of bounces take hours in an engine with positions. Empty:
+not run (YADE needs ten seconds a case: it runs the first and the last of each group, with one law).
 
 **In practice:** {practice}
 
@@ -145,7 +146,7 @@ def document(outcome: Outcome, command: str) -> str:
     """The text of docs/stability.md."""
     return TEXT.format(
         command=command, count=len(extremes()), finest=FINE[-1], coarsest=FINE[0], error=ERROR, created=CREATED,
-        order=LEAST_ORDER, tiny=FINEST, bounce=BOUNCE_SHARE, drift=DRIFT, wrong=WRONG, broken=BROKEN,
+        order=LEAST_ORDER, tiny=FINEST, bounce=BOUNCE_SHARE, drift=DRIFT, force=FORCE, wrong=WRONG, broken=BROKEN,
         tried=", ".join(f"{c:g}" for c in COARSE), fewer=", ".join(f"{c:g}" for c in POSITION_COARSE),
         summary=markdown(summary(outcome.verdicts)),
         practice=practice(outcome.verdicts), limits=markdown(limits(outcome.verdicts)), formula=FORMULA,

@@ -3,16 +3,17 @@
 
 import numpy as np
 
-from ..engines.liggghts import Liggghts
-from ..errors import EngineError
-from ..plan import Plan
 from ..theory.backbones import Backbone
 from .running import BROKEN, CREATED, LEAST_ORDER, Setting, Verdict, slope
 from .sampling import PositionSampler, Sampler
+from .variants import between_walls
 
 SHARES = (0.16, 0.08, 0.04, 0.02, 0.01)  # of the limit of two springs, 1/sqrt(2) of that of one
-COARSE = {"embedded": np.arange(0.2, 1.51, 0.1), "liggghts": (0.3, 0.7, 1.0, 1.5)}
-SQUEEZERS = tuple(COARSE)
+COARSE = np.arange(0.2, 1.51, 0.1)
+POSITION_COARSE = (0.3, 0.7, 1.0, 1.5)  # an engine's start-up costs more than its steps
+# LIGGGHTS evaluates the contacts at t = 0 without keeping what they remember: an overlap that is there from the start
+# is known to the law one step later, so the balance begins there.
+KNOWN = {"liggghts": 1}
 PERIODS = 20.0  # length of a run in stability limits
 GAUSS_X, GAUSS_W = np.polynomial.legendre.leggauss(40)
 
@@ -59,25 +60,6 @@ def embedded_path(s: Setting, time_step: float, steps: int) -> tuple[np.ndarray,
     return overlap, speed
 
 
-def liggghts_path(s: Setting, sampler: PositionSampler, time_step: float, steps: int) -> tuple[np.ndarray, np.ndarray]:
-    """The same from LIGGGHTS, from its first step on: the deck of an impact with its wall once more, above the sphere.
-
-    LIGGGHTS evaluates the contacts at t = 0 without keeping what they remember: an overlap that is there from the
-    start is known to the law one step later, so the balance begins there.
-    """
-    x = s.x
-    d = s.overlap_max / 2
-    p = Plan(x, time_step, steps, 1, x.speed[:1], np.array([-d]))
-    deck = sampler.engine.write(p, sampler.folder)[0]
-    lines = deck.read_text().splitlines()
-    at = next(i for i, line in enumerate(lines) if line.startswith("fix target all wall/gran"))
-    ceiling = f"zplane {2 * (x.body.radius - d)!r}"
-    lines.insert(at + 1, lines[at].replace("fix target", "fix ceiling").replace("zplane 0.0", ceiling))
-    deck.write_text("\n".join(lines) + "\n")
-    got = sampler.engine.run(p, sampler.folder)
-    return got.overlap[0, 1:], got.velocity[0, 1:]
-
-
 def balance(s: Setting, overlap: np.ndarray, velocity: np.ndarray) -> np.ndarray:
     """Kinetic, stored and lost energy over that at the start at every sample, shape of `overlap`."""
     theory, total = s.x.theory(), 0.5 * s.x.m_star * velocity**2
@@ -100,9 +82,9 @@ def path(s: Setting, sampler: Sampler, share: float) -> tuple[np.ndarray, np.nda
     """Overlap with the first wall [m] and velocity towards it [m/s] at a share of the limit of two springs."""
     time_step, steps = share * s.limit / np.sqrt(2.0), int(PERIODS / share)
     if isinstance(sampler, PositionSampler):
-        if not isinstance(sampler.engine, Liggghts):
-            raise EngineError(f"engine {sampler.name} has no deck with two walls")
-        return liggghts_path(s, sampler, time_step, steps)
+        got = between_walls(s, sampler, s.overlap_max / 2, time_step, steps)
+        known = KNOWN.get(sampler.name, 0)
+        return got.overlap[0, known:], got.velocity[0, known:]
     return embedded_path(s, time_step, steps)
 
 
@@ -119,7 +101,7 @@ def squeeze(v: Verdict, s: Setting, sampler: Sampler) -> None:
         v.fail(f"energy created: {v.created:.2g} at {SHARES[-1]:g} of the limit")
     if v.order < LEAST_ORDER:
         v.fail(f"order of convergence {v.order:.2f}")
-    for share in COARSE[sampler.name]:
+    for share in COARSE if sampler.name == "embedded" else POSITION_COARSE:
         if not (balance(s, *path(s, sampler, float(share))) - 1).max() <= BROKEN:
             v.breaks_at = round(float(share), 2)
             break
