@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <cstdio>
+#include <cstring>
 #include <string>
 
 #include "epdem/tangential.hpp"
@@ -56,17 +57,24 @@ class Reader {
         lmp_->modify->find_fix_property(name, "property/global", style, rows, columns, law_.model, false));
   }
 
+  bool given(const char* name) const {
+    return find(name, "scalar") || find(name, "peratomtype") || find(name, "peratomtypepair");
+  }
+
   double checked(const char* name, const char* unit, const std::string& where, double x, Range range) const {
     if (!range.holds(x))
       fail(std::string(name) + " = " + number(x) + unit_of(unit) + " of " + where + ", " + range.text());
     return x;
   }
 
+  std::string missing(const char* name, const char* unit) const {
+    return std::string("property ") + name + unit_of(unit) + " is missing; give one value per atom type: " +
+           "fix ID all property/global " + name + " peratomtype VALUE ...";
+  }
+
   std::vector<double> per_type(const char* name, const char* unit, Range range) const {
     FixPropertyGlobal* fix = find(name, "peratomtype");
-    if (!fix)
-      fail(std::string("property ") + name + unit_of(unit) + " is missing; give one value per atom type: " +
-           "fix ID all property/global " + name + " peratomtype VALUE ...");
+    if (!fix) fail(missing(name, unit));
     std::vector<double> values(n_ + 1, 0.0);
     for (int i = 1; i <= n_; ++i)
       values[i] = checked(name, unit, "type " + std::to_string(i), fix->compute_vector(i - 1), range);
@@ -122,6 +130,36 @@ class ParameterTable {
   std::vector<double> values_;
   double common_ = 0.0;
 };
+
+/// Laws whose strength is a pressure take it also as a ratio, which has a default, of the yield stress.
+constexpr const char* ratio_name = "yieldPressureRatio";
+constexpr Parameter yield_stress = {"yield_stress", "yieldStress", "Pa", std::numeric_limits<double>::quiet_NaN()};
+constexpr struct {
+  const char* model;
+  Parameter parameters[2];
+} strengths_by_ratio[] = {{"ep/thornton", {yield_stress, {"yield_pressure_ratio", ratio_name, "1", 2.8}}},
+                          {"ep/johnson", {yield_stress, {"yield_pressure_ratio", ratio_name, "1", 3.0}}}};
+
+/// Whether the deck gives the strength by a ratio; `law` then asks for yield stress and ratio instead of the pressure.
+/// A yield stress beside a pressure may belong to another model of the deck: the pressure counts.
+bool ask_for_ratio(const Reader& reader, Declaration& law) {
+  for (const auto& other : strengths_by_ratio) {
+    if (std::strcmp(law.model, other.model) != 0) continue;
+    const Parameter& pressure = law.parameters[0];
+    const bool ratio = reader.given(ratio_name);
+    if (reader.given(pressure.property)) {
+      if (ratio) reader.fail(std::string("both ") + pressure.property + " and " + ratio_name + " are given; keep one");
+      return false;
+    }
+    if (!ratio && !reader.given(yield_stress.property))
+      reader.fail(reader.missing(pressure.property, pressure.unit) + " (or " + yield_stress.property + ", of which " +
+                  pressure.property + " is " + number(other.parameters[1].fallback) + " times, or " + ratio_name + ")");
+    law.parameters = other.parameters;
+    law.count = 2;
+    return true;
+  }
+  return false;
+}
 
 std::vector<double> parameters_of(const Reader& reader, const Declaration& law,
                                   const std::vector<ParameterTable>& tables, int i, int j) {
@@ -194,17 +232,20 @@ Materials read_materials(LAMMPS_NS::LAMMPS* lmp, PropertyRegistry& registry, con
   registry.registerProperty("youngsModulus", &MODEL_PARAMS::createYoungsModulus, law.model);
   registry.getVectorProperty("youngsModulus", law.model);
 
+  Declaration asked = law;
+  const bool by_ratio = ask_for_ratio(reader, asked);
   std::vector<ParameterTable> tables;
-  for (int k = 0; k < law.count; ++k) tables.emplace_back(reader, law.parameters[k]);
+  for (int k = 0; k < asked.count; ++k) tables.emplace_back(reader, asked.parameters[k]);
   const std::vector<double> beta = damping_numbers(reader, dashpot), dashpots = viscous_numbers(reader, viscous);
 
   const double pascal = 1.0 / lmp->force->nktv2p;  // pressure unit of the deck in force/length^2
   Materials materials{width, std::vector<PairOfTypes>(width * width)};
   for (int i = 1; i <= n; ++i)
     for (int j = 1; j <= n; ++j) {
-      std::vector<double> values = parameters_of(reader, law, tables, i, j);
-      for (int k = 0; k < law.count; ++k)
-        if (std::string(law.parameters[k].unit) == "Pa") values[k] *= pascal;
+      std::vector<double> values = parameters_of(reader, asked, tables, i, j);
+      for (int k = 0; k < asked.count; ++k)
+        if (std::string(asked.parameters[k].unit) == "Pa") values[k] *= pascal;
+      if (by_ratio) values = {values[0] * values[1]};
       materials.pairs[i * width + j] = {{E[i] * pascal, nu[i]}, {E[j] * pascal, nu[j]}, values, beta[i * width + j],
                                       dashpots[i * width + j]};
     }

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""How the plugin is started, what it prints, and what a wrong deck is told."""
+"""How the plugin is started, what it prints, and which combinations of models run."""
 
 import os
 import re
@@ -9,7 +9,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from plugin_decks import LAWS, YIELDING, Bodies, contact, good, head, launcher, materials, run
+from plugin_decks import LAWS, Bodies, contact, good, head, launcher, materials, run
 
 pytestmark = pytest.mark.liggghts
 
@@ -179,92 +179,6 @@ def test_rolling_friction_acts_because_kn_is_set(tmp_path):
         return started(tmp_path / name, text).last
 
     assert not np.array_equal(final("on", "rolling_friction cdt"), final("off", "rolling_friction off"))
-
-
-RANGES = {
-    "youngsModulus": ("m1", {"0": "0", "-5e9": "-5e+09", "1e400": "inf"}, "> 0"),
-    "poissonsRatio": ("m2", {"-0.1": "-0.1", "0.6": "0.6", "1e400": "inf"}, "[0, 0.5]"),
-    "yieldPressure": ("p1", {"0": "0", "-3e9": "-3e+09", "1e400": "inf"}, "> 0"),
-}
-
-
-@pytest.mark.parametrize("name", RANGES)
-def test_an_absurd_property_is_refused_with_model_property_value_and_range(tmp_path, name):
-    """Must 7: unchecked, a negative yield pressure shoots a 1 m/s sphere off at 18 m/s."""
-    fix, values, limits = RANGES[name]
-    for value, said in values.items():
-        text = re.sub(rf"(fix {fix} .* peratomtype \S+) \S+", rf"\1 {value}", materials("ep/any"))
-        error = told(tmp_path / value, deck(properties=text))
-        assert "model ep/thornton" in error and f"{name} = {said}" in error and limits in error and "type 2" in error
-
-
-@pytest.mark.parametrize(
-    ("law", "name"), [("thornton", "yieldPressure"), ("johnson", "yieldPressure"), ("cavity", "yieldStress")]
-)
-def test_a_missing_property_is_named_with_the_line_to_write(tmp_path, law, name):
-    without = "\n".join(line for line in materials("ep/any").splitlines() if name not in line) + "\n"
-    error = told(tmp_path, deck(f"ep/{law}", properties=without))
-    assert f"model ep/{law}" in error and f"property/global {name} peratomtype" in error
-
-
-def test_parameters_that_create_energy_are_refused(tmp_path):
-    odd = materials("ep/any") + "fix q all property/global firstYieldRatio scalar 1.1\n"
-    error = told(tmp_path, deck("ep/cavity", properties=odd))
-    assert "firstYieldRatio = 1.1" in error and "do not go together" in error
-
-
-def test_a_pair_value_must_be_symmetric(tmp_path):
-    pairs = "\n".join(line for line in materials("ep/any").splitlines() if "yieldPressure" not in line)
-    pairs += "\nfix q all property/global yieldPressure peratomtypepair 3 1e9 2e9 1e9 1e9 1e9 1e9 1e9 1e9 1e9\n"
-    error = told(tmp_path, deck(properties=pairs))
-    assert "symmetric" in error or "Symmetric" in error
-
-
-def test_no_history_without_restitution_says_why_it_is_needed(tmp_path):
-    error = told(tmp_path, deck(tangential="no_history"))
-    assert "no_history needs coefficientRestitution" in error
-
-
-def test_moduli_keep_the_limits_that_hold_for_all_models(tmp_path):
-    soft_only = deck(edit=lambda t: t.replace("hard_particles yes\n", ""))
-    assert "hard_particles" in told(tmp_path, soft_only)
-
-
-@pytest.mark.parametrize(
-    "setting",
-    [
-        "tangential_damping off",
-        "limitForce on",
-        "heating_tracking on",
-        "heating_normal_hertz off",
-        "computeElasticPotential off",
-    ],
-)
-@pytest.mark.parametrize("law", ("hertz", "cavity"))
-def test_settings_of_hertz_in_an_existing_deck_are_accepted(tmp_path, law, setting):
-    started(tmp_path, deck(f"ep/{law}", settings=setting))
-
-
-@pytest.mark.parametrize(
-    "setting", ["heating_normal_hertz", "computeElasticPotential", "computeDissipatedEnergy", "disableNormalWhenBonded"]
-)
-def test_other_settings_of_hertz_are_refused_by_name(tmp_path, setting):
-    error = told(tmp_path, deck(settings=f"{setting} on"))
-    assert setting in error and "not available" in error
-
-
-def test_an_unused_type_costs_nothing(tmp_path):
-    """Must 4: properties are sized by the types in use; a box with a fourth, unused type must run."""
-    four = re.sub(r"(peratomtype .*)", r"\1 1e9", materials("ep/any")).replace("0.4 1e9", "0.4 0.3")
-    four = re.sub(r"peratomtypepair 3 .*", "peratomtypepair 4" + " 0.3" * 16, four)
-    good(tmp_path, deck(properties=four), files={"box.data": bodies().data(BOX, types=4)})
-
-
-@pytest.mark.parametrize("law", YIELDING)
-def test_properties_may_change_between_runs(tmp_path, law):
-    """Must 5: the registry frees everything at each init."""
-    text = deck(f"ep/{law}") + materials("ep/any") + "run 50\n"
-    started(tmp_path, text)
 
 
 def test_the_plugin_exports_only_the_function_that_explains_wrong_names():

@@ -3,7 +3,7 @@
 
 import numpy as np
 import pytest
-from plugin_decks import DUMP, LAWS, NU, P_Y, RHO, Bodies, E, contact, good, head, materials, per_pair
+from plugin_decks import DUMP, LAWS, NU, P_Y, RHO, Bodies, E, Y, contact, good, head, materials, per_pair
 
 pytestmark = pytest.mark.liggghts
 
@@ -209,6 +209,32 @@ def test_parameters_with_a_fallback_may_be_given_or_left_out(tmp_path):
     assert (wall_impacts(tmp_path / "b", "ep/cavity", [1, 2, 3], v, properties=given).last[:, 6] == left_out).all()
     harder = base + "fix q2 all property/global plasticRatio peratomtype 3.0 3.0 3.0\n"
     assert (wall_impacts(tmp_path / "c", "ep/cavity", [1, 2, 3], v, properties=harder).last[:, 6] != left_out).all()
+
+
+@pytest.mark.parametrize(("law", "default"), [("thornton", 2.8), ("johnson", 3.0)])
+def test_a_strength_may_be_given_as_ratio_of_the_yield_stress(tmp_path, law, default):
+    """Bitwise: the same product. Per type the body with the smaller yield stress counts, and its ratio with it."""
+    v = [(0, 0, -20.0)] * 3
+    base = materials(f"ep/{law}", friction=0.0)
+    bare = "\n".join(line for line in base.splitlines() if "yieldPressure" not in line) + "\n"
+    assert "yieldStress" in bare
+
+    def rebound(name, properties):
+        return wall_impacts(tmp_path / name, f"ep/{law}", [1, 2, 3], v, properties=properties).last[:, 6]
+
+    def pressure(values):
+        return f"fix p all property/global yieldPressure peratomtype {' '.join(repr(float(p)) for p in values)}\n"
+
+    def ratio(words):
+        return f"fix q all property/global yieldPressureRatio {words}\n"
+
+    assert (rebound("a", bare) == rebound("b", bare + pressure(default * Y))).all()
+    assert (rebound("c", bare + ratio("scalar 2.5")) == rebound("d", bare + pressure(2.5 * Y))).all()
+    # steel on steel: its own ratio; aluminium and polymer are softer than the wall, and bring theirs
+    per_type = np.array([2.6, 2.9, 3.1])
+    assert (rebound("e", bare + ratio("peratomtype 2.6 2.9 3.1")) == rebound("f", bare + pressure(per_type * Y))).all()
+    same = ratio("peratomtypepair 3" + " 2.5" * 9)
+    assert (rebound("g", bare + same) == rebound("d", bare + pressure(2.5 * Y))).all()
 
 
 def test_rigid_type_gives_the_one_sided_modulus(tmp_path):
