@@ -7,7 +7,7 @@ import pandas as pd
 from ..predict import predict
 from .case import SceneCase
 from .deck import Deck
-from .ledger import closure
+from .ledger import closure, kinetic
 from .model import wall_impact
 
 
@@ -50,6 +50,25 @@ def floor_load(case: SceneCase, tables: dict[str, pd.DataFrame]) -> tuple[float,
     mass = last[last["step"] == last["step"].max()]["mass"].sum()
     tail = rows[rows["step"] > 0.8 * rows["step"].max()]
     return float(tail["floor_load"].mean()), float(mass * case.scene.gravity)
+
+
+def bed_rebound(case: SceneCase, spheres: pd.DataFrame) -> tuple[float, float]:
+    """(largest rise of the centre of mass from a place below, what e_n of theory allows: e_n^2 times its fall) [m].
+
+    e_n is that of the bounciest pair at the speed of the fall. Spheres that land one after the other, and each impact
+    within the bed, only take from it: e_n^2 v^2 is concave in v^2, so that a mean over falls is below that of the mean.
+    """
+    present = spheres.groupby("step")["id"].count()
+    whole = spheres[spheres["step"].isin(present.index[present == present.max()])]
+    sums = whole.assign(height=whole["mass"] * whole["z"], kinetic=kinetic(whole)).groupby("step")
+    total = whole["mass"].sum() / sums.ngroups
+    place = sums["height"].sum().to_numpy() / total
+    fall = place[0] + sums["kinetic"].sum().iloc[0] / (total * case.scene.gravity) - place.min()
+    names = {p.material for p in case.scene.particles}
+    v, radius = float(np.sqrt(2 * case.scene.gravity * fall)), case.scene.particles[0].radii()[0]
+    pairs = [(a, b) for a in names for b in names | {case.scene.walls}]
+    e_n = max(float(predict(wall_impact(case, a, radius, b, v)).e_n[-1]) for a, b in pairs)
+    return float((place - np.minimum.accumulate(place)).max()), e_n**2 * fall
 
 
 def stiffness(case: SceneCase, d: Deck, rows: pd.DataFrame) -> tuple[float, float]:
@@ -121,6 +140,8 @@ def checks(case: SceneCase, d: Deck, tables: dict[str, pd.DataFrame]) -> pd.Data
     if case.scene.kind == "settle" and "floor_load" in tables["rows"] and "particles" in tables and smooth:
         load, weight = floor_load(case, tables)
         found.append(_row("floor load / weight (smooth walls: hydrostatic)", load, weight, 0.02))
+    if case.scene.kind == "settle" and not case.scene.rate and case.scene.gravity and case.output.particles >= 20:
+        found.append(_below("rebound of the bed / e_n^2 fall", *bed_rebound(case, tables["particles"]), 0.0))
     if case.scene.kind == "hopper" and case.output.particles >= 20:
         found.append(_row("mass flow / Beverloo", *discharge(case, d, tables["particles"]), 0.2))
     if case.scene.kind == "peening" and not case.scene.bed and case.output.particles >= 20:
