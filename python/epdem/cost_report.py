@@ -6,10 +6,10 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 from rich.console import Console
-from rich.table import Table
 
 from .cost import TARGETS, YARDSTICK, Outcome
 from .store import atomic
+from .stress.document import markdown, table
 
 
 def write(outcome: Outcome, folder: Path) -> list[Path]:
@@ -99,12 +99,7 @@ def show(outcome: Outcome, bulk: pd.DataFrame | None, console: Console) -> None:
     if bulk is not None:
         tables.append((f"{bulk['spheres'].iloc[0]} spheres in LIGGGHTS: dissipated energy", bulk_table(bulk)))
     for title, frame in tables:
-        table = Table(title=title)
-        for name in frame.columns:
-            table.add_column(name, justify="right", no_wrap=name == "contender")
-        for row in frame.itertuples(index=False):
-            table.add_row(*map(str, row))
-        console.print(table)
+        console.print(table(title, frame))
 
 
 BULK = """
@@ -124,8 +119,6 @@ yielding ones stay together: the ratio is that of the scenes, not of the models 
 
 def document(outcome: Outcome, bulk: pd.DataFrame | None, command: str) -> str:
     """The text of docs/cost.md."""
-    from .stress.document import markdown
-
     text = f"""# Error against run time
 
 Written by

@@ -14,8 +14,9 @@ from .. import law as claw
 from .. import paths
 from ..engines.base import call
 from ..engines.liggghts import SOFT, loop_seconds, numbered, read_dump
+from .running import plastic
 from .scenes import DENSITY, POISSON, STRENGTH, Scene
-from .squeezed import plastic, stored
+from .squeezed import stored
 
 FRAMES = 40
 LIMIT = 120.0  # seconds a scene may take

@@ -41,8 +41,8 @@ def limits(verdicts: pd.DataFrame) -> pd.DataFrame:
 def table(title: str, frame: pd.DataFrame) -> Table:
     """A frame for the terminal; long headings wrap."""
     shown = Table(title=title)
-    for name in frame.columns:
-        shown.add_column(str(name), justify="right", min_width=6)
+    for k, name in enumerate(frame.columns):
+        shown.add_column(str(name), justify="right", min_width=6, no_wrap=k == 0)
     for row in frame.itertuples(index=False):
         shown.add_row(*map(cell, row))
     return shown

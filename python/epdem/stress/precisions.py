@@ -17,8 +17,7 @@ from .. import deck as decks
 from ..engines.yade import environment
 from ..errors import EngineError
 from .cases import Extreme, build
-from .roundoff import position_floor
-from .running import setting
+from .running import position_floor, setting
 
 PROGRAMS = ("yade", "yade-longdouble", "yade-float128")  # 53, 64 and 113 bits; the last is the reference
 SHARE = 0.01  # of the stability limit

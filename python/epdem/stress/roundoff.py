@@ -4,24 +4,12 @@
 import numpy as np
 import pandas as pd
 
-from ..engines.base import EPS
 from ..errors import EpdemError
 from .cases import Extreme, build
-from .running import Setting, setting
+from .running import Setting, position_floor, setting
 from .sampling import Sampler
 
 FORMULA = "0.5 sqrt(N) eps R/delta_e"
-
-
-def position_floor(*, radius: float, recovered: float, steps: float) -> float:
-    """Relative error of e_n left by overlaps that are differences of positions as large as `radius` [m].
-
-    Every step rounds a position to ulp(R) <= eps R, a displacement that no velocity knows of, and does the work F r on
-    the side. N independent r, uniform in +-ulp/2, leave sqrt(N/12) ulp F_rms, over twice the energy of the rebound,
-    2/5 F_max delta_e: for a Hertz force (F_rms = 0.66 F_max) 0.24 sqrt(N) ulp/delta_e as a standard deviation, and
-    twice that as the largest of ten phases. `recovered`: the elastic recovery delta_e [m] (below yield alpha_max).
-    """
-    return 0.5 * np.sqrt(steps) * EPS * radius / recovered
 
 
 def with_positions(s: Setting, time_step: float, gap: np.ndarray, steps: int) -> np.ndarray:

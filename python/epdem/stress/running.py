@@ -10,6 +10,7 @@ from ..engines.base import EPS, not_representable
 from ..errors import EngineError, EpdemError
 from ..experiment import Experiment, experiment
 from ..predict import SMALL_DEFORMATION, predict
+from ..theory.backbones import Backbone
 from ..timestep import stability_limit
 from .cases import Extreme
 from .sampling import Sampler
@@ -94,6 +95,11 @@ def phased(s: Setting, dt: float, phases: int) -> list[tuple[float, np.ndarray]]
     return [(dt, (np.arange(phases) + 0.5) / phases * s.x.speed[0] * dt)]
 
 
+def plastic(theory: Backbone, top: np.ndarray) -> np.ndarray:
+    """Work lost for good by contacts that reached `top` [J]."""
+    return np.where(top > theory.yield_overlap, theory.work(top) - theory.recovered_work(top), 0.0)
+
+
 @dataclass(frozen=True)
 class Rung:
     """One share of the limit: largest error of e_n and largest energy created; inf: a contact did not end, or the
@@ -125,12 +131,22 @@ def measure(s: Setting, sampler: Sampler, share: float, phases: int | None = Non
     e_n, peak = (np.concatenate([getattr(g, name) for g in got]) for name in ("e_n", "overlap_max"))
     theory, kinetic = s.x.theory(), 0.5 * s.x.m_star * float(s.x.speed[0]) ** 2
     with np.errstate(all="ignore"):
-        plastic = np.where(peak > theory.yield_overlap, theory.work(peak) - theory.recovered_work(peak), 0.0)
         error = np.abs(e_n / s.e_n - 1.0)
-        created = (e_n**2 * kinetic + plastic) / s.energy - 1.0
+        created = (e_n**2 * kinetic + plastic(theory, peak)) / s.energy - 1.0
     whole = np.isfinite(error) & np.isfinite(created)
     worst = [float(np.where(whole, value, np.inf).max()) for value in (error, created)]
     return Rung(share, worst[0], worst[1], sum(g.steps for g in got), all(g.finite for g in got))
+
+
+def position_floor(*, radius: float, recovered: float, steps: float) -> float:
+    """Relative error of e_n left by overlaps that are differences of positions as large as `radius` [m].
+
+    Every step rounds a position to ulp(R) <= eps R, a displacement that no velocity knows of, and does the work F r on
+    the side. N independent r, uniform in +-ulp/2, leave sqrt(N/12) ulp F_rms, over twice the energy of the rebound,
+    2/5 F_max delta_e: for a Hertz force (F_rms = 0.66 F_max) 0.24 sqrt(N) ulp/delta_e as a standard deviation, and
+    twice that as the largest of ten phases. `recovered`: the elastic recovery delta_e [m] (below yield alpha_max).
+    """
+    return 0.5 * np.sqrt(steps) * EPS * radius / recovered
 
 
 def floor(s: Setting, sampler: Sampler, share: float) -> float:
@@ -140,7 +156,7 @@ def floor(s: Setting, sampler: Sampler, share: float) -> float:
     if sampler.name == "embedded":
         return own
     radius = max(r for r in (s.x.body.radius, s.x.target.radius) if np.isfinite(r))
-    return own + 0.5 * np.sqrt(steps) * EPS * radius / s.recovered  # derived in roundoff.position_floor
+    return own + position_floor(radius=radius, recovered=s.recovered, steps=steps)
 
 
 def slope(shares: list[float], errors: list[float], noise: float) -> float:

@@ -4,7 +4,7 @@
 import numpy as np
 
 from ..theory.backbones import Backbone
-from .running import BROKEN, CREATED, LEAST_ORDER, Setting, Verdict, slope
+from .running import BROKEN, CREATED, LEAST_ORDER, Setting, Verdict, plastic, slope
 from .sampling import PositionSampler, Sampler
 from .variants import between_walls
 
@@ -16,11 +16,6 @@ POSITION_COARSE = (0.3, 0.7, 1.0, 1.5)  # an engine's start-up costs more than i
 KNOWN = {"liggghts": 1}
 PERIODS = 20.0  # length of a run in stability limits
 GAUSS_X, GAUSS_W = np.polynomial.legendre.leggauss(40)
-
-
-def plastic(theory: Backbone, top: np.ndarray) -> np.ndarray:
-    """Work lost for good by contacts that reached `top` [J]."""
-    return np.where(top > theory.yield_overlap, theory.work(top) - theory.recovered_work(top), 0.0)
 
 
 def stored(theory: Backbone, alpha: np.ndarray, top: np.ndarray) -> np.ndarray:
