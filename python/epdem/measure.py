@@ -16,7 +16,8 @@ class Measured:
 
     energy_residual compares the sampled work in and out with the law's plastic work at the sampled peak,
     relative to the kinetic energy: unlike the sum of F d alpha against the change of kinetic energy, which velocity
-    Verlet fulfils for any force, it is evidence for the law. NaN with a dashpot, whose work the samples do not tell.
+    Verlet fulfils for any force, it is evidence for the law. NaN with a dashpot, whose work the samples do not tell,
+    and for a law that is not the plan's.
     """
 
     e_n: np.ndarray
@@ -36,8 +37,11 @@ def _last(valid: np.ndarray) -> np.ndarray:
     return valid.shape[1] - 1 - np.argmax(valid[:, ::-1], axis=1)
 
 
-def measure(plan: Plan, path: Trajectory) -> Measured:
-    """The impacts of a trajectory. Raises EngineError if a contact never began or never ended."""
+def measure(plan: Plan, path: Trajectory, *, foreign: bool = False) -> Measured:
+    """The impacts of a trajectory. Raises EngineError if a contact never began or never ended.
+
+    foreign: under another law than the plan's, whose force falls linearly with the overlap at the end.
+    """
     overlap, force, velocity = path.overlap, path.force, path.velocity
     row = np.arange(plan.n)
     sampled = np.isfinite(force)
@@ -50,9 +54,9 @@ def measure(plan: Plan, path: Trajectory) -> Measured:
 
     # Contact ends where F, not the overlap, reaches 0. Near the end F^(2/3) falls linearly with overlap and time;
     # with a dashpot, which cuts the force off early, F itself does.
-    dashpot = plan.experiment.viscous_number > 0
+    straight = foreign or plan.experiment.viscous_number > 0
     before = np.maximum(last - 1, 0)
-    root_last, root_before = (force[row, k] if dashpot else np.cbrt(force[row, k]) ** 2 for k in (last, before))
+    root_last, root_before = (force[row, k] if straight else np.cbrt(force[row, k]) ** 2 for k in (last, before))
     share = np.divide(root_last, root_before - root_last, out=np.full(plan.n, 0.5), where=root_before > root_last)
     share = np.minimum(share, 1.0)  # the next sample is unloaded
     contact_time = (last + share) * path.time_step - plan.gap / plan.speed
@@ -71,6 +75,6 @@ def measure(plan: Plan, path: Trajectory) -> Measured:
         force_max=force_max,
         overlap_max=peak,
         residual_overlap=residual,
-        energy_residual=np.full(plan.n, np.nan) if dashpot else (work.sum(axis=1) - plastic) / energy,
+        energy_residual=np.full(plan.n, np.nan) if straight else (work.sum(axis=1) - plastic) / energy,
         steps_in_contact=loaded.sum(axis=1),
     )

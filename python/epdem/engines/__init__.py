@@ -3,7 +3,8 @@
 
 from ..errors import CaseError
 from .base import Engine, Trajectory
-from .builtin import BuiltinHertz, ThorntonNing
+from .builtin import BuiltinEdinburgh, BuiltinHertz, BuiltinLuding, ThorntonNing
+from .builtin_yade import YadeLuding
 from .embedded import Embedded
 from .liggghts import Liggghts
 from .yade import Yade
@@ -11,14 +12,18 @@ from .yade import Yade
 ENGINES: dict[str, type[Engine]] = {"embedded": Embedded, "liggghts": Liggghts, "yade": Yade}
 # LIGGGHTS's own models, for comparisons; `run` takes them by name as well.
 OTHERS: dict[str, type[Engine]] = {tool.name: tool for tool in (BuiltinHertz, ThorntonNing)}
+# Their laws that are none of ours, each with a theory of its own: for `crosscheck`.
+FOREIGN: dict[str, type[Engine]] = {tool.name: tool for tool in (BuiltinLuding, BuiltinEdinburgh, YadeLuding)}
 
 
 def engine(name: str) -> Engine:
     """The engine of that name. Raises CaseError."""
     known = ENGINES | OTHERS
+    if name in FOREIGN:
+        raise CaseError(f"--engine {name!r} has a law of its own, not the case's; see 'epdem crosscheck'")
     if name not in known:
         raise CaseError(f"--engine {name!r} does not exist; there are {', '.join(known)}")
     return known[name]()
 
 
-__all__ = ["ENGINES", "OTHERS", "Engine", "Trajectory", "engine"]
+__all__ = ["ENGINES", "FOREIGN", "OTHERS", "Engine", "Trajectory", "engine"]

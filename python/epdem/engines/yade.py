@@ -27,7 +27,7 @@ MODULES = Path(__file__).parents[1] / "yade"
 
 @dataclass(frozen=True)
 class Material:
-    """Keywords of Contacts.material, SI."""
+    """Keywords of Contacts.material, or of a material of YADE's own, SI."""
 
     name: str
     values: dict[str, float]
@@ -43,6 +43,15 @@ class Group:
 
 
 @dataclass(frozen=True)
+class Anvil:
+    """A fixed sphere under each body, its centre at z [m]."""
+
+    radius: float
+    material: str
+    z: float
+
+
+@dataclass(frozen=True)
 class Deck:
     """Everything the template writes; every number was decided here."""
 
@@ -51,9 +60,11 @@ class Deck:
     summary: str
     rigid: bool
     law: str
+    native: bool  # YADE's own law
     ratios: dict[str, float]
     materials: tuple[Material, ...]
     wall_material: str | None
+    anvil: Anvil | None  # fixed spheres that stand for the wall where YADE's law knows spheres only
     bodies: tuple[Group, ...]
     skin: float
     time_step: float
@@ -64,25 +75,6 @@ class Deck:
 def command() -> str:
     """YADE's program; EPDEM_YADE names another one."""
     return os.environ.get("EPDEM_YADE", "yade")
-
-
-def _material(x: Experiment, body: Body, strength: float) -> Material:
-    law = LAWS[x.law.name]
-    values = {
-        "young_modulus": body.young_modulus,
-        "poisson_ratio": body.poisson_ratio,
-        "density": body.density if isfinite(body.density) else 1.0,  # of a rigid wall: not used
-    }
-    if law.strength_name:
-        values[law.strength_name] = strength
-        ratios = (x.law.parameters[n] for n in law.ratios)
-        highest = cone.STRONGEST * body.young_modulus / law(1.0, 1e-3, *ratios).trigger_factor
-        if isfinite(strength) and strength >= highest:
-            raise CaseError(
-                f"materials.{body.material}: {law.strength_name} = {strength:.6g} Pa, YADE's law takes less than "
-                f"{highest:.6g} Pa at this young_modulus; use --engine embedded"
-            )
-    return Material(body.material, values)
 
 
 class Yade:
@@ -100,13 +92,32 @@ class Yade:
         found = re.search(r"version: (\S+)", done.stdout + done.stderr)
         return f"YADE {found.group(1) if found else '(version unknown)'}"
 
+    def material(self, x: Experiment, body: Body, strength: float) -> Material:
+        """The material of one body. Raises CaseError for a strength beyond YADE's law."""
+        law = LAWS[x.law.name]
+        values = {
+            "young_modulus": body.young_modulus,
+            "poisson_ratio": body.poisson_ratio,
+            "density": body.density if isfinite(body.density) else 1.0,  # of a rigid wall: not used
+        }
+        if law.strength_name:
+            values[law.strength_name] = strength
+            ratios = (x.law.parameters[n] for n in law.ratios)
+            highest = cone.STRONGEST * body.young_modulus / law(1.0, 1e-3, *ratios).trigger_factor
+            if isfinite(strength) and strength >= highest:
+                raise CaseError(
+                    f"materials.{body.material}: {law.strength_name} = {strength:.6g} Pa, YADE's law takes less than "
+                    f"{highest:.6g} Pa at this young_modulus; use --engine embedded"
+                )
+        return Material(body.material, values)
+
     def deck(self, plan: Plan) -> Deck:
         """The deck of a plan. Raises CaseError for what YADE cannot do."""
         x, wall = plan.experiment, isinf(plan.experiment.target.radius)
         if x.viscous_restitution is not None:
             raise CaseError("viscous: engine yade has no dashpot; use --engine liggghts or embedded")
-        materials = {x.target.material: _material(x, x.target, x.law.strengths[1]),
-                     x.body.material: _material(x, x.body, x.law.strengths[0])}  # fmt: skip
+        materials = {x.target.material: self.material(x, x.target, x.law.strengths[1]),
+                     x.body.material: self.material(x, x.body, x.law.strengths[0])}  # fmt: skip
         bodies = [Group("body.data", x.body.radius, x.body.material)]
         if not wall:
             bodies.append(Group("target.data", x.target.radius, x.target.material))
@@ -114,7 +125,7 @@ class Yade:
         return Deck(
             title=x.case.case.title, source=x.case.case.source,
             summary=f"{x.speed.size} speeds x {plan.phases} phases = {plan.n} independent impacts, law {x.law.name}",
-            rigid=x.target.rigid, law=x.law.name,
+            rigid=x.target.rigid, law=x.law.name, native=False, anvil=None,
             ratios={n: x.law.parameters[n] for n in LAWS[x.law.name].ratios if x.law.parameters[n] != defaults[n]},
             materials=tuple(materials.values()), wall_material=x.target.material if wall else None,
             bodies=tuple(bodies), skin=0.1 * min(x.body.radius, x.target.radius), time_step=plan.time_step,
@@ -124,10 +135,8 @@ class Yade:
 
     def write(self, plan: Plan, folder: Path) -> list[Path]:
         deck = self.deck(plan)
-        travelling = folder / "epdem" / "yade"
-        travelling.mkdir(parents=True, exist_ok=True)
-        (folder / "epdem/__init__.py").write_text('"""The part of epdem that YADE needs; it came with the deck."""\n')
-        modules = [Path(shutil.copy(source, travelling)) for source in sorted(MODULES.glob("*.py"))]
+        folder.mkdir(parents=True, exist_ok=True)
+        modules = [] if deck.native else travelling_modules(folder)
         script = folder / "impact.py"
         script.write_text(decks.render(self.template, deck=deck))
         files = [folder / b.data for b in deck.bodies]
@@ -146,6 +155,14 @@ class Yade:
              env=environment())  # fmt: skip
         wall = time.perf_counter() - start
         return trajectory(plan, path, {"total": wall, "stepping": stepping_seconds(log)})
+
+
+def travelling_modules(folder: Path) -> list[Path]:
+    """Copies of the modules that a deck with a law of ours imports."""
+    travelling = folder / "epdem" / "yade"
+    travelling.mkdir(parents=True, exist_ok=True)
+    (folder / "epdem/__init__.py").write_text('"""The part of epdem that YADE needs; it came with the deck."""\n')
+    return [Path(shutil.copy(source, travelling)) for source in sorted(MODULES.glob("*.py"))]
 
 
 def environment() -> dict[str, str]:
