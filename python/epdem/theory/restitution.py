@@ -142,7 +142,7 @@ def history(law: Backbone, *, m_star, speed, samples=1001):
         piece = force * 2 * (top - low) * np.sin(middle) * np.cos(middle) * h
         left = np.append(np.cumsum(piece[::-1])[::-1], 0.0)  # work between theta and the top
         left *= energy / left[0]
-        kinetic = 0.5 * (left[1:] + left[:-1])
+        kinetic = (0.5 * (np.sqrt(left[1:]) + np.sqrt(left[:-1]))) ** 2  # it goes as the square of pi/2 - theta
         rate = 2 * (top - low) * np.sin(middle) * np.cos(middle) / np.sqrt(2 * kinetic / m_star)
         ways.append(np.concatenate([[0.0], np.cumsum(rate * h)]))
     t_top = ways[0][-1]
