@@ -3,7 +3,8 @@
 
 `python -m epdem.equations > docs/equations.md` writes it from a checkout; a test keeps it true. A docstring states an
 equation as `Eq. 8.84 [Thornton 1997]: v_y = ...`, to the end of the paragraph; a C++ header names it in a comment, and
-the declaration below the comment is the place.
+the declaration below the comment is the place. A test calls the function by its name; for a method, whose name alone
+tells nothing, it says so: `# equation: backbones.Backbone.unloading`.
 """
 
 import ast
@@ -32,14 +33,14 @@ class Entry:
     tests: tuple[str, ...]
 
 
-def _functions(path: Path) -> Iterator[tuple[str, str, str]]:
-    """(name as callers write it, name on the page, docstring) of every public function, method and class."""
+def _functions(path: Path) -> Iterator[tuple[str, str]]:
+    """(name as `module.function` or `module.Class.method`, docstring) of every public function, method and class."""
     for node in ast.parse(path.read_text()).body:
         if isinstance(node, ast.FunctionDef | ast.ClassDef) and not node.name.startswith("_"):
-            yield f"{path.stem}.{node.name}", f"{path.stem}.{node.name}", ast.get_docstring(node) or ""
+            yield f"{path.stem}.{node.name}", ast.get_docstring(node) or ""
             for part in getattr(node, "body", []):
                 if isinstance(node, ast.ClassDef) and isinstance(part, ast.FunctionDef):
-                    yield f".{part.name}", f"{path.stem}.{node.name}.{part.name}", ast.get_docstring(part) or ""
+                    yield f"{path.stem}.{node.name}.{part.name}", ast.get_docstring(part) or ""
 
 
 def _places(root: Path) -> dict[str, list[str]]:
@@ -58,15 +59,18 @@ def _places(root: Path) -> dict[str, list[str]]:
 
 
 def _tests_of(name: str, tests: dict[str, str]) -> tuple[str, ...]:
-    """Tests that call a function as `module.name` or by its name imported from the module, or a method as `.name(`."""
+    """Tests that call `module.name`, or `name` imported from the module; of a method, those that state it."""
     module, _, word = name.rpartition(".")
-    imported = re.compile(rf"from epdem\.theory\.{module} import .*\b{word}\b") if module else None
-    called = re.compile(rf"{re.escape(name)}\b" if module else rf"{re.escape(name)}\(")
+    if "." in module:
+        stated = re.compile(rf"# equation: {re.escape(name)}$", re.MULTILINE)
+        return tuple(place for place, text in tests.items() if stated.search(text))
+    imported = re.compile(rf"from epdem\.theory\.{module} import .*\b{word}\b")
+    called = re.compile(rf"\b{re.escape(name)}\b")
     bare = re.compile(rf"(?<![\w.\"]){word}\(")
     return tuple(
         place
         for place, text in tests.items()
-        if called.search(text) or (imported and imported.search(text.partition("\0")[0]) and bare.search(text))
+        if called.search(text) or (imported.search(text.partition("\0")[0]) and bare.search(text))
     )
 
 
@@ -87,10 +91,10 @@ def entries() -> list[Entry]:
     """All equations that docstrings of the theory state, by number. KeyError for a source that is not in SOURCES."""
     places, tests, rows = _places(ROOT / HEADERS), _test_functions(), []
     for path in sorted((ROOT / THEORY).glob("*.py")):
-        for name, shown, doc in _functions(path):
+        for name, doc in _functions(path):
             for number, source, formula in STATEMENT.findall(doc):
                 cpp = tuple(places.get(number, ()))
-                rows.append(Entry(number, shown, " ".join(formula.split()), source, cpp, _tests_of(name, tests)))
+                rows.append(Entry(number, name, " ".join(formula.split()), source, cpp, _tests_of(name, tests)))
                 SOURCES[source]
     return sorted(rows)
 
