@@ -1,0 +1,65 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""The commands that need no engine: `epdem theory`, `epdem figures`, and the materials file behind them."""
+
+import json
+import tomllib
+from pathlib import Path
+
+import matplotlib.image
+import numpy as np
+import pytest
+from typer.testing import CliRunner
+
+from epdem import materials
+from epdem.cli import app
+
+FILE = tomllib.loads(Path(materials.__file__).with_name("materials.toml").read_text())
+
+
+def run(*words):
+    done = CliRunner().invoke(app, list(map(str, words)))
+    assert done.exit_code == 0, done.output
+    return done.stdout
+
+
+def test_theory_prints_restitution_peaks_and_first_yield_of_every_law():
+    """The reference sphere at 5 m/s: e_n 0.676326 and 0.716768, cavity's peak force 10265.3 N, to 6 digits printed."""
+    text = run("theory", "--material", "steel", "--radius", "10 mm", "--speed", "5 m/s")
+    for law, e_n in (("hertz", "1"), ("thornton", "0.676326"), ("johnson", "1"), ("cavity", "0.716768")):
+        row = next(line for line in text.splitlines() if f" {law} " in line)
+        assert f" {e_n} " in row
+    assert "10265.3" in row  # cavity, the last
+    assert "p_0 = 1.6128 Y" in text and "v_y0 = 0.1381 m/s" in text and "v_y = 0.5594 m/s" in text
+    assert FILE["steel"]["source"] in text
+
+
+def test_theory_in_json_is_the_same_in_si():
+    found = json.loads(run("theory", "--radius", "1 cm", "--speed", "500 cm/s", "--json"))
+    assert (found["radius"], found["speed"]) == (0.01, 5.0)
+    assert found["source"] == FILE["steel"]["source"]
+    assert found["m_star"] == pytest.approx(0.032882003107573169, rel=1e-12)  # 4/3 pi R^3 7850 kg/m^3
+    assert found["laws"]["thornton"]["e_n"] == pytest.approx(0.6763264338717, abs=1e-12)  # 13 printed digits
+    assert found["laws"]["cavity"]["force_max"] == pytest.approx(10265.34867, rel=1e-9)  # 10 printed digits
+
+
+def test_theory_refuses_a_material_that_is_not_there():
+    done = CliRunner().invoke(app, ["theory", "--material", "unobtainium"])
+    assert done.exit_code != 0 and "brass" in str(done.exception)
+
+
+def test_figures_of_the_chapter_are_drawn_into_the_folder(tmp_path):
+    names = [f"figure_8_{n}.png" for n in (16, 17, 19)]
+    assert run("figures", "--out", tmp_path).split() == [str(tmp_path / name) for name in names]
+    for name in names:
+        picture = matplotlib.image.imread(tmp_path / name)[..., :3]
+        colours = np.unique(picture @ np.array([1.0, 256.0, 65536.0]))
+        assert min(picture.shape[:2]) > 400 and len(colours) > 300  # axes alone have the grays only
+
+
+@pytest.mark.parametrize("name", FILE)
+def test_every_material_says_where_its_numbers_come_from(name):
+    """Its source begins with a short name that the head of the file gives in full."""
+    text = Path(materials.__file__).with_name("materials.toml").read_text()
+    known = [line.split()[1] for line in text.splitlines() if line.startswith("#") and " = " in line]
+    assert materials.material(name).source.partition(":")[0] in known
+    assert materials.material(name).material.yield_stress > 0
