@@ -4,7 +4,9 @@
 Every mistake is a CaseError that names file, key, value, limit and next step.
 """
 
+import contextlib
 import tomllib
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
@@ -20,6 +22,18 @@ MAX_IMPACTS = 4096
 DEFAULT_CHECKS = {"e_n": 1e-4, "contact_time": 5e-3, "force_max": 1e-3, "overlap_max": 1e-3, "residual_overlap": 1e-3}
 
 
+# Beyond these nothing in a particle simulation lies, and the laws' powers of them could leave the range of numbers.
+LIMITS = {"Pa": (1e-9, 1e30), "m": (1e-12, 1e6), "kg/m^3": (1e-9, 1e20), "m/s": (1e-30, 1e12)}
+
+
+def within_limits(x: float, si: str) -> float:
+    """x, if its size is one that is computed with. Raises ValueError."""
+    low, high = LIMITS.get(si, (0.0, np.inf))
+    if x and not low <= abs(x) <= high:
+        raise ValueError(f"must lie in [{low:g}, {high:g}] {si}; check the unit")
+    return x
+
+
 def quantity(si: str, *, above: float | None = None, hint: str = "", **limits: float):
     """A pydantic type: a quantity in `si`, in (above, ...) or within ge/le; `hint` ends the message."""
 
@@ -31,7 +45,7 @@ def quantity(si: str, *, above: float | None = None, hint: str = "", **limits: f
             left = f"({above:g}" if above is not None else f"[{low:g}" if low is not None else "(-inf"
             right = f"{high:g}]" if high is not None else "inf)"
             raise ValueError(f"must lie in {left}, {right}{'' if si == '1' else ' ' + si}{'; ' + hint if hint else ''}")
-        return x
+        return within_limits(x, si)
 
     return Annotated[float, BeforeValidator(read)]
 
@@ -168,7 +182,9 @@ class Case(Frozen):
         if RIGID in self.materials:
             raise ValueError(f"materials.{RIGID}: this name is kept for a rigid target; choose another")
         for place, name in (("body", self.impact.body.material), ("target", self.impact.target.material)):
-            if name not in self.materials and not (place == "target" and name == RIGID):
+            if place == "body" and name == RIGID:
+                raise ValueError(f"impact.body.material = {name!r}: only the target can be rigid; name a material")
+            if name not in self.materials and name != RIGID:
                 raise ValueError(f"impact.{place}.material = {name!r} is not defined; add [materials.{name}]")
         impacts = len(self.impact.speed_values()) * self.numerics.phases
         if impacts > MAX_IMPACTS:
@@ -196,7 +212,7 @@ def _explain(path: object, data: dict, error: ValidationError) -> str:
     shape = "SpeedRange" if isinstance(_value_at(data, ("impact", "speeds")), dict) else "list["
     problems = [p for p in problems if not (p["loc"][:2] == ("impact", "speeds") and len(p["loc"]) > 2
                                             and not str(p["loc"][2]).startswith(shape))] or problems  # fmt: skip
-    problem = problems[0]
+    problem = next((p for p in problems if p["type"] == "extra_forbidden"), problems[0])  # likely a misspelt key
     location = tuple(
         k for k in problem["loc"] if k in ("from",) or not str(k).startswith(("SpeedRange", "list[", "function-"))
     )
@@ -206,6 +222,12 @@ def _explain(path: object, data: dict, error: ValidationError) -> str:
         text = "unknown key; remove it or correct its spelling"
     elif problem["type"] == "missing":
         text = "is missing; add it"
+    elif problem["type"] in ("model_type", "dict_type", "model_attributes_type"):
+        text = f"must be a table; write [{place}] and its keys below"
+    elif problem["type"] == "string_pattern_mismatch":
+        text = "must be 1 to 64 letters, digits, - or _"
+    elif problem["type"] == "too_short":
+        text = "is empty; give at least one value"
     shown = "" if value is None or isinstance(value, dict | list) else f" = {value!r}"
     return f"{path}: {place}{shown}{', ' if shown else ' ' if place else ''}{text}"
 
@@ -229,6 +251,15 @@ def read_toml(path: Path | str) -> dict:
         raise CaseError(f"{path}: cannot be read ({error})") from None
     except tomllib.TOMLDecodeError as error:
         raise CaseError(f"{path}: not valid TOML: {error}") from None
+
+
+@contextlib.contextmanager
+def named(path: Path | str) -> Iterator[None]:
+    """Errors of a case that was read from `path` name the file."""
+    try:
+        yield
+    except CaseError as error:
+        raise error if str(path) in str(error) else CaseError(f"{path}: {error}") from None
 
 
 def load(path: Path | str) -> Case:

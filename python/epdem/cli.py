@@ -1,10 +1,8 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The command `epdem`: functions of a few lines that call the library.
-
-Exit codes: 0 all within tolerance, 1 a check failed, 2 bad input, 3 an engine failed.
-"""
+"""The command `epdem`: functions of a few lines that call the library."""
 
 import json
+import signal
 import sys
 from pathlib import Path
 from typing import Annotated
@@ -15,9 +13,15 @@ from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
 
 from . import cli_crosscheck, cli_numerics, cli_scene, cli_theory
 from .cli_options import AsJson, CasePath, Engines, Laws, Out, console
-from .errors import CaseError, EpdemError
+from .errors import CaseError, EpdemError, Stopped
 
-app = typer.Typer(add_completion=False, no_args_is_help=True, pretty_exceptions_enable=False, help=__doc__,
+ABOUT = """Elastic-plastic particle contact for LIGGGHTS and YADE, checked against theory.
+
+Begin with: epdem run cases/steel_wall.toml -e embedded -e liggghts
+
+Exit codes: 0 all within tolerance, 1 a check failed, 2 bad input, 3 an engine failed, 130 stopped.
+"""
+app = typer.Typer(add_completion=False, no_args_is_help=True, pretty_exceptions_enable=False, help=ABOUT,
                   context_settings={"help_option_names": ["-h", "--help"]})  # fmt: skip
 
 
@@ -27,9 +31,9 @@ def run(
     engine: Engines = None,
     law: Laws = None,
     ranks: Annotated[int, typer.Option(min=1, max=1024, help="MPI ranks of LIGGGHTS")] = 1,
-    steps: Annotated[int | None, typer.Option(help="replaces the case's steps in contact")] = None,
+    steps: Annotated[int | None, typer.Option(help="replaces the case's steps in contact (5 to 100000)")] = None,
     out: Out = None,
-    fresh: Annotated[bool, typer.Option(help="run again what is already stored")] = False,
+    fresh: Annotated[bool, typer.Option("--fresh", help="run again what is already stored")] = False,
     resume: Annotated[
         bool, typer.Option("--resume", help="continue an interrupted scene from its last restart")
     ] = False,
@@ -69,7 +73,7 @@ def run(
 def deck(
     file: Annotated[Path, typer.Argument(metavar="CASE|TEMPLATE", help="case file (TOML), or an own template (.j2)")],
     out: Annotated[Path, typer.Option("--out", "-o", help="folder for the deck")],
-    engine: Annotated[str, typer.Option("--engine", "-e")] = "liggghts",
+    engine: Annotated[str, typer.Option("--engine", "-e", help="liggghts or yade")] = "liggghts",
     law: Laws = None,
     case: Annotated[Path | None, typer.Option("--case", help="the case behind an own template")] = None,
     given: Annotated[list[str] | None, typer.Option("--set", metavar="KEY=VALUE", help="for an own template")] = None,
@@ -86,15 +90,20 @@ def deck(
     if cli_scene.is_scene(file):
         cli_scene.deck_scene(file, out, engine=engine, as_json=as_json)
         return
-    from .case import load
+    from .case import load, named
     from .engines import engine as find
     from .experiment import experiment
     from .plan import plan
     from .predict import predict
 
     tool = find(engine)
-    x = experiment(load(file), law[0] if law else None)
-    names = [str(f) for f in tool.write(plan(x, predict(x)), out)]
+    if engine == "embedded":
+        raise CaseError("--engine embedded: it reads no deck; use liggghts or yade")
+    if len(law or []) > 1:
+        raise CaseError("--law: a deck has one law; write one deck for each")
+    with named(file):
+        x = experiment(load(file), law[0] if law else None)
+        names = [str(f) for f in tool.write(plan(x, predict(x)), out)]
     print(json.dumps({"files": names}) if as_json else "\n".join(names))
 
 
@@ -102,11 +111,12 @@ def deck(
 def predict(case: CasePath, law: Laws = None, as_json: AsJson = False) -> None:
     """What theory says of a case; nothing runs."""
     from . import show
-    from .case import load
+    from .case import load, named
     from .experiment import experiment
     from .predict import predict as predict_experiment
 
-    experiments = [experiment(load(case), name) for name in (law or [None])]
+    with named(case):
+        experiments = [experiment(load(case), name) for name in (law or [None])]
     show.predictions([(x, predict_experiment(x)) for x in experiments], as_json, console())
 
 
@@ -135,16 +145,26 @@ for command in (
     app.command()(command)
 
 
+def _stop(number: int, frame: object) -> None:
+    raise Stopped
+
+
 def main() -> None:
     """Entry point: errors that a user can mend become one sentence and an exit code."""
+    for name in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):  # whoever stops us, no engine stays behind
+        signal.signal(name, _stop)
     try:
         app()
     except EpdemError as error:
         print(f"epdem: {error}", file=sys.stderr)
         sys.exit(error.exit_code)
-    except KeyboardInterrupt:
+    except Stopped:
         print("epdem: stopped; what was finished is stored", file=sys.stderr)
         sys.exit(130)
+    except OSError as error:
+        place, reason = error.filename or "a file", error.strerror or error
+        print(f"epdem: {place}: {reason}; choose another folder by --out, or make it writable", file=sys.stderr)
+        sys.exit(2)
 
 
 if __name__ == "__main__":

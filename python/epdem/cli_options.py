@@ -8,9 +8,17 @@ import typer
 from rich.console import Console
 
 CasePath = Annotated[Path, typer.Argument(metavar="CASE", help="case file (TOML)")]
-Engines = Annotated[list[str] | None, typer.Option("--engine", "-e", help="embedded, liggghts, yade; repeat for more")]
-Laws = Annotated[list[str] | None, typer.Option("--law", "-l", help="replaces the case's law; repeat for more")]
-Out = Annotated[Path | None, typer.Option("--out", "-o", help="folder for the results")]
+Engines = Annotated[
+    list[str] | None,
+    typer.Option(
+        "--engine", "-e", help="embedded, liggghts, yade, liggghts-hertz, liggghts-thornton_ning; repeat for more"
+    ),
+]
+Laws = Annotated[
+    list[str] | None,
+    typer.Option("--law", "-l", help="hertz, thornton, johnson or cavity instead of the case's law; repeat for more"),
+]
+Out = Annotated[Path | None, typer.Option("--out", "-o", help="folder for the results (default: runs/<case>)")]
 AsJson = Annotated[bool, typer.Option("--json", help="print one JSON document and nothing else")]
 
 

@@ -11,11 +11,12 @@ from .cli_options import AsJson, console
 
 
 def _quantity(option: str, text: str, unit: str) -> float:
+    from .case import within_limits
     from .errors import CaseError
     from .units import to_si
 
     try:
-        value = to_si(text, unit)
+        value = within_limits(to_si(text, unit), unit)
     except ValueError as error:
         raise CaseError(f"{option} {text!r}: {error}") from None
     if not value > 0:

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """`epdem doctor`: what is installed, what loads, what to do."""
 
+import os
 import shutil
 import subprocess
 import tempfile
@@ -47,7 +48,10 @@ def _mpi() -> Finding:
 def _plugin() -> Finding:
     """Load the plugin into the installed LIGGGHTS and let it create every model of ours."""
     plugin = paths.native("libepdem_liggghts.so")
-    if plugin is None or paths.launcher() is None:
+    launcher = paths.launcher()
+    if launcher is not None and not os.access(launcher, os.X_OK):
+        return Finding("plugin", False, f"{launcher} is not a program", "unset EPDEM_LAUNCHER")
+    if plugin is None or launcher is None:
         return Finding(
             "plugin", False, "not built", "apt-get install liggghts libliggghts-dev libopenmpi-dev; make setup"
         )
@@ -56,7 +60,7 @@ def _plugin() -> Finding:
         models = "\n".join(f"pair_style gran model ep/{name} tangential off" for name in claw.laws())
         deck.write_text("atom_style granular\nnewton off\ncommunicate single vel yes\nregion box block 0 1 0 1 0 1\n"
                         f"create_box 1 box\n{models}\n")  # fmt: skip
-        done = subprocess.run([str(paths.launcher()), "-in", deck.name, "-log", "none"], cwd=folder, timeout=60,
+        done = subprocess.run([str(launcher), "-in", deck.name, "-log", "none"], cwd=folder, timeout=60,
                               capture_output=True, text=True, errors="replace")  # fmt: skip
     if done.returncode == 0:
         return Finding("plugin", True, f"loads, models {', '.join('ep/' + n for n in claw.laws())}: {plugin}")
@@ -72,6 +76,6 @@ def examine() -> list[Finding]:
     for name, kind in ENGINES.items():
         tool = kind()
         reason = tool.missing()
-        detail = reason or tool.version()
-        findings.append(Finding(f"engine {name}", reason is None, detail, reason or "", needed=name == "embedded"))
+        found, advice = ("not here", reason) if reason else (tool.version(), "")
+        findings.append(Finding(f"engine {name}", reason is None, found, advice, needed=name == "embedded"))
     return [*findings, _plugin(), _mpi()]

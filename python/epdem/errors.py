@@ -12,6 +12,10 @@ class CaseError(EpdemError):
     """A case file, an option or a parameter is wrong (exit code 2); nothing was written."""
 
 
+class Stopped(BaseException):
+    """Ctrl-C, a batch system or a closed terminal ended the run (exit code 130); not an error that anything catches."""
+
+
 class EngineError(EpdemError):
     """An engine is missing, died or hung (exit code 3); its files are kept."""
 

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from . import law as claw
-from .case import RIGID, Case
+from .case import RIGID, Case, within_limits
 from .errors import CaseError
 from .theory import backbones, pair
 from .units import to_si
@@ -98,11 +98,11 @@ def _body(case: Case, material: str, radius: float | None) -> Body:
 
 def _read(key: str, value: object, unit: str) -> float:
     try:
-        x = to_si(value, unit)
+        x = within_limits(to_si(value, unit), unit)
     except ValueError as error:
         raise CaseError(f"law.{key} = {value!r}, {error}") from None
     if not x > 0:
-        raise CaseError(f"law.{key} = {value!r}, must be > 0")
+        raise CaseError(f"law.{key} = {value!r}, must be > 0; leave it out for the default")
     return x
 
 
@@ -157,6 +157,10 @@ def experiment(case: Case, law: str | None = None) -> Experiment:
         R_star=float(pair.R_star(body.radius, target.radius)), m_star=float(pair.m_star(body.mass, target.mass)),
         viscous_restitution=case.viscous.restitution if case.viscous else None,
     )  # fmt: skip
-    e.native_law()  # parameters that make no sense together are refused here
-    e.theory()
+    e.native_law()
+    try:
+        e.theory()  # parameters that make no sense together are refused here
+    except (ValueError, ArithmeticError) as error:
+        given = ", ".join(f"law.{name} = {value:g}" for name, value in spec.parameters.items())
+        raise CaseError(f"{given}: {error}") from None
     return e

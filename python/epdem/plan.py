@@ -5,9 +5,12 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from .errors import CaseError
 from .experiment import Experiment
 from .predict import Prediction
 from .timestep import search
+
+MAX_SAMPLES = 1e8  # of a trajectory: three numbers each, 2.4 GB
 
 
 @dataclass(frozen=True)
@@ -45,4 +48,9 @@ def plan(experiment: Experiment, prediction: Prediction, *, time_step: float | N
     gap = np.tile(phase, experiment.speed.size) * speed * dt
     # a few steps more than the longest contact: integration errors stretch it, and its end must be seen
     steps = int(np.ceil(1.02 * prediction.contact_time.max() / dt)) + 8
+    if speed.size * steps > MAX_SAMPLES:
+        raise CaseError(
+            f"{speed.size} impacts of up to {steps} steps are {speed.size * steps:.2g} samples, at most "
+            f"{MAX_SAMPLES:.0e} fit; lower steps_in_contact, count or phases, or split the range of speeds"
+        )
     return Plan(experiment, dt, steps, numerics.phases, speed, gap)

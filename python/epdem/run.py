@@ -6,6 +6,7 @@ A stage is done when its result is stored with the hash of its inputs: a second 
 
 import hashlib
 import json
+import shutil
 import time
 from collections.abc import Callable
 from dataclasses import dataclass, field
@@ -14,7 +15,7 @@ from pathlib import Path
 import pandas as pd
 
 from . import __version__, paths, store
-from .case import Case, parse, read_toml
+from .case import Case, named, parse, read_toml
 from .compare import compare, impacts_table
 from .engines import Engine, engine
 from .engines.base import not_representable
@@ -45,8 +46,18 @@ class Outcome:
 def _digest(plan: Plan, tool: Engine, version: str, ranks: int) -> str:
     """Hash of all that the result of a stage depends on: plan, engine, our binaries, templates."""
     x, sha = plan.experiment, hashlib.sha256()
-    numbers = [x.E_star, x.R_star, x.m_star, plan.time_step, plan.steps, x.body, x.target, x.law,
-               x.viscous_restitution, __version__]
+    numbers = [
+        x.E_star,
+        x.R_star,
+        x.m_star,
+        plan.time_step,
+        plan.steps,
+        x.body,
+        x.target,
+        x.law,
+        x.viscous_restitution,
+        __version__,
+    ]
     sha.update(json.dumps([tool.name, version, ranks, repr(numbers)]).encode())
     sha.update(plan.speed.tobytes() + plan.gap.tobytes())
     binaries = [paths.native("libepdem.so"), paths.native("libepdem_liggghts.so"), paths.launcher()]
@@ -70,8 +81,10 @@ def _stage(
     return table, seconds, {f.name: f.read_text() for f in files if f.suffix != ".data"}
 
 
-def _refuse(tool: Engine, plan: Plan, prediction: Prediction) -> None:
+def _refuse(tool: Engine, plan: Plan, prediction: Prediction, ranks: int) -> None:
     """Raise CaseError if `tool` cannot run `plan` as it is."""
+    if ranks > 1 and not tool.name.startswith("liggghts"):
+        raise CaseError(f"--ranks {ranks}: engine {tool.name} runs on one rank; leave --ranks out")
     if tool.name == "embedded":
         return
     if hasattr(tool, "deck"):
@@ -89,6 +102,22 @@ def _stored(path: Path) -> store.Results:
         return store.Results()
 
 
+def _beside_earlier(results: store.Results, old: store.Results) -> store.Results:
+    """What is stored: these results, and those of other engines and laws that an earlier call left of the same case."""
+    if old.case_text != results.case_text:
+        return results
+    keep = [key for key in old.runs if key not in results.runs]
+    rows = old.comparison
+    rows = rows[[f"{law}/{name}" in keep for law, name in zip(rows["law"], rows["engine"], strict=True)]]
+    return store.Results(
+        results.case_text, old.attributes | results.attributes,
+        pd.concat([results.comparison, rows], ignore_index=True),
+        {k: old.impacts[k] for k in keep} | results.impacts, old.predictions | results.predictions,
+        {k: old.runs[k] for k in keep} | results.runs,
+        {k: v for k, v in old.decks.items() if k.rsplit("/", 1)[0] in keep} | results.decks,
+    )  # fmt: skip
+
+
 def run(case_path: Path | str, *, engines: list[str], laws: list[str], out: Path | None = None, ranks: int = 1,
         steps: int | None = None, fresh: bool = False, progress: Callable[[str], None] = lambda text: None,
         ) -> Outcome:  # fmt: skip
@@ -103,16 +132,21 @@ def run(case_path: Path | str, *, engines: list[str], laws: list[str], out: Path
         data["numerics"].pop("error", None)
     case = parse(data, case_path)
     tools = [engine(name) for name in dict.fromkeys(engines)]
-    experiments = [experiment(case, law) for law in (list(dict.fromkeys(laws)) or [None])]
+    with named(case_path):
+        experiments = [experiment(case, law) for law in (list(dict.fromkeys(laws)) or [None])]
     for tool in tools:
         if reason := tool.missing():
             raise EngineError(f"engine {tool.name}: {reason}")
+    if ranks > 1 and shutil.which("mpirun") is None:
+        raise EngineError("--ranks needs mpirun, which was not found; apt-get install openmpi-bin")
     versions = {tool.name: tool.version() for tool in tools}
     predictions = {x.law.name: predict(x) for x in experiments}
-    plans = [plan(x, predictions[x.law.name]) for x in experiments]
+    with named(case_path):
+        plans = [plan(x, predictions[x.law.name]) for x in experiments]
     for p in plans:  # what an engine cannot do is said before any engine runs
         for tool in tools:
-            _refuse(tool, p, predictions[p.experiment.law.name])
+            with named(case_path):
+                _refuse(tool, p, predictions[p.experiment.law.name], ranks)
 
     folder = out or Path("runs") / case.name
     stored = folder / "results.h5"
@@ -134,11 +168,12 @@ def run(case_path: Path | str, *, engines: list[str], laws: list[str], out: Path
                 outcome.reused.append(key)
             else:
                 table, seconds, texts = _stage(p, tool, folder / law / tool.name, ranks)
-                results.impacts[key], results.runs[key] = table, seconds | {"inputs": inputs}
+                about = {"inputs": inputs, "time_step": p.time_step}
+                results.impacts[key], results.runs[key] = table, seconds | about
                 results.decks |= {f"{key}/{name}": text for name, text in texts.items()}
             spent = float(results.runs[key]["seconds"])
             outcome.seconds[tool.name] = outcome.seconds.get(tool.name, 0.0) + spent
             rows.append(compare(tool.name, law, results.impacts[key], prediction, case.check))
             results.comparison = pd.concat(rows, ignore_index=True)
-            store.write(stored, results)  # what is done stays done, whatever comes next
+            store.write(stored, _beside_earlier(results, old))  # what is done stays done, whatever comes next
     return outcome

@@ -111,12 +111,19 @@ def test_pint_never_sees_powers_that_it_would_compute_for_hours(text, monkeypatc
         ("case.title", "a title & ", "swallow the next line"),
         ("case.title", "two\nlines", "one printable line"),
         ("case.source", "bell \a", "one printable line"),
-        ("case.name", "../../etc", "pattern"),
+        ("case.name", "../../etc", "letters, digits"),
         ("case", KeyError, "case is missing"),
         ("law.name", "hook", "there are hertz, thornton"),
         ("law.stiffness", 1.0, "has no such parameter; it has yield_pressure, yield_pressure_ratio"),
         ("law.yield_pressure", "1 GPa", "keep one"),
         ("law.yield_pressure_ratio", -1.0, "must be > 0"),
+        ("law", {"name": "cavity", "first_yield_ratio": 1.0}, "law.first_yield_ratio = 1"),
+        ("impact.body.radius", "1e-200 m", "must lie in [1e-12, 1e+06] m"),
+        ("impact.speeds.from", "1e-120 m/s", "must lie in [1e-30, 1e+12] m/s"),
+        ("materials.steel.young_modulus", "1e200 Pa", "must lie in [1e-09, 1e+30] Pa"),
+        ("law.yield_pressure_ratio", 1e200, "law.yield_pressure = 1e+209"),
+        ("impact.body.material", "rigid", "only the target can be rigid"),
+        ("impact.body", 3, "must be a table"),
         ("check.e_n", 0, "must lie in (0, inf)"),
     ],
 )
@@ -135,6 +142,29 @@ def test_bad_input_exits_with_2_one_line_and_writes_nothing(tmp_path):
     assert done.returncode == 2
     assert done.stderr.startswith("epdem: ") and done.stderr.count("\n") == 1 and "poisson_ratio = 30" in done.stderr
     assert [p.name for p in tmp_path.iterdir()] == ["bad.toml"]
+
+
+COMMANDS = {
+    "a folder that is a file": (("run", "-e", "embedded", "-o", "taken"), "taken"),
+    "a folder nobody can make": (("run", "-e", "embedded", "-o", "/proc/here"), "/proc/here"),
+    "a model without this law": (("run", "-e", "liggghts-thornton_ning", "-l", "cavity"), "knows law thornton only"),
+    "ranks of an engine that has one": (("run", "-e", "embedded", "--ranks", "2"), "leave --ranks out"),
+    "a deck of an engine without decks": (("deck", "-e", "embedded", "-o", "d"), "reads no deck"),
+    "two laws in one deck": (("deck", "-l", "hertz", "-l", "cavity", "-o", "d"), "one deck for each"),
+    "too many samples": (("run", "-e", "embedded", "--steps", "100000"), "samples, at most"),
+}
+
+
+@pytest.mark.parametrize("mistake", COMMANDS)
+def test_a_mistake_on_the_command_line_exits_with_2_and_one_sentence(mistake, tmp_path):
+    (command, *options), says = COMMANDS[mistake]
+    (tmp_path / "taken").write_text("")
+    case = tmp_path / "case.toml"
+    case.write_text((CASES / "steel_wall.toml").read_text().replace("count = 32", "count = 512"))
+    done = subprocess.run([sys.executable, "-m", "epdem.cli", command, str(case), *options], cwd=tmp_path,
+                          capture_output=True, text=True)  # fmt: skip
+    assert done.returncode == 2 and says in done.stderr, done.stderr
+    assert done.stderr.startswith("epdem: ") and done.stderr.count("\n") == 1
 
 
 def test_another_law_drops_the_parameters_of_the_first():

@@ -154,6 +154,18 @@ def test_results_open_as_data_frames_and_a_second_run_takes_them_from_the_store(
     assert (tmp_path / "runs/steel_wall/e_n.png").stat().st_size > 10_000
 
 
+def test_a_run_with_another_law_keeps_what_is_stored(tmp_path):
+    case = str(CASES / "steel_wall.toml")
+    for law in ("thornton", "cavity"):
+        assert epdem("run", case, "-e", "embedded", "-l", law, cwd=tmp_path).returncode == 0
+    found = store.read(tmp_path / "runs/steel_wall/results.h5")
+    assert (
+        set(found.runs) == set(found.impacts) == {"thornton/embedded", "cavity/embedded"}
+        and len(found.comparison) == 64
+    )
+    assert "1 of 1 from" in epdem("run", case, "-e", "embedded", cwd=tmp_path).stdout
+
+
 def test_a_failed_check_exits_with_1(tmp_path):
     text = (CASES / "steel_wall.toml").read_text().replace("e_n = 1e-4", "e_n = 1e-9")
     (tmp_path / "strict.toml").write_text(text)

@@ -81,6 +81,16 @@ def call(command: list[str], folder: Path, *, log: str, seconds: float, env: dic
         raise EngineError(f"{command[0]} failed ({how}); {path}: {last_words(path)}")
 
 
+def ask(command: list[str], env: dict[str, str] | None = None) -> str:
+    """What a program says of itself, on both streams. Raises EngineError if it cannot be started or does not end."""
+    try:
+        done = subprocess.run(command, capture_output=True, text=True, errors="replace", timeout=60,
+                              stdin=subprocess.DEVNULL, env=env)  # fmt: skip
+    except (OSError, subprocess.TimeoutExpired) as error:
+        raise EngineError(f"{command[0]}: cannot be asked for its version ({error}); see epdem doctor") from None
+    return done.stdout + done.stderr
+
+
 def kill(process: subprocess.Popen) -> None:
     """Stop a process and all that it started."""
     import os

@@ -5,7 +5,6 @@ import math
 import os
 import re
 import shutil
-import subprocess
 import time
 from dataclasses import dataclass
 from pathlib import Path
@@ -17,7 +16,7 @@ from .. import paths
 from ..errors import CaseError, EngineError
 from ..experiment import Body
 from ..plan import Plan
-from .base import Trajectory, call
+from .base import Trajectory, ask, call
 
 INSTALL = "apt-get install liggghts libliggghts-dev libopenmpi-dev, then 'make setup'"
 RIGID = 1e30  # modulus [Pa] of a rigid type: 1e15 would change E* of steel by 2e-4
@@ -107,15 +106,15 @@ class Liggghts:
     takes_dashpot = True
 
     def missing(self) -> str | None:
-        if shutil.which("liggghts") is None or paths.launcher() is None:
+        launcher = paths.launcher()
+        if launcher is not None and not os.access(launcher, os.X_OK):
+            return f"{launcher} (EPDEM_LAUNCHER) is not a program; unset EPDEM_LAUNCHER or name another one"
+        if shutil.which("liggghts") is None or launcher is None:
             return f"LIGGGHTS with our models was not found; {INSTALL}"
         return None
 
     def version(self) -> str:
-        log = subprocess.run(
-            [str(paths.launcher()), "-h"], capture_output=True, text=True, errors="replace", timeout=60
-        )
-        found = re.search(r"LIGGGHTS[-\w ]*?(\d+\.\d+\.\d+)", log.stdout + log.stderr)
+        found = re.search(r"LIGGGHTS[-\w ]*?(\d+\.\d+\.\d+)", ask([str(paths.launcher()), "-h"]))
         return f"LIGGGHTS {found.group(1) if found else '(version unknown)'}"
 
     def model(self, plan: Plan) -> str:
@@ -126,7 +125,7 @@ class Liggghts:
 
     def deck(self, plan: Plan) -> Deck:
         """The deck of a plan. Raises CaseError for what LIGGGHTS cannot do."""
-        x, types = plan.experiment, _types(plan)
+        x, types, model = plan.experiment, _types(plan), self.model(plan)
         for b, _ in types:
             if b.poisson_ratio < 0:
                 raise CaseError(f"materials.{b.material}.poisson_ratio = {b.poisson_ratio}, LIGGGHTS takes [0, 0.5] "
@@ -141,7 +140,7 @@ class Liggghts:
             remembers=x.law.strength_property is not None, hard=max(moduli) > HARD, soft=min(moduli) < SOFT,
             data="impact.data",
             skin=0.2 * min(x.body.radius, x.target.radius), types=tuple(b.material for b, _ in types),
-            properties=self.properties(plan), model=self.model(plan), tangential="off",
+            properties=self.properties(plan), model=model, tangential="off",
             settings=("viscous on",) if dashpot else (),
             wall_type=len(types) if math.isinf(x.target.radius) else None,
             time_step=plan.time_step, path="path.bin", steps=plan.steps,
