@@ -80,6 +80,17 @@ FAULTS += [
           PLUGIN_TESTS, "momentum and thornton and not ning"),
 ]  # fmt: skip
 
+THEORY, VALUES = f"{PYTHON}/theory", "tests/physics/test_reference_values.py"
+FAULTS += [
+    Fault("waves of the rebound grow with e_n", f"{THEORY}/energy.py", '0.811 / number("e_n"', '0.811 * number("e_n"',
+          VALUES, "rebound"),
+    Fault("a cut-off spring slides like a continuum", f"{THEORY}/oblique.py", "- 2 / 3 * e_n / kappa", "- e_n / kappa",
+          VALUES, "cut_off_spring"),
+    Fault("flat circle opens with Hertz's pressure", f"{THEORY}/backbones.py", "np.arccos(y) - y * np.sqrt(rest)",
+          "np.arccos(y) - y * rest", VALUES, "integral_of_8_82"),
+    Fault("a length too few in the yield speed", f"{THEORY}/printed.py", "8 * np.pi * R_star**3", "8 * np.pi * R_star**2",
+          "tests/physics/test_units_of_measurement.py", "yield_speed"),
+]  # fmt: skip
 
 
 def needs_plugin(fault: Fault) -> bool:
