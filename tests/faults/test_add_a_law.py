@@ -47,10 +47,20 @@ struct Toy {
 """
 THEORY = """
 
-class Toy(Thornton):
+class Toy(Backbone):
     \"\"\"A toy law: thornton with 4/5 of its plastic slope.\"\"\"
 
     name = "toy"
+    keywords: ClassVar = {"yield_pressure": "p_y"}
+    default_ratio = 2.8
+
+    def __init__(self, *, E_star, R_star, p_y):
+        super().__init__(E_star, R_star)
+        self.p_y = number("p_y", p_y)
+        self.yield_overlap = self.R_star * (np.pi * self.p_y / (2 * self.E_star)) ** 2
+
+    def radius(self, alpha):
+        return np.sqrt(self.R_star * alpha)
 
     def force(self, alpha):
         y = self.yield_overlap

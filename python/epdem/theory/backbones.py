@@ -61,13 +61,19 @@ class Backbone:
     def residual_overlap(self, alpha_max):
         """The dent [m]: alpha_max - delta_e, exactly 0 up to yield."""
         alpha_max = np.asarray(alpha_max, float)
-        return np.where(alpha_max <= self.yield_overlap, 0.0, alpha_max - self.recovered_overlap(alpha_max))
+        dent = np.maximum(alpha_max - self.recovered_overlap(alpha_max), 0.0)
+        return np.where(alpha_max <= self.yield_overlap, 0.0, dent)
 
     def recovered_work(self, alpha_max):
         """Energy given back on full unloading [J]: kappa F^2/(a E*)."""
         tau = self.flatness(alpha_max)
         kappa = 0.3 * (1 - tau) ** 2 + 0.5625 * tau * (1 - tau) + 8 / (3 * np.pi**2) * tau**2
         return kappa * self.force(alpha_max) ** 2 / (self.radius(alpha_max) * self.E_star)
+
+    def plastic_work(self, alpha_max):
+        """Work that stays in the dent [J]: W - kappa F^2/(a E*), exactly 0 up to yield."""
+        lost = np.maximum(self.work(alpha_max) - self.recovered_work(alpha_max), 0.0)
+        return np.where(alpha_max <= self.yield_overlap, 0.0, lost)
 
     def unloading(self, alpha, alpha_max):
         """Force [N] and contact radius [m] at alpha <= alpha_max on the elastic branch from alpha_max.
@@ -156,6 +162,23 @@ class Thornton(Backbone):
         x = 2 * more / slope / (h + np.sqrt(h * h + 2 * more / slope))  # the root without cancellation
         elastic = (15 / 8 * np.asarray(W) / (self.E_star * np.sqrt(self.R_star))) ** 0.4
         return np.where(more > 0, y + x, elastic)
+
+    def _beyond_yield(self, alpha_max):
+        """t = sqrt(alpha_max/alpha_y), at least 1, and t - 1 without cancellation."""
+        x = np.maximum(alpha_max - self.yield_overlap, 0.0) / self.yield_overlap
+        t = np.sqrt(1 + x)
+        return t, x / (1 + t)
+
+    def residual_overlap(self, alpha_max):
+        """The dent [m]: alpha_y (t-1)^2 (t + 1/2)/t with t^2 = alpha_max/alpha_y; its difference would cancel."""
+        t, more = self._beyond_yield(alpha_max)
+        return self.yield_overlap * more**2 * (t + 0.5) / t
+
+    def plastic_work(self, alpha_max):
+        """Work that stays in the dent [J]: pi p_y R* alpha_y^2 (t-1)^2 (15 t^3 + 12 t^2 - t - 2)/(30 t), t as above."""
+        t, more = self._beyond_yield(alpha_max)
+        unit = np.pi * self.p_y * self.R_star * self.yield_overlap**2
+        return unit * more**2 * (((15 * t + 12) * t - 1) * t - 2) / (30 * t)
 
 
 class Johnson(Backbone):

@@ -38,7 +38,7 @@ def e_n(law: Backbone, *, m_star, speed):
     """
     W = 0.5 * number("m_star", m_star) * np.square(number("speed", speed))
     top = law.overlap_of_work(W)
-    return np.where(top <= law.yield_overlap, 1.0, np.sqrt(law.recovered_work(top) / W))
+    return np.where(top <= law.yield_overlap, 1.0, np.sqrt(np.minimum(law.recovered_work(top) / W, 1.0)))
 
 
 def _integral(rate, shape):
@@ -111,14 +111,14 @@ def impact(law: Backbone, *, m_star, speed) -> Impact:
     W = 0.5 * m * v * v
     top = np.asarray(law.overlap_of_work(W), float)
     elastic = top <= law.yield_overlap
-    out = np.where(elastic, W, law.recovered_work(top))
+    out = np.where(elastic, W, np.minimum(law.recovered_work(top), W))
     time = _loading_time(law, m, top)
     back = np.where(elastic, time, _unloading_time(law, m, top, out))
     radius = law.radius(top)
     return Impact(
         e_n=np.where(elastic, 1.0, np.sqrt(out / W)), contact_time=time + back, force_max=law.force(top),
         overlap_max=top, radius_max=radius, residual_overlap=law.residual_overlap(top), work_in=W, work_out=out,
-        plastic_work=np.where(elastic, 0.0, W - out), strain_ratio=radius / law.R_star,
+        plastic_work=law.plastic_work(top), strain_ratio=radius / law.R_star,
     )  # fmt: skip
 
 

@@ -178,7 +178,7 @@ def impact(law: Backbone, *, m_star, speed, restitution: float) -> Impact:
         time[yielded] += _yielding_time(law, m_y, np.full(summit.shape, y), summit) + recovery / V * out[2]
         top[yielded], back[yielded], parting[yielded] = summit, -V * out[1], summit - recovery * (1 - out[0] ** 4)
         force_max[yielded] = np.maximum(force_max[yielded], law.force(summit))
-        W_plastic[yielded] = law.work(summit) - given
+        W_plastic[yielded] = law.plastic_work(summit)
     work_out, radius = 0.5 * m * back * back, law.radius(top)
     columns = {
         "e_n": back / v, "contact_time": time, "force_max": force_max, "overlap_max": top, "radius_max": radius,
