@@ -27,6 +27,22 @@ def test_first_yield_under_a_sphere_for_any_poisson_ratio():
     assert yielding.first_yield_mean(0.3) == pytest.approx(yielding.FIRST_YIELD_MEAN_ROUNDED, abs=0.03)  # 8.79 rounds
 
 
+def test_first_yield_is_the_maximum_of_the_axial_stress_for_any_poisson_ratio():
+    """30 digits: s_r - s_z of Hertz's half-ellipse (Johnson 1985, 3.45), its maximum by the root of a derivative taken
+    numerically; 1e-12 leaves room for the 1e-16 of nu + 1 at nu = -0.99."""
+    nu = np.array([-0.99, -0.97, -0.95, -0.9, -0.6, -0.2, 0.0, 0.3, 0.5])
+    found = np.array(yielding.first_yield(nu)).T
+    for n, (p_0, depth) in zip(nu, found, strict=True):
+        with mp.workdps(30):
+
+            def difference(z, n=float(n)):
+                return -(1 + n) * (1 - z * mp.atan(1 / z)) + mp.mpf(3) / 2 / (1 + z * z)
+
+            z = mp.findroot(lambda x: mp.diff(difference, x), (0.4 * (1 + n), 0.8 * (1 + n)), solver="anderson")
+            assert p_0 == pytest.approx(float(1 / difference(z)), rel=1e-12, abs=0)
+            assert depth == pytest.approx(float(z), rel=1e-12, abs=0)
+
+
 def test_fully_plastic_pressure_lies_where_the_expanding_cavity_ends():
     """8.80 against 8.81: from E* a/(Y R*) of about 40, within a sixth, the cavity's pressure reaches 2.8 to 3.0 Y."""
     low, high = yielding.fully_plastic_mean(np.array([1e9, 2e9]))

@@ -6,37 +6,43 @@ import numpy as np
 from .checks import number, poisson_ratio
 
 
+def _one_finite(name: str, a, b, otherwise: str):
+    a, b = number(name + "1", a, infinite=True), number(name + "2", b, infinite=True)
+    if np.any(np.isinf(a) & np.isinf(b)):
+        raise ValueError(f"{name}1 = {name}2 = inf, at least one must be finite: {otherwise}")
+    return a, b
+
+
 def E_star(E1, nu1, E2, nu2):
     """Effective modulus [Pa]: 1/E* = (1-nu1^2)/E1 + (1-nu2^2)/E2.
 
-    E1, E2 [Pa] > 0, infinite for a rigid body; nu1, nu2 in (-1, 0.5]. ValueError outside.
+    E1, E2 [Pa] > 0, infinite for a rigid body; nu1, nu2 in (-1, 0.5]. ValueError outside and for two rigid bodies.
     """
-    E1, E2 = number("E1", E1, infinite=True), number("E2", E2, infinite=True)
+    E1, E2 = _one_finite("E", E1, E2, "both bodies are rigid")
     nu1, nu2 = poisson_ratio("nu1", nu1), poisson_ratio("nu2", nu2)
     return 1 / ((1 - nu1**2) / E1 + (1 - nu2**2) / E2)
 
 
 def G_star(E1, nu1, E2, nu2):
     """Effective shear modulus [Pa]: 1/G* = (2-nu1)/G1 + (2-nu2)/G2 with G = E/(2(1+nu)); arguments as in E_star."""
-    E1, E2 = number("E1", E1, infinite=True), number("E2", E2, infinite=True)
+    E1, E2 = _one_finite("E", E1, E2, "both bodies are rigid")
     nu1, nu2 = poisson_ratio("nu1", nu1), poisson_ratio("nu2", nu2)
     return 1 / (2 * (2 - nu1) * (1 + nu1) / E1 + 2 * (2 - nu2) * (1 + nu2) / E2)
 
 
-def _reduced(name: str, a, b):
-    a, b = number(name + "1", a, infinite=True), number(name + "2", b, infinite=True)
+def _reduced(a, b):
     small, large = np.minimum(a, b), np.maximum(a, b)
     return small / (1 + small / large)  # no loss for a plane (inf) or very unequal bodies
 
 
 def R_star(R1, R2):
-    """Effective radius [m]: 1/R* = 1/R1 + 1/R2; R1, R2 [m] > 0, infinite for a plane."""
-    return _reduced("R", R1, R2)
+    """Effective radius [m]: 1/R* = 1/R1 + 1/R2; R1, R2 [m] > 0, infinite for a plane, not both."""
+    return _reduced(*_one_finite("R", R1, R2, "both bodies are planes"))
 
 
 def m_star(m1, m2):
-    """Effective mass [kg]: 1/m* = 1/m1 + 1/m2; m1, m2 [kg] > 0, infinite for a fixed body."""
-    return _reduced("m", m1, m2)
+    """Effective mass [kg]: 1/m* = 1/m1 + 1/m2; m1, m2 [kg] > 0, infinite for a fixed body, not both."""
+    return _reduced(*_one_finite("m", m1, m2, "both bodies are fixed"))
 
 
 def sphere_mass(*, radius, density):

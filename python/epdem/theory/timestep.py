@@ -4,12 +4,13 @@
 import numpy as np
 
 from .checks import number, poisson_ratio
+from .restitution import UNLOADING_TIME
 
 # Shares of the limit of one normal contact that stay stable: with a tangential spring (sphere on a plane, nu = 0.3),
 # and in a dense packing (face-centred cubic, central springs).
 WITH_TANGENTIAL_SPRING = 0.59
 DENSE_PACKING = 0.5
-HERTZ_TIME = 2.868265  # contact time of Hertz in (m*^2/(R* E*^2 v))^(1/5)
+HERTZ_TIME = 2 * UNLOADING_TIME * (15 / 16) ** 0.4  # 2.8682657: contact time of Hertz in (m*^2/(R* E*^2 v))^(1/5)
 
 
 def stability_limit(*, E_star, m_star, radius):

@@ -61,10 +61,11 @@ def first_yield(nu):
 
     Eq. 8.78 [Johnson 1985]: p_0 = Y/max(s_r - s_z), 1.60 Y at nu = 0.3
 
-    Both criteria coincide on the axis (section 6.1).
+    Both criteria coincide on the axis (section 6.1). The edge of the contact yields before it for nu below -0.34 (von
+    Mises) or -0.13 (Tresca), where p_0/Y = sqrt(3)/(1-2 nu) or 1.5/(1-2 nu).
     """
     nu = poisson_ratio("nu", nu)
-    low, high = np.zeros(np.shape(nu)) + 0.05, np.zeros(np.shape(nu)) + 1.5
+    low, high = 0.3 * (1 + nu), np.zeros(np.shape(nu)) + 1.5  # z goes to pi/6 (1 + nu) as nu goes to -1
 
     def slope(z):  # of axis_difference by z, in closed form
         return (1 + nu) * (np.arctan(1 / z) - z / (1 + z * z)) - 3 * z / (1 + z * z) ** 2
