@@ -10,7 +10,12 @@ from pathlib import Path
 import pytest
 
 CASE = Path(__file__).parents[2] / "cases/steel_wall.toml"
-SLEEPER = '#!/bin/sh\n[ "$1" = -h ] && exit 0\necho $$ > "$EPDEM_TEST_PID.new"\nmv "$EPDEM_TEST_PID.new" "$EPDEM_TEST_PID"\nsleep 60\n'
+SLEEPER = """#!/bin/sh
+[ "$1" = -h ] && exit 0
+echo $$ > "$EPDEM_TEST_PID.new"
+mv "$EPDEM_TEST_PID.new" "$EPDEM_TEST_PID"
+sleep 60
+"""
 
 
 def until(condition, seconds: float = 60.0) -> bool:

@@ -38,6 +38,15 @@ inline State<Law> remember(const Law& law, real R_star, real delta_max) noexcept
   }
 }
 
+/// A stored overlap [m] of this size was never one, and is forgotten.
+inline constexpr real no_overlap = 1e100;
+
+/// Whether a stored peak can be one: a restart of a run with another law may have left other numbers there.
+inline bool plausible(const Point& p) noexcept {
+  constexpr real most = std::numeric_limits<double>::max();
+  return p.force > 0.0 && p.force <= most && p.radius > 0.0 && p.radius <= most && p.flatness >= 0.0 && p.flatness <= 1.0;
+}
+
 template <class Law>
 struct Step {
   real force;      // F [N], never negative
@@ -56,7 +65,7 @@ inline Step<Law> step(const Law& law, real R_star, const State<Law>& before, rea
   } else {
     const real delta_y = law.elastic_overlap(R_star);
     // also at equality: evaluating the same step twice then gives the same bits
-    const bool grows = delta >= before.delta_max;
+    const bool grows = !(delta < before.delta_max && before.delta_max < no_overlap);
     const real delta_max = grows ? delta : before.delta_max;
     if (delta_max <= delta_y) {
       const Point p = hertz_point(law.E_star, R_star, delta);
@@ -72,8 +81,9 @@ inline Step<Law> step(const Law& law, real R_star, const State<Law>& before, rea
         return {p.force, p.radius, {delta}};
     }
     if constexpr (Law::flattens) {
-      const Point p = unload<true>(law.E_star, before.point, before.delta_max, delta);
-      return {p.force, p.radius, before};
+      const State<Law> known = plausible(before.point) ? before : remember(law, R_star, before.delta_max);
+      const Point p = unload<true>(law.E_star, known.point, known.delta_max, delta);
+      return {p.force, p.radius, known};
     } else {
       const Point p = unload<false>(law.E_star, law.load(R_star, before.delta_max), before.delta_max, delta);
       return {p.force, p.radius, before};

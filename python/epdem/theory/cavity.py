@@ -30,10 +30,11 @@ class Cavity(Backbone):
         self.ln_s_P = 3 * (self.c_P - 2 * self.c_Y / 3) - np.log(2)
         self.beta = np.log(2) / self.ln_s_P
         excess = 2 * (1 + self.beta) * (1 + 1 / (2 * self.c_Y)) - (1 + self.beta) / 2 - 0.125 / self.ln_s_P
+        if np.any(self.c_P <= self.c_Y):
+            raise ValueError("plastic_ratio (c_P) must exceed first_yield_ratio (c_Y)")
         if np.any(excess > 2.5) or np.any(self.ln_s_P <= 0):
-            raise ValueError(
-                f"c_Y = {c_Y}, c_P = {c_P}: energy would be created at yield; keep c_P >= 2.8, c_Y >= 1.41"
-            )
+            raise ValueError(f"energy would be created at yield: the law's condition is {np.max(excess):.3g}, over "
+                             "2.5; raise first_yield_ratio (c_Y) or plastic_ratio (c_P)")  # fmt: skip
         self.plastic_overlap = self.yield_overlap * np.exp(self.ln_s_P)
 
     def marks(self):
