@@ -85,8 +85,11 @@ def refuse(case: SceneCase) -> None:
     s, contact, out = case.scene, case.contact, case.output
     if s.kind not in KINDS:
         raise CaseError(f"scene.kind = {s.kind!r}: YADE runs {' and '.join(KINDS)}; use --engine liggghts")
+    if case.law.name not in LAWS:
+        raise CaseError(f"law.name = {case.law.name!r}: YADE has {', '.join(LAWS)}; use --engine liggghts")
     unknown = {
         "scene.rate": (getattr(s, "rate", None), "all spheres are there from the start"),
+        "viscous.restitution": (case.viscous and case.viscous.restitution, "YADE's law has no dashpot"),
         "contact.rolling": (contact.rolling and contact.rolling.model, "YADE's law has no rolling resistance"),
         "contact.cohesion": (contact.cohesion, "YADE's law has no cohesion"),
         "output.restarts": (out.restarts, "a YADE scene is not continued"),
@@ -154,8 +157,9 @@ def _walls(d: liggghts.Deck, case: SceneCase, periodic: bool) -> tuple[Wall, ...
 
 def deck(case: SceneCase) -> Deck:
     """The YADE deck of a scene, with time step, rows and frames of the LIGGGHTS one. Raises CaseError."""
+    m = model(case)
     refuse(case)
-    d, m, s = liggghts.deck(case), model(case), case.scene
+    d, s = liggghts.deck(case), case.scene
     press = s.kind == "compaction"
     periodic = press or s.periodic
     friction = _friction(m)

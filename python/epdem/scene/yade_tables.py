@@ -41,7 +41,7 @@ def read(case: SceneCase, d: Deck, folder: Path) -> dict[str, pd.DataFrame]:
         found["particles"] = spheres.astype({"id": "int64", "type": "int64", "step": "int64"})
     if d.contacts:
         every = _contacts(case, d, folder, found["particles"])
-        if d.settings:
+        if d.energy and d.yields:
             found["particles"]["plastic_work"] = _plastic_work(every, found["particles"])
         found["contacts"] = every[every["overlap"] > 0].reset_index(drop=True)
     return found
