@@ -142,8 +142,7 @@ def test_hertz_contact_time_is_the_beta_function_of_its_power_law():
     v = 0.1
     top = (mp.mpf(15) / 16 * M * v**2 / (STEEL["E_star"] * mp.sqrt(mp.mpf("0.01")))) ** mp.mpf("0.4")
     time = float(2 * top / v * mp.mpf(2) / 5 * mp.beta(mp.mpf(2) / 5, mp.mpf(1) / 2))
-    # 7 digits of the constant
-    assert timestep.hertz_time(**STEEL, m_star=M, speed=v) == pytest.approx(time, rel=3.5e-7, abs=0)
+    assert timestep.hertz_time(**STEEL, m_star=M, speed=v) == exactly(time)
 
 
 def test_sliding_impact_of_a_sphere_by_the_balance_of_its_impulses():
