@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from epdem.theory import energy, oblique, pair, printed, restitution, timestep
+from epdem.theory import energy, oblique, pair, pressure, printed, restitution, timestep
 from epdem.theory.backbones import Hertz, Thornton
 
 E, NU = 208e9, 0.3
@@ -155,6 +155,16 @@ def test_hertz_contact_time_constant_is_a_beta_function():
     (lambda: Thornton(E_star=1e11, R_star=0.01, p_y=-1), "p_y"), (lambda: Hertz(E_star=np.inf, R_star=1), "E_star"),
     (lambda: restitution.e_n(Hertz(E_star=1e9, R_star=1), m_star=1, speed=np.array([1.0, -2.0])), "speed = -2"),
     (lambda: oblique.sliding_angle(-0.1, e_n=1, nu=0.3), "mu"), (lambda: energy.wave_constant(0.5), "nu"),
+    (lambda: oblique.tangential_restitution(0.3, e_n=-5, theta=0.5), "e_n = -5"),
+    (lambda: oblique.spin(0.3, e_n=-0.1, v_n=1.0, R=0.01), "e_n"),
+    (lambda: oblique.sliding_angle(0.3, e_n=np.nan, nu=0.3), "e_n = nan"),
+    (lambda: oblique.sliding_angle_spring(0.3, e_n=np.nan, nu=0.3), "e_n = nan"),
+    (lambda: oblique.patch_rebound(0.3, e_n=1.0, theta=np.pi), "theta"),
+    (lambda: oblique.patch_rebound(0.3, e_n=-1.0, theta=1.0), "e_n"),
+    (lambda: pressure.unloading_force(a=2.0, a_max=1.0, p=1.0), "a = 2"),
+    (lambda: pressure.unloading(0.0, a=2.0, a_max=1.0, p=1.0), "a = 2"),
+    (lambda: energy.radiated([0, 1, 2], [0, 1, 1], E=E, nu=NU, density=7850), "time, from sample to sample = 0"),
+    (lambda: energy.radiated([0, np.nan], [0, 1], E=E, nu=NU, density=7850), "force"),
 ])  # fmt: skip
 def test_bad_input_is_named_with_its_range(call, name):
     with pytest.raises(ValueError, match="must lie in") as caught:

@@ -64,13 +64,14 @@ def rayleigh_share(nu):
 
 
 def radiated(force, time, *, E, nu, density):
-    """Energy radiated into a half-space [J] by a force history: force [N] at times [s], shape (n,), any spacing.
+    """Energy radiated into a half-space [J] by a force history: force [N] at times [s], shape (n,), any spacing but 0.
 
     E [Pa], nu and density [kg/m^3] are the half-space's. Between samples the force is taken as straight.
     """
-    force, time = np.asarray(force, float), np.asarray(time, float)
+    force = number("force", np.asarray(force, float), low=-np.inf)
+    between = number("time, from sample to sample", np.diff(np.asarray(time, float)))
     c_0 = np.sqrt(number("E", E) / number("density", density))
-    rate2 = float(np.sum(np.diff(force) ** 2 / np.diff(time)))
+    rate2 = float(np.sum(np.diff(force) ** 2 / between))
     return wave_constant(poisson_ratio("nu", nu)) / (density * c_0**3) * rate2
 
 

@@ -11,6 +11,8 @@ import numpy as np
 from .backbones import Backbone
 from .checks import number, poisson_ratio
 
+STEEPEST = 1.5707  # of impact angles [rad]: just below pi/2
+
 
 def kappa(nu):
     """Ratio of tangential to normal stiffness of like bodies: 2(1-nu)/(2-nu), nu in (-1, 0.5]."""
@@ -18,19 +20,27 @@ def kappa(nu):
     return 2 * (1 - nu) / (2 - nu)
 
 
+def _approach_and_rebound(e_n):
+    """1 + e_n: the normal impulse in m v_n. e_n >= 0; a measured one may lie above 1 by its error."""
+    return 1 + number("e_n", e_n, low_ok=True)
+
+
 def tangential_restitution(f, *, e_n, theta):
-    """e_t = 1 - f (1 + e_n)/tan theta; of the centre's tangential velocity."""
-    return 1 - f * (1 + e_n) / np.tan(number("theta", theta, high=np.pi / 2))
+    """e_t = 1 - f (1 + e_n)/tan theta; of the centre's tangential velocity. theta in (0, pi/2]; ValueError outside."""
+    return 1 - f * _approach_and_rebound(e_n) / np.tan(number("theta", theta, high=np.pi / 2))
 
 
 def spin(f, *, e_n, v_n, R, w_i=0.0):
     """Spin after the impact [rad/s] of a solid sphere: w_i + (5/2) f (1 + e_n) v_n/R; v_n [m/s] > 0, R [m]."""
-    return w_i + 2.5 * f * (1 + e_n) * number("v_n", v_n) / number("R", R)
+    return w_i + 2.5 * f * _approach_and_rebound(e_n) * number("v_n", v_n) / number("R", R)
 
 
 def patch_rebound(f, *, e_n, theta):
-    """Velocity of the contact patch after the impact, in v_n: tan theta - (7/2) f (1 + e_n), for w_i = 0."""
-    return np.tan(theta) - 3.5 * f * (1 + e_n)
+    """Velocity of the contact patch after the impact, in v_n: tan theta - (7/2) f (1 + e_n), for w_i = 0.
+
+    theta in [0, pi/2); ValueError outside.
+    """
+    return np.tan(number("theta", theta, low_ok=True, high=STEEPEST)) - 3.5 * f * _approach_and_rebound(e_n)
 
 
 def sliding_angle(mu, *, e_n, nu):
@@ -38,12 +48,12 @@ def sliding_angle(mu, *, e_n, nu):
 
     For e_n = 1 it is mu (7 - 1/kappa) (Maw, Barber and Fawcett 1976).
     """
-    return np.arctan(number("mu", mu, low_ok=True) * (3.5 * (1 + e_n) - e_n / kappa(nu)))
+    return np.arctan(number("mu", mu, low_ok=True) * (3.5 * _approach_and_rebound(e_n) - e_n / kappa(nu)))
 
 
 def sliding_angle_spring(mu, *, e_n, nu):
     """The same for a DEM spring k_t = 8 G* a that is cut off at mu F: mu [(7/2)(1+e_n) - (2/3) e_n/kappa]."""
-    return np.arctan(number("mu", mu, low_ok=True) * (3.5 * (1 + e_n) - 2 / 3 * e_n / kappa(nu)))
+    return np.arctan(number("mu", mu, low_ok=True) * (3.5 * _approach_and_rebound(e_n) - 2 / 3 * e_n / kappa(nu)))
 
 
 @dataclass(frozen=True)
@@ -68,7 +78,7 @@ def impact(law: Backbone, *, mass, R, mu, G_star, v_n, theta, steps=2000, spring
     """
     from .restitution import impact as normal_impact
 
-    theta = np.asarray(number("theta", theta, low_ok=True, high=1.5707), float)
+    theta = np.asarray(number("theta", theta, low_ok=True, high=STEEPEST), float)
     mu, mass, R = number("mu", mu, low_ok=True), number("mass", mass), number("R", R)
     normal = normal_impact(law, m_star=mass, speed=v_n)
     dt = float(normal.contact_time) / steps

@@ -63,6 +63,13 @@ def regime(x, *, plastic=2.8):
     return np.where(elastic_mean(x) <= 1.07, 0, np.where(p < plastic, 1, 2))
 
 
+def _opening(a, a_max):
+    a, a_max = number("a", a), number("a_max", a_max)
+    if np.any(a > a_max):
+        raise ValueError(f"a = {np.max(a):g}, must lie in (0, a_max = {np.min(a_max):g}]")
+    return a, a_max
+
+
 def unloading(r, *, a, a_max, p):
     """Pressure while a uniformly loaded circle unloads [Pa].
 
@@ -71,9 +78,7 @@ def unloading(r, *, a, a_max, p):
     p [Pa] and a_max = a* belong to the start of unloading. a = a_max gives p everywhere; 0 outside a. ValueError if a
     exceeds a_max.
     """
-    a, a_max, p = number("a", a), number("a_max", a_max), number("p", p)
-    if np.any(a > a_max):
-        raise ValueError(f"a = {np.max(a):g}, must lie in (0, a_max = {np.min(a_max):g}]")
+    (a, a_max), p = _opening(a, a_max), number("p", p)
     r = np.asarray(r, float)
     inside = np.maximum(a**2 - r**2, 0.0)
     base = np.maximum(a_max**2 - r**2, 0.0)
@@ -82,7 +87,10 @@ def unloading(r, *, a, a_max, p):
 
 
 def unloading_force(*, a, a_max, p):
-    """Integral of `unloading` over the circle [N]: p a*^2 2 [acos y - y sqrt(1-y^2)], y = sqrt(1 - a^2/a*^2)."""
-    a, a_max = number("a", a), number("a_max", a_max)
-    y = np.sqrt(np.maximum(1 - (a / a_max) ** 2, 0.0))
+    """Integral of `unloading` over the circle [N]: p a*^2 2 [acos y - y sqrt(1-y^2)], y = sqrt(1 - a^2/a*^2).
+
+    a, a_max = a* [m], p [Pa] > 0, any shapes that broadcast; ValueError if a exceeds a_max.
+    """
+    a, a_max = _opening(a, a_max)
+    y = np.sqrt(1 - (a / a_max) ** 2)
     return 2 * number("p", p) * a_max**2 * (np.arccos(y) - y * np.sqrt(1 - y * y))
