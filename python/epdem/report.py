@@ -11,6 +11,7 @@ from rich.markup import escape
 from rich.table import Table
 
 from .compare import CHECKED
+from .predict import Prediction
 from .run import Outcome
 from .store import atomic
 
@@ -36,6 +37,7 @@ def run_json(outcome: Outcome) -> str:
             "case": outcome.case.name,
             "passed": outcome.passed,
             "seconds": outcome.seconds,
+            "yields": {law: list(p.yields) for law, p in outcome.predictions.items()},
             "warnings": outcome.warnings,
             "rows": records(outcome.results.comparison, ROW_KEYS),
         },
@@ -43,9 +45,15 @@ def run_json(outcome: Outcome) -> str:
     )
 
 
+def yielding(prediction: Prediction) -> str:
+    """Which materials the law lets flow, in words."""
+    return f"yields: {', '.join(prediction.yields)}" if prediction.yields else "nothing yields"
+
+
 def run_table(outcome: Outcome) -> Table:
     """One row per speed and engine."""
-    table = Table(title=outcome.case.case.title, caption_justify="left")
+    found = "; ".join(f"{law}: {yielding(p)}" for law, p in outcome.predictions.items())
+    table = Table(title=f"{outcome.case.case.title} ({found})", caption_justify="left")
     laws = outcome.results.comparison["law"].nunique() > 1
     heads = ["v [m/s]", "engine", *(["law"] if laws else []), "e_n", "theory", "error", "t_c [us]", "F_max [N]",
              "overlap [um]", "steps", "pass"]  # fmt: skip

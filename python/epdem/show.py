@@ -12,7 +12,7 @@ from rich.table import Table
 from .doctor import Finding
 from .experiment import Experiment
 from .predict import Prediction
-from .report import records
+from .report import records, yielding
 
 
 def _table(title: str, frame: pd.DataFrame) -> Table:
@@ -29,13 +29,12 @@ def predictions(pairs: list[tuple[Experiment, Prediction]], as_json: bool, conso
     document = []
     for x, p in pairs:
         frame = pd.DataFrame({n: getattr(p, n) for n in Prediction.COLUMNS})
-        yields = f"yields: {', '.join(p.yields)}" if p.yields else "nothing yields"
         if as_json:
             document.append({"case": x.case.name, "law": x.law.name, "parameters": x.law.parameters, "yields": p.yields,
                              "yield_speeds": {k: v if math.isfinite(v) else None for k, v in p.yield_speeds.items()},
                              "warnings": p.warnings(), "rows": records(frame)})  # fmt: skip
         else:
-            console.print(_table(f"{x.case.case.title}: law {x.law.name} (SI units; {yields})", frame))
+            console.print(_table(f"{x.case.case.title}: law {x.law.name} (SI units; {yielding(p)})", frame))
             for material, speed in p.yield_speeds.items():
                 never = "never: the softer body limits the pressure"
                 when = f"from {speed:.4g} m/s on" if math.isfinite(speed) else never

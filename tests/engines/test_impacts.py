@@ -134,6 +134,7 @@ def test_run_json_prints_one_document_with_the_promised_keys(tmp_path):
     done = epdem("run", str(CASES / "steel_wall.toml"), "-e", "embedded", "--json", cwd=tmp_path)
     assert done.returncode == 0, done.stderr
     document = json.loads(done.stdout)
+    assert document["yields"] == {"thornton": ["steel"]}
     assert {"case", "passed", "seconds", "rows"} <= document.keys() and len(document["rows"]) == 32
     keys = {"engine", "law", "speed", "energy_residual", "steps_in_contact"}
     for quantity in ("e_n", "contact_time", "force_max", "overlap_max", "residual_overlap"):
