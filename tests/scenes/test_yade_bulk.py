@@ -42,8 +42,9 @@ def verdicts(outcome) -> dict[str, bool]:
 
 
 @pytest.mark.yade
-def test_the_floor_of_a_yade_bed_carries_its_weight(tmp_path):
-    path = small("settle_glass", tmp_path, BEADS)
+@pytest.mark.parametrize("sides", ["walls", "periodic"])
+def test_the_floor_of_a_yade_bed_carries_its_weight(sides, tmp_path):
+    path = small("settle_glass", tmp_path, BEADS | {"walls": '"glass"' + "\nperiodic = true" * (sides == "periodic")})
     told = []
     outcome = run(path, engine="yade", out=tmp_path / "out", tell=lambda step, steps: told.append((step, steps)))
     rows, spheres = outcome.results.rows, outcome.results.particles
