@@ -56,7 +56,7 @@ def _own_theory(tool: Engine, x: Experiment, folder: Path) -> tuple[pd.DataFrame
     p = plan(x, prediction)
     folder.mkdir(parents=True, exist_ok=True)
     tool.write(p, folder)
-    impacts = impacts_table(p, measure(p, tool.run(p, folder), foreign=True))
+    impacts = impacts_table(p, measure(p, tool.run(p, folder), end_power=tool.end_power))
     (folder / "path.bin").unlink(missing_ok=True)
     return compare(tool.name, tool.name, impacts, prediction, x.case.check), time.perf_counter() - start
 

@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Laws of other codes with numbers for a case, and their own theory: they know no yield stress, so a rule stands here.
+"""Laws of other codes for a case, and their own theory. For numbers that a case does not say, a rule stands here.
 
 luding     k_1 = F_max/alpha_max of the case's own law at its middle speed; k_p/k_1 = 5 and phi_f = 0.05 (Luding 2008)
 edinburgh  k_1 = 4/3 E* sqrt(R*), Hertz's, to which the model is tied; k_2/k_1 = 5, n = 1.5, no adhesion
+mdr        a sphere on a rigid flat: the modulus that makes E/(1-nu^2) the case's E*, the smaller yield stress
 """
 
 import math
@@ -10,9 +11,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from .errors import CaseError
 from .experiment import Experiment
 from .predict import Prediction, predict
 from .theory import hysteresis
+from .theory import mdr as mdr_theory
 
 STIFFENING = 5.0  # k_p/k_1 and k_2/k_1
 DEPTH = 0.05  # phi_f
@@ -59,6 +62,43 @@ def predict_edinburgh(x: Experiment) -> Prediction:
 
 def edinburgh_note(x: Experiment) -> str:
     return f"k_1 = 4/3 E* sqrt(R*), k_2/k_1 = {STIFFENING:g}, n = {EXPONENT:g}, no adhesion"
+
+
+@dataclass(frozen=True)
+class Mdr:
+    """Numbers of the sphere on a rigid flat, SI."""
+
+    young_modulus: float
+    poisson_ratio: float
+    yield_stress: float
+
+
+def mdr(x: Experiment) -> Mdr:
+    """Raises CaseError where mdr cannot stand for the case."""
+    if math.isfinite(x.target.radius) or x.viscous_restitution is not None:
+        raise CaseError("mdr is compared on walls and without a dashpot: its flats are rigid")
+    stresses = [b.yield_stress for b in (x.body, x.target)]
+    if None in stresses or x.body.rigid:
+        raise CaseError("mdr needs the yield stress of both materials")
+    nu = x.body.poisson_ratio
+    return Mdr(x.E_star * (1 - nu * nu), nu, min(stresses))
+
+
+def predict_mdr(x: Experiment) -> Prediction:
+    """Theory of mdr for the body and speeds of a case, its radius constant. Raises CaseError."""
+    law = mdr(x)
+    try:
+        impact = mdr_theory.impact(E_eff=x.E_star, nu=law.poisson_ratio, R=x.R_star, Y=law.yield_stress,
+                                   m_star=x.m_star, speed=x.speed)  # fmt: skip
+    except ValueError as error:
+        raise CaseError(f"mdr: {error}") from None
+    return _prediction(x, impact)
+
+
+def mdr_note(x: Experiment) -> str:
+    law = mdr(x)
+    return (f"rigid flat, E = {law.young_modulus:.4g} Pa (the case's E*), Y = {law.yield_stress:.4g} Pa, p = 2.75 Y; "
+            "its radius grows, its theory's does not: a comparison")  # fmt: skip
 
 
 def prediction(tool: object, x: Experiment) -> Prediction:

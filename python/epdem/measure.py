@@ -37,10 +37,10 @@ def _last(valid: np.ndarray) -> np.ndarray:
     return valid.shape[1] - 1 - np.argmax(valid[:, ::-1], axis=1)
 
 
-def measure(plan: Plan, path: Trajectory, *, foreign: bool = False) -> Measured:
+def measure(plan: Plan, path: Trajectory, *, end_power: float | None = None) -> Measured:
     """The impacts of a trajectory. Raises EngineError if a contact never began or never ended.
 
-    foreign: under another law than the plan's, whose force falls linearly with the overlap at the end.
+    end_power: for another law than the plan's: the power of its force that falls linearly with the overlap at the end.
     """
     overlap, force, velocity = path.overlap, path.force, path.velocity
     row = np.arange(plan.n)
@@ -54,9 +54,10 @@ def measure(plan: Plan, path: Trajectory, *, foreign: bool = False) -> Measured:
 
     # Contact ends where F, not the overlap, reaches 0. Near the end F^(2/3) falls linearly with overlap and time;
     # with a dashpot, which cuts the force off early, F itself does.
-    straight = foreign or plan.experiment.viscous_number > 0
+    own = end_power is None and plan.experiment.viscous_number == 0
+    power = end_power or (2 / 3 if own else 1.0)
     before = np.maximum(last - 1, 0)
-    root_last, root_before = (force[row, k] if straight else np.cbrt(force[row, k]) ** 2 for k in (last, before))
+    root_last, root_before = (np.abs(force[row, k]) ** power for k in (last, before))
     share = np.divide(root_last, root_before - root_last, out=np.full(plan.n, 0.5), where=root_before > root_last)
     share = np.minimum(share, 1.0)  # the next sample is unloaded
     contact_time = (last + share) * path.time_step - plan.gap / plan.speed
@@ -75,6 +76,6 @@ def measure(plan: Plan, path: Trajectory, *, foreign: bool = False) -> Measured:
         force_max=force_max,
         overlap_max=peak,
         residual_overlap=residual,
-        energy_residual=np.full(plan.n, np.nan) if straight else (work.sum(axis=1) - plastic) / energy,
+        energy_residual=(work.sum(axis=1) - plastic) / energy if own else np.full(plan.n, np.nan),
         steps_in_contact=loaded.sum(axis=1),
     )

@@ -6,14 +6,17 @@ from .base import Engine, Trajectory
 from .builtin import BuiltinEdinburgh, BuiltinHertz, BuiltinLuding, ThorntonNing
 from .builtin_yade import YadeLuding
 from .embedded import Embedded
+from .lammps import LammpsMdr
 from .liggghts import Liggghts
 from .yade import Yade
 
 ENGINES: dict[str, type[Engine]] = {"embedded": Embedded, "liggghts": Liggghts, "yade": Yade}
 # LIGGGHTS's own models, for comparisons; `run` takes them by name as well.
 OTHERS: dict[str, type[Engine]] = {tool.name: tool for tool in (BuiltinHertz, ThorntonNing)}
-# Their laws that are none of ours, each with a theory of its own: for `crosscheck`.
-FOREIGN: dict[str, type[Engine]] = {tool.name: tool for tool in (BuiltinLuding, BuiltinEdinburgh, YadeLuding)}
+# Laws of other codes that are none of ours, each with a theory of its own: for `crosscheck`.
+FOREIGN: dict[str, type[Engine]] = {
+    tool.name: tool for tool in (BuiltinLuding, BuiltinEdinburgh, YadeLuding, LammpsMdr)
+}
 
 
 def engine(name: str) -> Engine:

@@ -63,6 +63,7 @@ class _OwnTheory(Liggghts):
     """A model whose numbers and theory are in `foreign`."""
 
     takes_dashpot = False
+    end_power = 1.0  # the force falls linearly with the overlap
 
     def deck(self, plan: Plan) -> Deck:
         return replace(super().deck(plan), remembers=True)

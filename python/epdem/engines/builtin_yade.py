@@ -19,6 +19,7 @@ class YadeLuding(Yade):
     """
 
     name = "yade-luding"
+    end_power = 1.0  # the force falls linearly with the overlap
 
     def predict(self, x: Experiment) -> Prediction:
         return foreign.predict_luding(x)

@@ -21,4 +21,5 @@ SOURCES = {
     "Thornton 1997": "C. Thornton, J. Appl. Mech. 64 (1997) 383",
     "Tsuji, Tanaka and Ishida 1992": "Y. Tsuji, T. Tanaka, T. Ishida, Powder Technol. 71 (1992) 239",
     "Wu et al. 2003": "C.-Y. Wu, L.-Y. Li, C. Thornton, Int. J. Impact Eng. 28 (2003) 929",
+    "Zunker and Kamrin 2024": "W. Zunker, K. Kamrin, J. Mech. Phys. Solids 183 (2024) 105492",
 }
