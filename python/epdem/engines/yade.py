@@ -4,7 +4,6 @@
 import os
 import re
 import shutil
-import subprocess
 import time
 from dataclasses import dataclass
 from math import isfinite, isinf
@@ -19,7 +18,7 @@ from ..experiment import Body, Experiment
 from ..plan import Plan
 from ..yade import cone
 from ..yade.law import LAWS
-from .base import Trajectory, call
+from .base import Trajectory, ask, call
 
 INSTALL = "apt-get install yade"
 MODULES = Path(__file__).parents[1] / "yade"
@@ -87,9 +86,7 @@ class Yade:
         return None
 
     def version(self) -> str:
-        done = subprocess.run([command(), "--version"], capture_output=True, text=True, errors="replace", timeout=60,
-                              stdin=subprocess.DEVNULL, env=environment())  # fmt: skip
-        found = re.search(r"version: (\S+)", done.stdout + done.stderr)
+        found = re.search(r"version: (\S+)", ask([command(), "--version"], environment()))
         return f"YADE {found.group(1) if found else '(version unknown)'}"
 
     def material(self, x: Experiment, body: Body, strength: float) -> Material:
