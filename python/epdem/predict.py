@@ -7,7 +7,7 @@ import numpy as np
 
 from .experiment import Experiment
 from .theory import restitution, viscous
-from .theory.yielding import FIRST_YIELD_ROUNDED
+from .theory.yielding import first_yield_speed
 
 SMALL_DEFORMATION = 0.3  # a_max/R* above which Hertz's half-space is a poor picture
 
@@ -43,34 +43,6 @@ class Prediction:
         ]
 
 
-def first_yield_speeds(x: Experiment) -> dict[str, float]:
-    """Speed [m/s] from which each body yields somewhere, by material: its peak pressure reaches 1.60 Y (eq. 8.78).
-
-    The softer body's plastic flow limits the pressure to the law's strength, so that a much harder one never yields
-    (inf). The pressure of the law is Hertz's half-ellipse to uniform, by its flatness. Bodies without a yield stress
-    are left out; a dashpot is not thought of.
-    """
-    law, speeds = x.theory(), {}
-    strength = min(x.law.strengths)
-    limit = {"cavity": x.law.parameters.get("plastic_ratio", 1.0)}.get(x.law.name, 1.0) * strength
-    for body in (x.body, x.target):
-        if body.yield_stress is None or body.rigid:
-            continue
-        wanted = FIRST_YIELD_ROUNDED * body.yield_stress
-        if wanted > limit:
-            speeds[body.material] = np.inf
-            continue
-        low, high = -700.0, np.log(x.R_star)  # of the overlap; the pressure rises with it
-        for _ in range(100):
-            middle = 0.5 * (low + high)
-            alpha = np.array([np.exp(middle)])
-            mean = law.force(alpha) / (np.pi * law.radius(alpha) ** 2)
-            reached = ((1.5 - 0.5 * law.flatness(alpha)) * mean >= wanted).item()
-            low, high = (low, middle) if reached else (middle, high)
-        speeds[body.material] = float(np.sqrt(2 * law.work(np.array([np.exp(high)]))[0] / x.m_star))
-    return speeds
-
-
 def predict(experiment: Experiment) -> Prediction:
     """The prediction of `experiment` from theory alone; the C++ laws are not called."""
     law = experiment.theory()
@@ -83,7 +55,13 @@ def predict(experiment: Experiment) -> Prediction:
     columns = {n: np.asarray(getattr(impact, n), float) for n in names}
     softer = min(experiment.law.strengths)
     yields = ()
+    pair = (experiment.body, experiment.target)
     if columns["overlap_max"].max() > law.yield_overlap:
-        bodies = zip((experiment.body, experiment.target), experiment.law.strengths, strict=True)
+        bodies = zip(pair, experiment.law.strengths, strict=True)
         yields = tuple(dict.fromkeys(b.material for b, strength in bodies if strength == softer))
-    return Prediction(speed=experiment.speed, yields=yields, yield_speeds=first_yield_speeds(experiment), **columns)
+    speeds = {
+        b.material: float(first_yield_speed(law, b.yield_stress, m_star=experiment.m_star))
+        for b in pair
+        if b.yield_stress is not None and not b.rigid
+    }
+    return Prediction(speed=experiment.speed, yields=yields, yield_speeds=speeds, **columns)

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from test_restitution import STEEL, Exact, M, steel
 
-from epdem.theory import restitution
+from epdem.theory import restitution, yielding
 
 STRENGTH = {"hertz": 1e9, "thornton": 2.8e9, "johnson": 3e9, "cavity": 1e9}
 BEYOND = np.array([1e-12, 1e-9, 1e-6, 1e-4, 1e-2, 0.3, 3.0, 1e3, 1e6])  # alpha/alpha_y - 1
@@ -55,3 +55,19 @@ def test_an_impact_right_above_yield_creates_neither_energy_nor_a_bump(name):
     x = restitution.impact(law, m_star=M, speed=speed)
     assert np.all(x.e_n <= 1) and np.all(restitution.e_n(law, m_star=M, speed=speed) <= 1)
     assert np.all(x.residual_overlap >= 0) and np.all(x.plastic_work >= 0) and np.all(x.work_out <= x.work_in)
+
+
+def test_in_the_cavity_phase_a_harder_body_yields_where_the_pressure_of_the_definition_reaches_its_own():
+    """Half-ellipse and uniform pressure by flatness, 30 digits; 1e-12: the inverse of a logarithm's slow growth."""
+    hard = np.array([1.05e9, 1.3e9, 1.7e9])  # the softer body has 1 GPa; all between its 1.60 and 2.8 Y
+    found = yielding.first_yield_speed(steel("cavity"), hard, m_star=M)
+    with mp.workdps(30):
+        law = Exact("cavity", *STEEL.values(), STRENGTH["cavity"])
+
+        def peak(alpha):
+            F, a, tau = law.point(alpha)
+            return (mp.mpf(3) / 2 * (1 - tau) + tau) * F / (mp.pi * a**2)
+
+        for Y, speed in zip(hard, found, strict=True):
+            s = mp.findroot(lambda s, Y=Y: peak(law.y * s) / (mp.mpf(1.6) * float(Y)) - 1, (1, 80), solver="anderson")
+            assert speed == pytest.approx(float(mp.sqrt(2 * law.work(law.y * s) / M)), rel=1e-12, abs=0)

@@ -92,12 +92,12 @@ def test_each_body_yields_from_the_speed_whose_energy_presses_hertz_to_1_60_of_i
         mean_force = mp.quad(lambda x: mp.mpf(4) / 3 * E * mp.sqrt(R) * (alpha * x) ** mp.mpf(1.5), [0, 1])
         return float(mp.sqrt(2 * alpha * mean_force / M))
 
-    found = yielding.yielding_bodies(1e9, 1.5e9, **STEEL, m_star=M)
+    law = Thornton(**STEEL, p_y=2.8e9)
+    found = yielding.first_yield_speed(law, np.array([1e9, 1.5e9]), m_star=M)
     assert found == pytest.approx([speed(1.6e9), speed(2.4e9)], rel=1e-13, abs=0)
     assert speed(1.6e9) == pytest.approx(0.138086424357753, rel=1e-14)
-    soft, hard = yielding.yielding_bodies(1e9, 2e9, **STEEL, m_star=M)  # 3.2 GPa is above 2.8 GPa
-    assert soft == exactly(speed(1.6e9)) and hard == np.inf
-    assert yielding.yielding_bodies(1e9, np.inf, **STEEL, m_star=M)[1] == np.inf
+    assert yielding.first_yield_speed(law, 2e9, m_star=M) == np.inf  # 3.2 GPa is above 2.8 GPa
+    assert yielding.first_yield_speed(Hertz(**STEEL), np.inf, m_star=M) == np.inf
 
 
 def test_mass_of_a_sphere_and_first_yield_speed_of_the_reference_case():

@@ -8,6 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from epdem.theory import pressure, sliding, yielding
+from epdem.theory.backbones import Thornton
 
 NU = [0, 0.1, 0.2, 0.25, 0.3, 0.35, 0.4, 0.5]
 P_Y0 = [1.29931, 1.39448, 1.49859, 1.55435, 1.61280, 1.67411, 1.73848, 1.87724]
@@ -199,6 +200,6 @@ def test_mean_pressure_has_three_regimes_and_the_cavity_slope():
 
 
 def test_the_harder_body_yields_only_below_1_75_times_the_softer_ones_stress():
-    both = {"E_star": 1.14e11, "R_star": 0.01, "m_star": 0.0329}
-    assert np.isfinite(yielding.yielding_bodies(1e9, 1.74e9, **both)).all()
-    assert np.isinf(yielding.yielding_bodies(1e9, 1.76e9, **both)[1])
+    law = Thornton(E_star=1.14e11, R_star=0.01, p_y=2.8e9)
+    speeds = yielding.first_yield_speed(law, np.array([1e9, 1.74e9, 1.76e9, np.inf]), m_star=0.0329)
+    assert list(np.isfinite(speeds)) == [True, True, False, False]

@@ -3,8 +3,8 @@
 
 import numpy as np
 
+from .backbones import Backbone
 from .checks import number, poisson_ratio
-from .printed import yield_speed
 
 FIRST_YIELD_ROUNDED = 1.60  # p_0/Y at first yield, nu = 0.3; eq. 8.78
 FIRST_YIELD_MEAN_ROUNDED = 1.10  # p_m/Y at first yield; eq. 8.79
@@ -95,20 +95,21 @@ def fully_plastic_mean(Y):
     return tuple(ratio * Y for ratio in FULLY_PLASTIC)
 
 
-def yielding_bodies(Y1, Y2, *, E_star, R_star, m_star, ratio=FIRST_YIELD_ROUNDED, plastic_ratio=FULLY_PLASTIC[0]):
-    """Which bodies yield, and from which speeds (section 8.2.2).
+def first_yield_speed(law: Backbone, Y, *, m_star, ratio=FIRST_YIELD_ROUNDED):
+    """Impact speed [m/s] from which a body of yield stress Y [Pa] yields (section 8.2.2): its peak pressure is ratio Y.
 
-    Y1, Y2 [Pa] > 0 (inf: never). Returns (v1, v2) [m/s]: the impact speed of each body's own first yield at ratio Y.
-    The pressure cannot exceed plastic_ratio times the softer Y: a body with ratio Y above that never yields (inf),
-    i.e. the harder one yields at all only if it has less than 1.75 times the softer one's yield stress. Up to there the
-    pressure is Hertz's, as law thornton has it: a softer body that flattens before makes the harder one's speed larger.
+    `law` has the strength of the softer body of the pair, whose flow limits the pressure: a much harder body never
+    yields (inf; neither does Y = inf). The law's pressure is Hertz's half-ellipse to uniform, by its flatness.
+    m_star [kg] > 0; all broadcast. ValueError outside.
     """
-    Y1, Y2 = number("Y1", Y1, infinite=True), number("Y2", Y2, infinite=True)
-    ceiling = plastic_ratio * np.minimum(Y1, Y2)
-    speeds = []
-    for Y in (Y1, Y2):
-        reached = ratio * Y <= ceiling
-        p = np.where(reached, ratio * Y, 1.0)
-        v = yield_speed(p_y=p, E_star=E_star, R_star=R_star, m_star=m_star)
-        speeds.append(np.where(reached, v, np.inf))
-    return tuple(speeds)
+    wanted = number("ratio", ratio) * number("Y", Y, infinite=True)
+    far = 1e20 * law.R_star  # there the elastic start counts no more
+    limit = law.force(far) / (np.pi * law.radius(far) ** 2)
+    p = np.minimum(wanted, limit)
+    low = law.R_star * (np.pi * p / (2 * law.E_star)) ** 2  # Hertz's overlap at p; a law that yields needs more
+    high = np.where(low <= law.yield_overlap, low, np.maximum(low, law.marks()[-1]))
+    for _ in range(60):
+        middle = np.sqrt(low * high)
+        below = (1.5 - 0.5 * law.flatness(middle)) * law.force(middle) < p * np.pi * law.radius(middle) ** 2
+        low, high = np.where(below, middle, low), np.where(below, high, middle)
+    return np.where(wanted <= limit, np.sqrt(2 * law.work(high) / number("m_star", m_star)), np.inf)
