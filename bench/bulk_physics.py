@@ -41,7 +41,7 @@ class Flow:
 
 
 def scene(outlet: float, count: int, width: float, angle: float) -> dict:
-    """TOML data: a bin `width` beads wide with an outlet of `outlet` beads, open until a third of it is out."""
+    """TOML data: a bin `width` beads wide with an outlet of `outlet` beads, open until a quarter of it is out."""
     data = read_toml(CASE)
     data["materials"]["beads"] |= {"young_modulus": "2 MPa"}
     height = count * (math.pi / 6) / 0.25 / (math.pi / 4 * (width - 1) ** 2)  # room for a random filling of 25 %
@@ -53,7 +53,7 @@ def scene(outlet: float, count: int, width: float, angle: float) -> dict:
         "half_angle": f"{angle} deg",
         "count": count,
         "fill": "0.12 s",
-        "duration": f"{0.33 * count / per_second:.3g} s",
+        "duration": f"{0.38 * count / per_second:.3g} s",
     }
     return data | {"output": {"rows": 100, "particles": 100}, "numerics": {"error": 0.1}}
 
