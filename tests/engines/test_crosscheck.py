@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 from epdem import foreign
-from epdem.case import load
+from epdem.case import load, parse, read_toml
 from epdem.engines import FOREIGN, engine
 from epdem.errors import CaseError
 from epdem.experiment import experiment
@@ -88,6 +88,23 @@ def test_laws_of_others_have_their_own_closed_restitution(name, case, tmp_path):
         assert np.abs(getattr(found, quantity) / theory - 1).max() < limit, quantity
     if name.endswith("luding") and case == "steel_wall":  # both branches of the law are seen
         assert prediction.e_n[0] > 0.99 and prediction.e_n.min() < 0.5 < prediction.e_n[-1]
+
+
+@pytest.mark.parametrize("name", [pytest.param("liggghts-luding", marks=in_liggghts),
+                                  pytest.param("yade-luding", marks=in_yade)])  # fmt: skip
+def test_luding_of_two_steel_spheres_at_10_m_per_s_is_0_8910_in_both_codes(name, tmp_path, monkeypatch):
+    """k_1 = 1e9 N/m, k_p/k_1 = 5, phi_f = 0.05, R = 10 mm, 7850 kg/m^3; by hand in the test of the closed form."""
+    monkeypatch.setattr(foreign, "luding", lambda x: foreign.Luding(1e9, 5e9, 0.05))
+    data = read_toml(STEEL)
+    data["impact"] |= {
+        "kind": "sphere-sphere",
+        "target": {"material": "steel", "radius": "10 mm"},
+        "speeds": ["10 m/s"],
+    }
+    x, tool = experiment(parse(data, "test")), FOREIGN[name]()
+    p = plan(x, foreign.prediction(tool, x))
+    tool.write(p, tmp_path)
+    assert measure(p, tool.run(p, tmp_path), end_power=1.0).e_n == pytest.approx(0.891046, abs=2e-5)
 
 
 def test_mdr_of_lammps_has_its_own_theory_while_its_radius_does_not_grow(tmp_path):
