@@ -13,7 +13,7 @@ import pandas as pd
 from . import report, store
 from .case import load
 from .compare import compare, impacts_table
-from .engines import ENGINES, FOREIGN, OTHERS, Engine
+from .engines import ENGINES, FOREIGN, OTHERS, Engine, OwnTheory
 from .errors import CaseError
 from .experiment import Experiment, experiment
 from .foreign import prediction as predict
@@ -50,9 +50,9 @@ def contenders(x: Experiment) -> tuple[dict[str, Engine], dict[str, str]]:
     return {n: t for n, t in tools.items() if n not in absent}, absent
 
 
-def _own_theory(tool: Engine, x: Experiment, folder: Path) -> tuple[pd.DataFrame, float]:
+def _own_theory(tool: OwnTheory, x: Experiment, folder: Path) -> tuple[pd.DataFrame, float]:
     """An engine with a law of its own against its own theory: (one row per speed, seconds)."""
-    start, prediction = time.perf_counter(), predict(tool, x)
+    start, prediction = time.perf_counter(), tool.predict(x)
     p = plan(x, prediction)
     folder.mkdir(parents=True, exist_ok=True)
     tool.write(p, folder)

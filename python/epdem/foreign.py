@@ -77,8 +77,8 @@ def mdr(x: Experiment) -> Mdr:
     """Raises CaseError where mdr cannot stand for the case."""
     if math.isfinite(x.target.radius) or x.viscous_restitution is not None:
         raise CaseError("mdr is compared on walls and without a dashpot: its flats are rigid")
-    stresses = [b.yield_stress for b in (x.body, x.target)]
-    if None in stresses or x.body.rigid:
+    stresses = [b.yield_stress for b in (x.body, x.target) if b.yield_stress is not None]
+    if len(stresses) < 2 or x.body.rigid:
         raise CaseError("mdr needs the yield stress of both materials")
     nu = x.body.poisson_ratio
     return Mdr(x.E_star * (1 - nu * nu), nu, min(stresses))

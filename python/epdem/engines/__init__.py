@@ -2,7 +2,7 @@
 """The engines by name. A new engine is a module here and one line below."""
 
 from ..errors import CaseError
-from .base import Engine, Trajectory
+from .base import Engine, OwnTheory, Trajectory
 from .builtin import BuiltinEdinburgh, BuiltinHertz, BuiltinLuding, ThorntonNing
 from .builtin_yade import YadeLuding
 from .embedded import Embedded
@@ -14,7 +14,7 @@ ENGINES: dict[str, type[Engine]] = {"embedded": Embedded, "liggghts": Liggghts, 
 # LIGGGHTS's own models, for comparisons; `run` takes them by name as well.
 OTHERS: dict[str, type[Engine]] = {tool.name: tool for tool in (BuiltinHertz, ThorntonNing)}
 # Laws of other codes that are none of ours, each with a theory of its own: for `crosscheck`.
-FOREIGN: dict[str, type[Engine]] = {
+FOREIGN: dict[str, type[OwnTheory]] = {
     tool.name: tool for tool in (BuiltinLuding, BuiltinEdinburgh, YadeLuding, LammpsMdr)
 }
 
@@ -29,4 +29,4 @@ def engine(name: str) -> Engine:
     return known[name]()
 
 
-__all__ = ["ENGINES", "FOREIGN", "OTHERS", "Engine", "Trajectory", "engine"]
+__all__ = ["ENGINES", "FOREIGN", "OTHERS", "Engine", "OwnTheory", "Trajectory", "engine"]

@@ -11,6 +11,7 @@ import numpy as np
 from ..errors import EngineError
 from ..experiment import Experiment
 from ..plan import Plan
+from ..predict import Prediction
 
 EPS = float(np.finfo(float).eps)
 
@@ -46,6 +47,18 @@ class Engine(Protocol):
 
     def run(self, plan: Plan, folder: Path, *, ranks: int = 1) -> Trajectory:
         """Run what `write` wrote. Raises EngineError with the engine's last words."""
+
+
+class OwnTheory(Engine, Protocol):
+    """An engine with a law that is none of ours, and the theory of that law."""
+
+    end_power: float  # the power of the force that falls linearly with the overlap at the end of an impact
+
+    def predict(self, x: Experiment) -> Prediction:
+        """What its own theory says of a case. Raises CaseError where it cannot stand for it."""
+
+    def note(self, x: Experiment) -> str:
+        """Where its numbers come from, in words."""
 
 
 def last_words(log: Path, lines: int = 3) -> str:
