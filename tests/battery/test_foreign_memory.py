@@ -61,6 +61,4 @@ def test_any_finite_memory_gives_a_force_that_is_a_number_and_no_attraction(tmp_
         [compiler, "-std=c++17", "-O2", f"-I{INCLUDE}", "memory.cpp", "-o", "memory"], cwd=tmp_path, check=True
     )
     found = subprocess.run(["./memory"], cwd=tmp_path, capture_output=True, text=True, check=True).stdout.split()
-    assert dict(zip(found[::2], found[1::2], strict=True)) == dict.fromkeys(
-        ("hertz", "thornton", "johnson", "cavity"), "0"
-    )
+    assert {"hertz", "thornton", "johnson", "cavity"} <= set(found[::2]) and set(found[1::2]) == {"0"}
