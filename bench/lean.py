@@ -18,7 +18,8 @@ from pathlib import Path
 from epdem import paths
 from epdem.case import read_toml
 from epdem.scene import case as scenes
-from epdem.scene import deck, resume
+from epdem.scene import deck, progress, resume
+from epdem.scene.model import model
 
 ROOT = Path(__file__).parents[1]
 NOTHING = 1e-9
@@ -39,9 +40,11 @@ def full(data: dict) -> dict:
 
 
 def loop_seconds(folder: Path, name: str) -> float:
-    """Seconds per step in LIGGGHTS's loops."""
+    """Seconds per step in LIGGGHTS's loops; a scene's output stays in its folder, for the deck that continues it."""
     command = [str(paths.launcher()), "-in", name, "-log", "none"]
     done = subprocess.run(command, cwd=folder, capture_output=True, check=True)
+    if name == "in.scene":
+        (folder / progress.OUT).write_bytes(done.stdout)
     loops = re.findall(r"Loop time of (\S+) on \d+ procs for (\d+) steps", done.stdout.decode(errors="replace"))
     return sum(float(t) for t, _ in loops) / max(1, sum(int(n) for _, n in loops))
 
@@ -60,7 +63,7 @@ def measure(path: Path, repeats: int, scratch: Path) -> dict:
         case = scenes.parse(make(read_toml(path)), path)
         folders[name] = folder = scratch / f"{path.stem}_{name}"
         deck.write(case, folder)
-        found[f"{name}_lines"], found[f"{name}_bytes"] = lines(folder), 8 * deck.deck(case).memory
+        found[f"{name}_lines"], found[f"{name}_bytes"] = lines(folder), 8 * deck.memory(model(case))
         loop_seconds(folder, "in.scene")
         steps = sorted(int(p.name.split(".")[1]) for p in folder.glob("restart.*.bin"))
         last = [s for s in steps if s < deck.deck(case).steps][-1]
