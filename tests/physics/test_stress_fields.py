@@ -68,8 +68,10 @@ def test_criteria_see_neither_hydrostatic_pressure_nor_order(s, p):
 @pytest.mark.parametrize("criterion", ["von_mises", "tresca"])
 def test_pressure_at_first_yield_of_a_sliding_contact(criterion):
     """5 digits from point-load integration, nu = 0.3."""
-    below = [sliding.first_yield_below(mu, 0.3, criterion)[0] for mu in MU[: len(BELOW[criterion])]]
-    above = [sliding.first_yield_surface(mu, 0.3, criterion)[0] for mu in MU]
+    below, _ = sliding.first_yield_below(MU[: len(BELOW[criterion])], 0.3, criterion)
+    above, place = sliding.first_yield_surface(np.reshape(MU, (-1, 1)), [0.3], criterion)
+    assert above.shape == place[0].shape == (7, 1)
+    above = above[:, 0]
     assert below == pytest.approx(BELOW[criterion], abs=6e-6)
     assert above == pytest.approx(ABOVE[criterion], abs=6e-6)
 

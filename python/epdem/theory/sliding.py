@@ -8,6 +8,8 @@ potentials as in Johnson 1985, section 3.2; the field is that of Hamilton and Go
 Keer 1982; yield as in Johnson and Jefferis 1963.)
 """
 
+import functools
+
 import numpy as np
 
 from .checks import number, poisson_ratio
@@ -90,8 +92,22 @@ def _climb(value, place, step):
     return float(best), place
 
 
+def _for_arrays(find):
+    """The same search for every pair of mu and nu, which broadcast; pressure and coordinates have their shape."""
+
+    @functools.wraps(find)
+    def everywhere(mu, nu, criterion="von_mises"):
+        mu, nu = np.broadcast_arrays(number("mu", mu, low_ok=True), poisson_ratio("nu", nu))
+        found = [find(float(m), float(n), criterion) for m, n in zip(mu.flat, nu.flat, strict=True)]
+        columns = np.array([(pressure, *place) for pressure, place in found]).reshape(*mu.shape, 4)
+        return columns[..., 0][()], tuple(columns[..., k][()] for k in (1, 2, 3))
+
+    return everywhere
+
+
+@_for_arrays
 def first_yield_below(mu, nu, criterion="von_mises"):
-    """(p_0/Y, (x, y, z)/a) of first yield below the surface; mu >= 0 and nu scalars.
+    """(p_0/Y, (x, y, z)/a) of first yield below the surface; mu >= 0 and nu broadcast, each result has their shape.
 
     At high friction the summit below vanishes and stress only rises towards the surface: (inf, ...) then.
     """
@@ -107,8 +123,9 @@ def first_yield_below(mu, nu, criterion="von_mises"):
     return 1 / best, (float(x), 0.0, float(z))
 
 
+@_for_arrays
 def first_yield_surface(mu, nu, criterion="von_mises"):
-    """(p_0/Y, (x, y, z)/a) of first yield on the surface, inside the contact; mu >= 0 and nu scalars."""
+    """(p_0/Y, (x, y, z)/a) of first yield on the surface, inside the contact; mu >= 0 and nu broadcast."""
     low, high = -1.0, 1.0
     for _ in range(12):  # a finer grid around the highest point each time
         x = np.linspace(low, high, 201)
@@ -118,10 +135,11 @@ def first_yield_surface(mu, nu, criterion="von_mises"):
     return float(1 / height[k]) if height[k] > 0 else np.inf, (float(x[k]), 0.0, 0.0)
 
 
+@_for_arrays
 def first_sliding_yield(mu, nu, criterion="von_mises"):
     """(p_0/Y, (x, y, z)/a) of first yield of a sliding contact: the smaller pressure of surface and below counts.
 
-    mu >= 0, nu in (-1, 0.5], criterion "von_mises" or "tresca"; ValueError otherwise.
+    mu >= 0, nu in (-1, 0.5], both broadcast; criterion "von_mises" or "tresca"; ValueError otherwise.
     """
     below, above = first_yield_below(mu, nu, criterion), first_yield_surface(mu, nu, criterion)
     return min(below, above, key=lambda found: found[0])
