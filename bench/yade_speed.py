@@ -19,6 +19,7 @@ ROOT = Path(__file__).resolve().parents[1]
 LAWS = ("native", "hertz", "thornton", "thornton 1e-6", "johnson", "cavity")  # 1e-6: tolerance, else 0
 SIDE = 14  # spheres along an edge
 STATES = ("rest", "yielding", "rest after yield")
+AT_REST, LIMIT = (0, 2), 2.5
 
 SCRIPT = """
 import json, sys, time
@@ -102,14 +103,18 @@ def measure(rounds: int = 3) -> tuple[dict[str, list[float]], int]:
     return best, n
 
 
-def main() -> None:
+def main() -> int:
+    """Print the table; 1 if a contact at rest costs more than LIMIT times that of YADE's own law."""
     best, n = measure(int(sys.argv[1]) if len(sys.argv) > 1 else 3)
     print(f"{n} contacts, microseconds per contact and step (and over YADE's own Hertz-Mindlin)")
     print(f"{'law':14}" + "".join(f"{s:>24}" for s in STATES))
     for law, times in best.items():
         cells = (f"{t:.3f} ({t / own:.2f})" for t, own in zip(times, best["native"], strict=True))
         print(f"{law:14}" + "".join(f"{c:>24}" for c in cells))
+    worst = max(times[k] / best["native"][k] for times in best.values() for k in AT_REST)
+    print(f"at rest at most {worst:.2f} (limit {LIMIT}: {'kept' if worst <= LIMIT else 'EXCEEDED'})")
+    return int(worst > LIMIT)
 
 
 if __name__ == "__main__":
-    main()
+    sys.exit(main())

@@ -26,3 +26,18 @@ def console() -> Console:
     """As wide as the terminal, or wide enough for our tables in a pipe."""
     found = Console()
     return found if found.is_terminal else Console(width=170)
+
+
+def quantity(option: str, text: str, unit: str) -> float:
+    """The SI value > 0 of an option's text. Raises CaseError that names the option."""
+    from .case import within_limits
+    from .errors import CaseError
+    from .units import to_si
+
+    try:
+        value = within_limits(to_si(text, unit), unit)
+    except ValueError as error:
+        raise CaseError(f"{option} {text!r}: {error}") from None
+    if not value > 0:
+        raise CaseError(f"{option} {text!r}: must be > 0 {unit}")
+    return value

@@ -10,6 +10,7 @@ from rich.console import Console
 from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
 
 from .case import read_toml
+from .cli_options import AsJson, CasePath, console, quantity
 from .errors import CaseError
 from .scene import case as scene_case
 
@@ -56,8 +57,7 @@ def run_scene(
     if as_json:
         print(report.as_json(outcome))
     else:
-        console = Console()
-        report.show(outcome, console if console.is_terminal else Console(width=140))
+        report.show(outcome, console())
     return 0 if outcome.passed else 1
 
 
@@ -73,12 +73,7 @@ def deck_scene(case: Path, out: Path, *, engine: str = "liggghts", as_json: bool
     print(json.dumps({"files": names}) if as_json else "\n".join(names))
 
 
-Case = Annotated[Path, typer.Argument(metavar="CASE", help="case file (TOML)")]
-Out = Annotated[Path | None, typer.Option("--out", "-o", help="file or folder to write")]
-AsJson = Annotated[bool, typer.Option("--json", help="print one JSON document and nothing else")]
-
-
-def explain(case: Case, as_json: AsJson = False) -> None:
+def explain(case: CasePath, as_json: AsJson = False) -> None:
     """Why each line of a case's LIGGGHTS deck is in it."""
     from .scene.explain import explain as explain_lines
 
@@ -111,11 +106,11 @@ def _texts(case: Path) -> dict[str, str]:
 
 
 def soften(
-    case: Case,
+    case: CasePath,
     factor: Annotated[
         float, typer.Option("--factor", "-k", help="E is divided by it; the step grows by its 0.4th power")
     ],
-    out: Out = None,
+    out: Annotated[Path | None, typer.Option("--out", "-o", help="file to write")] = None,
     as_json: AsJson = False,
 ) -> None:
     """A softened twin of a case with the same e_n at every speed, and larger time steps."""
@@ -149,7 +144,7 @@ def soften(
 
 
 def calibrate(
-    case: Case,
+    case: CasePath,
     e_n: Annotated[float | None, typer.Option("--e-n", help="measured coefficient of restitution")] = None,
     speed: Annotated[str | None, typer.Option(help='speed of that impact, as "2 m/s"')] = None,
     hv: Annotated[float | None, typer.Option(help="Vickers hardness instead")] = None,
@@ -159,15 +154,13 @@ def calibrate(
 ) -> None:
     """The strength of the case's law from one measured e_n, or from a hardness."""
     from . import calibrate as c
-    from .units import to_si
 
     if (e_n is None) == (hv is None and hb is None):
         raise CaseError("give one measurement: --e-n with --speed, or --hv, or --hb")
     if e_n is not None:
-        try:
-            found = c.from_restitution(case, e_n, to_si(speed, "m/s"))
-        except ValueError as error:
-            raise CaseError(f"--speed {speed!r}: {error}") from None
+        if speed is None:
+            raise CaseError("--e-n belongs to one impact; add its speed, as --speed '2 m/s'")
+        found = c.from_restitution(case, e_n, quantity("--speed", speed, "m/s"))
     else:
         pressure = c.pressure_of_hardness(vickers=hv, brinell=hb, dent_ratio=dent_ratio)
         found = c.from_hardness(case, pressure, f"HV {hv:g}" if hv is not None else f"HB {hb:g}")

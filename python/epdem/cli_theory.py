@@ -7,21 +7,7 @@ from typing import Annotated
 
 import typer
 
-from .cli_options import AsJson, console
-
-
-def _quantity(option: str, text: str, unit: str) -> float:
-    from .case import within_limits
-    from .errors import CaseError
-    from .units import to_si
-
-    try:
-        value = within_limits(to_si(text, unit), unit)
-    except ValueError as error:
-        raise CaseError(f"{option} {text!r}: {error}") from None
-    if not value > 0:
-        raise CaseError(f"{option} {text!r}: must be > 0 {unit}")
-    return value
+from .cli_options import AsJson, console, quantity
 
 
 def theory(
@@ -38,7 +24,7 @@ def theory(
     from .theory.backbones import LAWS
     from .theory.restitution import impact
 
-    found, R, v = find(material), _quantity("--radius", radius, "m"), _quantity("--speed", speed, "m/s")
+    found, R, v = find(material), quantity("--radius", radius, "m"), quantity("--speed", speed, "m/s")
     m = found.material
     E = pair.E_star(m.young_modulus, m.poisson_ratio, m.young_modulus, m.poisson_ratio)
     mass = pair.sphere_mass(radius=R, density=m.density)

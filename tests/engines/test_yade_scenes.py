@@ -2,7 +2,7 @@
 """The production module in scenes as users write them: what is erased, started again, mixed, periodic or shared."""
 
 import pytest
-from test_yade_contacts import ROOT, yade
+from test_yade_contacts import yade
 
 ERASE = """
 steel = material("steel")
@@ -120,21 +120,3 @@ answer(words=words)
     for found, expected in zip(words, ("hertz, thornton, johnson, cavity", "plastic_ratio", "cavity", "interval = 0",
                                        "yield_pressure", "needs less than"), strict=True):  # fmt: skip
         assert expected in found
-
-
-@pytest.mark.yade
-def test_a_contact_at_rest_costs_at_most_2_5_times_that_of_yades_own_law(monkeypatch):
-    """Also after yield; measured 1.3 to 2.0. A busy machine can only add to a time: up to three rounds, best times."""
-    monkeypatch.syspath_prepend(str(ROOT / "bench"))
-    import yade_speed
-
-    monkeypatch.setattr(yade_speed, "LAWS", ("native", "thornton", "cavity"))
-    monkeypatch.setattr(yade_speed, "SIDE", 9)
-    rounds = []
-    for _ in range(3):
-        rounds.append(yade_speed.measure(rounds=1)[0])
-        best = {law: [min(times) for times in zip(*(r[law] for r in rounds), strict=True)] for law in rounds[0]}
-        ratios = [best[law][k] / best["native"][k] for law in ("thornton", "cavity") for k in (0, 2)]
-        if max(ratios) <= 2.5:
-            break
-    assert max(ratios) <= 2.5, best

@@ -25,7 +25,7 @@ STEEL = CASES / "steel_wall.toml"
 
 def with_law(tmp_path: Path, law: str, text: str | None = None) -> Path:
     """The steel case with another law at its default parameters."""
-    text = re.sub(r'\[law\]\n(?:.+\n)+', f'[law]\nname = "{law}"\n', text or STEEL.read_text())
+    text = re.sub(r"\[law\]\n(?:.+\n)+", f'[law]\nname = "{law}"\n', text or STEEL.read_text())
     path = tmp_path / f"{law}.toml"
     path.write_text(text)
     return path
