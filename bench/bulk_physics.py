@@ -17,9 +17,11 @@ from pathlib import Path
 
 import numpy as np
 
-from epdem.case import read_toml
-from epdem.scene import deck, progress, tables
-from epdem.scene.case import parse
+from epdem.case.impact import read_toml
+from epdem.case.scene import parse
+from epdem.liggghts import running as progress
+from epdem.liggghts import scene_deck as deck
+from epdem.liggghts import scene_tables as tables
 
 CASE = Path(__file__).parents[1] / "cases/hopper_beads.toml"
 d, g = 2e-3, 9.81  # mean diameter of the beads [m], gravity [m/s^2]

@@ -16,10 +16,12 @@ import tempfile
 from pathlib import Path
 
 from epdem import paths
-from epdem.case import read_toml
-from epdem.scene import case as scenes
-from epdem.scene import deck, progress, resume
-from epdem.scene.model import model
+from epdem.case import scene as scenes
+from epdem.case.impact import read_toml
+from epdem.liggghts import resume
+from epdem.liggghts import running as progress
+from epdem.liggghts import scene_deck as deck
+from epdem.scenes.model import model
 
 ROOT = Path(__file__).parents[1]
 NOTHING = 1e-9

@@ -15,7 +15,7 @@ from pathlib import Path
 
 import numpy as np
 
-from epdem import law as claw
+from epdem.laws import library as claw
 
 ROOT = Path(__file__).resolve().parent.parent
 E_STAR, R_STAR, MASS = 1.14e11, 0.01, 0.033

@@ -15,13 +15,13 @@ from pathlib import Path
 import matplotlib
 import numpy as np
 
-from epdem.case import parse, read_toml
-from epdem.compare import compare, impacts_table
+from epdem.case.impact import parse, read_toml
 from epdem.engines import engine
-from epdem.experiment import experiment
-from epdem.measure import measure
-from epdem.plan import plan
-from epdem.predict import predict
+from epdem.impacts.comparison import compare, impacts_table
+from epdem.impacts.experiment import experiment
+from epdem.impacts.measurement import measure
+from epdem.impacts.plan import plan
+from epdem.impacts.prediction import predict
 from epdem.theory import printed
 
 matplotlib.use("Agg")

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 from hypothesis import strategies as st
 
-from epdem import law as claw
+from epdem.laws import library as claw
 from epdem.theory import backbones
 
 NAMES = tuple(claw.laws())

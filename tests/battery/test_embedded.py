@@ -9,7 +9,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from laws import YIELDING, contacts
 
-from epdem import law as claw
+from epdem.laws import library as claw
 
 decades = st.floats(-1.0, 4.0)  # of v/v_y
 dashpots = st.sampled_from([1.0, 0.999, 0.9, 0.5, 0.14])

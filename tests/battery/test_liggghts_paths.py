@@ -7,9 +7,9 @@ import numpy as np
 import pytest
 from laws import NAMES, YIELDING, yield_overlap
 
-from epdem import law as claw
 from epdem import paths
-from epdem.engines.liggghts import read_dump
+from epdem.laws import library as claw
+from epdem.liggghts.impacts import read_dump
 from epdem.theory import pair, viscous
 
 pytestmark = pytest.mark.liggghts

@@ -5,7 +5,7 @@ import numpy as np
 from hypothesis import given
 from laws import contacts
 
-from epdem.law import laws
+from epdem.laws.library import laws
 from epdem.theory import backbones, restitution
 
 

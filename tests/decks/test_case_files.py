@@ -8,11 +8,11 @@ from pathlib import Path
 
 import pytest
 
-from epdem import units
-from epdem.case import load, parse, read_toml
+from epdem.case import units
+from epdem.case.impact import load, parse, read_toml
+from epdem.case.units import to_si
 from epdem.errors import CaseError
-from epdem.experiment import experiment
-from epdem.units import to_si
+from epdem.impacts.experiment import experiment
 
 CASES = Path(__file__).parents[2] / "cases"
 STEEL = read_toml(CASES / "steel_wall.toml")

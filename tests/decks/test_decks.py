@@ -7,13 +7,13 @@ from pathlib import Path
 import jinja2
 import pytest
 
-from epdem import deck
-from epdem.case import parse, read_toml
-from epdem.engines.liggghts import Liggghts
+from epdem import rendering as deck
+from epdem.case.impact import parse, read_toml
 from epdem.errors import CaseError
-from epdem.experiment import experiment
-from epdem.plan import plan
-from epdem.predict import predict
+from epdem.impacts.experiment import experiment
+from epdem.impacts.plan import plan
+from epdem.impacts.prediction import predict
+from epdem.liggghts.impacts import Liggghts
 
 HERE = Path(__file__).parent
 CASES = HERE.parents[1] / "cases"

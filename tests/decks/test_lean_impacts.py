@@ -12,11 +12,11 @@ from pathlib import Path
 import pytest
 
 from epdem import paths
-from epdem.case import Numerics, parse, read_toml
+from epdem.case.impact import Numerics, parse, read_toml
 from epdem.engines import engine
-from epdem.experiment import experiment
-from epdem.plan import plan
-from epdem.predict import predict
+from epdem.impacts.experiment import experiment
+from epdem.impacts.plan import plan
+from epdem.impacts.prediction import predict
 
 pytestmark = pytest.mark.liggghts
 CASES = Path(__file__).parents[2] / "cases"

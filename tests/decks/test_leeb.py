@@ -11,9 +11,9 @@ from pathlib import Path
 
 import pytest
 
-from epdem.case import parse, read_toml
-from epdem.experiment import experiment
-from epdem.predict import predict
+from epdem.case.impact import parse, read_toml
+from epdem.impacts.experiment import experiment
+from epdem.impacts.prediction import predict
 
 CASES = Path(__file__).parents[2] / "cases"
 VICKERS = 9.807e6  # Pa

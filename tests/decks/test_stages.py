@@ -8,16 +8,16 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from epdem import store
-from epdem.case import Check, load
-from epdem.compare import CHECKED, compare
-from epdem.engines.base import Trajectory
+from epdem.case.impact import Check, load
 from epdem.errors import CaseError, EngineError
-from epdem.experiment import experiment
-from epdem.measure import Measured, measure
-from epdem.plan import plan
-from epdem.predict import predict
-from epdem.run import run
+from epdem.impacts import store
+from epdem.impacts.comparison import CHECKED, compare
+from epdem.impacts.engine import Trajectory
+from epdem.impacts.experiment import experiment
+from epdem.impacts.measurement import Measured, measure
+from epdem.impacts.plan import plan
+from epdem.impacts.prediction import predict
+from epdem.impacts.run import run
 
 STEEL = Path(__file__).parents[2] / "cases" / "steel_wall.toml"
 

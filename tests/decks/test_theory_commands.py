@@ -10,8 +10,8 @@ import numpy as np
 import pytest
 from typer.testing import CliRunner
 
-from epdem import materials
-from epdem.cli import app
+from epdem.case import materials
+from epdem.cli.main import app
 
 FILE = tomllib.loads(Path(materials.__file__).with_name("materials.toml").read_text())
 

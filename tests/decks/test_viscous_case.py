@@ -7,12 +7,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from epdem.case import parse, read_toml
+from epdem.case.impact import parse, read_toml
 from epdem.engines import engine
 from epdem.errors import CaseError
-from epdem.experiment import experiment
-from epdem.plan import plan
-from epdem.predict import predict
+from epdem.impacts.experiment import experiment
+from epdem.impacts.plan import plan
+from epdem.impacts.prediction import predict
 
 CASES = Path(__file__).parents[2] / "cases"
 # yield stresses of the pair and how often the harder body's is the softer's

@@ -8,8 +8,8 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from epdem import cost, cost_report
-from epdem.stress import bulk_cost
+from epdem.studies import cost, cost_report
+from epdem.studies.stability import bulk_cost
 
 STEEL = Path(__file__).parents[2] / "cases/steel_wall.toml"
 

@@ -11,15 +11,15 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from epdem import foreign
-from epdem.case import load, parse, read_toml
+from epdem.case.impact import load, parse, read_toml
 from epdem.engines import FOREIGN, engine
 from epdem.errors import CaseError
-from epdem.experiment import experiment
-from epdem.invariance import WAYS, examine
-from epdem.measure import measure
-from epdem.pairs import unequal_spheres
-from epdem.plan import plan
+from epdem.impacts import foreign
+from epdem.impacts.experiment import experiment
+from epdem.impacts.measurement import measure
+from epdem.impacts.pairs import unequal_spheres
+from epdem.impacts.plan import plan
+from epdem.studies.invariance import WAYS, examine
 
 CASES = Path(__file__).parents[2] / "cases"
 STEEL = CASES / "steel_wall.toml"

@@ -11,14 +11,14 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from epdem import store
-from epdem.case import Check, Numerics, parse, read_toml
-from epdem.compare import CHECKED, compare, impacts_table
+from epdem.case.impact import Check, Numerics, parse, read_toml
 from epdem.engines import engine
-from epdem.experiment import experiment
-from epdem.measure import measure
-from epdem.plan import plan
-from epdem.predict import predict
+from epdem.impacts import store
+from epdem.impacts.comparison import CHECKED, compare, impacts_table
+from epdem.impacts.experiment import experiment
+from epdem.impacts.measurement import measure
+from epdem.impacts.plan import plan
+from epdem.impacts.prediction import predict
 
 CASES = Path(__file__).parents[2] / "cases"
 ENGINES = ["embedded", pytest.param("liggghts", marks=pytest.mark.liggghts)]

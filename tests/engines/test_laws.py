@@ -7,13 +7,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from epdem.case import Check, Numerics, parse, read_toml
-from epdem.compare import compare, impacts_table
+from epdem.case.impact import Check, Numerics, parse, read_toml
 from epdem.engines import engine
-from epdem.experiment import experiment
-from epdem.measure import measure
-from epdem.plan import plan
-from epdem.predict import predict
+from epdem.impacts.comparison import compare, impacts_table
+from epdem.impacts.experiment import experiment
+from epdem.impacts.measurement import measure
+from epdem.impacts.plan import plan
+from epdem.impacts.prediction import predict
 from epdem.theory.backbones import LAWS
 
 STEEL = Path(__file__).parents[2] / "cases" / "steel_wall.toml"

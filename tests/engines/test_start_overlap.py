@@ -5,9 +5,9 @@ import numpy as np
 import pytest
 
 from epdem.engines import engine
-from epdem.plan import Plan
-from epdem.stress.cases import Extreme, build
-from epdem.stress.running import setting
+from epdem.impacts.plan import Plan
+from epdem.studies.stability.cases import Extreme, build
+from epdem.studies.stability.running import setting
 
 SHARE = 0.01  # of the stability limit
 

@@ -7,18 +7,18 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from epdem import stress
 from epdem.engines import engine
-from epdem.experiment import experiment
-from epdem.law import Law
-from epdem.stress import bulk, bulk_checks, precisions, repeats, roundoff
-from epdem.stress.cases import build, extremes
-from epdem.stress.document import document
-from epdem.stress.repeats import judge_repeats
-from epdem.stress.running import judge, measure, setting
-from epdem.stress.sampling import EmbeddedSampler, PositionSampler, Sample
-from epdem.stress.scenes import SCENES, with_law
-from epdem.stress.squeezed import balance, path, stored
+from epdem.impacts.experiment import experiment
+from epdem.laws.library import Law
+from epdem.studies import stability as stress
+from epdem.studies.stability import bulk, bulk_checks, precisions, repeats, roundoff
+from epdem.studies.stability.cases import build, extremes
+from epdem.studies.stability.document import document
+from epdem.studies.stability.repeats import judge_repeats
+from epdem.studies.stability.running import judge, measure, setting
+from epdem.studies.stability.sampling import EmbeddedSampler, PositionSampler, Sample
+from epdem.studies.stability.scenes import SCENES, with_law
+from epdem.studies.stability.squeezed import balance, path, stored
 
 LAWS = ("hertz", "thornton", "johnson", "cavity")
 BY_NAME = {e.name: e for e in extremes()}

@@ -11,16 +11,16 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from epdem import store
-from epdem.case import Numerics, parse, read_toml
-from epdem.deck import render
+from epdem.case.impact import Numerics, parse, read_toml
 from epdem.engines import engine
-from epdem.engines import yade as module
 from epdem.errors import CaseError, EngineError
-from epdem.experiment import experiment
-from epdem.measure import measure
-from epdem.plan import plan
-from epdem.predict import predict
+from epdem.impacts import store
+from epdem.impacts.experiment import experiment
+from epdem.impacts.measurement import measure
+from epdem.impacts.plan import plan
+from epdem.impacts.prediction import predict
+from epdem.rendering import render
+from epdem.yade import impacts as module
 
 CASES = Path(__file__).parents[2] / "cases"
 BRASS = {"young_modulus": "100 GPa", "poisson_ratio": 0.35, "density": "8500 kg/m^3", "yield_stress": "0.3 GPa"}

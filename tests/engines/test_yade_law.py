@@ -11,10 +11,10 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from epdem import law as claw
 from epdem.errors import CaseError
-from epdem.yade import cone
-from epdem.yade import law as numbers
+from epdem.laws import library as claw
+from epdem.yade.deck_modules import cone
+from epdem.yade.deck_modules import law as numbers
 
 E_STAR, STRENGTH = 1.1428571428571429e11, 1.3e9
 

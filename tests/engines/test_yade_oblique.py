@@ -6,7 +6,7 @@ import pytest
 from test_yade_contacts import LAWS, yade
 
 from epdem.theory import backbones, oblique, pair
-from epdem.yade import law as numbers
+from epdem.yade.deck_modules import law as numbers
 
 R, MU, SPEEDS = 0.01, 0.2, (2.0, 10.0)
 ANGLES = (10.0, 20.0, 30.0, 40.0, 50.0, 60.0, 70.0)  # degrees from the normal; all slides from 54 on at e_n = 1

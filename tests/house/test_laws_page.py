@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from epdem import law as claw
+from epdem.laws import library as claw
 from epdem.theory.backbones import LAWS
 
 ROOT = Path(__file__).parents[2]

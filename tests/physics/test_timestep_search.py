@@ -6,14 +6,14 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from epdem import timestep
-from epdem.case import load, parse, read_toml
+from epdem.case.impact import load, parse, read_toml
 from epdem.engines import engine
 from epdem.errors import CaseError
-from epdem.experiment import experiment
-from epdem.measure import measure
-from epdem.plan import plan
-from epdem.predict import predict
+from epdem.impacts import timestep
+from epdem.impacts.experiment import experiment
+from epdem.impacts.measurement import measure
+from epdem.impacts.plan import plan
+from epdem.impacts.prediction import predict
 
 CASES = sorted(p for p in (Path(__file__).parents[2] / "cases").glob("*.toml") if "impact" in read_toml(p))
 STEEL = Path(__file__).parents[2] / "cases/steel_wall.toml"

@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from epdem.scene.run import run
+from epdem.scenes.run import run
 
 pytestmark = pytest.mark.liggghts
 CASES = Path(__file__).parents[2] / "cases"

@@ -5,13 +5,14 @@ from pathlib import Path
 
 import pytest
 
-from epdem import case as impacts
+from epdem.case import impact as impacts
+from epdem.case.scene import is_scene, parse
 from epdem.engines import engine
-from epdem.experiment import experiment
-from epdem.plan import plan
-from epdem.predict import predict
-from epdem.scene import deck, explain, lean
-from epdem.scene.case import is_scene, parse
+from epdem.impacts.experiment import experiment
+from epdem.impacts.plan import plan
+from epdem.impacts.prediction import predict
+from epdem.liggghts import explain, lean
+from epdem.liggghts import scene_deck as deck
 
 CASES = sorted((Path(__file__).parents[2] / "cases").glob("*.toml"))
 

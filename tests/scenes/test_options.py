@@ -5,10 +5,11 @@ from pathlib import Path
 
 import pytest
 
-from epdem.case import read_toml
+from epdem.case.impact import read_toml
+from epdem.case.scene import parse
 from epdem.errors import CaseError
-from epdem.scene import deck, explain, lean
-from epdem.scene.case import parse
+from epdem.liggghts import explain, lean
+from epdem.liggghts import scene_deck as deck
 
 CASES = Path(__file__).parents[2] / "cases"
 

@@ -13,11 +13,15 @@ import numpy as np
 import pytest
 from test_lean import CASES, small
 
-from epdem.case import read_toml
+from epdem.case.impact import read_toml
+from epdem.case.scene import is_scene, parse
 from epdem.errors import CaseError
-from epdem.scene import deck, progress, results, resume, tables
-from epdem.scene.case import is_scene, parse
-from epdem.scene.run import last_restart, run
+from epdem.liggghts import resume
+from epdem.liggghts import running as progress
+from epdem.liggghts import scene_deck as deck
+from epdem.liggghts import scene_tables as tables
+from epdem.scenes import results
+from epdem.scenes.run import last_restart, run
 
 pytestmark = pytest.mark.liggghts
 SCENES = [p for p in CASES if is_scene(read_toml(p))]
@@ -54,7 +58,7 @@ def test_a_continued_run_ends_bitwise_where_the_uninterrupted_one_does(path, tmp
 INTERRUPTED = """
 import signal, sys
 from pathlib import Path
-from epdem.scene.run import run
+from epdem.scenes.run import run
 signal.signal(signal.SIGINT, signal.default_int_handler)  # the tests may run where Ctrl-C is ignored
 print("started", flush=True)
 run(Path(sys.argv[1]), out=Path(sys.argv[2]), ranks=int(sys.argv[3]), tell=lambda s, n: print(s, flush=True))

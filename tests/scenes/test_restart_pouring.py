@@ -6,9 +6,12 @@ from pathlib import Path
 
 import pytest
 
-from epdem.case import read_toml
-from epdem.scene import deck, progress, resume, tables
-from epdem.scene.case import parse
+from epdem.case.impact import read_toml
+from epdem.case.scene import parse
+from epdem.liggghts import resume
+from epdem.liggghts import running as progress
+from epdem.liggghts import scene_deck as deck
+from epdem.liggghts import scene_tables as tables
 
 pytestmark = pytest.mark.liggghts
 COUNT = 100

@@ -9,15 +9,15 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from epdem.calibrate import KGF_PER_MM2, from_hardness, from_restitution, pressure_of_hardness
-from epdem.case import load
+from epdem.case import scene as scenes
+from epdem.case.impact import load
 from epdem.errors import CaseError
-from epdem.experiment import experiment
-from epdem.law import laws
-from epdem.predict import predict
-from epdem.scene import case as scenes
-from epdem.scene.model import strengths
-from epdem.soften import soften
+from epdem.impacts.experiment import experiment
+from epdem.impacts.prediction import predict
+from epdem.laws.library import laws
+from epdem.scenes.model import strengths
+from epdem.studies.calibrate import KGF_PER_MM2, from_hardness, from_restitution, pressure_of_hardness
+from epdem.studies.soften import soften
 
 CASES = Path(__file__).parents[2] / "cases"
 STEEL = CASES / "steel_wall.toml"

@@ -8,7 +8,7 @@ import pytest
 
 from epdem import paths
 from epdem.errors import CaseError
-from epdem.scene.template import settings, write
+from epdem.liggghts.own_template import settings, write
 
 ROOT = Path(__file__).parents[2]
 SETTLE, STEEL = ROOT / "cases/settle_glass.toml", ROOT / "cases/steel_wall.toml"

@@ -6,12 +6,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from epdem.case import read_toml
+from epdem.case.impact import read_toml
+from epdem.case.scene import parse
 from epdem.errors import CaseError
-from epdem.scene import deck, explain
-from epdem.scene.case import parse
-from epdem.scene.model import time_step
-from epdem.scene.run import run
+from epdem.liggghts import explain
+from epdem.liggghts import scene_deck as deck
+from epdem.scenes.model import time_step
+from epdem.scenes.run import run
 
 CASES = Path(__file__).parents[2] / "cases"
 

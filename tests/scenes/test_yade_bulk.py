@@ -8,14 +8,18 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from epdem import cli
-from epdem.case import read_toml
-from epdem.engines.yade import environment
+from epdem.case.impact import read_toml
+from epdem.case.scene import parse
+from epdem.cli import main as cli
 from epdem.errors import CaseError, EngineError
-from epdem.scene import deck, progress, tables, yade, yade_place
-from epdem.scene.case import parse
-from epdem.scene.model import model
-from epdem.scene.run import run
+from epdem.liggghts import running as progress
+from epdem.liggghts import scene_deck as deck
+from epdem.liggghts import scene_tables as tables
+from epdem.scenes import placement as yade_place
+from epdem.scenes.model import model
+from epdem.scenes.run import run
+from epdem.yade import scene_deck as yade
+from epdem.yade.impacts import environment
 
 CASES = Path(__file__).parents[2] / "cases"
 BEADS = {"box": '["9 mm", "9 mm", "30 mm"]', "count": "40", "duration": '"0.3 s"'}

@@ -2,13 +2,13 @@
 """The engines by name. A new engine is a module here and one line below."""
 
 from ..errors import CaseError
-from .base import Engine, OwnTheory, Trajectory
-from .builtin import BuiltinEdinburgh, BuiltinHertz, BuiltinLuding, ThorntonNing
-from .builtin_yade import YadeLuding
+from ..impacts.engine import Engine, OwnTheory, Trajectory
+from ..lammps.impacts import LammpsMdr
+from ..liggghts.builtin import BuiltinEdinburgh, BuiltinHertz, BuiltinLuding, ThorntonNing
+from ..liggghts.impacts import Liggghts
+from ..yade.builtin import YadeLuding
+from ..yade.impacts import Yade
 from .embedded import Embedded
-from .lammps import LammpsMdr
-from .liggghts import Liggghts
-from .yade import Yade
 
 ENGINES: dict[str, type[Engine]] = {"embedded": Embedded, "liggghts": Liggghts, "yade": Yade}
 # LIGGGHTS's own models, for comparisons; `run` takes them by name as well.

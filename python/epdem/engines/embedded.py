@@ -4,10 +4,10 @@
 import time
 from pathlib import Path
 
-from .. import law as claw
 from .. import paths
-from ..plan import Plan
-from .base import Trajectory
+from ..impacts.engine import Trajectory
+from ..impacts.plan import Plan
+from ..laws import library as claw
 
 
 class Embedded:

@@ -1,0 +1,288 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""A case file with [scene]: units in, frozen SI values out. Every mistake is a CaseError that names its place."""
+
+from pathlib import Path
+from typing import Annotated, Literal
+
+from pydantic import ConfigDict, Field, ValidationError, model_validator
+
+from ..errors import CaseError
+from . import impact as impact_case
+from .impact import Frozen, Header, LawChoice, Material, Name, Viscous, quantity
+
+Length = quantity("m", above=0.0)
+Time = quantity("s", above=0.0)
+Speed = quantity("m/s", above=0.0)
+Share = quantity("1", above=0.0, le=1.0)
+
+
+class SceneMaterial(Material):
+    """A material; keys beside the elastic ones are the law's parameters for it (yield_pressure = "3 GPa")."""
+
+    model_config = ConfigDict(frozen=True, extra="allow", strict=True)
+
+
+class Range(Frozen):
+    """Radii evenly spread, by number, between two limits [m], in so many classes of one radius each."""
+
+    start: Length = Field(alias="from")
+    to: Length
+    classes: Annotated[int, Field(ge=2, le=50)] = 5
+
+    @model_validator(mode="after")
+    def _ordered(self):
+        if not self.to > self.start:
+            raise ValueError(f"'to' ({self.to:g} m) must exceed 'from' ({self.start:g} m)")
+        return self
+
+
+class Particles(Frozen):
+    """Spheres of one material; `share` is their part of the mass that is filled in."""
+
+    material: Name
+    radius: Length | Range
+    share: Share = 1.0
+
+    def sizes(self) -> list[tuple[float, float]]:
+        """(radius [m], share of the total mass) of each class of equal radii."""
+        if not isinstance(self.radius, Range):
+            return [(self.radius, self.share)]
+        step = (self.radius.to - self.radius.start) / (self.radius.classes - 1)
+        radii = [float(f"{self.radius.start + k * step:.6g}") for k in range(self.radius.classes)]
+        cubes = sum(r**3 for r in radii)
+        return [(r, self.share * r**3 / cubes) for r in radii]
+
+    def radii(self) -> tuple[float, float]:
+        """Smallest and largest radius [m]."""
+        return self.sizes()[0][0], self.sizes()[-1][0]
+
+
+class Rolling(Frozen):
+    model: Literal["cdt", "epsd", "epsd2"] = "epsd2"
+    coefficient: quantity("1", above=0.0)
+    damping: quantity("1", ge=0.0) | None = None  # epsd only: share of the critical one
+
+    @model_validator(mode="after")
+    def _damping(self):
+        if (self.damping is not None) != (self.model == "epsd"):
+            raise ValueError("'damping' belongs to model = 'epsd' and only to it")
+        return self
+
+
+class Between(Frozen):
+    """Values of one pair of materials that differ from the common ones; "wall" names the walls."""
+
+    between: Annotated[list[Name], Field(min_length=2, max_length=2)]
+    friction: quantity("1", ge=0.0)
+
+
+class Contact(Frozen):
+    """What a contact has beside its normal law; what is left out is not compiled into the loop."""
+
+    friction: quantity("1", ge=0.0) = 0.0
+    wall_friction: quantity("1", ge=0.0) | None = None
+    pairs: Annotated[list[Between], Field(default_factory=list)]
+    tangential_restitution: Share | None = None  # of the dashpot beside the tangential spring
+    rolling: Rolling | None = None
+    cohesion: quantity("J/m^3", above=0.0) | None = None  # energy density (sjkr)
+
+
+class Output(Frozen):
+    """What is written. Zero or false: not at all, and then nothing of it is in the deck."""
+
+    rows: Annotated[int, Field(ge=1, le=100_000)] = 100
+    particles: Annotated[int, Field(ge=0, le=10_000)] = 1
+    contacts: Annotated[int, Field(ge=0, le=10_000)] = 0
+    energy: bool = False  # the ledger: particles and contacts of the same steps, plastic work of every contact
+    loads: bool = False  # forces on the walls
+    vtk: Annotated[int, Field(ge=0, le=10_000)] = 0
+    pictures: Annotated[int, Field(ge=0, le=10_000)] = 0
+    restarts: Annotated[int, Field(ge=0, le=1000)] = 0
+
+    @model_validator(mode="after")
+    def _ledger_frames(self):
+        if self.energy and self.contacts and self.contacts != self.particles:
+            raise ValueError("the energy ledger needs particles and contacts at the same steps; give the same number")
+        return self
+
+
+class SceneNumerics(Frozen):
+    """`error` of e_n that the time step keeps up to `highest_speed` (default: what the scene itself can reach)."""
+
+    error: Annotated[float, Field(ge=1e-9, le=0.1)] = 1e-3
+    highest_speed: Speed | None = None
+    time_step: Time | None = None
+    seed: Annotated[int, Field(ge=1, le=1000)] = 1
+
+
+class Common(Frozen):
+    particles: Annotated[list[Particles], Field(min_length=1, max_length=64)]
+    count: Annotated[int, Field(ge=1, le=100_000_000)]
+    walls: Name  # material of the walls
+    gravity: quantity("m/s^2", ge=0.0) = 9.81
+    duration: Time
+
+    @model_validator(mode="after")
+    def _shares(self):
+        total = sum(p.share for p in self.particles)
+        if abs(total - 1.0) > 1e-9:
+            raise ValueError(f"the shares of 'particles' add up to {total:g}, must be 1")
+        return self
+
+
+class Settle(Common):
+    """Spheres poured into a box (x, y, z inside) with its floor at z = 0."""
+
+    kind: Literal["settle"]
+    box: Annotated[list[Length], Field(min_length=3, max_length=3)]
+    periodic: bool = False  # in x and y, instead of side walls
+    rate: quantity("Hz", above=0.0) | None = None  # spheres per second; none: all at once
+
+
+class Hopper(Common):
+    """Discharge of a round bin with a conical hopper of triangles; `fill` is the time before the outlet opens."""
+
+    kind: Literal["hopper"]
+    bin_diameter: Length
+    bin_height: Length
+    outlet: Length
+    half_angle: quantity("rad", above=0.0, le=1.5707963267948966)
+    drop: Length  # from the outlet to the floor
+    fill: Time
+
+
+class Drum(Common):
+    """A drum of triangles turning about y, with flat ends.
+
+    It is round, so its surface moves and its triangles stay: the same to a sphere, without rebuilding lists, and a
+    continued run meets the wall's velocity at its first step, which LIGGGHTS's move/mesh only knows a step later.
+    """
+
+    kind: Literal["drum"]
+    diameter: Length
+    length: Length
+    turn: quantity("rad/s", above=0.0)  # "20 rpm"
+
+
+class Compaction(Common):
+    """Uniaxial loading and unloading between plates; sides periodic. No `duration`: strokes and speed give it."""
+
+    kind: Literal["compaction"]
+    gravity: quantity("m/s^2", ge=0.0) = 0.0
+    duration: Time | None = None
+    box: Annotated[list[Length], Field(min_length=3, max_length=3)]
+    height: Length  # of the gap between the plates at the end of loading
+    back: Length  # stroke of unloading
+    speed: Speed  # of the upper plate, loading
+    back_speed: Speed | None = None  # unloading; default: a tenth, for it is over within a short way
+
+    @property
+    def release(self) -> float:
+        """Speed of the upper plate while unloading [m/s]."""
+        return self.back_speed or 0.1 * self.speed
+
+    @model_validator(mode="after")
+    def _order(self):
+        if not self.height < self.box[2]:
+            raise ValueError(f"height ({self.height:g} m) must be below the box's height ({self.box[2]:g} m)")
+        if self.duration is not None:
+            raise ValueError("duration: loading and unloading follow from height, back and speed; remove it")
+        return self
+
+
+class Peening(Common):
+    """A stream of shot along -z on a plate of the walls' material, or on a bed of spheres that lies on it."""
+
+    kind: Literal["peening"]
+    gravity: quantity("m/s^2", ge=0.0) = 0.0
+    side: Length  # of the square that the stream hits
+    speed: Speed
+    rate: quantity("Hz", above=0.0)  # spheres per second
+    bed: Annotated[list[Particles], Field(default_factory=list)]
+    bed_count: Annotated[int, Field(ge=0, le=10_000_000)] = 0
+    bed_fill: Time | None = None
+
+    @model_validator(mode="after")
+    def _bed(self):
+        if bool(self.bed) != bool(self.bed_count) or bool(self.bed) != (self.bed_fill is not None):
+            raise ValueError("a bed needs 'bed', 'bed_count' and 'bed_fill'; give all three or none")
+        if self.bed and not self.gravity:
+            raise ValueError("a bed settles under gravity; give gravity")
+        return self
+
+
+Kinds = Settle | Hopper | Drum | Compaction | Peening
+
+
+class SceneCase(Frozen):
+    """One bulk scene."""
+
+    case: Header
+    materials: dict[Name, SceneMaterial]
+    law: LawChoice
+    scene: Annotated[Kinds, Field(discriminator="kind")]
+    viscous: Viscous | None = None
+    contact: Contact = Contact()
+    output: Output = Output()
+    numerics: SceneNumerics = SceneNumerics()
+
+    @model_validator(mode="after")
+    def _names(self):
+        used = [("scene.walls", self.scene.walls)]
+        parts = [*self.scene.particles, *getattr(self.scene, "bed", [])]
+        used += [("scene.particles.material", p.material) for p in parts]
+        for place, name in used:
+            if name not in self.materials:
+                raise ValueError(f"{place} = {name!r} is not defined; add [materials.{name}]")
+        tangential = self.contact.tangential_restitution
+        if self.viscous and tangential not in (None, self.viscous.restitution):
+            raise ValueError(
+                f"contact.tangential_restitution = {tangential:g}: LIGGGHTS has one restitution for both dashpots; "
+                f"give that of viscous ({self.viscous.restitution:g}), or remove it (then no tangential dashpot)"
+            )
+        for pair in self.contact.pairs:
+            for name in pair.between:
+                if name not in self.materials and name != "wall":
+                    raise ValueError(f"contact.pairs: {name!r} is neither a material nor 'wall'")
+        return self
+
+    @property
+    def name(self) -> str:
+        return self.case.name
+
+
+def is_scene(data: dict) -> bool:
+    """Whether TOML data describe a bulk scene."""
+    return "scene" in data
+
+
+def parse(data: dict, path: object = "case") -> SceneCase:
+    """A scene from TOML data; `path` names the place in messages. Raises CaseError."""
+    try:
+        return SceneCase.model_validate(data)
+    except ValidationError as error:
+        kind = str(data.get("scene", {}).get("kind", "")) if isinstance(data.get("scene"), dict) else ""
+        problem = error.errors()[0]
+        location = tuple(k for k in problem["loc"] if not _is_branch(k, kind))
+        place = ".".join(map(str, location))
+        text = problem["msg"].removeprefix("Value error, ")
+        if problem["type"] == "extra_forbidden":
+            text = "unknown key; remove it or correct its spelling"
+        elif problem["type"] == "missing":
+            text = "is missing; add it"
+        elif problem["type"].startswith("union_tag"):
+            text = f"kind = {kind!r}, must be one of settle, hopper, drum, compaction, peening"
+        value = problem["input"]
+        shown = (
+            "" if value is None or isinstance(value, dict | list) or "missing" in problem["type"] else f" = {value!r}"
+        )
+        raise CaseError(f"{path}: {place}{shown}{', ' if shown else ' ' if place else ''}{text}") from None
+
+
+def _is_branch(key: object, kind: str) -> bool:
+    return str(key).startswith(("Range", "function-", "list[", "tuple[", "float")) or key == kind
+
+
+def load(path: Path | str) -> SceneCase:
+    """The scene in a file. Raises CaseError."""
+    return parse(impact_case.read_toml(path), path)

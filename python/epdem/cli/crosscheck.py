@@ -1,0 +1,83 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""The command `epdem crosscheck`."""
+
+import json
+from pathlib import Path
+from typing import Annotated
+
+import typer
+from rich.console import Console
+
+from .options import AsJson, Out, console
+
+VALUES = {"model": "model", "e_n": "e_n", "e_n_theory": "its theory", "contact_time": "t_c [us]",
+          "force_max": "F_max [N]", "e_n_error": "error e_n", "contact_time_error": "t_c", "force_max_error": "F_max",
+          "order": "order", "seconds": "s"}  # fmt: skip
+CHANGES = {"model": "model", "unequal_error": "error", "swap": "swap", "sort": "sort", "migration": "migration",
+           "restart": "restart", "momentum": "momentum"}  # fmt: skip
+CHANGES_TITLE = "Two spheres of unequal radii and moduli"
+CHANGES_NOTE = """error: of e_n; swap to restart: changes of e_n by the way the impact is told;
+momentum: lost, as a share of one body's change. A serial YADE sorts nothing and has no ranks (-);
+an embedded contact has neither names nor restarts."""
+
+
+def _cell(name: str, value: object) -> str:
+    if not isinstance(value, float):
+        return str(value)
+    if value != value:
+        return "-"
+    if value == float("inf"):
+        return "failed"
+    if name == "contact_time":
+        return f"{value * 1e6:.4g}"
+    if name in ("e_n", "e_n_theory", "force_max", "order", "seconds"):
+        return f"{value:.{2 if name in ('order', 'seconds') else 6}{'f' if name != 'force_max' else 'g'}}"
+    return "0" if value == 0 else f"{value:.1e}"
+
+
+def _show(title: str, heads: dict[str, str], rows: list[dict]) -> None:
+    from rich.markup import escape
+    from rich.table import Table
+
+    table = Table(title=title, title_justify="left")
+    for head in heads.values():
+        table.add_column(escape(head), justify="left" if head == "model" else "right", no_wrap=True)
+    for row in rows:
+        table.add_row(*(_cell(name, row[name]) for name in heads))
+    console().print(table)
+
+
+def crosscheck(
+    cases: Annotated[list[Path], typer.Argument(metavar="CASE...", help="case files (TOML)")],
+    law: Annotated[str | None, typer.Option("--law", "-l", help="replaces the case's law")] = None,
+    out: Out = None,
+    fresh: Annotated[bool, typer.Option(help="run again what is already stored")] = False,
+    as_json: AsJson = False,
+) -> None:
+    """A case on every engine and model at hand, with order of convergence and invariance, in one table."""
+    from ..impacts import report
+    from ..studies.crosscheck import crosscheck as check
+
+    found = []
+    with Console(stderr=True).status("") as line:
+        for path in cases:
+            folder = out / path.stem if out and len(cases) > 1 else out
+            found.append(check(path, law=law, out=folder, fresh=fresh, progress=line.update))
+    if as_json:
+        documents = [
+            {"case": c.outcome.case.name, "absent": c.absent, "notes": c.notes, "rows": report.records(c.table)}
+            for c in found
+        ]
+        print(json.dumps(documents[0] if len(documents) == 1 else documents, indent=1))
+        return
+    for c in found:
+        rows, case = c.table.to_dict("records"), c.outcome.case.case
+        title = f"{case.title}: values at {rows[0]['speed']:.4g} m/s, largest errors over speeds and phases"
+        _show(title, VALUES, rows)
+        _show(CHANGES_TITLE, CHANGES, [row for row in rows if row["momentum"] == row["momentum"]])
+        console().print(CHANGES_NOTE, highlight=False, soft_wrap=True)
+        for name, words in c.notes.items():
+            console().print(f"{name} has a law and a theory of its own: {words}", highlight=False, soft_wrap=True)
+        for name, reason in c.absent.items():
+            console().print(f"left out: {name}: {reason}", highlight=False, soft_wrap=True)
+        console().print(f"figure and data: {c.outcome.folder}/", highlight=False)

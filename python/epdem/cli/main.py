@@ -1,0 +1,174 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""The command `epdem`: functions of a few lines that call the library."""
+
+import json
+import signal
+import sys
+from pathlib import Path
+from typing import Annotated
+
+import typer
+from rich.console import Console
+from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
+
+from ..errors import CaseError, EpdemError, Stopped
+from . import crosscheck as cli_crosscheck
+from . import numerics as cli_numerics
+from . import scenes as cli_scene
+from . import theory as cli_theory
+from .options import AsJson, CasePath, Engines, Laws, Out, console
+
+ABOUT = """Elastic-plastic particle contact for LIGGGHTS and YADE, checked against theory.
+
+Begin with: epdem run cases/steel_wall.toml -e embedded -e liggghts
+
+Exit codes: 0 all within tolerance, 1 a check failed, 2 bad input, 3 an engine failed, 130 stopped.
+"""
+app = typer.Typer(add_completion=False, no_args_is_help=True, pretty_exceptions_enable=False, help=ABOUT,
+                  context_settings={"help_option_names": ["-h", "--help"]})  # fmt: skip
+
+
+@app.command()
+def run(
+    case: CasePath,
+    engine: Engines = None,
+    law: Laws = None,
+    ranks: Annotated[int, typer.Option(min=1, max=1024, help="MPI ranks of LIGGGHTS")] = 1,
+    steps: Annotated[int | None, typer.Option(help="replaces the case's steps in contact (5 to 100000)")] = None,
+    out: Out = None,
+    fresh: Annotated[bool, typer.Option("--fresh", help="run again what is already stored")] = False,
+    resume: Annotated[
+        bool, typer.Option("--resume", help="continue an interrupted scene from its last restart")
+    ] = False,
+    as_json: AsJson = False,
+) -> None:
+    """Run a case and check it against theory, or run a bulk scene (default engine: liggghts)."""
+    if cli_scene.is_scene(case):
+        if len(engine or []) > 1 or law or steps:
+            raise CaseError("a scene has its own law and time step and runs on one engine; leave out --law, --steps")
+        chosen = engine[0] if engine else "liggghts"
+        code = cli_scene.run_scene(
+            case, engine=chosen, out=out, ranks=ranks, fresh=fresh, resume=resume, as_json=as_json
+        )
+        raise typer.Exit(code)
+    if resume:
+        raise CaseError("--resume continues bulk scenes; an impact case takes finished stages from its store by itself")
+    from ..impacts import report
+    from ..impacts.run import run as run_case
+
+    engines = engine or ["liggghts"]
+    stages = len(set(engines)) * max(len(set(law or [])), 1) + 1  # and the figure
+    with Progress(TextColumn("{task.description}"), BarColumn(), TimeElapsedColumn(), console=Console(stderr=True),
+                  transient=True, disable=not sys.stderr.isatty()) as bar:  # fmt: skip
+        task = bar.add_task("", total=stages)
+        outcome = run_case(case, engines=engines, laws=law or [], out=out, ranks=ranks, steps=steps, fresh=fresh,
+                           progress=lambda text: bar.update(task, advance=1, description=text))  # fmt: skip
+        bar.update(task, advance=1, description="figure")
+        report.figure(outcome)
+    if as_json:
+        print(report.run_json(outcome))
+    else:
+        report.show(outcome, console())
+    raise typer.Exit(0 if outcome.passed else 1)
+
+
+@app.command()
+def deck(
+    file: Annotated[Path, typer.Argument(metavar="CASE|TEMPLATE", help="case file (TOML), or an own template (.j2)")],
+    out: Annotated[Path, typer.Option("--out", "-o", help="folder for the deck")],
+    engine: Annotated[str, typer.Option("--engine", "-e", help="liggghts or yade")] = "liggghts",
+    law: Laws = None,
+    case: Annotated[Path | None, typer.Option("--case", help="the case behind an own template")] = None,
+    given: Annotated[list[str] | None, typer.Option("--set", metavar="KEY=VALUE", help="for an own template")] = None,
+    as_json: AsJson = False,
+) -> None:
+    """Write the deck of a case, or of an own template with a case's values; it runs by hand."""
+    if file.suffix == ".j2":
+        if case is None:
+            raise CaseError(f"{file}: an own template needs the values of a case; add --case CASE")
+        cli_scene.deck_template(file, case, given or [], out, as_json=as_json)
+        return
+    if case or given:
+        raise CaseError(f"{file}: --case and --set go with an own template (.j2)")
+    if cli_scene.is_scene(file):
+        cli_scene.deck_scene(file, out, engine=engine, as_json=as_json)
+        return
+    from ..case.impact import load, named
+    from ..engines import engine as find
+    from ..impacts.experiment import experiment
+    from ..impacts.plan import plan
+    from ..impacts.prediction import predict
+
+    tool = find(engine)
+    if engine == "embedded":
+        raise CaseError("--engine embedded: it reads no deck; use liggghts or yade")
+    if len(law or []) > 1:
+        raise CaseError("--law: a deck has one law; write one deck for each")
+    with named(file):
+        x = experiment(load(file), law[0] if law else None)
+        names = [str(f) for f in tool.write(plan(x, predict(x)), out)]
+    print(json.dumps({"files": names}) if as_json else "\n".join(names))
+
+
+@app.command()
+def predict(case: CasePath, law: Laws = None, as_json: AsJson = False) -> None:
+    """What theory says of a case; nothing runs."""
+    from ..case.impact import load, named
+    from ..impacts.experiment import experiment
+    from ..impacts.prediction import predict as predict_experiment
+    from . import show
+
+    with named(case):
+        experiments = [experiment(load(case), name) for name in (law or [None])]
+    show.predictions([(x, predict_experiment(x)) for x in experiments], as_json, console())
+
+
+@app.command()
+def doctor(as_json: AsJson = False) -> None:
+    """Which engines are here, their versions, whether the plugin loads, and what to do if not."""
+    from ..engines.doctor import examine
+    from . import show
+
+    findings = examine()
+    show.findings(findings, as_json, console())
+    raise typer.Exit(0 if all(f.ok for f in findings if f.needed) else 3)
+
+
+for command in (
+    cli_crosscheck.crosscheck,
+    cli_theory.theory,
+    cli_theory.figures,
+    cli_numerics.timestep,
+    cli_numerics.cost,
+    cli_numerics.stress,
+    cli_scene.explain,
+    cli_scene.soften,
+    cli_scene.calibrate,
+):
+    app.command()(command)
+
+
+def _stop(number: int, frame: object) -> None:
+    raise Stopped
+
+
+def main() -> None:
+    """Entry point: errors that a user can mend become one sentence and an exit code."""
+    for name in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):  # whoever stops us, no engine stays behind
+        signal.signal(name, _stop)
+    try:
+        app()
+    except EpdemError as error:
+        print(f"epdem: {error}", file=sys.stderr)
+        sys.exit(error.exit_code)
+    except Stopped:
+        print("epdem: stopped; what was finished is stored", file=sys.stderr)
+        sys.exit(130)
+    except OSError as error:
+        place, reason = error.filename or "a file", error.strerror or error
+        print(f"epdem: {place}: {reason}; choose another folder by --out, or make it writable", file=sys.stderr)
+        sys.exit(2)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,124 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Commands about accuracy, cost and stability; `cli.py` registers them."""
+
+import json
+from pathlib import Path
+from typing import Annotated
+
+import typer
+from rich.console import Console
+
+from .options import AsJson, CasePath, Engines, Laws, Out, console
+
+
+def timestep(
+    case: CasePath,
+    error: Annotated[float, typer.Option(min=1e-9, max=0.1, help="largest relative error of e_n")] = 1e-3,
+    law: Laws = None,
+    as_json: AsJson = False,
+) -> None:
+    """The time step of a case for a target error, found by running the embedded engine."""
+    from ..case.impact import load
+    from ..impacts.experiment import experiment
+    from ..impacts.prediction import predict
+    from ..impacts.timestep import search
+
+    found = []
+    for name in law or [None]:
+        x = experiment(load(case), name)
+        found.append((x, search(x, predict(x), error)))
+    if as_json:
+        documents = [{"case": x.case.name, "law": x.law.name, "target": f.target, "time_step": f.time_step,
+                      "error": f.error, "rms": f.rms, "steps_in_contact": f.steps_in_contact,
+                      "reference": vars(f.reference), "share": f.shares()} for x, f in found]  # fmt: skip
+        print(json.dumps(documents[0] if len(documents) == 1 else documents, indent=1))
+        return
+    for x, f in found:
+        share = f.shares()
+        print(f"{x.case.name}, law {x.law.name}: timestep {f.time_step:.4g} s for e_n within {f.target:g} "
+              f"(largest {f.error:.2g}, rms {f.rms:.2g}; {f.steps_in_contact:.0f} steps in the shortest contact)\n"
+              f"  {share['stability']:.2%} of the stability limit, {share['rayleigh']:.2%} of the Rayleigh time, "
+              f"{share['hertz']:.2%} of the elastic contact time")  # fmt: skip
+
+
+def stress(
+    engine: Engines = None,
+    law: Laws = None,
+    group: Annotated[list[str] | None, typer.Option("--group", "-g", help="only these groups of cases")] = None,
+    every: Annotated[int, typer.Option(min=1, help="only every n-th case")] = 1,
+    steps: Annotated[int, typer.Option(min=1000, help="steps of the drift by repeated bounces")] = 10**9,
+    out: Annotated[Path | None, typer.Option("--out", "-o", help="CSV file of all verdicts")] = None,
+    docs: Annotated[Path | None, typer.Option("--docs", help="write the page of the documentation there")] = None,
+    as_json: AsJson = False,
+) -> None:
+    """Stability on stiff and extreme cases, and where dt breaks each (default engine: embedded)."""
+    import sys
+
+    from ..files import atomic
+    from ..impacts.report import records
+    from ..studies import stability as suite
+    from ..studies.stability.document import document, table
+    from ..studies.stability.suite import summary
+
+    with Console(stderr=True).status("") as line:
+        outcome = suite.run(engine or ["embedded"], law or [], groups=group, every=every, steps=steps,
+                            progress=line.update)  # fmt: skip
+    if out:
+        with atomic(out) as temporary:
+            outcome.verdicts.to_csv(temporary, index=False)
+    if docs:
+        with atomic(docs) as temporary:
+            temporary.write_text(document(outcome, "epdem " + " ".join(sys.argv[1:])))
+    if as_json:
+        print(json.dumps({"passed": outcome.passed, "rows": records(outcome.verdicts),
+                          "roundoff": records(outcome.roundoff), "bulk": records(outcome.bulk),
+                          "precisions": records(outcome.precisions)}, indent=1))  # fmt: skip
+    else:
+        screen = console()
+        screen.print(table("extreme cases; steps as shares of the stability limit", summary(outcome.verdicts)))
+        for v in outcome.verdicts[outcome.verdicts["status"] == "failed"].itertuples():
+            screen.print(f"failed: {v.engine}, {v.law}, {v.case}: {v.reason}", style="red", highlight=False)
+        if not outcome.bulk.empty:
+            screen.print(table("stiff bulk scenes in LIGGGHTS", outcome.bulk))
+    raise typer.Exit(0 if outcome.passed else 1)
+
+
+def cost(
+    case: CasePath,
+    engine: Engines = None,
+    law: Laws = None,
+    repetitions: Annotated[int, typer.Option(min=1, max=100, help="of every timed run, interleaved")] = 5,
+    bulk: Annotated[bool, typer.Option(help="a bulk scene in LIGGGHTS as well")] = False,
+    out: Out = None,
+    docs: Annotated[Path | None, typer.Option("--docs", help="write the page of the documentation there")] = None,
+    as_json: AsJson = False,
+) -> None:
+    """Error against run time at 10 to 3000 steps in contact (default engines: embedded and liggghts)."""
+    import sys
+
+    from ..files import atomic
+    from ..impacts.report import records
+    from ..studies import cost as study
+    from ..studies import cost_report
+
+    scene = None
+    with Console(stderr=True).status("") as line:
+        outcome = study.run(case, engines=engine or ["embedded", "liggghts"], laws=law or [], repetitions=repetitions,
+                            progress=line.update)  # fmt: skip
+        if bulk:
+            from ..studies.stability import bulk_cost
+
+            scene = bulk_cost.run(law or [outcome.case.law.name], progress=line.update)
+    folder = out or Path("runs") / outcome.case.name / "cost"
+    files = cost_report.write(outcome, folder)
+    if docs:
+        cost_report.figure(outcome, docs.parent / "figures" / "cost.png")
+        with atomic(docs) as temporary:
+            temporary.write_text(cost_report.document(outcome, scene, "epdem " + " ".join(sys.argv[1:])))
+    if as_json:
+        document = {"case": outcome.case.name, "seconds": outcome.seconds, "files": [str(f) for f in files],
+                    "rows": records(outcome.rows), "contenders": records(outcome.contenders)}  # fmt: skip
+        print(json.dumps(document | ({} if scene is None else {"bulk": records(scene)}), indent=1))
+    else:
+        cost_report.show(outcome, scene, console())
+        print(f"see {folder}/")

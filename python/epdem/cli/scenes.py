@@ -1,0 +1,184 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Commands for bulk scenes: functions of a few lines that call the library."""
+
+import json
+from pathlib import Path
+from typing import Annotated
+
+import typer
+from rich.console import Console
+from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
+
+from ..case import scene as scene_case
+from ..case.impact import read_toml
+from ..errors import CaseError
+from .options import AsJson, CasePath, console, quantity
+
+
+def is_scene(path: Path) -> bool:
+    """Whether a case file describes a bulk scene. Raises CaseError if it cannot be read."""
+    return scene_case.is_scene(read_toml(path))
+
+
+def run_scene(
+    case: Path,
+    *,
+    engine: str = "liggghts",
+    out: Path | None = None,
+    ranks: int = 1,
+    fresh: bool = False,
+    resume: bool = False,
+    as_json: bool = False,
+) -> int:
+    """Run a scene with a progress bar; print its checks. Exit code: 0, or 1 if a check failed."""
+    from ..scenes import report
+    from ..scenes.run import run
+
+    bar = Progress(
+        TextColumn("{task.description}"),
+        BarColumn(),
+        TextColumn("{task.completed}/{task.total} steps"),
+        TimeElapsedColumn(),
+        TimeRemainingColumn(),
+        console=Console(stderr=True),
+    )
+    with bar:
+        task = bar.add_task(Path(case).stem, total=None)
+        outcome = run(
+            case,
+            engine=engine,
+            out=out,
+            ranks=ranks,
+            fresh=fresh,
+            resume=resume,
+            tell=lambda step, steps: bar.update(task, completed=step, total=steps),
+        )
+    report.figures(outcome)
+    if as_json:
+        print(report.as_json(outcome))
+    else:
+        report.show(outcome, console())
+    return 0 if outcome.passed else 1
+
+
+def deck_scene(case: Path, out: Path, *, engine: str = "liggghts", as_json: bool = False) -> None:
+    """Write the deck of a scene; it runs by hand."""
+    from ..files import write_texts
+    from ..liggghts import scene_deck as deck
+    from ..yade import scene_deck as yade
+
+    if engine not in ("liggghts", "yade"):
+        raise CaseError(f"--engine {engine}: a scene runs on liggghts or yade")
+    scene = scene_case.load(case)
+    files = write_texts(out, yade.texts(scene)) if engine == "yade" else deck.write(scene, out)
+    names = [str(f) for f in files]
+    print(json.dumps({"files": names}) if as_json else "\n".join(names))
+
+
+def explain(case: CasePath, as_json: AsJson = False) -> None:
+    """Why each line of a case's LIGGGHTS deck is in it."""
+    from ..liggghts.explain import explain as explain_lines
+
+    lines = explain_lines(_texts(case))
+    if as_json:
+        print(json.dumps([{"file": f, "line": text, "reason": reason} for f, text, reason in lines], indent=1))
+        return
+    file = None
+    for name, text, reason in lines:
+        if name != file:
+            print(f"{name}:")
+            file = name
+        print(f"  {text.split('  # ')[0].rstrip()}\n      {reason}")
+
+
+def _texts(case: Path) -> dict[str, str]:
+    if is_scene(case):
+        from ..liggghts.scene_deck import texts
+
+        return texts(scene_case.load(case))
+    from .. import rendering as decks
+    from ..case.impact import load
+    from ..impacts.experiment import experiment
+    from ..impacts.plan import plan
+    from ..impacts.prediction import predict
+    from ..liggghts.impacts import Liggghts
+
+    tool, x = Liggghts(), experiment(load(case))
+    return {"in.impact": decks.render(tool.template, deck=tool.deck(plan(x, predict(x))))}
+
+
+def soften(
+    case: CasePath,
+    factor: Annotated[
+        float, typer.Option("--factor", "-k", help="E is divided by it; the step grows by its 0.4th power")
+    ],
+    out: Annotated[Path | None, typer.Option("--out", "-o", help="file to write")] = None,
+    as_json: AsJson = False,
+) -> None:
+    """A softened twin of a case with the same e_n at every speed, and larger time steps."""
+    from ..studies.soften import soften as twin_of
+
+    twin = twin_of(case, factor)
+    target = out or case.with_name(f"{case.stem}_soft{factor:g}.toml")
+    target.write_text(twin.text)
+    if as_json:
+        print(
+            json.dumps(
+                {
+                    "file": str(target),
+                    "changes": [vars(c) for c in twin.changes],
+                    "warnings": twin.warnings,
+                    "strain_ratio": twin.strain_ratio,
+                    "time_step_factor": twin.time_step_factor,
+                },
+                indent=1,
+            )
+        )
+        return
+    for c in twin.changes:
+        print(f"{c.place}: {c.before} -> {c.after}")
+    print(
+        f"time step {twin.time_step_factor:.3g} times larger; a_max/R* {twin.strain_ratio[0]:.3f} -> "
+        f"{twin.strain_ratio[1]:.3f}; e_n of every speed stays; written to {target}"
+    )
+    for warning in twin.warnings:
+        print(f"warning: {warning}")
+
+
+def calibrate(
+    case: CasePath,
+    e_n: Annotated[float | None, typer.Option("--e-n", help="measured coefficient of restitution")] = None,
+    speed: Annotated[str | None, typer.Option(help='speed of that impact, as "2 m/s"')] = None,
+    hv: Annotated[float | None, typer.Option(help="Vickers hardness instead")] = None,
+    hb: Annotated[float | None, typer.Option(help="Brinell hardness instead")] = None,
+    dent_ratio: Annotated[float, typer.Option(help="dent over ball diameter of the Brinell test")] = 0.375,
+    as_json: AsJson = False,
+) -> None:
+    """The strength of the case's law from one measured e_n, or from a hardness."""
+    from ..studies import calibrate as c
+
+    if (e_n is None) == (hv is None and hb is None):
+        raise CaseError("give one measurement: --e-n with --speed, or --hv, or --hb")
+    if e_n is not None:
+        if speed is None:
+            raise CaseError("--e-n belongs to one impact; add its speed, as --speed '2 m/s'")
+        found = c.from_restitution(case, e_n, quantity("--speed", speed, "m/s"))
+    else:
+        pressure = c.pressure_of_hardness(vickers=hv, brinell=hb, dent_ratio=dent_ratio)
+        found = c.from_hardness(case, pressure, f"HV {hv:g}" if hv is not None else f"HB {hb:g}")
+    if as_json:
+        print(json.dumps(vars(found), indent=1))
+        return
+    print(
+        f"law {found.law}, {found.source}: {found.parameter} = {found.value / 1e6:.6g} MPa, "
+        f"that is yield_stress = {found.yield_stress / 1e6:.6g} MPa, yield speed {found.yield_speed:.4g} m/s\n"
+        f'in the case file, under [law]: {found.parameter} = "{found.value / 1e6:.6g} MPa"'
+    )
+
+
+def deck_template(template: Path, case: Path, sets: list[str], out: Path, *, as_json: bool = False) -> None:
+    """Write a deck from a template of the user's own and the values of a case."""
+    from ..liggghts.own_template import settings, write
+
+    names = [str(f) for f in write(template, case, settings(sets), out)]
+    print(json.dumps({"files": names}) if as_json else "\n".join(names))

@@ -1,0 +1,57 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Small tables and their JSON for the commands that run nothing."""
+
+import json
+import math
+from dataclasses import asdict
+
+import pandas as pd
+from rich.console import Console
+from rich.table import Table
+
+from ..engines.doctor import Finding
+from ..impacts.experiment import Experiment
+from ..impacts.prediction import Prediction
+from ..impacts.report import records, yielding
+
+
+def _table(title: str, frame: pd.DataFrame) -> Table:
+    table = Table(title=title)
+    for name in frame.columns:
+        table.add_column(name, justify="right", no_wrap=True)
+    for row in frame.itertuples(index=False):
+        table.add_row(*(f"{v:.6g}" if isinstance(v, float) else str(v) for v in row))
+    return table
+
+
+def predictions(pairs: list[tuple[Experiment, Prediction]], as_json: bool, console: Console) -> None:
+    """Print predictions, one table per law."""
+    document = []
+    for x, p in pairs:
+        frame = pd.DataFrame({n: getattr(p, n) for n in Prediction.COLUMNS})
+        if as_json:
+            document.append({"case": x.case.name, "law": x.law.name, "parameters": x.law.parameters, "yields": p.yields,
+                             "yield_speeds": {k: v if math.isfinite(v) else None for k, v in p.yield_speeds.items()},
+                             "warnings": p.warnings(), "rows": records(frame)})  # fmt: skip
+        else:
+            console.print(_table(f"{x.case.case.title}: law {x.law.name} (SI units; {yielding(p)})", frame))
+            for material, speed in p.yield_speeds.items():
+                never = "never: the softer body limits the pressure"
+                when = f"from {speed:.4g} m/s on" if math.isfinite(speed) else never
+                console.print(f"{material} yields beneath its surface (1.60 Y) {when}", highlight=False)
+            for warning in p.warnings():
+                console.print(f"warning: {warning}", style="yellow", highlight=False)
+    if as_json:
+        print(json.dumps(document[0] if len(document) == 1 else document, indent=1))
+
+
+def findings(found: list[Finding], as_json: bool, console: Console) -> None:
+    """Print the findings of doctor."""
+    if as_json:
+        print(json.dumps([asdict(f) for f in found], indent=1))
+        return
+    for f in found:
+        mark = "[green]ok[/]" if f.ok else ("[red]missing[/]" if f.needed else "[yellow]absent[/]")
+        console.print(f"{mark} {f.part}: {f.detail}", highlight=False, soft_wrap=True)
+        if f.advice:
+            console.print(f"   -> {f.advice}", highlight=False, soft_wrap=True)

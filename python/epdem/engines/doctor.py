@@ -1,0 +1,81 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""`epdem doctor`: what is installed, what loads, what to do."""
+
+import os
+import shutil
+import subprocess
+import tempfile
+from dataclasses import dataclass
+from pathlib import Path
+
+from .. import paths
+from ..errors import EpdemError
+from ..laws import library as claw
+from . import ENGINES
+
+
+@dataclass(frozen=True)
+class Finding:
+    """One thing looked at; `advice` is empty where all is well."""
+
+    part: str
+    ok: bool
+    detail: str
+    advice: str = ""
+    needed: bool = True
+
+
+def _library() -> Finding:
+    try:
+        return Finding("C library", True, f"{claw.version()}, laws {', '.join(claw.laws())}: {claw.library_path()}")
+    except (EpdemError, OSError) as error:
+        return Finding("C library", False, str(error), "run 'make setup' or 'pip install .'")
+
+
+def _first_line(command: list[str]) -> str | None:
+    if shutil.which(command[0]) is None:
+        return None
+    done = subprocess.run(command, capture_output=True, text=True, errors="replace", timeout=60)
+    return next((t.strip() for t in (done.stdout + done.stderr).splitlines() if t.strip()), "")
+
+
+def _mpi() -> Finding:
+    line = _first_line(["mpirun", "--version"])
+    advice = "" if line else "apt-get install openmpi-bin (only --ranks above 1 needs it)"
+    return Finding("MPI", line is not None, line or "mpirun not found", advice, needed=False)
+
+
+def _plugin() -> Finding:
+    """Load the plugin into the installed LIGGGHTS and let it create every model of ours."""
+    plugin = paths.native("libepdem_liggghts.so")
+    launcher = paths.launcher()
+    if launcher is not None and not os.access(launcher, os.X_OK):
+        return Finding("plugin", False, f"{launcher} is not a program", "unset EPDEM_LAUNCHER")
+    if plugin is None or launcher is None:
+        return Finding(
+            "plugin", False, "not built", "apt-get install liggghts libliggghts-dev libopenmpi-dev; make setup"
+        )
+    with tempfile.TemporaryDirectory() as folder:
+        deck = Path(folder) / "in.doctor"
+        models = "\n".join(f"pair_style gran model ep/{name} tangential off" for name in claw.laws())
+        deck.write_text("atom_style granular\nnewton off\ncommunicate single vel yes\nregion box block 0 1 0 1 0 1\n"
+                        f"create_box 1 box\n{models}\n")  # fmt: skip
+        done = subprocess.run([str(launcher), "-in", deck.name, "-log", "none"], cwd=folder, timeout=60,
+                              capture_output=True, text=True, errors="replace")  # fmt: skip
+    if done.returncode == 0:
+        return Finding("plugin", True, f"loads, models {', '.join('ep/' + n for n in claw.laws())}: {plugin}")
+    words = [t for t in (done.stdout + done.stderr).splitlines() if t.strip()][-1:]
+    return Finding(
+        "plugin", False, f"does not load: {' '.join(words)}", "it was built for another LIGGGHTS; run 'make setup'"
+    )
+
+
+def examine() -> list[Finding]:
+    """All findings, in the order a user would mend them."""
+    findings = [_library()]
+    for name, kind in ENGINES.items():
+        tool = kind()
+        reason = tool.missing()
+        found, advice = ("not here", reason) if reason else (tool.version(), "")
+        findings.append(Finding(f"engine {name}", reason is None, found, advice, needed=name == "embedded"))
+    return [*findings, _plugin(), _mpi()]

@@ -1,0 +1,43 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Measured against predicted, and against the case's tolerances: one row per speed, engine and law."""
+
+import numpy as np
+import pandas as pd
+
+from ..case.impact import Check
+from .measurement import Measured
+from .plan import Plan
+from .prediction import Prediction
+
+CHECKED = ("e_n", "contact_time", "force_max", "overlap_max", "residual_overlap")
+UNITS = {"speed": "m/s", "gap": "m", "contact_time": "s", "force_max": "N", "overlap_max": "m", "residual_overlap": "m",
+         "radius_max": "m", "work_in": "J", "work_out": "J", "plastic_work": "J"}  # fmt: skip
+
+
+def impacts_table(plan: Plan, measured: Measured) -> pd.DataFrame:
+    """One row per impact: speed, gap and everything measured."""
+    columns = {"speed": plan.speed, "gap": plan.gap}
+    return pd.DataFrame(columns | {name: getattr(measured, name) for name in Measured.COLUMNS})
+
+
+def compare(engine: str, law: str, impacts: pd.DataFrame, prediction: Prediction, check: Check) -> pd.DataFrame:
+    """One row per speed: means over the phases, theory, errors (max over the phases), and whether all checks hold.
+
+    An error is relative to theory; that of the residual overlap is relative to overlap_max (it is 0 below yield).
+    """
+    n = prediction.speed.size
+    row: dict[str, object] = {"engine": engine, "law": law, "speed": prediction.speed}
+    passed = np.ones(n, bool)
+    for name in CHECKED:
+        theory = getattr(prediction, name)
+        scale = prediction.overlap_max if name == "residual_overlap" else theory
+        value = impacts[name].to_numpy().reshape(n, -1)
+        deviation = np.abs(value - theory[:, None]) / scale[:, None]
+        row[name], row[name + "_theory"] = value.mean(axis=1), theory
+        row[name + "_error"], row[name + "_rms"] = deviation.max(axis=1), np.sqrt((deviation**2).mean(axis=1))
+        passed &= row[name + "_error"] <= getattr(check, name)  # NaN does not pass
+    residual = impacts["energy_residual"].to_numpy().reshape(n, -1)
+    row["energy_residual"] = residual[np.arange(n), np.abs(residual).argmax(axis=1)]
+    row["steps_in_contact"] = impacts["steps_in_contact"].to_numpy().reshape(n, -1).min(axis=1)
+    row["passed"] = passed
+    return pd.DataFrame(row)

@@ -1,0 +1,81 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""What a trajectory says of its impacts. Knows samples and the law's theory, no engine."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..errors import EngineError
+from .engine import Trajectory
+from .plan import Plan
+
+
+@dataclass(frozen=True)
+class Measured:
+    """One value per impact, arrays of shape (n,), SI.
+
+    energy_residual compares the sampled work in and out with the law's plastic work at the sampled peak,
+    relative to the kinetic energy: unlike the sum of F d alpha against the change of kinetic energy, which velocity
+    Verlet fulfils for any force, it is evidence for the law. NaN with a dashpot, whose work the samples do not tell,
+    and for a law that is not the plan's.
+    """
+
+    e_n: np.ndarray
+    contact_time: np.ndarray
+    force_max: np.ndarray
+    overlap_max: np.ndarray
+    residual_overlap: np.ndarray
+    energy_residual: np.ndarray
+    steps_in_contact: np.ndarray
+
+    COLUMNS = ("e_n", "contact_time", "force_max", "overlap_max", "residual_overlap", "energy_residual",
+               "steps_in_contact")  # fmt: skip
+
+
+def _last(valid: np.ndarray) -> np.ndarray:
+    """Index of the last True in each row."""
+    return valid.shape[1] - 1 - np.argmax(valid[:, ::-1], axis=1)
+
+
+def measure(plan: Plan, path: Trajectory, *, end_power: float | None = None) -> Measured:
+    """The impacts of a trajectory. Raises EngineError if a contact never began or never ended.
+
+    end_power: for another law than the plan's: the power of its force that falls linearly with the overlap at the end.
+    """
+    overlap, force, velocity = path.overlap, path.force, path.velocity
+    row = np.arange(plan.n)
+    sampled = np.isfinite(force)
+    loaded = sampled & (force > 0)
+    touched = loaded.any(axis=1)
+    last, end = _last(loaded), _last(sampled)
+    for bad, what in ((~touched, "never touched"), (touched & (last == end), "was still in contact at the end")):
+        if bad.any():
+            raise EngineError(f"the impact at {plan.speed[bad][0]:.6g} m/s {what}; the run is too short or went wrong")
+
+    # Contact ends where F, not the overlap, reaches 0. Near the end F^(2/3) falls linearly with overlap and time;
+    # with a dashpot, which cuts the force off early, F itself does.
+    own = end_power is None and plan.experiment.viscous_number == 0
+    power = end_power or (2 / 3 if own else 1.0)
+    before = np.maximum(last - 1, 0)
+    root_last, root_before = (np.abs(force[row, k]) ** power for k in (last, before))
+    share = np.divide(root_last, root_before - root_last, out=np.full(plan.n, 0.5), where=root_before > root_last)
+    share = np.minimum(share, 1.0)  # the next sample is unloaded
+    contact_time = (last + share) * path.time_step - plan.gap / plan.speed
+    residual = overlap[row, last] - share * (overlap[row, before] - overlap[row, last])
+
+    force_max = np.where(loaded, force, 0.0).max(axis=1)
+    peak = np.where(sampled, overlap, -np.inf).max(axis=1)
+    energy = 0.5 * plan.experiment.m_star * plan.speed**2
+    # at the dent, between two samples, the force is 0 and so is the last piece of work, to third order
+    work = np.where(loaded[:, 1:] | loaded[:, :-1], 0.5 * (force[:, 1:] + force[:, :-1]) * np.diff(overlap), 0.0)
+    law = plan.experiment.theory()
+    plastic = law.work(peak) - law.recovered_work(peak)
+    return Measured(
+        e_n=-velocity[row, end] / plan.speed,
+        contact_time=contact_time,
+        force_max=force_max,
+        overlap_max=peak,
+        residual_overlap=residual,
+        energy_residual=(work.sum(axis=1) - plastic) / energy if own else np.full(plan.n, np.nan),
+        steps_in_contact=loaded.sum(axis=1),
+    )

@@ -1,0 +1,77 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Impacts of unequal spheres side by side, tilted against the axes and drifting, to be told to an engine in many ways.
+
+The contact point crosses x = 0 and z = 0 in mid-contact, each pair at a moment of its own, so that some of them unload:
+there a teller puts a border of ranks, and one of bins.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..case.impact import Target
+from .experiment import Body, Experiment, experiment
+from .plan import Plan
+
+# From target to body. Bins are sorted by z first, then y: with this tilt the lower body in z is the upper one in y, and
+# the order of the two turns twice as they drift across the border of bins at z = 0.
+# The tilt in x makes them change their owner one after the other.
+AXIS = np.array([0.03, 1.0, -0.03]) / np.linalg.norm([0.03, 1.0, -0.03])
+OTHER_RADIUS, OTHER_MODULUS = 0.6, 0.7  # of the target, in units of what the case says
+FIRST, LAST, STOP = 0.2, 0.9, 0.8  # crossings, and the stop of a run, in contact times
+DRIFT = 0.2  # larger radii per contact time
+
+
+@dataclass(frozen=True)
+class Group:
+    """The bodies of one side: places [m] and velocities [m/s], shape (n, 3)."""
+
+    body: Body
+    place: np.ndarray
+    velocity: np.ndarray
+
+
+@dataclass(frozen=True)
+class Pairs:
+    """All pairs of a plan: the side that hits and the side that is hit, and what a teller must know of the run."""
+
+    plan: Plan
+    sides: tuple[Group, Group]
+    stop: int  # a step in mid-contact, where a run may be stopped
+    drift: np.ndarray  # velocity of the centre of mass of all [m/s]
+    spread: float  # how far a pair reaches around its first place [m]
+
+    def told(self, swap: bool) -> tuple[Group, ...]:
+        """The sides in the order in which an engine hears of them; `swap` names the targets first."""
+        return self.sides[:: -1 if swap else 1]
+
+
+def unequal_spheres(x: Experiment) -> Experiment:
+    """The case's body against a smaller sphere of the target's material, made softer, at the middle speed."""
+    impact = x.case.impact
+    name = impact.target.material if impact.target.material in x.case.materials else impact.body.material
+    other = name + "_softer"
+    material = x.case.materials[name]
+    material = material.model_copy(update={"young_modulus": OTHER_MODULUS * material.young_modulus})
+    target = Target.model_construct(material=other, radius=OTHER_RADIUS * x.body.radius)
+    update = {"kind": "sphere-sphere", "target": target, "speeds": [float(x.speed[x.speed.size // 2])]}
+    case = x.case.model_copy(update={"impact": impact.model_copy(update=update),
+                                     "materials": x.case.materials | {other: material}})  # fmt: skip
+    return experiment(case, None if x.law.name == x.case.law.name else x.law.name)
+
+
+def pairs(p: Plan, contact_time: float) -> Pairs:
+    """The pairs of a plan of sphere on sphere; contact_time [s] is the theory's."""
+    x = p.experiment
+    n, reach = p.n, max(x.body.radius, x.target.radius)
+    drift = DRIFT * reach / contact_time * np.array([1.0, 0.0, 1.0])
+    crossing = np.linspace(FIRST, LAST, n)[:, None] * contact_time
+    y = 5.2 * reach * np.arange(n)[:, None] * np.array([0.0, 1.0, 0.0])
+    share = x.m_star / x.body.mass  # of the speed, in the centre-of-mass frame
+    rest = 1 - share
+    start = y - drift * crossing
+    gap, v = p.gap[:, None], p.speed[:, None]
+    body = Group(x.body, start + AXIS * (x.body.radius + share * gap), drift - share * v * AXIS)
+    target = Group(x.target, start - AXIS * (x.target.radius + rest * gap), drift + rest * v * AXIS)
+    spread = p.steps * p.time_step * (p.speed.max() + drift[0]) + 4 * reach
+    return Pairs(p, (body, target), int(STOP * contact_time / p.time_step), drift, spread)

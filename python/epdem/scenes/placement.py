@@ -1,0 +1,53 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Where the spheres of a scene begin: random places without overlap, as LIGGGHTS's insertion has them, in a table."""
+
+import math
+import random
+from itertools import product
+
+import numpy as np
+
+from ..case.scene import SceneCase
+from ..errors import CaseError
+from .model import Model
+
+ATTEMPTS = 10_000  # of one sphere; at the densest filling that a scene allows some hundred are needed
+
+
+def sizes(case: SceneCase, m: Model, rng: random.Random) -> list[tuple[float, int]]:
+    """(radius [m], number of its type) of every sphere, drawn by their share of the mass, the largest first."""
+    kinds, weights = [], []
+    for p in case.scene.particles:
+        for radius, share in p.sizes():
+            kinds.append((radius, m.type_of(p.material)))
+            weights.append(share / (case.materials[p.material].density * radius**3))
+    return sorted(rng.choices(kinds, weights, k=case.scene.count), reverse=True)
+
+
+def spheres(case: SceneCase, m: Model, room: tuple[float, ...]) -> np.ndarray:
+    """(count, 5) x, y, z, radius [m], type: random sequential placement, every sphere wholly in `room`.
+
+    `room` is xlo xhi ylo yhi zlo zhi [m]. The same case has the same places everywhere. Raises CaseError when full.
+    """
+    rng = random.Random(case.numerics.seed)
+    low, high = room[0::2], room[1::2]
+    placed: list[tuple[float, ...]] = []
+    cells: dict[tuple[int, ...], list[int]] = {}
+    drawn = sizes(case, m, rng)
+    edge = 2.0 * drawn[0][0]  # no sphere touches one beyond the next cell
+    for radius, kind in drawn:
+        for _ in range(ATTEMPTS):
+            place = tuple(rng.uniform(a + radius, b - radius) for a, b in zip(low, high, strict=True))
+            cell = tuple(math.floor(x / edge) for x in place)
+            near = (k for shift in product((-1, 0, 1), repeat=3)
+                    for k in cells.get(tuple(c + d for c, d in zip(cell, shift, strict=True)), ()))  # fmt: skip
+            if all(math.dist(place, placed[k][:3]) > radius + placed[k][3] for k in near):
+                cells.setdefault(cell, []).append(len(placed))
+                placed.append((*place, radius, kind))
+                break
+        else:
+            raise CaseError(
+                f"scene.count = {case.scene.count}: no room is left for sphere {len(placed) + 1} without overlap "
+                f"after {ATTEMPTS} attempts; enlarge the box"
+            )
+    return np.array(placed)

@@ -1,0 +1,117 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""What a person sees of a scene: checks, summary, JSON, figures."""
+
+import json
+
+from rich.console import Console
+from rich.table import Table
+
+from ..files import atomic
+from ..impacts.report import records
+from .run import SceneOutcome
+
+
+def as_json(outcome: SceneOutcome) -> str:
+    """The document of `epdem run --json` for a scene."""
+    return json.dumps(
+        {
+            "case": outcome.case.name,
+            "kind": outcome.case.scene.kind,
+            "passed": outcome.passed,
+            "steps": outcome.deck.steps,
+            "time_step": outcome.deck.time_step,
+            "seconds": outcome.seconds,
+            "reused": outcome.reused,
+            "resumed_from": outcome.resumed_from,
+            "warnings": outcome.warnings,
+            "checks": records(outcome.results.tables["checks"]),
+            "last_row": records(outcome.results.tables["rows"].tail(1))[0],
+        },
+        indent=1,
+    )
+
+
+def show(outcome: SceneOutcome, console: Console) -> None:
+    """Print checks and a summary line."""
+    table = Table(title=outcome.case.case.title)
+    for head in ("check", "value", "expected", "error", "tolerance", "pass"):
+        table.add_column(head, justify="left" if head == "check" else "right")
+    for row in outcome.results.tables["checks"].to_dict("records"):
+        table.add_row(
+            row["check"],
+            f"{row['value']:.5g}",
+            f"{row['expected']:.5g}",
+            f"{row['error']:.1e}",
+            f"{row['tolerance']:.1e}",
+            "yes" if row["passed"] else "NO",
+            style=None if row["passed"] else "red",
+        )
+    console.print(table)
+    for warning in outcome.warnings:
+        console.print(f"warning: {warning}", style="yellow", highlight=False)
+    d, rows = outcome.deck, outcome.results.tables["rows"]
+    came = " (from results.h5)" if outcome.reused else ""
+    if outcome.resumed_from is not None:
+        came = f" (continued from step {outcome.resumed_from})"
+    console.print(
+        f"{outcome.case.name}: {int(rows['particles'].iloc[-1])} spheres, {d.steps} steps of {d.time_step:g} s, "
+        f"{outcome.seconds:.1f} s{came}; see {outcome.folder}/",
+        highlight=False,
+        soft_wrap=True,
+    )
+
+
+def figures(outcome: SceneOutcome) -> None:
+    """scene.png: what the rows hold against time."""
+    import matplotlib
+
+    matplotlib.use("Agg")
+    import matplotlib.pyplot as plt
+
+    rows = outcome.results.tables["rows"]
+    shown = [c for c in ("kinetic_energy", "floor_load", "plate_force") if c in rows]
+    fig, axes = plt.subplots(
+        len(shown), 1, sharex=True, figsize=(7, 2.4 * len(shown) + 0.6), layout="constrained", squeeze=False
+    )
+    for axis, name in zip(axes[:, 0], shown, strict=True):
+        axis.plot(rows["time"], rows[name], lw=1.2)
+        axis.set(
+            ylabel={
+                "kinetic_energy": "kinetic energy [J]",
+                "floor_load": "floor load [N]",
+                "plate_force": "plate force [N]",
+            }[name]
+        )
+        axis.grid(alpha=0.3)
+    axes[0, 0].set_title(outcome.case.case.title)
+    axes[-1, 0].set_xlabel("time [s]")
+    path = outcome.folder / "scene.png"
+    with atomic(path) as temporary:
+        fig.savefig(temporary, dpi=130)
+    plt.close(fig)
+    if "ledger" in outcome.results.tables:
+        _ledger_figure(outcome, plt)
+
+
+def _ledger_figure(outcome: SceneOutcome, plt) -> None:
+    """energy.png: every term of the ledger against time."""
+    table = outcome.results.tables["ledger"]
+    colors = {"kinetic": "C0", "elastic": "C2", "plastic": "C3", "friction": "C1", "left": "C5"}
+    terms = [name for name in colors if name in table and table[name].abs().max() > 0]
+    fig, axis = plt.subplots(figsize=(7, 4), layout="constrained")
+    gravity = table["gravity"] - table["gravity"].min()
+    if gravity.max() > 0:
+        axis.plot(table["time"], gravity, color="C4", label="gravity, above its lowest")
+    for name in terms:
+        label = "friction (remainder)" if name == "friction" else name
+        axis.plot(table["time"], table[name], color=colors[name], label=label)
+    if table["work"].abs().max() > 0:
+        axis.plot(table["time"], table["work"], "k--", lw=0.8, label="work of the walls")
+    if "friction" not in table:
+        axis.plot(table["time"], table["balance"], color="0.5", lw=0.8, label="left over")
+    axis.set(xlabel="time [s]", ylabel="energy [J]", title=outcome.case.case.title)
+    axis.grid(alpha=0.3)
+    axis.legend(fontsize=8)
+    with atomic(outcome.folder / "energy.png") as temporary:
+        fig.savefig(temporary, dpi=130)
+    plt.close(fig)

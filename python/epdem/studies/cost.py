@@ -1,0 +1,209 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Error against run time: the same impacts at 10 to 3000 steps in contact, by every engine and law asked for.
+
+Absolute times are noisy; the figure of merit is the ratio to LIGGGHTS's own elastic `hertz` in the same run.
+"""
+
+import subprocess
+import tempfile
+import time
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+
+from .. import paths
+from ..case.impact import Case, load
+from ..engines import Engine, engine
+from ..errors import EngineError
+from ..impacts.comparison import compare, impacts_table
+from ..impacts.experiment import experiment
+from ..impacts.measurement import measure
+from ..impacts.plan import Plan, plan
+from ..impacts.prediction import Prediction, predict
+from ..liggghts.impacts import Liggghts, loop_seconds
+from ..processes import call
+
+STEPS = (10, 17, 30, 55, 100, 170, 300, 550, 1000, 1700, 3000)
+QUANTITIES = ("e_n", "contact_time", "force_max")
+TARGETS = (1e-2, 1e-3, 1e-4)
+LEAST_PHASES = 8
+YARDSTICK = "liggghts-hertz"
+OWN_LAW = {YARDSTICK: "hertz", "liggghts-thornton_ning": "thornton"}  # the law that LIGGGHTS's own models stand for
+
+
+@dataclass(frozen=True)
+class Contender:
+    """An engine with a law, and the plan of each number of steps."""
+
+    engine: Engine
+    law: str
+    prediction: Prediction
+    plans: dict[int, Plan]
+
+    @property
+    def label(self) -> str:
+        return self.engine.name if self.engine.name in OWN_LAW else f"{self.engine.name}, {self.law}"
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """rows: one per contender and number of steps; contenders: one per contender."""
+
+    case: Case
+    rows: pd.DataFrame
+    contenders: pd.DataFrame
+    seconds: float
+
+
+def contenders(case: Case, engines: list[str], laws: list[str], steps: tuple[int, ...]) -> list[Contender]:
+    """What runs against what. With LIGGGHTS come its own thornton_ning and, as the yardstick, its own hertz."""
+    if "liggghts" in engines:
+        engines = [*engines, "liggghts-thornton_ning", YARDSTICK]
+    numerics = case.numerics.model_copy(update={"phases": max(case.numerics.phases, LEAST_PHASES), "error": None})
+    case = case.model_copy(update={"numerics": numerics})
+    found = []
+    for name in dict.fromkeys(engines):
+        tool = engine(name)
+        if reason := tool.missing():
+            raise EngineError(f"engine {name}: {reason}")
+        for law in [OWN_LAW[name]] if name in OWN_LAW else (laws or [case.law.name]):
+            # the case's own law keeps the case's parameters
+            x = experiment(case, None if law == case.law.name else law)
+            prediction = predict(x)
+            shortest = float(prediction.contact_time.min())
+            plans = {n: plan(x, prediction, time_step=shortest / n) for n in steps}
+            found.append(Contender(tool, law, prediction, plans))
+    return found
+
+
+def errors(c: Contender, p: Plan, folder: Path) -> dict[str, float]:
+    """Largest and rms errors over all speeds and phases, relative to theory; NaN where a contact did not end."""
+    case = p.experiment.case
+    for longer in (1.0, 1.3, 2.0):  # coarse steps stretch contacts
+        try:
+            longest = replace(p, steps=int(p.steps * longer))
+            c.engine.write(longest, folder)
+            table = impacts_table(longest, measure(longest, c.engine.run(longest, folder)))
+            break
+        except EngineError:
+            if longer == 2.0:
+                return {f"{q}_{kind}": np.nan for q in QUANTITIES for kind in ("error", "rms")}
+    rows = compare(c.engine.name, c.law, table, c.prediction, case.check)
+    return {f"{q}_error": float(rows[f"{q}_error"].max()) for q in QUANTITIES} | {
+        f"{q}_rms": float(np.sqrt((rows[f"{q}_rms"] ** 2).mean())) for q in QUANTITIES
+    }
+
+
+def seconds(c: Contender, p: Plan, folder: Path) -> dict[str, float]:
+    """Times of one run [s] that records nothing: `startup`, `setup`, `stepping` (the engine's own loop time)."""
+    tool, x = c.engine, p.experiment
+    if tool.name == "embedded":
+        begin = time.perf_counter()
+        law = x.native_law()
+        ready = time.perf_counter()
+        law.impacts(R_star=x.R_star, m_star=x.m_star, speed=p.speed, time_step=p.time_step, gap=p.gap, steps=p.steps,
+                    viscous=x.viscous_number)  # fmt: skip
+        return {"startup": 0.0, "setup": ready - begin, "stepping": time.perf_counter() - ready}
+    if isinstance(tool, Liggghts):
+        return _liggghts_seconds(tool, p, folder)
+    begin = time.perf_counter()
+    tool.write(p, folder)
+    path = tool.run(p, folder)
+    total, stepping = time.perf_counter() - begin, path.seconds.get("stepping", np.nan)
+    return {"startup": np.nan, "setup": total - stepping, "stepping": stepping}
+
+
+def _liggghts_seconds(tool: Liggghts, p: Plan, folder: Path) -> dict[str, float]:
+    files = tool.write(p, folder)
+    deck = files[0]
+    lines = deck.read_text().splitlines()
+    deck.write_text("\n".join(line for line in lines if not line.startswith("dump ")) + "\n")  # stepping, not writing
+    (folder / "in.empty").write_text("# nothing\n")
+    command = [str(paths.launcher()), "-in"]
+    begin = time.perf_counter()
+    subprocess.run([*command, "in.empty", "-log", "none"], cwd=folder, capture_output=True, timeout=120, check=False)
+    startup = time.perf_counter() - begin
+    begin = time.perf_counter()
+    call([*command, deck.name, "-log", "log.liggghts"], folder, log="out.liggghts", seconds=600)
+    total, stepping = time.perf_counter() - begin, loop_seconds(folder / "log.liggghts")
+    return {"startup": startup, "setup": max(total - startup - stepping, 0.0), "stepping": stepping}
+
+
+def order(steps: np.ndarray, error: np.ndarray) -> float:
+    """Observed order: minus the slope of log error over log steps while the error still falls; NaN below 3 points."""
+    good = np.isfinite(error) & (error < 0.2) & (error > 3 * np.nanmin(error))
+    return float(-np.polyfit(np.log(steps[good]), np.log(error[good]), 1)[0]) if good.sum() > 2 else np.nan
+
+
+def cheapest(rows: pd.DataFrame, target: float) -> pd.Series | None:
+    """The coarsest row from which on all finer ones keep e_n within `target`; None if there is none."""
+    rows = rows.sort_values("steps", ascending=False)
+    good = (rows["e_n_error"] <= target).cumprod().astype(bool)
+    return rows[good].iloc[-1] if good.any() else None
+
+
+def _timings(everyone: list[Contender], steps: tuple[int, ...], repetitions: int, folder: Path, progress):
+    """One row per repetition, contender and steps. Contenders alternate, so that drifts of the machine hit all."""
+    rows = []
+    for k in range(repetitions):
+        for n in steps:
+            for c in everyone:
+                progress(f"time {k + 1}/{repetitions}: {c.label}, {n} steps")
+                rows.append({"repetition": k, "contender": c.label, "steps": n} | seconds(c, c.plans[n], folder))
+                rows[-1]["ns_per_step"] = rows[-1]["stepping"] / (c.plans[n].n * c.plans[n].steps) * 1e9
+    return pd.DataFrame(rows)
+
+
+def spread(x: pd.Series) -> float:
+    """Distance of the quartiles."""
+    return float(x.quantile(0.75) - x.quantile(0.25))
+
+
+def to_yardstick(times: pd.DataFrame, value: str, keys: list[str]) -> pd.Series:
+    """Column `value` over that of the yardstick in the row with the same `keys`; NaN without a yardstick."""
+    yard = times[times["contender"] == YARDSTICK].set_index(keys)[value]
+    return times[value] / yard.reindex(pd.MultiIndex.from_frame(times[keys])).to_numpy()
+
+
+def run(case_path: Path | str, *, engines: list[str], laws: list[str], steps: tuple[int, ...] = STEPS,
+        repetitions: int = 5, progress: Callable[[str], None] = lambda text: None) -> Outcome:  # fmt: skip
+    """Errors and times of every contender at every number of steps in the shortest contact."""
+    case, begin = load(case_path), time.perf_counter()
+    everyone = contenders(case, engines, laws, steps)
+    rows = []
+    with tempfile.TemporaryDirectory(prefix="epdem-cost-") as scratch:
+        folder = Path(scratch)
+        for c in everyone:
+            for n in steps:
+                progress(f"error: {c.label}, {n} steps")
+                row = {"contender": c.label, "engine": c.engine.name, "law": c.law, "steps": n, "impacts": c.plans[n].n}
+                rows.append(row | errors(c, c.plans[n], folder))
+        times = _timings(everyone, steps, repetitions, folder, progress)
+    return Outcome(case, *_combine(pd.DataFrame(rows), times), time.perf_counter() - begin)
+
+
+def _combine(rows: pd.DataFrame, times: pd.DataFrame) -> tuple[pd.DataFrame, pd.DataFrame]:
+    """Medians and quartile distances beside the errors; then one row per contender."""
+    times["ratio"] = to_yardstick(times, "ns_per_step", ["repetition", "steps"])
+    groups = times.groupby(["contender", "steps"])
+    middle = groups[["startup", "setup", "stepping", "ns_per_step", "ratio"]].median()
+    middle["stepping_spread"] = groups["stepping"].apply(spread)
+    rows = rows.merge(middle.reset_index(), on=["contender", "steps"])
+    rows["ns_per_impact"] = rows["stepping"] / rows["impacts"] * 1e9
+    summary = []
+    for label, part in rows.groupby("contender", sort=False):
+        fine = times[(times["contender"] == label) & (times["steps"] >= 300)]  # a long loop: little but stepping
+        fine = times[times["contender"] == label] if fine.empty else fine
+        row = {"contender": label, "order": order(part["steps"].to_numpy(), part["e_n_error"].to_numpy()),
+               "best_error": part["e_n_error"].min(), "ns_per_step": fine["ns_per_step"].median(),
+               "ratio_to_hertz": fine["ratio"].median(), "ratio_spread": spread(fine["ratio"]),
+               "startup": part["startup"].median(), "setup": part["setup"].median()}  # fmt: skip
+        for target in TARGETS:
+            best = cheapest(part, target)
+            row[f"steps_for_{target:g}"] = np.nan if best is None else int(best["steps"])
+            row[f"ns_for_{target:g}"] = np.nan if best is None else float(best["ns_per_impact"])
+        summary.append(row)
+    return rows, pd.DataFrame(summary)

@@ -1,0 +1,83 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Figures of the chapter redrawn: theory lines only, since no sourced data points are at hand."""
+
+from pathlib import Path
+
+import numpy as np
+
+from ..files import atomic
+from ..theory import pair, pressure, printed
+from ..theory.backbones import LAWS
+from ..theory.restitution import e_n
+
+STEEL = {"E": 208e9, "nu": 0.3, "density": 7850.0, "Y": 1e9, "R": 0.01}  # the reference case
+
+
+def _axes(title: str, xlabel: str, ylabel: str):
+    import matplotlib
+
+    matplotlib.use("Agg")
+    import matplotlib.pyplot as plt
+
+    figure, axes = plt.subplots(figsize=(6.5, 4.5), layout="constrained")
+    axes.set(title=title, xlabel=xlabel, ylabel=ylabel)
+    axes.grid(alpha=0.3)
+    return figure, axes
+
+
+def _save(figure, path: Path) -> Path:
+    import matplotlib.pyplot as plt
+
+    with atomic(path) as temporary:
+        figure.savefig(temporary, dpi=130)
+    plt.close(figure)
+    return path
+
+
+def mean_pressure(folder: Path) -> Path:
+    """Figure 8.16: p_m/Y against E* a/(Y R*), elastic, expanding cavity (8.81), fully plastic (8.80)."""
+    figure, axes = _axes("Mean contact pressure, eqs. 8.79 to 8.81", "E* a/(Y R*)", "p_m/Y")
+    x = np.geomspace(0.5, 300, 400)
+    axes.semilogx(x, pressure.mean(x), lw=2, label="three regimes")
+    axes.semilogx(x[x < 4], pressure.elastic_mean(x[x < 4]), "--", lw=1, label="Hertz, 4x/(3 pi)")
+    axes.semilogx(x[x > 1.5], pressure.cavity_mean(x[x > 1.5]), ":", lw=1.5, label="expanding cavity, 8.81")
+    axes.axhspan(2.8, 3.0, alpha=0.15, label="fully plastic, 8.80")
+    axes.set_ylim(0, 3.6)
+    axes.legend()
+    return _save(figure, folder / "figure_8_16.png")
+
+
+def unloading_pressure(folder: Path) -> Path:
+    """Figure 8.17b: pressure while a fully plastic contact unloads, eq. 8.82; p = 2.8 Y, a* = 2.68 um."""
+    figure, axes = _axes("Unloading from p = 2.8 Y, a* = 2.68 um: eq. 8.82", "r [um]", "p/Y")
+    a_max = 2.68e-6
+    for share in (1.0, 0.95, 0.8, 0.6, 0.4, 0.2):
+        r = np.linspace(-1, 1, 801) * share * a_max
+        axes.plot(r * 1e6, pressure.unloading(r, a=share * a_max, a_max=a_max, p=2.8), label=f"a = {share:g} a*")
+    axes.legend()
+    return _save(figure, folder / "figure_8_17.png")
+
+
+def restitution(folder: Path) -> Path:
+    """Figure 8.19: e_n against v/v_y0 for every law, with the printed equations 8.83, 8.86 and 8.88."""
+    figure, axes = _axes("Restitution, steel sphere on a plane", "v/v_y0", "e_n")
+    s = STEEL
+    E = pair.E_star(s["E"], s["nu"], s["E"], s["nu"])
+    m = pair.sphere_mass(radius=s["R"], density=s["density"])
+    both = {"E_star": E, "R_star": s["R"], "m_star": m}
+    v_y0 = printed.yield_speed(p_y=1.6 * s["Y"], **both)
+    ratio = np.geomspace(0.3, 1e4, 500)
+    for name, law in LAWS.items():
+        strength = {k: law.default_ratio * s["Y"] for k in list(law.keywords.values())[:1]}
+        axes.loglog(ratio, e_n(law(E_star=E, R_star=s["R"], **strength), m_star=m, speed=ratio * v_y0), label=name)
+    thornton = printed.thornton(ratio, v_y=printed.yield_speed(p_y=2.8 * s["Y"], **both) / v_y0)
+    axes.loglog(ratio, thornton, "k:", lw=1.5, label="8.83")
+    axes.loglog(ratio, printed.johnson(ratio * v_y0, p_m=3 * s["Y"], **both), "k--", lw=1, label="8.86")
+    axes.loglog(ratio, printed.wu(ratio, v_y0=1.0), "k-.", lw=1, label="8.88 (finite elements)")
+    axes.legend()
+    return _save(figure, folder / "figure_8_19.png")
+
+
+def draw_all(folder: Path) -> list[Path]:
+    """All figures into `folder`; their paths."""
+    return [draw(folder) for draw in (mean_pressure, unloading_pressure, restitution)]

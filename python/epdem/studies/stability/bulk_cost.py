@@ -1,0 +1,93 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Error of the dissipated energy of a bulk scene against run time, in LIGGGHTS, with its own `hertz` as yardstick."""
+
+import tempfile
+from collections.abc import Callable
+from dataclasses import dataclass
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+
+from ...engines import engine
+from ...errors import EngineError
+from ..cost import YARDSTICK, spread, to_yardstick
+from .bulk import execute, frames, memory_size, write
+from .scenes import SHARE, Scene, shock, with_law
+
+SHARES = (0.4, 0.2, 0.1, 0.05, 0.025)  # of the stability limit at the highest speed
+REFERENCE = 0.25  # of the finest share: an error of order 2 is known to 1/16
+
+
+@dataclass(frozen=True)
+class Contender:
+    """A scene with a law, by our model or (`model`) by one of LIGGGHTS's own."""
+
+    label: str
+    scene: Scene
+    model: str | None = None
+
+    def dissipated(self, time_step: float, folder: Path) -> np.ndarray:
+        """Plastic work of every sphere at the end [J], shape (spheres,)."""
+        write(self.scene, folder, time_step=time_step, frames=1, contacts=False)
+        execute(folder)
+        return frames(folder, self.scene.law)[-1][:, 7]
+
+    def seconds(self, time_step: float, folder: Path) -> float:
+        """The engine's loop time [s] of a run that records nothing, not even its plastic work."""
+        write(self.scene, folder, time_step=time_step, frames=0, model=self.model)
+        return execute(folder)
+
+
+def errors(c: Contender, steps: dict[float, float], folder: Path, progress: Callable[[str], None]) -> pd.DataFrame:
+    """Error of the mean dissipated energy, and `rms` error of a sphere's, both over the mean; a row per share.
+
+    `steps`: time step [s] of each share. The mean's error may pass through zero, as those of single spheres have
+    either sign; `order` is that of the rms between neighbouring shares. NaN where the law dissipates nothing.
+    """
+    table = pd.DataFrame({"contender": c.label, "spheres": len(c.scene.position), "share": list(steps)})
+    if memory_size(c.scene.law) == 0:
+        return table.assign(error=np.nan, rms=np.nan, order=np.nan)
+    progress(f"bulk error: {c.label}, reference")
+    reference = c.dissipated(REFERENCE * min(steps.values()), folder)
+    off = []
+    for share, time_step in steps.items():
+        progress(f"bulk error: {c.label}, {share:g} of the limit")
+        off.append((c.dissipated(time_step, folder) - reference) / reference.mean())
+    off = np.array(off)
+    table["error"], table["rms"] = np.abs(off.mean(axis=1)), np.sqrt((off**2).mean(axis=1))
+    table["order"] = np.log(table["rms"]).diff() / np.log(table["share"]).diff()
+    return table
+
+
+def run(laws: list[str], *, repetitions: int = 3, shares: tuple[float, ...] = SHARES,
+        progress: Callable[[str], None] = lambda text: None) -> pd.DataFrame:  # fmt: skip
+    """One row per law (and LIGGGHTS's own hertz) and share: errors, seconds and the ratio to the yardstick.
+
+    The blocks meet for about two collisions a sphere: long enough to be a bulk, too short for round-off to grow.
+    All take the same steps, shares of the smallest of their stability limits at the highest speed.
+    `seconds` and `ratio` (to the yardstick) are medians, `..._spread` their distances of the quartiles; contenders
+    alternate, so that drifts of the machine hit all.
+    Raises EngineError without LIGGGHTS.
+    """
+    if reason := engine("liggghts").missing():
+        raise EngineError(f"engine liggghts: {reason}")
+    scene, rows = shock((8, 8, 8)), []
+    everyone = [Contender(f"liggghts, {law}", with_law(scene, law)) for law in laws]
+    everyone.append(Contender(YARDSTICK, with_law(scene, "hertz"), "hertz"))
+    limit = min(c.scene.time_step() for c in everyone) / SHARE
+    steps = {share: share * limit for share in shares}
+    with tempfile.TemporaryDirectory(prefix="epdem-bulk-") as scratch:
+        folder = Path(scratch)
+        table = pd.concat([errors(c, steps, folder, progress) for c in everyone], ignore_index=True)
+        for k in range(repetitions):
+            for share, time_step in steps.items():
+                for c in everyone:
+                    progress(f"bulk time {k + 1}/{repetitions}: {c.label}, {share:g} of the limit")
+                    rows.append({"repetition": k, "share": share, "contender": c.label,
+                                 "seconds": c.seconds(time_step, folder)})  # fmt: skip
+    times = pd.DataFrame(rows)
+    times["ratio"] = to_yardstick(times, "seconds", ["repetition", "share"])
+    groups = times.groupby(["contender", "share"])[["seconds", "ratio"]]
+    middle = groups.median().join(groups.agg(spread).add_suffix("_spread"))
+    return table.merge(middle.reset_index(), on=["contender", "share"])

@@ -1,0 +1,62 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Round-off of positions in YADE's builds of other precisions: the same script, YADE's own Hertz contact.
+
+Our laws need attributes that the elastic-plastic class has in YADE's default build only; round-off needs no law.
+"""
+
+import json
+import shutil
+import subprocess
+import tempfile
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+
+from ... import rendering as decks
+from ...errors import EngineError
+from ...yade.impacts import environment
+from .cases import Extreme, build
+from .running import position_floor, setting
+
+PROGRAMS = ("yade", "yade-longdouble", "yade-float128")  # 53, 64 and 113 bits; the last is the reference
+SHARE = 0.01  # of the stability limit
+
+
+def available() -> bool:
+    """Whether all of PROGRAMS are here."""
+    return all(shutil.which(p) for p in PROGRAMS)
+
+
+def rebound(program: str, folder: Path, script: str) -> np.ndarray:
+    """e_n of every phase from one program, shape (phases,). Raises EngineError with its last words."""
+    path = folder / "roundoff.py"
+    path.write_text(script)
+    done = subprocess.run([program, "-n", "-x", path.name], cwd=folder, capture_output=True, text=True, timeout=120,
+                          stdin=subprocess.DEVNULL, env=environment(), check=False)  # fmt: skip
+    lines = [line for line in done.stdout.splitlines() if line.startswith("RESULT ")]
+    if not lines:
+        raise EngineError(f"{program}: no result; {(done.stdout + done.stderr).strip()[-200:]}")
+    return np.array(json.loads(lines[0].removeprefix("RESULT ")))
+
+
+def floors(*, times=(1e-4, 1e-2, 1e2)) -> pd.DataFrame:
+    """One row per speed: largest deviation of e_n from the finest precision over 8 phases, and the formula's."""
+    rows = []
+    template = decks.environment(Path(__file__).parent).get_template("roundoff.py.j2")
+    with tempfile.TemporaryDirectory(prefix="epdem-yade-") as scratch:
+        for t in times:
+            s = setting(Extreme("roundoff", "roundoff", build("roundoff", ratio=1e4, times=t)), "hertz")
+            dt, v, body = SHARE * s.limit, float(s.x.speed[0]), s.x.body
+            script = template.render(
+                radius=body.radius, speed=v, young_modulus=body.young_modulus, poisson_ratio=body.poisson_ratio,
+                density=body.density, gaps=(np.arange(8) + 0.5) / 8 * v * dt, time_step=dt,
+                steps=int(2 * s.contact_time / dt),
+            )  # fmt: skip
+            e = {program: rebound(program, Path(scratch), script) for program in PROGRAMS}
+            row = {"overlap_max": s.overlap_max, "steps": s.contact_time / dt}
+            row |= {p: float(np.abs(e[p] / e[PROGRAMS[-1]] - 1).max()) for p in PROGRAMS[:-1]}
+            row["formula"] = position_floor(radius=body.radius, recovered=s.recovered, steps=row["steps"])
+            row["formula, 64 bits"] = row["formula"] / 2**11
+            rows.append(row)
+    return pd.DataFrame(rows)

@@ -1,0 +1,67 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""What round-off leaves of e_n: in the law itself (double against long double) and in overlaps made of positions."""
+
+import numpy as np
+import pandas as pd
+
+from ...errors import EpdemError
+from .cases import Extreme, build
+from .running import Setting, position_floor, setting
+from .sampling import Sampler
+
+FORMULA = "0.5 sqrt(N) eps R/delta_e"
+
+
+def with_positions(s: Setting, time_step: float, gap: np.ndarray, steps: int) -> np.ndarray:
+    """e_n of a sphere on a wall by velocity Verlet on the sphere's position, as any DEM engine does; shape of gap."""
+    x, law = s.x, s.x.native_law()
+    half, R = 0.5 * time_step / x.m_star, x.R_star
+    z, v = R + gap, np.full_like(gap, -float(x.speed[0]))
+    force, memory = np.zeros_like(gap), np.zeros_like(gap)
+    for _ in range(steps):
+        v = v + half * force
+        z = z + time_step * v
+        force, _, memory = law.step(R_star=R, delta_max=memory, delta=R - z)
+        v = v + half * force
+    return v / float(x.speed[0])
+
+
+def in_long_double(s: Setting, time_step: float, gap: np.ndarray, steps: int) -> np.ndarray:
+    """e_n of the embedded engine in long double, shape of gap."""
+    x = s.x
+    out = x.native_law().impacts_long_double(R_star=x.R_star, m_star=x.m_star, speed=x.speed[0], time_step=time_step,
+                                             gap=gap, steps=steps)  # fmt: skip
+    return out["rebound_speed"] / x.speed[0]
+
+
+def floors(law: str, samplers: list[Sampler], *, times=(1e-4, 1e-2, 3.0, 1e2), share: float = 0.01) -> pd.DataFrame:
+    """One row per speed: overlap_max, recovered overlap [m], steps, and the largest deviation of e_n from long
+    double over 8 phases.
+
+    Columns: `double` (embedded), `positions` (this module's own), each engine's, and `formula`.
+    """
+    rows = []
+    for t in times:
+        s = setting(Extreme("roundoff", "roundoff", build("roundoff", ratio=1e4, times=t)), law)
+        dt = share * s.limit
+        steps = int(1.5 * s.contact_time / dt) + 20
+        gap = (np.arange(8) + 0.5) / 8 * s.x.speed[0] * dt
+        exact = in_long_double(s, dt, gap, steps)
+        double = s.x.native_law().impacts(R_star=s.x.R_star, m_star=s.x.m_star, speed=s.x.speed[0], time_step=dt,
+                                          gap=gap, steps=steps)["rebound_speed"] / s.x.speed[0]  # fmt: skip
+        found = {"double": double, "positions": with_positions(s, dt, gap, steps)}
+        found |= {sampler.name: _tried(sampler, s, dt, gap, steps) for sampler in samplers}
+        row = {"law": law, "times_yield": t, "overlap_max": s.overlap_max, "recovered": s.recovered,
+               "steps": s.contact_time / dt}  # fmt: skip
+        row |= {name: float(np.abs(e / exact - 1).max()) for name, e in found.items()}
+        row["formula"] = position_floor(radius=s.x.R_star, recovered=s.recovered, steps=row["steps"])
+        rows.append(row)
+    return pd.DataFrame(rows)
+
+
+def _tried(sampler: Sampler, s: Setting, time_step: float, gap: np.ndarray, steps: int) -> np.ndarray:
+    """e_n of an engine, NaN where it cannot: that it failed stands in the verdicts."""
+    try:
+        return sampler(s.x, time_step, gap, steps).e_n
+    except EpdemError:
+        return np.full_like(gap, np.nan)

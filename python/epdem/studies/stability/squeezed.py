@@ -1,0 +1,102 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""A sphere squeezed between two walls: two contacts that yield, part and meet again, with an energy balance."""
+
+import numpy as np
+
+from ...theory.backbones import Backbone
+from .running import BROKEN, CREATED, LEAST_ORDER, Setting, Verdict, plastic, slope
+from .sampling import PositionSampler, Sampler
+from .variants import between_walls
+
+SHARES = (0.16, 0.08, 0.04, 0.02, 0.01)  # of the limit of two springs, 1/sqrt(2) of that of one
+COARSE = np.arange(0.2, 1.51, 0.1)
+POSITION_COARSE = (0.3, 0.7, 1.0, 1.5)  # an engine's start-up costs more than its steps
+# LIGGGHTS evaluates the contacts at t = 0 without keeping what they remember: an overlap that is there from the start
+# is known to the law one step later, so the balance begins there.
+KNOWN = {"liggghts": 1}
+PERIODS = 20.0  # length of a run in stability limits
+GAUSS_X, GAUSS_W = np.polynomial.legendre.leggauss(40)
+
+
+def stored(theory: Backbone, alpha: np.ndarray, top: np.ndarray) -> np.ndarray:
+    """Elastic and plastic work in a contact [J] at overlap alpha that reached `top` > 0; arrays of one shape.
+
+    On the elastic branch: what was put in less what came back from `top` to alpha, by Gauss points in an angle in
+    which the branch is smooth at both of its ends.
+    """
+    alpha = np.maximum(alpha, 0.0)
+    recovered = theory.recovered_overlap(top)
+    # alpha = top - recovered sin^2(angle)
+    last = np.arcsin(np.sqrt(np.clip((top - alpha) / recovered, 0.0, 1.0)))
+    angle = last[..., None] * (GAUSS_X + 1) / 2
+    points = top[..., None] - recovered[..., None] * np.sin(angle) ** 2
+    force = theory.unloading_force(np.maximum(points, 0.0), top[..., None])
+    back = (force * np.sin(2 * angle)) @ GAUSS_W * recovered * last / 2
+    return np.where(top <= theory.yield_overlap, theory.work(alpha), theory.work(top) - back)
+
+
+def embedded_path(s: Setting, time_step: float, steps: int) -> tuple[np.ndarray, np.ndarray]:
+    """Overlap with the first wall [m] and velocity towards it [m/s], shape (steps + 1,), by velocity Verlet.
+
+    Both walls overlap the sphere by alpha_max/2 at the start. A contact that parts forgets, as LIGGGHTS's walls do.
+    """
+    x, law = s.x, s.x.native_law()
+    half, d = 0.5 * time_step / x.m_star, s.overlap_max / 2
+    z, v, memory = 0.0, float(x.speed[0]), np.zeros(2)
+    overlap, speed = np.empty(steps + 1), np.empty(steps + 1)
+    for n in range(steps + 1):
+        alpha = np.array([d + z, d - z])
+        force, _, memory = law.step(R_star=x.R_star, delta_max=np.where(alpha > 0, memory, 0.0), delta=alpha)
+        push = half * (force[1] - force[0])
+        v = v + push if n else v
+        overlap[n], speed[n] = alpha[0], v
+        v += push
+        z += time_step * v
+    return overlap, speed
+
+
+def balance(s: Setting, overlap: np.ndarray, velocity: np.ndarray) -> np.ndarray:
+    """Kinetic, stored and lost energy over that at the start at every sample, shape of `overlap`."""
+    theory, total = s.x.theory(), 0.5 * s.x.m_star * velocity**2
+    for alpha in (overlap, s.overlap_max - overlap):
+        top, lost = np.empty_like(alpha), np.zeros_like(alpha)
+        reached = gone = 0.0
+        for n, a in enumerate(alpha):
+            if a <= 0.0 < reached:  # it parts: the dent is forgotten, its work is not
+                gone += float(plastic(theory, np.array([reached]))[0])
+                reached = 0.0
+            reached = max(reached, a)
+            top[n], lost[n] = reached, gone
+        touching = top > 0
+        total = total + lost
+        total[touching] += stored(theory, alpha[touching], top[touching])
+    return total / total[0]
+
+
+def path(s: Setting, sampler: Sampler, share: float) -> tuple[np.ndarray, np.ndarray]:
+    """Overlap with the first wall [m] and velocity towards it [m/s] at a share of the limit of two springs."""
+    time_step, steps = share * s.limit / np.sqrt(2.0), int(PERIODS / share)
+    if isinstance(sampler, PositionSampler):
+        got = between_walls(s, sampler, s.overlap_max / 2, time_step, steps)
+        known = KNOWN.get(sampler.name, 0)
+        return got.overlap[0, known:], got.velocity[0, known:]
+    return embedded_path(s, time_step, steps)
+
+
+def squeeze(v: Verdict, s: Setting, sampler: Sampler) -> None:
+    """The energy balance of the squeezed sphere holds to second order in dt."""
+    drift = []
+    for share in SHARES:
+        total = balance(s, *path(s, sampler, share))
+        drift.append(float(np.abs(total - 1).max()))
+        v.created = float((total - 1).max())
+        v.steps += total.size - 1
+    v.e_n_error, v.order = drift[-1], slope(list(SHARES), drift, 1e-13)
+    if not v.created <= CREATED:
+        v.fail(f"energy created: {v.created:.2g} at {SHARES[-1]:g} of the limit")
+    if v.order < LEAST_ORDER:
+        v.fail(f"order of convergence {v.order:.2f}")
+    for share in COARSE if sampler.name == "embedded" else POSITION_COARSE:
+        if not (balance(s, *path(s, sampler, float(share))) - 1).max() <= BROKEN:
+            v.breaks_at = round(float(share), 2)
+            break

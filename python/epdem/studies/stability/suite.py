@@ -1,0 +1,109 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""The whole set on the engines asked for, and its tables."""
+
+import tempfile
+from collections.abc import Callable
+from dataclasses import asdict, dataclass
+from pathlib import Path
+
+import pandas as pd
+
+from ...engines import engine
+from ...errors import EngineError
+from ...laws import library as claw
+from . import bulk_checks, precisions
+from .cases import Extreme, extremes
+from .repeats import judge_repeats
+from .roundoff import floors
+from .running import COARSE, judge
+from .sampling import EmbeddedSampler, PositionSampler, Sampler
+
+POSITION_COARSE = (0.3, 0.5, 0.7, 1.0, 1.5)  # an engine's start-up costs more than its steps
+SLOW = {"yade": "thornton"}  # ten seconds a case: the first and last of each group, with this law if it is asked for
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """verdicts: one row per case, engine and law; roundoff: per law and speed; bulk: per stiff scene and law;
+
+    precisions: round-off in YADE's builds of other precisions, per speed. Empty where they did not run.
+    """
+
+    verdicts: pd.DataFrame
+    roundoff: pd.DataFrame
+    bulk: pd.DataFrame
+    precisions: pd.DataFrame
+
+    @property
+    def passed(self) -> bool:
+        return bool((self.verdicts["status"] != "failed").all() and (self.bulk.empty or self.bulk["passed"].all()))
+
+
+def samplers(names: list[str], folder: Path) -> list[Sampler]:
+    """A sampler per engine. Raises EngineError if one cannot run here."""
+    found: list[Sampler] = []
+    for name in names:
+        tool = engine(name)
+        if reason := tool.missing():
+            raise EngineError(f"engine {name}: {reason}")
+        found.append(EmbeddedSampler() if name == "embedded" else PositionSampler(tool, folder / name))
+    return found
+
+
+def run(engines: list[str], laws: list[str], *, groups: list[str] | None = None, every: int = 1, steps: int = 10**9,
+        cycles: int = 10_000, progress: Callable[[str], None] = lambda text: None) -> Outcome:  # fmt: skip
+    """Judge every `every`-th case of the `groups` (none: all) with every law in every engine.
+
+    `steps` is the length of the drift by bounces, `cycles` the number of reloads. Laws none given: all. Without
+    `groups` the round-off floor is measured (with YADE in its other precisions too) and, with LIGGGHTS, the stiff bulk
+    scenes run.
+    """
+    laws = laws or list(claw.laws())
+    chosen = [e for e in extremes() if not groups or e.group in groups][::every]
+    rows, tables = [], []
+    with tempfile.TemporaryDirectory(prefix="epdem-stress-") as scratch:
+        for sampler in samplers(engines, Path(scratch)):
+            coarse = COARSE if sampler.name == "embedded" else POSITION_COARSE
+            slow = SLOW.get(sampler.name)
+            for law in [slow] if slow in laws else laws:
+                for extreme in ends(chosen) if slow else chosen:
+                    progress(f"{sampler.name}, {law}: {extreme.name}")
+                    if extreme.kind == "impact":
+                        rows.append(judge(extreme, law, sampler, coarse))
+                    else:
+                        rows.append(judge_repeats(extreme, law, sampler, steps=steps, cycles=cycles))
+        if not groups:
+            progress("round-off")
+            others = [s for s in samplers(engines, Path(scratch)) if s.name != "embedded"]
+            tables = [floors(law, others) for law in laws]
+    verdicts = pd.DataFrame([asdict(v) for v in rows])
+    verdicts["notes"] = verdicts["notes"].map("; ".join)
+    bulk = bulk_checks.run(laws, progress=progress) if "liggghts" in engines and not groups else pd.DataFrame()
+    finer = "yade" in engines and not groups and precisions.available()
+    return Outcome(verdicts, pd.concat(tables, ignore_index=True) if tables else pd.DataFrame(), bulk,
+                   precisions.floors() if finer else pd.DataFrame())  # fmt: skip
+
+
+def ends(chosen: list[Extreme]) -> list[Extreme]:
+    """The first and the last case of each group."""
+    groups: dict[str, list[Extreme]] = {}
+    for extreme in chosen:
+        groups.setdefault(extreme.group, []).append(extreme)
+    return [e for group in groups.values() for e in ([group[0]] if len(group) == 1 else [group[0], group[-1]])]
+
+
+def summary(verdicts: pd.DataFrame) -> pd.DataFrame:
+    """One row per engine and law: how many passed, and the worst numbers."""
+    rows = []
+    for (name, law), part in verdicts.groupby(["engine", "law"], sort=False):
+        count = part["status"].value_counts()
+        ran = part[part["status"].isin(["passed", "failed"]) & ~part["group"].isin(["bounces", "reloads"])]
+        hit = ran[ran["group"] != "squeeze"]  # an impact has an e_n
+        rows.append({
+            "engine": name, "law": law, "passed": count.get("passed", 0), "failed": count.get("failed", 0),
+            "not representable": count.get("not representable", 0), "embedded only": count.get("embedded only", 0),
+            "worst error": hit["e_n_error"].max(), "most created": ran["created"].max(),
+            "least order": ran["order"].min(), "first useless at": ran["useless_at"].min(),
+            "first breaks at": ran["breaks_at"].min(), "slowest": part["seconds"].max(),
+        })  # fmt: skip
+    return pd.DataFrame(rows)

@@ -1,0 +1,215 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""YADE with our laws: a plan becomes one Python deck with all impacts side by side; the law travels with it."""
+
+import os
+import re
+import shutil
+import time
+from dataclasses import dataclass
+from math import isfinite, isinf
+from pathlib import Path
+
+import numpy as np
+
+from .. import rendering as decks
+from ..errors import CaseError, EngineError
+from ..files import write_texts
+from ..impacts.engine import Trajectory
+from ..impacts.experiment import Body, Experiment
+from ..impacts.plan import Plan
+from ..laws import library as claw
+from ..processes import ask, call
+from .deck_modules import cone
+from .deck_modules.law import LAWS
+
+INSTALL = "apt-get install yade"
+MODULES = Path(__file__).with_name("deck_modules")
+
+
+@dataclass(frozen=True)
+class Material:
+    """Keywords of Contacts.material, or of a material of YADE's own, SI."""
+
+    name: str
+    values: dict[str, float]
+
+
+@dataclass(frozen=True)
+class Group:
+    """The bodies of one kind; `data` holds x, y, z [m] and v_z [m/s] of each."""
+
+    data: str
+    radius: float
+    material: str
+
+
+@dataclass(frozen=True)
+class Anvil:
+    """A fixed sphere under each body, its centre at z [m]."""
+
+    radius: float
+    material: str
+    z: float
+
+
+@dataclass(frozen=True)
+class Deck:
+    """Everything the template writes; every number was decided here."""
+
+    title: str
+    source: str
+    summary: str
+    rigid: bool
+    law: str
+    native: bool  # YADE's own law
+    ratios: dict[str, float]
+    materials: tuple[Material, ...]
+    wall_material: str | None
+    anvil: Anvil | None  # fixed spheres that stand for the wall where YADE's law knows spheres only
+    bodies: tuple[Group, ...]
+    skin: float
+    time_step: float
+    samples: int
+    path: str
+
+
+def command() -> str:
+    """YADE's program; EPDEM_YADE names another one."""
+    return os.environ.get("EPDEM_YADE", "yade")
+
+
+class Yade:
+    name = "yade"
+    template = "yade/impact.py.j2"
+
+    def missing(self) -> str | None:
+        if shutil.which(command()) is None:
+            return f"YADE was not found ({command()}); {INSTALL}"
+        return None
+
+    def version(self) -> str:
+        found = re.search(r"version: (\S+)", ask([command(), "--version"], environment()))
+        return f"YADE {found.group(1) if found else '(version unknown)'}"
+
+    def material(self, x: Experiment, body: Body, strength: float) -> Material:
+        """The material of one body. Raises CaseError for a strength beyond YADE's law."""
+        law = LAWS[x.law.name]
+        values = {
+            "young_modulus": body.young_modulus,
+            "poisson_ratio": body.poisson_ratio,
+            "density": body.density if isfinite(body.density) else 1.0,  # of a rigid wall: not used
+        }
+        if law.strength_name:
+            values[law.strength_name] = strength
+            ratios = (x.law.parameters[n] for n in law.ratios)
+            highest = cone.STRONGEST * body.young_modulus / law(1.0, 1e-3, *ratios).trigger_factor
+            if isfinite(strength) and strength >= highest:
+                raise CaseError(
+                    f"materials.{body.material}: {law.strength_name} = {strength:.6g} Pa, YADE's law takes less than "
+                    f"{highest:.6g} Pa at this young_modulus; use --engine embedded"
+                )
+        return Material(body.material, values)
+
+    def deck(self, plan: Plan) -> Deck:
+        """The deck of a plan. Raises CaseError for what YADE cannot do."""
+        x, wall = plan.experiment, isinf(plan.experiment.target.radius)
+        if x.viscous_restitution is not None:
+            raise CaseError("viscous: engine yade has no dashpot; use --engine liggghts or embedded")
+        materials = {x.target.material: self.material(x, x.target, x.law.strengths[1]),
+                     x.body.material: self.material(x, x.body, x.law.strengths[0])}  # fmt: skip
+        bodies = [Group("body.data", x.body.radius, x.body.material)]
+        if not wall:
+            bodies.append(Group("target.data", x.target.radius, x.target.material))
+        defaults = {p.name: p.default for p in claw.laws()[x.law.name].parameters}
+        return Deck(
+            title=x.case.case.title, source=x.case.case.source,
+            summary=f"{x.speed.size} speeds x {plan.phases} phases = {plan.n} independent impacts, law {x.law.name}",
+            rigid=x.target.rigid, law=x.law.name, native=False, anvil=None,
+            ratios={n: x.law.parameters[n] for n in LAWS[x.law.name].ratios if x.law.parameters[n] != defaults[n]},
+            materials=tuple(materials.values()), wall_material=x.target.material if wall else None,
+            bodies=tuple(bodies), skin=0.1 * min(x.body.radius, x.target.radius), time_step=plan.time_step,
+            samples=plan.steps + 2,  # one more than asked for: a velocity is the mean of those half a step away
+            path="path.bin",
+        )  # fmt: skip
+
+    def write(self, plan: Plan, folder: Path) -> list[Path]:
+        deck = self.deck(plan)
+        folder.mkdir(parents=True, exist_ok=True)
+        modules = [] if deck.native else write_deck_modules(folder)
+        script = folder / "impact.py"
+        script.write_text(decks.render(self.template, deck=deck))
+        files = [folder / b.data for b in deck.bodies]
+        for path, table in zip(files, tables(plan), strict=True):
+            lines = ["# x y z v_z, SI", *(" ".join(map(decks.number, row)) for row in table), ""]
+            path.write_text("\n".join(lines))
+        return [script, *files, *modules]
+
+    def run(self, plan: Plan, folder: Path, *, ranks: int = 1) -> Trajectory:
+        if ranks > 1:
+            raise CaseError(f"--ranks {ranks}: YADE runs an impact deck on one core only; leave it out")
+        path, log = folder / "path.bin", folder / "out.yade"
+        path.unlink(missing_ok=True)
+        start = time.perf_counter()
+        call([command(), "-n", "-x", "impact.py"], folder, log=log.name, seconds=120 + 2e-5 * plan.n * plan.steps,
+             env=environment())  # fmt: skip
+        wall = time.perf_counter() - start
+        return trajectory(plan, path, {"total": wall, "stepping": stepping_seconds(log)})
+
+
+def deck_modules() -> dict[str, str]:
+    """The modules that a deck with a law of ours imports, by path beside the deck."""
+    note = '"""The part of epdem that YADE needs; it came with the deck."""\n'
+    files = {"epdem/__init__.py": note, "epdem/yade/__init__.py": note}
+    return files | {f"epdem/yade/deck_modules/{p.name}": p.read_text() for p in sorted(MODULES.glob("*.py"))}
+
+
+def write_deck_modules(folder: Path) -> list[Path]:
+    """`deck_modules` in a deck's folder."""
+    return write_texts(folder, deck_modules())
+
+
+def environment() -> dict[str, str]:
+    """Ours without what would lead the system Python, which YADE embeds, to packages of another one."""
+    kept = {k: v for k, v in os.environ.items() if k not in ("PYTHONPATH", "PYTHONHOME", "PYTHONSTARTUP", "DISPLAY")}
+    return {"HOME": "/tmp", **kept, "OMP_NUM_THREADS": "1"}  # YADE does not start without a home
+
+
+def tables(plan: Plan) -> list[np.ndarray]:
+    """x, y, z, v_z of the bodies, and of targets that move: one place of a grid per impact, contact at z = 0."""
+    x, n = plan.experiment, plan.n
+    wall = isinf(x.target.radius)
+    spacing = 2.6 * max(r for r in (x.body.radius, x.target.radius) if isfinite(r))
+    side = int(np.ceil(np.sqrt(n)))
+    place = spacing * (np.arange(n) % side), spacing * (np.arange(n) // side)
+    # in the centre-of-mass frame each of two bodies has its share of the speed
+    share = 1.0 if wall else x.m_star / x.body.mass
+    rows = [np.stack([*place, x.body.radius + share * plan.gap, -share * plan.speed], axis=1)]
+    if not wall:
+        rest = 1.0 - share
+        rows.append(np.stack([*place, -x.target.radius - rest * plan.gap, rest * plan.speed], axis=1))
+    return rows
+
+
+def trajectory(plan: Plan, path: Path, seconds: dict[str, float]) -> Trajectory:
+    """Overlap, force, approach velocity from z, v_z, F_z of every body. Raises EngineError if samples are missing."""
+    x, n = plan.experiment, plan.n
+    wall = isinf(x.target.radius)
+    expected = (plan.steps + 2, 3, n if wall else 2 * n)
+    try:
+        samples = np.load(path)
+        if samples.shape != expected or not np.isfinite(samples).all():
+            raise ValueError(f"{samples.shape} samples, expected {expected}, all finite")
+    except (OSError, ValueError) as error:
+        raise EngineError(f"{path}: the run left no complete result ({error}); see out.yade beside it") from None
+    z, v, force = samples[:-1, 0], 0.5 * (samples[:-1, 1] + samples[1:, 1]), samples[:-1, 2]
+    if wall:
+        overlap, velocity = x.body.radius - z, -v
+    else:
+        overlap, velocity = x.body.radius + x.target.radius - (z[:, :n] - z[:, n:]), v[:, n:] - v[:, :n]
+    return Trajectory(plan.time_step, overlap.T, force[:, :n].T, velocity.T, seconds)
+
+
+def stepping_seconds(log: Path) -> float:
+    """The deck's own time for its steps [s]; NaN if the log does not say."""
+    found = re.findall(r"stepping took (\S+) s", log.read_text(errors="replace")) if log.exists() else []
+    return float(found[-1]) if found else float("nan")

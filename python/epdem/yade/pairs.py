@@ -1,0 +1,44 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Pairs of spheres told to YADE in one of the ways that must not matter.
+
+A serial YADE keeps bodies where they are in memory and has no ranks: nothing is sorted, nobody migrates.
+"""
+
+from pathlib import Path
+
+import numpy as np
+
+from .. import rendering as decks
+from ..errors import EngineError
+from ..impacts.pairs import Pairs
+from ..processes import call
+from .impacts import Yade, command, environment, write_deck_modules
+
+WAYS = ("swap", "restart")
+
+
+def velocities(tool: Yade, pairs: Pairs, way: str, folder: Path) -> np.ndarray:
+    """After the impacts, shape (2, n, 3), the body first. Raises EngineError; ValueError if bodies are lost."""
+    p, deck = pairs.plan, tool.deck(pairs.plan)
+    folder.mkdir(parents=True, exist_ok=True)
+    if not deck.native:
+        write_deck_modules(folder)
+    told = [(f"side{k}.data", side) for k, side in enumerate(pairs.told(way == "swap"))]
+    for name, side in told:
+        lines = [" ".join(map(decks.number, row)) for row in np.hstack([side.place, side.velocity])]
+        (folder / name).write_text("\n".join(["# x y z v_x v_y v_z, SI", *lines, ""]))
+    words = {"deck": deck, "way": way, "sides": [(n, s.body.radius, s.body.material) for n, s in told],
+             "steps": p.steps, "load": None, "save": None}  # fmt: skip
+    parts = [words]
+    if way == "restart":
+        parts = [words | {"steps": pairs.stop, "save": "middle.yade.gz"},
+                 words | {"steps": p.steps - pairs.stop, "load": "middle.yade.gz"}]  # fmt: skip
+    (folder / deck.path).unlink(missing_ok=True)
+    for k, part in enumerate(parts):
+        (folder / f"pairs{k}.py").write_text(decks.render("yade/pairs.py.j2", **part))
+        call([command(), "-n", "-x", f"pairs{k}.py"], folder, log=f"out{k}.yade", seconds=120, env=environment())
+    try:
+        v = np.load(folder / deck.path).reshape(2, p.n, 3)
+    except OSError as error:
+        raise EngineError(f"{folder / deck.path}: the run left no result ({error}); see out{k}.yade beside") from None
+    return v[::-1] if way == "swap" else v
