@@ -20,24 +20,31 @@ using namespace epdem;
 
 struct LawInfo {
   const char* name;
+  int id;
   int n_parameters;
   const Parameter* parameters;
+  int strength;
+  double default_ratio;
+  int memory;
 };
 
-#define EPDEM_INFO(Class, name, id) {#name, Class::n_parameters, Class::parameters},
+#define EPDEM_INFO(Class)                                                                                       \
+  {Class::name, Class::id, Class::n_parameters, Class::parameters, Class::strength, Class::default_ratio, memory<Class>},
 const LawInfo laws[] = {EPDEM_LAWS(EPDEM_INFO)};
 #undef EPDEM_INFO
 constexpr int n_laws = int(sizeof(laws) / sizeof(laws[0]));
 
+bool known(int law) { return law >= 0 && law < n_laws; }
+
 const Parameter* parameter(int law, int k) {
-  if (law < 0 || law >= n_laws || k < 0 || k >= laws[law].n_parameters) return nullptr;
+  if (!known(law) || k < 0 || k >= laws[law].n_parameters) return nullptr;
   return &laws[law].parameters[k];
 }
 
 bool positive(double x) { return std::isfinite(x) && x > 0.0; }
 
 int check(int law, double E_star, const double* parameters) {
-  if (law < 0 || law >= n_laws) return EPDEM_UNKNOWN_LAW;
+  if (!known(law)) return EPDEM_UNKNOWN_LAW;
   if (!positive(E_star)) return EPDEM_BAD_PARAMETER;
   for (int k = 0; k < laws[law].n_parameters; ++k)
     if (!positive(parameters[k])) return EPDEM_BAD_PARAMETER;
@@ -49,7 +56,7 @@ template <class Body>
 int with_law(int index, double E_star, const double* parameters, const Body& body) {
   if (const int status = check(index, E_star, parameters)) return status;
   int i = 0;
-#define EPDEM_CASE(Class, name, id)                              \
+#define EPDEM_CASE(Class)                                        \
   if (index == i++) {                                            \
     if (!Class::valid(parameters)) return EPDEM_BAD_PARAMETER;   \
     return body(Class(E_star, parameters));                      \
@@ -98,8 +105,12 @@ EPDEM_EXPORT size_t epdem_size_of(const char* name) {
 }
 
 EPDEM_EXPORT int epdem_law_count(void) { return n_laws; }
-EPDEM_EXPORT const char* epdem_law_name(int law) { return law < 0 || law >= n_laws ? nullptr : laws[law].name; }
-EPDEM_EXPORT int epdem_law_parameter_count(int law) { return law < 0 || law >= n_laws ? -1 : laws[law].n_parameters; }
+EPDEM_EXPORT const char* epdem_law_name(int law) { return known(law) ? laws[law].name : nullptr; }
+EPDEM_EXPORT int epdem_law_id(int law) { return known(law) ? laws[law].id : -1; }
+EPDEM_EXPORT int epdem_law_strength(int law) { return known(law) ? laws[law].strength : -1; }
+EPDEM_EXPORT double epdem_law_default_ratio(int law) { return known(law) ? laws[law].default_ratio : not_given; }
+EPDEM_EXPORT int epdem_law_memory(int law) { return known(law) ? laws[law].memory : -1; }
+EPDEM_EXPORT int epdem_law_parameter_count(int law) { return known(law) ? laws[law].n_parameters : -1; }
 
 EPDEM_EXPORT const char* epdem_law_parameter_name(int law, int k) {
   const Parameter* p = parameter(law, k);

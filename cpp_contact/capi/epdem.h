@@ -13,7 +13,7 @@
 extern "C" {
 #endif
 
-#define EPDEM_ABI 3
+#define EPDEM_ABI 4
 #define EPDEM_MAX_PARAMETERS 8
 
 typedef enum {
@@ -57,6 +57,10 @@ size_t epdem_size_of(const char* struct_name); /* 0 if there is no such struct *
 /* Laws, by index 0 .. epdem_law_count()-1, and their parameters. NULL or -1 outside the range. */
 int epdem_law_count(void);
 const char* epdem_law_name(int law);
+int epdem_law_id(int law);               /* of the LIGGGHTS model "ep/" + name, stored in restart files */
+int epdem_law_strength(int law);         /* which parameter is the strength; -1: none */
+double epdem_law_default_ratio(int law); /* strength over the yield stress of the softer body; NaN: no strength */
+int epdem_law_memory(int law);           /* doubles that a host keeps from step to step */
 int epdem_law_parameter_count(int law);
 const char* epdem_law_parameter_name(int law, int k);
 const char* epdem_law_parameter_property(int law, int k); /* LIGGGHTS property/global */

@@ -18,6 +18,7 @@ using namespace epdem_long_double;
 
 template <class Law>
 bool batch(double E_star, const double* parameters, size_t n, const epdem_impact_input* in, epdem_impact_output* out) {
+  static_assert(Law::n_parameters <= EPDEM_MAX_PARAMETERS, "raise EPDEM_MAX_PARAMETERS in epdem.h");
   real exact[EPDEM_MAX_PARAMETERS] = {};
   for (int k = 0; k < Law::n_parameters; ++k) exact[k] = parameters[k];
   const Law law(E_star, exact);
@@ -35,7 +36,7 @@ bool batch(double E_star, const double* parameters, size_t n, const epdem_impact
 bool epdem_long_double_batch(int law, double E_star, const double* parameters, size_t n, const epdem_impact_input* in,
                              epdem_impact_output* out) {
   int i = 0;
-#define EPDEM_CASE(Class, name, id) \
+#define EPDEM_CASE(Class) \
   if (law == i++) return batch<Class>(E_star, parameters, n, in, out);
   EPDEM_LAWS(EPDEM_CASE)
 #undef EPDEM_CASE

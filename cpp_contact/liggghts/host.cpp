@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "host.hpp"
 
+#include <cstdio>
 #include <cstring>
 #include <string>
 
@@ -13,7 +14,7 @@ namespace epdem::liggghts {
 
 namespace {
 
-constexpr const char* built_for = "LIGGGHTS-PUBLIC 3.8.0";
+constexpr const char* built_for = EPDEM_BUILT_FOR;  // as the library said when this was built
 
 /// The library carries no symbol versions: compare its version and where it says that two members lie.
 void check_library(LAMMPS_NS::LAMMPS* lmp) {
@@ -34,15 +35,21 @@ void greet(LAMMPS_NS::LAMMPS* lmp) {
   static LAMMPS_NS::LAMMPS* known = nullptr;
   if (known == lmp) return;
   known = lmp;
+  // error->one ends in MPI_Abort without flushing: on a pipe or in a file the message would be lost
+  std::setvbuf(stdout, nullptr, _IOLBF, 0);
   check_library(lmp);
   if (lmp->comm->me != 0) return;
-  constexpr const char* line = "epdem " EPDEM_VERSION ":"
-#define EPDEM_NAME(Class, name, id) " ep/" #name
-      EPDEM_LAWS(EPDEM_NAME)
+  const std::string line = "epdem " EPDEM_VERSION ":" + model_names() + "\n";
+  if (lmp->screen) std::fputs(line.c_str(), lmp->screen);
+  if (lmp->logfile) std::fputs(line.c_str(), lmp->logfile);
+}
+
+std::string model_names() {
+  std::string names;
+#define EPDEM_NAME(Class) names += " " + model_name<Class>();
+  EPDEM_LAWS(EPDEM_NAME)
 #undef EPDEM_NAME
-      "\n";
-  if (lmp->screen) std::fputs(line, lmp->screen);
-  if (lmp->logfile) std::fputs(line, lmp->logfile);
+  return names;
 }
 
 }  // namespace epdem::liggghts

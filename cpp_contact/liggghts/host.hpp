@@ -10,6 +10,8 @@
 #include "neighbor.h"
 #include "update.h"
 
+#include <string>
+
 #include "contact_models.h"
 #include "fix_wall_gran_base.h"
 #include "pair_gran_base.h"
@@ -19,6 +21,15 @@ namespace epdem::liggghts {
 // The library is built without non-spherical particles; with them the structure has 392 bytes and every access fails.
 static_assert(sizeof(LIGGGHTS::ContactModels::SurfacesIntersectData) == 368,
               "compile definitions differ from those of the packaged LIGGGHTS library");
+
+/// A law's name as a LIGGGHTS model.
+template <class Law>
+std::string model_name() {
+  return std::string("ep/") + Law::name;
+}
+
+/// All of them, each after a blank.
+std::string model_names();
 
 /// Ends the run if the library in use is not the one that the headers describe; names the models once.
 void greet(LAMMPS_NS::LAMMPS* lmp);

@@ -3,6 +3,7 @@
 #include <mpi.h>
 
 #include <csignal>
+#include <cstdio>
 #include <cstdlib>
 
 #include "input.h"
@@ -28,6 +29,8 @@ int main(int argc, char** argv) {
     // processes that start and end at the same time would race for one directory in /tmp, and one of them would die
     setenv("OMPI_MCA_orte_create_session_dirs", "0", 0);
   }
+  // error->one ends in MPI_Abort without flushing: on a pipe or in a file the message would be lost
+  std::setvbuf(stdout, nullptr, _IOLBF, 0);
   MPI_Init(&argc, &argv);
   handle_signals();
   {

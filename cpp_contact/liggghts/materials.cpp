@@ -3,7 +3,6 @@
 
 #include <cmath>
 #include <cstdio>
-#include <cstring>
 #include <string>
 
 #include "epdem/tangential.hpp"
@@ -131,58 +130,66 @@ class ParameterTable {
   double common_ = 0.0;
 };
 
-/// Laws whose strength is a pressure take it also as a ratio, which has a default, of the yield stress.
+/// A strength as a ratio, which has a default, of the yield stress.
 constexpr const char* ratio_name = "yieldPressureRatio";
-constexpr Parameter yield_stress = {"yield_stress", "yieldStress", "Pa", std::numeric_limits<double>::quiet_NaN()};
-constexpr struct {
-  const char* model;
-  Parameter parameters[2];
-} strengths_by_ratio[] = {{"ep/thornton", {yield_stress, {"yield_pressure_ratio", ratio_name, "1", 2.8}}},
-                          {"ep/johnson", {yield_stress, {"yield_pressure_ratio", ratio_name, "1", 3.0}}}};
+constexpr Parameter yield_stress = {"yield_stress", "yieldStress", "Pa", not_given};
 
-/// Whether the deck gives the strength by a ratio; `law` then asks for yield stress and ratio instead of the pressure.
-/// A yield stress beside a pressure may belong to another model of the deck: the pressure counts.
-bool ask_for_ratio(const Reader& reader, Declaration& law) {
-  for (const auto& other : strengths_by_ratio) {
-    if (std::strcmp(law.model, other.model) != 0) continue;
-    const Parameter& pressure = law.parameters[0];
-    const bool ratio = reader.given(ratio_name);
-    if (reader.given(pressure.property)) {
-      if (ratio) reader.fail(std::string("both ") + pressure.property + " and " + ratio_name + " are given; keep one");
-      return false;
-    }
-    if (!ratio && !reader.given(yield_stress.property))
-      reader.fail(reader.missing(pressure.property, pressure.unit) + " (or " + yield_stress.property + ", of which " +
-                  pressure.property + " is " + number(other.parameters[1].fallback) + " times, or " + ratio_name + ")");
-    law.parameters = other.parameters;
-    law.count = 2;
-    return true;
+/// What the deck is asked for: the law's parameters, or, in place of the strength, the yield stress and at last the ratio.
+struct Question {
+  std::vector<Parameter> parameters;
+  bool by_ratio;
+};
+
+/// A yield stress beside a strength may belong to another model of the deck: the strength counts.
+Question question(const Reader& reader, const Declaration& law) {
+  Question q{{law.parameters, law.parameters + law.count}, false};
+  if (!law.strength_by_ratio) return q;
+  const Parameter pressure = law.parameters[law.strength];
+  const bool ratio = reader.given(ratio_name);
+  if (reader.given(pressure.property)) {
+    if (ratio) reader.fail(std::string("both ") + pressure.property + " and " + ratio_name + " are given; keep one");
+    return q;
   }
-  return false;
+  if (!ratio && !reader.given(yield_stress.property))
+    reader.fail(reader.missing(pressure.property, pressure.unit) + " (or " + yield_stress.property + ", of which " +
+                pressure.property + " is " + number(law.default_ratio) + " times, or " + ratio_name + ")");
+  q.parameters[law.strength] = yield_stress;
+  q.parameters.push_back({"yield_pressure_ratio", ratio_name, "1", law.default_ratio});
+  q.by_ratio = true;
+  return q;
 }
 
-std::vector<double> parameters_of(const Reader& reader, const Declaration& law,
-                                  const std::vector<ParameterTable>& tables, int i, int j) {
+/// The law's parameters for one pair of types; `pascal` is the deck's unit of pressure.
+std::vector<double> parameters_of(const Reader& reader, const Declaration& law, const Question& asked,
+                                  const std::vector<ParameterTable>& tables, double pascal, int i, int j) {
   std::vector<double> values;
   // equal strength: the smaller type number, so that swapping i and j changes nothing
   const int low = std::min(i, j), high = std::max(i, j);
-  const bool strength_per_type = !tables.empty() && tables[0].per_type();
-  const int softer = strength_per_type && tables[0].of_type(high) < tables[0].of_type(low) ? high : low;
-  for (int k = 0; k < law.count; ++k) {
+  const ParameterTable* const strength = law.strength < 0 ? nullptr : &tables[law.strength];
+  const bool strength_per_type = strength && strength->per_type();
+  const int softer = strength_per_type && strength->of_type(high) < strength->of_type(low) ? high : low;
+  for (size_t k = 0; k < tables.size(); ++k) {
     const ParameterTable& t = tables[k];
     if (!t.per_type()) {
       values.push_back(t.at(i, j));
       continue;
     }
-    if (!strength_per_type && t.of_type(i) != t.of_type(j))
-      reader.fail(std::string(law.parameters[k].property) + " per type and " + law.parameters[0].property +
+    if (strength && !strength_per_type && t.of_type(i) != t.of_type(j))
+      reader.fail(std::string(asked.parameters[k].property) + " per type and " + asked.parameters[law.strength].property +
                   " per pair leave open which body of " + both(i, j) + " is the softer one; give both per pair");
     values.push_back(t.of_type(softer));
   }
+  const std::vector<double> as_given = values;
+  for (size_t k = 0; k < values.size(); ++k)
+    if (std::string(asked.parameters[k].unit) == "Pa") values[k] *= pascal;
+  if (asked.by_ratio) {
+    values[law.strength] = strength_from(values[law.strength], values.back());
+    values.pop_back();
+  }
   if (law.valid(values.data())) return values;
   std::string text;
-  for (int k = 0; k < law.count; ++k)
-    text += std::string(k ? ", " : "") + law.parameters[k].property + " = " + number(values[k]);
+  for (size_t k = 0; k < as_given.size(); ++k)
+    text += std::string(k ? ", " : "") + asked.parameters[k].property + " = " + number(as_given[k]);
   reader.fail(text + " of " + both(i, j) + " do not go together: the law would create energy at yield");
 }
 
@@ -232,23 +239,18 @@ Materials read_materials(LAMMPS_NS::LAMMPS* lmp, PropertyRegistry& registry, con
   registry.registerProperty("youngsModulus", &MODEL_PARAMS::createYoungsModulus, law.model);
   registry.getVectorProperty("youngsModulus", law.model);
 
-  Declaration asked = law;
-  const bool by_ratio = ask_for_ratio(reader, asked);
+  const Question asked = question(reader, law);
   std::vector<ParameterTable> tables;
-  for (int k = 0; k < asked.count; ++k) tables.emplace_back(reader, asked.parameters[k]);
+  for (const Parameter& p : asked.parameters) tables.emplace_back(reader, p);
   const std::vector<double> beta = damping_numbers(reader, dashpot), dashpots = viscous_numbers(reader, viscous);
 
   const double pascal = 1.0 / lmp->force->nktv2p;  // pressure unit of the deck in force/length^2
   Materials materials{width, std::vector<PairOfTypes>(width * width)};
   for (int i = 1; i <= n; ++i)
-    for (int j = 1; j <= n; ++j) {
-      std::vector<double> values = parameters_of(reader, asked, tables, i, j);
-      for (int k = 0; k < asked.count; ++k)
-        if (std::string(asked.parameters[k].unit) == "Pa") values[k] *= pascal;
-      if (by_ratio) values = {values[0] * values[1]};
-      materials.pairs[i * width + j] = {{E[i] * pascal, nu[i]}, {E[j] * pascal, nu[j]}, values, beta[i * width + j],
-                                      dashpots[i * width + j]};
-    }
+    for (int j = 1; j <= n; ++j)
+      materials.pairs[i * width + j] = {{E[i] * pascal, nu[i]}, {E[j] * pascal, nu[j]},
+                                        parameters_of(reader, law, asked, tables, pascal, i, j), beta[i * width + j],
+                                        dashpots[i * width + j]};
   return materials;
 }
 

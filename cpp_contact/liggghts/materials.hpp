@@ -26,6 +26,9 @@ struct Declaration {
   const Parameter* parameters;
   int count;
   bool (*valid)(const double*);
+  int strength;            // index of the parameter that is the strength, -1: none
+  double default_ratio;    // strength over yield stress
+  bool strength_by_ratio;  // yieldStress and yieldPressureRatio may stand in for it
 };
 
 /// One pair of atom types.

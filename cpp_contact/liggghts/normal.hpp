@@ -26,22 +26,25 @@ template <class Law, bool wall, bool others_remember>
 class Normal : protected LAMMPS_NS::Pointers {
   static constexpr bool remembers = Law::yields;
   static constexpr bool stamped = !wall && (remembers || others_remember);
-  static constexpr int memory = remembers ? static_cast<int>(sizeof(State<Law>) / sizeof(double)) : 0;
+  static constexpr int memory = epdem::memory<Law>;
 
  public:
   Normal(LAMMPS_NS::LAMMPS* lmp, LIGGGHTS::IContactHistorySetup* setup)
-      : Pointers(lmp), model_("ep/" + std::string(Law::name)), context_("model " + model_) {
-    static_assert(std::is_trivially_copyable_v<State<Law>>);
+      : Pointers(lmp), model_(model_name<Law>()) {
+    static_assert(std::is_trivially_copyable_v<State<Law>> && sizeof(State<Law>) == sizeof(double[std::size(State<Law>::slots)]),
+                  "history holds the slots of the law and nothing else");
     if constexpr (remembers) {
       // Flag "0": an even quantity; "1" would change its sign when the pair is stored from the other side.
-      static const char* const slot[] = {"delta_max", "force_max", "radius_max", "flatness_max"};
-      static_assert(memory <= 4, "name the new history value here");
-      offset_ = setup->add_history_value(slot[0], "0");
-      for (int k = 1; k < memory; ++k) setup->add_history_value(slot[k], "0");
+      for (const char* slot : State<Law>::slots) {
+        const int at = setup->add_history_value(slot, "0");
+        if (offset_ < 0) offset_ = at;
+      }
     }
     if constexpr (stamped) {
       stamp_ = setup->add_history_value("last_step", "0");
+      if (remembers && stamp_ != offset_ + memory) fail("its history values are not side by side");
       pair_ = dynamic_cast<LAMMPS_NS::PairGran*>(setup);
+      if (!pair_) fail("its history belongs to no pair style of LIGGGHTS");
       clock_ = update->ntimestep;
     }
   }
@@ -72,7 +75,8 @@ class Normal : protected LAMMPS_NS::Pointers {
   void connectToProperties(PropertyRegistry& registry, Dashpot dashpot) {
     // Rebuilt at every init: LIGGGHTS frees all properties there, and the user may have changed them.
     if (!tangential_damping_ && dashpot == Dashpot::optional) dashpot = Dashpot::off;
-    const Declaration law{model_.c_str(), Law::parameters, Law::n_parameters, &Law::valid};
+    const Declaration law{model_.c_str(), Law::parameters,    Law::n_parameters,      &Law::valid,
+                          Law::strength,  Law::default_ratio, Law::strength_by_ratio};
     const Materials m = read_materials(lmp, registry, law, dashpot, viscous_);
     width_ = m.width;
     table_.assign(m.pairs.size(), Entry{});
@@ -168,11 +172,13 @@ class Normal : protected LAMMPS_NS::Pointers {
     }
   }
 
+  void fail(const std::string& what) const { error->all(FLERR, ("model " + model_ + ": " + what).c_str()); }
+
   void refuse(const char* setting, const char* reason) const {
-    error->all(FLERR, (context_ + ": setting " + setting + " on is not available: " + reason).c_str());
+    fail(std::string("setting ") + setting + " on is not available: " + reason);
   }
 
-  const std::string model_, context_;
+  const std::string model_;
   std::vector<Entry> table_;
   int width_ = 0, offset_ = -1, stamp_ = -1;
   LAMMPS_NS::PairGran* pair_ = nullptr;

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // Makes the laws known to LIGGGHTS when the library (or the launcher) is loaded.
-#include <cstdio>
 #include <cstring>
 #include <string>
 
@@ -74,13 +73,9 @@ Walls::IGranularWall* new_wall(LAMMPS* lmp, FixWallGran* parent, int64_t hash) {
 
 template <class Interface, class Parent>
 Interface* refuse(LAMMPS* lmp, Parent*, int64_t hash) {
-  constexpr const char* known = "the models of epdem are"
-#define EPDEM_NAME(Class, name, id) " ep/" #name
-      EPDEM_LAWS(EPDEM_NAME);
-#undef EPDEM_NAME
   const std::string text =
       Ids::of(hash).normal == unknown_law
-          ? std::string("unknown normal model: ") + known
+          ? "unknown normal model: the models of epdem are" + model_names()
           : "epdem's models combine with tangential off, no_history, history; cohesion off, sjkr, sjkr2; "
             "rolling_friction off, cdt, epsd, epsd2, epsd3; surface default, multicontact; nothing else";
   lmp->error->all(FLERR, text.c_str());
@@ -134,19 +129,19 @@ void add_combination(const Ids& ids) {
 }
 
 template <class Law>
-void add_law(const char* name, int id) {
+void add_law() {
   static_assert(sizeof(int) >= 4, "LIGGGHTS's tables are indexed by int");
-  LIGGGHTS::ContactModels::Factory::instance().addNormalModel(name, id);
+  LIGGGHTS::ContactModels::Factory::instance().addNormalModel(model_name<Law>(), Law::id);
   for (int t : tangentials)
     for (int c : cohesions)
       for (int r : rollings)
-        for (int s : surfaces) add_combination<Law>({id, t, c, r, s});
+        for (int s : surfaces) add_combination<Law>({Law::id, t, c, r, s});
 }
 
-bool unknown_name(const char* name) {
-  if (std::strncmp(name, "ep", 2) != 0) return false;
-#define EPDEM_KNOWN(Class, known, id) \
-  if (std::strcmp(name, "ep/" #known) == 0) return false;
+bool unknown_name(const std::string& name) {
+  if (name.compare(0, 2, "ep") != 0) return false;
+#define EPDEM_KNOWN(Class) \
+  if (name == model_name<Class>()) return false;
   EPDEM_LAWS(EPDEM_KNOWN)
 #undef EPDEM_KNOWN
   return true;
@@ -154,9 +149,7 @@ bool unknown_name(const char* name) {
 
 const struct Registration {
   Registration() {
-    // error->one ends in MPI_Abort without flushing: on a pipe or in a file the message would be lost
-    std::setvbuf(stdout, nullptr, _IOLBF, 0);
-#define EPDEM_ADD(Class, name, id) add_law<Class>("ep/" #name, id);
+#define EPDEM_ADD(Class) add_law<Class>();
     EPDEM_LAWS(EPDEM_ADD)
 #undef EPDEM_ADD
     add_refusal({unknown_law, TANGENTIAL_OFF, COHESION_OFF, ROLLING_OFF, SURFACE_DEFAULT});

@@ -1,12 +1,15 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Theory and C++ are two routes to one number: they agree for every law, on every branch."""
 
+import math
+
 import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 from laws import NAMES, YIELDING, contacts
 
+from epdem import law as claw
 from epdem.theory import backbones
 
 ROUND_OFF = 1e-12  # of the largest value: exp, log and powers of numbers near 1, once on each route
@@ -21,6 +24,24 @@ def theory(c):
 
 def test_both_know_the_same_laws():
     assert set(backbones.LAWS) == set(NAMES)
+
+
+@pytest.mark.parametrize("name", NAMES)
+def test_both_declare_the_same_about_a_law(name):
+    """Parameters, the one that is a strength and its ratio to Y, and the memory: delta_max, or the peak beside it."""
+    info, cls = claw.laws()[name], backbones.LAWS[name]
+    assert [p.name for p in info.parameters] == list(cls.keywords)
+    pressures = [p for p in info.parameters if p.unit == "Pa"]
+    assert [info.strength] == (pressures or [None])
+    assert info.default_ratio == cls.default_ratio if pressures else math.isnan(info.default_ratio)
+    flattens = cls.flatness is not backbones.Backbone.flatness
+    assert info.memory == (4 if flattens else 1 if pressures else 0)
+
+
+def test_ids_are_those_that_restart_files_keep():
+    stored = {"hertz": 40, "thornton": 41, "johnson": 42, "cavity": 43}
+    ids = {name: info.id for name, info in claw.laws().items()}
+    assert stored.items() <= ids.items() and len(set(ids.values())) == len(ids)
 
 
 @given(contacts(), st.lists(st.floats(1e-3, 5e3), min_size=1, max_size=20))

@@ -46,7 +46,7 @@ static int bad() {
 }
 
 int main() {
-#define COUNT(Class, name, id) std::printf(#name " %d\\n", bad<epdem::Class>());
+#define COUNT(Class) std::printf("%s %d\\n", epdem::Class::name, bad<epdem::Class>());
   EPDEM_LAWS(COUNT)
 }
 """

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """What is settled when the plugin is built: headers, symbols, size, and the numbers that restart files keep."""
 
+import json
+import re
 import subprocess
 import sys
 from pathlib import Path
@@ -112,3 +114,13 @@ def test_the_number_of_history_values_is_the_one_that_restart_files_keep(tmp_pat
     assert (
         "out-of-range" in touching(run, tmp_path / "wall-more", law, dump("custom", "f_history_wall[{}]", n + 1)).error
     )
+
+
+def test_the_level_of_optimisation_is_the_users_if_he_gives_one(tmp_path):
+    """Else Release means -O3."""
+    for flags, level in (("", "-O3"), ("-O1 -g", "-O1")):
+        tree = tmp_path / (level + "tree")
+        line = ["cmake", "-S", SOURCES.parent, "-B", tree, f"-DCMAKE_CXX_FLAGS={flags}"]
+        subprocess.run(line, capture_output=True, check=True)
+        used = [re.findall(r"-O\S", c["command"]) for c in json.loads((tree / "compile_commands.json").read_text())]
+        assert used and all(u == [level] for u in used)

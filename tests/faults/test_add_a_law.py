@@ -15,11 +15,16 @@ namespace epdem {
 
 struct Toy {
   static constexpr const char* name = "toy";
+  static constexpr int id = 44;
+  using State = Maximum;
   static constexpr bool yields = true;
   static constexpr bool flattens = false;
   static constexpr Parameter parameters[] = {
-      {"yield_pressure", "yieldPressure", "Pa", std::numeric_limits<real>::quiet_NaN()}};
+      {"yield_pressure", "yieldPressure", "Pa", not_given}};
   static constexpr int n_parameters = 1;
+  static constexpr int strength = 0;
+  static constexpr double default_ratio = 2.8;
+  static constexpr bool strength_by_ratio = true;
 
   real E_star = 0.0, p_y = 0.0;
 
@@ -86,8 +91,19 @@ LAWS["toy"] = Toy
 
 def test_the_manual_says_what_this_test_does():
     section = ROOT.joinpath("ARCHITECTURE.md").read_text().split("## Add a law")[1].split("## ")[0]
-    for place in ("laws.hpp", "theory/backbones.py", "X(Toy, toy, 44)", "`elastic_overlap(R*)`", "`load(R*, alpha)`",
-                  "`work(R*, alpha)`", "`force`", "`overlap_of_work`"):
+    for place in (
+        "laws.hpp",
+        "theory/backbones.py",
+        "X(Toy)",
+        "`id`",
+        "`strength`",
+        "`State`",
+        "`elastic_overlap(R*)`",
+        "`load(R*, alpha)`",
+        "`work(R*, alpha)`",
+        "`force`",
+        "`overlap_of_work`",
+    ):
         assert place in section
     assert len(section.strip().splitlines()) <= 16
 
@@ -96,7 +112,7 @@ def test_a_new_law_passes_the_battery_and_lands_on_its_theory(copy):
     (copy / LAWS / "toy.hpp").write_text(HEADER)
     register = copy / LAWS / "laws.hpp"
     text = register.read_text().replace('#include "thornton.hpp"', '#include "thornton.hpp"\n#include "toy.hpp"')
-    text, n = re.subn(r"(  X\(Cavity, cavity, 43\))", r"\1 \\\n  X(Toy, toy, 44)", text)
+    text, n = re.subn(r"(  X\(Cavity\))", r"\1 \\\n  X(Toy)", text)
     assert n == 1
     register.write_text(text)
     backbones = copy / PYTHON / "theory" / "backbones.py"

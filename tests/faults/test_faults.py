@@ -72,8 +72,8 @@ FAULTS = [
 
 PLUGIN_TESTS = "tests/engines/test_plugin_invariance.py"
 FAULTS += [
-    Fault("history changes its sign with the side", f"{PLUGIN}/normal.hpp", 'offset_ = setup->add_history_value(slot[0], "0");',
-          'offset_ = setup->add_history_value(slot[0], "1");', PLUGIN_TESTS, "no_bit and thornton and not ning"),
+    Fault("history changes its sign with the side", f"{PLUGIN}/normal.hpp", 'setup->add_history_value(slot, "0");',
+          'setup->add_history_value(slot, "1");', PLUGIN_TESTS, "no_bit and thornton and not ning"),
     Fault("a pair does not notice that it parted", f"{PLUGIN}/normal.hpp", "if (now_ - history[stamp_] > 1.0)", "if (false)",
           PLUGIN_TESTS, "second_impact and thornton and not ning"),
     Fault("the force on j is forgotten", f"{PLUGIN}/normal.hpp", "fj.delta_F[k] -= share * s.en[k];", "fj.delta_F[k] -= 0.0 * s.en[k];",

@@ -2,6 +2,8 @@
 // What every law's loading backbone returns and declares. A law is one header beside this one.
 #pragma once
 
+#include <iterator>
+
 #include "pair.hpp"
 
 namespace epdem {
@@ -18,8 +20,33 @@ struct Parameter {
   const char* name;      // in case files and in the C ABI
   const char* property;  // LIGGGHTS property/global
   const char* unit;
-  real fallback;       // NaN: the host must give it
+  double fallback;       // NaN: the host must give it
 };
+
+inline constexpr double not_given = std::numeric_limits<double>::quiet_NaN();
+
+/// A contact's memory: the largest overlap so far [m]. `slots` names the values for a host that stores them.
+struct Maximum {
+  static constexpr const char* slots[] = {"delta_max"};
+  real delta_max = 0.0;
+};
+
+/// The same for a law with an expensive backbone, which keeps the backbone's values at delta_max beside it.
+struct Peak {
+  static constexpr const char* slots[] = {"delta_max", "force_max", "radius_max", "flatness_max"};
+  real delta_max = 0.0;
+  Point point{0.0, 0.0, 0.0};
+};
+
+template <class Law>
+using State = typename Law::State;
+
+/// How many values a host must keep from step to step.
+template <class Law>
+inline constexpr int memory = Law::yields ? static_cast<int>(std::size(State<Law>::slots)) : 0;
+
+/// A strength [Pa] that is given by the softer body's yield stress [Pa].
+inline real strength_from(real yield_stress, real ratio) noexcept { return yield_stress * ratio; }
 
 /// Hertz (1882): F = 4/3 E* sqrt(R*) alpha^1.5, a^2 = R* alpha. The elastic start of every law.
 inline Point hertz_point(real E_star, real R_star, real delta) noexcept {

@@ -11,13 +11,18 @@ namespace epdem {
 ///   tau = ln s/ln s_P. Nothing is fitted.
 struct Cavity {
   static constexpr const char* name = "cavity";
+  static constexpr int id = 43;
+  using State = Peak;
   static constexpr bool yields = true;
   static constexpr bool flattens = true;
   static constexpr Parameter parameters[] = {
-      {"yield_stress", "yieldStress", "Pa", std::numeric_limits<real>::quiet_NaN()},
+      {"yield_stress", "yieldStress", "Pa", not_given},
       {"first_yield_ratio", "firstYieldRatio", "1", 1.60},
       {"plastic_ratio", "plasticRatio", "1", 2.8}};
   static constexpr int n_parameters = 3;
+  static constexpr int strength = 0;
+  static constexpr double default_ratio = 1.0;
+  static constexpr bool strength_by_ratio = false;
 
   real E_star, Y, c_Y, c_P;
   real yield_ratio;    // alpha_Y/R*

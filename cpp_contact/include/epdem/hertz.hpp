@@ -8,10 +8,15 @@ namespace epdem {
 /// Elastic contact (Hertz 1882): no yield, no memory.
 struct Hertz {
   static constexpr const char* name = "hertz";
-  static constexpr bool yields = false;  // remembers alpha_max
+  static constexpr int id = 40;            // of the LIGGGHTS model ep/hertz; restart files keep it, it never changes
+  using State = Maximum;                   // what a contact remembers from step to step
+  static constexpr bool yields = false;    // false: a host need not keep it
   static constexpr bool flattens = false;  // unloading needs the flatness tau
   static constexpr Parameter parameters[] = {{nullptr, nullptr, nullptr, 0.0}};
   static constexpr int n_parameters = 0;
+  static constexpr int strength = -1;                  // index of the parameter at which a body yields
+  static constexpr double default_ratio = not_given;   // strength over the yield stress Y of the softer body
+  static constexpr bool strength_by_ratio = false;     // a host may take Y and the ratio in place of the strength
 
   real E_star;
 

@@ -10,11 +10,16 @@ namespace epdem {
 /// Without this elastic guard the law gives back more energy than it took. The radius jumps by sqrt 2 at alpha_c.
 struct Johnson {
   static constexpr const char* name = "johnson";
+  static constexpr int id = 42;
+  using State = Maximum;
   static constexpr bool yields = true;
   static constexpr bool flattens = false;
   static constexpr Parameter parameters[] = {
-      {"yield_pressure", "yieldPressure", "Pa", std::numeric_limits<real>::quiet_NaN()}};
+      {"yield_pressure", "yieldPressure", "Pa", not_given}};
   static constexpr int n_parameters = 1;
+  static constexpr int strength = 0;
+  static constexpr double default_ratio = 3.0;
+  static constexpr bool strength_by_ratio = true;
 
   real E_star;
   real yield_ratio;  // alpha_c/R*

@@ -5,25 +5,9 @@
 // changes from contact to contact while the pairs of materials of a simulation are few.
 #pragma once
 
-#include <type_traits>
-
 #include "unloading.hpp"
 
 namespace epdem {
-
-/// A contact's memory: the largest overlap so far [m].
-struct Maximum {
-  real delta_max = 0.0;
-};
-
-/// The same for a law with an expensive backbone, which keeps the backbone's values at delta_max beside it.
-struct Peak {
-  real delta_max = 0.0;
-  Point point{0.0, 0.0, 0.0};
-};
-
-template <class Law>
-using State = std::conditional_t<Law::flattens, Peak, Maximum>;
 
 /// The memory of a contact whose largest overlap is known.
 template <class Law>

@@ -8,9 +8,33 @@
 #include "law.hpp"
 #include "thornton.hpp"
 
-// X(class, LIGGGHTS name, id): ids are stored in LIGGGHTS restart files and never change.
-#define EPDEM_LAWS(X)      \
-  X(Hertz, hertz, 40)      \
-  X(Thornton, thornton, 41) \
-  X(Johnson, johnson, 42)  \
-  X(Cavity, cavity, 43)
+#define EPDEM_LAWS(X) \
+  X(Hertz)            \
+  X(Thornton)         \
+  X(Johnson)          \
+  X(Cavity)
+
+namespace epdem::detail {
+
+#define EPDEM_ID(Class) Class::id,
+inline constexpr int law_ids[] = {EPDEM_LAWS(EPDEM_ID)};
+#undef EPDEM_ID
+
+constexpr bool ids_fit() noexcept {
+  for (const int& id : law_ids) {
+    if (id < 1 || id > 62) return false;  // six bits of LIGGGHTS's hash code; 63 marks a name that is none of ours
+    for (const int* other = law_ids; other != &id; ++other)
+      if (*other == id) return false;
+  }
+  return true;
+}
+static_assert(ids_fit(), "every law needs an id of its own from 1 to 62");
+
+#define EPDEM_CHECK(Class)                                                                               \
+  static_assert(sizeof(State<Class>) == std::size(State<Class>::slots) * sizeof(real), "name every slot"); \
+  static_assert(Class::strength < Class::n_parameters, "the strength is one of the parameters");           \
+  static_assert(Class::strength >= 0 || !Class::strength_by_ratio, "no strength, no ratio");
+EPDEM_LAWS(EPDEM_CHECK)
+#undef EPDEM_CHECK
+
+}  // namespace epdem::detail

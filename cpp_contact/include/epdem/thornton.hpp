@@ -10,11 +10,16 @@ namespace epdem {
 /// Its restitution is eq. 8.83, its yield speed eq. 8.84.
 struct Thornton {
   static constexpr const char* name = "thornton";
+  static constexpr int id = 41;
+  using State = Maximum;
   static constexpr bool yields = true;
   static constexpr bool flattens = false;
   static constexpr Parameter parameters[] = {
-      {"yield_pressure", "yieldPressure", "Pa", std::numeric_limits<real>::quiet_NaN()}};
+      {"yield_pressure", "yieldPressure", "Pa", not_given}};
   static constexpr int n_parameters = 1;
+  static constexpr int strength = 0;
+  static constexpr double default_ratio = 2.8;
+  static constexpr bool strength_by_ratio = true;
 
   real E_star;
   real yield_ratio;   // alpha_y/R*

@@ -16,7 +16,7 @@ import numpy as np
 from .. import paths
 from ..errors import CaseError, EngineError
 
-ABI = 3
+ABI = 4
 _D = POINTER(c_double)
 
 
@@ -44,6 +44,10 @@ _SIGNATURES = {
     "epdem_viscous_number": (c_double, [c_double]),
     "epdem_law_count": (c_int, []),
     "epdem_law_name": (c_char_p, [c_int]),
+    "epdem_law_id": (c_int, [c_int]),
+    "epdem_law_strength": (c_int, [c_int]),
+    "epdem_law_default_ratio": (c_double, [c_int]),
+    "epdem_law_memory": (c_int, [c_int]),
     "epdem_law_parameter_count": (c_int, [c_int]),
     "epdem_law_parameter_name": (c_char_p, [c_int, c_int]),
     "epdem_law_parameter_property": (c_char_p, [c_int, c_int]),
@@ -67,11 +71,20 @@ class Parameter:
 
 @dataclass(frozen=True)
 class LawInfo:
-    """A law that the library knows."""
+    """A law that the library knows, as its C++ struct declares it.
+
+    `id` is that of the LIGGGHTS model "ep/" + name, kept in restart files; `strength` the parameter at which a body
+    yields [Pa], None for a law without yield; `default_ratio` its value over the yield stress Y of the softer body,
+    NaN without; `memory` the number of doubles that a contact keeps from step to step.
+    """
 
     index: int
     name: str
     parameters: tuple[Parameter, ...]
+    id: int
+    strength: Parameter | None
+    default_ratio: float
+    memory: int
 
 
 def library_path() -> Path:
@@ -124,7 +137,10 @@ def laws() -> dict[str, LawInfo]:
             for k in range(lib.epdem_law_parameter_count(i))
         )
         name = lib.epdem_law_name(i).decode()
-        found[name] = LawInfo(i, name, parameters)
+        at = lib.epdem_law_strength(i)
+        strength = parameters[at] if at >= 0 else None
+        ratio, memory = lib.epdem_law_default_ratio(i), lib.epdem_law_memory(i)
+        found[name] = LawInfo(i, name, parameters, lib.epdem_law_id(i), strength, ratio, memory)
     return found
 
 
