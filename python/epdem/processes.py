@@ -23,8 +23,15 @@ def call(command: list[str], folder: Path, *, log: str, seconds: float, env: dic
     path = folder / log
     with path.open("wb") as stream:
         try:
-            process = subprocess.Popen(command, cwd=folder, stdin=subprocess.DEVNULL, stdout=stream,
-                                       stderr=subprocess.STDOUT, env=env, start_new_session=True)  # fmt: skip
+            process = subprocess.Popen(
+                command,
+                cwd=folder,
+                stdin=subprocess.DEVNULL,
+                stdout=stream,
+                stderr=subprocess.STDOUT,
+                env=env,
+                start_new_session=True,
+            )
         except OSError as error:
             raise EngineError(f"{command[0]}: cannot be started ({error})") from None
         try:
@@ -45,8 +52,9 @@ def call(command: list[str], folder: Path, *, log: str, seconds: float, env: dic
 def ask(command: list[str], env: dict[str, str] | None = None) -> str:
     """What a program says of itself, on both streams. Raises EngineError if it cannot be started or does not end."""
     try:
-        done = subprocess.run(command, capture_output=True, text=True, errors="replace", timeout=60,
-                              stdin=subprocess.DEVNULL, env=env)  # fmt: skip
+        done = subprocess.run(
+            command, capture_output=True, text=True, errors="replace", timeout=60, stdin=subprocess.DEVNULL, env=env
+        )
     except (OSError, subprocess.TimeoutExpired) as error:
         raise EngineError(f"{command[0]}: cannot be asked for its version ({error}); see epdem doctor") from None
     return done.stdout + done.stderr

@@ -161,8 +161,9 @@ def test_a_mistake_on_the_command_line_exits_with_2_and_one_sentence(mistake, tm
     (tmp_path / "taken").write_text("")
     case = tmp_path / "case.toml"
     case.write_text((CASES / "steel_wall.toml").read_text().replace("count = 32", "count = 512"))
-    done = subprocess.run([sys.executable, "-m", "epdem.cli", command, str(case), *options], cwd=tmp_path,
-                          capture_output=True, text=True)  # fmt: skip
+    done = subprocess.run(
+        [sys.executable, "-m", "epdem.cli", command, str(case), *options], cwd=tmp_path, capture_output=True, text=True
+    )
     assert done.returncode == 2 and says in done.stderr, done.stderr
     assert done.stderr.startswith("epdem: ") and done.stderr.count("\n") == 1
 

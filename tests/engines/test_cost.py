@@ -46,8 +46,9 @@ def test_table_figure_and_data_are_written_and_the_page_names_its_command(embedd
     data, figure = cost_report.write(embedded, tmp_path)
     assert len(pd.read_csv(data)) == len(embedded.rows) == 8 and figure.stat().st_size > 10_000
     numbers = {"share": 0.1, "error": 1e-4, "rms": 3e-4, "order": 2.0, "seconds": 0.01, "ratio": 0.9}
-    bulk = pd.DataFrame([{"contender": "liggghts, cavity", "spheres": 512, "seconds_spread": 2e-3, "ratio_spread": 0.1}
-                         | numbers])  # fmt: skip
+    bulk = pd.DataFrame(
+        [{"contender": "liggghts, cavity", "spheres": 512, "seconds_spread": 2e-3, "ratio_spread": 0.1} | numbers]
+    )
     page = cost_report.document(embedded, bulk, "epdem cost CASE")
     assert "512 steel spheres" in page
     assert "| liggghts, cavity | 0.1 | 0.0001 | 0.0003 | 2.00 | 0.01 +- 0.001 | 0.90 +- 0.05 |" in page

@@ -90,8 +90,9 @@ def test_laws_of_others_have_their_own_closed_restitution(name, case, tmp_path):
         assert prediction.e_n[0] > 0.99 and prediction.e_n.min() < 0.5 < prediction.e_n[-1]
 
 
-@pytest.mark.parametrize("name", [pytest.param("liggghts-luding", marks=in_liggghts),
-                                  pytest.param("yade-luding", marks=in_yade)])  # fmt: skip
+@pytest.mark.parametrize(
+    "name", [pytest.param("liggghts-luding", marks=in_liggghts), pytest.param("yade-luding", marks=in_yade)]
+)
 def test_luding_of_two_steel_spheres_at_10_m_per_s_is_0_8910_in_both_codes(name, tmp_path, monkeypatch):
     """k_1 = 1e9 N/m, k_p/k_1 = 5, phi_f = 0.05, R = 10 mm, 7850 kg/m^3; by hand in the test of the closed form."""
     monkeypatch.setattr(foreign, "luding", lambda x: foreign.Luding(1e9, 5e9, 0.05))
@@ -142,8 +143,12 @@ def test_run_refuses_a_law_that_is_not_the_case_s():
 @in_liggghts
 @in_yade
 def test_crosscheck_tells_our_second_order_from_a_wrong_limit(tmp_path):
-    done = subprocess.run([sys.executable, "-m", "epdem.cli", "crosscheck", str(STEEL), "--json"], cwd=tmp_path,
-                          capture_output=True, text=True)  # fmt: skip
+    done = subprocess.run(
+        [sys.executable, "-m", "epdem.cli", "crosscheck", str(STEEL), "--json"],
+        cwd=tmp_path,
+        capture_output=True,
+        text=True,
+    )
     assert done.returncode == 0, done.stderr
     document = json.loads(done.stdout)
     rows = {row["model"]: row for row in document["rows"]}

@@ -27,8 +27,12 @@ ENGINES = ["embedded", pytest.param("liggghts", marks=pytest.mark.liggghts)]
 def steel(kind="sphere-wall", **changes):
     data = read_toml(CASES / "steel_wall.toml")
     if kind == "sphere-sphere":
-        data["materials"]["brass"] = {"young_modulus": "100 GPa", "poisson_ratio": 0.35, "density": "8500 kg/m^3",
-                                      "yield_stress": "0.3 GPa"}  # fmt: skip
+        data["materials"]["brass"] = {
+            "young_modulus": "100 GPa",
+            "poisson_ratio": 0.35,
+            "density": "8500 kg/m^3",
+            "yield_stress": "0.3 GPa",
+        }
         data["impact"] |= {"kind": kind, "target": {"material": "brass", "radius": "4 mm"}}
     for key, value in changes.items():
         data[key] = value

@@ -42,8 +42,13 @@ def test_a_stopped_run_says_so_and_leaves_no_engine_behind(how, tmp_path, monkey
     launcher.chmod(0o755)
     monkeypatch.setenv("EPDEM_LAUNCHER", str(launcher))
     monkeypatch.setenv("EPDEM_TEST_PID", str(mark))
-    run = subprocess.Popen([sys.executable, "-m", "epdem.cli", "run", str(CASE), "-e", "liggghts"], cwd=tmp_path,
-                           stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True)  # fmt: skip
+    run = subprocess.Popen(
+        [sys.executable, "-m", "epdem.cli", "run", str(CASE), "-e", "liggghts"],
+        cwd=tmp_path,
+        stdout=subprocess.DEVNULL,
+        stderr=subprocess.PIPE,
+        text=True,
+    )
     try:
         assert until(mark.exists), "the engine was started"
         engine = int(mark.read_text())

@@ -53,8 +53,15 @@ def yade(folder: Path, law: str, script: str, **options) -> dict:
     """Run a script in YADE: what it gave to `answer`, and its words under "log"."""
     path = folder / "script.py"
     path.write_text(PREAMBLE.format(python=str(ROOT / "python"), law=law, options=options) + script)
-    done = subprocess.run(["yade", "-n", "-x", path.name], cwd=folder, capture_output=True, text=True, timeout=60,
-                          stdin=subprocess.DEVNULL, env=os.environ | {"OMP_NUM_THREADS": "1"})  # fmt: skip
+    done = subprocess.run(
+        ["yade", "-n", "-x", path.name],
+        cwd=folder,
+        capture_output=True,
+        text=True,
+        timeout=60,
+        stdin=subprocess.DEVNULL,
+        env=os.environ | {"OMP_NUM_THREADS": "1"},
+    )
     log = done.stdout + done.stderr
     assert done.returncode == 0, log[-2000:]
     lines = [t for t in log.splitlines() if t.startswith("ANSWER ")]

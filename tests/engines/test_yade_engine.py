@@ -99,8 +99,15 @@ def test_the_deck_is_plain_travels_with_its_law_and_runs_by_hand(tmp_path):
     assert {"law.py", "contacts.py"} <= {f.name for f in files}
     (tmp_path / "a").rename(tmp_path / "b")  # it knows no absolute path, and nothing of this package
     alone = {"PATH": os.environ["PATH"], "HOME": str(tmp_path)}
-    done = subprocess.run(["yade", "-n", "-x", "b/impact.py"], cwd=tmp_path, env=alone, stdin=subprocess.DEVNULL,
-                          capture_output=True, text=True, timeout=60)  # fmt: skip
+    done = subprocess.run(
+        ["yade", "-n", "-x", "b/impact.py"],
+        cwd=tmp_path,
+        env=alone,
+        stdin=subprocess.DEVNULL,
+        capture_output=True,
+        text=True,
+        timeout=60,
+    )
     assert done.returncode == 0, done.stderr
     samples = np.load(tmp_path / "b/path.bin")
     assert samples.shape == (p.steps + 2, 3, 2 * p.n) and samples[:, 2].max() > 0
@@ -133,12 +140,14 @@ def test_what_yade_cannot_do_is_refused_before_it_starts(tmp_path):
 
 
 FAKE = {
-    "raises": ("echo 'Traceback (most recent call last):'; echo 'RuntimeError: no such sphere'; exit 1",
-               "exit code 1.*RuntimeError: no such sphere"),
+    "raises": (
+        "echo 'Traceback (most recent call last):'; echo 'RuntimeError: no such sphere'; exit 1",
+        "exit code 1.*RuntimeError: no such sphere",
+    ),
     "dies": ("echo half > path.bin.part; echo 'about to die'; kill -SEGV $$", "signal 11.*about to die"),
     "is silent": ("exit 0", "no complete result"),
     "half-writes": ("head -c 100 /dev/zero > path.bin", "no complete result"),
-}  # fmt: skip
+}
 
 
 @pytest.fixture
@@ -210,12 +219,19 @@ def test_an_error_inside_a_step_is_an_error_of_the_run(tmp_path):
 def test_yade_missing_is_said_with_the_install_command_before_anything_starts(tmp_path):
     """Nothing of the other engine is run either."""
     words = [sys.executable, "-m", "epdem.cli", "run", str(CASES / "steel_wall.toml"), "-e", "embedded", "-e", "yade"]
-    done = subprocess.run(words, cwd=tmp_path, capture_output=True, text=True, timeout=60,
-                          env=os.environ | {"EPDEM_YADE": "no-such-yade"})  # fmt: skip
+    done = subprocess.run(
+        words, cwd=tmp_path, capture_output=True, text=True, timeout=60, env=os.environ | {"EPDEM_YADE": "no-such-yade"}
+    )
     assert done.returncode not in (0, 1) and "apt-get install yade" in done.stderr
     assert not (tmp_path / "runs").exists()
-    done = subprocess.run([*words[:3], "doctor"], cwd=tmp_path, capture_output=True, text=True, timeout=60,
-                          env=os.environ | {"EPDEM_YADE": "no-such-yade"})  # fmt: skip
+    done = subprocess.run(
+        [*words[:3], "doctor"],
+        cwd=tmp_path,
+        capture_output=True,
+        text=True,
+        timeout=60,
+        env=os.environ | {"EPDEM_YADE": "no-such-yade"},
+    )
     assert "apt-get install yade" in done.stdout + done.stderr
 
 

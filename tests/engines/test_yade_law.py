@@ -38,9 +38,12 @@ def test_both_know_the_same_laws_and_parameters():
 
 @pytest.mark.parametrize("name", numbers.LAWS)
 @given(
-    R_star=st.floats(1e-6, 10.0), share=st.floats(-2.0, 1.0), reached=st.floats(-3.0, 5.0), soft=st.floats(-5.0, -1.0),
+    R_star=st.floats(1e-6, 10.0),
+    share=st.floats(-2.0, 1.0),
+    reached=st.floats(-3.0, 5.0),
+    soft=st.floats(-5.0, -1.0),
     ratios=st.sampled_from([{}, {"first_yield_ratio": 1.5, "plastic_ratio": 3.0}]),
-)  # fmt: skip
+)
 def test_force_radius_and_memory_agree_to_1e_12(name, R_star, share, reached, soft, ratios):
     """Overlaps from 1e-3 to 1e5 of yield_overlap, below and on the largest; share < 0 asks for none.
 
@@ -113,9 +116,14 @@ def test_beyond_its_end_a_branch_rises_as_the_law_to_second_order():
 
 @pytest.mark.parametrize(
     ("name", "words"),
-    [("thornton", {"strength": 0.0}), ("johnson", {"strength": -1.0}), ("cavity", {"strength": math.nan}),
-     ("cavity", {"strength": 1e9, "plastic_ratio": 1.5}), ("cavity", {"strength": 1e9, "first_yield_ratio": 1.2})],
-)  # fmt: skip
+    [
+        ("thornton", {"strength": 0.0}),
+        ("johnson", {"strength": -1.0}),
+        ("cavity", {"strength": math.nan}),
+        ("cavity", {"strength": 1e9, "plastic_ratio": 1.5}),
+        ("cavity", {"strength": 1e9, "first_yield_ratio": 1.2}),
+    ],
+)
 def test_what_the_library_refuses_the_deck_refuses_too(name, words):
     with pytest.raises(ValueError, match=f"law {name}"):
         numbers.LAWS[name](E_STAR, **words)

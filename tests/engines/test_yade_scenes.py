@@ -117,6 +117,16 @@ for call in (lambda: Contacts("thorton"), lambda: Contacts("thornton", plastic_r
 answer(words=words)
 """
     words = yade(tmp_path, "thornton", script)["words"]
-    for found, expected in zip(words, ("hertz, thornton, johnson, cavity", "plastic_ratio", "cavity", "interval = 0",
-                                       "yield_pressure", "needs less than"), strict=True):  # fmt: skip
+    for found, expected in zip(
+        words,
+        (
+            "hertz, thornton, johnson, cavity",
+            "plastic_ratio",
+            "cavity",
+            "interval = 0",
+            "yield_pressure",
+            "needs less than",
+        ),
+        strict=True,
+    ):
         assert expected in found

@@ -10,9 +10,20 @@ import pytest
 
 ROOT = Path(__file__).parents[2]
 PYTHON = ROOT / "python" / "epdem"
-SOURCES = [p for pattern in ("python/**/*.py", "tests/**/*.py", "bench/*.py", "docs/*.py", "cpp_contact/**/*.[hc]pp",
-                             "cpp_contact/**/*.h", "templates/**/*.j2") for p in sorted(ROOT.glob(pattern))
-           if "native" not in p.parts]  # fmt: skip
+SOURCES = [
+    p
+    for pattern in (
+        "python/**/*.py",
+        "tests/**/*.py",
+        "bench/*.py",
+        "docs/*.py",
+        "cpp_contact/**/*.[hc]pp",
+        "cpp_contact/**/*.h",
+        "templates/**/*.j2",
+    )
+    for p in sorted(ROOT.glob(pattern))
+    if "native" not in p.parts
+]
 
 
 def imports(path: Path) -> set[str]:
@@ -61,8 +72,13 @@ def test_every_source_states_its_licence():
 
 
 def test_lint_is_clean():
-    done = subprocess.run(["ruff", "check", "--output-format", "concise", "python", "tests", "bench", "docs"], cwd=ROOT,
-                          capture_output=True, text=True, env={"PATH": f"{ROOT}/.venv/bin:/usr/bin:/bin"})  # fmt: skip
+    done = subprocess.run(
+        ["ruff", "check", "--output-format", "concise", "python", "tests", "bench", "docs"],
+        cwd=ROOT,
+        capture_output=True,
+        text=True,
+        env={"PATH": f"{ROOT}/.venv/bin:/usr/bin:/bin"},
+    )
     assert done.returncode == 0, done.stdout
 
 

@@ -16,8 +16,11 @@ PAGE = (ROOT / "docs/laws.md").read_text()
 
 @pytest.mark.parametrize("name", claw.laws())
 def test_the_page_states_the_properties_and_defaults_of_every_law(name):
-    row = next(line for line in PAGE.splitlines() if line.startswith(f"| `{name}` |") and line.count("|") == 5
-               and not re.search(r"\| [\d.]+ \|", line))  # fmt: skip
+    row = next(
+        line
+        for line in PAGE.splitlines()
+        if line.startswith(f"| `{name}` |") and line.count("|") == 5 and not re.search(r"\| [\d.]+ \|", line)
+    )
     for p in claw.laws()[name].parameters:
         assert f"`{p.property}`" in row
         assert f"`{p.name}`" in PAGE

@@ -63,8 +63,17 @@ def test_the_floor_under_a_bed_between_smooth_walls_carries_its_weight(tmp_path)
 
 def test_lone_spheres_of_a_scene_bounce_to_e_n_squared_of_their_fall(tmp_path):
     E, Y = 5e9, 8e6
-    path = settle(tmp_path, Y=Y, error=1e-3, output="particles = 200", young_modulus='"5 GPa"', periodic="true",
-                  count="16", box='["60 mm", "60 mm", "30 mm"]', duration='"0.14 s"')  # fmt: skip
+    path = settle(
+        tmp_path,
+        Y=Y,
+        error=1e-3,
+        output="particles = 200",
+        young_modulus='"5 GPa"',
+        periodic="true",
+        count="16",
+        box='["60 mm", "60 mm", "30 mm"]',
+        duration='"0.14 s"',
+    )
     table = run(path, out=tmp_path / "out").results.particles
     table = table[(table["z"] > RADIUS) & (np.hypot(table["vx"], table["vy"]) == 0)]
     seen = 0

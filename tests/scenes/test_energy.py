@@ -59,12 +59,24 @@ def test_the_work_of_a_press_on_elastic_spheres_is_all_in_them(tmp_path):
     assert table["elastic"].max() > 0.2 * table["work"].max()
 
 
-HOPPER = {"count": "150", "bin_height": '"20 mm"', "bin_diameter": '"20 mm"', "outlet": '"12 mm"', "fill": '"0.06 s"',
-          "drop": '"5 mm"', "duration": '"0.1 s"'}  # fmt: skip
+HOPPER = {
+    "count": "150",
+    "bin_height": '"20 mm"',
+    "bin_diameter": '"20 mm"',
+    "outlet": '"12 mm"',
+    "fill": '"0.06 s"',
+    "drop": '"5 mm"',
+    "duration": '"0.1 s"',
+}
 DRUM = {"count": "100", "diameter": '"30 mm"', "length": '"6 mm"', "duration": '"0.2 s"'}
 PEENING = {"count": "60", "side": '"8 mm"', "duration": '"1.2 ms"'}
-KINDS = {"settle_glass": SETTLE, "compaction_powder": PRESS, "hopper_beads": HOPPER, "drum_beads": DRUM,
-         "peening_steel": PEENING}  # fmt: skip
+KINDS = {
+    "settle_glass": SETTLE,
+    "compaction_powder": PRESS,
+    "hopper_beads": HOPPER,
+    "drum_beads": DRUM,
+    "peening_steel": PEENING,
+}
 
 
 @pytest.mark.parametrize(("name", "law"), [*((n, "thornton") for n in KINDS), ("settle_glass", "cavity")])

@@ -19,13 +19,25 @@ CASES = sorted((Path(__file__).parents[2] / "cases").glob("*.toml"))
 # The same decks with few spheres and steps; every wall is still touched.
 SMALL = {
     "settle": {"box": ["12 mm", "12 mm", "30 mm"], "count": 70, "duration": "0.08 s"},
-    "compaction": {"box": ["0.5 mm", "0.5 mm", "0.8 mm"], "count": 60, "height": "0.3 mm", "speed": "3 m/s",
-                   "back_speed": "3 m/s"},
-    "hopper": {"count": 150, "bin_height": "20 mm", "bin_diameter": "20 mm", "outlet": "12 mm", "fill": "0.06 s",
-               "drop": "5 mm", "duration": "0.1 s"},
+    "compaction": {
+        "box": ["0.5 mm", "0.5 mm", "0.8 mm"],
+        "count": 60,
+        "height": "0.3 mm",
+        "speed": "3 m/s",
+        "back_speed": "3 m/s",
+    },
+    "hopper": {
+        "count": 150,
+        "bin_height": "20 mm",
+        "bin_diameter": "20 mm",
+        "outlet": "12 mm",
+        "fill": "0.06 s",
+        "drop": "5 mm",
+        "duration": "0.1 s",
+    },
     "drum": {"count": 60, "diameter": "30 mm", "length": "5 mm", "duration": "0.12 s"},
     "peening": {"count": 20, "side": "4 mm", "duration": "0.5 ms"},
-}  # fmt: skip
+}
 
 
 def small(data: dict) -> dict:

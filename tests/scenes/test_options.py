@@ -18,9 +18,13 @@ def poured() -> dict:
     """Sticky, rolling beads poured one after the other, with every output."""
     data = read_toml(CASES / "settle_glass.toml")
     scene = {"box": ["16 mm", "16 mm", "30 mm"], "count": 60, "rate": "2000 Hz", "duration": "0.08 s"}
-    contact = {"friction": 0.4, "cohesion": "1e3 J/m^3", "tangential_restitution": 0.5,
-               "pairs": [{"between": ["glass", "wall"], "friction": 0.1}],
-               "rolling": {"model": "epsd", "coefficient": 0.05, "damping": 0.3}}  # fmt: skip
+    contact = {
+        "friction": 0.4,
+        "cohesion": "1e3 J/m^3",
+        "tangential_restitution": 0.5,
+        "pairs": [{"between": ["glass", "wall"], "friction": 0.1}],
+        "rolling": {"model": "epsd", "coefficient": 0.05, "damping": 0.3},
+    }
     output = {"rows": 20, "particles": 2, "vtk": 2, "pictures": 2, "restarts": 2, "energy": True, "loads": True}
     return data | {"scene": data["scene"] | scene, "contact": contact, "output": output, "numerics": {"error": 0.1}}
 
@@ -54,14 +58,17 @@ def test_the_walls_keep_their_material_whatever_the_order_of_types():
     assert strength.values[0] < strength.values[1]
 
 
-@pytest.mark.parametrize(("place", "value", "words"), [
-    (("scene", "count"), 100_000, "enlarge the room"),
-    (("scene", "kind"), "sieve", "must be one of"),
-    (("scene", "walls"), "cheese", "add \\[materials.cheese\\]"),
-    (("scene", "box"), ["1 mm", "1 mm", "1 s"], "dimension"),
-    (("contact", "wall_friction"), -0.1, "must lie in"),
-    (("output", "pictures"), True, "pictures"),
-])  # fmt: skip
+@pytest.mark.parametrize(
+    ("place", "value", "words"),
+    [
+        (("scene", "count"), 100_000, "enlarge the room"),
+        (("scene", "kind"), "sieve", "must be one of"),
+        (("scene", "walls"), "cheese", "add \\[materials.cheese\\]"),
+        (("scene", "box"), ["1 mm", "1 mm", "1 s"], "dimension"),
+        (("contact", "wall_friction"), -0.1, "must lie in"),
+        (("output", "pictures"), True, "pictures"),
+    ],
+)
 def test_mistakes_are_named_before_anything_runs(place, value, words):
     data = read_toml(CASES / "settle_glass.toml")
     data[place[0]] = data[place[0]] | {place[1]: value}

@@ -91,8 +91,12 @@ def children(mark: str) -> list[int]:
 @pytest.mark.parametrize("ranks", [1, 2])
 def test_ctrl_c_stops_liggghts_with_all_its_ranks_and_the_run_can_be_continued(ranks, tmp_path):
     case, out = long_case(tmp_path), tmp_path / "out"
-    process = subprocess.Popen([sys.executable, "-c", INTERRUPTED, str(case), str(out), str(ranks)],
-                               stdout=subprocess.PIPE, stderr=subprocess.DEVNULL, text=True)  # fmt: skip
+    process = subprocess.Popen(
+        [sys.executable, "-c", INTERRUPTED, str(case), str(out), str(ranks)],
+        stdout=subprocess.PIPE,
+        stderr=subprocess.DEVNULL,
+        text=True,
+    )
     try:
         for line in process.stdout:
             if line.strip().isdigit() and int(line) >= 240:

@@ -22,8 +22,13 @@ def poured(tmp_path_factory):
     """(case, folder with its restart files, particles): beads poured in three lots in the first 40 % of the run."""
     folder = tmp_path_factory.mktemp("poured")
     data = read_toml(Path(__file__).parents[2] / "cases/settle_glass.toml")
-    scene = {"box": ["16 mm", "16 mm", "40 mm"], "count": COUNT, "rate": "1000 Hz", "duration": "0.25 s",
-             "particles": [{"material": "glass", "radius": "1.5 mm"}]}  # fmt: skip
+    scene = {
+        "box": ["16 mm", "16 mm", "40 mm"],
+        "count": COUNT,
+        "rate": "1000 Hz",
+        "duration": "0.25 s",
+        "particles": [{"material": "glass", "radius": "1.5 mm"}],
+    }
     output = {"rows": 20, "particles": 20, "restarts": 20}
     case = parse(data | {"scene": data["scene"] | scene, "output": output, "numerics": {"error": 0.1}})
     deck.write(case, folder)

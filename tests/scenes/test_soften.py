@@ -56,7 +56,10 @@ def test_softening_the_modulus_alone_loses_e_n(tmp_path):
 def test_the_twin_says_what_it_changes_and_keeps_the_rest_of_the_file():
     twin = soften(STEEL, 10.0)
     assert [c.place for c in twin.changes] == [
-        "materials.steel.young_modulus", "materials.steel.yield_stress", "case.name"]  # fmt: skip
+        "materials.steel.young_modulus",
+        "materials.steel.yield_stress",
+        "case.name",
+    ]
     before, after = STEEL.read_text().splitlines(), twin.text.splitlines()
     assert len(before) == len(after)
     assert sum(a != b for a, b in zip(before, after, strict=True)) == 3

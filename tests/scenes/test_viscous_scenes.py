@@ -42,11 +42,14 @@ def test_a_dashpot_along_the_normal_does_not_bring_one_along_the_tangent():
     assert "tangential_damping" not in setup_of(beads(0.7, friction=0.3, tangential_restitution=0.7))
 
 
-@pytest.mark.parametrize(("data", "words"), [
-    (beads(0.1), r"viscous\.restitution = 0\.1.*\[0\.14, 1\]"),
-    (beads(0.7, friction=0.3, tangential_restitution=0.5), "one restitution for both dashpots"),
-    (beads() | {"viscous": {"damping": 0.1}}, "viscous"),
-])  # fmt: skip
+@pytest.mark.parametrize(
+    ("data", "words"),
+    [
+        (beads(0.1), r"viscous\.restitution = 0\.1.*\[0\.14, 1\]"),
+        (beads(0.7, friction=0.3, tangential_restitution=0.5), "one restitution for both dashpots"),
+        (beads() | {"viscous": {"damping": 0.1}}, "viscous"),
+    ],
+)
 def test_a_dashpot_that_liggghts_cannot_have_is_refused_before_anything_runs(data, words):
     with pytest.raises(CaseError, match=words):
         deck.deck(parse(data, "case.toml"))
@@ -76,8 +79,11 @@ def test_elastic_shot_with_a_dashpot_leaves_the_plate_with_its_restitution(resti
 @pytest.mark.liggghts
 def test_elastic_beads_come_to_rest_by_a_dashpot_alone_and_the_ledger_names_the_loss(tmp_path):
     text = (CASES / "settle_glass.toml").read_text().replace('"thornton"', '"hertz"').split("[contact]")[0]
-    for old, new in (('["30 mm", "30 mm", "80 mm"]', '["12 mm", "12 mm", "30 mm"]'), ("count = 1000", "count = 70"),
-                     ('"0.5 s"', '"0.3 s"')):  # fmt: skip
+    for old, new in (
+        ('["30 mm", "30 mm", "80 mm"]', '["12 mm", "12 mm", "30 mm"]'),
+        ("count = 1000", "count = 70"),
+        ('"0.5 s"', '"0.3 s"'),
+    ):
         text = text.replace(old, new)
     text += "[viscous]\nrestitution = 0.3\n[output]\nparticles = 20\nenergy = true\n[numerics]\nerror = 0.1\n"
     (tmp_path / "case.toml").write_text(text)

@@ -123,8 +123,10 @@ def test_a_press_on_rubbing_spheres_has_its_peak_force_and_a_steeper_unloading_i
 
     def way(part) -> float:
         """Way of the plate between the largest and half the largest force [m]."""
-        return abs(np.interp(0.5 * top, *part.sort_values("plate_force")[["plate_force", "plate_z"]].to_numpy().T)
-                   - part["plate_z"].min())  # fmt: skip
+        return abs(
+            np.interp(0.5 * top, *part.sort_values("plate_force")[["plate_force", "plate_z"]].to_numpy().T)
+            - part["plate_z"].min()
+        )
 
     assert way(rows[rows["step"] > turn]) < 0.5 * way(rows[rows["step"] <= turn]), "plastic spheres give little back"
     found = verdicts(outcome)
@@ -149,8 +151,15 @@ def test_the_folder_of_a_yade_scene_runs_by_hand_and_repeats_itself(tmp_path):
     assert (
         cli.app(["deck", str(path), "--engine", "yade", "--out", str(tmp_path / "deck")], standalone_mode=False) is None
     )
-    done = subprocess.run(["yade", "-n", "-x", "scene.py"], cwd=tmp_path / "deck", env=environment(), timeout=60,
-                          capture_output=True, text=True, check=True)  # fmt: skip
+    done = subprocess.run(
+        ["yade", "-n", "-x", "scene.py"],
+        cwd=tmp_path / "deck",
+        env=environment(),
+        timeout=60,
+        capture_output=True,
+        text=True,
+        check=True,
+    )
     (tmp_path / "deck" / yade.OUT).write_text(done.stdout)
     outcome = run(path, engine="yade", out=tmp_path / "out")
     rows = tables.rows(tmp_path / "deck" / yade.OUT, outcome.deck.time_step)
@@ -173,19 +182,33 @@ def test_spheres_begin_without_overlap_inside_the_box_and_with_their_shares_of_t
     assert (r[r > 1.5e-3] ** 3).sum() / (r**3).sum() == pytest.approx(0.7, abs=0.06)
 
 
-@pytest.mark.parametrize(("name", "place", "value", "words"), [
-    ("hopper_beads", "output", {}, r"scene.kind = 'hopper'"),
-    ("drum_beads", "output", {}, r"scene.kind = 'drum'"),
-    ("peening_steel", "output", {}, r"scene.kind = 'peening'"),
-    ("settle_glass", "scene", {"rate": "2000 Hz"}, r"scene.rate = 2000.0: all spheres are there from the start"),
-    ("settle_glass", "contact", {"rolling": {"coefficient": 0.1}}, r"contact.rolling = 'epsd2'.*no rolling"),
-    ("settle_glass", "contact", {"cohesion": "1e3 J/m^3"}, r"contact.cohesion = 1000.0"),
-    ("compaction_powder", "viscous", {"restitution": 0.8}, r"viscous.restitution = 0.8: YADE's law has no dashpot"),
-    ("settle_glass", "output", {"restarts": 2}, r"output.restarts = 2"),
-    ("settle_glass", "output", {"vtk": 2}, r"output.vtk = 2"),
-    ("settle_glass", "materials", {"glass": {"young_modulus": "5 MPa", "poisson_ratio": 0.25,
-                                             "density": "2500 kg/m^3", "yield_stress": "2 MPa"}}, "takes less than"),
-])  # fmt: skip
+@pytest.mark.parametrize(
+    ("name", "place", "value", "words"),
+    [
+        ("hopper_beads", "output", {}, r"scene.kind = 'hopper'"),
+        ("drum_beads", "output", {}, r"scene.kind = 'drum'"),
+        ("peening_steel", "output", {}, r"scene.kind = 'peening'"),
+        ("settle_glass", "scene", {"rate": "2000 Hz"}, r"scene.rate = 2000.0: all spheres are there from the start"),
+        ("settle_glass", "contact", {"rolling": {"coefficient": 0.1}}, r"contact.rolling = 'epsd2'.*no rolling"),
+        ("settle_glass", "contact", {"cohesion": "1e3 J/m^3"}, r"contact.cohesion = 1000.0"),
+        ("compaction_powder", "viscous", {"restitution": 0.8}, r"viscous.restitution = 0.8: YADE's law has no dashpot"),
+        ("settle_glass", "output", {"restarts": 2}, r"output.restarts = 2"),
+        ("settle_glass", "output", {"vtk": 2}, r"output.vtk = 2"),
+        (
+            "settle_glass",
+            "materials",
+            {
+                "glass": {
+                    "young_modulus": "5 MPa",
+                    "poisson_ratio": 0.25,
+                    "density": "2500 kg/m^3",
+                    "yield_stress": "2 MPa",
+                }
+            },
+            "takes less than",
+        ),
+    ],
+)
 def test_what_yade_cannot_is_refused_with_place_value_and_next_step(name, place, value, words, tmp_path):
     data = read_toml(CASES / f"{name}.toml")
     data[place] = data.get(place, {}) | value

@@ -210,8 +210,11 @@ def _explain(path: object, data: dict, error: ValidationError) -> str:
     problems = error.errors()
     # of the two readings of `speeds` pydantic reports both; the one that fits the shape of the value is meant
     shape = "SpeedRange" if isinstance(_value_at(data, ("impact", "speeds")), dict) else "list["
-    problems = [p for p in problems if not (p["loc"][:2] == ("impact", "speeds") and len(p["loc"]) > 2
-                                            and not str(p["loc"][2]).startswith(shape))] or problems  # fmt: skip
+    problems = [
+        p
+        for p in problems
+        if not (p["loc"][:2] == ("impact", "speeds") and len(p["loc"]) > 2 and not str(p["loc"][2]).startswith(shape))
+    ] or problems
     problem = next((p for p in problems if p["type"] == "extra_forbidden"), problems[0])  # likely a misspelt key
     location = tuple(
         k for k in problem["loc"] if k in ("from",) or not str(k).startswith(("SpeedRange", "list[", "function-"))

@@ -10,11 +10,27 @@ from rich.console import Console
 
 from .options import AsJson, Out, console
 
-VALUES = {"model": "model", "e_n": "e_n", "e_n_theory": "its theory", "contact_time": "t_c [us]",
-          "force_max": "F_max [N]", "e_n_error": "error e_n", "contact_time_error": "t_c", "force_max_error": "F_max",
-          "order": "order", "seconds": "s"}  # fmt: skip
-CHANGES = {"model": "model", "unequal_error": "error", "swap": "swap", "sort": "sort", "migration": "migration",
-           "restart": "restart", "momentum": "momentum"}  # fmt: skip
+VALUES = {
+    "model": "model",
+    "e_n": "e_n",
+    "e_n_theory": "its theory",
+    "contact_time": "t_c [us]",
+    "force_max": "F_max [N]",
+    "e_n_error": "error e_n",
+    "contact_time_error": "t_c",
+    "force_max_error": "F_max",
+    "order": "order",
+    "seconds": "s",
+}
+CHANGES = {
+    "model": "model",
+    "unequal_error": "error",
+    "swap": "swap",
+    "sort": "sort",
+    "migration": "migration",
+    "restart": "restart",
+    "momentum": "momentum",
+}
 CHANGES_TITLE = "Two spheres of unequal radii and moduli"
 CHANGES_NOTE = """error: of e_n; swap to restart: changes of e_n by the way the impact is told;
 momentum: lost, as a share of one body's change. A serial YADE sorts nothing and has no ranks (-);

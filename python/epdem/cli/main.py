@@ -24,8 +24,13 @@ Begin with: epdem run cases/steel_wall.toml -e embedded -e liggghts
 
 Exit codes: 0 all within tolerance, 1 a check failed, 2 bad input, 3 an engine failed, 130 stopped.
 """
-app = typer.Typer(add_completion=False, no_args_is_help=True, pretty_exceptions_enable=False, help=ABOUT,
-                  context_settings={"help_option_names": ["-h", "--help"]})  # fmt: skip
+app = typer.Typer(
+    add_completion=False,
+    no_args_is_help=True,
+    pretty_exceptions_enable=False,
+    help=ABOUT,
+    context_settings={"help_option_names": ["-h", "--help"]},
+)
 
 
 @app.command()
@@ -58,11 +63,25 @@ def run(
 
     engines = engine or ["liggghts"]
     stages = len(set(engines)) * max(len(set(law or [])), 1) + 1  # and the figure
-    with Progress(TextColumn("{task.description}"), BarColumn(), TimeElapsedColumn(), console=Console(stderr=True),
-                  transient=True, disable=not sys.stderr.isatty()) as bar:  # fmt: skip
+    with Progress(
+        TextColumn("{task.description}"),
+        BarColumn(),
+        TimeElapsedColumn(),
+        console=Console(stderr=True),
+        transient=True,
+        disable=not sys.stderr.isatty(),
+    ) as bar:
         task = bar.add_task("", total=stages)
-        outcome = run_case(case, engines=engines, laws=law or [], out=out, ranks=ranks, steps=steps, fresh=fresh,
-                           progress=lambda text: bar.update(task, advance=1, description=text))  # fmt: skip
+        outcome = run_case(
+            case,
+            engines=engines,
+            laws=law or [],
+            out=out,
+            ranks=ranks,
+            steps=steps,
+            fresh=fresh,
+            progress=lambda text: bar.update(task, advance=1, description=text),
+        )
         bar.update(task, advance=1, description="figure")
         report.figure(outcome)
     if as_json:

@@ -28,17 +28,30 @@ def timestep(
         x = experiment(load(case), name)
         found.append((x, search(x, predict(x), error)))
     if as_json:
-        documents = [{"case": x.case.name, "law": x.law.name, "target": f.target, "time_step": f.time_step,
-                      "error": f.error, "rms": f.rms, "steps_in_contact": f.steps_in_contact,
-                      "reference": vars(f.reference), "share": f.shares()} for x, f in found]  # fmt: skip
+        documents = [
+            {
+                "case": x.case.name,
+                "law": x.law.name,
+                "target": f.target,
+                "time_step": f.time_step,
+                "error": f.error,
+                "rms": f.rms,
+                "steps_in_contact": f.steps_in_contact,
+                "reference": vars(f.reference),
+                "share": f.shares(),
+            }
+            for x, f in found
+        ]
         print(json.dumps(documents[0] if len(documents) == 1 else documents, indent=1))
         return
     for x, f in found:
         share = f.shares()
-        print(f"{x.case.name}, law {x.law.name}: timestep {f.time_step:.4g} s for e_n within {f.target:g} "
-              f"(largest {f.error:.2g}, rms {f.rms:.2g}; {f.steps_in_contact:.0f} steps in the shortest contact)\n"
-              f"  {share['stability']:.2%} of the stability limit, {share['rayleigh']:.2%} of the Rayleigh time, "
-              f"{share['hertz']:.2%} of the elastic contact time")  # fmt: skip
+        print(
+            f"{x.case.name}, law {x.law.name}: timestep {f.time_step:.4g} s for e_n within {f.target:g} "
+            f"(largest {f.error:.2g}, rms {f.rms:.2g}; {f.steps_in_contact:.0f} steps in the shortest contact)\n"
+            f"  {share['stability']:.2%} of the stability limit, {share['rayleigh']:.2%} of the Rayleigh time, "
+            f"{share['hertz']:.2%} of the elastic contact time"
+        )
 
 
 def stress(
@@ -61,8 +74,9 @@ def stress(
     from ..studies.stability.suite import summary
 
     with Console(stderr=True).status("") as line:
-        outcome = suite.run(engine or ["embedded"], law or [], groups=group, every=every, steps=steps,
-                            progress=line.update)  # fmt: skip
+        outcome = suite.run(
+            engine or ["embedded"], law or [], groups=group, every=every, steps=steps, progress=line.update
+        )
     if out:
         with atomic(out) as temporary:
             outcome.verdicts.to_csv(temporary, index=False)
@@ -70,9 +84,18 @@ def stress(
         with atomic(docs) as temporary:
             temporary.write_text(document(outcome, "epdem " + " ".join(sys.argv[1:])))
     if as_json:
-        print(json.dumps({"passed": outcome.passed, "rows": records(outcome.verdicts),
-                          "roundoff": records(outcome.roundoff), "bulk": records(outcome.bulk),
-                          "precisions": records(outcome.precisions)}, indent=1))  # fmt: skip
+        print(
+            json.dumps(
+                {
+                    "passed": outcome.passed,
+                    "rows": records(outcome.verdicts),
+                    "roundoff": records(outcome.roundoff),
+                    "bulk": records(outcome.bulk),
+                    "precisions": records(outcome.precisions),
+                },
+                indent=1,
+            )
+        )
     else:
         screen = console()
         screen.print(table("extreme cases; steps as shares of the stability limit", summary(outcome.verdicts)))
@@ -103,8 +126,13 @@ def cost(
 
     scene = None
     with Console(stderr=True).status("") as line:
-        outcome = study.run(case, engines=engine or ["embedded", "liggghts"], laws=law or [], repetitions=repetitions,
-                            progress=line.update)  # fmt: skip
+        outcome = study.run(
+            case,
+            engines=engine or ["embedded", "liggghts"],
+            laws=law or [],
+            repetitions=repetitions,
+            progress=line.update,
+        )
         if bulk:
             from ..studies.stability import bulk_cost
 
@@ -116,8 +144,13 @@ def cost(
         with atomic(docs) as temporary:
             temporary.write_text(cost_report.document(outcome, scene, "epdem " + " ".join(sys.argv[1:])))
     if as_json:
-        document = {"case": outcome.case.name, "seconds": outcome.seconds, "files": [str(f) for f in files],
-                    "rows": records(outcome.rows), "contenders": records(outcome.contenders)}  # fmt: skip
+        document = {
+            "case": outcome.case.name,
+            "seconds": outcome.seconds,
+            "files": [str(f) for f in files],
+            "rows": records(outcome.rows),
+            "contenders": records(outcome.contenders),
+        }
         print(json.dumps(document | ({} if scene is None else {"bulk": records(scene)}), indent=1))
     else:
         cost_report.show(outcome, scene, console())

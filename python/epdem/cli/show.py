@@ -30,9 +30,17 @@ def predictions(pairs: list[tuple[Experiment, Prediction]], as_json: bool, conso
     for x, p in pairs:
         frame = pd.DataFrame({n: getattr(p, n) for n in Prediction.COLUMNS})
         if as_json:
-            document.append({"case": x.case.name, "law": x.law.name, "parameters": x.law.parameters, "yields": p.yields,
-                             "yield_speeds": {k: v if math.isfinite(v) else None for k, v in p.yield_speeds.items()},
-                             "warnings": p.warnings(), "rows": records(frame)})  # fmt: skip
+            document.append(
+                {
+                    "case": x.case.name,
+                    "law": x.law.name,
+                    "parameters": x.law.parameters,
+                    "yields": p.yields,
+                    "yield_speeds": {k: v if math.isfinite(v) else None for k, v in p.yield_speeds.items()},
+                    "warnings": p.warnings(),
+                    "rows": records(frame),
+                }
+            )
         else:
             console.print(_table(f"{x.case.case.title}: law {x.law.name} (SI units; {yielding(p)})", frame))
             for material, speed in p.yield_speeds.items():

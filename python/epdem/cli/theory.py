@@ -32,13 +32,19 @@ def theory(
     for name, law in LAWS.items():
         strength = {k: law.default_ratio * m.yield_stress for k in list(law.keywords.values())[:1]}
         x = impact(law(E_star=E, R_star=R, **strength), m_star=mass, speed=v)
-        rows[name] = {k: float(getattr(x, k)) for k in ("e_n", "contact_time", "force_max", "overlap_max",
-                                                       "residual_overlap", "strain_ratio")}  # fmt: skip
+        rows[name] = {
+            k: float(getattr(x, k))
+            for k in ("e_n", "contact_time", "force_max", "overlap_max", "residual_overlap", "strain_ratio")
+        }
     p_0, depth = yielding.first_yield(m.poisson_ratio)
-    common = {"E_star": E, "m_star": mass, "first_yield_p0_over_Y": float(p_0),
-              "first_yield_depth_over_a": float(depth),
-              "v_y0": float(printed.yield_speed(p_y=1.6 * m.yield_stress, E_star=E, R_star=R, m_star=mass)),
-              "v_y": float(printed.yield_speed(p_y=2.8 * m.yield_stress, E_star=E, R_star=R, m_star=mass))}  # fmt: skip
+    common = {
+        "E_star": E,
+        "m_star": mass,
+        "first_yield_p0_over_Y": float(p_0),
+        "first_yield_depth_over_a": float(depth),
+        "v_y0": float(printed.yield_speed(p_y=1.6 * m.yield_stress, E_star=E, R_star=R, m_star=mass)),
+        "v_y": float(printed.yield_speed(p_y=2.8 * m.yield_stress, E_star=E, R_star=R, m_star=mass)),
+    }
     if as_json:
         print(
             json.dumps({"material": material, "source": found.source, "radius": R, "speed": v, **common, "laws": rows})
@@ -50,10 +56,13 @@ def theory(
     for name, row in rows.items():
         table.add_row(name, *(f"{value:.6g}" for value in row.values()))
     console().print(table)
-    console().print(f"E* = {E:.5g} Pa, m* = {mass:.5g} kg; first yield at p_0 = {float(p_0):.4f} Y, depth "
-                    f"{float(depth):.3f} a; v_y0 = {common['v_y0']:.4g} m/s (1.60 Y), "
-                    f"v_y = {common['v_y']:.4g} m/s (2.8 Y)",
-                    highlight=False, soft_wrap=True)  # fmt: skip
+    console().print(
+        f"E* = {E:.5g} Pa, m* = {mass:.5g} kg; first yield at p_0 = {float(p_0):.4f} Y, depth "
+        f"{float(depth):.3f} a; v_y0 = {common['v_y0']:.4g} m/s (1.60 Y), "
+        f"v_y = {common['v_y']:.4g} m/s (2.8 Y)",
+        highlight=False,
+        soft_wrap=True,
+    )
     console().print(f"source: {found.source}", highlight=False, soft_wrap=True)
 
 

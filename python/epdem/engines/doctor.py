@@ -58,10 +58,18 @@ def _plugin() -> Finding:
     with tempfile.TemporaryDirectory() as folder:
         deck = Path(folder) / "in.doctor"
         models = "\n".join(f"pair_style gran model ep/{name} tangential off" for name in claw.laws())
-        deck.write_text("atom_style granular\nnewton off\ncommunicate single vel yes\nregion box block 0 1 0 1 0 1\n"
-                        f"create_box 1 box\n{models}\n")  # fmt: skip
-        done = subprocess.run([str(launcher), "-in", deck.name, "-log", "none"], cwd=folder, timeout=60,
-                              capture_output=True, text=True, errors="replace")  # fmt: skip
+        deck.write_text(
+            "atom_style granular\nnewton off\ncommunicate single vel yes\nregion box block 0 1 0 1 0 1\n"
+            f"create_box 1 box\n{models}\n"
+        )
+        done = subprocess.run(
+            [str(launcher), "-in", deck.name, "-log", "none"],
+            cwd=folder,
+            timeout=60,
+            capture_output=True,
+            text=True,
+            errors="replace",
+        )
     if done.returncode == 0:
         return Finding("plugin", True, f"loads, models {', '.join('ep/' + n for n in claw.laws())}: {plugin}")
     words = [t for t in (done.stdout + done.stderr).splitlines() if t.strip()][-1:]

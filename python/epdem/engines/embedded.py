@@ -28,7 +28,13 @@ class Embedded:
         x = plan.experiment
         start = time.perf_counter()
         _, overlap, force, velocity = x.native_law().impacts(
-            R_star=x.R_star, m_star=x.m_star, speed=plan.speed, time_step=plan.time_step, gap=plan.gap,
-            steps=plan.steps, viscous=x.viscous_number, paths=True,
-        )  # fmt: skip
+            R_star=x.R_star,
+            m_star=x.m_star,
+            speed=plan.speed,
+            time_step=plan.time_step,
+            gap=plan.gap,
+            steps=plan.steps,
+            viscous=x.viscous_number,
+            paths=True,
+        )
         return Trajectory(plan.time_step, overlap, force, velocity, {"stepping": time.perf_counter() - start})

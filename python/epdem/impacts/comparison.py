@@ -10,8 +10,18 @@ from .plan import Plan
 from .prediction import Prediction
 
 CHECKED = ("e_n", "contact_time", "force_max", "overlap_max", "residual_overlap")
-UNITS = {"speed": "m/s", "gap": "m", "contact_time": "s", "force_max": "N", "overlap_max": "m", "residual_overlap": "m",
-         "radius_max": "m", "work_in": "J", "work_out": "J", "plastic_work": "J"}  # fmt: skip
+UNITS = {
+    "speed": "m/s",
+    "gap": "m",
+    "contact_time": "s",
+    "force_max": "N",
+    "overlap_max": "m",
+    "residual_overlap": "m",
+    "radius_max": "m",
+    "work_in": "J",
+    "work_out": "J",
+    "plastic_work": "J",
+}
 
 
 def impacts_table(plan: Plan, measured: Measured) -> pd.DataFrame:

@@ -152,11 +152,17 @@ def experiment(case: Case, law: str | None = None) -> Experiment:
         raise CaseError("both bodies are rigid; at least one must deform")
     elastic = (body.young_modulus, body.poisson_ratio, target.young_modulus, target.poisson_ratio)
     e = Experiment(
-        case=case, law=spec, body=body, target=target, speed=case.impact.speed_values(),
-        E_star=float(pair.E_star(*elastic)), G_star=float(pair.G_star(*elastic)),
-        R_star=float(pair.R_star(body.radius, target.radius)), m_star=float(pair.m_star(body.mass, target.mass)),
+        case=case,
+        law=spec,
+        body=body,
+        target=target,
+        speed=case.impact.speed_values(),
+        E_star=float(pair.E_star(*elastic)),
+        G_star=float(pair.G_star(*elastic)),
+        R_star=float(pair.R_star(body.radius, target.radius)),
+        m_star=float(pair.m_star(body.mass, target.mass)),
         viscous_restitution=case.viscous.restitution if case.viscous else None,
-    )  # fmt: skip
+    )
     e.native_law()
     try:
         e.theory()  # parameters that make no sense together are refused here

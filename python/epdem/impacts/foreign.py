@@ -48,8 +48,10 @@ def predict_luding(x: Experiment) -> Prediction:
 
 def luding_note(x: Experiment) -> str:
     law = luding(x)
-    return (f"k_1 = {law.k_1:.4g} N/m (F_max/overlap of {x.law.name} at {x.speed[x.speed.size // 2]:.4g} m/s), "
-            f"k_p/k_1 = {STIFFENING:g}, phi_f = {law.phi_f:g}")  # fmt: skip
+    return (
+        f"k_1 = {law.k_1:.4g} N/m (F_max/overlap of {x.law.name} at {x.speed[x.speed.size // 2]:.4g} m/s), "
+        f"k_p/k_1 = {STIFFENING:g}, phi_f = {law.phi_f:g}"
+    )
 
 
 def predict_edinburgh(x: Experiment) -> Prediction:
@@ -88,8 +90,9 @@ def predict_mdr(x: Experiment) -> Prediction:
     """Theory of mdr for the body and speeds of a case, its radius constant. Raises CaseError."""
     law = mdr(x)
     try:
-        impact = mdr_theory.impact(E_eff=x.E_star, nu=law.poisson_ratio, R=x.R_star, Y=law.yield_stress,
-                                   m_star=x.m_star, speed=x.speed)  # fmt: skip
+        impact = mdr_theory.impact(
+            E_eff=x.E_star, nu=law.poisson_ratio, R=x.R_star, Y=law.yield_stress, m_star=x.m_star, speed=x.speed
+        )
     except ValueError as error:
         raise CaseError(f"mdr: {error}") from None
     return _prediction(x, impact)
@@ -97,8 +100,10 @@ def predict_mdr(x: Experiment) -> Prediction:
 
 def mdr_note(x: Experiment) -> str:
     law = mdr(x)
-    return (f"rigid flat, E = {law.young_modulus:.4g} Pa (the case's E*), Y = {law.yield_stress:.4g} Pa, p = 2.75 Y; "
-            "its radius grows, its theory's does not: a comparison")  # fmt: skip
+    return (
+        f"rigid flat, E = {law.young_modulus:.4g} Pa (the case's E*), Y = {law.yield_stress:.4g} Pa, p = 2.75 Y; "
+        "its radius grows, its theory's does not: a comparison"
+    )
 
 
 def prediction(tool: object, x: Experiment) -> Prediction:
@@ -110,6 +115,10 @@ def _prediction(x: Experiment, impact: hysteresis.Impact) -> Prediction:
     names = ("e_n", "contact_time", "force_max", "overlap_max", "residual_overlap", "work_in", "work_out")
     columns = {n: np.asarray(getattr(impact, n), float) for n in names}
     return Prediction(
-        speed=x.speed, **columns, plastic_work=columns["work_in"] - columns["work_out"],
-        strain_ratio=np.sqrt(columns["overlap_max"] / x.R_star), yields=(), yield_speeds={},
-    )  # fmt: skip
+        speed=x.speed,
+        **columns,
+        plastic_work=columns["work_in"] - columns["work_out"],
+        strain_ratio=np.sqrt(columns["overlap_max"] / x.R_star),
+        yields=(),
+        yield_speeds={},
+    )

@@ -28,8 +28,15 @@ class Measured:
     energy_residual: np.ndarray
     steps_in_contact: np.ndarray
 
-    COLUMNS = ("e_n", "contact_time", "force_max", "overlap_max", "residual_overlap", "energy_residual",
-               "steps_in_contact")  # fmt: skip
+    COLUMNS = (
+        "e_n",
+        "contact_time",
+        "force_max",
+        "overlap_max",
+        "residual_overlap",
+        "energy_residual",
+        "steps_in_contact",
+    )
 
 
 def _last(valid: np.ndarray) -> np.ndarray:

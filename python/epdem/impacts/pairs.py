@@ -55,8 +55,9 @@ def unequal_spheres(x: Experiment) -> Experiment:
     material = material.model_copy(update={"young_modulus": OTHER_MODULUS * material.young_modulus})
     target = Target.model_construct(material=other, radius=OTHER_RADIUS * x.body.radius)
     update = {"kind": "sphere-sphere", "target": target, "speeds": [float(x.speed[x.speed.size // 2])]}
-    case = x.case.model_copy(update={"impact": impact.model_copy(update=update),
-                                     "materials": x.case.materials | {other: material}})  # fmt: skip
+    case = x.case.model_copy(
+        update={"impact": impact.model_copy(update=update), "materials": x.case.materials | {other: material}}
+    )
     return experiment(case, None if x.law.name == x.case.law.name else x.law.name)
 
 

@@ -29,8 +29,18 @@ class Prediction:
     yields: tuple[str, ...]  # materials that the law lets flow somewhere in the range of speeds
     yield_speeds: dict[str, float]  # from which each material yields beneath its surface [m/s], eq. 8.78; inf: never
 
-    COLUMNS = ("speed", "e_n", "contact_time", "force_max", "overlap_max", "residual_overlap", "work_in", "work_out",
-               "plastic_work", "strain_ratio")  # fmt: skip
+    COLUMNS = (
+        "speed",
+        "e_n",
+        "contact_time",
+        "force_max",
+        "overlap_max",
+        "residual_overlap",
+        "work_in",
+        "work_out",
+        "plastic_work",
+        "strain_ratio",
+    )
 
     def warnings(self) -> list[str]:
         """Where theory leaves its own domain, in words."""

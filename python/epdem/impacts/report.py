@@ -15,8 +15,15 @@ from .comparison import CHECKED
 from .prediction import Prediction
 from .run import Outcome
 
-ROW_KEYS = ("engine", "law", "speed", *(k for n in CHECKED for k in (n, n + "_theory", n + "_error")),
-            "energy_residual", "steps_in_contact", "passed")  # fmt: skip
+ROW_KEYS = (
+    "engine",
+    "law",
+    "speed",
+    *(k for n in CHECKED for k in (n, n + "_theory", n + "_error")),
+    "energy_residual",
+    "steps_in_contact",
+    "passed",
+)
 
 
 def _plain(value):
@@ -55,16 +62,36 @@ def run_table(outcome: Outcome) -> Table:
     found = "; ".join(f"{law}: {yielding(p)}" for law, p in outcome.predictions.items())
     table = Table(title=f"{outcome.case.case.title} ({found})", caption_justify="left")
     laws = outcome.results.comparison["law"].nunique() > 1
-    heads = ["v [m/s]", "engine", *(["law"] if laws else []), "e_n", "theory", "error", "t_c [us]", "F_max [N]",
-             "overlap [um]", "steps", "pass"]  # fmt: skip
+    heads = [
+        "v [m/s]",
+        "engine",
+        *(["law"] if laws else []),
+        "e_n",
+        "theory",
+        "error",
+        "t_c [us]",
+        "F_max [N]",
+        "overlap [um]",
+        "steps",
+        "pass",
+    ]
     for head in heads:
         table.add_column(escape(head), justify="left" if head in ("engine", "law") else "right", no_wrap=True)
     ordered = outcome.results.comparison.sort_values(["law", "speed", "engine"], kind="stable")
     for row in ordered.to_dict("records"):
-        cells = [f"{row['speed']:.4g}", row["engine"], *([row["law"]] if laws else []), f"{row['e_n']:.6f}",
-                 f"{row['e_n_theory']:.6f}", f"{row['e_n_error']:.1e}", f"{row['contact_time'] * 1e6:.4g}",
-                 f"{row['force_max']:.5g}", f"{row['overlap_max'] * 1e6:.4g}", str(row["steps_in_contact"]),
-                 "yes" if row["passed"] else "NO"]  # fmt: skip
+        cells = [
+            f"{row['speed']:.4g}",
+            row["engine"],
+            *([row["law"]] if laws else []),
+            f"{row['e_n']:.6f}",
+            f"{row['e_n_theory']:.6f}",
+            f"{row['e_n_error']:.1e}",
+            f"{row['contact_time'] * 1e6:.4g}",
+            f"{row['force_max']:.5g}",
+            f"{row['overlap_max'] * 1e6:.4g}",
+            str(row["steps_in_contact"]),
+            "yes" if row["passed"] else "NO",
+        ]
         table.add_row(*cells, style=None if row["passed"] else "red")
     return table
 

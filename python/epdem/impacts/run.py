@@ -111,17 +111,27 @@ def _beside_earlier(results: store.Results, old: store.Results) -> store.Results
     rows = old.comparison
     rows = rows[[f"{law}/{name}" in keep for law, name in zip(rows["law"], rows["engine"], strict=True)]]
     return store.Results(
-        results.case_text, old.attributes | results.attributes,
+        results.case_text,
+        old.attributes | results.attributes,
         pd.concat([results.comparison, rows], ignore_index=True),
-        {k: old.impacts[k] for k in keep} | results.impacts, old.predictions | results.predictions,
+        {k: old.impacts[k] for k in keep} | results.impacts,
+        old.predictions | results.predictions,
         {k: old.runs[k] for k in keep} | results.runs,
         {k: v for k, v in old.decks.items() if k.rsplit("/", 1)[0] in keep} | results.decks,
-    )  # fmt: skip
+    )
 
 
-def run(case_path: Path | str, *, engines: list[str], laws: list[str], out: Path | None = None, ranks: int = 1,
-        steps: int | None = None, fresh: bool = False, progress: Callable[[str], None] = lambda text: None,
-        ) -> Outcome:  # fmt: skip
+def run(
+    case_path: Path | str,
+    *,
+    engines: list[str],
+    laws: list[str],
+    out: Path | None = None,
+    ranks: int = 1,
+    steps: int | None = None,
+    fresh: bool = False,
+    progress: Callable[[str], None] = lambda text: None,
+) -> Outcome:
     """Run a case on every engine with every law (none given: the case's own). Raises CaseError or EngineError.
 
     `steps` replaces the case's steps in contact. All input is checked and every engine looked for before anything is
@@ -152,8 +162,10 @@ def run(case_path: Path | str, *, engines: list[str], laws: list[str], out: Path
     folder = out or Path("runs") / case.name
     stored = folder / "results.h5"
     old = store.Results() if fresh else _stored(stored)
-    results = store.Results(case_text=Path(case_path).read_text(), attributes={"case": case.name, "epdem": __version__}
-                            | {f"version_{k}": v for k, v in versions.items()})  # fmt: skip
+    results = store.Results(
+        case_text=Path(case_path).read_text(),
+        attributes={"case": case.name, "epdem": __version__} | {f"version_{k}": v for k, v in versions.items()},
+    )
     outcome = Outcome(case, folder, results, predictions)
     rows = []
     for x, p in zip(experiments, plans, strict=True):

@@ -56,14 +56,20 @@ def reference(x: Experiment, prediction: Prediction) -> Reference:
     rayleigh = np.inf
     for body in (x.body, x.target):
         if np.isfinite(body.radius) and not body.rigid:
-            time = times.rayleigh_time(radius=body.radius, density=body.density, young_modulus=body.young_modulus,
-                                       poisson_ratio_=body.poisson_ratio)  # fmt: skip
+            time = times.rayleigh_time(
+                radius=body.radius,
+                density=body.density,
+                young_modulus=body.young_modulus,
+                poisson_ratio_=body.poisson_ratio,
+            )
             rayleigh = min(rayleigh, float(time))
     hertz = times.hertz_time(E_star=x.E_star, R_star=x.R_star, m_star=x.m_star, speed=x.speed.max())
     return Reference(
-        stability=float(stability_limit(x, prediction.overlap_max.max())), rayleigh=float(rayleigh), hertz=float(hertz),
+        stability=float(stability_limit(x, prediction.overlap_max.max())),
+        rayleigh=float(rayleigh),
+        hertz=float(hertz),
         contact=float(prediction.contact_time.min()),
-    )  # fmt: skip
+    )
 
 
 def restitution_errors(x: Experiment, prediction: Prediction, time_step: float, phases: int = PHASES) -> np.ndarray:
@@ -72,8 +78,15 @@ def restitution_errors(x: Experiment, prediction: Prediction, time_step: float, 
     gap = phase[None, :] * x.speed[:, None] * time_step
     speed = np.broadcast_to(x.speed[:, None], gap.shape)
     steps = int(np.ceil(1.5 * prediction.contact_time.max() / time_step)) + 20
-    out = x.native_law().impacts(R_star=x.R_star, m_star=x.m_star, speed=speed.ravel(), time_step=time_step,
-                                 gap=gap.ravel(), steps=steps, viscous=x.viscous_number)  # fmt: skip
+    out = x.native_law().impacts(
+        R_star=x.R_star,
+        m_star=x.m_star,
+        speed=speed.ravel(),
+        time_step=time_step,
+        gap=gap.ravel(),
+        steps=steps,
+        viscous=x.viscous_number,
+    )
     e_n = (out["rebound_speed"] / speed.ravel()).reshape(gap.shape)
     ended = (out["last"] >= 0) & (out["steps"] < steps)
     error = np.abs(e_n / prediction.e_n[:, None] - 1.0)

@@ -89,11 +89,18 @@ class LammpsMdr:
         numbers = (law.young_modulus, law.poisson_ratio, law.yield_stress, 0.0, BULK, 0.0)
         contact = f"mdr {' '.join(map(decks.number, numbers))} tangential linear_history 0.0 0.0 0.0 damping mdr 1"
         return Deck(
-            title=x.case.case.title, source=x.case.case.source,
+            title=x.case.case.title,
+            source=x.case.case.source,
             summary=f"{x.speed.size} speeds x {plan.phases} phases = {plan.n} independent impacts, LAMMPS's mdr",
-            data="impact.data", skin=0.2 * x.body.radius, types=(x.body.material,), wall_type=1, contact=contact,
-            time_step=plan.time_step, path="path.txt", steps=plan.steps,
-        )  # fmt: skip
+            data="impact.data",
+            skin=0.2 * x.body.radius,
+            types=(x.body.material,),
+            wall_type=1,
+            contact=contact,
+            time_step=plan.time_step,
+            path="path.txt",
+            steps=plan.steps,
+        )
 
     def write(self, plan: Plan, folder: Path) -> list[Path]:
         deck = self.deck(plan)
@@ -110,8 +117,13 @@ class LammpsMdr:
         path, start = folder / "path.txt", time.perf_counter()
         path.unlink(missing_ok=True)
         env = os.environ | {"LD_LIBRARY_PATH": str(folder.resolve()), "OMP_NUM_THREADS": "1"}
-        call([str(program()), "-in", "in.impact", "-log", "log.lammps"], folder, log="out.lammps",
-             seconds=120 + 1e-5 * plan.n * plan.steps, env=env)  # fmt: skip
+        call(
+            [str(program()), "-in", "in.impact", "-log", "log.lammps"],
+            folder,
+            log="out.lammps",
+            seconds=120 + 1e-5 * plan.n * plan.steps,
+            env=env,
+        )
         wall = time.perf_counter() - start
         try:
             lines = path.read_text().splitlines()

@@ -225,8 +225,9 @@ class Law:
         cases["steps"], cases["viscous"] = steps, viscous
         return cases
 
-    def impacts(self, *, R_star, m_star, speed, time_step, gap=0.0, steps: int, viscous: float = 0.0,
-                paths: bool = False):  # fmt: skip
+    def impacts(
+        self, *, R_star, m_star, speed, time_step, gap=0.0, steps: int, viscous: float = 0.0, paths: bool = False
+    ):
         """Two-body impacts by velocity Verlet; all arguments but `steps` and `paths` broadcast to (n,).
 
         gap [m] is the distance before first touch (negative: overlap at the start); viscous is a dashpot number
@@ -239,10 +240,16 @@ class Law:
         samples = [np.full((cases.size, steps + 1), np.nan) if paths else None for _ in range(3)]
         self._check(
             library().epdem_impacts(
-                self.info.index, self.E_star, self._parameters, cases.size, cases.ctypes.data, out.ctypes.data,
-                steps + 1, *map(_pointer, samples),
+                self.info.index,
+                self.E_star,
+                self._parameters,
+                cases.size,
+                cases.ctypes.data,
+                out.ctypes.data,
+                steps + 1,
+                *map(_pointer, samples),
             )
-        )  # fmt: skip
+        )
         return (out, *samples) if paths else out
 
     def impacts_long_double(self, *, R_star, m_star, speed, time_step, gap=0.0, steps: int) -> np.ndarray:

@@ -129,23 +129,33 @@ class Liggghts:
         x, types, model = plan.experiment, _types(plan), self.model(plan)
         for b, _ in types:
             if b.poisson_ratio < 0:
-                raise CaseError(f"materials.{b.material}.poisson_ratio = {b.poisson_ratio}, LIGGGHTS takes [0, 0.5] "
-                                "only; use --engine embedded")  # fmt: skip
+                raise CaseError(
+                    f"materials.{b.material}.poisson_ratio = {b.poisson_ratio}, LIGGGHTS takes [0, 0.5] "
+                    "only; use --engine embedded"
+                )
         dashpot = x.viscous_restitution is not None
         if dashpot and not self.takes_dashpot:
             raise CaseError(f"viscous: engine {self.name} does not know our dashpot; use --engine liggghts or embedded")
         moduli = [_finite(b.young_modulus) for b, _ in types]
         return Deck(
-            title=x.case.case.title, source=x.case.case.source,
+            title=x.case.case.title,
+            source=x.case.case.source,
             summary=f"{x.speed.size} speeds x {plan.phases} phases = {plan.n} independent impacts, law {x.law.name}",
-            remembers=x.law.strength_property is not None, hard=max(moduli) > HARD, soft=min(moduli) < SOFT,
+            remembers=x.law.strength_property is not None,
+            hard=max(moduli) > HARD,
+            soft=min(moduli) < SOFT,
             data="impact.data",
-            skin=0.2 * min(x.body.radius, x.target.radius), types=tuple(b.material for b, _ in types),
-            properties=self.properties(plan), model=model, tangential="off",
+            skin=0.2 * min(x.body.radius, x.target.radius),
+            types=tuple(b.material for b, _ in types),
+            properties=self.properties(plan),
+            model=model,
+            tangential="off",
             settings=("viscous on",) if dashpot else (),
             wall_type=len(types) if math.isinf(x.target.radius) else None,
-            time_step=plan.time_step, path="path.bin", steps=plan.steps,
-        )  # fmt: skip
+            time_step=plan.time_step,
+            path="path.bin",
+            steps=plan.steps,
+        )
 
     def write(self, plan: Plan, folder: Path) -> list[Path]:
         deck = self.deck(plan)

@@ -41,12 +41,21 @@ def velocities(tool: Liggghts, pairs: Pairs, way: str, folder: Path) -> np.ndarr
     p, deck = pairs.plan, replace(tool.deck(pairs.plan), path="out.bin")
     folder.mkdir(parents=True, exist_ok=True)
     (folder / deck.data).write_text(_data(pairs, deck, way == "swap"))
-    words = {"deck": deck, "way": way, "ranks": 2 if way == "migration" else 1, "restart": None, "stop": None,
-             "sort": 0.499 * _box(pairs)[2][1] if way == "sort" else None, "steps": p.steps}  # fmt: skip
+    words = {
+        "deck": deck,
+        "way": way,
+        "ranks": 2 if way == "migration" else 1,
+        "restart": None,
+        "stop": None,
+        "sort": 0.499 * _box(pairs)[2][1] if way == "sort" else None,
+        "steps": p.steps,
+    }
     parts = [words]
     if way == "restart":
-        parts = [words | {"steps": pairs.stop, "stop": "middle.restart"},
-                 words | {"steps": p.steps - pairs.stop, "restart": "middle.restart"}]  # fmt: skip
+        parts = [
+            words | {"steps": pairs.stop, "stop": "middle.restart"},
+            words | {"steps": p.steps - pairs.stop, "restart": "middle.restart"},
+        ]
     for k, part in enumerate(parts):
         (folder / f"in.{k}").write_text(decks.render("liggghts/invariance.in.j2", **part))
         command = [str(paths.launcher()), "-in", f"in.{k}", "-log", f"log.{k}"]

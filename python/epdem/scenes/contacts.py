@@ -14,8 +14,19 @@ from ..liggghts.scene_deck import Deck
 from ..theory import backbones, pair
 from .model import pair_law, strengths
 
-COLUMNS = ["step", "wall", "i", "j", "overlap", "delta_max", "force", "residual_overlap", "dent_radius", "plastic_work",
-           "elastic_energy"]  # fmt: skip
+COLUMNS = [
+    "step",
+    "wall",
+    "i",
+    "j",
+    "overlap",
+    "delta_max",
+    "force",
+    "residual_overlap",
+    "dent_radius",
+    "plastic_work",
+    "elastic_energy",
+]
 _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(16)
 
 
@@ -88,8 +99,13 @@ def _one_kind(case: SceneCase, a: str, b: str, R: float, overlap: np.ndarray, la
     delta = residual[:, None] + way[:, None] * u**2
     F, _, _ = law.step(R_star=R, delta_max=np.broadcast_to(largest[:, None], delta.shape).ravel(), delta=delta.ravel())
     elastic = (F.reshape(delta.shape) * u * _WEIGHTS).sum(axis=1) * way  # 0.5 from the nodes, 2 from d(u^2)
-    return {"force": force, "residual_overlap": residual, "dent_radius": np.where(plastic > 0.0, dent, 0.0),
-            "plastic_work": plastic, "elastic_energy": elastic}  # fmt: skip
+    return {
+        "force": force,
+        "residual_overlap": residual,
+        "dent_radius": np.where(plastic > 0.0, dent, 0.0),
+        "plastic_work": plastic,
+        "elastic_energy": elastic,
+    }
 
 
 def _pairs(deck: Deck, folder: Path) -> pd.DataFrame:
@@ -118,6 +134,16 @@ def _planes(deck: Deck, spheres: pd.DataFrame) -> list[pd.DataFrame]:
         touching = spheres[distance < spheres["radius"]]
         overlap = touching["radius"] - (touching[style[0]] - place).abs()
         largest = np.maximum(touching[f"delta_max_{name}"], overlap) if deck.yields else overlap
-        found.append(pd.DataFrame({"step": touching["step"], "wall": name, "i": touching["id"], "j": 0,
-                                   "overlap": overlap, "delta_max": largest}))  # fmt: skip
+        found.append(
+            pd.DataFrame(
+                {
+                    "step": touching["step"],
+                    "wall": name,
+                    "i": touching["id"],
+                    "j": 0,
+                    "overlap": overlap,
+                    "delta_max": largest,
+                }
+            )
+        )
     return found

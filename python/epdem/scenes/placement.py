@@ -39,8 +39,11 @@ def spheres(case: SceneCase, m: Model, room: tuple[float, ...]) -> np.ndarray:
         for _ in range(ATTEMPTS):
             place = tuple(rng.uniform(a + radius, b - radius) for a, b in zip(low, high, strict=True))
             cell = tuple(math.floor(x / edge) for x in place)
-            near = (k for shift in product((-1, 0, 1), repeat=3)
-                    for k in cells.get(tuple(c + d for c, d in zip(cell, shift, strict=True)), ()))  # fmt: skip
+            near = (
+                k
+                for shift in product((-1, 0, 1), repeat=3)
+                for k in cells.get(tuple(c + d for c, d in zip(cell, shift, strict=True)), ())
+            )
             if all(math.dist(place, placed[k][:3]) > radius + placed[k][3] for k in near):
                 cells.setdefault(cell, []).append(len(placed))
                 placed.append((*place, radius, kind))

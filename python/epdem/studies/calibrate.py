@@ -31,8 +31,9 @@ class Calibration:
     source: str
 
 
-def pressure_of_hardness(*, vickers: float | None = None, brinell: float | None = None,
-                         dent_ratio: float = BRINELL_DENT) -> float:  # fmt: skip
+def pressure_of_hardness(
+    *, vickers: float | None = None, brinell: float | None = None, dent_ratio: float = BRINELL_DENT
+) -> float:
     """Mean pressure [Pa] of full plasticity from HV or HB (kgf/mm^2).
 
     HV counts the pyramid's faces, 7 % more than the projected area; by custom 1 HV is taken as 9.807 MPa of mean

@@ -104,8 +104,15 @@ def seconds(c: Contender, p: Plan, folder: Path) -> dict[str, float]:
         begin = time.perf_counter()
         law = x.native_law()
         ready = time.perf_counter()
-        law.impacts(R_star=x.R_star, m_star=x.m_star, speed=p.speed, time_step=p.time_step, gap=p.gap, steps=p.steps,
-                    viscous=x.viscous_number)  # fmt: skip
+        law.impacts(
+            R_star=x.R_star,
+            m_star=x.m_star,
+            speed=p.speed,
+            time_step=p.time_step,
+            gap=p.gap,
+            steps=p.steps,
+            viscous=x.viscous_number,
+        )
         return {"startup": 0.0, "setup": ready - begin, "stepping": time.perf_counter() - ready}
     if isinstance(tool, Liggghts):
         return _liggghts_seconds(tool, p, folder)
@@ -168,8 +175,15 @@ def to_yardstick(times: pd.DataFrame, value: str, keys: list[str]) -> pd.Series:
     return times[value] / yard.reindex(pd.MultiIndex.from_frame(times[keys])).to_numpy()
 
 
-def run(case_path: Path | str, *, engines: list[str], laws: list[str], steps: tuple[int, ...] = STEPS,
-        repetitions: int = 5, progress: Callable[[str], None] = lambda text: None) -> Outcome:  # fmt: skip
+def run(
+    case_path: Path | str,
+    *,
+    engines: list[str],
+    laws: list[str],
+    steps: tuple[int, ...] = STEPS,
+    repetitions: int = 5,
+    progress: Callable[[str], None] = lambda text: None,
+) -> Outcome:
     """Errors and times of every contender at every number of steps in the shortest contact."""
     case, begin = load(case_path), time.perf_counter()
     everyone = contenders(case, engines, laws, steps)
@@ -197,10 +211,16 @@ def _combine(rows: pd.DataFrame, times: pd.DataFrame) -> tuple[pd.DataFrame, pd.
     for label, part in rows.groupby("contender", sort=False):
         fine = times[(times["contender"] == label) & (times["steps"] >= 300)]  # a long loop: little but stepping
         fine = times[times["contender"] == label] if fine.empty else fine
-        row = {"contender": label, "order": order(part["steps"].to_numpy(), part["e_n_error"].to_numpy()),
-               "best_error": part["e_n_error"].min(), "ns_per_step": fine["ns_per_step"].median(),
-               "ratio_to_hertz": fine["ratio"].median(), "ratio_spread": spread(fine["ratio"]),
-               "startup": part["startup"].median(), "setup": part["setup"].median()}  # fmt: skip
+        row = {
+            "contender": label,
+            "order": order(part["steps"].to_numpy(), part["e_n_error"].to_numpy()),
+            "best_error": part["e_n_error"].min(),
+            "ns_per_step": fine["ns_per_step"].median(),
+            "ratio_to_hertz": fine["ratio"].median(),
+            "ratio_spread": spread(fine["ratio"]),
+            "startup": part["startup"].median(),
+            "setup": part["setup"].median(),
+        }
         for target in TARGETS:
             best = cheapest(part, target)
             row[f"steps_for_{target:g}"] = np.nan if best is None else int(best["steps"])

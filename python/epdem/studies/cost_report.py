@@ -56,9 +56,13 @@ def cheapest_table(contenders: pd.DataFrame) -> pd.DataFrame:
     rows = []
     for _, c in contenders.iterrows():
         hertz = "" if np.isnan(c["ratio_to_hertz"]) else f"{c['ratio_to_hertz']:.2f} +- {c['ratio_spread'] / 2:.2f}"
-        row = {"contender": c["contender"], "order": "none" if np.isnan(c["order"]) else f"{c['order']:.2f}",
-               "smallest error": f"{c['best_error']:.1e}", "ns per step": f"{c['ns_per_step']:.3g}",
-               "over built-in hertz": hertz}  # fmt: skip
+        row = {
+            "contender": c["contender"],
+            "order": "none" if np.isnan(c["order"]) else f"{c['order']:.2f}",
+            "smallest error": f"{c['best_error']:.1e}",
+            "ns per step": f"{c['ns_per_step']:.3g}",
+            "over built-in hertz": hertz,
+        }
         row |= {f"for {100 * t:g} %": _cell(c[f"steps_for_{t:g}"], c[f"ns_for_{t:g}"]) for t in TARGETS}
         row |= {"start-up": f"{c['startup'] * 1000:.0f} ms", "set-up": f"{c['setup'] * 1000:.1f} ms"}
         rows.append(row)
@@ -69,8 +73,11 @@ def error_table(rows: pd.DataFrame) -> pd.DataFrame:
     """Errors of every contender at every number of steps, largest and rms over speeds and phases."""
     names = {"e_n": "e_n", "contact_time": "time", "force_max": "peak force"}
     columns = {"contender": "contender", "steps": "steps"}
-    columns |= {f"{q}_{kind}": f"{text} {short}" for q, text in names.items()
-                for kind, short in (("error", "max"), ("rms", "rms"))}  # fmt: skip
+    columns |= {
+        f"{q}_{kind}": f"{text} {short}"
+        for q, text in names.items()
+        for kind, short in (("error", "max"), ("rms", "rms"))
+    }
     frame = rows[[*columns, "ns_per_impact"]].rename(columns=columns | {"ns_per_impact": "ns per impact"})
     return frame.map(lambda v: f"{v:.2g}" if isinstance(v, float) else str(v))
 
@@ -83,10 +90,17 @@ def bulk_table(bulk: pd.DataFrame) -> pd.DataFrame:
 
     rows = []
     for b in bulk.itertuples():
-        rows.append({"contender": b.contender, "share of the limit": f"{b.share:g}",
-                     "error of the mean": number(b.error), "rms error of a sphere": number(b.rms),
-                     "order": number(b.order, ".2f"), "seconds": f"{b.seconds:.3g} +- {b.seconds_spread / 2:.1g}",
-                     "over built-in hertz": f"{b.ratio:.2f} +- {b.ratio_spread / 2:.2f}"})  # fmt: skip
+        rows.append(
+            {
+                "contender": b.contender,
+                "share of the limit": f"{b.share:g}",
+                "error of the mean": number(b.error),
+                "rms error of a sphere": number(b.rms),
+                "order": number(b.order, ".2f"),
+                "seconds": f"{b.seconds:.3g} +- {b.seconds_spread / 2:.1g}",
+                "over built-in hertz": f"{b.ratio:.2f} +- {b.ratio_spread / 2:.2f}",
+            }
+        )
     return pd.DataFrame(rows)
 
 

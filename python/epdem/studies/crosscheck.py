@@ -76,8 +76,14 @@ def _row(tool: Engine, fine: pd.DataFrame, coarse: pd.DataFrame, x: Experiment, 
     return row
 
 
-def crosscheck(path: Path, *, law: str | None = None, out: Path | None = None, fresh: bool = False,
-               progress: Callable[[str], None] = lambda text: None) -> Crosscheck:  # fmt: skip
+def crosscheck(
+    path: Path,
+    *,
+    law: str | None = None,
+    out: Path | None = None,
+    fresh: bool = False,
+    progress: Callable[[str], None] = lambda text: None,
+) -> Crosscheck:
     """Run a case on all contenders. Raises CaseError or EngineError; engines that are not here are left out."""
     case = load(path)
     x = experiment(case, law)

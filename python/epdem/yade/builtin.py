@@ -30,8 +30,16 @@ class YadeLuding(Yade):
     def material(self, x: Experiment, body: Body, strength: float) -> Material:
         law, wall = foreign.luding(x), math.isinf(x.target.radius)
         phi_f = 2 * law.phi_f if wall else law.phi_f  # YADE multiplies it by 2 R*, here half that of the wall
-        values = {"density": x.body.density if wall else body.density, "k1": law.k_1, "kp": law.k_p, "kc": 0.0,
-                  "ks": 0.0, "PhiF": phi_f, "G0": 0.0, "frictionAngle": 0.0}  # fmt: skip
+        values = {
+            "density": x.body.density if wall else body.density,
+            "k1": law.k_1,
+            "kp": law.k_p,
+            "kc": 0.0,
+            "ks": 0.0,
+            "PhiF": phi_f,
+            "G0": 0.0,
+            "frictionAngle": 0.0,
+        }
         return Material(body.material, values)
 
     def deck(self, plan: Plan) -> Deck:

@@ -115,22 +115,31 @@ class Yade:
         x, wall = plan.experiment, isinf(plan.experiment.target.radius)
         if x.viscous_restitution is not None:
             raise CaseError("viscous: engine yade has no dashpot; use --engine liggghts or embedded")
-        materials = {x.target.material: self.material(x, x.target, x.law.strengths[1]),
-                     x.body.material: self.material(x, x.body, x.law.strengths[0])}  # fmt: skip
+        materials = {
+            x.target.material: self.material(x, x.target, x.law.strengths[1]),
+            x.body.material: self.material(x, x.body, x.law.strengths[0]),
+        }
         bodies = [Group("body.data", x.body.radius, x.body.material)]
         if not wall:
             bodies.append(Group("target.data", x.target.radius, x.target.material))
         defaults = {p.name: p.default for p in claw.laws()[x.law.name].parameters}
         return Deck(
-            title=x.case.case.title, source=x.case.case.source,
+            title=x.case.case.title,
+            source=x.case.case.source,
             summary=f"{x.speed.size} speeds x {plan.phases} phases = {plan.n} independent impacts, law {x.law.name}",
-            rigid=x.target.rigid, law=x.law.name, native=False, anvil=None,
+            rigid=x.target.rigid,
+            law=x.law.name,
+            native=False,
+            anvil=None,
             ratios={n: x.law.parameters[n] for n in LAWS[x.law.name].ratios if x.law.parameters[n] != defaults[n]},
-            materials=tuple(materials.values()), wall_material=x.target.material if wall else None,
-            bodies=tuple(bodies), skin=0.1 * min(x.body.radius, x.target.radius), time_step=plan.time_step,
+            materials=tuple(materials.values()),
+            wall_material=x.target.material if wall else None,
+            bodies=tuple(bodies),
+            skin=0.1 * min(x.body.radius, x.target.radius),
+            time_step=plan.time_step,
             samples=plan.steps + 2,  # one more than asked for: a velocity is the mean of those half a step away
             path="path.bin",
-        )  # fmt: skip
+        )
 
     def write(self, plan: Plan, folder: Path) -> list[Path]:
         deck = self.deck(plan)
@@ -150,8 +159,13 @@ class Yade:
         path, log = folder / "path.bin", folder / "out.yade"
         path.unlink(missing_ok=True)
         start = time.perf_counter()
-        call([command(), "-n", "-x", "impact.py"], folder, log=log.name, seconds=120 + 2e-5 * plan.n * plan.steps,
-             env=environment())  # fmt: skip
+        call(
+            [command(), "-n", "-x", "impact.py"],
+            folder,
+            log=log.name,
+            seconds=120 + 2e-5 * plan.n * plan.steps,
+            env=environment(),
+        )
         wall = time.perf_counter() - start
         return trajectory(plan, path, {"total": wall, "stepping": stepping_seconds(log)})
 

@@ -27,12 +27,20 @@ def velocities(tool: Yade, pairs: Pairs, way: str, folder: Path) -> np.ndarray:
     for name, side in told:
         lines = [" ".join(map(decks.number, row)) for row in np.hstack([side.place, side.velocity])]
         (folder / name).write_text("\n".join(["# x y z v_x v_y v_z, SI", *lines, ""]))
-    words = {"deck": deck, "way": way, "sides": [(n, s.body.radius, s.body.material) for n, s in told],
-             "steps": p.steps, "load": None, "save": None}  # fmt: skip
+    words = {
+        "deck": deck,
+        "way": way,
+        "sides": [(n, s.body.radius, s.body.material) for n, s in told],
+        "steps": p.steps,
+        "load": None,
+        "save": None,
+    }
     parts = [words]
     if way == "restart":
-        parts = [words | {"steps": pairs.stop, "save": "middle.yade.gz"},
-                 words | {"steps": p.steps - pairs.stop, "load": "middle.yade.gz"}]  # fmt: skip
+        parts = [
+            words | {"steps": pairs.stop, "save": "middle.yade.gz"},
+            words | {"steps": p.steps - pairs.stop, "load": "middle.yade.gz"},
+        ]
     (folder / deck.path).unlink(missing_ok=True)
     for k, part in enumerate(parts):
         (folder / f"pairs{k}.py").write_text(decks.render("yade/pairs.py.j2", **part))

@@ -111,8 +111,12 @@ def _materials(case: SceneCase, m: Model, friction: list[list[float]]) -> tuple[
     law, found = LAWS[m.law], []
     for i, t in enumerate(m.types):
         x = case.materials[t.material]
-        values = {"young_modulus": x.young_modulus, "poisson_ratio": x.poisson_ratio, "density": x.density,
-                  "friction": friction[i][i]}  # fmt: skip
+        values = {
+            "young_modulus": x.young_modulus,
+            "poisson_ratio": x.poisson_ratio,
+            "density": x.density,
+            "friction": friction[i][i],
+        }
         if law.strength_name:
             values[law.strength_name] = t.strength
             ratios = {n: m.law_parameters[n] for n in law.ratios}
@@ -169,18 +173,34 @@ def deck(case: SceneCase) -> Deck:
     lx, ly, lz = s.box
     sides = () if periodic else (lx / 2, ly / 2)
     return Deck(
-        title=d.title, source=d.source, summary=d.summary, law=m.law,
+        title=d.title,
+        source=d.source,
+        summary=d.summary,
+        law=m.law,
         ratios={n: m.law_parameters[n] for n in LAWS[m.law].ratios},
-        materials=_materials(case, m, friction), wall_material=m.wall_type - 1, frictions=_pairs(friction),
-        periodic=periodic, cell=(lx, ly, 2.0 * lz), walls=_walls(d, case, periodic),
-        low=(*(-x for x in sides), 0.0), high=(*sides, d.box[5]),
-        fall=-s.gravity if s.gravity else 0.0, skin=d.skin, time_step=d.time_step,
-        phases=tuple(Phase(p.name, end - begin, v) for p, begin, end, v in zip(d.phases, ends[:-1], ends[1:], speeds,
-                                                                               strict=True)),
-        sampling=1 if press else d.sampling if d.loads else d.every, every=d.every,
-        frames=d.frames, contacts=d.contacts, spins=d.spins, dents=d.energy and d.yields,
+        materials=_materials(case, m, friction),
+        wall_material=m.wall_type - 1,
+        frictions=_pairs(friction),
+        periodic=periodic,
+        cell=(lx, ly, 2.0 * lz),
+        walls=_walls(d, case, periodic),
+        low=(*(-x for x in sides), 0.0),
+        high=(*sides, d.box[5]),
+        fall=-s.gravity if s.gravity else 0.0,
+        skin=d.skin,
+        time_step=d.time_step,
+        phases=tuple(
+            Phase(p.name, end - begin, v)
+            for p, begin, end, v in zip(d.phases, ends[:-1], ends[1:], speeds, strict=True)
+        ),
+        sampling=1 if press else d.sampling if d.loads else d.every,
+        every=d.every,
+        frames=d.frames,
+        contacts=d.contacts,
+        spins=d.spins,
+        dents=d.energy and d.yields,
         load="plate" if press else "floor" if d.loads else "",
-    )  # fmt: skip
+    )
 
 
 def texts(case: SceneCase) -> dict[str, str]:
@@ -211,5 +231,4 @@ def version() -> str:
 
 def run(folder: Path, tell: Callable[[int], None]) -> float:
     """Run what `write` wrote, `tell` every row's step; seconds taken. Raises EngineError with YADE's last words."""
-    return progress.follow([command(), "-n", "-x", SCRIPT], folder, OUT, name="YADE", tell=tell,
-                           env=environment())  # fmt: skip
+    return progress.follow([command(), "-n", "-x", SCRIPT], folder, OUT, name="YADE", tell=tell, env=environment())

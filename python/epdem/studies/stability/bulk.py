@@ -22,8 +22,15 @@ FRAMES = 40
 LIMIT = 120.0  # seconds a scene may take
 
 
-def write(scene: Scene, folder: Path, *, time_step: float, frames: int = FRAMES, contacts: bool = True,
-          model: str | None = None):  # fmt: skip
+def write(
+    scene: Scene,
+    folder: Path,
+    *,
+    time_step: float,
+    frames: int = FRAMES,
+    contacts: bool = True,
+    model: str | None = None,
+):
     """Deck, data and meshes of a scene; returns what the template saw.
 
     Without `frames` nothing is recorded or booked. `model`: one of LIGGGHTS's own, elastic ones instead of the law's.
@@ -35,18 +42,32 @@ def write(scene: Scene, folder: Path, *, time_step: float, frames: int = FRAMES,
     moduli = [E for E, _ in scene.materials]
     rows = [("youngsModulus", "peratomtype", moduli, "Pa")]
     rows += [("poissonsRatio", "peratomtype", [POISSON] * len(moduli), "1")]
-    rows += [(p.property, "peratomtype", [STRENGTH[p.property] * p_y for _, p_y in scene.materials], "Pa")
-             for p in info.parameters if p.unit == "Pa"]  # fmt: skip
+    rows += [
+        (p.property, "peratomtype", [STRENGTH[p.property] * p_y for _, p_y in scene.materials], "Pa")
+        for p in info.parameters
+        if p.unit == "Pa"
+    ]
     if model:
         rows.append(("coefficientRestitution", "peratomtypepair", [len(moduli), *[1.0] * len(moduli) ** 2], "undamped"))
     memory = memory_size(scene.law)
     deck = SimpleNamespace(
-        title=scene.title, plates=scene.plate_speed > 0, plate_speed=scene.plate_speed, soft=min(moduli) < SOFT,
-        skin=0.25 * scene.radius, properties=numbered(rows), model=model or f"ep/{scene.law}", tangential="off",
-        time_step=time_step, steps=every * math.ceil(steps / every), every=every, frames=frames, contacts=contacts,
-        pair_columns=range(1, 6 + memory + (memory > 0) + 2), wall_columns=range(1, 6 + memory + 2),
+        title=scene.title,
+        plates=scene.plate_speed > 0,
+        plate_speed=scene.plate_speed,
+        soft=min(moduli) < SOFT,
+        skin=0.25 * scene.radius,
+        properties=numbered(rows),
+        model=model or f"ep/{scene.law}",
+        tangential="off",
+        time_step=time_step,
+        steps=every * math.ceil(steps / every),
+        every=every,
+        frames=frames,
+        contacts=contacts,
+        pair_columns=range(1, 6 + memory + (memory > 0) + 2),
+        wall_columns=range(1, 6 + memory + 2),
         settings=("computePlasticWork on",) if memory and frames else (),
-    )  # fmt: skip
+    )
     environment = decks.environment(Path(__file__).parent)
     (folder / "in.bulk").write_text(environment.get_template("bulk.in.j2").render(deck=deck))
     (folder / "bulk.data").write_text(_data(scene, deck.plates))
@@ -65,10 +86,14 @@ def _data(scene: Scene, plates: bool) -> str:
     number, R = decks.number, scene.radius
     margin = 0.5 * R if plates else 0.0  # the box is wider than the gap between the plates
     head = [scene.title, "", f"{len(scene.position)} atoms", f"{len(scene.materials)} atom types"]
-    head += [f"{number(-margin * (a == 'z'))} {number(float(b) + margin * (a == 'z'))} {a}lo {a}hi"
-             for a, b in zip("xyz", scene.box, strict=True)]  # fmt: skip
-    atoms = [f"{i} {k} {number(2 * R)} {number(DENSITY)} {' '.join(map(number, p))}"
-             for i, (k, p) in enumerate(zip(scene.kind, scene.position, strict=True), 1)]  # fmt: skip
+    head += [
+        f"{number(-margin * (a == 'z'))} {number(float(b) + margin * (a == 'z'))} {a}lo {a}hi"
+        for a, b in zip("xyz", scene.box, strict=True)
+    ]
+    atoms = [
+        f"{i} {k} {number(2 * R)} {number(DENSITY)} {' '.join(map(number, p))}"
+        for i, (k, p) in enumerate(zip(scene.kind, scene.position, strict=True), 1)
+    ]
     speeds = [f"{i} {' '.join(map(number, v))} 0 0 0" for i, v in enumerate(scene.velocity, 1)]
     return "\n".join([*head, "", "Atoms", "", *atoms, "", "Velocities", "", *speeds, ""])
 
@@ -141,8 +166,16 @@ def ledger(scene: Scene, deck: SimpleNamespace, folder: Path) -> pd.DataFrame:
             # trapezoids: the mean is over the steps since the last frame, the two ends count half
             ends = 0.5 * (push[step][1] - push[step - deck.every][1])
             brought += (push[step][0] * deck.every - ends) * scene.plate_speed * deck.time_step
-        rows.append({"step": step, "spheres": len(frame), "kinetic": kinetic, "elastic": elastic,
-                     "plastic": float(frame[:, 7].sum()) if memory else 0.0, "brought": brought})  # fmt: skip
+        rows.append(
+            {
+                "step": step,
+                "spheres": len(frame),
+                "kinetic": kinetic,
+                "elastic": elastic,
+                "plastic": float(frame[:, 7].sum()) if memory else 0.0,
+                "brought": brought,
+            }
+        )
     table = pd.DataFrame(rows)
     table["total"] = table["kinetic"] + table["elastic"] + table["plastic"] - table["brought"]
     return table

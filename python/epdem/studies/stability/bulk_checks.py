@@ -63,12 +63,19 @@ def judge_scene(scene: Scene, folder: Path, *, ranks: int = 2) -> BulkVerdict:
     apart = differences(one, two, scene.radius)
     kinetic = [(0.5 * scene.mass * run[-1, :, 4:7] ** 2).sum() for run in (one, two)]
     v = BulkVerdict(
-        scene.name, scene.law, len(scene.position), deck.steps, seconds, len(scene.position) - one.shape[1],
+        scene.name,
+        scene.law,
+        len(scene.position),
+        deck.steps,
+        seconds,
+        len(scene.position) - one.shape[1],
         float(table["total"].diff().max() / brought),
         float((table["total"] - table["total"].iloc[0]).abs().max() / brought),
         float(table["plastic"].iloc[-1] / brought),
-        float(apart[len(apart) // 4]), float(apart[-1]), float(abs(kinetic[1] / kinetic[0] - 1)),
-    )  # fmt: skip
+        float(apart[len(apart) // 4]),
+        float(apart[-1]),
+        float(abs(kinetic[1] / kinetic[0] - 1)),
+    )
     reasons = []
     if v.lost:
         reasons.append(f"{v.lost} spheres lost")

@@ -60,8 +60,13 @@ def errors(c: Contender, steps: dict[float, float], folder: Path, progress: Call
     return table
 
 
-def run(laws: list[str], *, repetitions: int = 3, shares: tuple[float, ...] = SHARES,
-        progress: Callable[[str], None] = lambda text: None) -> pd.DataFrame:  # fmt: skip
+def run(
+    laws: list[str],
+    *,
+    repetitions: int = 3,
+    shares: tuple[float, ...] = SHARES,
+    progress: Callable[[str], None] = lambda text: None,
+) -> pd.DataFrame:
     """One row per law (and LIGGGHTS's own hertz) and share: errors, seconds and the ratio to the yardstick.
 
     The blocks meet for about two collisions a sphere: long enough to be a bulk, too short for round-off to grow.
@@ -84,8 +89,9 @@ def run(laws: list[str], *, repetitions: int = 3, shares: tuple[float, ...] = SH
             for share, time_step in steps.items():
                 for c in everyone:
                     progress(f"bulk time {k + 1}/{repetitions}: {c.label}, {share:g} of the limit")
-                    rows.append({"repetition": k, "share": share, "contender": c.label,
-                                 "seconds": c.seconds(time_step, folder)})  # fmt: skip
+                    rows.append(
+                        {"repetition": k, "share": share, "contender": c.label, "seconds": c.seconds(time_step, folder)}
+                    )
     times = pd.DataFrame(rows)
     times["ratio"] = to_yardstick(times, "seconds", ["repetition", "share"])
     groups = times.groupby(["contender", "share"])[["seconds", "ratio"]]

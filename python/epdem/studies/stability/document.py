@@ -129,29 +129,58 @@ kinetic energy: its difference. Both may grow from round-off, as paths of collid
 def practice(verdicts: pd.DataFrame) -> str:
     """The sentence a user needs."""
     ran = verdicts[verdicts["useless_at"].notna()]
-    return (f"up to 1 % of the limit e_n is within {ran['e_n_error'].max():.1g} in every case that ran; "
-            f"from {ran['useless_at'].min():g} of the limit on it can be off by more than 10 %, and from "
-            f"{ran['breaks_at'].min():g} on more than 1 % of the energy can come from nothing. `epdem timestep` finds "
-            "the step for a target error.")  # fmt: skip
+    return (
+        f"up to 1 % of the limit e_n is within {ran['e_n_error'].max():.1g} in every case that ran; "
+        f"from {ran['useless_at'].min():g} of the limit on it can be off by more than 10 %, and from "
+        f"{ran['breaks_at'].min():g} on more than 1 % of the energy can come from nothing. `epdem timestep` finds "
+        "the step for a target error."
+    )
 
 
 def bulk(verdicts: pd.DataFrame) -> str:
     """The section on bulk scenes; '' if none ran."""
     if verdicts.empty:
         return ""
-    columns = ["scene", "law", "spheres", "steps", "seconds", "lost", "rise", "off", "plastic", "last_difference",
-               "energy_difference", "passed"]  # fmt: skip
+    columns = [
+        "scene",
+        "law",
+        "spheres",
+        "steps",
+        "seconds",
+        "lost",
+        "rise",
+        "off",
+        "plastic",
+        "last_difference",
+        "energy_difference",
+        "passed",
+    ]
     return BULK.format(table=markdown(verdicts[columns]))
 
 
 def document(outcome: Outcome, command: str) -> str:
     """The text of docs/stability.md."""
     return TEXT.format(
-        command=command, count=len(extremes()), finest=FINE[-1], coarsest=FINE[0], error=ERROR, created=CREATED,
-        order=LEAST_ORDER, tiny=FINEST, bounce=BOUNCE_SHARE, drift=DRIFT, force=FORCE, wrong=WRONG, broken=BROKEN,
-        tried=", ".join(f"{c:g}" for c in COARSE), fewer=", ".join(f"{c:g}" for c in POSITION_COARSE),
+        command=command,
+        count=len(extremes()),
+        finest=FINE[-1],
+        coarsest=FINE[0],
+        error=ERROR,
+        created=CREATED,
+        order=LEAST_ORDER,
+        tiny=FINEST,
+        bounce=BOUNCE_SHARE,
+        drift=DRIFT,
+        force=FORCE,
+        wrong=WRONG,
+        broken=BROKEN,
+        tried=", ".join(f"{c:g}" for c in COARSE),
+        fewer=", ".join(f"{c:g}" for c in POSITION_COARSE),
         summary=markdown(summary(outcome.verdicts)),
-        practice=practice(outcome.verdicts), limits=markdown(limits(outcome.verdicts)), formula=FORMULA,
-        roundoff=markdown(outcome.roundoff), bulk=bulk(outcome.bulk),
+        practice=practice(outcome.verdicts),
+        limits=markdown(limits(outcome.verdicts)),
+        formula=FORMULA,
+        roundoff=markdown(outcome.roundoff),
+        bulk=bulk(outcome.bulk),
         finer="" if outcome.precisions.empty else FINER.format(table=markdown(outcome.precisions)),
-    )  # fmt: skip
+    )

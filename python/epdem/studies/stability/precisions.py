@@ -32,8 +32,16 @@ def rebound(program: str, folder: Path, script: str) -> np.ndarray:
     """e_n of every phase from one program, shape (phases,). Raises EngineError with its last words."""
     path = folder / "roundoff.py"
     path.write_text(script)
-    done = subprocess.run([program, "-n", "-x", path.name], cwd=folder, capture_output=True, text=True, timeout=120,
-                          stdin=subprocess.DEVNULL, env=environment(), check=False)  # fmt: skip
+    done = subprocess.run(
+        [program, "-n", "-x", path.name],
+        cwd=folder,
+        capture_output=True,
+        text=True,
+        timeout=120,
+        stdin=subprocess.DEVNULL,
+        env=environment(),
+        check=False,
+    )
     lines = [line for line in done.stdout.splitlines() if line.startswith("RESULT ")]
     if not lines:
         raise EngineError(f"{program}: no result; {(done.stdout + done.stderr).strip()[-200:]}")
@@ -49,10 +57,15 @@ def floors(*, times=(1e-4, 1e-2, 1e2)) -> pd.DataFrame:
             s = setting(Extreme("roundoff", "roundoff", build("roundoff", ratio=1e4, times=t)), "hertz")
             dt, v, body = SHARE * s.limit, float(s.x.speed[0]), s.x.body
             script = template.render(
-                radius=body.radius, speed=v, young_modulus=body.young_modulus, poisson_ratio=body.poisson_ratio,
-                density=body.density, gaps=(np.arange(8) + 0.5) / 8 * v * dt, time_step=dt,
+                radius=body.radius,
+                speed=v,
+                young_modulus=body.young_modulus,
+                poisson_ratio=body.poisson_ratio,
+                density=body.density,
+                gaps=(np.arange(8) + 0.5) / 8 * v * dt,
+                time_step=dt,
                 steps=int(2 * s.contact_time / dt),
-            )  # fmt: skip
+            )
             e = {program: rebound(program, Path(scratch), script) for program in PROGRAMS}
             row = {"overlap_max": s.overlap_max, "steps": s.contact_time / dt}
             row |= {p: float(np.abs(e[p] / e[PROGRAMS[-1]] - 1).max()) for p in PROGRAMS[:-1]}

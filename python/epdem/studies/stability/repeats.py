@@ -22,8 +22,13 @@ DRIFT = 1e-3  # of the speed over 1e9 steps; it goes with dt^3 (6e-11 a bounce a
 def bounces(v: Verdict, s: Setting, total: int) -> None:
     """Bounce one contact for `total` steps: its plastic work is done once, then it must neither gain nor lose."""
     dt = BOUNCE_SHARE * s.limit
-    one = dict(R_star=s.x.R_star, m_star=s.x.m_star, speed=float(s.x.speed[0]), time_step=dt,
-               steps=int(1.5 * s.contact_time / dt) + 20)  # fmt: skip
+    one = dict(
+        R_star=s.x.R_star,
+        m_star=s.x.m_star,
+        speed=float(s.x.speed[0]),
+        time_step=dt,
+        steps=int(1.5 * s.contact_time / dt) + 20,
+    )
     law = s.x.native_law()
     trial, _ = law.bounces(200, **one)
     count = int(np.ceil(1.01 * 200 * total / trial["steps"]))
@@ -52,8 +57,9 @@ def embedded_cycles(s: Setting, cycles: int) -> tuple[np.ndarray, np.ndarray]:
 def position_cycles(s: Setting, sampler: PositionSampler, cycles: int) -> tuple[np.ndarray, np.ndarray]:
     """The same by an engine that carries the sphere; the cycle in which it is loaded first is left out."""
     got = carried(s, sampler, cycles + 1)
-    overlap, force = (np.lib.stride_tricks.sliding_window_view(a[0, CYCLE:], CYCLE + 1)[::CYCLE]
-                      for a in (got.overlap, got.force))  # fmt: skip
+    overlap, force = (
+        np.lib.stride_tricks.sliding_window_view(a[0, CYCLE:], CYCLE + 1)[::CYCLE] for a in (got.overlap, got.force)
+    )
     return overlap, force
 
 

@@ -29,8 +29,9 @@ def with_positions(s: Setting, time_step: float, gap: np.ndarray, steps: int) ->
 def in_long_double(s: Setting, time_step: float, gap: np.ndarray, steps: int) -> np.ndarray:
     """e_n of the embedded engine in long double, shape of gap."""
     x = s.x
-    out = x.native_law().impacts_long_double(R_star=x.R_star, m_star=x.m_star, speed=x.speed[0], time_step=time_step,
-                                             gap=gap, steps=steps)  # fmt: skip
+    out = x.native_law().impacts_long_double(
+        R_star=x.R_star, m_star=x.m_star, speed=x.speed[0], time_step=time_step, gap=gap, steps=steps
+    )
     return out["rebound_speed"] / x.speed[0]
 
 
@@ -47,12 +48,21 @@ def floors(law: str, samplers: list[Sampler], *, times=(1e-4, 1e-2, 3.0, 1e2), s
         steps = int(1.5 * s.contact_time / dt) + 20
         gap = (np.arange(8) + 0.5) / 8 * s.x.speed[0] * dt
         exact = in_long_double(s, dt, gap, steps)
-        double = s.x.native_law().impacts(R_star=s.x.R_star, m_star=s.x.m_star, speed=s.x.speed[0], time_step=dt,
-                                          gap=gap, steps=steps)["rebound_speed"] / s.x.speed[0]  # fmt: skip
+        double = (
+            s.x.native_law().impacts(
+                R_star=s.x.R_star, m_star=s.x.m_star, speed=s.x.speed[0], time_step=dt, gap=gap, steps=steps
+            )["rebound_speed"]
+            / s.x.speed[0]
+        )
         found = {"double": double, "positions": with_positions(s, dt, gap, steps)}
         found |= {sampler.name: _tried(sampler, s, dt, gap, steps) for sampler in samplers}
-        row = {"law": law, "times_yield": t, "overlap_max": s.overlap_max, "recovered": s.recovered,
-               "steps": s.contact_time / dt}  # fmt: skip
+        row = {
+            "law": law,
+            "times_yield": t,
+            "overlap_max": s.overlap_max,
+            "recovered": s.recovered,
+            "steps": s.contact_time / dt,
+        }
         row |= {name: float(np.abs(e / exact - 1).max()) for name, e in found.items()}
         row["formula"] = position_floor(radius=s.x.R_star, recovered=s.recovered, steps=row["steps"])
         rows.append(row)

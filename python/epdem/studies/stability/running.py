@@ -80,9 +80,16 @@ def setting(extreme: Extreme, law: str) -> Setting:
     out = energy if elastic else float(theory.recovered_work(peak)[0])
     recovered = top if elastic else float(theory.recovered_overlap(peak)[0])
     return Setting(
-        x, start, energy, top, recovered, float(np.sqrt(out / kinetic)), float(stability_limit(x, top)),
-        float(prediction.contact_time[0]), float(theory.radius(peak)[0] / x.R_star),
-    )  # fmt: skip
+        x,
+        start,
+        energy,
+        top,
+        recovered,
+        float(np.sqrt(out / kinetic)),
+        float(stability_limit(x, top)),
+        float(prediction.contact_time[0]),
+        float(theory.radius(peak)[0] / x.R_star),
+    )
 
 
 def phased(s: Setting, dt: float, phases: int) -> list[tuple[float, np.ndarray]]:

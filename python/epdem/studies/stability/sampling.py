@@ -39,8 +39,9 @@ class EmbeddedSampler:
     name, most_steps, phases = "embedded", 20_000_000, 16
 
     def __call__(self, x: Experiment, time_step: float, gap: np.ndarray, steps: int) -> Sample:
-        out = x.native_law().impacts(R_star=x.R_star, m_star=x.m_star, speed=x.speed[0], time_step=time_step, gap=gap,
-                                     steps=steps)  # fmt: skip
+        out = x.native_law().impacts(
+            R_star=x.R_star, m_star=x.m_star, speed=x.speed[0], time_step=time_step, gap=gap, steps=steps
+        )
         ended = (out["steps"] < steps) & (out["last"] >= 0)
         e_n = np.where(ended, out["rebound_speed"] / x.speed[0], np.nan)
         finite = all(np.isfinite(out[n]).all() for n in ("rebound_speed", "force_max", "overlap_max"))

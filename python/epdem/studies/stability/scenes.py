@@ -73,10 +73,18 @@ def plate(n: tuple[int, int, int] = (13, 13, 12)) -> Scene:
     position = _lattice(n, spacing)
     box, rng = spacing * np.array(n), np.random.default_rng(1)
     return Scene(
-        "plate", "Steel spheres compressed by a plate to two thirds of their height", R, (STEEL,), box,
-        np.ones(len(position), int), position, _agitated(rng, len(position), 1.0), 3 * speed, box[2] / 3 / speed,
+        "plate",
+        "Steel spheres compressed by a plate to two thirds of their height",
+        R,
+        (STEEL,),
+        box,
+        np.ones(len(position), int),
+        position,
+        _agitated(rng, len(position), 1.0),
+        3 * speed,
+        box[2] / 3 / speed,
         plate_speed=speed,
-    )  # fmt: skip
+    )
 
 
 def mixture(n: tuple[int, int, int] = (13, 13, 12)) -> Scene:
@@ -85,9 +93,17 @@ def mixture(n: tuple[int, int, int] = (13, 13, 12)) -> Scene:
     position = _lattice(n, spacing)
     kind = 1 + (np.indices(n).sum(axis=0).reshape(-1) % 2)
     return Scene(
-        "mixture", "Spheres of 1 TPa and 1 MPa", R, ((1e12, 1e10), (1e6, 5e4)), spacing * np.array(n), kind, position,
-        _agitated(rng, len(position), 1.0), 4.0, 5e-3,
-    )  # fmt: skip
+        "mixture",
+        "Spheres of 1 TPa and 1 MPa",
+        R,
+        ((1e12, 1e10), (1e6, 5e4)),
+        spacing * np.array(n),
+        kind,
+        position,
+        _agitated(rng, len(position), 1.0),
+        4.0,
+        5e-3,
+    )
 
 
 def shock(n: tuple[int, int, int] = (10, 10, 20)) -> Scene:
@@ -99,9 +115,17 @@ def shock(n: tuple[int, int, int] = (10, 10, 20)) -> Scene:
     velocity[:, 2] += np.where(position[:, 2] < box[2] / 2, 150.0, -150.0)
     position[:, 2] += box[2] / 2  # room before and behind
     return Scene(
-        "shock", "Two blocks of steel spheres meet at 300 m/s", R, (STEEL,), box * (1, 1, 2),
-        np.ones(len(position), int), position, velocity, 300.0, 4e-4,
-    )  # fmt: skip
+        "shock",
+        "Two blocks of steel spheres meet at 300 m/s",
+        R,
+        (STEEL,),
+        box * (1, 1, 2),
+        np.ones(len(position), int),
+        position,
+        velocity,
+        300.0,
+        4e-4,
+    )
 
 
 SCENES = {"plate": plate, "mixture": mixture, "shock": shock}

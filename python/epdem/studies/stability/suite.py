@@ -50,8 +50,16 @@ def samplers(names: list[str], folder: Path) -> list[Sampler]:
     return found
 
 
-def run(engines: list[str], laws: list[str], *, groups: list[str] | None = None, every: int = 1, steps: int = 10**9,
-        cycles: int = 10_000, progress: Callable[[str], None] = lambda text: None) -> Outcome:  # fmt: skip
+def run(
+    engines: list[str],
+    laws: list[str],
+    *,
+    groups: list[str] | None = None,
+    every: int = 1,
+    steps: int = 10**9,
+    cycles: int = 10_000,
+    progress: Callable[[str], None] = lambda text: None,
+) -> Outcome:
     """Judge every `every`-th case of the `groups` (none: all) with every law in every engine.
 
     `steps` is the length of the drift by bounces, `cycles` the number of reloads. Laws none given: all. Without
@@ -80,8 +88,12 @@ def run(engines: list[str], laws: list[str], *, groups: list[str] | None = None,
     verdicts["notes"] = verdicts["notes"].map("; ".join)
     bulk = bulk_checks.run(laws, progress=progress) if "liggghts" in engines and not groups else pd.DataFrame()
     finer = "yade" in engines and not groups and precisions.available()
-    return Outcome(verdicts, pd.concat(tables, ignore_index=True) if tables else pd.DataFrame(), bulk,
-                   precisions.floors() if finer else pd.DataFrame())  # fmt: skip
+    return Outcome(
+        verdicts,
+        pd.concat(tables, ignore_index=True) if tables else pd.DataFrame(),
+        bulk,
+        precisions.floors() if finer else pd.DataFrame(),
+    )
 
 
 def ends(chosen: list[Extreme]) -> list[Extreme]:
@@ -99,11 +111,20 @@ def summary(verdicts: pd.DataFrame) -> pd.DataFrame:
         count = part["status"].value_counts()
         ran = part[part["status"].isin(["passed", "failed"]) & ~part["group"].isin(["bounces", "reloads"])]
         hit = ran[ran["group"] != "squeeze"]  # an impact has an e_n
-        rows.append({
-            "engine": name, "law": law, "passed": count.get("passed", 0), "failed": count.get("failed", 0),
-            "not representable": count.get("not representable", 0), "embedded only": count.get("embedded only", 0),
-            "worst error": hit["e_n_error"].max(), "most created": ran["created"].max(),
-            "least order": ran["order"].min(), "first useless at": ran["useless_at"].min(),
-            "first breaks at": ran["breaks_at"].min(), "slowest": part["seconds"].max(),
-        })  # fmt: skip
+        rows.append(
+            {
+                "engine": name,
+                "law": law,
+                "passed": count.get("passed", 0),
+                "failed": count.get("failed", 0),
+                "not representable": count.get("not representable", 0),
+                "embedded only": count.get("embedded only", 0),
+                "worst error": hit["e_n_error"].max(),
+                "most created": ran["created"].max(),
+                "least order": ran["order"].min(),
+                "first useless at": ran["useless_at"].min(),
+                "first breaks at": ran["breaks_at"].min(),
+                "slowest": part["seconds"].max(),
+            }
+        )
     return pd.DataFrame(rows)

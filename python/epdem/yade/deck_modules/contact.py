@@ -55,8 +55,23 @@ def survey() -> tuple[float, float]:
 class Contact:
     """A contact that can yield. Overlaps u in m, forces in N."""
 
-    __slots__ = ("E", "R_star", "bodies", "born", "delta_max", "geom", "growth", "interaction", "law", "levers", "peak",
-                 "phys", "place", "radius", "yield_overlap")  # fmt: skip
+    __slots__ = (
+        "E",
+        "R_star",
+        "bodies",
+        "born",
+        "delta_max",
+        "geom",
+        "growth",
+        "interaction",
+        "law",
+        "levers",
+        "peak",
+        "phys",
+        "place",
+        "radius",
+        "yield_overlap",
+    )
 
     def __init__(self, interaction, law, R_star: float):
         phys = interaction.phys

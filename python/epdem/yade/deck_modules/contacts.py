@@ -89,8 +89,16 @@ class Contacts:
         self._laws: dict[tuple[float, float], object] = {}
         self._runner: object = None
 
-    def material(self, label: str, *, young_modulus: float, poisson_ratio: float, density: float, friction: float = 0.0,
-                 **strength: float) -> FrictMatCDM:  # fmt: skip
+    def material(
+        self,
+        label: str,
+        *,
+        young_modulus: float,
+        poisson_ratio: float,
+        density: float,
+        friction: float = 0.0,
+        **strength: float,
+    ) -> FrictMatCDM:
         """Add a material, SI; `strength` is the law's yield_pressure or yield_stress (inf: never yields).
 
         young_modulus = inf is a rigid body. Of two materials the weaker one's strength counts.
@@ -112,8 +120,15 @@ class Contacts:
             law = self._law(like, value)
             rise = law.load(1.0, h * (1.0 + cone.SMALL))[0] / cone.force(like, 1.0, 1.0, 0.0, h) - 1.0
             alpha = asin(1.0 / (1.0 + cone.growth_by_secant(1.0, h, cone.SMALL * h, rise)))
-        material = FrictMatCDM(label=label, young=young, poisson=poisson_ratio, density=density, sigmaMax=trigger,
-                               alpha=alpha, frictionAngle=max(atan(friction), NO_FRICTION))  # fmt: skip
+        material = FrictMatCDM(
+            label=label,
+            young=young,
+            poisson=poisson_ratio,
+            density=density,
+            sigmaMax=trigger,
+            alpha=alpha,
+            frictionAngle=max(atan(friction), NO_FRICTION),
+        )
         O.materials.append(material)
         return material
 
@@ -257,8 +272,12 @@ class Contacts:
         u = contact.geom.penetrationDepth
         computed, limit, reached = contact.computed(u), contact.yield_overlap, contact.reached()
         if contact.born < O.iter and max(u, reached) > limit:
-            warnings.warn(f"epdem: a contact had yielded (overlap {u:.4g} m) before it was found and had YADE's own "
-                          "force until now; take interval = 1", RuntimeWarning, stacklevel=2)  # fmt: skip
+            warnings.warn(
+                f"epdem: a contact had yielded (overlap {u:.4g} m) before it was found and had YADE's own "
+                "force until now; take interval = 1",
+                RuntimeWarning,
+                stacklevel=2,
+            )
         if reached > max(u, limit) * (1.0 + 1e-9):
             contact.remember(reached)
             force = contact.unload(u)
