@@ -6,12 +6,15 @@ import pandas as pd
 
 from ..case.scene import SceneCase
 from ..impacts.prediction import predict
-from ..liggghts.scene_deck import Deck
-from .ledger import closure, kinetic
-from .model import wall_impact
+from .ledger import closure, kinetic, plate_velocity
+from .pairs import wall_impact
+from .plan import ScenePlan
 
 
-def _row(name: str, value: float, expected: float, tolerance: float) -> dict:
+Row = dict[str, object]
+
+
+def _row(name: str, value: float, expected: float, tolerance: float) -> Row:
     error = abs(value / expected - 1.0) if expected else abs(value)
     return {
         "check": name,
@@ -23,7 +26,7 @@ def _row(name: str, value: float, expected: float, tolerance: float) -> dict:
     }
 
 
-def _below(name: str, value: float, limit: float, tolerance: float) -> dict:
+def _below(name: str, value: float, limit: float, tolerance: float) -> Row:
     return {
         "check": name,
         "value": value,
@@ -34,14 +37,11 @@ def _below(name: str, value: float, limit: float, tolerance: float) -> dict:
     }
 
 
-def _kept(case: SceneCase, d: Deck, tables: dict[str, pd.DataFrame]) -> list[dict]:
-    if d.loses:
+def _kept(p: ScenePlan, tables: dict[str, pd.DataFrame]) -> list[Row]:
+    if p.layout.loses:
         return []
-    return [
-        _row(
-            "spheres in the room at the end", float(tables["rows"]["particles"].iloc[-1]), float(case.scene.count), 0.0
-        )
-    ]
+    last = float(tables["rows"]["particles"].iloc[-1])
+    return [_row("spheres in the room at the end", last, float(p.case.scene.count), 0.0)]
 
 
 def floor_load(case: SceneCase, tables: dict[str, pd.DataFrame]) -> tuple[float, float]:
@@ -71,9 +71,9 @@ def bed_rebound(case: SceneCase, spheres: pd.DataFrame) -> tuple[float, float]:
     return float((place - np.minimum.accumulate(place)).max()), e_n**2 * fall
 
 
-def stiffness(case: SceneCase, d: Deck, rows: pd.DataFrame) -> tuple[float, float]:
+def stiffness(p: ScenePlan, rows: pd.DataFrame) -> tuple[float, float]:
     """Secant stiffness [N/m] of (loading, unloading) between half the largest plate force and that force."""
-    turn = d.phases[0].end
+    turn = p.phases[0].end
     load, unload = rows[rows["step"] <= turn], rows[rows["step"] > turn]
     way_up, up = load["plate_z"].to_numpy()[::-1], load["plate_force"].to_numpy()[::-1]
     way_down, down = unload["plate_z"].to_numpy(), unload["plate_force"].to_numpy()
@@ -85,23 +85,22 @@ def stiffness(case: SceneCase, d: Deck, rows: pd.DataFrame) -> tuple[float, floa
     )
 
 
-def recovered(case: SceneCase, d: Deck, rows: pd.DataFrame) -> tuple[float, float]:
+def recovered(p: ScenePlan, rows: pd.DataFrame) -> tuple[float, float]:
     """Work [J] that the plate (put in, got back): its force, a mean over each interval, times its way."""
-    loading = rows["step"].to_numpy() <= d.phases[0].end
-    speed = np.where(loading, case.scene.speed, case.scene.release)
-    work = rows["plate_force"].to_numpy() * speed * np.diff(rows["step"], prepend=0) * d.time_step
-    return float(work[loading].sum()), float(work[~loading].sum())
+    speed = plate_velocity(p, rows)
+    work = rows["plate_force"].to_numpy() * np.abs(speed) * np.diff(rows["step"], prepend=0) * p.time_step
+    return float(work[speed < 0].sum()), float(work[speed > 0].sum())
 
 
-def discharge(case: SceneCase, d: Deck, spheres: pd.DataFrame) -> tuple[float, float]:
+def discharge(p: ScenePlan, spheres: pd.DataFrame) -> tuple[float, float]:
     """Mass flow [kg/s] through the outlet, between a fifth and 3/5 of the filling, and Beverloo's, with the bulk
     density of the bin when the outlet opens: W = 0.58 rho_b sqrt(g) (D - 1.4 d)^2.5."""
-    s, outlet, steps = case.scene, d.motion["outlet"], spheres["step"].unique()
-    opened = steps[steps <= d.phases[0].end].max()
+    s, outlet, steps = p.case.scene, p.layout.outlet, spheres["step"].unique()
+    opened = steps[steps <= p.phases[0].end].max()
     total = spheres[spheres["step"] == opened]["mass"].sum()
     out = spheres[spheres["z"] < outlet].groupby("step")["mass"].sum().reindex(steps, fill_value=0.0)
     steady = out[(out > 0.2 * total) & (out < 0.6 * total)]
-    rate = np.polyfit(steady.index.to_numpy() * d.time_step, steady.to_numpy(), 1)[0]
+    rate = np.polyfit(steady.index.to_numpy() * p.time_step, steady.to_numpy(), 1)[0]
     full = spheres[spheres["step"] == opened]
     top = np.quantile(full["z"], 0.95)
     inside = full[(full["z"] > 0.2 * top) & (full["z"] < 0.7 * top)]
@@ -132,9 +131,9 @@ def rebounds(case: SceneCase, spheres: pd.DataFrame) -> tuple[float, int]:
     return float(speeds[np.argmax(np.abs(speeds - single_rebound(case)))]), speeds.size
 
 
-def checks(case: SceneCase, d: Deck, tables: dict[str, pd.DataFrame]) -> pd.DataFrame:
+def checks(p: ScenePlan, tables: dict[str, pd.DataFrame]) -> pd.DataFrame:
     """One row per check: value, expected, relative error, tolerance, passed."""
-    found = _kept(case, d, tables)
+    case, found = p.case, _kept(p, tables)
     smooth = case.contact.wall_friction == 0.0 or (case.contact.friction == 0.0 and case.contact.wall_friction is None)
     smooth = smooth and not any("wall" in p.between for p in case.contact.pairs) and not case.contact.cohesion
     if case.scene.kind == "settle" and "floor_load" in tables["rows"] and "particles" in tables and smooth:
@@ -143,19 +142,19 @@ def checks(case: SceneCase, d: Deck, tables: dict[str, pd.DataFrame]) -> pd.Data
     if case.scene.kind == "settle" and not case.scene.rate and case.scene.gravity and case.output.particles >= 20:
         found.append(_below("rebound of the bed / e_n^2 fall", *bed_rebound(case, tables["particles"]), 0.0))
     if case.scene.kind == "hopper" and case.output.particles >= 20:
-        found.append(_row("mass flow / Beverloo", *discharge(case, d, tables["particles"]), 0.2))
+        found.append(_row("mass flow / Beverloo", *discharge(p, tables["particles"]), 0.2))
     if case.scene.kind == "peening" and not case.scene.bed and case.output.particles >= 20:
         speed, count = rebounds(case, tables["particles"])
         found.append(
             _row(f"rebound of {count} shots that met the plate alone / e_n v", speed, single_rebound(case), 1e-3)
         )
     if case.scene.kind == "compaction":
-        load, unload = stiffness(case, d, tables["rows"])
+        load, unload = stiffness(p, tables["rows"])
         found.append(_below("loading / unloading stiffness", load, unload, 0.0))
-        put_in, back = recovered(case, d, tables["rows"])
+        put_in, back = recovered(p, tables["rows"])
         found.append(_below("work got back / put in", back, put_in, 0.0))
     if "ledger" in tables and "friction" not in tables["ledger"]:
-        found.append(_row("energy: all terms but none as remainder", closure(case, tables["ledger"]), 0.0, 0.01))
+        found.append(_row("energy: all terms but none as remainder", closure(tables["ledger"]), 0.0, 0.01))
     return pd.DataFrame(found, columns=["check", "value", "expected", "error", "tolerance", "passed"])
 
 

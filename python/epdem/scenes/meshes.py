@@ -1,26 +1,27 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Triangles of the scenes' walls, and STL files. Arrays of shape (n, 3 corners, 3 coordinates), metres."""
+"""Triangles of the scenes' walls. Arrays of shape (n, 3 corners, 3 coordinates), metres."""
 
 import math
-from pathlib import Path
 
 import numpy as np
+import numpy.typing as npt
 
+FloatArray = npt.NDArray[np.float64]
 FACETS = 48  # around a circle: the wall is at most 0.2 % of the radius off it
 
 
-def _ring(radius: float, z: float, facets: int = FACETS) -> np.ndarray:
+def _ring(radius: float, z: float, facets: int = FACETS) -> FloatArray:
     angle = 2 * np.pi * np.arange(facets) / facets
     return np.column_stack([radius * np.cos(angle), radius * np.sin(angle), np.full(facets, z)])
 
 
-def _band(lower: np.ndarray, upper: np.ndarray) -> np.ndarray:
+def _band(lower: FloatArray, upper: FloatArray) -> FloatArray:
     """Two triangles per facet between two rings of equally many points."""
     a, b = np.roll(lower, -1, axis=0), np.roll(upper, -1, axis=0)
     return np.concatenate([np.stack([lower, a, upper], axis=1), np.stack([a, b, upper], axis=1)])
 
 
-def _tube(profile: list[tuple[float, float]]) -> np.ndarray:
+def _tube(profile: list[tuple[float, float]]) -> FloatArray:
     """Surface of revolution about z through (radius, z) points, split so that no triangle is a needle."""
     bands = []
     for (r0, z0), (r1, z1) in zip(profile[:-1], profile[1:], strict=True):
@@ -34,32 +35,19 @@ def _tube(profile: list[tuple[float, float]]) -> np.ndarray:
     return np.concatenate(bands)
 
 
-def hopper(bin_diameter: float, bin_height: float, outlet: float, depth: float) -> np.ndarray:
+def hopper(bin_diameter: float, bin_height: float, outlet: float, depth: float) -> FloatArray:
     """A cone from the outlet (z = -depth) to the bin (z = 0), and the bin above it; depth 0 is a flat bottom."""
     return _tube([(outlet / 2, -depth), (bin_diameter / 2, 0.0), (bin_diameter / 2, bin_height)])
 
 
-def drum(diameter: float, length: float) -> np.ndarray:
+def drum(diameter: float, length: float) -> FloatArray:
     """A tube about the y axis, open at its ends."""
     tube = _tube([(diameter / 2, -length / 2), (diameter / 2, length / 2)])
     return tube[:, :, [0, 2, 1]]
 
 
-def plate(lx: float, ly: float, z: float) -> np.ndarray:
+def plate(lx: float, ly: float, z: float) -> FloatArray:
     """A horizontal rectangle of two triangles about the z axis."""
     x, y = lx / 2, ly / 2
     corner = np.array([[-x, -y, z], [x, -y, z], [x, y, z], [-x, y, z]])
     return np.stack([corner[[0, 1, 2]], corner[[0, 2, 3]]])
-
-
-def write_stl(path: Path, name: str, triangles: np.ndarray) -> None:
-    """An ASCII STL file that LIGGGHTS reads; corners keep every digit, so that neighbours share them exactly."""
-    lines = [f"solid {name}"]
-    for t in triangles:
-        normal = np.cross(t[1] - t[0], t[2] - t[0])
-        normal = normal / np.linalg.norm(normal)
-        lines.append("facet normal " + " ".join(f"{x:.9e}" for x in normal))
-        lines.append(" outer loop")
-        lines += ["  vertex " + " ".join(f"{x:.12e}" for x in corner) for corner in t]
-        lines += [" endloop", "endfacet"]
-    path.write_text("\n".join([*lines, f"endsolid {name}", ""]))

@@ -10,43 +10,7 @@ import pandas as pd
 
 from ..errors import CaseError
 from ..files import atomic
-
-UNITS = {
-    "time": "s",
-    "radius": "m",
-    "mass": "kg",
-    "x": "m",
-    "y": "m",
-    "z": "m",
-    "vx": "m/s",
-    "vy": "m/s",
-    "vz": "m/s",
-    "omega_x": "rad/s",
-    "omega_y": "rad/s",
-    "omega_z": "rad/s",
-    "kinetic_energy": "J",
-    "floor_load": "N",
-    "plate_force": "N",
-    "plate_z": "m",
-    "stress": "Pa",
-    "overlap": "m",
-    "delta_max": "m",
-    "residual_overlap": "m",
-    "force": "N",
-    "dent_radius": "m",
-    "plastic_work": "J",
-    "elastic_energy": "J",
-    "kinetic": "J",
-    "elastic": "J",
-    "plastic": "J",
-    "gravity": "J",
-    "friction": "J",
-    "work": "J",
-    "entered": "J",
-    "left": "J",
-    "balance": "J",
-}
-
+from .columns import UNITS
 
 @dataclass
 class SceneResults:
