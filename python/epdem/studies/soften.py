@@ -48,7 +48,7 @@ def _replacements(data: dict[str, Any], factor: float) -> dict[tuple[str, ...], 
     """The new text of every value that changes, by its keys."""
     law = data["law"]
     strength = claw.laws()[law["name"]].strength
-    found = {}
+    found: dict[tuple[str, ...], str] = {}
     for name, material in data["materials"].items():
         found["materials", name, "young_modulus"] = _scaled(material["young_modulus"], 1.0 / factor)
         for key in ("yield_stress", *([strength.name] if strength else [])):
