@@ -14,6 +14,7 @@ import numpy as np
 from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, ValidationError, model_validator
 
 from ..errors import CaseError
+from .messages import explain
 from .units import to_si
 
 RIGID = "rigid"
@@ -59,7 +60,7 @@ def _printable_line(value: object) -> str:
 
 
 Line = Annotated[str, BeforeValidator(_printable_line)]
-Name = Annotated[str, Field(pattern=r"^[A-Za-z0-9_-]{1,64}$")]
+Name = Annotated[str, Field(pattern=r"^[A-Za-z0-9_][A-Za-z0-9_-]{0,63}$")]
 
 
 class Frozen(BaseModel):
@@ -196,51 +197,12 @@ class Case(Frozen):
         return self.case.name
 
 
-def _value_at(data: Any, location: tuple) -> Any:
-    for key in location:
-        try:
-            data = data[key]
-        except (KeyError, IndexError, TypeError):
-            return None
-    return data
-
-
-def _explain(path: object, data: dict, error: ValidationError) -> str:
-    """The first mistake as one sentence: place, value, limit, next step."""
-    problems = error.errors()
-    # of the two readings of `speeds` pydantic reports both; the one that fits the shape of the value is meant
-    shape = "SpeedRange" if isinstance(_value_at(data, ("impact", "speeds")), dict) else "list["
-    problems = [
-        p
-        for p in problems
-        if not (p["loc"][:2] == ("impact", "speeds") and len(p["loc"]) > 2 and not str(p["loc"][2]).startswith(shape))
-    ] or problems
-    problem = next((p for p in problems if p["type"] == "extra_forbidden"), problems[0])  # likely a misspelt key
-    location = tuple(
-        k for k in problem["loc"] if k in ("from",) or not str(k).startswith(("SpeedRange", "list[", "function-"))
-    )
-    place, value = ".".join(map(str, location)), _value_at(data, location)
-    text = problem["msg"].removeprefix("Value error, ")
-    if problem["type"] == "extra_forbidden":
-        text = "unknown key; remove it or correct its spelling"
-    elif problem["type"] == "missing":
-        text = "is missing; add it"
-    elif problem["type"] in ("model_type", "dict_type", "model_attributes_type"):
-        text = f"must be a table; write [{place}] and its keys below"
-    elif problem["type"] == "string_pattern_mismatch":
-        text = "must be 1 to 64 letters, digits, - or _"
-    elif problem["type"] == "too_short":
-        text = "is empty; give at least one value"
-    shown = "" if value is None or isinstance(value, dict | list) else f" = {value!r}"
-    return f"{path}: {place}{shown}{', ' if shown else ' ' if place else ''}{text}"
-
-
 def parse(data: dict, path: object = "case") -> Case:
     """A Case from TOML data; `path` names the place in messages. Raises CaseError."""
     try:
         return Case.model_validate(data)
     except ValidationError as error:
-        raise CaseError(_explain(path, data, error)) from None
+        raise CaseError(explain(path, data, error, "impact")) from None
 
 
 def read_toml(path: Path | str) -> dict:
