@@ -78,6 +78,16 @@ def test_fully_plastic_cavity_unloads_by_the_integral_of_8_82(share):
     assert slope == pytest.approx(2 * STEEL["E_star"] * float(a), rel=1e-8, abs=0)
 
 
+@pytest.mark.parametrize("share", [1e-6, 1e-4, 1e-2, 0.5, 0.99])
+def test_unloading_force_keeps_its_digits_down_to_a_tiny_circle(share):
+    """8.82 summed over the circle in 40 digits, r = a sqrt(1 - u^2); it goes as (4/3) p a^3/a* when a is small."""
+    with mp.workdps(40):
+        k = mp.mpf(share)
+        inner = lambda u: mp.asin(mp.sqrt(k * k * u * u / (1 - k * k * (1 - u * u))))  # noqa: E731
+        exact = 4 * k * k * mp.quad(lambda u: u * inner(u), [0, 1])
+    assert float(pressure.unloading_force(a=2 * share, a_max=2.0, p=3.0)) == exactly(12 * exact)
+
+
 def test_mean_pressure_at_first_yield_is_two_thirds_of_the_peak():
     """Printed p_0/Y: 1.61280 at nu = 0.3, 1.55435 at 0.25; 2/3 of their 5 decimals."""
     assert yielding.first_yield_mean(np.array([0.3, 0.25])) == pytest.approx([1.07520, 1.03623], abs=4e-6)

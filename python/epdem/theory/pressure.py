@@ -4,6 +4,7 @@
 import numpy as np
 
 from .checks import number
+from .numerics import segment
 
 
 def hertz(r, *, p_0, a):
@@ -87,10 +88,9 @@ def unloading(r, *, a, a_max, p):
 
 
 def unloading_force(*, a, a_max, p):
-    """Integral of `unloading` over the circle [N]: p a*^2 2 [acos y - y sqrt(1-y^2)], y = sqrt(1 - a^2/a*^2).
+    """Integral of `unloading` over the circle [N]: 2 p a*^2 [t - sin t cos t], t = asin(a/a*), to full accuracy.
 
     a, a_max = a* [m], p [Pa] > 0, any shapes that broadcast; ValueError if a exceeds a_max.
     """
     a, a_max = _opening(a, a_max)
-    y = np.sqrt(1 - (a / a_max) ** 2)
-    return 2 * number("p", p) * a_max**2 * (np.arccos(y) - y * np.sqrt(1 - y * y))
+    return 2 * number("p", p) * a_max**2 * segment(np.arcsin(a / a_max))
