@@ -105,6 +105,8 @@ ROWS = [
     Row(pressure.regime, {"x": (10.0, ONE)}, ONE),
     Row(pressure.unloading, {"r": (3e-5, M), "a": (6e-5, M), "a_max": A, "p": P}, PA),
     Row(pressure.unloading_force, {"a": (6e-5, M), "a_max": A, "p": P}, N),
+    Row(pressure.line_load, {"x": (3e-5, M), "force": (50.0, N), "a": (6e-5, M), "a_max": A, "flatness": (0.4, ONE)},
+        N - M),
     Row(yielding.von_mises, {"s1": Y, "s2": P, "s3": E}, PA),
     Row(yielding.tresca, {"s1": Y, "s2": P, "s3": E}, PA),
     Row(yielding.principal, {"stress": (np.diag([3e9, 1e9, 2e9]) + 1e8, PA)}, PA),

@@ -10,6 +10,8 @@ import numpy as np
 
 from .backbones import Backbone
 from .checks import number, poisson_ratio
+from .partial_slip import rebound
+from .restitution import e_n as normal_restitution
 
 STEEPEST = 1.5707  # of impact angles [rad]: just below pi/2
 
@@ -68,50 +70,18 @@ class Oblique:
 
 
 def impact(law: Backbone, *, mass, R, mu, G_star, v_n, theta, steps=2000, springs=200) -> Oblique:
-    """Oblique impacts of a solid sphere on a fixed plane, with stick, partial slip and slip.
+    """Oblique impacts of a solid sphere on a fixed plane, with stick, partial slip and slip (`partial_slip`).
 
-    Cattaneo-Mindlin friction for any load history by independent springs along the contact (Jaeger 1993; the method
-    of dimensionality reduction, Popov and Hess 2015): per length 4 G* tangentially, and a normal load that goes as
-    a^2 - x^2 (exact for Hertz and for unloading with tau = 0; the half-ellipse is kept while the law yields). Each
-    sticks until it carries mu times its load. mass [kg], R [m], G_star [Pa], v_n [m/s] > 0, theta [rad] in [0, pi/2)
-    of any shape; `steps` in the contact (error about 1/steps^2) and `springs` over its radius.
+    mass [kg], R [m], G_star [Pa], v_n [m/s] > 0, theta [rad] in [0, pi/2) of any shape; `steps` in the contact (error
+    about 1/steps^2) and `springs` over its radius. ValueError outside.
     """
-    from .restitution import impact as normal_impact
-
     theta = np.asarray(number("theta", theta, low_ok=True, high=STEEPEST), float)
     mu, mass, R = number("mu", mu, low_ok=True), number("mass", mass), number("R", R)
-    normal = normal_impact(law, m_star=mass, speed=v_n)
-    dt = float(normal.contact_time) / steps
-    a_top = float(normal.radius_max)
-    x = (np.arange(springs) + 0.5) / springs * a_top * 1.001
-    stiffness = 2 * 4 * number("G_star", G_star) * (x[1] - x[0])  # both halves of the line
-    slip = (np.tan(theta) * v_n).ravel()  # patch velocity
-    stretch = np.zeros((slip.size, springs))
-    alpha, v, reached, impulse = 0.0, float(v_n), 0.0, np.zeros(slip.size)
-    force, friction = 0.0, np.zeros(slip.size)
-    for _ in range(int(1.2 * steps)):
-        v_half = v - 0.5 * dt * force / mass
-        slip_half = slip - 0.5 * dt * 3.5 * friction / mass
-        alpha += dt * v_half
-        if alpha >= reached:
-            reached = alpha
-            force, a = float(law.force(alpha)), float(law.radius(alpha))
-        else:
-            force, a = (float(q) for q in law.unloading(alpha, reached))
-        limit = np.zeros(springs)
-        if force > 0:
-            load = np.maximum(a * a - x * x, 0.0)
-            limit = mu * force * load / load.sum()
-        stretch = np.clip(stretch + dt * slip_half[:, None], -limit / stiffness, limit / stiffness)
-        friction = stiffness * stretch.sum(axis=1)
-        v = v_half - 0.5 * dt * force / mass
-        slip = slip_half - 0.5 * dt * 3.5 * friction / mass
-        impulse += dt * friction
-        if force == 0 and v < 0:
-            break
-    e_n = np.asarray(normal.e_n)
-    f = (impulse / (mass * v_n * (1 + e_n))).reshape(theta.shape)
     tangent = np.tan(theta)
+    _, impulse = rebound(law, m_star=mass, m_tangential=2 / 7 * mass, mu=mu, G_star=G_star, v_n=v_n,
+                         slip=tangent * v_n, steps=steps, springs=springs)  # fmt: skip
+    e_n = np.asarray(normal_restitution(law, m_star=mass, speed=v_n))
+    f = impulse / (mass * v_n * (1 + e_n))
     e_t = 1 - np.divide(f * (1 + e_n), tangent, out=np.full(theta.shape, np.nan), where=tangent > 0)
     turned, patch = spin(f, e_n=e_n, v_n=v_n, R=R), patch_rebound(f, e_n=e_n, theta=theta)
     return Oblique(f=f, e_n=e_n, e_t=e_t, spin=turned, patch=patch)
