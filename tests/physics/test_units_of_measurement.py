@@ -134,6 +134,7 @@ ROWS = [
     Row(printed.johnson, IMPACT | {"speed": (50.0, SPEED), "p_m": P}, ONE),
     Row(printed.johnson_plane, {"speed": (50.0, SPEED), "p_m": P, "E_star": E_STAR, "density": (7850.0, DENSITY)}, ONE),
     Row(printed.wu, {"speed": (50.0, SPEED), "v_y0": (0.1, SPEED)}, ONE),
+    Row(timestep.sticking_packing, {"kappa": (0.8, ONE), "contacts": (12.0, ONE)}, ONE),
     Row(timestep.stability_limit, {"E_star": E_STAR, "m_star": M_STAR, "radius": A}, S),
     Row(timestep.rayleigh_time, {"radius": R_STAR, "density": (7850.0, DENSITY), "young_modulus": E,
                                  "poisson_ratio_": NU}, S),

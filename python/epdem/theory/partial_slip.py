@@ -8,8 +8,9 @@ of dimensionality reduction, Popov and Hess 2015), and the reference of the C++ 
 
 import numpy as np
 
-from .backbones import Backbone, Hertz
+from .backbone import Backbone
 from .checks import Array, Real, number
+from .hertz import Hertz
 from .pressure import line_load
 from .restitution import impact as normal_impact
 
@@ -24,7 +25,7 @@ class Springs:
     def __init__(self, *, G_star: Real, mu: Real, a_max: float, shape: tuple[int, ...], springs: int = 400):
         self.G_star, self.mu = number("G_star", G_star), number("mu", mu, low_ok=True)
         self.width = 1.001 * float(number("a_max", a_max)) / springs
-        self.x = (np.arange(springs) + 0.5) * self.width
+        self.x: Array = (np.arange(springs, dtype=float) + 0.5) * self.width
         self.stretch = np.zeros((*shape, springs))
 
     def move(self, slip: Real, *, force: float, a: float, a_peak: float, flatness: float) -> Array:
