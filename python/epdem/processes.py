@@ -60,7 +60,7 @@ def ask(command: list[str], env: dict[str, str] | None = None) -> str:
     return done.stdout + done.stderr
 
 
-def kill(process: subprocess.Popen) -> None:
+def kill(process: subprocess.Popen[bytes]) -> None:
     """Stop a process and all that it started."""
     for sign, patience in ((signal.SIGTERM, 5), (signal.SIGKILL, 5)):
         try:

@@ -4,6 +4,7 @@
 from pathlib import Path
 
 import pytest
+from scene_runs import write_deck
 
 from epdem.case import impact as impacts
 from epdem.case.scene import is_scene, parse
@@ -12,7 +13,6 @@ from epdem.impacts.experiment import experiment
 from epdem.impacts.plan import plan
 from epdem.impacts.prediction import predict
 from epdem.liggghts import explain, lean
-from epdem.liggghts import scene_deck as deck
 
 CASES = sorted((Path(__file__).parents[2] / "cases").glob("*.toml"))
 
@@ -50,7 +50,7 @@ def decks_of(path: Path, folder: Path) -> tuple[str, list[str]]:
     """Write a case's deck: (file to run, files whose lines are removed)."""
     data = impacts.read_toml(path)
     if is_scene(data):
-        deck.write(parse(small(data)), folder)
+        write_deck(parse(small(data)), folder)
         return "in.scene", ["in.scene", "setup.in"]
     data = data | {"numerics": {"steps_in_contact": 40, "phases": 2}}  # the same lines, in a tenth of the time
     x = experiment(impacts.parse(data))

@@ -28,12 +28,15 @@ def run_scene(
     ranks: int = 1,
     fresh: bool = False,
     resume: bool = False,
+    force: bool = False,
     as_json: bool = False,
 ) -> int:
     """Run a scene with a progress bar; print its checks. Exit code: 0, or 1 if a check failed."""
+    from ..engines import scene_engine
     from ..scenes import report
     from ..scenes.run import run
 
+    tool = scene_engine(engine)
     bar = Progress(
         TextColumn("{task.description}"),
         BarColumn(),
@@ -46,11 +49,12 @@ def run_scene(
         task = bar.add_task(Path(case).stem, total=None)
         outcome = run(
             case,
-            engine=engine,
+            tool,
             out=out,
             ranks=ranks,
             fresh=fresh,
             resume=resume,
+            force=force,
             tell=lambda step, steps: bar.update(task, completed=step, total=steps),
         )
     report.figures(outcome)
@@ -63,15 +67,14 @@ def run_scene(
 
 def deck_scene(case: Path, out: Path, *, engine: str = "liggghts", as_json: bool = False) -> None:
     """Write the deck of a scene; it runs by hand."""
+    from ..case.impact import named
+    from ..engines import scene_engine
     from ..files import write_texts
-    from ..liggghts import scene_deck as deck
-    from ..yade import scene_deck as yade
+    from ..scenes.plan import plan
 
-    if engine not in ("liggghts", "yade"):
-        raise CaseError(f"--engine {engine}: a scene runs on liggghts or yade")
-    scene = scene_case.load(case)
-    files = write_texts(out, yade.texts(scene)) if engine == "yade" else deck.write(scene, out)
-    names = [str(f) for f in files]
+    with named(case):
+        files = scene_engine(engine).files(plan(scene_case.load(case)))
+    names = [str(f) for f in write_texts(out, files)]
     print(json.dumps({"files": names}) if as_json else "\n".join(names))
 
 
@@ -93,9 +96,11 @@ def explain(case: CasePath, as_json: AsJson = False) -> None:
 
 def _texts(case: Path) -> dict[str, str]:
     if is_scene(case):
-        from ..liggghts.scene_deck import texts
+        from ..engines import scene_engine
+        from ..scenes.plan import plan as scene_plan
 
-        return texts(scene_case.load(case))
+        files = scene_engine("liggghts").files(scene_plan(scene_case.load(case)))
+        return {name: files[name] for name in ("in.scene", "setup.in")}
     from .. import rendering as decks
     from ..case.impact import load
     from ..impacts.experiment import experiment
@@ -112,15 +117,22 @@ def soften(
     factor: Annotated[
         float, typer.Option("--factor", "-k", help="E is divided by it; the step grows by its 0.4th power")
     ],
-    out: Annotated[Path | None, typer.Option("--out", "-o", help="file to write")] = None,
+    out: Annotated[
+        Path | None, typer.Option("--out", "-o", help="file to write (default: CASE_softK.toml beside it)")
+    ] = None,
+    force: Annotated[bool, typer.Option("--force", help="replace a file that is there already")] = False,
     as_json: AsJson = False,
 ) -> None:
     """A softened twin of a case with the same e_n at every speed, and larger time steps."""
+    from ..files import atomic
     from ..studies.soften import soften as twin_of
 
     twin = twin_of(case, factor)
     target = out or case.with_name(f"{case.stem}_soft{factor:g}.toml")
-    target.write_text(twin.text)
+    if target.exists() and not force:
+        raise CaseError(f"{target} exists; name another file by --out, or replace it by --force")
+    with atomic(target) as temporary:
+        temporary.write_text(twin.text, encoding="utf-8")
     if as_json:
         print(
             json.dumps(

@@ -14,7 +14,8 @@ from ..errors import CaseError
 from ..impacts.experiment import experiment
 from ..impacts.plan import plan
 from ..impacts.prediction import predict
-from ..scenes import kinds, meshes
+from ..scenes.plan import plan as scene_plan
+from . import stl
 from .impacts import Liggghts, data_file
 from .scene_deck import deck as scene_deck
 
@@ -60,7 +61,8 @@ def write(template: Path, case_path: Path, sets: dict[str, object], out: Path) -
     triangles = {}
     if scenes.is_scene(read_toml(case_path)):
         case = scenes.load(case_path)
-        deck, triangles = scene_deck(case), kinds.layout(case).meshes
+        scene = scene_plan(case)
+        deck, triangles = scene_deck(scene), scene.layout.meshes
     else:
         case = load_impact(case_path)
         x = experiment(case)
@@ -86,7 +88,7 @@ def write(template: Path, case_path: Path, sets: dict[str, object], out: Path) -
     for name, surface in triangles.items():
         if f"{name}.stl" in text:
             files.append(out / f"{name}.stl")
-            meshes.write_stl(files[-1], name, surface)
+            files[-1].write_text(stl.text(name, surface))
     return files
 
 

@@ -15,11 +15,12 @@ from .scene_deck import deck
 
 
 def _restarts(folder: Path) -> list[tuple[int, Path]]:
-    return sorted((int(re.search(r"(\d+)\.bin$", p.name).group(1)), p) for p in folder.glob("restart.*.bin"))
+    found = [(re.fullmatch(r"restart\.(\d+)\.bin", p.name), p) for p in folder.glob("restart.*.bin")]
+    return sorted((int(m[1]), p) for m, p in found if m)
 
 
 def whole_restarts(folder: Path) -> list[int]:
-    """Steps of the restart files that are whole: LIGGGHTS went on after them, so their rows stand twice in succession."""
+    """Steps of the whole restart files: LIGGGHTS went on after them, so their rows stand twice in succession."""
     log = folder / running.OUT
     if not log.exists():
         return []
@@ -54,7 +55,9 @@ def write_resume(p: ScenePlan, folder: Path, step: int) -> Path:
     d = deck(p)
     phase = next((i for i, part in enumerate(d.phases) if step < part.end), len(d.phases))
     rows = tables.rows(p, folder / running.OUT).set_index("step")
-    if rows["particles"].get(step) == p.case.scene.count:  # poured out: LIGGGHTS refuses an insertion that lies behind it
+    if (
+        rows["particles"].get(step) == p.case.scene.count
+    ):  # poured out: LIGGGHTS refuses an insertion that lies behind it
         d = replace(d, insertions=tuple(f for f in d.insertions if not f.rate))
     path = folder / "in.resume"
     continued = replace(d, from_restart=f"restart.{step}.bin", resumed_phase=phase)

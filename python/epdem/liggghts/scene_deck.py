@@ -17,7 +17,7 @@ SKIN = 0.25  # of the smallest radius: rebuilds cost less than idle neighbours
 
 @dataclass(frozen=True)
 class Deck:
-    """What the templates read; `row_words` are the thermo words beside step, atoms and kinetic energy, shown unasked."""
+    """What the templates read; `row_words` are thermo words beside step, atoms and kinetic energy, shown unasked."""
 
     title: str
     source: str
@@ -77,7 +77,7 @@ def _properties(p: ScenePlan) -> tuple[Property, ...]:
     ]
     law = laws()[m.law]
     if law.strength:
-        values = [t.strength for t in m.types if t.strength is not None]
+        values = [t.strength for t in m.types]
         rows.append((law.strength.property, "peratomtype", values, "Pa" if n == 1 else "Pa, the softer body's counts"))
     for parameter in law.parameters:
         value = m.parameters.get(parameter.name, parameter.default)

@@ -55,8 +55,8 @@ def rows(p: ScenePlan, log: Path) -> pd.DataFrame:
     if not found:
         raise EngineError(f"{log}: no thermo rows; the run ended before its first step")
     shown = [k for k, word in enumerate(heads[1:]) if word in ROWS]  # and LIGGGHTS's own choice if nothing is asked for
-    values = {step: [row[k] for k in shown] for step, row in found.items()}
-    return columns.rows(p, values, [ROWS[heads[1 + k]] for k in shown])
+    table = {step: [row[k] for k in shown] for step, row in found.items()}
+    return columns.rows(p, table, [ROWS[heads[1 + k]] for k in shown])
 
 
 def _incomplete(path: Path) -> EngineError:
@@ -186,9 +186,7 @@ def _planes(p: ScenePlan, spheres: pd.DataFrame) -> list[pd.DataFrame]:
     return found
 
 
-def contact_table(
-    p: ScenePlan, folder: Path, spheres: pd.DataFrame, *, without: Collection[int] = ()
-) -> pd.DataFrame:
+def contact_table(p: ScenePlan, folder: Path, spheres: pd.DataFrame, *, without: Collection[int] = ()) -> pd.DataFrame:
     """Every contact of every frame; `spheres` is the particles' table. Raises EngineError as `particles` does."""
     parts = [_pairs(p, folder, without), *_planes(p, spheres)]
     if p.layout.meshes:

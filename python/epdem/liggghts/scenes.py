@@ -20,7 +20,7 @@ class LiggghtsScenes:
     subfolder = ""
     parallel = True
     resumes = True
-    leftovers = (
+    leftovers: tuple[str, ...] = (
         "particles.*.bin",
         "contacts.*.txt",
         "wall_contacts.*.txt",
@@ -66,4 +66,3 @@ def _pruning(folder: Path, tell: Tell) -> Tell:
         tell(step)
 
     return row
-

@@ -8,9 +8,8 @@ import numpy.typing as npt
 import pandas as pd
 
 from ..case.scene import SceneCase
-from ..laws.library import laws
-from ..theory import backbones, pair
-from .pairs import pair_law, strengths
+from ..laws.native import Law
+from .pairs import pair_law
 from .plan import ScenePlan
 
 Array = npt.NDArray[np.float64]
@@ -73,25 +72,17 @@ def energies(
     return out
 
 
-def _theory(case: SceneCase, a: str, b: str, R_star: float):
-    first, second = case.materials[a], case.materials[b]
-    elastic = (first.young_modulus, first.poisson_ratio, second.young_modulus, second.poisson_ratio)
-    cls, strong = backbones.LAWS[case.law.name], strengths(case)
-    values = {p.name: case.law.parameters().get(p.name, p.default) for p in laws()[case.law.name].parameters}
-    for p in laws()[case.law.name].parameters:
-        if p.unit == "Pa":
-            values[p.name] = min(strong[a], strong[b])
-    keywords = {cls.keywords[name]: float(value) for name, value in values.items()}
-    return cls(E_star=float(pair.E_star(*elastic)), R_star=R_star, **keywords)
-
-
-def _one_kind(case: SceneCase, a: str, b: str, R: float, overlap: np.ndarray, largest: np.ndarray) -> dict:
+def _one_kind(
+    case: SceneCase, a: str, b: str, R: float, overlap: np.ndarray, largest: np.ndarray
+) -> dict[str, np.ndarray]:
     """Contacts of one pair of materials and one R* [m]."""
-    law = pair_law(case, a, b)
+    spec, E_star = pair_law(case, a, b)
+    law = Law(spec.name, E_star=E_star, **spec.parameters)
+    theory = spec.declaration.backbone(E_star=E_star, R_star=R, parameters=spec.parameters)
     largest = np.maximum(largest, overlap)
     force, _, _ = law.step(R_star=R, delta_max=largest, delta=overlap)
     _, dent, _, plastic = law.backbone(R_star=R, delta=largest)
-    residual = np.asarray(_theory(case, a, b, R).residual_overlap(largest), float) * (plastic > 0.0)
+    residual = np.asarray(theory.residual_overlap(largest), float) * (plastic > 0.0)
     # elastic energy: the force below delta_max, integrated from where it begins; u^2 takes its root away there
     way = np.maximum(overlap - residual, 0.0)
     u = 0.5 * (_NODES + 1.0)

@@ -32,7 +32,8 @@ def work_of_walls(p: ScenePlan, rows: pd.DataFrame) -> np.ndarray:
 def plate_velocity(p: ScenePlan, rows: pd.DataFrame) -> np.ndarray:
     """Velocity [m/s] of the plate along z in the interval that ends with each row."""
     phase = np.searchsorted([phase.end for phase in p.phases[:-1]], rows["step"])
-    return np.array([phase.plate for phase in p.phases])[phase]
+    speeds: np.ndarray = np.array([phase.plate for phase in p.phases])[phase]
+    return speeds
 
 
 def _left(spheres: pd.DataFrame, steps: np.ndarray) -> np.ndarray:

@@ -1,22 +1,23 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """What the contacts of a scene consist of, neutral of engines: types of spheres and walls, friction, sub-models."""
 
+import math
 from dataclasses import dataclass
 
 from ..case.scene import Rolling, SceneCase
 from ..errors import CaseError
-from .pairs import ratios, strengths
+from .pairs import numbers, strengths
 
 WALL = "wall"
 
 
 @dataclass(frozen=True)
 class Type:
-    """A material, or the walls where they have values of their own; `strength` [Pa] is None if it never yields."""
+    """A material, or the walls where they have values of their own; `strength` [Pa] is inf if it never yields."""
 
     name: str
     material: str
-    strength: float | None
+    strength: float
 
 
 @dataclass(frozen=True)
@@ -44,7 +45,7 @@ class Model:
     @property
     def yields(self) -> bool:
         """Whether the law has a strength."""
-        return any(t.strength is not None for t in self.types)
+        return any(t.strength < math.inf for t in self.types)
 
     @property
     def sliding(self) -> bool:
@@ -73,7 +74,7 @@ def model(case: SceneCase) -> Model:
         types.append(Type(WALL, case.scene.walls, strong[case.scene.walls]))
     found = Model(
         law=case.law.name,
-        parameters=ratios(case),
+        parameters=numbers(case).ratios,
         types=tuple(types),
         wall_type=len(types) if walls_apart else 1 + used.index(case.scene.walls),
         friction=tuple(tuple(_friction(case, a, b) for b in types) for a in types),

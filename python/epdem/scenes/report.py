@@ -2,6 +2,7 @@
 """What a person sees of a scene: checks, summary, JSON, figures."""
 
 import json
+from types import ModuleType
 
 from rich.console import Console
 from rich.table import Table
@@ -61,13 +62,18 @@ def show(outcome: SceneOutcome, console: Console) -> None:
     )
 
 
-def figures(outcome: SceneOutcome) -> None:
-    """scene.png: what the rows hold against time."""
+def _pyplot() -> ModuleType:
     import matplotlib
 
     matplotlib.use("Agg")
     import matplotlib.pyplot as plt
 
+    return plt
+
+
+def figures(outcome: SceneOutcome) -> None:
+    """scene.png: what the rows hold against time."""
+    plt = _pyplot()
     rows = outcome.results.tables["rows"]
     shown = [c for c in ("kinetic_energy", "floor_load", "plate_force") if c in rows]
     fig, axes = plt.subplots(
@@ -93,7 +99,7 @@ def figures(outcome: SceneOutcome) -> None:
         _ledger_figure(outcome, plt)
 
 
-def _ledger_figure(outcome: SceneOutcome, plt) -> None:
+def _ledger_figure(outcome: SceneOutcome, plt: ModuleType) -> None:
     """energy.png: every term of the ledger against time."""
     table = outcome.results.tables["ledger"]
     colors = {"kinetic": "C0", "elastic": "C2", "plastic": "C3", "friction": "C1", "left": "C5"}

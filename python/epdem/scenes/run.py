@@ -1,22 +1,24 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """A scene from case file to results.h5: deck, run with progress, tables, ledger, checks; and its continuation."""
 
-import hashlib
 import time
 from collections.abc import Callable
 from dataclasses import dataclass, field
+from functools import cached_property
 from pathlib import Path
 
 import pandas as pd
 
-from .. import __version__, paths
+from .. import __version__
 from ..case.impact import named
 from ..case.scene import SceneCase, load
 from ..errors import CaseError, EngineError
 from ..files import write_texts
+from ..folders import Results, claim
 from ..impacts.prediction import predict
+from ..stages import inputs_hash
 from . import checks, ledger, results
-from .engine import SceneEngine
+from .engine import Resumed, SceneEngine, Tell
 from .pairs import wall_impact
 from .plan import ScenePlan, plan
 from .timestep import highest_speed
@@ -48,14 +50,23 @@ class SceneOutcome:
         return checks is None or bool(checks["passed"].all())
 
 
-def inputs_hash(p: ScenePlan, files: dict[str, str], version: str, ranks: int) -> str:
-    """Hash of all that a result depends on: the case, every file written for the engine, its version, all of ours."""
-    sha = hashlib.sha256(repr((__version__, p.case, sorted(files.items()), version, ranks)).encode())
-    compiled = [paths.native("libepdem.so"), paths.native("libepdem_liggghts.so"), paths.launcher()]
-    sources = [*paths.templates().rglob("*.j2"), *Path(__file__).parents[1].rglob("*.py")]
-    for path in [*filter(None, compiled), *sorted(sources)]:
-        sha.update(path.read_bytes())
-    return sha.hexdigest()
+@dataclass(frozen=True)
+class _Work:
+    """A checked case: what is to run, on what."""
+
+    path: Path
+    plan: ScenePlan
+    engine: SceneEngine
+    files: dict[str, str]
+    notes: list[str]
+    ranks: int
+    tell: Tell
+
+    @cached_property
+    def inputs(self) -> str:
+        """Hash of all that a result depends on: the case, every file for the engine, its version, all of ours."""
+        facts = (self.plan.case, sorted(self.files.items()), self.engine.name, self.engine.version(), self.ranks)
+        return inputs_hash([], *facts)
 
 
 def _refuse(engine: SceneEngine, ranks: int, resume: bool) -> None:
@@ -68,22 +79,20 @@ def _refuse(engine: SceneEngine, ranks: int, resume: bool) -> None:
         raise EngineError(reason)
 
 
-def _clear(engine: SceneEngine, folder: Path) -> None:
-    """Remove what an earlier run of the same folder left, and only that."""
-    for pattern in engine.leftovers:
-        for path in folder.glob(pattern):
-            path.unlink()
-
-
-def _same_files(folder: Path, files: dict[str, str]) -> bool:
-    return all((folder / name).exists() and (folder / name).read_text() == text for name, text in files.items())
-
-
 def _stored(path: Path) -> results.SceneResults | None:
     try:
         return results.read(path)
     except CaseError:
         return None  # of another version: made anew
+
+
+def run_plan(
+    p: ScenePlan, engine: SceneEngine, folder: Path, *, ranks: int = 1, tell: Tell = lambda step: None
+) -> dict[str, pd.DataFrame]:
+    """Write a plan's deck into `folder`, run it, read its tables. Raises CaseError, EngineError."""
+    write_texts(folder, engine.files(p))
+    engine.run(p, folder, ranks=ranks, tell=tell)
+    return engine.read(p, folder)
 
 
 def run(
@@ -94,64 +103,80 @@ def run(
     ranks: int = 1,
     fresh: bool = False,
     resume: bool = False,
-    progress: Progress = lambda step, steps: None,
+    force: bool = False,
+    tell: Progress = lambda step, steps: None,
 ) -> SceneOutcome:
-    """Run the scene in a case file, or continue it from its last restart file. Raises CaseError, EngineError."""
-    start = time.perf_counter()
-    case = load(path)
+    """Run the scene in a case file, or continue it from its last restart file. Raises CaseError, EngineError.
+
+    `fresh` runs again what is stored; `force` allows a folder in which there are other files. All input is checked and
+    the engine looked for before anything is written or started.
+    """
     with named(path):
-        p = plan(case)
-        files, warnings = engine.files(p), [*engine.notes(p), *_warnings(case)]
-        _refuse(engine, ranks, resume)
-    folder = out or Path("runs") / case.name / engine.subfolder
-    inputs = inputs_hash(p, files, engine.version(), ranks)
-    if not (fresh or resume):
-        old = _stored(folder / "results.h5")
-        if old is not None and old.attributes.get("inputs") == inputs:
-            return SceneOutcome(p, folder, old, 0.0, reused=True, warnings=warnings)
-
-    def tell(step: int) -> None:
-        progress(step, p.steps)
-
-    went_on = None
-    if resume:
-        if folder.exists() and not _same_files(folder, files):
-            raise CaseError(f"{folder}: the case has changed since the run that is to be continued; run it anew (--fresh)")
-        went_on = engine.resume(p, folder, ranks=ranks, tell=tell)
-        warnings += _left_out(folder, went_on.lost)
-    else:
-        folder.mkdir(parents=True, exist_ok=True)
-        _clear(engine, folder)
-        write_texts(folder, files)
-        engine.run(p, folder, ranks=ranks, tell=tell)
-    tables = engine.read(p, folder, without=went_on.lost if went_on else ())
-    _complete(p, tables)
-    kept = results.SceneResults(
-        Path(path).read_text(),
-        {
-            "case": case.name,
-            "epdem": __version__,
-            "time_step": p.time_step,
-            "steps": p.steps,
-            "engine": engine.name,
-            "ranks": ranks,
-            "inputs": inputs,
-        },
-        tables,
-        {name: text for name, text in files.items() if "/" not in name},
-    )
-    seconds = kept.attributes["seconds"] = time.perf_counter() - start
-    results.write(folder / "results.h5", kept)
-    return SceneOutcome(
-        p, folder, kept, seconds, resumed_from=went_on.step if went_on else None, warnings=warnings
-    )
+        p = plan(load(path))
+        files, notes = engine.files(p), [*engine.notes(p), *_warnings(p.case)]
+    _refuse(engine, ranks, resume)
+    work = _Work(Path(path), p, engine, files, notes, ranks, lambda step: tell(step, p.steps))
+    folder = out or Path("runs") / p.case.name / engine.subfolder
+    if resume and not folder.exists():
+        raise CaseError(f"{folder}: no such folder, so no run to continue; run the case without --resume")
+    with claim(folder, force=force) as place:
+        return _resumed(work, folder) if resume else _reused(work, folder, fresh) or _anew(work, place)
 
 
-def _complete(p: ScenePlan, tables: dict[str, pd.DataFrame]) -> None:
-    """Add the ledger and the checks to the tables of a run."""
+def _reused(work: _Work, folder: Path, fresh: bool) -> SceneOutcome | None:
+    """What an earlier run of the same inputs has stored."""
+    old = None if fresh else _stored(folder / "results.h5")
+    if old is None or old.attributes.get("inputs") != work.inputs:
+        return None
+    return SceneOutcome(work.plan, folder, old, 0.0, reused=True, warnings=work.notes)
+
+
+def _anew(work: _Work, place: Results) -> SceneOutcome:
+    start = time.perf_counter()
+    place.remove(*work.engine.leftovers)
+    tables = run_plan(work.plan, work.engine, place.folder, ranks=work.ranks, tell=work.tell)
+    return _finish(work, place.folder, start, tables)
+
+
+def _resumed(work: _Work, folder: Path) -> SceneOutcome:
+    start = time.perf_counter()
+    if not all((folder / name).exists() and (folder / name).read_text() == text for name, text in work.files.items()):
+        raise CaseError(f"{folder}: the case has changed since the run that is to be continued; run it anew (--fresh)")
+    went_on = work.engine.resume(work.plan, folder, ranks=work.ranks, tell=work.tell)
+    tables = work.engine.read(work.plan, folder, without=went_on.lost)
+    return _finish(work, folder, start, tables, went_on)
+
+
+def _finish(
+    work: _Work, folder: Path, start: float, tables: dict[str, pd.DataFrame], went_on: Resumed | None = None
+) -> SceneOutcome:
+    """Complete the tables of a run by ledger and checks, and write results.h5."""
+    p = work.plan
     if p.output.energy:
         tables["ledger"] = ledger.ledger(p, tables)
     tables["checks"] = checks.checks(p, tables)
+    seconds = time.perf_counter() - start
+    attributes = {
+        "case": p.case.name,
+        "epdem": __version__,
+        "engine": work.engine.name,
+        "ranks": work.ranks,
+        "time_step": p.time_step,
+        "steps": p.steps,
+        "inputs": work.inputs,
+        "seconds": seconds,
+    }
+    decks = {name: text for name, text in work.files.items() if "/" not in name}  # without the modules of a deck
+    kept = results.SceneResults(work.path.read_text(), attributes, tables, decks)
+    results.write(folder / "results.h5", kept)
+    return SceneOutcome(
+        p,
+        folder,
+        kept,
+        seconds,
+        resumed_from=went_on.step if went_on else None,
+        warnings=[*work.notes, *_left_out(folder, went_on.lost if went_on else [])],
+    )
 
 
 def _left_out(folder: Path, lost: list[int]) -> list[str]:

@@ -115,7 +115,7 @@ def _materials(p: ScenePlan, friction: Square) -> tuple[Material, ...]:
             "density": x.density,
             "friction": friction[i][i],
         }
-        if law.strength_name and t.strength is not None:
+        if law.strength_name:
             values[law.strength_name] = t.strength
             ratios = {n: p.model.parameters[n] for n in law.ratios}
             highest = cone.STRONGEST * x.young_modulus / law(1.0, 1e-3, **ratios).trigger_factor

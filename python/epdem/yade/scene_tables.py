@@ -93,4 +93,4 @@ def _plastic_work(every: pd.DataFrame, spheres: pd.DataFrame) -> np.ndarray:
         return chosen.unstack().reindex(index=frames.index, columns=frames.columns).fillna(0.0)
 
     total = part(True) + part(False).cumsum()
-    return total.stack().reindex(pd.MultiIndex.from_frame(spheres[["step", "id"]])).to_numpy()
+    return np.asarray(total.stack().reindex(pd.MultiIndex.from_frame(spheres[["step", "id"]])))

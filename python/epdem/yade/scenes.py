@@ -24,7 +24,7 @@ class YadeScenes:
     subfolder = "yade"
     parallel = False
     resumes = False
-    leftovers = ("particles.*.npy", "contacts.*.npy")
+    leftovers: tuple[str, ...] = ("particles.*.npy", "contacts.*.npy")
 
     def missing(self) -> str | None:
         return Yade().missing()
