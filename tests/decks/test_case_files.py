@@ -35,7 +35,7 @@ def changed(place: str, value):
 def test_every_case_of_the_project_is_valid(path):
     data = read_toml(path)
     if "impact" in data:
-        assert experiment(load(path)).case.name == path.stem
+        assert experiment(load(path)).name == path.stem
 
 
 @pytest.mark.parametrize(

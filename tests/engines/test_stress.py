@@ -101,7 +101,7 @@ def test_a_squeezed_sphere_keeps_its_energy_but_not_with_a_wrong_mass():
     s = setting(BY_NAME["squeeze_3e0"], "thornton")
     samples = path(s, EmbeddedSampler(), 0.01)
     assert np.abs(balance(s, *samples) - 1).max() < 1e-4
-    wrong = replace(s, x=replace(s.x, m_star=1.01 * s.x.m_star))
+    wrong = replace(s, x=replace(s.x, body=replace(s.x.body, mass=1.01 * s.x.body.mass)))
     assert np.abs(balance(wrong, *samples) - 1).max() > 1e-3
 
 

@@ -24,24 +24,12 @@ from pydantic import (
 from pydantic_core.core_schema import CoreSchema, no_info_before_validator_function
 
 from ..errors import CaseError
-from .units import to_si
+from .units import to_si, within_limits
 
 RIGID = "rigid"
 MAX_IMPACTS = 4096
 # Largest relative errors a case accepts if it does not say (maximum over the phases, 400 steps in contact).
 DEFAULT_CHECKS = {"e_n": 1e-4, "contact_time": 5e-3, "force_max": 1e-3, "overlap_max": 1e-3, "residual_overlap": 1e-3}
-
-
-# Beyond these nothing in a particle simulation lies, and the laws' powers of them could leave the range of numbers.
-LIMITS = {"Pa": (1e-9, 1e30), "m": (1e-12, 1e6), "kg/m^3": (1e-9, 1e20), "m/s": (1e-30, 1e12)}
-
-
-def within_limits(x: float, si: str) -> float:
-    """x, if its size is one that is computed with. Raises ValueError."""
-    low, high = LIMITS.get(si, (0.0, np.inf))
-    if x and not low <= abs(x) <= high:
-        raise ValueError(f"must lie in [{low:g}, {high:g}] {si}; check the unit")
-    return x
 
 
 @dataclass(frozen=True)
@@ -152,7 +140,7 @@ class Impact(Frozen):
 
 
 class LawChoice(BaseModel):
-    """The law by name; its parameters are checked against the law itself, see experiment.choose_law."""
+    """The law by name; its parameters are checked against the law itself, see case.law."""
 
     model_config = ConfigDict(frozen=True, extra="allow", strict=True)
     name: Name

@@ -89,8 +89,8 @@ class LammpsMdr:
         numbers = (law.young_modulus, law.poisson_ratio, law.yield_stress, 0.0, BULK, 0.0)
         contact = f"mdr {' '.join(map(decks.number, numbers))} tangential linear_history 0.0 0.0 0.0 damping mdr 1"
         return Deck(
-            title=x.case.case.title,
-            source=x.case.case.source,
+            title=x.title,
+            source=x.source,
             summary=f"{x.speed.size} speeds x {plan.phases} phases = {plan.n} independent impacts, LAMMPS's mdr",
             data="impact.data",
             skin=0.2 * x.body.radius,

@@ -138,8 +138,8 @@ class Liggghts:
             raise CaseError(f"viscous: engine {self.name} does not know our dashpot; use --engine liggghts or embedded")
         moduli = [_finite(b.young_modulus) for b, _ in types]
         return Deck(
-            title=x.case.case.title,
-            source=x.case.case.source,
+            title=x.title,
+            source=x.source,
             summary=f"{x.speed.size} speeds x {plan.phases} phases = {plan.n} independent impacts, law {x.law.name}",
             remembers=x.law.strength_property is not None,
             hard=max(moduli) > HARD,
@@ -202,7 +202,7 @@ def data_file(plan: Plan, deck: Deck) -> str:
     edge = spacing * side
     low, high = (-reach if wall else -travel), travel
     head = [
-        f"{x.case.name}: id type diameter density x y z",
+        f"{x.name}: id type diameter density x y z",
         "",
         f"{k} atoms",
         f"{len(deck.types)} atom types",

@@ -26,20 +26,36 @@ ROWS = {
 
 
 def rows(log: Path, time_step: float) -> pd.DataFrame:
-    """The thermo rows: one per step, the later one where a resumed run repeats some. Raises EngineError."""
-    names, found = None, {}
+    """The thermo rows: one per step. Raises EngineError.
+
+    A run that continues another one begins again at the step of its restart file: what the earlier run wrote beyond
+    that step is replaced, but not the row of that step itself, whose means over an interval only the earlier run knows.
+    """
+    names: list[str] = []
+    columns: list[str] = []
+    found: dict[int, list[float]] = {}
+    begins = False
     for line in log.read_text(errors="replace").splitlines():
         words = line.split()
         if words[:1] == ["Step"]:
-            names = words
+            names = columns = words
+            begins = True
         elif names and len(words) == len(names) and re.fullmatch(r"\d+", words[0]):
+            step = int(words[0])
             try:
-                found[int(words[0])] = [float(w) for w in words[1:]]
+                values = [float(w) for w in words[1:]]
             except ValueError:
-                names = None  # the rows of this run are over
+                names = []  # the rows of this run are over
+                continue
+            if begins:
+                found = {s: v for s, v in found.items() if s <= step}
+                found.setdefault(step, values)
+                begins = False
+            else:
+                found[step] = values
     if not found:
         raise EngineError(f"{log}: no thermo rows; the run ended before its first step")
-    table = pd.DataFrame.from_dict(found, orient="index", columns=names[1:] if names else None).sort_index()
+    table = pd.DataFrame.from_dict(found, orient="index", columns=columns[1:]).sort_index()
     table.columns = [ROWS.get(n, (n, ""))[0] for n in table.columns]
     table = table.drop(columns="CPU", errors="ignore")  # LIGGGHTS's own choice when it is not asked for columns
     table.insert(0, "step", table.index.to_numpy())
