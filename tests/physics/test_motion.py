@@ -188,7 +188,7 @@ def test_a_change_of_base_units_changes_nothing_but_the_numbers(scale):
 
 @pytest.mark.parametrize("speed", [0.1, 5.0, 50.0])
 def test_recovered_and_plastic_shares_are_the_areas_under_the_force(speed):
-    """Areas in the force-overlap diagram by Simpson's rule; waves are an estimate beside them, a few percent at most."""
+    """Areas in the force-overlap diagram by Simpson's rule; waves are an estimate beside them, some percent at most."""
     law = Thornton(E_star=E_STAR, R_star=0.01, p_y=2.8e9)
     split = energy.split(law, m_star=M, speed=speed, E=E, nu=NU, density=7850)
     top = float(restitution.impact(law, m_star=M, speed=speed).overlap_max)
