@@ -3,7 +3,6 @@
 
 import ast
 import re
-import subprocess
 from pathlib import Path
 
 import pytest
@@ -69,17 +68,6 @@ def test_every_source_states_its_licence():
     for path in SOURCES:
         if path.suffix in (".py", ".hpp", ".cpp", ".h"):
             assert "SPDX-License-Identifier: GPL-2.0-or-later" in path.read_text()[:200], path
-
-
-def test_lint_is_clean():
-    done = subprocess.run(
-        ["ruff", "check", "--output-format", "concise", "python", "tests", "bench", "docs"],
-        cwd=ROOT,
-        capture_output=True,
-        text=True,
-        env={"PATH": f"{ROOT}/.venv/bin:/usr/bin:/bin"},
-    )
-    assert done.returncode == 0, done.stdout
 
 
 def test_links_between_documents_lead_somewhere():

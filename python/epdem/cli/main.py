@@ -45,6 +45,7 @@ def run(
     resume: Annotated[
         bool, typer.Option("--resume", help="continue an interrupted scene from its last restart")
     ] = False,
+    force: Annotated[bool, typer.Option("--force", help="write into a folder that holds other files")] = False,
     as_json: AsJson = False,
 ) -> None:
     """Run a case and check it against theory, or run a bulk scene (default engine: liggghts)."""
@@ -58,6 +59,7 @@ def run(
         raise typer.Exit(code)
     if resume:
         raise CaseError("--resume continues bulk scenes; an impact case takes finished stages from its store by itself")
+    from ..engines import engine as find
     from ..impacts import report
     from ..impacts.run import run as run_case
 
@@ -74,12 +76,13 @@ def run(
         task = bar.add_task("", total=stages)
         outcome = run_case(
             case,
-            engines=engines,
+            engines=[find(name) for name in engines],
             laws=law or [],
             out=out,
             ranks=ranks,
             steps=steps,
             fresh=fresh,
+            force=force,
             progress=lambda text: bar.update(task, advance=1, description=text),
         )
         bar.update(task, advance=1, description="figure")
@@ -159,12 +162,13 @@ for command in (
     cli_theory.figures,
     cli_numerics.timestep,
     cli_numerics.cost,
-    cli_numerics.stress,
+    cli_numerics.stability,
     cli_scene.explain,
     cli_scene.soften,
     cli_scene.calibrate,
 ):
     app.command()(command)
+app.command("stress", hidden=True, deprecated=True)(cli_numerics.stability)  # its name in version 0.1
 
 
 def _stop(number: int, frame: object) -> None:

@@ -30,8 +30,7 @@ def console() -> Console:
 
 def quantity(option: str, text: str, unit: str) -> float:
     """The SI value > 0 of an option's text. Raises CaseError that names the option."""
-    from ..case.impact import within_limits
-    from ..case.units import to_si
+    from ..case.units import to_si, within_limits
     from ..errors import CaseError
 
     try:

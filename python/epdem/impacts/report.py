@@ -11,6 +11,7 @@ from rich.markup import escape
 from rich.table import Table
 
 from ..files import atomic
+from ..folders import claim
 from .comparison import CHECKED
 from .prediction import Prediction
 from .run import Outcome
@@ -144,7 +145,7 @@ def figure(outcome: Outcome) -> Path:
     for axes in (above, below):
         axes.grid(alpha=0.3)
     path = outcome.folder / "e_n.png"
-    with atomic(path) as temporary:
+    with claim(outcome.folder), atomic(path) as temporary:
         fig.savefig(temporary, dpi=130)
     plt.close(fig)
     return path

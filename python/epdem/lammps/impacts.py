@@ -88,8 +88,8 @@ class LammpsMdr:
         numbers = (law.young_modulus, law.poisson_ratio, law.yield_stress, 0.0, BULK, 0.0)
         contact = f"mdr {' '.join(map(decks.number, numbers))} tangential linear_history 0.0 0.0 0.0 damping mdr 1"
         return Deck(
-            title=x.case.case.title,
-            source=x.case.case.source,
+            title=x.title,
+            source=x.source,
             summary=f"{x.speed.size} speeds x {plan.phases} phases = {plan.n} independent impacts, LAMMPS's mdr",
             data="impact.data",
             skin=0.2 * x.body.radius,
@@ -117,7 +117,7 @@ class LammpsMdr:
         """Positions and velocities of the bodies; LAMMPS's walls are no atoms."""
         (g,) = side_by_side(plan)
         spheres = data_file.Spheres(1, 2 * g.body.radius, g.body.density, g.place, g.velocity)
-        return data_file.text(plan.experiment.case.name, 1, room(plan), [spheres])
+        return data_file.text(plan.experiment.name, 1, room(plan), [spheres])
 
     def run(self, plan: Plan, folder: Path, *, ranks: int = 1) -> Trajectory:
         path = folder / "path.txt"

@@ -10,13 +10,16 @@ from ctypes import POINTER, Structure, c_char_p, c_double, c_int, c_size_t
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
+from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 
 from .. import paths
 from ..errors import CaseError, EngineError
 
 ABI = 4
+Array = npt.NDArray[Any]  # float64, or structured by IMPACT_OUTPUT
 _D = POINTER(c_double)
 
 
@@ -118,7 +121,7 @@ def library() -> ctypes.CDLL:
 
 def version() -> str:
     """Version of the C library."""
-    return library().epdem_version().decode()
+    return str(library().epdem_version().decode())
 
 
 @cache
@@ -146,17 +149,17 @@ def laws() -> dict[str, LawInfo]:
 
 def viscous_number(restitution: float) -> float:
     """Dashpot number of a pair with that restitution at low speed; CaseError outside [0.14, 1]."""
-    number = library().epdem_viscous_number(restitution)
+    number: float = library().epdem_viscous_number(restitution)
     if math.isnan(number):
         raise CaseError(f"viscous.restitution = {restitution}, must lie in [0.14, 1]")
     return number
 
 
-def _array(x) -> np.ndarray:
+def _array(x: npt.ArrayLike) -> Array:
     return np.ascontiguousarray(np.atleast_1d(x), dtype=np.float64)
 
 
-def _pointer(x: np.ndarray | None):
+def _pointer(x: Array | None) -> Any:
     return None if x is None else x.ctypes.data_as(_D)
 
 
@@ -185,7 +188,7 @@ class Law:
         if status:
             raise CaseError(f"law {self.name}: {library().epdem_message(status).decode()}")
 
-    def step(self, *, R_star: float, delta_max, delta):
+    def step(self, *, R_star: float, delta_max: npt.ArrayLike, delta: npt.ArrayLike) -> tuple[Array, Array, Array]:
         """(force [N], contact radius [m], new delta_max [m]) at overlap delta [m]; delta_max and delta broadcast."""
         before, now = np.broadcast_arrays(_array(delta_max), _array(delta))
         before, now = _array(before), _array(now)
@@ -205,19 +208,32 @@ class Law:
         )
         return out[:, 0], out[:, 1], out[:, 2]
 
-    def backbone(self, *, R_star: float, delta):
+    def backbone(self, *, R_star: float, delta: npt.ArrayLike) -> tuple[Array, Array, Array, Array]:
         """(force [N], radius [m], work [J], plastic work [J]) of first loading to delta [m], > 0."""
-        delta = _array(delta)
-        out = [np.empty(delta.size) for _ in range(4)]
+        at = _array(delta)
+        force, radius, work, plastic = (np.empty(at.size) for _ in range(4))
         self._check(
             library().epdem_backbone(
-                self.info.index, self.E_star, self._parameters, R_star, delta.size, _pointer(delta), *map(_pointer, out)
+                self.info.index,
+                self.E_star,
+                self._parameters,
+                R_star,
+                at.size,
+                *map(_pointer, (at, force, radius, work, plastic)),
             )
         )
-        return tuple(out)
+        return force, radius, work, plastic
 
     @staticmethod
-    def _cases(R_star, m_star, speed, time_step, gap, steps: int, viscous: float = 0.0) -> np.ndarray:
+    def _cases(
+        R_star: npt.ArrayLike,
+        m_star: npt.ArrayLike,
+        speed: npt.ArrayLike,
+        time_step: npt.ArrayLike,
+        gap: npt.ArrayLike,
+        steps: int,
+        viscous: float = 0.0,
+    ) -> Array:
         columns = np.broadcast_arrays(*map(_array, (R_star, m_star, speed, time_step, gap)))
         cases = np.empty(columns[0].shape, IMPACT_INPUT)
         for name, column in zip(("R_star", "m_star", "speed", "time_step", "gap"), columns, strict=True):
@@ -226,18 +242,45 @@ class Law:
         return cases
 
     def impacts(
-        self, *, R_star, m_star, speed, time_step, gap=0.0, steps: int, viscous: float = 0.0, paths: bool = False
-    ):
-        """Two-body impacts by velocity Verlet; all arguments but `steps` and `paths` broadcast to (n,).
+        self,
+        *,
+        R_star: npt.ArrayLike,
+        m_star: npt.ArrayLike,
+        speed: npt.ArrayLike,
+        time_step: npt.ArrayLike,
+        gap: npt.ArrayLike = 0.0,
+        steps: int,
+        viscous: float = 0.0,
+    ) -> Array:
+        """Two-body impacts by velocity Verlet, as IMPACT_OUTPUT of shape (n,); all arguments but `steps` broadcast.
 
         gap [m] is the distance before first touch (negative: overlap at the start); viscous is a dashpot number
-        (viscous_number, 0: none). Returns a structured array
-        (IMPACT_OUTPUT) and, with paths=True, overlap [m], force [N] and approach velocity [m/s] of shape
-        (n, steps + 1), NaN after the end of an impact.
+        (viscous_number, 0: none).
         """
         cases = self._cases(R_star, m_star, speed, time_step, gap, steps, viscous)
+        return self._impacts(cases, steps, None, None, None)
+
+    def impact_paths(
+        self,
+        *,
+        R_star: npt.ArrayLike,
+        m_star: npt.ArrayLike,
+        speed: npt.ArrayLike,
+        time_step: npt.ArrayLike,
+        gap: npt.ArrayLike = 0.0,
+        steps: int,
+        viscous: float = 0.0,
+    ) -> tuple[Array, Array, Array, Array]:
+        """`impacts` with the way there: overlap [m], force [N] and approach velocity [m/s] of shape (n, steps + 1).
+
+        They are NaN after the end of an impact.
+        """
+        cases = self._cases(R_star, m_star, speed, time_step, gap, steps, viscous)
+        overlap, force, velocity = (np.full((cases.size, steps + 1), np.nan) for _ in range(3))
+        return self._impacts(cases, steps, overlap, force, velocity), overlap, force, velocity
+
+    def _impacts(self, cases: Array, steps: int, *samples: Array | None) -> Array:
         out = np.empty(cases.shape, IMPACT_OUTPUT)
-        samples = [np.full((cases.size, steps + 1), np.nan) if paths else None for _ in range(3)]
         self._check(
             library().epdem_impacts(
                 self.info.index,
@@ -250,9 +293,18 @@ class Law:
                 *map(_pointer, samples),
             )
         )
-        return (out, *samples) if paths else out
+        return out
 
-    def impacts_long_double(self, *, R_star, m_star, speed, time_step, gap=0.0, steps: int) -> np.ndarray:
+    def impacts_long_double(
+        self,
+        *,
+        R_star: npt.ArrayLike,
+        m_star: npt.ArrayLike,
+        speed: npt.ArrayLike,
+        time_step: npt.ArrayLike,
+        gap: npt.ArrayLike = 0.0,
+        steps: int,
+    ) -> Array:
         """The same impacts computed in long double, IMPACT_OUTPUT rounded at the end: a reference for round-off."""
         cases = self._cases(R_star, m_star, speed, time_step, gap, steps)
         out = np.empty(cases.shape, IMPACT_OUTPUT)
@@ -263,7 +315,9 @@ class Law:
         )
         return out
 
-    def bounces(self, count: int, *, R_star: float, m_star: float, speed: float, time_step: float, steps: int):
+    def bounces(
+        self, count: int, *, R_star: float, m_star: float, speed: float, time_step: float, steps: int
+    ) -> tuple[np.void, Array]:
         """`count` impacts of one contact, each at the rebound speed of the one before, at most `steps` steps each.
 
         Returns the last impact (IMPACT_OUTPUT, its `steps` those of all impacts) and the rebound speeds [m/s].

@@ -77,8 +77,8 @@ class Liggghts:
             raise CaseError(f"viscous: engine {self.name} does not know our dashpot; use --engine liggghts or embedded")
         moduli = [finite(b.young_modulus) for b, _ in types]
         return Deck(
-            title=x.case.case.title,
-            source=x.case.case.source,
+            title=x.title,
+            source=x.source,
             summary=f"{x.speed.size} speeds x {plan.phases} phases = {plan.n} independent impacts, law {x.law.name}",
             remembers=x.law.strength_property is not None,
             hard=max(moduli) > HARD,
@@ -118,7 +118,7 @@ def data_text(plan: Plan, types: int) -> str:
         data_file.Spheres(k, 2 * g.body.radius, g.body.density, g.place, g.velocity)
         for k, g in zip(kinds, side_by_side(plan), strict=False)
     ]
-    return data_file.text(plan.experiment.case.name, types, room(plan), groups)
+    return data_file.text(plan.experiment.name, types, room(plan), groups)
 
 
 def trajectory(plan: Plan, path: Path, seconds: dict[str, float]) -> Trajectory:

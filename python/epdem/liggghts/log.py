@@ -11,20 +11,22 @@ _LOOP = re.compile(r"Loop time of (\S+) on \d+ procs for (\d+) steps")
 
 
 def rows(log: Path) -> pd.DataFrame:
-    """All thermo rows in the order of the log, columns by LIGGGHTS's words, "Step" first; empty if there are none.
+    """All thermo rows in the order of the log; empty if there are none.
 
-    A step stands twice where one run ends and the next one begins. Rows of other columns begin a new table: of a log
-    that changes them the columns that are missing are NaN.
+    Columns: "run", which counts the tables from 0, "Step", and the rest by LIGGGHTS's words (NaN in tables without).
+    A step stands twice where one run ends and the next one begins.
     """
     names: list[str] = []
-    found = []
+    found: list[dict[str, float]] = []
+    run = -1
     for line in log.read_text(errors="replace").splitlines() if log.exists() else []:
         words = line.split()
         if words[:1] == ["Step"]:
-            names = words
+            names, run = words, run + 1
         elif names and len(words) == len(names) and words[0].isdigit():
             try:
-                found.append(dict(zip(names, [int(words[0]), *map(float, words[1:])], strict=True)))
+                values = map(float, words[1:])
+                found.append({"run": run, "Step": int(words[0])} | dict(zip(names[1:], values, strict=True)))
             except ValueError:
                 names = []  # the rows of this run are over
     return pd.DataFrame(found)

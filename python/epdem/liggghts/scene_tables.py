@@ -27,11 +27,20 @@ ROWS = {
 
 
 def rows(log: Path, time_step: float) -> pd.DataFrame:
-    """The thermo rows: one per step, the later one where a resumed run repeats some. Raises EngineError."""
-    table = thermo.rows(log)
-    if table.empty:
+    """The thermo rows: one per step. Raises EngineError.
+
+    A run that continues another one begins again at the step of its restart file: what the earlier run wrote beyond
+    that step is replaced, but not the row of that step itself, whose means over an interval only the earlier run knows.
+    """
+    every = thermo.rows(log)
+    if every.empty:
         raise EngineError(f"{log}: no thermo rows; the run ended before its first step")
-    table = table.drop_duplicates("Step", keep="last").sort_values("Step").reset_index(drop=True)
+    table = every.iloc[:0]
+    for _, part in every.groupby("run"):
+        begin = part["Step"].iloc[0]
+        table = table[table["Step"] <= begin]
+        table = pd.concat([table, part[1:] if begin in table["Step"].to_numpy() else part])
+    table = table.drop_duplicates("Step", keep="last").drop(columns="run").reset_index(drop=True)
     table = table.drop(columns="CPU", errors="ignore")  # LIGGGHTS's own choice when it is not asked for columns
     table.columns = [ROWS.get(n, (n, ""))[0] for n in table.columns]
     table.insert(1, "time", table["step"] * time_step)

@@ -70,9 +70,9 @@ def _restarts(folder: Path) -> list[tuple[int, Path]]:
     return sorted((int(re.search(r"(\d+)\.bin$", p.name).group(1)), p) for p in folder.glob("restart.*.bin"))
 
 
-def _prune(folder: Path) -> None:
-    """Keep the two newest restart files: the last one may still be incomplete."""
-    for _, path in _restarts(folder)[:-2]:
+def _prune(folder: Path, step: int) -> None:
+    """Keep the newest restart file from before `step`, which the engine has gone on after, and all later ones."""
+    for _, path in [(s, p) for s, p in _restarts(folder) if s < step][:-1]:
         path.unlink(missing_ok=True)
 
 
@@ -115,7 +115,7 @@ def run(
     start = time.perf_counter()
 
     def row(step: int) -> None:
-        _prune(folder)
+        _prune(folder, step)
         tell(step, d.steps)
 
     if resume:

@@ -16,11 +16,11 @@ import pandas as pd
 from ..case.impact import Case, load
 from ..engines import Engine, engine
 from ..errors import EngineError
-from ..impacts.comparison import compare, impacts_table
+from ..impacts.comparison import compare
 from ..impacts.experiment import experiment
-from ..impacts.measurement import measure
 from ..impacts.plan import Plan, plan
 from ..impacts.prediction import Prediction, predict
+from ..impacts.run import run_plan
 from ..liggghts import launcher
 from ..liggghts.impacts import Liggghts
 from ..liggghts.log import loop_seconds
@@ -80,17 +80,15 @@ def contenders(case: Case, engines: list[str], laws: list[str], steps: tuple[int
 
 def errors(c: Contender, p: Plan, folder: Path) -> dict[str, float]:
     """Largest and rms errors over all speeds and phases, relative to theory; NaN where a contact did not end."""
-    case = p.experiment.case
     for longer in (1.0, 1.3, 2.0):  # coarse steps stretch contacts
         try:
             longest = replace(p, steps=int(p.steps * longer))
-            c.engine.write(longest, folder)
-            table = impacts_table(longest, measure(longest, c.engine.run(longest, folder)))
+            table = run_plan(longest, c.engine, folder).impacts
             break
         except EngineError:
             if longer == 2.0:
                 return {f"{q}_{kind}": np.nan for q in QUANTITIES for kind in ("error", "rms")}
-    rows = compare(c.engine.name, c.law, table, c.prediction, case.check)
+    rows = compare(c.engine.name, c.law, table, c.prediction, p.experiment.check)
     return {f"{q}_error": float(rows[f"{q}_error"].max()) for q in QUANTITIES} | {
         f"{q}_rms": float(np.sqrt((rows[f"{q}_rms"] ** 2).mean())) for q in QUANTITIES
     }
