@@ -147,7 +147,8 @@ def contact_time(law: JKR, *, m_star: Numbers, speed: Numbers) -> Numbers:
 
 def impact(law: JKR, *, m_star: Numbers, speed: Numbers) -> Impact:
     """Everything theory says of an impact at `speed` [m/s] > 0 with effective mass m_star [kg] > 0; they broadcast."""
-    m, v, _ = np.broadcast_arrays(number("m_star", m_star), number("speed", speed), law.E_star * law.R_star * law.Gamma)
+    like = law.E_star * law.R_star * law.Gamma * law.yield_radius
+    m, v, _ = np.broadcast_arrays(number("m_star", m_star), number("speed", speed), like)
     W = 0.5 * m * v * v
     top, first = law.radius_of_work(W), law.touch_radius
     (branch, dent), (start, _) = law.branch(top), law.branch(first)
@@ -157,12 +158,13 @@ def impact(law: JKR, *, m_star: Numbers, speed: Numbers) -> Impact:
     yields = top > np.maximum(law.yield_radius, first)
     plastic = np.where(yields, np.maximum(W - formed - stored, 0.0), 0.0)
     adhesive = np.where(e > 0, formed + ended, W - plastic)
-    return Impact(
-        e_n=e, contact_time=contact_time(law, m_star=m, speed=v), force_max=law.force(top),
-        overlap_max=law.overlap(top), radius_max=top, residual_overlap=dent, work_in=W, work_out=out,
-        plastic_work=plastic, strain_ratio=top / law.R_star, parting_overlap=dent + branch.fold_overlap,
-        pull_max=branch.pull_off_force, adhesive_work=adhesive,
-    )  # fmt: skip
+    columns = {
+        "e_n": e, "contact_time": contact_time(law, m_star=m, speed=v), "force_max": law.force(top),
+        "overlap_max": law.overlap(top), "radius_max": top, "residual_overlap": dent, "work_in": W, "work_out": out,
+        "plastic_work": plastic, "strain_ratio": top / law.R_star, "parting_overlap": dent + branch.fold_overlap,
+        "pull_max": branch.pull_off_force, "adhesive_work": adhesive,
+    }  # fmt: skip
+    return Impact(**{name: np.broadcast_to(column, v.shape) for name, column in columns.items()})
 
 
 def tabor_number(law: JKR, *, z_0: Numbers = 0.2e-9) -> Numbers:

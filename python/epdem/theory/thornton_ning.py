@@ -86,8 +86,8 @@ class ThorntonNing(JKR):
         overlaps: alpha = alpha_p + branch.overlap(a). Up to a_y it is the law's own elastic branch."""
         a_max = np.asarray(a_max, float)
         yields = a_max > self.yield_radius
-        safe = np.where(yields, a_max, self.yield_radius)
-        R_p = 4 / 3 * self.E_star * safe**3 / (self.force(safe) + self.adhesive_load(safe))
+        safe: Numbers = np.where(yields, a_max, self.yield_radius)
+        R_p: Numbers = 4 / 3 * self.E_star * safe**3 / (self.force(safe) + self.adhesive_load(safe))
         R_p = np.where(yields, R_p, self.R_star)
         opened = JKR(E_star=self.E_star, R_star=R_p, work_of_adhesion=self.Gamma)
         return opened, np.where(yields, safe**2 * (1 / self.R_star - 1 / R_p), 0.0)
