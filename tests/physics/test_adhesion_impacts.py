@@ -26,6 +26,7 @@ IMPACTS = [
     (1e9, 10.0),
     (0.5e9, 0.05),
     (0.5e9, 3.0),
+    (0.05e9, 10.0),
 ]
 every_impact = pytest.mark.parametrize(("p_y", "V"), IMPACTS)
 
@@ -105,6 +106,16 @@ def test_restitution_and_peaks_are_the_quadrature_of_the_law(p_y, V):
         assert float(x.parting_overlap) == pytest.approx(float((dent + fold**2 / R_p - exact.d(fold)) * R), rel=1e-9)
         assert float(x.pull_max) == pytest.approx(float(1.5 * mp.pi * exact.G * R_p * E * R**2), rel=1e-11)
         assert float(x.work_in) == pytest.approx(float(x.work_out + x.plastic_work + x.adhesive_work), rel=1e-13)
+
+
+def test_work_far_beyond_yield_has_no_quadrature_error():
+    """a = 1000 a_y with p_y far below the pressure of the attraction: every power of the core pressure counts."""
+    law = law_of(0.05e9)
+    top = 1000 * law.yield_radius
+    with mp.workdps(30):
+        exact = Exact(0.05e9)
+        work = float(exact.work(exact.a_0, mp.mpf(float(top)) / mp.mpf(R)) * mp.mpf(E) * mp.mpf(R) ** 3)
+    assert law.work(top) == pytest.approx(work, rel=1e-12)
 
 
 @every_impact
