@@ -13,8 +13,7 @@ from epdem.case.impact import read_toml
 from epdem.case.scene import parse
 from epdem.cli import main as cli
 from epdem.errors import CaseError, EngineError
-from epdem.liggghts import running as progress
-from epdem.liggghts import scene_tables
+from epdem.liggghts import launcher, scene_tables
 from epdem.scenes import placement
 from epdem.scenes.kinds import Block
 from epdem.scenes.model import model
@@ -98,8 +97,8 @@ def pressed(path: Path, folder: Path):
     """(outcome of YADE, rows of LIGGGHTS) of one press on the same spheres."""
     outcome = run(path, engine="yade", out=folder / "yade")
     liggghts_with_places_of(np.loadtxt(folder / "yade" / "spheres.txt"), outcome.case, folder / "liggghts")
-    progress.run("in.scene", folder / "liggghts")
-    return outcome, scene_tables.rows(outcome.plan, folder / "liggghts" / progress.OUT)
+    launcher.run("in.scene", folder / "liggghts")
+    return outcome, scene_tables.rows(outcome.plan, folder / "liggghts" / launcher.OUT)
 
 
 @pytest.mark.yade

@@ -16,7 +16,7 @@ from ..impacts.plan import plan
 from ..impacts.prediction import predict
 from ..scenes.plan import plan as scene_plan
 from . import stl
-from .impacts import Liggghts, data_file
+from .impacts import Liggghts, data_text
 from .scene_deck import deck as scene_deck
 
 
@@ -68,7 +68,7 @@ def write(template: Path, case_path: Path, sets: dict[str, object], out: Path) -
         x = experiment(case)
         p = plan(x, predict(x))
         deck = Liggghts().deck(p)
-        extra[deck.data] = data_file(p, deck)
+        extra[deck.data] = data_text(p, len(deck.types))
     environment = decks.environment(template.resolve().parent)
     try:
         unused = set(sets) - meta.find_undeclared_variables(environment.parse(source))

@@ -8,9 +8,10 @@ from pathlib import Path
 
 from .. import rendering as decks
 from ..errors import CaseError
+from ..processes import ROW
 from ..scenes.plan import ScenePlan
-from . import running
 from . import scene_tables as tables
+from .launcher import OUT
 from .scene_deck import deck
 
 
@@ -21,10 +22,10 @@ def _restarts(folder: Path) -> list[tuple[int, Path]]:
 
 def whole_restarts(folder: Path) -> list[int]:
     """Steps of the whole restart files: LIGGGHTS went on after them, so their rows stand twice in succession."""
-    log = folder / running.OUT
+    log = folder / OUT
     if not log.exists():
         return []
-    rows = [int(m.group(1)) for line in log.read_bytes().splitlines() if (m := running.ROW.match(line))]
+    rows = [int(m.group(1)) for line in log.read_bytes().splitlines() if (m := ROW.match(line))]
     gone_on = {a for a, b in pairwise(rows) if a == b}
     return [step for step, _ in _restarts(folder) if step in gone_on]
 
@@ -54,7 +55,7 @@ def write_resume(p: ScenePlan, folder: Path, step: int) -> Path:
     """in.resume, which continues from the restart file of `step`."""
     d = deck(p)
     phase = next((i for i, part in enumerate(d.phases) if step < part.end), len(d.phases))
-    rows = tables.rows(p, folder / running.OUT).set_index("step")
+    rows = tables.rows(p, folder / OUT).set_index("step")
     if (
         rows["particles"].get(step) == p.case.scene.count
     ):  # poured out: LIGGGHTS refuses an insertion that lies behind it

@@ -9,8 +9,8 @@ from ..laws.library import laws
 from ..scenes.model import Model
 from ..scenes.plan import Phase, ScenePlan
 from . import stl
-from .impacts import HARD, SOFT, Property
 from .insertions import Insertion, insertions
+from .properties import HARD, SOFT, Property, elastic, per_pair, scalar, strength
 
 SKIN = 0.25  # of the smallest radius: rebuilds cost less than idle neighbours
 
@@ -71,35 +71,26 @@ def _properties(p: ScenePlan) -> tuple[Property, ...]:
     for t, x in zip(m.types, materials, strict=True):
         if x.poisson_ratio < 0:
             raise CaseError(f"materials.{t.material}.poisson_ratio = {x.poisson_ratio}, LIGGGHTS takes [0, 0.5] only")
-    rows: list[tuple[str, str, list[float], str]] = [
-        ("youngsModulus", "peratomtype", [x.young_modulus for x in materials], "Pa"),
-        ("poissonsRatio", "peratomtype", [x.poisson_ratio for x in materials], "1"),
-    ]
-    law = laws()[m.law]
-    if law.strength:
-        values = [t.strength for t in m.types]
-        rows.append((law.strength.property, "peratomtype", values, "Pa" if n == 1 else "Pa, the softer body's counts"))
-    for parameter in law.parameters:
+    found = [*elastic([x.young_modulus for x in materials], [x.poisson_ratio for x in materials])]
+    found += strength(m.law, [t.strength for t in m.types])
+    for parameter in laws()[m.law].parameters:
         value = m.parameters.get(parameter.name, parameter.default)
-        if parameter != law.strength and value != parameter.default:
-            rows.append((parameter.property, "scalar", [value], "1"))
-
-    def pairs(name: str, values: list[float], comment: str) -> None:
-        rows.append((name, "peratomtypepair", [n, *values], comment))
-
+        if parameter.name in m.parameters and value != parameter.default:
+            found.append(scalar(parameter.property, value, "-"))
     if m.sliding:
-        pairs("coefficientFriction", [mu for row in m.friction for mu in row], "1")
+        found.append(per_pair("coefficientFriction", n, [mu for row in m.friction for mu in row], "-"))
     if m.viscous is not None:
-        pairs("coefficientRestitution", [m.viscous] * n * n, "1, of impacts that do not yield")
+        found.append(per_pair("coefficientRestitution", n, m.viscous, "-", "of impacts that do not yield"))
     elif m.tangential_restitution is not None:
-        pairs("coefficientRestitution", [m.tangential_restitution] * n * n, "1, of the tangential dashpot only")
+        note = "of the tangential dashpot only"
+        found.append(per_pair("coefficientRestitution", n, m.tangential_restitution, "-", note))
     if m.rolling:
-        pairs("coefficientRollingFriction", [m.rolling.coefficient] * n * n, "1")
+        found.append(per_pair("coefficientRollingFriction", n, m.rolling.coefficient, "-"))
         if m.rolling.damping is not None:
-            pairs("coefficientRollingViscousDamping", [m.rolling.damping] * n * n, "1")
+            found.append(per_pair("coefficientRollingViscousDamping", n, m.rolling.damping, "-"))
     if m.cohesion:
-        pairs("cohesionEnergyDensity", [m.cohesion] * n * n, "J/m^3")
-    return tuple(Property(f"m{i}", name, style, tuple(v), c) for i, (name, style, v, c) in enumerate(rows, 1))
+        found.append(per_pair("cohesionEnergyDensity", n, m.cohesion, "J/m^3"))
+    return tuple(found)
 
 
 def _settings(p: ScenePlan) -> tuple[str, ...]:

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """What LIGGGHTS wrote for a scene, as the tables that every scene has. Its words and file formats end here."""
 
-import io
-import re
 from collections.abc import Collection
 from pathlib import Path
 
@@ -12,6 +10,7 @@ import pandas as pd
 from ..errors import EngineError
 from ..scenes import columns, contacts
 from ..scenes.plan import ScenePlan
+from . import dump, log
 
 # thermo words of the deck and their columns
 ROWS = {
@@ -24,70 +23,30 @@ ROWS = {
 PARTICLES, PAIRS, MESHES = "particles.{}.bin", "contacts.{}.txt", "wall_contacts.{}.txt"
 
 
-def rows(p: ScenePlan, log: Path) -> pd.DataFrame:
+def rows(p: ScenePlan, out: Path) -> pd.DataFrame:
     """The thermo rows: one per step. Raises EngineError.
 
     A run that continues another one begins again at the step of its restart file: what the earlier run wrote beyond
     that step is replaced, but not the row of that step itself, whose means over an interval only the earlier run knows.
     """
-    names: list[str] = []
-    heads: list[str] = []
+    every = log.rows(out)
+    if every.empty:
+        raise EngineError(f"{out}: no thermo rows; the run ended before its first step")
     found: dict[int, list[float]] = {}
-    begins = False
-    for line in log.read_text(errors="replace").splitlines():
-        words = line.split()
-        if words[:1] == ["Step"]:
-            names = heads = words
-            begins = True
-        elif names and len(words) == len(names) and re.fullmatch(r"\d+", words[0]):
-            step = int(words[0])
-            try:
-                values = [float(w) for w in words[1:]]
-            except ValueError:
-                names = []  # the rows of this run are over
-                continue
-            if begins:
-                found = {s: v for s, v in found.items() if s <= step}
-                found.setdefault(step, values)
-                begins = False
-            else:
-                found[step] = values
-    if not found:
-        raise EngineError(f"{log}: no thermo rows; the run ended before its first step")
-    shown = [k for k, word in enumerate(heads[1:]) if word in ROWS]  # and LIGGGHTS's own choice if nothing is asked for
-    table = {step: [row[k] for k in shown] for step, row in found.items()}
-    return columns.rows(p, table, [ROWS[heads[1 + k]] for k in shown])
+    names = [name for name in every if name in ROWS]  # and LIGGGHTS's own choice where nothing is asked for
+    for _, part in every.groupby("run"):
+        steps, values = part["Step"].astype(int).to_list(), part[names].to_numpy().tolist()
+        known = {step: row for step, row in found.items() if step <= steps[0]}
+        found = known | {step: row for step, row in zip(steps, values, strict=True) if step not in known}
+    return columns.rows(p, found, [ROWS[name] for name in names])
 
 
-def _incomplete(path: Path) -> EngineError:
-    what = "incomplete; the run was stopped while it wrote this frame" if path.exists() else "this frame is missing"
-    return EngineError(f"{path}: {what}; run the case again")
-
-
-def _frame(path: Path, columns: int) -> np.ndarray:
-    """(n, columns) of a binary dump file with one frame. Raises EngineError if it is not whole."""
-    raw, header = path.read_bytes() if path.exists() else b"", 8 + 8 + 4 + 24 + 48 + 8
-    blocks, at, parts = int.from_bytes(raw[header - 4 : header], "little"), header, []
-    for _ in range(blocks):
-        size = int.from_bytes(raw[at : at + 4], "little")
-        if len(raw) < at + 4 + 8 * size or size % columns:
-            raise _incomplete(path)
-        parts.append(np.frombuffer(raw, "<f8", size, at + 4).reshape(-1, columns))
-        at += 4 + 8 * size
-    if not parts or sum(map(len, parts)) != int.from_bytes(raw[8:16], "little"):
-        raise _incomplete(path)
-    return np.concatenate(parts)
-
-
-def _entries(path: Path) -> str:
-    """The rows of a `dump local` text file. Raises EngineError if it is not whole."""
-    text = path.read_text(errors="replace") if path.exists() else ""
-    head, _, body = text.partition("ITEM: ENTRIES")
-    body = body.partition("\n")[2]
-    count = re.search(r"NUMBER OF ENTRIES\n(\d+)\n", head)
-    if count is None or body.count("\n") != int(count[1]):
-        raise _incomplete(path)
-    return body
+def _frame(path: Path, count: int) -> np.ndarray:
+    """(n, count) of a binary dump of one frame, sorted by id. Raises EngineError if it is not whole."""
+    found = dump.frames(path)
+    if len(found) != 1 or found[0][1].shape[1] != count:
+        raise EngineError(f"{path}: not one frame of {count} columns; run the case again")
+    return found[0][1]
 
 
 def _written(p: ScenePlan) -> dict[str, int]:
@@ -103,7 +62,7 @@ def damaged(p: ScenePlan, folder: Path, upto: int) -> list[int]:
         for step in range(0, upto + 1, every):
             path = folder / kind.format(step)
             try:
-                _frame(path, len(_particle_names(p))) if kind == PARTICLES else _entries(path)
+                _frame(path, len(_particle_names(p))) if kind == PARTICLES else dump.local(path)
             except EngineError:
                 found.add(step)
     return sorted(found)
@@ -129,8 +88,7 @@ def particles(p: ScenePlan, folder: Path, *, without: Collection[int] = ()) -> p
     """
     names, frames = _particle_names(p), []
     for step, path in _steps(p, PARTICLES, folder, without):
-        data = _frame(path, len(names))
-        table = pd.DataFrame(data[np.argsort(data[:, 0], kind="stable")], columns=names)
+        table = pd.DataFrame(_frame(path, len(names)), columns=names)
         table.insert(0, "step", step)
         frames.append(table)
     if not frames:
@@ -143,9 +101,8 @@ def _local(p: ScenePlan, kind: str, folder: Path, ids: list[str], without: Colle
     """The rows of a `dump local`, by step: `ids`, delta_max and overlap [m]; what only comes near is left out."""
     names, frames = ["step", *ids, *(["delta_max"] if p.model.yields else []), "overlap"], []
     for step, path in _steps(p, kind, folder, without):
-        body = _entries(path)
-        if body.strip():
-            table = pd.read_csv(io.StringIO(body), sep=r"\s+", header=None)
+        table = pd.DataFrame(dump.local(path))
+        if len(table):
             if table.shape[1] != len(names) - 1:
                 raise EngineError(f"{path}: {table.shape[1]} columns, expected {len(names) - 1}")
             table.insert(0, "step", step)

@@ -6,9 +6,10 @@ from pathlib import Path
 
 import pandas as pd
 
+from ..errors import EngineError
 from ..scenes.engine import Resumed, Tell
 from ..scenes.plan import ScenePlan
-from . import resume, running, scene_deck
+from . import launcher, resume, scene_deck
 from . import scene_tables as tables
 from .impacts import Liggghts
 
@@ -18,8 +19,6 @@ class LiggghtsScenes:
 
     name = "liggghts"
     subfolder = ""
-    parallel = True
-    resumes = True
     leftovers: tuple[str, ...] = (
         "particles.*.bin",
         "contacts.*.txt",
@@ -30,8 +29,10 @@ class LiggghtsScenes:
         "in.resume",
     )
 
-    def missing(self) -> str | None:
-        return Liggghts().missing()
+    def refuse(self, *, ranks: int, resume: bool) -> None:
+        if words := launcher.missing():
+            raise EngineError(words)
+        launcher.refuse_ranks(ranks)
 
     def version(self) -> str:
         return Liggghts().version()
@@ -43,16 +44,16 @@ class LiggghtsScenes:
         return []
 
     def run(self, plan: ScenePlan, folder: Path, *, ranks: int, tell: Tell) -> None:
-        running.run("in.scene", folder, ranks=ranks, tell=_pruning(folder, tell))
+        launcher.run("in.scene", folder, ranks=ranks, tell=_pruning(folder, tell))
 
     def resume(self, plan: ScenePlan, folder: Path, *, ranks: int, tell: Tell) -> Resumed:
         step, lost = resume.choose(plan, folder)
         deck = resume.write_resume(plan, folder, step)
-        running.run(deck.name, folder, ranks=ranks, append=True, tell=_pruning(folder, tell))
+        launcher.run(deck.name, folder, ranks=ranks, append=True, tell=_pruning(folder, tell))
         return Resumed(step, lost)
 
     def read(self, plan: ScenePlan, folder: Path, *, without: Collection[int] = ()) -> dict[str, pd.DataFrame]:
-        found = {"rows": tables.rows(plan, folder / running.OUT)}
+        found = {"rows": tables.rows(plan, folder / launcher.OUT)}
         if plan.frames:
             found["particles"] = tables.particles(plan, folder, without=without)
         if plan.contacts:

@@ -26,12 +26,10 @@ class SceneEngine(Protocol):
 
     name: str
     subfolder: str  # of a case's results, where this engine puts its own if nothing else is asked for
-    parallel: bool  # runs on several ranks
-    resumes: bool  # goes on from restart files
     leftovers: tuple[str, ...]  # patterns of files that an earlier run may have left in the folder
 
-    def missing(self) -> str | None:
-        """None if the engine can run here, else a sentence with the command that installs it."""
+    def refuse(self, *, ranks: int, resume: bool) -> None:
+        """Raise CaseError for an option that the engine does not have, EngineError if it cannot run here."""
 
     def version(self) -> str:
         """One line: the engine's version."""

@@ -12,7 +12,7 @@ import pandas as pd
 from .. import __version__
 from ..case.impact import named
 from ..case.scene import SceneCase, load
-from ..errors import CaseError, EngineError
+from ..errors import CaseError
 from ..files import write_texts
 from ..folders import Results, claim
 from ..impacts.prediction import predict
@@ -69,16 +69,6 @@ class _Work:
         return inputs_hash([], *facts)
 
 
-def _refuse(engine: SceneEngine, ranks: int, resume: bool) -> None:
-    """Raise CaseError for an option that the engine does not have, EngineError if it is not here."""
-    if ranks > 1 and not engine.parallel:
-        raise CaseError(f"--ranks {ranks}: a scene in {engine.name} runs on one core; leave it out")
-    if resume and not engine.resumes:
-        raise CaseError(f"--resume: a scene in {engine.name} runs from its start; leave it out")
-    if reason := engine.missing():
-        raise EngineError(reason)
-
-
 def _stored(path: Path) -> results.SceneResults | None:
     try:
         return results.read(path)
@@ -114,7 +104,7 @@ def run(
     with named(path):
         p = plan(load(path))
         files, notes = engine.files(p), [*engine.notes(p), *_warnings(p.case)]
-    _refuse(engine, ranks, resume)
+    engine.refuse(ranks=ranks, resume=resume)
     work = _Work(Path(path), p, engine, files, notes, ranks, lambda step: tell(step, p.steps))
     folder = out or Path("runs") / p.case.name / engine.subfolder
     if resume and not folder.exists():

@@ -6,8 +6,8 @@ from pathlib import Path
 
 import pandas as pd
 
-from ..errors import CaseError
-from ..liggghts.running import follow
+from ..errors import CaseError, EngineError
+from ..processes import call
 from ..scenes.engine import Resumed, Tell
 from ..scenes.plan import ScenePlan
 from . import scene_deck
@@ -22,12 +22,15 @@ class YadeScenes:
 
     name = "yade"
     subfolder = "yade"
-    parallel = False
-    resumes = False
     leftovers: tuple[str, ...] = ("particles.*.npy", "contacts.*.npy")
 
-    def missing(self) -> str | None:
-        return Yade().missing()
+    def refuse(self, *, ranks: int, resume: bool) -> None:
+        if ranks > 1:
+            raise CaseError(f"--ranks {ranks}: a scene in YADE runs on one core; leave it out")
+        if resume:
+            raise CaseError("--resume: a scene in YADE runs from its start; leave it out")
+        if words := Yade().missing():
+            raise EngineError(words)
 
     def version(self) -> str:
         return Yade().version()
@@ -39,10 +42,10 @@ class YadeScenes:
         return scene_deck.notes(plan)
 
     def run(self, plan: ScenePlan, folder: Path, *, ranks: int, tell: Tell) -> None:
-        follow([command(), "-n", "-x", scene_deck.SCRIPT], folder, OUT, name="YADE", tell=tell, env=environment())
+        call([command(), "-n", "-x", scene_deck.SCRIPT], folder, log=OUT, env=environment(), tell=tell)
 
     def resume(self, plan: ScenePlan, folder: Path, *, ranks: int, tell: Tell) -> Resumed:
-        raise CaseError(f"{folder}: a scene in YADE is not continued; run it anew")
+        raise CaseError(f"{folder}: a scene in YADE runs from its start; run it anew")
 
     def read(self, plan: ScenePlan, folder: Path, *, without: Collection[int] = ()) -> dict[str, pd.DataFrame]:
         return tables.read(plan, folder, folder / OUT)
