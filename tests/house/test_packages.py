@@ -11,7 +11,7 @@ PACKAGE = Path(__file__).parents[2] / "python" / "epdem"
 # A room uses rooms of the lines above it; rooms of one line do not use each other, the base modules may.
 ORDER = """
 __init__
-errors paths files processes rendering
+errors paths files processes rendering data_file
 theory
 laws
 case
@@ -27,7 +27,6 @@ LEVEL = {room: level for level, line in enumerate(ORDER.strip().splitlines()) fo
 EXCEPTIONS = {
     ("equations.py", "theory"),
     ("impacts/run.py", "engines"),
-    ("lammps/impacts.py", "liggghts"),
     ("scenes/checks.py", "liggghts"),
     ("scenes/contacts.py", "liggghts"),
     ("scenes/ledger.py", "liggghts"),
