@@ -12,7 +12,7 @@ from epdem.cli.main import app
 from epdem.engines import engine
 from epdem.errors import CaseError
 from epdem.impacts.experiment import experiment
-from epdem.laws.library import Law
+from epdem.laws.native import Law
 from epdem.studies import stability
 from epdem.studies.stability import bulk, bulk_checks, precisions, repeats, roundoff
 from epdem.studies.stability.cases import build, extremes

@@ -212,7 +212,7 @@ class Case(Frozen):
         return self.case.name
 
 
-def parse(data: dict, path: object = "case") -> Case:
+def parse(data: dict[str, Any], path: object = "case") -> Case:
     """A Case from TOML data; `path` names the place in messages. Raises CaseError."""
     try:
         return Case.model_validate(data)
