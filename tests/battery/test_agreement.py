@@ -29,9 +29,8 @@ def test_both_declare_the_same_about_a_law(name):
     """Parameters, the one that is a strength and its ratio to Y, and the memory: delta_max, or the peak beside it."""
     info, cls = claw.laws()[name], backbones.LAWS[name]
     assert [(p.name, p.unit) for p in cls.parameters] == [(p.name, p.unit) for p in info.parameters]
-    assert [np.nan if p.default is None else p.default for p in cls.parameters] == pytest.approx(
-        [p.default for p in info.parameters], nan_ok=True
-    )
+    defaults = [np.nan if p.default is None else p.default for p in cls.parameters]
+    assert defaults == pytest.approx([p.default for p in info.parameters], nan_ok=True)
     assert cls.strength == (info.strength.name if info.strength else None)
     assert info.default_ratio == cls.default_ratio if cls.strength else np.isnan(info.default_ratio)
     flattens = cls.flatness is not backbones.Backbone.flatness
