@@ -16,7 +16,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 from fnmatch import fnmatch
 from pathlib import Path
-from typing import TextIO
+from typing import Any, TextIO
 
 from .errors import CaseError
 from .files import atomic
@@ -58,6 +58,8 @@ class Results:
                 (self.folder / name).unlink()
 
 
+About = list[Any]  # size, time of change, hash
+Known = dict[str, Any]  # what `.epdem.json` holds
 _held: dict[Path, Results] = {}  # what this process keeps now
 
 
@@ -115,7 +117,7 @@ def _names(folder: Path, below: Path = Path()) -> set[str]:
     return found
 
 
-def _about(path: Path, before: list | None = None) -> list[object]:
+def _about(path: Path, before: About | None = None) -> About:
     """[size, time of change in ns, hash] of a file; the hash of `before` counts where the others are the same."""
     if not path.is_file():  # a link that leads nowhere
         return [0, 0, ""]
@@ -128,7 +130,7 @@ def _about(path: Path, before: list | None = None) -> list[object]:
     return [status.st_size, status.st_mtime_ns, sha.hexdigest()]
 
 
-def _known(folder: Path) -> dict | None:
+def _known(folder: Path) -> Known | None:
     """What `.epdem.json` says, or None if the folder has none that can be read."""
     try:
         found = json.loads((folder / MANIFEST).read_text())
@@ -137,7 +139,7 @@ def _known(folder: Path) -> dict | None:
     return found if isinstance(found, dict) else None
 
 
-def _foreign(folder: Path, known: dict | None) -> set[str]:
+def _foreign(folder: Path, known: Known | None) -> set[str]:
     names = _names(folder)
     if known is None:
         return names
@@ -146,10 +148,10 @@ def _foreign(folder: Path, known: dict | None) -> set[str]:
     return {name for name in names if not _unchanged(folder / name, known["files"].get(name))}
 
 
-def _unchanged(path: Path, about: list | None) -> bool:
+def _unchanged(path: Path, about: About | None) -> bool:
     if about is None:
         return False
-    return _about(path, about)[2] == about[2]
+    return bool(_about(path, about)[2] == about[2])
 
 
 def _refuse(folder: Path, foreign: set[str], ours: bool, force: bool) -> None:

@@ -9,6 +9,7 @@ from laws import NAMES, YIELDING, yield_overlap
 
 from epdem import paths
 from epdem.laws import library as claw
+from epdem.laws.native import Law
 from epdem.liggghts.impacts import read_dump
 from epdem.theory import pair, viscous
 
@@ -70,7 +71,7 @@ def test_liggghts_has_the_laws_force_on_256_paths(name, tmp_path):
     """To 1e-15 of the largest force where nothing cancels, times four roundings; alpha_max - alpha adds its own."""
     overlap, force, _ = carried(name, tmp_path)
     parameters = {claw.laws()[name].parameters[0].name: STRENGTH[name]} if name in STRENGTH else {}
-    law = claw.Law(name, E_star=float(pair.E_star(E, NU, E, NU)), **parameters)
+    law = Law(name, E_star=float(pair.E_star(E, NU, E, NU)), **parameters)
     state = np.zeros(N)
     reloads = 0
     for step in range(STEPS + 1):
@@ -106,7 +107,7 @@ def test_liggghts_has_the_dashpots_force_on_256_paths(name, tmp_path):
     overlap, force, v = carried(name, tmp_path, 0.7, "2*cos(0.013*id+0.7*v_t)")
     parameters = {claw.laws()[name].parameters[0].name: STRENGTH[name]} if name in STRENGTH else {}
     E_star, mass = float(pair.E_star(E, NU, E, NU)), float(pair.sphere_mass(radius=R, density=7850.0))
-    law, number = claw.Law(name, E_star=E_star, **parameters), 2 * np.sqrt(5 / 6) * float(viscous.damping_ratio(0.7))
+    law, number = Law(name, E_star=E_star, **parameters), 2 * np.sqrt(5 / 6) * float(viscous.damping_ratio(0.7))
     delta_y = yield_overlap(name, E_star, R, STRENGTH[name]) if name in STRENGTH else np.inf
     state, cut = np.zeros(N), 0
     for step in range(STEPS + 1):

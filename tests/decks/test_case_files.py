@@ -2,13 +2,14 @@
 """Case files: what is refused, and how the sentence reads; nothing is written for a bad one."""
 
 import copy
+import re
 import subprocess
 import sys
 from pathlib import Path
 
 import pytest
 
-from epdem.case import units
+from epdem.case import scene, units
 from epdem.case.impact import load, parse, read_toml
 from epdem.case.units import to_si
 from epdem.errors import CaseError
@@ -102,16 +103,21 @@ def test_pint_never_sees_powers_that_it_would_compute_for_hours(text, monkeypatc
         ("impact.kind", "sphere-cube", "sphere-wall"),
         ("impact.speeds", ["1 m/s", "fast"], "impact.speeds.1"),
         ("impact.speeds", [], "impact.speeds"),
-        ("impact.speeds.count", 10**9, "less than or equal to 1000"),
+        ("impact.speeds.count", 10**9, "must be at most 1000"),
         ("impact.speeds.to", "1 mm/s", "must exceed 'from'"),
         ("impact.speeds.count", 1000, "at most 4096"),
-        ("numerics.phases", 65, "less than or equal to 64"),
-        ("numerics.steps_in_contact", 10**7, "less than or equal to 100000"),
-        ("numerics.steps_in_contact", 100.5, "valid integer"),
+        ("numerics.phases", 65, "must be at most 64"),
+        ("numerics.steps_in_contact", 10**7, "must be at most 100000"),
+        ("numerics.steps_in_contact", 100.5, "must be a whole number"),
         ("case.title", "a title & ", "swallow the next line"),
         ("case.title", "two\nlines", "one printable line"),
         ("case.source", "bell \a", "one printable line"),
         ("case.name", "../../etc", "letters, digits"),
+        ("case.name", "-rf", "case.name = '-rf', must be 1 to 64 letters, digits, - or _, the first of them not -"),
+        ("case.name", "n" * 1000, f"case.name = '{'n' * 76}..., must be"),
+        ("materials.steel.young_modulus", "1 " + "G" * 200, "young_modulus = '1 GGG"),
+        ("impact.speeds", "1 m/s", "impact.speeds = '1 m/s', must be a table"),
+        ("materials.steel.two\nlines", 1, "materials.steel.'two\\nlines' = 1, unknown key"),
         ("case", KeyError, "case is missing"),
         ("law.name", "hook", "there are hertz, thornton"),
         ("law.stiffness", 1.0, "has no such parameter; it has yield_pressure, yield_pressure_ratio"),
@@ -131,6 +137,62 @@ def test_a_mistake_is_named_with_place_value_and_limit(place, value, says):
     with pytest.raises(CaseError) as caught:
         experiment(parse(changed(place, value), "f.toml"))
     assert says in str(caught.value)
+
+
+def paths_in(data, keys=()):
+    """Every key of nested tables and lists."""
+    for key, value in data.items() if isinstance(data, dict) else enumerate(data):
+        yield (*keys, key)
+        if isinstance(value, dict | list):
+            yield from paths_in(value, (*keys, key))
+
+
+@pytest.mark.parametrize("name", ["steel_wall", "two_materials", "settle_glass", "hopper_beads", "compaction_powder"])
+def test_a_wrong_value_anywhere_is_one_line_with_its_place_in_the_words_of_this_project(name):
+    """Every key of a case in turn takes values of every type of TOML."""
+    whole = read_toml(CASES / f"{name}.toml")
+    refused = 0
+    for *path, last in paths_in(whole):
+        for value in (3, -1.5, "x", "y" * 500, True, [], {}, ["a"], {"a": 1}, "1 kg"):
+            data = copy.deepcopy(whole)
+            at = data
+            for key in path:
+                at = at[key]
+            at[last] = value
+            try:
+                (scene.parse if scene.is_scene(whole) else parse)(data, "f.toml")
+            except CaseError as error:
+                refused += 1
+                text = str(error)
+                assert text.startswith("f.toml: ") and "\n" not in text and len(text) < 300, text
+                assert not re.search(r"Input should|should have|should be|valid|Field|SpeedRange|Range|function-", text)
+    assert refused > 100
+
+
+def test_a_file_of_the_other_kind_is_named_as_such():
+    with pytest.raises(CaseError, match=r"^f is a bulk scene .* needs impacts .* explain and soften take scenes$"):
+        parse(read_toml(CASES / "settle_glass.toml"), "f")
+    with pytest.raises(CaseError, match=r"^f is a case of impacts .* needs a bulk scene"):
+        scene.parse(STEEL, "f")
+    with pytest.raises(CaseError, match=r"^f: both \[impact\] and \[scene\]"):
+        parse(STEEL | {"scene": {}}, "f")
+
+
+@pytest.mark.parametrize(
+    ("radius", "says"),
+    [
+        ("1 kg", "scene.particles.0.radius = '1 kg', the unit 'kg' has the wrong dimension"),
+        ({"from": "1 mm", "to": "2 mm", "classes": 1}, "scene.particles.0.radius.classes = 1, must be at least 2"),
+        ({"from": "2 mm", "to": "1 mm"}, "scene.particles.0.radius: 'to' (0.001 m) must exceed 'from' (0.002 m)"),
+        ({"from": "2 mm"}, "scene.particles.0.radius.to is missing; add it"),
+    ],
+)
+def test_of_two_readings_of_a_value_the_message_takes_the_one_that_is_meant(radius, says):
+    data = read_toml(CASES / "settle_glass.toml")
+    data["scene"]["particles"][0]["radius"] = radius
+    with pytest.raises(CaseError) as caught:
+        scene.parse(data, "f.toml")
+    assert str(caught.value).startswith("f.toml: " + says)
 
 
 def test_bad_input_exits_with_2_one_line_and_writes_nothing(tmp_path):
@@ -178,3 +240,30 @@ def test_the_softer_body_gives_the_strength_of_the_pair():
     data["impact"]["target"]["material"] = "brass"
     x = experiment(parse(data, "f"))
     assert x.law.strengths == (2.8e9, 2.8 * 200e6) and x.law.parameters["yield_pressure"] == 2.8 * 200e6
+
+
+@pytest.mark.parametrize(
+    ("raw", "says"),
+    [
+        (b"a = " + b"[" * 100_000, "nested too deeply"),
+        (b"#" * 4_000_001, "more than 4 MB"),
+        ("a = 1".encode("utf-16"), "not UTF-8 at byte 0"),
+        (b'a = "\xe4"', "not UTF-8 at byte 5"),
+        (b"a = \x00", "not valid TOML"),
+    ],
+)
+def test_a_file_that_is_no_case_is_named_and_not_swallowed(raw, says, tmp_path):
+    path = tmp_path / "case.toml"
+    path.write_bytes(raw)
+    with pytest.raises(CaseError, match=f"{path}: .*{says}"):
+        read_toml(path)
+
+
+def test_a_device_is_not_read_to_its_end():
+    with pytest.raises(CaseError, match="/dev/zero: more than 4 MB"):
+        read_toml("/dev/zero")
+
+
+def test_line_ends_and_byte_order_marks_of_other_systems_are_no_mistake(tmp_path):
+    (tmp_path / "case.toml").write_bytes(b"\xef\xbb\xbfa = 1\r\nb = 2\r\n")
+    assert read_toml(tmp_path / "case.toml") == {"a": 1, "b": 2}

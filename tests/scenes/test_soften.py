@@ -8,9 +8,11 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from typer.testing import CliRunner
 
 from epdem.case import scene as scenes
 from epdem.case.impact import load
+from epdem.cli.main import app
 from epdem.errors import CaseError
 from epdem.impacts.experiment import experiment
 from epdem.impacts.prediction import predict
@@ -63,6 +65,53 @@ def test_the_twin_says_what_it_changes_and_keeps_the_rest_of_the_file():
     before, after = STEEL.read_text().splitlines(), twin.text.splitlines()
     assert len(before) == len(after)
     assert sum(a != b for a, b in zip(before, after, strict=True)) == 3
+
+
+ODD = """# a case in another order, with other quotes
+law = { name = "thornton", 'yield_pressure' = '2.8 GPa' } # inline
+
+[materials]
+steel.young_modulus = "208 GPa"  # dotted
+steel.poisson_ratio = 0.3
+steel.density = "7850 kg/m^3"
+
+[case]
+title = '''name = "no name at all"'''
+source = "none"
+name = "odd"   # the last key
+
+[impact]
+kind = "sphere-wall"
+body = { radius = "10 mm", material = "steel" }
+target = { material = "steel" }
+speeds = ["1 m/s"]
+"""
+
+
+def test_the_twin_of_a_case_in_any_order_and_style_of_toml_renames_the_case_and_nothing_else(tmp_path):
+    """Values by hand: 208/10 GPa and 2.8/10^0.8 GPa; every comment and every other line stays."""
+    path = tmp_path / "odd.toml"
+    path.write_text(ODD)
+    text = soften(path, 10.0).text
+    data = tomllib.loads(text)
+    assert data["case"]["name"] == "odd_soft10" and data["case"]["title"] == 'name = "no name at all"'
+    assert data["law"]["name"] == "thornton"
+    assert data["materials"]["steel"]["young_modulus"] == "20.8 GPa"
+    assert float(data["law"]["yield_pressure"].removesuffix(" GPa")) == pytest.approx(2.8 / 10**0.8, rel=1e-14)
+    lines = list(zip(ODD.splitlines(), text.splitlines(), strict=True))
+    assert [n for n, (old, new) in enumerate(lines) if old != new] == [1, 4, 11]
+    assert [old.partition("#")[2] for old, _ in lines] == [new.partition("#")[2] for _, new in lines]
+
+
+def test_softening_replaces_a_file_only_when_asked(tmp_path):
+    target = tmp_path / "mine.toml"
+    target.write_text("mine")
+    words = ["soften", str(STEEL), "--factor", "10", "--out", str(target)]
+    refused = CliRunner().invoke(app, words)
+    assert isinstance(refused.exception, CaseError) and "--force" in str(refused.exception)
+    assert target.read_text() == "mine"
+    assert CliRunner().invoke(app, [*words, "--force"]).exit_code == 0
+    assert load(target).name == "steel_wall_soft10"
 
 
 def test_the_twin_of_a_scene_scales_the_strength_of_every_material():

@@ -24,10 +24,12 @@ from pydantic import (
 from pydantic_core.core_schema import CoreSchema, no_info_before_validator_function
 
 from ..errors import CaseError
+from .messages import explain
 from .units import to_si, within_limits
 
 RIGID = "rigid"
 MAX_IMPACTS = 4096
+MAX_BYTES = 4_000_000  # of a case file
 # Largest relative errors a case accepts if it does not say (maximum over the phases, 400 steps in contact).
 DEFAULT_CHECKS = {"e_n": 1e-4, "contact_time": 5e-3, "force_max": 1e-3, "overlap_max": 1e-3, "residual_overlap": 1e-3}
 
@@ -71,7 +73,7 @@ def _printable_line(value: object) -> str:
 
 
 Line = Annotated[str, BeforeValidator(_printable_line)]
-Name = Annotated[str, Field(pattern=r"^[A-Za-z0-9_-]{1,64}$")]
+Name = Annotated[str, Field(pattern=r"^[A-Za-z0-9_][A-Za-z0-9_-]{0,63}$")]
 
 
 class Frozen(BaseModel):
@@ -210,64 +212,33 @@ class Case(Frozen):
         return self.case.name
 
 
-def _value_at(data: Any, location: tuple[str | int, ...]) -> Any:
-    for key in location:
-        try:
-            data = data[key]
-        except (KeyError, IndexError, TypeError):
-            return None
-    return data
-
-
-def _explain(path: object, data: dict[str, Any], error: ValidationError) -> str:
-    """The first mistake as one sentence: place, value, limit, next step."""
-    problems = error.errors()
-    # of the two readings of `speeds` pydantic reports both; the one that fits the shape of the value is meant
-    shape = "SpeedRange" if isinstance(_value_at(data, ("impact", "speeds")), dict) else "list["
-    problems = [
-        p
-        for p in problems
-        if not (p["loc"][:2] == ("impact", "speeds") and len(p["loc"]) > 2 and not str(p["loc"][2]).startswith(shape))
-    ] or problems
-    problem = next((p for p in problems if p["type"] == "extra_forbidden"), problems[0])  # likely a misspelt key
-    location = tuple(
-        k for k in problem["loc"] if k in ("from",) or not str(k).startswith(("SpeedRange", "list[", "function-"))
-    )
-    place, value = ".".join(map(str, location)), _value_at(data, location)
-    text = problem["msg"].removeprefix("Value error, ")
-    if problem["type"] == "extra_forbidden":
-        text = "unknown key; remove it or correct its spelling"
-    elif problem["type"] == "missing":
-        text = "is missing; add it"
-    elif problem["type"] in ("model_type", "dict_type", "model_attributes_type"):
-        text = f"must be a table; write [{place}] and its keys below"
-    elif problem["type"] == "string_pattern_mismatch":
-        text = "must be 1 to 64 letters, digits, - or _"
-    elif problem["type"] == "too_short":
-        text = "is empty; give at least one value"
-    shown = "" if value is None or isinstance(value, dict | list) else f" = {value!r}"
-    return f"{path}: {place}{shown}{', ' if shown else ' ' if place else ''}{text}"
-
-
 def parse(data: dict[str, Any], path: object = "case") -> Case:
     """A Case from TOML data; `path` names the place in messages. Raises CaseError."""
     try:
         return Case.model_validate(data)
     except ValidationError as error:
-        raise CaseError(_explain(path, data, error)) from None
+        raise CaseError(explain(path, data, error, "impact")) from None
 
 
 def read_toml(path: Path | str) -> dict[str, Any]:
     """The raw tables of a TOML file. Raises CaseError."""
     path = Path(path)
     try:
-        return tomllib.loads(path.read_text(encoding="utf-8"))
+        with path.open("rb") as stream:  # a device or a film may have been named: no more than this is read
+            raw = stream.read(MAX_BYTES + 1)
+        if len(raw) > MAX_BYTES:
+            raise CaseError(f"{path}: more than {MAX_BYTES // 1_000_000} MB, which no case has; name the case file")
+        return tomllib.loads(raw.decode("utf-8-sig").replace("\r\n", "\n"))
     except FileNotFoundError:
         raise CaseError(f"{path}: no such file; the examples are in cases/") from None
-    except (OSError, UnicodeDecodeError) as error:
+    except UnicodeDecodeError as error:
+        raise CaseError(f"{path}: not UTF-8 at byte {error.start}; save the file as UTF-8") from None
+    except OSError as error:
         raise CaseError(f"{path}: cannot be read ({error})") from None
     except tomllib.TOMLDecodeError as error:
         raise CaseError(f"{path}: not valid TOML: {error}") from None
+    except RecursionError:
+        raise CaseError(f"{path}: tables and lists are nested too deeply; a case needs three levels") from None
 
 
 @contextlib.contextmanager

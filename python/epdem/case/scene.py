@@ -9,6 +9,7 @@ from pydantic import ConfigDict, Field, ValidationError, model_validator
 from ..errors import CaseError
 from . import impact as impact_case
 from .impact import Frozen, Header, LawChoice, Length, Material, Name, Quantity, Speed, Viscous
+from .messages import explain
 
 Time = Annotated[float, Quantity("s", above=0.0)]
 Rate = Annotated[float, Quantity("Hz", above=0.0)]
@@ -265,26 +266,7 @@ def parse(data: dict[str, Any], path: object = "case") -> SceneCase:
     try:
         return SceneCase.model_validate(data)
     except ValidationError as error:
-        kind = str(data.get("scene", {}).get("kind", "")) if isinstance(data.get("scene"), dict) else ""
-        problem = error.errors()[0]
-        location = tuple(k for k in problem["loc"] if not _is_branch(k, kind))
-        place = ".".join(map(str, location))
-        text = problem["msg"].removeprefix("Value error, ")
-        if problem["type"] == "extra_forbidden":
-            text = "unknown key; remove it or correct its spelling"
-        elif problem["type"] == "missing":
-            text = "is missing; add it"
-        elif problem["type"].startswith("union_tag"):
-            text = f"kind = {kind!r}, must be one of settle, hopper, drum, compaction, peening"
-        value = problem["input"]
-        shown = (
-            "" if value is None or isinstance(value, dict | list) or "missing" in problem["type"] else f" = {value!r}"
-        )
-        raise CaseError(f"{path}: {place}{shown}{', ' if shown else ' ' if place else ''}{text}") from None
-
-
-def _is_branch(key: object, kind: str) -> bool:
-    return str(key).startswith(("Range", "function-", "list[", "tuple[", "float")) or key == kind
+        raise CaseError(explain(path, data, error, "scene")) from None
 
 
 def load(path: Path | str) -> SceneCase:

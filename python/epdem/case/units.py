@@ -4,6 +4,7 @@
 import math
 import re
 from functools import cache
+from typing import Any
 
 # number, blank, unit; checked before pint sees it, because pint evaluates what it is given
 _NUMBER = r"[+-]?(?:\d+(?:\.\d*)?|\.\d+)(?:[eE][+-]?\d{1,3})?"
@@ -13,7 +14,7 @@ _QUANTITY = re.compile(rf"({_NUMBER})(?: +({_FACTOR}(?: ?[*/·] ?{_FACTOR}|/\d)*
 
 
 @cache
-def _registry():
+def _registry() -> Any:
     import pint  # half a second: only when a case is read
 
     return pint.UnitRegistry(autoconvert_offset_to_baseunit=True)
@@ -25,7 +26,7 @@ def _factor(unit: str, si: str) -> float:
 
     registry = _registry()
     try:
-        return registry.Quantity(1.0, unit.replace("·", "*")).to(si).magnitude
+        return float(registry.Quantity(1.0, unit.replace("·", "*")).to(si).magnitude)
     except pint.UndefinedUnitError as error:
         raise ValueError(f"unknown unit {unit!r}") from error
     except pint.DimensionalityError as error:

@@ -162,12 +162,13 @@ for command in (
     cli_theory.figures,
     cli_numerics.timestep,
     cli_numerics.cost,
-    cli_numerics.stress,
+    cli_numerics.stability,
     cli_scene.explain,
     cli_scene.soften,
     cli_scene.calibrate,
 ):
     app.command()(command)
+app.command("stress", hidden=True, deprecated=True)(cli_numerics.stability)  # its name in version 0.1
 
 
 def _stop(number: int, frame: object) -> None:

@@ -54,7 +54,7 @@ def timestep(
         )
 
 
-def stress(
+def stability(
     engine: Engines = None,
     law: Laws = None,
     group: Annotated[list[str] | None, typer.Option("--group", "-g", help="only these groups of cases")] = None,

@@ -112,15 +112,22 @@ def soften(
     factor: Annotated[
         float, typer.Option("--factor", "-k", help="E is divided by it; the step grows by its 0.4th power")
     ],
-    out: Annotated[Path | None, typer.Option("--out", "-o", help="file to write")] = None,
+    out: Annotated[
+        Path | None, typer.Option("--out", "-o", help="file to write (default: CASE_softK.toml beside it)")
+    ] = None,
+    force: Annotated[bool, typer.Option("--force", help="replace a file that is there already")] = False,
     as_json: AsJson = False,
 ) -> None:
     """A softened twin of a case with the same e_n at every speed, and larger time steps."""
+    from ..files import atomic
     from ..studies.soften import soften as twin_of
 
     twin = twin_of(case, factor)
     target = out or case.with_name(f"{case.stem}_soft{factor:g}.toml")
-    target.write_text(twin.text)
+    if target.exists() and not force:
+        raise CaseError(f"{target} exists; name another file by --out, or replace it by --force")
+    with atomic(target) as temporary:
+        temporary.write_text(twin.text, encoding="utf-8")
     if as_json:
         print(
             json.dumps(

@@ -14,6 +14,7 @@ from ..case.impact import RIGID, Case, Check, Material, Numerics
 from ..case.law import law_numbers
 from ..errors import CaseError
 from ..laws import library
+from ..laws.native import Law
 from ..laws.strengths import LawNumbers, LawSpec, default_numbers
 from ..theory import pair
 from ..theory.backbones import Backbone
@@ -108,9 +109,9 @@ class Experiment:
         """The law's backbone as the theory knows it."""
         return self.law.declaration.backbone(E_star=self.E_star, R_star=self.R_star, parameters=self.law.parameters)
 
-    def native_law(self) -> library.Law:
+    def native_law(self) -> Law:
         """The same law in C++."""
-        return library.Law(self.law.name, E_star=self.E_star, **self.law.parameters)
+        return Law(self.law.name, E_star=self.E_star, **self.law.parameters)
 
     @property
     def viscous_number(self) -> float:

@@ -137,7 +137,8 @@ def _prepare(case_path: Path | str, tools: Sequence[Engine], laws: list[str], st
     case = parse(data, case_path)
     tools = list({tool.name: tool for tool in tools}.values())
     with named(case_path):
-        experiments = [experiment(case, law) for law in (list(dict.fromkeys(laws)) or [None])]
+        chosen: list[str | None] = [*dict.fromkeys(laws)] or [None]
+        experiments = [experiment(case, law) for law in chosen]
     for tool in tools:
         if reason := tool.missing():
             raise EngineError(f"engine {tool.name}: {reason}")
@@ -200,7 +201,7 @@ def _run(path: Path, work: _Work, folder: Path, ranks: int, fresh: bool, progres
                 results.impacts[key] = stage.impacts
                 results.runs[key] = stage.seconds | {"inputs": inputs, "time_step": p.time_step}
                 results.decks |= {f"{key}/{name}": text for name, text in stage.decks.items()}
-            spent = float(results.runs[key]["seconds"])
+            spent = float(str(results.runs[key]["seconds"]))
             outcome.seconds[tool.name] = outcome.seconds.get(tool.name, 0.0) + spent
             rows.append(compare(tool.name, law, results.impacts[key], prediction, work.case.check))
             results.comparison = pd.concat(rows, ignore_index=True)

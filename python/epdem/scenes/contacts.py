@@ -31,7 +31,10 @@ _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(16)
 
 
 def contacts(case: SceneCase, deck: Deck, folder: Path, spheres: pd.DataFrame) -> pd.DataFrame:
-    """One row per contact and frame, SI; i < j, or `j` = 0 and `wall` its name for a wall. `spheres`: the particles' table."""
+    """One row per contact and frame, SI; i < j, or `j` = 0 and `wall` its name for a wall.
+
+    `spheres` is the particles' table.
+    """
     parts = [_pairs(deck, folder), *_planes(deck, spheres)]
     if deck.meshes:
         parts.append(_meshes(deck, folder))

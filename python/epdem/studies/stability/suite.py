@@ -9,7 +9,7 @@ from pathlib import Path
 import pandas as pd
 
 from ...engines import engine
-from ...errors import EngineError
+from ...errors import CaseError, EngineError
 from ...laws import library as claw
 from . import bulk_checks, precisions
 from .cases import Extreme, extremes
@@ -64,12 +64,18 @@ def run(
 
     `steps` is the length of the drift by bounces, `cycles` the number of reloads. Laws none given: all. Without
     `groups` the round-off floor is measured (with YADE in its other precisions too) and, with LIGGGHTS, the stiff bulk
-    scenes run.
+    scenes run. Raises CaseError for a law or group that does not exist, EngineError for an engine that is not here.
     """
+    for option, given, known in (
+        ("--law", laws, claw.laws()),
+        ("--group", groups or [], dict.fromkeys(e.group for e in extremes())),
+    ):
+        if wrong := [name for name in given if name not in known]:
+            raise CaseError(f"{option} {wrong[0]!r} does not exist; there are {', '.join(known)}")
     laws = laws or list(claw.laws())
     chosen = [e for e in extremes() if not groups or e.group in groups][::every]
     rows, tables = [], []
-    with tempfile.TemporaryDirectory(prefix="epdem-stress-") as scratch:
+    with tempfile.TemporaryDirectory(prefix="epdem-stability-") as scratch:
         for sampler in samplers(engines, Path(scratch)):
             coarse = COARSE if sampler.name == "embedded" else POSITION_COARSE
             slow = SLOW.get(sampler.name)

@@ -6,11 +6,14 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from typer.testing import CliRunner
 
+from epdem.cli.main import app
 from epdem.engines import engine
+from epdem.errors import CaseError
 from epdem.impacts.experiment import experiment
-from epdem.laws.library import Law
-from epdem.studies import stability as stress
+from epdem.laws.native import Law
+from epdem.studies import stability
 from epdem.studies.stability import bulk, bulk_checks, precisions, repeats, roundoff
 from epdem.studies.stability.cases import build, extremes
 from epdem.studies.stability.document import document
@@ -51,7 +54,7 @@ def test_every_extreme_impact_is_finite_second_order_and_creates_no_energy(law):
 
 @pytest.mark.parametrize("law", LAWS)
 def test_one_contact_bounced_reloaded_and_squeezed_neither_gains_nor_drifts(law):
-    """1e6 steps here, 1e9 in `epdem stress`; drift goes with dt^3 and is 6e-11 a bounce at this step."""
+    """1e6 steps here, 1e9 in `epdem stability`; drift goes with dt^3 and is 6e-11 a bounce at this step."""
     chosen = [e for e in extremes() if e.kind != "impact"]
     verdicts = [judge_repeats(e, law, EmbeddedSampler(), steps=10**6, cycles=300) for e in chosen]
     assert len(verdicts) == 5 and [(v.case, v.reason) for v in verdicts if v.status != "passed"] == []
@@ -121,7 +124,7 @@ def test_engines_take_the_steps_of_the_embedded_one_with_a_sphere_between_two_wa
 
 @pytest.mark.parametrize("name", ENGINES)
 def test_reloads_in_an_engine_repeat_the_laws_force_to_the_last_bit(name, tmp_path):
-    """100 here, 10^4 in `epdem stress`; a carried sphere has the same overlaps, bit for bit, in every cycle."""
+    """100 here, 10^4 in `epdem stability`; a carried sphere has the same overlaps, bit for bit, in every cycle."""
     verdict = judge_repeats(
         BY_NAME["reloads_1e4"], "cavity", PositionSampler(engine(name), tmp_path), steps=0, cycles=100
     )
@@ -198,7 +201,7 @@ def test_round_off_of_liggghts_is_that_of_positions_and_of_nothing_else(tmp_path
 @pytest.mark.liggghts
 @pytest.mark.parametrize("name", list(SCENES))
 def test_energy_of_stiff_bulk_scenes_never_rises_none_is_lost_and_ranks_agree(name, tmp_path):
-    """Some 150 spheres for half the time here, 2,000 in `epdem stress`; the tolerances are those of full size."""
+    """Some 150 spheres for half the time here, 2,000 in `epdem stability`; the tolerances are those of full size."""
     small = {"plate": (5, 5, 6), "mixture": (6, 5, 5), "shock": (4, 4, 10)}[name]
     scene = with_law(SCENES[name](small), "cavity")
     verdict = bulk_checks.judge_scene(replace(scene, duration=scene.duration / 2), tmp_path)
@@ -220,10 +223,20 @@ def test_the_bulk_ledger_sees_spheres_that_come_back_too_fast(tmp_path):
 
 
 def test_the_page_of_the_documentation_names_its_command_and_every_case():
-    outcome = stress.run(["embedded"], ["thornton"], steps=10_000, cycles=10)
-    text = document(outcome, "epdem stress")
-    assert "`epdem stress`" in text and all(f"| {e.name} |" in text for e in extremes())
+    outcome = stability.run(["embedded"], ["thornton"], steps=10_000, cycles=10)
+    text = document(outcome, "epdem stability")
+    assert "`epdem stability`" in text and all(f"| {e.name} |" in text for e in extremes())
     assert outcome.passed and json.dumps(outcome.verdicts.to_dict("list"))
+
+
+@pytest.mark.parametrize("command", ["stability", "stress"])
+def test_the_command_names_the_groups_there_are_and_keeps_its_former_name(command):
+    wrong = CliRunner().invoke(app, [command, "--group", "nogroup"])
+    assert isinstance(wrong.exception, CaseError)
+    assert "'nogroup' does not exist; there are modulus, ratio" in str(wrong.exception)
+    done = CliRunner().invoke(app, [command, "-g", "poisson", "-l", "hertz", "--every", "2", "--json"])
+    assert done.exit_code == 0
+    assert [row["case"] for row in json.loads(done.stdout)["rows"]] == ["poisson_0"]
 
 
 def test_extreme_cases_are_the_same_on_every_call():

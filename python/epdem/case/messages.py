@@ -1,0 +1,96 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""The first mistake of a case file as one sentence: place, value, limit, next step."""
+
+import re
+from typing import Any
+
+from pydantic import ValidationError
+
+LONGEST = 80  # characters of a value that a message shows
+SHAPES = ("model_type", "model_attributes_type", "dict_type", "list_type")
+TEXTS = {
+    "extra_forbidden": "unknown key; remove it or correct its spelling",
+    "missing": "is missing; add it",
+    "string_pattern_mismatch": "must be 1 to 64 letters, digits, - or _, the first of them not -",
+    "string_type": "must be a text in quotes",
+    "int_type": "must be a whole number",
+    "float_type": "must be a number",
+    "bool_type": "must be true or false",
+    "list_type": "must be a list; write it in [ ]",
+    "too_long": "has {actual_length} values, must have at most {max_length}",
+    "less_than_equal": "must be at most {le}",
+    "greater_than_equal": "must be at least {ge}",
+    "literal_error": "must be {expected}",
+}
+OTHER_KIND = {
+    "impact": "is a bulk scene ([scene]) and this needs impacts ([impact]); run, deck, explain and soften take scenes",
+    "scene": "is a case of impacts ([impact]) and this needs a bulk scene ([scene])",
+}
+
+
+def shorten(text: str) -> str:
+    """The text, cut at LONGEST characters."""
+    return text if len(text) <= LONGEST else text[: LONGEST - 3] + "..."
+
+
+def _key(key: object) -> str:
+    return str(key) if re.fullmatch(r"[\w-]{1,80}", str(key), re.ASCII) else shorten(repr(key))
+
+
+def _place(data: Any, problem: Any) -> tuple[tuple[Any, ...], Any]:
+    """(keys, value) of a problem in TOML data; names of types, which pydantic puts among the keys, are left out."""
+    keys = []
+    for n, key in enumerate(problem["loc"]):
+        if (isinstance(data, dict) and key in data) or (isinstance(data, list) and isinstance(key, int)):
+            keys.append(key)
+            data = data[key]
+        elif problem["type"] == "missing" and n == len(problem["loc"]) - 1:
+            return (*keys, key), None
+    return tuple(keys), data
+
+
+def _likeliest(data: dict[str, Any], problems: list[Any]) -> Any:
+    """The problem to speak of: a misspelt key; of the readings of one value, the one that fits its shape best."""
+    places = [_place(data, p) for p in problems]
+
+    def rank(n: int) -> tuple[bool, bool, bool, bool]:
+        keys, value = places[n]
+        label = str(problems[n]["loc"][-1]) if problems[n]["loc"] else ""
+        return (
+            problems[n]["type"] != "extra_forbidden",
+            any(len(k) > len(keys) and k[: len(keys)] == keys for k, _ in places),  # a reading that got further
+            problems[n]["type"] in SHAPES,
+            isinstance(value, dict | list) and label.endswith("float]"),  # not the reading as a quantity
+        )
+
+    return problems[min(range(len(problems)), key=rank)]
+
+
+def explain(path: object, data: dict[str, Any], error: ValidationError, kind: str) -> str:
+    """The sentence about `error` in `data`, which `path` holds; `kind`, "impact" or "scene", is what was expected."""
+    other = "scene" if kind == "impact" else "impact"
+    if kind not in data and other in data:
+        return f"{path} {OTHER_KIND[kind]}"
+    if kind in data and other in data:
+        return f"{path}: both [impact] and [scene] are given; keep one"
+    problem = _likeliest(data, error.errors())
+    keys, value = _place(data, problem)
+    context = problem.get("ctx", {})
+    if problem["type"].startswith("union_tag"):
+        keys, value = (*keys, "kind"), value.get("kind") if isinstance(value, dict) else None
+    place = ".".join(map(_key, keys))
+    if problem["type"].startswith("union_tag"):
+        text = f"must be one of {context.get('expected_tags', 'settle, hopper, drum, compaction, peening')}"
+    elif problem["type"] == "too_short":
+        least, given = context["min_length"], context["actual_length"]
+        text = f"has {given} values, must have at least {least}" if given else "is empty; give at least one value"
+    elif problem["type"] in SHAPES[:3]:
+        text = f"must be a table; write [{place}] and its keys below"
+    else:
+        text = TEXTS[problem["type"]].format(**context) if problem["type"] in TEXTS else problem["msg"]
+    text = re.sub(r"'([^']{77})[^']{4,}'", r"'\1...'", text.removeprefix("Value error, "))
+    shown = "" if value is None or isinstance(value, dict | list) else f" = {shorten(repr(value))}"
+    if shown:
+        return f"{path}: {place}{shown}, {text}"
+    # what is wrong with a whole table or list is a clause of its own
+    return f"{path}: {place}{'' if not place else ': ' if problem['type'] == 'value_error' else ' '}{text}"
