@@ -10,7 +10,7 @@ from laws import NAMES, YIELDING, yield_overlap
 from epdem import paths
 from epdem.laws import library as claw
 from epdem.laws.native import Law
-from epdem.liggghts.impacts import read_dump
+from epdem.liggghts import dump
 from epdem.theory import pair, viscous
 
 pytestmark = pytest.mark.liggghts
@@ -62,7 +62,7 @@ def carried(law: str, folder, restitution: float | None = None, speed: str = "0"
     (folder / "in.path").write_text(deck)
     done = subprocess.run([str(paths.launcher()), "-in", "in.path"], cwd=folder, capture_output=True, text=True)
     assert done.returncode == 0, done.stdout[-500:]
-    z, velocity, force = np.moveaxis(read_dump(folder / "path.bin", 4), 2, 0)
+    z, velocity, force = np.moveaxis(dump.series(folder / "path.bin"), 2, 0)
     return R - z, force, -velocity
 
 
@@ -96,7 +96,7 @@ def test_hertz_equals_liggghts_own_without_damping(tmp_path):
     (tmp_path / "in.path").write_text(deck)
     done = subprocess.run([str(paths.launcher()), "-in", "in.path"], cwd=tmp_path, capture_output=True, text=True)
     assert done.returncode == 0, done.stdout[-500:]
-    z, _, theirs = np.moveaxis(read_dump(tmp_path / "path.bin", 4), 2, 0)
+    z, _, theirs = np.moveaxis(dump.series(tmp_path / "path.bin"), 2, 0)
     assert np.array_equal(R - z, overlap)
     assert np.abs(ours - theirs).max() <= 1e-14 * np.abs(theirs).max()
 

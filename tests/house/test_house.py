@@ -50,18 +50,15 @@ def test_theory_needs_numpy_alone_and_never_calls_the_law(path):
         assert module.startswith(allowed), module
 
 
+# immintrin.h: the square root of a vector, in lanes.hpp
+STANDARD = {"algorithm", "cmath", "cstdint", "immintrin.h", "iterator", "limits", "type_traits"}
+
+
 def test_laws_include_no_host():
     for path in (ROOT / "cpp_contact/include/epdem").glob("*.hpp"):
         for name in re.findall(r"#include [<\"]([^>\"]+)", path.read_text()):
             assert "/" not in name or name.startswith("epdem/"), f"{path.name} includes {name}"
-            assert name.endswith(".hpp") or name in {
-                "algorithm",
-                "cmath",
-                "cstdint",
-                "iterator",
-                "limits",
-                "type_traits",
-            }, name
+            assert name.endswith(".hpp") or name in STANDARD, name
 
 
 def test_adapters_leave_powers_and_roots_to_the_laws():

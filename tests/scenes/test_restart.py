@@ -17,8 +17,7 @@ from toml_files import write_case
 from epdem.case.impact import read_toml
 from epdem.case.scene import is_scene, parse
 from epdem.errors import CaseError
-from epdem.liggghts import resume
-from epdem.liggghts import running as progress
+from epdem.liggghts import launcher, resume
 from epdem.liggghts import scene_deck as deck
 from epdem.liggghts import scene_tables as tables
 from epdem.scenes import results
@@ -43,14 +42,14 @@ def last_frame(case, folder: Path) -> np.ndarray:
 def test_a_continued_run_ends_bitwise_where_the_uninterrupted_one_does(path, tmp_path):
     case = short(path)
     deck.write(case, tmp_path)
-    progress.run("in.scene", tmp_path)
+    launcher.run("in.scene", tmp_path)
     whole = last_frame(case, tmp_path)
     steps = sorted(int(re.search(r"\d+", p.name).group()) for p in tmp_path.glob("restart.*.bin"))
     for step in (steps[2], steps[6]):
         for frame in tmp_path.glob("particles.*.bin"):
             frame.unlink()
         resume.write_resume(case, tmp_path, f"restart.{step}.bin", step)
-        progress.run("in.resume", tmp_path)
+        launcher.run("in.resume", tmp_path)
         continued = last_frame(case, tmp_path)
         assert continued.shape == whole.shape
         assert (continued == whole).all(), f"continued from {step}: largest difference {abs(continued - whole).max()}"

@@ -4,7 +4,6 @@
 Absolute times are noisy; the figure of merit is the ratio to LIGGGHTS's own elastic `hertz` in the same run.
 """
 
-import subprocess
 import tempfile
 import time
 from collections.abc import Callable
@@ -14,7 +13,6 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
-from .. import paths
 from ..case.impact import Case, load
 from ..engines import Engine, engine
 from ..errors import EngineError
@@ -23,8 +21,9 @@ from ..impacts.experiment import experiment
 from ..impacts.plan import Plan, plan
 from ..impacts.prediction import Prediction, predict
 from ..impacts.run import run_plan
-from ..liggghts.impacts import Liggghts, loop_seconds
-from ..processes import call
+from ..liggghts import launcher
+from ..liggghts.impacts import Liggghts
+from ..liggghts.log import loop_seconds
 
 STEPS = (10, 17, 30, 55, 100, 170, 300, 550, 1000, 1700, 3000)
 QUANTITIES = ("e_n", "contact_time", "force_max")
@@ -127,13 +126,9 @@ def _liggghts_seconds(tool: Liggghts, p: Plan, folder: Path) -> dict[str, float]
     lines = deck.read_text().splitlines()
     deck.write_text("\n".join(line for line in lines if not line.startswith("dump ")) + "\n")  # stepping, not writing
     (folder / "in.empty").write_text("# nothing\n")
-    command = [str(paths.launcher()), "-in"]
-    begin = time.perf_counter()
-    subprocess.run([*command, "in.empty", "-log", "none"], cwd=folder, capture_output=True, timeout=120, check=False)
-    startup = time.perf_counter() - begin
-    begin = time.perf_counter()
-    call([*command, deck.name, "-log", "log.liggghts"], folder, log="out.liggghts", seconds=600)
-    total, stepping = time.perf_counter() - begin, loop_seconds(folder / "log.liggghts")
+    startup = launcher.run("in.empty", folder, out="out.empty", seconds=120)
+    total = launcher.run(deck.name, folder, log=launcher.LOG, seconds=600)
+    stepping = loop_seconds(folder / launcher.LOG)
     return {"startup": startup, "setup": max(total - startup - stepping, 0.0), "stepping": stepping}
 
 
