@@ -20,7 +20,7 @@ from epdem.scenes.model import model
 from epdem.scenes.plan import plan
 from epdem.yade import scene_deck as yade
 from epdem.yade import scene_tables as yade_tables
-from epdem.yade.impacts import environment
+from epdem.yade.launcher import environment
 from epdem.yade.scenes import OUT
 
 CASES = Path(__file__).parents[2] / "cases"

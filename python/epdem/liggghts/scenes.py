@@ -6,7 +6,6 @@ from pathlib import Path
 
 import pandas as pd
 
-from ..errors import EngineError
 from ..scenes.engine import Resumed, Tell
 from ..scenes.plan import ScenePlan
 from . import launcher, resume, scene_deck
@@ -17,7 +16,8 @@ from .impacts import Liggghts
 class LiggghtsScenes:
     """LIGGGHTS with our models."""
 
-    name = "liggghts"
+    name = Liggghts.name
+    can = Liggghts.can
     subfolder = ""
     leftovers: tuple[str, ...] = (
         "particles.*.bin",
@@ -29,10 +29,8 @@ class LiggghtsScenes:
         "in.resume",
     )
 
-    def refuse(self, *, ranks: int, resume: bool) -> None:
-        if words := launcher.missing():
-            raise EngineError(words)
-        launcher.refuse_ranks(ranks)
+    def missing(self) -> str | None:
+        return launcher.missing()
 
     def version(self) -> str:
         return Liggghts().version()

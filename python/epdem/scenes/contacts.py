@@ -78,7 +78,7 @@ def _one_kind(
     """Contacts of one pair of materials and one R* [m]."""
     spec, E_star = pair_law(case, a, b)
     law = Law(spec.name, E_star=E_star, **spec.parameters)
-    theory = spec.declaration.backbone(E_star=E_star, R_star=R, parameters=spec.parameters)
+    theory = spec.backbone(E_star=E_star, R_star=R)
     largest = np.maximum(largest, overlap)
     force, _, _ = law.step(R_star=R, delta_max=largest, delta=overlap)
     _, dent, _, plastic = law.backbone(R_star=R, delta=largest)

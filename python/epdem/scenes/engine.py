@@ -8,6 +8,8 @@ from typing import Protocol
 
 import pandas as pd
 
+from ..errors import CaseError, EngineError
+from ..impacts.engine import Abilities
 from .plan import ScenePlan
 
 Tell = Callable[[int], None]  # the step of a row that was written
@@ -25,11 +27,12 @@ class SceneEngine(Protocol):
     """One way to run a scene."""
 
     name: str
+    can: Abilities
     subfolder: str  # of a case's results, where this engine puts its own if nothing else is asked for
     leftovers: tuple[str, ...]  # patterns of files that an earlier run may have left in the folder
 
-    def refuse(self, *, ranks: int, resume: bool) -> None:
-        """Raise CaseError for an option that the engine does not have, EngineError if it cannot run here."""
+    def missing(self) -> str | None:
+        """None if the engine can run here, else a sentence with the command that installs it."""
 
     def version(self) -> str:
         """One line: the engine's version."""
@@ -54,3 +57,18 @@ class SceneEngine(Protocol):
 
         Raises EngineError for any other frame that is missing or not whole.
         """
+
+
+def check_abilities(engine: SceneEngine, p: ScenePlan, *, ranks: int, resume: bool) -> None:
+    """Raise CaseError for what a run asks of an engine that cannot do it, EngineError if it is not here."""
+    kind, most = p.case.scene.kind, engine.can.ranks
+    if kind not in engine.can.scenes:
+        known = " and ".join(engine.can.scenes)
+        raise CaseError(f"scene.kind = {kind!r}: engine {engine.name} runs {known}; use another --engine")
+    if ranks > most:
+        what = "one core; leave it out" if most == 1 else f"{most} ranks at most here; use --ranks {most} or fewer"
+        raise CaseError(f"--ranks {ranks}: a scene in {engine.name} runs on {what}")
+    if resume and not engine.can.restarts:
+        raise CaseError(f"--resume: a scene in {engine.name} runs from its start; leave it out")
+    if words := engine.missing():
+        raise EngineError(words)

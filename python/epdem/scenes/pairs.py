@@ -7,7 +7,7 @@ from ..case.law import law_numbers, read_number
 from ..case.scene import SceneCase
 from ..errors import CaseError
 from ..impacts.experiment import Body, Experiment, plane, sphere
-from ..laws.strengths import LawNumbers, LawSpec
+from ..laws.strengths import LawNumbers, LawSpec, law_named
 from ..theory.pair import E_star
 
 
@@ -22,7 +22,7 @@ def strengths(case: SceneCase) -> dict[str, float]:
     A material's own key, else what the law says for all.
     """
     law = numbers(case)
-    strength = law.declaration.strength
+    strength = law_named(law.name).strength
     found = {}
     for name, material in case.materials.items():
         extra = dict(material.model_extra or {})

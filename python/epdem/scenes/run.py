@@ -18,7 +18,7 @@ from ..folders import Results, claim
 from ..impacts.prediction import predict
 from ..stages import inputs_hash
 from . import checks, ledger, results
-from .engine import Resumed, SceneEngine, Tell
+from .engine import Resumed, SceneEngine, Tell, check_abilities
 from .pairs import wall_impact
 from .plan import ScenePlan, plan
 from .timestep import highest_speed
@@ -103,8 +103,8 @@ def run(
     """
     with named(path):
         p = plan(load(path))
+        check_abilities(engine, p, ranks=ranks, resume=resume)
         files, notes = engine.files(p), [*engine.notes(p), *_warnings(p.case)]
-    engine.refuse(ranks=ranks, resume=resume)
     work = _Work(Path(path), p, engine, files, notes, ranks, lambda step: tell(step, p.steps))
     folder = out or Path("runs") / p.case.name / engine.subfolder
     if resume and not folder.exists():

@@ -10,14 +10,16 @@ from ..errors import CaseError
 from ..scenes import placement
 from ..scenes.kinds import Block, Plane
 from ..scenes.plan import ScenePlan
+from .deck import Material
 from .deck_modules import cone
 from .deck_modules.law import LAWS
-from .impacts import Material, deck_modules
+from .impacts import Yade
+from .launcher import deck_modules
 
 Square = tuple[tuple[float, ...], ...]
 SCRIPT, SPHERES = "scene.py", "spheres.txt"
 SKIN = 0.25  # of the smallest radius: few sortings and few idle neighbours
-KINDS = ("settle", "compaction")
+KINDS = Yade.can.scenes
 NO_DASHPOT = "contact.tangential_restitution: YADE's law has no dashpot, it was left out"
 
 

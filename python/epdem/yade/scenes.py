@@ -6,13 +6,14 @@ from pathlib import Path
 
 import pandas as pd
 
-from ..errors import CaseError, EngineError
+from ..errors import CaseError
 from ..processes import call
 from ..scenes.engine import Resumed, Tell
 from ..scenes.plan import ScenePlan
 from . import scene_deck
 from . import scene_tables as tables
-from .impacts import Yade, command, environment
+from .impacts import Yade
+from .launcher import command, environment
 
 OUT = "out.yade"
 
@@ -20,17 +21,13 @@ OUT = "out.yade"
 class YadeScenes:
     """YADE with our laws; a run begins at its start and has one core."""
 
-    name = "yade"
+    name = Yade.name
+    can = Yade.can
     subfolder = "yade"
     leftovers: tuple[str, ...] = ("particles.*.npy", "contacts.*.npy")
 
-    def refuse(self, *, ranks: int, resume: bool) -> None:
-        if ranks > 1:
-            raise CaseError(f"--ranks {ranks}: a scene in YADE runs on one core; leave it out")
-        if resume:
-            raise CaseError("--resume: a scene in YADE runs from its start; leave it out")
-        if words := Yade().missing():
-            raise EngineError(words)
+    def missing(self) -> str | None:
+        return Yade().missing()
 
     def version(self) -> str:
         return Yade().version()
