@@ -77,10 +77,13 @@ EPDEM_INLINE Three sliding_spring(const Contact& c, Lanes friction, bool damped,
   const Three spring = -(c.kt * stretch);
   const Lanes most = friction * fabs(c.Fn), pull = c.kt * magnitude(stretch);
   const auto slides = pull > most;
-  const Three slipping = (most / pull) * spring;
-  const Three sticking = damped ? spring - c.gammat * c.vtr : spring;
-  stretch = select(slides, -slipping / c.kt, stretch);
-  return select(slides, slipping, sticking);
+  Three force = damped ? spring - c.gammat * c.vtr : spring;
+  if (any(slides)) {  // four divisions
+    const Three slipping = (most / pull) * spring;
+    stretch = select(slides, (-slipping) / c.kt, stretch);
+    force = select(slides, slipping, force);
+  }
+  return force;
 }
 
 /// rolling_friction cdt: the torque on j.
