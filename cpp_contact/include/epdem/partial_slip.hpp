@@ -118,20 +118,13 @@ inline std::enable_if_t<std::is_arithmetic_v<T>, T> select(bool condition, T yes
   return condition ? yes : no;
 }
 
-template <class Mask, class T>
-inline Vec<T> select(const Mask& condition, const Vec<T>& yes) noexcept {
-  const T zero(0.0);
-  return {select(condition, yes.x, zero), select(condition, yes.y, zero), select(condition, yes.z, zero)};
-}
-
 /// Load of the line at the nodes, in units of load/(2 a sum w q): (1-tau) of Hertz's half-ellipse and tau of uniform
 /// pressure, less the rigid punches between radius_max and radius (Mesarovic and Johnson 2000, eq. 8.82).
 template <int N, class T>
-inline void line_load(const Pressed<T>& now, T* q) noexcept {
+inline void line_load(const Pressed<T>& now, const T& tiny, T* q) noexcept {
   using std::max;
-  using std::min;
   using std::sqrt;
-  const T b = min(now.radius / max(now.radius_max, now.radius), T(1.0)), rest = sqrt(max(T(1.0) - b * b, T(0.0)));
+  const T b = now.radius / max(max(now.radius_max, now.radius), tiny), rest = sqrt(T(1.0) - b * b);
   T sum(0.0);
   for (int i = 0; i < N; ++i) {
     const double xi = Lobatto<N>::node[i];
@@ -162,12 +155,12 @@ inline SlipStep<N, T> partial_slip(const SlipState<N, T>& before, const Pressed<
   const T zero(0.0), one(1.0), tiny(std::numeric_limits<double>::min());
   const Vec<T>& n = motion.normal;
   const auto pressed = min(now.load, now.radius) > zero;
-  const T unit = stiffness * now.radius;  // [N/m] of force per stretch
+  const T radius = select(pressed, now.radius, zero), unit = stiffness * radius;  // [m], [N/m] of force per stretch
 
-  T limit[N];  // of the stretch at the nodes
-  const T scale = mu * now.load / unit;
+  T limit[N];  // of the stretch at the nodes; 0 without load, and then the stretch and the force are 0 as well
+  const T scale = select(pressed, mu * now.load / unit, zero);
   if constexpr (Flattens) {
-    detail::line_load<N>(now, limit);
+    detail::line_load<N>(now, tiny, limit);
     for (int i = 0; i < N; ++i) limit[i] = scale * limit[i];
   } else {
     for (int i = 0; i < N; ++i) limit[i] = scale * T(1.5 * (1.0 - Rule::node[i] * Rule::node[i]));
@@ -175,30 +168,33 @@ inline SlipStep<N, T> partial_slip(const SlipState<N, T>& before, const Pressed<
   // rotation about the normal by `turn` (Cayley: exactly orthogonal)
   const T half = T(0.5) * motion.turn, share = one / (one + half * half);
   const T cosine = (one - half * half) * share, sine = motion.turn * share;
-  const T ratio = now.radius / max(before.radius, tiny);
+  const T ratio = radius / max(before.radius, tiny);
   T drag(0.0);
-  if constexpr (Damped) drag = motion.damping / (unit * T(Rule::total));
+  if constexpr (Damped) drag = select(pressed, motion.damping / (unit * T(Rule::total)), zero);
 
-  SlipStep<N, T> out{{zero, zero, zero}, {{}, select(pressed, now.radius, zero)}, zero};
+  Vec<T> c[N];  // of the old profile
+  for (int k = 0; k < N; ++k) {
+    c[k] = T(Rule::profile[k][0]) * before.stretch[0];
+    for (int j = 1; j < N; ++j) c[k] = c[k] + T(Rule::profile[k][j]) * before.stretch[j];
+  }
+
+  SlipStep<N, T> out{{zero, zero, zero}, {{}, radius}, zero};
   Vec<T> elastic{zero, zero, zero};
   for (int i = 0; i < N; ++i) {
     // the stretch stays where the material is: at the node it is that of ratio xi in the old circle, 0 beyond its rim
     const T old = ratio * T(Rule::node[i]), z = min(old * old, one);
-    Vec<T> s{zero, zero, zero};
-    for (int j = 0; j < N; ++j) {
-      T part = T(Rule::profile[N - 1][j]);
-      for (int k = N - 2; k >= 0; --k) part = part * z + T(Rule::profile[k][j]);
-      s = s + ((one - z) * part) * before.stretch[j];
-    }
+    Vec<T> s = c[N - 1];
+    for (int k = N - 2; k >= 0; --k) s = z * s + c[k];
+    s = (one - z) * s;
     // it turns with the contact and keeps its length; the series of 1/sqrt(1-e) stays below it
     const T out_of_plane = dot(n, s), e = out_of_plane * out_of_plane / max(dot(s, s), tiny);
-    s = (one + e * (T(0.5) + T(0.375) * e)) * (s - out_of_plane * n);
-    s = cosine * s + sine * cross(n, s) + motion.slip;
+    const T length = one + e * (T(0.5) + T(0.375) * e);
+    s = (length * cosine) * (s - out_of_plane * n) + (length * sine) * cross(n, s) + motion.slip;
 
     const T held = limit[i] / max(max(sqrt(dot(s, s)), limit[i]), tiny);
     const T weight = T(Rule::weight[i]) * unit;
     s = held * s;
-    out.after.stretch[i] = select(pressed, s);
+    out.after.stretch[i] = s;
     elastic = elastic - weight * s;
     if constexpr (Damped) {
       const Vec<T> whole = s + drag * motion.slip;
@@ -207,9 +203,8 @@ inline SlipStep<N, T> partial_slip(const SlipState<N, T>& before, const Pressed<
     }
   }
   if constexpr (!Damped) out.force = elastic;
-  out.force = select(pressed, out.force);
   // the mean of both ends' forces does the work, as in velocity Verlet; that of the dashpot is known at this end only
-  const Vec<T> mean = T(0.5) * (out.force + out.force - select(pressed, elastic) + slip_force(before, stiffness));
+  const Vec<T> mean = T(0.5) * (out.force + out.force - elastic + slip_force(before, stiffness));
   out.dissipated = slip_energy(before, stiffness) - slip_energy(out.after, stiffness) - dot(mean, motion.slip);
   return out;
 }
