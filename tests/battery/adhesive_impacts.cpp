@@ -2,7 +2,8 @@
 // The adhesive laws behind a pipe: one line in, one line out. Built and run by adhesive.py beside this file.
 //
 // impact LAW E* R* Gamma p_y m* V dt gap steps   -> rebound speed (0: still attached after `steps`), largest force, largest
-//                                                   overlap, smallest force, overlap and step of the last attached sample
+//                                                   overlap, smallest force but in the step of touch, overlap and step of
+//                                                   the last attached sample
 // path LAW E* R* Gamma p_y n overlap_1 ...       -> force and radius at each of prescribed overlaps, closing speed 0
 // hertz|thornton E* R* p_y n overlap_1 ...       -> the same by the laws without adhesion
 #include <cstdio>
@@ -34,7 +35,7 @@ void impact(const Law& law, double R_star) {
     memory = now.after;
     if (now.radius > 0.0) {
       most = std::max(most, force);
-      least = std::min(least, force);
+      if (end >= 0) least = std::min(least, force);
       deepest = std::max(deepest, alpha);
       last = alpha;
       end = n;

@@ -72,7 +72,7 @@ inline adhesive::Step<T, typename ThorntonNing<T>::Memory> step(const ThorntonNi
                                                                 const typename ThorntonNing<T>::Memory& before, T delta,
                                                                 T closing) noexcept {
   using namespace adhesive;
-  const T zero(0.0), y_m = before.y_max, y_m3 = y_m * y_m * y_m;
+  const T zero{}, y_m = before.y_max, y_m3 = y_m * y_m * y_m;
   const auto stood = before.root > 0.0, known = (y_m > 0.0) & (stood | (delta > 0.0));
   const auto dented = known & law.yields(R_star, y_m);
   const T R = select(dented, before.R_open, R_star), top = select(known, before.delta_max, zero);
