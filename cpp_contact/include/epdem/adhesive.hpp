@@ -33,7 +33,6 @@ struct Step {
   Memory after;
 };
 
-inline constexpr real reach = 3.0;  // in d alpha of the fold/4: as far as its root is followed
 inline constexpr real fold_share = 0.62996052494743658;  // y_f in (c R)^(1/3): 4^(-1/3)
 
 /// (c R)^(1/3), the root of a contact; `known` is it already unless R has changed, or 0.
@@ -85,8 +84,8 @@ inline T on_parting(T E_star, T pull, T R, T y_f, T beyond, T closing) noexcept 
   using std::sqrt;
   const T h = max(-closing, T{} + std::numeric_limits<real>::min()), share = max(1.0 - beyond / h, T{});
   const T rest = -0.20768371 + share * (-0.73462635 + share * (-0.30379973 + share * 0.03838347));
-  const T f4 = y_f * y_f * y_f * y_f, bend = 16.0 / sqrt(6.0) * E_star * f4, range = min(h / R, f4 / (R * R) * reach);
-  const T F = -5.0 / 6.0 * pull * R * (share - 0.5) + bend * sqrt(range) * (sqrt(share) + rest);
+  const T bend = 16.0 / sqrt(6.0) * E_star * y_f * y_f * y_f * y_f;
+  const T F = -5.0 / 6.0 * pull * R * (share - 0.5) + bend * sqrt(h / R) * (sqrt(share) + rest);
   return select(beyond < 2.0 * h, F, T{});
 }
 
