@@ -6,9 +6,9 @@ from pathlib import Path
 from typing import Annotated
 
 import typer
-from rich.console import Console
 
-from .options import AsJson, CasePath, Engines, Laws, Out, console
+from ..terminal import console, status
+from .options import AsJson, CasePath, Engines, Laws, Out, laws_or_own
 
 
 def timestep(
@@ -18,15 +18,16 @@ def timestep(
     as_json: AsJson = False,
 ) -> None:
     """The time step of a case for a target error, found by running the embedded engine."""
-    from ..case.impact import load
+    from ..case.impact import load, named
     from ..impacts.experiment import experiment
     from ..impacts.prediction import predict
     from ..impacts.timestep import search
 
     found = []
-    for name in law or [None]:
-        x = experiment(load(case), name)
-        found.append((x, search(x, predict(x), error)))
+    for name in laws_or_own(law):
+        with named(case):
+            x = experiment(load(case), name)
+            found.append((x, search(x, predict(x), error)))
     if as_json:
         documents = [
             {
@@ -59,7 +60,7 @@ def stability(
     law: Laws = None,
     group: Annotated[list[str] | None, typer.Option("--group", "-g", help="only these groups of cases")] = None,
     every: Annotated[int, typer.Option(min=1, help="only every n-th case")] = 1,
-    steps: Annotated[int, typer.Option(min=1000, help="steps of the drift by repeated bounces")] = 10**9,
+    steps: Annotated[int | None, typer.Option(min=1000, help="of the drift by repeated bounces (default: 1e9)")] = None,
     out: Annotated[Path | None, typer.Option("--out", "-o", help="CSV file of all verdicts")] = None,
     docs: Annotated[Path | None, typer.Option("--docs", help="write the page of the documentation there")] = None,
     as_json: AsJson = False,
@@ -73,9 +74,9 @@ def stability(
     from ..studies.stability.document import document, table
     from ..studies.stability.suite import summary
 
-    with Console(stderr=True).status("") as line:
+    with status() as progress:
         outcome = suite.run(
-            engine or ["embedded"], law or [], groups=group, every=every, steps=steps, progress=line.update
+            engine or ["embedded"], law or [], groups=group, every=every, steps=steps, progress=progress
         )
     if out:
         with atomic(out) as temporary:
@@ -100,7 +101,7 @@ def stability(
         screen = console()
         screen.print(table("extreme cases; steps as shares of the stability limit", summary(outcome.verdicts)))
         for v in outcome.verdicts[outcome.verdicts["status"] == "failed"].itertuples():
-            screen.print(f"failed: {v.engine}, {v.law}, {v.case}: {v.reason}", style="red", highlight=False)
+            screen.print(f"failed: {v.engine}, {v.law}, {v.case}: {v.reason}", style="red")
         if not outcome.bulk.empty:
             screen.print(table("stiff bulk scenes in LIGGGHTS", outcome.bulk))
     raise typer.Exit(0 if outcome.passed else 1)
@@ -125,18 +126,18 @@ def cost(
     from ..studies import cost_report
 
     scene = None
-    with Console(stderr=True).status("") as line:
+    with status() as progress:
         outcome = study.run(
             case,
             engines=engine or ["embedded", "liggghts"],
             laws=law or [],
             repetitions=repetitions,
-            progress=line.update,
+            progress=progress,
         )
         if bulk:
             from ..studies.stability import bulk_cost
 
-            scene = bulk_cost.run(law or [outcome.case.law.name], progress=line.update)
+            scene = bulk_cost.run(law or [outcome.case.law.name], progress=progress)
     folder = out or Path("runs") / outcome.case.name / "cost"
     files = cost_report.write(outcome, folder)
     if docs:

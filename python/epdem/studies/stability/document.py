@@ -5,6 +5,7 @@ import numpy as np
 import pandas as pd
 from rich.table import Table
 
+from ... import terminal
 from .cases import extremes
 from .repeats import BOUNCE_SHARE, DRIFT, FORCE
 from .roundoff import FORMULA
@@ -40,9 +41,7 @@ def limits(verdicts: pd.DataFrame) -> pd.DataFrame:
 
 def table(title: str, frame: pd.DataFrame) -> Table:
     """A frame for the terminal; long headings wrap."""
-    shown = Table(title=title)
-    for k, name in enumerate(frame.columns):
-        shown.add_column(str(name), justify="right", min_width=6, no_wrap=k == 0)
+    shown = terminal.table(title, map(str, frame.columns), wrap=True)
     for row in frame.itertuples(index=False):
         shown.add_row(*map(cell, row))
     return shown
