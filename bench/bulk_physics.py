@@ -19,7 +19,7 @@ import numpy as np
 
 from epdem.case.impact import read_toml
 from epdem.case.scene import parse
-from epdem.liggghts import running as progress
+from epdem.liggghts import launcher
 from epdem.liggghts import scene_deck as deck
 from epdem.liggghts import scene_tables as tables
 
@@ -65,7 +65,7 @@ def flow(outlet: float, count: int, width: float, folder: Path, angle: float = 9
     case = parse(scene(outlet, count, width, angle))
     found = deck.deck(case)
     deck.write(case, folder)
-    progress.run("in.scene", folder)
+    launcher.run("in.scene", folder)
     spheres = tables.particles(folder, found)
     steps = np.sort(spheres["step"].unique())
     below = spheres[spheres["z"] < found.motion["outlet"]].groupby("step")["mass"]

@@ -9,17 +9,13 @@ files, so that what else the machine does hits both, and the shortest time count
 """
 
 import argparse
-import re
 import shutil
-import subprocess
 import tempfile
 from pathlib import Path
 
-from epdem import paths
 from epdem.case import scene as scenes
 from epdem.case.impact import read_toml
-from epdem.liggghts import resume
-from epdem.liggghts import running as progress
+from epdem.liggghts import launcher, log, resume
 from epdem.liggghts import scene_deck as deck
 from epdem.scenes.model import model
 
@@ -43,12 +39,10 @@ def full(data: dict) -> dict:
 
 def loop_seconds(folder: Path, name: str) -> float:
     """Seconds per step in LIGGGHTS's loops; a scene's output stays in its folder, for the deck that continues it."""
-    command = [str(paths.launcher()), "-in", name, "-log", "none"]
-    done = subprocess.run(command, cwd=folder, capture_output=True, check=True)
-    if name == "in.scene":
-        (folder / progress.OUT).write_bytes(done.stdout)
-    loops = re.findall(r"Loop time of (\S+) on \d+ procs for (\d+) steps", done.stdout.decode(errors="replace"))
-    return sum(float(t) for t, _ in loops) / max(1, sum(int(n) for _, n in loops))
+    out = launcher.OUT if name == "in.scene" else "out.resume"
+    launcher.run(name, folder, out=out)
+    loops = log.loops(folder / out)
+    return sum(t for t, _ in loops) / max(1, sum(n for _, n in loops))
 
 
 def lines(folder: Path) -> int:

@@ -10,15 +10,12 @@ take turns; the four of them need about a quarter of an hour on two cores.
 
 import argparse
 import json
-import os
 import re
-import subprocess
 import tempfile
 import threading
-import time
 from pathlib import Path
 
-from epdem import paths
+from epdem.liggghts import launcher
 
 DIAMETER, DENSITY, PRESS = 2e-3, 2500.0, 2e-3
 DECK = """units si
@@ -102,10 +99,6 @@ def engines(folder: Path) -> list[int]:
 def measure(model: str, ranks: int, cells: int, steps: int, folder: Path) -> dict:
     """One run: seconds per step in the loop, peak memory."""
     (folder / "in.million").write_text(deck(model, cells, steps))
-    command = [str(paths.launcher()), "-in", "in.million", "-log", "none"]
-    if ranks > 1:
-        root = ["--allow-run-as-root"] if os.geteuid() == 0 else []
-        command = ["mpirun", "-np", str(ranks), "--oversubscribe", *root, *command]
     memory, done = [0], threading.Event()
 
     def watch() -> None:
@@ -114,15 +107,14 @@ def measure(model: str, ranks: int, cells: int, steps: int, folder: Path) -> dic
 
     thread = threading.Thread(target=watch, daemon=True)
     thread.start()
-    start = time.perf_counter()
     try:
-        out = subprocess.run(command, cwd=folder, capture_output=True, check=False)
+        wall = launcher.run("in.million", folder, ranks=ranks)
     finally:
         done.set()
         thread.join()
-    text = out.stdout.decode(errors="replace")
+    text = (folder / launcher.OUT).read_text(errors="replace")
     loop = re.search(r"Loop time of (\S+) on \d+ procs for (\d+) steps with (\d+) atoms", text)
-    if out.returncode or loop is None:
+    if loop is None:
         raise SystemExit(f"{model}, {ranks} ranks: LIGGGHTS failed: {text[-500:]}")
     atoms, taken = int(loop.group(3)), int(loop.group(2))
     return {
@@ -132,7 +124,7 @@ def measure(model: str, ranks: int, cells: int, steps: int, folder: Path) -> dic
         "steps": taken,
         "seconds_per_step": float(loop.group(1)) / taken,
         "bytes_per_sphere": memory[0] / atoms,
-        "wall_seconds": time.perf_counter() - start,
+        "wall_seconds": wall,
     }
 
 

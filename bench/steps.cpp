@@ -55,7 +55,7 @@ double impacts(const Law& law) {
     std::int64_t steps = 0;
     const double start = now();
     for (int k = 0; k < 200; ++k) {
-      const ImpactOutput out = impact(law, {R_star, m_star, 0.5 + 0.1 * k, 2e-7, 1e-9, 100000, 0.0}, {});
+      const auto out = impact(law, {R_star, m_star, 0.5 + 0.1 * k, 2e-7, 1e-9, 100000, 0.0}, {});
       steps += out.steps;
       sink += out.rebound_speed;
     }
@@ -76,23 +76,23 @@ void measure(const char* name, const double* parameter) {
 }
 
 /// As unload<true>, with the segment function as libm has it.
-Point unload_by_libm(const Point& peak, real delta_max, real delta) {
-  const real w = (delta_max - delta) * (E_star * peak.radius / peak.force);
-  const real tau = peak.flatness, A = 0.75 * (1.0 - tau), B = 2.0 / pi * tau;
-  const real S = B + std::sqrt(B * B + 4.0 * A * w), u = (S - 2.0 * w) / S;
+Point<double> unload_by_libm(const Point<double>& peak, double delta_max, double delta) {
+  const double w = (delta_max - delta) * (E_star * peak.radius / peak.force);
+  const double tau = peak.flatness, A = 0.75 * (1.0 - tau), B = 2.0 / pi * tau;
+  const double S = B + std::sqrt(B * B + 4.0 * A * w), u = (S - 2.0 * w) / S;
   if (!(u > 0.0)) return {0.0, 0.0, tau};
-  const real y = 1.0 - u, disc = u * (2.0 - u), root = std::sqrt(disc);
+  const double y = 1.0 - u, disc = u * (2.0 - u), root = std::sqrt(disc);
   return {peak.force * ((1.0 - tau) * disc * root + B * (std::acos(y) - y * root)), peak.radius * root, tau};
 }
 
-Point unload_by_polynomial(const Point& peak, real delta_max, real delta) {
+Point<double> unload_by_polynomial(const Point<double>& peak, double delta_max, double delta) {
   return unload<true>(E_star, peak, delta_max, delta);
 }
 
 /// One step of `cavity` with or without the values at the peak in memory; the rest is the same.
-template <bool keeps, Point (*below)(const Point&, real, real)>
-double choice(const Cavity& law) {
-  return prescribed<Peak>([&](Peak& s, double delta) {
+template <bool keeps, Point<double> (*below)(const Point<double>&, double, double)>
+double choice(const Cavity<double>& law) {
+  return prescribed<Peak<double>>([&](Peak<double>& s, double delta) {
     if (delta >= s.delta_max || s.delta_max <= law.elastic_overlap(R_star)) {
       const auto at = step(law, R_star, s, delta);
       s.delta_max = at.after.delta_max;
@@ -104,7 +104,7 @@ double choice(const Cavity& law) {
 }
 
 void choices(const double* parameter) {
-  const Cavity law(E_star, parameter);
+  const Cavity<double> law(E_star, parameter);
   std::printf("choice keep+polynomial %.2f\n", choice<true, unload_by_polynomial>(law));
   std::printf("choice keep+acos %.2f\n", choice<true, unload_by_libm>(law));
   std::printf("choice recompute+polynomial %.2f\n", choice<false, unload_by_polynomial>(law));
@@ -153,10 +153,10 @@ void segment_choice(const char* name, const F& f) {
 
 int main() {
   const double pressure[] = {2.8e9}, cavity[] = {1e9, 1.6, 2.8}, none[] = {0.0};
-  measure<Hertz>("hertz", none);
-  measure<Thornton>("thornton", pressure);
-  measure<Johnson>("johnson", pressure);
-  measure<Cavity>("cavity", cavity);
+  measure<Hertz<double>>("hertz", none);
+  measure<Thornton<double>>("thornton", pressure);
+  measure<Johnson<double>>("johnson", pressure);
+  measure<Cavity<double>>("cavity", cavity);
   choices(cavity);
   segment_choice("polynomial", [](double u) { return u * std::sqrt(u) * detail::segment(u); });
   segment_choice("quotient", [](double u) { return u * std::sqrt(u) * quotient(u); });

@@ -16,6 +16,7 @@ from pathlib import Path
 import numpy as np
 
 from epdem.laws import library as claw
+from epdem.laws.native import Law
 
 ROOT = Path(__file__).resolve().parent.parent
 E_STAR, R_STAR, MASS = 1.14e11, 0.01, 0.033
@@ -25,7 +26,7 @@ STRENGTH = {"yield_pressure": 2.8e9, "yield_stress": 1e9}
 def batch(name: str, passes: int = 12) -> float:
     """ns per step of 256 impacts in one call of the C interface, no samples kept."""
     info = claw.laws()[name].parameters
-    law = claw.Law(name, E_star=E_STAR, **{p.name: STRENGTH[p.name] for p in info if p.unit == "Pa"})
+    law = Law(name, E_star=E_STAR, **{p.name: STRENGTH[p.name] for p in info if p.unit == "Pa"})
     numbers = {"R_star": R_STAR, "m_star": MASS, "speed": np.geomspace(0.1, 100, 256), "time_step": 2e-7, "gap": 1e-9}
     best = np.inf
     for _ in range(passes):

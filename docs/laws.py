@@ -47,7 +47,7 @@ def liggghts(x) -> tuple[np.ndarray, float]:
     with tempfile.TemporaryDirectory() as folder:
         tool.write(p, Path(folder))
         table = impacts_table(p, measure(p, tool.run(p, Path(folder))))
-    rows = compare("liggghts", x.law.name, table, prediction, x.case.check)
+    rows = compare("liggghts", x.law.name, table, prediction, x.check)
     return rows["e_n"].to_numpy(), float(rows["e_n_error"].max())
 
 

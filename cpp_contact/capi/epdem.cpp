@@ -28,8 +28,12 @@ struct LawInfo {
   int memory;
 };
 
-#define EPDEM_INFO(Class)                                                                                       \
-  {Class::name, Class::id, Class::n_parameters, Class::parameters, Class::strength, Class::default_ratio, memory<Class>},
+template <class Law>
+constexpr LawInfo info() {
+  return {Law::name, Law::id, Law::n_parameters, Law::parameters, Law::strength, Law::default_ratio, memory<Law>};
+}
+
+#define EPDEM_INFO(Class) info<Class<double>>(),
 const LawInfo laws[] = {EPDEM_LAWS(EPDEM_INFO)};
 #undef EPDEM_INFO
 constexpr int n_laws = int(sizeof(laws) / sizeof(laws[0]));
@@ -56,10 +60,10 @@ template <class Body>
 int with_law(int index, double E_star, const double* parameters, const Body& body) {
   if (const int status = check(index, E_star, parameters)) return status;
   int i = 0;
-#define EPDEM_CASE(Class)                                        \
-  if (index == i++) {                                            \
-    if (!Class::valid(parameters)) return EPDEM_BAD_PARAMETER;   \
-    return body(Class(E_star, parameters));                      \
+#define EPDEM_CASE(Class)                                              \
+  if (index == i++) {                                                  \
+    if (!Class<double>::valid(parameters)) return EPDEM_BAD_PARAMETER; \
+    return body(Class<double>(E_star, parameters));                    \
   }
   EPDEM_LAWS(EPDEM_CASE)
 #undef EPDEM_CASE
@@ -71,16 +75,16 @@ bool sane(const epdem_impact_input& c) {
          std::isfinite(c.gap) && c.steps >= 0 && std::isfinite(c.viscous) && c.viscous >= 0.0;
 }
 
-ImpactInput input(const epdem_impact_input& c) {
+ImpactInput<double> input(const epdem_impact_input& c) {
   return {c.R_star, c.m_star, c.speed, c.time_step, c.gap, c.steps, c.viscous};
 }
 
-epdem_impact_output output(const ImpactOutput& o) {
+epdem_impact_output output(const ImpactOutput<double>& o) {
   return {o.rebound_speed, o.force_max, o.overlap_max, o.last_overlap, o.first, o.last, o.steps};
 }
 
-static_assert(sizeof(epdem_impact_input) == sizeof(ImpactInput), "the C struct mirrors the C++ one");
-static_assert(sizeof(epdem_impact_output) == sizeof(ImpactOutput), "the C struct mirrors the C++ one");
+static_assert(sizeof(epdem_impact_input) == sizeof(ImpactInput<double>), "the C struct mirrors the C++ one");
+static_assert(sizeof(epdem_impact_output) == sizeof(ImpactOutput<double>), "the C struct mirrors the C++ one");
 
 }  // namespace
 
@@ -171,7 +175,7 @@ EPDEM_EXPORT int epdem_impacts(int law, double E_star, const double* parameters,
   }
   return with_law(law, E_star, parameters, [&](const auto& l) {
     for (size_t i = 0; i < n; ++i) {
-      const Path path{overlap ? overlap + i * stride : nullptr, force ? force + i * stride : nullptr,
+      const Path<double> path{overlap ? overlap + i * stride : nullptr, force ? force + i * stride : nullptr,
                       velocity ? velocity + i * stride : nullptr};
       out[i] = output(impact(l, input(in[i]), path));
     }

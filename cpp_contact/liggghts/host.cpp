@@ -46,7 +46,7 @@ void greet(LAMMPS_NS::LAMMPS* lmp) {
 
 std::string model_names() {
   std::string names;
-#define EPDEM_NAME(Class) names += " " + model_name<Class>();
+#define EPDEM_NAME(Class) names += " " + model_name<Class<double>>();
   EPDEM_LAWS(EPDEM_NAME)
 #undef EPDEM_NAME
   return names;

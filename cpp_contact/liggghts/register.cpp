@@ -141,7 +141,7 @@ void add_law() {
 bool unknown_name(const std::string& name) {
   if (name.compare(0, 2, "ep") != 0) return false;
 #define EPDEM_KNOWN(Class) \
-  if (name == model_name<Class>()) return false;
+  if (name == model_name<Class<double>>()) return false;
   EPDEM_LAWS(EPDEM_KNOWN)
 #undef EPDEM_KNOWN
   return true;
@@ -149,7 +149,7 @@ bool unknown_name(const std::string& name) {
 
 const struct Registration {
   Registration() {
-#define EPDEM_ADD(Class) add_law<Class>();
+#define EPDEM_ADD(Class) add_law<Class<double>>();
     EPDEM_LAWS(EPDEM_ADD)
 #undef EPDEM_ADD
     add_refusal({unknown_law, TANGENTIAL_OFF, COHESION_OFF, ROLLING_OFF, SURFACE_DEFAULT});

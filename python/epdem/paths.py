@@ -36,7 +36,7 @@ def templates() -> Path:
 def launcher() -> Path | None:
     """`epdem-liggghts`: LIGGGHTS with our models, or None if it was not built; EPDEM_LAUNCHER names another one."""
     if named := os.environ.get("EPDEM_LAUNCHER"):
-        return Path(named)
+        return Path(named).absolute()
     beside = Path(sys.executable).parent / "epdem-liggghts"
     if beside.exists():
         return beside

@@ -1,12 +1,26 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Other programs: started, watched and stopped, with their last words when they fail."""
+"""Other programs: started, watched and stopped, with their last words when they fail; none outlives us."""
 
+import contextlib
+import ctypes
+import math
 import os
+import re
 import signal
 import subprocess
+import tempfile
+import time
+from collections.abc import Callable
 from pathlib import Path
 
 from .errors import EngineError
+
+# A row of a table of numbers that begins with the number of a step: how engines say how far they are.
+ROW = re.compile(rb"^ +(\d+)( +[-+.\deainf]+)+ *$")
+POLL = 0.1  # [s] between two looks at a log that is read while it grows
+PATIENCE = 5.0  # [s] for each of SIGTERM and SIGKILL
+_PR_SET_PDEATHSIG = 1
+_libc = ctypes.CDLL(None)
 
 
 def last_words(log: Path, lines: int = 3) -> str:
@@ -18,10 +32,26 @@ def last_words(log: Path, lines: int = 3) -> str:
     return errors[-1] if errors else " | ".join(text[-lines:])
 
 
-def call(command: list[str], folder: Path, *, log: str, seconds: float, env: dict[str, str] | None = None) -> None:
-    """Run `command` in `folder`, both streams into `log`. Raises EngineError if it fails, hangs or is not there."""
-    path = folder / log
-    with path.open("wb") as stream:
+def call(
+    command: list[str],
+    folder: Path,
+    *,
+    log: str,
+    seconds: float | None = None,
+    env: dict[str, str] | None = None,
+    append: bool = False,
+    tell: Callable[[int], None] | None = None,
+) -> float:
+    """Run `command` in `folder` to its end, both streams into `log` (continued with `append`); seconds taken.
+
+    `tell` is given the step of every row (ROW) of the log. Raises EngineError with the program's last words if it
+    fails, takes more than `seconds` or is not there. On any exception, Ctrl-C too, the program and all that it started
+    are stopped first; what they wrote stays. If this process itself is killed, the program gets SIGTERM.
+    """
+    path, start = folder / log, time.monotonic()
+    end = math.inf if seconds is None else start + seconds
+    with path.open("ab" if append else "wb") as stream, path.open("rb") as reader:
+        reader.seek(0, os.SEEK_END)
         try:
             process = subprocess.Popen(
                 command,
@@ -31,43 +61,91 @@ def call(command: list[str], folder: Path, *, log: str, seconds: float, env: dic
                 stderr=subprocess.STDOUT,
                 env=env,
                 start_new_session=True,
+                preexec_fn=_end_with_parent,
             )
         except OSError as error:
             raise EngineError(f"{command[0]}: cannot be started ({error})") from None
+        rows = _Rows(tell)
         try:
-            status = process.wait(timeout=seconds)
-        except BaseException as error:  # a time-out or Ctrl-C: no orphan stays behind
+            while process.poll() is None:
+                left = end - time.monotonic()
+                if left <= 0.0:
+                    words = last_words(path)
+                    raise EngineError(f"{command[0]} did not end within {seconds:g} s and was stopped; {path}: {words}")
+                with contextlib.suppress(subprocess.TimeoutExpired):
+                    process.wait(timeout=None if tell is None and left == math.inf else min(left, POLL))
+                rows.read(reader.read() if tell else b"")
+            rows.read(reader.read() if tell else b"")
+        except BaseException:  # a time-out, Ctrl-C or the caller's own: no orphan stays behind
             kill(process)
-            if isinstance(error, subprocess.TimeoutExpired):
-                words = last_words(path)
-                raise EngineError(
-                    f"{command[0]} did not end within {seconds:g} s and was stopped; {path}: {words}"
-                ) from None
             raise
-    if status:
+    if status := process.returncode:
         how = f"signal {-status}" if status < 0 else f"exit code {status}"
         raise EngineError(f"{command[0]} failed ({how}); {path}: {last_words(path)}")
+    return time.monotonic() - start
+
+
+class _Rows:
+    """The steps of the rows in a text that comes in pieces."""
+
+    def __init__(self, tell: Callable[[int], None] | None):
+        self.tell, self.rest = tell, b""
+
+    def read(self, piece: bytes) -> None:
+        *lines, self.rest = (self.rest + piece).split(b"\n")
+        for line in lines:
+            if self.tell and (found := ROW.match(line)):
+                self.tell(int(found.group(1)))
 
 
 def ask(command: list[str], env: dict[str, str] | None = None) -> str:
-    """What a program says of itself, on both streams. Raises EngineError if it cannot be started or does not end."""
-    try:
-        done = subprocess.run(
-            command, capture_output=True, text=True, errors="replace", timeout=60, stdin=subprocess.DEVNULL, env=env
-        )
-    except (OSError, subprocess.TimeoutExpired) as error:
-        raise EngineError(f"{command[0]}: cannot be asked for its version ({error}); see epdem doctor") from None
+    """What a program says of itself, on both streams; what it writes into its folder is thrown away.
+
+    Raises EngineError if it cannot be started or does not end.
+    """
+    with tempfile.TemporaryDirectory(prefix="epdem-ask-") as folder:
+        try:
+            done = subprocess.run(
+                command,
+                cwd=folder,
+                capture_output=True,
+                text=True,
+                errors="replace",
+                timeout=60,
+                stdin=subprocess.DEVNULL,
+                env=env,
+            )
+        except (OSError, subprocess.TimeoutExpired) as error:
+            raise EngineError(f"{command[0]}: cannot be asked for its version ({error}); see epdem doctor") from None
     return done.stdout + done.stderr
 
 
-def kill(process: subprocess.Popen) -> None:
-    """Stop a process and all that it started."""
-    for sign, patience in ((signal.SIGTERM, 5), (signal.SIGKILL, 5)):
-        try:
-            os.killpg(process.pid, sign)
-            process.wait(timeout=patience)
-            return
-        except ProcessLookupError:
-            return
-        except subprocess.TimeoutExpired:
-            continue
+def _end_with_parent() -> None:
+    """In the child: SIGTERM when its parent dies, however it dies. mpirun then ends its ranks; SIGKILL would not."""
+    _libc.prctl(_PR_SET_PDEATHSIG, signal.SIGTERM)
+
+
+def kill(process: subprocess.Popen[bytes]) -> None:
+    """Stop a process and all of its session: mpirun gives each rank a process group of its own."""
+    for sign in (signal.SIGTERM, signal.SIGKILL):
+        end = time.monotonic() + PATIENCE
+        for member in session(process.pid):
+            with contextlib.suppress(ProcessLookupError):
+                os.kill(member, sign)
+        while time.monotonic() < end:
+            process.poll()  # takes the ended process away
+            if not session(process.pid):
+                return
+            time.sleep(0.02)
+
+
+def session(leader: int) -> list[int]:
+    """The living processes of the session that `leader` began."""
+    found = []
+    for entry in Path("/proc").iterdir():
+        if entry.name.isdigit():
+            with contextlib.suppress(OSError):
+                state, _, _, its_session = (entry / "stat").read_text().rpartition(")")[2].split()[:4]
+                if int(its_session) == leader and state != "Z":
+                    found.append(int(entry.name))
+    return found

@@ -30,7 +30,7 @@ def environment(*folders: Path) -> jinja2.Environment:
     return env
 
 
-def render(template: str, /, **context) -> str:
+def render(template: str, /, **context: object) -> str:
     """The text of a template. Raises CaseError that names the template and the undefined name."""
     try:
         return environment().get_template(template).render(**context)

@@ -9,6 +9,7 @@ import pytest
 from hypothesis import strategies as st
 
 from epdem.laws import library as claw
+from epdem.laws.native import Law
 from epdem.theory import backbones
 
 NAMES = tuple(claw.laws())
@@ -20,7 +21,7 @@ routes = pytest.mark.parametrize("route", ["c++", "theory"])
 
 
 class TheoryLaw:
-    """A law of the theory library behind the calls of claw.Law: a step as its branches say it."""
+    """A law of the theory library behind the calls of Law: a step as its branches say it."""
 
     def __init__(self, name: str, *, E_star: float, **parameters: float):
         self.cls = backbones.LAWS[name]
@@ -50,7 +51,7 @@ class Contact:
     """A law with numbers, and overlaps on the scale of its own yield."""
 
     name: str
-    law: claw.Law | TheoryLaw
+    law: Law | TheoryLaw
     E_star: float
     R_star: float
     strength: float
@@ -82,7 +83,7 @@ def contact(name: str, E_star: float, R_star: float, ratio: float, route: str = 
     """A contact with strength = ratio E*."""
     parameters = claw.laws()[name].parameters
     strength = ratio * E_star
-    make = {"c++": claw.Law, "theory": TheoryLaw}[route]
+    make = {"c++": Law, "theory": TheoryLaw}[route]
     law = make(name, E_star=E_star, **({parameters[0].name: strength} if parameters else {}))
     return Contact(name, law, E_star, R_star, strength, yield_overlap(name, E_star, R_star, strength))
 

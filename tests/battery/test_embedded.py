@@ -26,7 +26,7 @@ def impacts(c, decade, steps, restitution=1.0, phases=8):
     gap = (np.arange(phases) + 0.5) / phases * speed * time / steps
     numbers = {"R_star": c.R_star, "m_star": 1.0, "speed": speed, "time_step": time / steps, "gap": gap}
     number = claw.viscous_number(restitution)
-    return *c.law.impacts(**numbers, steps=20 * steps, viscous=number, paths=True), speed
+    return *c.law.impact_paths(**numbers, steps=20 * steps, viscous=number), speed
 
 
 @given(contacts(), decades, st.integers(8, 300))

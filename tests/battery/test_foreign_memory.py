@@ -30,7 +30,7 @@ static double number(std::mt19937_64& r) {
 template <class Law>
 static int bad() {
   std::mt19937_64 r(7);
-  const epdem::real parameter[] = {1e9, 1.6, 2.8};
+  const double parameter[] = {1e9, 1.6, 2.8};
   const Law law(1.1e11, parameter);
   int found = 0;
   for (int n = 0; n < 2000000; ++n) {
@@ -46,7 +46,7 @@ static int bad() {
 }
 
 int main() {
-#define COUNT(Class) std::printf("%s %d\\n", epdem::Class::name, bad<epdem::Class>());
+#define COUNT(Class) std::printf("%s %d\\n", epdem::Class<double>::name, bad<epdem::Class<double>>());
   EPDEM_LAWS(COUNT)
 }
 """

@@ -9,7 +9,8 @@ from laws import NAMES, YIELDING, yield_overlap
 
 from epdem import paths
 from epdem.laws import library as claw
-from epdem.liggghts.impacts import read_dump
+from epdem.laws.native import Law
+from epdem.liggghts import dump
 from epdem.theory import pair, viscous
 
 pytestmark = pytest.mark.liggghts
@@ -61,7 +62,7 @@ def carried(law: str, folder, restitution: float | None = None, speed: str = "0"
     (folder / "in.path").write_text(deck)
     done = subprocess.run([str(paths.launcher()), "-in", "in.path"], cwd=folder, capture_output=True, text=True)
     assert done.returncode == 0, done.stdout[-500:]
-    z, velocity, force = np.moveaxis(read_dump(folder / "path.bin", 4), 2, 0)
+    z, velocity, force = np.moveaxis(dump.series(folder / "path.bin"), 2, 0)
     return R - z, force, -velocity
 
 
@@ -70,7 +71,7 @@ def test_liggghts_has_the_laws_force_on_256_paths(name, tmp_path):
     """To 1e-15 of the largest force where nothing cancels, times four roundings; alpha_max - alpha adds its own."""
     overlap, force, _ = carried(name, tmp_path)
     parameters = {claw.laws()[name].parameters[0].name: STRENGTH[name]} if name in STRENGTH else {}
-    law = claw.Law(name, E_star=float(pair.E_star(E, NU, E, NU)), **parameters)
+    law = Law(name, E_star=float(pair.E_star(E, NU, E, NU)), **parameters)
     state = np.zeros(N)
     reloads = 0
     for step in range(STEPS + 1):
@@ -95,7 +96,7 @@ def test_hertz_equals_liggghts_own_without_damping(tmp_path):
     (tmp_path / "in.path").write_text(deck)
     done = subprocess.run([str(paths.launcher()), "-in", "in.path"], cwd=tmp_path, capture_output=True, text=True)
     assert done.returncode == 0, done.stdout[-500:]
-    z, _, theirs = np.moveaxis(read_dump(tmp_path / "path.bin", 4), 2, 0)
+    z, _, theirs = np.moveaxis(dump.series(tmp_path / "path.bin"), 2, 0)
     assert np.array_equal(R - z, overlap)
     assert np.abs(ours - theirs).max() <= 1e-14 * np.abs(theirs).max()
 
@@ -106,7 +107,7 @@ def test_liggghts_has_the_dashpots_force_on_256_paths(name, tmp_path):
     overlap, force, v = carried(name, tmp_path, 0.7, "2*cos(0.013*id+0.7*v_t)")
     parameters = {claw.laws()[name].parameters[0].name: STRENGTH[name]} if name in STRENGTH else {}
     E_star, mass = float(pair.E_star(E, NU, E, NU)), float(pair.sphere_mass(radius=R, density=7850.0))
-    law, number = claw.Law(name, E_star=E_star, **parameters), 2 * np.sqrt(5 / 6) * float(viscous.damping_ratio(0.7))
+    law, number = Law(name, E_star=E_star, **parameters), 2 * np.sqrt(5 / 6) * float(viscous.damping_ratio(0.7))
     delta_y = yield_overlap(name, E_star, R, STRENGTH[name]) if name in STRENGTH else np.inf
     state, cut = np.zeros(N), 0
     for step in range(STEPS + 1):

@@ -36,7 +36,7 @@ def changed(place: str, value):
 def test_every_case_of_the_project_is_valid(path):
     data = read_toml(path)
     if "impact" in data:
-        assert experiment(load(path)).case.name == path.stem
+        assert experiment(load(path)).name == path.stem
 
 
 @pytest.mark.parametrize(
@@ -240,3 +240,30 @@ def test_the_softer_body_gives_the_strength_of_the_pair():
     data["impact"]["target"]["material"] = "brass"
     x = experiment(parse(data, "f"))
     assert x.law.strengths == (2.8e9, 2.8 * 200e6) and x.law.parameters["yield_pressure"] == 2.8 * 200e6
+
+
+@pytest.mark.parametrize(
+    ("raw", "says"),
+    [
+        (b"a = " + b"[" * 100_000, "nested too deeply"),
+        (b"#" * 4_000_001, "more than 4 MB"),
+        ("a = 1".encode("utf-16"), "not UTF-8 at byte 0"),
+        (b'a = "\xe4"', "not UTF-8 at byte 5"),
+        (b"a = \x00", "not valid TOML"),
+    ],
+)
+def test_a_file_that_is_no_case_is_named_and_not_swallowed(raw, says, tmp_path):
+    path = tmp_path / "case.toml"
+    path.write_bytes(raw)
+    with pytest.raises(CaseError, match=f"{path}: .*{says}"):
+        read_toml(path)
+
+
+def test_a_device_is_not_read_to_its_end():
+    with pytest.raises(CaseError, match="/dev/zero: more than 4 MB"):
+        read_toml("/dev/zero")
+
+
+def test_line_ends_and_byte_order_marks_of_other_systems_are_no_mistake(tmp_path):
+    (tmp_path / "case.toml").write_bytes(b"\xef\xbb\xbfa = 1\r\nb = 2\r\n")
+    assert read_toml(tmp_path / "case.toml") == {"a": 1, "b": 2}

@@ -9,6 +9,7 @@ import pandas as pd
 import pytest
 
 from epdem.case.impact import Check, load
+from epdem.engines import engine
 from epdem.errors import CaseError, EngineError
 from epdem.impacts import store
 from epdem.impacts.comparison import CHECKED, compare
@@ -94,7 +95,7 @@ def test_the_error_of_a_speed_is_that_of_its_worst_phase(steel):
 def test_a_stored_result_is_used_only_while_its_inputs_are_the_same(tmp_path):
     text = STEEL.read_text().replace("count = 32", "count = 3")
     (tmp_path / "a.toml").write_text(text)
-    words = {"engines": ["embedded"], "laws": [], "out": tmp_path / "out"}
+    words = {"engines": [engine("embedded")], "laws": [], "out": tmp_path / "out"}
     assert run(tmp_path / "a.toml", **words).reused == []
     assert run(tmp_path / "a.toml", **words).reused == ["thornton/embedded"]
     (tmp_path / "a.toml").write_text(text.replace("yield_pressure_ratio = 2.8", "yield_pressure_ratio = 2.7"))

@@ -114,7 +114,8 @@ def test_a_wrong_modulus_is_seen_although_restitution_may_be_right(tmp_path):
     p = plan(x, prediction)
     factor = 1.5
     law = replace(x.law, parameters={"yield_pressure": x.law.parameters["yield_pressure"] * factor**0.8})
-    wrong = replace(p, experiment=replace(x, E_star=x.E_star * factor, law=law))
+    stiffer = [replace(b, young_modulus=b.young_modulus * factor) for b in (x.body, x.target)]
+    wrong = replace(p, experiment=replace(x, body=stiffer[0], target=stiffer[1], law=law))
     rows = compare(
         "embedded",
         "thornton",

@@ -12,7 +12,7 @@ from epdem.cli.main import app
 from epdem.engines import engine
 from epdem.errors import CaseError
 from epdem.impacts.experiment import experiment
-from epdem.laws.library import Law
+from epdem.laws.native import Law
 from epdem.studies import stability
 from epdem.studies.stability import bulk, bulk_checks, precisions, repeats, roundoff
 from epdem.studies.stability.cases import build, extremes
@@ -104,7 +104,7 @@ def test_a_squeezed_sphere_keeps_its_energy_but_not_with_a_wrong_mass():
     s = setting(BY_NAME["squeeze_3e0"], "thornton")
     samples = path(s, EmbeddedSampler(), 0.01)
     assert np.abs(balance(s, *samples) - 1).max() < 1e-4
-    wrong = replace(s, x=replace(s.x, m_star=1.01 * s.x.m_star))
+    wrong = replace(s, x=replace(s.x, body=replace(s.x.body, mass=1.01 * s.x.body.mass)))
     assert np.abs(balance(wrong, *samples) - 1).max() > 1e-3
 
 

@@ -13,6 +13,7 @@ from hypothesis import strategies as st
 
 from epdem.errors import CaseError
 from epdem.laws import library as claw
+from epdem.laws.native import Law
 from epdem.yade.deck_modules import cone
 from epdem.yade.deck_modules import law as numbers
 
@@ -23,7 +24,7 @@ def both(name, E_star=E_STAR, strength=STRENGTH, **ratios):
     """The law of the deck and that of the library."""
     kind = numbers.LAWS[name]
     parameters = {kind.strength_name: strength} if kind.strength_name else {}
-    return kind(E_star, *parameters.values(), **ratios), claw.Law(name, E_star=E_star, **parameters, **ratios)
+    return kind(E_star, *parameters.values(), **ratios), Law(name, E_star=E_star, **parameters, **ratios)
 
 
 def test_both_know_the_same_laws_and_parameters():
@@ -129,7 +130,7 @@ def test_what_the_library_refuses_the_deck_refuses_too(name, words):
         numbers.LAWS[name](E_STAR, **words)
     strength = {numbers.LAWS[name].strength_name: words["strength"]}
     with pytest.raises(CaseError):
-        claw.Law(name, E_star=E_STAR, **strength, **{k: v for k, v in words.items() if k != "strength"}).step(
+        Law(name, E_star=E_STAR, **strength, **{k: v for k, v in words.items() if k != "strength"}).step(
             R_star=0.01, delta_max=0.0, delta=1e-5
         )
 

@@ -13,10 +13,12 @@ HEADER = """// SPDX-License-Identifier: GPL-2.0-or-later
 
 namespace epdem {
 
+template <class T>
 struct Toy {
+  using number = T;
   static constexpr const char* name = "toy";
   static constexpr int id = 44;
-  using State = Maximum;
+  using State = Maximum<T>;
   static constexpr bool yields = true;
   static constexpr bool flattens = false;
   static constexpr Parameter parameters[] = {
@@ -26,25 +28,24 @@ struct Toy {
   static constexpr double default_ratio = 2.8;
   static constexpr bool strength_by_ratio = true;
 
-  real E_star = 0.0, p_y = 0.0;
+  T E_star{}, p_y{};
 
-  static bool valid(const real*) noexcept { return true; }
+  static bool valid(const T*) noexcept { return true; }
 
   Toy() noexcept = default;
-  Toy(real E_star_, const real* parameter) noexcept : E_star(E_star_), p_y(parameter[0]) {}
+  Toy(T E_star_, const T* parameter) noexcept : E_star(E_star_), p_y(parameter[0]) {}
 
-  real elastic_overlap(real R_star) const noexcept {
-    const real q = pi * p_y / (2.0 * E_star);
+  T elastic_overlap(T R_star) const noexcept {
+    const T q = pi * p_y / (2.0 * E_star);
     return q * q * R_star;
   }
-  Point load(real R_star, real delta) const noexcept {
-    const real y = elastic_overlap(R_star), a = std::sqrt(R_star * delta);
-    return {hertz_point(E_star, R_star, y).force + 0.8 * pi * p_y * R_star * (delta - y), a, 0.0};
+  Point<T> load(T R_star, T delta) const noexcept {
+    const T y = elastic_overlap(R_star), a = sqrt(R_star * delta);
+    return {hertz_point(E_star, R_star, y).force + 0.8 * pi * p_y * R_star * (delta - y), a, T{}};
   }
-  real work(real R_star, real delta) const noexcept {
-    const real y = elastic_overlap(R_star), x = delta - y;
-    if (!(x > 0.0)) return hertz_work(E_star, R_star, delta);
-    return hertz_work(E_star, R_star, y) + (hertz_point(E_star, R_star, y).force + 0.4 * pi * p_y * R_star * x) * x;
+  T work(T R_star, T delta) const noexcept {
+    const T y = elastic_overlap(R_star), x = max(T{}, delta - y);
+    return hertz_work(E_star, R_star, min(delta, y)) + (hertz_point(E_star, R_star, y).force + 0.4 * pi * p_y * R_star * x) * x;
   }
 };
 

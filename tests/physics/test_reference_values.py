@@ -60,7 +60,7 @@ def test_mean_pressure_of_the_three_regimes():
 @pytest.mark.parametrize("share", [0.1, 0.5, 0.95])
 def test_fully_plastic_cavity_unloads_by_the_integral_of_8_82(share):
     """The law's force is the pressure 8.82 summed over the circle; its slope is that of a rigid punch, 2 E* a."""
-    # equation: backbones.Backbone.unloading
+    # equation: backbone.Backbone.unloading
     law = Cavity(**STEEL, Y=1e9)
     top = 3 * law.plastic_overlap
     assert law.flatness(top) == 1
@@ -76,6 +76,16 @@ def test_fully_plastic_cavity_unloads_by_the_integral_of_8_82(share):
     slope = (law.unloading_force(alpha + h, top) - law.unloading_force(alpha - h, top)) / (2 * h)
     # central difference: (h/delta_e)^2 = 1e-10 times a third derivative of order 10, and round-off 1e-16/1e-5
     assert slope == pytest.approx(2 * STEEL["E_star"] * float(a), rel=1e-8, abs=0)
+
+
+@pytest.mark.parametrize("share", [1e-6, 1e-4, 1e-2, 0.5, 0.99])
+def test_unloading_force_keeps_its_digits_down_to_a_tiny_circle(share):
+    """8.82 summed over the circle in 40 digits, r = a sqrt(1 - u^2); it goes as (4/3) p a^3/a* when a is small."""
+    with mp.workdps(40):
+        k = mp.mpf(share)
+        inner = lambda u: mp.asin(mp.sqrt(k * k * u * u / (1 - k * k * (1 - u * u))))  # noqa: E731
+        exact = 4 * k * k * mp.quad(lambda u: u * inner(u), [0, 1])
+    assert float(pressure.unloading_force(a=2 * share, a_max=2.0, p=3.0)) == exactly(12 * exact)
 
 
 def test_mean_pressure_at_first_yield_is_two_thirds_of_the_peak():
@@ -123,6 +133,32 @@ def test_a_tangential_spring_and_a_dense_packing_shorten_the_stable_step():
     matrix = sum(np.outer(d, d) / (d @ d) * (1 - np.cos(2 * np.pi * d[0])) for d in near)
     lattice = np.linalg.eigvalsh(matrix).max()  # m omega^2/k
     assert pytest.approx((2 / lattice) ** 0.5, rel=1e-12) == timestep.DENSE_PACKING  # of a pair: k/m* = 2 k/m
+
+
+@pytest.mark.parametrize("nu", [0.0, 0.3, 0.5])
+def test_grains_that_turn_alike_shorten_the_stable_step_of_a_sticking_packing(nu):
+    """Highest frequency of a face-centred cubic lattice of spheres, I = 2/5 m R^2, springs k_n and k_t = kappa k_n in
+    every contact: waves exp(i q.d) over the Brillouin zone, degrees of freedom u and R theta."""
+    kappa = 2 * (1 - nu) / (2 - nu)
+    near = [(np.array(d) - 1) / 2 for d in np.ndindex(3, 3, 3) if sum(x != 1 for x in d) == 2]
+
+    def lattice(q):  # largest m omega^2/k_n
+        stiffness = np.zeros((6, 6), complex)
+        for d in near:
+            n, phase = d / np.linalg.norm(d), np.exp(2j * np.pi * d @ q)
+            turn = -(1 + phase) * np.cross(np.eye(3), n).T  # surfaces move by theta x n, both the same way apart
+            moves, spring = np.hstack([(phase - 1) * np.eye(3), turn]), kappa * np.eye(3) + (1 - kappa) * np.outer(n, n)
+            stiffness += moves.conj().T @ spring @ moves / 2  # each contact is counted from both its ends
+        mass = np.array([1, 1, 1, 0.4, 0.4, 0.4]) ** -0.5
+        return np.linalg.eigvalsh(mass[:, None] * stiffness * mass).max()
+
+    zone = np.linspace(0, 1, 5)
+    highest = max(lattice(np.array([a, b, c])) for a in zone for b in zone for c in zone)
+    assert highest == pytest.approx(40 * kappa, rel=1e-12)
+    # dt omega = 2, against 2 sqrt(m*/k_n) of a pair, m* = m/2
+    assert timestep.sticking_packing(kappa) == exactly(mp.sqrt(2 / mp.mpf(highest)))
+    assert timestep.sticking_packing(14 / 17) == pytest.approx(0.246, abs=5e-4)
+    assert timestep.sticking_packing(kappa, contacts=6) == exactly(mp.sqrt(mp.mpf(3) / 5 / (6 * mp.mpf(kappa))))
 
 
 def test_rayleigh_time_is_half_a_girth_at_the_speed_of_the_surface_wave():

@@ -8,7 +8,8 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from epdem.theory import pair, printed, restitution
-from epdem.theory.backbones import LAWS, Cavity, Hertz, Johnson, Thornton
+from epdem.theory.backbones import LAWS, Cavity, Hertz, Thornton
+from epdem.theory.johnson import Johnson
 
 STEEL = {"E_star": 1.1428571428571429e11, "R_star": 0.01}
 M = 0.032882003107573169

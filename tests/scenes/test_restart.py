@@ -12,12 +12,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 from test_lean import CASES, small
+from toml_files import write_case
 
 from epdem.case.impact import read_toml
 from epdem.case.scene import is_scene, parse
 from epdem.errors import CaseError
-from epdem.liggghts import resume
-from epdem.liggghts import running as progress
+from epdem.liggghts import launcher, resume
 from epdem.liggghts import scene_deck as deck
 from epdem.liggghts import scene_tables as tables
 from epdem.scenes import results
@@ -42,14 +42,14 @@ def last_frame(case, folder: Path) -> np.ndarray:
 def test_a_continued_run_ends_bitwise_where_the_uninterrupted_one_does(path, tmp_path):
     case = short(path)
     deck.write(case, tmp_path)
-    progress.run("in.scene", tmp_path)
+    launcher.run("in.scene", tmp_path)
     whole = last_frame(case, tmp_path)
     steps = sorted(int(re.search(r"\d+", p.name).group()) for p in tmp_path.glob("restart.*.bin"))
     for step in (steps[2], steps[6]):
         for frame in tmp_path.glob("particles.*.bin"):
             frame.unlink()
         resume.write_resume(case, tmp_path, f"restart.{step}.bin", step)
-        progress.run("in.resume", tmp_path)
+        launcher.run("in.resume", tmp_path)
         continued = last_frame(case, tmp_path)
         assert continued.shape == whole.shape
         assert (continued == whole).all(), f"continued from {step}: largest difference {abs(continued - whole).max()}"
@@ -117,30 +117,38 @@ def test_ctrl_c_stops_liggghts_with_all_its_ranks_and_the_run_can_be_continued(r
     assert list(out.glob("restart.*.bin"))
 
 
-def test_an_interrupted_run_continues_with_its_tables_whole(tmp_path):
-    path = tmp_path / "case.toml"
-    text = next(p for p in SCENES if p.stem.startswith("settle")).read_text()
-    text = re.sub(r"box = .*", 'box = ["12 mm", "12 mm", "30 mm"]', text)
-    text = re.sub(r"count = .*", "count = 70", text).replace('"0.5 s"', '"0.3 s"')
-    path.write_text(text.replace("[output]", "[output]\nrestarts = 10"))
-    whole = run(path, out=tmp_path / "whole")
+class Enough(Exception):
+    """The moment at which a test stops a run."""
 
-    class Enough(Exception):
-        pass
+
+def stopped_run(path: Path, out: Path, share: float = 0.6) -> None:
+    """Run a case until that share of its steps is done."""
 
     def stop(step, steps):
-        if step > 0.4 * steps:
+        if step > share * steps:
             raise Enough
 
     with pytest.raises(Enough):
-        run(path, out=tmp_path / "parts", tell=stop)
-    assert not children(str(tmp_path / "parts"))
+        run(path, out=out, tell=stop)
+    assert not children(str(out))
+
+
+@pytest.mark.parametrize("path", SCENES, ids=lambda p: p.stem)
+def test_every_table_of_a_continued_run_is_that_of_the_uninterrupted_one(path, tmp_path):
+    data = read_toml(path)
+    output = {"rows": 40, "particles": 20, "restarts": 20, "energy": True, "loads": True}
+    path = write_case(small(data) | {"output": output}, tmp_path)
+    whole = run(path, out=tmp_path / "whole")
+    stopped_run(path, tmp_path / "parts")
     again = run(path, out=tmp_path / "parts", resume=True)
     assert 0 < again.resumed_from < again.deck.steps
-    a, b = results.read(tmp_path / "whole/results.h5"), results.read(tmp_path / "parts/results.h5")
-    assert a.particles.equals(b.particles)
-    assert list(a.rows["step"]) == list(b.rows["step"])
-    assert whole.passed and again.passed
+    a, b = (results.read(tmp_path / name / "results.h5") for name in ("whole", "parts"))
+    assert set(a.tables) == set(b.tables) == {"rows", "particles", "contacts", "ledger", "checks"}
+    for name, table in a.tables.items():
+        for column in table:
+            assert table[column].equals(b.tables[name][column]), f"{name}.{column} differs"
+    assert a.rows.drop(columns=["step", "time"]).any().all(), "no column of the rows is empty"
+    assert whole.passed == again.passed
 
 
 def test_a_changed_case_is_not_continued(tmp_path):

@@ -8,8 +8,7 @@ import pytest
 
 from epdem.case.impact import read_toml
 from epdem.case.scene import parse
-from epdem.liggghts import resume
-from epdem.liggghts import running as progress
+from epdem.liggghts import launcher, resume
 from epdem.liggghts import scene_deck as deck
 from epdem.liggghts import scene_tables as tables
 
@@ -32,17 +31,17 @@ def poured(tmp_path_factory):
     output = {"rows": 20, "particles": 20, "restarts": 20}
     case = parse(data | {"scene": data["scene"] | scene, "output": output, "numerics": {"error": 0.1}})
     deck.write(case, folder)
-    progress.run("in.scene", folder)
+    launcher.run("in.scene", folder)
     return case, folder, tables.particles(folder, deck.deck(case))
 
 
 def continued(poured, begin: int, tmp_path):
     """Particles of the frames after step `begin` of a run continued from there, in a folder of its own."""
     case, folder, _ = poured
-    for name in ("setup.in", progress.OUT, f"restart.{begin}.bin"):
+    for name in ("setup.in", launcher.OUT, f"restart.{begin}.bin"):
         (tmp_path / name).write_bytes((folder / name).read_bytes())
     resume.write_resume(case, tmp_path, f"restart.{begin}.bin", begin)
-    progress.run("in.resume", tmp_path)
+    launcher.run("in.resume", tmp_path)
     table = tables.particles(tmp_path, deck.deck(case))
     return table[table["step"] > begin].reset_index(drop=True)
 

@@ -12,7 +12,7 @@ from epdem.case.impact import read_toml
 from epdem.case.scene import parse
 from epdem.cli import main as cli
 from epdem.errors import CaseError, EngineError
-from epdem.liggghts import running as progress
+from epdem.liggghts import launcher
 from epdem.liggghts import scene_deck as deck
 from epdem.liggghts import scene_tables as tables
 from epdem.scenes import placement as yade_place
@@ -95,8 +95,8 @@ def pressed(path: Path, folder: Path):
     """(outcome of YADE, rows of LIGGGHTS) of one press on the same spheres."""
     outcome = run(path, engine="yade", out=folder / "yade")
     liggghts_with_places_of(np.loadtxt(folder / "yade" / "spheres.txt"), outcome.case, folder / "liggghts")
-    progress.run("in.scene", folder / "liggghts")
-    return outcome, tables.rows(folder / "liggghts" / progress.OUT, outcome.deck.time_step)
+    launcher.run("in.scene", folder / "liggghts")
+    return outcome, tables.rows(folder / "liggghts" / launcher.OUT, outcome.deck.time_step)
 
 
 @pytest.mark.yade

@@ -9,11 +9,17 @@
 namespace epdem {
 
 /// A point of the loading backbone (or of an elastic branch).
+template <class T>
 struct Point {
-  real force;     // F [N]
-  real radius;    // contact radius a [m]
-  real flatness;  // tau of the contact pressure: 0 Hertz's half-ellipse, 1 uniform
+  T force;     // F [N]
+  T radius;    // contact radius a [m]
+  T flatness;  // tau of the contact pressure: 0 Hertz's half-ellipse, 1 uniform
 };
+
+template <class M, class T>
+EPDEM_INLINE Point<T> select(M mask, const Point<T>& a, const Point<T>& b) noexcept {
+  return {select(mask, a.force, b.force), select(mask, a.radius, b.radius), select(mask, a.flatness, b.flatness)};
+}
 
 /// A material parameter of a law, as a host names and checks it.
 struct Parameter {
@@ -26,18 +32,22 @@ struct Parameter {
 inline constexpr double not_given = std::numeric_limits<double>::quiet_NaN();
 
 /// A contact's memory: the largest overlap so far [m]. `slots` names the values for a host that stores them.
+template <class T>
 struct Maximum {
   static constexpr const char* slots[] = {"delta_max"};
-  real delta_max = 0.0;
+  T delta_max{};
 };
 
 /// The same for a law with an expensive backbone, which keeps the backbone's values at delta_max beside it.
+template <class T>
 struct Peak {
   static constexpr const char* slots[] = {"delta_max", "force_max", "radius_max", "flatness_max"};
-  real delta_max = 0.0;
-  Point point{0.0, 0.0, 0.0};
+  T delta_max{};
+  Point<T> point{};
 };
 
+template <class Law>
+using Number = typename Law::number;
 template <class Law>
 using State = typename Law::State;
 
@@ -46,17 +56,19 @@ template <class Law>
 inline constexpr int memory = Law::yields ? static_cast<int>(std::size(State<Law>::slots)) : 0;
 
 /// A strength [Pa] that is given by the softer body's yield stress [Pa].
-inline real strength_from(real yield_stress, real ratio) noexcept { return yield_stress * ratio; }
+inline double strength_from(double yield_stress, double ratio) noexcept { return yield_stress * ratio; }
 
 /// Hertz (1882): F = 4/3 E* sqrt(R*) alpha^1.5, a^2 = R* alpha. The elastic start of every law.
-inline Point hertz_point(real E_star, real R_star, real delta) noexcept {
-  const real a = std::sqrt(R_star * delta);
-  return {4.0 / 3.0 * E_star * a * delta, a, 0.0};
+template <class T>
+EPDEM_INLINE Point<T> hertz_point(T E_star, T R_star, T delta) noexcept {
+  const T a = sqrt(R_star * delta);
+  return {4.0 / 3.0 * E_star * a * delta, a, T{}};
 }
 
 /// Work to bring a Hertz contact to `delta` [J]: W = 8/15 E* sqrt(R*) alpha^2.5.
-inline real hertz_work(real E_star, real R_star, real delta) noexcept {
-  return 8.0 / 15.0 * E_star * std::sqrt(R_star * delta) * delta * delta;
+template <class T>
+EPDEM_INLINE T hertz_work(T E_star, T R_star, T delta) noexcept {
+  return 8.0 / 15.0 * E_star * sqrt(R_star * delta) * delta * delta;
 }
 
 }  // namespace epdem

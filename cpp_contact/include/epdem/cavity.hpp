@@ -9,10 +9,12 @@ namespace epdem {
 /// fully plastic with p_m = c_P Y (eq. 8.80) and a^2 = 2 R* alpha (eq. 8.85). This project's own composition:
 ///   s = alpha/alpha_Y;  1 < s < s_P:  a = a_Y s^((1+beta)/2),  p_m = Y [2 c_Y/3 + (1+beta)/3 ln s],
 ///   tau = ln s/ln s_P. Nothing is fitted.
+template <class T>
 struct Cavity {
+  using number = T;
   static constexpr const char* name = "cavity";
   static constexpr int id = 43;
-  using State = Peak;
+  using State = Peak<T>;
   static constexpr bool yields = true;
   static constexpr bool flattens = true;
   static constexpr Parameter parameters[] = {
@@ -24,57 +26,63 @@ struct Cavity {
   static constexpr double default_ratio = 1.0;
   static constexpr bool strength_by_ratio = false;
 
-  real E_star, Y, c_Y, c_P;
-  real yield_ratio;    // alpha_Y/R*
-  real plastic_ratio;  // alpha_P/R*
-  real log_s_P, beta;
-  real a_ratio;        // a_Y/R*
+  T E_star{}, Y{}, c_Y{}, c_P{};
+  T yield_ratio{};    // alpha_Y/R*
+  T plastic_ratio{};  // alpha_P/R*
+  T log_s_P{}, beta{};
+  T a_ratio{};        // a_Y/R*
 
   /// Whether positive, finite parameters also make sense together.
-  static bool valid(const real* parameter) noexcept {
+  static bool valid(const T* parameter) noexcept {
     return parameter[2] > parameter[1] && yield_excess(parameter[1], parameter[2]) <= 2.5;
   }
 
-  Cavity() noexcept
-      : E_star(0.0), Y(0.0), c_Y(0.0), c_P(0.0), yield_ratio(0.0), plastic_ratio(0.0), log_s_P(1.0), beta(0.0),
-        a_ratio(0.0) {}
-  Cavity(real E_star_, const real* parameter) noexcept
+  Cavity() = default;
+  Cavity(T E_star_, const T* parameter) noexcept
       : E_star(E_star_), Y(parameter[0]), c_Y(parameter[1]), c_P(parameter[2]) {
     a_ratio = pi * c_Y * Y / (2.0 * E_star);
     yield_ratio = a_ratio * a_ratio;
-    log_s_P = 3.0 * (c_P - 2.0 * c_Y / 3.0) - std::log(2.0);
-    plastic_ratio = yield_ratio * std::exp(log_s_P);
-    beta = std::log(2.0) / log_s_P;
+    log_s_P = 3.0 * (c_P - 2.0 * c_Y / 3.0) - log(T(2.0));
+    plastic_ratio = yield_ratio * exp(log_s_P);
+    beta = log(T(2.0)) / log_s_P;
   }
 
   /// Left side of the condition that no energy is created just above yield; it must not exceed 2.5.
-  static real yield_excess(real c_Y, real c_P) noexcept {
-    const real log_s = 3.0 * (c_P - 2.0 * c_Y / 3.0) - std::log(2.0), b = std::log(2.0) / log_s;
+  static T yield_excess(T c_Y, T c_P) noexcept {
+    const T log_s = 3.0 * (c_P - 2.0 * c_Y / 3.0) - log(T(2.0)), b = log(T(2.0)) / log_s;
     return 2.0 * (1.0 + b) * (1.0 + 1.0 / (2.0 * c_Y)) - 0.5 * (1.0 + b) - 0.125 / log_s;
   }
 
-  real elastic_overlap(real R_star) const noexcept { return yield_ratio * R_star; }
+  T elastic_overlap(T R_star) const noexcept { return yield_ratio * R_star; }
 
-  Point load(real R_star, real delta) const noexcept {
-    if (delta >= plastic_ratio * R_star)
-      return {2.0 * pi * R_star * c_P * Y * delta, std::sqrt(2.0 * R_star * delta), 1.0};
-    const real log_s = std::log(delta / (yield_ratio * R_star));
-    const real a = a_ratio * R_star * std::exp(0.5 * (1.0 + beta) * log_s);
-    const real p_m = Y * (2.0 / 3.0 * c_Y + (1.0 + beta) / 3.0 * log_s);
-    return {pi * a * a * p_m, a, log_s / log_s_P};
+  Point<T> load(T R_star, T delta) const noexcept {
+    const auto plastic = delta >= plastic_ratio * R_star;
+    Point<T> p{};
+    if (any(plastic))
+      p = {2.0 * pi * R_star * c_P * Y * delta, sqrt(2.0 * R_star * delta), constant<T>(1.0)};
+    if (any(!plastic)) {
+      const T log_s = log(only(!plastic, delta / (yield_ratio * R_star)));
+      const T a = a_ratio * R_star * exp(0.5 * (1.0 + beta) * log_s);
+      const T p_m = Y * (2.0 / 3.0 * c_Y + (1.0 + beta) / 3.0 * log_s);
+      p = select(plastic, p, Point<T>{pi * a * a * p_m, a, log_s / log_s_P});
+    }
+    return p;
   }
 
-  real work(real R_star, real delta) const noexcept {
-    const real delta_Y = elastic_overlap(R_star), delta_P = plastic_ratio * R_star;
-    if (!(delta > delta_Y)) return hertz_work(E_star, R_star, delta);
-    const real a_Y = a_ratio * R_star, A = 2.0 / 3.0 * c_Y, B = (1.0 + beta) / 3.0, n = 2.0 + beta;
-    const real log_s = std::min(std::log(delta / delta_Y), log_s_P);
-    // (s^n - 1)/n and (s^n ln s)/n - (s^n - 1)/n^2, the first by expm1 to stay exact near yield
-    const real grow = std::expm1(n * log_s), I0 = grow / n;
-    const real I1 = ((grow + 1.0) * log_s - I0) / n;
-    const real W = hertz_work(E_star, R_star, delta_Y) + pi * a_Y * a_Y * delta_Y * Y * (A * I0 + B * I1);
-    if (!(delta > delta_P)) return W;
-    return W + pi * R_star * c_P * Y * (delta - delta_P) * (delta + delta_P);
+  T work(T R_star, T delta) const noexcept {
+    const T delta_Y = elastic_overlap(R_star), delta_P = plastic_ratio * R_star;
+    const auto beyond = delta > delta_Y;
+    T W = hertz_work(E_star, R_star, min(delta, delta_Y));
+    if (any(beyond)) {
+      const T a_Y = a_ratio * R_star, A = 2.0 / 3.0 * c_Y, B = (1.0 + beta) / 3.0, n = 2.0 + beta;
+      const T log_s = min(log(only(beyond, delta / delta_Y)), log_s_P);
+      // (s^n - 1)/n and (s^n ln s)/n - (s^n - 1)/n^2, the first by expm1 to stay exact near yield
+      const T grow = expm1(n * log_s), I0 = grow / n;
+      const T I1 = ((grow + 1.0) * log_s - I0) / n;
+      const T more = W + pi * a_Y * a_Y * delta_Y * Y * (A * I0 + B * I1), x = max(T{}, delta - delta_P);
+      W = select(beyond, more + pi * R_star * c_P * Y * x * (delta + delta_P), W);
+    }
+    return W;
   }
 };
 

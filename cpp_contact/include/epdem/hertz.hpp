@@ -6,32 +6,34 @@
 namespace epdem {
 
 /// Elastic contact (Hertz 1882): no yield, no memory.
+template <class T>
 struct Hertz {
+  using number = T;
   static constexpr const char* name = "hertz";
   static constexpr int id = 40;            // of the LIGGGHTS model ep/hertz; restart files keep it, it never changes
-  using State = Maximum;                   // what a contact remembers from step to step
+  using State = Maximum<T>;                // what a contact remembers from step to step
   static constexpr bool yields = false;    // false: a host need not keep it
   static constexpr bool flattens = false;  // unloading needs the flatness tau
   static constexpr Parameter parameters[] = {{nullptr, nullptr, nullptr, 0.0}};
   static constexpr int n_parameters = 0;
-  static constexpr int strength = -1;                  // index of the parameter at which a body yields
-  static constexpr double default_ratio = not_given;   // strength over the yield stress Y of the softer body
-  static constexpr bool strength_by_ratio = false;     // a host may take Y and the ratio in place of the strength
+  static constexpr int strength = -1;                 // index of the parameter at which a body yields
+  static constexpr double default_ratio = not_given;  // strength over the yield stress Y of the softer body
+  static constexpr bool strength_by_ratio = false;    // a host may take Y and the ratio in place of the strength
 
-  real E_star;
+  T E_star{};  // a law's data are numbers of type T only: a host fills lanes with them
 
   /// Whether positive, finite parameters also make sense together.
-  static bool valid(const real*) noexcept { return true; }
+  static bool valid(const T*) noexcept { return true; }
 
-  Hertz() noexcept : E_star(0.0) {}
-  Hertz(real E_star_, const real*) noexcept : E_star(E_star_) {}
+  Hertz() = default;
+  Hertz(T E_star_, const T*) noexcept : E_star(E_star_) {}
 
   /// Largest overlap of the elastic branch [m].
-  real elastic_overlap(real) const noexcept { return std::numeric_limits<real>::infinity(); }
-  /// The backbone at `delta` > elastic_overlap.
-  Point load(real R_star, real delta) const noexcept { return hertz_point(E_star, R_star, delta); }
+  T elastic_overlap(T) const noexcept { return constant<T>(std::numeric_limits<double>::infinity()); }
+  /// The backbone at `delta` > elastic_overlap; whatever elsewhere.
+  Point<T> load(T R_star, T delta) const noexcept { return hertz_point(E_star, R_star, delta); }
   /// Work along the backbone to `delta` [J].
-  real work(real R_star, real delta) const noexcept { return hertz_work(E_star, R_star, delta); }
+  T work(T R_star, T delta) const noexcept { return hertz_work(E_star, R_star, delta); }
 };
 
 }  // namespace epdem

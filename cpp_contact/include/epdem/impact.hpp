@@ -9,45 +9,49 @@
 namespace epdem {
 
 /// One impact: the relative approach obeys m* alpha'' = -F.
+template <class T>
 struct ImpactInput {
-  real R_star;         // [m]
-  real m_star;         // [kg]
-  real speed;          // approach speed [m/s]
-  real time_step;      // [s]
-  real gap;            // distance before first touch [m]; the phase of the impact is gap/(speed time_step);
+  T R_star;         // [m]
+  T m_star;         // [kg]
+  T speed;          // approach speed [m/s]
+  T time_step;      // [s]
+  T gap;            // distance before first touch [m]; the phase of the impact is gap/(speed time_step);
                        // negative: they overlap already
   std::int64_t steps;  // at most so many steps are taken
-  real viscous;        // viscous_number of the pair, 0: no dashpot
+  T viscous;        // viscous_number of the pair, 0: no dashpot
 };
 
+template <class T>
 struct ImpactOutput {
-  real rebound_speed;            // [m/s]
-  real force_max, overlap_max;   // largest sampled values [N], [m]
-  real last_overlap;             // overlap at the last loaded sample [m]
+  T rebound_speed;            // [m/s]
+  T force_max, overlap_max;   // largest sampled values [N], [m]
+  T last_overlap;             // overlap at the last loaded sample [m]
   std::int64_t first, last;      // first and last step with a force
   std::int64_t steps;            // steps taken
 };
 
 /// Samples of the path, written if the pointers are set; room for steps + 1 values each.
+template <class T>
 struct Path {
-  real* overlap = nullptr;   // [m], negative while apart
-  real* force = nullptr;     // [N]
-  real* velocity = nullptr;  // of approach [m/s]
+  T* overlap = nullptr;   // [m], negative while apart
+  T* force = nullptr;     // [N]
+  T* velocity = nullptr;  // of approach [m/s]
 };
 
 /// Integrates until the bodies have parted (no force for two steps after contact) or `steps` is reached;
 /// `state` is what the contact remembers, before and after.
 template <class Law>
-inline ImpactOutput impact(const Law& law, const ImpactInput& in, const Path& path, State<Law>& state) noexcept {
-  const real half = 0.5 * in.time_step / in.m_star;
-  real alpha = -in.gap, v = in.speed, force = 0.0;
-  ImpactOutput out{in.speed, 0.0, 0.0, 0.0, -1, -1, 0};
+inline ImpactOutput<Number<Law>> impact(const Law& law, const ImpactInput<Number<Law>>& in, const Path<Number<Law>>& path, State<Law>& state) noexcept {
+  using T = Number<Law>;
+  const T half = 0.5 * in.time_step / in.m_star;
+  T alpha = -in.gap, v = in.speed, force = 0.0;
+  ImpactOutput<T> out{in.speed, 0.0, 0.0, 0.0, -1, -1, 0};
   std::int64_t n = 0;
   for (;; ++n) {
     const Step<Law> now = step(law, in.R_star, state, alpha);
     // the dashpot sees the speed of the middle of the last step, as in an engine that moves before it finds contacts
     const bool damped = in.viscous > 0.0 && alpha > 0.0;
-    const real F = damped ? damped_force(law, in.R_star, state, now, in.viscous, in.m_star, v) : now.force;
+    const T F = damped ? damped_force(law, in.R_star, state, now, in.viscous, in.m_star, v) : now.force;
     if (n > 0) v -= half * F;
     force = F;
     state = now.after;
@@ -74,7 +78,7 @@ inline ImpactOutput impact(const Law& law, const ImpactInput& in, const Path& pa
 
 /// The first impact of a contact.
 template <class Law>
-inline ImpactOutput impact(const Law& law, const ImpactInput& in, const Path& path) noexcept {
+inline ImpactOutput<Number<Law>> impact(const Law& law, const ImpactInput<Number<Law>>& in, const Path<Number<Law>>& path) noexcept {
   State<Law> state{};
   return impact(law, in, path, state);
 }
@@ -83,15 +87,16 @@ inline ImpactOutput impact(const Law& law, const ImpactInput& in, const Path& pa
 /// walls without loss. Phases follow the golden ratio. `speeds` may be null, or takes the `count` rebound speeds.
 /// Returns the last impact, `steps` being those of all; it ends early if a contact does not end.
 template <class Law>
-inline ImpactOutput bounces(const Law& law, const ImpactInput& first, std::int64_t count, real* speeds) noexcept {
+inline ImpactOutput<Number<Law>> bounces(const Law& law, const ImpactInput<Number<Law>>& first, std::int64_t count, Number<Law>* speeds) noexcept {
+  using T = Number<Law>;
   State<Law> state{};
-  ImpactInput in = first;
-  ImpactOutput out{first.speed, 0.0, 0.0, 0.0, -1, -1, 0};
+  ImpactInput<T> in = first;
+  ImpactOutput<T> out{first.speed, 0.0, 0.0, 0.0, -1, -1, 0};
   std::int64_t steps = 0;
-  real phase = 0.5;
+  T phase = 0.5;
   for (std::int64_t k = 0; k < count; ++k) {
     const bool dented = state.delta_max > law.elastic_overlap(in.R_star);
-    const real dent =
+    const T dent =
         dented ? state.delta_max - recovered_overlap(law.E_star, law.load(in.R_star, state.delta_max)) : 0.0;
     in.gap = phase * in.speed * in.time_step - dent;
     out = impact(law, in, {}, state);

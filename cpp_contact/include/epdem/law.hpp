@@ -2,7 +2,8 @@
 // One step of a contact: a pure function of (law, R*, before, delta). The host keeps `after` only when the step counts.
 //
 // A law object holds the constants of a pair of materials (E* and the law's parameters); R* comes apart because it
-// changes from contact to contact while the pairs of materials of a simulation are few.
+// changes from contact to contact while the pairs of materials of a simulation are few. All of it on the law's number
+// type: the same text, and the same bits, for one contact and for lanes of contacts.
 #pragma once
 
 #include "unloading.hpp"
@@ -11,9 +12,9 @@ namespace epdem {
 
 /// The memory of a contact whose largest overlap is known.
 template <class Law>
-inline State<Law> remember(const Law& law, real R_star, real delta_max) noexcept {
+inline State<Law> remember(const Law& law, Number<Law> R_star, Number<Law> delta_max) noexcept {
   if constexpr (Law::flattens) {
-    if (!(delta_max > law.elastic_overlap(R_star))) return {delta_max, {0.0, 0.0, 0.0}};
+    if (!(delta_max > law.elastic_overlap(R_star))) return {delta_max, {}};
     return {delta_max, law.load(R_star, delta_max)};
   } else {
     (void)law;
@@ -23,72 +24,83 @@ inline State<Law> remember(const Law& law, real R_star, real delta_max) noexcept
 }
 
 /// A stored overlap [m] of this size was never one, and is forgotten.
-inline constexpr real no_overlap = 1e100;
+inline constexpr double no_overlap = 1e100;
 
 /// Whether a stored peak can be one: a restart of a run with another law may have left other numbers there.
-inline bool plausible(const Point& p) noexcept {
-  constexpr real most = std::numeric_limits<double>::max();
-  return p.force > 0.0 && p.force <= most && p.radius > 0.0 && p.radius <= most && p.flatness >= 0.0 && p.flatness <= 1.0;
+template <class T>
+inline auto plausible(const Point<T>& p) noexcept {
+  constexpr double most = std::numeric_limits<double>::max();
+  return (p.force > 0.0) & (p.force <= most) & (p.radius > 0.0) & (p.radius <= most) & (p.flatness >= 0.0) &
+         (p.flatness <= 1.0);
 }
 
 template <class Law>
 struct Step {
-  real force;      // F [N], never negative
-  real radius;     // contact radius a [m]; the stiffnesses are k_n = 2 E* a and k_t = 8 G* a
-  State<Law> after;  // what the contact remembers if this step counts
+  Number<Law> force;   // F [N], never negative
+  Number<Law> radius;  // contact radius a [m]; the stiffnesses are k_n = 2 E* a and k_t = 8 G* a
+  State<Law> after;    // what the contact remembers if this step counts
 };
 
 /// Force and contact radius at overlap `delta` [m] of a contact that remembers `before`.
 /// Never NaN for finite input; zero force for delta <= 0. The memory only grows: forgetting is the host's decision.
 template <class Law>
-inline Step<Law> step(const Law& law, real R_star, const State<Law>& before, real delta) noexcept {
-  if (!(delta > 0.0)) return {0.0, 0.0, before};
+inline Step<Law> step(const Law& law, Number<Law> R_star, const State<Law>& before, Number<Law> delta) noexcept {
+  using T = Number<Law>;
+  const auto touches = delta > 0.0;
+  if (!any(touches)) return {T{}, T{}, before};
+  Point<T> now{};
+  State<Law> after = before;
   if constexpr (!Law::yields) {
-    const Point p = hertz_point(law.E_star, R_star, delta);
-    return {p.force, p.radius, {delta > before.delta_max ? delta : before.delta_max}};
+    now = hertz_point(law.E_star, R_star, delta);
+    after.delta_max = select(touches & (delta > before.delta_max), delta, before.delta_max);
   } else {
-    const real delta_y = law.elastic_overlap(R_star);
-    // also at equality: evaluating the same step twice then gives the same bits
-    const bool grows = !(delta < before.delta_max && before.delta_max < no_overlap);
-    const real delta_max = grows ? delta : before.delta_max;
-    if (delta_max <= delta_y) {
-      const Point p = hertz_point(law.E_star, R_star, delta);
-      State<Law> after = before;
-      after.delta_max = delta_max;
-      return {p.force, p.radius, after};
+    // grows also at equality: evaluating the same step twice then gives the same bits
+    const auto falls = (delta < before.delta_max) & (before.delta_max < no_overlap);
+    const T delta_max = select(falls, before.delta_max, delta);
+    const auto elastic = delta_max <= law.elastic_overlap(R_star);
+    if (any(elastic)) now = hertz_point(law.E_star, R_star, delta);
+    if (any(!elastic)) {
+      Point<T> peak;
+      if constexpr (Law::flattens) {
+        const auto unknown = !(elastic | (falls & plausible(before.point)));
+        peak = before.point;
+        if (any(unknown)) peak = select(unknown, law.load(R_star, only(unknown, delta_max)), peak);
+        after.point = select(touches & unknown, peak, before.point);
+      } else {
+        peak = law.load(R_star, delta_max);
+      }
+      if (any(falls)) peak = select(falls, unload<Law::flattens>(law.E_star, peak, delta_max, delta), peak);
+      now = select(elastic, now, peak);
     }
-    if (grows) {
-      const Point p = law.load(R_star, delta);
-      if constexpr (Law::flattens)
-        return {p.force, p.radius, {delta, p}};
-      else
-        return {p.force, p.radius, {delta}};
-    }
-    if constexpr (Law::flattens) {
-      const State<Law> known = plausible(before.point) ? before : remember(law, R_star, before.delta_max);
-      const Point p = unload<true>(law.E_star, known.point, known.delta_max, delta);
-      return {p.force, p.radius, known};
-    } else {
-      const Point p = unload<false>(law.E_star, law.load(R_star, before.delta_max), before.delta_max, delta);
-      return {p.force, p.radius, before};
-    }
+    after.delta_max = select(touches, delta_max, before.delta_max);
   }
+  return {select(touches, now.force, T{}), select(touches, now.radius, T{}), after};
 }
 
 /// Work lost for good by a contact that reached delta_max [J]: backbone work less the recoverable part.
 template <class Law>
-inline real plastic_work(const Law& law, real R_star, real delta_max) noexcept {
-  if (!(delta_max > law.elastic_overlap(R_star))) return 0.0;
-  return law.work(R_star, delta_max) - recovered_work(law.E_star, law.load(R_star, delta_max));
+inline Number<Law> plastic_work(const Law& law, Number<Law> R_star, Number<Law> delta_max) noexcept {
+  using T = Number<Law>;
+  const auto yielded = delta_max > law.elastic_overlap(R_star);
+  if (!any(yielded)) return T{};
+  const T reached = only(yielded, delta_max);
+  return select(yielded, law.work(R_star, reached) - recovered_work(law.E_star, law.load(R_star, reached)), T{});
 }
 
 /// Elastic energy [J] of a contact at overlap `delta` that remembers `before`; it returns on separation.
 template <class Law>
-inline real elastic_energy(const Law& law, real R_star, const State<Law>& before, real delta) noexcept {
-  if (!(delta > 0.0)) return 0.0;
-  const real delta_max = std::max(delta, before.delta_max);
-  if (!Law::yields || delta_max <= law.elastic_overlap(R_star)) return hertz_work(law.E_star, R_star, delta);
-  return stored_work<Law::flattens>(law.E_star, law.load(R_star, delta_max), delta_max, delta);
+inline Number<Law> elastic_energy(const Law& law, Number<Law> R_star, const State<Law>& before,
+                                  Number<Law> delta) noexcept {
+  using T = Number<Law>;
+  const auto touches = delta > 0.0;
+  const T delta_max = max(delta, before.delta_max);
+  const auto yielded = touches & (delta_max > law.elastic_overlap(R_star));
+  T energy = hertz_work(law.E_star, R_star, delta);
+  if (Law::yields && any(yielded)) {
+    const T reached = only(yielded, delta_max);
+    energy = select(yielded, stored_work<Law::flattens>(law.E_star, law.load(R_star, reached), reached, delta), energy);
+  }
+  return select(touches, energy, T{});
 }
 
 }  // namespace epdem

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The register of laws: a new law is its header above this list and one line in it.
+// The register of laws: a new law is its header above this list and one line in it. X(class template)
 #pragma once
 
 #include "cavity.hpp"
@@ -16,7 +16,7 @@
 
 namespace epdem::detail {
 
-#define EPDEM_ID(Class) Class::id,
+#define EPDEM_ID(Class) Class<double>::id,
 inline constexpr int law_ids[] = {EPDEM_LAWS(EPDEM_ID)};
 #undef EPDEM_ID
 
@@ -30,10 +30,14 @@ constexpr bool ids_fit() noexcept {
 }
 static_assert(ids_fit(), "every law needs an id of its own from 1 to 62");
 
-#define EPDEM_CHECK(Class)                                                                               \
-  static_assert(sizeof(State<Class>) == std::size(State<Class>::slots) * sizeof(real), "name every slot"); \
-  static_assert(Class::strength < Class::n_parameters, "the strength is one of the parameters");           \
-  static_assert(Class::strength >= 0 || !Class::strength_by_ratio, "no strength, no ratio");
+template <class Law>
+constexpr bool sound() noexcept {
+  static_assert(sizeof(State<Law>) == sizeof(double[std::size(State<Law>::slots)]), "name every slot of the memory");
+  static_assert(Law::strength < Law::n_parameters, "the strength is one of the parameters");
+  static_assert(Law::strength >= 0 || !Law::strength_by_ratio, "no strength, no ratio");
+  return sizeof(Law) % sizeof(double) == 0;
+}
+#define EPDEM_CHECK(Class) static_assert(sound<Class<double>>(), "a law's data are numbers of type T only");
 EPDEM_LAWS(EPDEM_CHECK)
 #undef EPDEM_CHECK
 

@@ -7,17 +7,21 @@
 namespace epdem {
 
 /// Spring k_t = 8 G* a [N/m] of a contact circle without slip.
-inline real tangential_stiffness(real G_star, real radius) noexcept { return 8.0 * G_star * radius; }
+template <class T>
+inline T tangential_stiffness(T G_star, T radius) noexcept {
+  return 8.0 * G_star * radius;
+}
 
 /// Damping number of a linear oscillator with restitution e in (0, 1]: beta = -ln e/sqrt(ln^2 e + pi^2).
-inline real damping_number(real e) noexcept {
-  const real log_e = std::log(e);
+inline double damping_number(double e) noexcept {
+  const double log_e = std::log(e);
   return -log_e / std::sqrt(log_e * log_e + pi * pi);
 }
 
 /// Dashpot [N s/m] beside the spring k_t: 2 sqrt(5/6) beta sqrt(k_t m*).
-inline real tangential_damping(real beta, real k_t, real m_star) noexcept {
-  return 1.8257418583505538 * beta * std::sqrt(k_t * m_star);
+template <class T>
+inline T tangential_damping(T beta, T k_t, T m_star) noexcept {
+  return 1.8257418583505538 * beta * sqrt(k_t * m_star);
 }
 
 }  // namespace epdem

@@ -8,46 +8,46 @@ namespace epdem {
 /// Elastic, perfectly plastic contact with a truncated Hertz pressure (Thornton 1997, J. Appl. Mech. 64, 383).
 /// Hertz to alpha_y = a_y^2/R*, a_y = pi R* p_y/(2E*); then F = F_y + pi p_y R* (alpha - alpha_y), a^2 = R* alpha.
 /// Its restitution is eq. 8.83, its yield speed eq. 8.84.
+template <class T>
 struct Thornton {
+  using number = T;
   static constexpr const char* name = "thornton";
   static constexpr int id = 41;
-  using State = Maximum;
+  using State = Maximum<T>;
   static constexpr bool yields = true;
   static constexpr bool flattens = false;
-  static constexpr Parameter parameters[] = {
-      {"yield_pressure", "yieldPressure", "Pa", not_given}};
+  static constexpr Parameter parameters[] = {{"yield_pressure", "yieldPressure", "Pa", not_given}};
   static constexpr int n_parameters = 1;
   static constexpr int strength = 0;
   static constexpr double default_ratio = 2.8;
   static constexpr bool strength_by_ratio = true;
 
-  real E_star;
-  real yield_ratio;   // alpha_y/R*
-  real slope_ratio;   // pi p_y: slope of the plastic line over R*
-  real offset_ratio;  // (pi p_y alpha_y - F_y)/R*^2: F = (slope_ratio alpha - offset_ratio R*) R*
+  T E_star{};
+  T yield_ratio{};   // alpha_y/R*
+  T slope_ratio{};   // pi p_y: slope of the plastic line over R*
+  T offset_ratio{};  // (pi p_y alpha_y - F_y)/R*^2: F = (slope_ratio alpha - offset_ratio R*) R*
 
   /// Whether positive, finite parameters also make sense together.
-  static bool valid(const real*) noexcept { return true; }
+  static bool valid(const T*) noexcept { return true; }
 
-  Thornton() noexcept : E_star(0.0), yield_ratio(0.0), slope_ratio(0.0), offset_ratio(0.0) {}
-  Thornton(real E_star_, const real* parameter) noexcept : E_star(E_star_) {
-    const real p_y = parameter[0], q = pi * p_y / (2.0 * E_star_);
+  Thornton() = default;
+  Thornton(T E_star_, const T* parameter) noexcept : E_star(E_star_) {
+    const T p_y = parameter[0], q = pi * p_y / (2.0 * E_star_);
     yield_ratio = q * q;
     slope_ratio = pi * p_y;
     offset_ratio = slope_ratio * yield_ratio / 3.0;  // F_y = (2/3) pi p_y R* alpha_y
   }
 
-  real elastic_overlap(real R_star) const noexcept { return yield_ratio * R_star; }
+  T elastic_overlap(T R_star) const noexcept { return yield_ratio * R_star; }
 
-  Point load(real R_star, real delta) const noexcept {
-    return {(slope_ratio * delta - offset_ratio * R_star) * R_star, std::sqrt(R_star * delta), 0.0};
+  Point<T> load(T R_star, T delta) const noexcept {
+    return {(slope_ratio * delta - offset_ratio * R_star) * R_star, sqrt(R_star * delta), T{}};
   }
 
-  real work(real R_star, real delta) const noexcept {
-    const real delta_y = elastic_overlap(R_star);
-    if (!(delta > delta_y)) return hertz_work(E_star, R_star, delta);
-    const real F_y = (slope_ratio - slope_ratio / 3.0) * delta_y * R_star, x = delta - delta_y;
-    return hertz_work(E_star, R_star, delta_y) + (F_y + 0.5 * slope_ratio * R_star * x) * x;
+  T work(T R_star, T delta) const noexcept {
+    const T delta_y = elastic_overlap(R_star);
+    const T F_y = (slope_ratio - slope_ratio / 3.0) * delta_y * R_star, x = max(T{}, delta - delta_y);
+    return hertz_work(E_star, R_star, min(delta, delta_y)) + (F_y + 0.5 * slope_ratio * R_star * x) * x;
   }
 };
 

@@ -11,11 +11,11 @@ inline constexpr double viscous_restitution_min = 0.14;
 
 /// Dashpot number 2 sqrt(5/6) zeta of a Hertz contact with restitution e in [0.14, 1] (Tsuji, Tanaka and Ishida 1992,
 /// with the force cut off at 0): zeta = sin phi, e = exp(-(pi - 2 phi) tan phi), phi by bisection.
-inline real viscous_number(real e) noexcept {
+inline double viscous_number(double e) noexcept {
   if (!(e < 1.0)) return 0.0;
-  real low = 0.0, high = 0.5 * pi;
+  double low = 0.0, high = 0.5 * pi;
   for (int k = 0; k < 120; ++k) {
-    const real phi = 0.5 * (low + high);
+    const double phi = 0.5 * (low + high);
     (std::exp(-(pi - 2.0 * phi) * std::tan(phi)) > e ? low : high) = phi;
   }
   return 1.8257418583505538 * std::sin(low);  // 2 sqrt(5/6)
@@ -24,12 +24,14 @@ inline real viscous_number(real e) noexcept {
 /// The step's force with the dashpot: 2 sqrt(5/6) zeta sqrt(k_n m*) times the approach speed [m/s], k_n = 2 E* a.
 /// It acts where the force is below the backbone or on its elastic start, not while the contact yields; never attracts.
 template <class Law>
-inline real damped_force(const Law& law, real R_star, const State<Law>& before, const Step<Law>& now, real number,
-                         real m_star, real approach_speed) noexcept {
-  if constexpr (Law::yields)
-    if (now.after.delta_max > before.delta_max && now.after.delta_max > law.elastic_overlap(R_star)) return now.force;
-  const real force = now.force + number * std::sqrt(2.0 * law.E_star * now.radius * m_star) * approach_speed;
-  return force > 0.0 ? force : 0.0;
+inline Number<Law> damped_force(const Law& law, Number<Law> R_star, const State<Law>& before, const Step<Law>& now,
+                                Number<Law> number, Number<Law> m_star, Number<Law> approach_speed) noexcept {
+  using T = Number<Law>;
+  const T force = now.force + number * sqrt(2.0 * law.E_star * now.radius * m_star) * approach_speed;
+  const T damped = max(T{}, force);
+  if constexpr (!Law::yields) return damped;
+  const auto grows = now.after.delta_max > before.delta_max, yielded = now.after.delta_max > law.elastic_overlap(R_star);
+  return select(grows & yielded, now.force, damped);
 }
 
 }  // namespace epdem

@@ -7,48 +7,61 @@ Every mistake is a CaseError that names file, key, value, limit and next step.
 import contextlib
 import tomllib
 from collections.abc import Iterator
+from dataclasses import dataclass
 from pathlib import Path
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, Literal, Self
 
 import numpy as np
-from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, ValidationError, model_validator
+from pydantic import (
+    BaseModel,
+    BeforeValidator,
+    ConfigDict,
+    Field,
+    GetCoreSchemaHandler,
+    ValidationError,
+    model_validator,
+)
+from pydantic_core.core_schema import CoreSchema, no_info_before_validator_function
 
 from ..errors import CaseError
 from .messages import explain
-from .units import to_si
+from .units import to_si, within_limits
 
 RIGID = "rigid"
 MAX_IMPACTS = 4096
+MAX_BYTES = 4_000_000  # of a case file
 # Largest relative errors a case accepts if it does not say (maximum over the phases, 400 steps in contact).
 DEFAULT_CHECKS = {"e_n": 1e-4, "contact_time": 5e-3, "force_max": 1e-3, "overlap_max": 1e-3, "residual_overlap": 1e-3}
 
 
-# Beyond these nothing in a particle simulation lies, and the laws' powers of them could leave the range of numbers.
-LIMITS = {"Pa": (1e-9, 1e30), "m": (1e-12, 1e6), "kg/m^3": (1e-9, 1e20), "m/s": (1e-30, 1e12)}
+@dataclass(frozen=True)
+class Quantity:
+    """Mark of a pydantic field: a quantity in `si`, in (above, ...) or within ge and le; `hint` ends the message."""
+
+    si: str
+    above: float = -np.inf
+    ge: float = -np.inf
+    le: float = np.inf
+    hint: str = ""
+
+    def read(self, value: object) -> float:
+        """The SI value of a quantity as a person writes it. Raises ValueError."""
+        x = to_si(value, self.si)
+        if x > self.above and self.ge <= x <= self.le:
+            return within_limits(x, self.si)
+        left = f"[{self.ge:g}" if self.ge > self.above else f"({self.above:g}"
+        right = f"{self.le:g}{']' if self.le < np.inf else ')'}"
+        unit, hint = "" if self.si == "1" else f" {self.si}", f"; {self.hint}" if self.hint else ""
+        raise ValueError(f"must lie in {left}, {right}{unit}{hint}")
+
+    def __get_pydantic_core_schema__(self, source: type[float], handler: GetCoreSchemaHandler) -> CoreSchema:
+        return no_info_before_validator_function(self.read, handler(source))
 
 
-def within_limits(x: float, si: str) -> float:
-    """x, if its size is one that is computed with. Raises ValueError."""
-    low, high = LIMITS.get(si, (0.0, np.inf))
-    if x and not low <= abs(x) <= high:
-        raise ValueError(f"must lie in [{low:g}, {high:g}] {si}; check the unit")
-    return x
-
-
-def quantity(si: str, *, above: float | None = None, hint: str = "", **limits: float):
-    """A pydantic type: a quantity in `si`, in (above, ...) or within ge/le; `hint` ends the message."""
-
-    def read(value: object) -> float:
-        x = to_si(value, si)
-        low, high = limits.get("ge"), limits.get("le")
-        bad = (above is not None and x <= above) or (low is not None and x < low) or (high is not None and x > high)
-        if bad:
-            left = f"({above:g}" if above is not None else f"[{low:g}" if low is not None else "(-inf"
-            right = f"{high:g}]" if high is not None else "inf)"
-            raise ValueError(f"must lie in {left}, {right}{'' if si == '1' else ' ' + si}{'; ' + hint if hint else ''}")
-        return within_limits(x, si)
-
-    return Annotated[float, BeforeValidator(read)]
+Length = Annotated[float, Quantity("m", above=0.0)]
+Speed = Annotated[float, Quantity("m/s", above=0.0)]
+Pressure = Annotated[float, Quantity("Pa", above=0.0)]
+Tolerance = Annotated[float, Quantity("1", above=0.0)]
 
 
 def _printable_line(value: object) -> str:
@@ -76,31 +89,31 @@ class Header(Frozen):
 class Material(Frozen):
     """Elastic constants, density and (if the law yields) the yield stress in simple compression, SI."""
 
-    young_modulus: quantity("Pa", above=0.0)
-    poisson_ratio: quantity("1", above=-1.0, le=0.5, hint="percent?")
-    density: quantity("kg/m^3", above=0.0)
-    yield_stress: quantity("Pa", above=0.0) | None = None
+    young_modulus: Pressure
+    poisson_ratio: Annotated[float, Quantity("1", above=-1.0, le=0.5, hint="percent?")]
+    density: Annotated[float, Quantity("kg/m^3", above=0.0)]
+    yield_stress: Pressure | None = None
 
 
 class Body(Frozen):
-    radius: quantity("m", above=0.0)
+    radius: Length
     material: Name
 
 
 class Target(Frozen):
     material: Name
-    radius: quantity("m", above=0.0) | None = None
+    radius: Length | None = None
 
 
 class SpeedRange(Frozen):
     """Speeds from `from` to `to`, evenly spaced in the logarithm."""
 
-    start: quantity("m/s", above=0.0) = Field(alias="from")
-    to: quantity("m/s", above=0.0)
+    start: Speed = Field(alias="from")
+    to: Speed
     count: Annotated[int, Field(ge=2, le=1000)]
 
     @model_validator(mode="after")
-    def _ordered(self):
+    def _ordered(self) -> Self:
         if not self.to > self.start:
             raise ValueError(f"'to' ({self.to:g} m/s) must exceed 'from' ({self.start:g} m/s)")
         return self
@@ -110,10 +123,10 @@ class Impact(Frozen):
     kind: Literal["sphere-wall", "sphere-sphere"]
     body: Body
     target: Target
-    speeds: SpeedRange | Annotated[list[quantity("m/s", above=0.0)], Field(min_length=1, max_length=1000)]
+    speeds: SpeedRange | Annotated[list[Speed], Field(min_length=1, max_length=1000)]
 
     @model_validator(mode="after")
-    def _target_has_radius(self):
+    def _target_has_radius(self) -> Self:
         if (self.target.radius is not None) != (self.kind == "sphere-sphere"):
             need = "needs" if self.kind == "sphere-sphere" else "must not have"
             raise ValueError(f"kind = {self.kind!r}: target {need} a radius")
@@ -129,7 +142,7 @@ class Impact(Frozen):
 
 
 class LawChoice(BaseModel):
-    """The law by name; its parameters are checked against the law itself, see experiment.choose_law."""
+    """The law by name; its parameters are checked against the law itself, see case.law."""
 
     model_config = ConfigDict(frozen=True, extra="allow", strict=True)
     name: Name
@@ -142,7 +155,9 @@ class LawChoice(BaseModel):
 class Viscous(Frozen):
     """A dashpot on the elastic branches: `restitution` of impacts that do not yield."""
 
-    restitution: quantity("1", ge=0.14, le=1.0, hint="1 is no dashpot, below 0.14 none is strong enough")
+    restitution: Annotated[
+        float, Quantity("1", ge=0.14, le=1.0, hint="1 is no dashpot, below 0.14 none is strong enough")
+    ]
 
 
 class Numerics(Frozen):
@@ -153,18 +168,18 @@ class Numerics(Frozen):
     phases: Annotated[int, Field(ge=1, le=64)] = 8
 
     @model_validator(mode="after")
-    def _one_of_two(self):
+    def _one_of_two(self) -> Self:
         if self.error is not None and "steps_in_contact" in self.model_fields_set:
             raise ValueError("both 'error' and 'steps_in_contact' are given; keep one")
         return self
 
 
 class Check(Frozen):
-    e_n: quantity("1", above=0.0) = DEFAULT_CHECKS["e_n"]
-    contact_time: quantity("1", above=0.0) = DEFAULT_CHECKS["contact_time"]
-    force_max: quantity("1", above=0.0) = DEFAULT_CHECKS["force_max"]
-    overlap_max: quantity("1", above=0.0) = DEFAULT_CHECKS["overlap_max"]
-    residual_overlap: quantity("1", above=0.0) = DEFAULT_CHECKS["residual_overlap"]
+    e_n: Tolerance = DEFAULT_CHECKS["e_n"]
+    contact_time: Tolerance = DEFAULT_CHECKS["contact_time"]
+    force_max: Tolerance = DEFAULT_CHECKS["force_max"]
+    overlap_max: Tolerance = DEFAULT_CHECKS["overlap_max"]
+    residual_overlap: Tolerance = DEFAULT_CHECKS["residual_overlap"]
 
 
 class Case(Frozen):
@@ -179,7 +194,7 @@ class Case(Frozen):
     check: Check = Check()
 
     @model_validator(mode="after")
-    def _consistent(self):
+    def _consistent(self) -> Self:
         if RIGID in self.materials:
             raise ValueError(f"materials.{RIGID}: this name is kept for a rigid target; choose another")
         for place, name in (("body", self.impact.body.material), ("target", self.impact.target.material)):
@@ -197,7 +212,7 @@ class Case(Frozen):
         return self.case.name
 
 
-def parse(data: dict, path: object = "case") -> Case:
+def parse(data: dict[str, Any], path: object = "case") -> Case:
     """A Case from TOML data; `path` names the place in messages. Raises CaseError."""
     try:
         return Case.model_validate(data)
@@ -205,17 +220,25 @@ def parse(data: dict, path: object = "case") -> Case:
         raise CaseError(explain(path, data, error, "impact")) from None
 
 
-def read_toml(path: Path | str) -> dict:
+def read_toml(path: Path | str) -> dict[str, Any]:
     """The raw tables of a TOML file. Raises CaseError."""
     path = Path(path)
     try:
-        return tomllib.loads(path.read_text(encoding="utf-8"))
+        with path.open("rb") as stream:  # a device or a film may have been named: no more than this is read
+            raw = stream.read(MAX_BYTES + 1)
+        if len(raw) > MAX_BYTES:
+            raise CaseError(f"{path}: more than {MAX_BYTES // 1_000_000} MB, which no case has; name the case file")
+        return tomllib.loads(raw.decode("utf-8-sig").replace("\r\n", "\n"))
     except FileNotFoundError:
         raise CaseError(f"{path}: no such file; the examples are in cases/") from None
-    except (OSError, UnicodeDecodeError) as error:
+    except UnicodeDecodeError as error:
+        raise CaseError(f"{path}: not UTF-8 at byte {error.start}; save the file as UTF-8") from None
+    except OSError as error:
         raise CaseError(f"{path}: cannot be read ({error})") from None
     except tomllib.TOMLDecodeError as error:
         raise CaseError(f"{path}: not valid TOML: {error}") from None
+    except RecursionError:
+        raise CaseError(f"{path}: tables and lists are nested too deeply; a case needs three levels") from None
 
 
 @contextlib.contextmanager

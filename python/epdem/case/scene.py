@@ -2,19 +2,20 @@
 """A case file with [scene]: units in, frozen SI values out. Every mistake is a CaseError that names its place."""
 
 from pathlib import Path
-from typing import Annotated, Literal
+from typing import Annotated, Any, Literal, Self
 
 from pydantic import ConfigDict, Field, ValidationError, model_validator
 
 from ..errors import CaseError
 from . import impact as impact_case
-from .impact import Frozen, Header, LawChoice, Material, Name, Viscous, quantity
+from .impact import Frozen, Header, LawChoice, Length, Material, Name, Quantity, Speed, Viscous
 from .messages import explain
 
-Length = quantity("m", above=0.0)
-Time = quantity("s", above=0.0)
-Speed = quantity("m/s", above=0.0)
-Share = quantity("1", above=0.0, le=1.0)
+Time = Annotated[float, Quantity("s", above=0.0)]
+Rate = Annotated[float, Quantity("Hz", above=0.0)]
+Gravity = Annotated[float, Quantity("m/s^2", ge=0.0)]
+Friction = Annotated[float, Quantity("1", ge=0.0)]
+Share = Annotated[float, Quantity("1", above=0.0, le=1.0)]
 
 
 class SceneMaterial(Material):
@@ -31,7 +32,7 @@ class Range(Frozen):
     classes: Annotated[int, Field(ge=2, le=50)] = 5
 
     @model_validator(mode="after")
-    def _ordered(self):
+    def _ordered(self) -> Self:
         if not self.to > self.start:
             raise ValueError(f"'to' ({self.to:g} m) must exceed 'from' ({self.start:g} m)")
         return self
@@ -60,11 +61,11 @@ class Particles(Frozen):
 
 class Rolling(Frozen):
     model: Literal["cdt", "epsd", "epsd2"] = "epsd2"
-    coefficient: quantity("1", above=0.0)
-    damping: quantity("1", ge=0.0) | None = None  # epsd only: share of the critical one
+    coefficient: Annotated[float, Quantity("1", above=0.0)]
+    damping: Annotated[float, Quantity("1", ge=0.0)] | None = None  # epsd only: share of the critical one
 
     @model_validator(mode="after")
-    def _damping(self):
+    def _damping(self) -> Self:
         if (self.damping is not None) != (self.model == "epsd"):
             raise ValueError("'damping' belongs to model = 'epsd' and only to it")
         return self
@@ -74,18 +75,18 @@ class Between(Frozen):
     """Values of one pair of materials that differ from the common ones; "wall" names the walls."""
 
     between: Annotated[list[Name], Field(min_length=2, max_length=2)]
-    friction: quantity("1", ge=0.0)
+    friction: Friction
 
 
 class Contact(Frozen):
     """What a contact has beside its normal law; what is left out is not compiled into the loop."""
 
-    friction: quantity("1", ge=0.0) = 0.0
-    wall_friction: quantity("1", ge=0.0) | None = None
-    pairs: Annotated[list[Between], Field(default_factory=list)]
+    friction: Friction = 0.0
+    wall_friction: Friction | None = None
+    pairs: list[Between] = Field(default_factory=list)
     tangential_restitution: Share | None = None  # of the dashpot beside the tangential spring
     rolling: Rolling | None = None
-    cohesion: quantity("J/m^3", above=0.0) | None = None  # energy density (sjkr)
+    cohesion: Annotated[float, Quantity("J/m^3", above=0.0)] | None = None  # energy density (sjkr)
 
 
 class Output(Frozen):
@@ -101,7 +102,7 @@ class Output(Frozen):
     restarts: Annotated[int, Field(ge=0, le=1000)] = 0
 
     @model_validator(mode="after")
-    def _ledger_frames(self):
+    def _ledger_frames(self) -> Self:
         if self.energy and self.contacts and self.contacts != self.particles:
             raise ValueError("the energy ledger needs particles and contacts at the same steps; give the same number")
         return self
@@ -120,11 +121,10 @@ class Common(Frozen):
     particles: Annotated[list[Particles], Field(min_length=1, max_length=64)]
     count: Annotated[int, Field(ge=1, le=100_000_000)]
     walls: Name  # material of the walls
-    gravity: quantity("m/s^2", ge=0.0) = 9.81
-    duration: Time
+    gravity: Gravity = 9.81
 
     @model_validator(mode="after")
-    def _shares(self):
+    def _shares(self) -> Self:
         total = sum(p.share for p in self.particles)
         if abs(total - 1.0) > 1e-9:
             raise ValueError(f"the shares of 'particles' add up to {total:g}, must be 1")
@@ -135,19 +135,21 @@ class Settle(Common):
     """Spheres poured into a box (x, y, z inside) with its floor at z = 0."""
 
     kind: Literal["settle"]
+    duration: Time
     box: Annotated[list[Length], Field(min_length=3, max_length=3)]
     periodic: bool = False  # in x and y, instead of side walls
-    rate: quantity("Hz", above=0.0) | None = None  # spheres per second; none: all at once
+    rate: Rate | None = None  # spheres per second; none: all at once
 
 
 class Hopper(Common):
     """Discharge of a round bin with a conical hopper of triangles; `fill` is the time before the outlet opens."""
 
     kind: Literal["hopper"]
+    duration: Time
     bin_diameter: Length
     bin_height: Length
     outlet: Length
-    half_angle: quantity("rad", above=0.0, le=1.5707963267948966)
+    half_angle: Annotated[float, Quantity("rad", above=0.0, le=1.5707963267948966)]
     drop: Length  # from the outlet to the floor
     fill: Time
 
@@ -160,16 +162,17 @@ class Drum(Common):
     """
 
     kind: Literal["drum"]
+    duration: Time
     diameter: Length
     length: Length
-    turn: quantity("rad/s", above=0.0)  # "20 rpm"
+    turn: Annotated[float, Quantity("rad/s", above=0.0)]  # "20 rpm"
 
 
 class Compaction(Common):
     """Uniaxial loading and unloading between plates; sides periodic. No `duration`: strokes and speed give it."""
 
     kind: Literal["compaction"]
-    gravity: quantity("m/s^2", ge=0.0) = 0.0
+    gravity: Gravity = 0.0
     duration: Time | None = None
     box: Annotated[list[Length], Field(min_length=3, max_length=3)]
     height: Length  # of the gap between the plates at the end of loading
@@ -183,7 +186,7 @@ class Compaction(Common):
         return self.back_speed or 0.1 * self.speed
 
     @model_validator(mode="after")
-    def _order(self):
+    def _order(self) -> Self:
         if not self.height < self.box[2]:
             raise ValueError(f"height ({self.height:g} m) must be below the box's height ({self.box[2]:g} m)")
         if self.duration is not None:
@@ -195,16 +198,17 @@ class Peening(Common):
     """A stream of shot along -z on a plate of the walls' material, or on a bed of spheres that lies on it."""
 
     kind: Literal["peening"]
-    gravity: quantity("m/s^2", ge=0.0) = 0.0
+    duration: Time
+    gravity: Gravity = 0.0
     side: Length  # of the square that the stream hits
     speed: Speed
-    rate: quantity("Hz", above=0.0)  # spheres per second
-    bed: Annotated[list[Particles], Field(default_factory=list)]
+    rate: Rate  # spheres per second
+    bed: list[Particles] = Field(default_factory=list)
     bed_count: Annotated[int, Field(ge=0, le=10_000_000)] = 0
     bed_fill: Time | None = None
 
     @model_validator(mode="after")
-    def _bed(self):
+    def _bed(self) -> Self:
         if bool(self.bed) != bool(self.bed_count) or bool(self.bed) != (self.bed_fill is not None):
             raise ValueError("a bed needs 'bed', 'bed_count' and 'bed_fill'; give all three or none")
         if self.bed and not self.gravity:
@@ -228,7 +232,7 @@ class SceneCase(Frozen):
     numerics: SceneNumerics = SceneNumerics()
 
     @model_validator(mode="after")
-    def _names(self):
+    def _names(self) -> Self:
         used = [("scene.walls", self.scene.walls)]
         parts = [*self.scene.particles, *getattr(self.scene, "bed", [])]
         used += [("scene.particles.material", p.material) for p in parts]
@@ -252,12 +256,12 @@ class SceneCase(Frozen):
         return self.case.name
 
 
-def is_scene(data: dict) -> bool:
+def is_scene(data: dict[str, Any]) -> bool:
     """Whether TOML data describe a bulk scene."""
     return "scene" in data
 
 
-def parse(data: dict, path: object = "case") -> SceneCase:
+def parse(data: dict[str, Any], path: object = "case") -> SceneCase:
     """A scene from TOML data; `path` names the place in messages. Raises CaseError."""
     try:
         return SceneCase.model_validate(data)

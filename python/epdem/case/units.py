@@ -4,6 +4,7 @@
 import math
 import re
 from functools import cache
+from typing import Any
 
 # number, blank, unit; checked before pint sees it, because pint evaluates what it is given
 _NUMBER = r"[+-]?(?:\d+(?:\.\d*)?|\.\d+)(?:[eE][+-]?\d{1,3})?"
@@ -13,7 +14,7 @@ _QUANTITY = re.compile(rf"({_NUMBER})(?: +({_FACTOR}(?: ?[*/·] ?{_FACTOR}|/\d)*
 
 
 @cache
-def _registry():
+def _registry() -> Any:
     import pint  # half a second: only when a case is read
 
     return pint.UnitRegistry(autoconvert_offset_to_baseunit=True)
@@ -25,7 +26,7 @@ def _factor(unit: str, si: str) -> float:
 
     registry = _registry()
     try:
-        return registry.Quantity(1.0, unit.replace("·", "*")).to(si).magnitude
+        return float(registry.Quantity(1.0, unit.replace("·", "*")).to(si).magnitude)
     except pint.UndefinedUnitError as error:
         raise ValueError(f"unknown unit {unit!r}") from error
     except pint.DimensionalityError as error:
@@ -54,3 +55,15 @@ def to_si(text: object, si: str) -> float:
     if not math.isfinite(value):
         raise ValueError(f"{text!r} is not a finite number")
     return value
+
+
+# Beyond these nothing in a particle simulation lies, and the laws' powers of them could leave the range of numbers.
+LIMITS = {"Pa": (1e-9, 1e30), "m": (1e-12, 1e6), "kg/m^3": (1e-9, 1e20), "m/s": (1e-30, 1e12)}
+
+
+def within_limits(x: float, si: str) -> float:
+    """x, if its size is one that is computed with. Raises ValueError."""
+    low, high = LIMITS.get(si, (0.0, math.inf))
+    if x and not low <= abs(x) <= high:
+        raise ValueError(f"must lie in [{low:g}, {high:g}] {si}; check the unit")
+    return x

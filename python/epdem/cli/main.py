@@ -45,6 +45,7 @@ def run(
     resume: Annotated[
         bool, typer.Option("--resume", help="continue an interrupted scene from its last restart")
     ] = False,
+    force: Annotated[bool, typer.Option("--force", help="write into a folder that holds other files")] = False,
     as_json: AsJson = False,
 ) -> None:
     """Run a case and check it against theory, or run a bulk scene (default engine: liggghts)."""
@@ -60,6 +61,7 @@ def run(
         )
         raise typer.Exit(code)
     refuse(case, "it continues bulk scenes; a run of impacts takes finished stages from its store", resume=resume)
+    from ..engines import engine as find
     from ..impacts import report
     from ..impacts.run import run as run_case
 
@@ -69,12 +71,13 @@ def run(
         task = progress.add_task("", total=stages)
         outcome = run_case(
             case,
-            engines=engines,
+            engines=[find(name) for name in engines],
             laws=law or [],
             out=out,
             ranks=ranks,
             steps=steps,
             fresh=fresh,
+            force=force,
             progress=lambda text: progress.update(task, advance=1, description=text),
         )
         progress.update(task, advance=1, description="figure")

@@ -31,7 +31,7 @@ def timestep(
     if as_json:
         documents = [
             {
-                "case": x.case.name,
+                "case": x.name,
                 "law": x.law.name,
                 "target": f.target,
                 "time_step": f.time_step,
@@ -48,7 +48,7 @@ def timestep(
     for x, f in found:
         share = f.shares()
         print(
-            f"{x.case.name}, law {x.law.name}: timestep {f.time_step:.4g} s for e_n within {f.target:g} "
+            f"{x.name}, law {x.law.name}: timestep {f.time_step:.4g} s for e_n within {f.target:g} "
             f"(largest {f.error:.2g}, rms {f.rms:.2g}; {f.steps_in_contact:.0f} steps in the shortest contact)\n"
             f"  {share['stability']:.2%} of the stability limit, {share['rayleigh']:.2%} of the Rayleigh time, "
             f"{share['hertz']:.2%} of the elastic contact time"

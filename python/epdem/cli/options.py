@@ -37,8 +37,7 @@ def refuse(place: object, reason: str, **given: object) -> None:
 
 def quantity(option: str, text: str, unit: str) -> float:
     """The SI value > 0 of an option's text. Raises CaseError that names the option."""
-    from ..case.impact import within_limits
-    from ..case.units import to_si
+    from ..case.units import to_si, within_limits
 
     try:
         value = within_limits(to_si(text, unit), unit)

@@ -32,7 +32,7 @@ def predictions(pairs: list[tuple[Experiment, Prediction]], as_json: bool, conso
         if as_json:
             document.append(
                 {
-                    "case": x.case.name,
+                    "case": x.name,
                     "law": x.law.name,
                     "parameters": x.law.parameters,
                     "yields": p.yields,
@@ -42,7 +42,7 @@ def predictions(pairs: list[tuple[Experiment, Prediction]], as_json: bool, conso
                 }
             )
         else:
-            console.print(_table(f"{x.case.case.title}: law {x.law.name} (SI units; {yielding(p)})", frame))
+            console.print(_table(f"{x.title}: law {x.law.name} (SI units; {yielding(p)})", frame))
             for material, speed in p.yield_speeds.items():
                 never = "never: the softer body limits the pressure"
                 when = f"from {speed:.4g} m/s on" if math.isfinite(speed) else never

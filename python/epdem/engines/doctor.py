@@ -1,16 +1,16 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """`epdem doctor`: what is installed, what loads, what to do."""
 
-import os
 import shutil
-import subprocess
 import tempfile
 from dataclasses import dataclass
 from pathlib import Path
 
 from .. import paths
-from ..errors import EpdemError
+from ..errors import EngineError, EpdemError
 from ..laws import library as claw
+from ..liggghts import launcher
+from ..processes import ask
 from . import ENGINES
 
 
@@ -35,8 +35,7 @@ def _library() -> Finding:
 def _first_line(command: list[str]) -> str | None:
     if shutil.which(command[0]) is None:
         return None
-    done = subprocess.run(command, capture_output=True, text=True, errors="replace", timeout=60)
-    return next((t.strip() for t in (done.stdout + done.stderr).splitlines() if t.strip()), "")
+    return next((t.strip() for t in ask(command).splitlines() if t.strip()), "")
 
 
 def _mpi() -> Finding:
@@ -48,13 +47,8 @@ def _mpi() -> Finding:
 def _plugin() -> Finding:
     """Load the plugin into the installed LIGGGHTS and let it create every model of ours."""
     plugin = paths.native("libepdem_liggghts.so")
-    launcher = paths.launcher()
-    if launcher is not None and not os.access(launcher, os.X_OK):
-        return Finding("plugin", False, f"{launcher} is not a program", "unset EPDEM_LAUNCHER")
-    if plugin is None or launcher is None:
-        return Finding(
-            "plugin", False, "not built", "apt-get install liggghts libliggghts-dev libopenmpi-dev; make setup"
-        )
+    if words := launcher.missing():
+        return Finding("plugin", False, "not here", words)
     with tempfile.TemporaryDirectory() as folder:
         deck = Path(folder) / "in.doctor"
         models = "\n".join(f"pair_style gran model ep/{name} tangential off" for name in claw.laws())
@@ -62,20 +56,11 @@ def _plugin() -> Finding:
             "atom_style granular\nnewton off\ncommunicate single vel yes\nregion box block 0 1 0 1 0 1\n"
             f"create_box 1 box\n{models}\n"
         )
-        done = subprocess.run(
-            [str(launcher), "-in", deck.name, "-log", "none"],
-            cwd=folder,
-            timeout=60,
-            capture_output=True,
-            text=True,
-            errors="replace",
-        )
-    if done.returncode == 0:
-        return Finding("plugin", True, f"loads, models {', '.join('ep/' + n for n in claw.laws())}: {plugin}")
-    words = [t for t in (done.stdout + done.stderr).splitlines() if t.strip()][-1:]
-    return Finding(
-        "plugin", False, f"does not load: {' '.join(words)}", "it was built for another LIGGGHTS; run 'make setup'"
-    )
+        try:
+            launcher.run(deck.name, Path(folder), seconds=60)
+        except EngineError as error:
+            return Finding("plugin", False, f"does not load: {error}", "run 'make setup': it fits the LIGGGHTS it met")
+    return Finding("plugin", True, f"loads, models {', '.join('ep/' + n for n in claw.laws())}: {plugin}")
 
 
 def examine() -> list[Finding]:

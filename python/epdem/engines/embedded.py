@@ -27,7 +27,7 @@ class Embedded:
     def run(self, plan: Plan, folder: Path, *, ranks: int = 1) -> Trajectory:
         x = plan.experiment
         start = time.perf_counter()
-        _, overlap, force, velocity = x.native_law().impacts(
+        _, overlap, force, velocity = x.native_law().impact_paths(
             R_star=x.R_star,
             m_star=x.m_star,
             speed=plan.speed,
@@ -35,6 +35,5 @@ class Embedded:
             gap=plan.gap,
             steps=plan.steps,
             viscous=x.viscous_number,
-            paths=True,
         )
         return Trajectory(plan.time_step, overlap, force, velocity, {"stepping": time.perf_counter() - start})

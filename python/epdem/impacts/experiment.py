@@ -1,16 +1,23 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""A case made ready for physics: two bodies, the pair's quantities and the law with its numbers, all SI."""
+"""An impact made ready for physics: two bodies, the law with its numbers, the speeds; all SI.
+
+A case file is one way to make an experiment; `sphere`, `plane` and `Experiment` itself are the other.
+"""
 
 import math
-from dataclasses import dataclass
+from dataclasses import dataclass, field
+from functools import cached_property
 
 import numpy as np
 
-from ..case.impact import RIGID, Case, within_limits
-from ..case.units import to_si
+from ..case.impact import RIGID, Case, Check, Material, Numerics
+from ..case.law import law_numbers
 from ..errors import CaseError
-from ..laws import library as claw
-from ..theory import backbones, pair
+from ..laws import library
+from ..laws.native import Law
+from ..laws.strengths import LawNumbers, LawSpec, default_numbers
+from ..theory import pair
+from ..theory.backbones import Backbone
 
 
 @dataclass(frozen=True)
@@ -30,143 +37,115 @@ class Body:
         return math.isinf(self.young_modulus)
 
 
-@dataclass(frozen=True)
-class LawSpec:
-    """A law and its parameters for one pair of bodies.
+RIGID_PLANE = Body(math.inf, math.inf, math.inf, math.inf, 0.0, math.inf, RIGID)
 
-    `parameters` are those of the pair, by the law's own names; `strengths` is the law's strength [Pa] of body and
-    target (inf: never yields), of which the smaller one is the pair's: the softer body yields first.
-    """
 
-    name: str
-    parameters: dict[str, float]
-    strengths: tuple[float, float]
+def sphere(material: Material, *, radius: float, name: str) -> Body:
+    """A sphere of `radius` [m]; `name` is the material's."""
+    mass = float(pair.sphere_mass(radius=radius, density=material.density))
+    m = material
+    return Body(radius, mass, m.density, m.young_modulus, m.poisson_ratio, m.yield_stress, name)
 
-    @property
-    def strength_property(self) -> str | None:
-        """LIGGGHTS's name of the strength, or None if the law has none."""
-        return next((p.property for p in claw.laws()[self.name].parameters if p.unit == "Pa"), None)
 
-    def ratios(self) -> dict[str, float]:
-        """The dimensionless parameters that differ from the law's own defaults, by LIGGGHTS property name."""
-        info = claw.laws()[self.name].parameters
-        return {
-            p.property: self.parameters[p.name] for p in info if p.unit == "1" and self.parameters[p.name] != p.default
-        }
+def plane(material: Material, *, name: str) -> Body:
+    """A half-space that does not move; `name` is the material's."""
+    m = material
+    return Body(math.inf, math.inf, m.density, m.young_modulus, m.poisson_ratio, m.yield_stress, name)
 
 
 @dataclass(frozen=True)
 class Experiment:
-    """Impacts of `body` on `target` at `speed` [m/s], shape (n,)."""
+    """Impacts of `body` on `target` at `speed` [m/s], shape (n,).
 
-    case: Case
+    Raises CaseError for two rigid bodies, and for parameters of the law that make no sense together.
+    """
+
     law: LawSpec
     body: Body
     target: Body
     speed: np.ndarray
-    E_star: float
-    G_star: float
-    R_star: float
-    m_star: float
     viscous_restitution: float | None = None  # of impacts that do not yield; None: no dashpot
+    numerics: Numerics = field(default_factory=Numerics)
+    check: Check = field(default_factory=Check)
+    name: str = "impact"
+    title: str = "Impact"
+    source: str = "made by a program"
 
-    def theory(self):
+    def __post_init__(self) -> None:
+        if self.body.rigid and self.target.rigid:
+            raise CaseError("both bodies are rigid; at least one must deform")
+        try:
+            self.theory()
+        except (ValueError, ArithmeticError) as error:
+            given = ", ".join(f"law.{name} = {value:g}" for name, value in self.law.parameters.items())
+            raise CaseError(f"{given}: {error}") from None
+
+    @cached_property
+    def E_star(self) -> float:
+        """Effective modulus [Pa]."""
+        return float(pair.E_star(*self._elastic))
+
+    @cached_property
+    def G_star(self) -> float:
+        """Effective shear modulus [Pa]."""
+        return float(pair.G_star(*self._elastic))
+
+    @cached_property
+    def R_star(self) -> float:
+        """Effective radius [m]."""
+        return float(pair.R_star(self.body.radius, self.target.radius))
+
+    @cached_property
+    def m_star(self) -> float:
+        """Effective mass [kg]."""
+        return float(pair.m_star(self.body.mass, self.target.mass))
+
+    @property
+    def _elastic(self) -> tuple[float, float, float, float]:
+        body, target = self.body, self.target
+        return body.young_modulus, body.poisson_ratio, target.young_modulus, target.poisson_ratio
+
+    def theory(self) -> Backbone:
         """The law's backbone as the theory knows it."""
-        cls = backbones.LAWS[self.law.name]
-        keywords = {cls.keywords[name]: value for name, value in self.law.parameters.items()}
-        return cls(E_star=self.E_star, R_star=self.R_star, **keywords)
+        return self.law.declaration.backbone(E_star=self.E_star, R_star=self.R_star, parameters=self.law.parameters)
 
-    def native_law(self) -> claw.Law:
+    def native_law(self) -> Law:
         """The same law in C++."""
-        return claw.Law(self.law.name, E_star=self.E_star, **self.law.parameters)
+        return Law(self.law.name, E_star=self.E_star, **self.law.parameters)
 
     @property
     def viscous_number(self) -> float:
         """The dashpot as the C++ laws take it; 0: none."""
-        return 0.0 if self.viscous_restitution is None else claw.viscous_number(self.viscous_restitution)
+        return 0.0 if self.viscous_restitution is None else library.viscous_number(self.viscous_restitution)
+
+
+def pair_of(numbers: LawNumbers, body: Body, target: Body) -> LawSpec:
+    """The law of two bodies. Raises CaseError where a yield stress is missing."""
+    strengths = [numbers.strength(b.material, b.yield_stress) for b in (body, target)]
+    return numbers.pair(*strengths)
 
 
 def _body(case: Case, material: str, radius: float | None) -> Body:
     if material == RIGID:
-        return Body(math.inf, math.inf, math.inf, math.inf, 0.0, math.inf, RIGID)
+        return RIGID_PLANE
     m = case.materials[material]
-    if radius is None:
-        return Body(math.inf, math.inf, m.density, m.young_modulus, m.poisson_ratio, m.yield_stress, material)
-    mass = float(pair.sphere_mass(radius=radius, density=m.density))
-    return Body(radius, mass, m.density, m.young_modulus, m.poisson_ratio, m.yield_stress, material)
-
-
-def _read(key: str, value: object, unit: str) -> float:
-    try:
-        x = within_limits(to_si(value, unit), unit)
-    except ValueError as error:
-        raise CaseError(f"law.{key} = {value!r}, {error}") from None
-    if not x > 0:
-        raise CaseError(f"law.{key} = {value!r}, must be > 0; leave it out for the default")
-    return x
-
-
-def choose_law(case: Case, bodies: tuple[Body, Body], name: str | None = None) -> LawSpec:
-    """The case's law, or the law `name` with its default parameters. Raises CaseError.
-
-    A strength X [Pa] is given as `X = "2.8 GPa"` for both bodies or as `X_ratio = 2.8` of each body's yield stress.
-    """
-    given = case.law.parameters() if name is None else {}
-    name = name or case.law.name
-    if name not in claw.laws() or name not in backbones.LAWS:
-        raise CaseError(f"law.name = {name!r} does not exist; there are {', '.join(claw.laws())}")
-    info, cls = claw.laws()[name], backbones.LAWS[name]
-    parameters: dict[str, float] = {}
-    strengths = (math.inf, math.inf)
-    for p in info.parameters:
-        if p.unit != "Pa":
-            parameters[p.name] = _read(p.name, given.pop(p.name, p.default), p.unit)
-            continue
-        absolute, ratio = given.pop(p.name, None), given.pop(p.name + "_ratio", None)
-        if absolute is not None and ratio is not None:
-            raise CaseError(f"law: both {p.name} and {p.name}_ratio are given; keep one")
-        if absolute is not None:
-            value = _read(p.name, absolute, "Pa")
-            strengths = tuple(math.inf if b.rigid else value for b in bodies)
-        else:
-            factor = cls.default_ratio if ratio is None else _read(p.name + "_ratio", ratio, "1")
-            for b in bodies:
-                if b.yield_stress is None:
-                    raise CaseError(f"law {name} needs materials.{b.material}.yield_stress (or law.{p.name}); add it")
-            strengths = tuple(factor * b.yield_stress for b in bodies)
-        parameters[p.name] = min(strengths)
-    if given:
-        known = [n for p in info.parameters for n in ((p.name, p.name + "_ratio") if p.unit == "Pa" else (p.name,))]
-        raise CaseError(
-            f"law.{next(iter(given))}: law {name} has no such parameter; it has {', '.join(known) or 'none'}"
-        )
-    return LawSpec(name, parameters, strengths)
+    return plane(m, name=material) if radius is None else sphere(m, radius=radius, name=material)
 
 
 def experiment(case: Case, law: str | None = None) -> Experiment:
-    """The case as physics; `law` replaces the case's law and drops its parameters. Raises CaseError."""
+    """A case as physics; `law` replaces the case's law and drops its parameters. Raises CaseError."""
     body = _body(case, case.impact.body.material, case.impact.body.radius)
     target = _body(case, case.impact.target.material, case.impact.target.radius)
-    spec = choose_law(case, (body, target), law)
-    if math.isinf(min(spec.strengths)) and spec.parameters and spec.strength_property:
-        raise CaseError("both bodies are rigid; at least one must deform")
-    elastic = (body.young_modulus, body.poisson_ratio, target.young_modulus, target.poisson_ratio)
-    e = Experiment(
-        case=case,
-        law=spec,
+    numbers = law_numbers(case.law.name, case.law.parameters()) if law is None else default_numbers(law)
+    return Experiment(
+        law=pair_of(numbers, body, target),
         body=body,
         target=target,
         speed=case.impact.speed_values(),
-        E_star=float(pair.E_star(*elastic)),
-        G_star=float(pair.G_star(*elastic)),
-        R_star=float(pair.R_star(body.radius, target.radius)),
-        m_star=float(pair.m_star(body.mass, target.mass)),
         viscous_restitution=case.viscous.restitution if case.viscous else None,
+        numerics=case.numerics,
+        check=case.check,
+        name=case.name,
+        title=case.case.title,
+        source=case.case.source,
     )
-    e.native_law()
-    try:
-        e.theory()  # parameters that make no sense together are refused here
-    except (ValueError, ArithmeticError) as error:
-        given = ", ".join(f"law.{name} = {value:g}" for name, value in spec.parameters.items())
-        raise CaseError(f"{given}: {error}") from None
-    return e

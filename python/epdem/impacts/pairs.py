@@ -5,12 +5,12 @@ The contact point crosses x = 0 and z = 0 in mid-contact, each pair at a moment 
 there a teller puts a border of ranks, and one of bins.
 """
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ..case.impact import Target
-from .experiment import Body, Experiment, experiment
+from ..theory.pair import sphere_mass
+from .experiment import Body, Experiment
 from .plan import Plan
 
 # From target to body. Bins are sorted by z first, then y: with this tilt the lower body in z is the upper one in y, and
@@ -47,18 +47,20 @@ class Pairs:
 
 
 def unequal_spheres(x: Experiment) -> Experiment:
-    """The case's body against a smaller sphere of the target's material, made softer, at the middle speed."""
-    impact = x.case.impact
-    name = impact.target.material if impact.target.material in x.case.materials else impact.body.material
-    other = name + "_softer"
-    material = x.case.materials[name]
-    material = material.model_copy(update={"young_modulus": OTHER_MODULUS * material.young_modulus})
-    target = Target.model_construct(material=other, radius=OTHER_RADIUS * x.body.radius)
-    update = {"kind": "sphere-sphere", "target": target, "speeds": [float(x.speed[x.speed.size // 2])]}
-    case = x.case.model_copy(
-        update={"impact": impact.model_copy(update=update), "materials": x.case.materials | {other: material}}
+    """The experiment's body against a smaller sphere of the target's material, made softer, at the middle speed."""
+    material, strength = (x.body, x.law.strengths[0]) if x.target.rigid else (x.target, x.law.strengths[1])
+    radius = OTHER_RADIUS * x.body.radius
+    other = Body(
+        radius,
+        float(sphere_mass(radius=radius, density=material.density)),
+        material.density,
+        OTHER_MODULUS * material.young_modulus,
+        material.poisson_ratio,
+        material.yield_stress,
+        material.material + "_softer",
     )
-    return experiment(case, None if x.law.name == x.case.law.name else x.law.name)
+    law = x.law.of(x.law.strengths[0], strength)
+    return replace(x, law=law, target=other, speed=x.speed[x.speed.size // 2 :][:1])
 
 
 def pairs(p: Plan, contact_time: float) -> Pairs:

@@ -36,7 +36,7 @@ class Plan:
 
 def plan(experiment: Experiment, prediction: Prediction, *, time_step: float | None = None) -> Plan:
     """The plan of `experiment`; `time_step` [s] replaces the one that follows from steps_in_contact or error."""
-    numerics = experiment.case.numerics
+    numerics = experiment.numerics
     if time_step is not None:
         dt = time_step
     elif numerics.error is not None:

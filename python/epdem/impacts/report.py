@@ -12,6 +12,7 @@ from rich.console import Console
 from rich.table import Table
 
 from ..files import atomic
+from ..folders import claim
 from ..terminal import table
 from .comparison import CHECKED
 from .prediction import Prediction
@@ -145,7 +146,7 @@ def figure(outcome: Outcome) -> Path:
     for axes in (above, below):
         axes.grid(alpha=0.3)
     path = outcome.folder / "e_n.png"
-    with atomic(path) as temporary:
+    with claim(outcome.folder), atomic(path) as temporary:
         fig.savefig(temporary, dpi=130)
     plt.close(fig)
     return path

@@ -4,23 +4,23 @@
 A stage is done when its result is stored with the hash of its inputs: a second run takes it from there.
 """
 
-import hashlib
-import json
 import shutil
+import tempfile
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
 import pandas as pd
 
-from .. import __version__, paths
+from .. import __version__
 from ..case.impact import Case, named, parse, read_toml
-from ..engines import Engine, engine
 from ..errors import CaseError, EngineError
+from ..folders import claim
+from ..stages import inputs_hash
 from . import store
 from .comparison import compare, impacts_table
-from .engine import not_representable
+from .engine import Engine, not_representable
 from .experiment import experiment
 from .measurement import measure
 from .plan import Plan, plan
@@ -44,54 +44,50 @@ class Outcome:
         return bool(self.results.comparison["passed"].all())
 
 
-def _digest(plan: Plan, tool: Engine, version: str, ranks: int) -> str:
-    """Hash of all that the result of a stage depends on: plan, engine, our binaries, templates."""
-    x, sha = plan.experiment, hashlib.sha256()
-    numbers = [
-        x.E_star,
-        x.R_star,
-        x.m_star,
-        plan.time_step,
-        plan.steps,
-        x.body,
-        x.target,
-        x.law,
-        x.viscous_restitution,
-        __version__,
-    ]
-    sha.update(json.dumps([tool.name, version, ranks, repr(numbers)]).encode())
-    sha.update(plan.speed.tobytes() + plan.gap.tobytes())
-    binaries = [paths.native("libepdem.so"), paths.native("libepdem_liggghts.so"), paths.launcher()]
-    sources = [*sorted(paths.templates().rglob("*.j2")), *sorted(Path(__file__).parents[1].rglob("*.py"))]
-    for path in [*filter(None, binaries), *sources]:
-        sha.update(path.read_bytes())
-    return sha.hexdigest()
+@dataclass(frozen=True)
+class Stage:
+    """What one engine gave for one plan: impacts as in `impacts_table`, its own times [s], the texts of its deck."""
+
+    impacts: pd.DataFrame
+    seconds: dict[str, float]
+    decks: dict[str, str]
 
 
-def _stage(
-    plan: Plan, tool: Engine, folder: Path, ranks: int
-) -> tuple[pd.DataFrame, dict[str, object], dict[str, str]]:
-    """Run one engine on one plan: (table of impacts, seconds, deck texts)."""
+def run_plan(p: Plan, tool: Engine, folder: Path, *, ranks: int = 1, end_power: float | None = None) -> Stage:
+    """Write a plan's deck into `folder`, run it and measure it.
+
+    `end_power` as in `measure`, for an engine with a law of its own. Raises EngineError, and CaseError for what the
+    engine cannot do.
+    """
     start = time.perf_counter()
     folder.mkdir(parents=True, exist_ok=True)
-    files = tool.write(plan, folder)
-    path = tool.run(plan, folder, ranks=ranks)
-    table = impacts_table(plan, measure(plan, path))
+    files = tool.write(p, folder)
+    path = tool.run(p, folder, ranks=ranks)
+    table = impacts_table(p, measure(p, path, end_power=end_power))
     (folder / "path.bin").unlink(missing_ok=True)  # large, and everything asked of it is in the table
     seconds = {f"seconds_{k}": v for k, v in path.seconds.items()} | {"seconds": time.perf_counter() - start}
-    return table, seconds, {f.name: f.read_text() for f in files if f.suffix != ".data"}
+    return Stage(table, seconds, {f.name: f.read_text() for f in files if f.suffix != ".data"})
 
 
-def _refuse(tool: Engine, plan: Plan, prediction: Prediction, ranks: int) -> None:
-    """Raise CaseError if `tool` cannot run `plan` as it is."""
+def _inputs(p: Plan, tool: Engine, version: str, ranks: int) -> str:
+    """Hash of all that the result of a stage depends on: the plan, the files an engine reads, its version, ours."""
+    x = p.experiment
+    numbers = (p.time_step, p.steps, p.phases, p.speed.tobytes(), p.gap.tobytes())
+    bodies = (x.law, x.body, x.target, x.viscous_restitution)
+    with tempfile.TemporaryDirectory(prefix="epdem-") as scratch:
+        return inputs_hash(tool.write(p, Path(scratch)), numbers, bodies, tool.name, version, ranks)
+
+
+def _refuse(tool: Engine, p: Plan, prediction: Prediction, ranks: int) -> None:
+    """Raise CaseError if `tool` cannot run `p` as it is."""
     if ranks > 1 and not tool.name.startswith("liggghts"):
         raise CaseError(f"--ranks {ranks}: engine {tool.name} runs on one rank; leave --ranks out")
     if tool.name == "embedded":
         return
     if hasattr(tool, "deck"):
-        tool.deck(plan)
+        tool.deck(p)
     for speed, overlap in zip(prediction.speed, prediction.overlap_max, strict=True):
-        if why := not_representable(plan.experiment, float(overlap)):
+        if why := not_representable(p.experiment, float(overlap)):
             raise CaseError(f"{speed:.4g} m/s is not representable by positions ({why}); use --engine embedded for it")
 
 
@@ -121,72 +117,93 @@ def _beside_earlier(results: store.Results, old: store.Results) -> store.Results
     )
 
 
-def run(
-    case_path: Path | str,
-    *,
-    engines: list[str],
-    laws: list[str],
-    out: Path | None = None,
-    ranks: int = 1,
-    steps: int | None = None,
-    fresh: bool = False,
-    progress: Callable[[str], None] = lambda text: None,
-) -> Outcome:
-    """Run a case on every engine with every law (none given: the case's own). Raises CaseError or EngineError.
+@dataclass(frozen=True)
+class _Work:
+    """A checked case: what is to run on what."""
 
-    `steps` replaces the case's steps in contact. All input is checked and every engine looked for before anything is
-    written or started.
-    """
+    case: Case
+    tools: list[Engine]
+    versions: dict[str, str]
+    predictions: dict[str, Prediction]
+    plans: list[Plan]
+
+
+def _prepare(case_path: Path | str, tools: Sequence[Engine], laws: list[str], steps: int | None, ranks: int) -> _Work:
+    """Check all input and look for every engine, before anything is written or started."""
     data = read_toml(case_path)
     if steps is not None:
         data["numerics"] = data.get("numerics", {}) | {"steps_in_contact": steps}
         data["numerics"].pop("error", None)
     case = parse(data, case_path)
-    tools = [engine(name) for name in dict.fromkeys(engines)]
+    tools = list({tool.name: tool for tool in tools}.values())
     with named(case_path):
-        experiments = [experiment(case, law) for law in (list(dict.fromkeys(laws)) or [None])]
+        chosen: list[str | None] = [*dict.fromkeys(laws)] or [None]
+        experiments = [experiment(case, law) for law in chosen]
     for tool in tools:
         if reason := tool.missing():
             raise EngineError(f"engine {tool.name}: {reason}")
     if ranks > 1 and shutil.which("mpirun") is None:
         raise EngineError("--ranks needs mpirun, which was not found; apt-get install openmpi-bin")
-    versions = {tool.name: tool.version() for tool in tools}
     predictions = {x.law.name: predict(x) for x in experiments}
     with named(case_path):
         plans = [plan(x, predictions[x.law.name]) for x in experiments]
-    for p in plans:  # what an engine cannot do is said before any engine runs
-        for tool in tools:
-            with named(case_path):
+        for p in plans:
+            for tool in tools:
                 _refuse(tool, p, predictions[p.experiment.law.name], ranks)
+    return _Work(case, tools, {tool.name: tool.version() for tool in tools}, predictions, plans)
 
-    folder = out or Path("runs") / case.name
+
+def run(
+    case_path: Path | str,
+    *,
+    engines: Sequence[Engine],
+    laws: Sequence[str] = (),
+    out: Path | None = None,
+    ranks: int = 1,
+    steps: int | None = None,
+    fresh: bool = False,
+    force: bool = False,
+    progress: Callable[[str], None] = lambda text: None,
+) -> Outcome:
+    """Run a case on every engine with every law (none given: the case's own). Raises CaseError or EngineError.
+
+    `steps` replaces the case's steps in contact; `fresh` runs again what is stored; `force` allows a folder in which
+    there are other files. All input is checked and every engine looked for before anything is written or started.
+    """
+    work = _prepare(case_path, engines, list(laws), steps, ranks)
+    folder = out or Path("runs") / work.case.name
+    with claim(folder, force=force):
+        return _run(Path(case_path), work, folder, ranks, fresh, progress)
+
+
+def _run(path: Path, work: _Work, folder: Path, ranks: int, fresh: bool, progress: Callable[[str], None]) -> Outcome:
     stored = folder / "results.h5"
     old = store.Results() if fresh else _stored(stored)
-    results = store.Results(
-        case_text=Path(case_path).read_text(),
-        attributes={"case": case.name, "epdem": __version__} | {f"version_{k}": v for k, v in versions.items()},
-    )
-    outcome = Outcome(case, folder, results, predictions)
+    attributes = {"case": work.case.name, "epdem": __version__}
+    attributes |= {f"version_{name}": version for name, version in work.versions.items()}
+    results = store.Results(case_text=path.read_text(), attributes=attributes)
+    outcome = Outcome(work.case, folder, results, work.predictions)
     rows = []
-    for x, p in zip(experiments, plans, strict=True):
-        law, prediction = x.law.name, predictions[x.law.name]
+    for p in work.plans:
+        law = p.experiment.law.name
+        prediction = work.predictions[law]
         outcome.warnings += prediction.warnings()
         results.predictions[law] = pd.DataFrame({n: getattr(prediction, n) for n in Prediction.COLUMNS})
-        for tool in tools:
-            key, inputs = f"{law}/{tool.name}", _digest(p, tool, versions[tool.name], ranks)
+        for tool in work.tools:
+            key, inputs = f"{law}/{tool.name}", _inputs(p, tool, work.versions[tool.name], ranks)
             progress(f"{tool.name}, {law}: {p.n} impacts")
             if old.runs.get(key, {}).get("inputs") == inputs:
                 results.impacts[key], results.runs[key] = old.impacts[key], old.runs[key]
                 results.decks |= {k: v for k, v in old.decks.items() if k.startswith(key + "/")}
                 outcome.reused.append(key)
             else:
-                table, seconds, texts = _stage(p, tool, folder / law / tool.name, ranks)
-                about = {"inputs": inputs, "time_step": p.time_step}
-                results.impacts[key], results.runs[key] = table, seconds | about
-                results.decks |= {f"{key}/{name}": text for name, text in texts.items()}
-            spent = float(results.runs[key]["seconds"])
+                stage = run_plan(p, tool, folder / law / tool.name, ranks=ranks)
+                results.impacts[key] = stage.impacts
+                results.runs[key] = stage.seconds | {"inputs": inputs, "time_step": p.time_step}
+                results.decks |= {f"{key}/{name}": text for name, text in stage.decks.items()}
+            spent = float(str(results.runs[key]["seconds"]))
             outcome.seconds[tool.name] = outcome.seconds.get(tool.name, 0.0) + spent
-            rows.append(compare(tool.name, law, results.impacts[key], prediction, case.check))
+            rows.append(compare(tool.name, law, results.impacts[key], prediction, work.case.check))
             results.comparison = pd.concat(rows, ignore_index=True)
             store.write(stored, _beside_earlier(results, old))  # what is done stays done, whatever comes next
     return outcome

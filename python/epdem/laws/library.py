@@ -10,17 +10,20 @@ from ctypes import POINTER, Structure, c_char_p, c_double, c_int, c_size_t
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
+from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 
 from .. import paths
 from ..errors import CaseError, EngineError
 
 ABI = 4
+Array = npt.NDArray[Any]  # float64, or structured by IMPACT_OUTPUT
 _D = POINTER(c_double)
 
 
-class _StepResult(Structure):
+class StepResult(Structure):
     _fields_ = [("force", c_double), ("radius", c_double), ("delta_max", c_double)]
 
 
@@ -53,7 +56,7 @@ _SIGNATURES = {
     "epdem_law_parameter_property": (c_char_p, [c_int, c_int]),
     "epdem_law_parameter_unit": (c_char_p, [c_int, c_int]),
     "epdem_law_parameter_default": (c_double, [c_int, c_int]),
-    "epdem_step": (c_int, [c_int, c_double, _D, c_double, c_size_t, _D, _D, POINTER(_StepResult)]),
+    "epdem_step": (c_int, [c_int, c_double, _D, c_double, c_size_t, _D, _D, POINTER(StepResult)]),
     "epdem_backbone": (c_int, [c_int, c_double, _D, c_double, c_size_t, _D, _D, _D, _D, _D]),
     "epdem_impacts": (c_int, [c_int, c_double, _D, c_size_t, ctypes.c_void_p, ctypes.c_void_p, c_size_t, _D, _D, _D]),
 }
@@ -106,7 +109,7 @@ def library() -> ctypes.CDLL:
     if lib.epdem_abi() != ABI:
         raise EngineError(f"{path}: ABI {lib.epdem_abi()}, this package needs {ABI}; run 'make setup' again")
     sizes = {
-        b"epdem_step_result": ctypes.sizeof(_StepResult),
+        b"epdem_step_result": ctypes.sizeof(StepResult),
         b"epdem_impact_input": IMPACT_INPUT.itemsize,
         b"epdem_impact_output": IMPACT_OUTPUT.itemsize,
     }
@@ -118,7 +121,7 @@ def library() -> ctypes.CDLL:
 
 def version() -> str:
     """Version of the C library."""
-    return library().epdem_version().decode()
+    return str(library().epdem_version().decode())
 
 
 @cache
@@ -146,130 +149,7 @@ def laws() -> dict[str, LawInfo]:
 
 def viscous_number(restitution: float) -> float:
     """Dashpot number of a pair with that restitution at low speed; CaseError outside [0.14, 1]."""
-    number = library().epdem_viscous_number(restitution)
+    number: float = library().epdem_viscous_number(restitution)
     if math.isnan(number):
         raise CaseError(f"viscous.restitution = {restitution}, must lie in [0.14, 1]")
     return number
-
-
-def _array(x) -> np.ndarray:
-    return np.ascontiguousarray(np.atleast_1d(x), dtype=np.float64)
-
-
-def _pointer(x: np.ndarray | None):
-    return None if x is None else x.ctypes.data_as(_D)
-
-
-class Law:
-    """One law with its constants: E_star [Pa] and the law's parameters by name, SI.
-
-    Raises CaseError for an unknown law or parameter, or values outside the law's range.
-    """
-
-    def __init__(self, name: str, *, E_star: float, **parameters: float):
-        if name not in laws():
-            raise CaseError(f"law {name!r} does not exist; there are {', '.join(laws())}")
-        self.info = laws()[name]
-        known = [p.name for p in self.info.parameters]
-        for key in parameters:
-            if key not in known:
-                raise CaseError(f"law {name} has no parameter {key!r}; it has {', '.join(known) or 'none'}")
-        values = [parameters.get(p.name, p.default) for p in self.info.parameters]
-        for p, value in zip(self.info.parameters, values, strict=True):
-            if not (math.isfinite(value) and value > 0):
-                raise CaseError(f"law {name}: {p.name} = {value}, must be a finite number > 0 [{p.unit}]")
-        self.name, self.E_star = name, float(E_star)
-        self._parameters = (c_double * max(len(values), 1))(*values)
-
-    def _check(self, status: int) -> None:
-        if status:
-            raise CaseError(f"law {self.name}: {library().epdem_message(status).decode()}")
-
-    def step(self, *, R_star: float, delta_max, delta):
-        """(force [N], contact radius [m], new delta_max [m]) at overlap delta [m]; delta_max and delta broadcast."""
-        before, now = np.broadcast_arrays(_array(delta_max), _array(delta))
-        before, now = _array(before), _array(now)
-        out = np.empty((now.size, 3))
-        results = out.ctypes.data_as(POINTER(_StepResult))
-        self._check(
-            library().epdem_step(
-                self.info.index,
-                self.E_star,
-                self._parameters,
-                R_star,
-                now.size,
-                _pointer(before),
-                _pointer(now),
-                results,
-            )
-        )
-        return out[:, 0], out[:, 1], out[:, 2]
-
-    def backbone(self, *, R_star: float, delta):
-        """(force [N], radius [m], work [J], plastic work [J]) of first loading to delta [m], > 0."""
-        delta = _array(delta)
-        out = [np.empty(delta.size) for _ in range(4)]
-        self._check(
-            library().epdem_backbone(
-                self.info.index, self.E_star, self._parameters, R_star, delta.size, _pointer(delta), *map(_pointer, out)
-            )
-        )
-        return tuple(out)
-
-    @staticmethod
-    def _cases(R_star, m_star, speed, time_step, gap, steps: int, viscous: float = 0.0) -> np.ndarray:
-        columns = np.broadcast_arrays(*map(_array, (R_star, m_star, speed, time_step, gap)))
-        cases = np.empty(columns[0].shape, IMPACT_INPUT)
-        for name, column in zip(("R_star", "m_star", "speed", "time_step", "gap"), columns, strict=True):
-            cases[name] = column
-        cases["steps"], cases["viscous"] = steps, viscous
-        return cases
-
-    def impacts(
-        self, *, R_star, m_star, speed, time_step, gap=0.0, steps: int, viscous: float = 0.0, paths: bool = False
-    ):
-        """Two-body impacts by velocity Verlet; all arguments but `steps` and `paths` broadcast to (n,).
-
-        gap [m] is the distance before first touch (negative: overlap at the start); viscous is a dashpot number
-        (viscous_number, 0: none). Returns a structured array
-        (IMPACT_OUTPUT) and, with paths=True, overlap [m], force [N] and approach velocity [m/s] of shape
-        (n, steps + 1), NaN after the end of an impact.
-        """
-        cases = self._cases(R_star, m_star, speed, time_step, gap, steps, viscous)
-        out = np.empty(cases.shape, IMPACT_OUTPUT)
-        samples = [np.full((cases.size, steps + 1), np.nan) if paths else None for _ in range(3)]
-        self._check(
-            library().epdem_impacts(
-                self.info.index,
-                self.E_star,
-                self._parameters,
-                cases.size,
-                cases.ctypes.data,
-                out.ctypes.data,
-                steps + 1,
-                *map(_pointer, samples),
-            )
-        )
-        return (out, *samples) if paths else out
-
-    def impacts_long_double(self, *, R_star, m_star, speed, time_step, gap=0.0, steps: int) -> np.ndarray:
-        """The same impacts computed in long double, IMPACT_OUTPUT rounded at the end: a reference for round-off."""
-        cases = self._cases(R_star, m_star, speed, time_step, gap, steps)
-        out = np.empty(cases.shape, IMPACT_OUTPUT)
-        self._check(
-            library().epdem_impacts_long_double(
-                self.info.index, self.E_star, self._parameters, cases.size, cases.ctypes.data, out.ctypes.data
-            )
-        )
-        return out
-
-    def bounces(self, count: int, *, R_star: float, m_star: float, speed: float, time_step: float, steps: int):
-        """`count` impacts of one contact, each at the rebound speed of the one before, at most `steps` steps each.
-
-        Returns the last impact (IMPACT_OUTPUT, its `steps` those of all impacts) and the rebound speeds [m/s].
-        """
-        first = self._cases(R_star, m_star, speed, time_step, 0.0, steps).ctypes.data
-        out, speeds = np.empty(1, IMPACT_OUTPUT), np.full(count, np.nan)
-        law = (self.info.index, self.E_star, self._parameters)
-        self._check(library().epdem_bounces(*law, first, count, out.ctypes.data, _pointer(speeds)))
-        return out[0], speeds

@@ -9,12 +9,15 @@ from ..impacts import foreign
 from ..impacts.experiment import Experiment
 from ..impacts.plan import Plan
 from ..impacts.prediction import Prediction
-from .impacts import Deck, Liggghts, Property, elastic_rows, numbered
+from .impacts import Deck, Liggghts
+from .properties import Property, of_impacts, per_pair, per_type, scalar
 
 
-def _pairs(types: int, value: float) -> list[float]:
-    """One value for every pair of types."""
-    return [types, *[value] * types**2]
+def _elastic(plan: Plan) -> tuple[int, list[Property]]:
+    """Number of atom types; their elastic properties and the restitution of a model without a dashpot."""
+    found = of_impacts(plan)
+    types = len(found[0].values)
+    return types, [*found, per_pair("coefficientRestitution", types, 1.0, "-", "no viscous damping")]
 
 
 class BuiltinHertz(Liggghts):
@@ -27,9 +30,7 @@ class BuiltinHertz(Liggghts):
         return "hertz"
 
     def properties(self, plan: Plan) -> tuple[Property, ...]:
-        rows = elastic_rows(plan)
-        ones = _pairs(len(rows[0][2]), 1.0)
-        return numbered([*rows, ("coefficientRestitution", "peratomtypepair", ones, "no damping")])
+        return tuple(_elastic(plan)[1])
 
 
 class ThorntonNing(Liggghts):
@@ -44,18 +45,14 @@ class ThorntonNing(Liggghts):
         return "thornton_ning"
 
     def properties(self, plan: Plan) -> tuple[Property, ...]:
-        x, rows = plan.experiment, elastic_rows(plan)
-        types = len(rows[0][2])
+        x, (types, found) = plan.experiment, _elastic(plan)
         # its yield pressure is 2 E* R_i yield_ratio/(pi R*) (the wall: R_i = R*)
         radius = x.body.radius if math.isfinite(x.target.radius) else x.R_star
         ratio = math.pi * x.law.parameters["yield_pressure"] * x.R_star / (2 * x.E_star * radius)
-        return numbered(
-            [
-                *rows,
-                ("coefficientRestitution", "peratomtypepair", _pairs(types, 1.0), "no viscous damping"),
-                ("coefficientYieldRatio", "peratomtype", [ratio] * types, "pi p_y R*/(2 E* R_i)"),
-                ("surfaceEnergy", "peratomtypepair", _pairs(types, 0.0), "J/m^2"),
-            ]
+        return (
+            *found,
+            per_type("coefficientYieldRatio", [ratio] * types, "-", "pi p_y R*/(2 E* R_i)"),
+            per_pair("surfaceEnergy", types, 0.0, "J/m^2"),
         )
 
 
@@ -84,18 +81,14 @@ class BuiltinLuding(_OwnTheory):
         return "luding"
 
     def properties(self, plan: Plan) -> tuple[Property, ...]:
-        rows, law = elastic_rows(plan), foreign.luding(plan.experiment)
-        types = len(rows[0][2])
-        return numbered(
-            [
-                *rows,
-                ("coefficientRestitution", "peratomtypepair", _pairs(types, 1.0), "no viscous damping"),
-                ("LoadingStiffness", "peratomtypepair", _pairs(types, law.k_1), "k_1, N/m"),
-                ("UnloadingStiffness", "peratomtypepair", _pairs(types, law.k_p / law.k_1), "k_p/k_1"),
-                ("coefficientPlasticityDepth", "peratomtypepair", _pairs(types, law.phi_f), "phi_f"),
-                ("coefficientAdhesionStiffness", "peratomtypepair", _pairs(types, 0.0), "k_c/k_1"),
-                ("pullOffForce", "peratomtypepair", _pairs(types, 0.0), "N"),
-            ]
+        (types, found), law = _elastic(plan), foreign.luding(plan.experiment)
+        return (
+            *found,
+            per_pair("LoadingStiffness", types, law.k_1, "N/m", "k_1"),
+            per_pair("UnloadingStiffness", types, law.k_p / law.k_1, "-", "k_p/k_1"),
+            per_pair("coefficientPlasticityDepth", types, law.phi_f, "-", "phi_f"),
+            per_pair("coefficientAdhesionStiffness", types, 0.0, "-", "k_c/k_1"),
+            per_pair("pullOffForce", types, 0.0, "N"),
         )
 
 
@@ -114,17 +107,13 @@ class BuiltinEdinburgh(_OwnTheory):
         return "edinburgh"
 
     def properties(self, plan: Plan) -> tuple[Property, ...]:
-        rows = elastic_rows(plan)
-        types = len(rows[0][2])
-        return numbered(
-            [
-                *rows,
-                ("coefficientRestitution", "peratomtypepair", _pairs(types, 1.0), "no viscous damping"),
-                ("UnloadingStiffness", "peratomtypepair", _pairs(types, foreign.STIFFENING), "k_2/k_1"),
-                ("overlapExponent", "scalar", [foreign.EXPONENT], "n"),
-                ("coefficientAdhesionStiffness", "peratomtypepair", _pairs(types, 0.0), "k_c/k_1"),
-                ("adhesionExponent", "scalar", [1.0], "without adhesion of no effect"),
-                ("pullOffForce", "peratomtypepair", _pairs(types, 0.0), "N"),
-                ("surfaceEnergy", "peratomtypepair", _pairs(types, 0.0), "J/m^2"),
-            ]
+        types, found = _elastic(plan)
+        return (
+            *found,
+            per_pair("UnloadingStiffness", types, foreign.STIFFENING, "-", "k_2/k_1"),
+            scalar("overlapExponent", foreign.EXPONENT, "-", "n"),
+            per_pair("coefficientAdhesionStiffness", types, 0.0, "-", "k_c/k_1"),
+            scalar("adhesionExponent", 1.0, "-", "without adhesion of no effect"),
+            per_pair("pullOffForce", types, 0.0, "N"),
+            per_pair("surfaceEnergy", types, 0.0, "J/m^2"),
         )

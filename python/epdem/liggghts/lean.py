@@ -8,8 +8,8 @@ import subprocess
 from dataclasses import dataclass
 from pathlib import Path
 
-from .. import paths
-from .running import ROW
+from ..processes import ROW
+from .launcher import command
 
 GUARD = "# guard: "
 
@@ -27,7 +27,7 @@ def fingerprint(folder: Path, deck: str, seconds: float = 120.0) -> str | None:
     """Hash of all that a deck's run puts out (thermo rows, dump files), or None if it fails."""
     try:
         done = subprocess.run(
-            [str(paths.launcher()), "-in", deck, "-log", "none"],
+            command(deck),
             cwd=folder,
             capture_output=True,
             stdin=subprocess.DEVNULL,

@@ -14,8 +14,9 @@ from ..errors import CaseError
 from ..impacts.experiment import experiment
 from ..impacts.plan import plan
 from ..impacts.prediction import predict
-from ..scenes import kinds, meshes
-from .impacts import Liggghts, data_file
+from ..scenes import kinds
+from . import stl
+from .impacts import Liggghts, data_text
 from .scene_deck import deck as scene_deck
 
 
@@ -66,7 +67,7 @@ def write(template: Path, case_path: Path, sets: dict[str, object], out: Path) -
         x = experiment(case)
         p = plan(x, predict(x))
         deck = Liggghts().deck(p)
-        extra[deck.data] = data_file(p, deck)
+        extra[deck.data] = data_text(p, len(deck.types))
     environment = decks.environment(template.resolve().parent)
     try:
         unused = set(sets) - meta.find_undeclared_variables(environment.parse(source))
@@ -86,7 +87,7 @@ def write(template: Path, case_path: Path, sets: dict[str, object], out: Path) -
     for name, surface in triangles.items():
         if f"{name}.stl" in text:
             files.append(out / f"{name}.stl")
-            meshes.write_stl(files[-1], name, surface)
+            files[-1].write_text(stl.text(name, surface))
     return files
 
 

@@ -7,10 +7,10 @@ from pathlib import Path
 
 from .. import rendering as decks
 from ..case.scene import SceneCase
-from ..scenes import meshes
 from ..scenes.insertions import Insertion, insertions
 from ..scenes.model import Model, model, time_step
-from .impacts import HARD, SOFT, Property
+from . import stl
+from .properties import HARD, SOFT, Property, of_row
 
 SKIN = 0.25  # of the smallest radius: rebuilds cost less than idle neighbours
 
@@ -140,7 +140,7 @@ def deck(case: SceneCase) -> Deck:
         n_types=len(m.types),
         skin=_two_digits(SKIN * smallest),
         types=tuple(t.name for t in m.types),
-        properties=tuple(Property(f"m{i}", r.name, r.style, r.values, r.comment) for i, r in enumerate(m.rows, 1)),
+        properties=tuple(of_row(r.name, r.style, r.values, r.comment) for r in m.rows),
         model=f"ep/{m.law}",
         tangential=m.tangential,
         cohesion=m.cohesion,
@@ -224,5 +224,5 @@ def write(case: SceneCase, folder: Path) -> list[Path]:
         files[-1].write_text(text)
     for name, triangles in kinds.layout(case).meshes.items():
         files.append(folder / f"{name}.stl")
-        meshes.write_stl(files[-1], name, triangles)
+        files[-1].write_text(stl.text(name, triangles))
     return files

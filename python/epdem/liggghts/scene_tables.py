@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """What LIGGGHTS wrote, as pandas tables. Its words and file formats end here."""
 
-import io
 import re
 from pathlib import Path
 
@@ -10,6 +9,8 @@ import pandas as pd
 
 from ..case.scene import SceneCase
 from ..errors import EngineError
+from . import dump
+from . import log as thermo
 from .scene_deck import Deck
 
 PARTICLES = ["id", "type", "radius", "mass", "x", "y", "z", "vx", "vy", "vz"]
@@ -26,25 +27,24 @@ ROWS = {
 
 
 def rows(log: Path, time_step: float) -> pd.DataFrame:
-    """The thermo rows: one per step, the later one where a resumed run repeats some. Raises EngineError."""
-    names, found = None, {}
-    for line in log.read_text(errors="replace").splitlines():
-        words = line.split()
-        if words[:1] == ["Step"]:
-            names = words
-        elif names and len(words) == len(names) and re.fullmatch(r"\d+", words[0]):
-            try:
-                found[int(words[0])] = [float(w) for w in words[1:]]
-            except ValueError:
-                names = None  # the rows of this run are over
-    if not found:
+    """The thermo rows: one per step. Raises EngineError.
+
+    A run that continues another one begins again at the step of its restart file: what the earlier run wrote beyond
+    that step is replaced, but not the row of that step itself, whose means over an interval only the earlier run knows.
+    """
+    every = thermo.rows(log)
+    if every.empty:
         raise EngineError(f"{log}: no thermo rows; the run ended before its first step")
-    table = pd.DataFrame.from_dict(found, orient="index", columns=names[1:] if names else None).sort_index()
-    table.columns = [ROWS.get(n, (n, ""))[0] for n in table.columns]
+    table = every.iloc[:0]
+    for _, part in every.groupby("run"):
+        begin = part["Step"].iloc[0]
+        table = table[table["Step"] <= begin]
+        table = pd.concat([table, part[1:] if begin in table["Step"].to_numpy() else part])
+    table = table.drop_duplicates("Step", keep="last").drop(columns="run").reset_index(drop=True)
     table = table.drop(columns="CPU", errors="ignore")  # LIGGGHTS's own choice when it is not asked for columns
-    table.insert(0, "step", table.index.to_numpy())
+    table.columns = [ROWS.get(n, (n, ""))[0] for n in table.columns]
     table.insert(1, "time", table["step"] * time_step)
-    return table.reset_index(drop=True)
+    return table
 
 
 def plate_height(case: SceneCase, deck: Deck, time: np.ndarray) -> np.ndarray:
@@ -58,21 +58,6 @@ def add_plate(case: SceneCase, deck: Deck, table: pd.DataFrame) -> None:
     middle = (table["step"] - 0.5 * deck.every).clip(lower=0) * deck.time_step
     table["plate_z"] = plate_height(case, deck, middle.to_numpy())
     table["stress"] = table["plate_force"] / (case.scene.box[0] * case.scene.box[1])
-
-
-def _frame(path: Path, columns: int) -> tuple[int, np.ndarray]:
-    """(step, (n, columns)) of a binary dump file with one frame."""
-    raw = path.read_bytes()
-    step, header = int.from_bytes(raw[:8], "little"), 8 + 8 + 4 + 24 + 48 + 8
-    blocks, at, parts = int.from_bytes(raw[header - 4 : header], "little"), header, []
-    for _ in range(blocks):
-        size = int.from_bytes(raw[at : at + 4], "little")
-        part = np.frombuffer(raw, "<f8", size, at + 4)
-        if part.size != size or size % columns:
-            raise EngineError(f"{path}: incomplete; the run was stopped while it wrote this frame")
-        parts.append(part.reshape(-1, columns))
-        at += 4 + 8 * size
-    return step, np.concatenate(parts) if parts else np.empty((0, columns))
 
 
 def _steps(folder: Path, pattern: str) -> list[tuple[int, Path]]:
@@ -90,8 +75,8 @@ def particles(folder: Path, deck: Deck, *, upto: int | None = None) -> pd.DataFr
     for step, path in _steps(folder, "particles.*.bin"):
         if upto is not None and step > upto:
             continue
-        _, data = _frame(path, len(names))
-        table = pd.DataFrame(data[np.argsort(data[:, 0], kind="stable")], columns=names)
+        ((_, data),) = dump.frames(path)
+        table = pd.DataFrame(data, columns=names)
         table.insert(0, "step", step)
         frames.append(table)
     if not frames:
@@ -104,11 +89,10 @@ def local_frames(folder: Path, pattern: str, names: list[str]) -> pd.DataFrame:
     """Rows of a `dump local` text file per step."""
     frames = []
     for step, path in _steps(folder, pattern):
-        text = path.read_text()
-        body = text[text.index("ITEM: ENTRIES") :].split("\n", 1)[1]
-        if not body.strip():
+        data = dump.local(path)
+        if not data.size:
             continue
-        table = pd.read_csv(io.StringIO(body), sep=r"\s+", header=None)
+        table = pd.DataFrame(data)
         if table.shape[1] != len(names):
             raise EngineError(f"{path}: {table.shape[1]} columns, expected {len(names)}")
         table.columns = names

@@ -31,7 +31,10 @@ _NODES, _WEIGHTS = np.polynomial.legendre.leggauss(16)
 
 
 def contacts(case: SceneCase, deck: Deck, folder: Path, spheres: pd.DataFrame) -> pd.DataFrame:
-    """One row per contact and frame, SI; `j` = 0 and `wall` its name for a wall. `spheres`: the particles' table."""
+    """One row per contact and frame, SI; i < j, or `j` = 0 and `wall` its name for a wall.
+
+    `spheres` is the particles' table.
+    """
     parts = [_pairs(deck, folder), *_planes(deck, spheres)]
     if deck.meshes:
         parts.append(_meshes(deck, folder))
@@ -114,6 +117,8 @@ def _pairs(deck: Deck, folder: Path) -> pd.DataFrame:
     if not deck.yields:
         table["delta_max"] = table.get("overlap")
     table["wall"] = ""
+    # which of the two comes first is LIGGGHTS's own affair, and another one after a restart
+    table["i"], table["j"] = table[["i", "j"]].min(axis=1), table[["i", "j"]].max(axis=1)
     return table[table["overlap"] > 0]
 
 

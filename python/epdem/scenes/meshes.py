@@ -1,8 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Triangles of the scenes' walls, and STL files. Arrays of shape (n, 3 corners, 3 coordinates), metres."""
+"""Triangles of the scenes' walls. Arrays of shape (n, 3 corners, 3 coordinates), metres."""
 
 import math
-from pathlib import Path
 
 import numpy as np
 
@@ -50,16 +49,3 @@ def plate(lx: float, ly: float, z: float) -> np.ndarray:
     x, y = lx / 2, ly / 2
     corner = np.array([[-x, -y, z], [x, -y, z], [x, y, z], [-x, y, z]])
     return np.stack([corner[[0, 1, 2]], corner[[0, 2, 3]]])
-
-
-def write_stl(path: Path, name: str, triangles: np.ndarray) -> None:
-    """An ASCII STL file that LIGGGHTS reads; corners keep every digit, so that neighbours share them exactly."""
-    lines = [f"solid {name}"]
-    for t in triangles:
-        normal = np.cross(t[1] - t[0], t[2] - t[0])
-        normal = normal / np.linalg.norm(normal)
-        lines.append("facet normal " + " ".join(f"{x:.9e}" for x in normal))
-        lines.append(" outer loop")
-        lines += ["  vertex " + " ".join(f"{x:.12e}" for x in corner) for corner in t]
-        lines += [" endloop", "endfacet"]
-    path.write_text("\n".join([*lines, f"endsolid {name}", ""]))

@@ -14,6 +14,7 @@ from ..impacts.experiment import experiment
 from ..impacts.prediction import predict
 from ..impacts.timestep import search, stability_limit
 from ..laws import library as claw
+from ..laws.native import Law
 from ..theory import backbones
 
 WALL = "wall"
@@ -194,7 +195,7 @@ def _friction(case: SceneCase, a: Type, b: Type) -> float:
     return contact.friction
 
 
-def pair_law(case: SceneCase, a: str, b: str) -> claw.Law:
+def pair_law(case: SceneCase, a: str, b: str) -> Law:
     """The law of a contact between two materials."""
     from ..theory import pair
 
@@ -204,7 +205,7 @@ def pair_law(case: SceneCase, a: str, b: str) -> claw.Law:
     name = next((p.name for p in claw.laws()[case.law.name].parameters if p.unit == "Pa"), None)
     if name:
         parameters[name] = min(strong[a], strong[b])
-    return claw.Law(case.law.name, E_star=E_star, **parameters)
+    return Law(case.law.name, E_star=E_star, **parameters)
 
 
 def highest_speed(case: SceneCase) -> float:

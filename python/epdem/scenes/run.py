@@ -14,10 +14,11 @@ from ..case.scene import SceneCase, load
 from ..errors import CaseError, EngineError
 from ..files import write_texts
 from ..impacts.prediction import predict
-from ..liggghts import running as progress
+from ..liggghts import launcher
 from ..liggghts import scene_tables as tables
 from ..liggghts.resume import write_resume
 from ..liggghts.scene_deck import Deck, deck, write
+from ..processes import ROW
 from ..yade import scene_deck as yade
 from ..yade import scene_tables as yade_tables
 from . import checks, contacts, ledger, results
@@ -56,10 +57,10 @@ def _inputs(folder_text: str, ranks: int) -> str:
 
 def last_restart(folder: Path) -> tuple[Path, int] | None:
     """The newest whole restart file: LIGGGHTS went on after it, so its row stands twice in succession."""
-    log = folder / progress.OUT
+    log = folder / launcher.OUT
     if not log.exists():
         return None
-    rows = [int(m.group(1)) for line in log.read_bytes().splitlines() if (m := progress.ROW.match(line))]
+    rows = [int(m.group(1)) for line in log.read_bytes().splitlines() if (m := ROW.match(line))]
     gone_on = {a for a, b in pairwise(rows) if a == b}
     whole = [(step, p) for step, p in _restarts(folder) if step in gone_on]
     return (whole[-1][1], whole[-1][0]) if whole else None
@@ -69,9 +70,9 @@ def _restarts(folder: Path) -> list[tuple[int, Path]]:
     return sorted((int(re.search(r"(\d+)\.bin$", p.name).group(1)), p) for p in folder.glob("restart.*.bin"))
 
 
-def _prune(folder: Path) -> None:
-    """Keep the two newest restart files: the last one may still be incomplete."""
-    for _, path in _restarts(folder)[:-2]:
+def _prune(folder: Path, step: int) -> None:
+    """Keep the newest restart file from before `step`, which the engine has gone on after, and all later ones."""
+    for _, path in [(s, p) for s, p in _restarts(folder) if s < step][:-1]:
         path.unlink(missing_ok=True)
 
 
@@ -114,7 +115,7 @@ def run(
     start = time.perf_counter()
 
     def row(step: int) -> None:
-        _prune(folder)
+        _prune(folder, step)
         tell(step, d.steps)
 
     if resume:
@@ -128,18 +129,19 @@ def run(
         restart, step = found
         if step < d.steps:
             name = write_resume(case, folder, restart.name, step).name
-            progress.run(name, folder, ranks=ranks, append=True, tell=row)
+            launcher.run(name, folder, ranks=ranks, append=True, tell=row)
         return _finish(path, case, d, folder, ranks, start, step)
     if not fresh and stored.exists():
         old = _old(stored)
         if old is not None and old.attributes.get("inputs") == _inputs(_texts(case), ranks):
             return SceneOutcome(case, d, folder, old, 0.0, reused=True, warnings=_warnings(case))
-    if paths.launcher() is None:
-        raise EngineError("LIGGGHTS with our models was not found; run 'make setup'")
+    if words := launcher.missing():
+        raise EngineError(words)
+    launcher.refuse_ranks(ranks)
     folder.mkdir(parents=True, exist_ok=True)
     _clear(folder)
     write(case, folder)
-    progress.run("in.scene", folder, ranks=ranks, tell=row)
+    launcher.run("in.scene", folder, ranks=ranks, tell=row)
     return _finish(path, case, d, folder, ranks, start, None)
 
 
@@ -163,7 +165,7 @@ def _same_deck(case: SceneCase, folder: Path) -> bool:
 
 
 def _finish(path, case, d, folder, ranks, start, resumed) -> SceneOutcome:
-    found = {"rows": tables.rows(folder / progress.OUT, d.time_step)}
+    found = {"rows": tables.rows(folder / launcher.OUT, d.time_step)}
     if d.frames:
         found["particles"] = tables.particles(folder, d)
     if d.contacts:

@@ -4,7 +4,6 @@
 Absolute times are noisy; the figure of merit is the ratio to LIGGGHTS's own elastic `hertz` in the same run.
 """
 
-import subprocess
 import tempfile
 import time
 from collections.abc import Callable
@@ -14,17 +13,17 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
-from .. import paths
 from ..case.impact import Case, load
 from ..engines import Engine, engine
 from ..errors import EngineError
-from ..impacts.comparison import compare, impacts_table
+from ..impacts.comparison import compare
 from ..impacts.experiment import experiment
-from ..impacts.measurement import measure
 from ..impacts.plan import Plan, plan
 from ..impacts.prediction import Prediction, predict
-from ..liggghts.impacts import Liggghts, loop_seconds
-from ..processes import call
+from ..impacts.run import run_plan
+from ..liggghts import launcher
+from ..liggghts.impacts import Liggghts
+from ..liggghts.log import loop_seconds
 
 STEPS = (10, 17, 30, 55, 100, 170, 300, 550, 1000, 1700, 3000)
 QUANTITIES = ("e_n", "contact_time", "force_max")
@@ -81,17 +80,15 @@ def contenders(case: Case, engines: list[str], laws: list[str], steps: tuple[int
 
 def errors(c: Contender, p: Plan, folder: Path) -> dict[str, float]:
     """Largest and rms errors over all speeds and phases, relative to theory; NaN where a contact did not end."""
-    case = p.experiment.case
     for longer in (1.0, 1.3, 2.0):  # coarse steps stretch contacts
         try:
             longest = replace(p, steps=int(p.steps * longer))
-            c.engine.write(longest, folder)
-            table = impacts_table(longest, measure(longest, c.engine.run(longest, folder)))
+            table = run_plan(longest, c.engine, folder).impacts
             break
         except EngineError:
             if longer == 2.0:
                 return {f"{q}_{kind}": np.nan for q in QUANTITIES for kind in ("error", "rms")}
-    rows = compare(c.engine.name, c.law, table, c.prediction, case.check)
+    rows = compare(c.engine.name, c.law, table, c.prediction, p.experiment.check)
     return {f"{q}_error": float(rows[f"{q}_error"].max()) for q in QUANTITIES} | {
         f"{q}_rms": float(np.sqrt((rows[f"{q}_rms"] ** 2).mean())) for q in QUANTITIES
     }
@@ -129,13 +126,9 @@ def _liggghts_seconds(tool: Liggghts, p: Plan, folder: Path) -> dict[str, float]
     lines = deck.read_text().splitlines()
     deck.write_text("\n".join(line for line in lines if not line.startswith("dump ")) + "\n")  # stepping, not writing
     (folder / "in.empty").write_text("# nothing\n")
-    command = [str(paths.launcher()), "-in"]
-    begin = time.perf_counter()
-    subprocess.run([*command, "in.empty", "-log", "none"], cwd=folder, capture_output=True, timeout=120, check=False)
-    startup = time.perf_counter() - begin
-    begin = time.perf_counter()
-    call([*command, deck.name, "-log", "log.liggghts"], folder, log="out.liggghts", seconds=600)
-    total, stepping = time.perf_counter() - begin, loop_seconds(folder / "log.liggghts")
+    startup = launcher.run("in.empty", folder, out="out.empty", seconds=120)
+    total = launcher.run(deck.name, folder, log=launcher.LOG, seconds=600)
+    stepping = loop_seconds(folder / launcher.LOG)
     return {"startup": startup, "setup": max(total - startup - stepping, 0.0), "stepping": stepping}
 
 

@@ -2,7 +2,6 @@
 """One case on every engine and model at hand: theory, ours, and what others bring along, in one table and figure."""
 
 import math
-import time
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -13,14 +12,14 @@ import pandas as pd
 from ..case.impact import load
 from ..engines import ENGINES, FOREIGN, OTHERS, Engine, OwnTheory
 from ..errors import CaseError
-from ..files import atomic
+from ..folders import claim
 from ..impacts import report
-from ..impacts.comparison import compare, impacts_table
+from ..impacts.comparison import compare
 from ..impacts.experiment import Experiment, experiment
 from ..impacts.foreign import prediction as predict
-from ..impacts.measurement import measure
 from ..impacts.plan import plan
-from ..impacts.run import Outcome, run
+from ..impacts.run import Outcome, run, run_plan
+from ..tables import write_csv
 from .invariance import WAYS, examine
 
 COARSER = 4  # the order of convergence is seen between steps/4 and steps
@@ -53,13 +52,9 @@ def contenders(x: Experiment) -> tuple[dict[str, Engine], dict[str, str]]:
 
 def _own_theory(tool: OwnTheory, x: Experiment, folder: Path) -> tuple[pd.DataFrame, float]:
     """An engine with a law of its own against its own theory: (one row per speed, seconds)."""
-    start, prediction = time.perf_counter(), tool.predict(x)
-    p = plan(x, prediction)
-    folder.mkdir(parents=True, exist_ok=True)
-    tool.write(p, folder)
-    impacts = impacts_table(p, measure(p, tool.run(p, folder), end_power=tool.end_power))
-    (folder / "path.bin").unlink(missing_ok=True)
-    return compare(tool.name, tool.name, impacts, prediction, x.case.check), time.perf_counter() - start
+    prediction = tool.predict(x)
+    stage = run_plan(plan(x, prediction), tool, folder, end_power=tool.end_power)
+    return compare(tool.name, tool.name, stage.impacts, prediction, x.check), stage.seconds["seconds"]
 
 
 def _row(tool: Engine, fine: pd.DataFrame, coarse: pd.DataFrame, x: Experiment, folder: Path) -> dict[str, object]:
@@ -89,9 +84,14 @@ def crosscheck(
     x = experiment(case, law)
     tools, absent = contenders(x)
     folder = out or Path("runs") / "crosscheck" / case.name
+    with claim(folder):
+        return _crosscheck(path, case, x, law, folder, tools, absent, fresh, progress)
+
+
+def _crosscheck(path, case, x, law, folder, tools, absent, fresh, progress) -> Crosscheck:
     steps = case.numerics.steps_in_contact
     few = max(10, steps // COARSER)
-    ours = [n for n in tools if n not in FOREIGN]
+    ours = [tool for name, tool in tools.items() if name not in FOREIGN]
     words = {"engines": ours, "laws": [law] if law else [], "fresh": fresh, "progress": progress}
     fine = run(path, out=folder, steps=steps, **words)
     coarse = run(path, out=folder / "coarse", steps=few, **words)
@@ -107,13 +107,11 @@ def crosscheck(
             seconds = fine.seconds[name]
         rows.append(_row(tool, many, less, x, folder) | {"seconds": seconds})
     table = pd.DataFrame(rows)
-    with atomic(folder / "crosscheck.csv") as temporary:
-        table.to_csv(temporary, index=False)
+    write_csv(folder / "crosscheck.csv", table)
     report.figure(fine)
     notes = {name: tool.note(x) for name, tool in tools.items() if name in FOREIGN}
     return Crosscheck(table, fine, absent, notes)
 
 
 def _with_steps(x: Experiment, steps: int) -> Experiment:
-    numerics = x.case.numerics.model_copy(update={"steps_in_contact": steps, "error": None})
-    return replace(x, case=x.case.model_copy(update={"numerics": numerics}))
+    return replace(x, numerics=x.numerics.model_copy(update={"steps_in_contact": steps, "error": None}))

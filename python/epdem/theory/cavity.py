@@ -4,12 +4,10 @@
 This project's own composition of the chapter's ingredients; nothing in it is fitted.
 """
 
-from typing import ClassVar
-
 import numpy as np
 
-from .backbones import LAWS, Backbone
-from .checks import number
+from .backbone import Backbone, Parameter
+from .checks import Array, Real, number
 
 
 class Cavity(Backbone):
@@ -20,9 +18,15 @@ class Cavity(Backbone):
     """
 
     name = "cavity"
-    keywords: ClassVar = {"yield_stress": "Y", "first_yield_ratio": "c_Y", "plastic_ratio": "c_P"}
+    parameters = (
+        Parameter("yield_stress", "Y", "Pa"),
+        Parameter("first_yield_ratio", "c_Y", "1", 1.60),
+        Parameter("plastic_ratio", "c_P", "1", 2.8),
+    )
+    strength = "yield_stress"
+    narrowest, latest = 1.3, 1.88  # c_P/c_Y and c_Y beyond which the three phases are no picture of a metal
 
-    def __init__(self, *, E_star, R_star, Y, c_Y=1.60, c_P=2.8):
+    def __init__(self, *, E_star: Real, R_star: Real, Y: Real, c_Y: Real = 1.60, c_P: Real = 2.8):
         super().__init__(E_star, R_star)
         self.Y, self.c_Y, self.c_P = number("Y", Y), number("c_Y", c_Y), number("c_P", c_P)
         self.a_Y = np.pi * self.R_star * self.c_Y * self.Y / (2 * self.E_star)
@@ -37,28 +41,28 @@ class Cavity(Backbone):
                              "2.5; raise first_yield_ratio (c_Y) or plastic_ratio (c_P)")  # fmt: skip
         self.plastic_overlap = self.yield_overlap * np.exp(self.ln_s_P)
 
-    def marks(self):
+    def marks(self) -> list[Real]:
         return [self.yield_overlap, self.plastic_overlap]
 
-    def _ln_s(self, alpha):
+    def _ln_s(self, alpha: Real) -> Real:
         """ln(alpha/alpha_Y), held between 0 and ln s_P; near 1 without cancellation."""
         x = np.maximum(alpha - self.yield_overlap, 0.0) / self.yield_overlap
-        return np.minimum(np.log1p(x), self.ln_s_P)
+        return np.asarray(np.minimum(np.log1p(x), self.ln_s_P))
 
-    def flatness(self, alpha):
-        return self._ln_s(alpha) / self.ln_s_P
+    def flatness(self, alpha: Real) -> Real:
+        return np.asarray(self._ln_s(alpha) / self.ln_s_P)
 
-    def radius(self, alpha):
+    def radius(self, alpha: Real) -> Real:
         middle = self.a_Y * np.exp((1 + self.beta) / 2 * self._ln_s(alpha))
         ends = np.where(alpha < self.plastic_overlap, 1.0, np.sqrt(2.0)) * np.sqrt(self.R_star * alpha)
         return np.where((alpha > self.yield_overlap) & (alpha < self.plastic_overlap), middle, ends)
 
-    def force(self, alpha):
+    def force(self, alpha: Real) -> Real:
         p_m = self.Y * (2 / 3 * self.c_Y + (1 + self.beta) / 3 * self._ln_s(alpha))
         elastic = self._hertz_force(np.minimum(alpha, self.yield_overlap))
         return np.where(alpha <= self.yield_overlap, elastic, np.pi * self.radius(alpha) ** 2 * p_m)
 
-    def _middle_work(self, ln_s):
+    def _middle_work(self, ln_s: Real) -> tuple[Real, Real]:
         """Work of phase 2 [J] from yield to ln s, and its derivative by ln s."""
         A, B, n = 2 / 3 * self.c_Y, (1 + self.beta) / 3, 2 + self.beta
         grow = np.expm1(n * ln_s)
@@ -67,17 +71,14 @@ class Cavity(Backbone):
         scale = np.pi * self.a_Y**2 * self.yield_overlap * self.Y
         return scale * (A * first + B * second), scale * (grow + 1) * (A + B * ln_s)
 
-    def work(self, alpha):
+    def work(self, alpha: Real) -> Real:
         elastic = self._hertz_work(np.minimum(alpha, self.yield_overlap))
         P = self.plastic_overlap
         x = np.maximum(alpha - P, 0.0)
-        return (
-            elastic
-            + self._middle_work(self._ln_s(alpha))[0]
-            + np.pi * self.R_star * self.c_P * self.Y * x * (2 * P + x)
-        )
+        plastic: Real = np.pi * self.R_star * self.c_P * self.Y * x * (2 * P + x)
+        return elastic + self._middle_work(self._ln_s(alpha))[0] + plastic
 
-    def overlap_of_work(self, W):
+    def overlap_of_work(self, W: Real) -> Real:
         W = np.asarray(W, float)
         W_Y = self._hertz_work(self.yield_overlap)
         W_P = W_Y + self._middle_work(self.ln_s_P)[0]
@@ -97,5 +98,17 @@ class Cavity(Backbone):
         middle = self.yield_overlap * np.exp(ln_s)
         return np.where(W <= W_Y, elastic, np.where(W >= W_P, plastic, middle))
 
-
-LAWS["cavity"] = Cavity
+    def caveats(self, *, m_star: Real, speed: Array) -> list[str]:
+        """Parameters that pass the condition on energy and still describe no body."""
+        found, ratio = [], np.min(np.divide(self.c_P, self.c_Y))
+        if ratio < self.narrowest:
+            found.append(
+                f"plastic_ratio/first_yield_ratio (c_P/c_Y) = {ratio:.3g}, below {self.narrowest}: just above yield "
+                "the force of cavity passes Hertz's, by 4 to 15 %"
+            )
+        if np.max(self.c_Y) > self.latest:
+            found.append(
+                f"first_yield_ratio (c_Y) = {np.max(self.c_Y):.3g}, above {self.latest}: a sphere yields at 1.877 Y at "
+                "the latest (nu = 0.5, eq. 8.78)"
+            )
+        return found

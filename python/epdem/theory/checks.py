@@ -1,10 +1,18 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Arguments are checked once, as whole arrays; the message names the argument and its range."""
 
+from typing import TypeAlias
+
 import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+Array: TypeAlias = NDArray[np.float64]
+Real: TypeAlias = float | Array  # one number or many, which broadcast
 
 
-def number(name: str, value, *, low: float = 0.0, high: float = np.inf, low_ok: bool = False, infinite: bool = False):
+def number(
+    name: str, value: ArrayLike, *, low: float = 0.0, high: float = np.inf, low_ok: bool = False, infinite: bool = False
+) -> Real:
     """`value` as a float array in (low, high] or [low, high]; infinite=True lets +inf pass.
 
     Raises ValueError that names the argument, the first bad value and the range.
@@ -18,6 +26,6 @@ def number(name: str, value, *, low: float = 0.0, high: float = np.inf, low_ok: 
     return x if x.ndim else float(x)
 
 
-def poisson_ratio(name: str, value):
+def poisson_ratio(name: str, value: ArrayLike) -> Real:
     """`value` in (-1, 0.5]."""
     return number(name, value, low=-1.0, high=0.5)

@@ -6,11 +6,15 @@ Hutchings 1979).
 """
 
 import numpy as np
+from numpy.typing import ArrayLike
 
-from .checks import number, poisson_ratio
+from .backbone import Backbone
+from .checks import Array, Real, number, poisson_ratio
+from .numerics import bisect, gauss
+from .restitution import history, impact
 
 
-def _rayleigh(k2, g):
+def _rayleigh(k2: Array, g: float) -> Array:
     """R(k) = (2k^2-1)^2 - 4 k^2 sqrt(k^2-g) sqrt(k^2-1) for k^2 > 1."""
     return (2 * k2 - 1) ** 2 - 4 * k2 * np.sqrt(k2 - g) * np.sqrt(k2 - 1)
 
@@ -18,10 +22,11 @@ def _rayleigh(k2, g):
 def _wave_parts(nu: float) -> tuple[float, float]:
     """Parts of C(nu) from the bulk waves and from the Rayleigh pole."""
     g = (1 - 2 * nu) / (2 * (1 - nu))
-    x, w = np.polynomial.legendre.leggauss(200)
-    x, w = 0.5 * (x + 1), 0.5 * w
+    x, w = gauss(200)
 
-    def imaginary(k):  # of k nu_p/R on 0 < k < 1: nu_s (and below sqrt g also nu_p) is imaginary, of one sign
+    def imaginary(
+        k: Array,
+    ) -> Array:  # of k nu_p/R on 0 < k < 1: nu_s (and below sqrt g also nu_p) is imaginary, of one sign
         k2 = k * k
         nu_p = np.where(k2 < g, 1j * np.sqrt(np.maximum(g - k2, 0)), np.sqrt(np.maximum(k2 - g, 0)))
         nu_s = 1j * np.sqrt(1 - k2)
@@ -33,37 +38,36 @@ def _wave_parts(nu: float) -> tuple[float, float]:
         theta = np.pi / 2 * x
         k = low + (high - low) * np.sin(theta) ** 2
         bulk += np.pi / 2 * (high - low) * 2 * float((np.sin(theta) * np.cos(theta) * imaginary(k)) @ w)
-    low, high = 1.0, 4.0  # k^2 of the pole: 1/0.874^2 = 1.31 (nu = 0) down to 1.096 (nu = 0.5)
-    for _ in range(200):
-        middle = 0.5 * (low + high)
-        low, high = (middle, high) if _rayleigh(middle, g) > 0 else (low, middle)
-    k2 = 0.5 * (low + high)
+    # k^2 of the pole: 1/0.874^2 = 1.31 (nu = 0) down to 1.096 (nu = 0.5)
+    k2 = float(bisect(lambda k2: _rayleigh(k2, g) > 0, 1.0, 4.0)[0])
     k, p, s = np.sqrt(k2), np.sqrt(k2 - g), np.sqrt(k2 - 1)
     slope = 8 * k * (2 * k2 - 1) - 8 * k * p * s - 4 * k2 * k * (s / p + p / s)
     return abs(bulk), abs(np.pi * k * p / slope)
 
 
-def wave_constant(nu):
+def wave_constant(nu: Real) -> Real:
     """C(nu) of E_w = C/(rho c_0^3) integral of (dF/dt)^2 dt, c_0 = sqrt(E/rho); from Lamb's point-load solution.
 
     nu in [0, 0.5): scalar or array. C = [2(1+nu)]^1.5/(2 pi) Im of the integral of k nu_p/R dk.
     """
     nu = number("nu", nu, low_ok=True, high=0.4999)
-    return np.vectorize(lambda n: (2 * (1 + n)) ** 1.5 / (2 * np.pi) * sum(_wave_parts(float(n))))(nu)[()]
+    found: Real = np.vectorize(lambda n: (2 * (1 + n)) ** 1.5 / (2 * np.pi) * sum(_wave_parts(float(n))))(nu)[()]
+    return found
 
 
-def rayleigh_share(nu):
+def rayleigh_share(nu: Real) -> Real:
     """Share of the radiated energy that the Rayleigh wave carries; nu in [0, 0.5)."""
     nu = number("nu", nu, low_ok=True, high=0.4999)
 
-    def share(n):
+    def share(n: float) -> float:
         bulk, pole = _wave_parts(float(n))
         return pole / (bulk + pole)
 
-    return np.vectorize(share)(nu)[()]
+    found: Real = np.vectorize(share)(nu)[()]
+    return found
 
 
-def radiated(force, time, *, E, nu, density):
+def radiated(force: ArrayLike, time: ArrayLike, *, E: Real, nu: Real, density: Real) -> Real:
     """Energy radiated into a half-space [J] by a force history: force [N] at times [s], shape (n,), any spacing but 0.
 
     E [Pa], nu and density [kg/m^3] are the half-space's. Between samples the force is taken as straight.
@@ -75,7 +79,7 @@ def radiated(force, time, *, E, nu, density):
     return wave_constant(poisson_ratio("nu", nu)) / (density * c_0**3) * rate2
 
 
-def elastic_wave_fraction(speed, *, E, nu, density):
+def elastic_wave_fraction(speed: Real, *, E: Real, nu: Real, density: Real) -> Real:
     """Share of the kinetic energy radiated by an elastic impact of a sphere on a half-space of the same material.
 
     speed [m/s]; about 1.11 (v/c_0)^0.6 for nu = 0.25 (Hunter 1957 prints 1.04): the integral over Hertz's force.
@@ -83,42 +87,40 @@ def elastic_wave_fraction(speed, *, E, nu, density):
     v, nu = number("speed", speed), poisson_ratio("nu", nu)
     c_0 = np.sqrt(number("E", E) / number("density", density))
     # F = F_m f(t): integral of (dF/dt)^2 dt = integral of F'(alpha)^2 v(alpha) d alpha, twice; alpha in alpha_max
-    x, w = np.polynomial.legendre.leggauss(80)
-    s = 0.5 * (x + 1)
+    s, w = gauss(80)
     # alpha = 1 - u^2: v = sqrt(1 - alpha^2.5)
     alpha = 1 - s * s
-    shape = 2 * float((0.5 * w) @ (2 * s * (1.5**2) * alpha * np.sqrt(-np.expm1(2.5 * np.log(alpha)))))
+    shape = 2 * float(w @ (2 * s * (1.5**2) * alpha * np.sqrt(-np.expm1(2.5 * np.log(alpha)))))
     # F_m^2 v/alpha_m with W = 2/5 F_m alpha_m = m v^2/2, E* = E/(2(1-nu^2)), m = 4/3 pi rho R^3
     ratio = E / (2 * (1 - nu**2)) / E
     m, R = 4 / 3 * np.pi, 1.0  # per density and radius^3
     alpha_m = (15 / 16 * m * (v / c_0) ** 2 / (ratio * np.sqrt(R))) ** 0.4  # in R
     F_m = 5 / 4 * m * (v / c_0) ** 2 / alpha_m  # in E R^2
     rate2 = F_m**2 * (v / c_0) / alpha_m * shape  # the radius drops out
-    return wave_constant(nu) * rate2 / (0.5 * m * (v / c_0) ** 2)
+    share: Real = wave_constant(nu) * rate2 / (0.5 * m * (v / c_0) ** 2)
+    return share
 
 
-def plastic_wave_fraction(p_d, *, E, nu, e_n=None):
+def plastic_wave_fraction(p_d: Real, *, E: Real, nu: Real, e_n: Real | None = None) -> Real:
     """Share of the kinetic energy radiated by a fully plastic impact on a half-space at constant pressure p_d [Pa].
 
     (pi/2)(2 pi)^1.5/sqrt(4 pi/3) C (p_d/E)^1.5, 6.95 (p_d/E)^1.5 for nu = 0.3; with e_n the rebound is added, which
     radiates 0.811/e_n times as much again (Hutchings 1979: about 3 % for steel at 70 m/s).
     """
     p_d, E = number("p_d", p_d), number("E", E)
-    loading = np.pi / 2 * (2 * np.pi) ** 1.5 / np.sqrt(4 * np.pi / 3) * wave_constant(nu) * (p_d / E) ** 1.5
+    loading: Real = np.pi / 2 * (2 * np.pi) ** 1.5 / np.sqrt(4 * np.pi / 3) * wave_constant(nu) * (p_d / E) ** 1.5
     return loading if e_n is None else loading * (1 + 0.811 / number("e_n", e_n, high=1.0))
 
 
-def split(law, *, m_star, speed, E, nu, density) -> dict[str, float]:
+def split(law: Backbone, *, m_star: float, speed: float, E: float, nu: float, density: float) -> dict[str, float]:
     """Shares of the kinetic energy of one impact: "recovered" (e_n^2), "plastic" (the rest), and "waves".
 
     The law's work is split between the first two without a remainder; waves radiated into a half-space of E [Pa], nu
     and density [kg/m^3] by the law's force history are an estimate beside them (W_in = recovered + plastic + waves
     holds for the real impact, where they come out of the recovered part). Scalars only.
     """
-    from .restitution import history, impact
-
     x = impact(law, m_star=m_star, speed=speed)
     time, _, force = history(law, m_star=m_star, speed=speed, samples=2001)
-    waves = radiated(force, time, E=E, nu=nu, density=density) / float(x.work_in)
+    waves = float(radiated(force, time, E=E, nu=nu, density=density)) / float(x.work_in)
     recovered = float(x.work_out / x.work_in)
     return {"recovered": recovered, "plastic": 1 - recovered, "waves": waves}

@@ -9,26 +9,26 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .checks import number
+from .checks import Array, Real, number
+from .numerics import gauss
 
-_X, _W = np.polynomial.legendre.leggauss(32)
-_X, _W = 0.5 * (_X + 1), 0.5 * _W  # on [0, 1]
+_X, _W = gauss(32)
 
 
 @dataclass(frozen=True)
 class Impact:
     """Theory of impacts, arrays of one shape, SI."""
 
-    e_n: np.ndarray
-    contact_time: np.ndarray  # [s], until the force has gone
-    force_max: np.ndarray  # [N]
-    overlap_max: np.ndarray  # [m]
-    residual_overlap: np.ndarray  # [m]
-    work_in: np.ndarray  # [J]
-    work_out: np.ndarray  # [J]
+    e_n: Array
+    contact_time: Array  # [s], until the force has gone
+    force_max: Array  # [N]
+    overlap_max: Array  # [m]
+    residual_overlap: Array  # [m]
+    work_in: Array  # [J]
+    work_out: Array  # [J]
 
 
-def plasticity_overlap(*, k_1, k_p, phi_f, R_star):
+def plasticity_overlap(*, k_1: Real, k_p: Real, phi_f: Real, R_star: Real) -> Real:
     """Largest overlap [m] that still dents, [Luding 2008]: delta_p = k_p/(k_p - k_1) phi_f 2 R*.
 
     Stiffnesses k_p > k_1 > 0 [N/m], plasticity depth phi_f > 0, effective radius R_star [m] > 0; they broadcast.
@@ -39,7 +39,7 @@ def plasticity_overlap(*, k_1, k_p, phi_f, R_star):
     return k_p / (k_p - k_1) * number("phi_f", phi_f) * 2 * number("R_star", R_star)
 
 
-def luding(*, k_1, k_p, overlap_p, m_star, speed) -> Impact:
+def luding(*, k_1: Real, k_p: Real, overlap_p: Real, m_star: Real, speed: Real) -> Impact:
     """An impact of the linear law of [Luding 2008] with k_c = 0.
 
     Loading F = k_1 delta. Unloading from delta_max < delta_p along k_2 = k_1 + (k_p - k_1) delta_max/delta_p to
@@ -74,7 +74,7 @@ def luding(*, k_1, k_p, overlap_p, m_star, speed) -> Impact:
     )
 
 
-def edinburgh(*, k_1, k_2, exponent: float, m_star, speed) -> Impact:
+def edinburgh(*, k_1: Real, k_2: Real, exponent: float, m_star: Real, speed: Real) -> Impact:
     """An impact of the power law of [Thakur et al. 2014] without adhesion.
 
     Loading F = k_1 delta^n, unloading F = k_2 (delta^n - delta_p^n) to the dent delta_p = s delta_max,

@@ -9,22 +9,12 @@ how the free surface around the contact moves. It yields when the mean pressure 
 
 import numpy as np
 
-from .checks import number, poisson_ratio
+from .checks import Array, Real, number, poisson_ratio
 from .hysteresis import Impact
+from .numerics import bisect, gauss
 
 GIVEN_BACK = 4 / (3 * np.pi)  # integral of (2/pi)(acos y - y sqrt(1-y^2)) over y in [0, 1]
-_X, _W = np.polynomial.legendre.leggauss(48)
-_X, _W = 0.5 * (_X + 1), 0.5 * _W  # on [0, 1]
-
-
-def _root(f, high):
-    """Where f(x), rising and of the shape of `high`, passes 0 in (0, high)."""
-    low = np.zeros_like(high)
-    for _ in range(100):
-        x = 0.5 * (low + high)
-        above = f(x) > 0
-        low, high = np.where(above, low, x), np.where(above, x, high)
-    return 0.5 * (low + high)
+_X, _W = gauss(48)
 
 
 class Flat:
@@ -34,22 +24,22 @@ class Flat:
         self.E, self.R, self.Y = number("E_eff", E_eff), number("R", R), number("Y", Y)
         self.nu = poisson_ratio("nu", nu)
         self.G = E_eff * (1 - nu) / 2
-        self.yield_overlap = float(_root(self._excess, np.array(float(R))))
+        self.yield_overlap = float(bisect(lambda d: self._excess(d) < 0, 0.0, R, steps=100)[1])
 
-    def _excess(self, overlap):
+    def _excess(self, overlap: Real) -> Real:
         """Mean pressure of Hertz's contact beyond that of a yielding one [Pa]."""
         return 4 * self.E * np.sqrt(overlap / self.R) / (3 * np.pi) - self.pressure(overlap)
 
-    def pressure(self, overlap):
+    def pressure(self, overlap: Real) -> Real:
         """Mean pressure [Pa] of a contact that yields."""
         return self.Y * (1 + 1.75 * np.exp(-4.4 * overlap / self.R))
 
-    def area_over_pi(self, overlap):
+    def area_over_pi(self, overlap: Real) -> Real:
         """a^2 [m^2] of a contact that yields."""
         d, y = overlap, self.yield_overlap
         return (2 * d - y) * self.R - (d - y) * (d + y)
 
-    def force(self, overlap):
+    def force(self, overlap: Real) -> Array:
         """Force [N] while the overlap grows."""
         c = 1 - overlap / (2 * self.R)
         s = np.sqrt(np.maximum(1 - c * c, 0))
@@ -57,16 +47,16 @@ class Flat:
         plastic = np.pi * self.area_over_pi(overlap) * self.pressure(overlap)
         return np.where(overlap <= self.yield_overlap, elastic, plastic)
 
-    def work(self, overlap):
+    def work(self, overlap: Real) -> Array:
         """Work [J] up to an overlap [m], by Gauss on either side of yielding."""
         middle = np.minimum(overlap, self.yield_overlap)
-        total = 0.0
+        total = np.zeros(np.shape(overlap))
         for low, wide in ((np.zeros_like(middle), middle), (middle, overlap - middle)):
             total = total + wide * sum(w * self.force(low + wide * x) for x, w in zip(_X, _W, strict=True))
         return total
 
 
-def impact(*, E_eff: float, nu: float, R: float, Y: float, m_star: float, speed) -> Impact:
+def impact(*, E_eff: float, nu: float, R: float, Y: float, m_star: float, speed: Real) -> Impact:
     """An impact at `speed` [m/s] > 0, shape (n,), of a sphere with mass m_star [kg], up to overlaps of R/2.
 
     E_eff = E/(1-nu^2) [Pa] and Poisson's ratio nu of the sphere, its radius R [m] and yield stress Y [Pa]. With
@@ -76,13 +66,13 @@ def impact(*, E_eff: float, nu: float, R: float, Y: float, m_star: float, speed)
     law, v = Flat(E_eff=E_eff, nu=nu, R=R, Y=Y), np.atleast_1d(number("speed", speed))
     m = number("m_star", m_star)
     W = 0.5 * m * v**2
-    top = _root(lambda d: law.work(d) - W, np.full(v.shape, 0.5 * R))
+    top = bisect(lambda d: law.work(d) < W, np.zeros(v.shape), 0.5 * R, steps=100)[1]
     if np.any(top > 0.499 * R):
         raise ValueError(f"speed = {v.max():g}, the overlap passes half the radius")
     yielded, F = top > law.yield_overlap, law.force(top)
     # time on the way in: delta = top (1 - q^2), with the work that is left by Gauss as well; split where it yields
     kink = np.sqrt(np.maximum(1 - law.yield_overlap / top, 0))
-    there = 0.0
+    there = np.zeros(v.shape)
     for low, high in ((np.zeros_like(kink), kink), (kink, np.ones_like(kink))):
         for x, w in zip(_X, _W, strict=True):
             q = low + (high - low) * x
@@ -95,7 +85,7 @@ def impact(*, E_eff: float, nu: float, R: float, Y: float, m_star: float, speed)
     rise = (2 * a * a * (nu - 1) - (2 * nu - 1) * depth * (slant - depth)) * F / (2 * np.pi * a * a * law.G * slant)
     share = 1 + rise / recovery
     out = np.where(yielded, GIVEN_BACK * F * recovery * share, W)
-    back = 0.0
+    back = np.zeros(v.shape)
     for x, w in zip(_X, _W, strict=True):
         y = x * x  # speed rises from 0 as the root of y
         root = np.sqrt(1 - y * y)

@@ -3,17 +3,17 @@
 
 import numpy as np
 
-from .checks import number, poisson_ratio
+from .checks import Real, number, poisson_ratio
 
 
-def _one_finite(name: str, a, b, otherwise: str):
+def _one_finite(name: str, a: Real, b: Real, otherwise: str) -> tuple[Real, Real]:
     a, b = number(name + "1", a, infinite=True), number(name + "2", b, infinite=True)
     if np.any(np.isinf(a) & np.isinf(b)):
         raise ValueError(f"{name}1 = {name}2 = inf, at least one must be finite: {otherwise}")
     return a, b
 
 
-def E_star(E1, nu1, E2, nu2):
+def E_star(E1: Real, nu1: Real, E2: Real, nu2: Real) -> Real:
     """Effective modulus [Pa]: 1/E* = (1-nu1^2)/E1 + (1-nu2^2)/E2.
 
     E1, E2 [Pa] > 0, infinite for a rigid body; nu1, nu2 in (-1, 0.5]. ValueError outside and for two rigid bodies.
@@ -23,28 +23,28 @@ def E_star(E1, nu1, E2, nu2):
     return 1 / ((1 - nu1**2) / E1 + (1 - nu2**2) / E2)
 
 
-def G_star(E1, nu1, E2, nu2):
+def G_star(E1: Real, nu1: Real, E2: Real, nu2: Real) -> Real:
     """Effective shear modulus [Pa]: 1/G* = (2-nu1)/G1 + (2-nu2)/G2 with G = E/(2(1+nu)); arguments as in E_star."""
     E1, E2 = _one_finite("E", E1, E2, "both bodies are rigid")
     nu1, nu2 = poisson_ratio("nu1", nu1), poisson_ratio("nu2", nu2)
     return 1 / (2 * (2 - nu1) * (1 + nu1) / E1 + 2 * (2 - nu2) * (1 + nu2) / E2)
 
 
-def _reduced(a, b):
+def _reduced(a: Real, b: Real) -> Real:
     small, large = np.minimum(a, b), np.maximum(a, b)
     return small / (1 + small / large)  # no loss for a plane (inf) or very unequal bodies
 
 
-def R_star(R1, R2):
+def R_star(R1: Real, R2: Real) -> Real:
     """Effective radius [m]: 1/R* = 1/R1 + 1/R2; R1, R2 [m] > 0, infinite for a plane, not both."""
     return _reduced(*_one_finite("R", R1, R2, "both bodies are planes"))
 
 
-def m_star(m1, m2):
+def m_star(m1: Real, m2: Real) -> Real:
     """Effective mass [kg]: 1/m* = 1/m1 + 1/m2; m1, m2 [kg] > 0, infinite for a fixed body, not both."""
     return _reduced(*_one_finite("m", m1, m2, "both bodies are fixed"))
 
 
-def sphere_mass(*, radius, density):
+def sphere_mass(*, radius: Real, density: Real) -> Real:
     """Mass of a solid sphere [kg]; radius [m] > 0, density [kg/m^3] > 0."""
     return 4 / 3 * np.pi * number("radius", radius) ** 3 * number("density", density)

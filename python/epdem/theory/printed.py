@@ -3,10 +3,10 @@
 
 import numpy as np
 
-from .checks import number
+from .checks import Array, Real, number
 
 
-def yield_speed(*, p_y, E_star, R_star, m_star):
+def yield_speed(*, p_y: Real, E_star: Real, R_star: Real, m_star: Real) -> Real:
     """Impact speed at which the peak pressure reaches p_y [m/s].
 
     Eq. 8.84 [Thornton 1997]: v_y = (pi/(2E*))^2 sqrt(8 pi R*^3 p_y^5/(15 m*))
@@ -18,7 +18,7 @@ def yield_speed(*, p_y, E_star, R_star, m_star):
     return (np.pi / (2 * E_star)) ** 2 * np.sqrt(8 * np.pi * R_star**3 * p_y**5 / (15 * m_star))
 
 
-def thornton(speed, *, v_y):
+def thornton(speed: Real, *, v_y: Real) -> Array:
     """Restitution of the truncated Hertz pressure; speed, v_y [m/s] > 0; 1 up to v_y.
 
     Eq. 8.83 [Thornton 1997]: e_n = sqrt(6 sqrt(3)/5) sqrt(1 - r^2/6) [r/(r + 2 sqrt(6/5 - r^2/5))]^(1/4), r = v_y/v
@@ -29,7 +29,7 @@ def thornton(speed, *, v_y):
     return np.where(r >= 1, 1.0, e_n)
 
 
-def johnson(speed, *, p_m, E_star, R_star, m_star):
+def johnson(speed: Real, *, p_m: Real, E_star: Real, R_star: Real, m_star: Real) -> Array:
     """Fully plastic restitution. NaN where it exceeds 1: it is meant for v >> v_y.
 
     Eq. 8.86 [Johnson 1985]: e_n^2 = (3 sqrt2 pi^(5/4)/5) (p_m/E*) (m* v^2/(2 p_m R*^3))^(-1/4)
@@ -42,7 +42,7 @@ def johnson(speed, *, p_m, E_star, R_star, m_star):
     return np.where(e_n <= 1, e_n, np.nan)
 
 
-def johnson_plane(speed, *, p_m, E_star, density):
+def johnson_plane(speed: Real, *, p_m: Real, E_star: Real, density: Real) -> Array:
     """Sphere on a plane, fully plastic. NaN where it exceeds 1.
 
     Eq. 8.87 [Johnson 1985]: e_n = 1.718 (p_m^5/(E*^4 rho))^(1/8) v^(-1/4)
@@ -54,7 +54,7 @@ def johnson_plane(speed, *, p_m, E_star, density):
     return np.where(e_n <= 1, e_n, np.nan)
 
 
-def wu(speed, *, v_y0):
+def wu(speed: Real, *, v_y0: Real) -> Array:
     """Finite-element fit. NaN below v/v_y0 = 100.
 
     Eq. 8.88 [Wu et al. 2003]: e_n = 2.08 (v/v_y0)^(-1/4), v/v_y0 >= 100
@@ -65,7 +65,7 @@ def wu(speed, *, v_y0):
     return np.where(ratio >= 100, 2.08 * ratio**-0.25, np.nan)
 
 
-def bridges(speed):
+def bridges(speed: Real) -> Array:
     """Ice spheres; speed in m/s here. NaN outside the measured range.
 
     Eq. 8.89 [Bridges et al. 1984]: e_n = 0.32 v^(-0.234), v in cm/s, 0.015 < v < 5.1

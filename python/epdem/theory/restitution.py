@@ -2,16 +2,17 @@
 """A normal impact of any law: restitution, times, peaks, and the motion (section 8.2.3)."""
 
 import math
+from collections.abc import Callable
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
-from .backbones import Backbone
-from .checks import number
+from .backbone import Backbone
+from .checks import Array, Real, number
+from .numerics import gauss
 
-_X, _W = np.polynomial.legendre.leggauss(48)
-_X, _W = 0.5 * (_X + 1), 0.5 * _W  # on [0, 1]
-_SHORT = np.polynomial.legendre.leggauss(8)
+_X, _W = gauss(48)
 UNLOADING_TIME = 1.4716375921623523  # (2/5) B(2/5, 1/2): t_unload e_n v/delta_e for tau = 0
 
 
@@ -19,19 +20,19 @@ UNLOADING_TIME = 1.4716375921623523  # (2/5) B(2/5, 1/2): t_unload e_n v/delta_e
 class Impact:
     """Theory of impacts, arrays of one shape, SI."""
 
-    e_n: np.ndarray
-    contact_time: np.ndarray  # [s]
-    force_max: np.ndarray  # [N]
-    overlap_max: np.ndarray  # [m]
-    radius_max: np.ndarray  # [m]
-    residual_overlap: np.ndarray  # [m]
-    work_in: np.ndarray  # [J]
-    work_out: np.ndarray  # [J]
-    plastic_work: np.ndarray  # [J]
-    strain_ratio: np.ndarray  # a_max/R*; small-deformation theory up to about 0.3
+    e_n: Array
+    contact_time: Array  # [s]
+    force_max: Array  # [N]
+    overlap_max: Array  # [m]
+    radius_max: Array  # [m]
+    residual_overlap: Array  # [m]
+    work_in: Array  # [J]
+    work_out: Array  # [J]
+    plastic_work: Array  # [J]
+    strain_ratio: Array  # a_max/R*; small-deformation theory up to about 0.3
 
 
-def e_n(law: Backbone, *, m_star, speed):
+def e_n(law: Backbone, *, m_star: Real, speed: Real) -> Array:
     """Coefficient of restitution of an impact at `speed` [m/s] > 0 with effective mass m_star [kg] > 0.
 
     e_n^2 = kappa F^2/(a E* W) at W(alpha_max) = m* v^2/2; exactly 1 up to yield.
@@ -41,23 +42,22 @@ def e_n(law: Backbone, *, m_star, speed):
     return np.where(top <= law.yield_overlap, 1.0, np.sqrt(np.minimum(law.recovered_work(top) / W, 1.0)))
 
 
-def _integral(rate, shape):
+def _integral(rate: Callable[[Array], Array], shape: tuple[int, ...]) -> Array:
     """Integral over x in [0, 1] of rate(x), arrays of `shape`; nodes in blocks, so that a million impacts fit."""
-    total, block = 0.0, max(1, 200_000 // max(1, math.prod(shape)))
+    total, block = np.zeros(shape), max(1, 200_000 // max(1, math.prod(shape)))
     for k in range(0, len(_X), block):  # along a new first axis, so that a law's own parameters still broadcast
         x, w = _X[k : k + block], _W[k : k + block]
         total = total + np.tensordot(w, rate(x.reshape(-1, *[1] * len(shape))), 1)
     return total
 
 
-def _work_between(law: Backbone, low, high, width):
+def _work_between(law: Backbone, low: Real, high: Real, width: Real) -> Array:
     """W(high) - W(low) within one formula of the law; width = high - low. By Gauss where a difference would cancel."""
-    x, w = _SHORT
-    near = width * sum(0.5 * wk * law.force(high - width * 0.5 * (xk + 1)) for xk, wk in zip(x, w, strict=True))
+    near = width * sum(w * law.force(high - width * x) for x, w in zip(*gauss(8), strict=True))
     return np.where(width < 1e-3 * high, near, law.work(high) - law.work(low))
 
 
-def _loading_time(law: Backbone, m_star, top):
+def _loading_time(law: Backbone, m_star: Array, top: Array) -> Array:
     """Integral of d alpha/sqrt(2 (W(top) - W(alpha))/m*): alpha = top sin^2 theta takes both end singularities.
 
     Split where the law changes its formula: no piece of the work is integrated across a kink.
@@ -67,18 +67,19 @@ def _loading_time(law: Backbone, m_star, top):
     for low, high in reversed(list(zip(edges[:-1], edges[1:], strict=True))):
         left, right = (np.arcsin(np.sqrt(edge / top)) for edge in (low, high))
 
-        def rate(x, high=high, above=above, left=left, right=right):
+        def rate(x: Array, high: Real = high, above: Array = above, left: Any = left, right: Any = right) -> Array:
             theta, rest = left + (right - left) * x, (right - left) * (1 - x)
             alpha, width = top * np.sin(theta) ** 2, top * np.sin(rest) * np.sin(right + theta)
             speed = np.sqrt(2 * (above + _work_between(law, alpha, high, width)) / m_star)
-            return np.divide(2 * top * np.sin(theta) * np.cos(theta), speed, out=np.zeros_like(alpha), where=speed > 0)
+            wide = 2 * top * np.sin(theta) * np.cos(theta)
+            return np.asarray(np.divide(wide, speed, out=np.zeros_like(alpha), where=speed > 0))
 
         total = total + (right - left) * _integral(rate, top.shape)
         above = above + _work_between(law, low, high, high - low)
     return total
 
 
-def _unloading_time(law: Backbone, m_star, top, work_out):
+def _unloading_time(law: Backbone, m_star: Array, top: Array, work_out: Array) -> Array:
     """Time from the peak to zero force; closed for tau = 0, else by quadrature in y of the opening circle."""
     closed = UNLOADING_TIME * law.recovered_overlap(top) / np.sqrt(2 * work_out / m_star)
     tau = np.asarray(law.flatness(top), float)
@@ -86,7 +87,7 @@ def _unloading_time(law: Backbone, m_star, top, work_out):
         return closed
     A, B = 0.75 * (1 - tau), 2 / np.pi * tau
 
-    def rate(x):
+    def rate(x: Array) -> Array:
         y = x * x  # speed rises from 0 like sqrt y
         return (2 * A * y + B) * 2 * x / np.sqrt(_given_back(y, A, B, tau))
 
@@ -94,18 +95,17 @@ def _unloading_time(law: Backbone, m_star, top, work_out):
     return np.where(tau > 0, flat, closed)
 
 
-def _given_back(y, A, B, tau):
+def _given_back(y: Array, A: Array, B: Array, tau: Array) -> Array:
     """Energy given back while the circle opens to y, in F_max^2/(E* a_max): integral of f (2 A t + B) dt."""
-    x, w = np.polynomial.legendre.leggauss(24)
-    total = 0.0
-    for xk, wk in zip(0.5 * (x + 1), 0.5 * w, strict=True):
+    total = np.zeros(np.shape(y))
+    for xk, wk in zip(*gauss(24), strict=True):
         t = y * xk * (2 - xk)  # dense towards y = 1, where f ~ (1-y)^1.5
         f = (1 - tau) * (1 - t * t) ** 1.5 + 2 / np.pi * tau * (np.arccos(t) - t * np.sqrt(1 - t * t))
         total = total + wk * y * 2 * (1 - xk) * f * (2 * A * t + B)
     return total
 
 
-def impact(law: Backbone, *, m_star, speed) -> Impact:
+def impact(law: Backbone, *, m_star: Real, speed: Real) -> Impact:
     """Everything theory says of an impact at `speed` [m/s] > 0 with effective mass m_star [kg] > 0; they broadcast."""
     m, v, _ = np.broadcast_arrays(number("m_star", m_star), number("speed", speed), law.E_star * law.yield_overlap)
     W = 0.5 * m * v * v
@@ -114,15 +114,15 @@ def impact(law: Backbone, *, m_star, speed) -> Impact:
     out = np.where(elastic, W, np.minimum(law.recovered_work(top), W))
     time = _loading_time(law, m, top)
     back = np.where(elastic, time, _unloading_time(law, m, top, out))
-    radius = law.radius(top)
+    radius = np.asarray(law.radius(top))
     return Impact(
-        e_n=np.where(elastic, 1.0, np.sqrt(out / W)), contact_time=time + back, force_max=law.force(top),
-        overlap_max=top, radius_max=radius, residual_overlap=law.residual_overlap(top), work_in=W, work_out=out,
-        plastic_work=law.plastic_work(top), strain_ratio=radius / law.R_star,
+        e_n=np.where(elastic, 1.0, np.sqrt(out / W)), contact_time=time + back, force_max=np.asarray(law.force(top)),
+        overlap_max=top, radius_max=radius, residual_overlap=np.asarray(law.residual_overlap(top)), work_in=W,
+        work_out=out, plastic_work=np.asarray(law.plastic_work(top)), strain_ratio=np.asarray(radius / law.R_star),
     )  # fmt: skip
 
 
-def history(law: Backbone, *, m_star, speed, samples=1001):
+def history(law: Backbone, *, m_star: float, speed: float, samples: int = 1001) -> tuple[Array, Array, Array]:
     """Time [s], overlap [m] and force [N] of one impact, arrays of shape (samples,), from first touch to no force.
 
     The motion is found from the energy: t(alpha) on both ways by quadrature, then turned round by interpolation in the
@@ -151,7 +151,7 @@ def history(law: Backbone, *, m_star, speed, samples=1001):
     t = np.linspace(0, times[-1], samples)
     angle = np.interp(t, times, np.concatenate([theta, np.pi - theta[-2::-1]]))
     rising = angle <= np.pi / 2
-    low = np.where(rising, 0.0, dent)
-    alpha = low + (top - low) * np.sin(angle) ** 2
+    start = np.where(rising, 0.0, dent)
+    alpha = start + (top - start) * np.sin(angle) ** 2
     slope = law.unloading_force(alpha, top) if dent > 0 else law.force(alpha)
     return t, alpha, np.where(rising, law.force(alpha), slope)

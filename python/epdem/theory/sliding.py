@@ -9,21 +9,27 @@ Keer 1982; yield as in Johnson and Jefferis 1963.)
 """
 
 import functools
+from collections.abc import Callable
+from typing import Any, TypeAlias
 
 import numpy as np
+from numpy.typing import ArrayLike
 
-from .checks import number, poisson_ratio
+from .checks import Array, Real, number, poisson_ratio
+from .numerics import gauss
 from .yielding import equivalent, first_yield
 
 # All singularities lie at t = i z +- r: from t = -i to 1 below them. The nodes crowd towards t = 1, where the edge of
 # the contact comes near; the other half of the way, from -1 to -i, gives the complex conjugate.
-_S, _WEIGHT = np.polynomial.legendre.leggauss(96)
-_S, _WEIGHT = 0.5 * (_S + 1), 0.5 * _WEIGHT
+_S, _WEIGHT = gauss(96)
 _T = np.exp(-0.5j * np.pi * _S**4)
 _WEIGHT = _WEIGHT * 0.5j * np.pi * 4 * _S**3 * _T * (np.pi / 2) * (1 - _T**2)
 
+Place: TypeAlias = tuple[float, float]
+Point: TypeAlias = tuple[float, tuple[float, float, float]]
 
-def subsurface(x, y, z, *, mu, nu):
+
+def subsurface(x: ArrayLike, y: ArrayLike, z: ArrayLike, *, mu: Real, nu: Real) -> Array:
     """Stress tensor, shape (..., 3, 3), in units of p_0 at points (x, y, z >= 0) in units of a.
 
     mu >= 0 (0: Hertz's field alone), nu in (-1, 0.5]; ValueError outside. Accurate to 1e-11 of p_0 everywhere, on the
@@ -38,7 +44,9 @@ def subsurface(x, y, z, *, mu, nu):
     d = 3 / (R**5 * D) + 3 / (R**4 * D**2) + 2 / (R**3 * D**3)
     e, f = 1 / (R * D**2), 1 / (R**3 * D**2) + 2 / (R**2 * D**3)
 
-    def total(values):  # both halves of the way: twice the real part; 1/(2 pi) of Love's formulas goes in here
+    def total(
+        values: Any,
+    ) -> Any:  # both halves of the way: twice the real part; 1/(2 pi) of Love's formulas goes in here
         return np.real(values @ _WEIGHT) / np.pi
 
     zz, zzz = total(-Z / R**3), total(-1 / R**3 + 3 * Z * Z / R**5)
@@ -60,7 +68,7 @@ def subsurface(x, y, z, *, mu, nu):
     return s
 
 
-def surface(x, *, mu, nu):
+def surface(x: ArrayLike, *, mu: Real, nu: Real) -> Array:
     """Stress tensor, shape (..., 3, 3), in units of p_0 on the surface inside the contact, at (x, 0, 0), abs(x) <= 1.
 
     From the traction: s_x = -(pi (4+nu)/8) mu x, s_y = -(3 pi nu/8) mu x, tau_xz = -mu p. ValueError outside.
@@ -78,7 +86,7 @@ def surface(x, *, mu, nu):
     return s
 
 
-def _climb(value, place, step):
+def _climb(value: Callable[[Any, Any], Any], place: Place, step: float) -> tuple[float, Place]:
     """Highest point near `place` by pattern search in two coordinates."""
     best = value(*place)
     while step > 1e-9:
@@ -92,11 +100,11 @@ def _climb(value, place, step):
     return float(best), place
 
 
-def _for_arrays(find):
+def _for_arrays(find: Callable[[float, float, str], Point]) -> Callable[..., tuple[Real, tuple[Real, ...]]]:
     """The same search for every pair of mu and nu, which broadcast; pressure and coordinates have their shape."""
 
     @functools.wraps(find)
-    def everywhere(mu, nu, criterion="von_mises"):
+    def everywhere(mu: Real, nu: Real, criterion: str = "von_mises") -> tuple[Real, tuple[Real, ...]]:
         mu, nu = np.broadcast_arrays(number("mu", mu, low_ok=True), poisson_ratio("nu", nu))
         found = [find(float(m), float(n), criterion) for m, n in zip(mu.flat, nu.flat, strict=True)]
         columns = np.array([(pressure, *place) for pressure, place in found]).reshape(*mu.shape, 4)
@@ -106,14 +114,14 @@ def _for_arrays(find):
 
 
 @_for_arrays
-def first_yield_below(mu, nu, criterion="von_mises"):
+def first_yield_below(mu: float, nu: float, criterion: str = "von_mises") -> Point:
     """(p_0/Y, (x, y, z)/a) of first yield below the surface; mu >= 0 and nu broadcast, each result has their shape.
 
     At high friction the summit below vanishes and stress only rises towards the surface: (inf, ...) then.
     """
     _, depth = first_yield(nu)
 
-    def height(x, z):
+    def height(x: Any, z: Any) -> Array:
         return equivalent(subsurface(x, 0.0, np.maximum(z, 0.0), mu=mu, nu=nu), criterion)
 
     # the summit moves along x with friction; from there, not from the axis, the climb does not stray to the surface
@@ -124,7 +132,7 @@ def first_yield_below(mu, nu, criterion="von_mises"):
 
 
 @_for_arrays
-def first_yield_surface(mu, nu, criterion="von_mises"):
+def first_yield_surface(mu: float, nu: float, criterion: str = "von_mises") -> Point:
     """(p_0/Y, (x, y, z)/a) of first yield on the surface, inside the contact; mu >= 0 and nu broadcast."""
     low, high = -1.0, 1.0
     for _ in range(12):  # a finer grid around the highest point each time
@@ -136,10 +144,11 @@ def first_yield_surface(mu, nu, criterion="von_mises"):
 
 
 @_for_arrays
-def first_sliding_yield(mu, nu, criterion="von_mises"):
+def first_sliding_yield(mu: float, nu: float, criterion: str = "von_mises") -> Point:
     """(p_0/Y, (x, y, z)/a) of first yield of a sliding contact: the smaller pressure of surface and below counts.
 
     mu >= 0, nu in (-1, 0.5], both broadcast; criterion "von_mises" or "tresca"; ValueError otherwise.
     """
-    below, above = first_yield_below(mu, nu, criterion), first_yield_surface(mu, nu, criterion)
-    return min(below, above, key=lambda found: found[0])
+    found: list[Any] = [first_yield_below(mu, nu, criterion), first_yield_surface(mu, nu, criterion)]
+    lower: Point = min(found, key=lambda one: one[0])
+    return lower

@@ -9,39 +9,38 @@ Near first touch and near the dent sqrt(a) goes as the 1/4 power of the overlap 
 dt = 4 (L/V) q^3 dtheta the motion is smooth there and at the turning point: dq/dtheta = alpha'/V.
 """
 
+from collections.abc import Callable
 from dataclasses import dataclass, fields
+from typing import TypeAlias
 
 import numpy as np
 
 from . import restitution as undamped
-from .backbones import Backbone
-from .checks import number
+from .backbone import Backbone
+from .checks import Array, Real, number
+from .numerics import bisect, gauss
 
 RESTITUTION_MIN = 0.14  # the formula's limit for zeta -> 1 is exp(-2) = 0.135
+Rate: TypeAlias = Callable[[Array], Array]  # of states (k, n): one number or their change for each
 _STEP = 1 / 8  # of theta; the extrapolation below then leaves 1e-12
-_X, _W = np.polynomial.legendre.leggauss(32)
-_X, _W = 0.5 * (_X + 1), 0.5 * _W  # on [0, 1]
+_X, _W = gauss(32)
 
 
 @dataclass(frozen=True)
 class Impact(undamped.Impact):
     """As without a dashpot, but force_max and residual_overlap are those of the whole force, dashpot and all."""
 
-    viscous_work: np.ndarray  # lost beside plastic_work [J]: to the dashpot, or still stored when the bodies part
+    viscous_work: Array  # lost beside plastic_work [J]: to the dashpot, or still stored when the bodies part
 
 
-def damping_ratio(e):
+def damping_ratio(e: Real) -> Array:
     """zeta of a Hertz contact with restitution e in [0.14, 1], any shape. Raises ValueError outside."""
     e = np.asarray(number("restitution", e, low=RESTITUTION_MIN, high=1.0, low_ok=True))
-    low, high = np.zeros_like(e), np.full_like(e, np.pi / 2)
-    for _ in range(60):
-        phi = 0.5 * (low + high)
-        above = np.exp(-(np.pi - 2 * phi) * np.tan(phi)) > e
-        low, high = np.where(above, phi, low), np.where(above, high, phi)
-    return np.where(e < 1, np.sin(low), 0.0)
+    phi, _ = bisect(lambda phi: np.exp(-(np.pi - 2 * phi) * np.tan(phi)) > e, 0.0, np.pi / 2)
+    return np.where(e < 1, np.sin(phi), 0.0)
 
 
-def _advance(f, y, h):
+def _advance(f: Rate, y: Array, h: Real) -> Array:
     """One step h (scalar or (n,)) of y' = f(y), y (k, n): modified midpoint rule, extrapolated to order 16."""
     rows: list[list[np.ndarray]] = []
     for j in range(1, 9):
@@ -56,7 +55,7 @@ def _advance(f, y, h):
     return rows[-1][-1]
 
 
-def _path(f, y, going):
+def _path(f: Rate, y: Array, going: Rate) -> Array:
     """States from y (k, n) on until going(y) <= 0 in every column, shape (steps + 1, k, n); a column then stands."""
     path = [y]
     while np.any(active := going(path[-1]) > 0):
@@ -66,20 +65,16 @@ def _path(f, y, going):
     return np.array(path)
 
 
-def _first_zero(f, path, g):
+def _first_zero(f: Rate, path: Array, g: Rate) -> Array:
     """The state of each column where g first ceases to be positive after the start; its last one if it never does."""
     ended = np.array([g(y) <= 0 for y in path[1:]])
     start = np.where(ended.any(axis=0), ended.argmax(axis=0), len(path) - 2)
     y = np.take_along_axis(path, start[None, None, :], axis=0)[0]
-    low, high = np.zeros(y.shape[1]), np.full(y.shape[1], _STEP)
-    for _ in range(52):
-        h = 0.5 * (low + high)
-        positive = g(_advance(f, y, h)) > 0
-        low, high = np.where(positive, h, low), np.where(positive, high, h)
+    _, high = bisect(lambda h: g(_advance(f, y, h)) > 0, np.zeros(y.shape[1]), _STEP, steps=52)
     return np.where(ended.any(axis=0), _advance(f, y, high), path[-1])
 
 
-def _largest(f, path, g):
+def _largest(f: Rate, path: Array, g: Rate) -> Array:
     """The largest g along the path: sampled, then by golden section in the two steps around the largest sample."""
     samples = np.array([g(y) for y in path])
     start = np.maximum(samples.argmax(axis=0) - 1, 0)
@@ -92,7 +87,7 @@ def _largest(f, path, g):
     return g(_advance(f, y, 0.5 * (low + high)))
 
 
-def _yielding_time(law: Backbone, m, start, top):
+def _yielding_time(law: Backbone, m: Array, start: Array, top: Array) -> Array:
     """Time on the backbone from overlap `start` to rest at `top`: quadrature in c, alpha = top - (top - start) c^2."""
     marks = [start, *(np.clip(mark, start, top) for mark in law.marks()), top]
     total = np.zeros_like(top)
@@ -102,27 +97,27 @@ def _yielding_time(law: Backbone, m, start, top):
         width = np.maximum((top - start)[:, None] * c * c, np.finfo(float).tiny)  # a piece may be empty
         alpha = top[:, None] - width
         mean = sum(w * law.force(alpha + width * x) for x, w in zip(_X, _W, strict=True))
-        exact = (law.work(top)[:, None] - law.work(alpha)) / width  # loses digits near the top, kinks spoil the other
+        exact = (law.work(top[:, None]) - law.work(alpha)) / width  # loses digits near the top, kinks spoil the other
         mean = np.where(width < 1e-3 * top[:, None], mean, exact)
         total += (far - near) * ((2 * np.sqrt((top - start)[:, None] * m[:, None] / (2 * mean))) @ _W)
     return total
 
 
-def _elastic(share, dashpot, q_yield):
+def _elastic(share: Array, dashpot: float, q_yield: Array) -> tuple[Array, Array, Array]:
     """Hertz contact from touch in units of L and of the impact speed; share = (L/its own undamped peak)^(5/4)."""
     k, d = 1.25 * share**2, dashpot * np.sqrt(15 / 8) * share
 
-    def force(y):
+    def force(y: Array) -> Array:
         q, v, _ = y
-        return q * (k * q**5 + d * v)
+        return np.asarray(q * (k * q**5 + d * v))
 
-    def rate(y):
+    def rate(y: Array) -> Array:
         q, v, _ = y
         return np.array([v, -4 * q**3 * force(y), 4 * q**3])
 
-    def loaded(y):
+    def loaded(y: Array) -> Array:
         q, v, _ = y
-        return np.minimum(q_yield - q, np.where(v > 0, 1.0, k * q**5 + d * v))
+        return np.asarray(np.minimum(q_yield - q, np.where(v > 0, 1.0, k * q**5 + d * v)))
 
     path = _path(rate, np.array([np.zeros_like(share), np.ones_like(share), np.zeros_like(share)]), loaded)
     end, turn = _first_zero(rate, path, loaded), _first_zero(rate, path, lambda y: np.minimum(y[1], q_yield - y[0]))
@@ -130,25 +125,25 @@ def _elastic(share, dashpot, q_yield):
     return end, turn, np.maximum(inside, force(end))
 
 
-def _unload(law: Backbone, top, L, V, m, dashpot):
+def _unload(law: Backbone, top: Array, L: Array, V: Array, m: Array, dashpot: float) -> Array:
     """The elastic branch from rest at `top`, in units of the elastic recovery (L) and of the undamped rebound (V)."""
 
-    def forces(q, v):
+    def forces(q: Array, v: Array) -> Array:
         F, a = law.unloading(np.minimum(top - L * (1 - q**4), top), top)
         return F * L / (m * V * V) + dashpot * np.sqrt(2 * law.E_star * a / m) * L / V * v
 
-    def rate(y):
+    def rate(y: Array) -> Array:
         q, v, _ = y
         return np.array([v, -4 * q**3 * forces(q, v), 4 * q**3])
 
-    def loaded(y):
+    def loaded(y: Array) -> Array:
         return np.where(y[0] > 0, forces(y[0], y[1]), -1.0)
 
     path = _path(rate, np.array([np.ones_like(top), np.zeros_like(top), np.zeros_like(top)]), loaded)
     return _first_zero(rate, path, loaded)
 
 
-def impact(law: Backbone, *, m_star, speed, restitution: float) -> Impact:
+def impact(law: Backbone, *, m_star: Real, speed: Real, restitution: float) -> Impact:
     """Everything theory says of an impact at `speed` [m/s] > 0 with effective mass m_star [kg] > 0; they broadcast.
 
     restitution in [0.14, 1] is that of impacts that do not yield. Raises ValueError for values outside.
@@ -171,8 +166,8 @@ def impact(law: Backbone, *, m_star, speed, restitution: float) -> Impact:
     if yielded.any():
         y, m_y = law.yield_overlap, m[yielded]
         kinetic = 0.5 * m_y * (v * end[1])[yielded] ** 2
-        summit = law.overlap_of_work(law.work(y) + kinetic)
-        given, recovery = law.recovered_work(summit), law.recovered_overlap(summit)
+        summit = np.asarray(law.overlap_of_work(law.work(y) + kinetic))
+        given, recovery = law.recovered_work(summit), np.asarray(law.recovered_overlap(summit))
         V = np.sqrt(2 * given / m_y)
         out = _unload(law, summit, recovery, V, m_y, dashpot)
         time[yielded] += _yielding_time(law, m_y, np.full(summit.shape, y), summit) + recovery / V * out[2]

@@ -1,46 +1,50 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """When and where a contact yields: criteria, first yield under a sphere, fully plastic range, which body."""
 
-import numpy as np
+from typing import Any
 
-from .backbones import Backbone
-from .checks import number, poisson_ratio
+import numpy as np
+from numpy.typing import ArrayLike
+
+from .backbone import Backbone
+from .checks import Array, Real, number, poisson_ratio
+from .numerics import bisect
 
 FIRST_YIELD_ROUNDED = 1.60  # p_0/Y at first yield, nu = 0.3; eq. 8.78
 FIRST_YIELD_MEAN_ROUNDED = 1.10  # p_m/Y at first yield; eq. 8.79
 FULLY_PLASTIC = (2.8, 3.0)  # p_m/Y; see fully_plastic_mean
 
 
-def principal(stress):
+def principal(stress: ArrayLike) -> Array:
     """Principal stresses, shape (..., 3), ascending, of symmetric tensors of shape (..., 3, 3)."""
     stress = np.asarray(stress, float)
     if stress.shape[-2:] != (3, 3):
         raise ValueError(f"stress has shape {stress.shape}, must end in (3, 3)")
-    return np.linalg.eigvalsh(stress)
+    return np.asarray(np.linalg.eigvalsh(stress))
 
 
-def von_mises(s1, s2, s3):
+def von_mises(s1: ArrayLike, s2: ArrayLike, s3: ArrayLike) -> Array:
     """Equivalent stress sqrt(3 J2) of principal stresses [Pa]: yield when it reaches Y. Any shapes that broadcast.
 
     Eq. 8.76 [Johnson 1985]: J2 = [(s1-s2)^2 + (s2-s3)^2 + (s3-s1)^2]/6 = k^2 = Y^2/3
     """
     s1, s2, s3 = (np.asarray(s, float) for s in (s1, s2, s3))
-    return np.sqrt(((s1 - s2) ** 2 + (s2 - s3) ** 2 + (s3 - s1) ** 2) / 2)
+    return np.asarray(np.sqrt(((s1 - s2) ** 2 + (s2 - s3) ** 2 + (s3 - s1) ** 2) / 2))
 
 
-def tresca(s1, s2, s3):
+def tresca(s1: ArrayLike, s2: ArrayLike, s3: ArrayLike) -> Array:
     """Largest difference of principal stresses [Pa]: yield when it reaches Y. Any shapes that broadcast.
 
     Eq. 8.77 [Johnson 1985]: max(|s1-s2|, |s2-s3|, |s3-s1|) = 2k = Y
     """
     s = np.stack(np.broadcast_arrays(*(np.asarray(x, float) for x in (s1, s2, s3))))
-    return s.max(axis=0) - s.min(axis=0)
+    return np.asarray(s.max(axis=0) - s.min(axis=0))
 
 
 CRITERIA = {"von_mises": von_mises, "tresca": tresca}
 
 
-def equivalent(stress, criterion: str):
+def equivalent(stress: ArrayLike, criterion: str) -> Array:
     """Equivalent stress of tensors (..., 3, 3) by "von_mises" or "tresca". ValueError for another name."""
     if criterion not in CRITERIA:
         raise ValueError(f"criterion = {criterion!r}, must be one of {', '.join(CRITERIA)}")
@@ -48,7 +52,7 @@ def equivalent(stress, criterion: str):
     return CRITERIA[criterion](p[..., 0], p[..., 1], p[..., 2])
 
 
-def axis_difference(z, nu):
+def axis_difference(z: Real, nu: Real) -> Array:
     """s_z - s_r on the axis of a Hertz contact at depth z (in a), in units of -p_0: what both criteria see there."""
     z, nu = np.asarray(z, float), poisson_ratio("nu", nu)
     deep = np.maximum(z, 1e-300)
@@ -56,7 +60,7 @@ def axis_difference(z, nu):
     return s_r + 1 / (1 + z * z)
 
 
-def first_yield(nu):
+def first_yield(nu: Real) -> tuple[Array, Array]:
     """(p_0/Y, depth z/a) of first yield on the axis under a sphere, exactly. nu in (-1, 0.5], of any shape.
 
     Eq. 8.78 [Johnson 1985]: p_0 = Y/max(s_r - s_z), 1.60 Y at nu = 0.3
@@ -67,18 +71,14 @@ def first_yield(nu):
     nu = poisson_ratio("nu", nu)
     low, high = 0.3 * (1 + nu), np.zeros(np.shape(nu)) + 1.5  # z goes to pi/6 (1 + nu) as nu goes to -1
 
-    def slope(z):  # of axis_difference by z, in closed form
+    def slope(z: Array) -> Array:  # of axis_difference by z, in closed form
         return (1 + nu) * (np.arctan(1 / z) - z / (1 + z * z)) - 3 * z / (1 + z * z) ** 2
 
-    for _ in range(60):
-        middle = 0.5 * (low + high)
-        rising = slope(middle) > 0
-        low, high = np.where(rising, middle, low), np.where(rising, high, middle)
-    z = 0.5 * (low + high)
+    z, _ = bisect(lambda z: slope(z) > 0, low, high)
     return 1 / axis_difference(z, nu), z
 
 
-def first_yield_mean(nu):
+def first_yield_mean(nu: Real) -> Array:
     """Mean pressure p_m/Y at first yield, exactly. nu in (-1, 0.5], any shape; ValueError outside.
 
     Eq. 8.79 [Johnson 1985]: p_m = 2/3 p_0, rounded to 1.10 Y
@@ -86,16 +86,17 @@ def first_yield_mean(nu):
     return 2 / 3 * first_yield(nu)[0]
 
 
-def fully_plastic_mean(Y):
+def fully_plastic_mean(Y: Real) -> tuple[Real, Real]:
     """Mean pressure of fully plastic contact (low, high) [Pa]; Y [Pa] > 0, any shape; ValueError outside.
 
     Eq. 8.80 [Johnson 1985]: p_m = 2.8 Y to 3.0 Y
     """
     Y = number("Y", Y)
-    return tuple(ratio * Y for ratio in FULLY_PLASTIC)
+    low, high = FULLY_PLASTIC
+    return low * Y, high * Y
 
 
-def first_yield_speed(law: Backbone, Y, *, m_star, ratio=FIRST_YIELD_ROUNDED):
+def first_yield_speed(law: Backbone, Y: Real, *, m_star: Real, ratio: Real = FIRST_YIELD_ROUNDED) -> Array:
     """Impact speed [m/s] from which a body of yield stress Y [Pa] yields (section 8.2.2): its peak pressure is ratio Y.
 
     `law` has the strength of the softer body of the pair, whose flow limits the pressure: a much harder body never
@@ -108,8 +109,10 @@ def first_yield_speed(law: Backbone, Y, *, m_star, ratio=FIRST_YIELD_ROUNDED):
     p = np.minimum(wanted, limit)
     low = law.R_star * (np.pi * p / (2 * law.E_star)) ** 2  # Hertz's overlap at p; a law that yields needs more
     high = np.where(low <= law.yield_overlap, low, np.maximum(low, law.marks()[-1]))
-    for _ in range(60):
-        middle = np.sqrt(low * high)
-        below = (1.5 - 0.5 * law.flatness(middle)) * law.force(middle) < p * np.pi * law.radius(middle) ** 2
-        low, high = np.where(below, middle, low), np.where(below, high, middle)
-    return np.where(wanted <= limit, np.sqrt(2 * law.work(high) / number("m_star", m_star)), np.inf)
+
+    def below(log: Array) -> Any:
+        alpha = low * np.exp(log)
+        return (1.5 - 0.5 * law.flatness(alpha)) * law.force(alpha) < p * np.pi * law.radius(alpha) ** 2
+
+    alpha = low * np.exp(bisect(below, 0.0, np.log(high / low))[1])
+    return np.where(wanted <= limit, np.sqrt(2 * law.work(alpha) / number("m_star", m_star)), np.inf)

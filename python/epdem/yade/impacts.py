@@ -124,8 +124,8 @@ class Yade:
             bodies.append(Group("target.data", x.target.radius, x.target.material))
         defaults = {p.name: p.default for p in claw.laws()[x.law.name].parameters}
         return Deck(
-            title=x.case.case.title,
-            source=x.case.case.source,
+            title=x.title,
+            source=x.source,
             summary=f"{x.speed.size} speeds x {plan.phases} phases = {plan.n} independent impacts, law {x.law.name}",
             rigid=x.target.rigid,
             law=x.law.name,

@@ -10,8 +10,8 @@ from pathlib import Path
 from .. import rendering as decks
 from ..case.scene import SceneCase
 from ..errors import CaseError, EngineError
-from ..liggghts import running as progress
 from ..liggghts import scene_deck as liggghts
+from ..processes import call
 from ..scenes import placement as yade_place
 from ..scenes.model import Model, model
 from .deck_modules import cone
@@ -231,4 +231,4 @@ def version() -> str:
 
 def run(folder: Path, tell: Callable[[int], None]) -> float:
     """Run what `write` wrote, `tell` every row's step; seconds taken. Raises EngineError with YADE's last words."""
-    return progress.follow([command(), "-n", "-x", SCRIPT], folder, OUT, name="YADE", tell=tell, env=environment())
+    return call([command(), "-n", "-x", SCRIPT], folder, log=OUT, env=environment(), tell=tell)

@@ -2,18 +2,17 @@
 """Write and run stiff bulk scenes in LIGGGHTS and keep their energy ledger."""
 
 import math
-import os
 from pathlib import Path
 from types import SimpleNamespace
 
 import numpy as np
 import pandas as pd
 
-from ... import paths
+from ... import data_file
 from ... import rendering as decks
 from ...laws import library as claw
-from ...liggghts.impacts import SOFT, loop_seconds, numbered, read_dump
-from ...processes import call
+from ...liggghts import dump, launcher, log, stl
+from ...liggghts.properties import SOFT, elastic, per_pair, strength
 from .running import plastic
 from .scenes import DENSITY, POISSON, STRENGTH, Scene
 from .squeezed import stored
@@ -40,23 +39,20 @@ def write(
     every = max(1, steps // (frames or 1))
     info = claw.laws()[scene.law]
     moduli = [E for E, _ in scene.materials]
-    rows = [("youngsModulus", "peratomtype", moduli, "Pa")]
-    rows += [("poissonsRatio", "peratomtype", [POISSON] * len(moduli), "1")]
-    rows += [
-        (p.property, "peratomtype", [STRENGTH[p.property] * p_y for _, p_y in scene.materials], "Pa")
-        for p in info.parameters
-        if p.unit == "Pa"
-    ]
+    properties = [*elastic(moduli, [POISSON] * len(moduli))]
+    if info.strength:
+        unit_strength = STRENGTH[info.strength.property]
+        properties += strength(scene.law, [unit_strength * p_y for _, p_y in scene.materials])
     if model:
-        rows.append(("coefficientRestitution", "peratomtypepair", [len(moduli), *[1.0] * len(moduli) ** 2], "undamped"))
-    memory = memory_size(scene.law)
+        properties.append(per_pair("coefficientRestitution", len(moduli), 1.0, "-", "undamped"))
+    memory = claw.laws()[scene.law].memory
     deck = SimpleNamespace(
         title=scene.title,
         plates=scene.plate_speed > 0,
         plate_speed=scene.plate_speed,
         soft=min(moduli) < SOFT,
         skin=0.25 * scene.radius,
-        properties=numbered(rows),
+        properties=properties,
         model=model or f"ep/{scene.law}",
         tangential="off",
         time_step=time_step,
@@ -73,62 +69,40 @@ def write(
     (folder / "bulk.data").write_text(_data(scene, deck.plates))
     if deck.plates:
         for name, z in (("floor", 0.0), ("plate", float(scene.box[2]))):
-            (folder / f"{name}.stl").write_text(_square(name, scene.box[0], scene.box[1], z))
+            (folder / f"{name}.stl").write_text(stl.text(name, _square(*scene.box[:2], z)))
     return deck
 
 
-def memory_size(law: str) -> int:
-    """How many numbers a contact of that law remembers in LIGGGHTS."""
-    return {"hertz": 0, "cavity": 4}.get(law, 1)
-
-
 def _data(scene: Scene, plates: bool) -> str:
-    number, R = decks.number, scene.radius
-    margin = 0.5 * R if plates else 0.0  # the box is wider than the gap between the plates
-    head = [scene.title, "", f"{len(scene.position)} atoms", f"{len(scene.materials)} atom types"]
-    head += [
-        f"{number(-margin * (a == 'z'))} {number(float(b) + margin * (a == 'z'))} {a}lo {a}hi"
-        for a, b in zip("xyz", scene.box, strict=True)
-    ]
-    atoms = [
-        f"{i} {k} {number(2 * R)} {number(DENSITY)} {' '.join(map(number, p))}"
-        for i, (k, p) in enumerate(zip(scene.kind, scene.position, strict=True), 1)
-    ]
-    speeds = [f"{i} {' '.join(map(number, v))} 0 0 0" for i, v in enumerate(scene.velocity, 1)]
-    return "\n".join([*head, "", "Atoms", "", *atoms, "", "Velocities", "", *speeds, ""])
+    margin = 0.5 * scene.radius if plates else 0.0  # the box is wider than the gap between the plates
+    (lx, ly, lz), kinds = map(float, scene.box), len(scene.materials)
+    box = [(0.0, lx), (0.0, ly), (-margin, lz + margin)]
+    return data_file.text(
+        scene.title,
+        kinds,
+        box,
+        [
+            data_file.Spheres(int(kind), 2 * scene.radius, DENSITY, place[None], velocity[None])
+            for kind, place, velocity in zip(scene.kind, scene.position, scene.velocity, strict=True)
+        ],
+    )
 
 
-def _square(name: str, lx: float, ly: float, z: float) -> str:
-    corners = [(0.0, 0.0), (lx, 0.0), (lx, ly), (0.0, ly)]
-    lines = [f"solid {name}"]
-    for triangle in ((0, 1, 2), (0, 2, 3)):
-        vertices = [f"vertex {' '.join(map(decks.number, (*corners[i], z)))}" for i in triangle]
-        lines += ["facet normal 0 0 1", "outer loop", *vertices, "endloop", "endfacet"]
-    return "\n".join([*lines, f"endsolid {name}", ""])
+def _square(lx: float, ly: float, z: float) -> np.ndarray:
+    """Two triangles of the rectangle from the origin to (lx, ly) at height z."""
+    corners = np.array([[0.0, 0.0, z], [lx, 0.0, z], [lx, ly, z], [0.0, ly, z]])
+    return corners[[[0, 1, 2], [0, 2, 3]]]
 
 
 def execute(folder: Path, *, ranks: int = 1, seconds: float = LIMIT) -> float:
     """Run in.bulk; the engine's own loop time [s]. Raises EngineError if it fails or exceeds the time limit."""
-    command = [str(paths.launcher()), "-in", "in.bulk", "-log", "log.liggghts"]
-    if ranks > 1:
-        extra = ["--allow-run-as-root"] if os.geteuid() == 0 else []
-        command = ["mpirun", "-np", str(ranks), "--oversubscribe", *extra, *command]
-    # waiting ranks give way: on a busy machine they would otherwise take the time of those that work
-    env = dict(os.environ) | {"OMP_NUM_THREADS": "1", "OMPI_MCA_mpi_yield_when_idle": "1"}
-    call(command, folder, log="out.liggghts", seconds=seconds, env=env)
-    return loop_seconds(folder / "log.liggghts")
+    launcher.run("in.bulk", folder, ranks=ranks, log=launcher.LOG, seconds=seconds)
+    return log.loop_seconds(folder / launcher.LOG)
 
 
-def frames(folder: Path, law: str) -> np.ndarray:
+def frames(folder: Path) -> np.ndarray:
     """Type, position (3), velocity (3) and, if the law yields, plastic work [J] of all spheres: (frames, n, 7 or 8)."""
-    return read_dump(folder / "atoms.bin", 9 if memory_size(law) else 8)
-
-
-def _local(folder: Path, kind: str, step: int) -> np.ndarray:
-    """Rows of a local dump at a step; empty if there are none."""
-    lines = (folder / f"{kind}.{step}.txt").read_text().splitlines()
-    start = next(i for i, line in enumerate(lines) if line.startswith("ITEM: ENTRIES")) + 1
-    return np.array([line.split() for line in lines[start:]], float)
+    return dump.series(folder / "atoms.bin")
 
 
 def _elastic(theory, alpha: np.ndarray, top: np.ndarray) -> float:
@@ -140,8 +114,8 @@ def ledger(scene: Scene, deck: SimpleNamespace, folder: Path) -> pd.DataFrame:
     """Energies at every frame [J]: kinetic, elastic (theory's, from overlap and memory of each contact), plastic (what
     the plugin has booked), brought in by the plate; no term is the remainder. `total` is their sum.
     """
-    memory = memory_size(scene.law)
-    atoms = frames(folder, scene.law)
+    memory = claw.laws()[scene.law].memory
+    atoms = frames(folder)
     rows, brought = [], 0.0
     push = _pushes(folder) if deck.plates else {}
     for k, frame in enumerate(atoms):
@@ -151,7 +125,7 @@ def ledger(scene: Scene, deck: SimpleNamespace, folder: Path) -> pd.DataFrame:
         for kind, first in (("pairs", 6), ("walls", 6)):
             if kind == "walls" and not deck.plates:
                 continue
-            table = _local(folder, kind, step)
+            table = dump.local(folder / f"{kind}.{step}.txt")
             if not table.size:
                 continue
             alpha = table[:, -1]
@@ -183,9 +157,5 @@ def ledger(scene: Scene, deck: SimpleNamespace, folder: Path) -> pd.DataFrame:
 
 def _pushes(folder: Path) -> dict[int, tuple[float, float]]:
     """Force of the spheres on the plate [N] by step, upward positive: mean since the last frame, and now."""
-    found = {}
-    for line in (folder / "log.liggghts").read_text().splitlines():
-        words = line.split()
-        if len(words) == 5 and words[0].isdigit() and words[1].isdigit():
-            found[int(words[0])] = (float(words[3]), float(words[4]))
-    return found
+    rows = log.rows(folder / launcher.LOG)
+    return {int(step): (mean, now) for step, mean, now in rows[["Step", "push", "plate[3]"]].to_numpy()}

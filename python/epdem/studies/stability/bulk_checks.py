@@ -55,10 +55,10 @@ def judge_scene(scene: Scene, folder: Path, *, ranks: int = 2) -> BulkVerdict:
     begin = time.perf_counter()
     execute(folder)
     seconds = time.perf_counter() - begin
-    table, one = ledger(scene, deck, folder), frames(folder, scene.law)
+    table, one = ledger(scene, deck, folder), frames(folder)
     write(scene, folder / "ranks", time_step=dt, contacts=False)
     execute(folder / "ranks", ranks=ranks)
-    two = frames(folder / "ranks", scene.law)
+    two = frames(folder / "ranks")
     brought = table["kinetic"].iloc[0] + table["brought"].iloc[-1]
     apart = differences(one, two, scene.radius)
     kinetic = [(0.5 * scene.mass * run[-1, :, 4:7] ** 2).sum() for run in (one, two)]

@@ -11,8 +11,9 @@ import pandas as pd
 
 from ...engines import engine
 from ...errors import EngineError
+from ...laws import library as claw
 from ..cost import YARDSTICK, spread, to_yardstick
-from .bulk import execute, frames, memory_size, write
+from .bulk import execute, frames, write
 from .scenes import SHARE, Scene, shock, with_law
 
 SHARES = (0.4, 0.2, 0.1, 0.05, 0.025)  # of the stability limit at the highest speed
@@ -31,7 +32,7 @@ class Contender:
         """Plastic work of every sphere at the end [J], shape (spheres,)."""
         write(self.scene, folder, time_step=time_step, frames=1, contacts=False)
         execute(folder)
-        return frames(folder, self.scene.law)[-1][:, 7]
+        return frames(folder)[-1][:, 7]
 
     def seconds(self, time_step: float, folder: Path) -> float:
         """The engine's loop time [s] of a run that records nothing, not even its plastic work."""
@@ -46,7 +47,7 @@ def errors(c: Contender, steps: dict[float, float], folder: Path, progress: Call
     either sign; `order` is that of the rms between neighbouring shares. NaN where the law dissipates nothing.
     """
     table = pd.DataFrame({"contender": c.label, "spheres": len(c.scene.position), "share": list(steps)})
-    if memory_size(c.scene.law) == 0:
+    if claw.laws()[c.scene.law].memory == 0:
         return table.assign(error=np.nan, rms=np.nan, order=np.nan)
     progress(f"bulk error: {c.label}, reference")
     reference = c.dissipated(REFERENCE * min(steps.values()), folder)

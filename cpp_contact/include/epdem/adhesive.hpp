@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// What adhesive laws share: the curve of an elastic contact (Johnson, Kendall and Roberts 1971) by y = sqrt(a), and the
+// forces of the two steps in which a contact forms and ends.
+//
+// y^4/R - c y = alpha - alpha_p, c = sqrt(2 pi Gamma/E*); the fold, where the contact ends, lies at y_f^3 = c R/4.
+#pragma once
+
+#include "backbone.hpp"
+
+namespace epdem {
+namespace adhesive {
+
+/// A condition on a number type chooses between two values, and can be asked whether it holds anywhere.
+template <class T>
+inline T select(bool condition, T yes, T no) noexcept {
+  return condition ? yes : no;
+}
+inline bool any(bool condition) noexcept { return condition; }
+template <class T>
+inline T min(T a, T b) noexcept {
+  return select(b < a, b, a);
+}
+template <class T>
+inline T max(T a, T b) noexcept {
+  return select(a < b, b, a);
+}
+
+/// Force F [N], contact radius a [m] (0 while apart), and what the contact remembers if this step counts.
+template <class T, class Memory>
+struct Step {
+  T force;
+  T radius;
+  Memory after;
+};
+
+inline constexpr real reach = 3.0;  // in d alpha of the fold/4: as far as its root is followed
+inline constexpr real fold_share = 0.62996052494743658;  // y_f in (c R)^(1/3): 4^(-1/3)
+
+/// (c R)^(1/3), the root of a contact; `known` is it already unless R has changed, or 0.
+template <class T>
+inline T refreshed(T known, T cube) noexcept {
+  using std::cbrt;
+  using std::fabs;
+  const auto stale = fabs(known * known * known - cube) > 1e-12 * cube;
+  return any(stale) ? select(stale, cbrt(cube), known) : known;
+}
+
+/// y = sqrt(a) of the standing contact at X = R (alpha - alpha_p): the largest root of y^4 - 4 y_f^3 y = X >= -3 y_f^4.
+/// With y = y_f + e it is e^2 (e^2 + 4 y_f e + 6 y_f^2) = X + 3 y_f^4: all terms positive, and four steps of Newton's
+/// method from within 6 % end at round-off, also at the fold, where the root is double.
+template <class T>
+inline T curve(T y_f, T X) noexcept {
+  using std::sqrt;
+  const T f2 = y_f * y_f, square = max(X + 3.0 * f2 * f2, T(0.0)), t = sqrt(square);
+  T e = t / sqrt(6.0 * f2 + 1.13 * t);
+  for (int k = 0; k < 4; ++k) {
+    const T e2 = e * e;
+    e = (e2 * (3.0 * e2 + y_f * (8.0 * e + 6.0 * y_f)) + square) / (4.0 * e * (e2 + 3.0 * y_f * (e + y_f)));
+  }
+  return y_f + select(square > 0.0, e, T(0.0));
+}
+
+/// F [N] of the elastic curve at y.
+template <class T>
+inline T force(T E_star, T c, T R, T y) noexcept {
+  const T cube = y * y * y;
+  return 2.0 * E_star * cube * (2.0 / 3.0 * cube / R - c);
+}
+
+/// A force that jumps within a step leaves velocity Verlet of first order: the step of touch sees the jump [N] for a whole
+/// step, but it has lasted for the share beyond/closing, to which its half as the start of a trapezoid comes. What is
+/// to be added; `beyond` is the overlap since touch, `closing` the closing speed at the half step times the step [m].
+/// Nothing for a contact that is there without a crossing.
+template <class T>
+inline T on_touch(T jump, T beyond, T closing) noexcept {
+  return select(beyond < 2.0 * closing, jump * (min(beyond / closing, T(1.0)) - 0.5), T(0.0));
+}
+
+/// The same in the step after the last one attached, in which the overlap is `beyond` the fold [m]: the force it takes.
+/// Near the fold F = F_f - bend sqrt(alpha - alpha_f). A sum of roots over steps of h differs from their integral by
+/// h^(3/2) zeta(-1/2, share) (Hurwitz), share h being the distance of the last step from the fold; that is sqrt(share) and
+/// a smooth rest, here to 2e-4.
+template <class T>
+inline T on_parting(T E_star, T pull, T R, T y_f, T beyond, T closing) noexcept {
+  using std::sqrt;
+  const T h = max(-closing, T(std::numeric_limits<real>::min())), share = max(1.0 - beyond / h, T(0.0));
+  const T rest = -0.20768371 + share * (-0.73462635 + share * (-0.30379973 + share * 0.03838347));
+  const T f4 = y_f * y_f * y_f * y_f, bend = 16.0 / sqrt(6.0) * E_star * f4, range = min(h / R, f4 / (R * R) * reach);
+  const T F = -5.0 / 6.0 * pull * R * (share - 0.5) + bend * sqrt(range) * (sqrt(share) + rest);
+  return select(beyond < 2.0 * h, F, T(0.0));
+}
+
+}  // namespace adhesive
+}  // namespace epdem

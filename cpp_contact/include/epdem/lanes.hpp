@@ -1,0 +1,218 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// The numbers that laws are written on: double for one contact, long double for the study of round-off, and Lanes, a vector
+// of lanes, for many contacts at once. A condition on T is a bool, or a mask with one answer per lane. The only file that
+// knows instruction sets: Lanes is as wide as those allow that the including file is compiled for.
+#pragma once
+
+#include <cmath>
+#include <limits>
+#include <type_traits>
+
+#if defined __SSE2__
+#include <immintrin.h>
+#endif
+
+#define EPDEM_INLINE [[gnu::always_inline]] inline
+
+namespace epdem {
+
+#if defined __AVX512F__
+constexpr int lane_count = 8;
+#elif defined __AVX__
+constexpr int lane_count = 4;
+#else
+constexpr int lane_count = 2;
+#endif
+
+typedef double Lanes __attribute__((vector_size(8 * lane_count)));
+typedef long long Mask __attribute__((vector_size(8 * lane_count)));
+
+using std::acos;
+using std::cos;
+using std::exp;
+using std::expm1;
+using std::fabs;
+using std::log;
+using std::sin;
+using std::sqrt;
+
+template <class T>
+inline constexpr bool is_vector = false;
+template <>
+inline constexpr bool is_vector<Lanes> = true;
+
+/// The same number in every lane.
+template <class T>
+EPDEM_INLINE T constant(double x) noexcept {
+  return T{} + x;
+}
+
+EPDEM_INLINE bool any(bool m) noexcept { return m; }
+EPDEM_INLINE bool any(Mask m) noexcept {
+#if defined __AVX512DQ__
+  return _mm512_movepi64_mask(reinterpret_cast<__m512i>(m)) != 0;
+#elif defined __AVX__
+  return _mm256_movemask_pd(reinterpret_cast<__m256d>(m)) != 0;
+#elif defined __SSE2__
+  return _mm_movemask_pd(reinterpret_cast<__m128d>(m)) != 0;
+#else
+  long long found = 0;
+  for (int l = 0; l < lane_count; ++l) found |= m[l];
+  return found != 0;
+#endif
+}
+
+template <class T, class = std::enable_if_t<std::is_arithmetic_v<T>>>
+EPDEM_INLINE T select(bool m, T a, T b) noexcept {
+  return m ? a : b;
+}
+EPDEM_INLINE Lanes select(Mask m, Lanes a, Lanes b) noexcept { return m ? a : b; }
+
+/// As std::min and std::max.
+template <class T>
+EPDEM_INLINE T min(T a, T b) noexcept {
+  return select(b < a, b, a);
+}
+template <class T>
+EPDEM_INLINE T max(T a, T b) noexcept {
+  return select(a < b, b, a);
+}
+
+EPDEM_INLINE Lanes fabs(Lanes x) noexcept {
+  constexpr long long all_but_sign = 0x7fffffffffffffff;
+  return reinterpret_cast<Lanes>(reinterpret_cast<Mask>(x) & all_but_sign);
+}
+
+EPDEM_INLINE Lanes sqrt(Lanes x) noexcept {
+#if defined __AVX512F__
+  return _mm512_sqrt_pd(x);
+#elif defined __AVX__
+  return _mm256_sqrt_pd(x);
+#elif defined __SSE2__
+  return _mm_sqrt_pd(x);
+#else
+  for (int l = 0; l < lane_count; ++l) x[l] = std::sqrt(x[l]);
+  return x;
+#endif
+}
+
+// The library's functions, lane by lane: the same bits as for one contact. A lane that holds NaN costs no call.
+#define EPDEM_LANE_BY_LANE(f)                        \
+  [[gnu::noinline]] inline Lanes f(Lanes x) noexcept {       \
+    for (int l = 0; l < lane_count; ++l)                  \
+      if (x[l] == x[l]) x[l] = std::f(x[l]);         \
+    return x;                                        \
+  }
+EPDEM_LANE_BY_LANE(acos)
+EPDEM_LANE_BY_LANE(cos)
+EPDEM_LANE_BY_LANE(exp)
+EPDEM_LANE_BY_LANE(expm1)
+EPDEM_LANE_BY_LANE(log)
+EPDEM_LANE_BY_LANE(sin)
+#undef EPDEM_LANE_BY_LANE
+
+/// `x` in the lanes of the mask, NaN in the others: for an argument of a library function that only they need.
+template <class M, class T>
+EPDEM_INLINE T only(M mask, T x) noexcept {
+  return select(mask, x, constant<T>(std::numeric_limits<double>::quiet_NaN()));
+}
+
+template <class T>
+EPDEM_INLINE T load(const double* p) noexcept {
+  T x;
+  __builtin_memcpy(&x, p, sizeof x);
+  return x;
+}
+template <class T>
+EPDEM_INLINE void store(double* p, T x) noexcept {
+  __builtin_memcpy(p, &x, sizeof x);
+}
+
+/// Four numbers that lie side by side in memory.
+typedef double Row __attribute__((vector_size(32)));
+
+/// `lane_count` rows and their columns: row(l) gives the row of lane l.
+struct Columns {
+  Lanes a, b, c, d;
+};
+
+#if defined __AVX512F__
+
+typedef long long Order __attribute__((vector_size(64)));
+
+template <class F>
+EPDEM_INLINE Columns columns(F row) noexcept {
+  const auto two = [&](int l) __attribute__((always_inline)) {
+    return static_cast<Lanes>(_mm512_insertf64x4(_mm512_castpd256_pd512(static_cast<__m256d>(row(l))),
+                                             static_cast<__m256d>(row(l + 4)), 1));
+  };
+  const Lanes r0 = two(0), r1 = two(1), r2 = two(2), r3 = two(3);
+  const Order even{0, 8, 2, 10, 4, 12, 6, 14}, odd{1, 9, 3, 11, 5, 13, 7, 15};
+  const Order low{0, 1, 8, 9, 4, 5, 12, 13}, high{2, 3, 10, 11, 6, 7, 14, 15};
+  const Lanes t0 = __builtin_shuffle(r0, r1, even), t1 = __builtin_shuffle(r0, r1, odd);
+  const Lanes t2 = __builtin_shuffle(r2, r3, even), t3 = __builtin_shuffle(r2, r3, odd);
+  return {__builtin_shuffle(t0, t2, low), __builtin_shuffle(t1, t3, low), __builtin_shuffle(t0, t2, high),
+          __builtin_shuffle(t1, t3, high)};
+}
+
+/// The way back: write(l, row).
+template <class F>
+EPDEM_INLINE void rows(const Columns& from, F write) noexcept {
+  const Order even{0, 8, 2, 10, 4, 12, 6, 14}, odd{1, 9, 3, 11, 5, 13, 7, 15};
+  const Order low{0, 1, 8, 9, 4, 5, 12, 13}, high{2, 3, 10, 11, 6, 7, 14, 15};
+  const Lanes t0 = __builtin_shuffle(from.a, from.b, even), t1 = __builtin_shuffle(from.a, from.b, odd);
+  const Lanes t2 = __builtin_shuffle(from.c, from.d, even), t3 = __builtin_shuffle(from.c, from.d, odd);
+  const auto two = [&](int l, Lanes r) __attribute__((always_inline)) {
+    write(l, static_cast<Row>(_mm512_castpd512_pd256(r)));
+    write(l + 4, static_cast<Row>(_mm512_extractf64x4_pd(r, 1)));
+  };
+  two(0, __builtin_shuffle(t0, t2, low));
+  two(1, __builtin_shuffle(t1, t3, low));
+  two(2, __builtin_shuffle(t0, t2, high));
+  two(3, __builtin_shuffle(t1, t3, high));
+}
+
+#elif defined __AVX__
+
+typedef long long Order __attribute__((vector_size(32)));
+
+template <class F>
+EPDEM_INLINE Columns columns(F row) noexcept {
+  const Lanes r0 = row(0), r1 = row(1), r2 = row(2), r3 = row(3);
+  const Order even{0, 4, 2, 6}, odd{1, 5, 3, 7}, low{0, 1, 4, 5}, high{2, 3, 6, 7};
+  const Lanes t0 = __builtin_shuffle(r0, r1, even), t1 = __builtin_shuffle(r0, r1, odd);
+  const Lanes t2 = __builtin_shuffle(r2, r3, even), t3 = __builtin_shuffle(r2, r3, odd);
+  return {__builtin_shuffle(t0, t2, low), __builtin_shuffle(t1, t3, low), __builtin_shuffle(t0, t2, high),
+          __builtin_shuffle(t1, t3, high)};
+}
+
+/// The way back: write(l, row).
+template <class F>
+EPDEM_INLINE void rows(const Columns& from, F write) noexcept {
+  const Order even{0, 4, 2, 6}, odd{1, 5, 3, 7}, low{0, 1, 4, 5}, high{2, 3, 6, 7};
+  const Lanes t0 = __builtin_shuffle(from.a, from.b, even), t1 = __builtin_shuffle(from.a, from.b, odd);
+  const Lanes t2 = __builtin_shuffle(from.c, from.d, even), t3 = __builtin_shuffle(from.c, from.d, odd);
+  write(0, __builtin_shuffle(t0, t2, low));
+  write(1, __builtin_shuffle(t1, t3, low));
+  write(2, __builtin_shuffle(t0, t2, high));
+  write(3, __builtin_shuffle(t1, t3, high));
+}
+
+#else
+
+template <class F>
+EPDEM_INLINE Columns columns(F row) noexcept {
+  const Row p = row(0), q = row(1);
+  return {Lanes{p[0], q[0]}, Lanes{p[1], q[1]}, Lanes{p[2], q[2]}, Lanes{p[3], q[3]}};
+}
+
+/// The way back: write(l, row).
+template <class F>
+EPDEM_INLINE void rows(const Columns& from, F write) noexcept {
+  write(0, Row{from.a[0], from.b[0], from.c[0], from.d[0]});
+  write(1, Row{from.a[1], from.b[1], from.c[1], from.d[1]});
+}
+
+#endif
+
+}  // namespace epdem

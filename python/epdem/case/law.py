@@ -1,0 +1,45 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""The [law] of a case: its numbers as written become SI, each checked against what the law declares."""
+
+from typing import Any
+
+from ..errors import CaseError
+from ..laws.register import declaration
+from ..laws.strengths import LawNumbers
+from .units import to_si, within_limits
+
+
+def read_number(place: str, value: object, unit: str) -> float:
+    """`value` as written at `place`, in SI and > 0. Raises CaseError."""
+    try:
+        x = within_limits(to_si(value, unit), unit)
+    except ValueError as error:
+        raise CaseError(f"{place} = {value!r}, {error}") from None
+    if not x > 0:
+        raise CaseError(f"{place} = {value!r}, must be > 0; leave it out for the default")
+    return x
+
+
+def law_numbers(name: str, given: dict[str, Any]) -> LawNumbers:
+    """The law `name` with what a case says of it; the rest is the law's default. Raises CaseError.
+
+    A strength X [Pa] is given as `X = "2.8 GPa"` for all bodies or as `X_ratio = 2.8` of each body's yield stress.
+    """
+    law = declaration(name)
+    for key in given:
+        if key not in law.case_keys:
+            known = ", ".join(law.case_keys) or "none"
+            raise CaseError(f"law.{key}: law {name} has no such parameter; it has {known}")
+    strength, ratio = law.strength, f"{law.strength}_ratio"
+    if strength in given and ratio in given:
+        raise CaseError(f"law: both {strength} and {ratio} are given; keep one")
+    return LawNumbers(
+        name,
+        {
+            p.name: read_number(f"law.{p.name}", given.get(p.name, p.default), p.unit)
+            for p in law.parameters
+            if p.name != strength
+        },
+        read_number(f"law.{strength}", given[strength], "Pa") if strength in given else None,
+        read_number(f"law.{ratio}", given[ratio], "1") if ratio in given else law.default_ratio,
+    )

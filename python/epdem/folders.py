@@ -1,0 +1,166 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""A folder of results: one run at a time, and nothing touched in it that is not ours.
+
+`.epdem.json` in the folder lists the files that runs have left there, by size, time and hash. What is not in the list,
+or has changed since, is the user's. While a run is on the list instead names what was the user's at its begin, so that
+after a crash all the rest is ours.
+"""
+
+import contextlib
+import fcntl
+import hashlib
+import json
+import os
+import time
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from fnmatch import fnmatch
+from pathlib import Path
+from typing import Any, TextIO
+
+from .errors import CaseError
+from .files import atomic
+
+LOCK, MANIFEST = ".epdem.lock", ".epdem.json"
+# Names that a run may write, in the folder or below it.
+OUTPUTS = (
+    "in.*",
+    "*.in",
+    "results.*",
+    "*.png",
+    "log.*",
+    "out.*",
+    "particles.*",
+    "contacts.*",
+    "wall_contacts*",
+    "restart.*",
+    "scene*",
+    "picture.*",
+    "path.*",
+    "*.data",
+    "*.stl",
+    "spheres.txt",
+    "impact.py",
+)
+
+
+@dataclass(frozen=True)
+class Results:
+    """A folder that this process may write to; `foreign` are the files in it that are the user's."""
+
+    folder: Path
+    foreign: frozenset[str] = field(default_factory=frozenset)
+
+    def remove(self, *patterns: str) -> None:
+        """Remove the files of earlier runs whose path in the folder matches a pattern, and only these."""
+        for name in _names(self.folder) - self.foreign:
+            if any(fnmatch(name, pattern) for pattern in patterns):
+                (self.folder / name).unlink()
+
+
+About = list[Any]  # size, time of change, hash
+Known = dict[str, Any]  # what `.epdem.json` holds
+_held: dict[Path, Results] = {}  # what this process keeps now
+
+
+@contextlib.contextmanager
+def claim(folder: Path, *, force: bool = False) -> Iterator[Results]:
+    """Keep `folder` (made where it is missing) for one run, until the block ends; blocks of one process may nest.
+
+    Raises CaseError if another process is at work in it, or if it holds files of the user's where a run would write;
+    with `force` these may be overwritten, never removed.
+    """
+    place = folder.resolve()
+    if place in _held:
+        yield _held[place]
+        return
+    folder.mkdir(parents=True, exist_ok=True)
+    with (folder / LOCK).open("a+") as lock:
+        _lock(folder, lock)
+        try:
+            known = _known(folder)
+            foreign = _foreign(folder, known)
+            _refuse(folder, foreign, known is not None, force)
+            _write(folder, {"foreign": sorted(foreign)})
+            _held[place] = Results(folder, frozenset(foreign))
+            yield _held[place]
+        finally:
+            if _held.pop(place, None):
+                old = (known or {}).get("files", {})
+                _write(folder, {"files": {n: _about(folder / n, old.get(n)) for n in sorted(_names(folder) - foreign)}})
+            (folder / LOCK).unlink(missing_ok=True)
+
+
+def _lock(folder: Path, lock: TextIO) -> None:
+    try:
+        fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except OSError:
+        lock.seek(0)
+        owner = lock.read().strip() or "another process"
+        raise CaseError(f"{folder}: in use by {owner}; wait for its end, or choose another folder by --out") from None
+    lock.truncate(0)
+    lock.write(f"process {os.getpid()} since {time.strftime('%Y-%m-%d %H:%M:%S')}\n")
+    lock.flush()
+
+
+def _names(folder: Path, below: Path = Path()) -> set[str]:
+    """All files below a folder by their path in it; no hidden ones, and no folders that have a list of their own."""
+    found: set[str] = set()
+    for path in (folder / below).iterdir():
+        if path.name.startswith("."):
+            continue
+        if path.is_dir() and not path.is_symlink():
+            if not (path / MANIFEST).exists():
+                found |= _names(folder, below / path.name)
+        else:
+            found.add(str(below / path.name))
+    return found
+
+
+def _about(path: Path, before: About | None = None) -> About:
+    """[size, time of change in ns, hash] of a file; the hash of `before` counts where the others are the same."""
+    if not path.is_file():  # a link that leads nowhere
+        return [0, 0, ""]
+    status, sha = path.stat(), hashlib.blake2b(digest_size=16)
+    if before and before[:2] == [status.st_size, status.st_mtime_ns]:
+        return before
+    with path.open("rb") as stream:
+        for block in iter(lambda: stream.read(1 << 20), b""):
+            sha.update(block)
+    return [status.st_size, status.st_mtime_ns, sha.hexdigest()]
+
+
+def _known(folder: Path) -> Known | None:
+    """What `.epdem.json` says, or None if the folder has none that can be read."""
+    try:
+        found = json.loads((folder / MANIFEST).read_text())
+    except (OSError, ValueError):
+        return None
+    return found if isinstance(found, dict) else None
+
+
+def _foreign(folder: Path, known: Known | None) -> set[str]:
+    names = _names(folder)
+    if known is None:
+        return names
+    if "files" not in known:  # the last run did not come to its end
+        return names & set(known.get("foreign", []))
+    return {name for name in names if not _unchanged(folder / name, known["files"].get(name))}
+
+
+def _unchanged(path: Path, about: About | None) -> bool:
+    if about is None:
+        return False
+    return bool(_about(path, about)[2] == about[2])
+
+
+def _refuse(folder: Path, foreign: set[str], ours: bool, force: bool) -> None:
+    in_the_way = {n for n in foreign if not ours or any(fnmatch(Path(n).name, p) for p in OUTPUTS)}
+    if in_the_way and not force:
+        what = "was not written by epdem, or has changed since" if ours else "was there before; the folder is not ours"
+        raise CaseError(f"{folder}: {min(in_the_way)} {what}; choose another folder by --out, or add --force")
+
+
+def _write(folder: Path, content: dict[str, object]) -> None:
+    with atomic(folder / MANIFEST) as temporary:
+        temporary.write_text(json.dumps(content, indent=1))

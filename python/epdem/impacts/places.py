@@ -1,0 +1,49 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Where the bodies of a plan begin: one place of a grid per impact, contact at z = 0."""
+
+import math
+
+import numpy as np
+
+from .experiment import Body
+from .pairs import Group
+from .plan import Plan
+
+SPACING = 2.6  # larger radii between two impacts
+
+
+def side_by_side(plan: Plan) -> tuple[Group, ...]:
+    """The bodies, and the targets unless they are planes; impact k of the plan is row k of each group.
+
+    Spheres meet in their centre-of-mass frame, where each has its share of speed and gap.
+    """
+    x, n = plan.experiment, plan.n
+    wall = math.isinf(x.target.radius)
+    across, spacing = math.ceil(math.sqrt(n)), SPACING * _reach(plan)
+    column = np.arange(n)
+    place = (spacing * (column % across), spacing * (column // across))
+    share = 1.0 if wall else x.m_star / x.body.mass
+
+    def group(body: Body, z: np.ndarray, vz: np.ndarray) -> Group:
+        rest = np.zeros(n)
+        return Group(body, np.stack([*place, z], axis=1), np.stack([rest, rest, vz], axis=1))
+
+    body = group(x.body, x.body.radius + share * plan.gap, -share * plan.speed)
+    if wall:
+        return (body,)
+    return body, group(x.target, -x.target.radius - (1 - share) * plan.gap, (1 - share) * plan.speed)
+
+
+def room(plan: Plan) -> tuple[tuple[float, float], ...]:
+    """(low, high) [m] along x, y and z of a box that holds all bodies to the end: they part no faster than they met."""
+    reach = _reach(plan)
+    spacing = SPACING * reach
+    edge = spacing * math.ceil(math.sqrt(plan.n))
+    travel = plan.steps * plan.time_step * float(plan.speed.max()) + 4 * reach
+    low = -reach if math.isinf(plan.experiment.target.radius) else -travel
+    return (-spacing, edge), (-spacing, edge), (low, travel)
+
+
+def _reach(plan: Plan) -> float:
+    x = plan.experiment
+    return max(r for r in (x.body.radius, x.target.radius) if math.isfinite(r))

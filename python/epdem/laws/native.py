@@ -1,0 +1,133 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""One C++ law with its numbers: steps, backbone, impacts. SI in, SI out; arrays are numpy, float64."""
+
+import math
+from ctypes import POINTER, c_double
+from typing import Any, NotRequired, TypedDict, Unpack
+
+import numpy as np
+import numpy.typing as npt
+
+from ..errors import CaseError
+from .library import IMPACT_INPUT, IMPACT_OUTPUT, Array, StepResult, laws, library
+
+_D = POINTER(c_double)
+
+
+def _array(x: npt.ArrayLike) -> Array:
+    return np.ascontiguousarray(np.atleast_1d(x), dtype=np.float64)
+
+
+def _pointer(x: Array | None) -> Any:
+    return None if x is None else x.ctypes.data_as(_D)
+
+
+class ImpactNumbers(TypedDict):
+    """Impacts: reduced radius [m] and mass [kg], approach speed [m/s] and time step [s], broadcast to shape (n,).
+
+    `gap` [m] is the distance before first touch (default 0; negative: overlap at the start), `viscous` the number of
+    a dashpot (viscous_number; default 0: none).
+    """
+
+    R_star: npt.ArrayLike
+    m_star: npt.ArrayLike
+    speed: npt.ArrayLike
+    time_step: npt.ArrayLike
+    gap: NotRequired[npt.ArrayLike]
+    viscous: NotRequired[float]
+
+
+class Law:
+    """One law with its constants: E_star [Pa] and the law's parameters by name, SI.
+
+    Raises CaseError for an unknown law or parameter, or values outside the law's range.
+    """
+
+    def __init__(self, name: str, *, E_star: float, **parameters: float):
+        if name not in laws():
+            raise CaseError(f"law {name!r} does not exist; there are {', '.join(laws())}")
+        self.info = laws()[name]
+        known = [p.name for p in self.info.parameters]
+        for key in parameters:
+            if key not in known:
+                raise CaseError(f"law {name} has no parameter {key!r}; it has {', '.join(known) or 'none'}")
+        values = [parameters.get(p.name, p.default) for p in self.info.parameters]
+        for p, value in zip(self.info.parameters, values, strict=True):
+            if not (math.isfinite(value) and value > 0):
+                raise CaseError(f"law {name}: {p.name} = {value}, must be a finite number > 0 [{p.unit}]")
+        self.name, self.E_star = name, float(E_star)
+        self._parameters = (c_double * max(len(values), 1))(*values)
+
+    def _call(self, function: str, *arguments: object) -> None:
+        status = getattr(library(), function)(self.info.index, self.E_star, self._parameters, *arguments)
+        if status:
+            raise CaseError(f"law {self.name}: {library().epdem_message(status).decode()}")
+
+    def step(self, *, R_star: float, delta_max: npt.ArrayLike, delta: npt.ArrayLike) -> tuple[Array, Array, Array]:
+        """(force [N], contact radius [m], new delta_max [m]) at overlap delta [m]; delta_max and delta broadcast."""
+        before, now = np.broadcast_arrays(_array(delta_max), _array(delta))
+        before, now = _array(before), _array(now)
+        out = np.empty((now.size, 3))
+        results = out.ctypes.data_as(POINTER(StepResult))
+        self._call("epdem_step", R_star, now.size, _pointer(before), _pointer(now), results)
+        return out[:, 0], out[:, 1], out[:, 2]
+
+    def backbone(self, *, R_star: float, delta: npt.ArrayLike) -> tuple[Array, Array, Array, Array]:
+        """(force [N], radius [m], work [J], plastic work [J]) of first loading to delta [m], > 0."""
+        at = _array(delta)
+        force, radius, work, plastic = (np.empty(at.size) for _ in range(4))
+        self._call("epdem_backbone", R_star, at.size, *map(_pointer, (at, force, radius, work, plastic)))
+        return force, radius, work, plastic
+
+    @staticmethod
+    def _cases(
+        steps: int,
+        R_star: npt.ArrayLike,
+        m_star: npt.ArrayLike,
+        speed: npt.ArrayLike,
+        time_step: npt.ArrayLike,
+        gap: npt.ArrayLike = 0.0,
+        viscous: float = 0.0,
+    ) -> Array:
+        columns = np.broadcast_arrays(*map(_array, (R_star, m_star, speed, time_step, gap)))
+        cases = np.empty(columns[0].shape, IMPACT_INPUT)
+        for name, column in zip(("R_star", "m_star", "speed", "time_step", "gap"), columns, strict=True):
+            cases[name] = column
+        cases["steps"], cases["viscous"] = steps, viscous
+        return cases
+
+    def _impacts(self, cases: Array, steps: int, *samples: Array | None) -> Array:
+        out = np.empty(cases.shape, IMPACT_OUTPUT)
+        places = (cases.size, cases.ctypes.data, out.ctypes.data)
+        self._call("epdem_impacts", *places, steps + 1, *map(_pointer, samples))
+        return out
+
+    def impacts(self, *, steps: int, **numbers: Unpack[ImpactNumbers]) -> Array:
+        """Two-body impacts by velocity Verlet, at most `steps` steps each: IMPACT_OUTPUT of shape (n,)."""
+        return self._impacts(self._cases(steps, **numbers), steps, None, None, None)
+
+    def impact_paths(self, *, steps: int, **numbers: Unpack[ImpactNumbers]) -> tuple[Array, Array, Array, Array]:
+        """`impacts` with the way there: overlap [m], force [N] and approach velocity [m/s] of shape (n, steps + 1).
+
+        They are NaN after the end of an impact.
+        """
+        cases = self._cases(steps, **numbers)
+        overlap, force, velocity = (np.full((cases.size, steps + 1), np.nan) for _ in range(3))
+        return self._impacts(cases, steps, overlap, force, velocity), overlap, force, velocity
+
+    def impacts_long_double(self, *, steps: int, **numbers: Unpack[ImpactNumbers]) -> Array:
+        """The same impacts computed in long double, IMPACT_OUTPUT rounded at the end: a reference for round-off."""
+        cases = self._cases(steps, **numbers)
+        out = np.empty(cases.shape, IMPACT_OUTPUT)
+        self._call("epdem_impacts_long_double", cases.size, cases.ctypes.data, out.ctypes.data)
+        return out
+
+    def bounces(self, count: int, *, steps: int, **numbers: Unpack[ImpactNumbers]) -> tuple[np.void, Array]:
+        """`count` impacts of one contact, each at the rebound speed of the one before, at most `steps` steps each.
+
+        Returns the last impact (IMPACT_OUTPUT, its `steps` those of all impacts) and the rebound speeds [m/s].
+        """
+        first = self._cases(steps, **numbers)
+        out, speeds = np.empty(1, IMPACT_OUTPUT), np.full(count, np.nan)
+        self._call("epdem_bounces", first.ctypes.data, count, out.ctypes.data, _pointer(speeds))
+        return out[0], speeds

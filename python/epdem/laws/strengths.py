@@ -1,0 +1,93 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""A law with its numbers, first for all bodies and then for a pair of them. SI throughout."""
+
+import math
+from dataclasses import dataclass
+
+from ..errors import CaseError
+from .library import laws
+from .register import Declaration, declaration
+
+
+@dataclass(frozen=True)
+class LawSpec:
+    """A law and its parameters for one pair of bodies.
+
+    `parameters` are those of the pair, by the law's own names; `strengths` is the law's strength [Pa] of body and
+    target (inf: never yields), of which the smaller one is the pair's: the softer body yields first.
+    """
+
+    name: str
+    parameters: dict[str, float]
+    strengths: tuple[float, float]
+
+    @property
+    def declaration(self) -> Declaration:
+        """What the law declares."""
+        return declaration(self.name)
+
+    def of(self, body: float, target: float) -> "LawSpec":
+        """The same law for two bodies of these strengths [Pa]."""
+        strength = self.declaration.strength
+        own = {} if strength is None else {strength: min(body, target)}
+        return LawSpec(self.name, self.parameters | own, (body, target))
+
+    @property
+    def strength_property(self) -> str | None:
+        """LIGGGHTS's name of the strength, or None if the law has none."""
+        strength = laws()[self.name].strength
+        return None if strength is None else strength.property
+
+    def ratios(self) -> dict[str, float]:
+        """The dimensionless parameters that differ from the law's own defaults, by LIGGGHTS property name."""
+        info = laws()[self.name].parameters
+        return {
+            p.property: self.parameters[p.name] for p in info if p.unit == "1" and self.parameters[p.name] != p.default
+        }
+
+
+@dataclass(frozen=True)
+class LawNumbers:
+    """A law before its bodies: its dimensionless parameters, and the rule of its strength.
+
+    The strength of a body is `absolute` [Pa], or `ratio` times the body's yield stress.
+    """
+
+    name: str
+    ratios: dict[str, float]
+    absolute: float | None
+    ratio: float
+
+    @property
+    def declaration(self) -> Declaration:
+        """What the law declares."""
+        return declaration(self.name)
+
+    def strength(self, material: str, yield_stress: float | None, own: float | None = None) -> float:
+        """Strength [Pa] of a body of `material`: its `own`, else by the law's rule; inf for a law without one.
+
+        Raises CaseError if the rule needs a yield stress [Pa] that the material does not have.
+        """
+        name = self.declaration.strength
+        if name is None or yield_stress == math.inf:
+            return math.inf
+        if own is not None:
+            return own
+        if self.absolute is not None:
+            return self.absolute
+        if yield_stress is None:
+            raise CaseError(
+                f"law {self.name} needs materials.{material}.yield_stress (or law.{name}, the same for all); add it"
+            )
+        return self.ratio * yield_stress
+
+    def pair(self, body: float, target: float) -> LawSpec:
+        """The law of two bodies of these strengths [Pa]."""
+        return LawSpec(self.name, self.ratios, (body, target)).of(body, target)
+
+
+def default_numbers(name: str) -> LawNumbers:
+    """The law `name` with its default parameters. Raises CaseError for a law that does not exist."""
+    law = declaration(name)
+    ratios = {p.name: p.default for p in law.parameters if p.name != law.strength}
+    return LawNumbers(name, ratios, None, law.default_ratio)

@@ -1,0 +1,73 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""How LIGGGHTS with our models is started: its command, its ranks, its environment."""
+
+import os
+import shutil
+from collections.abc import Callable
+from pathlib import Path
+
+from .. import paths
+from ..errors import CaseError, EngineError
+from ..processes import call
+
+INSTALL = "apt-get install liggghts libliggghts-dev libopenmpi-dev, then 'make setup'"
+LOG = "log.liggghts"  # LIGGGHTS's own log
+OUT = "out.liggghts"  # both of its streams
+
+
+def missing() -> str | None:
+    """None if LIGGGHTS with our models can run here, else a sentence with the command that installs it."""
+    launcher = paths.launcher()
+    if launcher is not None and not os.access(launcher, os.X_OK):
+        return f"{launcher} (EPDEM_LAUNCHER) is not a program; unset EPDEM_LAUNCHER or name another one"
+    if shutil.which("liggghts") is None or launcher is None:
+        return f"LIGGGHTS with our models was not found; {INSTALL}"
+    return None
+
+
+def most_ranks() -> int:
+    """As many ranks as there are cores, and two anywhere: more only wait for one another, or hang."""
+    return max(2, len(os.sched_getaffinity(0)))
+
+
+def refuse_ranks(ranks: int) -> None:
+    """Raise CaseError for more ranks than this machine runs, EngineError if there is no mpirun."""
+    if ranks > most_ranks():
+        cores = len(os.sched_getaffinity(0))
+        raise CaseError(f"--ranks {ranks}: this machine has {cores} cores; use --ranks {most_ranks()} or fewer")
+    if ranks > 1 and shutil.which("mpirun") is None:
+        raise EngineError("--ranks needs mpirun, which was not found; apt-get install openmpi-bin")
+
+
+def command(deck: str, *, ranks: int = 1, log: str = "none") -> list[str]:
+    """The command that runs a deck in its folder. Raises EngineError if our LIGGGHTS is not there; see refuse_ranks."""
+    launcher = paths.launcher()
+    if launcher is None:
+        raise EngineError(f"LIGGGHTS with our models was not found; {INSTALL}")
+    refuse_ranks(ranks)
+    words = [str(launcher), "-in", deck, "-log", log]
+    if ranks == 1:
+        return words
+    root = ["--allow-run-as-root"] if os.geteuid() == 0 else []
+    return ["mpirun", "-np", str(ranks), "--oversubscribe", *root, *words]
+
+
+def environment() -> dict[str, str]:
+    """Ours, with one thread per rank; waiting ranks give way, or they would take the time of those that work."""
+    return os.environ | {"OMP_NUM_THREADS": "1", "OMPI_MCA_mpi_yield_when_idle": "1"}
+
+
+def run(
+    deck: str,
+    folder: Path,
+    *,
+    ranks: int = 1,
+    log: str = "none",
+    out: str = OUT,
+    seconds: float | None = None,
+    append: bool = False,
+    tell: Callable[[int], None] | None = None,
+) -> float:
+    """Run a deck in its folder to its end; seconds taken. `log` is LIGGGHTS's own; the rest as in processes.call."""
+    words = command(deck, ranks=ranks, log=log)
+    return call(words, folder, log=out, seconds=seconds, env=environment(), append=append, tell=tell)

@@ -1,0 +1,116 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Material properties of LIGGGHTS's decks: `fix property/global`, named after the property."""
+
+import math
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+from ..impacts.experiment import Body
+from ..impacts.plan import Plan
+from ..laws import library as claw
+
+RIGID = 1e30  # modulus [Pa] of a rigid type: 1e15 would change E* of steel by 2e-4
+HARD, SOFT = 1e9, 5e6  # LIGGGHTS refuses moduli [Pa] outside these without being told
+
+
+# Why a property stands in a deck; the law's own parameters are found in the register.
+_REASONS = {
+    "youngsModulus": "stiffness of every contact",
+    "poissonsRatio": "E* and G* follow from E and Poisson's ratio",
+    "coefficientFriction": "contact.friction: limit of the tangential force",
+    "coefficientRestitution": "viscous.restitution or contact.tangential_restitution: a dashpot",
+    "coefficientRollingFriction": "contact.rolling.coefficient: limit of the rolling moment",
+    "coefficientRollingViscousDamping": "contact.rolling.damping: dashpot of the rolling moment",
+    "cohesionEnergyDensity": "contact.cohesion: attraction over the contact area",
+}
+
+
+@dataclass(frozen=True)
+class Property:
+    """A property: LIGGGHTS's name and style, its numbers, their unit ("-": none), and a note if the name needs one."""
+
+    name: str
+    style: str
+    values: tuple[float, ...]
+    unit: str
+    note: str = ""
+
+    @property
+    def comment(self) -> str:
+        """Unit and note, as they stand in a deck."""
+        return f"[{self.unit}] {self.note}".rstrip()
+
+    @property
+    def reason(self) -> str:
+        """Why the property stands in a deck; '' if nobody knows."""
+        laws = claw.laws().values()
+        if any(info.strength and info.strength.property == self.name for info in laws):
+            return "the law yields at this strength; the softer body's counts"
+        if any(p.property == self.name for info in laws for p in info.parameters):
+            return "a parameter of the law that differs from its default"
+        return "; ".join(filter(None, [_REASONS.get(self.name, ""), self.note]))
+
+
+def finite(value: float) -> float:
+    """A modulus or strength [Pa] for LIGGGHTS, which knows no infinity."""
+    return RIGID if math.isinf(value) else value
+
+
+def atom_types(plan: Plan) -> list[tuple[Body, float]]:
+    """The distinct (body, strength) of the plan: LIGGGHTS's atom types, the moving body first."""
+    x = plan.experiment
+    types = [(x.body, x.law.strengths[0])]
+    if x.target.material != x.body.material:
+        types.append((x.target, x.law.strengths[1]))
+    return types
+
+
+def per_type(name: str, values: Sequence[float], unit: str, note: str = "") -> Property:
+    """A property of every atom type."""
+    return Property(name, "peratomtype", tuple(values), unit, note)
+
+
+def per_pair(name: str, types: int, value: float, unit: str, note: str = "") -> Property:
+    """One value for every pair of `types` atom types."""
+    return Property(name, "peratomtypepair", (types, *[value] * types**2), unit, note)
+
+
+def scalar(name: str, value: float, unit: str, note: str = "") -> Property:
+    """A property of the whole model."""
+    return Property(name, "scalar", (value,), unit, note)
+
+
+def elastic(moduli: Sequence[float], ratios: Sequence[float]) -> tuple[Property, ...]:
+    """Young's moduli [Pa] and Poisson's ratios of the atom types."""
+    return per_type("youngsModulus", moduli, "Pa"), per_type("poissonsRatio", ratios, "-")
+
+
+def strength(law: str, values: Sequence[float]) -> tuple[Property, ...]:
+    """The law's strength [Pa] of the atom types; nothing for a law that has none."""
+    parameter = claw.laws()[law].strength
+    if parameter is None:
+        return ()
+    return (per_type(parameter.property, values, parameter.unit, "the softer body's counts" * (len(values) > 1)),)
+
+
+def of_impacts(plan: Plan) -> tuple[Property, ...]:
+    """Elastic properties of the plan's atom types, for any model."""
+    bodies = [body for body, _ in atom_types(plan)]
+    return elastic([finite(b.young_modulus) for b in bodies], [b.poisson_ratio for b in bodies])
+
+
+def of_law(plan: Plan) -> tuple[Property, ...]:
+    """What a law of ours needs of a plan."""
+    x, types = plan.experiment, atom_types(plan)
+    found = [*of_impacts(plan), *strength(x.law.name, [finite(s) for _, s in types])]
+    found += [scalar(name, value, "-") for name, value in x.law.ratios().items()]
+    if x.viscous_restitution is not None:
+        note = "of impacts that do not yield"
+        found.append(per_pair("coefficientRestitution", len(types), x.viscous_restitution, "-", note))
+    return tuple(found)
+
+
+def of_row(name: str, style: str, values: Sequence[float], comment: str) -> Property:
+    """A property from a row of a scene's model, whose comment is "unit" or "unit, note"; unit "1" is none."""
+    unit, _, note = comment.partition(", ")
+    return Property(name, style, tuple(values), "-" if unit == "1" else unit, note)

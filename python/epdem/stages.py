@@ -1,0 +1,32 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""When a stage is done: its result carries the hash of all its inputs, and a rerun with the same hash takes it."""
+
+import hashlib
+from collections.abc import Iterable
+from functools import cache
+from pathlib import Path
+
+from . import __version__, paths
+
+
+@cache
+def product_hash() -> str:
+    """Hash of this product as installed: both libraries, the launcher, templates and Python sources."""
+    compiled = [paths.native("libepdem.so"), paths.native("libepdem_liggghts.so"), paths.launcher()]
+    templates, sources = paths.templates().rglob("*.j2"), Path(__file__).parent.rglob("*.py")
+    sha = hashlib.sha256(__version__.encode())
+    for path in [*filter(None, compiled), *sorted(templates), *sorted(sources)]:
+        sha.update(path.name.encode() + path.read_bytes())
+    return sha.hexdigest()
+
+
+def inputs_hash(files: Iterable[Path], *facts: object) -> str:
+    """Hash of a stage's inputs: this product, the files written for an engine, and `facts` (plan, engine, version).
+
+    `facts` count by their repr, which must hold every digit and no address.
+    """
+    sha = hashlib.sha256(product_hash().encode())
+    for path in sorted(files):
+        sha.update(path.name.encode() + b"\0" + path.read_bytes())
+    sha.update(repr(facts).encode())
+    return sha.hexdigest()

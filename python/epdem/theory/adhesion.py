@@ -1,0 +1,187 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""A normal impact with adhesion: restitution, sticking, times, peaks, and where the energy goes.
+
+The approach obeys m* alpha'' = -F from touch (alpha = 0, speed V) to the fold of the branch on which the contact
+opens. Works are sums without truncation error; times are quadratures to 1e-10. Energies lost in the two jumps, when the
+contact forms and when it ends, are called adhesive; what is lost between them is called plastic.
+"""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from . import restitution as plain
+from .checks import number
+from .jkr import JKR, Numbers, Path
+from .thornton_ning import ThorntonNing
+
+# Energy at the fold and at touch in E* (c R*)^(10/3)/R*^2: 4^(-4/3)/5 and -3/10. Their difference is W_s.
+_LOSS = 0.3 + 4 ** (-4 / 3) / 5
+STICKING_WORK = (2 * np.pi) ** (5 / 3) * _LOSS  # 7.0922: W_s in (Gamma^5 R*^4/E*^2)^(1/3)
+# (a/a_0)^1.5 > 1 at which an opening contact has the energy of its fold, so that it just comes loose
+_REACH = 2.0547413698273668
+TABOR_MIN = 3.0
+_T, _TW = np.polynomial.legendre.leggauss(8)
+_T, _TW = 0.5 * (_T + 1), 0.5 * _TW  # on [0, 1]; exact for the works below
+
+
+@dataclass(frozen=True)
+class Impact(plain.Impact):
+    """As without adhesion; bodies that stick have e_n = 0, contact_time = inf and work_out = 0.
+
+    residual_overlap is the dent alpha_p, from which the opening contact counts its overlap; the contact ends below it,
+    at parting_overlap.
+    """
+
+    parting_overlap: np.ndarray  # of the fold [m]
+    pull_max: np.ndarray  # largest tensile force on the way out, 3/2 pi Gamma R_p [N]
+    # Lost in the jumps at touch and parting [J]. If the bodies stick: all that has not yielded, negative where the
+    # attraction has done plastic work beyond what the impact brought.
+    adhesive_work: np.ndarray
+
+
+def sticking_work(law: JKR) -> Numbers:
+    """Work that an elastic contact loses by adhesion [J]: W_s = 7.0922 (Gamma^5 R*^4/E*^2)^(1/3).
+
+    The difference of the energies at the fold and at touch; Thornton and Ning 1998 print 7.09 of it.
+    """
+    return STICKING_WORK * np.cbrt(law.Gamma**5 * law.R_star**4 / law.E_star**2)
+
+
+def yield_speed(law: JKR, *, m_star: Numbers) -> Numbers:
+    """Impact speed of first yield [m/s]; 0 if a contact yields by its own attraction, inf for JKR. m_star [kg] > 0."""
+    m = number("m_star", m_star)
+    a_y = np.asarray(law.yield_radius, float)
+    if not np.any(np.isfinite(a_y)):
+        return a_y + 0.0 * m
+    return np.where(a_y <= law.touch_radius, 0.0, np.sqrt(2 * np.maximum(law.work(a_y), 0.0) / m))
+
+
+def sticking_speed(law: JKR, *, m_star: Numbers) -> Numbers:
+    """Impact speed V_s up to which the bodies stick [m/s]. m_star [kg] > 0.
+
+    Elastic: sqrt(2 W_s/m*). With yield: that at which the opening branch gives back just nothing, F(a_m) = k P_t(a_m)
+    with k = 0.3698276; F/P_t grows with a_m, so that there is one such speed. Bisection to round-off.
+    """
+    m = number("m_star", m_star)
+    reach = np.cbrt(_REACH * law.c * law.R_star) ** 2  # the elastic contact radius at V_s
+    if not np.any(np.isfinite(law.yield_radius)):
+        return np.sqrt(2 * sticking_work(law) / m)
+    share = _REACH / 1.5 - 1
+
+    def comes_loose(a: Numbers) -> Numbers:
+        return law.force(a) > share * law.adhesive_load(a)
+
+    low, high = np.maximum(reach, law.touch_radius), 2 * reach
+    for _ in range(2000):
+        if np.all(comes_loose(high) | (reach == 0)):
+            break
+        high = np.where(comes_loose(high), high, 2 * high)
+    for _ in range(120):
+        middle = 0.5 * (low + high)
+        loose = comes_loose(middle)
+        low, high = np.where(loose, low, middle), np.where(loose, middle, high)
+    flows = np.sqrt(2 * np.maximum(law.work(high), 0.0) / m)
+    return np.where(reach <= law.yield_radius, np.sqrt(2 * sticking_work(law) / m), flows)
+
+
+def _recovered(law: JKR, a_max: Numbers) -> Numbers:
+    """Work that the opening branch gives back from a_max to its fold [J]; negative if it cannot come loose."""
+    branch, _ = law.branch(a_max)
+    return branch.energy(a_max) - branch.energy(branch.fold_radius)
+
+
+def e_n(law: JKR, *, m_star: Numbers, speed: Numbers) -> Numbers:
+    """Coefficient of restitution of an impact at `speed` [m/s] > 0 with m_star [kg] > 0; 0 if the bodies stick.
+
+    Elastic: sqrt(1 - (V_s/V)^2) (Thornton and Ning 1998). With yield e_n^2 is the work of the opening branch over
+    m* V^2/2.
+    """
+    m, v = number("m_star", m_star), number("speed", speed)
+    if not np.any(np.isfinite(law.yield_radius)):
+        ratio = np.minimum(sticking_speed(law, m_star=m) / v, 1.0)
+        return np.sqrt((1 - ratio) * (1 + ratio))
+    W = 0.5 * m * v * v
+    a = law.radius_of_work(W)
+    elastic = np.maximum(1 - sticking_work(law) / W, 0.0)
+    flows = np.clip(_recovered(law, a) / W, 0.0, 1.0)
+    return np.sqrt(np.where(a <= law.yield_radius, elastic, flows))
+
+
+def _nodes() -> tuple[Numbers, Numbers, Numbers]:
+    """Doubly exponential quadrature on [0, 1]: t, 1 - t and weights, t and 1 - t both with full relative accuracy."""
+    s = np.arange(-60, 61) / 16
+    half = 0.5 * np.pi * np.sinh(s)
+    t, rest = 1 / (1 + np.exp(-2 * half)), 1 / (1 + np.exp(2 * half))
+    return t, rest, np.pi * np.cosh(s) * t * rest / 16
+
+
+def _time(m: Numbers, path: Path, above: Numbers) -> Numbers:
+    """Time [s] on a path (d alpha/dt, F d alpha/dt) over t in [0, 1]; `above` [J] is the kinetic energy at t = 1.
+
+    At t it is that and the work between t and 1: polynomials of degree 15 at most, which Gauss integrates exactly.
+    """
+    slope, power = path
+    total = 0.0
+    for t, rest, w in zip(*_nodes(), strict=True):
+        left = above + rest * sum(wk * power(t + rest * tk) for tk, wk in zip(_T, _TW, strict=True))
+        total = total + w * np.abs(slope(t)) * np.sqrt(0.5 * m / np.maximum(left, np.finfo(float).tiny))
+    return total
+
+
+def contact_time(law: JKR, *, m_star: Numbers, speed: Numbers) -> Numbers:
+    """Time from touch to parting [s]; inf if the bodies stick. Arguments as of `impact`; to 1e-10."""
+    m, v = number("m_star", m_star), number("speed", speed)
+    W = 0.5 * m * v * v
+    top = law.radius_of_work(W)
+    elastic = np.clip(law.yield_radius, law.touch_radius, np.maximum(top, law.touch_radius))
+    above, time = np.zeros(np.shape(top)), np.zeros(np.shape(top))
+    if isinstance(law, ThorntonNing):
+        time = _time(m, law.plastic_path(elastic, np.maximum(top, elastic)), above)
+        above = law.work(top) - law.work(elastic)
+    time = time + _time(m, law.elastic_path(law.touch_radius, elastic), above)
+    branch, _ = law.branch(top)
+    back = _time(m, branch.elastic_path(branch.fold_radius, top), np.zeros(np.shape(top)))
+    return np.where(e_n(law, m_star=m, speed=v) > 0, time + back, np.inf)
+
+
+def impact(law: JKR, *, m_star: Numbers, speed: Numbers) -> Impact:
+    """Everything theory says of an impact at `speed` [m/s] > 0 with effective mass m_star [kg] > 0; they broadcast."""
+    like = law.E_star * law.R_star * law.Gamma * law.yield_radius
+    m, v, _ = np.broadcast_arrays(number("m_star", m_star), number("speed", speed), like)
+    W = 0.5 * m * v * v
+    top, first = law.radius_of_work(W), law.touch_radius
+    (branch, dent), (start, _) = law.branch(top), law.branch(first)
+    e, stored = e_n(law, m_star=m, speed=v), branch.energy(top)
+    out = e * e * W
+    formed, ended = -start.energy(first), branch.energy(branch.fold_radius)
+    yields = top > np.maximum(law.yield_radius, first)
+    plastic = np.where(yields, np.maximum(W - formed - stored, 0.0), 0.0)
+    adhesive = np.where(e > 0, formed + ended, W - plastic)
+    columns = {
+        "e_n": e, "contact_time": contact_time(law, m_star=m, speed=v), "force_max": law.force(top),
+        "overlap_max": law.overlap(top), "radius_max": top, "residual_overlap": dent, "work_in": W, "work_out": out,
+        "plastic_work": plastic, "strain_ratio": top / law.R_star, "parting_overlap": dent + branch.fold_overlap,
+        "pull_max": branch.pull_off_force, "adhesive_work": adhesive,
+    }  # fmt: skip
+    return Impact(**{name: np.broadcast_to(column, v.shape) for name, column in columns.items()})
+
+
+def tabor_number(law: JKR, *, z_0: Numbers = 0.2e-9) -> Numbers:
+    """Tabor's number (R* Gamma^2/(E*^2 z_0^3))^(1/3) (Tabor 1977, J. Colloid Interface Sci. 58, 2).
+
+    z_0 [m] > 0 is the range of the attraction, about an atom's distance. ValueError outside.
+    """
+    return np.cbrt(law.R_star * (law.Gamma / law.E_star) ** 2) / number("z_0", z_0)
+
+
+def warning(law: JKR, *, z_0: Numbers = 0.2e-9) -> str | None:
+    """One sentence if an adhesive contact lies outside the domain of JKR (Tabor's number below 3), else None."""
+    numbers = np.asarray(tabor_number(law, z_0=z_0) + 0.0 * law.Gamma)
+    low = numbers[(numbers > 0) & (numbers < TABOR_MIN)]
+    if not low.size:
+        return None
+    return (
+        f"Tabor's number is {low.min():.2g} (< {TABOR_MIN:g}): the attraction reaches far beyond the contact; the "
+        "pull-off force of DMT, 2 pi Gamma R*, is nearer there than that of JKR, 3/2 pi Gamma R*"
+    )

@@ -1,0 +1,30 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Where a prediction leaves the range in which the law, or small-deformation theory, has been compared with anything.
+
+The laws know their own limits (`Backbone.caveats`); here are those of all of them.
+"""
+
+import numpy as np
+
+from .backbone import Backbone
+from .checks import Real, number
+from .restitution import impact
+
+# a_max/R* from which finite-element impacts leave the -1/4 law, whatever Y is, and by how much e_n is then too high
+# (finite-strain branch of Wu et al. 2003)
+FINITE_STRAIN = {0.2: "0 to 6 % too high, growing", 0.3: "13 to 23 % too high, growing"}
+
+
+def caveats(law: Backbone, *, m_star: float, speed: Real) -> list[str]:
+    """Sentences, none where all is well, on impacts at `speed` [m/s] > 0 of any shape with m_star [kg] > 0."""
+    speed = np.ravel(number("speed", speed))
+    strain = impact(law, m_star=m_star, speed=speed).strain_ratio
+    found = law.caveats(m_star=m_star, speed=speed)
+    for limit, deviation in FINITE_STRAIN.items():
+        beyond = speed[strain > limit]
+        if beyond.size:
+            found.append(
+                f"a_max/R* reaches {strain.max():.2f}, above {limit} from {beyond.min():.3g} m/s on: finite strain, "
+                f"e_n is {deviation}"
+            )
+    return found

@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// The adhesive laws behind a pipe: one line in, one line out. Built and run by adhesive.py beside this file.
+//
+// impact LAW E* R* Gamma p_y m* V dt gap steps   -> rebound speed (0: still attached after `steps`), largest force, largest
+//                                                   overlap, smallest force, overlap and step of the last attached sample
+// path LAW E* R* Gamma p_y n overlap_1 ...       -> force and radius at each of prescribed overlaps, closing speed 0
+// hertz|thornton E* R* p_y n overlap_1 ...       -> the same by the laws without adhesion
+#include <cstdio>
+#include <iostream>
+#include <string>
+
+#include "epdem/hertz.hpp"
+#include "epdem/jkr.hpp"
+#include "epdem/law.hpp"
+#include "epdem/thornton.hpp"
+#include "epdem/thornton_ning.hpp"
+
+using namespace epdem;
+
+namespace {
+
+template <class Law>
+void impact(const Law& law, double R_star) {
+  double m, v, dt, gap;
+  long steps;
+  std::cin >> m >> v >> dt >> gap >> steps;
+  typename Law::Memory memory{};
+  double alpha = -gap, force = 0.0, most = 0.0, deepest = 0.0, least = 0.0, last = 0.0;
+  long n = 0, end = -1;
+  for (; n <= steps; ++n) {
+    const auto now = step(law, R_star, memory, alpha, v * dt);
+    if (n > 0) v -= 0.5 * dt / m * now.force;
+    force = now.force;
+    memory = now.after;
+    if (now.radius > 0.0) {
+      most = std::max(most, force);
+      least = std::min(least, force);
+      deepest = std::max(deepest, alpha);
+      last = alpha;
+      end = n;
+    } else if (end >= 0 && n > end + 1) {
+      break;
+    }
+    v -= 0.5 * dt / m * force;
+    alpha += dt * v;
+  }
+  std::printf("%.17g %.17g %.17g %.17g %.17g %ld\n", n > steps ? 0.0 : -v, most, deepest, least, last, end);
+}
+
+template <class Law>
+void path(const Law& law, double R_star) {
+  typename Law::Memory memory{};
+  long count;
+  std::cin >> count;
+  for (long k = 0; k < count; ++k) {
+    double alpha;
+    std::cin >> alpha;
+    const auto now = step(law, R_star, memory, alpha, 0.0);
+    memory = now.after;
+    std::printf("%.17g %.17g ", now.force, now.radius);
+  }
+  std::printf("\n");
+}
+
+template <class Law>
+void plain(const Law& law, double R_star) {
+  State<Law> state{};
+  long count;
+  std::cin >> count;
+  for (long k = 0; k < count; ++k) {
+    double alpha;
+    std::cin >> alpha;
+    const auto now = step(law, R_star, state, alpha);
+    state = now.after;
+    std::printf("%.17g %.17g ", now.force, now.radius);
+  }
+  std::printf("\n");
+}
+
+}  // namespace
+
+int main() {
+  std::string what, name;
+  while (std::cin >> what) {
+    double E_star, R_star, numbers[2];
+    if (what == "hertz" || what == "thornton") {
+      std::cin >> E_star >> R_star >> numbers[0];
+      if (what == "hertz") plain(Hertz(E_star, numbers), R_star);
+      else plain(Thornton(E_star, numbers), R_star);
+      continue;
+    }
+    std::cin >> name >> E_star >> R_star >> numbers[0] >> numbers[1];
+    const Jkr<double> jkr(E_star, numbers);
+    const ThorntonNing<double> ning(E_star, numbers);
+    if (what == "impact" && name == "jkr") impact(jkr, R_star);
+    else if (what == "impact") impact(ning, R_star);
+    else if (name == "jkr") path(jkr, R_star);
+    else path(ning, R_star);
+  }
+}
