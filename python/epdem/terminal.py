@@ -2,9 +2,11 @@
 """Consoles, tables and progress. Text is shown as it is: titles and paths may look like the markup of rich."""
 
 import contextlib
+import math
 import sys
 from collections.abc import Callable, Collection, Iterable, Iterator
 
+import pandas as pd
 from rich.console import Console
 from rich.progress import BarColumn, Progress, ProgressColumn, TextColumn, TimeElapsedColumn
 from rich.table import Table
@@ -23,6 +25,21 @@ def table(title: str, heads: Iterable[str], *, left: Collection[str] = (), wrap:
     for k, head in enumerate(heads):
         side = "left" if head in left else "right"
         shown.add_column(Text(head), justify=side, no_wrap=not wrap or k == 0, min_width=6 if wrap else None)
+    return shown
+
+
+def cell(value: object) -> str:
+    """A table cell: three digits, a dash for what was not reached."""
+    if isinstance(value, float):
+        return "-" if math.isnan(value) else f"{value:.3g}"
+    return str(value)
+
+
+def frame_table(title: str, frame: pd.DataFrame) -> Table:
+    """A DataFrame as a table; long headings wrap."""
+    shown = table(title, map(str, frame.columns), wrap=True)
+    for row in frame.itertuples(index=False):
+        shown.add_row(*map(cell, row))
     return shown
 
 

@@ -23,6 +23,7 @@ FAST = STEEL[: STEEL.index("speeds =")] + 'speeds = ["1 m/s"]' + STEEL[STEEL.ind
 TEMPLATE = "{{ deck.time_step }} {{ a | default(0) }}\n"
 HARDNESS = {"e_n": "0.6", "speed": "3 m/s", "hv": "200", "hb": "200", "dent_ratio": "0.5"}
 RUN = {"engine": "yade", "law": "cavity", "ranks": "2", "steps": "100", "out": "there", "fresh": None, "resume": None}
+RUN |= {"force": None}
 DECK = {"out": "there", "engine": "yade", "law": "cavity", "case": "other.toml", "given": "a=1"}
 KINDS = {  # words of a call without the option, and the value of every option
     "run impacts": (("run", "steel.toml"), RUN),

@@ -10,7 +10,7 @@ import pandas as pd
 
 from ...engines import engine
 from ...errors import CaseError, EngineError
-from ...laws import library as claw
+from ...laws.register import declarations
 from . import bulk_checks, precisions
 from .cases import Extreme, extremes
 from .repeats import judge_repeats
@@ -68,12 +68,12 @@ def run(
     scenes run. Raises CaseError for a law or group that does not exist, EngineError for an engine that is not here.
     """
     for option, given, known in (
-        ("--law", laws, claw.laws()),
+        ("--law", laws, declarations()),
         ("--group", groups or [], dict.fromkeys(e.group for e in extremes())),
     ):
         if wrong := [name for name in given if name not in known]:
             raise CaseError(f"{option} {wrong[0]!r} does not exist; there are {', '.join(known)}")
-    laws = laws or list(claw.laws())
+    laws = laws or list(declarations())
     chosen = [e for e in extremes() if not groups or e.group in groups][::every]
     if steps is not None and not any(e.kind == "bounces" for e in chosen):
         raise CaseError(
@@ -121,7 +121,7 @@ def summary(verdicts: pd.DataFrame) -> pd.DataFrame:
     for (name, law), part in verdicts.groupby(["engine", "law"], sort=False):
         count = part["status"].value_counts()
         ran = part[part["status"].isin(["passed", "failed"]) & ~part["group"].isin(["bounces", "reloads"])]
-        hit = ran[ran["group"] != "squeeze"]  # an impact has an e_n
+        hit = ran[ran["group"] != "two_walls"]  # an impact has an e_n
         rows.append(
             {
                 "engine": name,
