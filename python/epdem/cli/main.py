@@ -191,7 +191,7 @@ def main() -> None:
     for name in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):  # whatever stops us, no engine stays behind
         signal.signal(name, _stop)
     try:
-        sys.exit(app(standalone_mode=False))
+        sys.exit(app(prog_name="epdem", standalone_mode=False))
     except UsageError as error:
         sys.exit(_usage(error))
     except EpdemError as error:
