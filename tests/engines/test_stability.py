@@ -15,7 +15,7 @@ from epdem.errors import CaseError
 from epdem.laws.native import Law
 from epdem.studies import stability
 from epdem.studies.stability import bulk, bulk_checks, precisions, repeats, roundoff
-from epdem.studies.stability.cases import build, extremes
+from epdem.studies.stability.cases import extremes
 from epdem.studies.stability.repeats import judge_repeats
 from epdem.studies.stability.running import judge, measure, setting
 from epdem.studies.stability.sampling import EmbeddedSampler, PositionSampler, Sample
@@ -240,5 +240,4 @@ def test_the_command_names_the_groups_there_are_and_keeps_its_former_name(comman
 
 
 def test_extreme_cases_are_the_same_on_every_call():
-    assert build("a") == build("a")
     assert extremes() == extremes.__wrapped__()

@@ -15,6 +15,7 @@ from epdem.case.impact import Numerics, parse, read_toml
 from epdem.engines import engine
 from epdem.errors import CaseError, EngineError
 from epdem.impacts import store
+from epdem.impacts.engine import refuse
 from epdem.impacts.experiment import experiment
 from epdem.impacts.measurement import measure
 from epdem.impacts.plan import plan
@@ -127,10 +128,10 @@ def test_the_deck_computes_nothing_and_holds_every_digit(tmp_path):
         assert ("wall(0, axis=2" in text) == (kind != "sphere-sphere") and ("inf" in text) == (kind == "rigid")
 
 
-def test_what_yade_cannot_do_is_refused_before_it_starts(tmp_path):
+def test_what_yade_cannot_do_is_refused_before_it_starts():
     p, _ = prepared()
     with pytest.raises(CaseError, match="--ranks 2"):
-        engine("yade").run(p, tmp_path, ranks=2)
+        refuse(engine("yade"), p, predict(p.experiment), ranks=2)
     data = read_toml(CASES / "steel_wall.toml")
     data["materials"]["steel"]["yield_stress"] = "60 GPa"  # p_y = 168 GPa beyond 0.36 E
     data["impact"]["speeds"] = ["1 m/s"]

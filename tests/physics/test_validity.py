@@ -17,16 +17,6 @@ V_C = 0.559430455498519 * (9 / 2.8) ** 2.5  # of p_m = 3 GPa, from the printed v
 
 
 @pytest.mark.parametrize("name", LAWS)
-def test_a_law_declares_what_its_header_of_cpp_declares(name):
-    text = (Path(__file__).parents[2] / f"cpp_contact/include/epdem/{name}.hpp").read_text()
-    rows = re.findall(r'\{"(\w+)", "\w+", "(\w+)", ([^}]+)\}', text)
-    declared = [(n, unit, None if v.endswith("quiet_NaN()") else float(v)) for n, unit, v in rows]
-    assert [(p.name, p.unit, p.default) for p in LAWS[name].parameters] == declared
-    assert LAWS[name].strength == (declared[0][0] if declared else None)
-    assert LAWS[name].keywords == {p.name: p.symbol for p in LAWS[name].parameters}
-
-
-@pytest.mark.parametrize("name", LAWS)
 def test_a_law_is_made_from_what_it_declares(name):
     """With its strength by default ratio and the defaults of the others: Y = 1 GPa."""
     law = LAWS[name]

@@ -19,7 +19,7 @@ from epdem.scenes import placement as yade_place
 from epdem.scenes.model import model
 from epdem.scenes.run import run
 from epdem.yade import scene_deck as yade
-from epdem.yade.impacts import environment
+from epdem.yade.launcher import environment
 
 CASES = Path(__file__).parents[2] / "cases"
 BEADS = {"box": '["9 mm", "9 mm", "30 mm"]', "count": "40", "duration": '"0.3 s"'}

@@ -4,8 +4,7 @@
 from typing import Any
 
 from ..errors import CaseError
-from ..laws.register import declaration
-from ..laws.strengths import LawNumbers
+from ..laws.strengths import LawNumbers, law_named
 from .units import to_si, within_limits
 
 
@@ -25,12 +24,13 @@ def law_numbers(name: str, given: dict[str, Any]) -> LawNumbers:
 
     A strength X [Pa] is given as `X = "2.8 GPa"` for all bodies or as `X_ratio = 2.8` of each body's yield stress.
     """
-    law = declaration(name)
-    for key in given:
-        if key not in law.case_keys:
-            known = ", ".join(law.case_keys) or "none"
-            raise CaseError(f"law.{key}: law {name} has no such parameter; it has {known}")
+    law = law_named(name)
     strength, ratio = law.strength, f"{law.strength}_ratio"
+    known = [key for p in law.parameters for key in ((p.name, ratio) if p.name == strength else (p.name,))]
+    for key in given:
+        if key not in known:
+            has = ", ".join(known) or "none"
+            raise CaseError(f"law.{key}: law {name} has no such parameter; it has {has}")
     if strength in given and ratio in given:
         raise CaseError(f"law: both {strength} and {ratio} are given; keep one")
     return LawNumbers(

@@ -121,7 +121,7 @@ def deck(
     from ..impacts.prediction import predict
 
     tool = find(engine)
-    if engine == "embedded":
+    if not tool.can.deck:
         raise CaseError("--engine embedded: it reads no deck; use liggghts or yade")
     if len(law or []) > 1:
         raise CaseError("--law: a deck has one law; write one deck for each")

@@ -4,14 +4,19 @@
 import time
 from pathlib import Path
 
+import numpy as np
+
 from .. import paths
-from ..impacts.engine import Trajectory
+from ..errors import CaseError
+from ..impacts.engine import Abilities, Trajectory, check_abilities
+from ..impacts.pairs import Pairs
 from ..impacts.plan import Plan
 from ..laws import library as claw
 
 
 class Embedded:
     name = "embedded"
+    can = Abilities(dashpot=True, deck=False, positions=False)
 
     def missing(self) -> str | None:
         if paths.native("libepdem.so") is None:
@@ -20,6 +25,9 @@ class Embedded:
 
     def version(self) -> str:
         return f"epdem {claw.version()}"
+
+    def check(self, plan: Plan) -> None:
+        check_abilities(self, plan.experiment)
 
     def write(self, plan: Plan, folder: Path) -> list[Path]:
         return []  # nothing to run by hand
@@ -37,3 +45,21 @@ class Embedded:
             viscous=x.viscous_number,
         )
         return Trajectory(plan.time_step, overlap, force, velocity, {"stepping": time.perf_counter() - start})
+
+    def seconds(self, plan: Plan, folder: Path) -> dict[str, float]:
+        x, begin = plan.experiment, time.perf_counter()
+        law = x.native_law()
+        ready = time.perf_counter()
+        law.impacts(
+            R_star=x.R_star,
+            m_star=x.m_star,
+            speed=plan.speed,
+            time_step=plan.time_step,
+            gap=plan.gap,
+            steps=plan.steps,
+            viscous=x.viscous_number,
+        )
+        return {"startup": 0.0, "setup": ready - begin, "stepping": time.perf_counter() - ready}
+
+    def tell(self, pairs: Pairs, way: str, folder: Path) -> np.ndarray:
+        raise CaseError("engine embedded: one contact has no order, owner or restart to depend on")

@@ -1,13 +1,17 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """What an engine is: it takes a plan and gives a trajectory. Its own words end here."""
 
+import math
+import time
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Protocol
 
 import numpy as np
 
+from ..errors import CaseError
 from .experiment import Experiment
+from .pairs import Pairs
 from .plan import Plan
 from .prediction import Prediction
 
@@ -29,10 +33,28 @@ class Trajectory:
     seconds: dict[str, float] = field(default_factory=dict)
 
 
+@dataclass(frozen=True)
+class Abilities:
+    """What an engine can do: nobody asks for its name."""
+
+    laws: tuple[str, ...] | None = None  # of ours that it knows; None: every one
+    walls: bool = True  # planes as targets
+    spheres: bool = True  # spheres as targets
+    dashpot: bool = False  # [viscous] of a case
+    ranks: int = 1  # the most that it runs on here
+    deck: bool = True  # it reads a deck, which runs by hand too
+    positions: bool = True  # its overlap is a difference of positions
+    staggered: bool = False  # its velocity belongs to half a step before the position
+    scenes: tuple[str, ...] = ()  # kinds of bulk scenes
+    restarts: bool = False  # a bulk scene that was interrupted goes on
+    ways: tuple[str, ...] = ()  # ways in which `tell` gives it the same impacts, beside the plain one
+
+
 class Engine(Protocol):
     """One way to run a plan."""
 
     name: str
+    can: Abilities
 
     def missing(self) -> str | None:
         """None if the engine can run here, else a sentence with the command that installs it."""
@@ -40,11 +62,31 @@ class Engine(Protocol):
     def version(self) -> str:
         """One line: the engine's version, and that of our part in it."""
 
+    def check(self, plan: Plan) -> None:
+        """Raise CaseError for a plan that the engine cannot run."""
+
     def write(self, plan: Plan, folder: Path) -> list[Path]:
         """The deck and its data files, in `folder`; they run by hand there."""
 
     def run(self, plan: Plan, folder: Path, *, ranks: int = 1) -> Trajectory:
         """Run what `write` wrote. Raises EngineError with the engine's last words."""
+
+    def seconds(self, plan: Plan, folder: Path) -> dict[str, float]:
+        """Times of one run that records as little as it can [s]: startup, setup, stepping; NaN where it cannot tell."""
+
+    def tell(self, pairs: Pairs, way: str, folder: Path) -> np.ndarray:
+        """Velocities [m/s] after the impacts of `pairs`, told "plain" or in one of `can.ways`: (2, n, 3), body first.
+
+        Raises EngineError; ValueError if bodies are lost.
+        """
+
+
+def recorded_seconds(tool: Engine, plan: Plan, folder: Path) -> dict[str, float]:
+    """`seconds` of an engine that always records: its own stepping, and all the rest as setup."""
+    begin = time.perf_counter()
+    tool.write(plan, folder)
+    stepping = tool.run(plan, folder).seconds.get("stepping", math.nan)
+    return {"startup": math.nan, "setup": time.perf_counter() - begin - stepping, "stepping": stepping}
 
 
 class OwnTheory(Engine, Protocol):
@@ -57,6 +99,31 @@ class OwnTheory(Engine, Protocol):
 
     def note(self, x: Experiment) -> str:
         """Where its numbers come from, in words."""
+
+
+def check_abilities(tool: Engine, x: Experiment) -> None:
+    """Raise CaseError for what an experiment asks of an engine that cannot do it."""
+    can, wall = tool.can, not np.isfinite(x.target.radius)
+    if can.laws is not None and x.law.name not in can.laws:
+        known = ", ".join(can.laws)
+        raise CaseError(f"law.name = {x.law.name!r}: engine {tool.name} knows {known} only; use another --engine")
+    if x.viscous_restitution is not None and not can.dashpot:
+        raise CaseError(f"viscous: engine {tool.name} does not know our dashpot; use --engine liggghts or embedded")
+    if (wall and not can.walls) or (not wall and not can.spheres):
+        kind = "walls" if wall else "impacts of two spheres"
+        raise CaseError(f"impact.kind: engine {tool.name} does not know {kind}; use another --engine")
+
+
+def refuse(tool: Engine, plan: Plan, prediction: Prediction, *, ranks: int = 1) -> None:
+    """Raise CaseError if `tool` cannot run `plan` as it is; `prediction` is that of the plan's experiment."""
+    most = tool.can.ranks
+    if ranks > most:
+        words = "one rank; leave --ranks out" if most == 1 else f"at most {most} ranks here; ask for no more"
+        raise CaseError(f"--ranks {ranks}: engine {tool.name} runs on {words}")
+    tool.check(plan)
+    for speed, overlap in zip(prediction.speed, prediction.overlap_max, strict=True):
+        if tool.can.positions and (why := not_representable(plan.experiment, float(overlap))):
+            raise CaseError(f"{speed:.4g} m/s is not representable by positions ({why}); use --engine embedded for it")
 
 
 def not_representable(x: Experiment, overlap_max: float) -> str | None:

@@ -107,7 +107,7 @@ class Experiment:
 
     def theory(self) -> Backbone:
         """The law's backbone as the theory knows it."""
-        return self.law.declaration.backbone(E_star=self.E_star, R_star=self.R_star, parameters=self.law.parameters)
+        return self.law.backbone(E_star=self.E_star, R_star=self.R_star)
 
     def native_law(self) -> Law:
         """The same law in C++."""

@@ -20,7 +20,7 @@ from ..folders import claim
 from ..stages import inputs_hash
 from . import store
 from .comparison import compare, impacts_table
-from .engine import Engine, not_representable
+from .engine import Engine, refuse
 from .experiment import experiment
 from .measurement import measure
 from .plan import Plan, plan
@@ -76,19 +76,6 @@ def _inputs(p: Plan, tool: Engine, version: str, ranks: int) -> str:
     bodies = (x.law, x.body, x.target, x.viscous_restitution)
     with tempfile.TemporaryDirectory(prefix="epdem-") as scratch:
         return inputs_hash(tool.write(p, Path(scratch)), numbers, bodies, tool.name, version, ranks)
-
-
-def _refuse(tool: Engine, p: Plan, prediction: Prediction, ranks: int) -> None:
-    """Raise CaseError if `tool` cannot run `p` as it is."""
-    if ranks > 1 and not tool.name.startswith("liggghts"):
-        raise CaseError(f"--ranks {ranks}: engine {tool.name} runs on one rank; leave --ranks out")
-    if tool.name == "embedded":
-        return
-    if hasattr(tool, "deck"):
-        tool.deck(p)
-    for speed, overlap in zip(prediction.speed, prediction.overlap_max, strict=True):
-        if why := not_representable(p.experiment, float(overlap)):
-            raise CaseError(f"{speed:.4g} m/s is not representable by positions ({why}); use --engine embedded for it")
 
 
 def _stored(path: Path) -> store.Results:
@@ -149,7 +136,7 @@ def _prepare(case_path: Path | str, tools: Sequence[Engine], laws: list[str], st
         plans = [plan(x, predictions[x.law.name]) for x in experiments]
         for p in plans:
             for tool in tools:
-                _refuse(tool, p, predictions[p.experiment.law.name], ranks)
+                refuse(tool, p, predictions[p.experiment.law.name], ranks=ranks)
     return _Work(case, tools, {tool.name: tool.version() for tool in tools}, predictions, plans)
 
 

@@ -12,10 +12,11 @@ import numpy as np
 
 from .. import data_file
 from .. import rendering as decks
-from ..errors import EngineError
+from ..errors import CaseError, EngineError
 from ..impacts import foreign
-from ..impacts.engine import Trajectory
+from ..impacts.engine import Abilities, Trajectory, check_abilities, recorded_seconds
 from ..impacts.experiment import Experiment
+from ..impacts.pairs import Pairs
 from ..impacts.places import room, side_by_side
 from ..impacts.plan import Plan
 from ..impacts.prediction import Prediction
@@ -65,6 +66,7 @@ class LammpsMdr:
 
     name = "lammps-mdr"
     template = "lammps/impact.in.j2"
+    can = Abilities(spheres=False)
     end_power = 2 / 3
 
     def missing(self) -> str | None:
@@ -84,6 +86,7 @@ class LammpsMdr:
     def deck(self, plan: Plan) -> Deck:
         """The deck of a plan. Raises CaseError for what mdr does not know."""
         x = plan.experiment
+        check_abilities(self, x)
         law = foreign.mdr(x)
         numbers = (law.young_modulus, law.poisson_ratio, law.yield_stress, 0.0, BULK, 0.0)
         contact = f"mdr {' '.join(map(decks.number, numbers))} tangential linear_history 0.0 0.0 0.0 damping mdr 1"
@@ -100,6 +103,9 @@ class LammpsMdr:
             path="path.txt",
             steps=plan.steps,
         )
+
+    def check(self, plan: Plan) -> None:
+        self.deck(plan)
 
     def write(self, plan: Plan, folder: Path) -> list[Path]:
         deck = self.deck(plan)
@@ -140,3 +146,9 @@ class LammpsMdr:
             raise EngineError(f"{path}: the run left an incomplete dump ({error}); see log.lammps beside it") from None
         path.unlink()
         return Trajectory(plan.time_step, (plan.experiment.body.radius - z).T, fz.T, -vz.T, {"total": wall})
+
+    def seconds(self, plan: Plan, folder: Path) -> dict[str, float]:
+        return recorded_seconds(self, plan, folder)
+
+    def tell(self, pairs: Pairs, way: str, folder: Path) -> np.ndarray:
+        raise CaseError(f"engine {self.name} knows no impacts of two spheres")

@@ -5,8 +5,15 @@ import math
 from dataclasses import dataclass
 
 from ..errors import CaseError
+from ..theory.backbones import LAWS, Backbone
 from .library import laws
-from .register import Declaration, declaration
+
+
+def law_named(name: str) -> type[Backbone]:
+    """The law of that name, as the theory declares it. Raises CaseError."""
+    if name not in LAWS:
+        raise CaseError(f"law.name = {name!r} does not exist; there are {', '.join(LAWS)}")
+    return LAWS[name]
 
 
 @dataclass(frozen=True)
@@ -21,14 +28,14 @@ class LawSpec:
     parameters: dict[str, float]
     strengths: tuple[float, float]
 
-    @property
-    def declaration(self) -> Declaration:
-        """What the law declares."""
-        return declaration(self.name)
+    def backbone(self, *, E_star: float, R_star: float) -> Backbone:
+        """The law as the theory knows it. Raises ValueError for parameters that make no sense together."""
+        law = law_named(self.name)
+        return law(E_star=E_star, R_star=R_star, **{law.keywords[n]: x for n, x in self.parameters.items()})
 
     def of(self, body: float, target: float) -> "LawSpec":
         """The same law for two bodies of these strengths [Pa]."""
-        strength = self.declaration.strength
+        strength = law_named(self.name).strength
         own = {} if strength is None else {strength: min(body, target)}
         return LawSpec(self.name, self.parameters | own, (body, target))
 
@@ -58,17 +65,12 @@ class LawNumbers:
     absolute: float | None
     ratio: float
 
-    @property
-    def declaration(self) -> Declaration:
-        """What the law declares."""
-        return declaration(self.name)
-
     def strength(self, material: str, yield_stress: float | None, own: float | None = None) -> float:
         """Strength [Pa] of a body of `material`: its `own`, else by the law's rule; inf for a law without one.
 
         Raises CaseError if the rule needs a yield stress [Pa] that the material does not have.
         """
-        name = self.declaration.strength
+        name = law_named(self.name).strength
         if name is None or yield_stress == math.inf:
             return math.inf
         if own is not None:
@@ -88,6 +90,6 @@ class LawNumbers:
 
 def default_numbers(name: str) -> LawNumbers:
     """The law `name` with its default parameters. Raises CaseError for a law that does not exist."""
-    law = declaration(name)
-    ratios = {p.name: p.default for p in law.parameters if p.name != law.strength}
+    law = law_named(name)
+    ratios = {p.name: p.default for p in law.parameters if p.default is not None}
     return LawNumbers(name, ratios, None, law.default_ratio)

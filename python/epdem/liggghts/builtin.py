@@ -4,12 +4,12 @@
 import math
 from dataclasses import replace
 
-from ..errors import CaseError
 from ..impacts import foreign
 from ..impacts.experiment import Experiment
 from ..impacts.plan import Plan
 from ..impacts.prediction import Prediction
-from .impacts import Deck, Liggghts
+from .deck import Deck
+from .impacts import Liggghts
 from .properties import Property, of_impacts, per_pair, per_type, scalar
 
 
@@ -20,11 +20,14 @@ def _elastic(plan: Plan) -> tuple[int, list[Property]]:
     return types, [*found, per_pair("coefficientRestitution", types, 1.0, "-", "no viscous damping")]
 
 
+WITHOUT_OURS = replace(Liggghts.can, dashpot=False, scenes=(), restarts=False)
+
+
 class BuiltinHertz(Liggghts):
     """LIGGGHTS's `hertz` without damping: the elastic limit."""
 
     name = "liggghts-hertz"
-    takes_dashpot = False
+    can = WITHOUT_OURS
 
     def model(self, plan: Plan) -> str:
         return "hertz"
@@ -37,11 +40,9 @@ class ThorntonNing(Liggghts):
     """LIGGGHTS's `thornton_ning` without adhesion, with the yield pressure of the plan's `thornton` law."""
 
     name = "liggghts-thornton_ning"
-    takes_dashpot = False
+    can = replace(WITHOUT_OURS, laws=("thornton",))
 
     def model(self, plan: Plan) -> str:
-        if plan.experiment.law.name != "thornton":
-            raise CaseError(f"engine {self.name} knows law thornton only, not {plan.experiment.law.name}")
         return "thornton_ning"
 
     def properties(self, plan: Plan) -> tuple[Property, ...]:
@@ -59,7 +60,7 @@ class ThorntonNing(Liggghts):
 class _OwnTheory(Liggghts):
     """A model whose numbers and theory are in `foreign`."""
 
-    takes_dashpot = False
+    can = WITHOUT_OURS
     end_power = 1.0  # the force falls linearly with the overlap
 
     def deck(self, plan: Plan) -> Deck:

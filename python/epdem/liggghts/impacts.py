@@ -3,7 +3,6 @@
 
 import math
 import re
-from dataclasses import dataclass
 from pathlib import Path
 
 import numpy as np
@@ -11,36 +10,18 @@ import numpy as np
 from .. import data_file, paths
 from .. import rendering as decks
 from ..errors import CaseError, EngineError
-from ..impacts.engine import Trajectory
+from ..impacts.engine import Abilities, Trajectory, check_abilities
+from ..impacts.pairs import Pairs
 from ..impacts.places import room, side_by_side
 from ..impacts.plan import Plan
 from ..processes import ask
 from . import dump, launcher
+from .deck import Deck
 from .log import loop_seconds
+from .pairs import velocities
 from .properties import HARD, SOFT, Property, atom_types, finite, of_law
 
-
-@dataclass(frozen=True)
-class Deck:
-    """Everything the template writes; every number was decided here."""
-
-    title: str
-    source: str
-    summary: str
-    remembers: bool  # the law has a contact history
-    hard: bool
-    soft: bool
-    data: str
-    skin: float
-    types: tuple[str, ...]
-    properties: tuple[Property, ...]
-    model: str
-    tangential: str
-    settings: tuple[str, ...]
-    wall_type: int | None
-    time_step: float
-    path: str
-    steps: int
+SCENES = ("settle", "hopper", "drum", "compaction", "peening")
 
 
 class Liggghts:
@@ -48,7 +29,13 @@ class Liggghts:
 
     name = "liggghts"
     template = "liggghts/impact.in.j2"
-    takes_dashpot = True
+    can = Abilities(
+        dashpot=True,
+        ranks=launcher.most_ranks(),
+        scenes=SCENES,
+        restarts=True,
+        ways=("swap", "sort", "migration", "restart"),
+    )
 
     def missing(self) -> str | None:
         return launcher.missing()
@@ -65,16 +52,14 @@ class Liggghts:
 
     def deck(self, plan: Plan) -> Deck:
         """The deck of a plan. Raises CaseError for what LIGGGHTS cannot do."""
-        x, types, model = plan.experiment, atom_types(plan), self.model(plan)
+        x, types = plan.experiment, atom_types(plan)
+        check_abilities(self, x)
         for b, _ in types:
             if b.poisson_ratio < 0:
                 raise CaseError(
                     f"materials.{b.material}.poisson_ratio = {b.poisson_ratio}, LIGGGHTS takes [0, 0.5] "
                     "only; use --engine embedded"
                 )
-        dashpot = x.viscous_restitution is not None
-        if dashpot and not self.takes_dashpot:
-            raise CaseError(f"viscous: engine {self.name} does not know our dashpot; use --engine liggghts or embedded")
         moduli = [finite(b.young_modulus) for b, _ in types]
         return Deck(
             title=x.title,
@@ -87,14 +72,17 @@ class Liggghts:
             skin=0.2 * min(x.body.radius, x.target.radius),
             types=tuple(b.material for b, _ in types),
             properties=self.properties(plan),
-            model=model,
+            model=self.model(plan),
             tangential="off",
-            settings=("viscous on",) if dashpot else (),
+            settings=("viscous on",) if x.viscous_restitution is not None else (),
             wall_type=len(types) if math.isinf(x.target.radius) else None,
             time_step=plan.time_step,
             path="path.bin",
             steps=plan.steps,
         )
+
+    def check(self, plan: Plan) -> None:
+        self.deck(plan)
 
     def write(self, plan: Plan, folder: Path) -> list[Path]:
         deck = self.deck(plan)
@@ -109,6 +97,19 @@ class Liggghts:
         allowed = 120 + 2e-6 * plan.n * plan.steps
         wall = launcher.run("in.impact", folder, ranks=ranks, log=launcher.LOG, seconds=allowed)
         return trajectory(plan, folder / "path.bin", {"total": wall, "stepping": loop_seconds(folder / launcher.LOG)})
+
+    def seconds(self, plan: Plan, folder: Path) -> dict[str, float]:
+        files = self.write(plan, folder)
+        lines = files[0].read_text().splitlines(keepends=True)
+        files[0].write_text("".join(line for line in lines if not line.startswith("dump ")))  # stepping, not writing
+        (folder / "in.empty").write_text("# nothing\n")
+        startup = launcher.run("in.empty", folder, out="out.empty", seconds=120)
+        total = launcher.run(files[0].name, folder, log=launcher.LOG, seconds=600)
+        stepping = loop_seconds(folder / launcher.LOG)
+        return {"startup": startup, "setup": max(total - startup - stepping, 0.0), "stepping": stepping}
+
+    def tell(self, pairs: Pairs, way: str, folder: Path) -> np.ndarray:
+        return velocities(self.deck(pairs.plan), pairs, way, folder)
 
 
 def data_text(plan: Plan, types: int) -> str:

@@ -10,9 +10,7 @@ from .. import data_file
 from .. import rendering as decks
 from ..impacts.pairs import Pairs
 from . import dump, launcher
-from .impacts import Deck, Liggghts
-
-WAYS = ("swap", "sort", "migration", "restart")
+from .deck import Deck
 
 
 def _box(pairs: Pairs) -> list[tuple[float, float]]:
@@ -29,9 +27,9 @@ def _data(pairs: Pairs, deck: Deck, swap: bool) -> str:
     return data_file.text("pairs", len(deck.types), _box(pairs), groups)
 
 
-def velocities(tool: Liggghts, pairs: Pairs, way: str, folder: Path) -> np.ndarray:
+def velocities(deck: Deck, pairs: Pairs, way: str, folder: Path) -> np.ndarray:
     """After the impacts, shape (2, n, 3), the body first. Raises EngineError; ValueError if bodies are lost."""
-    p, deck = pairs.plan, replace(tool.deck(pairs.plan), path="out.bin")
+    p, deck = pairs.plan, replace(deck, path="out.bin")
     folder.mkdir(parents=True, exist_ok=True)
     (folder / deck.data).write_text(_data(pairs, deck, way == "swap"))
     ranks = 2 if way == "migration" else 1

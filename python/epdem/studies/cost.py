@@ -22,9 +22,6 @@ from ..impacts.experiment import experiment
 from ..impacts.plan import Plan, plan
 from ..impacts.prediction import Prediction, predict
 from ..impacts.run import run_plan
-from ..liggghts import launcher
-from ..liggghts.impacts import Liggghts
-from ..liggghts.log import loop_seconds
 
 STEPS = (10, 17, 30, 55, 100, 170, 300, 550, 1000, 1700, 3000)
 QUANTITIES = ("e_n", "contact_time", "force_max")
@@ -94,44 +91,6 @@ def errors(c: Model, p: Plan, folder: Path) -> dict[str, float]:
     }
 
 
-def seconds(c: Model, p: Plan, folder: Path) -> dict[str, float]:
-    """Times of one run [s] that records nothing: `startup`, `setup`, `stepping` (the engine's own loop time)."""
-    tool, x = c.engine, p.experiment
-    if tool.name == "embedded":
-        begin = time.perf_counter()
-        law = x.native_law()
-        ready = time.perf_counter()
-        law.impacts(
-            R_star=x.R_star,
-            m_star=x.m_star,
-            speed=p.speed,
-            time_step=p.time_step,
-            gap=p.gap,
-            steps=p.steps,
-            viscous=x.viscous_number,
-        )
-        return {"startup": 0.0, "setup": ready - begin, "stepping": time.perf_counter() - ready}
-    if isinstance(tool, Liggghts):
-        return _liggghts_seconds(tool, p, folder)
-    begin = time.perf_counter()
-    tool.write(p, folder)
-    path = tool.run(p, folder)
-    total, stepping = time.perf_counter() - begin, path.seconds.get("stepping", np.nan)
-    return {"startup": np.nan, "setup": total - stepping, "stepping": stepping}
-
-
-def _liggghts_seconds(tool: Liggghts, p: Plan, folder: Path) -> dict[str, float]:
-    files = tool.write(p, folder)
-    deck = files[0]
-    lines = deck.read_text().splitlines()
-    deck.write_text("\n".join(line for line in lines if not line.startswith("dump ")) + "\n")  # stepping, not writing
-    (folder / "in.empty").write_text("# nothing\n")
-    startup = launcher.run("in.empty", folder, out="out.empty", seconds=120)
-    total = launcher.run(deck.name, folder, log=launcher.LOG, seconds=600)
-    stepping = loop_seconds(folder / launcher.LOG)
-    return {"startup": startup, "setup": max(total - startup - stepping, 0.0), "stepping": stepping}
-
-
 def order(steps: np.ndarray, error: np.ndarray) -> float:
     """Observed order: minus the slope of log error over log steps while the error still falls; NaN below 3 points."""
     good = np.isfinite(error) & (error < 0.2) & (error > 3 * np.nanmin(error))
@@ -154,7 +113,7 @@ def _timings(
         for n in steps:
             for c in chosen:
                 progress(f"time {k + 1}/{repetitions}: {c.label}, {n} steps")
-                rows.append({"repetition": k, "model": c.label, "steps": n} | seconds(c, c.plans[n], folder))
+                rows.append({"repetition": k, "model": c.label, "steps": n} | c.engine.seconds(c.plans[n], folder))
                 rows[-1]["ns_per_step"] = rows[-1]["stepping"] / (c.plans[n].n * c.plans[n].steps) * 1e9
     return pd.DataFrame(rows)
 

@@ -43,8 +43,8 @@ def contenders(x: Experiment) -> tuple[dict[str, Engine], dict[str, str]]:
     absent = {name: reason for name, tool in tools.items() if (reason := tool.missing())}
     for name, tool in tools.items():
         try:
-            if name not in absent and hasattr(tool, "deck"):
-                tool.deck(plan(_with_steps(x, 100), predict(tool, x)))
+            if name not in absent:
+                tool.check(plan(_with_steps(x, 100), predict(tool, x)))
         except CaseError as error:
             absent[name] = str(error)
     return {n: t for n, t in tools.items() if n not in absent}, absent

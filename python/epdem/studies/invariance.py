@@ -16,13 +16,8 @@ from ..impacts.experiment import Experiment
 from ..impacts.foreign import prediction as predict
 from ..impacts.pairs import AXIS, pairs, unequal_spheres
 from ..impacts.plan import plan
-from ..liggghts import pairs as liggghts_pairs
-from ..liggghts.impacts import Liggghts
-from ..yade import pairs as yade_pairs
-from ..yade.impacts import Yade
 
 WAYS = ("swap", "sort", "migration", "restart")
-TELLERS = ((Liggghts, liggghts_pairs), (Yade, yade_pairs))
 FAILED = float("inf")  # it died or lost particles: as wrong as can be
 
 
@@ -40,8 +35,7 @@ class Invariance:
 
 def examine(tool: Engine, x: Experiment, folder: Path) -> Invariance | None:
     """Tell the impacts of unequal spheres in every way; None: nothing can be told. Raises EngineError."""
-    teller = next((module for kind, module in TELLERS if isinstance(tool, kind)), None)
-    if teller is None:  # one contact in the embedded engine has no order, owner or restart to depend on
+    if not tool.can.ways:
         return None
     pair = unequal_spheres(x)
     prediction = predict(tool, pair)
@@ -52,15 +46,15 @@ def examine(tool: Engine, x: Experiment, folder: Path) -> Invariance | None:
     def restitution(v: np.ndarray) -> np.ndarray:
         return (v[0] - v[1]) @ AXIS / p.speed
 
-    plain = teller.velocities(tool, scene, "plain", folder / "plain")
+    plain = tool.tell(scene, "plain", folder / "plain")
     change = np.abs(pair.m_star * p.speed).max()
     e_n, momentum = {}, {}
     for way in WAYS:
         e_n[way] = momentum[way] = float("nan")
-        if way not in teller.WAYS:
+        if way not in tool.can.ways:
             continue
         try:
-            v = teller.velocities(tool, scene, way, folder / way)
+            v = tool.tell(scene, way, folder / way)
             e_n[way] = float(np.abs(restitution(v) - restitution(plain)).max())
             momentum[way] = float(np.abs((mass * (v - scene.drift)).sum(axis=0)).max() / change)
         except (EngineError, ValueError):

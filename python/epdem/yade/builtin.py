@@ -8,7 +8,8 @@ from ..impacts import foreign
 from ..impacts.experiment import Body, Experiment
 from ..impacts.plan import Plan
 from ..impacts.prediction import Prediction
-from .impacts import Anvil, Deck, Material, Yade
+from .deck import Anvil, Deck, Material
+from .impacts import Yade
 
 
 class YadeLuding(Yade):
@@ -19,6 +20,7 @@ class YadeLuding(Yade):
     """
 
     name = "yade-luding"
+    can = replace(Yade.can, laws=None, scenes=())
     end_power = 1.0  # the force falls linearly with the overlap
 
     def predict(self, x: Experiment) -> Prediction:
@@ -42,9 +44,12 @@ class YadeLuding(Yade):
         }
         return Material(body.material, values)
 
+    def ratios(self, x: Experiment) -> dict[str, float]:
+        return {}
+
     def deck(self, plan: Plan) -> Deck:
         x, deck = plan.experiment, super().deck(plan)
         anvil = None
         if deck.wall_material:
             anvil = Anvil(x.body.radius, x.target.material, -x.body.radius)
-        return replace(deck, law="Luding", native=True, rigid=False, ratios={}, wall_material=None, anvil=anvil)
+        return replace(deck, law="Luding", native=True, rigid=False, wall_material=None, anvil=anvil)

@@ -1,11 +1,9 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """YADE with our laws: a plan becomes one Python deck with all impacts side by side; the law travels with it."""
 
-import os
 import re
 import shutil
 import time
-from dataclasses import dataclass
 from math import isfinite, isinf
 from pathlib import Path
 
@@ -13,73 +11,25 @@ import numpy as np
 
 from .. import rendering as decks
 from ..errors import CaseError, EngineError
-from ..files import write_texts
-from ..impacts.engine import Trajectory
+from ..impacts.engine import Abilities, Trajectory, check_abilities, recorded_seconds
 from ..impacts.experiment import Body, Experiment
+from ..impacts.pairs import Pairs
 from ..impacts.plan import Plan
 from ..laws import library as claw
 from ..processes import ask, call
+from .deck import Deck, Group, Material
 from .deck_modules import cone
 from .deck_modules.law import LAWS
+from .launcher import command, environment, write_deck_modules
+from .pairs import velocities
 
 INSTALL = "apt-get install yade"
-MODULES = Path(__file__).with_name("deck_modules")
-
-
-@dataclass(frozen=True)
-class Material:
-    """Keywords of Contacts.material, or of a material of YADE's own, SI."""
-
-    name: str
-    values: dict[str, float]
-
-
-@dataclass(frozen=True)
-class Group:
-    """The bodies of one kind; `data` holds x, y, z [m] and v_z [m/s] of each."""
-
-    data: str
-    radius: float
-    material: str
-
-
-@dataclass(frozen=True)
-class Anvil:
-    """A fixed sphere under each body, its centre at z [m]."""
-
-    radius: float
-    material: str
-    z: float
-
-
-@dataclass(frozen=True)
-class Deck:
-    """Everything the template writes; every number was decided here."""
-
-    title: str
-    source: str
-    summary: str
-    rigid: bool
-    law: str
-    native: bool  # YADE's own law
-    ratios: dict[str, float]
-    materials: tuple[Material, ...]
-    wall_material: str | None
-    anvil: Anvil | None  # fixed spheres that stand for the wall where YADE's law knows spheres only
-    bodies: tuple[Group, ...]
-    skin: float
-    time_step: float
-    samples: int
-    path: str
-
-
-def command() -> str:
-    """YADE's program; EPDEM_YADE names another one."""
-    return os.environ.get("EPDEM_YADE", "yade")
 
 
 class Yade:
     name = "yade"
+    # a serial YADE keeps bodies where they are in memory and has no ranks: nothing is sorted, nobody migrates
+    can = Abilities(laws=tuple(LAWS), staggered=True, scenes=("settle", "compaction"), ways=("swap", "restart"))
     template = "yade/impact.py.j2"
 
     def missing(self) -> str | None:
@@ -110,11 +60,15 @@ class Yade:
                 )
         return Material(body.material, values)
 
+    def ratios(self, x: Experiment) -> dict[str, float]:
+        """The law's dimensionless parameters that differ from their defaults."""
+        given, defaults = x.law.parameters, {p.name: p.default for p in claw.laws()[x.law.name].parameters}
+        return {n: given[n] for n in LAWS[x.law.name].ratios if given[n] != defaults[n]}
+
     def deck(self, plan: Plan) -> Deck:
         """The deck of a plan. Raises CaseError for what YADE cannot do."""
         x, wall = plan.experiment, isinf(plan.experiment.target.radius)
-        if x.viscous_restitution is not None:
-            raise CaseError("viscous: engine yade has no dashpot; use --engine liggghts or embedded")
+        check_abilities(self, x)
         materials = {
             x.target.material: self.material(x, x.target, x.law.strengths[1]),
             x.body.material: self.material(x, x.body, x.law.strengths[0]),
@@ -122,7 +76,6 @@ class Yade:
         bodies = [Group("body.data", x.body.radius, x.body.material)]
         if not wall:
             bodies.append(Group("target.data", x.target.radius, x.target.material))
-        defaults = {p.name: p.default for p in claw.laws()[x.law.name].parameters}
         return Deck(
             title=x.title,
             source=x.source,
@@ -131,7 +84,7 @@ class Yade:
             law=x.law.name,
             native=False,
             anvil=None,
-            ratios={n: x.law.parameters[n] for n in LAWS[x.law.name].ratios if x.law.parameters[n] != defaults[n]},
+            ratios=self.ratios(x),
             materials=tuple(materials.values()),
             wall_material=x.target.material if wall else None,
             bodies=tuple(bodies),
@@ -140,6 +93,9 @@ class Yade:
             samples=plan.steps + 2,  # one more than asked for: a velocity is the mean of those half a step away
             path="path.bin",
         )
+
+    def check(self, plan: Plan) -> None:
+        self.deck(plan)
 
     def write(self, plan: Plan, folder: Path) -> list[Path]:
         deck = self.deck(plan)
@@ -154,8 +110,6 @@ class Yade:
         return [script, *files, *modules]
 
     def run(self, plan: Plan, folder: Path, *, ranks: int = 1) -> Trajectory:
-        if ranks > 1:
-            raise CaseError(f"--ranks {ranks}: YADE runs an impact deck on one core only; leave it out")
         path, log = folder / "path.bin", folder / "out.yade"
         path.unlink(missing_ok=True)
         start = time.perf_counter()
@@ -169,23 +123,11 @@ class Yade:
         wall = time.perf_counter() - start
         return trajectory(plan, path, {"total": wall, "stepping": stepping_seconds(log)})
 
+    def seconds(self, plan: Plan, folder: Path) -> dict[str, float]:
+        return recorded_seconds(self, plan, folder)
 
-def deck_modules() -> dict[str, str]:
-    """The modules that a deck with a law of ours imports, by path beside the deck."""
-    note = '"""The part of epdem that YADE needs; it came with the deck."""\n'
-    files = {"epdem/__init__.py": note, "epdem/yade/__init__.py": note}
-    return files | {f"epdem/yade/deck_modules/{p.name}": p.read_text() for p in sorted(MODULES.glob("*.py"))}
-
-
-def write_deck_modules(folder: Path) -> list[Path]:
-    """`deck_modules` in a deck's folder."""
-    return write_texts(folder, deck_modules())
-
-
-def environment() -> dict[str, str]:
-    """Ours without what would lead the system Python, which YADE embeds, to packages of another one."""
-    kept = {k: v for k, v in os.environ.items() if k not in ("PYTHONPATH", "PYTHONHOME", "PYTHONSTARTUP", "DISPLAY")}
-    return {"HOME": "/tmp", **kept, "OMP_NUM_THREADS": "1"}  # YADE does not start without a home
+    def tell(self, pairs: Pairs, way: str, folder: Path) -> np.ndarray:
+        return velocities(self.deck(pairs.plan), pairs, way, folder)
 
 
 def tables(plan: Plan) -> list[np.ndarray]:

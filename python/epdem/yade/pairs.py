@@ -1,8 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Pairs of spheres told to YADE in one of the ways that must not matter.
-
-A serial YADE keeps bodies where they are in memory and has no ranks: nothing is sorted, nobody migrates.
-"""
+"""Pairs of spheres told to YADE in one of the ways that must not matter."""
 
 from pathlib import Path
 
@@ -12,14 +9,13 @@ from .. import rendering as decks
 from ..errors import EngineError
 from ..impacts.pairs import Pairs
 from ..processes import call
-from .impacts import Yade, command, environment, write_deck_modules
+from .deck import Deck
+from .launcher import command, environment, write_deck_modules
 
-WAYS = ("swap", "restart")
 
-
-def velocities(tool: Yade, pairs: Pairs, way: str, folder: Path) -> np.ndarray:
+def velocities(deck: Deck, pairs: Pairs, way: str, folder: Path) -> np.ndarray:
     """After the impacts, shape (2, n, 3), the body first. Raises EngineError; ValueError if bodies are lost."""
-    p, deck = pairs.plan, tool.deck(pairs.plan)
+    p = pairs.plan
     folder.mkdir(parents=True, exist_ok=True)
     if not deck.native:
         write_deck_modules(folder)
@@ -49,4 +45,4 @@ def velocities(tool: Yade, pairs: Pairs, way: str, folder: Path) -> np.ndarray:
         v = np.load(folder / deck.path).reshape(2, p.n, 3)
     except OSError as error:
         raise EngineError(f"{folder / deck.path}: the run left no result ({error}); see out{k}.yade beside") from None
-    return v[::-1] if way == "swap" else v
+    return np.flip(v, axis=0) if way == "swap" else np.asarray(v)

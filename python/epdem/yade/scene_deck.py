@@ -14,12 +14,14 @@ from ..liggghts import scene_deck as liggghts
 from ..processes import call
 from ..scenes import placement as yade_place
 from ..scenes.model import Model, model
+from .deck import Material
 from .deck_modules import cone
 from .deck_modules.law import LAWS
-from .impacts import Material, Yade, command, deck_modules, environment
+from .impacts import Yade
+from .launcher import command, deck_modules, environment
 
 SCRIPT, OUT = "scene.py", "out.yade"
-KINDS = ("settle", "compaction")
+KINDS = Yade.can.scenes
 NO_DASHPOT = "contact.tangential_restitution: YADE's law has no dashpot, it was left out"
 
 

@@ -15,7 +15,7 @@ import pandas as pd
 
 from ... import rendering as decks
 from ...errors import EngineError
-from ...yade.impacts import environment
+from ...yade.launcher import environment
 from .cases import build
 from .running import position_floor, setting
 

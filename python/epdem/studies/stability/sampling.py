@@ -52,14 +52,13 @@ class PositionSampler:
     """An engine whose overlap is a difference of positions."""
 
     most_steps, phases = 20_000, 8
-    staggered = ("yade",)  # their velocity belongs to half a step before the position
 
     def __init__(self, engine: Engine, folder: Path):
         self.engine, self.folder, self.name = engine, folder, engine.name
 
     def __call__(self, x: Experiment, time_step: float, gap: np.ndarray, steps: int) -> Sample:
         speed = np.full(gap.size, x.speed[0])
-        if self.name in self.staggered:  # where a force acts at t = 0 it has acted in that half step too
+        if self.engine.can.staggered:  # where a force acts at t = 0 it has acted in that half step too
             force, _, _ = x.native_law().step(R_star=x.R_star, delta_max=0.0, delta=-gap)
             speed = speed + 0.5 * time_step * force / x.m_star
         plan = Plan(x, time_step, steps, gap.size, speed, gap)

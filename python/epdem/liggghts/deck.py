@@ -1,0 +1,29 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""What the template of an impact deck reads."""
+
+from dataclasses import dataclass
+
+from .properties import Property
+
+
+@dataclass(frozen=True)
+class Deck:
+    """Everything the template writes; every number was decided here."""
+
+    title: str
+    source: str
+    summary: str
+    remembers: bool  # the law has a contact history
+    hard: bool
+    soft: bool
+    data: str
+    skin: float
+    types: tuple[str, ...]
+    properties: tuple[Property, ...]
+    model: str
+    tangential: str
+    settings: tuple[str, ...]
+    wall_type: int | None
+    time_step: float
+    path: str
+    steps: int

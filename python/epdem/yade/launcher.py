@@ -1,0 +1,32 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""How YADE is started, and what travels with a deck of ours."""
+
+import os
+from pathlib import Path
+
+from ..files import write_texts
+
+MODULES = Path(__file__).with_name("deck_modules")
+
+
+def command() -> str:
+    """YADE's program; EPDEM_YADE names another one."""
+    return os.environ.get("EPDEM_YADE", "yade")
+
+
+def deck_modules() -> dict[str, str]:
+    """The modules that a deck with a law of ours imports, by path beside the deck."""
+    note = '"""The part of epdem that YADE needs; it came with the deck."""\n'
+    files = {"epdem/__init__.py": note, "epdem/yade/__init__.py": note}
+    return files | {f"epdem/yade/deck_modules/{p.name}": p.read_text() for p in sorted(MODULES.glob("*.py"))}
+
+
+def write_deck_modules(folder: Path) -> list[Path]:
+    """`deck_modules` in a deck's folder."""
+    return write_texts(folder, deck_modules())
+
+
+def environment() -> dict[str, str]:
+    """Ours without what would lead the system Python, which YADE embeds, to packages of another one."""
+    kept = {k: v for k, v in os.environ.items() if k not in ("PYTHONPATH", "PYTHONHOME", "PYTHONSTARTUP", "DISPLAY")}
+    return {"HOME": "/tmp", **kept, "OMP_NUM_THREADS": "1"}  # YADE does not start without a home

@@ -1,0 +1,76 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""An engine says what it can do, and refuses the rest in a sentence; nobody asks for its name."""
+
+import re
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from epdem.case.impact import parse, read_toml
+from epdem.engines import ENGINES, FOREIGN, OTHERS
+from epdem.errors import CaseError
+from epdem.impacts.engine import refuse
+from epdem.impacts.experiment import experiment
+from epdem.impacts.plan import plan
+from epdem.impacts.prediction import predict
+from epdem.laws.library import laws
+
+ROOT = Path(__file__).parents[2]
+ALL = ENGINES | OTHERS | FOREIGN
+SPHERES = {"kind": "sphere-sphere", "target": {"material": "steel", "radius": "4 mm"}}
+
+
+def planned(changes=None, law=None):
+    data = read_toml(ROOT / "cases/steel_wall.toml")
+    data["impact"] |= changes or {}
+    x = experiment(parse(data, "test"), law)
+    prediction = predict(x)
+    return plan(x, prediction), prediction
+
+
+def test_what_an_engine_names_exists():
+    for tool in (kind() for kind in ALL.values()):
+        assert set(tool.can.laws or ()) <= set(laws()), tool.name
+        assert set(tool.can.ways) <= {"swap", "sort", "migration", "restart"}
+        assert tool.can.ranks >= 1 and (tool.can.scenes or not tool.can.restarts)
+
+
+@pytest.mark.parametrize("name", ["embedded", "yade", "yade-luding", "lammps-mdr"])
+def test_an_engine_of_one_rank_refuses_two(name):
+    tool = ALL[name]()
+    assert tool.can.ranks == 1
+    with pytest.raises(CaseError, match=rf"--ranks 2: engine {name} runs on one rank"):
+        refuse(tool, *planned(), ranks=2)
+
+
+@pytest.mark.parametrize("name", ["embedded", "liggghts", "yade"])
+def test_a_law_that_an_engine_lacks_is_refused_in_a_sentence(name):
+    tool = ALL[name]()
+    p, prediction = planned()
+    refuse(tool, p, prediction)
+    tool.can = replace(tool.can, laws=("hertz",))
+    with pytest.raises(CaseError, match=rf"law\.name = 'thornton': engine {name} knows hertz only; use another --eng"):
+        refuse(tool, p, prediction)
+
+
+def test_lammps_knows_walls_alone():
+    refuse(ALL["lammps-mdr"](), *planned())
+    with pytest.raises(CaseError, match="lammps-mdr does not know impacts of two spheres"):
+        refuse(ALL["lammps-mdr"](), *planned(SPHERES))
+
+
+def test_positions_limit_only_engines_that_have_them():
+    p, prediction = planned({"speeds": ["1e-13 m/s"]})
+    refuse(ALL["embedded"](), p, prediction)
+    with pytest.raises(CaseError, match="not representable by positions"):
+        refuse(ALL["liggghts"](), p, prediction)
+
+
+def test_no_module_asks_which_engine_it_has():
+    """Engines may compare names with each other in `engines`; elsewhere an ability says what matters."""
+    asks = re.compile(
+        r"isinstance\([^)]*\b(Liggghts|Yade|Embedded|LammpsMdr)\b|(tool|engine)\.name\.startswith\(|tool\.name == "
+    )
+    for path in (ROOT / "python/epdem").rglob("*.py"):
+        assert not asks.search(path.read_text()), path

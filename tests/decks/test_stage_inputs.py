@@ -1,0 +1,110 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""A stored result is taken only while every one of its inputs is the same: each is changed in turn."""
+
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+from epdem import paths, stages
+from epdem.engines.embedded import Embedded
+from epdem.impacts.run import run
+
+CASES = Path(__file__).parents[2] / "cases"
+CASE = (CASES / "steel_wall.toml").read_text().replace("count = 32", "count = 3")
+
+
+class Recorded(Embedded):
+    """An engine that writes a deck, so that the deck can change."""
+
+    release, deck = "1.0", "run 100\n"
+
+    def version(self):
+        return self.release
+
+    def write(self, plan, folder):
+        folder.mkdir(parents=True, exist_ok=True)
+        (folder / "in.impact").write_text(self.deck)
+        return [folder / "in.impact"]
+
+
+@pytest.fixture
+def product(tmp_path, monkeypatch):
+    """Parts of the product that a test may change: two libraries, a launcher, a template, a source."""
+    names = ("libepdem.so", "libepdem_liggghts.so", "launcher", "templates/a.j2", "package/a.py")
+    for name in names:
+        (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
+        (tmp_path / name).write_text("first")
+    monkeypatch.setattr(stages, "__file__", str(tmp_path / "package/stages.py"))
+    monkeypatch.setattr(paths, "native", lambda name: tmp_path / name)
+    monkeypatch.setattr(paths, "launcher", lambda: tmp_path / "launcher")
+    monkeypatch.setattr(paths, "templates", lambda: tmp_path / "templates")
+    return tmp_path, names
+
+
+@pytest.mark.parametrize("changed", [0, 1, 2, 3, 4])
+def test_a_change_of_the_product_is_a_new_hash(product, changed):
+    folder, names = product
+    stages.product_hash.cache_clear()
+    first = stages.product_hash()
+    stages.product_hash.cache_clear()
+    assert stages.product_hash() == first
+    (folder / names[changed]).write_text("second")
+    stages.product_hash.cache_clear()
+    second = stages.product_hash()
+    stages.product_hash.cache_clear()
+    assert second != first
+
+
+def reruns(tmp_path, tool, text=CASE, **options):
+    (tmp_path / "a.toml").write_text(text)
+    return not run(tmp_path / "a.toml", engines=[tool], out=tmp_path / "out", **options).reused
+
+
+@pytest.mark.parametrize(
+    ("old", "new"),
+    [
+        ("yield_pressure_ratio = 2.8", "yield_pressure_ratio = 2.7"),
+        ('radius = "10 mm"', 'radius = "11 mm"'),
+        ("poisson_ratio = 0.3", "poisson_ratio = 0.31"),
+        ('"150 m/s"', '"149 m/s"'),
+        ("phases = 8", "phases = 9"),
+    ],
+)
+def test_a_change_of_the_case_runs_again(old, new, tmp_path, monkeypatch):
+    monkeypatch.setattr(stages, "product_hash", lambda: "product")
+    assert old in CASE
+    assert reruns(tmp_path, Recorded()) and not reruns(tmp_path, Recorded())
+    assert reruns(tmp_path, Recorded(), CASE.replace(old, new))
+
+
+@pytest.mark.parametrize("change", ["product", "release", "deck", "steps"])
+def test_a_change_of_product_engine_deck_or_steps_runs_again(change, tmp_path, monkeypatch):
+    monkeypatch.setattr(stages, "product_hash", lambda: "product")
+    tool, options = Recorded(), {}
+    assert reruns(tmp_path, tool) and not reruns(tmp_path, tool)
+    if change == "product":
+        monkeypatch.setattr(stages, "product_hash", lambda: "another")
+    elif change == "steps":
+        options["steps"] = 401
+    else:
+        setattr(tool, change, "another\n")
+    assert reruns(tmp_path, tool, **options)
+
+
+def test_a_prediction_needs_no_compiled_library():
+    code = """
+import sys
+from pathlib import Path
+from epdem import paths
+paths.native = lambda name: None
+from epdem.case.impact import load
+from epdem.impacts.experiment import experiment
+from epdem.impacts.prediction import predict
+print(predict(experiment(load(Path(sys.argv[1])))).e_n.min())
+"""
+    done = subprocess.run(
+        [sys.executable, "-c", code, str(CASES / "steel_wall.toml")], capture_output=True, text=True, check=True
+    )
+    assert float(done.stdout) == pytest.approx(0.292715, abs=1e-5)  # at 150 m/s, as the README's figure shows it
