@@ -12,8 +12,7 @@ from ..case.law import law_numbers
 from ..errors import CaseError
 from ..impacts.experiment import Experiment, bodies, pair_of
 from ..impacts.prediction import predict
-from ..laws.register import declaration
-from ..laws.strengths import LawNumbers
+from ..laws.strengths import LawNumbers, law_named
 
 KGF_PER_MM2 = 9.80665e6  # Pa
 TABOR = 2.8  # mean pressure of full plasticity over the yield stress in simple compression (Tabor 1951)
@@ -76,14 +75,15 @@ class _Unknown:
         x = self.experiment(strength, speed or 1.0)
         theory = x.theory()
         e_n = float(predict(x).e_n[0]) if speed else None
-        stress = strength if self.parameter == "yield_stress" else strength / self.law.declaration.default_ratio
+        stress = strength if self.parameter == "yield_stress" else strength / law_named(self.law.name).default_ratio
         yield_speed = math.sqrt(2.0 * float(theory.work(theory.yield_overlap)) / x.m_star)
         return Calibration(self.law.name, self.parameter, strength, stress, yield_speed, e_n, speed, source)
 
 
 def _unknown(path: Path) -> _Unknown:
     case = load(path)
-    parameter = declaration(case.law.name).strength
+    with named(path):
+        parameter = law_named(case.law.name).strength
     if parameter is None:
         raise CaseError(f"{path}: law {case.law.name} never yields; it has nothing to calibrate")
     given = {k: v for k, v in case.law.parameters().items() if k not in (parameter, f"{parameter}_ratio")}

@@ -9,9 +9,9 @@ from typing import Any
 import numpy as np
 
 from ...impacts.experiment import RIGID_PLANE, Body, Experiment, pair_of
-from ...laws.register import declaration
 from ...laws.strengths import default_numbers
 from ...theory import pair
+from ...theory.backbones import LAWS
 from ...theory.printed import yield_speed
 
 MODULUS, RATIO, RADIUS, DENSITY, POISSON = 2e11, 100.0, 0.01, 7800.0, 0.3  # base: E [Pa], E*/p_y, R [m], rho [kg/m^3]
@@ -59,7 +59,7 @@ def build(
     plane_strain = 1 / (1 - nu**2)
     E_star = E * plane_strain if rigid else E * plane_strain / 2
     p_y = E_star / ratio
-    yield_stress = p_y / declaration("thornton").default_ratio
+    yield_stress = p_y / LAWS["thornton"].default_ratio
     solid = (E, nu, yield_stress)
     body = Body(R, float(pair.sphere_mass(radius=R, density=DENSITY)), DENSITY, *solid, "solid")
     target = RIGID_PLANE if rigid else Body(np.inf, np.inf, DENSITY, *solid, "solid")

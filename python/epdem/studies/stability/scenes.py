@@ -5,10 +5,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ...laws.register import declaration
 from ...laws.strengths import default_numbers
 from ...theory import pair
-from ...theory.backbones import Backbone
+from ...theory.backbones import LAWS, Backbone
 from ...theory.timestep import stability_limit
 
 DENSITY, POISSON = 7800.0, 0.3
@@ -44,12 +43,12 @@ class Scene:
         E_star = float(pair.E_star(Ei, POISSON, Ej, POISSON))
         spec = default_numbers(self.law).pair(self.strength(pi), self.strength(pj))
         R_star = self.radius if plate else self.radius / 2
-        return spec.declaration.backbone(E_star=E_star, R_star=R_star, parameters=spec.parameters)
+        return spec.backbone(E_star=E_star, R_star=R_star)
 
     def strength(self, p_y: float) -> float:
         """The law's strength [Pa] of a material of yield pressure p_y [Pa]: that pressure, or a yield stress."""
-        pressure_over_stress = declaration("thornton").default_ratio
-        return p_y / pressure_over_stress if declaration(self.law).strength == "yield_stress" else p_y
+        pressure_over_stress = LAWS["thornton"].default_ratio
+        return p_y / pressure_over_stress if LAWS[self.law].strength == "yield_stress" else p_y
 
     def time_step(self) -> float:
         """SHARE of the smallest stability limit of all pairs at the highest speed [s]."""

@@ -10,7 +10,7 @@ import pandas as pd
 
 from ...engines import engine
 from ...errors import CaseError, EngineError
-from ...laws.register import declarations
+from ...theory.backbones import LAWS
 from . import bulk_checks, precisions
 from .cases import Extreme, extremes
 from .repeats import judge_repeats
@@ -68,12 +68,12 @@ def run(
     scenes run. Raises CaseError for a law or group that does not exist, EngineError for an engine that is not here.
     """
     for option, given, known in (
-        ("--law", laws, declarations()),
+        ("--law", laws, LAWS),
         ("--group", groups or [], dict.fromkeys(e.group for e in extremes())),
     ):
         if wrong := [name for name in given if name not in known]:
             raise CaseError(f"{option} {wrong[0]!r} does not exist; there are {', '.join(known)}")
-    laws = laws or list(declarations())
+    laws = laws or list(LAWS)
     chosen = [e for e in extremes() if not groups or e.group in groups][::every]
     if steps is not None and not any(e.kind == "bounces" for e in chosen):
         raise CaseError(
