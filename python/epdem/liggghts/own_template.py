@@ -11,7 +11,7 @@ from ..files import write_texts
 from ..impacts.experiment import experiment
 from ..impacts.plan import plan
 from ..impacts.prediction import predict
-from ..scenes import kinds
+from ..scenes.plan import plan as scene_plan
 from . import sandbox, stl
 from .impacts import Liggghts, data_text
 from .scene_deck import deck as scene_deck
@@ -57,9 +57,9 @@ def write(template: Path, case_path: Path, sets: dict[str, int | float | str], o
     values: dict[str, object] = {}
     beside: dict[str, str] = {}
     if scenes.is_scene(read_toml(case_path)):
-        scene = scenes.load(case_path)
-        values |= {"deck": scene_deck(scene), "case": scene}
-        beside |= {f"{n}.stl": stl.text(n, surface) for n, surface in kinds.layout(scene).meshes.items()}
+        scene = scene_plan(scenes.load(case_path))
+        values |= {"deck": scene_deck(scene), "case": scene.case}
+        beside |= {f"{n}.stl": stl.text(n, surface) for n, surface in scene.layout.meshes.items()}
     else:
         case = load_impact(case_path)
         x = experiment(case)
