@@ -4,12 +4,13 @@
 from pathlib import Path
 
 import pytest
+from removals import fingerprint
 from scene_runs import write_deck
 
 from epdem.case.impact import read_toml
 from epdem.case.scene import parse
 from epdem.errors import CaseError
-from epdem.liggghts import explain, lean
+from epdem.liggghts import explain
 from epdem.liggghts.scene_deck import deck
 from epdem.scenes.plan import plan
 
@@ -43,9 +44,9 @@ def bed() -> dict:
 @pytest.mark.parametrize("data", [poured(), bed()], ids=["poured", "bed"])
 def test_a_deck_with_rare_options_runs_and_repeats_itself(data, tmp_path):
     write_deck(parse(data), tmp_path / "deck")
-    lines = explain.explain({n: (tmp_path / "deck" / n).read_text() for n in ("in.scene", "setup.in")})
-    assert [line for _, line, reason in lines if reason is None] == []
-    found = lean.fingerprint(tmp_path / "deck", "in.scene")
+    lines = explain.explain(explain.SCENE, deck(plan(parse(data))))
+    assert [line for _, line, reason in lines if not reason] == []
+    found = fingerprint(tmp_path / "deck", "in.scene")
     assert found is not None
     written = {p.suffix for p in (tmp_path / "deck").iterdir()}
     if "vtk" in data["output"]:

@@ -11,7 +11,7 @@ from epdem.case.impact import read_toml
 from epdem.case.scene import parse
 from epdem.errors import CaseError
 from epdem.liggghts import explain
-from epdem.liggghts.scene_deck import files
+from epdem.liggghts.scene_deck import deck, files
 from epdem.scenes.plan import plan
 from epdem.scenes.timestep import time_step
 
@@ -35,7 +35,8 @@ def test_a_scene_has_the_dashpot_in_pair_and_walls_only_if_it_asks():
         assert text.count("viscous on") == expected
         assert ("coefficientRestitution peratomtypepair 1 0.7 " in text) is (expected > 0)
         assert "tangential_damping" not in text, "there is no friction, so nothing to switch off"
-        assert [line for _, line, why in explain.explain({"setup.in": text}) if why is None] == []
+        lines = explain.explain(explain.SCENE, deck(plan(parse(data, "case.toml"))))
+        assert [line for _, line, why in lines if not why] == []
 
 
 def test_a_dashpot_along_the_normal_does_not_bring_one_along_the_tangent():

@@ -72,9 +72,7 @@ def deck_scene(case: Path, out: Path, *, engine: str = "liggghts", as_json: bool
 
 def explain(case: CasePath, as_json: AsJson = False) -> None:
     """Why each line of a case's LIGGGHTS deck is in it."""
-    from ..liggghts.explain import explain as explain_lines
-
-    lines = explain_lines(_texts(case))
+    lines = _explained(case)
     if as_json:
         print(json.dumps([{"file": f, "line": text, "reason": reason} for f, text, reason in lines], indent=1))
         return
@@ -86,23 +84,23 @@ def explain(case: CasePath, as_json: AsJson = False) -> None:
         print(f"  {text.split('  # ')[0].rstrip()}\n      {reason}")
 
 
-def _texts(case: Path) -> dict[str, str]:
-    if is_scene(case):
-        from ..engines import scene_engine
-        from ..scenes.plan import plan as scene_plan
-
-        files = scene_engine("liggghts").files(scene_plan(scene_case.load(case)))
-        return {name: files[name] for name in ("in.scene", "setup.in")}
-    from .. import rendering as decks
+def _explained(case: Path) -> list[tuple[str, str, str]]:
     from ..case.impact import load, named
-    from ..impacts.experiment import experiment
-    from ..impacts.plan import plan
-    from ..impacts.prediction import predict
-    from ..liggghts.impacts import Liggghts
+    from ..liggghts import explain
 
     with named(case):
-        tool, x = Liggghts(), experiment(load(case))
-        return {"in.impact": decks.render(tool.template, deck=tool.deck(plan(x, predict(x))))}
+        if is_scene(case):
+            from ..liggghts.scene_deck import deck
+            from ..scenes.plan import plan as scene_plan
+
+            return explain.explain(explain.SCENE, deck(scene_plan(scene_case.load(case))))
+        from ..impacts.experiment import experiment
+        from ..impacts.plan import plan
+        from ..impacts.prediction import predict
+        from ..liggghts.impacts import Liggghts
+
+        x = experiment(load(case))
+        return explain.explain(explain.IMPACT, Liggghts().deck(plan(x, predict(x))))
 
 
 def soften(
