@@ -44,7 +44,7 @@ def examine(tool: Engine, x: Experiment, folder: Path) -> Invariance | None:
     mass = np.array([pair.body.mass, pair.target.mass])[:, None, None]
 
     def restitution(v: np.ndarray) -> np.ndarray:
-        return (v[0] - v[1]) @ AXIS / p.speed
+        return np.asarray((v[0] - v[1]) @ AXIS / p.speed)
 
     plain = tool.tell(scene, "plain", folder / "plain")
     change = np.abs(pair.m_star * p.speed).max()

@@ -70,7 +70,7 @@ def _change(document: tomlkit.TOMLDocument, keys: tuple[str, ...], after: str) -
     return Change(".".join(keys), before, after)
 
 
-def strain_ratio(data: dict[str, Any], path: object) -> float:
+def strain_ratio(data: dict[str, Any], path: Path) -> float:
     """Largest a_max/R* that theory expects of a case or scene."""
     from ..case import impact as impacts
     from ..case import scene as scenes
