@@ -28,7 +28,7 @@ SHOWN = ("e_n", "contact_time", "force_max")
 
 @dataclass(frozen=True)
 class Crosscheck:
-    """The table of a case (one row per model), the run behind it, why models are absent, and notes on those with own laws."""
+    """The table, one row per model; the run behind it; why models are absent; notes on those with own laws."""
 
     table: pd.DataFrame
     outcome: Outcome
@@ -83,7 +83,7 @@ def crosscheck(
     with named(path):
         x = experiment(case, law)
     tools, absent = models(x)
-    own = {name: tool for name, tool in tools.items() if hasattr(tool, "predict")}
+    own = {name: kind() for name, kind in FOREIGN.items() if name in tools}
     folder = out or Path("runs") / "crosscheck" / case.name
     steps = case.numerics.steps_in_contact
     few = max(10, steps // COARSER)

@@ -55,7 +55,9 @@ def unloading_pressure(folder: Path) -> Path:
     a_max = 2.68e-6
     for share in (1.0, 0.95, 0.8, 0.6, 0.4, 0.2):
         r = np.linspace(-1, 1, 801) * share * a_max
-        axes.plot(r * 1e6, pressure.unloading(r, a=share * a_max, a_max=a_max, p=FULLY_PLASTIC[0]), label=f"a = {share:g} a*")
+        axes.plot(
+            r * 1e6, pressure.unloading(r, a=share * a_max, a_max=a_max, p=FULLY_PLASTIC[0]), label=f"a = {share:g} a*"
+        )
     axes.legend()
     return _save(figure, folder / "figure_8_17.png")
 
@@ -72,9 +74,17 @@ def restitution(folder: Path) -> Path:
     for name, law in LAWS.items():
         strength = {k: law.default_ratio * s["Y"] for k in list(law.keywords.values())[:1]}
         axes.loglog(ratio, e_n(law(E_star=E, R_star=s["R"], **strength), m_star=m, speed=ratio * v_y0), label=name)
-    thornton = printed.thornton(ratio, v_y=printed.yield_speed(p_y=LAWS["thornton"].default_ratio * s["Y"], **both) / v_y0)
+    thornton = printed.thornton(
+        ratio, v_y=printed.yield_speed(p_y=LAWS["thornton"].default_ratio * s["Y"], **both) / v_y0
+    )
     axes.loglog(ratio, thornton, "k:", lw=1.5, label="8.83")
-    axes.loglog(ratio, printed.johnson(ratio * v_y0, p_m=LAWS["johnson"].default_ratio * s["Y"], **both), "k--", lw=1, label="8.86")
+    axes.loglog(
+        ratio,
+        printed.johnson(ratio * v_y0, p_m=LAWS["johnson"].default_ratio * s["Y"], **both),
+        "k--",
+        lw=1,
+        label="8.86",
+    )
     axes.loglog(ratio, printed.wu(ratio, v_y0=1.0), "k-.", lw=1, label="8.88 (finite elements)")
     axes.legend()
     return _save(figure, folder / "figure_8_19.png")

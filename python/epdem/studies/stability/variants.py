@@ -32,10 +32,10 @@ def edit(deck: Path, start: str, *after: str, instead: bool = False) -> str:
     if len(places) != 1:
         raise EngineError(f"{deck}: {len(places)} lines start with {start!r}, expected 1")
     at = places[0]
-    found = lines[at]
-    lines[at : at + 1] = after if instead else [found, *after]
+    line = lines[at]
+    lines[at : at + 1] = after if instead else [line, *after]
     deck.write_text("\n".join(lines) + "\n")
-    return found
+    return line
 
 
 def between_walls(s: Setting, sampler: PositionSampler, overlap: float, time_step: float, steps: int) -> Trajectory:
