@@ -5,7 +5,7 @@ import json
 import signal
 import sys
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
 
@@ -23,7 +23,7 @@ Begin with: epdem run cases/steel_wall.toml -e embedded -e liggghts
 
 Exit codes: 0 all within tolerance, 1 a check failed, 2 bad input, 3 an engine failed, 130 stopped.
 """
-UsageError = typer.BadParameter.__base__  # typer gives its own name to its children only
+UsageError: Any = typer.BadParameter.__base__  # typer gives its own name to its children only
 app = typer.Typer(
     add_completion=False,
     no_args_is_help=True,
@@ -170,16 +170,16 @@ for command in (
 app.command("stress", hidden=True, deprecated=True)(cli_numerics.stability)  # its name in version 0.1
 
 
-def _usage(error: UsageError) -> int:
+def _usage(error: Any) -> int:
     """Say in one sentence what is wrong with a command line; without any word on it, print the help."""
     if not (text := error.format_message()):
         error.show()
-        return error.exit_code
+        return 2
     name = error.ctx.command_path if error.ctx else "epdem"
     dash = next((word for word in sys.argv[1:] if word.startswith("-") and Path(word).exists()), None)
     advice = f"write the file as ./{dash}" if dash else f"see {name} --help"
     print(f"epdem: {text.rstrip('.').replace('Input should be', 'must be')}; {advice}", file=sys.stderr)
-    return error.exit_code
+    return 2
 
 
 def _stop(number: int, frame: object) -> None:
