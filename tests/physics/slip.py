@@ -13,15 +13,16 @@ from pathlib import Path
 import numpy as np
 
 from epdem.theory import partial_slip, restitution
-from epdem.theory.backbones import Cavity, Hertz, Thornton
+from epdem.theory.backbones import Cavity, Hertz, Johnson, Thornton
 
 ROOT = Path(__file__).parents[2]
 FLAGS = ["-std=c++17", "-O2", "-Wall", "-Wextra", "-Werror", "-shared", "-fPIC"]
 E_STAR, G_STAR, R, M, MU = 1.1428571428571429e11, 2.3529411764705883e10, 0.01, 0.032882003107573169, 0.3  # nu = 0.3
 KAPPA = 4 * G_STAR / E_STAR
 V_Y0, V_Y = 0.138086424357753, 0.559430455498519  # first yield of cavity at Y = 1 GPa, of thornton at 2.8 GPa
-LAWS = {"hertz": Hertz(E_star=E_STAR, R_star=R), "thornton": Thornton(E_star=E_STAR, R_star=R, p_y=2.8e9),
-        "cavity": Cavity(E_star=E_STAR, R_star=R, Y=1e9)}  # fmt: skip
+PAIR = {"E_star": E_STAR, "R_star": R}
+LAWS = {"hertz": Hertz(**PAIR), "thornton": Thornton(**PAIR, p_y=2.8e9), "johnson": Johnson(**PAIR, p_m=3e9),
+        "cavity": Cavity(**PAIR, Y=1e9)}  # fmt: skip
 IMPACTS = [("hertz", 1.0), ("thornton", 5 * V_Y), ("thornton", 50 * V_Y), ("cavity", 5 * V_Y0), ("cavity", 50 * V_Y0),
            ("cavity", 500 * V_Y0)]  # fmt: skip
 
