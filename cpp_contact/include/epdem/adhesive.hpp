@@ -26,14 +26,13 @@ inline T max(T a, T b) noexcept {
 }
 
 /// Force F [N], contact radius a [m] (0 while apart), and what the contact remembers if this step counts.
-template <class T, class Memory>
+template <class Law>
 struct Step {
-  T force;
-  T radius;
-  Memory after;
+  typename Law::number force, radius;
+  typename Law::State after;
 };
 
-inline constexpr real fold_share = 0.62996052494743658;  // y_f in (c R)^(1/3): 4^(-1/3)
+inline constexpr double fold_share = 0.62996052494743658;  // y_f in (c R)^(1/3): 4^(-1/3)
 
 /// (c R)^(1/3), the root of a contact; `known` is it already unless R has changed, or 0.
 template <class T>
@@ -66,23 +65,23 @@ inline T force(T E_star, T c, T R, T y) noexcept {
   return 2.0 * E_star * cube * (2.0 / 3.0 * cube / R - c);
 }
 
-/// A force that jumps within a step leaves velocity Verlet of first order: the step of touch sees the jump [N] for a whole
-/// step, but it has lasted for the share beyond/closing, to which its half as the start of a trapezoid comes. What is
-/// to be added; `beyond` is the overlap since touch, `closing` the closing speed at the half step times the step [m].
-/// Nothing for a contact that is there without a crossing.
+/// What the force of the step of touch lacks [N]. A force that jumps within a step leaves velocity Verlet of first
+/// order: the sum over the steps takes the jump for a whole step, but it has lasted for the share beyond/closing, and
+/// half a step belongs to the trapezoid that starts here. `beyond` is the overlap since touch, `closing` the closing
+/// speed at the half step times the step [m]. Nothing for a contact that is there without a crossing.
 template <class T>
 inline T on_touch(T jump, T beyond, T closing) noexcept {
   return select(beyond < 2.0 * closing, jump * (min(beyond / closing, T{} + 1.0) - 0.5), T{});
 }
 
-/// The same in the step after the last one attached, in which the overlap is `beyond` the fold [m]: the force it takes.
-/// Near the fold F = F_f - bend sqrt(alpha - alpha_f). A sum of roots over steps of h differs from their integral by
-/// h^(3/2) zeta(-1/2, share) (Hurwitz), share h being the distance of the last step from the fold; that is sqrt(share) and
-/// a smooth rest, here to 2e-4.
+/// The force of the step after the last one attached [N], in which the overlap is `beyond` the fold [m]: what the sum
+/// over the steps lacks. Near the fold F = F_f - bend sqrt(alpha - alpha_f). A sum of roots over steps of h differs
+/// from their integral by h^(3/2) zeta(-1/2, share) (Hurwitz), share h being the distance of the last step from the
+/// fold; zeta is sqrt(share) and a smooth rest, here to 2e-4.
 template <class T>
 inline T on_parting(T E_star, T pull, T R, T y_f, T beyond, T closing) noexcept {
   using std::sqrt;
-  const T h = max(-closing, T{} + std::numeric_limits<real>::min()), share = max(1.0 - beyond / h, T{});
+  const T h = max(-closing, T{} + std::numeric_limits<double>::min()), share = max(1.0 - beyond / h, T{});
   const T rest = -0.20768371 + share * (-0.73462635 + share * (-0.30379973 + share * 0.03838347));
   const T bend = 16.0 / sqrt(6.0) * E_star * y_f * y_f * y_f * y_f;
   const T F = -5.0 / 6.0 * pull * R * (share - 0.5) + bend * sqrt(h / R) * (sqrt(share) + rest);

@@ -5,20 +5,22 @@
 
 namespace epdem {
 
-/// Elastic, perfectly plastic adhesive contact: a JKR contact whose pressure is cut at p_y (Thornton and Ning 1998, Powder
-/// Technol. 99, 154). With A = 2 E* a/(pi R*), B = sqrt(2 Gamma E*/(pi a)) it yields where A - B = p_y; then
-/// F = pi a^2 (p_y (1 - u^2) + 2 A u^3/3 - 2 B u), u = (p_y + sqrt(p_y^2 + 4 A B))/(2 A), at the same overlap a^2/R* - d.
+/// Elastic, perfectly plastic adhesive contact: a JKR contact whose pressure is cut at p_y (Thornton and Ning 1998,
+/// Powder Technol. 99, 154). With A = 2 E* a/(pi R*), B = sqrt(2 Gamma E*/(pi a)) it yields where A - B = p_y; then
+/// F = pi a^2 (p_y (1 - u^2) + 2 A u^3/3 - 2 B u), u = (p_y + sqrt(p_y^2 + 4 A B))/(2 A), at the overlap a^2/R* - d.
 /// It opens from a_m as a JKR contact of radius R_p = 4 E* a_m^3/(3 (F + P_t)) > R*. Gamma = 0 is `thornton`.
-template <class T = real>
+template <class T = double>
 struct ThorntonNing {
+  using number = T;
   static constexpr const char* name = "thornton_ning";
+  static constexpr int id = 45;  // of a LIGGGHTS model: restart files keep it, it never changes
   static constexpr Parameter parameters[] = {
-      {"work_of_adhesion", "workOfAdhesion", "J/m^2", std::numeric_limits<real>::quiet_NaN()},
-      {"yield_pressure", "yieldPressure", "Pa", std::numeric_limits<real>::quiet_NaN()}};
+      {"work_of_adhesion", "workOfAdhesion", "J/m^2", std::numeric_limits<double>::quiet_NaN()},
+      {"yield_pressure", "yieldPressure", "Pa", std::numeric_limits<double>::quiet_NaN()}};
   static constexpr int n_parameters = 2;
 
   /// What an opening contact needs. A contact that broke inside its dent keeps all but the root.
-  struct Memory {
+  struct State {
     T root{};       // (c R_p)^(1/3) while the bodies are attached [m^(1/2)], else 0
     T delta_max{};  // largest overlap [m]
     T y_max{};      // sqrt(a) there
@@ -51,8 +53,8 @@ struct ThorntonNing {
   }
 };
 
-/// y = sqrt(a) of a growing contact at `delta` > 0: the largest root of y^4 - c R* y = R* delta, which is not smaller than
-/// `y_max` >= (c R*)^(1/3) and lies between max(y_max, (R* delta)^(1/4)) and 1.23 times that. Newton's method.
+/// y = sqrt(a) of a growing contact at `delta` > 0: the largest root of y^4 - c R* y = R* delta, which is not smaller
+/// than `y_max` >= (c R*)^(1/3) and lies between max(y_max, (R* delta)^(1/4)) and 1.23 times that. Newton's method.
 template <class T>
 inline T grown(const ThorntonNing<T>& law, T R_star, T y_max, T delta) noexcept {
   using std::sqrt;
@@ -65,12 +67,12 @@ inline T grown(const ThorntonNing<T>& law, T R_star, T y_max, T delta) noexcept 
   return y;
 }
 
-/// As the step of `Jkr`. A contact that broke inside its dent forms again where its opening curve passes 0; one that is apart
-/// at delta <= 0 forgets.
+/// As the step of `Jkr`. A contact that broke inside its dent forms again where its opening curve passes 0; one that is
+/// apart at delta <= 0 forgets.
 template <class T>
-inline adhesive::Step<T, typename ThorntonNing<T>::Memory> step(const ThorntonNing<T>& law, T R_star,
-                                                                const typename ThorntonNing<T>::Memory& before, T delta,
-                                                                T closing) noexcept {
+inline adhesive::Step<ThorntonNing<T>> step(const ThorntonNing<T>& law, T R_star,
+                                            const typename ThorntonNing<T>::State& before, T delta,
+                                            T closing) noexcept {
   using namespace adhesive;
   const T zero{}, y_m = before.y_max, y_m3 = y_m * y_m * y_m;
   const auto stood = before.root > 0.0, known = y_m > 0.0;
