@@ -59,7 +59,7 @@ def run(
             raise CaseError(f"{case}: --resume continues a run and --fresh begins it again; leave one out")
         chosen = engine[0] if engine else "liggghts"
         code = cli_scene.run_scene(
-            case, engine=chosen, out=out, ranks=ranks, fresh=fresh, resume=resume, as_json=as_json
+            case, engine=chosen, out=out, ranks=ranks, fresh=fresh, resume=resume, force=force, as_json=as_json
         )
         raise typer.Exit(code)
     refuse(case, "it continues bulk scenes; a run of impacts takes finished stages from its store", resume=resume)

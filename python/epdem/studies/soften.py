@@ -76,7 +76,8 @@ def strain_ratio(data: dict[str, Any], path: Path) -> float:
     from ..case import scene as scenes
     from ..impacts.experiment import experiment
     from ..impacts.prediction import predict
-    from ..scenes import model
+    from ..scenes.pairs import wall_impact
+    from ..scenes.timestep import highest_speed
 
     if not scenes.is_scene(data):
         return float(predict(experiment(impacts.parse(data, path))).strain_ratio.max())
@@ -84,7 +85,7 @@ def strain_ratio(data: dict[str, Any], path: Path) -> float:
     with impacts.named(path):
         law_named(case.law.name)
     material, radius = case.scene.particles[0].material, case.scene.particles[0].radii()[0]
-    x = model.wall_impact(case, material, radius, case.scene.walls, model.highest_speed(case))
+    x = wall_impact(case, material, radius, case.scene.walls, highest_speed(case))
     return float(predict(x).strain_ratio.max())
 
 

@@ -42,7 +42,7 @@ def velocities(deck: Deck, pairs: Pairs, variant: str, folder: Path) -> np.ndarr
         (folder / f"pairs{k}.py").write_text(decks.render("yade/pairs.py.j2", **part))
         call([command(), "-n", "-x", f"pairs{k}.py"], folder, log=f"out{k}.yade", seconds=120, env=environment())
     try:
-        v = np.load(folder / deck.path).reshape(2, p.n, 3)
+        v = np.asarray(np.load(folder / deck.path)).reshape(2, p.n, 3)
     except OSError as error:
         raise EngineError(f"{folder / deck.path}: the run left no result ({error}); see out{k}.yade beside") from None
     return np.flip(v, axis=0) if variant == "swap" else np.asarray(v)
