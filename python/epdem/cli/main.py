@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """The command `epdem`: functions of a few lines that call the library."""
 
+import io
 import json
 import signal
 import sys
@@ -190,12 +191,16 @@ def main() -> None:
     """Entry point: errors that a user can mend become one sentence and an exit code."""
     for name in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):  # whatever stops us, no engine stays behind
         signal.signal(name, _stop)
+    if isinstance(sys.stdout, io.TextIOWrapper):
+        sys.stdout.reconfigure(errors="backslashreplace")  # a title may hold what the terminal's encoding does not
     try:
         sys.exit(app(prog_name="epdem", standalone_mode=False))
     except UsageError as error:
         sys.exit(_usage(error))
     except EpdemError as error:
-        print(f"epdem: {error}", file=sys.stderr)
+        from ..case.messages import cut_quotes
+
+        print(f"epdem: {cut_quotes(str(error))}", file=sys.stderr)
         sys.exit(error.exit_code)
     except Stopped:
         print("epdem: stopped; what was finished is stored", file=sys.stderr)
