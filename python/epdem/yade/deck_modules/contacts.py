@@ -226,19 +226,16 @@ class Contacts:
 
     def _sort(self) -> None:
         """The contacts by the way they are looked at: by YADE's flag, or (flattened ones) by their overlap."""
-        self._watched: list[Contact] = []
-        self._phys: list[Any] = []
-        self._flat: list[Contact] = []
-        self._geoms: list[Any] = []
+        self._watched, self._flat = list[Contact](), list[Contact]()
+        self._phys, self._geoms = list[Any](), list[Any]()
         self._list()
         bounds = [b for c in self._contacts if (b := self._enter(c))]
         self._low, self._high = np.array(bounds).reshape(-1, 2).T.copy()
 
     def _law(self, E_star: float, strength: float) -> Law:
-        found = self._laws.get((E_star, strength))
-        if found is None:
-            found = self._laws[E_star, strength] = self.kind(E_star, strength, **self.ratios)
-        return found
+        if (E_star, strength) not in self._laws:
+            self._laws[E_star, strength] = self.kind(E_star, strength, **self.ratios)
+        return self._laws[E_star, strength]
 
     def _enter(self, contact: Contact) -> tuple[float, float] | None:
         """Put a contact where it is looked at; of a flattened one the bounds of its branch."""
