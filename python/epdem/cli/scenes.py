@@ -188,6 +188,5 @@ def deck_template(template: Path, case: Path, sets: list[str], out: Path, *, as_
     """Write a deck from a template of the user's own and the values of a case."""
     from ..liggghts.own_template import settings, write
 
-    values: dict[str, object] = {**settings(sets)}
-    names = [str(f) for f in write(template, case, values, out)]
+    names = [str(f) for f in write(template, case, settings(sets), out)]
     print(json.dumps({"files": names}) if as_json else "\n".join(names))
