@@ -3,6 +3,7 @@
 
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -33,7 +34,14 @@ def velocities(deck: Deck, pairs: Pairs, variant: str, folder: Path) -> np.ndarr
     folder.mkdir(parents=True, exist_ok=True)
     (folder / deck.data).write_text(_data(pairs, deck, variant == "swap"))
     ranks = 2 if variant == "migration" else 1
-    words = {"deck": deck, "variant": variant, "ranks": ranks, "restart": None, "stop": None, "steps": p.steps}
+    words: dict[str, Any] = {
+        "deck": deck,
+        "variant": variant,
+        "ranks": ranks,
+        "restart": None,
+        "stop": None,
+        "steps": p.steps,
+    }
     words["sort"] = 0.499 * _box(pairs)[2][1] if variant == "sort" else None
     parts = [words]
     if variant == "restart":

@@ -2,6 +2,7 @@
 """Pairs of spheres for YADE in one of the variants that must not matter."""
 
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -23,7 +24,7 @@ def velocities(deck: Deck, pairs: Pairs, variant: str, folder: Path) -> np.ndarr
     for name, side in sides:
         lines = [" ".join(map(decks.number, row)) for row in np.hstack([side.place, side.velocity])]
         (folder / name).write_text("\n".join(["# x y z v_x v_y v_z, SI", *lines, ""]))
-    words = {
+    words: dict[str, Any] = {
         "deck": deck,
         "variant": variant,
         "sides": [(n, s.body.radius, s.body.material) for n, s in sides],
