@@ -169,18 +169,18 @@ def calibrate(
     if e_n is not None:
         if speed is None:
             raise CaseError("--e-n belongs to one impact; add its speed, as --speed '2 m/s'")
-        found = c.from_restitution(case, e_n, quantity("--speed", speed, "m/s"))
+        result = c.from_restitution(case, e_n, quantity("--speed", speed, "m/s"))
     else:
         refuse(case, "it belongs to --e-n", speed=speed)
         pressure = c.pressure_of_hardness(vickers=hv, brinell=hb, dent_ratio=dent_ratio or c.BRINELL_DENT)
-        found = c.from_hardness(case, pressure, f"HV {hv:g}" if hv is not None else f"HB {hb:g}")
+        result = c.from_hardness(case, pressure, f"HV {hv:g}" if hv is not None else f"HB {hb:g}")
     if as_json:
-        print(json.dumps(vars(found), indent=1))
+        print(json.dumps(vars(result), indent=1))
         return
     print(
-        f"law {found.law}, {found.source}: {found.parameter} = {found.value / 1e6:.6g} MPa, "
-        f"that is yield_stress = {found.yield_stress / 1e6:.6g} MPa, yield speed {found.yield_speed:.4g} m/s\n"
-        f'in the case file, under [law]: {found.parameter} = "{found.value / 1e6:.6g} MPa"'
+        f"law {result.law}, {result.source}: {result.parameter} = {result.value / 1e6:.6g} MPa, "
+        f"that is yield_stress = {result.yield_stress / 1e6:.6g} MPa, yield speed {result.yield_speed:.4g} m/s\n"
+        f'in the case file, under [law]: {result.parameter} = "{result.value / 1e6:.6g} MPa"'
     )
 
 

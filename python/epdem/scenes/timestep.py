@@ -7,13 +7,26 @@ import numpy as np
 
 from ..case.scene import Compaction, Drum, Hopper, Kinds, Peening, SceneCase, Settle
 from ..errors import CaseError
+from ..impacts.experiment import Experiment
 from ..impacts.prediction import predict
 from ..impacts.timestep import search, stability_limit
+from ..theory.timestep import DENSE_PACKING, sticking_packing
+from .model import model
 from .pairs import sphere_impact
 
-# A sphere in a bed has many contacts: velocity Verlet is stable below half of the step of one contact alone
-# (dense packing, central springs); the rest is a margin for tangential springs.
-BED_SHARE = 0.4
+MARGIN = 0.8  # of the stable step of a bed: contacts there are a little stiffer than in the impact that stands for them
+
+
+def bed_share(x: Experiment, *, sticking: bool) -> float:
+    """Share of the stable step of the contact `x` alone that a step in a bed of such contacts may have.
+
+    Velocity Verlet is stable up to a half of it in a dense packing of central springs; where contacts stick, up to
+    `sticking_packing` (0.246 at nu = 0.3).
+    """
+    stable = DENSE_PACKING
+    if sticking:
+        stable = min(stable, float(sticking_packing(4.0 * x.G_star / x.E_star)))
+    return MARGIN * stable
 
 
 def _fall_and_drive(s: Kinds) -> tuple[float, float]:
@@ -52,7 +65,7 @@ def time_step(case: SceneCase) -> float:
     """The step [s] of a scene: the target error of e_n at its speeds, below the stable step of a bed."""
     if case.numerics.time_step is not None:
         return case.numerics.time_step
-    v = highest_speed(case)
+    v, sticking = highest_speed(case), model(case).sliding
     best = math.inf
     parts = [*case.scene.particles, *getattr(case.scene, "bed", [])]
     bodies = {(p.material, p.radii()[0]) for p in parts}
@@ -61,7 +74,8 @@ def time_step(case: SceneCase) -> float:
             x = sphere_impact(case, material, radius, other, v)
             prediction = predict(x)
             found = search(x, prediction, case.numerics.error).time_step
-            best = min(best, found, BED_SHARE * stability_limit(x, float(prediction.overlap_max.max())))
+            limit = stability_limit(x, float(prediction.overlap_max.max()))
+            best = min(best, found, bed_share(x, sticking=sticking) * limit)
     return _round_down(best)
 
 

@@ -78,7 +78,13 @@ class Deck:
 
     @property
     def load_column(self) -> str:
+        """The column of the force on `load`."""
         return {"floor": "floor_load", "plate": "plate_force"}[self.load]
+
+    @property
+    def load_sign(self) -> int:
+        """The floor is pressed down, the plate up."""
+        return {"floor": -1, "plate": 1}[self.load]
 
 
 def refuse(p: ScenePlan) -> None:
