@@ -1,13 +1,11 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // The adhesive laws behind a pipe: one line in, one line out. Built and run by adhesive.py beside this file.
 //
-// impact LAW E* R* Gamma p_y m* V dt gap steps   -> rebound speed (0: still attached after `steps`), largest force, largest
-//                                                   overlap, smallest force but in the step of touch, overlap and step of
-//                                                   the last attached sample
-// twice LAW ...                                   -> the same of the second impact, after which the pair is sent back as it
-//                                                   came out: it meets its dent
-// path LAW E* R* Gamma p_y n overlap_1 ...       -> force and radius at each of prescribed overlaps, closing speed 0
-// hertz|thornton E* R* p_y n overlap_1 ...       -> the same by the laws without adhesion
+// impact LAW E* R* Gamma p_y m* V dt gap steps: rebound speed (0: still attached after `steps`), largest force, largest
+//     overlap, smallest force but in the step of touch, overlap and step of the last attached sample
+// twice LAW ...: the same of a second impact, the pair being sent back with the speed at which it came out
+// path LAW E* R* Gamma p_y n overlap_1 ...: force and radius at each of prescribed overlaps, closing speed 0
+// hertz|thornton E* R* p_y n overlap_1 ...: the same by the laws without adhesion
 #include <cstdio>
 #include <iostream>
 #include <string>
@@ -27,7 +25,7 @@ void impact(const Law& law, double R_star, bool twice) {
   double m, v, dt, gap;
   long steps;
   std::cin >> m >> v >> dt >> gap >> steps;
-  typename Law::Memory memory{};
+  typename Law::State memory{};
   double alpha = -gap, force = 0.0, most = 0.0, deepest = 0.0, least = 0.0, last = 0.0;
   long n = 0, end = -1;
   bool first = true;
@@ -58,7 +56,7 @@ void impact(const Law& law, double R_star, bool twice) {
 
 template <class Law>
 void path(const Law& law, double R_star) {
-  typename Law::Memory memory{};
+  typename Law::State memory{};
   long count;
   std::cin >> count;
   for (long k = 0; k < count; ++k) {

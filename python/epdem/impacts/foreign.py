@@ -8,6 +8,7 @@ mdr        a sphere on a rigid flat: the modulus that makes E/(1-nu^2) the case'
 
 import math
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -116,7 +117,7 @@ def prediction(tool: object, x: Experiment) -> Prediction:
 
 def _prediction(x: Experiment, impact: hysteresis.Impact) -> Prediction:
     names = ("e_n", "contact_time", "force_max", "overlap_max", "residual_overlap", "work_in", "work_out")
-    columns = {n: np.asarray(getattr(impact, n), float) for n in names}
+    columns: dict[str, Any] = {n: np.asarray(getattr(impact, n), float) for n in names}
     return Prediction(
         speed=x.speed,
         **columns,

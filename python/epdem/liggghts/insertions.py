@@ -1,0 +1,99 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Fills of a scene in LIGGGHTS: templates of spheres, their distribution, one `fix insert`, with random numbers."""
+
+import itertools
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from ..scenes.kinds import Block, Cylinder, Fill
+from ..scenes.plan import ScenePlan
+
+SMALL = 1e-12  # volume [m^3] below which LIGGGHTS refuses a template unless told
+
+
+@dataclass(frozen=True)
+class Template:
+    """A particle template; `small`: LIGGGHTS wants to be told that its volume is meant."""
+
+    id: str
+    seed: int
+    type: int
+    density: float
+    radius: float
+    share: float
+    small: bool
+
+
+@dataclass(frozen=True)
+class Insertion:
+    """One `fix insert`: a distribution of templates, filled into a region at once or as a stream."""
+
+    id: str
+    seed: int
+    distribution: str
+    distribution_seed: int
+    templates: tuple[Template, ...]
+    region: str
+    count: int
+    rate: float | None
+    every: int | None
+    velocity: float
+    phase: str
+
+
+def primes() -> Iterator[int]:
+    """Seeds as LIGGGHTS wants them: different primes above 10000."""
+    n = 15485863
+    while True:
+        if all(n % k for k in range(3, math.isqrt(n) + 1, 2)):
+            yield n
+        n += 2
+
+
+def _region(region: Block | Cylinder) -> str:
+    if isinstance(region, Block):
+        return "block " + " ".join(f"{x:.10g}" for x in region.limits)
+    return f"cylinder z 0 0 {region.radius:.10g} {region.low:.10g} {region.high:.10g}"
+
+
+def _templates(p: ScenePlan, fill: Fill, first: int, seeds: Iterator[int]) -> tuple[Template, ...]:
+    sizes = [(part.material, radius, share) for part in fill.parts for radius, share in part.sizes()]
+    return tuple(
+        Template(
+            f"template{i}",
+            next(seeds),
+            p.model.type_of(material),
+            p.case.materials[material].density,
+            radius,
+            share,
+            4.0 / 3.0 * math.pi * radius**3 < SMALL,
+        )
+        for i, (material, radius, share) in enumerate(sizes, first)
+    )
+
+
+def insertions(p: ScenePlan) -> tuple[Insertion, ...]:
+    """The insertions of a scene's fills."""
+    seeds = itertools.islice(primes(), 100 * (p.case.numerics.seed - 1), None)
+    found: list[Insertion] = []
+    first = 1
+    for i, fill in enumerate(p.layout.fills, 1):
+        templates = _templates(p, fill, first, seeds)
+        first += len(templates)
+        found.append(
+            Insertion(
+                id=f"fill{i}",
+                seed=next(seeds),
+                distribution=f"mix{i}",
+                distribution_seed=next(seeds),
+                templates=templates,
+                region=_region(fill.region),
+                count=fill.count,
+                rate=fill.rate,
+                every=None if fill.rate is None else max(1, math.ceil(fill.every / p.time_step)),
+                velocity=fill.velocity,
+                phase=fill.phase or p.phases[0].name,
+            )
+        )
+    return tuple(found)
