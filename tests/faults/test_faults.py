@@ -80,6 +80,16 @@ FAULTS += [
           PLUGIN_TESTS, "momentum and thornton and not ning"),
 ]  # fmt: skip
 
+LOOP, LOOP_TEST = f"{PLUGIN}/loop", "tests/engines/test_plugin_loop.py"
+FAULTS += [
+    Fault("2 ulp in the lever arm of the pair loop", f"{LOOP}/models.hpp", "c.cri = c.radi - 0.5 * c.deltan;",
+          "c.cri = c.radi - 0.50000000000000022 * c.deltan;", LOOP_TEST, "same_bits and thornton"),
+    Fault("2 ulp in the force that the pair loop adds", f"{LOOP}/loop.cpp", "fj[0] -= gx;",
+          "fj[0] -= 1.0000000000000004 * gx;", LOOP_TEST, "same_bits and hertz"),
+    Fault("the pair loop does not notice that a pair parted", f"{LOOP}/kernel.hpp", "value[last_step] > 1.0;",
+          "value[last_step] > 1e9;", LOOP_TEST, "same_bits and loose1"),
+]  # fmt: skip
+
 THEORY, VALUES = f"{PYTHON}/theory", "tests/physics/test_reference_values.py"
 FAULTS += [
     Fault("waves of the rebound grow with e_n", f"{THEORY}/energy.py", '0.811 / number("e_n"', '0.811 * number("e_n"',
