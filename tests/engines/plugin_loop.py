@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Small dense scenes for the pair loop: every combination of models that it knows, run by it and by LIGGGHTS's own."""
 
-import os
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -97,16 +96,9 @@ def deck(scene, *, steps=60, every=1, before="", end="", restart=None):
 
 def outcome(folder, scene, *, loop="", simd="", text=None, **options):
     """(all frames of the dump, what the run printed); `loop` and `simd` are EPDEM_LOOP and EPDEM_SIMD."""
-    old = {k: os.environ.get(k) for k in ("EPDEM_LOOP", "EPDEM_SIMD")}
-    os.environ.update({k: v for k, v in (("EPDEM_LOOP", loop), ("EPDEM_SIMD", simd)) if v})
-    try:
-        done = good(folder, text or deck(scene, **options), ranks=scene.ranks, files={"packing.data": bodies(scene)})
-    finally:
-        for k, v in old.items():
-            if v is None:
-                os.environ.pop(k, None)
-            else:
-                os.environ[k] = v
+    env = {k: v for k, v in (("EPDEM_LOOP", loop), ("EPDEM_SIMD", simd)) if v}
+    files = {"packing.data": bodies(scene)}
+    done = good(folder, text or deck(scene, **options), ranks=scene.ranks, files=files, env=env)
     return done.frames()[1], done.text
 
 

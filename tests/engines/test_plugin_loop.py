@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from plugin_decks import launcher, run
-from plugin_loop import DIMENSIONS, SAID, SIMD, Scene, covering, deck, outcome
+from plugin_loop import DIMENSIONS, SAID, SIMD, Scene, bodies, covering, deck, outcome
 
 pytestmark = pytest.mark.liggghts
 
@@ -112,10 +112,7 @@ def test_what_our_loop_cannot_do_takes_liggghts_loop_and_says_so_once(tmp_path, 
     assert np.array_equal(frames, outcome(tmp_path / "generic", scene, text=text, loop="generic")[0])
 
 
-def test_a_wrong_instruction_set_is_refused(tmp_path, monkeypatch):
-    monkeypatch.setenv("EPDEM_SIMD", "avx1024")
+def test_a_wrong_instruction_set_is_refused(tmp_path):
     scene = Scene()
-    from plugin_loop import bodies
-
-    done = run(tmp_path, deck(scene), files={"packing.data": bodies(scene)})
+    done = run(tmp_path, deck(scene), files={"packing.data": bodies(scene)}, env={"EPDEM_SIMD": "avx1024"})
     assert done.code == 1 and "EPDEM_SIMD = avx1024" in done.error and "sse2, avx2 or avx512" in done.error
