@@ -14,6 +14,7 @@ from epdem.errors import CaseError, EngineError
 from epdem.impacts.engine import Abilities
 from epdem.liggghts.scenes import LiggghtsScenes
 from epdem.scenes import results
+from epdem.scenes.pairs import pair_law
 from epdem.scenes.plan import plan
 from epdem.scenes.run import run
 
@@ -177,3 +178,10 @@ def test_a_material_s_own_strength_goes_before_that_of_the_law():
         for name, (material, law) in cases.items()
     }
     assert found == pytest.approx({"by ratio": 1e6, "of the law": 3e6, "its own": 7e6})
+
+
+def test_of_two_materials_the_softer_one_s_strength_counts():
+    """johnson's own ratio 3.0 times 0.5 GPa of the plate; the shot has 2 GPa."""
+    case = parse(data_of("peening"))
+    for a, b in (("shot", "plate"), ("plate", "shot")):
+        assert pair_law(case, a, b)[0].parameters["yield_pressure"] == pytest.approx(1.5e9)
