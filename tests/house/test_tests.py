@@ -2,6 +2,7 @@
 """Tests that could not fail: without a check, or comparing a thing with itself."""
 
 import ast
+import tomllib
 from pathlib import Path
 
 import pytest
@@ -55,3 +56,14 @@ def test_nothing_is_compared_with_itself(path):
         if isinstance(node, ast.Compare):
             sides = [ast.unparse(side) for side in (node.left, *node.comparators)]
             assert len(set(sides)) == len(sides), f"line {node.lineno}: {ast.unparse(node)}"
+
+
+PLANTED = [tomllib.loads(path.read_text()) for path in TESTS.glob("faults/planted/*.toml")]
+FAULTS = {name: fault for faults in PLANTED for name, fault in faults.items()}
+
+
+@pytest.mark.parametrize("fault", FAULTS.values(), ids=FAULTS)
+def test_a_planted_fault_names_a_text_and_a_test_that_exist(fault):
+    assert fault["old"] in (TESTS.parent / fault["file"]).read_text(), "the text has changed; update the fault"
+    file, _, name = fault["test"].partition("::")
+    assert name.partition("[")[0] in {f.name for f in functions(TREES[TESTS / file])}
