@@ -57,7 +57,7 @@ def pytest_in(folder: Path, *tests: str, only: str = "", env: dict[str, str] | N
     return subprocess.run(
         [sys.executable, "-c", CODE, *words],
         cwd=folder,
-        env=os.environ | python | (env or {}),
+        env={k: v for k, v in os.environ.items() if k != "VIRTUAL_ENV"} | python | (env or {}),  # YADE would follow it
         capture_output=True,
         text=True,
         timeout=600,
