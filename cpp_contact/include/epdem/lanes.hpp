@@ -28,6 +28,7 @@ typedef double Lanes __attribute__((vector_size(8 * lane_count)));
 using Mask = decltype(Lanes{} < Lanes{});
 
 using std::acos;
+using std::cbrt;
 using std::cos;
 using std::exp;
 using std::expm1;
@@ -104,6 +105,7 @@ EPDEM_INLINE Lanes sqrt(Lanes x) noexcept {
     return x;                                        \
   }
 EPDEM_LANE_BY_LANE(acos)
+EPDEM_LANE_BY_LANE(cbrt)
 EPDEM_LANE_BY_LANE(cos)
 EPDEM_LANE_BY_LANE(exp)
 EPDEM_LANE_BY_LANE(expm1)
