@@ -52,9 +52,18 @@ def environment(*folders: Path, reasons: bool = False) -> jinja2.Environment:
     return prepared(jinja2.Environment(loader=loader, **OPTIONS), reasons=reasons)
 
 
-def render(template: str, /, *, reasons: bool = False, **context: object) -> str:
+def render(template: str, /, **context: object) -> str:
     """The text of a template. Raises CaseError that names the template and the undefined name."""
+    return _text(environment(), template, context)
+
+
+def render_with_reasons(template: str, /, **context: object) -> str:
+    """The same, with REASON and the reason behind every line that has one."""
+    return _text(environment(reasons=True), template, context)
+
+
+def _text(env: jinja2.Environment, template: str, context: dict[str, object]) -> str:
     try:
-        return environment(reasons=reasons).get_template(template).render(**context)
+        return env.get_template(template).render(context)
     except jinja2.TemplateError as error:
         raise CaseError(f"template {template}: {error}") from None

@@ -21,7 +21,7 @@ from epdem.studies import crosscheck
 STEEL = (CASES / "steel_wall.toml").read_text()
 SPEEDS = STEEL[STEEL.index("speeds =") : STEEL.index("\n", STEEL.index("speeds ="))]
 ONE_SPEED = STEEL.replace(SPEEDS, 'speeds = ["5 m/s"]')
-TITLE = "[/y] [red]steel[/] :smile: $1 [mm] \\\\"
+TITLE = "[/y] [red]steel[/] :smile: $\\\\frac$ [mm]"
 
 DOCUMENTS = {  # words, and what the document must hold
     "run": (["steel.toml", "-e", "embedded"], lambda d: d["passed"] and d["rows"][0]["speed"] == 5.0),

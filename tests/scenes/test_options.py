@@ -40,8 +40,15 @@ def bed() -> dict:
     return data | {"scene": data["scene"] | scene, "output": {"rows": 20, "particles": 2}, "numerics": {"error": 0.1}}
 
 
+def tiny() -> dict:
+    """Powder in a room so small that LIGGGHTS has to be told that it is meant."""
+    data = read_toml(CASES / "compaction_powder.toml")
+    scene = {"box": ["0.3 mm", "0.3 mm", "0.6 mm"], "count": 8, "height": "0.5 mm", "speed": "4 m/s"}
+    return data | {"scene": data["scene"] | scene, "output": {"rows": 20}, "numerics": {"error": 0.1}}
+
+
 @pytest.mark.liggghts
-@pytest.mark.parametrize("data", [poured(), bed()], ids=["poured", "bed"])
+@pytest.mark.parametrize("data", [poured(), bed(), tiny()], ids=["poured", "bed", "tiny"])
 def test_a_deck_with_rare_options_runs_and_repeats_itself(data, tmp_path):
     write_deck(parse(data), tmp_path / "deck")
     lines = explain.explain(explain.SCENE, deck(plan(parse(data))))

@@ -67,6 +67,20 @@ inline T force(T E_star, T c, T own, T y) noexcept {
   return 2.0 / 3.0 * E_star * y * y * (2.0 * own - c * y);
 }
 
+/// Elastic and surface energy [J] of the elastic curve at y, 0 for bodies apart: F is its slope by alpha.
+template <class T>
+inline T energy(T E_star, T c, T R, T y) noexcept {
+  const T a = y * y, d = c * y, shape = a * a / R;
+  return E_star * a * ((8.0 / 15.0 * shape - 4.0 / 3.0 * d) * shape + 0.5 * d * d);
+}
+
+/// Largest gap [m] across which bodies still pull: that of the elastic fold, also for a contact with a dent.
+template <class T>
+inline T largest_gap(T c, T R_star) noexcept {
+  const T y_f = fold_share * refreshed(T{}, c * R_star);
+  return 0.75 * c * y_f;
+}
+
 /// What the force of the step of touch lacks [N]. A force that jumps within a step leaves velocity Verlet of first
 /// order: the sum over the steps takes the jump for a whole step, but it has lasted for the share beyond/closing, and
 /// half a step belongs to the trapezoid that starts here. `beyond` is the overlap since touch, `closing` the closing

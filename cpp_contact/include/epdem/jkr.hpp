@@ -49,4 +49,12 @@ inline adhesive::Step<Jkr<T>> step(const Jkr<T>& law, T R_star, const typename J
   return {F, select(stands, y * y, T{}), {select(stands, root, T{})}};
 }
 
+/// Elastic and surface energy [J] of a contact at overlap `delta`, 0 for bodies apart.
+template <class T>
+inline T stored_energy(const Jkr<T>& law, T R_star, const typename Jkr<T>::State& now, T delta) noexcept {
+  using namespace adhesive;
+  const T y = curve(fold_share * now.root, R_star * delta);
+  return select((now.root > 0.0) | (delta > 0.0), energy(law.E_star, law.c, R_star, y), T{});
+}
+
 }  // namespace epdem

@@ -111,4 +111,14 @@ inline adhesive::Step<ThorntonNing<T>> step(const ThorntonNing<T>& law, T R_star
           {select(stands, root, zero), delta_max, select(keeps, dent, zero), select(keeps, R, zero)}};
 }
 
+/// Elastic and surface energy [J] of a contact at overlap `delta` <= delta_max, 0 for bodies apart.
+template <class T>
+inline T stored_energy(const ThorntonNing<T>& law, T R_star, const typename ThorntonNing<T>::State& now,
+                       T delta) noexcept {
+  using namespace adhesive;
+  const T R = select(now.dent > 0.0, now.R_open, R_star), own = delta - now.dent;
+  const T y = curve(fold_share * now.root, R * own);
+  return select((now.root > 0.0) | (own > 0.0), energy(law.E_star, law.c, R, y), T{});
+}
+
 }  // namespace epdem

@@ -52,7 +52,6 @@ def run(
     """Run a case and check it against theory, or run a bulk scene (default engine: liggghts)."""
     if cli_scene.is_scene(case):
         refuse(case, "a scene has its own law and time step", law=law, steps=steps)
-        refuse(case, "the folder of a scene is not looked at for other files", force=force)
         if len(set(engine or [])) > 1:
             raise CaseError(f"{case}: --engine: a scene runs on one engine; give it once")
         if fresh and resume:

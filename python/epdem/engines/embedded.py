@@ -15,6 +15,8 @@ from ..laws import library as claw
 
 
 class Embedded:
+    """Impacts inside the C library, without any other program."""
+
     name = "embedded"
     can = Abilities(dashpot=True, deck=False, positions=False)
 

@@ -15,7 +15,7 @@ def explain(templates: dict[str, str], deck: object) -> list[tuple[str, str, str
     """
     found = []
     for file, template in templates.items():
-        for text in rendering.render(template, deck=deck, reasons=True).split("\n"):
+        for text in rendering.render_with_reasons(template, deck=deck).split("\n"):
             line, _, reason = text.partition(rendering.REASON)
             if line.strip() and not line.startswith("#"):
                 found.append((file, line.rstrip(), reason or line.partition("  # ")[2]))

@@ -48,6 +48,7 @@ class Liggghts:
         return f"ep/{plan.experiment.law.name}"
 
     def properties(self, plan: Plan) -> tuple[Property, ...]:
+        """What the deck says of the materials, for this model."""
         return of_law(plan)
 
     def deck(self, plan: Plan) -> Deck:

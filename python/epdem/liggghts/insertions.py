@@ -6,10 +6,11 @@ import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from ..scenes.kinds import Block, Cylinder, Fill
+from ..scenes.kinds import Block, Fill
 from ..scenes.plan import ScenePlan
 
-SMALL = 1e-12  # volume [m^3] below which LIGGGHTS refuses a template unless told
+# Volumes [m^3] of a template and of a region below which LIGGGHTS refuses them, unless told of a smaller limit.
+SMALL, SMALL_ROOM, MEANT = 1e-12, 1e-10, 1e-20
 
 
 @dataclass(frozen=True)
@@ -51,10 +52,18 @@ def primes() -> Iterator[int]:
         n += 2
 
 
-def _region(region: Block | Cylinder) -> str:
-    if isinstance(region, Block):
-        return "block " + " ".join(f"{x:.10g}" for x in region.limits)
-    return f"cylinder z 0 0 {region.radius:.10g} {region.low:.10g} {region.high:.10g}"
+def _region(fill: Fill) -> str:
+    """The region of a fill; one with little room for the centres of its spheres has to be meant."""
+    largest = max(part.radii()[1] for part in fill.parts)
+    if isinstance(fill.region, Block):
+        x = fill.region.limits
+        words = "block " + " ".join(f"{v:.10g}" for v in x)
+        centres = math.prod(max(0.0, x[k + 1] - x[k] - 2.0 * largest) for k in (0, 2, 4))
+    else:
+        c = fill.region
+        words = f"cylinder z 0 0 {c.radius:.10g} {c.low:.10g} {c.high:.10g}"
+        centres = math.pi * (c.radius - largest) ** 2 * (c.high - c.low - 2.0 * largest)
+    return words + (f" volume_limit {MEANT:g}" if centres < SMALL_ROOM else "")
 
 
 def _templates(p: ScenePlan, fill: Fill, first: int, seeds: Iterator[int]) -> tuple[Template, ...]:
@@ -88,7 +97,7 @@ def insertions(p: ScenePlan) -> tuple[Insertion, ...]:
                 distribution=f"mix{i}",
                 distribution_seed=next(seeds),
                 templates=templates,
-                region=_region(fill.region),
+                region=_region(fill),
                 count=fill.count,
                 rate=fill.rate,
                 every=None if fill.rate is None else max(1, math.ceil(fill.every / p.time_step)),

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """What must hold for a scene by routes that do not go through the contact law."""
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -29,11 +30,12 @@ def _row(name: str, value: float, expected: float, tolerance: float) -> Row:
 
 
 def _below(name: str, value: float, limit: float, tolerance: float) -> Row:
+    beyond = value / limit - 1.0 if limit else math.copysign(math.inf, value) if value else 0.0
     return {
         "check": name,
         "value": value,
         "expected": limit,
-        "error": max(0.0, value / limit - 1.0),
+        "error": max(0.0, beyond),
         "tolerance": tolerance,
         "passed": bool(value <= limit * (1 + tolerance)),
     }
@@ -88,7 +90,7 @@ def stiffness(p: ScenePlan, rows: pd.DataFrame) -> tuple[float, float]:
 
 
 def _secant(force: float, way: float) -> float:
-    return float(force / way) if way else np.inf  # the force is gone within one row
+    return float(force / way) if way > 0 else np.inf  # the force is gone within the row of the turn
 
 
 def recovered(p: ScenePlan, rows: pd.DataFrame) -> tuple[float, float]:

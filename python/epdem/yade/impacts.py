@@ -27,6 +27,8 @@ INSTALL = "apt-get install yade"
 
 
 class Yade:
+    """Impacts in YADE: sphere on sphere or wall, with the law that travels with the deck."""
+
     name = "yade"
     # a serial YADE keeps bodies where they are in memory and has no ranks: nothing is sorted, nobody migrates
     can = Abilities(laws=tuple(LAWS), staggered=True, scenes=("settle", "compaction"), variants=("swap", "restart"))

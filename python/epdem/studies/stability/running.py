@@ -49,6 +49,7 @@ class Verdict:
     notes: list[str] = field(default_factory=list)
 
     def fail(self, reason: str) -> None:
+        """Note that the case failed, with one more reason."""
         self.status = "failed"
         self.reason = f"{self.reason}; {reason}" if self.reason else reason
 
