@@ -7,8 +7,8 @@ import numpy as np
 
 from ...errors import EpdemError
 from ...impacts.engine import not_representable
-from ...impacts.prediction import SMALL_DEFORMATION
 from ...laws.native import ImpactNumbers
+from ...theory.validity import SMALL_DEFORMATION
 from .cases import Extreme
 from .running import Setting, Verdict, setting
 from .sampling import PositionSampler, Sampler

@@ -11,8 +11,9 @@ import numpy as np
 from ...errors import EngineError, EpdemError
 from ...impacts.engine import EPS, not_representable
 from ...impacts.experiment import Experiment
-from ...impacts.prediction import SMALL_DEFORMATION, predict
+from ...impacts.prediction import predict
 from ...impacts.timestep import stability_limit
+from ...theory.validity import SMALL_DEFORMATION
 from .cases import Extreme
 from .sampling import Sampler
 
