@@ -11,6 +11,9 @@ COMMANDS = {
     "figures/steel_wall.png": [BIN / "epdem", "run", "cases/steel_wall.toml", "-e", "liggghts",
                                "-e", "liggghts-thornton_ning", "--out", "runs/docs"],
     "figures/laws.png": [sys.executable, "docs/laws.py"],
+    "equations.md": [sys.executable, "docs/equations.py"],
+    "cost.md": [sys.executable, "docs/cost.py"],
+    "stability.md": [sys.executable, "docs/stability.py"],
 }  # fmt: skip
 
 

@@ -43,12 +43,15 @@ class Ledger {
   template <bool wall, class Law>
   void book(const Law& law, double R_star, const State<Law>& before, const State<Law>& after, double delta,
             const Bodies& bodies) {
-    double grown = 0.0;
-    if (after.delta_max > before.delta_max)
-      grown = plastic_work(law, R_star, after.delta_max) - plastic_work(law, R_star, before.delta_max);
-    const double stored = elastic_energy(law, R_star, before, delta), share = wall ? 1.0 : 0.5;
-    credit(bodies.i, share * grown, share * stored);
-    if (!wall && bodies.j < bodies.nlocal) credit(bodies.j, share * grown, share * stored);
+    share<wall>(plastic_growth(law, R_star, before, after), elastic_energy(law, R_star, before, delta), bodies);
+  }
+
+  /// To the bodies: plastic work by which a contact grew, elastic energy that it holds [J].
+  template <bool wall>
+  void share(double grown, double stored, const Bodies& bodies) {
+    constexpr double part = wall ? 1.0 : 0.5;
+    credit(bodies.i, part * grown, part * stored);
+    if (!wall && bodies.j < bodies.nlocal) credit(bodies.j, part * grown, part * stored);
   }
 
  private:

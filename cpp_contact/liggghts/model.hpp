@@ -87,7 +87,21 @@ class Model : public ContactModelBase {
         normal_(lmp, setup),
         cohesion_({lmp, setup, this, ids_}),
         tangential_({lmp, setup, this, ids_}),
-        rolling_({lmp, setup, this, ids_}) {}
+        rolling_({lmp, setup, this, ids_}) {
+    latest = this;
+  }
+
+  using law_type = Law;
+
+  /// LIGGGHTS's loop over pairs keeps its model to itself; ours asks for the one that was built with it.
+  static inline Model* latest = nullptr;
+
+  /// Settings of LIGGGHTS's models that our loop must know.
+  struct Asked {
+    bool torsion = false, cohesion_slides = false, heating = false;
+  };
+  const Asked& asked() const { return asked_; }
+  auto& normal() { return normal_; }
 
   int64_t hashcode() { return ids_.hash(); }
 
@@ -97,6 +111,11 @@ class Model : public ContactModelBase {
     cohesion_.registerSettings(settings);
     tangential_.registerSettings(settings);
     rolling_.registerSettings(settings);
+    if (ids_.rolling == ROLLING_CDT || ids_.rolling == ROLLING_EPSD2)
+      settings.registerOnOff("torsionTorque", asked_.torsion, false);
+    if (ids_.cohesion != COHESION_OFF) settings.registerOnOff("tangential_reduce", asked_.cohesion_slides, false);
+    if (ids_.tangential == TANGENTIAL_HISTORY)
+      settings.registerOnOff("heating_tangential_history", asked_.heating, false);
   }
 
   void postSettings(LIGGGHTS::IContactHistorySetup* setup) {
@@ -188,6 +207,7 @@ class Model : public ContactModelBase {
   }
 
   const Ids ids_;
+  Asked asked_;
   Surface surface_;
   Normal<Law, wall, remembers<Tangential> || remembers<Rolling>> normal_;
   Cohesion cohesion_;

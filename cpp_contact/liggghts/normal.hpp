@@ -31,8 +31,7 @@ class Normal : protected LAMMPS_NS::Pointers {
  public:
   Normal(LAMMPS_NS::LAMMPS* lmp, LIGGGHTS::IContactHistorySetup* setup)
       : Pointers(lmp), model_(model_name<Law>()) {
-    static_assert(std::is_trivially_copyable_v<State<Law>> && sizeof(State<Law>) == sizeof(double[std::size(State<Law>::slots)]),
-                  "history holds the slots of the law and nothing else");
+    static_assert(std::is_trivially_copyable_v<State<Law>>);
     if constexpr (remembers) {
       // Flag "0": an even quantity; "1" would change its sign when the pair is stored from the other side.
       for (const char* slot : State<Law>::slots) {
@@ -91,6 +90,16 @@ class Normal : protected LAMMPS_NS::Pointers {
 
   double stressStrainExponent() const { return 1.5; }
 
+  /// What a pair of types has in common.
+  struct Entry {
+    Law law;
+    double G_star = 0.0, damping_number = 0.0, viscous_number = 0.0;
+  };
+  int width() const { return width_; }
+  const Entry& entry(int i, int j) const { return table_[i * width_ + j]; }
+  double now() const { return now_; }
+  Ledger* ledger() { return plastic_work_ ? &ledger_ : nullptr; }
+
   /// LIGGGHTS calls it before the loop over all pairs, never for walls.
   void beginPass(const SurfacesIntersectData& s) {
     const bool keep = s.computeflag && s.shearupdate;
@@ -148,11 +157,6 @@ class Normal : protected LAMMPS_NS::Pointers {
   }
 
  private:
-  struct Entry {
-    Law law;
-    double G_star = 0.0, damping_number = 0.0, viscous_number = 0.0;
-  };
-
   /// The pair parted since its last evaluation: it is a new contact, for the other models as well.
   State<Law> parted(double* history, bool keep) const {
     const int first = stamp_ - memory;

@@ -4,6 +4,7 @@
 #include <string>
 
 #include "epdem/laws.hpp"
+#include "loop/pair.hpp"
 #include "model.hpp"
 
 namespace epdem::liggghts {
@@ -63,7 +64,7 @@ std::shared_ptr<RollingModelBase> choose_rolling(const Site& s) {
 
 template <class Part>
 PairStyles::IGranularPairStyle* new_pair(LAMMPS* lmp, PairGran* parent, int64_t hash) {
-  return new PairStyles::Granular<Part>(lmp, parent, hash);
+  return new loop::Pair<Part>(lmp, parent, hash);
 }
 
 template <class Part>

@@ -2,7 +2,10 @@
 // The adhesive laws behind a pipe: one line in, one line out. Built and run by adhesive.py beside this file.
 //
 // impact LAW E* R* Gamma p_y m* V dt gap steps   -> rebound speed (0: still attached after `steps`), largest force, largest
-//                                                   overlap, smallest force, overlap and step of the last attached sample
+//                                                   overlap, smallest force but in the step of touch, overlap and step of
+//                                                   the last attached sample
+// twice LAW ...                                   -> the same of the second impact, after which the pair is sent back as it
+//                                                   came out: it meets its dent
 // path LAW E* R* Gamma p_y n overlap_1 ...       -> force and radius at each of prescribed overlaps, closing speed 0
 // hertz|thornton E* R* p_y n overlap_1 ...       -> the same by the laws without adhesion
 #include <cstdio>
@@ -20,26 +23,32 @@ using namespace epdem;
 namespace {
 
 template <class Law>
-void impact(const Law& law, double R_star) {
+void impact(const Law& law, double R_star, bool twice) {
   double m, v, dt, gap;
   long steps;
   std::cin >> m >> v >> dt >> gap >> steps;
   typename Law::Memory memory{};
   double alpha = -gap, force = 0.0, most = 0.0, deepest = 0.0, least = 0.0, last = 0.0;
   long n = 0, end = -1;
+  bool first = true;
   for (; n <= steps; ++n) {
     const auto now = step(law, R_star, memory, alpha, v * dt);
-    if (n > 0) v -= 0.5 * dt / m * now.force;
+    if (!first) v -= 0.5 * dt / m * now.force;
+    first = false;
     force = now.force;
     memory = now.after;
     if (now.radius > 0.0) {
       most = std::max(most, force);
-      least = std::min(least, force);
+      if (end >= 0) least = std::min(least, force);
       deepest = std::max(deepest, alpha);
       last = alpha;
       end = n;
     } else if (end >= 0 && n > end + 1) {
-      break;
+      if (!twice) break;
+      twice = false;
+      v = -v;
+      most = deepest = least = force = 0.0;
+      n = end = -1;
     }
     v -= 0.5 * dt / m * force;
     alpha += dt * v;
@@ -92,9 +101,8 @@ int main() {
     std::cin >> name >> E_star >> R_star >> numbers[0] >> numbers[1];
     const Jkr<double> jkr(E_star, numbers);
     const ThorntonNing<double> ning(E_star, numbers);
-    if (what == "impact" && name == "jkr") impact(jkr, R_star);
-    else if (what == "impact") impact(ning, R_star);
-    else if (name == "jkr") path(jkr, R_star);
-    else path(ning, R_star);
+    const bool twice = what == "twice", jumps = twice || what == "impact";
+    if (name == "jkr") jumps ? impact(jkr, R_star, twice) : path(jkr, R_star);
+    else jumps ? impact(ning, R_star, twice) : path(ning, R_star);
   }
 }

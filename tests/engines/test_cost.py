@@ -7,10 +7,12 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 import pytest
+from scripts import script
 
 from epdem.studies import cost, cost_report
 from epdem.studies.stability import bulk_cost
 
+page = script("cost")
 STEEL = Path(__file__).parents[2] / "cases/steel_wall.toml"
 
 
@@ -21,10 +23,10 @@ def embedded():
 
 def test_restitution_converges_with_second_order_and_the_rms_stays_below_the_maximum(embedded):
     """Velocity Verlet: order 2; phases and speeds blur the slope over a factor of 33 in dt by less than 0.4."""
-    assert np.all(np.abs(embedded.contenders["order"] - 2) < 0.4)
+    assert np.all(np.abs(embedded.models["order"] - 2) < 0.4)
     for quantity in cost.QUANTITIES:
         assert np.all(embedded.rows[f"{quantity}_rms"] <= embedded.rows[f"{quantity}_error"])
-        worst = embedded.rows.groupby("contender")[f"{quantity}_error"]
+        worst = embedded.rows.groupby("model")[f"{quantity}_error"]
         assert np.all(worst.last() < 1e-4 * 10) and np.all(worst.last() < worst.first() / 100)
 
 
@@ -47,21 +49,21 @@ def test_table_figure_and_data_are_written_and_the_page_names_its_command(embedd
     assert len(pd.read_csv(data)) == len(embedded.rows) == 8 and figure.stat().st_size > 10_000
     numbers = {"share": 0.1, "error": 1e-4, "rms": 3e-4, "order": 2.0, "seconds": 0.01, "ratio": 0.9}
     bulk = pd.DataFrame(
-        [{"contender": "liggghts, cavity", "spheres": 512, "seconds_spread": 2e-3, "ratio_spread": 0.1} | numbers]
+        [{"model": "liggghts, cavity", "spheres": 512, "seconds_spread": 2e-3, "ratio_spread": 0.1} | numbers]
     )
-    page = cost_report.document(embedded, bulk, "epdem cost CASE")
-    assert "512 steel spheres" in page
-    assert "| liggghts, cavity | 0.1 | 0.0001 | 0.0003 | 2.00 | 0.01 +- 0.001 | 0.90 +- 0.05 |" in page
-    text = cost_report.document(embedded, None, "epdem cost CASE")
-    assert "\n    epdem cost CASE\n" in text and "embedded, cavity" in text
-    assert json.dumps(embedded.contenders.to_dict("list"))
+    text = page.document(embedded, bulk, "python docs/cost.py")
+    assert "512 steel spheres" in text
+    assert "| liggghts, cavity | 0.1 | 0.0001 | 0.0003 | 2.00 | 0.01 +- 0.001 | 0.90 +- 0.05 |" in text
+    text = page.document(embedded, None, "python docs/cost.py")
+    assert "\n    python docs/cost.py\n" in text and "embedded, cavity" in text
+    assert json.dumps(embedded.models.to_dict("list"))
 
 
 @pytest.mark.liggghts
 def test_our_plugin_converges_where_the_built_in_thornton_ning_does_not():
-    """thornton_ning integrates its force step by step: 5 to 8 % off eq. 8.83 at any step; hertz is the yardstick."""
+    """thornton_ning integrates its force step by step: 5 to 8 % off eq. 8.83 at any step; hertz is the reference."""
     outcome = cost.run(STEEL, engines=["liggghts"], laws=[], steps=(30, 100, 300), repetitions=1)
-    found = outcome.contenders.set_index("contender")
+    found = outcome.models.set_index("model")
     assert found.loc["liggghts, thornton", "best_error"] < 1e-4
     assert found.loc["liggghts-hertz", "best_error"] < 1e-5
     assert 0.02 < found.loc["liggghts-thornton_ning", "best_error"] < 0.2
@@ -71,22 +73,22 @@ def test_our_plugin_converges_where_the_built_in_thornton_ning_does_not():
     assert np.all(np.isfinite(parts)) and np.all(parts >= 0) and np.all(outcome.rows["stepping"] > 0)
 
 
-def test_the_ratio_is_to_the_yardstick_of_the_same_repetition_and_step():
-    rows = [("a", 0, 10, 6.0), (cost.YARDSTICK, 0, 10, 3.0), ("a", 1, 10, 8.0), (cost.YARDSTICK, 1, 10, 2.0)]
-    times = pd.DataFrame(rows, columns=["contender", "repetition", "steps", "time"])
-    assert cost.to_yardstick(times, "time", ["repetition", "steps"]).tolist() == [2, 1, 4, 1]
-    alone = times[times["contender"] == "a"]
-    assert cost.to_yardstick(alone, "time", ["repetition", "steps"]).isna().all()
+def test_the_ratio_is_to_the_reference_of_the_same_repetition_and_step():
+    rows = [("a", 0, 10, 6.0), (cost.REFERENCE, 0, 10, 3.0), ("a", 1, 10, 8.0), (cost.REFERENCE, 1, 10, 2.0)]
+    times = pd.DataFrame(rows, columns=["model", "repetition", "steps", "time"])
+    assert cost.over_reference(times, "time", ["repetition", "steps"]).tolist() == [2, 1, 4, 1]
+    alone = times[times["model"] == "a"]
+    assert cost.over_reference(alone, "time", ["repetition", "steps"]).isna().all()
 
 
 @pytest.mark.liggghts
 def test_dissipated_energy_of_a_bulk_converges_with_second_order_for_every_law_that_yields():
     """Velocity Verlet: order 2 of the spheres' rms at fine steps; few collisions blur it by less than 0.5."""
     laws, shares = ["thornton", "johnson", "cavity", "hertz"], (0.1, 0.025)
-    table = bulk_cost.run(laws, repetitions=1, shares=shares).set_index(["contender", "share"])
+    table = bulk_cost.run(laws, repetitions=1, shares=shares).set_index(["model", "share"])
     for law in laws[:3]:
         part = table.loc[f"liggghts, {law}"]
         assert abs(part["order"].iloc[-1] - 2) < 0.5
         assert np.all(part["error"] <= part["rms"]) and part["rms"].iloc[-1] < 1e-3
     assert table.loc["liggghts, hertz"]["error"].isna().all()  # nothing is dissipated
-    assert (table.loc[cost.YARDSTICK]["ratio"] == 1).all() and np.isfinite(table["ratio"]).all()
+    assert (table.loc[cost.REFERENCE]["ratio"] == 1).all() and np.isfinite(table["ratio"]).all()

@@ -33,7 +33,6 @@ struct Step {
   Memory after;
 };
 
-inline constexpr real reach = 3.0;  // in d alpha of the fold/4: as far as its root is followed
 inline constexpr real fold_share = 0.62996052494743658;  // y_f in (c R)^(1/3): 4^(-1/3)
 
 /// (c R)^(1/3), the root of a contact; `known` is it already unless R has changed, or 0.
@@ -51,13 +50,13 @@ inline T refreshed(T known, T cube) noexcept {
 template <class T>
 inline T curve(T y_f, T X) noexcept {
   using std::sqrt;
-  const T f2 = y_f * y_f, square = max(X + 3.0 * f2 * f2, T(0.0)), t = sqrt(square);
+  const T f2 = y_f * y_f, square = max(X + 3.0 * f2 * f2, T{}), t = sqrt(square);
   T e = t / sqrt(6.0 * f2 + 1.13 * t);
   for (int k = 0; k < 4; ++k) {
     const T e2 = e * e;
     e = (e2 * (3.0 * e2 + y_f * (8.0 * e + 6.0 * y_f)) + square) / (4.0 * e * (e2 + 3.0 * y_f * (e + y_f)));
   }
-  return y_f + select(square > 0.0, e, T(0.0));
+  return y_f + select(square > 0.0, e, T{});
 }
 
 /// F [N] of the elastic curve at y.
@@ -73,7 +72,7 @@ inline T force(T E_star, T c, T R, T y) noexcept {
 /// Nothing for a contact that is there without a crossing.
 template <class T>
 inline T on_touch(T jump, T beyond, T closing) noexcept {
-  return select(beyond < 2.0 * closing, jump * (min(beyond / closing, T(1.0)) - 0.5), T(0.0));
+  return select(beyond < 2.0 * closing, jump * (min(beyond / closing, T{} + 1.0) - 0.5), T{});
 }
 
 /// The same in the step after the last one attached, in which the overlap is `beyond` the fold [m]: the force it takes.
@@ -83,11 +82,11 @@ inline T on_touch(T jump, T beyond, T closing) noexcept {
 template <class T>
 inline T on_parting(T E_star, T pull, T R, T y_f, T beyond, T closing) noexcept {
   using std::sqrt;
-  const T h = max(-closing, T(std::numeric_limits<real>::min())), share = max(1.0 - beyond / h, T(0.0));
+  const T h = max(-closing, T{} + std::numeric_limits<real>::min()), share = max(1.0 - beyond / h, T{});
   const T rest = -0.20768371 + share * (-0.73462635 + share * (-0.30379973 + share * 0.03838347));
-  const T f4 = y_f * y_f * y_f * y_f, bend = 16.0 / sqrt(6.0) * E_star * f4, range = min(h / R, f4 / (R * R) * reach);
-  const T F = -5.0 / 6.0 * pull * R * (share - 0.5) + bend * sqrt(range) * (sqrt(share) + rest);
-  return select(beyond < 2.0 * h, F, T(0.0));
+  const T bend = 16.0 / sqrt(6.0) * E_star * y_f * y_f * y_f * y_f;
+  const T F = -5.0 / 6.0 * pull * R * (share - 0.5) + bend * sqrt(h / R) * (sqrt(share) + rest);
+  return select(beyond < 2.0 * h, F, T{});
 }
 
 }  // namespace adhesive

@@ -42,10 +42,10 @@ inline adhesive::Step<T, typename Jkr<T>::Memory> step(const Jkr<T>& law, T R_st
   const T y_f = fold_share * root, fold = -3.0 * y_f * y_f * y_f * y_f, X = R_star * delta;
   const auto ends = stood & (X < fold), stands = (stood & (X >= fold)) | forms;
   const T y = curve(y_f, X);
-  T F = select(stands, force(law.E_star, law.c, R_star, y), T(0.0));
-  if (any(forms)) F += select(forms, on_touch(-4.0 / 3.0 * law.pull * R_star, delta, closing), T(0.0));
+  T F = select(stands, force(law.E_star, law.c, R_star, y), T{});
+  if (any(forms)) F += select(forms, on_touch(-4.0 / 3.0 * law.pull * R_star, delta, closing), T{});
   if (any(ends)) F = select(ends, on_parting(law.E_star, law.pull, R_star, y_f, (fold - X) / R_star, closing), F);
-  return {F, select(stands, y * y, T(0.0)), {select(stands, root, T(0.0))}};
+  return {F, select(stands, y * y, T{}), {select(stands, root, T{})}};
 }
 
 }  // namespace epdem

@@ -25,7 +25,7 @@ constexpr int lane_count = 2;
 #endif
 
 typedef double Lanes __attribute__((vector_size(8 * lane_count)));
-typedef long long Mask __attribute__((vector_size(8 * lane_count)));
+using Mask = decltype(Lanes{} < Lanes{});
 
 using std::acos;
 using std::cos;

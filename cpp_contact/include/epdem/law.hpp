@@ -87,6 +87,17 @@ inline Number<Law> plastic_work(const Law& law, Number<Law> R_star, Number<Law> 
   return select(yielded, law.work(R_star, reached) - recovered_work(law.E_star, law.load(R_star, reached)), T{});
 }
 
+/// What a step added to the plastic work of a contact [J].
+template <class Law>
+inline Number<Law> plastic_growth(const Law& law, Number<Law> R_star, const State<Law>& before,
+                                  const State<Law>& after) noexcept {
+  using T = Number<Law>;
+  const auto grows = after.delta_max > before.delta_max;
+  if (!any(grows)) return T{};
+  return select(grows, plastic_work(law, R_star, only(grows, after.delta_max)) -
+                           plastic_work(law, R_star, only(grows, before.delta_max)), T{});
+}
+
 /// Elastic energy [J] of a contact at overlap `delta` that remembers `before`; it returns on separation.
 template <class Law>
 inline Number<Law> elastic_energy(const Law& law, Number<Law> R_star, const State<Law>& before,

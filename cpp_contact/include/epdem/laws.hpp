@@ -30,6 +30,14 @@ constexpr bool ids_fit() noexcept {
 }
 static_assert(ids_fit(), "every law needs an id of its own from 1 to 62");
 
+/// A law's place in the register.
+template <class Law>
+constexpr int place() noexcept {
+  int at = 0;
+  while (law_ids[at] != Law::id) ++at;
+  return at;
+}
+
 template <class Law>
 constexpr bool sound() noexcept {
   static_assert(sizeof(State<Law>) == sizeof(double[std::size(State<Law>::slots)]), "name every slot of the memory");

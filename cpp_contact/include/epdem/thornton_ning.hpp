@@ -72,14 +72,14 @@ inline adhesive::Step<T, typename ThorntonNing<T>::Memory> step(const ThorntonNi
                                                                 const typename ThorntonNing<T>::Memory& before, T delta,
                                                                 T closing) noexcept {
   using namespace adhesive;
-  const T zero(0.0), y_m = before.y_max, y_m3 = y_m * y_m * y_m;
-  const auto stood = before.root > 0.0, known = (y_m > 0.0) & (stood | (delta > 0.0));
+  const T zero{}, y_m = before.y_max, y_m3 = y_m * y_m * y_m;
+  const auto stood = before.root > 0.0, known = y_m > 0.0;
   const auto dented = known & law.yields(R_star, y_m);
   const T R = select(dented, before.R_open, R_star), top = select(known, before.delta_max, zero);
   // overlap since the opening curve's own touch
   const T own = select(dented, (y_m3 / R - law.c) * y_m - (top - delta), delta);
   const auto forms = (before.root <= 0.0) & (delta > 0.0) & (own > 0.0);
-  T root = any(stood | forms) ? refreshed(before.root, law.c * R) : before.root;
+  const T root = any(stood | forms) ? refreshed(before.root, law.c * R) : before.root;
   const T y_f = fold_share * root, fold = -3.0 * y_f * y_f * y_f * y_f, X = R * own;
   const auto ends = stood & (X < fold), stands = (stood & (X >= fold)) | forms;
   const auto grows = stands & (delta >= top), wins = stands & (delta > top);
@@ -102,8 +102,7 @@ inline adhesive::Step<T, typename ThorntonNing<T>::Memory> step(const ThorntonNi
   }
   F = select(stands, F, zero);
   if (any(ends)) F = select(ends, on_parting(law.E_star, law.pull, R, y_f, (fold - X) / R, closing), F);
-  if (any(wins)) root = refreshed(root, law.c * R_open);
-  const auto keeps = stands | (known & (delta > 0.0));
+  const auto keeps = stands | (delta > 0.0);
   return {F, select(stands, y * y, zero),
           {select(stands, root, zero), select(keeps, select(wins, delta, top), zero), select(keeps, y_max, zero),
            select(keeps, R_open, zero)}};

@@ -92,5 +92,5 @@ def explain(path: object, data: dict[str, Any], error: ValidationError, kind: st
     shown = "" if value is None or isinstance(value, dict | list) else f" = {shorten(repr(value))}"
     if shown:
         return f"{path}: {place}{shown}, {text}"
-    # what is wrong with a whole table or list is a clause of its own
-    return f"{path}: {place}{'' if not place else ': ' if problem['type'] == 'value_error' else ' '}{text}"
+    link = " " if text.startswith(("is ", "has ", "must ")) else ": "
+    return f"{path}: {place}{link if place else ''}{text}"

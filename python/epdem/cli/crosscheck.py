@@ -2,13 +2,14 @@
 """The command `epdem crosscheck`."""
 
 import json
+from collections.abc import Hashable
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
-from rich.console import Console
 
-from .options import AsJson, Out, console
+from ..terminal import console, status, table
+from .options import AsJson, Out
 
 VALUES = {
     "model": "model",
@@ -51,16 +52,11 @@ def _cell(name: str, value: object) -> str:
     return "0" if value == 0 else f"{value:.1e}"
 
 
-def _show(title: str, heads: dict[str, str], rows: list[dict]) -> None:
-    from rich.markup import escape
-    from rich.table import Table
-
-    table = Table(title=title, title_justify="left")
-    for head in heads.values():
-        table.add_column(escape(head), justify="left" if head == "model" else "right", no_wrap=True)
+def _show(title: str, heads: dict[str, str], rows: list[dict[Hashable, Any]]) -> None:
+    shown = table(title, heads.values(), left=("model",))
     for row in rows:
-        table.add_row(*(_cell(name, row[name]) for name in heads))
-    console().print(table)
+        shown.add_row(*(_cell(name, row[name]) for name in heads))
+    console().print(shown)
 
 
 def crosscheck(
@@ -75,10 +71,10 @@ def crosscheck(
     from ..studies.crosscheck import crosscheck as check
 
     found = []
-    with Console(stderr=True).status("") as line:
+    with status() as progress:
         for path in cases:
             folder = out / path.stem if out and len(cases) > 1 else out
-            found.append(check(path, law=law, out=folder, fresh=fresh, progress=line.update))
+            found.append(check(path, law=law, out=folder, fresh=fresh, progress=progress))
     if as_json:
         documents = [
             {"case": c.outcome.case.name, "absent": c.absent, "notes": c.notes, "rows": report.records(c.table)}
@@ -91,9 +87,9 @@ def crosscheck(
         title = f"{case.title}: values at {rows[0]['speed']:.4g} m/s, largest errors over speeds and phases"
         _show(title, VALUES, rows)
         _show(CHANGES_TITLE, CHANGES, [row for row in rows if row["momentum"] == row["momentum"]])
-        console().print(CHANGES_NOTE, highlight=False, soft_wrap=True)
+        console().print(CHANGES_NOTE, soft_wrap=True)
         for name, words in c.notes.items():
-            console().print(f"{name} has a law and a theory of its own: {words}", highlight=False, soft_wrap=True)
+            console().print(f"{name} has a law and a theory of its own: {words}", soft_wrap=True)
         for name, reason in c.absent.items():
-            console().print(f"left out: {name}: {reason}", highlight=False, soft_wrap=True)
-        console().print(f"figure and data: {c.outcome.folder}/", highlight=False)
+            console().print(f"left out: {name}: {reason}", soft_wrap=True)
+        console().print(f"figure and data: {c.outcome.folder}/")

@@ -8,16 +8,15 @@ from pathlib import Path
 from typing import Annotated
 
 import typer
-from rich.console import Console
-from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn
 
 from ..errors import CaseError, EpdemError, Stopped
+from ..terminal import bar, console
 from . import crosscheck as cli_crosscheck
 from . import numerics as cli_numerics
 from . import scenes as cli_scene
 from . import sweep as cli_sweep
 from . import theory as cli_theory
-from .options import AsJson, CasePath, Engines, Laws, Out, console
+from .options import AsJson, CasePath, Engines, Laws, Out, laws_or_own, refuse
 
 ABOUT = """Elastic-plastic particle contact for LIGGGHTS and YADE, checked against theory.
 
@@ -25,6 +24,7 @@ Begin with: epdem run cases/steel_wall.toml -e embedded -e liggghts
 
 Exit codes: 0 all within tolerance, 1 a check failed, 2 bad input, 3 an engine failed, 130 stopped.
 """
+UsageError = typer.BadParameter.__base__  # typer gives its own name to its children only
 app = typer.Typer(
     add_completion=False,
     no_args_is_help=True,
@@ -40,7 +40,7 @@ def run(
     engine: Engines = None,
     law: Laws = None,
     ranks: Annotated[int, typer.Option(min=1, max=1024, help="MPI ranks of LIGGGHTS")] = 1,
-    steps: Annotated[int | None, typer.Option(help="replaces the case's steps in contact (5 to 100000)")] = None,
+    steps: Annotated[int | None, typer.Option(min=5, max=100_000, help="replaces the case's steps in contact")] = None,
     out: Out = None,
     fresh: Annotated[bool, typer.Option("--fresh", help="run again what is already stored")] = False,
     resume: Annotated[
@@ -51,30 +51,26 @@ def run(
 ) -> None:
     """Run a case and check it against theory, or run a bulk scene (default engine: liggghts)."""
     if cli_scene.is_scene(case):
-        if len(engine or []) > 1 or law or steps:
-            raise CaseError("a scene has its own law and time step and runs on one engine; leave out --law, --steps")
+        refuse(case, "a scene has its own law and time step", law=law, steps=steps)
+        refuse(case, "the folder of a scene is not looked at for other files", force=force)
+        if len(set(engine or [])) > 1:
+            raise CaseError(f"{case}: --engine: a scene runs on one engine; give it once")
+        if fresh and resume:
+            raise CaseError(f"{case}: --resume continues a run and --fresh begins it again; leave one out")
         chosen = engine[0] if engine else "liggghts"
         code = cli_scene.run_scene(
             case, engine=chosen, out=out, ranks=ranks, fresh=fresh, resume=resume, as_json=as_json
         )
         raise typer.Exit(code)
-    if resume:
-        raise CaseError("--resume continues bulk scenes; an impact case takes finished stages from its store by itself")
+    refuse(case, "it continues bulk scenes; a run of impacts takes finished stages from its store", resume=resume)
     from ..engines import engine as find
     from ..impacts import report
     from ..impacts.run import run as run_case
 
     engines = engine or ["liggghts"]
     stages = len(set(engines)) * max(len(set(law or [])), 1) + 1  # and the figure
-    with Progress(
-        TextColumn("{task.description}"),
-        BarColumn(),
-        TimeElapsedColumn(),
-        console=Console(stderr=True),
-        transient=True,
-        disable=not sys.stderr.isatty(),
-    ) as bar:
-        task = bar.add_task("", total=stages)
+    with bar() as progress:
+        task = progress.add_task("", total=stages)
         outcome = run_case(
             case,
             engines=[find(name) for name in engines],
@@ -84,9 +80,9 @@ def run(
             steps=steps,
             fresh=fresh,
             force=force,
-            progress=lambda text: bar.update(task, advance=1, description=text),
+            progress=lambda text: progress.update(task, advance=1, description=text),
         )
-        bar.update(task, advance=1, description="figure")
+        progress.update(task, advance=1, description="figure")
         report.figure(outcome)
     if as_json:
         print(report.run_json(outcome))
@@ -109,11 +105,14 @@ def deck(
     if file.suffix == ".j2":
         if case is None:
             raise CaseError(f"{file}: an own template needs the values of a case; add --case CASE")
+        refuse(file, "the deck of an own template has the law of its case", law=law)
+        if engine != "liggghts":
+            raise CaseError(f"{file}: --engine {engine}: own templates are for liggghts; leave it out")
         cli_scene.deck_template(file, case, given or [], out, as_json=as_json)
         return
-    if case or given:
-        raise CaseError(f"{file}: --case and --set go with an own template (.j2)")
+    refuse(file, "it goes with an own template (.j2)", case=case, set=given)
     if cli_scene.is_scene(file):
+        refuse(file, "a scene has its own law", law=law)
         cli_scene.deck_scene(file, out, engine=engine, as_json=as_json)
         return
     from ..case.impact import load, named
@@ -142,7 +141,7 @@ def predict(case: CasePath, law: Laws = None, as_json: AsJson = False) -> None:
     from . import show
 
     with named(case):
-        experiments = [experiment(load(case), name) for name in (law or [None])]
+        experiments = [experiment(load(case), name) for name in laws_or_own(law)]
     show.predictions([(x, predict_experiment(x)) for x in experiments], as_json, console())
 
 
@@ -174,16 +173,30 @@ for command in (
 app.command("stress", hidden=True, deprecated=True)(cli_numerics.stability)  # its name in version 0.1
 
 
+def _usage(error: UsageError) -> int:
+    """Say in one sentence what is wrong with a command line; without any word on it, print the help."""
+    if not (text := error.format_message()):
+        error.show()
+        return error.exit_code
+    name = error.ctx.command_path if error.ctx else "epdem"
+    dash = next((word for word in sys.argv[1:] if word.startswith("-") and Path(word).exists()), None)
+    advice = f"write the file as ./{dash}" if dash else f"see {name} --help"
+    print(f"epdem: {text.rstrip('.').replace('Input should be', 'must be')}; {advice}", file=sys.stderr)
+    return error.exit_code
+
+
 def _stop(number: int, frame: object) -> None:
     raise Stopped
 
 
 def main() -> None:
     """Entry point: errors that a user can mend become one sentence and an exit code."""
-    for name in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):  # whoever stops us, no engine stays behind
+    for name in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):  # whatever stops us, no engine stays behind
         signal.signal(name, _stop)
     try:
-        app()
+        sys.exit(app(prog_name="epdem", standalone_mode=False))
+    except UsageError as error:
+        sys.exit(_usage(error))
     except EpdemError as error:
         print(f"epdem: {error}", file=sys.stderr)
         sys.exit(error.exit_code)

@@ -6,9 +6,9 @@ from pathlib import Path
 from typing import Annotated
 
 import typer
-from rich.console import Console
 
-from .options import AsJson, CasePath, Engines, Laws, Out, console
+from ..terminal import console, frame_table, status
+from .options import AsJson, CasePath, Engines, Laws, Out, laws_or_own
 
 
 def timestep(
@@ -18,15 +18,16 @@ def timestep(
     as_json: AsJson = False,
 ) -> None:
     """The time step of a case for a target error, found by running the embedded engine."""
-    from ..case.impact import load
+    from ..case.impact import load, named
     from ..impacts.experiment import experiment
     from ..impacts.prediction import predict
     from ..impacts.timestep import search
 
     found = []
-    for name in law or [None]:
-        x = experiment(load(case), name)
-        found.append((x, search(x, predict(x), error)))
+    for name in laws_or_own(law):
+        with named(case):
+            x = experiment(load(case), name)
+            found.append((x, search(x, predict(x), error)))
     if as_json:
         documents = [
             {
@@ -59,30 +60,23 @@ def stability(
     law: Laws = None,
     group: Annotated[list[str] | None, typer.Option("--group", "-g", help="only these groups of cases")] = None,
     every: Annotated[int, typer.Option(min=1, help="only every n-th case")] = 1,
-    steps: Annotated[int, typer.Option(min=1000, help="steps of the drift by repeated bounces")] = 10**9,
+    steps: Annotated[int | None, typer.Option(min=1000, help="of the drift by repeated bounces (default: 1e9)")] = None,
     out: Annotated[Path | None, typer.Option("--out", "-o", help="CSV file of all verdicts")] = None,
-    docs: Annotated[Path | None, typer.Option("--docs", help="write the page of the documentation there")] = None,
     as_json: AsJson = False,
 ) -> None:
     """Stability on stiff and extreme cases, and where dt breaks each (default engine: embedded)."""
-    import sys
-
     from ..files import atomic
     from ..impacts.report import records
     from ..studies import stability as suite
-    from ..studies.stability.document import document, table
     from ..studies.stability.suite import summary
 
-    with Console(stderr=True).status("") as line:
+    with status() as progress:
         outcome = suite.run(
-            engine or ["embedded"], law or [], groups=group, every=every, steps=steps, progress=line.update
+            engine or ["embedded"], law or [], groups=group, every=every, steps=steps, progress=progress
         )
     if out:
         with atomic(out) as temporary:
             outcome.verdicts.to_csv(temporary, index=False)
-    if docs:
-        with atomic(docs) as temporary:
-            temporary.write_text(document(outcome, "epdem " + " ".join(sys.argv[1:])))
     if as_json:
         print(
             json.dumps(
@@ -98,11 +92,11 @@ def stability(
         )
     else:
         screen = console()
-        screen.print(table("extreme cases; steps as shares of the stability limit", summary(outcome.verdicts)))
+        screen.print(frame_table("extreme cases; steps as shares of the stability limit", summary(outcome.verdicts)))
         for v in outcome.verdicts[outcome.verdicts["status"] == "failed"].itertuples():
-            screen.print(f"failed: {v.engine}, {v.law}, {v.case}: {v.reason}", style="red", highlight=False)
+            screen.print(f"failed: {v.engine}, {v.law}, {v.case}: {v.reason}", style="red")
         if not outcome.bulk.empty:
-            screen.print(table("stiff bulk scenes in LIGGGHTS", outcome.bulk))
+            screen.print(frame_table("stiff bulk scenes in LIGGGHTS", outcome.bulk))
     raise typer.Exit(0 if outcome.passed else 1)
 
 
@@ -113,43 +107,35 @@ def cost(
     repetitions: Annotated[int, typer.Option(min=1, max=100, help="of every timed run, interleaved")] = 5,
     bulk: Annotated[bool, typer.Option(help="a bulk scene in LIGGGHTS as well")] = False,
     out: Out = None,
-    docs: Annotated[Path | None, typer.Option("--docs", help="write the page of the documentation there")] = None,
     as_json: AsJson = False,
 ) -> None:
     """Error against run time at 10 to 3000 steps in contact (default engines: embedded and liggghts)."""
-    import sys
-
-    from ..files import atomic
     from ..impacts.report import records
     from ..studies import cost as study
     from ..studies import cost_report
 
     scene = None
-    with Console(stderr=True).status("") as line:
+    with status() as progress:
         outcome = study.run(
             case,
             engines=engine or ["embedded", "liggghts"],
             laws=law or [],
             repetitions=repetitions,
-            progress=line.update,
+            progress=progress,
         )
         if bulk:
             from ..studies.stability import bulk_cost
 
-            scene = bulk_cost.run(law or [outcome.case.law.name], progress=line.update)
+            scene = bulk_cost.run(law or [outcome.case.law.name], progress=progress)
     folder = out or Path("runs") / outcome.case.name / "cost"
     files = cost_report.write(outcome, folder)
-    if docs:
-        cost_report.figure(outcome, docs.parent / "figures" / "cost.png")
-        with atomic(docs) as temporary:
-            temporary.write_text(cost_report.document(outcome, scene, "epdem " + " ".join(sys.argv[1:])))
     if as_json:
         document = {
             "case": outcome.case.name,
             "seconds": outcome.seconds,
             "files": [str(f) for f in files],
             "rows": records(outcome.rows),
-            "contenders": records(outcome.contenders),
+            "models": records(outcome.models),
         }
         print(json.dumps(document | ({} if scene is None else {"bulk": records(scene)}), indent=1))
     else:

@@ -1,11 +1,12 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Options that several commands share, and the console they print on."""
+"""Options that several commands share."""
 
 from pathlib import Path
 from typing import Annotated
 
 import typer
-from rich.console import Console
+
+from ..errors import CaseError
 
 CasePath = Annotated[Path, typer.Argument(metavar="CASE", help="case file (TOML)")]
 Engines = Annotated[
@@ -22,16 +23,21 @@ Out = Annotated[Path | None, typer.Option("--out", "-o", help="folder for the re
 AsJson = Annotated[bool, typer.Option("--json", help="print one JSON document and nothing else")]
 
 
-def console() -> Console:
-    """As wide as the terminal, or wide enough for our tables in a pipe."""
-    found = Console()
-    return found if found.is_terminal else Console(width=170)
+def laws_or_own(names: list[str] | None) -> list[str] | list[None]:
+    """The laws named by --law, each once; None, the case's own, without any."""
+    return list(dict.fromkeys(names)) if names else [None]
+
+
+def refuse(place: object, reason: str, **given: object) -> None:
+    """Raise CaseError that names the first of the options `given` that has a value, since nothing would obey it."""
+    for name, value in given.items():
+        if not (value is None or value is False or value == []):
+            raise CaseError(f"{place}: --{name.replace('_', '-')}: {reason}; leave it out")
 
 
 def quantity(option: str, text: str, unit: str) -> float:
     """The SI value > 0 of an option's text. Raises CaseError that names the option."""
     from ..case.units import to_si, within_limits
-    from ..errors import CaseError
 
     try:
         value = within_limits(to_si(text, unit), unit)

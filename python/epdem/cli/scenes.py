@@ -6,13 +6,13 @@ from pathlib import Path
 from typing import Annotated
 
 import typer
-from rich.console import Console
-from rich.progress import BarColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
+from rich.progress import TextColumn, TimeRemainingColumn
 
 from ..case import scene as scene_case
 from ..case.impact import read_toml
 from ..errors import CaseError
-from .options import AsJson, CasePath, console, quantity
+from ..terminal import bar, console
+from .options import AsJson, CasePath, quantity, refuse
 
 
 def is_scene(path: Path) -> bool:
@@ -34,16 +34,8 @@ def run_scene(
     from ..scenes import report
     from ..scenes.run import run
 
-    bar = Progress(
-        TextColumn("{task.description}"),
-        BarColumn(),
-        TextColumn("{task.completed}/{task.total} steps"),
-        TimeElapsedColumn(),
-        TimeRemainingColumn(),
-        console=Console(stderr=True),
-    )
-    with bar:
-        task = bar.add_task(Path(case).stem, total=None)
+    with bar(TextColumn("{task.completed}/{task.total} steps"), TimeRemainingColumn()) as progress:
+        task = progress.add_task(Path(case).stem, total=None)
         outcome = run(
             case,
             engine=engine,
@@ -51,7 +43,7 @@ def run_scene(
             ranks=ranks,
             fresh=fresh,
             resume=resume,
-            tell=lambda step, steps: bar.update(task, completed=step, total=steps),
+            tell=lambda step, steps: progress.update(task, completed=step, total=steps),
         )
     report.figures(outcome)
     if as_json:
@@ -97,14 +89,15 @@ def _texts(case: Path) -> dict[str, str]:
 
         return texts(scene_case.load(case))
     from .. import rendering as decks
-    from ..case.impact import load
+    from ..case.impact import load, named
     from ..impacts.experiment import experiment
     from ..impacts.plan import plan
     from ..impacts.prediction import predict
     from ..liggghts.impacts import Liggghts
 
-    tool, x = Liggghts(), experiment(load(case))
-    return {"in.impact": decks.render(tool.template, deck=tool.deck(plan(x, predict(x))))}
+    with named(case):
+        tool, x = Liggghts(), experiment(load(case))
+        return {"in.impact": decks.render(tool.template, deck=tool.deck(plan(x, predict(x))))}
 
 
 def soften(
@@ -158,7 +151,9 @@ def calibrate(
     speed: Annotated[str | None, typer.Option(help='speed of that impact, as "2 m/s"')] = None,
     hv: Annotated[float | None, typer.Option(help="Vickers hardness instead")] = None,
     hb: Annotated[float | None, typer.Option(help="Brinell hardness instead")] = None,
-    dent_ratio: Annotated[float, typer.Option(help="dent over ball diameter of the Brinell test")] = 0.375,
+    dent_ratio: Annotated[
+        float | None, typer.Option(help="dent over ball diameter of the Brinell test (default: 0.375)")
+    ] = None,
     as_json: AsJson = False,
 ) -> None:
     """The strength of the case's law from one measured e_n, or from a hardness."""
@@ -166,12 +161,15 @@ def calibrate(
 
     if (e_n is None) == (hv is None and hb is None):
         raise CaseError("give one measurement: --e-n with --speed, or --hv, or --hb")
+    if hb is None:
+        refuse(case, "it belongs to --hb", dent_ratio=dent_ratio)
     if e_n is not None:
         if speed is None:
             raise CaseError("--e-n belongs to one impact; add its speed, as --speed '2 m/s'")
         found = c.from_restitution(case, e_n, quantity("--speed", speed, "m/s"))
     else:
-        pressure = c.pressure_of_hardness(vickers=hv, brinell=hb, dent_ratio=dent_ratio)
+        refuse(case, "it belongs to --e-n", speed=speed)
+        pressure = c.pressure_of_hardness(vickers=hv, brinell=hb, dent_ratio=dent_ratio or c.BRINELL_DENT)
         found = c.from_hardness(case, pressure, f"HV {hv:g}" if hv is not None else f"HB {hb:g}")
     if as_json:
         print(json.dumps(vars(found), indent=1))

@@ -8,20 +8,20 @@ from dataclasses import asdict
 import pandas as pd
 from rich.console import Console
 from rich.table import Table
+from rich.text import Text
 
 from ..engines.doctor import Finding
 from ..impacts.experiment import Experiment
 from ..impacts.prediction import Prediction
 from ..impacts.report import records, yielding
+from ..terminal import table
 
 
 def _table(title: str, frame: pd.DataFrame) -> Table:
-    table = Table(title=title)
-    for name in frame.columns:
-        table.add_column(name, justify="right", no_wrap=True)
+    shown = table(title, frame.columns)
     for row in frame.itertuples(index=False):
-        table.add_row(*(f"{v:.6g}" if isinstance(v, float) else str(v) for v in row))
-    return table
+        shown.add_row(*(f"{v:.6g}" if isinstance(v, float) else str(v) for v in row))
+    return shown
 
 
 def predictions(pairs: list[tuple[Experiment, Prediction]], as_json: bool, console: Console) -> None:
@@ -46,9 +46,9 @@ def predictions(pairs: list[tuple[Experiment, Prediction]], as_json: bool, conso
             for material, speed in p.yield_speeds.items():
                 never = "never: the softer body limits the pressure"
                 when = f"from {speed:.4g} m/s on" if math.isfinite(speed) else never
-                console.print(f"{material} yields beneath its surface (1.60 Y) {when}", highlight=False)
+                console.print(f"{material} yields beneath its surface (1.60 Y) {when}")
             for warning in p.warnings():
-                console.print(f"warning: {warning}", style="yellow", highlight=False)
+                console.print(f"warning: {warning}", style="yellow")
     if as_json:
         print(json.dumps(document[0] if len(document) == 1 else document, indent=1))
 
@@ -59,7 +59,7 @@ def findings(found: list[Finding], as_json: bool, console: Console) -> None:
         print(json.dumps([asdict(f) for f in found], indent=1))
         return
     for f in found:
-        mark = "[green]ok[/]" if f.ok else ("[red]missing[/]" if f.needed else "[yellow]absent[/]")
-        console.print(f"{mark} {f.part}: {f.detail}", highlight=False, soft_wrap=True)
+        state, colour = ("ok", "green") if f.ok else ("missing", "red") if f.needed else ("absent", "yellow")
+        console.print(Text.assemble((state, colour), f" {f.part}: {f.detail}"), soft_wrap=True)
         if f.advice:
-            console.print(f"   -> {f.advice}", highlight=False, soft_wrap=True)
+            console.print(f"   -> {f.advice}", soft_wrap=True)

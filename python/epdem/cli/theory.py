@@ -7,7 +7,9 @@ from typing import Annotated
 
 import typer
 
-from .options import AsJson, console, quantity
+from ..terminal import console
+from ..terminal import table as empty_table
+from .options import AsJson, quantity
 
 
 def theory(
@@ -17,8 +19,6 @@ def theory(
     as_json: AsJson = False,
 ) -> None:
     """What every law says of one impact on a wall of the same material."""
-    from rich.table import Table
-
     from ..case.materials import material as find
     from ..theory import pair, printed, yielding
     from ..theory.backbones import LAWS
@@ -50,9 +50,8 @@ def theory(
             json.dumps({"material": material, "source": found.source, "radius": R, "speed": v, **common, "laws": rows})
         )
         return
-    table = Table(title=f"{material} sphere, R = {R:g} m, on {material} at {v:g} m/s (SI units)")
-    for head in ("law", *rows["hertz"]):
-        table.add_column(head, justify="left" if head == "law" else "right", no_wrap=True)
+    title = f"{material} sphere, R = {R:g} m, on {material} at {v:g} m/s (SI units)"
+    table = empty_table(title, ("law", *rows["hertz"]), left=("law",))
     for name, row in rows.items():
         table.add_row(name, *(f"{value:.6g}" for value in row.values()))
     console().print(table)
@@ -60,15 +59,16 @@ def theory(
         f"E* = {E:.5g} Pa, m* = {mass:.5g} kg; first yield at p_0 = {float(p_0):.4f} Y, depth "
         f"{float(depth):.3f} a; v_y0 = {common['v_y0']:.4g} m/s (1.60 Y), "
         f"v_y = {common['v_y']:.4g} m/s (2.8 Y)",
-        highlight=False,
         soft_wrap=True,
     )
-    console().print(f"source: {found.source}", highlight=False, soft_wrap=True)
+    console().print(f"source: {found.source}", soft_wrap=True)
 
 
-def figures(out: Annotated[Path, typer.Option("--out", "-o", help="folder")] = Path("docs/figures")) -> None:
+def figures(
+    out: Annotated[Path, typer.Option("--out", "-o", help="folder")] = Path("docs/figures"), as_json: AsJson = False
+) -> None:
     """Figures 8.16, 8.17 and 8.19 of the chapter, redrawn from theory."""
     from ..studies.figures import draw_all
 
-    for path in draw_all(out):
-        print(path)
+    names = [str(path) for path in draw_all(out)]
+    print(json.dumps({"files": names}) if as_json else "\n".join(names))

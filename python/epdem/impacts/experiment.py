@@ -132,10 +132,15 @@ def _body(case: Case, material: str, radius: float | None) -> Body:
     return plane(m, name=material) if radius is None else sphere(m, radius=radius, name=material)
 
 
+def bodies(case: Case) -> tuple[Body, Body]:
+    """Body and target of a case."""
+    body, target = case.impact.body, case.impact.target
+    return _body(case, body.material, body.radius), _body(case, target.material, target.radius)
+
+
 def experiment(case: Case, law: str | None = None) -> Experiment:
     """A case as physics; `law` replaces the case's law and drops its parameters. Raises CaseError."""
-    body = _body(case, case.impact.body.material, case.impact.body.radius)
-    target = _body(case, case.impact.target.material, case.impact.target.radius)
+    body, target = bodies(case)
     numbers = law_numbers(case.law.name, case.law.parameters()) if law is None else default_numbers(law)
     return Experiment(
         law=pair_of(numbers, body, target),

@@ -3,15 +3,17 @@
 
 import json
 import math
+from collections.abc import Sequence
 from pathlib import Path
+from typing import Any
 
 import pandas as pd
 from rich.console import Console
-from rich.markup import escape
 from rich.table import Table
 
 from ..files import atomic
 from ..folders import claim
+from ..terminal import table
 from .comparison import CHECKED
 from .prediction import Prediction
 from .run import Outcome
@@ -27,15 +29,15 @@ ROW_KEYS = (
 )
 
 
-def _plain(value):
+def _plain(value: Any) -> Any:
     """A value for JSON: numpy scalars as Python's, NaN and infinity as null."""
     value = value.item() if hasattr(value, "item") else value
     return None if isinstance(value, float) and not math.isfinite(value) else value
 
 
-def records(table: pd.DataFrame, keys=None) -> list[dict]:
+def records(rows: pd.DataFrame, keys: Sequence[str] | None = None) -> list[dict[str, object]]:
     """The rows of a table for JSON."""
-    return [{k: _plain(row[k]) for k in (keys or table.columns)} for row in table.to_dict("records")]
+    return [{k: _plain(row[k]) for k in (keys or rows.columns)} for row in rows.to_dict("records")]
 
 
 def run_json(outcome: Outcome) -> str:
@@ -61,7 +63,6 @@ def yielding(prediction: Prediction) -> str:
 def run_table(outcome: Outcome) -> Table:
     """One row per speed and engine."""
     found = "; ".join(f"{law}: {yielding(p)}" for law, p in outcome.predictions.items())
-    table = Table(title=f"{outcome.case.case.title} ({found})", caption_justify="left")
     laws = outcome.results.comparison["law"].nunique() > 1
     heads = [
         "v [m/s]",
@@ -76,8 +77,7 @@ def run_table(outcome: Outcome) -> Table:
         "steps",
         "pass",
     ]
-    for head in heads:
-        table.add_column(escape(head), justify="left" if head in ("engine", "law") else "right", no_wrap=True)
+    shown = table(f"{outcome.case.case.title} ({found})", heads, left=("engine", "law"))
     ordered = outcome.results.comparison.sort_values(["law", "speed", "engine"], kind="stable")
     for row in ordered.to_dict("records"):
         cells = [
@@ -93,8 +93,8 @@ def run_table(outcome: Outcome) -> Table:
             str(row["steps_in_contact"]),
             "yes" if row["passed"] else "NO",
         ]
-        table.add_row(*cells, style=None if row["passed"] else "red")
-    return table
+        shown.add_row(*cells, style=None if row["passed"] else "red")
+    return shown
 
 
 def summary(outcome: Outcome) -> str:
@@ -116,8 +116,8 @@ def show(outcome: Outcome, console: Console) -> None:
     """Print table, warnings and summary."""
     console.print(run_table(outcome))
     for warning in outcome.warnings:
-        console.print(f"warning: {warning}", style="yellow", highlight=False)
-    console.print(summary(outcome), highlight=False, soft_wrap=True)
+        console.print(f"warning: {warning}", style="yellow", markup=False, highlight=False)
+    console.print(summary(outcome), markup=False, highlight=False, soft_wrap=True)
 
 
 def figure(outcome: Outcome) -> Path:
@@ -139,7 +139,8 @@ def figure(outcome: Outcome) -> Path:
             above.plot(part["speed"], part["e_n"], label=f"{name}, {law}", **style)
             below.plot(part["speed"], part["e_n_error"], **style)
     below.axhline(outcome.case.check.e_n, color="0.6", lw=0.8, ls="--", label="tolerance")
-    above.set(ylabel="coefficient of restitution e_n", title=outcome.case.case.title, xscale="log")
+    above.set(ylabel="coefficient of restitution e_n", xscale="log")
+    above.set_title(outcome.case.case.title, parse_math=False)
     below.set(xlabel="impact speed [m/s]", ylabel="error of e_n\n(max over phases)", yscale="log")
     above.legend(fontsize=8)
     for axes in (above, below):

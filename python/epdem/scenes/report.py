@@ -4,10 +4,10 @@
 import json
 
 from rich.console import Console
-from rich.table import Table
 
 from ..files import atomic
 from ..impacts.report import records
+from ..terminal import table
 from .run import SceneOutcome
 
 
@@ -33,11 +33,10 @@ def as_json(outcome: SceneOutcome) -> str:
 
 def show(outcome: SceneOutcome, console: Console) -> None:
     """Print checks and a summary line."""
-    table = Table(title=outcome.case.case.title)
-    for head in ("check", "value", "expected", "error", "tolerance", "pass"):
-        table.add_column(head, justify="left" if head == "check" else "right")
+    heads = ("check", "value", "expected", "error", "tolerance", "pass")
+    shown = table(outcome.case.case.title, heads, left=("check",))
     for row in outcome.results.tables["checks"].to_dict("records"):
-        table.add_row(
+        shown.add_row(
             row["check"],
             f"{row['value']:.5g}",
             f"{row['expected']:.5g}",
@@ -46,9 +45,9 @@ def show(outcome: SceneOutcome, console: Console) -> None:
             "yes" if row["passed"] else "NO",
             style=None if row["passed"] else "red",
         )
-    console.print(table)
+    console.print(shown)
     for warning in outcome.warnings:
-        console.print(f"warning: {warning}", style="yellow", highlight=False)
+        console.print(f"warning: {warning}", style="yellow", markup=False, highlight=False)
     d, rows = outcome.deck, outcome.results.tables["rows"]
     came = " (from results.h5)" if outcome.reused else ""
     if outcome.resumed_from is not None:
@@ -56,6 +55,7 @@ def show(outcome: SceneOutcome, console: Console) -> None:
     console.print(
         f"{outcome.case.name}: {int(rows['particles'].iloc[-1])} spheres, {d.steps} steps of {d.time_step:g} s, "
         f"{outcome.seconds:.1f} s{came}; see {outcome.folder}/",
+        markup=False,
         highlight=False,
         soft_wrap=True,
     )
@@ -83,33 +83,36 @@ def figures(outcome: SceneOutcome) -> None:
             }[name]
         )
         axis.grid(alpha=0.3)
-    axes[0, 0].set_title(outcome.case.case.title)
+    axes[0, 0].set_title(outcome.case.case.title, parse_math=False)
     axes[-1, 0].set_xlabel("time [s]")
     path = outcome.folder / "scene.png"
     with atomic(path) as temporary:
         fig.savefig(temporary, dpi=130)
     plt.close(fig)
     if "ledger" in outcome.results.tables:
-        _ledger_figure(outcome, plt)
+        _ledger_figure(outcome)
 
 
-def _ledger_figure(outcome: SceneOutcome, plt) -> None:
+def _ledger_figure(outcome: SceneOutcome) -> None:
     """energy.png: every term of the ledger against time."""
-    table = outcome.results.tables["ledger"]
+    import matplotlib.pyplot as plt
+
+    rows = outcome.results.tables["ledger"]
     colors = {"kinetic": "C0", "elastic": "C2", "plastic": "C3", "friction": "C1", "left": "C5"}
-    terms = [name for name in colors if name in table and table[name].abs().max() > 0]
+    terms = [name for name in colors if name in rows and rows[name].abs().max() > 0]
     fig, axis = plt.subplots(figsize=(7, 4), layout="constrained")
-    gravity = table["gravity"] - table["gravity"].min()
+    gravity = rows["gravity"] - rows["gravity"].min()
     if gravity.max() > 0:
-        axis.plot(table["time"], gravity, color="C4", label="gravity, above its lowest")
+        axis.plot(rows["time"], gravity, color="C4", label="gravity, above its lowest")
     for name in terms:
         label = "friction (remainder)" if name == "friction" else name
-        axis.plot(table["time"], table[name], color=colors[name], label=label)
-    if table["work"].abs().max() > 0:
-        axis.plot(table["time"], table["work"], "k--", lw=0.8, label="work of the walls")
-    if "friction" not in table:
-        axis.plot(table["time"], table["balance"], color="0.5", lw=0.8, label="left over")
-    axis.set(xlabel="time [s]", ylabel="energy [J]", title=outcome.case.case.title)
+        axis.plot(rows["time"], rows[name], color=colors[name], label=label)
+    if rows["work"].abs().max() > 0:
+        axis.plot(rows["time"], rows["work"], "k--", lw=0.8, label="work of the walls")
+    if "friction" not in rows:
+        axis.plot(rows["time"], rows["balance"], color="0.5", lw=0.8, label="left over")
+    axis.set(xlabel="time [s]", ylabel="energy [J]")
+    axis.set_title(outcome.case.case.title, parse_math=False)
     axis.grid(alpha=0.3)
     axis.legend(fontsize=8)
     with atomic(outcome.folder / "energy.png") as temporary:

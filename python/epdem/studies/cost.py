@@ -9,11 +9,12 @@ import time
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pandas as pd
 
-from ..case.impact import Case, load
+from ..case.impact import Case, load, named
 from ..engines import Engine, engine
 from ..errors import EngineError
 from ..impacts.comparison import compare
@@ -26,12 +27,12 @@ STEPS = (10, 17, 30, 55, 100, 170, 300, 550, 1000, 1700, 3000)
 QUANTITIES = ("e_n", "contact_time", "force_max")
 TARGETS = (1e-2, 1e-3, 1e-4)
 LEAST_PHASES = 8
-YARDSTICK = "liggghts-hertz"
-OWN_LAW = {YARDSTICK: "hertz", "liggghts-thornton_ning": "thornton"}  # the law that LIGGGHTS's own models stand for
+REFERENCE = "liggghts-hertz"
+OWN_LAW = {REFERENCE: "hertz", "liggghts-thornton_ning": "thornton"}  # the law that LIGGGHTS's own models stand for
 
 
 @dataclass(frozen=True)
-class Contender:
+class Model:
     """An engine with a law, and the plan of each number of steps."""
 
     engine: Engine
@@ -46,36 +47,35 @@ class Contender:
 
 @dataclass(frozen=True)
 class Outcome:
-    """rows: one per contender and number of steps; contenders: one per contender."""
+    """rows: one per model and number of steps; models: one per model."""
 
     case: Case
     rows: pd.DataFrame
-    contenders: pd.DataFrame
+    models: pd.DataFrame
     seconds: float
 
 
-def contenders(case: Case, engines: list[str], laws: list[str], steps: tuple[int, ...]) -> list[Contender]:
-    """What runs against what. With LIGGGHTS come its own thornton_ning and, as the yardstick, its own hertz."""
+def models(case: Case, engines: list[str], laws: list[str], steps: tuple[int, ...]) -> list[Model]:
+    """What runs against what. With LIGGGHTS come its own thornton_ning and, as the reference, its own hertz."""
     if "liggghts" in engines:
-        engines = [*engines, "liggghts-thornton_ning", YARDSTICK]
+        engines = [*engines, "liggghts-thornton_ning", REFERENCE]
     numerics = case.numerics.model_copy(update={"phases": max(case.numerics.phases, LEAST_PHASES), "error": None})
-    case = case.model_copy(update={"numerics": numerics})
-    found = []
+    chosen = []
     for name in dict.fromkeys(engines):
         tool = engine(name)
         if reason := tool.missing():
             raise EngineError(f"engine {name}: {reason}")
         for law in [OWN_LAW[name]] if name in OWN_LAW else (laws or [case.law.name]):
             # the case's own law keeps the case's parameters
-            x = experiment(case, None if law == case.law.name else law)
+            x = replace(experiment(case, None if law == case.law.name else law), numerics=numerics)
             prediction = predict(x)
             shortest = float(prediction.contact_time.min())
             plans = {n: plan(x, prediction, time_step=shortest / n) for n in steps}
-            found.append(Contender(tool, law, prediction, plans))
-    return found
+            chosen.append(Model(tool, law, prediction, plans))
+    return chosen
 
 
-def errors(c: Contender, p: Plan, folder: Path) -> dict[str, float]:
+def errors(c: Model, p: Plan, folder: Path) -> dict[str, float]:
     """Largest and rms errors over all speeds and phases, relative to theory; NaN where a contact did not end."""
     for longer in (1.0, 1.3, 2.0):  # coarse steps stretch contacts
         try:
@@ -104,14 +104,16 @@ def cheapest(rows: pd.DataFrame, target: float) -> pd.Series | None:
     return rows[good].iloc[-1] if good.any() else None
 
 
-def _timings(everyone: list[Contender], steps: tuple[int, ...], repetitions: int, folder: Path, progress):
-    """One row per repetition, contender and steps. Contenders alternate, so that drifts of the machine hit all."""
-    rows = []
+def _timings(
+    chosen: list[Model], steps: tuple[int, ...], repetitions: int, folder: Path, progress: Callable[[str], None]
+) -> pd.DataFrame:
+    """One row per repetition, model and steps. Models alternate, so that drifts of the machine hit all."""
+    rows: list[dict[str, Any]] = []
     for k in range(repetitions):
         for n in steps:
-            for c in everyone:
+            for c in chosen:
                 progress(f"time {k + 1}/{repetitions}: {c.label}, {n} steps")
-                rows.append({"repetition": k, "contender": c.label, "steps": n} | c.engine.seconds(c.plans[n], folder))
+                rows.append({"repetition": k, "model": c.label, "steps": n} | c.engine.seconds(c.plans[n], folder))
                 rows[-1]["ns_per_step"] = rows[-1]["stepping"] / (c.plans[n].n * c.plans[n].steps) * 1e9
     return pd.DataFrame(rows)
 
@@ -121,10 +123,10 @@ def spread(x: pd.Series) -> float:
     return float(x.quantile(0.75) - x.quantile(0.25))
 
 
-def to_yardstick(times: pd.DataFrame, value: str, keys: list[str]) -> pd.Series:
-    """Column `value` over that of the yardstick in the row with the same `keys`; NaN without a yardstick."""
-    yard = times[times["contender"] == YARDSTICK].set_index(keys)[value]
-    return times[value] / yard.reindex(pd.MultiIndex.from_frame(times[keys])).to_numpy()
+def over_reference(times: pd.DataFrame, value: str, keys: list[str]) -> pd.Series:
+    """Column `value` over that of the reference in the row with the same `keys`; NaN without a reference."""
+    reference = times[times["model"] == REFERENCE].set_index(keys)[value]
+    return times[value] / reference.reindex(pd.MultiIndex.from_frame(times[keys])).to_numpy()
 
 
 def run(
@@ -136,35 +138,36 @@ def run(
     repetitions: int = 5,
     progress: Callable[[str], None] = lambda text: None,
 ) -> Outcome:
-    """Errors and times of every contender at every number of steps in the shortest contact."""
+    """Errors and times of every model at every number of steps in the shortest contact."""
     case, begin = load(case_path), time.perf_counter()
-    everyone = contenders(case, engines, laws, steps)
+    with named(case_path):
+        chosen = models(case, engines, laws, steps)
     rows = []
     with tempfile.TemporaryDirectory(prefix="epdem-cost-") as scratch:
         folder = Path(scratch)
-        for c in everyone:
+        for c in chosen:
             for n in steps:
                 progress(f"error: {c.label}, {n} steps")
-                row = {"contender": c.label, "engine": c.engine.name, "law": c.law, "steps": n, "impacts": c.plans[n].n}
+                row = {"model": c.label, "engine": c.engine.name, "law": c.law, "steps": n, "impacts": c.plans[n].n}
                 rows.append(row | errors(c, c.plans[n], folder))
-        times = _timings(everyone, steps, repetitions, folder, progress)
+        times = _timings(chosen, steps, repetitions, folder, progress)
     return Outcome(case, *_combine(pd.DataFrame(rows), times), time.perf_counter() - begin)
 
 
 def _combine(rows: pd.DataFrame, times: pd.DataFrame) -> tuple[pd.DataFrame, pd.DataFrame]:
-    """Medians and quartile distances beside the errors; then one row per contender."""
-    times["ratio"] = to_yardstick(times, "ns_per_step", ["repetition", "steps"])
-    groups = times.groupby(["contender", "steps"])
+    """Medians and quartile distances beside the errors; then one row per model."""
+    times["ratio"] = over_reference(times, "ns_per_step", ["repetition", "steps"])
+    groups = times.groupby(["model", "steps"])
     middle = groups[["startup", "setup", "stepping", "ns_per_step", "ratio"]].median()
     middle["stepping_spread"] = groups["stepping"].apply(spread)
-    rows = rows.merge(middle.reset_index(), on=["contender", "steps"])
+    rows = rows.merge(middle.reset_index(), on=["model", "steps"])
     rows["ns_per_impact"] = rows["stepping"] / rows["impacts"] * 1e9
     summary = []
-    for label, part in rows.groupby("contender", sort=False):
-        fine = times[(times["contender"] == label) & (times["steps"] >= 300)]  # a long loop: little but stepping
-        fine = times[times["contender"] == label] if fine.empty else fine
+    for label, part in rows.groupby("model", sort=False):
+        fine = times[(times["model"] == label) & (times["steps"] >= 300)]  # a long loop: little but stepping
+        fine = times[times["model"] == label] if fine.empty else fine
         row = {
-            "contender": label,
+            "model": label,
             "order": order(part["steps"].to_numpy(), part["e_n_error"].to_numpy()),
             "best_error": part["e_n_error"].min(),
             "ns_per_step": fine["ns_per_step"].median(),

@@ -8,12 +8,12 @@ import pandas as pd
 from rich.console import Console
 
 from ..files import atomic
-from .cost import TARGETS, YARDSTICK, Outcome
-from .stability.document import markdown, table
+from ..terminal import frame_table
+from .cost import TARGETS, Outcome
 
 
 def write(outcome: Outcome, folder: Path) -> list[Path]:
-    """cost.csv (one row per contender and number of steps) and cost.png in `folder`."""
+    """cost.csv (one row per model and number of steps) and cost.png in `folder`."""
     data = folder / "cost.csv"
     with atomic(data) as temporary:
         outcome.rows.to_csv(temporary, index=False)
@@ -28,7 +28,7 @@ def figure(outcome: Outcome, path: Path) -> Path:
     import matplotlib.pyplot as plt
 
     fig, (left, right) = plt.subplots(1, 2, sharey=True, figsize=(10, 4.5), layout="constrained")
-    for k, (label, part) in enumerate(outcome.rows.groupby("contender", sort=False)):
+    for k, (label, part) in enumerate(outcome.rows.groupby("model", sort=False)):
         style = {"color": f"C{k}", "marker": "os^Dv<>"[k % 7], "ms": 4, "label": label}
         left.loglog(part["ns_per_impact"], part["e_n_error"], **style)
         right.loglog(part["steps"], part["e_n_error"], **style)
@@ -51,13 +51,13 @@ def _cell(steps: float, nanoseconds: float) -> str:
     return "not reached" if np.isnan(steps) else f"{steps:.0f} steps, {nanoseconds / 1000:.3g} us"
 
 
-def cheapest_table(contenders: pd.DataFrame) -> pd.DataFrame:
-    """One row per contender, in words."""
+def cheapest_table(models: pd.DataFrame) -> pd.DataFrame:
+    """One row per model, in words."""
     rows = []
-    for _, c in contenders.iterrows():
+    for _, c in models.iterrows():
         hertz = "" if np.isnan(c["ratio_to_hertz"]) else f"{c['ratio_to_hertz']:.2f} +- {c['ratio_spread'] / 2:.2f}"
         row = {
-            "contender": c["contender"],
+            "model": c["model"],
             "order": "none" if np.isnan(c["order"]) else f"{c['order']:.2f}",
             "smallest error": f"{c['best_error']:.1e}",
             "ns per step": f"{c['ns_per_step']:.3g}",
@@ -70,9 +70,9 @@ def cheapest_table(contenders: pd.DataFrame) -> pd.DataFrame:
 
 
 def error_table(rows: pd.DataFrame) -> pd.DataFrame:
-    """Errors of every contender at every number of steps, largest and rms over speeds and phases."""
+    """Errors of every model at every number of steps, largest and rms over speeds and phases."""
     names = {"e_n": "e_n", "contact_time": "time", "force_max": "peak force"}
-    columns = {"contender": "contender", "steps": "steps"}
+    columns = {"model": "model", "steps": "steps"}
     columns |= {
         f"{q}_{kind}": f"{text} {short}"
         for q, text in names.items()
@@ -83,7 +83,7 @@ def error_table(rows: pd.DataFrame) -> pd.DataFrame:
 
 
 def bulk_table(bulk: pd.DataFrame) -> pd.DataFrame:
-    """One row per contender and step of a bulk scene, in words."""
+    """One row per model and step of a bulk scene, in words."""
 
     def number(value: float, digits: str = ".2g") -> str:
         return "-" if np.isnan(value) else f"{value:{digits}}"
@@ -92,7 +92,7 @@ def bulk_table(bulk: pd.DataFrame) -> pd.DataFrame:
     for b in bulk.itertuples():
         rows.append(
             {
-                "contender": b.contender,
+                "model": b.model,
                 "share of the limit": f"{b.share:g}",
                 "error of the mean": number(b.error),
                 "rms error of a sphere": number(b.rms),
@@ -108,53 +108,9 @@ def show(outcome: Outcome, bulk: pd.DataFrame | None, console: Console) -> None:
     """Print all tables; `bulk` is that of a bulk scene, if it ran."""
     tables = [
         (f"{outcome.case.case.title}: errors (max and rms over speeds and phases)", error_table(outcome.rows)),
-        ("cheapest setting for an error of e_n (stepping time per impact)", cheapest_table(outcome.contenders)),
+        ("cheapest setting for an error of e_n (stepping time per impact)", cheapest_table(outcome.models)),
     ]
     if bulk is not None:
         tables.append((f"{bulk['spheres'].iloc[0]} spheres in LIGGGHTS: dissipated energy", bulk_table(bulk)))
     for title, frame in tables:
-        console.print(table(title, frame))
-
-
-BULK = """
-## A bulk scene
-
-The same question for two blocks of {spheres} steel spheres together that meet at 300 m/s: the error of the plastic
-work, of its mean and (rms) of single spheres, both over the mean, against a run at a quarter of the finest step; the
-engine's loop time in runs that record nothing, not even that work, and the same over that of LIGGGHTS's own elastic
-`hertz` (`{yardstick}`) with the same steps (medians of interleaved runs and half the distance of the
-quartiles). `order` is that of the rms between neighbouring rows; the error of the mean may pass through zero. Steps are
-shares of the smallest of all these laws' stability limits at 300 m/s. Elastic spheres fly on and collide with others,
-yielding ones stay together: the ratio is that of the scenes, not of the models alone. Hertz contacts dissipate nothing.
-
-{table}
-"""
-
-
-def document(outcome: Outcome, bulk: pd.DataFrame | None, command: str) -> str:
-    """The text of docs/cost.md."""
-    text = f"""# Error against run time
-
-Written by
-
-    {command}
-
-(case `{outcome.case.name}`, {outcome.seconds:.0f} s). Errors are those of
-the worst speed and phase of the case; times are medians of interleaved
-runs that record nothing, stepping alone (the engine's own loop time). Absolute times belong to one machine and what
-else it did; the ratio to LIGGGHTS's own elastic `hertz` (`{YARDSTICK}`) in the same run
-is the figure of merit (median and half the distance of the quartiles, from 300 steps in contact on).
-
-{markdown(cheapest_table(outcome.contenders))}
-
-`not reached`: no number of steps up to {outcome.rows["steps"].max()} keeps e_n within that error.
-
-![error of e_n against stepping time and steps](figures/cost.png)
-
-## All errors
-
-{markdown(error_table(outcome.rows))}
-"""
-    if bulk is not None:
-        text += BULK.format(spheres=bulk["spheres"].iloc[0], yardstick=YARDSTICK, table=markdown(bulk_table(bulk)))
-    return text
+        console.print(frame_table(title, frame))

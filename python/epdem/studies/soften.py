@@ -14,7 +14,7 @@ import tomlkit
 from ..case.impact import read_toml
 from ..errors import CaseError
 from ..impacts.prediction import SMALL_DEFORMATION
-from ..laws import library as claw
+from ..laws.strengths import law_named
 
 STRENGTH_POWER, STEP_POWER, STRAIN_POWER = 0.8, 0.4, 0.2
 
@@ -47,15 +47,15 @@ def _scaled(value: str, factor: float) -> str:
 def _replacements(data: dict[str, Any], factor: float) -> dict[tuple[str, ...], str]:
     """The new text of every value that changes, by its keys."""
     law = data["law"]
-    strength = claw.laws()[law["name"]].strength
+    strength = law_named(law["name"]).strength
     found: dict[tuple[str, ...], str] = {}
     for name, material in data["materials"].items():
         found["materials", name, "young_modulus"] = _scaled(material["young_modulus"], 1.0 / factor)
-        for key in ("yield_stress", *([strength.name] if strength else [])):
+        for key in ("yield_stress", *([strength] if strength else [])):
             if key in material:
                 found["materials", name, key] = _scaled(material[key], factor**-STRENGTH_POWER)
-    if strength and strength.name in law:
-        found["law", strength.name] = _scaled(law[strength.name], factor**-STRENGTH_POWER)
+    if strength and strength in law:
+        found["law", strength] = _scaled(law[strength], factor**-STRENGTH_POWER)
     name = f"{data['case']['name']}_soft{factor:g}".replace(".", "_").replace("+", "")[:64]
     return found | {("case", "name"): name}
 
@@ -81,8 +81,8 @@ def strain_ratio(data: dict[str, Any], path: object) -> float:
     if not scenes.is_scene(data):
         return float(predict(experiment(impacts.parse(data, path))).strain_ratio.max())
     case = scenes.parse(data, path)
-    if case.law.name not in claw.laws():
-        raise CaseError(f"{path}: law.name = {case.law.name!r} does not exist; there are {', '.join(claw.laws())}")
+    with impacts.named(path):
+        law_named(case.law.name)
     material, radius = case.scene.particles[0].material, case.scene.particles[0].radii()[0]
     x = model.wall_impact(case, material, radius, case.scene.walls, model.highest_speed(case))
     return float(predict(x).strain_ratio.max())

@@ -10,12 +10,12 @@ import pandas as pd
 
 from ... import data_file
 from ... import rendering as decks
-from ...laws import library as claw
+from ...laws.library import laws
 from ...liggghts import dump, launcher, log, stl
 from ...liggghts.properties import SOFT, elastic, per_pair, strength
 from .running import plastic
-from .scenes import DENSITY, POISSON, STRENGTH, Scene
-from .squeezed import stored
+from .scenes import DENSITY, POISSON, Scene
+from .two_walls import stored
 
 FRAMES = 40
 LIMIT = 120.0  # seconds a scene may take
@@ -37,15 +37,14 @@ def write(
     folder.mkdir(parents=True, exist_ok=True)
     steps = math.ceil(scene.duration / time_step)
     every = max(1, steps // (frames or 1))
-    info = claw.laws()[scene.law]
+    law = laws()[scene.law]
     moduli = [E for E, _ in scene.materials]
     properties = [*elastic(moduli, [POISSON] * len(moduli))]
-    if info.strength:
-        unit_strength = STRENGTH[info.strength.property]
-        properties += strength(scene.law, [unit_strength * p_y for _, p_y in scene.materials])
+    if law.strength:
+        properties += strength(scene.law, [scene.strength(p_y) for _, p_y in scene.materials])
     if model:
         properties.append(per_pair("coefficientRestitution", len(moduli), 1.0, "-", "undamped"))
-    memory = claw.laws()[scene.law].memory
+    memory = law.memory
     deck = SimpleNamespace(
         title=scene.title,
         plates=scene.plate_speed > 0,
@@ -114,7 +113,7 @@ def ledger(scene: Scene, deck: SimpleNamespace, folder: Path) -> pd.DataFrame:
     """Energies at every frame [J]: kinetic, elastic (theory's, from overlap and memory of each contact), plastic (what
     the plugin has booked), brought in by the plate; no term is the remainder. `total` is their sum.
     """
-    memory = claw.laws()[scene.law].memory
+    memory = laws()[scene.law].memory
     atoms = frames(folder)
     rows, brought = [], 0.0
     push = _pushes(folder) if deck.plates else {}

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Error of the dissipated energy of a bulk scene against run time, in LIGGGHTS, with its own `hertz` as yardstick."""
+"""Error of the dissipated energy of a bulk scene against run time, in LIGGGHTS, with its own `hertz` as reference."""
 
 import tempfile
 from collections.abc import Callable
@@ -11,17 +11,17 @@ import pandas as pd
 
 from ...engines import engine
 from ...errors import EngineError
-from ...laws import library as claw
-from ..cost import YARDSTICK, spread, to_yardstick
+from ...laws.library import laws as declared
+from ..cost import REFERENCE, over_reference, spread
 from .bulk import execute, frames, write
 from .scenes import SHARE, Scene, shock, with_law
 
 SHARES = (0.4, 0.2, 0.1, 0.05, 0.025)  # of the stability limit at the highest speed
-REFERENCE = 0.25  # of the finest share: an error of order 2 is known to 1/16
+FINEST = 0.25  # share of the finest step, of the run that errors are against: an error of order 2 is known to 1/16
 
 
 @dataclass(frozen=True)
-class Contender:
+class Model:
     """A scene with a law, by our model or (`model`) by one of LIGGGHTS's own."""
 
     label: str
@@ -40,17 +40,17 @@ class Contender:
         return execute(folder)
 
 
-def errors(c: Contender, steps: dict[float, float], folder: Path, progress: Callable[[str], None]) -> pd.DataFrame:
+def errors(c: Model, steps: dict[float, float], folder: Path, progress: Callable[[str], None]) -> pd.DataFrame:
     """Error of the mean dissipated energy, and `rms` error of a sphere's, both over the mean; a row per share.
 
     `steps`: time step [s] of each share. The mean's error may pass through zero, as those of single spheres have
     either sign; `order` is that of the rms between neighbouring shares. NaN where the law dissipates nothing.
     """
-    table = pd.DataFrame({"contender": c.label, "spheres": len(c.scene.position), "share": list(steps)})
-    if claw.laws()[c.scene.law].memory == 0:
+    table = pd.DataFrame({"model": c.label, "spheres": len(c.scene.position), "share": list(steps)})
+    if declared()[c.scene.law].memory == 0:
         return table.assign(error=np.nan, rms=np.nan, order=np.nan)
     progress(f"bulk error: {c.label}, reference")
-    reference = c.dissipated(REFERENCE * min(steps.values()), folder)
+    reference = c.dissipated(FINEST * min(steps.values()), folder)
     off = []
     for share, time_step in steps.items():
         progress(f"bulk error: {c.label}, {share:g} of the limit")
@@ -68,33 +68,33 @@ def run(
     shares: tuple[float, ...] = SHARES,
     progress: Callable[[str], None] = lambda text: None,
 ) -> pd.DataFrame:
-    """One row per law (and LIGGGHTS's own hertz) and share: errors, seconds and the ratio to the yardstick.
+    """One row per law (and LIGGGHTS's own hertz) and share: errors, seconds and the ratio to the reference.
 
     The blocks meet for about two collisions a sphere: long enough to be a bulk, too short for round-off to grow.
     All take the same steps, shares of the smallest of their stability limits at the highest speed.
-    `seconds` and `ratio` (to the yardstick) are medians, `..._spread` their distances of the quartiles; contenders
+    `seconds` and `ratio` (to the reference) are medians, `..._spread` their distances of the quartiles; models
     alternate, so that drifts of the machine hit all.
     Raises EngineError without LIGGGHTS.
     """
     if reason := engine("liggghts").missing():
         raise EngineError(f"engine liggghts: {reason}")
     scene, rows = shock((8, 8, 8)), []
-    everyone = [Contender(f"liggghts, {law}", with_law(scene, law)) for law in laws]
-    everyone.append(Contender(YARDSTICK, with_law(scene, "hertz"), "hertz"))
-    limit = min(c.scene.time_step() for c in everyone) / SHARE
+    chosen = [Model(f"liggghts, {law}", with_law(scene, law)) for law in laws]
+    chosen.append(Model(REFERENCE, with_law(scene, "hertz"), "hertz"))
+    limit = min(c.scene.time_step() for c in chosen) / SHARE
     steps = {share: share * limit for share in shares}
     with tempfile.TemporaryDirectory(prefix="epdem-bulk-") as scratch:
         folder = Path(scratch)
-        table = pd.concat([errors(c, steps, folder, progress) for c in everyone], ignore_index=True)
+        table = pd.concat([errors(c, steps, folder, progress) for c in chosen], ignore_index=True)
         for k in range(repetitions):
             for share, time_step in steps.items():
-                for c in everyone:
+                for c in chosen:
                     progress(f"bulk time {k + 1}/{repetitions}: {c.label}, {share:g} of the limit")
                     rows.append(
-                        {"repetition": k, "share": share, "contender": c.label, "seconds": c.seconds(time_step, folder)}
+                        {"repetition": k, "share": share, "model": c.label, "seconds": c.seconds(time_step, folder)}
                     )
     times = pd.DataFrame(rows)
-    times["ratio"] = to_yardstick(times, "seconds", ["repetition", "share"])
-    groups = times.groupby(["contender", "share"])[["seconds", "ratio"]]
+    times["ratio"] = over_reference(times, "seconds", ["repetition", "share"])
+    groups = times.groupby(["model", "share"])[["seconds", "ratio"]]
     middle = groups.median().join(groups.agg(spread).add_suffix("_spread"))
-    return table.merge(middle.reset_index(), on=["contender", "share"])
+    return table.merge(middle.reset_index(), on=["model", "share"])

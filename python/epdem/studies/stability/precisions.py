@@ -16,7 +16,7 @@ import pandas as pd
 from ... import rendering as decks
 from ...errors import EngineError
 from ...yade.launcher import environment
-from .cases import Extreme, build
+from .cases import build
 from .running import position_floor, setting
 
 PROGRAMS = ("yade", "yade-longdouble", "yade-float128")  # 53, 64 and 113 bits; the last is the reference
@@ -54,7 +54,7 @@ def floors(*, times=(1e-4, 1e-2, 1e2)) -> pd.DataFrame:
     template = decks.environment(Path(__file__).parent).get_template("roundoff.py.j2")
     with tempfile.TemporaryDirectory(prefix="epdem-yade-") as scratch:
         for t in times:
-            s = setting(Extreme("roundoff", "roundoff", build("roundoff", ratio=1e4, times=t)), "hertz")
+            s = setting(build("roundoff", ratio=1e4, times=t), "hertz")
             dt, v, body = SHARE * s.limit, float(s.x.speed[0]), s.x.body
             script = template.render(
                 radius=body.radius,

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""One contact again and again: drift over 1e9 steps and 10^4 reloads; and the verdict on these and a squeeze."""
+"""One contact again and again: drift over 1e9 steps and 10^4 reloads; and the verdict on these and on two walls."""
 
 import time
 
@@ -11,7 +11,7 @@ from ...impacts.prediction import SMALL_DEFORMATION
 from .cases import Extreme
 from .running import Setting, Verdict, setting
 from .sampling import PositionSampler, Sampler
-from .squeezed import squeeze
+from .two_walls import judge_two_walls
 from .variants import CYCLE, carried
 
 BOUNCE_SHARE = 0.01  # of the stability limit: about 200 steps in contact
@@ -83,7 +83,7 @@ def reloads(v: Verdict, s: Setting, sampler: Sampler, cycles: int) -> None:
 
 
 def judge_repeats(extreme: Extreme, law: str, sampler: Sampler, *, steps: int, cycles: int) -> Verdict:
-    """The verdict on bounces, reloads or a squeeze; the first run in the embedded engine alone."""
+    """The verdict on bounces, reloads or a sphere between two walls; the first run in the embedded engine alone."""
     v, begin = Verdict(extreme.name, extreme.group, sampler.name, law), time.perf_counter()
     if sampler.name != "embedded" and extreme.kind == "bounces":
         v.status, v.reason = "embedded only", "not run: 1e9 steps take hours in an engine with positions"
@@ -100,7 +100,7 @@ def judge_repeats(extreme: Extreme, law: str, sampler: Sampler, *, steps: int, c
         elif extreme.kind == "reloads":
             reloads(v, s, sampler, cycles)
         else:
-            squeeze(v, s, sampler)
+            judge_two_walls(v, s, sampler)
     except EpdemError as error:
         v.fail(str(error))
     v.seconds = time.perf_counter() - begin

@@ -5,7 +5,7 @@ import numpy as np
 import pandas as pd
 
 from ...errors import EpdemError
-from .cases import Extreme, build
+from .cases import build
 from .running import Setting, position_floor, setting
 from .sampling import Sampler
 
@@ -43,7 +43,7 @@ def floors(law: str, samplers: list[Sampler], *, times=(1e-4, 1e-2, 3.0, 1e2), s
     """
     rows = []
     for t in times:
-        s = setting(Extreme("roundoff", "roundoff", build("roundoff", ratio=1e4, times=t)), law)
+        s = setting(build("roundoff", ratio=1e4, times=t), law)
         dt = share * s.limit
         steps = int(1.5 * s.contact_time / dt) + 20
         gap = (np.arange(8) + 0.5) / 8 * s.x.speed[0] * dt

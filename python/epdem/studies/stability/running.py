@@ -8,7 +8,7 @@ import numpy as np
 
 from ...errors import EngineError, EpdemError
 from ...impacts.engine import EPS, not_representable
-from ...impacts.experiment import Experiment, experiment
+from ...impacts.experiment import Experiment
 from ...impacts.prediction import SMALL_DEFORMATION, predict
 from ...impacts.timestep import stability_limit
 from ...theory.backbones import Backbone
@@ -68,7 +68,7 @@ class Setting:
 
 def setting(extreme: Extreme, law: str) -> Setting:
     """Theory of an extreme case, with the work already stored in an overlap at t = 0."""
-    x = experiment(extreme.case, law)
+    x = extreme.experiment(law)
     prediction, theory = predict(x), x.theory()
     kinetic, top = 0.5 * x.m_star * float(x.speed[0]) ** 2, float(prediction.overlap_max[0])
     start = None if extreme.start is None else extreme.start * top
@@ -110,7 +110,7 @@ def plastic(theory: Backbone, top: np.ndarray) -> np.ndarray:
 @dataclass(frozen=True)
 class Rung:
     """One share of the limit: largest error of e_n and largest energy created; inf: a contact did not end, or the
-    engine died (`words`: its last ones), as it may when a sphere is thrown out of the box.
+    engine died (`message`: its last one), as it may when a sphere is thrown out of the box.
     """
 
     share: float
@@ -118,7 +118,7 @@ class Rung:
     created: float
     steps: int
     finite: bool = True
-    words: str = ""
+    message: str = ""
 
 
 def measure(s: Setting, sampler: Sampler, share: float, phases: int | None = None) -> Rung | None:
@@ -134,7 +134,7 @@ def measure(s: Setting, sampler: Sampler, share: float, phases: int | None = Non
     try:
         got = [sampler(s.x, h, gap, int(steps * dt / h)) for h, gap in phased(s, dt, phases or sampler.phases)]
     except EngineError as error:
-        return Rung(share, np.inf, np.inf, 0, words=str(error))
+        return Rung(share, np.inf, np.inf, 0, message=str(error))
     e_n, peak = (np.concatenate([getattr(g, name) for g in got]) for name in ("e_n", "overlap_max"))
     theory, kinetic = s.x.theory(), 0.5 * s.x.m_star * float(s.x.speed[0]) ** 2
     with np.errstate(all="ignore"):
@@ -217,9 +217,9 @@ def _ladder(v: Verdict, s: Setting, sampler: Sampler, coarse) -> None:
     v.useless_at = min((r.share for r in rungs if not r.error <= WRONG), default=np.nan)
     v.breaks_at = min((r.share for r in rungs if not r.created <= BROKEN), default=np.nan)
     for rung in fine:
-        if rung.words:
-            v.fail(f"at {rung.share:g} of the limit: {rung.words}")
-    v.notes += [f"at {r.share:g} of the limit: {r.words}" for r in rungs if r.words]
+        if rung.message:
+            v.fail(f"at {rung.share:g} of the limit: {rung.message}")
+    v.notes += [f"at {r.share:g} of the limit: {r.message}" for r in rungs if r.message]
     everything = [*fine, *rungs, *filter(None, [finest])]
     v.steps = sum(r.steps for r in everything)
     if wild := [r.share for r in everything if not r.finite]:

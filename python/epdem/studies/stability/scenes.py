@@ -5,14 +5,14 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ...laws import library as claw
-from ...theory import backbones, pair
+from ...laws.strengths import default_numbers
+from ...theory import pair
+from ...theory.backbones import LAWS, Backbone
 from ...theory.timestep import stability_limit
 
 DENSITY, POISSON = 7800.0, 0.3
 STEEL = (208e9, 3.0e9)  # E [Pa], p_y [Pa]
 SHARE = 0.02  # of the stability limit at the highest speed: e_n within 1e-4
-STRENGTH = {"yieldPressure": 1.0, "yieldStress": 1 / 2.8}  # a law's strength over p_y
 
 
 @dataclass(frozen=True)
@@ -37,13 +37,18 @@ class Scene:
         """Of one sphere [kg]."""
         return float(pair.sphere_mass(radius=self.radius, density=DENSITY))
 
-    def theory(self, i: int, j: int, *, plate: bool = False) -> backbones.Backbone:
+    def theory(self, i: int, j: int, *, plate: bool = False) -> Backbone:
         """The backbone of types i and j (from 1); of a sphere on a plate of type 1 if `plate`."""
         (Ei, pi), (Ej, pj) = self.materials[i - 1], self.materials[j - 1]
         E_star = float(pair.E_star(Ei, POISSON, Ej, POISSON))
-        cls, info = backbones.LAWS[self.law], claw.laws()[self.law]
-        strength = {cls.keywords[p.name]: STRENGTH[p.property] * min(pi, pj) for p in info.parameters if p.unit == "Pa"}
-        return cls(E_star=E_star, R_star=self.radius if plate else self.radius / 2, **strength)
+        spec = default_numbers(self.law).pair(self.strength(pi), self.strength(pj))
+        R_star = self.radius if plate else self.radius / 2
+        return spec.backbone(E_star=E_star, R_star=R_star)
+
+    def strength(self, p_y: float) -> float:
+        """The law's strength [Pa] of a material of yield pressure p_y [Pa]: that pressure, or a yield stress."""
+        pressure_over_stress = LAWS["thornton"].default_ratio
+        return p_y / pressure_over_stress if LAWS[self.law].strength == "yield_stress" else p_y
 
     def time_step(self) -> float:
         """SHARE of the smallest stability limit of all pairs at the highest speed [s]."""

@@ -1,28 +1,21 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""docs/stability.md and the tables of the terminal, from the outcome alone."""
+"""docs/stability.md: every extreme case with every law in every engine.
 
-import numpy as np
+Run: .venv/bin/python docs/stability.py      (needs LIGGGHTS and YADE; about an hour)
+"""
+
+from pathlib import Path
+
 import pandas as pd
-from rich.table import Table
+from pages import markdown
 
-from .cases import extremes
-from .repeats import BOUNCE_SHARE, DRIFT, FORCE
-from .roundoff import FORMULA
-from .running import BROKEN, COARSE, CREATED, ERROR, FINE, FINEST, LEAST_ORDER, WRONG
-from .suite import POSITION_COARSE, Outcome, summary
-
-
-def cell(value: object) -> str:
-    """A table cell: three digits, a dash for what was not reached."""
-    if isinstance(value, float | np.floating):
-        return "-" if np.isnan(value) else f"{value:.3g}"
-    return str(value)
-
-
-def markdown(frame: pd.DataFrame) -> str:
-    """A frame as a Markdown table."""
-    head = [f"| {' | '.join(map(str, frame.columns))} |", f"|{'---|' * len(frame.columns)}"]
-    return "\n".join(head + [f"| {' | '.join(map(cell, row))} |" for row in frame.itertuples(index=False)])
+from epdem.studies import stability
+from epdem.studies.stability.cases import extremes
+from epdem.studies.stability.repeats import BOUNCE_SHARE, DRIFT, FORCE
+from epdem.studies.stability.roundoff import FORMULA
+from epdem.studies.stability.running import BROKEN, COARSE, CREATED, ERROR, FINE, FINEST, LEAST_ORDER, WRONG
+from epdem.studies.stability.suite import POSITION_COARSE, Outcome, summary
+from epdem.terminal import cell
 
 
 def limits(verdicts: pd.DataFrame) -> pd.DataFrame:
@@ -38,16 +31,6 @@ def limits(verdicts: pd.DataFrame) -> pd.DataFrame:
     return pd.DataFrame(rows).fillna("")
 
 
-def table(title: str, frame: pd.DataFrame) -> Table:
-    """A frame for the terminal; long headings wrap."""
-    shown = Table(title=title)
-    for k, name in enumerate(frame.columns):
-        shown.add_column(str(name), justify="right", min_width=6, no_wrap=k == 0)
-    for row in frame.itertuples(index=False):
-        shown.add_row(*map(cell, row))
-    return shown
-
-
 TEXT = """# Stability on stiff and extreme cases
 
 Written by `{command}`; every number below comes from that command.
@@ -56,7 +39,7 @@ Written by `{command}`; every number below comes from that command.
 to 1e7, v/v_y from 1e-6 to 1e6, R from 100 nm to 10 m, radius ratios to 1e4, mass ratios to 1e12, 1 nm/s to 10 km/s,
 nu = 0 and 0.5, a rigid wall, overlap at t = 0 (0 to 2 alpha_max), all sixteen corners of E, E*/p_y, R and v/v_y
 together, one
-contact bounced for 1e9 steps, loaded 10^4 times, and a sphere squeezed between two walls.
+contact bounced for 1e9 steps, loaded 10^4 times, and a sphere between two walls that it overlaps.
 
 All steps are shares of the stability limit 2 sqrt(m*/k_n), k_n = 2E* a_max, of one normal contact. A case passes if
 
@@ -184,3 +167,13 @@ def document(outcome: Outcome, command: str) -> str:
         bulk=bulk(outcome.bulk),
         finer="" if outcome.precisions.empty else FINER.format(table=markdown(outcome.precisions)),
     )
+
+
+def main() -> None:
+    """Run the whole set and write the page."""
+    outcome = stability.run(["embedded", "liggghts", "yade"], [], progress=lambda text: print(text, flush=True))
+    Path(__file__).with_suffix(".md").write_text(document(outcome, "python docs/stability.py"))
+
+
+if __name__ == "__main__":
+    main()

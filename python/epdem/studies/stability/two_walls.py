@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""A sphere squeezed between two walls: two contacts that yield, part and meet again, with an energy balance."""
+"""A sphere between two walls that it overlaps: two contacts that yield, part and meet again, with an energy balance."""
 
 import numpy as np
 
@@ -83,8 +83,8 @@ def path(s: Setting, sampler: Sampler, share: float) -> tuple[np.ndarray, np.nda
     return embedded_path(s, time_step, steps)
 
 
-def squeeze(v: Verdict, s: Setting, sampler: Sampler) -> None:
-    """The energy balance of the squeezed sphere holds to second order in dt."""
+def judge_two_walls(v: Verdict, s: Setting, sampler: Sampler) -> None:
+    """The energy balance of a sphere between two walls holds to second order in dt."""
     drift = []
     for share in SHARES:
         total = balance(s, *path(s, sampler, share))

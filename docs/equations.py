@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The map of equations, from the code itself: number, formula, source, function, line of C++, tests.
+"""docs/equations.md, the map of equations from the code itself: number, formula, source, function, C++, tests.
 
-`python -m epdem.equations > docs/equations.md` writes it from a checkout; a test keeps it true. A docstring states an
-equation as `Eq. 8.84 [Thornton 1997]: v_y = ...`, to the end of the paragraph; a C++ header names it in a comment, and
-the declaration below the comment is the place. A test calls the function by its name; for a method, whose name alone
-tells nothing, it says so: `# equation: backbones.Backbone.unloading`.
+Run: .venv/bin/python docs/equations.py     (a test keeps the page true)
+
+A docstring states an equation as `Eq. 8.84 [Thornton 1997]: v_y = ...`, to the end of the paragraph. A test calls the
+function by its name; for a method, whose name alone says little, it states `# equation: backbone.Backbone.unloading`.
+What computes with an equation in C++ stands in CPP.
 """
 
 import ast
@@ -13,17 +14,31 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
-from .theory.sources import SOURCES
+from epdem.theory.sources import SOURCES
 
-ROOT = Path(__file__).resolve().parents[2]
+ROOT = Path(__file__).resolve().parents[1]
 STATEMENT = re.compile(r"^Eq\. (8\.\d\d) \[(.+?)\]: (.+?)(?=\n\n|\Z)", re.DOTALL | re.MULTILINE)
-MENTION = re.compile(r"\b8\.\d\d\b")
 HEADERS, THEORY, TESTS = "cpp_contact/include/epdem", "python/epdem/theory", "tests"
+# header, function and code of what computes with an equation; a law that merely leads to one (8.83, 8.84) does not
+CPP = {
+    "8.78": [("cavity.hpp", "Cavity::parameters", '"firstYieldRatio", "1", 1.60')],
+    "8.80": [
+        ("cavity.hpp", "Cavity::parameters", '"plasticRatio", "1", 2.8'),
+        ("johnson.hpp", "Johnson::default_ratio", "default_ratio = 3.0"),
+        ("thornton.hpp", "Thornton::default_ratio", "default_ratio = 2.8"),
+    ],
+    "8.81": [("cavity.hpp", "Cavity::load", "2.0 / 3.0 * c_Y + (1.0 + beta) / 3.0 * log_s")],
+    "8.82": [("unloading.hpp", "unload", "(1.0 - tau) * disc * sqrt(disc) + B * v * sqrt(v) * detail::segment(v)")],
+    "8.85": [
+        ("cavity.hpp", "Cavity::load", "2.0 * pi * R_star * c_P * Y * delta, sqrt(2.0 * R_star * delta)"),
+        ("johnson.hpp", "Johnson::load", "slope_ratio * R_star * delta, sqrt(2.0 * R_star * delta)"),
+    ],
+}
 
 
 @dataclass(frozen=True, order=True)
 class Entry:
-    """One equation in one function; `cpp` and `tests` are paths inside the project, with a line or a test's name."""
+    """One equation in one function; `cpp`: header and function; `tests`: file and test."""
 
     number: str
     function: str
@@ -43,19 +58,12 @@ def _functions(path: Path) -> Iterator[tuple[str, str]]:
                     yield f"{path.stem}.{node.name}.{part.name}", ast.get_docstring(part) or ""
 
 
-def _places(root: Path) -> dict[str, list[str]]:
-    """Number -> header:line of the first declaration below each comment that names it."""
-    found: dict[str, list[str]] = {}
-    for path in sorted(root.glob("*.hpp")):
-        lines = path.read_text().splitlines()
-        for k, line in enumerate(lines):
-            if line.lstrip().startswith("//"):
-                code = (n for n in range(k, len(lines)) if re.match(r"\s*(template|struct|inline|real)\b", lines[n]))
-                place = f"{path.name}:{next(code, k) + 1}"
-                for number in MENTION.findall(line):
-                    if place not in found.setdefault(number, []):
-                        found[number].append(place)
-    return found
+def _places(number: str) -> tuple[str, ...]:
+    """`header: function` of the C++ that computes with an equation. ValueError if its code is not there any more."""
+    for header, _, code in CPP.get(number, ()):
+        if code not in (ROOT / HEADERS / header).read_text():
+            raise ValueError(f"{header}: {code!r} is not there any more; say in CPP what computes eq. {number} now")
+    return tuple(f"{header}: {function}" for header, function, _ in CPP.get(number, ()))
 
 
 def _tests_of(name: str, tests: dict[str, str]) -> tuple[str, ...]:
@@ -89,12 +97,12 @@ def _test_functions() -> dict[str, str]:
 
 def entries() -> list[Entry]:
     """All equations that docstrings of the theory state, by number. KeyError for a source that is not in SOURCES."""
-    places, tests, rows = _places(ROOT / HEADERS), _test_functions(), []
+    tests, rows = _test_functions(), []
     for path in sorted((ROOT / THEORY).glob("*.py")):
         for name, doc in _functions(path):
             for number, source, formula in STATEMENT.findall(doc):
-                cpp = tuple(places.get(number, ()))
-                rows.append(Entry(number, name, " ".join(formula.split()), source, cpp, _tests_of(name, tests)))
+                formula = " ".join(formula.split())
+                rows.append(Entry(number, name, formula, source, _places(number), _tests_of(name, tests)))
                 SOURCES[source]
     return sorted(rows)
 
@@ -105,7 +113,7 @@ def page() -> str:
         "# Equations",
         "",
         'Numbers as in the chapter "Interaction of Elastic-Plastic Particles"; functions are in `epdem.theory`,',
-        f"headers in `{HEADERS}`, tests in `{TESTS}/physics`. Made by `python -m epdem.equations > docs/equations.md`.",
+        f"headers in `{HEADERS}`, tests in `{TESTS}/physics`. Made by `python docs/equations.py`.",
         "",
         "| eq. | formula | source | function | C++ | tests |",
         "|---|---|---|---|---|---|",
@@ -120,4 +128,4 @@ def page() -> str:
 
 
 if __name__ == "__main__":
-    print(page(), end="")
+    (ROOT / "docs/equations.md").write_text(page())

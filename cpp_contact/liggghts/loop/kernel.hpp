@@ -1,0 +1,165 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// The contacts of a block, computed as lanes. Compiled once per instruction set, which EPDEM_KERNELS names: everything
+// is in unnamed namespaces or depends on the width of Lanes, so that no function compiled for a newer processor can
+// stand in for one of the same name compiled for an older one.
+#include "epdem/laws.hpp"
+#include "epdem/tangential.hpp"
+#include "epdem/viscous.hpp"
+#include "models.hpp"
+
+namespace epdem::liggghts::loop {
+namespace {
+
+/// The first `count` numbers of each lane's history.
+template <int count>
+EPDEM_INLINE void read(double* const* history, Lanes* value) {
+  for (int at = count - 4; at > -4; at -= 4) {
+    const int first = at < 0 ? 0 : at;  // 3 are left: the fourth is read a second time
+    if (at < -1) break;
+    const Columns c = columns([=](int l) __attribute__((always_inline)) { return load<Row>(history[l] + first); });
+    value[first] = c.a, value[first + 1] = c.b, value[first + 2] = c.c, value[first + 3] = c.d;
+  }
+  for (int k = 0; k < (count < 4 ? count : count % 4 == 3 ? 0 : count % 4); ++k)
+    for (int l = 0; l < lane_count; ++l) value[k][l] = history[l][k];
+}
+
+template <int count>
+EPDEM_INLINE void write(double* const* history, const Lanes* value) {
+  for (int at = count - 4; at > -4; at -= 4) {
+    const int first = at < 0 ? 0 : at;
+    if (at < -1) break;
+    rows({value[first], value[first + 1], value[first + 2], value[first + 3]},
+         [=](int l, Row row) __attribute__((always_inline)) { store(history[l] + first, row); });
+  }
+  for (int k = 0; k < (count < 4 ? count : count % 4 == 3 ? 0 : count % 4); ++k)
+    for (int l = 0; l < lane_count; ++l) history[l][k] = value[k][l];
+}
+
+EPDEM_INLINE Lanes at(const Line& line, int k) { return load<Lanes>(line.a + k); }
+
+/// Rows of the atoms of lanes k, k + 1, ...
+EPDEM_INLINE Three of(const double* base, const int* index) {
+  const Columns c = columns([=](int l) __attribute__((always_inline)) { return load<Row>(base + 3 * long(index[l])); });
+  return {c.a, c.b, c.c};
+}
+EPDEM_INLINE Three difference(const double* base, const int* i, const int* j) {
+  const Columns c = columns([=](int l) __attribute__((always_inline)) {
+    return load<Row>(base + 3 * long(i[l])) - load<Row>(base + 3 * long(j[l]));
+  });
+  return {c.a, c.b, c.c};
+}
+
+EPDEM_INLINE void put(Line* lines, int k, const Three& t) {
+  store(lines[0].a + k, t.x);
+  store(lines[1].a + k, t.y);
+  store(lines[2].a + k, t.z);
+}
+
+EPDEM_INLINE Lanes effective_mass(const Block& b, int k, bool freeze) {
+  const Lanes mi = at(b.mi, k), mj = at(b.mj, k), m = reduced_finite(mi, mj);
+  if (!freeze) return m;
+  return select(at(b.frozen_j, k) > 0.0, mi, select(at(b.frozen_i, k) > 0.0, mj, m));
+}
+
+/// History of a pair: the law's memory, the step of the last evaluation, the models beside it in LIGGGHTS's order.
+template <class Law, Tangential tangential, bool rolls>
+[[gnu::flatten]] void contacts(Block& b, int n, const Pass& pass) {
+  constexpr bool springs = tangential == Tangential::history;
+  constexpr int last_step = memory<Law>, shear = last_step + 1, roll = shear + 3 * springs;
+  constexpr int slots = Law::yields || springs || rolls ? roll + 3 * rolls : 0;
+  for (int k = 0; k < n; k += lane_count) {
+    const int m = pass.several ? k : 0;
+    const auto constant_of = [&](int which) __attribute__((always_inline)) { return at(b.constants[which], m); };
+
+    Contact c;
+    c.radi = at(b.radi, k);
+    c.radj = at(b.radj, k);
+    c.delta = difference(pass.x, b.i + k, b.j + k);
+    c.omega_i = of(pass.omega, b.i + k);
+    c.omega_j = of(pass.omega, b.j + k);
+    surface(c, difference(pass.v, b.i + k, b.j + k));
+    c.reff = reduced_finite(c.radi, c.radj);
+
+    Lanes value[slots ? slots : 1] = {};
+    State<Law> before{};
+    if constexpr (slots > 0) {
+      read<slots>(b.history + k, value);
+      const auto parted = pass.now - value[last_step] > 1.0;  // since the last evaluation: a new contact
+      for (int s = 0; s < slots; ++s) value[s] = select(parted, Lanes{}, value[s]);
+      if constexpr (Law::yields) __builtin_memcpy(static_cast<void*>(&before), value, sizeof before);
+    }
+
+    Law law;
+    Lanes data[sizeof law / sizeof(Lanes)];
+    for (unsigned d = 0; d < sizeof law / sizeof(Lanes); ++d) data[d] = constant_of(law_data + d);
+    __builtin_memcpy(static_cast<void*>(&law), data, sizeof law);
+    const Step<Law> now = step(law, c.reff, before, c.deltan);
+    if (pass.work) {
+      store(b.grown.a + k, plastic_growth(law, c.reff, before, now.after));
+      store(b.stored.a + k, elastic_energy(law, c.reff, before, c.deltan));
+    }
+
+    c.Fn = now.force;
+    c.kn = 4.0 / 3.0 * law.E_star * now.radius;
+    c.kt = tangential_stiffness(constant_of(shear_modulus), now.radius);
+    c.gammat = Lanes{};
+    if (pass.damped || pass.viscous) {
+      const Lanes mass = effective_mass(b, k, pass.freeze);
+      if (pass.viscous) c.Fn = damped_force(law, c.reff, before, now, constant_of(dashpot), mass, -c.vn);
+      c.gammat = tangential_damping(constant_of(damping), c.kt, mass);
+    }
+
+    Three force = c.Fn * c.en, torque_i{}, torque_j{};
+    if (pass.cohesion != Cohesion::off) {
+      const Lanes pull = cohesive_force(c, pass.cohesion, constant_of(cohesion_density));
+      if (pass.cohesion_slides) c.Fn += pull;
+      force = force + pull * c.en;
+    }
+    if constexpr (tangential != Tangential::off) {
+      Three Ft;
+      if constexpr (springs) {
+        Three stretch{value[shear], value[shear + 1], value[shear + 2]};
+        Ft = sliding_spring(c, constant_of(friction), pass.damped, pass.dt, stretch);
+        value[shear] = stretch.x, value[shear + 1] = stretch.y, value[shear + 2] = stretch.z;
+      } else {
+        Ft = sliding_dashpot(c, constant_of(friction));
+      }
+      const Three lever = cross(c.en, Ft);
+      force = force + Ft;
+      torque_i = -c.cri * lever;
+      torque_j = -c.crj * lever;
+    }
+    if constexpr (rolls) {
+      Three torque{value[roll], value[roll + 1], value[roll + 2]};
+      rolling_spring(c, constant_of(rolling_friction), pass.torsion, pass.dt, torque);
+      value[roll] = torque.x, value[roll + 1] = torque.y, value[roll + 2] = torque.z;
+      torque_i = torque_i - torque;
+      torque_j = torque_j + torque;
+    } else if (pass.rolling == Rolling::cdt) {
+      const Three torque = rolling_torque(c, constant_of(rolling_friction), pass.torsion);
+      torque_i = torque_i - torque;
+      torque_j = torque_j + torque;
+    }
+
+    if constexpr (slots > 0) {
+      if constexpr (Law::yields) __builtin_memcpy(value, &now.after, sizeof now.after);
+      value[last_step] = constant<Lanes>(pass.now);
+      write<slots>(b.history + k, value);
+    }
+    put(b.force, k, force);
+    put(b.torque_i, k, torque_i);
+    put(b.torque_j, k, torque_j);
+  }
+}
+
+}  // namespace
+
+#define EPDEM_OF_LAW(Class)                                                                 \
+  {{&contacts<Class<Lanes>, Tangential::off, false>, &contacts<Class<Lanes>, Tangential::off, true>}, \
+   {&contacts<Class<Lanes>, Tangential::no_history, false>, &contacts<Class<Lanes>, Tangential::no_history, true>}, \
+   {&contacts<Class<Lanes>, Tangential::history, false>, &contacts<Class<Lanes>, Tangential::history, true>}},
+extern const Kernels EPDEM_KERNELS;
+const Kernels EPDEM_KERNELS = {{EPDEM_LAWS(EPDEM_OF_LAW)}};
+#undef EPDEM_OF_LAW
+
+}  // namespace epdem::liggghts::loop

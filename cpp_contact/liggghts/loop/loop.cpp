@@ -1,0 +1,215 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include "loop.hpp"
+
+#include <cstdlib>
+#include <cstring>
+#include <string>
+
+#include "force.h"
+#include "modify.h"
+
+namespace epdem::liggghts::loop {
+
+using namespace LIGGGHTS::ContactModels;
+using LAMMPS_NS::PairGran;
+
+const Kernels& kernels(LAMMPS_NS::LAMMPS* lmp) {
+  const char* const asked = std::getenv("EPDEM_SIMD");
+  const std::string want = asked ? asked : "";
+#if defined __x86_64__
+  __builtin_cpu_init();
+  const bool avx2 = __builtin_cpu_supports("avx2");
+  const bool avx512 = __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") &&
+                      __builtin_cpu_supports("avx512vl");
+  if (avx512 && (want.empty() || want == "avx512")) return kernels_avx512;
+  if (avx2 && (want.empty() || want == "avx2")) return kernels_avx2;
+#endif
+  if (!want.empty() && want != "sse2") {
+    const std::string text = "EPDEM_SIMD = " + want + ": this processor has no such instructions; leave it unset, or take "
+                             "sse2, avx2 or avx512";
+    lmp->error->all(FLERR, text.c_str());
+  }
+  return kernels_sse2;
+}
+
+const char* PairLoop::obstacle(PairGran* pair, int vflag, int addflag) const {
+  static const char* const asked = std::getenv("EPDEM_LOOP");
+  if (asked && std::strcmp(asked, "generic") == 0) return "EPDEM_LOOP = generic";
+  if (force->newton_pair) return "newton on";
+  if (pair->fr_pair()) return "rigid bodies";
+  if (!atom->rmass || !atom->sphere_flag || atom->shapetype_flag) return "particles that are no spheres with a mass each";
+  if (pair->storeContactForces() || pair->storeContactForcesStress()) return "contact forces are stored";
+  if (pair->storeSumDelta()) return "surface multicontact";
+  if (pair->store_sum_normal_force()) return "normal forces are summed up";
+  if (neighbor->contactDistanceFactor != 1.0) return "contacts at a distance";
+  if (modify->n_fixes_style("insert/stream/predefined") > 0) return "fix insert/stream/predefined";
+  if (vflag) return "steps that ask for the virial";
+  if (addflag) return "steps of compute pair/gran/local";
+  // what happens beside the steps, or too seldom to speak of, costs nobody anything: no reason is given
+  if (!pair->computeflag() || !pair->shearupdate()) return "";
+  if (atom->nlocal + atom->nghost >= atom->nmax) return "";  // no number can be read behind the last atom
+  return nullptr;
+}
+
+void PairLoop::run(PairGran* pair, const Plan& plan, double now) {
+  if (atom->nlocal == 0) return;
+  pair_ = pair;
+  pass_ = {atom->x[0], atom->v[0], atom->omega[0], now, update->dt, plan.rolling, plan.cohesion, false, plan.damped,
+           plan.viscous, pair->freeze_group_bit() != 0, plan.ledger != nullptr, plan.torsion, plan.cohesion_slides};
+  flags_ = CONTACT_NORMAL_MODEL | (plan.tangential != Tangential::off ? CONTACT_TANGENTIAL_MODEL : 0) |
+           (plan.cohesion != Cohesion::off ? CONTACT_COHESION_MODEL : 0) |
+           (plan.rolling == Rolling::epsd2 ? CONTACT_ROLLING_MODEL : 0);
+  kind_of_lanes_ = -1;
+
+  Block& b = *block_;
+  const LAMMPS_NS::NeighList& list = *pair->list;
+  const double *const x = atom->x[0], *const radius = atom->radius;
+  int n = 0;
+  for (int ii = 0; ii < list.inum; ++ii) {
+    const int i = list.ilist[ii], count = list.numneigh[i];
+    const int* const neighbours = list.firstneigh[i];
+    const double xi = x[3 * i], yi = x[3 * i + 1], zi = x[3 * i + 2], ri = radius[i];
+    for (int first = 0; first < count; first += block_size) {  // nearly always one turn
+      const int last = std::min(count, first + block_size);
+      if (n + last - first > block_size) {
+        finish(plan, n);
+        n = 0;
+      }
+      for (int jj = first; jj < last; ++jj) {  // every neighbour is noted, and stays if it touches
+        const int j = neighbours[jj] & NEIGHMASK;
+        const double dx = xi - x[3 * j], dy = yi - x[3 * j + 1], dz = zi - x[3 * j + 2], sum = ri + radius[j];
+        b.i[n] = i;
+        b.j[n] = j;
+        slot_[n] = jj;
+        n += dx * dx + dy * dy + dz * dz < sum * sum;
+      }
+    }
+  }
+  finish(plan, n);
+}
+
+void PairLoop::finish(const Plan& plan, int n) {
+  if (n == 0) return;
+  fetch(plan, n);
+  prepare(plan, n);
+  kernel_(*block_, n, pass_);
+  if (plan.tangential != Tangential::off || plan.rolling != Rolling::off)
+    scatter<true>(n);
+  else
+    scatter<false>(n);
+  if (plan.ledger) book(*plan.ledger, n);
+}
+
+/// What lies apart in memory is asked for in time, and contacts are marked as such.
+void PairLoop::fetch(const Plan& plan, int n) {
+  Block& b = *block_;
+  const double *const v = atom->v[0], *const w = atom->omega[0], *const radius = atom->radius, *const mass = atom->rmass;
+  const double *const f = atom->f[0], *const t = atom->torque[0];
+  const int *const type = atom->type, *const mask = atom->mask;
+  const int frozen = pair_->freeze_group_bit(), size = pair_->dnum();
+  int** const flags = pair_->listgranhistory ? pair_->listgranhistory->firstneigh : nullptr;
+  double** const histories = pair_->listgranhistory ? pair_->listgranhistory->firstdouble : nullptr;
+  for (int k = 0; k < n; ++k) {
+    const int i = b.i[k], j = b.j[k];
+    if (histories) {
+      double* const h = histories[i] + size * slot_[k];
+      __builtin_prefetch(h, 1);
+      __builtin_prefetch(h + size - 1, 1);
+      b.history[k] = h;
+      int& flag = flags[i][slot_[k]];
+      if (flag != flags_) flag |= flags_;
+    }
+    __builtin_prefetch(v + 3 * j);
+    __builtin_prefetch(w + 3 * j);
+    __builtin_prefetch(f + 3 * j, 1);
+    __builtin_prefetch(t + 3 * j, 1);
+    b.radi.a[k] = radius[i];
+    b.radj.a[k] = radius[j];
+    b.mi.a[k] = mass[i];
+    b.mj.a[k] = mass[j];
+    if (plan.width > 2) kind_[k] = type[i] * plan.width + type[j];
+    if (frozen) {
+      b.frozen_i.a[k] = (mask[i] & frozen) != 0;
+      b.frozen_j.a[k] = (mask[j] & frozen) != 0;
+    }
+  }
+}
+
+/// The constants of the block's materials, and something harmless for the lanes behind the last contact.
+void PairLoop::prepare(const Plan& plan, int n) {
+  Block& b = *block_;
+  static double nobodys[64];
+  for (int k = n; k < n + most_lanes; ++k) {
+    b.i[k] = b.i[0];
+    b.j[k] = b.j[0];
+    b.history[k] = nobodys;
+    b.radi.a[k] = b.radj.a[k] = b.mi.a[k] = b.mj.a[k] = 1.0;
+  }
+  const int first = plan.width > 2 ? kind_[0] : plan.width + 1;
+  pass_.several = false;
+  if (plan.width > 2)
+    for (int k = 1; k < n; ++k) pass_.several |= kind_[k] != first;
+  if (!pass_.several) {
+    if (first == kind_of_lanes_) return;
+    kind_of_lanes_ = first;
+    for (int c = 0; c < plan.count; ++c)
+      for (int k = 0; k < most_lanes; ++k) b.constants[c].a[k] = plan.constants[first][c];
+    return;
+  }
+  kind_of_lanes_ = -1;
+  for (int k = n; k < n + most_lanes; ++k) kind_[k] = first;
+  for (int k = 0; k < n + most_lanes; ++k) {
+    const double* const from = plan.constants[kind_[k]].data();
+    for (int c = 0; c < plan.count; ++c) b.constants[c].a[k] = from[c];
+  }
+}
+
+/// Forces and torques, in the order of the list; those of a body are kept at hand while its pairs follow each other.
+template <bool torques>
+void PairLoop::scatter(int n) {
+  const Block& b = *block_;
+  double *const f = atom->f[0], *const t = atom->torque[0];
+  const int nlocal = atom->nlocal;
+  double others[6] = {};  // a ghost's force is computed by its owner
+  for (int k = 0; k < n;) {
+    const int i = b.i[k];
+    double *const fi = f + 3 * i, *const ti = t + 3 * i;
+    double fx = fi[0], fy = fi[1], fz = fi[2], tx = ti[0], ty = ti[1], tz = ti[2];
+    do {
+      const int j = b.j[k];
+      double* const fj = j < nlocal ? f + 3 * j : others;
+      const double gx = b.force[0].a[k], gy = b.force[1].a[k], gz = b.force[2].a[k];
+      fx += gx;
+      fy += gy;
+      fz += gz;
+      fj[0] -= gx;
+      fj[1] -= gy;
+      fj[2] -= gz;
+      if constexpr (torques) {
+        double* const tj = j < nlocal ? t + 3 * j : others + 3;
+        tx += b.torque_i[0].a[k];
+        ty += b.torque_i[1].a[k];
+        tz += b.torque_i[2].a[k];
+        tj[0] += b.torque_j[0].a[k];
+        tj[1] += b.torque_j[1].a[k];
+        tj[2] += b.torque_j[2].a[k];
+      }
+      ++k;
+    } while (k < n && b.i[k] == i);
+    fi[0] = fx;
+    fi[1] = fy;
+    fi[2] = fz;
+    if constexpr (torques) {
+      ti[0] = tx;
+      ti[1] = ty;
+      ti[2] = tz;
+    }
+  }
+}
+
+void PairLoop::book(Ledger& ledger, int n) {
+  const Block& b = *block_;
+  for (int k = 0; k < n; ++k) ledger.share<false>(b.grown.a[k], b.stored.a[k], {b.i[k], b.j[k], atom->nlocal});
+}
+
+}  // namespace epdem::liggghts::loop

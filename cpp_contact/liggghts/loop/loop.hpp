@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// The pair loop for throughput: which neighbours touch, without a branch; contacts computed as lanes; forces added in the
+// order of LIGGGHTS's own loop, so that not one bit differs.
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "block.hpp"
+#include "host.hpp"
+#include "ledger.hpp"
+
+namespace epdem::liggghts::loop {
+
+/// The kernels of the widest instruction set of this processor, or of EPDEM_SIMD=sse2|avx2|avx512; ends the run if that
+/// is none of them or the processor lacks it.
+const Kernels& kernels(LAMMPS_NS::LAMMPS* lmp);
+
+/// What the settings and properties of a run say, the same for all its steps.
+struct Plan {
+  Tangential tangential = Tangential::off;
+  Rolling rolling = Rolling::off;
+  Cohesion cohesion = Cohesion::off;
+  bool damped = false, viscous = false, torsion = false, cohesion_slides = false;
+  Ledger* ledger = nullptr;                    // where plastic work is booked, if it is asked for
+  int width = 0, count = 0;                    // number of types + 1; constants of a pair of types
+  std::vector<std::vector<double>> constants;  // by type of i * width + type of j; see Constant
+};
+
+class PairLoop : protected LAMMPS_NS::Pointers {
+ public:
+  PairLoop(LAMMPS_NS::LAMMPS* lmp, Kernel kernel) : Pointers(lmp), kernel_(kernel), block_(std::make_unique<Block>()) {}
+
+  /// Why this step cannot take this loop; nullptr: it can.
+  const char* obstacle(LAMMPS_NS::PairGran* pair, int vflag, int addflag) const;
+
+  /// All forces between pairs; `now` is the step.
+  void run(LAMMPS_NS::PairGran* pair, const Plan& plan, double now);
+
+ private:
+  void finish(const Plan& plan, int n);
+  void fetch(const Plan& plan, int n);
+  void prepare(const Plan& plan, int n);
+  template <bool torques>
+  void scatter(int n);
+  void book(Ledger& ledger, int n);
+
+  const Kernel kernel_;
+  const std::unique_ptr<Block> block_;
+  int slot_[block_size + most_lanes];           // place in the neighbour list of i
+  int kind_[block_size + most_lanes];           // pair of types
+  Pass pass_{};
+  LAMMPS_NS::PairGran* pair_ = nullptr;
+  int flags_ = 0, kind_of_lanes_ = -1;
+};
+
+}  // namespace epdem::liggghts::loop

@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// LIGGGHTS's own models beside the law, on lanes: the operations of its headers in their order, so that the bits agree.
+#pragma once
+
+#include "block.hpp"
+#include "epdem/lanes.hpp"
+
+namespace epdem::liggghts::loop {
+namespace {
+
+using epdem::select;
+
+struct Three {
+  Lanes x, y, z;
+};
+
+EPDEM_INLINE Three operator*(Lanes s, const Three& a) { return {s * a.x, s * a.y, s * a.z}; }
+EPDEM_INLINE Three operator*(double s, const Three& a) { return {s * a.x, s * a.y, s * a.z}; }
+EPDEM_INLINE Three operator/(const Three& a, Lanes s) { return {a.x / s, a.y / s, a.z / s}; }
+EPDEM_INLINE Three operator+(const Three& a, const Three& b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
+EPDEM_INLINE Three operator-(const Three& a, const Three& b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
+EPDEM_INLINE Three operator-(const Three& a) { return {-a.x, -a.y, -a.z}; }
+EPDEM_INLINE Lanes dot(const Three& a, const Three& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+EPDEM_INLINE Lanes magnitude(const Three& a) { return sqrt(dot(a, a)); }
+EPDEM_INLINE Three cross(const Three& a, const Three& b) {
+  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+template <class M>
+EPDEM_INLINE Three select(M m, const Three& a, const Three& b) {
+  return {select(m, a.x, b.x), select(m, a.y, b.y), select(m, a.z, b.z)};
+}
+
+/// A contact as LIGGGHTS's models see it; names are theirs.
+struct Contact {
+  Lanes radi, radj, r, rinv, radsum, deltan, cri, crj, vn;
+  Three delta, en, vtr, omega_i, omega_j;
+  Lanes Fn, kn, kt, gammat, reff;
+};
+
+/// surface default.
+EPDEM_INLINE void surface(Contact& c, const Three& v) {
+  c.r = sqrt(dot(c.delta, c.delta));
+  c.rinv = 1.0 / c.r;
+  c.en = c.rinv * c.delta;
+  c.vn = dot(v, c.en);
+  const Three vt = v - c.vn * c.en;
+  c.radsum = c.radi + c.radj;
+  c.deltan = c.radsum - c.r;
+  c.cri = c.radi - 0.5 * c.deltan;
+  c.crj = c.radj - 0.5 * c.deltan;
+  const Three wr = c.rinv * (c.cri * c.omega_i + c.crj * c.omega_j);
+  const Three &d = c.delta;
+  c.vtr = {vt.x - (d.z * wr.y - d.y * wr.z), vt.y - (d.x * wr.z - d.z * wr.x), vt.z - (d.y * wr.x - d.x * wr.y)};
+}
+
+/// cohesion sjkr, sjkr2: a force along the normal.
+EPDEM_INLINE Lanes cohesive_force(const Contact& c, Cohesion model, Lanes density) {
+  constexpr double pi = 3.14159265358979323846;
+  const Lanes &r = c.r, &ri = c.radi, &rj = c.radj;
+  if (model == Cohesion::sjkr) {
+    const Lanes area = -pi / 4 * ((r - ri - rj) * (r + ri - rj) * (r - ri + rj) * (r + ri + rj)) / (r * r);
+    return -density * area;
+  }
+  return -density * (pi * 2. * (2. * ri * rj / (ri + rj)) * (ri + rj - r));
+}
+
+/// tangential no_history.
+EPDEM_INLINE Three sliding_dashpot(const Contact& c, Lanes friction) {
+  const Lanes v = magnitude(c.vtr), limit = friction * fabs(c.Fn);
+  return (-select(limit < c.gammat * v, limit / v, c.gammat)) * c.vtr;
+}
+
+/// tangential history: spring with dashpot, cut off by friction; `stretch` before and after.
+EPDEM_INLINE Three sliding_spring(const Contact& c, Lanes friction, bool damped, double dt, Three& stretch) {
+  stretch = stretch + dt * c.vtr;
+  stretch = stretch - dot(stretch, c.en) * c.en;
+  const Three spring = -(c.kt * stretch);
+  const Lanes most = friction * fabs(c.Fn), pull = c.kt * magnitude(stretch);
+  const auto slides = pull > most;
+  Three force = damped ? spring - c.gammat * c.vtr : spring;
+  if (any(slides)) {  // four divisions
+    const Three slipping = (most / pull) * spring;
+    stretch = select(slides, (-slipping) / c.kt, stretch);
+    force = select(slides, slipping, force);
+  }
+  return force;
+}
+
+/// rolling_friction cdt: the torque on j.
+EPDEM_INLINE Three rolling_torque(const Contact& c, Lanes friction, bool torsion) {
+  const Three w = c.omega_i - c.omega_j;
+  const Lanes speed = magnitude(w);
+  Three torque = (friction * c.kn * c.deltan * c.reff / speed) * w;
+  if (!torsion) torque = torque - dot(torque, c.en) * c.en;
+  return select(speed > 0.0, torque, Three{});
+}
+
+/// rolling_friction epsd2: a spring, cut off; `torque` before and after is that on j.
+EPDEM_INLINE void rolling_spring(const Contact& c, Lanes friction, bool torsion, double dt, Three& torque) {
+  Three w = c.omega_i - c.omega_j;
+  if (!torsion) w = w - dot(w, c.en) * c.en;
+  torque = torque + (dt * (c.kt * c.reff * c.reff)) * w;
+  const Lanes now = magnitude(torque), most = fabs(c.Fn) * c.reff * friction;
+  torque = select(now > most, (most / now) * torque, torque);
+}
+
+}  // namespace
+}  // namespace epdem::liggghts::loop

@@ -1,0 +1,63 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Consoles, tables and progress. Text is shown as it is: titles and paths may look like the markup of rich."""
+
+import contextlib
+import math
+import sys
+from collections.abc import Callable, Collection, Iterable, Iterator
+
+import pandas as pd
+from rich.console import Console
+from rich.progress import BarColumn, Progress, ProgressColumn, TextColumn, TimeElapsedColumn
+from rich.table import Table
+from rich.text import Text
+
+
+def console() -> Console:
+    """As wide as the terminal, or wide enough for our tables in a pipe."""
+    found = Console(markup=False, emoji=False, highlight=False)
+    return found if found.is_terminal else Console(width=170, markup=False, emoji=False, highlight=False)
+
+
+def table(title: str, heads: Iterable[str], *, left: Collection[str] = (), wrap: bool = False) -> Table:
+    """An empty table; columns are aligned right but those named in `left`. `wrap`: all but the first may wrap."""
+    shown = Table(title=Text(title))
+    for k, head in enumerate(heads):
+        side = "left" if head in left else "right"
+        shown.add_column(Text(head), justify=side, no_wrap=not wrap or k == 0, min_width=6 if wrap else None)
+    return shown
+
+
+def cell(value: object) -> str:
+    """A table cell: three digits, a dash for what was not reached."""
+    if isinstance(value, float):
+        return "-" if math.isnan(value) else f"{value:.3g}"
+    return str(value)
+
+
+def frame_table(title: str, frame: pd.DataFrame) -> Table:
+    """A DataFrame as a table; long headings wrap."""
+    shown = table(title, map(str, frame.columns), wrap=True)
+    for row in frame.itertuples(index=False):
+        shown.add_row(*map(cell, row))
+    return shown
+
+
+@contextlib.contextmanager
+def status() -> Iterator[Callable[[str], None]]:
+    """A line on standard error that says what is being done, and vanishes; yields the function that changes it."""
+    with Console(stderr=True).status("") as line:
+        yield lambda text: line.update(Text(text))
+
+
+def bar(*columns: ProgressColumn) -> Progress:
+    """A progress bar on standard error that vanishes at the end; none where that is no terminal."""
+    return Progress(
+        TextColumn("{task.description}", markup=False),
+        BarColumn(),
+        *columns,
+        TimeElapsedColumn(),
+        console=Console(stderr=True),
+        transient=True,
+        disable=not sys.stderr.isatty(),
+    )

@@ -1,0 +1,36 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""How tests call the command: its exit code, its words, and what it leaves in the current folder."""
+
+import hashlib
+from dataclasses import dataclass
+from pathlib import Path
+
+import pytest
+import typer
+
+from epdem.cli import main
+
+CASES = Path(__file__).parents[2] / "cases"
+COMMANDS = {c.name: c for c in typer.main.get_command(main.app).commands.values()}
+
+
+@dataclass(frozen=True)
+class Call:
+    """What a command did; `files` is a hash of each file of the current folder."""
+
+    code: int
+    out: str
+    err: str
+    files: tuple[tuple[str, str], ...]
+
+
+def call(words, capsys, monkeypatch) -> Call:
+    """The command in this process, in the current folder, as its entry point runs it."""
+    monkeypatch.setattr("sys.argv", ["epdem", *map(str, words)])
+    monkeypatch.setattr("signal.signal", lambda *words: None)
+    capsys.readouterr()
+    with pytest.raises(SystemExit) as ended:
+        main.main()
+    written = {str(p): hashlib.sha256(p.read_bytes()).hexdigest() for p in Path().rglob("*") if p.is_file()}
+    code = ended.value.code
+    return Call(code if isinstance(code, int) else 0, *capsys.readouterr(), tuple(sorted(written.items())))

@@ -1,0 +1,148 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Every command, once for its JSON document and once for a mistake; text of the user is shown as it is."""
+
+import json
+import shutil
+from pathlib import Path
+from types import SimpleNamespace
+
+import pandas as pd
+import pytest
+from calls import CASES, COMMANDS, call
+
+from epdem import paths, terminal
+from epdem.engines import ENGINES
+from epdem.scenes import report
+from epdem.studies import crosscheck
+
+STEEL = (CASES / "steel_wall.toml").read_text()
+SPEEDS = STEEL[STEEL.index("speeds =") : STEEL.index("\n", STEEL.index("speeds ="))]
+ONE_SPEED = STEEL.replace(SPEEDS, 'speeds = ["5 m/s"]')
+TITLE = "[/y] [red]steel[/] :smile: $1 [mm] \\\\"
+
+DOCUMENTS = {  # words, and what the document must hold
+    "run": (["steel.toml", "-e", "embedded"], lambda d: d["passed"] and d["rows"][0]["speed"] == 5.0),
+    "deck": (["steel.toml", "-o", "d"], lambda d: d["files"][0] == "d/in.impact"),
+    "predict": (["steel.toml"], lambda d: abs(d["rows"][0]["e_n"] - 0.6763264338717) < 1e-12),
+    "doctor": ([], lambda d: {"C library", "engine embedded"} <= {f["part"] for f in d}),
+    "crosscheck": (["steel.toml"], lambda d: [r["model"] for r in d["rows"]] == ["theory", "embedded"]),
+    "theory": ([], lambda d: abs(d["laws"]["thornton"]["e_n"] - 0.6763264338717) < 1e-12),
+    "figures": (["-o", "f"], lambda d: len(d["files"]) == 3),
+    "timestep": (["steel.toml"], lambda d: d["error"] <= d["target"] == 1e-3),
+    "cost": (
+        ["steel.toml", "-e", "embedded", "--repetitions", "1"],
+        lambda d: d["models"][0]["model"] == "embedded, thornton" and len(d["rows"]) == 11,
+    ),
+    "stability": (["-g", "poisson", "-l", "hertz", "--every", "2"], lambda d: d["passed"] and len(d["rows"]) == 1),
+    "stress": (["-g", "poisson", "-l", "hertz", "--every", "2"], lambda d: d["passed"] and len(d["rows"]) == 1),
+    "explain": (["steel.toml"], lambda d: all(line["reason"] for line in d)),
+    "soften": (["steel.toml", "-k", "32"], lambda d: d["file"] == "steel_soft32.toml" and len(d["changes"]) == 3),
+    "calibrate": (["steel.toml", "--hv", "100"], lambda d: abs(d["value"] / 980.665e6 - 1) < 1e-12),
+}
+MISTAKES = {  # words, and what the sentence must hold
+    "run": (["steel.toml", "-e", "abaqus"], "'abaqus' does not exist; there are embedded"),
+    "deck": (["steel.toml", "-o", "d", "-e", "embedded"], "reads no deck"),
+    "predict": (["steel.toml", "-l", "hook"], "steel.toml: law.name = 'hook' does not exist; there are hertz"),
+    "doctor": (["steel.toml"], "extra argument(s) (steel.toml); see epdem doctor --help"),
+    "crosscheck": (["nowhere.toml"], "nowhere.toml: no such file"),
+    "theory": (["--radius", "3 kg"], "--radius '3 kg': the unit 'kg' has the wrong dimension"),
+    "figures": (["-o", "steel.toml"], "steel.toml"),
+    "timestep": (["steel.toml", "--error", "1"], "'--error': must be less than or equal to 0.1; see epdem timestep"),
+    "cost": (["steel.toml", "-l", "hook"], "steel.toml: law.name = 'hook' does not exist"),
+    "stability": (["-g", "modulu"], "--group 'modulu' does not exist; there are modulus"),
+    "stress": (["--steps", "1"], "'--steps': must be greater than or equal to 1000"),
+    "explain": (["bad.toml"], "bad.toml: not valid TOML"),
+    "soften": (["steel.toml", "-k", "-3"], "--factor -3, must be > 0"),
+    "calibrate": (["steel.toml"], "give one measurement"),
+}
+
+
+@pytest.fixture
+def folder(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    (tmp_path / "steel.toml").write_text(ONE_SPEED)
+    (tmp_path / "bad.toml").write_text("a = ")
+    return tmp_path
+
+
+def test_the_tables_name_every_command():
+    assert set(DOCUMENTS) == set(MISTAKES) == set(COMMANDS)
+
+
+@pytest.mark.parametrize("command", COMMANDS)
+def test_a_command_prints_one_json_document_and_nothing_else(command, folder, capsys, monkeypatch):
+    monkeypatch.setattr(crosscheck, "ENGINES", {"embedded": ENGINES["embedded"]})
+    monkeypatch.setattr(crosscheck, "OTHERS", {})
+    monkeypatch.setattr(crosscheck, "FOREIGN", {})
+    words, holds = DOCUMENTS[command]
+    done = call([command, *words, "--json"], capsys, monkeypatch)
+    assert done.code == 0 or command == "doctor", done.err
+    assert holds(json.loads(done.out))
+    assert done.err == "" or command == "stress"
+
+
+@pytest.mark.parametrize("command", COMMANDS)
+def test_a_mistake_is_one_sentence_exit_code_2_and_no_file(command, folder, capsys, monkeypatch):
+    words, says = MISTAKES[command]
+    done = call([command, *words], capsys, monkeypatch)
+    assert (done.code, done.out) == (2, "") and says in done.err, done.err
+    sentences = [line for line in done.err.splitlines() if not line.startswith("DeprecationWarning")]
+    assert len(sentences) == 1 and sentences[0].startswith("epdem: ")
+    assert {name for name, _ in done.files} == {"steel.toml", "bad.toml"}
+
+
+@pytest.mark.parametrize("command", ["run", "predict", "cost", "crosscheck"])
+def test_titles_and_paths_that_look_like_markup_are_shown_as_they_are(command, folder, capsys, monkeypatch):
+    (folder / "[b]").mkdir()
+    (folder / "[b]/steel.toml").write_text(ONE_SPEED.replace("Steel sphere on a steel wall", TITLE))
+    for name in ("OTHERS", "FOREIGN"):
+        monkeypatch.setattr(crosscheck, name, {})
+    monkeypatch.setattr(crosscheck, "ENGINES", {"embedded": ENGINES["embedded"]})
+    words = [] if command in ("predict", "crosscheck") else ["-e", "embedded"]
+    words += [] if command == "predict" else ["-o", "[b]/out"]
+    done = call([command, "[b]/steel.toml", *words], capsys, monkeypatch)
+    assert done.code == 0, done.err
+    assert TITLE.replace("\\\\", "\\") in done.out
+    assert command == "predict" or "[b]/out/" in done.out
+
+
+def test_title_and_folder_of_a_scene_are_shown_as_they_are(capsys):
+    check = {"check": "[y]", "value": 1.0, "expected": 1.0, "error": 0.0, "tolerance": 1e-3, "passed": True}
+    tables = {"checks": pd.DataFrame([check]), "rows": pd.DataFrame({"particles": [1]})}
+    report.show(
+        SimpleNamespace(
+            case=SimpleNamespace(name="s", case=SimpleNamespace(title=TITLE)),
+            results=SimpleNamespace(tables=tables),
+            warnings=["[/y]"],
+            deck=SimpleNamespace(steps=1, time_step=1e-6),
+            plan=SimpleNamespace(steps=1, time_step=1e-6),
+            seconds=1.0,
+            reused=False,
+            resumed_from=None,
+            folder="[b]",
+        ),
+        terminal.console(),
+    )
+    out = capsys.readouterr().out
+    assert TITLE in out and "[y]" in out and "warning: [/y]" in out and "see [b]/" in out
+
+
+def test_progress_shows_any_text_and_leaves_none_behind(capsys):
+    with terminal.status() as progress:
+        progress("[/y]")
+    with terminal.bar() as bar:
+        bar.add_task("[/y]", total=2)
+    assert capsys.readouterr() == ("", "")
+
+
+def test_no_progress_line_stands_above_the_error_of_a_scene(folder, capsys, monkeypatch):
+    shutil.copy(CASES / "settle_glass.toml", folder / "scene.toml")
+    monkeypatch.setattr(paths, "launcher", lambda: Path("/bin/false"))
+    done = call(["run", "scene.toml"], capsys, monkeypatch)
+    assert done.code == 3 and done.err.startswith("epdem: ")
+
+
+def test_a_file_whose_name_begins_with_a_dash_is_told_how_to_be_written(folder, capsys, monkeypatch):
+    (folder / "-x.toml").write_text(ONE_SPEED)
+    assert "write the file as ./-x.toml" in call(["predict", "-x.toml"], capsys, monkeypatch).err
+    assert call(["predict", "./-x.toml"], capsys, monkeypatch).code == 0

@@ -1,0 +1,146 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Every option of every command is obeyed or refused, for every kind of case; the options come from the command itself.
+
+Obeyed: the output, the files or what reaches the library differ from those without it. Refused: exit code 2, a sentence
+that names the option, nothing written. Long studies are replaced by a record of their arguments and a stored outcome.
+"""
+
+import shutil
+from pathlib import Path
+
+import pandas as pd
+import pytest
+from calls import CASES, COMMANDS, call
+
+from epdem.errors import CaseError
+from epdem.impacts import run as impacts_run
+from epdem.scenes import run as scenes_run
+from epdem.studies import cost, crosscheck, figures, stability
+from epdem.studies.stability import bulk_cost
+
+STEEL = (CASES / "steel_wall.toml").read_text()
+FAST = STEEL[: STEEL.index("speeds =")] + 'speeds = ["1 m/s"]' + STEEL[STEEL.index("\n", STEEL.index("speeds =")) :]
+TEMPLATE = "{{ deck.time_step }} {{ a | default(0) }}\n"
+HARDNESS = {"e_n": "0.6", "speed": "3 m/s", "hv": "200", "hb": "200", "dent_ratio": "0.5"}
+RUN = {"engine": "yade", "law": "cavity", "ranks": "2", "steps": "100", "out": "there", "fresh": None, "resume": None}
+RUN |= {"force": None}
+DECK = {"out": "there", "engine": "yade", "law": "cavity", "case": "other.toml", "given": "a=1"}
+KINDS = {  # words of a call without the option, and the value of every option
+    "run impacts": (("run", "steel.toml"), RUN),
+    "run a scene": (("run", "scene.toml"), RUN),
+    "deck of impacts": (("deck", "steel.toml", "-o", "d"), DECK),
+    "deck of a scene": (("deck", "scene.toml", "-o", "d"), DECK),
+    "deck of an own template": (("deck", "own.j2", "-o", "d", "--case", "steel.toml"), DECK),
+    "predict impacts": (("predict", "steel.toml"), {"law": "cavity"}),
+    "crosscheck impacts": (("crosscheck", "steel.toml"), {"law": "cavity", "out": "there", "fresh": None}),
+    "theory": (("theory",), {"material": "brass", "radius": "2 mm", "speed": "1 m/s"}),
+    "figures": (("figures",), {"out": "there"}),
+    "timestep of impacts": (("timestep", "steel.toml"), {"error": "1e-2", "law": "hertz"}),
+    "cost of impacts": (
+        ("cost", "steel.toml"),
+        {"engine": "embedded", "law": "cavity", "repetitions": "2", "bulk": None, "out": "there"},
+    ),
+    "stability": (
+        ("stability",),
+        {"engine": "yade", "law": "cavity", "group": "poisson", "every": "2", "steps": "1000", "out": "there.csv"},
+    ),
+    "explain impacts": (("explain", "steel.toml"), {}),
+    "explain a scene": (("explain", "scene.toml"), {}),
+    "soften impacts": (("soften", "steel.toml", "-k", "10"), {"factor": "3", "out": "there.toml", "force": None}),
+    "soften a scene": (("soften", "scene.toml", "-k", "10"), {"factor": "3", "out": "there.toml", "force": None}),
+    "calibrate from e_n": (("calibrate", "steel.toml", "--e-n", "0.7", "--speed", "2 m/s"), HARDNESS),
+    "calibrate from HV": (("calibrate", "steel.toml", "--hv", "300"), HARDNESS),
+    "calibrate from HB": (("calibrate", "steel.toml", "--hb", "300"), HARDNESS),
+    "doctor": (("doctor",), {}),
+}
+IMPACTS_ONLY = ("predict", "timestep", "cost", "crosscheck", "calibrate")
+
+
+def options(command: str) -> dict[str, str]:
+    """Long names of a command's options by parameter, without --json and --help."""
+    parameters = [p for p in COMMANDS[command].params if p.param_type_name == "option"]
+    return {p.name: p.opts[0] for p in parameters if p.opts[0] not in ("--json", "--help")}
+
+
+def test_the_table_names_every_command_and_every_option():
+    assert {words[0] for words, _ in KINDS.values()} == set(COMMANDS) - {"stress"}
+    for kind, (words, values) in KINDS.items():
+        assert set(options(words[0])) == set(values), kind
+
+
+@pytest.fixture(scope="module")
+def outcomes(tmp_path_factory):
+    """A small outcome of each study."""
+    path = tmp_path_factory.mktemp("outcomes") / "steel.toml"
+    path.write_text(FAST)
+    numbers = {"share": 0.1, "error": 1e-4, "rms": 3e-4, "order": 2.0, "seconds": 0.01, "ratio": 0.9}
+    return {
+        "cost": cost.run(path, engines=["embedded"], laws=[], steps=(30, 100), repetitions=1),
+        "bulk": pd.DataFrame([{"model": "x", "spheres": 8, "seconds_spread": 1e-3, "ratio_spread": 0.1} | numbers]),
+        "stability": stability.run(["embedded"], ["hertz"], groups=["poisson"]),
+    }
+
+
+@pytest.fixture
+def library(tmp_path, monkeypatch, outcomes):
+    """The arguments that reached a study or a run."""
+    reached = []
+
+    def record(module, name, result=None):
+        def replacement(*words, progress=None, tell=None, **named):
+            reached.append((name, words, named))
+            if result is None:
+                raise CaseError("recorded")
+            return result
+
+        monkeypatch.setattr(module, name, replacement)
+
+    record(impacts_run, "run")
+    record(scenes_run, "run")
+    record(crosscheck, "crosscheck")
+    record(cost, "run", outcomes["cost"])
+    record(bulk_cost, "run", outcomes["bulk"])
+    record(stability, "run", outcomes["stability"])
+    record(figures, "draw_all", [Path("drawn.png")])
+    return reached
+
+
+def evidence(words, folder, library, capsys, monkeypatch):
+    """All that a call does, begun in a folder with the same files."""
+    shutil.rmtree(folder, ignore_errors=True)
+    folder.mkdir()
+    monkeypatch.chdir(folder)
+    (folder / "steel.toml").write_text(FAST)
+    (folder / "other.toml").write_text(FAST.replace("10 mm", "20 mm"))
+    (folder / "own.j2").write_text(TEMPLATE)
+    for name in ("steel_soft10.toml", "scene_soft10.toml"):
+        (folder / name).write_text("of the user")
+    shutil.copy(CASES / "settle_glass.toml", folder / "scene.toml")
+    library.clear()
+    done = call(words, capsys, monkeypatch)
+    return done, list(library)
+
+
+@pytest.mark.parametrize(
+    ("kind", "option"), [(kind, o) for kind, (words, _) in KINDS.items() for o in options(words[0])]
+)
+def test_an_option_is_obeyed_or_refused(kind, option, tmp_path, library, capsys, monkeypatch):
+    words, values = KINDS[kind]
+    flag, value = options(words[0])[option], values[option]
+    plain, reached = evidence(words, tmp_path / "x", library, capsys, monkeypatch)
+    assert plain.code == 0 or reached or words[0] == "soften"
+    more = [*words, flag, *([] if value is None else [value])]
+    done, now = evidence(more, tmp_path / "x", library, capsys, monkeypatch)
+    if done.code == 2 and not now:
+        assert flag in done.err and done.err.count("\n") == 1
+        assert {name for name, _ in done.files} <= {name for name, _ in plain.files}
+    else:
+        assert (done, now) != (plain, reached), f"{flag} changes nothing"
+
+
+@pytest.mark.parametrize("command", IMPACTS_ONLY)
+def test_a_command_for_impacts_says_that_it_takes_no_scene(command, tmp_path, library, capsys, monkeypatch):
+    words = [command, "scene.toml", *(["--hv", "300"] if command == "calibrate" else [])]
+    monkeypatch.undo()
+    done, _ = evidence(words, tmp_path / "x", library, capsys, monkeypatch)
+    assert done.code == 2 and "scene.toml is a bulk scene" in done.err and "take scenes" in done.err

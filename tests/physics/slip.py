@@ -1,0 +1,118 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""The C++ law of partial slip for tests: arrays of contacts, oblique impacts, and the table of docs/partial_slip.md.
+
+.venv/bin/python tests/physics/slip.py
+"""
+
+import ctypes
+import subprocess
+import tempfile
+from functools import cache
+from pathlib import Path
+
+import numpy as np
+
+from epdem.theory import partial_slip, restitution
+from epdem.theory.backbones import Cavity, Hertz, Thornton
+
+ROOT = Path(__file__).parents[2]
+FLAGS = ["-std=c++17", "-O2", "-Wall", "-Wextra", "-Werror", "-shared", "-fPIC"]
+E_STAR, G_STAR, R, M, MU = 1.1428571428571429e11, 2.3529411764705883e10, 0.01, 0.032882003107573169, 0.3  # nu = 0.3
+KAPPA = 4 * G_STAR / E_STAR
+V_Y0, V_Y = 0.138086424357753, 0.559430455498519  # first yield of cavity at Y = 1 GPa, of thornton at 2.8 GPa
+LAWS = {"hertz": Hertz(E_star=E_STAR, R_star=R), "thornton": Thornton(E_star=E_STAR, R_star=R, p_y=2.8e9),
+        "cavity": Cavity(E_star=E_STAR, R_star=R, Y=1e9)}  # fmt: skip
+IMPACTS = [("hertz", 1.0), ("thornton", 5 * V_Y), ("thornton", 50 * V_Y), ("cavity", 5 * V_Y0), ("cavity", 50 * V_Y0),
+           ("cavity", 500 * V_Y0)]  # fmt: skip
+
+
+@cache
+def library() -> ctypes.CDLL:
+    """slip.cpp, compiled once per process."""
+    path = Path(tempfile.mkdtemp()) / "slip.so"
+    source = Path(__file__).with_suffix(".cpp")
+    subprocess.run(["g++", *FLAGS, f"-I{ROOT}/cpp_contact/include", "-o", path, source], check=True)
+    return ctypes.CDLL(str(path))
+
+
+def _pointer(x):
+    return x.ctypes.data_as(ctypes.POINTER(ctypes.c_double))
+
+
+class Contacts:
+    """Contacts that share 8 G* and mu; what they remember, their friction and their energy after each step."""
+
+    def __init__(self, count, *, nodes=3, flattens=False, damped=False, lanes=False, G_star=G_STAR, mu=MU):
+        self.options = [nodes, int(flattens), int(damped), int(lanes)]
+        self.stiffness, self.mu = 8 * G_star, mu
+        self.state, self.out = np.zeros((count, 3 * nodes + 1)), np.zeros((count, 5))
+
+    def move(self, slip, *, load, a, a_peak=None, flatness=0.0, normal=(0.0, 0.0, 1.0), turn=0.0, damping=0.0):
+        """Friction [N], shape (count, 3), on the body that slips by `slip` (count, 3) [m]; others broadcast."""
+        count = len(self.state)
+        now, shear = np.empty((count, 4)), np.empty((count, 8))
+        for k, column in enumerate((load, a, a if a_peak is None else a_peak, flatness)):
+            now[:, k] = column
+        shear[:, :3], shear[:, 3:6], shear[:, 6], shear[:, 7] = normal, slip, turn, damping
+        library().slip_steps(*self.options, ctypes.c_long(count), ctypes.c_double(self.stiffness),
+                             ctypes.c_double(self.mu), *map(_pointer, (self.state, now, shear, self.out)))  # fmt: skip
+        self.dissipated, self.energy = self.out[:, 3], self.out[:, 4]
+        return self.out[:, :3].copy()
+
+
+def rebound(law, psi_1, speed, *, steps, nodes=3, phases=8, damping=0.0):
+    """psi_2, shape (len(psi_1), phases), of spheres on a plane by velocity Verlet; work lost in tangential motion [J].
+
+    As an engine integrates: the slip of a step is that of the speed half a step before its end. damping: gamma_t over
+    sqrt(k_t m), k_t = 8 G* a.
+    """
+    psi_1, phase = np.broadcast_arrays(np.array(psi_1, float)[:, None], (np.arange(phases) + 0.5) / phases)
+    dt = float(restitution.impact(law, m_star=M, speed=speed).contact_time) / steps
+    alpha, v, slip = -phase.ravel() * speed * dt, np.full(phase.size, speed), MU / KAPPA * speed * psi_1.ravel()
+    contacts = Contacts(phase.size, nodes=nodes, flattens=law.name == "cavity", damped=damping > 0)
+    top, F, T = np.zeros(phase.size), np.zeros(phase.size), np.zeros(phase.size)
+    lost, most = np.zeros(phase.size), 0.0
+    for _ in range(int(1.3 * steps) + 3):
+        v, slip = v - dt / 2 * F / M, slip + dt / 2 * 3.5 / M * T
+        alpha = alpha + dt * v
+        top = np.maximum(top, alpha)
+        touches, safe = alpha > 0, np.maximum(top, 1e-12)
+        down, up = law.unloading(np.clip(alpha, 0, safe), safe), (law.force(safe), law.radius(safe))
+        F, a = (np.where(touches, np.where(alpha >= top, x, y), 0.0) for x, y in zip(up, down, strict=True))
+        move = np.zeros((phase.size, 3))
+        move[:, 0] = dt * slip
+        gamma = damping * np.sqrt(8 * G_STAR * a * M)
+        T = contacts.move(move, load=F, a=a, a_peak=law.radius(safe), flatness=law.flatness(safe), damping=gamma / dt)[
+            :, 0
+        ]
+        lost += contacts.dissipated
+        most = max(most, np.abs(T / (MU * np.where(F > 0, F, 1))).max())
+        v, slip = v - dt / 2 * F / M, slip + dt / 2 * 3.5 / M * T
+    return KAPPA / MU * slip.reshape(phase.shape) / speed, lost.reshape(phase.shape), most
+
+
+def reference(law, psi_1, speed):
+    """psi_2 by 400 springs and 2000 steps."""
+    slip, _ = partial_slip.rebound(law, m_star=M, m_tangential=2 / 7 * M, mu=MU, G_star=G_STAR, v_n=speed,
+                                   slip=MU / KAPPA * speed * np.asarray(psi_1))  # fmt: skip
+    return KAPPA / MU * slip / speed
+
+
+def error(name, speed, *, nodes, steps, psi_1=None):
+    """Largest deviation of psi_2 over psi_1 below sliding and 8 phases."""
+    psi_1 = np.linspace(0, 5, 41)[1:] if psi_1 is None else psi_1
+    found, _, _ = rebound(LAWS[name], psi_1, speed, steps=steps, nodes=nodes)
+    return np.abs(found - reference(LAWS[name], psi_1, speed)[:, None]).max()
+
+
+def main():
+    print("| nodes | steps in contact | " + " | ".join(f"`{n}` {v:.3g} m/s" for n, v in IMPACTS) + " |")
+    print("|" + "---|" * (2 + len(IMPACTS)))
+    for nodes in (2, 3):
+        for steps in (30, 100, 300):
+            row = [f"{error(name, speed, nodes=nodes, steps=steps):.3f}" for name, speed in IMPACTS]
+            print(f"| {nodes} | {steps} | {' | '.join(row)} |")
+
+
+if __name__ == "__main__":
+    main()
