@@ -7,7 +7,8 @@ from typing import Annotated
 
 import typer
 
-from .options import AsJson, CasePath, Engines, Laws, Out, console
+from ..terminal import console
+from .options import AsJson, CasePath, Engines, Laws, Out
 
 
 def sweep(
@@ -45,9 +46,9 @@ def sweep(
         table=points,
         latin_hypercube=latin_hypercube,
         seed=seed,
-        jobs=jobs,
     )
     if dry_run:
+        study.check_points(planned, range(1, len(planned.points) + 1), jobs)
         sweep_view.points(planned, as_json, console())
         return
     folder = out or Path("runs") / f"{planned.name}_sweep"

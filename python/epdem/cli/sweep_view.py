@@ -79,7 +79,9 @@ def status(found: dict[str, Any], console: Console) -> None:
     console.print(f"{found['case']}: {found['points']} points: {states}", highlight=False, soft_wrap=True)
     if found["done"] + found["failed"]:
         left = f"; about {found['work_left']:.3g} s of work left" if found["work_left"] else ""
-        console.print(f"{found['seconds']:.3g} s of work, longest point {found['longest']:.3g} s{left}", highlight=False)
+        console.print(
+            f"{found['seconds']:.3g} s of work, longest point {found['longest']:.3g} s{left}", highlight=False
+        )
     for row in found["failures"][:SHOWN]:
         console.print(f"point {row['point']} failed: {row['reason']}; {row['folder']}", highlight=False, soft_wrap=True)
     if len(found["failures"]) > SHOWN:

@@ -24,16 +24,20 @@ from .numbers import numbers_of
 FULL = 1 << 16  # bytes; with less of the disk left, whatever failed has failed for want of them
 
 
-def check(sweep: Sweep, number: int) -> None:
-    """Raise CaseError if the case of a point is wrong; nothing runs."""
+def check(sweep: Sweep, number: int) -> CaseError | None:
+    """What is wrong with the case of a point, if anything; nothing runs."""
     data, place = sweep.data(number), sweep.place(number)
-    if sweep.scene:
-        scene.parse(data, place)
-        return
-    case = impact.parse(data, place)
-    with impact.named(place):
-        for law in sweep.laws or (None,):
-            experiment(case, law)
+    try:
+        if sweep.scene:
+            scene.parse(data, place)
+            return None
+        case = impact.parse(data, place)
+        with impact.named(place):
+            for law in sweep.laws or (None,):
+                experiment(case, law)
+    except CaseError as error:
+        return error
+    return None
 
 
 def evaluate(sweep: Sweep, folder: Path, number: int, *, resume: bool = True) -> str:

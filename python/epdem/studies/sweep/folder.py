@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """A sweep on disk: its definition, one folder a point, and in each what became of the point.
 
-The name of a point's folder is the hash of its case and of what runs it, so that a sweep that has grown or changed finds
-again what is finished. `point.json` is written whole or not at all: state and results never disagree.
+A folder has the hash of the case and of what runs it as its name, so that a sweep that has grown or changed finds
+again what is finished. `point.json` is written whole or not at all: state and results never disagree. While a point
+runs it has `running.json` instead.
 """
 
 import copy
@@ -11,7 +12,6 @@ import json
 import os
 import socket
 import time
-from collections.abc import Sequence
 from dataclasses import asdict, dataclass, field
 from functools import cached_property
 from pathlib import Path
@@ -27,7 +27,7 @@ from ...stages import inputs_hash
 from .keys import assign, keys_of
 from .points import Point
 
-DEFINITION, POINT, CASE, POINTS = "sweep.json", "point.json", "case.toml", "points"
+DEFINITION, CASE, POINTS, FINISHED, STARTED = "sweep.json", "case.toml", "points", "point.json", "running.json"
 WAITING, RUNNING, DONE, FAILED = "waiting", "running", "done", "failed"
 STATES = (WAITING, RUNNING, DONE, FAILED)
 
@@ -104,9 +104,8 @@ def write(sweep: Sweep, folder: Path) -> None:
 def read(folder: Path) -> Sweep:
     """The definition that `write` stored. Raises CaseError."""
     try:
-        raw = json.loads((folder / DEFINITION).read_text())
-        lists = {key: tuple(raw.pop(key)) for key in ("points", "engines", "laws")}
-        return Sweep(**raw, **lists)
+        raw: dict[str, Any] = json.loads((folder / DEFINITION).read_text())
+        return Sweep(**(raw | {key: tuple(raw[key]) for key in ("points", "engines", "laws")}))
     except (OSError, ValueError, KeyError, TypeError):
         raise CaseError(f"{folder}: not a folder of a sweep; 'epdem sweep CASE --out {folder}' makes one") from None
 
@@ -123,13 +122,16 @@ def of(sweep: Sweep, folder: Path, number: int) -> Path:
 
 
 def record(sweep: Sweep, folder: Path, number: int) -> dict[str, Any]:
-    """What `point.json` says of a point; {"state": "waiting"} if that is nothing, or if its inputs have changed."""
-    try:
-        found = json.loads((of(sweep, folder, number) / POINT).read_text())
-    except (OSError, ValueError):
-        return {"state": WAITING}
-    fits = isinstance(found, dict) and found.get("inputs") == sweep.inputs(number) and found.get("state") in STATES
-    return found if fits else {"state": WAITING}
+    """What is stored of a point; {"state": "waiting"} if that is nothing, or if its inputs have changed."""
+    place = of(sweep, folder, number)
+    for name in (FINISHED, STARTED):
+        try:
+            found = json.loads((place / name).read_text())
+        except (OSError, ValueError):
+            continue
+        if isinstance(found, dict) and found.get("inputs") == sweep.inputs(number) and found.get("state") in STATES:
+            return found
+    return {"state": WAITING}
 
 
 def records(sweep: Sweep, folder: Path) -> list[dict[str, Any]]:
@@ -141,6 +143,7 @@ def begin(sweep: Sweep, folder: Path, number: int) -> dict[str, Any]:
     """Make a point's folder, write its case, and mark it as running; what is to be given to `end`."""
     place = of(sweep, folder, number)
     place.mkdir(parents=True, exist_ok=True)
+    (place / FINISHED).unlink(missing_ok=True)
     with atomic(place / CASE, sync=False) as temporary:
         temporary.write_text(sweep.text(number))
     about = {
@@ -153,7 +156,7 @@ def begin(sweep: Sweep, folder: Path, number: int) -> dict[str, Any]:
         "started": time.strftime("%Y-%m-%d %H:%M:%S"),
         "begin": time.time(),
     }
-    _write(place, about)
+    (place / STARTED).write_text(json.dumps(about))
     return about
 
 
@@ -161,13 +164,11 @@ def end(
     sweep: Sweep, folder: Path, number: int, about: dict[str, Any], *, rows: dict[str, Any] | None, reason: str = ""
 ) -> None:
     """Store a point's results (columns of rows), or the reason why there are none."""
+    place = of(sweep, folder, number)
     state = {"state": FAILED if rows is None else DONE, "reason": reason, "seconds": time.time() - about["begin"]}
-    _write(of(sweep, folder, number), about | state | {"rows": rows or {}})
-
-
-def _write(place: Path, about: dict[str, Any]) -> None:
-    with atomic(place / POINT, sync=False) as temporary:
-        temporary.write_text(json.dumps(about))
+    with atomic(place / FINISHED, sync=False) as temporary:
+        temporary.write_text(json.dumps(about | state | {"rows": rows or {}}))
+    (place / STARTED).unlink(missing_ok=True)
 
 
 def to_do(sweep: Sweep, folder: Path, *, retry_failed: bool) -> list[int]:
@@ -175,8 +176,3 @@ def to_do(sweep: Sweep, folder: Path, *, retry_failed: bool) -> list[int]:
     done = (DONE,) if retry_failed else (DONE, FAILED)
     wanted = [n for n, about in enumerate(records(sweep, folder), start=1) if about["state"] not in done]
     return list({sweep.identities[n - 1]: n for n in reversed(wanted)}.values())[::-1]
-
-
-def numbers(sweep: Sweep) -> Sequence[int]:
-    """The numbers of all points."""
-    return range(1, len(sweep.points) + 1)

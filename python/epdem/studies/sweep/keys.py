@@ -72,14 +72,16 @@ def _fields(
         else:
             yield from _walk(field.annotation, (*place, key), data.get(key), case)
     if issubclass(model, LawChoice | SceneMaterial):
-        for name, key in _of_law(case, ratio=issubclass(model, LawChoice)):
-            yield (*place, name), key
+        for parameter, found in _of_law(case, ratio=issubclass(model, LawChoice)):
+            yield (*place, parameter), found
 
 
 def _of_law(case: dict[str, Any], *, ratio: bool) -> Iterator[tuple[str, Key]]:
     """Parameters of the case's law, and the ratio that can stand for its strength."""
     law = laws().get(str(case.get("law", {}).get("name")))
-    for p in law.parameters if law else ():
+    if law is None:
+        return
+    for p in law.parameters:
         yield p.name, Key(unit=p.unit)
         if ratio and p == law.strength:
             yield f"{p.name}_ratio", Key(unit="1")

@@ -40,7 +40,8 @@ class Range:
         x = self.low * (self.high / self.low) ** share if self.log else self.low + share * (self.high - self.low)
         if self.whole:
             return round(x)
-        return f"{x:.15g} {self.unit}" if self.unit else float(f"{x:.15g}")
+        text = f"{x:.13g}"  # without the round-off of this line
+        return f"{text} {self.unit}" if self.unit else float(text)
 
     def values(self) -> list[Value]:
         """All values of a grid."""

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """A sweep from its command to its table: points, checks, what is missing, and who runs it."""
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
@@ -54,9 +54,8 @@ def plan(
     table: Path | None = None,
     latin_hypercube: int | None = None,
     seed: int = 1,
-    jobs: int | None = None,
 ) -> Sweep:
-    """A sweep with all its points, each of them checked. Raises CaseError for what is wrong, EngineError."""
+    """A sweep with all its points; their cases are not yet checked. Raises CaseError, EngineError."""
     data = read_toml(case)
     keys, scene = keys_of(data), is_scene(data)
     axes = points.axes(settings, keys)
@@ -71,7 +70,7 @@ def plan(
     chosen = tuple(dict.fromkeys(engines)) or ("liggghts",)
     if scene and (len(chosen) > 1 or laws):
         raise CaseError("a scene has its own law and runs on one engine; leave out --law, or sweep law.name")
-    found = Sweep(
+    return Sweep(
         name=str(data.get("case", {}).get("name", case.stem)),
         case=store.base_text(case),
         points=tuple(row | point for row in rows for point in many),
@@ -80,8 +79,6 @@ def plan(
         ranks=ranks,
         versions=_versions(chosen),
     )
-    list(local.each(partial(check, found), store.numbers(found), jobs or local.cores()))
-    return found
 
 
 def _versions(engines: Sequence[str]) -> dict[str, str]:
@@ -90,6 +87,14 @@ def _versions(engines: Sequence[str]) -> dict[str, str]:
         if reason := tool.missing():
             raise EngineError(f"engine {tool.name}: {reason}")
     return {tool.name: tool.version() for tool in tools}
+
+
+def check_points(sweep: Sweep, numbers: Iterable[int], jobs: int | None = None) -> None:
+    """Raise CaseError for the first point whose case is wrong; nothing runs."""
+    wrong = {n: e for n, e in local.each(partial(check, sweep), numbers, jobs or local.cores()) if e}
+    if wrong:
+        first = wrong[min(wrong)]
+        raise first if isinstance(first, CaseError) else CaseError(f"{sweep.place(min(wrong))}: {first}")
 
 
 def run(
@@ -103,10 +108,12 @@ def run(
 ) -> SweepOutcome:
     """Run what of a sweep is missing or changed, by `jobs` processes on this machine, and write its table.
 
-    Raises OSError if results cannot be stored. Whatever ends it, the same call goes on where it ended.
+    Raises CaseError before anything runs if a point is wrong, OSError if results cannot be stored. Whatever ends it,
+    the same call goes on where it ended.
     """
+    numbers = store.to_do(sweep, folder, retry_failed=retry_failed)
+    check_points(sweep, numbers, jobs)
     with claim(folder, force=force):
-        (folder / store.POINTS).mkdir(exist_ok=True)
         store.write(sweep, folder)
         numbers = store.to_do(sweep, folder, retry_failed=retry_failed)
         tell(0, len(numbers))
