@@ -19,9 +19,10 @@ import numpy as np
 
 from epdem.case.impact import read_toml
 from epdem.case.scene import parse
-from epdem.liggghts import launcher
-from epdem.liggghts import scene_deck as deck
-from epdem.liggghts import scene_tables as tables
+from epdem.liggghts.scenes import LiggghtsScenes
+from epdem.scenes.checks import discharge
+from epdem.scenes.plan import plan
+from epdem.scenes.run import run_plan
 
 CASE = Path(__file__).parents[1] / "cases/hopper_beads.toml"
 d, g = 2e-3, 9.81  # mean diameter of the beads [m], gravity [m/s^2]
@@ -63,24 +64,14 @@ def scene(outlet: float, count: int, width: float, angle: float) -> dict:
 def flow(outlet: float, count: int, width: float, folder: Path, angle: float = 90.0) -> Flow:
     """Run a discharge in `folder` and measure it; lengths in bead diameters, `angle` in degrees (90: flat bottom)."""
     case = parse(scene(outlet, count, width, angle))
-    found = deck.deck(case)
-    deck.write(case, folder)
-    launcher.run("in.scene", folder)
-    spheres = tables.particles(folder, found)
-    steps = np.sort(spheres["step"].unique())
-    below = spheres[spheres["z"] < found.motion["outlet"]].groupby("step")["mass"]
-    out = below.sum().reindex(steps, fill_value=0.0).to_numpy()
-    bed = spheres[spheres["step"] == steps[steps <= found.phases[0].end].max()]
-    part = out / bed["mass"].sum()
-    if part.max() < END:
-        raise RuntimeError(f"outlet {outlet} d: only {part.max():.0%} of the filling came out; the flow has stopped")
-    during = (part > BEGIN) & (part < END)
-    rate = np.polyfit(steps[during] * found.time_step, out[during], 1)[0]
-    top = np.quantile(bed["z"], 0.95)
-    middle = bed[(bed["z"] > 0.2 * top) & (bed["z"] < 0.7 * top)]
-    bulk = middle["mass"].sum() / (math.pi / 4 * (width * d) ** 2 * 0.5 * top)
-    counted = below.count().reindex(steps, fill_value=0).to_numpy()[during]
-    return Flow(outlet, float(rate), float(bulk), int(counted[-1] - counted[0]))
+    p = plan(case)
+    spheres = run_plan(p, LiggghtsScenes(), folder)["particles"]
+    last = spheres[spheres["step"] == spheres["step"].max()]
+    out = last[last["z"] < p.layout.outlet]["mass"].sum() / last["mass"].sum()
+    if out < END:
+        raise RuntimeError(f"outlet {outlet} d: only {out:.0%} of the filling came out; the flow has stopped")
+    found = discharge(p, case.scene, spheres, (BEGIN, END))
+    return Flow(outlet, found.rate, found.bulk, found.counted)
 
 
 def power(flows: list[Flow], k: float) -> float:

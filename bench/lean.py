@@ -15,9 +15,10 @@ from pathlib import Path
 
 from epdem.case import scene as scenes
 from epdem.case.impact import read_toml
+from epdem.files import write_texts
 from epdem.liggghts import launcher, log, resume
-from epdem.liggghts import scene_deck as deck
-from epdem.scenes.model import model
+from epdem.liggghts.scene_deck import files, memory
+from epdem.scenes.plan import plan
 
 ROOT = Path(__file__).parents[1]
 NOTHING = 1e-9
@@ -56,14 +57,12 @@ def measure(path: Path, repeats: int, scratch: Path) -> dict:
     found: dict = {"name": path.stem}
     folders = {}
     for name, make in (("lean", lean), ("full", full)):
-        case = scenes.parse(make(read_toml(path)), path)
+        p = plan(scenes.parse(make(read_toml(path)), path))
         folders[name] = folder = scratch / f"{path.stem}_{name}"
-        deck.write(case, folder)
-        found[f"{name}_lines"], found[f"{name}_bytes"] = lines(folder), 8 * deck.memory(model(case))
+        write_texts(folder, files(p))
+        found[f"{name}_lines"], found[f"{name}_bytes"] = lines(folder), 8 * memory(p.model)
         loop_seconds(folder, "in.scene")
-        steps = sorted(int(p.name.split(".")[1]) for p in folder.glob("restart.*.bin"))
-        last = [s for s in steps if s < deck.deck(case).steps][-1]
-        resume.write_resume(case, folder, f"restart.{last}.bin", last)
+        resume.write_resume(p, folder, resume.whole_restarts(folder)[-1])
     times: dict[str, list[float]] = {name: [] for name in folders}
     for _ in range(repeats):
         for name, folder in folders.items():

@@ -35,7 +35,7 @@ if law == "native":
     loop = [InteractionLoop([Ig2_Sphere_Sphere_ScGeom()], [Ip2_FrictMat_FrictMat_MindlinPhys()],
                             [Law2_ScGeom_MindlinPhys_Mindlin()])]
 else:
-    from epdem.yade.contacts import Contacts
+    from epdem.yade.deck_modules.contacts import Contacts
     law, *tolerance = law.split()
     contacts = Contacts(law, tolerance=float(*tolerance))
     strength = dict(hertz={{}}, cavity=dict(yield_stress=1e9)).get(law, dict(yield_pressure=2.8e9))

@@ -84,15 +84,15 @@ def _tests_of(name: str, tests: dict[str, str]) -> tuple[str, ...]:
 
 def _test_functions() -> dict[str, str]:
     """file.py::test_name -> the file's imports and helpers, and the test's own text."""
-    found = {}
+    functions = {}
     for path in sorted((ROOT / TESTS / "physics").glob("test_*.py")):
         text = path.read_text()
         body = ast.parse(text).body
         imports = "\n".join(ast.unparse(n) for n in body if isinstance(n, ast.Import | ast.ImportFrom))
         for node in body:
             if isinstance(node, ast.FunctionDef) and node.name.startswith("test_"):
-                found[f"{path.name}::{node.name}"] = imports + "\0" + ast.get_source_segment(text, node)
-    return found
+                functions[f"{path.name}::{node.name}"] = imports + "\0" + ast.get_source_segment(text, node)
+    return functions
 
 
 def entries() -> list[Entry]:

@@ -15,57 +15,58 @@ from pathlib import Path
 import matplotlib
 import numpy as np
 
-from epdem.case.impact import parse, read_toml
+from epdem.case.impact import load
 from epdem.engines import engine
-from epdem.impacts.comparison import compare, impacts_table
-from epdem.impacts.experiment import experiment
-from epdem.impacts.measurement import measure
+from epdem.impacts.comparison import compare
+from epdem.impacts.experiment import Experiment, bodies, pair_of
 from epdem.impacts.plan import plan
 from epdem.impacts.prediction import predict
+from epdem.impacts.run import run_plan
+from epdem.laws.strengths import default_numbers
 from epdem.theory import printed
+from epdem.theory.backbones import LAWS as BACKBONES
+from epdem.theory.yielding import FIRST_YIELD_ROUNDED
 
 matplotlib.use("Agg")
 import matplotlib.pyplot as plt
 
 ROOT = Path(__file__).parents[1]
+YIELD_STRESS = 50e6  # [Pa]
 SPEEDS = np.geomspace(0.3, 1e4, 30)  # of v_y0
 LAWS = {"hertz": "0.5", "thornton": "C0", "johnson": "C1", "cavity": "C2"}
 
 
-def case():
-    """steel_wall with another yield stress."""
-    data = read_toml(ROOT / "cases/steel_wall.toml")
-    data["materials"]["steel"]["yield_stress"] = "50 MPa"
-    return parse(data, "steel_wall")
+def steel(law: str, speed: np.ndarray) -> Experiment:
+    """The impacts of steel_wall with another yield stress, at `speed` [m/s]."""
+    case = load(ROOT / "cases/steel_wall.toml")
+    body, target = (replace(b, yield_stress=YIELD_STRESS) for b in bodies(case))
+    spec = pair_of(default_numbers(law), body, target)
+    return Experiment(spec, body, target, speed, numerics=case.numerics, check=case.check)
 
 
-def liggghts(x) -> tuple[np.ndarray, float]:
+def liggghts(x: Experiment) -> tuple[np.ndarray, float]:
     """Mean restitution over the phases at each speed, and the largest error against theory."""
     prediction = predict(x)
-    p = plan(x, prediction)
-    tool = engine("liggghts")
     with tempfile.TemporaryDirectory() as folder:
-        tool.write(p, Path(folder))
-        table = impacts_table(p, measure(p, tool.run(p, Path(folder))))
-    rows = compare("liggghts", x.law.name, table, prediction, x.check)
+        stage = run_plan(plan(x, prediction), engine("liggghts"), Path(folder))
+    rows = compare("liggghts", x.law.name, stage.impacts, prediction, x.check)
     return rows["e_n"].to_numpy(), float(rows["e_n_error"].max())
 
 
 def main() -> None:
     """Draw the figure and print the largest errors of the LIGGGHTS runs."""
-    steel = case()
-    pair = experiment(steel, "cavity")
+    pair = steel("cavity", SPEEDS)
     numbers = {"E_star": pair.E_star, "R_star": pair.R_star, "m_star": pair.m_star}
-    Y = pair.body.yield_stress
-    v_y0, v_y = (printed.yield_speed(p_y=factor * Y, **numbers) for factor in (1.6, 2.8))
+    Y, plastic = YIELD_STRESS, BACKBONES["thornton"].default_ratio
+    p_m = BACKBONES["johnson"].default_ratio * Y
+    v_y0, v_y = (printed.yield_speed(p_y=ratio * Y, **numbers) for ratio in (FIRST_YIELD_ROUNDED, plastic))
     fine = np.geomspace(SPEEDS[0], SPEEDS[-1], 400)
 
     fig, (above, below) = plt.subplots(2, 1, sharex=True, figsize=(7, 7), height_ratios=(3, 1.4), layout="constrained")
     fit = printed.wu(fine * v_y0, v_y0=v_y0)
     for name, colour in LAWS.items():
-        x = experiment(steel, name)
-        line = predict(replace(x, speed=fine * v_y0)).e_n
-        points, error = liggghts(replace(x, speed=SPEEDS * v_y0))
+        line = predict(steel(name, fine * v_y0)).e_n
+        points, error = liggghts(steel(name, SPEEDS * v_y0))
         print(f"{name:<10} largest error of e_n in LIGGGHTS, 400 steps in contact, 8 phases: {error:.1e}")
         above.plot(fine, line, "-", color=colour, lw=1.4, label=f"{name}, theory")
         above.plot(SPEEDS, points, "o", color=colour, ms=4, mfc="none", label=f"ep/{name}, LIGGGHTS")
@@ -73,7 +74,13 @@ def main() -> None:
             below.plot(fine, line / fit - 1, "-", color=colour, lw=1.4)
             below.plot(SPEEDS, points / printed.wu(SPEEDS * v_y0, v_y0=v_y0) - 1, "o", color=colour, ms=4, mfc="none")
     above.plot(fine, printed.thornton(fine * v_y0, v_y=v_y), "k:", lw=1.2, label="8.83 Thornton 1997")
-    above.plot(fine, printed.johnson(fine * v_y0, p_m=3 * Y, **numbers), "k-.", lw=1, label="8.86 Johnson 1985")
+    above.plot(
+        fine,
+        printed.johnson(fine * v_y0, p_m=p_m, **numbers),
+        "k-.",
+        lw=1,
+        label="8.86 Johnson 1985",
+    )
     above.plot(fine, fit, "k--", lw=1.4, label="8.88 Wu et al. 2003, finite elements")
     below.axhspan(-0.05, 0.05, color="0.92")
     below.axhline(0, color="k", ls="--", lw=1)

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """docs/stability.md: every extreme case with every law in every engine.
 
-Run: .venv/bin/python docs/stability.py      (needs LIGGGHTS and YADE; about an hour)
+Run: .venv/bin/python docs/stability.py      (needs LIGGGHTS and YADE; long)
 """
 
 from pathlib import Path

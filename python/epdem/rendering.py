@@ -2,11 +2,12 @@
 """Templates to text: undefined names stop, numbers keep every digit, nothing is computed here."""
 
 from pathlib import Path
+from typing import Any, TypeVar
 
 import jinja2
 import numpy as np
 
-from . import paths
+from . import __version__, paths
 from .errors import CaseError
 
 
@@ -15,24 +16,54 @@ def number(x: float | int) -> str:
     return repr(int(x)) if isinstance(x, int | np.integer) else repr(float(x))
 
 
-def environment(*folders: Path) -> jinja2.Environment:
-    """The template environment: our templates, and `folders` before them."""
-    env = jinja2.Environment(
-        loader=jinja2.FileSystemLoader([*folders, paths.templates()]),
-        undefined=jinja2.StrictUndefined,
-        trim_blocks=True,
-        lstrip_blocks=True,
-        keep_trailing_newline=True,
-        autoescape=False,  # decks are no HTML
-    )
+REASON = "\x1f"  # between a line and its reason
+OPTIONS: dict[str, Any] = {
+    "undefined": jinja2.StrictUndefined,
+    "trim_blocks": True,
+    "lstrip_blocks": True,
+    "keep_trailing_newline": True,
+    "autoescape": False,  # decks are no HTML
+}
+Prepared = TypeVar("Prepared", bound=jinja2.Environment)
+
+
+def line(text: object) -> str:
+    """Text as the comment of one line: no line ends, and no "&" behind which LIGGGHTS would read on."""
+    return " ".join(str(text).split()).rstrip("& ")
+
+
+def prepared(env: Prepared, *, reasons: bool = False) -> Prepared:
+    """An environment with our filters and names.
+
+    `why("...")` in a template is the reason of its line: with `reasons` it follows the line after REASON, else it is
+    nothing.
+    """
+    env.globals["version"] = __version__
+    env.globals["why"] = (lambda reason: REASON + reason) if reasons else (lambda reason: "")
+    env.filters["line"] = line
     env.filters["number"] = number
     env.filters["numbers"] = lambda values: " ".join(number(v) for v in values)
     return env
 
 
+def environment(*folders: Path, reasons: bool = False) -> jinja2.Environment:
+    """The template environment: our templates, and `folders` before them; `reasons` as in `prepared`."""
+    loader = jinja2.FileSystemLoader([*folders, paths.templates()])
+    return prepared(jinja2.Environment(loader=loader, **OPTIONS), reasons=reasons)
+
+
 def render(template: str, /, **context: object) -> str:
     """The text of a template. Raises CaseError that names the template and the undefined name."""
+    return _text(environment(), template, context)
+
+
+def render_with_reasons(template: str, /, **context: object) -> str:
+    """The same, with REASON and the reason behind every line that has one."""
+    return _text(environment(reasons=True), template, context)
+
+
+def _text(env: jinja2.Environment, template: str, context: dict[str, object]) -> str:
     try:
-        return environment().get_template(template).render(**context)
+        return env.get_template(template).render(context)
     except jinja2.TemplateError as error:
         raise CaseError(f"template {template}: {error}") from None

@@ -5,6 +5,7 @@ import contextlib
 import math
 import sys
 from collections.abc import Callable, Collection, Iterable, Iterator
+from typing import Literal
 
 import pandas as pd
 from rich.console import Console
@@ -15,15 +16,15 @@ from rich.text import Text
 
 def console() -> Console:
     """As wide as the terminal, or wide enough for our tables in a pipe."""
-    found = Console(markup=False, emoji=False, highlight=False)
-    return found if found.is_terminal else Console(width=170, markup=False, emoji=False, highlight=False)
+    screen = Console(markup=False, emoji=False, highlight=False)
+    return screen if screen.is_terminal else Console(width=170, markup=False, emoji=False, highlight=False)
 
 
 def table(title: str, heads: Iterable[str], *, left: Collection[str] = (), wrap: bool = False) -> Table:
     """An empty table; columns are aligned right but those named in `left`. `wrap`: all but the first may wrap."""
     shown = Table(title=Text(title))
     for k, head in enumerate(heads):
-        side = "left" if head in left else "right"
+        side: Literal["left", "right"] = "left" if head in left else "right"
         shown.add_column(Text(head), justify=side, no_wrap=not wrap or k == 0, min_width=6 if wrap else None)
     return shown
 

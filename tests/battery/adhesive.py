@@ -66,10 +66,10 @@ class Contact:
         name = "jkr" if self.p_y is None else "thornton_ning"
         return f"{name} {self.E_star!r} {self.R_star!r} {self.Gamma!r} {self.p_y or 0.0!r}"
 
-    def path(self, overlaps) -> tuple[np.ndarray, np.ndarray]:
-        """Force [N] and contact radius [m] at prescribed overlaps [m], one after the other."""
+    def path(self, overlaps) -> tuple[np.ndarray, np.ndarray, np.ndarray]:
+        """Force [N], contact radius [m] and stored energy [J] at prescribed overlaps [m], one after the other."""
         (row,) = ask([f"path {self.words} {len(overlaps)} {' '.join(repr(float(x)) for x in overlaps)}"])
-        return row[::2], row[1::2]
+        return row[::3], row[1::3], row[2::3]
 
     def line(self, V: float, dt: float, phase: float, steps: int) -> str:
         """An impact at V [m/s] that touches at `phase` in [0, 1) of a step of dt [s]."""

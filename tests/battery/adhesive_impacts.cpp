@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // The adhesive laws behind a pipe: one line in, one line out. Built and run by adhesive.py beside this file.
 //
-// impact LAW E* R* Gamma p_y m* V dt gap steps   -> rebound speed (0: still attached after `steps`), largest force, largest
-//                                                   overlap, smallest force but in the step of touch, overlap and step of
-//                                                   the last attached sample
-// twice LAW ...                                   -> the same of the second impact, after which the pair is sent back as it
-//                                                   came out: it meets its dent
-// path LAW E* R* Gamma p_y n overlap_1 ...       -> force and radius at each of prescribed overlaps, closing speed 0
-// hertz|thornton E* R* p_y n overlap_1 ...       -> the same by the laws without adhesion
+// impact LAW E* R* Gamma p_y m* V dt gap steps: rebound speed (0: still attached after `steps`), largest force, largest
+//     overlap, smallest force but in the step of touch, overlap and step of the last attached sample
+// twice LAW ...: the same of a second impact, the pair being sent back with the speed at which it came out
+// path LAW E* R* Gamma p_y n overlap_1 ...: force, radius and stored energy at prescribed overlaps, closing speed 0
+// hertz|thornton E* R* p_y n overlap_1 ...: the same by the laws without adhesion
+// gap LAW E* R* Gamma p_y: the largest gap across which the law pulls
 #include <cstdio>
 #include <iostream>
 #include <string>
@@ -27,7 +26,7 @@ void impact(const Law& law, double R_star, bool twice) {
   double m, v, dt, gap;
   long steps;
   std::cin >> m >> v >> dt >> gap >> steps;
-  typename Law::Memory memory{};
+  typename Law::State memory{};
   double alpha = -gap, force = 0.0, most = 0.0, deepest = 0.0, least = 0.0, last = 0.0;
   long n = 0, end = -1;
   bool first = true;
@@ -58,7 +57,7 @@ void impact(const Law& law, double R_star, bool twice) {
 
 template <class Law>
 void path(const Law& law, double R_star) {
-  typename Law::Memory memory{};
+  typename Law::State memory{};
   long count;
   std::cin >> count;
   for (long k = 0; k < count; ++k) {
@@ -66,7 +65,7 @@ void path(const Law& law, double R_star) {
     std::cin >> alpha;
     const auto now = step(law, R_star, memory, alpha, 0.0);
     memory = now.after;
-    std::printf("%.17g %.17g ", now.force, now.radius);
+    std::printf("%.17g %.17g %.17g ", now.force, now.radius, stored_energy(law, R_star, memory, alpha));
   }
   std::printf("\n");
 }
@@ -81,7 +80,7 @@ void plain(const Law& law, double R_star) {
     std::cin >> alpha;
     const auto now = step(law, R_star, state, alpha);
     state = now.after;
-    std::printf("%.17g %.17g ", now.force, now.radius);
+    std::printf("%.17g %.17g %.17g ", now.force, now.radius, elastic_energy(law, R_star, state, alpha));
   }
   std::printf("\n");
 }
@@ -101,6 +100,10 @@ int main() {
     std::cin >> name >> E_star >> R_star >> numbers[0] >> numbers[1];
     const Jkr<double> jkr(E_star, numbers);
     const ThorntonNing<double> ning(E_star, numbers);
+    if (what == "gap") {
+      std::printf("%.17g\n", adhesive::largest_gap(ning.c, R_star));
+      continue;
+    }
     const bool twice = what == "twice", jumps = twice || what == "impact";
     if (name == "jkr") jumps ? impact(jkr, R_star, twice) : path(jkr, R_star);
     else jumps ? impact(ning, R_star, twice) : path(ning, R_star);

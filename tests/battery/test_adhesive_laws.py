@@ -34,7 +34,7 @@ def test_force_and_radius_follow_the_theory_on_the_way_in_and_out_and_in_again(p
     rising = np.geomspace(1e-4, 1, 60) * peak
     falling = peak - (peak - dent - 0.999 * branch.fold_overlap) * np.linspace(0.01, 1, 80)
     beyond = peak * np.linspace(1.05, 3, 10)
-    F, a = c.path([*rising, *falling, *falling[::-1], *beyond])
+    F, a, U = c.path([*rising, *falling, *falling[::-1], *beyond])
     a_theory = [law.radius(rising), *[branch.radius(falling - dent)] * 2, law.radius(beyond)]
     a_theory[2] = a_theory[2][::-1]
     F_theory = [law.force(a_theory[0]), *map(branch.force, a_theory[1:3]), law.force(a_theory[3])]
@@ -42,6 +42,9 @@ def test_force_and_radius_follow_the_theory_on_the_way_in_and_out_and_in_again(p
     assert a == pytest.approx(np.concatenate(a_theory), abs=1e-9 * top)
     assert np.abs(F - np.concatenate(F_theory)).max() <= 1e-10 * law.force(top)
     assert np.array_equal(F[60:140], F[140:220][::-1])  # to the last bit
+    assert U[60:140] == pytest.approx(branch.energy(a_theory[1]), abs=1e-10 * branch.energy(top))
+    if p_y is None:
+        assert U[:60] == pytest.approx(law.energy(a_theory[0]), abs=1e-10 * branch.energy(top))
 
 
 @every_strength
@@ -51,22 +54,35 @@ def test_pull_off_force_by_slow_separation(p_y, peak):
     c = Contact(p_y)
     peak = peak * -c.theory.fold_overlap
     branch, dent = c.theory.branch(c.theory.radius(peak))
-    F, _ = c.path([peak, *(dent + branch.fold_overlap * np.linspace(-0.1, 1.01, 20_000))])
+    F, _, _ = c.path([peak, *(dent + branch.fold_overlap * np.linspace(-0.1, 1.01, 20_000))])
     assert F.min() == pytest.approx(-1.5 * np.pi * c.Gamma * float(branch.R_star), rel=1e-6)
     assert F[-1] == 0
+
+
+@every_strength
+def test_no_contact_reaches_farther_than_the_elastic_fold(p_y):
+    """However far it has grown before it is pulled off: an engine looks for pairs as far as this, and no farther."""
+    c = Contact(p_y)
+    ((gap,),) = ask([f"gap {c.words}"])
+    assert gap == pytest.approx(1.6087720 * np.cbrt(c.Gamma**2 * c.R_star / c.E_star**2), rel=1e-7)
+    for peak in np.geomspace(1e-3, 1e3, 25) * gap:
+        overlaps = np.linspace(peak, -1.05 * gap, 2000)
+        F, a, _ = c.path([peak, *overlaps])
+        assert overlaps[a[1:] > 0].min() >= -gap
+        assert F[-1] == 0
 
 
 @every_strength
 def test_a_contact_forms_at_zero_overlap_pulls_at_a_distance_and_ends_at_the_fold(p_y):
     c = Contact(p_y)
     fold = c.theory.fold_overlap
-    F, a = c.path([0.5 * fold, -1e-15, 0.0, 1e-15, -1e-15, 0.5 * fold])
+    F, a, _ = c.path([0.5 * fold, -1e-15, 0.0, 1e-15, -1e-15, 0.5 * fold])
     assert np.all(F[:3] == 0)
     assert np.all(a[:3] == 0)  # nothing before touch
     assert F[3:5] == pytest.approx(float(c.theory.touch_force), rel=1e-4)
     touch = c.theory.branch(c.theory.radius(1e-15))
     ends = touch[1] + touch[0].fold_overlap
-    F, a = c.path([1e-15, ends * (1 - 1e-9), ends * (1 + 1e-9), 0.5 * ends, 1e-15])
+    F, a, _ = c.path([1e-15, ends * (1 - 1e-9), ends * (1 + 1e-9), 0.5 * ends, 1e-15])
     assert F[1] == pytest.approx(float(touch[0].fold_force), rel=1e-3)
     assert np.all(F[2:4] == 0)  # ended, and again apart until it touches
     assert np.all(a[2:4] == 0)
@@ -80,7 +96,9 @@ def test_a_contact_that_broke_in_its_dent_forms_again_there_and_forgets_outside(
     branch, dent = law.branch(law.radius(peak))
     ends = dent + branch.fold_overlap
     assert ends > 0
-    F, a = c.path([peak, ends * 0.999, dent * 0.999, dent * 1.0001, ends * 1.001, peak, ends * 0.99, 0.0, 0.1 * dent])
+    F, a, _ = c.path(
+        [peak, ends * 0.999, dent * 0.999, dent * 1.0001, ends * 1.001, peak, ends * 0.99, 0.0, 0.1 * dent]
+    )
     assert np.all(F[1:3] == 0)
     assert F[3] == pytest.approx(float(branch.force(branch.radius(1e-4 * dent))), rel=1e-6)
     assert F[4] == pytest.approx(float(branch.force(branch.radius(ends * 1.001 - dent))), rel=1e-6)
@@ -97,16 +115,17 @@ def test_without_adhesion_the_forces_are_those_of_the_other_headers(name, p_y, s
     overlaps = 0.1 * R_FINE * np.array(shares)
     words = f"{name} {c.E_star!r} {c.R_star!r} {p_y or 0.0!r} {len(shares)}"
     (row,) = ask([f"{words} {' '.join(repr(float(x)) for x in overlaps)}"])
-    F, a = c.path(overlaps)
-    assert np.abs(F - row[::2]).max() <= 1e-12 * row[::2].max()
-    assert np.abs(a - row[1::2]).max() <= 1e-7 * row[1::2].max()  # at the dent a goes as the root of the overlap
+    F, a, U = c.path(overlaps)
+    assert np.abs(F - row[::3]).max() <= 1e-12 * row[::3].max()
+    assert np.abs(a - row[1::3]).max() <= 1e-7 * row[1::3].max()  # at the dent a goes as the root of the overlap
+    assert np.abs(U - row[2::3]).max() <= 1e-11 * row[2::3].max()
 
 
 @settings(max_examples=200)
-@given(st.lists(st.floats(-1e300, 1e300), min_size=1, max_size=20), st.sampled_from(STRENGTHS), st.booleans())
+@given(st.lists(st.floats(-1e100, 1e100), min_size=1, max_size=20), st.sampled_from(STRENGTHS), st.booleans())
 def test_force_is_never_nan_for_any_finite_overlap(overlaps, p_y, adheres):
-    F, a = Contact(p_y, Gamma=0.2 if adheres else 0.0).path(overlaps)
-    assert not np.isnan(F).any()
+    F, a, U = Contact(p_y, Gamma=0.2 if adheres else 0.0).path(overlaps)
+    assert not np.isnan([F, a, U]).any()
     assert np.all(a >= 0)
 
 
@@ -115,7 +134,7 @@ def test_the_same_step_taken_twice_gives_the_same_bits(p_y):
     c = Contact(p_y)
     unit = -c.theory.fold_overlap
     once = unit * np.array([0.3, 4, 70, 70.5, 60, 30, 80, 79])
-    F, a = c.path(np.repeat(once, 2))
+    F, a, _ = c.path(np.repeat(once, 2))
     assert np.array_equal(F[::2], F[1::2])
     assert np.array_equal(a[::2], a[1::2])
 

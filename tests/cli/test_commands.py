@@ -2,7 +2,10 @@
 """Every command, once for its JSON document and once for a mistake; text of the user is shown as it is."""
 
 import json
+import os
 import shutil
+import subprocess
+import sys
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -18,7 +21,7 @@ from epdem.studies import crosscheck
 STEEL = (CASES / "steel_wall.toml").read_text()
 SPEEDS = STEEL[STEEL.index("speeds =") : STEEL.index("\n", STEEL.index("speeds ="))]
 ONE_SPEED = STEEL.replace(SPEEDS, 'speeds = ["5 m/s"]')
-TITLE = "[/y] [red]steel[/] :smile: $1 [mm] \\\\"
+TITLE = "[/y] [red]steel[/] :smile: $\\\\frac$ [mm]"
 
 DOCUMENTS = {  # words, and what the document must hold
     "run": (["steel.toml", "-e", "embedded"], lambda d: d["passed"] and d["rows"][0]["speed"] == 5.0),
@@ -104,6 +107,20 @@ def test_titles_and_paths_that_look_like_markup_are_shown_as_they_are(command, f
     assert done.code == 0, done.err
     assert TITLE.replace("\\\\", "\\") in done.out
     assert command == "predict" or "[b]/out/" in done.out
+
+
+def test_a_terminal_without_utf8_shows_any_title(folder):
+    (folder / "steel.toml").write_text(ONE_SPEED.replace("Steel sphere on a steel wall", "\u00d8 \u2192 \u4e2d"))
+    words = [sys.executable, "-m", "epdem.cli", "predict", "steel.toml"]
+    done = subprocess.run(words, capture_output=True, env=os.environ | {"PYTHONIOENCODING": "latin-1"})
+    assert done.returncode == 0, done.stderr
+    assert "\u00d8 \\u2192 \\u4e2d" in done.stdout.decode("latin-1")
+
+
+def test_long_values_are_cut_at_80_characters(folder, capsys, monkeypatch):
+    for words in (["run", "steel.toml", "-e", "x" * 500], ["predict", "steel.toml", "-l", "x" * 500]):
+        err = call(words, capsys, monkeypatch).err
+        assert f"'{'x' * 77}...'" in err and len(err) < 250
 
 
 def test_title_and_folder_of_a_scene_are_shown_as_they_are(capsys):

@@ -32,7 +32,7 @@ def planned(changes=None, law=None):
 def test_what_an_engine_names_exists():
     for tool in (kind() for kind in ALL.values()):
         assert set(tool.can.laws or ()) <= set(laws()), tool.name
-        assert set(tool.can.ways) <= {"swap", "sort", "migration", "restart"}
+        assert set(tool.can.variants) <= {"swap", "sort", "migration", "restart"}
         assert tool.can.ranks >= 1 and (tool.can.scenes or not tool.can.restarts)
 
 

@@ -102,7 +102,7 @@ def test_pint_never_sees_powers_that_it_would_compute_for_hours(text, monkeypatc
         ("impact.target.radius", "1 m", "must not have a radius"),
         ("impact.kind", "sphere-cube", "sphere-wall"),
         ("impact.speeds", ["1 m/s", "fast"], "impact.speeds.1"),
-        ("impact.speeds", [], "impact.speeds"),
+        ("impact.speeds", [], "impact.speeds is empty; give at least one value"),
         ("impact.speeds.count", 10**9, "must be at most 1000"),
         ("impact.speeds.to", "1 mm/s", "must exceed 'from'"),
         ("impact.speeds.count", 1000, "at most 4096"),

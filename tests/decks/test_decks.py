@@ -2,21 +2,28 @@
 """Decks are words around numbers that Python decided: stored renderings, full precision, nothing undefined."""
 
 import re
+from dataclasses import replace
 from pathlib import Path
 
 import jinja2
 import pytest
 
+from epdem import __version__
 from epdem import rendering as deck
 from epdem.case.impact import parse, read_toml
+from epdem.case.scene import is_scene
+from epdem.case.scene import load as load_scene
 from epdem.errors import CaseError
 from epdem.impacts.experiment import experiment
 from epdem.impacts.plan import plan
 from epdem.impacts.prediction import predict
+from epdem.liggghts import scene_deck
 from epdem.liggghts.impacts import Liggghts
+from epdem.scenes.plan import plan as scene_plan
 
 HERE = Path(__file__).parent
 CASES = HERE.parents[1] / "cases"
+SCENES = [p for p in sorted(CASES.glob("*.toml")) if is_scene(read_toml(p))]
 BRASS = {"young_modulus": "100 GPa", "poisson_ratio": 0.35, "density": "8500 kg/m^3", "yield_stress": "0.3 GPa"}
 SPHERE = {"kind": "sphere-sphere", "target": {"material": "brass", "radius": "4 mm"}}
 VARIANTS = {
@@ -36,11 +43,9 @@ def planned(changes, law=None):
     return plan(x, predict(x))
 
 
-@pytest.mark.parametrize("name", VARIANTS)
-def test_the_deck_is_as_stored(name, tmp_path):
+def compare_with_stored(name: str, text: str) -> None:
     """A change of a deck is seen in review: to store it anew, delete the file in `stored` and run twice."""
-    Liggghts().write(planned(*VARIANTS[name]), tmp_path)
-    text, stored = (tmp_path / "in.impact").read_text(), HERE / "stored" / f"{name}.in"
+    stored = HERE / "stored" / f"{name}.in"
     if not stored.exists():
         stored.parent.mkdir(exist_ok=True)
         stored.write_text(text)
@@ -49,8 +54,42 @@ def test_the_deck_is_as_stored(name, tmp_path):
 
 
 def rounded(text: str) -> str:
-    """The deck with its time step to 10 digits: the last ones follow the rounding of theory's quadrature."""
+    """The deck of any version, its time step to 10 digits: the last ones follow the rounding of theory's quadrature."""
+    text = re.sub(r"(?m)^# epdem [^;]+;", "# epdem;", text)
     return re.sub(r"(?m)^timestep (\S+)$", lambda found: f"timestep {float(found[1]):.9e}", text)
+
+
+@pytest.mark.parametrize("name", VARIANTS)
+def test_the_deck_is_as_stored(name, tmp_path):
+    Liggghts().write(planned(*VARIANTS[name]), tmp_path)
+    compare_with_stored(name, (tmp_path / "in.impact").read_text())
+
+
+@pytest.mark.parametrize("path", SCENES, ids=lambda p: p.stem)
+def test_the_deck_of_a_scene_is_as_stored(path):
+    texts = scene_deck.files(scene_plan(load_scene(path)))
+    compare_with_stored(path.stem, texts["in.scene"] + texts["setup.in"])
+
+
+def test_the_deck_of_a_continued_scene_is_as_stored():
+    d = scene_deck.deck(scene_plan(load_scene(CASES / "compaction_powder.toml")))
+    d = replace(d, from_restart="restart.31200.bin", resumed_phase=1)
+    compare_with_stored("compaction_powder_resumed", deck.render("liggghts/scene_resume.in.j2", deck=d))
+
+
+def test_a_title_cannot_add_a_line_to_a_deck(tmp_path):
+    p = planned({})
+    x = replace(p.experiment, title="two\nshell touch pwned", source="joined &")
+    Liggghts().write(replace(p, experiment=x), tmp_path)
+    lines = (tmp_path / "in.impact").read_text().splitlines()
+    assert lines[:2] == ["# two shell touch pwned", "# joined"]
+    assert (tmp_path / "impact.data").read_text().splitlines()[1] == ""
+
+
+def test_the_header_names_source_and_version(tmp_path):
+    Liggghts().write(planned({}), tmp_path)
+    head = "\n".join((tmp_path / "in.impact").read_text().splitlines()[:4])
+    assert "Thornton 1997, J. Appl. Mech. 64, 383, eq. 8.83" in head and f"# epdem {__version__}; by hand" in head
 
 
 def test_numbers_keep_all_their_digits(tmp_path):
@@ -77,7 +116,7 @@ def test_the_centre_of_mass_of_two_spheres_rests(tmp_path):
 def test_an_undefined_name_in_a_template_stops_with_its_name(tmp_path, monkeypatch):
     (tmp_path / "bad.j2").write_text("timestep {{ deck.tmestep }}\n")
     environment = jinja2.Environment(loader=jinja2.FileSystemLoader(tmp_path), undefined=jinja2.StrictUndefined)
-    monkeypatch.setattr(deck, "environment", lambda: environment)
+    monkeypatch.setattr(deck, "environment", lambda **words: environment)
     with pytest.raises(CaseError, match=r"bad\.j2.*tmestep"):
         deck.render("bad.j2", deck={})
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The cross-code table: our model does not care how an impact is told, LIGGGHTS's thornton_ning does."""
+"""The cross-code table: our model gives one impact in every variant of its set-up, thornton_ning does not."""
 
 import json
 import math
@@ -19,7 +19,7 @@ from epdem.impacts.experiment import experiment
 from epdem.impacts.measurement import measure
 from epdem.impacts.pairs import unequal_spheres
 from epdem.impacts.plan import plan
-from epdem.studies.invariance import WAYS, examine
+from epdem.studies.invariance import VARIANTS, examine
 
 CASES = Path(__file__).parents[2] / "cases"
 STEEL = CASES / "steel_wall.toml"
@@ -30,12 +30,12 @@ in_liggghts, in_yade = pytest.mark.liggghts, pytest.mark.yade
 
 @in_liggghts
 @pytest.mark.parametrize("law", LAWS)
-def test_restitution_and_momentum_do_not_depend_on_how_the_impact_is_told(law, tmp_path):
+def test_restitution_and_momentum_do_not_depend_on_the_variant_of_the_set_up(law, tmp_path):
     """Swap, sort, migration and restart repeat every bit of e_n; momentum is kept to round-off of drifting bodies."""
     found = examine(engine("liggghts"), experiment(load(STEEL), law), tmp_path)
-    for way in WAYS:
-        assert found.e_n[way] == 0, way
-        assert found.momentum[way] < 1e-11, way
+    for variant in VARIANTS:
+        assert found.e_n[variant] == 0, variant
+        assert found.momentum[variant] < 1e-11, variant
     assert found.unequal_error < 5e-5  # 400 steps in contact
 
 
@@ -44,9 +44,9 @@ def test_restitution_and_momentum_do_not_depend_on_how_the_impact_is_told(law, t
 def test_restitution_in_yade_does_not_depend_on_names_or_on_a_restart_in_mid_contact(law, tmp_path):
     """The other half of a restarted run is a process of its own that knows what O.save wrote."""
     found = examine(engine("yade"), experiment(load(STEEL), law), tmp_path)
-    for way in ("swap", "restart"):
-        assert found.e_n[way] == 0, way
-        assert found.momentum[way] < 1e-11, way
+    for variant in ("swap", "restart"):
+        assert found.e_n[variant] == 0, variant
+        assert found.momentum[variant] < 1e-11, variant
     assert math.isnan(found.e_n["sort"]) and math.isnan(found.e_n["migration"])
     assert found.unequal_error < 5e-5  # as in LIGGGHTS
     assert (tmp_path / "restart/middle.yade.gz").exists()
@@ -67,7 +67,7 @@ def test_edinburgh_forgets_its_dent_when_atoms_are_sorted_while_they_part(tmp_pa
     x = experiment(load(STEEL))
     found = {name: examine(FOREIGN[name](), x, tmp_path / name) for name in ("liggghts-edinburgh", "liggghts-luding")}
     assert found["liggghts-edinburgh"].e_n["sort"] > 0.01
-    assert all(found["liggghts-luding"].e_n[way] == 0 for way in WAYS)
+    assert all(found["liggghts-luding"].e_n[variant] == 0 for variant in VARIANTS)
 
 
 @pytest.mark.parametrize("case", ["steel_wall", "two_materials", "pair"])

@@ -64,6 +64,7 @@ def test_thermo_rows_of_several_runs_are_read_in_order(tmp_path):
         "words 1 2\n" + text + text.replace("    10 ", "    20 ").replace("     0 ", "    10 ")
     )
     rows = log.rows(tmp_path / "log")
+    assert list(rows["run"]) == [0, 0, 1, 1]
     assert list(rows["Step"]) == [0, 10, 10, 20] and list(rows["KinEng"]) == [1.5, 0.5, 1.5, 0.5]
     assert log.loops(tmp_path / "log") == [(0.25, 10)] * 2 and log.loop_seconds(tmp_path / "log") == 0.25
     assert log.rows(tmp_path / "nothing").empty and np.isnan(log.loop_seconds(tmp_path / "nothing"))

@@ -19,8 +19,8 @@ sys.path.insert(0, {python!r})
 from yade import O
 from yade.utils import sphere, wall, facet
 from yade.wrapper import *
-from epdem.yade.contacts import Contacts
-from epdem.yade import law as numbers
+from epdem.yade.deck_modules.contacts import Contacts
+from epdem.yade.deck_modules import law as numbers
 
 name = {law!r}
 contacts = Contacts(name, **{options!r})

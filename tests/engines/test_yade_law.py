@@ -45,7 +45,7 @@ def test_both_know_the_same_laws_and_parameters():
     soft=st.floats(-5.0, -1.0),
     ratios=st.sampled_from([{}, {"first_yield_ratio": 1.5, "plastic_ratio": 3.0}]),
 )
-def test_force_radius_and_memory_agree_to_1e_12(name, R_star, share, reached, soft, ratios):
+def test_force_radius_and_memory_agree_to_2e_15(name, R_star, share, reached, soft, ratios):
     """Overlaps from 1e-3 to 1e5 of yield_overlap, below and on the largest; share < 0 asks for none.
 
     Relative to the force and radius at the largest overlap: near the dent each is the difference of large numbers.
@@ -61,9 +61,9 @@ def test_force_radius_and_memory_agree_to_1e_12(name, R_star, share, reached, so
         force, radius, after = (float(x[0]) for x in library.step(R_star=R_star, delta_max=delta_max, delta=delta))
         found = numbers.step(mine, R_star, delta_max, delta)
         top = library.step(R_star=R_star, delta_max=after, delta=after)
-        assert abs(found[0] - force) <= 1e-12 * top[0][0]
+        assert abs(found[0] - force) <= 2e-15 * top[0][0]
         # near the dent the radius goes as the square root of what is left, which is known to eps of the whole
-        assert abs(found[1] ** 2 - radius**2) <= 1e-12 * top[1][0] ** 2
+        assert abs(found[1] ** 2 - radius**2) <= 2e-15 * top[1][0] ** 2
         assert found[2] == after
 
 

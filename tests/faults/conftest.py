@@ -5,5 +5,11 @@ from workshop import copy_of_project
 
 @pytest.fixture(scope="module")
 def copy(tmp_path_factory):
-    """A copy of the project, with no compiled parts."""
+    """A copy of the project, with no compiled parts of its own."""
     return copy_of_project(tmp_path_factory.mktemp("copy"))
+
+
+@pytest.fixture
+def copy_of_plugin(tmp_path_factory):
+    """A copy of the project whose LIGGGHTS plugin is spoilt."""
+    return copy_of_project(tmp_path_factory.mktemp("plugin"))

@@ -51,13 +51,21 @@ struct Toy {
 
 }  // namespace epdem
 """
-THEORY = """
+THEORY = """# SPDX-License-Identifier: GPL-2.0-or-later
+\"\"\"The toy law.\"\"\"
+
+import numpy as np
+
+from .backbone import Backbone, Parameter
+from .checks import number
+
 
 class Toy(Backbone):
     \"\"\"A toy law: thornton with 4/5 of its plastic slope.\"\"\"
 
     name = "toy"
-    keywords: ClassVar = {"yield_pressure": "p_y"}
+    parameters = (Parameter("yield_pressure", "p_y", "Pa"),)
+    strength = "yield_pressure"
     default_ratio = 2.8
 
     def __init__(self, *, E_star, R_star, p_y):
@@ -84,9 +92,51 @@ class Toy(Backbone):
         F, rest = self._hertz_force(y), np.maximum(W - self._hertz_work(y), 0)
         elastic = (15 / 8 * np.minimum(W, self._hertz_work(y)) / (self.E_star * np.sqrt(self.R_star))) ** 0.4
         return np.where(rest > 0, y + 2 * rest / (F + np.sqrt(F * F + 4 * b * rest)), elastic)
+"""
+# What a person meets: a deck, its explanation, and an engine that does not have the law.
+COMMANDS = """# SPDX-License-Identifier: GPL-2.0-or-later
+import json
+
+import pytest
+from typer.testing import CliRunner
+
+from epdem.case.impact import read_toml
+from epdem.cli.main import app
+from epdem.errors import CaseError
+
+CASES = ["steel_wall", "settle_glass"]
 
 
-LAWS["toy"] = Toy
+@pytest.fixture(params=CASES)
+def case(request, tmp_path):
+    text = open(f"cases/{request.param}.toml").read()
+    path = tmp_path / "case.toml"
+    path.write_text(text.replace('name = "thornton"', 'name = "toy"'))
+    assert read_toml(path)["law"]["name"] == "toy"
+    return path
+
+
+def command(*words):
+    return CliRunner().invoke(app, list(map(str, words)), catch_exceptions=False)
+
+
+def test_a_deck_has_the_model_and_one_number_of_memory(case, tmp_path):
+    assert command("deck", case, "--out", tmp_path / "deck").exit_code == 0
+    text = "".join(path.read_text() for path in sorted((tmp_path / "deck").glob("*.in*")) + sorted((tmp_path / "deck").glob("in.*")))
+    assert "pair_style gran model ep/toy " in text and "yieldPressure peratomtype" in text
+    assert "newton off" in text
+
+
+def test_every_line_is_explained(case):
+    lines = json.loads(command("explain", case, "--json").output)
+    assert any("ep/toy" in line["line"] for line in lines)
+    assert all(line["reason"] for line in lines)
+
+
+def test_yade_says_that_it_does_not_have_the_law(case, tmp_path):
+    with pytest.raises(CaseError, match="'toy'.* use"):
+        command("deck", case, "--engine", "yade", "--out", tmp_path / "deck")
+    assert not (tmp_path / "deck").exists()
 """
 
 
@@ -94,11 +144,10 @@ def test_the_manual_says_what_this_test_does():
     section = ROOT.joinpath("ARCHITECTURE.md").read_text().split("## Add a law")[1].split("## ")[0]
     for place in (
         "laws.hpp",
+        "theory/toy.py",
         "theory/backbones.py",
-        "X(Toy)",
         "`id`",
         "`strength`",
-        "`State`",
         "`elastic_overlap(R*)`",
         "`load(R*, alpha)`",
         "`work(R*, alpha)`",
@@ -116,11 +165,19 @@ def test_a_new_law_passes_the_battery_and_lands_on_its_theory(copy):
     text, n = re.subn(r"(  X\(Cavity\))", r"\1 \\\n  X(Toy)", text)
     assert n == 1
     register.write_text(text)
+    (copy / PYTHON / "theory" / "toy.py").write_text(THEORY)
     backbones = copy / PYTHON / "theory" / "backbones.py"
-    backbones.write_text(backbones.read_text() + THEORY)
+    text = backbones.read_text().replace("import Thornton\n", "import Thornton\nfrom .toy import Toy\n")
+    text, n = re.subn(r"Cavity\)\}", "Cavity, Toy)}", text)
+    assert n == 1
+    backbones.write_text(text)
     build(copy, plugin=False)
     done = pytest_in(copy, "tests/battery", "not liggghts")
     assert done.returncode == 0, done.stdout[-3000:]
     done = pytest_in(copy, "tests/engines/test_laws.py", "toy and embedded")
     assert done.returncode == 0, done.stdout[-3000:]
     assert "3 passed" in done.stdout  # 100 steps, 400 steps, dashpot
+    (copy / "tests/decks/test_toy.py").write_text(COMMANDS)
+    done = pytest_in(copy, "tests/decks/test_toy.py", "")
+    assert done.returncode == 0, done.stdout[-3000:]
+    assert "6 passed" in done.stdout

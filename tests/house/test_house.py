@@ -94,3 +94,14 @@ def test_no_two_test_files_share_a_name():
     """pytest imports tests by file name: two of one name hide each other."""
     names = [p.name for p in (ROOT / "tests").rglob("*.py") if p.name != "conftest.py"]
     assert len(names) == len(set(names))
+
+
+def test_all_files_state_one_version():
+    places = {
+        "pyproject.toml": r'^version = "(.+)"',
+        "CMakeLists.txt": r"^project\(epdem VERSION (\S+)",
+        "python/epdem/__init__.py": r'^__version__ = "(.+)"',
+        "CITATION.cff": r"^version: (.+)",
+    }
+    found = {re.search(pattern, (ROOT / name).read_text(), re.MULTILINE)[1] for name, pattern in places.items()}
+    assert len(found) == 1, found

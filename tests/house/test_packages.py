@@ -23,16 +23,6 @@ cli
 """
 LEVEL = {room: level for level, line in enumerate(ORDER.split("\n")) for room in line.split()}
 LEVEL |= {path.stem: 0 for path in PACKAGE.glob("*.py")}
-# (file, room that it must not use): what is still to be moved.
-EXCEPTIONS = {
-    ("scenes/checks.py", "liggghts"),
-    ("scenes/contacts.py", "liggghts"),
-    ("scenes/ledger.py", "liggghts"),
-    ("scenes/run.py", "liggghts"),
-    ("scenes/run.py", "yade"),
-    ("yade/scene_deck.py", "liggghts"),
-    ("yade/scene_tables.py", "liggghts"),
-}
 FILES = sorted(PACKAGE.rglob("*.py"))
 
 
@@ -70,13 +60,8 @@ def test_a_room_uses_lower_rooms_alone(path):
     for there in map(room, imports(path)):
         lower = LEVEL.get(there, 99) < level
         if there != here and not lower and not LEVEL.get(there) == level == 0:
-            wrong.add((str(path.relative_to(PACKAGE)), there))
-    known = {pair for pair in EXCEPTIONS if pair[0] == str(path.relative_to(PACKAGE))}
-    assert wrong == known, "an exception that is gone leaves the list; a new one does not enter it"
-
-
-def test_exceptions_name_files_that_exist():
-    assert {name for name, _ in EXCEPTIONS} <= {str(path.relative_to(PACKAGE)) for path in FILES}
+            wrong.add(there)
+    assert not wrong
 
 
 def test_no_module_needs_itself():

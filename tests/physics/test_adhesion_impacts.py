@@ -4,11 +4,8 @@
 import mpmath as mp
 import numpy as np
 import pytest
-from hypothesis import given, settings
-from hypothesis import strategies as st
 
-from epdem.theory import adhesion, restitution
-from epdem.theory.backbones import Hertz, Thornton
+from epdem.theory import adhesion
 from epdem.theory.jkr import JKR
 from epdem.theory.thornton_ning import ThorntonNing
 
@@ -118,7 +115,7 @@ def test_work_far_beyond_yield_has_no_quadrature_error():
     assert law.work(top) == pytest.approx(work, rel=1e-12)
 
 
-@every_impact
+@pytest.mark.parametrize(("p_y", "V"), [IMPACTS[k] for k in (0, 2, 4, 5, 8, 9)])
 def test_contact_time_is_the_quadrature_of_the_motion(p_y, V):
     """dt = d alpha/v on both ways, by mpmath's own rule, in a: 1e-10."""
     x = adhesion.impact(law_of(p_y), m_star=M, speed=V)
@@ -228,86 +225,3 @@ def test_elastic_bodies_stick_up_to_the_printed_speed():
     x = adhesion.impact(law, m_star=M, speed=speed)
     assert np.array_equal(np.isinf(x.contact_time), x.e_n == 0)
     assert x.adhesive_work[-1] == pytest.approx(W_s, rel=1e-12)
-
-
-@pytest.mark.parametrize("p_y", [3.04e9, 1e9, 0.5e9, 0.1e9])
-def test_restitution_vanishes_at_the_sticking_speed_and_only_below_it(p_y):
-    law = law_of(p_y)
-    V_s = adhesion.sticking_speed(law, m_star=M)
-    below, above = np.geomspace(1e-4, 1 - 1e-9, 40) * V_s, V_s * (1 + np.geomspace(1e-9, 1e4, 40))
-    assert np.all(adhesion.e_n(law, m_star=M, speed=below) == 0)
-    assert np.all(adhesion.e_n(law, m_star=M, speed=above) > 0)
-    assert V_s >= adhesion.sticking_speed(law_of(None), m_star=M)
-
-
-@pytest.mark.parametrize(("p_y", "V_y"), [(3.04e9, 0.63494633), (1e9, 0.02359088), (0.5e9, 0.0)])
-def test_speed_of_first_yield(p_y, V_y):
-    """Printed to 8 digits of quadrature; 0: a_0 < a_y, but the attraction alone carries the contact beyond a_y."""
-    law = law_of(p_y)
-    found = adhesion.yield_speed(law, m_star=M)
-    assert found == pytest.approx(V_y, abs=6e-9)
-    assert adhesion.yield_speed(law_of(None), m_star=M) == np.inf
-    if V_y:
-        assert adhesion.impact(law, m_star=M, speed=V_y * 0.9999).plastic_work == 0
-        assert adhesion.impact(law, m_star=M, speed=V_y * 1.001).plastic_work > 0
-    else:
-        assert adhesion.impact(law, m_star=M, speed=1e-6).plastic_work > 0
-
-
-@pytest.mark.parametrize("p_y", [None, 3.04e9, 1e9, 0.5e9])
-def test_energy_is_only_lost_and_plastic_work_grows_with_speed(p_y):
-    x = adhesion.impact(law_of(p_y), m_star=M, speed=np.geomspace(1e-3, 100, 200))
-    assert np.all((x.e_n >= 0) & (x.e_n < 1))
-    assert np.all(np.diff(x.plastic_work) >= -1e-16 * x.work_in[1:])
-    free = x.e_n > 0
-    assert np.all(x.adhesive_work[free] > 0)
-    for name in ("force_max", "overlap_max", "radius_max", "pull_max"):
-        assert np.all(np.diff(getattr(x, name)) >= 0), name
-
-
-def test_without_adhesion_an_impact_is_that_of_hertz_and_thornton():
-    speed = np.geomspace(1e-3, 100, 60)
-    for p_y, old in ((None, Hertz(E_star=E, R_star=R)), (1e9, Thornton(E_star=E, R_star=R, p_y=1e9))):
-        x, y = adhesion.impact(law_of(p_y, 0.0), m_star=M, speed=speed), restitution.impact(old, m_star=M, speed=speed)
-        for name in vars(y):
-            scale = np.maximum(np.abs(getattr(y, name)), 1e-7 * np.abs(getattr(y, name)).max())
-            scale = y.work_in if name == "plastic_work" else y.overlap_max if name == "residual_overlap" else scale
-            assert np.all(np.abs(getattr(x, name) - getattr(y, name)) <= 1e-11 * scale), name
-        assert np.all(x.adhesive_work == 0)
-
-
-@settings(max_examples=40)
-@given(st.tuples(*[st.floats(-9, 9)] * 3), st.floats(-2, 2), st.floats(0.1, 5))
-def test_a_change_of_units_changes_nothing(powers, log_p, log_V):
-    """Mass, length and time in new units: e_n the same; works and times in the new units."""
-    mass, length, time = (10.0**p for p in powers)
-    pressure = mass / (length * time**2)
-    p_y, V = 10.0**log_p * 1e9, 10.0**log_V * V_S
-    here = adhesion.impact(law_of(p_y), m_star=M, speed=V)
-    law = ThorntonNing(E_star=E * pressure, R_star=R * length, work_of_adhesion=GAMMA * pressure * length,
-                       p_y=p_y * pressure)  # fmt: skip
-    there = adhesion.impact(law, m_star=M * mass, speed=V * length / time)
-    # where e_n is near 0 rounding of the energy is seen as its root
-    assert float(there.e_n) ** 2 == pytest.approx(float(here.e_n) ** 2, abs=1e-12)
-    for name, unit in {"force_max": pressure * length**2, "overlap_max": length, "radius_max": length,
-                       "plastic_work": mass * length**2 / time**2}.items():  # fmt: skip
-        scale = here.work_in if name == "plastic_work" else getattr(here, name)
-        assert getattr(there, name) / unit == pytest.approx(float(getattr(here, name)), abs=1e-11 * float(scale)), name
-
-
-def test_arrays_of_contacts_are_their_scalars():
-    """Every argument may be an array; a million e_n of `jkr` come at once."""
-    E_, R_, G_, p_ = np.array([1e6, 1e11]), np.array([1e-3, 1e-6]), np.array([0.05, 0.5]), np.array([1e4, 1e9])
-    speed = np.geomspace(0.1, 10, 5)[:, None]
-    law = ThorntonNing(E_star=E_, R_star=R_, work_of_adhesion=G_, p_y=p_)
-    both = adhesion.impact(law, m_star=1e-6, speed=speed)
-    for k in range(2):
-        one = ThorntonNing(E_star=E_[k], R_star=R_[k], work_of_adhesion=G_[k], p_y=p_[k])
-        for i, v in enumerate(speed[:, 0]):
-            single = adhesion.impact(one, m_star=1e-6, speed=v)
-            for name in vars(single):
-                a, b = float(getattr(both, name)[i, k]), float(getattr(single, name))
-                assert a == pytest.approx(b, rel=1e-12, abs=1e-14 * float(single.work_in)), name
-    many = adhesion.e_n(law_of(None), m_star=M, speed=np.linspace(0.5, 2, 1_000_000) * V_S)
-    assert many.shape == (1_000_000,)
-    assert many[-1] == pytest.approx(np.sqrt(3) / 2, rel=1e-8)  # sqrt(1 - 1/2^2)

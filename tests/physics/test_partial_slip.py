@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from epdem.theory import oblique, partial_slip, pressure, restitution
-from epdem.theory.backbones import Cavity
+from epdem.theory.backbones import Cavity, Hertz
 
 E_STAR, G_STAR, MU, M, R = 1.142857e11, 2.3529e10, 0.3, 0.032882, 0.01  # steel sphere on steel
 KAPPA = 4 * G_STAR / E_STAR
@@ -120,6 +120,14 @@ def test_shear_in_a_plane_knows_no_axis_and_nothing_stays_without_force():
         assert other.move(turn @ step, **LOADED) == pytest.approx(turn @ one.move(step, **LOADED), rel=1e-12)
     assert np.hypot(*one.move([LIMIT, 0.0], **LOADED)) > 0 and one.energy() > 0
     assert np.all(one.move([LIMIT, 0.0], force=0.0, a=0.0, a_peak=1e-3, flatness=0.0) == 0) and one.energy() == 0
+
+
+@pytest.mark.parametrize(("bad", "name"), [({"m_tangential": 0.0}, "m_tangential = 0"), ({"mu": -0.1}, "mu = -0.1"),
+                                           ({"v_n": 0.0}, "v_n = 0"), ({"G_star": -1.0}, "G_star = -1")])  # fmt: skip
+def test_numbers_that_make_no_impact_are_named(bad, name):
+    good = {"m_star": M, "m_tangential": M, "mu": MU, "G_star": G_STAR, "v_n": 1.0, "slip": 0.1, "steps": 50}
+    with pytest.raises(ValueError, match=name):
+        partial_slip.rebound(Hertz(E_star=E_STAR, R_star=R), **(good | bad))
 
 
 def test_maw_barber_and_fawcetts_curve_ends_on_the_sliding_line():

@@ -10,7 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 import pytest
 
-from epdem.theory import energy, oblique, pair, pressure, printed, restitution, timestep, yielding
+from epdem.theory import energy, oblique, pair, partial_slip, pressure, printed, restitution, timestep, yielding
 from epdem.theory.backbones import LAWS
 
 ONE, KG, M, S = np.zeros(3), *np.eye(3)
@@ -88,6 +88,12 @@ def split(E_star, R_star, p_y, m_star, speed, E, nu, density):
     return list(energy.split(both, m_star=m_star, speed=speed, E=E, nu=nu, density=density).values())
 
 
+def slip_rebound(E_star, R_star, p_y, G_star, m_star, speed, slip):
+    both = LAWS["thornton"](E_star=E_star, R_star=R_star, p_y=p_y)
+    return list(partial_slip.rebound(both, m_star=m_star, m_tangential=2 / 7 * m_star, mu=0.2, G_star=G_star, v_n=speed,
+                                     slip=slip, steps=200, springs=40))  # fmt: skip
+
+
 ROWS = [
     Row(pair.E_star, BODIES, PA),
     Row(pair.G_star, BODIES, PA),
@@ -129,6 +135,8 @@ ROWS = [
     Row(oblique.sliding_angle, SLIDING, ONE),
     Row(oblique.sliding_angle_spring, SLIDING, ONE),
     Row(oblique_impact, CONTACT | {"p_y": P, "mass": M_STAR, "G_star": (1e10, PA), "v_n": V}, [ONE, ONE, ONE, -S, ONE]),
+    Row(slip_rebound, IMPACT | {"p_y": P, "G_star": (1e10, PA), "speed": V, "slip": (0.7, SPEED)}, [SPEED, N + S]),
+    Row(partial_slip.maw_barber_fawcett, {"psi_1": (2.0, ONE), "kappa": (0.8, ONE)}, ONE),
     Row(printed.yield_speed, IMPACT | {"p_y": P}, SPEED),
     Row(printed.thornton, {"speed": V, "v_y": (0.5, SPEED)}, ONE),
     Row(printed.johnson, IMPACT | {"speed": (50.0, SPEED), "p_m": P}, ONE),
@@ -144,7 +152,8 @@ ROWS = [
 
 # a fit with its own unit, words, and those that the rows above call under another name
 OTHERWISE = {"printed.bridges", "printed.why_not", "energy.split", "oblique.impact", "restitution.impact",
-             "restitution.e_n", "restitution.history", "yielding.equivalent", "yielding.first_yield_speed"}  # fmt: skip
+             "restitution.e_n", "restitution.history", "yielding.equivalent", "yielding.first_yield_speed",
+             "partial_slip.rebound"}  # fmt: skip
 
 
 @pytest.mark.parametrize("row", ROWS, ids=str)
@@ -166,7 +175,7 @@ def test_other_units_of_mass_length_and_time_give_the_same_quantity(row):
 
 
 def test_no_function_of_these_modules_is_missing_from_the_table():
-    modules = (energy, oblique, pair, pressure, printed, restitution, timestep, yielding)
+    modules = (energy, oblique, pair, partial_slip, pressure, printed, restitution, timestep, yielding)
     public = {f"{m.__name__.rpartition('.')[2]}.{name}" for m in modules for name, f in vars(m).items()
               if inspect.isfunction(f) and f.__module__ == m.__name__ and not name.startswith("_")}  # fmt: skip
     assert public - OTHERWISE == {str(row) for row in ROWS if inspect.getmodule(row.function) in modules}

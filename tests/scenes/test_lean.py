@@ -4,15 +4,21 @@
 from pathlib import Path
 
 import pytest
+from removals import removals
+from scene_runs import write_deck
 
+from epdem import rendering
 from epdem.case import impact as impacts
 from epdem.case.scene import is_scene, parse
 from epdem.engines import engine
 from epdem.impacts.experiment import experiment
 from epdem.impacts.plan import plan
 from epdem.impacts.prediction import predict
-from epdem.liggghts import explain, lean
-from epdem.liggghts import scene_deck as deck
+from epdem.laws.library import laws
+from epdem.liggghts import explain
+from epdem.liggghts.impacts import Liggghts
+from epdem.liggghts.scene_deck import deck
+from epdem.scenes.plan import plan as scene_plan
 
 CASES = sorted((Path(__file__).parents[2] / "cases").glob("*.toml"))
 
@@ -50,7 +56,7 @@ def decks_of(path: Path, folder: Path) -> tuple[str, list[str]]:
     """Write a case's deck: (file to run, files whose lines are removed)."""
     data = impacts.read_toml(path)
     if is_scene(data):
-        deck.write(parse(small(data)), folder)
+        write_deck(parse(small(data)), folder)
         return "in.scene", ["in.scene", "setup.in"]
     data = data | {"numerics": {"steps_in_contact": 40, "phases": 2}}  # the same lines, in a tenth of the time
     x = experiment(impacts.parse(data))
@@ -62,7 +68,7 @@ def decks_of(path: Path, folder: Path) -> tuple[str, list[str]]:
 @pytest.mark.parametrize("path", CASES, ids=lambda p: p.stem)
 def test_removing_any_line_of_a_deck_breaks_the_run_or_changes_what_it_puts_out(path, tmp_path):
     run, files = decks_of(path, tmp_path / "deck")
-    found = lean.removals(tmp_path / "deck", tmp_path / "without", run, files)
+    found = removals(tmp_path / "deck", tmp_path / "without", run, files)
     useless = [r.line for r in found if r.effect == "nothing"]
     assert not useless, f"{path.name}: lines that do nothing: {useless}"
     assert sum(r.effect == "guard" for r in found) <= 4
@@ -74,13 +80,47 @@ def test_a_line_that_does_nothing_is_found(tmp_path):
     run, files = decks_of(next(p for p in CASES if p.stem.startswith("settle")), tmp_path / "deck")
     text = (tmp_path / "deck/setup.in").read_text()
     (tmp_path / "deck/setup.in").write_text(text + "compute idle all ke\n")
-    found = lean.removals(tmp_path / "deck", tmp_path / "without", run, ["setup.in"])
+    found = removals(tmp_path / "deck", tmp_path / "without", run, ["setup.in"])
     assert [r.line for r in found if r.effect == "nothing"] == ["compute idle all ke"]
+
+
+def explained(path: Path) -> list[tuple[str, str, str]]:
+    """What `explain` says of the deck that `decks_of` writes."""
+    data = impacts.read_toml(path)
+    if is_scene(data):
+        return explain.explain(explain.SCENE, deck(scene_plan(parse(small(data)))))
+    x = experiment(impacts.parse(data | {"numerics": {"steps_in_contact": 40, "phases": 2}}))
+    return explain.explain(explain.IMPACT, Liggghts().deck(plan(x, predict(x))))
 
 
 @pytest.mark.parametrize("path", CASES, ids=lambda p: p.stem)
 def test_every_line_of_a_deck_has_a_reason(path, tmp_path):
     _, files = decks_of(path, tmp_path)
-    lines = explain.explain({name: (tmp_path / name).read_text() for name in files})
-    assert [line for _, line, reason in lines if reason is None] == []
+    lines = explained(path)
+    assert [line for _, line, reason in lines if not reason] == []
+    for name in files:  # what is explained is the deck that is written, line by line
+        written = [x.rstrip() for x in (tmp_path / name).read_text().split("\n") if x.strip() and x[0] != "#"]
+        assert [line for file, line, _ in lines if file == name] == written
     assert len(lines) > 8
+
+
+@pytest.mark.parametrize("law", laws())
+def test_every_line_of_a_deck_with_any_law_has_a_reason(law):
+    """Walls of another material and parameters of the law that are not its defaults."""
+    data = impacts.read_toml(CASES[0].parent / "steel_wall.toml")
+    parameters = {p.name: 1.1 * p.default for p in laws()[law].parameters if p.default == p.default}
+    x = experiment(impacts.parse(data | {"law": {"name": law} | parameters}))
+    found = explain.explain(explain.IMPACT, Liggghts().deck(plan(x, predict(x))))
+    assert sum("property/global" in line for _, line, _ in found) == 2 + len(laws()[law].parameters)
+    assert [line for _, line, reason in found if not reason] == []
+
+
+def test_a_line_without_a_reason_is_found(tmp_path, monkeypatch):
+    (tmp_path / "bad.j2").write_text('units si  # guard: said\nfix a all nve{{ why("moves") }}\nrun 3\n# words\n')
+    plain = rendering.environment
+    monkeypatch.setattr(rendering, "environment", lambda **words: plain(tmp_path, **words))
+    assert explain.explain({"in.bad": "bad.j2"}, None) == [
+        ("in.bad", "units si  # guard: said", "guard: said"),
+        ("in.bad", "fix a all nve", "moves"),
+        ("in.bad", "run 3", ""),
+    ]

@@ -3,6 +3,7 @@
 
 import os
 import re
+import shutil
 import signal
 import subprocess
 import sys
@@ -11,17 +12,16 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from scene_runs import run, write_case, write_deck
 from test_lean import CASES, small
-from toml_files import write_case
 
 from epdem.case.impact import read_toml
-from epdem.case.scene import is_scene, parse
+from epdem.case.scene import is_scene, load, parse
 from epdem.errors import CaseError
 from epdem.liggghts import launcher, resume
-from epdem.liggghts import scene_deck as deck
 from epdem.liggghts import scene_tables as tables
 from epdem.scenes import results
-from epdem.scenes.run import last_restart, run
+from epdem.scenes.plan import ScenePlan, plan
 
 pytestmark = pytest.mark.liggghts
 SCENES = [p for p in CASES if is_scene(read_toml(p))]
@@ -32,25 +32,23 @@ def short(path: Path):
     return parse(small(read_toml(path)) | {"output": {"rows": 20, "particles": 10, "restarts": 10}})
 
 
-def last_frame(case, folder: Path) -> np.ndarray:
-    d = deck.deck(case)
-    table = tables.particles(folder, d)
-    return table[table["step"] == d.steps].to_numpy()
+def last_frame(p: ScenePlan, folder: Path) -> np.ndarray:
+    table = tables.particles(p, folder, without=range(p.steps))
+    return table[table["step"] == p.steps].to_numpy()
 
 
 @pytest.mark.parametrize("path", SCENES, ids=lambda p: p.stem)
 def test_a_continued_run_ends_bitwise_where_the_uninterrupted_one_does(path, tmp_path):
-    case = short(path)
-    deck.write(case, tmp_path)
+    p = write_deck(short(path), tmp_path)
     launcher.run("in.scene", tmp_path)
-    whole = last_frame(case, tmp_path)
+    whole = last_frame(p, tmp_path)
     steps = sorted(int(re.search(r"\d+", p.name).group()) for p in tmp_path.glob("restart.*.bin"))
     for step in (steps[2], steps[6]):
         for frame in tmp_path.glob("particles.*.bin"):
             frame.unlink()
-        resume.write_resume(case, tmp_path, f"restart.{step}.bin", step)
+        resume.write_resume(p, tmp_path, step)
         launcher.run("in.resume", tmp_path)
-        continued = last_frame(case, tmp_path)
+        continued = last_frame(p, tmp_path)
         assert continued.shape == whole.shape
         assert (continued == whole).all(), f"continued from {step}: largest difference {abs(continued - whole).max()}"
 
@@ -58,10 +56,12 @@ def test_a_continued_run_ends_bitwise_where_the_uninterrupted_one_does(path, tmp
 INTERRUPTED = """
 import signal, sys
 from pathlib import Path
+from epdem.engines import scene_engine
 from epdem.scenes.run import run
 signal.signal(signal.SIGINT, signal.default_int_handler)  # the tests may run where Ctrl-C is ignored
 print("started", flush=True)
-run(Path(sys.argv[1]), out=Path(sys.argv[2]), ranks=int(sys.argv[3]), tell=lambda s, n: print(s, flush=True))
+tool = scene_engine("liggghts")
+run(Path(sys.argv[1]), tool, out=Path(sys.argv[2]), ranks=int(sys.argv[3]), tell=lambda s, n: print(s, flush=True))
 """
 
 
@@ -112,9 +112,7 @@ def test_ctrl_c_stops_liggghts_with_all_its_ranks_and_the_run_can_be_continued(r
     assert not children(str(out))
     assert process.returncode != 0
     assert not (out / "results.h5").exists()
-    step = last_restart(out)[1]
-    assert step > 0
-    assert list(out.glob("restart.*.bin"))
+    assert resume.whole_restarts(out)[-1] > 0
 
 
 class Enough(Exception):
@@ -141,7 +139,7 @@ def test_every_table_of_a_continued_run_is_that_of_the_uninterrupted_one(path, t
     whole = run(path, out=tmp_path / "whole")
     stopped_run(path, tmp_path / "parts")
     again = run(path, out=tmp_path / "parts", resume=True)
-    assert 0 < again.resumed_from < again.deck.steps
+    assert 0 < again.resumed_from < again.plan.steps
     a, b = (results.read(tmp_path / name / "results.h5") for name in ("whole", "parts"))
     assert set(a.tables) == set(b.tables) == {"rows", "particles", "contacts", "ledger", "checks"}
     for name, table in a.tables.items():
@@ -151,12 +149,73 @@ def test_every_table_of_a_continued_run_is_that_of_the_uninterrupted_one(path, t
     assert whole.passed == again.passed
 
 
-def test_a_changed_case_is_not_continued(tmp_path):
-    path = long_case(tmp_path)
-    with pytest.raises(CaseError, match="no restart file"):
-        run(path, out=tmp_path / "out", resume=True)
-    (tmp_path / "out").mkdir()
-    (tmp_path / "out/out.liggghts").write_text("   240   10  0.1 \n   240  10  0.1 \n")
-    (tmp_path / "out/restart.240.bin").write_bytes(b"")
+@pytest.fixture(scope="module")
+def hopper(tmp_path_factory) -> tuple[dict, Path]:
+    """(TOML data of a small hopper with a flat bottom, folder with its interrupted run)."""
+    folder = tmp_path_factory.mktemp("hopper")
+    data = small(read_toml(next(p for p in SCENES if p.stem.startswith("hopper"))))
+    data |= {"output": {"rows": 40, "particles": 20, "restarts": 20}}
+    data["scene"] |= {"half_angle": "90 deg"}
+    stopped_run(write_case(data, folder), folder / "out")
+    return data, folder
+
+
+def test_a_hopper_with_another_outlet_is_not_continued(hopper, tmp_path):
+    data, folder = hopper
+    other = write_case(data | {"scene": data["scene"] | {"outlet": "11 mm"}}, tmp_path)
+    write_deck(load(other), tmp_path / "deck")
+    for name in ("in.scene", "setup.in"):  # the outlet of a flat bottom is in its triangles alone
+        assert (tmp_path / "deck" / name).read_text() == (folder / "out" / name).read_text()
     with pytest.raises(CaseError, match="the case has changed"):
+        run(other, out=folder / "out", resume=True)
+
+
+def test_without_a_restart_file_nothing_is_continued(tmp_path):
+    path = long_case(tmp_path)
+    with pytest.raises(CaseError, match="no such folder"):
         run(path, out=tmp_path / "out", resume=True)
+    assert not (tmp_path / "out").exists()
+    p = write_deck(load(path), tmp_path / "empty")
+    with pytest.raises(CaseError, match="no restart file"):
+        resume.choose(p, tmp_path / "empty")
+
+
+def steps_of(folder: Path, pattern: str) -> list[int]:
+    return sorted(int(re.search(r"\d+", p.name).group()) for p in folder.glob(pattern))
+
+
+@pytest.mark.parametrize("damage", ["truncated", "missing"])
+@pytest.mark.parametrize("place", ["before the restart files", "after one of them"])
+def test_a_damaged_frame_is_written_again_where_it_can_be_or_named_and_left_out(damage, place, hopper, tmp_path):
+    _, folder = hopper
+    path, out = tmp_path / "case.toml", tmp_path / "out"
+    shutil.copytree(folder, tmp_path, dirs_exist_ok=True)
+    p, newest = plan(load(path)), resume.whole_restarts(out)[-1]
+    lost, older = newest - p.frames, newest - 2 * p.frames
+    for step in steps_of(out, "restart.*.bin"):
+        if step != newest:
+            (out / f"restart.{step}.bin").unlink()
+    if place.startswith("after"):
+        shutil.copy(out / f"restart.{newest}.bin", out / f"restart.{older}.bin")
+    frame = out / f"particles.{lost}.bin"
+    if damage == "missing":
+        frame.unlink()
+    else:
+        frame.write_bytes(frame.read_bytes()[:-100])
+    if place.startswith("after"):
+        assert resume.choose(p, out) == (older, [])
+        return
+    outcome = run(path, out=out, resume=True, force=True)  # a file that was changed may be the user's
+    assert [w for w in outcome.warnings if f"frames of step {lost} are missing or not whole" in w]
+    expected = set(range(p.frames, p.steps + 1, p.frames)) - {lost}  # at step 0 nothing is there yet
+    assert set(outcome.results.particles["step"]) == expected
+    assert list(outcome.results.rows["step"]) == list(range(0, p.steps + 1, p.every)), "rows are whole"
+
+
+def test_restart_files_are_kept_until_the_engine_has_gone_on_after_a_later_one(tmp_path):
+    """The log may be far behind the engine: what it does not tell of yet is no reason to remove anything."""
+    for step in (100, 200, 300, 400):
+        (tmp_path / f"restart.{step}.bin").touch()
+    for told, kept in ((100, [100, 200, 300, 400]), (250, [200, 300, 400]), (300, [200, 300, 400]), (900, [400])):
+        resume.prune(tmp_path, told)
+        assert steps_of(tmp_path, "restart.*.bin") == kept

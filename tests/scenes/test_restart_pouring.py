@@ -5,11 +5,11 @@ import re
 from pathlib import Path
 
 import pytest
+from scene_runs import write_deck
 
 from epdem.case.impact import read_toml
 from epdem.case.scene import parse
 from epdem.liggghts import launcher, resume
-from epdem.liggghts import scene_deck as deck
 from epdem.liggghts import scene_tables as tables
 
 pytestmark = pytest.mark.liggghts
@@ -18,7 +18,7 @@ COUNT = 100
 
 @pytest.fixture(scope="module")
 def poured(tmp_path_factory):
-    """(case, folder with its restart files, particles): beads poured in three lots in the first 40 % of the run."""
+    """(plan, folder with its restart files, particles): beads poured in three lots in the first 40 % of the run."""
     folder = tmp_path_factory.mktemp("poured")
     data = read_toml(Path(__file__).parents[2] / "cases/settle_glass.toml")
     scene = {
@@ -30,20 +30,19 @@ def poured(tmp_path_factory):
     }
     output = {"rows": 20, "particles": 20, "restarts": 20}
     case = parse(data | {"scene": data["scene"] | scene, "output": output, "numerics": {"error": 0.1}})
-    deck.write(case, folder)
+    p = write_deck(case, folder)
     launcher.run("in.scene", folder)
-    return case, folder, tables.particles(folder, deck.deck(case))
+    return p, folder, tables.particles(p, folder)
 
 
 def continued(poured, begin: int, tmp_path):
     """Particles of the frames after step `begin` of a run continued from there, in a folder of its own."""
-    case, folder, _ = poured
+    p, folder, _ = poured
     for name in ("setup.in", launcher.OUT, f"restart.{begin}.bin"):
         (tmp_path / name).write_bytes((folder / name).read_bytes())
-    resume.write_resume(case, tmp_path, f"restart.{begin}.bin", begin)
+    resume.write_resume(p, tmp_path, begin)
     launcher.run("in.resume", tmp_path)
-    table = tables.particles(tmp_path, deck.deck(case))
-    return table[table["step"] > begin].reset_index(drop=True)
+    return tables.particles(p, tmp_path, without=range(begin + 1))
 
 
 def restarts(folder: Path) -> list[int]:

@@ -17,7 +17,7 @@ from epdem.errors import CaseError
 from epdem.impacts.experiment import experiment
 from epdem.impacts.prediction import predict
 from epdem.laws.library import laws
-from epdem.scenes.model import strengths
+from epdem.scenes.pairs import strengths
 from epdem.studies.calibrate import KGF_PER_MM2, from_hardness, from_restitution, pressure_of_hardness
 from epdem.studies.soften import soften
 

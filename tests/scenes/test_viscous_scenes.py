@@ -5,14 +5,15 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from scene_runs import run
 
 from epdem.case.impact import read_toml
 from epdem.case.scene import parse
 from epdem.errors import CaseError
 from epdem.liggghts import explain
-from epdem.liggghts import scene_deck as deck
-from epdem.scenes.model import time_step
-from epdem.scenes.run import run
+from epdem.liggghts.scene_deck import deck, files
+from epdem.scenes.plan import plan
+from epdem.scenes.timestep import time_step
 
 CASES = Path(__file__).parents[2] / "cases"
 
@@ -24,7 +25,7 @@ def beads(restitution=None, **contact) -> dict:
 
 
 def setup_of(data: dict) -> str:
-    return deck.texts(parse(data, "case.toml"))["setup.in"]
+    return files(plan(parse(data, "case.toml")))["setup.in"]
 
 
 def test_a_scene_has_the_dashpot_in_pair_and_walls_only_if_it_asks():
@@ -34,7 +35,8 @@ def test_a_scene_has_the_dashpot_in_pair_and_walls_only_if_it_asks():
         assert text.count("viscous on") == expected
         assert ("coefficientRestitution peratomtypepair 1 0.7 " in text) is (expected > 0)
         assert "tangential_damping" not in text, "there is no friction, so nothing to switch off"
-        assert [line for _, line, why in explain.explain({"setup.in": text}) if why is None] == []
+        lines = explain.explain(explain.SCENE, deck(plan(parse(data, "case.toml"))))
+        assert [line for _, line, why in lines if not why] == []
 
 
 def test_a_dashpot_along_the_normal_does_not_bring_one_along_the_tangent():
@@ -52,7 +54,7 @@ def test_a_dashpot_along_the_normal_does_not_bring_one_along_the_tangent():
 )
 def test_a_dashpot_that_liggghts_cannot_have_is_refused_before_anything_runs(data, words):
     with pytest.raises(CaseError, match=words):
-        deck.deck(parse(data, "case.toml"))
+        plan(parse(data, "case.toml"))
 
 
 def test_a_strong_dashpot_makes_the_step_smaller():

@@ -7,19 +7,21 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from scene_runs import run, write_deck
 
 from epdem.case.impact import read_toml
 from epdem.case.scene import parse
 from epdem.cli import main as cli
 from epdem.errors import CaseError, EngineError
-from epdem.liggghts import launcher
-from epdem.liggghts import scene_deck as deck
-from epdem.liggghts import scene_tables as tables
-from epdem.scenes import placement as yade_place
+from epdem.liggghts import launcher, scene_tables
+from epdem.scenes import placement
+from epdem.scenes.kinds import Block
 from epdem.scenes.model import model
-from epdem.scenes.run import run
+from epdem.scenes.plan import plan
 from epdem.yade import scene_deck as yade
+from epdem.yade import scene_tables as yade_tables
 from epdem.yade.launcher import environment
+from epdem.yade.scenes import OUT
 
 CASES = Path(__file__).parents[2] / "cases"
 BEADS = {"box": '["9 mm", "9 mm", "30 mm"]', "count": "40", "duration": '"0.3 s"'}
@@ -59,7 +61,7 @@ def test_the_floor_of_a_yade_bed_carries_its_weight(sides, tmp_path):
     assert tail == pytest.approx(weight, rel=0.02)
     assert all(verdicts(outcome).values()) and "floor load / weight (smooth walls: hydrostatic)" in verdicts(outcome)
     assert len(radius) == 40 and (rows["particles"] == 40).all()
-    assert told == [(step, outcome.deck.steps) for step in rows["step"]], "progress by rows"
+    assert told == [(step, outcome.plan.steps) for step in rows["step"]], "progress by rows"
     assert outcome.warnings[0] == yade.NO_DASHPOT
     assert run(path, engine="yade", out=tmp_path / "out").reused
 
@@ -81,7 +83,7 @@ def test_the_energy_of_a_frictionless_bed_in_yade_leaves_nothing_over(law, tmp_p
 
 def liggghts_with_places_of(table: np.ndarray, case, folder: Path) -> None:
     """LIGGGHTS's own deck of a case, its random insertion replaced by the given spheres."""
-    deck.write(case, folder)
+    write_deck(case, folder)
     lines = (folder / "in.scene").read_text().splitlines()
     kept = [t for t in lines if not re.match(r"region fill1|fix (template|mix|fill)", t)]
     density = case.materials["powder"].density
@@ -96,7 +98,7 @@ def pressed(path: Path, folder: Path):
     outcome = run(path, engine="yade", out=folder / "yade")
     liggghts_with_places_of(np.loadtxt(folder / "yade" / "spheres.txt"), outcome.case, folder / "liggghts")
     launcher.run("in.scene", folder / "liggghts")
-    return outcome, tables.rows(folder / "liggghts" / launcher.OUT, outcome.deck.time_step)
+    return outcome, scene_tables.rows(outcome.plan, folder / "liggghts" / launcher.OUT)
 
 
 @pytest.mark.yade
@@ -118,7 +120,7 @@ def test_a_press_on_rubbing_spheres_has_its_peak_force_and_a_steeper_unloading_i
     rows = outcome.results.rows
     # the ways part by chaos: four random fillings of this box differ by -4, 2, 2 and 3 % between the codes
     assert rows["plate_force"].max() == pytest.approx(other["plate_force"].max(), rel=0.1)
-    turn = outcome.deck.phases[0].end
+    turn = outcome.plan.phases[0].end
     top = rows["plate_force"].max()
 
     def way(part) -> float:
@@ -160,9 +162,9 @@ def test_the_folder_of_a_yade_scene_runs_by_hand_and_repeats_itself(tmp_path):
         text=True,
         check=True,
     )
-    (tmp_path / "deck" / yade.OUT).write_text(done.stdout)
+    (tmp_path / "deck" / OUT).write_text(done.stdout)
     outcome = run(path, engine="yade", out=tmp_path / "out")
-    rows = tables.rows(tmp_path / "deck" / yade.OUT, outcome.deck.time_step)
+    rows = yade_tables.rows(outcome.plan, tmp_path / "deck" / OUT)
     assert rows.equals(outcome.results.rows)
 
 
@@ -173,7 +175,7 @@ def test_spheres_begin_without_overlap_inside_the_box_and_with_their_shares_of_t
         {"material": "glass", "radius": "2 mm", "share": 0.7},
     ]
     case = parse(data | {"scene": data["scene"] | {"particles": sizes}})
-    table = yade_place.spheres(case, model(case), (-0.015, 0.015, -0.015, 0.015, 0.0, 0.08))
+    table = placement.spheres(case, model(case), Block((-0.015, 0.015, -0.015, 0.015, 0.0, 0.08)))
     x, r = table[:, :3], table[:, 3]
     distance = np.linalg.norm(x[:, None] - x[None], axis=2) - r[:, None] - r[None] + np.diag(np.full(len(r), 1.0))
     assert len(table) == 1000 and distance.min() > 0.0
@@ -213,7 +215,7 @@ def test_what_yade_cannot_is_refused_with_place_value_and_next_step(name, place,
     data = read_toml(CASES / f"{name}.toml")
     data[place] = data.get(place, {}) | value
     with pytest.raises(CaseError, match=words) as found:
-        yade.texts(parse(data))
+        yade.files(plan(parse(data)))
     assert "--engine liggghts" in str(found.value)
     assert found.value.exit_code == 2
 

@@ -26,14 +26,13 @@ inline T max(T a, T b) noexcept {
 }
 
 /// Force F [N], contact radius a [m] (0 while apart), and what the contact remembers if this step counts.
-template <class T, class Memory>
+template <class Law>
 struct Step {
-  T force;
-  T radius;
-  Memory after;
+  typename Law::number force, radius;
+  typename Law::State after;
 };
 
-inline constexpr real fold_share = 0.62996052494743658;  // y_f in (c R)^(1/3): 4^(-1/3)
+inline constexpr double fold_share = 0.62996052494743658;  // y_f in (c R)^(1/3): 4^(-1/3)
 
 /// (c R)^(1/3), the root of a contact; `known` is it already unless R has changed, or 0.
 template <class T>
@@ -45,44 +44,60 @@ inline T refreshed(T known, T cube) noexcept {
 }
 
 /// y = sqrt(a) of the standing contact at X = R (alpha - alpha_p): the largest root of y^4 - 4 y_f^3 y = X >= -3 y_f^4.
-/// With y = y_f + e it is e^2 (e^2 + 4 y_f e + 6 y_f^2) = X + 3 y_f^4: all terms positive, and four steps of Newton's
-/// method from within 6 % end at round-off, also at the fold, where the root is double.
+/// With y = y_f + e it is e^2 (e^2 + 4 y_f e + 6 y_f^2) = X + 3 y_f^4 = t^2, where all terms are positive, also at the
+/// fold, at which the root is double. e is t/sqrt(6 y_f^2 + t) times a polynomial of degree 9, to 4e-6, and one step of
+/// Chebyshev's method (of third order, one division) to round-off.
 template <class T>
 inline T curve(T y_f, T X) noexcept {
   using std::sqrt;
-  const T f2 = y_f * y_f, square = max(X + 3.0 * f2 * f2, T{}), t = sqrt(square);
-  T e = t / sqrt(6.0 * f2 + 1.13 * t);
-  for (int k = 0; k < 4; ++k) {
-    const T e2 = e * e;
-    e = (e2 * (3.0 * e2 + y_f * (8.0 * e + 6.0 * y_f)) + square) / (4.0 * e * (e2 + 3.0 * y_f * (e + y_f)));
-  }
-  return y_f + select(square > 0.0, e, T{});
+  const T f2 = y_f * y_f, square = max(X + 3.0 * f2 * f2, T{}), t = sqrt(square), scale = sqrt(6.0 * f2 + t);
+  const T v = t / (t + 4.0 * y_f * scale), v2 = v * v, v4 = v2 * v2;
+  const T low = (0.99999845 - 0.5165725 * v) + (0.74336657 - 0.37540549 * v) * v2;
+  const T high = (0.024705481 + 1.04825180 * v) + (-1.19390857 - 0.54810887 * v) * v2;
+  const T e = t / scale * (low + (high + (1.29345746 - 0.47578761 * v) * v4) * v4);
+  const T e2 = e * e, slope = 1.0 / (4.0 * e * (e2 + 3.0 * y_f * (e + y_f)));
+  const T newton = (e2 * (e2 + y_f * (4.0 * e + 6.0 * y_f)) - square) * slope;
+  const T more = 6.0 * newton * slope * (e + y_f) * (e + y_f);
+  return y_f + select(square > 0.0, e - newton * (1.0 + more), T{});
 }
 
-/// F [N] of the elastic curve at y.
+/// F [N] of the elastic curve at y and `own` = alpha - alpha_p: 4 E* y^6/(3 R) - 2 E* c y^3, with y^4/R = own + c y.
 template <class T>
-inline T force(T E_star, T c, T R, T y) noexcept {
-  const T cube = y * y * y;
-  return 2.0 * E_star * cube * (2.0 / 3.0 * cube / R - c);
+inline T force(T E_star, T c, T own, T y) noexcept {
+  return 2.0 / 3.0 * E_star * y * y * (2.0 * own - c * y);
 }
 
-/// A force that jumps within a step leaves velocity Verlet of first order: the step of touch sees the jump [N] for a whole
-/// step, but it has lasted for the share beyond/closing, to which its half as the start of a trapezoid comes. What is
-/// to be added; `beyond` is the overlap since touch, `closing` the closing speed at the half step times the step [m].
-/// Nothing for a contact that is there without a crossing.
+/// Elastic and surface energy [J] of the elastic curve at y, 0 for bodies apart: F is its slope by alpha.
+template <class T>
+inline T energy(T E_star, T c, T R, T y) noexcept {
+  const T a = y * y, d = c * y, shape = a * a / R;
+  return E_star * a * ((8.0 / 15.0 * shape - 4.0 / 3.0 * d) * shape + 0.5 * d * d);
+}
+
+/// Largest gap [m] across which bodies still pull: that of the elastic fold, also for a contact with a dent.
+template <class T>
+inline T largest_gap(T c, T R_star) noexcept {
+  const T y_f = fold_share * refreshed(T{}, c * R_star);
+  return 0.75 * c * y_f;
+}
+
+/// What the force of the step of touch lacks [N]. A force that jumps within a step leaves velocity Verlet of first
+/// order: the sum over the steps takes the jump for a whole step, but it has lasted for the share beyond/closing, and
+/// half a step belongs to the trapezoid that starts here. `beyond` is the overlap since touch, `closing` the closing
+/// speed at the half step times the step [m]. Nothing for a contact that is there without a crossing.
 template <class T>
 inline T on_touch(T jump, T beyond, T closing) noexcept {
   return select(beyond < 2.0 * closing, jump * (min(beyond / closing, T{} + 1.0) - 0.5), T{});
 }
 
-/// The same in the step after the last one attached, in which the overlap is `beyond` the fold [m]: the force it takes.
-/// Near the fold F = F_f - bend sqrt(alpha - alpha_f). A sum of roots over steps of h differs from their integral by
-/// h^(3/2) zeta(-1/2, share) (Hurwitz), share h being the distance of the last step from the fold; that is sqrt(share) and
-/// a smooth rest, here to 2e-4.
+/// The force of the step after the last one attached [N], in which the overlap is `beyond` the fold [m]: what the sum
+/// over the steps lacks. Near the fold F = F_f - bend sqrt(alpha - alpha_f). A sum of roots over steps of h differs
+/// from their integral by h^(3/2) zeta(-1/2, share) (Hurwitz), share h being the distance of the last step from the
+/// fold; zeta is sqrt(share) and a smooth rest, here to 2e-4.
 template <class T>
 inline T on_parting(T E_star, T pull, T R, T y_f, T beyond, T closing) noexcept {
   using std::sqrt;
-  const T h = max(-closing, T{} + std::numeric_limits<real>::min()), share = max(1.0 - beyond / h, T{});
+  const T h = max(-closing, T{} + std::numeric_limits<double>::min()), share = max(1.0 - beyond / h, T{});
   const T rest = -0.20768371 + share * (-0.73462635 + share * (-0.30379973 + share * 0.03838347));
   const T bend = 16.0 / sqrt(6.0) * E_star * y_f * y_f * y_f * y_f;
   const T F = -5.0 / 6.0 * pull * R * (share - 0.5) + bend * sqrt(h / R) * (sqrt(share) + rest);

@@ -8,15 +8,17 @@ namespace epdem {
 /// Elastic adhesive contact (Johnson, Kendall and Roberts 1971, Proc. R. Soc. A 324, 301): F = 4 E* a^3/(3 R*) - P_t,
 /// alpha = a^2/R* - d, P_t = 2 E* a d, d = sqrt(2 pi Gamma a/E*). It forms at alpha = 0 and ends at the fold,
 /// alpha = -3/4 d, where d alpha/da = 0. Gamma = 0 is `hertz`.
-template <class T = real>
+template <class T = double>
 struct Jkr {
+  using number = T;
   static constexpr const char* name = "jkr";
+  static constexpr int id = 44;  // of a LIGGGHTS model: restart files keep it, it never changes
   static constexpr Parameter parameters[] = {
-      {"work_of_adhesion", "workOfAdhesion", "J/m^2", std::numeric_limits<real>::quiet_NaN()}};
+      {"work_of_adhesion", "workOfAdhesion", "J/m^2", std::numeric_limits<double>::quiet_NaN()}};
   static constexpr int n_parameters = 1;
 
-  /// (c R*)^(1/3) while the bodies are attached [m^(1/2)], else 0.
-  struct Memory {
+  /// What a contact remembers: (c R*)^(1/3) while the bodies are attached [m^(1/2)], else 0.
+  struct State {
     T root{};
   };
 
@@ -30,22 +32,29 @@ struct Jkr {
   }
 };
 
-/// Force and contact radius at overlap `delta` [m] (negative while apart) of a contact that remembers `before`; `closing` is
-/// the closing speed at the half step times the time step [m]. Never NaN for finite input.
+/// Force and contact radius at overlap `delta` [m] (negative while apart) of a contact that remembers `before`;
+/// `closing` is the closing speed at the half step times the time step [m]. Never NaN for finite input.
 template <class T>
-inline adhesive::Step<T, typename Jkr<T>::Memory> step(const Jkr<T>& law, T R_star,
-                                                       const typename Jkr<T>::Memory& before, T delta,
-                                                       T closing) noexcept {
+inline adhesive::Step<Jkr<T>> step(const Jkr<T>& law, T R_star, const typename Jkr<T>::State& before, T delta,
+                                   T closing) noexcept {
   using namespace adhesive;
   const auto stood = before.root > 0.0, forms = (before.root <= 0.0) & (delta > 0.0);
   const T cube = law.c * R_star, root = any(stood | forms) ? refreshed(before.root, cube) : before.root;
   const T y_f = fold_share * root, fold = -3.0 * y_f * y_f * y_f * y_f, X = R_star * delta;
   const auto ends = stood & (X < fold), stands = (stood & (X >= fold)) | forms;
   const T y = curve(y_f, X);
-  T F = select(stands, force(law.E_star, law.c, R_star, y), T{});
+  T F = select(stands, force(law.E_star, law.c, delta, y), T{});
   if (any(forms)) F += select(forms, on_touch(-4.0 / 3.0 * law.pull * R_star, delta, closing), T{});
   if (any(ends)) F = select(ends, on_parting(law.E_star, law.pull, R_star, y_f, (fold - X) / R_star, closing), F);
   return {F, select(stands, y * y, T{}), {select(stands, root, T{})}};
+}
+
+/// Elastic and surface energy [J] of a contact at overlap `delta`, 0 for bodies apart.
+template <class T>
+inline T stored_energy(const Jkr<T>& law, T R_star, const typename Jkr<T>::State& now, T delta) noexcept {
+  using namespace adhesive;
+  const T y = curve(fold_share * now.root, R_star * delta);
+  return select((now.root > 0.0) | (delta > 0.0), energy(law.E_star, law.c, R_star, y), T{});
 }
 
 }  // namespace epdem

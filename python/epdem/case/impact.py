@@ -81,6 +81,8 @@ class Frozen(BaseModel):
 
 
 class Header(Frozen):
+    """What a case is called, and where its numbers come from."""
+
     name: Name
     title: Line
     source: Line
@@ -96,11 +98,15 @@ class Material(Frozen):
 
 
 class Body(Frozen):
+    """The sphere that moves."""
+
     radius: Length
     material: Name
 
 
 class Target(Frozen):
+    """What it meets: a plane, a sphere with a radius, or a rigid plane."""
+
     material: Name
     radius: Length | None = None
 
@@ -120,6 +126,8 @@ class SpeedRange(Frozen):
 
 
 class Impact(Frozen):
+    """Who meets whom, at which speeds of approach."""
+
     kind: Literal["sphere-wall", "sphere-sphere"]
     body: Body
     target: Target
@@ -175,6 +183,8 @@ class Numerics(Frozen):
 
 
 class Check(Frozen):
+    """Largest relative errors with which a run passes (maximum over the phases)."""
+
     e_n: Tolerance = DEFAULT_CHECKS["e_n"]
     contact_time: Tolerance = DEFAULT_CHECKS["contact_time"]
     force_max: Tolerance = DEFAULT_CHECKS["force_max"]

@@ -33,6 +33,12 @@ def shorten(text: str) -> str:
     return text if len(text) <= LONGEST else text[: LONGEST - 3] + "..."
 
 
+def cut_quotes(text: str) -> str:
+    """The text with each of its quoted parts cut at LONGEST characters."""
+    most = LONGEST - 3
+    return re.sub(rf"'([^']{{{most}}})[^']{{4,}}'", r"'\1...'", text)
+
+
 def _key(key: object) -> str:
     return str(key) if re.fullmatch(r"[\w-]{1,80}", str(key), re.ASCII) else shorten(repr(key))
 
@@ -88,7 +94,7 @@ def explain(path: object, data: dict[str, Any], error: ValidationError, kind: st
         text = f"must be a table; write [{place}] and its keys below"
     else:
         text = TEXTS[problem["type"]].format(**context) if problem["type"] in TEXTS else problem["msg"]
-    text = re.sub(r"'([^']{77})[^']{4,}'", r"'\1...'", text.removeprefix("Value error, "))
+    text = cut_quotes(text.removeprefix("Value error, "))
     shown = "" if value is None or isinstance(value, dict | list) else f" = {shorten(repr(value))}"
     if shown:
         return f"{path}: {place}{shown}, {text}"

@@ -60,6 +60,8 @@ class Particles(Frozen):
 
 
 class Rolling(Frozen):
+    """A rolling friction model of LIGGGHTS with its numbers."""
+
     model: Literal["cdt", "epsd", "epsd2"] = "epsd2"
     coefficient: Annotated[float, Quantity("1", above=0.0)]
     damping: Annotated[float, Quantity("1", ge=0.0)] | None = None  # epsd only: share of the critical one
@@ -118,6 +120,8 @@ class SceneNumerics(Frozen):
 
 
 class Common(Frozen):
+    """What every kind of scene has."""
+
     particles: Annotated[list[Particles], Field(min_length=1, max_length=64)]
     count: Annotated[int, Field(ge=1, le=100_000_000)]
     walls: Name  # material of the walls

@@ -33,7 +33,7 @@ CHANGES = {
     "momentum": "momentum",
 }
 CHANGES_TITLE = "Two spheres of unequal radii and moduli"
-CHANGES_NOTE = """error: of e_n; swap to restart: changes of e_n by the way the impact is told;
+CHANGES_NOTE = """error: of e_n; swap to restart: changes of e_n in these variants of the set-up;
 momentum: lost, as a share of one body's change. A serial YADE sorts nothing and has no ranks (-);
 an embedded contact has neither names nor restarts."""
 
@@ -70,26 +70,26 @@ def crosscheck(
     from ..impacts import report
     from ..studies.crosscheck import crosscheck as check
 
-    found = []
+    results = []
     with status() as progress:
         for path in cases:
             folder = out / path.stem if out and len(cases) > 1 else out
-            found.append(check(path, law=law, out=folder, fresh=fresh, progress=progress))
+            results.append(check(path, law=law, out=folder, fresh=fresh, progress=progress))
     if as_json:
         documents = [
             {"case": c.outcome.case.name, "absent": c.absent, "notes": c.notes, "rows": report.records(c.table)}
-            for c in found
+            for c in results
         ]
         print(json.dumps(documents[0] if len(documents) == 1 else documents, indent=1))
         return
-    for c in found:
+    for c in results:
         rows, case = c.table.to_dict("records"), c.outcome.case.case
         title = f"{case.title}: values at {rows[0]['speed']:.4g} m/s, largest errors over speeds and phases"
         _show(title, VALUES, rows)
         _show(CHANGES_TITLE, CHANGES, [row for row in rows if row["momentum"] == row["momentum"]])
         console().print(CHANGES_NOTE, soft_wrap=True)
-        for name, words in c.notes.items():
-            console().print(f"{name} has a law and a theory of its own: {words}", soft_wrap=True)
+        for name, note in c.notes.items():
+            console().print(f"{name} has a law and a theory of its own: {note}", soft_wrap=True)
         for name, reason in c.absent.items():
             console().print(f"left out: {name}: {reason}", soft_wrap=True)
         console().print(f"figure and data: {c.outcome.folder}/")

@@ -1,11 +1,12 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """The command `epdem`: functions of a few lines that call the library."""
 
+import io
 import json
 import signal
 import sys
 from pathlib import Path
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
 
@@ -24,7 +25,7 @@ Begin with: epdem run cases/steel_wall.toml -e embedded -e liggghts
 
 Exit codes: 0 all within tolerance, 1 a check failed, 2 bad input, 3 an engine failed, 130 stopped.
 """
-UsageError = typer.BadParameter.__base__  # typer gives its own name to its children only
+UsageError: Any = typer.BadParameter.__base__  # typer gives its own name to its children only
 app = typer.Typer(
     add_completion=False,
     no_args_is_help=True,
@@ -52,14 +53,13 @@ def run(
     """Run a case and check it against theory, or run a bulk scene (default engine: liggghts)."""
     if cli_scene.is_scene(case):
         refuse(case, "a scene has its own law and time step", law=law, steps=steps)
-        refuse(case, "the folder of a scene is not looked at for other files", force=force)
         if len(set(engine or [])) > 1:
             raise CaseError(f"{case}: --engine: a scene runs on one engine; give it once")
         if fresh and resume:
             raise CaseError(f"{case}: --resume continues a run and --fresh begins it again; leave one out")
         chosen = engine[0] if engine else "liggghts"
         code = cli_scene.run_scene(
-            case, engine=chosen, out=out, ranks=ranks, fresh=fresh, resume=resume, as_json=as_json
+            case, engine=chosen, out=out, ranks=ranks, fresh=fresh, resume=resume, force=force, as_json=as_json
         )
         raise typer.Exit(code)
     refuse(case, "it continues bulk scenes; a run of impacts takes finished stages from its store", resume=resume)
@@ -173,16 +173,16 @@ for command in (
 app.command("stress", hidden=True, deprecated=True)(cli_numerics.stability)  # its name in version 0.1
 
 
-def _usage(error: UsageError) -> int:
+def _usage(error: Any) -> int:
     """Say in one sentence what is wrong with a command line; without any word on it, print the help."""
     if not (text := error.format_message()):
         error.show()
-        return error.exit_code
+        return 2
     name = error.ctx.command_path if error.ctx else "epdem"
     dash = next((word for word in sys.argv[1:] if word.startswith("-") and Path(word).exists()), None)
     advice = f"write the file as ./{dash}" if dash else f"see {name} --help"
     print(f"epdem: {text.rstrip('.').replace('Input should be', 'must be')}; {advice}", file=sys.stderr)
-    return error.exit_code
+    return 2
 
 
 def _stop(number: int, frame: object) -> None:
@@ -193,12 +193,16 @@ def main() -> None:
     """Entry point: errors that a user can mend become one sentence and an exit code."""
     for name in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):  # whatever stops us, no engine stays behind
         signal.signal(name, _stop)
+    if isinstance(sys.stdout, io.TextIOWrapper):
+        sys.stdout.reconfigure(errors="backslashreplace")  # a title may hold what the terminal's encoding does not
     try:
         sys.exit(app(prog_name="epdem", standalone_mode=False))
     except UsageError as error:
         sys.exit(_usage(error))
     except EpdemError as error:
-        print(f"epdem: {error}", file=sys.stderr)
+        from ..case.messages import cut_quotes
+
+        print(f"epdem: {cut_quotes(str(error))}", file=sys.stderr)
         sys.exit(error.exit_code)
     except Stopped:
         print("epdem: stopped; what was finished is stored", file=sys.stderr)

@@ -23,11 +23,11 @@ def timestep(
     from ..impacts.prediction import predict
     from ..impacts.timestep import search
 
-    found = []
+    searches = []
     for name in laws_or_own(law):
         with named(case):
             x = experiment(load(case), name)
-            found.append((x, search(x, predict(x), error)))
+            searches.append((x, search(x, predict(x), error)))
     if as_json:
         documents = [
             {
@@ -41,11 +41,11 @@ def timestep(
                 "reference": vars(f.reference),
                 "share": f.shares(),
             }
-            for x, f in found
+            for x, f in searches
         ]
         print(json.dumps(documents[0] if len(documents) == 1 else documents, indent=1))
         return
-    for x, f in found:
+    for x, f in searches:
         share = f.shares()
         print(
             f"{x.name}, law {x.law.name}: timestep {f.time_step:.4g} s for e_n within {f.target:g} "

@@ -28,21 +28,25 @@ def run_scene(
     ranks: int = 1,
     fresh: bool = False,
     resume: bool = False,
+    force: bool = False,
     as_json: bool = False,
 ) -> int:
     """Run a scene with a progress bar; print its checks. Exit code: 0, or 1 if a check failed."""
+    from ..engines import scene_engine
     from ..scenes import report
     from ..scenes.run import run
 
+    tool = scene_engine(engine)
     with bar(TextColumn("{task.completed}/{task.total} steps"), TimeRemainingColumn()) as progress:
         task = progress.add_task(Path(case).stem, total=None)
         outcome = run(
             case,
-            engine=engine,
+            tool,
             out=out,
             ranks=ranks,
             fresh=fresh,
             resume=resume,
+            force=force,
             tell=lambda step, steps: progress.update(task, completed=step, total=steps),
         )
     report.figures(outcome)
@@ -55,23 +59,20 @@ def run_scene(
 
 def deck_scene(case: Path, out: Path, *, engine: str = "liggghts", as_json: bool = False) -> None:
     """Write the deck of a scene; it runs by hand."""
+    from ..case.impact import named
+    from ..engines import scene_engine
     from ..files import write_texts
-    from ..liggghts import scene_deck as deck
-    from ..yade import scene_deck as yade
+    from ..scenes.plan import plan
 
-    if engine not in ("liggghts", "yade"):
-        raise CaseError(f"--engine {engine}: a scene runs on liggghts or yade")
-    scene = scene_case.load(case)
-    files = write_texts(out, yade.texts(scene)) if engine == "yade" else deck.write(scene, out)
-    names = [str(f) for f in files]
+    with named(case):
+        files = scene_engine(engine).files(plan(scene_case.load(case)))
+    names = [str(f) for f in write_texts(out, files)]
     print(json.dumps({"files": names}) if as_json else "\n".join(names))
 
 
 def explain(case: CasePath, as_json: AsJson = False) -> None:
     """Why each line of a case's LIGGGHTS deck is in it."""
-    from ..liggghts.explain import explain as explain_lines
-
-    lines = explain_lines(_texts(case))
+    lines = _explained(case)
     if as_json:
         print(json.dumps([{"file": f, "line": text, "reason": reason} for f, text, reason in lines], indent=1))
         return
@@ -83,21 +84,23 @@ def explain(case: CasePath, as_json: AsJson = False) -> None:
         print(f"  {text.split('  # ')[0].rstrip()}\n      {reason}")
 
 
-def _texts(case: Path) -> dict[str, str]:
-    if is_scene(case):
-        from ..liggghts.scene_deck import texts
-
-        return texts(scene_case.load(case))
-    from .. import rendering as decks
+def _explained(case: Path) -> list[tuple[str, str, str]]:
     from ..case.impact import load, named
-    from ..impacts.experiment import experiment
-    from ..impacts.plan import plan
-    from ..impacts.prediction import predict
-    from ..liggghts.impacts import Liggghts
+    from ..liggghts import explain
 
     with named(case):
-        tool, x = Liggghts(), experiment(load(case))
-        return {"in.impact": decks.render(tool.template, deck=tool.deck(plan(x, predict(x))))}
+        if is_scene(case):
+            from ..liggghts.scene_deck import deck
+            from ..scenes.plan import plan as scene_plan
+
+            return explain.explain(explain.SCENE, deck(scene_plan(scene_case.load(case))))
+        from ..impacts.experiment import experiment
+        from ..impacts.plan import plan
+        from ..impacts.prediction import predict
+        from ..liggghts.impacts import Liggghts
+
+        x = experiment(load(case))
+        return explain.explain(explain.IMPACT, Liggghts().deck(plan(x, predict(x))))
 
 
 def soften(
@@ -166,18 +169,18 @@ def calibrate(
     if e_n is not None:
         if speed is None:
             raise CaseError("--e-n belongs to one impact; add its speed, as --speed '2 m/s'")
-        found = c.from_restitution(case, e_n, quantity("--speed", speed, "m/s"))
+        result = c.from_restitution(case, e_n, quantity("--speed", speed, "m/s"))
     else:
         refuse(case, "it belongs to --e-n", speed=speed)
         pressure = c.pressure_of_hardness(vickers=hv, brinell=hb, dent_ratio=dent_ratio or c.BRINELL_DENT)
-        found = c.from_hardness(case, pressure, f"HV {hv:g}" if hv is not None else f"HB {hb:g}")
+        result = c.from_hardness(case, pressure, f"HV {hv:g}" if hv is not None else f"HB {hb:g}")
     if as_json:
-        print(json.dumps(vars(found), indent=1))
+        print(json.dumps(vars(result), indent=1))
         return
     print(
-        f"law {found.law}, {found.source}: {found.parameter} = {found.value / 1e6:.6g} MPa, "
-        f"that is yield_stress = {found.yield_stress / 1e6:.6g} MPa, yield speed {found.yield_speed:.4g} m/s\n"
-        f'in the case file, under [law]: {found.parameter} = "{found.value / 1e6:.6g} MPa"'
+        f"law {result.law}, {result.source}: {result.parameter} = {result.value / 1e6:.6g} MPa, "
+        f"that is yield_stress = {result.yield_stress / 1e6:.6g} MPa, yield speed {result.yield_speed:.4g} m/s\n"
+        f'in the case file, under [law]: {result.parameter} = "{result.value / 1e6:.6g} MPa"'
     )
 
 

@@ -53,12 +53,12 @@ def predictions(pairs: list[tuple[Experiment, Prediction]], as_json: bool, conso
         print(json.dumps(document[0] if len(document) == 1 else document, indent=1))
 
 
-def findings(found: list[Finding], as_json: bool, console: Console) -> None:
+def findings(parts: list[Finding], as_json: bool, console: Console) -> None:
     """Print the findings of doctor."""
     if as_json:
-        print(json.dumps([asdict(f) for f in found], indent=1))
+        print(json.dumps([asdict(f) for f in parts], indent=1))
         return
-    for f in found:
+    for f in parts:
         state, colour = ("ok", "green") if f.ok else ("missing", "red") if f.needed else ("absent", "yellow")
         console.print(Text.assemble((state, colour), f" {f.part}: {f.detail}"), soft_wrap=True)
         if f.advice:

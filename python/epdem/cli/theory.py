@@ -7,6 +7,7 @@ from typing import Annotated
 
 import typer
 
+from ..errors import CaseError
 from ..terminal import console
 from ..terminal import table as empty_table
 from .options import AsJson, quantity
@@ -19,35 +20,38 @@ def theory(
     as_json: AsJson = False,
 ) -> None:
     """What every law says of one impact on a wall of the same material."""
-    from ..case.materials import material as find
-    from ..theory import pair, printed, yielding
-    from ..theory.backbones import LAWS
-    from ..theory.restitution import impact
+    import numpy as np
 
-    found, R, v = find(material), quantity("--radius", radius, "m"), quantity("--speed", speed, "m/s")
-    m = found.material
-    E = pair.E_star(m.young_modulus, m.poisson_ratio, m.young_modulus, m.poisson_ratio)
-    mass = pair.sphere_mass(radius=R, density=m.density)
+    from ..case.materials import material as sourced
+    from ..impacts.experiment import Experiment, pair_of, plane, sphere
+    from ..impacts.prediction import predict
+    from ..laws.strengths import default_numbers
+    from ..theory import printed, yielding
+    from ..theory.backbones import LAWS
+
+    entry, R, v = sourced(material), quantity("--radius", radius, "m"), quantity("--speed", speed, "m/s")
+    if (Y := entry.material.yield_stress) is None:
+        raise CaseError(f"--material {material!r} has no yield stress in the materials file; choose another")
+    body, target = sphere(entry.material, radius=R, name=material), plane(entry.material, name=material)
+    names = ("e_n", "contact_time", "force_max", "overlap_max", "residual_overlap", "strain_ratio")
     rows = {}
-    for name, law in LAWS.items():
-        strength = {k: law.default_ratio * m.yield_stress for k in list(law.keywords.values())[:1]}
-        x = impact(law(E_star=E, R_star=R, **strength), m_star=mass, speed=v)
-        rows[name] = {
-            k: float(getattr(x, k))
-            for k in ("e_n", "contact_time", "force_max", "overlap_max", "residual_overlap", "strain_ratio")
-        }
-    p_0, depth = yielding.first_yield(m.poisson_ratio)
+    for name in LAWS:
+        x = Experiment(pair_of(default_numbers(name), body, target), body, target, np.array([v]))
+        prediction = predict(x)
+        rows[name] = {k: float(getattr(prediction, k)[0]) for k in names}
+    p_0, depth = yielding.first_yield(entry.material.poisson_ratio)
+    pair = {"E_star": x.E_star, "R_star": x.R_star, "m_star": x.m_star}
     common = {
-        "E_star": E,
-        "m_star": mass,
+        "E_star": x.E_star,
+        "m_star": x.m_star,
         "first_yield_p0_over_Y": float(p_0),
         "first_yield_depth_over_a": float(depth),
-        "v_y0": float(printed.yield_speed(p_y=1.6 * m.yield_stress, E_star=E, R_star=R, m_star=mass)),
-        "v_y": float(printed.yield_speed(p_y=2.8 * m.yield_stress, E_star=E, R_star=R, m_star=mass)),
+        "v_y0": float(printed.yield_speed(p_y=yielding.FIRST_YIELD_ROUNDED * Y, **pair)),
+        "v_y": float(printed.yield_speed(p_y=LAWS["thornton"].default_ratio * Y, **pair)),
     }
     if as_json:
         print(
-            json.dumps({"material": material, "source": found.source, "radius": R, "speed": v, **common, "laws": rows})
+            json.dumps({"material": material, "source": entry.source, "radius": R, "speed": v, **common, "laws": rows})
         )
         return
     title = f"{material} sphere, R = {R:g} m, on {material} at {v:g} m/s (SI units)"
@@ -56,12 +60,12 @@ def theory(
         table.add_row(name, *(f"{value:.6g}" for value in row.values()))
     console().print(table)
     console().print(
-        f"E* = {E:.5g} Pa, m* = {mass:.5g} kg; first yield at p_0 = {float(p_0):.4f} Y, depth "
+        f"E* = {x.E_star:.5g} Pa, m* = {x.m_star:.5g} kg; first yield at p_0 = {float(p_0):.4f} Y, depth "
         f"{float(depth):.3f} a; v_y0 = {common['v_y0']:.4g} m/s (1.60 Y), "
         f"v_y = {common['v_y']:.4g} m/s (2.8 Y)",
         soft_wrap=True,
     )
-    console().print(f"source: {found.source}", soft_wrap=True)
+    console().print(f"source: {entry.source}", soft_wrap=True)
 
 
 def figures(

@@ -6,8 +6,11 @@ from ..impacts.engine import Engine, OwnTheory, Trajectory
 from ..lammps.impacts import LammpsMdr
 from ..liggghts.builtin import BuiltinEdinburgh, BuiltinHertz, BuiltinLuding, ThorntonNing
 from ..liggghts.impacts import Liggghts
+from ..liggghts.scenes import LiggghtsScenes
+from ..scenes.engine import SceneEngine
 from ..yade.builtin import YadeLuding
 from ..yade.impacts import Yade
+from ..yade.scenes import YadeScenes
 from .embedded import Embedded
 
 ENGINES: dict[str, type[Engine]] = {"embedded": Embedded, "liggghts": Liggghts, "yade": Yade}
@@ -17,6 +20,8 @@ OTHERS: dict[str, type[Engine]] = {tool.name: tool for tool in (BuiltinHertz, Th
 FOREIGN: dict[str, type[OwnTheory]] = {
     tool.name: tool for tool in (BuiltinLuding, BuiltinEdinburgh, YadeLuding, LammpsMdr)
 }
+# Engines of bulk scenes.
+SCENES: dict[str, type[SceneEngine]] = {"liggghts": LiggghtsScenes, "yade": YadeScenes}
 
 
 def engine(name: str) -> Engine:
@@ -29,4 +34,11 @@ def engine(name: str) -> Engine:
     return known[name]()
 
 
-__all__ = ["ENGINES", "FOREIGN", "OTHERS", "Engine", "OwnTheory", "Trajectory", "engine"]
+def scene_engine(name: str) -> SceneEngine:
+    """The engine of bulk scenes of that name. Raises CaseError."""
+    if name not in SCENES:
+        raise CaseError(f"--engine {name}: a scene runs on {' or '.join(SCENES)}")
+    return SCENES[name]()
+
+
+__all__ = ["ENGINES", "FOREIGN", "OTHERS", "SCENES", "Engine", "OwnTheory", "Trajectory", "engine", "scene_engine"]

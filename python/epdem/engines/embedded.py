@@ -15,6 +15,8 @@ from ..laws import library as claw
 
 
 class Embedded:
+    """Impacts inside the C library, without any other program."""
+
     name = "embedded"
     can = Abilities(dashpot=True, deck=False, positions=False)
 
@@ -61,5 +63,5 @@ class Embedded:
         )
         return {"startup": 0.0, "setup": ready - begin, "stepping": time.perf_counter() - ready}
 
-    def tell(self, pairs: Pairs, way: str, folder: Path) -> np.ndarray:
+    def run_pairs(self, pairs: Pairs, variant: str, folder: Path) -> np.ndarray:
         raise CaseError("engine embedded: one contact has no order, owner or restart to depend on")

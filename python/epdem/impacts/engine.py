@@ -47,7 +47,7 @@ class Abilities:
     staggered: bool = False  # its velocity belongs to half a step before the position
     scenes: tuple[str, ...] = ()  # kinds of bulk scenes
     restarts: bool = False  # a bulk scene that was interrupted goes on
-    ways: tuple[str, ...] = ()  # ways in which `tell` gives it the same impacts, beside the plain one
+    variants: tuple[str, ...] = ()  # of the same impacts that `run_pairs` knows, beside the plain one
 
 
 class Engine(Protocol):
@@ -74,8 +74,8 @@ class Engine(Protocol):
     def seconds(self, plan: Plan, folder: Path) -> dict[str, float]:
         """Times of one run that records as little as it can [s]: startup, setup, stepping; NaN where it cannot tell."""
 
-    def tell(self, pairs: Pairs, way: str, folder: Path) -> np.ndarray:
-        """Velocities [m/s] after the impacts of `pairs`, told "plain" or in one of `can.ways`: (2, n, 3), body first.
+    def run_pairs(self, pairs: Pairs, variant: str, folder: Path) -> np.ndarray:
+        """Velocities [m/s] after the impacts of `pairs`, "plain" or in one of `can.variants`: (2, n, 3), body first.
 
         Raises EngineError; ValueError if bodies are lost.
         """

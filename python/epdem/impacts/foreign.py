@@ -8,6 +8,7 @@ mdr        a sphere on a rigid flat: the modulus that makes E/(1-nu^2) the case'
 
 import math
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -32,6 +33,7 @@ class Luding:
 
 
 def luding(x: Experiment) -> Luding:
+    """Stiffnesses of luding: k_1 is the mean stiffness of the case's own law at its middle speed."""
     own, middle = predict(x), x.speed.size // 2
     k_1 = float(own.force_max[middle] / own.overlap_max[middle])
     return Luding(k_1, STIFFENING * k_1, DEPTH)
@@ -47,6 +49,7 @@ def predict_luding(x: Experiment) -> Prediction:
 
 
 def luding_note(x: Experiment) -> str:
+    """The rule by which luding gets its numbers."""
     law = luding(x)
     return (
         f"k_1 = {law.k_1:.4g} N/m (F_max/overlap of {x.law.name} at {x.speed[x.speed.size // 2]:.4g} m/s), "
@@ -99,6 +102,7 @@ def predict_mdr(x: Experiment) -> Prediction:
 
 
 def mdr_note(x: Experiment) -> str:
+    """The rule by which mdr gets its numbers."""
     law = mdr(x)
     return (
         f"rigid flat, E = {law.young_modulus:.4g} Pa (the case's E*), Y = {law.yield_stress:.4g} Pa, p = 2.75 Y; "
@@ -113,7 +117,7 @@ def prediction(tool: object, x: Experiment) -> Prediction:
 
 def _prediction(x: Experiment, impact: hysteresis.Impact) -> Prediction:
     names = ("e_n", "contact_time", "force_max", "overlap_max", "residual_overlap", "work_in", "work_out")
-    columns = {n: np.asarray(getattr(impact, n), float) for n in names}
+    columns: dict[str, Any] = {n: np.asarray(getattr(impact, n), float) for n in names}
     return Prediction(
         speed=x.speed,
         **columns,

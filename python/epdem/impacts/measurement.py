@@ -41,7 +41,7 @@ class Measured:
 
 def _last(valid: np.ndarray) -> np.ndarray:
     """Index of the last True in each row."""
-    return valid.shape[1] - 1 - np.argmax(valid[:, ::-1], axis=1)
+    return np.asarray(valid.shape[1] - 1 - np.argmax(valid[:, ::-1], axis=1))
 
 
 def measure(plan: Plan, path: Trajectory, *, end_power: float | None = None) -> Measured:

@@ -1,8 +1,8 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Impacts of unequal spheres side by side, tilted against the axes and drifting, to be told to an engine in many ways.
+"""Impacts of unequal spheres side by side, tilted against the axes and drifting, for variants of one scene.
 
 The contact point crosses x = 0 and z = 0 in mid-contact, each pair at a moment of its own, so that some of them unload:
-there a teller puts a border of ranks, and one of bins.
+there an engine puts a border of ranks, and one of bins.
 """
 
 from dataclasses import dataclass, replace
@@ -33,7 +33,7 @@ class Group:
 
 @dataclass(frozen=True)
 class Pairs:
-    """All pairs of a plan: the side that hits and the side that is hit, and what a teller must know of the run."""
+    """All pairs of a plan: the side that hits and the side that is hit, and what an engine must know of the run."""
 
     plan: Plan
     sides: tuple[Group, Group]
@@ -41,8 +41,8 @@ class Pairs:
     drift: np.ndarray  # velocity of the centre of mass of all [m/s]
     spread: float  # how far a pair reaches around its first place [m]
 
-    def told(self, swap: bool) -> tuple[Group, ...]:
-        """The sides in the order in which an engine hears of them; `swap` names the targets first."""
+    def ordered(self, swap: bool) -> tuple[Group, ...]:
+        """The sides in the order in which an engine gets them: `swap` puts the targets first."""
         return self.sides[:: -1 if swap else 1]
 
 

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..theory import restitution, viscous
+from ..theory import restitution, validity, viscous
 from ..theory.yielding import first_yield_speed
 from .experiment import Experiment
 
@@ -28,6 +28,7 @@ class Prediction:
     strain_ratio: np.ndarray  # a_max/R*
     yields: tuple[str, ...]  # materials that the law lets flow somewhere in the range of speeds
     yield_speeds: dict[str, float]  # from which each material yields beneath its surface [m/s], eq. 8.78; inf: never
+    caveats: tuple[str, ...] = ()  # where the prediction is not to be trusted
 
     COLUMNS = (
         "speed",
@@ -43,28 +44,22 @@ class Prediction:
     )
 
     def warnings(self) -> list[str]:
-        """Where theory leaves its own domain, in words."""
-        beyond = self.speed[self.strain_ratio > SMALL_DEFORMATION]
-        if not beyond.size:
-            return []
-        return [
-            f"a_max/R* reaches {self.strain_ratio.max():.2f} (> {SMALL_DEFORMATION}) from {beyond.min():.3g} m/s on: "
-            "small-deformation theory is an extrapolation there"
-        ]
+        """Where the law or theory leaves its own domain, in words."""
+        return list(self.caveats)
 
 
 def predict(experiment: Experiment) -> Prediction:
     """The prediction of `experiment` from theory alone; the C++ laws are not called."""
     law = experiment.theory()
-    numbers = {"m_star": experiment.m_star, "speed": experiment.speed}
+    m_star, speed = experiment.m_star, experiment.speed
     if experiment.viscous_restitution is None:
-        impact = restitution.impact(law, **numbers)
+        impact = restitution.impact(law, m_star=m_star, speed=speed)
     else:
-        impact = viscous.impact(law, **numbers, restitution=experiment.viscous_restitution)
+        impact = viscous.impact(law, m_star=m_star, speed=speed, restitution=experiment.viscous_restitution)
     names = Prediction.COLUMNS[1:]
     columns = {n: np.asarray(getattr(impact, n), float) for n in names}
     softer = min(experiment.law.strengths)
-    yields = ()
+    yields: tuple[str, ...] = ()
     pair = (experiment.body, experiment.target)
     if columns["overlap_max"].max() > law.yield_overlap:
         bodies = zip(pair, experiment.law.strengths, strict=True)
@@ -74,4 +69,5 @@ def predict(experiment: Experiment) -> Prediction:
         for b in pair
         if b.yield_stress is not None and not b.rigid
     }
-    return Prediction(speed=experiment.speed, yields=yields, yield_speeds=speeds, **columns)
+    caveats = tuple(validity.caveats(law, m_star=m_star, speed=speed))
+    return Prediction(speed=speed, yields=yields, yield_speeds=speeds, caveats=caveats, **columns)

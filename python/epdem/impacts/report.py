@@ -62,7 +62,7 @@ def yielding(prediction: Prediction) -> str:
 
 def run_table(outcome: Outcome) -> Table:
     """One row per speed and engine."""
-    found = "; ".join(f"{law}: {yielding(p)}" for law, p in outcome.predictions.items())
+    yields = "; ".join(f"{law}: {yielding(p)}" for law, p in outcome.predictions.items())
     laws = outcome.results.comparison["law"].nunique() > 1
     heads = [
         "v [m/s]",
@@ -77,7 +77,7 @@ def run_table(outcome: Outcome) -> Table:
         "steps",
         "pass",
     ]
-    shown = table(f"{outcome.case.case.title} ({found})", heads, left=("engine", "law"))
+    shown = table(f"{outcome.case.case.title} ({yields})", heads, left=("engine", "law"))
     ordered = outcome.results.comparison.sort_values(["law", "speed", "engine"], kind="stable")
     for row in ordered.to_dict("records"):
         cells = [

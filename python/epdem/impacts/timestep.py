@@ -47,7 +47,7 @@ class Found:
 
 def stability_limit(x: Experiment, overlap_max: float) -> float:
     """Largest stable step of velocity Verlet at the stiffest point of a contact [s], by the law's own radius."""
-    a = float(x.theory().radius(np.array([overlap_max]))[0])
+    a = float(np.asarray(x.theory().radius(np.array([overlap_max])))[0])
     return float(times.stability_limit(E_star=x.E_star, m_star=x.m_star, radius=a))
 
 

@@ -150,5 +150,5 @@ class LammpsMdr:
     def seconds(self, plan: Plan, folder: Path) -> dict[str, float]:
         return recorded_seconds(self, plan, folder)
 
-    def tell(self, pairs: Pairs, way: str, folder: Path) -> np.ndarray:
+    def run_pairs(self, pairs: Pairs, variant: str, folder: Path) -> np.ndarray:
         raise CaseError(f"engine {self.name} knows no impacts of two spheres")

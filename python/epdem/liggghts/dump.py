@@ -60,7 +60,7 @@ def local(path: Path) -> np.ndarray:
         count = int(text.split("ITEM: NUMBER OF ENTRIES\n", 1)[1].split("\n", 1)[0])
         body = text.split("ITEM: ENTRIES", 1)[1].split("\n", 1)[1]
         table = pd.read_csv(io.StringIO(body), sep=r"\s+", header=None, dtype=float) if body.strip() else pd.DataFrame()
-        if len(table) != count:
+        if len(table) != count or not text.endswith("\n"):
             raise ValueError(f"{len(table)} rows of {count}")
     except (OSError, ValueError, IndexError) as error:
         raise EngineError(f"{path}: incomplete ({error}); the run was stopped while it wrote this frame") from None

@@ -34,7 +34,7 @@ class Liggghts:
         ranks=launcher.most_ranks(),
         scenes=SCENES,
         restarts=True,
-        ways=("swap", "sort", "migration", "restart"),
+        variants=("swap", "sort", "migration", "restart"),
     )
 
     def missing(self) -> str | None:
@@ -48,6 +48,7 @@ class Liggghts:
         return f"ep/{plan.experiment.law.name}"
 
     def properties(self, plan: Plan) -> tuple[Property, ...]:
+        """What the deck says of the materials, for this model."""
         return of_law(plan)
 
     def deck(self, plan: Plan) -> Deck:
@@ -108,8 +109,8 @@ class Liggghts:
         stepping = loop_seconds(folder / launcher.LOG)
         return {"startup": startup, "setup": max(total - startup - stepping, 0.0), "stepping": stepping}
 
-    def tell(self, pairs: Pairs, way: str, folder: Path) -> np.ndarray:
-        return velocities(self.deck(pairs.plan), pairs, way, folder)
+    def run_pairs(self, pairs: Pairs, variant: str, folder: Path) -> np.ndarray:
+        return velocities(self.deck(pairs.plan), pairs, variant, folder)
 
 
 def data_text(plan: Plan, types: int) -> str:

@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Pairs of spheres told to LIGGGHTS in one of the ways that must not matter."""
+"""Pairs of spheres for LIGGGHTS in one of the variants that must not matter."""
 
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -22,21 +23,28 @@ def _box(pairs: Pairs) -> list[tuple[float, float]]:
 def _data(pairs: Pairs, deck: Deck, swap: bool) -> str:
     groups = [
         data_file.Spheres(1 + deck.types.index(g.body.material), 2 * g.body.radius, g.body.density, g.place, g.velocity)
-        for g in pairs.told(swap)
+        for g in pairs.ordered(swap)
     ]
     return data_file.text("pairs", len(deck.types), _box(pairs), groups)
 
 
-def velocities(deck: Deck, pairs: Pairs, way: str, folder: Path) -> np.ndarray:
+def velocities(deck: Deck, pairs: Pairs, variant: str, folder: Path) -> np.ndarray:
     """After the impacts, shape (2, n, 3), the body first. Raises EngineError; ValueError if bodies are lost."""
     p, deck = pairs.plan, replace(deck, path="out.bin")
     folder.mkdir(parents=True, exist_ok=True)
-    (folder / deck.data).write_text(_data(pairs, deck, way == "swap"))
-    ranks = 2 if way == "migration" else 1
-    words = {"deck": deck, "way": way, "ranks": ranks, "restart": None, "stop": None, "steps": p.steps}
-    words["sort"] = 0.499 * _box(pairs)[2][1] if way == "sort" else None
+    (folder / deck.data).write_text(_data(pairs, deck, variant == "swap"))
+    ranks = 2 if variant == "migration" else 1
+    words: dict[str, Any] = {
+        "deck": deck,
+        "variant": variant,
+        "ranks": ranks,
+        "restart": None,
+        "stop": None,
+        "steps": p.steps,
+    }
+    words["sort"] = 0.499 * _box(pairs)[2][1] if variant == "sort" else None
     parts = [words]
-    if way == "restart":
+    if variant == "restart":
         parts = [
             words | {"steps": pairs.stop, "stop": "middle.restart"},
             words | {"steps": p.steps - pairs.stop, "restart": "middle.restart"},
@@ -46,4 +54,4 @@ def velocities(deck: Deck, pairs: Pairs, way: str, folder: Path) -> np.ndarray:
         (folder / deck.path).unlink(missing_ok=True)
         launcher.run(f"in.{k}", folder, ranks=ranks, log=f"log.{k}", out=f"out.{k}", seconds=120)
     v = dump.series(folder / deck.path)[-1].reshape(2, p.n, 3)
-    return np.flip(v, axis=0) if way == "swap" else v
+    return np.flip(v, axis=0) if variant == "swap" else v

@@ -70,9 +70,10 @@ def per_type(name: str, values: Sequence[float], unit: str, note: str = "") -> P
     return Property(name, "peratomtype", tuple(values), unit, note)
 
 
-def per_pair(name: str, types: int, value: float, unit: str, note: str = "") -> Property:
-    """One value for every pair of `types` atom types."""
-    return Property(name, "peratomtypepair", (types, *[value] * types**2), unit, note)
+def per_pair(name: str, types: int, value: float | Sequence[float], unit: str, note: str = "") -> Property:
+    """A value for every pair of `types` atom types: one for all, or row by row."""
+    values = [value] * types**2 if isinstance(value, float) else value
+    return Property(name, "peratomtypepair", (types, *values), unit, note)
 
 
 def scalar(name: str, value: float, unit: str, note: str = "") -> Property:
@@ -108,9 +109,3 @@ def of_law(plan: Plan) -> tuple[Property, ...]:
         note = "of impacts that do not yield"
         found.append(per_pair("coefficientRestitution", len(types), x.viscous_restitution, "-", note))
     return tuple(found)
-
-
-def of_row(name: str, style: str, values: Sequence[float], comment: str) -> Property:
-    """A property from a row of a scene's model, whose comment is "unit" or "unit, note"; unit "1" is none."""
-    unit, _, note = comment.partition(", ")
-    return Property(name, style, tuple(values), "-" if unit == "1" else unit, note)

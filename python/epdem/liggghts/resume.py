@@ -1,25 +1,66 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The deck that continues a scene from a restart file."""
+"""Restart files of a scene: which one an interrupted run goes on from, and the deck that does."""
 
+import re
 from dataclasses import replace
+from itertools import pairwise
 from pathlib import Path
 
 from .. import rendering as decks
-from ..case.scene import SceneCase
+from ..errors import CaseError
+from ..processes import ROW
+from ..scenes.plan import ScenePlan
 from . import scene_tables as tables
 from .launcher import OUT
 from .scene_deck import deck
 
 
-def write_resume(case: SceneCase, folder: Path, restart: str, step: int) -> Path:
-    """in.resume, which continues from the restart file `restart` written at `step`."""
-    d = deck(case)
-    phase = next((i for i, p in enumerate(d.phases) if step < p.end), len(d.phases))
-    rows = tables.rows(folder / OUT, d.time_step).set_index("step")
-    if rows["particles"].get(step) == case.scene.count:  # poured out: LIGGGHTS refuses an insertion that lies behind it
+def _restarts(folder: Path) -> list[tuple[int, Path]]:
+    found = [(re.fullmatch(r"restart\.(\d+)\.bin", p.name), p) for p in folder.glob("restart.*.bin")]
+    return sorted((int(m[1]), p) for m, p in found if m)
+
+
+def whole_restarts(folder: Path) -> list[int]:
+    """Steps of the whole restart files: LIGGGHTS went on after them, so their rows stand twice in succession."""
+    log = folder / OUT
+    if not log.exists():
+        return []
+    rows = [int(m.group(1)) for line in log.read_bytes().splitlines() if (m := ROW.match(line))]
+    gone_on = {a for a, b in pairwise(rows) if a == b}
+    return [step for step, _ in _restarts(folder) if step in gone_on]
+
+
+def prune(folder: Path, step: int) -> None:
+    """Keep the newest restart file from before `step`, which the engine has gone on after, and all later ones."""
+    for _, path in [(s, p) for s, p in _restarts(folder) if s < step][:-1]:
+        path.unlink(missing_ok=True)
+
+
+def choose(p: ScenePlan, folder: Path) -> tuple[int, list[int]]:
+    """(step to go on from, steps of earlier frames that are missing or not whole and will stay so).
+
+    The newest restart file from which the damaged frames are written again; if there is none, the newest. Raises
+    CaseError if there is none at all.
+    """
+    steps = whole_restarts(folder)
+    if not steps:
+        raise CaseError(f"{folder}: no restart file to continue from; set output.restarts in the case and run it")
+    lost = tables.damaged(p, folder, steps[-1])
+    repairing = [step for step in steps if not lost or step <= lost[0]]
+    step = repairing[-1] if repairing else steps[-1]
+    return step, [s for s in lost if s < step]
+
+
+def write_resume(p: ScenePlan, folder: Path, step: int) -> Path:
+    """in.resume, which continues from the restart file of `step`."""
+    d = deck(p)
+    phase = next((i for i, part in enumerate(d.phases) if step < part.end), len(d.phases))
+    rows = tables.rows(p, folder / OUT).set_index("step")
+    if (
+        rows["particles"].get(step) == p.case.scene.count
+    ):  # poured out: LIGGGHTS refuses an insertion that lies behind it
         d = replace(d, insertions=tuple(f for f in d.insertions if not f.rate))
     path = folder / "in.resume"
-    path.write_text(
-        decks.render("liggghts/scene_resume.in.j2", deck=replace(d, from_restart=restart, resumed_phase=phase))
-    )
+    continued = replace(d, from_restart=f"restart.{step}.bin", resumed_phase=phase)
+    path.write_text(decks.render("liggghts/scene_resume.in.j2", deck=continued))
     return path

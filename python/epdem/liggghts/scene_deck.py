@@ -1,31 +1,23 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Everything that the templates of a scene write; every number is decided here."""
+"""The LIGGGHTS deck of a scene: everything that the templates write; every number is decided here."""
 
-import math
 from dataclasses import dataclass
-from pathlib import Path
 
 from .. import rendering as decks
-from ..case.scene import SceneCase
-from ..scenes.insertions import Insertion, insertions
-from ..scenes.model import Model, model, time_step
+from ..errors import CaseError
+from ..laws.library import laws
+from ..scenes.model import Model
+from ..scenes.plan import Phase, ScenePlan
 from . import stl
-from .properties import HARD, SOFT, Property, of_row
+from .insertions import Insertion, insertions
+from .properties import HARD, SOFT, Property, elastic, per_pair, scalar, strength
 
 SKIN = 0.25  # of the smallest radius: rebuilds cost less than idle neighbours
 
 
 @dataclass(frozen=True)
-class Phase:
-    """A part of the run up to step `end`; the template knows by its name what changes at its begin and end."""
-
-    name: str
-    end: int
-
-
-@dataclass(frozen=True)
 class Deck:
-    """What the templates read."""
+    """What the templates read; `row_words` are thermo words beside step, atoms and kinetic energy, shown unasked."""
 
     title: str
     source: str
@@ -66,163 +58,126 @@ class Deck:
     yields: bool
     memory_column: int
     wall_memory_column: int
-    loses: bool
+    torque: bool
+    row_words: tuple[str, ...]
     motion: dict[str, float]
     from_restart: str | None = None
     resumed_phase: int = 0
 
-    @property
-    def steps(self) -> int:
-        return self.phases[-1].end
 
-    @property
-    def row_words(self) -> tuple[str, ...]:
-        """Thermo words beside step, atoms and kinetic energy, which LIGGGHTS shows unasked."""
-        floor = self.loads and any(p[0] == "floor" for p in self.planes)
-        return (
-            *(["f_load"] if floor else []),
-            *(["f_press_z"] if "plate" in self.meshes else []),
-            *(["f_torque"] if self.torque else []),
-        )
-
-    @property
-    def loses_energy(self) -> bool:
-        """Whether contacts lose energy that no table holds: to friction or dashpots."""
-        return self.tangential != "off" or self.rolling_friction is not None or "viscous on" in self.settings
-
-    @property
-    def torque(self) -> bool:
-        """Whether the torque of a drum is asked for."""
-        return "drum" in self.meshes and (self.loads or self.energy)
-
-
-def _intervals(case: SceneCase, total: float, dt: float) -> tuple[int, int]:
-    """(rows, steps per row): enough rows that the last one is also a frame of particles."""
-    out = case.output
-    frames = max(out.particles, 1)
-    rows = frames * math.ceil(out.rows / frames)
-    every = max(1, math.ceil(total / dt / rows))
-    tens = 10 ** max(0, len(str(every)) - 2)  # round numbers: samples divide a row, and a person reads them
-    return rows, tens * math.ceil(every / tens)
+def _properties(p: ScenePlan) -> tuple[Property, ...]:
+    m, n = p.model, len(p.model.types)
+    materials = [p.case.materials[t.material] for t in m.types]
+    for t, x in zip(m.types, materials, strict=True):
+        if x.poisson_ratio < 0:
+            raise CaseError(f"materials.{t.material}.poisson_ratio = {x.poisson_ratio}, LIGGGHTS takes [0, 0.5] only")
+    found = [*elastic([x.young_modulus for x in materials], [x.poisson_ratio for x in materials])]
+    found += strength(m.law, [t.strength for t in m.types])
+    for parameter in laws()[m.law].parameters:
+        value = m.parameters.get(parameter.name, parameter.default)
+        if parameter.name in m.parameters and value != parameter.default:
+            found.append(scalar(parameter.property, value, "-"))
+    if m.sliding:
+        found.append(per_pair("coefficientFriction", n, [mu for row in m.friction for mu in row], "-"))
+    if m.viscous is not None:
+        found.append(per_pair("coefficientRestitution", n, m.viscous, "-", "of impacts that do not yield"))
+    elif m.tangential_restitution is not None:
+        note = "of the tangential dashpot only"
+        found.append(per_pair("coefficientRestitution", n, m.tangential_restitution, "-", note))
+    if m.rolling:
+        found.append(per_pair("coefficientRollingFriction", n, m.rolling.coefficient, "-"))
+        if m.rolling.damping is not None:
+            found.append(per_pair("coefficientRollingViscousDamping", n, m.rolling.damping, "-"))
+    if m.cohesion:
+        found.append(per_pair("cohesionEnergyDensity", n, m.cohesion, "J/m^3"))
+    return tuple(found)
 
 
-def _every(case_count: int, rows: int, every: int) -> int:
-    return 0 if case_count == 0 else every * max(1, rows // case_count)
-
-
-def deck(case: SceneCase) -> Deck:
-    """The deck of a scene. Raises CaseError for what does not fit."""
-    from ..scenes import kinds
-
-    m, dt, s = model(case), time_step(case), case.scene
-    parts = [*s.particles, *getattr(s, "bed", [])]
-    smallest = min(p.radii()[0] for p in parts)
-    layout = kinds.layout(case)
-    rows, every = _intervals(case, layout.duration, dt)
-    phases, end = [], 0
-    for name, seconds in layout.phases:
-        end += every * max(1, round(seconds / dt / every))
-        phases.append(Phase(name, end))
-    phases[-1] = (
-        Phase(phases[-1].name, max(rows * every, end)) if len(phases) > 1 else Phase(phases[0].name, rows * every)
-    )
-    moduli = m.rows[0].values
-    out = case.output
-    return Deck(
-        title=case.case.title,
-        source=case.case.source,
-        summary=f"{s.kind}: {s.count} spheres, law {m.law}, {phases[-1].end} steps of {dt:g} s",
-        kind=s.kind,
-        hard=max(moduli) > HARD,
-        soft=min(moduli) < SOFT,
-        boundary=layout.boundary,
-        box=layout.box,
-        n_types=len(m.types),
-        skin=_two_digits(SKIN * smallest),
-        types=tuple(t.name for t in m.types),
-        properties=tuple(of_row(r.name, r.style, r.values, r.comment) for r in m.rows),
-        model=f"ep/{m.law}",
-        tangential=m.tangential,
-        cohesion=m.cohesion,
-        rolling_friction=m.rolling,
-        settings=_settings(case, m),
-        wall_type=m.wall_type,
-        planes=layout.planes,
-        meshes=tuple(layout.meshes),
-        gravity=s.gravity,
-        insertions=insertions(case, m, layout.fills, phases[0].name, dt),
-        time_step=dt,
-        phases=tuple(phases),
-        every=every,
-        sampling=_divisor(every, 50),
-        samples=every // _divisor(every, 50),
-        frames=_every(out.particles, rows, every),
-        contacts=_every(out.contacts or (out.particles if out.energy else 0), rows, every),
-        vtk=_every(out.vtk, rows, every),
-        pictures=_every(out.pictures, rows, every),
-        restarts=_every(out.restarts, rows, every),
-        energy=out.energy,
-        loads=out.loads,
-        yields=m.yields,
-        memory_column=4 + memory(m),
-        wall_memory_column=4 + memory(m, wall=True),
-        remembers=m.yields or m.tangential != "off" or m.rolling is not None,
-        spins=m.tangential != "off" or m.rolling is not None,
-        loses=layout.loses,
-        motion=layout.motion,
-    )
-
-
-def _settings(case: SceneCase, m: Model) -> tuple[str, ...]:
+def _settings(p: ScenePlan) -> tuple[str, ...]:
     """Settings of pair and walls; a dashpot along the normal alone needs the tangential one switched off."""
-    alone = case.viscous and m.tangential != "off" and case.contact.tangential_restitution is None
+    m = p.model
     wanted = {
-        "viscous on": case.viscous,
-        "tangential_damping off": alone,
-        "computePlasticWork on": case.output.energy and m.yields,
+        "viscous on": m.viscous is not None,
+        "tangential_damping off": m.viscous is not None and m.sliding and m.tangential_restitution is None,
+        "computePlasticWork on": p.dents,
     }
     return tuple(words for words, asked in wanted.items() if asked)
 
 
-def _divisor(n: int, parts: int) -> int:
-    """The largest divisor of n that leaves at least `parts` parts (1 if there is none)."""
-    return next(d for d in range(max(1, n // parts), 0, -1) if n % d == 0)
-
-
-LAW_MEMORY = {"hertz": 0, "thornton": 1, "johnson": 1, "cavity": 4}  # values that a law keeps of a contact
-
-
 def memory(m: Model, *, wall: bool = False) -> int:
     """History values of one contact in LIGGGHTS, the law's first: those of the law, step, shear spring, rolling."""
-    law = LAW_MEMORY[m.law]
-    others = 3 * (m.tangential == "history") + 3 * (m.rolling in ("epsd", "epsd2"))
+    law = laws()[m.law].memory
+    others = 3 * m.sliding + 3 * (m.rolling is not None and m.rolling.model in ("epsd", "epsd2"))
     stamp = 0 if wall else int(law + others > 0)
     return law + stamp + others
 
 
-def _two_digits(x: float) -> float:
-    return float(f"{x:.1e}")
+def _motion(p: ScenePlan) -> dict[str, float]:
+    """What moves, by the names of the templates."""
+    found = {ph.name: abs(ph.plate) for ph in p.phases if ph.plate}
+    if p.layout.turn:
+        found["omega"] = p.layout.turn
+    if p.layout.outlet is not None:
+        found["outlet"] = p.layout.outlet
+    return found
 
 
-def texts(case: SceneCase, d: Deck | None = None) -> dict[str, str]:
-    """The text files of a scene's deck by name, without its meshes."""
-    d = d or deck(case)
-    return {
-        "in.scene": decks.render("liggghts/scene.in.j2", deck=d),
-        "setup.in": decks.render("liggghts/scene_setup.in.j2", deck=d),
+def deck(p: ScenePlan) -> Deck:
+    """The deck of a scene. Raises CaseError for what LIGGGHTS cannot do."""
+    m, s, out = p.model, p.case.scene, p.output
+    moduli = [p.case.materials[t.material].young_modulus for t in m.types]
+    words = {"f_load": p.floor_load, "f_press_z": p.plates, "f_torque": p.torque}
+    return Deck(
+        title=p.case.case.title,
+        source=p.case.case.source,
+        summary=p.summary,
+        kind=s.kind,
+        hard=max(moduli) > HARD,
+        soft=min(moduli) < SOFT,
+        boundary="p p f" if p.layout.periodic else "f f f",
+        box=p.layout.box,
+        n_types=len(m.types),
+        skin=float(f"{SKIN * p.smallest:.1e}"),
+        types=p.types,
+        properties=_properties(p),
+        model=f"ep/{m.law}",
+        tangential="history" if m.sliding else "off",
+        cohesion="sjkr" if m.cohesion else None,
+        rolling_friction=m.rolling.model if m.rolling else None,
+        settings=_settings(p),
+        wall_type=m.wall_type,
+        planes=tuple((w.name, f"{'xyz'[w.axis]}plane", w.place) for w in p.layout.planes),
+        meshes=tuple(p.layout.meshes),
+        gravity=s.gravity,
+        insertions=insertions(p),
+        time_step=p.time_step,
+        phases=p.phases,
+        every=p.every,
+        sampling=p.sampling,
+        samples=p.every // p.sampling,
+        frames=p.frames,
+        contacts=p.contacts,
+        vtk=p.vtk,
+        pictures=p.pictures,
+        restarts=p.restarts,
+        energy=out.energy,
+        loads=out.loads,
+        spins=m.spins,
+        remembers=m.yields or m.spins,
+        yields=m.yields,
+        memory_column=4 + memory(m),
+        wall_memory_column=4 + memory(m, wall=True),
+        torque=p.torque,
+        row_words=tuple(word for word, asked in words.items() if asked),
+        motion=_motion(p),
+    )
+
+
+def files(p: ScenePlan) -> dict[str, str]:
+    """The text of every file of a scene's deck by its name; it runs by hand where they are. Raises CaseError."""
+    found = deck(p)
+    texts = {
+        "in.scene": decks.render("liggghts/scene.in.j2", deck=found),
+        "setup.in": decks.render("liggghts/scene_setup.in.j2", deck=found),
     }
-
-
-def write(case: SceneCase, folder: Path) -> list[Path]:
-    """The deck of a scene with its meshes, in `folder`; it runs by hand there."""
-    from ..scenes import kinds
-
-    folder.mkdir(parents=True, exist_ok=True)
-    files = []
-    for name, text in texts(case).items():
-        files.append(folder / name)
-        files[-1].write_text(text)
-    for name, triangles in kinds.layout(case).meshes.items():
-        files.append(folder / f"{name}.stl")
-        files[-1].write_text(stl.text(name, triangles))
-    return files
+    return texts | {f"{name}.stl": stl.text(name, triangles) for name, triangles in p.layout.meshes.items()}

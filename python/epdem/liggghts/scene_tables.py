@@ -1,82 +1,94 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""What LIGGGHTS wrote, as pandas tables. Its words and file formats end here."""
+"""What LIGGGHTS wrote for a scene, as the tables that every scene has. Its words and file formats end here."""
 
-import re
+from collections.abc import Collection
 from pathlib import Path
 
 import numpy as np
 import pandas as pd
 
-from ..case.scene import SceneCase
 from ..errors import EngineError
-from . import dump
-from . import log as thermo
-from .scene_deck import Deck
+from ..scenes import columns, contacts
+from ..scenes.plan import ScenePlan
+from . import dump, log
 
-PARTICLES = ["id", "type", "radius", "mass", "x", "y", "z", "vx", "vy", "vz"]
-SPINS = ["omega_x", "omega_y", "omega_z"]
-# thermo words of the deck: column and unit
+# thermo words of the deck and their columns
 ROWS = {
-    "Step": ("step", "1"),
-    "Atoms": ("particles", "1"),
-    "KinEng": ("kinetic_energy", "J"),
-    "load": ("floor_load", "N"),
-    "press_z": ("plate_force", "N"),
-    "torque": ("torque", "N m"),
+    "Atoms": "particles",
+    "KinEng": "kinetic_energy",
+    "load": "floor_load",
+    "press_z": "plate_force",
+    "torque": "torque",
 }
+PARTICLES, PAIRS, MESHES = "particles.{}.bin", "contacts.{}.txt", "wall_contacts.{}.txt"
 
 
-def rows(log: Path, time_step: float) -> pd.DataFrame:
+def rows(p: ScenePlan, out: Path) -> pd.DataFrame:
     """The thermo rows: one per step. Raises EngineError.
 
     A run that continues another one begins again at the step of its restart file: what the earlier run wrote beyond
     that step is replaced, but not the row of that step itself, whose means over an interval only the earlier run knows.
     """
-    every = thermo.rows(log)
+    every = log.rows(out)
     if every.empty:
-        raise EngineError(f"{log}: no thermo rows; the run ended before its first step")
-    table = every.iloc[:0]
+        raise EngineError(f"{out}: no thermo rows; the run ended before its first step")
+    found: dict[int, list[float]] = {}
+    names = [name for name in every if name in ROWS]  # and LIGGGHTS's own choice where nothing is asked for
     for _, part in every.groupby("run"):
-        begin = part["Step"].iloc[0]
-        table = table[table["Step"] <= begin]
-        table = pd.concat([table, part[1:] if begin in table["Step"].to_numpy() else part])
-    table = table.drop_duplicates("Step", keep="last").drop(columns="run").reset_index(drop=True)
-    table = table.drop(columns="CPU", errors="ignore")  # LIGGGHTS's own choice when it is not asked for columns
-    table.columns = [ROWS.get(n, (n, ""))[0] for n in table.columns]
-    table.insert(1, "time", table["step"] * time_step)
-    return table
+        steps, values = part["Step"].astype(int).to_list(), part[names].to_numpy().tolist()
+        known = {step: row for step, row in found.items() if step <= steps[0]}
+        found = known | {step: row for step, row in zip(steps, values, strict=True) if step not in known}
+    return columns.rows(p, found, [ROWS[name] for name in names])
 
 
-def plate_height(case: SceneCase, deck: Deck, time: np.ndarray) -> np.ndarray:
-    """Height [m] of the moving plate of a compaction."""
-    s, turn = case.scene, deck.phases[0].end * deck.time_step
-    return s.box[2] - s.speed * np.minimum(time, turn) + s.release * np.maximum(time - turn, 0.0)
+def _frame(path: Path, count: int) -> np.ndarray:
+    """(n, count) of a binary dump of one frame, sorted by id. Raises EngineError if it is not whole."""
+    found = dump.frames(path)
+    if len(found) != 1 or found[0][1].shape[1] != count:
+        raise EngineError(f"{path}: not one frame of {count} columns; run the case again")
+    return found[0][1]
 
 
-def add_plate(case: SceneCase, deck: Deck, table: pd.DataFrame) -> None:
-    """Columns plate_z [m] (middle of the interval that the force is a mean of) and stress [Pa]."""
-    middle = (table["step"] - 0.5 * deck.every).clip(lower=0) * deck.time_step
-    table["plate_z"] = plate_height(case, deck, middle.to_numpy())
-    table["stress"] = table["plate_force"] / (case.scene.box[0] * case.scene.box[1])
+def _written(p: ScenePlan) -> dict[str, int]:
+    """The kinds of frames that a run writes, each with the steps between two of them."""
+    kinds = {PARTICLES: p.frames, PAIRS: p.contacts, MESHES: p.contacts if p.layout.meshes else 0}
+    return {kind: every for kind, every in kinds.items() if every}
 
 
-def _steps(folder: Path, pattern: str) -> list[tuple[int, Path]]:
-    """(step, file) of the frames of a dump, by step."""
-    found = [(int(re.search(r"(\d+)\.\w+$", p.name).group(1)), p) for p in folder.glob(pattern)]
+def damaged(p: ScenePlan, folder: Path, upto: int) -> list[int]:
+    """Steps up to `upto` of which a frame is missing or not whole."""
+    found = set()
+    for kind, every in _written(p).items():
+        for step in range(0, upto + 1, every):
+            path = folder / kind.format(step)
+            try:
+                _frame(path, len(_particle_names(p))) if kind == PARTICLES else dump.local(path)
+            except EngineError:
+                found.add(step)
     return sorted(found)
 
 
-def particles(folder: Path, deck: Deck, *, upto: int | None = None) -> pd.DataFrame:
-    """Every particle of every frame, sorted by step and id: SI."""
-    names = [*PARTICLES, *(SPINS if deck.spins else [])]
-    names += [f"delta_max_{p[0]}" for p in deck.planes] if deck.contacts and deck.yields else []
-    names += ["plastic_work"] if deck.energy and deck.yields else []
-    frames = []
-    for step, path in _steps(folder, "particles.*.bin"):
-        if upto is not None and step > upto:
-            continue
-        ((_, data),) = dump.frames(path)
-        table = pd.DataFrame(data, columns=names)
+def _particle_names(p: ScenePlan) -> list[str]:
+    names = [*columns.PARTICLES, *(columns.SPINS if p.model.spins else [])]
+    names += [f"delta_max_{w.name}" for w in p.layout.planes] if p.contacts and p.model.yields else []
+    return [*names, *(["plastic_work"] if p.dents else [])]
+
+
+def _steps(p: ScenePlan, kind: str, folder: Path, without: Collection[int]) -> list[tuple[int, Path]]:
+    """(step, file) of the frames of a kind, by step."""
+    every = _written(p).get(kind, 0)
+    steps = range(0, p.steps + 1, every) if every else range(0)
+    return [(step, folder / kind.format(step)) for step in steps if step not in without]
+
+
+def particles(p: ScenePlan, folder: Path, *, without: Collection[int] = ()) -> pd.DataFrame:
+    """Every particle of every frame but those of the steps `without`, sorted by step and id.
+
+    Raises EngineError for a frame that is not whole.
+    """
+    names, frames = _particle_names(p), []
+    for step, path in _steps(p, PARTICLES, folder, without):
+        table = pd.DataFrame(_frame(path, len(names)), columns=names)
         table.insert(0, "step", step)
         frames.append(table)
     if not frames:
@@ -85,17 +97,57 @@ def particles(folder: Path, deck: Deck, *, upto: int | None = None) -> pd.DataFr
     return table.astype({"id": "int64", "type": "int64", "step": "int64"})
 
 
-def local_frames(folder: Path, pattern: str, names: list[str]) -> pd.DataFrame:
-    """Rows of a `dump local` text file per step."""
-    frames = []
-    for step, path in _steps(folder, pattern):
-        data = dump.local(path)
-        if not data.size:
-            continue
-        table = pd.DataFrame(data)
-        if table.shape[1] != len(names):
-            raise EngineError(f"{path}: {table.shape[1]} columns, expected {len(names)}")
-        table.columns = names
-        table.insert(0, "step", step)
-        frames.append(table)
-    return pd.concat(frames, ignore_index=True) if frames else pd.DataFrame(columns=["step", *names])
+def _local(p: ScenePlan, kind: str, folder: Path, ids: list[str], without: Collection[int]) -> pd.DataFrame:
+    """The rows of a `dump local`, by step: `ids`, delta_max and overlap [m]; what only comes near is left out."""
+    names, frames = ["step", *ids, *(["delta_max"] if p.model.yields else []), "overlap"], []
+    for step, path in _steps(p, kind, folder, without):
+        table = pd.DataFrame(dump.local(path))
+        if len(table):
+            if table.shape[1] != len(names) - 1:
+                raise EngineError(f"{path}: {table.shape[1]} columns, expected {len(names) - 1}")
+            table.insert(0, "step", step)
+            table.columns = pd.Index(names)
+            frames.append(table)
+    table = pd.concat(frames, ignore_index=True) if frames else pd.DataFrame(columns=names)
+    if not p.model.yields:
+        table["delta_max"] = table["overlap"]
+    return table[table["overlap"] > 0]
+
+
+def _pairs(p: ScenePlan, folder: Path, without: Collection[int]) -> pd.DataFrame:
+    table = _local(p, PAIRS, folder, ["i", "j"], without).assign(wall="")
+    # which of the two comes first is LIGGGHTS's own affair, and another one after a restart
+    return table.assign(i=table[["i", "j"]].min(axis=1), j=table[["i", "j"]].max(axis=1))
+
+
+def _planes(p: ScenePlan, spheres: pd.DataFrame) -> list[pd.DataFrame]:
+    """Contacts with flat walls: overlap by geometry, its largest value from LIGGGHTS's memory of the wall."""
+    found = []
+    for w in p.layout.planes:
+        axis = "xyz"[w.axis]
+        touching = spheres[(spheres[axis] - w.place).abs() < spheres["radius"]]
+        overlap = touching["radius"] - (touching[axis] - w.place).abs()
+        largest = np.maximum(touching[f"delta_max_{w.name}"], overlap) if p.model.yields else overlap
+        found.append(
+            pd.DataFrame(
+                {
+                    "step": touching["step"],
+                    "wall": w.name,
+                    "i": touching["id"],
+                    "j": 0,
+                    "overlap": overlap,
+                    "delta_max": largest,
+                }
+            )
+        )
+    return found
+
+
+def contact_table(p: ScenePlan, folder: Path, spheres: pd.DataFrame, *, without: Collection[int] = ()) -> pd.DataFrame:
+    """Every contact of every frame; `spheres` is the particles' table. Raises EngineError as `particles` does."""
+    parts = [_pairs(p, folder, without), *_planes(p, spheres)]
+    if p.layout.meshes:
+        (name,) = p.layout.meshes
+        parts.append(_local(p, MESHES, folder, ["i"], without).assign(j=0, wall=name))
+    raw = pd.concat([part for part in parts if len(part)] or parts[:1], ignore_index=True)
+    return contacts.complete(p, raw, spheres)

@@ -1,17 +1,23 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """What must hold for a scene by routes that do not go through the contact law."""
 
+import math
+from dataclasses import dataclass
+
 import numpy as np
 import pandas as pd
 
-from ..case.scene import SceneCase
+from ..case.scene import Compaction, Hopper, Peening, SceneCase, Settle
 from ..impacts.prediction import predict
-from ..liggghts.scene_deck import Deck
-from .ledger import closure, kinetic
-from .model import wall_impact
+from .ledger import closure, kinetic, plate_velocity
+from .pairs import wall_impact
+from .plan import ScenePlan
+
+Row = dict[str, object]
+MANY = 20  # frames from which on motion is followed
 
 
-def _row(name: str, value: float, expected: float, tolerance: float) -> dict:
+def _row(name: str, value: float, expected: float, tolerance: float) -> Row:
     error = abs(value / expected - 1.0) if expected else abs(value)
     return {
         "check": name,
@@ -23,25 +29,23 @@ def _row(name: str, value: float, expected: float, tolerance: float) -> dict:
     }
 
 
-def _below(name: str, value: float, limit: float, tolerance: float) -> dict:
+def _below(name: str, value: float, limit: float, tolerance: float) -> Row:
+    beyond = value / limit - 1.0 if limit else math.copysign(math.inf, value) if value else 0.0
     return {
         "check": name,
         "value": value,
         "expected": limit,
-        "error": max(0.0, value / limit - 1.0),
+        "error": max(0.0, beyond),
         "tolerance": tolerance,
         "passed": bool(value <= limit * (1 + tolerance)),
     }
 
 
-def _kept(case: SceneCase, d: Deck, tables: dict[str, pd.DataFrame]) -> list[dict]:
-    if d.loses:
+def _kept(p: ScenePlan, tables: dict[str, pd.DataFrame]) -> list[Row]:
+    if p.layout.loses:
         return []
-    return [
-        _row(
-            "spheres in the room at the end", float(tables["rows"]["particles"].iloc[-1]), float(case.scene.count), 0.0
-        )
-    ]
+    last = float(tables["rows"]["particles"].iloc[-1])
+    return [_row("spheres in the room at the end", last, float(p.case.scene.count), 0.0)]
 
 
 def floor_load(case: SceneCase, tables: dict[str, pd.DataFrame]) -> tuple[float, float]:
@@ -71,94 +75,137 @@ def bed_rebound(case: SceneCase, spheres: pd.DataFrame) -> tuple[float, float]:
     return float((place - np.minimum.accumulate(place)).max()), e_n**2 * fall
 
 
-def stiffness(case: SceneCase, d: Deck, rows: pd.DataFrame) -> tuple[float, float]:
+def stiffness(p: ScenePlan, rows: pd.DataFrame) -> tuple[float, float]:
     """Secant stiffness [N/m] of (loading, unloading) between half the largest plate force and that force."""
-    turn = d.phases[0].end
+    turn = p.phases[0].end
     load, unload = rows[rows["step"] <= turn], rows[rows["step"] > turn]
     way_up, up = load["plate_z"].to_numpy()[::-1], load["plate_force"].to_numpy()[::-1]
     way_down, down = unload["plate_z"].to_numpy(), unload["plate_force"].to_numpy()
     bottom, top = way_up[0], up[0]
     below = int(np.argmax(up < 0.5 * top)), int(np.argmax(down < 0.5 * top))
     return (
-        float((top - up[below[0]]) / (way_up[below[0]] - bottom)),
-        float((top - down[below[1]]) / (way_down[below[1]] - bottom)),
+        _secant(top - up[below[0]], way_up[below[0]] - bottom),
+        _secant(top - down[below[1]], way_down[below[1]] - bottom),
     )
 
 
-def recovered(case: SceneCase, d: Deck, rows: pd.DataFrame) -> tuple[float, float]:
+def _secant(force: float, way: float) -> float:
+    return float(force / way) if way > 0 else np.inf  # the force is gone within the row of the turn
+
+
+def recovered(p: ScenePlan, rows: pd.DataFrame) -> tuple[float, float]:
     """Work [J] that the plate (put in, got back): its force, a mean over each interval, times its way."""
-    loading = rows["step"].to_numpy() <= d.phases[0].end
-    speed = np.where(loading, case.scene.speed, case.scene.release)
-    work = rows["plate_force"].to_numpy() * speed * np.diff(rows["step"], prepend=0) * d.time_step
-    return float(work[loading].sum()), float(work[~loading].sum())
+    speed = plate_velocity(p, rows)
+    work = rows["plate_force"].to_numpy() * np.abs(speed) * np.diff(rows["step"], prepend=0) * p.time_step
+    return float(work[speed < 0].sum()), float(work[speed > 0].sum())
 
 
-def discharge(case: SceneCase, d: Deck, spheres: pd.DataFrame) -> tuple[float, float]:
-    """Mass flow [kg/s] through the outlet, between a fifth and 3/5 of the filling, and Beverloo's, with the bulk
-    density of the bin when the outlet opens: W = 0.58 rho_b sqrt(g) (D - 1.4 d)^2.5."""
-    s, outlet, steps = case.scene, d.motion["outlet"], spheres["step"].unique()
-    opened = steps[steps <= d.phases[0].end].max()
-    total = spheres[spheres["step"] == opened]["mass"].sum()
-    out = spheres[spheres["z"] < outlet].groupby("step")["mass"].sum().reindex(steps, fill_value=0.0)
-    steady = out[(out > 0.2 * total) & (out < 0.6 * total)]
-    rate = np.polyfit(steady.index.to_numpy() * d.time_step, steady.to_numpy(), 1)[0]
-    full = spheres[spheres["step"] == opened]
-    top = np.quantile(full["z"], 0.95)
-    inside = full[(full["z"] > 0.2 * top) & (full["z"] < 0.7 * top)]
-    area = np.pi / 4 * s.bin_diameter**2
-    bulk = inside["mass"].sum() / (area * 0.5 * top)
-    diameter = 2 * float(full["radius"].mean())
-    return float(rate), float(0.58 * bulk * np.sqrt(s.gravity) * (s.outlet - 1.4 * diameter) ** 2.5)
+@dataclass(frozen=True)
+class Discharge:
+    """Flow through an outlet: mass rate [kg/s], bulk density of the bin as it opens [kg/m^3], mean diameter [m] and
+    number of the spheres that came out meanwhile."""
+
+    rate: float
+    bulk: float
+    diameter: float
+    counted: int
 
 
-def single_rebound(case: SceneCase) -> float:
+def discharge(p: ScenePlan, s: Hopper, spheres: pd.DataFrame, part: tuple[float, float] = (0.2, 0.6)) -> Discharge:
+    """The slope of the mass below the outlet against time, while it is between these parts of the filling.
+
+    NaN where fewer than two frames lie between them. The bulk density is that from 0.2 to 0.7 of the bed's height.
+    """
+    steps = np.sort(spheres["step"].unique())
+    bed = spheres[spheres["step"] == steps[steps <= p.phases[0].end].max()]
+    below = spheres[spheres["z"] < p.layout.outlet].groupby("step")["mass"]
+    out = below.sum().reindex(steps, fill_value=0.0).to_numpy()
+    during = (out > part[0] * bed["mass"].sum()) & (out < part[1] * bed["mass"].sum())
+    count = below.count().reindex(steps, fill_value=0).to_numpy()[during]
+    top = np.quantile(bed["z"], 0.95)
+    inside = bed[(bed["z"] > 0.2 * top) & (bed["z"] < 0.7 * top)]
+    bulk = inside["mass"].sum() / (np.pi / 4 * s.bin_diameter**2 * 0.5 * top)
+    diameter = 2 * float(bed["radius"].mean())
+    if count.size < 2:
+        return Discharge(np.nan, float(bulk), diameter, 0)
+    rate = np.polyfit(steps[during] * p.time_step, out[during], 1)[0]
+    return Discharge(float(rate), float(bulk), diameter, int(count[-1] - count[0]))
+
+
+def beverloo(found: Discharge, outlet: float, gravity: float, *, constant: float = 0.58, k: float = 1.4) -> float:
+    """W = C rho_b sqrt(g) (D - k d)^2.5 [kg/s] through an outlet D [m].
+
+    Beverloo, Leniger and van de Velde 1961, Chem. Eng. Sci. 15, 260: C about 0.58, k from 1.2 to 1.6.
+    """
+    return float(constant * found.bulk * np.sqrt(gravity) * (outlet - k * found.diameter) ** 2.5)
+
+
+def single_rebound(case: SceneCase, s: Peening) -> float:
     """Speed [m/s] at which one shot leaves a flat target, by theory alone."""
-    material = case.scene.particles[0].material
-    wall = case.scene.bed[0].material if case.scene.bed else case.scene.walls
-    x = wall_impact(case, material, case.scene.particles[0].radii()[0], wall, case.scene.speed)
-    return float(predict(x).e_n[-1] * case.scene.speed)
+    shot, target = s.particles[0], s.bed[0].material if s.bed else s.walls
+    return float(predict(wall_impact(case, shot.material, shot.radii()[0], target, s.speed)).e_n[-1] * s.speed)
 
 
-def rebounds(case: SceneCase, spheres: pd.DataFrame) -> tuple[float, int]:
-    """(speed [m/s] farthest from the single shot's, count) of the shot that met the target and nothing else.
+def rebounds(spheres: pd.DataFrame, speed: float, expected: float) -> tuple[float, int]:
+    """(speed [m/s] farthest from the expected one, count) of the shot that met the target and nothing else.
 
-    Only those go straight up: a hit between two shots is never central.
+    Only those go straight up, of shot that came with `speed`: a hit between two shots is never central.
     """
     side = np.hypot(spheres["vx"], spheres["vy"])
-    straight = spheres[(spheres["vz"] > 0) & (side < 1e-9 * case.scene.speed)]
+    straight = spheres[(spheres["vz"] > 0) & (side < 1e-9 * speed)]
     speeds = straight.groupby("id")["vz"].max().to_numpy()
     if not speeds.size:
         return np.nan, 0
-    return float(speeds[np.argmax(np.abs(speeds - single_rebound(case)))]), speeds.size
+    return float(speeds[np.argmax(np.abs(speeds - expected))]), speeds.size
 
 
-def checks(case: SceneCase, d: Deck, tables: dict[str, pd.DataFrame]) -> pd.DataFrame:
-    """One row per check: value, expected, relative error, tolerance, passed."""
-    found = _kept(case, d, tables)
-    smooth = case.contact.wall_friction == 0.0 or (case.contact.friction == 0.0 and case.contact.wall_friction is None)
-    smooth = smooth and not any("wall" in p.between for p in case.contact.pairs) and not case.contact.cohesion
-    if case.scene.kind == "settle" and "floor_load" in tables["rows"] and "particles" in tables and smooth:
-        load, weight = floor_load(case, tables)
+def _of_settle(p: ScenePlan, s: Settle, tables: dict[str, pd.DataFrame]) -> list[Row]:
+    contact, found = p.case.contact, []
+    smooth = contact.wall_friction == 0.0 or (contact.friction == 0.0 and contact.wall_friction is None)
+    smooth = smooth and not any("wall" in pair.between for pair in contact.pairs) and not contact.cohesion
+    if "floor_load" in tables["rows"] and "particles" in tables and smooth:
+        load, weight = floor_load(p.case, tables)
         found.append(_row("floor load / weight (smooth walls: hydrostatic)", load, weight, 0.02))
-    if case.scene.kind == "settle" and not case.scene.rate and case.scene.gravity and case.output.particles >= 20:
-        found.append(_below("rebound of the bed / e_n^2 fall", *bed_rebound(case, tables["particles"]), 0.0))
-    if case.scene.kind == "hopper" and case.output.particles >= 20:
-        found.append(_row("mass flow / Beverloo", *discharge(case, d, tables["particles"]), 0.2))
-    if case.scene.kind == "peening" and not case.scene.bed and case.output.particles >= 20:
-        speed, count = rebounds(case, tables["particles"])
-        found.append(
-            _row(f"rebound of {count} shots that met the plate alone / e_n v", speed, single_rebound(case), 1e-3)
-        )
-    if case.scene.kind == "compaction":
-        load, unload = stiffness(case, d, tables["rows"])
-        found.append(_below("loading / unloading stiffness", load, unload, 0.0))
-        put_in, back = recovered(case, d, tables["rows"])
-        found.append(_below("work got back / put in", back, put_in, 0.0))
+    if not s.rate and s.gravity and p.output.particles >= MANY:
+        found.append(_below("rebound of the bed / e_n^2 fall", *bed_rebound(p.case, tables["particles"]), 0.0))
+    return found
+
+
+def _of_hopper(p: ScenePlan, s: Hopper, tables: dict[str, pd.DataFrame]) -> list[Row]:
+    if p.output.particles < MANY:
+        return []
+    flow = discharge(p, s, tables["particles"])
+    return [_row("mass flow / Beverloo", flow.rate, beverloo(flow, s.outlet, s.gravity), 0.2)]
+
+
+def _of_peening(p: ScenePlan, s: Peening, tables: dict[str, pd.DataFrame]) -> list[Row]:
+    if s.bed or p.output.particles < MANY:
+        return []
+    expected = single_rebound(p.case, s)
+    speed, count = rebounds(tables["particles"], s.speed, expected)
+    return [_row(f"rebound of {count} shots that met the plate alone / e_n v", speed, expected, 1e-3)]
+
+
+def _of_compaction(p: ScenePlan, tables: dict[str, pd.DataFrame]) -> list[Row]:
+    put_in, back = recovered(p, tables["rows"])
+    return [
+        _below("loading / unloading stiffness", *stiffness(p, tables["rows"]), 0.0),
+        _below("work got back / put in", back, put_in, 0.0),
+    ]
+
+
+def checks(p: ScenePlan, tables: dict[str, pd.DataFrame]) -> pd.DataFrame:
+    """One row per check: value, expected, relative error, tolerance, passed."""
+    found = _kept(p, tables)
+    match p.case.scene:
+        case Settle() as s:
+            found += _of_settle(p, s, tables)
+        case Hopper() as s:
+            found += _of_hopper(p, s, tables)
+        case Peening() as s:
+            found += _of_peening(p, s, tables)
+        case Compaction():
+            found += _of_compaction(p, tables)
     if "ledger" in tables and "friction" not in tables["ledger"]:
-        found.append(_row("energy: all terms but none as remainder", closure(case, tables["ledger"]), 0.0, 0.01))
+        found.append(_row("energy: all terms but none as remainder", closure(tables["ledger"]), 0.0, 0.01))
     return pd.DataFrame(found, columns=["check", "value", "expected", "error", "tolerance", "passed"])
-
-
-def fraction(volume: float, spheres: pd.DataFrame) -> float:
-    """Volume share of spheres in `volume` [m^3]."""
-    return float(4.0 / 3.0 * np.pi * (spheres["radius"] ** 3).sum() / volume)

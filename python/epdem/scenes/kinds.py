@@ -5,82 +5,131 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass, field
 
-import numpy as np
-
-from ..case.scene import Compaction, Drum, Hopper, Particles, Peening, SceneCase, Settle
+from ..case.scene import Compaction, Drum, Hopper, Kinds, Particles, Peening, SceneCase, Settle
 from ..errors import CaseError
 from . import meshes
+from .meshes import FloatArray
 
-Plane = tuple[str, str, float]  # fix id, LIGGGHTS's style, coordinate [m]
+
+@dataclass(frozen=True)
+class Plane:
+    """A flat wall across an axis (0, 1, 2) at a place [m]."""
+
+    name: str
+    axis: int
+    place: float
+
+
+@dataclass(frozen=True)
+class Block:
+    """A room between planes: xlo xhi ylo yhi zlo zhi [m]."""
+
+    limits: tuple[float, float, float, float, float, float]
+
+    @property
+    def volume(self) -> float:
+        """[m^3]."""
+        x, y, z = (self.limits[k + 1] - self.limits[k] for k in (0, 2, 4))
+        return x * y * z
+
+
+@dataclass(frozen=True)
+class Cylinder:
+    """An upright room about the z axis [m]."""
+
+    radius: float
+    low: float
+    high: float
+
+    @property
+    def volume(self) -> float:
+        """[m^3]."""
+        return math.pi * self.radius**2 * (self.high - self.low)
 
 
 @dataclass(frozen=True)
 class Fill:
-    """Spheres put into a region: all at once, or `rate` per second every `every` seconds with velocity -z."""
+    """Spheres put into a region: all at once, or `rate` per second every `every` seconds; they begin with velocity -z.
+
+    `place` is the key of `count` in the case file; `phase` that in which it begins, the first one if empty.
+    """
 
     parts: list[Particles]
     count: int
-    region: str
-    place: str
-    room: float | None = None  # volume [m^3] of the region
+    region: Block | Cylinder
+    place: str = "scene.count"
     rate: float | None = None
     every: float = 0.0
     velocity: float = 0.0
-    phase: str = ""  # in which it begins; the first if empty
+    phase: str = ""
+
+
+@dataclass(frozen=True)
+class Stage:
+    """A part of the scene; `plate` is the velocity of the plate along z in it [m/s]."""
+
+    name: str
+    seconds: float
+    plate: float = 0.0
 
 
 @dataclass(frozen=True)
 class Layout:
-    """Lengths in m, durations in s; `box` is xlo xhi ylo yhi zlo zhi of the simulated room."""
+    """Lengths in m; `box` is xlo xhi ylo yhi zlo zhi of the simulated room.
 
-    box: tuple[float, ...]
-    boundary: str
+    periodic: in x and y. turn: angular velocity of the surface of the mesh "drum" about y [rad/s]. outlet: height of
+    an outlet that is closed in the first stage. loses: spheres may leave the room.
+    """
+
+    box: tuple[float, float, float, float, float, float]
+    periodic: bool
     planes: tuple[Plane, ...]
-    fills: list[Fill]
-    phases: list[tuple[str, float]]
-    meshes: dict[str, np.ndarray] = field(default_factory=dict)
-    motion: dict[str, float] = field(default_factory=dict)
+    fills: tuple[Fill, ...]
+    stages: tuple[Stage, ...]
+    meshes: dict[str, FloatArray] = field(default_factory=dict)
+    turn: float = 0.0
+    outlet: float | None = None
     loses: bool = False
 
     @property
     def duration(self) -> float:
-        return sum(seconds for _, seconds in self.phases)
+        """[s]."""
+        return sum(s.seconds for s in self.stages)
 
 
-def _largest(parts) -> float:
+def _largest(parts: list[Particles]) -> float:
     return max(p.radii()[1] for p in parts)
 
 
-def _block(*limits: float) -> str:
-    return "block " + " ".join(f"{x:.10g}" for x in limits)
+def _floor(z: float = 0.0) -> Plane:
+    return Plane("floor", 2, z)
 
 
 def _sides(lx: float, ly: float) -> tuple[Plane, ...]:
     return (
-        ("left", "xplane", -lx / 2),
-        ("right", "xplane", lx / 2),
-        ("front", "yplane", -ly / 2),
-        ("back", "yplane", ly / 2),
+        Plane("left", 0, -lx / 2),
+        Plane("right", 0, lx / 2),
+        Plane("front", 1, -ly / 2),
+        Plane("back", 1, ly / 2),
     )
 
 
 def _settle(s: Settle) -> Layout:
     lx, ly, lz = s.box
-    limits = (-lx / 2, lx / 2, -ly / 2, ly / 2, 0.0, lz)
+    x, y = lx / 2, ly / 2
     if s.rate is None:
-        fill = Fill(s.particles, s.count, _block(*limits), "scene.count", lx * ly * lz)
+        fill = Fill(s.particles, s.count, Block((-x, x, -y, y, 0.0, lz)))
     else:
         # a layer at the top; what fell out of it makes room for the next lot
         depth = min(lz / 4, 8 * _largest(s.particles))
-        region = (*limits[:4], lz - depth, lz)
+        layer = Block((-x, x, -y, y, lz - depth, lz))
         pause = math.sqrt(2 * depth / s.gravity) if s.gravity else s.duration
-        fill = Fill(s.particles, s.count, _block(*region), "scene.count", None, s.rate, pause)
+        fill = Fill(s.particles, s.count, layer, rate=s.rate, every=pause)
         if s.count / s.rate > s.duration:
             raise CaseError(f"scene.duration = {s.duration:g} s ends before all are poured ({s.count / s.rate:g} s)")
-    sides = () if s.periodic else _sides(lx, ly)
-    room = (*limits[:5], 1.5 * lz)  # the walls go on above the box: what bounces high falls back
-    boundary, planes = "p p f" if s.periodic else "f f f", (("floor", "zplane", 0.0), *sides)
-    return Layout(room, boundary, planes, [fill], [("settle", s.duration)])
+    room = (-x, x, -y, y, 0.0, 1.5 * lz)  # the walls go on above the box: what bounces high falls back
+    planes = (_floor(), *(() if s.periodic else _sides(lx, ly)))
+    return Layout(room, s.periodic, planes, (fill,), (Stage("settle", s.duration),))
 
 
 def _hopper(s: Hopper) -> Layout:
@@ -92,77 +141,67 @@ def _hopper(s: Hopper) -> Layout:
     low = float(f"{-depth - s.drop:.10g}")
     depth = -low - s.drop
     box = (-r - margin, r + margin, -r - margin, r + margin, low, 1.5 * top)  # what bounces high stays in the room
-    rim = r - _largest(s.particles)
-    fill = Fill(s.particles, s.count, f"cylinder z 0 0 {rim:.10g} 0 {top:.10g}", "scene.count", math.pi * rim**2 * top)
-    sides = _sides(box[1] - box[0], box[3] - box[2])
+    fill = Fill(s.particles, s.count, Cylinder(r - _largest(s.particles), 0.0, top))
     return Layout(
         box,
-        "f f f",
-        (("floor", "zplane", low), *sides),
-        [fill],
-        [("fill", s.fill), ("discharge", s.duration)],
+        False,
+        (_floor(low), *_sides(box[1] - box[0], box[3] - box[2])),
+        (fill,),
+        (Stage("fill", s.fill), Stage("discharge", s.duration)),
         {"hopper": meshes.hopper(s.bin_diameter, s.bin_height, s.outlet, depth)},
-        {"outlet": -depth},
+        outlet=-depth,
     )
 
 
 def _drum(s: Drum) -> Layout:
-    r, half, big = s.diameter / 2, s.length / 2, _largest(s.particles)
+    r, half = s.diameter / 2, s.length / 2
     margin = 0.05 * r
-    box = (-r - margin, r + margin, -half - margin, half + margin, -r - margin, r + margin)
-    rim = r - big
-    # a block inside the circle
-    a = 0.7 * rim
-    fill = Fill(s.particles, s.count, _block(-a, a, -half, half, -a, a), "scene.count", 4 * a * a * s.length)
+    a = 0.7 * (r - _largest(s.particles))  # a block inside the circle
     return Layout(
-        box,
-        "f f f",
-        (("front", "yplane", -half), ("back", "yplane", half)),
-        [fill],
-        [("turn", s.duration)],
+        (-r - margin, r + margin, -half - margin, half + margin, -r - margin, r + margin),
+        False,
+        (Plane("front", 1, -half), Plane("back", 1, half)),
+        (Fill(s.particles, s.count, Block((-a, a, -half, half, -a, a))),),
+        (Stage("turn", s.duration),),
         {"drum": meshes.drum(s.diameter, s.length * 1.02)},
-        {"omega": s.turn},
+        turn=s.turn,
     )
 
 
 def _compaction(s: Compaction) -> Layout:
     lx, ly, lz = s.box
-    limits = (-lx / 2, lx / 2, -ly / 2, ly / 2, 0.0, lz)
-    fill = Fill(s.particles, s.count, _block(*limits), "scene.count", lx * ly * lz)
+    x, y = lx / 2, ly / 2
+    load = Stage("load", (lz - s.height) / s.speed, plate=-s.speed)
+    unload = Stage("unload", s.back / s.release, plate=s.release)
     return Layout(
-        (*limits[:5], 1.05 * lz),
-        "p p f",
-        (("floor", "zplane", 0.0),),
-        [fill],
-        [("load", (lz - s.height) / s.speed), ("unload", s.back / s.release)],
+        (-x, x, -y, y, 0.0, 1.05 * lz),
+        True,
+        (_floor(),),
+        (Fill(s.particles, s.count, Block((-x, x, -y, y, 0.0, lz))),),
+        (load, unload),
         {"plate": meshes.plate(lx, ly, lz)},
-        {"load": s.speed, "unload": s.release},
     )
 
 
 def _peening(s: Peening) -> Layout:
     """The stream is a column of shot on its way: what hits at time t starts speed * t above the target.
 
-    LIGGGHTS's own streams place spheres by random numbers that a restart file does not hold.
+    So its places are known at the start, and a continued run has no other ones.
     """
     gap = 4 * _largest(s.particles)
     base = s.side if s.bed else 0.0
     foot, a = base + gap, s.side / 2
     top = foot + s.speed * s.count / s.rate
-    column = (-a, a, -a, a, foot, top)
-    room = s.side**2 * (top - foot)
-    stream = Fill(s.particles, s.count, _block(*column), "scene.count", room, velocity=s.speed, phase="peen")
-    if not s.bed:
-        fills, phases = [stream], []
-    else:
-        fills = [Fill(s.bed, s.bed_count, _block(-a, a, -a, a, 0.0, base), "scene.bed_count", s.side**3), stream]
-        phases = [("fill", s.bed_fill)]
+    fills = [Fill(s.particles, s.count, Block((-a, a, -a, a, foot, top)), velocity=s.speed, phase="peen")]
+    stages = [Stage("peen", s.duration)]
+    if s.bed_fill is not None:
+        fills.insert(0, Fill(s.bed, s.bed_count, Block((-a, a, -a, a, 0.0, base)), "scene.bed_count"))
+        stages.insert(0, Stage("fill", s.bed_fill))
     box = (-a, a, -a, a, 0.0, float(f"{top + gap:.10g}"))
-    phases.append(("peen", s.duration))
-    return Layout(box, "p p f", (("floor", "zplane", 0.0),), fills, phases, loses=True)
+    return Layout(box, True, (_floor(),), tuple(fills), tuple(stages), loses=True)
 
 
-_KINDS: dict[type, Callable[..., Layout]] = {
+_KINDS: dict[type[Kinds], Callable[..., Layout]] = {
     Settle: _settle,
     Hopper: _hopper,
     Drum: _drum,

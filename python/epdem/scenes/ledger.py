@@ -4,8 +4,7 @@
 import numpy as np
 import pandas as pd
 
-from ..case.scene import SceneCase
-from ..liggghts.scene_deck import Deck
+from .plan import ScenePlan
 
 
 def kinetic(spheres: pd.DataFrame) -> pd.Series:
@@ -17,19 +16,24 @@ def kinetic(spheres: pd.DataFrame) -> pd.Series:
     return energy
 
 
-def work_of_walls(case: SceneCase, deck: Deck, rows: pd.DataFrame) -> np.ndarray:
+def work_of_walls(p: ScenePlan, rows: pd.DataFrame) -> np.ndarray:
     """Work [J] that moving walls have done up to each row: mean force or torque of the interval times its way.
 
     The torque of a drum counts normal forces on its flat facets too, which do no work: noise of 0.1 % of the energies.
     """
-    dt = np.diff(rows["step"], prepend=0) * deck.time_step
-    if case.scene.kind == "compaction":
-        loading = rows["step"].to_numpy() <= deck.phases[0].end
-        speed = np.where(loading, case.scene.speed, -case.scene.release)
-        return np.cumsum(rows["plate_force"].to_numpy() * speed * dt)
-    if case.scene.kind == "drum":
-        return np.cumsum(-rows["torque"].to_numpy() * case.scene.turn * dt)
+    dt = np.diff(rows["step"], prepend=0) * p.time_step
+    if p.plates:
+        return np.cumsum(rows["plate_force"].to_numpy() * -plate_velocity(p, rows) * dt)
+    if p.layout.turn:
+        return np.cumsum(-rows["torque"].to_numpy() * p.layout.turn * dt)
     return np.zeros(len(rows))
+
+
+def plate_velocity(p: ScenePlan, rows: pd.DataFrame) -> np.ndarray:
+    """Velocity [m/s] of the plate along z in the interval that ends with each row."""
+    phase = np.searchsorted([phase.end for phase in p.phases[:-1]], rows["step"])
+    speeds: np.ndarray = np.array([phase.plate for phase in p.phases])[phase]
+    return speeds
 
 
 def _left(spheres: pd.DataFrame, steps: np.ndarray) -> np.ndarray:
@@ -44,7 +48,7 @@ def _left(spheres: pd.DataFrame, steps: np.ndarray) -> np.ndarray:
     return taken
 
 
-def ledger(case: SceneCase, deck: Deck, tables: dict[str, pd.DataFrame]) -> pd.DataFrame:
+def ledger(p: ScenePlan, tables: dict[str, pd.DataFrame]) -> pd.DataFrame:
     """One row per frame [J]: kinetic, gravity, elastic, plastic, work done by walls, left, and the balance.
 
     The balance is what all but friction leave unexplained since the first frame with all spheres; where contacts rub it
@@ -52,27 +56,27 @@ def ledger(case: SceneCase, deck: Deck, tables: dict[str, pd.DataFrame]) -> pd.D
     """
     spheres, found = tables["particles"], tables["contacts"]
     steps = np.sort(spheres["step"].unique())
-    by_step = spheres.assign(kinetic=kinetic(spheres), gravity=spheres["mass"] * case.scene.gravity * spheres["z"])
+    by_step = spheres.assign(kinetic=kinetic(spheres), gravity=spheres["mass"] * p.case.scene.gravity * spheres["z"])
     sums = by_step.groupby("step")[["kinetic", "gravity"]].sum()
-    table = pd.DataFrame({"step": steps, "time": steps * deck.time_step})
+    table = pd.DataFrame({"step": steps, "time": steps * p.time_step})
     table["kinetic"], table["gravity"] = sums["kinetic"].to_numpy(), sums["gravity"].to_numpy()
     table["elastic"] = found.groupby("step")["elastic_energy"].sum().reindex(steps, fill_value=0.0).to_numpy()
     plastic = spheres.groupby("step")["plastic_work"].sum() if "plastic_work" in spheres else pd.Series(0.0, steps)
     table["plastic"] = plastic.reindex(steps).to_numpy()
     rows = tables["rows"]
-    table["work"] = np.interp(steps, rows["step"], work_of_walls(case, deck, rows))
-    table["left"] = _left(spheres, steps) if deck.loses else 0.0
+    table["work"] = np.interp(steps, rows["step"], work_of_walls(p, rows))
+    table["left"] = _left(spheres, steps) if p.layout.loses else 0.0
     present = spheres.groupby("step")["id"].count().reindex(steps).to_numpy()
     start = int(np.argmax(present == present.max()))
     total = table[["kinetic", "gravity", "elastic", "plastic", "left"]].sum(axis=1) - table["work"]
     table["balance"] = total - total.iloc[start]
     table = table.iloc[start:].reset_index(drop=True)
-    if deck.loses_energy:
+    if p.model.loses_energy:
         table["friction"] = -table["balance"]
     return table
 
 
-def closure(case: SceneCase, table: pd.DataFrame) -> float:
+def closure(table: pd.DataFrame) -> float:
     """Largest balance over the energy that moved: of the start, and what walls put in."""
     terms = table[["kinetic", "elastic", "plastic", "work"]].abs().max().sum()
     fall = abs(table["gravity"].iloc[0] - table["gravity"].min())

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Where the spheres of a scene begin: random places without overlap, as LIGGGHTS's insertion has them, in a table."""
+"""Where the spheres of a scene begin: random places without overlap, for engines that do not place them themselves."""
 
 import math
 import random
@@ -9,6 +9,9 @@ import numpy as np
 
 from ..case.scene import SceneCase
 from ..errors import CaseError
+from .filling import drawn
+from .kinds import Block
+from .meshes import FloatArray
 from .model import Model
 
 ATTEMPTS = 10_000  # of one sphere; at the densest filling that a scene allows some hundred are needed
@@ -16,21 +19,18 @@ ATTEMPTS = 10_000  # of one sphere; at the densest filling that a scene allows s
 
 def sizes(case: SceneCase, m: Model, rng: random.Random) -> list[tuple[float, int]]:
     """(radius [m], number of its type) of every sphere, drawn by their share of the mass, the largest first."""
-    kinds, weights = [], []
-    for p in case.scene.particles:
-        for radius, share in p.sizes():
-            kinds.append((radius, m.type_of(p.material)))
-            weights.append(share / (case.materials[p.material].density * radius**3))
-    return sorted(rng.choices(kinds, weights, k=case.scene.count), reverse=True)
+    found = drawn(case, case.scene.particles)
+    kinds = [(radius, m.type_of(material)) for material, radius, _ in found]
+    return sorted(rng.choices(kinds, [weight for *_, weight in found], k=case.scene.count), reverse=True)
 
 
-def spheres(case: SceneCase, m: Model, room: tuple[float, ...]) -> np.ndarray:
+def spheres(case: SceneCase, m: Model, room: Block) -> FloatArray:
     """(count, 5) x, y, z, radius [m], type: random sequential placement, every sphere wholly in `room`.
 
-    `room` is xlo xhi ylo yhi zlo zhi [m]. The same case has the same places everywhere. Raises CaseError when full.
+    The same case has the same places everywhere. Raises CaseError when full.
     """
     rng = random.Random(case.numerics.seed)
-    low, high = room[0::2], room[1::2]
+    low, high = room.limits[0::2], room.limits[1::2]
     placed: list[tuple[float, ...]] = []
     cells: dict[tuple[int, ...], list[int]] = {}
     drawn = sizes(case, m, rng)

@@ -18,8 +18,8 @@ def as_json(outcome: SceneOutcome) -> str:
             "case": outcome.case.name,
             "kind": outcome.case.scene.kind,
             "passed": outcome.passed,
-            "steps": outcome.deck.steps,
-            "time_step": outcome.deck.time_step,
+            "steps": outcome.plan.steps,
+            "time_step": outcome.plan.time_step,
             "seconds": outcome.seconds,
             "reused": outcome.reused,
             "resumed_from": outcome.resumed_from,
@@ -48,12 +48,12 @@ def show(outcome: SceneOutcome, console: Console) -> None:
     console.print(shown)
     for warning in outcome.warnings:
         console.print(f"warning: {warning}", style="yellow", markup=False, highlight=False)
-    d, rows = outcome.deck, outcome.results.tables["rows"]
+    p, rows = outcome.plan, outcome.results.tables["rows"]
     came = " (from results.h5)" if outcome.reused else ""
     if outcome.resumed_from is not None:
         came = f" (continued from step {outcome.resumed_from})"
     console.print(
-        f"{outcome.case.name}: {int(rows['particles'].iloc[-1])} spheres, {d.steps} steps of {d.time_step:g} s, "
+        f"{outcome.case.name}: {int(rows['particles'].iloc[-1])} spheres, {p.steps} steps of {p.time_step:g} s, "
         f"{outcome.seconds:.1f} s{came}; see {outcome.folder}/",
         markup=False,
         highlight=False,

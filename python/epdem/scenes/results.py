@@ -5,47 +5,11 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 import h5py
-import numpy as np
 import pandas as pd
 
 from ..errors import CaseError
-from ..files import atomic
-
-UNITS = {
-    "time": "s",
-    "radius": "m",
-    "mass": "kg",
-    "x": "m",
-    "y": "m",
-    "z": "m",
-    "vx": "m/s",
-    "vy": "m/s",
-    "vz": "m/s",
-    "omega_x": "rad/s",
-    "omega_y": "rad/s",
-    "omega_z": "rad/s",
-    "kinetic_energy": "J",
-    "floor_load": "N",
-    "plate_force": "N",
-    "plate_z": "m",
-    "stress": "Pa",
-    "overlap": "m",
-    "delta_max": "m",
-    "residual_overlap": "m",
-    "force": "N",
-    "dent_radius": "m",
-    "plastic_work": "J",
-    "elastic_energy": "J",
-    "kinetic": "J",
-    "elastic": "J",
-    "plastic": "J",
-    "gravity": "J",
-    "friction": "J",
-    "work": "J",
-    "entered": "J",
-    "left": "J",
-    "balance": "J",
-}
+from ..tables import Hdf5, read_table, write_csv, write_table
+from .columns import UNITS
 
 
 @dataclass
@@ -58,7 +22,7 @@ class SceneResults:
     decks: dict[str, str] = field(default_factory=dict)
 
     def __getattr__(self, name: str) -> pd.DataFrame:
-        tables = self.__dict__.get("tables", {})
+        tables: dict[str, pd.DataFrame] = self.__dict__.get("tables", {})
         if name in tables:
             return tables[name]
         raise AttributeError(f"no table {name!r}; there are {', '.join(tables)}")
@@ -66,24 +30,16 @@ class SceneResults:
 
 def write(path: Path, results: SceneResults) -> None:
     """Store `results` in the HDF5 file `path`, its rows as CSV beside it."""
-    with atomic(path) as temporary, h5py.File(temporary, "w") as file:
-        file.attrs.update({"kind": "scene", **results.attributes})
-        file["case"] = results.case_text
-        for name, table in results.tables.items():
-            group = file.create_group(name)
-            group.attrs["columns"] = list(table.columns)
-            for column in table.columns:
-                data = table[column].to_numpy()
-                if data.dtype == object or data.dtype.kind in "US":
-                    data = np.array([str(v).encode() for v in data])
-                large = {"compression": "gzip", "compression_opts": 1, "shuffle": True} if data.size > 5000 else {}
-                stored = group.create_dataset(column, data=data, **large)
-                if unit := UNITS.get(column):
-                    stored.attrs["unit"] = unit
-        for name, text in results.decks.items():
-            file[f"decks/{name}"] = text
-    with atomic(path.with_suffix(".csv")) as temporary:
-        results.tables["rows"].to_csv(temporary, index=False)
+    stored = Hdf5()
+    file = stored.file
+    file.attrs.update({"kind": "scene", **results.attributes})
+    file["case"] = results.case_text
+    for name, table in results.tables.items():
+        write_table(file.create_group(name), table, UNITS)
+    for name, text in results.decks.items():
+        file[f"decks/{name}"] = text
+    stored.save(path)
+    write_csv(path.with_suffix(".csv"), results.tables["rows"])
 
 
 def read(path: Path | str) -> SceneResults:
@@ -92,13 +48,8 @@ def read(path: Path | str) -> SceneResults:
         with h5py.File(path) as file:
             found = SceneResults(file["case"][()].decode(), dict(file.attrs))
             for name, group in file.items():
-                if "columns" not in getattr(group, "attrs", {}):
-                    continue
-                columns = {}
-                for column in group.attrs["columns"]:
-                    data = group[column][()]
-                    columns[column] = [v.decode() for v in data] if data.dtype.kind == "S" else data
-                found.tables[name] = pd.DataFrame(columns)
+                if "columns" in getattr(group, "attrs", {}):
+                    found.tables[name] = read_table(group)
             found.decks = {name: text[()].decode() for name, text in file.get("decks", {}).items()}
             return found
     except FileNotFoundError:

@@ -37,7 +37,7 @@ def figure(outcome: Outcome, path: Path) -> Path:
     right.loglog(n, 5 * n**-2.0, "--", color="0.5", lw=1, label="order 2")
     left.set(xlabel="stepping time per impact [ns]", ylabel="error of e_n (max over speeds and phases)")
     right.set(xlabel="steps in the shortest contact", title="dotted: rms")
-    left.set_title(outcome.case.case.title)
+    left.set_title(outcome.case.case.title, parse_math=False)
     right.legend(fontsize=8)
     for axes in (left, right):
         axes.grid(alpha=0.3)

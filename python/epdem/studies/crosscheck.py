@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
-from ..case.impact import load
+from ..case.impact import load, named
 from ..engines import ENGINES, FOREIGN, OTHERS, Engine, OwnTheory
 from ..errors import CaseError
 from ..folders import claim
@@ -20,7 +20,7 @@ from ..impacts.foreign import prediction as predict
 from ..impacts.plan import plan
 from ..impacts.run import Outcome, run, run_plan
 from ..tables import write_csv
-from .invariance import WAYS, examine
+from .invariance import VARIANTS, examine
 
 COARSER = 4  # the order of convergence is seen between steps/4 and steps
 SHOWN = ("e_n", "contact_time", "force_max")
@@ -28,7 +28,7 @@ SHOWN = ("e_n", "contact_time", "force_max")
 
 @dataclass(frozen=True)
 class Crosscheck:
-    """The table of a case (one row per contender), the run behind it, who could not take part, and what to know."""
+    """The table, one row per model; the run behind it; why models are absent; notes on those with own laws."""
 
     table: pd.DataFrame
     outcome: Outcome
@@ -36,7 +36,7 @@ class Crosscheck:
     notes: dict[str, str]
 
 
-def contenders(x: Experiment) -> tuple[dict[str, Engine], dict[str, str]]:
+def models(x: Experiment) -> tuple[dict[str, Engine], dict[str, str]]:
     """Engines that can run this case here, and why the others cannot. FOREIGN ones have a theory of their own."""
     same = {"thornton": ["liggghts-thornton_ning"], "hertz": ["liggghts-hertz"]}.get(x.law.name, [])
     tools = {n: kind() for n, kind in (ENGINES | OTHERS | FOREIGN).items() if n not in OTHERS or n in same}
@@ -62,12 +62,11 @@ def _row(tool: Engine, fine: pd.DataFrame, coarse: pd.DataFrame, x: Experiment, 
     row: dict[str, object] = {"model": tool.name, "speed": middle["speed"]}
     row |= {name: middle[name] for q in SHOWN for name in (q, q + "_theory")}
     row |= {f"{q}_error": float(fine[f"{q}_error"].max()) for q in SHOWN}
-    row["order"] = math.log(float(coarse["e_n_error"].max()) / row["e_n_error"]) / math.log(COARSER)
-    found = examine(tool, x, folder / "invariance" / tool.name)
-    row["unequal_error"] = found.unequal_error if found else math.nan
-    for way in WAYS:
-        row[way] = found.e_n[way] if found else math.nan
-    row["momentum"] = float(np.nanmax(list(found.momentum.values()))) if found else math.nan
+    row["order"] = math.log(coarse["e_n_error"].max() / fine["e_n_error"].max()) / math.log(COARSER)
+    invariance = examine(tool, x, folder / "invariance" / tool.name)
+    row["unequal_error"] = invariance.unequal_error if invariance else math.nan
+    row |= {variant: invariance.e_n[variant] if invariance else math.nan for variant in VARIANTS}
+    row["momentum"] = float(np.nanmax(list(invariance.momentum.values()))) if invariance else math.nan
     return row
 
 
@@ -79,38 +78,43 @@ def crosscheck(
     fresh: bool = False,
     progress: Callable[[str], None] = lambda text: None,
 ) -> Crosscheck:
-    """Run a case on all contenders. Raises CaseError or EngineError; engines that are not here are left out."""
+    """Run a case on all models. Raises CaseError or EngineError; engines that are not here are left out."""
     case = load(path)
-    x = experiment(case, law)
-    tools, absent = contenders(x)
+    with named(path):
+        x = experiment(case, law)
+    tools, absent = models(x)
+    own = {name: kind() for name, kind in FOREIGN.items() if name in tools}
     folder = out or Path("runs") / "crosscheck" / case.name
-    with claim(folder):
-        return _crosscheck(path, case, x, law, folder, tools, absent, fresh, progress)
-
-
-def _crosscheck(path, case, x, law, folder, tools, absent, fresh, progress) -> Crosscheck:
     steps = case.numerics.steps_in_contact
     few = max(10, steps // COARSER)
-    ours = [tool for name, tool in tools.items() if name not in FOREIGN]
-    words = {"engines": ours, "laws": [law] if law else [], "fresh": fresh, "progress": progress}
-    fine = run(path, out=folder, steps=steps, **words)
-    coarse = run(path, out=folder / "coarse", steps=few, **words)
-    prediction, middle = fine.predictions[x.law.name], x.speed.size // 2
-    rows = [{"model": "theory", "speed": x.speed[middle]} | {q: getattr(prediction, q)[middle] for q in SHOWN}]
-    for name, tool in tools.items():
-        progress(f"{name}: invariance")
-        if name in FOREIGN:
-            many, seconds = _own_theory(tool, _with_steps(x, steps), folder / name)
-            less, _ = _own_theory(tool, _with_steps(x, few), folder / "coarse" / name)
-        else:
-            many, less = (t[t["engine"] == name] for t in (fine.results.comparison, coarse.results.comparison))
-            seconds = fine.seconds[name]
-        rows.append(_row(tool, many, less, x, folder) | {"seconds": seconds})
-    table = pd.DataFrame(rows)
-    write_csv(folder / "crosscheck.csv", table)
-    report.figure(fine)
-    notes = {name: tool.note(x) for name, tool in tools.items() if name in FOREIGN}
-    return Crosscheck(table, fine, absent, notes)
+    with claim(folder):
+        fine, coarse = (
+            run(
+                path,
+                engines=[tool for name, tool in tools.items() if name not in own],
+                laws=[law] if law else [],
+                out=place,
+                steps=n,
+                fresh=fresh,
+                progress=progress,
+            )
+            for place, n in ((folder, steps), (folder / "coarse", few))
+        )
+        prediction, middle = fine.predictions[x.law.name], x.speed.size // 2
+        rows = [{"model": "theory", "speed": x.speed[middle]} | {q: getattr(prediction, q)[middle] for q in SHOWN}]
+        for name, tool in tools.items():
+            progress(f"{name}: invariance")
+            if name in own:
+                many, seconds = _own_theory(own[name], _with_steps(x, steps), folder / name)
+                less, _ = _own_theory(own[name], _with_steps(x, few), folder / "coarse" / name)
+            else:
+                many, less = (t[t["engine"] == name] for t in (fine.results.comparison, coarse.results.comparison))
+                seconds = fine.seconds[name]
+            rows.append(_row(tool, many, less, x, folder) | {"seconds": seconds})
+        table = pd.DataFrame(rows)
+        write_csv(folder / "crosscheck.csv", table)
+        report.figure(fine)
+    return Crosscheck(table, fine, absent, {name: tool.note(x) for name, tool in own.items()})
 
 
 def _with_steps(x: Experiment, steps: int) -> Experiment:

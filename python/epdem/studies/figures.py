@@ -2,6 +2,7 @@
 """Figures of the chapter redrawn: theory lines only, since no sourced data points are at hand."""
 
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -9,11 +10,12 @@ from ..files import atomic
 from ..theory import pair, pressure, printed
 from ..theory.backbones import LAWS
 from ..theory.restitution import e_n
+from ..theory.yielding import FIRST_YIELD_ROUNDED, FULLY_PLASTIC
 
 STEEL = {"E": 208e9, "nu": 0.3, "density": 7850.0, "Y": 1e9, "R": 0.01}  # the reference case
 
 
-def _axes(title: str, xlabel: str, ylabel: str):
+def _axes(title: str, xlabel: str, ylabel: str) -> tuple[Any, Any]:
     import matplotlib
 
     matplotlib.use("Agg")
@@ -25,7 +27,7 @@ def _axes(title: str, xlabel: str, ylabel: str):
     return figure, axes
 
 
-def _save(figure, path: Path) -> Path:
+def _save(figure: Any, path: Path) -> Path:
     import matplotlib.pyplot as plt
 
     with atomic(path) as temporary:
@@ -41,7 +43,7 @@ def mean_pressure(folder: Path) -> Path:
     axes.semilogx(x, pressure.mean(x), lw=2, label="three regimes")
     axes.semilogx(x[x < 4], pressure.elastic_mean(x[x < 4]), "--", lw=1, label="Hertz, 4x/(3 pi)")
     axes.semilogx(x[x > 1.5], pressure.cavity_mean(x[x > 1.5]), ":", lw=1.5, label="expanding cavity, 8.81")
-    axes.axhspan(2.8, 3.0, alpha=0.15, label="fully plastic, 8.80")
+    axes.axhspan(*FULLY_PLASTIC, alpha=0.15, label="fully plastic, 8.80")
     axes.set_ylim(0, 3.6)
     axes.legend()
     return _save(figure, folder / "figure_8_16.png")
@@ -53,7 +55,9 @@ def unloading_pressure(folder: Path) -> Path:
     a_max = 2.68e-6
     for share in (1.0, 0.95, 0.8, 0.6, 0.4, 0.2):
         r = np.linspace(-1, 1, 801) * share * a_max
-        axes.plot(r * 1e6, pressure.unloading(r, a=share * a_max, a_max=a_max, p=2.8), label=f"a = {share:g} a*")
+        axes.plot(
+            r * 1e6, pressure.unloading(r, a=share * a_max, a_max=a_max, p=FULLY_PLASTIC[0]), label=f"a = {share:g} a*"
+        )
     axes.legend()
     return _save(figure, folder / "figure_8_17.png")
 
@@ -65,14 +69,22 @@ def restitution(folder: Path) -> Path:
     E = pair.E_star(s["E"], s["nu"], s["E"], s["nu"])
     m = pair.sphere_mass(radius=s["R"], density=s["density"])
     both = {"E_star": E, "R_star": s["R"], "m_star": m}
-    v_y0 = printed.yield_speed(p_y=1.6 * s["Y"], **both)
+    v_y0 = printed.yield_speed(p_y=FIRST_YIELD_ROUNDED * s["Y"], **both)
     ratio = np.geomspace(0.3, 1e4, 500)
     for name, law in LAWS.items():
         strength = {k: law.default_ratio * s["Y"] for k in list(law.keywords.values())[:1]}
         axes.loglog(ratio, e_n(law(E_star=E, R_star=s["R"], **strength), m_star=m, speed=ratio * v_y0), label=name)
-    thornton = printed.thornton(ratio, v_y=printed.yield_speed(p_y=2.8 * s["Y"], **both) / v_y0)
+    thornton = printed.thornton(
+        ratio, v_y=printed.yield_speed(p_y=LAWS["thornton"].default_ratio * s["Y"], **both) / v_y0
+    )
     axes.loglog(ratio, thornton, "k:", lw=1.5, label="8.83")
-    axes.loglog(ratio, printed.johnson(ratio * v_y0, p_m=3 * s["Y"], **both), "k--", lw=1, label="8.86")
+    axes.loglog(
+        ratio,
+        printed.johnson(ratio * v_y0, p_m=LAWS["johnson"].default_ratio * s["Y"], **both),
+        "k--",
+        lw=1,
+        label="8.86",
+    )
     axes.loglog(ratio, printed.wu(ratio, v_y0=1.0), "k-.", lw=1, label="8.88 (finite elements)")
     axes.legend()
     return _save(figure, folder / "figure_8_19.png")

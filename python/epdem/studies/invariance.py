@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Does a contact model give the same impact however the impact is told?
+"""Does a contact model give the same impact in every variant of its set-up?
 
 Swapping names, sorting bodies, changing owners or stopping and restarting in mid-contact must change neither
 restitution nor momentum.
@@ -17,7 +17,7 @@ from ..impacts.foreign import prediction as predict
 from ..impacts.pairs import AXIS, pairs, unequal_spheres
 from ..impacts.plan import plan
 
-WAYS = ("swap", "sort", "migration", "restart")
+VARIANTS = ("swap", "sort", "migration", "restart")
 FAILED = float("inf")  # it died or lost particles: as wrong as can be
 
 
@@ -25,7 +25,7 @@ FAILED = float("inf")  # it died or lost particles: as wrong as can be
 class Invariance:
     """Largest change over the phases: of e_n (absolute), and of total momentum (relative to one body's change).
 
-    NaN: the engine has no such way; inf: it failed.
+    NaN: the engine has no such variant; inf: it failed.
     """
 
     e_n: dict[str, float]
@@ -34,8 +34,8 @@ class Invariance:
 
 
 def examine(tool: Engine, x: Experiment, folder: Path) -> Invariance | None:
-    """Tell the impacts of unequal spheres in every way; None: nothing can be told. Raises EngineError."""
-    if not tool.can.ways:
+    """Run the impacts of unequal spheres in every variant; None: the engine has none. Raises EngineError."""
+    if not tool.can.variants:
         return None
     pair = unequal_spheres(x)
     prediction = predict(tool, pair)
@@ -44,20 +44,20 @@ def examine(tool: Engine, x: Experiment, folder: Path) -> Invariance | None:
     mass = np.array([pair.body.mass, pair.target.mass])[:, None, None]
 
     def restitution(v: np.ndarray) -> np.ndarray:
-        return (v[0] - v[1]) @ AXIS / p.speed
+        return np.asarray((v[0] - v[1]) @ AXIS / p.speed)
 
-    plain = tool.tell(scene, "plain", folder / "plain")
+    plain = tool.run_pairs(scene, "plain", folder / "plain")
     change = np.abs(pair.m_star * p.speed).max()
     e_n, momentum = {}, {}
-    for way in WAYS:
-        e_n[way] = momentum[way] = float("nan")
-        if way not in tool.can.ways:
+    for variant in VARIANTS:
+        e_n[variant] = momentum[variant] = float("nan")
+        if variant not in tool.can.variants:
             continue
         try:
-            v = tool.tell(scene, way, folder / way)
-            e_n[way] = float(np.abs(restitution(v) - restitution(plain)).max())
-            momentum[way] = float(np.abs((mass * (v - scene.drift)).sum(axis=0)).max() / change)
+            v = tool.run_pairs(scene, variant, folder / variant)
+            e_n[variant] = float(np.abs(restitution(v) - restitution(plain)).max())
+            momentum[variant] = float(np.abs((mass * (v - scene.drift)).sum(axis=0)).max() / change)
         except (EngineError, ValueError):
-            e_n[way] = momentum[way] = FAILED
+            e_n[variant] = momentum[variant] = FAILED
     error = np.abs(restitution(plain) / prediction.e_n[0] - 1).max()
     return Invariance(e_n, momentum, float(error))

@@ -48,16 +48,16 @@ def _replacements(data: dict[str, Any], factor: float) -> dict[tuple[str, ...], 
     """The new text of every value that changes, by its keys."""
     law = data["law"]
     strength = law_named(law["name"]).strength
-    found: dict[tuple[str, ...], str] = {}
+    texts: dict[tuple[str, ...], str] = {}
     for name, material in data["materials"].items():
-        found["materials", name, "young_modulus"] = _scaled(material["young_modulus"], 1.0 / factor)
+        texts["materials", name, "young_modulus"] = _scaled(material["young_modulus"], 1.0 / factor)
         for key in ("yield_stress", *([strength] if strength else [])):
             if key in material:
-                found["materials", name, key] = _scaled(material[key], factor**-STRENGTH_POWER)
+                texts["materials", name, key] = _scaled(material[key], factor**-STRENGTH_POWER)
     if strength and strength in law:
-        found["law", strength] = _scaled(law[strength], factor**-STRENGTH_POWER)
+        texts["law", strength] = _scaled(law[strength], factor**-STRENGTH_POWER)
     name = f"{data['case']['name']}_soft{factor:g}".replace(".", "_").replace("+", "")[:64]
-    return found | {("case", "name"): name}
+    return texts | {("case", "name"): name}
 
 
 def _change(document: tomlkit.TOMLDocument, keys: tuple[str, ...], after: str) -> Change:
@@ -70,13 +70,14 @@ def _change(document: tomlkit.TOMLDocument, keys: tuple[str, ...], after: str) -
     return Change(".".join(keys), before, after)
 
 
-def strain_ratio(data: dict[str, Any], path: object) -> float:
+def strain_ratio(data: dict[str, Any], path: Path) -> float:
     """Largest a_max/R* that theory expects of a case or scene."""
     from ..case import impact as impacts
     from ..case import scene as scenes
     from ..impacts.experiment import experiment
     from ..impacts.prediction import predict
-    from ..scenes import model
+    from ..scenes.pairs import wall_impact
+    from ..scenes.timestep import highest_speed
 
     if not scenes.is_scene(data):
         return float(predict(experiment(impacts.parse(data, path))).strain_ratio.max())
@@ -84,7 +85,7 @@ def strain_ratio(data: dict[str, Any], path: object) -> float:
     with impacts.named(path):
         law_named(case.law.name)
     material, radius = case.scene.particles[0].material, case.scene.particles[0].radii()[0]
-    x = model.wall_impact(case, material, radius, case.scene.walls, model.highest_speed(case))
+    x = wall_impact(case, material, radius, case.scene.walls, highest_speed(case))
     return float(predict(x).strain_ratio.max())
 
 

@@ -154,6 +154,6 @@ class JKR:
             a = y * y
             step = (self.work(a) - W) / (self.force(a) * self.slope(y))
             y = y - step
-            if not np.any(np.abs(step) > 4e-16 * y):
+            if not np.any(np.abs(step) > 1e-9 * y):  # convergence is quadratic
                 break
         return y * y

@@ -30,7 +30,7 @@ def bisect(
         middle = 0.5 * (a + b)
         below = rises(middle)
         a, b = np.where(below, middle, a), np.where(below, b, middle)
-    return a, b
+    return a[()], b[()]  # numbers for numbers
 
 
 def segment(opening: Real) -> Array:

@@ -79,7 +79,7 @@ def impact(
     about 1/steps^2) and `springs` over its radius. ValueError outside.
     """
     theta = np.asarray(number("theta", theta, low_ok=True, high=STEEPEST), float)
-    tangent = np.tan(theta)
+    mass, tangent = float(number("mass", mass)), np.tan(theta)
     _, impulse = rebound(law, m_star=mass, m_tangential=2 / 7 * mass, mu=mu, G_star=G_star, v_n=v_n,
                          slip=tangent * v_n, steps=steps, springs=springs)  # fmt: skip
     e_n = np.asarray(normal_restitution(law, m_star=mass, speed=v_n))

@@ -62,7 +62,7 @@ def rebound(
     1/steps^2). ValueError for numbers outside.
     """
     normal = normal_impact(law, m_star=m_star, speed=number("v_n", v_n))
-    dt = float(normal.contact_time) / steps
+    m_tangential, dt = float(number("m_tangential", m_tangential)), float(normal.contact_time) / steps
     u = np.asarray(slip, float)[..., None]
     line = Springs(G_star=G_star, mu=mu, a_max=float(normal.radius_max), shape=u.shape, springs=springs)
     alpha, v, reached = 0.0, float(v_n), 0.0

@@ -27,9 +27,11 @@ INSTALL = "apt-get install yade"
 
 
 class Yade:
+    """Impacts in YADE: sphere on sphere or wall, with the law that travels with the deck."""
+
     name = "yade"
     # a serial YADE keeps bodies where they are in memory and has no ranks: nothing is sorted, nobody migrates
-    can = Abilities(laws=tuple(LAWS), staggered=True, scenes=("settle", "compaction"), ways=("swap", "restart"))
+    can = Abilities(laws=tuple(LAWS), staggered=True, scenes=("settle", "compaction"), variants=("swap", "restart"))
     template = "yade/impact.py.j2"
 
     def missing(self) -> str | None:
@@ -126,8 +128,8 @@ class Yade:
     def seconds(self, plan: Plan, folder: Path) -> dict[str, float]:
         return recorded_seconds(self, plan, folder)
 
-    def tell(self, pairs: Pairs, way: str, folder: Path) -> np.ndarray:
-        return velocities(self.deck(pairs.plan), pairs, way, folder)
+    def run_pairs(self, pairs: Pairs, variant: str, folder: Path) -> np.ndarray:
+        return velocities(self.deck(pairs.plan), pairs, variant, folder)
 
 
 def tables(plan: Plan) -> list[np.ndarray]:

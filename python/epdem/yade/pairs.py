@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Pairs of spheres told to YADE in one of the ways that must not matter."""
+"""Pairs of spheres for YADE in one of the variants that must not matter."""
 
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 
@@ -13,26 +14,26 @@ from .deck import Deck
 from .launcher import command, environment, write_deck_modules
 
 
-def velocities(deck: Deck, pairs: Pairs, way: str, folder: Path) -> np.ndarray:
+def velocities(deck: Deck, pairs: Pairs, variant: str, folder: Path) -> np.ndarray:
     """After the impacts, shape (2, n, 3), the body first. Raises EngineError; ValueError if bodies are lost."""
     p = pairs.plan
     folder.mkdir(parents=True, exist_ok=True)
     if not deck.native:
         write_deck_modules(folder)
-    told = [(f"side{k}.data", side) for k, side in enumerate(pairs.told(way == "swap"))]
-    for name, side in told:
+    sides = [(f"side{k}.data", side) for k, side in enumerate(pairs.ordered(variant == "swap"))]
+    for name, side in sides:
         lines = [" ".join(map(decks.number, row)) for row in np.hstack([side.place, side.velocity])]
         (folder / name).write_text("\n".join(["# x y z v_x v_y v_z, SI", *lines, ""]))
-    words = {
+    words: dict[str, Any] = {
         "deck": deck,
-        "way": way,
-        "sides": [(n, s.body.radius, s.body.material) for n, s in told],
+        "variant": variant,
+        "sides": [(n, s.body.radius, s.body.material) for n, s in sides],
         "steps": p.steps,
         "load": None,
         "save": None,
     }
     parts = [words]
-    if way == "restart":
+    if variant == "restart":
         parts = [
             words | {"steps": pairs.stop, "save": "middle.yade.gz"},
             words | {"steps": p.steps - pairs.stop, "load": "middle.yade.gz"},
@@ -42,7 +43,7 @@ def velocities(deck: Deck, pairs: Pairs, way: str, folder: Path) -> np.ndarray:
         (folder / f"pairs{k}.py").write_text(decks.render("yade/pairs.py.j2", **part))
         call([command(), "-n", "-x", f"pairs{k}.py"], folder, log=f"out{k}.yade", seconds=120, env=environment())
     try:
-        v = np.load(folder / deck.path).reshape(2, p.n, 3)
+        v = np.asarray(np.load(folder / deck.path)).reshape(2, p.n, 3)
     except OSError as error:
         raise EngineError(f"{folder / deck.path}: the run left no result ({error}); see out{k}.yade beside") from None
-    return np.flip(v, axis=0) if way == "swap" else np.asarray(v)
+    return np.flip(v, axis=0) if variant == "swap" else np.asarray(v)

@@ -1,26 +1,24 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Scenes in YADE: one plain Python deck, the spheres' table and the law's module that travels with them."""
 
-from collections.abc import Callable
 from dataclasses import dataclass
 from itertools import combinations_with_replacement
 from math import atan
-from pathlib import Path
 
 from .. import rendering as decks
-from ..case.scene import SceneCase
-from ..errors import CaseError, EngineError
-from ..liggghts import scene_deck as liggghts
-from ..processes import call
-from ..scenes import placement as yade_place
-from ..scenes.model import Model, model
+from ..errors import CaseError
+from ..scenes import placement
+from ..scenes.kinds import Block, Plane
+from ..scenes.plan import ScenePlan
 from .deck import Material
 from .deck_modules import cone
 from .deck_modules.law import LAWS
 from .impacts import Yade
-from .launcher import command, deck_modules, environment
+from .launcher import deck_modules
 
-SCRIPT, OUT = "scene.py", "out.yade"
+Square = tuple[tuple[float, ...], ...]
+SCRIPT, SPHERES = "scene.py", "spheres.txt"
+SKIN = 0.25  # of the smallest radius: few sortings and few idle neighbours
 KINDS = Yade.can.scenes
 NO_DASHPOT = "contact.tangential_restitution: YADE's law has no dashpot, it was left out"
 
@@ -80,21 +78,27 @@ class Deck:
 
     @property
     def load_column(self) -> str:
+        """The column of the force on `load`."""
         return {"floor": "floor_load", "plate": "plate_force"}[self.load]
 
+    @property
+    def load_sign(self) -> int:
+        """The floor is pressed down, the plate up."""
+        return {"floor": -1, "plate": 1}[self.load]
 
-def refuse(case: SceneCase) -> None:
+
+def refuse(p: ScenePlan) -> None:
     """Raises CaseError for what a scene in YADE cannot have."""
-    s, contact, out = case.scene, case.contact, case.output
-    if s.kind not in KINDS:
-        raise CaseError(f"scene.kind = {s.kind!r}: YADE runs {' and '.join(KINDS)}; use --engine liggghts")
-    if case.law.name not in LAWS:
-        raise CaseError(f"law.name = {case.law.name!r}: YADE has {', '.join(LAWS)}; use --engine liggghts")
-    unknown = {
-        "scene.rate": (getattr(s, "rate", None), "all spheres are there from the start"),
-        "viscous.restitution": (case.viscous and case.viscous.restitution, "YADE's law has no dashpot"),
-        "contact.rolling": (contact.rolling and contact.rolling.model, "YADE's law has no rolling resistance"),
-        "contact.cohesion": (contact.cohesion, "YADE's law has no cohesion"),
+    case, m, out = p.case, p.model, p.output
+    if case.scene.kind not in KINDS:
+        raise CaseError(f"scene.kind = {case.scene.kind!r}: YADE runs {' and '.join(KINDS)}; use --engine liggghts")
+    if m.law not in LAWS:
+        raise CaseError(f"law.name = {m.law!r}: YADE has {', '.join(LAWS)}; use --engine liggghts")
+    unknown: dict[str, tuple[object, str]] = {
+        "scene.rate": (p.layout.fills[0].rate, "all spheres are there from the start"),
+        "viscous.restitution": (m.viscous, "YADE's law has no dashpot"),
+        "contact.rolling": (m.rolling and m.rolling.model, "YADE's law has no rolling resistance"),
+        "contact.cohesion": (m.cohesion, "YADE's law has no cohesion"),
         "output.restarts": (out.restarts, "a YADE scene is not continued"),
         "output.vtk": (out.vtk, "there is no VTK output; output.particles holds the same"),
         "output.pictures": (out.pictures, "YADE draws none without a display"),
@@ -104,15 +108,15 @@ def refuse(case: SceneCase) -> None:
             raise CaseError(f"{place} = {value!r}: {reason}; remove it or use --engine liggghts")
 
 
-def warnings(case: SceneCase) -> list[str]:
+def notes(p: ScenePlan) -> list[str]:
     """What of a case a YADE scene leaves out, in words."""
-    return [NO_DASHPOT] if case.contact.tangential_restitution is not None else []
+    return [NO_DASHPOT] if p.model.tangential_restitution is not None else []
 
 
-def _materials(case: SceneCase, m: Model, friction: list[list[float]]) -> tuple[Material, ...]:
-    law, found = LAWS[m.law], []
-    for i, t in enumerate(m.types):
-        x = case.materials[t.material]
+def _materials(p: ScenePlan, friction: Square) -> tuple[Material, ...]:
+    law, found = LAWS[p.model.law], []
+    for i, t in enumerate(p.model.types):
+        x = p.case.materials[t.material]
         values = {
             "young_modulus": x.young_modulus,
             "poisson_ratio": x.poisson_ratio,
@@ -121,7 +125,7 @@ def _materials(case: SceneCase, m: Model, friction: list[list[float]]) -> tuple[
         }
         if law.strength_name:
             values[law.strength_name] = t.strength
-            ratios = {n: m.law_parameters[n] for n in law.ratios}
+            ratios = {n: p.model.parameters[n] for n in law.ratios}
             highest = cone.STRONGEST * x.young_modulus / law(1.0, 1e-3, **ratios).trigger_factor
             if t.strength >= highest:
                 raise CaseError(
@@ -132,14 +136,7 @@ def _materials(case: SceneCase, m: Model, friction: list[list[float]]) -> tuple[
     return tuple(found)
 
 
-def _friction(m: Model) -> list[list[float]]:
-    """The square of friction coefficients of the types."""
-    n, row = len(m.types), next((r for r in m.rows if r.name == "coefficientFriction"), None)
-    values = row.values[1:] if row else [0.0] * n * n
-    return [list(values[i * n : (i + 1) * n]) for i in range(n)]
-
-
-def _pairs(friction: list[list[float]]) -> tuple[tuple[int, int, float], ...]:
+def _pairs(friction: Square) -> tuple[tuple[int, int, float], ...]:
     """(type, type, friction angle [rad]) of the pairs, from 0, where YADE's own rule, the smaller one, is not meant."""
     pairs = combinations_with_replacement(range(len(friction)), 2)
     return tuple(
@@ -149,88 +146,71 @@ def _pairs(friction: list[list[float]]) -> tuple[tuple[int, int, float], ...]:
     )
 
 
-def _walls(d: liggghts.Deck, case: SceneCase, periodic: bool) -> tuple[Wall, ...]:
-    lx, ly, lz = case.scene.box
-    planes = [(name, "xyz".index(style[0]), place) for name, style, place in d.planes]
-    if case.scene.kind == "compaction":
-        planes.append(("plate", 2, lz))
+def _walls(p: ScenePlan) -> tuple[Wall, ...]:
+    xlo, xhi, ylo, yhi, *_ = p.layout.box
+    lx, ly = xhi - xlo, yhi - ylo
+    planes = [*p.layout.planes]
+    planes += [Plane(name, 2, float(triangles[0, 0, 2])) for name, triangles in p.layout.meshes.items()]
 
     def corners(z: float) -> tuple[tuple[str, ...], ...]:
-        places = ((-lx, -ly, z), (5 * lx, -ly, z), (-lx, 5 * ly, z)) if periodic else ()
+        places = ((-lx, -ly, z), (5 * lx, -ly, z), (-lx, 5 * ly, z)) if p.layout.periodic else ()
         return tuple(tuple(decks.number(x) for x in place) for place in places)
 
-    return tuple(Wall(name, axis, place, corners(place)) for name, axis, place in planes)
+    return tuple(Wall(w.name, w.axis, w.place, corners(w.place)) for w in planes)
 
 
-def deck(case: SceneCase) -> Deck:
-    """The YADE deck of a scene, with time step, rows and frames of the LIGGGHTS one. Raises CaseError."""
-    m = model(case)
-    refuse(case)
-    d, s = liggghts.deck(case), case.scene
-    press = s.kind == "compaction"
-    periodic = press or s.periodic
-    friction = _friction(m)
-    ends = [0, *(p.end for p in d.phases)]
-    speeds = (-s.speed, s.release) if press else (0.0,)
-    lx, ly, lz = s.box
-    sides = () if periodic else (lx / 2, ly / 2)
+def deck(p: ScenePlan) -> Deck:
+    """The YADE deck of a scene. Raises CaseError for what YADE cannot do."""
+    refuse(p)
+    m, friction, ends = p.model, p.model.friction, [0, *(phase.end for phase in p.phases)]
+    xlo, xhi, ylo, yhi, zlo, zhi = p.layout.box
+    sides = () if p.layout.periodic else ((xlo, xhi), (ylo, yhi))
     return Deck(
-        title=d.title,
-        source=d.source,
-        summary=d.summary,
+        title=p.case.case.title,
+        source=p.case.case.source,
+        summary=p.summary,
         law=m.law,
-        ratios={n: m.law_parameters[n] for n in LAWS[m.law].ratios},
-        materials=_materials(case, m, friction),
+        ratios={n: m.parameters[n] for n in LAWS[m.law].ratios},
+        materials=_materials(p, friction),
         wall_material=m.wall_type - 1,
         frictions=_pairs(friction),
-        periodic=periodic,
-        cell=(lx, ly, 2.0 * lz),
-        walls=_walls(d, case, periodic),
-        low=(*(-x for x in sides), 0.0),
-        high=(*sides, d.box[5]),
-        fall=-s.gravity if s.gravity else 0.0,
-        skin=d.skin,
-        time_step=d.time_step,
+        periodic=p.layout.periodic,
+        cell=(xhi - xlo, yhi - ylo, 2.0 * _filled(p).limits[5]),
+        walls=_walls(p),
+        low=(*(low for low, _ in sides), zlo),
+        high=(*(high for _, high in sides), zhi),
+        fall=-p.case.scene.gravity if p.case.scene.gravity else 0.0,
+        skin=float(f"{SKIN * p.smallest:.1e}"),
+        time_step=p.time_step,
         phases=tuple(
-            Phase(p.name, end - begin, v)
-            for p, begin, end, v in zip(d.phases, ends[:-1], ends[1:], speeds, strict=True)
+            Phase(phase.name, end - begin, phase.plate)
+            for phase, begin, end in zip(p.phases, ends[:-1], ends[1:], strict=True)
         ),
-        sampling=1 if press else d.sampling if d.loads else d.every,
-        every=d.every,
-        frames=d.frames,
-        contacts=d.contacts,
-        spins=d.spins,
-        dents=d.energy and d.yields,
-        load="plate" if press else "floor" if d.loads else "",
+        sampling=1 if p.plates else p.sampling if p.output.loads else p.every,
+        every=p.every,
+        frames=p.frames,
+        contacts=p.contacts,
+        spins=m.spins,
+        dents=p.dents,
+        load="plate" if p.plates else "floor" if p.output.loads else "",
     )
 
 
-def texts(case: SceneCase) -> dict[str, str]:
+def files(p: ScenePlan) -> dict[str, str]:
     """All files of a YADE scene by name; they run by hand in one folder. Raises CaseError."""
-    found = {SCRIPT: decks.render("yade/scene.py.j2", deck=deck(case)), "spheres.txt": _table(case)}
+    found = {SCRIPT: decks.render("yade/scene.py.j2", deck=deck(p)), SPHERES: _table(p)}
     return found | deck_modules()
 
 
-def _table(case: SceneCase) -> str:
-    lx, ly, lz = case.scene.box
-    room = (-lx / 2, lx / 2, -ly / 2, ly / 2, 0.0, lz)
+def _filled(p: ScenePlan) -> Block:
+    """The room of the one filling that a YADE scene has."""
+    (fill,) = p.layout.fills
+    assert isinstance(fill.region, Block)
+    return fill.region
+
+
+def _table(p: ScenePlan) -> str:
     lines = ["# x y z radius [m], type; random places without overlap"]
-    for *numbers, kind in yade_place.spheres(case, model(case), room):
+    for *numbers, kind in placement.spheres(p.case, p.model, _filled(p)):
         lines.append(" ".join([*map(decks.number, numbers), str(int(kind))]))
     return "\n".join([*lines, ""])
-
-
-def missing() -> None:
-    """Raises EngineError, with the command that installs it, if YADE is not here."""
-    if words := Yade().missing():
-        raise EngineError(words)
-
-
-def version() -> str:
-    """YADE's version."""
-    return Yade().version()
-
-
-def run(folder: Path, tell: Callable[[int], None]) -> float:
-    """Run what `write` wrote, `tell` every row's step; seconds taken. Raises EngineError with YADE's last words."""
-    return call([command(), "-n", "-x", SCRIPT], folder, log=OUT, env=environment(), tell=tell)

@@ -6,12 +6,9 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
-from ..case.scene import SceneCase
 from ..errors import EngineError
-from ..liggghts import scene_tables as tables
-from ..liggghts.scene_deck import Deck
-from ..scenes import contacts
-from .scene_deck import OUT
+from ..scenes import columns, contacts
+from ..scenes.plan import ScenePlan
 
 # of a contact: number of the sphere and of the other body (from 0; walls after the spheres), overlaps [m]
 CONTACT = ["i", "j", "overlap", "delta_max"]
@@ -30,33 +27,50 @@ def _frames(folder: Path, kind: str, names: list[str]) -> pd.DataFrame:
     return pd.concat(found, ignore_index=True) if found else pd.DataFrame(columns=["step", *names])
 
 
-def read(case: SceneCase, d: Deck, folder: Path) -> dict[str, pd.DataFrame]:
-    """The tables rows, particles and contacts of a run, SI."""
-    found = {"rows": tables.rows(folder / OUT, d.time_step)}
-    if d.frames:
-        names = [*tables.PARTICLES, *(tables.SPINS if d.spins else [])]
-        spheres = _frames(folder, "particles", names)
-        if d.boundary.startswith("p"):  # YADE does not put back what leaves its periodic cell
-            for axis, length in zip("xy", case.scene.box[:2], strict=True):
-                spheres[axis] = (spheres[axis] + length / 2) % length - length / 2
-        found["particles"] = spheres.astype({"id": "int64", "type": "int64", "step": "int64"})
-    if d.contacts:
-        every = _contacts(case, d, folder, found["particles"])
-        if d.energy and d.yields:
+def rows(p: ScenePlan, log: Path) -> pd.DataFrame:
+    """The rows that a run printed. Raises EngineError."""
+    lines = [line.split() for line in log.read_text(errors="replace").splitlines()]
+    heads = next((words[1:] for words in lines if words[:1] == ["Step"]), [])
+    found = {}
+    for words in lines:
+        if len(words) == len(heads) + 1 and words[0].isdigit():
+            found[int(words[0])] = [float(w) for w in words[1:]]
+    if not found:
+        raise EngineError(f"{log}: no rows; the run ended before its first step")
+    return columns.rows(p, found, heads)
+
+
+def particles(p: ScenePlan, folder: Path) -> pd.DataFrame:
+    """Every sphere of every frame, SI. Raises EngineError for an incomplete frame."""
+    found = _frames(folder, "particles", [*columns.PARTICLES, *(columns.SPINS if p.model.spins else [])])
+    if p.layout.periodic:  # YADE does not put back what leaves its periodic cell
+        for axis, low, high in zip("xy", p.layout.box[0:4:2], p.layout.box[1:4:2], strict=True):
+            found[axis] = (found[axis] - low) % (high - low) + low
+    return found.astype({"id": "int64", "type": "int64", "step": "int64"})
+
+
+def read(p: ScenePlan, folder: Path, log: Path) -> dict[str, pd.DataFrame]:
+    """The tables rows, particles and contacts of a run, SI. Raises EngineError for an incomplete frame."""
+    found = {"rows": rows(p, log)}
+    if p.frames:
+        found["particles"] = particles(p, folder)
+    if p.contacts:
+        every = _contacts(p, folder, found["particles"])
+        if p.dents:
             found["particles"]["plastic_work"] = _plastic_work(every, found["particles"])
         found["contacts"] = every[every["overlap"] > 0].reset_index(drop=True)
     return found
 
 
-def _contacts(case: SceneCase, d: Deck, folder: Path, spheres: pd.DataFrame) -> pd.DataFrame:
+def _contacts(p: ScenePlan, folder: Path, spheres: pd.DataFrame) -> pd.DataFrame:
     """Every contact of every frame; with overlap 0 those that ended since the frame before."""
     raw = _frames(folder, "contacts", CONTACT).astype({"step": "int64", "i": "int64", "j": "int64"})
     raw = raw[raw["overlap"] >= 0].reset_index(drop=True)  # what is only near is no contact yet
-    walls = np.array(["", *(p[0] for p in d.planes), *d.meshes])
-    beyond = raw["j"] - case.scene.count + 1
+    walls = np.array(["", *(w.name for w in p.layout.planes), *p.layout.meshes])
+    beyond = raw["j"] - p.case.scene.count + 1
     raw["wall"] = walls[beyond.clip(lower=0)]
     raw["i"], raw["j"] = raw["i"] + 1, np.where(beyond > 0, 0, raw["j"] + 1)
-    return contacts.complete(case, d, raw, spheres)
+    return contacts.complete(p, raw, spheres)
 
 
 def _plastic_work(every: pd.DataFrame, spheres: pd.DataFrame) -> np.ndarray:
@@ -79,4 +93,4 @@ def _plastic_work(every: pd.DataFrame, spheres: pd.DataFrame) -> np.ndarray:
         return chosen.unstack().reindex(index=frames.index, columns=frames.columns).fillna(0.0)
 
     total = part(True) + part(False).cumsum()
-    return total.stack().reindex(pd.MultiIndex.from_frame(spheres[["step", "id"]])).to_numpy()
+    return np.asarray(total.stack().reindex(pd.MultiIndex.from_frame(spheres[["step", "id"]])))

@@ -13,7 +13,6 @@ from ... import rendering as decks
 from ...laws.library import laws
 from ...liggghts import dump, launcher, log, stl
 from ...liggghts.properties import SOFT, elastic, per_pair, strength
-from .running import plastic
 from .scenes import DENSITY, POISSON, Scene
 from .two_walls import stored
 
@@ -29,7 +28,7 @@ def write(
     frames: int = FRAMES,
     contacts: bool = True,
     model: str | None = None,
-):
+) -> SimpleNamespace:
     """Deck, data and meshes of a scene; returns what the template saw.
 
     Without `frames` nothing is recorded or booked. `model`: one of LIGGGHTS's own, elastic ones instead of the law's.
@@ -68,7 +67,7 @@ def write(
     (folder / "bulk.data").write_text(_data(scene, deck.plates))
     if deck.plates:
         for name, z in (("floor", 0.0), ("plate", float(scene.box[2]))):
-            (folder / f"{name}.stl").write_text(stl.text(name, _square(*scene.box[:2], z)))
+            (folder / f"{name}.stl").write_text(stl.text(name, _square(float(scene.box[0]), float(scene.box[1]), z)))
     return deck
 
 
@@ -104,9 +103,22 @@ def frames(folder: Path) -> np.ndarray:
     return dump.series(folder / "atoms.bin")
 
 
-def _elastic(theory, alpha: np.ndarray, top: np.ndarray) -> float:
-    """Elastic energy in contacts of one pair of types [J]."""
-    return float((stored(theory, alpha, top) - plastic(theory, top)).sum())
+def _elastic(scene: Scene, folder: Path, step: int, frame: np.ndarray, kind: str) -> float:
+    """Elastic energy [J] in the contacts of a frame; kind: pairs or walls."""
+    table = dump.local(folder / f"{kind}.{step}.txt")
+    if not table.size:
+        return 0.0
+    alpha, walls = table[:, -1], kind == "walls"
+    top = np.maximum(table[:, 6] if laws()[scene.law].memory else alpha, alpha)
+    spheres = table[:, [2]] if walls else table[:, :2]
+    types = frame[spheres.astype(int) - 1, 0].astype(int)
+    if walls:
+        types = np.hstack([types, np.ones_like(types)])
+    energy = 0.0
+    for i, j in {(int(i), int(j)) for i, j in types}:
+        theory, here = scene.theory(i, j, plate=walls), (types == (i, j)).all(axis=1)
+        energy += float((stored(theory, alpha[here], top[here]) - theory.plastic_work(top[here])).sum())
+    return energy
 
 
 def ledger(scene: Scene, deck: SimpleNamespace, folder: Path) -> pd.DataFrame:
@@ -120,21 +132,8 @@ def ledger(scene: Scene, deck: SimpleNamespace, folder: Path) -> pd.DataFrame:
     for k, frame in enumerate(atoms):
         step = k * deck.every
         kinetic = 0.5 * scene.mass * float((frame[:, 4:7] ** 2).sum())
-        elastic = 0.0
-        for kind, first in (("pairs", 6), ("walls", 6)):
-            if kind == "walls" and not deck.plates:
-                continue
-            table = dump.local(folder / f"{kind}.{step}.txt")
-            if not table.size:
-                continue
-            alpha = table[:, -1]
-            top = np.maximum(table[:, first] if memory else alpha, alpha)
-            ids = table[:, :2].astype(int) - 1 if kind == "pairs" else None
-            i = frame[ids[:, 0], 0] if kind == "pairs" else frame[table[:, 2].astype(int) - 1, 0]
-            j = frame[ids[:, 1], 0] if kind == "pairs" else np.ones_like(i)
-            for a, b in {(int(p), int(q)) for p, q in zip(i, j, strict=True)}:
-                chosen = (i == a) & (j == b)
-                elastic += _elastic(scene.theory(a, b, plate=kind == "walls"), alpha[chosen], top[chosen])
+        kinds = ("pairs", "walls") if deck.plates else ("pairs",)
+        elastic = sum(_elastic(scene, folder, step, frame, kind) for kind in kinds)
         if k and deck.plates:
             # trapezoids: the mean is over the steps since the last frame, the two ends count half
             ends = 0.5 * (push[step][1] - push[step - deck.every][1])

@@ -45,7 +45,7 @@ class BulkVerdict:
 
 def differences(one: np.ndarray, two: np.ndarray, radius: float) -> np.ndarray:
     """Largest distance of the same sphere in two runs, over the radius, per frame."""
-    return np.abs(one[:, :, 1:4] - two[:, :, 1:4]).max(axis=(1, 2)) / radius
+    return np.asarray(np.abs(one[:, :, 1:4] - two[:, :, 1:4]).max(axis=(1, 2)) / radius)
 
 
 def judge_scene(scene: Scene, folder: Path, *, ranks: int = 2) -> BulkVerdict:

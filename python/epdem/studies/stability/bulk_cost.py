@@ -32,7 +32,7 @@ class Model:
         """Plastic work of every sphere at the end [J], shape (spheres,)."""
         write(self.scene, folder, time_step=time_step, frames=1, contacts=False)
         execute(folder)
-        return frames(folder)[-1][:, 7]
+        return np.asarray(frames(folder)[-1][:, 7])
 
     def seconds(self, time_step: float, folder: Path) -> float:
         """The engine's loop time [s] of a run that records nothing, not even its plastic work."""
@@ -51,11 +51,11 @@ def errors(c: Model, steps: dict[float, float], folder: Path, progress: Callable
         return table.assign(error=np.nan, rms=np.nan, order=np.nan)
     progress(f"bulk error: {c.label}, reference")
     reference = c.dissipated(FINEST * min(steps.values()), folder)
-    off = []
+    deviations = []
     for share, time_step in steps.items():
         progress(f"bulk error: {c.label}, {share:g} of the limit")
-        off.append((c.dissipated(time_step, folder) - reference) / reference.mean())
-    off = np.array(off)
+        deviations.append((c.dissipated(time_step, folder) - reference) / reference.mean())
+    off = np.array(deviations)
     table["error"], table["rms"] = np.abs(off.mean(axis=1)), np.sqrt((off**2).mean(axis=1))
     table["order"] = np.log(table["rms"]).diff() / np.log(table["share"]).diff()
     return table

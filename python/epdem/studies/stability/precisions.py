@@ -8,6 +8,7 @@ import json
 import shutil
 import subprocess
 import tempfile
+from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
@@ -48,7 +49,7 @@ def rebound(program: str, folder: Path, script: str) -> np.ndarray:
     return np.array(json.loads(lines[0].removeprefix("RESULT ")))
 
 
-def floors(*, times=(1e-4, 1e-2, 1e2)) -> pd.DataFrame:
+def floors(*, times: Sequence[float] = (1e-4, 1e-2, 1e2)) -> pd.DataFrame:
     """One row per speed: largest deviation of e_n from the finest precision over 8 phases, and the formula's."""
     rows = []
     template = decks.environment(Path(__file__).parent).get_template("roundoff.py.j2")

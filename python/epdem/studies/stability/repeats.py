@@ -8,6 +8,7 @@ import numpy as np
 from ...errors import EpdemError
 from ...impacts.engine import not_representable
 from ...impacts.prediction import SMALL_DEFORMATION
+from ...laws.native import ImpactNumbers
 from .cases import Extreme
 from .running import Setting, Verdict, setting
 from .sampling import PositionSampler, Sampler
@@ -22,17 +23,11 @@ DRIFT = 1e-3  # of the speed over 1e9 steps; it goes with dt^3 (6e-11 a bounce a
 def bounces(v: Verdict, s: Setting, total: int) -> None:
     """Bounce one contact for `total` steps: its plastic work is done once, then it must neither gain nor lose."""
     dt = BOUNCE_SHARE * s.limit
-    one = dict(
-        R_star=s.x.R_star,
-        m_star=s.x.m_star,
-        speed=float(s.x.speed[0]),
-        time_step=dt,
-        steps=int(1.5 * s.contact_time / dt) + 20,
-    )
-    law = s.x.native_law()
-    trial, _ = law.bounces(200, **one)
+    law, steps = s.x.native_law(), int(1.5 * s.contact_time / dt) + 20
+    one = ImpactNumbers(R_star=s.x.R_star, m_star=s.x.m_star, speed=float(s.x.speed[0]), time_step=dt)
+    trial, _ = law.bounces(200, steps=steps, **one)
     count = int(np.ceil(1.01 * 200 * total / trial["steps"]))
-    out, speeds = law.bounces(count, **one)
+    out, speeds = law.bounces(count, steps=steps, **one)
     # the first bounce yields for good; what comes after it should be elastic
     v.steps, v.e_n_error = int(out["steps"]), float(np.abs(speeds / speeds[0] - 1).max())
     v.created = float(speeds.max() ** 2 / speeds[0] ** 2 - 1)

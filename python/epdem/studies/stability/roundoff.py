@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """What round-off leaves of e_n: in the law itself (double against long double) and in overlaps made of positions."""
 
+from collections.abc import Sequence
+
 import numpy as np
 import pandas as pd
 
@@ -32,10 +34,12 @@ def in_long_double(s: Setting, time_step: float, gap: np.ndarray, steps: int) ->
     out = x.native_law().impacts_long_double(
         R_star=x.R_star, m_star=x.m_star, speed=x.speed[0], time_step=time_step, gap=gap, steps=steps
     )
-    return out["rebound_speed"] / x.speed[0]
+    return np.asarray(out["rebound_speed"] / x.speed[0])
 
 
-def floors(law: str, samplers: list[Sampler], *, times=(1e-4, 1e-2, 3.0, 1e2), share: float = 0.01) -> pd.DataFrame:
+def floors(
+    law: str, samplers: list[Sampler], *, times: Sequence[float] = (1e-4, 1e-2, 3.0, 1e2), share: float = 0.01
+) -> pd.DataFrame:
     """One row per speed: overlap_max, recovered overlap [m], steps, and the largest deviation of e_n from long
     double over 8 phases.
 
@@ -54,8 +58,8 @@ def floors(law: str, samplers: list[Sampler], *, times=(1e-4, 1e-2, 3.0, 1e2), s
             )["rebound_speed"]
             / s.x.speed[0]
         )
-        found = {"double": double, "positions": with_positions(s, dt, gap, steps)}
-        found |= {sampler.name: _tried(sampler, s, dt, gap, steps) for sampler in samplers}
+        e_n = {"double": double, "positions": with_positions(s, dt, gap, steps)}
+        e_n |= {sampler.name: _tried(sampler, s, dt, gap, steps) for sampler in samplers}
         row = {
             "law": law,
             "times_yield": t,
@@ -63,8 +67,8 @@ def floors(law: str, samplers: list[Sampler], *, times=(1e-4, 1e-2, 3.0, 1e2), s
             "recovered": s.recovered,
             "steps": s.contact_time / dt,
         }
-        row |= {name: float(np.abs(e / exact - 1).max()) for name, e in found.items()}
-        row["formula"] = position_floor(radius=s.x.R_star, recovered=s.recovered, steps=row["steps"])
+        row |= {name: float(np.abs(e / exact - 1).max()) for name, e in e_n.items()}
+        row["formula"] = position_floor(radius=s.x.R_star, recovered=s.recovered, steps=s.contact_time / dt)
         rows.append(row)
     return pd.DataFrame(rows)
 

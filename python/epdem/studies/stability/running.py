@@ -1,7 +1,9 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Run extreme cases and judge them: finite, no energy from nothing, second order, and where dt breaks them."""
 
+import math
 import time
+from collections.abc import Sequence
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -11,7 +13,6 @@ from ...impacts.engine import EPS, not_representable
 from ...impacts.experiment import Experiment
 from ...impacts.prediction import SMALL_DEFORMATION, predict
 from ...impacts.timestep import stability_limit
-from ...theory.backbones import Backbone
 from .cases import Extreme
 from .sampling import Sampler
 
@@ -47,6 +48,7 @@ class Verdict:
     notes: list[str] = field(default_factory=list)
 
     def fail(self, reason: str) -> None:
+        """Note that the case failed, with one more reason."""
         self.status = "failed"
         self.reason = f"{self.reason}; {reason}" if self.reason else reason
 
@@ -72,13 +74,12 @@ def setting(extreme: Extreme, law: str) -> Setting:
     prediction, theory = predict(x), x.theory()
     kinetic, top = 0.5 * x.m_star * float(x.speed[0]) ** 2, float(prediction.overlap_max[0])
     start = None if extreme.start is None else extreme.start * top
-    energy = kinetic + (float(theory.work(np.array([start]))[0]) if start else 0.0)
+    energy = kinetic + (float(theory.work(start)) if start else 0.0)
     if start:
-        top = float(theory.overlap_of_work(np.array([energy]))[0])
-    peak = np.array([top])
+        top = float(theory.overlap_of_work(energy))
     elastic = top <= theory.yield_overlap
-    out = energy if elastic else float(theory.recovered_work(peak)[0])
-    recovered = top if elastic else float(theory.recovered_overlap(peak)[0])
+    out = energy if elastic else float(theory.recovered_work(top))
+    recovered = top if elastic else float(theory.recovered_overlap(top))
     return Setting(
         x,
         start,
@@ -88,7 +89,7 @@ def setting(extreme: Extreme, law: str) -> Setting:
         float(np.sqrt(out / kinetic)),
         float(stability_limit(x, top)),
         float(prediction.contact_time[0]),
-        float(theory.radius(peak)[0] / x.R_star),
+        float(theory.radius(top) / x.R_star),
     )
 
 
@@ -100,11 +101,6 @@ def phased(s: Setting, dt: float, phases: int) -> list[tuple[float, np.ndarray]]
     if s.start is not None:
         return [(dt * (1 - 0.2 * k / phases), np.array([-s.start])) for k in range(0, phases, 2)]
     return [(dt, (np.arange(phases) + 0.5) / phases * s.x.speed[0] * dt)]
-
-
-def plastic(theory: Backbone, top: np.ndarray) -> np.ndarray:
-    """Work lost for good by contacts that reached `top` [J]."""
-    return np.where(top > theory.yield_overlap, theory.work(top) - theory.recovered_work(top), 0.0)
 
 
 @dataclass(frozen=True)
@@ -133,13 +129,13 @@ def measure(s: Setting, sampler: Sampler, share: float, phases: int | None = Non
         return None
     try:
         got = [sampler(s.x, h, gap, int(steps * dt / h)) for h, gap in phased(s, dt, phases or sampler.phases)]
-    except EngineError as error:
-        return Rung(share, np.inf, np.inf, 0, message=str(error))
+    except EngineError as stopped:
+        return Rung(share, np.inf, np.inf, 0, message=str(stopped))
     e_n, peak = (np.concatenate([getattr(g, name) for g in got]) for name in ("e_n", "overlap_max"))
     theory, kinetic = s.x.theory(), 0.5 * s.x.m_star * float(s.x.speed[0]) ** 2
     with np.errstate(all="ignore"):
         error = np.abs(e_n / s.e_n - 1.0)
-        created = (e_n**2 * kinetic + plastic(theory, peak)) / s.energy - 1.0
+        created = (e_n**2 * kinetic + theory.plastic_work(peak)) / s.energy - 1.0
     whole = np.isfinite(error) & np.isfinite(created)
     worst = [float(np.where(whole, value, np.inf).max()) for value in (error, created)]
     return Rung(share, worst[0], worst[1], sum(g.steps for g in got), all(g.finite for g in got))
@@ -153,13 +149,13 @@ def position_floor(*, radius: float, recovered: float, steps: float) -> float:
     2/5 F_max delta_e: for a Hertz force (F_rms = 0.66 F_max) 0.24 sqrt(N) ulp/delta_e as a standard deviation, and
     twice that as the largest of ten phases. `recovered`: the elastic recovery delta_e [m] (below yield alpha_max).
     """
-    return 0.5 * np.sqrt(steps) * EPS * radius / recovered
+    return 0.5 * math.sqrt(steps) * EPS * radius / recovered
 
 
 def floor(s: Setting, sampler: Sampler, share: float) -> float:
     """Round-off of e_n (relative): eps per step, or that of overlaps which are differences of positions."""
     steps = s.contact_time / (share * s.limit)
-    own = 10 * EPS * np.sqrt(steps)
+    own = 10 * EPS * math.sqrt(steps)
     if sampler.name == "embedded":
         return own
     radius = max(r for r in (s.x.body.radius, s.x.target.radius) if np.isfinite(r))
@@ -169,10 +165,11 @@ def floor(s: Setting, sampler: Sampler, share: float) -> float:
 def slope(shares: list[float], errors: list[float], noise: float) -> float:
     """Observed order: slope of log error over log dt where the error is above the noise; NaN below three points."""
     good = [(h, e) for h, e in zip(shares, errors, strict=True) if 5 * noise < e < 0.1]
-    return float(np.polyfit(*np.log(np.array(good)).T, 1)[0]) if len(good) > 2 else np.nan
+    step, error = np.log(np.array(good).reshape(-1, 2)).T
+    return float(np.polyfit(step, error, 1)[0]) if len(good) > 2 else np.nan
 
 
-def judge(extreme: Extreme, law: str, sampler: Sampler, coarse=COARSE) -> Verdict:
+def judge(extreme: Extreme, law: str, sampler: Sampler, coarse: Sequence[float] = COARSE) -> Verdict:
     """The verdict on an impact case."""
     v, begin = Verdict(extreme.name, extreme.group, sampler.name, law), time.perf_counter()
     try:
@@ -190,7 +187,7 @@ def judge(extreme: Extreme, law: str, sampler: Sampler, coarse=COARSE) -> Verdic
     return v
 
 
-def _ladder(v: Verdict, s: Setting, sampler: Sampler, coarse) -> None:
+def _ladder(v: Verdict, s: Setting, sampler: Sampler, coarse: Sequence[float]) -> None:
     fine = [rung for share in FINE if (rung := measure(s, sampler, share))]
     if not fine:
         v.fail("even 16 % of the limit would take too many steps")

@@ -36,6 +36,8 @@ class Sampler(Protocol):
 
 
 class EmbeddedSampler:
+    """Impacts in the C library, where overlaps are no differences of positions."""
+
     name, most_steps, phases = "embedded", 20_000_000, 16
 
     def __call__(self, x: Experiment, time_step: float, gap: np.ndarray, steps: int) -> Sample:

@@ -55,10 +55,9 @@ class Scene:
         limits = []
         for i in range(1, len(self.materials) + 1):
             law = self.theory(i, i)
-            work = np.array([0.25 * self.mass * self.highest_speed**2])
-            a = law.radius(law.overlap_of_work(work))
-            limits.append(stability_limit(E_star=law.E_star, m_star=0.5 * self.mass, radius=a)[0])
-        return SHARE * float(min(limits))
+            a = law.radius(law.overlap_of_work(0.25 * self.mass * self.highest_speed**2))
+            limits.append(float(stability_limit(E_star=law.E_star, m_star=0.5 * self.mass, radius=a)))
+        return SHARE * min(limits)
 
 
 def _lattice(n: tuple[int, int, int], spacing: float) -> np.ndarray:
@@ -69,7 +68,7 @@ def _lattice(n: tuple[int, int, int], spacing: float) -> np.ndarray:
 def _agitated(rng: np.random.Generator, n: int, speed: float) -> np.ndarray:
     """Random velocities of that root mean square speed with no net momentum, (n, 3)."""
     v = rng.normal(0.0, speed / np.sqrt(3.0), (n, 3))
-    return v - v.mean(axis=0)
+    return np.asarray(v - v.mean(axis=0))
 
 
 def plate(n: tuple[int, int, int] = (13, 13, 12)) -> Scene:

@@ -42,13 +42,13 @@ class Outcome:
 
 def samplers(names: list[str], folder: Path) -> list[Sampler]:
     """A sampler per engine. Raises EngineError if one cannot run here."""
-    found: list[Sampler] = []
+    chosen: list[Sampler] = []
     for name in names:
         tool = engine(name)
         if reason := tool.missing():
             raise EngineError(f"engine {name}: {reason}")
-        found.append(EmbeddedSampler() if name == "embedded" else PositionSampler(tool, folder / name))
-    return found
+        chosen.append(EmbeddedSampler() if name == "embedded" else PositionSampler(tool, folder / name))
+    return chosen
 
 
 def run(

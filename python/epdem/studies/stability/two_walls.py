@@ -4,7 +4,7 @@
 import numpy as np
 
 from ...theory.backbones import Backbone
-from .running import BROKEN, CREATED, LEAST_ORDER, Setting, Verdict, plastic, slope
+from .running import BROKEN, CREATED, LEAST_ORDER, Setting, Verdict, slope
 from .sampling import PositionSampler, Sampler
 from .variants import between_walls
 
@@ -25,14 +25,14 @@ def stored(theory: Backbone, alpha: np.ndarray, top: np.ndarray) -> np.ndarray:
     which the branch is smooth at both of its ends.
     """
     alpha = np.maximum(alpha, 0.0)
-    recovered = theory.recovered_overlap(top)
+    recovered = np.asarray(theory.recovered_overlap(top))
     # alpha = top - recovered sin^2(angle)
     last = np.arcsin(np.sqrt(np.clip((top - alpha) / recovered, 0.0, 1.0)))
     angle = last[..., None] * (GAUSS_X + 1) / 2
     points = top[..., None] - recovered[..., None] * np.sin(angle) ** 2
     force = theory.unloading_force(np.maximum(points, 0.0), top[..., None])
     back = (force * np.sin(2 * angle)) @ GAUSS_W * recovered * last / 2
-    return np.where(top <= theory.yield_overlap, theory.work(alpha), theory.work(top) - back)
+    return np.asarray(np.where(top <= theory.yield_overlap, theory.work(alpha), theory.work(top) - back))
 
 
 def embedded_path(s: Setting, time_step: float, steps: int) -> tuple[np.ndarray, np.ndarray]:
@@ -63,14 +63,14 @@ def balance(s: Setting, overlap: np.ndarray, velocity: np.ndarray) -> np.ndarray
         reached = gone = 0.0
         for n, a in enumerate(alpha):
             if a <= 0.0 < reached:  # it parts: the dent is forgotten, its work is not
-                gone += float(plastic(theory, np.array([reached]))[0])
+                gone += float(theory.plastic_work(reached))
                 reached = 0.0
             reached = max(reached, a)
             top[n], lost[n] = reached, gone
         touching = top > 0
         total = total + lost
         total[touching] += stored(theory, alpha[touching], top[touching])
-    return total / total[0]
+    return np.asarray(total / total[0])
 
 
 def path(s: Setting, sampler: Sampler, share: float) -> tuple[np.ndarray, np.ndarray]:

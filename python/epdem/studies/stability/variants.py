@@ -15,12 +15,10 @@ CYCLE = 64  # samples of a cycle of overlaps: a triangle, up in the first half
 LOWEST = 1 / 32  # smallest overlap of a cycle over the largest: contacts that part forget
 
 DECK = {"liggghts": "in.impact", "yade": "impact.py"}
+# the line that makes the wall at height 0, and what makes of it the line of a second wall at `z`
 WALL = {
-    "liggghts": (
-        "fix target all wall/gran",
-        lambda line, z: line.replace("fix target", "fix ceiling").replace("zplane 0.0", f"zplane {z!r}"),
-    ),
-    "yade": ("O.bodies.append(wall(0,", lambda line, z: line.replace("wall(0,", f"wall({z!r},")),
+    "liggghts": ("fix target all wall/gran", {"fix target": "fix ceiling", "zplane 0.0": "zplane {z!r}"}),
+    "yade": ("O.bodies.append(wall(0,", {"wall(0,": "wall({z!r},"}),
 }
 
 
@@ -34,10 +32,10 @@ def edit(deck: Path, start: str, *after: str, instead: bool = False) -> str:
     if len(places) != 1:
         raise EngineError(f"{deck}: {len(places)} lines start with {start!r}, expected 1")
     at = places[0]
-    found = lines[at]
-    lines[at : at + 1] = after if instead else [found, *after]
+    line = lines[at]
+    lines[at : at + 1] = after if instead else [line, *after]
     deck.write_text("\n".join(lines) + "\n")
-    return found
+    return line
 
 
 def between_walls(s: Setting, sampler: PositionSampler, overlap: float, time_step: float, steps: int) -> Trajectory:
@@ -45,8 +43,11 @@ def between_walls(s: Setting, sampler: PositionSampler, overlap: float, time_ste
     x, deck = s.x, sampler.folder / DECK[sampler.name]
     p = Plan(x, time_step, steps, 1, x.speed[:1], np.array([-overlap]))
     sampler.engine.write(p, sampler.folder)
-    start, moved = WALL[sampler.name]
-    edit(deck, start, moved(edit(deck, start), 2 * (x.body.radius - overlap)))
+    start, changes = WALL[sampler.name]
+    second = edit(deck, start)
+    for old, new in changes.items():
+        second = second.replace(old, new.format(z=2 * (x.body.radius - overlap)))
+    edit(deck, start, second)
     return sampler.engine.run(p, sampler.folder)
 
 

@@ -10,19 +10,20 @@ All history lives in attributes of YADE's `phys` that its conical-damage law doe
 """
 
 from math import inf, pi
+from typing import Any
 
 from yade import O
 from yade.wrapper import Facet, FrictMatCDM, Sphere, Wall
 
 from . import cone
-from .law import hertz_branch, recovered_overlap, unload
+from .law import Law, Point, hertz_branch, recovered_overlap, unload
 
 FAR = 1e99  # sigmaMax [Pa] of a contact that never yields
 REACH = 1e-5  # how far a contact may move from its branch's touching point, over its elastic depth: 1e-10 of the force
 PARTED = -1.0  # touching point of a contact that has parted inside its dent
 
 
-def effective_radius(interaction) -> float:
+def effective_radius(interaction: Any) -> float:
     """R* [m]. YADE gives walls and facets a large radius instead of none, which would cost 1e-8."""
     geom = interaction.geom
     radii = [
@@ -33,7 +34,7 @@ def effective_radius(interaction) -> float:
     return small / (1.0 + small / large)
 
 
-def trigger_pressure(material) -> float:
+def trigger_pressure(material: Any) -> float:
     """Hertz pressure at which a material yields first [Pa]; inf: never."""
     return inf if material.sigmaMax >= cone.STRONGEST * material.young else material.sigmaMax
 
@@ -73,7 +74,7 @@ class Contact:
         "yield_overlap",
     )
 
-    def __init__(self, interaction, law, R_star: float):
+    def __init__(self, interaction: Any, law: Law, R_star: float):
         phys = interaction.phys
         self.interaction, self.geom, self.phys = interaction, interaction.geom, phys
         self.born, self.law, self.E, self.R_star = interaction.iterMadeReal, law, law.E_star, R_star
@@ -82,14 +83,14 @@ class Contact:
         # a normal force turns no sphere; the torque on other shapes is the sum that YADE keeps for them
         self.bodies = interaction.id1, interaction.id2
         self.levers = tuple(k for k in (0, 1) if not isinstance(O.bodies[self.bodies[k]].shape, Sphere))
-        self.delta_max, self.peak = phys.adhesionForce, None
-        if self.delta_max > 0.0:
-            self.peak = law.load(R_star, self.delta_max)
+        self.delta_max: float = phys.adhesionForce
+        self.peak: Point = law.load(R_star, self.delta_max) if self.delta_max > 0.0 else (0.0, 0.0, 0.0)
 
     @property
     def alive(self) -> bool:
         """False once YADE has dropped the contact, or made another one of the same interaction."""
-        return self.interaction.iterMadeReal == self.born
+        alive: bool = self.interaction.iterMadeReal == self.born
+        return alive
 
     def computed(self, u: float) -> float:
         """What YADE has just applied at overlap u; its loop may have grown R."""
@@ -101,7 +102,8 @@ class Contact:
         if self.radius >= phys.R:
             return 0.0
         h = (0.5 * pi * phys.sigmaMax / self.E) ** 2
-        return (h + self.growth) * phys.R - self.radius * self.growth
+        reached: float = (h + self.growth) * phys.R - self.radius * self.growth
+        return reached
 
     def _steer(self, R: float, dent: float, limit: float, step: float = 0.0, rise: float = 0.0) -> None:
         """Follow the branch (R, dent) up to overlap `limit`; beyond, F rises by the share `rise` over `step`."""

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Elastic-plastic contacts in a YADE script:
 
-    from epdem.yade.contacts import Contacts
+    from epdem.yade.deck_modules.contacts import Contacts
 
     contacts = Contacts("thornton")
     steel = contacts.material("steel", young_modulus=208e9, poisson_ratio=0.3, density=7850, friction=0.3,
@@ -23,6 +23,7 @@ import warnings
 from itertools import compress
 from math import asin, atan, inf, isfinite, pi
 from operator import attrgetter
+from typing import Any
 
 import numpy as np
 from yade import O
@@ -40,7 +41,7 @@ from yade.wrapper import (
 
 from . import cone
 from .contact import FAR, Contact, effective_radius, survey, trigger_pressure
-from .law import LAWS
+from .law import LAWS, Law
 
 PATIENCE = 100  # most steps between two looks at the speeds
 LABEL = "epdem_visit"  # of our PyRunner: YADE binds it anew whenever a scene is loaded
@@ -48,10 +49,10 @@ RIGID = 1e30  # modulus [Pa] of a rigid body; YADE cannot take infinity
 NO_FRICTION = 1e-9  # YADE's law needs a friction angle > 0
 
 _yielding, _depth, _real, _birth = map(attrgetter, ("isYielding", "penetrationDepth", "isReal", "iterMadeReal"))
-_managers: dict[tuple, "Contacts"] = {}
+_managers: dict[tuple[object, ...], "Contacts"] = {}
 
 
-def visit(*key) -> None:
+def visit(*key: Any) -> None:
     """What our PyRunner calls every step; `key` is enough to go on with a loaded scene."""
     manager = _managers.get(key)
     if manager is None:
@@ -86,7 +87,8 @@ class Contacts:
         self.ratios, self.interval, self.tolerance = ratios, interval, tolerance
         self.key = (law, interval, tolerance, *sorted(ratios.items()))
         self.visits = 0  # of contacts, by Python
-        self._laws: dict[tuple[float, float], object] = {}
+        self._laws: dict[tuple[float, float], Law] = {}
+        self._age, self._every, self._lasts = 0, 1, 1
         self._runner: object = None
 
     def material(
@@ -107,7 +109,7 @@ class Contacts:
         if set(strength) != ({name} - {None}):
             given = ", ".join(strength) or "none"
             raise TypeError(f"law {self.kind.name} needs {name or 'no strength'}, given: {given}")
-        young, value = min(young_modulus, RIGID), strength.get(name, inf)
+        young, value = min(young_modulus, RIGID), strength.get(name or "", inf)
         like = 0.5 * young / (1.0 - poisson_ratio**2)  # E* of two bodies of this material
         trigger, alpha = cone.NEVER * young, 0.5
         if name and isfinite(value):
@@ -132,7 +134,7 @@ class Contacts:
         O.materials.append(material)
         return material
 
-    def engines(self) -> list:
+    def engines(self) -> list[Any]:
         """YADE's interaction loop and our runner, to stand in this order before the integrator."""
         _managers[self.key] = self
         command = f"from {__name__} import visit; visit{self.key!r}"
@@ -170,7 +172,7 @@ class Contacts:
         self._collider = next((e for e in O.engines if isinstance(e, InsertionSortCollider)), None)
         self._state: object = None
         self._contacts: list[Contact] = []
-        self._apart: list = []  # pairs that the collider sees and that do not touch
+        self._apart: list[Any] = []  # pairs that the collider sees and that do not touch
         self._sort()
 
     def _pace(self) -> tuple[int, int]:
@@ -224,16 +226,16 @@ class Contacts:
 
     def _sort(self) -> None:
         """The contacts by the way they are looked at: by YADE's flag, or (flattened ones) by their overlap."""
-        self._watched, self._phys, self._flat, self._geoms = [], [], [], []
+        self._watched, self._flat = list[Contact](), list[Contact]()
+        self._phys, self._geoms = list[Any](), list[Any]()
         self._list()
         bounds = [b for c in self._contacts if (b := self._enter(c))]
         self._low, self._high = np.array(bounds).reshape(-1, 2).T.copy()
 
-    def _law(self, E_star: float, strength: float):
-        found = self._laws.get((E_star, strength))
-        if found is None:
-            found = self._laws[E_star, strength] = self.kind(E_star, strength, **self.ratios)
-        return found
+    def _law(self, E_star: float, strength: float) -> Law:
+        if (E_star, strength) not in self._laws:
+            self._laws[E_star, strength] = self.kind(E_star, strength, **self.ratios)
+        return self._laws[E_star, strength]
 
     def _enter(self, contact: Contact) -> tuple[float, float] | None:
         """Put a contact where it is looked at; of a flattened one the bounds of its branch."""
@@ -252,7 +254,7 @@ class Contacts:
         if bounds := self._enter(contact):
             self._low, self._high = np.append(self._low, bounds[0]), np.append(self._high, bounds[1])
 
-    def _meet(self, interaction) -> None:
+    def _meet(self, interaction: Any) -> None:
         phys, new = interaction.phys, not interaction.phys.initD > 0.0
         if new:
             trigger = min(trigger_pressure(O.bodies[k].material) for k in (interaction.id1, interaction.id2))

@@ -3,10 +3,11 @@
 
 A law holds the constants of a pair of materials; R_star [m] comes apart because it changes from contact to contact.
 Overlaps delta in m, forces in N, pressures in Pa. The same laws in C++ are in cpp_contact/include/epdem; a test
-compares the two to 1e-12. Here everything is written for one contact at a time, as a re-anchoring needs it.
+compares the two to 2e-15. Here everything is written for one contact at a time, as a re-anchoring needs it.
 """
 
 from math import acos, asin, exp, inf, isfinite, log, pi, sqrt
+from typing import Protocol
 
 # A point of a loading backbone: force [N], contact radius [m], flatness of the pressure (0 Hertz's, 1 uniform).
 Point = tuple[float, float, float]
@@ -24,13 +25,30 @@ def _positive(law: str, **values: float) -> None:
             raise ValueError(f"law {law}: {name} = {value!r}, must be > 0 (SI units)")
 
 
+class Law(Protocol):
+    """The constants of a pair of materials."""
+
+    name: str
+    strength_name: str | None  # None: it never yields
+    trigger_factor: float  # pressure at which Hertz's contact yields first, over the strength
+    flattens: bool  # whether unloading differs from Hertz's
+    ratios: tuple[str, ...]  # dimensionless parameters
+    E_star: float
+    yield_ratio: float  # overlap of first yield over R*
+
+    def __init__(self, E_star: float, strength: float = inf, **ratios: float) -> None: ...
+
+    def load(self, R_star: float, delta: float) -> Point:
+        """The loading backbone beyond first yield."""
+
+
 class Hertz:
     """Elastic contact (Hertz 1882): never yields. `strength` is ignored, so that all laws are made alike."""
 
     name = "hertz"
-    strength_name = None
-    trigger_factor = inf  # pressure at which Hertz's contact yields first, over the strength
-    flattens = False  # whether unloading differs from Hertz's
+    strength_name: str | None = None
+    trigger_factor = inf
+    flattens = False
     ratios: tuple[str, ...] = ()
 
     def __init__(self, E_star: float, strength: float = inf):
@@ -45,7 +63,7 @@ class Thornton:
     """Elastic, perfectly plastic (Thornton 1997, J. Appl. Mech. 64, 383); strength p_y [Pa]; eq. 8.83 and 8.84."""
 
     name = "thornton"
-    strength_name = "yield_pressure"
+    strength_name: str | None = "yield_pressure"
     trigger_factor = 1.0
     flattens = False
     ratios: tuple[str, ...] = ()
@@ -66,7 +84,7 @@ class Johnson:
     """Fully plastic, eq. 8.85 (Johnson 1985, section 11.5), and Hertz while that is the smaller force; strength p_m."""
 
     name = "johnson"
-    strength_name = "yield_pressure"
+    strength_name: str | None = "yield_pressure"
     trigger_factor = 3.0
     flattens = False
     ratios: tuple[str, ...] = ()
@@ -89,9 +107,9 @@ class Cavity:
     """
 
     name = "cavity"
-    strength_name = "yield_stress"
+    strength_name: str | None = "yield_stress"
     flattens = True
-    ratios = ("first_yield_ratio", "plastic_ratio")
+    ratios: tuple[str, ...] = ("first_yield_ratio", "plastic_ratio")
 
     def __init__(self, E_star: float, strength: float, first_yield_ratio: float = 1.60, plastic_ratio: float = 2.8):
         _positive(self.name, E_star=E_star, yield_stress=strength, first_yield_ratio=first_yield_ratio)
@@ -131,7 +149,12 @@ def yield_excess(first_yield_ratio: float, plastic_ratio: float) -> float:
     return 2.0 * grow * (1.0 + 0.5 / first_yield_ratio) - 0.5 * grow - 0.125 / log_s
 
 
-LAWS = {law.name: law for law in (Hertz, Thornton, Johnson, Cavity)}
+LAWS: dict[str, type[Law]] = {
+    "hertz": Hertz,
+    "thornton": Thornton,
+    "johnson": Johnson,
+    "cavity": Cavity,
+}
 
 
 def _segment(u: float) -> float:
@@ -177,7 +200,7 @@ def recovered_overlap(E_star: float, peak: Point) -> float:
     return (0.75 * (1.0 - tau) + 2.0 / pi * tau) * force / (E_star * radius)
 
 
-def step(law, R_star: float, delta_max: float, delta: float) -> tuple[float, float, float]:
+def step(law: Law, R_star: float, delta_max: float, delta: float) -> tuple[float, float, float]:
     """(F, a, new delta_max) of a contact that remembers delta_max: all that the C++ law does in one step."""
     if not delta > 0.0:
         return 0.0, 0.0, delta_max

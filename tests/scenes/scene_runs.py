@@ -1,8 +1,14 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Case files for the tests of scenes, from TOML data."""
+"""Case files, decks and runs for the tests of scenes."""
 
 import json
 from pathlib import Path
+
+from epdem.case.scene import SceneCase
+from epdem.engines import scene_engine
+from epdem.files import write_texts
+from epdem.scenes import run as scene_run
+from epdem.scenes.plan import ScenePlan, plan
 
 
 def value(x: object) -> str:
@@ -20,3 +26,15 @@ def write_case(data: dict, folder: Path, name: str = "case.toml") -> Path:
     lines = [f"[{table}]\n" + "".join(f"{k} = {value(v)}\n" for k, v in keys.items()) for table, keys in data.items()]
     (folder / name).write_text("\n".join(lines))
     return folder / name
+
+
+def write_deck(case: SceneCase, folder: Path) -> ScenePlan:
+    """The plan of a case whose LIGGGHTS deck is written into `folder`."""
+    p = plan(case)
+    write_texts(folder, scene_engine("liggghts").files(p))
+    return p
+
+
+def run(path: Path, engine: str = "liggghts", **options) -> scene_run.SceneOutcome:
+    """Run a case file on an engine."""
+    return scene_run.run(path, scene_engine(engine), **options)

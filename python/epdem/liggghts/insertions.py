@@ -1,0 +1,108 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Fills of a scene in LIGGGHTS: templates of spheres, their distribution, one `fix insert`, with random numbers."""
+
+import itertools
+import math
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from ..scenes.kinds import Block, Fill
+from ..scenes.plan import ScenePlan
+
+# Volumes [m^3] of a template and of a region below which LIGGGHTS refuses them, unless told of a smaller limit.
+SMALL, SMALL_ROOM, MEANT = 1e-12, 1e-10, 1e-20
+
+
+@dataclass(frozen=True)
+class Template:
+    """A particle template; `small`: LIGGGHTS wants to be told that its volume is meant."""
+
+    id: str
+    seed: int
+    type: int
+    density: float
+    radius: float
+    share: float
+    small: bool
+
+
+@dataclass(frozen=True)
+class Insertion:
+    """One `fix insert`: a distribution of templates, filled into a region at once or as a stream."""
+
+    id: str
+    seed: int
+    distribution: str
+    distribution_seed: int
+    templates: tuple[Template, ...]
+    region: str
+    count: int
+    rate: float | None
+    every: int | None
+    velocity: float
+    phase: str
+
+
+def primes() -> Iterator[int]:
+    """Seeds as LIGGGHTS wants them: different primes above 10000."""
+    n = 15485863
+    while True:
+        if all(n % k for k in range(3, math.isqrt(n) + 1, 2)):
+            yield n
+        n += 2
+
+
+def _region(fill: Fill) -> str:
+    """The region of a fill; one with little room for the centres of its spheres has to be meant."""
+    largest = max(part.radii()[1] for part in fill.parts)
+    if isinstance(fill.region, Block):
+        x = fill.region.limits
+        words = "block " + " ".join(f"{v:.10g}" for v in x)
+        centres = math.prod(max(0.0, x[k + 1] - x[k] - 2.0 * largest) for k in (0, 2, 4))
+    else:
+        c = fill.region
+        words = f"cylinder z 0 0 {c.radius:.10g} {c.low:.10g} {c.high:.10g}"
+        centres = math.pi * (c.radius - largest) ** 2 * (c.high - c.low - 2.0 * largest)
+    return words + (f" volume_limit {MEANT:g}" if centres < SMALL_ROOM else "")
+
+
+def _templates(p: ScenePlan, fill: Fill, first: int, seeds: Iterator[int]) -> tuple[Template, ...]:
+    sizes = [(part.material, radius, share) for part in fill.parts for radius, share in part.sizes()]
+    return tuple(
+        Template(
+            f"template{i}",
+            next(seeds),
+            p.model.type_of(material),
+            p.case.materials[material].density,
+            radius,
+            share,
+            4.0 / 3.0 * math.pi * radius**3 < SMALL,
+        )
+        for i, (material, radius, share) in enumerate(sizes, first)
+    )
+
+
+def insertions(p: ScenePlan) -> tuple[Insertion, ...]:
+    """The insertions of a scene's fills."""
+    seeds = itertools.islice(primes(), 100 * (p.case.numerics.seed - 1), None)
+    found: list[Insertion] = []
+    first = 1
+    for i, fill in enumerate(p.layout.fills, 1):
+        templates = _templates(p, fill, first, seeds)
+        first += len(templates)
+        found.append(
+            Insertion(
+                id=f"fill{i}",
+                seed=next(seeds),
+                distribution=f"mix{i}",
+                distribution_seed=next(seeds),
+                templates=templates,
+                region=_region(fill),
+                count=fill.count,
+                rate=fill.rate,
+                every=None if fill.rate is None else max(1, math.ceil(fill.every / p.time_step)),
+                velocity=fill.velocity,
+                phase=fill.phase or p.phases[0].name,
+            )
+        )
+    return tuple(found)

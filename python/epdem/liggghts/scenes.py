@@ -1,0 +1,67 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""LIGGGHTS as an engine of bulk scenes."""
+
+from collections.abc import Collection
+from pathlib import Path
+
+import pandas as pd
+
+from ..scenes.engine import Resumed, Tell
+from ..scenes.plan import ScenePlan
+from . import launcher, resume, scene_deck
+from . import scene_tables as tables
+from .impacts import Liggghts
+
+
+class LiggghtsScenes:
+    """LIGGGHTS with our models."""
+
+    name = Liggghts.name
+    can = Liggghts.can
+    subfolder = ""
+    leftovers: tuple[str, ...] = (
+        "particles.*.bin",
+        "contacts.*.txt",
+        "wall_contacts.*.txt",
+        "restart.*.bin",
+        "scene_*.vtk",
+        "picture.*.ppm",
+        "in.resume",
+    )
+
+    def missing(self) -> str | None:
+        return launcher.missing()
+
+    def version(self) -> str:
+        return Liggghts().version()
+
+    def files(self, plan: ScenePlan) -> dict[str, str]:
+        return scene_deck.files(plan)
+
+    def notes(self, plan: ScenePlan) -> list[str]:
+        return []
+
+    def run(self, plan: ScenePlan, folder: Path, *, ranks: int, tell: Tell) -> None:
+        launcher.run("in.scene", folder, ranks=ranks, tell=_pruning(folder, tell))
+
+    def resume(self, plan: ScenePlan, folder: Path, *, ranks: int, tell: Tell) -> Resumed:
+        step, lost = resume.choose(plan, folder)
+        deck = resume.write_resume(plan, folder, step)
+        launcher.run(deck.name, folder, ranks=ranks, append=True, tell=_pruning(folder, tell))
+        return Resumed(step, lost)
+
+    def read(self, plan: ScenePlan, folder: Path, *, without: Collection[int] = ()) -> dict[str, pd.DataFrame]:
+        found = {"rows": tables.rows(plan, folder / launcher.OUT)}
+        if plan.frames:
+            found["particles"] = tables.particles(plan, folder, without=without)
+        if plan.contacts:
+            found["contacts"] = tables.contact_table(plan, folder, found["particles"], without=without)
+        return found
+
+
+def _pruning(folder: Path, tell: Tell) -> Tell:
+    def row(step: int) -> None:
+        resume.prune(folder, step)
+        tell(step)
+
+    return row

@@ -1,0 +1,52 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Columns of the tables of a scene, and what moves of itself: the same for every engine. SI."""
+
+import numpy as np
+import pandas as pd
+
+from ..case.scene import Compaction
+from .plan import ScenePlan
+
+UNITS = {
+    "time": "s",
+    "kinetic_energy": "J",
+    "floor_load": "N",
+    "plate_force": "N",
+    "torque": "N m",
+    "plate_z": "m",
+    "stress": "Pa",
+    "radius": "m",
+    "mass": "kg",
+    **dict.fromkeys(("x", "y", "z"), "m"),
+    **dict.fromkeys(("vx", "vy", "vz"), "m/s"),
+    **dict.fromkeys(("omega_x", "omega_y", "omega_z"), "rad/s"),
+    **dict.fromkeys(("overlap", "delta_max", "residual_overlap", "dent_radius"), "m"),
+    "force": "N",
+    **dict.fromkeys(("plastic_work", "elastic_energy"), "J"),
+    **dict.fromkeys(("kinetic", "gravity", "elastic", "plastic", "work", "left", "balance", "friction"), "J"),
+}
+PARTICLES = ["id", "type", "radius", "mass", "x", "y", "z", "vx", "vy", "vz"]
+SPINS = ["omega_x", "omega_y", "omega_z"]
+
+
+def rows(p: ScenePlan, found: dict[int, list[float]], names: list[str]) -> pd.DataFrame:
+    """The table of rows, sorted, from the values of `names` at each step."""
+    table = pd.DataFrame.from_dict(found, orient="index", columns=names).sort_index()
+    table.insert(0, "step", table.index.to_numpy())
+    table.insert(1, "time", table["step"] * p.time_step)
+    if isinstance(p.case.scene, Compaction):
+        middle = (table["step"] - 0.5 * p.every).clip(lower=0) * p.time_step
+        table["plate_z"] = plate_height(p, middle.to_numpy())
+        table["stress"] = table["plate_force"] / (p.case.scene.box[0] * p.case.scene.box[1])
+    return table.reset_index(drop=True)
+
+
+def plate_height(p: ScenePlan, time: np.ndarray) -> np.ndarray:
+    """Height [m] of the plate at times [s], each the middle of the interval that a force is the mean of."""
+    height = np.full(len(time), p.layout.meshes["plate"][0, 0, 2])
+    begin = 0.0
+    for phase in p.phases:
+        end = phase.end * p.time_step
+        height += phase.plate * (np.clip(time, begin, end if phase is not p.phases[-1] else None) - begin)
+        begin = end
+    return height

@@ -1,0 +1,74 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""What an engine of bulk scenes is: it takes a plan and gives tables. Its own words end here."""
+
+from collections.abc import Callable, Collection
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Protocol
+
+import pandas as pd
+
+from ..errors import CaseError, EngineError
+from ..impacts.engine import Abilities
+from .plan import ScenePlan
+
+Tell = Callable[[int], None]  # the step of a row that was written
+
+
+@dataclass(frozen=True)
+class Resumed:
+    """From which step a run went on; `lost`: steps of earlier frames that are missing or not whole."""
+
+    step: int
+    lost: list[int] = field(default_factory=list)
+
+
+class SceneEngine(Protocol):
+    """One way to run a scene."""
+
+    name: str
+    can: Abilities
+    subfolder: str  # of a case's results, where this engine puts its own if nothing else is asked for
+    leftovers: tuple[str, ...]  # patterns of files that an earlier run may have left in the folder
+
+    def missing(self) -> str | None:
+        """None if the engine can run here, else a sentence with the command that installs it."""
+
+    def version(self) -> str:
+        """One line: the engine's version."""
+
+    def files(self, plan: ScenePlan) -> dict[str, str]:
+        """Everything written for the engine, by path in the folder; it runs by hand there.
+
+        Raises CaseError for what the engine cannot do.
+        """
+
+    def notes(self, plan: ScenePlan) -> list[str]:
+        """What of the case the engine leaves out, in words."""
+
+    def run(self, plan: ScenePlan, folder: Path, *, ranks: int, tell: Tell) -> None:
+        """Run what `files` holds, written into `folder`. Raises EngineError with the engine's last words."""
+
+    def resume(self, plan: ScenePlan, folder: Path, *, ranks: int, tell: Tell) -> Resumed:
+        """Go on from the newest restart file. Raises CaseError if there is none, EngineError."""
+
+    def read(self, plan: ScenePlan, folder: Path, *, without: Collection[int] = ()) -> dict[str, pd.DataFrame]:
+        """The tables rows, particles and contacts, as far as the plan has them; SI. No frames of the steps `without`.
+
+        Raises EngineError for any other frame that is missing or not whole.
+        """
+
+
+def check_abilities(engine: SceneEngine, p: ScenePlan, *, ranks: int, resume: bool) -> None:
+    """Raise CaseError for what a run asks of an engine that cannot do it, EngineError if it is not here."""
+    kind, most = p.case.scene.kind, engine.can.ranks
+    if kind not in engine.can.scenes:
+        known = " and ".join(engine.can.scenes)
+        raise CaseError(f"scene.kind = {kind!r}: engine {engine.name} runs {known}; use another --engine")
+    if ranks > most:
+        what = "one core; leave it out" if most == 1 else f"{most} ranks at most here; use --ranks {most} or fewer"
+        raise CaseError(f"--ranks {ranks}: a scene in {engine.name} runs on {what}")
+    if resume and not engine.can.restarts:
+        raise CaseError(f"--resume: a scene in {engine.name} runs from its start; leave it out")
+    if words := engine.missing():
+        raise EngineError(words)

@@ -1,0 +1,36 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""What is filled into a scene: how many spheres of which size, and whether their room takes them."""
+
+import math
+
+import numpy as np
+
+from ..case.scene import Particles, SceneCase
+from ..errors import CaseError
+from .kinds import Fill
+
+MOST_FILLED = 0.26  # volume share that random sequential placement reaches in reasonable time
+
+
+def drawn(case: SceneCase, parts: list[Particles]) -> list[tuple[str, float, float]]:
+    """(material, radius [m], weight) of each size: spheres drawn with these weights have the shares of the mass."""
+    return [
+        (p.material, radius, share / (case.materials[p.material].density * radius**3))
+        for p in parts
+        for radius, share in p.sizes()
+    ]
+
+
+def refuse_too_many(case: SceneCase, fill: Fill) -> None:
+    """Raises CaseError for more spheres, all at once, than their room takes."""
+    if fill.rate is not None:
+        return
+    sizes = drawn(case, fill.parts)
+    volume = np.average([4.0 / 3.0 * math.pi * r**3 for _, r, _ in sizes], weights=[w for _, _, w in sizes])
+    share = fill.count * float(volume) / fill.region.volume
+    if share > MOST_FILLED:
+        most = int(fill.count * MOST_FILLED / share)
+        raise CaseError(
+            f"{fill.place} = {fill.count}: the spheres would fill {share:.0%} of the room that they are poured into, "
+            f"at most {MOST_FILLED:.0%} ({most} spheres); enlarge the room"
+        )

@@ -1,0 +1,65 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""The law between two materials of a scene, and the impacts of two bodies that stand for it. SI."""
+
+import numpy as np
+
+from ..case.law import law_numbers, read_number
+from ..case.scene import SceneCase
+from ..errors import CaseError
+from ..impacts.experiment import Body, Experiment, plane, sphere
+from ..laws.strengths import LawNumbers, LawSpec, law_named
+from ..theory.pair import E_star
+
+
+def numbers(case: SceneCase) -> LawNumbers:
+    """The scene's law before its bodies. Raises CaseError."""
+    return law_numbers(case.law.name, case.law.parameters())
+
+
+def strengths(case: SceneCase) -> dict[str, float]:
+    """The law's strength [Pa] of every material, inf for a law that never yields. Raises CaseError.
+
+    A material's own key, else what the law says for all.
+    """
+    law = numbers(case)
+    strength = law_named(law.name).strength
+    found = {}
+    for name, material in case.materials.items():
+        extra = dict(material.model_extra or {})
+        own = None
+        if strength in extra:
+            own = read_number(f"materials.{name}.{strength}", extra.pop(strength), "Pa")
+        for key in extra:
+            raise CaseError(f"materials.{name}.{key}: unknown key; remove it or correct its spelling")
+        found[name] = law.strength(name, material.yield_stress, own)
+    return found
+
+
+def pair_law(case: SceneCase, a: str, b: str) -> tuple[LawSpec, float]:
+    """(the law of a contact between two materials, its E* [Pa])."""
+    strong, first, second = strengths(case), case.materials[a], case.materials[b]
+    elastic = (first.young_modulus, first.poisson_ratio, second.young_modulus, second.poisson_ratio)
+    return numbers(case).pair(strong[a], strong[b]), float(E_star(*elastic))
+
+
+def _impact(case: SceneCase, body: Body, target: Body, v: float) -> Experiment:
+    return Experiment(
+        law=pair_law(case, body.material, target.material)[0],
+        body=body,
+        target=target,
+        speed=np.geomspace(v / 100, v, 5),
+        viscous_restitution=case.viscous.restitution if case.viscous else None,
+        name=case.name,
+    )
+
+
+def sphere_impact(case: SceneCase, material: str, radius: float, other: str, v: float) -> Experiment:
+    """The impact of a sphere on one of `other` of the same radius [m] at speeds up to v [m/s]: a scene's shortest."""
+    body, target = (sphere(case.materials[name], radius=radius, name=name) for name in (material, other))
+    return _impact(case, body, target, v)
+
+
+def wall_impact(case: SceneCase, material: str, radius: float, other: str, v: float) -> Experiment:
+    """The impact of a sphere of `radius` [m] on a flat wall of `other`, at speeds up to v [m/s]."""
+    body = sphere(case.materials[material], radius=radius, name=material)
+    return _impact(case, body, plane(case.materials[other], name=other), v)

@@ -1,0 +1,146 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""A scene ready for any engine: what is there, how it moves, when what is written. All SI, no engine's words."""
+
+import math
+from dataclasses import dataclass
+
+from ..case.scene import Output, Particles, SceneCase
+from . import kinds
+from .filling import refuse_too_many
+from .kinds import Layout
+from .model import Model, model
+from .timestep import time_step
+
+SAMPLES = 50  # of a force, at least, in the mean that a row holds
+
+
+@dataclass(frozen=True)
+class Phase:
+    """A part of the run up to step `end`; `plate` is the velocity of the plate along z in it [m/s]."""
+
+    name: str
+    end: int
+    plate: float
+
+
+@dataclass(frozen=True)
+class ScenePlan:
+    """What an engine runs, and what its tables are made from.
+
+    every: steps of a row, and so of the mean forces in it, which are sampled every `sampling` steps; frames, contacts,
+    vtk, pictures, restarts: steps between two of them, 0: none.
+    """
+
+    case: SceneCase
+    model: Model
+    layout: Layout
+    time_step: float
+    phases: tuple[Phase, ...]
+    every: int
+    sampling: int
+    frames: int
+    contacts: int
+    vtk: int
+    pictures: int
+    restarts: int
+
+    @property
+    def steps(self) -> int:
+        """All steps of the run."""
+        return self.phases[-1].end
+
+    @property
+    def output(self) -> Output:
+        """What the case asks for."""
+        return self.case.output
+
+    @property
+    def parts(self) -> list[Particles]:
+        """Everything that is filled in."""
+        return [p for fill in self.layout.fills for p in fill.parts]
+
+    @property
+    def smallest(self) -> float:
+        """Smallest radius [m]."""
+        return min(p.radii()[0] for p in self.parts)
+
+    @property
+    def types(self) -> tuple[str, ...]:
+        """Names of the types, from number 1."""
+        return tuple(t.name for t in self.model.types)
+
+    @property
+    def plates(self) -> bool:
+        """Whether there is a plate whose force is measured."""
+        return "plate" in self.layout.meshes
+
+    @property
+    def floor_load(self) -> bool:
+        """Whether the mean force on the floor is in the rows."""
+        return self.output.loads and any(p.name == "floor" for p in self.layout.planes)
+
+    @property
+    def torque(self) -> bool:
+        """Whether the mean torque on a drum is in the rows."""
+        return bool(self.layout.turn) and (self.output.loads or self.output.energy)
+
+    @property
+    def dents(self) -> bool:
+        """Whether the plastic work of each sphere is in the frames."""
+        return self.output.energy and self.model.yields
+
+    @property
+    def summary(self) -> str:
+        """One line for the head of a deck."""
+        s = self.case.scene
+        return f"{s.kind}: {s.count} spheres, law {self.model.law}, {self.steps} steps of {self.time_step:g} s"
+
+
+def _intervals(output: Output, steps: float) -> tuple[int, int]:
+    """(rows, steps per row): enough rows that the last one is also a frame of particles."""
+    frames = max(output.particles, 1)
+    rows = frames * math.ceil(output.rows / frames)
+    every = max(1, math.ceil(steps / rows))
+    tens = 10 ** max(0, len(str(every)) - 2)  # round numbers: samples divide a row, and a person reads them
+    return rows, tens * math.ceil(every / tens)
+
+
+def _phases(layout: Layout, rows: int, every: int, dt: float) -> tuple[Phase, ...]:
+    found, end = [], 0
+    for stage in layout.stages:
+        end += every * max(1, round(stage.seconds / dt / every))
+        found.append(Phase(stage.name, end, stage.plate))
+    last = found.pop()
+    end = max(rows * every, last.end) if found else rows * every
+    return (*found, Phase(last.name, end, last.plate))
+
+
+def _divisor(n: int, parts: int) -> int:
+    """The largest divisor of n that leaves at least `parts` parts (1 if there is none)."""
+    return next(d for d in range(max(1, n // parts), 0, -1) if n % d == 0)
+
+
+def plan(case: SceneCase) -> ScenePlan:
+    """The plan of a scene. Raises CaseError for what does not fit."""
+    found, dt, layout, out = model(case), time_step(case), kinds.layout(case), case.output
+    for fill in layout.fills:
+        refuse_too_many(case, fill)
+    rows, every = _intervals(out, layout.duration / dt)
+
+    def interval(count: int) -> int:
+        return 0 if count == 0 else every * max(1, rows // count)
+
+    return ScenePlan(
+        case=case,
+        model=found,
+        layout=layout,
+        time_step=dt,
+        phases=_phases(layout, rows, every, dt),
+        every=every,
+        sampling=_divisor(every, SAMPLES),
+        frames=interval(out.particles),
+        contacts=interval(out.contacts or (out.particles if out.energy else 0)),
+        vtk=interval(out.vtk),
+        pictures=interval(out.pictures),
+        restarts=interval(out.restarts),
+    )

@@ -1,0 +1,85 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""The time step of a scene, from its highest speed."""
+
+import math
+
+import numpy as np
+
+from ..case.scene import Compaction, Drum, Hopper, Kinds, Peening, SceneCase, Settle
+from ..errors import CaseError
+from ..impacts.experiment import Experiment
+from ..impacts.prediction import predict
+from ..impacts.timestep import search, stability_limit
+from ..theory.timestep import DENSE_PACKING, sticking_packing
+from .model import model
+from .pairs import sphere_impact
+
+MARGIN = 0.8  # of the stable step of a bed: contacts there are a little stiffer than in the impact that stands for them
+
+
+def bed_share(x: Experiment, *, sticking: bool) -> float:
+    """Share of the stable step of the contact `x` alone that a step in a bed of such contacts may have.
+
+    Velocity Verlet is stable up to a half of it in a dense packing of central springs; where contacts stick, up to
+    `sticking_packing` (0.246 at nu = 0.3).
+    """
+    stable = DENSE_PACKING
+    if sticking:
+        stable = min(stable, float(sticking_packing(4.0 * x.G_star / x.E_star)))
+    return MARGIN * stable
+
+
+def _fall_and_drive(s: Kinds) -> tuple[float, float]:
+    """(height of the highest free fall [m], speed that stream, plate or drum add to it [m/s])."""
+    match s:
+        case Settle():
+            return s.box[2], 0.0
+        case Hopper():
+            return s.bin_height + s.drop + s.bin_diameter, 0.0
+        case Drum():
+            return s.diameter, s.turn * s.diameter / 2
+        case Compaction():
+            return s.box[2], 2.0 * s.speed
+        case Peening():
+            return 0.0, s.speed
+
+
+def highest_speed(case: SceneCase) -> float:
+    """The highest speed [m/s] that the scene can reach: free fall, the stream, the moving wall; or what it says.
+
+    Raises CaseError if nothing in it moves.
+    """
+    if case.numerics.highest_speed is not None:
+        return case.numerics.highest_speed
+    fall, drive = _fall_and_drive(case.scene)
+    v = math.sqrt(2.0 * case.scene.gravity * fall) + drive
+    if v == 0.0:
+        raise CaseError(
+            "scene.gravity = 0: nothing moves the spheres, so no time step follows; "
+            "give gravity, or numerics.highest_speed"
+        )
+    return v
+
+
+def time_step(case: SceneCase) -> float:
+    """The step [s] of a scene: the target error of e_n at its speeds, below the stable step of a bed."""
+    if case.numerics.time_step is not None:
+        return case.numerics.time_step
+    v, sticking = highest_speed(case), model(case).sliding
+    best = math.inf
+    parts = [*case.scene.particles, *getattr(case.scene, "bed", [])]
+    bodies = {(p.material, p.radii()[0]) for p in parts}
+    for material, radius in sorted(bodies):
+        for other in sorted({m for m, _ in bodies} | {case.scene.walls}):
+            x = sphere_impact(case, material, radius, other, v)
+            prediction = predict(x)
+            found = search(x, prediction, case.numerics.error).time_step
+            limit = stability_limit(x, float(prediction.overlap_max.max()))
+            best = min(best, found, bed_share(x, sticking=sticking) * limit)
+    return _round_down(best)
+
+
+def _round_down(x: float) -> float:
+    """Two significant digits, so that the deck is readable."""
+    power = 10.0 ** (math.floor(math.log10(x)) - 1)
+    return float(np.float64(f"{math.floor(x / power) * power:.1e}"))

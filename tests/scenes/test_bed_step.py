@@ -1,0 +1,85 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""The time step of a bed whose contacts stick: LIGGGHTS itself is quiet below the limit of theory and not above it."""
+
+import itertools
+import math
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from epdem.case.impact import read_toml
+from epdem.case.scene import parse
+from epdem.liggghts import launcher, log
+from epdem.scenes.pairs import sphere_impact
+from epdem.scenes.timestep import bed_share, time_step
+
+CASES = Path(__file__).parents[2] / "cases"
+R, E, NU, DENSITY = 1e-3, 1e8, 0.3, 2500.0
+OVERLAP = 2e-6
+CELLS = 4  # unit cells along each edge: 256 spheres
+
+
+def stable_step() -> float:
+    """Of one of the contacts alone [s]: 2 sqrt(m*/k_n), k_n = 2 E* a."""
+    E_star, R_star, m_star = E / (2 * (1 - NU**2)), R / 2, 4 / 3 * math.pi * R**3 * DENSITY / 2
+    return 2 * math.sqrt(m_star / (2 * E_star * math.sqrt(R_star * OVERLAP)))
+
+
+def energies(share: float, folder: Path) -> np.ndarray:
+    """Kinetic energy [J] of a face-centred cubic packing on 4000 steps of that share of the stable step."""
+    edge = math.sqrt(2) * (2 * R - OVERLAP)
+    corners = itertools.product(range(CELLS), repeat=3)
+    basis = ((0, 0, 0), (0, 0.5, 0.5), (0.5, 0, 0.5), (0.5, 0.5, 0))
+    places = np.array([(np.array(c) + b + 0.25) * edge for c in corners for b in basis])
+    places += np.random.default_rng(1).uniform(-1e-5, 1e-5, places.shape) * OVERLAP  # so that something moves
+    high = CELLS * edge
+    deck = f"""
+atom_style granular
+atom_modify map array
+boundary p p p
+newton off
+communicate single vel yes
+region box block 0 {high!r} 0 {high!r} 0 {high!r} units box
+create_box 1 box
+neighbor 1e-4 bin
+neigh_modify delay 0
+fix m1 all property/global youngsModulus peratomtype {E!r}
+fix m2 all property/global poissonsRatio peratomtype {NU!r}
+fix m3 all property/global coefficientFriction peratomtypepair 1 0.3
+pair_style gran model ep/hertz tangential history
+pair_coeff * *
+timestep {share * stable_step()!r}
+fix motion all nve/sphere
+"""
+    deck += "".join(f"create_atoms 1 single {x!r} {y!r} {z!r} units box\n" for x, y, z in places.tolist())
+    deck += f"set group all diameter {2 * R!r} density {DENSITY!r}\n"
+    deck += "compute spin all erotate/sphere\nthermo 100\nthermo_style custom step atoms ke c_spin\n"
+    deck += "thermo_modify norm no lost ignore\nrun 4000\n"
+    folder.mkdir()
+    (folder / "in.bed").write_text(deck)
+    launcher.run("in.bed", folder)
+    rows = log.rows(folder / launcher.OUT)
+    return (rows["KinEng"] + rows["spin"]).to_numpy()[1:]
+
+
+@pytest.mark.liggghts
+def test_a_sticking_packing_is_quiet_at_the_step_of_scenes_and_explodes_above_the_limit_of_theory(tmp_path):
+    """sqrt(1/(20 kappa)) of the contact's own step with kappa = 2 (1 - nu)/(2 - nu): 0.246."""
+    limit = math.sqrt((2 - NU) / (40 * (1 - NU)))
+    case = read_toml(CASES / "settle_glass.toml")
+    case["materials"]["glass"] |= {"poisson_ratio": NU}
+    x = sphere_impact(parse(case), "glass", R, "glass", 1.0)
+    assert bed_share(x, sticking=True) == pytest.approx(0.8 * limit, rel=1e-9)
+    assert bed_share(x, sticking=False) == pytest.approx(0.8 * 0.5)
+    quiet = energies(bed_share(x, sticking=True), tmp_path / "scene")
+    below, above = energies(0.975 * limit, tmp_path / "below"), energies(1.055 * limit, tmp_path / "above")
+    assert max(quiet.max() / quiet[0], below.max() / below[0]) < 3.0
+    assert above.max() > 1e4 * below.max()  # until the contacts slip, which takes the energy away
+
+
+def test_friction_makes_the_step_of_a_bed_smaller():
+    data = read_toml(CASES / "settle_glass.toml") | {"numerics": {"error": 0.1}}
+    steps = [time_step(parse(data | {"contact": {"friction": mu}})) for mu in (0.0, 0.4)]
+    # nu = 0.25: kappa = 6/7; both steps are rounded down to two digits
+    assert steps[1] / steps[0] == pytest.approx(math.sqrt(7 / 120) / 0.5, rel=0.1)

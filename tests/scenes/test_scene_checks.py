@@ -1,0 +1,140 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""The checks that a user sees, on tables made by hand: each gives the number put in, and fails when it should."""
+
+import math
+
+import numpy as np
+import pandas as pd
+import pytest
+from stored_runs import data_of
+
+from epdem.case.scene import parse
+from epdem.scenes import checks
+from epdem.scenes.columns import rows as table_of_rows
+from epdem.scenes.plan import ScenePlan, plan
+
+
+def planned(name: str, law: str | None = None, n_rows: int = 40, **scene: object) -> ScenePlan:
+    """The plan of a stored run's case with 20 frames and other values of [scene]."""
+    data = data_of(name)
+    output = {"rows": n_rows, "particles": 20, "loads": True}
+    law_table = {"name": law} if law else data["law"]
+    return plan(parse(data | {"scene": data["scene"] | scene, "output": output, "law": law_table}))
+
+
+def frames(p: ScenePlan, spheres: list[dict]) -> pd.DataFrame:
+    """The particles' table of spheres whose values are numbers or arrays over the frames."""
+    steps = np.arange(0, p.steps + 1, p.frames)
+    parts = []
+    for k, sphere in enumerate(spheres, 1):
+        values = {"x": 0.0, "y": 0.0, "z": 0.0, "vx": 0.0, "vy": 0.0, "vz": 0.0, "radius": 1e-3, "mass": 1e-5} | sphere
+        parts.append(pd.DataFrame({"step": steps, "id": k, "type": 1, **values}))
+    return pd.concat(parts, ignore_index=True)
+
+
+def rows(p: ScenePlan, **columns) -> pd.DataFrame:
+    """The rows of a plan; columns are numbers or functions of the steps."""
+    steps = np.arange(0, p.steps + 1, p.every)
+    names = {"particles": float(p.case.scene.count), "kinetic_energy": 0.0} | columns
+    values = {n: np.broadcast_to(f(steps) if callable(f) else f, steps.shape) for n, f in names.items()}
+    found = {int(s): [float(values[n][k]) for n in values] for k, s in enumerate(steps)}
+    return table_of_rows(p, found, list(values))
+
+
+def verdict(p: ScenePlan, name: str, **tables: pd.DataFrame) -> dict:
+    """The row of the check whose name begins so; rows that say nothing where none are given."""
+    table = checks.checks(p, tables if "rows" in tables else {"rows": rows(p)} | tables)
+    (row,) = table[table["check"].str.startswith(name)].to_dict("records")
+    return row
+
+
+def test_the_mass_flow_is_the_slope_of_what_is_out_and_beverloo_s_that_of_the_bulk_density():
+    """Beads in a column leave one by one, evenly in time: W = m/T. W_B = 0.58 rho_b sqrt(g) (D - 1.4 d)^2.5."""
+    p = planned("hopper", count=200, outlet="12 mm")
+    n, step = 200, np.arange(0, p.steps + 1, p.frames)
+    opened = p.phases[0].end
+    low, high = step[step <= opened].max(), p.steps
+    height = 0.019 * (np.arange(n) + 0.5) / n
+    leaves = low + (high - low) * (np.arange(n) + 0.5) / n
+    spheres = [{"z": np.where(step > t, -0.02, z)} for z, t in zip(height, leaves, strict=True)]
+    found = verdict(p, "mass flow", particles=frames(p, spheres))
+    flow = n * 1e-5 / ((high - low) * p.time_step)
+    # the frames cut the flow into 12 pieces
+    assert found["value"] == pytest.approx(flow, rel=0.03)
+    # bulk density: even, up to the top of 95 % of the beads
+    top = np.quantile(height, 0.95)
+    bulk = 1e-5 * n * (0.5 * top / 0.019) / (math.pi / 4 * 0.02**2 * 0.5 * top)
+    assert found["expected"] == pytest.approx(0.58 * bulk * math.sqrt(9.81) * (0.012 - 1.4 * 0.002) ** 2.5, rel=0.02)
+    assert found["passed"] == (abs(found["value"] / found["expected"] - 1) <= 0.2)
+
+
+def test_a_hopper_that_does_not_flow_fails_its_check():
+    p = planned("hopper")
+    found = verdict(p, "mass flow", particles=frames(p, [{"z": 0.001 * k} for k in range(12)]))
+    assert math.isnan(found["value"]) and not found["passed"]
+
+
+@pytest.mark.parametrize(("load", "passed"), [(1.0, True), (1.019, True), (0.97, False), (0.0, False)])
+def test_the_floor_load_is_the_mean_of_the_last_fifth_over_the_weight(load, passed):
+    p = planned("settle")
+    weight = 8 * 1e-5 * 9.81
+    table = rows(p, floor_load=lambda s: np.where(s > 0.8 * s.max(), load * weight, 99.0))
+    found = verdict(p, "floor load", rows=table, particles=frames(p, [{"z": np.linspace(5e-3, 1e-3, 21)}] * 8))
+    assert found["value"] == pytest.approx(load * weight, rel=1e-9, abs=1e-300)
+    assert found["expected"] == pytest.approx(weight) and found["passed"] == passed
+
+
+@pytest.mark.parametrize(("rise", "passed"), [(0.4, True), (1.0, True), (1.05, False)])
+def test_an_elastic_bed_may_rise_as_far_as_it_fell_and_no_farther(rise, passed):
+    p = planned("settle", law="hertz")
+    heights = np.concatenate([np.linspace(5e-3, 1e-3, 11), np.linspace(1e-3, 1e-3 + rise * 4e-3, 11)[1:]])
+    found = verdict(p, "rebound of the bed", particles=frames(p, [{"z": heights}]))
+    assert found["value"] == pytest.approx(rise * 4e-3) and found["expected"] == pytest.approx(4e-3)
+    assert found["passed"] == passed
+
+
+def test_stiffness_and_work_of_a_press_are_those_of_its_force_curve():
+    """Loading F = k x, unloading four times as steep from the turn on: work 1/2 F x in, a quarter of it back."""
+    p = planned("compaction", n_rows=1000, height="0.5 mm", back_speed="0.4 m/s")
+    s, turn = p.case.scene, p.phases[0].end
+    k, k_back = 1e4, 4e4
+    way = s.box[2] - s.height
+
+    def force(step):
+        middle = np.maximum(step - 0.5 * p.every, 0) * p.time_step
+        down = s.speed * np.minimum(middle, turn * p.time_step)
+        up = s.back_speed * np.maximum(middle - turn * p.time_step, 0)
+        return np.maximum(k * down - k_back * up, 0)
+
+    table = rows(p, plate_force=force)
+    top = table["plate_force"].max()
+    found = verdict(p, "loading / unloading", rows=table)
+    assert found["value"] == pytest.approx(k, rel=1e-9)
+    assert found["expected"] == pytest.approx(k_back, rel=0.02) and found["passed"]  # the turn lies between two rows
+    work = verdict(p, "work got back", rows=table)
+    assert work["expected"] == pytest.approx(0.5 * k * way**2, rel=0.01)
+    assert work["value"] == pytest.approx(0.5 * top**2 / k_back, rel=0.01) and work["passed"]
+    late = rows(p, plate_force=lambda step: np.where(step > turn, 1.0, 0.0))
+    assert not verdict(p, "work got back", rows=late)["passed"], "more got back than put in"
+    verdict(p, "loading / unloading", rows=rows(p, plate_force=0.0))  # a plate that touches nothing has a verdict too
+
+
+def test_only_shot_that_met_the_plate_alone_counts():
+    p = planned("peening", law="hertz")
+    up = np.where(np.arange(p.steps // p.frames + 1) > 5, 1.0, -1.0)
+    spheres = [
+        {"vz": 30.0 * up},
+        {"vz": 29.99 * up},
+        {"vz": 12.0 * up, "vx": 3.0},  # met another one
+        {"vz": -30.0},  # still on its way
+    ]
+    found = verdict(p, "rebound of 2 shots", particles=frames(p, spheres))
+    assert found["value"] == pytest.approx(29.99) and found["expected"] == pytest.approx(30.0, rel=1e-9)
+    assert found["passed"]
+    assert not verdict(p, "rebound of 1 shots", particles=frames(p, [{"vz": 29.9 * up}]))["passed"]
+
+
+def test_a_lost_sphere_fails_the_check_of_the_room():
+    p = planned("drum")
+    assert verdict(p, "spheres in the room")["passed"]
+    assert not verdict(p, "spheres in the room", rows=rows(p, particles=7.0))["passed"]
