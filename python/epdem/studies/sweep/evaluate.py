@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """One point of a sweep: its case runs, and its numbers are stored; a point that fails is stored with its reason."""
 
+import contextlib
 import errno
 import shutil
 from pathlib import Path
@@ -9,7 +10,7 @@ from typing import Any
 import pandas as pd
 
 from ...case import impact, scene
-from ...engines import engine
+from ...engines import engine, scene_engine
 from ...errors import CaseError, EngineError, EpdemError
 from ...impacts.comparison import compare
 from ...impacts.engine import refuse
@@ -17,6 +18,7 @@ from ...impacts.experiment import experiment
 from ...impacts.plan import plan
 from ...impacts.prediction import predict
 from ...impacts.run import run_plan
+from ...scenes.run import run as run_scene
 from . import folder as store
 from .folder import Sweep
 from .numbers import numbers_of
@@ -82,16 +84,14 @@ def _impacts(sweep: Sweep, number: int, place: Path) -> dict[str, list[Any]]:
 
 def _scene(sweep: Sweep, place: Path, *, resume: bool) -> dict[str, list[Any]]:
     """The named numbers of a scene, in one row; a scene that was interrupted goes on from its last restart file."""
-    from ...scenes.run import run
+    tool = scene_engine(sweep.engines[0])
 
     def once(go_on: bool) -> dict[str, list[Any]]:
-        out = run(place / store.CASE, engine=sweep.engines[0], out=place, ranks=sweep.ranks, resume=go_on)
-        row = {"engine": sweep.engines[0], **numbers_of(out.results), "passed": out.passed}
+        found = run_scene(place / store.CASE, tool, out=place, ranks=sweep.ranks, resume=go_on, force=True)
+        row = {"engine": tool.name, **numbers_of(found.results), "passed": found.passed}
         return {name: [value] for name, value in row.items()}
 
-    if resume and any(place.glob("restart.*.bin")) and not (place / "results.h5").exists():
-        try:
+    if resume and tool.can.restarts and any(place.glob("restart.*.bin")) and not (place / "results.h5").exists():
+        with contextlib.suppress(CaseError, EngineError):  # no whole restart file, or one of another deck
             return once(True)
-        except (CaseError, EngineError):  # no whole restart file, or one of another deck: from the start
-            pass
     return once(False)

@@ -3,7 +3,8 @@
 
 import re
 
-from ...scenes.results import UNITS, SceneResults
+from ...scenes.columns import UNITS
+from ...scenes.results import SceneResults
 
 UNIT_OF_CHECK = {"floor_load": "N", "mass_flow": "kg/s"}
 

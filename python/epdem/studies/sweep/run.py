@@ -11,7 +11,7 @@ import pandas as pd
 
 from ...case.impact import read_toml
 from ...case.scene import is_scene
-from ...engines import engine
+from ...engines import engine, scene_engine
 from ...errors import CaseError, EngineError
 from ...folders import claim
 from . import folder as store
@@ -77,12 +77,12 @@ def plan(
         engines=chosen,
         laws=tuple(dict.fromkeys(laws)),
         ranks=ranks,
-        versions=_versions(chosen),
+        versions=_versions(chosen, scene=scene),
     )
 
 
-def _versions(engines: Sequence[str]) -> dict[str, str]:
-    tools = [engine(name) for name in engines]
+def _versions(engines: Sequence[str], *, scene: bool) -> dict[str, str]:
+    tools = [scene_engine(name) if scene else engine(name) for name in engines]
     for tool in tools:
         if reason := tool.missing():
             raise EngineError(f"engine {tool.name}: {reason}")
