@@ -104,8 +104,11 @@ def main() -> None:
     options = parser.parse_args()
     scratch = Path(tempfile.mkdtemp(prefix="epdem_lean_"))
     try:
-        rows = [measure(p, options.repeats, scratch) for p in sorted((ROOT / "cases").glob("*.toml"))
-                if scenes.is_scene(read_toml(p))]  # fmt: skip
+        rows = [
+            measure(p, options.repeats, scratch)
+            for p in sorted((ROOT / "cases").glob("*.toml"))
+            if scenes.is_scene(read_toml(p))
+        ]
     finally:
         shutil.rmtree(scratch, ignore_errors=True)
     options.out.write_text(page(rows))

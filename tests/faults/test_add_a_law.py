@@ -3,7 +3,7 @@
 
 import re
 
-from workshop import LAWS, PYTHON, ROOT, build, pytest_in
+from workshop import LAWS, PYTHON, ROOT, build_library, pytest_in
 
 # A toy: thornton with a plastic line of 4/5 of its slope.
 HEADER = """// SPDX-License-Identifier: GPL-2.0-or-later
@@ -171,13 +171,13 @@ def test_a_new_law_passes_the_battery_and_lands_on_its_theory(copy):
     text, n = re.subn(r"Cavity\)\}", "Cavity, Toy)}", text)
     assert n == 1
     backbones.write_text(text)
-    build(copy, plugin=False)
-    done = pytest_in(copy, "tests/battery", "not liggghts")
+    build_library(copy)
+    done = pytest_in(copy, "tests/battery", only="not liggghts")
     assert done.returncode == 0, done.stdout[-3000:]
-    done = pytest_in(copy, "tests/engines/test_laws.py", "toy and embedded")
+    done = pytest_in(copy, "tests/engines/test_laws.py", only="toy and embedded")
     assert done.returncode == 0, done.stdout[-3000:]
     assert "3 passed" in done.stdout  # 100 steps, 400 steps, dashpot
     (copy / "tests/decks/test_toy.py").write_text(COMMANDS)
-    done = pytest_in(copy, "tests/decks/test_toy.py", "")
+    done = pytest_in(copy, "tests/decks/test_toy.py")
     assert done.returncode == 0, done.stdout[-3000:]
     assert "6 passed" in done.stdout

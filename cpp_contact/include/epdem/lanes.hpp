@@ -27,13 +27,11 @@ constexpr int lane_count = 2;
 typedef double Lanes __attribute__((vector_size(8 * lane_count)));
 using Mask = decltype(Lanes{} < Lanes{});
 
-using std::acos;
-using std::cos;
+using std::cbrt;
 using std::exp;
 using std::expm1;
 using std::fabs;
 using std::log;
-using std::sin;
 using std::sqrt;
 
 template <class T>
@@ -103,12 +101,10 @@ EPDEM_INLINE Lanes sqrt(Lanes x) noexcept {
       if (x[l] == x[l]) x[l] = std::f(x[l]);         \
     return x;                                        \
   }
-EPDEM_LANE_BY_LANE(acos)
-EPDEM_LANE_BY_LANE(cos)
+EPDEM_LANE_BY_LANE(cbrt)
 EPDEM_LANE_BY_LANE(exp)
 EPDEM_LANE_BY_LANE(expm1)
 EPDEM_LANE_BY_LANE(log)
-EPDEM_LANE_BY_LANE(sin)
 #undef EPDEM_LANE_BY_LANE
 
 /// `x` in the lanes of the mask, NaN in the others: for an argument of a library function that only they need.
