@@ -5,13 +5,15 @@ import contextlib
 import math
 import sys
 from collections.abc import Callable, Collection, Iterable, Iterator
-from typing import Literal
+from typing import TYPE_CHECKING, Literal
 
-import pandas as pd
 from rich.console import Console
 from rich.progress import BarColumn, Progress, ProgressColumn, TextColumn, TimeElapsedColumn
 from rich.table import Table
 from rich.text import Text
+
+if TYPE_CHECKING:  # slow to import, and most commands begin by printing nothing
+    import pandas as pd
 
 
 def console() -> Console:
@@ -36,7 +38,7 @@ def cell(value: object) -> str:
     return str(value)
 
 
-def frame_table(title: str, frame: pd.DataFrame) -> Table:
+def frame_table(title: str, frame: "pd.DataFrame") -> Table:
     """A DataFrame as a table; long headings wrap."""
     shown = table(title, map(str, frame.columns), wrap=True)
     for row in frame.itertuples(index=False):

@@ -15,6 +15,7 @@ from ..terminal import bar, console
 from . import crosscheck as cli_crosscheck
 from . import numerics as cli_numerics
 from . import scenes as cli_scene
+from . import sweep as cli_sweep
 from . import theory as cli_theory
 from .options import AsJson, CasePath, Engines, Laws, Out, laws_or_own, refuse
 
@@ -165,6 +166,8 @@ for command in (
     cli_scene.explain,
     cli_scene.soften,
     cli_scene.calibrate,
+    cli_sweep.sweep,
+    cli_sweep.status,
 ):
     app.command()(command)
 app.command("stress", hidden=True, deprecated=True)(cli_numerics.stability)  # its name in version 0.1

@@ -6,10 +6,7 @@ from pathlib import Path
 from typing import Annotated
 
 import typer
-from rich.progress import TextColumn, TimeRemainingColumn
 
-from ..case import scene as scene_case
-from ..case.impact import read_toml
 from ..errors import CaseError
 from ..terminal import bar, console
 from .options import AsJson, CasePath, quantity, refuse
@@ -17,7 +14,10 @@ from .options import AsJson, CasePath, quantity, refuse
 
 def is_scene(path: Path) -> bool:
     """Whether a case file describes a bulk scene. Raises CaseError if it cannot be read."""
-    return scene_case.is_scene(read_toml(path))
+    from ..case.impact import read_toml
+    from ..case.scene import is_scene as holds_scene
+
+    return holds_scene(read_toml(path))
 
 
 def run_scene(
@@ -32,6 +32,8 @@ def run_scene(
     as_json: bool = False,
 ) -> int:
     """Run a scene with a progress bar; print its checks. Exit code: 0, or 1 if a check failed."""
+    from rich.progress import TextColumn, TimeRemainingColumn
+
     from ..engines import scene_engine
     from ..scenes import report
     from ..scenes.run import run
@@ -60,12 +62,13 @@ def run_scene(
 def deck_scene(case: Path, out: Path, *, engine: str = "liggghts", as_json: bool = False) -> None:
     """Write the deck of a scene; it runs by hand."""
     from ..case.impact import named
+    from ..case.scene import load
     from ..engines import scene_engine
     from ..files import write_texts
     from ..scenes.plan import plan
 
     with named(case):
-        files = scene_engine(engine).files(plan(scene_case.load(case)))
+        files = scene_engine(engine).files(plan(load(case)))
     names = [str(f) for f in write_texts(out, files)]
     print(json.dumps({"files": names}) if as_json else "\n".join(names))
 
@@ -90,10 +93,11 @@ def _explained(case: Path) -> list[tuple[str, str, str]]:
 
     with named(case):
         if is_scene(case):
+            from ..case.scene import load as load_scene
             from ..liggghts.scene_deck import deck
             from ..scenes.plan import plan as scene_plan
 
-            return explain.explain(explain.SCENE, deck(scene_plan(scene_case.load(case))))
+            return explain.explain(explain.SCENE, deck(scene_plan(load_scene(case))))
         from ..impacts.experiment import experiment
         from ..impacts.plan import plan
         from ..impacts.prediction import predict

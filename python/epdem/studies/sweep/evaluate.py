@@ -1,0 +1,97 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""One point of a sweep: its case runs, and its numbers are stored; a point that fails is stored with its reason."""
+
+import contextlib
+import errno
+import shutil
+from pathlib import Path
+from typing import Any
+
+import pandas as pd
+
+from ...case import impact, scene
+from ...engines import engine, scene_engine
+from ...errors import CaseError, EngineError, EpdemError
+from ...impacts.comparison import compare
+from ...impacts.engine import refuse
+from ...impacts.experiment import experiment
+from ...impacts.plan import plan
+from ...impacts.prediction import predict
+from ...impacts.run import run_plan
+from ...scenes.run import run as run_scene
+from . import folder as store
+from .folder import Sweep
+from .numbers import numbers_of
+
+FULL = 1 << 16  # bytes; with less of the disk left, whatever failed has failed for want of them
+
+
+def check(sweep: Sweep, number: int) -> CaseError | None:
+    """What is wrong with the case of a point, if anything; nothing runs."""
+    data, place = sweep.data(number), sweep.place(number)
+    try:
+        if sweep.scene:
+            scene.parse(data, place)
+            return None
+        case = impact.parse(data, place)
+        with impact.named(place):
+            for law in sweep.laws or (None,):
+                experiment(case, law)
+    except CaseError as error:
+        return error
+    return None
+
+
+def evaluate(sweep: Sweep, folder: Path, number: int, *, resume: bool = True) -> str:
+    """Run a point and store what came of it; the reason why it failed, or "".
+
+    Raises OSError if results cannot be stored, and whatever stops the process; the point is then as if it had not run,
+    except that a scene with restart files goes on from them.
+    """
+    about = store.begin(sweep, folder, number)
+    place = store.of(sweep, folder, number)
+    try:
+        rows = _scene(sweep, place, resume=resume) if sweep.scene else _impacts(sweep, number, place)
+    except OSError:
+        raise
+    except Exception as error:  # whatever it is, the other points run
+        if shutil.disk_usage(place).free < FULL:
+            raise OSError(errno.ENOSPC, "no space left on the disk", str(place)) from None
+        reason = str(error) if isinstance(error, EpdemError) else f"{type(error).__name__}: {error}"
+        reason = " ".join(reason.replace(f"{place}/", "").split())
+        store.end(sweep, folder, number, about, rows=None, reason=reason)
+        return reason
+    store.end(sweep, folder, number, about, rows=rows)
+    return ""
+
+
+def _impacts(sweep: Sweep, number: int, place: Path) -> dict[str, list[Any]]:
+    """The comparison with theory, a row for every speed, engine and law."""
+    case, tables = impact.parse(sweep.data(number), store.CASE), []
+    tools = [engine(name) for name in sweep.engines]
+    for law in sweep.laws or (None,):
+        x = experiment(case, law)
+        prediction = predict(x)
+        p = plan(x, prediction)
+        for tool in tools:
+            refuse(tool, p, prediction, ranks=sweep.ranks)
+            at = place / x.law.name / tool.name if tool.can.deck else place
+            stage = run_plan(p, tool, at, ranks=sweep.ranks)
+            tables.append(compare(tool.name, x.law.name, stage.impacts, prediction, x.check))
+    found = tables[0] if len(tables) == 1 else pd.concat(tables, ignore_index=True)
+    return {str(name): found[name].tolist() for name in found.columns}
+
+
+def _scene(sweep: Sweep, place: Path, *, resume: bool) -> dict[str, list[Any]]:
+    """The named numbers of a scene, in one row; a scene that was interrupted goes on from its last restart file."""
+    tool = scene_engine(sweep.engines[0])
+
+    def once(go_on: bool) -> dict[str, list[Any]]:
+        found = run_scene(place / store.CASE, tool, out=place, ranks=sweep.ranks, resume=go_on, force=True)
+        row = {"engine": tool.name, **numbers_of(found.results), "passed": found.passed}
+        return {name: [value] for name, value in row.items()}
+
+    if resume and tool.can.restarts and any(place.glob("restart.*.bin")) and not (place / "results.h5").exists():
+        with contextlib.suppress(CaseError, EngineError):  # no whole restart file, or one of another deck
+            return once(True)
+    return once(False)

@@ -1,0 +1,178 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""A sweep on disk: its definition, one folder a point, and in each what became of the point.
+
+A folder has the hash of the case and of what runs it as its name, so that a sweep that has grown or changed finds
+again what is finished. `point.json` is written whole or not at all: state and results never disagree. While a point
+runs it has `running.json` instead.
+"""
+
+import copy
+import hashlib
+import json
+import os
+import socket
+import time
+from dataclasses import asdict, dataclass, field
+from functools import cached_property
+from pathlib import Path
+from typing import Any
+
+import tomlkit
+
+from ...case.impact import read_toml
+from ...case.scene import is_scene
+from ...errors import CaseError
+from ...files import atomic
+from ...stages import inputs_hash
+from .keys import assign, keys_of
+from .points import Point
+
+DEFINITION, CASE, POINTS, FINISHED, STARTED = "sweep.json", "case.toml", "points", "point.json", "running.json"
+WAITING, RUNNING, DONE, FAILED = "waiting", "running", "done", "failed"
+STATES = (WAITING, RUNNING, DONE, FAILED)
+
+
+@dataclass(frozen=True)
+class Sweep:
+    """What is to be done: a case (TOML text), the points, and what runs them; points are numbered from 1."""
+
+    name: str
+    case: str
+    points: tuple[Point, ...]
+    engines: tuple[str, ...]
+    laws: tuple[str, ...] = ()
+    ranks: int = 1
+    versions: dict[str, str] = field(default_factory=dict)  # of the engines
+
+    @cached_property
+    def tables(self) -> dict[str, Any]:
+        """The TOML tables of the case."""
+        return tomlkit.parse(self.case).unwrap()
+
+    @property
+    def scene(self) -> bool:
+        """Whether the points are bulk scenes."""
+        return is_scene(self.tables)
+
+    @cached_property
+    def _document(self) -> tomlkit.TOMLDocument:
+        return tomlkit.parse(self.case)
+
+    @cached_property
+    def units(self) -> dict[str, str | None]:
+        """The SI unit of each key that the points set; None for what is no quantity."""
+        keys = keys_of(self.tables)
+        return {name: keys[name].unit for point in self.points[:1] for name in point}
+
+    def text(self, number: int) -> str:
+        """The case file of a point, comments and all."""
+        for key, value in self.points[number - 1].items():  # every point sets the same keys
+            assign(self._document, key, value)
+        return self._document.as_string()
+
+    def data(self, number: int) -> dict[str, Any]:
+        """The TOML tables of a point's case."""
+        tables = copy.deepcopy(self.tables)
+        for key, value in self.points[number - 1].items():
+            assign(tables, key, value)
+        return tables
+
+    @cached_property
+    def identities(self) -> tuple[str, ...]:
+        """The names of the points' folders."""
+        rest = repr((self.engines, self.laws, self.ranks)).encode()
+        return tuple(
+            hashlib.sha256(self.text(n).encode() + rest).hexdigest()[:12] for n in range(1, len(self.points) + 1)
+        )
+
+    def place(self, number: int) -> str:
+        """The point in words, for messages."""
+        said = ", ".join(f"{key} = {value}" for key, value in self.points[number - 1].items())
+        return f"point {number} ({said})"
+
+    def inputs(self, number: int) -> str:
+        """Hash of all that the result of a point depends on."""
+        return inputs_hash([], self.identities[number - 1], sorted(self.versions.items()))
+
+
+def write(sweep: Sweep, folder: Path) -> None:
+    """Store the definition in `folder`."""
+    with atomic(folder / DEFINITION) as temporary:
+        temporary.write_text(json.dumps(asdict(sweep)))
+
+
+def read(folder: Path) -> Sweep:
+    """The definition that `write` stored. Raises CaseError."""
+    try:
+        raw: dict[str, Any] = json.loads((folder / DEFINITION).read_text())
+        return Sweep(**(raw | {key: tuple(raw[key]) for key in ("points", "engines", "laws")}))
+    except (OSError, ValueError, KeyError, TypeError):
+        raise CaseError(f"{folder}: not a folder of a sweep; 'epdem sweep CASE --out {folder}' makes one") from None
+
+
+def base_text(path: Path) -> str:
+    """The text of a case file. Raises CaseError as `read_toml` does."""
+    read_toml(path)
+    return path.read_text(encoding="utf-8-sig")
+
+
+def of(sweep: Sweep, folder: Path, number: int) -> Path:
+    """The folder of a point."""
+    return folder / POINTS / sweep.identities[number - 1]
+
+
+def record(sweep: Sweep, folder: Path, number: int) -> dict[str, Any]:
+    """What is stored of a point; {"state": "waiting"} if that is nothing, or if its inputs have changed."""
+    place = of(sweep, folder, number)
+    for name in (FINISHED, STARTED):
+        try:
+            found = json.loads((place / name).read_text())
+        except (OSError, ValueError):
+            continue
+        if isinstance(found, dict) and found.get("inputs") == sweep.inputs(number) and found.get("state") in STATES:
+            return found
+    return {"state": WAITING}
+
+
+def records(sweep: Sweep, folder: Path) -> list[dict[str, Any]]:
+    """`record` of every point, in their order."""
+    return [record(sweep, folder, n) for n in range(1, len(sweep.points) + 1)]
+
+
+def begin(sweep: Sweep, folder: Path, number: int) -> dict[str, Any]:
+    """Make a point's folder, write its case, and mark it as running; what is to be given to `end`."""
+    place = of(sweep, folder, number)
+    place.mkdir(parents=True, exist_ok=True)
+    (place / FINISHED).unlink(missing_ok=True)
+    with atomic(place / CASE, sync=False) as temporary:
+        temporary.write_text(sweep.text(number))
+    about = {
+        "state": RUNNING,
+        "reason": "",
+        "inputs": sweep.inputs(number),
+        "host": socket.gethostname(),
+        "pid": os.getpid(),
+        "job": os.environ.get("SLURM_JOB_ID", ""),
+        "started": time.strftime("%Y-%m-%d %H:%M:%S"),
+        "begin": time.time(),
+    }
+    (place / STARTED).write_text(json.dumps(about))
+    return about
+
+
+def end(
+    sweep: Sweep, folder: Path, number: int, about: dict[str, Any], *, rows: dict[str, Any] | None, reason: str = ""
+) -> None:
+    """Store a point's results (columns of rows), or the reason why there are none."""
+    place = of(sweep, folder, number)
+    state = {"state": FAILED if rows is None else DONE, "reason": reason, "seconds": time.time() - about["begin"]}
+    with atomic(place / FINISHED, sync=False) as temporary:
+        temporary.write_text(json.dumps(about | state | {"rows": rows or {}}))
+    (place / STARTED).unlink(missing_ok=True)
+
+
+def to_do(sweep: Sweep, folder: Path, *, retry_failed: bool) -> list[int]:
+    """The numbers of the points that are to run: whatever is not finished; one of a kind where points are alike."""
+    done = (DONE,) if retry_failed else (DONE, FAILED)
+    wanted = [n for n, about in enumerate(records(sweep, folder), start=1) if about["state"] not in done]
+    return list({sweep.identities[n - 1]: n for n in reversed(wanted)}.values())[::-1]

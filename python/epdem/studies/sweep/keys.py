@@ -1,0 +1,127 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""The keys that a case or scene can have, by their dotted names, and how a value is set in one."""
+
+import difflib
+import types
+from collections.abc import Iterator
+from dataclasses import dataclass
+from typing import Annotated, Any, Literal, Union, get_args, get_origin
+
+import tomlkit
+from pydantic import BaseModel
+
+from ...case.impact import Case, LawChoice, Quantity
+from ...case.scene import SceneCase, SceneMaterial, is_scene
+from ...errors import CaseError
+from ...laws.library import laws
+
+
+@dataclass(frozen=True)
+class Key:
+    """What a key takes: a quantity of the unit `unit`, a whole number, or anything else."""
+
+    unit: str | None = None
+    whole: bool = False
+
+
+def keys_of(data: dict[str, Any]) -> dict[str, Key]:
+    """Every key that the case or scene `data` (TOML tables) has or can have, by its dotted name."""
+    found: dict[str, Key] = {}
+    for place, key in _walk(SceneCase if is_scene(data) else Case, (), data, data):
+        name = ".".join(place)
+        if name not in found or found[name] == Key():
+            found[name] = key
+    return found
+
+
+def _walk(kind: Any, place: tuple[str, ...], data: Any, case: dict[str, Any]) -> Iterator[tuple[tuple[str, ...], Key]]:
+    origin, arguments = get_origin(kind), get_args(kind)
+    if origin is Annotated:
+        for mark in arguments[1:]:
+            if isinstance(mark, Quantity):
+                yield place, Key(unit=mark.si)
+                return
+        yield from _walk(arguments[0], place, data, case)
+    elif origin in (Union, types.UnionType):
+        for one in arguments:
+            yield from _walk(one, place, data, case)
+    elif origin is dict:
+        for name in data if isinstance(data, dict) else ():
+            yield from _walk(arguments[1], (*place, name), data[name], case)
+    elif origin is list:
+        yield place, Key()
+        for n, entry in enumerate(data if isinstance(data, list) else ()):
+            yield from _walk(arguments[0], (*place, str(n)), entry, case)
+    elif isinstance(kind, type) and issubclass(kind, BaseModel):
+        yield from _fields(kind, place, data if isinstance(data, dict) else {}, case)
+    elif kind is not type(None):
+        yield place, Key(whole=kind is int)
+
+
+def _fields(
+    model: type[BaseModel], place: tuple[str, ...], data: dict[str, Any], case: dict[str, Any]
+) -> Iterator[tuple[tuple[str, ...], Key]]:
+    kind = model.model_fields.get("kind")
+    if kind and get_origin(kind.annotation) is Literal and data.get("kind") not in get_args(kind.annotation):
+        return  # another kind of scene
+    for name, field in model.model_fields.items():
+        mark = next((m for m in field.metadata if isinstance(m, Quantity)), None)
+        key = field.alias or name
+        if mark:
+            yield (*place, key), Key(unit=mark.si)
+        else:
+            yield from _walk(field.annotation, (*place, key), data.get(key), case)
+    if issubclass(model, LawChoice | SceneMaterial):
+        for parameter, found in _of_law(case, ratio=issubclass(model, LawChoice)):
+            yield (*place, parameter), found
+
+
+def _of_law(case: dict[str, Any], *, ratio: bool) -> Iterator[tuple[str, Key]]:
+    """Parameters of the case's law, and the ratio that can stand for its strength."""
+    law = laws().get(str(case.get("law", {}).get("name")))
+    if law is None:
+        return
+    for p in law.parameters:
+        yield p.name, Key(unit=p.unit)
+        if ratio and p == law.strength:
+            yield f"{p.name}_ratio", Key(unit="1")
+
+
+def known(key: str, keys: dict[str, Key], place: str) -> Key:
+    """The key of that name. Raises CaseError that names the nearest ones."""
+    if key in keys:
+        return keys[key]
+    last = [name for name in keys if name.split(".")[-1] == key.split(".")[-1]]
+    near = [*difflib.get_close_matches(key, keys, n=1, cutoff=0.0), *last]
+    nearest = ", ".join(list(dict.fromkeys(near))[:4])
+    raise CaseError(f"{place}: the case has no key {key!r}; the nearest: {nearest}")
+
+
+def _rivals(key: str, data: dict[str, Any]) -> tuple[str, ...]:
+    """Keys that say the same as `key` in another way, so that only one of them may stand in a case."""
+    if key == "numerics.error":
+        return ("numerics.steps_in_contact",)
+    if key == "numerics.steps_in_contact":
+        return ("numerics.error",)
+    law = laws().get(str(data.get("law", {}).get("name")))
+    if law and law.strength and key in (f"law.{law.strength.name}", f"law.{law.strength.name}_ratio"):
+        return (f"law.{law.strength.name}", f"law.{law.strength.name}_ratio")
+    return ()
+
+
+def assign(document: Any, key: str, value: Any) -> None:
+    """Set `key` in a TOML document or plain tables; tables that are missing are made, what it replaces is removed."""
+    *way, last = key.split(".")
+    for rival in _rivals(key, document):
+        table, name = rival.rsplit(".", 1)
+        if rival != key and name in document.get(table, {}):
+            del document[table][name]
+    table = document
+    for name in way:
+        if isinstance(table, list):
+            table = table[int(name)]
+            continue
+        if name not in table:
+            table[name] = tomlkit.table() if isinstance(document, tomlkit.TOMLDocument) else {}
+        table = table[name]
+    table[int(last) if isinstance(table, list) else last] = value

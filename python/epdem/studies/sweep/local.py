@@ -1,0 +1,115 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""A pool of processes: a process that dies takes its own item with it and no other; none outlives us."""
+
+import contextlib
+import ctypes
+import multiprocessing
+import os
+import signal
+from collections.abc import Callable, Iterable, Iterator
+from multiprocessing.connection import Connection, wait
+from multiprocessing.process import BaseProcess
+from typing import Any
+
+from ...errors import Stopped
+
+_FORK = multiprocessing.get_context("fork")  # with all that is imported here: a start takes a few milliseconds
+_PR_SET_PDEATHSIG = 1
+_libc = ctypes.CDLL(None)
+
+
+class Died(Exception):
+    """The process that worked at an item is gone; says how."""
+
+
+def cores() -> int:
+    """How many processes can work here at once."""
+    return len(os.sched_getaffinity(0))
+
+
+def each(function: Callable[[Any], Any], items: Iterable[Any], jobs: int) -> Iterator[tuple[Any, Any]]:
+    """(item, function(item)) as they come, by `jobs` processes; the result of an item whose process died is a Died.
+
+    Raises what `function` raises. On any exception, Ctrl-C too, all processes are stopped.
+    """
+    waiting = iter(items)
+    team: dict[Connection, tuple[BaseProcess, Any]] = {}
+    try:
+        for item in waiting:
+            _start(function, item, team)
+            if len(team) >= jobs:
+                break
+        while team:
+            for ready in wait(list(team)):
+                assert isinstance(ready, Connection)
+                process, item = team.pop(ready)
+                try:
+                    good, result = ready.recv()
+                except (EOFError, OSError):
+                    process.join()
+                    ready.close()
+                    good, result = True, Died(_how(process.exitcode))
+                if not good:
+                    team[ready] = process, item
+                    raise result
+                following = next(waiting, None)
+                if isinstance(result, Died):
+                    if following is not None:
+                        _start(function, following, team)
+                elif following is None:
+                    _dismiss(process, ready)
+                else:
+                    ready.send(following)
+                    team[ready] = process, following
+                yield item, result
+    finally:
+        for process, _ in team.values():
+            process.terminate()
+        for pipe, (process, _) in team.items():
+            process.join()
+            pipe.close()
+
+
+def _how(code: int | None) -> str:
+    if code is not None and code < 0:
+        return f"its process was ended by signal {-code}{' (out of memory?)' if code == -9 else ''}"
+    return f"its process ended with exit code {code}"
+
+
+def _start(function: Callable[[Any], Any], item: Any, team: dict[Connection, tuple[BaseProcess, Any]]) -> None:
+    ours, theirs = _FORK.Pipe()
+    process = _FORK.Process(target=_work, args=(function, theirs, [*team, ours], os.getpid()))
+    process.start()
+    theirs.close()
+    ours.send(item)
+    team[ours] = process, item
+
+
+def _dismiss(process: BaseProcess, pipe: Connection) -> None:
+    with contextlib.suppress(OSError):
+        pipe.send(None)
+    process.join()
+    pipe.close()
+
+
+def _stop(number: int, frame: object) -> None:
+    raise Stopped
+
+
+def _work(function: Callable[[Any], Any], pipe: Connection, others: list[Connection], parent: int) -> None:
+    """In a process of the pool: item after item, until told to end or alone."""
+    signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C reaches all: our parent stops us in good order
+    signal.signal(signal.SIGTERM, _stop)
+    _libc.prctl(_PR_SET_PDEATHSIG, signal.SIGTERM)  # a parent that is killed cannot
+    for other in others:  # or the end of a pipe would stay open here, and nobody would see that it has ended
+        other.close()
+    try:
+        while os.getppid() == parent and (item := pipe.recv()) is not None:
+            try:
+                answer = True, function(item)
+            except Exception as error:
+                answer = False, error
+            pipe.send(answer)
+    except (Stopped, EOFError, OSError):
+        os._exit(1)  # nothing of our parent's is to be flushed or removed by us
+    os._exit(0)

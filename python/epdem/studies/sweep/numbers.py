@@ -1,0 +1,31 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""The numbers of a scene that have names: what its rows end at and reach, and what its checks have found."""
+
+import re
+
+from ...scenes.columns import UNITS
+from ...scenes.results import SceneResults
+
+UNIT_OF_CHECK = {"floor_load": "N", "mass_flow": "kg/s"}
+
+
+def numbers_of(results: SceneResults) -> dict[str, float]:
+    """COLUMN_last, COLUMN_max and COLUMN_mean (over the last fifth) of every column of the rows, and each check.
+
+    A check has the name of what it measures, without the numbers in it: "mass flow / Beverloo" is mass_flow.
+    """
+    rows, found = results.tables["rows"], {}
+    tail = rows[rows["step"] > 0.8 * rows["step"].max()]
+    for name in rows.columns.drop(["step", "time"]):
+        found[f"{name}_last"] = float(rows[name].iloc[-1])
+        found[f"{name}_max"] = float(rows[name].max())
+        found[f"{name}_mean"] = float(tail[name].mean())
+    for row in results.tables["checks"].to_dict("records"):
+        said = re.split(r" / |:", row["check"])[0]
+        found["_".join(re.findall(r"[a-z]+", said.lower()))] = float(row["value"])
+    return found
+
+
+def unit(name: str) -> str | None:
+    """The SI unit of a number of `numbers_of`."""
+    return UNITS.get(re.sub(r"_(last|max|mean)$", "", name), UNIT_OF_CHECK.get(name))

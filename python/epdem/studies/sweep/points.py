@@ -1,0 +1,217 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Points of a sweep: ranges, lists and tables of values of keys; grids and latin hypercubes."""
+
+import csv
+import itertools
+import math
+import re
+import tomllib
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from ...case.units import to_si
+from ...errors import CaseError
+from .keys import Key, known
+
+Value = Any  # as it stands in a case file: text, number, true or false, list, table
+Point = dict[str, Value]
+MOST = 1_000_000  # points of a sweep
+_SPLIT = re.compile(r"\s*([-+]?[\d.]+(?:[eE][-+]?\d+)?)\s*(.*?)\s*")
+_HEAD = re.compile(r"\s*(\S+)\s*(?:\[(.*)\])?\s*")
+
+
+@dataclass(frozen=True)
+class Range:
+    """From `low` to `high`, both in `unit` ("" for a plain number), evenly spaced, or so in the logarithm."""
+
+    low: float
+    high: float
+    unit: str
+    count: int | None
+    log: bool
+    whole: bool
+
+    def at(self, share: float) -> Value:
+        """The value at `share` (0 to 1) of the way."""
+        x = self.low * (self.high / self.low) ** share if self.log else self.low + share * (self.high - self.low)
+        if self.whole:
+            return round(x)
+        text = f"{x:.13g}"  # without the round-off of this line
+        return f"{text} {self.unit}" if self.unit else float(text)
+
+    def values(self) -> list[Value]:
+        """All values of a grid."""
+        assert self.count is not None
+        return list(dict.fromkeys(self.at(k / (self.count - 1)) for k in range(self.count)))
+
+
+@dataclass(frozen=True)
+class Listed:
+    """Values one by one."""
+
+    all: tuple[Value, ...]
+
+    def at(self, share: float) -> Value:
+        """The value at `share` (0 to 1) of the list."""
+        return self.all[min(int(share * len(self.all)), len(self.all) - 1)]
+
+    def values(self) -> list[Value]:
+        """All values."""
+        return list(self.all)
+
+
+Axis = Range | Listed
+
+
+def axis(text: str, key: Key, place: str) -> Axis:
+    """What a person writes as the values of a key: "1 mm,2 mm", "0.5 GPa..2 GPa:16", "log:1 m/s..100 m/s:9".
+
+    Raises CaseError, which begins with `place`.
+    """
+    log = text.strip().startswith("log:")
+    body = text.strip().removeprefix("log:")
+    if ".." not in body:
+        if log:
+            raise CaseError(f"{place} = {text!r}: log: needs a range, as log:1 m/s..100 m/s:9")
+        return Listed(tuple(_value(part, place) for part in _parts(body)))
+    low_text, _, high_text = body.partition("..")
+    high_text, _, count_text = high_text.partition(":")
+    (low, low_unit), (high, high_unit) = (_number(part, text, place) for part in (low_text, high_text))
+    unit = low_unit or high_unit
+    if high_unit not in ("", unit):
+        try:
+            high = to_si(f"{high!r} {high_unit}", unit)
+        except ValueError as error:
+            raise CaseError(f"{place} = {text!r}: {error}") from None
+    if count_text and not (count_text.strip().isdecimal() and 2 <= int(count_text) <= MOST):
+        raise CaseError(f"{place} = {text!r}: {count_text!r} is not a number of values from 2 to {MOST}")
+    if low == high or (log and not (low > 0 and high > 0)):
+        needs = "two limits > 0" if log else "two limits that differ"
+        raise CaseError(f"{place} = {text!r}: a range needs {needs}")
+    return Range(low, high, unit, int(count_text) if count_text else None, log, key.whole)
+
+
+def _number(part: str, text: str, place: str) -> tuple[float, str]:
+    found = _SPLIT.fullmatch(part)
+    try:
+        number, unit = (float(found[1]), found[2]) if found else (math.nan, "")
+    except ValueError:
+        number, unit = math.nan, ""
+    if not math.isfinite(number):
+        raise CaseError(f"{place} = {text!r}: {part!r} is not a number with a unit; write 0.5 GPa..2 GPa:16")
+    return number, unit
+
+
+def _parts(text: str) -> list[str]:
+    """The parts between commas, but not those in quotes and brackets."""
+    depth, quoted, parts = 0, False, [""]
+    for c in text:
+        quoted ^= c == '"'
+        depth += 0 if quoted else (c in "[{") - (c in "]}")
+        if c == "," and depth == 0 and not quoted:
+            parts.append("")
+        else:
+            parts[-1] += c
+    return parts
+
+
+def _value(text: str, place: str) -> Value:
+    """A value of TOML, or else a text."""
+    if not text.strip():
+        raise CaseError(f"{place}: a value is empty; write one between the commas, or remove a comma")
+    try:
+        found = tomllib.loads(f"x = {text.strip()}")
+    except tomllib.TOMLDecodeError:
+        return text.strip()
+    value = found.get("x")
+    return value if len(found) == 1 and isinstance(value, str | int | float | list | dict) else text.strip()
+
+
+def settings(texts: Sequence[str]) -> dict[str, str]:
+    """KEY=VALUES as a command gives them. Raises CaseError."""
+    found: dict[str, str] = {}
+    for text in texts:
+        key, equals, values = text.partition("=")
+        if not equals or not key.strip() or not values.strip():
+            raise CaseError(f"--set {text!r}: write KEY=VALUES, as impact.body.radius='1 mm,2 mm'")
+        if key.strip() in found:
+            raise CaseError(f"--set {key.strip()}: given twice; write all its values behind one")
+        found[key.strip()] = values
+    return found
+
+
+def axes(given: Mapping[str, str | Sequence[Value]], keys: dict[str, Key]) -> dict[str, Axis]:
+    """The values of each key, from text as in `axis` or from a sequence of values. Raises CaseError."""
+    found: dict[str, Axis] = {}
+    for name, values in given.items():
+        key = known(name, keys, f"--set {name}")
+        if isinstance(values, str):
+            found[name] = axis(values, key, f"--set {name}")
+        else:
+            found[name] = Listed(tuple(with_unit(v, key) for v in values))
+            if not found[name].values():
+                raise CaseError(f"--set {name}: no values; give at least one")
+    return found
+
+
+def with_unit(value: Value, key: Key) -> Value:
+    """A value of a program as a case file has it: a plain number of a quantity is in SI; numpy's become Python's."""
+    value = value.item() if isinstance(value, np.generic) else value
+    if hasattr(value, "magnitude"):  # a quantity of pint
+        return f"{value:~C}"
+    if key.unit not in (None, "1") and isinstance(value, int | float) and not isinstance(value, bool):
+        return f"{float(value)!r} {key.unit}"
+    return value
+
+
+def grid(all_axes: dict[str, Axis]) -> list[Point]:
+    """Every combination of the values. Raises CaseError."""
+    for name, values in all_axes.items():
+        if isinstance(values, Range) and values.count is None:
+            raise CaseError(f"--set {name}: how many values? write LOW..HIGH:COUNT, or add --latin-hypercube")
+    columns = {name: values.values() for name, values in all_axes.items()}
+    total = math.prod(map(len, columns.values()))
+    if total > MOST:
+        raise CaseError(f"--set: {total} points, at most {MOST}; take fewer values, or --latin-hypercube")
+    return [dict(zip(columns, values, strict=True)) for values in itertools.product(*columns.values())]
+
+
+def latin_hypercube(all_axes: dict[str, Axis], count: int, seed: int) -> list[Point]:
+    """`count` points; each axis is cut into as many equal parts, and each part holds one point."""
+    if not 1 <= count <= MOST:
+        raise CaseError(f"--latin-hypercube {count}: must lie in [1, {MOST}]")
+    random = np.random.default_rng(seed)
+    shares = {name: ((random.permutation(count) + random.random(count)) / count).tolist() for name in all_axes}
+    return [{name: values.at(shares[name][n]) for name, values in all_axes.items()} for n in range(count)]
+
+
+def table(path: Path, keys: dict[str, Key]) -> list[Point]:
+    """The points in a CSV file: a column per key, "KEY" with units in the cells or "KEY [UNIT]". Raises CaseError."""
+    try:
+        with path.open(newline="", encoding="utf-8-sig") as stream:
+            heads, *rows = [row for row in csv.reader(stream) if any(map(str.strip, row))] or [[]]
+    except (OSError, UnicodeDecodeError, csv.Error) as error:
+        raise CaseError(f"--points {path}: cannot be read ({error}); give a CSV file") from None
+    columns = []
+    for head in heads:
+        found = _HEAD.fullmatch(head)
+        if found is None:
+            raise CaseError(f"--points {path}: the heading {head!r} is not KEY or KEY [UNIT]")
+        known(found[1], keys, f"--points {path}")
+        columns.append((found[1], found[2] or ""))
+    if not rows:
+        raise CaseError(f"--points {path}: no points; write a line of keys and a line of values for each point")
+    if len({name for name, _ in columns}) < len(columns):
+        raise CaseError(f"--points {path}: a key has two columns; keep one")
+    points = []
+    for n, row in enumerate(rows, start=1):
+        if len(row) != len(columns):
+            raise CaseError(f"--points {path}: point {n} has {len(row)} values, the heading {len(columns)} keys")
+        cells = zip(columns, row, strict=True)
+        place = f"--points {path}, point {n}"
+        points.append({name: _value(f"{cell.strip()} {unit}".strip(), place) for (name, unit), cell in cells})
+    return points

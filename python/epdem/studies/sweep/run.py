@@ -1,0 +1,176 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""A sweep from its command to its table: points, checks, what is missing, and who runs it."""
+
+from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+import pandas as pd
+
+from ...case.impact import read_toml
+from ...case.scene import is_scene
+from ...engines import engine, scene_engine
+from ...errors import CaseError, EngineError
+from ...folders import claim
+from . import folder as store
+from . import local, points, table
+from .evaluate import check, evaluate
+from .folder import Sweep
+from .keys import keys_of
+from .points import Point, Value
+
+Settings = Mapping[str, str | Sequence[Value]]
+Tell = Callable[[int, int], None]  # (points that have run, of so many)
+
+
+@dataclass(frozen=True)
+class SweepOutcome:
+    """What a sweep gives its caller: its table (see `table.collect`) and how many points ran just now."""
+
+    sweep: Sweep
+    folder: Path
+    table: pd.DataFrame
+    ran: int
+
+    def count(self, state: str) -> int:
+        """How many points are in a state."""
+        return int(self.table[self.table["status"] == state]["point"].nunique())
+
+    @property
+    def passed(self) -> bool:
+        """Whether every point is finished and within its tolerances."""
+        return bool((self.table["status"] == store.DONE).all() and self.table["passed"].all())
+
+
+def plan(
+    case: Path,
+    settings: Settings,
+    *,
+    engines: Sequence[str] = (),
+    laws: Sequence[str] = (),
+    ranks: int = 1,
+    table: Path | None = None,
+    latin_hypercube: int | None = None,
+    seed: int = 1,
+) -> Sweep:
+    """A sweep with all its points; their cases are not yet checked. Raises CaseError, EngineError."""
+    data = read_toml(case)
+    keys, scene = keys_of(data), is_scene(data)
+    axes = points.axes(settings, keys)
+    rows: list[Point] = points.table(table, keys) if table else [{}]
+    if both := set(axes) & set(rows[0]):
+        raise CaseError(f"--set {min(both)}: the key is in {table} too; keep one")
+    if not axes and not table:
+        raise CaseError("a sweep needs points: --set KEY=VALUES or --points FILE.csv")
+    if latin_hypercube is not None and not axes:
+        raise CaseError("--latin-hypercube needs ranges; add --set KEY=LOW..HIGH")
+    many = points.grid(axes) if latin_hypercube is None else points.latin_hypercube(axes, latin_hypercube, seed)
+    chosen = tuple(dict.fromkeys(engines)) or ("liggghts",)
+    if scene and (len(chosen) > 1 or laws):
+        raise CaseError("a scene has its own law and runs on one engine; leave out --law, or sweep law.name")
+    return Sweep(
+        name=str(data.get("case", {}).get("name", case.stem)),
+        case=store.base_text(case),
+        points=tuple(row | point for row in rows for point in many),
+        engines=chosen,
+        laws=tuple(dict.fromkeys(laws)),
+        ranks=ranks,
+        versions=_versions(chosen, scene=scene),
+    )
+
+
+def _versions(engines: Sequence[str], *, scene: bool) -> dict[str, str]:
+    tools = [scene_engine(name) if scene else engine(name) for name in engines]
+    for tool in tools:
+        if reason := tool.missing():
+            raise EngineError(f"engine {tool.name}: {reason}")
+    return {tool.name: tool.version() for tool in tools}
+
+
+def check_points(sweep: Sweep, numbers: Iterable[int], jobs: int | None = None) -> None:
+    """Raise CaseError for the first point whose case is wrong; nothing runs."""
+    wrong = {n: e for n, e in local.each(partial(check, sweep), numbers, jobs or local.cores()) if e}
+    if wrong:
+        first = wrong[min(wrong)]
+        raise first if isinstance(first, CaseError) else CaseError(f"{sweep.place(min(wrong))}: {first}")
+
+
+def run(
+    sweep: Sweep,
+    folder: Path,
+    *,
+    jobs: int | None = None,
+    retry_failed: bool = False,
+    force: bool = False,
+    tell: Tell = lambda done, total: None,
+) -> SweepOutcome:
+    """Run what of a sweep is missing or changed, by `jobs` processes on this machine, and write its table.
+
+    Raises CaseError before anything runs if a point is wrong, OSError if results cannot be stored. Whatever ends it,
+    the same call goes on where it ended.
+    """
+    numbers = store.to_do(sweep, folder, retry_failed=retry_failed)
+    check_points(sweep, numbers, jobs)
+    with claim(folder, force=force):
+        store.write(sweep, folder)
+        numbers = store.to_do(sweep, folder, retry_failed=retry_failed)
+        tell(0, len(numbers))
+        work = partial(evaluate, sweep, folder)
+        for done, (number, result) in enumerate(local.each(work, numbers, jobs or default_jobs(sweep)), start=1):
+            if isinstance(result, local.Died):
+                _died(sweep, folder, number, result)
+            tell(done, len(numbers))
+        return SweepOutcome(sweep, folder, table.write(sweep, folder), len(numbers))
+
+
+def default_jobs(sweep: Sweep) -> int:
+    """As many processes as there are cores for their ranks."""
+    return max(1, local.cores() // sweep.ranks)
+
+
+def _died(sweep: Sweep, folder: Path, number: int, how: local.Died) -> None:
+    store.end(sweep, folder, number, store.begin(sweep, folder, number), rows=None, reason=str(how))
+
+
+def status(folder: Path) -> dict[str, Any]:
+    """How far a sweep is: counts by state, times [s], reasons of failed points, and whether it is running now."""
+    sweep = store.read(folder)
+    found = store.records(sweep, folder)
+    alive = running(folder)
+    states = [store.WAITING if a["state"] == store.RUNNING and not alive else a["state"] for a in found]
+    seconds = [a["seconds"] for a in found if "seconds" in a]
+    counts = {state: states.count(state) for state in store.STATES}
+    failed = [
+        {"point": n, "folder": str(store.of(sweep, folder, n)), "reason": a["reason"]}
+        for n, a in enumerate(found, start=1)
+        if a["state"] == store.FAILED
+    ]
+    left = counts[store.WAITING] + counts[store.RUNNING]
+    mean = sum(seconds) / len(seconds) if seconds else float("nan")
+    return {
+        "case": sweep.name,
+        "points": len(found),
+        **counts,
+        "seconds": sum(seconds),
+        "longest": max(seconds, default=float("nan")),
+        "work_left": left * mean if left else 0.0,
+        "failures": failed,
+    }
+
+
+def running(folder: Path) -> bool:
+    """Whether a process on this machine is at work in the folder of a sweep now."""
+    import fcntl
+
+    from ...folders import LOCK
+
+    try:
+        with (folder / LOCK).open() as lock:
+            fcntl.flock(lock, fcntl.LOCK_SH | fcntl.LOCK_NB)
+    except FileNotFoundError:
+        return False
+    except OSError:
+        return True
+    return False

@@ -1,0 +1,185 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Points of a sweep: what a person writes, what is refused, and how they fill the space."""
+
+import math
+import re
+from itertools import product
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from epdem.case.impact import read_toml
+from epdem.errors import CaseError
+from epdem.studies.sweep import points
+from epdem.studies.sweep.folder import Sweep
+from epdem.studies.sweep.keys import assign, keys_of
+
+CASES = Path(__file__).parents[2] / "cases"
+STEEL = CASES / "steel_wall.toml"
+KEYS = keys_of(read_toml(STEEL))
+
+
+def values(text: str, key: str = "impact.body.radius") -> list:
+    return points.axes({key: text}, KEYS)[key].values()
+
+
+@pytest.mark.parametrize(
+    ("text", "expected"),
+    [
+        ("1 mm,2 mm, 5 mm", ["1 mm", "2 mm", "5 mm"]),
+        ("7 mm", ["7 mm"]),
+        ("0.5 GPa..2 GPa:4", ["0.5 GPa", "1 GPa", "1.5 GPa", "2 GPa"]),
+        ("0.1..0.5:5", [0.1, 0.2, 0.3, 0.4, 0.5]),
+        ("1..3 mm:3", ["1 mm", "2 mm", "3 mm"]),
+        ("1 mm..0.3 cm:3", ["1 mm", "2 mm", "3 mm"]),
+        ("2 mm..1 mm:2", ["2 mm", "1 mm"]),
+        ("log:1 m/s..100 m/s:3", ["1 m/s", "10 m/s", "100 m/s"]),
+        ("log:1e-3..1e3:4", [0.001, 0.1, 10.0, 1000.0]),
+        ("thornton,cavity", ["thornton", "cavity"]),
+        ("true,3,2.5", [True, 3, 2.5]),
+        ('["1 m/s", "2 m/s"],["3 m/s"]', [["1 m/s", "2 m/s"], ["3 m/s"]]),
+        ('{from = "1 m/s", to = "2 m/s", count = 3}', [{"from": "1 m/s", "to": "2 m/s", "count": 3}]),
+    ],
+)
+def test_values_are_read_as_a_person_writes_them(text, expected):
+    assert values(text) == expected
+
+
+def test_whole_numbers_stay_whole():
+    assert values("100..400:4", "numerics.steps_in_contact") == [100, 200, 300, 400]
+    assert all(isinstance(v, int) for v in values("log:5..50:4", "numerics.steps_in_contact"))
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ("1 mm..2 mm", "how many values"),
+        ("1 mm..2 mm:1", "'1' is not a number of values"),
+        ("1 mm..2 mm:x", "'x' is not a number of values"),
+        ("1 mm..1 mm:3", "two limits that differ"),
+        ("1 mm..2 kg:3", "wrong dimension"),
+        ("one..2 mm:3", "'one' is not a number"),
+        ("log:-1 mm..2 mm:3", "two limits > 0"),
+        ("log:1 mm", "needs a range"),
+        ("1 mm,,2 mm", "a value is empty"),
+    ],
+)
+def test_values_that_make_no_sense_are_refused_with_their_key(text, words):
+    with pytest.raises(CaseError, match=words) as refused:
+        points.grid(points.axes({"impact.body.radius": text}, KEYS))
+    assert "impact.body.radius" in str(refused.value)
+
+
+@pytest.mark.parametrize(
+    ("wrong", "nearest"),
+    [
+        ("impact.radius", "impact.body.radius"),
+        ("law.yeild_pressure", "law.yield_pressure"),
+        ("law.yield_stress", "materials.steel.yield_stress"),
+        ("materials.iron.density", "materials.steel.density"),
+        ("numeric.phases", "numerics.phases"),
+        ("viscous.restitutoin", "viscous.restitution"),
+    ],
+)
+def test_a_wrong_key_is_answered_by_the_nearest(wrong, nearest):
+    with pytest.raises(CaseError, match=re.escape(f"no key '{wrong}'")) as refused:
+        points.axes({wrong: "1"}, KEYS)
+    assert nearest in str(refused.value).split("nearest: ")[1]
+
+
+@pytest.mark.parametrize("path", sorted(CASES.glob("*.toml")), ids=lambda p: p.stem)
+def test_every_key_that_stands_in_a_case_of_ours_can_be_set(path):
+    data, found = read_toml(path), []
+
+    def walk(value, place):
+        if isinstance(value, dict):
+            for name, below in value.items():
+                walk(below, (*place, name))
+        elif isinstance(value, list) and any(isinstance(v, dict) for v in value):
+            for n, below in enumerate(value):
+                walk(below, (*place, str(n)))
+        else:
+            found.append((".".join(place), value))
+
+    walk(data, ())
+    assert len(found) > 10
+    keys = keys_of(data)
+    for key, value in found:
+        assert key in keys
+        text = isinstance(value, str) and bool(re.fullmatch(r"[-\d.e]+ \S+", value))
+        assert (keys[key].unit not in (None, "1")) == text, key
+
+
+def test_a_grid_is_every_combination_in_order():
+    axes = points.axes({"impact.body.radius": "1 mm,2 mm", "law.yield_pressure": "1 GPa..3 GPa:3"}, KEYS)
+    expected = product(["1 mm", "2 mm"], ["1 GPa", "2 GPa", "3 GPa"])
+    assert [tuple(p.values()) for p in points.grid(axes)] == list(expected)
+    huge = points.axes({k: "1..9:9999" for k in ("impact.body.radius", "law.yield_pressure")}, KEYS)
+    with pytest.raises(CaseError, match="99980001 points, at most 1000000"):
+        points.grid(huge)
+
+
+def test_a_latin_hypercube_has_one_point_in_each_part_of_each_axis_and_the_same_for_a_seed():
+    axes = points.axes(
+        {"law.yield_pressure": "log:1 GPa..100 GPa", "materials.steel.poisson_ratio": "0.1..0.4", "law.name": "a,b"},
+        KEYS,
+    )
+    found = points.latin_hypercube(axes, 40, seed=3)
+    pressure = [math.log10(float(p["law.yield_pressure"].split()[0])) / 2 for p in found]
+    ratio = [(p["materials.steel.poisson_ratio"] - 0.1) / 0.3 for p in found]
+    for share in (pressure, ratio):
+        assert sorted(int(40 * s) for s in share) == list(range(40))
+    assert abs(np.corrcoef(pressure, ratio)[0, 1]) < 0.5
+    assert [p["law.name"] for p in found].count("a") == 20
+    assert found == points.latin_hypercube(axes, 40, seed=3) != points.latin_hypercube(axes, 40, seed=4)
+
+
+def test_a_table_has_units_in_its_cells_or_its_heading(tmp_path):
+    path = tmp_path / "points.csv"
+    path.write_text('impact.body.radius [mm],law.yield_pressure\n1,"1 GPa"\n\n2.5,2 GPa\n')
+    assert points.table(path, KEYS) == [
+        {"impact.body.radius": "1 mm", "law.yield_pressure": "1 GPa"},
+        {"impact.body.radius": "2.5 mm", "law.yield_pressure": "2 GPa"},
+    ]
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ("", "no points"),
+        ("impact.body.radius\n", "no points"),
+        ("impact.radius\n1 mm\n", "impact.body.radius"),
+        ("impact.body.radius,law.yield_pressure\n1 mm\n", "point 1 has 1 values, the heading 2 keys"),
+        ("impact.body.radius,impact.body.radius\n1 mm,2 mm\n", "two columns"),
+        ("impact.body.radius,law.yield_pressure\n1 mm,\n", "point 1: a value is empty"),
+    ],
+)
+def test_a_table_that_makes_no_sense_is_refused(text, words, tmp_path):
+    path = tmp_path / "points.csv"
+    path.write_text(text)
+    with pytest.raises(CaseError, match=words):
+        points.table(path, KEYS)
+
+
+def test_numbers_of_a_program_are_si_and_quantities_of_pint_keep_their_unit():
+    import pint
+
+    q = pint.UnitRegistry().Quantity(7850.0, "kg/m^3")
+    assert points.axes({"impact.body.radius": np.array([0.001, 0.002])}, KEYS)["impact.body.radius"].values() == [
+        "0.001 m",
+        "0.002 m",
+    ]
+    assert points.with_unit(q, KEYS["materials.steel.density"]) == "7850.0 kg/m**3"
+    assert points.with_unit(np.float64(0.3), KEYS["materials.steel.poisson_ratio"]) == 0.3
+
+
+def test_a_point_replaces_its_keys_alone_and_what_says_the_same_in_another_way():
+    text = STEEL.read_text()
+    sweep = Sweep("x", text, ({"law.yield_pressure": "3 GPa", "viscous.restitution": 0.9},), ("embedded",))
+    lines = [t for t in sweep.text(1).splitlines() if t not in text.splitlines()]
+    assert lines == ['yield_pressure = "3 GPa"', "[viscous]", "restitution = 0.9"]
+    assert "yield_pressure_ratio" not in sweep.text(1) and "# Tolerances" in sweep.text(1)
+    data = read_toml(STEEL)
+    assign(data, "numerics.error", 1e-3)
+    assert data["numerics"] == {"phases": 8, "error": 1e-3}

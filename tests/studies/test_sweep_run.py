@@ -1,0 +1,232 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""A sweep runs, stores, resumes and fails point by point; what is finished never runs again."""
+
+import json
+import os
+import random
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pandas as pd
+import pytest
+
+from epdem.case.impact import load
+from epdem.engines import engine
+from epdem.errors import CaseError
+from epdem.impacts.run import run as run_case
+from epdem.studies.sweep import evaluate, folder, local, run, table
+
+ROOT = Path(__file__).parents[2]
+EPDEM = str(Path(sys.executable).parent / "epdem")
+RADII = {"impact.body.radius": "1 mm,2 mm,5 mm"}
+
+
+@pytest.fixture
+def case(tmp_path):
+    """The steel wall at two speeds."""
+    path = tmp_path / "ball.toml"
+    text = (ROOT / "cases/steel_wall.toml").read_text()
+    path.write_text(text.replace('{ from = "0.05 m/s", to = "150 m/s", count = 32 }', '["0.1 m/s", "5 m/s"]'))
+    return path
+
+
+def sweep(case: Path, out: Path, settings=RADII, jobs=2, **options):
+    words = {k: options.pop(k) for k in ("engines", "laws", "ranks", "latin_hypercube", "seed") if k in options}
+    return run.run(run.plan(case, settings, **({"engines": ["embedded"]} | words)), out, jobs=jobs, **options)
+
+
+def finished(out: Path) -> dict[str, bytes]:
+    return {str(p): p.read_bytes() for p in out.glob("points/*/point.json")}
+
+
+def test_a_point_gives_what_its_case_gives_by_itself(case, tmp_path):
+    found = sweep(case, tmp_path / "out", {"law.yield_pressure": "1 GPa,3 GPa"}, laws=[])
+    assert found.passed and found.ran == 2 and found.table["speed"].tolist() == [0.1, 5.0] * 2
+    rows = found.table[found.table["law.yield_pressure"] == 3e9]
+    point = tmp_path / "out" / rows["folder"].iloc[0] / "case.toml"
+    assert load(point).law.parameters() == {"yield_pressure": "3 GPa"}
+    alone = run_case(point, engines=[engine("embedded")], out=tmp_path / "alone").results.comparison
+    pd.testing.assert_frame_equal(rows[alone.columns].reset_index(drop=True), alone, check_dtype=False)
+
+
+def test_the_table_is_read_as_it_was_written_with_units(case, tmp_path):
+    found = sweep(case, tmp_path / "out").table
+    read = table.read_sweep(tmp_path / "out")
+    pd.testing.assert_frame_equal(read, found)
+    assert read.attrs["units"]["impact.body.radius"] == "m" and read.attrs["units"]["contact_time_theory"] == "s"
+    assert read["impact.body.radius"].unique().tolist() == [0.001, 0.002, 0.005]
+    written = pd.read_csv(tmp_path / "out/sweep.csv", keep_default_na=False)
+    pd.testing.assert_frame_equal(written, pd.DataFrame(read), check_dtype=False)
+
+
+def test_the_same_sweep_again_runs_nothing_and_a_larger_one_what_is_new(case, tmp_path):
+    out = tmp_path / "out"
+    assert sweep(case, out).ran == 3
+    before = finished(out)
+    assert sweep(case, out).ran == 0 and finished(out) == before
+    assert sweep(case, out, {"impact.body.radius": "0.5 mm,1 mm,2 mm,5 mm,7 mm"}).ran == 2
+    assert {k: v for k, v in finished(out).items() if k in before} == before
+    assert table.read_sweep(out)["point"].tolist() == [1, 1, 2, 2, 3, 3, 4, 4, 5, 5]
+    case.write_text(case.read_text().replace("= 2.8", "= 2.7"))
+    assert sweep(case, out).ran == 3
+    assert sweep(case, out, laws=["cavity", "johnson"]).ran == 3
+
+
+def test_another_version_of_the_product_runs_all_again(case, tmp_path, monkeypatch):
+    assert sweep(case, tmp_path / "out").ran == 3
+    monkeypatch.setattr("epdem.stages.product_hash", lambda: "another")
+    assert sweep(case, tmp_path / "out").ran == 3
+
+
+def test_points_that_are_alike_run_once(case, tmp_path):
+    found = sweep(case, tmp_path / "out", {"impact.body.radius": ["1 mm", "1 mm"]})
+    assert found.ran == 1 and found.table["point"].tolist() == [1, 1, 2, 2]
+
+
+@pytest.mark.parametrize(
+    ("settings", "words"),
+    [
+        ({"impact.radius": "1 mm"}, "the nearest: impact.body.radius"),
+        ({"materials.steel.poisson_ratio": "0.2..30:3"}, r"point 2 .*poisson_ratio = 15.1, must lie in \(-1, 0.5\]"),
+        ({"impact.body.radius": "1 mm,2"}, "point 2 .*expected a quantity with a unit"),
+        ({"impact.speeds": '["1 m/s"],{from="3 m/s", to="1 m/s", count=3}'}, "must exceed"),
+        ({"law.name": "thornton,nobody"}, "nobody"),
+        ({}, "a sweep needs points"),
+    ],
+)
+def test_what_is_wrong_is_refused_before_anything_is_written(settings, words, case, tmp_path):
+    with pytest.raises(CaseError, match=words):
+        sweep(case, tmp_path / "out", settings)
+    assert not (tmp_path / "out").exists()
+
+
+def test_a_point_that_fails_is_a_row_with_its_reason_and_runs_again_when_asked(case, tmp_path, monkeypatch):
+    from epdem.engines.embedded import Embedded
+    from epdem.errors import EngineError
+
+    real = Embedded.run
+
+    def fails(self, plan, at, *, ranks=1):
+        if plan.experiment.body.radius == 0.002:
+            raise EngineError(f"{at}/log: out of steel")
+        return real(self, plan, at, ranks=ranks)
+
+    out = tmp_path / "out"
+    monkeypatch.setattr(Embedded, "run", fails)
+    found = sweep(case, out)
+    assert not found.passed and (found.count("done"), found.count("failed")) == (2, 1)
+    row = found.table[found.table["point"] == 2]
+    assert row["reason"].tolist() == ["log: out of steel"] and row["passed"].tolist() == [False]
+    assert row[["e_n", "speed"]].isna().all(axis=None)
+    pd.testing.assert_frame_equal(table.read_sweep(out), found.table)
+    assert run.status(out)["failures"][0]["reason"] == "log: out of steel"
+    assert sweep(case, out).ran == 0  # it failed: once is enough
+    monkeypatch.setattr(Embedded, "run", real)
+    found = sweep(case, out, retry_failed=True)
+    assert found.ran == 1 and found.passed
+    assert found.table.equals(sweep(case, tmp_path / "other").table)
+
+
+def _die(number: int) -> int:
+    if number == 3:
+        os.kill(os.getpid(), signal.SIGKILL)
+    return -number
+
+
+def test_a_process_that_dies_takes_no_other_item_with_it():
+    found = dict(local.each(_die, range(1, 8), jobs=2))
+    assert "signal 9" in str(found.pop(3)) and found == {n: -n for n in (1, 2, 4, 5, 6, 7)}
+
+
+def test_a_point_whose_process_dies_is_a_row_too(case, tmp_path, monkeypatch):
+    from epdem.engines.embedded import Embedded
+
+    monkeypatch.setattr(Embedded, "run", lambda *a, **k: os._exit(7))
+    found = sweep(case, tmp_path / "out", {"impact.body.radius": "1 mm,2 mm"})
+    assert found.table["reason"].tolist() == ["its process ended with exit code 7"] * 2
+
+
+def test_a_full_disk_stops_the_sweep_and_the_next_one_goes_on(case, tmp_path, monkeypatch):
+    out, real = tmp_path / "out", folder.atomic
+    one = sweep(case, tmp_path / "whole").table
+
+    def full(path, **options):
+        if len(list(out.glob("points/*/point.json"))) >= 2:
+            raise OSError(28, "No space left on device", str(path))
+        return real(path, **options)
+
+    monkeypatch.setattr(folder, "atomic", full)
+    with pytest.raises(OSError, match="No space left"):
+        sweep(case, out, jobs=1)
+    monkeypatch.setattr(folder, "atomic", real)
+    found = sweep(case, out, jobs=1)
+    assert found.ran == 1 and found.table.equals(one)
+
+
+def test_a_failure_for_want_of_space_is_no_result(case, tmp_path, monkeypatch):
+    from epdem.engines.embedded import Embedded
+
+    monkeypatch.setattr(Embedded, "run", lambda *a, **k: 1 / 0)
+    monkeypatch.setattr(evaluate, "FULL", 1 << 60)  # all disks are full
+    with pytest.raises(OSError, match="no space left"):
+        sweep(case, tmp_path / "out")
+    assert not finished(tmp_path / "out")
+
+
+def command(case: Path, out: Path, *more: str) -> list[str]:
+    ranges = ["--set", "impact.body.radius=1 mm..10 mm:20", "--set", "law.yield_pressure=1 GPa..3 GPa:10"]
+    return [EPDEM, "sweep", str(case), "-e", "embedded", *ranges, "-o", str(out), "-j", "2", *more]
+
+
+def wait_for(out: Path, count: int, process: subprocess.Popen) -> None:
+    end = time.monotonic() + 120
+    while process.poll() is None and time.monotonic() < end and len(finished(out)) < count:
+        time.sleep(0.005)
+
+
+@pytest.mark.slow
+def test_200_points_killed_five_times_give_the_same_table_and_no_finished_point_runs_twice(case, tmp_path):
+    out, chance, before = tmp_path / "out", random.Random(5), {}
+    for kill in range(5):
+        process = subprocess.Popen(command(case, out), stdout=subprocess.DEVNULL, start_new_session=True)
+        wait_for(out, len(before) + chance.randint(3, 35), process)
+        assert process.poll() is None
+        process.send_signal(signal.SIGKILL if kill % 2 == 0 else signal.SIGINT)
+        process.wait()
+        end = time.monotonic() + 30
+        while run.running(out) and time.monotonic() < end:  # its processes end after it
+            time.sleep(0.01)
+        assert not run.running(out)
+        now = finished(out)
+        assert {k: v for k, v in now.items() if k in before} == before and len(now) > len(before)
+        before = now
+        assert run.status(out)["waiting"] == 200 - len(now)
+    done = json.loads(subprocess.check_output(command(case, out, "--json")))
+    assert done["ran"] == 200 - len(before) and done["done"] == 200
+    assert {k: v for k, v in finished(out).items() if k in before} == before
+    subprocess.check_call(command(case, tmp_path / "whole"), stdout=subprocess.DEVNULL)
+    assert (out / "sweep.csv").read_bytes() == (tmp_path / "whole/sweep.csv").read_bytes()
+    assert (out / "sweep.h5").read_bytes() == (tmp_path / "whole/sweep.h5").read_bytes()
+
+
+def test_the_commands_say_what_they_do(case, tmp_path):
+    out = tmp_path / "out"
+    dry = json.loads(subprocess.check_output(command(case, out, "--dry-run", "--json")))
+    assert len(dry["points"]) == 200 and not out.exists()
+    assert dry["points"][1] == {"impact.body.radius": "1 mm", "law.yield_pressure": "1.222222222222 GPa"}
+    sweep(case, out)
+    assert json.loads(subprocess.check_output([EPDEM, "status", str(out), "--json"]))["done"] == 3
+    asked = subprocess.run([EPDEM, "status", str(tmp_path)], capture_output=True, text=True)
+    assert asked.returncode == 2 and "not a folder of a sweep" in asked.stderr
+
+
+@pytest.mark.liggghts
+def test_points_on_liggghts_agree_with_the_embedded_engine(case, tmp_path):
+    found = sweep(case, tmp_path / "out", engines=["embedded", "liggghts"]).table
+    assert found["passed"].all() and len(found) == 12
+    tools = dict(tuple(found.groupby("engine")))
+    assert tools["liggghts"]["e_n"].to_numpy() == pytest.approx(tools["embedded"]["e_n"].to_numpy(), rel=1e-8)
+    assert (tmp_path / "out" / found["folder"][0] / "thornton/liggghts/in.impact").exists()
