@@ -154,7 +154,7 @@ def figure(outcome: Outcome) -> Path:
     above.legend(fontsize=8)
     for axes in (above, below):
         axes.grid(alpha=0.3)
-    with claim(outcome.folder), atomic(path) as temporary:
+    with claim(outcome.folder, force=True), atomic(path) as temporary:
         fig.savefig(temporary, dpi=130, metadata={"Comment": f"inputs {mark}"})
     plt.close(fig)
     return path
