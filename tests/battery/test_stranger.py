@@ -6,7 +6,7 @@ import subprocess
 
 import pytest
 
-from epdem import law as claw
+from epdem.laws import library as claw
 
 PROJECT = """cmake_minimum_required(VERSION 3.20)
 project(stranger LANGUAGES C CXX)
