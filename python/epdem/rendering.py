@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Templates to text: undefined names stop, numbers keep every digit, nothing is computed here."""
+"""Templates to text: undefined names are errors, numbers keep every digit, templates compute nothing."""
 
 from pathlib import Path
 from typing import Any, TypeVar

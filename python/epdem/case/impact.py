@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""A case file: TOML with units in, frozen SI values out. Nothing behind this module knows a unit.
+"""A case file: TOML with units in, frozen SI values out. Only this package has units.
 
 Every mistake is a CaseError that names file, key, value, limit and next step.
 """
@@ -30,7 +30,7 @@ from .units import to_si, within_limits
 RIGID = "rigid"
 MAX_IMPACTS = 4096
 MAX_BYTES = 4_000_000  # of a case file
-# Largest relative errors a case accepts if it does not say (maximum over the phases, 400 steps in contact).
+# Largest relative errors of a case without tolerances of its own (maximum over the phases, 400 steps in contact).
 DEFAULT_CHECKS = {"e_n": 1e-4, "contact_time": 5e-3, "force_max": 1e-3, "overlap_max": 1e-3, "residual_overlap": 1e-3}
 
 
@@ -156,7 +156,7 @@ class LawChoice(BaseModel):
     name: Name
 
     def parameters(self) -> dict[str, Any]:
-        """What the file says beside the name, as written."""
+        """The keys beside the name, as written."""
         return dict(self.model_extra or {})
 
 

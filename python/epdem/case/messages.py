@@ -56,7 +56,7 @@ def _place(data: Any, problem: Any) -> tuple[tuple[Any, ...], Any]:
 
 
 def _likeliest(data: dict[str, Any], problems: list[Any]) -> Any:
-    """The problem to speak of: a misspelt key; of the readings of one value, the one that fits its shape best."""
+    """The problem to report: a misspelt key; of several readings of one value, the one that fits its shape best."""
     places = [_place(data, p) for p in problems]
 
     def rank(n: int) -> tuple[bool, bool, bool, bool]:

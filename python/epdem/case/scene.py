@@ -162,7 +162,7 @@ class Drum(Common):
     """A drum of triangles turning about y, with flat ends.
 
     It is round, so its surface moves and its triangles stay: the same to a sphere, without rebuilding lists, and a
-    continued run meets the wall's velocity at its first step, which LIGGGHTS's move/mesh only knows a step later.
+    continued run meets the wall's velocity at its first step, which LIGGGHTS's move/mesh has only a step later.
     """
 
     kind: Literal["drum"]

@@ -58,9 +58,13 @@ def timestep(
 def stability(
     engine: Engines = None,
     law: Laws = None,
-    group: Annotated[list[str] | None, typer.Option("--group", "-g", help="only these groups of cases")] = None,
-    every: Annotated[int, typer.Option(min=1, help="only every n-th case")] = 1,
-    steps: Annotated[int | None, typer.Option(min=1000, help="of the drift by repeated bounces (default: 1e9)")] = None,
+    group: Annotated[
+        list[str] | None, typer.Option("--group", "-g", help="run only these groups of cases; repeat for more")
+    ] = None,
+    every: Annotated[int, typer.Option(min=1, help="run only every n-th case")] = 1,
+    steps: Annotated[
+        int | None, typer.Option(min=1000, help="steps of the drift by repeated bounces (default: 1e9)")
+    ] = None,
     out: Annotated[Path | None, typer.Option("--out", "-o", help="CSV file of all verdicts")] = None,
     as_json: AsJson = False,
 ) -> None:
@@ -104,8 +108,8 @@ def cost(
     case: CasePath,
     engine: Engines = None,
     law: Laws = None,
-    repetitions: Annotated[int, typer.Option(min=1, max=100, help="of every timed run, interleaved")] = 5,
-    bulk: Annotated[bool, typer.Option(help="a bulk scene in LIGGGHTS as well")] = False,
+    repetitions: Annotated[int, typer.Option(min=1, max=100, help="repetitions of every timed run, interleaved")] = 5,
+    bulk: Annotated[bool, typer.Option(help="run a bulk scene in LIGGGHTS as well")] = False,
     out: Out = None,
     as_json: AsJson = False,
 ) -> None:

@@ -49,7 +49,7 @@ def run_scene(
             fresh=fresh,
             resume=resume,
             force=force,
-            tell=lambda step, steps: progress.update(task, completed=step, total=steps),
+            report=lambda step, steps: progress.update(task, completed=step, total=steps),
         )
     report.figures(outcome)
     if as_json:
@@ -110,12 +110,12 @@ def _explained(case: Path) -> list[tuple[str, str, str]]:
 def soften(
     case: CasePath,
     factor: Annotated[
-        float, typer.Option("--factor", "-k", help="E is divided by it; the step grows by its 0.4th power")
+        float, typer.Option("--factor", "-k", help="divisor of E; the time step grows by its 0.4th power")
     ],
     out: Annotated[
         Path | None, typer.Option("--out", "-o", help="file to write (default: CASE_softK.toml beside it)")
     ] = None,
-    force: Annotated[bool, typer.Option("--force", help="replace a file that is there already")] = False,
+    force: Annotated[bool, typer.Option("--force", help="replace an existing file")] = False,
     as_json: AsJson = False,
 ) -> None:
     """A softened twin of a case with the same e_n at every speed, and larger time steps."""
@@ -156,8 +156,8 @@ def calibrate(
     case: CasePath,
     e_n: Annotated[float | None, typer.Option("--e-n", help="measured coefficient of restitution")] = None,
     speed: Annotated[str | None, typer.Option(help='speed of that impact, as "2 m/s"')] = None,
-    hv: Annotated[float | None, typer.Option(help="Vickers hardness instead")] = None,
-    hb: Annotated[float | None, typer.Option(help="Brinell hardness instead")] = None,
+    hv: Annotated[float | None, typer.Option(help="Vickers hardness [kgf/mm^2] instead of an impact")] = None,
+    hb: Annotated[float | None, typer.Option(help="Brinell hardness [kgf/mm^2] instead of an impact")] = None,
     dent_ratio: Annotated[
         float | None,
         typer.Option(help="Brinell test: diameter of the indentation over that of the ball (default: 0.375)"),

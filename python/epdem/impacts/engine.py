@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""What an engine is: it takes a plan and gives a trajectory. Its own words end here."""
+"""The interface of an engine of impacts: a plan goes in, a trajectory comes out."""
 
 import math
 import time
@@ -37,7 +37,7 @@ class Trajectory:
 class Abilities:
     """What an engine can do: nobody asks for its name."""
 
-    laws: tuple[str, ...] | None = None  # of ours that it knows; None: every one
+    laws: tuple[str, ...] | None = None  # of ours that it can run; None: every one
     walls: bool = True  # planes as targets
     spheres: bool = True  # spheres as targets
     dashpot: bool = False  # [viscous] of a case
@@ -47,7 +47,7 @@ class Abilities:
     staggered: bool = False  # its velocity belongs to half a step before the position
     scenes: tuple[str, ...] = ()  # kinds of bulk scenes
     restarts: bool = False  # a bulk scene that was interrupted goes on
-    variants: tuple[str, ...] = ()  # of the same impacts that `run_pairs` knows, beside the plain one
+    variants: tuple[str, ...] = ()  # of the same impacts that `run_pairs` can run, beside the plain one
 
 
 class Engine(Protocol):
@@ -72,7 +72,7 @@ class Engine(Protocol):
         """Run what `write` wrote. Raises EngineError with the engine's last words."""
 
     def seconds(self, plan: Plan, folder: Path) -> dict[str, float]:
-        """Times of one run that records as little as it can [s]: startup, setup, stepping; NaN where it cannot tell."""
+        """Times of one run that records as little as it can [s]: startup, setup, stepping; NaN where unknown."""
 
     def run_pairs(self, pairs: Pairs, variant: str, folder: Path) -> np.ndarray:
         """Velocities [m/s] after the impacts of `pairs`, "plain" or in one of `can.variants`: (2, n, 3), body first.
@@ -95,7 +95,7 @@ class OwnTheory(Engine, Protocol):
     end_power: float  # the power of the force that falls linearly with the overlap at the end of an impact
 
     def predict(self, x: Experiment) -> Prediction:
-        """What its own theory says of a case. Raises CaseError where it cannot stand for it."""
+        """The prediction of the model's own theory. Raises CaseError if the model cannot represent the case."""
 
     def note(self, x: Experiment) -> str:
         """Where its numbers come from, in words."""
@@ -106,12 +106,12 @@ def check_abilities(tool: Engine, x: Experiment) -> None:
     can, wall = tool.can, not np.isfinite(x.target.radius)
     if can.laws is not None and x.law.name not in can.laws:
         known = ", ".join(can.laws)
-        raise CaseError(f"law.name = {x.law.name!r}: engine {tool.name} knows {known} only; use another --engine")
+        raise CaseError(f"law.name = {x.law.name!r}: engine {tool.name} has {known} only; use another --engine")
     if x.viscous_restitution is not None and not can.dashpot:
-        raise CaseError(f"viscous: engine {tool.name} does not know our dashpot; use --engine liggghts or embedded")
+        raise CaseError(f"viscous: engine {tool.name} does not have this dashpot; use --engine liggghts or embedded")
     if (wall and not can.walls) or (not wall and not can.spheres):
         kind = "walls" if wall else "impacts of two spheres"
-        raise CaseError(f"impact.kind: engine {tool.name} does not know {kind}; use another --engine")
+        raise CaseError(f"impact.kind: engine {tool.name} does not run {kind}; use another --engine")
 
 
 def refuse(tool: Engine, plan: Plan, prediction: Prediction, *, ranks: int = 1) -> None:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Laws of other codes for a case, and their own theory. For numbers that a case does not say, a rule stands here.
+"""Laws of other codes for a case, and their own theory. A rule determines each number that a case does not have.
 
 luding     k_1 = F_max/alpha_max of the case's own law at its middle speed; k_p/k_1 = 5 and phi_f = 0.05 (Luding 2008)
 edinburgh  k_1 = 4/3 E* sqrt(R*), Hertz's, to which the model is tied; k_2/k_1 = 5, n = 1.5, no adhesion

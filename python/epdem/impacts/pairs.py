@@ -17,7 +17,7 @@ from .plan import Plan
 # the order of the two turns twice as they drift across the border of bins at z = 0.
 # The tilt in x makes them change their owner one after the other.
 AXIS = np.array([0.03, 1.0, -0.03]) / np.linalg.norm([0.03, 1.0, -0.03])
-OTHER_RADIUS, OTHER_MODULUS = 0.6, 0.7  # of the target, in units of what the case says
+OTHER_RADIUS, OTHER_MODULUS = 0.6, 0.7  # of the target, in units of those of the case
 FIRST, LAST, STOP = 0.2, 0.9, 0.8  # crossings, and the stop of a run, in contact times
 DRIFT = 0.2  # larger radii per contact time
 
@@ -33,7 +33,7 @@ class Group:
 
 @dataclass(frozen=True)
 class Pairs:
-    """All pairs of a plan: the side that hits and the side that is hit, and what an engine must know of the run."""
+    """All pairs of a plan: the moving side, the side that is hit, and the numbers that an engine needs for the run."""
 
     plan: Plan
     sides: tuple[Group, Group]

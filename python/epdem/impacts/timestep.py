@@ -110,7 +110,7 @@ def search(x: Experiment, prediction: Prediction, target: float) -> Found:
         rungs = 1
         if worst > SAFETY * target:
             last = None  # a lucky coarse step is no evidence
-            # far off, half the way that second order promises can be skipped
+            # far off, half of the reduction expected from second order can be skipped
             rungs = max(1, int(np.log2(worst / target))) if np.isfinite(worst) else 1
         elif last is None:
             last = Found(dt, worst, float(np.sqrt((errors**2).mean())), target, ref.contact / dt, ref)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""LIGGGHTS's own contact models on the same plans, to compare with: no plugin is involved in their forces."""
+"""LIGGGHTS's own contact models on the same plans, for comparison; their forces do not involve the plugin."""
 
 import math
 from dataclasses import replace

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""What the template of an impact deck reads."""
+"""The data of the template of an impact deck."""
 
 from dataclasses import dataclass
 

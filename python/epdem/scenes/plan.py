@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""A scene ready for any engine: what is there, how it moves, when what is written. All SI, no engine's words."""
+"""A scene for any engine: bodies, motions, times of output. All SI, without names of engines."""
 
 import math
 from dataclasses import dataclass

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""YADE with our laws: a plan becomes one Python deck with all impacts side by side; the law travels with it."""
+"""YADE with our laws: a plan becomes one Python deck with all impacts side by side and a copy of the law."""
 
 import re
 import shutil
@@ -158,6 +158,6 @@ def trajectory(plan: Plan, path: Path, seconds: dict[str, float]) -> Trajectory:
 
 
 def stepping_seconds(log: Path) -> float:
-    """The deck's own time for its steps [s]; NaN if the log does not say."""
+    """The deck's own time for its steps [s]; NaN if the log does not contain it."""
     found = re.findall(r"stepping took (\S+) s", log.read_text(errors="replace")) if log.exists() else []
     return float(found[-1]) if found else float("nan")

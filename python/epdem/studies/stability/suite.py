@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The whole set on the engines asked for, and its tables."""
+"""The whole set on the given engines, and its tables."""
 
 import tempfile
 from collections.abc import Callable
