@@ -27,11 +27,26 @@ sys.path.insert(0, str(ROOT / "tests" / "engines"))
 
 from plugin_decks import good, launcher, per_pair  # noqa: E402
 
-MODELS = ("hertz", "ep/hertz", "ep/thornton", "ep/johnson", "ep/cavity", "ep/thornton@avx2", "ep/thornton@sse2",
-          "ep/thornton@generic", "thornton_ning")  # fmt: skip
+MODELS = (
+    "hertz",
+    "ep/hertz",
+    "ep/thornton",
+    "ep/johnson",
+    "ep/cavity",
+    "ep/thornton@avx2",
+    "ep/thornton@sse2",
+    "ep/thornton@generic",
+    "thornton_ning",
+)
 LIMITS = {"ep/hertz": 0.45, "ep/thornton": 0.45, "ep/johnson": 0.45, "ep/cavity": 0.60}  # pair time over that of hertz
-BESIDE = ("rolling_friction cdt", "rolling_friction epsd2", "cohesion sjkr", "cohesion sjkr2", "viscous on",
-          "computePlasticWork on")  # fmt: skip
+BESIDE = (
+    "rolling_friction cdt",
+    "rolling_friction epsd2",
+    "cohesion sjkr",
+    "cohesion sjkr2",
+    "viscous on",
+    "computePlasticWork on",
+)
 RADIUS, SHRINK = 2e-3, 0.999
 
 DECK = """atom_style granular
@@ -88,8 +103,21 @@ def packing(cells, spacing, jitter, speed=0.0, shear=0.0, types=1):
     return "\n".join([*lines, ""])
 
 
-def deck(model, *, steps, chunks=1, dt="1e-13", warm=2, unload=True, restitution=True, ranks=1, skin="8e-4", lists="",
-         types=1, words=""):  # fmt: skip
+def deck(
+    model,
+    *,
+    steps,
+    chunks=1,
+    dt="1e-13",
+    warm=2,
+    unload=True,
+    restitution=True,
+    ranks=1,
+    skin="8e-4",
+    lists="",
+    types=1,
+    words="",
+):
     foreign = model == "thornton_ning"
     beside = {"rolling_friction": "coefficientRollingFriction", "cohesion": "cohesionEnergyDensity"}
     beside = "".join(per_pair(name, 0.1 if "Roll" in name else 1e3, types) for w, name in beside.items() if w in words)
@@ -195,8 +223,9 @@ def instructions(folder, model):
     )
     script.chmod(0o755)
     for steps in (2, 12):
-        text = start(folder, model, deck(model.partition("@")[0], steps=steps), files=files, command=str(script),
-                     timeout=300)  # fmt: skip
+        text = start(
+            folder, model, deck(model.partition("@")[0], steps=steps), files=files, command=str(script), timeout=300
+        )
         counts.append(int(re.findall(r"Collected : (\d+)", text)[-1]))
     return (counts[1] - counts[0]) / 10
 

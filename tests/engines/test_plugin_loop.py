@@ -83,14 +83,16 @@ LOCAL = "compute p all pair/gran/local id force history delta\ndump l all local 
 VISCOUS = "fix v all property/global coefficientRollingViscousDamping peratomtypepair 1 0.1\n"
 REASONS = {
     "rolling_friction epsd": {"scene": {"rolling": "epsd"}, "before": VISCOUS},
-    "rolling_friction epsd3": {"scene": {"rolling": "epsd3"}, "before": VISCOUS + "fix s all property/global "
-                               "rollingStiffness scalar 2.25\n"},
+    "rolling_friction epsd3": {
+        "scene": {"rolling": "epsd3"},
+        "before": VISCOUS + "fix s all property/global rollingStiffness scalar 2.25\n",
+    },
     "surface multicontact": {"surface": "multicontact", "before": "fix mc all multicontact/halfspace\n"},
     "heating_tangential_history on": {"scene": {"settings": ("heating_tangential_history on",)}},
     "contacts at a distance": {"before": "neigh_modify contact_distance_factor 1.1\n"},
     "steps that ask for the virial": {"before": STRESS},
     "steps of compute pair/gran/local": {"before": LOCAL},
-}  # fmt: skip
+}
 
 
 @pytest.mark.parametrize("reason", REASONS)

@@ -45,7 +45,8 @@ struct Toy {
   }
   T work(T R_star, T delta) const noexcept {
     const T y = elastic_overlap(R_star), x = max(T{}, delta - y);
-    return hertz_work(E_star, R_star, min(delta, y)) + (hertz_point(E_star, R_star, y).force + 0.4 * pi * p_y * R_star * x) * x;
+    const T mean = hertz_point(E_star, R_star, y).force + 0.4 * pi * p_y * R_star * x;
+    return hertz_work(E_star, R_star, min(delta, y)) + mean * x;
   }
 };
 
@@ -122,7 +123,7 @@ def command(*words):
 
 def test_a_deck_has_the_model_and_one_number_of_memory(case, tmp_path):
     assert command("deck", case, "--out", tmp_path / "deck").exit_code == 0
-    text = "".join(path.read_text() for path in sorted((tmp_path / "deck").glob("*.in*")) + sorted((tmp_path / "deck").glob("in.*")))
+    text = "".join(p.read_text() for pattern in ("*.in*", "in.*") for p in (tmp_path / "deck").glob(pattern))
     assert "pair_style gran model ep/toy " in text and "yieldPressure peratomtype" in text
     assert "newton off" in text
 

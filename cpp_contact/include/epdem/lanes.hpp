@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The numbers that laws are written on: double for one contact, long double for the study of round-off, and Lanes, a vector
-// of lanes, for many contacts at once. A condition on T is a bool, or a mask with one answer per lane. The only file that
+// The numbers that laws are written on: double for one contact, long double for the study of round-off, and Lanes, a
+// vector, for many contacts at once. A condition on T is a bool, or a mask with one answer per lane. The only file that
 // knows instruction sets: Lanes is as wide as those allow that the including file is compiled for.
 #pragma once
 

@@ -14,22 +14,26 @@ namespace detail {
 template <class T>
 inline T segment(T u) noexcept {
   const T t = 2.0 * u - 1.0, t2 = t * t, t4 = t2 * t2, t8 = t4 * t4;
-  const T c0 = (1.7371770873806556 - 0.15627588828780442 * t) + (-0.008779284872239073 - 0.0010977312731426958 * t) * t2;
-  const T c1 = (-0.00018258110274334128 - 3.541558286543854e-05 * t) + (-7.571561566503503e-06 - 1.7315768282685705e-06 * t) * t2;
-  const T c2 = (-4.1606712085594747e-07 - 1.0385134222493257e-07 * t) + (-2.6801506584044284e-08 - 7.066182450797425e-09 * t) * t2;
-  const T c3 = (-1.7955643189145686e-09 - 4.897422784724471e-10 * t) + (-2.0040271807734243e-10 - 5.670711059879121e-11 * t) * t2;
+  const T c0 = (1.7371770873806556 - 0.15627588828780442 * t) +
+               (-0.008779284872239073 - 0.0010977312731426958 * t) * t2;
+  const T c1 = (-0.00018258110274334128 - 3.541558286543854e-05 * t) +
+               (-7.571561566503503e-06 - 1.7315768282685705e-06 * t) * t2;
+  const T c2 = (-4.1606712085594747e-07 - 1.0385134222493257e-07 * t) +
+               (-2.6801506584044284e-08 - 7.066182450797425e-09 * t) * t2;
+  const T c3 = (-1.7955643189145686e-09 - 4.897422784724471e-10 * t) +
+               (-2.0040271807734243e-10 - 5.670711059879121e-11 * t) * t2;
   return (c0 + c1 * t4) + (c2 + c3 * t4) * t8;
 }
 
 }  // namespace detail
 
-/// Force and contact radius at `delta` after unloading from `peak` at `delta_max` >= delta; exactly `peak` at delta_max.
+/// Force and contact radius at `delta` after unloading from `peak` at `delta_max` >= delta.
 /// Flattens = false is the case tau = 0, compiled apart.
 template <bool Flattens, class T>
 inline Point<T> unload(T E_star, const Point<T>& peak, T delta_max, T delta) noexcept {
   if constexpr (!Flattens) {
-    // Share of the recovery still stored. The division waits neither for delta, which a loop over contacts has last, nor
-    // for the root in the radius.
+    // Share of the recovery still stored. The division waits neither for delta, which a loop over contacts has last,
+    // nor for the root in the radius.
     const T x = max(T{}, 1.0 - (delta_max - delta) * (peak.radius * (E_star / (0.75 * peak.force))));
     const T root = sqrt(x);
     return {peak.force * x * root, peak.radius * root, T{}};
@@ -68,8 +72,8 @@ inline T recovered_work(T E_star, const Point<T>& peak) noexcept {
   return kappa * peak.force * peak.force / (peak.radius * E_star);
 }
 
-/// Elastic energy [J] still stored at `delta` after unloading from `peak` at `delta_max`: the force integrated from here
-/// to parting, F_max^2/(E* a_max) times the integral of f(y) (2 A y + B) from y to 1, in closed form with y = cos theta.
+/// Elastic energy [J] still stored at `delta` after unloading from `peak` at `delta_max`: the force integrated from
+/// here to parting, F_max^2/(E* a_max) times the integral of f(y) (2 A y + B) from y to 1, in closed form, y = cos t.
 template <bool Flattens, class T>
 inline T stored_work(T E_star, const Point<T>& peak, T delta_max, T delta) noexcept {
   const T scale = peak.force * peak.force / (E_star * peak.radius);

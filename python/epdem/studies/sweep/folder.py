@@ -23,6 +23,7 @@ from ...case.impact import read_toml
 from ...case.scene import is_scene
 from ...errors import CaseError
 from ...files import atomic
+from ...folders import MANIFEST
 from ...stages import inputs_hash
 from .keys import assign, keys_of
 from .points import Point
@@ -97,6 +98,8 @@ class Sweep:
 
 def write(sweep: Sweep, folder: Path) -> None:
     """Store the definition in `folder`."""
+    (folder / POINTS).mkdir(parents=True, exist_ok=True)
+    (folder / POINTS / MANIFEST).write_text("{}")  # each point keeps account of its own: a job may work at it alone
     with atomic(folder / DEFINITION) as temporary:
         temporary.write_text(json.dumps(asdict(sweep)))
 
