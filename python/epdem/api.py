@@ -310,7 +310,7 @@ def sweep(
         planned = study.plan(path, settings, **words, latin_hypercube=latin_hypercube, seed=seed)
     folder = Path(out) if out is not None else Path("runs") / f"{planned.name}_sweep"
 
-    def tell(done: int, total: int) -> None:
+    def report(done: int, total: int) -> None:
         log.info("%d of %d points", done, total)
 
-    return study.run(planned, folder, jobs=jobs, retry_failed=retry_failed, tell=tell)
+    return study.run(planned, folder, jobs=jobs, retry_failed=retry_failed, report=report)
