@@ -46,7 +46,7 @@ def call(
 
     `report` is given the step of every row (ROW) of the log. Raises EngineError with the end of its log if it
     fails, takes more than `seconds` or is not there. On any exception, Ctrl-C too, the program and all that it started
-    are stopped first; what they wrote stays. If this process itself is killed, the program gets SIGTERM.
+    are stopped first; what they wrote stays. If this process itself is killed, the program receives SIGTERM.
     """
     path, start = folder / log, time.monotonic()
     end = math.inf if seconds is None else start + seconds

@@ -180,7 +180,7 @@ app.command("stress", hidden=True, deprecated=True)(cli_numerics.stability)  # i
 
 
 def _usage(error: Any) -> int:
-    """Say in one sentence what is wrong with a command line; without any word on it, print the help."""
+    """Print the error of a command line as one sentence; without arguments, print the help."""
     if not (text := error.format_message()):
         error.show()
         return 2

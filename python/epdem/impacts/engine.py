@@ -35,7 +35,7 @@ class Trajectory:
 
 @dataclass(frozen=True)
 class Abilities:
-    """What an engine can do: nobody asks for its name."""
+    """The abilities of an engine; other code never tests its name."""
 
     laws: tuple[str, ...] | None = None  # of ours that it can run; None: every one
     walls: bool = True  # planes as targets
@@ -69,7 +69,7 @@ class Engine(Protocol):
         """The deck and its data files, in `folder`; they run by hand there."""
 
     def run(self, plan: Plan, folder: Path, *, ranks: int = 1) -> Trajectory:
-        """Run what `write` wrote. Raises EngineError with the engine's last words."""
+        """Run what `write` wrote. Raises EngineError with the end of the engine's log."""
 
     def seconds(self, plan: Plan, folder: Path) -> dict[str, float]:
         """Times of one run that records as little as it can [s]: startup, setup, stepping; NaN where unknown."""
@@ -98,7 +98,7 @@ class OwnTheory(Engine, Protocol):
         """The prediction of the model's own theory. Raises CaseError if the model cannot represent the case."""
 
     def note(self, x: Experiment) -> str:
-        """Where its numbers come from, in words."""
+        """The origin of its numbers, in words."""
 
 
 def check_abilities(tool: Engine, x: Experiment) -> None:

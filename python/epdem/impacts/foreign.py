@@ -49,7 +49,7 @@ def predict_luding(x: Experiment) -> Prediction:
 
 
 def luding_note(x: Experiment) -> str:
-    """The rule by which luding gets its numbers."""
+    """The rule for the numbers of luding."""
     law = luding(x)
     return (
         f"k_1 = {law.k_1:.4g} N/m (F_max/overlap of {x.law.name} at {x.speed[x.speed.size // 2]:.4g} m/s), "
@@ -102,7 +102,7 @@ def predict_mdr(x: Experiment) -> Prediction:
 
 
 def mdr_note(x: Experiment) -> str:
-    """The rule by which mdr gets its numbers."""
+    """The rule for the numbers of mdr."""
     law = mdr(x)
     return (
         f"rigid flat, E = {law.young_modulus:.4g} Pa (the case's E*), Y = {law.yield_stress:.4g} Pa, p = 2.75 Y; "

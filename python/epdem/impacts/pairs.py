@@ -42,7 +42,7 @@ class Pairs:
     spread: float  # how far a pair reaches around its first place [m]
 
     def ordered(self, swap: bool) -> tuple[Group, ...]:
-        """The sides in the order in which an engine gets them: `swap` puts the targets first."""
+        """The sides in the order in which an engine adds them: `swap` puts the targets first."""
         return self.sides[:: -1 if swap else 1]
 
 

@@ -18,7 +18,7 @@ class Plan:
     """n = speeds x phases impacts, speed by speed; arrays of shape (n,), SI.
 
     The body starts `gap` before first touch; a phase is the share of a step at which the contact then begins.
-    One step serves all speeds (contact time goes only as v^-0.2): the fastest gets steps_in_contact, or all of them
+    One step serves all speeds (contact time goes only as v^-0.2): the fastest has steps_in_contact, or all of them
     the step that keeps e_n within the case's target error.
     """
 

@@ -52,7 +52,7 @@ def program() -> Path | None:
 
 @cache
 def mpich() -> str | None:
-    """MPICH's library: the wheel asks for libmpi.so.12, Debian calls it libmpich.so.12."""
+    """MPICH's library: the wheel is linked with libmpi.so.12; its name in Debian is libmpich.so.12."""
     try:
         known = ask(["/sbin/ldconfig", "-p"])
     except EngineError:

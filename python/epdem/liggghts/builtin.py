@@ -64,7 +64,7 @@ class _OwnTheory(Liggghts):
     end_power = 1.0  # the force falls linearly with the overlap
 
     def deck(self, plan: Plan) -> Deck:
-        return replace(super().deck(plan), remembers=True)
+        return replace(super().deck(plan), has_history=True)
 
 
 class BuiltinLuding(_OwnTheory):

@@ -13,7 +13,7 @@ class Deck:
     title: str
     source: str
     summary: str
-    remembers: bool  # the law has a contact history
+    has_history: bool  # the law has a contact history
     hard: bool
     soft: bool
     data: str

@@ -54,7 +54,7 @@ class Deck:
     energy: bool
     loads: bool
     spins: bool
-    remembers: bool
+    has_history: bool
     yields: bool
     memory_column: int
     wall_memory_column: int
@@ -163,7 +163,7 @@ def deck(p: ScenePlan) -> Deck:
         energy=out.energy,
         loads=out.loads,
         spins=m.spins,
-        remembers=m.yields or m.spins,
+        has_history=m.yields or m.spins,
         yields=m.yields,
         memory_column=4 + memory(m),
         wall_memory_column=4 + memory(m, wall=True),

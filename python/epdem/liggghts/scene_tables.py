@@ -33,7 +33,7 @@ def rows(p: ScenePlan, out: Path) -> pd.DataFrame:
     if every.empty:
         raise EngineError(f"{out}: no thermo rows; the run ended before its first step")
     found: dict[int, list[float]] = {}
-    names = [name for name in every if name in ROWS]  # and LIGGGHTS's own choice where nothing is asked for
+    names = [name for name in every if name in ROWS]  # and LIGGGHTS's own default
     for _, part in every.groupby("run"):
         steps, values = part["Step"].astype(int).to_list(), part[names].to_numpy().tolist()
         known = {step: row for step, row in found.items() if step <= steps[0]}

@@ -28,7 +28,7 @@ class SceneEngine(Protocol):
 
     name: str
     can: Abilities
-    subfolder: str  # of a case's results, where this engine puts its own if nothing else is asked for
+    subfolder: str  # of a case's results, where the default results folder of this engine is
     leftovers: tuple[str, ...]  # patterns of files that an earlier run may have left in the folder
 
     def missing(self) -> str | None:

@@ -51,7 +51,7 @@ class ScenePlan:
 
     @property
     def output(self) -> Output:
-        """What the case asks for."""
+        """The output that the case requests."""
         return self.case.output
 
     @property

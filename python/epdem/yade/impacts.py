@@ -28,10 +28,10 @@ INSTALL = "apt-get install yade"
 
 
 class Yade:
-    """Impacts in YADE: sphere on sphere or wall, with the law that travels with the deck."""
+    """Impacts in YADE: sphere on sphere or wall, with a copy of the law in the deck."""
 
     name = "yade"
-    # a serial YADE keeps bodies where they are in memory and has no ranks: nothing is sorted, nobody migrates
+    # a serial YADE keeps bodies where they are in memory and has no ranks: sorting and migration do not exist
     can = Abilities(laws=tuple(LAWS), staggered=True, scenes=("settle", "compaction"), variants=("swap", "restart"))
     template = "yade/impact.py.j2"
 
@@ -93,7 +93,7 @@ class Yade:
             bodies=tuple(bodies),
             skin=0.1 * min(x.body.radius, x.target.radius),
             time_step=plan.time_step,
-            samples=plan.steps + 2,  # one more than asked for: a velocity is the mean of those half a step away
+            samples=plan.steps + 2,  # one more than the plan has: a velocity is the mean of those half a step away
             path="path.bin",
         )
 

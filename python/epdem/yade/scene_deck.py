@@ -109,7 +109,7 @@ def refuse(p: ScenePlan) -> None:
 
 
 def notes(p: ScenePlan) -> list[str]:
-    """What of a case a YADE scene leaves out, in words."""
+    """The parts of a case that a YADE scene leaves out, in words."""
     return [NO_DASHPOT] if p.model.tangential_restitution is not None else []
 
 
