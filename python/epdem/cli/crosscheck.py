@@ -35,7 +35,7 @@ CHANGES = {
 CHANGES_TITLE = "Two spheres of unequal radii and moduli"
 CHANGES_NOTE = """error: of e_n; swap to restart: changes of e_n in these variants of the set-up;
 momentum: lost, as a share of one body's change. A serial YADE sorts nothing and has no ranks (-);
-an embedded contact has neither names nor restarts."""
+an embedded contact has neither ids nor restarts."""
 
 
 def _cell(name: str, value: object) -> str:

@@ -140,7 +140,7 @@ def deck(
 
 @app.command()
 def predict(case: CasePath, law: Laws = None, as_json: AsJson = False) -> None:
-    """The prediction of theory for a case; no engine runs."""
+    """Print the prediction of theory for a case; no engine runs."""
     from ..case.impact import load, named
     from ..impacts.experiment import experiment
     from ..impacts.prediction import predict as predict_experiment
@@ -196,7 +196,7 @@ def _stop(number: int, frame: object) -> None:
 
 
 def main() -> None:
-    """Entry point: errors that a user can mend become one sentence and an exit code."""
+    """Entry point: errors that a user can correct become one sentence and an exit code."""
     for name in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):  # whatever stops us, no engine stays behind
         signal.signal(name, _stop)
     if isinstance(sys.stdout, io.TextIOWrapper):

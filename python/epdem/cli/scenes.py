@@ -60,7 +60,7 @@ def run_scene(
 
 
 def deck_scene(case: Path, out: Path, *, engine: str = "liggghts", as_json: bool = False) -> None:
-    """Write the deck of a scene; it runs by hand."""
+    """Write the deck of a scene."""
     from ..case.impact import named
     from ..case.scene import load
     from ..engines import scene_engine
@@ -74,7 +74,7 @@ def deck_scene(case: Path, out: Path, *, engine: str = "liggghts", as_json: bool
 
 
 def explain(case: CasePath, as_json: AsJson = False) -> None:
-    """Why each line of a case's LIGGGHTS deck is in it."""
+    """Print each line of the LIGGGHTS deck of a case with its reason."""
     lines = _explained(case)
     if as_json:
         print(json.dumps([{"file": f, "line": text, "reason": reason} for f, text, reason in lines], indent=1))
@@ -118,7 +118,7 @@ def soften(
     force: Annotated[bool, typer.Option("--force", help="replace an existing file")] = False,
     as_json: AsJson = False,
 ) -> None:
-    """A softened twin of a case with the same e_n at every speed, and larger time steps."""
+    """Write a softened copy of a case with the same e_n at every speed and larger time steps."""
     from ..files import atomic
     from ..studies.soften import soften as twin_of
 
@@ -164,7 +164,7 @@ def calibrate(
     ] = None,
     as_json: AsJson = False,
 ) -> None:
-    """The strength of the case's law from one measured e_n, or from a hardness."""
+    """Compute the strength of the case's law from one measured e_n, or from a hardness."""
     from ..studies import calibrate as c
 
     if (e_n is None) == (hv is None and hb is None):

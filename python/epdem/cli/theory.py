@@ -19,7 +19,7 @@ def theory(
     speed: Annotated[str, typer.Option(help='speed of the impact, as "5 m/s"')] = "5 m/s",
     as_json: AsJson = False,
 ) -> None:
-    """One impact on a wall of the same material, by every law."""
+    """Print one impact on a wall of the same material for every law."""
     import numpy as np
 
     from ..case.materials import material as sourced
@@ -72,7 +72,7 @@ def figures(
     out: Annotated[Path, typer.Option("--out", "-o", help="folder for the figures")] = Path("docs/figures"),
     as_json: AsJson = False,
 ) -> None:
-    """Figures 8.16, 8.17 and 8.19 of Seville and Wu (2016), redrawn from theory."""
+    """Draw figures 8.16, 8.17 and 8.19 of Seville and Wu (2016) from theory."""
     from ..studies.figures import draw_all
 
     names = [str(path) for path in draw_all(out)]
