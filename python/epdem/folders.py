@@ -60,7 +60,7 @@ class Results:
 
 About = list[Any]  # size, time of change, hash
 Known = dict[str, Any]  # what `.epdem.json` holds
-_held: dict[Path, Results] = {}  # what this process keeps now
+_held: dict[Path, Results] = {}  # folders that this process keeps now
 
 
 @contextlib.contextmanager
@@ -143,7 +143,7 @@ def _foreign(folder: Path, known: Known | None) -> set[str]:
     names = _names(folder)
     if known is None:
         return names
-    if "files" not in known:  # the last run did not come to its end
+    if "files" not in known:  # the last run was interrupted
         return names & set(known.get("foreign", []))
     return {name for name in names if not _unchanged(folder / name, known["files"].get(name))}
 

@@ -17,7 +17,7 @@ from .errors import EngineError
 
 # A row of a table of numbers that begins with the number of a step: the progress of an engine.
 ROW = re.compile(rb"^ +(\d+)( +[-+.\deainf]+)+ *$")
-POLL = 0.1  # [s] between two looks at a log that is read while it grows
+POLL = 0.1  # [s] between two reads of a growing log
 PATIENCE = 5.0  # [s] for each of SIGTERM and SIGKILL
 _PR_SET_PDEATHSIG = 1
 _libc = ctypes.CDLL(None)
@@ -76,7 +76,7 @@ def call(
                     process.wait(timeout=None if report is None and left == math.inf else min(left, POLL))
                 rows.read(reader.read() if report else b"")
             rows.read(reader.read() if report else b"")
-        except BaseException:  # a time-out, Ctrl-C or the caller's own: no orphan stays behind
+        except BaseException:  # a time-out, Ctrl-C or an error of the caller: the process is stopped too
             kill(process)
             raise
     if status := process.returncode:

@@ -28,7 +28,7 @@ Prepared = TypeVar("Prepared", bound=jinja2.Environment)
 
 
 def line(text: object) -> str:
-    """Text as the comment of one line: no line ends, and no "&" behind which LIGGGHTS would read on."""
+    """Text as the comment of one line: no line ends, and no "&", which would continue the line in LIGGGHTS."""
     return " ".join(str(text).split()).rstrip("& ")
 
 

@@ -32,7 +32,7 @@ def table(title: str, heads: Iterable[str], *, left: Collection[str] = (), wrap:
 
 
 def cell(value: object) -> str:
-    """A table cell: three digits, a dash for what was not reached."""
+    """A table cell: three digits, a dash for NaN."""
     if isinstance(value, float):
         return "-" if math.isnan(value) else f"{value:.3g}"
     return str(value)

@@ -64,7 +64,7 @@ def _likeliest(data: dict[str, Any], problems: list[Any]) -> Any:
         label = str(problems[n]["loc"][-1]) if problems[n]["loc"] else ""
         return (
             problems[n]["type"] != "extra_forbidden",
-            any(len(k) > len(keys) and k[: len(keys)] == keys for k, _ in places),  # a reading that got further
+            any(len(k) > len(keys) and k[: len(keys)] == keys for k, _ in places),  # a reading that matched more keys
             problems[n]["type"] in SHAPES,
             isinstance(value, dict | list) and label.endswith("float]"),  # not the reading as a quantity
         )

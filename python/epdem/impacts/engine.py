@@ -41,12 +41,12 @@ class Abilities:
     walls: bool = True  # planes as targets
     spheres: bool = True  # spheres as targets
     dashpot: bool = False  # [viscous] of a case
-    ranks: int = 1  # the most that it runs on here
-    deck: bool = True  # it reads a deck, which runs by hand too
+    ranks: int = 1  # the largest number on this machine
+    deck: bool = True  # it reads a deck, which runs without epdem too
     positions: bool = True  # its overlap is a difference of positions
     staggered: bool = False  # its velocity belongs to half a step before the position
     scenes: tuple[str, ...] = ()  # kinds of bulk scenes
-    restarts: bool = False  # a bulk scene that was interrupted goes on
+    restarts: bool = False  # it continues an interrupted bulk scene
     variants: tuple[str, ...] = ()  # of the same impacts that `run_pairs` can run, beside the plain one
 
 
@@ -66,13 +66,13 @@ class Engine(Protocol):
         """Raise CaseError for a plan that the engine cannot run."""
 
     def write(self, plan: Plan, folder: Path) -> list[Path]:
-        """The deck and its data files, in `folder`; they run by hand there."""
+        """Write the deck and its data files into `folder`, where they run without epdem."""
 
     def run(self, plan: Plan, folder: Path, *, ranks: int = 1) -> Trajectory:
         """Run what `write` wrote. Raises EngineError with the end of the engine's log."""
 
     def seconds(self, plan: Plan, folder: Path) -> dict[str, float]:
-        """Times of one run that records as little as it can [s]: startup, setup, stepping; NaN where unknown."""
+        """Times of one run with the least possible output [s]: startup, setup, stepping; NaN where unknown."""
 
     def run_pairs(self, pairs: Pairs, variant: str, folder: Path) -> np.ndarray:
         """Velocities [m/s] after the impacts of `pairs`, "plain" or in one of `can.variants`: (2, n, 3), body first.
@@ -82,7 +82,7 @@ class Engine(Protocol):
 
 
 def recorded_seconds(tool: Engine, plan: Plan, folder: Path) -> dict[str, float]:
-    """`seconds` of an engine that always records: its own stepping, and all the rest as setup."""
+    """`seconds` of an engine that always writes samples: its own stepping, and the rest as setup."""
     begin = time.perf_counter()
     tool.write(plan, folder)
     stepping = tool.run(plan, folder).seconds.get("stepping", math.nan)
@@ -90,7 +90,7 @@ def recorded_seconds(tool: Engine, plan: Plan, folder: Path) -> dict[str, float]
 
 
 class OwnTheory(Engine, Protocol):
-    """An engine with a law that is none of ours, and the theory of that law."""
+    """An engine with a law of another code, and the theory of that law."""
 
     end_power: float  # the power of the force that falls linearly with the overlap at the end of an impact
 
@@ -102,7 +102,7 @@ class OwnTheory(Engine, Protocol):
 
 
 def check_abilities(tool: Engine, x: Experiment) -> None:
-    """Raise CaseError for what an experiment asks of an engine that cannot do it."""
+    """Raise CaseError if an experiment needs an ability that the engine does not have."""
     can, wall = tool.can, not np.isfinite(x.target.radius)
     if can.laws is not None and x.law.name not in can.laws:
         known = ", ".join(can.laws)

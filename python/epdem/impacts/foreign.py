@@ -79,7 +79,7 @@ class Mdr:
 
 
 def mdr(x: Experiment) -> Mdr:
-    """Raises CaseError where mdr cannot stand for the case."""
+    """Raises CaseError for cases that mdr cannot represent."""
     if math.isfinite(x.target.radius) or x.viscous_restitution is not None:
         raise CaseError("mdr is compared on walls and without a dashpot: its flats are rigid")
     stresses = [b.yield_stress for b in (x.body, x.target) if b.yield_stress is not None]

@@ -14,8 +14,8 @@ from .experiment import Body, Experiment
 from .plan import Plan
 
 # From target to body. Bins are sorted by z first, then y: with this tilt the lower body in z is the upper one in y, and
-# the order of the two turns twice as they drift across the border of bins at z = 0.
-# The tilt in x makes them change their owner one after the other.
+# the order of the two changes twice as they drift across the border of bins at z = 0.
+# With the tilt in x they change their rank one after the other.
 AXIS = np.array([0.03, 1.0, -0.03]) / np.linalg.norm([0.03, 1.0, -0.03])
 OTHER_RADIUS, OTHER_MODULUS = 0.6, 0.7  # of the target, in units of those of the case
 FIRST, LAST, STOP = 0.2, 0.9, 0.8  # crossings, and the stop of a run, in contact times

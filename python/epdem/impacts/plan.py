@@ -46,7 +46,7 @@ def plan(experiment: Experiment, prediction: Prediction, *, time_step: float | N
     phase = (np.arange(numerics.phases) + 0.5) / numerics.phases
     speed = np.repeat(experiment.speed, numerics.phases)
     gap = np.tile(phase, experiment.speed.size) * speed * dt
-    # a few steps more than the longest contact: integration errors stretch it, and its end must be seen
+    # a few steps more than the longest contact: integration errors stretch it, and its end must be among the samples
     steps = int(np.ceil(1.02 * prediction.contact_time.max() / dt)) + 8
     if speed.size * steps > MAX_SAMPLES:
         raise CaseError(
