@@ -52,8 +52,8 @@ def sweep(
         sweep_view.points(planned, as_json, console())
         return
     folder = out or Path("runs") / f"{planned.name}_sweep"
-    with sweep_view.progress() as tell:
-        outcome = study.run(planned, folder, jobs=jobs, retry_failed=retry_failed, force=force, tell=tell)
+    with sweep_view.progress() as report:
+        outcome = study.run(planned, folder, jobs=jobs, retry_failed=retry_failed, force=force, report=report)
     sweep_view.outcome(outcome, as_json, console())
     raise typer.Exit(0 if outcome.passed else 1)
 

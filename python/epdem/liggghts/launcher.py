@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""How LIGGGHTS with our models is started: its command, its ranks, its environment."""
+"""Starting LIGGGHTS with our models: command, ranks, environment."""
 
 import os
 import shutil
@@ -53,7 +53,7 @@ def command(deck: str, *, ranks: int = 1, log: str = "none") -> list[str]:
 
 
 def environment() -> dict[str, str]:
-    """Ours, with one thread per rank; waiting ranks give way, or they would take the time of those that work."""
+    """This process's, with one thread per rank; waiting ranks yield the processor to those that compute."""
     return os.environ | {"OMP_NUM_THREADS": "1", "OMPI_MCA_mpi_yield_when_idle": "1"}
 
 
@@ -66,8 +66,8 @@ def run(
     out: str = OUT,
     seconds: float | None = None,
     append: bool = False,
-    tell: Callable[[int], None] | None = None,
+    report: Callable[[int], None] | None = None,
 ) -> float:
     """Run a deck in its folder to its end; seconds taken. `log` is LIGGGHTS's own; the rest as in processes.call."""
     words = command(deck, ranks=ranks, log=log)
-    return call(words, folder, log=out, seconds=seconds, env=environment(), append=append, tell=tell)
+    return call(words, folder, log=out, seconds=seconds, env=environment(), append=append, report=report)
