@@ -70,18 +70,19 @@ def measure(path: Path, repeats: int, scratch: Path) -> dict:
     return found | {f"{name}_seconds": min(values) for name, values in times.items()}
 
 
-HEAD = """# What a scene does not need, and what it would cost
+HEAD = """# The cost of what a scene does not need
 
-Made by `.venv/bin/python bench/lean.py`. *Full* is the same scene with every sub-model on (friction, dashpot, rolling
-friction, cohesion, plastic-work ledger, wall loads) at coefficients of 1e-9 where the case has none; *lean* is
-what the case's physics asks for. Time of the last 5 % of each scene, one rank, the shortest of several runs in turns.
+Written by `.venv/bin/python bench/lean.py`. The *lean* deck contains only what the physics of the case requires. The
+*full* deck is the same scene with every sub-model on (friction, dashpot, rolling friction, cohesion, plastic work, wall
+loads), with coefficients of 1e-9 where the case has none. The times are those of the last 5 % of each scene on one
+rank, the shortest of several interleaved runs.
 
 | scene | deck lines full | lean | history bytes per contact full | lean | us per step full | lean | ratio |
 |---|---|---|---|---|---|---|---|
 """
 TAIL = """
-`epdem explain CASE` says of each line of a deck why it is in it; `tests/scenes/test_lean.py` removes each line of every
-case's deck in turn and runs it again.
+`epdem explain CASE` prints each line of a deck with its reason. `tests/scenes/test_lean.py` removes each line of the
+deck of every case in turn and runs the deck again.
 """
 
 
@@ -103,8 +104,11 @@ def main() -> None:
     options = parser.parse_args()
     scratch = Path(tempfile.mkdtemp(prefix="epdem_lean_"))
     try:
-        rows = [measure(p, options.repeats, scratch) for p in sorted((ROOT / "cases").glob("*.toml"))
-                if scenes.is_scene(read_toml(p))]  # fmt: skip
+        rows = [
+            measure(p, options.repeats, scratch)
+            for p in sorted((ROOT / "cases").glob("*.toml"))
+            if scenes.is_scene(read_toml(p))
+        ]
     finally:
         shutil.rmtree(scratch, ignore_errors=True)
     options.out.write_text(page(rows))

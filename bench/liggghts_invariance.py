@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Writes docs/invariance.md: which contact models give the same answer however a scene is told to LIGGGHTS.
+"""Writes docs/invariance.md: which contact models give the same results in every set-up of one scene in LIGGGHTS.
 
 Run: .venv/bin/python bench/liggghts_invariance.py
 """
@@ -16,25 +16,26 @@ from plugin_invariance import Suite  # noqa: E402
 
 MODELS = (*(f"ep/{law}" for law in LAWS), "hertz", "thornton_ning", "edinburgh")
 
-HEAD = """# One scene, told in other ways
+HEAD = """# One scene in different set-ups
 
 Written by `.venv/bin/python bench/liggghts_invariance.py`; do not edit.
 
 24 oblique impacts (12 pairs of unequal spheres of three materials, 12 spheres on a wall) with `tangential history`
-drift across a face while they touch. Each row tells LIGGGHTS the same scene in another way, and shows the largest
-deviation of any final velocity or spin from the plain run, relative to the largest velocity or spin of the scene:
-0 is bitwise equal. Rows about momentum give the change of a pair's momentum relative to what its bodies exchanged.
-The scene is in `tests/engines/plugin_invariance.py`; `tests/engines/test_plugin_invariance.py` asserts the columns of
-epdem and the main failures of the others.
+drift across a face of the box during contact. Each row is the same scene in another set-up. Its numbers are the largest
+deviation of any final velocity or spin from the plain run, relative to the largest velocity or spin of the scene; 0
+means bitwise equality. Rows about momentum show the change of the momentum of a pair, relative to the momentum that its
+bodies exchange. The scene is in `tests/engines/plugin_invariance.py`; `tests/engines/test_plugin_invariance.py` asserts
+the columns of epdem and the main failures of the other models.
 
 """
 
 TAIL = """
-Why the others fail: `thornton_ning` and `edinburgh` register even quantities (largest overlap, force, flags) with the
-newton flag 1, so LIGGGHTS negates them when a pair is stored from its other side, and they register no contact
-distance factor, so nothing tells them that a pair parted before the next neighbour list. The shear spring of `hertz`
-with `tangential history` survives for the same reason. Their viscous force reads velocities in the middle of a step, so
-a split run differs slightly; `hertz` also leaves its setting `tangential_damping` unset when a restart file creates it.
+The other models fail for the following reasons. `thornton_ning` and `edinburgh` register even quantities (largest
+overlap, force, flags) with newton flag 1, and LIGGGHTS negates such values when a pair is stored from its other side.
+They register no contact distance factor; their history therefore outlives a contact that ends between two neighbour
+lists, as does the shear spring of `hertz` with `tangential history`. Their viscous force depends on velocities of the
+half step, which a split run computes slightly differently. `hertz` also leaves its setting `tangential_damping`
+undefined when a restart file creates it.
 """
 
 
@@ -46,7 +47,7 @@ def cell(values):
 def main():
     with tempfile.TemporaryDirectory() as folder:
         columns = {model: Suite(model, Path(folder) / model.replace("/", "-")).deviations() for model in MODELS}
-    lines = ["| way | " + " | ".join(MODELS) + " |", "|---" * (len(MODELS) + 1) + "|"]
+    lines = ["| set-up | " + " | ".join(MODELS) + " |", "|---" * (len(MODELS) + 1) + "|"]
     for name in columns[MODELS[0]]:
         lines.append(f"| {name} | " + " | ".join(cell(columns[m][name]) for m in MODELS) + " |")
     text = HEAD + "\n".join(lines) + "\n" + TAIL

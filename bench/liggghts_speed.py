@@ -3,10 +3,12 @@
 
 Run: .venv/bin/python bench/liggghts_speed.py [--quick]
 
-Every model sees the same deck and starts from the same positions; the models take turns, and each keeps its fastest
-run, because on a shared machine the noise only adds. The moving packings are dense, so that they keep their contacts
-whatever a model dissipates: the number of contacts stands in the table. Instruction counts (callgrind) repeat exactly
-and are the number to watch.
+A model name may carry a loop: ep/thornton@avx2, @sse2 (instruction sets of our pair loop) or @generic (LIGGGHTS's loop
+with our model). Every model sees the same deck and starts from the same positions; the models take turns, and each
+keeps its fastest run, because on a shared machine the noise only adds. The moving packings are dense, so that they keep
+their contacts whatever a model dissipates: the number of contacts stands in the table. Instruction counts (callgrind)
+repeat exactly, but know nothing of divisions and roots that wait for each other. From the frozen and the moving
+packing, two equations: what a pair that touches costs, and one that does not.
 """
 
 import argparse
@@ -25,8 +27,26 @@ sys.path.insert(0, str(ROOT / "tests" / "engines"))
 
 from plugin_decks import good, launcher, per_pair  # noqa: E402
 
-MODELS = ("hertz", "ep/hertz", "ep/thornton", "ep/johnson", "ep/cavity", "thornton_ning")
-LIMITS = {"frozen": {"ep/thornton": 1.00, "ep/cavity": 1.25}, "moving": {"ep/thornton": 1.03, "ep/cavity": 1.15}}
+MODELS = (
+    "hertz",
+    "ep/hertz",
+    "ep/thornton",
+    "ep/johnson",
+    "ep/cavity",
+    "ep/thornton@avx2",
+    "ep/thornton@sse2",
+    "ep/thornton@generic",
+    "thornton_ning",
+)
+LIMITS = {"ep/hertz": 0.45, "ep/thornton": 0.45, "ep/johnson": 0.45, "ep/cavity": 0.60}  # pair time over that of hertz
+BESIDE = (
+    "rolling_friction cdt",
+    "rolling_friction epsd2",
+    "cohesion sjkr",
+    "cohesion sjkr2",
+    "viscous on",
+    "computePlasticWork on",
+)
 RADIUS, SHRINK = 2e-3, 0.999
 
 DECK = """atom_style granular
@@ -38,12 +58,12 @@ units si
 {processors}read_data packing.data
 neighbor {skin} bin
 neigh_modify delay 0{lists}
-fix m1 all property/global youngsModulus peratomtype 1e8
-fix m2 all property/global poissonsRatio peratomtype 0.3
-{restitution}{friction}fix p1 all property/global yieldPressure peratomtype 1e6
-fix p2 all property/global yieldStress peratomtype 3.6e5
-fix p3 all property/global coefficientYieldRatio peratomtype 0.01
-{surface}pair_style gran model {model} tangential history
+fix m1 all property/global youngsModulus peratomtype {E}
+fix m2 all property/global poissonsRatio peratomtype {nu}
+{restitution}{friction}fix p1 all property/global yieldPressure peratomtype {p_y}
+fix p2 all property/global yieldStress peratomtype {Y}
+fix p3 all property/global coefficientYieldRatio peratomtype {ratio}
+{surface}pair_style gran model {model} tangential history {words}
 pair_coeff * *
 timestep {dt}
 fix move all nve/sphere
@@ -56,10 +76,11 @@ run {warm}
 {unload}{runs}"""
 
 
-def packing(cells, spacing, jitter, speed=0.0, shear=0.0):
+def packing(cells, spacing, jitter, speed=0.0, shear=0.0, types=1):
     """Data file of a jittered face-centred cubic packing in a periodic box: 4 cells^3 spheres.
 
-    Random velocities to `speed` [m/s], and v_x to `shear` [m/s] as one sine wave over the height of the box.
+    Random velocities to `speed` [m/s], and v_x to `shear` [m/s] as one sine wave over the height of the box; several
+    types at random, then with radii that differ by up to 2 %.
     """
     rng = np.random.default_rng(3)
     edge = spacing * 2 * RADIUS * math.sqrt(2)
@@ -68,36 +89,66 @@ def packing(cells, spacing, jitter, speed=0.0, shear=0.0):
     x = (x + rng.uniform(-jitter, jitter, x.shape) * 2 * RADIUS) % (cells * edge)
     v = rng.uniform(-speed, speed, x.shape)
     v[:, 0] += shear * np.sin(2 * np.pi * x[:, 2] / (cells * edge))
-    lines = ["packing", "", f"{len(x)} atoms", "1 atom types", ""]
+    kind = rng.integers(1, types + 1, len(x)).tolist()
+    diameter = (2 * RADIUS * (rng.uniform(0.98, 1.02, len(x)) if types > 1 else np.ones(len(x)))).tolist()
+    lines = ["packing", "", f"{len(x)} atoms", f"{types} atom types", ""]
     lines += [f"0.0 {cells * edge!r} {c}lo {c}hi" for c in "xyz"]
     lines += [
         "",
         "Atoms",
         "",
-        *(f"{i + 1} 1 {2 * RADIUS} 2500.0 {p[0]!r} {p[1]!r} {p[2]!r}" for i, p in enumerate(x.tolist())),
+        *(f"{i + 1} {kind[i]} {diameter[i]!r} 2500.0 {p[0]!r} {p[1]!r} {p[2]!r}" for i, p in enumerate(x.tolist())),
     ]
     lines += ["", "Velocities", "", *(f"{i + 1} {p[0]!r} {p[1]!r} {p[2]!r} 0 0 0" for i, p in enumerate(v.tolist()))]
     return "\n".join([*lines, ""])
 
 
-def deck(model, *, steps, chunks=1, dt="1e-13", warm=2, unload=True, restitution=True, ranks=1, skin="8e-4", lists=""):
+def deck(
+    model,
+    *,
+    steps,
+    chunks=1,
+    dt="1e-13",
+    warm=2,
+    unload=True,
+    restitution=True,
+    ranks=1,
+    skin="8e-4",
+    lists="",
+    types=1,
+    words="",
+):
     foreign = model == "thornton_ning"
+    beside = {"rolling_friction": "coefficientRollingFriction", "cohesion": "cohesionEnergyDensity"}
+    beside = "".join(per_pair(name, 0.1 if "Roll" in name else 1e3, types) for w, name in beside.items() if w in words)
+
+    def per_type(first):
+        return " ".join(repr(first * (1 + k)) for k in range(types))
+
     return DECK.format(
         model=model,
+        words=words,
+        E=per_type(1e8),
+        nu=" ".join(["0.3"] * types),
+        p_y=per_type(1e6),
+        Y=per_type(3.6e5),
+        ratio=" ".join(["0.01"] * types),
         runs=f"run {steps}\n" + f"run {steps} pre no\n" * (chunks - 1),
         dt=dt,
         skin=skin,
         lists=f" {lists}" if lists else "",
         warm=warm,
         processors="processors 2 1 1\n" if ranks == 2 else "",
-        restitution=per_pair("coefficientRestitution", 0.7, 1) if restitution or not model.startswith("ep/") else "",
-        friction=per_pair("coefficientFriction", 0.5, 1),
-        surface=per_pair("surfaceEnergy", 0.0, 1) if foreign else "",
+        restitution=per_pair("coefficientRestitution", 0.7, types)
+        if restitution or not model.startswith("ep/")
+        else "",
+        friction=per_pair("coefficientFriction", 0.5, types),
+        surface=beside + (per_pair("surfaceEnergy", 0.0, types) if foreign else ""),
         unload=f"set group all diameter {2 * RADIUS * SHRINK!r}\n" if unload else "",
     )
 
 
-FROZEN = {"data": (17, 1.01, 0.03), "steps": 2, "chunks": 120}
+FROZEN = {"data": (17, 1.01, 0.03), "steps": 10, "chunks": 30}
 DYNAMIC = {"data": (17, 0.985, 0.002, 0.05), "steps": 100, "chunks": 3}
 SHEARED = {"data": (17, 0.985, 0.002, 0.05, 0.5), "steps": 100, "chunks": 3}
 THIN = {"skin": "1e-4", "lists": "every 18 check no"}
@@ -108,6 +159,7 @@ SCENES = {
     "frozen, no restitution": FROZEN | {"run": {"restitution": False}},
     "frozen, 2 ranks": FROZEN | {"run": {"ranks": 2}},
     "moving": DYNAMIC | {"run": MOVING},
+    "moving, two materials": DYNAMIC | {"data": (17, 0.985, 0.002, 0.05, 0.0, 2), "run": MOVING | {"types": 2}},
     "moving, 2 ranks": DYNAMIC | {"run": MOVING | {"ranks": 2}},
     # a thin skin, and the neighbour lists made anew every 18 steps for every model
     "moving, sheared": SHEARED | {"run": MOVING | THIN},
@@ -123,6 +175,7 @@ class Cost:
     pair: float = math.inf
     contacts: int = 0
     rebuilds: int = 0
+    neighbours: int = 0  # pairs in the lists at the end
 
 
 def read(text, steps):
@@ -131,20 +184,30 @@ def read(text, steps):
     pairs = re.findall(r"Pair  time \(%\) = (\S+)", text)[1:]
     touching = re.findall(r"^ *\d+ +\d+ +(\d+) *$", text, re.MULTILINE)
     rebuilds = re.findall(r"Neighbor list builds = (\d+)", text)[1:]
+    neighbours = re.findall(r"Total # of neighbors = (\d+)", text)
     least = [min(map(float, values)) / steps * 1e3 for values in (loops, pairs)]
-    return Cost(*least, int(touching[-1]) // 2, sum(map(int, rebuilds)))
+    return Cost(*least, int(touching[-1]) // 2, sum(map(int, rebuilds)), int(neighbours[-1]))
 
 
-def timed(folder, scene, models, repeats):
-    """model -> Cost; the models take turns."""
+def start(folder, name, text, **options):
+    """A run of the model `name`, MODEL or MODEL@LOOP."""
+    loop = name.partition("@")[2]
+    env = {"EPDEM_LOOP": loop} if loop == "generic" else {"EPDEM_SIMD": loop} if loop else {}
+    return good(folder, text, env=env, **options).text
+
+
+def timed(folder, scene, models, repeats, beside=""):
+    """name -> Cost; the models take turns. `beside`: models and settings after the tangential one."""
     what = SCENES[scene]
     data, options, best = packing(*what["data"]), what["run"], {}
     for _ in range(repeats):
-        for model in models:
-            text = deck(model, steps=what["steps"], chunks=what["chunks"], **options)
-            log = good(folder, text, files={"packing.data": data}, ranks=options.get("ranks", 1)).text
-            now, old = read(log, what["steps"]), best.get(model, Cost())
-            best[model] = replace(now, loop=min(now.loop, old.loop), pair=min(now.pair, old.pair))
+        for name in models:
+            model = name.partition("@")[0]
+            words = beside if model.startswith("ep/") or not beside.endswith(" on") else ""
+            text = deck(model, steps=what["steps"], chunks=what["chunks"], words=words, **options)
+            text = start(folder, name, text, files={"packing.data": data}, ranks=options.get("ranks", 1))
+            now, old = read(text, what["steps"]), best.get(name, Cost())
+            best[name] = replace(now, loop=min(now.loop, old.loop), pair=min(now.pair, old.pair))
     return best
 
 
@@ -160,38 +223,77 @@ def instructions(folder, model):
     )
     script.chmod(0o755)
     for steps in (2, 12):
-        text = good(folder, deck(model, steps=steps), files=files, command=str(script), timeout=300).text
+        text = start(
+            folder, model, deck(model.partition("@")[0], steps=steps), files=files, command=str(script), timeout=300
+        )
         counts.append(int(re.findall(r"Collected : (\d+)", text)[-1]))
     return (counts[1] - counts[0]) / 10
 
 
+def table_of_scenes(folder, scenes, models, repeats):
+    """Prints one row per scene and model; scene -> name -> Cost, and whether a limit was exceeded."""
+    print("| scene | model | contacts | lists | loop ms/step | x hertz | pair ms/step | x hertz |")
+    print("|---|---|---|---|---|---|---|---|")
+    costs, failed = {}, False
+    for scene in scenes:
+        best = costs[scene] = timed(folder, scene, models, repeats)
+        hertz = best["hertz"]
+        for name in models:
+            now, limit = best[name], LIMITS.get(name)
+            ratio = now.pair / hertz.pair
+            verdict = "" if limit is None else f" (limit {limit}: {'kept' if ratio <= limit else 'EXCEEDED'})"
+            failed |= limit is not None and ratio > limit
+            loop = f"{now.loop:.3f} | {now.loop / hertz.loop:.3f}"
+            pair = f"{now.pair:.3f} | {ratio:.3f}{verdict}"
+            print(f"| {scene} | {name} | {now.contacts} | {now.rebuilds} | {loop} | {pair} |", flush=True)
+    return costs, failed
+
+
+def table_of_pairs(costs, models):
+    """ns of a pair that touches and of one that does not, from the two packings of one type on one rank."""
+    print("\n| model | ns per touching pair | ns per pair that does not touch | x hertz, touching |\n|---|---|---|---|")
+    rows, times = {}, {}
+    for name in models:
+        some = [costs[scene][name] for scene in ("frozen", "moving")]
+        rows[name] = [[c.contacts, c.neighbours - c.contacts] for c in some]
+        times[name] = np.linalg.solve(np.array(rows[name], float), np.array([c.pair for c in some]) * 1e6)
+    for name, (touching, apart) in times.items():
+        print(f"| {name} | {touching:.1f} | {apart:.1f} | {touching / times['hertz'][0]:.2f} |")
+
+
+def table_beside(folder, repeats):
+    """Pair time of ep/thornton with other models beside it, over hertz with the same and over itself without."""
+    print("\n| moving, with | hertz pair ms/step | ep/thornton pair ms/step | x hertz | x ep/thornton alone |")
+    print("|---|---|---|---|---|")
+    alone = None
+    for words in ("", *BESIDE):
+        best = timed(folder, "moving", ("hertz", "ep/thornton"), repeats, words)
+        hertz, ours = best["hertz"].pair, best["ep/thornton"].pair
+        alone = alone or ours
+        print(
+            f"| {words or 'nothing'} | {hertz:.3f} | {ours:.3f} | {ours / hertz:.3f} | {ours / alone:.3f} |", flush=True
+        )
+
+
 def main():
-    ask = argparse.ArgumentParser(description=__doc__)
-    ask.add_argument("--quick", action="store_true", help="two repeats, frozen packing only, no callgrind")
+    ask = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    ask.add_argument("--quick", action="store_true", help="two repeats, three scenes, no callgrind")
     ask.add_argument("--scenes", default=",".join(s.replace(",", ";") for s in SCENES), help="';' for ',' in a name")
     ask.add_argument("--models", default=",".join(MODELS))
-    quick, models = (args := ask.parse_args()).quick, args.models.split(",")
-    failed = False
+    args = ask.parse_args()
+    models, repeats = args.models.split(","), 2 if args.quick else 6
+    wanted = [name.replace(";", ",") for name in args.scenes.split(",")]
+    if args.quick:
+        wanted = [s for s in wanted if s in ("frozen", "moving", "moving, two materials")]
     with tempfile.TemporaryDirectory() as name:
         folder = Path(name)
-        print("| scene | model | contacts | lists | loop ms/step | x hertz | pair ms/step | x hertz |")
-        print("|---|---|---|---|---|---|---|---|")
-        wanted = [name.replace(";", ",") for name in args.scenes.split(",")]
-        for scene in wanted[: 2 if quick else None]:
-            best = timed(folder, scene, models, 2 if quick else 6)
-            for model in models:
-                now, hertz = best[model], best["hertz"]
-                loop, limit = now.loop / hertz.loop, LIMITS[scene.split(",")[0]].get(model)
-                verdict = "" if limit is None else f" (limit {limit}: {'kept' if loop <= limit else 'EXCEEDED'})"
-                failed |= limit is not None and loop > limit
-                print(
-                    f"| {scene} | {model} | {now.contacts} | {now.rebuilds} | {now.loop:.3f} | {loop:.3f}{verdict} | "
-                    f"{now.pair:.3f} | {now.pair / hertz.pair:.3f} |",
-                    flush=True,
-                )
-        if not quick and shutil.which("valgrind"):
+        costs, failed = table_of_scenes(folder, wanted, models, repeats)
+        if {"frozen", "moving"} <= costs.keys():
+            table_of_pairs(costs, models)
+        table_beside(folder, repeats)
+        if not args.quick and shutil.which("valgrind"):
             print("\n| model | instructions in the pair loop per step, 2048 spheres | x hertz |\n|---|---|---|")
-            count = {model: instructions(folder, model) for model in models}
+            count = {model: instructions(folder, model) for model in models}  # valgrind knows no AVX-512
             for model in models:
                 print(f"| {model} | {count[model]:.0f} | {count[model] / count['hertz']:.4f} |")
     return int(failed)

@@ -59,8 +59,10 @@ def main() -> None:
         if kind == "law":
             keys = ("prescribed", "impact", "batch")
             found["laws"][name] = dict(zip(keys, [*numbers, batch(name)], strict=True))
-            print(f"  {name:<14} {found['laws'][name]['prescribed']:11.1f} {numbers[1]:12.1f} "
-                  f"{found['laws'][name]['batch']:12.1f}")  # fmt: skip
+            print(
+                f"  {name:<14} {found['laws'][name]['prescribed']:11.1f} {numbers[1]:12.1f} "
+                f"{found['laws'][name]['batch']:12.1f}"
+            )
         elif kind == "choice":
             found["cavity"][name] = numbers[0]
         else:

@@ -83,8 +83,15 @@ def once(law: str, folder: Path) -> tuple[list[float], int]:
     """Microseconds per contact and step of one law in each of STATES, and the number of contacts."""
     path = folder / f"{law.replace(' ', '_')}.py"
     path.write_text(SCRIPT.format(python=str(ROOT / "python"), law=law, side=SIDE))
-    done = subprocess.run(["yade", "-n", "-x", path.name], cwd=folder, capture_output=True, text=True, timeout=300,
-                          stdin=subprocess.DEVNULL, env=os.environ | {"OMP_NUM_THREADS": "1"})  # fmt: skip
+    done = subprocess.run(
+        ["yade", "-n", "-x", path.name],
+        cwd=folder,
+        capture_output=True,
+        text=True,
+        timeout=300,
+        stdin=subprocess.DEVNULL,
+        env=os.environ | {"OMP_NUM_THREADS": "1"},
+    )
     lines = [t for t in done.stdout.splitlines() if t.startswith("RESULT ")]
     if done.returncode or not lines:
         raise SystemExit(done.stdout[-2000:] + done.stderr[-2000:])

@@ -20,13 +20,14 @@ LAWS = ["thornton", "cavity", "johnson", "hertz"]
 BULK = """
 ## A bulk scene
 
-The same question for two blocks of {spheres} steel spheres together that meet at 300 m/s: the error of the plastic
-work, of its mean and (rms) of single spheres, both over the mean, against a run at a quarter of the finest step; the
-engine's loop time in runs that record nothing, not even that work, and the same over that of LIGGGHTS's own elastic
-`hertz` (`{reference}`) with the same steps (medians of interleaved runs and half the distance of the
-quartiles). `order` is that of the rms between neighbouring rows; the error of the mean may pass through zero. Steps are
-shares of the smallest of all these laws' stability limits at 300 m/s. Elastic spheres fly on and collide with others,
-yielding ones stay together: the ratio is that of the scenes, not of the models alone. Hertz contacts dissipate nothing.
+The scene consists of two blocks of {spheres} steel spheres together that collide at 300 m/s. The table shows the error
+of the plastic work against a run at a quarter of the finest step: that of its mean, and the rms error of single
+spheres, both over the mean. The time is the loop time of the engine in runs without any output and without the
+computation of that work; the last column is its ratio to LIGGGHTS's own elastic `hertz` (`{reference}`) with the same
+steps (medians of interleaved runs and half the distance of the quartiles). `order` is that of the rms error between
+neighbouring rows; the error of the mean may pass through zero. Steps are shares of the smallest stability limit of
+these laws at 300 m/s. Elastic spheres separate and collide with others, while yielding spheres stay together; the ratio
+therefore compares the scenes, not the models alone. Hertz contacts dissipate no energy.
 
 {table}
 """
@@ -40,11 +41,10 @@ Written by
 
     {command}
 
-(case `{outcome.case.name}`, {outcome.seconds:.0f} s). Errors are those of
-the worst speed and phase of the case; times are medians of interleaved
-runs that record nothing, stepping alone (the engine's own loop time). Absolute times belong to one machine and what
-else it did; the ratio to LIGGGHTS's own elastic `hertz` (`{REFERENCE}`) in the same run
-is the figure of merit (median and half the distance of the quartiles, from 300 steps in contact on).
+(case `{outcome.case.name}`, {outcome.seconds:.0f} s). Errors are maxima over all speeds and phases of the case. Times
+are medians of the loop time of the engine in interleaved runs without output. Absolute times depend on the machine and
+its other load; the ratio to LIGGGHTS's own elastic `hertz` (`{REFERENCE}`) in the same run is the figure of merit
+(median and half the distance of the quartiles, from 300 steps in contact on).
 
 {markdown(cheapest_table(outcome.models))}
 

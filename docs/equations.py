@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""docs/equations.md, the map of equations from the code itself: number, formula, source, function, C++, tests.
+"""docs/equations.md, the table of equations from the code itself: number, formula, source, function, C++, tests.
 
-Run: .venv/bin/python docs/equations.py     (a test keeps the page true)
+Run: .venv/bin/python docs/equations.py     (a test compares the page with the code)
 
 A docstring states an equation as `Eq. 8.84 [Thornton 1997]: v_y = ...`, to the end of the paragraph. A test calls the
-function by its name; for a method, whose name alone says little, it states `# equation: backbone.Backbone.unloading`.
-What computes with an equation in C++ stands in CPP.
+function by its name; a test of a method states `# equation: backbone.Backbone.unloading`. CPP lists the code that
+computes with an equation in C++.
 """
 
 import ast
@@ -14,7 +14,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 
-from epdem.theory.sources import SOURCES
+from epdem.theory.sources import CHAPTER, SOURCES
 
 ROOT = Path(__file__).resolve().parents[1]
 STATEMENT = re.compile(r"^Eq\. (8\.\d\d) \[(.+?)\]: (.+?)(?=\n\n|\Z)", re.DOTALL | re.MULTILINE)
@@ -112,8 +112,10 @@ def page() -> str:
     lines = [
         "# Equations",
         "",
-        'Numbers as in the chapter "Interaction of Elastic-Plastic Particles"; functions are in `epdem.theory`,',
-        f"headers in `{HEADERS}`, tests in `{TESTS}/physics`. Made by `python docs/equations.py`.",
+        f"The numbers of the equations are those of {CHAPTER}.",
+        "",
+        f"The functions are in `epdem.theory`, the headers in `{HEADERS}`, the tests in `{TESTS}/physics`. The",
+        "page is written by `.venv/bin/python docs/equations.py`.",
         "",
         "| eq. | formula | source | function | C++ | tests |",
         "|---|---|---|---|---|---|",

@@ -84,8 +84,13 @@ def main() -> None:
     above.plot(fine, fit, "k--", lw=1.4, label="8.88 Wu et al. 2003, finite elements")
     below.axhspan(-0.05, 0.05, color="0.92")
     below.axhline(0, color="k", ls="--", lw=1)
-    above.set(ylabel="coefficient of restitution e_n", xscale="log", yscale="log", ylim=(0.15, 1.1),
-              title="Four laws, the chapter's equations and LIGGGHTS")  # fmt: skip
+    above.set(
+        ylabel="coefficient of restitution e_n",
+        xscale="log",
+        yscale="log",
+        ylim=(0.15, 1.1),
+        title="Four laws, the chapter's equations and LIGGGHTS",
+    )
     below.set(xlabel="impact speed / speed of first yield, v/v_y0", ylabel="e_n / (8.88) - 1", ylim=(-0.25, 0.25))
     ticks = [0.2, 0.3, 0.5, 0.7, 1.0]
     above.set_yticks(ticks, [str(t) for t in ticks], minor=False)

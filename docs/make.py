@@ -8,13 +8,22 @@ from pathlib import Path
 ROOT = Path(__file__).parents[1]
 BIN = Path(sys.executable).parent
 COMMANDS = {
-    "figures/steel_wall.png": [BIN / "epdem", "run", "cases/steel_wall.toml", "-e", "liggghts",
-                               "-e", "liggghts-thornton_ning", "--out", "runs/docs"],
+    "figures/steel_wall.png": [
+        BIN / "epdem",
+        "run",
+        "cases/steel_wall.toml",
+        "-e",
+        "liggghts",
+        "-e",
+        "liggghts-thornton_ning",
+        "--out",
+        "runs/docs",
+    ],
     "figures/laws.png": [sys.executable, "docs/laws.py"],
     "equations.md": [sys.executable, "docs/equations.py"],
     "cost.md": [sys.executable, "docs/cost.py"],
     "stability.md": [sys.executable, "docs/stability.py"],
-}  # fmt: skip
+}
 
 
 def main() -> None:

@@ -43,7 +43,7 @@ class Ledger {
   template <bool wall, class Law>
   void book(const Law& law, double R_star, const State<Law>& before, const State<Law>& after, double delta,
             const Bodies& bodies) {
-    share<wall>(plastic_growth(law, R_star, before, after), elastic_energy(law, R_star, before, delta), bodies);
+    share<wall>(plastic_growth(law, R_star, before, after), elastic_energy(law, R_star, after, delta), bodies);
   }
 
   /// To the bodies: plastic work by which a contact grew, elastic energy that it holds [J].
@@ -64,7 +64,7 @@ class Ledger {
   }
 
   void credit(int body, double grown, double stored) {
-    work_->vector_atom[body] += grown;
+    if (grown > 0.0) work_->vector_atom[body] += grown;  // few contacts grow
     energy_->vector_atom[body] += stored;
   }
 

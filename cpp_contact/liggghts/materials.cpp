@@ -134,7 +134,7 @@ class ParameterTable {
 constexpr const char* ratio_name = "yieldPressureRatio";
 constexpr Parameter yield_stress = {"yield_stress", "yieldStress", "Pa", not_given};
 
-/// What the deck is asked for: the law's parameters, or, in place of the strength, the yield stress and at last the ratio.
+/// What the deck is asked for: the law's parameters, or the yield stress in place of the strength, and the ratio last.
 struct Question {
   std::vector<Parameter> parameters;
   bool by_ratio;
@@ -175,8 +175,9 @@ std::vector<double> parameters_of(const Reader& reader, const Declaration& law, 
       continue;
     }
     if (strength && !strength_per_type && t.of_type(i) != t.of_type(j))
-      reader.fail(std::string(asked.parameters[k].property) + " per type and " + asked.parameters[law.strength].property +
-                  " per pair leave open which body of " + both(i, j) + " is the softer one; give both per pair");
+      reader.fail(std::string(asked.parameters[k].property) + " per type and " +
+                  asked.parameters[law.strength].property + " per pair leave open which body of " +
+                  both(i, j) + " is the softer one; give both per pair");
     values.push_back(t.of_type(softer));
   }
   const std::vector<double> as_given = values;

@@ -69,8 +69,8 @@ def test_positions_limit_only_engines_that_have_them():
 
 def test_no_module_asks_which_engine_it_has():
     """Engines may compare names with each other in `engines`; elsewhere an ability says what matters."""
-    asks = re.compile(
-        r"isinstance\([^)]*\b(Liggghts|Yade|Embedded|LammpsMdr)\b|(tool|engine)\.name\.startswith\(|tool\.name == "
-    )
+    kinds = r"isinstance\([^)]*\b(Liggghts|Yade|Embedded|LammpsMdr)\b"
+    names = r'\b(tool|engine|sampler)\.name(\.startswith\(| [!=]= "embedded")'
+    asks = re.compile(f"{kinds}|{names}")
     for path in (ROOT / "python/epdem").rglob("*.py"):
         assert not asks.search(path.read_text()), path

@@ -72,15 +72,15 @@ class Run:
         return self.frames()[1][-1]
 
 
-def run(folder, deck, *, ranks=1, files=None, command=None, preload=None, timeout=120):
-    """Runs a deck in `folder`; returns exit code and everything that was printed."""
+def run(folder, deck, *, ranks=1, files=None, command=None, preload=None, env=None, timeout=120):
+    """Runs a deck in `folder`, with `env` added to the environment; returns exit code and everything printed."""
     folder = Path(folder)
     folder.mkdir(parents=True, exist_ok=True)
     for name, text in (files or {}).items():
         (folder / name).write_text(text)
     (folder / "in.deck").write_text(deck)
     line = [command or launcher(), "-in", "in.deck"]
-    env = dict(os.environ)
+    env = dict(os.environ) | (env or {})
     if preload:
         env["LD_PRELOAD"] = preload
     if ranks > 1:

@@ -20,8 +20,10 @@ def final(folder, model):
         v[k], v[k + 1], w[k] = (0.3, 0.1, 1.0), (-0.2, 0.0, -1.0), (50.0, -20.0, 10.0)
     v[6:], w[6:] = (0.5, -0.2, -1.0), (-30.0, 40.0, 5.0)
     properties = materials("hertz", friction=0.2) + per_pair("coefficientRollingFriction", 0.05)
-    properties = properties.replace("coefficientRestitution peratomtypepair 3 " + " ".join(["0.7"] * 9),
-                                    "coefficientRestitution peratomtypepair 3 " + " ".join(["1.0"] * 9))  # fmt: skip
+    properties = properties.replace(
+        "coefficientRestitution peratomtypepair 3 " + " ".join(["0.7"] * 9),
+        "coefficientRestitution peratomtypepair 3 " + " ".join(["1.0"] * 9),
+    )
     deck = head() + "read_data box.data\nneighbor 1e-3 bin\nneigh_modify delay 0\n" + properties
     deck += contact(model, wall="primitive", models="rolling_friction cdt")
     deck += "timestep 1e-7\nfix move all nve/sphere\nthermo_modify lost error norm no\n"

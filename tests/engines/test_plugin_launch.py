@@ -184,6 +184,6 @@ def test_rolling_friction_acts_because_kn_is_set(tmp_path):
 def test_the_deck_of_the_user_page_prints_what_the_page_says(tmp_path):
     page = (Path(__file__).resolve().parents[2] / "docs" / "liggghts.md").read_text()
     text = re.search(r"```deck\n(.*?)```", page, re.S).group(1)
-    said = re.search(r"It prints (\S+),", page).group(1)
+    printed = re.search(r"The deck prints (\S+),", page).group(1)
     got = re.search(r"^restitution (\S+)", good(tmp_path, text).text, re.M).group(1)
-    assert f"{float(got):.4f}" == said == "0.9476"
+    assert f"{float(got):.4f}" == printed == "0.9476"

@@ -1,11 +1,15 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Elastic oblique impacts in LIGGGHTS by local angle: psi_1 = kappa tan(theta)/mu before and psi_2 after the impact."""
+"""Oblique impacts in LIGGGHTS.
+
+Elastic impacts by local angle: psi_1 = kappa tan(theta)/mu before and psi_2 after the impact. Impacts with a dashpot
+that slide throughout: the tangential impulse over mu times the normal one.
+"""
 
 import numpy as np
 import pytest
-from plugin_decks import NU, RHO, Bodies, E, contact, good, head, materials
+from plugin_decks import NU, RHO, Bodies, E, contact, good, head, materials, per_pair
 
-from epdem.theory import backbones, oblique, pair
+from epdem.theory import backbones, oblique, pair, viscous
 
 pytestmark = pytest.mark.liggghts
 
@@ -15,34 +19,47 @@ MASS = float(RHO[STEEL - 1] * 4 / 3 * np.pi * R**3)
 KAPPA = float(oblique.kappa(NU[STEEL - 1]))
 E_STAR, G_STAR = (float(modulus(E[1], NU[1], E[1], NU[1])) for modulus in (pair.E_star, pair.G_star))
 CONTACT_TIME = 2.943275 * (15 * MASS / (16 * E_STAR * np.sqrt(R))) ** 0.4 / SPEED**0.2  # Hertz
+STEP = float(CONTACT_TIME) / STEPS
 PSI_1 = np.arange(0.25, 8.1, 0.25)
 SLIDING_LINE = PSI_1 - 7 * KAPPA  # friction takes mu times the whole normal impulse
 
 
-@pytest.fixture(scope="module")
-def psi_2(tmp_path_factory):
-    """Shape (angles, phases): elastic spheres on the wall, all starting phases within a time step, one run."""
-    dt = float(CONTACT_TIME) / STEPS
-    psi = np.repeat([0.0, *PSI_1], PHASES)  # the first row is for two spheres of other types, see below
-    phase = np.tile((np.arange(PHASES) + 0.5) / PHASES, len(PSI_1) + 1)
-    k = np.arange(len(psi))
-    x = np.column_stack([0.011 * (k % 16), 0.011 * (k // 16), R + phase * SPEED * dt])
-    v = np.column_stack([SPEED * MU * psi / KAPPA, 0 * psi, np.full(len(psi), -SPEED)])
-    types = np.full(len(psi), STEEL)
-    types[[0, 1]] = 1, 3  # LIGGGHTS wants every type up to the largest in use
+def rebounds(folder, model, tan_theta, *, step, times, extra="", settings=""):
+    """(horizontal speed, speed of rebound, spin), each (angles, phases), after `times` steps [s] of one run.
+
+    The spheres hit the wall with SPEED and `tan_theta` times SPEED (angles,), in all starting phases within a step.
+    """
+    tangent = np.repeat([0.0, *tan_theta], PHASES)  # the first row is for two spheres of other types, see below
+    phase = np.tile((np.arange(PHASES) + 0.5) / PHASES, len(tan_theta) + 1)
+    k = np.arange(len(tangent))
+    x = np.column_stack([0.011 * (k % 16), 0.011 * (k // 16), R + phase * SPEED * step])
+    v = np.column_stack([SPEED * tangent, 0 * tangent, np.full(len(k), -SPEED)])
+    types = np.full(len(k), STEEL)
+    types[[0, 1]] = 1, 3  # LIGGGHTS needs every type up to the largest in use
     text = (
         head()
         + "read_data box.data\nneighbor 1e-3 bin\nneigh_modify delay 0\n"
-        + materials("ep/hertz", friction=MU)
-        + contact("ep/hertz", wall="primitive")
-        + f"timestep {dt!r}\nfix move all nve/sphere\nthermo_modify lost error norm no\nrun {STEPS + 20}\n"
+        + materials(model, friction=MU)
+        + extra
+        + contact(model, wall="primitive", settings=settings)
+        + f"timestep {step!r}\nfix move all nve/sphere\nthermo_modify lost error norm no\nrun {times}\n"
         + "dump out all custom 1 out.bin id z vx vz omegay\nrun 0\n"
     )
     box = ((-0.02, 0.3), (-0.02, 0.3), (-0.001, 0.05))
-    files = {"box.data": Bodies(types, np.full(len(psi), R), x, v).data(box)}
-    _, z, vx, vz, spin = good(tmp_path_factory.mktemp("oblique"), text, files=files).last[PHASES:].T
-    assert (z > R).all() and np.allclose(vz, SPEED, rtol=1e-6)
-    return (KAPPA / MU * (vx - R * spin) / SPEED).reshape(len(PSI_1), PHASES)
+    files = {"box.data": Bodies(types, np.full(len(k), R), x, v).data(box)}
+    _, z, vx, vz, spin = good(folder, text, files=files).last[PHASES:].T
+    assert (z > R).all()
+    return [column.reshape(-1, PHASES) for column in (vx, vz, spin)]
+
+
+@pytest.fixture(scope="module")
+def psi_2(tmp_path_factory):
+    """Shape (angles, phases): elastic spheres on the wall."""
+    vx, vz, spin = rebounds(
+        tmp_path_factory.mktemp("oblique"), "ep/hertz", MU / KAPPA * PSI_1, step=STEP, times=STEPS + 20
+    )
+    assert np.allclose(vz, SPEED, rtol=1e-6)
+    return KAPPA / MU * (vx - R * spin) / SPEED
 
 
 def spring(psi_1, steps=40000):
@@ -109,3 +126,63 @@ def test_elastic_rebound_of_the_patch_has_maw_barber_and_fawcetts_shape_but_for_
         assert curve[0] > 0 and PSI_1[np.argmin(curve)] in (3.5, 3.75)
     for psi_1, too_high in {0.5: 0.425, 0.75: 0.576, 1: 0.458, 2: 0.321, 3: 0.313, 4: 0.238, 4.75: 0.071, 6: 0}.items():
         assert (got - theory)[psi_1 == PSI_1] == pytest.approx(too_high, abs=2e-3), psi_1
+
+
+def damped(e, tan_theta, zeta, *, pulls, steps=40000):
+    """Impulse ratio f/mu of an impact with a dashpot beside the normal force and one beside the one spring.
+
+    The dashpot of the spring acts wherever the spring is below mu F, and nothing limits its force.
+    """
+    log_e = np.log(e)
+    beta, c = -log_e / np.hypot(log_e, np.pi), 2 * np.sqrt(5 / 6)
+    dt = float(CONTACT_TIME) / steps
+    d, v, patch, s = 0.0, -SPEED, SPEED * tan_theta, 0.0
+    F = T = P_n = P_t = 0.0
+    while d >= 0:
+        v += 0.5 * dt * F / MASS
+        patch -= 0.5 * dt * 3.5 * T / MASS
+        d -= dt * v
+        s += dt * patch
+        a = np.sqrt(R * max(d, 0.0))
+        F = 4 / 3 * E_STAR * a * max(d, 0.0) - c * zeta * np.sqrt(2 * E_STAR * a * MASS) * v
+        F, k_t = F if pulls else max(F, 0.0), 8 * G_STAR * a
+        if k_t * s > MU * abs(F):
+            T, s = MU * abs(F), MU * abs(F) / k_t
+        else:
+            T = k_t * s + c * beta * np.sqrt(k_t * MASS) * patch
+        v += 0.5 * dt * F / MASS
+        patch -= 0.5 * dt * 3.5 * T / MASS
+        P_n, P_t = P_n + dt * F, P_t + dt * T
+    return P_t / (MU * P_n)
+
+
+PRINTED = {  # in docs/liggghts.md and docs/upstream.md: f/mu at e = 0.9, 0.7, 0.5, 0.2
+    "ep/hertz": {0.9: 1.002, 0.7: 1.023, 0.5: 1.105, 0.2: 1.77},
+    "hertz": {0.9: 1.004, 0.7: 1.047, 0.5: 1.168, 0.2: 1.73},
+}
+
+
+@pytest.mark.parametrize(("model", "e"), [(model, e) for model, row in PRINTED.items() for e in row])
+def test_the_dashpot_of_history_puts_friction_above_coulombs_limit(tmp_path, model, e):
+    """The patch slides all the time, so that Coulomb's friction is mu times the normal impulse.
+
+    `history` adds its dashpot to the spring as long as the spring alone is below the limit; LIGGGHTS's own `hertz` also
+    pulls at the end of the contact, which takes normal impulse away. 1e-2: 4000 steps in a contact, of first order.
+    """
+    tan_theta, log_e = 32 * MU, np.log(e)
+    own = model == "hertz"
+    vx, vz, _ = rebounds(
+        tmp_path,
+        model,
+        [tan_theta],
+        step=STEP / 10,
+        times=30 * STEPS,
+        extra=per_pair("coefficientRestitution", e),  # the last of two values counts
+        settings="" if own else "viscous on",
+    )
+    f = (SPEED * tan_theta - vx) / (SPEED + vz) / MU
+    zeta = -log_e / np.hypot(log_e, np.pi) if own else float(viscous.damping_ratio(e))
+    expected = damped(e, tan_theta, zeta, pulls=own)
+    assert f == pytest.approx(expected, rel=1e-2)
+    assert f.min() > 1.001
+    assert f.mean() == pytest.approx(PRINTED[model][e], abs=5e-3)

@@ -31,6 +31,8 @@ def test_every_deck_of_the_page_is_tested():
         "shear",
         "restitution",
         "segfault",
+        "cycle",
+        "sliding",
     }
 
 
@@ -85,3 +87,16 @@ def test_thornton_ning_rebounds_too_slowly_at_any_step(tmp_path):
 def test_elastic_potential_of_a_primitive_wall_crashes(tmp_path):
     done = run(tmp_path, DECKS["head"] + DECKS["segfault"], command="liggghts")
     assert done.code not in (0, 1) and "RESULT" not in done.text
+
+
+def test_history_creates_energy_in_a_closed_cycle(tmp_path):
+    """The stretch stays, the stiffness goes with the root of the overlap; sampling at the ends of steps leaves 1e-4."""
+    assert result(tmp_path, "cycle") == pytest.approx(np.sqrt(1.6) - 1, abs=3e-4)
+
+
+def test_friction_of_a_sliding_impact_exceeds_mu_times_the_normal_impulse(tmp_path):
+    def elastic(text):
+        return text.replace("peratomtypepair 1 0.2\npair_style", "peratomtypepair 1 0.999999\npair_style")
+
+    assert result(tmp_path / "damped", "sliding") == pytest.approx(1.73, abs=0.02)
+    assert result(tmp_path / "elastic", "sliding", elastic) == pytest.approx(1.0, abs=1e-4)

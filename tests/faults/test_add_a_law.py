@@ -3,7 +3,7 @@
 
 import re
 
-from workshop import LAWS, PYTHON, ROOT, build, pytest_in
+from workshop import LAWS, PYTHON, ROOT, build_library, pytest_in
 
 # A toy: thornton with a plastic line of 4/5 of its slope.
 HEADER = """// SPDX-License-Identifier: GPL-2.0-or-later
@@ -45,7 +45,8 @@ struct Toy {
   }
   T work(T R_star, T delta) const noexcept {
     const T y = elastic_overlap(R_star), x = max(T{}, delta - y);
-    return hertz_work(E_star, R_star, min(delta, y)) + (hertz_point(E_star, R_star, y).force + 0.4 * pi * p_y * R_star * x) * x;
+    const T mean = hertz_point(E_star, R_star, y).force + 0.4 * pi * p_y * R_star * x;
+    return hertz_work(E_star, R_star, min(delta, y)) + mean * x;
   }
 };
 
@@ -122,7 +123,7 @@ def command(*words):
 
 def test_a_deck_has_the_model_and_one_number_of_memory(case, tmp_path):
     assert command("deck", case, "--out", tmp_path / "deck").exit_code == 0
-    text = "".join(path.read_text() for path in sorted((tmp_path / "deck").glob("*.in*")) + sorted((tmp_path / "deck").glob("in.*")))
+    text = "".join(p.read_text() for pattern in ("*.in*", "in.*") for p in (tmp_path / "deck").glob(pattern))
     assert "pair_style gran model ep/toy " in text and "yieldPressure peratomtype" in text
     assert "newton off" in text
 
@@ -171,13 +172,13 @@ def test_a_new_law_passes_the_battery_and_lands_on_its_theory(copy):
     text, n = re.subn(r"Cavity\)\}", "Cavity, Toy)}", text)
     assert n == 1
     backbones.write_text(text)
-    build(copy, plugin=False)
-    done = pytest_in(copy, "tests/battery", "not liggghts")
+    build_library(copy)
+    done = pytest_in(copy, "tests/battery", only="not liggghts")
     assert done.returncode == 0, done.stdout[-3000:]
-    done = pytest_in(copy, "tests/engines/test_laws.py", "toy and embedded")
+    done = pytest_in(copy, "tests/engines/test_laws.py", only="toy and embedded")
     assert done.returncode == 0, done.stdout[-3000:]
     assert "3 passed" in done.stdout  # 100 steps, 400 steps, dashpot
     (copy / "tests/decks/test_toy.py").write_text(COMMANDS)
-    done = pytest_in(copy, "tests/decks/test_toy.py", "")
+    done = pytest_in(copy, "tests/decks/test_toy.py")
     assert done.returncode == 0, done.stdout[-3000:]
     assert "6 passed" in done.stdout

@@ -5,7 +5,6 @@ import os
 import shutil
 import subprocess
 import sys
-from collections.abc import Sequence
 from pathlib import Path
 
 ROOT = Path(__file__).parents[2]
@@ -40,15 +39,26 @@ def build_plugin(folder: Path, flags: str) -> Path:
     return next(tree.rglob("epdem-liggghts"))
 
 
+# Read when Python starts: the installed package, which is found by a hook of its build tool, hides behind the copy.
+SITE = "import sys\nsys.meta_path[:] = [f for f in sys.meta_path if 'Scikit' not in type(f).__name__]\n"
+CODE = """
+import sys, epdem, pytest
+assert epdem.__file__.startswith(sys.argv[1])
+sys.exit(pytest.main(sys.argv[2:]))
+"""
+
+
 def pytest_in(folder: Path, *tests: str, only: str = "", env: dict[str, str] | None = None):
     """Run tests (pytest nodes) of the copy against the copy, not against the installed package, up to a failure."""
-    words: Sequence[str] = ["-q", "-x", "-p", "no:cacheprovider", "-p", "no:xdist", *tests, "-k", only]
-    code = (
-        "import sys; sys.meta_path[:] = [f for f in sys.meta_path if 'Scikit' not in type(f).__name__]; "
-        f"sys.path.insert(0, {str(folder / 'python')!r}); import pytest, epdem; "
-        f"assert epdem.__file__.startswith({str(folder)!r}); sys.exit(pytest.main({words!r}))"
-    )
-    all_env = os.environ | {"PYTHONPATH": str(folder / "python"), "PYTHONDONTWRITEBYTECODE": "1"} | (env or {})
+    (folder / "site").mkdir(exist_ok=True)
+    (folder / "site" / "sitecustomize.py").write_text(SITE)
+    python = {"PYTHONPATH": f"{folder / 'site'}:{folder / 'python'}", "PYTHONDONTWRITEBYTECODE": "1"}
+    words = [str(folder), "-q", "-x", "-p", "no:cacheprovider", "-p", "no:xdist", *tests, "-k", only]
     return subprocess.run(
-        [sys.executable, "-c", code], cwd=folder, env=all_env, capture_output=True, text=True, timeout=600
+        [sys.executable, "-c", CODE, *words],
+        cwd=folder,
+        env={k: v for k, v in os.environ.items() if k != "VIRTUAL_ENV"} | python | (env or {}),  # YADE would follow it
+        capture_output=True,
+        text=True,
+        timeout=600,
     )

@@ -105,3 +105,8 @@ def test_all_files_state_one_version():
     }
     found = {re.search(pattern, (ROOT / name).read_text(), re.MULTILINE)[1] for name, pattern in places.items()}
     assert len(found) == 1, found
+
+
+def test_the_formatter_lays_out_every_line():
+    for path in SOURCES:
+        assert not re.search(r"# fmt: *" + r"(skip|off)", path.read_text()), path

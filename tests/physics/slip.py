@@ -21,10 +21,20 @@ E_STAR, G_STAR, R, M, MU = 1.1428571428571429e11, 2.3529411764705883e10, 0.01, 0
 KAPPA = 4 * G_STAR / E_STAR
 V_Y0, V_Y = 0.138086424357753, 0.559430455498519  # first yield of cavity at Y = 1 GPa, of thornton at 2.8 GPa
 PAIR = {"E_star": E_STAR, "R_star": R}
-LAWS = {"hertz": Hertz(**PAIR), "thornton": Thornton(**PAIR, p_y=2.8e9), "johnson": Johnson(**PAIR, p_m=3e9),
-        "cavity": Cavity(**PAIR, Y=1e9)}  # fmt: skip
-IMPACTS = [("hertz", 1.0), ("thornton", 5 * V_Y), ("thornton", 50 * V_Y), ("cavity", 5 * V_Y0), ("cavity", 50 * V_Y0),
-           ("cavity", 500 * V_Y0)]  # fmt: skip
+LAWS = {
+    "hertz": Hertz(**PAIR),
+    "thornton": Thornton(**PAIR, p_y=2.8e9),
+    "johnson": Johnson(**PAIR, p_m=3e9),
+    "cavity": Cavity(**PAIR, Y=1e9),
+}
+IMPACTS = [
+    ("hertz", 1.0),
+    ("thornton", 5 * V_Y),
+    ("thornton", 50 * V_Y),
+    ("cavity", 5 * V_Y0),
+    ("cavity", 50 * V_Y0),
+    ("cavity", 500 * V_Y0),
+]
 
 
 @cache
@@ -55,8 +65,13 @@ class Contacts:
         for k, column in enumerate((load, a, a if a_peak is None else a_peak, flatness)):
             now[:, k] = column
         shear[:, :3], shear[:, 3:6], shear[:, 6], shear[:, 7] = normal, slip, turn, damping
-        library().slip_steps(*self.options, ctypes.c_long(count), ctypes.c_double(self.stiffness),
-                             ctypes.c_double(self.mu), *map(_pointer, (self.state, now, shear, self.out)))  # fmt: skip
+        library().slip_steps(
+            *self.options,
+            ctypes.c_long(count),
+            ctypes.c_double(self.stiffness),
+            ctypes.c_double(self.mu),
+            *map(_pointer, (self.state, now, shear, self.out)),
+        )
         self.dissipated, self.energy = self.out[:, 3], self.out[:, 4]
         return self.out[:, :3].copy()
 
@@ -113,8 +128,15 @@ def rebound(law, psi_1, speed, *, steps, nodes=3, phases=8, damping=0.0):
 
 def reference(law, psi_1, speed):
     """psi_2 by 400 springs and 2000 steps."""
-    slip, _ = partial_slip.rebound(law, m_star=M, m_tangential=2 / 7 * M, mu=MU, G_star=G_STAR, v_n=speed,
-                                   slip=MU / KAPPA * speed * np.asarray(psi_1))  # fmt: skip
+    slip, _ = partial_slip.rebound(
+        law,
+        m_star=M,
+        m_tangential=2 / 7 * M,
+        mu=MU,
+        G_star=G_STAR,
+        v_n=speed,
+        slip=MU / KAPPA * speed * np.asarray(psi_1),
+    )
     return KAPPA / MU * slip / speed
 
 

@@ -75,13 +75,18 @@ def test_a_change_of_units_changes_nothing(powers, log_p, log_V):
     pressure = mass / (length * time**2)
     p_y, V = 10.0**log_p * 1e9, 10.0**log_V * V_S
     here = adhesion.impact(law_of(p_y), m_star=M, speed=V)
-    law = ThorntonNing(E_star=E * pressure, R_star=R * length, work_of_adhesion=GAMMA * pressure * length,
-                       p_y=p_y * pressure)  # fmt: skip
+    law = ThorntonNing(
+        E_star=E * pressure, R_star=R * length, work_of_adhesion=GAMMA * pressure * length, p_y=p_y * pressure
+    )
     there = adhesion.impact(law, m_star=M * mass, speed=V * length / time)
     # where e_n is near 0 rounding of the energy is seen as its root
     assert float(there.e_n) ** 2 == pytest.approx(float(here.e_n) ** 2, abs=1e-12)
-    for name, unit in {"force_max": pressure * length**2, "overlap_max": length, "radius_max": length,
-                       "plastic_work": mass * length**2 / time**2}.items():  # fmt: skip
+    for name, unit in {
+        "force_max": pressure * length**2,
+        "overlap_max": length,
+        "radius_max": length,
+        "plastic_work": mass * length**2 / time**2,
+    }.items():
         scale = here.work_in if name == "plastic_work" else getattr(here, name)
         assert getattr(there, name) / unit == pytest.approx(float(getattr(here, name)), abs=1e-11 * float(scale)), name
 

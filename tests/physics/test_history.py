@@ -9,8 +9,12 @@ from epdem.theory.backbones import Cavity, Hertz, Johnson, Thornton
 
 PAIR = {"E_star": 1.1428571428571429e11, "R_star": 0.01}
 M = 0.032882003107573169
-LAWS = {"hertz": Hertz(**PAIR), "thornton": Thornton(**PAIR, p_y=2.8e9),
-        "johnson": Johnson(**PAIR, p_m=3e9), "cavity": Cavity(**PAIR, Y=1e9)}  # fmt: skip
+LAWS = {
+    "hertz": Hertz(**PAIR),
+    "thornton": Thornton(**PAIR, p_y=2.8e9),
+    "johnson": Johnson(**PAIR, p_m=3e9),
+    "cavity": Cavity(**PAIR, Y=1e9),
+}
 
 
 def runge_kutta(force, alpha, v, h):
@@ -52,8 +56,12 @@ def motion(law, speed, times):
 
 # johnson: below, right behind (10.37 m/s) and far above the kink of its force, where its radius jumps;
 # cavity: each phase
-SPEEDS = {"hertz": [0.3, 30.0], "thornton": [0.57, 5.0, 50.0], "johnson": [3.0, 10.5, 60.0],
-          "cavity": [0.15, 3.0, 60.0]}  # fmt: skip
+SPEEDS = {
+    "hertz": [0.3, 30.0],
+    "thornton": [0.57, 5.0, 50.0],
+    "johnson": [3.0, 10.5, 60.0],
+    "cavity": [0.15, 3.0, 60.0],
+}
 
 
 @pytest.mark.parametrize(("name", "speed"), [(name, v) for name, speeds in SPEEDS.items() for v in speeds])

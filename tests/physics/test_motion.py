@@ -104,8 +104,9 @@ def oblique_impact(law, mu, tangents, v_n=1.0):
     return oblique.impact(law, mass=M, R=0.01, mu=mu, G_star=G_STAR, v_n=v_n, theta=theta)
 
 
-@pytest.mark.parametrize(("law", "v_n"), [(Hertz(E_star=E_STAR, R_star=0.01), 1.0),
-                                          (Thornton(E_star=E_STAR, R_star=0.01, p_y=2.8e9), 5.0)])  # fmt: skip
+@pytest.mark.parametrize(
+    ("law", "v_n"), [(Hertz(E_star=E_STAR, R_star=0.01), 1.0), (Thornton(E_star=E_STAR, R_star=0.01, p_y=2.8e9), 5.0)]
+)
 def test_above_the_sliding_angle_friction_takes_all_it_can(law, v_n):
     """f = mu there; below it the patch sticks for a while and f < mu."""
     mu = 0.3
@@ -149,23 +150,30 @@ def test_hertz_contact_time_constant_is_a_beta_function():
     assert pytest.approx(float(exact), rel=1e-12, abs=0) == timestep.HERTZ_TIME
 
 
-@pytest.mark.parametrize(("call", "name"), [
-    (lambda: pair.E_star(-1, 0.3, 1e9, 0.3), "E1"), (lambda: pair.E_star(1e9, 0.51, 1e9, 0.3), "nu1"),
-    (lambda: pair.R_star(0.0, 1.0), "R1"), (lambda: pair.sphere_mass(radius=1.0, density=np.nan), "density"),
-    (lambda: Thornton(E_star=1e11, R_star=0.01, p_y=-1), "p_y"), (lambda: Hertz(E_star=np.inf, R_star=1), "E_star"),
-    (lambda: restitution.e_n(Hertz(E_star=1e9, R_star=1), m_star=1, speed=np.array([1.0, -2.0])), "speed = -2"),
-    (lambda: oblique.sliding_angle(-0.1, e_n=1, nu=0.3), "mu"), (lambda: energy.wave_constant(0.5), "nu"),
-    (lambda: oblique.tangential_restitution(0.3, e_n=-5, theta=0.5), "e_n = -5"),
-    (lambda: oblique.spin(0.3, e_n=-0.1, v_n=1.0, R=0.01), "e_n"),
-    (lambda: oblique.sliding_angle(0.3, e_n=np.nan, nu=0.3), "e_n = nan"),
-    (lambda: oblique.sliding_angle_spring(0.3, e_n=np.nan, nu=0.3), "e_n = nan"),
-    (lambda: oblique.patch_rebound(0.3, e_n=1.0, theta=np.pi), "theta"),
-    (lambda: oblique.patch_rebound(0.3, e_n=-1.0, theta=1.0), "e_n"),
-    (lambda: pressure.unloading_force(a=2.0, a_max=1.0, p=1.0), "a = 2"),
-    (lambda: pressure.unloading(0.0, a=2.0, a_max=1.0, p=1.0), "a = 2"),
-    (lambda: energy.radiated([0, 1, 2], [0, 1, 1], E=E, nu=NU, density=7850), "time, from sample to sample = 0"),
-    (lambda: energy.radiated([0, np.nan], [0, 1], E=E, nu=NU, density=7850), "force"),
-])  # fmt: skip
+@pytest.mark.parametrize(
+    ("call", "name"),
+    [
+        (lambda: pair.E_star(-1, 0.3, 1e9, 0.3), "E1"),
+        (lambda: pair.E_star(1e9, 0.51, 1e9, 0.3), "nu1"),
+        (lambda: pair.R_star(0.0, 1.0), "R1"),
+        (lambda: pair.sphere_mass(radius=1.0, density=np.nan), "density"),
+        (lambda: Thornton(E_star=1e11, R_star=0.01, p_y=-1), "p_y"),
+        (lambda: Hertz(E_star=np.inf, R_star=1), "E_star"),
+        (lambda: restitution.e_n(Hertz(E_star=1e9, R_star=1), m_star=1, speed=np.array([1.0, -2.0])), "speed = -2"),
+        (lambda: oblique.sliding_angle(-0.1, e_n=1, nu=0.3), "mu"),
+        (lambda: energy.wave_constant(0.5), "nu"),
+        (lambda: oblique.tangential_restitution(0.3, e_n=-5, theta=0.5), "e_n = -5"),
+        (lambda: oblique.spin(0.3, e_n=-0.1, v_n=1.0, R=0.01), "e_n"),
+        (lambda: oblique.sliding_angle(0.3, e_n=np.nan, nu=0.3), "e_n = nan"),
+        (lambda: oblique.sliding_angle_spring(0.3, e_n=np.nan, nu=0.3), "e_n = nan"),
+        (lambda: oblique.patch_rebound(0.3, e_n=1.0, theta=np.pi), "theta"),
+        (lambda: oblique.patch_rebound(0.3, e_n=-1.0, theta=1.0), "e_n"),
+        (lambda: pressure.unloading_force(a=2.0, a_max=1.0, p=1.0), "a = 2"),
+        (lambda: pressure.unloading(0.0, a=2.0, a_max=1.0, p=1.0), "a = 2"),
+        (lambda: energy.radiated([0, 1, 2], [0, 1, 1], E=E, nu=NU, density=7850), "time, from sample to sample = 0"),
+        (lambda: energy.radiated([0, np.nan], [0, 1], E=E, nu=NU, density=7850), "force"),
+    ],
+)
 def test_bad_input_is_named_with_its_range(call, name):
     with pytest.raises(ValueError, match="must lie in") as caught:
         call()
@@ -180,8 +188,18 @@ def test_a_change_of_base_units_changes_nothing_but_the_numbers(scale):
     here = restitution.impact(Thornton(E_star=E_STAR, R_star=0.01, p_y=2.8e9), m_star=M, speed=5.0)
     law = Thornton(E_star=E_STAR * pressure, R_star=0.01 * L, p_y=2.8e9 * pressure)
     there = restitution.impact(law, m_star=M * K, speed=5.0 * L / T)
-    units = {"e_n": 1, "contact_time": T, "force_max": force, "overlap_max": L, "radius_max": L, "residual_overlap": L,
-             "work_in": force * L, "work_out": force * L, "plastic_work": force * L, "strain_ratio": 1}  # fmt: skip
+    units = {
+        "e_n": 1,
+        "contact_time": T,
+        "force_max": force,
+        "overlap_max": L,
+        "radius_max": L,
+        "residual_overlap": L,
+        "work_in": force * L,
+        "work_out": force * L,
+        "plastic_work": force * L,
+        "strain_ratio": 1,
+    }
     for name, unit in units.items():
         assert float(getattr(there, name)) / unit == pytest.approx(float(getattr(here, name)), rel=1e-10, abs=0), name
 
@@ -203,12 +221,15 @@ def test_recovered_and_plastic_shares_are_the_areas_under_the_force(speed):
     assert 0 < split["waves"] < 0.05
 
 
-@pytest.mark.parametrize(("call", "message"), [
-    (lambda: pair.E_star(np.inf, 0.3, np.inf, 0.3), "both bodies are rigid"),
-    (lambda: pair.G_star(np.array([1e9, np.inf]), 0.3, np.inf, 0.3), "both bodies are rigid"),
-    (lambda: pair.R_star(np.inf, np.inf), "both bodies are planes"),
-    (lambda: pair.m_star(np.inf, np.inf), "both bodies are fixed"),
-])  # fmt: skip
+@pytest.mark.parametrize(
+    ("call", "message"),
+    [
+        (lambda: pair.E_star(np.inf, 0.3, np.inf, 0.3), "both bodies are rigid"),
+        (lambda: pair.G_star(np.array([1e9, np.inf]), 0.3, np.inf, 0.3), "both bodies are rigid"),
+        (lambda: pair.R_star(np.inf, np.inf), "both bodies are planes"),
+        (lambda: pair.m_star(np.inf, np.inf), "both bodies are fixed"),
+    ],
+)
 def test_a_pair_without_a_finite_quantity_is_refused(call, message):
     with pytest.raises(ValueError, match=message):
         call()

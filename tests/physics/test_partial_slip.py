@@ -122,8 +122,15 @@ def test_shear_in_a_plane_knows_no_axis_and_nothing_stays_without_force():
     assert np.all(one.move([LIMIT, 0.0], force=0.0, a=0.0, a_peak=1e-3, flatness=0.0) == 0) and one.energy() == 0
 
 
-@pytest.mark.parametrize(("bad", "name"), [({"m_tangential": 0.0}, "m_tangential = 0"), ({"mu": -0.1}, "mu = -0.1"),
-                                           ({"v_n": 0.0}, "v_n = 0"), ({"G_star": -1.0}, "G_star = -1")])  # fmt: skip
+@pytest.mark.parametrize(
+    ("bad", "name"),
+    [
+        ({"m_tangential": 0.0}, "m_tangential = 0"),
+        ({"mu": -0.1}, "mu = -0.1"),
+        ({"v_n": 0.0}, "v_n = 0"),
+        ({"G_star": -1.0}, "G_star = -1"),
+    ],
+)
 def test_numbers_that_make_no_impact_are_named(bad, name):
     good = {"m_star": M, "m_tangential": M, "mu": MU, "G_star": G_STAR, "v_n": 1.0, "slip": 0.1, "steps": 50}
     with pytest.raises(ValueError, match=name):

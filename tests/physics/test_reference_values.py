@@ -167,8 +167,9 @@ def test_rayleigh_time_is_half_a_girth_at_the_speed_of_the_surface_wave():
     shear = mp.sqrt(mp.mpf(80) * 10**9 / 7850)
     assert found == exactly(mp.pi / 100 / (mp.mpf("0.92553") * shear))
     ratio = (1 - 0.6) / (2 - 0.6)  # (c_s/c_p)^2
-    c = mp.findroot(lambda c: (2 - c * c) ** 2 - 4 * mp.sqrt(1 - c * c) * mp.sqrt(1 - ratio * c * c), (0.8, 0.99),
-                    solver="illinois")  # fmt: skip
+    c = mp.findroot(
+        lambda c: (2 - c * c) ** 2 - 4 * mp.sqrt(1 - c * c) * mp.sqrt(1 - ratio * c * c), (0.8, 0.99), solver="illinois"
+    )
     # 0.1631 nu + 0.8766 is a straight line through the root of Rayleigh's equation, 0.2 % off here
     assert found == pytest.approx(float(mp.pi / 100 / (c * shear)), rel=3e-3)
 
@@ -243,8 +244,9 @@ def test_strain_of_an_impact_is_its_largest_contact_radius_over_the_effective_on
 
 
 @pytest.mark.parametrize("restitution_", [1.0, 0.9])
-@pytest.mark.parametrize(("law", "circle"), [(Hertz(**STEEL), 1), (Thornton(**STEEL, p_y=2.8e9), 1),
-                                             (Johnson(**STEEL, p_m=3e9), 2)])  # fmt: skip
+@pytest.mark.parametrize(
+    ("law", "circle"), [(Hertz(**STEEL), 1), (Thornton(**STEEL, p_y=2.8e9), 1), (Johnson(**STEEL, p_m=3e9), 2)]
+)
 def test_contact_radius_at_the_peak_is_that_of_the_overlap_with_and_without_a_dashpot(law, circle, restitution_):
     """a^2 = R* alpha, and 2 R* alpha where a fully plastic contact cuts its circle out (20 m/s is above its yield)."""
     x = viscous.impact(law, m_star=M, speed=20.0, restitution=restitution_)

@@ -26,8 +26,12 @@ TABLE = [
 
 
 def steel(name):
-    return {"hertz": lambda: Hertz(**STEEL), "thornton": lambda: Thornton(**STEEL, p_y=2.8e9),
-            "johnson": lambda: Johnson(**STEEL, p_m=3e9), "cavity": lambda: Cavity(**STEEL, Y=1e9)}[name]()  # fmt: skip
+    return {
+        "hertz": lambda: Hertz(**STEEL),
+        "thornton": lambda: Thornton(**STEEL, p_y=2.8e9),
+        "johnson": lambda: Johnson(**STEEL, p_m=3e9),
+        "cavity": lambda: Cavity(**STEEL, Y=1e9),
+    }[name]()
 
 
 class Exact:

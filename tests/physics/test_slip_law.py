@@ -45,8 +45,14 @@ def test_nodes_weights_and_profile_are_gauss_and_lobattos(nodes):
 
 
 # largest deviation of psi_2 from 400 springs, 8 phases, 100 steps; as measured, rounded up in the third decimal
-LIMITS = {("hertz", 2): 0.011, ("thornton", 2): 0.024, ("cavity", 2): 0.062,
-          ("hertz", 3): 0.004, ("thornton", 3): 0.0152, ("cavity", 3): 0.039}  # fmt: skip
+LIMITS = {
+    ("hertz", 2): 0.011,
+    ("thornton", 2): 0.024,
+    ("cavity", 2): 0.062,
+    ("hertz", 3): 0.004,
+    ("thornton", 3): 0.0152,
+    ("cavity", 3): 0.039,
+}
 
 
 @NODES
@@ -93,8 +99,9 @@ def random_paths(name, count, steps, *, jumps):
     waves, t = np.arange(1, 7), 2 * np.pi * np.linspace(0, 1, steps)[:, None, None]
 
     def series():
-        return ((np.sin(t * waves) * rng.normal(size=(count, 6)) + np.cos(t * waves) * rng.normal(size=(count, 6)))
-                / waves).sum(-1)  # fmt: skip
+        return (
+            (np.sin(t * waves) * rng.normal(size=(count, 6)) + np.cos(t * waves) * rng.normal(size=(count, 6))) / waves
+        ).sum(-1)
 
     alpha, x, y = (scale * series() for _ in range(3))
     alpha, u = alpha + 0.5 * scale, MU / slip.KAPPA * np.stack([x, y, 0 * x], -1)
@@ -122,8 +129,9 @@ def test_on_random_paths_friction_is_passive_and_never_above_mu_f(name, jumps, d
         on = np.clip(alpha[i], 0, top)
         both = zip((law.force(top), law.radius(top)), law.unloading(on, top), strict=True)
         F, a = (np.where(alpha[i] > 0, np.where(alpha[i] >= top, up, down), 0.0) for up, down in both)
-        T = contacts.move(slips[i], load=F, a=a, a_peak=law.radius(top), flatness=law.flatness(top),
-                          damping=damping * 8 * G_STAR * a)  # fmt: skip
+        T = contacts.move(
+            slips[i], load=F, a=a, a_peak=law.radius(top), flatness=law.flatness(top), damping=damping * 8 * G_STAR * a
+        )
         length, held = np.linalg.norm(T, axis=1), F > 0
         assert np.all(length <= MU * F * (1 + TINY)) and not np.any(T[~held])
         reached = max(reached, (length[held] / (MU * F[held])).max(initial=0.0))
@@ -211,9 +219,16 @@ def arbitrary(count, rng):
     move = 3 * unit_slip(1e-6) * rng.normal(size=(count, 3))
     move -= normal * np.sum(normal * move, axis=1, keepdims=True)
     a = 1e-4 * rng.uniform(0, 1, count)
-    return {"slip": move, "normal": normal, "load": 50 * rng.uniform(-0.2, 1, count), "a": a,
-            "a_peak": a * rng.uniform(1, 3, count), "flatness": rng.uniform(0, 1, count),
-            "turn": 0.1 * rng.normal(size=count), "damping": 1e5 * rng.uniform(0, 1, count)}  # fmt: skip
+    return {
+        "slip": move,
+        "normal": normal,
+        "load": 50 * rng.uniform(-0.2, 1, count),
+        "a": a,
+        "a_peak": a * rng.uniform(1, 3, count),
+        "flatness": rng.uniform(0, 1, count),
+        "turn": 0.1 * rng.normal(size=count),
+        "damping": 1e5 * rng.uniform(0, 1, count),
+    }
 
 
 @NODES

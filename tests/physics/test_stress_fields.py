@@ -14,10 +14,14 @@ NU = [0, 0.1, 0.2, 0.25, 0.3, 0.35, 0.4, 0.5]
 P_Y0 = [1.29931, 1.39448, 1.49859, 1.55435, 1.61280, 1.67411, 1.73848, 1.87724]
 DEPTH = [0.3819, 0.4149, 0.4478, 0.4643, 0.4809, 0.4975, 0.5142, 0.5479]
 MU = [0, 0.1, 0.2, 0.25, 0.3, 0.4, 0.5]
-BELOW = {"von_mises": [1.61280, 1.60142, 1.56822, 1.54418, 1.51571, 1.44731, 1.36600],
-         "tresca": [1.61280, 1.60050, 1.56460, 1.53858, 1.50774, 1.43339]}  # fmt: skip
-ABOVE = {"von_mises": [4.33013, 2.76781, 1.97902, 1.72627, 1.52906, 1.24257, 1.04528],
-         "tresca": [3.75000, 2.49885, 1.87370, 1.66539, 1.46586, 1.15061, 0.94416]}  # fmt: skip
+BELOW = {
+    "von_mises": [1.61280, 1.60142, 1.56822, 1.54418, 1.51571, 1.44731, 1.36600],
+    "tresca": [1.61280, 1.60050, 1.56460, 1.53858, 1.50774, 1.43339],
+}
+ABOVE = {
+    "von_mises": [4.33013, 2.76781, 1.97902, 1.72627, 1.52906, 1.24257, 1.04528],
+    "tresca": [3.75000, 2.49885, 1.87370, 1.66539, 1.46586, 1.15061, 0.94416],
+}
 
 
 def test_first_yield_under_a_sphere_for_any_poisson_ratio():
@@ -76,9 +80,10 @@ def test_pressure_at_first_yield_of_a_sliding_contact(criterion):
     assert above == pytest.approx(ABOVE[criterion], abs=6e-6)
 
 
-@pytest.mark.parametrize(("nu", "criterion", "mu"), [(0.3, "von_mises", 0.3047), (0.3, "tresca", 0.2879),
-                                                     (0.25, "von_mises", 0.2776),
-                                                     (0.25, "tresca", 0.2454)])  # fmt: skip
+@pytest.mark.parametrize(
+    ("nu", "criterion", "mu"),
+    [(0.3, "von_mises", 0.3047), (0.3, "tresca", 0.2879), (0.25, "von_mises", 0.2776), (0.25, "tresca", 0.2454)],
+)
 def test_first_yield_comes_to_the_surface_as_friction_grows(nu, criterion, mu):
     """The printed friction, to its 4 digits."""
     assert sliding.first_sliding_yield(mu - 1e-4, nu, criterion)[1][2] > 0.3
@@ -157,8 +162,12 @@ def test_normal_field_is_hubers():
     s = sliding.subsurface(r, 0.0, z, mu=0.0, nu=nu)
     radial = edge + q**3 * u / (u * u + z * z) + q * (u * (1 - nu) / (1 + u) + (1 + nu) * np.sqrt(u) * bend - 2)
     hoop = -edge - q * (2 * nu + u * (1 - nu) / (1 + u) - (1 + nu) * np.sqrt(u) * bend)
-    for found, exact in ((s[:, 0, 0], radial), (s[:, 1, 1], hoop), (s[:, 2, 2], -(q**3) * u / (u * u + z * z)),
-                         (s[:, 0, 2], -r * z * z * np.sqrt(u) / ((u * u + z * z) * (1 + u)))):  # fmt: skip
+    for found, exact in (
+        (s[:, 0, 0], radial),
+        (s[:, 1, 1], hoop),
+        (s[:, 2, 2], -(q**3) * u / (u * u + z * z)),
+        (s[:, 0, 2], -r * z * z * np.sqrt(u) / ((u * u + z * z) * (1 + u))),
+    ):
         assert found == pytest.approx(exact, rel=1e-11, abs=1e-13)
 
 
@@ -189,8 +198,10 @@ def test_unloading_pressure_integrates_to_the_contact_force(share):
 
 @given(st.floats(0.1, 10), st.floats(0.1, 10))
 def test_truncated_pressure_integrates_to_its_force(p_0, p_y):
-    exact = mp.quad(lambda r: min(p_0 * mp.sqrt(1 - r * r), p_y) * 2 * mp.pi * r,
-                    sorted({0, 1, float(np.sqrt(max(1 - (p_y / p_0) ** 2, 0)))}))  # fmt: skip
+    exact = mp.quad(
+        lambda r: min(p_0 * mp.sqrt(1 - r * r), p_y) * 2 * mp.pi * r,
+        sorted({0, 1, float(np.sqrt(max(1 - (p_y / p_0) ** 2, 0)))}),
+    )
     assert float(pressure.truncated_force(p_0=p_0, a=1.0, p_y=p_y)) == pytest.approx(float(exact), rel=1e-10, abs=0)
 
 

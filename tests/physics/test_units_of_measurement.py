@@ -47,8 +47,18 @@ def law(name, E_star, R_star, strength):
 def law_rows(name):
     """Restitution, times and peaks of one impact; force, radius and work at an overlap and on the way back."""
     both = CONTACT | {"strength": Y}
-    units = {"e_n": ONE, "contact_time": S, "force_max": N, "overlap_max": M, "radius_max": M, "residual_overlap": M,
-             "work_in": J, "work_out": J, "plastic_work": J, "strain_ratio": ONE}  # fmt: skip
+    units = {
+        "e_n": ONE,
+        "contact_time": S,
+        "force_max": N,
+        "overlap_max": M,
+        "radius_max": M,
+        "residual_overlap": M,
+        "work_in": J,
+        "work_out": J,
+        "plastic_work": J,
+        "strain_ratio": ONE,
+    }
 
     def impact(m_star, speed, **numbers):
         x = restitution.impact(law(name, **numbers), m_star=m_star, speed=speed)
@@ -78,8 +88,17 @@ def law_rows(name):
 
 
 def oblique_impact(E_star, R_star, p_y, mass, G_star, v_n):
-    x = oblique.impact(LAWS["thornton"](E_star=E_star, R_star=R_star, p_y=p_y), mass=mass, R=R_star, mu=0.2,
-                       G_star=G_star, v_n=v_n, theta=0.5, steps=200, springs=40)  # fmt: skip
+    x = oblique.impact(
+        LAWS["thornton"](E_star=E_star, R_star=R_star, p_y=p_y),
+        mass=mass,
+        R=R_star,
+        mu=0.2,
+        G_star=G_star,
+        v_n=v_n,
+        theta=0.5,
+        steps=200,
+        springs=40,
+    )
     return [x.f, x.e_n, x.e_t, x.spin, x.patch]
 
 
@@ -90,8 +109,19 @@ def split(E_star, R_star, p_y, m_star, speed, E, nu, density):
 
 def slip_rebound(E_star, R_star, p_y, G_star, m_star, speed, slip):
     both = LAWS["thornton"](E_star=E_star, R_star=R_star, p_y=p_y)
-    return list(partial_slip.rebound(both, m_star=m_star, m_tangential=2 / 7 * m_star, mu=0.2, G_star=G_star, v_n=speed,
-                                     slip=slip, steps=200, springs=40))  # fmt: skip
+    return list(
+        partial_slip.rebound(
+            both,
+            m_star=m_star,
+            m_tangential=2 / 7 * m_star,
+            mu=0.2,
+            G_star=G_star,
+            v_n=speed,
+            slip=slip,
+            steps=200,
+            springs=40,
+        )
+    )
 
 
 ROWS = [
@@ -111,13 +141,20 @@ ROWS = [
     Row(pressure.regime, {"x": (10.0, ONE)}, ONE),
     Row(pressure.unloading, {"r": (3e-5, M), "a": (6e-5, M), "a_max": A, "p": P}, PA),
     Row(pressure.unloading_force, {"a": (6e-5, M), "a_max": A, "p": P}, N),
-    Row(pressure.line_load, {"x": (3e-5, M), "force": (50.0, N), "a": (6e-5, M), "a_max": A, "flatness": (0.4, ONE)},
-        N - M),
+    Row(
+        pressure.line_load,
+        {"x": (3e-5, M), "force": (50.0, N), "a": (6e-5, M), "a_max": A, "flatness": (0.4, ONE)},
+        N - M,
+    ),
     Row(yielding.von_mises, {"s1": Y, "s2": P, "s3": E}, PA),
     Row(yielding.tresca, {"s1": Y, "s2": P, "s3": E}, PA),
     Row(yielding.principal, {"stress": (np.diag([3e9, 1e9, 2e9]) + 1e8, PA)}, PA),
-    Row(lambda stress: yielding.equivalent(stress, "tresca"), {"stress": (np.diag([3e9, 1e9, 2e9]) + 1e8, PA)}, PA,
-        "equivalent"),
+    Row(
+        lambda stress: yielding.equivalent(stress, "tresca"),
+        {"stress": (np.diag([3e9, 1e9, 2e9]) + 1e8, PA)},
+        PA,
+        "equivalent",
+    ),
     Row(yielding.axis_difference, {"z": (0.5, ONE), "nu": NU}, ONE),
     Row(yielding.first_yield, {"nu": NU}, [ONE, ONE]),
     Row(yielding.first_yield_mean, {"nu": NU}, ONE),
@@ -144,16 +181,28 @@ ROWS = [
     Row(printed.wu, {"speed": (50.0, SPEED), "v_y0": (0.1, SPEED)}, ONE),
     Row(timestep.sticking_packing, {"kappa": (0.8, ONE), "contacts": (12.0, ONE)}, ONE),
     Row(timestep.stability_limit, {"E_star": E_STAR, "m_star": M_STAR, "radius": A}, S),
-    Row(timestep.rayleigh_time, {"radius": R_STAR, "density": (7850.0, DENSITY), "young_modulus": E,
-                                 "poisson_ratio_": NU}, S),
+    Row(
+        timestep.rayleigh_time,
+        {"radius": R_STAR, "density": (7850.0, DENSITY), "young_modulus": E, "poisson_ratio_": NU},
+        S,
+    ),
     Row(timestep.hertz_time, IMPACT | {"speed": V}, S),
     *(row for name in LAWS for row in law_rows(name)),
-]  # fmt: skip
+]
 
 # a fit with its own unit, words, and those that the rows above call under another name
-OTHERWISE = {"printed.bridges", "printed.why_not", "energy.split", "oblique.impact", "restitution.impact",
-             "restitution.e_n", "restitution.history", "yielding.equivalent", "yielding.first_yield_speed",
-             "partial_slip.rebound"}  # fmt: skip
+OTHERWISE = {
+    "printed.bridges",
+    "printed.why_not",
+    "energy.split",
+    "oblique.impact",
+    "restitution.impact",
+    "restitution.e_n",
+    "restitution.history",
+    "yielding.equivalent",
+    "yielding.first_yield_speed",
+    "partial_slip.rebound",
+}
 
 
 @pytest.mark.parametrize("row", ROWS, ids=str)
@@ -167,8 +216,10 @@ def test_other_units_of_mass_length_and_time_give_the_same_quantity(row):
             return np.prod(base**powers)
 
         there = row.function(**{name: value / unit(powers) for name, (value, powers) in row.arguments.items()})
-        for x, y, powers in zip(*((here, there, row.result) if isinstance(row.result, list) else
-                                  ((here,), (there,), (row.result,))), strict=True):  # fmt: skip
+        for x, y, powers in zip(
+            *((here, there, row.result) if isinstance(row.result, list) else ((here,), (there,), (row.result,))),
+            strict=True,
+        ):
             # round-off of fractional powers of numbers up to 1e30, and of 10^3 time steps
             assert y * unit(powers) == pytest.approx(x, rel=1e-10, abs=0)
             assert np.all(np.isfinite(x))
@@ -176,6 +227,10 @@ def test_other_units_of_mass_length_and_time_give_the_same_quantity(row):
 
 def test_no_function_of_these_modules_is_missing_from_the_table():
     modules = (energy, oblique, pair, partial_slip, pressure, printed, restitution, timestep, yielding)
-    public = {f"{m.__name__.rpartition('.')[2]}.{name}" for m in modules for name, f in vars(m).items()
-              if inspect.isfunction(f) and f.__module__ == m.__name__ and not name.startswith("_")}  # fmt: skip
+    public = {
+        f"{m.__name__.rpartition('.')[2]}.{name}"
+        for m in modules
+        for name, f in vars(m).items()
+        if inspect.isfunction(f) and f.__module__ == m.__name__ and not name.startswith("_")
+    }
     assert public - OTHERWISE == {str(row) for row in ROWS if inspect.getmodule(row.function) in modules}

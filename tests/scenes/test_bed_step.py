@@ -26,7 +26,7 @@ def stable_step() -> float:
     return 2 * math.sqrt(m_star / (2 * E_star * math.sqrt(R_star * OVERLAP)))
 
 
-def energies(share: float, folder: Path) -> np.ndarray:
+def energies(share: float, folder: Path, *, rubs: bool = True) -> np.ndarray:
     """Kinetic energy [J] of a face-centred cubic packing on 4000 steps of that share of the stable step."""
     edge = math.sqrt(2) * (2 * R - OVERLAP)
     corners = itertools.product(range(CELLS), repeat=3)
@@ -34,6 +34,7 @@ def energies(share: float, folder: Path) -> np.ndarray:
     places = np.array([(np.array(c) + b + 0.25) * edge for c in corners for b in basis])
     places += np.random.default_rng(1).uniform(-1e-5, 1e-5, places.shape) * OVERLAP  # so that something moves
     high = CELLS * edge
+    friction = "fix m3 all property/global coefficientFriction peratomtypepair 1 0.3" if rubs else ""
     deck = f"""
 atom_style granular
 atom_modify map array
@@ -46,8 +47,8 @@ neighbor 1e-4 bin
 neigh_modify delay 0
 fix m1 all property/global youngsModulus peratomtype {E!r}
 fix m2 all property/global poissonsRatio peratomtype {NU!r}
-fix m3 all property/global coefficientFriction peratomtypepair 1 0.3
-pair_style gran model ep/hertz tangential history
+{friction}
+pair_style gran model ep/hertz tangential {"history" if rubs else "off"}
 pair_coeff * *
 timestep {share * stable_step()!r}
 fix motion all nve/sphere
@@ -76,6 +77,14 @@ def test_a_sticking_packing_is_quiet_at_the_step_of_scenes_and_explodes_above_th
     below, above = energies(0.975 * limit, tmp_path / "below"), energies(1.055 * limit, tmp_path / "above")
     assert max(quiet.max() / quiet[0], below.max() / below[0]) < 3.0
     assert above.max() > 1e4 * below.max()  # until the contacts slip, which takes the energy away
+
+
+@pytest.mark.liggghts
+def test_a_frictionless_packing_is_quiet_up_to_half_of_the_step_of_one_contact(tmp_path):
+    """Central springs of a face-centred cubic packing: 0.5 of the contact's own step."""
+    quiet = [energies(share, tmp_path / f"at {share}", rubs=False) for share in (0.26, 0.48)]
+    assert max(e.max() / e[0] for e in quiet) < 3.0
+    assert energies(0.52, tmp_path / "above", rubs=False).max() > 1e4 * quiet[1].max()
 
 
 def test_friction_makes_the_step_of_a_bed_smaller():

@@ -9,7 +9,7 @@ import pytest
 from stored_runs import data_of
 
 from epdem.case.scene import parse
-from epdem.scenes import checks
+from epdem.scenes import checks, ledger
 from epdem.scenes.columns import rows as table_of_rows
 from epdem.scenes.plan import ScenePlan, plan
 
@@ -138,3 +138,28 @@ def test_a_lost_sphere_fails_the_check_of_the_room():
     p = planned("drum")
     assert verdict(p, "spheres in the room")["passed"]
     assert not verdict(p, "spheres in the room", rows=rows(p, particles=7.0))["passed"]
+
+
+def test_what_shot_takes_along_when_it_leaves_the_room_stays_in_the_ledger():
+    """Kinetic energy of its last frame, and what it lost to dents: then nothing is missing after it has gone."""
+    p = planned("peening")
+    table = frames(p, [{"vz": 30.0, "plastic_work": 2e-3}, {"vz": -20.0, "plastic_work": 0.0}])
+    gone = table["step"].unique()[7]
+    table = table[(table["id"] == 2) | (table["step"] <= gone)]
+    no_contacts = pd.DataFrame(columns=["step", "elastic_energy"])
+    found = ledger.ledger(p, {"rows": rows(p), "particles": table, "contacts": no_contacts}).set_index("step")
+    first, second = 0.5 * 1e-5 * 30.0**2, 0.5 * 1e-5 * 20.0**2
+    assert found["left"].to_numpy() == pytest.approx(np.where(found.index > gone, first + 2e-3, 0.0))
+    assert found["kinetic"].to_numpy() == pytest.approx(second + np.where(found.index > gone, 0.0, first))
+    assert np.abs(found["balance"]).max() < 1e-12
+
+
+def test_a_row_of_a_press_has_the_height_in_the_middle_of_its_interval():
+    """Down from 0.6 mm at 4 m/s, then up at 2 m/s: the force of a row is a mean over the interval before it."""
+    p = planned("compaction")
+    table, turn = rows(p, plate_force=1.0), p.phases[0].end
+    middle = (table["step"] - 0.5 * p.every) * p.time_step
+    down, up = 6e-4 - 4.0 * middle, 6e-4 - 4.0 * turn * p.time_step + 2.0 * (middle - turn * p.time_step)
+    expected = np.where(table["step"] <= turn, down, up)[1:]
+    assert table["plate_z"].to_numpy()[1:] == pytest.approx(expected, rel=1e-9)
+    assert table["stress"].to_numpy() == pytest.approx(1.0 / 4e-4**2)

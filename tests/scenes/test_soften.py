@@ -18,7 +18,7 @@ from epdem.impacts.experiment import experiment
 from epdem.impacts.prediction import predict
 from epdem.laws.library import laws
 from epdem.scenes.pairs import strengths
-from epdem.studies.calibrate import KGF_PER_MM2, from_hardness, from_restitution, pressure_of_hardness
+from epdem.studies.calibrate import from_hardness, from_restitution, pressure_of_hardness
 from epdem.studies.soften import soften
 
 CASES = Path(__file__).parents[2] / "cases"
@@ -145,17 +145,28 @@ def test_the_strength_found_from_e_n_is_the_one_that_made_it(law, times, tmp_pat
     assert math.isclose(found.yield_stress, x.body.yield_stress, rel_tol=1e-7)
 
 
-def test_vickers_hardness_is_the_mean_pressure_of_full_plasticity():
+def test_vickers_hardness_is_the_load_on_the_facets_of_the_pyramid_and_the_mean_pressure_that_on_its_projection():
+    edge = 1e-3  # of the square that a pyramid with 136 degrees between opposite facets leaves [m]
+    slant_height = edge / 2 / math.sin(math.radians(136 / 2))
+    load = 300 * 9.80665e6 * 4 * (edge * slant_height / 2)
     found = from_hardness(STEEL, pressure_of_hardness(vickers=300), "HV 300")
-    assert math.isclose(found.value, 300 * 9.80665e6)
+    assert math.isclose(found.value, load / edge**2, rel_tol=3e-5)  # 1.8544 has five digits
     assert math.isclose(found.yield_stress, found.value / 2.8)
 
 
-def test_brinell_tends_to_the_mean_pressure_for_flat_dents_and_is_below_it_for_deep_ones():
-    flat = pressure_of_hardness(brinell=200, dent_ratio=1e-3)
-    # the spherical surface of a shallow dent exceeds its projection by x^2/4
-    assert math.isclose(flat, 200 * KGF_PER_MM2, rel_tol=1e-6)
-    assert math.isclose(pressure_of_hardness(brinell=200, dent_ratio=1.0), 2 * 200 * KGF_PER_MM2)
+@pytest.mark.parametrize("ratio", [0.01, 0.24, 0.375, 0.6, 1.0])
+def test_brinell_hardness_is_the_load_on_the_cap_and_the_mean_pressure_that_on_its_circle(ratio):
+    radius = 5e-3
+    depth = radius * (1 - math.cos(math.asin(ratio)))
+    load = 200 * 9.80665e6 * 2 * math.pi * radius * depth
+    mean = load / (math.pi * (ratio * radius) ** 2)
+    assert math.isclose(pressure_of_hardness(brinell=200, dent_ratio=ratio), mean, rel_tol=1e-9)
+    assert pressure_of_hardness(brinell=200) == pressure_of_hardness(brinell=200, dent_ratio=0.375)
+
+
+def test_a_brinell_indentation_has_a_diameter():
+    done = CliRunner().invoke(app, ["calibrate", str(STEEL), "--hb", "200", "--dent-ratio", "0"])
+    assert "--dent-ratio 0, must lie in (0, 1]" in str(done.exception)
 
 
 def test_impossible_measurements_are_refused(tmp_path):

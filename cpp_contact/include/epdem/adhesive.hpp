@@ -6,24 +6,10 @@
 #pragma once
 
 #include "backbone.hpp"
+#include "lanes.hpp"
 
 namespace epdem {
 namespace adhesive {
-
-/// A condition on a number type chooses between two values, and can be asked whether it holds anywhere.
-template <class T>
-inline T select(bool condition, T yes, T no) noexcept {
-  return condition ? yes : no;
-}
-inline bool any(bool condition) noexcept { return condition; }
-template <class T>
-inline T min(T a, T b) noexcept {
-  return select(b < a, b, a);
-}
-template <class T>
-inline T max(T a, T b) noexcept {
-  return select(a < b, b, a);
-}
 
 /// Force F [N], contact radius a [m] (0 while apart), and what the contact remembers if this step counts.
 template <class Law>
@@ -37,10 +23,8 @@ inline constexpr double fold_share = 0.62996052494743658;  // y_f in (c R)^(1/3)
 /// (c R)^(1/3), the root of a contact; `known` is it already unless R has changed, or 0.
 template <class T>
 inline T refreshed(T known, T cube) noexcept {
-  using std::cbrt;
-  using std::fabs;
   const auto stale = fabs(known * known * known - cube) > 1e-12 * cube;
-  return any(stale) ? select(stale, cbrt(cube), known) : known;
+  return any(stale) ? select(stale, cbrt(only(stale, cube)), known) : known;
 }
 
 /// y = sqrt(a) of the standing contact at X = R (alpha - alpha_p): the largest root of y^4 - 4 y_f^3 y = X >= -3 y_f^4.
@@ -49,7 +33,6 @@ inline T refreshed(T known, T cube) noexcept {
 /// Chebyshev's method (of third order, one division) to round-off.
 template <class T>
 inline T curve(T y_f, T X) noexcept {
-  using std::sqrt;
   const T f2 = y_f * y_f, square = max(X + 3.0 * f2 * f2, T{}), t = sqrt(square), scale = sqrt(6.0 * f2 + t);
   const T v = t / (t + 4.0 * y_f * scale), v2 = v * v, v4 = v2 * v2;
   const T low = (0.99999845 - 0.5165725 * v) + (0.74336657 - 0.37540549 * v) * v2;
@@ -96,7 +79,6 @@ inline T on_touch(T jump, T beyond, T closing) noexcept {
 /// fold; zeta is sqrt(share) and a smooth rest, here to 2e-4.
 template <class T>
 inline T on_parting(T E_star, T pull, T R, T y_f, T beyond, T closing) noexcept {
-  using std::sqrt;
   const T h = max(-closing, T{} + std::numeric_limits<double>::min()), share = max(1.0 - beyond / h, T{});
   const T rest = -0.20768371 + share * (-0.73462635 + share * (-0.30379973 + share * 0.03838347));
   const T bend = 16.0 / sqrt(6.0) * E_star * y_f * y_f * y_f * y_f;

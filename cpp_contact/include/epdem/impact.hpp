@@ -41,7 +41,8 @@ struct Path {
 /// Integrates until the bodies have parted (no force for two steps after contact) or `steps` is reached;
 /// `state` is what the contact remembers, before and after.
 template <class Law>
-inline ImpactOutput<Number<Law>> impact(const Law& law, const ImpactInput<Number<Law>>& in, const Path<Number<Law>>& path, State<Law>& state) noexcept {
+inline ImpactOutput<Number<Law>> impact(const Law& law, const ImpactInput<Number<Law>>& in,
+                                        const Path<Number<Law>>& path, State<Law>& state) noexcept {
   using T = Number<Law>;
   const T half = 0.5 * in.time_step / in.m_star;
   T alpha = -in.gap, v = in.speed, force = 0.0;
@@ -78,7 +79,8 @@ inline ImpactOutput<Number<Law>> impact(const Law& law, const ImpactInput<Number
 
 /// The first impact of a contact.
 template <class Law>
-inline ImpactOutput<Number<Law>> impact(const Law& law, const ImpactInput<Number<Law>>& in, const Path<Number<Law>>& path) noexcept {
+inline ImpactOutput<Number<Law>> impact(const Law& law, const ImpactInput<Number<Law>>& in,
+                                        const Path<Number<Law>>& path) noexcept {
   State<Law> state{};
   return impact(law, in, path, state);
 }
@@ -87,7 +89,8 @@ inline ImpactOutput<Number<Law>> impact(const Law& law, const ImpactInput<Number
 /// walls without loss. Phases follow the golden ratio. `speeds` may be null, or takes the `count` rebound speeds.
 /// Returns the last impact, `steps` being those of all; it ends early if a contact does not end.
 template <class Law>
-inline ImpactOutput<Number<Law>> bounces(const Law& law, const ImpactInput<Number<Law>>& first, std::int64_t count, Number<Law>* speeds) noexcept {
+inline ImpactOutput<Number<Law>> bounces(const Law& law, const ImpactInput<Number<Law>>& first, std::int64_t count,
+                                         Number<Law>* speeds) noexcept {
   using T = Number<Law>;
   State<Law> state{};
   ImpactInput<T> in = first;

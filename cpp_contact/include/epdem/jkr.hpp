@@ -27,8 +27,7 @@ struct Jkr {
   T pull;  // pi Gamma
 
   Jkr(T E_star_, const T* parameter) noexcept : E_star(E_star_), pull(pi * parameter[0]) {
-    using std::sqrt;
-    c = sqrt(2.0 * pull / E_star);
+      c = sqrt(2.0 * pull / E_star);
   }
 };
 

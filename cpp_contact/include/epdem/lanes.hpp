@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The numbers that laws are written on: double for one contact, long double for the study of round-off, and Lanes, a vector
-// of lanes, for many contacts at once. A condition on T is a bool, or a mask with one answer per lane. The only file that
+// The numbers that laws are written on: double for one contact, long double for the study of round-off, and Lanes, a
+// vector, for many contacts at once. A condition on T is a bool, or a mask with one answer per lane. The only file that
 // knows instruction sets: Lanes is as wide as those allow that the including file is compiled for.
 #pragma once
 
@@ -27,13 +27,11 @@ constexpr int lane_count = 2;
 typedef double Lanes __attribute__((vector_size(8 * lane_count)));
 using Mask = decltype(Lanes{} < Lanes{});
 
-using std::acos;
-using std::cos;
+using std::cbrt;
 using std::exp;
 using std::expm1;
 using std::fabs;
 using std::log;
-using std::sin;
 using std::sqrt;
 
 template <class T>
@@ -103,12 +101,10 @@ EPDEM_INLINE Lanes sqrt(Lanes x) noexcept {
       if (x[l] == x[l]) x[l] = std::f(x[l]);         \
     return x;                                        \
   }
-EPDEM_LANE_BY_LANE(acos)
-EPDEM_LANE_BY_LANE(cos)
+EPDEM_LANE_BY_LANE(cbrt)
 EPDEM_LANE_BY_LANE(exp)
 EPDEM_LANE_BY_LANE(expm1)
 EPDEM_LANE_BY_LANE(log)
-EPDEM_LANE_BY_LANE(sin)
 #undef EPDEM_LANE_BY_LANE
 
 /// `x` in the lanes of the mask, NaN in the others: for an argument of a library function that only they need.

@@ -98,18 +98,22 @@ inline Number<Law> plastic_growth(const Law& law, Number<Law> R_star, const Stat
                            plastic_work(law, R_star, only(grows, before.delta_max)), T{});
 }
 
-/// Elastic energy [J] of a contact at overlap `delta` that remembers `before`; it returns on separation.
+/// Elastic energy [J] of a contact at overlap `delta` after a step that left it with `after`; it returns on separation.
 template <class Law>
-inline Number<Law> elastic_energy(const Law& law, Number<Law> R_star, const State<Law>& before,
+inline Number<Law> elastic_energy(const Law& law, Number<Law> R_star, const State<Law>& after,
                                   Number<Law> delta) noexcept {
   using T = Number<Law>;
   const auto touches = delta > 0.0;
-  const T delta_max = max(delta, before.delta_max);
-  const auto yielded = touches & (delta_max > law.elastic_overlap(R_star));
-  T energy = hertz_work(law.E_star, R_star, delta);
+  const auto yielded = after.delta_max > law.elastic_overlap(R_star);
+  T energy{};
+  if (!Law::yields || any(!yielded)) energy = hertz_work(law.E_star, R_star, delta);
   if (Law::yields && any(yielded)) {
-    const T reached = only(yielded, delta_max);
-    energy = select(yielded, stored_work<Law::flattens>(law.E_star, law.load(R_star, reached), reached, delta), energy);
+    Point<T> peak;
+    if constexpr (Law::flattens)
+      peak = after.point;
+    else
+      peak = law.load(R_star, after.delta_max);
+    energy = select(yielded, stored_work<Law::flattens>(law.E_star, peak, after.delta_max, delta), energy);
   }
   return select(touches, energy, T{});
 }

@@ -34,8 +34,7 @@ struct ThorntonNing {
   T flat;  // pi/(2 E*): 1/A in R*/a
 
   ThorntonNing(T E_star_, const T* parameter) noexcept : E_star(E_star_), p_y(parameter[1]), pull(pi * parameter[0]) {
-    using std::sqrt;
-    c = sqrt(2.0 * pull / E_star);
+      c = sqrt(2.0 * pull / E_star);
     B = sqrt(2.0 * parameter[0] * E_star / pi);
     flat = pi / (2.0 * E_star);
   }
@@ -45,8 +44,7 @@ struct ThorntonNing {
 
   /// F [N] of a contact that yields.
   T load(T R_star, T y) const noexcept {
-    using std::sqrt;
-    const T soft = flat * R_star, y2 = y * y;
+      const T soft = flat * R_star, y2 = y * y;
     const T S = p_y + sqrt(p_y * p_y + 4.0 * B / soft * y);  // 2 A u
     return pi * (p_y * (y2 * y2 - S * S * soft * soft / 12.0) - 2.0 / 3.0 * B * soft * y * S);
   }
@@ -56,9 +54,8 @@ struct ThorntonNing {
 /// than `y_max` >= (c R*)^(1/3) and lies between max(y_max, (R* delta)^(1/4)) and 1.23 times that. Newton's method.
 template <class T>
 inline T grown(const ThorntonNing<T>& law, T R_star, T y_max, T delta) noexcept {
-  using std::sqrt;
   const T X = R_star * delta, cube = law.c * R_star;
-  T y = 1.1 * adhesive::max(y_max, sqrt(sqrt(X)));
+  T y = 1.1 * max(y_max, sqrt(sqrt(X)));
   for (int k = 0; k < 5; ++k) {
     const T y3 = y * y * y;
     y = (3.0 * y3 * y + X) / (4.0 * y3 - cube);

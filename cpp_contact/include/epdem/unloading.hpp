@@ -14,22 +14,26 @@ namespace detail {
 template <class T>
 inline T segment(T u) noexcept {
   const T t = 2.0 * u - 1.0, t2 = t * t, t4 = t2 * t2, t8 = t4 * t4;
-  const T c0 = (1.7371770873806556 - 0.15627588828780442 * t) + (-0.008779284872239073 - 0.0010977312731426958 * t) * t2;
-  const T c1 = (-0.00018258110274334128 - 3.541558286543854e-05 * t) + (-7.571561566503503e-06 - 1.7315768282685705e-06 * t) * t2;
-  const T c2 = (-4.1606712085594747e-07 - 1.0385134222493257e-07 * t) + (-2.6801506584044284e-08 - 7.066182450797425e-09 * t) * t2;
-  const T c3 = (-1.7955643189145686e-09 - 4.897422784724471e-10 * t) + (-2.0040271807734243e-10 - 5.670711059879121e-11 * t) * t2;
+  const T c0 = (1.7371770873806556 - 0.15627588828780442 * t) +
+               (-0.008779284872239073 - 0.0010977312731426958 * t) * t2;
+  const T c1 = (-0.00018258110274334128 - 3.541558286543854e-05 * t) +
+               (-7.571561566503503e-06 - 1.7315768282685705e-06 * t) * t2;
+  const T c2 = (-4.1606712085594747e-07 - 1.0385134222493257e-07 * t) +
+               (-2.6801506584044284e-08 - 7.066182450797425e-09 * t) * t2;
+  const T c3 = (-1.7955643189145686e-09 - 4.897422784724471e-10 * t) +
+               (-2.0040271807734243e-10 - 5.670711059879121e-11 * t) * t2;
   return (c0 + c1 * t4) + (c2 + c3 * t4) * t8;
 }
 
 }  // namespace detail
 
-/// Force and contact radius at `delta` after unloading from `peak` at `delta_max` >= delta; exactly `peak` at delta_max.
+/// Force and contact radius at `delta` after unloading from `peak` at `delta_max` >= delta.
 /// Flattens = false is the case tau = 0, compiled apart.
 template <bool Flattens, class T>
 inline Point<T> unload(T E_star, const Point<T>& peak, T delta_max, T delta) noexcept {
   if constexpr (!Flattens) {
-    // Share of the recovery still stored. The division waits neither for delta, which a loop over contacts has last, nor
-    // for the root in the radius.
+    // Share of the recovery still stored. The division waits neither for delta, which a loop over contacts has last,
+    // nor for the root in the radius.
     const T x = max(T{}, 1.0 - (delta_max - delta) * (peak.radius * (E_star / (0.75 * peak.force))));
     const T root = sqrt(x);
     return {peak.force * x * root, peak.radius * root, T{}};
@@ -68,27 +72,25 @@ inline T recovered_work(T E_star, const Point<T>& peak) noexcept {
   return kappa * peak.force * peak.force / (peak.radius * E_star);
 }
 
-/// Elastic energy [J] still stored at `delta` after unloading from `peak` at `delta_max`: the force integrated from here
-/// to parting, F_max^2/(E* a_max) times the integral of f(y) (2 A y + B) from y to 1, in closed form with y = cos theta.
+/// Elastic energy [J] still stored at `delta` after unloading from `peak` at `delta_max`: the force integrated from
+/// here to parting, F_max^2/(E* a_max) times the integral of f(y) (2 A y + B) from y to 1, in closed form, y = cos t.
 template <bool Flattens, class T>
 inline T stored_work(T E_star, const Point<T>& peak, T delta_max, T delta) noexcept {
   const T scale = peak.force * peak.force / (E_star * peak.radius);
   const T w = (delta_max - delta) * (E_star * peak.radius / peak.force);
   if constexpr (!Flattens) {
-    const T x = max(T{}, 1.0 - w / 0.75);
+    const T x = max(T{}, 1.0 - w * (1.0 / 0.75));
     return 0.3 * scale * x * x * sqrt(x);
   } else {
     const T tau = peak.flatness, A = 0.75 * (1.0 - tau), B = 2.0 / pi * tau;
-    const auto falls = w > 0.0;
-    const T y = select(falls, 2.0 * w / (B + sqrt(B * B + 4.0 * A * w)), T{});
-    const auto open = y < 1.0;
-    const T t = acos(only(open, y)), s = sin(t), c = cos(t);
-    const T s2 = sin(2.0 * t), s4 = sin(4.0 * t), cube = s * s * s;
+    const T y = select(w > 0.0, 2.0 * w / (B + sqrt(B * B + 4.0 * A * w)), T{});
+    // y = cos t, and t itself without an arc cosine
+    const T u = max(T{}, 1.0 - y), s = sqrt(u * (2.0 - u)), c = 1.0 - u, t = u * sqrt(u) * detail::segment(u) + c * s;
+    const T cube = s * s * s, s2 = 2.0 * s * c, c2 = 1.0 - 2.0 * s * s, s4 = 2.0 * s2 * c2;
     // integrals of (1-y^2)^1.5 and of g = acos y - y sqrt(1-y^2), each with weight 2y and with weight 1
     const T ellipse_2y = 0.4 * cube * s * s, ellipse = 0.375 * t - 0.25 * s2 + s4 / 32.0;
-    const T g_2y = 0.25 * s2 - 0.5 * t * cos(2.0 * t) - 0.25 * t + s4 / 16.0, g = s - t * c - cube / 3.0;
-    return select(open, scale * ((1.0 - tau) * (A * ellipse_2y + B * ellipse) + tau * (2.0 / pi) * (A * g_2y + B * g)),
-                  T{});
+    const T g_2y = 0.25 * s2 - 0.5 * t * c2 - 0.25 * t + s4 / 16.0, g = s - t * c - cube / 3.0;
+    return scale * ((1.0 - tau) * (A * ellipse_2y + B * ellipse) + tau * (2.0 / pi) * (A * g_2y + B * g));
   }
 }
 

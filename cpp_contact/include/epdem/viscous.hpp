@@ -30,7 +30,8 @@ inline Number<Law> damped_force(const Law& law, Number<Law> R_star, const State<
   const T force = now.force + number * sqrt(2.0 * law.E_star * now.radius * m_star) * approach_speed;
   const T damped = max(T{}, force);
   if constexpr (!Law::yields) return damped;
-  const auto grows = now.after.delta_max > before.delta_max, yielded = now.after.delta_max > law.elastic_overlap(R_star);
+  const auto grows = now.after.delta_max > before.delta_max;
+  const auto yielded = now.after.delta_max > law.elastic_overlap(R_star);
   return select(grows & yielded, now.force, damped);
 }
 

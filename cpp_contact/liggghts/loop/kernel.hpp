@@ -96,7 +96,7 @@ template <class Law, Tangential tangential, bool rolls>
     const Step<Law> now = step(law, c.reff, before, c.deltan);
     if (pass.work) {
       store(b.grown.a + k, plastic_growth(law, c.reff, before, now.after));
-      store(b.stored.a + k, elastic_energy(law, c.reff, before, c.deltan));
+      store(b.stored.a + k, elastic_energy(law, c.reff, now.after, c.deltan));
     }
 
     c.Fn = now.force;

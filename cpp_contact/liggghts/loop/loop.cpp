@@ -25,8 +25,8 @@ const Kernels& kernels(LAMMPS_NS::LAMMPS* lmp) {
   if (avx2 && (want.empty() || want == "avx2")) return kernels_avx2;
 #endif
   if (!want.empty() && want != "sse2") {
-    const std::string text = "EPDEM_SIMD = " + want + ": this processor has no such instructions; leave it unset, or take "
-                             "sse2, avx2 or avx512";
+    const std::string text = "EPDEM_SIMD = " + want + ": this processor has no such instructions; leave it unset, or "
+                             "take sse2, avx2 or avx512";
     lmp->error->all(FLERR, text.c_str());
   }
   return kernels_sse2;
@@ -37,7 +37,7 @@ const char* PairLoop::obstacle(PairGran* pair, int vflag, int addflag) const {
   if (asked && std::strcmp(asked, "generic") == 0) return "EPDEM_LOOP = generic";
   if (force->newton_pair) return "newton on";
   if (pair->fr_pair()) return "rigid bodies";
-  if (!atom->rmass || !atom->sphere_flag || atom->shapetype_flag) return "particles that are no spheres with a mass each";
+  if (!atom->rmass || !atom->sphere_flag || atom->shapetype_flag) return "particles other than spheres";
   if (pair->storeContactForces() || pair->storeContactForcesStress()) return "contact forces are stored";
   if (pair->storeSumDelta()) return "surface multicontact";
   if (pair->store_sum_normal_force()) return "normal forces are summed up";
@@ -103,8 +103,8 @@ void PairLoop::finish(const Plan& plan, int n) {
 /// What lies apart in memory is asked for in time, and contacts are marked as such.
 void PairLoop::fetch(const Plan& plan, int n) {
   Block& b = *block_;
-  const double *const v = atom->v[0], *const w = atom->omega[0], *const radius = atom->radius, *const mass = atom->rmass;
-  const double *const f = atom->f[0], *const t = atom->torque[0];
+  const double *const v = atom->v[0], *const w = atom->omega[0], *const f = atom->f[0], *const t = atom->torque[0];
+  const double *const radius = atom->radius, *const mass = atom->rmass;
   const int *const type = atom->type, *const mask = atom->mask;
   const int frozen = pair_->freeze_group_bit(), size = pair_->dnum();
   int** const flags = pair_->listgranhistory ? pair_->listgranhistory->firstneigh : nullptr;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The pair loop for throughput: which neighbours touch, without a branch; contacts computed as lanes; forces added in the
-// order of LIGGGHTS's own loop, so that not one bit differs.
+// The pair loop for throughput: which neighbours touch, without a branch; contacts computed as lanes; forces added in
+// the order of LIGGGHTS's own loop, so that not one bit differs.
 #pragma once
 
 #include <memory>

@@ -18,12 +18,15 @@ class Pair : public LIGGGHTS::PairStyles::Granular<Model> {
 
  public:
   Pair(LAMMPS_NS::LAMMPS* lmp, LAMMPS_NS::PairGran* parent, int64_t hash)
-      : Base(lmp, parent, hash), lmp_(lmp), model_(*Model::latest), ids_(Ids::of(hash)), missing_(what_is_missing(ids_)) {
+      : Base(lmp, parent, hash), lmp_(lmp), model_(*Model::latest), ids_(Ids::of(hash)),
+        missing_(what_is_missing(ids_)) {
     if (missing_) return;
     plan_.tangential = ids_.tangential == TANGENTIAL_HISTORY      ? Tangential::history
                        : ids_.tangential == TANGENTIAL_NO_HISTORY ? Tangential::no_history
                                                                   : Tangential::off;
-    plan_.rolling = ids_.rolling == ROLLING_CDT ? Rolling::cdt : ids_.rolling == ROLLING_EPSD2 ? Rolling::epsd2 : Rolling::off;
+    plan_.rolling = ids_.rolling == ROLLING_CDT     ? Rolling::cdt
+                    : ids_.rolling == ROLLING_EPSD2 ? Rolling::epsd2
+                                                    : Rolling::off;
     plan_.cohesion = ids_.cohesion == COHESION_SJKR    ? Cohesion::sjkr
                      : ids_.cohesion == COHESION_SJKR2 ? Cohesion::sjkr2
                                                        : Cohesion::off;

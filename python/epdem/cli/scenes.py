@@ -159,7 +159,8 @@ def calibrate(
     hv: Annotated[float | None, typer.Option(help="Vickers hardness instead")] = None,
     hb: Annotated[float | None, typer.Option(help="Brinell hardness instead")] = None,
     dent_ratio: Annotated[
-        float | None, typer.Option(help="dent over ball diameter of the Brinell test (default: 0.375)")
+        float | None,
+        typer.Option(help="Brinell test: diameter of the indentation over that of the ball (default: 0.375)"),
     ] = None,
     as_json: AsJson = False,
 ) -> None:
@@ -176,7 +177,7 @@ def calibrate(
         result = c.from_restitution(case, e_n, quantity("--speed", speed, "m/s"))
     else:
         refuse(case, "it belongs to --e-n", speed=speed)
-        pressure = c.pressure_of_hardness(vickers=hv, brinell=hb, dent_ratio=dent_ratio or c.BRINELL_DENT)
+        pressure = c.pressure_of_hardness(vickers=hv, brinell=hb, dent_ratio=dent_ratio)
         result = c.from_hardness(case, pressure, f"HV {hv:g}" if hv is not None else f"HB {hb:g}")
     if as_json:
         print(json.dumps(vars(result), indent=1))

@@ -71,7 +71,7 @@ def theory(
 def figures(
     out: Annotated[Path, typer.Option("--out", "-o", help="folder")] = Path("docs/figures"), as_json: AsJson = False
 ) -> None:
-    """Figures 8.16, 8.17 and 8.19 of the chapter, redrawn from theory."""
+    """Figures 8.16, 8.17 and 8.19 of Seville and Wu (2016), redrawn from theory."""
     from ..studies.figures import draw_all
 
     names = [str(path) for path in draw_all(out)]

@@ -9,8 +9,6 @@ from ..theory import restitution, validity, viscous
 from ..theory.yielding import first_yield_speed
 from .experiment import Experiment
 
-SMALL_DEFORMATION = 0.3  # a_max/R* above which Hertz's half-space is a poor picture
-
 
 @dataclass(frozen=True)
 class Prediction:

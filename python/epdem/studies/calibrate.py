@@ -15,6 +15,7 @@ from ..impacts.prediction import predict
 from ..laws.strengths import LawNumbers, law_named
 
 KGF_PER_MM2 = 9.80665e6  # Pa
+VICKERS_FACETS = 2 / 1.8544  # area of the facets of a Vickers indentation over that of its projection, 1/sin(136 deg/2)
 TABOR = 2.8  # mean pressure of full plasticity over the yield stress in simple compression (Tabor 1951)
 BRINELL_DENT = 0.375  # dent over ball diameter in a usual Brinell test (0.24 to 0.6)
 
@@ -34,13 +35,14 @@ class Calibration:
 
 
 def pressure_of_hardness(
-    *, vickers: float | None = None, brinell: float | None = None, dent_ratio: float = BRINELL_DENT
+    *, vickers: float | None = None, brinell: float | None = None, dent_ratio: float | None = None
 ) -> float:
     """Mean pressure [Pa] of full plasticity from HV or HB (kgf/mm^2).
 
-    HV counts the pyramid's faces, 7 % more than the projected area; by custom 1 HV is taken as 9.807 MPa of mean
-    pressure. HB counts the dent's spherical surface: the mean pressure is larger by 2 (1 - sqrt(1 - x^2))/x^2, x the
-    dent's diameter over the ball's.
+    Both hardnesses are the load over the area of the surface that the indenter leaves; the mean pressure (Meyer's
+    hardness) is the load over its projection. For the pyramid of Vickers p_m = 1.0785 HV. For the cap of Brinell
+    p_m = HB 2 (1 - sqrt(1 - x^2))/x^2 with x = `dent_ratio` in (0, 1], diameter of the indentation over that of the
+    ball (None: BRINELL_DENT). Raises CaseError unless one hardness > 0 is given.
     """
     values = [value for value in (vickers, brinell) if value is not None]
     if len(values) != 1:
@@ -49,10 +51,11 @@ def pressure_of_hardness(
     if not (math.isfinite(hardness) and hardness > 0):
         raise CaseError(f"hardness {hardness:g}, must be > 0")
     if vickers is not None:
-        return hardness * KGF_PER_MM2
-    if not 0.0 < dent_ratio <= 1.0:
-        raise CaseError(f"--dent-ratio {dent_ratio:g}, must lie in (0, 1]")
-    return hardness * KGF_PER_MM2 * 2.0 * (1.0 - math.sqrt(1.0 - dent_ratio**2)) / dent_ratio**2
+        return hardness * KGF_PER_MM2 * VICKERS_FACETS
+    x = BRINELL_DENT if dent_ratio is None else dent_ratio
+    if not 0.0 < x <= 1.0:
+        raise CaseError(f"--dent-ratio {x:g}, must lie in (0, 1]")
+    return hardness * KGF_PER_MM2 * 2.0 * (1.0 - math.sqrt(1.0 - x**2)) / x**2
 
 
 @dataclass(frozen=True)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Figures of the chapter redrawn: theory lines only, since no sourced data points are at hand."""
+"""Figures 8.16, 8.17 and 8.19 of Seville and Wu 2016, redrawn from theory; sourced data points are not at hand."""
 
 from pathlib import Path
 from typing import Any

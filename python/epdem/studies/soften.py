@@ -13,8 +13,8 @@ import tomlkit
 
 from ..case.impact import read_toml
 from ..errors import CaseError
-from ..impacts.prediction import SMALL_DEFORMATION
 from ..laws.strengths import law_named
+from ..theory.validity import SMALL_DEFORMATION
 
 STRENGTH_POWER, STEP_POWER, STRAIN_POWER = 0.8, 0.4, 0.2
 

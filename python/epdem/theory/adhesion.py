@@ -159,11 +159,20 @@ def impact(law: JKR, *, m_star: Numbers, speed: Numbers) -> Impact:
     plastic = np.where(yields, np.maximum(W - formed - stored, 0.0), 0.0)
     adhesive = np.where(e > 0, formed + ended, W - plastic)
     columns = {
-        "e_n": e, "contact_time": contact_time(law, m_star=m, speed=v), "force_max": law.force(top),
-        "overlap_max": law.overlap(top), "radius_max": top, "residual_overlap": dent, "work_in": W, "work_out": out,
-        "plastic_work": plastic, "strain_ratio": top / law.R_star, "parting_overlap": dent + branch.fold_overlap,
-        "pull_max": branch.pull_off_force, "adhesive_work": adhesive,
-    }  # fmt: skip
+        "e_n": e,
+        "contact_time": contact_time(law, m_star=m, speed=v),
+        "force_max": law.force(top),
+        "overlap_max": law.overlap(top),
+        "radius_max": top,
+        "residual_overlap": dent,
+        "work_in": W,
+        "work_out": out,
+        "plastic_work": plastic,
+        "strain_ratio": top / law.R_star,
+        "parting_overlap": dent + branch.fold_overlap,
+        "pull_max": branch.pull_off_force,
+        "adhesive_work": adhesive,
+    }
     return Impact(**{name: np.broadcast_to(column, v.shape) for name, column in columns.items()})
 
 

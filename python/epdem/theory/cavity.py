@@ -37,8 +37,10 @@ class Cavity(Backbone):
         if np.any(self.c_P <= self.c_Y):
             raise ValueError("plastic_ratio (c_P) must exceed first_yield_ratio (c_Y)")
         if np.any(excess > 2.5) or np.any(self.ln_s_P <= 0):
-            raise ValueError(f"energy would be created at yield: the law's condition is {np.max(excess):.3g}, over "
-                             "2.5; raise first_yield_ratio (c_Y) or plastic_ratio (c_P)")  # fmt: skip
+            raise ValueError(
+                f"energy would be created at yield: the law's condition is {np.max(excess):.3g}, over "
+                "2.5; raise first_yield_ratio (c_Y) or plastic_ratio (c_P)"
+            )
         self.plastic_overlap = self.yield_overlap * np.exp(self.ln_s_P)
 
     def marks(self) -> list[Real]:

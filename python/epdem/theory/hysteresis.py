@@ -52,8 +52,9 @@ def luding(*, k_1: Real, k_p: Real, overlap_p: Real, m_star: Real, speed: Real) 
     """
     k_1, k_p = number("k_1", k_1), number("k_p", k_p)
     number("k_p/k_1 - 1", k_p / k_1 - 1, low_ok=True)
-    k_1, k_p, limit, m, v = np.broadcast_arrays(k_1, k_p, number("overlap_p", overlap_p), number("m_star", m_star),
-                                                number("speed", speed))  # fmt: skip
+    k_1, k_p, limit, m, v = np.broadcast_arrays(
+        k_1, k_p, number("overlap_p", overlap_p), number("m_star", m_star), number("speed", speed)
+    )
     free = v * np.sqrt(m / k_1)  # delta_max if there were no delta_p
     beyond = free > limit
     turn = np.minimum(free, limit)

@@ -70,9 +70,17 @@ class Oblique:
 
 
 def impact(
-    law: Backbone, *, mass: float, R: float, mu: float, G_star: float, v_n: float, theta: Real, steps: int = 2000,
+    law: Backbone,
+    *,
+    mass: float,
+    R: float,
+    mu: float,
+    G_star: float,
+    v_n: float,
+    theta: Real,
+    steps: int = 2000,
     springs: int = 200,
-) -> Oblique:  # fmt: skip
+) -> Oblique:
     """Oblique impacts of a solid sphere on a fixed plane, with stick, partial slip and slip (`partial_slip`).
 
     mass [kg], R [m], G_star [Pa], v_n [m/s] > 0, theta [rad] in [0, pi/2) of any shape; `steps` in the contact (error
@@ -80,8 +88,17 @@ def impact(
     """
     theta = np.asarray(number("theta", theta, low_ok=True, high=STEEPEST), float)
     mass, tangent = float(number("mass", mass)), np.tan(theta)
-    _, impulse = rebound(law, m_star=mass, m_tangential=2 / 7 * mass, mu=mu, G_star=G_star, v_n=v_n,
-                         slip=tangent * v_n, steps=steps, springs=springs)  # fmt: skip
+    _, impulse = rebound(
+        law,
+        m_star=mass,
+        m_tangential=2 / 7 * mass,
+        mu=mu,
+        G_star=G_star,
+        v_n=v_n,
+        slip=tangent * v_n,
+        steps=steps,
+        springs=springs,
+    )
     e_n = np.asarray(normal_restitution(law, m_star=mass, speed=v_n))
     f = impulse / (mass * v_n * (1 + e_n))
     e_t = 1 - np.divide(f * (1 + e_n), tangent, out=np.full(theta.shape, np.nan), where=tangent > 0)

@@ -52,9 +52,17 @@ class Springs:
 
 
 def rebound(
-    law: Backbone, *, m_star: float, m_tangential: float, mu: float, G_star: float, v_n: float, slip: Real,
-    steps: int = 2000, springs: int = 400,
-) -> tuple[Array, Array]:  # fmt: skip
+    law: Backbone,
+    *,
+    m_star: float,
+    m_tangential: float,
+    mu: float,
+    G_star: float,
+    v_n: float,
+    slip: Real,
+    steps: int = 2000,
+    springs: int = 400,
+) -> tuple[Array, Array]:
     """(slip velocity after the impact [m/s], tangential impulse [N s]) of impacts at v_n [m/s] with `slip` [m/s].
 
     The two surfaces slip with the effective mass m_tangential [kg], (2/7) m for a solid sphere on a plane, and approach
@@ -94,7 +102,13 @@ def maw_barber_fawcett(psi_1: Real, *, kappa: float, steps: int = 2000) -> Array
     """
     psi_1, kappa = number("psi_1", psi_1, low_ok=True), float(number("kappa", kappa))
     after, _ = rebound(
-        Hertz(E_star=1.0, R_star=1.0), m_star=1.0, m_tangential=2 / 7, mu=kappa, G_star=kappa / 4, v_n=1e-3,
-        slip=1e-3 * np.asarray(psi_1), steps=steps,
-    )  # fmt: skip
+        Hertz(E_star=1.0, R_star=1.0),
+        m_star=1.0,
+        m_tangential=2 / 7,
+        mu=kappa,
+        G_star=kappa / 4,
+        v_n=1e-3,
+        slip=1e-3 * np.asarray(psi_1),
+        steps=steps,
+    )
     return 1e3 * after

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The equations of restitution as the chapter prints them, each within its own domain: NaN outside, and `why_not`."""
+"""Equations 8.83 to 8.89 of restitution as Seville and Wu 2016 print them; NaN outside their domains, see `why_not`."""
 
 import numpy as np
 

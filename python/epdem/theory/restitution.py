@@ -116,10 +116,17 @@ def impact(law: Backbone, *, m_star: Real, speed: Real) -> Impact:
     back = np.where(elastic, time, _unloading_time(law, m, top, out))
     radius = np.asarray(law.radius(top))
     return Impact(
-        e_n=np.where(elastic, 1.0, np.sqrt(out / W)), contact_time=time + back, force_max=np.asarray(law.force(top)),
-        overlap_max=top, radius_max=radius, residual_overlap=np.asarray(law.residual_overlap(top)), work_in=W,
-        work_out=out, plastic_work=np.asarray(law.plastic_work(top)), strain_ratio=np.asarray(radius / law.R_star),
-    )  # fmt: skip
+        e_n=np.where(elastic, 1.0, np.sqrt(out / W)),
+        contact_time=time + back,
+        force_max=np.asarray(law.force(top)),
+        overlap_max=top,
+        radius_max=radius,
+        residual_overlap=np.asarray(law.residual_overlap(top)),
+        work_in=W,
+        work_out=out,
+        plastic_work=np.asarray(law.plastic_work(top)),
+        strain_ratio=np.asarray(radius / law.R_star),
+    )
 
 
 def history(law: Backbone, *, m_star: float, speed: float, samples: int = 1001) -> tuple[Array, Array, Array]:

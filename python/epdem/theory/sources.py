@@ -1,6 +1,10 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The sources that docstrings of the theory name, in full."""
+"""The sources that docstrings of the theory name, in full. Equation numbers 8.xx are those of CHAPTER."""
 
+CHAPTER = (
+    "J. P. K. Seville, C.-Y. Wu, Particle Technology and Engineering, Butterworth-Heinemann (2016), "
+    "ISBN 978-0-08-098337-0, chapter 8, section 8.2"
+)
 SOURCES = {
     "Bridges et al. 1984": "F. G. Bridges, A. Hatzes, D. N. C. Lin, Nature 309 (1984) 333",
     "Bryant and Keer 1982": "M. D. Bryant, L. M. Keer, J. Appl. Mech. 49 (1982) 345",

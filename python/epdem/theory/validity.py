@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Where a prediction leaves the range in which the law, or small-deformation theory, has been compared with anything.
 
-The laws know their own limits (`Backbone.caveats`); here are those of all of them.
+Each law states its own limits (`Backbone.caveats`); the limits of all laws together are here.
 """
 
 import numpy as np
@@ -10,9 +10,10 @@ from .backbone import Backbone
 from .checks import Real, number
 from .restitution import impact
 
+SMALL_DEFORMATION = 0.3  # a_max/R* above which results are flagged everywhere
 # a_max/R* from which finite-element impacts leave the -1/4 law, whatever Y is, and by how much e_n is then too high
 # (finite-strain branch of Wu et al. 2003)
-FINITE_STRAIN = {0.2: "0 to 6 % too high, growing", 0.3: "13 to 23 % too high, growing"}
+FINITE_STRAIN = {0.2: "0 to 6 % too high, growing", SMALL_DEFORMATION: "13 to 23 % too high, growing"}
 
 
 def caveats(law: Backbone, *, m_star: float, speed: Real) -> list[str]:

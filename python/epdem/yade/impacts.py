@@ -14,6 +14,7 @@ from ..errors import CaseError, EngineError
 from ..impacts.engine import Abilities, Trajectory, check_abilities, recorded_seconds
 from ..impacts.experiment import Body, Experiment
 from ..impacts.pairs import Pairs
+from ..impacts.places import side_by_side
 from ..impacts.plan import Plan
 from ..laws import library as claw
 from ..processes import ask, call
@@ -133,19 +134,8 @@ class Yade:
 
 
 def tables(plan: Plan) -> list[np.ndarray]:
-    """x, y, z, v_z of the bodies, and of targets that move: one place of a grid per impact, contact at z = 0."""
-    x, n = plan.experiment, plan.n
-    wall = isinf(x.target.radius)
-    spacing = 2.6 * max(r for r in (x.body.radius, x.target.radius) if isfinite(r))
-    side = int(np.ceil(np.sqrt(n)))
-    place = spacing * (np.arange(n) % side), spacing * (np.arange(n) // side)
-    # in the centre-of-mass frame each of two bodies has its share of the speed
-    share = 1.0 if wall else x.m_star / x.body.mass
-    rows = [np.stack([*place, x.body.radius + share * plan.gap, -share * plan.speed], axis=1)]
-    if not wall:
-        rest = 1.0 - share
-        rows.append(np.stack([*place, -x.target.radius - rest * plan.gap, rest * plan.speed], axis=1))
-    return rows
+    """x, y, z [m] and v_z [m/s] of the bodies, and of targets that move."""
+    return [np.column_stack([group.place, group.velocity[:, 2]]) for group in side_by_side(plan)]
 
 
 def trajectory(plan: Plan, path: Path, seconds: dict[str, float]) -> Trajectory:

@@ -7,8 +7,8 @@ import numpy as np
 
 from ...errors import EpdemError
 from ...impacts.engine import not_representable
-from ...impacts.prediction import SMALL_DEFORMATION
 from ...laws.native import ImpactNumbers
+from ...theory.validity import SMALL_DEFORMATION
 from .cases import Extreme
 from .running import Setting, Verdict, setting
 from .sampling import PositionSampler, Sampler
@@ -80,14 +80,14 @@ def reloads(v: Verdict, s: Setting, sampler: Sampler, cycles: int) -> None:
 def judge_repeats(extreme: Extreme, law: str, sampler: Sampler, *, steps: int, cycles: int) -> Verdict:
     """The verdict on bounces, reloads or a sphere between two walls; the first run in the embedded engine alone."""
     v, begin = Verdict(extreme.name, extreme.group, sampler.name, law), time.perf_counter()
-    if sampler.name != "embedded" and extreme.kind == "bounces":
+    if sampler.positions and extreme.kind == "bounces":
         v.status, v.reason = "embedded only", "not run: 1e9 steps take hours in an engine with positions"
         return v
     try:
         s = setting(extreme, law)
         v.e_n_theory, v.strain_ratio = s.e_n, s.strain_ratio
         v.large_deformation = s.strain_ratio > SMALL_DEFORMATION
-        why = None if sampler.name == "embedded" else not_representable(s.x, 2 * s.overlap_max)
+        why = None if not sampler.positions else not_representable(s.x, 2 * s.overlap_max)
         if why:
             v.status, v.reason = "not representable", why
         elif extreme.kind == "bounces":

@@ -11,8 +11,9 @@ import numpy as np
 from ...errors import EngineError, EpdemError
 from ...impacts.engine import EPS, not_representable
 from ...impacts.experiment import Experiment
-from ...impacts.prediction import SMALL_DEFORMATION, predict
+from ...impacts.prediction import predict
 from ...impacts.timestep import stability_limit
+from ...theory.validity import SMALL_DEFORMATION
 from .cases import Extreme
 from .sampling import Sampler
 
@@ -156,7 +157,7 @@ def floor(s: Setting, sampler: Sampler, share: float) -> float:
     """Round-off of e_n (relative): eps per step, or that of overlaps which are differences of positions."""
     steps = s.contact_time / (share * s.limit)
     own = 10 * EPS * math.sqrt(steps)
-    if sampler.name == "embedded":
+    if not sampler.positions:
         return own
     radius = max(r for r in (s.x.body.radius, s.x.target.radius) if np.isfinite(r))
     return own + position_floor(radius=radius, recovered=s.recovered, steps=steps)
@@ -176,7 +177,7 @@ def judge(extreme: Extreme, law: str, sampler: Sampler, coarse: Sequence[float] 
         s = setting(extreme, law)
         v.e_n_theory, v.strain_ratio = s.e_n, s.strain_ratio
         v.large_deformation = s.strain_ratio > SMALL_DEFORMATION
-        why = None if sampler.name == "embedded" else not_representable(s.x, s.overlap_max)
+        why = None if not sampler.positions else not_representable(s.x, s.overlap_max)
         if why:
             v.status, v.reason = "not representable", why
         else:

@@ -29,6 +29,7 @@ class Sampler(Protocol):
     """Runs impacts of an experiment with one speed from the gaps [m] (negative: overlap at the start)."""
 
     name: str
+    positions: bool  # its overlap is a difference of positions
     most_steps: int  # of one impact: keeps every run within the time limit of a case
     phases: int
 
@@ -38,7 +39,7 @@ class Sampler(Protocol):
 class EmbeddedSampler:
     """Impacts in the C library, where overlaps are no differences of positions."""
 
-    name, most_steps, phases = "embedded", 20_000_000, 16
+    name, positions, most_steps, phases = "embedded", False, 20_000_000, 16
 
     def __call__(self, x: Experiment, time_step: float, gap: np.ndarray, steps: int) -> Sample:
         out = x.native_law().impacts(
@@ -53,7 +54,7 @@ class EmbeddedSampler:
 class PositionSampler:
     """An engine whose overlap is a difference of positions."""
 
-    most_steps, phases = 20_000, 8
+    positions, most_steps, phases = True, 20_000, 8
 
     def __init__(self, engine: Engine, folder: Path):
         self.engine, self.folder, self.name = engine, folder, engine.name

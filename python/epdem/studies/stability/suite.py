@@ -82,7 +82,7 @@ def run(
     rows, tables = [], []
     with tempfile.TemporaryDirectory(prefix="epdem-stability-") as scratch:
         for sampler in samplers(engines, Path(scratch)):
-            coarse = COARSE if sampler.name == "embedded" else POSITION_COARSE
+            coarse = COARSE if not sampler.positions else POSITION_COARSE
             slow = SLOW.get(sampler.name)
             for law in [slow] if slow in laws else laws:
                 for extreme in ends(chosen) if slow else chosen:
@@ -93,7 +93,7 @@ def run(
                         rows.append(judge_repeats(extreme, law, sampler, steps=steps or BOUNCE_STEPS, cycles=cycles))
         if not groups:
             progress("round-off")
-            others = [s for s in samplers(engines, Path(scratch)) if s.name != "embedded"]
+            others = [s for s in samplers(engines, Path(scratch)) if s.positions]
             tables = [floors(law, others) for law in laws]
     verdicts = pd.DataFrame([asdict(v) for v in rows])
     verdicts["notes"] = verdicts["notes"].map("; ".join)

@@ -96,7 +96,7 @@ def judge_two_walls(v: Verdict, s: Setting, sampler: Sampler) -> None:
         v.fail(f"energy created: {v.created:.2g} at {SHARES[-1]:g} of the limit")
     if v.order < LEAST_ORDER:
         v.fail(f"order of convergence {v.order:.2f}")
-    for share in COARSE if sampler.name == "embedded" else POSITION_COARSE:
+    for share in COARSE if not sampler.positions else POSITION_COARSE:
         if not (balance(s, *path(s, sampler, float(share))) - 1).max() <= BROKEN:
             v.breaks_at = round(float(share), 2)
             break

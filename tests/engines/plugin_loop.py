@@ -1,0 +1,157 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Small dense scenes for the pair loop: every combination of models that it knows, run by it and by LIGGGHTS's own."""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+from plugin_decks import Bodies, good
+
+SPACING = 2e-3  # of the lattice [m]; radii are about half of it
+COLUMNS = "x y z vx vy vz fx fy fz omegax omegay omegaz tqx tqy tqz"
+SAID = "epdem: pair loop of LIGGGHTS for "
+SIMD = ("sse2", "avx2", "avx512")
+
+
+@dataclass(frozen=True)
+class Scene:
+    """One way to combine all that changes what the loop does."""
+
+    law: str = "thornton"
+    tangential: str = "history"
+    rolling: str = "off"
+    cohesion: str = "off"
+    types: int = 1
+    freeze: bool = False
+    ranks: int = 1
+    rebuild: bool = False  # neighbour lists made anew every 7 steps
+    loose: bool = False  # contacts open and close
+    dashpot: bool = True  # of the tangential model; no_history cannot do without
+    settings: tuple[str, ...] = ()
+
+    def __str__(self):
+        return "-".join(
+            str(v) if isinstance(v, str) else f"{k}{v:d}" for k, v in vars(self).items() if k != "settings"
+        ) + "".join(f"-{s.replace(' ', '_')}" for s in self.settings)
+
+
+def bodies(scene, cells=3):
+    """4 cells^3 spheres, face-centred, jittered and stirred; radii and types at random where there are several."""
+    rng = np.random.default_rng(11)
+    edge = SPACING * np.sqrt(2) * (1.004 if scene.loose else 0.985)
+    corner = np.stack(np.meshgrid(*[np.arange(cells)] * 3, indexing="ij"), -1).reshape(-1, 1, 3)
+    x = ((corner + np.array([[0, 0, 0], [0.5, 0.5, 0], [0.5, 0, 0.5], [0, 0.5, 0.5]])) * edge).reshape(-1, 3)
+    x = (x + rng.uniform(-2e-5, 2e-5, x.shape)) % (cells * edge)
+    n = len(x)
+    radius = SPACING / 2 * (rng.uniform(0.98, 1.02, n) if scene.types > 1 else np.ones(n))
+    kinds = rng.integers(1, scene.types + 1, n)
+    speed = 2.0 if scene.loose else 0.3
+    made = Bodies(kinds, radius, x, rng.uniform(-speed, speed, x.shape), rng.uniform(-400, 400, x.shape))
+    return made.data(((0.0, float(cells * edge)),) * 3, types=scene.types)
+
+
+def deck(scene, *, steps=60, every=1, before="", end="", restart=None):
+    """The scene's deck; `restart` goes on from a file."""
+
+    def values(*three):
+        return " ".join(map(repr, three[: scene.types]))
+
+    def pairs(name, value, spread):
+        n = scene.types
+        table = " ".join(repr(value + spread * (i + j)) for i in range(n) for j in range(n))
+        return f"fix {name} all property/global {name} peratomtypepair {n} {table}\n"
+
+    damped = scene.dashpot or scene.tangential == "no_history" or "viscous on" in scene.settings
+    words = (
+        f"model ep/{scene.law} tangential {scene.tangential} cohesion {scene.cohesion} "
+        f"rolling_friction {scene.rolling} {' '.join(scene.settings)}"
+    )
+    work = " f_plasticWork f_elasticEnergy" if "computePlasticWork on" in scene.settings else ""
+    return (
+        "atom_style granular\natom_modify map array sort 0 0\nboundary p p p\nnewton off\n"
+        "communicate single vel yes\nunits si\n"
+        + ("processors 2 1 1\n" if scene.ranks == 2 else "")
+        + (f"read_restart {restart}\n" if restart else "read_data packing.data\n")
+        + f"neighbor {'2e-5' if scene.rebuild else '4e-4'} bin\nneigh_modify delay 0 "
+        + ("every 7 check no\n" if scene.rebuild else "\n")
+        + f"fix m1 all property/global youngsModulus peratomtype {values(1e8, 2e8, 5e7)}\n"
+        + f"fix m2 all property/global poissonsRatio peratomtype {values(0.3, 0.25, 0.4)}\n"
+        + f"fix p1 all property/global yieldPressure peratomtype {values(2e6, 4e6, 1e6)}\n"
+        + f"fix p2 all property/global yieldStress peratomtype {values(7e5, 1.4e6, 3e5)}\n"
+        + pairs("coefficientFriction", 0.3, 0.1)
+        + (pairs("coefficientRestitution", 0.7, 0.05) if damped else "")
+        + pairs("coefficientRollingFriction", 0.05, 0.03)
+        + pairs("cohesionEnergyDensity", 2e4, 5e3)
+        + f"pair_style gran {words}\npair_coeff * *\n"
+        + "timestep 1e-6\n"
+        + ("group still id <= 20\ngroup loose subtract all still\n" if scene.freeze else "")
+        + ("fix still still freeze\nfix move loose nve/sphere\n" if scene.freeze else "fix move all nve/sphere\n")
+        + "compute contacts all contact/atom\ncompute touching all reduce sum c_contacts\n"
+        + f"dump d all custom {every} out.bin id {COLUMNS}{work}\ndump_modify d sort id\n"
+        + "thermo_style custom step atoms c_touching\nthermo 1\nthermo_modify lost error norm no\n"
+        + before
+        + f"run {steps}\n"
+        + end
+    )
+
+
+def outcome(folder, scene, *, loop="", simd="", text=None, **options):
+    """(all frames of the dump, what the run printed); `loop` and `simd` are EPDEM_LOOP and EPDEM_SIMD."""
+    env = {k: v for k, v in (("EPDEM_LOOP", loop), ("EPDEM_SIMD", simd)) if v}
+    files = {"packing.data": bodies(scene)}
+    done = good(folder, text or deck(scene, **options), ranks=scene.ranks, files=files, env=env)
+    return done.frames()[1], done.text
+
+
+DIMENSIONS = {
+    "law": ("hertz", "thornton", "johnson", "cavity"),
+    "tangential": ("history", "no_history", "off"),
+    "rolling": ("off", "cdt", "epsd2"),
+    "cohesion": ("off", "sjkr", "sjkr2"),
+    "types": (1, 3),
+    "freeze": (False, True),
+    "ranks": (1, 2),
+    "rebuild": (False, True),
+    "loose": (False, True),
+    "dashpot": (True, False),
+    "viscous": (False, True),
+    "work": (False, True),
+    "torsion": (False, True),
+    "slides": (False, True),
+}
+
+
+def scene_of(choice):
+    """The scene of one value per dimension; settings that a model does not have are left out."""
+    c = dict(choice)
+    wanted = {
+        "viscous on": c.pop("viscous"),
+        "computePlasticWork on": c.pop("work"),
+        "torsionTorque on": c.pop("torsion") and c["rolling"] != "off",
+        "tangential_reduce on": c.pop("slides") and c["cohesion"] != "off",
+    }
+    return replace(Scene(**c), settings=tuple(s for s, on in wanted.items() if on))
+
+
+def covering(dimensions=DIMENSIONS, seed=1, tries=60):
+    """Few scenes in which every two values of two dimensions meet: each is the best of some random ones."""
+    rng = np.random.default_rng(seed)
+    names = list(dimensions)
+
+    def pairs(choice):
+        return {((a, choice[a]), (b, choice[b])) for k, a in enumerate(names) for b in names[k + 1 :]}
+
+    missing = {
+        ((a, x), (b, y))
+        for k, a in enumerate(names)
+        for b in names[k + 1 :]
+        for x in dimensions[a]
+        for y in dimensions[b]
+    }
+    chosen = []
+    while missing:
+        fixed = dict(sorted(missing, key=repr)[0])
+        some = [{n: dimensions[n][rng.integers(len(dimensions[n]))] for n in names} | fixed for _ in range(tries)]
+        best = max(some, key=lambda choice: len(pairs(choice) & missing))
+        missing -= pairs(best)
+        chosen.append(scene_of(best))
+    return chosen

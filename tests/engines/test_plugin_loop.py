@@ -1,0 +1,120 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Our loop over pairs and LIGGGHTS's own, with the same models: not one bit differs, whatever the processor."""
+
+import subprocess
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from plugin_decks import launcher, run
+from plugin_loop import DIMENSIONS, SAID, SIMD, Scene, bodies, covering, deck, outcome
+
+pytestmark = pytest.mark.liggghts
+
+SCENES = covering()
+
+
+def supported(simd, folder):
+    """Whether this processor has the instructions."""
+    (folder / "in.nothing").write_text(
+        "units si\natom_style granular\nnewton off\ncommunicate single vel yes\nregion b block 0 1 0 1 0 1\n"
+        "create_box 1 b\npair_style gran model ep/hertz tangential off\n"
+    )
+    done = subprocess.run(
+        ["env", f"EPDEM_SIMD={simd}", launcher(), "-in", "in.nothing"], cwd=folder, capture_output=True, check=False
+    )
+    return done.returncode == 0
+
+
+@pytest.fixture(scope="module")
+def instruction_sets(tmp_path_factory):
+    return [simd for simd in SIMD if supported(simd, tmp_path_factory.mktemp("simd"))]
+
+
+def test_the_scenes_meet_every_two_values():
+    assert len(SCENES) < 40
+    for name, values in DIMENSIONS.items():
+        if name in vars(SCENES[0]):
+            assert {getattr(s, name) for s in SCENES} == set(values)
+
+
+@pytest.mark.parametrize("scene", SCENES, ids=str)
+def test_both_loops_give_the_same_bits(tmp_path, scene, instruction_sets):
+    """Positions, velocities, forces, spins and torques of 108 spheres after each of 60 steps."""
+    theirs, text = outcome(tmp_path / "generic", scene, loop="generic")
+    assert text.count(SAID) == 1 and SAID + "EPDEM_LOOP = generic" in text
+    assert len(theirs) == 61 and np.abs(theirs[-1][:, 7:10]).max() > 0
+    for simd in instruction_sets:
+        ours, text = outcome(tmp_path / simd, scene, simd=simd)
+        assert SAID not in text
+        assert np.array_equal(ours, theirs), f"{simd}: {np.abs(ours - theirs).max()}"
+
+
+def touching(text):
+    """Numbers of contacts, one per step."""
+    rows = [line.split() for line in text.splitlines()]
+    return [int(r[2]) for r in rows if len(r) == 3 and r[0].isdigit() and r[1] == "108"]
+
+
+def test_in_loose_scenes_contacts_open_and_close(tmp_path):
+    """Else they would not be tested."""
+    n = touching(outcome(tmp_path, Scene(loose=True))[1])
+    assert len(n) == 61 and min(np.diff(n)) < 0 < max(np.diff(n))
+
+
+@pytest.mark.parametrize("law", ["hertz", "thornton", "cavity"])
+def test_a_restart_goes_on_with_the_other_loop(tmp_path, law):
+    """In the middle of contacts, three materials: equal bits in all four combinations."""
+    scene = Scene(law=law, types=3, rolling="epsd2", loose=True)
+    ends = []
+    for first in ("", "generic"):
+        folder = tmp_path / f"first{first}"
+        outcome(folder, scene, loop=first, steps=30, end="write_restart x.restart\n")
+        for second in ("", "generic"):
+            name = str(folder / "x.restart")
+            ends.append(outcome(tmp_path / f"{first}-{second}", scene, loop=second, steps=30, restart=name)[0])
+    assert len(ends) == 4 and all(np.array_equal(ends[0], e) for e in ends[1:])
+
+
+STRESS = (
+    "compute s all stress/atom\ncompute sum all reduce sum c_s[1]\nthermo_style custom step atoms c_sum\nthermo 20\n"
+)
+LOCAL = "compute p all pair/gran/local id force history delta\ndump l all local 5 local.txt c_p[1] c_p[3]\n"
+VISCOUS = "fix v all property/global coefficientRollingViscousDamping peratomtypepair 1 0.1\n"
+REASONS = {
+    "rolling_friction epsd": {"scene": {"rolling": "epsd"}, "before": VISCOUS},
+    "rolling_friction epsd3": {
+        "scene": {"rolling": "epsd3"},
+        "before": VISCOUS + "fix s all property/global rollingStiffness scalar 2.25\n",
+    },
+    "surface multicontact": {"surface": "multicontact", "before": "fix mc all multicontact/halfspace\n"},
+    "heating_tangential_history on": {"scene": {"settings": ("heating_tangential_history on",)}},
+    "contacts at a distance": {"before": "neigh_modify contact_distance_factor 1.1\n"},
+    "steps that ask for the virial": {"before": STRESS},
+    "steps of compute pair/gran/local": {"before": LOCAL},
+}
+
+
+@pytest.mark.parametrize("reason", REASONS)
+def test_what_our_loop_cannot_do_takes_liggghts_loop_and_says_so_once(tmp_path, reason):
+    case = REASONS[reason]
+    scene = replace(Scene(), **case.get("scene", {}))
+    text = deck(scene)
+    before = case.get("before", "")
+    if "property/global" in before:
+        text = text.replace("pair_style", before + "pair_style", 1)
+    else:
+        text = text.replace("thermo_modify", before + "thermo_modify", 1)
+    if "surface" in case:  # LIGGGHTS's multicontact does not survive a periodic box
+        text = text.replace("boundary p p p", "boundary s s s")
+        text = text.replace("\npair_coeff", f" surface {case['surface']}\npair_coeff")
+    frames, said = outcome(tmp_path / "ours", scene, text=text)
+    assert said.count(SAID) == 1 and SAID + reason in said
+    assert (tmp_path / "ours" / "log.liggghts").read_text().count(SAID) == 1
+    assert np.array_equal(frames, outcome(tmp_path / "generic", scene, text=text, loop="generic")[0])
+
+
+def test_a_wrong_instruction_set_is_refused(tmp_path):
+    scene = Scene()
+    done = run(tmp_path, deck(scene), files={"packing.data": bodies(scene)}, env={"EPDEM_SIMD": "avx1024"})
+    assert done.code == 1 and "EPDEM_SIMD = avx1024" in done.error and "sse2, avx2 or avx512" in done.error

@@ -1,0 +1,187 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""A scene is run again when one of its inputs has changed and only then; the engine here copies stored files."""
+
+import shutil
+from pathlib import Path
+
+import pytest
+from scene_runs import write_case
+from stored_runs import STORED, data_of
+
+from epdem import stages
+from epdem.case.scene import parse
+from epdem.errors import CaseError, EngineError
+from epdem.impacts.engine import Abilities
+from epdem.liggghts.scenes import LiggghtsScenes
+from epdem.scenes import results
+from epdem.scenes.pairs import pair_law
+from epdem.scenes.plan import plan
+from epdem.scenes.run import run
+
+
+class Stored(LiggghtsScenes):
+    """LIGGGHTS whose runs are copies of stored ones."""
+
+    can = Abilities(ranks=4, scenes=("settle", "hopper", "drum", "compaction", "peening"), restarts=True)
+
+    def __init__(self, name: str = "drum"):
+        self.stored, self.runs, self.told, self.here = STORED / name, 0, "LIGGGHTS 3.8.0", True
+
+    def missing(self):
+        return None if self.here else "LIGGGHTS was not found; apt-get install liggghts"
+
+    def version(self):
+        return self.told
+
+    def run(self, plan, folder, *, ranks, tell):
+        self.runs += 1
+        for path in self.stored.iterdir():
+            if path.suffix != ".toml":
+                shutil.copy(path, folder)
+        tell(plan.steps)
+
+
+@pytest.fixture
+def case(tmp_path) -> Path:
+    return write_case(data_of("drum"), tmp_path)
+
+
+def test_the_second_call_takes_the_stored_results(case, tmp_path):
+    engine, told = Stored(), []
+    first = run(case, engine, out=tmp_path / "out", tell=lambda step, steps: told.append((step, steps)))
+    second = run(case, engine, out=tmp_path / "out")
+    assert (first.reused, second.reused, engine.runs) == (False, True, 1)
+    assert told == [(8000, 8000)]
+    for name, table in first.results.tables.items():
+        assert second.results.tables[name].astype(str).equals(table.astype(str)), name
+    stored = results.read(tmp_path / "out/results.h5")
+    assert stored.case_text == case.read_text()
+    assert set(stored.decks) == {"in.scene", "setup.in", "drum.stl"}, "all that is needed to run it by hand"
+    assert run(case, engine, out=tmp_path / "out", fresh=True).reused is False
+
+
+def change_case(case, engine, monkeypatch):
+    write_case(data_of("drum") | {"output": data_of("drum")["output"] | {"loads": False}}, case.parent)
+
+
+def change_triangles(case, engine, monkeypatch):
+    data = data_of("drum")
+    write_case(data | {"scene": data["scene"] | {"diameter": "16.0001 mm"}}, case.parent)
+
+
+def change_version(case, engine, monkeypatch):
+    engine.told = "LIGGGHTS 3.8.1"
+
+
+def change_product(case, engine, monkeypatch):
+    monkeypatch.setattr(stages, "product_hash", lambda: "another library, template or source")
+
+
+def change_file(case, engine, monkeypatch):
+    files = engine.files
+    monkeypatch.setattr(engine, "files", lambda p: files(p) | {"drum.stl": files(p)["drum.stl"] + "\n"})
+
+
+@pytest.mark.parametrize("change", [change_case, change_triangles, change_version, change_product, change_file])
+def test_each_input_that_changes_makes_it_run_again(change, case, tmp_path, monkeypatch):
+    engine = Stored()
+    run(case, engine, out=tmp_path / "out")
+    change(case, engine, monkeypatch)
+    again = run(case, engine, out=tmp_path / "out")
+    assert (again.reused, engine.runs) == (False, 2)
+    assert run(case, engine, out=tmp_path / "out").reused
+
+
+def test_another_number_of_ranks_is_another_input(case, tmp_path):
+    engine = Stored()
+    run(case, engine, out=tmp_path / "out")
+    assert not run(case, engine, out=tmp_path / "out", ranks=2).reused
+
+
+def test_a_comment_in_the_case_is_no_input(case, tmp_path):
+    engine = Stored()
+    run(case, engine, out=tmp_path / "out")
+    case.write_text("# seen again\n" + case.read_text())
+    assert run(case, engine, out=tmp_path / "out").reused
+
+
+@pytest.mark.parametrize(
+    ("can", "options", "words"),
+    [
+        (Abilities(scenes=("settle",), ranks=4), {}, r"scene.kind = 'drum'.*settle.*another --engine"),
+        (Stored.can, {"ranks": 5}, r"--ranks 5: .* 4 ranks at most"),
+        (Abilities(scenes=("drum",)), {"ranks": 2}, r"--ranks 2: .* one core"),
+        (Abilities(scenes=("drum",)), {"resume": True}, r"--resume: .* from its start"),
+    ],
+)
+def test_what_an_engine_cannot_do_is_refused_before_anything_is_written(can, options, words, case, tmp_path):
+    engine = Stored()
+    engine.can = can
+    with pytest.raises(CaseError, match=words):
+        run(case, engine, out=tmp_path / "out", **options)
+    assert not (tmp_path / "out").exists() and engine.runs == 0
+
+
+def test_an_engine_that_is_not_here_says_how_to_get_it(case, tmp_path):
+    engine = Stored()
+    engine.here = False
+    with pytest.raises(EngineError, match="apt-get install"):
+        run(case, engine, out=tmp_path / "out")
+    assert not (tmp_path / "out").exists()
+
+
+STRENGTH = {"yield_pressure": "3 MPa"}
+
+
+@pytest.mark.parametrize(
+    ("table", "value", "words"),
+    [
+        (
+            "law",
+            {"name": "thornton", **STRENGTH, "yield_pressure_ratio": 2.5},
+            "both yield_pressure and yield_pressure_",
+        ),
+        (
+            "law",
+            {"name": "thornton", "yield_presure": "3 MPa"},
+            "law.yield_presure: law thornton has no such parameter",
+        ),
+        ("law", {"name": "thornton", "yield_pressure": "3 MJ"}, "law.yield_pressure = '3 MJ'"),
+        ("law", {"name": "thornten"}, "law.name = 'thornten' does not exist"),
+        ("scene", {"gravity": "0 m/s^2"}, r"scene.gravity = 0: nothing moves.*numerics.highest_speed"),
+    ],
+)
+def test_mistakes_are_told_in_the_words_of_the_case_file(table, value, words):
+    data = data_of("settle")
+    changed = value if table == "law" else data[table] | value
+    with pytest.raises(CaseError, match=words):
+        plan(parse(data | {table: changed} | {"numerics": {}}))
+
+
+def test_an_error_that_no_step_reaches_is_told_by_its_key():
+    """A dashpot converges with first order, so that e_n within 1e-9 takes more steps than anyone runs."""
+    data = data_of("settle") | {"viscous": {"restitution": 0.5}, "numerics": {"error": 1e-9}}
+    with pytest.raises(CaseError, match=r"numerics\.error = 1e-09 is not reached.*numerics\.time_step"):
+        plan(parse(data))
+
+
+def test_a_material_s_own_strength_goes_before_that_of_the_law():
+    data = data_of("settle")
+    glass = data["materials"]["glass"]
+    cases = {
+        "by ratio": (glass, {"name": "thornton", "yield_pressure_ratio": 2.0}),
+        "of the law": (glass, {"name": "thornton", **STRENGTH}),
+        "its own": (glass | {"yield_pressure": "7 MPa"}, {"name": "thornton", **STRENGTH}),
+    }
+    found = {
+        name: plan(parse(data | {"materials": {"glass": material}, "law": law})).model.types[0].strength
+        for name, (material, law) in cases.items()
+    }
+    assert found == pytest.approx({"by ratio": 1e6, "of the law": 3e6, "its own": 7e6})
+
+
+def test_of_two_materials_the_softer_one_s_strength_counts():
+    """johnson's own ratio 3.0 times 0.5 GPa of the plate; the shot has 2 GPa."""
+    case = parse(data_of("peening"))
+    for a, b in (("shot", "plate"), ("plate", "shot")):
+        assert pair_law(case, a, b)[0].parameters["yield_pressure"] == pytest.approx(1.5e9)
