@@ -208,7 +208,7 @@ class SceneRun:
 
     @property
     def tables(self) -> dict[str, pd.DataFrame]:
-        """rows, particles, contacts, ledger and checks, as far as the scene asks for them."""
+        """rows, particles, contacts, ledger and checks, as far as the scene requests them."""
         return {name: _units(table, SCENE_UNITS) for name, table in self.outcome.results.tables.items()}
 
     @property
@@ -272,7 +272,7 @@ def run(
 
 
 def predict(case: Case, law: str | None = None) -> pd.DataFrame:
-    """What theory says of a case, one row for each speed; nothing runs. Raises CaseError."""
+    """The prediction of theory for a case, one row for each speed; no engine runs. Raises CaseError."""
     found = predict_experiment(experiment(case.model, law))
     return _units(pd.DataFrame({name: getattr(found, name) for name in Prediction.COLUMNS}), UNITS)
 
@@ -310,7 +310,7 @@ def sweep(
         planned = study.plan(path, settings, **words, latin_hypercube=latin_hypercube, seed=seed)
     folder = Path(out) if out is not None else Path("runs") / f"{planned.name}_sweep"
 
-    def tell(done: int, total: int) -> None:
+    def report(done: int, total: int) -> None:
         log.info("%d of %d points", done, total)
 
-    return study.run(planned, folder, jobs=jobs, retry_failed=retry_failed, tell=tell)
+    return study.run(planned, folder, jobs=jobs, retry_failed=retry_failed, report=report)

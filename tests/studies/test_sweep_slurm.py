@@ -65,7 +65,7 @@ def test_50_points_one_fails_one_job_is_cancelled_and_the_controller_restarts(ca
             here.stop("slurmctld")
             here.start("slurmctld")
 
-    found = slurm.run(planned, out, {"partition": "main"}, tell=disturb).table
+    found = slurm.run(planned, out, {"partition": "main"}, report=disturb).table
     lost = jobs(out)[cancelled[0]]
     assert len(lost) == 5 and sorted(n for points in jobs(out).values() for n in points) == list(range(1, 51))
     failed = found[found["status"] == "failed"].set_index("point")["reason"]
@@ -94,7 +94,7 @@ def test_a_scene_that_is_preempted_is_queued_again_and_goes_on_from_its_restart_
             assert status(out)["running"] == 1
             sent.append(here.ask("scancel", "-s", "USR2", *jobs(out)))
 
-    found = slurm.run(planned, out, {"time": "10"}, tell=preempt)
+    found = slurm.run(planned, out, {"time": "10"}, report=preempt)
     assert sent and found.table["status"].tolist() == ["done"]
     assert (folder.of(planned, out, 1) / "in.resume").exists()
 
@@ -109,7 +109,7 @@ def test_a_job_that_is_cancelled_while_it_runs_leaves_a_row_and_no_process(here,
         if list(out.glob("points/*/in.scene")):
             here.ask("scancel", *jobs(out))
 
-    found = slurm.run(planned, out, {}, tell=cancel).table
+    found = slurm.run(planned, out, {}, report=cancel).table
     (job,) = jobs(out)
     assert found["reason"].tolist() == [f"its job {job} ended as CANCELLED while it ran"]
     until(lambda: str(out) not in here.ask("ps", "ax", "-o", "args"), "the end of LIGGGHTS")

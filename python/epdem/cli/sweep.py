@@ -64,9 +64,9 @@ def sweep(
         study.write_script(planned, folder, slurm or [], write_script)
         print(f"sbatch {write_script}")
         return
-    with sweep_view.progress() as tell:
+    with sweep_view.progress() as report:
         outcome = study.execute(
-            planned, folder, executor, slurm or [], jobs=jobs, retry_failed=retry_failed, force=force, tell=tell
+            planned, folder, executor, slurm or [], jobs=jobs, retry_failed=retry_failed, force=force, report=report
         )
     sweep_view.outcome(outcome, as_json, console())
     raise typer.Exit(0 if outcome.passed else 1)

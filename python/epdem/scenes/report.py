@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""What a person sees of a scene: checks, summary, JSON, figures."""
+"""The output of a scene: checks, summary, JSON, figures."""
 
 import json
 

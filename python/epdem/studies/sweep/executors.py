@@ -10,7 +10,7 @@ from ...folders import claim
 from . import folder as store
 from . import run, slurm
 from .folder import Sweep
-from .run import SweepOutcome, Tell
+from .run import SweepOutcome, Report
 
 
 def execute(
@@ -22,17 +22,17 @@ def execute(
     jobs: int | None = None,
     retry_failed: bool = False,
     force: bool = False,
-    tell: Tell = lambda done, total: None,
+    report: Report = lambda done, total: None,
 ) -> SweepOutcome:
     """Run a sweep by the executor "local" or "slurm"; `given` are the parameters of the latter. Raises CaseError."""
     if executor == "slurm":
         found = slurm.parameters(given)
-        return slurm.run(sweep, folder, found, retry_failed=retry_failed, force=force, tell=tell)
+        return slurm.run(sweep, folder, found, retry_failed=retry_failed, force=force, report=report)
     if executor != "local":
         raise CaseError(f"--executor {executor!r} does not exist; there are local, slurm")
     if given:
         raise CaseError("--slurm goes with --executor slurm or --write-script")
-    return run.run(sweep, folder, jobs=jobs, retry_failed=retry_failed, force=force, tell=tell)
+    return run.run(sweep, folder, jobs=jobs, retry_failed=retry_failed, force=force, report=report)
 
 
 def write_script(sweep: Sweep, folder: Path, given: Sequence[str], path: Path) -> None:

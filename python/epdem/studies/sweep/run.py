@@ -21,7 +21,7 @@ from .keys import keys_of
 from .points import Point, Value
 
 Settings = Mapping[str, str | Sequence[Value]]
-Tell = Callable[[int, int], None]  # (points that have run, of so many)
+Report = Callable[[int, int], None]  # (points that have run, of so many)
 
 
 @dataclass(frozen=True)
@@ -103,7 +103,7 @@ def run(
     jobs: int | None = None,
     retry_failed: bool = False,
     force: bool = False,
-    tell: Tell = lambda done, total: None,
+    report: Report = lambda done, total: None,
 ) -> SweepOutcome:
     """Run what of a sweep is missing or changed, by `jobs` processes on this machine, and write its table.
 
@@ -115,12 +115,12 @@ def run(
     with claim(folder, force=force):
         store.write(sweep, folder)
         numbers = store.to_do(sweep, folder, retry_failed=retry_failed)
-        tell(0, len(numbers))
+        report(0, len(numbers))
         work = partial(evaluate, sweep, folder)
         for done, (number, result) in enumerate(local.each(work, numbers, jobs or default_jobs(sweep)), start=1):
             if isinstance(result, local.Died):
                 record_death(sweep, folder, number, str(result))
-            tell(done, len(numbers))
+            report(done, len(numbers))
         return SweepOutcome(sweep, folder, table.write(sweep, folder), len(numbers))
 
 

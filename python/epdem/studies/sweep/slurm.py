@@ -22,7 +22,7 @@ from . import folder as store
 from . import local, table
 from .evaluate import evaluate
 from .folder import Sweep
-from .run import SweepOutcome, Tell, check_points, record_death
+from .run import SweepOutcome, Report, check_points, record_death
 
 TASKS = 1000  # of an array; a cluster takes 1001 if it does not say otherwise
 POLL = 1.0  # [s] between two looks at the queue
@@ -125,7 +125,7 @@ def run(
     *,
     retry_failed: bool = False,
     force: bool = False,
-    tell: Tell = lambda done, total: None,
+    report: Report = lambda done, total: None,
 ) -> SweepOutcome:
     """Run what of a sweep is missing as jobs of Slurm, wait for their end, and write the table.
 
@@ -146,7 +146,7 @@ def run(
             jobs |= _submit(sweep, folder, new, given)
             with atomic(folder / JOBS) as temporary:
                 temporary.write_text(json.dumps(jobs))
-        _wait(sweep, folder, jobs, tell)
+        _wait(sweep, folder, jobs, report)
         return SweepOutcome(sweep, folder, table.write(sweep, folder), len(new))
 
 
@@ -162,7 +162,7 @@ def _living(folder: Path) -> dict[str, list[int]]:
     return {job: points for job, points in known.items() if job in there}
 
 
-def _wait(sweep: Sweep, folder: Path, jobs: dict[str, list[int]], tell: Tell) -> None:
+def _wait(sweep: Sweep, folder: Path, jobs: dict[str, list[int]], report: Report) -> None:
     left = dict(jobs)
     total = sum(map(len, jobs.values()))
     while left:
@@ -173,7 +173,7 @@ def _wait(sweep: Sweep, folder: Path, jobs: dict[str, list[int]], tell: Tell) ->
                 if state not in (store.DONE, store.FAILED):
                     when = "while it ran" if state == store.RUNNING else "before it began"
                     record_death(sweep, folder, n, f"{ended(job)} {when}")
-        tell(total - sum(map(len, left.values())), total)
+        report(total - sum(map(len, left.values())), total)
         if left:
             time.sleep(POLL)
 
