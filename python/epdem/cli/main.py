@@ -176,6 +176,7 @@ for command in (
     cli_sweep.status,
 ):
     app.command()(command)
+app.command("points", hidden=True)(cli_sweep.points)  # what batch scripts call
 app.command("stress", hidden=True, deprecated=True)(cli_numerics.stability)  # its name in version 0.1
 
 

@@ -41,7 +41,10 @@ class Liggghts:
         return launcher.missing()
 
     def version(self) -> str:
-        found = re.search(r"LIGGGHTS[-\w ]*?(\d+\.\d+\.\d+)", ask([str(paths.launcher()), "-log", "none", "-h"]))
+        found = re.search(
+            r"LIGGGHTS[-\w ]*?(\d+\.\d+\.\d+)",
+            ask([str(paths.launcher()), "-log", "none", "-h"], launcher.environment()),
+        )
         return f"LIGGGHTS {found.group(1) if found else '(version unknown)'}"
 
     def model(self, plan: Plan) -> str:
