@@ -71,16 +71,16 @@ FAULTS = [
 ]  # fmt: skip
 
 PLUGIN_TESTS = "tests/engines/test_plugin_invariance.py"
+LOOP, LOOP_TEST = f"{PLUGIN}/loop", "tests/engines/test_plugin_loop.py"
 FAULTS += [
     Fault("history changes its sign with the side", f"{PLUGIN}/normal.hpp", 'setup->add_history_value(slot, "0");',
           'setup->add_history_value(slot, "1");', PLUGIN_TESTS, "no_bit and thornton and not ning"),
-    Fault("a pair does not notice that it parted", f"{PLUGIN}/normal.hpp", "if (now_ - history[stamp_] > 1.0)", "if (false)",
-          PLUGIN_TESTS, "second_impact and thornton and not ning"),
-    Fault("the force on j is forgotten", f"{PLUGIN}/normal.hpp", "fj.delta_F[k] -= share * s.en[k];", "fj.delta_F[k] -= 0.0 * s.en[k];",
-          PLUGIN_TESTS, "momentum and thornton and not ning"),
+    Fault("LIGGGHTS's loop does not notice that a pair parted", f"{PLUGIN}/normal.hpp", "if (now_ - history[stamp_] > 1.0)",
+          "if (false)", LOOP_TEST, "same_bits and loose1"),
+    Fault("the force on j is forgotten in LIGGGHTS's loop", f"{PLUGIN}/normal.hpp", "fj.delta_F[k] -= share * s.en[k];",
+          "fj.delta_F[k] -= 0.0 * s.en[k];", LOOP_TEST, "same_bits and hertz"),
 ]  # fmt: skip
 
-LOOP, LOOP_TEST = f"{PLUGIN}/loop", "tests/engines/test_plugin_loop.py"
 FAULTS += [
     Fault("2 ulp in the lever arm of the pair loop", f"{LOOP}/models.hpp", "c.cri = c.radi - 0.5 * c.deltan;",
           "c.cri = c.radi - 0.50000000000000022 * c.deltan;", LOOP_TEST, "same_bits and thornton"),
