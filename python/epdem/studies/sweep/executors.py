@@ -10,7 +10,7 @@ from ...folders import claim
 from . import folder as store
 from . import run, slurm
 from .folder import Sweep
-from .run import SweepOutcome, Report
+from .run import Report, SweepOutcome
 
 
 def execute(

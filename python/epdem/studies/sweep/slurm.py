@@ -22,7 +22,7 @@ from . import folder as store
 from . import local, table
 from .evaluate import evaluate
 from .folder import Sweep
-from .run import SweepOutcome, Report, check_points, record_death
+from .run import Report, SweepOutcome, check_points, record_death
 
 TASKS = 1000  # of an array; a cluster takes 1001 if it does not say otherwise
 POLL = 1.0  # [s] between two looks at the queue
