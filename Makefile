@@ -8,7 +8,7 @@ demo: setup
 	.venv/bin/epdem run cases/steel_wall.toml --engine embedded --engine liggghts
 
 test:
-	@scripts/setup yade
+	@scripts/setup yade slurmctld slurmd slurm-client munge
 	.venv/bin/python -m pytest -n 2
 
 bench: setup

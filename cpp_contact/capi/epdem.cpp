@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The C interface: finds the law, checks what it is given, loops. No arithmetic of its own.
+// The C interface: selects the law, checks the arguments, loops over contacts. It has no arithmetic of its own.
 #include "epdem.h"
 
 #include <cmath>
@@ -10,7 +10,7 @@
 
 #define EPDEM_EXPORT extern "C" __attribute__((visibility("default")))
 
-/// In long_double.cpp: input already checked; false if there is no such law.
+/// In long_double.cpp: arguments are already checked; false if the law does not exist.
 bool epdem_long_double_batch(int law, double E_star, const double* parameters, size_t n, const epdem_impact_input* in,
                              epdem_impact_output* out);
 
@@ -55,7 +55,7 @@ int check(int law, double E_star, const double* parameters) {
   return EPDEM_OK;
 }
 
-/// Calls `body(law object)` for the law of that index: the one place where an index becomes a type.
+/// Calls `body(law object)` for the law of that index; only here an index becomes a type.
 template <class Body>
 int with_law(int index, double E_star, const double* parameters, const Body& body) {
   if (const int status = check(index, E_star, parameters)) return status;
@@ -187,7 +187,7 @@ EPDEM_EXPORT int epdem_impacts_long_double(int law, double E_star, const double*
                                            const epdem_impact_input* in, epdem_impact_output* out) {
   for (size_t i = 0; i < n; ++i)
     if (!sane(in[i])) return EPDEM_BAD_INPUT;
-  return with_law(law, E_star, parameters, [&](const auto&) {  // the checks are those of double
+  return with_law(law, E_star, parameters, [&](const auto&) {  // with the checks of double
     return epdem_long_double_batch(law, E_star, parameters, n, in, out) ? int(EPDEM_OK) : int(EPDEM_UNKNOWN_LAW);
   });
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The laws once more, on long double: the same statements and constants, so a difference to double is round-off.
+// The laws on long double: the same statements and constants, so that a difference to double is round-off.
 #include "epdem.h"
 #include "epdem/impact.hpp"
 #include "epdem/laws.hpp"

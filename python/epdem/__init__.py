@@ -1,4 +1,19 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Elastic-plastic particle contact for LIGGGHTS and YADE, checked against theory."""
 
+import importlib
+from typing import Any
+
 __version__ = "0.1.0"
+__all__ = ["Case", "Run", "Scene", "SceneRun", "deck", "predict", "run", "sweep", "theory"]
+
+
+def __getattr__(name: str) -> Any:
+    """The Python interface, which takes a second to import: not before it is used."""
+    if name in __all__:
+        return getattr(importlib.import_module("epdem.api"), name)
+    raise AttributeError(f"module 'epdem' has no attribute {name!r}")
+
+
+def __dir__() -> list[str]:
+    return [*globals(), *__all__]

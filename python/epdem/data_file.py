@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The data file of LAMMPS, which its offspring LIGGGHTS reads as well: spheres with positions and velocities."""
+"""The data file of LAMMPS and LIGGGHTS: spheres with positions and velocities."""
 
 from collections.abc import Iterable
 from dataclasses import dataclass

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""What can go wrong, by exit code. Every message gives place, value, limit and next step."""
+"""Errors by exit code. Every message names place, value, limit and next step."""
 
 
 class EpdemError(Exception):

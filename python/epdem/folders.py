@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""A folder of results: one run at a time, and nothing touched in it that is not ours.
+"""A folder of results: one run writes it at a time, and no file of the user in it is changed.
 
-`.epdem.json` in the folder lists the files that runs have left there, by size, time and hash. What is not in the list,
-or has changed since, is the user's. While a run is on the list instead names what was the user's at its begin, so that
-after a crash all the rest is ours.
+`.epdem.json` in the folder lists the files of earlier runs by size, time and hash. A file that is not in the list, or
+has changed since, is the user's. During a run the list instead names the files that were the user's at its begin; after
+a crash all other files are those of the run.
 """
 
 import contextlib
@@ -60,7 +60,7 @@ class Results:
 
 About = list[Any]  # size, time of change, hash
 Known = dict[str, Any]  # what `.epdem.json` holds
-_held: dict[Path, Results] = {}  # what this process keeps now
+_held: dict[Path, Results] = {}  # folders that this process keeps now
 
 
 @contextlib.contextmanager
@@ -105,16 +105,16 @@ def _lock(folder: Path, lock: TextIO) -> None:
 
 def _names(folder: Path, below: Path = Path()) -> set[str]:
     """All files below a folder by their path in it; no hidden ones, and no folders that have a list of their own."""
-    found: set[str] = set()
+    names: set[str] = set()
     for path in (folder / below).iterdir():
         if path.name.startswith("."):
             continue
         if path.is_dir() and not path.is_symlink():
             if not (path / MANIFEST).exists():
-                found |= _names(folder, below / path.name)
+                names |= _names(folder, below / path.name)
         else:
-            found.add(str(below / path.name))
-    return found
+            names.add(str(below / path.name))
+    return names
 
 
 def _about(path: Path, before: About | None = None) -> About:
@@ -131,19 +131,19 @@ def _about(path: Path, before: About | None = None) -> About:
 
 
 def _known(folder: Path) -> Known | None:
-    """What `.epdem.json` says, or None if the folder has none that can be read."""
+    """The content of `.epdem.json`, or None if the folder has none that can be read."""
     try:
-        found = json.loads((folder / MANIFEST).read_text())
+        manifest = json.loads((folder / MANIFEST).read_text())
     except (OSError, ValueError):
         return None
-    return found if isinstance(found, dict) else None
+    return manifest if isinstance(manifest, dict) else None
 
 
 def _foreign(folder: Path, known: Known | None) -> set[str]:
     names = _names(folder)
     if known is None:
         return names
-    if "files" not in known:  # the last run did not come to its end
+    if "files" not in known:  # the last run was interrupted
         return names & set(known.get("foreign", []))
     return {name for name in names if not _unchanged(folder / name, known["files"].get(name))}
 

@@ -26,10 +26,10 @@ def native(name: str) -> Path | None:
 @cache
 def templates() -> Path:
     """The folder of the deck templates: the checkout's own where there is one, else the installed copy."""
-    found = _first(_PACKAGE.parents[1] / "templates", _PACKAGE / "templates")
-    if found is None:
+    folder = _first(_PACKAGE.parents[1] / "templates", _PACKAGE / "templates")
+    if folder is None:
         raise EngineError("templates not found beside the package; install epdem again: pip install .")
-    return found
+    return folder
 
 
 @cache
@@ -40,5 +40,5 @@ def launcher() -> Path | None:
     beside = Path(sys.executable).parent / "epdem-liggghts"
     if beside.exists():
         return beside
-    found = shutil.which("epdem-liggghts")
-    return Path(found) if found else None
+    path = shutil.which("epdem-liggghts")
+    return Path(path) if path else None

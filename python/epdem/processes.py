@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Other programs: started, watched and stopped, with their last words when they fail; none outlives us."""
+"""Other programs: started, watched and stopped; errors quote the end of their logs; none outlives this process."""
 
 import contextlib
 import ctypes
@@ -15,9 +15,9 @@ from pathlib import Path
 
 from .errors import EngineError
 
-# A row of a table of numbers that begins with the number of a step: how engines say how far they are.
+# A row of a table of numbers that begins with the number of a step: the progress of an engine.
 ROW = re.compile(rb"^ +(\d+)( +[-+.\deainf]+)+ *$")
-POLL = 0.1  # [s] between two looks at a log that is read while it grows
+POLL = 0.1  # [s] between two reads of a growing log
 PATIENCE = 5.0  # [s] for each of SIGTERM and SIGKILL
 _PR_SET_PDEATHSIG = 1
 _libc = ctypes.CDLL(None)
@@ -40,13 +40,13 @@ def call(
     seconds: float | None = None,
     env: dict[str, str] | None = None,
     append: bool = False,
-    tell: Callable[[int], None] | None = None,
+    report: Callable[[int], None] | None = None,
 ) -> float:
     """Run `command` in `folder` to its end, both streams into `log` (continued with `append`); seconds taken.
 
-    `tell` is given the step of every row (ROW) of the log. Raises EngineError with the program's last words if it
+    `report` is given the step of every row (ROW) of the log. Raises EngineError with the end of its log if it
     fails, takes more than `seconds` or is not there. On any exception, Ctrl-C too, the program and all that it started
-    are stopped first; what they wrote stays. If this process itself is killed, the program gets SIGTERM.
+    are stopped first; what they wrote stays. If this process itself is killed, the program receives SIGTERM.
     """
     path, start = folder / log, time.monotonic()
     end = math.inf if seconds is None else start + seconds
@@ -65,7 +65,7 @@ def call(
             )
         except OSError as error:
             raise EngineError(f"{command[0]}: cannot be started ({error})") from None
-        rows = _Rows(tell)
+        rows = _Rows(report)
         try:
             while process.poll() is None:
                 left = end - time.monotonic()
@@ -73,10 +73,10 @@ def call(
                     words = last_words(path)
                     raise EngineError(f"{command[0]} did not end within {seconds:g} s and was stopped; {path}: {words}")
                 with contextlib.suppress(subprocess.TimeoutExpired):
-                    process.wait(timeout=None if tell is None and left == math.inf else min(left, POLL))
-                rows.read(reader.read() if tell else b"")
-            rows.read(reader.read() if tell else b"")
-        except BaseException:  # a time-out, Ctrl-C or the caller's own: no orphan stays behind
+                    process.wait(timeout=None if report is None and left == math.inf else min(left, POLL))
+                rows.read(reader.read() if report else b"")
+            rows.read(reader.read() if report else b"")
+        except BaseException:  # a time-out, Ctrl-C or an error of the caller: the process is stopped too
             kill(process)
             raise
     if status := process.returncode:
@@ -88,18 +88,18 @@ def call(
 class _Rows:
     """The steps of the rows in a text that comes in pieces."""
 
-    def __init__(self, tell: Callable[[int], None] | None):
-        self.tell, self.rest = tell, b""
+    def __init__(self, report: Callable[[int], None] | None):
+        self.report, self.rest = report, b""
 
     def read(self, piece: bytes) -> None:
         *lines, self.rest = (self.rest + piece).split(b"\n")
         for line in lines:
-            if self.tell and (found := ROW.match(line)):
-                self.tell(int(found.group(1)))
+            if self.report and (match := ROW.match(line)):
+                self.report(int(match.group(1)))
 
 
 def ask(command: list[str], env: dict[str, str] | None = None) -> str:
-    """What a program says of itself, on both streams; what it writes into its folder is thrown away.
+    """The output of a program on both streams; files that it writes into its folder are deleted.
 
     Raises EngineError if it cannot be started or does not end.
     """
@@ -116,7 +116,7 @@ def ask(command: list[str], env: dict[str, str] | None = None) -> str:
                 env=env,
             )
         except (OSError, subprocess.TimeoutExpired) as error:
-            raise EngineError(f"{command[0]}: cannot be asked for its version ({error}); see epdem doctor") from None
+            raise EngineError(f"{command[0]}: its version cannot be read ({error}); see epdem doctor") from None
     return done.stdout + done.stderr
 
 
@@ -141,11 +141,11 @@ def kill(process: subprocess.Popen[bytes]) -> None:
 
 def session(leader: int) -> list[int]:
     """The living processes of the session that `leader` began."""
-    found = []
+    pids = []
     for entry in Path("/proc").iterdir():
         if entry.name.isdigit():
             with contextlib.suppress(OSError):
                 state, _, _, its_session = (entry / "stat").read_text().rpartition(")")[2].split()[:4]
                 if int(its_session) == leader and state != "Z":
-                    found.append(int(entry.name))
-    return found
+                    pids.append(int(entry.name))
+    return pids

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Templates to text: undefined names stop, numbers keep every digit, nothing is computed here."""
+"""Templates to text: undefined names are errors, numbers keep every digit, templates compute nothing."""
 
 from pathlib import Path
 from typing import Any, TypeVar
@@ -28,7 +28,7 @@ Prepared = TypeVar("Prepared", bound=jinja2.Environment)
 
 
 def line(text: object) -> str:
-    """Text as the comment of one line: no line ends, and no "&" behind which LIGGGHTS would read on."""
+    """Text as the comment of one line: no line ends, and no "&", which would continue the line in LIGGGHTS."""
     return " ".join(str(text).split()).rstrip("& ")
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""When a stage is done: its result carries the hash of all its inputs, and a rerun with the same hash takes it."""
+"""Completed stages: a result is stored with the hash of all its inputs, and a rerun with the same hash uses it."""
 
 import hashlib
 from collections.abc import Iterable

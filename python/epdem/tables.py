@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Tables in HDF5: DataFrames as groups of one dataset per column, with units; a file is written whole or not at all."""
+"""Tables in HDF5: DataFrames as groups of one dataset per column, with units; a file is complete or absent."""
 
 import io
 from pathlib import Path

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Consoles, tables and progress. Text is shown as it is: titles and paths may look like the markup of rich."""
+"""Consoles, tables and progress. Text is printed unchanged, even if it has the form of rich's markup."""
 
 import contextlib
 import math
@@ -32,7 +32,7 @@ def table(title: str, heads: Iterable[str], *, left: Collection[str] = (), wrap:
 
 
 def cell(value: object) -> str:
-    """A table cell: three digits, a dash for what was not reached."""
+    """A table cell: three digits, a dash for NaN."""
     if isinstance(value, float):
         return "-" if math.isnan(value) else f"{value:.3g}"
     return str(value)
@@ -48,7 +48,7 @@ def frame_table(title: str, frame: "pd.DataFrame") -> Table:
 
 @contextlib.contextmanager
 def status() -> Iterator[Callable[[str], None]]:
-    """A line on standard error that says what is being done, and vanishes; yields the function that changes it."""
+    """A temporary line of progress on standard error; yields the function that changes it."""
     with Console(stderr=True).status("") as line:
         yield lambda text: line.update(Text(text))
 

@@ -6,7 +6,8 @@ import subprocess
 
 import pytest
 
-from epdem import law as claw
+from epdem.laws.library import library_path
+from epdem.laws.native import Law
 
 PROJECT = """cmake_minimum_required(VERSION 3.20)
 project(stranger LANGUAGES C CXX)
@@ -39,14 +40,14 @@ int main(void) {
 def test_a_stranger_builds_with_the_installed_package(tmp_path):
     if shutil.which("cmake") is None or shutil.which("g++") is None:
         pytest.skip("no cmake or no C++ compiler (apt-get install cmake g++)")
-    config = claw.library_path().parent.parent / "cmake"
+    config = library_path().parent.parent / "cmake"
     if not config.exists():
         pytest.skip("the compiled parts stand alone here, without the installed package around them")
     for name, text in {"CMakeLists.txt": PROJECT, "headers.cpp": HEADERS, "interface.c": INTERFACE}.items():
         (tmp_path / name).write_text(text)
     for line in (["-S", tmp_path, "-B", tmp_path / "tree", f"-Depdem_DIR={config}"], ["--build", tmp_path / "tree"]):
         subprocess.run(["cmake", *line], check=True, capture_output=True)
-    force = claw.Law("thornton", E_star=1.1e11, yield_pressure=2.8e9).step(R_star=0.01, delta_max=0.0, delta=5e-5)[0][0]
+    force = Law("thornton", E_star=1.1e11, yield_pressure=2.8e9).step(R_star=0.01, delta_max=0.0, delta=5e-5)[0][0]
     for program in ("headers", "interface"):
         done = subprocess.run([tmp_path / "tree" / program], check=True, capture_output=True, text=True)
         assert float(done.stdout) == force

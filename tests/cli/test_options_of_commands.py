@@ -87,7 +87,7 @@ def library(tmp_path, monkeypatch, outcomes):
     reached = []
 
     def record(module, name, result=None):
-        def replacement(*words, progress=None, tell=None, **named):
+        def replacement(*words, progress=None, report=None, **named):
             reached.append((name, words, named))
             if result is None:
                 raise CaseError("recorded")

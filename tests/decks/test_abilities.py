@@ -50,13 +50,13 @@ def test_a_law_that_an_engine_lacks_is_refused_in_a_sentence(name):
     p, prediction = planned()
     refuse(tool, p, prediction)
     tool.can = replace(tool.can, laws=("hertz",))
-    with pytest.raises(CaseError, match=rf"law\.name = 'thornton': engine {name} knows hertz only; use another --eng"):
+    with pytest.raises(CaseError, match=rf"law\.name = 'thornton': engine {name} has hertz only; use another --eng"):
         refuse(tool, p, prediction)
 
 
-def test_lammps_knows_walls_alone():
+def test_lammps_runs_impacts_on_walls_only():
     refuse(ALL["lammps-mdr"](), *planned())
-    with pytest.raises(CaseError, match="lammps-mdr does not know impacts of two spheres"):
+    with pytest.raises(CaseError, match="lammps-mdr does not run impacts of two spheres"):
         refuse(ALL["lammps-mdr"](), *planned(SPHERES))
 
 

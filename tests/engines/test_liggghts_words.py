@@ -152,13 +152,13 @@ def test_rows_are_told_while_the_program_runs_and_an_exception_stops_it(tmp_path
 
     told = []
 
-    def tell(step: int) -> None:
+    def report(step: int) -> None:
         told.append(step)
         if step == 20:
             raise EnoughError
 
     with pytest.raises(EnoughError):
-        call(["sh", "-c", "printf 'words\\n 10 1.5\\n 20 -1e-3\\n'; sleep 63"], tmp_path, log="out", tell=tell)
+        call(["sh", "-c", "printf 'words\\n 10 1.5\\n 20 -1e-3\\n'; sleep 63"], tmp_path, log="out", report=report)
     assert told == [10, 20] and members(tmp_path) == []
     assert (tmp_path / "out").read_text() == "words\n 10 1.5\n 20 -1e-3\n"
 

@@ -19,10 +19,11 @@ scenes
 liggghts yade lammps
 engines
 studies
+api
 cli
 """
-LEVEL = {room: level for level, line in enumerate(ORDER.split("\n")) for room in line.split()}
-LEVEL |= {path.stem: 0 for path in PACKAGE.glob("*.py")}
+LEVEL = {path.stem: 0 for path in PACKAGE.glob("*.py")}
+LEVEL |= {room: level for level, line in enumerate(ORDER.split("\n")) for room in line.split()}
 FILES = sorted(PACKAGE.rglob("*.py"))
 
 

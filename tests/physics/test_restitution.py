@@ -168,13 +168,13 @@ def test_contact_time_is_the_time_integral_of_the_motion(name, speed):
     assert float(found.contact_time) == pytest.approx(float(total), rel=1e-9, abs=0)
 
 
-@pytest.mark.parametrize(("name", "mark"), [("thornton", 0), ("johnson", 0), ("cavity", 0), ("cavity", 1)])
+@pytest.mark.parametrize(("name", "kink"), [("thornton", 0), ("johnson", 0), ("cavity", 0), ("cavity", 1)])
 @pytest.mark.parametrize("beyond", [1e-6, 3e-4])
-def test_loading_time_keeps_its_digits_where_the_law_has_just_changed_its_formula(name, mark, beyond):
+def test_loading_time_keeps_its_digits_where_the_law_has_just_changed_its_formula(name, kink, beyond):
     """The kink of the force lies next to the turning point. 1e-10: what is asked of contact times."""
     strength = {"thornton": 2.8e9, "johnson": 3e9, "cavity": 1e9}[name]
     law = steel(name)
-    top = float(law.marks()[mark]) * (1 + beyond)
+    top = float(law.kinks()[kink]) * (1 + beyond)
     found = restitution.impact(law, m_star=M, speed=np.sqrt(2 * law.work(top) / M))
     back = restitution._unloading_time(law, M, np.asarray(found.overlap_max), np.asarray(found.work_out))
     with mp.workdps(22):

@@ -1,14 +1,18 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Options that no case in cases/ uses: they run, and their lines are in the deck only then."""
 
+import json
 from pathlib import Path
 
 import pytest
 from removals import fingerprint
 from scene_runs import write_deck
+from stored_runs import STORED
+from typer.testing import CliRunner
 
 from epdem.case.impact import read_toml
 from epdem.case.scene import parse
+from epdem.cli.main import app
 from epdem.errors import CaseError
 from epdem.liggghts import explain
 from epdem.liggghts.scene_deck import deck
@@ -84,3 +88,21 @@ def test_mistakes_are_named_before_anything_runs(place, value, words):
     data[place[0]] = data[place[0]] | {place[1]: value}
     with pytest.raises(CaseError, match=words):
         plan(parse(data, "case.toml"))
+
+
+@pytest.mark.liggghts
+def test_the_command_takes_its_own_folder_again_and_its_figures_are_no_files_of_the_user(tmp_path):
+    """Twice the same call, a fresh one, and one that is forced to take a folder with a file of the user's."""
+    case, out = str(STORED / "settle/case.toml"), tmp_path / "out"
+    call = ["run", case, "--out", str(out), "--json"]
+    first = CliRunner().invoke(app, call)
+    documents = [json.loads(first.stdout)]
+    figures = {name: (out / name).stat().st_size for name in ("scene.png", "energy.png")}
+    assert min(figures.values()) > 10_000
+    documents += [json.loads(CliRunner().invoke(app, more).stdout) for more in (call, [*call, "--fresh"])]
+    assert [d["reused"] for d in documents] == [False, True, False]
+    assert all(d["checks"] == documents[0]["checks"] for d in documents)
+    (out / "energy.png").write_text("the user's own")
+    refused = CliRunner().invoke(app, call)
+    assert isinstance(refused.exception, CaseError) and "energy.png" in str(refused.exception)
+    assert json.loads(CliRunner().invoke(app, [*call, "--force"]).stdout)["reused"]

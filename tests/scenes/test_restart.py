@@ -61,7 +61,7 @@ from epdem.scenes.run import run
 signal.signal(signal.SIGINT, signal.default_int_handler)  # the tests may run where Ctrl-C is ignored
 print("started", flush=True)
 tool = scene_engine("liggghts")
-run(Path(sys.argv[1]), tool, out=Path(sys.argv[2]), ranks=int(sys.argv[3]), tell=lambda s, n: print(s, flush=True))
+run(Path(sys.argv[1]), tool, out=Path(sys.argv[2]), ranks=int(sys.argv[3]), report=lambda s, n: print(s, flush=True))
 """
 
 
@@ -127,7 +127,7 @@ def stopped_run(path: Path, out: Path, share: float = 0.6) -> None:
             raise Enough
 
     with pytest.raises(Enough):
-        run(path, out=out, tell=stop)
+        run(path, out=out, report=stop)
     assert not children(str(out))
 
 

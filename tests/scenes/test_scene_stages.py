@@ -33,12 +33,12 @@ class Stored(LiggghtsScenes):
     def version(self):
         return self.told
 
-    def run(self, plan, folder, *, ranks, tell):
+    def run(self, plan, folder, *, ranks, report):
         self.runs += 1
         for path in self.stored.iterdir():
             if path.suffix != ".toml":
                 shutil.copy(path, folder)
-        tell(plan.steps)
+        report(plan.steps)
 
 
 @pytest.fixture
@@ -48,7 +48,7 @@ def case(tmp_path) -> Path:
 
 def test_the_second_call_takes_the_stored_results(case, tmp_path):
     engine, told = Stored(), []
-    first = run(case, engine, out=tmp_path / "out", tell=lambda step, steps: told.append((step, steps)))
+    first = run(case, engine, out=tmp_path / "out", report=lambda step, steps: told.append((step, steps)))
     second = run(case, engine, out=tmp_path / "out")
     assert (first.reused, second.reused, engine.runs) == (False, True, 1)
     assert told == [(8000, 8000)]

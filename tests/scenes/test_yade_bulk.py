@@ -52,7 +52,7 @@ def verdicts(outcome) -> dict[str, bool]:
 def test_the_floor_of_a_yade_bed_carries_its_weight(sides, tmp_path):
     path = small("settle_glass", tmp_path, BEADS | {"walls": '"glass"' + "\nperiodic = true" * (sides == "periodic")})
     told = []
-    outcome = run(path, engine="yade", out=tmp_path / "out", tell=lambda step, steps: told.append((step, steps)))
+    outcome = run(path, engine="yade", out=tmp_path / "out", report=lambda step, steps: told.append((step, steps)))
     rows, spheres = outcome.results.rows, outcome.results.particles
     radius = spheres[spheres["step"] == 0]["radius"].to_numpy()
     weight = 2500 * 4 / 3 * np.pi * (radius**3).sum() * 9.81

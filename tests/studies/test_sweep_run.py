@@ -15,9 +15,9 @@ import pytest
 
 from epdem.case.impact import load
 from epdem.engines import engine
-from epdem.errors import CaseError
+from epdem.errors import CaseError, Stopped
 from epdem.impacts.run import run as run_case
-from epdem.studies.sweep import evaluate, folder, local, run, table
+from epdem.studies.sweep import evaluate, folder, local, run, status, table
 
 ROOT = Path(__file__).parents[2]
 EPDEM = str(Path(sys.executable).parent / "epdem")
@@ -122,7 +122,7 @@ def test_a_point_that_fails_is_a_row_with_its_reason_and_runs_again_when_asked(c
     assert row["reason"].tolist() == ["log: out of steel"] and row["passed"].tolist() == [False]
     assert row[["e_n", "speed"]].isna().all(axis=None)
     pd.testing.assert_frame_equal(table.read_sweep(out), found.table)
-    assert run.status(out)["failures"][0]["reason"] == "log: out of steel"
+    assert status.status(out)["failures"][0]["reason"] == "log: out of steel"
     assert sweep(case, out).ran == 0  # it failed: once is enough
     monkeypatch.setattr(Embedded, "run", real)
     found = sweep(case, out, retry_failed=True)
@@ -139,6 +139,15 @@ def _die(number: int) -> int:
 def test_a_process_that_dies_takes_no_other_item_with_it():
     found = dict(local.each(_die, range(1, 8), jobs=2))
     assert "signal 9" in str(found.pop(3)) and found == {n: -n for n in (1, 2, 4, 5, 6, 7)}
+
+
+def test_a_process_that_is_told_to_stop_stops_all_and_leaves_no_result(case, tmp_path, monkeypatch):
+    from epdem.engines.embedded import Embedded
+
+    monkeypatch.setattr(Embedded, "run", lambda *a, **k: os.kill(os.getpid(), signal.SIGTERM))
+    with pytest.raises(Stopped):
+        sweep(case, tmp_path / "out")
+    assert not finished(tmp_path / "out")
 
 
 def test_a_point_whose_process_dies_is_a_row_too(case, tmp_path, monkeypatch):
@@ -197,13 +206,13 @@ def test_200_points_killed_five_times_give_the_same_table_and_no_finished_point_
         process.send_signal(signal.SIGKILL if kill % 2 == 0 else signal.SIGINT)
         process.wait()
         end = time.monotonic() + 30
-        while run.running(out) and time.monotonic() < end:  # its processes end after it
+        while status.running(out) and time.monotonic() < end:  # its processes end after it
             time.sleep(0.01)
-        assert not run.running(out)
+        assert not status.running(out)
         now = finished(out)
         assert {k: v for k, v in now.items() if k in before} == before and len(now) > len(before)
         before = now
-        assert run.status(out)["waiting"] == 200 - len(now)
+        assert status.status(out)["waiting"] == 200 - len(now)
     done = json.loads(subprocess.check_output(command(case, out, "--json")))
     assert done["ran"] == 200 - len(before) and done["done"] == 200
     assert {k: v for k, v in finished(out).items() if k in before} == before

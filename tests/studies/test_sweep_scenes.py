@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 
 from epdem.scenes import results
-from epdem.studies.sweep import folder, run, table
+from epdem.studies.sweep import folder, run, status, table
 
 pytestmark = pytest.mark.liggghts
 EPDEM = str(Path(sys.executable).parent / "epdem")
@@ -80,7 +80,7 @@ def test_a_killed_scene_goes_on_from_its_restart_file(bed, tmp_path):
         time.sleep(0.01)
     process.send_signal(signal.SIGKILL)
     process.wait()
-    while run.running(out) and time.monotonic() < end:
+    while status.running(out) and time.monotonic() < end:
         time.sleep(0.01)
     assert json.loads(subprocess.check_output([EPDEM, "status", str(out), "--json"]))["waiting"] == 1
     subprocess.check_call(command, stdout=subprocess.DEVNULL)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""A case file: TOML with units in, frozen SI values out. Nothing behind this module knows a unit.
+"""A case file: TOML with units in, frozen SI values out. Only this package has units.
 
 Every mistake is a CaseError that names file, key, value, limit and next step.
 """
@@ -30,13 +30,13 @@ from .units import to_si, within_limits
 RIGID = "rigid"
 MAX_IMPACTS = 4096
 MAX_BYTES = 4_000_000  # of a case file
-# Largest relative errors a case accepts if it does not say (maximum over the phases, 400 steps in contact).
+# Largest relative errors of a case without tolerances of its own (maximum over the phases, 400 steps in contact).
 DEFAULT_CHECKS = {"e_n": 1e-4, "contact_time": 5e-3, "force_max": 1e-3, "overlap_max": 1e-3, "residual_overlap": 1e-3}
 
 
 @dataclass(frozen=True)
 class Quantity:
-    """Mark of a pydantic field: a quantity in `si`, in (above, ...) or within ge and le; `hint` ends the message."""
+    """Annotation of a pydantic field: a quantity in `si` above `above` or in [ge, le]; `hint` ends the message."""
 
     si: str
     above: float = -np.inf
@@ -45,7 +45,7 @@ class Quantity:
     hint: str = ""
 
     def read(self, value: object) -> float:
-        """The SI value of a quantity as a person writes it. Raises ValueError."""
+        """The SI value of a quantity as a user writes it. Raises ValueError."""
         x = to_si(value, self.si)
         if x > self.above and self.ge <= x <= self.le:
             return within_limits(x, self.si)
@@ -81,7 +81,7 @@ class Frozen(BaseModel):
 
 
 class Header(Frozen):
-    """What a case is called, and where its numbers come from."""
+    """The name of a case, its title and the source of its numbers."""
 
     name: Name
     title: Line
@@ -105,7 +105,7 @@ class Body(Frozen):
 
 
 class Target(Frozen):
-    """What it meets: a plane, a sphere with a radius, or a rigid plane."""
+    """The other body: a plane, a sphere with a radius, or a rigid plane."""
 
     material: Name
     radius: Length | None = None
@@ -126,7 +126,7 @@ class SpeedRange(Frozen):
 
 
 class Impact(Frozen):
-    """Who meets whom, at which speeds of approach."""
+    """The two bodies and their speeds of approach."""
 
     kind: Literal["sphere-wall", "sphere-sphere"]
     body: Body
@@ -156,7 +156,7 @@ class LawChoice(BaseModel):
     name: Name
 
     def parameters(self) -> dict[str, Any]:
-        """What the file says beside the name, as written."""
+        """The keys beside the name, as written."""
         return dict(self.model_extra or {})
 
 
@@ -234,7 +234,7 @@ def read_toml(path: Path | str) -> dict[str, Any]:
     """The raw tables of a TOML file. Raises CaseError."""
     path = Path(path)
     try:
-        with path.open("rb") as stream:  # a device or a film may have been named: no more than this is read
+        with path.open("rb") as stream:  # the path may name a device or a large file: at most this is read
             raw = stream.read(MAX_BYTES + 1)
         if len(raw) > MAX_BYTES:
             raise CaseError(f"{path}: more than {MAX_BYTES // 1_000_000} MB, which no case has; name the case file")

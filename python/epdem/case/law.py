@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The [law] of a case: its numbers as written become SI, each checked against what the law declares."""
+"""The [law] of a case: its numbers in SI, each checked against the declaration of the law."""
 
 from typing import Any
 
@@ -20,7 +20,7 @@ def read_number(place: str, value: object, unit: str) -> float:
 
 
 def law_numbers(name: str, given: dict[str, Any]) -> LawNumbers:
-    """The law `name` with what a case says of it; the rest is the law's default. Raises CaseError.
+    """The law `name` with the numbers of a case; all others have the defaults of the law. Raises CaseError.
 
     A strength X [Pa] is given as `X = "2.8 GPa"` for all bodies or as `X_ratio = 2.8` of each body's yield stress.
     """

@@ -23,15 +23,15 @@ class Sourced:
 def materials() -> dict[str, Sourced]:
     """All materials of the file by name."""
     raw = tomllib.loads(Path(__file__).with_name("materials.toml").read_text())
-    found = {}
+    entries = {}
     for name, entry in raw.items():
         values = {k: v for k, v in entry.items() if k != "source"}
-        found[name] = Sourced(name, Material.model_validate(values), entry["source"])
-    return found
+        entries[name] = Sourced(name, Material.model_validate(values), entry["source"])
+    return entries
 
 
 def material(name: str) -> Sourced:
-    """The material of that name. Raises CaseError that says what there is."""
+    """The material of that name. Raises CaseError that lists the existing names."""
     if name not in materials():
         raise CaseError(f"--material {name!r} is not in the materials file; there are {', '.join(materials())}")
     return materials()[name]

@@ -56,7 +56,7 @@ def _place(data: Any, problem: Any) -> tuple[tuple[Any, ...], Any]:
 
 
 def _likeliest(data: dict[str, Any], problems: list[Any]) -> Any:
-    """The problem to speak of: a misspelt key; of the readings of one value, the one that fits its shape best."""
+    """The problem to report: a misspelt key; of several readings of one value, the one that fits its shape best."""
     places = [_place(data, p) for p in problems]
 
     def rank(n: int) -> tuple[bool, bool, bool, bool]:
@@ -64,7 +64,7 @@ def _likeliest(data: dict[str, Any], problems: list[Any]) -> Any:
         label = str(problems[n]["loc"][-1]) if problems[n]["loc"] else ""
         return (
             problems[n]["type"] != "extra_forbidden",
-            any(len(k) > len(keys) and k[: len(keys)] == keys for k, _ in places),  # a reading that got further
+            any(len(k) > len(keys) and k[: len(keys)] == keys for k, _ in places),  # a reading that matched more keys
             problems[n]["type"] in SHAPES,
             isinstance(value, dict | list) and label.endswith("float]"),  # not the reading as a quantity
         )

@@ -81,7 +81,7 @@ class Between(Frozen):
 
 
 class Contact(Frozen):
-    """What a contact has beside its normal law; what is left out is not compiled into the loop."""
+    """Parts of a contact beside its normal law; parts that are left out are not compiled into the loop."""
 
     friction: Friction = 0.0
     wall_friction: Friction | None = None
@@ -92,12 +92,12 @@ class Contact(Frozen):
 
 
 class Output(Frozen):
-    """What is written. Zero or false: not at all, and then nothing of it is in the deck."""
+    """Output of a scene. Zero or false: none, and the deck has no line for it."""
 
     rows: Annotated[int, Field(ge=1, le=100_000)] = 100
     particles: Annotated[int, Field(ge=0, le=10_000)] = 1
     contacts: Annotated[int, Field(ge=0, le=10_000)] = 0
-    energy: bool = False  # the ledger: particles and contacts of the same steps, plastic work of every contact
+    energy: bool = False  # the energy balance: particles and contacts of the same steps, plastic work of every contact
     loads: bool = False  # forces on the walls
     vtk: Annotated[int, Field(ge=0, le=10_000)] = 0
     pictures: Annotated[int, Field(ge=0, le=10_000)] = 0
@@ -111,7 +111,7 @@ class Output(Frozen):
 
 
 class SceneNumerics(Frozen):
-    """`error` of e_n that the time step keeps up to `highest_speed` (default: what the scene itself can reach)."""
+    """`error`: limit of the error of e_n at speeds up to `highest_speed` (default: the highest of the scene)."""
 
     error: Annotated[float, Field(ge=1e-9, le=0.1)] = 1e-3
     highest_speed: Speed | None = None
@@ -120,7 +120,7 @@ class SceneNumerics(Frozen):
 
 
 class Common(Frozen):
-    """What every kind of scene has."""
+    """The keys of every kind of scene."""
 
     particles: Annotated[list[Particles], Field(min_length=1, max_length=64)]
     count: Annotated[int, Field(ge=1, le=100_000_000)]
@@ -162,7 +162,7 @@ class Drum(Common):
     """A drum of triangles turning about y, with flat ends.
 
     It is round, so its surface moves and its triangles stay: the same to a sphere, without rebuilding lists, and a
-    continued run meets the wall's velocity at its first step, which LIGGGHTS's move/mesh only knows a step later.
+    continued run meets the wall's velocity at its first step, which LIGGGHTS's move/mesh has only a step later.
     """
 
     kind: Literal["drum"]
@@ -182,7 +182,7 @@ class Compaction(Common):
     height: Length  # of the gap between the plates at the end of loading
     back: Length  # stroke of unloading
     speed: Speed  # of the upper plate, loading
-    back_speed: Speed | None = None  # unloading; default: a tenth, for it is over within a short way
+    back_speed: Speed | None = None  # unloading; default: a tenth, because it ends within a short stroke
 
     @property
     def release(self) -> float:

@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Quantities as people write them ("208 GPa") become SI floats, once, at the door."""
+"""Quantities with units ("208 GPa") as SI floats."""
 
 import math
 import re
 from functools import cache
 from typing import Any
 
-# number, blank, unit; checked before pint sees it, because pint evaluates what it is given
+# number, blank, unit; checked before pint, which evaluates any expression
 _NUMBER = r"[+-]?(?:\d+(?:\.\d*)?|\.\d+)(?:[eE][+-]?\d{1,3})?"
 _NAME = r"[A-Za-zµ°%]{1,20}"
 _FACTOR = rf"{_NAME}(?:(?:\^|\*\*)-?\d)?"
@@ -36,7 +36,7 @@ def _factor(unit: str, si: str) -> float:
 def to_si(text: object, si: str) -> float:
     """The value of `text`, a quantity as "208 GPa", in the SI unit `si`; a plain number if `si` is "1".
 
-    Raises ValueError that says what is expected: number, blank, unit; finite; the right dimension.
+    Raises ValueError that names the expected form: number, blank, unit; finite; the right dimension.
     """
     if si == "1":
         if isinstance(text, bool) or not isinstance(text, int | float):

@@ -35,7 +35,7 @@ CHANGES = {
 CHANGES_TITLE = "Two spheres of unequal radii and moduli"
 CHANGES_NOTE = """error: of e_n; swap to restart: changes of e_n in these variants of the set-up;
 momentum: lost, as a share of one body's change. A serial YADE sorts nothing and has no ranks (-);
-an embedded contact has neither names nor restarts."""
+an embedded contact has neither ids nor restarts."""
 
 
 def _cell(name: str, value: object) -> str:
@@ -61,12 +61,12 @@ def _show(title: str, heads: dict[str, str], rows: list[dict[Hashable, Any]]) ->
 
 def crosscheck(
     cases: Annotated[list[Path], typer.Argument(metavar="CASE...", help="case files (TOML)")],
-    law: Annotated[str | None, typer.Option("--law", "-l", help="replaces the case's law")] = None,
+    law: Annotated[str | None, typer.Option("--law", "-l", help="a law instead of the case's")] = None,
     out: Out = None,
-    fresh: Annotated[bool, typer.Option(help="run again what is already stored")] = False,
+    fresh: Annotated[bool, typer.Option(help="run again although results are stored")] = False,
     as_json: AsJson = False,
 ) -> None:
-    """A case on every engine and model at hand, with order of convergence and invariance, in one table."""
+    """Run a case on every installed engine and model, and print errors, order of convergence and invariance."""
     from ..impacts import report
     from ..studies.crosscheck import crosscheck as check
 

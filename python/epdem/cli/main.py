@@ -41,11 +41,13 @@ def run(
     engine: Engines = None,
     law: Laws = None,
     ranks: Annotated[int, typer.Option(min=1, max=1024, help="MPI ranks of LIGGGHTS")] = 1,
-    steps: Annotated[int | None, typer.Option(min=5, max=100_000, help="replaces the case's steps in contact")] = None,
+    steps: Annotated[
+        int | None, typer.Option(min=5, max=100_000, help="steps in contact instead of the case's")
+    ] = None,
     out: Out = None,
-    fresh: Annotated[bool, typer.Option("--fresh", help="run again what is already stored")] = False,
+    fresh: Annotated[bool, typer.Option("--fresh", help="run again although results are stored")] = False,
     resume: Annotated[
-        bool, typer.Option("--resume", help="continue an interrupted scene from its last restart")
+        bool, typer.Option("--resume", help="continue an interrupted scene from its last restart file")
     ] = False,
     force: Annotated[bool, typer.Option("--force", help="write into a folder that holds other files")] = False,
     as_json: AsJson = False,
@@ -93,15 +95,19 @@ def run(
 
 @app.command()
 def deck(
-    file: Annotated[Path, typer.Argument(metavar="CASE|TEMPLATE", help="case file (TOML), or an own template (.j2)")],
+    file: Annotated[
+        Path, typer.Argument(metavar="CASE|TEMPLATE", help="case file (TOML), or a template of your own (.j2)")
+    ],
     out: Annotated[Path, typer.Option("--out", "-o", help="folder for the deck")],
     engine: Annotated[str, typer.Option("--engine", "-e", help="liggghts or yade")] = "liggghts",
     law: Laws = None,
-    case: Annotated[Path | None, typer.Option("--case", help="the case behind an own template")] = None,
-    given: Annotated[list[str] | None, typer.Option("--set", metavar="KEY=VALUE", help="for an own template")] = None,
+    case: Annotated[Path | None, typer.Option("--case", help="the case that fills the template")] = None,
+    given: Annotated[
+        list[str] | None, typer.Option("--set", metavar="KEY=VALUE", help="a value for the template; repeat for more")
+    ] = None,
     as_json: AsJson = False,
 ) -> None:
-    """Write the deck of a case, or of an own template with a case's values; it runs by hand."""
+    """Write the deck of a case, or fill a template of your own with the values of a case."""
     if file.suffix == ".j2":
         if case is None:
             raise CaseError(f"{file}: an own template needs the values of a case; add --case CASE")
@@ -134,7 +140,7 @@ def deck(
 
 @app.command()
 def predict(case: CasePath, law: Laws = None, as_json: AsJson = False) -> None:
-    """What theory says of a case; nothing runs."""
+    """Print the prediction of theory for a case; no engine runs."""
     from ..case.impact import load, named
     from ..impacts.experiment import experiment
     from ..impacts.prediction import predict as predict_experiment
@@ -147,7 +153,7 @@ def predict(case: CasePath, law: Laws = None, as_json: AsJson = False) -> None:
 
 @app.command()
 def doctor(as_json: AsJson = False) -> None:
-    """Which engines are here, their versions, whether the plugin loads, and what to do if not."""
+    """List the engines and their versions, test that the plugin loads, and name what to install."""
     from ..engines.doctor import examine
     from . import show
 
@@ -170,11 +176,12 @@ for command in (
     cli_sweep.status,
 ):
     app.command()(command)
+app.command("points", hidden=True)(cli_sweep.points)  # what batch scripts call
 app.command("stress", hidden=True, deprecated=True)(cli_numerics.stability)  # its name in version 0.1
 
 
 def _usage(error: Any) -> int:
-    """Say in one sentence what is wrong with a command line; without any word on it, print the help."""
+    """Print the error of a command line as one sentence; without arguments, print the help."""
     if not (text := error.format_message()):
         error.show()
         return 2
@@ -190,7 +197,7 @@ def _stop(number: int, frame: object) -> None:
 
 
 def main() -> None:
-    """Entry point: errors that a user can mend become one sentence and an exit code."""
+    """Entry point: errors that a user can correct become one sentence and an exit code."""
     for name in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):  # whatever stops us, no engine stays behind
         signal.signal(name, _stop)
     if isinstance(sys.stdout, io.TextIOWrapper):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Commands about accuracy, cost and stability; `cli.py` registers them."""
+"""Commands about accuracy, cost and stability; `main.py` registers them."""
 
 import json
 from pathlib import Path
@@ -17,7 +17,7 @@ def timestep(
     law: Laws = None,
     as_json: AsJson = False,
 ) -> None:
-    """The time step of a case for a target error, found by running the embedded engine."""
+    """Find the time step of a case for a target error, with the embedded engine."""
     from ..case.impact import load, named
     from ..impacts.experiment import experiment
     from ..impacts.prediction import predict
@@ -58,13 +58,17 @@ def timestep(
 def stability(
     engine: Engines = None,
     law: Laws = None,
-    group: Annotated[list[str] | None, typer.Option("--group", "-g", help="only these groups of cases")] = None,
-    every: Annotated[int, typer.Option(min=1, help="only every n-th case")] = 1,
-    steps: Annotated[int | None, typer.Option(min=1000, help="of the drift by repeated bounces (default: 1e9)")] = None,
+    group: Annotated[
+        list[str] | None, typer.Option("--group", "-g", help="run only these groups of cases; repeat for more")
+    ] = None,
+    every: Annotated[int, typer.Option(min=1, help="run only every n-th case")] = 1,
+    steps: Annotated[
+        int | None, typer.Option(min=1000, help="steps of the drift by repeated bounces (default: 1e9)")
+    ] = None,
     out: Annotated[Path | None, typer.Option("--out", "-o", help="CSV file of all verdicts")] = None,
     as_json: AsJson = False,
 ) -> None:
-    """Stability on stiff and extreme cases, and where dt breaks each (default engine: embedded)."""
+    """Test stiff and extreme cases, and find the time step at which each fails (default engine: embedded)."""
     from ..files import atomic
     from ..impacts.report import records
     from ..studies import stability as suite
@@ -104,12 +108,12 @@ def cost(
     case: CasePath,
     engine: Engines = None,
     law: Laws = None,
-    repetitions: Annotated[int, typer.Option(min=1, max=100, help="of every timed run, interleaved")] = 5,
-    bulk: Annotated[bool, typer.Option(help="a bulk scene in LIGGGHTS as well")] = False,
+    repetitions: Annotated[int, typer.Option(min=1, max=100, help="repetitions of every timed run, interleaved")] = 5,
+    bulk: Annotated[bool, typer.Option(help="run a bulk scene in LIGGGHTS as well")] = False,
     out: Out = None,
     as_json: AsJson = False,
 ) -> None:
-    """Error against run time at 10 to 3000 steps in contact (default engines: embedded and liggghts)."""
+    """Measure error against run time at 10 to 3000 steps in contact (default engines: embedded and liggghts)."""
     from ..impacts.report import records
     from ..studies import cost as study
     from ..studies import cost_report

@@ -29,7 +29,7 @@ def laws_or_own(names: list[str] | None) -> list[str] | list[None]:
 
 
 def refuse(place: object, reason: str, **given: object) -> None:
-    """Raise CaseError that names the first of the options `given` that has a value, since nothing would obey it."""
+    """Raise CaseError that names the first of the options `given` that has a value, because nothing would use it."""
     for name, value in given.items():
         if not (value is None or value is False or value == []):
             raise CaseError(f"{place}: --{name.replace('_', '-')}: {reason}; leave it out")

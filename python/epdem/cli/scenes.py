@@ -49,7 +49,7 @@ def run_scene(
             fresh=fresh,
             resume=resume,
             force=force,
-            tell=lambda step, steps: progress.update(task, completed=step, total=steps),
+            report=lambda step, steps: progress.update(task, completed=step, total=steps),
         )
     report.figures(outcome)
     if as_json:
@@ -60,7 +60,7 @@ def run_scene(
 
 
 def deck_scene(case: Path, out: Path, *, engine: str = "liggghts", as_json: bool = False) -> None:
-    """Write the deck of a scene; it runs by hand."""
+    """Write the deck of a scene."""
     from ..case.impact import named
     from ..case.scene import load
     from ..engines import scene_engine
@@ -74,7 +74,7 @@ def deck_scene(case: Path, out: Path, *, engine: str = "liggghts", as_json: bool
 
 
 def explain(case: CasePath, as_json: AsJson = False) -> None:
-    """Why each line of a case's LIGGGHTS deck is in it."""
+    """Print each line of the LIGGGHTS deck of a case with its reason."""
     lines = _explained(case)
     if as_json:
         print(json.dumps([{"file": f, "line": text, "reason": reason} for f, text, reason in lines], indent=1))
@@ -110,15 +110,15 @@ def _explained(case: Path) -> list[tuple[str, str, str]]:
 def soften(
     case: CasePath,
     factor: Annotated[
-        float, typer.Option("--factor", "-k", help="E is divided by it; the step grows by its 0.4th power")
+        float, typer.Option("--factor", "-k", help="divisor of E; the time step grows by its 0.4th power")
     ],
     out: Annotated[
         Path | None, typer.Option("--out", "-o", help="file to write (default: CASE_softK.toml beside it)")
     ] = None,
-    force: Annotated[bool, typer.Option("--force", help="replace a file that is there already")] = False,
+    force: Annotated[bool, typer.Option("--force", help="replace an existing file")] = False,
     as_json: AsJson = False,
 ) -> None:
-    """A softened twin of a case with the same e_n at every speed, and larger time steps."""
+    """Write a softened copy of a case with the same e_n at every speed and larger time steps."""
     from ..files import atomic
     from ..studies.soften import soften as twin_of
 
@@ -156,15 +156,15 @@ def calibrate(
     case: CasePath,
     e_n: Annotated[float | None, typer.Option("--e-n", help="measured coefficient of restitution")] = None,
     speed: Annotated[str | None, typer.Option(help='speed of that impact, as "2 m/s"')] = None,
-    hv: Annotated[float | None, typer.Option(help="Vickers hardness instead")] = None,
-    hb: Annotated[float | None, typer.Option(help="Brinell hardness instead")] = None,
+    hv: Annotated[float | None, typer.Option(help="Vickers hardness [kgf/mm^2] instead of an impact")] = None,
+    hb: Annotated[float | None, typer.Option(help="Brinell hardness [kgf/mm^2] instead of an impact")] = None,
     dent_ratio: Annotated[
         float | None,
         typer.Option(help="Brinell test: diameter of the indentation over that of the ball (default: 0.375)"),
     ] = None,
     as_json: AsJson = False,
 ) -> None:
-    """The strength of the case's law from one measured e_n, or from a hardness."""
+    """Compute the strength of the case's law from one measured e_n, or from a hardness."""
     from ..studies import calibrate as c
 
     if (e_n is None) == (hv is None and hb is None):

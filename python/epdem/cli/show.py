@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Small tables and their JSON for the commands that run nothing."""
+"""Small tables and their JSON for the commands without an engine."""
 
 import json
 import math

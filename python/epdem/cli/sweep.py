@@ -29,15 +29,23 @@ def sweep(
     out: Out = None,
     dry_run: Annotated[bool, typer.Option("--dry-run", help="check and print the points; nothing runs")] = False,
     retry_failed: Annotated[bool, typer.Option("--retry-failed", help="run failed points again")] = False,
+    executor: Annotated[str, typer.Option(help="local, or slurm: jobs of a cluster")] = "local",
+    slurm: Annotated[
+        list[str] | None, typer.Option(help="partition=P,time=1:00:00,..., or a file of #SBATCH lines; repeat")
+    ] = None,
+    write_script: Annotated[
+        Path | None, typer.Option(help="write a batch script to submit by hand; nothing runs")
+    ] = None,
     force: Annotated[bool, typer.Option("--force", help="write into a folder that holds other files")] = False,
     as_json: AsJson = False,
 ) -> None:
     """A case or scene at many points; the same command again does only what is missing or has changed."""
-    from ..studies.sweep import run as study
+    from ..studies.sweep import executors as study
     from ..studies.sweep.points import settings
+    from ..studies.sweep.run import check_points, plan
     from . import sweep_view
 
-    planned = study.plan(
+    planned = plan(
         case,
         settings(given or []),
         engines=engine or [],
@@ -48,26 +56,49 @@ def sweep(
         seed=seed,
     )
     if dry_run:
-        study.check_points(planned, range(1, len(planned.points) + 1), jobs)
+        check_points(planned, range(1, len(planned.points) + 1), jobs)
         sweep_view.points(planned, as_json, console())
         return
     folder = out or Path("runs") / f"{planned.name}_sweep"
-    with sweep_view.progress() as tell:
-        outcome = study.run(planned, folder, jobs=jobs, retry_failed=retry_failed, force=force, tell=tell)
+    if write_script:
+        study.write_script(planned, folder, slurm or [], write_script)
+        print(f"sbatch {write_script}")
+        return
+    with sweep_view.progress() as report:
+        outcome = study.execute(
+            planned, folder, executor, slurm or [], jobs=jobs, retry_failed=retry_failed, force=force, report=report
+        )
     sweep_view.outcome(outcome, as_json, console())
     raise typer.Exit(0 if outcome.passed else 1)
 
 
 def status(
     folder: Annotated[Path, typer.Argument(metavar="DIR", help="folder of a sweep")],
+    table: Annotated[bool, typer.Option("--table", help="write sweep.csv and sweep.h5 of what is there")] = False,
     as_json: AsJson = False,
 ) -> None:
     """How far a sweep is: points waiting, running, done and failed, with times and reasons."""
-    from ..studies.sweep.run import status as ask
+    from ..studies.sweep import folder as store
+    from ..studies.sweep.status import status as ask
+    from ..studies.sweep.table import write
     from . import sweep_view
 
     found = ask(folder)
+    if table:
+        write(store.read(folder), folder)
     if as_json:
         print(json.dumps(sweep_view.plain(found), indent=1))
     else:
         sweep_view.status(found, console())
+
+
+def points(
+    folder: Annotated[Path, typer.Argument(metavar="DIR", help="folder of a sweep")],
+    task: Annotated[int, typer.Option(min=1, help="this task's number")],
+    tasks: Annotated[int, typer.Option(min=1, help="how many tasks share the points")],
+) -> None:
+    """A task of a batch script: its share of the points of a sweep."""
+    from ..studies.sweep import folder as store
+    from ..studies.sweep.slurm import share, work
+
+    work(folder, share(range(1, len(store.read(folder).points) + 1), task, tasks))

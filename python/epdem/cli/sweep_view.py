@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""What a person sees of a sweep."""
+"""The output of a sweep on the console."""
 
 import contextlib
 import json
@@ -13,7 +13,7 @@ from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, T
 from rich.table import Table
 
 from ..studies.sweep.folder import DONE, FAILED, Sweep
-from ..studies.sweep.run import SweepOutcome, Tell
+from ..studies.sweep.run import Report, SweepOutcome
 
 SHOWN = 20  # failed points
 
@@ -32,7 +32,7 @@ def points(sweep: Sweep, as_json: bool, console: Console) -> None:
 
 
 @contextlib.contextmanager
-def progress() -> Iterator[Tell]:
+def progress() -> Iterator[Report]:
     """A bar with the time left, on a terminal."""
     with Progress(
         TextColumn("points"),

@@ -14,12 +14,12 @@ from .options import AsJson, quantity
 
 
 def theory(
-    material: Annotated[str, typer.Option(help="of sphere and wall, from the materials file")] = "steel",
-    radius: Annotated[str, typer.Option(help='of the sphere, as "10 mm"')] = "10 mm",
-    speed: Annotated[str, typer.Option(help='of the impact, as "5 m/s"')] = "5 m/s",
+    material: Annotated[str, typer.Option(help="material of sphere and wall, from the materials file")] = "steel",
+    radius: Annotated[str, typer.Option(help='radius of the sphere, as "10 mm"')] = "10 mm",
+    speed: Annotated[str, typer.Option(help='speed of the impact, as "5 m/s"')] = "5 m/s",
     as_json: AsJson = False,
 ) -> None:
-    """What every law says of one impact on a wall of the same material."""
+    """Print one impact on a wall of the same material for every law."""
     import numpy as np
 
     from ..case.materials import material as sourced
@@ -69,9 +69,10 @@ def theory(
 
 
 def figures(
-    out: Annotated[Path, typer.Option("--out", "-o", help="folder")] = Path("docs/figures"), as_json: AsJson = False
+    out: Annotated[Path, typer.Option("--out", "-o", help="folder for the figures")] = Path("docs/figures"),
+    as_json: AsJson = False,
 ) -> None:
-    """Figures 8.16, 8.17 and 8.19 of Seville and Wu (2016), redrawn from theory."""
+    """Draw figures 8.16, 8.17 and 8.19 of Seville and Wu (2016) from theory."""
     from ..studies.figures import draw_all
 
     names = [str(path) for path in draw_all(out)]

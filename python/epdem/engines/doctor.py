@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""`epdem doctor`: what is installed, what loads, what to do."""
+"""`epdem doctor`: which engines are installed, whether the plugin loads, and what to install."""
 
 import shutil
 import tempfile

@@ -25,7 +25,7 @@ UNITS = {
 
 
 def impacts_table(plan: Plan, measured: Measured) -> pd.DataFrame:
-    """One row per impact: speed, gap and everything measured."""
+    """One row per impact: speed, gap and all measured quantities."""
     columns = {"speed": plan.speed, "gap": plan.gap}
     return pd.DataFrame(columns | {name: getattr(measured, name) for name in Measured.COLUMNS})
 

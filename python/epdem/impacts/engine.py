@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""What an engine is: it takes a plan and gives a trajectory. Its own words end here."""
+"""The interface of an engine of impacts: a plan goes in, a trajectory comes out."""
 
 import math
 import time
@@ -35,19 +35,19 @@ class Trajectory:
 
 @dataclass(frozen=True)
 class Abilities:
-    """What an engine can do: nobody asks for its name."""
+    """The abilities of an engine; other code never tests its name."""
 
-    laws: tuple[str, ...] | None = None  # of ours that it knows; None: every one
+    laws: tuple[str, ...] | None = None  # of ours that it can run; None: every one
     walls: bool = True  # planes as targets
     spheres: bool = True  # spheres as targets
     dashpot: bool = False  # [viscous] of a case
-    ranks: int = 1  # the most that it runs on here
-    deck: bool = True  # it reads a deck, which runs by hand too
+    ranks: int = 1  # the largest number on this machine
+    deck: bool = True  # it reads a deck, which runs without epdem too
     positions: bool = True  # its overlap is a difference of positions
     staggered: bool = False  # its velocity belongs to half a step before the position
     scenes: tuple[str, ...] = ()  # kinds of bulk scenes
-    restarts: bool = False  # a bulk scene that was interrupted goes on
-    variants: tuple[str, ...] = ()  # of the same impacts that `run_pairs` knows, beside the plain one
+    restarts: bool = False  # it continues an interrupted bulk scene
+    variants: tuple[str, ...] = ()  # of the same impacts that `run_pairs` can run, beside the plain one
 
 
 class Engine(Protocol):
@@ -66,13 +66,13 @@ class Engine(Protocol):
         """Raise CaseError for a plan that the engine cannot run."""
 
     def write(self, plan: Plan, folder: Path) -> list[Path]:
-        """The deck and its data files, in `folder`; they run by hand there."""
+        """Write the deck and its data files into `folder`, where they run without epdem."""
 
     def run(self, plan: Plan, folder: Path, *, ranks: int = 1) -> Trajectory:
-        """Run what `write` wrote. Raises EngineError with the engine's last words."""
+        """Run what `write` wrote. Raises EngineError with the end of the engine's log."""
 
     def seconds(self, plan: Plan, folder: Path) -> dict[str, float]:
-        """Times of one run that records as little as it can [s]: startup, setup, stepping; NaN where it cannot tell."""
+        """Times of one run with the least possible output [s]: startup, setup, stepping; NaN where unknown."""
 
     def run_pairs(self, pairs: Pairs, variant: str, folder: Path) -> np.ndarray:
         """Velocities [m/s] after the impacts of `pairs`, "plain" or in one of `can.variants`: (2, n, 3), body first.
@@ -82,7 +82,7 @@ class Engine(Protocol):
 
 
 def recorded_seconds(tool: Engine, plan: Plan, folder: Path) -> dict[str, float]:
-    """`seconds` of an engine that always records: its own stepping, and all the rest as setup."""
+    """`seconds` of an engine that always writes samples: its own stepping, and the rest as setup."""
     begin = time.perf_counter()
     tool.write(plan, folder)
     stepping = tool.run(plan, folder).seconds.get("stepping", math.nan)
@@ -90,28 +90,28 @@ def recorded_seconds(tool: Engine, plan: Plan, folder: Path) -> dict[str, float]
 
 
 class OwnTheory(Engine, Protocol):
-    """An engine with a law that is none of ours, and the theory of that law."""
+    """An engine with a law of another code, and the theory of that law."""
 
     end_power: float  # the power of the force that falls linearly with the overlap at the end of an impact
 
     def predict(self, x: Experiment) -> Prediction:
-        """What its own theory says of a case. Raises CaseError where it cannot stand for it."""
+        """The prediction of the model's own theory. Raises CaseError if the model cannot represent the case."""
 
     def note(self, x: Experiment) -> str:
-        """Where its numbers come from, in words."""
+        """The origin of its numbers, in words."""
 
 
 def check_abilities(tool: Engine, x: Experiment) -> None:
-    """Raise CaseError for what an experiment asks of an engine that cannot do it."""
+    """Raise CaseError if an experiment needs an ability that the engine does not have."""
     can, wall = tool.can, not np.isfinite(x.target.radius)
     if can.laws is not None and x.law.name not in can.laws:
         known = ", ".join(can.laws)
-        raise CaseError(f"law.name = {x.law.name!r}: engine {tool.name} knows {known} only; use another --engine")
+        raise CaseError(f"law.name = {x.law.name!r}: engine {tool.name} has {known} only; use another --engine")
     if x.viscous_restitution is not None and not can.dashpot:
-        raise CaseError(f"viscous: engine {tool.name} does not know our dashpot; use --engine liggghts or embedded")
+        raise CaseError(f"viscous: engine {tool.name} does not have this dashpot; use --engine liggghts or embedded")
     if (wall and not can.walls) or (not wall and not can.spheres):
         kind = "walls" if wall else "impacts of two spheres"
-        raise CaseError(f"impact.kind: engine {tool.name} does not know {kind}; use another --engine")
+        raise CaseError(f"impact.kind: engine {tool.name} does not run {kind}; use another --engine")
 
 
 def refuse(tool: Engine, plan: Plan, prediction: Prediction, *, ranks: int = 1) -> None:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""An impact made ready for physics: two bodies, the law with its numbers, the speeds; all SI.
+"""An impact: two bodies, the law with its numbers, the speeds; all SI.
 
 A case file is one way to make an experiment; `sphere`, `plane` and `Experiment` itself are the other.
 """
@@ -106,7 +106,7 @@ class Experiment:
         return body.young_modulus, body.poisson_ratio, target.young_modulus, target.poisson_ratio
 
     def theory(self) -> Backbone:
-        """The law's backbone as the theory knows it."""
+        """The backbone of the law in the theory."""
         return self.law.backbone(E_star=self.E_star, R_star=self.R_star)
 
     def native_law(self) -> Law:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Laws of other codes for a case, and their own theory. For numbers that a case does not say, a rule stands here.
+"""Laws of other codes for a case, and their own theory. A rule determines each number that a case does not have.
 
 luding     k_1 = F_max/alpha_max of the case's own law at its middle speed; k_p/k_1 = 5 and phi_f = 0.05 (Luding 2008)
 edinburgh  k_1 = 4/3 E* sqrt(R*), Hertz's, to which the model is tied; k_2/k_1 = 5, n = 1.5, no adhesion
@@ -49,7 +49,7 @@ def predict_luding(x: Experiment) -> Prediction:
 
 
 def luding_note(x: Experiment) -> str:
-    """The rule by which luding gets its numbers."""
+    """The rule for the numbers of luding."""
     law = luding(x)
     return (
         f"k_1 = {law.k_1:.4g} N/m (F_max/overlap of {x.law.name} at {x.speed[x.speed.size // 2]:.4g} m/s), "
@@ -79,7 +79,7 @@ class Mdr:
 
 
 def mdr(x: Experiment) -> Mdr:
-    """Raises CaseError where mdr cannot stand for the case."""
+    """Raises CaseError for cases that mdr cannot represent."""
     if math.isfinite(x.target.radius) or x.viscous_restitution is not None:
         raise CaseError("mdr is compared on walls and without a dashpot: its flats are rigid")
     stresses = [b.yield_stress for b in (x.body, x.target) if b.yield_stress is not None]
@@ -102,7 +102,7 @@ def predict_mdr(x: Experiment) -> Prediction:
 
 
 def mdr_note(x: Experiment) -> str:
-    """The rule by which mdr gets its numbers."""
+    """The rule for the numbers of mdr."""
     law = mdr(x)
     return (
         f"rigid flat, E = {law.young_modulus:.4g} Pa (the case's E*), Y = {law.yield_stress:.4g} Pa, p = 2.75 Y; "

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""What a trajectory says of its impacts. Knows samples and the law's theory, no engine."""
+"""Restitution, times, peaks and energies of the impacts of a trajectory; independent of engines."""
 
 from dataclasses import dataclass
 
@@ -16,8 +16,8 @@ class Measured:
 
     energy_residual compares the sampled work in and out with the law's plastic work at the sampled peak,
     relative to the kinetic energy: unlike the sum of F d alpha against the change of kinetic energy, which velocity
-    Verlet fulfils for any force, it is evidence for the law. NaN with a dashpot, whose work the samples do not tell,
-    and for a law that is not the plan's.
+    Verlet fulfils for any force, it is evidence for the law. NaN with a dashpot, whose work does not follow from the
+    samples, and for a law that is not the plan's.
     """
 
     e_n: np.ndarray

@@ -14,10 +14,10 @@ from .experiment import Body, Experiment
 from .plan import Plan
 
 # From target to body. Bins are sorted by z first, then y: with this tilt the lower body in z is the upper one in y, and
-# the order of the two turns twice as they drift across the border of bins at z = 0.
-# The tilt in x makes them change their owner one after the other.
+# the order of the two changes twice as they drift across the border of bins at z = 0.
+# With the tilt in x they change their rank one after the other.
 AXIS = np.array([0.03, 1.0, -0.03]) / np.linalg.norm([0.03, 1.0, -0.03])
-OTHER_RADIUS, OTHER_MODULUS = 0.6, 0.7  # of the target, in units of what the case says
+OTHER_RADIUS, OTHER_MODULUS = 0.6, 0.7  # of the target, in units of those of the case
 FIRST, LAST, STOP = 0.2, 0.9, 0.8  # crossings, and the stop of a run, in contact times
 DRIFT = 0.2  # larger radii per contact time
 
@@ -33,7 +33,7 @@ class Group:
 
 @dataclass(frozen=True)
 class Pairs:
-    """All pairs of a plan: the side that hits and the side that is hit, and what an engine must know of the run."""
+    """All pairs of a plan: the moving side, the side that is hit, and the numbers that an engine needs for the run."""
 
     plan: Plan
     sides: tuple[Group, Group]
@@ -42,7 +42,7 @@ class Pairs:
     spread: float  # how far a pair reaches around its first place [m]
 
     def ordered(self, swap: bool) -> tuple[Group, ...]:
-        """The sides in the order in which an engine gets them: `swap` puts the targets first."""
+        """The sides in the order in which an engine adds them: `swap` puts the targets first."""
         return self.sides[:: -1 if swap else 1]
 
 

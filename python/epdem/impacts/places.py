@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Where the bodies of a plan begin: one place of a grid per impact, contact at z = 0."""
+"""Initial positions of the bodies of a plan: one cell of a grid per impact, contact at z = 0."""
 
 import math
 

@@ -18,7 +18,7 @@ class Plan:
     """n = speeds x phases impacts, speed by speed; arrays of shape (n,), SI.
 
     The body starts `gap` before first touch; a phase is the share of a step at which the contact then begins.
-    One step serves all speeds (contact time goes only as v^-0.2): the fastest gets steps_in_contact, or all of them
+    One step serves all speeds (contact time goes only as v^-0.2): the fastest has steps_in_contact, or all of them
     the step that keeps e_n within the case's target error.
     """
 
@@ -46,7 +46,7 @@ def plan(experiment: Experiment, prediction: Prediction, *, time_step: float | N
     phase = (np.arange(numerics.phases) + 0.5) / numerics.phases
     speed = np.repeat(experiment.speed, numerics.phases)
     gap = np.tile(phase, experiment.speed.size) * speed * dt
-    # a few steps more than the longest contact: integration errors stretch it, and its end must be seen
+    # a few steps more than the longest contact: integration errors stretch it, and its end must be among the samples
     steps = int(np.ceil(1.02 * prediction.contact_time.max() / dt)) + 8
     if speed.size * steps > MAX_SAMPLES:
         raise CaseError(

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""What theory says of an experiment, before anything runs."""
+"""The prediction of theory for an experiment."""
 
 from dataclasses import dataclass
 
@@ -26,7 +26,7 @@ class Prediction:
     strain_ratio: np.ndarray  # a_max/R*
     yields: tuple[str, ...]  # materials that the law lets flow somewhere in the range of speeds
     yield_speeds: dict[str, float]  # from which each material yields beneath its surface [m/s], eq. 8.78; inf: never
-    caveats: tuple[str, ...] = ()  # where the prediction is not to be trusted
+    caveats: tuple[str, ...] = ()  # where the prediction leaves its domain
 
     COLUMNS = (
         "speed",

@@ -57,7 +57,7 @@ def run_json(outcome: Outcome) -> str:
 
 
 def yielding(prediction: Prediction) -> str:
-    """Which materials the law lets flow, in words."""
+    """The materials that yield, in words."""
     return f"yields: {', '.join(prediction.yields)}" if prediction.yields else "nothing yields"
 
 
@@ -138,7 +138,7 @@ def figure(outcome: Outcome) -> Path:
 
     fig, (above, below) = plt.subplots(2, 1, sharex=True, figsize=(7, 6), height_ratios=(3, 1.3), layout="constrained")
     rows = outcome.results.comparison
-    several = len(outcome.predictions) > 1  # colours tell laws apart, or else engines
+    several = len(outcome.predictions) > 1  # colours distinguish laws, or else engines
     for i, (law, prediction) in enumerate(outcome.predictions.items()):
         colour = f"C{i}" if several else "0.3"
         above.plot(prediction.speed, prediction.e_n, "-", color=colour, lw=1.2, label=f"theory, {law}")
@@ -154,7 +154,7 @@ def figure(outcome: Outcome) -> Path:
     above.legend(fontsize=8)
     for axes in (above, below):
         axes.grid(alpha=0.3)
-    with claim(outcome.folder), atomic(path) as temporary:
+    with claim(outcome.folder, force=True), atomic(path) as temporary:
         fig.savefig(temporary, dpi=130, metadata={"Comment": f"inputs {mark}"})
     plt.close(fig)
     return path

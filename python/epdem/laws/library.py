@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """The C++ laws in Python: one table of signatures, one error function, one ABI check.
 
-The library never sees units or case files: SI in, SI out. Arrays are numpy, float64, one-dimensional.
+All values are SI. Arrays are numpy, float64, one-dimensional.
 """
 
 import ctypes
@@ -74,7 +74,7 @@ class Parameter:
 
 @dataclass(frozen=True)
 class LawInfo:
-    """A law that the library knows, as its C++ struct declares it.
+    """A law of the library, as its C++ struct declares it.
 
     `id` is that of the LIGGGHTS model "ep/" + name, kept in restart files; `strength` the parameter at which a body
     yields [Pa], None for a law without yield; `default_ratio` its value over the yield stress Y of the softer body,
@@ -128,7 +128,7 @@ def version() -> str:
 def laws() -> dict[str, LawInfo]:
     """Every law of the library by name."""
     lib = library()
-    found = {}
+    infos = {}
     for i in range(lib.epdem_law_count()):
         parameters = tuple(
             Parameter(
@@ -143,8 +143,8 @@ def laws() -> dict[str, LawInfo]:
         at = lib.epdem_law_strength(i)
         strength = parameters[at] if at >= 0 else None
         ratio, memory = lib.epdem_law_default_ratio(i), lib.epdem_law_memory(i)
-        found[name] = LawInfo(i, name, parameters, lib.epdem_law_id(i), strength, ratio, memory)
-    return found
+        infos[name] = LawInfo(i, name, parameters, lib.epdem_law_id(i), strength, ratio, memory)
+    return infos
 
 
 def viscous_number(restitution: float) -> float:

@@ -107,7 +107,7 @@ class Law:
         return self._impacts(self._cases(steps, **numbers), steps, None, None, None)
 
     def impact_paths(self, *, steps: int, **numbers: Unpack[ImpactNumbers]) -> tuple[Array, Array, Array, Array]:
-        """`impacts` with the way there: overlap [m], force [N] and approach velocity [m/s] of shape (n, steps + 1).
+        """`impacts` with their paths: overlap [m], force [N] and approach velocity [m/s] of shape (n, steps + 1).
 
         They are NaN after the end of an impact.
         """

@@ -29,7 +29,7 @@ class LawSpec:
     strengths: tuple[float, float]
 
     def backbone(self, *, E_star: float, R_star: float) -> Backbone:
-        """The law as the theory knows it. Raises ValueError for parameters that make no sense together."""
+        """The law in the theory. Raises ValueError for parameters that make no sense together."""
         law = law_named(self.name)
         return law(E_star=E_star, R_star=R_star, **{law.keywords[n]: x for n, x in self.parameters.items()})
 

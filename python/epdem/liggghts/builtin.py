@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""LIGGGHTS's own contact models on the same plans, to compare with: no plugin is involved in their forces."""
+"""LIGGGHTS's own contact models on the same plans, for comparison; their forces do not involve the plugin."""
 
 import math
 from dataclasses import replace
@@ -64,7 +64,7 @@ class _OwnTheory(Liggghts):
     end_power = 1.0  # the force falls linearly with the overlap
 
     def deck(self, plan: Plan) -> Deck:
-        return replace(super().deck(plan), remembers=True)
+        return replace(super().deck(plan), has_history=True)
 
 
 class BuiltinLuding(_OwnTheory):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""What the template of an impact deck reads."""
+"""The data of the template of an impact deck."""
 
 from dataclasses import dataclass
 
@@ -13,7 +13,7 @@ class Deck:
     title: str
     source: str
     summary: str
-    remembers: bool  # the law has a contact history
+    has_history: bool  # the law has a contact history
     hard: bool
     soft: bool
     data: str

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Why each line of a deck is in it: the templates say it beside the line, for nobody but this module."""
+"""The reason of each line of a deck: the templates state it beside the line, and only this module reads it."""
 
 from .. import rendering
 
@@ -10,7 +10,7 @@ SCENE = {"in.scene": "liggghts/scene.in.j2", "setup.in": "liggghts/scene_setup.i
 def explain(templates: dict[str, str], deck: object) -> list[tuple[str, str, str]]:
     """(file, line, reason) of every line that does something, of the templates by the names of their files.
 
-    The reason is what the template says of the line, else the comment that stands behind it in the deck; '' if there
+    The reason is that in the template, else the comment behind the line in the deck; '' if there
     is none (a defect, which a test looks for).
     """
     found = []

@@ -41,14 +41,17 @@ class Liggghts:
         return launcher.missing()
 
     def version(self) -> str:
-        found = re.search(r"LIGGGHTS[-\w ]*?(\d+\.\d+\.\d+)", ask([str(paths.launcher()), "-log", "none", "-h"]))
+        found = re.search(
+            r"LIGGGHTS[-\w ]*?(\d+\.\d+\.\d+)",
+            ask([str(paths.launcher()), "-log", "none", "-h"], launcher.environment()),
+        )
         return f"LIGGGHTS {found.group(1) if found else '(version unknown)'}"
 
     def model(self, plan: Plan) -> str:
         return f"ep/{plan.experiment.law.name}"
 
     def properties(self, plan: Plan) -> tuple[Property, ...]:
-        """What the deck says of the materials, for this model."""
+        """The material properties of the deck, for this model."""
         return of_law(plan)
 
     def deck(self, plan: Plan) -> Deck:
@@ -66,7 +69,7 @@ class Liggghts:
             title=x.title,
             source=x.source,
             summary=f"{x.speed.size} speeds x {plan.phases} phases = {plan.n} independent impacts, law {x.law.name}",
-            remembers=x.law.strength_property is not None,
+            has_history=x.law.strength_property is not None,
             hard=max(moduli) > HARD,
             soft=min(moduli) < SOFT,
             data="impact.data",

@@ -9,13 +9,13 @@ from dataclasses import dataclass
 from ..scenes.kinds import Block, Fill
 from ..scenes.plan import ScenePlan
 
-# Volumes [m^3] of a template and of a region below which LIGGGHTS refuses them, unless told of a smaller limit.
+# Volumes [m^3] of a template and of a region below which LIGGGHTS refuses them without a keyword for a smaller limit.
 SMALL, SMALL_ROOM, MEANT = 1e-12, 1e-10, 1e-20
 
 
 @dataclass(frozen=True)
 class Template:
-    """A particle template; `small`: LIGGGHTS wants to be told that its volume is meant."""
+    """A particle template; `small`: its volume needs LIGGGHTS's keyword for tiny volumes."""
 
     id: str
     seed: int
@@ -44,7 +44,7 @@ class Insertion:
 
 
 def primes() -> Iterator[int]:
-    """Seeds as LIGGGHTS wants them: different primes above 10000."""
+    """Seeds that LIGGGHTS accepts: different primes above 10000."""
     n = 15485863
     while True:
         if all(n % k for k in range(3, math.isqrt(n) + 1, 2)):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""How LIGGGHTS with our models is started: its command, its ranks, its environment."""
+"""Starting LIGGGHTS with our models: command, ranks, environment."""
 
 import os
 import shutil
@@ -48,13 +48,19 @@ def command(deck: str, *, ranks: int = 1, log: str = "none") -> list[str]:
     words = [str(launcher), "-in", deck, "-log", log]
     if ranks == 1:
         return words
+    if "SLURM_JOB_ID" in os.environ and shutil.which("srun"):  # the cluster's own way, which keeps account of it
+        return ["srun", "--overlap", "--mpi=pmix", "-n", str(ranks), *words]
     root = ["--allow-run-as-root"] if os.geteuid() == 0 else []
     return ["mpirun", "-np", str(ranks), "--oversubscribe", *root, *words]
 
 
-def environment() -> dict[str, str]:
-    """Ours, with one thread per rank; waiting ranks give way, or they would take the time of those that work."""
-    return os.environ | {"OMP_NUM_THREADS": "1", "OMPI_MCA_mpi_yield_when_idle": "1"}
+def environment(ranks: int = 1) -> dict[str, str]:
+    """This process's, with one thread per rank; waiting ranks yield the processor to those that compute.
+
+    A single rank inside a job of Slurm gets no variables of Slurm: MPI would look for an srun that did not start it.
+    """
+    ours = {k: v for k, v in os.environ.items() if ranks > 1 or not k.startswith(("SLURM_", "PMI"))}
+    return ours | {"OMP_NUM_THREADS": "1", "OMPI_MCA_mpi_yield_when_idle": "1"}
 
 
 def run(
@@ -66,8 +72,8 @@ def run(
     out: str = OUT,
     seconds: float | None = None,
     append: bool = False,
-    tell: Callable[[int], None] | None = None,
+    report: Callable[[int], None] | None = None,
 ) -> float:
     """Run a deck in its folder to its end; seconds taken. `log` is LIGGGHTS's own; the rest as in processes.call."""
     words = command(deck, ranks=ranks, log=log)
-    return call(words, folder, log=out, seconds=seconds, env=environment(), append=append, tell=tell)
+    return call(words, folder, log=out, seconds=seconds, env=environment(ranks), append=append, report=report)

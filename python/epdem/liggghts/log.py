@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""What LIGGGHTS says while it runs: thermo rows and the time of its loop."""
+"""The log of LIGGGHTS: thermo rows and the time of its loop."""
 
 import math
 import re
@@ -13,7 +13,7 @@ _LOOP = re.compile(r"Loop time of (\S+) on \d+ procs for (\d+) steps")
 def rows(log: Path) -> pd.DataFrame:
     """All thermo rows in the order of the log; empty if there are none.
 
-    Columns: "run", which counts the tables from 0, "Step", and the rest by LIGGGHTS's words (NaN in tables without).
+    Columns: "run", which counts the tables from 0, "Step", and the rest by LIGGGHTS's names (NaN in tables without).
     A step stands twice where one run ends and the next one begins.
     """
     names: list[str] = []
@@ -39,6 +39,6 @@ def loops(log: Path) -> list[tuple[float, int]]:
 
 
 def loop_seconds(log: Path) -> float:
-    """The engine's own time for the steps of its last run [s]; NaN if the log does not say."""
+    """The engine's own time for the steps of its last run [s]; NaN if the log does not contain it."""
     found = loops(log)
     return found[-1][0] if found else math.nan

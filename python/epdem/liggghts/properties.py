@@ -10,10 +10,10 @@ from ..impacts.plan import Plan
 from ..laws import library as claw
 
 RIGID = 1e30  # modulus [Pa] of a rigid type: 1e15 would change E* of steel by 2e-4
-HARD, SOFT = 1e9, 5e6  # LIGGGHTS refuses moduli [Pa] outside these without being told
+HARD, SOFT = 1e9, 5e6  # LIGGGHTS refuses moduli [Pa] outside these without a keyword
 
 
-# Why a property stands in a deck; the law's own parameters are found in the register.
+# The reason of a property in a deck; the law's own parameters are in the register.
 _REASONS = {
     "youngsModulus": "stiffness of every contact",
     "poissonsRatio": "E* and G* follow from E and Poisson's ratio",
@@ -42,7 +42,7 @@ class Property:
 
     @property
     def reason(self) -> str:
-        """Why the property stands in a deck; '' if nobody knows."""
+        """Why the property stands in a deck; '' if there is none."""
         laws = claw.laws().values()
         if any(info.strength and info.strength.property == self.name for info in laws):
             return "the law yields at this strength; the softer body's counts"
@@ -52,7 +52,7 @@ class Property:
 
 
 def finite(value: float) -> float:
-    """A modulus or strength [Pa] for LIGGGHTS, which knows no infinity."""
+    """A modulus or strength [Pa] for LIGGGHTS, which has no infinity."""
     return RIGID if math.isinf(value) else value
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Restart files of a scene: which one an interrupted run goes on from, and the deck that does."""
+"""Restart files of a scene: the one from which an interrupted run continues, and its deck."""
 
 import re
 from dataclasses import replace

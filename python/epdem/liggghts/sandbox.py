@@ -79,9 +79,9 @@ def _names(value: object, names: list[str], classes: Iterable[type]) -> SimpleNa
 
 
 def render(template: Path, values: Mapping[str, object]) -> tuple[str, set[str]]:
-    """The text of a template, and the names of `values` of which neither it nor another one it takes in can know.
+    """The text of a template, and the names of `values` which neither it nor a template that it includes uses.
 
-    It sees plain values, our templates and those of its own folder. Raises CaseError with file and line.
+    It has access to plain values, our templates and those of its own folder. Raises CaseError with file and line.
     """
     if not template.is_file():
         raise CaseError(f"{template}: there is no such file; name a template")

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The LIGGGHTS deck of a scene: everything that the templates write; every number is decided here."""
+"""The LIGGGHTS deck of a scene: all numbers of the templates."""
 
 from dataclasses import dataclass
 
@@ -17,7 +17,7 @@ SKIN = 0.25  # of the smallest radius: rebuilds cost less than idle neighbours
 
 @dataclass(frozen=True)
 class Deck:
-    """What the templates read; `row_words` are thermo words beside step, atoms and kinetic energy, shown unasked."""
+    """The data of the templates; `row_words`: thermo keywords beside step, atoms and kinetic energy."""
 
     title: str
     source: str
@@ -54,7 +54,7 @@ class Deck:
     energy: bool
     loads: bool
     spins: bool
-    remembers: bool
+    has_history: bool
     yields: bool
     memory_column: int
     wall_memory_column: int
@@ -163,7 +163,7 @@ def deck(p: ScenePlan) -> Deck:
         energy=out.energy,
         loads=out.loads,
         spins=m.spins,
-        remembers=m.yields or m.spins,
+        has_history=m.yields or m.spins,
         yields=m.yields,
         memory_column=4 + memory(m),
         wall_memory_column=4 + memory(m, wall=True),

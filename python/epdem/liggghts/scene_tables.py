@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""What LIGGGHTS wrote for a scene, as the tables that every scene has. Its words and file formats end here."""
+"""The tables of a scene from LIGGGHTS's files. Only this module reads its file formats."""
 
 from collections.abc import Collection
 from pathlib import Path
@@ -27,13 +27,13 @@ def rows(p: ScenePlan, out: Path) -> pd.DataFrame:
     """The thermo rows: one per step. Raises EngineError.
 
     A run that continues another one begins again at the step of its restart file: what the earlier run wrote beyond
-    that step is replaced, but not the row of that step itself, whose means over an interval only the earlier run knows.
+    that step is replaced, but not the row of that step itself, whose means over an interval only the earlier run has.
     """
     every = log.rows(out)
     if every.empty:
         raise EngineError(f"{out}: no thermo rows; the run ended before its first step")
     found: dict[int, list[float]] = {}
-    names = [name for name in every if name in ROWS]  # and LIGGGHTS's own choice where nothing is asked for
+    names = [name for name in every if name in ROWS]  # and LIGGGHTS's own default
     for _, part in every.groupby("run"):
         steps, values = part["Step"].astype(int).to_list(), part[names].to_numpy().tolist()
         known = {step: row for step, row in found.items() if step <= steps[0]}

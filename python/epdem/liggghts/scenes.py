@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pandas as pd
 
-from ..scenes.engine import Resumed, Tell
+from ..scenes.engine import Report, Resumed
 from ..scenes.plan import ScenePlan
 from . import launcher, resume, scene_deck
 from . import scene_tables as tables
@@ -41,13 +41,13 @@ class LiggghtsScenes:
     def notes(self, plan: ScenePlan) -> list[str]:
         return []
 
-    def run(self, plan: ScenePlan, folder: Path, *, ranks: int, tell: Tell) -> None:
-        launcher.run("in.scene", folder, ranks=ranks, tell=_pruning(folder, tell))
+    def run(self, plan: ScenePlan, folder: Path, *, ranks: int, report: Report) -> None:
+        launcher.run("in.scene", folder, ranks=ranks, report=_pruning(folder, report))
 
-    def resume(self, plan: ScenePlan, folder: Path, *, ranks: int, tell: Tell) -> Resumed:
+    def resume(self, plan: ScenePlan, folder: Path, *, ranks: int, report: Report) -> Resumed:
         step, lost = resume.choose(plan, folder)
         deck = resume.write_resume(plan, folder, step)
-        launcher.run(deck.name, folder, ranks=ranks, append=True, tell=_pruning(folder, tell))
+        launcher.run(deck.name, folder, ranks=ranks, append=True, report=_pruning(folder, report))
         return Resumed(step, lost)
 
     def read(self, plan: ScenePlan, folder: Path, *, without: Collection[int] = ()) -> dict[str, pd.DataFrame]:
@@ -59,9 +59,9 @@ class LiggghtsScenes:
         return found
 
 
-def _pruning(folder: Path, tell: Tell) -> Tell:
+def _pruning(folder: Path, report: Report) -> Report:
     def row(step: int) -> None:
         resume.prune(folder, step)
-        tell(step)
+        report(step)
 
     return row

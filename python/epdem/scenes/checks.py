@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""What must hold for a scene by routes that do not go through the contact law."""
+"""Checks of a scene by routes that do not use the contact law."""
 
 import math
 from dataclasses import dataclass
@@ -94,7 +94,7 @@ def _secant(force: float, way: float) -> float:
 
 
 def recovered(p: ScenePlan, rows: pd.DataFrame) -> tuple[float, float]:
-    """Work [J] that the plate (put in, got back): its force, a mean over each interval, times its way."""
+    """Work [J] that the plate (put in, got back): its force, a mean over each interval, times the displacement."""
     speed = plate_velocity(p, rows)
     work = rows["plate_force"].to_numpy() * np.abs(speed) * np.diff(rows["step"], prepend=0) * p.time_step
     return float(work[speed < 0].sum()), float(work[speed > 0].sum())

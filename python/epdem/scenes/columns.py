@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Columns of the tables of a scene, and what moves of itself: the same for every engine. SI."""
+"""Columns of the tables of a scene, and which bodies move freely: the same for every engine. SI."""
 
 import numpy as np
 import pandas as pd

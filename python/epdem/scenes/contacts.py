@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Every contact of a frame: overlap and its largest value from the engine's memory; what follows by the law."""
+"""Every contact of a frame: overlap and largest overlap from the engine, all other quantities from the law."""
 
 import math
 

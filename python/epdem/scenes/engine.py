@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""What an engine of bulk scenes is: it takes a plan and gives tables. Its own words end here."""
+"""The interface of an engine of bulk scenes: a plan goes in, tables come out."""
 
 from collections.abc import Callable, Collection
 from dataclasses import dataclass, field
@@ -12,7 +12,7 @@ from ..errors import CaseError, EngineError
 from ..impacts.engine import Abilities
 from .plan import ScenePlan
 
-Tell = Callable[[int], None]  # the step of a row that was written
+Report = Callable[[int], None]  # the step of a row that was written
 
 
 @dataclass(frozen=True)
@@ -28,7 +28,7 @@ class SceneEngine(Protocol):
 
     name: str
     can: Abilities
-    subfolder: str  # of a case's results, where this engine puts its own if nothing else is asked for
+    subfolder: str  # of a case's results, where the default results folder of this engine is
     leftovers: tuple[str, ...]  # patterns of files that an earlier run may have left in the folder
 
     def missing(self) -> str | None:
@@ -44,12 +44,12 @@ class SceneEngine(Protocol):
         """
 
     def notes(self, plan: ScenePlan) -> list[str]:
-        """What of the case the engine leaves out, in words."""
+        """The parts of the case that the engine leaves out, in words."""
 
-    def run(self, plan: ScenePlan, folder: Path, *, ranks: int, tell: Tell) -> None:
-        """Run what `files` holds, written into `folder`. Raises EngineError with the engine's last words."""
+    def run(self, plan: ScenePlan, folder: Path, *, ranks: int, report: Report) -> None:
+        """Run what `files` holds, written into `folder`. Raises EngineError with the end of the engine's log."""
 
-    def resume(self, plan: ScenePlan, folder: Path, *, ranks: int, tell: Tell) -> Resumed:
+    def resume(self, plan: ScenePlan, folder: Path, *, ranks: int, report: Report) -> Resumed:
         """Go on from the newest restart file. Raises CaseError if there is none, EngineError."""
 
     def read(self, plan: ScenePlan, folder: Path, *, without: Collection[int] = ()) -> dict[str, pd.DataFrame]:

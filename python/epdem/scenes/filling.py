@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""What is filled into a scene: how many spheres of which size, and whether their room takes them."""
+"""Filling a scene: the number of spheres of each size, and whether they fit into their region."""
 
 import math
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""What each kind of scene is made of: room, walls, meshes, what is filled where, phases."""
+"""The parts of each kind of scene: box, walls, meshes, fillings, phases."""
 
 import math
 from collections.abc import Callable
@@ -184,7 +184,7 @@ def _compaction(s: Compaction) -> Layout:
 
 
 def _peening(s: Peening) -> Layout:
-    """The stream is a column of shot on its way: what hits at time t starts speed * t above the target.
+    """The stream is a column of shot above the target: a sphere that hits at time t starts speed * t above it.
 
     So its places are known at the start, and a continued run has no other ones.
     """

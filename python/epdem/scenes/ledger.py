@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Where the energy of a scene is, frame by frame. No term is the remainder, except friction where there is some."""
+"""Energy balance of a scene for each frame. No term is a remainder, except the work of friction."""
 
 import numpy as np
 import pandas as pd
@@ -17,7 +17,7 @@ def kinetic(spheres: pd.DataFrame) -> pd.Series:
 
 
 def work_of_walls(p: ScenePlan, rows: pd.DataFrame) -> np.ndarray:
-    """Work [J] that moving walls have done up to each row: mean force or torque of the interval times its way.
+    """Work [J] that moving walls have done up to each row: mean force or torque of the interval times the displacement.
 
     The torque of a drum counts normal forces on its flat facets too, which do no work: noise of 0.1 % of the energies.
     """

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The law between two materials of a scene, and the impacts of two bodies that stand for it. SI."""
+"""The law between two materials of a scene, and impacts of two bodies as models of its contacts. SI."""
 
 import numpy as np
 
@@ -19,7 +19,7 @@ def numbers(case: SceneCase) -> LawNumbers:
 def strengths(case: SceneCase) -> dict[str, float]:
     """The law's strength [Pa] of every material, inf for a law that never yields. Raises CaseError.
 
-    A material's own key, else what the law says for all.
+    The key of the material, else the value of the law for all.
     """
     law = numbers(case)
     strength = law_named(law.name).strength

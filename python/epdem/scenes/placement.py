@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Where the spheres of a scene begin: random places without overlap, for engines that do not place them themselves."""
+"""Initial positions of the spheres of a scene: random, without overlap, for engines that do not insert them."""
 
 import math
 import random

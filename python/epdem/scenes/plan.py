@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""A scene ready for any engine: what is there, how it moves, when what is written. All SI, no engine's words."""
+"""A scene for any engine: bodies, motions, times of output. All SI, without names of engines."""
 
 import math
 from dataclasses import dataclass
@@ -51,7 +51,7 @@ class ScenePlan:
 
     @property
     def output(self) -> Output:
-        """What the case asks for."""
+        """The output that the case requests."""
         return self.case.output
 
     @property

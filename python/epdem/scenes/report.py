@@ -1,11 +1,12 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""What a person sees of a scene: checks, summary, JSON, figures."""
+"""The output of a scene: checks, summary, JSON, figures."""
 
 import json
 
 from rich.console import Console
 
 from ..files import atomic
+from ..folders import claim
 from ..impacts.report import records
 from ..terminal import table
 from .run import SceneOutcome
@@ -62,6 +63,14 @@ def show(outcome: SceneOutcome, console: Console) -> None:
 
 
 def figures(outcome: SceneOutcome) -> None:
+    """scene.png and, if there is a ledger, energy.png in the folder of a run, which may write there."""
+    with claim(outcome.folder, force=True):
+        _rows_figure(outcome)
+        if "ledger" in outcome.results.tables:
+            _ledger_figure(outcome)
+
+
+def _rows_figure(outcome: SceneOutcome) -> None:
     """scene.png: what the rows hold against time."""
     import matplotlib
 
@@ -89,8 +98,6 @@ def figures(outcome: SceneOutcome) -> None:
     with atomic(path) as temporary:
         fig.savefig(temporary, dpi=130)
     plt.close(fig)
-    if "ledger" in outcome.results.tables:
-        _ledger_figure(outcome)
 
 
 def _ledger_figure(outcome: SceneOutcome) -> None:

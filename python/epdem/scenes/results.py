@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""results.h5 of a scene: tables written whole or not at all, read as pandas DataFrames."""
+"""results.h5 of a scene: tables, complete or absent, read as pandas DataFrames."""
 
 from dataclasses import dataclass, field
 from pathlib import Path

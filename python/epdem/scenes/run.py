@@ -18,7 +18,7 @@ from ..folders import Results, claim
 from ..impacts.prediction import predict
 from ..stages import inputs_hash
 from . import checks, ledger, results
-from .engine import Resumed, SceneEngine, Tell, check_abilities
+from .engine import Report, Resumed, SceneEngine, check_abilities
 from .pairs import wall_impact
 from .plan import ScenePlan, plan
 from .timestep import highest_speed
@@ -60,7 +60,7 @@ class _Work:
     files: dict[str, str]
     notes: list[str]
     ranks: int
-    tell: Tell
+    report: Report
 
     @cached_property
     def inputs(self) -> str:
@@ -77,11 +77,11 @@ def _stored(path: Path) -> results.SceneResults | None:
 
 
 def run_plan(
-    p: ScenePlan, engine: SceneEngine, folder: Path, *, ranks: int = 1, tell: Tell = lambda step: None
+    p: ScenePlan, engine: SceneEngine, folder: Path, *, ranks: int = 1, report: Report = lambda step: None
 ) -> dict[str, pd.DataFrame]:
     """Write a plan's deck into `folder`, run it, read its tables. Raises CaseError, EngineError."""
     write_texts(folder, engine.files(p))
-    engine.run(p, folder, ranks=ranks, tell=tell)
+    engine.run(p, folder, ranks=ranks, report=report)
     return engine.read(p, folder)
 
 
@@ -94,7 +94,7 @@ def run(
     fresh: bool = False,
     resume: bool = False,
     force: bool = False,
-    tell: Progress = lambda step, steps: None,
+    report: Progress = lambda step, steps: None,
 ) -> SceneOutcome:
     """Run the scene in a case file, or continue it from its last restart file. Raises CaseError, EngineError.
 
@@ -105,7 +105,7 @@ def run(
         p = plan(load(path))
         check_abilities(engine, p, ranks=ranks, resume=resume)
         files, notes = engine.files(p), [*engine.notes(p), *_warnings(p.case)]
-    work = _Work(Path(path), p, engine, files, notes, ranks, lambda step: tell(step, p.steps))
+    work = _Work(Path(path), p, engine, files, notes, ranks, lambda step: report(step, p.steps))
     folder = out or Path("runs") / p.case.name / engine.subfolder
     if resume and not folder.exists():
         raise CaseError(f"{folder}: no such folder, so no run to continue; run the case without --resume")
@@ -124,7 +124,7 @@ def _reused(work: _Work, folder: Path, fresh: bool) -> SceneOutcome | None:
 def _anew(work: _Work, place: Results) -> SceneOutcome:
     start = time.perf_counter()
     place.remove(*work.engine.leftovers)
-    tables = run_plan(work.plan, work.engine, place.folder, ranks=work.ranks, tell=work.tell)
+    tables = run_plan(work.plan, work.engine, place.folder, ranks=work.ranks, report=work.report)
     return _finish(work, place.folder, start, tables)
 
 
@@ -132,7 +132,7 @@ def _resumed(work: _Work, folder: Path) -> SceneOutcome:
     start = time.perf_counter()
     if not all((folder / name).exists() and (folder / name).read_text() == text for name, text in work.files.items()):
         raise CaseError(f"{folder}: the case has changed since the run that is to be continued; run it anew (--fresh)")
-    went_on = work.engine.resume(work.plan, folder, ranks=work.ranks, tell=work.tell)
+    went_on = work.engine.resume(work.plan, folder, ranks=work.ranks, report=work.report)
     tables = work.engine.read(work.plan, folder, without=went_on.lost)
     return _finish(work, folder, start, tables, went_on)
 

@@ -45,7 +45,7 @@ def _fall_and_drive(s: Kinds) -> tuple[float, float]:
 
 
 def highest_speed(case: SceneCase) -> float:
-    """The highest speed [m/s] that the scene can reach: free fall, the stream, the moving wall; or what it says.
+    """The highest possible speed [m/s]: free fall, the stream, the moving wall; or numerics.highest_speed.
 
     Raises CaseError if nothing in it moves.
     """

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Error against run time: the same impacts at 10 to 3000 steps in contact, by every engine and law asked for.
+"""Error against run time: the same impacts at 10 to 3000 steps in contact, by every given engine and law.
 
 Absolute times are noisy; the figure of merit is the ratio to LIGGGHTS's own elastic `hertz` in the same run.
 """

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""What a person sees of error against run time: table, work-precision figure, data file, page of the documentation."""
+"""Output of error against run time: table, work-precision figure, data file."""
 
 from pathlib import Path
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""One case on every engine and model at hand: theory, ours, and what others bring along, in one table and figure."""
+"""One case on every installed engine: theory, our laws and those of other codes, in one table and figure."""
 
 import math
 from collections.abc import Callable

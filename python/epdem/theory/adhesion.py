@@ -146,7 +146,7 @@ def contact_time(law: JKR, *, m_star: Numbers, speed: Numbers) -> Numbers:
 
 
 def impact(law: JKR, *, m_star: Numbers, speed: Numbers) -> Impact:
-    """Everything theory says of an impact at `speed` [m/s] > 0 with effective mass m_star [kg] > 0; they broadcast."""
+    """The impact at `speed` [m/s] > 0 with effective mass m_star [kg] > 0; they broadcast."""
     like = law.E_star * law.R_star * law.Gamma * law.yield_radius
     m, v, _ = np.broadcast_arrays(number("m_star", m_star), number("speed", speed), like)
     W = 0.5 * m * v * v

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""What all laws share: what they declare, the elastic start, and the unloading below the largest overlap."""
+"""Common parts of all laws: declarations, the elastic start, and the unloading below the largest overlap."""
 
 from typing import ClassVar, NamedTuple
 
@@ -59,7 +59,7 @@ class Backbone:
         """tau of the contact pressure on the backbone: 0 Hertz's half-ellipse, 1 uniform."""
         return np.zeros(np.shape(alpha))
 
-    def marks(self) -> list[Real]:
+    def kinks(self) -> list[Real]:
         """Overlaps [m] at which the backbone changes its formula."""
         return [self.yield_overlap]
 

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """The three-phase law: first yield (8.78), expanding cavity (8.81), fully plastic (8.80, 8.85).
 
-This project's own composition of the chapter's ingredients; nothing in it is fitted.
+This project's own combination of equations 8.78, 8.80, 8.81 and 8.85; no parameter is fitted.
 """
 
 import numpy as np
@@ -43,7 +43,7 @@ class Cavity(Backbone):
             )
         self.plastic_overlap = self.yield_overlap * np.exp(self.ln_s_P)
 
-    def marks(self) -> list[Real]:
+    def kinks(self) -> list[Real]:
         return [self.yield_overlap, self.plastic_overlap]
 
     def _ln_s(self, alpha: Real) -> Real:
@@ -89,11 +89,11 @@ class Cavity(Backbone):
         slope, P = np.pi * self.R_star * self.c_P * self.Y, self.plastic_overlap
         plastic = P + more / slope / (P + np.sqrt(P * P + more / slope))
         # Newton in ln s from above: the work is convex in ln s, so every step lands above the root
-        want = np.clip(W - W_Y, 0.0, W_P - W_Y)
-        ln_s = np.broadcast_to(self.ln_s_P, want.shape).copy()
+        rest = np.clip(W - W_Y, 0.0, W_P - W_Y)
+        ln_s = np.broadcast_to(self.ln_s_P, rest.shape).copy()
         for _ in range(60):
             value, slope_of = self._middle_work(ln_s)
-            change = np.minimum((value - want) / slope_of, ln_s)
+            change = np.minimum((value - rest) / slope_of, ln_s)
             ln_s = ln_s - change
             if np.all(np.abs(change) <= 4e-16 * np.maximum(ln_s, 1e-3)):
                 break
@@ -102,15 +102,15 @@ class Cavity(Backbone):
 
     def caveats(self, *, m_star: Real, speed: Array) -> list[str]:
         """Parameters that pass the condition on energy and still describe no body."""
-        found, ratio = [], np.min(np.divide(self.c_P, self.c_Y))
+        sentences, ratio = [], np.min(np.divide(self.c_P, self.c_Y))
         if ratio < self.narrowest:
-            found.append(
+            sentences.append(
                 f"plastic_ratio/first_yield_ratio (c_P/c_Y) = {ratio:.3g}, below {self.narrowest}: just above yield "
                 "the force of cavity passes Hertz's, by 4 to 15 %"
             )
         if np.max(self.c_Y) > self.latest:
-            found.append(
+            sentences.append(
                 f"first_yield_ratio (c_Y) = {np.max(self.c_Y):.3g}, above {self.latest}: a sphere yields at 1.877 Y at "
                 "the latest (nu = 0.5, eq. 8.78)"
             )
-        return found
+        return sentences

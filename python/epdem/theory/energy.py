@@ -51,8 +51,8 @@ def wave_constant(nu: Real) -> Real:
     nu in [0, 0.5): scalar or array. C = [2(1+nu)]^1.5/(2 pi) Im of the integral of k nu_p/R dk.
     """
     nu = number("nu", nu, low_ok=True, high=0.4999)
-    found: Real = np.vectorize(lambda n: (2 * (1 + n)) ** 1.5 / (2 * np.pi) * sum(_wave_parts(float(n))))(nu)[()]
-    return found
+    values: Real = np.vectorize(lambda n: (2 * (1 + n)) ** 1.5 / (2 * np.pi) * sum(_wave_parts(float(n))))(nu)[()]
+    return values
 
 
 def rayleigh_share(nu: Real) -> Real:
@@ -63,8 +63,8 @@ def rayleigh_share(nu: Real) -> Real:
         bulk, pole = _wave_parts(float(n))
         return pole / (bulk + pole)
 
-    found: Real = np.vectorize(share)(nu)[()]
-    return found
+    values: Real = np.vectorize(share)(nu)[()]
+    return values
 
 
 def radiated(force: ArrayLike, time: ArrayLike, *, E: Real, nu: Real, density: Real) -> Real:

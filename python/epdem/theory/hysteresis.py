@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Impacts of the hysteretic laws that LIGGGHTS and YADE bring along, without adhesion and damping, in closed form.
+"""Impacts of the hysteretic laws of LIGGGHTS and YADE, without adhesion and damping, in closed form.
 
-Neither knows a yield stress: their stiffnesses are given, and unloading follows another line than loading.
+Neither has a yield stress: their stiffnesses are given, and unloading follows another line than loading.
 """
 
 import math
@@ -44,7 +44,7 @@ def luding(*, k_1: Real, k_p: Real, overlap_p: Real, m_star: Real, speed: Real) 
 
     Loading F = k_1 delta. Unloading from delta_max < delta_p along k_2 = k_1 + (k_p - k_1) delta_max/delta_p to
     F = 0 at delta_max (1 - k_1/k_2), so that e_n^2 = k_1/k_2 with delta_max = v sqrt(m*/k_1), and
-    t_c = (pi/2)(sqrt(m*/k_1) + sqrt(m*/k_2)). Beyond delta_p both ways follow k_p, and no more energy is lost:
+    t_c = (pi/2)(sqrt(m*/k_1) + sqrt(m*/k_2)). Beyond delta_p both branches follow k_p, and no more energy is lost:
     e_n^2 = 1 - k_1 delta_p^2 (1 - k_1/k_p)/(m* v^2).
 
     k_p >= k_1 > 0 [N/m], overlap_p = delta_p [m] > 0, m_star [kg] > 0, speed [m/s] > 0; they broadcast. Raises

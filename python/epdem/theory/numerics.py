@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""What the whole folder integrates and searches with: one Gauss rule, one bisection."""
+"""Integration and root search of the theory: one Gauss rule, one bisection."""
 
 from collections.abc import Callable
 from functools import cache

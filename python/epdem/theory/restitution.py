@@ -62,7 +62,7 @@ def _loading_time(law: Backbone, m_star: Array, top: Array) -> Array:
 
     Split where the law changes its formula: no piece of the work is integrated across a kink.
     """
-    edges = [np.zeros_like(top), *(np.minimum(mark, top) for mark in law.marks()), top]
+    edges = [np.zeros_like(top), *(np.minimum(kink, top) for kink in law.kinks()), top]
     total, above = np.zeros_like(top), np.zeros_like(top)  # above: work from the upper edge of the piece to the top
     for low, high in reversed(list(zip(edges[:-1], edges[1:], strict=True))):
         left, right = (np.arcsin(np.sqrt(edge / top)) for edge in (low, high))
@@ -106,7 +106,7 @@ def _given_back(y: Array, A: Array, B: Array, tau: Array) -> Array:
 
 
 def impact(law: Backbone, *, m_star: Real, speed: Real) -> Impact:
-    """Everything theory says of an impact at `speed` [m/s] > 0 with effective mass m_star [kg] > 0; they broadcast."""
+    """The impact at `speed` [m/s] > 0 with effective mass m_star [kg] > 0; they broadcast."""
     m, v, _ = np.broadcast_arrays(number("m_star", m_star), number("speed", speed), law.E_star * law.yield_overlap)
     W = 0.5 * m * v * v
     top = np.asarray(law.overlap_of_work(W), float)
@@ -132,7 +132,7 @@ def impact(law: Backbone, *, m_star: Real, speed: Real) -> Impact:
 def history(law: Backbone, *, m_star: float, speed: float, samples: int = 1001) -> tuple[Array, Array, Array]:
     """Time [s], overlap [m] and force [N] of one impact, arrays of shape (samples,), from first touch to no force.
 
-    The motion is found from the energy: t(alpha) on both ways by quadrature, then turned round by interpolation in the
+    The motion follows from the energy: t(alpha) on both branches by quadrature, then inverted by interpolation in the
     variable in which it is smooth. m_star [kg] and speed [m/s] are scalars > 0. Overlaps to 1e-7 of the largest.
     """
     x = impact(law, m_star=m_star, speed=speed)
@@ -140,20 +140,20 @@ def history(law: Backbone, *, m_star: float, speed: float, samples: int = 1001) 
     theta = np.linspace(0, np.pi / 2, 4001)
     h = theta[1] - theta[0]
     middle = 0.5 * (theta[1:] + theta[:-1])
-    # alpha = low + (top - low) sin^2 theta on each way; time grows smoothly with theta
+    # alpha = low + (top - low) sin^2 theta on each branch; time grows smoothly with theta
     there = law.force(top * np.sin(middle) ** 2)
     back = dent + (top - dent) * np.sin(middle) ** 2
     here = law.unloading_force(back, top) if dent > 0 else law.force(back)
-    ways = []
+    branches = []
     for low, force, energy in ((0.0, there, float(x.work_in)), (dent, here, float(x.work_out))):
         piece = force * 2 * (top - low) * np.sin(middle) * np.cos(middle) * h
         left = np.append(np.cumsum(piece[::-1])[::-1], 0.0)  # work between theta and the top
         left *= energy / left[0]
         kinetic = (0.5 * (np.sqrt(left[1:]) + np.sqrt(left[:-1]))) ** 2  # it goes as the square of pi/2 - theta
         rate = 2 * (top - low) * np.sin(middle) * np.cos(middle) / np.sqrt(2 * kinetic / m_star)
-        ways.append(np.concatenate([[0.0], np.cumsum(rate * h)]))
-    t_top = ways[0][-1]
-    times = np.concatenate([ways[0], t_top + ways[1][-1] - ways[1][-2::-1]])
+        branches.append(np.concatenate([[0.0], np.cumsum(rate * h)]))
+    t_top = branches[0][-1]
+    times = np.concatenate([branches[0], t_top + branches[1][-1] - branches[1][-2::-1]])
     times *= float(x.contact_time) / times[-1]
     t = np.linspace(0, times[-1], samples)
     angle = np.interp(t, times, np.concatenate([theta, np.pi - theta[-2::-1]]))

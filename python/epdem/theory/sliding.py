@@ -106,8 +106,8 @@ def _for_arrays(find: Callable[[float, float, str], Point]) -> Callable[..., tup
     @functools.wraps(find)
     def everywhere(mu: Real, nu: Real, criterion: str = "von_mises") -> tuple[Real, tuple[Real, ...]]:
         mu, nu = np.broadcast_arrays(number("mu", mu, low_ok=True), poisson_ratio("nu", nu))
-        found = [find(float(m), float(n), criterion) for m, n in zip(mu.flat, nu.flat, strict=True)]
-        columns = np.array([(pressure, *place) for pressure, place in found]).reshape(*mu.shape, 4)
+        points = [find(float(m), float(n), criterion) for m, n in zip(mu.flat, nu.flat, strict=True)]
+        columns = np.array([(pressure, *place) for pressure, place in points]).reshape(*mu.shape, 4)
         return columns[..., 0][()], tuple(columns[..., k][()] for k in (1, 2, 3))
 
     return everywhere
@@ -149,6 +149,6 @@ def first_sliding_yield(mu: float, nu: float, criterion: str = "von_mises") -> P
 
     mu >= 0, nu in (-1, 0.5], both broadcast; criterion "von_mises" or "tresca"; ValueError otherwise.
     """
-    found: list[Any] = [first_yield_below(mu, nu, criterion), first_yield_surface(mu, nu, criterion)]
-    lower: Point = min(found, key=lambda one: one[0])
+    candidates: list[Any] = [first_yield_below(mu, nu, criterion), first_yield_surface(mu, nu, criterion)]
+    lower: Point = min(candidates, key=lambda point: point[0])
     return lower

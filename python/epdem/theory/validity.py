@@ -20,12 +20,12 @@ def caveats(law: Backbone, *, m_star: float, speed: Real) -> list[str]:
     """Sentences, none where all is well, on impacts at `speed` [m/s] > 0 of any shape with m_star [kg] > 0."""
     speed = np.ravel(number("speed", speed))
     strain = impact(law, m_star=m_star, speed=speed).strain_ratio
-    found = law.caveats(m_star=m_star, speed=speed)
+    sentences = law.caveats(m_star=m_star, speed=speed)
     for limit, deviation in FINITE_STRAIN.items():
         beyond = speed[strain > limit]
         if beyond.size:
-            found.append(
+            sentences.append(
                 f"a_max/R* reaches {strain.max():.2f}, above {limit} from {beyond.min():.3g} m/s on: finite strain, "
                 f"e_n is {deviation}"
             )
-    return found
+    return sentences

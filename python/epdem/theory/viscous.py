@@ -28,7 +28,7 @@ _X, _W = gauss(32)
 
 @dataclass(frozen=True)
 class Impact(undamped.Impact):
-    """As without a dashpot, but force_max and residual_overlap are those of the whole force, dashpot and all."""
+    """As without a dashpot, but force_max and residual_overlap are those of the total force with the dashpot."""
 
     viscous_work: Array  # lost beside plastic_work [J]: to the dashpot, or still stored when the bodies part
 
@@ -89,9 +89,9 @@ def _largest(f: Rate, path: Array, g: Rate) -> Array:
 
 def _yielding_time(law: Backbone, m: Array, start: Array, top: Array) -> Array:
     """Time on the backbone from overlap `start` to rest at `top`: quadrature in c, alpha = top - (top - start) c^2."""
-    marks = [start, *(np.clip(mark, start, top) for mark in law.marks()), top]
+    edges = [start, *(np.clip(kink, start, top) for kink in law.kinks()), top]
     total = np.zeros_like(top)
-    for a, b in zip(marks[:-1], marks[1:], strict=True):
+    for a, b in zip(edges[:-1], edges[1:], strict=True):
         far, near = (np.sqrt((top - x) / (top - start)) for x in (a, b))
         c = near[:, None] + (far - near)[:, None] * _X
         width = np.maximum((top - start)[:, None] * c * c, np.finfo(float).tiny)  # a piece may be empty
@@ -144,7 +144,7 @@ def _unload(law: Backbone, top: Array, L: Array, V: Array, m: Array, dashpot: fl
 
 
 def impact(law: Backbone, *, m_star: Real, speed: Real, restitution: float) -> Impact:
-    """Everything theory says of an impact at `speed` [m/s] > 0 with effective mass m_star [kg] > 0; they broadcast.
+    """The impact at `speed` [m/s] > 0 with effective mass m_star [kg] > 0; they broadcast.
 
     restitution in [0.14, 1] is that of impacts that do not yield. Raises ValueError for values outside.
     """

@@ -53,7 +53,7 @@ def equivalent(stress: ArrayLike, criterion: str) -> Array:
 
 
 def axis_difference(z: Real, nu: Real) -> Array:
-    """s_z - s_r on the axis of a Hertz contact at depth z (in a), in units of -p_0: what both criteria see there."""
+    """s_z - s_r on the axis of a Hertz contact at depth z (in a), in units of -p_0: the stress of both criteria."""
     z, nu = np.asarray(z, float), poisson_ratio("nu", nu)
     deep = np.maximum(z, 1e-300)
     s_r = -(1 + nu) * (1 - deep * np.arctan(1 / deep)) + 1 / (2 * (1 + z * z))
@@ -108,7 +108,7 @@ def first_yield_speed(law: Backbone, Y: Real, *, m_star: Real, ratio: Real = FIR
     limit = law.force(far) / (np.pi * law.radius(far) ** 2)
     p = np.minimum(wanted, limit)
     low = law.R_star * (np.pi * p / (2 * law.E_star)) ** 2  # Hertz's overlap at p; a law that yields needs more
-    high = np.where(low <= law.yield_overlap, low, np.maximum(low, law.marks()[-1]))
+    high = np.where(low <= law.yield_overlap, low, np.maximum(low, law.kinks()[-1]))
 
     def below(log: Array) -> Any:
         alpha = low * np.exp(log)

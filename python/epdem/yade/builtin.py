@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""YADE's own Luding law on the same plans, to compare with."""
+"""YADE's own Luding law on the same plans, for comparison."""
 
 import math
 from dataclasses import replace

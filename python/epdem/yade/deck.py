@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""What the template of an impact deck reads."""
+"""The data of the template of an impact deck."""
 
 from dataclasses import dataclass
 
@@ -43,7 +43,7 @@ class Deck:
     ratios: dict[str, float]
     materials: tuple[Material, ...]
     wall_material: str | None
-    anvil: Anvil | None  # fixed spheres that stand for the wall where YADE's law knows spheres only
+    anvil: Anvil | None  # fixed spheres that replace the wall where YADE's law has spheres only
     bodies: tuple[Group, ...]
     skin: float
     time_step: float

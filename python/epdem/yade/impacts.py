@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""YADE with our laws: a plan becomes one Python deck with all impacts side by side; the law travels with it."""
+"""YADE with our laws: a plan becomes one Python deck with all impacts side by side and a copy of the law."""
 
 import re
 import shutil
@@ -28,10 +28,10 @@ INSTALL = "apt-get install yade"
 
 
 class Yade:
-    """Impacts in YADE: sphere on sphere or wall, with the law that travels with the deck."""
+    """Impacts in YADE: sphere on sphere or wall, with a copy of the law in the deck."""
 
     name = "yade"
-    # a serial YADE keeps bodies where they are in memory and has no ranks: nothing is sorted, nobody migrates
+    # a serial YADE keeps bodies where they are in memory and has no ranks: sorting and migration do not exist
     can = Abilities(laws=tuple(LAWS), staggered=True, scenes=("settle", "compaction"), variants=("swap", "restart"))
     template = "yade/impact.py.j2"
 
@@ -93,7 +93,7 @@ class Yade:
             bodies=tuple(bodies),
             skin=0.1 * min(x.body.radius, x.target.radius),
             time_step=plan.time_step,
-            samples=plan.steps + 2,  # one more than asked for: a velocity is the mean of those half a step away
+            samples=plan.steps + 2,  # one more than the plan has: a velocity is the mean of those half a step away
             path="path.bin",
         )
 
@@ -158,6 +158,6 @@ def trajectory(plan: Plan, path: Path, seconds: dict[str, float]) -> Trajectory:
 
 
 def stepping_seconds(log: Path) -> float:
-    """The deck's own time for its steps [s]; NaN if the log does not say."""
+    """The deck's own time for its steps [s]; NaN if the log does not contain it."""
     found = re.findall(r"stepping took (\S+) s", log.read_text(errors="replace")) if log.exists() else []
     return float(found[-1]) if found else float("nan")

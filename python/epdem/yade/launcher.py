@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""How YADE is started, and what travels with a deck of ours."""
+"""Starting YADE, and the modules in a deck."""
 
 import os
 from pathlib import Path

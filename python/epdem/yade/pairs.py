@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Pairs of spheres for YADE in one of the variants that must not matter."""
+"""Pairs of spheres for YADE in variants of the set-up with the same physics."""
 
 from pathlib import Path
 from typing import Any

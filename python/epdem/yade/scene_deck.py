@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Scenes in YADE: one plain Python deck, the spheres' table and the law's module that travels with them."""
+"""Scenes in YADE: one plain Python deck, the table of the spheres and a copy of the law's modules."""
 
 from dataclasses import dataclass
 from itertools import combinations_with_replacement
@@ -109,7 +109,7 @@ def refuse(p: ScenePlan) -> None:
 
 
 def notes(p: ScenePlan) -> list[str]:
-    """What of a case a YADE scene leaves out, in words."""
+    """The parts of a case that a YADE scene leaves out, in words."""
     return [NO_DASHPOT] if p.model.tangential_restitution is not None else []
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""What a YADE scene wrote, as the tables that every scene has. Its file formats end here."""
+"""The tables of a scene from YADE's files. Only this module reads its file formats."""
 
 from pathlib import Path
 

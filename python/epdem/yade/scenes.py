@@ -8,7 +8,7 @@ import pandas as pd
 
 from ..errors import CaseError
 from ..processes import call
-from ..scenes.engine import Resumed, Tell
+from ..scenes.engine import Report, Resumed
 from ..scenes.plan import ScenePlan
 from . import scene_deck
 from . import scene_tables as tables
@@ -38,10 +38,10 @@ class YadeScenes:
     def notes(self, plan: ScenePlan) -> list[str]:
         return scene_deck.notes(plan)
 
-    def run(self, plan: ScenePlan, folder: Path, *, ranks: int, tell: Tell) -> None:
-        call([command(), "-n", "-x", scene_deck.SCRIPT], folder, log=OUT, env=environment(), tell=tell)
+    def run(self, plan: ScenePlan, folder: Path, *, ranks: int, report: Report) -> None:
+        call([command(), "-n", "-x", scene_deck.SCRIPT], folder, log=OUT, env=environment(), report=report)
 
-    def resume(self, plan: ScenePlan, folder: Path, *, ranks: int, tell: Tell) -> Resumed:
+    def resume(self, plan: ScenePlan, folder: Path, *, ranks: int, report: Report) -> Resumed:
         raise CaseError(f"{folder}: a scene in YADE runs from its start; run it anew")
 
     def read(self, plan: ScenePlan, folder: Path, *, without: Collection[int] = ()) -> dict[str, pd.DataFrame]:

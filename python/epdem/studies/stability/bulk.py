@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Write and run stiff bulk scenes in LIGGGHTS and keep their energy ledger."""
+"""Write and run stiff bulk scenes in LIGGGHTS and compute their energy balance."""
 
 import math
 from pathlib import Path

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""What stiff bulk scenes must hold: no energy from nothing, no sphere lost, ranks agree."""
+"""Checks of stiff bulk scenes: no energy is created, no sphere is lost, ranks agree."""
 
 import shutil
 import tempfile

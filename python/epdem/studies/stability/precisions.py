@@ -30,7 +30,7 @@ def available() -> bool:
 
 
 def rebound(program: str, folder: Path, script: str) -> np.ndarray:
-    """e_n of every phase from one program, shape (phases,). Raises EngineError with its last words."""
+    """e_n of every phase from one program, shape (phases,). Raises EngineError with the end of its output."""
     path = folder / "roundoff.py"
     path.write_text(script)
     done = subprocess.run(

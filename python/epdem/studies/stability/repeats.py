@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""One contact again and again: drift over 1e9 steps and 10^4 reloads; and the verdict on these and on two walls."""
+"""One contact many times: drift over 1e9 steps and 10^4 reloads; and the verdict on these and on two walls."""
 
 import time
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""What round-off leaves of e_n: in the law itself (double against long double) and in overlaps made of positions."""
+"""Round-off of e_n: in the law itself (double against long double) and in overlaps made of positions."""
 
 from collections.abc import Sequence
 

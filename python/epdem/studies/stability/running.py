@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Run extreme cases and judge them: finite, no energy from nothing, second order, and where dt breaks them."""
+"""Run extreme cases and judge them: finite, no energy created, second order, and the steps at which they fail."""
 
 import math
 import time
@@ -145,8 +145,8 @@ def measure(s: Setting, sampler: Sampler, share: float, phases: int | None = Non
 def position_floor(*, radius: float, recovered: float, steps: float) -> float:
     """Relative error of e_n left by overlaps that are differences of positions as large as `radius` [m].
 
-    Every step rounds a position to ulp(R) <= eps R, a displacement that no velocity knows of, and does the work F r on
-    the side. N independent r, uniform in +-ulp/2, leave sqrt(N/12) ulp F_rms, over twice the energy of the rebound,
+    Every step rounds a position to ulp(R) <= eps R: a displacement r outside the velocity, which does the work F r.
+    N independent r, uniform in +-ulp/2, leave sqrt(N/12) ulp F_rms, over twice the energy of the rebound,
     2/5 F_max delta_e: for a Hertz force (F_rms = 0.66 F_max) 0.24 sqrt(N) ulp/delta_e as a standard deviation, and
     twice that as the largest of ten phases. `recovered`: the elastic recovery delta_e [m] (below yield alpha_max).
     """

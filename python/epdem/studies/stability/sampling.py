@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Impacts of one extreme case in one engine at one time step; what an engine cannot represent is said, not run."""
+"""Impacts of one extreme case in one engine at one time step; those that it cannot represent are only reported."""
 
 from dataclasses import dataclass
 from pathlib import Path

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Stiff bulk scenes for LIGGGHTS: lattices of some 2,000 equal spheres, frictionless, periodic sideways."""
+"""Stiff bulk scenes for LIGGGHTS: lattices of some 2,000 equal frictionless spheres, laterally periodic."""
 
 from dataclasses import dataclass, replace
 

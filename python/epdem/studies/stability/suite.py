@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The whole set on the engines asked for, and its tables."""
+"""The whole set on the given engines, and its tables."""
 
 import tempfile
 from collections.abc import Callable
@@ -20,7 +20,9 @@ from .sampling import EmbeddedSampler, PositionSampler, Sampler
 
 POSITION_COARSE = (0.3, 0.5, 0.7, 1.0, 1.5)  # an engine's start-up costs more than its steps
 BOUNCE_STEPS = 10**9
-SLOW = {"yade": "thornton"}  # ten seconds a case: the first and last of each group, with this law if it is asked for
+SLOW = {
+    "yade": "thornton"
+}  # ten seconds a case: the first and last of each group, with this law if it is among those given
 
 
 @dataclass(frozen=True)

@@ -11,7 +11,7 @@ from .variants import between_walls
 SHARES = (0.16, 0.08, 0.04, 0.02, 0.01)  # of the limit of two springs, 1/sqrt(2) of that of one
 COARSE = np.arange(0.2, 1.51, 0.1)
 POSITION_COARSE = (0.3, 0.7, 1.0, 1.5)  # an engine's start-up costs more than its steps
-# LIGGGHTS evaluates the contacts at t = 0 without keeping what they remember: an overlap that is there from the start
+# LIGGGHTS evaluates the contacts at t = 0 without keeping their history: an overlap that is there from the start
 # is known to the law one step later, so the balance begins there.
 KNOWN = {"liggghts": 1}
 PERIODS = 20.0  # length of a run in stability limits
@@ -38,7 +38,7 @@ def stored(theory: Backbone, alpha: np.ndarray, top: np.ndarray) -> np.ndarray:
 def embedded_path(s: Setting, time_step: float, steps: int) -> tuple[np.ndarray, np.ndarray]:
     """Overlap with the first wall [m] and velocity towards it [m/s], shape (steps + 1,), by velocity Verlet.
 
-    Both walls overlap the sphere by alpha_max/2 at the start. A contact that parts forgets, as LIGGGHTS's walls do.
+    Both walls overlap the sphere by alpha_max/2 at the start. A contact that ends loses its history.
     """
     x, law = s.x, s.x.native_law()
     half, d = 0.5 * time_step / x.m_star, s.overlap_max / 2
@@ -62,7 +62,7 @@ def balance(s: Setting, overlap: np.ndarray, velocity: np.ndarray) -> np.ndarray
         top, lost = np.empty_like(alpha), np.zeros_like(alpha)
         reached = gone = 0.0
         for n, a in enumerate(alpha):
-            if a <= 0.0 < reached:  # it parts: the dent is forgotten, its work is not
+            if a <= 0.0 < reached:  # the contact ends: its history is lost, its work is counted
                 gone += float(theory.plastic_work(reached))
                 reached = 0.0
             reached = max(reached, a)

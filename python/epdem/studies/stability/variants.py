@@ -12,7 +12,7 @@ from .running import Setting
 from .sampling import PositionSampler
 
 CYCLE = 64  # samples of a cycle of overlaps: a triangle, up in the first half
-LOWEST = 1 / 32  # smallest overlap of a cycle over the largest: contacts that part forget
+LOWEST = 1 / 32  # smallest overlap of a cycle over the largest: contacts that end lose their history
 
 DECK = {"liggghts": "in.impact", "yade": "impact.py"}
 # the line that makes the wall at height 0, and what makes of it the line of a second wall at `z`

@@ -23,6 +23,7 @@ from ...case.impact import read_toml
 from ...case.scene import is_scene
 from ...errors import CaseError
 from ...files import atomic
+from ...folders import MANIFEST
 from ...stages import inputs_hash
 from .keys import assign, keys_of
 from .points import Point
@@ -97,6 +98,8 @@ class Sweep:
 
 def write(sweep: Sweep, folder: Path) -> None:
     """Store the definition in `folder`."""
+    (folder / POINTS).mkdir(parents=True, exist_ok=True)
+    (folder / POINTS / MANIFEST).write_text("{}")  # each point keeps account of its own: a job may work at it alone
     with atomic(folder / DEFINITION) as temporary:
         temporary.write_text(json.dumps(asdict(sweep)))
 
@@ -152,12 +155,18 @@ def begin(sweep: Sweep, folder: Path, number: int) -> dict[str, Any]:
         "inputs": sweep.inputs(number),
         "host": socket.gethostname(),
         "pid": os.getpid(),
-        "job": os.environ.get("SLURM_JOB_ID", ""),
+        "job": _job(),
         "started": time.strftime("%Y-%m-%d %H:%M:%S"),
         "begin": time.time(),
     }
     (place / STARTED).write_text(json.dumps(about))
     return about
+
+
+def _job() -> str:
+    """The job of Slurm that this process belongs to, as squeue names it; "" without."""
+    array, task = os.environ.get("SLURM_ARRAY_JOB_ID"), os.environ.get("SLURM_ARRAY_TASK_ID")
+    return f"{array}_{task}" if array else os.environ.get("SLURM_JOB_ID", "")
 
 
 def end(
@@ -169,6 +178,11 @@ def end(
     with atomic(place / FINISHED, sync=False) as temporary:
         temporary.write_text(json.dumps(about | state | {"rows": rows or {}}))
     (place / STARTED).unlink(missing_ok=True)
+
+
+def forget(sweep: Sweep, folder: Path, number: int) -> None:
+    """Remove what is stored of a point's end."""
+    (of(sweep, folder, number) / FINISHED).unlink(missing_ok=True)
 
 
 def to_do(sweep: Sweep, folder: Path, *, retry_failed: bool) -> list[int]:

@@ -18,7 +18,7 @@ from ...laws.library import laws
 
 @dataclass(frozen=True)
 class Key:
-    """What a key takes: a quantity of the unit `unit`, a whole number, or anything else."""
+    """What a key takes: a quantity of the unit `unit` or a list of such, a whole number, or anything else."""
 
     unit: str | None = None
     whole: bool = False
@@ -49,7 +49,8 @@ def _walk(kind: Any, place: tuple[str, ...], data: Any, case: dict[str, Any]) ->
         for name in data if isinstance(data, dict) else ():
             yield from _walk(arguments[1], (*place, name), data[name], case)
     elif origin is list:
-        yield place, Key()
+        marks = [m for m in get_args(arguments[0])[1:] if isinstance(m, Quantity)]
+        yield place, Key(unit=marks[0].si if marks else None)
         for n, entry in enumerate(data if isinstance(data, list) else ()):
             yield from _walk(arguments[0], (*place, str(n)), entry, case)
     elif isinstance(kind, type) and issubclass(kind, BaseModel):

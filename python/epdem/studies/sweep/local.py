@@ -14,6 +14,7 @@ from typing import Any
 from ...errors import Stopped
 
 _FORK = multiprocessing.get_context("fork")  # with all that is imported here: a start takes a few milliseconds
+STOPPED = 143  # exit code of a process that was told to stop
 _PR_SET_PDEATHSIG = 1
 _libc = ctypes.CDLL(None)
 
@@ -30,7 +31,8 @@ def cores() -> int:
 def each(function: Callable[[Any], Any], items: Iterable[Any], jobs: int) -> Iterator[tuple[Any, Any]]:
     """(item, function(item)) as they come, by `jobs` processes; the result of an item whose process died is a Died.
 
-    Raises what `function` raises. On any exception, Ctrl-C too, all processes are stopped.
+    Raises what `function` raises, and Stopped if a process was told to stop by somebody else. On any exception, Ctrl-C
+    too, all processes are stopped.
     """
     waiting = iter(items)
     team: dict[Connection, tuple[BaseProcess, Any]] = {}
@@ -48,6 +50,8 @@ def each(function: Callable[[Any], Any], items: Iterable[Any], jobs: int) -> Ite
                 except (EOFError, OSError):
                     process.join()
                     ready.close()
+                    if process.exitcode == STOPPED:
+                        raise Stopped from None
                     good, result = True, Died(_how(process.exitcode))
                 if not good:
                     team[ready] = process, item
@@ -110,6 +114,8 @@ def _work(function: Callable[[Any], Any], pipe: Connection, others: list[Connect
             except Exception as error:
                 answer = False, error
             pipe.send(answer)
-    except (Stopped, EOFError, OSError):
-        os._exit(1)  # nothing of our parent's is to be flushed or removed by us
+    except Stopped:
+        os._exit(STOPPED)  # nothing of our parent's is to be flushed or removed by us
+    except (EOFError, OSError):
+        os._exit(1)
     os._exit(0)

@@ -160,7 +160,9 @@ def axes(given: Mapping[str, str | Sequence[Value]], keys: dict[str, Key]) -> di
 
 def with_unit(value: Value, key: Key) -> Value:
     """A value of a program as a case file has it: a plain number of a quantity is in SI; numpy's become Python's."""
-    value = value.item() if isinstance(value, np.generic) else value
+    value = value.tolist() if isinstance(value, np.generic | np.ndarray) else value
+    if isinstance(value, list | tuple):
+        return [with_unit(v, key) for v in value]
     if hasattr(value, "magnitude"):  # a quantity of pint
         return f"{value:~C}"
     if key.unit not in (None, "1") and isinstance(value, int | float) and not isinstance(value, bool):

@@ -5,7 +5,6 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
-from typing import Any
 
 import pandas as pd
 
@@ -22,7 +21,7 @@ from .keys import keys_of
 from .points import Point, Value
 
 Settings = Mapping[str, str | Sequence[Value]]
-Tell = Callable[[int, int], None]  # (points that have run, of so many)
+Report = Callable[[int, int], None]  # (points that have run, of so many)
 
 
 @dataclass(frozen=True)
@@ -104,7 +103,7 @@ def run(
     jobs: int | None = None,
     retry_failed: bool = False,
     force: bool = False,
-    tell: Tell = lambda done, total: None,
+    report: Report = lambda done, total: None,
 ) -> SweepOutcome:
     """Run what of a sweep is missing or changed, by `jobs` processes on this machine, and write its table.
 
@@ -116,12 +115,12 @@ def run(
     with claim(folder, force=force):
         store.write(sweep, folder)
         numbers = store.to_do(sweep, folder, retry_failed=retry_failed)
-        tell(0, len(numbers))
+        report(0, len(numbers))
         work = partial(evaluate, sweep, folder)
         for done, (number, result) in enumerate(local.each(work, numbers, jobs or default_jobs(sweep)), start=1):
             if isinstance(result, local.Died):
-                _died(sweep, folder, number, result)
-            tell(done, len(numbers))
+                record_death(sweep, folder, number, str(result))
+            report(done, len(numbers))
         return SweepOutcome(sweep, folder, table.write(sweep, folder), len(numbers))
 
 
@@ -130,47 +129,6 @@ def default_jobs(sweep: Sweep) -> int:
     return max(1, local.cores() // sweep.ranks)
 
 
-def _died(sweep: Sweep, folder: Path, number: int, how: local.Died) -> None:
-    store.end(sweep, folder, number, store.begin(sweep, folder, number), rows=None, reason=str(how))
-
-
-def status(folder: Path) -> dict[str, Any]:
-    """How far a sweep is: counts by state, times [s], reasons of failed points, and whether it is running now."""
-    sweep = store.read(folder)
-    found = store.records(sweep, folder)
-    alive = running(folder)
-    states = [store.WAITING if a["state"] == store.RUNNING and not alive else a["state"] for a in found]
-    seconds = [a["seconds"] for a in found if "seconds" in a]
-    counts = {state: states.count(state) for state in store.STATES}
-    failed = [
-        {"point": n, "folder": str(store.of(sweep, folder, n)), "reason": a["reason"]}
-        for n, a in enumerate(found, start=1)
-        if a["state"] == store.FAILED
-    ]
-    left = counts[store.WAITING] + counts[store.RUNNING]
-    mean = sum(seconds) / len(seconds) if seconds else float("nan")
-    return {
-        "case": sweep.name,
-        "points": len(found),
-        **counts,
-        "seconds": sum(seconds),
-        "longest": max(seconds, default=float("nan")),
-        "work_left": left * mean if left else 0.0,
-        "failures": failed,
-    }
-
-
-def running(folder: Path) -> bool:
-    """Whether a process on this machine is at work in the folder of a sweep now."""
-    import fcntl
-
-    from ...folders import LOCK
-
-    try:
-        with (folder / LOCK).open() as lock:
-            fcntl.flock(lock, fcntl.LOCK_SH | fcntl.LOCK_NB)
-    except FileNotFoundError:
-        return False
-    except OSError:
-        return True
-    return False
+def record_death(sweep: Sweep, folder: Path, number: int, how: str) -> None:
+    """Store a point that did not come to its end as failed."""
+    store.end(sweep, folder, number, store.begin(sweep, folder, number), rows=None, reason=how)

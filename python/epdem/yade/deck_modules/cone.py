@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""YADE's conical-damage law as the carrier of our laws: its formula and the four numbers that steer it.
+"""YADE's conical-damage law as a basis of our laws: its formula and its four free numbers.
 
 `Law2_ScGeom_MindlinPhysCDM_HertzMindlinCDM` (YADE 2023.02a) computes, at overlap u,
 

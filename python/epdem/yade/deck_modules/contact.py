@@ -1,9 +1,9 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""One contact of YADE under one of our laws: what YADE computed, what it must compute next, what it remembers.
+"""One contact of YADE under one of our laws: the force of YADE, the numbers of its next step, the history.
 
 All history lives in attributes of YADE's `phys` that its conical-damage law does not use, so that O.save keeps it:
 
-    initD          R* [m]; 0 says that we have not met the contact
+    initD          R* [m]; 0: the contact is new
     maxBendPl      the pair's strength [Pa]
     adhesionForce  delta_max [m] once yielded, else 0
     kr, ktw        overlap [m] at the last visit, and where the branch touches the law's (cavity only)
@@ -97,7 +97,7 @@ class Contact:
         return cone.force(self.E, self.phys.R, self.radius, self.growth, u)
 
     def reached(self) -> float:
-        """Largest overlap so far as YADE alone remembers it, 0 if it saw no yield."""
+        """Largest overlap so far in YADE's own history, 0 before yield."""
         phys = self.phys
         if self.radius >= phys.R:
             return 0.0

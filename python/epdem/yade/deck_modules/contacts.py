@@ -14,8 +14,8 @@ YADE's own C++ (see cone.py) computes every contact. Between its interaction loo
 contacts that have just yielded, adds the difference to the law's force and steers their next step. For `cavity`, whose
 elastic branch is not Hertz's once it has yielded, it also visits those that have moved.
 
-O.save keeps all history (see contact.py) and the law's name; a loaded scene goes on by itself wherever this module
-can be imported. As everywhere in YADE a contact forgets when the bodies part (overlap < 0).
+O.save keeps all history (see contact.py) and the law's name; a loaded scene continues wherever this module
+can be imported. As everywhere in YADE the history of a contact ends when the bodies separate (overlap < 0).
 """
 
 import builtins
@@ -66,10 +66,9 @@ class Contacts:
     """All contacts of a scene under one law.
 
     law        hertz, thornton, johnson or cavity; `ratios` are its dimensionless parameters (first_yield_ratio, ...)
-    interval   most steps between two thorough searches for new contacts (a change of their number is seen at once, a
-               birth and a death in one step only so). None: as often as the fastest body demands. Where a given
-               interval would let a body pass half the shortest yield overlap there is a warning, and a search in
-               every step for as long as that lasts
+    interval   largest number of steps between two complete searches for new contacts (a change of the number of
+               contacts starts one at once). None: it follows from the fastest body. If a given interval lets a body
+               pass half the smallest yield overlap, there is a warning, and a search in every step while this lasts
     tolerance  share of the law's force below which a difference is left as it is; 0: the law's force to round-off
     """
 
@@ -172,7 +171,7 @@ class Contacts:
         self._collider = next((e for e in O.engines if isinstance(e, InsertionSortCollider)), None)
         self._state: object = None
         self._contacts: list[Contact] = []
-        self._apart: list[Any] = []  # pairs that the collider sees and that do not touch
+        self._apart: list[Any] = []  # pairs of the collider that do not touch
         self._sort()
 
     def _pace(self) -> tuple[int, int]:

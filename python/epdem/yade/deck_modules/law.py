@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The contact laws as plain numbers, for a Python without any package: it travels with every YADE deck.
+"""The contact laws as plain numbers, for a Python without any package; every YADE deck contains a copy.
 
 A law holds the constants of a pair of materials; R_star [m] comes apart because it changes from contact to contact.
 Overlaps delta in m, forces in N, pressures in Pa. The same laws in C++ are in cpp_contact/include/epdem; a test
@@ -201,7 +201,7 @@ def recovered_overlap(E_star: float, peak: Point) -> float:
 
 
 def step(law: Law, R_star: float, delta_max: float, delta: float) -> tuple[float, float, float]:
-    """(F, a, new delta_max) of a contact that remembers delta_max: all that the C++ law does in one step."""
+    """(F, a, new delta_max) of a contact with the history delta_max: one step of the C++ law."""
     if not delta > 0.0:
         return 0.0, 0.0, delta_max
     after = max(delta, delta_max)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""What a scene in YADE puts out: rows on the screen, which are its progress too, frames and contact tables in files."""
+"""Output of a scene in YADE: rows on the screen (also its progress), frames and contact tables in files."""
 
 from collections.abc import Sequence
 from pathlib import Path
@@ -13,7 +13,7 @@ from .contacts import Contacts
 
 
 class Remembering(Contacts):
-    """Keeps every contact that has yielded until its end is written: YADE forgets it when the bodies part."""
+    """Keeps every contact that has yielded until its end is written: YADE deletes it when the bodies separate."""
 
     def __init__(self, law: str, interval: int | None = None, tolerance: float = 0.0, **ratios: float):
         super().__init__(law, interval, tolerance, **ratios)
@@ -107,7 +107,7 @@ class Recorder:
     def contact_table(self) -> None:
         """Write every contact: sphere, other body (from 0), overlap, largest overlap [m] (0: never yielded).
 
-        Overlap 0 says that the bodies have parted since the last table.
+        Overlap 0: the bodies have separated since the last table.
         """
         rows = [
             (*sorted((i.id1, i.id2)), i.geom.penetrationDepth, i.phys.adhesionForce) for i in O.interactions if i.isReal

@@ -1,0 +1,12 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+from . import theory as theory
+from .api import Case as Case
+from .api import Run as Run
+from .api import Scene as Scene
+from .api import SceneRun as SceneRun
+from .api import deck as deck
+from .api import predict as predict
+from .api import run as run
+from .api import sweep as sweep
+
+__version__: str

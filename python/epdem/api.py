@@ -1,0 +1,316 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""The Python interface: what the commands do, with cases made of plain values and results as DataFrames.
+
+Tables have the SI units of their columns in `attrs["units"]`. Progress goes to the logger "epdem".
+"""
+
+import contextlib
+import logging
+import tempfile
+import tomllib
+from collections.abc import Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, ClassVar, Self, overload
+
+import numpy as np
+import pandas as pd
+import tomlkit
+
+from . import theory
+from .case import impact as impact_case
+from .case import scene as scene_case
+from .engines import engine as engine_named
+from .engines import scene_engine
+from .errors import CaseError
+from .files import atomic, write_texts
+from .impacts.comparison import UNITS
+from .impacts.experiment import experiment
+from .impacts.plan import plan as plan_impacts
+from .impacts.prediction import Prediction
+from .impacts.prediction import predict as predict_experiment
+from .impacts.run import Outcome
+from .impacts.run import run as run_impacts
+from .scenes.columns import UNITS as SCENE_UNITS
+from .scenes.plan import plan as plan_scene
+from .scenes.run import SceneOutcome
+from .scenes.run import run as run_scene
+from .studies.sweep import keys
+from .studies.sweep import run as study
+from .studies.sweep.points import with_unit
+from .studies.sweep.run import SweepOutcome
+
+__all__ = ["Case", "Run", "Scene", "SceneRun", "deck", "predict", "run", "sweep", "theory"]
+log = logging.getLogger("epdem")
+
+
+class _File:
+    """A case or scene: the text of its file, checked. Its `model` has every value in SI; both are never changed."""
+
+    kind: ClassVar[str]
+
+    def __init__(self, **tables: Any):
+        """From the tables of a case file, `Case(case={"name": "ball"}, materials={...}, impact={...}, law={...})`.
+
+        A plain number where a quantity stands is in SI; texts with units and quantities of pint are taken as they are;
+        title and source can be left out. Raises CaseError.
+        """
+        name = tables.get("case", {}).get("name", self.kind)
+        header = {"name": name, "title": name, "source": "made in Python"} | tables.get("case", {})
+        data = _plain({"case": header} | {key: value for key, value in tables.items() if key != "case"})
+        self._read(tomlkit.dumps(_with_units(data, keys.keys_of(data))), name)
+
+    def _read(self, text: str, path: object) -> None:
+        self.text = text
+        self.model = self._parse(tomllib.loads(text), path)
+
+    @staticmethod
+    def _parse(data: dict[str, Any], path: object) -> Any:
+        raise AttributeError("a case is a Case or a Scene")
+
+    @classmethod
+    def from_toml(cls, path: Path | str) -> Self:
+        """The case in a file. Raises CaseError."""
+        impact_case.read_toml(path)
+        found = cls.__new__(cls)
+        found._read(Path(path).read_text(encoding="utf-8-sig"), path)
+        return found
+
+    def to_toml(self, path: Path | str) -> Path:
+        """Write the case as a file that the commands take."""
+        with atomic(Path(path)) as temporary:
+            temporary.write_text(self.text)
+        return Path(path)
+
+    def replace(self, changes: Mapping[str, Any]) -> Self:
+        """A case that differs in some keys, by their dotted names: `replace({"impact.body.radius": "5 mm"})`.
+
+        Raises CaseError for a key that no case has, with the nearest one, and for a wrong value.
+        """
+        document = tomlkit.parse(self.text)
+        names = keys.keys_of(document.unwrap())
+        for name, value in changes.items():
+            keys.assign(document, name, with_unit(value, keys.known(name, names, "replace")))
+        found = type(self).__new__(type(self))
+        found._read(document.as_string(), self.name)
+        return found
+
+    @property
+    def name(self) -> str:
+        """The name of the case."""
+        return str(self.model.name)
+
+    @property
+    def title(self) -> str:
+        """The title of the case."""
+        return str(self.model.case.title)
+
+    def __eq__(self, other: object) -> bool:
+        return type(self) is type(other) and isinstance(other, _File) and self.model == other.model
+
+    __hash__ = None  # type: ignore[assignment]
+
+    def __repr__(self) -> str:
+        return f"{type(self).__name__}({self.name!r}: {self.title})"
+
+    def _repr_html_(self) -> str:
+        import html
+
+        return f"<b>{html.escape(self.title)}</b><pre>{html.escape(self.text)}</pre>"
+
+    @contextlib.contextmanager
+    def _as_file(self) -> Iterator[Path]:
+        with tempfile.TemporaryDirectory(prefix="epdem-") as place:
+            yield self.to_toml(Path(place) / f"{self.name}.toml")
+
+
+class Case(_File):
+    """Impacts of one body on one target over a range of speeds."""
+
+    kind = "impact"
+
+    @staticmethod
+    def _parse(data: dict[str, Any], path: object) -> Any:
+        return impact_case.parse(data, path)
+
+
+class Scene(_File):
+    """A bulk scene."""
+
+    kind = "scene"
+
+    @staticmethod
+    def _parse(data: dict[str, Any], path: object) -> Any:
+        return scene_case.parse(data, path)
+
+
+def _plain(value: Any) -> Any:
+    """Arrays and tuples as lists, at any depth."""
+    if isinstance(value, Mapping):
+        return {str(k): _plain(v) for k, v in value.items()}
+    if isinstance(value, np.ndarray):
+        return value.tolist()
+    return [_plain(v) for v in value] if isinstance(value, list | tuple) else value
+
+
+def _with_units(value: Any, names: dict[str, keys.Key], place: str = "") -> Any:
+    below = f"{place}." if place else ""
+    if isinstance(value, dict):
+        return {k: _with_units(v, names, f"{below}{k}") for k, v in value.items()}
+    if isinstance(value, list) and any(isinstance(v, dict) for v in value):
+        return [_with_units(v, names, f"{below}{n}") for n, v in enumerate(value)]
+    return with_unit(value, names.get(place, keys.Key()))
+
+
+def _units(table: pd.DataFrame, units: Mapping[str, str]) -> pd.DataFrame:
+    found = table.copy()
+    names = {name: units.get(name.removesuffix("_theory")) for name in map(str, found.columns)}
+    found.attrs["units"] = {name: unit for name, unit in names.items() if unit}
+    return found
+
+
+@dataclass(frozen=True)
+class Run:
+    """Impacts that have run: `outcome` has everything; in a notebook it shows its table."""
+
+    outcome: Outcome
+
+    @property
+    def table(self) -> pd.DataFrame:
+        """Measured and predicted numbers, one row for each speed, engine and law."""
+        return _units(self.outcome.results.comparison, UNITS)
+
+    @property
+    def passed(self) -> bool:
+        """Whether all numbers are within the tolerances of the case."""
+        return self.outcome.passed
+
+    @property
+    def folder(self) -> Path:
+        """Where results.h5, results.csv and the decks are."""
+        return self.outcome.folder
+
+    def plot(self) -> Path:
+        """Draw e_n.png, restitution against speed with theory; its path."""
+        from .impacts.report import figure
+
+        return figure(self.outcome)
+
+    def _repr_html_(self) -> str:
+        return str(self.table.to_html(max_rows=20))
+
+
+@dataclass(frozen=True)
+class SceneRun:
+    """A scene that has run: `outcome` has everything; in a notebook it shows its checks."""
+
+    outcome: SceneOutcome
+
+    @property
+    def tables(self) -> dict[str, pd.DataFrame]:
+        """rows, particles, contacts, ledger and checks, as far as the scene requests them."""
+        return {name: _units(table, SCENE_UNITS) for name, table in self.outcome.results.tables.items()}
+
+    @property
+    def passed(self) -> bool:
+        """Whether all checks of the scene hold."""
+        return self.outcome.passed
+
+    @property
+    def folder(self) -> Path:
+        """Where results.h5, results.csv and the deck are."""
+        return self.outcome.folder
+
+    def _repr_html_(self) -> str:
+        return str(self.tables["checks"].to_html())
+
+
+@overload
+def run(
+    case: Case,
+    *,
+    engines: Sequence[str] = ...,
+    laws: Sequence[str] = ...,
+    out: Path | str | None = ...,
+    ranks: int = ...,
+    fresh: bool = ...,
+) -> Run: ...
+
+
+@overload
+def run(
+    case: Scene,
+    *,
+    engines: Sequence[str] = ...,
+    out: Path | str | None = ...,
+    ranks: int = ...,
+    fresh: bool = ...,
+) -> SceneRun: ...
+
+
+def run(
+    case: Case | Scene,
+    *,
+    engines: Sequence[str] = ("liggghts",),
+    laws: Sequence[str] = (),
+    out: Path | str | None = None,
+    ranks: int = 1,
+    fresh: bool = False,
+) -> Run | SceneRun:
+    """Run a case on every engine with every law (none: its own), or a scene on one engine: a Run or a SceneRun.
+
+    What is stored in `out` (default: runs/<name>) is taken from there, unless `fresh`. Raises CaseError, EngineError.
+    """
+    folder = Path(out) if out is not None else None
+    with case._as_file() as path:
+        if isinstance(case, Scene):
+            if len(engines) != 1 or laws:
+                raise CaseError("a scene has its own law and runs on one engine")
+            return SceneRun(run_scene(path, scene_engine(engines[0]), out=folder, ranks=ranks, fresh=fresh))
+        tools = [engine_named(name) for name in engines]
+        return Run(run_impacts(path, engines=tools, laws=laws, out=folder, ranks=ranks, fresh=fresh, progress=log.info))
+
+
+def predict(case: Case, law: str | None = None) -> pd.DataFrame:
+    """The prediction of theory for a case, one row for each speed; no engine runs. Raises CaseError."""
+    found = predict_experiment(experiment(case.model, law))
+    return _units(pd.DataFrame({name: getattr(found, name) for name in Prediction.COLUMNS}), UNITS)
+
+
+def deck(case: Case | Scene, out: Path | str, *, engine: str = "liggghts", law: str | None = None) -> list[Path]:
+    """Write the deck of a case or scene into the folder `out`; it runs by hand. Raises CaseError."""
+    if isinstance(case, Scene):
+        return write_texts(Path(out), scene_engine(engine).files(plan_scene(case.model)))
+    tool, x = engine_named(engine), experiment(case.model, law)
+    if not tool.can.deck:
+        raise CaseError(f"engine {engine}: it reads no deck; use liggghts or yade")
+    return tool.write(plan_impacts(x, predict_experiment(x)), Path(out))
+
+
+def sweep(
+    case: Case | Scene,
+    settings: study.Settings,
+    *,
+    engines: Sequence[str] = ("liggghts",),
+    laws: Sequence[str] = (),
+    out: Path | str | None = None,
+    ranks: int = 1,
+    jobs: int | None = None,
+    latin_hypercube: int | None = None,
+    seed: int = 1,
+    retry_failed: bool = False,
+) -> SweepOutcome:
+    """Run a case or scene at many points, by `jobs` processes; its `table` has a row for every result.
+
+    `settings` gives the values of keys by their dotted names, as a text ("1 mm..5 mm:9") or a sequence of values. What
+    is finished in `out` (default: runs/<name>_sweep) does not run again. Raises CaseError, EngineError, OSError.
+    """
+    with case._as_file() as path:
+        words: dict[str, Any] = {"engines": engines, "laws": laws, "ranks": ranks}
+        planned = study.plan(path, settings, **words, latin_hypercube=latin_hypercube, seed=seed)
+    folder = Path(out) if out is not None else Path("runs") / f"{planned.name}_sweep"
+
+    def report(done: int, total: int) -> None:
+        log.info("%d of %d points", done, total)
+
+    return study.run(planned, folder, jobs=jobs, retry_failed=retry_failed, report=report)

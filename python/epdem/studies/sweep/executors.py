@@ -1,0 +1,45 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Who runs a sweep: processes on this machine, or jobs of a cluster."""
+
+from collections.abc import Sequence
+from pathlib import Path
+
+from ...errors import CaseError
+from ...files import atomic
+from ...folders import claim
+from . import folder as store
+from . import run, slurm
+from .folder import Sweep
+from .run import SweepOutcome, Report
+
+
+def execute(
+    sweep: Sweep,
+    folder: Path,
+    executor: str,
+    given: Sequence[str] = (),
+    *,
+    jobs: int | None = None,
+    retry_failed: bool = False,
+    force: bool = False,
+    report: Report = lambda done, total: None,
+) -> SweepOutcome:
+    """Run a sweep by the executor "local" or "slurm"; `given` are the parameters of the latter. Raises CaseError."""
+    if executor == "slurm":
+        found = slurm.parameters(given)
+        return slurm.run(sweep, folder, found, retry_failed=retry_failed, force=force, report=report)
+    if executor != "local":
+        raise CaseError(f"--executor {executor!r} does not exist; there are local, slurm")
+    if given:
+        raise CaseError("--slurm goes with --executor slurm or --write-script")
+    return run.run(sweep, folder, jobs=jobs, retry_failed=retry_failed, force=force, report=report)
+
+
+def write_script(sweep: Sweep, folder: Path, given: Sequence[str], path: Path) -> None:
+    """Store the sweep in `folder` and write the batch script that runs it to `path`. Raises CaseError."""
+    text = slurm.script(sweep, folder, slurm.parameters(given))
+    run.check_points(sweep, range(1, len(sweep.points) + 1))
+    with claim(folder):
+        store.write(sweep, folder)
+    with atomic(path) as temporary:
+        temporary.write_text(text)

@@ -1,0 +1,196 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""A sweep on a cluster: an array of Slurm's whose tasks each run a share of the points; submitit submits and requeues.
+
+What is finished is known from the folders of the points alone: a job that is stopped by its walltime or preempted is
+queued again and goes on, and so does a sweep whose command is given again.
+"""
+
+import json
+import shlex
+import subprocess
+import sys
+import time
+from collections.abc import Sequence
+from functools import partial
+from pathlib import Path
+from typing import Any
+
+from ...errors import CaseError, EngineError
+from ...files import atomic
+from ...folders import claim
+from . import folder as store
+from . import local, table
+from .evaluate import evaluate
+from .folder import Sweep
+from .run import SweepOutcome, Report, check_points, record_death
+
+TASKS = 1000  # of an array; a cluster takes 1001 if it does not say otherwise
+POLL = 1.0  # [s] between two looks at the queue
+JOBS = "slurm/jobs.json"
+Parameters = dict[str, str]
+# What submitit sets by itself and what a point needs to be stopped and queued again in good time.
+KEPT = ("array", "output", "error", "signal", "open-mode", "job-name")
+
+
+def parameters(texts: Sequence[str]) -> Parameters:
+    """`--slurm`: "partition=long,time=2:00:00", or a file with lines "#SBATCH --partition=long". Raises CaseError."""
+    found: Parameters = {}
+    for text in texts:
+        if "=" not in text and Path(text).is_file():
+            lines = Path(text).read_text().splitlines()
+            pairs = [line.removeprefix("#SBATCH").strip() for line in lines if line.startswith("#SBATCH")]
+        else:
+            pairs = text.split(",")
+        for pair in pairs:
+            name, _, value = pair.strip().removeprefix("--").partition("=")
+            if not name or name in KEPT:
+                why = "epdem sets it itself; leave it out" if name else "write NAME=VALUE, as partition=long"
+                raise CaseError(f"--slurm {pair!r}: {why}")
+            found[name] = value
+    return found
+
+
+def work(folder: Path, numbers: Sequence[int]) -> None:
+    """Run points of a sweep here, one after the other; a point whose process dies is stored as failed."""
+    sweep = store.read(folder)
+    wanted = set(store.to_do(sweep, folder, retry_failed=False)) & set(numbers)
+    for number, result in local.each(partial(evaluate, sweep, folder), sorted(wanted), jobs=1):
+        if isinstance(result, local.Died):
+            record_death(sweep, folder, number, str(result))
+
+
+def share(numbers: Sequence[int], task: int, tasks: int) -> list[int]:
+    """The points of one of `tasks` tasks, which are numbered from 1."""
+    return list(numbers[task - 1 :: tasks])
+
+
+class Task:
+    """What a job runs; before its walltime or a preemption ends it, submitit queues the same again."""
+
+    def __call__(self, folder: Path, numbers: list[int]) -> None:
+        work(folder, numbers)
+
+    def checkpoint(self, folder: Path, numbers: list[int]) -> Any:
+        """What is to be queued again."""
+        import submitit
+
+        return submitit.helpers.DelayedSubmission(self, folder, numbers)
+
+
+def _submit(sweep: Sweep, folder: Path, numbers: list[int], given: Parameters) -> dict[str, list[int]]:
+    """Submit points as an array; the points of each task by the name of its job. Raises EngineError."""
+    try:
+        import submitit
+    except ImportError:
+        raise EngineError(
+            "--executor slurm needs submitit, which is not installed; pip install 'epdem[slurm]'"
+        ) from None
+    tasks = min(len(numbers), TASKS)
+    shares = [share(numbers, task, tasks) for task in range(1, tasks + 1)]
+    try:
+        executor = submitit.SlurmExecutor(
+            folder=folder / "slurm", max_num_timeout=1000, python=shlex.quote(sys.executable)
+        )
+        extra = {"cpus-per-task": sweep.ranks, "time": 60} | {k: v or True for k, v in given.items()}
+        executor.update_parameters(job_name=sweep.name, additional_parameters=extra, array_parallelism=TASKS)
+        jobs = executor.map_array(Task(), [folder] * tasks, shares)
+    except (RuntimeError, OSError, submitit.core.utils.FailedJobError) as error:
+        words = " ".join(str(error).split())
+        raise EngineError(f"--executor slurm: the jobs were not taken: {words}") from None
+    return {str(job.job_id): points for job, points in zip(jobs, shares, strict=True)}
+
+
+def alive(jobs: Sequence[str]) -> set[str] | None:
+    """Which of the jobs wait or run; None if Slurm does not answer."""
+    try:
+        done = subprocess.run(["squeue", "-h", "-r", "--me", "-o", "%i %T"], capture_output=True, text=True)
+    except OSError:
+        return None
+    if done.returncode:
+        return None
+    return {line.split()[0] for line in done.stdout.splitlines() if line.strip()} & set(jobs)
+
+
+def ended(job: str) -> str:
+    """How a job has ended, in words; Slurm keeps nothing of a task that is cancelled before it begins."""
+    said = subprocess.run(["scontrol", "show", "job", "-o", job], capture_output=True, text=True).stdout
+    states = [word.partition("=")[2] for word in said.split() if word.startswith("JobState=")]
+    return f"its job {job} ended as {states[0]}" if states else f"its job {job} was cancelled"
+
+
+def run(
+    sweep: Sweep,
+    folder: Path,
+    given: Parameters,
+    *,
+    retry_failed: bool = False,
+    force: bool = False,
+    report: Report = lambda done, total: None,
+) -> SweepOutcome:
+    """Run what of a sweep is missing as jobs of Slurm, wait for their end, and write the table.
+
+    Ctrl-C ends the waiting alone; the same call later waits for the jobs that are still there and submits the rest. A
+    point whose job ended before it is stored as failed, with the state of the job. Raises CaseError, EngineError.
+    """
+    folder = folder.absolute()
+    check_points(sweep, store.to_do(sweep, folder, retry_failed=retry_failed))
+    with claim(folder, force=force):
+        store.write(sweep, folder)
+        jobs = _living(folder)
+        under_way = {sweep.identities[n - 1] for points in jobs.values() for n in points if n <= len(sweep.points)}
+        numbers = store.to_do(sweep, folder, retry_failed=retry_failed)
+        new = [n for n in numbers if sweep.identities[n - 1] not in under_way]
+        for n in new:
+            store.forget(sweep, folder, n)
+        if new:
+            jobs |= _submit(sweep, folder, new, given)
+            with atomic(folder / JOBS) as temporary:
+                temporary.write_text(json.dumps(jobs))
+        _wait(sweep, folder, jobs, report)
+        return SweepOutcome(sweep, folder, table.write(sweep, folder), len(new))
+
+
+def _living(folder: Path) -> dict[str, list[int]]:
+    """Jobs of an earlier call that still wait or run."""
+    try:
+        known: dict[str, list[int]] = json.loads((folder / JOBS).read_text())
+    except (OSError, ValueError):
+        return {}
+    there = alive(list(known))
+    if there is None:
+        raise EngineError("--executor slurm: squeue does not answer; is this a node of a Slurm cluster?")
+    return {job: points for job, points in known.items() if job in there}
+
+
+def _wait(sweep: Sweep, folder: Path, jobs: dict[str, list[int]], report: Report) -> None:
+    left = dict(jobs)
+    total = sum(map(len, jobs.values()))
+    while left:
+        there = alive(list(left))  # None while the controller is away: its jobs are still there
+        for job in set() if there is None else set(left) - there:
+            for n in left.pop(job):
+                state = store.record(sweep, folder, n)["state"]
+                if state not in (store.DONE, store.FAILED):
+                    when = "while it ran" if state == store.RUNNING else "before it began"
+                    record_death(sweep, folder, n, f"{ended(job)} {when}")
+        report(total - sum(map(len, left.values())), total)
+        if left:
+            time.sleep(POLL)
+
+
+def script(sweep: Sweep, folder: Path, given: Parameters) -> str:
+    """A batch script that runs a sweep as an array, for people who submit by hand."""
+    tasks = min(len(sweep.points), TASKS)
+    head = {"job-name": sweep.name, "array": f"1-{tasks}", "cpus-per-task": str(sweep.ranks), "requeue": ""}
+    lines = [f"#SBATCH --{name}{'=' if value else ''}{value}" for name, value in (head | given).items()]
+    place = shlex.quote(str(folder.absolute()))
+    python = shlex.quote(sys.executable)
+    return "\n".join(
+        [
+            "#!/bin/bash",
+            *lines,
+            "# Each task runs its share of the points; what is finished does not run again.",
+            f"exec {python} -m epdem.cli points {place} --task $SLURM_ARRAY_TASK_ID --tasks {tasks}",
+            "",
+        ]
+    )

@@ -1,0 +1,116 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""A real Slurm on this machine: munged, slurmctld and slurmd of Debian, started in a folder and stopped at the end."""
+
+import contextlib
+import os
+import shutil
+import subprocess
+import time
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+PROGRAMS = ("munged", "slurmctld", "slurmd", "sbatch", "srun", "squeue")
+CONF = """
+ClusterName=local
+SlurmctldHost={host}(127.0.0.1)
+SlurmUser=root
+SlurmdUser=root
+AuthType=auth/munge
+AuthInfo=cred_expire=5
+StateSaveLocation={place}/state
+SlurmdSpoolDir={place}/spool
+SlurmctldLogFile={place}/slurmctld.log
+SlurmdLogFile={place}/slurmd.log
+SlurmctldPidFile={place}/slurmctld.pid
+SlurmdPidFile={place}/slurmd.pid
+SlurmctldPort={port}
+SlurmdPort={port1}
+ProctrackType=proctrack/linuxproc
+TaskPlugin=task/none
+SelectType=select/cons_tres
+SelectTypeParameters=CR_CPU
+ReturnToService=2
+MpiDefault=none
+KillWait=5
+SchedulerParameters=sched_interval=1
+MailProg=/bin/true
+NodeName={host} NodeAddr=127.0.0.1 CPUs=2 RealMemory=1000 State=UNKNOWN
+PartitionName=main Nodes={host} Default=YES MaxTime=INFINITE State=UP
+"""
+
+
+def absent() -> str | None:
+    """Why there can be no cluster here, or None."""
+    missing = [name for name in PROGRAMS if shutil.which(name, path=f"{os.environ['PATH']}:/usr/sbin") is None]
+    if missing:
+        return f"{missing[0]} is not installed (apt-get install slurmctld slurmd slurm-client munge)"
+    return "Slurm's daemons are started by root alone" if os.geteuid() else None
+
+
+def until(true: Callable[[], bool], what: str, seconds: float = 60.0) -> None:
+    """Wait until a condition holds."""
+    end = time.monotonic() + seconds
+    while not true():
+        assert time.monotonic() < end, f"{what} did not happen within {seconds:g} s"
+        time.sleep(0.05)
+
+
+class Cluster:
+    """Daemons by name; the environment in which Slurm's commands find them."""
+
+    def __init__(self, place: Path, port: int):
+        for name in ("state", "spool"):
+            (place / name).mkdir()
+        host = os.uname().nodename.split(".")[0]
+        conf = place / "slurm.conf"
+        conf.write_text(CONF.format(host=host, place=place, port=port, port1=port + 1))
+        self.place, self.env = place, os.environ | {"SLURM_CONF": str(conf)}
+        self.env["PATH"] += ":/usr/sbin"
+        self.daemons: dict[str, subprocess.Popen[bytes]] = {}
+
+    def start(self, name: str) -> None:
+        """Start slurmctld or slurmd."""
+        with (self.place / f"{name}.out").open("ab") as out:
+            self.daemons[name] = subprocess.Popen([name, "-D"], env=self.env, stdout=out, stderr=out)
+
+    def stop(self, name: str) -> None:
+        """Stop it."""
+        process = self.daemons.pop(name)
+        process.terminate()
+        with contextlib.suppress(subprocess.TimeoutExpired):
+            process.wait(timeout=10)
+        process.kill()
+        process.wait()
+
+    def ask(self, *command: str) -> str:
+        """What a command of Slurm says; nothing if it fails."""
+        return subprocess.run(command, env=self.env, capture_output=True, text=True).stdout
+
+    def idle(self) -> bool:
+        """Whether the node takes work."""
+        return "idle" in self.ask("sinfo", "-h", "-o", "%T")
+
+
+@contextlib.contextmanager
+def cluster(place: Path) -> Iterator[Cluster]:
+    """A cluster of one node with two cores."""
+    munge = None
+    if subprocess.run(["munge", "-n"], capture_output=True).returncode:
+        Path("/run/munge").mkdir(exist_ok=True)
+        shutil.chown("/run/munge", "munge", "munge")
+        user = ["setpriv", "--reuid=munge", "--regid=munge", "--clear-groups"]
+        munge = subprocess.Popen([*user, "/usr/sbin/munged", "--foreground", "--force"], stderr=subprocess.DEVNULL)
+        until(lambda: subprocess.run(["munge", "-n"], capture_output=True).returncode == 0, "munged")
+    found = Cluster(place, 20000 + os.getpid() % 20000)
+    try:
+        found.start("slurmctld")
+        found.start("slurmd")
+        until(found.idle, "an idle node")
+        yield found
+    finally:
+        found.ask("scancel", "--user=root")
+        for name in reversed(list(found.daemons)):  # slurmd first: it tells the controller
+            found.stop(name)
+        if munge:
+            munge.terminate()
+            munge.wait()

@@ -1,0 +1,111 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""The Python interface does what the commands do, and cases are made of plain values."""
+
+import json
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+import pint
+import pytest
+
+from epdem import Case, Scene, deck, predict, run, sweep, theory
+from epdem.errors import CaseError
+
+ROOT = Path(__file__).parents[2]
+EPDEM = str(Path(sys.executable).parent / "epdem")
+SPEEDS = [0.2, 1.0, 5.0]
+STEEL = {"young_modulus": 208e9, "poisson_ratio": 0.3, "density": 7850.0, "yield_stress": "1 GPa"}
+
+
+@pytest.fixture
+def ball():
+    """Steel, R = 10 mm, on a plane, as numbers of a program."""
+    return Case(
+        case={"name": "ball"},
+        materials={"steel": STEEL},
+        impact={
+            "kind": "sphere-wall",
+            "body": {"radius": 0.01, "material": "steel"},
+            "target": {"material": "steel"},
+            "speeds": np.array(SPEEDS),
+        },
+        law={"name": "thornton", "yield_pressure": pint.UnitRegistry().Quantity(2.8, "GPa")},
+    )
+
+
+def test_a_case_of_plain_values_is_the_case_of_the_file(ball):
+    file = Case.from_toml(ROOT / "cases/steel_wall.toml")
+    same = file.replace({"impact.speeds": SPEEDS, "law.yield_pressure": 2.8e9})
+    assert same.model.impact == ball.model.impact and same.model.materials == ball.model.materials
+    assert predict(same).equals(predict(ball))
+    assert "# Tolerances" in same.text and file.model.law.parameters() == {"yield_pressure_ratio": 2.8}
+
+
+def test_the_prediction_is_the_table_of_reference_values_with_units(ball):
+    """e_n of eq. 8.83 printed with 13 digits for speeds of 0.2, 1 and 5 m/s."""
+    found = predict(ball)
+    assert found["e_n"].to_numpy() == pytest.approx([1, 0.9476311322744, 0.6763264338717], abs=1e-13)
+    assert found.attrs["units"]["contact_time"] == "s" and "e_n" not in found.attrs["units"]
+    assert predict(ball, "hertz")["e_n"].tolist() == [1, 1, 1]
+    assert theory.__name__ == "epdem.theory"
+
+
+def test_what_is_wrong_says_where(ball):
+    with pytest.raises(CaseError, match=r"nearest: impact\.body\.radius"):
+        ball.replace({"impact.radius": 1.0})
+    with pytest.raises(CaseError, match="poisson_ratio = 30"):
+        ball.replace({"materials.steel.poisson_ratio": 30})
+    with pytest.raises(CaseError, match="impact is missing"):
+        Case(materials={})
+
+
+def test_run_and_command_give_the_same(ball, tmp_path):
+    found = run(ball, engines=["embedded"], out=tmp_path / "a")
+    words = [
+        EPDEM,
+        "run",
+        str(ball.to_toml(tmp_path / "ball.toml")),
+        "-e",
+        "embedded",
+        "-o",
+        str(tmp_path / "b"),
+        "--json",
+    ]
+    said = json.loads(subprocess.check_output(words))
+    rows = pd.DataFrame(said["rows"])
+    pd.testing.assert_frame_equal(found.table[rows.columns], rows, check_dtype=False)
+    assert found.passed is said["passed"] is True
+    assert found.table.attrs["units"]["force_max_theory"] == "N" and "<table" in found._repr_html_()
+    picture = found.plot()
+    drawn = picture.stat().st_mtime_ns
+    assert found.plot() == picture and picture.stat().st_mtime_ns == drawn  # of the same runs: not drawn again
+    other = run(ball, engines=["embedded"], laws=["hertz"], out=tmp_path / "a")
+    assert other.plot().stat().st_mtime_ns > drawn
+
+
+def test_sweep_and_command_give_the_same_table(ball, tmp_path):
+    radii = np.array([0.001, 0.002])
+    found = sweep(ball, {"impact.body.radius": radii}, engines=["embedded"], out=tmp_path / "a", jobs=1)
+    path = str(ball.to_toml(tmp_path / "ball.toml"))
+    words = ["--set", "impact.body.radius=0.001 m,0.002 m", "-e", "embedded", "-o", str(tmp_path / "b")]
+    subprocess.check_call([EPDEM, "sweep", path, *words], stdout=subprocess.DEVNULL)
+    assert (tmp_path / "a/sweep.csv").read_bytes() == (tmp_path / "b/sweep.csv").read_bytes()
+    assert found.table["impact.body.radius"].unique() == pytest.approx(radii)
+
+
+def test_deck_and_command_write_the_same_files(ball, tmp_path):
+    path = str(ball.to_toml(tmp_path / "ball.toml"))
+    subprocess.check_call([EPDEM, "deck", path, "-o", str(tmp_path / "b")], stdout=subprocess.DEVNULL)
+    for file in deck(ball, tmp_path / "a"):
+        assert file.read_text() == (tmp_path / "b" / file.name).read_text()
+    scene = Scene.from_toml(ROOT / "cases/compaction_powder.toml")
+    assert "in.scene" in {p.name for p in deck(scene, tmp_path / "c")}
+    assert scene.replace({"scene.count": 7}).model.scene.count == 7 and scene.model.scene.count == 1500
+
+
+def test_cases_do_not_change_and_show_themselves(ball):
+    assert ball == ball.replace({}) and ball != ball.replace({"impact.body.radius": 0.02})
+    assert "ball" in repr(ball) and "<pre>" in ball._repr_html_()

@@ -1,0 +1,57 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Every block of docs/studies.md runs as it stands, in the order of the page; the notebook runs from top to end."""
+
+import os
+import re
+import shutil
+import subprocess
+import sys
+from pathlib import Path
+
+import pandas as pd
+import pytest
+from cluster import absent, cluster
+
+ROOT = Path(__file__).parents[2]
+BLOCKS = re.findall(r"^```(sh|python|sh slurm)\n(.*?)^```$", (ROOT / "docs/studies.md").read_text(), re.M | re.S)
+MISSING = absent()
+
+
+def play(kind: str, folder: Path, env: dict[str, str] | None = None) -> None:
+    """Run the blocks of a kind in a folder that has our cases."""
+    shutil.copytree(ROOT / "cases", folder / "cases", dirs_exist_ok=True)
+    found = dict(env or os.environ)
+    found["PATH"] = f"{Path(sys.executable).parent}:{found['PATH']}"
+    wanted = [(k, text) for k, text in BLOCKS if (k == "sh slurm") == (kind == "slurm")]
+    assert len(wanted) >= 2
+    for k, text in wanted:
+        program = [sys.executable, "-c", text] if k == "python" else ["bash", "-e", "-c", text]
+        done = subprocess.run(program, cwd=folder, env=found, capture_output=True, text=True)
+        assert done.returncode == 0, f"{text}\n{done.stdout}{done.stderr}"
+
+
+def test_a_study_in_ten_minutes(tmp_path):
+    play("local", tmp_path)
+    assert len(pd.read_csv(tmp_path / "runs/study/sweep.csv")) == 15 * 32
+    assert len(pd.read_csv(tmp_path / "runs/table/sweep.csv")) == 2 * 32
+
+
+@pytest.mark.skipif(MISSING is not None and not os.environ.get("CI"), reason=str(MISSING))
+def test_on_my_cluster(tmp_path):
+    (tmp_path / "slurm").mkdir()
+    with cluster(tmp_path / "slurm") as nodes:
+        play("slurm", tmp_path, nodes.env)
+    assert pd.read_csv(tmp_path / "runs/byhand/sweep.csv")["status"].tolist() == ["done"] * 64
+
+
+@pytest.mark.liggghts
+def test_the_notebook_runs(tmp_path, monkeypatch):
+    import nbformat
+    from nbclient import NotebookClient
+
+    monkeypatch.setenv("PATH", f"{Path(sys.executable).parent}:{os.environ['PATH']}")
+    shutil.copytree(ROOT / "cases", tmp_path / "cases")
+    notebook = nbformat.read(ROOT / "docs/notebook.ipynb", as_version=4)
+    NotebookClient(notebook, timeout=300, resources={"metadata": {"path": str(tmp_path)}}).execute()
+    kinds = [o.get("data", {}).keys() for cell in notebook.cells for o in cell.get("outputs", [])]
+    assert sum("image/png" in k for k in kinds) >= 2 and sum("text/html" in k for k in kinds) >= 3
