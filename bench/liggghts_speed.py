@@ -5,19 +5,21 @@ Run: .venv/bin/python bench/liggghts_speed.py [--quick]
 
 A model name may carry a loop: ep/thornton@avx2, @sse2 (instruction sets of our pair loop) or @generic (LIGGGHTS's loop
 with our model). Every model sees the same deck and starts from the same positions; the models take turns, and each
-keeps its fastest run, because on a shared machine the noise only adds. The moving packings are dense, so that they keep
-their contacts whatever a model dissipates: the number of contacts stands in the table. Instruction counts (callgrind)
-repeat exactly, but know nothing of divisions and roots that wait for each other. From the frozen and the moving
-packing, two equations: what a pair that touches costs, and one that does not.
+keeps its shortest step, timed inside the process (step_times.cpp), because on a shared machine the noise only adds. The
+moving packings are dense, so that they keep their contacts whatever a model dissipates: their number stands in
+the table. From the frozen and the moving packing, two equations: what a pair that touches costs, and one that does not.
+Instruction counts (callgrind) repeat exactly, but know nothing of divisions and roots that wait for each other.
 """
 
 import argparse
 import math
 import re
 import shutil
+import subprocess
 import sys
 import tempfile
 from dataclasses import dataclass, replace
+from functools import cache
 from pathlib import Path
 
 import numpy as np
@@ -107,7 +109,6 @@ def deck(
     model,
     *,
     steps,
-    chunks=1,
     dt="1e-13",
     warm=2,
     unload=True,
@@ -133,7 +134,7 @@ def deck(
         p_y=per_type(1e6),
         Y=per_type(3.6e5),
         ratio=" ".join(["0.01"] * types),
-        runs=f"run {steps}\n" + f"run {steps} pre no\n" * (chunks - 1),
+        runs=f"run {steps}\n",
         dt=dt,
         skin=skin,
         lists=f" {lists}" if lists else "",
@@ -148,9 +149,9 @@ def deck(
     )
 
 
-FROZEN = {"data": (17, 1.01, 0.03), "steps": 10, "chunks": 30}
-DYNAMIC = {"data": (17, 0.985, 0.002, 0.05), "steps": 100, "chunks": 3}
-SHEARED = {"data": (17, 0.985, 0.002, 0.05, 0.5), "steps": 100, "chunks": 3}
+FROZEN = {"data": (17, 1.01, 0.03), "steps": 100}
+DYNAMIC = {"data": (17, 0.985, 0.002, 0.05), "steps": 150}
+SHEARED = {"data": (17, 0.985, 0.002, 0.05, 0.5), "steps": 150}
 THIN = {"skin": "1e-4", "lists": "every 18 check no"}
 MOVING = {"dt": "2e-6", "unload": False, "warm": 50}
 SCENES = {
@@ -169,31 +170,41 @@ SCENES = {
 
 @dataclass
 class Cost:
-    """Fastest loop and pair time [ms per step], contacts at the end, and lists made anew on the way."""
+    """Shortest step and pair evaluation [ms], contacts at the end, lists made anew on the way, pairs in them."""
 
     loop: float = math.inf
     pair: float = math.inf
     contacts: int = 0
     rebuilds: int = 0
-    neighbours: int = 0  # pairs in the lists at the end
+    neighbours: int = 0
 
 
-def read(text, steps):
-    """Cost from a log; its first run warms up and does not count."""
-    loops = re.findall(r"Loop time of (\S+)", text)[1:]
-    pairs = re.findall(r"Pair  time \(%\) = (\S+)", text)[1:]
+def read(text, times):
+    """Cost from a log, whose first run warms up, and from what step_times.cpp wrote."""
+    pair, step = map(float, times.split())
     touching = re.findall(r"^ *\d+ +\d+ +(\d+) *$", text, re.MULTILINE)
     rebuilds = re.findall(r"Neighbor list builds = (\d+)", text)[1:]
     neighbours = re.findall(r"Total # of neighbors = (\d+)", text)
-    least = [min(map(float, values)) / steps * 1e3 for values in (loops, pairs)]
-    return Cost(*least, int(touching[-1]) // 2, sum(map(int, rebuilds)), int(neighbours[-1]))
+    return Cost(step, pair, int(touching[-1]) // 2, sum(map(int, rebuilds)), int(neighbours[-1]))
 
 
-def start(folder, name, text, **options):
+@cache
+def stopwatch():
+    """step_times.cpp as a library to preload."""
+    made = Path(tempfile.mkdtemp(prefix="epdem_times_")) / "libtimes.so"
+    mpi = subprocess.run(["mpicxx", "--showme:compile"], capture_output=True, text=True, check=True).stdout.split()
+    styles = ROOT / "cpp_contact" / "liggghts" / "styles"
+    line = ["g++", "-std=c++17", "-O2", "-fPIC", "-shared", "-DOMPI_SKIP_MPICXX", f"-I{styles}"]
+    line += ["-isystem", "/usr/include/liggghts", *mpi, str(ROOT / "bench" / "step_times.cpp"), "-o", str(made)]
+    subprocess.run(line, check=True)
+    return str(made)
+
+
+def start(folder, name, text, more=None, **options):
     """A run of the model `name`, MODEL or MODEL@LOOP."""
     loop = name.partition("@")[2]
     env = {"EPDEM_LOOP": loop} if loop == "generic" else {"EPDEM_SIMD": loop} if loop else {}
-    return good(folder, text, env=env, **options).text
+    return good(folder, text, env=env | (more or {}), **options).text
 
 
 def timed(folder, scene, models, repeats, beside=""):
@@ -204,9 +215,19 @@ def timed(folder, scene, models, repeats, beside=""):
         for name in models:
             model = name.partition("@")[0]
             words = beside if model.startswith("ep/") or not beside.endswith(" on") else ""
-            text = deck(model, steps=what["steps"], chunks=what["chunks"], words=words, **options)
-            text = start(folder, name, text, files={"packing.data": data}, ranks=options.get("ranks", 1))
-            now, old = read(text, what["steps"]), best.get(name, Cost())
+            text = deck(model, steps=what["steps"], words=words, **options)
+            times = folder / "times"
+            times.unlink(missing_ok=True)
+            text = start(
+                folder,
+                name,
+                text,
+                files={"packing.data": data},
+                ranks=options.get("ranks", 1),
+                preload=stopwatch(),
+                more={"EPDEM_TIMES": str(times)},
+            )
+            now, old = read(text, times.read_text()), best.get(name, Cost())
             best[name] = replace(now, loop=min(now.loop, old.loop), pair=min(now.pair, old.pair))
     return best
 

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""docs/figures/laws.png: every law against the chapter's equations 8.83, 8.86, 8.88, as lines from theory and as
-points from LIGGGHTS runs.
+"""docs/figures/laws.png: every law against equations 8.83, 8.86 and 8.88 of Seville and Wu 2016.
+
+Lines are theory, points are LIGGGHTS runs.
 
 Run: .venv/bin/python docs/laws.py      (needs LIGGGHTS; 5 s)
 
@@ -89,7 +90,7 @@ def main() -> None:
         xscale="log",
         yscale="log",
         ylim=(0.15, 1.1),
-        title="Four laws, the chapter's equations and LIGGGHTS",
+        title="Four laws: theory, equations 8.83, 8.86, 8.88, and LIGGGHTS",
     )
     below.set(xlabel="impact speed / speed of first yield, v/v_y0", ylabel="e_n / (8.88) - 1", ylim=(-0.25, 0.25))
     ticks = [0.2, 0.3, 0.5, 0.7, 1.0]

@@ -9,9 +9,12 @@ import pytest
 import typer
 
 from epdem.cli import main
+from epdem.studies.sweep import folder as sweep_folder
+from epdem.studies.sweep.run import plan
 
 CASES = Path(__file__).parents[2] / "cases"
-COMMANDS = {c.name: c for c in typer.main.get_command(main.app).commands.values()}
+HIDDEN = "points"  # what batch scripts call; its tests are those of the cluster
+COMMANDS = {c.name: c for c in typer.main.get_command(main.app).commands.values() if c.name != HIDDEN}
 
 
 @dataclass(frozen=True)
@@ -34,3 +37,9 @@ def call(words, capsys, monkeypatch) -> Call:
     written = {str(p): hashlib.sha256(p.read_bytes()).hexdigest() for p in Path().rglob("*") if p.is_file()}
     code = ended.value.code
     return Call(code if isinstance(code, int) else 0, *capsys.readouterr(), tuple(sorted(written.items())))
+
+
+def make_sweep(case: str, folder: Path) -> None:
+    """The folder of a sweep of two points of which none has run."""
+    radii = {"impact.body.radius": "1 mm,2 mm"}
+    sweep_folder.write(plan(Path(case), radii, engines=["embedded"]), folder)

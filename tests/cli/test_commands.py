@@ -11,7 +11,7 @@ from types import SimpleNamespace
 
 import pandas as pd
 import pytest
-from calls import CASES, COMMANDS, call
+from calls import CASES, COMMANDS, call, make_sweep
 
 from epdem import paths, terminal
 from epdem.engines import ENGINES
@@ -40,6 +40,11 @@ DOCUMENTS = {  # words, and what the document must hold
     "stress": (["-g", "poisson", "-l", "hertz", "--every", "2"], lambda d: d["passed"] and len(d["rows"]) == 1),
     "explain": (["steel.toml"], lambda d: all(line["reason"] for line in d)),
     "soften": (["steel.toml", "-k", "32"], lambda d: d["file"] == "steel_soft32.toml" and len(d["changes"]) == 3),
+    "sweep": (
+        ["steel.toml", "-e", "embedded", "--set", "impact.body.radius=1 mm,2 mm", "-j", "1"],
+        lambda d: d["passed"] and d["done"] == 2,
+    ),
+    "status": (["swept"], lambda d: (d["points"], d["done"], d["waiting"]) == (2, 0, 2)),
     "calibrate": (["steel.toml", "--hv", "100"], lambda d: abs(d["value"] / 1057.66e6 - 1) < 1e-5),
 }
 MISTAKES = {  # words, and what the sentence must hold
@@ -57,6 +62,8 @@ MISTAKES = {  # words, and what the sentence must hold
     "explain": (["bad.toml"], "bad.toml: not valid TOML"),
     "soften": (["steel.toml", "-k", "-3"], "--factor -3, must be > 0"),
     "calibrate": (["steel.toml"], "give one measurement"),
+    "sweep": (["steel.toml", "--set", "impact.body.radios=1 mm"], "the nearest: impact.body.radius"),
+    "status": (["nowhere"], "nowhere: not a folder of a sweep"),
 }
 
 
@@ -77,6 +84,8 @@ def test_a_command_prints_one_json_document_and_nothing_else(command, folder, ca
     monkeypatch.setattr(crosscheck, "ENGINES", {"embedded": ENGINES["embedded"]})
     monkeypatch.setattr(crosscheck, "OTHERS", {})
     monkeypatch.setattr(crosscheck, "FOREIGN", {})
+    if command == "status":
+        make_sweep("steel.toml", folder / "swept")
     words, holds = DOCUMENTS[command]
     done = call([command, *words, "--json"], capsys, monkeypatch)
     assert done.code == 0 or command == "doctor", done.err

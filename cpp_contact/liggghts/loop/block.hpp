@@ -13,7 +13,7 @@ enum class Cohesion { off, sjkr, sjkr2 };
 
 /// What a pair of materials has in common; the data of its law follow from `law_data` on.
 enum Constant { shear_modulus, damping, dashpot, friction, rolling_friction, cohesion_density, law_data };
-constexpr int most_constants = law_data + 10;
+constexpr int most_constants = 16;
 
 /// One number per contact; whole vectors of lanes may be read and written behind the last.
 struct alignas(64) Line {
@@ -23,9 +23,9 @@ struct alignas(64) Line {
 struct Block {
   int i[block_size + most_lanes], j[block_size + most_lanes];
   double* history[block_size + most_lanes];
+  const double* material[block_size + most_lanes];  // constants of the pair of types
   Line radi, radj, mi, mj;
   Line frozen_i, frozen_j;         // 1 or 0
-  Line constants[most_constants];  // of one material: in the first lanes only
   Line force[3], torque_i[3], torque_j[3];  // on i; the force on j is its negative
   Line grown, stored;              // plastic work of this step, elastic energy
 };
@@ -36,7 +36,7 @@ struct Pass {
   double now, dt;               // step and its length
   Rolling rolling;
   Cohesion cohesion;
-  bool several;           // pairs of materials in this block
+  bool several;           // pairs of materials in this block; else that of its first contact
   bool damped, viscous;   // whether any pair has a tangential dashpot, a normal one
   bool freeze;            // whether a group of atoms is frozen
   bool work;              // plastic work and elastic energy are asked for

@@ -67,9 +67,21 @@ template <class Law, Tangential tangential, bool rolls>
   constexpr bool springs = tangential == Tangential::history;
   constexpr int last_step = memory<Law>, shear = last_step + 1, roll = shear + 3 * springs;
   constexpr int slots = Law::yields || springs || rolls ? roll + 3 * rolls : 0;
+  constexpr int needed = law_data + static_cast<int>(sizeof(Law) / sizeof(Lanes)), constants = (needed + 3) / 4 * 4;
+  static_assert(constants <= most_constants);
+  Lanes of_all[constants], of_each[constants];
+  const Lanes* constant_of = of_all;
+  for (int c = 0; c < constants; ++c) of_all[c] = constant<Lanes>(b.material[0][c]);
   for (int k = 0; k < n; k += lane_count) {
-    const int m = pass.several ? k : 0;
-    const auto constant_of = [&](int which) __attribute__((always_inline)) { return at(b.constants[which], m); };
+    if (pass.several) {
+      for (int c = 0; c < constants; c += 4) {
+        const Columns four = columns([&](int l) __attribute__((always_inline)) {
+          return load<Row>(b.material[k + l] + c);
+        });
+        of_each[c] = four.a, of_each[c + 1] = four.b, of_each[c + 2] = four.c, of_each[c + 3] = four.d;
+      }
+      constant_of = of_each;
+    }
 
     Contact c;
     c.radi = at(b.radi, k);
@@ -90,9 +102,7 @@ template <class Law, Tangential tangential, bool rolls>
     }
 
     Law law;
-    Lanes data[sizeof law / sizeof(Lanes)];
-    for (unsigned d = 0; d < sizeof law / sizeof(Lanes); ++d) data[d] = constant_of(law_data + d);
-    __builtin_memcpy(static_cast<void*>(&law), data, sizeof law);
+    __builtin_memcpy(static_cast<void*>(&law), constant_of + law_data, sizeof law);
     const Step<Law> now = step(law, c.reff, before, c.deltan);
     if (pass.work) {
       store(b.grown.a + k, plastic_growth(law, c.reff, before, now.after));
@@ -101,17 +111,17 @@ template <class Law, Tangential tangential, bool rolls>
 
     c.Fn = now.force;
     c.kn = 4.0 / 3.0 * law.E_star * now.radius;
-    c.kt = tangential_stiffness(constant_of(shear_modulus), now.radius);
+    c.kt = tangential_stiffness(constant_of[shear_modulus], now.radius);
     c.gammat = Lanes{};
     if (pass.damped || pass.viscous) {
       const Lanes mass = effective_mass(b, k, pass.freeze);
-      if (pass.viscous) c.Fn = damped_force(law, c.reff, before, now, constant_of(dashpot), mass, -c.vn);
-      c.gammat = tangential_damping(constant_of(damping), c.kt, mass);
+      if (pass.viscous) c.Fn = damped_force(law, c.reff, before, now, constant_of[dashpot], mass, -c.vn);
+      c.gammat = tangential_damping(constant_of[damping], c.kt, mass);
     }
 
     Three force = c.Fn * c.en, torque_i{}, torque_j{};
     if (pass.cohesion != Cohesion::off) {
-      const Lanes pull = cohesive_force(c, pass.cohesion, constant_of(cohesion_density));
+      const Lanes pull = cohesive_force(c, pass.cohesion, constant_of[cohesion_density]);
       if (pass.cohesion_slides) c.Fn += pull;
       force = force + pull * c.en;
     }
@@ -119,10 +129,10 @@ template <class Law, Tangential tangential, bool rolls>
       Three Ft;
       if constexpr (springs) {
         Three stretch{value[shear], value[shear + 1], value[shear + 2]};
-        Ft = sliding_spring(c, constant_of(friction), pass.damped, pass.dt, stretch);
+        Ft = sliding_spring(c, constant_of[friction], pass.damped, pass.dt, stretch);
         value[shear] = stretch.x, value[shear + 1] = stretch.y, value[shear + 2] = stretch.z;
       } else {
-        Ft = sliding_dashpot(c, constant_of(friction));
+        Ft = sliding_dashpot(c, constant_of[friction]);
       }
       const Three lever = cross(c.en, Ft);
       force = force + Ft;
@@ -131,12 +141,12 @@ template <class Law, Tangential tangential, bool rolls>
     }
     if constexpr (rolls) {
       Three torque{value[roll], value[roll + 1], value[roll + 2]};
-      rolling_spring(c, constant_of(rolling_friction), pass.torsion, pass.dt, torque);
+      rolling_spring(c, constant_of[rolling_friction], pass.torsion, pass.dt, torque);
       value[roll] = torque.x, value[roll + 1] = torque.y, value[roll + 2] = torque.z;
       torque_i = torque_i - torque;
       torque_j = torque_j + torque;
     } else if (pass.rolling == Rolling::cdt) {
-      const Three torque = rolling_torque(c, constant_of(rolling_friction), pass.torsion);
+      const Three torque = rolling_torque(c, constant_of[rolling_friction], pass.torsion);
       torque_i = torque_i - torque;
       torque_j = torque_j + torque;
     }

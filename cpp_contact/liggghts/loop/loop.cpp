@@ -59,7 +59,6 @@ void PairLoop::run(PairGran* pair, const Plan& plan, double now) {
   flags_ = CONTACT_NORMAL_MODEL | (plan.tangential != Tangential::off ? CONTACT_TANGENTIAL_MODEL : 0) |
            (plan.cohesion != Cohesion::off ? CONTACT_COHESION_MODEL : 0) |
            (plan.rolling == Rolling::epsd2 ? CONTACT_ROLLING_MODEL : 0);
-  kind_of_lanes_ = -1;
 
   Block& b = *block_;
   const LAMMPS_NS::NeighList& list = *pair->list;
@@ -91,7 +90,7 @@ void PairLoop::run(PairGran* pair, const Plan& plan, double now) {
 void PairLoop::finish(const Plan& plan, int n) {
   if (n == 0) return;
   fetch(plan, n);
-  prepare(plan, n);
+  pad(n);
   kernel_(*block_, n, pass_);
   if (plan.tangential != Tangential::off || plan.rolling != Rolling::off)
     scatter<true>(n);
@@ -109,6 +108,8 @@ void PairLoop::fetch(const Plan& plan, int n) {
   const int frozen = pair_->freeze_group_bit(), size = pair_->dnum();
   int** const flags = pair_->listgranhistory ? pair_->listgranhistory->firstneigh : nullptr;
   double** const histories = pair_->listgranhistory ? pair_->listgranhistory->firstdouble : nullptr;
+  const double* const constants = plan.constants.data();
+  bool several = false;
   for (int k = 0; k < n; ++k) {
     const int i = b.i[k], j = b.j[k];
     if (histories) {
@@ -127,40 +128,26 @@ void PairLoop::fetch(const Plan& plan, int n) {
     b.radj.a[k] = radius[j];
     b.mi.a[k] = mass[i];
     b.mj.a[k] = mass[j];
-    if (plan.width > 2) kind_[k] = type[i] * plan.width + type[j];
+    b.material[k] = constants + most_constants * (type[i] * plan.width + type[j]);
+    several |= b.material[k] != b.material[0];
     if (frozen) {
       b.frozen_i.a[k] = (mask[i] & frozen) != 0;
       b.frozen_j.a[k] = (mask[j] & frozen) != 0;
     }
   }
+  pass_.several = several;
 }
 
-/// The constants of the block's materials, and something harmless for the lanes behind the last contact.
-void PairLoop::prepare(const Plan& plan, int n) {
+/// Something harmless for the lanes behind the last contact.
+void PairLoop::pad(int n) {
   Block& b = *block_;
   static double nobodys[64];
   for (int k = n; k < n + most_lanes; ++k) {
     b.i[k] = b.i[0];
     b.j[k] = b.j[0];
     b.history[k] = nobodys;
+    b.material[k] = b.material[0];
     b.radi.a[k] = b.radj.a[k] = b.mi.a[k] = b.mj.a[k] = 1.0;
-  }
-  const int first = plan.width > 2 ? kind_[0] : plan.width + 1;
-  pass_.several = false;
-  if (plan.width > 2)
-    for (int k = 1; k < n; ++k) pass_.several |= kind_[k] != first;
-  if (!pass_.several) {
-    if (first == kind_of_lanes_) return;
-    kind_of_lanes_ = first;
-    for (int c = 0; c < plan.count; ++c)
-      for (int k = 0; k < most_lanes; ++k) b.constants[c].a[k] = plan.constants[first][c];
-    return;
-  }
-  kind_of_lanes_ = -1;
-  for (int k = n; k < n + most_lanes; ++k) kind_[k] = first;
-  for (int k = 0; k < n + most_lanes; ++k) {
-    const double* const from = plan.constants[kind_[k]].data();
-    for (int c = 0; c < plan.count; ++c) b.constants[c].a[k] = from[c];
   }
 }
 

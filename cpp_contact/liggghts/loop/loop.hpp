@@ -22,9 +22,9 @@ struct Plan {
   Rolling rolling = Rolling::off;
   Cohesion cohesion = Cohesion::off;
   bool damped = false, viscous = false, torsion = false, cohesion_slides = false;
-  Ledger* ledger = nullptr;                    // where plastic work is booked, if it is asked for
-  int width = 0, count = 0;                    // number of types + 1; constants of a pair of types
-  std::vector<std::vector<double>> constants;  // by type of i * width + type of j; see Constant
+  Ledger* ledger = nullptr;       // where plastic work is booked, if it is asked for
+  int width = 0;                  // number of types + 1
+  std::vector<double> constants;  // most_constants for each type of i * width + type of j; see Constant
 };
 
 class PairLoop : protected LAMMPS_NS::Pointers {
@@ -40,18 +40,17 @@ class PairLoop : protected LAMMPS_NS::Pointers {
  private:
   void finish(const Plan& plan, int n);
   void fetch(const Plan& plan, int n);
-  void prepare(const Plan& plan, int n);
+  void pad(int n);
   template <bool torques>
   void scatter(int n);
   void book(Ledger& ledger, int n);
 
   const Kernel kernel_;
   const std::unique_ptr<Block> block_;
-  int slot_[block_size + most_lanes];           // place in the neighbour list of i
-  int kind_[block_size + most_lanes];           // pair of types
+  int slot_[block_size + most_lanes];  // place in the neighbour list of i
   Pass pass_{};
   LAMMPS_NS::PairGran* pair_ = nullptr;
-  int flags_ = 0, kind_of_lanes_ = -1;
+  int flags_ = 0;
 };
 
 }  // namespace epdem::liggghts::loop

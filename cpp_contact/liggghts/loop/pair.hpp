@@ -45,19 +45,17 @@ class Pair : public LIGGGHTS::PairStyles::Granular<Model> {
     plan_.cohesion_slides = asked.cohesion_slides;
     plan_.ledger = normal.ledger();
     plan_.width = normal.width();
-    plan_.count = law_data + static_cast<int>(sizeof(Law) / sizeof(double));
-    static_assert(law_data + sizeof(Law) / sizeof(double) <= most_constants);
     double** const mu = plan_.tangential == Tangential::off
                             ? nullptr : property("coeffFrict", &MODEL_PARAMS::createCoeffFrict);
     double** const rolling = plan_.rolling == Rolling::off
                                  ? nullptr : property("coeffRollFrict", &MODEL_PARAMS::createCoeffRollFrict);
     double** const density = plan_.cohesion == Cohesion::off
                                  ? nullptr : property("cohEnergyDens", &MODEL_PARAMS::createCohesionEnergyDensity);
-    plan_.constants.assign(plan_.width * plan_.width, std::vector<double>(most_constants));
+    plan_.constants.assign(plan_.width * plan_.width * most_constants, 0.0);
     for (int i = 1; i < plan_.width; ++i)
       for (int j = 1; j < plan_.width; ++j) {
         const auto& entry = normal.entry(i, j);
-        double* const c = plan_.constants[i * plan_.width + j].data();
+        double* const c = plan_.constants.data() + most_constants * (i * plan_.width + j);
         c[shear_modulus] = entry.G_star;
         c[damping] = entry.damping_number;
         c[dashpot] = entry.viscous_number;

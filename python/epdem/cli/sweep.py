@@ -7,6 +7,7 @@ from typing import Annotated
 
 import typer
 
+from ..errors import CaseError
 from ..terminal import console
 from .options import AsJson, CasePath, Engines, Laws, Out
 
@@ -21,7 +22,7 @@ def sweep(
     ] = None,
     points: Annotated[Path | None, typer.Option("--points", help="CSV file, a column per key")] = None,
     latin_hypercube: Annotated[int | None, typer.Option(help="so many points within the ranges")] = None,
-    seed: Annotated[int, typer.Option(min=0, help="of the latin hypercube")] = 1,
+    seed: Annotated[int | None, typer.Option(min=0, help="of the latin hypercube (default: 1)")] = None,
     engine: Engines = None,
     law: Laws = None,
     ranks: Annotated[int, typer.Option(min=1, max=1024, help="MPI ranks of each point")] = 1,
@@ -45,6 +46,8 @@ def sweep(
     from ..studies.sweep.run import check_points, plan
     from . import sweep_view
 
+    if seed is not None and latin_hypercube is None:
+        raise CaseError("--seed goes with --latin-hypercube; leave it out")
     planned = plan(
         case,
         settings(given or []),
@@ -53,7 +56,7 @@ def sweep(
         ranks=ranks,
         table=points,
         latin_hypercube=latin_hypercube,
-        seed=seed,
+        seed=1 if seed is None else seed,
     )
     if dry_run:
         check_points(planned, range(1, len(planned.points) + 1), jobs)
