@@ -10,11 +10,10 @@ from pathlib import Path
 
 import pandas as pd
 import pytest
-from cluster import absent, cluster
+from cluster import cluster, needs_slurm
 
 ROOT = Path(__file__).parents[2]
 BLOCKS = re.findall(r"^```(sh|python|sh slurm)\n(.*?)^```$", (ROOT / "docs/studies.md").read_text(), re.M | re.S)
-MISSING = absent()
 
 
 def play(kind: str, folder: Path, env: dict[str, str] | None = None) -> None:
@@ -36,7 +35,7 @@ def test_a_study_in_ten_minutes(tmp_path):
     assert len(pd.read_csv(tmp_path / "runs/table/sweep.csv")) == 2 * 32
 
 
-@pytest.mark.skipif(MISSING is not None and not os.environ.get("CI"), reason=str(MISSING))
+@needs_slurm
 def test_on_my_cluster(tmp_path):
     (tmp_path / "slurm").mkdir()
     with cluster(tmp_path / "slurm") as nodes:

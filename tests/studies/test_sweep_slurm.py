@@ -2,14 +2,13 @@
 """Sweeps as jobs of a real Slurm: failed and cancelled points, a controller that restarts, requeued scenes, ranks."""
 
 import json
-import os
 import subprocess
 import sys
 from pathlib import Path
 
 import pandas as pd
 import pytest
-from cluster import absent, cluster, until
+from cluster import cluster, needs_slurm, until
 from test_sweep_scenes import BED
 
 from epdem.errors import CaseError
@@ -20,8 +19,6 @@ from epdem.studies.sweep.status import status
 ROOT = Path(__file__).parents[2]
 EPDEM = str(Path(sys.executable).parent / "epdem")
 pytestmark = pytest.mark.liggghts
-MISSING = absent()
-needs_slurm = pytest.mark.skipif(MISSING is not None and not os.environ.get("CI"), reason=str(MISSING))
 
 
 @pytest.fixture(scope="module")
