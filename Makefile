@@ -1,5 +1,5 @@
 # Each target is one line that calls a script or a tool.
-.PHONY: setup demo test bench docs tidy clean
+.PHONY: setup demo test bench docs tidy sanitize clean
 
 setup:
 	@scripts/setup
@@ -21,6 +21,9 @@ docs: setup
 tidy: setup
 	.venv/bin/clang-tidy --quiet cpp_contact/capi/*.cpp cpp_contact/liggghts/loop/sse2.cpp tests/*/*.cpp -- \
 	  -std=c++17 -Icpp_contact/include -DEPDEM_VERSION='""'
+
+sanitize: setup
+	.venv/bin/python scripts/sanitize
 
 clean:
 	rm -rf .venv build runs
