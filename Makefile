@@ -1,5 +1,5 @@
 # Each target is one line that calls a script or a tool.
-.PHONY: setup demo test bench docs clean
+.PHONY: setup demo test bench docs tidy clean
 
 setup:
 	@scripts/setup
@@ -16,6 +16,11 @@ bench: setup
 
 docs: setup
 	.venv/bin/python docs/make.py
+
+# the files that use every header of the laws; the wheel of clang-tidy brings its own compiler
+tidy: setup
+	.venv/bin/clang-tidy --quiet cpp_contact/capi/*.cpp cpp_contact/liggghts/loop/sse2.cpp tests/*/*.cpp -- \
+	  -std=c++17 -Icpp_contact/include -DEPDEM_VERSION='""'
 
 clean:
 	rm -rf .venv build runs

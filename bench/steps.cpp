@@ -141,8 +141,9 @@ void segment_choice(const char* name, const F& f) {
     const double u = std::pow(10.0, -6.0 * i / 100000.0);
     const long double phi = 4.0L * asinl(sqrtl(u / 2.0L));
     // (phi - sin phi)/2, by its series where that cancels
-    const long double q = phi * phi, series = phi * q / 12.0L *
-        (1.0L - q / 20.0L * (1.0L - q / 42.0L * (1.0L - q / 72.0L * (1.0L - q / 110.0L * (1.0L - q / 156.0L)))));
+    const long double q = phi * phi;
+    const long double inner = 1.0L - q / 72.0L * (1.0L - q / 110.0L * (1.0L - q / 156.0L));
+    const long double series = phi * q / 12.0L * (1.0L - q / 20.0L * (1.0L - q / 42.0L * inner));
     const long double exact = phi > 0.3L ? 0.5L * (phi - sinl(phi)) : series;
     worst = std::max(worst, std::fabs(double(f(u) / exact - 1.0L)));
   }

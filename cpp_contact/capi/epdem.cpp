@@ -34,7 +34,7 @@ constexpr LawInfo info() {
 }
 
 #define EPDEM_INFO(Class) info<Class<double>>(),
-const LawInfo laws[] = {EPDEM_LAWS(EPDEM_INFO)};
+constexpr LawInfo laws[] = {EPDEM_LAWS(EPDEM_INFO)};
 #undef EPDEM_INFO
 constexpr int n_laws = int(sizeof(laws) / sizeof(laws[0]));
 
@@ -176,7 +176,7 @@ EPDEM_EXPORT int epdem_impacts(int law, double E_star, const double* parameters,
   return with_law(law, E_star, parameters, [&](const auto& l) {
     for (size_t i = 0; i < n; ++i) {
       const Path<double> path{overlap ? overlap + i * stride : nullptr, force ? force + i * stride : nullptr,
-                      velocity ? velocity + i * stride : nullptr};
+                              velocity ? velocity + i * stride : nullptr};
       out[i] = output(impact(l, input(in[i]), path));
     }
     return int(EPDEM_OK);

@@ -16,12 +16,7 @@ extern "C" {
 #define EPDEM_ABI 4
 #define EPDEM_MAX_PARAMETERS 8
 
-typedef enum {
-  EPDEM_OK = 0,
-  EPDEM_UNKNOWN_LAW = 1,
-  EPDEM_BAD_PARAMETER = 2,
-  EPDEM_BAD_INPUT = 3
-} epdem_status;
+typedef enum { EPDEM_OK = 0, EPDEM_UNKNOWN_LAW = 1, EPDEM_BAD_PARAMETER = 2, EPDEM_BAD_INPUT = 3 } epdem_status;
 
 typedef struct {
   double force;     /* [N] */
@@ -65,7 +60,7 @@ int epdem_law_parameter_count(int law);
 const char* epdem_law_parameter_name(int law, int k);
 const char* epdem_law_parameter_property(int law, int k); /* LIGGGHTS property/global */
 const char* epdem_law_parameter_unit(int law, int k);
-double epdem_law_parameter_default(int law, int k);       /* NaN: must be given */
+double epdem_law_parameter_default(int law, int k); /* NaN: must be given */
 
 /* n steps, each from its own delta_max and delta; `parameters` as in epdem_law_parameter_name. */
 int epdem_step(int law, double E_star, const double* parameters, double R_star, size_t n, const double* delta_max,

@@ -18,8 +18,13 @@ bool batch(double E_star, const double* parameters, size_t n, const epdem_impact
   for (size_t i = 0; i < n; ++i) {
     const epdem_impact_input& c = in[i];
     const auto o = epdem::impact(law, {c.R_star, c.m_star, c.speed, c.time_step, c.gap, c.steps, c.viscous}, {});
-    out[i] = {double(o.rebound_speed), double(o.force_max), double(o.overlap_max), double(o.last_overlap),
-              o.first, o.last, o.steps};
+    out[i] = {double(o.rebound_speed),
+              double(o.force_max),
+              double(o.overlap_max),
+              double(o.last_overlap),
+              o.first,
+              o.last,
+              o.steps};
   }
   return true;
 }

@@ -4,6 +4,7 @@
 
 // fix_insert_stream_predefined.h lacks this include and an include guard
 #include "fix_insert_stream.h"
+
 // the tangential models use these without including them
 #include "fix_mesh_surface.h"
 #include "fix_property_atom.h"

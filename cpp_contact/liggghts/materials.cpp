@@ -29,9 +29,7 @@ struct Range {
   double low, high;
   bool low_included;
 
-  bool holds(double x) const {
-    return std::isfinite(x) && (x > low || (low_included && x == low)) && x <= high;
-  }
+  bool holds(double x) const { return std::isfinite(x) && (x > low || (low_included && x == low)) && x <= high; }
   std::string text() const {
     if (high == unlimited) return "must be finite and > " + number(low);
     return std::string("must lie in ") + (low_included ? "[" : "(") + number(low) + ", " + number(high) + "]";
@@ -67,8 +65,9 @@ class Reader {
   }
 
   std::string missing(const char* name, const char* unit) const {
-    return std::string("property ") + name + unit_of(unit) + " is missing; give one value per atom type: " +
-           "fix ID all property/global " + name + " peratomtype VALUE ...";
+    return std::string("property ") + name + unit_of(unit) +
+           " is missing; give one value per atom type: " + "fix ID all property/global " + name +
+           " peratomtype VALUE ...";
   }
 
   std::vector<double> per_type(const char* name, const char* unit, Range range) const {
@@ -176,8 +175,8 @@ std::vector<double> parameters_of(const Reader& reader, const Declaration& law, 
     }
     if (strength && !strength_per_type && t.of_type(i) != t.of_type(j))
       reader.fail(std::string(asked.parameters[k].property) + " per type and " +
-                  asked.parameters[law.strength].property + " per pair leave open which body of " +
-                  both(i, j) + " is the softer one; give both per pair");
+                  asked.parameters[law.strength].property + " per pair leave open which body of " + both(i, j) +
+                  " is the softer one; give both per pair");
     values.push_back(t.of_type(softer));
   }
   const std::vector<double> as_given = values;
@@ -201,8 +200,9 @@ std::vector<double> damping_numbers(const Reader& reader, Dashpot dashpot) {
   FixPropertyGlobal* e = reader.find("coefficientRestitution", "peratomtypepair");
   if (!e) {
     if (dashpot == Dashpot::required)
-      reader.fail("tangential no_history needs coefficientRestitution (peratomtypepair): its only force is the "
-                  "dashpot that follows from it; the normal force does not use it");
+      reader.fail(
+          "tangential no_history needs coefficientRestitution (peratomtypepair): its only force is the "
+          "dashpot that follows from it; the normal force does not use it");
     return beta;
   }
   for (int i = 1; i <= n; ++i)
@@ -218,8 +218,9 @@ std::vector<double> viscous_numbers(const Reader& reader, bool viscous) {
   if (!viscous) return numbers;
   FixPropertyGlobal* e = reader.find("coefficientRestitution", "peratomtypepair");
   if (!e)
-    reader.fail("viscous on needs coefficientRestitution (peratomtypepair), the restitution of slow impacts that do "
-                "not yield");
+    reader.fail(
+        "viscous on needs coefficientRestitution (peratomtypepair), the restitution of slow impacts that do "
+        "not yield");
   for (int i = 1; i <= n; ++i)
     for (int j = 1; j <= n; ++j)
       numbers[i * (n + 1) + j] =
@@ -249,8 +250,10 @@ Materials read_materials(LAMMPS_NS::LAMMPS* lmp, PropertyRegistry& registry, con
   Materials materials{width, std::vector<PairOfTypes>(width * width)};
   for (int i = 1; i <= n; ++i)
     for (int j = 1; j <= n; ++j)
-      materials.pairs[i * width + j] = {{E[i] * pascal, nu[i]}, {E[j] * pascal, nu[j]},
-                                        parameters_of(reader, law, asked, tables, pascal, i, j), beta[i * width + j],
+      materials.pairs[i * width + j] = {{E[i] * pascal, nu[i]},
+                                        {E[j] * pascal, nu[j]},
+                                        parameters_of(reader, law, asked, tables, pascal, i, j),
+                                        beta[i * width + j],
                                         dashpots[i * width + j]};
   return materials;
 }

@@ -29,8 +29,7 @@ class Normal : protected LAMMPS_NS::Pointers {
   static constexpr int memory = epdem::memory<Law>;
 
  public:
-  Normal(LAMMPS_NS::LAMMPS* lmp, LIGGGHTS::IContactHistorySetup* setup)
-      : Pointers(lmp), model_(model_name<Law>()) {
+  Normal(LAMMPS_NS::LAMMPS* lmp, LIGGGHTS::IContactHistorySetup* setup) : Pointers(lmp), model_(model_name<Law>()) {
     static_assert(std::is_trivially_copyable_v<State<Law>>);
     if constexpr (remembers) {
       // Flag "0": an even quantity; "1" would change its sign when the pair is stored from the other side.
@@ -74,7 +73,7 @@ class Normal : protected LAMMPS_NS::Pointers {
   void connectToProperties(PropertyRegistry& registry, Dashpot dashpot) {
     // Rebuilt at every init: LIGGGHTS frees all properties there, and the user may have changed them.
     if (!tangential_damping_ && dashpot == Dashpot::optional) dashpot = Dashpot::off;
-    const Declaration law{model_.c_str(), Law::parameters,    Law::n_parameters,      &Law::valid,
+    const Declaration law{model_.c_str(), Law::parameters,    Law::n_parameters,     &Law::valid,
                           Law::strength,  Law::default_ratio, Law::strength_by_ratio};
     const Materials m = read_materials(lmp, registry, law, dashpot, viscous_);
     width_ = m.width;
@@ -128,15 +127,13 @@ class Normal : protected LAMMPS_NS::Pointers {
     const Step<Law> now = step(t.law, R_star, before, delta);
 
     if (keep) {
-      if (plastic_work_)
-        ledger_.template book<wall>(t.law, R_star, before, now.after, delta, {s.i, s.j, atom->nlocal});
+      if (plastic_work_) ledger_.template book<wall>(t.law, R_star, before, now.after, delta, {s.i, s.j, atom->nlocal});
       if constexpr (remembers) std::memcpy(history + offset_, &now.after, sizeof now.after);
       if constexpr (stamped) history[stamp_] = now_;
     }
 
     double force = now.force;
-    if (t.viscous_number > 0.0)
-      force = damped_force(t.law, R_star, before, now, t.viscous_number, s.meff, -s.vn);
+    if (t.viscous_number > 0.0) force = damped_force(t.law, R_star, before, now, t.viscous_number, s.meff, -s.vn);
 
     s.Fn = force;
     s.kn = 4.0 / 3.0 * t.law.E_star * now.radius;  // LIGGGHTS's convention for rolling friction: F/alpha of Hertz

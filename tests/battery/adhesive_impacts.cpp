@@ -93,8 +93,10 @@ int main() {
     double E_star, R_star, numbers[2];
     if (what == "hertz" || what == "thornton") {
       std::cin >> E_star >> R_star >> numbers[0];
-      if (what == "hertz") plain(Hertz(E_star, numbers), R_star);
-      else plain(Thornton(E_star, numbers), R_star);
+      if (what == "hertz")
+        plain(Hertz(E_star, numbers), R_star);
+      else
+        plain(Thornton(E_star, numbers), R_star);
       continue;
     }
     std::cin >> name >> E_star >> R_star >> numbers[0] >> numbers[1];
@@ -105,7 +107,9 @@ int main() {
       continue;
     }
     const bool twice = what == "twice", jumps = twice || what == "impact";
-    if (name == "jkr") jumps ? impact(jkr, R_star, twice) : path(jkr, R_star);
-    else jumps ? impact(ning, R_star, twice) : path(ning, R_star);
+    if (name == "jkr")
+      jumps ? impact(jkr, R_star, twice) : path(jkr, R_star);
+    else
+      jumps ? impact(ning, R_star, twice) : path(ning, R_star);
   }
 }

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Linter, formatter and type checker find nothing."""
+"""Linter, formatters and type checker find nothing."""
 
 import re
 import subprocess
@@ -7,6 +7,7 @@ from pathlib import Path
 
 ROOT = Path(__file__).parents[2]
 FOLDERS = ["python", "tests", "bench", "docs"]
+CPP = ["cpp_contact", "tests", "bench"]
 
 
 def tool(*command: str) -> subprocess.CompletedProcess[str]:
@@ -23,6 +24,13 @@ def test_lint_is_clean():
 def test_layout_is_the_formatters():
     done = tool("ruff", "format", "--check", *FOLDERS)
     assert done.returncode == 0, done.stdout
+
+
+def test_layout_of_cpp_is_the_formatters():
+    files = [str(f) for folder in CPP for f in sorted((ROOT / folder).rglob("*")) if f.suffix in {".hpp", ".h", ".cpp"}]
+    assert len(files) > 30
+    done = tool("clang-format", "--dry-run", "--Werror", *files)
+    assert done.returncode == 0, done.stderr
 
 
 def test_types_are_complete_in_the_whole_package():

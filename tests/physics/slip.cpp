@@ -19,14 +19,30 @@ Four each(F f) {
   for (int k = 0; k < 4; ++k) r.v[k] = f(k);
   return r;
 }
-Four operator+(const Four& a, const Four& b) { return each([&](int k) { return a.v[k] + b.v[k]; }); }
-Four operator-(const Four& a, const Four& b) { return each([&](int k) { return a.v[k] - b.v[k]; }); }
-Four operator*(const Four& a, const Four& b) { return each([&](int k) { return a.v[k] * b.v[k]; }); }
-Four operator/(const Four& a, const Four& b) { return each([&](int k) { return a.v[k] / b.v[k]; }); }
-Four sqrt(const Four& a) { return each([&](int k) { return std::sqrt(a.v[k]); }); }
-Four min(const Four& a, const Four& b) { return each([&](int k) { return std::min(a.v[k], b.v[k]); }); }
-Four max(const Four& a, const Four& b) { return each([&](int k) { return std::max(a.v[k], b.v[k]); }); }
-Four select(const Mask& m, const Four& a, const Four& b) { return each([&](int k) { return m.v[k] ? a.v[k] : b.v[k]; }); }
+Four operator+(const Four& a, const Four& b) {
+  return each([&](int k) { return a.v[k] + b.v[k]; });
+}
+Four operator-(const Four& a, const Four& b) {
+  return each([&](int k) { return a.v[k] - b.v[k]; });
+}
+Four operator*(const Four& a, const Four& b) {
+  return each([&](int k) { return a.v[k] * b.v[k]; });
+}
+Four operator/(const Four& a, const Four& b) {
+  return each([&](int k) { return a.v[k] / b.v[k]; });
+}
+Four sqrt(const Four& a) {
+  return each([&](int k) { return std::sqrt(a.v[k]); });
+}
+Four min(const Four& a, const Four& b) {
+  return each([&](int k) { return std::min(a.v[k], b.v[k]); });
+}
+Four max(const Four& a, const Four& b) {
+  return each([&](int k) { return std::max(a.v[k], b.v[k]); });
+}
+Four select(const Mask& m, const Four& a, const Four& b) {
+  return each([&](int k) { return m.v[k] ? a.v[k] : b.v[k]; });
+}
 Mask operator>(const Four& a, const Four& b) {
   return {{a.v[0] > b.v[0], a.v[1] > b.v[1], a.v[2] > b.v[2], a.v[3] > b.v[3]}};
 }
@@ -42,14 +58,15 @@ void put(const Four& x, double* rows, int width, int member) {
 }
 
 template <int N, bool Flattens, bool Damped, class T>
-void steps(long count, double stiffness, double mu, double* state, const double* now, const double* shear, double* out) {
-  constexpr int lanes = sizeof(T) / sizeof(double), width = 3 * N + 1;
+void steps(long count, double stiffness, double mu, double* state, const double* now, const double* shear,
+           double* out) {
+  constexpr int lanes = sizeof(T) / sizeof(double), width = 3 * N + 1;  // NOLINT(bugprone-sizeof-expression)
   for (long i = 0; i + lanes <= count; i += lanes) {
     epdem::SlipState<N, T> before;
     epdem::Pressed<T> p;
     epdem::Shear<T> s;
-    T* const members[] = {&p.load,  &p.radius, &p.radius_max, &p.flatness, &s.normal.x, &s.normal.y,
-                          &s.normal.z, &s.slip.x, &s.slip.y, &s.slip.z,   &s.turn,     &s.damping};
+    T* const members[] = {&p.load,     &p.radius, &p.radius_max, &p.flatness, &s.normal.x, &s.normal.y,
+                          &s.normal.z, &s.slip.x, &s.slip.y,     &s.slip.z,   &s.turn,     &s.damping};
     for (int k = 0; k < 4; ++k) get(*members[k], now + 4 * i, 4, k);
     for (int k = 0; k < 8; ++k) get(*members[4 + k], shear + 8 * i, 8, k);
     for (int k = 0; k < width; ++k) get(reinterpret_cast<T*>(&before)[k], state + width * i, width, k);

@@ -17,10 +17,9 @@ struct Cavity {
   using State = Peak<T>;
   static constexpr bool yields = true;
   static constexpr bool flattens = true;
-  static constexpr Parameter parameters[] = {
-      {"yield_stress", "yieldStress", "Pa", not_given},
-      {"first_yield_ratio", "firstYieldRatio", "1", 1.60},
-      {"plastic_ratio", "plasticRatio", "1", 2.8}};
+  static constexpr Parameter parameters[] = {{"yield_stress", "yieldStress", "Pa", not_given},
+                                             {"first_yield_ratio", "firstYieldRatio", "1", 1.60},
+                                             {"plastic_ratio", "plasticRatio", "1", 2.8}};
   static constexpr int n_parameters = 3;
   static constexpr int strength = 0;
   static constexpr double default_ratio = 1.0;
@@ -30,7 +29,7 @@ struct Cavity {
   T yield_ratio{};    // alpha_Y/R*
   T plastic_ratio{};  // alpha_P/R*
   T log_s_P{}, beta{};
-  T a_ratio{};        // a_Y/R*
+  T a_ratio{};  // a_Y/R*
 
   /// Whether positive, finite parameters also make sense together.
   static bool valid(const T* parameter) noexcept {
@@ -58,8 +57,7 @@ struct Cavity {
   Point<T> load(T R_star, T delta) const noexcept {
     const auto plastic = delta >= plastic_ratio * R_star;
     Point<T> p{};
-    if (any(plastic))
-      p = {2.0 * pi * R_star * c_P * Y * delta, sqrt(2.0 * R_star * delta), constant<T>(1.0)};
+    if (any(plastic)) p = {2.0 * pi * R_star * c_P * Y * delta, sqrt(2.0 * R_star * delta), constant<T>(1.0)};
     if (any(!plastic)) {
       const T log_s = log(only(!plastic, delta / (yield_ratio * R_star)));
       const T a = a_ratio * R_star * exp(0.5 * (1.0 + beta) * log_s);

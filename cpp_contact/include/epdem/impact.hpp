@@ -11,23 +11,23 @@ namespace epdem {
 /// One impact: the relative approach obeys m* alpha'' = -F.
 template <class T>
 struct ImpactInput {
-  T R_star;         // [m]
-  T m_star;         // [kg]
-  T speed;          // approach speed [m/s]
-  T time_step;      // [s]
-  T gap;            // distance before first touch [m]; the phase of the impact is gap/(speed time_step);
+  T R_star;            // [m]
+  T m_star;            // [kg]
+  T speed;             // approach speed [m/s]
+  T time_step;         // [s]
+  T gap;               // distance before first touch [m]; the phase of the impact is gap/(speed time_step);
                        // negative: they overlap already
   std::int64_t steps;  // at most so many steps are taken
-  T viscous;        // viscous_number of the pair, 0: no dashpot
+  T viscous;           // viscous_number of the pair, 0: no dashpot
 };
 
 template <class T>
 struct ImpactOutput {
-  T rebound_speed;            // [m/s]
-  T force_max, overlap_max;   // largest sampled values [N], [m]
-  T last_overlap;             // overlap at the last loaded sample [m]
-  std::int64_t first, last;      // first and last step with a force
-  std::int64_t steps;            // steps taken
+  T rebound_speed;           // [m/s]
+  T force_max, overlap_max;  // largest sampled values [N], [m]
+  T last_overlap;            // overlap at the last loaded sample [m]
+  std::int64_t first, last;  // first and last step with a force
+  std::int64_t steps;        // steps taken
 };
 
 /// Samples of the path, written if the pointers are set; room for steps + 1 values each.
@@ -99,8 +99,7 @@ inline ImpactOutput<Number<Law>> bounces(const Law& law, const ImpactInput<Numbe
   T phase = 0.5;
   for (std::int64_t k = 0; k < count; ++k) {
     const bool dented = state.delta_max > law.elastic_overlap(in.R_star);
-    const T dent =
-        dented ? state.delta_max - recovered_overlap(law.E_star, law.load(in.R_star, state.delta_max)) : 0.0;
+    const T dent = dented ? state.delta_max - recovered_overlap(law.E_star, law.load(in.R_star, state.delta_max)) : 0.0;
     in.gap = phase * in.speed * in.time_step - dent;
     out = impact(law, in, {}, state);
     steps += out.steps;

@@ -27,7 +27,7 @@ struct Jkr {
   T pull;  // pi Gamma
 
   Jkr(T E_star_, const T* parameter) noexcept : E_star(E_star_), pull(pi * parameter[0]) {
-      c = sqrt(2.0 * pull / E_star);
+    c = sqrt(2.0 * pull / E_star);
   }
 };
 
@@ -37,7 +37,8 @@ template <class T>
 inline adhesive::Step<Jkr<T>> step(const Jkr<T>& law, T R_star, const typename Jkr<T>::State& before, T delta,
                                    T closing) noexcept {
   using namespace adhesive;
-  const auto stood = before.root > 0.0, forms = (before.root <= 0.0) & (delta > 0.0);
+  const auto stood = before.root > 0.0;
+  const auto forms = (before.root <= 0.0) & (delta > 0.0);
   const T cube = law.c * R_star, root = any(stood | forms) ? refreshed(before.root, cube) : before.root;
   const T y_f = fold_share * root, fold = -3.0 * y_f * y_f * y_f * y_f, X = R_star * delta;
   const auto ends = stood & (X < fold), stands = (stood & (X >= fold)) | forms;

@@ -95,11 +95,11 @@ EPDEM_INLINE Lanes sqrt(Lanes x) noexcept {
 }
 
 // The library's functions, lane by lane: the same bits as for one contact. A lane that holds NaN costs no call.
-#define EPDEM_LANE_BY_LANE(f)                        \
-  [[gnu::noinline]] inline Lanes f(Lanes x) noexcept {       \
-    for (int l = 0; l < lane_count; ++l)                  \
-      if (x[l] == x[l]) x[l] = std::f(x[l]);         \
-    return x;                                        \
+#define EPDEM_LANE_BY_LANE(f)                          \
+  [[gnu::noinline]] inline Lanes f(Lanes x) noexcept { \
+    for (int l = 0; l < lane_count; ++l)               \
+      if (x[l] == x[l]) x[l] = std::f(x[l]);           \
+    return x;                                          \
   }
 EPDEM_LANE_BY_LANE(cbrt)
 EPDEM_LANE_BY_LANE(exp)
@@ -139,8 +139,8 @@ typedef long long Order __attribute__((vector_size(64)));
 template <class F>
 EPDEM_INLINE Columns columns(F row) noexcept {
   const auto two = [&](int l) __attribute__((always_inline)) {
-    return static_cast<Lanes>(_mm512_insertf64x4(_mm512_castpd256_pd512(static_cast<__m256d>(row(l))),
-                                             static_cast<__m256d>(row(l + 4)), 1));
+    return static_cast<Lanes>(
+        _mm512_insertf64x4(_mm512_castpd256_pd512(static_cast<__m256d>(row(l))), static_cast<__m256d>(row(l + 4)), 1));
   };
   const Lanes r0 = two(0), r1 = two(1), r2 = two(2), r3 = two(3);
   const Order even{0, 8, 2, 10, 4, 12, 6, 14}, odd{1, 9, 3, 11, 5, 13, 7, 15};

@@ -94,8 +94,10 @@ inline Number<Law> plastic_growth(const Law& law, Number<Law> R_star, const Stat
   using T = Number<Law>;
   const auto grows = after.delta_max > before.delta_max;
   if (!any(grows)) return T{};
-  return select(grows, plastic_work(law, R_star, only(grows, after.delta_max)) -
-                           plastic_work(law, R_star, only(grows, before.delta_max)), T{});
+  return select(grows,
+                plastic_work(law, R_star, only(grows, after.delta_max)) -
+                    plastic_work(law, R_star, only(grows, before.delta_max)),
+                T{});
 }
 
 /// Elastic energy [J] of a contact at overlap `delta` after a step that left it with `after`; it returns on separation.

@@ -14,8 +14,8 @@ inline constexpr double pi = 3.14159265358979323846;
 
 /// Elastic constants of one body; young_modulus may be infinite (a rigid body).
 struct Elastic {
-  double young_modulus;   // E [Pa]
-  double poisson_ratio;   // nu [-]
+  double young_modulus;  // E [Pa]
+  double poisson_ratio;  // nu [-]
 };
 
 /// Effective modulus E* of two bodies [Pa]: 1/E* = (1-nu1^2)/E1 + (1-nu2^2)/E2.

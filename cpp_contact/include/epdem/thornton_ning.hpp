@@ -34,7 +34,7 @@ struct ThorntonNing {
   T flat;  // pi/(2 E*): 1/A in R*/a
 
   ThorntonNing(T E_star_, const T* parameter) noexcept : E_star(E_star_), p_y(parameter[1]), pull(pi * parameter[0]) {
-      c = sqrt(2.0 * pull / E_star);
+    c = sqrt(2.0 * pull / E_star);
     B = sqrt(2.0 * parameter[0] * E_star / pi);
     flat = pi / (2.0 * E_star);
   }
@@ -44,7 +44,7 @@ struct ThorntonNing {
 
   /// F [N] of a contact that yields.
   T load(T R_star, T y) const noexcept {
-      const T soft = flat * R_star, y2 = y * y;
+    const T soft = flat * R_star, y2 = y * y;
     const T S = p_y + sqrt(p_y * p_y + 4.0 * B / soft * y);  // 2 A u
     return pi * (p_y * (y2 * y2 - S * S * soft * soft / 12.0) - 2.0 / 3.0 * B * soft * y * S);
   }
@@ -104,7 +104,8 @@ inline adhesive::Step<ThorntonNing<T>> step(const ThorntonNing<T>& law, T R_star
   if (any(ends)) F = select(ends, on_parting(law.E_star, law.pull, R, y_f, (fold - X) / R, closing), F);
   const auto keeps = stands | (delta > 0.0);
   const T delta_max = select(keeps, select(grows, delta, before.delta_max), zero);
-  return {F, select(stands, y * y, zero),
+  return {F,
+          select(stands, y * y, zero),
           {select(stands, root, zero), delta_max, select(keeps, dent, zero), select(keeps, R, zero)}};
 }
 

@@ -14,8 +14,8 @@ namespace detail {
 template <class T>
 inline T segment(T u) noexcept {
   const T t = 2.0 * u - 1.0, t2 = t * t, t4 = t2 * t2, t8 = t4 * t4;
-  const T c0 = (1.7371770873806556 - 0.15627588828780442 * t) +
-               (-0.008779284872239073 - 0.0010977312731426958 * t) * t2;
+  const T c0 =
+      (1.7371770873806556 - 0.15627588828780442 * t) + (-0.008779284872239073 - 0.0010977312731426958 * t) * t2;
   const T c1 = (-0.00018258110274334128 - 3.541558286543854e-05 * t) +
                (-7.571561566503503e-06 - 1.7315768282685705e-06 * t) * t2;
   const T c2 = (-4.1606712085594747e-07 - 1.0385134222493257e-07 * t) +
@@ -48,8 +48,8 @@ inline Point<T> unload(T E_star, const Point<T>& peak, T delta_max, T delta) noe
     }
     if (any(!flat)) {
       const T A = 0.75 * (1.0 - tau), B = 2.0 / pi * tau;
-      const T S = B + sqrt(B * B + 4.0 * A * w), v = (S - 2.0 * w) / S;  // v = 1 - y
-      const T disc = v * (2.0 - v);  // 1 - y^2
+      const T S = B + sqrt(B * B + 4.0 * A * w), v = (S - 2.0 * w) / S;
+      const T disc = v * (2.0 - v);  // 1 - y^2 with v = 1 - y
       u = select(flat, u, v);
       share = select(flat, share, (1.0 - tau) * disc * sqrt(disc) + B * v * sqrt(v) * detail::segment(v));
     }

@@ -25,9 +25,9 @@ struct Block {
   double* history[block_size + most_lanes];
   const double* material[block_size + most_lanes];  // constants of the pair of types
   Line radi, radj, mi, mj;
-  Line frozen_i, frozen_j;         // 1 or 0
+  Line frozen_i, frozen_j;                  // 1 or 0
   Line force[3], torque_i[3], torque_j[3];  // on i; the force on j is its negative
-  Line grown, stored;              // plastic work of this step, elastic energy
+  Line grown, stored;                       // plastic work of this step, elastic energy
 };
 
 /// What all contacts of a pass have in common.
@@ -36,12 +36,12 @@ struct Pass {
   double now, dt;               // step and its length
   Rolling rolling;
   Cohesion cohesion;
-  bool several;           // pairs of materials in this block; else that of its first contact
-  bool damped, viscous;   // whether any pair has a tangential dashpot, a normal one
-  bool freeze;            // whether a group of atoms is frozen
-  bool work;              // plastic work and elastic energy are asked for
-  bool torsion;           // rolling friction also resists torsion
-  bool cohesion_slides;   // cohesion lowers the normal force that friction sees
+  bool several;          // pairs of materials in this block; else that of its first contact
+  bool damped, viscous;  // whether any pair has a tangential dashpot, a normal one
+  bool freeze;           // whether a group of atoms is frozen
+  bool work;             // plastic work and elastic energy are asked for
+  bool torsion;          // rolling friction also resists torsion
+  bool cohesion_slides;  // cohesion lowers the normal force that friction sees
 };
 
 /// Computes n contacts; the lanes behind them have valid indices and a history that nobody reads.

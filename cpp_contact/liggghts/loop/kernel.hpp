@@ -75,9 +75,8 @@ template <class Law, Tangential tangential, bool rolls>
   for (int k = 0; k < n; k += lane_count) {
     if (pass.several) {
       for (int c = 0; c < constants; c += 4) {
-        const Columns four = columns([&](int l) __attribute__((always_inline)) {
-          return load<Row>(b.material[k + l] + c);
-        });
+        const Columns four =
+            columns([&](int l) __attribute__((always_inline)) { return load<Row>(b.material[k + l] + c); });
         of_each[c] = four.a, of_each[c + 1] = four.b, of_each[c + 2] = four.c, of_each[c + 3] = four.d;
       }
       constant_of = of_each;
@@ -164,8 +163,8 @@ template <class Law, Tangential tangential, bool rolls>
 
 }  // namespace
 
-#define EPDEM_OF_LAW(Class)                                                                 \
-  {{&contacts<Class<Lanes>, Tangential::off, false>, &contacts<Class<Lanes>, Tangential::off, true>}, \
+#define EPDEM_OF_LAW(Class)                                                                                         \
+  {{&contacts<Class<Lanes>, Tangential::off, false>, &contacts<Class<Lanes>, Tangential::off, true>},               \
    {&contacts<Class<Lanes>, Tangential::no_history, false>, &contacts<Class<Lanes>, Tangential::no_history, true>}, \
    {&contacts<Class<Lanes>, Tangential::history, false>, &contacts<Class<Lanes>, Tangential::history, true>}},
 extern const Kernels EPDEM_KERNELS;

@@ -19,13 +19,14 @@ const Kernels& kernels(LAMMPS_NS::LAMMPS* lmp) {
 #if defined __x86_64__
   __builtin_cpu_init();
   const bool avx2 = __builtin_cpu_supports("avx2");
-  const bool avx512 = __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") &&
-                      __builtin_cpu_supports("avx512vl");
+  const bool avx512 =
+      __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512vl");
   if (avx512 && (want.empty() || want == "avx512")) return kernels_avx512;
   if (avx2 && (want.empty() || want == "avx2")) return kernels_avx2;
 #endif
   if (!want.empty() && want != "sse2") {
-    const std::string text = "EPDEM_SIMD = " + want + ": this processor has no such instructions; leave it unset, or "
+    const std::string text = "EPDEM_SIMD = " + want +
+                             ": this processor has no such instructions; leave it unset, or "
                              "take sse2, avx2 or avx512";
     lmp->error->all(FLERR, text.c_str());
   }
@@ -54,8 +55,20 @@ const char* PairLoop::obstacle(PairGran* pair, int vflag, int addflag) const {
 void PairLoop::run(PairGran* pair, const Plan& plan, double now) {
   if (atom->nlocal == 0) return;
   pair_ = pair;
-  pass_ = {atom->x[0], atom->v[0], atom->omega[0], now, update->dt, plan.rolling, plan.cohesion, false, plan.damped,
-           plan.viscous, pair->freeze_group_bit() != 0, plan.ledger != nullptr, plan.torsion, plan.cohesion_slides};
+  pass_ = {atom->x[0],
+           atom->v[0],
+           atom->omega[0],
+           now,
+           update->dt,
+           plan.rolling,
+           plan.cohesion,
+           false,
+           plan.damped,
+           plan.viscous,
+           pair->freeze_group_bit() != 0,
+           plan.ledger != nullptr,
+           plan.torsion,
+           plan.cohesion_slides};
   flags_ = CONTACT_NORMAL_MODEL | (plan.tangential != Tangential::off ? CONTACT_TANGENTIAL_MODEL : 0) |
            (plan.cohesion != Cohesion::off ? CONTACT_COHESION_MODEL : 0) |
            (plan.rolling == Rolling::epsd2 ? CONTACT_ROLLING_MODEL : 0);

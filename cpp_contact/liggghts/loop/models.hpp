@@ -49,7 +49,7 @@ EPDEM_INLINE void surface(Contact& c, const Three& v) {
   c.cri = c.radi - 0.5 * c.deltan;
   c.crj = c.radj - 0.5 * c.deltan;
   const Three wr = c.rinv * (c.cri * c.omega_i + c.crj * c.omega_j);
-  const Three &d = c.delta;
+  const Three& d = c.delta;
   c.vtr = {vt.x - (d.z * wr.y - d.y * wr.z), vt.y - (d.x * wr.z - d.z * wr.x), vt.z - (d.y * wr.x - d.x * wr.y)};
 }
 

@@ -18,7 +18,10 @@ class Pair : public LIGGGHTS::PairStyles::Granular<Model> {
 
  public:
   Pair(LAMMPS_NS::LAMMPS* lmp, LAMMPS_NS::PairGran* parent, int64_t hash)
-      : Base(lmp, parent, hash), lmp_(lmp), model_(*Model::latest), ids_(Ids::of(hash)),
+      : Base(lmp, parent, hash),
+        lmp_(lmp),
+        model_(*Model::latest),
+        ids_(Ids::of(hash)),
         missing_(what_is_missing(ids_)) {
     if (missing_) return;
     plan_.tangential = ids_.tangential == TANGENTIAL_HISTORY      ? Tangential::history
@@ -45,12 +48,13 @@ class Pair : public LIGGGHTS::PairStyles::Granular<Model> {
     plan_.cohesion_slides = asked.cohesion_slides;
     plan_.ledger = normal.ledger();
     plan_.width = normal.width();
-    double** const mu = plan_.tangential == Tangential::off
-                            ? nullptr : property("coeffFrict", &MODEL_PARAMS::createCoeffFrict);
-    double** const rolling = plan_.rolling == Rolling::off
-                                 ? nullptr : property("coeffRollFrict", &MODEL_PARAMS::createCoeffRollFrict);
+    double** const mu =
+        plan_.tangential == Tangential::off ? nullptr : property("coeffFrict", &MODEL_PARAMS::createCoeffFrict);
+    double** const rolling =
+        plan_.rolling == Rolling::off ? nullptr : property("coeffRollFrict", &MODEL_PARAMS::createCoeffRollFrict);
     double** const density = plan_.cohesion == Cohesion::off
-                                 ? nullptr : property("cohEnergyDens", &MODEL_PARAMS::createCohesionEnergyDensity);
+                                 ? nullptr
+                                 : property("cohEnergyDens", &MODEL_PARAMS::createCohesionEnergyDensity);
     plan_.constants.assign(plan_.width * plan_.width * most_constants, 0.0);
     for (int i = 1; i < plan_.width; ++i)
       for (int j = 1; j < plan_.width; ++j) {
