@@ -25,8 +25,8 @@ STRENGTH = {"yield_pressure": 2.8e9, "yield_stress": 1e9}
 
 def batch(name: str, passes: int = 12) -> float:
     """ns per step of 256 impacts in one call of the C interface, no samples kept."""
-    info = claw.laws()[name].parameters
-    law = Law(name, E_star=E_STAR, **{p.name: STRENGTH[p.name] for p in info if p.unit == "Pa"})
+    strength = claw.laws()[name].strength
+    law = Law(name, E_star=E_STAR, **({strength.name: STRENGTH[strength.name]} if strength else {}))
     numbers = {"R_star": R_STAR, "m_star": MASS, "speed": np.geomspace(0.1, 100, 256), "time_step": 2e-7, "gap": 1e-9}
     best = np.inf
     for _ in range(passes):
