@@ -79,7 +79,7 @@ class _File:
     def to_toml(self, path: Path | str) -> Path:
         """Write the case as a file that the commands take."""
         with atomic(Path(path)) as temporary:
-            temporary.write_text(self.text)
+            temporary.write_text(self.text, encoding="utf-8")
         return Path(path)
 
     def replace(self, changes: Mapping[str, Any]) -> Self:
@@ -234,6 +234,7 @@ def run(
     out: Path | str | None = ...,
     ranks: int = ...,
     fresh: bool = ...,
+    force: bool = ...,
 ) -> Run: ...
 
 
@@ -245,6 +246,7 @@ def run(
     out: Path | str | None = ...,
     ranks: int = ...,
     fresh: bool = ...,
+    force: bool = ...,
 ) -> SceneRun: ...
 
 
@@ -256,19 +258,23 @@ def run(
     out: Path | str | None = None,
     ranks: int = 1,
     fresh: bool = False,
+    force: bool = False,
 ) -> Run | SceneRun:
     """Run a case on every engine with every law (none: its own), or a scene on one engine: a Run or a SceneRun.
 
-    What is stored in `out` (default: runs/<name>) is taken from there, unless `fresh`. Raises CaseError, EngineError.
+    What is stored in `out` (default: runs/<name>) is taken from there, unless `fresh`; `force` allows other files in
+    it. Raises CaseError, EngineError.
     """
     folder = Path(out) if out is not None else None
     with case._as_file() as path:
         if isinstance(case, Scene):
             if len(engines) != 1 or laws:
                 raise CaseError("a scene has its own law and runs on one engine")
-            return SceneRun(run_scene(path, scene_engine(engines[0]), out=folder, ranks=ranks, fresh=fresh))
+            engine = scene_engine(engines[0])
+            return SceneRun(run_scene(path, engine, out=folder, ranks=ranks, fresh=fresh, force=force))
         tools = [engine_named(name) for name in engines]
-        return Run(run_impacts(path, engines=tools, laws=laws, out=folder, ranks=ranks, fresh=fresh, progress=log.info))
+        words: dict[str, Any] = {"ranks": ranks, "fresh": fresh, "force": force, "progress": log.info}
+        return Run(run_impacts(path, engines=tools, laws=laws, out=folder, **words))
 
 
 def predict(case: Case, law: str | None = None) -> pd.DataFrame:

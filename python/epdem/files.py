@@ -26,6 +26,8 @@ def atomic(path: Path, *, sync: bool = True) -> Iterator[Path]:
             with temporary.open("rb") as written:
                 os.fsync(written.fileno())
         temporary.replace(path)
+    except OSError as error:
+        raise OSError(error.errno, error.strerror, str(path)) from None
     finally:
         temporary.unlink(missing_ok=True)
 
@@ -33,6 +35,6 @@ def atomic(path: Path, *, sync: bool = True) -> Iterator[Path]:
 def write_texts(folder: Path, texts: dict[str, str]) -> list[Path]:
     """Write text files by their path below `folder`, which is made where it is missing."""
     for name, text in texts.items():
-        (folder / name).parent.mkdir(parents=True, exist_ok=True)
-        (folder / name).write_text(text)
+        with atomic(folder / name, sync=False) as temporary:
+            temporary.write_text(text, encoding="utf-8")
     return [folder / name for name in texts]

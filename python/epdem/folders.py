@@ -63,6 +63,11 @@ Known = dict[str, Any]  # what `.epdem.json` holds
 _held: dict[Path, Results] = {}  # folders that this process keeps now
 
 
+def held(folder: Path) -> Results:
+    """The folder as this process keeps it; without a claim nothing in it is foreign."""
+    return _held.get(folder.resolve(), Results(folder))
+
+
 @contextlib.contextmanager
 def claim(folder: Path, *, force: bool = False) -> Iterator[Results]:
     """Keep `folder` (made where it is missing) for one run, until the block ends; blocks of one process may nest.
@@ -98,6 +103,8 @@ def _lock(folder: Path, lock: TextIO) -> None:
         lock.seek(0)
         owner = lock.read().strip() or "another process"
         raise CaseError(f"{folder}: in use by {owner}; wait for its end, or choose another folder by --out") from None
+    if not (folder / LOCK).exists() or (folder / LOCK).stat().st_ino != os.fstat(lock.fileno()).st_ino:
+        raise CaseError(f"{folder}: another run has just ended here; run the command again")
     lock.truncate(0)
     lock.write(f"process {os.getpid()} since {time.strftime('%Y-%m-%d %H:%M:%S')}\n")
     lock.flush()
@@ -133,7 +140,7 @@ def _about(path: Path, before: About | None = None) -> About:
 def _known(folder: Path) -> Known | None:
     """The content of `.epdem.json`, or None if the folder has none that can be read."""
     try:
-        manifest = json.loads((folder / MANIFEST).read_text())
+        manifest = json.loads((folder / MANIFEST).read_text(encoding="utf-8"))
     except (OSError, ValueError):
         return None
     return manifest if isinstance(manifest, dict) else None
@@ -163,4 +170,4 @@ def _refuse(folder: Path, foreign: set[str], ours: bool, force: bool) -> None:
 
 def _write(folder: Path, content: dict[str, object]) -> None:
     with atomic(folder / MANIFEST) as temporary:
-        temporary.write_text(json.dumps(content, indent=1))
+        temporary.write_text(json.dumps(content, indent=1), encoding="utf-8")

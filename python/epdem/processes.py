@@ -145,7 +145,7 @@ def session(leader: int) -> list[int]:
     for entry in Path("/proc").iterdir():
         if entry.name.isdigit():
             with contextlib.suppress(OSError):
-                state, _, _, its_session = (entry / "stat").read_text().rpartition(")")[2].split()[:4]
+                state, _, _, its_session = (entry / "stat").read_text(encoding="utf-8").rpartition(")")[2].split()[:4]
                 if int(its_session) == leader and state != "Z":
                     pids.append(int(entry.name))
     return pids

@@ -37,7 +37,10 @@ KINDS = {  # words of a call without the option, and the value of every option
     "deck of a scene": (("deck", "scene.toml", "-o", "d"), DECK),
     "deck of an own template": (("deck", "own.j2", "-o", "d", "--case", "steel.toml"), DECK),
     "predict impacts": (("predict", "steel.toml"), {"law": "cavity"}),
-    "crosscheck impacts": (("crosscheck", "steel.toml"), {"law": "cavity", "out": "there", "fresh": None}),
+    "crosscheck impacts": (
+        ("crosscheck", "steel.toml"),
+        {"law": "cavity", "out": "there", "fresh": None, "force": None},
+    ),
     "theory": (("theory",), {"material": "brass", "radius": "2 mm", "speed": "1 m/s"}),
     "figures": (("figures",), {"out": "there"}),
     "timestep of impacts": (("timestep", "steel.toml"), {"error": "1e-2", "law": "hertz"}),

@@ -170,7 +170,7 @@ def test_a_wrong_value_anywhere_is_one_line_with_its_place_in_the_words_of_this_
 
 
 def test_a_file_of_the_other_kind_is_named_as_such():
-    with pytest.raises(CaseError, match=r"^f is a bulk scene .* needs impacts .* explain and soften take scenes$"):
+    with pytest.raises(CaseError, match=r"^f is a bulk scene .* needs impacts .* soften and sweep take scenes$"):
         parse(read_toml(CASES / "settle_glass.toml"), "f")
     with pytest.raises(CaseError, match=r"^f is a case of impacts .* needs a bulk scene"):
         scene.parse(STEEL, "f")

@@ -6,7 +6,7 @@ import pytest
 
 from epdem.engines import engine
 from epdem.impacts.plan import Plan
-from epdem.studies.stability.cases import Extreme, build
+from epdem.studies.stability.cases import build
 from epdem.studies.stability.running import setting
 
 SHARE = 0.01  # of the stability limit
@@ -37,7 +37,7 @@ def test_liggghts_learns_of_an_overlap_at_the_start_one_step_later(share, gain, 
     The steps are those of a law that forgets its first evaluation to 1e-9, the round-off of positions over 300 steps;
     the gain over theory is stated to two digits, where velocity Verlet itself leaves 2e-5.
     """
-    s = setting(Extreme("start", "start", build("start")), "thornton")
+    s = setting(build("start"), "thornton")
     theory, x = s.x.theory(), s.x
     elastic = float(np.sqrt(2 * theory.recovered_work(np.array([s.overlap_max]))[0] / x.m_star))
     speed, steps = share * elastic, int(1.5 * s.contact_time / (SHARE * s.limit)) + 20

@@ -22,7 +22,7 @@ class Sourced:
 @cache
 def materials() -> dict[str, Sourced]:
     """All materials of the file by name."""
-    raw = tomllib.loads(Path(__file__).with_name("materials.toml").read_text())
+    raw = tomllib.loads(Path(__file__).with_name("materials.toml").read_text(encoding="utf-8"))
     entries = {}
     for name, entry in raw.items():
         values = {k: v for k, v in entry.items() if k != "source"}

@@ -23,7 +23,8 @@ TEXTS = {
     "literal_error": "must be {expected}",
 }
 OTHER_KIND = {
-    "impact": "is a bulk scene ([scene]) and this needs impacts ([impact]); run, deck, explain and soften take scenes",
+    "impact": "is a bulk scene ([scene]) and this needs impacts ([impact]); "
+    "run, deck, explain, soften and sweep take scenes",
     "scene": "is a case of impacts ([impact]) and this needs a bulk scene ([scene])",
 }
 

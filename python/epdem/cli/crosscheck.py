@@ -63,7 +63,8 @@ def crosscheck(
     cases: Annotated[list[Path], typer.Argument(metavar="CASE...", help="case files (TOML)")],
     law: Annotated[str | None, typer.Option("--law", "-l", help="a law instead of the case's")] = None,
     out: Out = None,
-    fresh: Annotated[bool, typer.Option(help="run again although results are stored")] = False,
+    fresh: Annotated[bool, typer.Option("--fresh", help="run again although results are stored")] = False,
+    force: Annotated[bool, typer.Option("--force", help="write into a folder that holds other files")] = False,
     as_json: AsJson = False,
 ) -> None:
     """Run a case on every installed engine and model, and print errors, order of convergence and invariance."""
@@ -74,7 +75,7 @@ def crosscheck(
     with status() as progress:
         for path in cases:
             folder = out / path.stem if out and len(cases) > 1 else out
-            results.append(check(path, law=law, out=folder, fresh=fresh, progress=progress))
+            results.append(check(path, law=law, out=folder, fresh=fresh, force=force, progress=progress))
     if as_json:
         documents = [
             {"case": c.outcome.case.name, "absent": c.absent, "notes": c.notes, "rows": report.records(c.table)}

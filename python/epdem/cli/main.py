@@ -1,8 +1,10 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """The command `epdem`: functions of a few lines that call the library."""
 
+import errno
 import io
 import json
+import shutil
 import signal
 import sys
 from pathlib import Path
@@ -216,6 +218,8 @@ def main() -> None:
         sys.exit(130)
     except OSError as error:
         place, reason = error.filename or "a file", error.strerror or error
+        if error.errno == errno.ENOSPC:
+            reason = f"{reason} ({shutil.disk_usage(Path(place).parent).free} bytes are free)"
         print(f"epdem: {place}: {reason}; choose another folder by --out, or make it writable", file=sys.stderr)
         sys.exit(2)
 

@@ -9,7 +9,7 @@ import typer
 
 from ..errors import CaseError
 from ..terminal import console
-from .options import AsJson, CasePath, Engines, Laws, Out
+from .options import AsJson, CasePath, Engines, Laws, Out, refuse
 
 
 def sweep(
@@ -58,13 +58,20 @@ def sweep(
         latin_hypercube=latin_hypercube,
         seed=1 if seed is None else seed,
     )
+    if dry_run or write_script:
+        reason = "nothing runs"
+        local = None if executor == "local" else executor
+        refuse(case, reason, executor=local, jobs=jobs if write_script else None, retry_failed=retry_failed)
+        refuse(
+            case, reason, json=as_json and write_script, slurm=None if write_script else slurm, force=force and dry_run
+        )
     if dry_run:
         check_points(planned, range(1, len(planned.points) + 1), jobs)
         sweep_view.points(planned, as_json, console())
         return
     folder = out or Path("runs") / f"{planned.name}_sweep"
     if write_script:
-        study.write_script(planned, folder, slurm or [], write_script)
+        study.write_script(planned, folder, slurm or [], write_script, force=force)
         print(f"sbatch {write_script}")
         return
     with sweep_view.progress() as report:

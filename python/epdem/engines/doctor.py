@@ -54,7 +54,8 @@ def _plugin() -> Finding:
         models = "\n".join(f"pair_style gran model ep/{name} tangential off" for name in claw.laws())
         deck.write_text(
             "atom_style granular\nnewton off\ncommunicate single vel yes\nregion box block 0 1 0 1 0 1\n"
-            f"create_box 1 box\n{models}\n"
+            f"create_box 1 box\n{models}\n",
+            encoding="utf-8",
         )
         try:
             launcher.run(deck.name, Path(folder), seconds=60)

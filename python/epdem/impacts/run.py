@@ -66,7 +66,7 @@ def run_plan(p: Plan, tool: Engine, folder: Path, *, ranks: int = 1, end_power: 
     table = impacts_table(p, measure(p, path, end_power=end_power))
     (folder / "path.bin").unlink(missing_ok=True)  # large; its results are in the table
     seconds = {f"seconds_{k}": v for k, v in path.seconds.items()} | {"seconds": time.perf_counter() - start}
-    return Stage(table, seconds, {f.name: f.read_text() for f in files if f.suffix != ".data"})
+    return Stage(table, seconds, {f.name: f.read_text(encoding="utf-8") for f in files if f.suffix != ".data"})
 
 
 def _inputs(p: Plan, tool: Engine, version: str, ranks: int) -> str:
@@ -165,10 +165,10 @@ def run(
 
 def _run(path: Path, work: _Work, folder: Path, ranks: int, fresh: bool, progress: Callable[[str], None]) -> Outcome:
     stored = folder / "results.h5"
-    old = store.Results() if fresh else _stored(stored)
+    old = _stored(stored)
     attributes = {"case": work.case.name, "epdem": __version__}
     attributes |= {f"version_{name}": version for name, version in work.versions.items()}
-    results = store.Results(case_text=path.read_text(), attributes=attributes)
+    results = store.Results(case_text=path.read_text(encoding="utf-8-sig"), attributes=attributes)
     outcome = Outcome(work.case, folder, results, work.predictions)
     rows = []
     for p in work.plans:
@@ -179,7 +179,7 @@ def _run(path: Path, work: _Work, folder: Path, ranks: int, fresh: bool, progres
         for tool in work.tools:
             key, inputs = f"{law}/{tool.name}", _inputs(p, tool, work.versions[tool.name], ranks)
             progress(f"{tool.name}, {law}: {p.n} impacts")
-            if old.runs.get(key, {}).get("inputs") == inputs:
+            if not fresh and old.runs.get(key, {}).get("inputs") == inputs:
                 results.impacts[key], results.runs[key] = old.impacts[key], old.runs[key]
                 results.decks |= {k: v for k, v in old.decks.items() if k.startswith(key + "/")}
                 outcome.reused.append(key)

@@ -111,8 +111,8 @@ class LammpsMdr:
         deck = self.deck(plan)
         folder.mkdir(parents=True, exist_ok=True)
         files = [folder / "in.impact", folder / deck.data]
-        files[0].write_text(decks.render(self.template, deck=deck))
-        files[1].write_text(self.data(plan))
+        files[0].write_text(decks.render(self.template, deck=deck), encoding="utf-8")
+        files[1].write_text(self.data(plan), encoding="utf-8")
         library = folder / "libmpi.so.12"
         library.unlink(missing_ok=True)
         if found := mpich():
@@ -137,7 +137,7 @@ class LammpsMdr:
             env=env,
         )
         try:
-            lines = path.read_text().splitlines()
+            lines = path.read_text(encoding="utf-8").splitlines()
             frames = np.array(
                 [row.split() for row in lines if row.count(" ") == 3 and not row.startswith("ITEM")], float
             )

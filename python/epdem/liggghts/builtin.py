@@ -27,7 +27,7 @@ class BuiltinHertz(Liggghts):
     """LIGGGHTS's `hertz` without damping: the elastic limit."""
 
     name = "liggghts-hertz"
-    can = WITHOUT_OURS
+    can = replace(WITHOUT_OURS, laws=("hertz",))
 
     def model(self, plan: Plan) -> str:
         return "hertz"

@@ -56,7 +56,7 @@ def local(path: Path) -> np.ndarray:
     Raises EngineError if the file is incomplete.
     """
     try:
-        text = path.read_text()
+        text = path.read_text(encoding="utf-8")
         count = int(text.split("ITEM: NUMBER OF ENTRIES\n", 1)[1].split("\n", 1)[0])
         body = text.split("ITEM: ENTRIES", 1)[1].split("\n", 1)[1]
         table = pd.read_csv(io.StringIO(body), sep=r"\s+", header=None, dtype=float) if body.strip() else pd.DataFrame()

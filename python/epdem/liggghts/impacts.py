@@ -92,8 +92,8 @@ class Liggghts:
         deck = self.deck(plan)
         folder.mkdir(parents=True, exist_ok=True)
         files = [folder / "in.impact", folder / deck.data]
-        files[0].write_text(decks.render(self.template, deck=deck))
-        files[1].write_text(data_text(plan, len(deck.types)))
+        files[0].write_text(decks.render(self.template, deck=deck), encoding="utf-8")
+        files[1].write_text(data_text(plan, len(deck.types)), encoding="utf-8")
         return files
 
     def run(self, plan: Plan, folder: Path, *, ranks: int = 1) -> Trajectory:
@@ -104,9 +104,11 @@ class Liggghts:
 
     def seconds(self, plan: Plan, folder: Path) -> dict[str, float]:
         files = self.write(plan, folder)
-        lines = files[0].read_text().splitlines(keepends=True)
-        files[0].write_text("".join(line for line in lines if not line.startswith("dump ")))  # stepping, not writing
-        (folder / "in.empty").write_text("# nothing\n")
+        lines = files[0].read_text(encoding="utf-8").splitlines(keepends=True)
+        files[0].write_text(
+            "".join(line for line in lines if not line.startswith("dump ")), encoding="utf-8"
+        )  # stepping, not writing
+        (folder / "in.empty").write_text("# nothing\n", encoding="utf-8")
         startup = launcher.run("in.empty", folder, out="out.empty", seconds=120)
         total = launcher.run(files[0].name, folder, log=launcher.LOG, seconds=600)
         stepping = loop_seconds(folder / launcher.LOG)

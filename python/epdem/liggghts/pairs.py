@@ -32,7 +32,7 @@ def velocities(deck: Deck, pairs: Pairs, variant: str, folder: Path) -> np.ndarr
     """After the impacts, shape (2, n, 3), the body first. Raises EngineError; ValueError if bodies are lost."""
     p, deck = pairs.plan, replace(deck, path="out.bin")
     folder.mkdir(parents=True, exist_ok=True)
-    (folder / deck.data).write_text(_data(pairs, deck, variant == "swap"))
+    (folder / deck.data).write_text(_data(pairs, deck, variant == "swap"), encoding="utf-8")
     ranks = 2 if variant == "migration" else 1
     words: dict[str, Any] = {
         "deck": deck,
@@ -50,7 +50,7 @@ def velocities(deck: Deck, pairs: Pairs, variant: str, folder: Path) -> np.ndarr
             words | {"steps": p.steps - pairs.stop, "restart": "middle.restart"},
         ]
     for k, part in enumerate(parts):
-        (folder / f"in.{k}").write_text(decks.render("liggghts/invariance.in.j2", **part))
+        (folder / f"in.{k}").write_text(decks.render("liggghts/invariance.in.j2", **part), encoding="utf-8")
         (folder / deck.path).unlink(missing_ok=True)
         launcher.run(f"in.{k}", folder, ranks=ranks, log=f"log.{k}", out=f"out.{k}", seconds=120)
     v = dump.series(folder / deck.path)[-1].reshape(2, p.n, 3)

@@ -8,6 +8,7 @@ from pathlib import Path
 
 from .. import rendering as decks
 from ..errors import CaseError
+from ..folders import held
 from ..processes import ROW
 from ..scenes.plan import ScenePlan
 from . import scene_tables as tables
@@ -16,7 +17,8 @@ from .scene_deck import deck
 
 
 def _restarts(folder: Path) -> list[tuple[int, Path]]:
-    found = [(re.fullmatch(r"restart\.(\d+)\.bin", p.name), p) for p in folder.glob("restart.*.bin")]
+    ours = [p for p in folder.glob("restart.*.bin") if p.name not in held(folder).foreign]
+    found = [(re.fullmatch(r"restart\.(\d+)\.bin", p.name), p) for p in ours]
     return sorted((int(m[1]), p) for m, p in found if m)
 
 
@@ -62,5 +64,5 @@ def write_resume(p: ScenePlan, folder: Path, step: int) -> Path:
         d = replace(d, insertions=tuple(f for f in d.insertions if not f.rate))
     path = folder / "in.resume"
     continued = replace(d, from_restart=f"restart.{step}.bin", resumed_phase=phase)
-    path.write_text(decks.render("liggghts/scene_resume.in.j2", deck=continued))
+    path.write_text(decks.render("liggghts/scene_resume.in.j2", deck=continued), encoding="utf-8")
     return path

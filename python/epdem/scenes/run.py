@@ -130,7 +130,10 @@ def _anew(work: _Work, place: Results) -> SceneOutcome:
 
 def _resumed(work: _Work, folder: Path) -> SceneOutcome:
     start = time.perf_counter()
-    if not all((folder / name).exists() and (folder / name).read_text() == text for name, text in work.files.items()):
+    if not all(
+        (folder / name).exists() and (folder / name).read_text(encoding="utf-8") == text
+        for name, text in work.files.items()
+    ):
         raise CaseError(f"{folder}: the case has changed since the run that is to be continued; run it anew (--fresh)")
     went_on = work.engine.resume(work.plan, folder, ranks=work.ranks, report=work.report)
     tables = work.engine.read(work.plan, folder, without=went_on.lost)
@@ -157,7 +160,7 @@ def _finish(
         "seconds": seconds,
     }
     decks = {name: text for name, text in work.files.items() if "/" not in name}  # without the modules of a deck
-    kept = results.SceneResults(work.path.read_text(), attributes, tables, decks)
+    kept = results.SceneResults(work.path.read_text(encoding="utf-8-sig"), attributes, tables, decks)
     results.write(folder / "results.h5", kept)
     return SceneOutcome(
         p,

@@ -76,6 +76,7 @@ def crosscheck(
     law: str | None = None,
     out: Path | None = None,
     fresh: bool = False,
+    force: bool = False,
     progress: Callable[[str], None] = lambda text: None,
 ) -> Crosscheck:
     """Run a case on all models. Raises CaseError or EngineError; engines that are not here are left out."""
@@ -87,7 +88,7 @@ def crosscheck(
     folder = out or Path("runs") / "crosscheck" / case.name
     steps = case.numerics.steps_in_contact
     few = max(10, steps // COARSER)
-    with claim(folder):
+    with claim(folder, force=force):
         fine, coarse = (
             run(
                 path,

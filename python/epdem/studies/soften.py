@@ -96,7 +96,7 @@ def soften(path: Path, factor: float) -> Twin:
     data = read_toml(path)
     before = strain_ratio(data, path)
     after = before * factor**STRAIN_POWER
-    document = tomlkit.parse(path.read_text(encoding="utf-8"))
+    document = tomlkit.parse(path.read_text(encoding="utf-8-sig"))
     changes = [_change(document, keys, text) for keys, text in _replacements(data, factor).items()]
     warnings = []
     if before > SMALL_DEFORMATION:

@@ -107,10 +107,6 @@ class Backbone:
         """Force [N] on the elastic branch below alpha_max [m]."""
         return self.unloading(alpha, alpha_max)[0]
 
-    def unloading_radius(self, alpha: Real, alpha_max: Real) -> Array:
-        """Contact radius [m] on the elastic branch below alpha_max [m]."""
-        return self.unloading(alpha, alpha_max)[1]
-
 
 def _depth(w: Real, tau: Real) -> Array:
     """y of A y^2 + B y = w: how much of the contact circle has opened."""

@@ -105,11 +105,11 @@ class Yade:
         folder.mkdir(parents=True, exist_ok=True)
         modules = [] if deck.native else write_deck_modules(folder)
         script = folder / "impact.py"
-        script.write_text(decks.render(self.template, deck=deck))
+        script.write_text(decks.render(self.template, deck=deck), encoding="utf-8")
         files = [folder / b.data for b in deck.bodies]
         for path, table in zip(files, tables(plan), strict=True):
             lines = ["# x y z v_z, SI", *(" ".join(map(decks.number, row)) for row in table), ""]
-            path.write_text("\n".join(lines))
+            path.write_text("\n".join(lines), encoding="utf-8")
         return [script, *files, *modules]
 
     def run(self, plan: Plan, folder: Path, *, ranks: int = 1) -> Trajectory:

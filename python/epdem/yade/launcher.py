@@ -18,7 +18,9 @@ def deck_modules() -> dict[str, str]:
     """The modules that a deck with a law of ours imports, by path beside the deck."""
     note = '"""The part of epdem that YADE needs; it came with the deck."""\n'
     files = {"epdem/__init__.py": note, "epdem/yade/__init__.py": note}
-    return files | {f"epdem/yade/deck_modules/{p.name}": p.read_text() for p in sorted(MODULES.glob("*.py"))}
+    return files | {
+        f"epdem/yade/deck_modules/{p.name}": p.read_text(encoding="utf-8") for p in sorted(MODULES.glob("*.py"))
+    }
 
 
 def write_deck_modules(folder: Path) -> list[Path]:

@@ -23,7 +23,7 @@ def velocities(deck: Deck, pairs: Pairs, variant: str, folder: Path) -> np.ndarr
     sides = [(f"side{k}.data", side) for k, side in enumerate(pairs.ordered(variant == "swap"))]
     for name, side in sides:
         lines = [" ".join(map(decks.number, row)) for row in np.hstack([side.place, side.velocity])]
-        (folder / name).write_text("\n".join(["# x y z v_x v_y v_z, SI", *lines, ""]))
+        (folder / name).write_text("\n".join(["# x y z v_x v_y v_z, SI", *lines, ""]), encoding="utf-8")
     words: dict[str, Any] = {
         "deck": deck,
         "variant": variant,
@@ -40,7 +40,7 @@ def velocities(deck: Deck, pairs: Pairs, variant: str, folder: Path) -> np.ndarr
         ]
     (folder / deck.path).unlink(missing_ok=True)
     for k, part in enumerate(parts):
-        (folder / f"pairs{k}.py").write_text(decks.render("yade/pairs.py.j2", **part))
+        (folder / f"pairs{k}.py").write_text(decks.render("yade/pairs.py.j2", **part), encoding="utf-8")
         call([command(), "-n", "-x", f"pairs{k}.py"], folder, log=f"out{k}.yade", seconds=120, env=environment())
     try:
         v = np.asarray(np.load(folder / deck.path)).reshape(2, p.n, 3)

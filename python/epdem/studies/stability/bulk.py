@@ -63,11 +63,13 @@ def write(
         settings=("computePlasticWork on",) if memory and frames else (),
     )
     environment = decks.environment(Path(__file__).parent)
-    (folder / "in.bulk").write_text(environment.get_template("bulk.in.j2").render(deck=deck))
-    (folder / "bulk.data").write_text(_data(scene, deck.plates))
+    (folder / "in.bulk").write_text(environment.get_template("bulk.in.j2").render(deck=deck), encoding="utf-8")
+    (folder / "bulk.data").write_text(_data(scene, deck.plates), encoding="utf-8")
     if deck.plates:
         for name, z in (("floor", 0.0), ("plate", float(scene.box[2]))):
-            (folder / f"{name}.stl").write_text(stl.text(name, _square(float(scene.box[0]), float(scene.box[1]), z)))
+            (folder / f"{name}.stl").write_text(
+                stl.text(name, _square(float(scene.box[0]), float(scene.box[1]), z)), encoding="utf-8"
+            )
     return deck
 
 

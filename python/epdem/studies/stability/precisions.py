@@ -32,7 +32,7 @@ def available() -> bool:
 def rebound(program: str, folder: Path, script: str) -> np.ndarray:
     """e_n of every phase from one program, shape (phases,). Raises EngineError with the end of its output."""
     path = folder / "roundoff.py"
-    path.write_text(script)
+    path.write_text(script, encoding="utf-8")
     done = subprocess.run(
         [program, "-n", "-x", path.name],
         cwd=folder,

@@ -27,14 +27,14 @@ def edit(deck: Path, start: str, *after: str, instead: bool = False) -> str:
 
     Raises EngineError if there is not exactly one.
     """
-    lines = deck.read_text().splitlines()
+    lines = deck.read_text(encoding="utf-8").splitlines()
     places = [k for k, line in enumerate(lines) if line.startswith(start)]
     if len(places) != 1:
         raise EngineError(f"{deck}: {len(places)} lines start with {start!r}, expected 1")
     at = places[0]
     line = lines[at]
     lines[at : at + 1] = after if instead else [line, *after]
-    deck.write_text("\n".join(lines) + "\n")
+    deck.write_text("\n".join(lines) + "\n", encoding="utf-8")
     return line
 
 

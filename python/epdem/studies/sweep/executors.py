@@ -26,6 +26,8 @@ def execute(
 ) -> SweepOutcome:
     """Run a sweep by the executor "local" or "slurm"; `given` are the parameters of the latter. Raises CaseError."""
     if executor == "slurm":
+        if jobs is not None:
+            raise CaseError("--jobs is for --executor local; give the jobs of a cluster by --slurm array_parallelism=N")
         found = slurm.parameters(given)
         return slurm.run(sweep, folder, found, retry_failed=retry_failed, force=force, report=report)
     if executor != "local":
@@ -35,11 +37,11 @@ def execute(
     return run.run(sweep, folder, jobs=jobs, retry_failed=retry_failed, force=force, report=report)
 
 
-def write_script(sweep: Sweep, folder: Path, given: Sequence[str], path: Path) -> None:
+def write_script(sweep: Sweep, folder: Path, given: Sequence[str], path: Path, *, force: bool = False) -> None:
     """Store the sweep in `folder` and write the batch script that runs it to `path`. Raises CaseError."""
     text = slurm.script(sweep, folder, slurm.parameters(given))
     run.check_points(sweep, range(1, len(sweep.points) + 1))
-    with claim(folder):
+    with claim(folder, force=force):
         store.write(sweep, folder)
     with atomic(path) as temporary:
-        temporary.write_text(text)
+        temporary.write_text(text, encoding="utf-8")

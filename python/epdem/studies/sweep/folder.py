@@ -99,15 +99,17 @@ class Sweep:
 def write(sweep: Sweep, folder: Path) -> None:
     """Store the definition in `folder`."""
     (folder / POINTS).mkdir(parents=True, exist_ok=True)
-    (folder / POINTS / MANIFEST).write_text("{}")  # each point keeps account of its own: a job may work at it alone
+    (folder / POINTS / MANIFEST).write_text(
+        "{}", encoding="utf-8"
+    )  # each point keeps account of its own: a job may work at it alone
     with atomic(folder / DEFINITION) as temporary:
-        temporary.write_text(json.dumps(asdict(sweep)))
+        temporary.write_text(json.dumps(asdict(sweep)), encoding="utf-8")
 
 
 def read(folder: Path) -> Sweep:
     """The definition that `write` stored. Raises CaseError."""
     try:
-        raw: dict[str, Any] = json.loads((folder / DEFINITION).read_text())
+        raw: dict[str, Any] = json.loads((folder / DEFINITION).read_text(encoding="utf-8"))
         return Sweep(**(raw | {key: tuple(raw[key]) for key in ("points", "engines", "laws")}))
     except (OSError, ValueError, KeyError, TypeError):
         raise CaseError(f"{folder}: not a folder of a sweep; 'epdem sweep CASE --out {folder}' makes one") from None
@@ -129,7 +131,7 @@ def record(sweep: Sweep, folder: Path, number: int) -> dict[str, Any]:
     place = of(sweep, folder, number)
     for name in (FINISHED, STARTED):
         try:
-            found = json.loads((place / name).read_text())
+            found = json.loads((place / name).read_text(encoding="utf-8"))
         except (OSError, ValueError):
             continue
         if isinstance(found, dict) and found.get("inputs") == sweep.inputs(number) and found.get("state") in STATES:
@@ -148,7 +150,7 @@ def begin(sweep: Sweep, folder: Path, number: int) -> dict[str, Any]:
     place.mkdir(parents=True, exist_ok=True)
     (place / FINISHED).unlink(missing_ok=True)
     with atomic(place / CASE, sync=False) as temporary:
-        temporary.write_text(sweep.text(number))
+        temporary.write_text(sweep.text(number), encoding="utf-8")
     about = {
         "state": RUNNING,
         "reason": "",
@@ -159,7 +161,7 @@ def begin(sweep: Sweep, folder: Path, number: int) -> dict[str, Any]:
         "started": time.strftime("%Y-%m-%d %H:%M:%S"),
         "begin": time.time(),
     }
-    (place / STARTED).write_text(json.dumps(about))
+    (place / STARTED).write_text(json.dumps(about), encoding="utf-8")
     return about
 
 
@@ -176,7 +178,7 @@ def end(
     place = of(sweep, folder, number)
     state = {"state": FAILED if rows is None else DONE, "reason": reason, "seconds": time.time() - about["begin"]}
     with atomic(place / FINISHED, sync=False) as temporary:
-        temporary.write_text(json.dumps(about | state | {"rows": rows or {}}))
+        temporary.write_text(json.dumps(about | state | {"rows": rows or {}}), encoding="utf-8")
     (place / STARTED).unlink(missing_ok=True)
 
 

@@ -37,7 +37,7 @@ def parameters(texts: Sequence[str]) -> Parameters:
     found: Parameters = {}
     for text in texts:
         if "=" not in text and Path(text).is_file():
-            lines = Path(text).read_text().splitlines()
+            lines = Path(text).read_text(encoding="utf-8").splitlines()
             pairs = [line.removeprefix("#SBATCH").strip() for line in lines if line.startswith("#SBATCH")]
         else:
             pairs = text.split(",")
@@ -145,7 +145,7 @@ def run(
         if new:
             jobs |= _submit(sweep, folder, new, given)
             with atomic(folder / JOBS) as temporary:
-                temporary.write_text(json.dumps(jobs))
+                temporary.write_text(json.dumps(jobs), encoding="utf-8")
         _wait(sweep, folder, jobs, report)
         return SweepOutcome(sweep, folder, table.write(sweep, folder), len(new))
 
@@ -153,7 +153,7 @@ def run(
 def _living(folder: Path) -> dict[str, list[int]]:
     """Jobs of an earlier call that still wait or run."""
     try:
-        known: dict[str, list[int]] = json.loads((folder / JOBS).read_text())
+        known: dict[str, list[int]] = json.loads((folder / JOBS).read_text(encoding="utf-8"))
     except (OSError, ValueError):
         return {}
     there = alive(list(known))
