@@ -265,16 +265,19 @@ def run(
     What is stored in `out` (default: runs/<name>) is taken from there, unless `fresh`; `force` allows other files in
     it. Raises CaseError, EngineError.
     """
-    folder = Path(out) if out is not None else None
+    options: dict[str, Any] = {
+        "out": None if out is None else Path(out),
+        "ranks": ranks,
+        "fresh": fresh,
+        "force": force,
+    }
     with case._as_file() as path:
         if isinstance(case, Scene):
             if len(engines) != 1 or laws:
                 raise CaseError("a scene has its own law and runs on one engine")
-            engine = scene_engine(engines[0])
-            return SceneRun(run_scene(path, engine, out=folder, ranks=ranks, fresh=fresh, force=force))
+            return SceneRun(run_scene(path, scene_engine(engines[0]), **options))
         tools = [engine_named(name) for name in engines]
-        words: dict[str, Any] = {"ranks": ranks, "fresh": fresh, "force": force, "progress": log.info}
-        return Run(run_impacts(path, engines=tools, laws=laws, out=folder, **words))
+        return Run(run_impacts(path, engines=tools, laws=laws, progress=log.info, **options))
 
 
 def predict(case: Case, law: str | None = None) -> pd.DataFrame:
