@@ -260,17 +260,12 @@ def run(
     fresh: bool = False,
     force: bool = False,
 ) -> Run | SceneRun:
-    """Run a case on every engine with every law (none: its own), or a scene on one engine: a Run or a SceneRun.
+    """Run a case on every engine with every law (none: its own), or a scene on one engine. Raises EpdemError.
 
-    What is stored in `out` (default: runs/<name>) is taken from there, unless `fresh`; `force` allows other files in
-    it. Raises CaseError, EngineError.
+    Stored results in `out` (default: runs/<name>) are taken, unless `fresh`; `force` allows other files there.
     """
-    options: dict[str, Any] = {
-        "out": None if out is None else Path(out),
-        "ranks": ranks,
-        "fresh": fresh,
-        "force": force,
-    }
+    place = None if out is None else Path(out)
+    options: dict[str, Any] = {"out": place, "ranks": ranks, "fresh": fresh, "force": force}
     with case._as_file() as path:
         if isinstance(case, Scene):
             if len(engines) != 1 or laws:
