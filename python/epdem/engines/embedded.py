@@ -12,6 +12,7 @@ from ..impacts.engine import Abilities, Trajectory, check_abilities
 from ..impacts.pairs import Pairs
 from ..impacts.plan import Plan
 from ..laws import library as claw
+from ..laws.native import ImpactNumbers
 
 
 class Embedded:
@@ -37,31 +38,27 @@ class Embedded:
     def run(self, plan: Plan, folder: Path, *, ranks: int = 1) -> Trajectory:
         x = plan.experiment
         start = time.perf_counter()
-        _, overlap, force, velocity = x.native_law().impact_paths(
-            R_star=x.R_star,
-            m_star=x.m_star,
-            speed=plan.speed,
-            time_step=plan.time_step,
-            gap=plan.gap,
-            steps=plan.steps,
-            viscous=x.viscous_number,
-        )
+        _, overlap, force, velocity = x.native_law().impact_paths(steps=plan.steps, **_numbers(plan))
         return Trajectory(plan.time_step, overlap, force, velocity, {"stepping": time.perf_counter() - start})
 
     def seconds(self, plan: Plan, folder: Path) -> dict[str, float]:
         x, begin = plan.experiment, time.perf_counter()
         law = x.native_law()
         ready = time.perf_counter()
-        law.impacts(
-            R_star=x.R_star,
-            m_star=x.m_star,
-            speed=plan.speed,
-            time_step=plan.time_step,
-            gap=plan.gap,
-            steps=plan.steps,
-            viscous=x.viscous_number,
-        )
+        law.impacts(steps=plan.steps, **_numbers(plan))
         return {"startup": 0.0, "setup": ready - begin, "stepping": time.perf_counter() - ready}
 
     def run_pairs(self, pairs: Pairs, variant: str, folder: Path) -> np.ndarray:
         raise CaseError("engine embedded: one contact has no order, owner or restart to depend on")
+
+
+def _numbers(plan: Plan) -> ImpactNumbers:
+    x = plan.experiment
+    return {
+        "R_star": x.R_star,
+        "m_star": x.m_star,
+        "speed": plan.speed,
+        "time_step": plan.time_step,
+        "gap": plan.gap,
+        "viscous": x.viscous_number,
+    }

@@ -13,6 +13,7 @@ import numpy as np
 from .. import data_file
 from .. import rendering as decks
 from ..errors import CaseError, EngineError
+from ..files import write_texts
 from ..impacts import foreign
 from ..impacts.engine import Abilities, Trajectory, check_abilities, recorded_seconds
 from ..impacts.experiment import Experiment
@@ -109,10 +110,8 @@ class LammpsMdr:
 
     def write(self, plan: Plan, folder: Path) -> list[Path]:
         deck = self.deck(plan)
-        folder.mkdir(parents=True, exist_ok=True)
-        files = [folder / "in.impact", folder / deck.data]
-        files[0].write_text(decks.render(self.template, deck=deck), encoding="utf-8")
-        files[1].write_text(self.data(plan), encoding="utf-8")
+        texts = {"in.impact": decks.render(self.template, deck=deck), deck.data: self.data(plan)}
+        files = write_texts(folder, texts)
         library = folder / "libmpi.so.12"
         library.unlink(missing_ok=True)
         if found := mpich():

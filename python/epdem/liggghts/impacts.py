@@ -10,6 +10,7 @@ import numpy as np
 from .. import data_file, paths
 from .. import rendering as decks
 from ..errors import CaseError, EngineError
+from ..files import write_texts
 from ..impacts.engine import Abilities, Trajectory, check_abilities
 from ..impacts.pairs import Pairs
 from ..impacts.places import room, side_by_side
@@ -90,11 +91,8 @@ class Liggghts:
 
     def write(self, plan: Plan, folder: Path) -> list[Path]:
         deck = self.deck(plan)
-        folder.mkdir(parents=True, exist_ok=True)
-        files = [folder / "in.impact", folder / deck.data]
-        files[0].write_text(decks.render(self.template, deck=deck), encoding="utf-8")
-        files[1].write_text(data_text(plan, len(deck.types)), encoding="utf-8")
-        return files
+        texts = {"in.impact": decks.render(self.template, deck=deck), deck.data: data_text(plan, len(deck.types))}
+        return write_texts(folder, texts)
 
     def run(self, plan: Plan, folder: Path, *, ranks: int = 1) -> Trajectory:
         (folder / "path.bin").unlink(missing_ok=True)

@@ -9,6 +9,7 @@ import pandas as pd
 
 from ..case.scene import SceneCase
 from ..laws.native import Law
+from ..theory.numerics import gauss
 from .pairs import pair_law
 from .plan import ScenePlan
 
@@ -27,7 +28,7 @@ COLUMNS = [
     "plastic_work",
     "elastic_energy",
 ]
-_NODES, _WEIGHTS = np.polynomial.legendre.leggauss(16)
+_NODES, _WEIGHTS = gauss(16)  # on [0, 1]
 
 
 def complete(p: ScenePlan, raw: pd.DataFrame, spheres: pd.DataFrame) -> pd.DataFrame:
@@ -83,12 +84,11 @@ def _one_kind(
     force, _, _ = law.step(R_star=R, delta_max=largest, delta=overlap)
     _, dent, _, plastic = law.backbone(R_star=R, delta=largest)
     residual = np.asarray(theory.residual_overlap(largest), float) * (plastic > 0.0)
-    # elastic energy: the force below delta_max, integrated from where it begins; u^2 takes its root away there
+    # elastic energy: the force below delta_max, integrated from where it begins; squared nodes take its root away there
     way = np.maximum(overlap - residual, 0.0)
-    u = 0.5 * (_NODES + 1.0)
-    delta = residual[:, None] + way[:, None] * u**2
+    delta = residual[:, None] + way[:, None] * _NODES**2
     F, _, _ = law.step(R_star=R, delta_max=np.broadcast_to(largest[:, None], delta.shape).ravel(), delta=delta.ravel())
-    elastic = (F.reshape(delta.shape) * u * _WEIGHTS).sum(axis=1) * way  # 0.5 from the nodes, 2 from d(u^2)
+    elastic = 2.0 * (F.reshape(delta.shape) * _NODES * _WEIGHTS).sum(axis=1) * way  # 2 from the square
     return {
         "force": force,
         "residual_overlap": residual,

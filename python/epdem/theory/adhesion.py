@@ -13,6 +13,7 @@ import numpy as np
 from . import restitution as plain
 from .checks import number
 from .jkr import JKR, Numbers, Path
+from .numerics import bisect, gauss
 from .thornton_ning import ThorntonNing
 
 # Energy at the fold and at touch in E* (c R*)^(10/3)/R*^2: 4^(-4/3)/5 and -3/10. Their difference is W_s.
@@ -21,8 +22,7 @@ STICKING_WORK = (2 * np.pi) ** (5 / 3) * _LOSS  # 7.0922: W_s in (Gamma^5 R*^4/E
 # (a/a_0)^1.5 > 1 at which an opening contact has the energy of its fold, so that it just comes loose
 _REACH = 2.0547413698273668
 TABOR_MIN = 3.0
-_T, _TW = np.polynomial.legendre.leggauss(8)
-_T, _TW = 0.5 * (_T + 1), 0.5 * _TW  # on [0, 1]; exact for the works below
+_T, _TW = gauss(8)  # exact for the works below
 
 
 @dataclass(frozen=True)
@@ -77,10 +77,7 @@ def sticking_speed(law: JKR, *, m_star: Numbers) -> Numbers:
         if np.all(comes_loose(high) | (reach == 0)):
             break
         high = np.where(comes_loose(high), high, 2 * high)
-    for _ in range(120):
-        middle = 0.5 * (low + high)
-        loose = comes_loose(middle)
-        low, high = np.where(loose, low, middle), np.where(loose, middle, high)
+    _, high = bisect(lambda a: np.logical_not(comes_loose(a)), low, high, steps=120)
     flows = np.sqrt(2 * np.maximum(law.work(high), 0.0) / m)
     return np.where(reach <= law.yield_radius, np.sqrt(2 * sticking_work(law) / m), flows)
 

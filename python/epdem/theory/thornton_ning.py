@@ -7,9 +7,9 @@ import numpy as np
 
 from .checks import number
 from .jkr import JKR, Numbers, Path
+from .numerics import gauss
 
-_T, _W = np.polynomial.legendre.leggauss(8)
-_T, _W = 0.5 * (_T + 1), 0.5 * _W  # on [0, 1]; exact up to degree 15, which is that of the work of the plastic branch
+_T, _W = gauss(8)  # exact up to degree 15, which is that of the work of the plastic branch
 
 
 class ThorntonNing(JKR):
