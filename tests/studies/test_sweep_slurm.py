@@ -92,7 +92,7 @@ def test_a_scene_that_is_preempted_is_queued_again_and_goes_on_from_its_restart_
             sent.append(here.ask("scancel", "-s", "USR2", *jobs(out)))
 
     found = slurm.run(planned, out, {"time": "10"}, report=preempt)
-    assert sent and found.table["status"].tolist() == ["done"]
+    assert sent and found.table[["status", "reason"]].fillna("").to_numpy().tolist() == [["done", ""]]
     assert (folder.of(planned, out, 1) / "in.resume").exists()
 
 

@@ -103,6 +103,7 @@ def _stop(number: int, frame: object) -> None:
 def _work(function: Callable[[Any], Any], pipe: Connection, others: list[Connection], parent: int) -> None:
     """In a process of the pool: item after item, until told to end or alone."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C reaches all: our parent stops us in good order
+    signal.signal(signal.SIGUSR2, signal.SIG_IGN)  # Slurm warns every process of a job; our parent queues it again
     signal.signal(signal.SIGTERM, _stop)
     _libc.prctl(_PR_SET_PDEATHSIG, signal.SIGTERM)  # a parent that is killed cannot
     for other in others:  # or the end of a pipe would stay open here, and nobody would see that it has ended

@@ -27,6 +27,7 @@ from .run import Report, SweepOutcome, check_points, record_death
 TASKS = 1000  # of an array; a cluster takes 1001 if it does not say otherwise
 POLL = 1.0  # [s] between two looks at the queue
 JOBS = "slurm/jobs.json"
+ENDED = ("COMPLETED", "FAILED", "CANCELLED", "TIMEOUT", "NODE_FAIL", "OUT_OF_MEMORY", "BOOT_FAIL", "DEADLINE")
 Parameters = dict[str, str]
 # What submitit sets by itself and what a point needs to be stopped and queued again in good time.
 KEPT = ("array", "output", "error", "signal", "open-mode", "job-name")
@@ -111,10 +112,15 @@ def alive(jobs: Sequence[str]) -> set[str] | None:
     return {line.split()[0] for line in done.stdout.splitlines() if line.strip()} & set(jobs)
 
 
-def ended(job: str) -> str:
-    """How a job has ended, in words; Slurm keeps nothing of a task that is cancelled before it begins."""
+def ended(job: str) -> str | None:
+    """How a job that `alive` does not name has ended, in words; None if it is between two runs, for it is requeued.
+
+    Slurm keeps nothing of a task that is cancelled before it begins.
+    """
     said = subprocess.run(["scontrol", "show", "job", "-o", job], capture_output=True, text=True).stdout
     states = [word.partition("=")[2] for word in said.split() if word.startswith("JobState=")]
+    if states and states[0] not in ENDED:
+        return None
     return f"its job {job} ended as {states[0]}" if states else f"its job {job} was cancelled"
 
 
@@ -168,11 +174,12 @@ def _wait(sweep: Sweep, folder: Path, jobs: dict[str, list[int]], report: Report
     while left:
         there = alive(list(left))  # None while the controller is away: its jobs are still there
         for job in set() if there is None else set(left) - there:
-            for n in left.pop(job):
+            how = ended(job)
+            for n in left.pop(job) if how else ():
                 state = store.record(sweep, folder, n)["state"]
                 if state not in (store.DONE, store.FAILED):
                     when = "while it ran" if state == store.RUNNING else "before it began"
-                    record_death(sweep, folder, n, f"{ended(job)} {when}")
+                    record_death(sweep, folder, n, f"{how} {when}")
         report(total - sum(map(len, left.values())), total)
         if left:
             time.sleep(POLL)
