@@ -5,13 +5,15 @@
 #include <algorithm>
 #include <string>
 
+#include "epdem/adhesive.hpp"
 #include "epdem/law.hpp"
 #include "host.hpp"
 
 namespace epdem::liggghts {
 
-/// Two per-atom properties: plasticWork [J] sums up every growth of plastic work since the start, elasticEnergy [J] is
-/// what the contacts of this step can give back. Half of a pair's energy belongs to each body, all of a wall's to the
+/// Per-atom properties: plasticWork [J] sums up every growth of plastic work since the start, adhesiveWork [J] (of laws
+/// with adhesion) what the forces lost in their jumps at touch and parting, elasticEnergy [J] is what the contacts of
+/// this step can give back, less their surface energy. Half of a pair's energy belongs to each body, all of a wall's to the
 /// sphere. LIGGGHTS evaluates a pair that spans two ranks on both of them, so each books its own body only.
 class Ledger {
  public:
@@ -21,19 +23,23 @@ class Ledger {
   };
 
   /// For the pair style, whose settings come first: creates the properties.
-  void create(LAMMPS_NS::LAMMPS* lmp) {
-    for (const char* name : {work_name, energy_name}) {
+  void create(LAMMPS_NS::LAMMPS* lmp, bool adheres) {
+    for (const char* name : {work_name, energy_name, adhesive_name}) {
+      if (name == adhesive_name && !adheres) continue;
       const char* words[] = {name, "all", "property/atom", name, "scalar", "yes", "no", "no", "0.0"};
       if (!find(lmp, name, name)) lmp->modify->add_fix_property_atom(9, const_cast<char**>(words), name);
     }
   }
 
   /// Before each run, for pairs and walls.
-  void connect(LAMMPS_NS::LAMMPS* lmp, const std::string& model) {
+  void connect(LAMMPS_NS::LAMMPS* lmp, const std::string& model, bool adheres) {
     work_ = find(lmp, work_name, model.c_str());
     energy_ = find(lmp, energy_name, model.c_str());
-    if (work_ && energy_) return;
-    const std::string text = "model " + model + ": computePlasticWork on of a wall needs it for the pair style as well";
+    adhesive_ = adheres ? find(lmp, adhesive_name, model.c_str()) : nullptr;
+    if (work_ && energy_ && (adhesive_ || !adheres)) return;
+    const std::string text = "model " + model +
+                             ": computePlasticWork on of a wall needs it for the pair style as well" +
+                             (adheres ? ", whose model has adhesion, too" : "");
     lmp->error->all(FLERR, text.c_str());
   }
 
@@ -43,7 +49,15 @@ class Ledger {
   template <bool wall, class Law>
   void book(const Law& law, double R_star, const State<Law>& before, const State<Law>& after, double delta,
             const Bodies& bodies) {
-    share<wall>(plastic_growth(law, R_star, before, after), elastic_energy(law, R_star, after, delta), bodies);
+    if constexpr (adheres<Law>) {
+      const auto lost = losses(law, R_star, before, after);
+      share<wall>(lost.plastic, stored_energy(law, R_star, after, delta), bodies);
+      if (lost.adhesive == 0.0) return;
+      adhesive_->vector_atom[bodies.i] += (wall ? 1.0 : 0.5) * lost.adhesive;
+      if (!wall && bodies.j < bodies.nlocal) adhesive_->vector_atom[bodies.j] += 0.5 * lost.adhesive;
+    } else {
+      share<wall>(plastic_growth(law, R_star, before, after), elastic_energy(law, R_star, after, delta), bodies);
+    }
   }
 
   /// To the bodies: plastic work by which a contact grew, elastic energy that it holds [J].
@@ -57,6 +71,7 @@ class Ledger {
  private:
   static constexpr const char* work_name = "plasticWork";
   static constexpr const char* energy_name = "elasticEnergy";
+  static constexpr const char* adhesive_name = "adhesiveWork";
 
   static LAMMPS_NS::FixPropertyAtom* find(LAMMPS_NS::LAMMPS* lmp, const char* name, const char* caller) {
     return static_cast<LAMMPS_NS::FixPropertyAtom*>(
@@ -70,6 +85,7 @@ class Ledger {
 
   LAMMPS_NS::FixPropertyAtom* work_ = nullptr;
   LAMMPS_NS::FixPropertyAtom* energy_ = nullptr;
+  LAMMPS_NS::FixPropertyAtom* adhesive_ = nullptr;
 };
 
 }  // namespace epdem::liggghts

@@ -3,8 +3,10 @@
 
 #include <cmath>
 #include <cstdio>
+#include <memory>
 #include <string>
 
+#include "comm.h"
 #include "epdem/tangential.hpp"
 #include "epdem/viscous.hpp"
 #include "force.h"
@@ -87,11 +89,61 @@ class Reader {
 
 std::string both(int i, int j) { return "types " + std::to_string(i) + " and " + std::to_string(j); }
 
+constexpr const char* adhesion_name = "workOfAdhesion";  // of a pair of types [J/m^2]
+constexpr const char* surface_name = "surfaceEnergy";    // of a type [J/m^2]
+
+/// Work of adhesion of every pair of types [J/m^2]: as given, or 2 sqrt(gamma_i gamma_j) of the surface energies.
+class Adhesion {
+ public:
+  explicit Adhesion(const Reader& reader) : reader_(reader), pairs_(reader.find(adhesion_name, "peratomtypepair")) {
+    const bool energy = reader.given(surface_name);
+    if (energy && reader.given(adhesion_name))
+      reader.fail(std::string("both ") + adhesion_name + " and " + surface_name + " are given; keep one");
+    if (energy) surface_ = reader.per_type(surface_name, "J/m^2", range);
+    if (!energy && !pairs_)
+      reader.fail(std::string("property ") + adhesion_name +
+                  " [J/m^2] is missing; give one value per pair of atom types: fix ID all property/global " +
+                  adhesion_name + " peratomtypepair NTYPES VALUE ... (or " + surface_name +
+                  " peratomtype gamma ..., of which it is 2 sqrt(gamma_i gamma_j))");
+  }
+
+  double at(int i, int j) const {
+    if (!pairs_) return 2.0 * std::sqrt(surface_[i] * surface_[j]);
+    const double x = pairs_->compute_array(i - 1, j - 1), y = pairs_->compute_array(j - 1, i - 1);
+    if (x != y)
+      reader_.fail(std::string(adhesion_name) + " of " + both(i, j) + " is not symmetric: " + number(x) + " and " +
+                   number(y));
+    return reader_.checked(adhesion_name, "J/m^2", both(i, j), x, range);
+  }
+
+ private:
+  static constexpr Range range{0.0, unlimited, true};
+  const Reader& reader_;
+  FixPropertyGlobal* const pairs_;
+  std::vector<double> surface_;
+};
+
+/// A law without adhesion beside a deck that asks for it.
+void refuse_adhesion(const Reader& reader, const Declaration& law) {
+  for (const char* name : {adhesion_name, surface_name}) {
+    if (!reader.given(name)) continue;
+    const std::string model = law.model;
+    const std::string instead = model == "ep/hertz"      ? "take ep/jkr"
+                                : model == "ep/thornton" ? "take ep/thornton_ning"
+                                                         : "no theory of adhesion exists for it, take ep/thornton_ning";
+    reader.fail(std::string(name) + " is given, but this law has no adhesion; " + instead + ", or remove the property");
+  }
+}
+
 /// A law's parameter for every pair of types. A value per type is that of the softer body: the body with the smaller
 /// first parameter yields, and its other parameters go with it.
 class ParameterTable {
  public:
-  ParameterTable(const Reader& reader, const Parameter& p) : reader_(reader), p_(p) {
+  ParameterTable(const Reader& reader, const Parameter& p, const Adhesion* adhesion) : reader_(reader), p_(p) {
+    if (p.property == std::string(adhesion_name)) {
+      adhesion_ = adhesion;
+      return;
+    }
     const Range range{0.0, unlimited, false};
     if (!std::isnan(p.fallback)) {
       if (FixPropertyGlobal* scalar = reader.find(p.property, "scalar")) {
@@ -113,6 +165,7 @@ class ParameterTable {
   double of_type(int i) const { return values_[i]; }
 
   double at(int i, int j) const {
+    if (adhesion_) return adhesion_->at(i, j);
     if (!pairs_) return common_;
     const double x = pairs_->compute_array(i - 1, j - 1), y = pairs_->compute_array(j - 1, i - 1);
     if (x != y)
@@ -124,6 +177,7 @@ class ParameterTable {
  private:
   const Reader& reader_;
   const Parameter& p_;
+  const Adhesion* adhesion_ = nullptr;
   FixPropertyGlobal* pairs_ = nullptr;
   std::vector<double> values_;
   double common_ = 0.0;
@@ -231,6 +285,29 @@ std::vector<double> viscous_numbers(const Reader& reader, bool viscous) {
 
 }  // namespace
 
+void compare_cohesion(LAMMPS_NS::LAMMPS* lmp, const Declaration& law, const Materials& materials) {
+  if (law.strength < 0) return;
+  auto* const density = static_cast<FixPropertyGlobal*>(
+      lmp->modify->find_fix_property("cohesionEnergyDensity", "property/global", "peratomtypepair", materials.width - 1,
+                                     materials.width - 1, law.model, false));
+  if (!density) return;  // LIGGGHTS says so
+  const double pascal = 1.0 / lmp->force->nktv2p;
+  for (int i = 1; i < materials.width; ++i)
+    for (int j = i; j < materials.width; ++j) {
+      const double pull = density->compute_array(i - 1, j - 1);
+      const double resists = materials.pairs[i * materials.width + j].parameters[law.strength] / pascal;
+      if (!(pull > resists)) continue;
+      const std::string text = std::string("model ") + law.model + ": cohesionEnergyDensity = " + number(pull) +
+                               " exceeds " + law.parameters[law.strength].property + " = " + number(resists) + " of " +
+                               both(i, j) +
+                               ": cohesion pulls contacts in harder than they resist, and the spheres collapse";
+      static std::string said;
+      if (lmp->comm->me == 0 && text != said) lmp->error->warning(FLERR, text.c_str());
+      said = text;
+      return;
+    }
+}
+
 Materials read_materials(LAMMPS_NS::LAMMPS* lmp, PropertyRegistry& registry, const Declaration& law, Dashpot dashpot,
                          bool viscous) {
   const Reader reader(lmp, registry, law);
@@ -241,9 +318,11 @@ Materials read_materials(LAMMPS_NS::LAMMPS* lmp, PropertyRegistry& registry, con
   registry.registerProperty("youngsModulus", &MODEL_PARAMS::createYoungsModulus, law.model);
   registry.getVectorProperty("youngsModulus", law.model);
 
+  if (!law.adheres) refuse_adhesion(reader, law);
+  const std::unique_ptr<Adhesion> adhesion(law.adheres ? new Adhesion(reader) : nullptr);
   const Question asked = question(reader, law);
   std::vector<ParameterTable> tables;
-  for (const Parameter& p : asked.parameters) tables.emplace_back(reader, p);
+  for (const Parameter& p : asked.parameters) tables.emplace_back(reader, p, adhesion.get());
   const std::vector<double> beta = damping_numbers(reader, dashpot), dashpots = viscous_numbers(reader, viscous);
 
   const double pascal = 1.0 / lmp->force->nktv2p;  // pressure unit of the deck in force/length^2

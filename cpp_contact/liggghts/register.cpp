@@ -72,11 +72,18 @@ Walls::IGranularWall* new_wall(LAMMPS* lmp, FixWallGran* parent, int64_t hash) {
   return new Walls::Granular<Part>(lmp, parent, hash);
 }
 
+/// Laws with adhesion bring their own attraction, and multicontact is not measured with them.
+bool with_adhesion(const Ids& ids) { return ids.normal == Jkr<double>::id || ids.normal == ThorntonNing<double>::id; }
+
 template <class Interface, class Parent>
 Interface* refuse(LAMMPS* lmp, Parent*, int64_t hash) {
+  const Ids ids = Ids::of(hash);
   const std::string text =
-      Ids::of(hash).normal == unknown_law
-          ? "unknown normal model: the models of epdem are" + model_names()
+      ids.normal == unknown_law ? "unknown normal model: the models of epdem are" + model_names()
+      : with_adhesion(ids) && ids.cohesion != COHESION_OFF
+          ? "a law with adhesion has its attraction already: leave out the cohesion model beside it"
+      : with_adhesion(ids) && ids.surface != SURFACE_DEFAULT
+          ? "laws with adhesion combine with surface default only"
           : "epdem's models combine with tangential off, no_history, history; cohesion off, sjkr, sjkr2; "
             "rolling_friction off, cdt, epsd, epsd2, epsd3; surface default, multicontact; nothing else";
   lmp->error->all(FLERR, text.c_str());
@@ -120,7 +127,8 @@ void add_general(const Ids& ids) {
 
 template <class Law>
 void add_combination(const Ids& ids) {
-  if (!available(ids)) return add_refusal(ids);
+  if (!available(ids) || (adheres<Law> && (ids.cohesion != COHESION_OFF || ids.surface != SURFACE_DEFAULT)))
+    return add_refusal(ids);
   if (add_fast<Law, TANGENTIAL_OFF, ROLLING_OFF>(ids)) return;
   if (add_fast<Law, TANGENTIAL_NO_HISTORY, ROLLING_OFF>(ids)) return;
   if (add_fast<Law, TANGENTIAL_HISTORY, ROLLING_OFF>(ids)) return;

@@ -168,7 +168,7 @@ template <class Law, Tangential tangential, bool rolls>
    {&contacts<Class<Lanes>, Tangential::no_history, false>, &contacts<Class<Lanes>, Tangential::no_history, true>}, \
    {&contacts<Class<Lanes>, Tangential::history, false>, &contacts<Class<Lanes>, Tangential::history, true>}},
 extern const Kernels EPDEM_KERNELS;
-const Kernels EPDEM_KERNELS = {{EPDEM_LAWS(EPDEM_OF_LAW)}};
+const Kernels EPDEM_KERNELS = {{EPDEM_PLAIN_LAWS(EPDEM_OF_LAW)}};
 #undef EPDEM_OF_LAW
 
 }  // namespace epdem::liggghts::loop

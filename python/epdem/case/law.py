@@ -4,25 +4,26 @@
 from typing import Any
 
 from ..errors import CaseError
-from ..laws.strengths import LawNumbers, law_named
+from ..laws.strengths import ADHESION, LawNumbers, law_named
 from .units import to_si, within_limits
 
 
-def read_number(place: str, value: object, unit: str) -> float:
-    """`value` as written at `place`, in SI and > 0. Raises CaseError."""
+def read_number(place: str, value: object, unit: str, *, zero: bool = False) -> float:
+    """`value` as written at `place`, in SI and > 0, or >= 0 (`zero`). Raises CaseError."""
     try:
         x = within_limits(to_si(value, unit), unit)
     except ValueError as error:
         raise CaseError(f"{place} = {value!r}, {error}") from None
-    if not x > 0:
-        raise CaseError(f"{place} = {value!r}, must be > 0; leave it out for the default")
+    if not (x > 0 or (zero and x == 0)):
+        raise CaseError(f"{place} = {value!r}, must be {'>= 0' if zero else '> 0; leave it out for the default'}")
     return x
 
 
 def law_numbers(name: str, given: dict[str, Any]) -> LawNumbers:
     """The law `name` with the numbers of a case; all others have the defaults of the law. Raises CaseError.
 
-    A strength X [Pa] is given as `X = "2.8 GPa"` for all bodies or as `X_ratio = 2.8` of each body's yield stress.
+    A strength X [Pa] is given as `X = "2.8 GPa"` for all bodies or as `X_ratio = 2.8` of each body's yield stress, the
+    work of adhesion as `work_of_adhesion = "0.1 J/m^2"` for all pairs or by the surface energies of the materials.
     """
     law = law_named(name)
     strength, ratio = law.strength, f"{law.strength}_ratio"
@@ -38,8 +39,9 @@ def law_numbers(name: str, given: dict[str, Any]) -> LawNumbers:
         {
             p.name: read_number(f"law.{p.name}", given.get(p.name, p.default), p.unit)
             for p in law.parameters
-            if p.name != strength
+            if p.name not in (strength, ADHESION)
         },
         read_number(f"law.{strength}", given[strength], "Pa") if strength in given else None,
         read_number(f"law.{ratio}", given[ratio], "1") if ratio in given else law.default_ratio,
+        read_number(f"law.{ADHESION}", given[ADHESION], "J/m^2", zero=True) if ADHESION in given else None,
     )

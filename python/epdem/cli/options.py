@@ -17,7 +17,9 @@ Engines = Annotated[
 ]
 Laws = Annotated[
     list[str] | None,
-    typer.Option("--law", "-l", help="hertz, thornton, johnson or cavity instead of the case's law; repeat for more"),
+    typer.Option(
+        "--law", "-l", help="hertz, thornton, johnson, cavity, jkr or thornton_ning instead of the case's law; repeat"
+    ),
 ]
 Out = Annotated[Path | None, typer.Option("--out", "-o", help="folder for the results (default: runs/<case>)")]
 AsJson = Annotated[bool, typer.Option("--json", help="print one JSON document and nothing else")]

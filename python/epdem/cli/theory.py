@@ -2,6 +2,7 @@
 """The commands `epdem theory` and `epdem figures`."""
 
 import json
+from dataclasses import replace
 from pathlib import Path
 from typing import Annotated
 
@@ -17,6 +18,9 @@ def theory(
     material: Annotated[str, typer.Option(help="material of sphere and wall, from the materials file")] = "steel",
     radius: Annotated[str, typer.Option(help='radius of the sphere, as "10 mm"')] = "10 mm",
     speed: Annotated[str, typer.Option(help='speed of the impact, as "5 m/s"')] = "5 m/s",
+    adhesion: Annotated[
+        str | None, typer.Option("--work-of-adhesion", help='as "0.1 J/m^2": the laws with adhesion, too')
+    ] = None,
     as_json: AsJson = False,
 ) -> None:
     """Print one impact on a wall of the same material for every law."""
@@ -27,7 +31,7 @@ def theory(
     from ..impacts.prediction import predict
     from ..laws.strengths import default_numbers
     from ..theory import printed, yielding
-    from ..theory.backbones import LAWS
+    from ..theory.backbones import ADHESIVE, LAWS
 
     entry, R, v = sourced(material), quantity("--radius", radius, "m"), quantity("--speed", speed, "m/s")
     if (Y := entry.material.yield_stress) is None:
@@ -35,12 +39,16 @@ def theory(
     body, target = sphere(entry.material, radius=R, name=material), plane(entry.material, name=material)
     names = ("e_n", "contact_time", "force_max", "overlap_max", "residual_overlap", "strain_ratio")
     rows = {}
-    for name in LAWS:
-        x = Experiment(pair_of(default_numbers(name), body, target), body, target, np.array([v]))
+    Gamma = None if adhesion is None else quantity("--work-of-adhesion", adhesion, "J/m^2")
+    for name in [*LAWS, *(ADHESIVE if Gamma else [])]:
+        numbers = default_numbers(name)
+        numbers = replace(numbers, adhesion=Gamma) if name in ADHESIVE else numbers
+        x = Experiment(pair_of(numbers, body, target), body, target, np.array([v]))
         prediction = predict(x)
         rows[name] = {k: float(getattr(prediction, k)[0]) for k in names}
     p_0, depth = yielding.first_yield(entry.material.poisson_ratio)
     pair = {"E_star": x.E_star, "R_star": x.R_star, "m_star": x.m_star}
+    x = Experiment(pair_of(default_numbers("hertz"), body, target), body, target, np.array([v]))
     common = {
         "E_star": x.E_star,
         "m_star": x.m_star,
@@ -72,7 +80,7 @@ def figures(
     out: Annotated[Path, typer.Option("--out", "-o", help="folder for the figures")] = Path("docs/figures"),
     as_json: AsJson = False,
 ) -> None:
-    """Draw figures 8.16, 8.17 and 8.19 of Seville and Wu (2016) from theory."""
+    """Draw figures 8.16, 8.17 and 8.19 of Seville and Wu (2016) and figure 10 of Thornton and Ning (1998)."""
     from ..studies.figures import draw_all
 
     names = [str(path) for path in draw_all(out)]

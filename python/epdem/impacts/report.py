@@ -26,6 +26,7 @@ ROW_KEYS = (
     *(k for n in CHECKED for k in (n, n + "_theory", n + "_error")),
     "energy_residual",
     "steps_in_contact",
+    "stuck",
     "passed",
 )
 
@@ -110,6 +111,8 @@ def summary(outcome: Outcome) -> str:
     )
     verdict = "all within tolerance" if not failed else f"{failed} of {len(rows)} rows outside tolerance"
     worst = f"largest e_n error {rows['e_n_error'].max():.1e}"
+    if stuck := int(rows["stuck"].sum()):
+        worst += f"; {stuck} impacts stick"
     return f"{outcome.case.name}: {verdict}; {worst}; {times}{stored}; see {outcome.folder}/"
 
 

@@ -15,6 +15,7 @@ from ..impacts.engine import Abilities, Trajectory, check_abilities
 from ..impacts.pairs import Pairs
 from ..impacts.places import room, side_by_side
 from ..impacts.plan import Plan
+from ..laws.library import laws
 from ..processes import ask
 from . import dump, launcher
 from .deck import Deck
@@ -70,7 +71,7 @@ class Liggghts:
             title=x.title,
             source=x.source,
             summary=f"{x.speed.size} speeds x {plan.phases} phases = {plan.n} independent impacts, law {x.law.name}",
-            has_history=x.law.strength_property is not None,
+            has_history=laws()[x.law.name].memory > 0,
             hard=max(moduli) > HARD,
             soft=min(moduli) < SOFT,
             data="impact.data",

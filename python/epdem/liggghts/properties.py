@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from ..impacts.experiment import Body
 from ..impacts.plan import Plan
 from ..laws import library as claw
+from ..laws.strengths import ADHESION
 
 RIGID = 1e30  # modulus [Pa] of a rigid type: 1e15 would change E* of steel by 2e-4
 HARD, SOFT = 1e9, 5e6  # LIGGGHTS refuses moduli [Pa] outside these without a keyword
@@ -21,6 +22,7 @@ _REASONS = {
     "coefficientRestitution": "viscous.restitution or contact.tangential_restitution: a dashpot",
     "coefficientRollingFriction": "contact.rolling.coefficient: limit of the rolling moment",
     "coefficientRollingViscousDamping": "contact.rolling.damping: dashpot of the rolling moment",
+    "workOfAdhesion": "work of adhesion Gamma of the law: the bodies attract each other",
     "cohesionEnergyDensity": "contact.cohesion: attraction over the contact area",
 }
 
@@ -46,7 +48,7 @@ class Property:
         laws = claw.laws().values()
         if any(info.strength and info.strength.property == self.name for info in laws):
             return "the law yields at this strength; the softer body's counts"
-        if any(p.property == self.name for info in laws for p in info.parameters):
+        if self.name not in _REASONS and any(p.property == self.name for info in laws for p in info.parameters):
             return "a parameter of the law that differs from its default"
         return "; ".join(filter(None, [_REASONS.get(self.name, ""), self.note]))
 
@@ -94,6 +96,11 @@ def strength(law: str, values: Sequence[float]) -> tuple[Property, ...]:
     return (per_type(parameter.property, values, parameter.unit, "the softer body's counts" * (len(values) > 1)),)
 
 
+def work_of_adhesion(types: int, values: float | Sequence[float]) -> Property:
+    """Work of adhesion [J/m^2] of every pair of atom types."""
+    return per_pair("workOfAdhesion", types, values, "J/m^2")
+
+
 def of_impacts(plan: Plan) -> tuple[Property, ...]:
     """Elastic properties of the plan's atom types, for any model."""
     bodies = [body for body, _ in atom_types(plan)]
@@ -105,6 +112,8 @@ def of_law(plan: Plan) -> tuple[Property, ...]:
     x, types = plan.experiment, atom_types(plan)
     found = [*of_impacts(plan), *strength(x.law.name, [finite(s) for _, s in types])]
     found += [scalar(name, value, "-") for name, value in x.law.ratios().items()]
+    if x.law.adheres:
+        found.append(work_of_adhesion(len(types), x.law.parameters[ADHESION]))
     if x.viscous_restitution is not None:
         note = "of impacts that do not yield"
         found.append(per_pair("coefficientRestitution", len(types), x.viscous_restitution, "-", note))

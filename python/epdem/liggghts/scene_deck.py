@@ -10,7 +10,7 @@ from ..scenes.model import Model
 from ..scenes.plan import Phase, ScenePlan
 from . import stl
 from .insertions import Insertion, insertions
-from .properties import HARD, SOFT, Property, elastic, per_pair, scalar, strength
+from .properties import HARD, SOFT, Property, elastic, per_pair, scalar, strength, work_of_adhesion
 
 SKIN = 0.25  # of the smallest radius: rebuilds cost less than idle neighbours
 
@@ -56,8 +56,10 @@ class Deck:
     spins: bool
     has_history: bool
     yields: bool
-    memory_column: int
-    wall_memory_column: int
+    adheres: bool
+    slots: tuple[str, ...]
+    memory_columns: tuple[int, ...]
+    wall_memory_columns: tuple[int, ...]
     torque: bool
     row_words: tuple[str, ...]
     motion: dict[str, float]
@@ -88,6 +90,8 @@ def _properties(p: ScenePlan) -> tuple[Property, ...]:
         found.append(per_pair("coefficientRollingFriction", n, m.rolling.coefficient, "-"))
         if m.rolling.damping is not None:
             found.append(per_pair("coefficientRollingViscousDamping", n, m.rolling.damping, "-"))
+    if m.adheres:
+        found.append(work_of_adhesion(n, [x for row in m.adhesion for x in row]))
     if m.cohesion:
         found.append(per_pair("cohesionEnergyDensity", n, m.cohesion, "J/m^3"))
     return tuple(found)
@@ -99,7 +103,7 @@ def _settings(p: ScenePlan) -> tuple[str, ...]:
     wanted = {
         "viscous on": m.viscous is not None,
         "tangential_damping off": m.viscous is not None and m.sliding and m.tangential_restitution is None,
-        "computePlasticWork on": p.dents,
+        "computePlasticWork on": p.dents or p.jumps,
     }
     return tuple(words for words, asked in wanted.items() if asked)
 
@@ -110,6 +114,12 @@ def memory(m: Model, *, wall: bool = False) -> int:
     others = 3 * m.sliding + 3 * (m.rolling is not None and m.rolling.model in ("epsd", "epsd2"))
     stamp = 0 if wall else int(law + others > 0)
     return law + stamp + others
+
+
+def told(m: Model) -> tuple[str, ...]:
+    """What a table of contacts takes of the law's memory, which begins with it: the largest overlap of a law that
+    yields, whether bodies that adhere are attached (its root is above 0)."""
+    return ("largest overlap",) * m.yields + ("root of the attached",) * m.adheres
 
 
 def _motion(p: ScenePlan) -> dict[str, float]:
@@ -163,10 +173,12 @@ def deck(p: ScenePlan) -> Deck:
         energy=out.energy,
         loads=out.loads,
         spins=m.spins,
-        has_history=m.yields or m.spins,
+        has_history=m.yields or m.spins or m.adheres,
         yields=m.yields,
-        memory_column=4 + memory(m),
-        wall_memory_column=4 + memory(m, wall=True),
+        adheres=m.adheres,
+        slots=told(m),
+        memory_columns=tuple(4 + memory(m) - k for k in range(len(told(m)))),
+        wall_memory_columns=tuple(4 + memory(m, wall=True) - k for k in range(len(told(m)))),
         torque=p.torque,
         row_words=tuple(word for word, asked in words.items() if asked),
         motion=_motion(p),

@@ -166,7 +166,7 @@ def _of_settle(p: ScenePlan, s: Settle, tables: dict[str, pd.DataFrame]) -> list
     if "floor_load" in tables["rows"] and "particles" in tables and smooth:
         load, weight = floor_load(p.case, tables)
         found.append(_row("floor load / weight (smooth walls: hydrostatic)", load, weight, 0.02))
-    if not s.rate and s.gravity and p.output.particles >= MANY:
+    if not s.rate and s.gravity and p.output.particles >= MANY and not p.model.adheres:  # what sticks swings back
         found.append(_below("rebound of the bed / e_n^2 fall", *bed_rebound(p.case, tables["particles"]), 0.0))
     return found
 

@@ -37,8 +37,9 @@ def plate_velocity(p: ScenePlan, rows: pd.DataFrame) -> np.ndarray:
 
 
 def _left(spheres: pd.DataFrame, steps: np.ndarray) -> np.ndarray:
-    """Energy [J] that spheres took along which were gone at each step: kinetic and plastic, as in their last frame."""
-    energy = kinetic(spheres) + spheres.get("plastic_work", 0.0)
+    """Energy [J] that spheres took along which were gone at each step: kinetic, plastic and lost by adhesion, as in
+    their last frame."""
+    energy = kinetic(spheres) + spheres.get("plastic_work", 0.0) + spheres.get("adhesive_work", 0.0)
     last = spheres.groupby("id")["step"].max()
     gone = last[last < steps[-1]]
     taken = np.zeros(steps.size)
@@ -49,7 +50,8 @@ def _left(spheres: pd.DataFrame, steps: np.ndarray) -> np.ndarray:
 
 
 def ledger(p: ScenePlan, tables: dict[str, pd.DataFrame]) -> pd.DataFrame:
-    """One row per frame [J]: kinetic, gravity, elastic, plastic, work done by walls, left, and the balance.
+    """One row per frame [J]: kinetic, gravity, elastic, plastic, work done by walls, left, and the balance; with
+    adhesion also what its jumps took, and `elastic` holds the surface energy, too.
 
     The balance is what all but friction leave unexplained since the first frame with all spheres; where contacts rub it
     is friction (and the tangential springs), else it must vanish.
@@ -61,14 +63,18 @@ def ledger(p: ScenePlan, tables: dict[str, pd.DataFrame]) -> pd.DataFrame:
     table = pd.DataFrame({"step": steps, "time": steps * p.time_step})
     table["kinetic"], table["gravity"] = sums["kinetic"].to_numpy(), sums["gravity"].to_numpy()
     table["elastic"] = found.groupby("step")["elastic_energy"].sum().reindex(steps, fill_value=0.0).to_numpy()
-    plastic = spheres.groupby("step")["plastic_work"].sum() if "plastic_work" in spheres else pd.Series(0.0, steps)
-    table["plastic"] = plastic.reindex(steps).to_numpy()
+    for name, column in (("plastic", "plastic_work"), ("adhesion", "adhesive_work")):
+        if column in spheres:
+            table[name] = spheres.groupby("step")[column].sum().reindex(steps).to_numpy()
+        elif name == "plastic":
+            table[name] = 0.0
+    taken = [name for name in ("plastic", "adhesion") if name in table]
     rows = tables["rows"]
     table["work"] = np.interp(steps, rows["step"], work_of_walls(p, rows))
     table["left"] = _left(spheres, steps) if p.layout.loses else 0.0
     present = spheres.groupby("step")["id"].count().reindex(steps).to_numpy()
     start = int(np.argmax(present == present.max()))
-    total = table[["kinetic", "gravity", "elastic", "plastic", "left"]].sum(axis=1) - table["work"]
+    total = table[["kinetic", "gravity", "elastic", *taken, "left"]].sum(axis=1) - table["work"]
     table["balance"] = total - total.iloc[start]
     table = table.iloc[start:].reset_index(drop=True)
     if p.model.loses_energy:
@@ -78,6 +84,6 @@ def ledger(p: ScenePlan, tables: dict[str, pd.DataFrame]) -> pd.DataFrame:
 
 def closure(table: pd.DataFrame) -> float:
     """Largest balance over the energy that moved: of the start, and what walls put in."""
-    terms = table[["kinetic", "elastic", "plastic", "work"]].abs().max().sum()
+    terms = table.reindex(columns=["kinetic", "elastic", "plastic", "adhesion", "work"]).abs().max().sum()
     fall = abs(table["gravity"].iloc[0] - table["gravity"].min())
     return float(table["balance"].abs().max() / max(terms, fall, 1e-300))

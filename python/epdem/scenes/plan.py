@@ -90,6 +90,11 @@ class ScenePlan:
         return self.output.energy and self.model.yields
 
     @property
+    def jumps(self) -> bool:
+        """Whether the work that adhesion took of each sphere is in the frames."""
+        return self.output.energy and self.model.adheres
+
+    @property
     def summary(self) -> str:
         """One line for the head of a deck."""
         s = self.case.scene
