@@ -11,10 +11,10 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parent.parent
 sys.path.insert(0, str(ROOT / "tests" / "engines"))
 
-from plugin_decks import LAWS  # noqa: E402
+from plugin_decks import ADHESIVE, LAWS  # noqa: E402
 from plugin_invariance import Suite  # noqa: E402
 
-MODELS = (*(f"ep/{law}" for law in LAWS), "hertz", "thornton_ning", "edinburgh")
+MODELS = (*(f"ep/{law}" for law in (*LAWS, *ADHESIVE)), "hertz", "thornton_ning", "edinburgh")
 
 HEAD = """# One scene in different set-ups
 

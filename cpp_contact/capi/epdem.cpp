@@ -31,8 +31,8 @@ struct LawInfo {
 
 template <class Law>
 constexpr LawInfo info() {
-  return {Law::name, Law::id, Law::n_parameters, Law::parameters, Law::strength, Law::default_ratio, memory<Law>,
-          adheres<Law>};
+  return {Law::name,          Law::id,     Law::n_parameters, Law::parameters, Law::strength,
+          Law::default_ratio, memory<Law>, adheres<Law>};
 }
 
 #define EPDEM_INFO(Class) info<Class<double>>(),

@@ -13,8 +13,8 @@ namespace epdem::liggghts {
 
 /// Per-atom properties: plasticWork [J] sums up every growth of plastic work since the start, adhesiveWork [J] (of laws
 /// with adhesion) what the forces lost in their jumps at touch and parting, elasticEnergy [J] is what the contacts of
-/// this step can give back, less their surface energy. Half of a pair's energy belongs to each body, all of a wall's to the
-/// sphere. LIGGGHTS evaluates a pair that spans two ranks on both of them, so each books its own body only.
+/// this step can give back, less their surface energy. Half of a pair's energy belongs to each body, all of a wall's to
+/// the sphere. LIGGGHTS evaluates a pair that spans two ranks on both of them, so each books its own body only.
 class Ledger {
  public:
   /// Indices of the bodies, and from which index on a body belongs to another rank.

@@ -1,12 +1,9 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "materials.hpp"
 
-#include <cmath>
-#include <cstdio>
 #include <memory>
-#include <string>
 
-#include "comm.h"
+#include "adhesion.hpp"
 #include "epdem/tangential.hpp"
 #include "epdem/viscous.hpp"
 #include "force.h"
@@ -15,125 +12,6 @@
 namespace epdem::liggghts {
 
 namespace {
-
-constexpr double unlimited = std::numeric_limits<double>::infinity();
-
-std::string number(double x) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.9g", x);
-  return text;
-}
-
-std::string unit_of(const char* unit) { return std::string(unit) == "1" ? "" : std::string(" [") + unit + "]"; }
-
-/// A half-open range (low, high] or [low, high] of a property.
-struct Range {
-  double low, high;
-  bool low_included;
-
-  bool holds(double x) const { return std::isfinite(x) && (x > low || (low_included && x == low)) && x <= high; }
-  std::string text() const {
-    if (high == unlimited) return "must be finite and > " + number(low);
-    return std::string("must lie in ") + (low_included ? "[" : "(") + number(low) + ", " + number(high) + "]";
-  }
-};
-
-class Reader {
- public:
-  Reader(LAMMPS_NS::LAMMPS* lmp, PropertyRegistry& registry, const Declaration& law)
-      : lmp_(lmp), law_(law), n_(registry.max_type()) {}
-
-  int types() const { return n_; }
-
-  [[noreturn]] void fail(const std::string& what) const {
-    lmp_->error->all(FLERR, (std::string("model ") + law_.model + ": " + what).c_str());
-    std::abort();  // not reached: error->all ends the run
-  }
-
-  FixPropertyGlobal* find(const char* name, const char* style) const {
-    const int rows = style[0] == 's' ? 0 : n_, columns = std::string(style) == "peratomtypepair" ? n_ : 0;
-    return static_cast<FixPropertyGlobal*>(
-        lmp_->modify->find_fix_property(name, "property/global", style, rows, columns, law_.model, false));
-  }
-
-  bool given(const char* name) const {
-    return find(name, "scalar") || find(name, "peratomtype") || find(name, "peratomtypepair");
-  }
-
-  double checked(const char* name, const char* unit, const std::string& where, double x, Range range) const {
-    if (!range.holds(x))
-      fail(std::string(name) + " = " + number(x) + unit_of(unit) + " of " + where + ", " + range.text());
-    return x;
-  }
-
-  std::string missing(const char* name, const char* unit) const {
-    return std::string("property ") + name + unit_of(unit) +
-           " is missing; give one value per atom type: " + "fix ID all property/global " + name +
-           " peratomtype VALUE ...";
-  }
-
-  std::vector<double> per_type(const char* name, const char* unit, Range range) const {
-    FixPropertyGlobal* fix = find(name, "peratomtype");
-    if (!fix) fail(missing(name, unit));
-    std::vector<double> values(n_ + 1, 0.0);
-    for (int i = 1; i <= n_; ++i)
-      values[i] = checked(name, unit, "type " + std::to_string(i), fix->compute_vector(i - 1), range);
-    return values;
-  }
-
- private:
-  LAMMPS_NS::LAMMPS* lmp_;
-  const Declaration& law_;
-  int n_;
-};
-
-std::string both(int i, int j) { return "types " + std::to_string(i) + " and " + std::to_string(j); }
-
-constexpr const char* adhesion_name = "workOfAdhesion";  // of a pair of types [J/m^2]
-constexpr const char* surface_name = "surfaceEnergy";    // of a type [J/m^2]
-
-/// Work of adhesion of every pair of types [J/m^2]: as given, or 2 sqrt(gamma_i gamma_j) of the surface energies.
-class Adhesion {
- public:
-  explicit Adhesion(const Reader& reader) : reader_(reader), pairs_(reader.find(adhesion_name, "peratomtypepair")) {
-    const bool energy = reader.given(surface_name);
-    if (energy && reader.given(adhesion_name))
-      reader.fail(std::string("both ") + adhesion_name + " and " + surface_name + " are given; keep one");
-    if (energy) surface_ = reader.per_type(surface_name, "J/m^2", range);
-    if (!energy && !pairs_)
-      reader.fail(std::string("property ") + adhesion_name +
-                  " [J/m^2] is missing; give one value per pair of atom types: fix ID all property/global " +
-                  adhesion_name + " peratomtypepair NTYPES VALUE ... (or " + surface_name +
-                  " peratomtype gamma ..., of which it is 2 sqrt(gamma_i gamma_j))");
-  }
-
-  double at(int i, int j) const {
-    if (!pairs_) return 2.0 * std::sqrt(surface_[i] * surface_[j]);
-    const double x = pairs_->compute_array(i - 1, j - 1), y = pairs_->compute_array(j - 1, i - 1);
-    if (x != y)
-      reader_.fail(std::string(adhesion_name) + " of " + both(i, j) + " is not symmetric: " + number(x) + " and " +
-                   number(y));
-    return reader_.checked(adhesion_name, "J/m^2", both(i, j), x, range);
-  }
-
- private:
-  static constexpr Range range{0.0, unlimited, true};
-  const Reader& reader_;
-  FixPropertyGlobal* const pairs_;
-  std::vector<double> surface_;
-};
-
-/// A law without adhesion beside a deck that asks for it.
-void refuse_adhesion(const Reader& reader, const Declaration& law) {
-  for (const char* name : {adhesion_name, surface_name}) {
-    if (!reader.given(name)) continue;
-    const std::string model = law.model;
-    const std::string instead = model == "ep/hertz"      ? "take ep/jkr"
-                                : model == "ep/thornton" ? "take ep/thornton_ning"
-                                                         : "no theory of adhesion exists for it, take ep/thornton_ning";
-    reader.fail(std::string(name) + " is given, but this law has no adhesion; " + instead + ", or remove the property");
-  }
-}
 
 /// A law's parameter for every pair of types. A value per type is that of the softer body: the body with the smaller
 /// first parameter yields, and its other parameters go with it.
@@ -284,29 +162,6 @@ std::vector<double> viscous_numbers(const Reader& reader, bool viscous) {
 }
 
 }  // namespace
-
-void compare_cohesion(LAMMPS_NS::LAMMPS* lmp, const Declaration& law, const Materials& materials) {
-  if (law.strength < 0) return;
-  auto* const density = static_cast<FixPropertyGlobal*>(
-      lmp->modify->find_fix_property("cohesionEnergyDensity", "property/global", "peratomtypepair", materials.width - 1,
-                                     materials.width - 1, law.model, false));
-  if (!density) return;  // LIGGGHTS says so
-  const double pascal = 1.0 / lmp->force->nktv2p;
-  for (int i = 1; i < materials.width; ++i)
-    for (int j = i; j < materials.width; ++j) {
-      const double pull = density->compute_array(i - 1, j - 1);
-      const double resists = materials.pairs[i * materials.width + j].parameters[law.strength] / pascal;
-      if (!(pull > resists)) continue;
-      const std::string text = std::string("model ") + law.model + ": cohesionEnergyDensity = " + number(pull) +
-                               " exceeds " + law.parameters[law.strength].property + " = " + number(resists) + " of " +
-                               both(i, j) +
-                               ": cohesion pulls contacts in harder than they resist, and the spheres collapse";
-      static std::string said;
-      if (lmp->comm->me == 0 && text != said) lmp->error->warning(FLERR, text.c_str());
-      said = text;
-      return;
-    }
-}
 
 Materials read_materials(LAMMPS_NS::LAMMPS* lmp, PropertyRegistry& registry, const Declaration& law, Dashpot dashpot,
                          bool viscous) {

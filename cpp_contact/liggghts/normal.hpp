@@ -2,7 +2,6 @@
 // A law as LIGGGHTS sees it: reads the contact, calls step(), writes force and stiffness. No physics in here.
 #pragma once
 
-#include <cmath>
 #include <cstdio>
 #include <cstring>
 #include <string>
@@ -84,8 +83,8 @@ class Normal : protected LAMMPS_NS::Pointers {
   void connectToProperties(PropertyRegistry& registry, Dashpot dashpot, bool cohesive) {
     // Rebuilt at every init: LIGGGHTS frees all properties there, and the user may have changed them.
     if (!tangential_damping_ && dashpot == Dashpot::optional) dashpot = Dashpot::off;
-    const Declaration law{model_.c_str(),     Law::parameters,        Law::n_parameters, &Law::valid, Law::strength,
-                          Law::default_ratio, Law::strength_by_ratio, adheres<Law>};
+    const Declaration law{model_.c_str(), Law::parameters,    Law::n_parameters,      &Law::valid,
+                          Law::strength,  Law::default_ratio, Law::strength_by_ratio, adheres<Law>};
     const Materials m = read_materials(lmp, registry, law, dashpot, viscous_);
     if (cohesive) compare_cohesion(lmp, law, m);
     width_ = m.width;
@@ -184,7 +183,7 @@ class Normal : protected LAMMPS_NS::Pointers {
   /// What LIGGGHTS prepares only for pairs that overlap, by its own operations.
   void prepare(SurfacesIntersectData& s) const {
     if constexpr (!wall) {
-      s.r = std::sqrt(s.rsq);
+      s.r = LAMMPS_NS::vectorMag3D(s.delta);
       s.rinv = 1.0 / s.r;
       for (int k = 0; k < 3; ++k) s.en[k] = s.delta[k] * s.rinv;
       s.omega_i = atom->omega[s.i];
@@ -220,7 +219,8 @@ class Normal : protected LAMMPS_NS::Pointers {
     if (comm->me != 0 || factor == factor_) return;
     factor_ = factor;
     char line[160];
-    std::snprintf(line, sizeof line, "epdem: %s pulls across gaps up to %.4g (radius %.4g), contact distance factor %.9g\n",
+    std::snprintf(line, sizeof line,
+                  "epdem: %s pulls across gaps up to %.4g (radius %.4g), contact distance factor %.9g\n",
                   model_.c_str(), gap, smallest, factor);
     if (screen) std::fputs(line, screen);
     if (logfile) std::fputs(line, logfile);
@@ -273,7 +273,7 @@ class Normal : protected LAMMPS_NS::Pointers {
   LAMMPS_NS::PairGran* pair_ = nullptr;
   LAMMPS_NS::FixWallGran* wall_ = nullptr;
   double factor_ = 0.0;  // of distance, as said last
-  bigint clock_ = 0;  // step of the last pass
+  bigint clock_ = 0;     // step of the last pass
   double now_ = 0.0;
   Ledger ledger_;
   bool plastic_work_ = false;

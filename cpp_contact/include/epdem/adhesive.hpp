@@ -19,6 +19,9 @@ struct Losses {
 
 inline constexpr double fold_share = 0.62996052494743658;  // y_f in (c R)^(1/3): 4^(-1/3)
 
+/// Work of adhesion [J/m^2] of two surfaces of these energies [J/m^2].
+inline double work_of_adhesion(double gamma_i, double gamma_j) noexcept { return 2.0 * sqrt(gamma_i * gamma_j); }
+
 /// What an attached contact remembers as its root where Gamma = 0.
 inline constexpr double no_root = std::numeric_limits<double>::min();
 

@@ -26,7 +26,7 @@ struct Parameter {
   const char* name;      // in case files and in the C ABI
   const char* property;  // LIGGGHTS property/global
   const char* unit;
-  double fallback;  // NaN: the host must give it
+  double fallback;          // NaN: the host must give it
   bool may_vanish = false;  // 0 is a value, not a mistake
 };
 

@@ -42,7 +42,8 @@ struct Jkr {
 
   /// Work from touch to `delta` [J] while the contact grows.
   T work(T R_star, T delta) const noexcept {
-    const T root = adhesive::refreshed(T{}, c * R_star), y = adhesive::curve(adhesive::fold_share * root, R_star * delta);
+    const T root = adhesive::refreshed(T{}, c * R_star),
+            y = adhesive::curve(adhesive::fold_share * root, R_star * delta);
     return adhesive::energy(E_star, c, R_star, y) - adhesive::energy(E_star, c, R_star, root);
   }
 };

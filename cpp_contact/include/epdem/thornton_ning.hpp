@@ -157,8 +157,8 @@ inline Step<ThorntonNing<T>> step(const ThorntonNing<T>& law, T R_star, const ty
   const auto keeps = stands | (delta > 0.0);
   return {F + jump,
           select(stands, y * y, zero),
-          {select(keeps, select(grows, delta, before.delta_max), zero),
-           select(stands, max(root, zero + no_root), zero), select(keeps, dent, zero), select(keeps, R, zero), jump}};
+          {select(keeps, select(grows, delta, before.delta_max), zero), select(stands, max(root, zero + no_root), zero),
+           select(keeps, dent, zero), select(keeps, R, zero), jump}};
 }
 
 /// The radius R [m] of the curve on which a contact opens: its pull-off force is 3/2 pi Gamma R.
@@ -210,7 +210,8 @@ inline adhesive::Losses<T> losses(const ThorntonNing<T>& law, T R_star, const ty
   if (any(ends)) adhesive = select(ends, energy_at_fold(E, c, R), adhesive);
   const auto grows = after.delta_max > before.delta_max;
   T plastic{};
-  if (any(grows)) plastic = select(grows, plastic_work(law, R_star, after) - plastic_work(law, R_star, before), plastic);
+  if (any(grows))
+    plastic = select(grows, plastic_work(law, R_star, after) - plastic_work(law, R_star, before), plastic);
   return {plastic, adhesive};
 }
 

@@ -34,8 +34,8 @@ inline auto has_yielded(const Law& law, Number<Law> R_star, const State<Law>& no
 }
 
 /// The step's force with the dashpot: 2 sqrt(5/6) zeta sqrt(k_n m*) times the approach speed [m/s], k_n = 2 E* a.
-/// It acts where the force is below the backbone or on its elastic start, not while the contact yields; never attracts where
-/// the law does not.
+/// It acts where the force is below the backbone or on its elastic start, not while the contact yields; never attracts
+/// where the law does not.
 template <class Law>
 inline Number<Law> damped_force(const Law& law, Number<Law> R_star, const State<Law>& before, const Step<Law>& now,
                                 Number<Law> number, Number<Law> m_star, Number<Law> approach_speed) noexcept {

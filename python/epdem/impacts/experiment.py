@@ -115,13 +115,6 @@ class Experiment:
         """The law in the theory."""
         return self.law.theory(E_star=self.E_star, R_star=self.R_star)
 
-    def backbone(self) -> Backbone:
-        """The backbone of a law without adhesion. Raises CaseError for one with adhesion."""
-        law = self.theory()
-        if isinstance(law, JKR):
-            raise CaseError(f"law.name = {self.law.name!r}: laws with adhesion are not part of this; take another law")
-        return law
-
     def native_law(self) -> Law:
         """The same law in C++."""
         return Law(self.law.name, E_star=self.E_star, **self.law.parameters)
@@ -136,7 +129,7 @@ def pair_of(numbers: LawNumbers, body: Body, target: Body) -> LawSpec:
     """The law of two bodies. Raises CaseError where a yield stress or surface energy is missing."""
     strong = [numbers.strength(b.material, b.yield_stress) for b in (body, target)]
     surfaces = [Surface(b.material, b.surface_energy) for b in (body, target)]
-    return numbers.pair(*strong, numbers.work_of_adhesion(*surfaces))
+    return numbers.pair(strong[0], strong[1], numbers.work_of_adhesion(*surfaces))
 
 
 def _body(case: Case, material: str, radius: float | None) -> Body:

@@ -51,8 +51,9 @@ def measure(plan: Plan, path: Trajectory, *, end_power: float | None = None) -> 
 
     end_power: for another law than the plan's: the power of its force that falls linearly with the overlap at the end.
     """
-    if isinstance(plan.experiment.theory(), JKR):
-        return _with_adhesion(plan, path)
+    law = plan.experiment.theory()
+    if isinstance(law, JKR):
+        return _with_adhesion(plan, path, law)
     overlap, force, velocity = path.overlap, path.force, path.velocity
     row = np.arange(plan.n)
     sampled = np.isfinite(force)
@@ -79,7 +80,6 @@ def measure(plan: Plan, path: Trajectory, *, end_power: float | None = None) -> 
     energy = 0.5 * plan.experiment.m_star * plan.speed**2
     # at the dent, between two samples, the force is 0 and so is the last piece of work, to third order
     work = np.where(loaded[:, 1:] | loaded[:, :-1], 0.5 * (force[:, 1:] + force[:, :-1]) * np.diff(overlap), 0.0)
-    law = plan.experiment.backbone()
     plastic = law.work(peak) - law.recovered_work(peak)
     return Measured(
         e_n=-velocity[row, end] / plan.speed,
@@ -92,7 +92,7 @@ def measure(plan: Plan, path: Trajectory, *, end_power: float | None = None) -> 
     )
 
 
-def _with_adhesion(plan: Plan, path: Trajectory) -> Measured:
+def _with_adhesion(plan: Plan, path: Trajectory, law: JKR) -> Measured:
     """As `measure`: in contact as long as there is a force, of either sign; the last step with one is the first apart.
 
     The bodies part within that step. By the momentum of the pull, which it then has for the share s of a step,
@@ -113,7 +113,7 @@ def _with_adhesion(plan: Plan, path: Trajectory) -> Measured:
     between = overlap[row, last] + share * (overlap[row, apart] - overlap[row, last])
     peak = np.where(sampled, overlap, -np.inf).max(axis=1)
     work = 0.5 * (force[:, 1:] + force[:, :-1]) * np.diff(overlap)
-    lost = adhesion.lost_work(x.theory(), peak)
+    lost = adhesion.lost_work(law, peak)
     nothing = np.full(plan.n, np.nan)
     return Measured(
         e_n=np.where(stuck, 0.0, -velocity[row, end] / plan.speed),

@@ -2,6 +2,7 @@
 """The prediction of theory for an experiment."""
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 
@@ -46,7 +47,7 @@ class Prediction:
     @property
     def sticks(self) -> np.ndarray:
         """Where the bodies stay together."""
-        return self.e_n == 0.0
+        return np.asarray(self.e_n == 0.0)
 
     @property
     def duration(self) -> np.ndarray:
@@ -69,7 +70,7 @@ def predict(experiment: Experiment) -> Prediction:
     else:
         impact = viscous.impact(law, m_star=m_star, speed=speed, restitution=experiment.viscous_restitution)
     names = Prediction.COLUMNS[1:]
-    columns = {n: np.asarray(getattr(impact, n), float) for n in names}
+    columns: dict[str, Any] = {n: np.asarray(getattr(impact, n), float) for n in names}
     pair = (experiment.body, experiment.target)
     yields = _softer(experiment) if columns["overlap_max"].max() > law.yield_overlap else ()
     speeds = {
@@ -91,7 +92,7 @@ def _with_adhesion(x: Experiment, law: JKR) -> Prediction:
     """residual_overlap is that at which the contact ends, 3/4 d below the dent; what adhesion takes is neither in
     work_out nor in plastic_work."""
     impact = adhesion.impact(law, m_star=x.m_star, speed=x.speed)
-    columns = {n: np.asarray(getattr(impact, n), float) for n in Prediction.COLUMNS[1:]}
+    columns: dict[str, Any] = {n: np.asarray(getattr(impact, n), float) for n in Prediction.COLUMNS[1:]}
     columns["residual_overlap"] = impact.parting_overlap
     first = max(float(law.touch_radius), float(law.yield_radius))
     barely = 1.001 * float(adhesion.sticking_speed(law, m_star=x.m_star))

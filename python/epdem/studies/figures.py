@@ -104,7 +104,7 @@ def adhesion_by_strength(folder: Path) -> Path:
     """Figure 10 of Thornton and Ning 1998: e_n against speed with adhesion for three strengths, and an elastic sphere;
     lines are theory, points are impacts in LIGGGHTS, where it is installed."""
     figure, axes = _axes("Adhesive spheres, R* = 10 um, Gamma = 0.2 J/m^2", "V [m/s]", "e_n")
-    steel = Material(young_modulus=215e9, poisson_ratio=0.3, density=7850.0)
+    steel = Material.model_validate({"young_modulus": "215 GPa", "poisson_ratio": 0.3, "density": "7850 kg/m^3"})
     body, target = sphere(steel, radius=1e-5, name="steel"), plane(steel, name="steel")
     tool = engine("liggghts")
     for k, p_y in enumerate((None, 3.04e9, 1e9, 0.5e9)):

@@ -132,7 +132,7 @@ def extremes() -> tuple[Extreme, ...]:
 
 def _adhesive() -> list[Extreme]:
     """Adhesion: its strength, size, speed over the sticking speed, yield by the attraction alone, unequal bodies."""
-    base = {"adhesion": 0.1, "R": 1e-5, "times": 30.0, "ratio": 30.0}
+    base: dict[str, Any] = {"adhesion": 0.1, "R": 1e-5, "times": 30.0, "ratio": 30.0}
     sweeps: dict[str, tuple[float, ...]] = {
         "adhesion": (1e-6, 1e-4, 1e-2, 1.0, 10.0),
         "R": (1e-6, 1e-4, 1e-3, 1e-2),

@@ -76,10 +76,9 @@ class Setting:
 def setting(extreme: Extreme, law: str) -> Setting:
     """Theory of an extreme case, with the work already stored in an overlap at t = 0."""
     x = extreme.experiment(law)
-    prediction, law = predict(x), x.theory()
-    if isinstance(law, JKR):
-        return _with_adhesion(x, prediction, law)
-    theory = law
+    prediction, theory = predict(x), x.theory()
+    if isinstance(theory, JKR):
+        return _with_adhesion(x, prediction, theory)
     kinetic, top = 0.5 * x.m_star * float(x.speed[0]) ** 2, float(prediction.overlap_max[0])
     start = None if extreme.start is None else extreme.start * top
     energy = kinetic + (float(theory.work(start)) if start else 0.0)
