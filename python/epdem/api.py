@@ -18,12 +18,12 @@ import pandas as pd
 import tomlkit
 
 from . import theory
+from .base.files import atomic, write_texts
 from .case import impact as impact_case
 from .case import scene as scene_case
 from .engines import engine as engine_named
 from .engines import scene_engine
 from .errors import CaseError
-from .files import atomic, write_texts
 from .impacts.comparison import UNITS
 from .impacts.experiment import experiment
 from .impacts.plan import plan as plan_impacts

@@ -9,7 +9,7 @@ import jinja2
 import pytest
 
 from epdem import __version__
-from epdem import rendering as deck
+from epdem.base import rendering as deck
 from epdem.case.impact import parse, read_toml
 from epdem.case.scene import is_scene
 from epdem.case.scene import load as load_scene

@@ -11,7 +11,7 @@ from pathlib import Path
 
 import pytest
 
-from epdem import paths
+from epdem.base import paths
 from epdem.case.impact import Numerics, parse, read_toml
 from epdem.engines import engine
 from epdem.impacts.experiment import experiment

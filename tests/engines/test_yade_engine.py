@@ -11,6 +11,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from epdem.base.rendering import render
 from epdem.case.impact import Numerics, parse, read_toml
 from epdem.engines import engine
 from epdem.errors import CaseError, EngineError
@@ -20,7 +21,6 @@ from epdem.impacts.experiment import experiment
 from epdem.impacts.measurement import measure
 from epdem.impacts.plan import plan
 from epdem.impacts.prediction import predict
-from epdem.rendering import render
 from epdem.yade import impacts as module
 
 CASES = Path(__file__).parents[2] / "cases"

@@ -8,7 +8,7 @@ import pytest
 from removals import removals
 from scene_runs import write_deck
 
-from epdem import rendering
+from epdem.base import rendering
 from epdem.case import impact as impacts
 from epdem.case.scene import is_scene, parse
 from epdem.engines import engine

@@ -12,8 +12,8 @@ from typing import Annotated, Any
 
 import typer
 
+from ..base.terminal import bar, console
 from ..errors import CaseError, EpdemError, Stopped
-from ..terminal import bar, console
 from . import crosscheck as cli_crosscheck
 from . import numerics as cli_numerics
 from . import scenes as cli_scene

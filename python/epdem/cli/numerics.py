@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from ..terminal import console, frame_table, status
+from ..base.terminal import console, frame_table, status
 from .options import AsJson, CasePath, Engines, Laws, Out, laws_or_own
 
 
@@ -69,7 +69,7 @@ def stability(
     as_json: AsJson = False,
 ) -> None:
     """Test stiff and extreme cases, and find the time step at which each fails (default engine: embedded)."""
-    from ..files import atomic
+    from ..base.files import atomic
     from ..impacts.report import records
     from ..studies import stability as suite
     from ..studies.stability.suite import summary

@@ -7,8 +7,8 @@ from typing import Annotated
 
 import typer
 
+from ..base.terminal import bar, console
 from ..errors import CaseError
-from ..terminal import bar, console
 from .options import AsJson, CasePath, quantity, refuse
 
 
@@ -61,10 +61,10 @@ def run_scene(
 
 def deck_scene(case: Path, out: Path, *, engine: str = "liggghts", as_json: bool = False) -> None:
     """Write the deck of a scene."""
+    from ..base.files import write_texts
     from ..case.impact import named
     from ..case.scene import load
     from ..engines import scene_engine
-    from ..files import write_texts
     from ..scenes.plan import plan
 
     with named(case):
@@ -119,7 +119,7 @@ def soften(
     as_json: AsJson = False,
 ) -> None:
     """Write a softened copy of a case with the same e_n at every speed and larger time steps."""
-    from ..files import atomic
+    from ..base.files import atomic
     from ..studies.soften import soften as twin_of
 
     twin = twin_of(case, factor)

@@ -7,8 +7,8 @@ from typing import Annotated
 
 import typer
 
+from ..base.terminal import console
 from ..errors import CaseError
-from ..terminal import console
 from .options import AsJson, CasePath, Engines, Laws, Out, refuse
 
 

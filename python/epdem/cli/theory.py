@@ -7,9 +7,9 @@ from typing import Annotated
 
 import typer
 
+from ..base.terminal import console
+from ..base.terminal import table as empty_table
 from ..errors import CaseError
-from ..terminal import console
-from ..terminal import table as empty_table
 from .options import AsJson, quantity
 
 

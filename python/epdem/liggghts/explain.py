@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """The reason of each line of a deck: the templates state it beside the line, and only this module reads it."""
 
-from .. import rendering
+from ..base import rendering
 
 IMPACT = {"in.impact": "liggghts/impact.in.j2"}
 SCENE = {"in.scene": "liggghts/scene.in.j2", "setup.in": "liggghts/scene_setup.in.j2"}

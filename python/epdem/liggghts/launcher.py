@@ -6,9 +6,9 @@ import shutil
 from collections.abc import Callable
 from pathlib import Path
 
-from .. import paths
+from ..base import paths
+from ..base.processes import call
 from ..errors import CaseError, EngineError
-from ..processes import call
 
 INSTALL = "apt-get install liggghts libliggghts-dev libopenmpi-dev, then 'make setup'"
 LOG = "log.liggghts"  # LIGGGHTS's own log

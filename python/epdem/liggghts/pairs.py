@@ -7,9 +7,9 @@ from typing import Any
 
 import numpy as np
 
-from .. import data_file
-from .. import rendering as decks
+from ..base import rendering as decks
 from ..impacts.pairs import Pairs
+from ..lammps import data_file
 from . import dump, launcher
 from .deck import Deck
 

@@ -6,10 +6,10 @@ from dataclasses import replace
 from itertools import pairwise
 from pathlib import Path
 
-from .. import rendering as decks
+from ..base import rendering as decks
+from ..base.folders import held
+from ..base.processes import ROW
 from ..errors import CaseError
-from ..folders import held
-from ..processes import ROW
 from ..scenes.plan import ScenePlan
 from . import scene_tables as tables
 from .launcher import OUT

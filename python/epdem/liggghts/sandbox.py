@@ -19,7 +19,7 @@ from jinja2 import meta
 from jinja2.sandbox import ImmutableSandboxedEnvironment
 from pydantic import BaseModel
 
-from .. import paths, rendering
+from ..base import paths, rendering
 from ..errors import CaseError
 
 MOST_SOURCE, MOST_TEXT = 1_000_000, 20_000_000  # characters of a template, and of what it becomes

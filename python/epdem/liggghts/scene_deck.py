@@ -3,7 +3,7 @@
 
 from dataclasses import dataclass
 
-from .. import rendering as decks
+from ..base import rendering as decks
 from ..errors import CaseError
 from ..laws.library import laws
 from ..scenes.model import Model

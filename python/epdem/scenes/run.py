@@ -10,13 +10,13 @@ from pathlib import Path
 import pandas as pd
 
 from .. import __version__
+from ..base.files import write_texts
+from ..base.folders import Results, claim
+from ..base.stages import inputs_hash
 from ..case.impact import named
 from ..case.scene import SceneCase, load
 from ..errors import CaseError
-from ..files import write_texts
-from ..folders import Results, claim
 from ..impacts.prediction import predict
-from ..stages import inputs_hash
 from . import checks, ledger, results
 from .engine import Report, Resumed, SceneEngine, check_abilities
 from .pairs import wall_impact

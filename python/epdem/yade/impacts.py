@@ -9,7 +9,8 @@ from pathlib import Path
 
 import numpy as np
 
-from .. import rendering as decks
+from ..base import rendering as decks
+from ..base.processes import ask, call
 from ..errors import CaseError, EngineError
 from ..impacts.engine import Abilities, Trajectory, check_abilities, recorded_seconds
 from ..impacts.experiment import Body, Experiment
@@ -17,7 +18,6 @@ from ..impacts.pairs import Pairs
 from ..impacts.places import side_by_side
 from ..impacts.plan import Plan
 from ..laws import library as claw
-from ..processes import ask, call
 from .deck import Deck, Group, Material
 from .deck_modules import cone
 from .deck_modules.law import LAWS

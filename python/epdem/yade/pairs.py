@@ -6,10 +6,10 @@ from typing import Any
 
 import numpy as np
 
-from .. import rendering as decks
+from ..base import rendering as decks
+from ..base.processes import call
 from ..errors import EngineError
 from ..impacts.pairs import Pairs
-from ..processes import call
 from .deck import Deck
 from .launcher import command, environment, write_deck_modules
 

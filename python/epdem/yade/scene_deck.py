@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from itertools import combinations_with_replacement
 from math import atan
 
-from .. import rendering as decks
+from ..base import rendering as decks
 from ..errors import CaseError
 from ..scenes import placement
 from ..scenes.kinds import Block, Plane

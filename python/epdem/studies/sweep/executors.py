@@ -4,9 +4,9 @@
 from collections.abc import Sequence
 from pathlib import Path
 
+from ...base.files import atomic
+from ...base.folders import claim
 from ...errors import CaseError
-from ...files import atomic
-from ...folders import claim
 from . import folder as store
 from . import run, slurm
 from .folder import Sweep

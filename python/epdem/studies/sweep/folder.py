@@ -19,12 +19,12 @@ from typing import Any
 
 import tomlkit
 
+from ...base.files import atomic
+from ...base.folders import MANIFEST
+from ...base.stages import inputs_hash
 from ...case.impact import read_toml
 from ...case.scene import is_scene
 from ...errors import CaseError
-from ...files import atomic
-from ...folders import MANIFEST
-from ...stages import inputs_hash
 from .keys import assign, keys_of
 from .points import Point
 

@@ -8,11 +8,11 @@ from pathlib import Path
 
 import pandas as pd
 
+from ...base.folders import claim
 from ...case.impact import read_toml
 from ...case.scene import is_scene
 from ...engines import engine, scene_engine
 from ...errors import CaseError, EngineError
-from ...folders import claim
 from . import folder as store
 from . import local, points, table
 from .evaluate import check, evaluate

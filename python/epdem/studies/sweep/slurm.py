@@ -15,9 +15,9 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
+from ...base.files import atomic
+from ...base.folders import claim
 from ...errors import CaseError, EngineError
-from ...files import atomic
-from ...folders import claim
 from . import folder as store
 from . import local, table
 from .evaluate import evaluate

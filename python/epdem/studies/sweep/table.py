@@ -7,10 +7,10 @@ from typing import Any
 import h5py
 import pandas as pd
 
+from ...base.tables import Hdf5, read_table, write_csv, write_table
 from ...case.units import to_si
 from ...errors import CaseError
 from ...impacts.comparison import UNITS
-from ...tables import Hdf5, read_table, write_csv, write_table
 from . import folder as store
 from . import numbers
 from .folder import Sweep

@@ -13,7 +13,7 @@ import time
 from collections.abc import Callable
 from pathlib import Path
 
-from .errors import EngineError
+from ..errors import EngineError
 
 # A row of a table of numbers that begins with the number of a step: the progress of an engine.
 ROW = re.compile(rb"^ +(\d+)( +[-+.\deainf]+)+ *$")

@@ -6,14 +6,15 @@ from collections.abc import Iterable
 from functools import cache
 from pathlib import Path
 
-from . import __version__, paths
+from .. import __version__
+from . import paths
 
 
 @cache
 def product_hash() -> str:
     """Hash of this product as installed: both libraries, the launcher, templates and Python sources."""
     compiled = [paths.native("libepdem.so"), paths.native("libepdem_liggghts.so"), paths.launcher()]
-    templates, sources = paths.templates().rglob("*.j2"), Path(__file__).parent.rglob("*.py")
+    templates, sources = paths.templates().rglob("*.j2"), Path(__file__).parents[1].rglob("*.py")
     sha = hashlib.sha256(__version__.encode())
     for path in [*filter(None, compiled), *sorted(templates), *sorted(sources)]:
         sha.update(path.name.encode() + path.read_bytes())
