@@ -17,7 +17,7 @@ from pathlib import Path
 
 import numpy as np
 
-from epdem.case.impact import read_toml
+from epdem.case.toml import read_toml
 from epdem.case.scene import parse
 from epdem.liggghts.scenes import LiggghtsScenes
 from epdem.scenes.checks import discharge

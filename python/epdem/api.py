@@ -21,6 +21,7 @@ from . import theory
 from .base.files import atomic, write_texts
 from .case import impact as impact_case
 from .case import scene as scene_case
+from .case.toml import read_toml
 from .engines import engine as engine_named
 from .engines import scene_engine
 from .errors import CaseError
@@ -71,7 +72,7 @@ class _File:
     @classmethod
     def from_toml(cls, path: Path | str) -> Self:
         """The case in a file. Raises CaseError."""
-        impact_case.read_toml(path)
+        read_toml(path)
         found = cls.__new__(cls)
         found._read(Path(path).read_text(encoding="utf-8-sig"), path)
         return found

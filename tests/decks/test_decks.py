@@ -10,7 +10,8 @@ import pytest
 
 from epdem import __version__
 from epdem.base import rendering as deck
-from epdem.case.impact import parse, read_toml
+from epdem.case.impact import parse
+from epdem.case.toml import read_toml
 from epdem.case.scene import is_scene
 from epdem.case.scene import load as load_scene
 from epdem.errors import CaseError

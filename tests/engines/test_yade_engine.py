@@ -12,7 +12,8 @@ import numpy as np
 import pytest
 
 from epdem.base.rendering import render
-from epdem.case.impact import Numerics, parse, read_toml
+from epdem.case.impact import Numerics, parse
+from epdem.case.toml import read_toml
 from epdem.engines import engine
 from epdem.errors import CaseError, EngineError
 from epdem.impacts import store

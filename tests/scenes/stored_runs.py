@@ -10,7 +10,7 @@ from pathlib import Path
 
 from scene_runs import write_case
 
-from epdem.case.impact import read_toml
+from epdem.case.toml import read_toml
 from epdem.case.scene import load, parse
 from epdem.engines import scene_engine
 from epdem.scenes.plan import ScenePlan, plan

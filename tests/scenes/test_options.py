@@ -10,7 +10,7 @@ from scene_runs import write_deck
 from stored_runs import STORED
 from typer.testing import CliRunner
 
-from epdem.case.impact import read_toml
+from epdem.case.toml import read_toml
 from epdem.case.scene import parse
 from epdem.cli.main import app
 from epdem.errors import CaseError

@@ -15,7 +15,7 @@ import pytest
 from scene_runs import run, write_case, write_deck
 from test_lean import CASES, small
 
-from epdem.case.impact import read_toml
+from epdem.case.toml import read_toml
 from epdem.case.scene import is_scene, load, parse
 from epdem.errors import CaseError
 from epdem.liggghts import launcher, resume

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from scene_runs import run
 
-from epdem.case.impact import read_toml
+from epdem.case.toml import read_toml
 from epdem.case.scene import parse
 from epdem.errors import CaseError
 from epdem.liggghts import explain

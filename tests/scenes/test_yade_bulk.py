@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from scene_runs import run, write_deck
 
-from epdem.case.impact import read_toml
+from epdem.case.toml import read_toml
 from epdem.case.scene import parse
 from epdem.cli import main as cli
 from epdem.errors import CaseError, EngineError

@@ -123,7 +123,8 @@ def deck(
         refuse(file, "a scene has its own law", law=law)
         cli_scene.deck_scene(file, out, engine=engine, as_json=as_json)
         return
-    from ..case.impact import load, named
+    from ..case.impact import load
+    from ..case.toml import named
     from ..engines import engine as find
     from ..impacts.experiment import experiment
     from ..impacts.plan import plan
@@ -143,7 +144,8 @@ def deck(
 @app.command()
 def predict(case: CasePath, law: Laws = None, as_json: AsJson = False) -> None:
     """Print the prediction of theory for a case; no engine runs."""
-    from ..case.impact import load, named
+    from ..case.impact import load
+    from ..case.toml import named
     from ..impacts.experiment import experiment
     from ..impacts.prediction import predict as predict_experiment
     from . import show

@@ -18,7 +18,8 @@ def timestep(
     as_json: AsJson = False,
 ) -> None:
     """Find the time step of a case for a target error, with the embedded engine."""
-    from ..case.impact import load, named
+    from ..case.impact import load
+    from ..case.toml import named
     from ..impacts.experiment import experiment
     from ..impacts.prediction import predict
     from ..impacts.timestep import search

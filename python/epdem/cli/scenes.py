@@ -14,7 +14,7 @@ from .options import AsJson, CasePath, quantity, refuse
 
 def is_scene(path: Path) -> bool:
     """Whether a case file describes a bulk scene. Raises CaseError if it cannot be read."""
-    from ..case.impact import read_toml
+    from ..case.toml import read_toml
     from ..case.scene import is_scene as holds_scene
 
     return holds_scene(read_toml(path))
@@ -62,7 +62,7 @@ def run_scene(
 def deck_scene(case: Path, out: Path, *, engine: str = "liggghts", as_json: bool = False) -> None:
     """Write the deck of a scene."""
     from ..base.files import write_texts
-    from ..case.impact import named
+    from ..case.toml import named
     from ..case.scene import load
     from ..engines import scene_engine
     from ..scenes.plan import plan
@@ -88,7 +88,8 @@ def explain(case: CasePath, as_json: AsJson = False) -> None:
 
 
 def _explained(case: Path) -> list[tuple[str, str, str]]:
-    from ..case.impact import load, named
+    from ..case.impact import load
+    from ..case.toml import named
     from ..liggghts import explain
 
     with named(case):

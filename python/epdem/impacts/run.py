@@ -16,7 +16,8 @@ import pandas as pd
 from .. import __version__
 from ..base.folders import claim
 from ..base.stages import inputs_hash
-from ..case.impact import Case, named, parse, read_toml
+from ..case.impact import Case, parse
+from ..case.toml import named, read_toml
 from ..errors import CaseError, EngineError
 from . import store
 from .comparison import compare, impacts_table

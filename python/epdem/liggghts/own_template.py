@@ -6,7 +6,7 @@ from pathlib import Path
 from ..base.files import write_texts
 from ..case import scene as scenes
 from ..case.impact import load as load_impact
-from ..case.impact import read_toml
+from ..case.toml import read_toml
 from ..errors import CaseError
 from ..impacts.experiment import experiment
 from ..impacts.plan import plan

@@ -13,7 +13,7 @@ from .. import __version__
 from ..base.files import write_texts
 from ..base.folders import Results, claim
 from ..base.stages import inputs_hash
-from ..case.impact import named
+from ..case.toml import named
 from ..case.scene import SceneCase, load
 from ..errors import CaseError
 from ..impacts.prediction import predict

@@ -7,7 +7,8 @@ from pathlib import Path
 
 import numpy as np
 
-from ..case.impact import Case, load, named
+from ..case.impact import Case, load
+from ..case.toml import named
 from ..case.law import law_numbers
 from ..errors import CaseError
 from ..impacts.experiment import Experiment, bodies, pair_of

@@ -11,7 +11,8 @@ import pandas as pd
 
 from ..base.folders import claim
 from ..base.tables import write_csv
-from ..case.impact import load, named
+from ..case.impact import load
+from ..case.toml import named
 from ..engines import ENGINES, FOREIGN, OTHERS, Engine, OwnTheory
 from ..errors import CaseError
 from ..impacts import report

@@ -10,6 +10,7 @@ from typing import Any
 import pandas as pd
 
 from ...case import impact, scene
+from ...case.toml import named
 from ...engines import engine, scene_engine
 from ...errors import CaseError, EngineError, EpdemError
 from ...impacts.comparison import compare
@@ -34,7 +35,7 @@ def check(sweep: Sweep, number: int) -> CaseError | None:
             scene.parse(data, place)
             return None
         case = impact.parse(data, place)
-        with impact.named(place):
+        with named(place):
             for law in sweep.laws or (None,):
                 experiment(case, law)
     except CaseError as error:

@@ -22,7 +22,7 @@ import tomlkit
 from ...base.files import atomic
 from ...base.folders import MANIFEST
 from ...base.stages import inputs_hash
-from ...case.impact import read_toml
+from ...case.toml import read_toml
 from ...case.scene import is_scene
 from ...errors import CaseError
 from .keys import assign, keys_of

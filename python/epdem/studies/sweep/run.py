@@ -9,7 +9,7 @@ from pathlib import Path
 import pandas as pd
 
 from ...base.folders import claim
-from ...case.impact import read_toml
+from ...case.toml import read_toml
 from ...case.scene import is_scene
 from ...engines import engine, scene_engine
 from ...errors import CaseError, EngineError
