@@ -73,9 +73,9 @@ class _File:
     def from_toml(cls, path: Path | str) -> Self:
         """The case in a file. Raises CaseError."""
         read_toml(path)
-        found = cls.__new__(cls)
-        found._read(Path(path).read_text(encoding="utf-8-sig"), path)
-        return found
+        case = cls.__new__(cls)
+        case._read(Path(path).read_text(encoding="utf-8-sig"), path)
+        return case
 
     def to_toml(self, path: Path | str) -> Path:
         """Write the case as a file that the commands take."""
@@ -92,9 +92,9 @@ class _File:
         names = keys.keys_of(document.unwrap())
         for name, value in changes.items():
             keys.assign(document, name, with_unit(value, keys.known(name, names, "replace")))
-        found = type(self).__new__(type(self))
-        found._read(document.as_string(), self.name)
-        return found
+        case = type(self).__new__(type(self))
+        case._read(document.as_string(), self.name)
+        return case
 
     @property
     def name(self) -> str:
@@ -164,10 +164,10 @@ def _with_units(value: Any, names: dict[str, keys.Key], place: str = "") -> Any:
 
 
 def _units(table: pd.DataFrame, units: Mapping[str, str]) -> pd.DataFrame:
-    found = table.copy()
-    names = {name: units.get(name.removesuffix("_theory")) for name in map(str, found.columns)}
-    found.attrs["units"] = {name: unit for name, unit in names.items() if unit}
-    return found
+    marked = table.copy()
+    names = {name: units.get(name.removesuffix("_theory")) for name in map(str, marked.columns)}
+    marked.attrs["units"] = {name: unit for name, unit in names.items() if unit}
+    return marked
 
 
 @dataclass(frozen=True)
@@ -278,8 +278,8 @@ def run(
 
 def predict(case: Case, law: str | None = None) -> pd.DataFrame:
     """The prediction of theory for a case, one row for each speed; no engine runs. Raises CaseError."""
-    found = predict_experiment(experiment(case.model, law))
-    return _units(pd.DataFrame({name: getattr(found, name) for name in Prediction.COLUMNS}), UNITS)
+    prediction = predict_experiment(experiment(case.model, law))
+    return _units(pd.DataFrame({name: getattr(prediction, name) for name in Prediction.COLUMNS}), UNITS)
 
 
 def deck(case: Case | Scene, out: Path | str, *, engine: str = "liggghts", law: str | None = None) -> list[Path]:
@@ -311,8 +311,8 @@ def sweep(
     is finished in `out` (default: runs/<name>_sweep) does not run again. Raises CaseError, EngineError, OSError.
     """
     with case._as_file() as path:
-        words: dict[str, Any] = {"engines": engines, "laws": laws, "ranks": ranks}
-        planned = study.plan(path, settings, **words, latin_hypercube=latin_hypercube, seed=seed)
+        options: dict[str, Any] = {"engines": engines, "laws": laws, "ranks": ranks}
+        planned = study.plan(path, settings, **options, latin_hypercube=latin_hypercube, seed=seed)
     folder = Path(out) if out is not None else Path("runs") / f"{planned.name}_sweep"
 
     def report(done: int, total: int) -> None:

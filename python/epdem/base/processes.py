@@ -70,8 +70,10 @@ def call(
             while process.poll() is None:
                 left = end - time.monotonic()
                 if left <= 0.0:
-                    words = last_words(path)
-                    raise EngineError(f"{command[0]} did not end within {seconds:g} s and was stopped; {path}: {words}")
+                    end_of_log = last_words(path)
+                    raise EngineError(
+                        f"{command[0]} did not end within {seconds:g} s and was stopped; {path}: {end_of_log}"
+                    )
                 with contextlib.suppress(subprocess.TimeoutExpired):
                     process.wait(timeout=None if report is None and left == math.inf else min(left, POLL))
                 rows.read(reader.read() if report else b"")

@@ -14,8 +14,8 @@ from .options import AsJson, CasePath, quantity, refuse
 
 def is_scene(path: Path) -> bool:
     """Whether a case file describes a bulk scene. Raises CaseError if it cannot be read."""
-    from ..case.toml import read_toml
     from ..case.scene import is_scene as holds_scene
+    from ..case.toml import read_toml
 
     return holds_scene(read_toml(path))
 
@@ -62,8 +62,8 @@ def run_scene(
 def deck_scene(case: Path, out: Path, *, engine: str = "liggghts", as_json: bool = False) -> None:
     """Write the deck of a scene."""
     from ..base.files import write_texts
-    from ..case.toml import named
     from ..case.scene import load
+    from ..case.toml import named
     from ..engines import scene_engine
     from ..scenes.plan import plan
 

@@ -93,13 +93,13 @@ def status(
     from ..studies.sweep.table import write
     from . import sweep_view
 
-    found = ask(folder)
+    state = ask(folder)
     if table:
         write(store.read(folder), folder)
     if as_json:
-        print(json.dumps(sweep_view.plain(found), indent=1))
+        print(json.dumps(sweep_view.plain(state), indent=1))
     else:
-        sweep_view.status(found, console())
+        sweep_view.status(state, console())
 
 
 def points(

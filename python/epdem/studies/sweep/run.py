@@ -9,8 +9,8 @@ from pathlib import Path
 import pandas as pd
 
 from ...base.folders import claim
-from ...case.toml import read_toml
 from ...case.scene import is_scene
+from ...case.toml import read_toml
 from ...engines import engine, scene_engine
 from ...errors import CaseError, EngineError
 from . import folder as store
