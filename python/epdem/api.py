@@ -4,11 +4,9 @@
 Tables have the SI units of their columns in `attrs["units"]`. Progress goes to the logger "epdem".
 """
 
-import contextlib
 import logging
-import tempfile
 import tomllib
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, ClassVar, Self, overload
@@ -31,11 +29,11 @@ from .impacts.plan import plan as plan_impacts
 from .impacts.prediction import Prediction
 from .impacts.prediction import predict as predict_experiment
 from .impacts.run import Outcome
-from .impacts.run import run as run_impacts
+from .impacts.run import run_case as run_impacts
 from .scenes.columns import UNITS as SCENE_UNITS
 from .scenes.plan import plan as plan_scene
 from .scenes.run import SceneOutcome
-from .scenes.run import run as run_scene
+from .scenes.run import run_case as run_scene
 from .studies.sweep import keys
 from .studies.sweep import run as study
 from .studies.sweep.points import with_unit
@@ -118,11 +116,6 @@ class _File:
         import html
 
         return f"<b>{html.escape(self.title)}</b><pre>{html.escape(self.text)}</pre>"
-
-    @contextlib.contextmanager
-    def _as_file(self) -> Iterator[Path]:
-        with tempfile.TemporaryDirectory(prefix="epdem-") as place:
-            yield self.to_toml(Path(place) / f"{self.name}.toml")
 
 
 class Case(_File):
@@ -267,13 +260,15 @@ def run(
     """
     place = None if out is None else Path(out)
     options: dict[str, Any] = {"out": place, "ranks": ranks, "fresh": fresh, "force": force}
-    with case._as_file() as path:
-        if isinstance(case, Scene):
-            if len(engines) != 1 or laws:
-                raise CaseError("a scene has its own law and runs on one engine")
-            return SceneRun(run_scene(path, scene_engine(engines[0]), **options))
-        tools = [engine_named(name) for name in engines]
-        return Run(run_impacts(path, engines=tools, laws=laws, progress=log.info, **options))
+    if isinstance(case, Scene):
+        if len(engines) != 1 or laws:
+            raise CaseError("a scene has its own law and runs on one engine")
+        return SceneRun(run_scene(case.model, case.text, scene_engine(engines[0]), place=case.name, **options))
+    tools = [engine_named(name) for name in engines]
+    impacts = run_impacts(
+        case.model, case.text, place=case.name, engines=tools, laws=laws, progress=log.info, **options
+    )
+    return Run(impacts)
 
 
 def predict(case: Case, law: str | None = None) -> pd.DataFrame:
@@ -310,9 +305,9 @@ def sweep(
     `settings` gives the values of keys by their dotted names, as a text ("1 mm..5 mm:9") or a sequence of values. What
     is finished in `out` (default: runs/<name>_sweep) does not run again. Raises CaseError, EngineError, OSError.
     """
-    with case._as_file() as path:
-        options: dict[str, Any] = {"engines": engines, "laws": laws, "ranks": ranks}
-        planned = study.plan(path, settings, **options, latin_hypercube=latin_hypercube, seed=seed)
+    planned = study.plan_text(
+        case.text, settings, engines=engines, laws=laws, ranks=ranks, latin_hypercube=latin_hypercube, seed=seed
+    )
     folder = Path(out) if out is not None else Path("runs") / f"{planned.name}_sweep"
 
     def report(done: int, total: int) -> None:

@@ -34,9 +34,9 @@ def read_toml(path: Path | str) -> dict[str, Any]:
 
 
 @contextlib.contextmanager
-def named(path: Path | str) -> Iterator[None]:
-    """Errors of a case that was read from `path` name the file."""
+def named(place: object) -> Iterator[None]:
+    """Errors of a case name its `place`: the file that it was read from, or its own name."""
     try:
         yield
     except CaseError as error:
-        raise error if str(path) in str(error) else CaseError(f"{path}: {error}") from None
+        raise error if str(place) in str(error) else CaseError(f"{place}: {error}") from None
