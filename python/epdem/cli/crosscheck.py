@@ -8,7 +8,7 @@ from typing import Annotated, Any
 
 import typer
 
-from ..terminal import console, status, table
+from ..base.terminal import console, status, table
 from .options import AsJson, Force, Out
 
 VALUES = {

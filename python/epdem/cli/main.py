@@ -12,8 +12,8 @@ from typing import Annotated, Any
 
 import typer
 
+from ..base.terminal import bar, console
 from ..errors import CaseError, EpdemError, Stopped
-from ..terminal import bar, console
 from . import crosscheck as cli_crosscheck
 from . import numerics as cli_numerics
 from . import scenes as cli_scene
@@ -124,7 +124,8 @@ def deck(
         refuse(file, "a scene has its own law", law=law)
         cli_scene.deck_scene(file, out, engine=engine, force=force, as_json=as_json)
         return
-    from ..case.impact import load, named
+    from ..case.impact import load
+    from ..case.toml import named
     from ..engines import engine as find
     from ..impacts.experiment import experiment
     from ..impacts.run import write_deck
@@ -140,7 +141,8 @@ def deck(
 @app.command()
 def predict(case: CasePath, law: Laws = None, as_json: AsJson = False) -> None:
     """Print the prediction of theory for a case; no engine runs."""
-    from ..case.impact import load, named
+    from ..case.impact import load
+    from ..case.toml import named
     from ..impacts.experiment import experiment
     from ..impacts.prediction import predict as predict_experiment
     from . import show

@@ -7,9 +7,9 @@ from typing import Annotated
 
 import typer
 
+from ..base.terminal import console
+from ..base.terminal import table as empty_table
 from ..errors import CaseError
-from ..terminal import console
-from ..terminal import table as empty_table
 from .options import AsJson, Force, quantity
 
 
@@ -74,7 +74,7 @@ def figures(
     as_json: AsJson = False,
 ) -> None:
     """Draw figures 8.16, 8.17 and 8.19 of Seville and Wu (2016) from theory."""
-    from ..folders import claim
+    from ..base.folders import claim
     from ..studies.figures import draw_all
 
     with claim(out, force=force):

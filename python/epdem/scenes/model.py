@@ -72,7 +72,7 @@ def model(case: SceneCase) -> Model:
     walls_apart = case.scene.walls not in used or own_friction or pairs_with_wall
     if walls_apart:
         types.append(Type(WALL, case.scene.walls, strong[case.scene.walls]))
-    found = Model(
+    result = Model(
         law=case.law.name,
         parameters=numbers(case).ratios,
         types=tuple(types),
@@ -83,9 +83,9 @@ def model(case: SceneCase) -> Model:
         rolling=contact.rolling,
         cohesion=contact.cohesion,
     )
-    if not found.sliding and contact.tangential_restitution is not None:
+    if not result.sliding and contact.tangential_restitution is not None:
         raise CaseError("contact.tangential_restitution: there is no friction, so no tangential dashpot; remove it")
-    return found
+    return result
 
 
 def _materials_used(case: SceneCase) -> list[str]:
