@@ -22,8 +22,8 @@ using namespace LIGGGHTS::ContactModels;
 /// Normal model of one law for pairs (wall = false) or walls.
 ///
 /// History: what a law that yields remembers (doubles), and for pairs the step of the last evaluation that was kept.
-/// LIGGGHTS tells nobody that a pair parted, so a contact whose last evaluation is older than one step is a new one,
-/// for the law and for all models that remember something beside it. Walls are told, and need no step.
+/// LIGGGHTS does not report that a pair parted, so a contact whose last evaluation is older than one step is a new one,
+/// for the law and for all models that remember something beside it. Walls need no step: their end is reported.
 ///
 /// A contact with adhesion stands across a gap as well: LIGGGHTS then calls surfacesClose, and the model takes it as a
 /// contact like any other (Model::surfacesClose).

@@ -13,7 +13,7 @@ import pandas as pd
 import pytest
 from calls import CASES, COMMANDS, call, make_sweep
 
-from epdem import paths, terminal
+from epdem.base import paths, terminal
 from epdem.engines import ENGINES
 from epdem.scenes import report
 from epdem.studies import crosscheck

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from epdem import paths, stages
+from epdem.base import paths, stages
 from epdem.engines.embedded import Embedded
 from epdem.impacts.run import run
 
@@ -36,7 +36,7 @@ def product(tmp_path, monkeypatch):
     for name in names:
         (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
         (tmp_path / name).write_text("first")
-    monkeypatch.setattr(stages, "__file__", str(tmp_path / "package/stages.py"))
+    monkeypatch.setattr(stages, "__file__", str(tmp_path / "package/base/stages.py"))
     monkeypatch.setattr(paths, "native", lambda name: tmp_path / name)
     monkeypatch.setattr(paths, "launcher", lambda: tmp_path / "launcher")
     monkeypatch.setattr(paths, "templates", lambda: tmp_path / "templates")
@@ -97,7 +97,7 @@ def test_a_prediction_needs_no_compiled_library():
     code = """
 import sys
 from pathlib import Path
-from epdem import paths
+from epdem.base import paths
 paths.native = lambda name: None
 from epdem.case.impact import load
 from epdem.impacts.experiment import experiment

@@ -11,7 +11,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from epdem.case.impact import Numerics, parse, read_toml
+from epdem.base.rendering import render
+from epdem.case.impact import Numerics, parse
+from epdem.case.toml import read_toml
 from epdem.engines import engine
 from epdem.errors import CaseError, EngineError
 from epdem.impacts import store
@@ -20,7 +22,6 @@ from epdem.impacts.experiment import experiment
 from epdem.impacts.measurement import measure
 from epdem.impacts.plan import plan
 from epdem.impacts.prediction import predict
-from epdem.rendering import render
 from epdem.yade import impacts as module
 
 CASES = Path(__file__).parents[2] / "cases"

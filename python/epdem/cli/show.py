@@ -10,11 +10,11 @@ from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
+from ..base.terminal import table
 from ..engines.doctor import Finding
 from ..impacts.experiment import Experiment
 from ..impacts.prediction import Prediction
 from ..impacts.report import records, yielding
-from ..terminal import table
 
 
 def _table(title: str, frame: pd.DataFrame) -> Table:

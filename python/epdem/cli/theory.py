@@ -8,10 +8,10 @@ from typing import Annotated
 
 import typer
 
+from ..base.terminal import console
+from ..base.terminal import table as empty_table
 from ..errors import CaseError
-from ..terminal import console
-from ..terminal import table as empty_table
-from .options import AsJson, quantity
+from .options import AsJson, Force, quantity
 
 
 def theory(
@@ -77,11 +77,14 @@ def theory(
 
 
 def figures(
-    out: Annotated[Path, typer.Option("--out", "-o", help="folder for the figures")] = Path("docs/figures"),
+    out: Annotated[Path, typer.Option("--out", "-o", help="folder for the figures")] = Path("runs/figures"),
+    force: Force = False,
     as_json: AsJson = False,
 ) -> None:
     """Draw figures 8.16, 8.17 and 8.19 of Seville and Wu (2016) and figure 10 of Thornton and Ning (1998)."""
+    from ..base.folders import claim
     from ..studies.figures import draw_all
 
-    names = [str(path) for path in draw_all(out)]
+    with claim(out, force=force):
+        names = [str(path) for path in draw_all(out)]
     print(json.dumps({"files": names}) if as_json else "\n".join(names))

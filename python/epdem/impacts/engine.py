@@ -118,8 +118,8 @@ def refuse(tool: Engine, plan: Plan, prediction: Prediction, *, ranks: int = 1) 
     """Raise CaseError if `tool` cannot run `plan` as it is; `prediction` is that of the plan's experiment."""
     most = tool.can.ranks
     if ranks > most:
-        words = "one rank; leave --ranks out" if most == 1 else f"at most {most} ranks here; ask for no more"
-        raise CaseError(f"--ranks {ranks}: engine {tool.name} runs on {words}")
+        limit = "one rank; leave --ranks out" if most == 1 else f"at most {most} ranks here; ask for no more"
+        raise CaseError(f"--ranks {ranks}: engine {tool.name} runs on {limit}")
     tool.check(plan)
     for speed, overlap in zip(prediction.speed, prediction.overlap_max, strict=True):
         if tool.can.positions and (why := not_representable(plan.experiment, float(overlap))):

@@ -7,16 +7,17 @@ from pathlib import Path
 
 import numpy as np
 
-from .. import data_file, paths
-from .. import rendering as decks
+from ..base import paths
+from ..base import rendering as decks
+from ..base.files import write_texts
+from ..base.processes import ask
 from ..errors import CaseError, EngineError
-from ..files import write_texts
 from ..impacts.engine import Abilities, Trajectory, check_abilities
 from ..impacts.pairs import Pairs
 from ..impacts.places import room, side_by_side
 from ..impacts.plan import Plan
+from ..lammps import data_file
 from ..laws.library import laws
-from ..processes import ask
 from . import dump, launcher
 from .deck import Deck
 from .log import loop_seconds
@@ -43,11 +44,11 @@ class Liggghts:
         return launcher.missing()
 
     def version(self) -> str:
-        found = re.search(
+        match = re.search(
             r"LIGGGHTS[-\w ]*?(\d+\.\d+\.\d+)",
             ask([str(paths.launcher()), "-log", "none", "-h"], launcher.environment()),
         )
-        return f"LIGGGHTS {found.group(1) if found else '(version unknown)'}"
+        return f"LIGGGHTS {match.group(1) if match else '(version unknown)'}"
 
     def model(self, plan: Plan) -> str:
         return f"ep/{plan.experiment.law.name}"

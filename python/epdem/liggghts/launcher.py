@@ -6,9 +6,9 @@ import shutil
 from collections.abc import Callable
 from pathlib import Path
 
-from .. import paths
+from ..base import paths
+from ..base.processes import call
 from ..errors import CaseError, EngineError
-from ..processes import call
 
 INSTALL = "apt-get install liggghts libliggghts-dev libopenmpi-dev, then 'make setup'"
 LOG = "log.liggghts"  # LIGGGHTS's own log
@@ -45,13 +45,13 @@ def command(deck: str, *, ranks: int = 1, log: str = "none") -> list[str]:
     if launcher is None:
         raise EngineError(f"LIGGGHTS with our models was not found; {INSTALL}")
     refuse_ranks(ranks)
-    words = [str(launcher), "-in", deck, "-log", log]
+    liggghts = [str(launcher), "-in", deck, "-log", log]
     if ranks == 1:
-        return words
+        return liggghts
     if "SLURM_JOB_ID" in os.environ and shutil.which("srun"):  # the cluster's own way, which keeps account of it
-        return ["srun", "--overlap", "--mpi=pmix", "-n", str(ranks), *words]
+        return ["srun", "--overlap", "--mpi=pmix", "-n", str(ranks), *liggghts]
     root = ["--allow-run-as-root"] if os.geteuid() == 0 else []
-    return ["mpirun", "-np", str(ranks), "--oversubscribe", *root, *words]
+    return ["mpirun", "-np", str(ranks), "--oversubscribe", *root, *liggghts]
 
 
 def environment(ranks: int = 1) -> dict[str, str]:
@@ -75,5 +75,5 @@ def run(
     report: Callable[[int], None] | None = None,
 ) -> float:
     """Run a deck in its folder to its end; seconds taken. `log` is LIGGGHTS's own; the rest as in processes.call."""
-    words = command(deck, ranks=ranks, log=log)
-    return call(words, folder, log=out, seconds=seconds, env=environment(ranks), append=append, report=report)
+    arguments = command(deck, ranks=ranks, log=log)
+    return call(arguments, folder, log=out, seconds=seconds, env=environment(ranks), append=append, report=report)

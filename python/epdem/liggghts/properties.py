@@ -110,11 +110,11 @@ def of_impacts(plan: Plan) -> tuple[Property, ...]:
 def of_law(plan: Plan) -> tuple[Property, ...]:
     """What a law of ours needs of a plan."""
     x, types = plan.experiment, atom_types(plan)
-    found = [*of_impacts(plan), *strength(x.law.name, [finite(s) for _, s in types])]
-    found += [scalar(name, value, "-") for name, value in x.law.ratios().items()]
+    properties = [*of_impacts(plan), *strength(x.law.name, [finite(s) for _, s in types])]
+    properties += [scalar(name, value, "-") for name, value in x.law.ratios().items()]
     if x.law.adheres:
-        found.append(work_of_adhesion(len(types), x.law.parameters[ADHESION]))
+        properties.append(work_of_adhesion(len(types), x.law.parameters[ADHESION]))
     if x.viscous_restitution is not None:
         note = "of impacts that do not yield"
-        found.append(per_pair("coefficientRestitution", len(types), x.viscous_restitution, "-", note))
-    return tuple(found)
+        properties.append(per_pair("coefficientRestitution", len(types), x.viscous_restitution, "-", note))
+    return tuple(properties)

@@ -70,5 +70,5 @@ def check_abilities(engine: SceneEngine, p: ScenePlan, *, ranks: int, resume: bo
         raise CaseError(f"--ranks {ranks}: a scene in {engine.name} runs on {what}")
     if resume and not engine.can.restarts:
         raise CaseError(f"--resume: a scene in {engine.name} runs from its start; leave it out")
-    if words := engine.missing():
-        raise EngineError(words)
+    if reason := engine.missing():
+        raise EngineError(reason)

@@ -80,7 +80,7 @@ def model(case: SceneCase) -> Model:
     walls_apart = case.scene.walls not in used or own_friction or pairs_with_wall
     if walls_apart:
         types.append(Type(WALL, case.scene.walls, strong[case.scene.walls]))
-    found = Model(
+    result = Model(
         law=case.law.name,
         parameters=numbers(case).ratios,
         types=tuple(types),
@@ -92,11 +92,11 @@ def model(case: SceneCase) -> Model:
         cohesion=contact.cohesion,
         adhesion=_adhesion(case, types),
     )
-    if found.adheres and contact.cohesion is not None:
-        raise CaseError(f"contact.cohesion: law {found.law} has its attraction already; remove one of them")
-    if not found.sliding and contact.tangential_restitution is not None:
+    if result.adheres and contact.cohesion is not None:
+        raise CaseError(f"contact.cohesion: law {result.law} has its attraction already; remove one of them")
+    if not result.sliding and contact.tangential_restitution is not None:
         raise CaseError("contact.tangential_restitution: there is no friction, so no tangential dashpot; remove it")
-    return found
+    return result
 
 
 def _adhesion(case: SceneCase, types: list[Type]) -> tuple[tuple[float, ...], ...]:

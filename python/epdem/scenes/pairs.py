@@ -27,7 +27,7 @@ def strengths(case: SceneCase) -> dict[str, float]:
     """
     law = numbers(case)
     strength = law_named(law.name).strength
-    found = {}
+    strengths = {}
     for name, material in case.materials.items():
         extra = dict(material.model_extra or {})
         own = None
@@ -35,8 +35,8 @@ def strengths(case: SceneCase) -> dict[str, float]:
             own = read_number(f"materials.{name}.{strength}", extra.pop(strength), "Pa")
         for key in extra:
             raise CaseError(f"materials.{name}.{key}: unknown key; remove it or correct its spelling")
-        found[name] = law.strength(name, material.yield_stress, own)
-    return found
+        strengths[name] = law.strength(name, material.yield_stress, own)
+    return strengths
 
 
 def work_of_adhesion(case: SceneCase, a: str, b: str) -> float | None:

@@ -7,8 +7,9 @@ from pathlib import Path
 
 import numpy as np
 
-from ..case.impact import Case, load, named
+from ..case.impact import Case, load
 from ..case.law import law_numbers
+from ..case.toml import named
 from ..errors import CaseError
 from ..impacts.experiment import Experiment, bodies, pair_of
 from ..impacts.prediction import predict

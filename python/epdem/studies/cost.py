@@ -14,7 +14,8 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
-from ..case.impact import Case, load, named
+from ..case.impact import Case, load
+from ..case.toml import named
 from ..engines import Engine, engine
 from ..errors import EngineError
 from ..impacts.comparison import compare

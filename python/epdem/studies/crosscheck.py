@@ -9,17 +9,18 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
-from ..case.impact import load, named
+from ..base.folders import claim
+from ..base.tables import write_csv
+from ..case.impact import load
+from ..case.toml import named
 from ..engines import ENGINES, FOREIGN, OTHERS, Engine, OwnTheory
 from ..errors import CaseError
-from ..folders import claim
 from ..impacts import report
 from ..impacts.comparison import compare
 from ..impacts.experiment import Experiment, experiment
 from ..impacts.foreign import prediction as predict
 from ..impacts.plan import plan
 from ..impacts.run import Outcome, run, run_plan
-from ..tables import write_csv
 from .invariance import VARIANTS, examine
 
 COARSER = 4  # the order of convergence is seen between steps/4 and steps

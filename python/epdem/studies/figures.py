@@ -9,9 +9,9 @@ from typing import Any
 
 import numpy as np
 
+from ..base.files import atomic
 from ..case.impact import Material
 from ..engines import engine
-from ..files import atomic
 from ..impacts.experiment import Experiment, plane, sphere
 from ..impacts.plan import plan
 from ..impacts.prediction import predict

@@ -9,7 +9,8 @@ from pathlib import Path
 
 import numpy as np
 
-from .. import rendering as decks
+from ..base import rendering as decks
+from ..base.processes import ask, call
 from ..errors import CaseError, EngineError
 from ..impacts.engine import Abilities, Trajectory, check_abilities, recorded_seconds
 from ..impacts.experiment import Body, Experiment
@@ -17,7 +18,6 @@ from ..impacts.pairs import Pairs
 from ..impacts.places import side_by_side
 from ..impacts.plan import Plan
 from ..laws import library as claw
-from ..processes import ask, call
 from .deck import Deck, Group, Material
 from .deck_modules import cone
 from .deck_modules.law import LAWS
@@ -41,8 +41,8 @@ class Yade:
         return None
 
     def version(self) -> str:
-        found = re.search(r"version: (\S+)", ask([command(), "--version"], environment()))
-        return f"YADE {found.group(1) if found else '(version unknown)'}"
+        match = re.search(r"version: (\S+)", ask([command(), "--version"], environment()))
+        return f"YADE {match.group(1) if match else '(version unknown)'}"
 
     def material(self, x: Experiment, body: Body, strength: float) -> Material:
         """The material of one body. Raises CaseError for a strength beyond YADE's law."""
@@ -159,5 +159,5 @@ def trajectory(plan: Plan, path: Path, seconds: dict[str, float]) -> Trajectory:
 
 def stepping_seconds(log: Path) -> float:
     """The deck's own time for its steps [s]; NaN if the log does not contain it."""
-    found = re.findall(r"stepping took (\S+) s", log.read_text(errors="replace")) if log.exists() else []
-    return float(found[-1]) if found else float("nan")
+    times = re.findall(r"stepping took (\S+) s", log.read_text(errors="replace")) if log.exists() else []
+    return float(times[-1]) if times else float("nan")

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from itertools import combinations_with_replacement
 from math import atan
 
-from .. import rendering as decks
+from ..base import rendering as decks
 from ..errors import CaseError
 from ..scenes import placement
 from ..scenes.kinds import Block, Plane
@@ -114,7 +114,7 @@ def notes(p: ScenePlan) -> list[str]:
 
 
 def _materials(p: ScenePlan, friction: Square) -> tuple[Material, ...]:
-    law, found = LAWS[p.model.law], []
+    law, materials = LAWS[p.model.law], []
     for i, t in enumerate(p.model.types):
         x = p.case.materials[t.material]
         values = {
@@ -132,8 +132,8 @@ def _materials(p: ScenePlan, friction: Square) -> tuple[Material, ...]:
                     f"materials.{t.material}: {law.strength_name} = {t.strength:.6g} Pa, YADE's law takes less than "
                     f"{highest:.6g} Pa at this young_modulus; use --engine liggghts"
                 )
-        found.append(Material(t.name, values))
-    return tuple(found)
+        materials.append(Material(t.name, values))
+    return tuple(materials)
 
 
 def _pairs(friction: Square) -> tuple[tuple[int, int, float], ...]:
@@ -198,8 +198,8 @@ def deck(p: ScenePlan) -> Deck:
 
 def files(p: ScenePlan) -> dict[str, str]:
     """All files of a YADE scene by name; they run by hand in one folder. Raises CaseError."""
-    found = {SCRIPT: decks.render("yade/scene.py.j2", deck=deck(p)), SPHERES: _table(p)}
-    return found | deck_modules()
+    deck_files = {SCRIPT: decks.render("yade/scene.py.j2", deck=deck(p)), SPHERES: _table(p)}
+    return deck_files | deck_modules()
 
 
 def _filled(p: ScenePlan) -> Block:

@@ -14,7 +14,7 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
-from ... import rendering as decks
+from ...base import rendering as decks
 from ...errors import EngineError
 from ...yade.launcher import environment
 from .cases import build

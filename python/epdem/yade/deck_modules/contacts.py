@@ -262,13 +262,13 @@ class Contacts:
         yields = phys.maxBendPl < FAR
         contact = Contact(interaction, self._law(phys.E, phys.maxBendPl if yields else inf), phys.initD)
         if new:
-            self._greet(contact)
+            self._start(contact)
         self._contacts.append(contact)
         self._interactions.append(interaction)
         self._births += contact.born
         self._add(contact)
 
-    def _greet(self, contact: Contact) -> None:
+    def _start(self, contact: Contact) -> None:
         """The first visit: the force of this step, and the course from here."""
         u = contact.geom.penetrationDepth
         computed, limit, reached = contact.computed(u), contact.yield_overlap, contact.reached()
