@@ -39,9 +39,19 @@ MODELS = (
     "ep/thornton@avx2",
     "ep/thornton@sse2",
     "ep/thornton@generic",
+    "ep/jkr",
+    "ep/thornton_ning",
     "thornton_ning",
 )
-LIMITS = {"ep/hertz": 0.45, "ep/thornton": 0.45, "ep/johnson": 0.45, "ep/cavity": 0.60}  # pair time over that of hertz
+# pair time over that of hertz
+LIMITS = {
+    "ep/hertz": 0.45,
+    "ep/thornton": 0.45,
+    "ep/johnson": 0.45,
+    "ep/cavity": 0.60,
+    "ep/jkr": 1.25,
+    "ep/thornton_ning": 1.4,
+}
 BESIDE = (
     "rolling_friction cdt",
     "rolling_friction epsd2",

@@ -2,6 +2,7 @@
 // A law as LIGGGHTS sees it: reads the contact, calls step(), writes force and stiffness. No physics in here.
 #pragma once
 
+#include <cmath>
 #include <cstdio>
 #include <cstring>
 #include <string>
@@ -96,7 +97,7 @@ class Normal : protected LAMMPS_NS::Pointers {
                                   effective_shear_modulus(p.i, p.j), p.damping_number, p.viscous_number};
       }
     if (plastic_work_) ledger_.connect(lmp, model_, adheres<Law>);
-    if constexpr (adheres<Law> && !wall) reach(registry);
+    if constexpr (adheres<Law>) reach();
   }
 
   double stressStrainExponent() const { return 1.5; }
@@ -206,18 +207,19 @@ class Normal : protected LAMMPS_NS::Pointers {
   }
 
  private:
-  /// LIGGGHTS looks at pairs that do not overlap up to a multiple of the sum of their radii. Relative to this sum the
-  /// largest gap, 1.6088 (Gamma^2 R*/E*^2)^(1/3), is that of the smallest spheres; a thousandth more is for the step
-  /// after the last one in contact.
-  void reach(PropertyRegistry& registry) {
-    const double smallest = registry.min_radius();
+  /// LIGGGHTS looks at bodies that do not overlap up to a share of the sum of their radii (of a wall: of the radius).
+  /// The largest gap, 1.6088 (Gamma^2 R*/E*^2)^(1/3), takes the largest share of the smallest sphere at a wall; half a
+  /// hundredth more is for the step after the last one in contact.
+  void reach() {
+    const double smallest = smallest_radius(lmp);
+    if (!std::isfinite(smallest)) return;  // no spheres, and nothing that will add any
     double gap = 0.0;
     for (int i = 1; i < width_; ++i)
-      for (int j = 1; j < width_; ++j) gap = std::max(gap, adhesive::largest_gap(entry(i, j).law.c, 0.5 * smallest));
-    const double factor = 1.001 + 0.5 * gap / smallest;
+      for (int j = 1; j < width_; ++j) gap = std::max(gap, adhesive::largest_gap(entry(i, j).law.c, smallest));
+    const double factor = 1.005 + gap / smallest;
+    if (!(factor > neighbor->contactDistanceFactor)) return;
     neighbor->register_contact_dist_factor(factor);
-    if (comm->me != 0 || factor == factor_) return;
-    factor_ = factor;
+    if (comm->me != 0) return;
     char line[160];
     std::snprintf(line, sizeof line,
                   "epdem: %s pulls across gaps up to %.4g (radius %.4g), contact distance factor %.9g\n",
@@ -272,8 +274,7 @@ class Normal : protected LAMMPS_NS::Pointers {
   int width_ = 0, offset_ = -1, stamp_ = -1;
   LAMMPS_NS::PairGran* pair_ = nullptr;
   LAMMPS_NS::FixWallGran* wall_ = nullptr;
-  double factor_ = 0.0;  // of distance, as said last
-  bigint clock_ = 0;     // step of the last pass
+  bigint clock_ = 0;  // step of the last pass
   double now_ = 0.0;
   Ledger ledger_;
   bool plastic_work_ = false;

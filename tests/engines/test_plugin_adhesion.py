@@ -240,15 +240,15 @@ def test_cohesion_that_is_stronger_than_the_bodies_is_warned_of_with_both_number
 
 
 def test_the_distance_factor_follows_from_the_properties_and_is_said(tmp_path):
-    """1.6088 (Gamma^2 R*/E*^2)^(1/3) over twice the radius, and a thousandth."""
+    """1.6088 (Gamma^2 R*/E*^2)^(1/3) of the smallest sphere at a wall over its radius, and half a hundredth."""
     for law in ADHESIVE:
         bodies = spheres([[k * 0.01, 0, R] for k in range(3)], np.zeros((3, 3)))
         bodies.type[:] = 1, 2, 3
         text = deck(law, dt=1e-7, body="fix move all nve/sphere\nrun 1\n")
         said = good(tmp_path / law, text, files={"box.data": bodies.data(BOX)}).text
         (line,) = [ln for ln in said.splitlines() if ln.startswith(f"epdem: ep/{law} pulls")]
-        gaps = [-float(theory(law, i, j, R, R).fold_overlap) for i in (1, 2, 3) for j in (1, 2, 3)]
-        assert float(line.split()[-1]) == pytest.approx(1.001 + max(gaps) / (2 * R), abs=1e-8)
+        gaps = [-float(theory(law, i, j).fold_overlap) for i in (1, 2, 3) for j in (1, 2, 3)]
+        assert float(line.split()[-1]) == pytest.approx(1.005 + max(gaps) / R, abs=1e-8)
         assert f"up to {max(gaps):.4g}" in line
 
 
@@ -265,3 +265,19 @@ def test_rolling_models_and_two_walls_run(tmp_path, law):
         )
         assert done.code == 0, done.error
     assert contact(f"ep/{law}")
+
+
+@every_law
+def test_a_run_that_stops_after_every_step_gives_the_same_bits(tmp_path, law):
+    """Also in the steps in which contacts form and end, of which the next setup must repeat the force."""
+    c = theory(law, 1, 1, R, R)
+    V = 3 * float(adhesion.sticking_speed(c, m_star=mass() / 2))
+    dt = float(adhesion.contact_time(c, m_star=mass() / 2, speed=V)) / 30
+    ends = []
+    for runs in ("run 60\n", "run 1\n" * 60):
+        x = [[0, 0, 5 * R], [0, 0, 7 * R + 2.3 * dt * V], [0.01, 0, R + 2.3 * dt * V]]
+        bodies = spheres(x, [[0, 0, 0], [0, 0, -V], [0, 0, -V]])
+        text = deck(law, wall="primitive", dt=dt, tangential="history", body="fix move all nve/sphere\n" + runs)
+        frames = good(tmp_path / str(len(runs)), text, files={"box.data": bodies.data(BOX)}).frames()[1]
+        ends.append(frames[-1][:, 1:7])
+    assert np.array_equal(*ends) and ends[0][2, 5] > 0.1 * V and ends[0][1, 5] > ends[0][0, 5] + 0.1 * V  # they part

@@ -111,6 +111,7 @@ def test_every_line_of_a_deck_with_any_law_has_a_reason(law):
     """Walls of another material and parameters of the law that are not its defaults."""
     data = read_toml(CASES[0].parent / "steel_wall.toml")
     parameters = {p.name: 1.1 * p.default for p in laws()[law].parameters if math.isfinite(p.default)}
+    parameters |= {"work_of_adhesion": "0.5 J/m^2"} if laws()[law].adheres else {}
     x = experiment(impacts.parse(data | {"law": {"name": law} | parameters}))
     found = explain.explain(explain.IMPACT, Liggghts().deck(plan(x, predict(x))))
     assert sum("property/global" in line for _, line, _ in found) == 2 + len(laws()[law].parameters)

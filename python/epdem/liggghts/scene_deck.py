@@ -58,8 +58,8 @@ class Deck:
     yields: bool
     adheres: bool
     slots: tuple[str, ...]
-    memory_columns: tuple[int, ...]
-    wall_memory_columns: tuple[int, ...]
+    contact_columns: tuple[int, ...]
+    wall_contact_columns: tuple[int, ...]
     torque: bool
     row_words: tuple[str, ...]
     motion: dict[str, float]
@@ -122,6 +122,12 @@ def told(m: Model) -> tuple[str, ...]:
     return ("largest overlap",) * m.yields + ("root of the attached",) * m.adheres
 
 
+def _columns(m: Model, values: int) -> tuple[int, ...]:
+    """Where a local compute has what `told` names, and the overlap: behind three ids and `values` of history."""
+    slots = len(told(m))
+    return (*range(4, 4 + slots), 4 + values) if slots else (4,)
+
+
 def _motion(p: ScenePlan) -> dict[str, float]:
     """What moves, by the names of the templates."""
     motion = {ph.name: abs(ph.plate) for ph in p.phases if ph.plate}
@@ -177,8 +183,8 @@ def deck(p: ScenePlan) -> Deck:
         yields=m.yields,
         adheres=m.adheres,
         slots=told(m),
-        memory_columns=tuple(4 + memory(m) - k for k in range(len(told(m)))),
-        wall_memory_columns=tuple(4 + memory(m, wall=True) - k for k in range(len(told(m)))),
+        contact_columns=_columns(m, memory(m)),
+        wall_contact_columns=_columns(m, memory(m, wall=True)),
         torque=p.torque,
         row_words=tuple(word for word, asked in row_words.items() if asked),
         motion=_motion(p),

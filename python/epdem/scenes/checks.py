@@ -77,7 +77,7 @@ def bed_rebound(case: SceneCase, spheres: pd.DataFrame) -> tuple[float, float]:
 
 def stiffness(p: ScenePlan, rows: pd.DataFrame) -> tuple[float, float]:
     """Secant stiffness [N/m] of (loading, unloading) between half the largest plate force and that force."""
-    turn = p.phases[0].end
+    turn = p.phases[-2].end
     load, unload = rows[rows["step"] <= turn], rows[rows["step"] > turn]
     way_up, up = load["plate_z"].to_numpy()[::-1], load["plate_force"].to_numpy()[::-1]
     way_down, down = unload["plate_z"].to_numpy(), unload["plate_force"].to_numpy()
