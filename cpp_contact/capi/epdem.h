@@ -64,8 +64,8 @@ const char* epdem_law_parameter_unit(int law, int k);
 double epdem_law_parameter_default(int law, int k); /* NaN: must be given */
 int epdem_law_parameter_may_vanish(int law, int k); /* 1: it can be 0 */
 
-/* n steps, each from its own delta_max and delta (with adhesion: of a contact that has stood since it reached delta_max,
- * at rest); `parameters` as in epdem_law_parameter_name. */
+/* n steps, each from its own delta_max and delta (with adhesion: of a contact that has stood since it reached
+ * delta_max, at rest); `parameters` as in epdem_law_parameter_name. */
 int epdem_step(int law, double E_star, const double* parameters, double R_star, size_t n, const double* delta_max,
                const double* delta, epdem_step_result* out);
 

@@ -24,7 +24,7 @@ class Adhesion {
       reader.fail(std::string("property ") + adhesion_name +
                   " [J/m^2] is missing; give one value per pair of atom types: fix ID all property/global " +
                   adhesion_name + " peratomtypepair NTYPES VALUE ... (or " + surface_name +
-                  " peratomtype gamma ..., of which it is 2 sqrt(gamma_i gamma_j))");
+                  " peratomtype gamma ..., of which it is twice the geometric mean)");
   }
 
   double at(int i, int j) const {

@@ -51,7 +51,9 @@ SMALL = {
 def small(data: dict) -> dict:
     """The TOML data of a scene with the numbers of SMALL, and a coarse time step: what the lines do, not how well."""
     few = {"output": data.get("output", {}) | {"rows": 20, "particles": 5}, "numerics": {"error": 0.1}}
-    return data | {"scene": data["scene"] | SMALL[data["scene"]["kind"]]} | few
+    scene = data["scene"] | SMALL[data["scene"]["kind"]]
+    scene |= {"fall": "1 ms"} if "fall" in scene else {}
+    return data | {"scene": scene} | few
 
 
 def decks_of(path: Path, folder: Path) -> tuple[str, list[str]]:
