@@ -16,7 +16,8 @@ import pandas as pd
 import tomlkit
 
 from . import theory
-from .base.files import atomic, write_texts
+from .base.files import atomic
+from .base.folders import write_own
 from .case import impact as impact_case
 from .case import scene as scene_case
 from .case.toml import read_toml
@@ -25,10 +26,9 @@ from .engines import scene_engine
 from .errors import CaseError
 from .impacts.comparison import UNITS
 from .impacts.experiment import experiment
-from .impacts.plan import plan as plan_impacts
 from .impacts.prediction import Prediction
 from .impacts.prediction import predict as predict_experiment
-from .impacts.run import Outcome
+from .impacts.run import Outcome, write_deck
 from .impacts.run import run_case as run_impacts
 from .scenes.columns import UNITS as SCENE_UNITS
 from .scenes.plan import plan as plan_scene
@@ -277,14 +277,13 @@ def predict(case: Case, law: str | None = None) -> pd.DataFrame:
     return _units(pd.DataFrame({name: getattr(prediction, name) for name in Prediction.COLUMNS}), UNITS)
 
 
-def deck(case: Case | Scene, out: Path | str, *, engine: str = "liggghts", law: str | None = None) -> list[Path]:
-    """Write the deck of a case or scene into the folder `out`; it runs by hand. Raises CaseError."""
+def deck(
+    case: Case | Scene, out: Path | str, *, engine: str = "liggghts", law: str | None = None, force: bool = False
+) -> list[Path]:
+    """Write the deck of a case or scene into `out`, where `force` allows other files. Raises CaseError."""
     if isinstance(case, Scene):
-        return write_texts(Path(out), scene_engine(engine).files(plan_scene(case.model)))
-    tool, x = engine_named(engine), experiment(case.model, law)
-    if not tool.can.deck:
-        raise CaseError(f"engine {engine}: it reads no deck; use liggghts or yade")
-    return tool.write(plan_impacts(x, predict_experiment(x)), Path(out))
+        return write_own(Path(out), scene_engine(engine).files(plan_scene(case.model)), force=force)
+    return write_deck(experiment(case.model, law), engine_named(engine), Path(out), force=force)
 
 
 def sweep(

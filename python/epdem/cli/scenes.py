@@ -9,7 +9,7 @@ import typer
 
 from ..base.terminal import bar, console
 from ..errors import CaseError
-from .options import AsJson, CasePath, refuse
+from .options import AsJson, CasePath, Replace, refuse
 
 
 def is_scene(path: Path) -> bool:
@@ -59,9 +59,9 @@ def run_scene(
     return 0 if outcome.passed else 1
 
 
-def deck_scene(case: Path, out: Path, *, engine: str = "liggghts", as_json: bool = False) -> None:
+def deck_scene(case: Path, out: Path, *, engine: str = "liggghts", force: bool = False, as_json: bool = False) -> None:
     """Write the deck of a scene."""
-    from ..base.files import write_texts
+    from ..base.folders import write_own
     from ..case.scene import load
     from ..case.toml import named
     from ..engines import scene_engine
@@ -69,7 +69,7 @@ def deck_scene(case: Path, out: Path, *, engine: str = "liggghts", as_json: bool
 
     with named(case):
         files = scene_engine(engine).files(plan(load(case)))
-    names = [str(f) for f in write_texts(out, files)]
+    names = [str(f) for f in write_own(out, files, force=force)]
     print(json.dumps({"files": names}) if as_json else "\n".join(names))
 
 
@@ -116,17 +116,17 @@ def soften(
     out: Annotated[
         Path | None, typer.Option("--out", "-o", help="file to write (default: CASE_softK.toml beside it)")
     ] = None,
-    force: Annotated[bool, typer.Option("--force", help="replace an existing file")] = False,
+    force: Replace = False,
     as_json: AsJson = False,
 ) -> None:
     """Write a softened copy of a case with the same e_n at every speed and larger time steps."""
     from ..base.files import atomic
+    from ..base.folders import refuse_existing
     from ..studies.soften import soften as twin_of
 
     twin = twin_of(case, factor)
     target = out or case.with_name(f"{case.stem}_soft{factor:g}.toml")
-    if target.exists() and not force:
-        raise CaseError(f"{target} exists; name another file by --out, or replace it by --force")
+    refuse_existing(target, force=force)
     with atomic(target) as temporary:
         temporary.write_text(twin.text, encoding="utf-8")
     if as_json:
@@ -191,9 +191,11 @@ def calibrate(
     )
 
 
-def deck_template(template: Path, case: Path, sets: list[str], out: Path, *, as_json: bool = False) -> None:
+def deck_template(
+    template: Path, case: Path, sets: list[str], out: Path, *, force: bool = False, as_json: bool = False
+) -> None:
     """Write a deck from a template of the user's own and the values of a case."""
     from ..liggghts.own_template import settings, write
 
-    names = [str(f) for f in write(template, case, settings(sets), out)]
+    names = [str(f) for f in write(template, case, settings(sets), out, force=force)]
     print(json.dumps({"files": names}) if as_json else "\n".join(names))

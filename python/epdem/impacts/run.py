@@ -21,7 +21,7 @@ from ..errors import CaseError, EngineError
 from . import store
 from .comparison import compare, impacts_table
 from .engine import Engine, refuse
-from .experiment import experiment
+from .experiment import Experiment, experiment
 from .measurement import measure
 from .plan import Plan, plan
 from .prediction import Prediction, predict
@@ -84,6 +84,15 @@ def run_and_compare(
     """
     stage, x = run_plan(p, tool, folder, ranks=ranks, end_power=end_power), p.experiment
     return compare(tool.name, law or x.law.name, stage.impacts, prediction, x.check), stage
+
+
+def write_deck(x: Experiment, tool: Engine, folder: Path, *, force: bool = False) -> list[Path]:
+    """Write the deck of an experiment into `folder`, where `force` allows other files; its files. Raises CaseError."""
+    if not tool.can.deck:
+        raise CaseError(f"engine {tool.name}: it reads no deck; use liggghts or yade")
+    p = plan(x, predict(x))
+    with claim(folder, force=force):
+        return tool.write(p, folder)
 
 
 def _inputs(p: Plan, tool: Engine, version: str, ranks: int) -> str:

@@ -12,7 +12,7 @@ import pandas as pd
 from .. import __version__
 from ..base.files import write_texts
 from ..base.folders import Results, claim
-from ..base.stages import inputs_hash
+from ..base.stages import inputs_hash, library_hash
 from ..case.scene import SceneCase, load
 from ..case.toml import named
 from ..errors import CaseError
@@ -61,6 +61,11 @@ class _Work:
     notes: list[str]
     ranks: int
     report: Report
+
+    @cached_property
+    def versions(self) -> dict[str, str]:
+        """Of the programs on which the numbers of a run depend."""
+        return {self.engine.name: self.engine.version(), "epdem": f"{__version__} ({library_hash()[:12]})"}
 
     @cached_property
     def inputs(self) -> str:
@@ -138,8 +143,8 @@ def run_case(
     folder = out or Path("runs") / p.case.name / engine.subfolder
     if resume and not folder.exists():
         raise CaseError(f"{folder}: no such folder, so no run to continue; run the case without --resume")
-    with claim(folder, force=force) as ours:
-        return _resumed(work, folder) if resume else _reused(work, folder, fresh) or _anew(work, ours)
+    with claim(folder, force=force, files=files) as ours:
+        return _resumed(work, ours) if resume else _reused(work, folder, fresh) or _anew(work, ours)
 
 
 def _reused(work: _Work, folder: Path, fresh: bool) -> SceneOutcome | None:
@@ -153,17 +158,22 @@ def _reused(work: _Work, folder: Path, fresh: bool) -> SceneOutcome | None:
 def _anew(work: _Work, place: Results) -> SceneOutcome:
     start = time.perf_counter()
     place.remove(*work.engine.leftovers)
+    place.note(work.versions)
     tables = run_plan(work.plan, work.engine, place.folder, ranks=work.ranks, report=work.report)
     return _finish(work, place.folder, start, tables)
 
 
-def _resumed(work: _Work, folder: Path) -> SceneOutcome:
-    start = time.perf_counter()
+def _resumed(work: _Work, place: Results) -> SceneOutcome:
+    start, folder = time.perf_counter(), place.folder
     if not all(
         (folder / name).exists() and (folder / name).read_text(encoding="utf-8") == text
         for name, text in work.files.items()
     ):
         raise CaseError(f"{folder}: the case has changed since the run that is to be continued; run it anew (--fresh)")
+    if place.versions != work.versions:
+        was, now = (", ".join(f"{k} {v}" for k, v in versions.items()) for versions in (place.versions, work.versions))
+        begun = f"{folder}: begun by {was or 'programs of unknown versions'}, and here is {now}"
+        raise CaseError(f"{begun}; run it anew (--fresh)")
     went_on = work.engine.resume(work.plan, folder, ranks=work.ranks, report=work.report)
     tables = work.engine.read(work.plan, folder, without=went_on.lost)
     return _finish(work, folder, start, tables, went_on)

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from ...base.files import atomic
-from ...base.folders import claim
+from ...base.folders import claim, refuse_existing
 from ...errors import CaseError
 from . import folder as store
 from . import run, slurm
@@ -39,6 +39,7 @@ def execute(
 
 def write_script(sweep: Sweep, folder: Path, given: Sequence[str], path: Path, *, force: bool = False) -> None:
     """Store the sweep in `folder` and write the batch script that runs it to `path`. Raises CaseError."""
+    refuse_existing(path, force=force, option="--write-script")
     text = slurm.script(sweep, folder, slurm.parameters(given))
     run.check_points(sweep, range(1, len(sweep.points) + 1))
     with claim(folder, force=force):
