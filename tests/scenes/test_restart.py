@@ -13,7 +13,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from epdem.folders import MANIFEST
+from epdem.base.folders import MANIFEST
 from scene_runs import run, write_case, write_deck
 from test_lean import CASES, small
 
