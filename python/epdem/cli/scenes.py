@@ -9,7 +9,7 @@ import typer
 
 from ..base.terminal import bar, console
 from ..errors import CaseError
-from .options import AsJson, CasePath, Replace, quantity, refuse
+from .options import AsJson, CasePath, Replace, refuse
 
 
 def is_scene(path: Path) -> bool:
@@ -166,6 +166,7 @@ def calibrate(
     as_json: AsJson = False,
 ) -> None:
     """Compute the strength of the case's law from one measured e_n, or from a hardness."""
+    from ..case.units import read_number
     from ..studies import calibrate as c
 
     if (e_n is None) == (hv is None and hb is None):
@@ -175,7 +176,7 @@ def calibrate(
     if e_n is not None:
         if speed is None:
             raise CaseError("--e-n belongs to one impact; add its speed, as --speed '2 m/s'")
-        result = c.from_restitution(case, e_n, quantity("--speed", speed, "m/s"))
+        result = c.from_restitution(case, e_n, read_number("--speed", speed, "m/s"))
     else:
         refuse(case, "it belongs to --e-n", speed=speed)
         pressure = c.pressure_of_hardness(vickers=hv, brinell=hb, dent_ratio=dent_ratio)

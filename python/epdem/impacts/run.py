@@ -4,7 +4,6 @@
 A stage is done when its result is stored with the hash of its inputs: a second run takes it from there.
 """
 
-import shutil
 import tempfile
 import time
 from collections.abc import Callable, Sequence
@@ -65,9 +64,26 @@ def run_plan(p: Plan, tool: Engine, folder: Path, *, ranks: int = 1, end_power: 
     files = tool.write(p, folder)
     path = tool.run(p, folder, ranks=ranks)
     table = impacts_table(p, measure(p, path, end_power=end_power))
-    (folder / "path.bin").unlink(missing_ok=True)  # large; its results are in the table
     seconds = {f"seconds_{k}": v for k, v in path.seconds.items()} | {"seconds": time.perf_counter() - start}
     return Stage(table, seconds, {f.name: f.read_text(encoding="utf-8") for f in files if f.suffix != ".data"})
+
+
+def run_and_compare(
+    p: Plan,
+    prediction: Prediction,
+    tool: Engine,
+    folder: Path,
+    *,
+    law: str | None = None,
+    ranks: int = 1,
+    end_power: float | None = None,
+) -> tuple[pd.DataFrame, Stage]:
+    """`run_plan`, and its impacts compared with their prediction: one row per speed.
+
+    `law` is the name in the rows (None: that of the plan).
+    """
+    stage, x = run_plan(p, tool, folder, ranks=ranks, end_power=end_power), p.experiment
+    return compare(tool.name, law or x.law.name, stage.impacts, prediction, x.check), stage
 
 
 def write_deck(x: Experiment, tool: Engine, folder: Path, *, force: bool = False) -> list[Path]:
@@ -134,8 +150,6 @@ def _prepare(case: Case, place: object, tools: Sequence[Engine], laws: Sequence[
     for tool in tools:
         if reason := tool.missing():
             raise EngineError(f"engine {tool.name}: {reason}")
-    if ranks > 1 and shutil.which("mpirun") is None:
-        raise EngineError("--ranks needs mpirun, which was not found; apt-get install openmpi-bin")
     predictions = {x.law.name: predict(x) for x in experiments}
     with named(place):
         plans = [plan(x, predictions[x.law.name]) for x in experiments]

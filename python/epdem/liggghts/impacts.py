@@ -96,10 +96,13 @@ class Liggghts:
         return write_texts(folder, texts)
 
     def run(self, plan: Plan, folder: Path, *, ranks: int = 1) -> Trajectory:
-        (folder / "path.bin").unlink(missing_ok=True)
+        path = folder / "path.bin"
+        path.unlink(missing_ok=True)
         allowed = 120 + 2e-6 * plan.n * plan.steps
         wall = launcher.run("in.impact", folder, ranks=ranks, log=launcher.LOG, seconds=allowed)
-        return trajectory(plan, folder / "path.bin", {"total": wall, "stepping": loop_seconds(folder / launcher.LOG)})
+        result = trajectory(plan, path, {"total": wall, "stepping": loop_seconds(folder / launcher.LOG)})
+        path.unlink()  # large
+        return result
 
     def seconds(self, plan: Plan, folder: Path) -> dict[str, float]:
         files = self.write(plan, folder)

@@ -10,7 +10,7 @@ from ..scenes.model import Model
 from ..scenes.plan import Phase, ScenePlan
 from . import stl
 from .insertions import Insertion, insertions
-from .properties import HARD, SOFT, Property, elastic, per_pair, scalar, strength
+from .properties import HARD, SOFT, Property, elastic, per_pair, ratios, strength
 
 SKIN = 0.25  # of the smallest radius: rebuilds cost less than idle neighbours
 
@@ -73,10 +73,7 @@ def _properties(p: ScenePlan) -> tuple[Property, ...]:
             raise CaseError(f"materials.{t.material}.poisson_ratio = {x.poisson_ratio}, LIGGGHTS takes [0, 0.5] only")
     properties = [*elastic([x.young_modulus for x in materials], [x.poisson_ratio for x in materials])]
     properties += strength(m.law, [t.strength for t in m.types])
-    for parameter in laws()[m.law].parameters:
-        value = m.parameters.get(parameter.name, parameter.default)
-        if parameter.name in m.parameters and value != parameter.default:
-            properties.append(scalar(parameter.property, value, "-"))
+    properties += ratios(m.law, m.ratios())
     if m.sliding:
         properties.append(per_pair("coefficientFriction", n, [mu for row in m.friction for mu in row], "-"))
     if m.viscous is not None:

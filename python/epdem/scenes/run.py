@@ -172,8 +172,8 @@ def _resumed(work: _Work, place: Results) -> SceneOutcome:
         raise CaseError(f"{folder}: the case has changed since the run that is to be continued; run it anew (--fresh)")
     if place.versions != work.versions:
         was, now = (", ".join(f"{k} {v}" for k, v in versions.items()) for versions in (place.versions, work.versions))
-        said = f"{folder}: begun by {was or 'programs of unknown versions'}, and here is {now}"
-        raise CaseError(f"{said}; run it anew (--fresh)")
+        begun = f"{folder}: begun by {was or 'programs of unknown versions'}, and here is {now}"
+        raise CaseError(f"{begun}; run it anew (--fresh)")
     went_on = work.engine.resume(work.plan, folder, ranks=work.ranks, report=work.report)
     tables = work.engine.read(work.plan, folder, without=went_on.lost)
     return _finish(work, folder, start, tables, went_on)

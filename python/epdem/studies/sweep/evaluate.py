@@ -13,12 +13,11 @@ from ...case import impact, scene
 from ...case.toml import named
 from ...engines import engine, scene_engine
 from ...errors import CaseError, EngineError, EpdemError
-from ...impacts.comparison import compare
 from ...impacts.engine import refuse
 from ...impacts.experiment import experiment
 from ...impacts.plan import plan
 from ...impacts.prediction import predict
-from ...impacts.run import run_plan
+from ...impacts.run import run_and_compare
 from ...scenes.run import run as run_scene
 from . import folder as store
 from .folder import Sweep
@@ -77,8 +76,7 @@ def _impacts(sweep: Sweep, number: int, place: Path) -> dict[str, list[Any]]:
         for tool in tools:
             refuse(tool, p, prediction, ranks=sweep.ranks)
             at = place / x.law.name / tool.name if tool.can.deck else place
-            stage = run_plan(p, tool, at, ranks=sweep.ranks)
-            tables.append(compare(tool.name, x.law.name, stage.impacts, prediction, x.check))
+            tables.append(run_and_compare(p, prediction, tool, at, ranks=sweep.ranks)[0])
     table = tables[0] if len(tables) == 1 else pd.concat(tables, ignore_index=True)
     return {str(name): table[name].tolist() for name in table.columns}
 
