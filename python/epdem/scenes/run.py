@@ -143,8 +143,8 @@ def run_case(
     folder = out or Path("runs") / p.case.name / engine.subfolder
     if resume and not folder.exists():
         raise CaseError(f"{folder}: no such folder, so no run to continue; run the case without --resume")
-    with claim(folder, force=force, files=files) as ours:
-        return _resumed(work, ours) if resume else _reused(work, folder, fresh) or _anew(work, ours)
+    with claim(folder, force=force, files=files) as place:
+        return _resumed(work, place) if resume else _reused(work, folder, fresh) or _anew(work, place)
 
 
 def _reused(work: _Work, folder: Path, fresh: bool) -> SceneOutcome | None:
