@@ -19,6 +19,7 @@ from ..impacts.plan import Plan
 from ..lammps import data_file
 from . import dump, launcher
 from .deck import Deck
+from .edits import EDITS
 from .log import loop_seconds
 from .pairs import velocities
 from .properties import HARD, SOFT, Property, atom_types, finite, of_law
@@ -36,6 +37,7 @@ class Liggghts:
         ranks=launcher.most_ranks(),
         scenes=SCENES,
         restarts=True,
+        edits=EDITS,
         variants=("swap", "sort", "migration", "restart"),
     )
 
