@@ -46,8 +46,6 @@ struct Lists : FixNeighlistMesh {
 
 /// The planes that bound the room of a triangle: its own, and one through each edge, normals outward.
 struct Planes : TriMesh {
-  double point[4][3], normal[4][3];
-
   static void copy(double* to, const double* from) { std::copy_n(from, 3, to); }
   static void of(TriMesh& mesh, int triangle, double (&point)[4][3], double (&normal)[4][3]) {
     const auto norm = static_cast<double* (LAMMPS_NS::SurfaceMesh<3, 5>::*)(int)>(&Planes::surfaceNorm);
@@ -71,22 +69,27 @@ class Near {
   void reduce(TriMesh& mesh, FixNeighlistMesh& lists, const LAMMPS_NS::Atom& atom) {
     std::vector<LAMMPS_NS::TriangleNeighlist>& triangles = Lists::of(lists);
     const int count = std::min<int>(mesh.sizeLocal() + mesh.sizeGhost(), triangles.size());
-    const double *const x = atom.nlocal ? atom.x[0] : nullptr, *const radius = atom.radius;
+    if (atom.nlocal == 0) return;
+    const double *const x = atom.x[0], *const radius = atom.radius;
+    const int nlocal = atom.nlocal;
     for (int t = 0; t < count; ++t) {
       std::vector<int>& all = triangles[t].contacts;
       if (all.empty()) continue;
       if (used_ == spare().size()) spare().emplace_back();
       std::vector<int>& near = spare()[used_];
-      near.clear();
+      near.resize(all.size());
+      int found = 0;
       double point[4][3], normal[4][3];
       Planes::of(mesh, t, point, normal);
       for (const int i : all) {
-        if (i >= atom.nlocal) continue;                 // of another rank
         const double reach = radius[i] * (1.0 + 1e-6);  // far above round-off
-        bool may = std::fabs(along(normal[0], x + 3 * i, point[0])) <= reach;
-        for (int k = 1; k < 4 && may; ++k) may = along(normal[k], x + 3 * i, point[k]) <= reach;
-        if (may) near.push_back(i);
+        const double* const centre = x + 3 * i;
+        bool may = (i < nlocal) & (std::fabs(along(normal[0], centre, point[0])) <= reach);  // no branch
+        for (int k = 1; k < 4; ++k) may &= along(normal[k], centre, point[k]) <= reach;
+        near[found] = i;
+        found += may;
       }
+      near.resize(found);
       all.swap(near);
       swapped_.push_back({&all, used_++});
     }
