@@ -116,8 +116,8 @@ def tune(
     as_json: AsJson = False,
 ) -> None:
     """Find the neighbour skin, and with --ranks the cut of the room, with which a scene runs fastest in LIGGGHTS."""
+    from ..base.terminal import status
     from ..studies import tune as t
-    from ..terminal import status
 
     with status() as line:
         found = t.tune(case, ranks=ranks, seconds=seconds, progress=lambda text: line(f"{case.stem}: {text}"))
