@@ -14,6 +14,7 @@ import typer
 
 from ..errors import CaseError, EpdemError, Stopped
 from ..terminal import bar, console
+from . import calibrate as cli_calibrate
 from . import crosscheck as cli_crosscheck
 from . import numerics as cli_numerics
 from . import scenes as cli_scene
@@ -173,7 +174,7 @@ for command in (
     cli_numerics.stability,
     cli_scene.explain,
     cli_scene.soften,
-    cli_scene.calibrate,
+    cli_calibrate.calibrate,
     cli_sweep.sweep,
     cli_sweep.status,
 ):

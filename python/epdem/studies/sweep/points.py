@@ -131,30 +131,32 @@ def _value(text: str, place: str) -> Value:
     return value if len(found) == 1 and isinstance(value, str | int | float | list | dict) else text.strip()
 
 
-def settings(texts: Sequence[str]) -> dict[str, str]:
-    """KEY=VALUES as a command gives them. Raises CaseError."""
+def settings(
+    texts: Sequence[str], option: str = "--set", example: str = "impact.body.radius='1 mm,2 mm'"
+) -> dict[str, str]:
+    """KEY=VALUES as a command gives them behind an option. Raises CaseError, which shows the example."""
     found: dict[str, str] = {}
     for text in texts:
         key, equals, values = text.partition("=")
         if not equals or not key.strip() or not values.strip():
-            raise CaseError(f"--set {text!r}: write KEY=VALUES, as impact.body.radius='1 mm,2 mm'")
+            raise CaseError(f"{option} {text!r}: write it as {option} {example}")
         if key.strip() in found:
-            raise CaseError(f"--set {key.strip()}: given twice; write all its values behind one")
+            raise CaseError(f"{option} {key.strip()}: given twice; write all its values behind one")
         found[key.strip()] = values
     return found
 
 
-def axes(given: Mapping[str, str | Sequence[Value]], keys: dict[str, Key]) -> dict[str, Axis]:
+def axes(given: Mapping[str, str | Sequence[Value]], keys: dict[str, Key], option: str = "--set") -> dict[str, Axis]:
     """The values of each key, from text as in `axis` or from a sequence of values. Raises CaseError."""
     found: dict[str, Axis] = {}
     for name, values in given.items():
-        key = known(name, keys, f"--set {name}")
+        key = known(name, keys, f"{option} {name}")
         if isinstance(values, str):
-            found[name] = axis(values, key, f"--set {name}")
+            found[name] = axis(values, key, f"{option} {name}")
         else:
             found[name] = Listed(tuple(with_unit(v, key) for v in values))
             if not found[name].values():
-                raise CaseError(f"--set {name}: no values; give at least one")
+                raise CaseError(f"{option} {name}: no values; give at least one")
     return found
 
 
