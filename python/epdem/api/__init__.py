@@ -15,13 +15,13 @@ from .. import theory
 from ..engines import engine as engine_named
 from ..engines import scene_engine
 from ..errors import CaseError
-from ..files import write_texts
+from ..folders import write_own
 from ..impacts.comparison import UNITS
 from ..impacts.experiment import experiment
-from ..impacts.plan import plan as plan_impacts
 from ..impacts.prediction import Prediction
 from ..impacts.prediction import predict as predict_experiment
 from ..impacts.run import run as run_impacts
+from ..impacts.run import write_deck
 from ..scenes.plan import plan as plan_scene
 from ..scenes.run import run as run_scene
 from ..studies import fit
@@ -91,14 +91,13 @@ def predict(case: Case, law: str | None = None) -> pd.DataFrame:
     return with_units(pd.DataFrame({name: getattr(found, name) for name in Prediction.COLUMNS}), UNITS)
 
 
-def deck(case: Case | Scene, out: Path | str, *, engine: str = "liggghts", law: str | None = None) -> list[Path]:
-    """Write the deck of a case or scene into the folder `out`; it runs by hand. Raises CaseError."""
+def deck(
+    case: Case | Scene, out: Path | str, *, engine: str = "liggghts", law: str | None = None, force: bool = False
+) -> list[Path]:
+    """Write the deck of a case or scene into `out`, where `force` allows other files. Raises CaseError."""
     if isinstance(case, Scene):
-        return write_texts(Path(out), scene_engine(engine).files(plan_scene(case.model)))
-    tool, x = engine_named(engine), experiment(case.model, law)
-    if not tool.can.deck:
-        raise CaseError(f"engine {engine}: it reads no deck; use liggghts or yade")
-    return tool.write(plan_impacts(x, predict_experiment(x)), Path(out))
+        return write_own(Path(out), scene_engine(engine).files(plan_scene(case.model)), force=force)
+    return write_deck(experiment(case.model, law), engine_named(engine), Path(out), force=force)
 
 
 def sweep(

@@ -8,7 +8,7 @@ from typing import Annotated, Any
 import typer
 
 from ..errors import CaseError
-from .options import AsJson, CasePath, Out, quantity, refuse
+from .options import AsJson, CasePath, Force, Out, quantity, refuse
 
 
 def calibrate(
@@ -34,13 +34,15 @@ def calibrate(
     ranks: Annotated[int | None, typer.Option(min=1, max=1024, help="MPI ranks of each scene (default: 1)")] = None,
     jobs: Annotated[int | None, typer.Option("--jobs", "-j", min=1, help="scenes at once (default: cores)")] = None,
     out: Out = None,
-    force: Annotated[bool, typer.Option("--force", help="write into a folder that holds other files")] = False,
+    force: Force = False,
     as_json: AsJson = False,
 ) -> None:
     """Compute the strength of a law from one e_n or a hardness, or keys of a scene from numbers of its results."""
     of_scene = {"tolerance": tolerance, "engine": engine, "ranks": ranks, "jobs": jobs, "out": out, "force": force}
     if target or free:
-        refuse(case, "it does not go with --target and --free", e_n=e_n, speed=speed, hv=hv, hb=hb, dent_ratio=dent_ratio)
+        refuse(
+            case, "it does not go with --target and --free", e_n=e_n, speed=speed, hv=hv, hb=hb, dent_ratio=dent_ratio
+        )
         _of_scene(case, target or [], free or [], {k: v for k, v in of_scene.items() if v is not None}, as_json)
         return
     refuse(case, "it goes with --target and --free", **of_scene)

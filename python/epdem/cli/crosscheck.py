@@ -9,7 +9,7 @@ from typing import Annotated, Any
 import typer
 
 from ..terminal import console, status, table
-from .options import AsJson, Out
+from .options import AsJson, Force, Out
 
 VALUES = {
     "model": "model",
@@ -64,7 +64,7 @@ def crosscheck(
     law: Annotated[str | None, typer.Option("--law", "-l", help="a law instead of the case's")] = None,
     out: Out = None,
     fresh: Annotated[bool, typer.Option("--fresh", help="run again although results are stored")] = False,
-    force: Annotated[bool, typer.Option("--force", help="write into a folder that holds other files")] = False,
+    force: Force = False,
     as_json: AsJson = False,
 ) -> None:
     """Run a case on every installed engine and model, and print errors, order of convergence and invariance."""

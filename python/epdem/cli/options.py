@@ -20,6 +20,8 @@ Laws = Annotated[
     typer.Option("--law", "-l", help="hertz, thornton, johnson or cavity instead of the case's law; repeat for more"),
 ]
 Out = Annotated[Path | None, typer.Option("--out", "-o", help="folder for the results (default: runs/<case>)")]
+Force = Annotated[bool, typer.Option("--force", help="write into a folder that holds other files")]
+Replace = Annotated[bool, typer.Option("--force", help="replace an existing file")]
 AsJson = Annotated[bool, typer.Option("--json", help="print one JSON document and nothing else")]
 
 

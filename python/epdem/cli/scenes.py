@@ -9,7 +9,7 @@ import typer
 
 from ..errors import CaseError
 from ..terminal import bar, console
-from .options import AsJson, CasePath
+from .options import AsJson, CasePath, Replace
 
 
 def is_scene(path: Path) -> bool:
@@ -59,17 +59,17 @@ def run_scene(
     return 0 if outcome.passed else 1
 
 
-def deck_scene(case: Path, out: Path, *, engine: str = "liggghts", as_json: bool = False) -> None:
+def deck_scene(case: Path, out: Path, *, engine: str = "liggghts", force: bool = False, as_json: bool = False) -> None:
     """Write the deck of a scene."""
     from ..case.impact import named
     from ..case.scene import load
     from ..engines import scene_engine
-    from ..files import write_texts
+    from ..folders import write_own
     from ..scenes.plan import plan
 
     with named(case):
         files = scene_engine(engine).files(plan(load(case)))
-    names = [str(f) for f in write_texts(out, files)]
+    names = [str(f) for f in write_own(out, files, force=force)]
     print(json.dumps({"files": names}) if as_json else "\n".join(names))
 
 
@@ -115,17 +115,17 @@ def soften(
     out: Annotated[
         Path | None, typer.Option("--out", "-o", help="file to write (default: CASE_softK.toml beside it)")
     ] = None,
-    force: Annotated[bool, typer.Option("--force", help="replace an existing file")] = False,
+    force: Replace = False,
     as_json: AsJson = False,
 ) -> None:
     """Write a softened copy of a case with the same e_n at every speed and larger time steps."""
     from ..files import atomic
+    from ..folders import refuse_existing
     from ..studies.soften import soften as twin_of
 
     twin = twin_of(case, factor)
     target = out or case.with_name(f"{case.stem}_soft{factor:g}.toml")
-    if target.exists() and not force:
-        raise CaseError(f"{target} exists; name another file by --out, or replace it by --force")
+    refuse_existing(target, force=force)
     with atomic(target) as temporary:
         temporary.write_text(twin.text, encoding="utf-8")
     if as_json:
@@ -152,9 +152,11 @@ def soften(
         print(f"warning: {warning}")
 
 
-def deck_template(template: Path, case: Path, sets: list[str], out: Path, *, as_json: bool = False) -> None:
+def deck_template(
+    template: Path, case: Path, sets: list[str], out: Path, *, force: bool = False, as_json: bool = False
+) -> None:
     """Write a deck from a template of the user's own and the values of a case."""
     from ..liggghts.own_template import settings, write
 
-    names = [str(f) for f in write(template, case, settings(sets), out)]
+    names = [str(f) for f in write(template, case, settings(sets), out, force=force)]
     print(json.dumps({"files": names}) if as_json else "\n".join(names))

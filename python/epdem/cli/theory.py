@@ -10,7 +10,7 @@ import typer
 from ..errors import CaseError
 from ..terminal import console
 from ..terminal import table as empty_table
-from .options import AsJson, quantity
+from .options import AsJson, Force, quantity
 
 
 def theory(
@@ -69,11 +69,14 @@ def theory(
 
 
 def figures(
-    out: Annotated[Path, typer.Option("--out", "-o", help="folder for the figures")] = Path("docs/figures"),
+    out: Annotated[Path, typer.Option("--out", "-o", help="folder for the figures")] = Path("runs/figures"),
+    force: Force = False,
     as_json: AsJson = False,
 ) -> None:
     """Draw figures 8.16, 8.17 and 8.19 of Seville and Wu (2016) from theory."""
+    from ..folders import claim
     from ..studies.figures import draw_all
 
-    names = [str(path) for path in draw_all(out)]
+    with claim(out, force=force):
+        names = [str(path) for path in draw_all(out)]
     print(json.dumps({"files": names}) if as_json else "\n".join(names))

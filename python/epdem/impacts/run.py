@@ -21,7 +21,7 @@ from ..stages import inputs_hash
 from . import store
 from .comparison import compare, impacts_table
 from .engine import Engine, refuse
-from .experiment import experiment
+from .experiment import Experiment, experiment
 from .measurement import measure
 from .plan import Plan, plan
 from .prediction import Prediction, predict
@@ -67,6 +67,15 @@ def run_plan(p: Plan, tool: Engine, folder: Path, *, ranks: int = 1, end_power: 
     (folder / "path.bin").unlink(missing_ok=True)  # large; its results are in the table
     seconds = {f"seconds_{k}": v for k, v in path.seconds.items()} | {"seconds": time.perf_counter() - start}
     return Stage(table, seconds, {f.name: f.read_text(encoding="utf-8") for f in files if f.suffix != ".data"})
+
+
+def write_deck(x: Experiment, tool: Engine, folder: Path, *, force: bool = False) -> list[Path]:
+    """Write the deck of an experiment into `folder`, where `force` allows other files; its files. Raises CaseError."""
+    if not tool.can.deck:
+        raise CaseError(f"engine {tool.name}: it reads no deck; use liggghts or yade")
+    p = plan(x, predict(x))
+    with claim(folder, force=force):
+        return tool.write(p, folder)
 
 
 def _inputs(p: Plan, tool: Engine, version: str, ranks: int) -> str:

@@ -7,7 +7,7 @@ from ..case import scene as scenes
 from ..case.impact import load as load_impact
 from ..case.impact import read_toml
 from ..errors import CaseError
-from ..files import write_texts
+from ..folders import write_own
 from ..impacts.experiment import experiment
 from ..impacts.plan import plan
 from ..impacts.prediction import predict
@@ -44,12 +44,14 @@ def settings(pairs: list[str]) -> dict[str, int | float | str]:
     return found
 
 
-def write(template: Path, case_path: Path, sets: dict[str, int | float | str], out: Path) -> list[Path]:
+def write(
+    template: Path, case_path: Path, sets: dict[str, int | float | str], out: Path, *, force: bool = False
+) -> list[Path]:
     """Render `template` with the values of a case into `out`, with the case's own data and mesh files beside it.
 
     In the template: `deck` (materials, model, time step ...), `case`, the names of `sets`, and our macros by
-    {% import "liggghts/macros.j2" as macros %}. Raises CaseError for a mistake in the template, an undefined name, or
-    a set one that is not used.
+    {% import "liggghts/macros.j2" as macros %}. Raises CaseError for a mistake in the template, an undefined name, a
+    set one that is not used, or a file of the user's in the way, unless `force`.
     """
     name = template.name.removesuffix(".j2")
     if not name or name == template.name:
@@ -70,4 +72,4 @@ def write(template: Path, case_path: Path, sets: dict[str, int | float | str], o
     text, unused = sandbox.render(template, values | sets)
     if wrong := unused & set(sets):
         raise CaseError(f"--set {min(wrong)}: {template} does not use it; check the spelling")
-    return write_texts(out, {name: text} | {n: content for n, content in beside.items() if n in text})
+    return write_own(out, {name: text} | {n: content for n, content in beside.items() if n in text}, force=force)

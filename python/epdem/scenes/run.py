@@ -16,7 +16,7 @@ from ..errors import CaseError
 from ..files import write_texts
 from ..folders import Results, claim
 from ..impacts.prediction import predict
-from ..stages import inputs_hash
+from ..stages import inputs_hash, library_hash
 from . import checks, ledger, results
 from .engine import Report, Resumed, SceneEngine, check_abilities
 from .pairs import wall_impact
@@ -61,6 +61,11 @@ class _Work:
     notes: list[str]
     ranks: int
     report: Report
+
+    @cached_property
+    def versions(self) -> dict[str, str]:
+        """Of the programs on which the numbers of a run depend."""
+        return {self.engine.name: self.engine.version(), "epdem": f"{__version__} ({library_hash()[:12]})"}
 
     @cached_property
     def inputs(self) -> str:
@@ -109,8 +114,8 @@ def run(
     folder = out or Path("runs") / p.case.name / engine.subfolder
     if resume and not folder.exists():
         raise CaseError(f"{folder}: no such folder, so no run to continue; run the case without --resume")
-    with claim(folder, force=force) as place:
-        return _resumed(work, folder) if resume else _reused(work, folder, fresh) or _anew(work, place)
+    with claim(folder, force=force, files=files) as place:
+        return _resumed(work, place) if resume else _reused(work, folder, fresh) or _anew(work, place)
 
 
 def _reused(work: _Work, folder: Path, fresh: bool) -> SceneOutcome | None:
@@ -124,17 +129,22 @@ def _reused(work: _Work, folder: Path, fresh: bool) -> SceneOutcome | None:
 def _anew(work: _Work, place: Results) -> SceneOutcome:
     start = time.perf_counter()
     place.remove(*work.engine.leftovers)
+    place.note(work.versions)
     tables = run_plan(work.plan, work.engine, place.folder, ranks=work.ranks, report=work.report)
     return _finish(work, place.folder, start, tables)
 
 
-def _resumed(work: _Work, folder: Path) -> SceneOutcome:
-    start = time.perf_counter()
+def _resumed(work: _Work, place: Results) -> SceneOutcome:
+    start, folder = time.perf_counter(), place.folder
     if not all(
         (folder / name).exists() and (folder / name).read_text(encoding="utf-8") == text
         for name, text in work.files.items()
     ):
         raise CaseError(f"{folder}: the case has changed since the run that is to be continued; run it anew (--fresh)")
+    if place.versions != work.versions:
+        was, now = (", ".join(f"{k} {v}" for k, v in versions.items()) for versions in (place.versions, work.versions))
+        said = f"{folder}: begun by {was or 'programs of unknown versions'}, and here is {now}"
+        raise CaseError(f"{said}; run it anew (--fresh)")
     went_on = work.engine.resume(work.plan, folder, ranks=work.ranks, report=work.report)
     tables = work.engine.read(work.plan, folder, without=went_on.lost)
     return _finish(work, folder, start, tables, went_on)

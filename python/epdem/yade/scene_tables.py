@@ -14,17 +14,20 @@ from ..scenes.plan import ScenePlan
 CONTACT = ["i", "j", "overlap", "delta_max"]
 
 
-def _frames(folder: Path, kind: str, names: list[str]) -> pd.DataFrame:
-    """All frames of a kind, one below the other. Raises EngineError for an incomplete one."""
+def _frames(p: ScenePlan, folder: Path, kind: str, every: int, names: list[str]) -> pd.DataFrame:
+    """The frames of a kind that a run of this plan writes, one below the other; other files of such names are the
+    user's. Raises EngineError for a frame that is missing or not whole.
+    """
     found = []
-    for path in sorted(folder.glob(f"{kind}.*.npy"), key=lambda p: int(p.suffixes[-2][1:])):
+    for step in range(0, p.steps + 1, every):
+        path = folder / f"{kind}.{step}.npy"
         try:
             table = pd.DataFrame(np.load(path), columns=names)
-        except (OSError, ValueError) as error:
+        except (OSError, ValueError, EOFError) as error:
             raise EngineError(f"{path}: incomplete ({error}); run the case again") from None
-        table.insert(0, "step", int(path.suffixes[-2][1:]))
+        table.insert(0, "step", step)
         found.append(table)
-    return pd.concat(found, ignore_index=True) if found else pd.DataFrame(columns=["step", *names])
+    return pd.concat(found, ignore_index=True)
 
 
 def rows(p: ScenePlan, log: Path) -> pd.DataFrame:
@@ -42,7 +45,7 @@ def rows(p: ScenePlan, log: Path) -> pd.DataFrame:
 
 def particles(p: ScenePlan, folder: Path) -> pd.DataFrame:
     """Every sphere of every frame, SI. Raises EngineError for an incomplete frame."""
-    found = _frames(folder, "particles", [*columns.PARTICLES, *(columns.SPINS if p.model.spins else [])])
+    found = _frames(p, folder, "particles", p.frames, [*columns.PARTICLES, *(columns.SPINS if p.model.spins else [])])
     if p.layout.periodic:  # YADE does not put back what leaves its periodic cell
         for axis, low, high in zip("xy", p.layout.box[0:4:2], p.layout.box[1:4:2], strict=True):
             found[axis] = (found[axis] - low) % (high - low) + low
@@ -64,7 +67,7 @@ def read(p: ScenePlan, folder: Path, log: Path) -> dict[str, pd.DataFrame]:
 
 def _contacts(p: ScenePlan, folder: Path, spheres: pd.DataFrame) -> pd.DataFrame:
     """Every contact of every frame; with overlap 0 those that ended since the frame before."""
-    raw = _frames(folder, "contacts", CONTACT).astype({"step": "int64", "i": "int64", "j": "int64"})
+    raw = _frames(p, folder, "contacts", p.contacts, CONTACT).astype({"step": "int64", "i": "int64", "j": "int64"})
     raw = raw[raw["overlap"] >= 0].reset_index(drop=True)  # what is only near is no contact yet
     walls = np.array(["", *(w.name for w in p.layout.planes), *p.layout.meshes])
     beyond = raw["j"] - p.case.scene.count + 1

@@ -6,7 +6,7 @@ from pathlib import Path
 
 from ...errors import CaseError
 from ...files import atomic
-from ...folders import claim
+from ...folders import claim, refuse_existing
 from . import folder as store
 from . import run, slurm
 from .folder import Sweep
@@ -39,6 +39,7 @@ def execute(
 
 def write_script(sweep: Sweep, folder: Path, given: Sequence[str], path: Path, *, force: bool = False) -> None:
     """Store the sweep in `folder` and write the batch script that runs it to `path`. Raises CaseError."""
+    refuse_existing(path, force=force, option="--write-script")
     text = slurm.script(sweep, folder, slurm.parameters(given))
     run.check_points(sweep, range(1, len(sweep.points) + 1))
     with claim(folder, force=force):
