@@ -7,7 +7,6 @@ from typing import Annotated
 
 import typer
 
-from ..errors import CaseError
 from ..terminal import bar, console
 from .options import AsJson, CasePath, Replace
 

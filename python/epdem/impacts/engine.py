@@ -48,6 +48,7 @@ class Abilities:
     scenes: tuple[str, ...] = ()  # kinds of bulk scenes
     restarts: bool = False  # it continues an interrupted bulk scene
     variants: tuple[str, ...] = ()  # of the same impacts that `run_pairs` can run, beside the plain one
+    stays: bool = False  # one process of it can run plan after plan; the class takes `stay`
 
 
 class Engine(Protocol):
