@@ -8,7 +8,7 @@ from typing import Annotated, Any
 import typer
 
 from ..errors import CaseError
-from .options import AsJson, CasePath, Force, Out, quantity, refuse
+from .options import AsJson, CasePath, Force, Out, refuse
 
 
 def calibrate(
@@ -76,6 +76,7 @@ def _of_impact(
     dent_ratio: float | None,
     as_json: bool,
 ) -> None:
+    from ..case.units import read_number
     from ..studies import calibrate as c
 
     if (e_n is None) == (hv is None and hb is None):
@@ -85,7 +86,7 @@ def _of_impact(
     if e_n is not None:
         if speed is None:
             raise CaseError("--e-n belongs to one impact; add its speed, as --speed '2 m/s'")
-        result = c.from_restitution(case, e_n, quantity("--speed", speed, "m/s"))
+        result = c.from_restitution(case, e_n, read_number("--speed", speed, "m/s"))
     else:
         refuse(case, "it belongs to --e-n", speed=speed)
         pressure = c.pressure_of_hardness(vickers=hv, brinell=hb, dent_ratio=dent_ratio)

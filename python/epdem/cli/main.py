@@ -12,9 +12,9 @@ from typing import Annotated, Any
 
 import typer
 
+from ..base.printed import Printed
+from ..base.terminal import bar, console
 from ..errors import CaseError, EpdemError, Stopped
-from ..printed import Printed
-from ..terminal import bar, console
 from . import calibrate as cli_calibrate
 from . import crosscheck as cli_crosscheck
 from . import numerics as cli_numerics
@@ -141,7 +141,8 @@ def deck(
         refuse(file, "a scene has its own law", law=law)
         cli_scene.deck_scene(file, out, engine=engine, force=force, as_json=as_json)
         return
-    from ..case.impact import load, named
+    from ..case.impact import load
+    from ..case.toml import named
     from ..engines import engine as find
     from ..impacts.experiment import experiment
     from ..impacts.run import write_deck
@@ -157,7 +158,8 @@ def deck(
 @app.command()
 def predict(case: CasePath, law: Laws = None, as_json: AsJson = False) -> None:
     """Print the prediction of theory for a case; no engine runs."""
-    from ..case.impact import load, named
+    from ..case.impact import load
+    from ..case.toml import named
     from ..impacts.experiment import experiment
     from ..impacts.prediction import predict as predict_experiment
     from . import show

@@ -7,14 +7,14 @@ from typing import Annotated
 
 import typer
 
-from ..terminal import bar, console
+from ..base.terminal import bar, console
 from .options import AsJson, CasePath, Replace
 
 
 def is_scene(path: Path) -> bool:
     """Whether a case file describes a bulk scene. Raises CaseError if it cannot be read."""
-    from ..case.impact import read_toml
     from ..case.scene import is_scene as holds_scene
+    from ..case.toml import read_toml
 
     return holds_scene(read_toml(path))
 
@@ -60,10 +60,10 @@ def run_scene(
 
 def deck_scene(case: Path, out: Path, *, engine: str = "liggghts", force: bool = False, as_json: bool = False) -> None:
     """Write the deck of a scene."""
-    from ..case.impact import named
+    from ..base.folders import write_own
     from ..case.scene import load
+    from ..case.toml import named
     from ..engines import scene_engine
-    from ..folders import write_own
     from ..scenes.plan import plan
 
     with named(case):
@@ -87,7 +87,8 @@ def explain(case: CasePath, as_json: AsJson = False) -> None:
 
 
 def _explained(case: Path) -> list[tuple[str, str, str]]:
-    from ..case.impact import load, named
+    from ..case.impact import load
+    from ..case.toml import named
     from ..liggghts import explain
 
     with named(case):
@@ -118,8 +119,8 @@ def soften(
     as_json: AsJson = False,
 ) -> None:
     """Write a softened copy of a case with the same e_n at every speed and larger time steps."""
-    from ..files import atomic
-    from ..folders import refuse_existing
+    from ..base.files import atomic
+    from ..base.folders import refuse_existing
     from ..studies.soften import soften as twin_of
 
     twin = twin_of(case, factor)

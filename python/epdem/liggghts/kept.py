@@ -10,7 +10,7 @@ import time
 import tty
 from pathlib import Path
 
-from .. import processes
+from ..base import processes
 from ..errors import EngineError
 from . import launcher
 

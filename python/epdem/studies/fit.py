@@ -7,14 +7,14 @@ Every evaluation is a point of a sweep, in its folder: interrupted or repeated, 
 import contextlib
 import difflib
 import math
+import tomllib
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any
+from typing import Any, TypedDict, Unpack
 
 import numpy as np
 
-from ..case.impact import read_toml
 from ..case.scene import is_scene
 from ..case.units import to_si
 from ..errors import CaseError, EngineError
@@ -25,6 +25,7 @@ from .sweep.keys import keys_of
 from .sweep.numbers import unit
 from .sweep.points import Point, Range, axes
 
+Targets = Mapping[str, str | float]
 MOST = 3  # keys that a fit frees
 STEP = 0.1  # of a difference quotient, as a share of a key's range: above the scatter of a bulk scene
 DIGITS = 6  # of a share: values closer than this are one point
@@ -57,7 +58,7 @@ class _Search:
     """The points of a fit so far, and the numbers of each."""
 
     def __init__(
-        self, base: Sweep, folder: Path, free: dict[str, Range], given: Mapping[str, str | float], **options: Any
+        self, base: Sweep, folder: Path, free: dict[str, Range], given: Targets, **options: Any
     ):
         self.base, self.folder, self.free, self.given, self.options = base, folder, free, given, options
         self.shares: list[tuple[float, ...]] = []
@@ -114,11 +115,29 @@ class _Search:
         return value / self.targets[name] - 1.0
 
 
-def fit(
-    path: Path,
-    targets: Mapping[str, str | float],
+class Options(TypedDict, total=False):
+    """How `fit_text` runs its scenes, and when it ends."""
+
+    out: Path | None
+    engine: str
+    ranks: int
+    tolerance: float
+    jobs: int | None
+    force: bool
+    report: study.Report
+
+
+def fit(path: Path, targets: Targets, free: Mapping[str, str], **options: Unpack[Options]) -> Fit:
+    """`fit_text` of the scene in a file."""
+    return fit_text(store.base_text(path), targets, free, place=path, **options)
+
+
+def fit_text(
+    text: str,
+    targets: Targets,
     free: Mapping[str, str],
     *,
+    place: object,
     out: Path | None = None,
     engine: str = "liggghts",
     ranks: int = 1,
@@ -129,20 +148,21 @@ def fit(
 ) -> Fit:
     """Find values of the keys `free` (ranges, "0.1..0.5" or "log:1 MPa..1 GPa") that give the targets of a scene.
 
-    `targets`: numbers of its results by name (see `numbers_of`), as text with a unit or in SI; `tolerance` is their
-    largest relative error; the points are in `out` (default: runs/<name>_fit). Raises CaseError for unknown names, a
-    key that changes nothing and targets out of reach, EngineError for a scene that fails.
+    `text` is the scene's TOML, `place` names it in messages. `targets`: numbers of its results by name (see
+    `numbers_of`), as text with a unit or in SI; `tolerance` is their largest relative error; the points are in `out`
+    (default: runs/<name>_fit). Raises CaseError for unknown names, a key that changes nothing and targets out of reach,
+    EngineError for a scene that fails.
     """
-    data = read_toml(path)
+    data = tomllib.loads(text)
     if not is_scene(data):
-        raise CaseError(f"{path}: --target is a number of a scene's results; for impacts give --e-n, --hv or --hb")
+        raise CaseError(f"{place}: --target is a number of a scene's results; for impacts give --e-n, --hv or --hb")
     if not 0.0 < tolerance < 1.0:
         raise CaseError(f"--tolerance {tolerance:g}, must lie in (0, 1)")
     if not targets or not 1 <= len(free) <= MOST:
         raise CaseError(f"a fit needs a --target NAME=VALUE, and one to {MOST} keys --free KEY=LOW..HIGH")
     ranges = _ranges(free, axes(free, keys_of(data), "--free"))
     middle = np.full(len(ranges), 0.5)
-    base = study.plan(path, {name: [axis.at(0.5)] for name, axis in ranges.items()}, engines=[engine], ranks=ranks)
+    base = study.plan_text(text, {name: [axis.at(0.5)] for name, axis in ranges.items()}, engines=[engine], ranks=ranks)
     folder = out or Path("runs") / f"{base.name}_fit"
     search = _Search(base, folder, ranges, targets, jobs=jobs, force=force, report=report)
     search([middle])  # what it has tells whether the targets exist
@@ -153,7 +173,7 @@ def fit(
     values = search.point(search.shares[best])
     numbers = {name: search.found[best][name] for name in search.targets}
     if errors[best] > tolerance:
-        raise CaseError(f"{path}: {_missed(search, values, numbers)}")
+        raise CaseError(f"{place}: {_missed(search, values, numbers)}")
     case = store.of(search.sweep, folder, best + 1) / store.CASE
     units = {name: unit(name) or "" for name in numbers}
     return Fit(values, numbers, search.targets, units, case, search.ran, len(search.shares))

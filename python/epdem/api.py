@@ -1,0 +1,306 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""The Python interface: what the commands do, with cases made of plain values and results as DataFrames.
+
+Tables have the SI units of their columns in `attrs["units"]`. Progress goes to the logger "epdem".
+"""
+
+import logging
+import tomllib
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, ClassVar, Self, Unpack, overload
+
+import pandas as pd
+import tomlkit
+
+from . import theory
+from .base.files import atomic
+from .base.folders import write_own
+from .case import impact as impact_case
+from .case import scene as scene_case
+from .case.toml import read_toml
+from .engines import engine as engine_named
+from .engines import scene_engine
+from .errors import CaseError
+from .impacts.comparison import UNITS
+from .impacts.experiment import experiment
+from .impacts.prediction import Prediction
+from .impacts.prediction import predict as predict_experiment
+from .impacts.run import Outcome, write_deck
+from .impacts.run import run_case as run_impacts
+from .scenes.columns import UNITS as SCENE_UNITS
+from .scenes.plan import plan as plan_scene
+from .scenes.run import SceneOutcome
+from .scenes.run import run_case as run_scene
+from .studies.fit import Fit, Targets, fit_text
+from .studies.fit import Options as FitOptions
+from .studies.sweep import keys
+from .studies.sweep import run as study
+from .studies.sweep.points import plain, with_unit, with_units
+from .studies.sweep.run import SweepOutcome
+
+__all__ = ["Case", "Fit", "Run", "Scene", "SceneRun", "calibrate", "deck", "predict", "run", "sweep", "theory"]
+log = logging.getLogger("epdem")
+
+
+class _File:
+    """A case or scene: the text of its file, checked. Its `model` has every value in SI; both are never changed."""
+
+    kind: ClassVar[str]
+
+    def __init__(self, **tables: Any):
+        """From the tables of a case file, `Case(case={"name": "ball"}, materials={...}, impact={...}, law={...})`.
+
+        A plain number where a quantity stands is in SI; texts with units and quantities of pint are taken as they are;
+        title and source can be left out. Raises CaseError.
+        """
+        name = tables.get("case", {}).get("name", self.kind)
+        header = {"name": name, "title": name, "source": "made in Python"} | tables.get("case", {})
+        data = plain({"case": header} | {key: value for key, value in tables.items() if key != "case"})
+        self._read(tomlkit.dumps(with_units(data, keys.keys_of(data))), name)
+
+    def _read(self, text: str, path: object) -> None:
+        self.text = text
+        self.model = self._parse(tomllib.loads(text), path)
+
+    @staticmethod
+    def _parse(data: dict[str, Any], path: object) -> Any:
+        raise AttributeError("a case is a Case or a Scene")
+
+    @classmethod
+    def from_toml(cls, path: Path | str) -> Self:
+        """The case in a file. Raises CaseError."""
+        read_toml(path)
+        case = cls.__new__(cls)
+        case._read(Path(path).read_text(encoding="utf-8-sig"), path)
+        return case
+
+    def to_toml(self, path: Path | str) -> Path:
+        """Write the case as a file that the commands take."""
+        with atomic(Path(path)) as temporary:
+            temporary.write_text(self.text, encoding="utf-8")
+        return Path(path)
+
+    def replace(self, changes: Mapping[str, Any]) -> Self:
+        """A case that differs in some keys, by their dotted names: `replace({"impact.body.radius": "5 mm"})`.
+
+        Raises CaseError for a key that no case has, with the nearest one, and for a wrong value.
+        """
+        document = tomlkit.parse(self.text)
+        names = keys.keys_of(document.unwrap())
+        for name, value in changes.items():
+            keys.assign(document, name, with_unit(value, keys.known(name, names, "replace")))
+        case = type(self).__new__(type(self))
+        case._read(document.as_string(), self.name)
+        return case
+
+    @property
+    def name(self) -> str:
+        """The name of the case."""
+        return str(self.model.name)
+
+    @property
+    def title(self) -> str:
+        """The title of the case."""
+        return str(self.model.case.title)
+
+    def __eq__(self, other: object) -> bool:
+        return type(self) is type(other) and isinstance(other, _File) and self.model == other.model
+
+    __hash__ = None  # type: ignore[assignment]
+
+    def __repr__(self) -> str:
+        return f"{type(self).__name__}({self.name!r}: {self.title})"
+
+    def _repr_html_(self) -> str:
+        import html
+
+        return f"<b>{html.escape(self.title)}</b><pre>{html.escape(self.text)}</pre>"
+
+
+class Case(_File):
+    """Impacts of one body on one target over a range of speeds."""
+
+    kind = "impact"
+
+    @staticmethod
+    def _parse(data: dict[str, Any], path: object) -> Any:
+        return impact_case.parse(data, path)
+
+
+class Scene(_File):
+    """A bulk scene."""
+
+    kind = "scene"
+
+    @staticmethod
+    def _parse(data: dict[str, Any], path: object) -> Any:
+        return scene_case.parse(data, path)
+
+
+def _units(table: pd.DataFrame, units: Mapping[str, str]) -> pd.DataFrame:
+    marked = table.copy()
+    names = {name: units.get(name.removesuffix("_theory")) for name in map(str, marked.columns)}
+    marked.attrs["units"] = {name: unit for name, unit in names.items() if unit}
+    return marked
+
+
+@dataclass(frozen=True)
+class Run:
+    """Impacts that have run: `outcome` has everything; in a notebook it shows its table."""
+
+    outcome: Outcome
+
+    @property
+    def table(self) -> pd.DataFrame:
+        """Measured and predicted numbers, one row for each speed, engine and law."""
+        return _units(self.outcome.results.comparison, UNITS)
+
+    @property
+    def passed(self) -> bool:
+        """Whether all numbers are within the tolerances of the case."""
+        return self.outcome.passed
+
+    @property
+    def folder(self) -> Path:
+        """Where results.h5, results.csv and the decks are."""
+        return self.outcome.folder
+
+    def plot(self) -> Path:
+        """Draw e_n.png, restitution against speed with theory; its path."""
+        from .impacts.report import figure
+
+        return figure(self.outcome)
+
+    def _repr_html_(self) -> str:
+        return str(self.table.to_html(max_rows=20))
+
+
+@dataclass(frozen=True)
+class SceneRun:
+    """A scene that has run: `outcome` has everything; in a notebook it shows its checks."""
+
+    outcome: SceneOutcome
+
+    @property
+    def tables(self) -> dict[str, pd.DataFrame]:
+        """rows, particles, contacts, ledger and checks, as far as the scene requests them."""
+        return {name: _units(table, SCENE_UNITS) for name, table in self.outcome.results.tables.items()}
+
+    @property
+    def passed(self) -> bool:
+        """Whether all checks of the scene hold."""
+        return self.outcome.passed
+
+    @property
+    def folder(self) -> Path:
+        """Where results.h5, results.csv and the deck are."""
+        return self.outcome.folder
+
+    def _repr_html_(self) -> str:
+        return str(self.tables["checks"].to_html())
+
+
+@overload
+def run(
+    case: Case,
+    *,
+    engines: Sequence[str] = ...,
+    laws: Sequence[str] = ...,
+    out: Path | str | None = ...,
+    ranks: int = ...,
+    fresh: bool = ...,
+    force: bool = ...,
+) -> Run: ...
+
+
+@overload
+def run(
+    case: Scene,
+    *,
+    engines: Sequence[str] = ...,
+    out: Path | str | None = ...,
+    ranks: int = ...,
+    fresh: bool = ...,
+    force: bool = ...,
+) -> SceneRun: ...
+
+
+def run(
+    case: Case | Scene,
+    *,
+    engines: Sequence[str] = ("liggghts",),
+    laws: Sequence[str] = (),
+    out: Path | str | None = None,
+    ranks: int = 1,
+    fresh: bool = False,
+    force: bool = False,
+) -> Run | SceneRun:
+    """Run a case on every engine with every law (none: its own), or a scene on one engine. Raises EpdemError.
+
+    Stored results in `out` (default: runs/<name>) are taken, unless `fresh`; `force` allows other files there.
+    """
+    place = None if out is None else Path(out)
+    options: dict[str, Any] = {"out": place, "ranks": ranks, "fresh": fresh, "force": force}
+    if isinstance(case, Scene):
+        if len(engines) != 1 or laws:
+            raise CaseError("a scene has its own law and runs on one engine")
+        return SceneRun(run_scene(case.model, case.text, scene_engine(engines[0]), place=case.name, **options))
+    tools = [engine_named(name) for name in engines]
+    impacts = run_impacts(
+        case.model, case.text, place=case.name, engines=tools, laws=laws, progress=log.info, **options
+    )
+    return Run(impacts)
+
+
+def predict(case: Case, law: str | None = None) -> pd.DataFrame:
+    """The prediction of theory for a case, one row for each speed; no engine runs. Raises CaseError."""
+    prediction = predict_experiment(experiment(case.model, law))
+    return _units(pd.DataFrame({name: getattr(prediction, name) for name in Prediction.COLUMNS}), UNITS)
+
+
+def deck(
+    case: Case | Scene, out: Path | str, *, engine: str = "liggghts", law: str | None = None, force: bool = False
+) -> list[Path]:
+    """Write the deck of a case or scene into `out`, where `force` allows other files. Raises CaseError."""
+    if isinstance(case, Scene):
+        return write_own(Path(out), scene_engine(engine).files(plan_scene(case.model)), force=force)
+    return write_deck(experiment(case.model, law), engine_named(engine), Path(out), force=force)
+
+
+def sweep(
+    case: Case | Scene,
+    settings: study.Settings,
+    *,
+    engines: Sequence[str] = ("liggghts",),
+    laws: Sequence[str] = (),
+    out: Path | str | None = None,
+    ranks: int = 1,
+    jobs: int | None = None,
+    latin_hypercube: int | None = None,
+    seed: int = 1,
+    retry_failed: bool = False,
+) -> SweepOutcome:
+    """Run a case or scene at many points, by `jobs` processes; its `table` has a row for every result.
+
+    `settings` gives the values of keys by their dotted names, as a text ("1 mm..5 mm:9") or a sequence of values. What
+    is finished in `out` (default: runs/<name>_sweep) does not run again. Raises CaseError, EngineError, OSError.
+    """
+    planned = study.plan_text(
+        case.text, settings, engines=engines, laws=laws, ranks=ranks, latin_hypercube=latin_hypercube, seed=seed
+    )
+    folder = Path(out) if out is not None else Path("runs") / f"{planned.name}_sweep"
+    return study.run(planned, folder, jobs=jobs, retry_failed=retry_failed, report=_report)
+
+
+def calibrate(scene: Scene, targets: Targets, free: Mapping[str, str], **options: Unpack[FitOptions]) -> Fit:
+    """Find one to three keys of a scene with which numbers of its results have the values `targets`; see `fit_text`.
+
+    `scene.replace(found.values)` is the scene that was found. Raises CaseError, EngineError.
+    """
+    return fit_text(scene.text, targets, free, place=scene.name, **({"report": _report} | options))
+
+
+def _report(done: int, total: int) -> None:
+    log.info("%d of %d points", done, total)
