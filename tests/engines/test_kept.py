@@ -6,6 +6,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from epdem.base.processes import session
 from epdem.case.impact import load
 from epdem.engines import engine
 from epdem.errors import EngineError, Stopped
@@ -14,7 +15,6 @@ from epdem.impacts.plan import plan
 from epdem.impacts.prediction import predict
 from epdem.liggghts.impacts import Liggghts
 from epdem.liggghts.kept import Kept
-from epdem.processes import session
 from epdem.studies.sweep import run as study
 
 pytestmark = pytest.mark.liggghts

@@ -41,7 +41,7 @@ class Printed:
     def __init__(self, case: Path, out: Path | None, *facts: object):
         self.folder, self.key = _folder(case, out), ""
         if self.folder:
-            self.key = inputs_hash([case], str(case), facts, _surroundings())
+            self.key = inputs_hash([case], str(case), str(out), facts, _surroundings())
 
     def again(self) -> tuple[str, int] | None:
         """(text, exit code) of the same command before; None if there is none or anything has changed since."""

@@ -57,9 +57,7 @@ class _Reached(Exception):
 class _Search:
     """The points of a fit so far, and the numbers of each."""
 
-    def __init__(
-        self, base: Sweep, folder: Path, free: dict[str, Range], given: Targets, **options: Any
-    ):
+    def __init__(self, base: Sweep, folder: Path, free: dict[str, Range], given: Targets, **options: Any):
         self.base, self.folder, self.free, self.given, self.options = base, folder, free, given, options
         self.shares: list[tuple[float, ...]] = []
         self.found: list[dict[str, float]] = []
