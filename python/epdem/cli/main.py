@@ -188,6 +188,7 @@ for command in (
     cli_numerics.cost,
     cli_numerics.stability,
     cli_scene.explain,
+    cli_scene.tune,
     cli_scene.soften,
     cli_calibrate.calibrate,
     cli_sweep.sweep,
