@@ -33,6 +33,15 @@ def templates() -> Path:
 
 
 @cache
+def cpp_sources() -> tuple[Path, Path]:
+    """The folders of the plugin's C++ sources and of the laws' headers: the checkout's, else the installed copies."""
+    host = _first(_PACKAGE.parents[1] / "cpp_contact" / "liggghts", _PACKAGE / "cpp_contact" / "liggghts")
+    if host is None:
+        raise EngineError("C++ sources not found beside the package; install epdem again: pip install .")
+    return host, host.parent / "include"
+
+
+@cache
 def launcher() -> Path | None:
     """`epdem-liggghts`: LIGGGHTS with our models, or None if it was not built; EPDEM_LAUNCHER names another one."""
     if named := os.environ.get("EPDEM_LAUNCHER"):

@@ -19,6 +19,7 @@ from . import numerics as cli_numerics
 from . import scenes as cli_scene
 from . import sweep as cli_sweep
 from . import theory as cli_theory
+from . import trees as cli_trees
 from .options import AsJson, CasePath, Engines, Laws, Out, laws_or_own, refuse
 
 ABOUT = """Elastic-plastic particle contact for LIGGGHTS and YADE, checked against theory.
@@ -176,6 +177,7 @@ for command in (
     cli_scene.calibrate,
     cli_sweep.sweep,
     cli_sweep.status,
+    cli_trees.header,
 ):
     app.command()(command)
 app.command("points", hidden=True)(cli_sweep.points)  # what batch scripts call
