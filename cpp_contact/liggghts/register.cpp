@@ -22,13 +22,16 @@ namespace Walls = LIGGGHTS::Walls;
 #define COHESION_MODEL(name, text, id) name,
 #define ROLLING_MODEL(name, text, id) name,
 #define SURFACE_MODEL(name, text, id) name,
-constexpr int tangentials[] = {TANGENTIAL_OFF,
+constexpr int tangentials[] = {
+    TANGENTIAL_OFF,
 #include "style_tangential_model.h"
 };
-constexpr int cohesions[] = {COHESION_OFF,
+constexpr int cohesions[] = {
+    COHESION_OFF,
 #include "style_cohesion_model.h"
 };
-constexpr int rollings[] = {ROLLING_OFF,
+constexpr int rollings[] = {
+    ROLLING_OFF,
 #include "style_rolling_model.h"
 };
 constexpr int surfaces[] = {

@@ -12,6 +12,7 @@ from typing import Annotated, Any
 
 import typer
 
+from .. import __version__
 from ..errors import CaseError, EpdemError, Stopped
 from ..terminal import bar, console
 from . import crosscheck as cli_crosscheck
@@ -36,6 +37,21 @@ app = typer.Typer(
     help=ABOUT,
     context_settings={"help_option_names": ["-h", "--help"]},
 )
+
+
+def _say_version(wanted: bool) -> None:
+    if wanted:
+        print(f"epdem {__version__}")
+        raise typer.Exit
+
+
+@app.callback()
+def options(
+    version: Annotated[
+        bool, typer.Option("--version", callback=_say_version, is_eager=True, help="print the version and end")
+    ] = False,
+) -> None:
+    pass
 
 
 @app.command()
@@ -156,7 +172,7 @@ def predict(case: CasePath, law: Laws = None, as_json: AsJson = False) -> None:
 
 @app.command()
 def doctor(as_json: AsJson = False) -> None:
-    """List the engines and their versions, test that the plugin loads, and name what to install."""
+    """List the engines and their versions, test which models LIGGGHTS has, and name what to install."""
     from ..engines.doctor import examine
     from . import show
 
@@ -169,6 +185,7 @@ for command in (
     cli_crosscheck.crosscheck,
     cli_theory.theory,
     cli_theory.figures,
+    cli_theory.cite,
     cli_numerics.timestep,
     cli_numerics.cost,
     cli_numerics.stability,

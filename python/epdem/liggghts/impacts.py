@@ -2,7 +2,6 @@
 """LIGGGHTS with our plugin: a plan becomes one deck with all impacts side by side, its dump a trajectory."""
 
 import math
-import re
 from pathlib import Path
 
 import numpy as np
@@ -15,8 +14,7 @@ from ..impacts.engine import Abilities, Trajectory, check_abilities
 from ..impacts.pairs import Pairs
 from ..impacts.places import room, side_by_side
 from ..impacts.plan import Plan
-from ..processes import ask
-from . import dump, launcher
+from . import dump, executable, launcher
 from .deck import Deck
 from .log import loop_seconds
 from .pairs import velocities
@@ -42,11 +40,8 @@ class Liggghts:
         return launcher.missing()
 
     def version(self) -> str:
-        found = re.search(
-            r"LIGGGHTS[-\w ]*?(\d+\.\d+\.\d+)",
-            ask([str(paths.launcher()), "-log", "none", "-h"], launcher.environment()),
-        )
-        return f"LIGGGHTS {found.group(1) if found else '(version unknown)'}"
+        path = paths.launcher()
+        return (executable.version(path) if path else "") or "LIGGGHTS (version unknown)"
 
     def model(self, plan: Plan) -> str:
         return f"ep/{plan.experiment.law.name}"
