@@ -19,12 +19,12 @@ _OBSTACLES = (
     ),
     (
         "utils.h",
-        r"^\s*return static_cast<\s*std::ostringstream",
+        r"^[ \t]*return static_cast<\s*std::ostringstream",
         "newer compilers refuse this cast; write 'return std::to_string(a);'",
     ),
     (
         "finish.cpp",
-        r"^\s*if \(neighbor->lists\[m\]->numneigh > 0\)",
+        r"^[ \t]*if \(neighbor->lists\[m\]->numneigh > 0\)",
         "newer compilers refuse to compare a pointer with > 0; leave '> 0' out",
     ),
     (
