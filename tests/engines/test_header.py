@@ -15,7 +15,7 @@ import pytest
 from plugin_decks import launcher
 from plugin_loop import SAID, Scene, outcome
 
-from epdem import paths
+from epdem.base import paths
 from epdem.case.impact import load
 from epdem.errors import CaseError
 from epdem.impacts.experiment import experiment

@@ -4,11 +4,11 @@
 import shutil
 from dataclasses import dataclass
 
-from .. import paths
+from ..base import paths
+from ..base.processes import ask
 from ..errors import EngineError, EpdemError
 from ..laws import library as claw
 from ..liggghts import executable, launcher
-from ..processes import ask
 from . import ENGINES
 
 
@@ -63,6 +63,6 @@ def examine() -> list[Finding]:
     for name, kind in ENGINES.items():
         tool = kind()
         reason = tool.missing()
-        found, advice = ("not here", reason) if reason else (tool.version(), "")
-        findings.append(Finding(f"engine {name}", reason is None, found, advice, needed=name == "embedded"))
+        detail, advice = ("not here", reason) if reason else (tool.version(), "")
+        findings.append(Finding(f"engine {name}", reason is None, detail, advice, needed=name == "embedded"))
     return [*findings, _models(), _mpi()]

@@ -7,9 +7,9 @@ import tempfile
 from dataclasses import dataclass
 from pathlib import Path
 
-from .. import paths
+from ..base import paths
+from ..base.processes import ask
 from ..errors import EngineError
-from ..processes import ask
 from . import launcher
 
 

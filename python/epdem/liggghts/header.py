@@ -4,9 +4,10 @@
 import re
 from pathlib import Path
 
-from .. import __version__, paths
+from .. import __version__
+from ..base import paths
+from ..base.files import write_texts
 from ..errors import CaseError
-from ..files import write_texts
 
 NAME = "normal_model_ep"
 # What keeps a tree from being built with GCC 12 and make 4.3, or from being built with our files: file, what is in it,

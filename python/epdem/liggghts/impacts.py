@@ -6,14 +6,15 @@ from pathlib import Path
 
 import numpy as np
 
-from .. import data_file, paths
-from .. import rendering as decks
+from ..base import paths
+from ..base import rendering as decks
+from ..base.files import write_texts
 from ..errors import CaseError, EngineError
-from ..files import write_texts
 from ..impacts.engine import Abilities, Trajectory, check_abilities
 from ..impacts.pairs import Pairs
 from ..impacts.places import room, side_by_side
 from ..impacts.plan import Plan
+from ..lammps import data_file
 from . import dump, executable, launcher
 from .deck import Deck
 from .log import loop_seconds
@@ -90,10 +91,13 @@ class Liggghts:
         return write_texts(folder, texts)
 
     def run(self, plan: Plan, folder: Path, *, ranks: int = 1) -> Trajectory:
-        (folder / "path.bin").unlink(missing_ok=True)
+        path = folder / "path.bin"
+        path.unlink(missing_ok=True)
         allowed = 120 + 2e-6 * plan.n * plan.steps
         wall = launcher.run("in.impact", folder, ranks=ranks, log=launcher.LOG, seconds=allowed)
-        return trajectory(plan, folder / "path.bin", {"total": wall, "stepping": loop_seconds(folder / launcher.LOG)})
+        result = trajectory(plan, path, {"total": wall, "stepping": loop_seconds(folder / launcher.LOG)})
+        path.unlink()  # large
+        return result
 
     def seconds(self, plan: Plan, folder: Path) -> dict[str, float]:
         files = self.write(plan, folder)

@@ -8,10 +8,10 @@ import sysconfig
 from functools import cache
 from pathlib import Path
 
-from .errors import EngineError
+from ..errors import EngineError
 from .settings import setting
 
-_PACKAGE = Path(__file__).resolve().parent
+_PACKAGE = Path(__file__).resolve().parents[1]
 
 
 def _first(*candidates: Path) -> Path | None:

@@ -5,7 +5,7 @@ import os
 import tomllib
 from pathlib import Path
 
-from .errors import CaseError
+from ..errors import CaseError
 
 KNOWN = {"engine": ("liggghts",)}
 
