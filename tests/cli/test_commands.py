@@ -45,6 +45,8 @@ DOCUMENTS = {  # words, and what the document must hold
         lambda d: d["passed"] and d["done"] == 2,
     ),
     "status": (["swept"], lambda d: (d["points"], d["done"], d["waiting"]) == (2, 0, 2)),
+    "cite": (["steel.toml"], lambda d: "Thornton" in d["law thornton, Thornton 1997"] and "Kloss" in d["liggghts"]),
+    "header": (["-o", "."], lambda d: d["files"][0] == "normal_model_ep.cpp" and not d["lacks"]),
     "calibrate": (["steel.toml", "--hv", "100"], lambda d: abs(d["value"] / 1057.66e6 - 1) < 1e-5),
 }
 MISTAKES = {  # words, and what the sentence must hold
@@ -62,6 +64,8 @@ MISTAKES = {  # words, and what the sentence must hold
     "explain": (["bad.toml"], "bad.toml: not valid TOML"),
     "soften": (["steel.toml", "-k", "-3"], "--factor -3, must be > 0"),
     "calibrate": (["steel.toml"], "give one measurement"),
+    "cite": (["steel.toml", "-e", "abaqus"], "'abaqus' does not exist; there are embedded"),
+    "header": (["--check", "."], "contact_models.h is not there; name the folder src"),
     "sweep": (["steel.toml", "--set", "impact.body.radios=1 mm"], "the nearest: impact.body.radius"),
     "status": (["nowhere"], "nowhere: not a folder of a sweep"),
 }

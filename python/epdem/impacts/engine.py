@@ -76,6 +76,7 @@ class Abilities:
     restarts: bool = False  # it continues an interrupted bulk scene
     edits: Edits | None = None  # of its deck
     variants: tuple[str, ...] = ()  # of the same impacts that `run_pairs` can run, beside the plain one
+    stays: bool = False  # one process of it can run plan after plan; the class takes `stay`
 
 
 class Engine(Protocol):
