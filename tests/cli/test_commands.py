@@ -145,6 +145,8 @@ def test_long_values_are_cut_at_80_characters(folder, capsys, monkeypatch):
 
 
 def test_two_cases_of_one_file_name_do_not_share_a_folder(folder, capsys, monkeypatch):
+    for name in ("ENGINES", "OTHERS", "FOREIGN"):
+        monkeypatch.setattr(crosscheck, name, {"embedded": ENGINES["embedded"]} if name == "ENGINES" else {})
     (folder / "b").mkdir()
     shutil.copy("steel.toml", "b/steel.toml")
     done = call(["crosscheck", "steel.toml", "b/steel.toml", "-o", "out"], capsys, monkeypatch)
