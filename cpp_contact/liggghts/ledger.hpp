@@ -47,16 +47,17 @@ class Ledger {
   void open(int nlocal) { std::fill_n(energy_->vector_atom, nlocal, 0.0); }
 
   template <bool wall, class Law>
-  void book(const Law& law, double R_star, const State<Law>& before, const State<Law>& after, double delta,
+  void book(const Law& law, double R_star, const State<Law>& before, const Step<Law>& now, double delta,
             const Bodies& bodies) {
     if constexpr (adheres<Law>) {
-      const auto lost = losses(law, R_star, before, after);
-      share<wall>(lost.plastic, stored_energy(law, R_star, after, delta), bodies);
+      const auto lost = losses(law, R_star, before, now.after);
+      share<wall>(lost.plastic, stored_energy(law, R_star, now.after, delta), bodies);
       if (lost.adhesive == 0.0) return;
       adhesive_->vector_atom[bodies.i] += (wall ? 1.0 : 0.5) * lost.adhesive;
       if (!wall && bodies.j < bodies.nlocal) adhesive_->vector_atom[bodies.j] += 0.5 * lost.adhesive;
     } else {
-      share<wall>(plastic_growth(law, R_star, before, after), elastic_energy(law, R_star, after, delta), bodies);
+      const double stored = elastic_energy(law, R_star, now, delta);
+      share<wall>(plastic_growth(law, R_star, before, now, stored), stored, bodies);
     }
   }
 

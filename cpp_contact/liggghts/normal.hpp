@@ -82,6 +82,8 @@ class Normal : protected LAMMPS_NS::Pointers {
   }
 
   void connectToProperties(PropertyRegistry& registry, Dashpot dashpot, bool cohesive) {
+    if (!atom->sphere_flag || atom->superquadric_flag || atom->shapetype_flag)
+      fail("it is for spheres; give other particles a model of LIGGGHTS with surface superquadric");
     // Rebuilt at every init: LIGGGHTS frees all properties there, and the user may have changed them.
     if (!tangential_damping_ && dashpot == Dashpot::optional) dashpot = Dashpot::off;
     const Declaration law{model_.c_str(), Law::parameters,    Law::n_parameters,      &Law::valid,
@@ -143,7 +145,7 @@ class Normal : protected LAMMPS_NS::Pointers {
     const Step<Law> now = step(t.law, R_star, before, delta, keep ? -s.vn * update->dt : 0.0);
 
     if (keep) {
-      if (plastic_work_) ledger_.template book<wall>(t.law, R_star, before, now.after, delta, {s.i, s.j, atom->nlocal});
+      if (plastic_work_) ledger_.template book<wall>(t.law, R_star, before, now, delta, {s.i, s.j, atom->nlocal});
       if constexpr (remembers) std::memcpy(history + offset_, &now.after, sizeof now.after);
       if constexpr (stamped) history[stamp_] = now_;
     }

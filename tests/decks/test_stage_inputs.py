@@ -40,21 +40,24 @@ def product(tmp_path, monkeypatch):
     monkeypatch.setattr(paths, "native", lambda name: tmp_path / name)
     monkeypatch.setattr(paths, "launcher", lambda: tmp_path / "launcher")
     monkeypatch.setattr(paths, "templates", lambda: tmp_path / "templates")
-    return tmp_path, names
+    yield tmp_path, names
+    for function in (stages.library_hash, stages.product_hash):
+        function.cache_clear()
 
 
 @pytest.mark.parametrize("changed", [0, 1, 2, 3, 4])
 def test_a_change_of_the_product_is_a_new_hash(product, changed):
     folder, names = product
-    stages.product_hash.cache_clear()
-    first = stages.product_hash()
-    stages.product_hash.cache_clear()
-    assert stages.product_hash() == first
+
+    def hashed():
+        for function in (stages.library_hash, stages.product_hash):
+            function.cache_clear()
+        return stages.product_hash()
+
+    first = hashed()
+    assert hashed() == first
     (folder / names[changed]).write_text("second")
-    stages.product_hash.cache_clear()
-    second = stages.product_hash()
-    stages.product_hash.cache_clear()
-    assert second != first
+    assert hashed() != first
 
 
 def reruns(tmp_path, tool, text=CASE, **options):

@@ -137,7 +137,7 @@ def test_what_yade_cannot_do_is_refused_before_it_starts():
     data["materials"]["steel"]["yield_stress"] = "60 GPa"  # p_y = 168 GPa beyond 0.36 E
     data["impact"]["speeds"] = ["1 m/s"]
     x = experiment(parse(data, "test"))
-    with pytest.raises(CaseError, match=r"materials\.steel: yield_pressure .* use --engine embedded"):
+    with pytest.raises(CaseError, match=r"materials\.steel: yield_pressure .* use --engine liggghts"):
         engine("yade").deck(plan(x, predict(x)))
 
 

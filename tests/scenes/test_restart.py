@@ -13,10 +13,10 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from epdem.folders import MANIFEST
 from scene_runs import run, write_case, write_deck
 from test_lean import CASES, small
 
+from epdem.base.folders import MANIFEST
 from epdem.case.scene import is_scene, load, parse
 from epdem.case.toml import read_toml
 from epdem.errors import CaseError

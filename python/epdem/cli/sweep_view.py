@@ -4,14 +4,13 @@
 import contextlib
 import json
 import math
-import sys
 from collections.abc import Iterator
 from typing import Any
 
 from rich.console import Console
-from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
-from rich.table import Table
+from rich.progress import MofNCompleteColumn, TimeRemainingColumn
 
+from ..base.terminal import bar, table
 from ..studies.sweep.folder import DONE, FAILED, Sweep
 from ..studies.sweep.run import Report, SweepOutcome
 
@@ -23,29 +22,19 @@ def points(sweep: Sweep, as_json: bool, console: Console) -> None:
     if as_json:
         print(json.dumps({"case": sweep.name, "points": sweep.points}, indent=1))
         return
-    table = Table(title=f"{sweep.name}: {len(sweep.points)} points on {', '.join(sweep.engines)}")
-    for head in ("point", *sweep.points[0]):
-        table.add_column(head, justify="right")
+    title = f"{sweep.name}: {len(sweep.points)} points on {', '.join(sweep.engines)}"
+    shown = table(title, ("point", *sweep.points[0]))
     for n, point in enumerate(sweep.points, start=1):
-        table.add_row(str(n), *map(str, point.values()))
-    console.print(table)
+        shown.add_row(str(n), *map(str, point.values()))
+    console.print(shown)
 
 
 @contextlib.contextmanager
 def progress() -> Iterator[Report]:
     """A bar with the time left, on a terminal."""
-    with Progress(
-        TextColumn("points"),
-        BarColumn(),
-        MofNCompleteColumn(),
-        TimeElapsedColumn(),
-        TimeRemainingColumn(),
-        console=Console(stderr=True),
-        transient=True,
-        disable=not sys.stderr.isatty(),
-    ) as bar:
-        task = bar.add_task("", total=None)
-        yield lambda done, total: bar.update(task, completed=done, total=total)
+    with bar(MofNCompleteColumn(), TimeRemainingColumn()) as shown:
+        task = shown.add_task("points", total=None)
+        yield lambda done, total: shown.update(task, completed=done, total=total)
 
 
 def plain(state: dict[str, Any]) -> dict[str, Any]:

@@ -4,12 +4,12 @@
 A stage is done when its result is stored with the hash of its inputs: a second run takes it from there.
 """
 
-import shutil
 import tempfile
 import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import Required, TypedDict, Unpack
 
 import pandas as pd
 
@@ -65,9 +65,26 @@ def run_plan(p: Plan, tool: Engine, folder: Path, *, ranks: int = 1, end_power: 
     files = tool.write(p, folder)
     path = tool.run(p, folder, ranks=ranks)
     table = impacts_table(p, measure(p, path, end_power=end_power))
-    (folder / "path.bin").unlink(missing_ok=True)  # large; its results are in the table
     seconds = {f"seconds_{k}": v for k, v in path.seconds.items()} | {"seconds": time.perf_counter() - start}
     return Stage(table, seconds, {f.name: f.read_text(encoding="utf-8") for f in files if f.suffix != ".data"})
+
+
+def run_and_compare(
+    p: Plan,
+    prediction: Prediction,
+    tool: Engine,
+    folder: Path,
+    *,
+    law: str | None = None,
+    ranks: int = 1,
+    end_power: float | None = None,
+) -> tuple[pd.DataFrame, Stage]:
+    """`run_plan`, and its impacts compared with their prediction: one row per speed.
+
+    `law` is the name in the rows (None: that of the plan).
+    """
+    stage, x = run_plan(p, tool, folder, ranks=ranks, end_power=end_power), p.experiment
+    return compare(tool.name, law or x.law.name, stage.impacts, prediction, x.check), stage
 
 
 def write_deck(x: Experiment, tool: Engine, folder: Path, *, force: bool = False) -> list[Path]:
@@ -134,8 +151,6 @@ def _prepare(case: Case, place: object, tools: Sequence[Engine], laws: Sequence[
     for tool in tools:
         if reason := tool.missing():
             raise EngineError(f"engine {tool.name}: {reason}")
-    if ranks > 1 and shutil.which("mpirun") is None:
-        raise EngineError("--ranks needs mpirun, which was not found; apt-get install openmpi-bin")
     predictions = {x.law.name: predict(x) for x in experiments}
     with named(place):
         plans = [plan(x, predictions[x.law.name]) for x in experiments]
@@ -145,35 +160,26 @@ def _prepare(case: Case, place: object, tools: Sequence[Engine], laws: Sequence[
     return _Work(case, tools, {tool.name: tool.version() for tool in tools}, predictions, plans)
 
 
-def run(
-    case_path: Path | str,
-    *,
-    engines: Sequence[Engine],
-    laws: Sequence[str] = (),
-    out: Path | None = None,
-    ranks: int = 1,
-    steps: int | None = None,
-    fresh: bool = False,
-    force: bool = False,
-    progress: Callable[[str], None] = lambda text: None,
-) -> Outcome:
+class Options(TypedDict, total=False):
+    """What `run_case` takes beside the case."""
+
+    engines: Required[Sequence[Engine]]
+    laws: Sequence[str]
+    out: Path | None
+    ranks: int
+    fresh: bool
+    force: bool
+    progress: Callable[[str], None]
+
+
+def run(case_path: Path | str, *, steps: int | None = None, **options: Unpack[Options]) -> Outcome:
     """`run_case` of the case in a file; `steps` replaces the case's steps in contact."""
     data = read_toml(case_path)
     if steps is not None:
         data["numerics"] = data.get("numerics", {}) | {"steps_in_contact": steps}
         data["numerics"].pop("error", None)
-    return run_case(
-        parse(data, case_path),
-        Path(case_path).read_text(encoding="utf-8-sig"),
-        place=case_path,
-        engines=engines,
-        laws=laws,
-        out=out,
-        ranks=ranks,
-        fresh=fresh,
-        force=force,
-        progress=progress,
-    )
+    text = Path(case_path).read_text(encoding="utf-8-sig")
+    return run_case(parse(data, case_path), text, place=case_path, **options)
 
 
 def run_case(

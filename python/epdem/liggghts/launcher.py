@@ -8,7 +8,9 @@ from pathlib import Path
 
 from ..base import paths
 from ..base.processes import call
-from ..errors import CaseError, EngineError
+from ..base.settings import config_file
+from ..errors import EngineError
+from ..impacts.engine import refuse_ranks
 
 INSTALL = "apt-get install liggghts libliggghts-dev libopenmpi-dev, then 'make setup'"
 LOG = "log.liggghts"  # LIGGGHTS's own log
@@ -18,9 +20,9 @@ OUT = "out.liggghts"  # both of its streams
 def missing() -> str | None:
     """None if LIGGGHTS with our models can run here, else a sentence with the command that installs it."""
     launcher = paths.launcher()
-    if launcher is not None and not os.access(launcher, os.X_OK):
-        return f"{launcher} (EPDEM_LAUNCHER) is not a program; unset EPDEM_LAUNCHER or name another one"
-    if shutil.which("liggghts") is None or launcher is None:
+    if launcher is not None and not (launcher.is_file() and os.access(launcher, os.X_OK)):
+        return f"{launcher} is not a program; EPDEM_LIGGGHTS or {config_file()} names it: name another one, or none"
+    if launcher is None:
         return f"LIGGGHTS with our models was not found; {INSTALL}"
     return None
 
@@ -30,21 +32,12 @@ def most_ranks() -> int:
     return max(2, len(os.sched_getaffinity(0)))
 
 
-def refuse_ranks(ranks: int) -> None:
-    """Raise CaseError for more ranks than this machine runs, EngineError if there is no mpirun."""
-    if ranks > most_ranks():
-        cores = len(os.sched_getaffinity(0))
-        raise CaseError(f"--ranks {ranks}: this machine has {cores} cores; use --ranks {most_ranks()} or fewer")
-    if ranks > 1 and shutil.which("mpirun") is None:
-        raise EngineError("--ranks needs mpirun, which was not found; apt-get install openmpi-bin")
-
-
 def command(deck: str, *, ranks: int = 1, log: str = "none") -> list[str]:
     """The command that runs a deck in its folder. Raises EngineError if our LIGGGHTS is not there; see refuse_ranks."""
     launcher = paths.launcher()
     if launcher is None:
         raise EngineError(f"LIGGGHTS with our models was not found; {INSTALL}")
-    refuse_ranks(ranks)
+    refuse_ranks("liggghts", most_ranks(), ranks)
     liggghts = [str(launcher), "-in", deck, "-log", log]
     if ranks == 1:
         return liggghts

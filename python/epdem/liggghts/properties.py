@@ -101,6 +101,11 @@ def work_of_adhesion(types: int, values: float | Sequence[float]) -> Property:
     return per_pair("workOfAdhesion", types, values, "J/m^2")
 
 
+def ratios(law: str, values: dict[str, float]) -> tuple[Property, ...]:
+    """Dimensionless parameters of a law."""
+    return tuple(scalar(p.property, values[p.name], "-") for p in claw.laws()[law].parameters if p.name in values)
+
+
 def of_impacts(plan: Plan) -> tuple[Property, ...]:
     """Elastic properties of the plan's atom types, for any model."""
     bodies = [body for body, _ in atom_types(plan)]
@@ -111,7 +116,7 @@ def of_law(plan: Plan) -> tuple[Property, ...]:
     """What a law of ours needs of a plan."""
     x, types = plan.experiment, atom_types(plan)
     properties = [*of_impacts(plan), *strength(x.law.name, [finite(s) for _, s in types])]
-    properties += [scalar(name, value, "-") for name, value in x.law.ratios().items()]
+    properties += ratios(x.law.name, x.law.ratios())
     if x.law.adheres:
         properties.append(work_of_adhesion(len(types), x.law.parameters[ADHESION]))
     if x.viscous_restitution is not None:

@@ -10,7 +10,7 @@ from ..scenes.model import Model
 from ..scenes.plan import Phase, ScenePlan
 from . import stl
 from .insertions import Insertion, insertions
-from .properties import HARD, SOFT, Property, elastic, per_pair, scalar, strength, work_of_adhesion
+from .properties import HARD, SOFT, Property, elastic, per_pair, ratios, strength, work_of_adhesion
 
 SKIN = 0.25  # of the smallest radius: rebuilds cost less than idle neighbours
 
@@ -29,6 +29,8 @@ class Deck:
     box: tuple[float, ...]
     n_types: int
     skin: float
+    own_skin: bool
+    processors: str | None
     types: tuple[str, ...]
     properties: tuple[Property, ...]
     model: str
@@ -75,10 +77,7 @@ def _properties(p: ScenePlan) -> tuple[Property, ...]:
             raise CaseError(f"materials.{t.material}.poisson_ratio = {x.poisson_ratio}, LIGGGHTS takes [0, 0.5] only")
     properties = [*elastic([x.young_modulus for x in materials], [x.poisson_ratio for x in materials])]
     properties += strength(m.law, [t.strength for t in m.types])
-    for parameter in laws()[m.law].parameters:
-        value = m.parameters.get(parameter.name, parameter.default)
-        if parameter.name in m.parameters and value != parameter.default:
-            properties.append(scalar(parameter.property, value, "-"))
+    properties += ratios(m.law, m.ratios())
     if m.sliding:
         properties.append(per_pair("coefficientFriction", n, [mu for row in m.friction for mu in row], "-"))
     if m.viscous is not None:
@@ -138,10 +137,16 @@ def _motion(p: ScenePlan) -> dict[str, float]:
     return motion
 
 
+def default_skin(p: ScenePlan) -> float:
+    """The skin of a case that gives none [m]."""
+    return float(f"{SKIN * p.smallest:.1e}")
+
+
 def deck(p: ScenePlan) -> Deck:
     """The deck of a scene. Raises CaseError for what LIGGGHTS cannot do."""
     m, s, out = p.model, p.case.scene, p.output
     moduli = [p.case.materials[t.material].young_modulus for t in m.types]
+    cut = p.case.numerics.cut
     row_words = {"f_load": p.floor_load, "f_press_z": p.plates, "f_torque": p.torque}
     return Deck(
         title=p.case.case.title,
@@ -153,7 +158,9 @@ def deck(p: ScenePlan) -> Deck:
         boundary="p p f" if p.layout.periodic else "f f f",
         box=p.layout.box,
         n_types=len(m.types),
-        skin=float(f"{SKIN * p.smallest:.1e}"),
+        skin=p.case.numerics.skin or default_skin(p),
+        own_skin=p.case.numerics.skin is not None,
+        processors=" ".join("*" if axis in cut else "1" for axis in "xyz") if cut else None,
         types=p.types,
         properties=_properties(p),
         model=f"ep/{m.law}",

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 from ..case.scene import Rolling, SceneCase
 from ..errors import CaseError
 from ..laws.library import laws
+from ..laws.strengths import own_ratios
 from .pairs import numbers, strengths, work_of_adhesion
 
 WALL = "wall"
@@ -44,6 +45,10 @@ class Model:
     def type_of(self, name: str) -> int:
         """The number of a type."""
         return next(i for i, t in enumerate(self.types, 1) if t.name == name)
+
+    def ratios(self) -> dict[str, float]:
+        """The law's parameters that differ from its defaults."""
+        return own_ratios(self.law, self.parameters)
 
     @property
     def yields(self) -> bool:

@@ -5,8 +5,9 @@ from dataclasses import replace
 
 import numpy as np
 
-from ..case.law import law_numbers, read_number
+from ..case.law import law_numbers
 from ..case.scene import SceneCase
+from ..case.units import read_number
 from ..errors import CaseError
 from ..impacts.experiment import Body, Experiment, plane, sphere
 from ..laws.strengths import LawNumbers, LawSpec, Surface, law_named
