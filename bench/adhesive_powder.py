@@ -11,6 +11,7 @@ import argparse
 import math
 import re
 import tempfile
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import numpy as np
@@ -20,12 +21,12 @@ from epdem.liggghts import dump, launcher
 from epdem.scenes.run import run
 
 CASE = Path(__file__).resolve().parent.parent / "cases" / "adhesive_powder.toml"
-STANDING = 0.02  # time without sides [s]
+STANDING = 0.005  # time without sides [s]
 
 
 def standing(folder: Path, dt: float) -> tuple[np.ndarray, np.ndarray]:
     """Places [m] of the spheres when the sides are taken away and STANDING later, (n, 3) each."""
-    (restart,) = folder.glob("restart.*.bin")
+    restart = max(folder.glob("restart.*.bin"), key=lambda path: int(path.name.split(".")[1]))
     setup = (folder / "setup.in").read_text(encoding="utf-8").splitlines()
     kept = [line for line in setup if not re.match(r"dump|compute|fix (plate|press_z)|thermo|dump_modify", line)]
     (folder / "standing.in").write_text("\n".join(kept) + "\n", encoding="utf-8")
@@ -41,7 +42,8 @@ def standing(folder: Path, dt: float) -> tuple[np.ndarray, np.ndarray]:
         "run 0",
         "change_box all boundary f f f",
         "change_box all x final -2e-3 2e-3 y final -2e-3 2e-3",
-        f"dump s all custom {steps} standing.bin id x y z",
+        "dump s all custom 1000 standing.bin id x y z",
+        "dump_modify s first yes",
         f"run {steps}",
     ]
     (folder / "in.standing").write_text("\n".join(deck) + "\n", encoding="utf-8")
@@ -94,10 +96,13 @@ def main() -> None:
     text = CASE.read_text(encoding="utf-8").replace("count = 2000", f"count = {count}")
     side = 0.5 * math.sqrt(count / 2000)
     text = text.replace('"0.5 mm", "0.5 mm"', f'"{side:.6g} mm", "{side:.6g} mm"')
-    found = []
-    for gamma in ("0 J/m^2", "0.025 J/m^2"):
+
+    def one(gamma: str) -> dict[str, float]:
         with tempfile.TemporaryDirectory(prefix="epdem-powder-") as scratch:
-            found.append(numbers(Path(scratch), text.replace("0.025 J/m^2", gamma)))
+            return numbers(Path(scratch), text.replace("0.025 J/m^2", gamma))
+
+    with ThreadPoolExecutor(2) as both:
+        found = list(both.map(one, ("0 J/m^2", "0.025 J/m^2")))
     print("| | Γ = 0 | Γ = 0.05 J/m² |\n|---|---|---|")
     for name in found[0]:
         print(f"| {name} | {found[0][name]:.3g} | {found[1][name]:.3g} |")

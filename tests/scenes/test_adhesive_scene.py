@@ -19,8 +19,8 @@ CASE = Path(__file__).parents[2] / "cases" / "adhesive_powder.toml"
 SMALL = {
     "count = 2000": "count = 90",
     '"0.5 mm", "0.5 mm", "2.2 mm"': '"0.15 mm", "0.15 mm", "1.1 mm"',
-    '"24 ms"': '"15 ms"',
-    '"0.86 mm"': '"0.42 mm"',
+    '"8 ms"': '"5 ms"',
+    '"0.8 mm"': '"0.42 mm"',
     '"0.06 mm"': '"0.03 mm"',
     "rows = 400": "rows = 100",
     "restarts = 1": "",
