@@ -41,7 +41,7 @@ def standing(folder: Path, dt: float) -> tuple[np.ndarray, np.ndarray]:
         "include standing.in",
         "run 0",
         "change_box all boundary f f f",
-        "change_box all x final -2e-3 2e-3 y final -2e-3 2e-3",
+        "change_box all x final -1e-2 1e-2 y final -1e-2 1e-2",
         "dump s all custom 1000 standing.bin id x y z",
         "dump_modify s first yes",
         f"run {steps}",
