@@ -10,9 +10,10 @@
 
 namespace epdem::liggghts {
 
-/// Two per-atom properties: plasticWork [J] sums up every growth of plastic work since the start, elasticEnergy [J] is
-/// what the contacts of this step can give back. Half of a pair's energy belongs to each body, all of a wall's to the
-/// sphere. LIGGGHTS evaluates a pair that spans two ranks on both of them, so each books its own body only.
+/// Per-atom properties: plasticWork [J] sums up every growth of plastic work since the start, elasticEnergy [J] is what
+/// the contacts of this step can give back, and frictionWork [J], with partial slip, sums up what friction took. Half
+/// of a pair's energy belongs to each body, all of a wall's to the sphere. LIGGGHTS evaluates a pair that spans two
+/// ranks on both of them, so each books its own body only.
 class Ledger {
  public:
   /// Indices of the bodies, and from which index on a body belongs to another rank.
@@ -21,19 +22,23 @@ class Ledger {
   };
 
   /// For the pair style, whose settings come first: creates the properties.
-  void create(LAMMPS_NS::LAMMPS* lmp) {
-    for (const char* name : {work_name, energy_name}) {
+  void create(LAMMPS_NS::LAMMPS* lmp, bool rubs) {
+    for (const char* name : {work_name, energy_name, friction_name}) {
+      if (name == friction_name && !rubs) continue;
       const char* words[] = {name, "all", "property/atom", name, "scalar", "yes", "no", "no", "0.0"};
       if (!find(lmp, name, name)) lmp->modify->add_fix_property_atom(9, const_cast<char**>(words), name);
     }
   }
 
   /// Before each run, for pairs and walls.
-  void connect(LAMMPS_NS::LAMMPS* lmp, const std::string& model) {
+  void connect(LAMMPS_NS::LAMMPS* lmp, const std::string& model, bool rubs) {
     work_ = find(lmp, work_name, model.c_str());
     energy_ = find(lmp, energy_name, model.c_str());
-    if (work_ && energy_) return;
-    const std::string text = "model " + model + ": computePlasticWork on of a wall needs it for the pair style as well";
+    friction_ = find(lmp, friction_name, model.c_str());
+    if (work_ && energy_ && (friction_ || !rubs)) return;
+    const std::string text = "model " + model +
+                             ": computePlasticWork on of a wall needs it for the pair style as well" +
+                             (rubs ? ", with the same tangential model" : "");
     lmp->error->all(FLERR, text.c_str());
   }
 
@@ -54,9 +59,18 @@ class Ledger {
     if (!wall && bodies.j < bodies.nlocal) credit(bodies.j, part * grown, part * stored);
   }
 
+  /// The same for friction: work that it took in this step, elastic energy of its springs [J].
+  template <bool wall>
+  void rub(double lost, double stored, const Bodies& bodies) {
+    constexpr double part = wall ? 1.0 : 0.5;
+    rub_one(bodies.i, part * lost, part * stored);
+    if (!wall && bodies.j < bodies.nlocal) rub_one(bodies.j, part * lost, part * stored);
+  }
+
  private:
   static constexpr const char* work_name = "plasticWork";
   static constexpr const char* energy_name = "elasticEnergy";
+  static constexpr const char* friction_name = "frictionWork";
 
   static LAMMPS_NS::FixPropertyAtom* find(LAMMPS_NS::LAMMPS* lmp, const char* name, const char* caller) {
     return static_cast<LAMMPS_NS::FixPropertyAtom*>(
@@ -68,8 +82,14 @@ class Ledger {
     energy_->vector_atom[body] += stored;
   }
 
+  void rub_one(int body, double lost, double stored) {
+    friction_->vector_atom[body] += lost;
+    energy_->vector_atom[body] += stored;
+  }
+
   LAMMPS_NS::FixPropertyAtom* work_ = nullptr;
   LAMMPS_NS::FixPropertyAtom* energy_ = nullptr;
+  LAMMPS_NS::FixPropertyAtom* friction_ = nullptr;
 };
 
 }  // namespace epdem::liggghts

@@ -104,7 +104,7 @@ def outcome(folder, scene, *, loop="", simd="", text=None, **options):
 
 DIMENSIONS = {
     "law": ("hertz", "thornton", "johnson", "cavity"),
-    "tangential": ("history", "no_history", "off"),
+    "tangential": ("history", "no_history", "off", "ep/partial_slip", "ep/partial_slip_2"),
     "rolling": ("off", "cdt", "epsd2"),
     "cohesion": ("off", "sjkr", "sjkr2"),
     "types": (1, 3),

@@ -109,7 +109,7 @@ void PairLoop::finish(const Plan& plan, int n) {
     scatter<true>(n);
   else
     scatter<false>(n);
-  if (plan.ledger) book(*plan.ledger, n);
+  if (plan.ledger) book(*plan.ledger, plan.tangential >= Tangential::partial_slip, n);
 }
 
 /// What lies apart in memory is asked for in time, and contacts are marked as such.
@@ -207,9 +207,13 @@ void PairLoop::scatter(int n) {
   }
 }
 
-void PairLoop::book(Ledger& ledger, int n) {
+void PairLoop::book(Ledger& ledger, bool rubs, int n) {
   const Block& b = *block_;
-  for (int k = 0; k < n; ++k) ledger.share<false>(b.grown.a[k], b.stored.a[k], {b.i[k], b.j[k], atom->nlocal});
+  for (int k = 0; k < n; ++k) {
+    const Ledger::Bodies bodies{b.i[k], b.j[k], atom->nlocal};
+    ledger.share<false>(b.grown.a[k], b.stored.a[k], bodies);
+    if (rubs) ledger.rub<false>(b.rubbed.a[k], b.sprung.a[k], bodies);
+  }
 }
 
 }  // namespace epdem::liggghts::loop
