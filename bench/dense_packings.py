@@ -27,7 +27,7 @@ fix m2 all property/global poissonsRatio peratomtype {nu}
 {restitution}{friction}fix p1 all property/global yieldPressure peratomtype {p_y}
 fix p2 all property/global yieldStress peratomtype {Y}
 fix p3 all property/global coefficientYieldRatio peratomtype {ratio}
-{surface}pair_style gran model {model} tangential history {words}
+{surface}pair_style gran model {model} tangential {tangential} {words}
 pair_coeff * *
 timestep {dt}
 fix move all nve/sphere
@@ -81,6 +81,7 @@ def deck(
     types=1,
     words="",
 ):
+    model, _, tangential = model.partition("+")
     foreign = model == "thornton_ning"
     beside = {"rolling_friction": "coefficientRollingFriction", "cohesion": "cohesionEnergyDensity"}
     beside = "".join(per_pair(name, 0.1 if "Roll" in name else 1e3, types) for w, name in beside.items() if w in words)
@@ -90,6 +91,7 @@ def deck(
 
     return DECK.format(
         model=model,
+        tangential=tangential or "history",
         words=words,
         E=per_type(1e8),
         nu=" ".join(["0.3"] * types),

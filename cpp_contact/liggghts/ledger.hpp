@@ -11,7 +11,8 @@
 namespace epdem::liggghts {
 
 /// Per-atom properties: plasticWork [J] sums up every growth of plastic work since the start, elasticEnergy [J] is what
-/// the contacts of this step can give back, and frictionWork [J], with partial slip, sums up what friction took. Half
+/// the contacts of this step can give back; with partial slip frictionWork [J] sums up what friction took, and
+/// frictionEnergy [J] is what its springs can give back. Half
 /// of a pair's energy belongs to each body, all of a wall's to the sphere. LIGGGHTS evaluates a pair that spans two
 /// ranks on both of them, so each books its own body only.
 class Ledger {
@@ -23,8 +24,8 @@ class Ledger {
 
   /// For the pair style, whose settings come first: creates the properties.
   void create(LAMMPS_NS::LAMMPS* lmp, bool rubs) {
-    for (const char* name : {work_name, energy_name, friction_name}) {
-      if (name == friction_name && !rubs) continue;
+    for (const char* name : {work_name, energy_name, friction_name, springs_name}) {
+      if (!rubs && (name == friction_name || name == springs_name)) continue;
       const char* words[] = {name, "all", "property/atom", name, "scalar", "yes", "no", "no", "0.0"};
       if (!find(lmp, name, name)) lmp->modify->add_fix_property_atom(9, const_cast<char**>(words), name);
     }
@@ -35,6 +36,7 @@ class Ledger {
     work_ = find(lmp, work_name, model.c_str());
     energy_ = find(lmp, energy_name, model.c_str());
     friction_ = find(lmp, friction_name, model.c_str());
+    springs_ = find(lmp, springs_name, model.c_str());
     if (work_ && energy_ && (friction_ || !rubs)) return;
     const std::string text = "model " + model +
                              ": computePlasticWork on of a wall needs it for the pair style as well" +
@@ -43,7 +45,10 @@ class Ledger {
   }
 
   /// At the start of a kept pass over all pairs: what the contacts hold is counted anew.
-  void open(int nlocal) { std::fill_n(energy_->vector_atom, nlocal, 0.0); }
+  void open(int nlocal) {
+    std::fill_n(energy_->vector_atom, nlocal, 0.0);
+    if (springs_) std::fill_n(springs_->vector_atom, nlocal, 0.0);
+  }
 
   template <bool wall, class Law>
   void book(const Law& law, double R_star, const State<Law>& before, const State<Law>& after, double delta,
@@ -71,6 +76,7 @@ class Ledger {
   static constexpr const char* work_name = "plasticWork";
   static constexpr const char* energy_name = "elasticEnergy";
   static constexpr const char* friction_name = "frictionWork";
+  static constexpr const char* springs_name = "frictionEnergy";
 
   static LAMMPS_NS::FixPropertyAtom* find(LAMMPS_NS::LAMMPS* lmp, const char* name, const char* caller) {
     return static_cast<LAMMPS_NS::FixPropertyAtom*>(
@@ -84,12 +90,13 @@ class Ledger {
 
   void rub_one(int body, double lost, double stored) {
     friction_->vector_atom[body] += lost;
-    energy_->vector_atom[body] += stored;
+    springs_->vector_atom[body] += stored;
   }
 
   LAMMPS_NS::FixPropertyAtom* work_ = nullptr;
   LAMMPS_NS::FixPropertyAtom* energy_ = nullptr;
   LAMMPS_NS::FixPropertyAtom* friction_ = nullptr;
+  LAMMPS_NS::FixPropertyAtom* springs_ = nullptr;
 };
 
 }  // namespace epdem::liggghts

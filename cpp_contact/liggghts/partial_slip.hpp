@@ -72,7 +72,7 @@ class PartialSlip : public TangentialModelBase {
     double turn = s.en[0] * w[0] + s.en[1] * w[1] + s.en[2] * w[2];
     if (!s.is_wall) turn += s.en[0] * s.omega_j[0] + s.en[1] * s.omega_j[1] + s.en[2] * s.omega_j[2];
     const Shear<double> motion{
-        {s.en[0], s.en[1], s.en[2]}, {dt * s.vtr1, dt * s.vtr2, dt * s.vtr3}, 0.5 * dt * turn, s.gammat / dt};
+        {s.en[0], s.en[1], s.en[2]}, {dt * s.vtr1, dt * s.vtr2, dt * s.vtr3}, 0.5 * dt * turn, 1.0 / dt * s.gammat};
     if (s.gammat > 0.0)
       apply<true>(s, before, now, motion, mu, history, fi, fj);
     else

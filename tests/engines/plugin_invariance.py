@@ -49,7 +49,17 @@ def scene():
 
 
 def deck(
-    model, *, tangential="history", box="box.data", before="", neigh=SELDOM, wall="primitive", body=None, restart=None, style=True, **top
+    model,
+    *,
+    tangential="history",
+    box="box.data",
+    before="",
+    neigh=SELDOM,
+    wall="primitive",
+    body=None,
+    restart=None,
+    style=True,
+    **top,
 ):
     """The scene's deck; `restart` continues from a file, without `style` with the models of that file."""
     atoms = f"read_restart {restart}\n" if restart else f"read_data {box}\n"
@@ -173,7 +183,8 @@ class Suite:
         name = f"restart-{ranks}-{style}-{wall}"
         stop = self.deck(wall=wall, body=f"run {MIDDLE}\nwrite_restart ../{name}.restart\n")
         self.outcome(f"{name}-first", stop)
-        go_on = self.deck(wall=wall,
+        go_on = self.deck(
+            wall=wall,
             restart=f"../{name}.restart",
             style=style,
             body=f"run {STEPS - MIDDLE}\n",

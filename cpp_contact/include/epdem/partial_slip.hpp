@@ -146,7 +146,9 @@ EPDEM_INLINE void slip_limits(const Pressed<T>& now, const T& scale, T* limit) n
 /// A vector, shortened to `limit` if it is longer.
 template <class T>
 EPDEM_INLINE Vec<T> limited(const Vec<T>& s, const T& limit) noexcept {
-  return (limit / max(max(sqrt(dot(s, s)), limit), T{} + least)) * s;
+  const T square = dot(s, s);
+  const auto over = square > limit * limit;
+  return any(over) ? select(over, limit / sqrt(square), T{} + 1.0) * s : s;
 }
 
 /// Friction [N] of stretches within their limits, with the dashpot inside the same limits.

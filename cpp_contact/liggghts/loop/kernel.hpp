@@ -79,7 +79,7 @@ EPDEM_INLINE Three slipping(Block& b, int k, const Contact& c, const Step<Law>& 
   const Shear<Lanes> motion{{c.en.x, c.en.y, c.en.z},
                             {pass.dt * c.vtr.x, pass.dt * c.vtr.y, pass.dt * c.vtr.z},
                             0.5 * pass.dt * (dot(c.en, c.omega_i) + dot(c.en, c.omega_j)),
-                            c.gammat / pass.dt};
+                            1.0 / pass.dt * c.gammat};
   SlipStep<nodes, Lanes> out;
   const auto step = [&](auto damped) __attribute__((always_inline)) {
     out = partial_slip<nodes, Law::flattens, damped>(before, pressed<Law>(c, now), motion, stiffness,

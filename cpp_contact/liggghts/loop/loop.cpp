@@ -127,7 +127,7 @@ void PairLoop::fetch(const Plan& plan, int n) {
     const int i = b.i[k], j = b.j[k];
     if (histories) {
       double* const h = histories[i] + size * slot_[k];
-      __builtin_prefetch(h, 1);
+      for (int line = 0; line < size; line += 8) __builtin_prefetch(h + line, 1);
       __builtin_prefetch(h + size - 1, 1);
       b.history[k] = h;
       int& flag = flags[i][slot_[k]];

@@ -168,6 +168,11 @@ class Viscous(Frozen):
     ]
 
 
+Friction = Annotated[float, Quantity("1", ge=0.0)]
+Tangential = Literal["history", "partial_slip", "partial_slip_2"]  # the last with 2 nodes in place of 3
+NODES = {"history": 0, "partial_slip": 3, "partial_slip_2": 2}  # of partial slip; 0: one spring
+
+
 class Numerics(Frozen):
     """Steps of the shortest contact, or the largest relative `error` of e_n, for which the step is then searched."""
 

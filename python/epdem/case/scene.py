@@ -8,13 +8,12 @@ from pydantic import ConfigDict, Field, ValidationError, model_validator
 
 from ..errors import CaseError
 from . import impact as impact_case
-from .impact import Frozen, Header, LawChoice, Length, Material, Name, Quantity, Speed, Viscous
+from .impact import Friction, Frozen, Header, LawChoice, Length, Material, Name, Quantity, Speed, Tangential, Viscous
 from .messages import explain
 
 Time = Annotated[float, Quantity("s", above=0.0)]
 Rate = Annotated[float, Quantity("Hz", above=0.0)]
 Gravity = Annotated[float, Quantity("m/s^2", ge=0.0)]
-Friction = Annotated[float, Quantity("1", ge=0.0)]
 Share = Annotated[float, Quantity("1", above=0.0, le=1.0)]
 
 
@@ -86,6 +85,7 @@ class Contact(Frozen):
     friction: Friction = 0.0
     wall_friction: Friction | None = None
     pairs: list[Between] = Field(default_factory=list)
+    tangential: Tangential = "history"
     tangential_restitution: Share | None = None  # of the dashpot beside the tangential spring
     rolling: Rolling | None = None
     cohesion: Annotated[float, Quantity("J/m^3", above=0.0)] | None = None  # energy density (sjkr)

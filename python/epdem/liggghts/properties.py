@@ -5,6 +5,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+from ..case.impact import NODES
 from ..impacts.experiment import Body
 from ..impacts.plan import Plan
 from ..laws import library as claw
@@ -92,6 +93,13 @@ def strength(law: str, values: Sequence[float]) -> tuple[Property, ...]:
     if parameter is None:
         return ()
     return (per_type(parameter.property, values, parameter.unit, "the softer body's counts" * (len(values) > 1)),)
+
+
+def tangential(name: str | None) -> str:
+    """LIGGGHTS's word for the tangential model of a case; None: no friction."""
+    if name is None:
+        return "off"
+    return f"ep/{name}" if NODES[name] else name
 
 
 def of_impacts(plan: Plan) -> tuple[Property, ...]:
