@@ -10,7 +10,8 @@ from pathlib import Path
 import pytest
 
 from epdem.case import scene, units
-from epdem.case.impact import load, parse, read_toml
+from epdem.case.impact import load, parse
+from epdem.case.toml import read_toml
 from epdem.case.units import to_si
 from epdem.errors import CaseError
 from epdem.impacts.experiment import experiment

@@ -8,7 +8,7 @@ import pytest
 from scene_runs import write_case
 from stored_runs import STORED, data_of
 
-from epdem import stages
+from epdem.base import stages
 from epdem.case.scene import parse
 from epdem.errors import CaseError, EngineError
 from epdem.impacts.engine import Abilities
