@@ -10,7 +10,7 @@ from functools import cached_property
 
 import numpy as np
 
-from ..case.impact import RIGID, Case, Check, Material, Numerics
+from ..case.impact import RIGID, Case, Check, Material, Numerics, Tangential
 from ..case.law import law_numbers
 from ..errors import CaseError
 from ..laws import library
@@ -54,8 +54,18 @@ def plane(material: Material, *, name: str) -> Body:
 
 
 @dataclass(frozen=True)
+class Oblique:
+    """Angle [rad] from the normal and spin [rad/s] of the body before each impact, shape (n,), and their friction."""
+
+    angle: np.ndarray
+    spin: np.ndarray
+    friction: float
+    tangential: Tangential
+
+
+@dataclass(frozen=True)
 class Experiment:
-    """Impacts of `body` on `target` at `speed` [m/s], shape (n,).
+    """Impacts of `body` on `target` at `speed` [m/s] along the normal, shape (n,).
 
     Raises CaseError for two rigid bodies, and for parameters of the law that make no sense together.
     """
@@ -65,6 +75,7 @@ class Experiment:
     target: Body
     speed: np.ndarray
     viscous_restitution: float | None = None  # of impacts that do not yield; None: no dashpot
+    oblique: Oblique | None = None
     numerics: Numerics = field(default_factory=Numerics)
     check: Check = field(default_factory=Check)
     name: str = "impact"
@@ -79,6 +90,12 @@ class Experiment:
         except (ValueError, ArithmeticError) as error:
             given = ", ".join(f"law.{name} = {value:g}" for name, value in self.law.parameters.items())
             raise CaseError(f"{given}: {error}") from None
+
+    def friction_of_oblique(self) -> Oblique:
+        """What oblique impacts have. Raises CaseError for normal ones."""
+        if self.oblique is None:
+            raise CaseError("these impacts are normal; give impact.angles")
+        return self.oblique
 
     @cached_property
     def E_star(self) -> float:
@@ -141,13 +158,15 @@ def bodies(case: Case) -> tuple[Body, Body]:
 def experiment(case: Case, law: str | None = None) -> Experiment:
     """A case as physics; `law` replaces the case's law and drops its parameters. Raises CaseError."""
     body, target = bodies(case)
+    speed, angle, spin = case.impact.rows()
     numbers = law_numbers(case.law.name, case.law.parameters()) if law is None else default_numbers(law)
     return Experiment(
         law=pair_of(numbers, body, target),
         body=body,
         target=target,
-        speed=case.impact.speed_values(),
+        speed=speed,
         viscous_restitution=case.viscous.restitution if case.viscous else None,
+        oblique=Oblique(angle, spin, case.contact.friction, case.contact.tangential) if case.contact else None,
         numerics=case.numerics,
         check=case.check,
         name=case.name,

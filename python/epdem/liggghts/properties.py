@@ -113,11 +113,18 @@ def of_impacts(plan: Plan) -> tuple[Property, ...]:
     return elastic([finite(b.young_modulus) for b in bodies], [b.poisson_ratio for b in bodies])
 
 
+def of_friction(plan: Plan, types: int) -> tuple[Property, ...]:
+    """The coefficient of friction of oblique impacts."""
+    o = plan.experiment.oblique
+    return () if o is None else (per_pair("coefficientFriction", types, o.friction, "-"),)
+
+
 def of_law(plan: Plan) -> tuple[Property, ...]:
     """What a law of ours needs of a plan."""
     x, types = plan.experiment, atom_types(plan)
     properties = [*of_impacts(plan), *strength(x.law.name, [finite(s) for _, s in types])]
     properties += ratios(x.law.name, x.law.ratios())
+    properties += of_friction(plan, len(types))
     if x.viscous_restitution is not None:
         note = "of impacts that do not yield"
         properties.append(per_pair("coefficientRestitution", len(types), x.viscous_restitution, "-", note))
