@@ -35,7 +35,7 @@ def strength_values(
 
 @dataclass(frozen=True)
 class Group:
-    """The bodies of one kind; `data` holds x, y, z [m] and v_z [m/s] of each."""
+    """The bodies of one kind; `data` holds x, y, z [m] and v_z [m/s] of each, if oblique v_x and omega_y [rad/s]."""
 
     data: str
     radius: float
@@ -66,6 +66,7 @@ class Deck:
     wall_material: str | None
     anvil: Anvil | None  # fixed spheres that replace the wall where YADE's law has spheres only
     bodies: tuple[Group, ...]
+    oblique: bool
     skin: float
     time_step: float
     samples: int
