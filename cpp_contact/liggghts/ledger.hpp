@@ -51,9 +51,10 @@ class Ledger {
   }
 
   template <bool wall, class Law>
-  void book(const Law& law, double R_star, const State<Law>& before, const State<Law>& after, double delta,
+  void book(const Law& law, double R_star, const State<Law>& before, const Step<Law>& now, double delta,
             const Bodies& bodies) {
-    share<wall>(plastic_growth(law, R_star, before, after), elastic_energy(law, R_star, after, delta), bodies);
+    const double stored = elastic_energy(law, R_star, now, delta);
+    share<wall>(plastic_growth(law, R_star, before, now, stored), stored, bodies);
   }
 
   /// To the bodies: plastic work by which a contact grew, elastic energy that it holds [J].

@@ -134,7 +134,7 @@ class Normal : protected LAMMPS_NS::Pointers {
     const Step<Law> now = step(t.law, R_star, before, delta);
 
     if (keep) {
-      if (plastic_work_) ledger_.template book<wall>(t.law, R_star, before, now.after, delta, {s.i, s.j, atom->nlocal});
+      if (plastic_work_) ledger_.template book<wall>(t.law, R_star, before, now, delta, {s.i, s.j, atom->nlocal});
       if constexpr (remembers) std::memcpy(history + offset_, &now.after, sizeof now.after);
       if constexpr (stamped) history[stamp_] = now_;
     }

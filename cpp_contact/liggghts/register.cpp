@@ -5,6 +5,7 @@
 
 #include "epdem/laws.hpp"
 #include "loop/pair.hpp"
+#include "loop/wall.hpp"
 #include "model.hpp"
 
 namespace epdem::liggghts {
@@ -81,7 +82,7 @@ PairStyles::IGranularPairStyle* new_pair(LAMMPS* lmp, PairGran* parent, int64_t 
 
 template <class Part>
 Walls::IGranularWall* new_wall(LAMMPS* lmp, FixWallGran* parent, int64_t hash) {
-  return new Walls::Granular<Part>(lmp, parent, hash);
+  return new loop::Wall<Part>(lmp, parent, hash);
 }
 
 constexpr const char* combinations =
@@ -211,7 +212,8 @@ const struct Registration {
 
 /// In place of LIGGGHTS's own, which calls every wrong name "Invalid model specified": a name that starts with ep
 /// deserves the list of what exists. LIGGGHTS takes this function's address through the dynamic linker, which finds
-/// the launcher or a preloaded library first; it is the one symbol that the plugin exports.
+/// the launcher or a preloaded library first; beside those of loop/mesh.cpp it is the one symbol that the plugin
+/// exports.
 [[gnu::visibility("default")]] int64_t LIGGGHTS::ContactModels::Factory::select(
     int& narg, char**& arg, LAMMPS_NS::Custom_contact_models custom) {
   using namespace epdem::liggghts;

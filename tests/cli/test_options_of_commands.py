@@ -15,7 +15,7 @@ from calls import CASES, COMMANDS, call, make_sweep
 from epdem.errors import CaseError
 from epdem.impacts import run as impacts_run
 from epdem.scenes import run as scenes_run
-from epdem.studies import cost, crosscheck, figures, stability
+from epdem.studies import cost, crosscheck, figures, stability, tune
 from epdem.studies.stability import bulk_cost
 from epdem.studies.sweep import executors
 
@@ -53,6 +53,7 @@ KINDS = {  # words of a call without the option, and the value of every option
         {"engine": "yade", "law": "cavity", "group": "poisson", "every": "2", "steps": "1000", "out": "there.csv"}
         | {"force": None},
     ),
+    "tune a scene": (("tune", "scene.toml"), {"ranks": "2", "seconds": "5", "write": None}),
     "explain impacts": (("explain", "steel.toml"), {}),
     "explain a scene": (("explain", "scene.toml"), {}),
     "soften impacts": (("soften", "steel.toml", "-k", "10"), {"factor": "3", "out": "there.toml", "force": None}),
@@ -91,6 +92,9 @@ def outcomes(tmp_path_factory):
     return {
         "cost": cost.run(path, engines=["embedded"], laws=[], steps=(30, 100), repetitions=1),
         "bulk": pd.DataFrame([{"model": "x", "spheres": 8, "seconds_spread": 1e-3, "ratio_spread": 0.1} | numbers]),
+        "tuned": tune.Tuned(
+            (tune.Trial("skin 1 mm", 1e-3, (2.0, 2.0)), tune.Trial("skin 2 mm", 2e-3, (1.0, 1.0))), (), 100, 500, 1
+        ),
         "stability": stability.run(["embedded"], ["hertz"], groups=["poisson"]),
     }
 
@@ -115,6 +119,7 @@ def library(tmp_path, monkeypatch, outcomes):
     record(cost, "run", outcomes["cost"])
     record(bulk_cost, "run", outcomes["bulk"])
     record(stability, "run", outcomes["stability"])
+    record(tune, "tune", outcomes["tuned"])
     record(figures, "draw_all", [Path("drawn.png")])
     record(executors, "execute")
     return reached

@@ -142,8 +142,9 @@ template <class Law, Tangential tangential, bool rolls>
     __builtin_memcpy(static_cast<void*>(&law), constant_of + law_data, sizeof law);
     const Step<Law> now = step(law, c.reff, before, c.deltan);
     if (pass.work) {
-      store(b.grown.a + k, plastic_growth(law, c.reff, before, now.after));
-      store(b.stored.a + k, elastic_energy(law, c.reff, now.after, c.deltan));
+      const Lanes stored = elastic_energy(law, c.reff, now, c.deltan);
+      store(b.stored.a + k, stored);
+      store(b.grown.a + k, plastic_growth(law, c.reff, before, now, stored));
     }
 
     c.Fn = now.force;

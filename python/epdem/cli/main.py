@@ -171,6 +171,7 @@ for command in (
     cli_numerics.cost,
     cli_numerics.stability,
     cli_scene.explain,
+    cli_scene.tune,
     cli_scene.soften,
     cli_scene.calibrate,
     cli_sweep.sweep,

@@ -108,6 +108,39 @@ def _explained(case: Path) -> list[tuple[str, str, str]]:
         return explain.explain(explain.IMPACT, Liggghts().deck(plan(x, predict(x))))
 
 
+def tune(
+    case: CasePath,
+    ranks: Annotated[int, typer.Option(min=1, max=1024, help="MPI ranks of LIGGGHTS")] = 1,
+    seconds: Annotated[float, typer.Option(min=1.0, max=1e6, help="longest time of one trial")] = 60.0,
+    write: Annotated[bool, typer.Option("--write", help="put the choices into the case file")] = False,
+    as_json: AsJson = False,
+) -> None:
+    """Find the neighbour skin, and with --ranks the cut of the room, with which a scene runs fastest in LIGGGHTS."""
+    from ..base.terminal import status
+    from ..studies import tune as t
+
+    with status() as line:
+        found = t.tune(case, ranks=ranks, seconds=seconds, progress=lambda text: line(f"{case.stem}: {text}"))
+    if write:
+        t.write(case, found)
+    rows = [(x, *x.saves(trials[0])) for trials in (found.skins, found.cuts) for x in trials]
+    if as_json:
+        named = ("trial", "seconds_per_step", "saves", "error")
+        trials = [dict(zip(named, (x.name, x.seconds, saved, error), strict=True)) for x, saved, error in rows]
+        head = {"steps_per_skin": found.steps, "steps_of_the_scene": found.scene_steps, "ranks": found.ranks}
+        print(json.dumps(head | {"trials": trials, "numerics": found.lines, "written": write and bool(found.lines)}))
+        return
+    for x, saved, error in rows:
+        print(f"{x.name}: {x.seconds * 1e6:.4g} us per step, saves {saved:.1%} +- {error:.1%}")
+    share = found.steps * len(found.skins) / found.scene_steps
+    print(f"{found.steps} steps with each skin, in turns over {share:.0%} of the scene")
+    if not found.lines:
+        print(f"nothing saves more than {t.WORTH:.0%} for certain: the case stays as it is")
+        return
+    place = f"written to {case}, under [numerics]:" if write else "for the case, under [numerics] (or with --write):"
+    print(place, *found.lines, sep="\n")
+
+
 def soften(
     case: CasePath,
     factor: Annotated[

@@ -139,7 +139,7 @@ def refuse(tool: Engine, plan: Plan, prediction: Prediction, *, ranks: int = 1) 
 def refuse_ranks(engine: str, most: int, ranks: int) -> None:
     """Raise CaseError for more ranks than the `most` of an engine, EngineError if there is no mpirun for them."""
     if ranks > most:
-        limit = "one rank; leave --ranks out" if most == 1 else f"at most {most} ranks here; ask for no more"
+        limit = "one rank; leave it out" if most == 1 else f"at most {most} ranks here; ask for no more"
         raise CaseError(f"--ranks {ranks}: engine {engine} runs on {limit}")
     if ranks > 1 and shutil.which("mpirun") is None:
         raise EngineError("--ranks needs mpirun, which was not found; apt-get install openmpi-bin")

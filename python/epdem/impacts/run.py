@@ -9,6 +9,7 @@ import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import Required, TypedDict, Unpack
 
 import pandas as pd
 
@@ -161,35 +162,26 @@ def _prepare(case: Case, place: object, tools: Sequence[Engine], laws: Sequence[
     return _Work(case, tools, {tool.name: tool.version() for tool in tools}, predictions, plans)
 
 
-def run(
-    case_path: Path | str,
-    *,
-    engines: Sequence[Engine],
-    laws: Sequence[str] = (),
-    out: Path | None = None,
-    ranks: int = 1,
-    steps: int | None = None,
-    fresh: bool = False,
-    force: bool = False,
-    progress: Callable[[str], None] = lambda text: None,
-) -> Outcome:
+class Options(TypedDict, total=False):
+    """What `run_case` takes beside the case."""
+
+    engines: Required[Sequence[Engine]]
+    laws: Sequence[str]
+    out: Path | None
+    ranks: int
+    fresh: bool
+    force: bool
+    progress: Callable[[str], None]
+
+
+def run(case_path: Path | str, *, steps: int | None = None, **options: Unpack[Options]) -> Outcome:
     """`run_case` of the case in a file; `steps` replaces the case's steps in contact."""
     data = read_toml(case_path)
     if steps is not None:
         data["numerics"] = data.get("numerics", {}) | {"steps_in_contact": steps}
         data["numerics"].pop("error", None)
-    return run_case(
-        parse(data, case_path),
-        Path(case_path).read_text(encoding="utf-8-sig"),
-        place=case_path,
-        engines=engines,
-        laws=laws,
-        out=out,
-        ranks=ranks,
-        fresh=fresh,
-        force=force,
-        progress=progress,
-    )
+    text = Path(case_path).read_text(encoding="utf-8-sig")
+    return run_case(parse(data, case_path), text, place=case_path, **options)
 
 
 def run_case(

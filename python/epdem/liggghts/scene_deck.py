@@ -29,6 +29,8 @@ class Deck:
     box: tuple[float, ...]
     n_types: int
     skin: float
+    own_skin: bool
+    processors: str | None
     types: tuple[str, ...]
     properties: tuple[Property, ...]
     model: str
@@ -122,10 +124,16 @@ def _motion(p: ScenePlan) -> dict[str, float]:
     return motion
 
 
+def default_skin(p: ScenePlan) -> float:
+    """The skin of a case that gives none [m]."""
+    return float(f"{SKIN * p.smallest:.1e}")
+
+
 def deck(p: ScenePlan) -> Deck:
     """The deck of a scene. Raises CaseError for what LIGGGHTS cannot do."""
     m, s, out = p.model, p.case.scene, p.output
     moduli = [p.case.materials[t.material].young_modulus for t in m.types]
+    cut = p.case.numerics.cut
     row_words = {"f_load": p.floor_load, "f_press_z": p.plates, "f_torque": p.torque}
     return Deck(
         title=p.case.case.title,
@@ -137,7 +145,9 @@ def deck(p: ScenePlan) -> Deck:
         boundary="p p f" if p.layout.periodic else "f f f",
         box=p.layout.box,
         n_types=len(m.types),
-        skin=float(f"{SKIN * p.smallest:.1e}"),
+        skin=p.case.numerics.skin or default_skin(p),
+        own_skin=p.case.numerics.skin is not None,
+        processors=" ".join("*" if axis in cut else "1" for axis in "xyz") if cut else None,
         types=p.types,
         properties=_properties(p),
         model=f"ep/{m.law}",

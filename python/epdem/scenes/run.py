@@ -6,6 +6,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
+from typing import TypedDict, Unpack
 
 import pandas as pd
 
@@ -90,30 +91,21 @@ def run_plan(
     return engine.read(p, folder)
 
 
-def run(
-    path: Path | str,
-    engine: SceneEngine,
-    *,
-    out: Path | None = None,
-    ranks: int = 1,
-    fresh: bool = False,
-    resume: bool = False,
-    force: bool = False,
-    report: Progress = lambda step, steps: None,
-) -> SceneOutcome:
+class Options(TypedDict, total=False):
+    """What `run_case` takes beside case and engine."""
+
+    out: Path | None
+    ranks: int
+    fresh: bool
+    resume: bool
+    force: bool
+    report: Progress
+
+
+def run(path: Path | str, engine: SceneEngine, **options: Unpack[Options]) -> SceneOutcome:
     """`run_case` of the scene in a case file."""
-    return run_case(
-        load(path),
-        Path(path).read_text(encoding="utf-8-sig"),
-        engine,
-        place=path,
-        out=out,
-        ranks=ranks,
-        fresh=fresh,
-        resume=resume,
-        force=force,
-        report=report,
-    )
+    case = load(path)
+    return run_case(case, Path(path).read_text(encoding="utf-8-sig"), engine, place=path, **options)
 
 
 def run_case(

@@ -20,6 +20,7 @@ SCRIPT, SPHERES = "scene.py", "spheres.txt"
 SKIN = 0.25  # of the smallest radius: few sortings and few idle neighbours
 KINDS = Yade.can.scenes
 NO_DASHPOT = "contact.tangential_restitution: YADE's law has no dashpot, it was left out"
+NO_RANKS = "numerics.cut: a scene in YADE has one rank, it was left out"
 
 
 @dataclass(frozen=True)
@@ -110,7 +111,8 @@ def refuse(p: ScenePlan) -> None:
 
 def notes(p: ScenePlan) -> list[str]:
     """The parts of a case that a YADE scene leaves out, in words."""
-    return [NO_DASHPOT] if p.model.tangential_restitution is not None else []
+    found = [NO_DASHPOT] if p.model.tangential_restitution is not None else []
+    return [*found, NO_RANKS] if p.case.numerics.cut else found
 
 
 def _materials(p: ScenePlan, friction: Square) -> tuple[Material, ...]:
@@ -172,7 +174,7 @@ def deck(p: ScenePlan) -> Deck:
         low=(*(low for low, _ in sides), zlo),
         high=(*(high for _, high in sides), zhi),
         fall=-p.case.scene.gravity if p.case.scene.gravity else 0.0,
-        skin=float(f"{SKIN * p.smallest:.1e}"),
+        skin=p.case.numerics.skin or float(f"{SKIN * p.smallest:.1e}"),
         time_step=p.time_step,
         phases=tuple(
             Phase(phase.name, end - begin, phase.plate)
