@@ -133,6 +133,31 @@ def scene_of(choice):
     return replace(Scene(**c), settings=tuple(s for s, on in wanted.items() if on))
 
 
+# Scenes that the planted faults name: they stay the same when dimensions are added.
+NAMED = (
+    Scene(
+        law="thornton",
+        rolling="epsd2",
+        cohesion="sjkr2",
+        types=3,
+        freeze=True,
+        loose=True,
+        dashpot=False,
+        settings=("viscous on", "tangential_reduce on"),
+    ),
+    Scene(
+        law="hertz",
+        tangential="no_history",
+        cohesion="sjkr",
+        freeze=True,
+        loose=True,
+        dashpot=False,
+        settings=("viscous on",),
+    ),
+    Scene(law="cavity", tangential="ep/partial_slip", types=3, loose=True, settings=("computePlasticWork on",)),
+)
+
+
 def covering(dimensions=DIMENSIONS, seed=1, tries=60):
     """Few scenes in which every two values of two dimensions meet: each is the best of some random ones."""
     rng = np.random.default_rng(seed)

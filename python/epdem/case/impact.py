@@ -198,6 +198,13 @@ class Viscous(Frozen):
     ]
 
 
+class Rate(Frozen):
+    """Strength that grows with the strain rate: times 1 + sensitivity ln(rate/reference)."""
+
+    sensitivity: Annotated[float, Quantity("1", ge=0.0, le=0.1, hint="about 0.012 for steel")]
+    reference: Annotated[float, Quantity("1/s", above=0.0)] = 1e-3
+
+
 class Numerics(Frozen):
     """Steps of the shortest contact, or the largest relative `error` of e_n, for which the step is then searched."""
 
@@ -237,6 +244,7 @@ class Case(Frozen):
     materials: dict[Name, Material]
     impact: Impact
     law: LawChoice
+    rate: Rate | None = None
     viscous: Viscous | None = None
     contact: Friction | None = None
     numerics: Numerics = Numerics()

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """The data of the template of an impact deck."""
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 from math import inf
 
@@ -31,6 +32,14 @@ def strength_values(
             f"{limit:.6g} Pa at this young_modulus; use --engine liggghts"
         )
     return {kind.strength_name: strength}
+
+
+def refuse_parameters(law: str, given: Iterable[str]) -> None:
+    """Raise CaseError for a parameter of the law that its copy in YADE does not have."""
+    for name in given:
+        if name not in LAWS[law].ratios:
+            reason = f"YADE's copy of {law} has no such parameter; remove it or use --engine liggghts"
+            raise CaseError(f"law.{name}: {reason}")
 
 
 @dataclass(frozen=True)

@@ -18,7 +18,7 @@ from ..impacts.experiment import Body, Experiment
 from ..impacts.pairs import Pairs
 from ..impacts.places import side_by_side
 from ..impacts.plan import Plan
-from .deck import Deck, Group, Material, strength_values
+from .deck import Deck, Group, Material, refuse_parameters, strength_values
 from .deck_modules.law import LAWS
 from .launcher import command, environment, write_deck_modules
 from .pairs import velocities
@@ -69,6 +69,8 @@ class Yade:
         """The deck of a plan. Raises CaseError for what YADE cannot do."""
         x, wall = plan.experiment, isinf(plan.experiment.target.radius)
         check_abilities(self, x)
+        if x.law.name in LAWS:
+            refuse_parameters(x.law.name, x.law.ratios())
         materials = {
             x.target.material: self.material(x, x.target, x.law.strengths[1]),
             x.body.material: self.material(x, x.body, x.law.strengths[0]),
