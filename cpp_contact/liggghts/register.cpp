@@ -18,13 +18,33 @@ using LAMMPS_NS::PairGran;
 namespace PairStyles = LIGGGHTS::PairStyles;
 namespace Walls = LIGGGHTS::Walls;
 
-constexpr int tangentials[] = {TANGENTIAL_OFF,    TANGENTIAL_NO_HISTORY,   TANGENTIAL_HISTORY,
-                               TANGENTIAL_LUDING, TANGENTIAL_PARTIAL_SLIP, TANGENTIAL_PARTIAL_SLIP_2};
+// every model that this LIGGGHTS has, from its own lists
+#define TANGENTIAL_MODEL(name, text, id) name,
+#define COHESION_MODEL(name, text, id) name,
+#define ROLLING_MODEL(name, text, id) name,
+#define SURFACE_MODEL(name, text, id) name,
+constexpr int tangentials[] = {
+    TANGENTIAL_OFF,
+#include "style_tangential_model.h"
+    TANGENTIAL_PARTIAL_SLIP,
+    TANGENTIAL_PARTIAL_SLIP_2,
+};
+constexpr int cohesions[] = {
+    COHESION_OFF,
+#include "style_cohesion_model.h"
+};
+constexpr int rollings[] = {
+    ROLLING_OFF,
+#include "style_rolling_model.h"
+};
+constexpr int surfaces[] = {
+#include "style_surface_model.h"
+};
+#undef TANGENTIAL_MODEL
+#undef COHESION_MODEL
+#undef ROLLING_MODEL
+#undef SURFACE_MODEL
 constexpr const char* partial_slip_names[] = {"ep/partial_slip", "ep/partial_slip_2"};
-constexpr int cohesions[] = {COHESION_OFF, COHESION_SJKR, COHESION_SJKR2, COHESION_WASHINO_CAPILLARY_VISCOUS,
-                             COHESION_EASO_CAPILLARY_VISCOUS};
-constexpr int rollings[] = {ROLLING_OFF, ROLLING_CDT, ROLLING_EPSD, ROLLING_EPSD2, ROLLING_EPSD3, ROLLING_LUDING};
-constexpr int surfaces[] = {SURFACE_DEFAULT, SURFACE_MULTICONTACT, SURFACE_SUPERQUADRIC};
 constexpr int unknown_law = 63;  // normal id of what is refused: by its name, or for its tangential model
 
 /// Why, as the tangential id of a refusal.
@@ -32,8 +52,8 @@ enum Refusal { unknown_normal, unknown_tangential, foreign_normal };
 
 /// Luding's models need slots of Luding's normal model; capillary forces and superquadrics bring their own contact law.
 bool available(const Ids& ids) {
-  return ids.tangential != TANGENTIAL_LUDING && ids.rolling != ROLLING_LUDING && ids.cohesion <= COHESION_SJKR2 &&
-         ids.surface != SURFACE_SUPERQUADRIC;
+  return ids.tangential <= TANGENTIAL_HISTORY && ids.rolling <= ROLLING_EPSD3 && ids.cohesion <= COHESION_SJKR2 &&
+         (ids.surface == SURFACE_DEFAULT || ids.surface == SURFACE_MULTICONTACT);
 }
 
 template <class Part>
@@ -183,6 +203,7 @@ void add_law() {
 
 Ids refused(int why) { return {unknown_law, why, COHESION_OFF, ROLLING_OFF, SURFACE_DEFAULT}; }
 
+#ifdef EPDEM_BUILT_FOR
 bool starts_with_ep(const std::string& name) { return name.compare(0, 2, "ep") == 0; }
 
 bool unknown_name(const std::string& name) {
@@ -193,6 +214,7 @@ bool unknown_name(const std::string& name) {
 #undef EPDEM_KNOWN
   return true;
 }
+#endif
 
 const struct Registration {
   Registration() {
@@ -210,6 +232,7 @@ const struct Registration {
 
 }  // namespace epdem::liggghts
 
+#ifdef EPDEM_BUILT_FOR
 /// In place of LIGGGHTS's own, which calls every wrong name "Invalid model specified": a name that starts with ep
 /// deserves the list of what exists. LIGGGHTS takes this function's address through the dynamic linker, which finds
 /// the launcher or a preloaded library first; beside those of loop/mesh.cpp it is the one symbol that the plugin
@@ -231,3 +254,4 @@ const struct Registration {
   }
   return instance().select_model(narg, arg, custom);
 }
+#endif

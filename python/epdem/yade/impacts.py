@@ -20,6 +20,7 @@ from ..impacts.places import side_by_side
 from ..impacts.plan import Plan
 from .deck import Deck, Group, Material, refuse_parameters, strength_values
 from .deck_modules.law import LAWS
+from .edits import EDITS
 from .launcher import command, environment, write_deck_modules
 from .pairs import velocities
 
@@ -37,6 +38,7 @@ class Yade:
         own_spring=True,
         staggered=True,
         scenes=("settle", "compaction"),
+        edits=EDITS,
         variants=("swap", "restart"),
     )
     template = "yade/impact.py.j2"
