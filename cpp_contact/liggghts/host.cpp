@@ -31,7 +31,7 @@ void check_library(LAMMPS_NS::LAMMPS* lmp) {
 
 }  // namespace
 
-void greet(LAMMPS_NS::LAMMPS* lmp) {
+void check_host(LAMMPS_NS::LAMMPS* lmp) {
   static LAMMPS_NS::LAMMPS* known = nullptr;
   if (known == lmp) return;
   known = lmp;

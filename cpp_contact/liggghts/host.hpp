@@ -33,6 +33,6 @@ std::string model_name() {
 std::string model_names();
 
 /// Ends the run if the library in use is not the one that the headers describe; names the models once.
-void greet(LAMMPS_NS::LAMMPS* lmp);
+void check_host(LAMMPS_NS::LAMMPS* lmp);
 
 }  // namespace epdem::liggghts

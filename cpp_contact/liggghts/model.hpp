@@ -82,7 +82,7 @@ class Model : public ContactModelBase {
  public:
   Model(LAMMPS_NS::LAMMPS* lmp, LIGGGHTS::IContactHistorySetup* setup, bool is_wall, const int64_t hash)
       : ContactModelBase(lmp, is_wall),
-        ids_(greeted(lmp, hash)),
+        ids_(checked(lmp, hash)),
         surface_({lmp, setup, this, ids_}),
         normal_(lmp, setup),
         cohesion_({lmp, setup, this, ids_}),
@@ -196,8 +196,8 @@ class Model : public ContactModelBase {
 
  private:
   /// Before the first part is built: a foreign library must not be touched.
-  static Ids greeted(LAMMPS_NS::LAMMPS* lmp, int64_t hash) {
-    greet(lmp);
+  static Ids checked(LAMMPS_NS::LAMMPS* lmp, int64_t hash) {
+    check_host(lmp);
     return Ids::of(hash);
   }
 

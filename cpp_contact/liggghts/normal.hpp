@@ -20,8 +20,8 @@ using namespace LIGGGHTS::ContactModels;
 /// Normal model of one law for pairs (wall = false) or walls.
 ///
 /// History: what a law that yields remembers (doubles), and for pairs the step of the last evaluation that was kept.
-/// LIGGGHTS tells nobody that a pair parted, so a contact whose last evaluation is older than one step is a new one,
-/// for the law and for all models that remember something beside it. Walls are told, and need no step.
+/// LIGGGHTS does not report that a pair parted, so a contact whose last evaluation is older than one step is a new one,
+/// for the law and for all models that remember something beside it. Walls need no step: their end is reported.
 template <class Law, bool wall, bool others_remember>
 class Normal : protected LAMMPS_NS::Pointers {
   static constexpr bool remembers = Law::yields;

@@ -4,11 +4,9 @@
 Tables have the SI units of their columns in `attrs["units"]`. Progress goes to the logger "epdem".
 """
 
-import contextlib
 import logging
-import tempfile
 import tomllib
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, ClassVar, Self, overload
@@ -18,23 +16,24 @@ import pandas as pd
 import tomlkit
 
 from . import theory
+from .base.files import atomic
+from .base.folders import write_own
 from .case import impact as impact_case
 from .case import scene as scene_case
+from .case.toml import read_toml
 from .engines import engine as engine_named
 from .engines import scene_engine
 from .errors import CaseError
-from .files import atomic, write_texts
 from .impacts.comparison import UNITS
 from .impacts.experiment import experiment
-from .impacts.plan import plan as plan_impacts
 from .impacts.prediction import Prediction
 from .impacts.prediction import predict as predict_experiment
-from .impacts.run import Outcome
-from .impacts.run import run as run_impacts
+from .impacts.run import Outcome, write_deck
+from .impacts.run import run_case as run_impacts
 from .scenes.columns import UNITS as SCENE_UNITS
 from .scenes.plan import plan as plan_scene
 from .scenes.run import SceneOutcome
-from .scenes.run import run as run_scene
+from .scenes.run import run_case as run_scene
 from .studies.sweep import keys
 from .studies.sweep import run as study
 from .studies.sweep.points import with_unit
@@ -71,10 +70,10 @@ class _File:
     @classmethod
     def from_toml(cls, path: Path | str) -> Self:
         """The case in a file. Raises CaseError."""
-        impact_case.read_toml(path)
-        found = cls.__new__(cls)
-        found._read(Path(path).read_text(encoding="utf-8-sig"), path)
-        return found
+        read_toml(path)
+        case = cls.__new__(cls)
+        case._read(Path(path).read_text(encoding="utf-8-sig"), path)
+        return case
 
     def to_toml(self, path: Path | str) -> Path:
         """Write the case as a file that the commands take."""
@@ -91,9 +90,9 @@ class _File:
         names = keys.keys_of(document.unwrap())
         for name, value in changes.items():
             keys.assign(document, name, with_unit(value, keys.known(name, names, "replace")))
-        found = type(self).__new__(type(self))
-        found._read(document.as_string(), self.name)
-        return found
+        case = type(self).__new__(type(self))
+        case._read(document.as_string(), self.name)
+        return case
 
     @property
     def name(self) -> str:
@@ -117,11 +116,6 @@ class _File:
         import html
 
         return f"<b>{html.escape(self.title)}</b><pre>{html.escape(self.text)}</pre>"
-
-    @contextlib.contextmanager
-    def _as_file(self) -> Iterator[Path]:
-        with tempfile.TemporaryDirectory(prefix="epdem-") as place:
-            yield self.to_toml(Path(place) / f"{self.name}.toml")
 
 
 class Case(_File):
@@ -163,10 +157,10 @@ def _with_units(value: Any, names: dict[str, keys.Key], place: str = "") -> Any:
 
 
 def _units(table: pd.DataFrame, units: Mapping[str, str]) -> pd.DataFrame:
-    found = table.copy()
-    names = {name: units.get(name.removesuffix("_theory")) for name in map(str, found.columns)}
-    found.attrs["units"] = {name: unit for name, unit in names.items() if unit}
-    return found
+    marked = table.copy()
+    names = {name: units.get(name.removesuffix("_theory")) for name in map(str, marked.columns)}
+    marked.attrs["units"] = {name: unit for name, unit in names.items() if unit}
+    return marked
 
 
 @dataclass(frozen=True)
@@ -266,29 +260,30 @@ def run(
     """
     place = None if out is None else Path(out)
     options: dict[str, Any] = {"out": place, "ranks": ranks, "fresh": fresh, "force": force}
-    with case._as_file() as path:
-        if isinstance(case, Scene):
-            if len(engines) != 1 or laws:
-                raise CaseError("a scene has its own law and runs on one engine")
-            return SceneRun(run_scene(path, scene_engine(engines[0]), **options))
-        tools = [engine_named(name) for name in engines]
-        return Run(run_impacts(path, engines=tools, laws=laws, progress=log.info, **options))
+    if isinstance(case, Scene):
+        if len(engines) != 1 or laws:
+            raise CaseError("a scene has its own law and runs on one engine")
+        return SceneRun(run_scene(case.model, case.text, scene_engine(engines[0]), place=case.name, **options))
+    tools = [engine_named(name) for name in engines]
+    impacts = run_impacts(
+        case.model, case.text, place=case.name, engines=tools, laws=laws, progress=log.info, **options
+    )
+    return Run(impacts)
 
 
 def predict(case: Case, law: str | None = None) -> pd.DataFrame:
     """The prediction of theory for a case, one row for each speed; no engine runs. Raises CaseError."""
-    found = predict_experiment(experiment(case.model, law))
-    return _units(pd.DataFrame({name: getattr(found, name) for name in Prediction.COLUMNS}), UNITS)
+    prediction = predict_experiment(experiment(case.model, law))
+    return _units(pd.DataFrame({name: getattr(prediction, name) for name in Prediction.COLUMNS}), UNITS)
 
 
-def deck(case: Case | Scene, out: Path | str, *, engine: str = "liggghts", law: str | None = None) -> list[Path]:
-    """Write the deck of a case or scene into the folder `out`; it runs by hand. Raises CaseError."""
+def deck(
+    case: Case | Scene, out: Path | str, *, engine: str = "liggghts", law: str | None = None, force: bool = False
+) -> list[Path]:
+    """Write the deck of a case or scene into `out`, where `force` allows other files. Raises CaseError."""
     if isinstance(case, Scene):
-        return write_texts(Path(out), scene_engine(engine).files(plan_scene(case.model)))
-    tool, x = engine_named(engine), experiment(case.model, law)
-    if not tool.can.deck:
-        raise CaseError(f"engine {engine}: it reads no deck; use liggghts or yade")
-    return tool.write(plan_impacts(x, predict_experiment(x)), Path(out))
+        return write_own(Path(out), scene_engine(engine).files(plan_scene(case.model)), force=force)
+    return write_deck(experiment(case.model, law), engine_named(engine), Path(out), force=force)
 
 
 def sweep(
@@ -309,9 +304,9 @@ def sweep(
     `settings` gives the values of keys by their dotted names, as a text ("1 mm..5 mm:9") or a sequence of values. What
     is finished in `out` (default: runs/<name>_sweep) does not run again. Raises CaseError, EngineError, OSError.
     """
-    with case._as_file() as path:
-        words: dict[str, Any] = {"engines": engines, "laws": laws, "ranks": ranks}
-        planned = study.plan(path, settings, **words, latin_hypercube=latin_hypercube, seed=seed)
+    planned = study.plan_text(
+        case.text, settings, engines=engines, laws=laws, ranks=ranks, latin_hypercube=latin_hypercube, seed=seed
+    )
     folder = Path(out) if out is not None else Path("runs") / f"{planned.name}_sweep"
 
     def report(done: int, total: int) -> None:

@@ -13,7 +13,7 @@ import pandas as pd
 import pytest
 from calls import CASES, COMMANDS, call, make_sweep
 
-from epdem import paths, terminal
+from epdem.base import paths, terminal
 from epdem.engines import ENGINES
 from epdem.scenes import report
 from epdem.studies import crosscheck
@@ -53,7 +53,7 @@ MISTAKES = {  # words, and what the sentence must hold
     "predict": (["steel.toml", "-l", "hook"], "steel.toml: law.name = 'hook' does not exist; there are hertz"),
     "doctor": (["steel.toml"], "extra argument(s) (steel.toml); see epdem doctor --help"),
     "crosscheck": (["nowhere.toml"], "nowhere.toml: no such file"),
-    "theory": (["--radius", "3 kg"], "--radius '3 kg': the unit 'kg' has the wrong dimension"),
+    "theory": (["--radius", "3 kg"], "--radius = '3 kg', the unit 'kg' has the wrong dimension"),
     "figures": (["-o", "steel.toml"], "steel.toml"),
     "timestep": (["steel.toml", "--error", "1"], "'--error': must be less than or equal to 0.1; see epdem timestep"),
     "cost": (["steel.toml", "-l", "hook"], "steel.toml: law.name = 'hook' does not exist"),
@@ -130,6 +130,13 @@ def test_long_values_are_cut_at_80_characters(folder, capsys, monkeypatch):
     for words in (["run", "steel.toml", "-e", "x" * 500], ["predict", "steel.toml", "-l", "x" * 500]):
         err = call(words, capsys, monkeypatch).err
         assert f"'{'x' * 77}...'" in err and len(err) < 250
+
+
+def test_two_cases_of_one_file_name_do_not_share_a_folder(folder, capsys, monkeypatch):
+    (folder / "b").mkdir()
+    shutil.copy("steel.toml", "b/steel.toml")
+    done = call(["crosscheck", "steel.toml", "b/steel.toml", "-o", "out"], capsys, monkeypatch)
+    assert done.code == 2 and "--out out: two of the cases have one file name" in done.err and not Path("out").exists()
 
 
 def test_title_and_folder_of_a_scene_are_shown_as_they_are(capsys):

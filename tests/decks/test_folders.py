@@ -9,13 +9,13 @@ from pathlib import Path
 
 import pytest
 
+from epdem.base.folders import LOCK, MANIFEST, claim
 from epdem.errors import CaseError
-from epdem.folders import LOCK, MANIFEST, claim
 
 HOLD = """
 import sys, time
 from pathlib import Path
-from epdem.folders import claim
+from epdem.base.folders import claim
 with claim(Path(sys.argv[1])):
     (Path(sys.argv[1]) / "restart.1.bin").write_text("x")
     print("in", flush=True)
@@ -80,7 +80,7 @@ def test_two_runs_never_share_a_folder_and_a_killed_one_leaves_its_files_ours(tm
         holder.wait()
     with claim(tmp_path / "out") as results:
         results.remove("restart.*")
-    assert json.loads((tmp_path / "out" / MANIFEST).read_text()) == {"files": {}}
+    assert json.loads((tmp_path / "out" / MANIFEST).read_text())["files"] == {}
 
 
 def test_blocks_of_one_process_nest_and_keep_the_lists_of_inner_folders_apart(tmp_path):
@@ -90,3 +90,33 @@ def test_blocks_of_one_process_nest_and_keep_the_lists_of_inner_folders_apart(tm
     first_run(tmp_path / "out/coarse")
     with claim(tmp_path / "out") as results:
         assert results.foreign == frozenset()
+
+
+def test_a_run_that_comes_to_nothing_leaves_no_folder(tmp_path):
+    with pytest.raises(CaseError), claim(tmp_path / "new"):
+        raise CaseError("a wrong law")
+    (tmp_path / "old").mkdir()
+    with claim(tmp_path / "old"):
+        pass
+    assert [p.name for p in tmp_path.rglob("*")] == ["old"]
+
+
+def test_a_file_about_to_be_written_is_in_the_way_whatever_its_name(tmp_path):
+    first_run(tmp_path / "out")
+    (tmp_path / "out/mill").write_text("mine")
+    with pytest.raises(CaseError, match="mill was not written by epdem"), claim(tmp_path / "out", files=["mill"]):
+        pass
+    with claim(tmp_path / "out", files=["drum"]):
+        pass
+
+
+def test_versions_are_kept_through_a_crash_until_another_run_notes_its_own(tmp_path):
+    with pytest.raises(KeyboardInterrupt), claim(tmp_path / "out") as results:
+        results.note({"engine": "1"})
+        (tmp_path / "out/restart.1.bin").touch()
+        raise KeyboardInterrupt
+    with claim(tmp_path / "out") as results:
+        assert results.versions == {"engine": "1"}
+        results.note({"engine": "2"})
+    with claim(tmp_path / "out") as results:
+        assert results.versions == {"engine": "2"}

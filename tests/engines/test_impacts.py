@@ -11,7 +11,8 @@ import numpy as np
 import pandas as pd
 import pytest
 
-from epdem.case.impact import Check, Numerics, parse, read_toml
+from epdem.case.impact import Check, Numerics, parse
+from epdem.case.toml import read_toml
 from epdem.engines import engine
 from epdem.impacts import store
 from epdem.impacts.comparison import CHECKED, compare, impacts_table

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """An interrupted bulk run goes on from its last restart file; Ctrl-C leaves no process behind."""
 
+import json
 import os
 import re
 import shutil
@@ -15,8 +16,9 @@ import pytest
 from scene_runs import run, write_case, write_deck
 from test_lean import CASES, small
 
-from epdem.case.impact import read_toml
+from epdem.base.folders import MANIFEST
 from epdem.case.scene import is_scene, load, parse
+from epdem.case.toml import read_toml
 from epdem.errors import CaseError
 from epdem.liggghts import launcher, resume
 from epdem.liggghts import scene_tables as tables
@@ -168,6 +170,19 @@ def test_a_hopper_with_another_outlet_is_not_continued(hopper, tmp_path):
         assert (tmp_path / "deck" / name).read_text() == (folder / "out" / name).read_text()
     with pytest.raises(CaseError, match="the case has changed"):
         run(other, out=folder / "out", resume=True)
+
+
+@pytest.mark.parametrize("program", ["liggghts", "epdem", None])
+def test_a_run_that_other_programs_began_is_not_continued(program, hopper, tmp_path):
+    shutil.copytree(hopper[1], tmp_path, dirs_exist_ok=True)
+    manifest = tmp_path / "out" / MANIFEST
+    known = json.loads(manifest.read_text())
+    assert set(known["versions"]) == {"liggghts", "epdem"}
+    known["versions"] = known["versions"] | {program: "0.0.9"} if program else {}
+    manifest.write_text(json.dumps(known))
+    said = f"begun by .*{program} 0.0.9" if program else "programs of unknown versions"
+    with pytest.raises(CaseError, match=said):
+        run(tmp_path / "case.toml", out=tmp_path / "out", resume=True)
 
 
 def test_without_a_restart_file_nothing_is_continued(tmp_path):

@@ -194,3 +194,22 @@ def test_a_frame_that_is_not_whole_is_an_error_that_names_it_and_can_be_left_out
     assert rest["particles"]["step"].max() == rest["contacts"]["step"].max() == 6000
     path.unlink()
     assert scene_tables.damaged(p, tmp_path, p.steps) == [last]
+
+
+@pytest.mark.parametrize("kind", ["particles", "contacts"])
+def test_a_frame_of_yade_is_read_by_its_step_and_is_not_whole_after_a_cut(kind, tmp_path):
+    p, engine = planned("yade_settle"), scene_engine("yade")
+    shutil.copytree(STORED / "yade_settle", tmp_path, dirs_exist_ok=True)
+    path, whole = tmp_path / f"{kind}.5040.npy", engine.read(p, tmp_path)
+    shutil.copy(path, tmp_path / f"{kind}.6300.npy")  # of a longer run: not this one's
+    (tmp_path / f"{kind}.old.npy").write_text("of the user")
+    for name, table in engine.read(p, tmp_path).items():
+        assert table.equals(whole[name])
+    raw = path.read_bytes()
+    for cut in (1, 60, len(raw) - 3, len(raw)):
+        path.write_bytes(raw[: len(raw) - cut])
+        with pytest.raises(EngineError, match=path.name):
+            engine.read(p, tmp_path)
+    path.unlink()
+    with pytest.raises(EngineError, match=path.name):
+        engine.read(p, tmp_path)

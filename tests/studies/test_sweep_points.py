@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from epdem.case.impact import read_toml
+from epdem.case.toml import read_toml
 from epdem.errors import CaseError
 from epdem.studies.sweep import points
 from epdem.studies.sweep.folder import Sweep

@@ -7,9 +7,9 @@ from typing import Annotated, Any, Literal, Self
 from pydantic import ConfigDict, Field, ValidationError, model_validator
 
 from ..errors import CaseError
-from . import impact as impact_case
 from .impact import Frozen, Header, LawChoice, Length, Material, Name, Quantity, Speed, Viscous
 from .messages import explain
+from .toml import read_toml
 
 Time = Annotated[float, Quantity("s", above=0.0)]
 Rate = Annotated[float, Quantity("Hz", above=0.0)]
@@ -281,4 +281,4 @@ def parse(data: dict[str, Any], path: object = "case") -> SceneCase:
 
 def load(path: Path | str) -> SceneCase:
     """The scene in a file. Raises CaseError."""
-    return parse(impact_case.read_toml(path), path)
+    return parse(read_toml(path), path)

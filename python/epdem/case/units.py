@@ -6,6 +6,8 @@ import re
 from functools import cache
 from typing import Any
 
+from ..errors import CaseError
+
 # number, blank, unit; checked before pint, which evaluates any expression
 _NUMBER = r"[+-]?(?:\d+(?:\.\d*)?|\.\d+)(?:[eE][+-]?\d{1,3})?"
 _NAME = r"[A-Za-zµ°%]{1,20}"
@@ -66,4 +68,15 @@ def within_limits(x: float, si: str) -> float:
     low, high = LIMITS.get(si, (0.0, math.inf))
     if x and not low <= abs(x) <= high:
         raise ValueError(f"must lie in [{low:g}, {high:g}] {si}; check the unit")
+    return x
+
+
+def read_number(place: str, value: object, unit: str) -> float:
+    """`value` as written at `place` in a file or a command, in SI and > 0. Raises CaseError."""
+    try:
+        x = within_limits(to_si(value, unit), unit)
+    except ValueError as error:
+        raise CaseError(f"{place} = {value!r}, {error}") from None
+    if not x > 0:
+        raise CaseError(f"{place} = {value!r}, must be > 0; correct it")
     return x

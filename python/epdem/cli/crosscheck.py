@@ -8,8 +8,9 @@ from typing import Annotated, Any
 
 import typer
 
-from ..terminal import console, status, table
-from .options import AsJson, Out
+from ..base.terminal import console, status, table
+from ..errors import CaseError
+from .options import AsJson, Force, Out
 
 VALUES = {
     "model": "model",
@@ -64,17 +65,19 @@ def crosscheck(
     law: Annotated[str | None, typer.Option("--law", "-l", help="a law instead of the case's")] = None,
     out: Out = None,
     fresh: Annotated[bool, typer.Option("--fresh", help="run again although results are stored")] = False,
-    force: Annotated[bool, typer.Option("--force", help="write into a folder that holds other files")] = False,
+    force: Force = False,
     as_json: AsJson = False,
 ) -> None:
     """Run a case on every installed engine and model, and print errors, order of convergence and invariance."""
     from ..impacts import report
     from ..studies.crosscheck import crosscheck as check
 
+    folders = [out / path.stem for path in cases] if out and len(cases) > 1 else [out for _ in cases]
+    if out and len(set(folders)) < len(cases):
+        raise CaseError(f"--out {out}: two of the cases have one file name and would share a folder; rename one")
     results = []
     with status() as progress:
-        for path in cases:
-            folder = out / path.stem if out and len(cases) > 1 else out
+        for path, folder in zip(cases, folders, strict=True):
             results.append(check(path, law=law, out=folder, fresh=fresh, force=force, progress=progress))
     if as_json:
         documents = [

@@ -12,14 +12,14 @@ from typing import Annotated, Any
 
 import typer
 
+from ..base.terminal import bar, console
 from ..errors import CaseError, EpdemError, Stopped
-from ..terminal import bar, console
 from . import crosscheck as cli_crosscheck
 from . import numerics as cli_numerics
 from . import scenes as cli_scene
 from . import sweep as cli_sweep
 from . import theory as cli_theory
-from .options import AsJson, CasePath, Engines, Laws, Out, laws_or_own, refuse
+from .options import AsJson, CasePath, Engines, Force, Laws, Out, laws_or_own, refuse
 
 ABOUT = """Elastic-plastic particle contact for LIGGGHTS and YADE, checked against theory.
 
@@ -51,7 +51,7 @@ def run(
     resume: Annotated[
         bool, typer.Option("--resume", help="continue an interrupted scene from its last restart file")
     ] = False,
-    force: Annotated[bool, typer.Option("--force", help="write into a folder that holds other files")] = False,
+    force: Force = False,
     as_json: AsJson = False,
 ) -> None:
     """Run a case and check it against theory, or run a bulk scene (default engine: liggghts)."""
@@ -107,6 +107,7 @@ def deck(
     given: Annotated[
         list[str] | None, typer.Option("--set", metavar="KEY=VALUE", help="a value for the template; repeat for more")
     ] = None,
+    force: Force = False,
     as_json: AsJson = False,
 ) -> None:
     """Write the deck of a case, or fill a template of your own with the values of a case."""
@@ -116,34 +117,32 @@ def deck(
         refuse(file, "the deck of an own template has the law of its case", law=law)
         if engine != "liggghts":
             raise CaseError(f"{file}: --engine {engine}: own templates are for liggghts; leave it out")
-        cli_scene.deck_template(file, case, given or [], out, as_json=as_json)
+        cli_scene.deck_template(file, case, given or [], out, force=force, as_json=as_json)
         return
     refuse(file, "it goes with an own template (.j2)", case=case, set=given)
     if cli_scene.is_scene(file):
         refuse(file, "a scene has its own law", law=law)
-        cli_scene.deck_scene(file, out, engine=engine, as_json=as_json)
+        cli_scene.deck_scene(file, out, engine=engine, force=force, as_json=as_json)
         return
-    from ..case.impact import load, named
+    from ..case.impact import load
+    from ..case.toml import named
     from ..engines import engine as find
     from ..impacts.experiment import experiment
-    from ..impacts.plan import plan
-    from ..impacts.prediction import predict
+    from ..impacts.run import write_deck
 
-    tool = find(engine)
-    if not tool.can.deck:
-        raise CaseError("--engine embedded: it reads no deck; use liggghts or yade")
     if len(law or []) > 1:
         raise CaseError("--law: a deck has one law; write one deck for each")
     with named(file):
         x = experiment(load(file), law[0] if law else None)
-        names = [str(f) for f in tool.write(plan(x, predict(x)), out)]
+        names = [str(f) for f in write_deck(x, find(engine), out, force=force)]
     print(json.dumps({"files": names}) if as_json else "\n".join(names))
 
 
 @app.command()
 def predict(case: CasePath, law: Laws = None, as_json: AsJson = False) -> None:
     """Print the prediction of theory for a case; no engine runs."""
-    from ..case.impact import load, named
+    from ..case.impact import load
+    from ..case.toml import named
     from ..impacts.experiment import experiment
     from ..impacts.prediction import predict as predict_experiment
     from . import show

@@ -7,8 +7,8 @@ from typing import Annotated
 
 import typer
 
-from ..terminal import console, frame_table, status
-from .options import AsJson, CasePath, Engines, Laws, Out, laws_or_own
+from ..base.terminal import console, frame_table, status
+from .options import AsJson, CasePath, Engines, Force, Laws, Out, Replace, laws_or_own, refuse
 
 
 def timestep(
@@ -18,7 +18,8 @@ def timestep(
     as_json: AsJson = False,
 ) -> None:
     """Find the time step of a case for a target error, with the embedded engine."""
-    from ..case.impact import load, named
+    from ..case.impact import load
+    from ..case.toml import named
     from ..impacts.experiment import experiment
     from ..impacts.prediction import predict
     from ..impacts.timestep import search
@@ -66,14 +67,20 @@ def stability(
         int | None, typer.Option(min=1000, help="steps of the drift by repeated bounces (default: 1e9)")
     ] = None,
     out: Annotated[Path | None, typer.Option("--out", "-o", help="CSV file of all verdicts")] = None,
+    force: Replace = False,
     as_json: AsJson = False,
 ) -> None:
     """Test stiff and extreme cases, and find the time step at which each fails (default engine: embedded)."""
-    from ..files import atomic
+    from ..base.files import atomic
+    from ..base.folders import refuse_existing
     from ..impacts.report import records
     from ..studies import stability as suite
     from ..studies.stability.suite import summary
 
+    if out:
+        refuse_existing(out, force=force)
+    else:
+        refuse("stability", "it goes with --out", force=force)
     with status() as progress:
         outcome = suite.run(
             engine or ["embedded"], law or [], groups=group, every=every, steps=steps, progress=progress
@@ -111,15 +118,19 @@ def cost(
     repetitions: Annotated[int, typer.Option(min=1, max=100, help="repetitions of every timed run, interleaved")] = 5,
     bulk: Annotated[bool, typer.Option(help="run a bulk scene in LIGGGHTS as well")] = False,
     out: Out = None,
+    force: Force = False,
     as_json: AsJson = False,
 ) -> None:
     """Measure error against run time at 10 to 3000 steps in contact (default engines: embedded and liggghts)."""
+    from ..base.folders import claim
+    from ..case.impact import load
     from ..impacts.report import records
     from ..studies import cost as study
     from ..studies import cost_report
 
     scene = None
-    with status() as progress:
+    folder = out or Path("runs") / load(case).name / "cost"
+    with claim(folder, force=force, files=["cost.csv"]), status() as progress:
         outcome = study.run(
             case,
             engines=engine or ["embedded", "liggghts"],
@@ -131,8 +142,7 @@ def cost(
             from ..studies.stability import bulk_cost
 
             scene = bulk_cost.run(law or [outcome.case.law.name], progress=progress)
-    folder = out or Path("runs") / outcome.case.name / "cost"
-    files = cost_report.write(outcome, folder)
+        files = cost_report.write(outcome, folder)
     if as_json:
         document = {
             "case": outcome.case.name,

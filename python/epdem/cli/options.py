@@ -11,15 +11,15 @@ from ..errors import CaseError
 CasePath = Annotated[Path, typer.Argument(metavar="CASE", help="case file (TOML)")]
 Engines = Annotated[
     list[str] | None,
-    typer.Option(
-        "--engine", "-e", help="embedded, liggghts, yade, liggghts-hertz, liggghts-thornton_ning; repeat for more"
-    ),
+    typer.Option("--engine", "-e", help="engine, as embedded ('epdem doctor' lists them); repeat for more"),
 ]
 Laws = Annotated[
     list[str] | None,
-    typer.Option("--law", "-l", help="hertz, thornton, johnson or cavity instead of the case's law; repeat for more"),
+    typer.Option("--law", "-l", help="law instead of the case's ('epdem theory' lists them); repeat for more"),
 ]
 Out = Annotated[Path | None, typer.Option("--out", "-o", help="folder for the results (default: runs/<case>)")]
+Force = Annotated[bool, typer.Option("--force", help="write into a folder that holds other files")]
+Replace = Annotated[bool, typer.Option("--force", help="replace an existing file")]
 AsJson = Annotated[bool, typer.Option("--json", help="print one JSON document and nothing else")]
 
 
@@ -33,16 +33,3 @@ def refuse(place: object, reason: str, **given: object) -> None:
     for name, value in given.items():
         if not (value is None or value is False or value == []):
             raise CaseError(f"{place}: --{name.replace('_', '-')}: {reason}; leave it out")
-
-
-def quantity(option: str, text: str, unit: str) -> float:
-    """The SI value > 0 of an option's text. Raises CaseError that names the option."""
-    from ..case.units import to_si, within_limits
-
-    try:
-        value = within_limits(to_si(text, unit), unit)
-    except ValueError as error:
-        raise CaseError(f"{option} {text!r}: {error}") from None
-    if not value > 0:
-        raise CaseError(f"{option} {text!r}: must be > 0 {unit}")
-    return value

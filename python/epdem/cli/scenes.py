@@ -7,15 +7,15 @@ from typing import Annotated
 
 import typer
 
+from ..base.terminal import bar, console
 from ..errors import CaseError
-from ..terminal import bar, console
-from .options import AsJson, CasePath, quantity, refuse
+from .options import AsJson, CasePath, Replace, refuse
 
 
 def is_scene(path: Path) -> bool:
     """Whether a case file describes a bulk scene. Raises CaseError if it cannot be read."""
-    from ..case.impact import read_toml
     from ..case.scene import is_scene as holds_scene
+    from ..case.toml import read_toml
 
     return holds_scene(read_toml(path))
 
@@ -59,17 +59,17 @@ def run_scene(
     return 0 if outcome.passed else 1
 
 
-def deck_scene(case: Path, out: Path, *, engine: str = "liggghts", as_json: bool = False) -> None:
+def deck_scene(case: Path, out: Path, *, engine: str = "liggghts", force: bool = False, as_json: bool = False) -> None:
     """Write the deck of a scene."""
-    from ..case.impact import named
+    from ..base.folders import write_own
     from ..case.scene import load
+    from ..case.toml import named
     from ..engines import scene_engine
-    from ..files import write_texts
     from ..scenes.plan import plan
 
     with named(case):
         files = scene_engine(engine).files(plan(load(case)))
-    names = [str(f) for f in write_texts(out, files)]
+    names = [str(f) for f in write_own(out, files, force=force)]
     print(json.dumps({"files": names}) if as_json else "\n".join(names))
 
 
@@ -88,7 +88,8 @@ def explain(case: CasePath, as_json: AsJson = False) -> None:
 
 
 def _explained(case: Path) -> list[tuple[str, str, str]]:
-    from ..case.impact import load, named
+    from ..case.impact import load
+    from ..case.toml import named
     from ..liggghts import explain
 
     with named(case):
@@ -115,8 +116,8 @@ def tune(
     as_json: AsJson = False,
 ) -> None:
     """Find the neighbour skin, and with --ranks the cut of the room, with which a scene runs fastest in LIGGGHTS."""
+    from ..base.terminal import status
     from ..studies import tune as t
-    from ..terminal import status
 
     with status() as line:
         found = t.tune(case, ranks=ranks, seconds=seconds, progress=lambda text: line(f"{case.stem}: {text}"))
@@ -148,17 +149,17 @@ def soften(
     out: Annotated[
         Path | None, typer.Option("--out", "-o", help="file to write (default: CASE_softK.toml beside it)")
     ] = None,
-    force: Annotated[bool, typer.Option("--force", help="replace an existing file")] = False,
+    force: Replace = False,
     as_json: AsJson = False,
 ) -> None:
     """Write a softened copy of a case with the same e_n at every speed and larger time steps."""
-    from ..files import atomic
+    from ..base.files import atomic
+    from ..base.folders import refuse_existing
     from ..studies.soften import soften as twin_of
 
     twin = twin_of(case, factor)
     target = out or case.with_name(f"{case.stem}_soft{factor:g}.toml")
-    if target.exists() and not force:
-        raise CaseError(f"{target} exists; name another file by --out, or replace it by --force")
+    refuse_existing(target, force=force)
     with atomic(target) as temporary:
         temporary.write_text(twin.text, encoding="utf-8")
     if as_json:
@@ -198,6 +199,7 @@ def calibrate(
     as_json: AsJson = False,
 ) -> None:
     """Compute the strength of the case's law from one measured e_n, or from a hardness."""
+    from ..case.units import read_number
     from ..studies import calibrate as c
 
     if (e_n is None) == (hv is None and hb is None):
@@ -207,7 +209,7 @@ def calibrate(
     if e_n is not None:
         if speed is None:
             raise CaseError("--e-n belongs to one impact; add its speed, as --speed '2 m/s'")
-        result = c.from_restitution(case, e_n, quantity("--speed", speed, "m/s"))
+        result = c.from_restitution(case, e_n, read_number("--speed", speed, "m/s"))
     else:
         refuse(case, "it belongs to --e-n", speed=speed)
         pressure = c.pressure_of_hardness(vickers=hv, brinell=hb, dent_ratio=dent_ratio)
@@ -222,9 +224,11 @@ def calibrate(
     )
 
 
-def deck_template(template: Path, case: Path, sets: list[str], out: Path, *, as_json: bool = False) -> None:
+def deck_template(
+    template: Path, case: Path, sets: list[str], out: Path, *, force: bool = False, as_json: bool = False
+) -> None:
     """Write a deck from a template of the user's own and the values of a case."""
     from ..liggghts.own_template import settings, write
 
-    names = [str(f) for f in write(template, case, settings(sets), out)]
+    names = [str(f) for f in write(template, case, settings(sets), out, force=force)]
     print(json.dumps({"files": names}) if as_json else "\n".join(names))

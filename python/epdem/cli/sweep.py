@@ -7,9 +7,9 @@ from typing import Annotated
 
 import typer
 
+from ..base.terminal import console
 from ..errors import CaseError
-from ..terminal import console
-from .options import AsJson, CasePath, Engines, Laws, Out, refuse
+from .options import AsJson, CasePath, Engines, Force, Laws, Out, refuse
 
 
 def sweep(
@@ -37,7 +37,7 @@ def sweep(
     write_script: Annotated[
         Path | None, typer.Option(help="write a batch script to submit by hand; nothing runs")
     ] = None,
-    force: Annotated[bool, typer.Option("--force", help="write into a folder that holds other files")] = False,
+    force: Force = False,
     as_json: AsJson = False,
 ) -> None:
     """A case or scene at many points; the same command again does only what is missing or has changed."""
@@ -93,13 +93,13 @@ def status(
     from ..studies.sweep.table import write
     from . import sweep_view
 
-    found = ask(folder)
+    state = ask(folder)
     if table:
         write(store.read(folder), folder)
     if as_json:
-        print(json.dumps(sweep_view.plain(found), indent=1))
+        print(json.dumps(sweep_view.plain(state), indent=1))
     else:
-        sweep_view.status(found, console())
+        sweep_view.status(state, console())
 
 
 def points(

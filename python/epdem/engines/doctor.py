@@ -6,11 +6,11 @@ import tempfile
 from dataclasses import dataclass
 from pathlib import Path
 
-from .. import paths
+from ..base import paths
+from ..base.processes import ask
 from ..errors import EngineError, EpdemError
 from ..laws import library as claw
 from ..liggghts import launcher
-from ..processes import ask
 from . import ENGINES
 
 
@@ -47,8 +47,8 @@ def _mpi() -> Finding:
 def _plugin() -> Finding:
     """Load the plugin into the installed LIGGGHTS and let it create every model of ours."""
     plugin = paths.native("libepdem_liggghts.so")
-    if words := launcher.missing():
-        return Finding("plugin", False, "not here", words)
+    if reason := launcher.missing():
+        return Finding("plugin", False, "not here", reason)
     with tempfile.TemporaryDirectory() as folder:
         deck = Path(folder) / "in.doctor"
         models = "\n".join(f"pair_style gran model ep/{name} tangential off" for name in claw.laws())
@@ -70,6 +70,6 @@ def examine() -> list[Finding]:
     for name, kind in ENGINES.items():
         tool = kind()
         reason = tool.missing()
-        found, advice = ("not here", reason) if reason else (tool.version(), "")
-        findings.append(Finding(f"engine {name}", reason is None, found, advice, needed=name == "embedded"))
+        detail, advice = ("not here", reason) if reason else (tool.version(), "")
+        findings.append(Finding(f"engine {name}", reason is None, detail, advice, needed=name == "embedded"))
     return [*findings, _plugin(), _mpi()]

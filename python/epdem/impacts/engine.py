@@ -2,6 +2,7 @@
 """The interface of an engine of impacts: a plan goes in, a trajectory comes out."""
 
 import math
+import shutil
 import time
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -9,7 +10,7 @@ from typing import Protocol
 
 import numpy as np
 
-from ..errors import CaseError
+from ..errors import CaseError, EngineError
 from .experiment import Experiment
 from .pairs import Pairs
 from .plan import Plan
@@ -115,15 +116,24 @@ def check_abilities(tool: Engine, x: Experiment) -> None:
 
 
 def refuse(tool: Engine, plan: Plan, prediction: Prediction, *, ranks: int = 1) -> None:
-    """Raise CaseError if `tool` cannot run `plan` as it is; `prediction` is that of the plan's experiment."""
-    most = tool.can.ranks
-    if ranks > most:
-        words = "one rank; leave --ranks out" if most == 1 else f"at most {most} ranks here; ask for no more"
-        raise CaseError(f"--ranks {ranks}: engine {tool.name} runs on {words}")
+    """Raise CaseError if `tool` cannot run `plan` as it is, EngineError if its ranks cannot be started.
+
+    `prediction` is that of the plan's experiment.
+    """
+    refuse_ranks(tool.name, tool.can.ranks, ranks)
     tool.check(plan)
     for speed, overlap in zip(prediction.speed, prediction.overlap_max, strict=True):
         if tool.can.positions and (why := not_representable(plan.experiment, float(overlap))):
             raise CaseError(f"{speed:.4g} m/s is not representable by positions ({why}); use --engine embedded for it")
+
+
+def refuse_ranks(engine: str, most: int, ranks: int) -> None:
+    """Raise CaseError for more ranks than the `most` of an engine, EngineError if there is no mpirun for them."""
+    if ranks > most:
+        limit = "one rank; leave it out" if most == 1 else f"at most {most} ranks here; ask for no more"
+        raise CaseError(f"--ranks {ranks}: engine {engine} runs on {limit}")
+    if ranks > 1 and shutil.which("mpirun") is None:
+        raise EngineError("--ranks needs mpirun, which was not found; apt-get install openmpi-bin")
 
 
 def not_representable(x: Experiment, overlap_max: float) -> str | None:

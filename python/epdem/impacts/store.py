@@ -7,8 +7,8 @@ from pathlib import Path
 import h5py
 import pandas as pd
 
+from ..base.tables import Hdf5, read_table, write_csv, write_table
 from ..errors import CaseError
-from ..tables import Hdf5, read_table, write_csv, write_table
 from .comparison import UNITS
 
 

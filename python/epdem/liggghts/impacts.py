@@ -7,15 +7,16 @@ from pathlib import Path
 
 import numpy as np
 
-from .. import data_file, paths
-from .. import rendering as decks
+from ..base import paths
+from ..base import rendering as decks
+from ..base.files import write_texts
+from ..base.processes import ask
 from ..errors import CaseError, EngineError
-from ..files import write_texts
 from ..impacts.engine import Abilities, Trajectory, check_abilities
 from ..impacts.pairs import Pairs
 from ..impacts.places import room, side_by_side
 from ..impacts.plan import Plan
-from ..processes import ask
+from ..lammps import data_file
 from . import dump, launcher
 from .deck import Deck
 from .log import loop_seconds
@@ -42,11 +43,11 @@ class Liggghts:
         return launcher.missing()
 
     def version(self) -> str:
-        found = re.search(
+        match = re.search(
             r"LIGGGHTS[-\w ]*?(\d+\.\d+\.\d+)",
             ask([str(paths.launcher()), "-log", "none", "-h"], launcher.environment()),
         )
-        return f"LIGGGHTS {found.group(1) if found else '(version unknown)'}"
+        return f"LIGGGHTS {match.group(1) if match else '(version unknown)'}"
 
     def model(self, plan: Plan) -> str:
         return f"ep/{plan.experiment.law.name}"
@@ -95,10 +96,13 @@ class Liggghts:
         return write_texts(folder, texts)
 
     def run(self, plan: Plan, folder: Path, *, ranks: int = 1) -> Trajectory:
-        (folder / "path.bin").unlink(missing_ok=True)
+        path = folder / "path.bin"
+        path.unlink(missing_ok=True)
         allowed = 120 + 2e-6 * plan.n * plan.steps
         wall = launcher.run("in.impact", folder, ranks=ranks, log=launcher.LOG, seconds=allowed)
-        return trajectory(plan, folder / "path.bin", {"total": wall, "stepping": loop_seconds(folder / launcher.LOG)})
+        result = trajectory(plan, path, {"total": wall, "stepping": loop_seconds(folder / launcher.LOG)})
+        path.unlink()  # large
+        return result
 
     def seconds(self, plan: Plan, folder: Path) -> dict[str, float]:
         files = self.write(plan, folder)

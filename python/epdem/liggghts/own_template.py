@@ -3,11 +3,11 @@
 
 from pathlib import Path
 
+from ..base.folders import write_own
 from ..case import scene as scenes
 from ..case.impact import load as load_impact
-from ..case.impact import read_toml
+from ..case.toml import read_toml
 from ..errors import CaseError
-from ..files import write_texts
 from ..impacts.experiment import experiment
 from ..impacts.plan import plan
 from ..impacts.prediction import predict
@@ -29,7 +29,7 @@ def value(text: str) -> int | float | str:
 
 def settings(pairs: list[str]) -> dict[str, int | float | str]:
     """The values of `--set key=value`. Raises CaseError."""
-    found: dict[str, int | float | str] = {}
+    values: dict[str, int | float | str] = {}
     for pair in pairs:
         key, equals, text = pair.partition("=")
         if not equals or not key.isidentifier():
@@ -38,18 +38,20 @@ def settings(pairs: list[str]) -> dict[str, int | float | str]:
             raise CaseError(f"--set {key}: this name holds the case's values; choose another")
         if not text.isprintable() or "&" in text:
             raise CaseError(f"--set {key}: {text!r} would begin or join lines of the deck; leave out line ends and '&'")
-        if key in found:
+        if key in values:
             raise CaseError(f"--set {key} is given twice; keep one")
-        found[key] = value(text)
-    return found
+        values[key] = value(text)
+    return values
 
 
-def write(template: Path, case_path: Path, sets: dict[str, int | float | str], out: Path) -> list[Path]:
+def write(
+    template: Path, case_path: Path, sets: dict[str, int | float | str], out: Path, *, force: bool = False
+) -> list[Path]:
     """Render `template` with the values of a case into `out`, with the case's own data and mesh files beside it.
 
     In the template: `deck` (materials, model, time step ...), `case`, the names of `sets`, and our macros by
-    {% import "liggghts/macros.j2" as macros %}. Raises CaseError for a mistake in the template, an undefined name, or
-    a set one that is not used.
+    {% import "liggghts/macros.j2" as macros %}. Raises CaseError for a mistake in the template, an undefined name, a
+    set one that is not used, or a file of the user's in the way, unless `force`.
     """
     name = template.name.removesuffix(".j2")
     if not name or name == template.name:
@@ -70,4 +72,4 @@ def write(template: Path, case_path: Path, sets: dict[str, int | float | str], o
     text, unused = sandbox.render(template, values | sets)
     if wrong := unused & set(sets):
         raise CaseError(f"--set {min(wrong)}: {template} does not use it; check the spelling")
-    return write_texts(out, {name: text} | {n: content for n, content in beside.items() if n in text})
+    return write_own(out, {name: text} | {n: content for n, content in beside.items() if n in text}, force=force)

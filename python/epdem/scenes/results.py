@@ -7,8 +7,8 @@ from pathlib import Path
 import h5py
 import pandas as pd
 
+from ..base.tables import Hdf5, read_table, write_csv, write_table
 from ..errors import CaseError
-from ..tables import Hdf5, read_table, write_csv, write_table
 from .columns import UNITS
 
 
@@ -46,12 +46,12 @@ def read(path: Path | str) -> SceneResults:
     """The results in a file that `write` made. Raises CaseError."""
     try:
         with h5py.File(path) as file:
-            found = SceneResults(file["case"][()].decode(), dict(file.attrs))
+            results = SceneResults(file["case"][()].decode(), dict(file.attrs))
             for name, group in file.items():
                 if "columns" in getattr(group, "attrs", {}):
-                    found.tables[name] = read_table(group)
-            found.decks = {name: text[()].decode() for name, text in file.get("decks", {}).items()}
-            return found
+                    results.tables[name] = read_table(group)
+            results.decks = {name: text[()].decode() for name, text in file.get("decks", {}).items()}
+            return results
     except FileNotFoundError:
         raise CaseError(f"{path}: no such file; 'epdem run CASE' writes it") from None
     except (OSError, KeyError) as error:

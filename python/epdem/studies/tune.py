@@ -18,11 +18,13 @@ from pathlib import Path
 import numpy as np
 import tomlkit
 
-from ..case.impact import named
+from ..base.files import atomic, write_texts
 from ..case.scene import Output, SceneCase, load
+from ..case.toml import named
+from ..engines import scene_engine
 from ..errors import EngineError
-from ..files import atomic, write_texts
 from ..liggghts import launcher, log, scene_deck
+from ..scenes.engine import check_abilities
 from ..scenes.plan import ScenePlan, plan
 
 SHARES = (0.25, 0.5, 0.75, 1.0, 1.5)  # of the smallest radius: skins that are tried
@@ -170,7 +172,7 @@ def tune(path: Path, *, ranks: int = 1, seconds: float = 60.0, progress: Progres
         case = load(path)
         p = _silent(case)
         texts = scene_deck.files(p)
-    launcher.refuse_ranks(ranks)
+    check_abilities(scene_engine("liggghts"), p, ranks=ranks, resume=False)
     present = scene_deck.deck(p).skin
     others = sorted({float(f"{share * p.smallest:.2e}") for share in SHARES} - {present})
     skins = [present, *others]

@@ -5,13 +5,12 @@ from dataclasses import dataclass
 from itertools import combinations_with_replacement
 from math import atan
 
-from .. import rendering as decks
+from ..base import rendering as decks
 from ..errors import CaseError
 from ..scenes import placement
 from ..scenes.kinds import Block, Plane
 from ..scenes.plan import ScenePlan
-from .deck import Material
-from .deck_modules import cone
+from .deck import Material, strength_values
 from .deck_modules.law import LAWS
 from .impacts import Yade
 from .launcher import deck_modules
@@ -116,7 +115,7 @@ def notes(p: ScenePlan) -> list[str]:
 
 
 def _materials(p: ScenePlan, friction: Square) -> tuple[Material, ...]:
-    law, found = LAWS[p.model.law], []
+    materials = []
     for i, t in enumerate(p.model.types):
         x = p.case.materials[t.material]
         values = {
@@ -125,17 +124,9 @@ def _materials(p: ScenePlan, friction: Square) -> tuple[Material, ...]:
             "density": x.density,
             "friction": friction[i][i],
         }
-        if law.strength_name:
-            values[law.strength_name] = t.strength
-            ratios = {n: p.model.parameters[n] for n in law.ratios}
-            highest = cone.STRONGEST * x.young_modulus / law(1.0, 1e-3, **ratios).trigger_factor
-            if t.strength >= highest:
-                raise CaseError(
-                    f"materials.{t.material}: {law.strength_name} = {t.strength:.6g} Pa, YADE's law takes less than "
-                    f"{highest:.6g} Pa at this young_modulus; use --engine liggghts"
-                )
-        found.append(Material(t.name, values))
-    return tuple(found)
+        own = strength_values(p.model.law, p.model.ratios(), t.strength, x.young_modulus, t.material)
+        materials.append(Material(t.name, values | own))
+    return tuple(materials)
 
 
 def _pairs(friction: Square) -> tuple[tuple[int, int, float], ...]:
@@ -172,7 +163,7 @@ def deck(p: ScenePlan) -> Deck:
         source=p.case.case.source,
         summary=p.summary,
         law=m.law,
-        ratios={n: m.parameters[n] for n in LAWS[m.law].ratios},
+        ratios=m.ratios(),
         materials=_materials(p, friction),
         wall_material=m.wall_type - 1,
         frictions=_pairs(friction),
@@ -200,8 +191,8 @@ def deck(p: ScenePlan) -> Deck:
 
 def files(p: ScenePlan) -> dict[str, str]:
     """All files of a YADE scene by name; they run by hand in one folder. Raises CaseError."""
-    found = {SCRIPT: decks.render("yade/scene.py.j2", deck=deck(p)), SPHERES: _table(p)}
-    return found | deck_modules()
+    deck_files = {SCRIPT: decks.render("yade/scene.py.j2", deck=deck(p)), SPHERES: _table(p)}
+    return deck_files | deck_modules()
 
 
 def _filled(p: ScenePlan) -> Block:

@@ -14,57 +14,60 @@ from ..scenes.plan import ScenePlan
 CONTACT = ["i", "j", "overlap", "delta_max"]
 
 
-def _frames(folder: Path, kind: str, names: list[str]) -> pd.DataFrame:
-    """All frames of a kind, one below the other. Raises EngineError for an incomplete one."""
-    found = []
-    for path in sorted(folder.glob(f"{kind}.*.npy"), key=lambda p: int(p.suffixes[-2][1:])):
+def _frames(p: ScenePlan, folder: Path, kind: str, every: int, names: list[str]) -> pd.DataFrame:
+    """The frames of a kind that a run of this plan writes, one below the other; other files of such names are the
+    user's. Raises EngineError for a frame that is missing or not whole.
+    """
+    frames = []
+    for step in range(0, p.steps + 1, every):
+        path = folder / f"{kind}.{step}.npy"
         try:
             table = pd.DataFrame(np.load(path), columns=names)
-        except (OSError, ValueError) as error:
+        except (OSError, ValueError, EOFError) as error:
             raise EngineError(f"{path}: incomplete ({error}); run the case again") from None
-        table.insert(0, "step", int(path.suffixes[-2][1:]))
-        found.append(table)
-    return pd.concat(found, ignore_index=True) if found else pd.DataFrame(columns=["step", *names])
+        table.insert(0, "step", step)
+        frames.append(table)
+    return pd.concat(frames, ignore_index=True)
 
 
 def rows(p: ScenePlan, log: Path) -> pd.DataFrame:
     """The rows that a run printed. Raises EngineError."""
     lines = [line.split() for line in log.read_text(errors="replace").splitlines()]
-    heads = next((words[1:] for words in lines if words[:1] == ["Step"]), [])
-    found = {}
-    for words in lines:
-        if len(words) == len(heads) + 1 and words[0].isdigit():
-            found[int(words[0])] = [float(w) for w in words[1:]]
-    if not found:
+    heads = next((fields[1:] for fields in lines if fields[:1] == ["Step"]), [])
+    table = {}
+    for fields in lines:
+        if len(fields) == len(heads) + 1 and fields[0].isdigit():
+            table[int(fields[0])] = [float(w) for w in fields[1:]]
+    if not table:
         raise EngineError(f"{log}: no rows; the run ended before its first step")
-    return columns.rows(p, found, heads)
+    return columns.rows(p, table, heads)
 
 
 def particles(p: ScenePlan, folder: Path) -> pd.DataFrame:
     """Every sphere of every frame, SI. Raises EngineError for an incomplete frame."""
-    found = _frames(folder, "particles", [*columns.PARTICLES, *(columns.SPINS if p.model.spins else [])])
+    table = _frames(p, folder, "particles", p.frames, [*columns.PARTICLES, *(columns.SPINS if p.model.spins else [])])
     if p.layout.periodic:  # YADE does not put back what leaves its periodic cell
         for axis, low, high in zip("xy", p.layout.box[0:4:2], p.layout.box[1:4:2], strict=True):
-            found[axis] = (found[axis] - low) % (high - low) + low
-    return found.astype({"id": "int64", "type": "int64", "step": "int64"})
+            table[axis] = (table[axis] - low) % (high - low) + low
+    return table.astype({"id": "int64", "type": "int64", "step": "int64"})
 
 
 def read(p: ScenePlan, folder: Path, log: Path) -> dict[str, pd.DataFrame]:
     """The tables rows, particles and contacts of a run, SI. Raises EngineError for an incomplete frame."""
-    found = {"rows": rows(p, log)}
+    tables = {"rows": rows(p, log)}
     if p.frames:
-        found["particles"] = particles(p, folder)
+        tables["particles"] = particles(p, folder)
     if p.contacts:
-        every = _contacts(p, folder, found["particles"])
+        every = _contacts(p, folder, tables["particles"])
         if p.dents:
-            found["particles"]["plastic_work"] = _plastic_work(every, found["particles"])
-        found["contacts"] = every[every["overlap"] > 0].reset_index(drop=True)
-    return found
+            tables["particles"]["plastic_work"] = _plastic_work(every, tables["particles"])
+        tables["contacts"] = every[every["overlap"] > 0].reset_index(drop=True)
+    return tables
 
 
 def _contacts(p: ScenePlan, folder: Path, spheres: pd.DataFrame) -> pd.DataFrame:
     """Every contact of every frame; with overlap 0 those that ended since the frame before."""
-    raw = _frames(folder, "contacts", CONTACT).astype({"step": "int64", "i": "int64", "j": "int64"})
+    raw = _frames(p, folder, "contacts", p.contacts, CONTACT).astype({"step": "int64", "i": "int64", "j": "int64"})
     raw = raw[raw["overlap"] >= 0].reset_index(drop=True)  # what is only near is no contact yet
     walls = np.array(["", *(w.name for w in p.layout.planes), *p.layout.meshes])
     beyond = raw["j"] - p.case.scene.count + 1

@@ -4,6 +4,7 @@
 import numpy as np
 
 from ...theory.backbones import Backbone
+from ...theory.numerics import gauss
 from .running import BROKEN, CREATED, LEAST_ORDER, Setting, Verdict, slope
 from .sampling import PositionSampler, Sampler
 from .variants import between_walls
@@ -15,7 +16,6 @@ POSITION_COARSE = (0.3, 0.7, 1.0, 1.5)  # an engine's start-up costs more than i
 # is known to the law one step later, so the balance begins there.
 KNOWN = {"liggghts": 1}
 PERIODS = 20.0  # length of a run in stability limits
-GAUSS_X, GAUSS_W = np.polynomial.legendre.leggauss(40)
 
 
 def stored(theory: Backbone, alpha: np.ndarray, top: np.ndarray) -> np.ndarray:
@@ -24,14 +24,14 @@ def stored(theory: Backbone, alpha: np.ndarray, top: np.ndarray) -> np.ndarray:
     On the elastic branch: what was put in less what came back from `top` to alpha, by Gauss points in an angle in
     which the branch is smooth at both of its ends.
     """
-    alpha = np.maximum(alpha, 0.0)
+    (x, w), alpha = gauss(40), np.maximum(alpha, 0.0)
     recovered = np.asarray(theory.recovered_overlap(top))
     # alpha = top - recovered sin^2(angle)
     last = np.arcsin(np.sqrt(np.clip((top - alpha) / recovered, 0.0, 1.0)))
-    angle = last[..., None] * (GAUSS_X + 1) / 2
+    angle = last[..., None] * x
     points = top[..., None] - recovered[..., None] * np.sin(angle) ** 2
     force = theory.unloading_force(np.maximum(points, 0.0), top[..., None])
-    back = (force * np.sin(2 * angle)) @ GAUSS_W * recovered * last / 2
+    back = (force * np.sin(2 * angle)) @ w * recovered * last
     return np.asarray(np.where(top <= theory.yield_overlap, theory.work(alpha), theory.work(top) - back))
 
 

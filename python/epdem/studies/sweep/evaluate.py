@@ -10,14 +10,14 @@ from typing import Any
 import pandas as pd
 
 from ...case import impact, scene
+from ...case.toml import named
 from ...engines import engine, scene_engine
 from ...errors import CaseError, EngineError, EpdemError
-from ...impacts.comparison import compare
 from ...impacts.engine import refuse
 from ...impacts.experiment import experiment
 from ...impacts.plan import plan
 from ...impacts.prediction import predict
-from ...impacts.run import run_plan
+from ...impacts.run import run_and_compare
 from ...scenes.run import run as run_scene
 from . import folder as store
 from .folder import Sweep
@@ -34,7 +34,7 @@ def check(sweep: Sweep, number: int) -> CaseError | None:
             scene.parse(data, place)
             return None
         case = impact.parse(data, place)
-        with impact.named(place):
+        with named(place):
             for law in sweep.laws or (None,):
                 experiment(case, law)
     except CaseError as error:
@@ -76,10 +76,9 @@ def _impacts(sweep: Sweep, number: int, place: Path) -> dict[str, list[Any]]:
         for tool in tools:
             refuse(tool, p, prediction, ranks=sweep.ranks)
             at = place / x.law.name / tool.name if tool.can.deck else place
-            stage = run_plan(p, tool, at, ranks=sweep.ranks)
-            tables.append(compare(tool.name, x.law.name, stage.impacts, prediction, x.check))
-    found = tables[0] if len(tables) == 1 else pd.concat(tables, ignore_index=True)
-    return {str(name): found[name].tolist() for name in found.columns}
+            tables.append(run_and_compare(p, prediction, tool, at, ranks=sweep.ranks)[0])
+    table = tables[0] if len(tables) == 1 else pd.concat(tables, ignore_index=True)
+    return {str(name): table[name].tolist() for name in table.columns}
 
 
 def _scene(sweep: Sweep, place: Path, *, resume: bool) -> dict[str, list[Any]]:
@@ -87,8 +86,8 @@ def _scene(sweep: Sweep, place: Path, *, resume: bool) -> dict[str, list[Any]]:
     tool = scene_engine(sweep.engines[0])
 
     def once(go_on: bool) -> dict[str, list[Any]]:
-        found = run_scene(place / store.CASE, tool, out=place, ranks=sweep.ranks, resume=go_on, force=True)
-        row = {"engine": tool.name, **numbers_of(found.results), "passed": found.passed}
+        outcome = run_scene(place / store.CASE, tool, out=place, ranks=sweep.ranks, resume=go_on, force=True)
+        row = {"engine": tool.name, **numbers_of(outcome.results), "passed": outcome.passed}
         return {name: [value] for name, value in row.items()}
 
     if resume and tool.can.restarts and any(place.glob("restart.*.bin")) and not (place / "results.h5").exists():

@@ -19,12 +19,12 @@ from typing import Any
 
 import tomlkit
 
-from ...case.impact import read_toml
+from ...base.files import atomic
+from ...base.folders import MANIFEST
+from ...base.stages import inputs_hash
 from ...case.scene import is_scene
+from ...case.toml import read_toml
 from ...errors import CaseError
-from ...files import atomic
-from ...folders import MANIFEST
-from ...stages import inputs_hash
 from .keys import assign, keys_of
 from .points import Point
 
@@ -88,8 +88,8 @@ class Sweep:
 
     def place(self, number: int) -> str:
         """The point in words, for messages."""
-        said = ", ".join(f"{key} = {value}" for key, value in self.points[number - 1].items())
-        return f"point {number} ({said})"
+        settings = ", ".join(f"{key} = {value}" for key, value in self.points[number - 1].items())
+        return f"point {number} ({settings})"
 
     def inputs(self, number: int) -> str:
         """Hash of all that the result of a point depends on."""
@@ -131,11 +131,15 @@ def record(sweep: Sweep, folder: Path, number: int) -> dict[str, Any]:
     place = of(sweep, folder, number)
     for name in (FINISHED, STARTED):
         try:
-            found = json.loads((place / name).read_text(encoding="utf-8"))
+            content = json.loads((place / name).read_text(encoding="utf-8"))
         except (OSError, ValueError):
             continue
-        if isinstance(found, dict) and found.get("inputs") == sweep.inputs(number) and found.get("state") in STATES:
-            return found
+        if (
+            isinstance(content, dict)
+            and content.get("inputs") == sweep.inputs(number)
+            and content.get("state") in STATES
+        ):
+            return content
     return {"state": WAITING}
 
 

@@ -13,7 +13,7 @@ import time
 from collections.abc import Callable
 from pathlib import Path
 
-from .errors import EngineError
+from ..errors import EngineError
 
 # A row of a table of numbers that begins with the number of a step: the progress of an engine.
 ROW = re.compile(rb"^ +(\d+)( +[-+.\deainf]+)+ *$")
@@ -70,8 +70,10 @@ def call(
             while process.poll() is None:
                 left = end - time.monotonic()
                 if left <= 0.0:
-                    words = last_words(path)
-                    raise EngineError(f"{command[0]} did not end within {seconds:g} s and was stopped; {path}: {words}")
+                    end_of_log = last_words(path)
+                    raise EngineError(
+                        f"{command[0]} did not end within {seconds:g} s and was stopped; {path}: {end_of_log}"
+                    )
                 with contextlib.suppress(subprocess.TimeoutExpired):
                     process.wait(timeout=None if report is None and left == math.inf else min(left, POLL))
                 rows.read(reader.read() if report else b"")

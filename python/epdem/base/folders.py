@@ -12,14 +12,14 @@ import hashlib
 import json
 import os
 import time
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 from dataclasses import dataclass, field
 from fnmatch import fnmatch
 from pathlib import Path
 from typing import Any, TextIO
 
-from .errors import CaseError
-from .files import atomic
+from ..errors import CaseError
+from .files import atomic, write_texts
 
 LOCK, MANIFEST = ".epdem.lock", ".epdem.json"
 # Names that a run may write, in the folder or below it.
@@ -46,10 +46,20 @@ OUTPUTS = (
 
 @dataclass(frozen=True)
 class Results:
-    """A folder that this process may write to; `foreign` are the files in it that are the user's."""
+    """A folder that this process may write to; `foreign` are the files in it that are the user's.
+
+    versions: of the programs that made its files, by name; none where no run has noted them.
+    """
 
     folder: Path
     foreign: frozenset[str] = field(default_factory=frozenset)
+    versions: dict[str, str] = field(default_factory=dict)
+
+    def note(self, versions: dict[str, str]) -> None:
+        """Keep the versions of the programs that are about to write, through a crash too."""
+        self.versions.clear()
+        self.versions.update(versions)
+        _write(self.folder, {"foreign": sorted(self.foreign), "versions": self.versions})
 
     def remove(self, *patterns: str) -> None:
         """Remove the files of earlier runs whose path in the folder matches a pattern, and only these."""
@@ -69,31 +79,39 @@ def held(folder: Path) -> Results:
 
 
 @contextlib.contextmanager
-def claim(folder: Path, *, force: bool = False) -> Iterator[Results]:
+def claim(folder: Path, *, force: bool = False, files: Collection[str] = ()) -> Iterator[Results]:
     """Keep `folder` (made where it is missing) for one run, until the block ends; blocks of one process may nest.
 
-    Raises CaseError if another process is at work in it, or if it holds files of the user's where a run would write;
-    with `force` these may be overwritten, never removed.
+    Raises CaseError if another process is at work in it, or if it holds files of the user's where a run would write,
+    `files` among them; with `force` these may be overwritten, never removed.
     """
     place = folder.resolve()
     if place in _held:
         yield _held[place]
         return
+    new = not folder.exists()
     folder.mkdir(parents=True, exist_ok=True)
     with (folder / LOCK).open("a+") as lock:
         _lock(folder, lock)
         try:
             known = _known(folder)
             foreign = _foreign(folder, known)
-            _refuse(folder, foreign, known is not None, force)
-            _write(folder, {"foreign": sorted(foreign)})
-            _held[place] = Results(folder, frozenset(foreign))
-            yield _held[place]
+            if not force:
+                _refuse(folder, foreign, files, known is not None)
+            results = Results(folder, frozenset(foreign), (known or {}).get("versions", {}))
+            results.note(dict(results.versions))
+            _held[place] = results
+            yield results
         finally:
             if _held.pop(place, None):
                 old = (known or {}).get("files", {})
-                _write(folder, {"files": {n: _about(folder / n, old.get(n)) for n in sorted(_names(folder) - foreign)}})
+                ours = {n: _about(folder / n, old.get(n)) for n in sorted(_names(folder) - foreign)}
+                _write(folder, {"files": ours, "versions": results.versions})
+                if not ours and known is None:  # a run that has come to nothing
+                    (folder / MANIFEST).unlink()
             (folder / LOCK).unlink(missing_ok=True)
+            if new and not any(folder.iterdir()):
+                folder.rmdir()
 
 
 def _lock(folder: Path, lock: TextIO) -> None:
@@ -161,9 +179,9 @@ def _unchanged(path: Path, about: About | None) -> bool:
     return bool(_about(path, about)[2] == about[2])
 
 
-def _refuse(folder: Path, foreign: set[str], ours: bool, force: bool) -> None:
-    in_the_way = {n for n in foreign if not ours or any(fnmatch(Path(n).name, p) for p in OUTPUTS)}
-    if in_the_way and not force:
+def _refuse(folder: Path, foreign: set[str], files: Collection[str], ours: bool) -> None:
+    in_the_way = {n for n in foreign if not ours or n in files or any(fnmatch(Path(n).name, p) for p in OUTPUTS)}
+    if in_the_way:
         what = "was not written by epdem, or has changed since" if ours else "was there before; the folder is not ours"
         raise CaseError(f"{folder}: {min(in_the_way)} {what}; choose another folder by --out, or add --force")
 
@@ -171,3 +189,15 @@ def _refuse(folder: Path, foreign: set[str], ours: bool, force: bool) -> None:
 def _write(folder: Path, content: dict[str, object]) -> None:
     with atomic(folder / MANIFEST) as temporary:
         temporary.write_text(json.dumps(content, indent=1), encoding="utf-8")
+
+
+def write_own(folder: Path, texts: dict[str, str], *, force: bool = False) -> list[Path]:
+    """Write text files by their path below `folder`, which is claimed for it; their paths. Raises CaseError."""
+    with claim(folder, force=force, files=texts):
+        return write_texts(folder, texts)
+
+
+def refuse_existing(path: Path, *, force: bool, option: str = "--out") -> None:
+    """Raise CaseError if a file that a user has named by `option` is there, unless `force` allows to replace it."""
+    if path.exists() and not force:
+        raise CaseError(f"{path} exists; name another file by {option}, or replace it by --force")

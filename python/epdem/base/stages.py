@@ -6,16 +6,26 @@ from collections.abc import Iterable
 from functools import cache
 from pathlib import Path
 
-from . import __version__, paths
+from .. import __version__
+from . import paths
+
+
+def library_hash() -> str:
+    """Hash of what is compiled: both libraries and the launcher."""
+    compiled = [paths.native("libepdem.so"), paths.native("libepdem_liggghts.so"), paths.launcher()]
+    return _hash(__version__, filter(None, compiled))
 
 
 @cache
 def product_hash() -> str:
-    """Hash of this product as installed: both libraries, the launcher, templates and Python sources."""
-    compiled = [paths.native("libepdem.so"), paths.native("libepdem_liggghts.so"), paths.launcher()]
-    templates, sources = paths.templates().rglob("*.j2"), Path(__file__).parent.rglob("*.py")
-    sha = hashlib.sha256(__version__.encode())
-    for path in [*filter(None, compiled), *sorted(templates), *sorted(sources)]:
+    """Hash of this product as installed: what is compiled, templates and Python sources."""
+    templates, sources = paths.templates().rglob("*.j2"), Path(__file__).parents[1].rglob("*.py")
+    return _hash(library_hash(), [*sorted(templates), *sorted(sources)])
+
+
+def _hash(first: str, files: Iterable[Path]) -> str:
+    sha = hashlib.sha256(first.encode())
+    for path in files:
         sha.update(path.name.encode() + path.read_bytes())
     return sha.hexdigest()
 

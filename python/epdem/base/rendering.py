@@ -7,8 +7,9 @@ from typing import Any, TypeVar
 import jinja2
 import numpy as np
 
-from . import __version__, paths
-from .errors import CaseError
+from .. import __version__
+from ..errors import CaseError
+from . import paths
 
 
 def number(x: float | int) -> str:

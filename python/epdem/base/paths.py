@@ -8,9 +8,9 @@ import sysconfig
 from functools import cache
 from pathlib import Path
 
-from .errors import EngineError
+from ..errors import EngineError
 
-_PACKAGE = Path(__file__).resolve().parent
+_PACKAGE = Path(__file__).resolve().parents[1]
 
 
 def _first(*candidates: Path) -> Path | None:

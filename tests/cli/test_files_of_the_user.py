@@ -1,0 +1,54 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""No command that writes replaces a file of the user's without --force; with it, it does."""
+
+import re
+import shutil
+
+import pytest
+from calls import CASES, call
+
+WRITERS = {  # words of a command that writes, and a file of the user's in its way
+    "deck of impacts": (["deck", "steel.toml", "-o", "d"], "d/in.impact"),
+    "deck of a scene": (["deck", "scene.toml", "-o", "d"], "d/setup.in"),
+    "deck for YADE": (["deck", "scene.toml", "-o", "d", "-e", "yade"], "d/scene.py"),
+    "own template": (["deck", "mill.j2", "--case", "steel.toml", "-o", "d"], "d/mill"),
+    "figures": (["figures", "-o", "d"], "d/figure_8_17.png"),
+    "cost": (["cost", "steel.toml", "-e", "embedded", "--repetitions", "1", "-o", "d"], "d/cost.png"),
+    "stability": (["stability", "-g", "poisson", "-l", "hertz", "--every", "2", "-o", "d/all.csv"], "d/all.csv"),
+    "soften": (["soften", "steel.toml", "-k", "10", "-o", "d/soft.toml"], "d/soft.toml"),
+    "batch script": (
+        ["sweep", "steel.toml", "--set", "impact.body.radius=1 mm", "-o", "s", "--write-script", "d/job.sh"],
+        "d/job.sh",
+    ),
+}
+
+
+@pytest.mark.parametrize("kind", WRITERS)
+def test_a_file_of_the_user_is_kept_until_force_is_given(kind, tmp_path, capsys, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    words, name = WRITERS[kind]
+    steel = (CASES / "steel_wall.toml").read_text()
+    (tmp_path / "steel.toml").write_text(re.sub("speeds = .*", 'speeds = ["5 m/s"]', steel))
+    (tmp_path / "mill.j2").write_text("{{ deck.time_step }}\n")
+    shutil.copy(CASES / "settle_glass.toml", tmp_path / "scene.toml")
+    (tmp_path / name).parent.mkdir()
+    (tmp_path / name).write_text("of the user")
+    done = call(words, capsys, monkeypatch)
+    assert done.code == 2 and name.split("/")[-1] in done.err and "--force" in done.err and done.err.count("\n") == 1
+    assert (tmp_path / name).read_text() == "of the user" and not (tmp_path / "s").exists()
+    done = call([*words, "--force"], capsys, monkeypatch)
+    assert done.code == 0, done.err
+    assert (tmp_path / name).read_text(errors="replace") != "of the user"
+
+
+@pytest.mark.parametrize("kind", ["deck of a scene", "own template", "figures"])
+def test_what_a_command_wrote_it_replaces_without_force(kind, tmp_path, capsys, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    shutil.copy(CASES / "settle_glass.toml", tmp_path / "scene.toml")
+    shutil.copy(CASES / "steel_wall.toml", tmp_path / "steel.toml")
+    (tmp_path / "mill.j2").write_text("{{ deck.time_step }}\n")
+    words, name = WRITERS[kind]
+    for _ in range(2):
+        assert call(words, capsys, monkeypatch).code == 0
+    (tmp_path / name).write_text("changed by the user")
+    assert call(words, capsys, monkeypatch).code == 2
