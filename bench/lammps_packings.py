@@ -7,6 +7,7 @@ import re
 import subprocess
 
 from dense_packings import RADIUS, SHRINK
+
 from epdem.lammps.impacts import mpich, program
 
 MODELS = {
@@ -41,7 +42,7 @@ def available() -> bool:
 
 
 def timed(folder, name, data, what):
-    """(shortest step [ms], shortest pair time [ms], contacts, pairs in the lists) of a scene of dense_packings.SCENES."""
+    """(shortest step [ms], shortest pair time [ms], contacts, pairs in the lists) of one of dense_packings.SCENES."""
     run = {"dt": "1e-13", "unload": True, "warm": 2} | what["run"]
     unload = f"set group all diameter {2 * RADIUS * SHRINK!r}\n" if run["unload"] else ""
     text = DECK.format(
