@@ -5,7 +5,7 @@ Run: .venv/bin/python bench/liggghts_speed.py [--quick]
 
 A model name may carry a loop: ep/thornton@avx2, @sse2 (instruction sets of our pair loop) or @generic (LIGGGHTS's loop
 with our model). Every model sees the same deck and starts from the same positions; the models take turns, and each
-keeps its shortest step, timed inside the process (step_times.cpp), because on a shared machine the noise only adds. The
+keeps its shortest step in processor time (step_times.cpp), because on a shared machine the noise only adds. The
 moving packings are dense, so that they keep their contacts whatever a model dissipates: their number stands in
 the table. From the frozen and the moving packing, two equations: what a pair that touches costs, and one that does
 not; they are drawn in docs/figures/contact_cost.png. Instruction counts (callgrind) repeat exactly, but know nothing of
@@ -50,6 +50,7 @@ MODELS = (
 LIMITS = {"ep/hertz": 0.45, "ep/thornton": 0.45, "ep/johnson": 0.45, "ep/cavity": 0.60}  # pair time over that of hertz
 LIMITS |= {"ep/thornton@avx2": 0.45, "ep/thornton@sse2": 0.75}
 WHOLE_STEP = 0.5  # the same of whole steps of ep/thornton
+CLOCK = (ROOT / "bench" / "step_times.cpp").read_text() + (ROOT / "bench" / "lammps_packings.py").read_text()
 BESIDE = (
     "rolling_friction cdt",
     "rolling_friction epsd2",
@@ -143,7 +144,7 @@ def timed(folder, scene, models, repeats, beside=""):
                 continue
             key = re.sub(r"\W+", "_", f"{scene} {name} {beside} {repeat}")
             kept = store.once(
-                key, (SCENES[scene], name, beside), lambda n=name: vars(measured(folder, scene, n, data, beside))
+                key, (SCENES[scene], name, beside, CLOCK), lambda n=name: vars(measured(folder, scene, n, data, beside))
             )
             now, old = Cost(**kept), best.get(name, Cost())
             best[name] = replace(now, loop=min(now.loop, old.loop), pair=min(now.pair, old.pair))
