@@ -52,8 +52,8 @@ enum Refusal { unknown_normal, unknown_tangential, foreign_normal };
 
 /// Luding's models need slots of Luding's normal model; capillary forces and superquadrics bring their own contact law.
 bool available(const Ids& ids) {
-  return ids.tangential <= TANGENTIAL_HISTORY && ids.rolling <= ROLLING_EPSD3 && ids.cohesion <= COHESION_SJKR2 &&
-         (ids.surface == SURFACE_DEFAULT || ids.surface == SURFACE_MULTICONTACT);
+  return (ids.tangential <= TANGENTIAL_HISTORY || slip_nodes(ids.tangential) > 0) && ids.rolling <= ROLLING_EPSD3 &&
+         ids.cohesion <= COHESION_SJKR2 && (ids.surface == SURFACE_DEFAULT || ids.surface == SURFACE_MULTICONTACT);
 }
 
 template <class Part>
