@@ -12,13 +12,17 @@ from typing import Annotated, Any
 
 import typer
 
+from .. import __version__
+from ..base.printed import Printed
 from ..base.terminal import bar, console
 from ..errors import CaseError, EpdemError, Stopped
+from . import calibrate as cli_calibrate
 from . import crosscheck as cli_crosscheck
 from . import numerics as cli_numerics
 from . import scenes as cli_scene
 from . import sweep as cli_sweep
 from . import theory as cli_theory
+from . import trees as cli_trees
 from .options import AsJson, CasePath, Engines, Force, Laws, Out, laws_or_own, refuse
 
 ABOUT = """Elastic-plastic particle contact for LIGGGHTS and YADE, checked against theory.
@@ -35,6 +39,21 @@ app = typer.Typer(
     help=ABOUT,
     context_settings={"help_option_names": ["-h", "--help"]},
 )
+
+
+def _say_version(wanted: bool) -> None:
+    if wanted:
+        print(f"epdem {__version__}")
+        raise typer.Exit
+
+
+@app.callback()
+def options(
+    version: Annotated[
+        bool, typer.Option("--version", callback=_say_version, is_eager=True, help="print the version and end")
+    ] = False,
+) -> None:
+    pass
 
 
 @app.command()
@@ -55,6 +74,11 @@ def run(
     as_json: AsJson = False,
 ) -> None:
     """Run a case and check it against theory, or run a bulk scene (default engine: liggghts)."""
+    screen = console()
+    printed = Printed(case, out, engine, law, ranks, steps, force, as_json, screen.is_terminal, screen.width)
+    if not (fresh or resume) and (before := printed.again()):
+        print(before[0], end="")
+        raise typer.Exit(before[1])
     if cli_scene.is_scene(case):
         refuse(case, "a scene has its own law and time step", law=law, steps=steps)
         if len(set(engine or [])) > 1:
@@ -88,11 +112,21 @@ def run(
         )
         progress.update(task, advance=1, description="figure")
         report.figure(outcome)
+    code = 0 if outcome.passed else 1
+    print(_said(outcome, screen, as_json), end="")
+    outcome.reused = list(outcome.results.runs)
+    printed.keep(_said(outcome, screen, as_json), code)
+    raise typer.Exit(code)
+
+
+def _said(outcome: Any, screen: Any, as_json: bool) -> str:
+    from ..impacts import report
+
     if as_json:
-        print(report.run_json(outcome))
-    else:
-        report.show(outcome, console())
-    raise typer.Exit(0 if outcome.passed else 1)
+        return report.run_json(outcome) + "\n"
+    with screen.capture() as said:
+        report.show(outcome, screen)
+    return str(said.get())
 
 
 @app.command()
@@ -154,7 +188,7 @@ def predict(case: CasePath, law: Laws = None, as_json: AsJson = False) -> None:
 
 @app.command()
 def doctor(as_json: AsJson = False) -> None:
-    """List the engines and their versions, test that the plugin loads, and name what to install."""
+    """List the engines and their versions, test which models LIGGGHTS has, and name what to install."""
     from ..engines.doctor import examine
     from . import show
 
@@ -167,15 +201,17 @@ for command in (
     cli_crosscheck.crosscheck,
     cli_theory.theory,
     cli_theory.figures,
+    cli_theory.cite,
     cli_numerics.timestep,
     cli_numerics.cost,
     cli_numerics.stability,
     cli_scene.explain,
     cli_scene.tune,
     cli_scene.soften,
-    cli_scene.calibrate,
+    cli_calibrate.calibrate,
     cli_sweep.sweep,
     cli_sweep.status,
+    cli_trees.header,
 ):
     app.command()(command)
 app.command("points", hidden=True)(cli_sweep.points)  # what batch scripts call

@@ -8,8 +8,7 @@ from typing import Annotated
 import typer
 
 from ..base.terminal import bar, console
-from ..errors import CaseError
-from .options import AsJson, CasePath, Replace, refuse
+from .options import AsJson, CasePath, Replace
 
 
 def is_scene(path: Path) -> bool:
@@ -120,25 +119,25 @@ def tune(
     from ..studies import tune as t
 
     with status() as line:
-        found = t.tune(case, ranks=ranks, seconds=seconds, progress=lambda text: line(f"{case.stem}: {text}"))
+        tuned = t.tune(case, ranks=ranks, seconds=seconds, progress=lambda text: line(f"{case.stem}: {text}"))
     if write:
-        t.write(case, found)
-    rows = [(x, *x.saves(trials[0])) for trials in (found.skins, found.cuts) for x in trials]
+        t.write(case, tuned)
+    rows = [(x, *x.saves(trials[0])) for trials in (tuned.skins, tuned.cuts) for x in trials]
     if as_json:
         named = ("trial", "seconds_per_step", "saves", "error")
         trials = [dict(zip(named, (x.name, x.seconds, saved, error), strict=True)) for x, saved, error in rows]
-        head = {"steps_per_skin": found.steps, "steps_of_the_scene": found.scene_steps, "ranks": found.ranks}
-        print(json.dumps(head | {"trials": trials, "numerics": found.lines, "written": write and bool(found.lines)}))
+        head = {"steps_per_skin": tuned.steps, "steps_of_the_scene": tuned.scene_steps, "ranks": tuned.ranks}
+        print(json.dumps(head | {"trials": trials, "numerics": tuned.lines, "written": write and bool(tuned.lines)}))
         return
     for x, saved, error in rows:
         print(f"{x.name}: {x.seconds * 1e6:.4g} us per step, saves {saved:.1%} +- {error:.1%}")
-    share = found.steps * len(found.skins) / found.scene_steps
-    print(f"{found.steps} steps with each skin, in turns over {share:.0%} of the scene")
-    if not found.lines:
+    share = tuned.steps * len(tuned.skins) / tuned.scene_steps
+    print(f"{tuned.steps} steps with each skin, in turns over {share:.0%} of the scene")
+    if not tuned.lines:
         print(f"nothing saves more than {t.WORTH:.0%} for certain: the case stays as it is")
         return
     place = f"written to {case}, under [numerics]:" if write else "for the case, under [numerics] (or with --write):"
-    print(place, *found.lines, sep="\n")
+    print(place, *tuned.lines, sep="\n")
 
 
 def soften(
@@ -184,44 +183,6 @@ def soften(
     )
     for warning in twin.warnings:
         print(f"warning: {warning}")
-
-
-def calibrate(
-    case: CasePath,
-    e_n: Annotated[float | None, typer.Option("--e-n", help="measured coefficient of restitution")] = None,
-    speed: Annotated[str | None, typer.Option(help='speed of that impact, as "2 m/s"')] = None,
-    hv: Annotated[float | None, typer.Option(help="Vickers hardness [kgf/mm^2] instead of an impact")] = None,
-    hb: Annotated[float | None, typer.Option(help="Brinell hardness [kgf/mm^2] instead of an impact")] = None,
-    dent_ratio: Annotated[
-        float | None,
-        typer.Option(help="Brinell test: diameter of the indentation over that of the ball (default: 0.375)"),
-    ] = None,
-    as_json: AsJson = False,
-) -> None:
-    """Compute the strength of the case's law from one measured e_n, or from a hardness."""
-    from ..case.units import read_number
-    from ..studies import calibrate as c
-
-    if (e_n is None) == (hv is None and hb is None):
-        raise CaseError("give one measurement: --e-n with --speed, or --hv, or --hb")
-    if hb is None:
-        refuse(case, "it belongs to --hb", dent_ratio=dent_ratio)
-    if e_n is not None:
-        if speed is None:
-            raise CaseError("--e-n belongs to one impact; add its speed, as --speed '2 m/s'")
-        result = c.from_restitution(case, e_n, read_number("--speed", speed, "m/s"))
-    else:
-        refuse(case, "it belongs to --e-n", speed=speed)
-        pressure = c.pressure_of_hardness(vickers=hv, brinell=hb, dent_ratio=dent_ratio)
-        result = c.from_hardness(case, pressure, f"HV {hv:g}" if hv is not None else f"HB {hb:g}")
-    if as_json:
-        print(json.dumps(vars(result), indent=1))
-        return
-    print(
-        f"law {result.law}, {result.source}: {result.parameter} = {result.value / 1e6:.6g} MPa, "
-        f"that is yield_stress = {result.yield_stress / 1e6:.6g} MPa, yield speed {result.yield_speed:.4g} m/s\n"
-        f'in the case file, under [law]: {result.parameter} = "{result.value / 1e6:.6g} MPa"'
-    )
 
 
 def deck_template(
