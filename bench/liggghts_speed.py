@@ -204,6 +204,8 @@ def table_of_pairs(costs):
         some = [costs[scene][name] for scene in ("frozen", "moving")]
         pairs = np.array([[c.contacts, c.neighbours - c.contacts] for c in some], float)
         times[name] = np.linalg.solve(pairs, np.array([c.pair for c in some]) * 1e6)
+        if times[name][1] < 0:  # a contact costs less where few touch: its mean in the moving packing, and no other
+            times[name] = np.array([some[1].pair * 1e6 / some[1].contacts, np.nan])
     for name, (touching, apart) in times.items():
         print(f"| {name} | {touching:.1f} | {apart:.1f} | {touching / times['hertz'][0]:.2f} |")
     return times
@@ -224,7 +226,7 @@ def figure(times):
     axes.barh(places + 0.2, [times[n][1] for n in names], 0.4, color=ours, alpha=0.45, label="one that does not")
     for place, name in zip(places, names, strict=True):
         axes.text(times[name][0], place - 0.2, f" {times[name][0]:.0f}", va="center", fontsize=8)
-    axes.set(yticks=places, yticklabels=names, xlabel="ns per step on one core", xscale="log")
+    axes.set(yticks=places, yticklabels=names, xlabel="ns per step on one core", xscale="log", xlim=(1, 2e3))
     axes.invert_yaxis()
     axes.legend(fontsize=8)
     drawn.savefig(ROOT / "docs" / "figures" / "contact_cost.png", dpi=150)
