@@ -11,10 +11,12 @@
 
 namespace epdem::liggghts {
 
-/// Per-atom properties: plasticWork [J] sums up every growth of plastic work since the start, adhesiveWork [J] (of laws
-/// with adhesion) what the forces lost in their jumps at touch and parting, elasticEnergy [J] is what the contacts of
-/// this step can give back, less their surface energy. Half of a pair's energy belongs to each body, all of a wall's to
-/// the sphere. LIGGGHTS evaluates a pair that spans two ranks on both of them, so each books its own body only.
+/// Per-atom properties: plasticWork [J] sums up every growth of plastic work since the start, elasticEnergy [J] is what
+/// the contacts of this step can give back (with adhesion less their surface energy); with adhesion adhesiveWork [J]
+/// sums up what the forces lost in their jumps at touch and parting, with partial slip frictionWork [J] what friction
+/// took, and frictionEnergy [J] is what its springs can give back. Half of a pair's energy belongs to each body, all of
+/// a wall's to the sphere. LIGGGHTS evaluates a pair that spans two ranks on both of them, so each books its own body
+/// only.
 class Ledger {
  public:
   /// Indices of the bodies, and from which index on a body belongs to another rank.
@@ -23,55 +25,72 @@ class Ledger {
   };
 
   /// For the pair style, whose settings come first: creates the properties.
-  void create(LAMMPS_NS::LAMMPS* lmp, bool adheres) {
-    for (const char* name : {work_name, energy_name, adhesive_name}) {
-      if (name == adhesive_name && !adheres) continue;
+  void create(LAMMPS_NS::LAMMPS* lmp, bool rubs, bool adheres) {
+    for (const char* name : {work_name, energy_name, friction_name, springs_name, adhesive_name}) {
+      if (!rubs && (name == friction_name || name == springs_name)) continue;
+      if (!adheres && name == adhesive_name) continue;
       const char* words[] = {name, "all", "property/atom", name, "scalar", "yes", "no", "no", "0.0"};
       if (!find(lmp, name, name)) lmp->modify->add_fix_property_atom(9, const_cast<char**>(words), name);
     }
   }
 
   /// Before each run, for pairs and walls.
-  void connect(LAMMPS_NS::LAMMPS* lmp, const std::string& model, bool adheres) {
+  void connect(LAMMPS_NS::LAMMPS* lmp, const std::string& model, bool rubs, bool adheres) {
     work_ = find(lmp, work_name, model.c_str());
     energy_ = find(lmp, energy_name, model.c_str());
-    adhesive_ = adheres ? find(lmp, adhesive_name, model.c_str()) : nullptr;
-    if (work_ && energy_ && (adhesive_ || !adheres)) return;
+    friction_ = find(lmp, friction_name, model.c_str());
+    springs_ = find(lmp, springs_name, model.c_str());
+    adhesive_ = find(lmp, adhesive_name, model.c_str());
+    if (work_ && energy_ && (friction_ || !rubs) && (adhesive_ || !adheres)) return;
     const std::string text = "model " + model +
                              ": computePlasticWork on of a wall needs it for the pair style as well" +
-                             (adheres ? ", whose model has adhesion, too" : "");
+                             (rubs      ? ", with the same tangential model"
+                              : adheres ? ", whose model has adhesion, too"
+                                        : "");
     lmp->error->all(FLERR, text.c_str());
   }
 
   /// At the start of a kept pass over all pairs: what the contacts hold is counted anew.
-  void open(int nlocal) { std::fill_n(energy_->vector_atom, nlocal, 0.0); }
+  void open(int nlocal) {
+    std::fill_n(energy_->vector_atom, nlocal, 0.0);
+    if (springs_) std::fill_n(springs_->vector_atom, nlocal, 0.0);
+  }
 
   template <bool wall, class Law>
   void book(const Law& law, double R_star, const State<Law>& before, const Step<Law>& now, double delta,
             const Bodies& bodies) {
+    double grown, stored, part = wall ? 1.0 : 0.5;
     if constexpr (adheres<Law>) {
       const auto lost = losses(law, R_star, before, now.after);
-      share<wall>(lost.plastic, stored_energy(law, R_star, now.after, delta), bodies);
-      if (lost.adhesive == 0.0) return;
+      grown = lost.plastic;
+      stored = stored_energy(law, R_star, now.after, delta);
       adhesive_->vector_atom[bodies.i] += (wall ? 1.0 : 0.5) * lost.adhesive;
       if (!wall && bodies.j < bodies.nlocal) adhesive_->vector_atom[bodies.j] += 0.5 * lost.adhesive;
     } else {
-      const double stored = elastic_energy(law, R_star, now, delta);
-      share<wall>(plastic_growth(law, R_star, before, now, stored), stored, bodies);
+      stored = elastic_energy(law, R_star, now, delta);
+      grown = plastic_growth(law, R_star, before, now, stored);
     }
-  }
-
-  /// To the bodies: plastic work by which a contact grew, elastic energy that it holds [J].
-  template <bool wall>
-  void share(double grown, double stored, const Bodies& bodies) {
-    constexpr double part = wall ? 1.0 : 0.5;
     credit(bodies.i, part * grown, part * stored);
     if (!wall && bodies.j < bodies.nlocal) credit(bodies.j, part * grown, part * stored);
   }
 
+  /// The same for friction: work that it took in this step, elastic energy of its springs [J].
+  template <bool wall>
+  void rub(double lost, double stored, const Bodies& bodies) {
+    constexpr double part = wall ? 1.0 : 0.5;
+    rub_one(bodies.i, part * lost, part * stored);
+    if (!wall && bodies.j < bodies.nlocal) rub_one(bodies.j, part * lost, part * stored);
+  }
+
+  /// One number per body [J], for a loop that books by itself as `book` does.
+  double* work() { return work_->vector_atom; }
+  double* energy() { return energy_->vector_atom; }
+
  private:
   static constexpr const char* work_name = "plasticWork";
   static constexpr const char* energy_name = "elasticEnergy";
+  static constexpr const char* friction_name = "frictionWork";
+  static constexpr const char* springs_name = "frictionEnergy";
   static constexpr const char* adhesive_name = "adhesiveWork";
 
   static LAMMPS_NS::FixPropertyAtom* find(LAMMPS_NS::LAMMPS* lmp, const char* name, const char* caller) {
@@ -84,8 +103,15 @@ class Ledger {
     energy_->vector_atom[body] += stored;
   }
 
+  void rub_one(int body, double lost, double stored) {
+    friction_->vector_atom[body] += lost;
+    springs_->vector_atom[body] += stored;
+  }
+
   LAMMPS_NS::FixPropertyAtom* work_ = nullptr;
   LAMMPS_NS::FixPropertyAtom* energy_ = nullptr;
+  LAMMPS_NS::FixPropertyAtom* friction_ = nullptr;
+  LAMMPS_NS::FixPropertyAtom* springs_ = nullptr;
   LAMMPS_NS::FixPropertyAtom* adhesive_ = nullptr;
 };
 

@@ -110,7 +110,7 @@ void PairLoop::finish(const Plan& plan, int n) {
     scatter<true>(n);
   else
     scatter<false>(n);
-  if (plan.ledger) book(*plan.ledger, n);
+  if (plan.ledger) book(*plan.ledger, plan.tangential >= Tangential::partial_slip, n);
 }
 
 /// What lies apart in memory is asked for in time, and contacts are marked as such.
@@ -128,7 +128,7 @@ void PairLoop::fetch(const Plan& plan, int n) {
     const int i = b.i[k], j = b.j[k];
     if (histories) {
       double* const h = histories[i] + size * slot_[k];
-      __builtin_prefetch(h, 1);
+      for (int line = 0; line < size; line += 8) __builtin_prefetch(h + line, 1);
       __builtin_prefetch(h + size - 1, 1);
       b.history[k] = h;
       int& flag = flags[i][slot_[k]];
@@ -208,9 +208,28 @@ void PairLoop::scatter(int n) {
   }
 }
 
-void PairLoop::book(Ledger& ledger, int n) {
+/// Halves of the energies of each pair to its bodies, in the order of the list.
+void PairLoop::book(Ledger& ledger, bool rubs, int n) {
   const Block& b = *block_;
-  for (int k = 0; k < n; ++k) ledger.share<false>(b.grown.a[k], b.stored.a[k], {b.i[k], b.j[k], atom->nlocal});
+  double *const work = ledger.work(), *const energy = ledger.energy();
+  const int nlocal = atom->nlocal;
+  double others[2] = {};
+  for (int k = 0; k < n;) {
+    const int i = b.i[k];
+    double work_i = work[i], energy_i = energy[i];
+    do {
+      const int j = b.j[k];
+      const double grown = b.grown.a[k] > 0.0 ? 0.5 * b.grown.a[k] : 0.0, stored = 0.5 * b.stored.a[k];
+      work_i += grown;
+      energy_i += stored;
+      *(j < nlocal ? work + j : others) += grown;
+      *(j < nlocal ? energy + j : others + 1) += stored;
+      ++k;
+    } while (k < n && b.i[k] == i);
+    work[i] = work_i;
+    energy[i] = energy_i;
+  }
+  for (int k = 0; rubs && k < n; ++k) ledger.rub<false>(b.rubbed.a[k], b.sprung.a[k], {b.i[k], b.j[k], nlocal});
 }
 
 }  // namespace epdem::liggghts::loop

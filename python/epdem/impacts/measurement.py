@@ -8,6 +8,7 @@ import numpy as np
 from ..errors import EngineError
 from ..theory import adhesion
 from ..theory.backbones import JKR
+from . import oblique
 from .engine import Trajectory
 from .plan import Plan
 
@@ -29,6 +30,7 @@ class Measured:
     residual_overlap: np.ndarray
     energy_residual: np.ndarray
     steps_in_contact: np.ndarray
+    rebound: oblique.Rebound | None = None  # of oblique impacts
 
     COLUMNS = (
         "e_n",
@@ -81,14 +83,19 @@ def measure(plan: Plan, path: Trajectory, *, end_power: float | None = None) -> 
     # at the dent, between two samples, the force is 0 and so is the last piece of work, to third order
     work = np.where(loaded[:, 1:] | loaded[:, :-1], 0.5 * (force[:, 1:] + force[:, :-1]) * np.diff(overlap), 0.0)
     plastic = law.work(peak) - law.recovered_work(peak)
+    e_n = -velocity[row, end] / plan.speed
+    rebound = None
+    if path.tangential is not None and path.spin is not None:
+        rebound = oblique.rebound(plan.experiment, e_n, tangential=path.tangential, spin=path.spin)
     return Measured(
-        e_n=-velocity[row, end] / plan.speed,
+        e_n=e_n,
         contact_time=contact_time,
         force_max=force_max,
         overlap_max=peak,
         residual_overlap=residual,
         energy_residual=(work.sum(axis=1) - plastic) / energy if own else np.full(plan.n, np.nan),
         steps_in_contact=loaded.sum(axis=1),
+        rebound=rebound,
     )
 
 

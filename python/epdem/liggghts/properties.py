@@ -5,6 +5,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+from ..case.impact import NODES
 from ..impacts.experiment import Body
 from ..impacts.plan import Plan
 from ..laws import library as claw
@@ -101,6 +102,13 @@ def work_of_adhesion(types: int, values: float | Sequence[float]) -> Property:
     return per_pair("workOfAdhesion", types, values, "J/m^2")
 
 
+def tangential(name: str | None) -> str:
+    """LIGGGHTS's word for the tangential model of a case; None: no friction."""
+    if name is None:
+        return "off"
+    return f"ep/{name}" if NODES[name] else name
+
+
 def ratios(law: str, values: dict[str, float]) -> tuple[Property, ...]:
     """Dimensionless parameters of a law."""
     return tuple(scalar(p.property, values[p.name], "-") for p in claw.laws()[law].parameters if p.name in values)
@@ -112,6 +120,12 @@ def of_impacts(plan: Plan) -> tuple[Property, ...]:
     return elastic([finite(b.young_modulus) for b in bodies], [b.poisson_ratio for b in bodies])
 
 
+def of_friction(plan: Plan, types: int) -> tuple[Property, ...]:
+    """The coefficient of friction of oblique impacts."""
+    o = plan.experiment.oblique
+    return () if o is None else (per_pair("coefficientFriction", types, o.friction, "-"),)
+
+
 def of_law(plan: Plan) -> tuple[Property, ...]:
     """What a law of ours needs of a plan."""
     x, types = plan.experiment, atom_types(plan)
@@ -119,6 +133,7 @@ def of_law(plan: Plan) -> tuple[Property, ...]:
     properties += ratios(x.law.name, x.law.ratios())
     if x.law.adheres:
         properties.append(work_of_adhesion(len(types), x.law.parameters[ADHESION]))
+    properties += of_friction(plan, len(types))
     if x.viscous_restitution is not None:
         note = "of impacts that do not yield"
         properties.append(per_pair("coefficientRestitution", len(types), x.viscous_restitution, "-", note))

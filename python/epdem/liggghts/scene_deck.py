@@ -10,9 +10,9 @@ from ..scenes.model import Model
 from ..scenes.plan import Phase, ScenePlan
 from . import stl
 from .insertions import Insertion, insertions
-from .properties import HARD, SOFT, Property, elastic, per_pair, ratios, strength, work_of_adhesion
+from .properties import HARD, SOFT, Property, elastic, per_pair, ratios, strength, tangential, work_of_adhesion
 
-SKIN = 0.25  # of the smallest radius: rebuilds cost less than idle neighbours
+SKIN = 0.5  # of the smallest radius: rebuilds cost less than idle neighbours
 
 
 @dataclass(frozen=True)
@@ -62,6 +62,8 @@ class Deck:
     slots: tuple[str, ...]
     contact_columns: tuple[int, ...]
     wall_contact_columns: tuple[int, ...]
+    dents: bool
+    rubs: bool
     torque: bool
     row_words: tuple[str, ...]
     motion: dict[str, float]
@@ -102,15 +104,16 @@ def _settings(p: ScenePlan) -> tuple[str, ...]:
     wanted = {
         "viscous on": m.viscous is not None,
         "tangential_damping off": m.viscous is not None and m.sliding and m.tangential_restitution is None,
-        "computePlasticWork on": p.dents or p.jumps,
+        "computePlasticWork on": p.dents or p.rubs or p.jumps,
     }
     return tuple(setting for setting, asked in wanted.items() if asked)
 
 
 def memory(m: Model, *, wall: bool = False) -> int:
-    """History values of one contact in LIGGGHTS, the law's first: those of the law, step, shear spring, rolling."""
+    """History values of one contact in LIGGGHTS, the law's first: those of the law, step, friction, rolling."""
     law = laws()[m.law].memory
-    others = 3 * m.sliding + 3 * (m.rolling is not None and m.rolling.model in ("epsd", "epsd2"))
+    friction = 3 * m.nodes + 1 if m.nodes else 3 * m.sliding
+    others = friction + 3 * (m.rolling is not None and m.rolling.model in ("epsd", "epsd2"))
     stamp = 0 if wall else int(law + others > 0)
     return law + stamp + others
 
@@ -164,7 +167,7 @@ def deck(p: ScenePlan) -> Deck:
         types=p.types,
         properties=_properties(p),
         model=f"ep/{m.law}",
-        tangential="history" if m.sliding else "off",
+        tangential=tangential(m.tangential if m.sliding else None),
         cohesion="sjkr" if m.cohesion else None,
         rolling_friction=m.rolling.model if m.rolling else None,
         settings=_settings(p),
@@ -192,6 +195,8 @@ def deck(p: ScenePlan) -> Deck:
         slots=told(m),
         contact_columns=_columns(m, memory(m)),
         wall_contact_columns=_columns(m, memory(m, wall=True)),
+        dents=p.dents,
+        rubs=p.rubs,
         torque=p.torque,
         row_words=tuple(word for word, asked in row_words.items() if asked),
         motion=_motion(p),

@@ -71,7 +71,8 @@ def damaged(p: ScenePlan, folder: Path, upto: int) -> list[int]:
 def _particle_names(p: ScenePlan) -> list[str]:
     names = [*columns.PARTICLES, *(columns.SPINS if p.model.spins else [])]
     names += [f"{slot}_{w.name}" for w in p.layout.planes for slot in _slots(p)] if p.contacts else []
-    return [*names, *(["plastic_work"] if p.dents else []), *(["adhesive_work"] if p.jumps else [])]
+    names += ["plastic_work"] * p.dents + ["adhesive_work"] * p.jumps
+    return [*names, *(["friction_work", "friction_energy"] if p.rubs else [])]
 
 
 def _slots(p: ScenePlan) -> list[str]:

@@ -22,10 +22,9 @@ UNITS = {
     **dict.fromkeys(("omega_x", "omega_y", "omega_z"), "rad/s"),
     **dict.fromkeys(("overlap", "delta_max", "residual_overlap", "dent_radius"), "m"),
     "force": "N",
-    **dict.fromkeys(("plastic_work", "adhesive_work", "elastic_energy"), "J"),
-    **dict.fromkeys(
-        ("kinetic", "gravity", "elastic", "plastic", "adhesion", "work", "left", "balance", "friction"), "J"
-    ),
+    **dict.fromkeys(("plastic_work", "adhesive_work", "elastic_energy", "friction_work", "friction_energy"), "J"),
+    **dict.fromkeys(("kinetic", "gravity", "elastic", "plastic", "adhesion", "work", "left", "balance"), "J"),
+    **dict.fromkeys(("friction", "springs"), "J"),
 }
 PARTICLES = ["id", "type", "radius", "mass", "x", "y", "z", "vx", "vy", "vz"]
 SPINS = ["omega_x", "omega_y", "omega_z"]
