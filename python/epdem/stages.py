@@ -9,7 +9,6 @@ from pathlib import Path
 from . import __version__, paths
 
 
-@cache
 def library_hash() -> str:
     """Hash of what is compiled: both libraries and the launcher."""
     compiled = [paths.native("libepdem.so"), paths.native("libepdem_liggghts.so"), paths.launcher()]

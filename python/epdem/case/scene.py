@@ -9,6 +9,7 @@ from pydantic import ConfigDict, Field, ValidationError, model_validator
 from ..errors import CaseError
 from . import impact as impact_case
 from .impact import Frozen, Header, LawChoice, Length, Material, Name, Quantity, Speed, Viscous
+from .library import with_library
 from .messages import explain
 
 Time = Annotated[float, Quantity("s", above=0.0)]
@@ -267,6 +268,7 @@ def is_scene(data: dict[str, Any]) -> bool:
 
 def parse(data: dict[str, Any], path: object = "case") -> SceneCase:
     """A scene from TOML data; `path` names the place in messages. Raises CaseError."""
+    data = with_library(data, path)
     try:
         return SceneCase.model_validate(data)
     except ValidationError as error:

@@ -19,7 +19,7 @@ from . import numerics as cli_numerics
 from . import scenes as cli_scene
 from . import sweep as cli_sweep
 from . import theory as cli_theory
-from .options import AsJson, CasePath, Engines, Force, Laws, Out, laws_or_own, refuse
+from .options import AsJson, CasePath, Engines, Force, Laws, Out, laws_or_own, refuse, warn
 
 ABOUT = """Elastic-plastic particle contact for LIGGGHTS and YADE, checked against theory.
 
@@ -124,6 +124,7 @@ def deck(
         refuse(file, "a scene has its own law", law=law)
         cli_scene.deck_scene(file, out, engine=engine, force=force, as_json=as_json)
         return
+    from ..case.doubts import doubts
     from ..case.impact import load, named
     from ..engines import engine as find
     from ..impacts.experiment import experiment
@@ -132,7 +133,9 @@ def deck(
     if len(law or []) > 1:
         raise CaseError("--law: a deck has one law; write one deck for each")
     with named(file):
-        x = experiment(load(file), law[0] if law else None)
+        read = load(file)
+        warn(doubts(read))
+        x = experiment(read, law[0] if law else None)
         names = [str(f) for f in write_deck(x, find(engine), out, force=force)]
     print(json.dumps({"files": names}) if as_json else "\n".join(names))
 
@@ -140,14 +143,16 @@ def deck(
 @app.command()
 def predict(case: CasePath, law: Laws = None, as_json: AsJson = False) -> None:
     """Print the prediction of theory for a case; no engine runs."""
+    from ..case.doubts import doubts
     from ..case.impact import load, named
     from ..impacts.experiment import experiment
     from ..impacts.prediction import predict as predict_experiment
     from . import show
 
     with named(case):
-        experiments = [experiment(load(case), name) for name in laws_or_own(law)]
-    show.predictions([(x, predict_experiment(x)) for x in experiments], as_json, console())
+        read = load(case)
+        experiments = [experiment(read, name) for name in laws_or_own(law)]
+    show.predictions([(x, predict_experiment(x)) for x in experiments], doubts(read), as_json, console())
 
 
 @app.command()

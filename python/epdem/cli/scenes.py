@@ -9,7 +9,7 @@ import typer
 
 from ..errors import CaseError
 from ..terminal import bar, console
-from .options import AsJson, CasePath, Replace, quantity, refuse
+from .options import AsJson, CasePath, Replace, quantity, refuse, warn
 
 
 def is_scene(path: Path) -> bool:
@@ -61,6 +61,7 @@ def run_scene(
 
 def deck_scene(case: Path, out: Path, *, engine: str = "liggghts", force: bool = False, as_json: bool = False) -> None:
     """Write the deck of a scene."""
+    from ..case.doubts import doubts
     from ..case.impact import named
     from ..case.scene import load
     from ..engines import scene_engine
@@ -68,7 +69,9 @@ def deck_scene(case: Path, out: Path, *, engine: str = "liggghts", force: bool =
     from ..scenes.plan import plan
 
     with named(case):
-        files = scene_engine(engine).files(plan(load(case)))
+        read = load(case)
+        warn(doubts(read))
+        files = scene_engine(engine).files(plan(read))
     names = [str(f) for f in write_own(out, files, force=force)]
     print(json.dumps({"files": names}) if as_json else "\n".join(names))
 

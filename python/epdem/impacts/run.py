@@ -14,6 +14,7 @@ from pathlib import Path
 import pandas as pd
 
 from .. import __version__
+from ..case.doubts import doubts
 from ..case.impact import Case, named, parse, read_toml
 from ..errors import CaseError, EngineError
 from ..folders import claim
@@ -178,7 +179,7 @@ def _run(path: Path, work: _Work, folder: Path, ranks: int, fresh: bool, progres
     attributes = {"case": work.case.name, "epdem": __version__}
     attributes |= {f"version_{name}": version for name, version in work.versions.items()}
     results = store.Results(case_text=path.read_text(encoding="utf-8-sig"), attributes=attributes)
-    outcome = Outcome(work.case, folder, results, work.predictions)
+    outcome = Outcome(work.case, folder, results, work.predictions, warnings=doubts(work.case))
     rows = []
     for p in work.plans:
         law = p.experiment.law.name
