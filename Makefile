@@ -1,5 +1,5 @@
 # Each target is one line that calls a script or a tool.
-.PHONY: setup demo test bench docs tidy sanitize clean
+.PHONY: setup demo test bench docs tidy sanitize versions clean
 
 setup:
 	@scripts/setup
@@ -24,6 +24,10 @@ tidy: setup
 
 sanitize: setup
 	.venv/bin/python scripts/sanitize
+
+# the oldest and the newest Python packages instead of those of scripts/constraints.txt
+versions: setup
+	.venv/bin/python scripts/versions
 
 clean:
 	rm -rf .venv build runs
