@@ -1,5 +1,5 @@
 # Each target is one line that calls a script or a tool.
-.PHONY: setup demo test bench docs tidy sanitize versions clean
+.PHONY: setup demo test bench docs tidy sanitize versions fuzz valgrind reliability clean
 
 setup:
 	@scripts/setup
@@ -28,6 +28,18 @@ sanitize: setup
 # the oldest and the newest Python packages instead of those of scripts/constraints.txt
 versions: setup
 	.venv/bin/python scripts/versions
+
+# ten minutes for each test of tests/fuzz
+fuzz: setup
+	.venv/bin/python scripts/fuzz
+
+valgrind: setup
+	.venv/bin/python scripts/valgrind
+
+# kills, full disks, damaged files: writes docs/reliability.md and goes on where it was stopped
+reliability:
+	@scripts/setup yade
+	.venv/bin/python docs/reliability.py
 
 clean:
 	rm -rf .venv build runs

@@ -10,9 +10,11 @@
 
 namespace epdem::liggghts {
 
-/// Two per-atom properties: plasticWork [J] sums up every growth of plastic work since the start, elasticEnergy [J] is
-/// what the contacts of this step can give back. Half of a pair's energy belongs to each body, all of a wall's to the
-/// sphere. LIGGGHTS evaluates a pair that spans two ranks on both of them, so each books its own body only.
+/// Per-atom properties: plasticWork [J] sums up every growth of plastic work since the start, elasticEnergy [J] is what
+/// the contacts of this step can give back, bearingContacts counts those of them that bear a force: a contact whose
+/// bodies overlap by less than the depth of its dent bears none. Half of a pair's energy belongs to each body, all of a
+/// wall's to the sphere. LIGGGHTS evaluates a pair that spans two ranks on both of them, so each books its own body
+/// only.
 class Ledger {
  public:
   /// Indices of the bodies, and from which index on a body belongs to another rank.
@@ -22,7 +24,7 @@ class Ledger {
 
   /// For the pair style, whose settings come first: creates the properties.
   void create(LAMMPS_NS::LAMMPS* lmp) {
-    for (const char* name : {work_name, energy_name}) {
+    for (const char* name : {work_name, energy_name, bearing_name}) {
       const char* words[] = {name, "all", "property/atom", name, "scalar", "yes", "no", "no", "0.0"};
       if (!find(lmp, name, name)) lmp->modify->add_fix_property_atom(9, const_cast<char**>(words), name);
     }
@@ -32,13 +34,17 @@ class Ledger {
   void connect(LAMMPS_NS::LAMMPS* lmp, const std::string& model) {
     work_ = find(lmp, work_name, model.c_str());
     energy_ = find(lmp, energy_name, model.c_str());
-    if (work_ && energy_) return;
+    bearing_ = find(lmp, bearing_name, model.c_str());
+    if (work_ && energy_ && bearing_) return;
     const std::string text = "model " + model + ": computePlasticWork on of a wall needs it for the pair style as well";
     lmp->error->all(FLERR, text.c_str());
   }
 
   /// At the start of a kept pass over all pairs: what the contacts hold is counted anew.
-  void open(int nlocal) { std::fill_n(energy_->vector_atom, nlocal, 0.0); }
+  void open(int nlocal) {
+    std::fill_n(energy_->vector_atom, nlocal, 0.0);
+    std::fill_n(bearing_->vector_atom, nlocal, 0.0);
+  }
 
   template <bool wall, class Law>
   void book(const Law& law, double R_star, const State<Law>& before, const State<Law>& after, double delta,
@@ -57,6 +63,7 @@ class Ledger {
  private:
   static constexpr const char* work_name = "plasticWork";
   static constexpr const char* energy_name = "elasticEnergy";
+  static constexpr const char* bearing_name = "bearingContacts";
 
   static LAMMPS_NS::FixPropertyAtom* find(LAMMPS_NS::LAMMPS* lmp, const char* name, const char* caller) {
     return static_cast<LAMMPS_NS::FixPropertyAtom*>(
@@ -66,10 +73,12 @@ class Ledger {
   void credit(int body, double grown, double stored) {
     if (grown > 0.0) work_->vector_atom[body] += grown;  // few contacts grow
     energy_->vector_atom[body] += stored;
+    bearing_->vector_atom[body] += stored > 0.0;
   }
 
   LAMMPS_NS::FixPropertyAtom* work_ = nullptr;
   LAMMPS_NS::FixPropertyAtom* energy_ = nullptr;
+  LAMMPS_NS::FixPropertyAtom* bearing_ = nullptr;
 };
 
 }  // namespace epdem::liggghts

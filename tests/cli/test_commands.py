@@ -44,6 +44,7 @@ DOCUMENTS = {  # words, and what the document must hold
         ["steel.toml", "-e", "embedded", "--set", "impact.body.radius=1 mm,2 mm", "-j", "1"],
         lambda d: d["passed"] and d["done"] == 2,
     ),
+    "rerun": (["stored/results.h5"], lambda d: d["same"] and len(d["differences"]) == 1),
     "status": (["swept"], lambda d: (d["points"], d["done"], d["waiting"]) == (2, 0, 2)),
     "calibrate": (["steel.toml", "--hv", "100"], lambda d: abs(d["value"] / 1057.66e6 - 1) < 1e-5),
 }
@@ -63,6 +64,7 @@ MISTAKES = {  # words, and what the sentence must hold
     "soften": (["steel.toml", "-k", "-3"], "--factor -3, must be > 0"),
     "calibrate": (["steel.toml"], "give one measurement"),
     "sweep": (["steel.toml", "--set", "impact.body.radios=1 mm"], "the nearest: impact.body.radius"),
+    "rerun": (["steel.toml"], "steel.toml: not a results file of epdem, or damaged"),
     "status": (["nowhere"], "nowhere: not a folder of a sweep"),
 }
 
@@ -86,6 +88,8 @@ def test_a_command_prints_one_json_document_and_nothing_else(command, folder, ca
     monkeypatch.setattr(crosscheck, "FOREIGN", {})
     if command == "status":
         make_sweep("steel.toml", folder / "swept")
+    if command == "rerun":
+        assert call(["run", "steel.toml", "-e", "embedded", "-o", "stored"], capsys, monkeypatch).code == 0
     words, holds = DOCUMENTS[command]
     done = call([command, *words, "--json"], capsys, monkeypatch)
     assert done.code == 0 or command == "doctor", done.err

@@ -16,6 +16,7 @@ from ..errors import CaseError, EpdemError, Stopped
 from ..terminal import bar, console
 from . import crosscheck as cli_crosscheck
 from . import numerics as cli_numerics
+from . import rerun as cli_rerun
 from . import scenes as cli_scene
 from . import sweep as cli_sweep
 from . import theory as cli_theory
@@ -178,6 +179,7 @@ for command in (
     cli_scene.calibrate,
     cli_sweep.sweep,
     cli_sweep.status,
+    cli_rerun.rerun,
 ):
     app.command()(command)
 app.command("points", hidden=True)(cli_sweep.points)  # what batch scripts call

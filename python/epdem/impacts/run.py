@@ -123,6 +123,7 @@ class _Work:
     versions: dict[str, str]
     predictions: dict[str, Prediction]
     plans: list[Plan]
+    how: dict[str, object]  # the options on which the numbers depend: ranks, steps (0: the case's), own_law
 
 
 def _prepare(case_path: Path | str, tools: Sequence[Engine], laws: list[str], steps: int | None, ranks: int) -> _Work:
@@ -147,7 +148,8 @@ def _prepare(case_path: Path | str, tools: Sequence[Engine], laws: list[str], st
         for p in plans:
             for tool in tools:
                 refuse(tool, p, predictions[p.experiment.law.name], ranks=ranks)
-    return _Work(case, tools, {tool.name: tool.version() for tool in tools}, predictions, plans)
+    how: dict[str, object] = {"ranks": ranks, "steps": steps or 0, "own_law": not laws}
+    return _Work(case, tools, {tool.name: tool.version() for tool in tools}, predictions, plans, how)
 
 
 def run(
@@ -196,7 +198,7 @@ def _run(path: Path, work: _Work, folder: Path, ranks: int, fresh: bool, progres
             else:
                 stage = run_plan(p, tool, folder / law / tool.name, ranks=ranks)
                 results.impacts[key] = stage.impacts
-                results.runs[key] = stage.seconds | {"inputs": inputs, "time_step": p.time_step}
+                results.runs[key] = stage.seconds | {"inputs": inputs, "time_step": p.time_step} | work.how
                 results.decks |= {f"{key}/{name}": text for name, text in stage.decks.items()}
             spent = float(str(results.runs[key]["seconds"]))
             outcome.seconds[tool.name] = outcome.seconds.get(tool.name, 0.0) + spent
