@@ -17,8 +17,8 @@ from pathlib import Path
 
 import numpy as np
 
-from epdem.case.impact import read_toml
 from epdem.case.scene import parse
+from epdem.case.toml import read_toml
 from epdem.liggghts.scenes import LiggghtsScenes
 from epdem.scenes.checks import discharge
 from epdem.scenes.plan import plan

@@ -13,9 +13,9 @@ import shutil
 import tempfile
 from pathlib import Path
 
+from epdem.base.files import write_texts
 from epdem.case import scene as scenes
-from epdem.case.impact import read_toml
-from epdem.files import write_texts
+from epdem.case.toml import read_toml
 from epdem.liggghts import launcher, log, resume
 from epdem.liggghts.scene_deck import files, memory
 from epdem.scenes.plan import plan

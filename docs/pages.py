@@ -3,7 +3,7 @@
 
 import pandas as pd
 
-from epdem.terminal import cell
+from epdem.base.terminal import cell
 
 
 def markdown(frame: pd.DataFrame) -> str:

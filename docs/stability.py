@@ -9,13 +9,13 @@ from pathlib import Path
 import pandas as pd
 from pages import markdown
 
+from epdem.base.terminal import cell
 from epdem.studies import stability
 from epdem.studies.stability.cases import extremes
 from epdem.studies.stability.repeats import BOUNCE_SHARE, DRIFT, FORCE
 from epdem.studies.stability.roundoff import FORMULA
 from epdem.studies.stability.running import BROKEN, COARSE, CREATED, ERROR, FINE, FINEST, LEAST_ORDER, WRONG
 from epdem.studies.stability.suite import POSITION_COARSE, Outcome, summary
-from epdem.terminal import cell
 
 
 def limits(verdicts: pd.DataFrame) -> pd.DataFrame:

@@ -14,7 +14,9 @@ namespace epdem::liggghts {
 
 namespace {
 
-constexpr const char* built_for = EPDEM_BUILT_FOR;  // as the library said when this was built
+#ifdef EPDEM_BUILT_FOR  // as the library said when this was built; in a source tree all is built at once
+
+constexpr const char* built_for = EPDEM_BUILT_FOR;
 
 /// The library carries no symbol versions: compare its version and where it says that two members lie.
 void check_library(LAMMPS_NS::LAMMPS* lmp) {
@@ -29,9 +31,15 @@ void check_library(LAMMPS_NS::LAMMPS* lmp) {
   lmp->error->all(FLERR, text.c_str());
 }
 
+#else
+
+void check_library(LAMMPS_NS::LAMMPS*) {}
+
+#endif
+
 }  // namespace
 
-void greet(LAMMPS_NS::LAMMPS* lmp) {
+void check_host(LAMMPS_NS::LAMMPS* lmp) {
   static LAMMPS_NS::LAMMPS* known = nullptr;
   if (known == lmp) return;
   known = lmp;

@@ -82,7 +82,7 @@ class Model : public ContactModelBase {
  public:
   Model(LAMMPS_NS::LAMMPS* lmp, LIGGGHTS::IContactHistorySetup* setup, bool is_wall, const int64_t hash)
       : ContactModelBase(lmp, is_wall),
-        ids_(greeted(lmp, hash)),
+        ids_(checked(lmp, hash)),
         surface_({lmp, setup, this, ids_}),
         normal_(lmp, setup),
         cohesion_({lmp, setup, this, ids_}),
@@ -98,7 +98,13 @@ class Model : public ContactModelBase {
 
   /// Settings of LIGGGHTS's models that our loop must know.
   struct Asked {
-    bool torsion = false, cohesion_slides = false, heating = false;
+    bool torsion = false, cohesion_slides = false, heating = false, twist = false;
+
+    /// What our loop does not include; nullptr: nothing.
+    const char* missing() const {
+      if (heating) return "heating_tangential_history on";
+      return twist ? "torsion on" : nullptr;
+    }
   };
   const Asked& asked() const { return asked_; }
   auto& normal() { return normal_; }
@@ -114,8 +120,12 @@ class Model : public ContactModelBase {
     if (ids_.rolling == ROLLING_CDT || ids_.rolling == ROLLING_EPSD2)
       settings.registerOnOff("torsionTorque", asked_.torsion, false);
     if (ids_.cohesion != COHESION_OFF) settings.registerOnOff("tangential_reduce", asked_.cohesion_slides, false);
-    if (ids_.tangential == TANGENTIAL_HISTORY)
+    if (ids_.tangential == TANGENTIAL_HISTORY) {
       settings.registerOnOff("heating_tangential_history", asked_.heating, false);
+#if __has_include("iloopcallbackcallable.h")  // LIGGGHTS-INL
+      settings.registerOnOff("torsion", asked_.twist, false);
+#endif
+    }
   }
 
   void postSettings(LIGGGHTS::IContactHistorySetup* setup) {
@@ -184,7 +194,7 @@ class Model : public ContactModelBase {
     rolling_.surfacesClose(s, i, j);
   }
 
-  bool contact_match(const std::string& kind, const std::string& model) {
+  bool contact_match(const std::string kind, const std::string model) {
     auto& names = LIGGGHTS::ContactModels::Factory::instance();
     if (kind == "surface") return ids_.surface == names.getSurfaceModelId(model);
     if (kind == "normal") return ids_.normal == names.getNormalModelId(model);
@@ -196,8 +206,8 @@ class Model : public ContactModelBase {
 
  private:
   /// Before the first part is built: a foreign library must not be touched.
-  static Ids greeted(LAMMPS_NS::LAMMPS* lmp, int64_t hash) {
-    greet(lmp);
+  static Ids checked(LAMMPS_NS::LAMMPS* lmp, int64_t hash) {
+    check_host(lmp);
     return Ids::of(hash);
   }
 

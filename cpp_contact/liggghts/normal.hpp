@@ -20,8 +20,8 @@ using namespace LIGGGHTS::ContactModels;
 /// Normal model of one law for pairs (wall = false) or walls.
 ///
 /// History: what a law that yields remembers (doubles), and for pairs the step of the last evaluation that was kept.
-/// LIGGGHTS tells nobody that a pair parted, so a contact whose last evaluation is older than one step is a new one,
-/// for the law and for all models that remember something beside it. Walls are told, and need no step.
+/// LIGGGHTS does not report that a pair parted, so a contact whose last evaluation is older than one step is a new one,
+/// for the law and for all models that remember something beside it. Walls need no step: their end is reported.
 template <class Law, bool wall, bool others_remember>
 class Normal : protected LAMMPS_NS::Pointers {
   static constexpr bool remembers = Law::yields;
@@ -71,6 +71,8 @@ class Normal : protected LAMMPS_NS::Pointers {
   }
 
   void connectToProperties(PropertyRegistry& registry, Dashpot dashpot) {
+    if (!atom->sphere_flag || atom->superquadric_flag || atom->shapetype_flag)
+      fail("it is for spheres; give other particles a model of LIGGGHTS with surface superquadric");
     // Rebuilt at every init: LIGGGHTS frees all properties there, and the user may have changed them.
     if (!tangential_damping_ && dashpot == Dashpot::optional) dashpot = Dashpot::off;
     const Declaration law{model_.c_str(), Law::parameters,    Law::n_parameters,     &Law::valid,
@@ -127,7 +129,7 @@ class Normal : protected LAMMPS_NS::Pointers {
     const Step<Law> now = step(t.law, R_star, before, delta);
 
     if (keep) {
-      if (plastic_work_) ledger_.template book<wall>(t.law, R_star, before, now.after, delta, {s.i, s.j, atom->nlocal});
+      if (plastic_work_) ledger_.template book<wall>(t.law, R_star, before, now, delta, {s.i, s.j, atom->nlocal});
       if constexpr (remembers) std::memcpy(history + offset_, &now.after, sizeof now.after);
       if constexpr (stamped) history[stamp_] = now_;
     }

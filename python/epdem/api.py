@@ -4,43 +4,43 @@
 Tables have the SI units of their columns in `attrs["units"]`. Progress goes to the logger "epdem".
 """
 
-import contextlib
 import logging
-import tempfile
 import tomllib
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, ClassVar, Self, overload
+from typing import Any, ClassVar, Self, Unpack, overload
 
-import numpy as np
 import pandas as pd
 import tomlkit
 
 from . import theory
+from .base.files import atomic
+from .base.folders import write_own
 from .case import impact as impact_case
 from .case import scene as scene_case
+from .case.toml import read_toml
 from .engines import engine as engine_named
 from .engines import scene_engine
 from .errors import CaseError
-from .files import atomic
-from .folders import write_own
 from .impacts.comparison import UNITS
 from .impacts.experiment import experiment
 from .impacts.prediction import Prediction
 from .impacts.prediction import predict as predict_experiment
 from .impacts.run import Outcome, write_deck
-from .impacts.run import run as run_impacts
+from .impacts.run import run_case as run_impacts
 from .scenes.columns import UNITS as SCENE_UNITS
 from .scenes.plan import plan as plan_scene
 from .scenes.run import SceneOutcome
-from .scenes.run import run as run_scene
+from .scenes.run import run_case as run_scene
+from .studies.fit import Fit, Targets, fit_text
+from .studies.fit import Options as FitOptions
 from .studies.sweep import keys
 from .studies.sweep import run as study
-from .studies.sweep.points import with_unit
+from .studies.sweep.points import plain, with_unit, with_units
 from .studies.sweep.run import SweepOutcome
 
-__all__ = ["Case", "Run", "Scene", "SceneRun", "deck", "predict", "run", "sweep", "theory"]
+__all__ = ["Case", "Fit", "Run", "Scene", "SceneRun", "calibrate", "deck", "predict", "run", "sweep", "theory"]
 log = logging.getLogger("epdem")
 
 
@@ -57,8 +57,8 @@ class _File:
         """
         name = tables.get("case", {}).get("name", self.kind)
         header = {"name": name, "title": name, "source": "made in Python"} | tables.get("case", {})
-        data = _plain({"case": header} | {key: value for key, value in tables.items() if key != "case"})
-        self._read(tomlkit.dumps(_with_units(data, keys.keys_of(data))), name)
+        data = plain({"case": header} | {key: value for key, value in tables.items() if key != "case"})
+        self._read(tomlkit.dumps(with_units(data, keys.keys_of(data))), name)
 
     def _read(self, text: str, path: object) -> None:
         self.text = text
@@ -71,10 +71,10 @@ class _File:
     @classmethod
     def from_toml(cls, path: Path | str) -> Self:
         """The case in a file. Raises CaseError."""
-        impact_case.read_toml(path)
-        found = cls.__new__(cls)
-        found._read(Path(path).read_text(encoding="utf-8-sig"), path)
-        return found
+        read_toml(path)
+        case = cls.__new__(cls)
+        case._read(Path(path).read_text(encoding="utf-8-sig"), path)
+        return case
 
     def to_toml(self, path: Path | str) -> Path:
         """Write the case as a file that the commands take."""
@@ -91,9 +91,9 @@ class _File:
         names = keys.keys_of(document.unwrap())
         for name, value in changes.items():
             keys.assign(document, name, with_unit(value, keys.known(name, names, "replace")))
-        found = type(self).__new__(type(self))
-        found._read(document.as_string(), self.name)
-        return found
+        case = type(self).__new__(type(self))
+        case._read(document.as_string(), self.name)
+        return case
 
     @property
     def name(self) -> str:
@@ -118,11 +118,6 @@ class _File:
 
         return f"<b>{html.escape(self.title)}</b><pre>{html.escape(self.text)}</pre>"
 
-    @contextlib.contextmanager
-    def _as_file(self) -> Iterator[Path]:
-        with tempfile.TemporaryDirectory(prefix="epdem-") as place:
-            yield self.to_toml(Path(place) / f"{self.name}.toml")
-
 
 class Case(_File):
     """Impacts of one body on one target over a range of speeds."""
@@ -144,29 +139,11 @@ class Scene(_File):
         return scene_case.parse(data, path)
 
 
-def _plain(value: Any) -> Any:
-    """Arrays and tuples as lists, at any depth."""
-    if isinstance(value, Mapping):
-        return {str(k): _plain(v) for k, v in value.items()}
-    if isinstance(value, np.ndarray):
-        return value.tolist()
-    return [_plain(v) for v in value] if isinstance(value, list | tuple) else value
-
-
-def _with_units(value: Any, names: dict[str, keys.Key], place: str = "") -> Any:
-    below = f"{place}." if place else ""
-    if isinstance(value, dict):
-        return {k: _with_units(v, names, f"{below}{k}") for k, v in value.items()}
-    if isinstance(value, list) and any(isinstance(v, dict) for v in value):
-        return [_with_units(v, names, f"{below}{n}") for n, v in enumerate(value)]
-    return with_unit(value, names.get(place, keys.Key()))
-
-
 def _units(table: pd.DataFrame, units: Mapping[str, str]) -> pd.DataFrame:
-    found = table.copy()
-    names = {name: units.get(name.removesuffix("_theory")) for name in map(str, found.columns)}
-    found.attrs["units"] = {name: unit for name, unit in names.items() if unit}
-    return found
+    marked = table.copy()
+    names = {name: units.get(name.removesuffix("_theory")) for name in map(str, marked.columns)}
+    marked.attrs["units"] = {name: unit for name, unit in names.items() if unit}
+    return marked
 
 
 @dataclass(frozen=True)
@@ -266,19 +243,21 @@ def run(
     """
     place = None if out is None else Path(out)
     options: dict[str, Any] = {"out": place, "ranks": ranks, "fresh": fresh, "force": force}
-    with case._as_file() as path:
-        if isinstance(case, Scene):
-            if len(engines) != 1 or laws:
-                raise CaseError("a scene has its own law and runs on one engine")
-            return SceneRun(run_scene(path, scene_engine(engines[0]), **options))
-        tools = [engine_named(name) for name in engines]
-        return Run(run_impacts(path, engines=tools, laws=laws, progress=log.info, **options))
+    if isinstance(case, Scene):
+        if len(engines) != 1 or laws:
+            raise CaseError("a scene has its own law and runs on one engine")
+        return SceneRun(run_scene(case.model, case.text, scene_engine(engines[0]), place=case.name, **options))
+    tools = [engine_named(name) for name in engines]
+    impacts = run_impacts(
+        case.model, case.text, place=case.name, engines=tools, laws=laws, progress=log.info, **options
+    )
+    return Run(impacts)
 
 
 def predict(case: Case, law: str | None = None) -> pd.DataFrame:
     """The prediction of theory for a case, one row for each speed; no engine runs. Raises CaseError."""
-    found = predict_experiment(experiment(case.model, law))
-    return _units(pd.DataFrame({name: getattr(found, name) for name in Prediction.COLUMNS}), UNITS)
+    prediction = predict_experiment(experiment(case.model, law))
+    return _units(pd.DataFrame({name: getattr(prediction, name) for name in Prediction.COLUMNS}), UNITS)
 
 
 def deck(
@@ -308,12 +287,20 @@ def sweep(
     `settings` gives the values of keys by their dotted names, as a text ("1 mm..5 mm:9") or a sequence of values. What
     is finished in `out` (default: runs/<name>_sweep) does not run again. Raises CaseError, EngineError, OSError.
     """
-    with case._as_file() as path:
-        words: dict[str, Any] = {"engines": engines, "laws": laws, "ranks": ranks}
-        planned = study.plan(path, settings, **words, latin_hypercube=latin_hypercube, seed=seed)
+    planned = study.plan_text(
+        case.text, settings, engines=engines, laws=laws, ranks=ranks, latin_hypercube=latin_hypercube, seed=seed
+    )
     folder = Path(out) if out is not None else Path("runs") / f"{planned.name}_sweep"
+    return study.run(planned, folder, jobs=jobs, retry_failed=retry_failed, report=_report)
 
-    def report(done: int, total: int) -> None:
-        log.info("%d of %d points", done, total)
 
-    return study.run(planned, folder, jobs=jobs, retry_failed=retry_failed, report=report)
+def calibrate(scene: Scene, targets: Targets, free: Mapping[str, str], **options: Unpack[FitOptions]) -> Fit:
+    """Find one to three keys of a scene with which numbers of its results have the values `targets`; see `fit_text`.
+
+    `scene.replace(found.values)` is the scene that was found. Raises CaseError, EngineError.
+    """
+    return fit_text(scene.text, targets, free, place=scene.name, **({"report": _report} | options))
+
+
+def _report(done: int, total: int) -> None:
+    log.info("%d of %d points", done, total)

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from laws import NAMES, YIELDING, yield_overlap
 
-from epdem import paths
+from epdem.base import paths
 from epdem.laws import library as claw
 from epdem.laws.native import Law
 from epdem.liggghts import dump

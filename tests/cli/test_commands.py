@@ -13,7 +13,7 @@ import pandas as pd
 import pytest
 from calls import CASES, COMMANDS, call, make_sweep
 
-from epdem import paths, terminal
+from epdem.base import paths, terminal
 from epdem.engines import ENGINES
 from epdem.scenes import report
 from epdem.studies import crosscheck
@@ -21,6 +21,10 @@ from epdem.studies import crosscheck
 STEEL = (CASES / "steel_wall.toml").read_text()
 SPEEDS = STEEL[STEEL.index("speeds =") : STEEL.index("\n", STEEL.index("speeds ="))]
 ONE_SPEED = STEEL.replace(SPEEDS, 'speeds = ["5 m/s"]')
+FEW_BEADS = (
+    (CASES / "settle_glass.toml").read_text().replace("count = 1000", "count = 30").replace('"0.5 s"', '"0.1 s"')
+)
+FEW_BEADS = FEW_BEADS.replace("error = 1e-2", "time_step = '5e-5 s'")
 TITLE = "[/y] [red]steel[/] :smile: $\\\\frac$ [mm]"
 
 DOCUMENTS = {  # words, and what the document must hold
@@ -45,7 +49,10 @@ DOCUMENTS = {  # words, and what the document must hold
         lambda d: d["passed"] and d["done"] == 2,
     ),
     "rerun": (["stored/results.h5"], lambda d: d["same"] and len(d["differences"]) == 1),
+    "tune": (["beads.toml"], lambda d: d["ranks"] == 1 and len(d["trials"]) == 5 and not d["written"]),
     "status": (["swept"], lambda d: (d["points"], d["done"], d["waiting"]) == (2, 0, 2)),
+    "cite": (["steel.toml"], lambda d: "Thornton" in d["law thornton, Thornton 1997"] and "Kloss" in d["liggghts"]),
+    "header": (["-o", "."], lambda d: d["files"][0] == "normal_model_ep.cpp" and not d["lacks"]),
     "calibrate": (["steel.toml", "--hv", "100"], lambda d: abs(d["value"] / 1057.66e6 - 1) < 1e-5),
 }
 MISTAKES = {  # words, and what the sentence must hold
@@ -54,7 +61,7 @@ MISTAKES = {  # words, and what the sentence must hold
     "predict": (["steel.toml", "-l", "hook"], "steel.toml: law.name = 'hook' does not exist; there are hertz"),
     "doctor": (["steel.toml"], "extra argument(s) (steel.toml); see epdem doctor --help"),
     "crosscheck": (["nowhere.toml"], "nowhere.toml: no such file"),
-    "theory": (["--radius", "3 kg"], "--radius '3 kg': the unit 'kg' has the wrong dimension"),
+    "theory": (["--radius", "3 kg"], "--radius = '3 kg', the unit 'kg' has the wrong dimension"),
     "figures": (["-o", "steel.toml"], "steel.toml"),
     "timestep": (["steel.toml", "--error", "1"], "'--error': must be less than or equal to 0.1; see epdem timestep"),
     "cost": (["steel.toml", "-l", "hook"], "steel.toml: law.name = 'hook' does not exist"),
@@ -63,6 +70,9 @@ MISTAKES = {  # words, and what the sentence must hold
     "explain": (["bad.toml"], "bad.toml: not valid TOML"),
     "soften": (["steel.toml", "-k", "-3"], "--factor -3, must be > 0"),
     "calibrate": (["steel.toml"], "give one measurement"),
+    "tune": (["steel.toml"], "steel.toml is a case of impacts"),
+    "cite": (["steel.toml", "-e", "abaqus"], "'abaqus' does not exist; there are embedded"),
+    "header": (["--check", "."], "contact_models.h is not there; name the folder src"),
     "sweep": (["steel.toml", "--set", "impact.body.radios=1 mm"], "the nearest: impact.body.radius"),
     "rerun": (["steel.toml"], "steel.toml: not a results file of epdem, or damaged"),
     "status": (["nowhere"], "nowhere: not a folder of a sweep"),
@@ -90,6 +100,8 @@ def test_a_command_prints_one_json_document_and_nothing_else(command, folder, ca
         make_sweep("steel.toml", folder / "swept")
     if command == "rerun":
         assert call(["run", "steel.toml", "-e", "embedded", "-o", "stored"], capsys, monkeypatch).code == 0
+    if command == "tune":
+        (folder / "beads.toml").write_text(FEW_BEADS)
     words, holds = DOCUMENTS[command]
     done = call([command, *words, "--json"], capsys, monkeypatch)
     assert done.code == 0 or command == "doctor", done.err
@@ -134,6 +146,15 @@ def test_long_values_are_cut_at_80_characters(folder, capsys, monkeypatch):
     for words in (["run", "steel.toml", "-e", "x" * 500], ["predict", "steel.toml", "-l", "x" * 500]):
         err = call(words, capsys, monkeypatch).err
         assert f"'{'x' * 77}...'" in err and len(err) < 250
+
+
+def test_two_cases_of_one_file_name_do_not_share_a_folder(folder, capsys, monkeypatch):
+    for name in ("ENGINES", "OTHERS", "FOREIGN"):
+        monkeypatch.setattr(crosscheck, name, {"embedded": ENGINES["embedded"]} if name == "ENGINES" else {})
+    (folder / "b").mkdir()
+    shutil.copy("steel.toml", "b/steel.toml")
+    done = call(["crosscheck", "steel.toml", "b/steel.toml", "-o", "out"], capsys, monkeypatch)
+    assert done.code == 2 and "--out out: two of the cases have one file name" in done.err and not Path("out").exists()
 
 
 def test_title_and_folder_of_a_scene_are_shown_as_they_are(capsys):

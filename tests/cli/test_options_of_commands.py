@@ -15,7 +15,7 @@ from calls import CASES, COMMANDS, call, make_sweep
 from epdem.errors import CaseError
 from epdem.impacts import run as impacts_run
 from epdem.scenes import run as scenes_run
-from epdem.studies import cost, crosscheck, figures, stability
+from epdem.studies import cost, crosscheck, figures, fit, stability, tune
 from epdem.studies.stability import bulk_cost
 from epdem.studies.sweep import executors
 
@@ -23,6 +23,9 @@ STEEL = (CASES / "steel_wall.toml").read_text()
 FAST = STEEL[: STEEL.index("speeds =")] + 'speeds = ["1 m/s"]' + STEEL[STEEL.index("\n", STEEL.index("speeds =")) :]
 TEMPLATE = "{{ deck.time_step }} {{ a | default(0) }}\n"
 HARDNESS = {"e_n": "0.6", "speed": "3 m/s", "hv": "200", "hb": "200", "dent_ratio": "0.5"}
+HARDNESS |= {"target": "floor_load_mean=1 N", "free": "contact.friction=0.1..0.9", "tolerance": "0.1", "engine": "yade"}
+HARDNESS |= {"ranks": "2", "jobs": "1", "out": "there", "force": None}
+TARGET = ("--target", "floor_load_max=1 N", "--free", "contact.friction=0.1..0.5")
 RUN = {"engine": "yade", "law": "cavity", "ranks": "2", "steps": "100", "out": "there", "fresh": None, "resume": None}
 RUN |= {"force": None}
 DECK = {"out": "there", "engine": "yade", "law": "cavity", "case": "other.toml", "given": "a=1", "force": None}
@@ -53,6 +56,7 @@ KINDS = {  # words of a call without the option, and the value of every option
         {"engine": "yade", "law": "cavity", "group": "poisson", "every": "2", "steps": "1000", "out": "there.csv"}
         | {"force": None},
     ),
+    "tune a scene": (("tune", "scene.toml"), {"ranks": "2", "seconds": "5", "write": None}),
     "explain impacts": (("explain", "steel.toml"), {}),
     "explain a scene": (("explain", "scene.toml"), {}),
     "soften impacts": (("soften", "steel.toml", "-k", "10"), {"factor": "3", "out": "there.toml", "force": None}),
@@ -60,7 +64,11 @@ KINDS = {  # words of a call without the option, and the value of every option
     "calibrate from e_n": (("calibrate", "steel.toml", "--e-n", "0.7", "--speed", "2 m/s"), HARDNESS),
     "calibrate from HV": (("calibrate", "steel.toml", "--hv", "300"), HARDNESS),
     "calibrate from HB": (("calibrate", "steel.toml", "--hb", "300"), HARDNESS),
+    "calibrate from a scene": (("calibrate", "scene.toml", *TARGET), HARDNESS),
     "doctor": (("doctor",), {}),
+    "cite for impacts": (("cite", "steel.toml"), {"engine": "yade", "law": "hertz"}),
+    "cite for a scene": (("cite", "scene.toml"), {"engine": "yade", "law": "hertz"}),
+    "header": (("header", "-o", "."), {"out": "there", "check": "tree"}),
     "sweep of impacts": (("sweep", "steel.toml", "--set", "impact.body.radius=1 mm..2 mm:2"), SWEEP),
     "sweep of a scene": (("sweep", "scene.toml", "--set", "scene.gravity=9.81 m/s^2,1.62 m/s^2"), SWEEP),
     "latin hypercube": (("sweep", "steel.toml", "--set", "impact.body.radius=1 mm..2 mm", *HYPERCUBE), SWEEP),
@@ -92,6 +100,9 @@ def outcomes(tmp_path_factory):
     return {
         "cost": cost.run(path, engines=["embedded"], laws=[], steps=(30, 100), repetitions=1),
         "bulk": pd.DataFrame([{"model": "x", "spheres": 8, "seconds_spread": 1e-3, "ratio_spread": 0.1} | numbers]),
+        "tuned": tune.Tuned(
+            (tune.Trial("skin 1 mm", 1e-3, (2.0, 2.0)), tune.Trial("skin 2 mm", 2e-3, (1.0, 1.0))), (), 100, 500, 1
+        ),
         "stability": stability.run(["embedded"], ["hertz"], groups=["poisson"]),
     }
 
@@ -116,8 +127,10 @@ def library(tmp_path, monkeypatch, outcomes):
     record(cost, "run", outcomes["cost"])
     record(bulk_cost, "run", outcomes["bulk"])
     record(stability, "run", outcomes["stability"])
+    record(tune, "tune", outcomes["tuned"])
     record(figures, "draw_all", [Path("drawn.png")])
     record(executors, "execute")
+    record(fit, "fit")
     return reached
 
 

@@ -10,7 +10,8 @@ from pathlib import Path
 import pytest
 
 from epdem.case import scene, units
-from epdem.case.impact import load, parse, read_toml
+from epdem.case.impact import load, parse
+from epdem.case.toml import read_toml
 from epdem.case.units import to_si
 from epdem.errors import CaseError
 from epdem.impacts.experiment import experiment
@@ -210,7 +211,7 @@ COMMANDS = {
     "a folder that is a file": (("run", "-e", "embedded", "-o", "taken"), "taken"),
     "a folder nobody can make": (("run", "-e", "embedded", "-o", "/proc/here"), "/proc/here"),
     "a model without this law": (("run", "-e", "liggghts-thornton_ning", "-l", "cavity"), "has thornton only"),
-    "ranks of an engine that has one": (("run", "-e", "embedded", "--ranks", "2"), "leave --ranks out"),
+    "ranks of an engine that has one": (("run", "-e", "embedded", "--ranks", "2"), "leave it out"),
     "a deck of an engine without decks": (("deck", "-e", "embedded", "-o", "d"), "reads no deck"),
     "two laws in one deck": (("deck", "-l", "hertz", "-l", "cavity", "-o", "d"), "one deck for each"),
     "too many samples": (("run", "-e", "embedded", "--steps", "100000"), "samples, at most"),

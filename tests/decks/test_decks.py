@@ -9,10 +9,11 @@ import jinja2
 import pytest
 
 from epdem import __version__
-from epdem import rendering as deck
-from epdem.case.impact import parse, read_toml
+from epdem.base import rendering as deck
+from epdem.case.impact import parse
 from epdem.case.scene import is_scene
 from epdem.case.scene import load as load_scene
+from epdem.case.toml import read_toml
 from epdem.errors import CaseError
 from epdem.impacts.experiment import experiment
 from epdem.impacts.plan import plan

@@ -9,13 +9,13 @@ from pathlib import Path
 
 import pytest
 
+from epdem.base.folders import LOCK, MANIFEST, claim
 from epdem.errors import CaseError
-from epdem.folders import LOCK, MANIFEST, claim
 
 HOLD = """
 import sys, time
 from pathlib import Path
-from epdem.folders import claim
+from epdem.base.folders import claim
 with claim(Path(sys.argv[1])):
     (Path(sys.argv[1]) / "restart.1.bin").write_text("x")
     print("in", flush=True)

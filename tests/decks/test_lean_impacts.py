@@ -11,8 +11,9 @@ from pathlib import Path
 
 import pytest
 
-from epdem import paths
-from epdem.case.impact import Numerics, parse, read_toml
+from epdem.base import paths
+from epdem.case.impact import Numerics, parse
+from epdem.case.toml import read_toml
 from epdem.engines import engine
 from epdem.impacts.experiment import experiment
 from epdem.impacts.plan import plan

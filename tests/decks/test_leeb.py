@@ -11,7 +11,8 @@ from pathlib import Path
 
 import pytest
 
-from epdem.case.impact import parse, read_toml
+from epdem.case.impact import parse
+from epdem.case.toml import read_toml
 from epdem.impacts.experiment import experiment
 from epdem.impacts.prediction import predict
 

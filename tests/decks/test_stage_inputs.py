@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from epdem import paths, stages
+from epdem.base import paths, stages
 from epdem.engines.embedded import Embedded
 from epdem.impacts.run import run
 
@@ -36,25 +36,28 @@ def product(tmp_path, monkeypatch):
     for name in names:
         (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
         (tmp_path / name).write_text("first")
-    monkeypatch.setattr(stages, "__file__", str(tmp_path / "package/stages.py"))
+    monkeypatch.setattr(stages, "__file__", str(tmp_path / "package/base/stages.py"))
     monkeypatch.setattr(paths, "native", lambda name: tmp_path / name)
     monkeypatch.setattr(paths, "launcher", lambda: tmp_path / "launcher")
     monkeypatch.setattr(paths, "templates", lambda: tmp_path / "templates")
-    return tmp_path, names
+    yield tmp_path, names
+    for function in (stages.library_hash, stages.product_hash):
+        function.cache_clear()
 
 
 @pytest.mark.parametrize("changed", [0, 1, 2, 3, 4])
 def test_a_change_of_the_product_is_a_new_hash(product, changed):
     folder, names = product
-    stages.product_hash.cache_clear()
-    first = stages.product_hash()
-    stages.product_hash.cache_clear()
-    assert stages.product_hash() == first
+
+    def hashed():
+        for function in (stages.library_hash, stages.product_hash):
+            function.cache_clear()
+        return stages.product_hash()
+
+    first = hashed()
+    assert hashed() == first
     (folder / names[changed]).write_text("second")
-    stages.product_hash.cache_clear()
-    second = stages.product_hash()
-    stages.product_hash.cache_clear()
-    assert second != first
+    assert hashed() != first
 
 
 def reruns(tmp_path, tool, text=CASE, **options):
@@ -97,7 +100,7 @@ def test_a_prediction_needs_no_compiled_library():
     code = """
 import sys
 from pathlib import Path
-from epdem import paths
+from epdem.base import paths
 paths.native = lambda name: None
 from epdem.case.impact import load
 from epdem.impacts.experiment import experiment

@@ -7,7 +7,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from epdem.case.impact import Check, Numerics, parse, read_toml
+from epdem.case.impact import Check, Numerics, parse
+from epdem.case.toml import read_toml
 from epdem.engines import engine
 from epdem.impacts.comparison import compare, impacts_table
 from epdem.impacts.experiment import experiment

@@ -12,9 +12,9 @@ import numpy as np
 import pytest
 from test_stopping import alive, until
 
+from epdem.base.processes import call, session
 from epdem.errors import CaseError, EngineError
 from epdem.liggghts import dump, launcher, log, stl
-from epdem.processes import call, session
 
 CASE = Path(__file__).parents[2] / "cases/steel_wall.toml"
 
@@ -94,7 +94,7 @@ def test_more_ranks_than_cores_are_refused_before_anything_is_written(tmp_path):
 STARTER = """
 import sys
 from pathlib import Path
-from epdem.processes import call
+from epdem.base.processes import call
 call(sys.argv[2:], Path(sys.argv[1]), log="out")
 """
 
@@ -139,7 +139,7 @@ DEAF = "trap '' TERM; (trap '' TERM; sleep 62) & echo $$ > pid; while true; do s
 
 
 def test_a_program_that_is_deaf_to_sigterm_is_ended_with_all_that_it_started(tmp_path, monkeypatch):
-    monkeypatch.setattr("epdem.processes.PATIENCE", 0.3)
+    monkeypatch.setattr("epdem.base.processes.PATIENCE", 0.3)
     with pytest.raises(EngineError, match=r"setsid did not end within 1 s|sh did not end within 1 s"):
         call(["sh", "-c", DEAF], tmp_path, log="out", seconds=1.0)
     leader = int((tmp_path / "pid").read_text())

@@ -11,7 +11,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from epdem.case.impact import Numerics, parse, read_toml
+from epdem.base.rendering import render
+from epdem.case.impact import Numerics, parse
+from epdem.case.toml import read_toml
 from epdem.engines import engine
 from epdem.errors import CaseError, EngineError
 from epdem.impacts import store
@@ -20,7 +22,6 @@ from epdem.impacts.experiment import experiment
 from epdem.impacts.measurement import measure
 from epdem.impacts.plan import plan
 from epdem.impacts.prediction import predict
-from epdem.rendering import render
 from epdem.yade import impacts as module
 
 CASES = Path(__file__).parents[2] / "cases"
@@ -136,7 +137,7 @@ def test_what_yade_cannot_do_is_refused_before_it_starts():
     data["materials"]["steel"]["yield_stress"] = "60 GPa"  # p_y = 168 GPa beyond 0.36 E
     data["impact"]["speeds"] = ["1 m/s"]
     x = experiment(parse(data, "test"))
-    with pytest.raises(CaseError, match=r"materials\.steel: yield_pressure .* use --engine embedded"):
+    with pytest.raises(CaseError, match=r"materials\.steel: yield_pressure .* use --engine liggghts"):
         engine("yade").deck(plan(x, predict(x)))
 
 

@@ -101,7 +101,7 @@ import json
 import pytest
 from typer.testing import CliRunner
 
-from epdem.case.impact import read_toml
+from epdem.case.toml import read_toml
 from epdem.cli.main import app
 from epdem.errors import CaseError
 

@@ -10,7 +10,7 @@ from typing import Any
 import tomlkit
 from hypothesis import strategies as st
 
-from epdem.case.impact import read_toml
+from epdem.case.toml import read_toml
 
 CASES = Path(__file__).parents[2] / "cases"
 FILES = sorted(CASES.glob("*.toml"))

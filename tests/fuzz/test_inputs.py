@@ -18,6 +18,7 @@ from strategies import CASES, FILES, cases, damaged, numbers, quantities, toml, 
 
 from epdem.case import impact, scene
 from epdem.case.doubts import doubts
+from epdem.case.toml import read_toml
 from epdem.cli import main as cli
 from epdem.engines import scene_engine
 from epdem.errors import CaseError
@@ -65,7 +66,7 @@ def test_a_damaged_file_is_read_or_refused_by_one_sentence(raw):
         path = Path(folder) / "case.toml"
         path.write_bytes(raw)
         try:
-            carried_out(impact.read_toml(path))
+            carried_out(read_toml(path))
         except CaseError as error:
             one_sentence(str(error))
 
@@ -232,4 +233,4 @@ def test_what_is_written_as_toml_is_read_as_the_same_case(data):
             path.write_text(toml(data), encoding="utf-8")
         except (ValueError, TypeError):  # tomlkit's own limits on keys and numbers
             return
-        assert json.dumps(impact.read_toml(path), sort_keys=True) == json.dumps(data, sort_keys=True)
+        assert json.dumps(read_toml(path), sort_keys=True) == json.dumps(data, sort_keys=True)

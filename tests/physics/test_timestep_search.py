@@ -6,7 +6,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from epdem.case.impact import load, parse, read_toml
+from epdem.case.impact import load, parse
+from epdem.case.toml import read_toml
 from epdem.engines import engine
 from epdem.errors import CaseError
 from epdem.impacts import timestep

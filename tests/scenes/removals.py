@@ -8,8 +8,8 @@ import subprocess
 from dataclasses import dataclass
 from pathlib import Path
 
+from epdem.base.processes import ROW
 from epdem.liggghts.launcher import command
-from epdem.processes import ROW
 
 GUARD = "# guard: "
 

@@ -4,9 +4,9 @@
 import json
 from pathlib import Path
 
+from epdem.base.files import write_texts
 from epdem.case.scene import SceneCase
 from epdem.engines import scene_engine
-from epdem.files import write_texts
 from epdem.scenes import run as scene_run
 from epdem.scenes.plan import ScenePlan, plan
 

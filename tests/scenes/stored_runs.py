@@ -10,8 +10,8 @@ from pathlib import Path
 
 from scene_runs import write_case
 
-from epdem.case.impact import read_toml
 from epdem.case.scene import load, parse
+from epdem.case.toml import read_toml
 from epdem.engines import scene_engine
 from epdem.scenes.plan import ScenePlan, plan
 from epdem.scenes.run import run_plan

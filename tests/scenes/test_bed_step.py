@@ -8,8 +8,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from epdem.case.impact import read_toml
 from epdem.case.scene import parse
+from epdem.case.toml import read_toml
 from epdem.liggghts import launcher, log
 from epdem.scenes.pairs import sphere_impact
 from epdem.scenes.timestep import bed_share, time_step

@@ -8,9 +8,10 @@ import pytest
 from removals import removals
 from scene_runs import write_deck
 
-from epdem import rendering
+from epdem.base import rendering
 from epdem.case import impact as impacts
 from epdem.case.scene import is_scene, parse
+from epdem.case.toml import read_toml
 from epdem.engines import engine
 from epdem.impacts.experiment import experiment
 from epdem.impacts.plan import plan
@@ -55,7 +56,7 @@ def small(data: dict) -> dict:
 
 def decks_of(path: Path, folder: Path) -> tuple[str, list[str]]:
     """Write a case's deck: (file to run, files whose lines are removed)."""
-    data = impacts.read_toml(path)
+    data = read_toml(path)
     if is_scene(data):
         write_deck(parse(small(data)), folder)
         return "in.scene", ["in.scene", "setup.in"]
@@ -87,7 +88,7 @@ def test_a_line_that_does_nothing_is_found(tmp_path):
 
 def explained(path: Path) -> list[tuple[str, str, str]]:
     """What `explain` says of the deck that `decks_of` writes."""
-    data = impacts.read_toml(path)
+    data = read_toml(path)
     if is_scene(data):
         return explain.explain(explain.SCENE, deck(scene_plan(parse(small(data)))))
     x = experiment(impacts.parse(data | {"numerics": {"steps_in_contact": 40, "phases": 2}}))
@@ -108,7 +109,7 @@ def test_every_line_of_a_deck_has_a_reason(path, tmp_path):
 @pytest.mark.parametrize("law", laws())
 def test_every_line_of_a_deck_with_any_law_has_a_reason(law):
     """Walls of another material and parameters of the law that are not its defaults."""
-    data = impacts.read_toml(CASES[0].parent / "steel_wall.toml")
+    data = read_toml(CASES[0].parent / "steel_wall.toml")
     parameters = {p.name: 1.1 * p.default for p in laws()[law].parameters if math.isfinite(p.default)}
     x = experiment(impacts.parse(data | {"law": {"name": law} | parameters}))
     found = explain.explain(explain.IMPACT, Liggghts().deck(plan(x, predict(x))))

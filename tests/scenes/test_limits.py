@@ -5,8 +5,8 @@ import pytest
 from scene_runs import run, write_case
 from stored_runs import CASES
 
-from epdem.case.impact import read_toml
 from epdem.case.scene import parse
+from epdem.case.toml import read_toml
 from epdem.errors import CaseError
 from epdem.scenes.plan import plan
 

@@ -10,8 +10,8 @@ from scene_runs import write_deck
 from stored_runs import STORED
 from typer.testing import CliRunner
 
-from epdem.case.impact import read_toml
 from epdem.case.scene import parse
+from epdem.case.toml import read_toml
 from epdem.cli.main import app
 from epdem.errors import CaseError
 from epdem.liggghts import explain

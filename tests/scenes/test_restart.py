@@ -16,10 +16,10 @@ import pytest
 from scene_runs import run, write_case, write_deck
 from test_lean import CASES, small
 
-from epdem.case.impact import read_toml
+from epdem.base.folders import MANIFEST
 from epdem.case.scene import is_scene, load, parse
+from epdem.case.toml import read_toml
 from epdem.errors import CaseError
-from epdem.folders import MANIFEST
 from epdem.liggghts import launcher, resume
 from epdem.liggghts import scene_tables as tables
 from epdem.scenes import results

@@ -7,8 +7,8 @@ from pathlib import Path
 import pytest
 from scene_runs import write_deck
 
-from epdem.case.impact import read_toml
 from epdem.case.scene import parse
+from epdem.case.toml import read_toml
 from epdem.liggghts import launcher, resume
 from epdem.liggghts import scene_tables as tables
 

@@ -8,7 +8,7 @@ import pytest
 from scene_runs import write_case
 from stored_runs import STORED, data_of
 
-from epdem import stages
+from epdem.base import stages
 from epdem.case.scene import parse
 from epdem.errors import CaseError, EngineError
 from epdem.impacts.engine import Abilities
@@ -109,8 +109,8 @@ def test_a_comment_in_the_case_is_no_input(case, tmp_path):
     ("can", "options", "words"),
     [
         (Abilities(scenes=("settle",), ranks=4), {}, r"scene.kind = 'drum'.*settle.*another --engine"),
-        (Stored.can, {"ranks": 5}, r"--ranks 5: .* 4 ranks at most"),
-        (Abilities(scenes=("drum",)), {"ranks": 2}, r"--ranks 2: .* one core"),
+        (Stored.can, {"ranks": 5}, r"--ranks 5: .* at most 4 ranks"),
+        (Abilities(scenes=("drum",)), {"ranks": 2}, r"--ranks 2: .* one rank"),
         (Abilities(scenes=("drum",)), {"resume": True}, r"--resume: .* from its start"),
     ],
 )

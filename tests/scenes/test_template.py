@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from epdem import paths
+from epdem.base import paths
 from epdem.errors import CaseError
 from epdem.liggghts.own_template import settings, write
 

@@ -7,8 +7,8 @@ import numpy as np
 import pytest
 from scene_runs import run
 
-from epdem.case.impact import read_toml
 from epdem.case.scene import parse
+from epdem.case.toml import read_toml
 from epdem.errors import CaseError
 from epdem.liggghts import explain
 from epdem.liggghts.scene_deck import deck, files

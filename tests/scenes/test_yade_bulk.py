@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 from scene_runs import run, write_deck
 
-from epdem.case.impact import read_toml
 from epdem.case.scene import parse
+from epdem.case.toml import read_toml
 from epdem.cli import main as cli
 from epdem.errors import CaseError, EngineError
 from epdem.liggghts import launcher, scene_tables

@@ -58,6 +58,8 @@ def test_what_is_wrong_says_where(ball):
         ball.replace({"impact.radius": 1.0})
     with pytest.raises(CaseError, match="poisson_ratio = 30"):
         ball.replace({"materials.steel.poisson_ratio": 30})
+    with pytest.raises(CaseError, match=r"^ball: law\.name = 'toffee'"):
+        run(ball, engines=["embedded"], laws=["toffee"])
     with pytest.raises(CaseError, match="impact is missing"):
         Case(materials={})
 

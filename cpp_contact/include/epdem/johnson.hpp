@@ -43,8 +43,10 @@ struct Johnson {
   }
 
   T work(T R_star, T delta) const noexcept {
-    const T delta_c = elastic_overlap(R_star), x = max(T{}, delta - delta_c);
-    return hertz_work(E_star, R_star, min(delta, delta_c)) + 0.5 * slope_ratio * R_star * x * (delta + delta_c);
+    const T delta_c = elastic_overlap(R_star), slope = slope_ratio * R_star, x = delta - delta_c;
+    const T yielded = 0.4 * slope * delta_c * delta_c + 0.5 * slope * x * (delta + delta_c);
+    const auto elastic = x < 0.0;
+    return any(elastic) ? select(elastic, hertz_work(E_star, R_star, delta), yielded) : yielded;
   }
 };
 

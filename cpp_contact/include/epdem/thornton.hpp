@@ -45,9 +45,10 @@ struct Thornton {
   }
 
   T work(T R_star, T delta) const noexcept {
-    const T delta_y = elastic_overlap(R_star);
-    const T F_y = (slope_ratio - slope_ratio / 3.0) * delta_y * R_star, x = max(T{}, delta - delta_y);
-    return hertz_work(E_star, R_star, min(delta, delta_y)) + (F_y + 0.5 * slope_ratio * R_star * x) * x;
+    const T delta_y = elastic_overlap(R_star), F_y = (slope_ratio - slope_ratio / 3.0) * delta_y * R_star;
+    const T x = delta - delta_y, yielded = 0.4 * F_y * delta_y + (F_y + 0.5 * slope_ratio * R_star * x) * x;
+    const auto elastic = x < 0.0;
+    return any(elastic) ? select(elastic, hertz_work(E_star, R_star, delta), yielded) : yielded;
   }
 };
 

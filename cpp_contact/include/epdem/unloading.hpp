@@ -74,24 +74,19 @@ inline T recovered_work(T E_star, const Point<T>& peak) noexcept {
 
 /// Elastic energy [J] still stored at `delta` after unloading from `peak` at `delta_max`: the force integrated from
 /// here to parting, F_max^2/(E* a_max) times the integral of f(y) (2 A y + B) from y to 1, in closed form, y = cos t.
-template <bool Flattens, class T>
+template <class T>
 inline T stored_work(T E_star, const Point<T>& peak, T delta_max, T delta) noexcept {
   const T scale = peak.force * peak.force / (E_star * peak.radius);
   const T w = (delta_max - delta) * (E_star * peak.radius / peak.force);
-  if constexpr (!Flattens) {
-    const T x = max(T{}, 1.0 - w * (1.0 / 0.75));
-    return 0.3 * scale * x * x * sqrt(x);
-  } else {
-    const T tau = peak.flatness, A = 0.75 * (1.0 - tau), B = 2.0 / pi * tau;
-    const T y = select(w > 0.0, 2.0 * w / (B + sqrt(B * B + 4.0 * A * w)), T{});
-    // y = cos t, and t itself without an arc cosine
-    const T u = max(T{}, 1.0 - y), s = sqrt(u * (2.0 - u)), c = 1.0 - u, t = u * sqrt(u) * detail::segment(u) + c * s;
-    const T cube = s * s * s, s2 = 2.0 * s * c, c2 = 1.0 - 2.0 * s * s, s4 = 2.0 * s2 * c2;
-    // integrals of (1-y^2)^1.5 and of g = acos y - y sqrt(1-y^2), each with weight 2y and with weight 1
-    const T ellipse_2y = 0.4 * cube * s * s, ellipse = 0.375 * t - 0.25 * s2 + s4 / 32.0;
-    const T g_2y = 0.25 * s2 - 0.5 * t * c2 - 0.25 * t + s4 / 16.0, g = s - t * c - cube / 3.0;
-    return scale * ((1.0 - tau) * (A * ellipse_2y + B * ellipse) + tau * (2.0 / pi) * (A * g_2y + B * g));
-  }
+  const T tau = peak.flatness, A = 0.75 * (1.0 - tau), B = 2.0 / pi * tau;
+  const T y = select(w > 0.0, 2.0 * w / (B + sqrt(B * B + 4.0 * A * w)), T{});
+  // y = cos t, and t itself without an arc cosine
+  const T u = max(T{}, 1.0 - y), s = sqrt(u * (2.0 - u)), c = 1.0 - u, t = u * sqrt(u) * detail::segment(u) + c * s;
+  const T cube = s * s * s, s2 = 2.0 * s * c, c2 = 1.0 - 2.0 * s * s, s4 = 2.0 * s2 * c2;
+  // integrals of (1-y^2)^1.5 and of g = acos y - y sqrt(1-y^2), each with weight 2y and with weight 1
+  const T ellipse_2y = 0.4 * cube * s * s, ellipse = 0.375 * t - 0.25 * s2 + s4 / 32.0;
+  const T g_2y = 0.25 * s2 - 0.5 * t * c2 - 0.25 * t + s4 / 16.0, g = s - t * c - cube / 3.0;
+  return scale * ((1.0 - tau) * (A * ellipse_2y + B * ellipse) + tau * (2.0 / pi) * (A * g_2y + B * g));
 }
 
 }  // namespace epdem

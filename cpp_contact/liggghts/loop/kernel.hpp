@@ -29,7 +29,7 @@ EPDEM_INLINE void write(double* const* history, const Lanes* value) {
     const int first = at < 0 ? 0 : at;
     if (at < -1) break;
     rows({value[first], value[first + 1], value[first + 2], value[first + 3]},
-         [=](int l, Row row) __attribute__((always_inline)) { store(history[l] + first, row); });
+         [=](int l, const Row& row) __attribute__((always_inline)) { store(history[l] + first, row); });
   }
   for (int k = 0; k < (count < 4 ? count : count % 4 == 3 ? 0 : count % 4); ++k)
     for (int l = 0; l < lane_count; ++l) history[l][k] = value[k][l];
@@ -104,8 +104,9 @@ template <class Law, Tangential tangential, bool rolls>
     __builtin_memcpy(static_cast<void*>(&law), constant_of + law_data, sizeof law);
     const Step<Law> now = step(law, c.reff, before, c.deltan);
     if (pass.work) {
-      store(b.grown.a + k, plastic_growth(law, c.reff, before, now.after));
-      store(b.stored.a + k, elastic_energy(law, c.reff, now.after, c.deltan));
+      const Lanes stored = elastic_energy(law, c.reff, now, c.deltan);
+      store(b.stored.a + k, stored);
+      store(b.grown.a + k, plastic_growth(law, c.reff, before, now, stored));
     }
 
     c.Fn = now.force;

@@ -4,9 +4,6 @@
 Every mistake is a CaseError that names file, key, value, limit and next step.
 """
 
-import contextlib
-import tomllib
-from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated, Any, Literal, Self
@@ -26,11 +23,11 @@ from pydantic_core.core_schema import CoreSchema, no_info_before_validator_funct
 from ..errors import CaseError
 from .library import with_library
 from .messages import explain
+from .toml import read_toml
 from .units import to_si, within_limits
 
 RIGID = "rigid"
 MAX_IMPACTS = 4096
-MAX_BYTES = 4_000_000  # of a case file
 # Largest relative errors of a case without tolerances of its own (maximum over the phases, 400 steps in contact).
 DEFAULT_CHECKS = {"e_n": 1e-4, "contact_time": 5e-3, "force_max": 1e-3, "overlap_max": 1e-3, "residual_overlap": 1e-3}
 
@@ -230,36 +227,6 @@ def parse(data: dict[str, Any], path: object = "case") -> Case:
         return Case.model_validate(data)
     except ValidationError as error:
         raise CaseError(explain(path, data, error, "impact")) from None
-
-
-def read_toml(path: Path | str) -> dict[str, Any]:
-    """The raw tables of a TOML file. Raises CaseError."""
-    path = Path(path)
-    try:
-        with path.open("rb") as stream:  # the path may name a device or a large file: at most this is read
-            raw = stream.read(MAX_BYTES + 1)
-        if len(raw) > MAX_BYTES:
-            raise CaseError(f"{path}: more than {MAX_BYTES // 1_000_000} MB, which no case has; name the case file")
-        return tomllib.loads(raw.decode("utf-8-sig").replace("\r\n", "\n"))
-    except FileNotFoundError:
-        raise CaseError(f"{path}: no such file; the examples are in cases/") from None
-    except UnicodeDecodeError as error:
-        raise CaseError(f"{path}: not UTF-8 at byte {error.start}; save the file as UTF-8") from None
-    except OSError as error:
-        raise CaseError(f"{path}: cannot be read ({error})") from None
-    except tomllib.TOMLDecodeError as error:
-        raise CaseError(f"{path}: not valid TOML: {error}") from None
-    except RecursionError:
-        raise CaseError(f"{path}: tables and lists are nested too deeply; a case needs three levels") from None
-
-
-@contextlib.contextmanager
-def named(path: Path | str) -> Iterator[None]:
-    """Errors of a case that was read from `path` name the file."""
-    try:
-        yield
-    except CaseError as error:
-        raise error if str(path) in str(error) else CaseError(f"{path}: {error}") from None
 
 
 def load(path: Path | str) -> Case:

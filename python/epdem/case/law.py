@@ -5,18 +5,7 @@ from typing import Any
 
 from ..errors import CaseError
 from ..laws.strengths import LawNumbers, law_named
-from .units import to_si, within_limits
-
-
-def read_number(place: str, value: object, unit: str) -> float:
-    """`value` as written at `place`, in SI and > 0. Raises CaseError."""
-    try:
-        x = within_limits(to_si(value, unit), unit)
-    except ValueError as error:
-        raise CaseError(f"{place} = {value!r}, {error}") from None
-    if not x > 0:
-        raise CaseError(f"{place} = {value!r}, must be > 0; leave it out for the default")
-    return x
+from .units import read_number
 
 
 def law_numbers(name: str, given: dict[str, Any]) -> LawNumbers:

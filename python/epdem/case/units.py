@@ -6,6 +6,8 @@ import re
 from functools import cache
 from typing import Any
 
+from ..errors import CaseError
+
 # number, blank, unit; checked before pint, which evaluates any expression
 _NUMBER = r"[+-]?(?:\d+(?:\.\d*)?|\.\d+)(?:[eE][+-]?\d{1,3})?"
 _NAME = r"[A-Za-zµ°%]{1,20}"
@@ -20,8 +22,19 @@ def _registry() -> Any:
     return pint.UnitRegistry(autoconvert_offset_to_baseunit=True)
 
 
+PREFIXES = {"n": 1e-9, "u": 1e-6, "m": 1e-3, "c": 1e-2, "k": 1e3, "M": 1e6, "G": 1e9}
+
+
 @cache
 def _factor(unit: str, si: str) -> float:
+    if unit == si:
+        return 1.0
+    if unit[1:] == si and not si.startswith("kg"):  # what most cases have, without the half second
+        return PREFIXES.get(unit[0]) or _by_pint(unit, si)
+    return _by_pint(unit, si)
+
+
+def _by_pint(unit: str, si: str) -> float:
     import pint
 
     registry = _registry()
@@ -66,4 +79,15 @@ def within_limits(x: float, si: str) -> float:
     low, high = LIMITS.get(si, (0.0, math.inf))
     if x and not low <= abs(x) <= high:
         raise ValueError(f"must lie in [{low:g}, {high:g}] {si}; check the unit")
+    return x
+
+
+def read_number(place: str, value: object, unit: str) -> float:
+    """`value` as written at `place` in a file or a command, in SI and > 0. Raises CaseError."""
+    try:
+        x = within_limits(to_si(value, unit), unit)
+    except ValueError as error:
+        raise CaseError(f"{place} = {value!r}, {error}") from None
+    if not x > 0:
+        raise CaseError(f"{place} = {value!r}, must be > 0; correct it")
     return x

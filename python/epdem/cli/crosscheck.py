@@ -8,7 +8,8 @@ from typing import Annotated, Any
 
 import typer
 
-from ..terminal import console, status, table
+from ..base.terminal import console, status, table
+from ..errors import CaseError
 from .options import AsJson, Force, Out
 
 VALUES = {
@@ -71,10 +72,12 @@ def crosscheck(
     from ..impacts import report
     from ..studies.crosscheck import crosscheck as check
 
+    folders = [out / path.stem for path in cases] if out and len(cases) > 1 else [out for _ in cases]
+    if out and len(set(folders)) < len(cases):
+        raise CaseError(f"--out {out}: two of the cases have one file name and would share a folder; rename one")
     results = []
     with status() as progress:
-        for path in cases:
-            folder = out / path.stem if out and len(cases) > 1 else out
+        for path, folder in zip(cases, folders, strict=True):
             results.append(check(path, law=law, out=folder, fresh=fresh, force=force, progress=progress))
     if as_json:
         documents = [

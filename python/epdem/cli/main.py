@@ -12,14 +12,18 @@ from typing import Annotated, Any
 
 import typer
 
+from .. import __version__
+from ..base.printed import Printed
+from ..base.terminal import bar, console
 from ..errors import CaseError, EpdemError, Stopped
-from ..terminal import bar, console
+from . import calibrate as cli_calibrate
 from . import crosscheck as cli_crosscheck
 from . import numerics as cli_numerics
 from . import rerun as cli_rerun
 from . import scenes as cli_scene
 from . import sweep as cli_sweep
 from . import theory as cli_theory
+from . import trees as cli_trees
 from .options import AsJson, CasePath, Engines, Force, Laws, Out, laws_or_own, refuse, warn
 
 ABOUT = """Elastic-plastic particle contact for LIGGGHTS and YADE, checked against theory.
@@ -36,6 +40,21 @@ app = typer.Typer(
     help=ABOUT,
     context_settings={"help_option_names": ["-h", "--help"]},
 )
+
+
+def _say_version(wanted: bool) -> None:
+    if wanted:
+        print(f"epdem {__version__}")
+        raise typer.Exit
+
+
+@app.callback()
+def options(
+    version: Annotated[
+        bool, typer.Option("--version", callback=_say_version, is_eager=True, help="print the version and end")
+    ] = False,
+) -> None:
+    pass
 
 
 @app.command()
@@ -56,6 +75,11 @@ def run(
     as_json: AsJson = False,
 ) -> None:
     """Run a case and check it against theory, or run a bulk scene (default engine: liggghts)."""
+    screen = console()
+    printed = Printed(case, out, engine, law, ranks, steps, force, as_json, screen.is_terminal, screen.width)
+    if not (fresh or resume) and (before := printed.again()):
+        print(before[0], end="")
+        raise typer.Exit(before[1])
     if cli_scene.is_scene(case):
         refuse(case, "a scene has its own law and time step", law=law, steps=steps)
         if len(set(engine or [])) > 1:
@@ -89,11 +113,21 @@ def run(
         )
         progress.update(task, advance=1, description="figure")
         report.figure(outcome)
+    code = 0 if outcome.passed else 1
+    print(_said(outcome, screen, as_json), end="")
+    outcome.reused = list(outcome.results.runs)
+    printed.keep(_said(outcome, screen, as_json), code)
+    raise typer.Exit(code)
+
+
+def _said(outcome: Any, screen: Any, as_json: bool) -> str:
+    from ..impacts import report
+
     if as_json:
-        print(report.run_json(outcome))
-    else:
-        report.show(outcome, console())
-    raise typer.Exit(0 if outcome.passed else 1)
+        return report.run_json(outcome) + "\n"
+    with screen.capture() as said:
+        report.show(outcome, screen)
+    return str(said.get())
 
 
 @app.command()
@@ -126,7 +160,8 @@ def deck(
         cli_scene.deck_scene(file, out, engine=engine, force=force, as_json=as_json)
         return
     from ..case.doubts import doubts
-    from ..case.impact import load, named
+    from ..case.impact import load
+    from ..case.toml import named
     from ..engines import engine as find
     from ..impacts.experiment import experiment
     from ..impacts.run import write_deck
@@ -145,7 +180,8 @@ def deck(
 def predict(case: CasePath, law: Laws = None, as_json: AsJson = False) -> None:
     """Print the prediction of theory for a case; no engine runs."""
     from ..case.doubts import doubts
-    from ..case.impact import load, named
+    from ..case.impact import load
+    from ..case.toml import named
     from ..impacts.experiment import experiment
     from ..impacts.prediction import predict as predict_experiment
     from . import show
@@ -158,7 +194,7 @@ def predict(case: CasePath, law: Laws = None, as_json: AsJson = False) -> None:
 
 @app.command()
 def doctor(as_json: AsJson = False) -> None:
-    """List the engines and their versions, test that the plugin loads, and name what to install."""
+    """List the engines and their versions, test which models LIGGGHTS has, and name what to install."""
     from ..engines.doctor import examine
     from . import show
 
@@ -171,15 +207,18 @@ for command in (
     cli_crosscheck.crosscheck,
     cli_theory.theory,
     cli_theory.figures,
+    cli_theory.cite,
     cli_numerics.timestep,
     cli_numerics.cost,
     cli_numerics.stability,
     cli_scene.explain,
+    cli_scene.tune,
     cli_scene.soften,
-    cli_scene.calibrate,
+    cli_calibrate.calibrate,
     cli_sweep.sweep,
     cli_sweep.status,
     cli_rerun.rerun,
+    cli_trees.header,
 ):
     app.command()(command)
 app.command("points", hidden=True)(cli_sweep.points)  # what batch scripts call

@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from ..terminal import console, frame_table, status
+from ..base.terminal import console, frame_table, status
 from .options import AsJson, CasePath, Engines, Force, Laws, Out, Replace, laws_or_own, refuse
 
 
@@ -18,7 +18,8 @@ def timestep(
     as_json: AsJson = False,
 ) -> None:
     """Find the time step of a case for a target error, with the embedded engine."""
-    from ..case.impact import load, named
+    from ..case.impact import load
+    from ..case.toml import named
     from ..impacts.experiment import experiment
     from ..impacts.prediction import predict
     from ..impacts.timestep import search
@@ -70,8 +71,8 @@ def stability(
     as_json: AsJson = False,
 ) -> None:
     """Test stiff and extreme cases, and find the time step at which each fails (default engine: embedded)."""
-    from ..files import atomic
-    from ..folders import refuse_existing
+    from ..base.files import atomic
+    from ..base.folders import refuse_existing
     from ..impacts.report import records
     from ..studies import stability as suite
     from ..studies.stability.suite import summary
@@ -121,8 +122,8 @@ def cost(
     as_json: AsJson = False,
 ) -> None:
     """Measure error against run time at 10 to 3000 steps in contact (default engines: embedded and liggghts)."""
+    from ..base.folders import claim
     from ..case.impact import load
-    from ..folders import claim
     from ..impacts.report import records
     from ..studies import cost as study
     from ..studies import cost_report

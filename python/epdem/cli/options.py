@@ -12,13 +12,11 @@ from ..errors import CaseError
 CasePath = Annotated[Path, typer.Argument(metavar="CASE", help="case file (TOML)")]
 Engines = Annotated[
     list[str] | None,
-    typer.Option(
-        "--engine", "-e", help="embedded, liggghts, yade, liggghts-hertz, liggghts-thornton_ning; repeat for more"
-    ),
+    typer.Option("--engine", "-e", help="engine, as embedded ('epdem doctor' lists them); repeat for more"),
 ]
 Laws = Annotated[
     list[str] | None,
-    typer.Option("--law", "-l", help="hertz, thornton, johnson or cavity instead of the case's law; repeat for more"),
+    typer.Option("--law", "-l", help="law instead of the case's ('epdem theory' lists them); repeat for more"),
 ]
 Out = Annotated[Path | None, typer.Option("--out", "-o", help="folder for the results (default: runs/<case>)")]
 Force = Annotated[bool, typer.Option("--force", help="write into a folder that holds other files")]
@@ -42,16 +40,3 @@ def warn(sentences: list[str]) -> None:
     """Print warnings on standard error, for commands whose output is a list of files."""
     for text in sentences:
         print(f"warning: {text}", file=sys.stderr)
-
-
-def quantity(option: str, text: str, unit: str) -> float:
-    """The SI value > 0 of an option's text. Raises CaseError that names the option."""
-    from ..case.units import to_si, within_limits
-
-    try:
-        value = within_limits(to_si(text, unit), unit)
-    except ValueError as error:
-        raise CaseError(f"{option} {text!r}: {error}") from None
-    if not value > 0:
-        raise CaseError(f"{option} {text!r}: must be > 0 {unit}")
-    return value

@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from ..terminal import console, status
+from ..base.terminal import console, status
 from .options import AsJson
 
 

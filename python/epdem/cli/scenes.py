@@ -7,15 +7,14 @@ from typing import Annotated
 
 import typer
 
-from ..errors import CaseError
-from ..terminal import bar, console
-from .options import AsJson, CasePath, Replace, quantity, refuse, warn
+from ..base.terminal import bar, console
+from .options import AsJson, CasePath, Replace, warn
 
 
 def is_scene(path: Path) -> bool:
     """Whether a case file describes a bulk scene. Raises CaseError if it cannot be read."""
-    from ..case.impact import read_toml
     from ..case.scene import is_scene as holds_scene
+    from ..case.toml import read_toml
 
     return holds_scene(read_toml(path))
 
@@ -61,11 +60,11 @@ def run_scene(
 
 def deck_scene(case: Path, out: Path, *, engine: str = "liggghts", force: bool = False, as_json: bool = False) -> None:
     """Write the deck of a scene."""
+    from ..base.folders import write_own
     from ..case.doubts import doubts
-    from ..case.impact import named
     from ..case.scene import load
+    from ..case.toml import named
     from ..engines import scene_engine
-    from ..folders import write_own
     from ..scenes.plan import plan
 
     with named(case):
@@ -91,7 +90,8 @@ def explain(case: CasePath, as_json: AsJson = False) -> None:
 
 
 def _explained(case: Path) -> list[tuple[str, str, str]]:
-    from ..case.impact import load, named
+    from ..case.impact import load
+    from ..case.toml import named
     from ..liggghts import explain
 
     with named(case):
@@ -110,6 +110,39 @@ def _explained(case: Path) -> list[tuple[str, str, str]]:
         return explain.explain(explain.IMPACT, Liggghts().deck(plan(x, predict(x))))
 
 
+def tune(
+    case: CasePath,
+    ranks: Annotated[int, typer.Option(min=1, max=1024, help="MPI ranks of LIGGGHTS")] = 1,
+    seconds: Annotated[float, typer.Option(min=1.0, max=1e6, help="longest time of one trial")] = 60.0,
+    write: Annotated[bool, typer.Option("--write", help="put the choices into the case file")] = False,
+    as_json: AsJson = False,
+) -> None:
+    """Find the neighbour skin, and with --ranks the cut of the room, with which a scene runs fastest in LIGGGHTS."""
+    from ..base.terminal import status
+    from ..studies import tune as t
+
+    with status() as line:
+        tuned = t.tune(case, ranks=ranks, seconds=seconds, progress=lambda text: line(f"{case.stem}: {text}"))
+    if write:
+        t.write(case, tuned)
+    rows = [(x, *x.saves(trials[0])) for trials in (tuned.skins, tuned.cuts) for x in trials]
+    if as_json:
+        named = ("trial", "seconds_per_step", "saves", "error")
+        trials = [dict(zip(named, (x.name, x.seconds, saved, error), strict=True)) for x, saved, error in rows]
+        head = {"steps_per_skin": tuned.steps, "steps_of_the_scene": tuned.scene_steps, "ranks": tuned.ranks}
+        print(json.dumps(head | {"trials": trials, "numerics": tuned.lines, "written": write and bool(tuned.lines)}))
+        return
+    for x, saved, error in rows:
+        print(f"{x.name}: {x.seconds * 1e6:.4g} us per step, saves {saved:.1%} +- {error:.1%}")
+    share = tuned.steps * len(tuned.skins) / tuned.scene_steps
+    print(f"{tuned.steps} steps with each skin, in turns over {share:.0%} of the scene")
+    if not tuned.lines:
+        print(f"nothing saves more than {t.WORTH:.0%} for certain: the case stays as it is")
+        return
+    place = f"written to {case}, under [numerics]:" if write else "for the case, under [numerics] (or with --write):"
+    print(place, *tuned.lines, sep="\n")
+
+
 def soften(
     case: CasePath,
     factor: Annotated[
@@ -122,8 +155,8 @@ def soften(
     as_json: AsJson = False,
 ) -> None:
     """Write a softened copy of a case with the same e_n at every speed and larger time steps."""
-    from ..files import atomic
-    from ..folders import refuse_existing
+    from ..base.files import atomic
+    from ..base.folders import refuse_existing
     from ..studies.soften import soften as twin_of
 
     twin = twin_of(case, factor)
@@ -153,43 +186,6 @@ def soften(
     )
     for warning in twin.warnings:
         print(f"warning: {warning}")
-
-
-def calibrate(
-    case: CasePath,
-    e_n: Annotated[float | None, typer.Option("--e-n", help="measured coefficient of restitution")] = None,
-    speed: Annotated[str | None, typer.Option(help='speed of that impact, as "2 m/s"')] = None,
-    hv: Annotated[float | None, typer.Option(help="Vickers hardness [kgf/mm^2] instead of an impact")] = None,
-    hb: Annotated[float | None, typer.Option(help="Brinell hardness [kgf/mm^2] instead of an impact")] = None,
-    dent_ratio: Annotated[
-        float | None,
-        typer.Option(help="Brinell test: diameter of the indentation over that of the ball (default: 0.375)"),
-    ] = None,
-    as_json: AsJson = False,
-) -> None:
-    """Compute the strength of the case's law from one measured e_n, or from a hardness."""
-    from ..studies import calibrate as c
-
-    if (e_n is None) == (hv is None and hb is None):
-        raise CaseError("give one measurement: --e-n with --speed, or --hv, or --hb")
-    if hb is None:
-        refuse(case, "it belongs to --hb", dent_ratio=dent_ratio)
-    if e_n is not None:
-        if speed is None:
-            raise CaseError("--e-n belongs to one impact; add its speed, as --speed '2 m/s'")
-        result = c.from_restitution(case, e_n, quantity("--speed", speed, "m/s"))
-    else:
-        refuse(case, "it belongs to --e-n", speed=speed)
-        pressure = c.pressure_of_hardness(vickers=hv, brinell=hb, dent_ratio=dent_ratio)
-        result = c.from_hardness(case, pressure, f"HV {hv:g}" if hv is not None else f"HB {hb:g}")
-    if as_json:
-        print(json.dumps(vars(result), indent=1))
-        return
-    print(
-        f"law {result.law}, {result.source}: {result.parameter} = {result.value / 1e6:.6g} MPa, "
-        f"that is yield_stress = {result.yield_stress / 1e6:.6g} MPa, yield speed {result.yield_speed:.4g} m/s\n"
-        f'in the case file, under [law]: {result.parameter} = "{result.value / 1e6:.6g} MPa"'
-    )
 
 
 def deck_template(

@@ -10,11 +10,12 @@ from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
+from ..base.terminal import table
 from ..engines.doctor import Finding
 from ..impacts.experiment import Experiment
 from ..impacts.prediction import Prediction
 from ..impacts.report import records, yielding
-from ..terminal import table
+from ..theory.yielding import FIRST_YIELD_ROUNDED
 
 
 def _table(title: str, frame: pd.DataFrame) -> Table:
@@ -46,7 +47,7 @@ def predictions(pairs: list[tuple[Experiment, Prediction]], doubts: list[str], a
             for material, speed in p.yield_speeds.items():
                 never = "never: the softer body limits the pressure"
                 when = f"from {speed:.4g} m/s on" if math.isfinite(speed) else never
-                console.print(f"{material} yields beneath its surface (1.60 Y) {when}")
+                console.print(f"{material} yields beneath its surface ({FIRST_YIELD_ROUNDED:.2f} Y) {when}")
             for warning in [*doubts, *p.warnings()]:
                 console.print(f"warning: {warning}", style="yellow")
     if as_json:

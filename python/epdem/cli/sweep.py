@@ -7,8 +7,8 @@ from typing import Annotated
 
 import typer
 
+from ..base.terminal import console
 from ..errors import CaseError
-from ..terminal import console
 from .options import AsJson, CasePath, Engines, Force, Laws, Out, refuse
 
 
@@ -93,13 +93,13 @@ def status(
     from ..studies.sweep.table import write
     from . import sweep_view
 
-    found = ask(folder)
+    state = ask(folder)
     if table:
         write(store.read(folder), folder)
     if as_json:
-        print(json.dumps(sweep_view.plain(found), indent=1))
+        print(json.dumps(sweep_view.plain(state), indent=1))
     else:
-        sweep_view.status(found, console())
+        sweep_view.status(state, console())
 
 
 def points(

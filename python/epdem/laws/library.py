@@ -15,7 +15,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from .. import paths
+from ..base import paths
 from ..errors import CaseError, EngineError
 
 ABI = 4

@@ -2,6 +2,7 @@
 """A law with its numbers, first for all bodies and then for a pair of them. SI throughout."""
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 from ..errors import CaseError
@@ -14,6 +15,12 @@ def law_named(name: str) -> type[Backbone]:
     if name not in LAWS:
         raise CaseError(f"law.name = {name!r} does not exist; there are {', '.join(LAWS)}")
     return LAWS[name]
+
+
+def own_ratios(name: str, parameters: Mapping[str, float]) -> dict[str, float]:
+    """The dimensionless ones of a law's parameters that differ from its defaults, by the law's own names."""
+    known = law_named(name).parameters
+    return {p.name: parameters[p.name] for p in known if p.unit == "1" and parameters[p.name] != p.default}
 
 
 @dataclass(frozen=True)
@@ -46,11 +53,8 @@ class LawSpec:
         return None if strength is None else strength.property
 
     def ratios(self) -> dict[str, float]:
-        """The dimensionless parameters that differ from the law's own defaults, by LIGGGHTS property name."""
-        info = laws()[self.name].parameters
-        return {
-            p.property: self.parameters[p.name] for p in info if p.unit == "1" and self.parameters[p.name] != p.default
-        }
+        """The dimensionless parameters that differ from the law's defaults."""
+        return own_ratios(self.name, self.parameters)
 
 
 @dataclass(frozen=True)

@@ -15,9 +15,9 @@ from .properties import Property, of_impacts, per_pair, per_type, scalar
 
 def _elastic(plan: Plan) -> tuple[int, list[Property]]:
     """Number of atom types; their elastic properties and the restitution of a model without a dashpot."""
-    found = of_impacts(plan)
-    types = len(found[0].values)
-    return types, [*found, per_pair("coefficientRestitution", types, 1.0, "-", "no viscous damping")]
+    elastic = of_impacts(plan)
+    types = len(elastic[0].values)
+    return types, [*elastic, per_pair("coefficientRestitution", types, 1.0, "-", "no viscous damping")]
 
 
 WITHOUT_OURS = replace(Liggghts.can, dashpot=False, scenes=(), restarts=False)
@@ -46,12 +46,12 @@ class ThorntonNing(Liggghts):
         return "thornton_ning"
 
     def properties(self, plan: Plan) -> tuple[Property, ...]:
-        x, (types, found) = plan.experiment, _elastic(plan)
+        x, (types, elastic) = plan.experiment, _elastic(plan)
         # its yield pressure is 2 E* R_i yield_ratio/(pi R*) (the wall: R_i = R*)
         radius = x.body.radius if math.isfinite(x.target.radius) else x.R_star
         ratio = math.pi * x.law.parameters["yield_pressure"] * x.R_star / (2 * x.E_star * radius)
         return (
-            *found,
+            *elastic,
             per_type("coefficientYieldRatio", [ratio] * types, "-", "pi p_y R*/(2 E* R_i)"),
             per_pair("surfaceEnergy", types, 0.0, "J/m^2"),
         )
@@ -82,9 +82,9 @@ class BuiltinLuding(_OwnTheory):
         return "luding"
 
     def properties(self, plan: Plan) -> tuple[Property, ...]:
-        (types, found), law = _elastic(plan), foreign.luding(plan.experiment)
+        (types, elastic), law = _elastic(plan), foreign.luding(plan.experiment)
         return (
-            *found,
+            *elastic,
             per_pair("LoadingStiffness", types, law.k_1, "N/m", "k_1"),
             per_pair("UnloadingStiffness", types, law.k_p / law.k_1, "-", "k_p/k_1"),
             per_pair("coefficientPlasticityDepth", types, law.phi_f, "-", "phi_f"),
@@ -108,9 +108,9 @@ class BuiltinEdinburgh(_OwnTheory):
         return "edinburgh"
 
     def properties(self, plan: Plan) -> tuple[Property, ...]:
-        types, found = _elastic(plan)
+        types, elastic = _elastic(plan)
         return (
-            *found,
+            *elastic,
             per_pair("UnloadingStiffness", types, foreign.STIFFENING, "-", "k_2/k_1"),
             scalar("overlapExponent", foreign.EXPONENT, "-", "n"),
             per_pair("coefficientAdhesionStiffness", types, 0.0, "-", "k_c/k_1"),

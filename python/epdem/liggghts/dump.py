@@ -23,7 +23,7 @@ def frames(path: Path) -> list[tuple[int, np.ndarray]]:
         raw = path.read_bytes()
     except OSError as error:
         raise EngineError(f"{path}: the dump cannot be read ({error.strerror}); see the log beside it") from None
-    found, at = [], 0
+    read, at = [], 0
     try:
         while at < len(raw):
             step, atoms, *_, columns, blocks = _HEAD.unpack_from(raw, at)
@@ -36,10 +36,10 @@ def frames(path: Path) -> list[tuple[int, np.ndarray]]:
             rows = np.concatenate(parts)
             if len(rows) != atoms:
                 raise ValueError(f"{len(rows)} rows of {atoms}")
-            found.append((step, rows[np.argsort(rows[:, 0], kind="stable")]))
+            read.append((step, rows[np.argsort(rows[:, 0], kind="stable")]))
     except (struct.error, ValueError, IndexError) as error:
-        raise EngineError(f"{path}: frame {len(found)} is incomplete ({error}); the run was stopped there") from None
-    return found
+        raise EngineError(f"{path}: frame {len(read)} is incomplete ({error}); the run was stopped there") from None
+    return read
 
 
 def series(path: Path) -> np.ndarray:

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """The reason of each line of a deck: the templates state it beside the line, and only this module reads it."""
 
-from .. import rendering
+from ..base import rendering
 
 IMPACT = {"in.impact": "liggghts/impact.in.j2"}
 SCENE = {"in.scene": "liggghts/scene.in.j2", "setup.in": "liggghts/scene_setup.in.j2"}
@@ -13,10 +13,10 @@ def explain(templates: dict[str, str], deck: object) -> list[tuple[str, str, str
     The reason is that in the template, else the comment behind the line in the deck; '' if there
     is none (a defect, which a test looks for).
     """
-    found = []
+    explained = []
     for file, template in templates.items():
         for text in rendering.render_with_reasons(template, deck=deck).split("\n"):
             line, _, reason = text.partition(rendering.REASON)
             if line.strip() and not line.startswith("#"):
-                found.append((file, line.rstrip(), reason or line.partition("  # ")[2]))
-    return found
+                explained.append((file, line.rstrip(), reason or line.partition("  # ")[2]))
+    return explained

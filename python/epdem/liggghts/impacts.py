@@ -2,22 +2,23 @@
 """LIGGGHTS with our plugin: a plan becomes one deck with all impacts side by side, its dump a trajectory."""
 
 import math
-import re
 from pathlib import Path
 
 import numpy as np
 
-from .. import data_file, paths
-from .. import rendering as decks
+from ..base import paths
+from ..base import rendering as decks
+from ..base.files import write_texts
 from ..errors import CaseError, EngineError
-from ..files import write_texts
 from ..impacts.engine import Abilities, Trajectory, check_abilities
 from ..impacts.pairs import Pairs
 from ..impacts.places import room, side_by_side
 from ..impacts.plan import Plan
-from ..processes import ask
-from . import dump, launcher
+from ..lammps import data_file
+from . import dump, executable, launcher
 from .deck import Deck
+from .edits import EDITS
+from .kept import Kept
 from .log import loop_seconds
 from .pairs import velocities
 from .properties import HARD, SOFT, Property, atom_types, finite, of_law
@@ -35,18 +36,20 @@ class Liggghts:
         ranks=launcher.most_ranks(),
         scenes=SCENES,
         restarts=True,
+        edits=EDITS,
         variants=("swap", "sort", "migration", "restart"),
+        stays=True,
     )
+
+    def __init__(self, *, stay: bool = False):
+        self.kept = Kept() if stay else None
 
     def missing(self) -> str | None:
         return launcher.missing()
 
     def version(self) -> str:
-        found = re.search(
-            r"LIGGGHTS[-\w ]*?(\d+\.\d+\.\d+)",
-            ask([str(paths.launcher()), "-log", "none", "-h"], launcher.environment()),
-        )
-        return f"LIGGGHTS {found.group(1) if found else '(version unknown)'}"
+        path = paths.launcher()
+        return (executable.version(path) if path else "") or "LIGGGHTS (version unknown)"
 
     def model(self, plan: Plan) -> str:
         return f"ep/{plan.experiment.law.name}"
@@ -95,10 +98,16 @@ class Liggghts:
         return write_texts(folder, texts)
 
     def run(self, plan: Plan, folder: Path, *, ranks: int = 1) -> Trajectory:
-        (folder / "path.bin").unlink(missing_ok=True)
+        path = folder / "path.bin"
+        path.unlink(missing_ok=True)
         allowed = 120 + 2e-6 * plan.n * plan.steps
-        wall = launcher.run("in.impact", folder, ranks=ranks, log=launcher.LOG, seconds=allowed)
-        return trajectory(plan, folder / "path.bin", {"total": wall, "stepping": loop_seconds(folder / launcher.LOG)})
+        if self.kept and ranks == 1:
+            wall = self.kept.run("in.impact", folder, log=launcher.LOG, seconds=allowed)
+        else:
+            wall = launcher.run("in.impact", folder, ranks=ranks, log=launcher.LOG, seconds=allowed)
+        result = trajectory(plan, path, {"total": wall, "stepping": loop_seconds(folder / launcher.LOG)})
+        path.unlink()  # large
+        return result
 
     def seconds(self, plan: Plan, folder: Path) -> dict[str, float]:
         files = self.write(plan, folder)

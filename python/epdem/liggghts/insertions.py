@@ -57,13 +57,13 @@ def _region(fill: Fill) -> str:
     largest = max(part.radii()[1] for part in fill.parts)
     if isinstance(fill.region, Block):
         x = fill.region.limits
-        words = "block " + " ".join(f"{v:.10g}" for v in x)
+        style = "block " + " ".join(f"{v:.10g}" for v in x)
         centres = math.prod(max(0.0, x[k + 1] - x[k] - 2.0 * largest) for k in (0, 2, 4))
     else:
         c = fill.region
-        words = f"cylinder z 0 0 {c.radius:.10g} {c.low:.10g} {c.high:.10g}"
+        style = f"cylinder z 0 0 {c.radius:.10g} {c.low:.10g} {c.high:.10g}"
         centres = math.pi * (c.radius - largest) ** 2 * (c.high - c.low - 2.0 * largest)
-    return words + (f" volume_limit {MEANT:g}" if centres < SMALL_ROOM else "")
+    return style + (f" volume_limit {MEANT:g}" if centres < SMALL_ROOM else "")
 
 
 def _templates(p: ScenePlan, fill: Fill, first: int, seeds: Iterator[int]) -> tuple[Template, ...]:
@@ -85,12 +85,12 @@ def _templates(p: ScenePlan, fill: Fill, first: int, seeds: Iterator[int]) -> tu
 def insertions(p: ScenePlan) -> tuple[Insertion, ...]:
     """The insertions of a scene's fills."""
     seeds = itertools.islice(primes(), 100 * (p.case.numerics.seed - 1), None)
-    found: list[Insertion] = []
+    result: list[Insertion] = []
     first = 1
     for i, fill in enumerate(p.layout.fills, 1):
         templates = _templates(p, fill, first, seeds)
         first += len(templates)
-        found.append(
+        result.append(
             Insertion(
                 id=f"fill{i}",
                 seed=next(seeds),
@@ -105,4 +105,4 @@ def insertions(p: ScenePlan) -> tuple[Insertion, ...]:
                 phase=fill.phase or p.phases[0].name,
             )
         )
-    return tuple(found)
+    return tuple(result)

@@ -6,9 +6,11 @@ import shutil
 from collections.abc import Callable
 from pathlib import Path
 
-from .. import paths
-from ..errors import CaseError, EngineError
-from ..processes import call
+from ..base import paths
+from ..base.processes import call
+from ..base.settings import config_file
+from ..errors import EngineError
+from ..impacts.engine import refuse_ranks
 
 INSTALL = "apt-get install liggghts libliggghts-dev libopenmpi-dev, then 'make setup'"
 LOG = "log.liggghts"  # LIGGGHTS's own log
@@ -18,9 +20,9 @@ OUT = "out.liggghts"  # both of its streams
 def missing() -> str | None:
     """None if LIGGGHTS with our models can run here, else a sentence with the command that installs it."""
     launcher = paths.launcher()
-    if launcher is not None and not os.access(launcher, os.X_OK):
-        return f"{launcher} (EPDEM_LAUNCHER) is not a program; unset EPDEM_LAUNCHER or name another one"
-    if shutil.which("liggghts") is None or launcher is None:
+    if launcher is not None and not (launcher.is_file() and os.access(launcher, os.X_OK)):
+        return f"{launcher} is not a program; EPDEM_LIGGGHTS or {config_file()} names it: name another one, or none"
+    if launcher is None:
         return f"LIGGGHTS with our models was not found; {INSTALL}"
     return None
 
@@ -30,28 +32,19 @@ def most_ranks() -> int:
     return max(2, len(os.sched_getaffinity(0)))
 
 
-def refuse_ranks(ranks: int) -> None:
-    """Raise CaseError for more ranks than this machine runs, EngineError if there is no mpirun."""
-    if ranks > most_ranks():
-        cores = len(os.sched_getaffinity(0))
-        raise CaseError(f"--ranks {ranks}: this machine has {cores} cores; use --ranks {most_ranks()} or fewer")
-    if ranks > 1 and shutil.which("mpirun") is None:
-        raise EngineError("--ranks needs mpirun, which was not found; apt-get install openmpi-bin")
-
-
 def command(deck: str, *, ranks: int = 1, log: str = "none") -> list[str]:
     """The command that runs a deck in its folder. Raises EngineError if our LIGGGHTS is not there; see refuse_ranks."""
     launcher = paths.launcher()
     if launcher is None:
         raise EngineError(f"LIGGGHTS with our models was not found; {INSTALL}")
-    refuse_ranks(ranks)
-    words = [str(launcher), "-in", deck, "-log", log]
+    refuse_ranks("liggghts", most_ranks(), ranks)
+    liggghts = [str(launcher), "-in", deck, "-log", log]
     if ranks == 1:
-        return words
+        return liggghts
     if "SLURM_JOB_ID" in os.environ and shutil.which("srun"):  # the cluster's own way, which keeps account of it
-        return ["srun", "--overlap", "--mpi=pmix", "-n", str(ranks), *words]
+        return ["srun", "--overlap", "--mpi=pmix", "-n", str(ranks), *liggghts]
     root = ["--allow-run-as-root"] if os.geteuid() == 0 else []
-    return ["mpirun", "-np", str(ranks), "--oversubscribe", *root, *words]
+    return ["mpirun", "-np", str(ranks), "--oversubscribe", *root, *liggghts]
 
 
 def environment(ranks: int = 1) -> dict[str, str]:
@@ -75,5 +68,5 @@ def run(
     report: Callable[[int], None] | None = None,
 ) -> float:
     """Run a deck in its folder to its end; seconds taken. `log` is LIGGGHTS's own; the rest as in processes.call."""
-    words = command(deck, ranks=ranks, log=log)
-    return call(words, folder, log=out, seconds=seconds, env=environment(ranks), append=append, report=report)
+    arguments = command(deck, ranks=ranks, log=log)
+    return call(arguments, folder, log=out, seconds=seconds, env=environment(ranks), append=append, report=report)

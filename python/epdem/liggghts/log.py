@@ -17,19 +17,19 @@ def rows(log: Path) -> pd.DataFrame:
     A step stands twice where one run ends and the next one begins.
     """
     names: list[str] = []
-    found: list[dict[str, float]] = []
+    table: list[dict[str, float]] = []
     run = -1
     for line in log.read_text(errors="replace").splitlines() if log.exists() else []:
-        words = line.split()
-        if words[:1] == ["Step"]:
-            names, run = words, run + 1
-        elif names and len(words) == len(names) and words[0].isdigit():
+        fields = line.split()
+        if fields[:1] == ["Step"]:
+            names, run = fields, run + 1
+        elif names and len(fields) == len(names) and fields[0].isdigit():
             try:
-                values = map(float, words[1:])
-                found.append({"run": run, "Step": int(words[0])} | dict(zip(names[1:], values, strict=True)))
+                values = map(float, fields[1:])
+                table.append({"run": run, "Step": int(fields[0])} | dict(zip(names[1:], values, strict=True)))
             except ValueError:
                 names = []  # the rows of this run are over
-    return pd.DataFrame(found)
+    return pd.DataFrame(table)
 
 
 def loops(log: Path) -> list[tuple[float, int]]:
@@ -40,5 +40,5 @@ def loops(log: Path) -> list[tuple[float, int]]:
 
 def loop_seconds(log: Path) -> float:
     """The engine's own time for the steps of its last run [s]; NaN if the log does not contain it."""
-    found = loops(log)
-    return found[-1][0] if found else math.nan
+    times = loops(log)
+    return times[-1][0] if times else math.nan

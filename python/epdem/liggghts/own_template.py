@@ -3,11 +3,11 @@
 
 from pathlib import Path
 
+from ..base.folders import write_own
 from ..case import scene as scenes
 from ..case.impact import load as load_impact
-from ..case.impact import read_toml
+from ..case.toml import read_toml
 from ..errors import CaseError
-from ..folders import write_own
 from ..impacts.experiment import experiment
 from ..impacts.plan import plan
 from ..impacts.prediction import predict
@@ -29,7 +29,7 @@ def value(text: str) -> int | float | str:
 
 def settings(pairs: list[str]) -> dict[str, int | float | str]:
     """The values of `--set key=value`. Raises CaseError."""
-    found: dict[str, int | float | str] = {}
+    values: dict[str, int | float | str] = {}
     for pair in pairs:
         key, equals, text = pair.partition("=")
         if not equals or not key.isidentifier():
@@ -38,10 +38,10 @@ def settings(pairs: list[str]) -> dict[str, int | float | str]:
             raise CaseError(f"--set {key}: this name holds the case's values; choose another")
         if not text.isprintable() or "&" in text:
             raise CaseError(f"--set {key}: {text!r} would begin or join lines of the deck; leave out line ends and '&'")
-        if key in found:
+        if key in values:
             raise CaseError(f"--set {key} is given twice; keep one")
-        found[key] = value(text)
-    return found
+        values[key] = value(text)
+    return values
 
 
 def write(

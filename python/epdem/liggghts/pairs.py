@@ -7,9 +7,9 @@ from typing import Any
 
 import numpy as np
 
-from .. import data_file
-from .. import rendering as decks
+from ..base import rendering as decks
 from ..impacts.pairs import Pairs
+from ..lammps import data_file
 from . import dump, launcher
 from .deck import Deck
 
@@ -34,7 +34,7 @@ def velocities(deck: Deck, pairs: Pairs, variant: str, folder: Path) -> np.ndarr
     folder.mkdir(parents=True, exist_ok=True)
     (folder / deck.data).write_text(_data(pairs, deck, variant == "swap"), encoding="utf-8")
     ranks = 2 if variant == "migration" else 1
-    words: dict[str, Any] = {
+    context: dict[str, Any] = {
         "deck": deck,
         "variant": variant,
         "ranks": ranks,
@@ -42,12 +42,12 @@ def velocities(deck: Deck, pairs: Pairs, variant: str, folder: Path) -> np.ndarr
         "stop": None,
         "steps": p.steps,
     }
-    words["sort"] = 0.499 * _box(pairs)[2][1] if variant == "sort" else None
-    parts = [words]
+    context["sort"] = 0.499 * _box(pairs)[2][1] if variant == "sort" else None
+    parts = [context]
     if variant == "restart":
         parts = [
-            words | {"steps": pairs.stop, "stop": "middle.restart"},
-            words | {"steps": p.steps - pairs.stop, "restart": "middle.restart"},
+            context | {"steps": pairs.stop, "stop": "middle.restart"},
+            context | {"steps": p.steps - pairs.stop, "restart": "middle.restart"},
         ]
     for k, part in enumerate(parts):
         (folder / f"in.{k}").write_text(decks.render("liggghts/invariance.in.j2", **part), encoding="utf-8")

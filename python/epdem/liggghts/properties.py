@@ -94,6 +94,11 @@ def strength(law: str, values: Sequence[float]) -> tuple[Property, ...]:
     return (per_type(parameter.property, values, parameter.unit, "the softer body's counts" * (len(values) > 1)),)
 
 
+def ratios(law: str, values: dict[str, float]) -> tuple[Property, ...]:
+    """Dimensionless parameters of a law."""
+    return tuple(scalar(p.property, values[p.name], "-") for p in claw.laws()[law].parameters if p.name in values)
+
+
 def of_impacts(plan: Plan) -> tuple[Property, ...]:
     """Elastic properties of the plan's atom types, for any model."""
     bodies = [body for body, _ in atom_types(plan)]
@@ -103,9 +108,9 @@ def of_impacts(plan: Plan) -> tuple[Property, ...]:
 def of_law(plan: Plan) -> tuple[Property, ...]:
     """What a law of ours needs of a plan."""
     x, types = plan.experiment, atom_types(plan)
-    found = [*of_impacts(plan), *strength(x.law.name, [finite(s) for _, s in types])]
-    found += [scalar(name, value, "-") for name, value in x.law.ratios().items()]
+    properties = [*of_impacts(plan), *strength(x.law.name, [finite(s) for _, s in types])]
+    properties += ratios(x.law.name, x.law.ratios())
     if x.viscous_restitution is not None:
         note = "of impacts that do not yield"
-        found.append(per_pair("coefficientRestitution", len(types), x.viscous_restitution, "-", note))
-    return tuple(found)
+        properties.append(per_pair("coefficientRestitution", len(types), x.viscous_restitution, "-", note))
+    return tuple(properties)

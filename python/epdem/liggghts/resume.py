@@ -6,10 +6,10 @@ from dataclasses import replace
 from itertools import pairwise
 from pathlib import Path
 
-from .. import rendering as decks
+from ..base import rendering as decks
+from ..base.folders import held
+from ..base.processes import ROW
 from ..errors import CaseError
-from ..folders import held
-from ..processes import ROW
 from ..scenes.plan import ScenePlan
 from . import scene_tables as tables
 from .launcher import OUT
@@ -18,8 +18,8 @@ from .scene_deck import deck
 
 def _restarts(folder: Path) -> list[tuple[int, Path]]:
     ours = [p for p in folder.glob("restart.*.bin") if p.name not in held(folder).foreign]
-    found = [(re.fullmatch(r"restart\.(\d+)\.bin", p.name), p) for p in ours]
-    return sorted((int(m[1]), p) for m, p in found if m)
+    names = [(re.fullmatch(r"restart\.(\d+)\.bin", p.name), p) for p in ours]
+    return sorted((int(m[1]), p) for m, p in names if m)
 
 
 def whole_restarts(folder: Path) -> list[int]:

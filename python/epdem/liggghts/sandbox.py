@@ -19,7 +19,7 @@ from jinja2 import meta
 from jinja2.sandbox import ImmutableSandboxedEnvironment
 from pydantic import BaseModel
 
-from .. import paths, rendering
+from ..base import paths, rendering
 from ..errors import CaseError
 
 MOST_SOURCE, MOST_TEXT = 1_000_000, 20_000_000  # characters of a template, and of what it becomes
@@ -74,8 +74,8 @@ def plain(value: object) -> object:
 
 
 def _names(value: object, names: list[str], classes: Iterable[type]) -> SimpleNamespace:
-    found = [n for c in classes for n, member in vars(c).items() if isinstance(member, property)]
-    return SimpleNamespace(**{n: plain(getattr(value, n)) for n in [*names, *found] if not n.startswith("_")})
+    properties = [n for c in classes for n, member in vars(c).items() if isinstance(member, property)]
+    return SimpleNamespace(**{n: plain(getattr(value, n)) for n in [*names, *properties] if not n.startswith("_")})
 
 
 def render(template: Path, values: Mapping[str, object]) -> tuple[str, set[str]]:
@@ -131,14 +131,14 @@ def _text(template: Path, values: dict[str, object]) -> tuple[str, set[str]]:
     tree = environment.parse(source, filename=str(template))
     taken_in = [n for n in meta.find_referenced_templates(tree) if n is None or not (paths.templates() / n).exists()]
     unused = set() if taken_in else set(values) - meta.find_undeclared_variables(tree)
-    found: list[str] = []
+    pieces: list[str] = []
     length = 0
     for part in parts:
-        found.append(part)
+        pieces.append(part)
         length += len(part)
         if length > MOST_TEXT:
             parts.throw(_TooLongError())  # type: ignore[attr-defined]  # a generator, with the line in its traceback
-    return "".join(found), unused
+    return "".join(pieces), unused
 
 
 def _sentence(template: Path, error: Exception) -> str:
@@ -156,10 +156,10 @@ def _sentence(template: Path, error: Exception) -> str:
             place, line = path, number
     place = template if place.resolve() == template.resolve() else place
     message = getattr(error, "message", None) or str(error) or type(error).__name__
-    words = {
+    sentences = {
         jinja2.TemplateNotFound: f"{error} is not in {folder}, nor a template of ours",
         MemoryError: f"needs more than {MEMORY} bytes; does a loop end?",
         RecursionError: "calls itself without end",
     }
-    what = next((text for kind, text in words.items() if isinstance(error, kind)), message)
+    what = next((text for kind, text in sentences.items() if isinstance(error, kind)), message)
     return f"{place}{f':{line}' if line else ''}: {' '.join(what.split())}"

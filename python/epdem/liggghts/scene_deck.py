@@ -4,17 +4,17 @@
 import math
 from dataclasses import dataclass
 
-from .. import rendering as decks
+from ..base import rendering as decks
 from ..errors import CaseError
 from ..laws.library import laws
 from ..scenes.model import Model
 from ..scenes.plan import Phase, ScenePlan
 from . import stl
 from .insertions import Insertion, insertions
-from .properties import HARD, SOFT, Property, elastic, per_pair, scalar, strength
+from .properties import HARD, SOFT, Property, elastic, per_pair, ratios, strength
 
 MOST_CELLS = 2**31 - 1  # that LIGGGHTS counts, each half as wide as its longest reach
-SKIN = 0.25  # of the smallest radius: rebuilds cost less than idle neighbours
+SKIN = 0.5  # of the smallest radius: rebuilds cost less than idle neighbours
 
 
 @dataclass(frozen=True)
@@ -31,6 +31,8 @@ class Deck:
     box: tuple[float, ...]
     n_types: int
     skin: float
+    own_skin: bool
+    processors: str | None
     types: tuple[str, ...]
     properties: tuple[Property, ...]
     model: str
@@ -73,26 +75,23 @@ def _properties(p: ScenePlan) -> tuple[Property, ...]:
     for t, x in zip(m.types, materials, strict=True):
         if x.poisson_ratio < 0:
             raise CaseError(f"materials.{t.material}.poisson_ratio = {x.poisson_ratio}, LIGGGHTS takes [0, 0.5] only")
-    found = [*elastic([x.young_modulus for x in materials], [x.poisson_ratio for x in materials])]
-    found += strength(m.law, [t.strength for t in m.types])
-    for parameter in laws()[m.law].parameters:
-        value = m.parameters.get(parameter.name, parameter.default)
-        if parameter.name in m.parameters and value != parameter.default:
-            found.append(scalar(parameter.property, value, "-"))
+    properties = [*elastic([x.young_modulus for x in materials], [x.poisson_ratio for x in materials])]
+    properties += strength(m.law, [t.strength for t in m.types])
+    properties += ratios(m.law, m.ratios())
     if m.sliding:
-        found.append(per_pair("coefficientFriction", n, [mu for row in m.friction for mu in row], "-"))
+        properties.append(per_pair("coefficientFriction", n, [mu for row in m.friction for mu in row], "-"))
     if m.viscous is not None:
-        found.append(per_pair("coefficientRestitution", n, m.viscous, "-", "of impacts that do not yield"))
+        properties.append(per_pair("coefficientRestitution", n, m.viscous, "-", "of impacts that do not yield"))
     elif m.tangential_restitution is not None:
         note = "of the tangential dashpot only"
-        found.append(per_pair("coefficientRestitution", n, m.tangential_restitution, "-", note))
+        properties.append(per_pair("coefficientRestitution", n, m.tangential_restitution, "-", note))
     if m.rolling:
-        found.append(per_pair("coefficientRollingFriction", n, m.rolling.coefficient, "-"))
+        properties.append(per_pair("coefficientRollingFriction", n, m.rolling.coefficient, "-"))
         if m.rolling.damping is not None:
-            found.append(per_pair("coefficientRollingViscousDamping", n, m.rolling.damping, "-"))
+            properties.append(per_pair("coefficientRollingViscousDamping", n, m.rolling.damping, "-"))
     if m.cohesion:
-        found.append(per_pair("cohesionEnergyDensity", n, m.cohesion, "J/m^3"))
-    return tuple(found)
+        properties.append(per_pair("cohesionEnergyDensity", n, m.cohesion, "J/m^3"))
+    return tuple(properties)
 
 
 def _settings(p: ScenePlan) -> tuple[str, ...]:
@@ -103,7 +102,7 @@ def _settings(p: ScenePlan) -> tuple[str, ...]:
         "tangential_damping off": m.viscous is not None and m.sliding and m.tangential_restitution is None,
         "computePlasticWork on": p.dents,
     }
-    return tuple(words for words, asked in wanted.items() if asked)
+    return tuple(setting for setting, asked in wanted.items() if asked)
 
 
 def memory(m: Model, *, wall: bool = False) -> int:
@@ -116,12 +115,17 @@ def memory(m: Model, *, wall: bool = False) -> int:
 
 def _motion(p: ScenePlan) -> dict[str, float]:
     """What moves, by the names of the templates."""
-    found = {ph.name: abs(ph.plate) for ph in p.phases if ph.plate}
+    motion = {ph.name: abs(ph.plate) for ph in p.phases if ph.plate}
     if p.layout.turn:
-        found["omega"] = p.layout.turn
+        motion["omega"] = p.layout.turn
     if p.layout.outlet is not None:
-        found["outlet"] = p.layout.outlet
-    return found
+        motion["outlet"] = p.layout.outlet
+    return motion
+
+
+def default_skin(p: ScenePlan) -> float:
+    """The skin of a case that gives none [m]."""
+    return float(f"{SKIN * p.smallest:.1e}")
 
 
 def _refuse_room(p: ScenePlan) -> None:
@@ -141,7 +145,8 @@ def deck(p: ScenePlan) -> Deck:
     _refuse_room(p)
     m, s, out = p.model, p.case.scene, p.output
     moduli = [p.case.materials[t.material].young_modulus for t in m.types]
-    words = {"f_load": p.floor_load, "f_press_z": p.plates, "f_torque": p.torque}
+    cut = p.case.numerics.cut
+    row_words = {"f_load": p.floor_load, "f_press_z": p.plates, "f_torque": p.torque}
     return Deck(
         title=p.case.case.title,
         source=p.case.case.source,
@@ -152,7 +157,9 @@ def deck(p: ScenePlan) -> Deck:
         boundary="p p f" if p.layout.periodic else "f f f",
         box=p.layout.box,
         n_types=len(m.types),
-        skin=float(f"{SKIN * p.smallest:.1e}"),
+        skin=p.case.numerics.skin or default_skin(p),
+        own_skin=p.case.numerics.skin is not None,
+        processors=" ".join("*" if axis in cut else "1" for axis in "xyz") if cut else None,
         types=p.types,
         properties=_properties(p),
         model=f"ep/{m.law}",
@@ -183,16 +190,16 @@ def deck(p: ScenePlan) -> Deck:
         memory_column=4 + memory(m),
         wall_memory_column=4 + memory(m, wall=True),
         torque=p.torque,
-        row_words=tuple(word for word, asked in words.items() if asked),
+        row_words=tuple(word for word, asked in row_words.items() if asked),
         motion=_motion(p),
     )
 
 
 def files(p: ScenePlan) -> dict[str, str]:
     """The text of every file of a scene's deck by its name; it runs by hand where they are. Raises CaseError."""
-    found = deck(p)
+    data = deck(p)
     texts = {
-        "in.scene": decks.render("liggghts/scene.in.j2", deck=found),
-        "setup.in": decks.render("liggghts/scene_setup.in.j2", deck=found),
+        "in.scene": decks.render("liggghts/scene.in.j2", deck=data),
+        "setup.in": decks.render("liggghts/scene_setup.in.j2", deck=data),
     }
     return texts | {f"{name}.stl": stl.text(name, triangles) for name, triangles in p.layout.meshes.items()}

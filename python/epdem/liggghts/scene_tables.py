@@ -32,21 +32,21 @@ def rows(p: ScenePlan, out: Path) -> pd.DataFrame:
     every = log.rows(out)
     if every.empty:
         raise EngineError(f"{out}: no thermo rows; the run ended before its first step")
-    found: dict[int, list[float]] = {}
+    table: dict[int, list[float]] = {}
     names = [name for name in every if name in ROWS]  # and LIGGGHTS's own default
     for _, part in every.groupby("run"):
         steps, values = part["Step"].astype(int).to_list(), part[names].to_numpy().tolist()
-        known = {step: row for step, row in found.items() if step <= steps[0]}
-        found = known | {step: row for step, row in zip(steps, values, strict=True) if step not in known}
-    return columns.rows(p, found, [ROWS[name] for name in names])
+        known = {step: row for step, row in table.items() if step <= steps[0]}
+        table = known | {step: row for step, row in zip(steps, values, strict=True) if step not in known}
+    return columns.rows(p, table, [ROWS[name] for name in names])
 
 
 def _frame(path: Path, count: int) -> np.ndarray:
     """(n, count) of a binary dump of one frame, sorted by id. Raises EngineError if it is not whole."""
-    found = dump.frames(path)
-    if len(found) != 1 or found[0][1].shape[1] != count:
+    frames = dump.frames(path)
+    if len(frames) != 1 or frames[0][1].shape[1] != count:
         raise EngineError(f"{path}: not one frame of {count} columns; run the case again")
-    return found[0][1]
+    return frames[0][1]
 
 
 def _written(p: ScenePlan) -> dict[str, int]:
@@ -57,15 +57,15 @@ def _written(p: ScenePlan) -> dict[str, int]:
 
 def damaged(p: ScenePlan, folder: Path, upto: int) -> list[int]:
     """Steps up to `upto` of which a frame is missing or not whole."""
-    found = set()
+    steps = set()
     for kind, every in _written(p).items():
         for step in range(0, upto + 1, every):
             path = folder / kind.format(step)
             try:
                 _frame(path, len(_particle_names(p))) if kind == PARTICLES else dump.local(path)
             except EngineError:
-                found.add(step)
-    return sorted(found)
+                steps.add(step)
+    return sorted(steps)
 
 
 def _particle_names(p: ScenePlan) -> list[str]:
@@ -121,13 +121,13 @@ def _pairs(p: ScenePlan, folder: Path, without: Collection[int]) -> pd.DataFrame
 
 def _planes(p: ScenePlan, spheres: pd.DataFrame) -> list[pd.DataFrame]:
     """Contacts with flat walls: overlap by geometry, its largest value from LIGGGHTS's memory of the wall."""
-    found = []
+    planes = []
     for w in p.layout.planes:
         axis = "xyz"[w.axis]
         touching = spheres[(spheres[axis] - w.place).abs() < spheres["radius"]]
         overlap = touching["radius"] - (touching[axis] - w.place).abs()
         largest = np.maximum(touching[f"delta_max_{w.name}"], overlap) if p.model.yields else overlap
-        found.append(
+        planes.append(
             pd.DataFrame(
                 {
                     "step": touching["step"],
@@ -139,7 +139,7 @@ def _planes(p: ScenePlan, spheres: pd.DataFrame) -> list[pd.DataFrame]:
                 }
             )
         )
-    return found
+    return planes
 
 
 def contact_table(p: ScenePlan, folder: Path, spheres: pd.DataFrame, *, without: Collection[int] = ()) -> pd.DataFrame:

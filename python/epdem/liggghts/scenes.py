@@ -51,12 +51,12 @@ class LiggghtsScenes:
         return Resumed(step, lost)
 
     def read(self, plan: ScenePlan, folder: Path, *, without: Collection[int] = ()) -> dict[str, pd.DataFrame]:
-        found = {"rows": tables.rows(plan, folder / launcher.OUT)}
+        read = {"rows": tables.rows(plan, folder / launcher.OUT)}
         if plan.frames:
-            found["particles"] = tables.particles(plan, folder, without=without)
+            read["particles"] = tables.particles(plan, folder, without=without)
         if plan.contacts:
-            found["contacts"] = tables.contact_table(plan, folder, found["particles"], without=without)
-        return found
+            read["contacts"] = tables.contact_table(plan, folder, read["particles"], without=without)
+        return read
 
 
 def _pruning(folder: Path, report: Report) -> Report:

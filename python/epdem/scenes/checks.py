@@ -132,12 +132,12 @@ def discharge(p: ScenePlan, s: Hopper, spheres: pd.DataFrame, part: tuple[float,
     return Discharge(float(rate), float(bulk), diameter, int(count[-1] - count[0]))
 
 
-def beverloo(found: Discharge, outlet: float, gravity: float, *, constant: float = 0.58, k: float = 1.4) -> float:
+def beverloo(discharge: Discharge, outlet: float, gravity: float, *, constant: float = 0.58, k: float = 1.4) -> float:
     """W = C rho_b sqrt(g) (D - k d)^2.5 [kg/s] through an outlet D [m].
 
     Beverloo, Leniger and van de Velde 1961, Chem. Eng. Sci. 15, 260: C about 0.58, k from 1.2 to 1.6.
     """
-    return float(constant * found.bulk * np.sqrt(gravity) * (outlet - k * found.diameter) ** 2.5)
+    return float(constant * discharge.bulk * np.sqrt(gravity) * (outlet - k * discharge.diameter) ** 2.5)
 
 
 def single_rebound(case: SceneCase, s: Peening) -> float:
@@ -160,15 +160,15 @@ def rebounds(spheres: pd.DataFrame, speed: float, expected: float) -> tuple[floa
 
 
 def _of_settle(p: ScenePlan, s: Settle, tables: dict[str, pd.DataFrame]) -> list[Row]:
-    contact, found = p.case.contact, []
+    contact, rows = p.case.contact, []
     smooth = contact.wall_friction == 0.0 or (contact.friction == 0.0 and contact.wall_friction is None)
     smooth = smooth and not any("wall" in pair.between for pair in contact.pairs) and not contact.cohesion
     if "floor_load" in tables["rows"] and "particles" in tables and smooth:
         load, weight = floor_load(p.case, tables)
-        found.append(_row("floor load / weight (smooth walls: hydrostatic)", load, weight, 0.02))
+        rows.append(_row("floor load / weight (smooth walls: hydrostatic)", load, weight, 0.02))
     if not s.rate and s.gravity and p.output.particles >= MANY:
-        found.append(_below("rebound of the bed / e_n^2 fall", *bed_rebound(p.case, tables["particles"]), 0.0))
-    return found
+        rows.append(_below("rebound of the bed / e_n^2 fall", *bed_rebound(p.case, tables["particles"]), 0.0))
+    return rows
 
 
 def _of_hopper(p: ScenePlan, s: Hopper, tables: dict[str, pd.DataFrame]) -> list[Row]:
@@ -196,16 +196,16 @@ def _of_compaction(p: ScenePlan, tables: dict[str, pd.DataFrame]) -> list[Row]:
 
 def checks(p: ScenePlan, tables: dict[str, pd.DataFrame]) -> pd.DataFrame:
     """One row per check: value, expected, relative error, tolerance, passed."""
-    found = _kept(p, tables)
+    rows = _kept(p, tables)
     match p.case.scene:
         case Settle() as s:
-            found += _of_settle(p, s, tables)
+            rows += _of_settle(p, s, tables)
         case Hopper() as s:
-            found += _of_hopper(p, s, tables)
+            rows += _of_hopper(p, s, tables)
         case Peening() as s:
-            found += _of_peening(p, s, tables)
+            rows += _of_peening(p, s, tables)
         case Compaction():
-            found += _of_compaction(p, tables)
+            rows += _of_compaction(p, tables)
     if "ledger" in tables and "friction" not in tables["ledger"]:
-        found.append(_row("energy: all terms but none as remainder", closure(tables["ledger"]), 0.0, 0.01))
-    return pd.DataFrame(found, columns=["check", "value", "expected", "error", "tolerance", "passed"])
+        rows.append(_row("energy: all terms but none as remainder", closure(tables["ledger"]), 0.0, 0.01))
+    return pd.DataFrame(rows, columns=["check", "value", "expected", "error", "tolerance", "passed"])

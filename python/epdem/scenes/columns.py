@@ -47,9 +47,9 @@ def whole(p: ScenePlan, table: pd.DataFrame, folder: Path) -> pd.DataFrame:
     return table.astype({"id": "int64", "type": "int64", "step": "int64"})
 
 
-def rows(p: ScenePlan, found: dict[int, list[float]], names: list[str]) -> pd.DataFrame:
+def rows(p: ScenePlan, values: dict[int, list[float]], names: list[str]) -> pd.DataFrame:
     """The table of rows, sorted, from the values of `names` at each step."""
-    table = pd.DataFrame.from_dict(found, orient="index", columns=names).sort_index()
+    table = pd.DataFrame.from_dict(values, orient="index", columns=names).sort_index()
     table.insert(0, "step", table.index.to_numpy())
     table.insert(1, "time", table["step"] * p.time_step)
     if isinstance(p.case.scene, Compaction):

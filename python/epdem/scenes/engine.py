@@ -9,7 +9,7 @@ from typing import Protocol
 import pandas as pd
 
 from ..errors import CaseError, EngineError
-from ..impacts.engine import Abilities
+from ..impacts.engine import Abilities, refuse_ranks
 from .plan import ScenePlan
 
 Report = Callable[[int], None]  # the step of a row that was written
@@ -61,14 +61,12 @@ class SceneEngine(Protocol):
 
 def check_abilities(engine: SceneEngine, p: ScenePlan, *, ranks: int, resume: bool) -> None:
     """Raise CaseError for what a run asks of an engine that cannot do it, EngineError if it is not here."""
-    kind, most = p.case.scene.kind, engine.can.ranks
+    kind = p.case.scene.kind
     if kind not in engine.can.scenes:
         known = " and ".join(engine.can.scenes)
         raise CaseError(f"scene.kind = {kind!r}: engine {engine.name} runs {known}; use another --engine")
-    if ranks > most:
-        what = "one core; leave it out" if most == 1 else f"{most} ranks at most here; use --ranks {most} or fewer"
-        raise CaseError(f"--ranks {ranks}: a scene in {engine.name} runs on {what}")
+    refuse_ranks(engine.name, engine.can.ranks, ranks)
     if resume and not engine.can.restarts:
         raise CaseError(f"--resume: a scene in {engine.name} runs from its start; leave it out")
-    if words := engine.missing():
-        raise EngineError(words)
+    if reason := engine.missing():
+        raise EngineError(reason)

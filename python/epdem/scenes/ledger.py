@@ -54,13 +54,13 @@ def ledger(p: ScenePlan, tables: dict[str, pd.DataFrame]) -> pd.DataFrame:
     The balance is what all but friction leave unexplained since the first frame with all spheres; where contacts rub it
     is friction (and the tangential springs), else it must vanish.
     """
-    spheres, found = tables["particles"], tables["contacts"]
+    spheres, contacts = tables["particles"], tables["contacts"]
     steps = np.sort(spheres["step"].unique())
     by_step = spheres.assign(kinetic=kinetic(spheres), gravity=spheres["mass"] * p.case.scene.gravity * spheres["z"])
     sums = by_step.groupby("step")[["kinetic", "gravity"]].sum()
     table = pd.DataFrame({"step": steps, "time": steps * p.time_step})
     table["kinetic"], table["gravity"] = sums["kinetic"].to_numpy(), sums["gravity"].to_numpy()
-    table["elastic"] = found.groupby("step")["elastic_energy"].sum().reindex(steps, fill_value=0.0).to_numpy()
+    table["elastic"] = contacts.groupby("step")["elastic_energy"].sum().reindex(steps, fill_value=0.0).to_numpy()
     plastic = spheres.groupby("step")["plastic_work"].sum() if "plastic_work" in spheres else pd.Series(0.0, steps)
     table["plastic"] = plastic.reindex(steps).to_numpy()
     rows = tables["rows"]

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 from ..case.scene import Rolling, SceneCase
 from ..errors import CaseError
+from ..laws.strengths import own_ratios
 from .pairs import numbers, strengths
 
 WALL = "wall"
@@ -42,6 +43,10 @@ class Model:
         """The number of a type."""
         return next(i for i, t in enumerate(self.types, 1) if t.name == name)
 
+    def ratios(self) -> dict[str, float]:
+        """The law's parameters that differ from its defaults."""
+        return own_ratios(self.law, self.parameters)
+
     @property
     def yields(self) -> bool:
         """Whether the law has a strength."""
@@ -72,7 +77,7 @@ def model(case: SceneCase) -> Model:
     walls_apart = case.scene.walls not in used or own_friction or pairs_with_wall
     if walls_apart:
         types.append(Type(WALL, case.scene.walls, strong[case.scene.walls]))
-    found = Model(
+    result = Model(
         law=case.law.name,
         parameters=numbers(case).ratios,
         types=tuple(types),
@@ -83,9 +88,9 @@ def model(case: SceneCase) -> Model:
         rolling=contact.rolling,
         cohesion=contact.cohesion,
     )
-    if not found.sliding and contact.tangential_restitution is not None:
+    if not result.sliding and contact.tangential_restitution is not None:
         raise CaseError("contact.tangential_restitution: there is no friction, so no tangential dashpot; remove it")
-    return found
+    return result
 
 
 def _materials_used(case: SceneCase) -> list[str]:

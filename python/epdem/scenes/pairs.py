@@ -3,8 +3,9 @@
 
 import numpy as np
 
-from ..case.law import law_numbers, read_number
+from ..case.law import law_numbers
 from ..case.scene import SceneCase
+from ..case.units import read_number
 from ..errors import CaseError
 from ..impacts.experiment import Body, Experiment, plane, sphere
 from ..laws.strengths import LawNumbers, LawSpec, law_named
@@ -23,7 +24,7 @@ def strengths(case: SceneCase) -> dict[str, float]:
     """
     law = numbers(case)
     strength = law_named(law.name).strength
-    found = {}
+    strengths = {}
     for name, material in case.materials.items():
         extra = dict(material.model_extra or {})
         own = None
@@ -31,8 +32,8 @@ def strengths(case: SceneCase) -> dict[str, float]:
             own = read_number(f"materials.{name}.{strength}", extra.pop(strength), "Pa")
         for key in extra:
             raise CaseError(f"materials.{name}.{key}: unknown key; remove it or correct its spelling")
-        found[name] = law.strength(name, material.yield_stress, own)
-    return found
+        strengths[name] = law.strength(name, material.yield_stress, own)
+    return strengths
 
 
 def pair_law(case: SceneCase, a: str, b: str) -> tuple[LawSpec, float]:

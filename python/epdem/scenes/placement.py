@@ -19,9 +19,9 @@ ATTEMPTS = 10_000  # of one sphere; at the densest filling that a scene allows s
 
 def sizes(case: SceneCase, m: Model, rng: random.Random) -> list[tuple[float, int]]:
     """(radius [m], number of its type) of every sphere, drawn by their share of the mass, the largest first."""
-    found = drawn(case, case.scene.particles)
-    kinds = [(radius, m.type_of(material)) for material, radius, _ in found]
-    return sorted(rng.choices(kinds, [weight for *_, weight in found], k=case.scene.count), reverse=True)
+    classes = drawn(case, case.scene.particles)
+    kinds = [(radius, m.type_of(material)) for material, radius, _ in classes]
+    return sorted(rng.choices(kinds, [weight for *_, weight in classes], k=case.scene.count), reverse=True)
 
 
 def spheres(case: SceneCase, m: Model, room: Block) -> FloatArray:

@@ -107,13 +107,13 @@ def _intervals(output: Output, steps: float) -> tuple[int, int]:
 
 
 def _phases(layout: Layout, rows: int, every: int, dt: float) -> tuple[Phase, ...]:
-    found, end = [], 0
+    phases, end = [], 0
     for stage in layout.stages:
         end += every * max(1, round(stage.seconds / dt / every))
-        found.append(Phase(stage.name, end, stage.plate))
-    last = found.pop()
-    end = max(rows * every, last.end) if found else rows * every
-    return (*found, Phase(last.name, end, last.plate))
+        phases.append(Phase(stage.name, end, stage.plate))
+    last = phases.pop()
+    end = max(rows * every, last.end) if phases else rows * every
+    return (*phases, Phase(last.name, end, last.plate))
 
 
 def _divisor(n: int, parts: int) -> int:
@@ -124,7 +124,7 @@ def _divisor(n: int, parts: int) -> int:
 def plan(case: SceneCase) -> ScenePlan:
     """The plan of a scene. Raises CaseError for what does not fit."""
     refuse_faster_than_sound(case)
-    found, dt, layout, out = model(case), time_step(case), kinds.layout(case), case.output
+    contact_model, dt, layout, out = model(case), time_step(case), kinds.layout(case), case.output
     for fill in layout.fills:
         refuse_too_many(case, fill)
     rows, every = _intervals(out, layout.duration / dt)
@@ -135,7 +135,7 @@ def plan(case: SceneCase) -> ScenePlan:
 
     return ScenePlan(
         case=case,
-        model=found,
+        model=contact_model,
         layout=layout,
         time_step=dt,
         phases=_phases(layout, rows, every, dt),

@@ -5,10 +5,10 @@ import json
 
 from rich.console import Console
 
-from ..files import atomic
-from ..folders import claim
+from ..base.files import atomic
+from ..base.folders import claim
+from ..base.terminal import table
 from ..impacts.report import records
-from ..terminal import table
 from .run import SceneOutcome
 
 

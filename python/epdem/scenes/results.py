@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pandas as pd
 
-from ..tables import Hdf5, opened, read_table, write_csv, write_table
+from ..base.tables import Hdf5, opened, read_table, write_csv, write_table
 from .columns import UNITS
 
 
@@ -43,9 +43,9 @@ def write(path: Path, results: SceneResults) -> None:
 def read(path: Path | str) -> SceneResults:
     """The results in a file that `write` made. Raises CaseError."""
     with opened(path, "a results file of a scene") as file:
-        found = SceneResults(file["case"][()].decode(), dict(file.attrs))
+        results = SceneResults(file["case"][()].decode(), dict(file.attrs))
         for name, group in file.items():
             if "columns" in getattr(group, "attrs", {}):
-                found.tables[name] = read_table(group)
-        found.decks = {name: text[()].decode() for name, text in file.get("decks", {}).items()}
-        return found
+                results.tables[name] = read_table(group)
+        results.decks = {name: text[()].decode() for name, text in file.get("decks", {}).items()}
+        return results

@@ -6,18 +6,19 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
+from typing import TypedDict, Unpack
 
 import pandas as pd
 
 from .. import __version__
+from ..base.files import write_texts
+from ..base.folders import Results, claim
+from ..base.stages import inputs_hash, library_hash
 from ..case.doubts import doubts
-from ..case.impact import named
 from ..case.scene import SceneCase, load
+from ..case.toml import named
 from ..errors import CaseError, EngineError
-from ..files import write_texts
-from ..folders import Results, claim
 from ..impacts.prediction import predict
-from ..stages import inputs_hash, library_hash
 from . import checks, ledger, results
 from .engine import Report, Resumed, SceneEngine, check_abilities
 from .pairs import wall_impact
@@ -55,7 +56,7 @@ class SceneOutcome:
 class _Work:
     """A checked case: what is to run, on what."""
 
-    path: Path
+    text: str  # of the case
     plan: ScenePlan
     engine: SceneEngine
     files: dict[str, str]
@@ -91,10 +92,29 @@ def run_plan(
     return engine.read(p, folder)
 
 
-def run(
-    path: Path | str,
+class Options(TypedDict, total=False):
+    """What `run_case` takes beside case and engine."""
+
+    out: Path | None
+    ranks: int
+    fresh: bool
+    resume: bool
+    force: bool
+    report: Progress
+
+
+def run(path: Path | str, engine: SceneEngine, **options: Unpack[Options]) -> SceneOutcome:
+    """`run_case` of the scene in a case file."""
+    case = load(path)
+    return run_case(case, Path(path).read_text(encoding="utf-8-sig"), engine, place=path, **options)
+
+
+def run_case(
+    case: SceneCase,
+    text: str,
     engine: SceneEngine,
     *,
+    place: object,
     out: Path | None = None,
     ranks: int = 1,
     fresh: bool = False,
@@ -102,16 +122,17 @@ def run(
     force: bool = False,
     report: Progress = lambda step, steps: None,
 ) -> SceneOutcome:
-    """Run the scene in a case file, or continue it from its last restart file. Raises CaseError, EngineError.
+    """Run a scene, or continue it from its last restart file. Raises CaseError, EngineError.
 
-    `fresh` runs again what is stored; `force` allows a folder in which there are other files. All input is checked and
-    the engine looked for before anything is written or started.
+    `text` is stored with the results, `place` names the case in messages. `fresh` runs again what is stored; `force`
+    allows a folder in which there are other files. All input is checked and the engine looked for before anything is
+    written or started.
     """
-    with named(path):
-        p = plan(load(path))
+    with named(place):
+        p = plan(case)
         check_abilities(engine, p, ranks=ranks, resume=resume)
         files, notes = engine.files(p), [*engine.notes(p), *_warnings(p.case)]
-    work = _Work(Path(path), p, engine, files, notes, ranks, lambda step: report(step, p.steps))
+    work = _Work(text, p, engine, files, notes, ranks, lambda step: report(step, p.steps))
     folder = out or Path("runs") / p.case.name / engine.subfolder
     if resume and not folder.exists():
         raise CaseError(f"{folder}: no such folder, so no run to continue; run the case without --resume")
@@ -144,8 +165,8 @@ def _resumed(work: _Work, place: Results) -> SceneOutcome:
         raise CaseError(f"{folder}: the case has changed since the run that is to be continued; run it anew (--fresh)")
     if place.versions != work.versions:
         was, now = (", ".join(f"{k} {v}" for k, v in versions.items()) for versions in (place.versions, work.versions))
-        said = f"{folder}: begun by {was or 'programs of unknown versions'}, and here is {now}"
-        raise CaseError(f"{said}; run it anew (--fresh)")
+        begun = f"{folder}: begun by {was or 'programs of unknown versions'}, and here is {now}"
+        raise CaseError(f"{begun}; run it anew (--fresh)")
     went_on = work.engine.resume(work.plan, folder, ranks=work.ranks, report=work.report)
     tables = work.engine.read(work.plan, folder, without=went_on.lost)
     return _finish(work, folder, start, tables, went_on)
@@ -175,7 +196,7 @@ def _finish(
         "seconds": seconds,
     }
     decks = {name: text for name, text in work.files.items() if "/" not in name}  # without the modules of a deck
-    kept = results.SceneResults(work.path.read_text(encoding="utf-8-sig"), attributes, tables, decks)
+    kept = results.SceneResults(work.text, attributes, tables, decks)
     results.write(folder / "results.h5", kept)
     return SceneOutcome(
         p,

@@ -74,11 +74,11 @@ def time_step(case: SceneCase) -> float:
             x = sphere_impact(case, material, radius, other, v)
             prediction = predict(x)
             try:
-                found = search(x, prediction, case.numerics.error).time_step
+                step = search(x, prediction, case.numerics.error).time_step
             except CaseError as error:
                 raise CaseError(f"numerics.{error}; give a larger one, or numerics.time_step") from None
             limit = stability_limit(x, float(prediction.overlap_max.max()))
-            best = min(best, found, bed_share(x, sticking=sticking) * limit)
+            best = min(best, step, bed_share(x, sticking=sticking) * limit)
     return _round_down(best)
 
 

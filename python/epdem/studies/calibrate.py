@@ -7,16 +7,19 @@ from pathlib import Path
 
 import numpy as np
 
-from ..case.impact import Case, load, named
+from ..case.impact import Case, load
 from ..case.law import law_numbers
+from ..case.toml import named
 from ..errors import CaseError
 from ..impacts.experiment import Experiment, bodies, pair_of
 from ..impacts.prediction import predict
 from ..laws.strengths import LawNumbers, law_named
+from ..theory.backbones import LAWS
+from ..theory.numerics import bisect
 
 KGF_PER_MM2 = 9.80665e6  # Pa
 VICKERS_FACETS = 2 / 1.8544  # area of the facets of a Vickers indentation over that of its projection, 1/sin(136 deg/2)
-TABOR = 2.8  # mean pressure of full plasticity over the yield stress in simple compression (Tabor 1951)
+TABOR = LAWS["thornton"].default_ratio  # mean pressure of full plasticity over the yield stress (Tabor 1951)
 BRINELL_DENT = 0.375  # dent over ball diameter in a usual Brinell test (0.24 to 0.6)
 
 
@@ -112,12 +115,8 @@ def from_restitution(path: Path, e_n: float, speed: float) -> Calibration:
     low, high = math.log(1e-8 * modulus), math.log(modulus)
     if not restitution(low) < e_n < restitution(high):
         raise CaseError(f"e_n = {e_n:g} at {speed:g} m/s: no strength between 1e-8 and 1 of E* gives it")
-    while high - low > 1e-13 * max(abs(low), 1.0):
-        middle = 0.5 * (low + high)
-        if middle in (low, high):
-            break
-        low, high = (middle, high) if restitution(middle) < e_n else (low, middle)
-    return unknown.result(math.exp(0.5 * (low + high)), speed, f"e_n = {e_n:g} at {speed:g} m/s")
+    strength = math.exp(bisect(lambda middle: restitution(middle) < e_n, low, high)[0])
+    return unknown.result(strength, speed, f"e_n = {e_n:g} at {speed:g} m/s")
 
 
 def from_hardness(path: Path, pressure: float, source: str) -> Calibration:

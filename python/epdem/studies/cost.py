@@ -14,21 +14,20 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
-from ..case.impact import Case, load, named
-from ..engines import Engine, engine
+from ..case.impact import Case, load
+from ..case.toml import named
+from ..engines import OTHERS, Engine, engine
 from ..errors import EngineError
-from ..impacts.comparison import compare
 from ..impacts.experiment import experiment
 from ..impacts.plan import Plan, plan
 from ..impacts.prediction import Prediction, predict
-from ..impacts.run import run_plan
+from ..impacts.run import run_and_compare
 
 STEPS = (10, 17, 30, 55, 100, 170, 300, 550, 1000, 1700, 3000)
 QUANTITIES = ("e_n", "contact_time", "force_max")
 TARGETS = (1e-2, 1e-3, 1e-4)
 LEAST_PHASES = 8
 REFERENCE = "liggghts-hertz"
-OWN_LAW = {REFERENCE: "hertz", "liggghts-thornton_ning": "thornton"}  # the law that LIGGGHTS's own models stand for
 
 
 @dataclass(frozen=True)
@@ -42,7 +41,7 @@ class Model:
 
     @property
     def label(self) -> str:
-        return self.engine.name if self.engine.name in OWN_LAW else f"{self.engine.name}, {self.law}"
+        return self.engine.name if self.engine.name in OTHERS else f"{self.engine.name}, {self.law}"
 
 
 @dataclass(frozen=True)
@@ -58,14 +57,14 @@ class Outcome:
 def models(case: Case, engines: list[str], laws: list[str], steps: tuple[int, ...]) -> list[Model]:
     """What runs against what. With LIGGGHTS come its own thornton_ning and, as the reference, its own hertz."""
     if "liggghts" in engines:
-        engines = [*engines, "liggghts-thornton_ning", REFERENCE]
+        engines = [*engines, *sorted(OTHERS, key=lambda name: name == REFERENCE)]
     numerics = case.numerics.model_copy(update={"phases": max(case.numerics.phases, LEAST_PHASES), "error": None})
     chosen = []
     for name in dict.fromkeys(engines):
         tool = engine(name)
         if reason := tool.missing():
             raise EngineError(f"engine {name}: {reason}")
-        for law in [OWN_LAW[name]] if name in OWN_LAW else (laws or [case.law.name]):
+        for law in tool.can.laws or () if name in OTHERS else laws or [case.law.name]:
             # the case's own law keeps the case's parameters
             x = replace(experiment(case, None if law == case.law.name else law), numerics=numerics)
             prediction = predict(x)
@@ -80,12 +79,11 @@ def errors(c: Model, p: Plan, folder: Path) -> dict[str, float]:
     for longer in (1.0, 1.3, 2.0):  # coarse steps stretch contacts
         try:
             longest = replace(p, steps=int(p.steps * longer))
-            table = run_plan(longest, c.engine, folder).impacts
+            rows, _ = run_and_compare(longest, c.prediction, c.engine, folder)
             break
         except EngineError:
             if longer == 2.0:
                 return {f"{q}_{kind}": np.nan for q in QUANTITIES for kind in ("error", "rms")}
-    rows = compare(c.engine.name, c.law, table, c.prediction, p.experiment.check)
     return {f"{q}_error": float(rows[f"{q}_error"].max()) for q in QUANTITIES} | {
         f"{q}_rms": float(np.sqrt((rows[f"{q}_rms"] ** 2).mean())) for q in QUANTITIES
     }

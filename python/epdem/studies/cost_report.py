@@ -7,8 +7,8 @@ import numpy as np
 import pandas as pd
 from rich.console import Console
 
-from ..files import atomic
-from ..terminal import frame_table
+from ..base.files import atomic
+from ..base.terminal import frame_table
 from .cost import TARGETS, Outcome
 
 

@@ -9,17 +9,17 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
-from ..case.impact import load, named
+from ..base.folders import claim
+from ..base.tables import write_csv
+from ..case.impact import load
+from ..case.toml import named
 from ..engines import ENGINES, FOREIGN, OTHERS, Engine, OwnTheory
 from ..errors import CaseError
-from ..folders import claim
 from ..impacts import report
-from ..impacts.comparison import compare
 from ..impacts.experiment import Experiment, experiment
 from ..impacts.foreign import prediction as predict
 from ..impacts.plan import plan
-from ..impacts.run import Outcome, run, run_plan
-from ..tables import write_csv
+from ..impacts.run import Outcome, run, run_and_compare
 from .invariance import VARIANTS, examine
 
 COARSER = 4  # the order of convergence is seen between steps/4 and steps
@@ -38,8 +38,8 @@ class Crosscheck:
 
 def models(x: Experiment) -> tuple[dict[str, Engine], dict[str, str]]:
     """Engines that can run this case here, and why the others cannot. FOREIGN ones have a theory of their own."""
-    same = {"thornton": ["liggghts-thornton_ning"], "hertz": ["liggghts-hertz"]}.get(x.law.name, [])
-    tools = {n: kind() for n, kind in (ENGINES | OTHERS | FOREIGN).items() if n not in OTHERS or n in same}
+    same = {n: kind for n, kind in OTHERS.items() if x.law.name in (kind.can.laws or ())}
+    tools = {n: kind() for n, kind in (ENGINES | same | FOREIGN).items()}
     absent = {name: reason for name, tool in tools.items() if (reason := tool.missing())}
     for name, tool in tools.items():
         try:
@@ -53,8 +53,9 @@ def models(x: Experiment) -> tuple[dict[str, Engine], dict[str, str]]:
 def _own_theory(tool: OwnTheory, x: Experiment, folder: Path) -> tuple[pd.DataFrame, float]:
     """An engine with a law of its own against its own theory: (one row per speed, seconds)."""
     prediction = tool.predict(x)
-    stage = run_plan(plan(x, prediction), tool, folder, end_power=tool.end_power)
-    return compare(tool.name, tool.name, stage.impacts, prediction, x.check), stage.seconds["seconds"]
+    p = plan(x, prediction)
+    rows, stage = run_and_compare(p, prediction, tool, folder, law=tool.name, end_power=tool.end_power)
+    return rows, stage.seconds["seconds"]
 
 
 def _row(tool: Engine, fine: pd.DataFrame, coarse: pd.DataFrame, x: Experiment, folder: Path) -> dict[str, object]:

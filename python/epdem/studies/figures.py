@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from ..files import atomic
+from ..base.files import atomic
 from ..theory import pair, pressure, printed
 from ..theory.backbones import LAWS
 from ..theory.restitution import e_n

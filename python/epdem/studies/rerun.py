@@ -8,13 +8,13 @@ from pathlib import Path
 
 import pandas as pd
 
+from ..base.tables import opened
 from ..engines import engine, scene_engine
 from ..errors import CaseError
 from ..impacts import run as impacts
 from ..impacts import store
 from ..scenes import results as scene_store
 from ..scenes import run as scenes
-from ..tables import opened
 
 Progress = Callable[[str], None]
 

@@ -11,8 +11,8 @@ from typing import Any
 
 import tomlkit
 
-from ..case.impact import read_toml
 from ..case.library import with_library
+from ..case.toml import named, read_toml
 from ..errors import CaseError
 from ..laws.strengths import law_named
 from ..theory.validity import SMALL_DEFORMATION
@@ -82,7 +82,7 @@ def strain_ratio(data: dict[str, Any], path: Path) -> float:
     if not scenes.is_scene(data):
         return float(predict(experiment(impacts.parse(data, path))).strain_ratio.max())
     case = scenes.parse(data, path)
-    with impacts.named(path):
+    with named(path):
         law_named(case.law.name)
     material, radius = case.scene.particles[0].material, case.scene.particles[0].radii()[0]
     x = wall_impact(case, material, radius, case.scene.walls, highest_speed(case))

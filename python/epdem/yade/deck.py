@@ -2,6 +2,11 @@
 """The data of the template of an impact deck."""
 
 from dataclasses import dataclass
+from math import inf
+
+from ..errors import CaseError
+from .deck_modules import cone
+from .deck_modules.law import LAWS
 
 
 @dataclass(frozen=True)
@@ -10,6 +15,22 @@ class Material:
 
     name: str
     values: dict[str, float]
+
+
+def strength_values(
+    law: str, ratios: dict[str, float], strength: float, young_modulus: float, material: str
+) -> dict[str, float]:
+    """The law's strength [Pa] by its name, nothing for a law without one. Raises CaseError where YADE's class ends."""
+    kind = LAWS[law]
+    if not kind.strength_name:
+        return {}
+    limit = cone.strongest(young_modulus, kind(1.0, 1e-3, **ratios).trigger_factor)
+    if limit <= strength < inf:
+        raise CaseError(
+            f"materials.{material}: {kind.strength_name} = {strength:.6g} Pa, YADE's law takes less than "
+            f"{limit:.6g} Pa at this young_modulus; use --engine liggghts"
+        )
+    return {kind.strength_name: strength}
 
 
 @dataclass(frozen=True)

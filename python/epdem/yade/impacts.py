@@ -9,18 +9,17 @@ from pathlib import Path
 
 import numpy as np
 
-from .. import rendering as decks
-from ..errors import CaseError, EngineError
+from ..base import rendering as decks
+from ..base.processes import ask, call
+from ..errors import EngineError
 from ..impacts.engine import Abilities, Trajectory, check_abilities, recorded_seconds
 from ..impacts.experiment import Body, Experiment
 from ..impacts.pairs import Pairs
 from ..impacts.places import side_by_side
 from ..impacts.plan import Plan
-from ..laws import library as claw
-from ..processes import ask, call
-from .deck import Deck, Group, Material
-from .deck_modules import cone
+from .deck import Deck, Group, Material, strength_values
 from .deck_modules.law import LAWS
+from .edits import EDITS
 from .launcher import command, environment, write_deck_modules
 from .pairs import velocities
 
@@ -32,7 +31,9 @@ class Yade:
 
     name = "yade"
     # a serial YADE keeps bodies where they are in memory and has no ranks: sorting and migration do not exist
-    can = Abilities(laws=tuple(LAWS), staggered=True, scenes=("settle", "compaction"), variants=("swap", "restart"))
+    can = Abilities(
+        laws=tuple(LAWS), staggered=True, scenes=("settle", "compaction"), edits=EDITS, variants=("swap", "restart")
+    )
     template = "yade/impact.py.j2"
 
     def missing(self) -> str | None:
@@ -41,32 +42,22 @@ class Yade:
         return None
 
     def version(self) -> str:
-        found = re.search(r"version: (\S+)", ask([command(), "--version"], environment()))
-        return f"YADE {found.group(1) if found else '(version unknown)'}"
+        match = re.search(r"version: (\S+)", ask([command(), "--version"], environment()))
+        return f"YADE {match.group(1) if match else '(version unknown)'}"
 
     def material(self, x: Experiment, body: Body, strength: float) -> Material:
         """The material of one body. Raises CaseError for a strength beyond YADE's law."""
-        law = LAWS[x.law.name]
         values = {
             "young_modulus": body.young_modulus,
             "poisson_ratio": body.poisson_ratio,
             "density": body.density if isfinite(body.density) else 1.0,  # of a rigid wall: not used
         }
-        if law.strength_name:
-            values[law.strength_name] = strength
-            ratios = (x.law.parameters[n] for n in law.ratios)
-            highest = cone.STRONGEST * body.young_modulus / law(1.0, 1e-3, *ratios).trigger_factor
-            if isfinite(strength) and strength >= highest:
-                raise CaseError(
-                    f"materials.{body.material}: {law.strength_name} = {strength:.6g} Pa, YADE's law takes less than "
-                    f"{highest:.6g} Pa at this young_modulus; use --engine embedded"
-                )
-        return Material(body.material, values)
+        own = strength_values(x.law.name, x.law.ratios(), strength, values["young_modulus"], body.material)
+        return Material(body.material, values | own)
 
     def ratios(self, x: Experiment) -> dict[str, float]:
-        """The law's dimensionless parameters that differ from their defaults."""
-        given, defaults = x.law.parameters, {p.name: p.default for p in claw.laws()[x.law.name].parameters}
-        return {n: given[n] for n in LAWS[x.law.name].ratios if given[n] != defaults[n]}
+        """The law's dimensionless parameters in the deck."""
+        return x.law.ratios()
 
     def deck(self, plan: Plan) -> Deck:
         """The deck of a plan. Raises CaseError for what YADE cannot do."""
@@ -124,7 +115,9 @@ class Yade:
             env=environment(),
         )
         wall = time.perf_counter() - start
-        return trajectory(plan, path, {"total": wall, "stepping": stepping_seconds(log)})
+        result = trajectory(plan, path, {"total": wall, "stepping": stepping_seconds(log)})
+        path.unlink()  # large
+        return result
 
     def seconds(self, plan: Plan, folder: Path) -> dict[str, float]:
         return recorded_seconds(self, plan, folder)
@@ -159,5 +152,5 @@ def trajectory(plan: Plan, path: Path, seconds: dict[str, float]) -> Trajectory:
 
 def stepping_seconds(log: Path) -> float:
     """The deck's own time for its steps [s]; NaN if the log does not contain it."""
-    found = re.findall(r"stepping took (\S+) s", log.read_text(errors="replace")) if log.exists() else []
-    return float(found[-1]) if found else float("nan")
+    times = re.findall(r"stepping took (\S+) s", log.read_text(errors="replace")) if log.exists() else []
+    return float(times[-1]) if times else float("nan")

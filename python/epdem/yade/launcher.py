@@ -4,7 +4,7 @@
 import os
 from pathlib import Path
 
-from ..files import write_texts
+from ..base.files import write_texts
 
 MODULES = Path(__file__).with_name("deck_modules")
 

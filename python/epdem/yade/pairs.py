@@ -6,10 +6,10 @@ from typing import Any
 
 import numpy as np
 
-from .. import rendering as decks
+from ..base import rendering as decks
+from ..base.processes import call
 from ..errors import EngineError
 from ..impacts.pairs import Pairs
-from ..processes import call
 from .deck import Deck
 from .launcher import command, environment, write_deck_modules
 
@@ -24,7 +24,7 @@ def velocities(deck: Deck, pairs: Pairs, variant: str, folder: Path) -> np.ndarr
     for name, side in sides:
         lines = [" ".join(map(decks.number, row)) for row in np.hstack([side.place, side.velocity])]
         (folder / name).write_text("\n".join(["# x y z v_x v_y v_z, SI", *lines, ""]), encoding="utf-8")
-    words: dict[str, Any] = {
+    context: dict[str, Any] = {
         "deck": deck,
         "variant": variant,
         "sides": [(n, s.body.radius, s.body.material) for n, s in sides],
@@ -32,11 +32,11 @@ def velocities(deck: Deck, pairs: Pairs, variant: str, folder: Path) -> np.ndarr
         "load": None,
         "save": None,
     }
-    parts = [words]
+    parts = [context]
     if variant == "restart":
         parts = [
-            words | {"steps": pairs.stop, "save": "middle.yade.gz"},
-            words | {"steps": p.steps - pairs.stop, "load": "middle.yade.gz"},
+            context | {"steps": pairs.stop, "save": "middle.yade.gz"},
+            context | {"steps": p.steps - pairs.stop, "load": "middle.yade.gz"},
         ]
     (folder / deck.path).unlink(missing_ok=True)
     for k, part in enumerate(parts):

@@ -5,13 +5,12 @@ from dataclasses import dataclass
 from itertools import combinations_with_replacement
 from math import atan
 
-from .. import rendering as decks
+from ..base import rendering as decks
 from ..errors import CaseError
 from ..scenes import placement
 from ..scenes.kinds import Block, Plane
 from ..scenes.plan import ScenePlan
-from .deck import Material
-from .deck_modules import cone
+from .deck import Material, strength_values
 from .deck_modules.law import LAWS
 from .impacts import Yade
 from .launcher import deck_modules
@@ -21,6 +20,7 @@ SCRIPT, SPHERES = "scene.py", "spheres.txt"
 SKIN = 0.25  # of the smallest radius: few sortings and few idle neighbours
 KINDS = Yade.can.scenes
 NO_DASHPOT = "contact.tangential_restitution: YADE's law has no dashpot, it was left out"
+NO_RANKS = "numerics.cut: a scene in YADE has one rank, it was left out"
 
 
 @dataclass(frozen=True)
@@ -110,11 +110,12 @@ def refuse(p: ScenePlan) -> None:
 
 def notes(p: ScenePlan) -> list[str]:
     """The parts of a case that a YADE scene leaves out, in words."""
-    return [NO_DASHPOT] if p.model.tangential_restitution is not None else []
+    found = [NO_DASHPOT] if p.model.tangential_restitution is not None else []
+    return [*found, NO_RANKS] if p.case.numerics.cut else found
 
 
 def _materials(p: ScenePlan, friction: Square) -> tuple[Material, ...]:
-    law, found = LAWS[p.model.law], []
+    materials = []
     for i, t in enumerate(p.model.types):
         x = p.case.materials[t.material]
         values = {
@@ -123,17 +124,9 @@ def _materials(p: ScenePlan, friction: Square) -> tuple[Material, ...]:
             "density": x.density,
             "friction": friction[i][i],
         }
-        if law.strength_name:
-            values[law.strength_name] = t.strength
-            ratios = {n: p.model.parameters[n] for n in law.ratios}
-            highest = cone.STRONGEST * x.young_modulus / law(1.0, 1e-3, **ratios).trigger_factor
-            if t.strength >= highest:
-                raise CaseError(
-                    f"materials.{t.material}: {law.strength_name} = {t.strength:.6g} Pa, YADE's law takes less than "
-                    f"{highest:.6g} Pa at this young_modulus; use --engine liggghts"
-                )
-        found.append(Material(t.name, values))
-    return tuple(found)
+        own = strength_values(p.model.law, p.model.ratios(), t.strength, x.young_modulus, t.material)
+        materials.append(Material(t.name, values | own))
+    return tuple(materials)
 
 
 def _pairs(friction: Square) -> tuple[tuple[int, int, float], ...]:
@@ -170,7 +163,7 @@ def deck(p: ScenePlan) -> Deck:
         source=p.case.case.source,
         summary=p.summary,
         law=m.law,
-        ratios={n: m.parameters[n] for n in LAWS[m.law].ratios},
+        ratios=m.ratios(),
         materials=_materials(p, friction),
         wall_material=m.wall_type - 1,
         frictions=_pairs(friction),
@@ -180,7 +173,7 @@ def deck(p: ScenePlan) -> Deck:
         low=(*(low for low, _ in sides), zlo),
         high=(*(high for _, high in sides), zhi),
         fall=-p.case.scene.gravity if p.case.scene.gravity else 0.0,
-        skin=float(f"{SKIN * p.smallest:.1e}"),
+        skin=p.case.numerics.skin or float(f"{SKIN * p.smallest:.1e}"),
         time_step=p.time_step,
         phases=tuple(
             Phase(phase.name, end - begin, phase.plate)
@@ -198,8 +191,8 @@ def deck(p: ScenePlan) -> Deck:
 
 def files(p: ScenePlan) -> dict[str, str]:
     """All files of a YADE scene by name; they run by hand in one folder. Raises CaseError."""
-    found = {SCRIPT: decks.render("yade/scene.py.j2", deck=deck(p)), SPHERES: _table(p)}
-    return found | deck_modules()
+    deck_files = {SCRIPT: decks.render("yade/scene.py.j2", deck=deck(p)), SPHERES: _table(p)}
+    return deck_files | deck_modules()
 
 
 def _filled(p: ScenePlan) -> Block:

@@ -18,7 +18,7 @@ def _frames(p: ScenePlan, folder: Path, kind: str, every: int, names: list[str])
     """The frames of a kind that a run of this plan writes, one below the other; other files of such names are the
     user's. Raises EngineError for a frame that is missing or not whole.
     """
-    found = []
+    frames = []
     for step in range(0, p.steps + 1, every):
         path = folder / f"{kind}.{step}.npy"
         try:
@@ -27,46 +27,46 @@ def _frames(p: ScenePlan, folder: Path, kind: str, every: int, names: list[str])
             reason = " ".join(str(error).split()) or type(error).__name__
             raise EngineError(f"{path}: incomplete ({reason}); run the case again") from None
         table.insert(0, "step", step)
-        found.append(table)
-    return pd.concat(found, ignore_index=True)
+        frames.append(table)
+    return pd.concat(frames, ignore_index=True)
 
 
 def rows(p: ScenePlan, log: Path) -> pd.DataFrame:
     """The rows that a run printed. Raises EngineError."""
     lines = [line.split() for line in log.read_text(errors="replace").splitlines()]
-    heads = next((words[1:] for words in lines if words[:1] == ["Step"]), [])
-    found = {}
-    for words in lines:
-        if len(words) == len(heads) + 1 and words[0].isdigit():
+    heads = next((fields[1:] for fields in lines if fields[:1] == ["Step"]), [])
+    table = {}
+    for fields in lines:
+        if len(fields) == len(heads) + 1 and fields[0].isdigit():
             try:
-                found[int(words[0])] = [float(w) for w in words[1:]]
+                table[int(fields[0])] = [float(w) for w in fields[1:]]
             except ValueError:
-                raise EngineError(f"{log}: the row of step {words[0]} is damaged; run the case again") from None
-    if not found:
+                raise EngineError(f"{log}: the row of step {fields[0]} is damaged; run the case again") from None
+    if not table:
         raise EngineError(f"{log}: no rows; the run ended before its first step")
-    return columns.rows(p, found, heads)
+    return columns.rows(p, table, heads)
 
 
 def particles(p: ScenePlan, folder: Path) -> pd.DataFrame:
     """Every sphere of every frame, SI. Raises EngineError for an incomplete frame."""
-    found = _frames(p, folder, "particles", p.frames, [*columns.PARTICLES, *(columns.SPINS if p.model.spins else [])])
+    table = _frames(p, folder, "particles", p.frames, [*columns.PARTICLES, *(columns.SPINS if p.model.spins else [])])
     if p.layout.periodic:  # YADE does not put back what leaves its periodic cell
         for axis, low, high in zip("xy", p.layout.box[0:4:2], p.layout.box[1:4:2], strict=True):
-            found[axis] = (found[axis] - low) % (high - low) + low
-    return columns.whole(p, found, folder)
+            table[axis] = (table[axis] - low) % (high - low) + low
+    return columns.whole(p, table, folder)
 
 
 def read(p: ScenePlan, folder: Path, log: Path) -> dict[str, pd.DataFrame]:
     """The tables rows, particles and contacts of a run, SI. Raises EngineError for an incomplete frame."""
-    found = {"rows": rows(p, log)}
+    tables = {"rows": rows(p, log)}
     if p.frames:
-        found["particles"] = particles(p, folder)
+        tables["particles"] = particles(p, folder)
     if p.contacts:
-        every = _contacts(p, folder, found["particles"])
+        every = _contacts(p, folder, tables["particles"])
         if p.dents:
-            found["particles"]["plastic_work"] = _plastic_work(every, found["particles"])
-        found["contacts"] = every[every["overlap"] > 0].reset_index(drop=True)
-    return found
+            tables["particles"]["plastic_work"] = _plastic_work(every, tables["particles"])
+        tables["contacts"] = every[every["overlap"] > 0].reset_index(drop=True)
+    return tables
 
 
 def _contacts(p: ScenePlan, folder: Path, spheres: pd.DataFrame) -> pd.DataFrame:

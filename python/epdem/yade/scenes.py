@@ -6,8 +6,8 @@ from pathlib import Path
 
 import pandas as pd
 
+from ..base.processes import call
 from ..errors import CaseError
-from ..processes import call
 from ..scenes.engine import Report, Resumed
 from ..scenes.plan import ScenePlan
 from . import scene_deck

@@ -8,8 +8,8 @@ from types import SimpleNamespace
 import numpy as np
 import pandas as pd
 
-from ... import data_file
-from ... import rendering as decks
+from ...base import rendering as decks
+from ...lammps import data_file
 from ...laws.library import laws
 from ...liggghts import dump, launcher, log, stl
 from ...liggghts.properties import SOFT, elastic, per_pair, strength

@@ -6,7 +6,6 @@ Our laws need attributes that the elastic-plastic class has in YADE's default bu
 
 import json
 import shutil
-import subprocess
 import tempfile
 from collections.abc import Sequence
 from pathlib import Path
@@ -14,7 +13,8 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
-from ... import rendering as decks
+from ...base import rendering as decks
+from ...base.processes import call, last_words
 from ...errors import EngineError
 from ...yade.launcher import environment
 from .cases import build
@@ -30,22 +30,14 @@ def available() -> bool:
 
 
 def rebound(program: str, folder: Path, script: str) -> np.ndarray:
-    """e_n of every phase from one program, shape (phases,). Raises EngineError with the end of its output."""
+    """e_n of every phase from one program, shape (phases,). Raises EngineError with the end of its log."""
     path = folder / "roundoff.py"
     path.write_text(script, encoding="utf-8")
-    done = subprocess.run(
-        [program, "-n", "-x", path.name],
-        cwd=folder,
-        capture_output=True,
-        text=True,
-        timeout=120,
-        stdin=subprocess.DEVNULL,
-        env=environment(),
-        check=False,
-    )
-    lines = [line for line in done.stdout.splitlines() if line.startswith("RESULT ")]
+    log = folder / "out.roundoff"
+    call([program, "-n", "-x", path.name], folder, log=log.name, seconds=120, env=environment())
+    lines = [line for line in log.read_text(errors="replace").splitlines() if line.startswith("RESULT ")]
     if not lines:
-        raise EngineError(f"{program}: no result; {(done.stdout + done.stderr).strip()[-200:]}")
+        raise EngineError(f"{program}: no result; {log}: {last_words(log)}")
     return np.array(json.loads(lines[0].removeprefix("RESULT ")))
 
 

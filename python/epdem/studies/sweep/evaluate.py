@@ -4,20 +4,21 @@
 import contextlib
 import errno
 import shutil
+from functools import cache
 from pathlib import Path
 from typing import Any
 
 import pandas as pd
 
 from ...case import impact, scene
+from ...case.toml import named
 from ...engines import engine, scene_engine
 from ...errors import CaseError, EngineError, EpdemError
-from ...impacts.comparison import compare
-from ...impacts.engine import refuse
+from ...impacts.engine import Engine, refuse
 from ...impacts.experiment import experiment
 from ...impacts.plan import plan
 from ...impacts.prediction import predict
-from ...impacts.run import run_plan
+from ...impacts.run import run_and_compare
 from ...scenes.run import run as run_scene
 from . import folder as store
 from .folder import Sweep
@@ -34,7 +35,7 @@ def check(sweep: Sweep, number: int) -> CaseError | None:
             scene.parse(data, place)
             return None
         case = impact.parse(data, place)
-        with impact.named(place):
+        with named(place):
             for law in sweep.laws or (None,):
                 experiment(case, law)
     except CaseError as error:
@@ -65,21 +66,25 @@ def evaluate(sweep: Sweep, folder: Path, number: int, *, resume: bool = True) ->
     return ""
 
 
+@cache
+def _tools(names: tuple[str, ...]) -> tuple[Engine, ...]:
+    """Engines of impacts; a process that works at many points starts each of them once."""
+    return tuple(engine(name, stay=True) for name in names)
+
+
 def _impacts(sweep: Sweep, number: int, place: Path) -> dict[str, list[Any]]:
     """The comparison with theory, a row for every speed, engine and law."""
     case, tables = impact.parse(sweep.data(number), store.CASE), []
-    tools = [engine(name) for name in sweep.engines]
     for law in sweep.laws or (None,):
         x = experiment(case, law)
         prediction = predict(x)
         p = plan(x, prediction)
-        for tool in tools:
+        for tool in _tools(sweep.engines):
             refuse(tool, p, prediction, ranks=sweep.ranks)
             at = place / x.law.name / tool.name if tool.can.deck else place
-            stage = run_plan(p, tool, at, ranks=sweep.ranks)
-            tables.append(compare(tool.name, x.law.name, stage.impacts, prediction, x.check))
-    found = tables[0] if len(tables) == 1 else pd.concat(tables, ignore_index=True)
-    return {str(name): found[name].tolist() for name in found.columns}
+            tables.append(run_and_compare(p, prediction, tool, at, ranks=sweep.ranks)[0])
+    table = tables[0] if len(tables) == 1 else pd.concat(tables, ignore_index=True)
+    return {str(name): table[name].tolist() for name in table.columns}
 
 
 def _scene(sweep: Sweep, place: Path, *, resume: bool) -> dict[str, list[Any]]:
@@ -87,8 +92,8 @@ def _scene(sweep: Sweep, place: Path, *, resume: bool) -> dict[str, list[Any]]:
     tool = scene_engine(sweep.engines[0])
 
     def once(go_on: bool) -> dict[str, list[Any]]:
-        found = run_scene(place / store.CASE, tool, out=place, ranks=sweep.ranks, resume=go_on, force=True)
-        row = {"engine": tool.name, **numbers_of(found.results), "passed": found.passed}
+        outcome = run_scene(place / store.CASE, tool, out=place, ranks=sweep.ranks, resume=go_on, force=True)
+        row = {"engine": tool.name, **numbers_of(outcome.results), "passed": outcome.passed}
         return {name: [value] for name, value in row.items()}
 
     if resume and tool.can.restarts and any(place.glob("restart.*.bin")) and not (place / "results.h5").exists():

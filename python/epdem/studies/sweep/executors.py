@@ -4,9 +4,9 @@
 from collections.abc import Sequence
 from pathlib import Path
 
+from ...base.files import atomic
+from ...base.folders import claim, refuse_existing
 from ...errors import CaseError
-from ...files import atomic
-from ...folders import claim, refuse_existing
 from . import folder as store
 from . import run, slurm
 from .folder import Sweep
@@ -28,8 +28,8 @@ def execute(
     if executor == "slurm":
         if jobs is not None:
             raise CaseError("--jobs is for --executor local; give the jobs of a cluster by --slurm array_parallelism=N")
-        found = slurm.parameters(given)
-        return slurm.run(sweep, folder, found, retry_failed=retry_failed, force=force, report=report)
+        parameters = slurm.parameters(given)
+        return slurm.run(sweep, folder, parameters, retry_failed=retry_failed, force=force, report=report)
     if executor != "local":
         raise CaseError(f"--executor {executor!r} does not exist; there are local, slurm")
     if given:

@@ -26,20 +26,20 @@ class Key:
 
 def keys_of(data: dict[str, Any]) -> dict[str, Key]:
     """Every key that the case or scene `data` (TOML tables) has or can have, by its dotted name."""
-    found: dict[str, Key] = {}
+    keys: dict[str, Key] = {}
     for place, key in _walk(SceneCase if is_scene(data) else Case, (), data, data):
         name = ".".join(place)
-        if name not in found or found[name] == Key():
-            found[name] = key
-    return found
+        if name not in keys or keys[name] == Key():
+            keys[name] = key
+    return keys
 
 
 def _walk(kind: Any, place: tuple[str, ...], data: Any, case: dict[str, Any]) -> Iterator[tuple[tuple[str, ...], Key]]:
     origin, arguments = get_origin(kind), get_args(kind)
     if origin is Annotated:
-        for mark in arguments[1:]:
-            if isinstance(mark, Quantity):
-                yield place, Key(unit=mark.si)
+        for quantity in arguments[1:]:
+            if isinstance(quantity, Quantity):
+                yield place, Key(unit=quantity.si)
                 return
         yield from _walk(arguments[0], place, data, case)
     elif origin in (Union, types.UnionType):
@@ -49,8 +49,8 @@ def _walk(kind: Any, place: tuple[str, ...], data: Any, case: dict[str, Any]) ->
         for name in data if isinstance(data, dict) else ():
             yield from _walk(arguments[1], (*place, name), data[name], case)
     elif origin is list:
-        marks = [m for m in get_args(arguments[0])[1:] if isinstance(m, Quantity)]
-        yield place, Key(unit=marks[0].si if marks else None)
+        quantities = [m for m in get_args(arguments[0])[1:] if isinstance(m, Quantity)]
+        yield place, Key(unit=quantities[0].si if quantities else None)
         for n, entry in enumerate(data if isinstance(data, list) else ()):
             yield from _walk(arguments[0], (*place, str(n)), entry, case)
     elif isinstance(kind, type) and issubclass(kind, BaseModel):
@@ -66,17 +66,17 @@ def _fields(
     if kind and get_origin(kind.annotation) is Literal and data.get("kind") not in get_args(kind.annotation):
         return  # another kind of scene
     for name, field in model.model_fields.items():
-        mark = next((m for m in field.metadata if isinstance(m, Quantity)), None)
+        quantity = next((m for m in field.metadata if isinstance(m, Quantity)), None)
         key = field.alias or name
-        if mark:
-            yield (*place, key), Key(unit=mark.si)
+        if quantity:
+            yield (*place, key), Key(unit=quantity.si)
         else:
             yield from _walk(field.annotation, (*place, key), data.get(key), case)
     if issubclass(model, Material):
         yield (*place, "from"), Key()
     if issubclass(model, LawChoice | SceneMaterial):
-        for parameter, found in _of_law(case, ratio=issubclass(model, LawChoice)):
-            yield (*place, parameter), found
+        for parameter, entry in _of_law(case, ratio=issubclass(model, LawChoice)):
+            yield (*place, parameter), entry
 
 
 def _of_law(case: dict[str, Any], *, ratio: bool) -> Iterator[tuple[str, Key]]:

@@ -14,16 +14,16 @@ def numbers_of(results: SceneResults) -> dict[str, float]:
 
     A check has the name of what it measures, without the numbers in it: "mass flow / Beverloo" is mass_flow.
     """
-    rows, found = results.tables["rows"], {}
+    rows, numbers = results.tables["rows"], {}
     tail = rows[rows["step"] > 0.8 * rows["step"].max()]
     for name in rows.columns.drop(["step", "time"]):
-        found[f"{name}_last"] = float(rows[name].iloc[-1])
-        found[f"{name}_max"] = float(rows[name].max())
-        found[f"{name}_mean"] = float(tail[name].mean())
+        numbers[f"{name}_last"] = float(rows[name].iloc[-1])
+        numbers[f"{name}_max"] = float(rows[name].max())
+        numbers[f"{name}_mean"] = float(tail[name].mean())
     for row in results.tables["checks"].to_dict("records"):
-        said = re.split(r" / |:", row["check"])[0]
-        found["_".join(re.findall(r"[a-z]+", said.lower()))] = float(row["value"])
-    return found
+        quantity = re.split(r" / |:", row["check"])[0]
+        numbers["_".join(re.findall(r"[a-z]+", quantity.lower()))] = float(row["value"])
+    return numbers
 
 
 def unit(name: str) -> str | None:

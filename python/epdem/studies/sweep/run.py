@@ -1,18 +1,19 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """A sweep from its command to its table: points, checks, what is missing, and who runs it."""
 
+import tomllib
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
+from typing import TypedDict, Unpack
 
 import pandas as pd
 
-from ...case.impact import read_toml
+from ...base.folders import claim
 from ...case.scene import is_scene
 from ...engines import engine, scene_engine
 from ...errors import CaseError, EngineError
-from ...folders import claim
 from . import folder as store
 from . import local, points, table
 from .evaluate import check, evaluate
@@ -43,8 +44,24 @@ class SweepOutcome:
         return bool((self.table["status"] == store.DONE).all() and self.table["passed"].all())
 
 
-def plan(
-    case: Path,
+class Options(TypedDict, total=False):
+    """How `plan_text` makes its points, and what runs them."""
+
+    engines: Sequence[str]
+    laws: Sequence[str]
+    ranks: int
+    table: Path | None
+    latin_hypercube: int | None
+    seed: int
+
+
+def plan(case: Path, settings: Settings, **options: Unpack[Options]) -> Sweep:
+    """`plan_text` of the case in a file."""
+    return plan_text(store.base_text(case), settings, **options)
+
+
+def plan_text(
+    text: str,
     settings: Settings,
     *,
     engines: Sequence[str] = (),
@@ -54,8 +71,8 @@ def plan(
     latin_hypercube: int | None = None,
     seed: int = 1,
 ) -> Sweep:
-    """A sweep with all its points; their cases are not yet checked. Raises CaseError, EngineError."""
-    data = read_toml(case)
+    """A sweep of a case (TOML text) with all its points, not yet checked. Raises CaseError, EngineError."""
+    data = tomllib.loads(text)
     keys, scene = keys_of(data), is_scene(data)
     axes = points.axes(settings, keys)
     rows: list[Point] = points.table(table, keys) if table else [{}]
@@ -70,8 +87,8 @@ def plan(
     if scene and (len(chosen) > 1 or laws):
         raise CaseError("a scene has its own law and runs on one engine; leave out --law, or sweep law.name")
     return Sweep(
-        name=str(data.get("case", {}).get("name", case.stem)),
-        case=store.base_text(case),
+        name=str(data.get("case", {}).get("name", "case")),
+        case=text,
         points=tuple(row | point for row in rows for point in many),
         engines=chosen,
         laws=tuple(dict.fromkeys(laws)),

@@ -15,9 +15,9 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
+from ...base.files import atomic
+from ...base.folders import claim
 from ...errors import CaseError, EngineError
-from ...files import atomic
-from ...folders import claim
 from . import folder as store
 from . import local, table
 from .evaluate import evaluate
@@ -35,7 +35,7 @@ KEPT = ("array", "output", "error", "signal", "open-mode", "job-name")
 
 def parameters(texts: Sequence[str]) -> Parameters:
     """`--slurm`: "partition=long,time=2:00:00", or a file with lines "#SBATCH --partition=long". Raises CaseError."""
-    found: Parameters = {}
+    values: Parameters = {}
     for text in texts:
         if "=" not in text and Path(text).is_file():
             lines = Path(text).read_text(encoding="utf-8").splitlines()
@@ -47,8 +47,8 @@ def parameters(texts: Sequence[str]) -> Parameters:
             if not name or name in KEPT:
                 why = "epdem sets it itself; leave it out" if name else "write NAME=VALUE, as partition=long"
                 raise CaseError(f"--slurm {pair!r}: {why}")
-            found[name] = value
-    return found
+            values[name] = value
+    return values
 
 
 def work(folder: Path, numbers: Sequence[int]) -> None:
@@ -96,8 +96,8 @@ def _submit(sweep: Sweep, folder: Path, numbers: list[int], given: Parameters) -
         executor.update_parameters(job_name=sweep.name, additional_parameters=extra, array_parallelism=TASKS)
         jobs = executor.map_array(Task(), [folder] * tasks, shares)
     except (RuntimeError, OSError, submitit.core.utils.FailedJobError) as error:
-        words = " ".join(str(error).split())
-        raise EngineError(f"--executor slurm: the jobs were not taken: {words}") from None
+        reason = " ".join(str(error).split())
+        raise EngineError(f"--executor slurm: the jobs were not taken: {reason}") from None
     return {str(job.job_id): points for job, points in zip(jobs, shares, strict=True)}
 
 
@@ -117,8 +117,8 @@ def ended(job: str) -> str | None:
 
     Slurm keeps nothing of a task that is cancelled before it begins.
     """
-    said = subprocess.run(["scontrol", "show", "job", "-o", job], capture_output=True, text=True).stdout
-    states = [word.partition("=")[2] for word in said.split() if word.startswith("JobState=")]
+    answer = subprocess.run(["scontrol", "show", "job", "-o", job], capture_output=True, text=True).stdout
+    states = [word.partition("=")[2] for word in answer.split() if word.startswith("JobState=")]
     if states and states[0] not in ENDED:
         return None
     return f"its job {job} ended as {states[0]}" if states else f"its job {job} was cancelled"

@@ -5,7 +5,7 @@ import fcntl
 from pathlib import Path
 from typing import Any
 
-from ...folders import LOCK
+from ...base.folders import LOCK
 from . import folder as store
 from . import slurm
 
@@ -13,28 +13,28 @@ from . import slurm
 def status(folder: Path) -> dict[str, Any]:
     """How far a sweep is: counts by state, times [s], reasons of failed points, and whether it is running now."""
     sweep = store.read(folder)
-    found = store.records(sweep, folder)
+    records = store.records(sweep, folder)
     here = running(folder)
-    jobs = {about["job"] for about in found if about.get("job") and about["state"] == store.RUNNING}
+    jobs = {about["job"] for about in records if about.get("job") and about["state"] == store.RUNNING}
     there = (slurm.alive(list(jobs)) or set()) if jobs else set()
 
     def state(about: dict[str, Any]) -> str:
         gone = about["state"] == store.RUNNING and not (about["job"] in there if about["job"] else here)
         return store.WAITING if gone else str(about["state"])
 
-    states = [state(about) for about in found]
-    seconds = [a["seconds"] for a in found if "seconds" in a]
+    states = [state(about) for about in records]
+    seconds = [a["seconds"] for a in records if "seconds" in a]
     counts = {state: states.count(state) for state in store.STATES}
     failed = [
         {"point": n, "folder": str(store.of(sweep, folder, n)), "reason": a["reason"]}
-        for n, a in enumerate(found, start=1)
+        for n, a in enumerate(records, start=1)
         if a["state"] == store.FAILED
     ]
     left = counts[store.WAITING] + counts[store.RUNNING]
     mean = sum(seconds) / len(seconds) if seconds else float("nan")
     return {
         "case": sweep.name,
-        "points": len(found),
+        "points": len(records),
         **counts,
         "seconds": sum(seconds),
         "longest": max(seconds, default=float("nan")),

@@ -6,10 +6,10 @@ from typing import Any
 
 import pandas as pd
 
+from ...base.tables import Hdf5, opened, read_table, write_csv, write_table
 from ...case.units import to_si
 from ...errors import CaseError
 from ...impacts.comparison import UNITS
-from ...tables import Hdf5, opened, read_table, write_csv, write_table
 from . import folder as store
 from . import numbers
 from .folder import Sweep
@@ -36,42 +36,42 @@ def collect(sweep: Sweep, folder: Path) -> pd.DataFrame:
             filled.extend([None] * (count - len(filled)))
             filled.extend(values)
         count += size
-    found = pd.DataFrame({name: values + [None] * (count - len(values)) for name, values in columns.items()})
+    table = pd.DataFrame({name: values + [None] * (count - len(values)) for name, values in columns.items()})
     for name in ("engine", "law"):
-        if name in found:
-            found[name] = found[name].fillna("")
-    if "passed" in found:
-        found["passed"] = found["passed"] == True  # noqa: E712  (None has not passed)
-    found = found.infer_objects()
+        if name in table:
+            table[name] = table[name].fillna("")
+    if "passed" in table:
+        table["passed"] = table["passed"] == True  # noqa: E712  (None has not passed)
+    table = table.infer_objects()
     units = {name: unit for name, unit in sweep.units.items() if unit and unit != "1"}
-    units |= {name: u for name in found.columns if (u := numbers.unit(name) if sweep.scene else UNITS.get(name))}
-    theory = {f"{name}_theory": u for name, u in units.items() if f"{name}_theory" in found}
-    found.attrs["units"] = units | theory
-    return found
+    units |= {name: u for name in table.columns if (u := numbers.unit(name) if sweep.scene else UNITS.get(name))}
+    theory = {f"{name}_theory": u for name, u in units.items() if f"{name}_theory" in table}
+    table.attrs["units"] = units | theory
+    return table
 
 
 def _keys(sweep: Sweep, number: int) -> dict[str, Any]:
     """The keys that a point sets: quantities in SI, numbers as they are, all else as text."""
-    found: dict[str, Any] = {}
+    keys: dict[str, Any] = {}
     for name, value in sweep.points[number - 1].items():
         unit = sweep.units[name]
         if unit and isinstance(value, str):
-            found[name] = to_si(value, unit)
+            keys[name] = to_si(value, unit)
         else:
-            found[name] = value if isinstance(value, int | float | str) else repr(value)
-    return found
+            keys[name] = value if isinstance(value, int | float | str) else repr(value)
+    return keys
 
 
 def write(sweep: Sweep, folder: Path) -> pd.DataFrame:
     """Collect the table of a sweep and store it as sweep.csv and sweep.h5."""
-    found = collect(sweep, folder)
+    table = collect(sweep, folder)
     stored = Hdf5()
     stored.file.attrs["case"] = sweep.name
     stored.file["case_text"] = sweep.case
-    write_table(stored.file.create_group("sweep"), found, found.attrs["units"])
+    write_table(stored.file.create_group("sweep"), table, table.attrs["units"])
     stored.save(folder / TABLE)
-    write_csv(folder / "sweep.csv", found)
-    return found
+    write_csv(folder / "sweep.csv", table)
+    return table
 
 
 def read_sweep(folder: Path | str) -> pd.DataFrame:
@@ -80,7 +80,7 @@ def read_sweep(folder: Path | str) -> pd.DataFrame:
     if not path.exists():
         raise CaseError(f"{path}: no table of a sweep; 'epdem sweep CASE --out {folder}' writes it")
     with opened(path, "a table of a sweep") as file:
-        found = read_table(file["sweep"])
-        units = {name: file["sweep"][name].attrs.get("unit") for name in found.columns}
-    found.attrs["units"] = {name: unit for name, unit in units.items() if unit}
-    return found
+        table = read_table(file["sweep"])
+        units = {name: file["sweep"][name].attrs.get("unit") for name in table.columns}
+    table.attrs["units"] = {name: unit for name, unit in units.items() if unit}
+    return table

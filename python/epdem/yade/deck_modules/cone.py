@@ -15,9 +15,13 @@ from math import pi, sqrt
 # Shortest increment for a secant, relative to the overlap: below it F_next/F - 1 would be all round-off.
 SMALL = 1e-6
 
-
 # sigmaMax over Young's modulus: of a material that never yields (YADE refuses 1 and more); the most of one that does
 NEVER, STRONGEST = 0.4, 0.36
+
+
+def strongest(young_modulus: float, trigger_factor: float) -> float:
+    """The strength [Pa] from which on YADE's class does not take it, for a law that yields at this factor times it."""
+    return STRONGEST * young_modulus / trigger_factor
 
 
 def force(E_star: float, R: float, radius: float, growth: float, u: float) -> float:

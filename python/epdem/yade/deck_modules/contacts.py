@@ -112,9 +112,8 @@ class Contacts:
         like = 0.5 * young / (1.0 - poisson_ratio**2)  # E* of two bodies of this material
         trigger, alpha = cone.NEVER * young, 0.5
         if name and isfinite(value):
-            trigger = self.factor * value
-            if not trigger < cone.STRONGEST * young:
-                limit = cone.STRONGEST * young / self.factor
+            trigger, limit = self.factor * value, cone.strongest(young, self.factor)
+            if not value < limit:
                 raise ValueError(f"{label}: {name} = {value!r} Pa, YADE's law needs less than {limit:.4g} Pa")
             # tangent at first yield, so that a contact that yields before its first visit starts on course
             h = (0.5 * pi * trigger / like) ** 2
@@ -262,13 +261,13 @@ class Contacts:
         yields = phys.maxBendPl < FAR
         contact = Contact(interaction, self._law(phys.E, phys.maxBendPl if yields else inf), phys.initD)
         if new:
-            self._greet(contact)
+            self._start(contact)
         self._contacts.append(contact)
         self._interactions.append(interaction)
         self._births += contact.born
         self._add(contact)
 
-    def _greet(self, contact: Contact) -> None:
+    def _start(self, contact: Contact) -> None:
         """The first visit: the force of this step, and the course from here."""
         u = contact.geom.penetrationDepth
         computed, limit, reached = contact.computed(u), contact.yield_overlap, contact.reached()

@@ -87,11 +87,11 @@ class Recorder:
         x, v = self.positions()[:, 3 - len(self.low) :], self.velocities()
         inside = int(((x > self.low) & (x < self.high)).all(axis=1).sum())
         energy = float(0.5 * self.mass @ (v * v).sum(axis=1))
-        words = f" {O.iter} {inside} {energy:.10g}"
+        line = f" {O.iter} {inside} {energy:.10g}"
         if self.load:
-            words += f" {self._sum / self._samples:.10g}"
+            line += f" {self._sum / self._samples:.10g}"
             self._sum, self._samples = 0.0, 0
-        print(words, flush=True)
+        print(line, flush=True)
 
     def frame(self) -> None:
         """Write every sphere."""

@@ -13,7 +13,7 @@ import time
 from collections.abc import Callable
 from pathlib import Path
 
-from .errors import EngineError
+from ..errors import EngineError
 
 # A row of a table of numbers that begins with the number of a step: the progress of an engine.
 ROW = re.compile(rb"^ +(\d+)( +[-+.\deainf]+)+ *$")
@@ -62,7 +62,7 @@ def call(
                 stderr=subprocess.STDOUT,
                 env=env,
                 start_new_session=True,
-                preexec_fn=_end_with_parent,
+                preexec_fn=end_with_parent,
             )
         except OSError as error:
             raise EngineError(f"{command[0]}: cannot be started ({error})") from None
@@ -71,8 +71,10 @@ def call(
             while process.poll() is None:
                 left = end - time.monotonic()
                 if left <= 0.0:
-                    words = last_words(path)
-                    raise EngineError(f"{command[0]} did not end within {seconds:g} s and was stopped; {path}: {words}")
+                    end_of_log = last_words(path)
+                    raise EngineError(
+                        f"{command[0]} did not end within {seconds:g} s and was stopped; {path}: {end_of_log}"
+                    )
                 with contextlib.suppress(subprocess.TimeoutExpired):
                     process.wait(timeout=None if report is None and left == math.inf else min(left, POLL))
                 rows.read(reader.read() if report else b"")
@@ -83,10 +85,14 @@ def call(
             kill(process)
             raise
     if failed:
-        status = process.returncode
-        how = f"signal {-status}" if status < 0 else f"exit code {status}"
-        raise EngineError(f"{command[0]} failed ({how}); {path}: {last_words(path)}")
+        raise EngineError(failure(command[0], process.returncode, path))
     return time.monotonic() - start
+
+
+def failure(program: str, status: int, log: Path) -> str:
+    """How a program ended, from its exit status, and the end of its log."""
+    how = f"signal {-status}" if status < 0 else f"exit code {status}"
+    return f"{program} failed ({how}); {log}: {last_words(log)}"
 
 
 class _Rows:
@@ -124,7 +130,7 @@ def ask(command: list[str], env: dict[str, str] | None = None) -> str:
     return done.stdout + done.stderr
 
 
-def _end_with_parent() -> None:
+def end_with_parent() -> None:
     """In the child: SIGTERM when its parent dies, however it dies. mpirun then ends its ranks; SIGKILL would not."""
     _libc.prctl(_PR_SET_PDEATHSIG, signal.SIGTERM)
 

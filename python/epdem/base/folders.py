@@ -18,7 +18,7 @@ from fnmatch import fnmatch
 from pathlib import Path
 from typing import Any, TextIO
 
-from .errors import CaseError
+from ..errors import CaseError
 from .files import atomic, write_texts
 
 LOCK, MANIFEST = ".epdem.lock", ".epdem.json"

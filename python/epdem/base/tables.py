@@ -11,7 +11,7 @@ import h5py
 import numpy as np
 import pandas as pd
 
-from .errors import CaseError
+from ..errors import CaseError
 from .files import atomic
 
 SEAL = b"epdem blake2b "

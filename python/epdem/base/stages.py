@@ -6,7 +6,8 @@ from collections.abc import Iterable
 from functools import cache
 from pathlib import Path
 
-from . import __version__, paths
+from .. import __version__
+from . import paths
 
 
 def library_hash() -> str:
@@ -18,7 +19,7 @@ def library_hash() -> str:
 @cache
 def product_hash() -> str:
     """Hash of this product as installed: what is compiled, templates and Python sources."""
-    templates, sources = paths.templates().rglob("*.j2"), Path(__file__).parent.rglob("*.py")
+    templates, sources = paths.templates().rglob("*.j2"), Path(__file__).parents[1].rglob("*.py")
     return _hash(library_hash(), [*sorted(templates), *sorted(sources)])
 
 

@@ -1,0 +1,170 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// Mesh walls of our models. LIGGGHTS evaluates each sphere near a triangle, and resets the marks of all contacts that
+// the neighbour lists allow, in every step. Here its loop sees the spheres that can touch, and the marks of spheres
+// with contacts; forces and histories are computed by LIGGGHTS's own functions, so that not one bit differs.
+//
+// LIGGGHTS takes the addresses of these functions through the dynamic linker, which finds ours first; ours find
+// LIGGGHTS's as the next of the same name.
+#include <dlfcn.h>
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <cstring>
+#include <unordered_map>
+#include <vector>
+
+#include "fix_contact_history_mesh.h"
+#include "fix_neighlist_mesh.h"
+#include "wall.hpp"
+
+namespace epdem::liggghts::loop {
+namespace {
+
+using LAMMPS_NS::bigint;
+using LAMMPS_NS::FixContactHistoryMesh;
+using LAMMPS_NS::FixNeighlistMesh;
+using LAMMPS_NS::FixWallGran;
+using LAMMPS_NS::TriMesh;
+
+template <class... Words>
+using Function = void (*)(Words...);
+
+template <class... Words>
+Function<Words...> next(const char* name) {
+  return reinterpret_cast<Function<Words...>>(dlsym(RTLD_NEXT, name));
+}
+
+bool generic() {
+  const char* const asked = std::getenv("EPDEM_LOOP");
+  return asked && std::strcmp(asked, "generic") == 0;
+}
+
+struct Lists : FixNeighlistMesh {
+  static std::vector<LAMMPS_NS::TriangleNeighlist>& of(FixNeighlistMesh& mesh) { return mesh.*(&Lists::triangles); }
+};
+
+/// The planes that bound the room of a triangle: its own, and one through each edge, normals outward.
+struct Planes : TriMesh {
+  static void copy(double* to, const double* from) { std::copy_n(from, 3, to); }
+  static void of(TriMesh& mesh, int triangle, double (&point)[4][3], double (&normal)[4][3]) {
+    const auto norm = static_cast<double* (LAMMPS_NS::SurfaceMesh<3, 5>::*)(int)>(&Planes::surfaceNorm);
+    double** const edges = (mesh.*(&Planes::edgeNorm))(triangle);
+    copy(normal[0], (mesh.*norm)(triangle));
+    mesh.node(triangle, 0, point[0]);
+    for (int k = 0; k < 3; ++k) {
+      copy(normal[k + 1], edges[k]);
+      mesh.node(triangle, k, point[k + 1]);
+    }
+  }
+};
+
+/// The neighbour lists of meshes, reduced to spheres that may touch for as long as this object lives.
+class Near {
+ public:
+  ~Near() {
+    for (const auto& [list, kept] : swapped_) list->swap(spare()[kept]);
+  }
+
+  void reduce(TriMesh& mesh, FixNeighlistMesh& lists, const LAMMPS_NS::Atom& atom) {
+    std::vector<LAMMPS_NS::TriangleNeighlist>& triangles = Lists::of(lists);
+    const int count = std::min<int>(mesh.sizeLocal() + mesh.sizeGhost(), triangles.size());
+    if (atom.nlocal == 0) return;
+    const double *const x = atom.x[0], *const radius = atom.radius;
+    const int nlocal = atom.nlocal;
+    for (int t = 0; t < count; ++t) {
+      std::vector<int>& all = triangles[t].contacts;
+      if (all.empty()) continue;
+      if (used_ == spare().size()) spare().emplace_back();
+      std::vector<int>& near = spare()[used_];
+      near.resize(all.size());
+      int found = 0;
+      double point[4][3], normal[4][3];
+      Planes::of(mesh, t, point, normal);
+      for (const int i : all) {
+        const double reach = radius[i] * (1.0 + 1e-6);  // far above round-off
+        const double* const centre = x + 3 * i;
+        bool may = (i < nlocal) & (std::fabs(along(normal[0], centre, point[0])) <= reach);  // no branch
+        for (int k = 1; k < 4; ++k) may &= along(normal[k], centre, point[k]) <= reach;
+        near[found] = i;
+        found += may;
+      }
+      near.resize(found);
+      all.swap(near);
+      swapped_.push_back({&all, used_++});
+    }
+  }
+
+ private:
+  struct Swapped {
+    std::vector<int>* list;
+    std::size_t kept;
+  };
+
+  static double along(const double* n, const double* a, const double* b) {
+    return n[0] * (a[0] - b[0]) + n[1] * (a[1] - b[1]) + n[2] * (a[2] - b[2]);
+  }
+  static std::vector<std::vector<int>>& spare() {
+    static std::vector<std::vector<int>> lists;
+    return lists;
+  }
+
+  std::vector<Swapped> swapped_;
+  std::size_t used_ = 0;
+};
+
+bool ours = false;                                                // whether a mesh wall of our models is at work
+std::unordered_map<const FixContactHistoryMesh*, bigint> marked;  // the last step of a mesh in which one was
+
+/// Whether all contacts but those of spheres with contacts are unmarked: they were in the step before, and no list was
+/// made since.
+bool settled(const FixContactHistoryMesh* contacts, const LAMMPS_NS::Update& update, const LAMMPS_NS::Neighbor& lists) {
+  if (!ours) return false;
+  const auto found = marked.find(contacts);
+  return found != marked.end() && found->second == update.ntimestep - 1 && lists.lastcall != update.ntimestep;
+}
+
+}  // namespace
+}  // namespace epdem::liggghts::loop
+
+namespace LAMMPS_NS {
+
+namespace loop = epdem::liggghts::loop;
+
+[[gnu::visibility("default")]] void FixWallGran::post_force_mesh(int vflag) {
+  static const auto original = loop::next<FixWallGran*, int>("_ZN9LAMMPS_NS11FixWallGran15post_force_meshEi");
+  static const bool generic = loop::generic();
+  if (generic || !dynamic_cast<loop::OurWall*>(impl) || neighbor->contactDistanceFactor != 1.0 || !atom->sphere_flag ||
+      atom->shapetype_flag)
+    return original(this, vflag);
+  loop::Near near;
+  for (int m = 0; m < n_FixMesh_; ++m) {
+    TriMesh& mesh = *FixMesh_list_[m]->triMesh();
+    if (!mesh.isDeforming() && !mesh.isScaling()) near.reduce(mesh, *FixMesh_list_[m]->meshNeighlist(), *atom);
+  }
+  loop::ours = true;
+  original(this, vflag);
+  loop::ours = false;
+}
+
+[[gnu::visibility("default")]] void FixContactHistoryMesh::markAllContacts() {
+  static const auto original =
+      loop::next<FixContactHistoryMesh*>("_ZN9LAMMPS_NS21FixContactHistoryMesh15markAllContactsEv");
+  if (!loop::settled(this, *update, *neighbor)) return original(this);
+  for (int i = 0; i < atom->nlocal; ++i)
+    if (npartner_[i] > 0) std::fill_n(keepflag_[i], nneighs(i), false);
+}
+
+[[gnu::visibility("default")]] void FixContactHistoryMesh::cleanUpContacts() {
+  static const auto original =
+      loop::next<FixContactHistoryMesh*>("_ZN9LAMMPS_NS21FixContactHistoryMesh15cleanUpContactsEv");
+  if (!loop::settled(this, *update, *neighbor)) {
+    original(this);
+  } else {
+    for (int i = 0; i < atom->nlocal; ++i)
+      if (npartner_[i] > 0) cleanUpContacts(i, i + 1);
+  }
+  if (loop::ours) loop::marked[this] = update->ntimestep;
+}
+
+}  // namespace LAMMPS_NS

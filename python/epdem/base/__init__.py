@@ -1,0 +1,2 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""What every room uses, free of the domain: files, folders, processes, templates, tables, consoles."""

@@ -1,0 +1,205 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Which neighbour skin and which cut of the room among ranks a scene is fastest with: trials, and lines for its case.
+
+A trial runs the scene and changes the skin every few hundred steps, forth and back through the candidates: each of them
+sees every part of the scene, and what else the machine does hits all of them. The seconds are LIGGGHTS's own of its
+loop, without output and set-up.
+"""
+
+import contextlib
+import math
+import re
+import tempfile
+import time
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+import tomlkit
+
+from ..base.files import atomic, write_texts
+from ..case.scene import Output, SceneCase, load
+from ..case.toml import named
+from ..engines import scene_engine
+from ..errors import EngineError
+from ..liggghts import launcher, log, scene_deck
+from ..scenes.engine import check_abilities
+from ..scenes.plan import ScenePlan, plan
+
+SHARES = (0.25, 0.5, 0.75, 1.0, 1.5)  # of the smallest radius: skins that are tried
+TURNS, SHORTEST, LONGEST = 10, 200, 2000  # turns through all skins in a scene, and steps with one of them
+WORTH = 0.02  # of the time: nobody changes a case for less
+CERTAIN = 3.0  # a saving counts if it exceeds so many times its standard error
+_RUN = re.compile(r"^run (\d+) upto.*$", re.MULTILINE)
+Progress = Callable[[str], None]
+Loops = list[tuple[float, int]]  # (seconds, steps) of pieces of a run
+
+
+@dataclass(frozen=True)
+class Trial:
+    """A choice, and the seconds per step that it took in each turn; value: a skin [m] or the axes of a cut."""
+
+    name: str
+    value: float | str
+    turns: tuple[float, ...]
+
+    @property
+    def seconds(self) -> float:
+        """Seconds per step, the mean over all turns."""
+        return float(np.mean(self.turns))
+
+    def saves(self, before: "Trial") -> tuple[float, float]:
+        """(share of the time that it saves over another choice, standard error), turn by turn."""
+        saved = np.subtract(before.turns, self.turns) / before.seconds
+        return float(saved.mean()), float(saved.std(ddof=1) / math.sqrt(len(saved)))
+
+
+@dataclass(frozen=True)
+class Tuned:
+    """All trials, the present choice first; steps: those that each skin took, of scene_steps in all."""
+
+    skins: tuple[Trial, ...]
+    cuts: tuple[Trial, ...]
+    steps: int
+    scene_steps: int
+    ranks: int
+
+    @property
+    def choices(self) -> dict[str, tuple[str, str]]:
+        """Key of [numerics] -> (value, reason) of what saves time for certain."""
+        choices = {}
+        if best := _better(self.skins):
+            choices["skin"] = f"{float(best.value) * 1e3:.4g} mm", self._reason(best, self.skins[0])
+        if best := _better(self.cuts):
+            choices["cut"] = str(best.value), self._reason(best, self.cuts[0])
+        return choices
+
+    @property
+    def lines(self) -> list[str]:
+        """The choices as lines of a case file, each with its reason."""
+        return [f'{key} = "{value}" # {reason}' for key, (value, reason) in self.choices.items()]
+
+    def _reason(self, best: Trial, before: Trial) -> str:
+        ranks = "1 rank" if self.ranks == 1 else f"{self.ranks} ranks"
+        return f"epdem tune: {best.saves(before)[0]:.0%} less time than {before.name}, {self.steps} steps, {ranks}"
+
+
+def _better(trials: tuple[Trial, ...]) -> Trial | None:
+    """The fastest, if it saves more than WORTH over the first, and more than chance."""
+    best = min(trials, key=lambda t: t.seconds, default=None)
+    if best is None or best is trials[0]:
+        return None
+    saved, error = best.saves(trials[0])
+    return best if saved > max(WORTH, CERTAIN * error) else None
+
+
+class _Enough(Exception):
+    """The time of a trial is over."""
+
+
+def _silent(case: SceneCase) -> ScenePlan:
+    """The plan of a scene without output but rows, which report its progress."""
+    return plan(case.model_copy(update={"output": Output(rows=100, particles=0, energy=case.output.energy)}))
+
+
+def _pieces(texts: dict[str, str], skins: list[float], steps: int, length: int) -> tuple[dict[str, str], list[float]]:
+    """The deck with its runs cut into pieces of one skin each, and the skins in that order."""
+    order: list[float] = []
+    begin = 0
+
+    def cut(match: re.Match[str]) -> str:
+        nonlocal begin
+        end, lines = min(int(match[1]), steps), []
+        while begin < end:
+            turn, place = divmod(len(order), len(skins))
+            order.append(skins[place] if turn % 2 == 0 else skins[-1 - place])
+            begin = min(end, begin + length)
+            lines += [f"neighbor {order[-1]!r} bin", f"run {begin} upto"]
+        return "\n".join(lines)
+
+    return texts | {"in.scene": _RUN.sub(cut, texts["in.scene"])}, order
+
+
+def _run(texts: dict[str, str], ranks: int, seconds: float) -> Loops:
+    """The pieces that ended within `seconds`."""
+    end = time.monotonic() + seconds
+
+    def watch(step: int) -> None:
+        if time.monotonic() > end:
+            raise _Enough
+
+    with tempfile.TemporaryDirectory(prefix="epdem_tune_") as name:
+        folder = Path(name)
+        write_texts(folder, texts)
+        with contextlib.suppress(_Enough):
+            launcher.run("in.scene", folder, ranks=ranks, report=watch)
+        return log.loops(folder / launcher.OUT)
+
+
+def _of_skins(order: list[float], loops: Loops, skins: list[float]) -> tuple[list[Trial], int]:
+    """A trial of each skin over whole turns, and the steps that each skin took."""
+    turns = min(len(loops), len(order)) // len(skins)
+    if turns < 2:
+        raise EngineError("the trial ended before each skin had two turns; give it more time (--seconds)")
+    taken: dict[float, list[tuple[float, int]]] = {skin: [] for skin in skins}
+    for skin, piece in list(zip(order, loops, strict=False))[: turns * len(skins)]:
+        taken[skin].append(piece)
+    trials = [Trial(f"skin {skin * 1e3:.3g} mm", skin, tuple(t / n for t, n in its)) for skin, its in taken.items()]
+    return trials, sum(n for _, n in taken[skins[0]])
+
+
+def _of_cuts(runs: dict[str, Loops]) -> list[Trial]:
+    """A trial of each cut over the pieces that all of them have."""
+    if (pieces := min(map(len, runs.values()))) < 2:
+        raise EngineError("a trial ended before its second piece; give it more time (--seconds)")
+    return [Trial(_axes(cut), cut, tuple(t / n for t, n in loops[:pieces])) for cut, loops in runs.items()]
+
+
+def _axes(cut: str) -> str:
+    return f"ranks along {cut or 'axes that LIGGGHTS chooses'}"
+
+
+def _cuts(ranks: int) -> list[str]:
+    """The ways to cut a room for so many ranks that are worth a trial."""
+    several = any(ranks % d == 0 for d in range(2, math.isqrt(ranks) + 1))
+    return ["x", "y", "z", *(["xy", "xz", "yz"] if several else []), *(["xyz"] if several and ranks >= 8 else [])]
+
+
+def tune(path: Path, *, ranks: int = 1, seconds: float = 60.0, progress: Progress = lambda text: None) -> Tuned:
+    """Trials of the scene in `path`, each of at most `seconds`. Raises CaseError, EngineError."""
+    with named(path):
+        case = load(path)
+        p = _silent(case)
+        texts = scene_deck.files(p)
+    check_abilities(scene_engine("liggghts"), p, ranks=ranks, resume=False)
+    present = scene_deck.deck(p).skin
+    others = sorted({float(f"{share * p.smallest:.2e}") for share in SHARES} - {present})
+    skins = [present, *others]
+    length = max(SHORTEST, min(LONGEST, p.steps // (TURNS * len(skins))))
+    progress(f"{len(skins)} skins")
+    deck, order = _pieces(texts, skins, p.steps, length)
+    trials, steps = _of_skins(order, _run(deck, ranks, seconds), skins)
+    result = Tuned(tuple(trials), (), steps, p.steps, ranks)
+    if ranks == 1:
+        return result
+    best = float((_better(result.skins) or trials[0]).value)
+    runs: dict[str, Loops] = {}
+    for cut in dict.fromkeys([case.numerics.cut or "", *_cuts(ranks)]):
+        progress(_axes(cut))
+        numerics = case.numerics.model_copy(update={"cut": cut or None})
+        texts = scene_deck.files(_silent(case.model_copy(update={"numerics": numerics})))
+        runs[cut] = _run(_pieces(texts, [best], steps * len(skins), length)[0], ranks, seconds)
+    return replace(result, cuts=tuple(_of_cuts(runs)))
+
+
+def write(path: Path, result: Tuned) -> None:
+    """Put the choices into [numerics] of the case file; its other comments and its order stay."""
+    if not result.choices:
+        return
+    document = tomlkit.parse(path.read_text(encoding="utf-8-sig"))
+    numerics = document.setdefault("numerics", tomlkit.table())
+    for key, (value, reason) in result.choices.items():
+        numerics[key] = tomlkit.item(value).comment(reason)
+    with atomic(path) as temporary:
+        temporary.write_text(document.as_string(), encoding="utf-8")

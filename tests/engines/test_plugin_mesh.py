@@ -1,0 +1,104 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Mesh walls of our models: the loop that skips what cannot touch, and LIGGGHTS's own, do not differ in one bit."""
+
+import numpy as np
+import pytest
+from plugin_decks import Bodies, contact, good, head, materials, per_pair
+
+from epdem.liggghts import stl
+
+pytestmark = pytest.mark.liggghts
+
+HALF = 0.02  # of the edge of a box of triangles [m]
+ROOM = ((-0.05, 0.05),) * 3
+COLUMNS = "id x y z vx vy vz fx fy fz omegax omegay omegaz tqx tqy tqz"
+LOCAL = " ".join(f"c_w[{k}]" for k in range(1, 7))
+MOVES = {
+    "at rest": "",
+    "moving": "fix turn all move/mesh mesh plate rotate origin 0 0 0 axis 0 1 0 period 0.01\n",
+    "shaken": "fix shake all move/mesh mesh plate wiggle amplitude 0.002 0 0.001 period 0.002\n",
+}
+
+
+def box(cells=3):
+    """Triangles of a cube, normals inward, each face cut into 2 cells^2 of them."""
+    at = np.linspace(-HALF, HALF, cells + 1)
+    found = []
+    for axis in range(3):
+        for side in (-HALF, HALF):
+            for u in range(cells):
+                for v in range(cells):
+                    corners = [(at[u], at[v]), (at[u + 1], at[v]), (at[u + 1], at[v + 1]), (at[u], at[v + 1])]
+                    points = [np.insert(c, axis, side) for c in corners]
+                    found += [[points[0], points[1], points[2]], [points[0], points[2], points[3]]]
+    return stl.text("plate", np.array(found))
+
+
+def bodies():
+    """125 spheres of three types in the box, the outer ones next to its walls, thrown at random."""
+    rng = np.random.default_rng(7)
+    grid = np.stack(np.meshgrid(*[np.arange(5)] * 3, indexing="ij"), -1).reshape(-1, 3)
+    radius = rng.uniform(1.5e-3, 2.5e-3, len(grid))
+    x = (grid - 2) * 8e-3 + rng.uniform(-1e-3, 1e-3, grid.shape)
+    x = np.clip(x, radius[:, None] - HALF, HALF - radius[:, None])
+    v = rng.uniform(-30, 30, x.shape)
+    return Bodies(rng.integers(1, 4, len(x)), radius, x, v, rng.uniform(-500, 500, x.shape))
+
+
+def deck(law, tangential, move, *, ranks=1, steps=3000, stress=False, restart=None, end=""):
+    text = (
+        head(ranks=(ranks, 1, 1))
+        + (f"read_restart {restart}\n" if restart else "read_data box.data\n")
+        + "neighbor 5e-4 bin\n"
+        + materials("ep/any")
+        + per_pair("coefficientRestitution", 0.7)
+        + contact(f"ep/{law}", wall="mesh", tangential=tangential)
+        + "fix floor all wall/gran model ep/hertz tangential off primitive type 1 zplane -0.045\n"
+        + MOVES[move]
+        + "timestep 2e-7\nfix move all nve/sphere\nthermo_modify lost error norm no\nthermo 1000\n"
+        + f"dump d all custom 50 out.bin {COLUMNS}\n"
+        + f"compute w all wall/gran/local id force\ndump w all local 500 walls.txt {LOCAL}\n"
+        + f"run {steps}\n{end}"
+    )
+    return text.replace("mesh/surface file", "mesh/surface/stress file") if stress else text
+
+
+def outcome(folder, text, *, loop="", ranks=1):
+    """(all frames, the table of wall contacts) of a run."""
+    files = {"box.data": bodies().data(ROOM), "plate.stl": box()}
+    done = good(folder, text, ranks=ranks, files=files, env={"EPDEM_LOOP": loop} if loop else None)
+    return done.frames()[1], (folder / "walls.txt").read_text()
+
+
+CASES = [
+    ("thornton", "history", "moving", 1),
+    ("thornton", "history", "shaken", 1),
+    ("cavity", "off", "at rest", 1),
+    ("hertz", "history", "at rest", 2),
+    ("hertz", "no_history", "moving", 1),
+    ("johnson", "history", "moving", 2),
+]
+
+
+@pytest.mark.parametrize(("law", "tangential", "move", "ranks"), CASES, ids=lambda value: str(value).replace(" ", "_"))
+def test_both_loops_over_triangles_give_the_same_bits(tmp_path, law, tangential, move, ranks):
+    text = deck(law, tangential, move, ranks=ranks, stress=move == "at rest")
+    theirs, their_walls = outcome(tmp_path / "generic", text, loop="generic", ranks=ranks)
+    ours, our_walls = outcome(tmp_path / "ours", text, ranks=ranks)
+    assert len(ours) == 61 and np.array_equal(ours, theirs)
+    assert our_walls == their_walls
+    touching = [np.abs(frame[:, 7:10]).sum(axis=1) > 0 for frame in theirs]
+    assert max(np.sum(b & ~a) for a, b in zip(touching, touching[1:], strict=False)) > 3  # contacts begin and end
+    assert max(np.sum(a & ~b) for a, b in zip(touching, touching[1:], strict=False)) > 3
+
+
+def test_a_restart_goes_on_with_the_other_loop_over_triangles(tmp_path):
+    ends = []
+    for first in ("", "generic"):
+        folder = tmp_path / f"first{first}"
+        text = deck("thornton", "history", "at rest", steps=1000, end="write_restart x.restart\n")
+        outcome(folder, text, loop=first)
+        for second in ("", "generic"):
+            text = deck("thornton", "history", "at rest", steps=1000, restart=folder / "x.restart")
+            ends.append(outcome(tmp_path / f"{first}-{second}", text, loop=second)[0][-1])
+    assert len(ends) == 4 and all(np.array_equal(ends[0], e) for e in ends[1:])
