@@ -1,5 +1,5 @@
 # Each target is one line that calls a script or a tool.
-.PHONY: setup demo test bench docs tidy sanitize versions fuzz valgrind reliability clean
+.PHONY: setup demo test bench docs tidy sanitize versions fuzz valgrind reliability tutorials clean
 
 setup:
 	@scripts/setup
@@ -40,6 +40,10 @@ valgrind: setup
 reliability:
 	@scripts/setup yade
 	.venv/bin/python docs/reliability.py
+
+# six tutorials of LIGGGHTS's source, which is fetched from Debian, with our models
+tutorials: setup
+	EPDEM_TUTORIALS=all .venv/bin/python -m pytest tests/engines/test_tutorials.py -q -n 0
 
 clean:
 	rm -rf .venv build runs
