@@ -11,10 +11,11 @@
 namespace epdem::liggghts {
 
 /// Per-atom properties: plasticWork [J] sums up every growth of plastic work since the start, elasticEnergy [J] is what
-/// the contacts of this step can give back; with partial slip frictionWork [J] sums up what friction took, and
-/// frictionEnergy [J] is what its springs can give back. Half
-/// of a pair's energy belongs to each body, all of a wall's to the sphere. LIGGGHTS evaluates a pair that spans two
-/// ranks on both of them, so each books its own body only.
+/// the contacts of this step can give back, bearingContacts counts those of them that bear a force: a contact whose
+/// bodies overlap by less than the depth of its dent bears none. With partial slip frictionWork [J] sums up what friction
+/// took, and frictionEnergy [J] is what its springs can give back. Half of a pair's energy belongs to each body, all of a
+/// wall's to the sphere. LIGGGHTS evaluates a pair that spans two ranks on both of them, so each books its own body
+/// only.
 class Ledger {
  public:
   /// Indices of the bodies, and from which index on a body belongs to another rank.
@@ -24,7 +25,7 @@ class Ledger {
 
   /// For the pair style, whose settings come first: creates the properties.
   void create(LAMMPS_NS::LAMMPS* lmp, bool rubs) {
-    for (const char* name : {work_name, energy_name, friction_name, springs_name}) {
+    for (const char* name : {work_name, energy_name, bearing_name, friction_name, springs_name}) {
       if (!rubs && (name == friction_name || name == springs_name)) continue;
       const char* words[] = {name, "all", "property/atom", name, "scalar", "yes", "no", "no", "0.0"};
       if (!find(lmp, name, name)) lmp->modify->add_fix_property_atom(9, const_cast<char**>(words), name);
@@ -37,7 +38,8 @@ class Ledger {
     energy_ = find(lmp, energy_name, model.c_str());
     friction_ = find(lmp, friction_name, model.c_str());
     springs_ = find(lmp, springs_name, model.c_str());
-    if (work_ && energy_ && (friction_ || !rubs)) return;
+    bearing_ = find(lmp, bearing_name, model.c_str());
+    if (work_ && energy_ && bearing_ && (friction_ || !rubs)) return;
     const std::string text = "model " + model +
                              ": computePlasticWork on of a wall needs it for the pair style as well" +
                              (rubs ? ", with the same tangential model" : "");
@@ -47,6 +49,7 @@ class Ledger {
   /// At the start of a kept pass over all pairs: what the contacts hold is counted anew.
   void open(int nlocal) {
     std::fill_n(energy_->vector_atom, nlocal, 0.0);
+    std::fill_n(bearing_->vector_atom, nlocal, 0.0);
     if (springs_) std::fill_n(springs_->vector_atom, nlocal, 0.0);
   }
 
@@ -74,6 +77,7 @@ class Ledger {
  private:
   static constexpr const char* work_name = "plasticWork";
   static constexpr const char* energy_name = "elasticEnergy";
+  static constexpr const char* bearing_name = "bearingContacts";
   static constexpr const char* friction_name = "frictionWork";
   static constexpr const char* springs_name = "frictionEnergy";
 
@@ -85,6 +89,7 @@ class Ledger {
   void credit(int body, double grown, double stored) {
     if (grown > 0.0) work_->vector_atom[body] += grown;  // few contacts grow
     energy_->vector_atom[body] += stored;
+    bearing_->vector_atom[body] += stored > 0.0;
   }
 
   void rub_one(int body, double lost, double stored) {
@@ -94,6 +99,7 @@ class Ledger {
 
   LAMMPS_NS::FixPropertyAtom* work_ = nullptr;
   LAMMPS_NS::FixPropertyAtom* energy_ = nullptr;
+  LAMMPS_NS::FixPropertyAtom* bearing_ = nullptr;
   LAMMPS_NS::FixPropertyAtom* friction_ = nullptr;
   LAMMPS_NS::FixPropertyAtom* springs_ = nullptr;
 };
