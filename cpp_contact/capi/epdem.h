@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: GPL-2.0-or-later
  *
  * C interface of the contact laws. SI units. No function keeps state, allocates or throws.
- * Functions that can fail return an epdem_status; epdem_message() says what it means.
+ * Functions that can fail return an epdem_status; epdem_message() says what it means. Numbers whose powers leave the
+ * range of a double (a radius of 1e-300 m) give results that are not finite.
  */
 #ifndef EPDEM_H
 #define EPDEM_H

@@ -12,11 +12,12 @@
 namespace epdem::liggghts {
 
 /// Per-atom properties: plasticWork [J] sums up every growth of plastic work since the start, elasticEnergy [J] is what
-/// the contacts of this step can give back (with adhesion less their surface energy); with adhesion adhesiveWork [J]
-/// sums up what the forces lost in their jumps at touch and parting, with partial slip frictionWork [J] what friction
-/// took, and frictionEnergy [J] is what its springs can give back. Half of a pair's energy belongs to each body, all of
-/// a wall's to the sphere. LIGGGHTS evaluates a pair that spans two ranks on both of them, so each books its own body
-/// only.
+/// the contacts of this step can give back (with adhesion less their surface energy), bearingContacts counts those of
+/// them that bear a force: a contact whose bodies overlap by less than the depth of its dent bears none. With adhesion
+/// adhesiveWork [J] sums up what the forces lost in their jumps at touch and parting. With partial slip frictionWork
+/// [J] sums up what friction took, and frictionEnergy [J] is what its springs can give back. Half of a pair's energy
+/// belongs to each body, all of a wall's to the sphere. LIGGGHTS evaluates a pair that spans two ranks on both of them,
+/// so each books its own body only.
 class Ledger {
  public:
   /// Indices of the bodies, and from which index on a body belongs to another rank.
@@ -26,7 +27,7 @@ class Ledger {
 
   /// For the pair style, whose settings come first: creates the properties.
   void create(LAMMPS_NS::LAMMPS* lmp, bool rubs, bool adheres) {
-    for (const char* name : {work_name, energy_name, friction_name, springs_name, adhesive_name}) {
+    for (const char* name : {work_name, energy_name, bearing_name, friction_name, springs_name, adhesive_name}) {
       if (!rubs && (name == friction_name || name == springs_name)) continue;
       if (!adheres && name == adhesive_name) continue;
       const char* words[] = {name, "all", "property/atom", name, "scalar", "yes", "no", "no", "0.0"};
@@ -41,7 +42,8 @@ class Ledger {
     friction_ = find(lmp, friction_name, model.c_str());
     springs_ = find(lmp, springs_name, model.c_str());
     adhesive_ = find(lmp, adhesive_name, model.c_str());
-    if (work_ && energy_ && (friction_ || !rubs) && (adhesive_ || !adheres)) return;
+    bearing_ = find(lmp, bearing_name, model.c_str());
+    if (work_ && energy_ && bearing_ && (friction_ || !rubs) && (adhesive_ || !adheres)) return;
     const std::string text = "model " + model +
                              ": computePlasticWork on of a wall needs it for the pair style as well" +
                              (rubs      ? ", with the same tangential model"
@@ -53,6 +55,7 @@ class Ledger {
   /// At the start of a kept pass over all pairs: what the contacts hold is counted anew.
   void open(int nlocal) {
     std::fill_n(energy_->vector_atom, nlocal, 0.0);
+    std::fill_n(bearing_->vector_atom, nlocal, 0.0);
     if (springs_) std::fill_n(springs_->vector_atom, nlocal, 0.0);
   }
 
@@ -70,8 +73,9 @@ class Ledger {
       stored = elastic_energy(law, R_star, now, delta);
       grown = plastic_growth(law, R_star, before, now, stored);
     }
-    credit(bodies.i, part * grown, part * stored);
-    if (!wall && bodies.j < bodies.nlocal) credit(bodies.j, part * grown, part * stored);
+    const bool bears = adheres<Law> ? now.radius > 0.0 : stored > 0.0;
+    credit(bodies.i, part * grown, part * stored, bears);
+    if (!wall && bodies.j < bodies.nlocal) credit(bodies.j, part * grown, part * stored, bears);
   }
 
   /// The same for friction: work that it took in this step, elastic energy of its springs [J].
@@ -89,6 +93,7 @@ class Ledger {
  private:
   static constexpr const char* work_name = "plasticWork";
   static constexpr const char* energy_name = "elasticEnergy";
+  static constexpr const char* bearing_name = "bearingContacts";
   static constexpr const char* friction_name = "frictionWork";
   static constexpr const char* springs_name = "frictionEnergy";
   static constexpr const char* adhesive_name = "adhesiveWork";
@@ -98,9 +103,10 @@ class Ledger {
         lmp->modify->find_fix_property(name, "property/atom", "scalar", 0, 0, caller, false));
   }
 
-  void credit(int body, double grown, double stored) {
+  void credit(int body, double grown, double stored, bool bears) {
     if (grown > 0.0) work_->vector_atom[body] += grown;  // few contacts grow
     energy_->vector_atom[body] += stored;
+    bearing_->vector_atom[body] += bears;
   }
 
   void rub_one(int body, double lost, double stored) {
@@ -110,6 +116,7 @@ class Ledger {
 
   LAMMPS_NS::FixPropertyAtom* work_ = nullptr;
   LAMMPS_NS::FixPropertyAtom* energy_ = nullptr;
+  LAMMPS_NS::FixPropertyAtom* bearing_ = nullptr;
   LAMMPS_NS::FixPropertyAtom* friction_ = nullptr;
   LAMMPS_NS::FixPropertyAtom* springs_ = nullptr;
   LAMMPS_NS::FixPropertyAtom* adhesive_ = nullptr;

@@ -8,6 +8,7 @@
 #include "epdem/viscous.hpp"
 #include "force.h"
 #include "global_properties.h"
+#include "update.h"
 
 namespace epdem::liggghts {
 

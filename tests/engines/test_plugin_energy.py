@@ -77,3 +77,25 @@ def test_a_wall_alone_is_told_that_the_pair_style_keeps_the_books(tmp_path):
     text = text.replace("compute s", "# ").replace("c_s[1] c_s[2]", "")
     result = run(tmp_path, text, files={"box.data": gas().data(BOX)})
     assert result.code == 1 and "computePlasticWork" in result.error and "pair style" in result.error
+
+
+def test_bearing_contacts_are_those_with_a_force(tmp_path):
+    """Counted again from LIGGGHTS's own list of contacts, away from the walls, which that list leaves out."""
+    output = (
+        "compute c all pair/gran/local id force\n"
+        "dump l all local 50 local.* c_c[1] c_c[2] c_c[4] c_c[5] c_c[6]\n"
+        "dump_modify l format '%.17g %.17g %.17g %.17g %.17g'\n"
+        "dump a all custom 50 atoms.* id x y z radius f_bearingContacts\nrun"
+    )
+    good(tmp_path, deck("thornton", steps=3000, every=1000).replace("run", output), files={"box.data": gas().data(BOX)})
+    bearing = resting = 0
+    for step in range(50, 3001, 50):
+        atoms = np.loadtxt(tmp_path / f"atoms.{step}", skiprows=9)
+        pairs = np.loadtxt(tmp_path / f"local.{step}", skiprows=9, ndmin=2).reshape(-1, 5)
+        loaded = np.any(pairs[:, 2:] != 0.0, axis=1)
+        count = np.bincount(pairs[loaded, :2].astype(int).ravel(), minlength=126)
+        x, radius = atoms[:, 1:4], atoms[:, 4]
+        free = ((x > radius[:, None]) & (0.025 - x > radius[:, None])).all(axis=1)
+        assert (atoms[free, 5] == count[atoms[free, 0].astype(int)]).all()
+        bearing, resting = bearing + int(count.sum()), resting + int((~loaded).sum())
+    assert bearing > 100 and resting > 10

@@ -21,6 +21,7 @@ from pydantic import (
 from pydantic_core.core_schema import CoreSchema, no_info_before_validator_function
 
 from ..errors import CaseError
+from .library import with_library
 from .messages import explain
 from .toml import read_toml
 from .units import to_si, within_limits
@@ -284,6 +285,7 @@ class Case(Frozen):
 
 def parse(data: dict[str, Any], path: object = "case") -> Case:
     """A Case from TOML data; `path` names the place in messages. Raises CaseError."""
+    data = with_library(data, path)
     try:
         return Case.model_validate(data)
     except ValidationError as error:

@@ -8,6 +8,7 @@ from pydantic import ConfigDict, Field, ValidationError, model_validator
 
 from ..errors import CaseError
 from .impact import Coefficient, Frozen, Header, LawChoice, Length, Material, Name, Quantity, Speed, Tangential, Viscous
+from .library import with_library
 from .messages import explain
 from .toml import read_toml
 
@@ -276,6 +277,7 @@ def is_scene(data: dict[str, Any]) -> bool:
 
 def parse(data: dict[str, Any], path: object = "case") -> SceneCase:
     """A scene from TOML data; `path` names the place in messages. Raises CaseError."""
+    data = with_library(data, path)
     try:
         return SceneCase.model_validate(data)
     except ValidationError as error:

@@ -16,6 +16,7 @@ import pandas as pd
 from .. import __version__
 from ..base.folders import claim
 from ..base.stages import inputs_hash
+from ..case.doubts import doubts
 from ..case.impact import Case, parse
 from ..case.toml import named, read_toml
 from ..errors import CaseError, EngineError
@@ -142,6 +143,7 @@ class _Work:
     versions: dict[str, str]
     predictions: dict[str, Prediction]
     plans: list[Plan]
+    how: dict[str, object]  # the options on which the numbers depend: ranks, steps (0: searched), own_law
 
 
 def _prepare(case: Case, place: object, tools: Sequence[Engine], laws: Sequence[str], ranks: int) -> _Work:
@@ -159,7 +161,9 @@ def _prepare(case: Case, place: object, tools: Sequence[Engine], laws: Sequence[
         for p in plans:
             for tool in tools:
                 refuse(tool, p, predictions[p.experiment.law.name], ranks=ranks)
-    return _Work(case, tools, {tool.name: tool.version() for tool in tools}, predictions, plans)
+    steps = 0 if case.numerics.error is not None else case.numerics.steps_in_contact
+    how: dict[str, object] = {"ranks": ranks, "steps": steps, "own_law": not laws}
+    return _Work(case, tools, {tool.name: tool.version() for tool in tools}, predictions, plans, how)
 
 
 class Options(TypedDict, total=False):
@@ -222,7 +226,7 @@ def _run(text: str, work: _Work, folder: Path, ranks: int, fresh: bool, progress
     attributes = {"case": work.case.name, "epdem": __version__}
     attributes |= {f"version_{name}": version for name, version in work.versions.items()}
     results = store.Results(case_text=text, attributes=attributes)
-    outcome = Outcome(work.case, folder, results, work.predictions)
+    outcome = Outcome(work.case, folder, results, work.predictions, warnings=doubts(work.case))
     rows = []
     for p in work.plans:
         law = p.experiment.law.name
@@ -240,7 +244,7 @@ def _run(text: str, work: _Work, folder: Path, ranks: int, fresh: bool, progress
             else:
                 stage = run_plan(p, tool, folder / law / tool.name, ranks=ranks)
                 results.impacts[key] = stage.impacts
-                results.runs[key] = stage.seconds | {"inputs": inputs, "time_step": p.time_step}
+                results.runs[key] = stage.seconds | {"inputs": inputs, "time_step": p.time_step} | work.how
                 results.decks |= {f"{key}/{name}": text for name, text in stage.decks.items()}
             spent = float(str(results.runs[key]["seconds"]))
             outcome.seconds[tool.name] = outcome.seconds.get(tool.name, 0.0) + spent

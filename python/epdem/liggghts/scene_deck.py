@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """The LIGGGHTS deck of a scene: all numbers of the templates."""
 
+import math
 from dataclasses import dataclass
 
 from ..base import rendering as decks
@@ -12,6 +13,7 @@ from . import stl
 from .insertions import Insertion, insertions
 from .properties import HARD, SOFT, Property, elastic, per_pair, ratios, strength, tangential, work_of_adhesion
 
+MOST_CELLS = 2**31 - 1  # that LIGGGHTS counts, each half as wide as its longest reach
 SKIN = 0.5  # of the smallest radius: rebuilds cost less than idle neighbours
 
 
@@ -145,8 +147,21 @@ def default_skin(p: ScenePlan) -> float:
     return float(f"{SKIN * p.smallest:.1e}")
 
 
+def _refuse_room(p: ScenePlan) -> None:
+    """Raise CaseError for a room in which LIGGGHTS cannot count the cells where it looks for neighbours."""
+    sides = [high - low for low, high in zip(p.layout.box[::2], p.layout.box[1::2], strict=True)]
+    width = max(part.radii()[1] for part in p.parts) + 0.5 * SKIN * p.smallest  # half of the longest reach
+    cells = math.prod(max(1.0, side / width) for side in sides)
+    if cells > MOST_CELLS:
+        raise CaseError(
+            f"scene: the room of {' x '.join(f'{side:g}' for side in sides)} m has {cells:.3g} cells of the size of "
+            f"the spheres, LIGGGHTS takes {MOST_CELLS}; check the units of lengths, speeds and rates"
+        )
+
+
 def deck(p: ScenePlan) -> Deck:
     """The deck of a scene. Raises CaseError for what LIGGGHTS cannot do."""
+    _refuse_room(p)
     m, s, out = p.model, p.case.scene, p.output
     moduli = [p.case.materials[t.material].young_modulus for t in m.types]
     cut = p.case.numerics.cut
