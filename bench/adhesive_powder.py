@@ -83,7 +83,7 @@ def numbers(folder: Path, text: str) -> dict[str, float]:
         "largest stress [kPa]": float(rows["stress"].max()) / 1e3,
         "solid share released": bed(p.steps)[0],
         "contacts of a sphere released": bed(p.steps)[1],
-        "largest pull of the plate [kPa]": -float(stress.min()) / 1e3,
+        "least stress on the way back [kPa]": float(stress.min()) / 1e3,
         "spread without sides, end over start": wide[1] / wide[0],
         "height without sides, end over start": float(np.quantile(last[:, 2], 0.98) / np.quantile(first[:, 2], 0.98)),
     }

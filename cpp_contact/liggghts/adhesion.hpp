@@ -12,7 +12,7 @@ namespace epdem::liggghts {
 inline constexpr const char* adhesion_name = "workOfAdhesion";  // of a pair of types [J/m^2]
 inline constexpr const char* surface_name = "surfaceEnergy";    // of a type [J/m^2]
 
-/// Work of adhesion of every pair of types [J/m^2]: as given, or 2 sqrt(gamma_i gamma_j) of the surface energies.
+/// Work of adhesion of every pair of types [J/m^2]: as given, or twice the geometric mean of the surface energies.
 class Adhesion {
  public:
   explicit Adhesion(const Reader& reader) : reader_(reader), pairs_(reader.find(adhesion_name, "peratomtypepair")) {
