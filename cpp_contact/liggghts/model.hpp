@@ -98,7 +98,13 @@ class Model : public ContactModelBase {
 
   /// Settings of LIGGGHTS's models that our loop must know.
   struct Asked {
-    bool torsion = false, cohesion_slides = false, heating = false;
+    bool torsion = false, cohesion_slides = false, heating = false, twist = false;
+
+    /// What our loop does not include; nullptr: nothing.
+    const char* missing() const {
+      if (heating) return "heating_tangential_history on";
+      return twist ? "torsion on" : nullptr;
+    }
   };
   const Asked& asked() const { return asked_; }
   auto& normal() { return normal_; }
@@ -114,8 +120,12 @@ class Model : public ContactModelBase {
     if (ids_.rolling == ROLLING_CDT || ids_.rolling == ROLLING_EPSD2)
       settings.registerOnOff("torsionTorque", asked_.torsion, false);
     if (ids_.cohesion != COHESION_OFF) settings.registerOnOff("tangential_reduce", asked_.cohesion_slides, false);
-    if (ids_.tangential == TANGENTIAL_HISTORY)
+    if (ids_.tangential == TANGENTIAL_HISTORY) {
       settings.registerOnOff("heating_tangential_history", asked_.heating, false);
+#if __has_include("iloopcallbackcallable.h")  // LIGGGHTS-INL
+      settings.registerOnOff("torsion", asked_.twist, false);
+#endif
+    }
   }
 
   void postSettings(LIGGGHTS::IContactHistorySetup* setup) {
@@ -184,7 +194,7 @@ class Model : public ContactModelBase {
     rolling_.surfacesClose(s, i, j);
   }
 
-  bool contact_match(const std::string& kind, const std::string& model) {
+  bool contact_match(const std::string kind, const std::string model) {
     auto& names = LIGGGHTS::ContactModels::Factory::instance();
     if (kind == "surface") return ids_.surface == names.getSurfaceModelId(model);
     if (kind == "normal") return ids_.normal == names.getNormalModelId(model);

@@ -71,6 +71,8 @@ class Normal : protected LAMMPS_NS::Pointers {
   }
 
   void connectToProperties(PropertyRegistry& registry, Dashpot dashpot) {
+    if (!atom->sphere_flag || atom->superquadric_flag || atom->shapetype_flag)
+      fail("it is for spheres; give other particles a model of LIGGGHTS with surface superquadric");
     // Rebuilt at every init: LIGGGHTS frees all properties there, and the user may have changed them.
     if (!tangential_damping_ && dashpot == Dashpot::optional) dashpot = Dashpot::off;
     const Declaration law{model_.c_str(), Law::parameters,    Law::n_parameters,     &Law::valid,

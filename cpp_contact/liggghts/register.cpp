@@ -18,17 +18,36 @@ using LAMMPS_NS::PairGran;
 namespace PairStyles = LIGGGHTS::PairStyles;
 namespace Walls = LIGGGHTS::Walls;
 
-constexpr int tangentials[] = {TANGENTIAL_OFF, TANGENTIAL_NO_HISTORY, TANGENTIAL_HISTORY, TANGENTIAL_LUDING};
-constexpr int cohesions[] = {COHESION_OFF, COHESION_SJKR, COHESION_SJKR2, COHESION_WASHINO_CAPILLARY_VISCOUS,
-                             COHESION_EASO_CAPILLARY_VISCOUS};
-constexpr int rollings[] = {ROLLING_OFF, ROLLING_CDT, ROLLING_EPSD, ROLLING_EPSD2, ROLLING_EPSD3, ROLLING_LUDING};
-constexpr int surfaces[] = {SURFACE_DEFAULT, SURFACE_MULTICONTACT, SURFACE_SUPERQUADRIC};
+// every model that this LIGGGHTS has, from its own lists
+#define TANGENTIAL_MODEL(name, text, id) name,
+#define COHESION_MODEL(name, text, id) name,
+#define ROLLING_MODEL(name, text, id) name,
+#define SURFACE_MODEL(name, text, id) name,
+constexpr int tangentials[] = {
+    TANGENTIAL_OFF,
+#include "style_tangential_model.h"
+};
+constexpr int cohesions[] = {
+    COHESION_OFF,
+#include "style_cohesion_model.h"
+};
+constexpr int rollings[] = {
+    ROLLING_OFF,
+#include "style_rolling_model.h"
+};
+constexpr int surfaces[] = {
+#include "style_surface_model.h"
+};
+#undef TANGENTIAL_MODEL
+#undef COHESION_MODEL
+#undef ROLLING_MODEL
+#undef SURFACE_MODEL
 constexpr int unknown_law = 63;  // normal id of a name that starts with ep/ and is none of ours
 
 /// Luding's models need slots of Luding's normal model; capillary forces and superquadrics bring their own contact law.
 bool available(const Ids& ids) {
-  return ids.tangential != TANGENTIAL_LUDING && ids.rolling != ROLLING_LUDING && ids.cohesion <= COHESION_SJKR2 &&
-         ids.surface != SURFACE_SUPERQUADRIC;
+  return ids.tangential <= TANGENTIAL_HISTORY && ids.rolling <= ROLLING_EPSD3 && ids.cohesion <= COHESION_SJKR2 &&
+         (ids.surface == SURFACE_DEFAULT || ids.surface == SURFACE_MULTICONTACT);
 }
 
 template <class Part>
@@ -140,6 +159,7 @@ void add_law() {
         for (int s : surfaces) add_combination<Law>({Law::id, t, c, r, s});
 }
 
+#ifdef EPDEM_BUILT_FOR
 bool unknown_name(const std::string& name) {
   if (name.compare(0, 2, "ep") != 0) return false;
 #define EPDEM_KNOWN(Class) \
@@ -148,6 +168,7 @@ bool unknown_name(const std::string& name) {
 #undef EPDEM_KNOWN
   return true;
 }
+#endif
 
 const struct Registration {
   Registration() {
@@ -162,6 +183,7 @@ const struct Registration {
 
 }  // namespace epdem::liggghts
 
+#ifdef EPDEM_BUILT_FOR
 /// In place of LIGGGHTS's own, which calls every wrong name "Invalid model specified": a name that starts with ep
 /// deserves the list of what exists. LIGGGHTS takes this function's address through the dynamic linker, which finds
 /// the launcher or a preloaded library first; beside those of loop/mesh.cpp it is the one symbol that the plugin
@@ -174,3 +196,4 @@ const struct Registration {
       return Ids{unknown_law, TANGENTIAL_OFF, COHESION_OFF, ROLLING_OFF, SURFACE_DEFAULT}.hash();
   return instance().select_model(narg, arg, custom);
 }
+#endif

@@ -47,8 +47,9 @@ FOREIGN = {
 
 
 def launcher():
-    """The launcher under test: EPDEM_LAUNCHER, or the one beside this Python."""
-    return os.environ.get("EPDEM_LAUNCHER") or str(Path(sys.executable).with_name("epdem-liggghts"))
+    """The LIGGGHTS under test: EPDEM_LIGGGHTS, or the launcher beside this Python."""
+    named = os.environ.get("EPDEM_LIGGGHTS") or os.environ.get("EPDEM_LAUNCHER")
+    return named or str(Path(sys.executable).with_name("epdem-liggghts"))
 
 
 @dataclass

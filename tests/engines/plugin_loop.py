@@ -94,11 +94,11 @@ def deck(scene, *, steps=60, every=1, before="", end="", restart=None):
     )
 
 
-def outcome(folder, scene, *, loop="", simd="", text=None, **options):
+def outcome(folder, scene, *, loop="", simd="", text=None, command=None, **options):
     """(all frames of the dump, what the run printed); `loop` and `simd` are EPDEM_LOOP and EPDEM_SIMD."""
     env = {k: v for k, v in (("EPDEM_LOOP", loop), ("EPDEM_SIMD", simd)) if v}
     files = {"packing.data": bodies(scene)}
-    done = good(folder, text or deck(scene, **options), ranks=scene.ranks, files=files, env=env)
+    done = good(folder, text or deck(scene, **options), ranks=scene.ranks, files=files, env=env, command=command)
     return done.frames()[1], done.text
 
 

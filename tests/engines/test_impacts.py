@@ -184,7 +184,7 @@ def test_an_engine_that_dies_exits_with_3_and_gives_its_last_words(tmp_path, mon
     broken = tmp_path / "epdem-liggghts"
     broken.write_text("#!/bin/sh\n[ \"$1\" = -h ] && exit 0\necho 'ERROR: lost my atoms (../pair.cpp:1)'\nexit 1\n")
     broken.chmod(0o755)
-    monkeypatch.setenv("EPDEM_LAUNCHER", str(broken))
+    monkeypatch.setenv("EPDEM_LIGGGHTS", str(broken))
     done = epdem("run", str(CASES / "steel_wall.toml"), "-e", "embedded", "-e", "liggghts", cwd=tmp_path)
     assert done.returncode == 3 and "ERROR: lost my atoms" in done.stderr
     assert set(store.read(tmp_path / "runs/steel_wall/results.h5").impacts) == {"thornton/embedded"}  # nothing lost

@@ -40,7 +40,7 @@ def test_a_stopped_run_says_so_and_leaves_no_engine_behind(how, tmp_path, monkey
     launcher, mark = tmp_path / "epdem-liggghts", tmp_path / "pid"
     launcher.write_text(SLEEPER)
     launcher.chmod(0o755)
-    monkeypatch.setenv("EPDEM_LAUNCHER", str(launcher))
+    monkeypatch.setenv("EPDEM_LIGGGHTS", str(launcher))
     monkeypatch.setenv("EPDEM_TEST_PID", str(mark))
     run = subprocess.Popen(
         [sys.executable, "-m", "epdem.cli", "run", str(CASE), "-e", "liggghts"],

@@ -100,7 +100,7 @@ def test_planted_faults_of_the_plugin_turn_their_tests_red(copy_of_plugin):
         path = copy_of_plugin / fault.file
         path.write_text(planted(fault, path.read_text(), f"(planted<{n}>() ? ({fault.new}) : ({fault.old}))"))
     (copy_of_plugin / "planted.hpp").write_text(SWITCH)
-    env = {"EPDEM_LAUNCHER": str(build_plugin(copy_of_plugin, f"-include {copy_of_plugin}/planted.hpp"))}
+    env = {"EPDEM_LIGGGHTS": str(build_plugin(copy_of_plugin, f"-include {copy_of_plugin}/planted.hpp"))}
     done = pytest_in(copy_of_plugin, *sorted({f"tests/{fault.test}" for fault in OF_PLUGIN}), env=env)
     assert done.returncode == 0, done.stdout[-3000:]
     reds = {

@@ -120,7 +120,7 @@ EPDEM_INLINE T load(const double* p) noexcept {
   return x;
 }
 template <class T>
-EPDEM_INLINE void store(double* p, T x) noexcept {
+EPDEM_INLINE void store(double* p, const T& x) noexcept {
   __builtin_memcpy(p, &x, sizeof x);
 }
 

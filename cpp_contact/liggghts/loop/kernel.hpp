@@ -29,7 +29,7 @@ EPDEM_INLINE void write(double* const* history, const Lanes* value) {
     const int first = at < 0 ? 0 : at;
     if (at < -1) break;
     rows({value[first], value[first + 1], value[first + 2], value[first + 3]},
-         [=](int l, Row row) __attribute__((always_inline)) { store(history[l] + first, row); });
+         [=](int l, const Row& row) __attribute__((always_inline)) { store(history[l] + first, row); });
   }
   for (int k = 0; k < (count < 4 ? count : count % 4 == 3 ? 0 : count % 4); ++k)
     for (int l = 0; l < lane_count; ++l) history[l][k] = value[k][l];

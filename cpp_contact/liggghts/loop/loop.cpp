@@ -39,6 +39,7 @@ const char* PairLoop::obstacle(PairGran* pair, int vflag, int addflag) const {
   if (force->newton_pair) return "newton on";
   if (pair->fr_pair()) return "rigid bodies";
   if (!atom->rmass || !atom->sphere_flag || atom->shapetype_flag) return "particles other than spheres";
+  if (atom->molecular) return "bonded particles";
   if (pair->storeContactForces() || pair->storeContactForcesStress()) return "contact forces are stored";
   if (pair->storeSumDelta()) return "surface multicontact";
   if (pair->store_sum_normal_force()) return "normal forces are summed up";

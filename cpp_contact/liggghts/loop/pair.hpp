@@ -2,11 +2,15 @@
 // LIGGGHTS's pair style of one contact model: our loop where it can, LIGGGHTS's own with the same model elsewhere.
 #pragma once
 
+#include <algorithm>
+#include <cstring>
 #include <set>
 #include <string>
 
+#include "compute.h"
 #include "loop.hpp"
 #include "model.hpp"
+#include "modify.h"
 
 namespace epdem::liggghts::loop {
 
@@ -72,12 +76,29 @@ class Pair : public LIGGGHTS::PairStyles::Granular<Model> {
       }
   }
 
+#if __has_include("iloopcallbackcallable.h")  // LIGGGHTS-INL: a compute asks for its steps in place of a flag
+  void compute_force(LAMMPS_NS::PairGran* pair, int eflag, int vflag) override {
+    const LAMMPS_NS::Modify& m = *lmp_->modify;
+    const auto asks = [&](LAMMPS_NS::Compute* c) {
+      return std::strcmp(c->style, "pair/gran/local") == 0 && c->callRequired(lmp_->update->ntimestep);
+    };
+    forces(pair, eflag, vflag, std::any_of(m.compute, m.compute + m.ncompute, asks));
+  }
+#else
   void compute_force(LAMMPS_NS::PairGran* pair, int eflag, int vflag, int addflag) override {
-    const char* why = missing_ ? missing_ : model_.asked().heating ? "heating_tangential_history on" : nullptr;
-    if (!why) why = loop_->obstacle(pair, vflag, addflag);
+    forces(pair, eflag, vflag, addflag, addflag);
+  }
+#endif
+
+ private:
+  /// `told`: compute pair/gran/local is told of each contact; `addflag` says so to a LIGGGHTS that has it.
+  template <class... Flag>
+  void forces(LAMMPS_NS::PairGran* pair, int eflag, int vflag, int told, Flag... addflag) {
+    const char* why = missing_ ? missing_ : model_.asked().missing();
+    if (!why) why = loop_->obstacle(pair, vflag, told);
     if (why) {
       say(why);
-      return Base::compute_force(pair, eflag, vflag, addflag);
+      return Base::compute_force(pair, eflag, vflag, addflag...);
     }
     if (eflag)
       pair->ev_setup(eflag, vflag);  // the energy of granular pairs is nil, but its sums are to be cleared
@@ -91,7 +112,6 @@ class Pair : public LIGGGHTS::PairStyles::Granular<Model> {
     model_.endPass(s, none, none);
   }
 
- private:
   static const char* what_is_missing(const Ids& ids) {
     if (ids.surface != SURFACE_DEFAULT) return "surface multicontact";
     if (ids.rolling == ROLLING_EPSD) return "rolling_friction epsd";

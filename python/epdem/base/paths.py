@@ -9,6 +9,7 @@ from functools import cache
 from pathlib import Path
 
 from ..errors import EngineError
+from .settings import setting
 
 _PACKAGE = Path(__file__).resolve().parents[1]
 
@@ -33,10 +34,25 @@ def templates() -> Path:
 
 
 @cache
+def cpp_sources() -> tuple[Path, Path]:
+    """The folders of the plugin's C++ sources and of the laws' headers: the checkout's, else the installed copies."""
+    host = _first(_PACKAGE.parents[1] / "cpp_contact" / "liggghts", _PACKAGE / "cpp_contact" / "liggghts")
+    if host is None:
+        raise EngineError("C++ sources not found beside the package; install epdem again: pip install .")
+    return host, host.parent / "include"
+
+
+@cache
 def launcher() -> Path | None:
-    """`epdem-liggghts`: LIGGGHTS with our models, or None if it was not built; EPDEM_LAUNCHER names another one."""
-    if named := os.environ.get("EPDEM_LAUNCHER"):
-        return Path(named).absolute()
+    """The LIGGGHTS with our models that runs decks, or None.
+
+    EPDEM_LIGGGHTS names it, or [engine] liggghts in the user's configuration file; else it is our own
+    `epdem-liggghts` beside this Python or on PATH. EPDEM_LAUNCHER is the name of the variable in version 0.1.
+    Raises CaseError for a configuration file that is wrong.
+    """
+    named = os.environ.get("EPDEM_LIGGGHTS") or os.environ.get("EPDEM_LAUNCHER") or setting("engine", "liggghts")
+    if named:
+        return Path(named).expanduser().absolute()
     beside = Path(sys.executable).parent / "epdem-liggghts"
     if beside.exists():
         return beside

@@ -12,6 +12,7 @@ from typing import Annotated, Any
 
 import typer
 
+from .. import __version__
 from ..base.printed import Printed
 from ..base.terminal import bar, console
 from ..errors import CaseError, EpdemError, Stopped
@@ -21,6 +22,7 @@ from . import numerics as cli_numerics
 from . import scenes as cli_scene
 from . import sweep as cli_sweep
 from . import theory as cli_theory
+from . import trees as cli_trees
 from .options import AsJson, CasePath, Engines, Force, Laws, Out, laws_or_own, refuse
 
 ABOUT = """Elastic-plastic particle contact for LIGGGHTS and YADE, checked against theory.
@@ -37,6 +39,21 @@ app = typer.Typer(
     help=ABOUT,
     context_settings={"help_option_names": ["-h", "--help"]},
 )
+
+
+def _say_version(wanted: bool) -> None:
+    if wanted:
+        print(f"epdem {__version__}")
+        raise typer.Exit
+
+
+@app.callback()
+def options(
+    version: Annotated[
+        bool, typer.Option("--version", callback=_say_version, is_eager=True, help="print the version and end")
+    ] = False,
+) -> None:
+    pass
 
 
 @app.command()
@@ -171,7 +188,7 @@ def predict(case: CasePath, law: Laws = None, as_json: AsJson = False) -> None:
 
 @app.command()
 def doctor(as_json: AsJson = False) -> None:
-    """List the engines and their versions, test that the plugin loads, and name what to install."""
+    """List the engines and their versions, test which models LIGGGHTS has, and name what to install."""
     from ..engines.doctor import examine
     from . import show
 
@@ -184,6 +201,7 @@ for command in (
     cli_crosscheck.crosscheck,
     cli_theory.theory,
     cli_theory.figures,
+    cli_theory.cite,
     cli_numerics.timestep,
     cli_numerics.cost,
     cli_numerics.stability,
@@ -193,6 +211,7 @@ for command in (
     cli_calibrate.calibrate,
     cli_sweep.sweep,
     cli_sweep.status,
+    cli_trees.header,
 ):
     app.command()(command)
 app.command("points", hidden=True)(cli_sweep.points)  # what batch scripts call

@@ -10,7 +10,7 @@ import typer
 from ..base.terminal import console
 from ..base.terminal import table as empty_table
 from ..errors import CaseError
-from .options import AsJson, Force
+from .options import AsJson, CasePath, Engines, Force, Laws, laws_or_own, refuse
 
 
 def theory(
@@ -82,3 +82,26 @@ def figures(
     with claim(out, force=force):
         names = [str(path) for path in draw_all(out)]
     print(json.dumps({"files": names}) if as_json else "\n".join(names))
+
+
+def cite(case: CasePath, engine: Engines = None, law: Laws = None, as_json: AsJson = False) -> None:
+    """Print what to cite for the law of a case and for the engines that ran it."""
+    from ..case import scene
+    from ..case.impact import load
+    from ..case.toml import named, read_toml
+    from ..engines import engine as find
+    from ..engines.citations import citations
+    from ..impacts.experiment import experiment
+
+    tools = [find(name).name for name in engine or ["liggghts"]]
+    with named(case):
+        if scene.is_scene(read_toml(case)):
+            refuse(case, "a scene has its own law", law=law)
+            bulk = scene.load(case)
+            laws, dashpot = [bulk.law.name], bulk.viscous is not None
+        else:
+            experiments = [experiment(load(case), name) for name in laws_or_own(law)]
+            laws = [x.law.name for x in experiments]
+            dashpot = experiments[0].viscous_restitution is not None
+    found = citations(laws, tools, dashpot=dashpot)
+    print(json.dumps(found) if as_json else "\n".join(f"{what}: {text}" for what, text in found.items()))

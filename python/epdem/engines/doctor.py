@@ -1,16 +1,14 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""`epdem doctor`: which engines are installed, whether the plugin loads, and what to install."""
+"""`epdem doctor`: which engines are installed, which models LIGGGHTS has, and what to install."""
 
 import shutil
-import tempfile
 from dataclasses import dataclass
-from pathlib import Path
 
 from ..base import paths
 from ..base.processes import ask
 from ..errors import EngineError, EpdemError
 from ..laws import library as claw
-from ..liggghts import launcher
+from ..liggghts import executable, launcher
 from . import ENGINES
 
 
@@ -44,24 +42,19 @@ def _mpi() -> Finding:
     return Finding("MPI", line is not None, line or "mpirun not found", advice, needed=False)
 
 
-def _plugin() -> Finding:
-    """Load the plugin into the installed LIGGGHTS and let it create every model of ours."""
-    plugin = paths.native("libepdem_liggghts.so")
-    if reason := launcher.missing():
-        return Finding("plugin", False, "not here", reason)
-    with tempfile.TemporaryDirectory() as folder:
-        deck = Path(folder) / "in.doctor"
-        models = "\n".join(f"pair_style gran model ep/{name} tangential off" for name in claw.laws())
-        deck.write_text(
-            "atom_style granular\nnewton off\ncommunicate single vel yes\nregion box block 0 1 0 1 0 1\n"
-            f"create_box 1 box\n{models}\n",
-            encoding="utf-8",
-        )
-        try:
-            launcher.run(deck.name, Path(folder), seconds=60)
-        except EngineError as error:
-            return Finding("plugin", False, f"does not load: {error}", "run 'make setup': it fits the LIGGGHTS it met")
-    return Finding("plugin", True, f"loads, models {', '.join('ep/' + n for n in claw.laws())}: {plugin}")
+def _models() -> Finding:
+    """Ask the LIGGGHTS in use for what it has, and let it create every model of ours."""
+    if words := launcher.missing():
+        return Finding("models in LIGGGHTS", False, "not here", words)
+    path, laws = paths.launcher(), tuple(claw.laws())
+    assert path is not None  # launcher.missing() says so
+    try:
+        found = executable.examine(path, laws)
+    except EngineError as error:
+        return Finding("models in LIGGGHTS", False, str(error), "run 'make setup', or name another one")
+    lacks = tuple(law for law in laws if law not in found.models)
+    names = ", ".join(f"ep/{law}" for law in found.models) or "none of ours"
+    return Finding("models in LIGGGHTS", not lacks, f"{names}: {path} ({found})", executable.advice(lacks))
 
 
 def examine() -> list[Finding]:
@@ -72,4 +65,4 @@ def examine() -> list[Finding]:
         reason = tool.missing()
         detail, advice = ("not here", reason) if reason else (tool.version(), "")
         findings.append(Finding(f"engine {name}", reason is None, detail, advice, needed=name == "embedded"))
-    return [*findings, _plugin(), _mpi()]
+    return [*findings, _models(), _mpi()]

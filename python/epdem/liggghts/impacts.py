@@ -2,7 +2,6 @@
 """LIGGGHTS with our plugin: a plan becomes one deck with all impacts side by side, its dump a trajectory."""
 
 import math
-import re
 from pathlib import Path
 
 import numpy as np
@@ -10,15 +9,15 @@ import numpy as np
 from ..base import paths
 from ..base import rendering as decks
 from ..base.files import write_texts
-from ..base.processes import ask
 from ..errors import CaseError, EngineError
 from ..impacts.engine import Abilities, Trajectory, check_abilities
 from ..impacts.pairs import Pairs
 from ..impacts.places import room, side_by_side
 from ..impacts.plan import Plan
 from ..lammps import data_file
-from . import dump, launcher
+from . import dump, executable, launcher
 from .deck import Deck
+from .edits import EDITS
 from .kept import Kept
 from .log import loop_seconds
 from .pairs import velocities
@@ -37,6 +36,7 @@ class Liggghts:
         ranks=launcher.most_ranks(),
         scenes=SCENES,
         restarts=True,
+        edits=EDITS,
         variants=("swap", "sort", "migration", "restart"),
         stays=True,
     )
@@ -48,11 +48,8 @@ class Liggghts:
         return launcher.missing()
 
     def version(self) -> str:
-        match = re.search(
-            r"LIGGGHTS[-\w ]*?(\d+\.\d+\.\d+)",
-            ask([str(paths.launcher()), "-log", "none", "-h"], launcher.environment()),
-        )
-        return f"LIGGGHTS {match.group(1) if match else '(version unknown)'}"
+        path = paths.launcher()
+        return (executable.version(path) if path else "") or "LIGGGHTS (version unknown)"
 
     def model(self, plan: Plan) -> str:
         return f"ep/{plan.experiment.law.name}"

@@ -9,6 +9,7 @@ from pathlib import Path
 
 from ..base import paths
 from ..base.processes import call
+from ..base.settings import config_file
 from ..errors import EngineError
 from ..impacts.engine import refuse_ranks
 
@@ -20,9 +21,9 @@ OUT = "out.liggghts"  # both of its streams
 def missing() -> str | None:
     """None if LIGGGHTS with our models can run here, else a sentence with the command that installs it."""
     launcher = paths.launcher()
-    if launcher is not None and not os.access(launcher, os.X_OK):
-        return f"{launcher} (EPDEM_LAUNCHER) is not a program; unset EPDEM_LAUNCHER or name another one"
-    if shutil.which("liggghts") is None or launcher is None:
+    if launcher is not None and not (launcher.is_file() and os.access(launcher, os.X_OK)):
+        return f"{launcher} is not a program; EPDEM_LIGGGHTS or {config_file()} names it: name another one, or none"
+    if launcher is None:
         return f"LIGGGHTS with our models was not found; {INSTALL}"
     return None
 
