@@ -34,6 +34,7 @@ SelectType=select/cons_tres
 SelectTypeParameters=CR_CPU
 ReturnToService=2
 MpiDefault=none
+TmpFS={place}/t.%n
 KillWait=5
 SchedulerParameters=sched_interval=1
 MailProg=/bin/true
@@ -74,7 +75,7 @@ class Cluster:
     """Daemons by name; the environment in which Slurm's commands find them."""
 
     def __init__(self, place: Path, port: int):
-        for name in ("state", *(f"spool.{node}" for node in NODES)):
+        for name in ("state", *(f"{kind}.{node}" for node in NODES for kind in ("spool", "t"))):
             (place / name).mkdir()
         host = os.uname().nodename.split(".")[0]
         conf = place / "slurm.conf"
