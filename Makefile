@@ -11,8 +11,9 @@ test:
 	@scripts/setup yade slurmctld slurmd slurm-client munge
 	.venv/bin/python -m pytest -n 2
 
+# a scene of this duration takes more than a minute, the shortest walltime of Slurm
 walltime: setup
-	EPDEM_WALLTIME=1 .venv/bin/python -m pytest tests/studies/test_sweep_slurm.py -k walltime
+	EPDEM_WALLTIME="20 s" .venv/bin/python -m pytest tests/studies/test_sweep_slurm.py -k walltime
 
 bench: setup
 	.venv/bin/python bench/all.py

@@ -118,7 +118,7 @@ def test_a_scene_that_is_preempted_is_queued_again_and_goes_on_from_its_restart_
 @needs_slurm
 @pytest.mark.skipif("EPDEM_WALLTIME" not in os.environ, reason="takes minutes, for Slurm counts walltime in them")
 def test_a_scene_longer_than_its_walltime_is_queued_again_in_time(here, tmp_path):
-    out, planned = tmp_path / "out", scene(tmp_path, "20 s", 400)
+    out, planned = tmp_path / "out", scene(tmp_path, os.environ["EPDEM_WALLTIME"], 400)
     found = slurm.run(planned, out, {"time": "1"})
     assert found.table[["status", "reason"]].fillna("").to_numpy().tolist() == [["done", ""]]
     (job,) = jobs(out)
