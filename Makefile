@@ -1,5 +1,5 @@
 # Each target is one line that calls a script or a tool.
-.PHONY: setup demo test bench docs tidy sanitize versions fuzz valgrind reliability tutorials clean
+.PHONY: setup demo test walltime bench docs tidy sanitize versions fuzz valgrind reliability tutorials clean
 
 setup:
 	@scripts/setup
@@ -10,6 +10,10 @@ demo: setup
 test:
 	@scripts/setup yade slurmctld slurmd slurm-client munge
 	.venv/bin/python -m pytest -n 2
+
+# a scene of this duration takes more than a minute, the shortest walltime of Slurm
+walltime: setup
+	EPDEM_WALLTIME="20 s" .venv/bin/python -m pytest tests/studies/test_sweep_slurm.py -k walltime
 
 bench: setup
 	.venv/bin/python bench/all.py
