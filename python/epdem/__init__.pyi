@@ -1,9 +1,11 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 from . import theory as theory
 from .api import Case as Case
+from .api import Fit as Fit
 from .api import Run as Run
 from .api import Scene as Scene
 from .api import SceneRun as SceneRun
+from .api import calibrate as calibrate
 from .api import deck as deck
 from .api import predict as predict
 from .api import run as run

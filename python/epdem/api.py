@@ -9,9 +9,8 @@ import tomllib
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any, ClassVar, Self, overload
+from typing import Any, ClassVar, Self, Unpack, overload
 
-import numpy as np
 import pandas as pd
 import tomlkit
 
@@ -34,12 +33,14 @@ from .scenes.columns import UNITS as SCENE_UNITS
 from .scenes.plan import plan as plan_scene
 from .scenes.run import SceneOutcome
 from .scenes.run import run_case as run_scene
+from .studies.fit import Fit, Targets, fit_text
+from .studies.fit import Options as FitOptions
 from .studies.sweep import keys
 from .studies.sweep import run as study
-from .studies.sweep.points import with_unit
+from .studies.sweep.points import plain, with_unit, with_units
 from .studies.sweep.run import SweepOutcome
 
-__all__ = ["Case", "Run", "Scene", "SceneRun", "deck", "predict", "run", "sweep", "theory"]
+__all__ = ["Case", "Fit", "Run", "Scene", "SceneRun", "calibrate", "deck", "predict", "run", "sweep", "theory"]
 log = logging.getLogger("epdem")
 
 
@@ -56,8 +57,8 @@ class _File:
         """
         name = tables.get("case", {}).get("name", self.kind)
         header = {"name": name, "title": name, "source": "made in Python"} | tables.get("case", {})
-        data = _plain({"case": header} | {key: value for key, value in tables.items() if key != "case"})
-        self._read(tomlkit.dumps(_with_units(data, keys.keys_of(data))), name)
+        data = plain({"case": header} | {key: value for key, value in tables.items() if key != "case"})
+        self._read(tomlkit.dumps(with_units(data, keys.keys_of(data))), name)
 
     def _read(self, text: str, path: object) -> None:
         self.text = text
@@ -136,24 +137,6 @@ class Scene(_File):
     @staticmethod
     def _parse(data: dict[str, Any], path: object) -> Any:
         return scene_case.parse(data, path)
-
-
-def _plain(value: Any) -> Any:
-    """Arrays and tuples as lists, at any depth."""
-    if isinstance(value, Mapping):
-        return {str(k): _plain(v) for k, v in value.items()}
-    if isinstance(value, np.ndarray):
-        return value.tolist()
-    return [_plain(v) for v in value] if isinstance(value, list | tuple) else value
-
-
-def _with_units(value: Any, names: dict[str, keys.Key], place: str = "") -> Any:
-    below = f"{place}." if place else ""
-    if isinstance(value, dict):
-        return {k: _with_units(v, names, f"{below}{k}") for k, v in value.items()}
-    if isinstance(value, list) and any(isinstance(v, dict) for v in value):
-        return [_with_units(v, names, f"{below}{n}") for n, v in enumerate(value)]
-    return with_unit(value, names.get(place, keys.Key()))
 
 
 def _units(table: pd.DataFrame, units: Mapping[str, str]) -> pd.DataFrame:
@@ -308,8 +291,16 @@ def sweep(
         case.text, settings, engines=engines, laws=laws, ranks=ranks, latin_hypercube=latin_hypercube, seed=seed
     )
     folder = Path(out) if out is not None else Path("runs") / f"{planned.name}_sweep"
+    return study.run(planned, folder, jobs=jobs, retry_failed=retry_failed, report=_report)
 
-    def report(done: int, total: int) -> None:
-        log.info("%d of %d points", done, total)
 
-    return study.run(planned, folder, jobs=jobs, retry_failed=retry_failed, report=report)
+def calibrate(scene: Scene, targets: Targets, free: Mapping[str, str], **options: Unpack[FitOptions]) -> Fit:
+    """Find one to three keys of a scene with which numbers of its results have the values `targets`; see `fit_text`.
+
+    `scene.replace(found.values)` is the scene that was found. Raises CaseError, EngineError.
+    """
+    return fit_text(scene.text, targets, free, place=scene.name, **({"report": _report} | options))
+
+
+def _report(done: int, total: int) -> None:
+    log.info("%d of %d points", done, total)

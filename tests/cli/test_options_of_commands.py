@@ -15,7 +15,7 @@ from calls import CASES, COMMANDS, call, make_sweep
 from epdem.errors import CaseError
 from epdem.impacts import run as impacts_run
 from epdem.scenes import run as scenes_run
-from epdem.studies import cost, crosscheck, figures, stability, tune
+from epdem.studies import cost, crosscheck, figures, fit, stability, tune
 from epdem.studies.stability import bulk_cost
 from epdem.studies.sweep import executors
 
@@ -23,6 +23,9 @@ STEEL = (CASES / "steel_wall.toml").read_text()
 FAST = STEEL[: STEEL.index("speeds =")] + 'speeds = ["1 m/s"]' + STEEL[STEEL.index("\n", STEEL.index("speeds =")) :]
 TEMPLATE = "{{ deck.time_step }} {{ a | default(0) }}\n"
 HARDNESS = {"e_n": "0.6", "speed": "3 m/s", "hv": "200", "hb": "200", "dent_ratio": "0.5"}
+HARDNESS |= {"target": "floor_load_mean=1 N", "free": "contact.friction=0.1..0.9", "tolerance": "0.1", "engine": "yade"}
+HARDNESS |= {"ranks": "2", "jobs": "1", "out": "there", "force": None}
+TARGET = ("--target", "floor_load_max=1 N", "--free", "contact.friction=0.1..0.5")
 RUN = {"engine": "yade", "law": "cavity", "ranks": "2", "steps": "100", "out": "there", "fresh": None, "resume": None}
 RUN |= {"force": None}
 DECK = {"out": "there", "engine": "yade", "law": "cavity", "case": "other.toml", "given": "a=1", "force": None}
@@ -61,6 +64,7 @@ KINDS = {  # words of a call without the option, and the value of every option
     "calibrate from e_n": (("calibrate", "steel.toml", "--e-n", "0.7", "--speed", "2 m/s"), HARDNESS),
     "calibrate from HV": (("calibrate", "steel.toml", "--hv", "300"), HARDNESS),
     "calibrate from HB": (("calibrate", "steel.toml", "--hb", "300"), HARDNESS),
+    "calibrate from a scene": (("calibrate", "scene.toml", *TARGET), HARDNESS),
     "doctor": (("doctor",), {}),
     "cite for impacts": (("cite", "steel.toml"), {"engine": "yade", "law": "hertz"}),
     "cite for a scene": (("cite", "scene.toml"), {"engine": "yade", "law": "hertz"}),
@@ -125,6 +129,7 @@ def library(tmp_path, monkeypatch, outcomes):
     record(tune, "tune", outcomes["tuned"])
     record(figures, "draw_all", [Path("drawn.png")])
     record(executors, "execute")
+    record(fit, "fit")
     return reached
 
 

@@ -33,6 +33,8 @@ def test_a_study_in_ten_minutes(tmp_path):
     play("local", tmp_path)
     assert len(pd.read_csv(tmp_path / "runs/study/sweep.csv")) == 15 * 32
     assert len(pd.read_csv(tmp_path / "runs/table/sweep.csv")) == 2 * 32
+    forces = pd.read_csv(tmp_path / "runs/press/sweep.csv")["plate_force_max"]
+    assert (abs(forces / 12.0 - 1.0) <= 0.05).any() and len(forces) <= 8
 
 
 @needs_slurm

@@ -8,6 +8,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+import tomlkit
 
 from epdem.case.toml import read_toml
 from epdem.errors import CaseError
@@ -184,3 +185,21 @@ def test_a_point_replaces_its_keys_alone_and_what_says_the_same_in_another_way()
     data = read_toml(STEEL)
     assign(data, "numerics.error", 1e-3)
     assert data["numerics"] == {"phases": 8, "error": 1e-3}
+
+
+@pytest.mark.parametrize(
+    ("file", "point"),
+    [
+        ("steel_wall", {"law.yield_pressure": "3 GPa", "viscous.restitution": 1, "impact.body.radius": 'a "b" \\ \n'}),
+        ("steel_wall", {"law.name": "cavity", "law.yield_stress": "1 GPa", "numerics.error": 1e-7}),
+        ("steel_wall", {"impact.speeds": {"from": "1 m/s", "to": "2 m/s", "count": 3}}),
+        ("hopper_beads", {"scene.particles.0.material": "beads", "scene.count": 5, "output.energy": False}),
+    ],
+)
+def test_the_case_file_of_a_point_is_that_with_its_values_set_one_by_one(file, point):
+    text = (CASES / f"{file}.toml").read_text()
+    document = tomlkit.parse(text)
+    for key, value in point.items():
+        assign(document, key, value)
+    other = {key: 7 for key in point}
+    assert Sweep("x", text, (other, point), ("embedded",)).text(2) == document.as_string()

@@ -61,7 +61,7 @@ def call(
                 stderr=subprocess.STDOUT,
                 env=env,
                 start_new_session=True,
-                preexec_fn=_end_with_parent,
+                preexec_fn=end_with_parent,
             )
         except OSError as error:
             raise EngineError(f"{command[0]}: cannot be started ({error})") from None
@@ -81,10 +81,15 @@ def call(
         except BaseException:  # a time-out, Ctrl-C or an error of the caller: the process is stopped too
             kill(process)
             raise
-    if status := process.returncode:
-        how = f"signal {-status}" if status < 0 else f"exit code {status}"
-        raise EngineError(f"{command[0]} failed ({how}); {path}: {last_words(path)}")
+    if process.returncode:
+        raise EngineError(failure(command[0], process.returncode, path))
     return time.monotonic() - start
+
+
+def failure(program: str, status: int, log: Path) -> str:
+    """How a program ended, from its exit status, and the end of its log."""
+    how = f"signal {-status}" if status < 0 else f"exit code {status}"
+    return f"{program} failed ({how}); {log}: {last_words(log)}"
 
 
 class _Rows:
@@ -122,7 +127,7 @@ def ask(command: list[str], env: dict[str, str] | None = None) -> str:
     return done.stdout + done.stderr
 
 
-def _end_with_parent() -> None:
+def end_with_parent() -> None:
     """In the child: SIGTERM when its parent dies, however it dies. mpirun then ends its ranks; SIGKILL would not."""
     _libc.prctl(_PR_SET_PDEATHSIG, signal.SIGTERM)
 

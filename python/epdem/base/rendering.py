@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Templates to text: undefined names are errors, numbers keep every digit, templates compute nothing."""
 
+from functools import cache
 from pathlib import Path
 from typing import Any, TypeVar
 
@@ -49,7 +50,12 @@ def prepared(env: Prepared, *, reasons: bool = False) -> Prepared:
 
 def environment(*folders: Path, reasons: bool = False) -> jinja2.Environment:
     """The template environment: our templates, and `folders` before them; `reasons` as in `prepared`."""
-    loader = jinja2.FileSystemLoader([*folders, paths.templates()])
+    return _environment((*folders, paths.templates()), reasons)
+
+
+@cache  # with its templates, which take far longer to read than to fill
+def _environment(folders: tuple[Path, ...], reasons: bool) -> jinja2.Environment:
+    loader = jinja2.FileSystemLoader(folders)
     return prepared(jinja2.Environment(loader=loader, **OPTIONS), reasons=reasons)
 
 

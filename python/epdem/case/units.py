@@ -22,8 +22,19 @@ def _registry() -> Any:
     return pint.UnitRegistry(autoconvert_offset_to_baseunit=True)
 
 
+PREFIXES = {"n": 1e-9, "u": 1e-6, "m": 1e-3, "c": 1e-2, "k": 1e3, "M": 1e6, "G": 1e9}
+
+
 @cache
 def _factor(unit: str, si: str) -> float:
+    if unit == si:
+        return 1.0
+    if unit[1:] == si and not si.startswith("kg"):  # what most cases have, without the half second
+        return PREFIXES.get(unit[0]) or _by_pint(unit, si)
+    return _by_pint(unit, si)
+
+
+def _by_pint(unit: str, si: str) -> float:
     import pint
 
     registry = _registry()

@@ -13,8 +13,10 @@ from typing import Annotated, Any
 import typer
 
 from .. import __version__
+from ..base.printed import Printed
 from ..base.terminal import bar, console
 from ..errors import CaseError, EpdemError, Stopped
+from . import calibrate as cli_calibrate
 from . import crosscheck as cli_crosscheck
 from . import numerics as cli_numerics
 from . import scenes as cli_scene
@@ -72,6 +74,11 @@ def run(
     as_json: AsJson = False,
 ) -> None:
     """Run a case and check it against theory, or run a bulk scene (default engine: liggghts)."""
+    screen = console()
+    printed = Printed(case, out, engine, law, ranks, steps, force, as_json, screen.is_terminal, screen.width)
+    if not (fresh or resume) and (before := printed.again()):
+        print(before[0], end="")
+        raise typer.Exit(before[1])
     if cli_scene.is_scene(case):
         refuse(case, "a scene has its own law and time step", law=law, steps=steps)
         if len(set(engine or [])) > 1:
@@ -105,11 +112,21 @@ def run(
         )
         progress.update(task, advance=1, description="figure")
         report.figure(outcome)
+    code = 0 if outcome.passed else 1
+    print(_said(outcome, screen, as_json), end="")
+    outcome.reused = list(outcome.results.runs)
+    printed.keep(_said(outcome, screen, as_json), code)
+    raise typer.Exit(code)
+
+
+def _said(outcome: Any, screen: Any, as_json: bool) -> str:
+    from ..impacts import report
+
     if as_json:
-        print(report.run_json(outcome))
-    else:
-        report.show(outcome, console())
-    raise typer.Exit(0 if outcome.passed else 1)
+        return report.run_json(outcome) + "\n"
+    with screen.capture() as said:
+        report.show(outcome, screen)
+    return str(said.get())
 
 
 @app.command()
@@ -191,7 +208,7 @@ for command in (
     cli_scene.explain,
     cli_scene.tune,
     cli_scene.soften,
-    cli_scene.calibrate,
+    cli_calibrate.calibrate,
     cli_sweep.sweep,
     cli_sweep.status,
     cli_trees.header,

@@ -8,8 +8,7 @@ from typing import Annotated
 import typer
 
 from ..base.terminal import bar, console
-from ..errors import CaseError
-from .options import AsJson, CasePath, Replace, refuse
+from .options import AsJson, CasePath, Replace
 
 
 def is_scene(path: Path) -> bool:
@@ -116,8 +115,8 @@ def tune(
     as_json: AsJson = False,
 ) -> None:
     """Find the neighbour skin, and with --ranks the cut of the room, with which a scene runs fastest in LIGGGHTS."""
+    from ..base.terminal import status
     from ..studies import tune as t
-    from ..terminal import status
 
     with status() as line:
         found = t.tune(case, ranks=ranks, seconds=seconds, progress=lambda text: line(f"{case.stem}: {text}"))
@@ -184,44 +183,6 @@ def soften(
     )
     for warning in twin.warnings:
         print(f"warning: {warning}")
-
-
-def calibrate(
-    case: CasePath,
-    e_n: Annotated[float | None, typer.Option("--e-n", help="measured coefficient of restitution")] = None,
-    speed: Annotated[str | None, typer.Option(help='speed of that impact, as "2 m/s"')] = None,
-    hv: Annotated[float | None, typer.Option(help="Vickers hardness [kgf/mm^2] instead of an impact")] = None,
-    hb: Annotated[float | None, typer.Option(help="Brinell hardness [kgf/mm^2] instead of an impact")] = None,
-    dent_ratio: Annotated[
-        float | None,
-        typer.Option(help="Brinell test: diameter of the indentation over that of the ball (default: 0.375)"),
-    ] = None,
-    as_json: AsJson = False,
-) -> None:
-    """Compute the strength of the case's law from one measured e_n, or from a hardness."""
-    from ..case.units import read_number
-    from ..studies import calibrate as c
-
-    if (e_n is None) == (hv is None and hb is None):
-        raise CaseError("give one measurement: --e-n with --speed, or --hv, or --hb")
-    if hb is None:
-        refuse(case, "it belongs to --hb", dent_ratio=dent_ratio)
-    if e_n is not None:
-        if speed is None:
-            raise CaseError("--e-n belongs to one impact; add its speed, as --speed '2 m/s'")
-        result = c.from_restitution(case, e_n, read_number("--speed", speed, "m/s"))
-    else:
-        refuse(case, "it belongs to --e-n", speed=speed)
-        pressure = c.pressure_of_hardness(vickers=hv, brinell=hb, dent_ratio=dent_ratio)
-        result = c.from_hardness(case, pressure, f"HV {hv:g}" if hv is not None else f"HB {hb:g}")
-    if as_json:
-        print(json.dumps(vars(result), indent=1))
-        return
-    print(
-        f"law {result.law}, {result.source}: {result.parameter} = {result.value / 1e6:.6g} MPa, "
-        f"that is yield_stress = {result.yield_stress / 1e6:.6g} MPa, yield speed {result.yield_speed:.4g} m/s\n"
-        f'in the case file, under [law]: {result.parameter} = "{result.value / 1e6:.6g} MPa"'
-    )
 
 
 def deck_template(

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """The engines by name. A new engine is a module here and one line below."""
 
+from collections.abc import Callable
+
 from ..errors import CaseError
 from ..impacts.engine import Engine, OwnTheory, Trajectory
 from ..lammps.impacts import LammpsMdr
@@ -24,14 +26,15 @@ FOREIGN: dict[str, type[OwnTheory]] = {
 SCENES: dict[str, type[SceneEngine]] = {"liggghts": LiggghtsScenes, "yade": YadeScenes}
 
 
-def engine(name: str) -> Engine:
-    """The engine of that name. Raises CaseError."""
+def engine(name: str, *, stay: bool = False) -> Engine:
+    """The engine of that name; with `stay` its process stays for the next plan where it can. Raises CaseError."""
     known = ENGINES | OTHERS
     if name in FOREIGN:
         raise CaseError(f"--engine {name!r} has a law of its own, not the case's; see 'epdem crosscheck'")
     if name not in known:
         raise CaseError(f"--engine {name!r} does not exist; there are {', '.join(known)}")
-    return known[name]()
+    kind: Callable[..., Engine] = known[name]
+    return kind(stay=True) if stay and known[name].can.stays else kind()
 
 
 def scene_engine(name: str) -> SceneEngine:

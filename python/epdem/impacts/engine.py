@@ -4,6 +4,7 @@
 import math
 import shutil
 import time
+from collections.abc import Callable
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Protocol
@@ -35,6 +36,31 @@ class Trajectory:
 
 
 @dataclass(frozen=True)
+class Edit:
+    """`lines` after, or `instead` of, the one line of a deck that begins with `start`."""
+
+    start: str
+    lines: tuple[str, ...]
+    instead: bool = False
+
+
+@dataclass(frozen=True)
+class Edits:
+    """How the deck of an impact on a wall becomes another set-up.
+
+    `wall` is how the line of the wall begins, of which `second_wall` makes that of a wall at another height [m].
+    `carry` moves the sphere from its place down by a rise [m] and back, in cycles of so many steps. `unknown` samples
+    at the start are not known to the history of a contact that is there from the start.
+    """
+
+    deck: str
+    wall: str
+    second_wall: Callable[[str, float], str]
+    carry: Callable[[float, float, int], list[Edit]]
+    unknown: int = 0
+
+
+@dataclass(frozen=True)
 class Abilities:
     """The abilities of an engine; other code never tests its name."""
 
@@ -48,7 +74,9 @@ class Abilities:
     staggered: bool = False  # its velocity belongs to half a step before the position
     scenes: tuple[str, ...] = ()  # kinds of bulk scenes
     restarts: bool = False  # it continues an interrupted bulk scene
+    edits: Edits | None = None  # of its deck
     variants: tuple[str, ...] = ()  # of the same impacts that `run_pairs` can run, beside the plain one
+    stays: bool = False  # one process of it can run plan after plan; the class takes `stay`
 
 
 class Engine(Protocol):

@@ -64,7 +64,7 @@ def predict(experiment: Experiment) -> Prediction:
         yields = tuple(dict.fromkeys(b.material for b, strength in bodies if strength == softer))
     speeds = {
         b.material: float(first_yield_speed(law, b.yield_stress, m_star=experiment.m_star))
-        for b in pair
+        for b in {b.material: b for b in pair}.values()
         if b.yield_stress is not None and not b.rigid
     }
     caveats = tuple(validity.caveats(law, m_star=m_star, speed=speed))

@@ -17,6 +17,8 @@ from ..impacts.plan import Plan
 from ..lammps import data_file
 from . import dump, executable, launcher
 from .deck import Deck
+from .edits import EDITS
+from .kept import Kept
 from .log import loop_seconds
 from .pairs import velocities
 from .properties import HARD, SOFT, Property, atom_types, finite, of_law
@@ -34,8 +36,13 @@ class Liggghts:
         ranks=launcher.most_ranks(),
         scenes=SCENES,
         restarts=True,
+        edits=EDITS,
         variants=("swap", "sort", "migration", "restart"),
+        stays=True,
     )
+
+    def __init__(self, *, stay: bool = False):
+        self.kept = Kept() if stay else None
 
     def missing(self) -> str | None:
         return launcher.missing()
@@ -94,7 +101,10 @@ class Liggghts:
         path = folder / "path.bin"
         path.unlink(missing_ok=True)
         allowed = 120 + 2e-6 * plan.n * plan.steps
-        wall = launcher.run("in.impact", folder, ranks=ranks, log=launcher.LOG, seconds=allowed)
+        if self.kept and ranks == 1:
+            wall = self.kept.run("in.impact", folder, log=launcher.LOG, seconds=allowed)
+        else:
+            wall = launcher.run("in.impact", folder, ranks=ranks, log=launcher.LOG, seconds=allowed)
         result = trajectory(plan, path, {"total": wall, "stepping": loop_seconds(folder / launcher.LOG)})
         path.unlink()  # large
         return result

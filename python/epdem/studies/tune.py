@@ -18,11 +18,13 @@ from pathlib import Path
 import numpy as np
 import tomlkit
 
-from ..case.impact import named
+from ..base.files import atomic, write_texts
 from ..case.scene import Output, SceneCase, load
+from ..case.toml import named
+from ..engines import scene_engine
 from ..errors import EngineError
-from ..files import atomic, write_texts
 from ..liggghts import launcher, log, scene_deck
+from ..scenes.engine import check_abilities
 from ..scenes.plan import ScenePlan, plan
 
 SHARES = (0.25, 0.5, 0.75, 1.0, 1.5)  # of the smallest radius: skins that are tried
@@ -66,12 +68,12 @@ class Tuned:
     @property
     def choices(self) -> dict[str, tuple[str, str]]:
         """Key of [numerics] -> (value, reason) of what saves time for certain."""
-        found = {}
+        choices = {}
         if best := _better(self.skins):
-            found["skin"] = f"{float(best.value) * 1e3:.4g} mm", self._reason(best, self.skins[0])
+            choices["skin"] = f"{float(best.value) * 1e3:.4g} mm", self._reason(best, self.skins[0])
         if best := _better(self.cuts):
-            found["cut"] = str(best.value), self._reason(best, self.cuts[0])
-        return found
+            choices["cut"] = str(best.value), self._reason(best, self.cuts[0])
+        return choices
 
     @property
     def lines(self) -> list[str]:
@@ -170,7 +172,7 @@ def tune(path: Path, *, ranks: int = 1, seconds: float = 60.0, progress: Progres
         case = load(path)
         p = _silent(case)
         texts = scene_deck.files(p)
-    launcher.refuse_ranks(ranks)
+    check_abilities(scene_engine("liggghts"), p, ranks=ranks, resume=False)
     present = scene_deck.deck(p).skin
     others = sorted({float(f"{share * p.smallest:.2e}") for share in SHARES} - {present})
     skins = [present, *others]
@@ -178,26 +180,26 @@ def tune(path: Path, *, ranks: int = 1, seconds: float = 60.0, progress: Progres
     progress(f"{len(skins)} skins")
     deck, order = _pieces(texts, skins, p.steps, length)
     trials, steps = _of_skins(order, _run(deck, ranks, seconds), skins)
-    found = Tuned(tuple(trials), (), steps, p.steps, ranks)
+    result = Tuned(tuple(trials), (), steps, p.steps, ranks)
     if ranks == 1:
-        return found
-    best = float((_better(found.skins) or trials[0]).value)
+        return result
+    best = float((_better(result.skins) or trials[0]).value)
     runs: dict[str, Loops] = {}
     for cut in dict.fromkeys([case.numerics.cut or "", *_cuts(ranks)]):
         progress(_axes(cut))
         numerics = case.numerics.model_copy(update={"cut": cut or None})
         texts = scene_deck.files(_silent(case.model_copy(update={"numerics": numerics})))
         runs[cut] = _run(_pieces(texts, [best], steps * len(skins), length)[0], ranks, seconds)
-    return replace(found, cuts=tuple(_of_cuts(runs)))
+    return replace(result, cuts=tuple(_of_cuts(runs)))
 
 
-def write(path: Path, found: Tuned) -> None:
+def write(path: Path, result: Tuned) -> None:
     """Put the choices into [numerics] of the case file; its other comments and its order stay."""
-    if not found.choices:
+    if not result.choices:
         return
     document = tomlkit.parse(path.read_text(encoding="utf-8-sig"))
     numerics = document.setdefault("numerics", tomlkit.table())
-    for key, (value, reason) in found.choices.items():
+    for key, (value, reason) in result.choices.items():
         numerics[key] = tomlkit.item(value).comment(reason)
     with atomic(path) as temporary:
         temporary.write_text(document.as_string(), encoding="utf-8")

@@ -27,6 +27,8 @@ def bisect(
     """
     a, b = np.asarray(low, float), np.asarray(high, float)
     for _ in range(steps):
+        if np.all(a == b):
+            break
         middle = 0.5 * (a + b)
         below = rises(middle)
         a, b = np.where(below, middle, a), np.where(below, b, middle)

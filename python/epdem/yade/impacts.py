@@ -19,6 +19,7 @@ from ..impacts.places import side_by_side
 from ..impacts.plan import Plan
 from .deck import Deck, Group, Material, strength_values
 from .deck_modules.law import LAWS
+from .edits import EDITS
 from .launcher import command, environment, write_deck_modules
 from .pairs import velocities
 
@@ -30,7 +31,9 @@ class Yade:
 
     name = "yade"
     # a serial YADE keeps bodies where they are in memory and has no ranks: sorting and migration do not exist
-    can = Abilities(laws=tuple(LAWS), staggered=True, scenes=("settle", "compaction"), variants=("swap", "restart"))
+    can = Abilities(
+        laws=tuple(LAWS), staggered=True, scenes=("settle", "compaction"), edits=EDITS, variants=("swap", "restart")
+    )
     template = "yade/impact.py.j2"
 
     def missing(self) -> str | None:

@@ -49,7 +49,7 @@ def samplers(names: list[str], folder: Path) -> list[Sampler]:
         tool = engine(name)
         if reason := tool.missing():
             raise EngineError(f"engine {name}: {reason}")
-        chosen.append(EmbeddedSampler() if name == "embedded" else PositionSampler(tool, folder / name))
+        chosen.append(PositionSampler(tool, folder / name) if tool.can.positions else EmbeddedSampler())
     return chosen
 
 

@@ -7,14 +7,11 @@ from ...theory.backbones import Backbone
 from ...theory.numerics import gauss
 from .running import BROKEN, CREATED, LEAST_ORDER, Setting, Verdict, slope
 from .sampling import PositionSampler, Sampler
-from .variants import between_walls
+from .variants import between_walls, edits
 
 SHARES = (0.16, 0.08, 0.04, 0.02, 0.01)  # of the limit of two springs, 1/sqrt(2) of that of one
 COARSE = np.arange(0.2, 1.51, 0.1)
 POSITION_COARSE = (0.3, 0.7, 1.0, 1.5)  # an engine's start-up costs more than its steps
-# LIGGGHTS evaluates the contacts at t = 0 without keeping their history: an overlap that is there from the start
-# is known to the law one step later, so the balance begins there.
-KNOWN = {"liggghts": 1}
 PERIODS = 20.0  # length of a run in stability limits
 
 
@@ -78,7 +75,7 @@ def path(s: Setting, sampler: Sampler, share: float) -> tuple[np.ndarray, np.nda
     time_step, steps = share * s.limit / np.sqrt(2.0), int(PERIODS / share)
     if isinstance(sampler, PositionSampler):
         got = between_walls(s, sampler, s.overlap_max / 2, time_step, steps)
-        known = KNOWN.get(sampler.name, 0)
+        known = edits(sampler).unknown  # the balance begins where the law knows the overlaps of the start
         return got.overlap[0, known:], got.velocity[0, known:]
     return embedded_path(s, time_step, steps)
 

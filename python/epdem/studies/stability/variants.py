@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 
 from ...errors import EngineError
-from ...impacts.engine import Trajectory
+from ...impacts.engine import Edit, Edits, Trajectory
 from ...impacts.plan import Plan
 from .running import Setting
 from .sampling import PositionSampler
@@ -14,61 +14,42 @@ from .sampling import PositionSampler
 CYCLE = 64  # samples of a cycle of overlaps: a triangle, up in the first half
 LOWEST = 1 / 32  # smallest overlap of a cycle over the largest: contacts that end lose their history
 
-DECK = {"liggghts": "in.impact", "yade": "impact.py"}
-# the line that makes the wall at height 0, and what makes of it the line of a second wall at `z`
-WALL = {
-    "liggghts": ("fix target all wall/gran", {"fix target": "fix ceiling", "zplane 0.0": "zplane {z!r}"}),
-    "yade": ("O.bodies.append(wall(0,", {"wall(0,": "wall({z!r},"}),
-}
+
+def edits(sampler: PositionSampler) -> Edits:
+    """The edits of an engine's deck. Raises EngineError for an engine without."""
+    if (known := sampler.engine.can.edits) is None:
+        raise EngineError(f"engine {sampler.name}: its deck cannot be made into another set-up")
+    return known
 
 
-def edit(deck: Path, start: str, *after: str, instead: bool = False) -> str:
-    """Put lines after (or `instead` of) the one line that starts with `start`; returns that line.
-
-    Raises EngineError if there is not exactly one.
-    """
+def edit(deck: Path, change: Edit) -> str:
+    """Change a deck; returns the line at which it is changed. Raises EngineError if there is not exactly one."""
     lines = deck.read_text(encoding="utf-8").splitlines()
-    places = [k for k, line in enumerate(lines) if line.startswith(start)]
+    places = [k for k, line in enumerate(lines) if line.startswith(change.start)]
     if len(places) != 1:
-        raise EngineError(f"{deck}: {len(places)} lines start with {start!r}, expected 1")
+        raise EngineError(f"{deck}: {len(places)} lines start with {change.start!r}, expected 1")
     at = places[0]
     line = lines[at]
-    lines[at : at + 1] = after if instead else [line, *after]
+    lines[at : at + 1] = change.lines if change.instead else [line, *change.lines]
     deck.write_text("\n".join(lines) + "\n", encoding="utf-8")
     return line
 
 
 def between_walls(s: Setting, sampler: PositionSampler, overlap: float, time_step: float, steps: int) -> Trajectory:
     """A sphere that overlaps two walls by `overlap` [m] at the start and moves towards the first."""
-    x, deck = s.x, sampler.folder / DECK[sampler.name]
-    p = Plan(x, time_step, steps, 1, x.speed[:1], np.array([-overlap]))
+    x, known = s.x, edits(sampler)
+    p, deck = Plan(x, time_step, steps, 1, x.speed[:1], np.array([-overlap])), sampler.folder / known.deck
     sampler.engine.write(p, sampler.folder)
-    start, changes = WALL[sampler.name]
-    second = edit(deck, start)
-    for old, new in changes.items():
-        second = second.replace(old, new.format(z=2 * (x.body.radius - overlap)))
-    edit(deck, start, second)
+    first = edit(deck, Edit(known.wall, ()))
+    edit(deck, Edit(known.wall, (known.second_wall(first, 2 * (x.body.radius - overlap)),)))
     return sampler.engine.run(p, sampler.folder)
 
 
 def carried(s: Setting, sampler: PositionSampler, cycles: int) -> Trajectory:
     """A sphere carried from LOWEST to its largest overlap and back, `cycles` times CYCLE steps with the same bits."""
-    deck, low, R = sampler.folder / DECK[sampler.name], LOWEST * s.overlap_max, s.x.body.radius
+    known, low = edits(sampler), LOWEST * s.overlap_max
     p = Plan(s.x, 1e-3 * s.limit, cycles * CYCLE, 1, np.zeros(1), np.array([-low]))
     sampler.engine.write(p, sampler.folder)
-    rise, half = s.overlap_max - low, CYCLE // 2
-    if sampler.name == "liggghts":
-        edit(
-            deck,
-            "fix motion",
-            f"variable at equal step-{CYCLE}*floor(step/{CYCLE})",
-            f"variable dz atom {-rise!r}*(1-abs(v_at/{half}-1))",
-            "variable vz atom 0",
-            "fix motion all move variable NULL NULL v_dz NULL NULL v_vz",
-            instead=True,
-        )
-    else:
-        edit(deck, "states =", "for s in states:", '    s.blockedDOFs = "xyzXYZ"')
-        height = f"{R - low!r} - {rise!r} * (1 - abs((O.iter + 1) % {CYCLE} / {half} - 1))"
-        edit(deck, "    now[2]", "    for s in states:", f"        s.pos = (s.pos[0], s.pos[1], {height})")
+    for change in known.carry(s.x.body.radius - low, s.overlap_max - low, CYCLE):
+        edit(sampler.folder / known.deck, change)
     return sampler.engine.run(p, sampler.folder)

@@ -4,6 +4,7 @@
 import contextlib
 import errno
 import shutil
+from functools import cache
 from pathlib import Path
 from typing import Any
 
@@ -13,7 +14,7 @@ from ...case import impact, scene
 from ...case.toml import named
 from ...engines import engine, scene_engine
 from ...errors import CaseError, EngineError, EpdemError
-from ...impacts.engine import refuse
+from ...impacts.engine import Engine, refuse
 from ...impacts.experiment import experiment
 from ...impacts.plan import plan
 from ...impacts.prediction import predict
@@ -65,15 +66,20 @@ def evaluate(sweep: Sweep, folder: Path, number: int, *, resume: bool = True) ->
     return ""
 
 
+@cache
+def _tools(names: tuple[str, ...]) -> tuple[Engine, ...]:
+    """Engines of impacts; a process that works at many points starts each of them once."""
+    return tuple(engine(name, stay=True) for name in names)
+
+
 def _impacts(sweep: Sweep, number: int, place: Path) -> dict[str, list[Any]]:
     """The comparison with theory, a row for every speed, engine and law."""
     case, tables = impact.parse(sweep.data(number), store.CASE), []
-    tools = [engine(name) for name in sweep.engines]
     for law in sweep.laws or (None,):
         x = experiment(case, law)
         prediction = predict(x)
         p = plan(x, prediction)
-        for tool in tools:
+        for tool in _tools(sweep.engines):
             refuse(tool, p, prediction, ranks=sweep.ranks)
             at = place / x.law.name / tool.name if tool.can.deck else place
             tables.append(run_and_compare(p, prediction, tool, at, ranks=sweep.ranks)[0])

@@ -10,6 +10,7 @@ import copy
 import hashlib
 import json
 import os
+import re
 import socket
 import time
 from dataclasses import asdict, dataclass, field
@@ -56,20 +57,32 @@ class Sweep:
         return is_scene(self.tables)
 
     @cached_property
-    def _document(self) -> tomlkit.TOMLDocument:
-        return tomlkit.parse(self.case)
-
-    @cached_property
     def units(self) -> dict[str, str | None]:
         """The SI unit of each key that the points set; None for what is no quantity."""
         keys = keys_of(self.tables)
         return {name: keys[name].unit for point in self.points[:1] for name in point}
 
+    @cached_property
+    def _pieces(self) -> list[str]:
+        """The case file cut at the values of the keys that the points set, each of which stands as its key."""
+        document = tomlkit.parse(self.case)
+        marks = {key: f"epdem value {n}" for n, key in enumerate(self.points[0])}
+        for key, mark in marks.items():
+            assign(document, key, mark)
+        keys = {f'"{mark}"': key for key, mark in marks.items()}
+        return [keys.get(piece, piece) for piece in re.split(r'("epdem value \d+")', document.as_string())]
+
     def text(self, number: int) -> str:
         """The case file of a point, comments and all."""
-        for key, value in self.points[number - 1].items():  # every point sets the same keys
-            assign(self._document, key, value)
-        return self._document.as_string()
+        point = self.points[number - 1]  # every point sets the same keys
+        if "law.name" in point or not all(isinstance(value, str | int | float) for value in point.values()):
+            document = tomlkit.parse(self.case)  # other keys may go, or tables come
+            for key, value in point.items():
+                assign(document, key, value)
+            return document.as_string()
+        pieces = self._pieces.copy()
+        pieces[1::2] = [tomlkit.item(point[key]).as_string() for key in pieces[1::2]]
+        return "".join(pieces)
 
     def data(self, number: int) -> dict[str, Any]:
         """The TOML tables of a point's case."""

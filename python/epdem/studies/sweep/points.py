@@ -131,30 +131,32 @@ def _value(text: str, place: str) -> Value:
     return value if len(table) == 1 and isinstance(value, str | int | float | list | dict) else text.strip()
 
 
-def settings(texts: Sequence[str]) -> dict[str, str]:
-    """KEY=VALUES as a command gives them. Raises CaseError."""
+def settings(
+    texts: Sequence[str], option: str = "--set", example: str = "impact.body.radius='1 mm,2 mm'"
+) -> dict[str, str]:
+    """KEY=VALUES as a command gives them behind an option. Raises CaseError, which shows the example."""
     given: dict[str, str] = {}
     for text in texts:
         key, equals, values = text.partition("=")
         if not equals or not key.strip() or not values.strip():
-            raise CaseError(f"--set {text!r}: write KEY=VALUES, as impact.body.radius='1 mm,2 mm'")
+            raise CaseError(f"{option} {text!r}: write it as {option} {example}")
         if key.strip() in given:
-            raise CaseError(f"--set {key.strip()}: given twice; write all its values behind one")
+            raise CaseError(f"{option} {key.strip()}: given twice; write all its values behind one")
         given[key.strip()] = values
     return given
 
 
-def axes(given: Mapping[str, str | Sequence[Value]], keys: dict[str, Key]) -> dict[str, Axis]:
+def axes(given: Mapping[str, str | Sequence[Value]], keys: dict[str, Key], option: str = "--set") -> dict[str, Axis]:
     """The values of each key, from text as in `axis` or from a sequence of values. Raises CaseError."""
     axes: dict[str, Axis] = {}
     for name, values in given.items():
-        key = known(name, keys, f"--set {name}")
+        key = known(name, keys, f"{option} {name}")
         if isinstance(values, str):
-            axes[name] = axis(values, key, f"--set {name}")
+            axes[name] = axis(values, key, f"{option} {name}")
         else:
             axes[name] = Listed(tuple(with_unit(v, key) for v in values))
             if not axes[name].values():
-                raise CaseError(f"--set {name}: no values; give at least one")
+                raise CaseError(f"{option} {name}: no values; give at least one")
     return axes
 
 
@@ -168,6 +170,25 @@ def with_unit(value: Value, key: Key) -> Value:
     if key.unit not in (None, "1") and isinstance(value, int | float) and not isinstance(value, bool):
         return f"{float(value)!r} {key.unit}"
     return value
+
+
+def plain(value: Any) -> Any:
+    """Arrays and tuples as lists, at any depth."""
+    if isinstance(value, Mapping):
+        return {str(k): plain(v) for k, v in value.items()}
+    if isinstance(value, np.ndarray):
+        return value.tolist()
+    return [plain(v) for v in value] if isinstance(value, list | tuple) else value
+
+
+def with_units(value: Any, names: dict[str, Key], place: str = "") -> Any:
+    """Tables of a program as a case file has them: see `with_unit`. `names`: every key of the case."""
+    below = f"{place}." if place else ""
+    if isinstance(value, dict):
+        return {k: with_units(v, names, f"{below}{k}") for k, v in value.items()}
+    if isinstance(value, list) and any(isinstance(v, dict) for v in value):
+        return [with_units(v, names, f"{below}{n}") for n, v in enumerate(value)]
+    return with_unit(value, names.get(place, Key()))
 
 
 def grid(all_axes: dict[str, Axis]) -> list[Point]:

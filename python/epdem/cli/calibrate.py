@@ -1,0 +1,101 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""The command `epdem calibrate`."""
+
+import json
+from pathlib import Path
+from typing import Annotated, Any
+
+import typer
+
+from ..errors import CaseError
+from .options import AsJson, CasePath, Force, Out, refuse
+
+
+def calibrate(
+    case: CasePath,
+    e_n: Annotated[float | None, typer.Option("--e-n", help="measured coefficient of restitution")] = None,
+    speed: Annotated[str | None, typer.Option(help='speed of that impact, as "2 m/s"')] = None,
+    hv: Annotated[float | None, typer.Option(help="Vickers hardness [kgf/mm^2] instead of an impact")] = None,
+    hb: Annotated[float | None, typer.Option(help="Brinell hardness [kgf/mm^2] instead of an impact")] = None,
+    dent_ratio: Annotated[
+        float | None,
+        typer.Option(help="Brinell test: diameter of the indentation over that of the ball (default: 0.375)"),
+    ] = None,
+    target: Annotated[
+        list[str] | None,
+        typer.Option(metavar="NAME=VALUE", help='number of a scene\'s results, as plate_force_max="12 N"; repeat'),
+    ] = None,
+    free: Annotated[
+        list[str] | None,
+        typer.Option(metavar="KEY=LOW..HIGH", help="key of the scene to be found, and its range; up to three"),
+    ] = None,
+    tolerance: Annotated[float | None, typer.Option(help="largest relative error of a target (default: 0.01)")] = None,
+    engine: Annotated[str | None, typer.Option("--engine", "-e", help="of the scene (default: liggghts)")] = None,
+    ranks: Annotated[int | None, typer.Option(min=1, max=1024, help="MPI ranks of each scene (default: 1)")] = None,
+    jobs: Annotated[int | None, typer.Option("--jobs", "-j", min=1, help="scenes at once (default: cores)")] = None,
+    out: Out = None,
+    force: Force = False,
+    as_json: AsJson = False,
+) -> None:
+    """Compute the strength of a law from one e_n or a hardness, or keys of a scene from numbers of its results."""
+    of_scene = {"tolerance": tolerance, "engine": engine, "ranks": ranks, "jobs": jobs, "out": out, "force": force}
+    if target or free:
+        refuse(
+            case, "it does not go with --target and --free", e_n=e_n, speed=speed, hv=hv, hb=hb, dent_ratio=dent_ratio
+        )
+        _of_scene(case, target or [], free or [], {k: v for k, v in of_scene.items() if v is not None}, as_json)
+        return
+    refuse(case, "it goes with --target and --free", **of_scene)
+    _of_impact(case, e_n, speed, hv, hb, dent_ratio, as_json)
+
+
+def _of_scene(case: Path, target: list[str], free: list[str], options: dict[str, Any], as_json: bool) -> None:
+    from ..studies.fit import fit
+    from ..studies.sweep.points import settings
+    from . import sweep_view
+
+    targets = settings(target, "--target", "plate_force_max='12 N'")
+    with sweep_view.progress() as report:
+        found = fit(case, targets, settings(free, "--free", "contact.friction=0.1..0.9"), report=report, **options)
+    if as_json:
+        print(json.dumps(vars(found) | {"case": str(found.case)}, indent=1))
+        return
+    for key, value in found.values.items():
+        print(f"{key} = {value}")
+    for name, value in found.numbers.items():
+        print(f"  gives {name} = {value:.6g} {found.units[name]}".rstrip() + f" (target {found.targets[name]:.6g})")
+    print(f"{found.points} scenes, {found.ran} of them just now; the case with these values: {found.case}")
+
+
+def _of_impact(
+    case: Path,
+    e_n: float | None,
+    speed: str | None,
+    hv: float | None,
+    hb: float | None,
+    dent_ratio: float | None,
+    as_json: bool,
+) -> None:
+    from ..case.units import read_number
+    from ..studies import calibrate as c
+
+    if (e_n is None) == (hv is None and hb is None):
+        raise CaseError("give one measurement: --e-n with --speed, or --hv, or --hb")
+    if hb is None:
+        refuse(case, "it belongs to --hb", dent_ratio=dent_ratio)
+    if e_n is not None:
+        if speed is None:
+            raise CaseError("--e-n belongs to one impact; add its speed, as --speed '2 m/s'")
+        result = c.from_restitution(case, e_n, read_number("--speed", speed, "m/s"))
+    else:
+        refuse(case, "it belongs to --e-n", speed=speed)
+        pressure = c.pressure_of_hardness(vickers=hv, brinell=hb, dent_ratio=dent_ratio)
+        result = c.from_hardness(case, pressure, f"HV {hv:g}" if hv is not None else f"HB {hb:g}")
+    if as_json:
+        print(json.dumps(vars(result), indent=1))
+        return
+    print(
+        f"law {result.law}, {result.source}: {result.parameter} = {result.value / 1e6:.6g} MPa, "
+        f"that is yield_stress = {result.yield_stress / 1e6:.6g} MPa, yield speed {result.yield_speed:.4g} m/s\n"
+        f'in the case file, under [law]: {result.parameter} = "{result.value / 1e6:.6g} MPa"'
+    )
