@@ -1,5 +1,5 @@
 # Each target is one line that calls a script or a tool.
-.PHONY: setup demo test bench docs tidy sanitize clean
+.PHONY: setup demo test bench docs tidy sanitize wheel deb trees clean
 
 setup:
 	@scripts/setup
@@ -25,5 +25,16 @@ tidy: setup
 sanitize: setup
 	.venv/bin/python scripts/sanitize
 
+# PYTHONS="python3 /path/to/other": the wheel is tried in a clean environment of each
+wheel: setup
+	@scripts/wheel $(PYTHONS)
+
+deb: setup
+	@scripts/deb
+
+# TREES="/path/to/lmp_auto ...": executables of other trees that were built after `epdem header`
+trees: setup
+	@.venv/bin/python scripts/trees $(TREES)
+
 clean:
-	rm -rf .venv build runs
+	rm -rf .venv build dist runs
