@@ -15,7 +15,7 @@ RADIUS, SHRINK = 2e-3, 0.999
 
 DECK = """atom_style granular
 atom_modify map array
-boundary p p p
+boundary {boundary}
 newton off
 communicate single vel yes
 units si
@@ -29,7 +29,7 @@ fix p2 all property/global yieldStress peratomtype {Y}
 fix p3 all property/global coefficientYieldRatio peratomtype {ratio}
 {surface}pair_style gran model {model} tangential history {words}
 pair_coeff * *
-timestep {dt}
+{bed}timestep {dt}
 fix move all nve/sphere
 compute contacts all contact/atom
 compute touching all reduce sum c_contacts
@@ -80,6 +80,7 @@ def deck(
     lists="",
     types=1,
     words="",
+    bed=False,
 ):
     foreign = model == "thornton_ning"
     beside = {"rolling_friction": "coefficientRollingFriction", "cohesion": "cohesionEnergyDensity"}
@@ -91,6 +92,13 @@ def deck(
     return DECK.format(
         model=model,
         words=words,
+        boundary="p p f" if bed else "p p p",
+        bed=(
+            f"fix floor all wall/gran model {model} tangential history {words} primitive type 1 zplane 0.0\n"
+            "fix weight all gravity 9.81 vector 0 0 -1\n"
+            if bed
+            else ""
+        ),
         E=per_type(1e8),
         nu=" ".join(["0.3"] * types),
         p_y=per_type(1e6),
@@ -111,6 +119,60 @@ def deck(
     )
 
 
+SIZES = (1.2e-3, 1.5e-3, 1.8e-3, 2.1e-3, 2.4e-3)  # radii of the bed
+EDGE, HEIGHT, COUNT = 0.08, 0.6, 8000
+POURED = """atom_style granular
+atom_modify map array
+boundary p p f
+newton off
+communicate single vel yes
+units si
+region box block 0 {edge} 0 {edge} 0 {height}
+create_box 1 box
+neighbor 8e-4 bin
+neigh_modify delay 0
+fix m1 all property/global youngsModulus peratomtype 1e7
+fix m2 all property/global poissonsRatio peratomtype 0.3
+{pairs}pair_style gran model hertz tangential history
+pair_coeff * *
+fix floor all wall/gran model hertz tangential history primitive type 1 zplane 0.0
+fix weight all gravity 9.81 vector 0 0 -1
+{templates}fix mix all particledistribution/discrete 15485867 {n} {shares}
+fix fill all insert/pack seed 15485863 distributiontemplate mix insert_every once overlapcheck yes all_in yes &
+ vel constant 0 0 -1 region box particles_in_region {count}
+timestep 1e-5
+fix move all nve/sphere
+run 30000
+dump d all custom 1 bed.txt id radius x y z
+run 0
+"""
+
+
+def poured():
+    """The deck of a bed of five sizes that falls on a floor and comes to rest; its last positions are in bed.txt."""
+    templates = "".join(
+        f"fix t{k} all particletemplate/sphere {seed} atom_type 1 density constant 2500 radius constant {r!r}\n"
+        for k, (r, seed) in enumerate(zip(SIZES, (15485917, 15485927, 15485933, 15485941, 15485959), strict=True))
+    )
+    return POURED.format(
+        edge=EDGE,
+        height=HEIGHT,
+        count=COUNT,
+        n=len(SIZES),
+        templates=templates,
+        shares=" ".join(f"t{k} {1 / len(SIZES)!r}" for k in range(len(SIZES))),
+        pairs=per_pair("coefficientRestitution", 0.3, 1) + per_pair("coefficientFriction", 0.5, 1),
+    )
+
+
+def bed_data(text):
+    """The data file of the bed from bed.txt."""
+    rows = [line.split() for line in text.splitlines()[9:]]
+    lines = ["bed", "", f"{len(rows)} atoms", "1 atom types", "", f"0.0 {EDGE} xlo xhi", f"0.0 {EDGE} ylo yhi"]
+    lines += [f"0.0 {HEIGHT} zlo zhi", "", "Atoms", ""]
+    return "\n".join([*lines, *(f"{i} 1 {2 * float(r)!r} 2500.0 {x} {y} {z}" for i, r, x, y, z in rows), ""])
+
+
 FROZEN = {"data": (17, 1.01, 0.03), "steps": 100}
 DYNAMIC = {"data": (17, 0.985, 0.002, 0.05), "steps": 150}
 SHEARED = {"data": (17, 0.985, 0.002, 0.05, 0.5), "steps": 150}
@@ -123,6 +185,8 @@ SCENES = {
     "frozen, 2 ranks": FROZEN | {"run": {"ranks": 2}},
     "moving": DYNAMIC | {"run": MOVING},
     "moving, two materials": DYNAMIC | {"data": (17, 0.985, 0.002, 0.05, 0.0, 2), "run": MOVING | {"types": 2}},
+    # five sizes that came to rest on a floor, under their weight
+    "settled bed": {"data": None, "steps": 200, "run": {"dt": "1e-6", "unload": False, "warm": 20, "bed": True}},
     "moving, 2 ranks": DYNAMIC | {"run": MOVING | {"ranks": 2}},
     # a thin skin, and the neighbour lists made anew every 18 steps for every model
     "moving, sheared": SHEARED | {"run": MOVING | THIN},

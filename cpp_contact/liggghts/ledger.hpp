@@ -43,17 +43,15 @@ class Ledger {
   template <bool wall, class Law>
   void book(const Law& law, double R_star, const State<Law>& before, const Step<Law>& now, double delta,
             const Bodies& bodies) {
-    const double stored = elastic_energy(law, R_star, now, delta);
-    share<wall>(plastic_growth(law, R_star, before, now, stored), stored, bodies);
-  }
-
-  /// To the bodies: plastic work by which a contact grew, elastic energy that it holds [J].
-  template <bool wall>
-  void share(double grown, double stored, const Bodies& bodies) {
-    constexpr double part = wall ? 1.0 : 0.5;
+    const double stored = elastic_energy(law, R_star, now, delta), part = wall ? 1.0 : 0.5;
+    const double grown = plastic_growth(law, R_star, before, now, stored);
     credit(bodies.i, part * grown, part * stored);
     if (!wall && bodies.j < bodies.nlocal) credit(bodies.j, part * grown, part * stored);
   }
+
+  /// One number per body [J], for a loop that books by itself as `book` does.
+  double* work() { return work_->vector_atom; }
+  double* energy() { return energy_->vector_atom; }
 
  private:
   static constexpr const char* work_name = "plasticWork";

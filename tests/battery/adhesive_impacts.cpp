@@ -80,7 +80,7 @@ void plain(const Law& law, double R_star) {
     std::cin >> alpha;
     const auto now = step(law, R_star, state, alpha);
     state = now.after;
-    std::printf("%.17g %.17g %.17g ", now.force, now.radius, elastic_energy(law, R_star, state, alpha));
+    std::printf("%.17g %.17g %.17g ", now.force, now.radius, elastic_energy(law, R_star, now, alpha));
   }
   std::printf("\n");
 }

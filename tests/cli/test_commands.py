@@ -21,6 +21,10 @@ from epdem.studies import crosscheck
 STEEL = (CASES / "steel_wall.toml").read_text()
 SPEEDS = STEEL[STEEL.index("speeds =") : STEEL.index("\n", STEEL.index("speeds ="))]
 ONE_SPEED = STEEL.replace(SPEEDS, 'speeds = ["5 m/s"]')
+FEW_BEADS = (
+    (CASES / "settle_glass.toml").read_text().replace("count = 1000", "count = 30").replace('"0.5 s"', '"0.1 s"')
+)
+FEW_BEADS = FEW_BEADS.replace("error = 1e-2", "time_step = '5e-5 s'")
 TITLE = "[/y] [red]steel[/] :smile: $\\\\frac$ [mm]"
 
 DOCUMENTS = {  # words, and what the document must hold
@@ -44,6 +48,7 @@ DOCUMENTS = {  # words, and what the document must hold
         ["steel.toml", "-e", "embedded", "--set", "impact.body.radius=1 mm,2 mm", "-j", "1"],
         lambda d: d["passed"] and d["done"] == 2,
     ),
+    "tune": (["beads.toml"], lambda d: d["ranks"] == 1 and len(d["trials"]) == 5 and not d["written"]),
     "status": (["swept"], lambda d: (d["points"], d["done"], d["waiting"]) == (2, 0, 2)),
     "cite": (["steel.toml"], lambda d: "Thornton" in d["law thornton, Thornton 1997"] and "Kloss" in d["liggghts"]),
     "header": (["-o", "."], lambda d: d["files"][0] == "normal_model_ep.cpp" and not d["lacks"]),
@@ -64,6 +69,7 @@ MISTAKES = {  # words, and what the sentence must hold
     "explain": (["bad.toml"], "bad.toml: not valid TOML"),
     "soften": (["steel.toml", "-k", "-3"], "--factor -3, must be > 0"),
     "calibrate": (["steel.toml"], "give one measurement"),
+    "tune": (["steel.toml"], "steel.toml is a case of impacts"),
     "cite": (["steel.toml", "-e", "abaqus"], "'abaqus' does not exist; there are embedded"),
     "header": (["--check", "."], "contact_models.h is not there; name the folder src"),
     "sweep": (["steel.toml", "--set", "impact.body.radios=1 mm"], "the nearest: impact.body.radius"),
@@ -90,6 +96,8 @@ def test_a_command_prints_one_json_document_and_nothing_else(command, folder, ca
     monkeypatch.setattr(crosscheck, "FOREIGN", {})
     if command == "status":
         make_sweep("steel.toml", folder / "swept")
+    if command == "tune":
+        (folder / "beads.toml").write_text(FEW_BEADS)
     words, holds = DOCUMENTS[command]
     done = call([command, *words, "--json"], capsys, monkeypatch)
     assert done.code == 0 or command == "doctor", done.err
@@ -137,6 +145,8 @@ def test_long_values_are_cut_at_80_characters(folder, capsys, monkeypatch):
 
 
 def test_two_cases_of_one_file_name_do_not_share_a_folder(folder, capsys, monkeypatch):
+    for name in ("ENGINES", "OTHERS", "FOREIGN"):
+        monkeypatch.setattr(crosscheck, name, {"embedded": ENGINES["embedded"]} if name == "ENGINES" else {})
     (folder / "b").mkdir()
     shutil.copy("steel.toml", "b/steel.toml")
     done = call(["crosscheck", "steel.toml", "b/steel.toml", "-o", "out"], capsys, monkeypatch)

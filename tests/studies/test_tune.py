@@ -44,7 +44,7 @@ def test_trials_take_the_steps_of_the_scene_in_turns(tmp_path, monkeypatch):
     ends = [int(x) for x in re.findall(r"^run (\d+) upto$", decks[0], re.M)]
     assert ends[-1] == plan(load(path)).steps and len(skins) == len(ends) >= 2 * len(found.skins)
     assert skins[: len(found.skins)] == skins[len(found.skins) : 2 * len(found.skins)][::-1]
-    assert found.skins[0].value == 0.35e-3 and {t.value for t in found.skins} == set(skins)
+    assert found.skins[0].value == 0.7e-3 and {t.value for t in found.skins} == set(skins)
     pieces = [b - a for a, b in zip([0, *ends], ends, strict=False)]
     taken = {x: sum(n for n, at in zip(pieces, skins, strict=True) if at == x) for x in skins}
     assert max(taken.values()) - min(taken.values()) <= max(pieces)  # the last turn may be incomplete

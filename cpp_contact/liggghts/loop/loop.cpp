@@ -208,9 +208,27 @@ void PairLoop::scatter(int n) {
   }
 }
 
+/// Halves of the energies of each pair to its bodies, in the order of the list.
 void PairLoop::book(Ledger& ledger, int n) {
   const Block& b = *block_;
-  for (int k = 0; k < n; ++k) ledger.share<false>(b.grown.a[k], b.stored.a[k], {b.i[k], b.j[k], atom->nlocal});
+  double *const work = ledger.work(), *const energy = ledger.energy();
+  const int nlocal = atom->nlocal;
+  double others[2] = {};
+  for (int k = 0; k < n;) {
+    const int i = b.i[k];
+    double work_i = work[i], energy_i = energy[i];
+    do {
+      const int j = b.j[k];
+      const double grown = b.grown.a[k] > 0.0 ? 0.5 * b.grown.a[k] : 0.0, stored = 0.5 * b.stored.a[k];
+      work_i += grown;
+      energy_i += stored;
+      *(j < nlocal ? work + j : others) += grown;
+      *(j < nlocal ? energy + j : others + 1) += stored;
+      ++k;
+    } while (k < n && b.i[k] == i);
+    work[i] = work_i;
+    energy[i] = energy_i;
+  }
 }
 
 }  // namespace epdem::liggghts::loop

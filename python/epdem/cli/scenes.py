@@ -119,25 +119,25 @@ def tune(
     from ..studies import tune as t
 
     with status() as line:
-        found = t.tune(case, ranks=ranks, seconds=seconds, progress=lambda text: line(f"{case.stem}: {text}"))
+        tuned = t.tune(case, ranks=ranks, seconds=seconds, progress=lambda text: line(f"{case.stem}: {text}"))
     if write:
-        t.write(case, found)
-    rows = [(x, *x.saves(trials[0])) for trials in (found.skins, found.cuts) for x in trials]
+        t.write(case, tuned)
+    rows = [(x, *x.saves(trials[0])) for trials in (tuned.skins, tuned.cuts) for x in trials]
     if as_json:
         named = ("trial", "seconds_per_step", "saves", "error")
         trials = [dict(zip(named, (x.name, x.seconds, saved, error), strict=True)) for x, saved, error in rows]
-        head = {"steps_per_skin": found.steps, "steps_of_the_scene": found.scene_steps, "ranks": found.ranks}
-        print(json.dumps(head | {"trials": trials, "numerics": found.lines, "written": write and bool(found.lines)}))
+        head = {"steps_per_skin": tuned.steps, "steps_of_the_scene": tuned.scene_steps, "ranks": tuned.ranks}
+        print(json.dumps(head | {"trials": trials, "numerics": tuned.lines, "written": write and bool(tuned.lines)}))
         return
     for x, saved, error in rows:
         print(f"{x.name}: {x.seconds * 1e6:.4g} us per step, saves {saved:.1%} +- {error:.1%}")
-    share = found.steps * len(found.skins) / found.scene_steps
-    print(f"{found.steps} steps with each skin, in turns over {share:.0%} of the scene")
-    if not found.lines:
+    share = tuned.steps * len(tuned.skins) / tuned.scene_steps
+    print(f"{tuned.steps} steps with each skin, in turns over {share:.0%} of the scene")
+    if not tuned.lines:
         print(f"nothing saves more than {t.WORTH:.0%} for certain: the case stays as it is")
         return
     place = f"written to {case}, under [numerics]:" if write else "for the case, under [numerics] (or with --write):"
-    print(place, *found.lines, sep="\n")
+    print(place, *tuned.lines, sep="\n")
 
 
 def soften(

@@ -12,7 +12,7 @@ from . import stl
 from .insertions import Insertion, insertions
 from .properties import HARD, SOFT, Property, elastic, per_pair, ratios, strength
 
-SKIN = 0.25  # of the smallest radius: rebuilds cost less than idle neighbours
+SKIN = 0.5  # of the smallest radius: rebuilds cost less than idle neighbours
 
 
 @dataclass(frozen=True)
