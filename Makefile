@@ -1,5 +1,5 @@
 # Each target is one line that calls a script or a tool.
-.PHONY: setup demo test walltime bench docs tidy sanitize clean
+.PHONY: setup demo test walltime bench docs tidy sanitize versions fuzz valgrind reliability tutorials wheel deb trees clean
 
 setup:
 	@scripts/setup
@@ -29,5 +29,36 @@ tidy: setup
 sanitize: setup
 	.venv/bin/python scripts/sanitize
 
+# the oldest and the newest Python packages instead of those of scripts/constraints.txt
+versions: setup
+	.venv/bin/python scripts/versions
+
+# ten minutes for each test of tests/fuzz
+fuzz: setup
+	.venv/bin/python scripts/fuzz
+
+valgrind: setup
+	.venv/bin/python scripts/valgrind
+
+# kills, full disks, damaged files: writes docs/reliability.md and goes on where it was stopped
+reliability:
+	@scripts/setup yade
+	.venv/bin/python docs/reliability.py
+
+# six tutorials of LIGGGHTS's source, which is fetched from Debian, with our models
+tutorials: setup
+	EPDEM_TUTORIALS=all .venv/bin/python -m pytest tests/engines/test_tutorials.py -q -n 0
+
+# PYTHONS="python3 /path/to/other": the wheel is tried in a clean environment of each
+wheel: setup
+	@scripts/wheel $(PYTHONS)
+
+deb: setup
+	@scripts/deb
+
+# TREES="/path/to/lmp_auto ...": executables of other trees that were built after `epdem header`
+trees: setup
+	@.venv/bin/python scripts/trees $(TREES)
+
 clean:
-	rm -rf .venv build runs
+	rm -rf .venv build dist runs
