@@ -4,12 +4,13 @@
 Run: .venv/bin/python bench/liggghts_speed.py [--quick]
 
 A model name may carry a loop: ep/thornton@avx2, @sse2 (instruction sets of our pair loop) or @generic (LIGGGHTS's loop
-with our model). Every model sees the same deck and starts from the same positions; the models take turns, and each
-keeps its shortest step in processor time (step_times.cpp), because on a shared machine the noise only adds. The
-moving packings are dense, so that they keep their contacts whatever a model dissipates: their number stands in
-the table. From the frozen and the moving packing, two equations: what a pair that touches costs, and one that does
-not; they are drawn in docs/figures/contact_cost.png. Instruction counts (callgrind) repeat exactly, but know nothing of
-divisions and roots that wait for each other. Every run is kept in runs/bench, so that an interrupted bench goes on.
+with our model), and before it another tangential model than history: ep/thornton+ep/partial_slip. Every model sees the
+same deck and starts from the same positions; the models take turns, and each keeps its shortest step in processor time
+(step_times.cpp), because on a shared machine the noise only adds. The moving packings are dense, so that they keep
+their contacts whatever a model dissipates: their number stands in the table. From the frozen and the moving packing,
+two equations: what a pair that touches costs, and one that does not; they are drawn in docs/figures/contact_cost.png.
+Instruction counts (callgrind) repeat exactly, but know nothing of divisions and roots that wait for each other. Every
+run is kept in runs/bench, so that an interrupted bench goes on.
 
 The exit code is 1 if the pairs of one of our models take longer than those of `hertz`.
 """
@@ -44,6 +45,10 @@ MODELS = (
     "ep/thornton@avx2",
     "ep/thornton@sse2",
     "ep/thornton@generic",
+    "ep/thornton+ep/partial_slip",
+    "ep/thornton+ep/partial_slip_2",
+    "ep/cavity+ep/partial_slip",
+    "ep/cavity+ep/partial_slip_2",
     "thornton_ning",
     *(lammps_packings.MODELS if lammps_packings.available() else ()),
 )

@@ -10,6 +10,7 @@ from .. import __version__
 from . import paths
 
 
+@cache
 def library_hash() -> str:
     """Hash of what is compiled: both libraries and the launcher."""
     compiled = [paths.native("libepdem.so"), paths.native("libepdem_liggghts.so"), paths.launcher()]

@@ -8,7 +8,7 @@ from typing import Annotated
 import typer
 
 from ..base.terminal import bar, console
-from .options import AsJson, CasePath, Replace
+from .options import AsJson, CasePath, Replace, warn
 
 
 def is_scene(path: Path) -> bool:
@@ -61,13 +61,16 @@ def run_scene(
 def deck_scene(case: Path, out: Path, *, engine: str = "liggghts", force: bool = False, as_json: bool = False) -> None:
     """Write the deck of a scene."""
     from ..base.folders import write_own
+    from ..case.doubts import doubts
     from ..case.scene import load
     from ..case.toml import named
     from ..engines import scene_engine
     from ..scenes.plan import plan
 
     with named(case):
-        files = scene_engine(engine).files(plan(load(case)))
+        read = load(case)
+        warn(doubts(read))
+        files = scene_engine(engine).files(plan(read))
     names = [str(f) for f in write_own(out, files, force=force)]
     print(json.dumps({"files": names}) if as_json else "\n".join(names))
 
