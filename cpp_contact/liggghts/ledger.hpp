@@ -12,7 +12,8 @@ namespace epdem::liggghts {
 
 /// Per-atom properties: plasticWork [J] sums up every growth of plastic work since the start, elasticEnergy [J] is what
 /// the contacts of this step can give back, bearingContacts counts those of them that bear a force: a contact whose
-/// bodies overlap by less than the depth of its dent bears none. Half of a pair's energy belongs to each body, all of a
+/// bodies overlap by less than the depth of its dent bears none. With partial slip frictionWork [J] sums up what friction
+/// took, and frictionEnergy [J] is what its springs can give back. Half of a pair's energy belongs to each body, all of a
 /// wall's to the sphere. LIGGGHTS evaluates a pair that spans two ranks on both of them, so each books its own body
 /// only.
 class Ledger {
@@ -23,20 +24,25 @@ class Ledger {
   };
 
   /// For the pair style, whose settings come first: creates the properties.
-  void create(LAMMPS_NS::LAMMPS* lmp) {
-    for (const char* name : {work_name, energy_name, bearing_name}) {
+  void create(LAMMPS_NS::LAMMPS* lmp, bool rubs) {
+    for (const char* name : {work_name, energy_name, bearing_name, friction_name, springs_name}) {
+      if (!rubs && (name == friction_name || name == springs_name)) continue;
       const char* words[] = {name, "all", "property/atom", name, "scalar", "yes", "no", "no", "0.0"};
       if (!find(lmp, name, name)) lmp->modify->add_fix_property_atom(9, const_cast<char**>(words), name);
     }
   }
 
   /// Before each run, for pairs and walls.
-  void connect(LAMMPS_NS::LAMMPS* lmp, const std::string& model) {
+  void connect(LAMMPS_NS::LAMMPS* lmp, const std::string& model, bool rubs) {
     work_ = find(lmp, work_name, model.c_str());
     energy_ = find(lmp, energy_name, model.c_str());
+    friction_ = find(lmp, friction_name, model.c_str());
+    springs_ = find(lmp, springs_name, model.c_str());
     bearing_ = find(lmp, bearing_name, model.c_str());
-    if (work_ && energy_ && bearing_) return;
-    const std::string text = "model " + model + ": computePlasticWork on of a wall needs it for the pair style as well";
+    if (work_ && energy_ && bearing_ && (friction_ || !rubs)) return;
+    const std::string text = "model " + model +
+                             ": computePlasticWork on of a wall needs it for the pair style as well" +
+                             (rubs ? ", with the same tangential model" : "");
     lmp->error->all(FLERR, text.c_str());
   }
 
@@ -44,6 +50,7 @@ class Ledger {
   void open(int nlocal) {
     std::fill_n(energy_->vector_atom, nlocal, 0.0);
     std::fill_n(bearing_->vector_atom, nlocal, 0.0);
+    if (springs_) std::fill_n(springs_->vector_atom, nlocal, 0.0);
   }
 
   template <bool wall, class Law>
@@ -55,6 +62,14 @@ class Ledger {
     if (!wall && bodies.j < bodies.nlocal) credit(bodies.j, part * grown, part * stored);
   }
 
+  /// The same for friction: work that it took in this step, elastic energy of its springs [J].
+  template <bool wall>
+  void rub(double lost, double stored, const Bodies& bodies) {
+    constexpr double part = wall ? 1.0 : 0.5;
+    rub_one(bodies.i, part * lost, part * stored);
+    if (!wall && bodies.j < bodies.nlocal) rub_one(bodies.j, part * lost, part * stored);
+  }
+
   /// One number per body [J], for a loop that books by itself as `book` does.
   double* work() { return work_->vector_atom; }
   double* energy() { return energy_->vector_atom; }
@@ -63,6 +78,8 @@ class Ledger {
   static constexpr const char* work_name = "plasticWork";
   static constexpr const char* energy_name = "elasticEnergy";
   static constexpr const char* bearing_name = "bearingContacts";
+  static constexpr const char* friction_name = "frictionWork";
+  static constexpr const char* springs_name = "frictionEnergy";
 
   static LAMMPS_NS::FixPropertyAtom* find(LAMMPS_NS::LAMMPS* lmp, const char* name, const char* caller) {
     return static_cast<LAMMPS_NS::FixPropertyAtom*>(
@@ -75,9 +92,16 @@ class Ledger {
     bearing_->vector_atom[body] += stored > 0.0;
   }
 
+  void rub_one(int body, double lost, double stored) {
+    friction_->vector_atom[body] += lost;
+    springs_->vector_atom[body] += stored;
+  }
+
   LAMMPS_NS::FixPropertyAtom* work_ = nullptr;
   LAMMPS_NS::FixPropertyAtom* energy_ = nullptr;
   LAMMPS_NS::FixPropertyAtom* bearing_ = nullptr;
+  LAMMPS_NS::FixPropertyAtom* friction_ = nullptr;
+  LAMMPS_NS::FixPropertyAtom* springs_ = nullptr;
 };
 
 }  // namespace epdem::liggghts

@@ -20,9 +20,17 @@ def gas(speed=8.0):
 
 
 def deck(
-    law, *, steps, every, ranks=(1, 1, 1), wall_setting="computePlasticWork on", pair_setting="computePlasticWork on"
+    law,
+    *,
+    steps,
+    every,
+    ranks=(1, 1, 1),
+    wall_setting="computePlasticWork on",
+    pair_setting="computePlasticWork on",
+    tangential="off",
 ):
-    words = f"model ep/{law} tangential off"
+    rubs = tangential != "off"
+    words = f"model ep/{law} tangential {tangential}"
     walls = "".join(
         f"fix w{k} all wall/gran {words} primitive type 2 {side} {at!r} {wall_setting}\n"
         for k, (side, at) in enumerate(SIDES)
@@ -32,17 +40,18 @@ def deck(
         + "read_data box.data\nneighbor 1e-3 bin\nneigh_modify delay 0\n"
         + materials("ep/any")
         + f"pair_style gran {words} {pair_setting}\npair_coeff * *\n{walls}timestep 5e-8\nfix move all nve/sphere\n"
-        "compute s all reduce sum f_plasticWork f_elasticEnergy\ncompute k all ke\n"
-        f"thermo_style custom step c_k c_s[1] c_s[2]\nthermo {every}\n"
+        f"compute s all reduce sum f_plasticWork f_elasticEnergy{' f_frictionWork f_frictionEnergy' * rubs}\n"
+        "compute l all ke\ncompute r all erotate/sphere\nvariable k equal c_l+c_r\n"
+        f"thermo_style custom step v_k c_s[1] c_s[2]{' c_s[3] c_s[4]' * rubs}\nthermo {every}\n"
         f"thermo_modify lost error norm no format float %.17g\nrun {steps}\n"
     )
 
 
-def balance(folder, text, ranks=1):
-    """Rows of step, kinetic, plastic, elastic energy [J]; the kinetic energy at the start first."""
+def balance(folder, text, ranks=1, columns=4):
+    """Rows of step, kinetic, plastic, elastic energy [J], work and energy of friction; kinetic at the start first."""
     lines = good(folder, text, ranks=ranks, files={"box.data": gas().data(BOX)}).text.splitlines()
     rows = [line.split() for line in lines]
-    return np.array([row for row in rows if len(row) == 4 and all(c[0].isdigit() for c in row)], float)
+    return np.array([row for row in rows if len(row) == columns and all(c[0].isdigit() for c in row)], float)
 
 
 @pytest.mark.parametrize("law", LAWS)

@@ -7,7 +7,7 @@ from typing import Annotated, Any, Literal, Self
 from pydantic import ConfigDict, Field, ValidationError, model_validator
 
 from ..errors import CaseError
-from .impact import Frozen, Header, LawChoice, Length, Material, Name, Quantity, Speed, Viscous
+from .impact import Coefficient, Frozen, Header, LawChoice, Length, Material, Name, Quantity, Speed, Tangential, Viscous
 from .library import with_library
 from .messages import explain
 from .toml import read_toml
@@ -15,7 +15,6 @@ from .toml import read_toml
 Time = Annotated[float, Quantity("s", above=0.0)]
 Rate = Annotated[float, Quantity("Hz", above=0.0)]
 Gravity = Annotated[float, Quantity("m/s^2", ge=0.0)]
-Friction = Annotated[float, Quantity("1", ge=0.0)]
 Share = Annotated[float, Quantity("1", above=0.0, le=1.0)]
 
 
@@ -78,15 +77,16 @@ class Between(Frozen):
     """Values of one pair of materials that differ from the common ones; "wall" names the walls."""
 
     between: Annotated[list[Name], Field(min_length=2, max_length=2)]
-    friction: Friction
+    friction: Coefficient
 
 
 class Contact(Frozen):
     """Parts of a contact beside its normal law; parts that are left out are not compiled into the loop."""
 
-    friction: Friction = 0.0
-    wall_friction: Friction | None = None
+    friction: Coefficient = 0.0
+    wall_friction: Coefficient | None = None
     pairs: list[Between] = Field(default_factory=list)
+    tangential: Tangential = "history"
     tangential_restitution: Share | None = None  # of the dashpot beside the tangential spring
     rolling: Rolling | None = None
     cohesion: Annotated[float, Quantity("J/m^3", above=0.0)] | None = None  # energy density (sjkr)

@@ -29,7 +29,7 @@ def predictions(pairs: list[tuple[Experiment, Prediction]], doubts: list[str], a
     """Print predictions, one table per law, with the doubts about their case."""
     document = []
     for x, p in pairs:
-        frame = pd.DataFrame({n: getattr(p, n) for n in Prediction.COLUMNS})
+        frame = p.table()
         if as_json:
             document.append(
                 {

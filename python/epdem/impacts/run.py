@@ -102,8 +102,10 @@ def _inputs(p: Plan, tool: Engine, version: str, ranks: int) -> str:
     x = p.experiment
     numbers = (p.time_step, p.steps, p.phases, p.speed.tobytes(), p.gap.tobytes())
     bodies = (x.law, x.body, x.target, x.viscous_restitution)
+    o = x.oblique
+    friction = (o.angle.tobytes(), o.spin.tobytes(), o.friction, o.tangential) if o else None
     with tempfile.TemporaryDirectory(prefix="epdem-") as scratch:
-        return inputs_hash(tool.write(p, Path(scratch)), numbers, bodies, tool.name, version, ranks)
+        return inputs_hash(tool.write(p, Path(scratch)), numbers, bodies, friction, tool.name, version, ranks)
 
 
 def _stored(path: Path) -> store.Results:
@@ -211,6 +213,13 @@ def run_case(
         return _run(text, work, folder, ranks, fresh, progress)
 
 
+def _spring(p: Plan, tool: Engine) -> str:
+    """What to say of an engine whose friction is not the case's."""
+    if p.experiment.oblique is None or not tool.can.own_spring:
+        return ""
+    return f"{tool.name}: friction by its own one spring; theory is that of partial slip"
+
+
 def _run(text: str, work: _Work, folder: Path, ranks: int, fresh: bool, progress: Callable[[str], None]) -> Outcome:
     stored = folder / "results.h5"
     old = _stored(stored)
@@ -223,7 +232,8 @@ def _run(text: str, work: _Work, folder: Path, ranks: int, fresh: bool, progress
         law = p.experiment.law.name
         prediction = work.predictions[law]
         outcome.warnings += prediction.warnings()
-        results.predictions[law] = pd.DataFrame({n: getattr(prediction, n) for n in Prediction.COLUMNS})
+        outcome.warnings += [_spring(p, tool) for tool in work.tools if _spring(p, tool)]
+        results.predictions[law] = prediction.table()
         for tool in work.tools:
             key, inputs = f"{law}/{tool.name}", _inputs(p, tool, work.versions[tool.name], ranks)
             progress(f"{tool.name}, {law}: {p.n} impacts")

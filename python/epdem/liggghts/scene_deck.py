@@ -11,7 +11,7 @@ from ..scenes.model import Model
 from ..scenes.plan import Phase, ScenePlan
 from . import stl
 from .insertions import Insertion, insertions
-from .properties import HARD, SOFT, Property, elastic, per_pair, ratios, strength
+from .properties import HARD, SOFT, Property, elastic, per_pair, ratios, strength, tangential
 
 MOST_CELLS = 2**31 - 1  # that LIGGGHTS counts, each half as wide as its longest reach
 SKIN = 0.5  # of the smallest radius: rebuilds cost less than idle neighbours
@@ -60,6 +60,8 @@ class Deck:
     spins: bool
     has_history: bool
     yields: bool
+    dents: bool
+    rubs: bool
     memory_column: int
     wall_memory_column: int
     torque: bool
@@ -100,15 +102,16 @@ def _settings(p: ScenePlan) -> tuple[str, ...]:
     wanted = {
         "viscous on": m.viscous is not None,
         "tangential_damping off": m.viscous is not None and m.sliding and m.tangential_restitution is None,
-        "computePlasticWork on": p.dents,
+        "computePlasticWork on": p.dents or p.rubs,
     }
     return tuple(setting for setting, asked in wanted.items() if asked)
 
 
 def memory(m: Model, *, wall: bool = False) -> int:
-    """History values of one contact in LIGGGHTS, the law's first: those of the law, step, shear spring, rolling."""
+    """History values of one contact in LIGGGHTS, the law's first: those of the law, step, friction, rolling."""
     law = laws()[m.law].memory
-    others = 3 * m.sliding + 3 * (m.rolling is not None and m.rolling.model in ("epsd", "epsd2"))
+    friction = 3 * m.nodes + 1 if m.nodes else 3 * m.sliding
+    others = friction + 3 * (m.rolling is not None and m.rolling.model in ("epsd", "epsd2"))
     stamp = 0 if wall else int(law + others > 0)
     return law + stamp + others
 
@@ -163,7 +166,7 @@ def deck(p: ScenePlan) -> Deck:
         types=p.types,
         properties=_properties(p),
         model=f"ep/{m.law}",
-        tangential="history" if m.sliding else "off",
+        tangential=tangential(m.tangential if m.sliding else None),
         cohesion="sjkr" if m.cohesion else None,
         rolling_friction=m.rolling.model if m.rolling else None,
         settings=_settings(p),
@@ -187,6 +190,8 @@ def deck(p: ScenePlan) -> Deck:
         spins=m.spins,
         has_history=m.yields or m.spins,
         yields=m.yields,
+        dents=p.dents,
+        rubs=p.rubs,
         memory_column=4 + memory(m),
         wall_memory_column=4 + memory(m, wall=True),
         torque=p.torque,

@@ -71,7 +71,8 @@ def damaged(p: ScenePlan, folder: Path, upto: int) -> list[int]:
 def _particle_names(p: ScenePlan) -> list[str]:
     names = [*columns.PARTICLES, *(columns.SPINS if p.model.spins else [])]
     names += [f"delta_max_{w.name}" for w in p.layout.planes] if p.contacts and p.model.yields else []
-    return [*names, *(["plastic_work"] if p.dents else [])]
+    names += ["plastic_work"] if p.dents else []
+    return [*names, *(["friction_work", "friction_energy"] if p.rubs else [])]
 
 
 def _steps(p: ScenePlan, kind: str, folder: Path, without: Collection[int]) -> list[tuple[int, Path]]:

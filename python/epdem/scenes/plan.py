@@ -91,6 +91,11 @@ class ScenePlan:
         return self.output.energy and self.model.yields
 
     @property
+    def rubs(self) -> bool:
+        """Whether the work of friction of each sphere is in the frames."""
+        return self.output.energy and self.model.nodes > 0
+
+    @property
     def summary(self) -> str:
         """One line for the head of a deck."""
         s = self.case.scene
