@@ -1,5 +1,5 @@
 # Each target is one line that calls a script or a tool.
-.PHONY: setup demo test bench docs tidy sanitize wheel deb trees clean
+.PHONY: setup demo test walltime bench docs tidy sanitize versions fuzz valgrind reliability tutorials wheel deb trees clean
 
 setup:
 	@scripts/setup
@@ -10,6 +10,10 @@ demo: setup
 test:
 	@scripts/setup yade slurmctld slurmd slurm-client munge
 	.venv/bin/python -m pytest -n 2
+
+# a scene of this duration takes more than a minute, the shortest walltime of Slurm
+walltime: setup
+	EPDEM_WALLTIME="20 s" .venv/bin/python -m pytest tests/studies/test_sweep_slurm.py -k walltime
 
 bench: setup
 	.venv/bin/python bench/all.py
@@ -24,6 +28,26 @@ tidy: setup
 
 sanitize: setup
 	.venv/bin/python scripts/sanitize
+
+# the oldest and the newest Python packages instead of those of scripts/constraints.txt
+versions: setup
+	.venv/bin/python scripts/versions
+
+# ten minutes for each test of tests/fuzz
+fuzz: setup
+	.venv/bin/python scripts/fuzz
+
+valgrind: setup
+	.venv/bin/python scripts/valgrind
+
+# kills, full disks, damaged files: writes docs/reliability.md and goes on where it was stopped
+reliability:
+	@scripts/setup yade
+	.venv/bin/python docs/reliability.py
+
+# six tutorials of LIGGGHTS's source, which is fetched from Debian, with our models
+tutorials: setup
+	EPDEM_TUTORIALS=all .venv/bin/python -m pytest tests/engines/test_tutorials.py -q -n 0
 
 # PYTHONS="python3 /path/to/other": the wheel is tried in a clean environment of each
 wheel: setup

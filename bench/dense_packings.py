@@ -27,7 +27,7 @@ fix m2 all property/global poissonsRatio peratomtype {nu}
 {restitution}{friction}fix p1 all property/global yieldPressure peratomtype {p_y}
 fix p2 all property/global yieldStress peratomtype {Y}
 fix p3 all property/global coefficientYieldRatio peratomtype {ratio}
-{surface}pair_style gran model {model} tangential history {words}
+{surface}pair_style gran model {model} tangential {tangential} {words}
 pair_coeff * *
 {bed}timestep {dt}
 fix move all nve/sphere
@@ -82,6 +82,7 @@ def deck(
     words="",
     bed=False,
 ):
+    model, _, tangential = model.partition("+")
     foreign = model == "thornton_ning"
     beside = {"rolling_friction": "coefficientRollingFriction", "cohesion": "cohesionEnergyDensity"}
     beside = "".join(per_pair(name, 0.1 if "Roll" in name else 1e3, types) for w, name in beside.items() if w in words)
@@ -91,6 +92,7 @@ def deck(
 
     return DECK.format(
         model=model,
+        tangential=tangential or "history",
         words=words,
         boundary="p p f" if bed else "p p p",
         bed=(

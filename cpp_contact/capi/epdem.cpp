@@ -7,6 +7,7 @@
 
 #include "epdem/impact.hpp"
 #include "epdem/laws.hpp"
+#include "epdem/oblique.hpp"
 
 #define EPDEM_EXPORT extern "C" __attribute__((visibility("default")))
 
@@ -178,6 +179,24 @@ EPDEM_EXPORT int epdem_impacts(int law, double E_star, const double* parameters,
       const Path<double> path{overlap ? overlap + i * stride : nullptr, force ? force + i * stride : nullptr,
                               velocity ? velocity + i * stride : nullptr};
       out[i] = output(impact(l, input(in[i]), path));
+    }
+    return int(EPDEM_OK);
+  });
+}
+
+EPDEM_EXPORT int epdem_oblique(int law, double E_star, const double* parameters, double G_star, double mu, int nodes,
+                               size_t n, const epdem_impact_input* in, const double* slip, double* slip_after_out) {
+  if (!positive(G_star) || !std::isfinite(mu) || mu < 0.0 || (nodes != 0 && nodes != 2 && nodes != 3))
+    return EPDEM_BAD_INPUT;
+  for (size_t i = 0; i < n; ++i)
+    if (!sane(in[i]) || !std::isfinite(slip[i])) return EPDEM_BAD_INPUT;
+  return with_law(law, E_star, parameters, [&](const auto& l) {
+    for (size_t i = 0; i < n; ++i) {
+      const ImpactInput<double> normal = input(in[i]);
+      const ObliqueInput<double> beside{slip[i], 8.0 * G_star, mu};
+      slip_after_out[i] = nodes == 0   ? slip_after<0>(l, normal, beside)
+                          : nodes == 2 ? slip_after<2>(l, normal, beside)
+                                       : slip_after<3>(l, normal, beside);
     }
     return int(EPDEM_OK);
   });

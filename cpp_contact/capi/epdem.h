@@ -1,7 +1,8 @@
 /* SPDX-License-Identifier: GPL-2.0-or-later
  *
  * C interface of the contact laws. SI units. No function keeps state, allocates or throws.
- * Functions that can fail return an epdem_status; epdem_message() says what it means.
+ * Functions that can fail return an epdem_status; epdem_message() says what it means. Numbers whose powers leave the
+ * range of a double (a radius of 1e-300 m) give results that are not finite.
  */
 #ifndef EPDEM_H
 #define EPDEM_H
@@ -13,7 +14,7 @@
 extern "C" {
 #endif
 
-#define EPDEM_ABI 4
+#define EPDEM_ABI 5
 #define EPDEM_MAX_PARAMETERS 8
 
 typedef enum { EPDEM_OK = 0, EPDEM_UNKNOWN_LAW = 1, EPDEM_BAD_PARAMETER = 2, EPDEM_BAD_INPUT = 3 } epdem_status;
@@ -77,6 +78,11 @@ int epdem_backbone(int law, double E_star, const double* parameters, double R_st
  * (stride >= steps + 1 of every impact); the samples after the end of an impact are left as they were. */
 int epdem_impacts(int law, double E_star, const double* parameters, size_t n, const epdem_impact_input* in,
                   epdem_impact_output* out, size_t stride, double* overlap, double* force, double* velocity);
+
+/* n oblique impacts of solid spheres (or one on a plane) in a plane: slip[i] is the velocity of the surfaces against
+ * each other before, slip_after[i] after [m/s]; nodes: 2 or 3 of partial slip, or 0 for one spring. */
+int epdem_oblique(int law, double E_star, const double* parameters, double G_star, double mu, int nodes, size_t n,
+                  const epdem_impact_input* in, const double* slip, double* slip_after);
 
 /* The same impacts computed in long double and rounded once, at the end: what is left to double is round-off. */
 int epdem_impacts_long_double(int law, double E_star, const double* parameters, size_t n, const epdem_impact_input* in,

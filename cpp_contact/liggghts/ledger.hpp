@@ -10,9 +10,12 @@
 
 namespace epdem::liggghts {
 
-/// Two per-atom properties: plasticWork [J] sums up every growth of plastic work since the start, elasticEnergy [J] is
-/// what the contacts of this step can give back. Half of a pair's energy belongs to each body, all of a wall's to the
-/// sphere. LIGGGHTS evaluates a pair that spans two ranks on both of them, so each books its own body only.
+/// Per-atom properties: plasticWork [J] sums up every growth of plastic work since the start, elasticEnergy [J] is what
+/// the contacts of this step can give back, bearingContacts counts those of them that bear a force: a contact whose
+/// bodies overlap by less than the depth of its dent bears none. With partial slip frictionWork [J] sums up what friction
+/// took, and frictionEnergy [J] is what its springs can give back. Half of a pair's energy belongs to each body, all of a
+/// wall's to the sphere. LIGGGHTS evaluates a pair that spans two ranks on both of them, so each books its own body
+/// only.
 class Ledger {
  public:
   /// Indices of the bodies, and from which index on a body belongs to another rank.
@@ -21,24 +24,34 @@ class Ledger {
   };
 
   /// For the pair style, whose settings come first: creates the properties.
-  void create(LAMMPS_NS::LAMMPS* lmp) {
-    for (const char* name : {work_name, energy_name}) {
+  void create(LAMMPS_NS::LAMMPS* lmp, bool rubs) {
+    for (const char* name : {work_name, energy_name, bearing_name, friction_name, springs_name}) {
+      if (!rubs && (name == friction_name || name == springs_name)) continue;
       const char* words[] = {name, "all", "property/atom", name, "scalar", "yes", "no", "no", "0.0"};
       if (!find(lmp, name, name)) lmp->modify->add_fix_property_atom(9, const_cast<char**>(words), name);
     }
   }
 
   /// Before each run, for pairs and walls.
-  void connect(LAMMPS_NS::LAMMPS* lmp, const std::string& model) {
+  void connect(LAMMPS_NS::LAMMPS* lmp, const std::string& model, bool rubs) {
     work_ = find(lmp, work_name, model.c_str());
     energy_ = find(lmp, energy_name, model.c_str());
-    if (work_ && energy_) return;
-    const std::string text = "model " + model + ": computePlasticWork on of a wall needs it for the pair style as well";
+    friction_ = find(lmp, friction_name, model.c_str());
+    springs_ = find(lmp, springs_name, model.c_str());
+    bearing_ = find(lmp, bearing_name, model.c_str());
+    if (work_ && energy_ && bearing_ && (friction_ || !rubs)) return;
+    const std::string text = "model " + model +
+                             ": computePlasticWork on of a wall needs it for the pair style as well" +
+                             (rubs ? ", with the same tangential model" : "");
     lmp->error->all(FLERR, text.c_str());
   }
 
   /// At the start of a kept pass over all pairs: what the contacts hold is counted anew.
-  void open(int nlocal) { std::fill_n(energy_->vector_atom, nlocal, 0.0); }
+  void open(int nlocal) {
+    std::fill_n(energy_->vector_atom, nlocal, 0.0);
+    std::fill_n(bearing_->vector_atom, nlocal, 0.0);
+    if (springs_) std::fill_n(springs_->vector_atom, nlocal, 0.0);
+  }
 
   template <bool wall, class Law>
   void book(const Law& law, double R_star, const State<Law>& before, const Step<Law>& now, double delta,
@@ -49,6 +62,14 @@ class Ledger {
     if (!wall && bodies.j < bodies.nlocal) credit(bodies.j, part * grown, part * stored);
   }
 
+  /// The same for friction: work that it took in this step, elastic energy of its springs [J].
+  template <bool wall>
+  void rub(double lost, double stored, const Bodies& bodies) {
+    constexpr double part = wall ? 1.0 : 0.5;
+    rub_one(bodies.i, part * lost, part * stored);
+    if (!wall && bodies.j < bodies.nlocal) rub_one(bodies.j, part * lost, part * stored);
+  }
+
   /// One number per body [J], for a loop that books by itself as `book` does.
   double* work() { return work_->vector_atom; }
   double* energy() { return energy_->vector_atom; }
@@ -56,6 +77,9 @@ class Ledger {
  private:
   static constexpr const char* work_name = "plasticWork";
   static constexpr const char* energy_name = "elasticEnergy";
+  static constexpr const char* bearing_name = "bearingContacts";
+  static constexpr const char* friction_name = "frictionWork";
+  static constexpr const char* springs_name = "frictionEnergy";
 
   static LAMMPS_NS::FixPropertyAtom* find(LAMMPS_NS::LAMMPS* lmp, const char* name, const char* caller) {
     return static_cast<LAMMPS_NS::FixPropertyAtom*>(
@@ -65,10 +89,19 @@ class Ledger {
   void credit(int body, double grown, double stored) {
     if (grown > 0.0) work_->vector_atom[body] += grown;  // few contacts grow
     energy_->vector_atom[body] += stored;
+    bearing_->vector_atom[body] += stored > 0.0;
+  }
+
+  void rub_one(int body, double lost, double stored) {
+    friction_->vector_atom[body] += lost;
+    springs_->vector_atom[body] += stored;
   }
 
   LAMMPS_NS::FixPropertyAtom* work_ = nullptr;
   LAMMPS_NS::FixPropertyAtom* energy_ = nullptr;
+  LAMMPS_NS::FixPropertyAtom* bearing_ = nullptr;
+  LAMMPS_NS::FixPropertyAtom* friction_ = nullptr;
+  LAMMPS_NS::FixPropertyAtom* springs_ = nullptr;
 };
 
 }  // namespace epdem::liggghts

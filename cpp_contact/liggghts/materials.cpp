@@ -9,6 +9,7 @@
 #include "epdem/viscous.hpp"
 #include "force.h"
 #include "global_properties.h"
+#include "update.h"
 
 namespace epdem::liggghts {
 
@@ -21,8 +22,6 @@ std::string number(double x) {
   std::snprintf(text, sizeof text, "%.9g", x);
   return text;
 }
-
-std::string unit_of(const char* unit) { return std::string(unit) == "1" ? "" : std::string(" [") + unit + "]"; }
 
 /// A half-open range (low, high] or [low, high] of a property.
 struct Range {
@@ -42,6 +41,13 @@ class Reader {
       : lmp_(lmp), law_(law), n_(registry.max_type()) {}
 
   int types() const { return n_; }
+
+  /// How a message names the unit of a property: as declared in SI, by the style of the deck's units in other ones.
+  std::string unit_of(const char* unit) const {
+    if (std::string(unit) == "1") return "";
+    const std::string style = lmp_->update->unit_style;
+    return " [" + (style == "si" ? unit : "units " + style) + "]";
+  }
 
   [[noreturn]] void fail(const std::string& what) const {
     lmp_->error->all(FLERR, (std::string("model ") + law_.model + ": " + what).c_str());

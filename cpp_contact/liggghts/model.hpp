@@ -27,6 +27,7 @@ struct Site {
   LIGGGHTS::IContactHistorySetup* history;
   ContactModelBase* contact;
   Ids ids;
+  const Grip* grip = nullptr;  // for tangential models
 };
 
 /// A model that is known at compile time.
@@ -86,7 +87,7 @@ class Model : public ContactModelBase {
         surface_({lmp, setup, this, ids_}),
         normal_(lmp, setup),
         cohesion_({lmp, setup, this, ids_}),
-        tangential_({lmp, setup, this, ids_}),
+        tangential_(Site{lmp, setup, this, ids_, normal_.grip()}),
         rolling_({lmp, setup, this, ids_}) {
     latest = this;
   }
@@ -130,7 +131,7 @@ class Model : public ContactModelBase {
 
   void postSettings(LIGGGHTS::IContactHistorySetup* setup) {
     surface_.postSettings(setup, this);
-    normal_.postSettings();
+    normal_.postSettings(slip_nodes(ids_.tangential) > 0);
     cohesion_.postSettings(setup, this);
     tangential_.postSettings(setup, this);
     rolling_.postSettings(setup, this);

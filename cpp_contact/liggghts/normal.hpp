@@ -12,6 +12,7 @@
 #include "host.hpp"
 #include "ledger.hpp"
 #include "materials.hpp"
+#include "partial_slip.hpp"
 
 namespace epdem::liggghts {
 
@@ -59,7 +60,9 @@ class Normal : protected LAMMPS_NS::Pointers {
     settings.registerOnOff("disableNormalWhenBonded", disable_when_bonded_, false);
   }
 
-  void postSettings() {
+  /// rubs: the tangential model beside it computes its work.
+  void postSettings(bool rubs) {
+    rubs_ = rubs;
     // limitForce and heating_tracking change nothing: the force is never negative, the law makes no viscous heat
     if (heating_) refuse("heating_normal_hertz", "it is the heat of a viscous normal force, and this law has none");
     if (elastic_potential_)
@@ -67,7 +70,7 @@ class Normal : protected LAMMPS_NS::Pointers {
     if (dissipated_energy_)
       refuse("computeDissipatedEnergy", "it would miss the plastic work (use computePlasticWork)");
     if (disable_when_bonded_) refuse("disableNormalWhenBonded", "bonds are not part of the public LIGGGHTS");
-    if (plastic_work_ && !wall) ledger_.create(lmp);
+    if (plastic_work_ && !wall) ledger_.create(lmp, rubs_);
   }
 
   void connectToProperties(PropertyRegistry& registry, Dashpot dashpot) {
@@ -86,7 +89,8 @@ class Normal : protected LAMMPS_NS::Pointers {
         table_[i * width_ + j] = {Law(effective_modulus(p.i, p.j), p.parameters.data()),
                                   effective_shear_modulus(p.i, p.j), p.damping_number, p.viscous_number};
       }
-    if (plastic_work_) ledger_.connect(lmp, model_);
+    if (plastic_work_) ledger_.connect(lmp, model_, rubs_);
+    grip_.ledger = ledger();
   }
 
   double stressStrainExponent() const { return 1.5; }
@@ -100,6 +104,7 @@ class Normal : protected LAMMPS_NS::Pointers {
   const Entry& entry(int i, int j) const { return table_[i * width_ + j]; }
   double now() const { return now_; }
   Ledger* ledger() { return plastic_work_ ? &ledger_ : nullptr; }
+  const Grip* grip() const { return &grip_; }
 
   /// LIGGGHTS calls it before the loop over all pairs, never for walls.
   void beginPass(const SurfacesIntersectData& s) {
@@ -123,8 +128,10 @@ class Normal : protected LAMMPS_NS::Pointers {
     State<Law> before{};
     double* const history = s.contact_history;
     if constexpr (remembers) std::memcpy(static_cast<void*>(&before), history + offset_, sizeof before);
-    if constexpr (stamped)
-      if (now_ - history[stamp_] > 1.0) before = parted(history, keep);
+    if constexpr (stamped) {
+      grip_.fresh = now_ - history[stamp_] > 1.0;
+      if (grip_.fresh) before = parted(history, keep);
+    }
 
     const Step<Law> now = step(t.law, R_star, before, delta);
 
@@ -137,7 +144,10 @@ class Normal : protected LAMMPS_NS::Pointers {
     double force = now.force;
     if (t.viscous_number > 0.0) force = damped_force(t.law, R_star, before, now, t.viscous_number, s.meff, -s.vn);
 
-    s.Fn = force;
+    grip_.stiffness = 8.0 * t.G_star;
+    grip_.pressed = pressed(now);
+
+    s.Fn = force;                                  // friction's limit is mu times it, after what cohesion made of it
     s.kn = 4.0 / 3.0 * t.law.E_star * now.radius;  // LIGGGHTS's convention for rolling friction: F/alpha of Hertz
     s.kt = tangential_stiffness(t.G_star, now.radius);
     s.gamman = 0.0;
@@ -156,6 +166,11 @@ class Normal : protected LAMMPS_NS::Pointers {
   }
 
  private:
+  static Pressed<double> pressed(const Step<Law>& now) {
+    if constexpr (Law::flattens) return {now.force, now.radius, now.after.point.radius, now.after.point.flatness};
+    return {now.force, now.radius, now.radius, 0.0};
+  }
+
   /// The pair parted since its last evaluation: it is a new contact, for the other models as well.
   State<Law> parted(double* history, bool keep) const {
     const int first = stamp_ - memory;
@@ -188,6 +203,8 @@ class Normal : protected LAMMPS_NS::Pointers {
   bigint clock_ = 0;  // step of the last pass
   double now_ = 0.0;
   Ledger ledger_;
+  Grip grip_{{}, 0.0, false, Law::flattens, nullptr};
+  bool rubs_ = false;
   bool plastic_work_ = false;
   bool viscous_ = false, tangential_damping_ = true, limit_force_ = false, heating_ = false, heating_tracking_ = false;
   bool elastic_potential_ = false, dissipated_energy_ = false, disable_when_bonded_ = false;

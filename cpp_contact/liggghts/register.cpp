@@ -26,6 +26,8 @@ namespace Walls = LIGGGHTS::Walls;
 constexpr int tangentials[] = {
     TANGENTIAL_OFF,
 #include "style_tangential_model.h"
+    TANGENTIAL_PARTIAL_SLIP,
+    TANGENTIAL_PARTIAL_SLIP_2,
 };
 constexpr int cohesions[] = {
     COHESION_OFF,
@@ -42,17 +44,26 @@ constexpr int surfaces[] = {
 #undef COHESION_MODEL
 #undef ROLLING_MODEL
 #undef SURFACE_MODEL
-constexpr int unknown_law = 63;  // normal id of a name that starts with ep/ and is none of ours
+constexpr const char* partial_slip_names[] = {"ep/partial_slip", "ep/partial_slip_2"};
+constexpr int unknown_law = 63;  // normal id of what is refused: by its name, or for its tangential model
+
+/// Why, as the tangential id of a refusal.
+enum Refusal { unknown_normal, unknown_tangential, foreign_normal };
 
 /// Luding's models need slots of Luding's normal model; capillary forces and superquadrics bring their own contact law.
 bool available(const Ids& ids) {
-  return ids.tangential <= TANGENTIAL_HISTORY && ids.rolling <= ROLLING_EPSD3 && ids.cohesion <= COHESION_SJKR2 &&
-         (ids.surface == SURFACE_DEFAULT || ids.surface == SURFACE_MULTICONTACT);
+  return (ids.tangential <= TANGENTIAL_HISTORY || slip_nodes(ids.tangential) > 0) && ids.rolling <= ROLLING_EPSD3 &&
+         ids.cohesion <= COHESION_SJKR2 && (ids.surface == SURFACE_DEFAULT || ids.surface == SURFACE_MULTICONTACT);
 }
 
 template <class Part>
 std::shared_ptr<Part> make(const Site& s) {
   return std::make_shared<Part>(s.lmp, s.history, s.contact);
+}
+
+template <int nodes, bool flattens>
+std::shared_ptr<TangentialModelBase> slip(const Site& s) {
+  return std::make_shared<PartialSlip<nodes, flattens>>(s);
 }
 
 std::shared_ptr<SurfaceModelBase> choose_surface(const Site& s) {
@@ -69,6 +80,8 @@ std::shared_ptr<CohesionModelBase> choose_cohesion(const Site& s) {
 std::shared_ptr<TangentialModelBase> choose_tangential(const Site& s) {
   if (s.ids.tangential == TANGENTIAL_HISTORY) return make<TangentialModel<TANGENTIAL_HISTORY>>(s);
   if (s.ids.tangential == TANGENTIAL_NO_HISTORY) return make<TangentialModel<TANGENTIAL_NO_HISTORY>>(s);
+  if (s.ids.tangential == TANGENTIAL_PARTIAL_SLIP) return s.grip->flattens ? slip<3, true>(s) : slip<3, false>(s);
+  if (s.ids.tangential == TANGENTIAL_PARTIAL_SLIP_2) return s.grip->flattens ? slip<2, true>(s) : slip<2, false>(s);
   return make<TangentialModel<TANGENTIAL_OFF>>(s);
 }
 
@@ -92,13 +105,27 @@ Walls::IGranularWall* new_wall(LAMMPS* lmp, FixWallGran* parent, int64_t hash) {
   return new loop::Wall<Part>(lmp, parent, hash);
 }
 
+constexpr const char* combinations =
+    "epdem's models combine with tangential off, no_history, history, ep/partial_slip, ep/partial_slip_2; cohesion "
+    "off, "
+    "sjkr, sjkr2; rolling_friction off, cdt, epsd, epsd2, epsd3; surface default, multicontact; nothing else";
+
+std::string tangential_names() {
+  std::string names;
+  for (const char* name : partial_slip_names) names += std::string(" ") + name;
+  return names;
+}
+
 template <class Interface, class Parent>
 Interface* refuse(LAMMPS* lmp, Parent*, int64_t hash) {
+  const Ids ids = Ids::of(hash);
   const std::string text =
-      Ids::of(hash).normal == unknown_law
-          ? "unknown normal model: the models of epdem are" + model_names()
-          : "epdem's models combine with tangential off, no_history, history; cohesion off, sjkr, sjkr2; "
-            "rolling_friction off, cdt, epsd, epsd2, epsd3; surface default, multicontact; nothing else";
+      ids.normal != unknown_law              ? combinations
+      : ids.tangential == unknown_tangential ? "unknown tangential model: those of epdem are" + tangential_names()
+      : ids.tangential == foreign_normal     ? "tangential ep/partial_slip goes with the normal models of epdem only: "
+                                               "LIGGGHTS's own do not pass the contact "
+                                               "radius on (its hertz is ep/hertz, with viscous on for its dashpot)"
+                                             : "unknown normal model: the models of epdem are" + model_names();
   lmp->error->all(FLERR, text.c_str());
   return nullptr;
 }
@@ -113,6 +140,19 @@ void add_refusal(const Ids& ids) {
   add(ids, &refuse<PairStyles::IGranularPairStyle, PairGran>, &refuse<Walls::IGranularWall, FixWallGran>);
 }
 
+template <class Law, int tangential>
+struct OfId {
+  using type = Fixed<TangentialModel<tangential>>;
+};
+template <class Law>
+struct OfId<Law, TANGENTIAL_PARTIAL_SLIP> {
+  using type = PartialSlip<3, Law::flattens>;
+};
+template <class Law>
+struct OfId<Law, TANGENTIAL_PARTIAL_SLIP_2> {
+  using type = PartialSlip<2, Law::flattens>;
+};
+
 /// The combinations that most decks use, each compiled on its own: no virtual call in the loop.
 template <class Law, int tangential, int rolling>
 bool add_fast(const Ids& ids) {
@@ -120,7 +160,7 @@ bool add_fast(const Ids& ids) {
   if (ids.hash() != mine.hash()) return false;
   using Surface = Fixed<SurfaceModel<SURFACE_DEFAULT>>;
   using Cohesion = Fixed<CohesionModel<COHESION_OFF>>;
-  using Tangential = Fixed<TangentialModel<tangential>>;
+  using Tangential = typename OfId<Law, tangential>::type;
   using Rolling = Fixed<RollingModel<rolling>>;
   add(ids, &new_pair<Model<Law, false, Surface, Cohesion, Tangential, Rolling>>,
       &new_wall<Model<Law, true, Surface, Cohesion, Tangential, Rolling>>);
@@ -144,6 +184,8 @@ void add_combination(const Ids& ids) {
   if (add_fast<Law, TANGENTIAL_OFF, ROLLING_OFF>(ids)) return;
   if (add_fast<Law, TANGENTIAL_NO_HISTORY, ROLLING_OFF>(ids)) return;
   if (add_fast<Law, TANGENTIAL_HISTORY, ROLLING_OFF>(ids)) return;
+  if (add_fast<Law, TANGENTIAL_PARTIAL_SLIP, ROLLING_OFF>(ids)) return;
+  if (add_fast<Law, TANGENTIAL_PARTIAL_SLIP_2, ROLLING_OFF>(ids)) return;
   if (add_fast<Law, TANGENTIAL_HISTORY, ROLLING_CDT>(ids)) return;
   if (add_fast<Law, TANGENTIAL_HISTORY, ROLLING_EPSD2>(ids)) return;
   add_general<Law>(ids);
@@ -159,9 +201,13 @@ void add_law() {
         for (int s : surfaces) add_combination<Law>({Law::id, t, c, r, s});
 }
 
+Ids refused(int why) { return {unknown_law, why, COHESION_OFF, ROLLING_OFF, SURFACE_DEFAULT}; }
+
 #ifdef EPDEM_BUILT_FOR
+bool starts_with_ep(const std::string& name) { return name.compare(0, 2, "ep") == 0; }
+
 bool unknown_name(const std::string& name) {
-  if (name.compare(0, 2, "ep") != 0) return false;
+  if (!starts_with_ep(name)) return false;
 #define EPDEM_KNOWN(Class) \
   if (name == model_name<Class<double>>()) return false;
   EPDEM_LAWS(EPDEM_KNOWN)
@@ -175,7 +221,10 @@ const struct Registration {
 #define EPDEM_ADD(Class) add_law<Class<double>>();
     EPDEM_LAWS(EPDEM_ADD)
 #undef EPDEM_ADD
-    add_refusal({unknown_law, TANGENTIAL_OFF, COHESION_OFF, ROLLING_OFF, SURFACE_DEFAULT});
+    for (int why : {unknown_normal, unknown_tangential, foreign_normal}) add_refusal(refused(why));
+    for (int k = 0; k < 2; ++k)
+      LIGGGHTS::ContactModels::Factory::instance().addTangentialModel(partial_slip_names[k],
+                                                                      TANGENTIAL_PARTIAL_SLIP + k);
   }
 } registration;
 
@@ -191,9 +240,18 @@ const struct Registration {
 [[gnu::visibility("default")]] int64_t LIGGGHTS::ContactModels::Factory::select(
     int& narg, char**& arg, LAMMPS_NS::Custom_contact_models custom) {
   using namespace epdem::liggghts;
-  for (int k = 0; k + 1 < narg; ++k)
-    if (std::strcmp(arg[k], "model") == 0 && unknown_name(arg[k + 1]))
-      return Ids{unknown_law, TANGENTIAL_OFF, COHESION_OFF, ROLLING_OFF, SURFACE_DEFAULT}.hash();
+  bool ours = false;
+  for (int k = 0; k + 1 < narg; ++k) {
+    const std::string word = arg[k], name = arg[k + 1];
+    if (word == "model") {
+      if (unknown_name(name)) return refused(unknown_normal).hash();
+      ours = starts_with_ep(name);
+    }
+    if (word == "tangential" && starts_with_ep(name)) {
+      if (name != partial_slip_names[0] && name != partial_slip_names[1]) return refused(unknown_tangential).hash();
+      if (!ours) return refused(foreign_normal).hash();
+    }
+  }
   return instance().select_model(narg, arg, custom);
 }
 #endif

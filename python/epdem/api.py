@@ -25,7 +25,6 @@ from .engines import scene_engine
 from .errors import CaseError
 from .impacts.comparison import UNITS
 from .impacts.experiment import experiment
-from .impacts.prediction import Prediction
 from .impacts.prediction import predict as predict_experiment
 from .impacts.run import Outcome, write_deck
 from .impacts.run import run_case as run_impacts
@@ -257,7 +256,7 @@ def run(
 def predict(case: Case, law: str | None = None) -> pd.DataFrame:
     """The prediction of theory for a case, one row for each speed; no engine runs. Raises CaseError."""
     prediction = predict_experiment(experiment(case.model, law))
-    return _units(pd.DataFrame({name: getattr(prediction, name) for name in Prediction.COLUMNS}), UNITS)
+    return _units(prediction.table(), UNITS)
 
 
 def deck(
@@ -290,7 +289,7 @@ def sweep(
     planned = study.plan_text(
         case.text, settings, engines=engines, laws=laws, ranks=ranks, latin_hypercube=latin_hypercube, seed=seed
     )
-    folder = Path(out) if out is not None else Path("runs") / f"{planned.name}_sweep"
+    folder = Path(out) if out is not None else planned.default_folder
     return study.run(planned, folder, jobs=jobs, retry_failed=retry_failed, report=_report)
 
 

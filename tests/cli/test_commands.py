@@ -48,6 +48,7 @@ DOCUMENTS = {  # words, and what the document must hold
         ["steel.toml", "-e", "embedded", "--set", "impact.body.radius=1 mm,2 mm", "-j", "1"],
         lambda d: d["passed"] and d["done"] == 2,
     ),
+    "rerun": (["stored/results.h5"], lambda d: d["same"] and len(d["differences"]) == 1),
     "tune": (["beads.toml"], lambda d: d["ranks"] == 1 and len(d["trials"]) == 5 and not d["written"]),
     "status": (["swept"], lambda d: (d["points"], d["done"], d["waiting"]) == (2, 0, 2)),
     "cite": (["steel.toml"], lambda d: "Thornton" in d["law thornton, Thornton 1997"] and "Kloss" in d["liggghts"]),
@@ -73,6 +74,7 @@ MISTAKES = {  # words, and what the sentence must hold
     "cite": (["steel.toml", "-e", "abaqus"], "'abaqus' does not exist; there are embedded"),
     "header": (["--check", "."], "contact_models.h is not there; name the folder src"),
     "sweep": (["steel.toml", "--set", "impact.body.radios=1 mm"], "the nearest: impact.body.radius"),
+    "rerun": (["steel.toml"], "steel.toml: not a results file of epdem, or damaged"),
     "status": (["nowhere"], "nowhere: not a folder of a sweep"),
 }
 
@@ -96,6 +98,8 @@ def test_a_command_prints_one_json_document_and_nothing_else(command, folder, ca
     monkeypatch.setattr(crosscheck, "FOREIGN", {})
     if command == "status":
         make_sweep("steel.toml", folder / "swept")
+    if command == "rerun":
+        assert call(["run", "steel.toml", "-e", "embedded", "-o", "stored"], capsys, monkeypatch).code == 0
     if command == "tune":
         (folder / "beads.toml").write_text(FEW_BEADS)
     words, holds = DOCUMENTS[command]

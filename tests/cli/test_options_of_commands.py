@@ -73,6 +73,7 @@ KINDS = {  # words of a call without the option, and the value of every option
     "sweep of a scene": (("sweep", "scene.toml", "--set", "scene.gravity=9.81 m/s^2,1.62 m/s^2"), SWEEP),
     "latin hypercube": (("sweep", "steel.toml", "--set", "impact.body.radius=1 mm..2 mm", *HYPERCUBE), SWEEP),
     "status": (("status", "swept"), {"table": None}),
+    "rerun": (("rerun", "stored/results.h5"), {}),
 }
 OTHERS = ["d/in.impact", "d/in.scene", "d/own", "runs/figures/figure_8_16.png", "runs/steel_wall/cost/cost.csv"]
 IMPACTS_ONLY = ("predict", "timestep", "cost", "crosscheck", "calibrate")

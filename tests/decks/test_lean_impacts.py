@@ -35,12 +35,15 @@ def small(path: Path, law: str | None):
 
 
 def result(folder: Path) -> bytes | None:
-    """The dump that a deck leaves, or None if LIGGGHTS refused it."""
-    dump = folder / "path.bin"
-    dump.unlink(missing_ok=True)
+    """The dumps that a deck leaves, or None if LIGGGHTS refused it."""
+    dump, end = folder / "path.bin", folder / "end.bin"  # the latter for oblique impacts
+    for path in (dump, end):
+        path.unlink(missing_ok=True)
     command = [str(paths.launcher()), "-in", "in.impact", "-log", "none"]
     done = subprocess.run(command, cwd=folder, stdin=subprocess.DEVNULL, capture_output=True, timeout=60)
-    return dump.read_bytes() if done.returncode == 0 and dump.exists() else None
+    if done.returncode != 0 or not dump.exists():
+        return None
+    return dump.read_bytes() + (end.read_bytes() if end.exists() else b"")
 
 
 @pytest.mark.parametrize("law", [None, "hertz"])

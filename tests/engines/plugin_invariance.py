@@ -49,11 +49,21 @@ def scene():
 
 
 def deck(
-    model, *, box="box.data", before="", neigh=SELDOM, wall="primitive", body=None, restart=None, style=True, **top
+    model,
+    *,
+    tangential="history",
+    box="box.data",
+    before="",
+    neigh=SELDOM,
+    wall="primitive",
+    body=None,
+    restart=None,
+    style=True,
+    **top,
 ):
     """The scene's deck; `restart` continues from a file, without `style` with the models of that file."""
     atoms = f"read_restart {restart}\n" if restart else f"read_data {box}\n"
-    words = contact(model, wall=wall)
+    words = contact(model, wall=wall, tangential=tangential)
     if not style:
         words = "\n".join(line for line in words.splitlines() if not line.startswith("pair_")) + "\n"
     return (
@@ -74,9 +84,12 @@ def deck(
 class Suite:
     """All ways to tell the scene with one model, each a run; `deviations()` compares them with the plain one."""
 
-    def __init__(self, model, folder):
-        self.model, self.folder, self.bodies = model, folder, scene()
-        self.plain = self.outcome("plain", deck(model))
+    def __init__(self, model, folder, tangential="history"):
+        self.model, self.folder, self.bodies, self.tangential = model, folder, scene(), tangential
+        self.plain = self.outcome("plain", self.deck())
+
+    def deck(self, **options):
+        return deck(self.model, tangential=self.tangential, **options)
 
     def outcome(self, name, text, *, bodies=None, box=BOX, ranks=1, files=None):
         """Velocity and spin of every body after the run, in the order of the scene."""
@@ -117,7 +130,7 @@ class Suite:
             head()
             + f"read_data box.data\nneighbor {skin!r} bin\nneigh_modify binsize 0.02\n{{neigh}}"
             + properties
-            + contact(self.model)
+            + contact(self.model, tangential=self.tangential)
             + f"timestep {dt!r}\nthermo_modify lost error norm no\n"
             + "group up id "
             + " ".join(map(str, bodies.ids[1::2]))
@@ -136,42 +149,41 @@ class Suite:
 
     def ways(self):
         """name -> outcome; the names are the rows of the table in the documentation."""
-        m, b = self.model, self.bodies
+        b = self.bodies
         swapped = replace(b, ids=b.ids[::-1].copy())
         local = (
             "compute c all pair/gran/local id force_normal history delta\ndump l all local 10 local.txt c_c[1] c_c[4]\n"
         )
         return {
-            "swap of i and j": lambda: self.outcome("swap", deck(m), bodies=swapped),
-            "neighbour list built every step": lambda: self.outcome("every", deck(m, neigh=EVERY_STEP)),
-            "atoms sorted while touching": lambda: self.outcome("sort", deck(m, neigh=EVERY_STEP, sort="1 0.0125")),
+            "swap of i and j": lambda: self.outcome("swap", self.deck(), bodies=swapped),
+            "neighbour list built every step": lambda: self.outcome("every", self.deck(neigh=EVERY_STEP)),
+            "atoms sorted while touching": lambda: self.outcome("sort", self.deck(neigh=EVERY_STEP, sort="1 0.0125")),
             "migration between 2 ranks": lambda: self.outcome(
-                "ranks", deck(m, neigh=EVERY_STEP, ranks=(2, 1, 1)), ranks=2
+                "ranks", self.deck(neigh=EVERY_STEP, ranks=(2, 1, 1)), ranks=2
             ),
             "periodic face": lambda: self.outcome(
-                "periodic", deck(m, neigh=EVERY_STEP, boundary="p f f"), box=PERIODIC
+                "periodic", self.deck(neigh=EVERY_STEP, boundary="p f f"), box=PERIODIC
             ),
-            "run split in two": lambda: self.outcome("split", deck(m, body=f"run {MIDDLE}\nrun {STEPS - MIDDLE}\n")),
+            "run split in two": lambda: self.outcome("split", self.deck(body=f"run {MIDDLE}\nrun {STEPS - MIDDLE}\n")),
             "reset_timestep while touching": lambda: self.outcome(
-                "reset", deck(m, body=f"run {MIDDLE}\nreset_timestep 7\nrun {STEPS - MIDDLE}\n")
+                "reset", self.deck(body=f"run {MIDDLE}\nreset_timestep 7\nrun {STEPS - MIDDLE}\n")
             ),
-            "local computes every 10 steps": lambda: self.outcome("local", deck(m, before=local)),
+            "local computes every 10 steps": lambda: self.outcome("local", self.deck(before=local)),
             "restart while touching": lambda: self.restart(),
             "restart, models from the file": lambda: self.restart(style=False),
             "restart from 1 rank to 2": lambda: self.restart(ranks=2),
-            "wall as a mesh": lambda: self.outcome("mesh", deck(m, wall="mesh")),
+            "wall as a mesh": lambda: self.outcome("mesh", self.deck(wall="mesh")),
             "mesh wall, restart while touching": lambda: self.restart(wall="mesh"),
             "mesh wall, 2 ranks": lambda: self.outcome(
-                "mesh2", deck(m, wall="mesh", neigh=EVERY_STEP, ranks=(2, 1, 1)), ranks=2
+                "mesh2", self.deck(wall="mesh", neigh=EVERY_STEP, ranks=(2, 1, 1)), ranks=2
             ),
         }
 
     def restart(self, *, ranks=1, style=True, wall="primitive"):
         name = f"restart-{ranks}-{style}-{wall}"
-        stop = deck(self.model, wall=wall, body=f"run {MIDDLE}\nwrite_restart ../{name}.restart\n")
+        stop = self.deck(wall=wall, body=f"run {MIDDLE}\nwrite_restart ../{name}.restart\n")
         self.outcome(f"{name}-first", stop)
-        go_on = deck(
-            self.model,
+        go_on = self.deck(
             wall=wall,
             restart=f"../{name}.restart",
             style=style,

@@ -66,6 +66,7 @@ def deck(scene, *, steps=60, every=1, before="", end="", restart=None):
         f"rolling_friction {scene.rolling} {' '.join(scene.settings)}"
     )
     work = " f_plasticWork f_elasticEnergy" if "computePlasticWork on" in scene.settings else ""
+    work += " f_frictionWork f_frictionEnergy" if work and "partial_slip" in scene.tangential else ""
     return (
         "atom_style granular\natom_modify map array sort 0 0\nboundary p p p\nnewton off\n"
         "communicate single vel yes\nunits si\n"
@@ -104,7 +105,7 @@ def outcome(folder, scene, *, loop="", simd="", text=None, command=None, **optio
 
 DIMENSIONS = {
     "law": ("hertz", "thornton", "johnson", "cavity"),
-    "tangential": ("history", "no_history", "off"),
+    "tangential": ("history", "no_history", "off", "ep/partial_slip", "ep/partial_slip_2"),
     "rolling": ("off", "cdt", "epsd2"),
     "cohesion": ("off", "sjkr", "sjkr2"),
     "types": (1, 3),
@@ -130,6 +131,31 @@ def scene_of(choice):
         "tangential_reduce on": c.pop("slides") and c["cohesion"] != "off",
     }
     return replace(Scene(**c), settings=tuple(s for s, on in wanted.items() if on))
+
+
+# Scenes that the planted faults name: they stay the same when dimensions are added.
+NAMED = (
+    Scene(
+        law="thornton",
+        rolling="epsd2",
+        cohesion="sjkr2",
+        types=3,
+        freeze=True,
+        loose=True,
+        dashpot=False,
+        settings=("viscous on", "tangential_reduce on"),
+    ),
+    Scene(
+        law="hertz",
+        tangential="no_history",
+        cohesion="sjkr",
+        freeze=True,
+        loose=True,
+        dashpot=False,
+        settings=("viscous on",),
+    ),
+    Scene(law="cavity", tangential="ep/partial_slip", types=3, loose=True, settings=("computePlasticWork on",)),
+)
 
 
 def covering(dimensions=DIMENSIONS, seed=1, tries=60):

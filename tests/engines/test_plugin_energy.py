@@ -20,9 +20,17 @@ def gas(speed=8.0):
 
 
 def deck(
-    law, *, steps, every, ranks=(1, 1, 1), wall_setting="computePlasticWork on", pair_setting="computePlasticWork on"
+    law,
+    *,
+    steps,
+    every,
+    ranks=(1, 1, 1),
+    wall_setting="computePlasticWork on",
+    pair_setting="computePlasticWork on",
+    tangential="off",
 ):
-    words = f"model ep/{law} tangential off"
+    rubs = tangential != "off"
+    words = f"model ep/{law} tangential {tangential}"
     walls = "".join(
         f"fix w{k} all wall/gran {words} primitive type 2 {side} {at!r} {wall_setting}\n"
         for k, (side, at) in enumerate(SIDES)
@@ -32,17 +40,18 @@ def deck(
         + "read_data box.data\nneighbor 1e-3 bin\nneigh_modify delay 0\n"
         + materials("ep/any")
         + f"pair_style gran {words} {pair_setting}\npair_coeff * *\n{walls}timestep 5e-8\nfix move all nve/sphere\n"
-        "compute s all reduce sum f_plasticWork f_elasticEnergy\ncompute k all ke\n"
-        f"thermo_style custom step c_k c_s[1] c_s[2]\nthermo {every}\n"
+        f"compute s all reduce sum f_plasticWork f_elasticEnergy{' f_frictionWork f_frictionEnergy' * rubs}\n"
+        "compute l all ke\ncompute r all erotate/sphere\nvariable k equal c_l+c_r\n"
+        f"thermo_style custom step v_k c_s[1] c_s[2]{' c_s[3] c_s[4]' * rubs}\nthermo {every}\n"
         f"thermo_modify lost error norm no format float %.17g\nrun {steps}\n"
     )
 
 
-def balance(folder, text, ranks=1):
-    """Rows of step, kinetic, plastic, elastic energy [J]; the kinetic energy at the start first."""
+def balance(folder, text, ranks=1, columns=4):
+    """Rows of step, kinetic, plastic, elastic energy [J], work and energy of friction; kinetic at the start first."""
     lines = good(folder, text, ranks=ranks, files={"box.data": gas().data(BOX)}).text.splitlines()
     rows = [line.split() for line in lines]
-    return np.array([row for row in rows if len(row) == 4 and all(c[0].isdigit() for c in row)], float)
+    return np.array([row for row in rows if len(row) == columns and all(c[0].isdigit() for c in row)], float)
 
 
 @pytest.mark.parametrize("law", LAWS)
@@ -68,3 +77,25 @@ def test_a_wall_alone_is_told_that_the_pair_style_keeps_the_books(tmp_path):
     text = text.replace("compute s", "# ").replace("c_s[1] c_s[2]", "")
     result = run(tmp_path, text, files={"box.data": gas().data(BOX)})
     assert result.code == 1 and "computePlasticWork" in result.error and "pair style" in result.error
+
+
+def test_bearing_contacts_are_those_with_a_force(tmp_path):
+    """Counted again from LIGGGHTS's own list of contacts, away from the walls, which that list leaves out."""
+    output = (
+        "compute c all pair/gran/local id force\n"
+        "dump l all local 50 local.* c_c[1] c_c[2] c_c[4] c_c[5] c_c[6]\n"
+        "dump_modify l format '%.17g %.17g %.17g %.17g %.17g'\n"
+        "dump a all custom 50 atoms.* id x y z radius f_bearingContacts\nrun"
+    )
+    good(tmp_path, deck("thornton", steps=3000, every=1000).replace("run", output), files={"box.data": gas().data(BOX)})
+    bearing = resting = 0
+    for step in range(50, 3001, 50):
+        atoms = np.loadtxt(tmp_path / f"atoms.{step}", skiprows=9)
+        pairs = np.loadtxt(tmp_path / f"local.{step}", skiprows=9, ndmin=2).reshape(-1, 5)
+        loaded = np.any(pairs[:, 2:] != 0.0, axis=1)
+        count = np.bincount(pairs[loaded, :2].astype(int).ravel(), minlength=126)
+        x, radius = atoms[:, 1:4], atoms[:, 4]
+        free = ((x > radius[:, None]) & (0.025 - x > radius[:, None])).all(axis=1)
+        assert (atoms[free, 5] == count[atoms[free, 0].astype(int)]).all()
+        bearing, resting = bearing + int(count.sum()), resting + int((~loaded).sum())
+    assert bearing > 100 and resting > 10

@@ -126,7 +126,7 @@ def test_a_combination_that_does_not_exist_is_refused_with_those_that_do(tmp_pat
 
 COMBINATIONS = [
     (t, c, r, s)
-    for t in ("off", "no_history", "history")
+    for t in ("off", "no_history", "history", "ep/partial_slip")
     for c in ("off", "sjkr", "sjkr2")
     for r in ("off", "cdt", "epsd", "epsd2", "epsd3")
     for s in ("default", "multicontact")
@@ -134,7 +134,7 @@ COMBINATIONS = [
 
 
 def test_all_combinations_run_for_pair_and_wall(tmp_path):
-    """Must 9: 90 combinations; the law changes from one to the next, so that each law meets most of them."""
+    """Must 9: 120 combinations; the law changes from one to the next, so that each law meets most of them."""
     more = materials("ep/any") + "".join(
         f"fix {k} all property/global {name} peratomtypepair 3 {' '.join([str(value)] * 9)}\n"
         for k, (name, value) in enumerate(

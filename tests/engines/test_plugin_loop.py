@@ -7,11 +7,11 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from plugin_decks import launcher, run
-from plugin_loop import DIMENSIONS, SAID, SIMD, Scene, bodies, covering, deck, outcome
+from plugin_loop import DIMENSIONS, NAMED, SAID, SIMD, Scene, bodies, covering, deck, outcome
 
 pytestmark = pytest.mark.liggghts
 
-SCENES = covering()
+SCENES = [*NAMED, *covering()]
 
 
 def supported(simd, folder):

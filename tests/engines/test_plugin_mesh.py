@@ -77,6 +77,7 @@ CASES = [
     ("hertz", "history", "at rest", 2),
     ("hertz", "no_history", "moving", 1),
     ("johnson", "history", "moving", 2),
+    ("cavity", "ep/partial_slip", "moving", 1),
 ]
 
 

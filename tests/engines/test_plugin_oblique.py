@@ -24,16 +24,16 @@ PSI_1 = np.arange(0.25, 8.1, 0.25)
 SLIDING_LINE = PSI_1 - 7 * KAPPA  # friction takes mu times the whole normal impulse
 
 
-def rebounds(folder, model, tan_theta, *, step, times, extra="", settings=""):
+def rebounds(folder, model, tan_theta, *, step, times, speed=SPEED, tangential="history", extra="", settings=""):
     """(horizontal speed, speed of rebound, spin), each (angles, phases), after `times` steps [s] of one run.
 
-    The spheres hit the wall with SPEED and `tan_theta` times SPEED (angles,), in all starting phases within a step.
+    The spheres hit the wall with `speed` and `tan_theta` times it (angles,), in all starting phases within a step.
     """
     tangent = np.repeat([0.0, *tan_theta], PHASES)  # the first row is for two spheres of other types, see below
     phase = np.tile((np.arange(PHASES) + 0.5) / PHASES, len(tan_theta) + 1)
     k = np.arange(len(tangent))
-    x = np.column_stack([0.011 * (k % 16), 0.011 * (k // 16), R + phase * SPEED * step])
-    v = np.column_stack([SPEED * tangent, 0 * tangent, np.full(len(k), -SPEED)])
+    x = np.column_stack([0.011 * (k % 16), 0.011 * (k // 16), R + phase * speed * step])
+    v = np.column_stack([speed * tangent, 0 * tangent, np.full(len(k), -speed)])
     types = np.full(len(k), STEEL)
     types[[0, 1]] = 1, 3  # LIGGGHTS needs every type up to the largest in use
     text = (
@@ -41,14 +41,14 @@ def rebounds(folder, model, tan_theta, *, step, times, extra="", settings=""):
         + "read_data box.data\nneighbor 1e-3 bin\nneigh_modify delay 0\n"
         + materials(model, friction=MU)
         + extra
-        + contact(model, wall="primitive", settings=settings)
+        + contact(model, wall="primitive", tangential=tangential, settings=settings)
         + f"timestep {step!r}\nfix move all nve/sphere\nthermo_modify lost error norm no\nrun {times}\n"
         + "dump out all custom 1 out.bin id z vx vz omegay\nrun 0\n"
     )
     box = ((-0.02, 0.3), (-0.02, 0.3), (-0.001, 0.05))
     files = {"box.data": Bodies(types, np.full(len(k), R), x, v).data(box)}
     _, z, vx, vz, spin = good(folder, text, files=files).last[PHASES:].T
-    assert (z > R).all()
+    assert (vz > 0).all() and (speed != SPEED or (z > R).all())
     return [column.reshape(-1, PHASES) for column in (vx, vz, spin)]
 
 

@@ -155,3 +155,11 @@ def test_a_property_that_changes_between_runs_counts_from_there_on_and_only_it(t
     )
     assert (changed == always).all()
     assert (changed[:, 4:] != old[:, 4:]).any(axis=1).all()
+
+
+@pytest.mark.parametrize(("units", "said"), [("si", "[Pa]"), ("cgs", "[units cgs]")])
+def test_a_message_names_the_unit_of_the_deck(units, said, tmp_path):
+    text = re.sub(r"(fix p1 .* peratomtype \S+) \S+", r"\1 0", materials("ep/any"))
+    assert f"yieldPressure = 0 {said} of type 2" in told(
+        tmp_path, deck(properties=text).replace("units si", f"units {units}")
+    )

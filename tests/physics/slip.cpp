@@ -1,60 +1,19 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Steps of partial slip for arrays of contacts, one by one and four by four: what the tests of the law call.
+// Steps of partial slip for arrays of contacts, one by one and in lanes: what the tests of the law call.
 #include <epdem/partial_slip.hpp>
 
 namespace {
 
-/// Four contacts in the arithmetic that the law asks for.
-struct Four {
-  double v[4];
-  Four() = default;
-  explicit Four(double x) : v{x, x, x, x} {}
-};
-struct Mask {
-  bool v[4];
-};
-template <class F>
-Four each(F f) {
-  Four r;
-  for (int k = 0; k < 4; ++k) r.v[k] = f(k);
-  return r;
-}
-Four operator+(const Four& a, const Four& b) {
-  return each([&](int k) { return a.v[k] + b.v[k]; });
-}
-Four operator-(const Four& a, const Four& b) {
-  return each([&](int k) { return a.v[k] - b.v[k]; });
-}
-Four operator*(const Four& a, const Four& b) {
-  return each([&](int k) { return a.v[k] * b.v[k]; });
-}
-Four operator/(const Four& a, const Four& b) {
-  return each([&](int k) { return a.v[k] / b.v[k]; });
-}
-Four sqrt(const Four& a) {
-  return each([&](int k) { return std::sqrt(a.v[k]); });
-}
-Four min(const Four& a, const Four& b) {
-  return each([&](int k) { return std::min(a.v[k], b.v[k]); });
-}
-Four max(const Four& a, const Four& b) {
-  return each([&](int k) { return std::max(a.v[k], b.v[k]); });
-}
-Four select(const Mask& m, const Four& a, const Four& b) {
-  return each([&](int k) { return m.v[k] ? a.v[k] : b.v[k]; });
-}
-Mask operator>(const Four& a, const Four& b) {
-  return {{a.v[0] > b.v[0], a.v[1] > b.v[1], a.v[2] > b.v[2], a.v[3] > b.v[3]}};
-}
+using epdem::Lanes;
 
 /// Rows of `width` numbers from `row` on as the members of one object of T.
 void get(double& x, const double* rows, int, int member) { x = rows[member]; }
-void get(Four& x, const double* rows, int width, int member) {
-  for (int k = 0; k < 4; ++k) x.v[k] = rows[k * width + member];
+void get(Lanes& x, const double* rows, int width, int member) {
+  for (int k = 0; k < epdem::lane_count; ++k) x[k] = rows[k * width + member];
 }
 void put(double x, double* rows, int, int member) { rows[member] = x; }
-void put(const Four& x, double* rows, int width, int member) {
-  for (int k = 0; k < 4; ++k) rows[k * width + member] = x.v[k];
+void put(const Lanes& x, double* rows, int width, int member) {
+  for (int k = 0; k < epdem::lane_count; ++k) rows[k * width + member] = x[k];
 }
 
 template <int N, bool Flattens, bool Damped, class T>
@@ -70,9 +29,10 @@ void steps(long count, double stiffness, double mu, double* state, const double*
     for (int k = 0; k < 4; ++k) get(*members[k], now + 4 * i, 4, k);
     for (int k = 0; k < 8; ++k) get(*members[4 + k], shear + 8 * i, 8, k);
     for (int k = 0; k < width; ++k) get(reinterpret_cast<T*>(&before)[k], state + width * i, width, k);
-    auto r = epdem::partial_slip<N, Flattens, Damped>(before, p, s, T(stiffness), T(mu));
+    auto r = epdem::partial_slip<N, Flattens, Damped>(before, p, s, T{} + stiffness, T{} + mu);
     for (int k = 0; k < width; ++k) put(reinterpret_cast<T*>(&r.after)[k], state + width * i, width, k);
-    const T found[] = {r.force.x, r.force.y, r.force.z, r.dissipated, epdem::slip_energy(r.after, T(stiffness))};
+    const T found[] = {r.force.x, r.force.y, r.force.z, epdem::slip_loss(before, r, s.slip, T{} + stiffness),
+                       epdem::slip_energy(r.after, T{} + stiffness)};
     for (int k = 0; k < 5; ++k) put(found[k], out + 5 * i, 5, k);
   }
 }
@@ -88,13 +48,13 @@ void choose(bool flattens, bool damped, long n, double k, double mu, double* s, 
 
 }  // namespace
 
-/// `count` contacts, a multiple of four if in_lanes. Rows: state 3 N + 1, now 4, shear 8, out 5 (force, dissipated
-/// work, elastic energy); state is what was before and comes after.
+/// `count` contacts, a multiple of the number of lanes if in_lanes. Rows: state 3 N + 1, now 4, shear 8, out 5 (force,
+/// dissipated work, elastic energy); state is what was before and comes after.
 extern "C" void slip_steps(int nodes, int flattens, int damped, int in_lanes, long count, double stiffness, double mu,
                            double* state, const double* now, const double* shear, double* out) {
   const auto one = nodes == 2 ? choose<2, double> : choose<3, double>;
-  const auto four = nodes == 2 ? choose<2, Four> : choose<3, Four>;
-  (in_lanes ? four : one)(flattens, damped, count, stiffness, mu, state, now, shear, out);
+  const auto many = nodes == 2 ? choose<2, Lanes> : choose<3, Lanes>;
+  (in_lanes ? many : one)(flattens, damped, count, stiffness, mu, state, now, shear, out);
 }
 
 /// Nodes, weights and profile of the rule.

@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from epdem.theory import pressure, sliding, yielding
-from epdem.theory.backbones import Thornton
+from epdem.theory.backbones import Cavity, Thornton
 
 NU = [0, 0.1, 0.2, 0.25, 0.3, 0.35, 0.4, 0.5]
 P_Y0 = [1.29931, 1.39448, 1.49859, 1.55435, 1.61280, 1.67411, 1.73848, 1.87724]
@@ -54,7 +54,11 @@ def test_fully_plastic_pressure_lies_where_the_expanding_cavity_ends():
     assert low == pytest.approx([2.8e9, 5.6e9]) and high == pytest.approx([3e9, 6e9])
     assert pressure.cavity_mean(40.0) == pytest.approx(2.4, abs=0.02)  # (2/3)(1 + ln(40/3)), still below
     x = 3 * np.exp(1.5 * 2.8 - 1)  # 8.81 solved for p_m = 2.8 Y
-    assert pressure.cavity_mean(x) == pytest.approx(2.8, rel=1e-14)
+    assert pressure.cavity_mean(x) == pytest.approx(2.8, rel=1e-14) and pressure.cavity_end(2.8) == pytest.approx(x)
+    # the law cavity is there at ln(a_P/a_Y) = 1.5 (c_P - 2 c_Y/3) from a_Y, E* a_Y/(Y R*) = pi c_Y/2
+    law = Cavity(E_star=1.0, R_star=1.0, Y=1e-3)
+    assert 1e3 * law.radius(law.plastic_overlap) == pytest.approx(33.84, abs=0.01)
+    assert 1e3 * law.a_Y * np.exp(1.5 * (2.8 - 3.2 / 3)) == pytest.approx(33.84, abs=0.01) and round(x, 1) == 73.6
     with pytest.raises(ValueError, match="Y"):
         yielding.fully_plastic_mean(-1.0)
 

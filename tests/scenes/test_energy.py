@@ -101,6 +101,23 @@ def test_rubbing_contacts_have_friction_as_the_remainder_and_it_only_grows(tmp_p
     assert grown.min() > -0.02 * table["friction"].max()
 
 
+RUBBING = '\n[contact]\nfriction = 0.5\ntangential = "partial_slip"\n'
+
+
+@pytest.mark.parametrize(("name", "law"), [("drum_beads", "thornton"), ("settle_glass", "cavity")])
+def test_with_partial_slip_the_work_of_friction_is_computed_and_nothing_is_left_over(name, law, tmp_path):
+    path = frictionless(name, tmp_path, law, KINDS[name], 20)
+    path.write_text(path.read_text() + RUBBING)
+    outcome = run(path, out=tmp_path / "out")
+    table = outcome.results.ledger
+    moved = table[["kinetic", "plastic", "friction"]].abs().max().sum()
+    assert table["balance"].abs().max() < 0.01 * moved
+    assert table["friction"].iloc[-1] > 0.1 * moved and table["springs"].max() > 1e-4 * moved
+    assert np.diff(table["friction"]).min() >= -1e-9 * moved
+    verdict = outcome.results.checks.set_index("check").loc["energy: all terms but none as remainder"]
+    assert verdict["passed"]
+
+
 def test_forces_of_the_contact_table_are_those_that_move_the_plate(tmp_path):
     outcome = run(with_contacts("thornton", tmp_path), out=tmp_path / "out")
     found, rows = outcome.results.contacts, outcome.results.rows.set_index("step")

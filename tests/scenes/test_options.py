@@ -24,7 +24,7 @@ CASES = Path(__file__).parents[2] / "cases"
 def poured() -> dict:
     """Sticky, rolling beads poured one after the other, with every output."""
     data = read_toml(CASES / "settle_glass.toml")
-    scene = {"box": ["16 mm", "16 mm", "30 mm"], "count": 60, "rate": "2000 Hz", "duration": "0.08 s"}
+    scene = {"box": ["16 mm", "16 mm", "30 mm"], "count": 60, "rate": "800 Hz", "duration": "0.08 s"}
     contact = {
         "friction": 0.4,
         "cohesion": "1e3 J/m^3",

@@ -5,10 +5,13 @@
 
 namespace epdem {
 
+inline constexpr double no_finite_strain = 1e6;  // of Cavity's finite_strain: so large a number changes nothing
+
 /// Three phases: elastic to p_0 = c_Y Y (eq. 8.78), expanding cavity (slope 2/3 of p_m/Y against ln a, eq. 8.81),
 /// fully plastic with p_m = c_P Y (eq. 8.80) and a^2 = 2 R* alpha (eq. 8.85). This project's own composition:
 ///   s = alpha/alpha_Y;  1 < s < s_P:  a = a_Y s^((1+beta)/2),  p_m = Y [2 c_Y/3 + (1+beta)/3 ln s],
 ///   tau = ln s/ln s_P. Nothing is fitted.
+/// Option finite_strain: p_m falls by 1 - exp(-c (a/R*)^-0.7), c = 0.82 (Jackson and Green 2005, J. Tribol. 127, 343).
 template <class T>
 struct Cavity {
   using number = T;
@@ -19,13 +22,14 @@ struct Cavity {
   static constexpr bool flattens = true;
   static constexpr Parameter parameters[] = {{"yield_stress", "yieldStress", "Pa", not_given},
                                              {"first_yield_ratio", "firstYieldRatio", "1", 1.60},
-                                             {"plastic_ratio", "plasticRatio", "1", 2.8}};
-  static constexpr int n_parameters = 3;
+                                             {"plastic_ratio", "plasticRatio", "1", 2.8},
+                                             {"finite_strain", "finiteStrain", "1", no_finite_strain}};
+  static constexpr int n_parameters = 4;
   static constexpr int strength = 0;
   static constexpr double default_ratio = 1.0;
   static constexpr bool strength_by_ratio = false;
 
-  T E_star{}, Y{}, c_Y{}, c_P{};
+  T E_star{}, Y{}, c_Y{}, c_P{}, c_strain{};
   T yield_ratio{};    // alpha_Y/R*
   T plastic_ratio{};  // alpha_P/R*
   T log_s_P{}, beta{};
@@ -38,7 +42,7 @@ struct Cavity {
 
   Cavity() = default;
   Cavity(T E_star_, const T* parameter) noexcept
-      : E_star(E_star_), Y(parameter[0]), c_Y(parameter[1]), c_P(parameter[2]) {
+      : E_star(E_star_), Y(parameter[0]), c_Y(parameter[1]), c_P(parameter[2]), c_strain(parameter[3]) {
     a_ratio = pi * c_Y * Y / (2.0 * E_star);
     yield_ratio = a_ratio * a_ratio;
     log_s_P = 3.0 * (c_P - 2.0 * c_Y / 3.0) - log(T(2.0));
@@ -55,6 +59,15 @@ struct Cavity {
   T elastic_overlap(T R_star) const noexcept { return yield_ratio * R_star; }
 
   Point<T> load(T R_star, T delta) const noexcept {
+    Point<T> p = small_strain(R_star, delta);
+    if (any(c_strain < no_finite_strain)) p.force = p.force * (1.0 - fallen(p.radius / R_star));
+    return p;
+  }
+
+  /// Share of the mean pressure that is gone at a/R*.
+  T fallen(T strain) const noexcept { return exp(-c_strain * exp(-0.7 * log(strain))); }
+
+  Point<T> small_strain(T R_star, T delta) const noexcept {
     const auto plastic = delta >= plastic_ratio * R_star;
     Point<T> p{};
     if (any(plastic)) p = {2.0 * pi * R_star * c_P * Y * delta, sqrt(2.0 * R_star * delta), constant<T>(1.0)};
@@ -79,8 +92,34 @@ struct Cavity {
       const T I1 = ((grow + 1.0) * log_s - I0) / n;
       const T more = W + pi * a_Y * a_Y * delta_Y * Y * (A * I0 + B * I1), x = max(T{}, delta - delta_P);
       W = select(beyond, more + pi * R_star * c_P * Y * x * (delta + delta_P), W);
+      if (any(c_strain < no_finite_strain)) {
+        const T reached = only(beyond, delta), middle = min(reached, delta_P);
+        const T lost = fallen_work(R_star, delta_Y, middle) + fallen_work(R_star, delta_P, max(reached, delta_P));
+        W = select(beyond, W - lost, W);
+      }
     }
     return W;
+  }
+
+  /// What the fall of the pressure takes off the work between two overlaps of one phase; Gauss's rule in ln alpha.
+  T fallen_work(T R_star, T low, T high) const noexcept {
+    constexpr double node[] = {0.005299532504175031, 0.0277124884633837, 0.06718439880608412, 0.1222977958224985,
+                               0.19106187779867811,  0.2709916111713863, 0.35919822461037054, 0.4524937450811813,
+                               0.5475062549188188,   0.6408017753896295, 0.7290083888286136,  0.8089381222013219,
+                               0.8777022041775016,   0.9328156011939159, 0.9722875115366163,  0.994700467495825};
+    constexpr double weight[] = {
+        0.013576229705877088, 0.031126761969323728, 0.0475792558412463,   0.062314485627767036,
+        0.07479799440828835,  0.08457825969750132,  0.09130170752246182,  0.09472530522753432,
+        0.09472530522753432,  0.09130170752246182,  0.08457825969750132,  0.07479799440828835,
+        0.062314485627767036, 0.0475792558412463,   0.031126761969323728, 0.013576229705877088};
+    const T range = log(high / low);
+    T sum{};
+    for (int k = 0; k < 16; ++k) {
+      const T delta = low * exp(node[k] * range);
+      const Point<T> p = small_strain(R_star, delta);
+      sum = sum + weight[k] * (p.force * fallen(p.radius / R_star) * delta);
+    }
+    return range * sum;
   }
 };
 

@@ -38,11 +38,17 @@ struct Path {
   T* velocity = nullptr;  // of approach [m/s]
 };
 
+/// Nothing beside a normal impact.
+struct Alone {
+  template <class... Any>
+  void operator()(const Any&...) const noexcept {}
+};
+
 /// Integrates until the bodies have parted (no force for two steps after contact) or `steps` is reached;
-/// `state` is what the contact remembers, before and after.
-template <class Law>
+/// `state` is what the contact remembers, before and after. beside(step, force) is called in every step.
+template <class Law, class Beside = Alone>
 inline ImpactOutput<Number<Law>> impact(const Law& law, const ImpactInput<Number<Law>>& in,
-                                        const Path<Number<Law>>& path, State<Law>& state) noexcept {
+                                        const Path<Number<Law>>& path, State<Law>& state, Beside beside = {}) noexcept {
   using T = Number<Law>;
   const T half = 0.5 * in.time_step / in.m_star;
   T alpha = -in.gap, v = in.speed, force = 0.0;
@@ -55,6 +61,7 @@ inline ImpactOutput<Number<Law>> impact(const Law& law, const ImpactInput<Number
     const T F = damped ? damped_force(law, in.R_star, state, now, in.viscous, in.m_star, v) : now.force;
     if (n > 0) v -= half * F;
     force = F;
+    beside(now, F);
     state = now.after;
     if (path.overlap) path.overlap[n] = alpha;
     if (path.force) path.force[n] = force;

@@ -6,8 +6,6 @@
 // change their sign when the pair is stored from the other side, the radius does not.
 #pragma once
 
-#include <type_traits>
-
 #include "pair.hpp"
 
 namespace epdem {
@@ -19,23 +17,23 @@ struct Vec {
 };
 
 template <class T>
-inline Vec<T> operator+(const Vec<T>& a, const Vec<T>& b) noexcept {
+EPDEM_INLINE Vec<T> operator+(const Vec<T>& a, const Vec<T>& b) noexcept {
   return {a.x + b.x, a.y + b.y, a.z + b.z};
 }
 template <class T>
-inline Vec<T> operator-(const Vec<T>& a, const Vec<T>& b) noexcept {
+EPDEM_INLINE Vec<T> operator-(const Vec<T>& a, const Vec<T>& b) noexcept {
   return {a.x - b.x, a.y - b.y, a.z - b.z};
 }
 template <class T>
-inline Vec<T> operator*(const T& c, const Vec<T>& a) noexcept {
+EPDEM_INLINE Vec<T> operator*(const T& c, const Vec<T>& a) noexcept {
   return {c * a.x, c * a.y, c * a.z};
 }
 template <class T>
-inline T dot(const Vec<T>& a, const Vec<T>& b) noexcept {
+EPDEM_INLINE T dot(const Vec<T>& a, const Vec<T>& b) noexcept {
   return a.x * b.x + a.y * b.y + a.z * b.z;
 }
 template <class T>
-inline Vec<T> cross(const Vec<T>& a, const Vec<T>& b) noexcept {
+EPDEM_INLINE Vec<T> cross(const Vec<T>& a, const Vec<T>& b) noexcept {
   return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
 
@@ -92,47 +90,79 @@ template <int N, class T>
 struct SlipStep {
   Vec<T> force;           // [N] against the slip; never above mu load
   SlipState<N, T> after;  // what the contact remembers if this step counts
-  T dissipated;           // [J] in this step: work of the slip less the gain of elastic energy
 };
 
 /// Elastic energy [J] of the springs: 4 G* a sum w s^2, stiffness = 8 G* [Pa].
 template <int N, class T>
-inline T slip_energy(const SlipState<N, T>& state, const T& stiffness) noexcept {
-  T sum(0.0);
-  for (int i = 0; i < N; ++i) sum = sum + T(Lobatto<N>::weight[i]) * dot(state.stretch[i], state.stretch[i]);
-  return T(0.5) * stiffness * state.radius * sum;
+EPDEM_INLINE T slip_energy(const SlipState<N, T>& state, const T& stiffness) noexcept {
+  T sum{};
+  for (int i = 0; i < N; ++i) sum = sum + Lobatto<N>::weight[i] * dot(state.stretch[i], state.stretch[i]);
+  return 0.5 * stiffness * state.radius * sum;
 }
 
 /// Friction [N] of the springs alone: -8 G* a sum w s.
 template <int N, class T>
-inline Vec<T> slip_force(const SlipState<N, T>& state, const T& stiffness) noexcept {
-  Vec<T> sum{T(0.0), T(0.0), T(0.0)};
-  for (int i = 0; i < N; ++i) sum = sum - T(Lobatto<N>::weight[i]) * state.stretch[i];
+EPDEM_INLINE Vec<T> slip_force(const SlipState<N, T>& state, const T& stiffness) noexcept {
+  Vec<T> sum{T{}, T{}, T{}};
+  for (int i = 0; i < N; ++i) sum = sum - (T{} + Lobatto<N>::weight[i]) * state.stretch[i];
   return (stiffness * state.radius) * sum;
+}
+
+/// Work [J] lost in a step: that of the slip less the gain of elastic energy. The mean of both ends' forces does the
+/// work, as in velocity Verlet; that of the dashpot is known at this end only.
+template <int N, class T>
+EPDEM_INLINE T slip_loss(const SlipState<N, T>& before, const SlipStep<N, T>& now, const Vec<T>& slip,
+                         const T& stiffness) noexcept {
+  const Vec<T> twice = now.force + now.force - slip_force(now.after, stiffness) + slip_force(before, stiffness);
+  return slip_energy(before, stiffness) - slip_energy(now.after, stiffness) - 0.5 * dot(twice, slip);
 }
 
 namespace detail {
 
-template <class T>
-inline std::enable_if_t<std::is_arithmetic_v<T>, T> select(bool condition, T yes, T no) noexcept {
-  return condition ? yes : no;
+inline constexpr double least = std::numeric_limits<double>::min();  // instead of a division by 0
+
+/// Largest stretch of the springs at the nodes [m], 0 without load: mu q/(4 G*) with the load q of the line, scaled so
+/// that |T| = mu load where all nodes slide. q is Hertz's half-ellipse; Flattens: with tau of it uniform pressure, less
+/// the rigid punches between radius_max and radius (Mesarovic and Johnson 2000, eq. 8.82).
+template <int N, bool Flattens, class T>
+EPDEM_INLINE void slip_limits(const Pressed<T>& now, const T& scale, T* limit) noexcept {
+  using Rule = Lobatto<N>;
+  if constexpr (Flattens) {
+    const T b = now.radius / max(max(now.radius_max, now.radius), T{} + least), rest = sqrt(1.0 - b * b);
+    T sum{};
+    for (int i = 0; i < N; ++i) {
+      const double x2 = Rule::node[i] * Rule::node[i];
+      const T flat = 2.0 / pi * now.flatness / (sqrt(1.0 - b * b * x2) + rest);
+      limit[i] = (1.0 - x2) * (0.75 * (1.0 - now.flatness) + flat);
+      sum = sum + Rule::weight[i] * limit[i];
+    }
+    const T share = scale / sum;
+    for (int i = 0; i < N; ++i) limit[i] = share * limit[i];
+  } else {
+    for (int i = 0; i < N; ++i) limit[i] = (1.5 * (1.0 - Rule::node[i] * Rule::node[i])) * scale;
+  }
 }
 
-/// Load of the line at the nodes, in units of load/(2 a sum w q): (1-tau) of Hertz's half-ellipse and tau of uniform
-/// pressure, less the rigid punches between radius_max and radius (Mesarovic and Johnson 2000, eq. 8.82).
-template <int N, class T>
-inline void line_load(const Pressed<T>& now, const T& tiny, T* q) noexcept {
-  using std::max;
-  using std::sqrt;
-  const T b = now.radius / max(max(now.radius_max, now.radius), tiny), rest = sqrt(T(1.0) - b * b);
-  T sum(0.0);
-  for (int i = 0; i < N; ++i) {
-    const double xi = Lobatto<N>::node[i];
-    const T flat = T(2.0 / pi) * now.flatness / (sqrt(T(1.0) - b * b * T(xi * xi)) + rest);
-    q[i] = T(1.0 - xi * xi) * (T(0.75) * (T(1.0) - now.flatness) + flat);
-    sum = sum + T(Lobatto<N>::weight[i]) * q[i];
+/// A vector, shortened to `limit` if it is longer.
+template <class T>
+EPDEM_INLINE Vec<T> limited(const Vec<T>& s, const T& limit) noexcept {
+  const T square = dot(s, s);
+  const auto over = square > limit * limit;
+  return any(over) ? select(over, limit / sqrt(square), T{} + 1.0) * s : s;
+}
+
+/// Friction [N] of stretches within their limits, with the dashpot inside the same limits.
+template <int N, bool Damped, class T>
+EPDEM_INLINE Vec<T> friction(const SlipState<N, T>& state, const Shear<T>& motion, const T& unit, const T* limit,
+                             const T& stiffness) noexcept {
+  if constexpr (!Damped) {
+    return slip_force(state, stiffness);
+  } else {
+    const T drag = select(unit > 0.0, motion.damping / (Lobatto<N>::total * unit), T{});
+    SlipState<N, T> pulled{{}, state.radius};
+    for (int i = 0; i < N; ++i) pulled.stretch[i] = limited(state.stretch[i] + drag * motion.slip, limit[i]);
+    return slip_force(pulled, stiffness);
   }
-  for (int i = 0; i < N; ++i) q[i] = q[i] / sum;
 }
 
 }  // namespace detail
@@ -140,73 +170,58 @@ inline void line_load(const Pressed<T>& now, const T& tiny, T* q) noexcept {
 /// One step of friction: a pure function of memory, normal contact and motion.
 ///
 /// stiffness = 8 G* [Pa], mu the coefficient of friction. Flattens: the law has tau > 0; else the load of the line is
-/// Hertz's. Damped: with a dashpot, inside the limit mu load. T is a number or a vector of lanes with the operations of
-/// one, select, sqrt, min and max. Without load nothing is left. Its energy never grows but by the work of the slip:
-/// the nodes' rule sums by parts, so that carrying the stretch to another radius keeps a sum w s^2 (to second order of
-/// the change of radius), and the limit only takes.
+/// Hertz's. Damped: with a dashpot, inside the limit mu load. T is double or Lanes. Without load nothing is left. Its
+/// energy never grows but by the work of the slip: the nodes' rule sums by parts, so that carrying the stretch to
+/// another radius keeps a sum w s^2 (to second order of the change of radius), and the limit only takes.
 template <int N, bool Flattens, bool Damped, class T>
-inline SlipStep<N, T> partial_slip(const SlipState<N, T>& before, const Pressed<T>& now, const Shear<T>& motion,
-                                   const T& stiffness, const T& mu) noexcept {
-  using detail::select;
-  using std::max;
-  using std::min;
-  using std::sqrt;
+EPDEM_INLINE SlipStep<N, T> partial_slip(const SlipState<N, T>& before, const Pressed<T>& now, const Shear<T>& motion,
+                                         const T& stiffness, const T& mu) noexcept {
   using Rule = Lobatto<N>;
-  const T zero(0.0), one(1.0), tiny(std::numeric_limits<double>::min());
+  const T one = T{} + 1.0, tiny = T{} + detail::least;
   const Vec<T>& n = motion.normal;
-  const auto pressed = min(now.load, now.radius) > zero;
-  const T radius = select(pressed, now.radius, zero), unit = stiffness * radius;  // [m], [N/m] of force per stretch
-
-  T limit[N];  // of the stretch at the nodes; 0 without load, and then the stretch and the force are 0 as well
-  const T scale = select(pressed, mu * now.load / unit, zero);
-  if constexpr (Flattens) {
-    detail::line_load<N>(now, tiny, limit);
-    for (int i = 0; i < N; ++i) limit[i] = scale * limit[i];
-  } else {
-    for (int i = 0; i < N; ++i) limit[i] = scale * T(1.5 * (1.0 - Rule::node[i] * Rule::node[i]));
-  }
+  const auto pressed = min(now.load, now.radius) > 0.0;
+  const T radius = select(pressed, now.radius, T{}), unit = stiffness * radius;  // [m], [N/m] of force per stretch
+  T limit[N];  // 0 without load, and then the stretch and the force are 0 as well
+  detail::slip_limits<N, Flattens>(now, select(pressed, mu * now.load / unit, T{}), limit);
   // rotation about the normal by `turn` (Cayley: exactly orthogonal)
-  const T half = T(0.5) * motion.turn, share = one / (one + half * half);
-  const T cosine = (one - half * half) * share, sine = motion.turn * share;
-  const T ratio = radius / max(before.radius, tiny);
-  T drag(0.0);
-  if constexpr (Damped) drag = select(pressed, motion.damping / (unit * T(Rule::total)), zero);
+  const T half = 0.5 * motion.turn, share = 1.0 / (1.0 + half * half);
+  const T cosine = (1.0 - half * half) * share, sine = motion.turn * share;
+  const T ratio = radius / max(before.radius, tiny), square = ratio * ratio;
 
   Vec<T> c[N];  // of the old profile
   for (int k = 0; k < N; ++k) {
-    c[k] = T(Rule::profile[k][0]) * before.stretch[0];
-    for (int j = 1; j < N; ++j) c[k] = c[k] + T(Rule::profile[k][j]) * before.stretch[j];
+    c[k] = (T{} + Rule::profile[k][0]) * before.stretch[0];
+    for (int j = 1; j < N; ++j) c[k] = c[k] + (T{} + Rule::profile[k][j]) * before.stretch[j];
   }
 
-  SlipStep<N, T> out{{zero, zero, zero}, {{}, radius}, zero};
-  Vec<T> elastic{zero, zero, zero};
+  SlipStep<N, T> out;
+  out.after.radius = radius;
   for (int i = 0; i < N; ++i) {
     // the stretch stays where the material is: at the node it is that of ratio xi in the old circle, 0 beyond its rim
-    const T old = ratio * T(Rule::node[i]), z = min(old * old, one);
+    const T z = min(square * (Rule::node[i] * Rule::node[i]), one);
     Vec<T> s = c[N - 1];
     for (int k = N - 2; k >= 0; --k) s = z * s + c[k];
-    s = (one - z) * s;
+    s = (1.0 - z) * s;
     // it turns with the contact and keeps its length; the series of 1/sqrt(1-e) stays below it
     const T out_of_plane = dot(n, s), e = out_of_plane * out_of_plane / max(dot(s, s), tiny);
-    const T length = one + e * (T(0.5) + T(0.375) * e);
+    const T length = 1.0 + e * (0.5 + 0.375 * e);
     s = (length * cosine) * (s - out_of_plane * n) + (length * sine) * cross(n, s) + motion.slip;
-
-    const T held = limit[i] / max(max(sqrt(dot(s, s)), limit[i]), tiny);
-    const T weight = T(Rule::weight[i]) * unit;
-    s = held * s;
-    out.after.stretch[i] = s;
-    elastic = elastic - weight * s;
-    if constexpr (Damped) {
-      const Vec<T> whole = s + drag * motion.slip;
-      const T most = sqrt(dot(whole, whole));
-      out.force = out.force - (weight * limit[i] / max(max(most, limit[i]), tiny)) * whole;
-    }
+    out.after.stretch[i] = detail::limited(s, limit[i]);
   }
-  if constexpr (!Damped) out.force = elastic;
-  // the mean of both ends' forces does the work, as in velocity Verlet; that of the dashpot is known at this end only
-  const Vec<T> mean = T(0.5) * (out.force + out.force - elastic + slip_force(before, stiffness));
-  out.dissipated = slip_energy(before, stiffness) - slip_energy(out.after, stiffness) - dot(mean, motion.slip);
+  out.force = detail::friction<N, Damped>(out.after, motion, unit, limit, stiffness);
   return out;
+}
+
+/// Friction [N] where a contact is looked at and no step is taken: the springs as they are, which gives the bits of the
+/// last step's force again, and the dashpot.
+template <int N, bool Flattens, bool Damped, class T>
+EPDEM_INLINE Vec<T> present_friction(const SlipState<N, T>& state, const Pressed<T>& now, const Shear<T>& motion,
+                                     const T& stiffness, const T& mu) noexcept {
+  T limit[N];
+  const T unit = stiffness * state.radius;
+  const auto holds = min(now.load, state.radius) > 0.0;
+  detail::slip_limits<N, Flattens>(now, select(holds, mu * now.load / unit, T{}), limit);
+  return detail::friction<N, Damped>(state, motion, unit, limit, stiffness);
 }
 
 }  // namespace epdem

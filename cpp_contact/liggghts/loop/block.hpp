@@ -7,7 +7,8 @@ namespace epdem::liggghts::loop {
 
 constexpr int block_size = 128, most_lanes = 8;
 
-enum class Tangential { off, no_history, history };
+enum class Tangential { off, no_history, history, partial_slip, partial_slip_2 };
+constexpr int tangentials = 5;
 enum class Rolling { off, cdt, epsd2 };
 enum class Cohesion { off, sjkr, sjkr2 };
 
@@ -28,6 +29,7 @@ struct Block {
   Line frozen_i, frozen_j;                  // 1 or 0
   Line force[3], torque_i[3], torque_j[3];  // on i; the force on j is its negative
   Line grown, stored;                       // plastic work of this step, elastic energy
+  Line rubbed, sprung;                      // work of friction in this step, elastic energy of its springs
 };
 
 /// What all contacts of a pass have in common.
@@ -50,7 +52,7 @@ using Kernel = void (*)(Block&, int n, const Pass&);
 /// The kernels of one instruction set, by the law's place in the register.
 struct Kernels {
   static constexpr int most_laws = 16;
-  Kernel of[most_laws][3][2];  // law, tangential, whether the rolling model has history
+  Kernel of[most_laws][tangentials][2];  // law, tangential, whether the rolling model has history
 };
 
 extern const Kernels kernels_sse2, kernels_avx2, kernels_avx512;

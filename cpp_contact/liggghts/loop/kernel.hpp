@@ -3,6 +3,7 @@
 // is in unnamed namespaces or depends on the width of Lanes, so that no function compiled for a newer processor can
 // stand in for one of the same name compiled for an older one.
 #include "epdem/laws.hpp"
+#include "epdem/partial_slip.hpp"
 #include "epdem/tangential.hpp"
 #include "epdem/viscous.hpp"
 #include "models.hpp"
@@ -61,12 +62,49 @@ EPDEM_INLINE Lanes effective_mass(const Block& b, int k, bool freeze) {
   return select(at(b.frozen_j, k) > 0.0, mi, select(at(b.frozen_i, k) > 0.0, mj, m));
 }
 
+/// What partial slip sees of the normal contact.
+template <class Law>
+EPDEM_INLINE Pressed<Lanes> pressed(const Contact& c, const Step<Law>& now) {
+  if constexpr (Law::flattens) return {c.Fn, now.radius, now.after.point.radius, now.after.point.flatness};
+  return {c.Fn, now.radius, now.radius, Lanes{}};
+}
+
+/// Friction with partial slip; `memory` before and after.
+template <int nodes, class Law>
+EPDEM_INLINE Three slipping(Block& b, int k, const Contact& c, const Step<Law>& now, const Pass& pass,
+                            const Lanes* constant_of, Lanes* memory) {
+  SlipState<nodes, Lanes> before;
+  __builtin_memcpy(static_cast<void*>(&before), memory, sizeof before);
+  const Lanes stiffness = 8.0 * constant_of[shear_modulus];
+  const Shear<Lanes> motion{{c.en.x, c.en.y, c.en.z},
+                            {pass.dt * c.vtr.x, pass.dt * c.vtr.y, pass.dt * c.vtr.z},
+                            0.5 * pass.dt * (dot(c.en, c.omega_i) + dot(c.en, c.omega_j)),
+                            1.0 / pass.dt * c.gammat};
+  SlipStep<nodes, Lanes> out;
+  const auto step = [&](auto damped) __attribute__((always_inline)) {
+    out = partial_slip<nodes, Law::flattens, damped>(before, pressed<Law>(c, now), motion, stiffness,
+                                                     constant_of[friction]);
+  };
+  if (pass.damped)
+    step(std::true_type{});
+  else
+    step(std::false_type{});
+  if (pass.work) {
+    store(b.rubbed.a + k, slip_loss(before, out, motion.slip, stiffness));
+    store(b.sprung.a + k, slip_energy(out.after, stiffness));
+  }
+  __builtin_memcpy(memory, &out.after, sizeof out.after);
+  return {out.force.x, out.force.y, out.force.z};
+}
+
 /// History of a pair: the law's memory, the step of the last evaluation, the models beside it in LIGGGHTS's order.
 template <class Law, Tangential tangential, bool rolls>
 [[gnu::flatten]] void contacts(Block& b, int n, const Pass& pass) {
   constexpr bool springs = tangential == Tangential::history;
-  constexpr int last_step = memory<Law>, shear = last_step + 1, roll = shear + 3 * springs;
-  constexpr int slots = Law::yields || springs || rolls ? roll + 3 * rolls : 0;
+  constexpr int nodes = tangential == Tangential::partial_slip ? 3 : tangential == Tangential::partial_slip_2 ? 2 : 0;
+  constexpr int slip_values = springs ? 3 : nodes ? 3 * nodes + 1 : 0;
+  constexpr int last_step = memory<Law>, shear = last_step + 1, roll = shear + slip_values;
+  constexpr int slots = Law::yields || slip_values || rolls ? roll + 3 * rolls : 0;
   constexpr int needed = law_data + static_cast<int>(sizeof(Law) / sizeof(Lanes)), constants = (needed + 3) / 4 * 4;
   static_assert(constants <= most_constants);
   Lanes of_all[constants], of_each[constants];
@@ -131,6 +169,8 @@ template <class Law, Tangential tangential, bool rolls>
         Three stretch{value[shear], value[shear + 1], value[shear + 2]};
         Ft = sliding_spring(c, constant_of[friction], pass.damped, pass.dt, stretch);
         value[shear] = stretch.x, value[shear + 1] = stretch.y, value[shear + 2] = stretch.z;
+      } else if constexpr (nodes > 0) {
+        Ft = slipping<nodes>(b, k, c, now, pass, constant_of, value + shear);
       } else {
         Ft = sliding_dashpot(c, constant_of[friction]);
       }
@@ -164,12 +204,14 @@ template <class Law, Tangential tangential, bool rolls>
 
 }  // namespace
 
-#define EPDEM_OF_LAW(Class)                                                                                         \
-  {{&contacts<Class<Lanes>, Tangential::off, false>, &contacts<Class<Lanes>, Tangential::off, true>},               \
-   {&contacts<Class<Lanes>, Tangential::no_history, false>, &contacts<Class<Lanes>, Tangential::no_history, true>}, \
-   {&contacts<Class<Lanes>, Tangential::history, false>, &contacts<Class<Lanes>, Tangential::history, true>}},
+#define EPDEM_BOTH(Class, model) \
+  {&contacts<Class<Lanes>, Tangential::model, false>, &contacts<Class<Lanes>, Tangential::model, true>}
+#define EPDEM_OF_LAW(Class)                                                                                            \
+  {EPDEM_BOTH(Class, off), EPDEM_BOTH(Class, no_history), EPDEM_BOTH(Class, history), EPDEM_BOTH(Class, partial_slip), \
+   EPDEM_BOTH(Class, partial_slip_2)},
 extern const Kernels EPDEM_KERNELS;
 const Kernels EPDEM_KERNELS = {{EPDEM_LAWS(EPDEM_OF_LAW)}};
 #undef EPDEM_OF_LAW
+#undef EPDEM_BOTH
 
 }  // namespace epdem::liggghts::loop

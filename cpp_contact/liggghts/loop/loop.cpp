@@ -110,7 +110,7 @@ void PairLoop::finish(const Plan& plan, int n) {
     scatter<true>(n);
   else
     scatter<false>(n);
-  if (plan.ledger) book(*plan.ledger, n);
+  if (plan.ledger) book(*plan.ledger, plan.tangential >= Tangential::partial_slip, n);
 }
 
 /// What lies apart in memory is asked for in time, and contacts are marked as such.
@@ -128,7 +128,7 @@ void PairLoop::fetch(const Plan& plan, int n) {
     const int i = b.i[k], j = b.j[k];
     if (histories) {
       double* const h = histories[i] + size * slot_[k];
-      __builtin_prefetch(h, 1);
+      for (int line = 0; line < size; line += 8) __builtin_prefetch(h + line, 1);
       __builtin_prefetch(h + size - 1, 1);
       b.history[k] = h;
       int& flag = flags[i][slot_[k]];
@@ -209,7 +209,7 @@ void PairLoop::scatter(int n) {
 }
 
 /// Halves of the energies of each pair to its bodies, in the order of the list.
-void PairLoop::book(Ledger& ledger, int n) {
+void PairLoop::book(Ledger& ledger, bool rubs, int n) {
   const Block& b = *block_;
   double *const work = ledger.work(), *const energy = ledger.energy();
   const int nlocal = atom->nlocal;
@@ -229,6 +229,7 @@ void PairLoop::book(Ledger& ledger, int n) {
     work[i] = work_i;
     energy[i] = energy_i;
   }
+  for (int k = 0; rubs && k < n; ++k) ledger.rub<false>(b.rubbed.a[k], b.sprung.a[k], {b.i[k], b.j[k], nlocal});
 }
 
 }  // namespace epdem::liggghts::loop

@@ -43,7 +43,7 @@ class PairLoop : protected LAMMPS_NS::Pointers {
   void pad(int n);
   template <bool torques>
   void scatter(int n);
-  void book(Ledger& ledger, int n);
+  void book(Ledger& ledger, bool rubs, int n);
 
   const Kernel kernel_;
   const std::unique_ptr<Block> block_;

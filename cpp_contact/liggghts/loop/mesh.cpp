@@ -46,18 +46,32 @@ struct Lists : FixNeighlistMesh {
   static std::vector<LAMMPS_NS::TriangleNeighlist>& of(FixNeighlistMesh& mesh) { return mesh.*(&Lists::triangles); }
 };
 
-/// The planes that bound the room of a triangle: its own, and one through each edge, normals outward.
-struct Planes : TriMesh {
-  static void copy(double* to, const double* from) { std::copy_n(from, 3, to); }
-  static void of(TriMesh& mesh, int triangle, double (&point)[4][3], double (&normal)[4][3]) {
-    const auto norm = static_cast<double* (LAMMPS_NS::SurfaceMesh<3, 5>::*)(int)>(&Planes::surfaceNorm);
-    double** const edges = (mesh.*(&Planes::edgeNorm))(triangle);
-    copy(normal[0], (mesh.*norm)(triangle));
-    mesh.node(triangle, 0, point[0]);
-    for (int k = 0; k < 3; ++k) {
-      copy(normal[k + 1], edges[k]);
-      mesh.node(triangle, k, point[k + 1]);
-    }
+/// A plane through `point` with the unit normal `normal`.
+struct Plane {
+  double point[3], normal[3];
+
+  double height(const double* x) const {
+    return normal[0] * (x[0] - point[0]) + normal[1] * (x[1] - point[1]) + normal[2] * (x[2] - point[2]);
+  }
+};
+
+/// What a mesh knows of its triangles.
+struct Triangles : TriMesh {
+  static Plane plane(TriMesh& mesh, int triangle) {
+    const auto normal = static_cast<double* (LAMMPS_NS::SurfaceMesh<3, 5>::*)(int)>(&Triangles::surfaceNorm);
+    return through(mesh, triangle, 0, (mesh.*normal)(triangle));
+  }
+  /// Through an edge, normal to the triangle's plane, outward.
+  static Plane side(TriMesh& mesh, int triangle, int edge) {
+    return through(mesh, triangle, edge, (mesh.*(&Triangles::edgeNorm))(triangle)[edge]);
+  }
+
+ private:
+  static Plane through(TriMesh& mesh, int triangle, int corner, const double* normal) {
+    Plane found;
+    mesh.node(triangle, corner, found.point);
+    std::copy_n(normal, 3, found.normal);
+    return found;
   }
 };
 
@@ -80,16 +94,22 @@ class Near {
       if (used_ == spare().size()) spare().emplace_back();
       std::vector<int>& near = spare()[used_];
       near.resize(all.size());
+      const auto reach = [radius](int i) { return radius[i] * (1.0 + 1e-6); };  // far above round-off
+      const Plane plane = Triangles::plane(mesh, t);
       int found = 0;
-      double point[4][3], normal[4][3];
-      Planes::of(mesh, t, point, normal);
-      for (const int i : all) {
-        const double reach = radius[i] * (1.0 + 1e-6);  // far above round-off
-        const double* const centre = x + 3 * i;
-        bool may = (i < nlocal) & (std::fabs(along(normal[0], centre, point[0])) <= reach);  // no branch
-        for (int k = 1; k < 4; ++k) may &= along(normal[k], centre, point[k]) <= reach;
+      for (const int i : all) {  // no branch: every sphere is noted, and stays if it may touch
         near[found] = i;
-        found += may;
+        found += (i < nlocal) & (std::fabs(plane.height(x + 3 * i)) <= reach(i));
+      }
+      for (int edge = 0; edge < 3 && found; ++edge) {
+        const Plane side = Triangles::side(mesh, t, edge);
+        const int some = found;
+        found = 0;
+        for (int k = 0; k < some; ++k) {
+          const int i = near[k];
+          near[found] = i;
+          found += side.height(x + 3 * i) <= reach(i);
+        }
       }
       near.resize(found);
       all.swap(near);
@@ -103,9 +123,6 @@ class Near {
     std::size_t kept;
   };
 
-  static double along(const double* n, const double* a, const double* b) {
-    return n[0] * (a[0] - b[0]) + n[1] * (a[1] - b[1]) + n[2] * (a[2] - b[2]);
-  }
   static std::vector<std::vector<int>>& spare() {
     static std::vector<std::vector<int>> lists;
     return lists;

@@ -28,9 +28,11 @@ class Pair : public LIGGGHTS::PairStyles::Granular<Model> {
         ids_(Ids::of(hash)),
         missing_(what_is_missing(ids_)) {
     if (missing_) return;
-    plan_.tangential = ids_.tangential == TANGENTIAL_HISTORY      ? Tangential::history
-                       : ids_.tangential == TANGENTIAL_NO_HISTORY ? Tangential::no_history
-                                                                  : Tangential::off;
+    plan_.tangential = ids_.tangential == TANGENTIAL_HISTORY          ? Tangential::history
+                       : ids_.tangential == TANGENTIAL_NO_HISTORY     ? Tangential::no_history
+                       : ids_.tangential == TANGENTIAL_PARTIAL_SLIP   ? Tangential::partial_slip
+                       : ids_.tangential == TANGENTIAL_PARTIAL_SLIP_2 ? Tangential::partial_slip_2
+                                                                      : Tangential::off;
     plan_.rolling = ids_.rolling == ROLLING_CDT     ? Rolling::cdt
                     : ids_.rolling == ROLLING_EPSD2 ? Rolling::epsd2
                                                     : Rolling::off;

@@ -45,13 +45,14 @@ def call(
     """Run `command` in `folder` to its end, both streams into `log` (continued with `append`); seconds taken.
 
     `report` is given the step of every row (ROW) of the log. Raises EngineError with the end of its log if it
-    fails, takes more than `seconds` or is not there. On any exception, Ctrl-C too, the program and all that it started
-    are stopped first; what they wrote stays. If this process itself is killed, the program receives SIGTERM.
+    fails, prints a line of ERROR, takes more than `seconds` or is not there. On any exception, Ctrl-C too, the program
+    and all that it started are stopped first; what they wrote stays. If this process itself is killed, the program
+    receives SIGTERM.
     """
     path, start = folder / log, time.monotonic()
     end = math.inf if seconds is None else start + seconds
     with path.open("ab" if append else "wb") as stream, path.open("rb") as reader:
-        reader.seek(0, os.SEEK_END)
+        begin = reader.seek(0, os.SEEK_END)
         try:
             process = subprocess.Popen(
                 command,
@@ -78,10 +79,12 @@ def call(
                     process.wait(timeout=None if report is None and left == math.inf else min(left, POLL))
                 rows.read(reader.read() if report else b"")
             rows.read(reader.read() if report else b"")
+            reader.seek(begin)
+            failed = process.returncode or any(line.startswith(b"ERROR") for line in reader)
         except BaseException:  # a time-out, Ctrl-C or an error of the caller: the process is stopped too
             kill(process)
             raise
-    if process.returncode:
+    if failed:
         raise EngineError(failure(command[0], process.returncode, path))
     return time.monotonic() - start
 

@@ -1,15 +1,20 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Tables in HDF5: DataFrames as groups of one dataset per column, with units; a file is complete or absent."""
 
+import contextlib
+import hashlib
 import io
+from collections.abc import Iterator
 from pathlib import Path
 
 import h5py
 import numpy as np
 import pandas as pd
 
+from ..errors import CaseError
 from .files import atomic
 
+SEAL = b"epdem blake2b "
 LARGE = 5000  # values from which a column is compressed
 
 
@@ -23,8 +28,39 @@ class Hdf5:
     def save(self, path: Path) -> None:
         """Write the file to `path` in place of what is there. Raises OSError and leaves what is there."""
         self.file.close()
-        with atomic(path) as temporary:
-            temporary.write_bytes(self._bytes.getbuffer())
+        with atomic(path) as temporary, temporary.open("wb") as stream:
+            stream.write(self._bytes.getbuffer())
+            stream.write(_seal(self._bytes.getbuffer()))
+
+
+def _seal(data: bytes | memoryview) -> bytes:
+    """What stands behind the data of a file, where HDF5 does not look: their hash."""
+    return SEAL + hashlib.blake2b(data, digest_size=32).digest()
+
+
+def _changed(path: Path) -> bool:
+    """Whether the data are others than those that were written: HDF5 may read damaged ones for ever.
+
+    A file without a seal is one that another program has written to.
+    """
+    data = path.read_bytes()
+    at = len(data) - len(SEAL) - 32
+    return at > 0 and data[at:].startswith(SEAL) and _seal(memoryview(data)[:at]) != data[at:]
+
+
+@contextlib.contextmanager
+def opened(path: Path | str, what: str) -> Iterator[h5py.File]:
+    """An HDF5 file to read. Raises CaseError if it is not there, or if it or what is read of it is damaged."""
+    try:
+        if _changed(Path(path)):
+            raise OSError("its data are not those that were written")
+        with h5py.File(path) as file:
+            yield file
+    except FileNotFoundError:
+        raise CaseError(f"{path}: no such file; 'epdem run CASE' writes it") from None
+    except Exception as error:  # HDF5 reports damage by almost any of them
+        reason = " ".join(str(error).split()) or type(error).__name__
+        raise CaseError(f"{path}: not {what}, or damaged ({reason}); run the case again") from None
 
 
 def write_table(group: h5py.Group, table: pd.DataFrame, units: dict[str, str]) -> None:

@@ -21,6 +21,7 @@ from pydantic import (
 from pydantic_core.core_schema import CoreSchema, no_info_before_validator_function
 
 from ..errors import CaseError
+from .library import with_library
 from .messages import explain
 from .toml import read_toml
 from .units import to_si, within_limits
@@ -58,6 +59,11 @@ class Quantity:
 Length = Annotated[float, Quantity("m", above=0.0)]
 Speed = Annotated[float, Quantity("m/s", above=0.0)]
 Pressure = Annotated[float, Quantity("Pa", above=0.0)]
+Angle = Annotated[float, Quantity("rad", ge=0.0, le=1.5, hint="from the normal")]
+Spin = Annotated[float, Quantity("rad/s")]
+Coefficient = Annotated[float, Quantity("1", ge=0.0)]
+Tangential = Literal["history", "partial_slip", "partial_slip_2"]  # the last with 2 nodes in place of 3
+NODES = {"history": 0, "partial_slip": 3, "partial_slip_2": 2}  # of partial slip; 0: one spring
 Tolerance = Annotated[float, Quantity("1", above=0.0)]
 
 
@@ -122,13 +128,27 @@ class SpeedRange(Frozen):
         return self
 
 
+class AngleRange(Frozen):
+    """Angles from `from` to `to`, evenly spaced."""
+
+    start: Angle = Field(alias="from")
+    to: Angle
+    count: Annotated[int, Field(ge=2, le=1000)]
+
+
 class Impact(Frozen):
-    """The two bodies and their speeds of approach."""
+    """The two bodies and their speeds of approach along the normal.
+
+    `angles` from the normal: the body also moves sideways, at its speed times the tangent. `spins` of the body before,
+    positive as friction turns it; every speed is combined with every angle and every spin.
+    """
 
     kind: Literal["sphere-wall", "sphere-sphere"]
     body: Body
     target: Target
     speeds: SpeedRange | Annotated[list[Speed], Field(min_length=1, max_length=1000)]
+    angles: AngleRange | Annotated[list[Angle], Field(min_length=1, max_length=1000)] | None = None
+    spins: Annotated[list[Spin], Field(min_length=1, max_length=1000)] | None = None
 
     @model_validator(mode="after")
     def _target_has_radius(self) -> Self:
@@ -144,6 +164,20 @@ class Impact(Frozen):
         if isinstance(self.speeds, SpeedRange):
             return np.geomspace(self.speeds.start, self.speeds.to, self.speeds.count)
         return np.array(self.speeds)
+
+    @property
+    def oblique(self) -> bool:
+        """Whether the bodies slip on each other."""
+        return self.angles is not None or self.spins is not None
+
+    def rows(self) -> np.ndarray:
+        """Speed [m/s], angle [rad] and spin [rad/s] of each combination, shape (3, n)."""
+        if isinstance(self.angles, AngleRange):
+            angles = np.linspace(self.angles.start, self.angles.to, self.angles.count)
+        else:
+            angles = np.array(self.angles or [0.0])
+        grid = np.meshgrid(self.speed_values(), angles, np.array(self.spins or [0.0]), indexing="ij")
+        return np.array([axis.ravel() for axis in grid])
 
 
 class LawChoice(BaseModel):
@@ -163,6 +197,13 @@ class Viscous(Frozen):
     restitution: Annotated[
         float, Quantity("1", ge=0.14, le=1.0, hint="1 is no dashpot, below 0.14 none is strong enough")
     ]
+
+
+class Rate(Frozen):
+    """Strength that grows with the strain rate: times 1 + sensitivity ln(rate/reference)."""
+
+    sensitivity: Annotated[float, Quantity("1", ge=0.0, le=0.1, hint="about 0.012 for steel")]
+    reference: Annotated[float, Quantity("1/s", above=0.0)] = 1e-3
 
 
 class Numerics(Frozen):
@@ -187,6 +228,14 @@ class Check(Frozen):
     force_max: Tolerance = DEFAULT_CHECKS["force_max"]
     overlap_max: Tolerance = DEFAULT_CHECKS["overlap_max"]
     residual_overlap: Tolerance = DEFAULT_CHECKS["residual_overlap"]
+    psi_2: Tolerance = 0.05  # absolute: of the sliding velocity after an oblique impact, in mu/kappa times the speed
+
+
+class Friction(Frozen):
+    """Friction of oblique impacts."""
+
+    friction: Coefficient
+    tangential: Tangential = "history"
 
 
 class Case(Frozen):
@@ -196,7 +245,9 @@ class Case(Frozen):
     materials: dict[Name, Material]
     impact: Impact
     law: LawChoice
+    rate: Rate | None = None
     viscous: Viscous | None = None
+    contact: Friction | None = None
     numerics: Numerics = Numerics()
     check: Check = Check()
 
@@ -209,10 +260,21 @@ class Case(Frozen):
                 raise ValueError(f"impact.body.material = {name!r}: only the target can be rigid; name a material")
             if name not in self.materials and name != RIGID:
                 raise ValueError(f"impact.{place}.material = {name!r} is not defined; add [materials.{name}]")
-        impacts = len(self.impact.speed_values()) * self.numerics.phases
+        impacts = self.impact.rows().shape[1] * self.numerics.phases
         if impacts > MAX_IMPACTS:
-            raise ValueError(f"{impacts} impacts (speeds x phases), at most {MAX_IMPACTS}; lower count or phases")
+            kinds = "speeds x angles x spins" if self.impact.oblique else "speeds"
+            raise ValueError(f"{impacts} impacts ({kinds} x phases), at most {MAX_IMPACTS}; lower count or phases")
+        self._friction()
         return self
+
+    def _friction(self) -> None:
+        """Raise ValueError unless oblique impacts, and only they, have friction."""
+        if self.impact.oblique and (self.contact is None or self.contact.friction == 0.0):
+            raise ValueError("impact.angles, impact.spins: without friction they change nothing; give contact.friction")
+        if self.contact is not None and not self.impact.oblique:
+            raise ValueError("contact: nothing rubs in a normal impact; give impact.angles, or remove it")
+        if self.impact.oblique and self.viscous:
+            raise ValueError("viscous: there is no theory of oblique impacts with a dashpot; remove one of both")
 
     @property
     def name(self) -> str:
@@ -221,6 +283,7 @@ class Case(Frozen):
 
 def parse(data: dict[str, Any], path: object = "case") -> Case:
     """A Case from TOML data; `path` names the place in messages. Raises CaseError."""
+    data = with_library(data, path)
     try:
         return Case.model_validate(data)
     except ValidationError as error:

@@ -5,15 +5,19 @@ from typing import Any
 
 from ..errors import CaseError
 from ..laws.strengths import LawNumbers, law_named
+from ..theory.cavity import FINITE_STRAIN, NO_FINITE_STRAIN
 from .units import read_number
 
 
 def law_numbers(name: str, given: dict[str, Any]) -> LawNumbers:
     """The law `name` with the numbers of a case; all others have the defaults of the law. Raises CaseError.
 
-    A strength X [Pa] is given as `X = "2.8 GPa"` for all bodies or as `X_ratio = 2.8` of each body's yield stress.
+    A strength X [Pa] is given as `X = "2.8 GPa"` for all bodies or as `X_ratio = 2.8` of each body's yield stress;
+    finite_strain = true or false stands for its number.
     """
     law = law_named(name)
+    if isinstance(given.get("finite_strain"), bool):
+        given = given | {"finite_strain": FINITE_STRAIN if given["finite_strain"] else NO_FINITE_STRAIN}
     strength, ratio = law.strength, f"{law.strength}_ratio"
     known = [key for p in law.parameters for key in ((p.name, ratio) if p.name == strength else (p.name,))]
     for key in given:

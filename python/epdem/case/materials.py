@@ -1,12 +1,11 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """The materials file: typical values with their sources, in the form of a case file's materials."""
 
-import tomllib
 from dataclasses import dataclass
 from functools import cache
-from pathlib import Path
 
 from ..errors import CaseError
+from . import library
 from .impact import Material
 
 
@@ -22,12 +21,11 @@ class Sourced:
 @cache
 def materials() -> dict[str, Sourced]:
     """All materials of the file by name."""
-    raw = tomllib.loads(Path(__file__).with_name("materials.toml").read_text(encoding="utf-8"))
-    entries = {}
-    for name, entry in raw.items():
+    found = {}
+    for name, entry in library.entries().items():
         values = {k: v for k, v in entry.items() if k != "source"}
-        entries[name] = Sourced(name, Material.model_validate(values), entry["source"])
-    return entries
+        found[name] = Sourced(name, Material.model_validate(values), entry["source"])
+    return found
 
 
 def material(name: str) -> Sourced:

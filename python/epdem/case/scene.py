@@ -7,14 +7,14 @@ from typing import Annotated, Any, Literal, Self
 from pydantic import ConfigDict, Field, ValidationError, model_validator
 
 from ..errors import CaseError
-from .impact import Frozen, Header, LawChoice, Length, Material, Name, Quantity, Speed, Viscous
+from .impact import Coefficient, Frozen, Header, LawChoice, Length, Material, Name, Quantity, Speed, Tangential, Viscous
+from .library import with_library
 from .messages import explain
 from .toml import read_toml
 
 Time = Annotated[float, Quantity("s", above=0.0)]
 Rate = Annotated[float, Quantity("Hz", above=0.0)]
 Gravity = Annotated[float, Quantity("m/s^2", ge=0.0)]
-Friction = Annotated[float, Quantity("1", ge=0.0)]
 Share = Annotated[float, Quantity("1", above=0.0, le=1.0)]
 
 
@@ -77,15 +77,16 @@ class Between(Frozen):
     """Values of one pair of materials that differ from the common ones; "wall" names the walls."""
 
     between: Annotated[list[Name], Field(min_length=2, max_length=2)]
-    friction: Friction
+    friction: Coefficient
 
 
 class Contact(Frozen):
     """Parts of a contact beside its normal law; parts that are left out are not compiled into the loop."""
 
-    friction: Friction = 0.0
-    wall_friction: Friction | None = None
+    friction: Coefficient = 0.0
+    wall_friction: Coefficient | None = None
     pairs: list[Between] = Field(default_factory=list)
+    tangential: Tangential = "history"
     tangential_restitution: Share | None = None  # of the dashpot beside the tangential spring
     rolling: Rolling | None = None
     cohesion: Annotated[float, Quantity("J/m^3", above=0.0)] | None = None  # energy density (sjkr)
@@ -273,6 +274,7 @@ def is_scene(data: dict[str, Any]) -> bool:
 
 def parse(data: dict[str, Any], path: object = "case") -> SceneCase:
     """A scene from TOML data; `path` names the place in messages. Raises CaseError."""
+    data = with_library(data, path)
     try:
         return SceneCase.model_validate(data)
     except ValidationError as error:

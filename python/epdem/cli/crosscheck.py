@@ -21,6 +21,8 @@ VALUES = {
     "e_n_error": "error e_n",
     "contact_time_error": "t_c",
     "force_max_error": "F_max",
+    "psi_2_error": "psi_2",
+    "e_t_error": "e_t",
     "order": "order",
     "seconds": "s",
 }
@@ -54,6 +56,7 @@ def _cell(name: str, value: object) -> str:
 
 
 def _show(title: str, heads: dict[str, str], rows: list[dict[Hashable, Any]]) -> None:
+    heads = {name: head for name, head in heads.items() if name in rows[0]}
     shown = table(title, heads.values(), left=("model",))
     for row in rows:
         shown.add_row(*(_cell(name, row[name]) for name in heads))

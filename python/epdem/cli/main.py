@@ -19,11 +19,12 @@ from ..errors import CaseError, EpdemError, Stopped
 from . import calibrate as cli_calibrate
 from . import crosscheck as cli_crosscheck
 from . import numerics as cli_numerics
+from . import rerun as cli_rerun
 from . import scenes as cli_scene
 from . import sweep as cli_sweep
 from . import theory as cli_theory
 from . import trees as cli_trees
-from .options import AsJson, CasePath, Engines, Force, Laws, Out, laws_or_own, refuse
+from .options import AsJson, CasePath, Engines, Force, Laws, Out, laws_or_own, refuse, warn
 
 ABOUT = """Elastic-plastic particle contact for LIGGGHTS and YADE, checked against theory.
 
@@ -158,6 +159,7 @@ def deck(
         refuse(file, "a scene has its own law", law=law)
         cli_scene.deck_scene(file, out, engine=engine, force=force, as_json=as_json)
         return
+    from ..case.doubts import doubts
     from ..case.impact import load
     from ..case.toml import named
     from ..engines import engine as find
@@ -167,7 +169,9 @@ def deck(
     if len(law or []) > 1:
         raise CaseError("--law: a deck has one law; write one deck for each")
     with named(file):
-        x = experiment(load(file), law[0] if law else None)
+        read = load(file)
+        warn(doubts(read))
+        x = experiment(read, law[0] if law else None)
         names = [str(f) for f in write_deck(x, find(engine), out, force=force)]
     print(json.dumps({"files": names}) if as_json else "\n".join(names))
 
@@ -175,6 +179,7 @@ def deck(
 @app.command()
 def predict(case: CasePath, law: Laws = None, as_json: AsJson = False) -> None:
     """Print the prediction of theory for a case; no engine runs."""
+    from ..case.doubts import doubts
     from ..case.impact import load
     from ..case.toml import named
     from ..impacts.experiment import experiment
@@ -182,8 +187,9 @@ def predict(case: CasePath, law: Laws = None, as_json: AsJson = False) -> None:
     from . import show
 
     with named(case):
-        experiments = [experiment(load(case), name) for name in laws_or_own(law)]
-    show.predictions([(x, predict_experiment(x)) for x in experiments], as_json, console())
+        read = load(case)
+        experiments = [experiment(read, name) for name in laws_or_own(law)]
+    show.predictions([(x, predict_experiment(x)) for x in experiments], doubts(read), as_json, console())
 
 
 @app.command()
@@ -211,6 +217,7 @@ for command in (
     cli_calibrate.calibrate,
     cli_sweep.sweep,
     cli_sweep.status,
+    cli_rerun.rerun,
     cli_trees.header,
 ):
     app.command()(command)

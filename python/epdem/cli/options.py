@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Options that several commands share."""
 
+import sys
 from pathlib import Path
 from typing import Annotated
 
@@ -33,3 +34,9 @@ def refuse(place: object, reason: str, **given: object) -> None:
     for name, value in given.items():
         if not (value is None or value is False or value == []):
             raise CaseError(f"{place}: --{name.replace('_', '-')}: {reason}; leave it out")
+
+
+def warn(sentences: list[str]) -> None:
+    """Print warnings on standard error, for commands whose output is a list of files."""
+    for text in sentences:
+        print(f"warning: {text}", file=sys.stderr)

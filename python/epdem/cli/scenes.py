@@ -8,7 +8,7 @@ from typing import Annotated
 import typer
 
 from ..base.terminal import bar, console
-from .options import AsJson, CasePath, Replace
+from .options import AsJson, CasePath, Replace, warn
 
 
 def is_scene(path: Path) -> bool:
@@ -61,20 +61,25 @@ def run_scene(
 def deck_scene(case: Path, out: Path, *, engine: str = "liggghts", force: bool = False, as_json: bool = False) -> None:
     """Write the deck of a scene."""
     from ..base.folders import write_own
+    from ..case.doubts import doubts
     from ..case.scene import load
     from ..case.toml import named
     from ..engines import scene_engine
     from ..scenes.plan import plan
 
     with named(case):
-        files = scene_engine(engine).files(plan(load(case)))
+        read = load(case)
+        warn(doubts(read))
+        files = scene_engine(engine).files(plan(read))
     names = [str(f) for f in write_own(out, files, force=force)]
     print(json.dumps({"files": names}) if as_json else "\n".join(names))
 
 
 def explain(case: CasePath, as_json: AsJson = False) -> None:
     """Print each line of the LIGGGHTS deck of a case with its reason."""
-    lines = _explained(case)
+    from ..liggghts.explain import explain_case
+
+    lines = explain_case(case)
     if as_json:
         print(json.dumps([{"file": f, "line": text, "reason": reason} for f, text, reason in lines], indent=1))
         return
@@ -84,27 +89,6 @@ def explain(case: CasePath, as_json: AsJson = False) -> None:
             print(f"{name}:")
             file = name
         print(f"  {text.split('  # ')[0].rstrip()}\n      {reason}")
-
-
-def _explained(case: Path) -> list[tuple[str, str, str]]:
-    from ..case.impact import load
-    from ..case.toml import named
-    from ..liggghts import explain
-
-    with named(case):
-        if is_scene(case):
-            from ..case.scene import load as load_scene
-            from ..liggghts.scene_deck import deck
-            from ..scenes.plan import plan as scene_plan
-
-            return explain.explain(explain.SCENE, deck(scene_plan(load_scene(case))))
-        from ..impacts.experiment import experiment
-        from ..impacts.plan import plan
-        from ..impacts.prediction import predict
-        from ..liggghts.impacts import Liggghts
-
-        x = experiment(load(case))
-        return explain.explain(explain.IMPACT, Liggghts().deck(plan(x, predict(x))))
 
 
 def tune(

@@ -25,11 +25,11 @@ def _table(title: str, frame: pd.DataFrame) -> Table:
     return shown
 
 
-def predictions(pairs: list[tuple[Experiment, Prediction]], as_json: bool, console: Console) -> None:
-    """Print predictions, one table per law."""
+def predictions(pairs: list[tuple[Experiment, Prediction]], doubts: list[str], as_json: bool, console: Console) -> None:
+    """Print predictions, one table per law, with the doubts about their case."""
     document = []
     for x, p in pairs:
-        frame = pd.DataFrame({n: getattr(p, n) for n in Prediction.COLUMNS})
+        frame = p.table()
         if as_json:
             document.append(
                 {
@@ -38,7 +38,7 @@ def predictions(pairs: list[tuple[Experiment, Prediction]], as_json: bool, conso
                     "parameters": x.law.parameters,
                     "yields": p.yields,
                     "yield_speeds": {k: v if math.isfinite(v) else None for k, v in p.yield_speeds.items()},
-                    "warnings": p.warnings(),
+                    "warnings": [*doubts, *p.warnings()],
                     "rows": records(frame),
                 }
             )
@@ -48,7 +48,7 @@ def predictions(pairs: list[tuple[Experiment, Prediction]], as_json: bool, conso
                 never = "never: the softer body limits the pressure"
                 when = f"from {speed:.4g} m/s on" if math.isfinite(speed) else never
                 console.print(f"{material} yields beneath its surface ({FIRST_YIELD_ROUNDED:.2f} Y) {when}")
-            for warning in p.warnings():
+            for warning in [*doubts, *p.warnings()]:
                 console.print(f"warning: {warning}", style="yellow")
     if as_json:
         print(json.dumps(document[0] if len(document) == 1 else document, indent=1))

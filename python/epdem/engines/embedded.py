@@ -7,7 +7,9 @@ from pathlib import Path
 import numpy as np
 
 from ..base import paths
+from ..case.impact import NODES
 from ..errors import CaseError
+from ..impacts import oblique
 from ..impacts.engine import Abilities, Trajectory, check_abilities
 from ..impacts.pairs import Pairs
 from ..impacts.plan import Plan
@@ -19,7 +21,7 @@ class Embedded:
     """Impacts inside the C library, without any other program."""
 
     name = "embedded"
-    can = Abilities(dashpot=True, deck=False, positions=False)
+    can = Abilities(dashpot=True, friction=tuple(NODES), oblique_spheres=True, deck=False, positions=False)
 
     def missing(self) -> str | None:
         if paths.native("libepdem.so") is None:
@@ -38,8 +40,21 @@ class Embedded:
     def run(self, plan: Plan, folder: Path, *, ranks: int = 1) -> Trajectory:
         x = plan.experiment
         start = time.perf_counter()
-        _, overlap, force, velocity = x.native_law().impact_paths(steps=plan.steps, **_numbers(plan))
-        return Trajectory(plan.time_step, overlap, force, velocity, {"stepping": time.perf_counter() - start})
+        law = x.native_law()
+        _, overlap, force, velocity = law.impact_paths(steps=plan.steps, **_numbers(plan))
+        tangential = spin = None
+        if x.oblique:
+            slip = law.oblique(
+                oblique.slip_before(x, phases=plan.phases),
+                G_star=x.G_star,
+                mu=x.oblique.friction,
+                nodes=oblique.nodes(x),
+                steps=plan.steps,
+                **_numbers(plan),
+            )
+            tangential, spin = oblique.after_slip(x, slip)
+        seconds = {"stepping": time.perf_counter() - start}
+        return Trajectory(plan.time_step, overlap, force, velocity, seconds, tangential, spin)
 
     def seconds(self, plan: Plan, folder: Path) -> dict[str, float]:
         x, begin = plan.experiment, time.perf_counter()

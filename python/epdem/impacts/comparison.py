@@ -10,9 +10,14 @@ from .plan import Plan
 from .prediction import Prediction
 
 CHECKED = ("e_n", "contact_time", "force_max", "overlap_max", "residual_overlap")
+OBLIQUE = ("psi_2", "e_t", "impulse_ratio", "rebound_angle", "spin")
 UNITS = {
     "speed": "m/s",
     "gap": "m",
+    "angle": "rad",
+    "rebound_angle": "rad",
+    "spin": "rad/s",
+    "spin_before": "rad/s",
     "contact_time": "s",
     "force_max": "N",
     "overlap_max": "m",
@@ -27,16 +32,21 @@ UNITS = {
 def impacts_table(plan: Plan, measured: Measured) -> pd.DataFrame:
     """One row per impact: speed, gap and all measured quantities."""
     columns = {"speed": plan.speed, "gap": plan.gap}
+    if measured.rebound:
+        columns |= measured.rebound.columns()
     return pd.DataFrame(columns | {name: getattr(measured, name) for name in Measured.COLUMNS})
 
 
 def compare(engine: str, law: str, impacts: pd.DataFrame, prediction: Prediction, check: Check) -> pd.DataFrame:
     """One row per speed: means over the phases, theory, errors (max over the phases), and whether all checks hold.
 
-    An error is relative to theory; that of the residual overlap is relative to overlap_max (it is 0 below yield).
+    An error is relative to theory; that of the residual overlap is relative to overlap_max (it is 0 below yield), those
+    of the quantities of oblique impacts are absolute.
     """
-    n = prediction.speed.size
+    n, rebound = prediction.speed.size, prediction.rebound
     row: dict[str, object] = {"engine": engine, "law": law, "speed": prediction.speed}
+    if rebound:
+        row |= {"angle": rebound.angle, "spin_before": rebound.spin_before}
     passed = np.ones(n, bool)
     for name in CHECKED:
         theory = getattr(prediction, name)
@@ -46,6 +56,13 @@ def compare(engine: str, law: str, impacts: pd.DataFrame, prediction: Prediction
         row[name], row[name + "_theory"] = value.mean(axis=1), theory
         row[name + "_error"], row[name + "_rms"] = deviation.max(axis=1), np.sqrt((deviation**2).mean(axis=1))
         passed &= row[name + "_error"] <= getattr(check, name)  # NaN does not pass
+    if rebound:
+        for name in OBLIQUE:
+            theory, value = getattr(rebound, name), impacts[name].to_numpy().reshape(n, -1)
+            row[name], row[name + "_theory"] = value.mean(axis=1), theory
+            row[name + "_error"] = np.abs(value - theory[:, None]).max(axis=1)
+        row["psi_1"] = rebound.psi_1
+        passed &= np.abs(impacts["psi_2"].to_numpy().reshape(n, -1) - rebound.psi_2[:, None]).max(axis=1) <= check.psi_2
     residual = impacts["energy_residual"].to_numpy().reshape(n, -1)
     row["energy_residual"] = residual[np.arange(n), np.abs(residual).argmax(axis=1)]
     row["steps_in_contact"] = impacts["steps_in_contact"].to_numpy().reshape(n, -1).min(axis=1)

@@ -12,6 +12,7 @@ from typing import Protocol
 import numpy as np
 
 from ..errors import CaseError, EngineError
+from . import oblique
 from .experiment import Experiment
 from .pairs import Pairs
 from .plan import Plan
@@ -25,7 +26,8 @@ class Trajectory:
     """Samples of n impacts, every step; arrays of shape (n, samples), SI. Force and overlap belong together.
 
     overlap [m] is negative while apart, force [N] is never negative, velocity [m/s] is that of approach.
-    NaN after the end of an impact. `seconds` is the engine's own account of its time.
+    NaN after the end of an impact. `seconds` is the engine's own account of its time. tangential: velocity [m/s] of the
+    centres against each other after oblique impacts, spin: of the body then [rad/s], shape (n,).
     """
 
     time_step: float
@@ -33,6 +35,8 @@ class Trajectory:
     force: np.ndarray
     velocity: np.ndarray
     seconds: dict[str, float] = field(default_factory=dict)
+    tangential: np.ndarray | None = None
+    spin: np.ndarray | None = None
 
 
 @dataclass(frozen=True)
@@ -68,6 +72,9 @@ class Abilities:
     walls: bool = True  # planes as targets
     spheres: bool = True  # spheres as targets
     dashpot: bool = False  # [viscous] of a case
+    friction: tuple[str, ...] = ()  # its tangential models for oblique impacts
+    oblique_spheres: bool = False  # oblique impacts of two spheres too
+    own_spring: bool = False  # whatever tangential model is asked for, its own one spring runs
     ranks: int = 1  # the largest number on this machine
     deck: bool = True  # it reads a deck, which runs without epdem too
     positions: bool = True  # its overlap is a difference of positions
@@ -136,6 +143,8 @@ def check_abilities(tool: Engine, x: Experiment) -> None:
     if can.laws is not None and x.law.name not in can.laws:
         known = ", ".join(can.laws)
         raise CaseError(f"law.name = {x.law.name!r}: engine {tool.name} has {known} only; use another --engine")
+    if x.oblique:
+        oblique.check(tool.name, can.friction, can.oblique_spheres, x)
     if x.viscous_restitution is not None and not can.dashpot:
         raise CaseError(f"viscous: engine {tool.name} does not have this dashpot; use --engine liggghts or embedded")
     if (wall and not can.walls) or (not wall and not can.spheres):

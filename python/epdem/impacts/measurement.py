@@ -6,6 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..errors import EngineError
+from . import oblique
 from .engine import Trajectory
 from .plan import Plan
 
@@ -27,6 +28,7 @@ class Measured:
     residual_overlap: np.ndarray
     energy_residual: np.ndarray
     steps_in_contact: np.ndarray
+    rebound: oblique.Rebound | None = None  # of oblique impacts
 
     COLUMNS = (
         "e_n",
@@ -77,12 +79,17 @@ def measure(plan: Plan, path: Trajectory, *, end_power: float | None = None) -> 
     work = np.where(loaded[:, 1:] | loaded[:, :-1], 0.5 * (force[:, 1:] + force[:, :-1]) * np.diff(overlap), 0.0)
     law = plan.experiment.theory()
     plastic = law.work(peak) - law.recovered_work(peak)
+    e_n = -velocity[row, end] / plan.speed
+    rebound = None
+    if path.tangential is not None and path.spin is not None:
+        rebound = oblique.rebound(plan.experiment, e_n, tangential=path.tangential, spin=path.spin)
     return Measured(
-        e_n=-velocity[row, end] / plan.speed,
+        e_n=e_n,
         contact_time=contact_time,
         force_max=force_max,
         overlap_max=peak,
         residual_overlap=residual,
         energy_residual=(work.sum(axis=1) - plastic) / energy if own else np.full(plan.n, np.nan),
         steps_in_contact=loaded.sum(axis=1),
+        rebound=rebound,
     )

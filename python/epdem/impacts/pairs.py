@@ -24,11 +24,12 @@ DRIFT = 0.2  # larger radii per contact time
 
 @dataclass(frozen=True)
 class Group:
-    """The bodies of one side: places [m] and velocities [m/s], shape (n, 3)."""
+    """The bodies of one side: places [m] and velocities [m/s], shape (n, 3); spin about y [rad/s], shape (n,)."""
 
     body: Body
     place: np.ndarray
     velocity: np.ndarray
+    spin: np.ndarray | None = None  # none
 
 
 @dataclass(frozen=True)
@@ -60,7 +61,7 @@ def unequal_spheres(x: Experiment) -> Experiment:
         material.material + "_softer",
     )
     law = x.law.of(x.law.strengths[0], strength)
-    return replace(x, law=law, target=other, speed=x.speed[x.speed.size // 2 :][:1])
+    return replace(x, law=law, target=other, speed=x.speed[x.speed.size // 2 :][:1], oblique=None)
 
 
 def pairs(p: Plan, contact_time: float) -> Pairs:

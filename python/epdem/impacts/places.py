@@ -19,29 +19,37 @@ def side_by_side(plan: Plan) -> tuple[Group, ...]:
     """
     x, n = plan.experiment, plan.n
     wall = math.isinf(x.target.radius)
-    across, spacing = math.ceil(math.sqrt(n)), SPACING * _reach(plan)
+    across, spacing = math.ceil(math.sqrt(n)), _spacing(plan)
     column = np.arange(n)
     place = (spacing * (column % across), spacing * (column // across))
     share = 1.0 if wall else x.m_star / x.body.mass
 
-    def group(body: Body, z: np.ndarray, vz: np.ndarray) -> Group:
-        rest = np.zeros(n)
-        return Group(body, np.stack([*place, z], axis=1), np.stack([rest, rest, vz], axis=1))
+    def group(body: Body, z: np.ndarray, vz: np.ndarray, vx: np.ndarray, spin: np.ndarray | None = None) -> Group:
+        return Group(body, np.stack([*place, z], axis=1), np.stack([vx, np.zeros(n), vz], axis=1), spin)
 
-    body = group(x.body, x.body.radius + share * plan.gap, -share * plan.speed)
+    vx, spin = np.zeros(n), None
+    if x.oblique:
+        vx, spin = plan.speed * plan.each(np.tan(x.oblique.angle)), plan.each(x.oblique.spin)
+    body = group(x.body, x.body.radius + share * plan.gap, -share * plan.speed, share * vx, spin)
     if wall:
         return (body,)
-    return body, group(x.target, -x.target.radius - (1 - share) * plan.gap, (1 - share) * plan.speed)
+    return body, group(x.target, -x.target.radius - (1 - share) * plan.gap, (1 - share) * plan.speed, (share - 1) * vx)
 
 
 def room(plan: Plan) -> tuple[tuple[float, float], ...]:
     """(low, high) [m] along x, y and z of a box that holds all bodies to the end: they part no faster than they met."""
-    reach = _reach(plan)
-    spacing = SPACING * reach
+    reach, spacing = _reach(plan), _spacing(plan)
     edge = spacing * math.ceil(math.sqrt(plan.n))
     travel = plan.steps * plan.time_step * float(plan.speed.max()) + 4 * reach
     low = -reach if math.isinf(plan.experiment.target.radius) else -travel
     return (-spacing, edge), (-spacing, edge), (low, travel)
+
+
+def _spacing(plan: Plan) -> float:
+    """Distance of two impacts [m]: their bodies never meet, also if they move sideways."""
+    o = plan.experiment.oblique
+    sideways = 0.0 if o is None else float((plan.experiment.speed * np.tan(o.angle)).max())
+    return SPACING * _reach(plan) + plan.steps * plan.time_step * sideways
 
 
 def _reach(plan: Plan) -> float:

@@ -29,6 +29,10 @@ class Plan:
     speed: np.ndarray
     gap: np.ndarray
 
+    def each(self, values: np.ndarray) -> np.ndarray:
+        """Values of the experiment's rows for every impact, shape (n,)."""
+        return np.repeat(values, self.phases)
+
     @property
     def n(self) -> int:
         return self.speed.size

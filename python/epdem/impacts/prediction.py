@@ -4,9 +4,11 @@
 from dataclasses import dataclass
 
 import numpy as np
+import pandas as pd
 
 from ..theory import restitution, validity, viscous
 from ..theory.yielding import first_yield_speed
+from . import oblique
 from .experiment import Experiment
 
 
@@ -26,6 +28,7 @@ class Prediction:
     strain_ratio: np.ndarray  # a_max/R*
     yields: tuple[str, ...]  # materials that the law lets flow somewhere in the range of speeds
     yield_speeds: dict[str, float]  # from which each material yields beneath its surface [m/s], eq. 8.78; inf: never
+    rebound: oblique.Rebound | None = None  # of oblique impacts
     caveats: tuple[str, ...] = ()  # where the prediction leaves its domain
 
     COLUMNS = (
@@ -40,6 +43,11 @@ class Prediction:
         "plastic_work",
         "strain_ratio",
     )
+
+    def table(self) -> pd.DataFrame:
+        """One row per impact, with the rebound of oblique ones."""
+        rebound = {} if self.rebound is None else self.rebound.columns()
+        return pd.DataFrame({name: getattr(self, name) for name in self.COLUMNS} | rebound)
 
     def warnings(self) -> list[str]:
         """Where the law or theory leaves its own domain, in words."""
@@ -68,4 +76,5 @@ def predict(experiment: Experiment) -> Prediction:
         if b.yield_stress is not None and not b.rigid
     }
     caveats = tuple(validity.caveats(law, m_star=m_star, speed=speed))
-    return Prediction(speed=speed, yields=yields, yield_speeds=speeds, caveats=caveats, **columns)
+    rebound = oblique.predict(experiment, columns["e_n"]) if experiment.oblique else None
+    return Prediction(speed=speed, yields=yields, yield_speeds=speeds, rebound=rebound, caveats=caveats, **columns)

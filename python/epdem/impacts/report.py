@@ -6,7 +6,7 @@ import json
 import math
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import pandas as pd
 from rich.console import Console
@@ -15,9 +15,13 @@ from rich.table import Table
 from ..base.files import atomic
 from ..base.folders import claim
 from ..base.terminal import table
+from . import oblique_report
 from .comparison import CHECKED
 from .prediction import Prediction
 from .run import Outcome
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
 
 ROW_KEYS = (
     "engine",
@@ -41,6 +45,14 @@ def records(rows: pd.DataFrame, keys: Sequence[str] | None = None) -> list[dict[
     return [{k: _plain(row[k]) for k in (keys or rows.columns)} for row in rows.to_dict("records")]
 
 
+def _keys(outcome: Outcome) -> tuple[str, ...]:
+    """Columns of the comparison that the document holds."""
+    if not outcome.case.impact.oblique:
+        return ROW_KEYS
+    columns = outcome.results.comparison.columns
+    return (*ROW_KEYS, *(k for k in columns if k not in ROW_KEYS and not k.endswith("_rms")))
+
+
 def run_json(outcome: Outcome) -> str:
     """The document of `epdem run --json`."""
     return json.dumps(
@@ -50,7 +62,7 @@ def run_json(outcome: Outcome) -> str:
             "seconds": outcome.seconds,
             "yields": {law: list(p.yields) for law, p in outcome.predictions.items()},
             "warnings": outcome.warnings,
-            "rows": records(outcome.results.comparison, ROW_KEYS),
+            "rows": records(outcome.results.comparison, _keys(outcome)),
         },
         indent=1,
     )
@@ -62,7 +74,9 @@ def yielding(prediction: Prediction) -> str:
 
 
 def run_table(outcome: Outcome) -> Table:
-    """One row per speed and engine."""
+    """One row per speed and engine, and per angle and spin of oblique impacts."""
+    if outcome.case.impact.oblique:
+        return oblique_report.run_table(outcome)
     yields = "; ".join(f"{law}: {yielding(p)}" for law, p in outcome.predictions.items())
     laws = outcome.results.comparison["law"].nunique() > 1
     heads = [
@@ -110,6 +124,7 @@ def summary(outcome: Outcome) -> str:
     )
     verdict = "all within tolerance" if not failed else f"{failed} of {len(rows)} rows outside tolerance"
     worst = f"largest e_n error {rows['e_n_error'].max():.1e}"
+    worst += f", of psi_2 {rows['psi_2_error'].max():.1e}" if "psi_2_error" in rows else ""
     return f"{outcome.case.name}: {verdict}; {worst}; {times}{stored}; see {outcome.folder}/"
 
 
@@ -122,11 +137,12 @@ def show(outcome: Outcome, console: Console) -> None:
 
 
 def figure(outcome: Outcome) -> Path:
-    """e_n.png: restitution against speed, theory as lines and engines as points, errors below.
+    """e_n.png: restitution against speed, theory as lines and engines as points, errors below; psi.png if oblique.
 
     A picture that shows these very runs already is left as it is: it carries the hash of their inputs.
     """
-    path = outcome.folder / "e_n.png"
+    slips = outcome.case.impact.oblique
+    path = outcome.folder / ("psi.png" if slips else "e_n.png")
     shown = repr(sorted((key, run["inputs"]) for key, run in outcome.results.runs.items()))
     digest = hashlib.sha256(shown.encode()).hexdigest()
     if path.exists() and digest.encode() in path.read_bytes():
@@ -135,6 +151,17 @@ def figure(outcome: Outcome) -> Path:
 
     matplotlib.use("Agg")
     import matplotlib.pyplot as plt
+
+    fig = oblique_report.figure(outcome) if slips else _restitutions(outcome)
+    with claim(outcome.folder, force=True), atomic(path) as temporary:
+        fig.savefig(temporary, dpi=130, metadata={"Comment": f"inputs {digest}"})
+    plt.close(fig)
+    return path
+
+
+def _restitutions(outcome: Outcome) -> "Figure":
+    """e_n against speed, and its errors."""
+    from matplotlib import pyplot as plt
 
     fig, (above, below) = plt.subplots(2, 1, sharex=True, figsize=(7, 6), height_ratios=(3, 1.3), layout="constrained")
     rows = outcome.results.comparison
@@ -154,7 +181,4 @@ def figure(outcome: Outcome) -> Path:
     above.legend(fontsize=8)
     for axes in (above, below):
         axes.grid(alpha=0.3)
-    with claim(outcome.folder, force=True), atomic(path) as temporary:
-        fig.savefig(temporary, dpi=130, metadata={"Comment": f"inputs {digest}"})
-    plt.close(fig)
-    return path
+    return fig

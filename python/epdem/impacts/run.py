@@ -16,6 +16,7 @@ import pandas as pd
 from .. import __version__
 from ..base.folders import claim
 from ..base.stages import inputs_hash
+from ..case.doubts import doubts
 from ..case.impact import Case, parse
 from ..case.toml import named, read_toml
 from ..errors import CaseError, EngineError
@@ -101,8 +102,10 @@ def _inputs(p: Plan, tool: Engine, version: str, ranks: int) -> str:
     x = p.experiment
     numbers = (p.time_step, p.steps, p.phases, p.speed.tobytes(), p.gap.tobytes())
     bodies = (x.law, x.body, x.target, x.viscous_restitution)
+    o = x.oblique
+    friction = (o.angle.tobytes(), o.spin.tobytes(), o.friction, o.tangential) if o else None
     with tempfile.TemporaryDirectory(prefix="epdem-") as scratch:
-        return inputs_hash(tool.write(p, Path(scratch)), numbers, bodies, tool.name, version, ranks)
+        return inputs_hash(tool.write(p, Path(scratch)), numbers, bodies, friction, tool.name, version, ranks)
 
 
 def _stored(path: Path) -> store.Results:
@@ -140,6 +143,7 @@ class _Work:
     versions: dict[str, str]
     predictions: dict[str, Prediction]
     plans: list[Plan]
+    how: dict[str, object]  # the options on which the numbers depend: ranks, steps (0: searched), own_law
 
 
 def _prepare(case: Case, place: object, tools: Sequence[Engine], laws: Sequence[str], ranks: int) -> _Work:
@@ -157,7 +161,9 @@ def _prepare(case: Case, place: object, tools: Sequence[Engine], laws: Sequence[
         for p in plans:
             for tool in tools:
                 refuse(tool, p, predictions[p.experiment.law.name], ranks=ranks)
-    return _Work(case, tools, {tool.name: tool.version() for tool in tools}, predictions, plans)
+    steps = 0 if case.numerics.error is not None else case.numerics.steps_in_contact
+    how: dict[str, object] = {"ranks": ranks, "steps": steps, "own_law": not laws}
+    return _Work(case, tools, {tool.name: tool.version() for tool in tools}, predictions, plans, how)
 
 
 class Options(TypedDict, total=False):
@@ -207,19 +213,27 @@ def run_case(
         return _run(text, work, folder, ranks, fresh, progress)
 
 
+def _spring(p: Plan, tool: Engine) -> str:
+    """What to say of an engine whose friction is not the case's."""
+    if p.experiment.oblique is None or not tool.can.own_spring:
+        return ""
+    return f"{tool.name}: friction by its own one spring; theory is that of partial slip"
+
+
 def _run(text: str, work: _Work, folder: Path, ranks: int, fresh: bool, progress: Callable[[str], None]) -> Outcome:
     stored = folder / "results.h5"
     old = _stored(stored)
     attributes = {"case": work.case.name, "epdem": __version__}
     attributes |= {f"version_{name}": version for name, version in work.versions.items()}
     results = store.Results(case_text=text, attributes=attributes)
-    outcome = Outcome(work.case, folder, results, work.predictions)
+    outcome = Outcome(work.case, folder, results, work.predictions, warnings=doubts(work.case))
     rows = []
     for p in work.plans:
         law = p.experiment.law.name
         prediction = work.predictions[law]
         outcome.warnings += prediction.warnings()
-        results.predictions[law] = pd.DataFrame({n: getattr(prediction, n) for n in Prediction.COLUMNS})
+        outcome.warnings += [_spring(p, tool) for tool in work.tools if _spring(p, tool)]
+        results.predictions[law] = prediction.table()
         for tool in work.tools:
             key, inputs = f"{law}/{tool.name}", _inputs(p, tool, work.versions[tool.name], ranks)
             progress(f"{tool.name}, {law}: {p.n} impacts")
@@ -230,7 +244,7 @@ def _run(text: str, work: _Work, folder: Path, ranks: int, fresh: bool, progress
             else:
                 stage = run_plan(p, tool, folder / law / tool.name, ranks=ranks)
                 results.impacts[key] = stage.impacts
-                results.runs[key] = stage.seconds | {"inputs": inputs, "time_step": p.time_step}
+                results.runs[key] = stage.seconds | {"inputs": inputs, "time_step": p.time_step} | work.how
                 results.decks |= {f"{key}/{name}": text for name, text in stage.decks.items()}
             spent = float(str(results.runs[key]["seconds"]))
             outcome.seconds[tool.name] = outcome.seconds.get(tool.name, 0.0) + spent

@@ -4,11 +4,9 @@
 from dataclasses import dataclass, field
 from pathlib import Path
 
-import h5py
 import pandas as pd
 
-from ..base.tables import Hdf5, read_table, write_csv, write_table
-from ..errors import CaseError
+from ..base.tables import Hdf5, opened, read_table, write_csv, write_table
 from .comparison import UNITS
 
 
@@ -48,20 +46,15 @@ def write(path: Path, results: Results) -> None:
 
 def read(path: Path | str) -> Results:
     """The results in an HDF5 file that `write` made. Raises CaseError."""
-    try:
-        with h5py.File(path) as file:
-            results = Results(file["case"][()].decode(), dict(file.attrs), read_table(file["comparison"]))
-            for law, group in file.get("predictions", {}).items():
-                results.predictions[law] = read_table(group)
-            for law, engines in file.get("impacts", {}).items():
-                for engine, group in engines.items():
-                    key = f"{law}/{engine}"
-                    results.impacts[key] = read_table(group)
-                    results.runs[key] = {k: v for k, v in group.attrs.items() if k != "columns"}
-                    for name, text in file.get(f"decks/{key}", {}).items():
-                        results.decks[f"{key}/{name}"] = text[()].decode()
-            return results
-    except FileNotFoundError:
-        raise CaseError(f"{path}: no such file; 'epdem run CASE' writes it") from None
-    except (OSError, KeyError) as error:
-        raise CaseError(f"{path}: not a results file of epdem ({error}); run the case again") from None
+    with opened(path, "a results file of epdem") as file:
+        results = Results(file["case"][()].decode(), dict(file.attrs), read_table(file["comparison"]))
+        for law, group in file.get("predictions", {}).items():
+            results.predictions[law] = read_table(group)
+        for law, engines in file.get("impacts", {}).items():
+            for engine, group in engines.items():
+                key = f"{law}/{engine}"
+                results.impacts[key] = read_table(group)
+                results.runs[key] = {k: v for k, v in group.attrs.items() if k != "columns"}
+                for name, text in file.get(f"decks/{key}", {}).items():
+                    results.decks[f"{key}/{name}"] = text[()].decode()
+        return results

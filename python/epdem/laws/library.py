@@ -18,7 +18,7 @@ import numpy.typing as npt
 from ..base import paths
 from ..errors import CaseError, EngineError
 
-ABI = 4
+ABI = 5
 Array = npt.NDArray[Any]  # float64, or structured by IMPACT_OUTPUT
 _D = POINTER(c_double)
 
@@ -40,6 +40,10 @@ IMPACT_OUTPUT = np.dtype(
 _SIGNATURES = {
     "epdem_impacts_long_double": (c_int, [c_int, c_double, _D, c_size_t, ctypes.c_void_p, ctypes.c_void_p]),
     "epdem_bounces": (c_int, [c_int, c_double, _D, ctypes.c_void_p, ctypes.c_int64, ctypes.c_void_p, _D]),
+    "epdem_oblique": (
+        c_int,
+        [c_int, c_double, _D, c_double, c_double, c_int, c_size_t, ctypes.c_void_p, _D, _D],
+    ),
     "epdem_abi": (c_int, []),
     "epdem_version": (c_char_p, []),
     "epdem_message": (c_char_p, [c_int]),

@@ -115,6 +115,27 @@ class Law:
         overlap, force, velocity = (np.full((cases.size, steps + 1), np.nan) for _ in range(3))
         return self._impacts(cases, steps, overlap, force, velocity), overlap, force, velocity
 
+    def oblique(
+        self,
+        slip: npt.ArrayLike,
+        *,
+        G_star: float,
+        mu: float,
+        nodes: int,
+        steps: int,
+        **numbers: Unpack[ImpactNumbers],
+    ) -> Array:
+        """Velocities [m/s] of the surfaces against each other after impacts of solid spheres with `slip` before, (n,).
+
+        G_star [Pa] of the pair; nodes: 2 or 3 of partial slip, 0 for one spring.
+        """
+        cases = self._cases(steps, **numbers)
+        before = _array(np.broadcast_to(slip, cases.shape))
+        after = np.empty(cases.shape)
+        places = (cases.size, cases.ctypes.data, _pointer(before), _pointer(after))
+        self._call("epdem_oblique", c_double(G_star), c_double(mu), nodes, *places)
+        return after
+
     def impacts_long_double(self, *, steps: int, **numbers: Unpack[ImpactNumbers]) -> Array:
         """The same impacts computed in long double, IMPACT_OUTPUT rounded at the end: a reference for round-off."""
         cases = self._cases(steps, **numbers)

@@ -10,7 +10,7 @@ from ..impacts.plan import Plan
 from ..impacts.prediction import Prediction
 from .deck import Deck
 from .impacts import Liggghts
-from .properties import Property, of_impacts, per_pair, per_type, scalar
+from .properties import Property, of_friction, of_impacts, per_pair, per_type, scalar
 
 
 def _elastic(plan: Plan) -> tuple[int, list[Property]]:
@@ -20,30 +20,38 @@ def _elastic(plan: Plan) -> tuple[int, list[Property]]:
     return types, [*elastic, per_pair("coefficientRestitution", types, 1.0, "-", "no viscous damping")]
 
 
-WITHOUT_OURS = replace(Liggghts.can, dashpot=False, scenes=(), restarts=False)
+WITHOUT_OURS = replace(Liggghts.can, dashpot=False, friction=(), scenes=(), restarts=False)
+RUBBING = replace(WITHOUT_OURS, friction=Liggghts.can.friction, own_spring=True)
 
 
 class BuiltinHertz(Liggghts):
     """LIGGGHTS's `hertz` without damping: the elastic limit."""
 
     name = "liggghts-hertz"
-    can = replace(WITHOUT_OURS, laws=("hertz",))
+    can = replace(RUBBING, laws=("hertz",))
 
     def model(self, plan: Plan) -> str:
         return "hertz"
 
+    def tangential(self, plan: Plan) -> str | None:
+        return "history" if plan.experiment.oblique else None
+
     def properties(self, plan: Plan) -> tuple[Property, ...]:
-        return tuple(_elastic(plan)[1])
+        types, elastic = _elastic(plan)
+        return (*elastic, *of_friction(plan, types))
 
 
 class ThorntonNing(Liggghts):
     """LIGGGHTS's `thornton_ning` without adhesion, with the yield pressure of the plan's `thornton` law."""
 
     name = "liggghts-thornton_ning"
-    can = replace(WITHOUT_OURS, laws=("thornton",))
+    can = replace(RUBBING, laws=("thornton",))
 
     def model(self, plan: Plan) -> str:
         return "thornton_ning"
+
+    def tangential(self, plan: Plan) -> str | None:
+        return "history" if plan.experiment.oblique else None
 
     def properties(self, plan: Plan) -> tuple[Property, ...]:
         x, (types, elastic) = plan.experiment, _elastic(plan)
@@ -52,6 +60,7 @@ class ThorntonNing(Liggghts):
         ratio = math.pi * x.law.parameters["yield_pressure"] * x.R_star / (2 * x.E_star * radius)
         return (
             *elastic,
+            *of_friction(plan, types),
             per_type("coefficientYieldRatio", [ratio] * types, "-", "pi p_y R*/(2 E* R_i)"),
             per_pair("surfaceEnergy", types, 0.0, "J/m^2"),
         )

@@ -24,6 +24,7 @@ class Deck:
     tangential: str
     settings: tuple[str, ...]
     wall_type: int | None
+    oblique: bool
     time_step: float
     path: str
     steps: int

@@ -37,7 +37,7 @@ def frames(path: Path) -> list[tuple[int, np.ndarray]]:
             if len(rows) != atoms:
                 raise ValueError(f"{len(rows)} rows of {atoms}")
             read.append((step, rows[np.argsort(rows[:, 0], kind="stable")]))
-    except (struct.error, ValueError) as error:
+    except (struct.error, ValueError, IndexError) as error:
         raise EngineError(f"{path}: frame {len(read)} is incomplete ({error}); the run was stopped there") from None
     return read
 

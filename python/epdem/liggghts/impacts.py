@@ -9,6 +9,7 @@ import numpy as np
 from ..base import paths
 from ..base import rendering as decks
 from ..base.files import write_texts
+from ..case.impact import NODES
 from ..errors import CaseError, EngineError
 from ..impacts.engine import Abilities, Trajectory, check_abilities
 from ..impacts.pairs import Pairs
@@ -21,8 +22,9 @@ from .edits import EDITS
 from .kept import Kept
 from .log import loop_seconds
 from .pairs import velocities
-from .properties import HARD, SOFT, Property, atom_types, finite, of_law
+from .properties import HARD, SOFT, Property, atom_types, finite, of_law, tangential
 
+END = "end.bin"
 SCENES = ("settle", "hopper", "drum", "compaction", "peening")
 
 
@@ -33,6 +35,7 @@ class Liggghts:
     template = "liggghts/impact.in.j2"
     can = Abilities(
         dashpot=True,
+        friction=tuple(NODES),
         ranks=launcher.most_ranks(),
         scenes=SCENES,
         restarts=True,
@@ -54,6 +57,10 @@ class Liggghts:
     def model(self, plan: Plan) -> str:
         return f"ep/{plan.experiment.law.name}"
 
+    def tangential(self, plan: Plan) -> str | None:
+        """The tangential model of a case; None: no friction."""
+        return plan.experiment.oblique.tangential if plan.experiment.oblique else None
+
     def properties(self, plan: Plan) -> tuple[Property, ...]:
         """The material properties of the deck, for this model."""
         return of_law(plan)
@@ -73,7 +80,7 @@ class Liggghts:
             title=x.title,
             source=x.source,
             summary=f"{x.speed.size} speeds x {plan.phases} phases = {plan.n} independent impacts, law {x.law.name}",
-            has_history=x.law.strength_property is not None,
+            has_history=x.law.strength_property is not None or x.oblique is not None,
             hard=max(moduli) > HARD,
             soft=min(moduli) < SOFT,
             data="impact.data",
@@ -81,8 +88,9 @@ class Liggghts:
             types=tuple(b.material for b, _ in types),
             properties=self.properties(plan),
             model=self.model(plan),
-            tangential="off",
+            tangential=tangential(self.tangential(plan)),
             settings=("viscous on",) if x.viscous_restitution is not None else (),
+            oblique=x.oblique is not None,
             wall_type=len(types) if math.isinf(x.target.radius) else None,
             time_step=plan.time_step,
             path="path.bin",
@@ -100,6 +108,7 @@ class Liggghts:
     def run(self, plan: Plan, folder: Path, *, ranks: int = 1) -> Trajectory:
         path = folder / "path.bin"
         path.unlink(missing_ok=True)
+        (folder / END).unlink(missing_ok=True)
         allowed = 120 + 2e-6 * plan.n * plan.steps
         if self.kept and ranks == 1:
             wall = self.kept.run("in.impact", folder, log=launcher.LOG, seconds=allowed)
@@ -129,10 +138,21 @@ def data_text(plan: Plan, types: int) -> str:
     """Positions and velocities of all bodies as a data file; a target that moves is of the last type."""
     kinds = (1, types)
     groups = [
-        data_file.Spheres(k, 2 * g.body.radius, g.body.density, g.place, g.velocity)
+        data_file.Spheres(k, 2 * g.body.radius, g.body.density, g.place, g.velocity, g.spin)
         for k, g in zip(kinds, side_by_side(plan), strict=False)
     ]
     return data_file.text(plan.experiment.name, types, room(plan), groups)
+
+
+def _end(plan: Plan, path: Path) -> tuple[np.ndarray, np.ndarray] | tuple[None, None]:
+    """v_x [m/s] and omega_y [rad/s] of the bodies at the end of oblique impacts; None for normal ones."""
+    if plan.experiment.oblique is None:
+        return None, None
+    try:
+        vx, spin = dump.series(path)[-1].T
+    except (ValueError, IndexError) as error:
+        raise EngineError(f"{path}: the run left an incomplete dump ({error}); see log.liggghts beside it") from None
+    return vx, spin
 
 
 def trajectory(plan: Plan, path: Path, seconds: dict[str, float]) -> Trajectory:
@@ -151,4 +171,4 @@ def trajectory(plan: Plan, path: Path, seconds: dict[str, float]) -> Trajectory:
     else:
         overlap = x.body.radius + x.target.radius - (z[:, :n] - z[:, n:])
         velocity = vz[:, n:] - vz[:, :n]
-    return Trajectory(plan.time_step, overlap.T, fz[:, :n].T, velocity.T, seconds)
+    return Trajectory(plan.time_step, overlap.T, fz[:, :n].T, velocity.T, seconds, *_end(plan, path.with_name(END)))

@@ -5,6 +5,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+from ..case.impact import NODES
 from ..impacts.experiment import Body
 from ..impacts.plan import Plan
 from ..laws import library as claw
@@ -94,6 +95,13 @@ def strength(law: str, values: Sequence[float]) -> tuple[Property, ...]:
     return (per_type(parameter.property, values, parameter.unit, "the softer body's counts" * (len(values) > 1)),)
 
 
+def tangential(name: str | None) -> str:
+    """LIGGGHTS's word for the tangential model of a case; None: no friction."""
+    if name is None:
+        return "off"
+    return f"ep/{name}" if NODES[name] else name
+
+
 def ratios(law: str, values: dict[str, float]) -> tuple[Property, ...]:
     """Dimensionless parameters of a law."""
     return tuple(scalar(p.property, values[p.name], "-") for p in claw.laws()[law].parameters if p.name in values)
@@ -105,11 +113,18 @@ def of_impacts(plan: Plan) -> tuple[Property, ...]:
     return elastic([finite(b.young_modulus) for b in bodies], [b.poisson_ratio for b in bodies])
 
 
+def of_friction(plan: Plan, types: int) -> tuple[Property, ...]:
+    """The coefficient of friction of oblique impacts."""
+    o = plan.experiment.oblique
+    return () if o is None else (per_pair("coefficientFriction", types, o.friction, "-"),)
+
+
 def of_law(plan: Plan) -> tuple[Property, ...]:
     """What a law of ours needs of a plan."""
     x, types = plan.experiment, atom_types(plan)
     properties = [*of_impacts(plan), *strength(x.law.name, [finite(s) for _, s in types])]
     properties += ratios(x.law.name, x.law.ratios())
+    properties += of_friction(plan, len(types))
     if x.viscous_restitution is not None:
         note = "of impacts that do not yield"
         properties.append(per_pair("coefficientRestitution", len(types), x.viscous_restitution, "-", note))

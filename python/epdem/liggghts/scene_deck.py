@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """The LIGGGHTS deck of a scene: all numbers of the templates."""
 
+import math
 from dataclasses import dataclass
 
 from ..base import rendering as decks
@@ -10,8 +11,9 @@ from ..scenes.model import Model
 from ..scenes.plan import Phase, ScenePlan
 from . import stl
 from .insertions import Insertion, insertions
-from .properties import HARD, SOFT, Property, elastic, per_pair, ratios, strength
+from .properties import HARD, SOFT, Property, elastic, per_pair, ratios, strength, tangential
 
+MOST_CELLS = 2**31 - 1  # that LIGGGHTS counts, each half as wide as its longest reach
 SKIN = 0.5  # of the smallest radius: rebuilds cost less than idle neighbours
 
 
@@ -58,6 +60,8 @@ class Deck:
     spins: bool
     has_history: bool
     yields: bool
+    dents: bool
+    rubs: bool
     memory_column: int
     wall_memory_column: int
     torque: bool
@@ -98,15 +102,16 @@ def _settings(p: ScenePlan) -> tuple[str, ...]:
     wanted = {
         "viscous on": m.viscous is not None,
         "tangential_damping off": m.viscous is not None and m.sliding and m.tangential_restitution is None,
-        "computePlasticWork on": p.dents,
+        "computePlasticWork on": p.dents or p.rubs,
     }
     return tuple(setting for setting, asked in wanted.items() if asked)
 
 
 def memory(m: Model, *, wall: bool = False) -> int:
-    """History values of one contact in LIGGGHTS, the law's first: those of the law, step, shear spring, rolling."""
+    """History values of one contact in LIGGGHTS, the law's first: those of the law, step, friction, rolling."""
     law = laws()[m.law].memory
-    others = 3 * m.sliding + 3 * (m.rolling is not None and m.rolling.model in ("epsd", "epsd2"))
+    friction = 3 * m.nodes + 1 if m.nodes else 3 * m.sliding
+    others = friction + 3 * (m.rolling is not None and m.rolling.model in ("epsd", "epsd2"))
     stamp = 0 if wall else int(law + others > 0)
     return law + stamp + others
 
@@ -126,8 +131,21 @@ def default_skin(p: ScenePlan) -> float:
     return float(f"{SKIN * p.smallest:.1e}")
 
 
+def _refuse_room(p: ScenePlan) -> None:
+    """Raise CaseError for a room in which LIGGGHTS cannot count the cells where it looks for neighbours."""
+    sides = [high - low for low, high in zip(p.layout.box[::2], p.layout.box[1::2], strict=True)]
+    width = max(part.radii()[1] for part in p.parts) + 0.5 * SKIN * p.smallest  # half of the longest reach
+    cells = math.prod(max(1.0, side / width) for side in sides)
+    if cells > MOST_CELLS:
+        raise CaseError(
+            f"scene: the room of {' x '.join(f'{side:g}' for side in sides)} m has {cells:.3g} cells of the size of "
+            f"the spheres, LIGGGHTS takes {MOST_CELLS}; check the units of lengths, speeds and rates"
+        )
+
+
 def deck(p: ScenePlan) -> Deck:
     """The deck of a scene. Raises CaseError for what LIGGGHTS cannot do."""
+    _refuse_room(p)
     m, s, out = p.model, p.case.scene, p.output
     moduli = [p.case.materials[t.material].young_modulus for t in m.types]
     cut = p.case.numerics.cut
@@ -148,7 +166,7 @@ def deck(p: ScenePlan) -> Deck:
         types=p.types,
         properties=_properties(p),
         model=f"ep/{m.law}",
-        tangential="history" if m.sliding else "off",
+        tangential=tangential(m.tangential if m.sliding else None),
         cohesion="sjkr" if m.cohesion else None,
         rolling_friction=m.rolling.model if m.rolling else None,
         settings=_settings(p),
@@ -172,6 +190,8 @@ def deck(p: ScenePlan) -> Deck:
         spins=m.spins,
         has_history=m.yields or m.spins,
         yields=m.yields,
+        dents=p.dents,
+        rubs=p.rubs,
         memory_column=4 + memory(m),
         wall_memory_column=4 + memory(m, wall=True),
         torque=p.torque,

@@ -71,7 +71,8 @@ def damaged(p: ScenePlan, folder: Path, upto: int) -> list[int]:
 def _particle_names(p: ScenePlan) -> list[str]:
     names = [*columns.PARTICLES, *(columns.SPINS if p.model.spins else [])]
     names += [f"delta_max_{w.name}" for w in p.layout.planes] if p.contacts and p.model.yields else []
-    return [*names, *(["plastic_work"] if p.dents else [])]
+    names += ["plastic_work"] if p.dents else []
+    return [*names, *(["friction_work", "friction_energy"] if p.rubs else [])]
 
 
 def _steps(p: ScenePlan, kind: str, folder: Path, without: Collection[int]) -> list[tuple[int, Path]]:
@@ -93,8 +94,7 @@ def particles(p: ScenePlan, folder: Path, *, without: Collection[int] = ()) -> p
         frames.append(table)
     if not frames:
         return pd.DataFrame(columns=["step", *names])
-    table = pd.concat(frames, ignore_index=True)
-    return table.astype({"id": "int64", "type": "int64", "step": "int64"})
+    return columns.whole(p, pd.concat(frames, ignore_index=True), folder)
 
 
 def _local(p: ScenePlan, kind: str, folder: Path, ids: list[str], without: Collection[int]) -> pd.DataFrame:
@@ -150,4 +150,4 @@ def contact_table(p: ScenePlan, folder: Path, spheres: pd.DataFrame, *, without:
         (name,) = p.layout.meshes
         parts.append(_local(p, MESHES, folder, ["i"], without).assign(j=0, wall=name))
     raw = pd.concat([part for part in parts if len(part)] or parts[:1], ignore_index=True)
-    return contacts.complete(p, raw, spheres)
+    return contacts.complete(p, raw, spheres, folder)

@@ -1,10 +1,13 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Columns of the tables of a scene, and which bodies move freely: the same for every engine. SI."""
 
+from pathlib import Path
+
 import numpy as np
 import pandas as pd
 
 from ..case.scene import Compaction
+from ..errors import EngineError
 from .plan import ScenePlan
 
 UNITS = {
@@ -22,11 +25,28 @@ UNITS = {
     **dict.fromkeys(("omega_x", "omega_y", "omega_z"), "rad/s"),
     **dict.fromkeys(("overlap", "delta_max", "residual_overlap", "dent_radius"), "m"),
     "force": "N",
-    **dict.fromkeys(("plastic_work", "elastic_energy"), "J"),
-    **dict.fromkeys(("kinetic", "gravity", "elastic", "plastic", "work", "left", "balance", "friction"), "J"),
+    **dict.fromkeys(("plastic_work", "elastic_energy", "friction_work", "friction_energy"), "J"),
+    **dict.fromkeys(
+        ("kinetic", "gravity", "elastic", "plastic", "work", "left", "balance", "friction", "springs"), "J"
+    ),
 }
+SMALLEST = 1e-12  # radius [m]
 PARTICLES = ["id", "type", "radius", "mass", "x", "y", "z", "vx", "vy", "vz"]
 SPINS = ["omega_x", "omega_y", "omega_z"]
+
+
+def whole(p: ScenePlan, table: pd.DataFrame, folder: Path) -> pd.DataFrame:
+    """The particles' table with whole numbers where they belong. Raises EngineError for a frame that is damaged or
+    holds numbers that are not finite.
+    """
+    keys = table[["id", "type"]].to_numpy(float)
+    with np.errstate(invalid="ignore"):
+        good = ((keys >= 1) & (keys == np.floor(keys)) & (keys <= [2**53, len(p.model.types)])).all(axis=1)
+    good &= np.isfinite(table.to_numpy(float)).all(axis=1)
+    good &= (table["radius"].to_numpy(float) > SMALLEST) & ~table.duplicated(["step", "id"]).to_numpy()
+    if not good.all():
+        raise EngineError(f"{folder}: the frame of step {table['step'][~good].iloc[0]} is damaged; run the case again")
+    return table.astype({"id": "int64", "type": "int64", "step": "int64"})
 
 
 def rows(p: ScenePlan, values: dict[int, list[float]], names: list[str]) -> pd.DataFrame:

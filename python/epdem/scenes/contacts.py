@@ -2,12 +2,14 @@
 """Every contact of a frame: overlap and largest overlap from the engine, all other quantities from the law."""
 
 import math
+from pathlib import Path
 
 import numpy as np
 import numpy.typing as npt
 import pandas as pd
 
 from ..case.scene import SceneCase
+from ..errors import EngineError
 from ..laws.native import Law
 from ..theory.numerics import gauss
 from .pairs import pair_law
@@ -31,17 +33,22 @@ COLUMNS = [
 _NODES, _WEIGHTS = gauss(16)  # on [0, 1]
 
 
-def complete(p: ScenePlan, raw: pd.DataFrame, spheres: pd.DataFrame) -> pd.DataFrame:
+def complete(p: ScenePlan, raw: pd.DataFrame, spheres: pd.DataFrame, folder: Path) -> pd.DataFrame:
     """One row per contact and frame, with all that follows by the law, sorted; SI.
 
     raw: step, wall, i, j, overlap, delta_max; i < j are ids of spheres, or j = 0 and `wall` the name of a wall.
-    spheres: the particles' table.
+    spheres: the particles' table. Raises EngineError, which names `folder`, for a contact of spheres that it lacks.
     """
     if raw.empty:
         return pd.DataFrame(columns=COLUMNS)
     known = spheres.set_index(["step", "id"])[["radius", "type"]]
     first = known.reindex(pd.MultiIndex.from_frame(raw[["step", "i"]].astype("int64")))
     second = known.reindex(pd.MultiIndex.from_frame(raw[["step", "j"]].astype("int64")))
+    unknown = first["radius"].isna().to_numpy() | (second["radius"].isna().to_numpy() & (raw["j"] != 0).to_numpy())
+    unknown |= (raw["j"] == 0).to_numpy() & (raw["wall"] == "").to_numpy()
+    if unknown.any():
+        step = int(raw["step"][unknown].iloc[0])
+        raise EngineError(f"{folder}: the contacts of step {step} are damaged: no such spheres; run the case again")
     radius_j = second["radius"].fillna(math.inf).to_numpy()
     type_j = second["type"].fillna(p.model.wall_type).to_numpy(int)
     radius_i, type_i = first["radius"].to_numpy(), first["type"].to_numpy(int)

@@ -22,12 +22,17 @@ def drawn(case: SceneCase, parts: list[Particles]) -> list[tuple[str, float, flo
 
 
 def refuse_too_many(case: SceneCase, fill: Fill) -> None:
-    """Raises CaseError for more spheres, all at once, than their room takes."""
-    if fill.rate is not None:
-        return
+    """Raises CaseError for more spheres at once, all or those of one interval of a stream, than their room takes."""
     sizes = drawn(case, fill.parts)
     volume = np.average([4.0 / 3.0 * math.pi * r**3 for _, r, _ in sizes], weights=[w for _, _, w in sizes])
-    share = fill.count * float(volume) / fill.region.volume
+    count = fill.count if fill.rate is None else min(fill.rate * fill.every, fill.count)
+    share = count * float(volume) / fill.region.volume
+    if share > MOST_FILLED and fill.rate is not None:
+        raise CaseError(
+            f"scene.rate = {fill.rate:g} Hz: the {count:.0f} spheres of {fill.every:.3g} s would fill {share:.0%} of "
+            f"the layer that they are poured into, at most {MOST_FILLED:.0%} "
+            f"({fill.rate * MOST_FILLED / share:.3g} Hz); give a lower rate, or a larger box"
+        )
     if share > MOST_FILLED:
         most = int(fill.count * MOST_FILLED / share)
         raise CaseError(

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Energy balance of a scene for each frame. No term is a remainder, except the work of friction."""
+"""Energy balance of a scene for each frame. No term is a remainder, except the work of friction of one spring."""
 
 import numpy as np
 import pandas as pd
@@ -37,8 +37,8 @@ def plate_velocity(p: ScenePlan, rows: pd.DataFrame) -> np.ndarray:
 
 
 def _left(spheres: pd.DataFrame, steps: np.ndarray) -> np.ndarray:
-    """Energy [J] that spheres took along which were gone at each step: kinetic and plastic, as in their last frame."""
-    energy = kinetic(spheres) + spheres.get("plastic_work", 0.0)
+    """Energy [J] that spheres took along which were gone at each step: kinetic, plastic, rubbed, as last seen."""
+    energy = kinetic(spheres) + spheres.get("plastic_work", 0.0) + spheres.get("friction_work", 0.0)
     last = spheres.groupby("id")["step"].max()
     gone = last[last < steps[-1]]
     taken = np.zeros(steps.size)
@@ -51,8 +51,9 @@ def _left(spheres: pd.DataFrame, steps: np.ndarray) -> np.ndarray:
 def ledger(p: ScenePlan, tables: dict[str, pd.DataFrame]) -> pd.DataFrame:
     """One row per frame [J]: kinetic, gravity, elastic, plastic, work done by walls, left, and the balance.
 
-    The balance is what all but friction leave unexplained since the first frame with all spheres; where contacts rub it
-    is friction (and the tangential springs), else it must vanish.
+    With partial slip also friction, the work that it took, and springs, the elastic energy of its springs. The balance
+    is what these leave unexplained since the first frame with all spheres; it must vanish unless contacts roll, have
+    dashpots, or rub with one spring: then it is the work of these, and `friction` stands for it where none is computed.
     """
     spheres, contacts = tables["particles"], tables["contacts"]
     steps = np.sort(spheres["step"].unique())
@@ -63,15 +64,19 @@ def ledger(p: ScenePlan, tables: dict[str, pd.DataFrame]) -> pd.DataFrame:
     table["elastic"] = contacts.groupby("step")["elastic_energy"].sum().reindex(steps, fill_value=0.0).to_numpy()
     plastic = spheres.groupby("step")["plastic_work"].sum() if "plastic_work" in spheres else pd.Series(0.0, steps)
     table["plastic"] = plastic.reindex(steps).to_numpy()
+    if p.rubs:
+        both = spheres.groupby("step")[["friction_work", "friction_energy"]].sum().reindex(steps)
+        table["friction"], table["springs"] = both["friction_work"].to_numpy(), both["friction_energy"].to_numpy()
     rows = tables["rows"]
     table["work"] = np.interp(steps, rows["step"], work_of_walls(p, rows))
     table["left"] = _left(spheres, steps) if p.layout.loses else 0.0
     present = spheres.groupby("step")["id"].count().reindex(steps).to_numpy()
     start = int(np.argmax(present == present.max()))
-    total = table[["kinetic", "gravity", "elastic", "plastic", "left"]].sum(axis=1) - table["work"]
+    kinds = ["kinetic", "gravity", "elastic", "plastic", "left", *(["friction", "springs"] if p.rubs else [])]
+    total = table[kinds].sum(axis=1) - table["work"]
     table["balance"] = total - total.iloc[start]
     table = table.iloc[start:].reset_index(drop=True)
-    if p.model.loses_energy:
+    if p.model.loses_energy and not p.rubs:
         table["friction"] = -table["balance"]
     return table
 

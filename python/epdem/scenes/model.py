@@ -4,6 +4,7 @@
 import math
 from dataclasses import dataclass
 
+from ..case.impact import NODES, Tangential
 from ..case.scene import Rolling, SceneCase
 from ..errors import CaseError
 from ..laws.strengths import own_ratios
@@ -25,8 +26,9 @@ class Type:
 class Model:
     """What a contact is made of; numbers of types begin at 1.
 
-    parameters: the law's dimensionless ones. friction: of each pair of types. viscous: restitution of impacts that do
-    not yield; tangential_restitution: of the dashpot beside the tangential spring. cohesion: energy density [J/m^3].
+    parameters: the law's dimensionless ones. friction: of each pair of types, by the model `tangential`. viscous:
+    restitution of impacts that do not yield; tangential_restitution: of the dashpot beside the tangential spring.
+    cohesion: energy density [J/m^3].
     """
 
     law: str
@@ -34,6 +36,7 @@ class Model:
     types: tuple[Type, ...]
     wall_type: int
     friction: tuple[tuple[float, ...], ...]
+    tangential: Tangential
     viscous: float | None
     tangential_restitution: float | None
     rolling: Rolling | None
@@ -58,14 +61,19 @@ class Model:
         return any(mu > 0 for row in self.friction for mu in row)
 
     @property
+    def nodes(self) -> int:
+        """Nodes of partial slip in each contact; 0: none."""
+        return NODES[self.tangential] if self.sliding else 0
+
+    @property
     def spins(self) -> bool:
         """Whether contacts turn spheres."""
         return self.sliding or self.rolling is not None
 
     @property
     def loses_energy(self) -> bool:
-        """Whether contacts lose energy that no table holds: to friction or dashpots."""
-        return self.spins or self.viscous is not None
+        """Whether contacts lose energy that no table holds: to one spring's friction, to rolling or to dashpots."""
+        return (self.sliding and not self.nodes) or self.rolling is not None or self.viscous is not None
 
 
 def model(case: SceneCase) -> Model:
@@ -83,6 +91,7 @@ def model(case: SceneCase) -> Model:
         types=tuple(types),
         wall_type=len(types) if walls_apart else 1 + used.index(case.scene.walls),
         friction=tuple(tuple(_friction(case, a, b) for b in types) for a in types),
+        tangential=contact.tangential,
         viscous=case.viscous.restitution if case.viscous else None,
         tangential_restitution=contact.tangential_restitution,
         rolling=contact.rolling,
@@ -90,6 +99,8 @@ def model(case: SceneCase) -> Model:
     )
     if not result.sliding and contact.tangential_restitution is not None:
         raise CaseError("contact.tangential_restitution: there is no friction, so no tangential dashpot; remove it")
+    if not result.sliding and contact.tangential != "history":
+        raise CaseError(f"contact.tangential = {contact.tangential!r}: there is no friction; give contact.friction")
     return result
 
 

@@ -8,6 +8,7 @@ from ..case.scene import Output, Particles, SceneCase
 from . import kinds
 from .filling import refuse_too_many
 from .kinds import Layout
+from .limits import refuse_faster_than_sound, refuse_steps
 from .model import Model, model
 from .timestep import time_step
 
@@ -90,6 +91,11 @@ class ScenePlan:
         return self.output.energy and self.model.yields
 
     @property
+    def rubs(self) -> bool:
+        """Whether the work of friction of each sphere is in the frames."""
+        return self.output.energy and self.model.nodes > 0
+
+    @property
     def summary(self) -> str:
         """One line for the head of a deck."""
         s = self.case.scene
@@ -122,10 +128,12 @@ def _divisor(n: int, parts: int) -> int:
 
 def plan(case: SceneCase) -> ScenePlan:
     """The plan of a scene. Raises CaseError for what does not fit."""
+    refuse_faster_than_sound(case)
     contact_model, dt, layout, out = model(case), time_step(case), kinds.layout(case), case.output
     for fill in layout.fills:
         refuse_too_many(case, fill)
     rows, every = _intervals(out, layout.duration / dt)
+    refuse_steps(case, rows, layout.duration, dt)
 
     def interval(count: int) -> int:
         return 0 if count == 0 else every * max(1, rows // count)

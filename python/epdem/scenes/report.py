@@ -105,18 +105,18 @@ def _ledger_figure(outcome: SceneOutcome) -> None:
     import matplotlib.pyplot as plt
 
     rows = outcome.results.tables["ledger"]
-    colors = {"kinetic": "C0", "elastic": "C2", "plastic": "C3", "friction": "C1", "left": "C5"}
+    colors = {"kinetic": "C0", "elastic": "C2", "plastic": "C3", "friction": "C1", "springs": "C6", "left": "C5"}
     terms = [name for name in colors if name in rows and rows[name].abs().max() > 0]
     fig, axis = plt.subplots(figsize=(7, 4), layout="constrained")
     gravity = rows["gravity"] - rows["gravity"].min()
     if gravity.max() > 0:
         axis.plot(rows["time"], gravity, color="C4", label="gravity, above its lowest")
     for name in terms:
-        label = "friction (remainder)" if name == "friction" else name
+        label = "friction (remainder)" if name == "friction" and "springs" not in rows else name
         axis.plot(rows["time"], rows[name], color=colors[name], label=label)
     if rows["work"].abs().max() > 0:
         axis.plot(rows["time"], rows["work"], "k--", lw=0.8, label="work of the walls")
-    if "friction" not in rows:
+    if "friction" not in rows or "springs" in rows:
         axis.plot(rows["time"], rows["balance"], color="0.5", lw=0.8, label="left over")
     axis.set(xlabel="time [s]", ylabel="energy [J]")
     axis.set_title(outcome.case.case.title, parse_math=False)

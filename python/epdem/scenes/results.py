@@ -4,11 +4,9 @@
 from dataclasses import dataclass, field
 from pathlib import Path
 
-import h5py
 import pandas as pd
 
-from ..base.tables import Hdf5, read_table, write_csv, write_table
-from ..errors import CaseError
+from ..base.tables import Hdf5, opened, read_table, write_csv, write_table
 from .columns import UNITS
 
 
@@ -44,15 +42,10 @@ def write(path: Path, results: SceneResults) -> None:
 
 def read(path: Path | str) -> SceneResults:
     """The results in a file that `write` made. Raises CaseError."""
-    try:
-        with h5py.File(path) as file:
-            results = SceneResults(file["case"][()].decode(), dict(file.attrs))
-            for name, group in file.items():
-                if "columns" in getattr(group, "attrs", {}):
-                    results.tables[name] = read_table(group)
-            results.decks = {name: text[()].decode() for name, text in file.get("decks", {}).items()}
-            return results
-    except FileNotFoundError:
-        raise CaseError(f"{path}: no such file; 'epdem run CASE' writes it") from None
-    except (OSError, KeyError) as error:
-        raise CaseError(f"{path}: not a results file of a scene ({error}); run the case again") from None
+    with opened(path, "a results file of a scene") as file:
+        results = SceneResults(file["case"][()].decode(), dict(file.attrs))
+        for name, group in file.items():
+            if "columns" in getattr(group, "attrs", {}):
+                results.tables[name] = read_table(group)
+        results.decks = {name: text[()].decode() for name, text in file.get("decks", {}).items()}
+        return results

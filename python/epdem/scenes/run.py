@@ -14,9 +14,10 @@ from .. import __version__
 from ..base.files import write_texts
 from ..base.folders import Results, claim
 from ..base.stages import inputs_hash, library_hash
+from ..case.doubts import doubts
 from ..case.scene import SceneCase, load
 from ..case.toml import named
-from ..errors import CaseError
+from ..errors import CaseError, EngineError
 from ..impacts.prediction import predict
 from . import checks, ledger, results
 from .engine import Report, Resumed, SceneEngine, check_abilities
@@ -177,6 +178,10 @@ def _finish(
     """Complete the tables of a run by ledger and checks, and write results.h5."""
     p = work.plan
     if p.output.energy:
+        if tables["particles"].empty:
+            raise EngineError(
+                f"{folder}: no frame holds a sphere; all have left the room, see the engine's output there"
+            )
         tables["ledger"] = ledger.ledger(p, tables)
     tables["checks"] = checks.checks(p, tables)
     seconds = time.perf_counter() - start
@@ -211,7 +216,7 @@ def _left_out(folder: Path, lost: list[int]) -> list[str]:
 
 
 def _warnings(case: SceneCase) -> list[str]:
-    """Where the scene leaves the domain of theory, in words: impacts on the walls at its highest speed."""
+    """Doubtful values, and where the scene leaves the domain of theory: impacts on the walls at its highest speed."""
     first = case.scene.particles[0]
     x = wall_impact(case, first.material, first.radii()[0], case.scene.walls, highest_speed(case))
-    return predict(x).warnings()
+    return [*doubts(case), *predict(x).warnings()]

@@ -23,6 +23,7 @@ from ..impacts.run import Outcome, run, run_and_compare
 from .invariance import VARIANTS, examine
 
 COARSER = 4  # the order of convergence is seen between steps/4 and steps
+OBLIQUE = ("psi_2_error", "e_t_error")  # absolute, the largest
 SHOWN = ("e_n", "contact_time", "force_max")
 
 
@@ -64,6 +65,7 @@ def _row(tool: Engine, fine: pd.DataFrame, coarse: pd.DataFrame, x: Experiment, 
     row |= {name: middle[name] for q in SHOWN for name in (q, q + "_theory")}
     row |= {f"{q}_error": float(fine[f"{q}_error"].max()) for q in SHOWN}
     row["order"] = math.log(coarse["e_n_error"].max() / fine["e_n_error"].max()) / math.log(COARSER)
+    row |= {k: float(fine[k].max()) for k in OBLIQUE if k in fine}
     invariance = examine(tool, x, folder / "invariance" / tool.name)
     row["unequal_error"] = invariance.unequal_error if invariance else math.nan
     row |= {variant: invariance.e_n[variant] if invariance else math.nan for variant in VARIANTS}

@@ -9,6 +9,7 @@ import numpy as np
 from ..base.files import atomic
 from ..theory import pair, pressure, printed
 from ..theory.backbones import LAWS
+from ..theory.cavity import Cavity
 from ..theory.restitution import e_n
 from ..theory.yielding import FIRST_YIELD_ROUNDED, FULLY_PLASTIC
 
@@ -37,12 +38,21 @@ def _save(figure: Any, path: Path) -> Path:
 
 
 def mean_pressure(folder: Path) -> Path:
-    """Figure 8.16: p_m/Y against E* a/(Y R*), elastic, expanding cavity (8.81), fully plastic (8.80)."""
+    """Figure 8.16: p_m/Y against E* a/(Y R*), elastic, expanding cavity (8.81), fully plastic (8.80), and law cavity.
+
+    Full plasticity begins at 33.8 in the law, at about 40 in the chapter's text, at 73.6 where 8.81 reaches 2.8.
+    """
     figure, axes = _axes("Mean contact pressure, eqs. 8.79 to 8.81", "E* a/(Y R*)", "p_m/Y")
     x = np.geomspace(0.5, 300, 400)
     axes.semilogx(x, pressure.mean(x), lw=2, label="three regimes")
     axes.semilogx(x[x < 4], pressure.elastic_mean(x[x < 4]), "--", lw=1, label="Hertz, 4x/(3 pi)")
     axes.semilogx(x[x > 1.5], pressure.cavity_mean(x[x > 1.5]), ":", lw=1.5, label="expanding cavity, 8.81")
+    law = Cavity(E_star=1.0, R_star=1.0, Y=1e-3)
+    alpha = np.geomspace(0.03, 3e4, 600) * law.yield_overlap
+    a = law.radius(alpha)
+    axes.semilogx(1e3 * a, law.force(alpha) / (np.pi * a * a * law.Y), "-.", lw=1.5, label="law cavity")
+    for end in (law.radius(law.plastic_overlap) * 1e3, 40.0, pressure.cavity_end(FULLY_PLASTIC[0])):
+        axes.axvline(float(end), color="0.7", lw=0.8, ls=":")
     axes.axhspan(*FULLY_PLASTIC, alpha=0.15, label="fully plastic, 8.80")
     axes.set_ylim(0, 3.6)
     axes.legend()

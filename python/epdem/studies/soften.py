@@ -11,6 +11,7 @@ from typing import Any
 
 import tomlkit
 
+from ..case.library import with_library
 from ..case.toml import named, read_toml
 from ..errors import CaseError
 from ..laws.strengths import law_named
@@ -60,14 +61,13 @@ def _replacements(data: dict[str, Any], factor: float) -> dict[tuple[str, ...], 
     return texts | {("case", "name"): name}
 
 
-def _change(document: tomlkit.TOMLDocument, keys: tuple[str, ...], after: str) -> Change:
-    """Replace one text of the document; comments and order stay."""
+def _change(document: tomlkit.TOMLDocument, data: dict[str, Any], keys: tuple[str, ...], after: str) -> Change:
+    """Replace one text of the document, which holds `data`; comments and order stay."""
     table: Any = document
     for key in keys[:-1]:
-        table = table[key]
-    before = str(table[keys[-1]])
+        table, data = table[key], data[key]
     table[keys[-1]] = after
-    return Change(".".join(keys), before, after)
+    return Change(".".join(keys), str(data[keys[-1]]), after)
 
 
 def strain_ratio(data: dict[str, Any], path: Path) -> float:
@@ -93,11 +93,11 @@ def soften(path: Path, factor: float) -> Twin:
     """The twin of the case in `path` with E/factor. Raises CaseError if the case is wrong."""
     if not 0.0 < factor < 1e12:
         raise CaseError(f"--factor {factor:g}, must be > 0; 100 makes the time step 6.3 times larger")
-    data = read_toml(path)
+    data = with_library(read_toml(path), path)
     before = strain_ratio(data, path)
     after = before * factor**STRAIN_POWER
     document = tomlkit.parse(path.read_text(encoding="utf-8-sig"))
-    changes = [_change(document, keys, text) for keys, text in _replacements(data, factor).items()]
+    changes = [_change(document, data, keys, text) for keys, text in _replacements(data, factor).items()]
     warnings = []
     if before > SMALL_DEFORMATION:
         warnings.append(f"a_max/R* was {before:.2f} already, above {SMALL_DEFORMATION}; it becomes {after:.2f}")

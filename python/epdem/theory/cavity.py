@@ -8,12 +8,17 @@ import numpy as np
 
 from .backbone import Backbone, Parameter
 from .checks import Array, Real, number
+from .numerics import gauss
+
+FINITE_STRAIN = 0.82  # Jackson and Green 2005, J. Tribol. 127, 343: p_m falls by 1 - exp(-0.82 (a/R*)^-0.7)
+NO_FINITE_STRAIN = 1e6  # so large a number changes nothing
 
 
 class Cavity(Backbone):
     """s = alpha/alpha_Y; 1 < s < s_P: a = a_Y s^((1+beta)/2), p_m = Y [2 c_Y/3 + (1+beta)/3 ln s], tau = ln s/ln s_P.
 
-    Y [Pa] > 0; c_Y = 1.60 (first yield) and c_P = 2.8 (fully plastic) by default. ValueError where the law would create
+    Y [Pa] > 0; c_Y = 1.60 (first yield) and c_P = 2.8 (fully plastic) by default; p_m times 1 - exp(-c (a/R*)^-0.7)
+    with c_strain = c, by default so large that nothing changes. ValueError where the law would create
     energy at yield: 2 (1+beta)(1 + 1/(2 c_Y)) - (1+beta)/2 - 0.125/ln s_P must not exceed 2.5.
     """
 
@@ -22,12 +27,24 @@ class Cavity(Backbone):
         Parameter("yield_stress", "Y", "Pa"),
         Parameter("first_yield_ratio", "c_Y", "1", 1.60),
         Parameter("plastic_ratio", "c_P", "1", 2.8),
+        Parameter("finite_strain", "c_strain", "1", NO_FINITE_STRAIN),
     )
     strength = "yield_stress"
     narrowest, latest = 1.3, 1.88  # c_P/c_Y and c_Y beyond which the three phases are no picture of a metal
 
-    def __init__(self, *, E_star: Real, R_star: Real, Y: Real, c_Y: Real = 1.60, c_P: Real = 2.8):
+    def __init__(
+        self,
+        *,
+        E_star: Real,
+        R_star: Real,
+        Y: Real,
+        c_Y: Real = 1.60,
+        c_P: Real = 2.8,
+        c_strain: Real = NO_FINITE_STRAIN,
+    ):
         super().__init__(E_star, R_star)
+        self.c_strain = number("c_strain", c_strain)
+        self.softens = bool(np.any(self.c_strain < NO_FINITE_STRAIN))
         self.Y, self.c_Y, self.c_P = number("Y", Y), number("c_Y", c_Y), number("c_P", c_P)
         self.a_Y = np.pi * self.R_star * self.c_Y * self.Y / (2 * self.E_star)
         self.yield_overlap = self.a_Y**2 / self.R_star
@@ -60,6 +77,17 @@ class Cavity(Backbone):
         return np.where((alpha > self.yield_overlap) & (alpha < self.plastic_overlap), middle, ends)
 
     def force(self, alpha: Real) -> Real:
+        F = self._small_strain_force(alpha)
+        if not self.softens:
+            return F
+        return np.where(alpha <= self.yield_overlap, F, F * (1 - self._fallen(alpha)))
+
+    def _fallen(self, alpha: Real) -> Array:
+        """Share of the mean pressure that is gone at finite strain."""
+        strain = np.maximum(self.radius(alpha) / self.R_star, 1e-9)
+        return np.asarray(np.exp(-self.c_strain * strain**-0.7))
+
+    def _small_strain_force(self, alpha: Real) -> Real:
         p_m = self.Y * (2 / 3 * self.c_Y + (1 + self.beta) / 3 * self._ln_s(alpha))
         elastic = self._hertz_force(np.minimum(alpha, self.yield_overlap))
         return np.where(alpha <= self.yield_overlap, elastic, np.pi * self.radius(alpha) ** 2 * p_m)
@@ -78,7 +106,20 @@ class Cavity(Backbone):
         P = self.plastic_overlap
         x = np.maximum(alpha - P, 0.0)
         plastic: Real = np.pi * self.R_star * self.c_P * self.Y * x * (2 * P + x)
-        return elastic + self._middle_work(self._ln_s(alpha))[0] + plastic
+        return elastic + self._middle_work(self._ln_s(alpha))[0] + plastic - self._fallen_work(alpha)
+
+    def _fallen_work(self, alpha: Real) -> Array:
+        """What the fall of the pressure takes off the work, by quadrature in each phase."""
+        alpha = np.asarray(alpha, float)
+        if not self.softens:
+            return np.zeros(alpha.shape)
+        x, w = gauss(40)
+        Y, P = self.yield_overlap, self.plastic_overlap
+        lost = np.zeros(alpha.shape)
+        for low, high in ((Y, np.clip(alpha, Y, P)), (P, np.maximum(alpha, P))):
+            at = low + np.multiply.outer(x, high - low)
+            lost = lost + (high - low) * np.tensordot(w, self._small_strain_force(at) * self._fallen(at), 1)
+        return lost
 
     def overlap_of_work(self, W: Real) -> Real:
         W = np.asarray(W, float)
@@ -98,7 +139,13 @@ class Cavity(Backbone):
             if np.all(np.abs(change) <= 4e-16 * np.maximum(ln_s, 1e-3)):
                 break
         middle = self.yield_overlap * np.exp(ln_s)
-        return np.where(W <= W_Y, elastic, np.where(W >= W_P, plastic, middle))
+        alpha = np.where(W <= W_Y, elastic, np.where(W >= W_P, plastic, middle))
+        for _ in range(60 if self.softens else 0):  # Newton: the slope of the work is the force
+            change = (W - self.work(alpha)) / np.maximum(self.force(alpha), 1e-300)
+            alpha = np.where(W <= W_Y, alpha, alpha + change)
+            if np.all(np.abs(change) <= 4e-16 * alpha):
+                break
+        return alpha
 
     def caveats(self, *, m_star: Real, speed: Array) -> list[str]:
         """Parameters that pass the condition on energy and still describe no body."""

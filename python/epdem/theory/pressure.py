@@ -47,6 +47,11 @@ def cavity_mean(x: Real) -> Real:
     return 2 / 3 * (1 + np.log(number("x", x) / 3))
 
 
+def cavity_end(p: Real) -> Real:
+    """x = E* a/(Y R*) at which the expanding cavity (8.81) reaches p_m/Y = p: 3 exp(1.5 p - 1), 73.6 at 2.8."""
+    return 3 * np.exp(1.5 * number("p", p) - 1)
+
+
 def elastic_mean(x: Real) -> Real:
     """Mean pressure p_m/Y of an elastic contact, x = E* a/(Y R*): 4 x/(3 pi) (figure 8.16)."""
     return 4 * number("x", x) / (3 * np.pi)

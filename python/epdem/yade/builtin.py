@@ -20,7 +20,7 @@ class YadeLuding(Yade):
     """
 
     name = "yade-luding"
-    can = replace(Yade.can, laws=None, scenes=())
+    can = replace(Yade.can, laws=None, friction=(), scenes=())
     end_power = 1.0  # the force falls linearly with the overlap
 
     def predict(self, x: Experiment) -> Prediction:

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """The data of the template of an impact deck."""
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 from math import inf
 
@@ -33,9 +34,17 @@ def strength_values(
     return {kind.strength_name: strength}
 
 
+def refuse_parameters(law: str, given: Iterable[str]) -> None:
+    """Raise CaseError for a parameter of the law that its copy in YADE does not have."""
+    for name in given:
+        if name not in LAWS[law].ratios:
+            reason = f"YADE's copy of {law} has no such parameter; remove it or use --engine liggghts"
+            raise CaseError(f"law.{name}: {reason}")
+
+
 @dataclass(frozen=True)
 class Group:
-    """The bodies of one kind; `data` holds x, y, z [m] and v_z [m/s] of each."""
+    """The bodies of one kind; `data` holds x, y, z [m] and v_z [m/s] of each, if oblique v_x and omega_y [rad/s]."""
 
     data: str
     radius: float
@@ -66,6 +75,7 @@ class Deck:
     wall_material: str | None
     anvil: Anvil | None  # fixed spheres that replace the wall where YADE's law has spheres only
     bodies: tuple[Group, ...]
+    oblique: bool
     skin: float
     time_step: float
     samples: int

@@ -11,13 +11,14 @@ import numpy as np
 
 from ..base import rendering as decks
 from ..base.processes import ask, call
+from ..case.impact import NODES
 from ..errors import EngineError
 from ..impacts.engine import Abilities, Trajectory, check_abilities, recorded_seconds
 from ..impacts.experiment import Body, Experiment
 from ..impacts.pairs import Pairs
 from ..impacts.places import side_by_side
 from ..impacts.plan import Plan
-from .deck import Deck, Group, Material, strength_values
+from .deck import Deck, Group, Material, refuse_parameters, strength_values
 from .deck_modules.law import LAWS
 from .edits import EDITS
 from .launcher import command, environment, write_deck_modules
@@ -32,7 +33,13 @@ class Yade:
     name = "yade"
     # a serial YADE keeps bodies where they are in memory and has no ranks: sorting and migration do not exist
     can = Abilities(
-        laws=tuple(LAWS), staggered=True, scenes=("settle", "compaction"), edits=EDITS, variants=("swap", "restart")
+        laws=tuple(LAWS),
+        friction=tuple(NODES),
+        own_spring=True,
+        staggered=True,
+        scenes=("settle", "compaction"),
+        edits=EDITS,
+        variants=("swap", "restart"),
     )
     template = "yade/impact.py.j2"
 
@@ -53,7 +60,8 @@ class Yade:
             "density": body.density if isfinite(body.density) else 1.0,  # of a rigid wall: not used
         }
         own = strength_values(x.law.name, x.law.ratios(), strength, values["young_modulus"], body.material)
-        return Material(body.material, values | own)
+        friction = {"friction": x.oblique.friction} if x.oblique else {}
+        return Material(body.material, values | own | friction)
 
     def ratios(self, x: Experiment) -> dict[str, float]:
         """The law's dimensionless parameters in the deck."""
@@ -63,6 +71,8 @@ class Yade:
         """The deck of a plan. Raises CaseError for what YADE cannot do."""
         x, wall = plan.experiment, isinf(plan.experiment.target.radius)
         check_abilities(self, x)
+        if x.law.name in LAWS:
+            refuse_parameters(x.law.name, x.law.ratios())
         materials = {
             x.target.material: self.material(x, x.target, x.law.strengths[1]),
             x.body.material: self.material(x, x.body, x.law.strengths[0]),
@@ -82,6 +92,7 @@ class Yade:
             materials=tuple(materials.values()),
             wall_material=x.target.material if wall else None,
             bodies=tuple(bodies),
+            oblique=x.oblique is not None,
             skin=0.1 * min(x.body.radius, x.target.radius),
             time_step=plan.time_step,
             samples=plan.steps + 2,  # one more than the plan has: a velocity is the mean of those half a step away
@@ -99,7 +110,11 @@ class Yade:
         script.write_text(decks.render(self.template, deck=deck), encoding="utf-8")
         files = [folder / b.data for b in deck.bodies]
         for path, table in zip(files, tables(plan), strict=True):
-            lines = ["# x y z v_z, SI", *(" ".join(map(decks.number, row)) for row in table), ""]
+            lines = [
+                "# x y z v_z v_x omega_y, SI" if deck.oblique else "# x y z v_z, SI",
+                *(" ".join(map(decks.number, row)) for row in table),
+                "",
+            ]
             path.write_text("\n".join(lines), encoding="utf-8")
         return [script, *files, *modules]
 
@@ -127,8 +142,13 @@ class Yade:
 
 
 def tables(plan: Plan) -> list[np.ndarray]:
-    """x, y, z [m] and v_z [m/s] of the bodies, and of targets that move."""
-    return [np.column_stack([group.place, group.velocity[:, 2]]) for group in side_by_side(plan)]
+    """x, y, z [m] and v_z [m/s] of the bodies, and of targets that move; v_x and omega_y too if they are oblique."""
+    groups = side_by_side(plan)
+    if plan.experiment.oblique is None:
+        return [np.column_stack([g.place, g.velocity[:, 2]]) for g in groups]
+    return [
+        np.column_stack([g.place, g.velocity[:, 2], g.velocity[:, 0], g.spin]) for g in groups if g.spin is not None
+    ]
 
 
 def trajectory(plan: Plan, path: Path, seconds: dict[str, float]) -> Trajectory:
@@ -136,8 +156,12 @@ def trajectory(plan: Plan, path: Path, seconds: dict[str, float]) -> Trajectory:
     x, n = plan.experiment, plan.n
     wall = isinf(x.target.radius)
     expected = (plan.steps + 2, 3, n if wall else 2 * n)
+    tangential = spin = None
     try:
-        samples = np.load(path)
+        with path.open("rb") as file:
+            samples = np.load(file)
+            if x.oblique:
+                tangential, spin = np.load(file)
         if samples.shape != expected or not np.isfinite(samples).all():
             raise ValueError(f"{samples.shape} samples, expected {expected}, all finite")
     except (OSError, ValueError) as error:
@@ -147,7 +171,7 @@ def trajectory(plan: Plan, path: Path, seconds: dict[str, float]) -> Trajectory:
         overlap, velocity = x.body.radius - z, -v
     else:
         overlap, velocity = x.body.radius + x.target.radius - (z[:, :n] - z[:, n:]), v[:, n:] - v[:, :n]
-    return Trajectory(plan.time_step, overlap.T, force[:, :n].T, velocity.T, seconds)
+    return Trajectory(plan.time_step, overlap.T, force[:, :n].T, velocity.T, seconds, tangential, spin)
 
 
 def stepping_seconds(log: Path) -> float:

@@ -10,7 +10,7 @@ from ..errors import CaseError
 from ..scenes import placement
 from ..scenes.kinds import Block, Plane
 from ..scenes.plan import ScenePlan
-from .deck import Material, strength_values
+from .deck import Material, refuse_parameters, strength_values
 from .deck_modules.law import LAWS
 from .impacts import Yade
 from .launcher import deck_modules
@@ -94,9 +94,11 @@ def refuse(p: ScenePlan) -> None:
         raise CaseError(f"scene.kind = {case.scene.kind!r}: YADE runs {' and '.join(KINDS)}; use --engine liggghts")
     if m.law not in LAWS:
         raise CaseError(f"law.name = {m.law!r}: YADE has {', '.join(LAWS)}; use --engine liggghts")
+    refuse_parameters(m.law, m.ratios())
     unknown: dict[str, tuple[object, str]] = {
         "scene.rate": (p.layout.fills[0].rate, "all spheres are there from the start"),
         "viscous.restitution": (m.viscous, "YADE's law has no dashpot"),
+        "contact.tangential": (m.nodes and m.tangential, "YADE's law has one spring"),
         "contact.rolling": (m.rolling and m.rolling.model, "YADE's law has no rolling resistance"),
         "contact.cohesion": (m.cohesion, "YADE's law has no cohesion"),
         "output.restarts": (out.restarts, "a YADE scene is not continued"),

@@ -23,8 +23,9 @@ def _frames(p: ScenePlan, folder: Path, kind: str, every: int, names: list[str])
         path = folder / f"{kind}.{step}.npy"
         try:
             table = pd.DataFrame(np.load(path), columns=names)
-        except (OSError, ValueError, EOFError) as error:
-            raise EngineError(f"{path}: incomplete ({error}); run the case again") from None
+        except Exception as error:  # of a damaged head numpy says almost anything
+            reason = " ".join(str(error).split()) or type(error).__name__
+            raise EngineError(f"{path}: incomplete ({reason}); run the case again") from None
         table.insert(0, "step", step)
         frames.append(table)
     return pd.concat(frames, ignore_index=True)
@@ -37,7 +38,10 @@ def rows(p: ScenePlan, log: Path) -> pd.DataFrame:
     table = {}
     for fields in lines:
         if len(fields) == len(heads) + 1 and fields[0].isdigit():
-            table[int(fields[0])] = [float(w) for w in fields[1:]]
+            try:
+                table[int(fields[0])] = [float(w) for w in fields[1:]]
+            except ValueError:
+                raise EngineError(f"{log}: the row of step {fields[0]} is damaged; run the case again") from None
     if not table:
         raise EngineError(f"{log}: no rows; the run ended before its first step")
     return columns.rows(p, table, heads)
@@ -49,7 +53,7 @@ def particles(p: ScenePlan, folder: Path) -> pd.DataFrame:
     if p.layout.periodic:  # YADE does not put back what leaves its periodic cell
         for axis, low, high in zip("xy", p.layout.box[0:4:2], p.layout.box[1:4:2], strict=True):
             table[axis] = (table[axis] - low) % (high - low) + low
-    return table.astype({"id": "int64", "type": "int64", "step": "int64"})
+    return columns.whole(p, table, folder)
 
 
 def read(p: ScenePlan, folder: Path, log: Path) -> dict[str, pd.DataFrame]:
@@ -67,13 +71,18 @@ def read(p: ScenePlan, folder: Path, log: Path) -> dict[str, pd.DataFrame]:
 
 def _contacts(p: ScenePlan, folder: Path, spheres: pd.DataFrame) -> pd.DataFrame:
     """Every contact of every frame; with overlap 0 those that ended since the frame before."""
-    raw = _frames(p, folder, "contacts", p.contacts, CONTACT).astype({"step": "int64", "i": "int64", "j": "int64"})
+    raw = _frames(p, folder, "contacts", p.contacts, CONTACT)
     raw = raw[raw["overlap"] >= 0].reset_index(drop=True)  # what is only near is no contact yet
     walls = np.array(["", *(w.name for w in p.layout.planes), *p.layout.meshes])
+    last = p.case.scene.count + len(walls) - 2
+    bodies = raw[["i", "j"]].to_numpy(float)
+    if not ((bodies >= 0) & (bodies <= last) & (bodies == np.floor(bodies))).all():
+        raise EngineError(f"{folder}: the contacts name bodies beyond the {last + 1} of the scene; run the case again")
+    raw = raw.astype({"step": "int64", "i": "int64", "j": "int64"})
     beyond = raw["j"] - p.case.scene.count + 1
     raw["wall"] = walls[beyond.clip(lower=0)]
     raw["i"], raw["j"] = raw["i"] + 1, np.where(beyond > 0, 0, raw["j"] + 1)
-    return contacts.complete(p, raw, spheres)
+    return contacts.complete(p, raw, spheres, folder)
 
 
 def _plastic_work(every: pd.DataFrame, spheres: pd.DataFrame) -> np.ndarray:

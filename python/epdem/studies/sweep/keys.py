@@ -10,7 +10,7 @@ from typing import Annotated, Any, Literal, Union, get_args, get_origin
 import tomlkit
 from pydantic import BaseModel
 
-from ...case.impact import Case, LawChoice, Quantity
+from ...case.impact import Case, LawChoice, Material, Quantity
 from ...case.scene import SceneCase, SceneMaterial, is_scene
 from ...errors import CaseError
 from ...laws.library import laws
@@ -72,6 +72,8 @@ def _fields(
             yield (*place, key), Key(unit=quantity.si)
         else:
             yield from _walk(field.annotation, (*place, key), data.get(key), case)
+    if issubclass(model, Material):
+        yield (*place, "from"), Key()
     if issubclass(model, LawChoice | SceneMaterial):
         for parameter, entry in _of_law(case, ratio=issubclass(model, LawChoice)):
             yield (*place, parameter), entry

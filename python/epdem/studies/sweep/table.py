@@ -4,10 +4,9 @@
 from pathlib import Path
 from typing import Any
 
-import h5py
 import pandas as pd
 
-from ...base.tables import Hdf5, read_table, write_csv, write_table
+from ...base.tables import Hdf5, opened, read_table, write_csv, write_table
 from ...case.units import to_si
 from ...errors import CaseError
 from ...impacts.comparison import UNITS
@@ -78,11 +77,10 @@ def write(sweep: Sweep, folder: Path) -> pd.DataFrame:
 def read_sweep(folder: Path | str) -> pd.DataFrame:
     """The table of a sweep from its folder; see `collect`. Raises CaseError."""
     path = Path(folder) / TABLE
-    try:
-        with h5py.File(path) as file:
-            table = read_table(file["sweep"])
-            units = {name: file["sweep"][name].attrs.get("unit") for name in table.columns}
-    except (OSError, KeyError):
-        raise CaseError(f"{path}: no table of a sweep; 'epdem sweep CASE --out {folder}' writes it") from None
+    if not path.exists():
+        raise CaseError(f"{path}: no table of a sweep; 'epdem sweep CASE --out {folder}' writes it")
+    with opened(path, "a table of a sweep") as file:
+        table = read_table(file["sweep"])
+        units = {name: file["sweep"][name].attrs.get("unit") for name in table.columns}
     table.attrs["units"] = {name: unit for name, unit in units.items() if unit}
     return table

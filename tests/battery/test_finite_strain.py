@@ -1,0 +1,131 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Options beside the law: finite strain of `cavity` and a strength that grows with the strain rate; off by default."""
+
+import copy
+import math
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from epdem.case.impact import parse
+from epdem.case.toml import read_toml
+from epdem.engines import engine
+from epdem.errors import CaseError
+from epdem.impacts.comparison import compare, impacts_table
+from epdem.impacts.experiment import experiment
+from epdem.impacts.measurement import measure
+from epdem.impacts.plan import plan
+from epdem.impacts.prediction import predict
+from epdem.laws.native import Law
+from epdem.theory import pair, restitution
+from epdem.theory.backbones import Cavity
+
+CASES = Path(__file__).parents[2] / "cases"
+PAIR = {"E_star": 1.1428571428571429e11, "R_star": 0.01}
+SOFT = {"Y": 1e8, "c_strain": 0.82}
+MEYER = 2 / 1.8544 * 9.807e6 / 2.8  # Pa of yield stress per HV
+
+
+def test_the_mean_pressure_falls_by_the_factor_of_a_over_r():
+    """a/R* 0.2 to 0.5: 1 - exp(-0.82 (a/R*)^-0.7), by numbers of a pocket calculator; below 0.03 nothing happens."""
+    law, plain = Cavity(**PAIR, **SOFT), Cavity(**PAIR, Y=1e8)
+    share = {0.2: 0.9203, 0.3: 0.8511, 0.4: 0.7893, 0.5: 0.7361, 0.03: 0.9999}
+    for strain, expected in share.items():
+        alpha = np.array([(strain * 0.01) ** 2 / 0.02])
+        assert law.radius(alpha) == pytest.approx(strain * 0.01)
+        assert law.force(alpha) / plain.force(alpha) == pytest.approx(expected, abs=6e-5)
+
+
+def test_work_is_the_integral_of_the_force_and_its_inverse_is_found():
+    law = Cavity(**PAIR, **SOFT)
+    for alpha in (1.5 * law.yield_overlap, 0.5 * law.plastic_overlap, 3e-4, 1e-3):
+        at = np.concatenate(
+            [np.linspace(0, law.yield_overlap, 2001), np.geomspace(law.yield_overlap, alpha, 40001)[1:]]
+        )
+        assert law.work(alpha) == pytest.approx(np.trapezoid(law.force(at), at), rel=1e-7)
+        assert law.overlap_of_work(law.work(alpha)) == pytest.approx(alpha, rel=1e-12)
+
+
+def test_the_law_in_c_is_that_of_the_theory():
+    native = Law("cavity", E_star=PAIR["E_star"], yield_stress=1e8, finite_strain=0.82)
+    law, alpha = Cavity(**PAIR, **SOFT), np.geomspace(1e-8, 3e-3, 60)
+    force, radius, work, plastic = native.backbone(R_star=0.01, delta=alpha)
+    assert force == pytest.approx(law.force(alpha), rel=1e-11) and radius == pytest.approx(law.radius(alpha), rel=1e-12)
+    assert work == pytest.approx(law.work(alpha), rel=1e-10)
+    assert plastic == pytest.approx(law.plastic_work(alpha), rel=1e-9, abs=1e-12 * work.max())
+
+
+def changed(name, **tables):
+    data = copy.deepcopy(read_toml(CASES / name))
+    for key, values in tables.items():
+        data[key] = data.get(key, {}) | values
+    return parse(data, name)
+
+
+def error(tool, x):
+    """Largest error of e_n in an engine."""
+    p, prediction = plan(x, predict(x)), predict(x)
+    path = tool.run(p, None) if tool.name == "embedded" else None
+    table = impacts_table(p, measure(p, path))
+    return compare(tool.name, x.law.name, table, prediction, x.check)["e_n_error"].max()
+
+
+def test_an_engine_gives_the_restitution_of_the_theory_and_it_is_lower():
+    plain, soft = (experiment(changed("cavity_wall.toml", law=law)) for law in ({}, {"finite_strain": True}))
+    e_n = [predict(x).e_n for x in (plain, soft)]
+    assert (e_n[1] < e_n[0] - 1e-3).any() and (e_n[1] <= e_n[0] + 1e-12).all()
+    assert error(engine("embedded"), soft) < 1e-4
+
+
+def test_off_is_the_law_without_it():
+    plain, off = (experiment(changed("cavity_wall.toml", law=law)) for law in ({}, {"finite_strain": False}))
+    assert plain.law == off.law and np.array_equal(predict(plain).e_n, predict(off).e_n)
+
+
+def test_yade_says_that_it_has_no_such_option():
+    x = experiment(changed("cavity_wall.toml", law={"finite_strain": True}))
+    with pytest.raises(CaseError, match=r"law\.finite_strain: YADE's copy of cavity has no such parameter"):
+        engine("yade").check(plan(x, predict(x)))
+
+
+def test_hutchings_impact_of_a_hard_sphere_on_mild_steel():
+    """70 m/s, dynamic pressure 3 GPa, measured e_n 0.40 (Hutchings 1979): 0.462 without, 0.378 with finite strain."""
+    E_star = float(pair.E_star(208e9, 0.3, 208e9, 0.3))
+    for c, expected in ((1e6, 0.462), (0.82, 0.378)):
+        law = Cavity(E_star=E_star, R_star=0.0047, Y=3e9 / 2.8, c_strain=c)
+        mass = float(pair.sphere_mass(radius=0.0047, density=7850.0))
+        assert restitution.e_n(law, m_star=mass, speed=70.0) == pytest.approx(expected, abs=5e-4)
+
+
+RATE = {"sensitivity": 0.012}
+# device, HV, what, measured; deviation [%] plain, with finite strain, with rate, with both
+LEEB = [
+    ("D", 300, "width", 0.54e-3, (9.4, 10.9, 5.2, 6.5)),
+    ("D", 600, "width", 0.452e-3, (10.7, 11.7, 6.8, 7.7)),
+    ("D", 955, "e_n", 0.890, (-5.5, -8.6, -1.5, -4.6)),
+    ("G", 300, "width", 1.03e-3, (10.2, 12.1, 6.0, 7.8)),
+    ("G", 600, "width", 0.90e-3, (6.6, 7.9, 2.8, 4.0)),
+    ("G", 675, "e_n", 0.750, (-1.5, -6.6, 3.1, -1.8)),
+]
+
+
+@pytest.mark.parametrize(("device", "hardness", "quantity", "measured", "expected"), LEEB)
+def test_what_both_options_do_to_leebs_numbers(device, hardness, quantity, measured, expected):
+    """The rate explains most of both deviations; finite strain lowers e_n further and widens dents."""
+    steel = {"steel": read_toml(CASES / f"leeb_{device}.toml")["materials"]["steel"]}
+    steel["steel"] |= {"yield_stress": f"{hardness * MEYER!r} Pa"}
+    for number, (strain, rate) in zip(expected, ((0, 0), (1, 0), (0, 1), (1, 1)), strict=True):
+        tables = {"materials": steel, "law": {"finite_strain": bool(strain)}} | ({"rate": RATE} if rate else {})
+        x = experiment(changed(f"leeb_{device}.toml", **tables))
+        p = predict(x)
+        found = {"width": 2 * p.strain_ratio * x.R_star, "e_n": p.e_n}[quantity][0]
+        assert 100 * (found / measured - 1) == pytest.approx(number, abs=0.06)
+
+
+def test_the_factor_of_the_rate_is_that_of_its_formula():
+    x, plain = (experiment(changed("leeb_D.toml", **tables)) for tables in ({"rate": RATE}, {}))
+    factor = x.law.strengths[1] / plain.law.strengths[1]
+    a = float(predict(x).strain_ratio[0] * x.R_star)
+    assert factor == pytest.approx(1 + 0.012 * math.log(0.2 * 2.0 / a / 1e-3), rel=1e-9)
+    assert 1000 < 0.2 * 2.0 / a < 1800 and 1.16 < factor < 1.18

@@ -1,0 +1,115 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Materials of a case: taken from the materials file by name, and doubted where a unit is probably mistaken."""
+
+import json
+import re
+from pathlib import Path
+
+import pytest
+
+from epdem.case.doubts import doubts
+from epdem.case.impact import load, parse
+from epdem.case.scene import parse as parse_scene
+from epdem.case.toml import read_toml
+from epdem.cli import main as cli
+from epdem.errors import CaseError
+from epdem.studies.soften import soften
+from epdem.studies.sweep.run import plan
+
+CASES = Path(__file__).parents[2] / "cases"
+STEEL = read_toml(CASES / "steel_wall.toml")
+BEADS = read_toml(CASES / "settle_glass.toml")
+FILE = re.sub(r"(\[materials.steel\])\n(.+\n)+", r'\1\nfrom = "brass"\n', (CASES / "steel_wall.toml").read_text())
+
+
+def impact(**material):
+    return STEEL | {"materials": {"steel": material}}
+
+
+def scene(**material):
+    return BEADS | {"materials": {"glass": material}}
+
+
+@pytest.mark.parametrize("read", [lambda **m: parse(impact(**m)), lambda **m: parse_scene(scene(**m))])
+def test_a_material_of_the_file_is_taken_by_name_and_its_keys_can_be_replaced(read):
+    """Brass of Kaye and Laby: 100.6 GPa, 0.35, 8500 kg/m^3; 300 MPa."""
+    (brass,) = read(**{"from": "brass"}).materials.values()
+    assert brass.young_modulus == pytest.approx(100.6e9) and brass.yield_stress == pytest.approx(300e6)
+    assert (brass.poisson_ratio, brass.density) == (0.35, 8500.0)
+    (hard,) = read(**{"from": "brass", "yield_stress": "0.5 GPa"}).materials.values()
+    assert hard.yield_stress == pytest.approx(500e6) and hard.young_modulus == brass.young_modulus
+
+
+@pytest.mark.parametrize("name", ["stell", 7, ["steel"]])
+def test_a_material_that_is_not_in_the_file_is_told_with_those_that_are(name):
+    with pytest.raises(CaseError, match=r"c.toml: materials.steel.from = .* there are steel, brass, aluminium"):
+        parse(impact(**{"from": name}), "c.toml")
+
+
+def test_a_softened_twin_and_a_sweep_take_such_a_material(tmp_path):
+    path = tmp_path / "brass.toml"
+    path.write_text(FILE)
+    twin = soften(path, 10.0)
+    assert {c.before for c in twin.changes} == {"100.6 GPa", "300 MPa", "steel_wall"}
+    path.write_text(twin.text)
+    assert load(path).materials["steel"].young_modulus == pytest.approx(10.06e9)
+    assert load(path).materials["steel"].density == 8500.0
+    path.write_text(FILE)
+    points = plan(path, {"materials.steel.from": "brass,steel,alumina"}, engines=["embedded"]).points
+    assert [p["materials.steel.from"] for p in points] == ["brass", "steel", "alumina"]
+
+
+SOUND = {"young_modulus": "208 GPa", "poisson_ratio": 0.3, "density": "7850 kg/m^3", "yield_stress": "1 GPa"}
+
+
+@pytest.mark.parametrize(
+    ("key", "value", "said"),
+    [
+        ("young_modulus", "208 kPa", "young_modulus = 208000 Pa"),
+        ("young_modulus", "90 kPa", "young_modulus = 90000 Pa, of solids 100000 to 1.3e+12; is the unit right?"),
+        ("young_modulus", "208 TPa", "young_modulus = 2.08e+14 Pa"),
+        ("density", "7.85 kg/m^3", "density = 7.85 kg/m^3, of solids 100 to 25000; is the unit right?"),
+        ("density", "7850 g/cm^3", "density = 7.85e+06 kg/m^3"),
+        ("yield_stress", "100 GPa", "yield_stress = 1e+11 Pa is 0.48 of young_modulus; is the unit right?"),
+    ],
+)
+def test_a_value_that_is_probably_of_another_unit_is_doubted(key, value, said):
+    material = SOUND | {key: value}
+    if value == "208 kPa":  # plausible alone, but the yield stress is above it
+        said = "yield_stress = 1e+09 Pa is 4.8e+03 of young_modulus"
+    assert any(f"materials.steel.{said}" in text for text in doubts(parse(impact(**material))))
+    assert any(f"materials.glass.{said}" in text for text in doubts(parse_scene(scene(**material))))
+
+
+def test_radii_above_a_metre_are_doubted():
+    data = impact(**SOUND)
+    data["impact"] = STEEL["impact"] | {"body": {"radius": "10 m", "material": "steel"}}
+    assert doubts(parse(data)) == ["impact.body.radius = 10 m; is the unit right?"]
+    particles = [{"material": "glass", "radius": {"from": "0.5 m", "to": "1.5 m"}}]
+    data = scene(**SOUND) | {"scene": BEADS["scene"] | {"particles": particles}}
+    assert doubts(parse_scene(data)) == ["scene.particles.0.radius = 1.5 m; is the unit right?"]
+
+
+def test_no_case_of_ours_is_doubted_and_each_library_material_is_sound():
+    for path in CASES.glob("*.toml"):
+        data = read_toml(path)
+        found = doubts((parse_scene if "scene" in data else parse)(data))
+        # the ball of a Leeb device has the mass of the whole impact body
+        assert [text.split(" = ")[0] for text in found] == ["materials.carbide.density"] * path.stem.startswith("leeb")
+    for name in ("steel", "brass", "aluminium", "alumina", "glass"):
+        assert doubts(parse(impact(**{"from": name}))) == []
+
+
+@pytest.mark.parametrize("command", ["predict", "run", "deck"])
+def test_doubts_reach_the_user(command, tmp_path, monkeypatch, capsys):
+    monkeypatch.chdir(tmp_path)
+    text = (CASES / "steel_wall.toml").read_text()
+    Path("odd.toml").write_text(re.sub('density = ".*"', 'density = "7.85 kg/m^3"', text))
+    more = {"predict": ["--json"], "run": ["-e", "embedded"], "deck": ["-o", "d"]}[command]
+    monkeypatch.setattr("sys.argv", ["epdem", command, "odd.toml", *more])
+    monkeypatch.setattr("signal.signal", lambda *words: None)
+    with pytest.raises(SystemExit):
+        cli.main()
+    said = capsys.readouterr()
+    words = json.loads(said.out)["warnings"][0] if command == "predict" else said.out + said.err
+    assert "materials.steel.density = 7.85 kg/m^3, of solids 100 to 25000; is the unit right?" in words

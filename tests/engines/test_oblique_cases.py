@@ -1,0 +1,140 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Oblique impacts as cases: input, theory, and every engine beside it."""
+
+import copy
+import json
+import math
+import re
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from epdem.base.terminal import console
+from epdem.case import impact as cases
+from epdem.case.toml import read_toml
+from epdem.cli.main import app
+from epdem.engines import engine
+from epdem.errors import CaseError
+from epdem.impacts import report
+from epdem.impacts.experiment import experiment
+from epdem.impacts.prediction import predict
+from epdem.impacts.run import run_case
+from epdem.theory import oblique, partial_slip
+
+CASE = Path(__file__).parents[2] / "cases" / "oblique_steel.toml"
+MU, NU = 0.3, 0.3
+
+
+def data(**changes):
+    """The case's tables with other keys of [impact], or whole tables."""
+    found = copy.deepcopy(read_toml(CASE))
+    for key, value in changes.items():
+        table = found if key in found or key in ("viscous", "contact") else found["impact"]
+        if value is None:
+            table.pop(key)
+        else:
+            table[key] = value
+    return found
+
+
+def outcome(folder, engines, **changes):
+    return run_case(
+        cases.parse(data(**changes)), "text", place="case", engines=[engine(e) for e in engines], out=folder
+    )
+
+
+WRONG = {
+    "without friction they change nothing; give contact.friction": {"contact": None},
+    "contact: nothing rubs in a normal impact": {"angles": None, "spins": None},
+    "viscous: there is no theory of oblique impacts": {"viscous": {"restitution": 0.5}},
+    "must lie in [0, 1.5] rad; from the normal": {"angles": ["90 deg"]},
+    "must be 'history', 'partial_slip' or 'partial_slip_2'": {"contact": {"friction": 0.3, "tangential": "mindlin"}},
+    "8192 impacts (speeds x angles x spins x phases)": {
+        "angles": {"from": "0 deg", "to": "70 deg", "count": 512},
+    },
+}
+
+
+@pytest.mark.parametrize("text", WRONG)
+def test_bad_input_is_refused_with_place_and_next_step(text):
+    with pytest.raises(CaseError, match=re.escape(text)):
+        cases.parse(data(**WRONG[text]))
+
+
+def test_the_theory_of_elastic_impacts_is_maw_barber_and_fawcetts_and_slides_where_it_should():
+    x = experiment(cases.parse(data(speeds=["0.1 m/s"])))
+    r = predict(x).rebound
+    kappa = float(oblique.kappa(NU))
+    assert r.psi_1 == pytest.approx(kappa / MU * np.tan(x.oblique.angle))
+    assert r.psi_2 == pytest.approx(partial_slip.maw_barber_fawcett(r.psi_1, kappa=kappa), abs=3e-3)
+    slides = x.oblique.angle > float(oblique.sliding_angle(MU, e_n=1.0, nu=NU))
+    assert slides.sum() == 3
+    far = np.abs(r.psi_1 - (7 * kappa - 1)) > 0.05  # one of 60 degrees lies 0.01 below
+    assert np.array_equal((r.regimes(MU) == "sliding")[far], slides[far]) and far.sum() == 15
+    # closed forms of sliding throughout; the rebound angle is that of the centre's velocity
+    e_t = oblique.tangential_restitution(MU, e_n=1.0, theta=x.oblique.angle[slides])
+    assert r.e_t[slides] == pytest.approx(e_t, rel=1e-6)
+    assert r.spin[slides] == pytest.approx(oblique.spin(MU, e_n=1.0, v_n=0.1, R=0.01), rel=1e-6)
+    assert np.tan(r.rebound_angle[slides]) == pytest.approx(e_t * np.tan(x.oblique.angle[slides]))
+
+
+LIMITS = {"hertz": 0.005, "thornton": 0.03, "cavity": 0.04}  # of psi_2, the nodes' own; 5 and 9 times yield
+
+
+@pytest.mark.parametrize("kind", ["sphere-wall", "sphere-sphere"])
+@pytest.mark.parametrize("law", LIMITS)
+def test_the_embedded_engine_is_on_theory(tmp_path, law, kind):
+    """Also with a spin before: the rebound depends on the slip alone."""
+    target = {"material": "steel"} | ({"radius": "6 mm"} if kind == "sphere-sphere" else {})
+    changes = {"law": {"name": law}, "kind": kind, "target": target, "spins": ["0 rad/s", "-20 rad/s", "30 rad/s"]}
+    rows = outcome(tmp_path, ["embedded"], **changes).results.comparison
+    assert rows["psi_2_error"].max() < LIMITS[law]
+    assert rows["passed"].all() and len(rows) == 96
+    turned = rows[rows["spin_before"] == 30.0]
+    assert turned["psi_1"].min() < -1  # friction that drives the sphere forward
+
+
+def test_one_spring_is_off_by_what_the_page_says(tmp_path):
+    contact = {"friction": MU, "tangential": "history"}
+    rows = outcome(tmp_path, ["embedded"], contact=contact).results.comparison
+    assert 0.5 < rows["psi_2_error"].max() < 0.62 and not rows["passed"].all()
+
+
+@pytest.mark.liggghts
+def test_liggghts_is_on_theory_and_says_so_in_table_document_and_figure(tmp_path, capsys):
+    changes = {"angles": ["0 deg", "20 deg", "40 deg", "65 deg"], "spins": ["0 rad/s", "-5 rad/s"]}
+    found = outcome(tmp_path, ["liggghts"], **changes)
+    rows = found.results.comparison
+    # the torque arm of LIGGGHTS is shorter than R by half the overlap: 0.5 % at 2.8 m/s
+    assert rows["psi_2_error"].max() < 0.025 and rows["e_n_error"].max() < 1e-3 and found.passed
+    assert rows["psi_2_error"][rows["speed"] < 1].max() < 0.006
+    document = json.loads(report.run_json(found))
+    assert document["rows"][3]["psi_2"] == rows["psi_2"][3] and document["rows"][3]["rebound_angle"] > 0
+    report.show(found, console())
+    assert "partial slip" in capsys.readouterr().out
+    assert report.figure(found).name == "psi.png"
+
+
+@pytest.mark.liggghts
+def test_liggghts_takes_walls_only(tmp_path):
+    changes = {"kind": "sphere-sphere", "target": {"material": "steel", "radius": "6 mm"}}
+    with pytest.raises(CaseError, match="runs oblique impacts on walls only"):
+        outcome(tmp_path, ["liggghts"], **changes)
+
+
+@pytest.mark.yade
+def test_yade_keeps_its_own_spring_and_the_run_says_so(tmp_path):
+    found = outcome(tmp_path, ["yade"], angles=["20 deg", "70 deg"], speeds=["0.1 m/s"])
+    rows = found.results.comparison
+    assert found.warnings == ["yade: friction by its own one spring; theory is that of partial slip"]
+    assert 0.4 < rows["psi_2_error"][0] < 0.55  # sticks inside
+    assert rows["psi_2_error"][1] < 2e-3  # slides throughout
+    assert math.isclose(rows["spin"][1], rows["spin_theory"][1], rel_tol=2e-3)
+
+
+def test_predict_and_explain_know_oblique_impacts(capsys):
+    for words in (["predict", str(CASE), "--json"], ["explain", str(CASE)]):
+        app(words, standalone_mode=False)
+    text = capsys.readouterr().out
+    assert "psi_2" in text and "tangential ep/partial_slip" in text and "velocity and spin after the impact" in text

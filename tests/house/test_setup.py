@@ -1,0 +1,119 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""scripts/setup on machines that lack something: one sentence each. Its tools are stand-ins on a path of their own."""
+
+import os
+import re
+import shutil
+import subprocess
+import tomllib
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[2]
+REAL = ["bash", "env", "dirname", "grep", "cat", "rm", "sort", "xargs", "sha256sum"]
+DEBIAN = """
+case "$*" in
+  *base-files*) echo -n 12.4+deb12u12 ;;
+  *Version*) echo -n 1 ;;
+  *liggghts) [ -e "$0.complete" ] && echo -n "install ok installed" ;;
+  *) echo -n "install ok installed" ;;
+esac
+"""
+APT = 'echo "$(basename "$0") $* front=$DEBIAN_FRONTEND proxy=$http_proxy" >> "$0.called"\n'
+
+
+class Machine:
+    """A clone in a folder with spaces, and the tools it sees."""
+
+    def __init__(self, folder: Path):
+        self.clone, self.bin = folder / "a clone", folder / "bin"
+        (self.clone / "scripts").mkdir(parents=True)
+        shutil.copy(ROOT / "scripts/setup", self.clone / "scripts/setup")
+        self.bin.mkdir()
+        for name in REAL:
+            (self.bin / name).symlink_to(shutil.which(name))
+        self.tool("dpkg-query", DEBIAN)
+        self.tool("apt-get", APT)
+        self.tool("id", "echo 1000")
+        self.tool("basename", 'echo "${1##*/}"')
+        self.tool("find", "exit 9")  # where the build would begin
+
+    def tool(self, name: str, text: str) -> None:
+        (self.bin / name).write_text(f"#!/bin/bash\n{text}")
+        (self.bin / name).chmod(0o755)
+
+    def complete(self) -> None:
+        (self.bin / "dpkg-query.complete").touch()
+
+    def setup(self, **environment: str) -> subprocess.CompletedProcess[str]:
+        words = {"PATH": str(self.bin), "HOME": os.environ["HOME"]} | environment
+        command = [self.clone / "scripts/setup"]
+        return subprocess.run(command, cwd="/", env=words, capture_output=True, text=True, timeout=100)
+
+
+@pytest.fixture
+def machine(tmp_path):
+    return Machine(tmp_path)
+
+
+def test_without_sudo_the_command_for_root_is_told(machine):
+    done = machine.setup()
+    assert done.returncode == 1 and done.stderr.count("\n") == 1
+    assert "liggghts not installed, and there is no sudo; as root: apt-get install liggghts" in done.stderr
+
+
+@pytest.mark.parametrize(("version", "shown"), [("13.1", "13.1"), ("13ubuntu10", "13ubuntu10"), ("", "unknown")])
+def test_another_release_is_named_before_anything_is_installed(version, shown, machine):
+    machine.tool("dpkg-query", DEBIAN.replace("12.4+deb12u12", version))
+    done = machine.setup()
+    assert done.returncode == 1 and f"not Debian 12 (base-files {shown})" in done.stderr
+    assert not (machine.bin / "apt-get.called").exists()
+
+
+def test_without_dpkg_it_says_that_this_is_not_debian(machine):
+    (machine.bin / "dpkg-query").unlink()
+    assert "this is not Debian" in machine.setup().stderr
+
+
+def test_sudo_that_drops_the_environment_keeps_proxy_and_silence(machine):
+    machine.tool("sudo", 'exec env -i PATH="$PATH" "$@"')
+    machine.setup(http_proxy="http://gate:3128")
+    said = (machine.bin / "apt-get.called").read_text().splitlines()
+    assert [line.split()[-2:] for line in said] == [["front=noninteractive", "proxy=http://gate:3128"]] * 2
+    assert "update" in said[0] and said[1].split()[-3] == "liggghts"
+
+
+def test_an_apt_that_fails_is_named(machine):
+    machine.tool("sudo", 'exec "$@"')
+    machine.tool("apt-get", '[[ "$*" == *update* ]]')
+    done = machine.setup()
+    assert done.returncode == 1 and "apt-get could not install liggghts" in done.stderr
+
+
+@pytest.mark.parametrize("state", ["half-made", "moved", "whole"])
+def test_a_virtual_environment_that_is_not_whole_or_was_moved_is_made_anew(state, machine):
+    machine.complete()
+    place = machine.clone / ".venv"
+    (place / "bin").mkdir(parents=True)
+    (place / "mark").touch()
+    if state != "half-made":
+        home = machine.clone if state == "whole" else Path("/elsewhere")
+        (place / "bin/python").write_text("#!/bin/bash\nexit 0\n")
+        (place / "bin/python").chmod(0o755)
+        (place / "bin/pip").write_text(f"#!{home}/.venv/bin/python\n")
+    done = machine.setup()
+    assert (place / "mark").exists() == (state == "whole")
+    assert ("comes from another folder; it is made anew" in done.stdout) == (state != "whole")
+    assert (place / "bin/python").exists()
+
+
+def test_every_dependency_has_one_version_in_the_lock_file():
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
+    wanted = [*project["dependencies"], *project["optional-dependencies"]["dev"]]
+    lines = (ROOT / "scripts/constraints.txt").read_text().splitlines()[1:]
+    locked = {re.sub("[-_.]+", "-", line.split("==")[0]).lower(): line.split("==")[1] for line in lines}
+    for requirement in wanted:
+        name, _, least = re.match(r"([\w-]+)(>=|==)([\d.]+)", requirement).groups()
+        version = locked[re.sub("[-_.]+", "-", name).lower()]
+        assert [int(n) for n in version.split(".")] >= [int(n) for n in least.split(".")], name
