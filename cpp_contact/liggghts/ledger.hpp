@@ -86,9 +86,10 @@ class Ledger {
     if (!wall && bodies.j < bodies.nlocal) rub_one(bodies.j, part * lost, part * stored);
   }
 
-  /// One number per body [J], for a loop that books by itself as `book` does.
+  /// One number per body, for a loop that books by itself as `book` does.
   double* work() { return work_->vector_atom; }
   double* energy() { return energy_->vector_atom; }
+  double* bearing() { return bearing_->vector_atom; }
 
  private:
   static constexpr const char* work_name = "plasticWork";

@@ -112,11 +112,11 @@ def library() -> ctypes.CDLL:
     """The loaded library, its signatures declared and its ABI checked."""
     path = library_path()
     lib = ctypes.CDLL(str(path))
+    if lib.epdem_abi() != ABI:
+        raise EngineError(f"{path}: ABI {lib.epdem_abi()}, this package needs {ABI}; run 'make setup' again")
     for name, (restype, argtypes) in _SIGNATURES.items():
         function = getattr(lib, name)
         function.restype, function.argtypes = restype, argtypes
-    if lib.epdem_abi() != ABI:
-        raise EngineError(f"{path}: ABI {lib.epdem_abi()}, this package needs {ABI}; run 'make setup' again")
     sizes = {
         b"epdem_step_result": ctypes.sizeof(StepResult),
         b"epdem_impact_input": IMPACT_INPUT.itemsize,
