@@ -94,7 +94,7 @@ def test_the_ledger_of_a_smooth_bed_closes_within_one_percent(tmp_path):
     table = ledger(p, tables)
     assert closure(table) < 0.01
     scale = table[["kinetic", "plastic", "work"]].abs().max().sum()
-    assert table["adhesion"].iloc[-1] > 0.02 * scale and table["plastic"].iloc[-1] > 0.02 * scale
+    assert table["adhesion"].iloc[-1] > 0.02 * scale and table["plastic"].iloc[-1] > 0.01 * scale
 
 
 def test_what_does_not_go_with_adhesion_is_refused():
