@@ -12,10 +12,10 @@ namespace epdem::liggghts {
 
 /// Per-atom properties: plasticWork [J] sums up every growth of plastic work since the start, elasticEnergy [J] is what
 /// the contacts of this step can give back, bearingContacts counts those of them that bear a force: a contact whose
-/// bodies overlap by less than the depth of its dent bears none. With partial slip frictionWork [J] sums up what friction
-/// took, and frictionEnergy [J] is what its springs can give back. Half of a pair's energy belongs to each body, all of a
-/// wall's to the sphere. LIGGGHTS evaluates a pair that spans two ranks on both of them, so each books its own body
-/// only.
+/// bodies overlap by less than the depth of its dent bears none. With partial slip frictionWork [J] sums up what
+/// friction took, and frictionEnergy [J] is what its springs can give back. Half of a pair's energy belongs to each
+/// body, all of a wall's to the sphere. LIGGGHTS evaluates a pair that spans two ranks on both of them, so each books
+/// its own body only.
 class Ledger {
  public:
   /// Indices of the bodies, and from which index on a body belongs to another rank.
