@@ -1,5 +1,5 @@
 # Each target is one line that calls a script or a tool.
-.PHONY: setup demo test bench docs tidy sanitize versions fuzz valgrind reliability tutorials clean
+.PHONY: setup demo test walltime bench docs tidy sanitize versions fuzz valgrind reliability tutorials wheel deb trees clean
 
 setup:
 	@scripts/setup
@@ -10,6 +10,10 @@ demo: setup
 test:
 	@scripts/setup yade slurmctld slurmd slurm-client munge
 	.venv/bin/python -m pytest -n 2
+
+# a scene of this duration takes more than a minute, the shortest walltime of Slurm
+walltime: setup
+	EPDEM_WALLTIME="20 s" .venv/bin/python -m pytest tests/studies/test_sweep_slurm.py -k walltime
 
 bench: setup
 	.venv/bin/python bench/all.py
@@ -45,5 +49,16 @@ reliability:
 tutorials: setup
 	EPDEM_TUTORIALS=all .venv/bin/python -m pytest tests/engines/test_tutorials.py -q -n 0
 
+# PYTHONS="python3 /path/to/other": the wheel is tried in a clean environment of each
+wheel: setup
+	@scripts/wheel $(PYTHONS)
+
+deb: setup
+	@scripts/deb
+
+# TREES="/path/to/lmp_auto ...": executables of other trees that were built after `epdem header`
+trees: setup
+	@.venv/bin/python scripts/trees $(TREES)
+
 clean:
-	rm -rf .venv build runs
+	rm -rf .venv build dist runs

@@ -10,6 +10,10 @@
 #include "library.h"
 #include "universe.h"
 
+#ifdef EPDEM_BUILT_FOR
+#include <dlfcn.h>
+#endif
+
 namespace epdem::liggghts {
 
 namespace {
@@ -17,17 +21,26 @@ namespace {
 #ifdef EPDEM_BUILT_FOR  // as the library said when this was built; in a source tree all is built at once
 
 constexpr const char* built_for = EPDEM_BUILT_FOR;
+#ifdef SUPERQUADRIC_ACTIVE_FLAG
+constexpr bool superquadrics = true;
+#else
+constexpr bool superquadrics = false;
+#endif
 
-/// The library carries no symbol versions: compare its version and where it says that two members lie.
+/// The library carries no symbol versions: compare its version, where it says that two members lie, and whether it has
+/// superquadrics, with which a contact has 392 bytes and without 368.
 void check_library(LAMMPS_NS::LAMMPS* lmp) {
   const auto found_at = [lmp](const char* name, const void* here) {
     return lammps_extract_global(lmp, const_cast<char*>(name)) == here;
   };
+  const bool theirs = dlsym(RTLD_DEFAULT, "_ZTVN9LAMMPS_NS19AtomVecSuperquadricE") != nullptr;
   if (std::strstr(lmp->universe->version, built_for) && found_at("dt", &lmp->update->dt) &&
-      found_at("boxxlo", &lmp->domain->boxlo[0]))
+      found_at("boxxlo", &lmp->domain->boxlo[0]) && theirs == superquadrics)
     return;
-  const std::string text = std::string("epdem was built for ") + built_for + ", but the library in use says \"" +
-                           lmp->universe->version + "\" or has another memory layout; build epdem on this machine";
+  const std::string text = std::string("epdem was built for ") + built_for +
+                           (superquadrics ? " with superquadrics" : "") + ", but the library in use says \"" +
+                           lmp->universe->version + "\"" + (theirs ? " and has superquadrics" : "") +
+                           " or has another memory layout; build epdem on this machine";
   lmp->error->all(FLERR, text.c_str());
 }
 

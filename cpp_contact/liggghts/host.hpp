@@ -19,12 +19,6 @@
 
 namespace epdem::liggghts {
 
-#ifdef EPDEM_BUILT_FOR
-// The library is built without non-spherical particles; with them the structure has 392 bytes and every access fails.
-static_assert(sizeof(LIGGGHTS::ContactModels::SurfacesIntersectData) == 368,
-              "compile definitions differ from those of the packaged LIGGGHTS library");
-#endif
-
 /// A law's name as a LIGGGHTS model.
 template <class Law>
 std::string model_name() {

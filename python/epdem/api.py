@@ -289,7 +289,7 @@ def sweep(
     planned = study.plan_text(
         case.text, settings, engines=engines, laws=laws, ranks=ranks, latin_hypercube=latin_hypercube, seed=seed
     )
-    folder = Path(out) if out is not None else Path("runs") / f"{planned.name}_sweep"
+    folder = Path(out) if out is not None else planned.default_folder
     return study.run(planned, folder, jobs=jobs, retry_failed=retry_failed, report=_report)
 
 

@@ -12,7 +12,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from plugin_decks import launcher
+from plugin_decks import launcher, run
 from plugin_loop import SAID, Scene, outcome
 
 from epdem.base import paths
@@ -176,6 +176,32 @@ def test_doctor_says_which_models_an_executable_has(built, monkeypatch):
         assert not found.superquadrics  # Debian's library has none
     paths.launcher.cache_clear()
     assert executable.advice(()) == "" and "epdem header --out" in executable.advice(("hertz",))
+
+
+SUPERQUADRIC = """atom_style superquadric
+atom_modify map array
+boundary f f f
+newton off
+communicate single vel yes
+units si
+region box block -0.1 0.1 -0.1 0.1 -0.1 0.1 units box
+create_box 1 box
+neighbor 0.002 bin
+fix e all property/global youngsModulus peratomtype 1e8
+fix n all property/global poissonsRatio peratomtype 0.3
+fix y all property/global yieldPressure peratomtype 1e6
+pair_style gran model ep/thornton tangential off
+pair_coeff * *
+fix move all nve/superquadric
+run 0
+"""
+
+
+def test_superquadrics_are_refused_with_a_sentence(tree, tmp_path):
+    """LIGGGHTS's surface default would take them for spheres."""
+    done = run(tmp_path, SUPERQUADRIC, command=str(tree))
+    expected = "model ep/thornton: it is for spheres" if executable.examine(tree, ()).superquadrics else "atom style"
+    assert done.code == 1 and expected in done.error
 
 
 OLD = {  # what a tree of 2016 has, and what the sentence must hold

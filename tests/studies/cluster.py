@@ -13,6 +13,7 @@ import pytest
 
 ROOT_ALONE = "Slurm's daemons are started by root alone"
 PROGRAMS = ("munged", "slurmctld", "slurmd", "sbatch", "srun", "squeue")
+NODES = ("first", "second")
 CONF = """
 ClusterName=local
 SlurmctldHost={host}(127.0.0.1)
@@ -21,24 +22,29 @@ SlurmdUser=root
 AuthType=auth/munge
 AuthInfo=cred_expire=5
 StateSaveLocation={place}/state
-SlurmdSpoolDir={place}/spool
+SlurmdSpoolDir={place}/spool.%n
 SlurmctldLogFile={place}/slurmctld.log
-SlurmdLogFile={place}/slurmd.log
+SlurmdLogFile={place}/slurmd.%n.log
 SlurmctldPidFile={place}/slurmctld.pid
-SlurmdPidFile={place}/slurmd.pid
+SlurmdPidFile={place}/slurmd.%n.pid
 SlurmctldPort={port}
-SlurmdPort={port1}
 ProctrackType=proctrack/linuxproc
 TaskPlugin=task/none
 SelectType=select/cons_tres
 SelectTypeParameters=CR_CPU
 ReturnToService=2
 MpiDefault=none
+TmpFS={place}/t.%n
 KillWait=5
 SchedulerParameters=sched_interval=1
 MailProg=/bin/true
-NodeName={host} NodeAddr=127.0.0.1 CPUs=2 RealMemory=1000 State=UNKNOWN
-PartitionName=main Nodes={host} Default=YES MaxTime=INFINITE State=UP
+PreemptType=preempt/partition_prio
+PreemptMode=REQUEUE
+NodeName=first NodeHostname={host} NodeAddr=127.0.0.1 Port={port1} CPUs=2 RealMemory=1000 State=UNKNOWN
+NodeName=second NodeHostname={host} NodeAddr=127.0.0.1 Port={port2} CPUs=1 RealMemory=1000 State=UNKNOWN
+PartitionName=main Nodes=first Default=YES MaxTime=INFINITE State=UP PriorityTier=1 GraceTime=3
+PartitionName=urgent Nodes=first MaxTime=INFINITE State=UP PriorityTier=9
+PartitionName=wide Nodes=first,second MaxTime=INFINITE State=UP PriorityTier=1
 """
 
 
@@ -69,19 +75,20 @@ class Cluster:
     """Daemons by name; the environment in which Slurm's commands find them."""
 
     def __init__(self, place: Path, port: int):
-        for name in ("state", "spool"):
+        for name in ("state", *(f"{kind}.{node}" for node in NODES for kind in ("spool", "t"))):
             (place / name).mkdir()
         host = os.uname().nodename.split(".")[0]
         conf = place / "slurm.conf"
-        conf.write_text(CONF.format(host=host, place=place, port=port, port1=port + 1))
+        conf.write_text(CONF.format(host=host, place=place, port=port, port1=port + 1, port2=port + 2))
         self.place, self.env = place, os.environ | {"SLURM_CONF": str(conf)}
         self.env["PATH"] += ":/usr/sbin"
         self.daemons: dict[str, subprocess.Popen[bytes]] = {}
 
     def start(self, name: str) -> None:
-        """Start slurmctld or slurmd."""
+        """Start slurmctld, or the slurmd of a node."""
+        program = ["slurmd", "-D", "-N", name] if name in NODES else [name, "-D"]
         with (self.place / f"{name}.out").open("ab") as out:
-            self.daemons[name] = subprocess.Popen([name, "-D"], env=self.env, stdout=out, stderr=out)
+            self.daemons[name] = subprocess.Popen(program, env=self.env, stdout=out, stderr=out)
 
     def stop(self, name: str) -> None:
         """Stop it."""
@@ -97,13 +104,13 @@ class Cluster:
         return subprocess.run(command, env=self.env, capture_output=True, text=True).stdout
 
     def idle(self) -> bool:
-        """Whether the node takes work."""
-        return "idle" in self.ask("sinfo", "-h", "-o", "%T")
+        """Whether all nodes take work."""
+        return self.ask("sinfo", "-h", "-N", "-p", "wide", "-o", "%T").split() == ["idle"] * len(NODES)
 
 
 @contextlib.contextmanager
 def cluster(place: Path) -> Iterator[Cluster]:
-    """A cluster of one node with two cores."""
+    """A cluster of two nodes, both on this machine, the first with two cores; jobs in "main" give way to "urgent"."""
     munge = None
     if subprocess.run(["munge", "-n"], capture_output=True).returncode:
         Path("/run/munge").mkdir(exist_ok=True)
@@ -114,8 +121,9 @@ def cluster(place: Path) -> Iterator[Cluster]:
     found = Cluster(place, 20000 + os.getpid() % 20000)
     try:
         found.start("slurmctld")
-        found.start("slurmd")
-        until(found.idle, "an idle node")
+        for node in NODES:
+            found.start(node)
+        until(found.idle, "two idle nodes")
         yield found
     finally:
         found.ask("scancel", "--user=root")

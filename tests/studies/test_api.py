@@ -96,6 +96,7 @@ def test_sweep_and_command_give_the_same_table(ball, tmp_path):
     subprocess.check_call([EPDEM, "sweep", path, *words], stdout=subprocess.DEVNULL)
     assert (tmp_path / "a/sweep.csv").read_bytes() == (tmp_path / "b/sweep.csv").read_bytes()
     assert found.table["impact.body.radius"].unique() == pytest.approx(radii)
+    assert found._repr_html_().count("<tr") == 1 + len(found.table)
 
 
 def test_deck_and_command_write_the_same_files(ball, tmp_path):

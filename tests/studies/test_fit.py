@@ -47,6 +47,7 @@ def test_a_floor_load_gives_the_density_and_nothing_stored_runs_again(place):
     found = float(first.values["materials.glass.density"].split()[0])
     assert found == pytest.approx(1700.0, rel=0.04) and first.ran == first.points <= 8
     assert first.numbers["floor_load_mean"] == pytest.approx(target, rel=0.01)
+    assert f"<td>{first.values['materials.glass.density']}</td>" in first._repr_html_()
     assert first.case.exists() and f'density = "{first.values["materials.glass.density"]}"' in first.case.read_text()
     before = stored(place / "points")
     again = fit(place, {"floor_load_mean": f"{target * 1e3!r} mN"}, DENSITY)

@@ -2,6 +2,8 @@
 """Sweeps as jobs of a real Slurm: failed and cancelled points, a controller that restarts, requeued scenes, ranks."""
 
 import json
+import os
+import re
 import subprocess
 import sys
 from pathlib import Path
@@ -79,21 +81,70 @@ def test_50_points_one_fails_one_job_is_cancelled_and_the_controller_restarts(ca
     assert slurm.run(planned, out, {}).ran == 0
 
 
-@needs_slurm
-def test_a_scene_that_is_preempted_is_queued_again_and_goes_on_from_its_restart_file(here, tmp_path):
-    path, out = tmp_path / "bed.toml", tmp_path / "out"
-    path.write_text(BED.replace("restarts = 0", "restarts = 10"))
-    planned = run.plan(path, {"scene.count": "150"})
-    sent = []
+def scene(tmp_path: Path, duration: str, count: int) -> folder.Sweep:
+    """A bed that writes restart files."""
+    path = tmp_path / "bed.toml"
+    path.write_text(BED.replace("restarts = 0", "restarts = 20").replace("0.3 s", duration))
+    return run.plan(path, {"scene.count": str(count)})
 
-    def preempt(done, total):
+
+def warned(here, out: Path) -> None:
+    """The signal that Slurm sends before the end of the walltime."""
+    here.ask("scancel", "-s", "USR2", *jobs(out))
+
+
+def displaced(here, out: Path) -> None:
+    """An urgent job takes the node, and Slurm stops ours and queues it again."""
+    here.ask("sbatch", "-p", "urgent", "-c", "2", "-o", "/dev/null", "--wrap", "sleep 1")
+
+
+@needs_slurm
+@pytest.mark.parametrize("preempt", [warned, displaced])
+def test_a_scene_that_is_preempted_is_queued_again_and_goes_on_from_its_restart_file(preempt, here, tmp_path):
+    out, planned, sent = tmp_path / "out", scene(tmp_path, "0.5 s", 150), []
+
+    def report(done, total):
         if not sent and len(list(out.glob("points/*/restart.*.bin"))) >= 2:
             assert status(out)["running"] == 1
-            sent.append(here.ask("scancel", "-s", "USR2", *jobs(out)))
+            sent.append(preempt(here, out))
 
-    found = slurm.run(planned, out, {"time": "10"}, report=preempt)
+    found = slurm.run(planned, out, {"time": "10"}, report=report)
     assert sent and found.table[["status", "reason"]].fillna("").to_numpy().tolist() == [["done", ""]]
     assert (folder.of(planned, out, 1) / "in.resume").exists()
+    (job,) = jobs(out)
+    assert "Restarts=1 " in here.ask("scontrol", "show", "job", "-o", job)
+
+
+@needs_slurm
+@pytest.mark.skipif("EPDEM_WALLTIME" not in os.environ, reason="takes minutes, for Slurm counts walltime in them")
+def test_a_scene_longer_than_its_walltime_is_queued_again_in_time(here, tmp_path):
+    out, planned = tmp_path / "out", scene(tmp_path, os.environ["EPDEM_WALLTIME"], 400)
+    found = slurm.run(planned, out, {"time": "1"})
+    assert found.table[["status", "reason"]].fillna("").to_numpy().tolist() == [["done", ""]]
+    (job,) = jobs(out)
+    restarts = int(re.search(r"Restarts=(\d+)", here.ask("scontrol", "show", "job", "-o", job))[1])
+    assert restarts >= 1 and (folder.of(planned, out, 1) / "in.resume").exists()
+
+
+@needs_slurm
+def test_ranks_of_a_point_lie_on_two_nodes(case, here, tmp_path):
+    out, spread = tmp_path / "out", {"partition": "wide", "nodes": "2", "ntasks-per-node": "1"}
+    found = slurm.run(run.plan(case, {"impact.body.radius": "1 mm"}, ranks=2), out, spread).table
+    assert found["status"].tolist() == ["done"], found["reason"][0]
+    (job,) = jobs(out)
+    assert "NodeList=first,second" in here.ask("scontrol", "show", "job", "-o", job).replace(
+        "[first-second]", "first,second"
+    )
+    (log,) = out.glob("points/*/thornton/liggghts/log.liggghts")
+    assert " on 2 procs for " in log.read_text()
+    alone = run.run(run.plan(case, {"impact.body.radius": "1 mm"}), tmp_path / "alone", jobs=1).table
+    assert found["e_n"].to_numpy() == pytest.approx(alone["e_n"].to_numpy(), rel=1e-8)
+
+
+def test_walltimes_are_read_as_slurm_reads_them():
+    times = {"5": 300, "5:30": 330, "2:00:00": 7200, "1-12": 129600, "1-1:30": 91800, "1-0:0:1": 86401}
+    assert {time: slurm.seconds(time) for time in times} == times
+    assert slurm.seconds("UNLIMITED") > 1e7
 
 
 @needs_slurm

@@ -37,9 +37,10 @@ def templates() -> Path:
 def cpp_sources() -> tuple[Path, Path]:
     """The folders of the plugin's C++ sources and of the laws' headers: the checkout's, else the installed copies."""
     host = _first(_PACKAGE.parents[1] / "cpp_contact" / "liggghts", _PACKAGE / "cpp_contact" / "liggghts")
-    if host is None:
+    laws = _first(_PACKAGE.parents[1] / "cpp_contact" / "include", _PACKAGE / "include")
+    if host is None or laws is None:
         raise EngineError("C++ sources not found beside the package; install epdem again: pip install .")
-    return host, host.parent / "include"
+    return host, laws
 
 
 @cache

@@ -77,7 +77,9 @@ def deck_scene(case: Path, out: Path, *, engine: str = "liggghts", force: bool =
 
 def explain(case: CasePath, as_json: AsJson = False) -> None:
     """Print each line of the LIGGGHTS deck of a case with its reason."""
-    lines = _explained(case)
+    from ..liggghts.explain import explain_case
+
+    lines = explain_case(case)
     if as_json:
         print(json.dumps([{"file": f, "line": text, "reason": reason} for f, text, reason in lines], indent=1))
         return
@@ -87,27 +89,6 @@ def explain(case: CasePath, as_json: AsJson = False) -> None:
             print(f"{name}:")
             file = name
         print(f"  {text.split('  # ')[0].rstrip()}\n      {reason}")
-
-
-def _explained(case: Path) -> list[tuple[str, str, str]]:
-    from ..case.impact import load
-    from ..case.toml import named
-    from ..liggghts import explain
-
-    with named(case):
-        if is_scene(case):
-            from ..case.scene import load as load_scene
-            from ..liggghts.scene_deck import deck
-            from ..scenes.plan import plan as scene_plan
-
-            return explain.explain(explain.SCENE, deck(scene_plan(load_scene(case))))
-        from ..impacts.experiment import experiment
-        from ..impacts.plan import plan
-        from ..impacts.prediction import predict
-        from ..liggghts.impacts import Liggghts
-
-        x = experiment(load(case))
-        return explain.explain(explain.IMPACT, Liggghts().deck(plan(x, predict(x))))
 
 
 def tune(

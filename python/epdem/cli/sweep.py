@@ -69,7 +69,7 @@ def sweep(
         check_points(planned, range(1, len(planned.points) + 1), jobs)
         sweep_view.points(planned, as_json, console())
         return
-    folder = out or Path("runs") / f"{planned.name}_sweep"
+    folder = out or planned.default_folder
     if write_script:
         study.write_script(planned, folder, slurm or [], write_script, force=force)
         print(f"sbatch {write_script}")

@@ -9,7 +9,6 @@ import typer
 
 from ..base.terminal import console
 from ..base.terminal import table as empty_table
-from ..errors import CaseError
 from .options import AsJson, CasePath, Engines, Force, Laws, laws_or_own, refuse
 
 
@@ -20,54 +19,27 @@ def theory(
     as_json: AsJson = False,
 ) -> None:
     """Print one impact on a wall of the same material for every law."""
-    import numpy as np
+    from dataclasses import asdict
 
-    from ..case.materials import material as sourced
     from ..case.units import read_number
-    from ..impacts.experiment import Experiment, pair_of, plane, sphere
-    from ..impacts.prediction import predict
-    from ..laws.strengths import default_numbers
-    from ..theory import printed, yielding
-    from ..theory.backbones import LAWS
+    from ..studies.one_impact import one_impact
 
-    entry, R, v = sourced(material), read_number("--radius", radius, "m"), read_number("--speed", speed, "m/s")
-    if (Y := entry.material.yield_stress) is None:
-        raise CaseError(f"--material {material!r} has no yield stress in the materials file; choose another")
-    body, target = sphere(entry.material, radius=R, name=material), plane(entry.material, name=material)
-    names = ("e_n", "contact_time", "force_max", "overlap_max", "residual_overlap", "strain_ratio")
-    rows = {}
-    for name in LAWS:
-        x = Experiment(pair_of(default_numbers(name), body, target), body, target, np.array([v]))
-        prediction = predict(x)
-        rows[name] = {k: float(getattr(prediction, k)[0]) for k in names}
-    plastic, first = LAWS["thornton"].default_ratio, yielding.FIRST_YIELD_ROUNDED
-    p_0, depth = yielding.first_yield(entry.material.poisson_ratio)
-    pair = {"E_star": x.E_star, "R_star": x.R_star, "m_star": x.m_star}
-    common = {
-        "E_star": x.E_star,
-        "m_star": x.m_star,
-        "first_yield_p0_over_Y": float(p_0),
-        "first_yield_depth_over_a": float(depth),
-        "v_y0": float(printed.yield_speed(p_y=first * Y, **pair)),
-        "v_y": float(printed.yield_speed(p_y=plastic * Y, **pair)),
-    }
+    x = one_impact(material, radius=read_number("--radius", radius, "m"), speed=read_number("--speed", speed, "m/s"))
     if as_json:
-        print(
-            json.dumps({"material": material, "source": entry.source, "radius": R, "speed": v, **common, "laws": rows})
-        )
+        print(json.dumps({k: v for k, v in asdict(x).items() if k not in ("first", "plastic")}))
         return
-    title = f"{material} sphere, R = {R:g} m, on {material} at {v:g} m/s (SI units)"
-    table = empty_table(title, ("law", *rows["hertz"]), left=("law",))
-    for name, row in rows.items():
+    title = f"{material} sphere, R = {x.radius:g} m, on {material} at {x.speed:g} m/s (SI units)"
+    table = empty_table(title, ("law", *x.laws["hertz"]), left=("law",))
+    for name, row in x.laws.items():
         table.add_row(name, *(f"{value:.6g}" for value in row.values()))
     console().print(table)
     console().print(
-        f"E* = {x.E_star:.5g} Pa, m* = {x.m_star:.5g} kg; first yield at p_0 = {float(p_0):.4f} Y, depth "
-        f"{float(depth):.3f} a; v_y0 = {common['v_y0']:.4g} m/s ({first:.2f} Y), "
-        f"v_y = {common['v_y']:.4g} m/s ({plastic:g} Y)",
+        f"E* = {x.E_star:.5g} Pa, m* = {x.m_star:.5g} kg; first yield at p_0 = {x.first_yield_p0_over_Y:.4f} Y, depth "
+        f"{x.first_yield_depth_over_a:.3f} a; v_y0 = {x.v_y0:.4g} m/s ({x.first:.2f} Y), "
+        f"v_y = {x.v_y:.4g} m/s ({x.plastic:g} Y)",
         soft_wrap=True,
     )
-    console().print(f"source: {entry.source}", soft_wrap=True)
+    console().print(f"source: {x.source}", soft_wrap=True)
 
 
 def figures(

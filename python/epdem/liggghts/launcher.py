@@ -2,6 +2,7 @@
 """Starting LIGGGHTS with our models: command, ranks, environment."""
 
 import os
+import re
 import shutil
 from collections.abc import Callable
 from pathlib import Path
@@ -28,8 +29,12 @@ def missing() -> str | None:
 
 
 def most_ranks() -> int:
-    """As many ranks as there are cores, and two anywhere: more only wait for one another, or hang."""
-    return max(2, len(os.sched_getaffinity(0)))
+    """As many ranks as there are cores, and two anywhere: more only wait for one another, or hang.
+
+    In a job of Slurm's those of all its nodes count: "4(x2),3" is three nodes.
+    """
+    of_job = re.findall(r"(\d+)(?:\(x(\d+)\))?", os.environ.get("SLURM_JOB_CPUS_PER_NODE", ""))
+    return max(2, len(os.sched_getaffinity(0)), sum(int(cores) * int(nodes or 1) for cores, nodes in of_job))
 
 
 def command(deck: str, *, ranks: int = 1, log: str = "none") -> list[str]:
@@ -42,7 +47,8 @@ def command(deck: str, *, ranks: int = 1, log: str = "none") -> list[str]:
     if ranks == 1:
         return liggghts
     if "SLURM_JOB_ID" in os.environ and shutil.which("srun"):  # the cluster's own way, which keeps account of it
-        return ["srun", "--overlap", "--mpi=pmix", "-n", str(ranks), *liggghts]
+        nodes = min(ranks, int(os.environ.get("SLURM_JOB_NUM_NODES", "1")))
+        return ["srun", "--overlap", "--mpi=pmix", "-N", str(nodes), "-n", str(ranks), *liggghts]
     root = ["--allow-run-as-root"] if os.geteuid() == 0 else []
     return ["mpirun", "-np", str(ranks), "--oversubscribe", *root, *liggghts]
 

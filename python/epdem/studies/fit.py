@@ -6,6 +6,7 @@ Every evaluation is a point of a sweep, in its folder: interrupted or repeated, 
 
 import contextlib
 import difflib
+import html
 import math
 import tomllib
 from collections.abc import Mapping
@@ -48,6 +49,13 @@ class Fit:
     case: Path
     ran: int
     points: int
+
+    def _repr_html_(self) -> str:
+        """In a notebook it shows what was found."""
+        cells = [*self.values.items()]
+        cells += [(name, f"{value:.6g} {self.units[name]}") for name, value in self.numbers.items()]
+        rows = "".join(f"<tr><th>{html.escape(name)}</th><td>{html.escape(str(v))}</td></tr>" for name, v in cells)
+        return f"<table>{rows}</table>"
 
 
 class _Reached(Exception):

@@ -62,6 +62,11 @@ class Sweep:
         keys = keys_of(self.tables)
         return {name: keys[name].unit for point in self.points[:1] for name in point}
 
+    @property
+    def default_folder(self) -> Path:
+        """Where its points are if nobody names a folder."""
+        return Path("runs") / f"{self.name}_sweep"
+
     @cached_property
     def _pieces(self) -> list[str]:
         """The case file cut at the values of the keys that the points set, each of which stands as its key."""

@@ -43,6 +43,10 @@ class SweepOutcome:
         """Whether every point is finished and within its tolerances."""
         return bool((self.table["status"] == store.DONE).all() and self.table["passed"].all())
 
+    def _repr_html_(self) -> str:
+        """In a notebook it shows its table."""
+        return str(self.table.to_html(max_rows=20))
+
 
 class Options(TypedDict, total=False):
     """How `plan_text` makes its points, and what runs them."""

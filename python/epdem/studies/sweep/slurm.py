@@ -6,7 +6,9 @@ queued again and goes on, and so does a sweep whose command is given again.
 """
 
 import json
+import re
 import shlex
+import signal
 import subprocess
 import sys
 import time
@@ -17,7 +19,7 @@ from typing import Any
 
 from ...base.files import atomic
 from ...base.folders import claim
-from ...errors import CaseError, EngineError
+from ...errors import CaseError, EngineError, Stopped
 from . import folder as store
 from . import local, table
 from .evaluate import evaluate
@@ -31,6 +33,8 @@ ENDED = ("COMPLETED", "FAILED", "CANCELLED", "TIMEOUT", "NODE_FAIL", "OUT_OF_MEM
 Parameters = dict[str, str]
 # What submitit sets by itself and what a point needs to be stopped and queued again in good time.
 KEPT = ("array", "output", "error", "signal", "open-mode", "job-name")
+SPREAD = ("nodes", "N", "ntasks", "n", "ntasks-per-node")  # one of these: the ranks of a point may lie on several nodes
+WARNING = 90  # [s] from the signal to the end of the walltime; a third of a short one
 
 
 def parameters(texts: Sequence[str]) -> Parameters:
@@ -66,10 +70,17 @@ def share(numbers: Sequence[int], task: int, tasks: int) -> list[int]:
 
 
 class Task:
-    """What a job runs; before its walltime or a preemption ends it, submitit queues the same again."""
+    """What a job runs; before its walltime ends it, submitit queues the same again, and so does Slurm on a preemption.
+
+    A job that is told to stop waits for its end: were it to end by itself, it would not be queued again.
+    """
 
     def __call__(self, folder: Path, numbers: list[int]) -> None:
-        work(folder, numbers)
+        try:
+            work(folder, numbers)
+        except Stopped:
+            while True:
+                signal.pause()
 
     def checkpoint(self, folder: Path, numbers: list[int]) -> Any:
         """What is to be queued again."""
@@ -92,13 +103,34 @@ def _submit(sweep: Sweep, folder: Path, numbers: list[int], given: Parameters) -
         executor = submitit.SlurmExecutor(
             folder=folder / "slurm", max_num_timeout=1000, python=shlex.quote(sys.executable)
         )
-        extra = {"cpus-per-task": sweep.ranks, "time": 60} | {k: v or True for k, v in given.items()}
-        executor.update_parameters(job_name=sweep.name, additional_parameters=extra, array_parallelism=TASKS)
+        extra = _cpus(sweep, given) | {"time": "60"} | {k: v or True for k, v in given.items()}
+        executor.update_parameters(
+            job_name=sweep.name,
+            additional_parameters=extra,
+            array_parallelism=TASKS,
+            signal_delay_s=min(WARNING, seconds(str(extra["time"])) // 3),
+            srun_args=["--nodes=1", "--ntasks=1"],  # of however many nodes, one process works at the points
+        )
         jobs = executor.map_array(Task(), [folder] * tasks, shares)
     except (RuntimeError, OSError, submitit.core.utils.FailedJobError) as error:
         reason = " ".join(str(error).split())
         raise EngineError(f"--executor slurm: the jobs were not taken: {reason}") from None
     return {str(job.job_id): points for job, points in zip(jobs, shares, strict=True)}
+
+
+def _cpus(sweep: Sweep, given: Parameters) -> dict[str, Any]:
+    return {} if set(SPREAD) & set(given) else {"cpus-per-task": str(sweep.ranks)}
+
+
+def seconds(time: str) -> int:
+    """A walltime as Slurm reads it: minutes, M:S, H:M:S, D-H, D-H:M, D-H:M:S; a year if it is none of these."""
+    found = re.fullmatch(r"(?:(\d+)-)?(\d+)(?::(\d+))?(?::(\d+))?", time)
+    if not found:
+        return 365 * 86400
+    days, *parts = found.groups()
+    numbers = [int(part) for part in parts if part]
+    units = (3600, 60, 1) if days or len(numbers) == 3 else (60, 1)
+    return int(days or 0) * 86400 + sum(n * unit for n, unit in zip(numbers, units, strict=False))
 
 
 def alive(jobs: Sequence[str]) -> set[str] | None:
@@ -188,7 +220,7 @@ def _wait(sweep: Sweep, folder: Path, jobs: dict[str, list[int]], report: Report
 def script(sweep: Sweep, folder: Path, given: Parameters) -> str:
     """A batch script that runs a sweep as an array, for people who submit by hand."""
     tasks = min(len(sweep.points), TASKS)
-    head = {"job-name": sweep.name, "array": f"1-{tasks}", "cpus-per-task": str(sweep.ranks), "requeue": ""}
+    head = {"job-name": sweep.name, "array": f"1-{tasks}", "requeue": ""} | _cpus(sweep, given)
     lines = [f"#SBATCH --{name}{'=' if value else ''}{value}" for name, value in (head | given).items()]
     place = shlex.quote(str(folder.absolute()))
     python = shlex.quote(sys.executable)

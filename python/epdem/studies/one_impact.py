@@ -1,0 +1,69 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""One impact on a wall of the same material by every law, from theory."""
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..case.materials import material as sourced
+from ..errors import CaseError
+from ..impacts.experiment import Experiment, pair_of, plane, sphere
+from ..impacts.prediction import predict
+from ..laws.strengths import default_numbers
+from ..theory import printed, yielding
+from ..theory.backbones import LAWS
+
+NAMES = ("e_n", "contact_time", "force_max", "overlap_max", "residual_overlap", "strain_ratio")
+
+
+@dataclass(frozen=True)
+class OneImpact:
+    """SI: the impact; E* and m*; where it first yields; the yield speeds at p_0 = `first` Y and p_m = `plastic` Y.
+
+    `laws` has the numbers NAMES of each law.
+    """
+
+    material: str
+    source: str
+    radius: float
+    speed: float
+    E_star: float
+    m_star: float
+    first_yield_p0_over_Y: float
+    first_yield_depth_over_a: float
+    v_y0: float
+    v_y: float
+    laws: dict[str, dict[str, float]]
+    first: float
+    plastic: float
+
+
+def one_impact(material: str, *, radius: float, speed: float) -> OneImpact:
+    """A sphere of a material of ours, of `radius` [m], at `speed` [m/s]; both > 0. Raises CaseError."""
+    entry = sourced(material)
+    if (Y := entry.material.yield_stress) is None:
+        raise CaseError(f"--material {material!r} has no yield stress in the materials file; choose another")
+    body, target = sphere(entry.material, radius=radius, name=material), plane(entry.material, name=material)
+    laws = {}
+    for name in LAWS:
+        x = Experiment(pair_of(default_numbers(name), body, target), body, target, np.array([speed]))
+        prediction = predict(x)
+        laws[name] = {k: float(getattr(prediction, k)[0]) for k in NAMES}
+    plastic, first = LAWS["thornton"].default_ratio, yielding.FIRST_YIELD_ROUNDED
+    p_0, depth = yielding.first_yield(entry.material.poisson_ratio)
+    pair = {"E_star": x.E_star, "R_star": x.R_star, "m_star": x.m_star}
+    return OneImpact(
+        material=material,
+        source=entry.source,
+        radius=radius,
+        speed=speed,
+        E_star=x.E_star,
+        m_star=x.m_star,
+        first_yield_p0_over_Y=float(p_0),
+        first_yield_depth_over_a=float(depth),
+        v_y0=float(printed.yield_speed(p_y=first * Y, **pair)),
+        v_y=float(printed.yield_speed(p_y=plastic * Y, **pair)),
+        laws=laws,
+        first=float(first),
+        plastic=float(plastic),
+    )
