@@ -130,6 +130,13 @@ def test_vectors_are_as_wide_as_the_names_of_the_files_say(built):
     assert "vfmadd" not in text.stdout  # a product and a sum in one rounding would give other bits
 
 
+def test_the_files_define_no_function_of_liggghts(built):
+    """In a tree each of its functions would then be there twice; linked with a library, ours would hide its own."""
+    lines = subprocess.run(["nm", "--defined-only", built], capture_output=True, text=True, check=True).stdout
+    strong = [line.split()[-1] for line in lines.splitlines() if line.split()[-2] == "T"]
+    assert len(strong) > 10 and not [name for name in strong if name.startswith(("_ZN8LIGGGHTS", "_ZN9LAMMPS_NS"))]
+
+
 def restitution(folder, monkeypatch, program):
     """(n speeds, 8 phases) of the demo, run by a LIGGGHTS."""
     monkeypatch.setenv("EPDEM_LIGGGHTS", str(program))

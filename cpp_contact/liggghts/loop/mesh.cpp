@@ -4,7 +4,7 @@
 // with contacts; forces and histories are computed by LIGGGHTS's own functions, so that not one bit differs.
 //
 // LIGGGHTS takes the addresses of these functions through the dynamic linker, which finds ours first; ours find
-// LIGGGHTS's as the next of the same name.
+// LIGGGHTS's as the next of the same name. In a source tree, where all is one program, LIGGGHTS's loop remains.
 #include <dlfcn.h>
 
 #include <algorithm>
@@ -17,6 +17,8 @@
 #include "fix_contact_history_mesh.h"
 #include "fix_neighlist_mesh.h"
 #include "wall.hpp"
+
+#ifdef EPDEM_BUILT_FOR
 
 namespace epdem::liggghts::loop {
 namespace {
@@ -185,3 +187,4 @@ namespace loop = epdem::liggghts::loop;
 }
 
 }  // namespace LAMMPS_NS
+#endif
