@@ -99,7 +99,8 @@ def same(one: dict[str, pd.DataFrame], other: dict[str, pd.DataFrame]) -> bool:
 def stop(process: subprocess.Popen[bytes], way: str, out: Path) -> bool:
     """Do it; False if there was nothing left to stop."""
     if way == "SIGKILL of an engine process":
-        engines = [pid for pid in living(out) if pid != process.pid]
+        while not (engines := [pid for pid in living(out) if pid != process.pid]) and process.poll() is None:
+            time.sleep(0.01)  # none has begun yet
         for pid in engines[-1:]:
             os.kill(pid, signal.SIGKILL)
         return bool(engines)
