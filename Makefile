@@ -13,7 +13,7 @@ test:
 
 # a scene of this duration takes more than a minute, the shortest walltime of Slurm
 walltime: setup
-	EPDEM_WALLTIME="20 s" .venv/bin/python -m pytest tests/studies/test_sweep_slurm.py -k walltime
+	EPDEM_WALLTIME="3 s" .venv/bin/python -m pytest tests/studies/test_sweep_slurm.py -k walltime
 
 bench: setup
 	.venv/bin/python bench/all.py

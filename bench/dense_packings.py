@@ -9,7 +9,7 @@ import numpy as np
 
 sys.path.insert(0, str(Path(__file__).resolve().parent.parent / "tests" / "engines"))
 
-from plugin_decks import per_pair
+from plugin_decks import ADHESIVE, per_pair
 
 RADIUS, SHRINK = 2e-3, 0.999
 
@@ -116,7 +116,9 @@ def deck(
         if restitution or not model.startswith("ep/")
         else "",
         friction=per_pair("coefficientFriction", 0.5, types),
-        surface=beside + (per_pair("surfaceEnergy", 0.0, types) if foreign else ""),
+        surface=beside
+        + (per_pair("surfaceEnergy", 0.0, types) if foreign else "")
+        + (per_pair("workOfAdhesion", 0.1, types) if model.removeprefix("ep/") in ADHESIVE else ""),
         unload=f"set group all diameter {2 * RADIUS * SHRINK!r}\n" if unload else "",
     )
 

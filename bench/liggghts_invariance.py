@@ -11,11 +11,11 @@ from pathlib import Path
 ROOT = Path(__file__).resolve().parent.parent
 sys.path.insert(0, str(ROOT / "tests" / "engines"))
 
-from plugin_decks import LAWS  # noqa: E402
+from plugin_decks import ADHESIVE, LAWS  # noqa: E402
 from plugin_invariance import Suite  # noqa: E402
 
 SLIPS = ("ep/thornton ep/partial_slip_2", "ep/cavity ep/partial_slip")  # with another tangential model than history
-MODELS = (*(f"ep/{law}" for law in LAWS), *SLIPS, "hertz", "thornton_ning", "edinburgh")
+MODELS = (*(f"ep/{law}" for law in (*LAWS, *ADHESIVE)), *SLIPS, "hertz", "thornton_ning", "edinburgh")
 
 HEAD = """# One scene in different set-ups
 

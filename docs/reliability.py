@@ -39,9 +39,9 @@ COMMANDS = {  # what is killed: the words of the command
 }
 WAYS = {  # how: exit codes that the command may have then
     "SIGKILL of the command": (-9,),
-    "SIGTERM": (130,),
-    "Ctrl-C": (130,),
-    "Ctrl-C twice": (130,),
+    "SIGTERM": (130, -15),  # by the signal itself while Python still starts
+    "Ctrl-C": (130, -2),
+    "Ctrl-C twice": (130, -2),
     "SIGKILL of an engine process": (3,),
 }
 PATIENCE = 60.0  # [s] until everything must have ended

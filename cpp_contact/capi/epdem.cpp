@@ -27,11 +27,13 @@ struct LawInfo {
   int strength;
   double default_ratio;
   int memory;
+  bool adheres;
 };
 
 template <class Law>
 constexpr LawInfo info() {
-  return {Law::name, Law::id, Law::n_parameters, Law::parameters, Law::strength, Law::default_ratio, memory<Law>};
+  return {Law::name,          Law::id,     Law::n_parameters, Law::parameters, Law::strength,
+          Law::default_ratio, memory<Law>, adheres<Law>};
 }
 
 #define EPDEM_INFO(Class) info<Class<double>>(),
@@ -52,7 +54,8 @@ int check(int law, double E_star, const double* parameters) {
   if (!known(law)) return EPDEM_UNKNOWN_LAW;
   if (!positive(E_star)) return EPDEM_BAD_PARAMETER;
   for (int k = 0; k < laws[law].n_parameters; ++k)
-    if (!positive(parameters[k])) return EPDEM_BAD_PARAMETER;
+    if (!positive(parameters[k]) && !(laws[law].parameters[k].may_vanish && parameters[k] == 0.0))
+      return EPDEM_BAD_PARAMETER;
   return EPDEM_OK;
 }
 
@@ -115,6 +118,7 @@ EPDEM_EXPORT int epdem_law_id(int law) { return known(law) ? laws[law].id : -1; 
 EPDEM_EXPORT int epdem_law_strength(int law) { return known(law) ? laws[law].strength : -1; }
 EPDEM_EXPORT double epdem_law_default_ratio(int law) { return known(law) ? laws[law].default_ratio : not_given; }
 EPDEM_EXPORT int epdem_law_memory(int law) { return known(law) ? laws[law].memory : -1; }
+EPDEM_EXPORT int epdem_law_adheres(int law) { return known(law) ? laws[law].adheres : -1; }
 EPDEM_EXPORT int epdem_law_parameter_count(int law) { return known(law) ? laws[law].n_parameters : -1; }
 
 EPDEM_EXPORT const char* epdem_law_parameter_name(int law, int k) {
@@ -134,6 +138,11 @@ EPDEM_EXPORT double epdem_law_parameter_default(int law, int k) {
   return p ? p->fallback : std::nan("");
 }
 
+EPDEM_EXPORT int epdem_law_parameter_may_vanish(int law, int k) {
+  const Parameter* p = parameter(law, k);
+  return p ? p->may_vanish : -1;
+}
+
 EPDEM_EXPORT double epdem_viscous_number(double restitution) {
   return restitution >= viscous_restitution_min && restitution <= 1.0 ? viscous_number(restitution) : std::nan("");
 }
@@ -143,8 +152,8 @@ EPDEM_EXPORT int epdem_step(int law, double E_star, const double* parameters, do
   if (!positive(R_star)) return EPDEM_BAD_INPUT;
   return with_law(law, E_star, parameters, [&](const auto& l) {
     for (size_t i = 0; i < n; ++i) {
-      const auto now = step(l, R_star, remember(l, R_star, delta_max[i]), delta[i]);
-      out[i] = {now.force, now.radius, now.after.delta_max};
+      const auto now = step(l, R_star, remember(l, R_star, delta_max[i]), delta[i], 0.0);
+      out[i] = {now.force, now.radius, std::fmax(delta_max[i], delta[i] > 0.0 ? delta[i] : 0.0)};
     }
     return int(EPDEM_OK);
   });
@@ -156,11 +165,14 @@ EPDEM_EXPORT int epdem_backbone(int law, double E_star, const double* parameters
   if (!positive(R_star)) return EPDEM_BAD_INPUT;
   return with_law(law, E_star, parameters, [&](const auto& l) {
     for (size_t i = 0; i < n; ++i) {
-      const auto now = step(l, R_star, {}, delta[i]);
+      const auto now = step(l, R_star, {}, delta[i], 0.0);
       force[i] = now.force;
       radius[i] = now.radius;
       work[i] = l.work(R_star, delta[i]);
-      plastic_work_out[i] = plastic_work(l, R_star, delta[i]);
+      if constexpr (adheres<std::decay_t<decltype(l)>>)
+        plastic_work_out[i] = losses(l, R_star, {}, now.after).plastic;
+      else
+        plastic_work_out[i] = plastic_work(l, R_star, delta[i]);
     }
     return int(EPDEM_OK);
   });

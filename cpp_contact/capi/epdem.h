@@ -36,7 +36,7 @@ typedef struct {
 } epdem_impact_input;
 
 typedef struct {
-  double rebound_speed; /* [m/s] */
+  double rebound_speed; /* [m/s]; 0 if bodies that adhere are still in contact at the end */
   double force_max;     /* largest sample [N] */
   double overlap_max;   /* largest sample [m] */
   double last_overlap;  /* at the last loaded sample [m] */
@@ -57,13 +57,16 @@ int epdem_law_id(int law);               /* of the LIGGGHTS model "ep/" + name, 
 int epdem_law_strength(int law);         /* which parameter is the strength; -1: none */
 double epdem_law_default_ratio(int law); /* strength over the yield stress of the softer body; NaN: no strength */
 int epdem_law_memory(int law);           /* doubles that a host keeps from step to step */
+int epdem_law_adheres(int law);          /* 1: bodies attract each other, the step takes the closing speed; 0: not */
 int epdem_law_parameter_count(int law);
 const char* epdem_law_parameter_name(int law, int k);
 const char* epdem_law_parameter_property(int law, int k); /* LIGGGHTS property/global */
 const char* epdem_law_parameter_unit(int law, int k);
 double epdem_law_parameter_default(int law, int k); /* NaN: must be given */
+int epdem_law_parameter_may_vanish(int law, int k); /* 1: it can be 0 */
 
-/* n steps, each from its own delta_max and delta; `parameters` as in epdem_law_parameter_name. */
+/* n steps, each from its own delta_max and delta (with adhesion: of a contact that has stood since it reached
+ * delta_max, at rest); `parameters` as in epdem_law_parameter_name. */
 int epdem_step(int law, double E_star, const double* parameters, double R_star, size_t n, const double* delta_max,
                const double* delta, epdem_step_result* out);
 

@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "host.hpp"
 
+#include <algorithm>
 #include <cstdio>
 #include <cstring>
+#include <limits>
 #include <string>
 
+#include "atom.h"
 #include "domain.h"
 #include "epdem/laws.hpp"
 #include "library.h"
@@ -63,6 +66,19 @@ void check_host(LAMMPS_NS::LAMMPS* lmp) {
   const std::string line = "epdem " EPDEM_VERSION ":" + model_names() + "\n";
   if (lmp->screen) std::fputs(line.c_str(), lmp->screen);
   if (lmp->logfile) std::fputs(line.c_str(), lmp->logfile);
+}
+
+double smallest_radius(LAMMPS_NS::LAMMPS* lmp) {
+  double smallest = std::numeric_limits<double>::infinity();
+  for (int i = 0; i < lmp->atom->nlocal; ++i) smallest = std::min(smallest, lmp->atom->radius[i]);
+  for (int k = 0; k < lmp->modify->nfix; ++k)
+    for (int type = 1; type <= lmp->atom->ntypes; ++type) {
+      const double added = lmp->modify->fix[k]->min_rad(type);
+      if (added > 0.0) smallest = std::min(smallest, added);
+    }
+  double everywhere = smallest;
+  MPI_Allreduce(&smallest, &everywhere, 1, MPI_DOUBLE, MPI_MIN, lmp->world);
+  return everywhere;
 }
 
 std::string model_names() {

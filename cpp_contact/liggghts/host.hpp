@@ -28,6 +28,9 @@ std::string model_name() {
 /// All of them, each after a blank.
 std::string model_names();
 
+/// The smallest radius of the spheres that are there or will be added; infinite if there are none. Collective.
+double smallest_radius(LAMMPS_NS::LAMMPS* lmp);
+
 /// Ends the run if the library in use is not the one that the headers describe; names the models once.
 void check_host(LAMMPS_NS::LAMMPS* lmp);
 

@@ -5,17 +5,19 @@
 #include <algorithm>
 #include <string>
 
+#include "epdem/adhesive.hpp"
 #include "epdem/law.hpp"
 #include "host.hpp"
 
 namespace epdem::liggghts {
 
 /// Per-atom properties: plasticWork [J] sums up every growth of plastic work since the start, elasticEnergy [J] is what
-/// the contacts of this step can give back, bearingContacts counts those of them that bear a force: a contact whose
-/// bodies overlap by less than the depth of its dent bears none. With partial slip frictionWork [J] sums up what friction
-/// took, and frictionEnergy [J] is what its springs can give back. Half of a pair's energy belongs to each body, all of a
-/// wall's to the sphere. LIGGGHTS evaluates a pair that spans two ranks on both of them, so each books its own body
-/// only.
+/// the contacts of this step can give back (with adhesion less their surface energy), bearingContacts counts those of
+/// them that bear a force: a contact whose bodies overlap by less than the depth of its dent bears none. With adhesion
+/// adhesiveWork [J] sums up what the forces lost in their jumps at touch and parting. With partial slip frictionWork
+/// [J] sums up what friction took, and frictionEnergy [J] is what its springs can give back. Half of a pair's energy
+/// belongs to each body, all of a wall's to the sphere. LIGGGHTS evaluates a pair that spans two ranks on both of them,
+/// so each books its own body only.
 class Ledger {
  public:
   /// Indices of the bodies, and from which index on a body belongs to another rank.
@@ -24,25 +26,29 @@ class Ledger {
   };
 
   /// For the pair style, whose settings come first: creates the properties.
-  void create(LAMMPS_NS::LAMMPS* lmp, bool rubs) {
-    for (const char* name : {work_name, energy_name, bearing_name, friction_name, springs_name}) {
+  void create(LAMMPS_NS::LAMMPS* lmp, bool rubs, bool adheres) {
+    for (const char* name : {work_name, energy_name, bearing_name, friction_name, springs_name, adhesive_name}) {
       if (!rubs && (name == friction_name || name == springs_name)) continue;
+      if (!adheres && name == adhesive_name) continue;
       const char* words[] = {name, "all", "property/atom", name, "scalar", "yes", "no", "no", "0.0"};
       if (!find(lmp, name, name)) lmp->modify->add_fix_property_atom(9, const_cast<char**>(words), name);
     }
   }
 
   /// Before each run, for pairs and walls.
-  void connect(LAMMPS_NS::LAMMPS* lmp, const std::string& model, bool rubs) {
+  void connect(LAMMPS_NS::LAMMPS* lmp, const std::string& model, bool rubs, bool adheres) {
     work_ = find(lmp, work_name, model.c_str());
     energy_ = find(lmp, energy_name, model.c_str());
     friction_ = find(lmp, friction_name, model.c_str());
     springs_ = find(lmp, springs_name, model.c_str());
+    adhesive_ = find(lmp, adhesive_name, model.c_str());
     bearing_ = find(lmp, bearing_name, model.c_str());
-    if (work_ && energy_ && bearing_ && (friction_ || !rubs)) return;
+    if (work_ && energy_ && bearing_ && (friction_ || !rubs) && (adhesive_ || !adheres)) return;
     const std::string text = "model " + model +
                              ": computePlasticWork on of a wall needs it for the pair style as well" +
-                             (rubs ? ", with the same tangential model" : "");
+                             (rubs      ? ", with the same tangential model"
+                              : adheres ? ", whose model has adhesion, too"
+                                        : "");
     lmp->error->all(FLERR, text.c_str());
   }
 
@@ -56,10 +62,20 @@ class Ledger {
   template <bool wall, class Law>
   void book(const Law& law, double R_star, const State<Law>& before, const Step<Law>& now, double delta,
             const Bodies& bodies) {
-    const double stored = elastic_energy(law, R_star, now, delta), part = wall ? 1.0 : 0.5;
-    const double grown = plastic_growth(law, R_star, before, now, stored);
-    credit(bodies.i, part * grown, part * stored);
-    if (!wall && bodies.j < bodies.nlocal) credit(bodies.j, part * grown, part * stored);
+    double grown, stored, part = wall ? 1.0 : 0.5;
+    if constexpr (adheres<Law>) {
+      const auto lost = losses(law, R_star, before, now.after);
+      grown = lost.plastic;
+      stored = stored_energy(law, R_star, now.after, delta);
+      adhesive_->vector_atom[bodies.i] += (wall ? 1.0 : 0.5) * lost.adhesive;
+      if (!wall && bodies.j < bodies.nlocal) adhesive_->vector_atom[bodies.j] += 0.5 * lost.adhesive;
+    } else {
+      stored = elastic_energy(law, R_star, now, delta);
+      grown = plastic_growth(law, R_star, before, now, stored);
+    }
+    const bool bears = adheres<Law> ? now.radius > 0.0 : stored > 0.0;
+    credit(bodies.i, part * grown, part * stored, bears);
+    if (!wall && bodies.j < bodies.nlocal) credit(bodies.j, part * grown, part * stored, bears);
   }
 
   /// The same for friction: work that it took in this step, elastic energy of its springs [J].
@@ -70,9 +86,10 @@ class Ledger {
     if (!wall && bodies.j < bodies.nlocal) rub_one(bodies.j, part * lost, part * stored);
   }
 
-  /// One number per body [J], for a loop that books by itself as `book` does.
+  /// One number per body, for a loop that books by itself as `book` does.
   double* work() { return work_->vector_atom; }
   double* energy() { return energy_->vector_atom; }
+  double* bearing() { return bearing_->vector_atom; }
 
  private:
   static constexpr const char* work_name = "plasticWork";
@@ -80,16 +97,17 @@ class Ledger {
   static constexpr const char* bearing_name = "bearingContacts";
   static constexpr const char* friction_name = "frictionWork";
   static constexpr const char* springs_name = "frictionEnergy";
+  static constexpr const char* adhesive_name = "adhesiveWork";
 
   static LAMMPS_NS::FixPropertyAtom* find(LAMMPS_NS::LAMMPS* lmp, const char* name, const char* caller) {
     return static_cast<LAMMPS_NS::FixPropertyAtom*>(
         lmp->modify->find_fix_property(name, "property/atom", "scalar", 0, 0, caller, false));
   }
 
-  void credit(int body, double grown, double stored) {
+  void credit(int body, double grown, double stored, bool bears) {
     if (grown > 0.0) work_->vector_atom[body] += grown;  // few contacts grow
     energy_->vector_atom[body] += stored;
-    bearing_->vector_atom[body] += stored > 0.0;
+    bearing_->vector_atom[body] += bears;
   }
 
   void rub_one(int body, double lost, double stored) {
@@ -102,6 +120,7 @@ class Ledger {
   LAMMPS_NS::FixPropertyAtom* bearing_ = nullptr;
   LAMMPS_NS::FixPropertyAtom* friction_ = nullptr;
   LAMMPS_NS::FixPropertyAtom* springs_ = nullptr;
+  LAMMPS_NS::FixPropertyAtom* adhesive_ = nullptr;
 };
 
 }  // namespace epdem::liggghts

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "materials.hpp"
 
-#include <cmath>
-#include <cstdio>
-#include <string>
+#include <memory>
 
+#include "adhesion.hpp"
 #include "epdem/tangential.hpp"
 #include "epdem/viscous.hpp"
 #include "force.h"
@@ -15,89 +14,15 @@ namespace epdem::liggghts {
 
 namespace {
 
-constexpr double unlimited = std::numeric_limits<double>::infinity();
-
-std::string number(double x) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.9g", x);
-  return text;
-}
-
-/// A half-open range (low, high] or [low, high] of a property.
-struct Range {
-  double low, high;
-  bool low_included;
-
-  bool holds(double x) const { return std::isfinite(x) && (x > low || (low_included && x == low)) && x <= high; }
-  std::string text() const {
-    if (high == unlimited) return "must be finite and > " + number(low);
-    return std::string("must lie in ") + (low_included ? "[" : "(") + number(low) + ", " + number(high) + "]";
-  }
-};
-
-class Reader {
- public:
-  Reader(LAMMPS_NS::LAMMPS* lmp, PropertyRegistry& registry, const Declaration& law)
-      : lmp_(lmp), law_(law), n_(registry.max_type()) {}
-
-  int types() const { return n_; }
-
-  /// How a message names the unit of a property: as declared in SI, by the style of the deck's units in other ones.
-  std::string unit_of(const char* unit) const {
-    if (std::string(unit) == "1") return "";
-    const std::string style = lmp_->update->unit_style;
-    return " [" + (style == "si" ? unit : "units " + style) + "]";
-  }
-
-  [[noreturn]] void fail(const std::string& what) const {
-    lmp_->error->all(FLERR, (std::string("model ") + law_.model + ": " + what).c_str());
-    std::abort();  // not reached: error->all ends the run
-  }
-
-  FixPropertyGlobal* find(const char* name, const char* style) const {
-    const int rows = style[0] == 's' ? 0 : n_, columns = std::string(style) == "peratomtypepair" ? n_ : 0;
-    return static_cast<FixPropertyGlobal*>(
-        lmp_->modify->find_fix_property(name, "property/global", style, rows, columns, law_.model, false));
-  }
-
-  bool given(const char* name) const {
-    return find(name, "scalar") || find(name, "peratomtype") || find(name, "peratomtypepair");
-  }
-
-  double checked(const char* name, const char* unit, const std::string& where, double x, Range range) const {
-    if (!range.holds(x))
-      fail(std::string(name) + " = " + number(x) + unit_of(unit) + " of " + where + ", " + range.text());
-    return x;
-  }
-
-  std::string missing(const char* name, const char* unit) const {
-    return std::string("property ") + name + unit_of(unit) +
-           " is missing; give one value per atom type: " + "fix ID all property/global " + name +
-           " peratomtype VALUE ...";
-  }
-
-  std::vector<double> per_type(const char* name, const char* unit, Range range) const {
-    FixPropertyGlobal* fix = find(name, "peratomtype");
-    if (!fix) fail(missing(name, unit));
-    std::vector<double> values(n_ + 1, 0.0);
-    for (int i = 1; i <= n_; ++i)
-      values[i] = checked(name, unit, "type " + std::to_string(i), fix->compute_vector(i - 1), range);
-    return values;
-  }
-
- private:
-  LAMMPS_NS::LAMMPS* lmp_;
-  const Declaration& law_;
-  int n_;
-};
-
-std::string both(int i, int j) { return "types " + std::to_string(i) + " and " + std::to_string(j); }
-
 /// A law's parameter for every pair of types. A value per type is that of the softer body: the body with the smaller
 /// first parameter yields, and its other parameters go with it.
 class ParameterTable {
  public:
-  ParameterTable(const Reader& reader, const Parameter& p) : reader_(reader), p_(p) {
+  ParameterTable(const Reader& reader, const Parameter& p, const Adhesion* adhesion) : reader_(reader), p_(p) {
+    if (p.property == std::string(adhesion_name)) {
+      adhesion_ = adhesion;
+      return;
+    }
     const Range range{0.0, unlimited, false};
     if (!std::isnan(p.fallback)) {
       if (FixPropertyGlobal* scalar = reader.find(p.property, "scalar")) {
@@ -119,6 +44,7 @@ class ParameterTable {
   double of_type(int i) const { return values_[i]; }
 
   double at(int i, int j) const {
+    if (adhesion_) return adhesion_->at(i, j);
     if (!pairs_) return common_;
     const double x = pairs_->compute_array(i - 1, j - 1), y = pairs_->compute_array(j - 1, i - 1);
     if (x != y)
@@ -130,6 +56,7 @@ class ParameterTable {
  private:
   const Reader& reader_;
   const Parameter& p_;
+  const Adhesion* adhesion_ = nullptr;
   FixPropertyGlobal* pairs_ = nullptr;
   std::vector<double> values_;
   double common_ = 0.0;
@@ -247,9 +174,11 @@ Materials read_materials(LAMMPS_NS::LAMMPS* lmp, PropertyRegistry& registry, con
   registry.registerProperty("youngsModulus", &MODEL_PARAMS::createYoungsModulus, law.model);
   registry.getVectorProperty("youngsModulus", law.model);
 
+  if (!law.adheres) refuse_adhesion(reader, law);
+  const std::unique_ptr<Adhesion> adhesion(law.adheres ? new Adhesion(reader) : nullptr);
   const Question asked = question(reader, law);
   std::vector<ParameterTable> tables;
-  for (const Parameter& p : asked.parameters) tables.emplace_back(reader, p);
+  for (const Parameter& p : asked.parameters) tables.emplace_back(reader, p, adhesion.get());
   const std::vector<double> beta = damping_numbers(reader, dashpot), dashpots = viscous_numbers(reader, viscous);
 
   const double pascal = 1.0 / lmp->force->nktv2p;  // pressure unit of the deck in force/length^2

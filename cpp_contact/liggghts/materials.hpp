@@ -29,6 +29,7 @@ struct Declaration {
   int strength;            // index of the parameter that is the strength, -1: none
   double default_ratio;    // strength over yield stress
   bool strength_by_ratio;  // yieldStress and yieldPressureRatio may stand in for it
+  bool adheres;            // else a work of adhesion is refused
 };
 
 /// One pair of atom types.
@@ -44,6 +45,10 @@ struct Materials {
   int width = 0;
   std::vector<PairOfTypes> pairs;
 };
+
+/// Warns if cohesion sjkr pulls harder than the law resists: its energy density, which is a pressure over the contact
+/// area, exceeds the law's strength.
+void compare_cohesion(LAMMPS_NS::LAMMPS* lmp, const Declaration& law, const Materials& materials);
 
 /// Reads every type in use; a value that is missing or out of range ends the run with an error that names model,
 /// property, value and range. Collective: every rank must call it.

@@ -139,7 +139,7 @@ class Model : public ContactModelBase {
 
   void connectToProperties(PropertyRegistry& registry) {
     surface_.connectToProperties(registry);
-    normal_.connectToProperties(registry, dashpot());
+    normal_.connectToProperties(registry, dashpot(), ids_.cohesion != COHESION_OFF);
     cohesion_.connectToProperties(registry);
     tangential_.connectToProperties(registry);
     rolling_.connectToProperties(registry);
@@ -188,6 +188,15 @@ class Model : public ContactModelBase {
   }
 
   void surfacesClose(SurfacesCloseData& s, ForceData& i, ForceData& j) {
+    if constexpr (adheres<Law>) {
+      if (normal_.pulls(s)) {
+        auto& all = static_cast<SurfacesIntersectData&>(s);  // both loops of LIGGGHTS pass the whole
+        normal_.prepare(all);
+        surfacesIntersect(all, i, j);
+        s.has_force_update = true;
+        return;
+      }
+    }
     surface_.surfacesClose(s, i, j);
     normal_.surfacesClose(s);
     cohesion_.surfacesClose(s, i, j);

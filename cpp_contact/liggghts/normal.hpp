@@ -2,10 +2,13 @@
 // A law as LIGGGHTS sees it: reads the contact, calls step(), writes force and stiffness. No physics in here.
 #pragma once
 
+#include <cmath>
+#include <cstdio>
 #include <cstring>
 #include <string>
 #include <vector>
 
+#include "epdem/adhesive.hpp"
 #include "epdem/law.hpp"
 #include "epdem/tangential.hpp"
 #include "epdem/viscous.hpp"
@@ -23,11 +26,14 @@ using namespace LIGGGHTS::ContactModels;
 /// History: what a law that yields remembers (doubles), and for pairs the step of the last evaluation that was kept.
 /// LIGGGHTS does not report that a pair parted, so a contact whose last evaluation is older than one step is a new one,
 /// for the law and for all models that remember something beside it. Walls need no step: their end is reported.
+///
+/// A contact with adhesion stands across a gap as well: LIGGGHTS then calls surfacesClose, and the model takes it as a
+/// contact like any other (Model::surfacesClose).
 template <class Law, bool wall, bool others_remember>
 class Normal : protected LAMMPS_NS::Pointers {
-  static constexpr bool remembers = Law::yields;
-  static constexpr bool stamped = !wall && (remembers || others_remember);
   static constexpr int memory = epdem::memory<Law>;
+  static constexpr bool remembers = memory > 0;
+  static constexpr bool stamped = !wall && (remembers || others_remember);
 
  public:
   Normal(LAMMPS_NS::LAMMPS* lmp, LIGGGHTS::IContactHistorySetup* setup) : Pointers(lmp), model_(model_name<Law>()) {
@@ -45,6 +51,10 @@ class Normal : protected LAMMPS_NS::Pointers {
       pair_ = dynamic_cast<LAMMPS_NS::PairGran*>(setup);
       if (!pair_) fail("its history belongs to no pair style of LIGGGHTS");
       clock_ = update->ntimestep;
+    }
+    if constexpr (wall && adheres<Law>) {
+      wall_ = dynamic_cast<LAMMPS_NS::FixWallGran*>(setup);
+      if (!wall_) fail("its history belongs to no wall of LIGGGHTS");
     }
   }
 
@@ -64,23 +74,25 @@ class Normal : protected LAMMPS_NS::Pointers {
   void postSettings(bool rubs) {
     rubs_ = rubs;
     // limitForce and heating_tracking change nothing: the force is never negative, the law makes no viscous heat
+    if (adheres<Law> && limit_force_) refuse("limitForce", "it would take the attraction away");
     if (heating_) refuse("heating_normal_hertz", "it is the heat of a viscous normal force, and this law has none");
     if (elastic_potential_)
       refuse("computeElasticPotential", "LIGGGHTS integrates nothing for it (use computePlasticWork)");
     if (dissipated_energy_)
       refuse("computeDissipatedEnergy", "it would miss the plastic work (use computePlasticWork)");
     if (disable_when_bonded_) refuse("disableNormalWhenBonded", "bonds are not part of the public LIGGGHTS");
-    if (plastic_work_ && !wall) ledger_.create(lmp, rubs_);
+    if (plastic_work_ && !wall) ledger_.create(lmp, rubs_, adheres<Law>);
   }
 
-  void connectToProperties(PropertyRegistry& registry, Dashpot dashpot) {
+  void connectToProperties(PropertyRegistry& registry, Dashpot dashpot, bool cohesive) {
     if (!atom->sphere_flag || atom->superquadric_flag || atom->shapetype_flag)
       fail("it is for spheres; give other particles a model of LIGGGHTS with surface superquadric");
     // Rebuilt at every init: LIGGGHTS frees all properties there, and the user may have changed them.
     if (!tangential_damping_ && dashpot == Dashpot::optional) dashpot = Dashpot::off;
-    const Declaration law{model_.c_str(), Law::parameters,    Law::n_parameters,     &Law::valid,
-                          Law::strength,  Law::default_ratio, Law::strength_by_ratio};
+    const Declaration law{model_.c_str(), Law::parameters,    Law::n_parameters,      &Law::valid,
+                          Law::strength,  Law::default_ratio, Law::strength_by_ratio, adheres<Law>};
     const Materials m = read_materials(lmp, registry, law, dashpot, viscous_);
+    if (cohesive) compare_cohesion(lmp, law, m);
     width_ = m.width;
     table_.assign(m.pairs.size(), Entry{});
     for (int i = 1; i < width_; ++i)
@@ -89,8 +101,9 @@ class Normal : protected LAMMPS_NS::Pointers {
         table_[i * width_ + j] = {Law(effective_modulus(p.i, p.j), p.parameters.data()),
                                   effective_shear_modulus(p.i, p.j), p.damping_number, p.viscous_number};
       }
-    if (plastic_work_) ledger_.connect(lmp, model_, rubs_);
+    if (plastic_work_) ledger_.connect(lmp, model_, rubs_, adheres<Law>);
     grip_.ledger = ledger();
+    if constexpr (adheres<Law>) reach();
   }
 
   double stressStrainExponent() const { return 1.5; }
@@ -132,8 +145,11 @@ class Normal : protected LAMMPS_NS::Pointers {
       grip_.fresh = now_ - history[stamp_] > 1.0;
       if (grip_.fresh) before = parted(history, keep);
     }
+    if constexpr (adheres<Law> && others_remember)
+      if (keep && !(before.root > 0.0)) forget_others(history);
 
-    const Step<Law> now = step(t.law, R_star, before, delta);
+    // with adhesion: a step that is not kept repeats the last one that was
+    const Step<Law> now = step(t.law, R_star, before, delta, keep ? -s.vn * update->dt : 0.0);
 
     if (keep) {
       if (plastic_work_) ledger_.template book<wall>(t.law, R_star, before, now, delta, {s.i, s.j, atom->nlocal});
@@ -142,6 +158,8 @@ class Normal : protected LAMMPS_NS::Pointers {
     }
 
     double force = now.force;
+    if constexpr (adheres<Law>)
+      if (!keep) force += before.jump;
     if (t.viscous_number > 0.0) force = damped_force(t.law, R_star, before, now, t.viscous_number, s.meff, -s.vn);
 
     grip_.stiffness = 8.0 * t.G_star;
@@ -149,6 +167,10 @@ class Normal : protected LAMMPS_NS::Pointers {
 
     s.Fn = force;                                  // friction's limit is mu times it, after what cohesion made of it
     s.kn = 4.0 / 3.0 * t.law.E_star * now.radius;  // LIGGGHTS's convention for rolling friction: F/alpha of Hertz
+    if constexpr (adheres<Law>) {
+      s.Fn = sliding_load(t.law, R_star, now, force);
+      if (!(delta > 0.0)) s.kn = 0.0;  // rolling friction by the overlap has none here
+    }
     s.kt = tangential_stiffness(t.G_star, now.radius);
     s.gamman = 0.0;
     s.gammat = t.damping_number > 0.0 ? tangential_damping(t.damping_number, s.kt, s.meff) : 0.0;
@@ -160,12 +182,80 @@ class Normal : protected LAMMPS_NS::Pointers {
     }
   }
 
+  /// Whether bodies that do not overlap are in contact, or parted in the very step that is evaluated once more.
+  bool pulls(const SurfacesCloseData& s) const {
+    if constexpr (!adheres<Law>) return false;
+    if (!s.contact_history) return false;
+    if constexpr (stamped)
+      if (now_ - s.contact_history[stamp_] > 1.0) return false;
+    State<Law> before;
+    std::memcpy(static_cast<void*>(&before), s.contact_history + offset_, sizeof before);
+    return before.root > 0.0 || (before.jump != 0.0 && !(s.computeflag && s.shearupdate));
+  }
+
+  /// What LIGGGHTS prepares only for pairs that overlap, by its own operations.
+  void prepare(SurfacesIntersectData& s) const {
+    if constexpr (!wall) {
+      s.r = LAMMPS_NS::vectorMag3D(s.delta);
+      s.rinv = 1.0 / s.r;
+      for (int k = 0; k < 3; ++k) s.en[k] = s.delta[k] * s.rinv;
+      s.omega_i = atom->omega[s.i];
+      s.omega_j = atom->omega[s.j];
+      s.mi = atom->rmass ? atom->rmass[s.i] : atom->mass[s.itype];
+      s.mj = atom->rmass ? atom->rmass[s.j] : atom->mass[s.jtype];
+      if (pair_->fr_pair()) {
+        if (pair_->mr_pair()[s.i] > 0.0) s.mi = pair_->mr_pair()[s.i];
+        if (pair_->mr_pair()[s.j] > 0.0) s.mj = pair_->mr_pair()[s.j];
+      }
+      s.meff = s.mi * s.mj / (s.mi + s.mj);
+      if (atom->mask[s.i] & pair_->freeze_group_bit()) s.meff = s.mj;
+      if (atom->mask[s.j] & pair_->freeze_group_bit()) s.meff = s.mi;
+    }
+  }
+
   void surfacesClose(SurfacesCloseData& s) {
     if (s.contact_flags) *s.contact_flags &= ~CONTACT_NORMAL_MODEL;
     if (remembers && s.contact_history) std::fill_n(s.contact_history + offset_, memory, 0.0);
   }
 
  private:
+  /// LIGGGHTS looks at bodies that do not overlap up to a share of the sum of their radii (of a wall: of the radius).
+  /// The largest gap, 1.6088 (Gamma^2 R*/E*^2)^(1/3), takes the largest share of the smallest sphere at a wall; half a
+  /// hundredth more is for the step after the last one in contact.
+  void reach() {
+    const double smallest = smallest_radius(lmp);
+    if (!std::isfinite(smallest)) return;  // no spheres, and nothing that will add any
+    double gap = 0.0;
+    for (int i = 1; i < width_; ++i)
+      for (int j = 1; j < width_; ++j) gap = std::max(gap, adhesive::largest_gap(entry(i, j).law.c, smallest));
+    const double factor = 1.005 + gap / smallest;
+    if (!(factor > neighbor->contactDistanceFactor)) return;
+    neighbor->register_contact_dist_factor(factor);
+    if (comm->me != 0) return;
+    char line[160];
+    std::snprintf(line, sizeof line,
+                  "epdem: %s pulls across gaps up to %.4g (radius %.4g), contact distance factor %.9g\n",
+                  model_.c_str(), gap, smallest, factor);
+    if (screen) std::fputs(line, screen);
+    if (logfile) std::fputs(line, logfile);
+  }
+
+  /// The normal force that limits friction: with adhesion F + 2 P_po, P_po = 3/2 pi Gamma R, while the bodies are in
+  /// contact (Thornton 1991, J. Phys. D 24, 1942).
+  static double sliding_load(const Law& law, double R_star, const Step<Law>& now, double force) {
+    if constexpr (adheres<Law>) {
+      if (!(now.radius > 0.0)) return 0.0;
+      return std::max(0.0, force + 3.0 * law.pull * opening_radius(law, R_star, now.after));
+    }
+    return force;
+  }
+
+  /// Bodies that touch without being in contact (inside a dent) begin anew in all other models.
+  void forget_others(double* history) const {
+    const int first = offset_ + memory + stamped, last = wall ? wall_->dnum() : pair_->dnum_pair();
+    std::fill_n(history + first, std::max(0, last - first), 0.0);
+  }
+
   static Pressed<double> pressed(const Step<Law>& now) {
     if constexpr (Law::flattens) return {now.force, now.radius, now.after.point.radius, now.after.point.flatness};
     return {now.force, now.radius, now.radius, 0.0};
@@ -200,6 +290,7 @@ class Normal : protected LAMMPS_NS::Pointers {
   std::vector<Entry> table_;
   int width_ = 0, offset_ = -1, stamp_ = -1;
   LAMMPS_NS::PairGran* pair_ = nullptr;
+  LAMMPS_NS::FixWallGran* wall_ = nullptr;
   bigint clock_ = 0;  // step of the last pass
   double now_ = 0.0;
   Ledger ledger_;

@@ -105,6 +105,9 @@ Walls::IGranularWall* new_wall(LAMMPS* lmp, FixWallGran* parent, int64_t hash) {
   return new loop::Wall<Part>(lmp, parent, hash);
 }
 
+/// Laws with adhesion bring their own attraction, and multicontact is not measured with them.
+bool with_adhesion(const Ids& ids) { return ids.normal == Jkr<double>::id || ids.normal == ThorntonNing<double>::id; }
+
 constexpr const char* combinations =
     "epdem's models combine with tangential off, no_history, history, ep/partial_slip, ep/partial_slip_2; cohesion "
     "off, "
@@ -120,7 +123,12 @@ template <class Interface, class Parent>
 Interface* refuse(LAMMPS* lmp, Parent*, int64_t hash) {
   const Ids ids = Ids::of(hash);
   const std::string text =
-      ids.normal != unknown_law              ? combinations
+      with_adhesion(ids) && ids.cohesion != COHESION_OFF
+          ? "a law with adhesion has its attraction already: leave out the cohesion model beside it"
+      : with_adhesion(ids) ? "laws with adhesion combine with tangential off, no_history, history; rolling_friction "
+                             "off, cdt, epsd, epsd2, "
+                             "epsd3; surface default; nothing else"
+      : ids.normal != unknown_law            ? combinations
       : ids.tangential == unknown_tangential ? "unknown tangential model: those of epdem are" + tangential_names()
       : ids.tangential == foreign_normal     ? "tangential ep/partial_slip goes with the normal models of epdem only: "
                                                "LIGGGHTS's own do not pass the contact "
@@ -180,12 +188,16 @@ void add_general(const Ids& ids) {
 
 template <class Law>
 void add_combination(const Ids& ids) {
-  if (!available(ids)) return add_refusal(ids);
+  if (!available(ids) || (adheres<Law> && (ids.cohesion != COHESION_OFF || ids.surface != SURFACE_DEFAULT ||
+                                           ids.tangential > TANGENTIAL_HISTORY)))
+    return add_refusal(ids);
   if (add_fast<Law, TANGENTIAL_OFF, ROLLING_OFF>(ids)) return;
   if (add_fast<Law, TANGENTIAL_NO_HISTORY, ROLLING_OFF>(ids)) return;
   if (add_fast<Law, TANGENTIAL_HISTORY, ROLLING_OFF>(ids)) return;
-  if (add_fast<Law, TANGENTIAL_PARTIAL_SLIP, ROLLING_OFF>(ids)) return;
-  if (add_fast<Law, TANGENTIAL_PARTIAL_SLIP_2, ROLLING_OFF>(ids)) return;
+  if constexpr (!adheres<Law>) {
+    if (add_fast<Law, TANGENTIAL_PARTIAL_SLIP, ROLLING_OFF>(ids)) return;
+    if (add_fast<Law, TANGENTIAL_PARTIAL_SLIP_2, ROLLING_OFF>(ids)) return;
+  }
   if (add_fast<Law, TANGENTIAL_HISTORY, ROLLING_CDT>(ids)) return;
   if (add_fast<Law, TANGENTIAL_HISTORY, ROLLING_EPSD2>(ids)) return;
   add_general<Law>(ids);

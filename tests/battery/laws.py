@@ -12,7 +12,7 @@ from epdem.laws import library as claw
 from epdem.laws.native import Law
 from epdem.theory import backbones
 
-NAMES = tuple(claw.laws())
+NAMES = tuple(name for name, info in claw.laws().items() if not info.adheres)
 YIELDING = tuple(n for n in NAMES if claw.laws()[n].parameters)
 
 

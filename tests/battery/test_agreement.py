@@ -22,6 +22,7 @@ def theory(c):
 
 def test_both_know_the_same_laws():
     assert set(backbones.LAWS) == set(NAMES)
+    assert {*backbones.LAWS, *backbones.ADHESIVE} == set(claw.laws())
 
 
 @pytest.mark.parametrize("name", NAMES)
@@ -37,8 +38,19 @@ def test_both_declare_the_same_about_a_law(name):
     assert info.memory == (4 if flattens else 1 if cls.strength else 0)
 
 
+@pytest.mark.parametrize("name", backbones.ADHESIVE)
+def test_both_declare_the_same_about_a_law_with_adhesion(name):
+    info, cls = claw.laws()[name], backbones.ADHESIVE[name]
+    declared = [(p.name, p.unit, p.may_vanish) for p in cls.parameters]
+    assert declared == [(p.name, p.unit, p.may_vanish) for p in info.parameters]
+    assert info.adheres and declared[0] == ("work_of_adhesion", "J/m^2", True)
+    assert cls.strength == (info.strength.name if info.strength else None)
+    assert info.default_ratio == cls.default_ratio if cls.strength else np.isnan(info.default_ratio)
+    assert info.memory == {"jkr": 2, "thornton_ning": 5}[name]
+
+
 def test_ids_are_those_that_restart_files_keep():
-    stored = {"hertz": 40, "thornton": 41, "johnson": 42, "cavity": 43}
+    stored = {"hertz": 40, "thornton": 41, "johnson": 42, "cavity": 43, "jkr": 44, "thornton_ning": 45}
     ids = {name: info.id for name, info in claw.laws().items()}
     assert stored.items() <= ids.items() and len(set(ids.values())) == len(ids)
 

@@ -2,6 +2,7 @@
 """What any law must do in the embedded engine, where an impact chooses its path of overlaps; with a dashpot or not."""
 
 import math
+from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -9,6 +10,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from laws import YIELDING, contacts
 
+from epdem.errors import EngineError
 from epdem.laws import library as claw
 
 decades = st.floats(-1.0, 4.0)  # of v/v_y
@@ -74,3 +76,10 @@ def test_a_dent_that_is_hit_again_as_hard_answers_elastically(c, decade):
     time = 2.87 * (1 / (c.R_star * c.E_star**2 * speed)) ** 0.2
     _, speeds = c.law.bounces(4, R_star=c.R_star, m_star=1.0, speed=speed, time_step=time / 2000, steps=20_000)
     assert speeds[1:] == pytest.approx(speeds[0], rel=2e-3)
+
+
+def test_a_library_of_another_version_is_told_before_what_it_lacks(monkeypatch):
+    older = SimpleNamespace(epdem_abi=lambda: claw.ABI - 1)
+    monkeypatch.setattr(claw.ctypes, "CDLL", lambda path: older)
+    with pytest.raises(EngineError, match=f"ABI {claw.ABI - 1}, this package needs {claw.ABI}; run 'make setup'"):
+        claw.library.__wrapped__()

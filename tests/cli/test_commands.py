@@ -4,6 +4,7 @@
 import json
 import os
 import shutil
+import signal
 import subprocess
 import sys
 from pathlib import Path
@@ -14,7 +15,9 @@ import pytest
 from calls import CASES, COMMANDS, call, make_sweep
 
 from epdem.base import paths, terminal
+from epdem.cli import main
 from epdem.engines import ENGINES
+from epdem.errors import Stopped
 from epdem.scenes import report
 from epdem.studies import crosscheck
 
@@ -197,3 +200,12 @@ def test_a_file_whose_name_begins_with_a_dash_is_told_how_to_be_written(folder, 
     (folder / "-x.toml").write_text(ONE_SPEED)
     assert "write the file as ./-x.toml" in call(["predict", "-x.toml"], capsys, monkeypatch).err
     assert call(["predict", "./-x.toml"], capsys, monkeypatch).code == 0
+
+
+def test_a_second_ctrl_c_does_not_interrupt_the_end_of_a_run(monkeypatch):
+    """The engine is stopped and the list of files written before the command ends."""
+    handlers = {}
+    monkeypatch.setattr("signal.signal", handlers.__setitem__)
+    with pytest.raises(Stopped):
+        main._stop(signal.SIGINT, None)
+    assert handlers == dict.fromkeys((signal.SIGINT, signal.SIGTERM, signal.SIGHUP), signal.SIG_IGN)

@@ -11,6 +11,7 @@ import numpy as np
 
 LAWS = ("hertz", "thornton", "johnson", "cavity")
 YIELDING = ("thornton", "johnson", "cavity")
+ADHESIVE = ("jkr", "thornton_ning")
 
 # Three types of body: aluminium, steel, polymer (SI).
 E = np.array([70e9, 208e9, 5e9])
@@ -25,9 +26,19 @@ fix p2 all property/global yieldStress peratomtype {" ".join(map(repr, Y.tolist(
 """
 
 
+# Work of adhesion [J/m^2]: of millimetre spheres at metres per second one that is seen.
+GAMMA = np.array([[600.0, 400.0, 200.0], [400.0, 800.0, 300.0], [200.0, 300.0, 100.0]])
+
+
 def per_pair(name, value, n=3):
     """One value for every pair of n types."""
     return f"fix {name} all property/global {name} peratomtypepair {n} {' '.join([repr(value)] * n * n)}\n"
+
+
+def adhesion(law):
+    """The line of workOfAdhesion; nothing for a law without adhesion."""
+    values = " ".join(map(repr, GAMMA.ravel().tolist()))
+    return f"fix gamma all property/global workOfAdhesion peratomtypepair 3 {values}\n" if law in ADHESIVE else ""
 
 
 # What LIGGGHTS's own plastic models need beside the elastic constants, at strengths like those above.
@@ -177,7 +188,7 @@ processors {" ".join(map(str, ranks))}
 
 def materials(model, *, friction=0.3):
     """Properties of the three types for any model."""
-    own = OWN if model.startswith("ep/") else FOREIGN[model]
+    own = OWN + adhesion(model.removeprefix("ep/")) if model.startswith("ep/") else FOREIGN[model]
     return f"""fix m1 all property/global youngsModulus peratomtype {" ".join(map(repr, E.tolist()))}
 fix m2 all property/global poissonsRatio peratomtype {" ".join(map(repr, NU.tolist()))}
 {per_pair("coefficientFriction", friction)}{own}"""

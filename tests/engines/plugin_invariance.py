@@ -126,6 +126,7 @@ class Suite:
             soft = {"m1": "7e7 2e8 5e6", "p1": "3e6 3e6 3e5", "p2": "1e6 1e6 1e5"}
             for fix, values in soft.items():
                 properties = re.sub(rf"(fix {fix} .* peratomtype) .*", rf"\1 {values}", properties)
+            properties = re.sub(r"(workOfAdhesion peratomtypepair 3) .*", r"\1" + 9 * " 0.5", properties)
         text = (
             head()
             + f"read_data box.data\nneighbor {skin!r} bin\nneigh_modify binsize 0.02\n{{neigh}}"

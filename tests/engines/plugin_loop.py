@@ -65,7 +65,7 @@ def deck(scene, *, steps=60, every=1, before="", end="", restart=None):
         f"model ep/{scene.law} tangential {scene.tangential} cohesion {scene.cohesion} "
         f"rolling_friction {scene.rolling} {' '.join(scene.settings)}"
     )
-    work = " f_plasticWork f_elasticEnergy" if "computePlasticWork on" in scene.settings else ""
+    work = " f_plasticWork f_elasticEnergy f_bearingContacts" if "computePlasticWork on" in scene.settings else ""
     work += " f_frictionWork f_frictionEnergy" if work and "partial_slip" in scene.tangential else ""
     return (
         "atom_style granular\natom_modify map array sort 0 0\nboundary p p p\nnewton off\n"

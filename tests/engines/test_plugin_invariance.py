@@ -2,10 +2,10 @@
 """The same impacts told to LIGGGHTS in other ways: epdem's models give the same bits, LIGGGHTS's own do not."""
 
 import pytest
-from plugin_decks import LAWS
+from plugin_decks import ADHESIVE, LAWS
 from plugin_invariance import Suite
 
-OURS = (*LAWS, "thornton ep/partial_slip_2", "cavity ep/partial_slip")
+OURS = (*LAWS, *ADHESIVE, "thornton ep/partial_slip_2", "cavity ep/partial_slip")
 pytestmark = pytest.mark.liggghts
 
 ROUND_OFF = 1e-12

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from epdem.laws import library as claw
-from epdem.theory.backbones import LAWS
+from epdem.theory.backbones import ADHESIVE, LAWS
 
 ROOT = Path(__file__).parents[2]
 PAGE = (ROOT / "docs/laws.md").read_text()
@@ -27,7 +27,7 @@ def test_the_page_states_the_properties_and_defaults_of_every_law(name):
         if math.isfinite(p.default):
             assert f"`{p.property}` ({p.default:g})" in row
         elif p.name == "yield_pressure":
-            assert f"{LAWS[name].default_ratio:.1f} Y" in row
+            assert f"{(LAWS | ADHESIVE)[name].default_ratio:.1f} Y" in row
 
 
 def test_the_commands_and_files_of_the_page_exist():

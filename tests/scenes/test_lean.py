@@ -51,7 +51,10 @@ SMALL = {
 def small(data: dict) -> dict:
     """The TOML data of a scene with the numbers of SMALL, and a coarse time step: what the lines do, not how well."""
     few = {"output": data.get("output", {}) | {"rows": 20, "particles": 5}, "numerics": {"error": 0.1}}
-    return data | {"scene": data["scene"] | SMALL[data["scene"]["kind"]]} | few
+    scene = data["scene"] | SMALL[data["scene"]["kind"]]
+    if "fall" in scene:  # finer spheres, which the plate of a wide box would not meet
+        scene |= {"fall": "1 ms", "box": ["0.12 mm", "0.12 mm", "0.8 mm"], "count": 40, "height": "0.3 mm"}
+    return data | {"scene": scene} | few
 
 
 def decks_of(path: Path, folder: Path) -> tuple[str, list[str]]:
@@ -111,6 +114,7 @@ def test_every_line_of_a_deck_with_any_law_has_a_reason(law):
     """Walls of another material and parameters of the law that are not its defaults."""
     data = read_toml(CASES[0].parent / "steel_wall.toml")
     parameters = {p.name: 1.1 * p.default for p in laws()[law].parameters if math.isfinite(p.default)}
+    parameters |= {"work_of_adhesion": "0.5 J/m^2"} if laws()[law].adheres else {}
     x = experiment(impacts.parse(data | {"law": {"name": law} | parameters}))
     found = explain.explain(explain.IMPACT, Liggghts().deck(plan(x, predict(x))))
     assert sum("property/global" in line for _, line, _ in found) == 2 + len(laws()[law].parameters)

@@ -84,7 +84,9 @@ def test_50_points_one_fails_one_job_is_cancelled_and_the_controller_restarts(ca
 def scene(tmp_path: Path, duration: str, count: int) -> folder.Sweep:
     """A bed that writes restart files."""
     path = tmp_path / "bed.toml"
-    path.write_text(BED.replace("restarts = 0", "restarts = 20").replace("0.3 s", duration))
+    path.write_text(
+        BED.replace("restarts = 0", "restarts = 50").replace("rows = 20", "rows = 50").replace("0.3 s", duration)
+    )
     return run.plan(path, {"scene.count": str(count)})
 
 

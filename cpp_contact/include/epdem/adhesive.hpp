@@ -11,14 +11,19 @@
 namespace epdem {
 namespace adhesive {
 
-/// Force F [N], contact radius a [m] (0 while apart), and what the contact remembers if this step counts.
-template <class Law>
-struct Step {
-  typename Law::number force, radius;
-  typename Law::State after;
+/// Energies [J] that a step took for good: by yield, and in the jumps of the force at touch and parting.
+template <class T>
+struct Losses {
+  T plastic, adhesive;
 };
 
 inline constexpr double fold_share = 0.62996052494743658;  // y_f in (c R)^(1/3): 4^(-1/3)
+
+/// Work of adhesion [J/m^2] of two surfaces of these energies [J/m^2].
+inline double work_of_adhesion(double gamma_i, double gamma_j) noexcept { return 2.0 * sqrt(gamma_i * gamma_j); }
+
+/// What an attached contact remembers as its root where Gamma = 0.
+inline constexpr double no_root = std::numeric_limits<double>::min();
 
 /// (c R)^(1/3), the root of a contact; `known` is it already unless R has changed, or 0.
 template <class T>
@@ -55,6 +60,16 @@ template <class T>
 inline T energy(T E_star, T c, T R, T y) noexcept {
   const T a = y * y, d = c * y, shape = a * a / R;
   return E_star * a * ((8.0 / 15.0 * shape - 4.0 / 3.0 * d) * shape + 0.5 * d * d);
+}
+
+/// The energy at touch and at the fold of an elastic curve of radius R.
+template <class T>
+inline T energy_at_touch(T E_star, T c, T R) noexcept {
+  return energy(E_star, c, R, refreshed(T{}, c * R));
+}
+template <class T>
+inline T energy_at_fold(T E_star, T c, T R) noexcept {
+  return energy(E_star, c, R, fold_share * refreshed(T{}, c * R));
 }
 
 /// Largest gap [m] across which bodies still pull: that of the elastic fold, also for a contact with a dent.

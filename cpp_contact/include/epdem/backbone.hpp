@@ -26,7 +26,8 @@ struct Parameter {
   const char* name;      // in case files and in the C ABI
   const char* property;  // LIGGGHTS property/global
   const char* unit;
-  double fallback;  // NaN: the host must give it
+  double fallback;          // NaN: the host must give it
+  bool may_vanish = false;  // 0 is a value, not a mistake
 };
 
 inline constexpr double not_given = std::numeric_limits<double>::quiet_NaN();
@@ -51,9 +52,22 @@ using Number = typename Law::number;
 template <class Law>
 using State = typename Law::State;
 
+/// Whether bodies attract each other: the law's step then takes the closing speed as well, and a contact may stand
+/// across a gap. True for the laws that say so.
+template <class Law>
+inline constexpr bool adheres = false;
+
 /// How many values a host must keep from step to step.
 template <class Law>
-inline constexpr int memory = Law::yields ? static_cast<int>(std::size(State<Law>::slots)) : 0;
+inline constexpr int memory = Law::yields || adheres<Law> ? static_cast<int>(std::size(State<Law>::slots)) : 0;
+
+/// What a step of a law returns.
+template <class Law>
+struct Step {
+  Number<Law> force;   // F [N], negative only with adhesion
+  Number<Law> radius;  // contact radius a [m]; the stiffnesses are k_n = 2 E* a and k_t = 8 G* a
+  State<Law> after;    // what the contact remembers if this step counts
+};
 
 /// A strength [Pa] that is given by the softer body's yield stress [Pa].
 inline double strength_from(double yield_stress, double ratio) noexcept { return yield_stress * ratio; }

@@ -23,7 +23,7 @@ struct ImpactInput {
 
 template <class T>
 struct ImpactOutput {
-  T rebound_speed;           // [m/s]
+  T rebound_speed;           // [m/s]; 0 if bodies that adhere are still in contact at the end
   T force_max, overlap_max;  // largest sampled values [N], [m]
   T last_overlap;            // overlap at the last loaded sample [m]
   std::int64_t first, last;  // first and last step with a force
@@ -55,9 +55,10 @@ inline ImpactOutput<Number<Law>> impact(const Law& law, const ImpactInput<Number
   ImpactOutput<T> out{in.speed, 0.0, 0.0, 0.0, -1, -1, 0};
   std::int64_t n = 0;
   for (;; ++n) {
-    const Step<Law> now = step(law, in.R_star, state, alpha);
-    // the dashpot sees the speed of the middle of the last step, as in an engine that moves before it finds contacts
-    const bool damped = in.viscous > 0.0 && alpha > 0.0;
+    // dashpot and adhesion see the speed of the middle of the last step, as in an engine that moves before it finds
+    // contacts
+    const Step<Law> now = step(law, in.R_star, state, alpha, T(n > 0 ? v * in.time_step : 0.0));
+    const bool damped = in.viscous > 0.0 && (adheres<Law> ? now.radius > 0.0 : alpha > 0.0);
     const T F = damped ? damped_force(law, in.R_star, state, now, in.viscous, in.m_star, v) : now.force;
     if (n > 0) v -= half * F;
     force = F;
@@ -66,7 +67,7 @@ inline ImpactOutput<Number<Law>> impact(const Law& law, const ImpactInput<Number
     if (path.overlap) path.overlap[n] = alpha;
     if (path.force) path.force[n] = force;
     if (path.velocity) path.velocity[n] = v;
-    if (force > 0.0) {
+    if (adheres<Law> ? now.radius > 0.0 : force > 0.0) {
       if (out.first < 0) out.first = n;
       out.last = n;
       out.last_overlap = alpha;
@@ -79,7 +80,7 @@ inline ImpactOutput<Number<Law>> impact(const Law& law, const ImpactInput<Number
     v -= half * force;
     alpha += in.time_step * v;
   }
-  out.rebound_speed = -v;
+  out.rebound_speed = adheres<Law> && out.last == n ? T{} : -v;
   out.steps = n;
   return out;
 }
@@ -90,6 +91,17 @@ inline ImpactOutput<Number<Law>> impact(const Law& law, const ImpactInput<Number
                                         const Path<Number<Law>>& path) noexcept {
   State<Law> state{};
   return impact(law, in, path, state);
+}
+
+/// The overlap [m] at which a contact with this memory takes force again.
+template <class Law>
+inline Number<Law> reforming_overlap(const Law& law, Number<Law> R_star, const State<Law>& state) noexcept {
+  if constexpr (adheres<Law>) {
+    return reforming_overlap(law, state);
+  } else {
+    if (!(state.delta_max > law.elastic_overlap(R_star))) return 0.0;
+    return state.delta_max - recovered_overlap(law.E_star, law.load(R_star, state.delta_max));
+  }
 }
 
 /// `count` impacts of one contact that keeps its memory, each at the rebound speed of the one before: as between two
@@ -105,9 +117,7 @@ inline ImpactOutput<Number<Law>> bounces(const Law& law, const ImpactInput<Numbe
   std::int64_t steps = 0;
   T phase = 0.5;
   for (std::int64_t k = 0; k < count; ++k) {
-    const bool dented = state.delta_max > law.elastic_overlap(in.R_star);
-    const T dent = dented ? state.delta_max - recovered_overlap(law.E_star, law.load(in.R_star, state.delta_max)) : 0.0;
-    in.gap = phase * in.speed * in.time_step - dent;
+    in.gap = phase * in.speed * in.time_step - reforming_overlap(law, in.R_star, state);
     out = impact(law, in, {}, state);
     steps += out.steps;
     if (speeds) speeds[k] = out.rebound_speed;

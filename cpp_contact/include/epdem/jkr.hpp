@@ -13,29 +13,49 @@ struct Jkr {
   using number = T;
   static constexpr const char* name = "jkr";
   static constexpr int id = 44;  // of a LIGGGHTS model: restart files keep it, it never changes
-  static constexpr Parameter parameters[] = {
-      {"work_of_adhesion", "workOfAdhesion", "J/m^2", std::numeric_limits<double>::quiet_NaN()}};
+  static constexpr bool yields = false;
+  static constexpr bool flattens = false;
+  static constexpr Parameter parameters[] = {{"work_of_adhesion", "workOfAdhesion", "J/m^2", not_given, true}};
   static constexpr int n_parameters = 1;
+  static constexpr int strength = -1;
+  static constexpr double default_ratio = not_given;
+  static constexpr bool strength_by_ratio = false;
 
-  /// What a contact remembers: (c R*)^(1/3) while the bodies are attached [m^(1/2)], else 0.
+  /// What a contact remembers.
   struct State {
-    T root{};
+    static constexpr const char* slots[] = {"root", "jump"};
+    T root{};  // (c R*)^(1/3) while the bodies are attached [m^(1/2)], else 0
+    T jump{};  // what a crossing of touch or fold in the last step added to the force [N]
   };
 
-  T E_star;
-  T c;     // sqrt(2 pi Gamma/E*): d = c sqrt(a)
-  T pull;  // pi Gamma
+  T E_star{};
+  T c{};     // sqrt(2 pi Gamma/E*): d = c sqrt(a)
+  T pull{};  // pi Gamma
 
+  /// Whether positive, finite parameters also make sense together.
+  static bool valid(const T*) noexcept { return true; }
+
+  Jkr() = default;
   Jkr(T E_star_, const T* parameter) noexcept : E_star(E_star_), pull(pi * parameter[0]) {
     c = sqrt(2.0 * pull / E_star);
   }
+
+  /// Work from touch to `delta` [J] while the contact grows.
+  T work(T R_star, T delta) const noexcept {
+    const T root = adhesive::refreshed(T{}, c * R_star),
+            y = adhesive::curve(adhesive::fold_share * root, R_star * delta);
+    return adhesive::energy(E_star, c, R_star, y) - adhesive::energy(E_star, c, R_star, root);
+  }
 };
+
+template <class T>
+inline constexpr bool adheres<Jkr<T>> = true;
 
 /// Force and contact radius at overlap `delta` [m] (negative while apart) of a contact that remembers `before`;
 /// `closing` is the closing speed at the half step times the time step [m]. Never NaN for finite input.
 template <class T>
-inline adhesive::Step<Jkr<T>> step(const Jkr<T>& law, T R_star, const typename Jkr<T>::State& before, T delta,
-                                   T closing) noexcept {
+inline Step<Jkr<T>> step(const Jkr<T>& law, T R_star, const typename Jkr<T>::State& before, T delta,
+                         T closing) noexcept {
   using namespace adhesive;
   const auto stood = before.root > 0.0;
   const auto forms = (before.root <= 0.0) & (delta > 0.0);
@@ -43,10 +63,34 @@ inline adhesive::Step<Jkr<T>> step(const Jkr<T>& law, T R_star, const typename J
   const T y_f = fold_share * root, fold = -3.0 * y_f * y_f * y_f * y_f, X = R_star * delta;
   const auto ends = stood & (X < fold), stands = (stood & (X >= fold)) | forms;
   const T y = curve(y_f, X);
-  T F = select(stands, force(law.E_star, law.c, delta, y), T{});
-  if (any(forms)) F += select(forms, on_touch(-4.0 / 3.0 * law.pull * R_star, delta, closing), T{});
-  if (any(ends)) F = select(ends, on_parting(law.E_star, law.pull, R_star, y_f, (fold - X) / R_star, closing), F);
-  return {F, select(stands, y * y, T{}), {select(stands, root, T{})}};
+  T jump{};
+  if (any(forms)) jump = select(forms, on_touch(-4.0 / 3.0 * law.pull * R_star, delta, closing), T{});
+  if (any(ends)) jump = select(ends, on_parting(law.E_star, law.pull, R_star, y_f, (fold - X) / R_star, closing), jump);
+  const T F = select(stands, force(law.E_star, law.c, delta, y), T{});
+  return {F + jump, select(stands, y * y, T{}), {select(stands, max(root, T{} + no_root), T{}), jump}};
+}
+
+/// The radius R [m] of the curve on which a contact opens: its pull-off force is 3/2 pi Gamma R.
+template <class T>
+inline T opening_radius(const Jkr<T>&, T R_star, const typename Jkr<T>::State&) noexcept {
+  return R_star;
+}
+
+/// The overlap [m] at which a contact that broke forms again.
+template <class T>
+inline T reforming_overlap(const Jkr<T>&, const typename Jkr<T>::State&) noexcept {
+  return T{};
+}
+
+/// Energies that a step took for good.
+template <class T>
+inline adhesive::Losses<T> losses(const Jkr<T>& law, T R_star, const typename Jkr<T>::State& before,
+                                  const typename Jkr<T>::State& after) noexcept {
+  using namespace adhesive;
+  const auto stood = before.root > 0.0, stands = after.root > 0.0;
+  const T touch = select(stands & (before.root <= 0.0), energy_at_touch(law.E_star, law.c, R_star), T{});
+  const T fold = select(stood & (after.root <= 0.0), energy_at_fold(law.E_star, law.c, R_star), T{});
+  return {T{}, fold - touch};
 }
 
 /// Elastic and surface energy [J] of a contact at overlap `delta`, 0 for bodies apart.

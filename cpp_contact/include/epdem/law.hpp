@@ -10,10 +10,12 @@
 
 namespace epdem {
 
-/// The memory of a contact whose largest overlap is known.
+/// The memory of a contact whose largest overlap is known; with adhesion that of one that has stood since then.
 template <class Law>
 inline State<Law> remember(const Law& law, Number<Law> R_star, Number<Law> delta_max) noexcept {
-  if constexpr (Law::flattens) {
+  if constexpr (adheres<Law>) {
+    return step(law, R_star, {}, delta_max, Number<Law>{}).after;
+  } else if constexpr (Law::flattens) {
     if (!(delta_max > law.elastic_overlap(R_star))) return {delta_max, {}};
     return {delta_max, law.load(R_star, delta_max)};
   } else {
@@ -33,13 +35,6 @@ inline auto plausible(const Point<T>& p) noexcept {
   return (p.force > 0.0) & (p.force <= most) & (p.radius > 0.0) & (p.radius <= most) & (p.flatness >= 0.0) &
          (p.flatness <= 1.0);
 }
-
-template <class Law>
-struct Step {
-  Number<Law> force;   // F [N], never negative
-  Number<Law> radius;  // contact radius a [m]; the stiffnesses are k_n = 2 E* a and k_t = 8 G* a
-  State<Law> after;    // what the contact remembers if this step counts
-};
 
 /// Force and contact radius at overlap `delta` [m] of a contact that remembers `before`.
 /// Never NaN for finite input; zero force for delta <= 0. The memory only grows: forgetting is the host's decision.
@@ -75,6 +70,13 @@ inline Step<Law> step(const Law& law, Number<Law> R_star, const State<Law>& befo
     after.delta_max = select(touches, delta_max, before.delta_max);
   }
   return {select(touches, now.force, T{}), select(touches, now.radius, T{}), after};
+}
+
+/// The same with a closing speed at the half step times the time step [m], which only laws with adhesion ask for.
+template <class Law, class = std::enable_if_t<!adheres<Law>>>
+inline Step<Law> step(const Law& law, Number<Law> R_star, const State<Law>& before, Number<Law> delta,
+                      Number<Law>) noexcept {
+  return step(law, R_star, before, delta);
 }
 
 /// Work lost for good by a contact that reached delta_max [J]: backbone work less the recoverable part.

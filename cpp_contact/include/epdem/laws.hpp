@@ -4,15 +4,23 @@
 
 #include "cavity.hpp"
 #include "hertz.hpp"
+#include "jkr.hpp"
 #include "johnson.hpp"
 #include "law.hpp"
 #include "thornton.hpp"
+#include "thornton_ning.hpp"
+
+/// Laws whose force is a function of what the contact remembers and of the overlap.
+#define EPDEM_PLAIN_LAWS(X) \
+  X(Hertz)                  \
+  X(Thornton)               \
+  X(Johnson)                \
+  X(Cavity)
 
 #define EPDEM_LAWS(X) \
-  X(Hertz)            \
-  X(Thornton)         \
-  X(Johnson)          \
-  X(Cavity)
+  EPDEM_PLAIN_LAWS(X) \
+  X(Jkr)              \
+  X(ThorntonNing)
 
 namespace epdem::detail {
 

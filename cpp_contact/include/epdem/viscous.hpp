@@ -21,18 +21,35 @@ inline double viscous_number(double e) noexcept {
   return 1.8257418583505538 * std::sin(low);  // 2 sqrt(5/6)
 }
 
+/// Whether a contact with this memory has yielded.
+template <class Law>
+inline auto has_yielded(const Law& law, Number<Law> R_star, const State<Law>& now) noexcept {
+  if constexpr (adheres<Law>) {
+    (void)law;
+    (void)R_star;
+    return now.dent > 0.0;
+  } else {
+    return now.delta_max > law.elastic_overlap(R_star);
+  }
+}
+
 /// The step's force with the dashpot: 2 sqrt(5/6) zeta sqrt(k_n m*) times the approach speed [m/s], k_n = 2 E* a.
-/// It acts where the force is below the backbone or on its elastic start, not while the contact yields; never attracts.
+/// It acts where the force is below the backbone or on its elastic start, not while the contact yields; never attracts
+/// where the law does not.
 template <class Law>
 inline Number<Law> damped_force(const Law& law, Number<Law> R_star, const State<Law>& before, const Step<Law>& now,
                                 Number<Law> number, Number<Law> m_star, Number<Law> approach_speed) noexcept {
   using T = Number<Law>;
   const T force = now.force + number * sqrt(2.0 * law.E_star * now.radius * m_star) * approach_speed;
-  const T damped = max(T{}, force);
-  if constexpr (!Law::yields) return damped;
-  const auto grows = now.after.delta_max > before.delta_max;
-  const auto yielded = now.after.delta_max > law.elastic_overlap(R_star);
-  return select(grows & yielded, now.force, damped);
+  const T damped = adheres<Law> ? force : max(T{}, force);
+  if constexpr (!Law::yields) {
+    (void)R_star;
+    (void)before;
+    return damped;
+  } else {
+    const auto grows = now.after.delta_max > before.delta_max;
+    return select(grows & has_yielded(law, R_star, now.after), now.force, damped);
+  }
 }
 
 }  // namespace epdem

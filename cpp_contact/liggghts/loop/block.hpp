@@ -49,7 +49,7 @@ struct Pass {
 /// Computes n contacts; the lanes behind them have valid indices and a history that nobody reads.
 using Kernel = void (*)(Block&, int n, const Pass&);
 
-/// The kernels of one instruction set, by the law's place in the register.
+/// The kernels of one instruction set, by the place of the law, one without adhesion, in the register.
 struct Kernels {
   static constexpr int most_laws = 16;
   Kernel of[most_laws][tangentials][2];  // law, tangential, whether the rolling model has history

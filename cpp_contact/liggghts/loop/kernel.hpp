@@ -210,7 +210,7 @@ template <class Law, Tangential tangential, bool rolls>
   {EPDEM_BOTH(Class, off), EPDEM_BOTH(Class, no_history), EPDEM_BOTH(Class, history), EPDEM_BOTH(Class, partial_slip), \
    EPDEM_BOTH(Class, partial_slip_2)},
 extern const Kernels EPDEM_KERNELS;
-const Kernels EPDEM_KERNELS = {{EPDEM_LAWS(EPDEM_OF_LAW)}};
+const Kernels EPDEM_KERNELS = {{EPDEM_PLAIN_LAWS(EPDEM_OF_LAW)}};
 #undef EPDEM_OF_LAW
 #undef EPDEM_BOTH
 

@@ -208,26 +208,29 @@ void PairLoop::scatter(int n) {
   }
 }
 
-/// Halves of the energies of each pair to its bodies, in the order of the list.
+/// Halves of the energies of each pair to its bodies, in the order of the list; both count a contact that bears.
 void PairLoop::book(Ledger& ledger, bool rubs, int n) {
   const Block& b = *block_;
-  double *const work = ledger.work(), *const energy = ledger.energy();
+  double *const work = ledger.work(), *const energy = ledger.energy(), *const bearing = ledger.bearing();
   const int nlocal = atom->nlocal;
-  double others[2] = {};
+  double others[3] = {};
   for (int k = 0; k < n;) {
     const int i = b.i[k];
-    double work_i = work[i], energy_i = energy[i];
+    double work_i = work[i], energy_i = energy[i], bearing_i = bearing[i];
     do {
       const int j = b.j[k];
       const double grown = b.grown.a[k] > 0.0 ? 0.5 * b.grown.a[k] : 0.0, stored = 0.5 * b.stored.a[k];
       work_i += grown;
       energy_i += stored;
+      bearing_i += stored > 0.0;
       *(j < nlocal ? work + j : others) += grown;
       *(j < nlocal ? energy + j : others + 1) += stored;
+      *(j < nlocal ? bearing + j : others + 2) += stored > 0.0;
       ++k;
     } while (k < n && b.i[k] == i);
     work[i] = work_i;
     energy[i] = energy_i;
+    bearing[i] = bearing_i;
   }
   for (int k = 0; rubs && k < n; ++k) ledger.rub<false>(b.rubbed.a[k], b.sprung.a[k], {b.i[k], b.j[k], nlocal});
 }

@@ -115,6 +115,7 @@ class Pair : public LIGGGHTS::PairStyles::Granular<Model> {
   }
 
   static const char* what_is_missing(const Ids& ids) {
+    if (adheres<Law>) return "laws with adhesion";
     if (ids.surface != SURFACE_DEFAULT) return "surface multicontact";
     if (ids.rolling == ROLLING_EPSD) return "rolling_friction epsd";
     if (ids.rolling == ROLLING_EPSD3) return "rolling_friction epsd3";

@@ -92,12 +92,14 @@ class Header(Frozen):
 
 
 class Material(Frozen):
-    """Elastic constants, density and (if the law yields) the yield stress in simple compression, SI."""
+    """Elastic constants, density, (if the law yields) the yield stress in simple compression and (if it adheres) the
+    surface energy, of which the work of adhesion of a pair is 2 sqrt(gamma_i gamma_j); SI."""
 
     young_modulus: Pressure
     poisson_ratio: Annotated[float, Quantity("1", above=-1.0, le=0.5, hint="percent?")]
     density: Annotated[float, Quantity("kg/m^3", above=0.0)]
     yield_stress: Pressure | None = None
+    surface_energy: Annotated[float, Quantity("J/m^2", ge=0.0)] | None = None
 
 
 class Body(Frozen):

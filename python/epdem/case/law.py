@@ -4,7 +4,7 @@
 from typing import Any
 
 from ..errors import CaseError
-from ..laws.strengths import LawNumbers, law_named
+from ..laws.strengths import ADHESION, LawNumbers, law_named
 from ..theory.cavity import FINITE_STRAIN, NO_FINITE_STRAIN
 from .units import read_number
 
@@ -12,7 +12,8 @@ from .units import read_number
 def law_numbers(name: str, given: dict[str, Any]) -> LawNumbers:
     """The law `name` with the numbers of a case; all others have the defaults of the law. Raises CaseError.
 
-    A strength X [Pa] is given as `X = "2.8 GPa"` for all bodies or as `X_ratio = 2.8` of each body's yield stress;
+    A strength X [Pa] is given as `X = "2.8 GPa"` for all bodies or as `X_ratio = 2.8` of each body's yield stress, the
+    work of adhesion as `work_of_adhesion = "0.1 J/m^2"` for all pairs or by the surface energies of the materials;
     finite_strain = true or false stands for its number.
     """
     law = law_named(name)
@@ -31,8 +32,9 @@ def law_numbers(name: str, given: dict[str, Any]) -> LawNumbers:
         {
             p.name: read_number(f"law.{p.name}", given.get(p.name, p.default), p.unit)
             for p in law.parameters
-            if p.name != strength
+            if p.name not in (strength, ADHESION)
         },
         read_number(f"law.{strength}", given[strength], "Pa") if strength in given else None,
         read_number(f"law.{ratio}", given[ratio], "1") if ratio in given else law.default_ratio,
+        read_number(f"law.{ADHESION}", given[ADHESION], "J/m^2", zero=True) if ADHESION in given else None,
     )

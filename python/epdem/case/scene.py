@@ -188,6 +188,7 @@ class Compaction(Common):
     box: Annotated[list[Length], Field(min_length=3, max_length=3)]
     height: Length  # of the gap between the plates at the end of loading
     back: Length  # stroke of unloading
+    fall: Time | None = None  # before loading: the spheres fall on the lower plate
     speed: Speed  # of the upper plate, loading
     back_speed: Speed | None = None  # unloading; default: a tenth, because it ends within a short stroke
 
@@ -200,6 +201,8 @@ class Compaction(Common):
     def _order(self) -> Self:
         if not self.height < self.box[2]:
             raise ValueError(f"height ({self.height:g} m) must be below the box's height ({self.box[2]:g} m)")
+        if self.fall is not None and not self.gravity:
+            raise ValueError("spheres fall under gravity; give gravity, or remove fall")
         if self.duration is not None:
             raise ValueError("duration: loading and unloading follow from height, back and speed; remove it")
         return self

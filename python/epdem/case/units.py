@@ -82,12 +82,12 @@ def within_limits(x: float, si: str) -> float:
     return x
 
 
-def read_number(place: str, value: object, unit: str) -> float:
-    """`value` as written at `place` in a file or a command, in SI and > 0. Raises CaseError."""
+def read_number(place: str, value: object, unit: str, *, zero: bool = False) -> float:
+    """`value` as written at `place` in a file or a command, in SI and > 0, or >= 0 (`zero`). Raises CaseError."""
     try:
         x = within_limits(to_si(value, unit), unit)
     except ValueError as error:
         raise CaseError(f"{place} = {value!r}, {error}") from None
-    if not x > 0:
-        raise CaseError(f"{place} = {value!r}, must be > 0; correct it")
+    if not (x > 0 or (zero and x == 0)):
+        raise CaseError(f"{place} = {value!r}, must be {'>=' if zero else '>'} 0; correct it")
     return x

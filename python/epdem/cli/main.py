@@ -237,13 +237,19 @@ def _usage(error: Any) -> int:
     return 2
 
 
+STOPS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
+
+
 def _stop(number: int, frame: object) -> None:
+    """The first signal ends the run; further ones must not interrupt that end, or an engine writes on."""
+    for name in STOPS:
+        signal.signal(name, signal.SIG_IGN)
     raise Stopped
 
 
 def main() -> None:
     """Entry point: errors that a user can correct become one sentence and an exit code."""
-    for name in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):  # whatever stops us, no engine stays behind
+    for name in STOPS:  # whatever stops us, no engine stays behind
         signal.signal(name, _stop)
     if isinstance(sys.stdout, io.TextIOWrapper):
         sys.stdout.reconfigure(errors="backslashreplace")  # a title may hold what the terminal's encoding does not

@@ -16,6 +16,9 @@ def theory(
     material: Annotated[str, typer.Option(help="material of sphere and wall, from the materials file")] = "steel",
     radius: Annotated[str, typer.Option(help='radius of the sphere, as "10 mm"')] = "10 mm",
     speed: Annotated[str, typer.Option(help='speed of the impact, as "5 m/s"')] = "5 m/s",
+    adhesion: Annotated[
+        str | None, typer.Option("--work-of-adhesion", help='as "0.1 J/m^2": the laws with adhesion, too')
+    ] = None,
     as_json: AsJson = False,
 ) -> None:
     """Print one impact on a wall of the same material for every law."""
@@ -24,7 +27,12 @@ def theory(
     from ..case.units import read_number
     from ..studies.one_impact import one_impact
 
-    x = one_impact(material, radius=read_number("--radius", radius, "m"), speed=read_number("--speed", speed, "m/s"))
+    x = one_impact(
+        material,
+        radius=read_number("--radius", radius, "m"),
+        speed=read_number("--speed", speed, "m/s"),
+        adhesion=None if adhesion is None else read_number("--work-of-adhesion", adhesion, "J/m^2"),
+    )
     if as_json:
         print(json.dumps({k: v for k, v in asdict(x).items() if k not in ("first", "plastic")}))
         return
@@ -47,7 +55,7 @@ def figures(
     force: Force = False,
     as_json: AsJson = False,
 ) -> None:
-    """Draw figures 8.16, 8.17 and 8.19 of Seville and Wu (2016) from theory."""
+    """Draw figures 8.16, 8.17 and 8.19 of Seville and Wu (2016) and figure 10 of Thornton and Ning (1998)."""
     from ..base.folders import claim
     from ..studies.figures import draw_all
 

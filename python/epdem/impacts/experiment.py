@@ -15,9 +15,9 @@ from ..case.law import law_numbers
 from ..errors import CaseError
 from ..laws import library
 from ..laws.native import Law
-from ..laws.strengths import LawNumbers, LawSpec, default_numbers, law_named
+from ..laws.strengths import LawNumbers, LawSpec, Surface, default_numbers, law_named
 from ..theory import pair
-from ..theory.backbones import Backbone
+from ..theory.backbones import JKR, Backbone
 
 
 @dataclass(frozen=True)
@@ -31,6 +31,7 @@ class Body:
     poisson_ratio: float
     yield_stress: float | None  # [Pa]; inf for a rigid body
     material: str
+    surface_energy: float | None = None  # [J/m^2]
 
     @property
     def rigid(self) -> bool:
@@ -44,13 +45,14 @@ def sphere(material: Material, *, radius: float, name: str) -> Body:
     """A sphere of `radius` [m]; `name` is the material's."""
     mass = float(pair.sphere_mass(radius=radius, density=material.density))
     m = material
-    return Body(radius, mass, m.density, m.young_modulus, m.poisson_ratio, m.yield_stress, name)
+    return Body(radius, mass, m.density, m.young_modulus, m.poisson_ratio, m.yield_stress, name, m.surface_energy)
 
 
 def plane(material: Material, *, name: str) -> Body:
     """A half-space that does not move; `name` is the material's."""
     m = material
-    return Body(math.inf, math.inf, m.density, m.young_modulus, m.poisson_ratio, m.yield_stress, name)
+    infinite = math.inf
+    return Body(infinite, infinite, m.density, m.young_modulus, m.poisson_ratio, m.yield_stress, name, m.surface_energy)
 
 
 @dataclass(frozen=True)
@@ -85,6 +87,12 @@ class Experiment:
     def __post_init__(self) -> None:
         if self.body.rigid and self.target.rigid:
             raise CaseError("both bodies are rigid; at least one must deform")
+        if self.law.adheres and self.viscous_restitution is not None:
+            raise CaseError(
+                f"viscous: no theory of impacts has both adhesion (law {self.law.name}) and a dashpot; remove one"
+            )
+        if self.law.adheres and self.oblique is not None:
+            raise CaseError(f"impact: no theory of oblique impacts has adhesion (law {self.law.name}); remove one")
         try:
             self.theory()
         except (ValueError, ArithmeticError) as error:
@@ -122,9 +130,9 @@ class Experiment:
         body, target = self.body, self.target
         return body.young_modulus, body.poisson_ratio, target.young_modulus, target.poisson_ratio
 
-    def theory(self) -> Backbone:
-        """The backbone of the law in the theory."""
-        return self.law.backbone(E_star=self.E_star, R_star=self.R_star)
+    def theory(self) -> Backbone | JKR:
+        """The law in the theory."""
+        return self.law.theory(E_star=self.E_star, R_star=self.R_star)
 
     def native_law(self) -> Law:
         """The same law in C++."""
@@ -137,9 +145,10 @@ class Experiment:
 
 
 def pair_of(numbers: LawNumbers, body: Body, target: Body) -> LawSpec:
-    """The law of two bodies. Raises CaseError where a yield stress is missing."""
-    strengths = [numbers.strength(b.material, b.yield_stress) for b in (body, target)]
-    return numbers.pair(*strengths)
+    """The law of two bodies. Raises CaseError where a yield stress or surface energy is missing."""
+    strong = [numbers.strength(b.material, b.yield_stress) for b in (body, target)]
+    surfaces = [Surface(b.material, b.surface_energy) for b in (body, target)]
+    return numbers.pair(strong[0], strong[1], numbers.work_of_adhesion(*surfaces))
 
 
 def rated(spec: LawSpec, rate: Rate, body: Body, target: Body, speed: float) -> LawSpec:
@@ -155,8 +164,11 @@ def rated(spec: LawSpec, rate: Rate, body: Body, target: Body, speed: float) -> 
     factor, found = 1.0, spec
     for _ in range(20):  # the factor hardly changes the radius: three digits a turn
         found = spec.of(*(factor * s for s in spec.strengths))
-        backbone = found.backbone(E_star=E_star, R_star=R_star)
-        a = float(backbone.radius(backbone.overlap_of_work(0.5 * m_star * speed**2)))
+        theory, work = found.theory(E_star=E_star, R_star=R_star), 0.5 * m_star * speed**2
+        if isinstance(theory, JKR):
+            a = float(theory.radius_of_work(work))
+        else:
+            a = float(theory.radius(theory.overlap_of_work(work)))
         factor = 1.0 + rate.sensitivity * math.log(max(0.2 * speed / a / rate.reference, 1.0))
     return found
 

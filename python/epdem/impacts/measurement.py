@@ -6,6 +6,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from ..errors import EngineError
+from ..theory import adhesion
+from ..theory.backbones import JKR
 from . import oblique
 from .engine import Trajectory
 from .plan import Plan
@@ -51,6 +53,9 @@ def measure(plan: Plan, path: Trajectory, *, end_power: float | None = None) -> 
 
     end_power: for another law than the plan's: the power of its force that falls linearly with the overlap at the end.
     """
+    law = plan.experiment.theory()
+    if isinstance(law, JKR):
+        return _with_adhesion(plan, path, law)
     overlap, force, velocity = path.overlap, path.force, path.velocity
     row = np.arange(plan.n)
     sampled = np.isfinite(force)
@@ -77,7 +82,6 @@ def measure(plan: Plan, path: Trajectory, *, end_power: float | None = None) -> 
     energy = 0.5 * plan.experiment.m_star * plan.speed**2
     # at the dent, between two samples, the force is 0 and so is the last piece of work, to third order
     work = np.where(loaded[:, 1:] | loaded[:, :-1], 0.5 * (force[:, 1:] + force[:, :-1]) * np.diff(overlap), 0.0)
-    law = plan.experiment.theory()
     plastic = law.work(peak) - law.recovered_work(peak)
     e_n = -velocity[row, end] / plan.speed
     rebound = None
@@ -92,4 +96,38 @@ def measure(plan: Plan, path: Trajectory, *, end_power: float | None = None) -> 
         energy_residual=(work.sum(axis=1) - plastic) / energy if own else np.full(plan.n, np.nan),
         steps_in_contact=loaded.sum(axis=1),
         rebound=rebound,
+    )
+
+
+def _with_adhesion(plan: Plan, path: Trajectory, law: JKR) -> Measured:
+    """As `measure`: in contact as long as there is a force, of either sign; the last step with one is the first apart.
+
+    The bodies part within that step. By the momentum of the pull, which it then has for the share s of a step,
+    m* (v_after - v_before) = -F_last s dt. Those still in contact at the end stick: e_n = 0, no end.
+    """
+    x, dt, row = plan.experiment, path.time_step, np.arange(plan.n)
+    overlap, force, velocity = path.overlap, path.force, path.velocity
+    sampled = np.isfinite(force)
+    loaded = sampled & (force != 0)
+    if not loaded.any(axis=1).all():
+        bad = plan.speed[~loaded.any(axis=1)][0]
+        raise EngineError(f"the impact at {bad:.6g} m/s never touched; the run is too short or went wrong")
+    apart, end = _last(loaded), _last(sampled)
+    stuck, last = apart == end, np.maximum(apart - 1, 0)
+    push = force[row, last] * dt / x.m_star
+    gained = velocity[row, last] - velocity[row, end]
+    share = np.clip(np.divide(gained, push, out=np.full(plan.n, 0.5), where=push != 0), 0.0, 1.0)
+    between = overlap[row, last] + share * (overlap[row, apart] - overlap[row, last])
+    peak = np.where(sampled, overlap, -np.inf).max(axis=1)
+    work = 0.5 * (force[:, 1:] + force[:, :-1]) * np.diff(overlap)
+    lost = adhesion.lost_work(law, peak)
+    nothing = np.full(plan.n, np.nan)
+    return Measured(
+        e_n=np.where(stuck, 0.0, -velocity[row, end] / plan.speed),
+        contact_time=np.where(stuck, np.inf, (last + share) * dt - plan.gap / plan.speed),
+        force_max=np.where(loaded, force, -np.inf).max(axis=1),
+        overlap_max=peak,
+        residual_overlap=np.where(stuck, nothing, between),
+        energy_residual=np.where(stuck, nothing, (np.nansum(work, axis=1) - lost) / (0.5 * x.m_star * plan.speed**2)),
+        steps_in_contact=loaded.sum(axis=1),
     )

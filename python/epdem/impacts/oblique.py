@@ -13,6 +13,7 @@ import numpy as np
 from ..case.impact import NODES
 from ..errors import CaseError
 from ..theory import partial_slip
+from ..theory.backbones import Backbone
 from .experiment import Experiment
 
 SLIDING = 1e-3  # how far below mu the ratio of impulses of an impact that slides throughout may lie
@@ -83,12 +84,13 @@ def after_slip(x: Experiment, slip: np.ndarray) -> tuple[np.ndarray, np.ndarray]
 
 def predict(x: Experiment, e_n: np.ndarray) -> Rebound:
     """Theory with partial slip: springs along the line of contact, for every law."""
-    o, slip = x.friction_of_oblique(), slip_before(x)
+    o, slip, law = x.friction_of_oblique(), slip_before(x), x.theory()
+    assert isinstance(law, Backbone)  # an experiment has no oblique impacts with adhesion
     after = np.empty(slip.shape)
     for speed in np.unique(x.speed):
         rows = x.speed == speed
         after[rows], _ = partial_slip.rebound(
-            x.theory(),
+            law,
             m_star=x.m_star,
             m_tangential=2 / 7 * x.m_star,
             mu=o.friction,

@@ -46,12 +46,12 @@ def plan(experiment: Experiment, prediction: Prediction, *, time_step: float | N
     elif numerics.error is not None:
         dt = search(experiment, prediction, numerics.error).time_step
     else:
-        dt = float(prediction.contact_time.min() / numerics.steps_in_contact)
+        dt = float(prediction.duration.min() / numerics.steps_in_contact)
     phase = (np.arange(numerics.phases) + 0.5) / numerics.phases
     speed = np.repeat(experiment.speed, numerics.phases)
     gap = np.tile(phase, experiment.speed.size) * speed * dt
     # a few steps more than the longest contact: integration errors stretch it, and its end must be among the samples
-    steps = int(np.ceil(1.02 * prediction.contact_time.max() / dt)) + 8
+    steps = int(np.ceil(1.02 * prediction.duration.max() / dt)) + 8
     if speed.size * steps > MAX_SAMPLES:
         raise CaseError(
             f"{speed.size} impacts of up to {steps} steps are {speed.size * steps:.2g} samples, at most "

@@ -2,11 +2,13 @@
 """The prediction of theory for an experiment."""
 
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 import pandas as pd
 
-from ..theory import restitution, validity, viscous
+from ..theory import adhesion, restitution, validity, viscous
+from ..theory.backbones import JKR
 from ..theory.yielding import first_yield_speed
 from . import oblique
 from .experiment import Experiment
@@ -30,6 +32,7 @@ class Prediction:
     yield_speeds: dict[str, float]  # from which each material yields beneath its surface [m/s], eq. 8.78; inf: never
     rebound: oblique.Rebound | None = None  # of oblique impacts
     caveats: tuple[str, ...] = ()  # where the prediction leaves its domain
+    lasting: float = np.nan  # how long bodies that stick are watched [s]; NaN: without adhesion
 
     COLUMNS = (
         "speed",
@@ -44,6 +47,16 @@ class Prediction:
         "strain_ratio",
     )
 
+    @property
+    def sticks(self) -> np.ndarray:
+        """Where the bodies stay together."""
+        return np.asarray(self.e_n == 0.0)
+
+    @property
+    def duration(self) -> np.ndarray:
+        """Times to be watched [s]: of contact, and where bodies stick a while in which they would part."""
+        return np.where(np.isfinite(self.contact_time), self.contact_time, self.lasting)
+
     def table(self) -> pd.DataFrame:
         """One row per impact, with the rebound of oblique ones."""
         rebound = {} if self.rebound is None else self.rebound.columns()
@@ -57,19 +70,17 @@ class Prediction:
 def predict(experiment: Experiment) -> Prediction:
     """The prediction of `experiment` from theory alone; the C++ laws are not called."""
     law = experiment.theory()
+    if isinstance(law, JKR):
+        return _with_adhesion(experiment, law)
     m_star, speed = experiment.m_star, experiment.speed
     if experiment.viscous_restitution is None:
         impact = restitution.impact(law, m_star=m_star, speed=speed)
     else:
         impact = viscous.impact(law, m_star=m_star, speed=speed, restitution=experiment.viscous_restitution)
     names = Prediction.COLUMNS[1:]
-    columns = {n: np.asarray(getattr(impact, n), float) for n in names}
-    softer = min(experiment.law.strengths)
-    yields: tuple[str, ...] = ()
+    columns: dict[str, Any] = {n: np.asarray(getattr(impact, n), float) for n in names}
     pair = (experiment.body, experiment.target)
-    if columns["overlap_max"].max() > law.yield_overlap:
-        bodies = zip(pair, experiment.law.strengths, strict=True)
-        yields = tuple(dict.fromkeys(b.material for b, strength in bodies if strength == softer))
+    yields = _softer(experiment) if columns["overlap_max"].max() > law.yield_overlap else ()
     speeds = {
         b.material: float(first_yield_speed(law, b.yield_stress, m_star=experiment.m_star))
         for b in {b.material: b for b in pair}.values()
@@ -78,3 +89,27 @@ def predict(experiment: Experiment) -> Prediction:
     caveats = tuple(validity.caveats(law, m_star=m_star, speed=speed))
     rebound = oblique.predict(experiment, columns["e_n"]) if experiment.oblique else None
     return Prediction(speed=speed, yields=yields, yield_speeds=speeds, rebound=rebound, caveats=caveats, **columns)
+
+
+def _softer(x: Experiment) -> tuple[str, ...]:
+    """The materials of the smaller strength."""
+    bodies = zip((x.body, x.target), x.law.strengths, strict=True)
+    return tuple(dict.fromkeys(b.material for b, strength in bodies if strength == min(x.law.strengths)))
+
+
+def _with_adhesion(x: Experiment, law: JKR) -> Prediction:
+    """residual_overlap is that at which the contact ends, 3/4 d below the dent; what adhesion takes is neither in
+    work_out nor in plastic_work."""
+    impact = adhesion.impact(law, m_star=x.m_star, speed=x.speed)
+    columns: dict[str, Any] = {n: np.asarray(getattr(impact, n), float) for n in Prediction.COLUMNS[1:]}
+    columns["residual_overlap"] = impact.parting_overlap
+    first = max(float(law.touch_radius), float(law.yield_radius))
+    barely = 1.001 * float(adhesion.sticking_speed(law, m_star=x.m_star))
+    return Prediction(
+        speed=x.speed,
+        yields=_softer(x) if impact.radius_max.max() > first else (),
+        yield_speeds={},
+        caveats=tuple(validity.adhesive_caveats(law, m_star=x.m_star, speed=x.speed)),
+        lasting=1.5 * float(adhesion.contact_time(law, m_star=x.m_star, speed=barely)) if barely > 0 else np.nan,
+        **columns,
+    )

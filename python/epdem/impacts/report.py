@@ -30,6 +30,7 @@ ROW_KEYS = (
     *(k for n in CHECKED for k in (n, n + "_theory", n + "_error")),
     "energy_residual",
     "steps_in_contact",
+    "stuck",
     "passed",
 )
 
@@ -125,6 +126,8 @@ def summary(outcome: Outcome) -> str:
     verdict = "all within tolerance" if not failed else f"{failed} of {len(rows)} rows outside tolerance"
     worst = f"largest e_n error {rows['e_n_error'].max():.1e}"
     worst += f", of psi_2 {rows['psi_2_error'].max():.1e}" if "psi_2_error" in rows else ""
+    if stuck := int(rows["stuck"].sum()):
+        worst += f"; {stuck} impacts stick"
     return f"{outcome.case.name}: {verdict}; {worst}; {times}{stored}; see {outcome.folder}/"
 
 

@@ -46,7 +46,11 @@ class Found:
 
 
 def stability_limit(x: Experiment, overlap_max: float) -> float:
-    """Largest stable step of velocity Verlet at the stiffest point of a contact [s], by the law's own radius."""
+    """Largest stable step of velocity Verlet at the stiffest point of a contact [s], by the law's own radius.
+
+    With adhesion the stiffness is 2 E* a (4 y^3/R - 3 c)/(4 y^3/R - c) < 2 E* a, y = sqrt(a); it goes to minus infinity
+    where the contact ends, which is not a question of stability but of the error, which the search sees.
+    """
     a = float(np.asarray(x.theory().radius(np.array([overlap_max])))[0])
     return float(times.stability_limit(E_star=x.E_star, m_star=x.m_star, radius=a))
 
@@ -68,16 +72,19 @@ def reference(x: Experiment, prediction: Prediction) -> Reference:
         stability=float(stability_limit(x, prediction.overlap_max.max())),
         rayleigh=float(rayleigh),
         hertz=float(hertz),
-        contact=float(prediction.contact_time.min()),
+        contact=float(prediction.duration.min()),
     )
 
 
 def restitution_errors(x: Experiment, prediction: Prediction, time_step: float, phases: int = PHASES) -> np.ndarray:
-    """Relative errors of e_n at one time step [s] in the embedded engine, (speeds, phases); inf where it broke."""
+    """Relative errors of e_n at one time step [s] in the embedded engine, (speeds, phases); inf where it broke.
+
+    Where theory lets the bodies stick the error is e_n itself.
+    """
     phase = (np.arange(phases) + 0.5) / phases
     gap = phase[None, :] * x.speed[:, None] * time_step
     speed = np.broadcast_to(x.speed[:, None], gap.shape)
-    steps = int(np.ceil(1.5 * prediction.contact_time.max() / time_step)) + 20
+    steps = int(np.ceil(1.5 * prediction.duration.max() / time_step)) + 20
     out = x.native_law().impacts(
         R_star=x.R_star,
         m_star=x.m_star,
@@ -88,8 +95,9 @@ def restitution_errors(x: Experiment, prediction: Prediction, time_step: float, 
         viscous=x.viscous_number,
     )
     e_n = (out["rebound_speed"] / speed.ravel()).reshape(gap.shape)
-    ended = (out["last"] >= 0) & (out["steps"] < steps)
-    error = np.abs(e_n / prediction.e_n[:, None] - 1.0)
+    sticks = prediction.sticks[:, None]
+    ended = (out["last"] >= 0) & ((out["steps"] < steps).reshape(gap.shape) | (e_n == 0.0)).ravel()
+    error = np.abs(e_n - prediction.e_n[:, None]) / np.where(sticks, 1.0, prediction.e_n[:, None])
     return np.where(ended.reshape(gap.shape) & np.isfinite(error), error, np.inf)
 
 

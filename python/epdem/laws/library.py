@@ -55,11 +55,13 @@ _SIGNATURES = {
     "epdem_law_strength": (c_int, [c_int]),
     "epdem_law_default_ratio": (c_double, [c_int]),
     "epdem_law_memory": (c_int, [c_int]),
+    "epdem_law_adheres": (c_int, [c_int]),
     "epdem_law_parameter_count": (c_int, [c_int]),
     "epdem_law_parameter_name": (c_char_p, [c_int, c_int]),
     "epdem_law_parameter_property": (c_char_p, [c_int, c_int]),
     "epdem_law_parameter_unit": (c_char_p, [c_int, c_int]),
     "epdem_law_parameter_default": (c_double, [c_int, c_int]),
+    "epdem_law_parameter_may_vanish": (c_int, [c_int, c_int]),
     "epdem_step": (c_int, [c_int, c_double, _D, c_double, c_size_t, _D, _D, POINTER(StepResult)]),
     "epdem_backbone": (c_int, [c_int, c_double, _D, c_double, c_size_t, _D, _D, _D, _D, _D]),
     "epdem_impacts": (c_int, [c_int, c_double, _D, c_size_t, ctypes.c_void_p, ctypes.c_void_p, c_size_t, _D, _D, _D]),
@@ -68,12 +70,13 @@ _SIGNATURES = {
 
 @dataclass(frozen=True)
 class Parameter:
-    """A material parameter of a law; `default` is NaN where the user must give it."""
+    """A material parameter of a law; `default` is NaN where the user must give it, `may_vanish` lets 0 pass."""
 
     name: str
     property: str
     unit: str
     default: float
+    may_vanish: bool
 
 
 @dataclass(frozen=True)
@@ -82,7 +85,8 @@ class LawInfo:
 
     `id` is that of the LIGGGHTS model "ep/" + name, kept in restart files; `strength` the parameter at which a body
     yields [Pa], None for a law without yield; `default_ratio` its value over the yield stress Y of the softer body,
-    NaN without; `memory` the number of doubles that a contact keeps from step to step.
+    NaN without; `memory` the number of doubles that a contact keeps from step to step; `adheres` whether bodies
+    attract each other.
     """
 
     index: int
@@ -92,6 +96,7 @@ class LawInfo:
     strength: Parameter | None
     default_ratio: float
     memory: int
+    adheres: bool
 
 
 def library_path() -> Path:
@@ -107,11 +112,11 @@ def library() -> ctypes.CDLL:
     """The loaded library, its signatures declared and its ABI checked."""
     path = library_path()
     lib = ctypes.CDLL(str(path))
+    if lib.epdem_abi() != ABI:
+        raise EngineError(f"{path}: ABI {lib.epdem_abi()}, this package needs {ABI}; run 'make setup' again")
     for name, (restype, argtypes) in _SIGNATURES.items():
         function = getattr(lib, name)
         function.restype, function.argtypes = restype, argtypes
-    if lib.epdem_abi() != ABI:
-        raise EngineError(f"{path}: ABI {lib.epdem_abi()}, this package needs {ABI}; run 'make setup' again")
     sizes = {
         b"epdem_step_result": ctypes.sizeof(StepResult),
         b"epdem_impact_input": IMPACT_INPUT.itemsize,
@@ -140,6 +145,7 @@ def laws() -> dict[str, LawInfo]:
                 lib.epdem_law_parameter_property(i, k).decode(),
                 lib.epdem_law_parameter_unit(i, k).decode(),
                 lib.epdem_law_parameter_default(i, k),
+                bool(lib.epdem_law_parameter_may_vanish(i, k)),
             )
             for k in range(lib.epdem_law_parameter_count(i))
         )
@@ -147,7 +153,8 @@ def laws() -> dict[str, LawInfo]:
         at = lib.epdem_law_strength(i)
         strength = parameters[at] if at >= 0 else None
         ratio, memory = lib.epdem_law_default_ratio(i), lib.epdem_law_memory(i)
-        infos[name] = LawInfo(i, name, parameters, lib.epdem_law_id(i), strength, ratio, memory)
+        adheres = bool(lib.epdem_law_adheres(i))
+        infos[name] = LawInfo(i, name, parameters, lib.epdem_law_id(i), strength, ratio, memory, adheres)
     return infos
 
 

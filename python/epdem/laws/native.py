@@ -53,7 +53,7 @@ class Law:
                 raise CaseError(f"law {name} has no parameter {key!r}; it has {', '.join(known) or 'none'}")
         values = [parameters.get(p.name, p.default) for p in self.info.parameters]
         for p, value in zip(self.info.parameters, values, strict=True):
-            if not (math.isfinite(value) and value > 0):
+            if not (math.isfinite(value) and (value > 0 or (value == 0 and p.may_vanish))):
                 raise CaseError(f"law {name}: {p.name} = {value}, must be a finite number > 0 [{p.unit}]")
         self.name, self.E_star = name, float(E_star)
         self._parameters = (c_double * max(len(values), 1))(*values)

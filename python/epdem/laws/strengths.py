@@ -6,15 +6,27 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 
 from ..errors import CaseError
-from ..theory.backbones import LAWS, Backbone
+from ..theory.backbones import ADHESIVE, JKR, LAWS, Backbone
 from .library import laws
 
+ADHESION = "work_of_adhesion"  # the parameter of laws with adhesion [J/m^2]
+NO_ADHESION = dict.fromkeys(("johnson", "cavity"), ", and no theory of adhesion exists for it")
 
-def law_named(name: str) -> type[Backbone]:
+
+def law_named(name: str) -> type[Backbone] | type[JKR]:
     """The law of that name, as the theory declares it. Raises CaseError."""
-    if name not in LAWS:
-        raise CaseError(f"law.name = {name!r} does not exist; there are {', '.join(LAWS)}")
-    return LAWS[name]
+    known: dict[str, type[Backbone] | type[JKR]] = {**LAWS, **ADHESIVE}
+    if name not in known:
+        raise CaseError(f"law.name = {name!r} does not exist; there are {', '.join(known)}")
+    return known[name]
+
+
+@dataclass(frozen=True)
+class Surface:
+    """The surface of a material: its name and its surface energy gamma [J/m^2], None: not given."""
+
+    material: str
+    energy: float | None = None
 
 
 def own_ratios(name: str, parameters: Mapping[str, float]) -> dict[str, float]:
@@ -35,7 +47,7 @@ class LawSpec:
     parameters: dict[str, float]
     strengths: tuple[float, float]
 
-    def backbone(self, *, E_star: float, R_star: float) -> Backbone:
+    def theory(self, *, E_star: float, R_star: float) -> Backbone | JKR:
         """The law in the theory. Raises ValueError for parameters that make no sense together."""
         law = law_named(self.name)
         return law(E_star=E_star, R_star=R_star, **{law.keywords[n]: x for n, x in self.parameters.items()})
@@ -45,6 +57,11 @@ class LawSpec:
         strength = law_named(self.name).strength
         own = {} if strength is None else {strength: min(body, target)}
         return LawSpec(self.name, self.parameters | own, (body, target))
+
+    @property
+    def adheres(self) -> bool:
+        """Whether bodies attract each other."""
+        return self.name in ADHESIVE
 
     @property
     def strength_property(self) -> str | None:
@@ -59,15 +76,17 @@ class LawSpec:
 
 @dataclass(frozen=True)
 class LawNumbers:
-    """A law before its bodies: its dimensionless parameters, and the rule of its strength.
+    """A law before its bodies: its dimensionless parameters, and the rules of its strength and its adhesion.
 
-    The strength of a body is `absolute` [Pa], or `ratio` times the body's yield stress.
+    The strength of a body is `absolute` [Pa], or `ratio` times the body's yield stress. The work of adhesion of a pair
+    is `adhesion` [J/m^2], or 2 sqrt(gamma_i gamma_j) of the surface energies.
     """
 
     name: str
     ratios: dict[str, float]
     absolute: float | None
     ratio: float
+    adhesion: float | None = None
 
     def strength(self, material: str, yield_stress: float | None, own: float | None = None) -> float:
         """Strength [Pa] of a body of `material`: its `own`, else by the law's rule; inf for a law without one.
@@ -87,9 +106,38 @@ class LawNumbers:
             )
         return self.ratio * yield_stress
 
-    def pair(self, body: float, target: float) -> LawSpec:
-        """The law of two bodies of these strengths [Pa]."""
-        return LawSpec(self.name, self.ratios, (body, target)).of(body, target)
+    def work_of_adhesion(self, body: Surface, target: Surface) -> float | None:
+        """Gamma of two bodies [J/m^2]; None for a law without adhesion.
+
+        Raises CaseError if it does not follow from what is given, or if more is given than the law takes.
+        """
+        given = [s for s in (body, target) if s.energy is not None]
+        if self.name not in ADHESIVE:
+            if wrong := next((s for s in given if s.energy), None):
+                other = "jkr" if self.name == "hertz" else "thornton_ning"
+                raise CaseError(
+                    f"materials.{wrong.material}.surface_energy = {wrong.energy:g} J/m^2: law {self.name} has no "
+                    f"adhesion{NO_ADHESION.get(self.name, '')}; take law.name = {other!r}, or remove the surface energy"
+                )
+            return None
+        if self.adhesion is not None:
+            if given:
+                raise CaseError(
+                    f"both law.{ADHESION} and materials.{given[0].material}.surface_energy are given; keep one"
+                )
+            return self.adhesion
+        if body.energy is None or target.energy is None:
+            missing = body.material if body.energy is None else target.material
+            raise CaseError(
+                f"law {self.name} needs law.{ADHESION} (of all pairs), or the surface_energy of every material, which "
+                f"{missing!r} has not; add it"
+            )
+        return 2.0 * math.sqrt(body.energy * target.energy)
+
+    def pair(self, body: float, target: float, adhesion: float | None = None) -> LawSpec:
+        """The law of two bodies of these strengths [Pa] and this work of adhesion [J/m^2] (None: without adhesion)."""
+        own = {} if adhesion is None else {ADHESION: adhesion}
+        return LawSpec(self.name, self.ratios | own, (body, target)).of(body, target)
 
 
 def default_numbers(name: str) -> LawNumbers:

@@ -16,6 +16,7 @@ from ..impacts.pairs import Pairs
 from ..impacts.places import room, side_by_side
 from ..impacts.plan import Plan
 from ..lammps import data_file
+from ..laws.library import laws
 from . import dump, executable, launcher
 from .deck import Deck
 from .edits import EDITS
@@ -80,7 +81,7 @@ class Liggghts:
             title=x.title,
             source=x.source,
             summary=f"{x.speed.size} speeds x {plan.phases} phases = {plan.n} independent impacts, law {x.law.name}",
-            has_history=x.law.strength_property is not None or x.oblique is not None,
+            has_history=laws()[x.law.name].memory > 0 or x.oblique is not None,
             hard=max(moduli) > HARD,
             soft=min(moduli) < SOFT,
             data="impact.data",

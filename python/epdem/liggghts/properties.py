@@ -9,6 +9,7 @@ from ..case.impact import NODES
 from ..impacts.experiment import Body
 from ..impacts.plan import Plan
 from ..laws import library as claw
+from ..laws.strengths import ADHESION
 
 RIGID = 1e30  # modulus [Pa] of a rigid type: 1e15 would change E* of steel by 2e-4
 HARD, SOFT = 1e9, 5e6  # LIGGGHTS refuses moduli [Pa] outside these without a keyword
@@ -22,6 +23,7 @@ _REASONS = {
     "coefficientRestitution": "viscous.restitution or contact.tangential_restitution: a dashpot",
     "coefficientRollingFriction": "contact.rolling.coefficient: limit of the rolling moment",
     "coefficientRollingViscousDamping": "contact.rolling.damping: dashpot of the rolling moment",
+    "workOfAdhesion": "work of adhesion Gamma of the law: the bodies attract each other",
     "cohesionEnergyDensity": "contact.cohesion: attraction over the contact area",
 }
 
@@ -47,7 +49,7 @@ class Property:
         laws = claw.laws().values()
         if any(info.strength and info.strength.property == self.name for info in laws):
             return "the law yields at this strength; the softer body's counts"
-        if any(p.property == self.name for info in laws for p in info.parameters):
+        if self.name not in _REASONS and any(p.property == self.name for info in laws for p in info.parameters):
             return "a parameter of the law that differs from its default"
         return "; ".join(filter(None, [_REASONS.get(self.name, ""), self.note]))
 
@@ -95,6 +97,11 @@ def strength(law: str, values: Sequence[float]) -> tuple[Property, ...]:
     return (per_type(parameter.property, values, parameter.unit, "the softer body's counts" * (len(values) > 1)),)
 
 
+def work_of_adhesion(types: int, values: float | Sequence[float]) -> Property:
+    """Work of adhesion [J/m^2] of every pair of atom types."""
+    return per_pair("workOfAdhesion", types, values, "J/m^2")
+
+
 def tangential(name: str | None) -> str:
     """LIGGGHTS's word for the tangential model of a case; None: no friction."""
     if name is None:
@@ -124,6 +131,8 @@ def of_law(plan: Plan) -> tuple[Property, ...]:
     x, types = plan.experiment, atom_types(plan)
     properties = [*of_impacts(plan), *strength(x.law.name, [finite(s) for _, s in types])]
     properties += ratios(x.law.name, x.law.ratios())
+    if x.law.adheres:
+        properties.append(work_of_adhesion(len(types), x.law.parameters[ADHESION]))
     properties += of_friction(plan, len(types))
     if x.viscous_restitution is not None:
         note = "of impacts that do not yield"

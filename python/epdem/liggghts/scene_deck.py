@@ -11,7 +11,7 @@ from ..scenes.model import Model
 from ..scenes.plan import Phase, ScenePlan
 from . import stl
 from .insertions import Insertion, insertions
-from .properties import HARD, SOFT, Property, elastic, per_pair, ratios, strength, tangential
+from .properties import HARD, SOFT, Property, elastic, per_pair, ratios, strength, tangential, work_of_adhesion
 
 MOST_CELLS = 2**31 - 1  # that LIGGGHTS counts, each half as wide as its longest reach
 SKIN = 0.5  # of the smallest radius: rebuilds cost less than idle neighbours
@@ -60,10 +60,12 @@ class Deck:
     spins: bool
     has_history: bool
     yields: bool
+    adheres: bool
+    slots: tuple[str, ...]
+    contact_columns: tuple[int, ...]
+    wall_contact_columns: tuple[int, ...]
     dents: bool
     rubs: bool
-    memory_column: int
-    wall_memory_column: int
     torque: bool
     row_words: tuple[str, ...]
     motion: dict[str, float]
@@ -91,6 +93,8 @@ def _properties(p: ScenePlan) -> tuple[Property, ...]:
         properties.append(per_pair("coefficientRollingFriction", n, m.rolling.coefficient, "-"))
         if m.rolling.damping is not None:
             properties.append(per_pair("coefficientRollingViscousDamping", n, m.rolling.damping, "-"))
+    if m.adheres:
+        properties.append(work_of_adhesion(n, [x for row in m.adhesion for x in row]))
     if m.cohesion:
         properties.append(per_pair("cohesionEnergyDensity", n, m.cohesion, "J/m^3"))
     return tuple(properties)
@@ -102,7 +106,7 @@ def _settings(p: ScenePlan) -> tuple[str, ...]:
     wanted = {
         "viscous on": m.viscous is not None,
         "tangential_damping off": m.viscous is not None and m.sliding and m.tangential_restitution is None,
-        "computePlasticWork on": p.dents or p.rubs,
+        "computePlasticWork on": p.dents or p.rubs or p.jumps,
     }
     return tuple(setting for setting, asked in wanted.items() if asked)
 
@@ -114,6 +118,18 @@ def memory(m: Model, *, wall: bool = False) -> int:
     others = friction + 3 * (m.rolling is not None and m.rolling.model in ("epsd", "epsd2"))
     stamp = 0 if wall else int(law + others > 0)
     return law + stamp + others
+
+
+def told(m: Model) -> tuple[str, ...]:
+    """What a table of contacts takes of the law's memory, which begins with it: the largest overlap of a law that
+    yields, whether bodies that adhere are attached (its root is above 0)."""
+    return ("largest overlap",) * m.yields + ("root of the attached",) * m.adheres
+
+
+def _columns(m: Model, values: int) -> tuple[int, ...]:
+    """Where a local compute has what `told` names, and the overlap: behind three ids and `values` of history."""
+    slots = len(told(m))
+    return (*range(4, 4 + slots), 4 + values) if slots else (4,)
 
 
 def _motion(p: ScenePlan) -> dict[str, float]:
@@ -188,12 +204,14 @@ def deck(p: ScenePlan) -> Deck:
         energy=out.energy,
         loads=out.loads,
         spins=m.spins,
-        has_history=m.yields or m.spins,
+        has_history=m.yields or m.spins or m.adheres,
         yields=m.yields,
+        adheres=m.adheres,
+        slots=told(m),
+        contact_columns=_columns(m, memory(m)),
+        wall_contact_columns=_columns(m, memory(m, wall=True)),
         dents=p.dents,
         rubs=p.rubs,
-        memory_column=4 + memory(m),
-        wall_memory_column=4 + memory(m, wall=True),
         torque=p.torque,
         row_words=tuple(word for word, asked in row_words.items() if asked),
         motion=_motion(p),

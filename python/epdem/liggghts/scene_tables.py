@@ -70,9 +70,14 @@ def damaged(p: ScenePlan, folder: Path, upto: int) -> list[int]:
 
 def _particle_names(p: ScenePlan) -> list[str]:
     names = [*columns.PARTICLES, *(columns.SPINS if p.model.spins else [])]
-    names += [f"delta_max_{w.name}" for w in p.layout.planes] if p.contacts and p.model.yields else []
-    names += ["plastic_work"] if p.dents else []
+    names += [f"{slot}_{w.name}" for w in p.layout.planes for slot in _slots(p)] if p.contacts else []
+    names += ["plastic_work"] * p.dents + ["adhesive_work"] * p.jumps
     return [*names, *(["friction_work", "friction_energy"] if p.rubs else [])]
+
+
+def _slots(p: ScenePlan) -> list[str]:
+    """What a contact's memory tells, as `scene_deck.told` says."""
+    return ["delta_max"] * p.model.yields + ["attached"] * p.model.adheres
 
 
 def _steps(p: ScenePlan, kind: str, folder: Path, without: Collection[int]) -> list[tuple[int, Path]]:
@@ -99,7 +104,7 @@ def particles(p: ScenePlan, folder: Path, *, without: Collection[int] = ()) -> p
 
 def _local(p: ScenePlan, kind: str, folder: Path, ids: list[str], without: Collection[int]) -> pd.DataFrame:
     """The rows of a `dump local`, by step: `ids`, delta_max and overlap [m]; what only comes near is left out."""
-    names, frames = ["step", *ids, *(["delta_max"] if p.model.yields else []), "overlap"], []
+    names, frames = ["step", *ids, *_slots(p), "overlap"], []
     for step, path in _steps(p, kind, folder, without):
         table = pd.DataFrame(dump.local(path))
         if len(table):
@@ -111,7 +116,15 @@ def _local(p: ScenePlan, kind: str, folder: Path, ids: list[str], without: Colle
     table = pd.concat(frames, ignore_index=True) if frames else pd.DataFrame(columns=names)
     if not p.model.yields:
         table["delta_max"] = table["overlap"]
-    return table[table["overlap"] > 0]
+    return _in_contact(table)
+
+
+def _in_contact(table: pd.DataFrame) -> pd.DataFrame:
+    """The rows of bodies that overlap or are attached; with adhesion `attached` becomes a truth."""
+    if "attached" not in table:
+        return table[table["overlap"] > 0]
+    table = table.assign(attached=table["attached"] > 0)
+    return table[(table["overlap"] > 0) | table["attached"]]
 
 
 def _pairs(p: ScenePlan, folder: Path, without: Collection[int]) -> pd.DataFrame:
@@ -125,21 +138,11 @@ def _planes(p: ScenePlan, spheres: pd.DataFrame) -> list[pd.DataFrame]:
     planes = []
     for w in p.layout.planes:
         axis = "xyz"[w.axis]
-        touching = spheres[(spheres[axis] - w.place).abs() < spheres["radius"]]
-        overlap = touching["radius"] - (touching[axis] - w.place).abs()
-        largest = np.maximum(touching[f"delta_max_{w.name}"], overlap) if p.model.yields else overlap
-        planes.append(
-            pd.DataFrame(
-                {
-                    "step": touching["step"],
-                    "wall": w.name,
-                    "i": touching["id"],
-                    "j": 0,
-                    "overlap": overlap,
-                    "delta_max": largest,
-                }
-            )
-        )
+        overlap = spheres["radius"] - (spheres[axis] - w.place).abs()
+        largest = np.maximum(spheres[f"delta_max_{w.name}"], overlap) if p.model.yields else overlap
+        columns = {"step": spheres["step"], "wall": w.name, "i": spheres["id"], "j": 0, "overlap": overlap}
+        attached = {"attached": spheres[f"attached_{w.name}"]} if p.model.adheres else {}
+        planes.append(_in_contact(pd.DataFrame(columns | {"delta_max": largest} | attached)))
     return planes
 
 

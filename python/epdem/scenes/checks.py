@@ -77,7 +77,7 @@ def bed_rebound(case: SceneCase, spheres: pd.DataFrame) -> tuple[float, float]:
 
 def stiffness(p: ScenePlan, rows: pd.DataFrame) -> tuple[float, float]:
     """Secant stiffness [N/m] of (loading, unloading) between half the largest plate force and that force."""
-    turn = p.phases[0].end
+    turn = p.phases[-2].end
     load, unload = rows[rows["step"] <= turn], rows[rows["step"] > turn]
     way_up, up = load["plate_z"].to_numpy()[::-1], load["plate_force"].to_numpy()[::-1]
     way_down, down = unload["plate_z"].to_numpy(), unload["plate_force"].to_numpy()
@@ -166,7 +166,7 @@ def _of_settle(p: ScenePlan, s: Settle, tables: dict[str, pd.DataFrame]) -> list
     if "floor_load" in tables["rows"] and "particles" in tables and smooth:
         load, weight = floor_load(p.case, tables)
         rows.append(_row("floor load / weight (smooth walls: hydrostatic)", load, weight, 0.02))
-    if not s.rate and s.gravity and p.output.particles >= MANY:
+    if not s.rate and s.gravity and p.output.particles >= MANY and not p.model.adheres:  # what sticks swings back
         rows.append(_below("rebound of the bed / e_n^2 fall", *bed_rebound(p.case, tables["particles"]), 0.0))
     return rows
 

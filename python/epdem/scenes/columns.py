@@ -25,10 +25,9 @@ UNITS = {
     **dict.fromkeys(("omega_x", "omega_y", "omega_z"), "rad/s"),
     **dict.fromkeys(("overlap", "delta_max", "residual_overlap", "dent_radius"), "m"),
     "force": "N",
-    **dict.fromkeys(("plastic_work", "elastic_energy", "friction_work", "friction_energy"), "J"),
-    **dict.fromkeys(
-        ("kinetic", "gravity", "elastic", "plastic", "work", "left", "balance", "friction", "springs"), "J"
-    ),
+    **dict.fromkeys(("plastic_work", "adhesive_work", "elastic_energy", "friction_work", "friction_energy"), "J"),
+    **dict.fromkeys(("kinetic", "gravity", "elastic", "plastic", "adhesion", "work", "left", "balance"), "J"),
+    **dict.fromkeys(("friction", "springs"), "J"),
 }
 SMALLEST = 1e-12  # radius [m]
 PARTICLES = ["id", "type", "radius", "mass", "x", "y", "z", "vx", "vy", "vz"]

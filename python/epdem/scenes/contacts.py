@@ -11,6 +11,8 @@ import pandas as pd
 from ..case.scene import SceneCase
 from ..errors import EngineError
 from ..laws.native import Law
+from ..theory.adhesion import plastic_work
+from ..theory.backbones import JKR
 from ..theory.numerics import gauss
 from .pairs import pair_law
 from .plan import ScenePlan
@@ -36,7 +38,8 @@ _NODES, _WEIGHTS = gauss(16)  # on [0, 1]
 def complete(p: ScenePlan, raw: pd.DataFrame, spheres: pd.DataFrame, folder: Path) -> pd.DataFrame:
     """One row per contact and frame, with all that follows by the law, sorted; SI.
 
-    raw: step, wall, i, j, overlap, delta_max; i < j are ids of spheres, or j = 0 and `wall` the name of a wall.
+    raw: step, wall, i, j, overlap, delta_max; i < j are ids of spheres, or j = 0 and `wall` the name of a wall; with
+    adhesion also whether the bodies are attached, for they may overlap in a dent without a contact.
     spheres: the particles' table. Raises EngineError, which names `folder`, for a contact of spheres that it lacks.
     """
     if raw.empty:
@@ -53,7 +56,8 @@ def complete(p: ScenePlan, raw: pd.DataFrame, spheres: pd.DataFrame, folder: Pat
     type_j = second["type"].fillna(p.model.wall_type).to_numpy(int)
     radius_i, type_i = first["radius"].to_numpy(), first["type"].to_numpy(int)
     R_star = 1.0 / (1.0 / radius_i + 1.0 / radius_j)
-    law = energies(p, type_i, type_j, R_star, raw["overlap"].to_numpy(), raw["delta_max"].to_numpy())
+    attached = raw["attached"].to_numpy(bool) if "attached" in raw else np.ones(len(raw), bool)
+    law = energies(p, type_i, type_j, R_star, raw["overlap"].to_numpy(), raw["delta_max"].to_numpy(), attached)
     table = raw[["step", "wall", "i", "j", "overlap", "delta_max"]].reset_index(drop=True).join(law)
     table = table.astype({"step": "int64", "i": "int64", "j": "int64"})
     return table[COLUMNS].sort_values(["step", "wall", "i", "j"], kind="stable").reset_index(drop=True)
@@ -66,6 +70,7 @@ def energies(
     R_star: Array,
     overlap: Array,
     delta_max: Array,
+    attached: npt.NDArray[np.bool_],
 ) -> pd.DataFrame:
     """force, residual_overlap, dent_radius, plastic_work, elastic_energy of contacts; arrays of shape (n,)."""
     out = pd.DataFrame(0.0, index=range(len(overlap)), columns=COLUMNS[6:])
@@ -74,19 +79,21 @@ def energies(
     keys = pd.DataFrame({"a": low, "b": high, "R": R_star})
     for (a, b, R), rows in keys.groupby(["a", "b", "R"]).groups.items():
         at = rows.to_numpy()
-        values = _one_kind(p.case, material[a], material[b], float(R), overlap[at], delta_max[at])
+        values = _one_kind(p.case, material[a], material[b], float(R), overlap[at], delta_max[at], attached[at])
         for name, value in values.items():
             out.loc[at, name] = value
     return out
 
 
 def _one_kind(
-    case: SceneCase, a: str, b: str, R: float, overlap: np.ndarray, largest: np.ndarray
+    case: SceneCase, a: str, b: str, R: float, overlap: np.ndarray, largest: np.ndarray, attached: np.ndarray
 ) -> dict[str, np.ndarray]:
     """Contacts of one pair of materials and one R* [m]."""
     spec, E_star = pair_law(case, a, b)
+    theory = spec.theory(E_star=E_star, R_star=R)
+    if isinstance(theory, JKR):
+        return _with_adhesion(theory, overlap, np.maximum(largest, overlap), attached)
     law = Law(spec.name, E_star=E_star, **spec.parameters)
-    theory = spec.backbone(E_star=E_star, R_star=R)
     largest = np.maximum(largest, overlap)
     force, _, _ = law.step(R_star=R, delta_max=largest, delta=overlap)
     _, dent, _, plastic = law.backbone(R_star=R, delta=largest)
@@ -102,4 +109,19 @@ def _one_kind(
         "dent_radius": np.where(plastic > 0.0, dent, 0.0),
         "plastic_work": plastic,
         "elastic_energy": elastic,
+    }
+
+
+def _with_adhesion(law: JKR, overlap: np.ndarray, largest: np.ndarray, attached: np.ndarray) -> dict[str, np.ndarray]:
+    """Contacts of one kind of a law with adhesion."""
+    top = np.maximum(law.radius(largest), law.touch_radius)
+    branch, dent = law.branch(top)
+    dented = dent > 0
+    a = np.where(attached, branch.radius(overlap - dent), 0.0)
+    return {
+        "force": np.where(attached, branch.force(a), 0.0),
+        "residual_overlap": dent,
+        "dent_radius": np.where(dented, top, 0.0),
+        "plastic_work": plastic_work(law, top),
+        "elastic_energy": np.where(attached, branch.energy(a), 0.0),
     }

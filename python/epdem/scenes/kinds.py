@@ -178,7 +178,7 @@ def _compaction(s: Compaction) -> Layout:
         True,
         (_floor(),),
         (Fill(s.particles, s.count, Block((-x, x, -y, y, 0.0, lz))),),
-        (load, unload),
+        (*([Stage("fall", s.fall)] if s.fall else []), load, unload),
         {"plate": meshes.plate(lx, ly, lz)},
     )
 

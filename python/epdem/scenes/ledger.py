@@ -37,8 +37,11 @@ def plate_velocity(p: ScenePlan, rows: pd.DataFrame) -> np.ndarray:
 
 
 def _left(spheres: pd.DataFrame, steps: np.ndarray) -> np.ndarray:
-    """Energy [J] that spheres took along which were gone at each step: kinetic, plastic, rubbed, as last seen."""
-    energy = kinetic(spheres) + spheres.get("plastic_work", 0.0) + spheres.get("friction_work", 0.0)
+    """Energy [J] that spheres took along which were gone at each step: kinetic, plastic, lost by adhesion, rubbed, as
+    last seen."""
+    energy = kinetic(spheres)
+    for name in ("plastic_work", "adhesive_work", "friction_work"):
+        energy = energy + spheres.get(name, 0.0)
     last = spheres.groupby("id")["step"].max()
     gone = last[last < steps[-1]]
     taken = np.zeros(steps.size)
@@ -49,7 +52,8 @@ def _left(spheres: pd.DataFrame, steps: np.ndarray) -> np.ndarray:
 
 
 def ledger(p: ScenePlan, tables: dict[str, pd.DataFrame]) -> pd.DataFrame:
-    """One row per frame [J]: kinetic, gravity, elastic, plastic, work done by walls, left, and the balance.
+    """One row per frame [J]: kinetic, gravity, elastic, plastic, work done by walls, left, and the balance; with
+    adhesion also what its jumps took, and `elastic` holds the surface energy, too.
 
     With partial slip also friction, the work that it took, and springs, the elastic energy of its springs. The balance
     is what these leave unexplained since the first frame with all spheres; it must vanish unless contacts roll, have
@@ -62,8 +66,11 @@ def ledger(p: ScenePlan, tables: dict[str, pd.DataFrame]) -> pd.DataFrame:
     table = pd.DataFrame({"step": steps, "time": steps * p.time_step})
     table["kinetic"], table["gravity"] = sums["kinetic"].to_numpy(), sums["gravity"].to_numpy()
     table["elastic"] = contacts.groupby("step")["elastic_energy"].sum().reindex(steps, fill_value=0.0).to_numpy()
-    plastic = spheres.groupby("step")["plastic_work"].sum() if "plastic_work" in spheres else pd.Series(0.0, steps)
-    table["plastic"] = plastic.reindex(steps).to_numpy()
+    for name, column in (("plastic", "plastic_work"), ("adhesion", "adhesive_work")):
+        if column in spheres:
+            table[name] = spheres.groupby("step")[column].sum().reindex(steps).to_numpy()
+        elif name == "plastic":
+            table[name] = 0.0
     if p.rubs:
         both = spheres.groupby("step")[["friction_work", "friction_energy"]].sum().reindex(steps)
         table["friction"], table["springs"] = both["friction_work"].to_numpy(), both["friction_energy"].to_numpy()
@@ -72,8 +79,9 @@ def ledger(p: ScenePlan, tables: dict[str, pd.DataFrame]) -> pd.DataFrame:
     table["left"] = _left(spheres, steps) if p.layout.loses else 0.0
     present = spheres.groupby("step")["id"].count().reindex(steps).to_numpy()
     start = int(np.argmax(present == present.max()))
-    kinds = ["kinetic", "gravity", "elastic", "plastic", "left", *(["friction", "springs"] if p.rubs else [])]
-    total = table[kinds].sum(axis=1) - table["work"]
+    rubbed = ["friction", "springs"] if p.rubs else []
+    kinds = ["kinetic", "gravity", "elastic", "plastic", "adhesion", "left", *rubbed]
+    total = table.reindex(columns=kinds, fill_value=0.0).sum(axis=1) - table["work"]
     table["balance"] = total - total.iloc[start]
     table = table.iloc[start:].reset_index(drop=True)
     if p.model.loses_energy and not p.rubs:
@@ -83,6 +91,6 @@ def ledger(p: ScenePlan, tables: dict[str, pd.DataFrame]) -> pd.DataFrame:
 
 def closure(table: pd.DataFrame) -> float:
     """Largest balance over the energy that moved: of the start, and what walls put in."""
-    terms = table[["kinetic", "elastic", "plastic", "work"]].abs().max().sum()
+    terms = table.reindex(columns=["kinetic", "elastic", "plastic", "adhesion", "work"]).abs().max().sum()
     fall = abs(table["gravity"].iloc[0] - table["gravity"].min())
     return float(table["balance"].abs().max() / max(terms, fall, 1e-300))

@@ -7,8 +7,9 @@ from dataclasses import dataclass
 from ..case.impact import NODES, Tangential
 from ..case.scene import Rolling, SceneCase
 from ..errors import CaseError
+from ..laws.library import laws
 from ..laws.strengths import own_ratios
-from .pairs import numbers, strengths
+from .pairs import numbers, strengths, work_of_adhesion
 
 WALL = "wall"
 
@@ -28,7 +29,7 @@ class Model:
 
     parameters: the law's dimensionless ones. friction: of each pair of types, by the model `tangential`. viscous:
     restitution of impacts that do not yield; tangential_restitution: of the dashpot beside the tangential spring.
-    cohesion: energy density [J/m^3].
+    cohesion: energy density [J/m^3]. adhesion: work of adhesion of each pair of types [J/m^2], of laws with adhesion.
     """
 
     law: str
@@ -41,6 +42,7 @@ class Model:
     tangential_restitution: float | None
     rolling: Rolling | None
     cohesion: float | None
+    adhesion: tuple[tuple[float, ...], ...] = ()
 
     def type_of(self, name: str) -> int:
         """The number of a type."""
@@ -54,6 +56,11 @@ class Model:
     def yields(self) -> bool:
         """Whether the law has a strength."""
         return any(t.strength < math.inf for t in self.types)
+
+    @property
+    def adheres(self) -> bool:
+        """Whether bodies attract each other by the law."""
+        return laws()[self.law].adheres
 
     @property
     def sliding(self) -> bool:
@@ -96,12 +103,22 @@ def model(case: SceneCase) -> Model:
         tangential_restitution=contact.tangential_restitution,
         rolling=contact.rolling,
         cohesion=contact.cohesion,
+        adhesion=_adhesion(case, types),
     )
+    if result.adheres and contact.cohesion is not None:
+        raise CaseError(f"contact.cohesion: law {result.law} has its attraction already; remove one of them")
+    if result.adheres and NODES[contact.tangential]:
+        raise CaseError(f"contact.tangential = {contact.tangential!r}: laws with adhesion have 'history' only; take it")
     if not result.sliding and contact.tangential_restitution is not None:
         raise CaseError("contact.tangential_restitution: there is no friction, so no tangential dashpot; remove it")
     if not result.sliding and contact.tangential != "history":
         raise CaseError(f"contact.tangential = {contact.tangential!r}: there is no friction; give contact.friction")
     return result
+
+
+def _adhesion(case: SceneCase, types: list[Type]) -> tuple[tuple[float, ...], ...]:
+    rows = [[work_of_adhesion(case, a.material, b.material) for b in types] for a in types]
+    return tuple(tuple(x for x in row if x is not None) for row in rows) if rows[0][0] is not None else ()
 
 
 def _materials_used(case: SceneCase) -> list[str]:

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """The law between two materials of a scene, and impacts of two bodies as models of its contacts. SI."""
 
+from dataclasses import replace
+
 import numpy as np
 
 from ..case.law import law_numbers
@@ -8,7 +10,9 @@ from ..case.scene import SceneCase
 from ..case.units import read_number
 from ..errors import CaseError
 from ..impacts.experiment import Body, Experiment, plane, sphere
-from ..laws.strengths import LawNumbers, LawSpec, law_named
+from ..laws.strengths import LawNumbers, LawSpec, Surface, law_named
+from ..theory import adhesion
+from ..theory.backbones import JKR
 from ..theory.pair import E_star
 
 
@@ -36,22 +40,34 @@ def strengths(case: SceneCase) -> dict[str, float]:
     return strengths
 
 
+def work_of_adhesion(case: SceneCase, a: str, b: str) -> float | None:
+    """Gamma of two materials [J/m^2]; None for a law without adhesion. Raises CaseError."""
+    surfaces = [Surface(name, case.materials[name].surface_energy) for name in (a, b)]
+    return numbers(case).work_of_adhesion(*surfaces)
+
+
 def pair_law(case: SceneCase, a: str, b: str) -> tuple[LawSpec, float]:
     """(the law of a contact between two materials, its E* [Pa])."""
     strong, first, second = strengths(case), case.materials[a], case.materials[b]
     elastic = (first.young_modulus, first.poisson_ratio, second.young_modulus, second.poisson_ratio)
-    return numbers(case).pair(strong[a], strong[b]), float(E_star(*elastic))
+    return numbers(case).pair(strong[a], strong[b], work_of_adhesion(case, a, b)), float(E_star(*elastic))
 
 
 def _impact(case: SceneCase, body: Body, target: Body, v: float) -> Experiment:
-    return Experiment(
-        law=pair_law(case, body.material, target.material)[0],
-        body=body,
-        target=target,
-        speed=np.geomspace(v / 100, v, 5),
-        viscous_restitution=case.viscous.restitution if case.viscous else None,
-        name=case.name,
-    )
+    law = pair_law(case, body.material, target.material)[0]
+    viscous = case.viscous.restitution if case.viscous and not law.adheres else None  # no theory has both
+    x = Experiment(law, body, target, np.geomspace(v / 100, v, 5), viscous_restitution=viscous, name=case.name)
+    return replace(x, speed=_far_from_sticking(x))
+
+
+def _far_from_sticking(x: Experiment) -> np.ndarray:
+    """The speeds at which the error of e_n says something: near the sticking speed e_n falls to 0 as a root."""
+    law, v = x.theory(), x.speed
+    if not isinstance(law, JKR):
+        return v
+    share = v / max(float(adhesion.sticking_speed(law, m_star=x.m_star)), 1e-300)
+    far = v[(share < 0.5) | (share > 2.0)]
+    return far if far.size else v[-1:] * 2.0 / share[-1]
 
 
 def sphere_impact(case: SceneCase, material: str, radius: float, other: str, v: float) -> Experiment:

@@ -91,6 +91,11 @@ class ScenePlan:
         return self.output.energy and self.model.yields
 
     @property
+    def jumps(self) -> bool:
+        """Whether the work that adhesion took of each sphere is in the frames."""
+        return self.output.energy and self.model.adheres
+
+    @property
     def rubs(self) -> bool:
         """Whether the work of friction of each sphere is in the frames."""
         return self.output.energy and self.model.nodes > 0

@@ -14,7 +14,8 @@ from ..errors import CaseError
 from ..impacts.experiment import Experiment, bodies, pair_of
 from ..impacts.prediction import predict
 from ..laws.strengths import LawNumbers, law_named
-from ..theory.backbones import LAWS
+from ..theory import adhesion
+from ..theory.backbones import JKR, LAWS
 from ..theory.numerics import bisect
 
 KGF_PER_MM2 = 9.80665e6  # Pa
@@ -82,7 +83,10 @@ class _Unknown:
         theory = x.theory()
         e_n = float(predict(x).e_n[0]) if speed else None
         stress = strength if self.parameter == "yield_stress" else strength / law_named(self.law.name).default_ratio
-        yield_speed = math.sqrt(2.0 * float(theory.work(theory.yield_overlap)) / x.m_star)
+        if isinstance(theory, JKR):
+            yield_speed = float(adhesion.yield_speed(theory, m_star=x.m_star))
+        else:
+            yield_speed = math.sqrt(2.0 * float(theory.work(theory.yield_overlap)) / x.m_star)
         return Calibration(self.law.name, self.parameter, strength, stress, yield_speed, e_n, speed, source)
 
 

@@ -68,7 +68,7 @@ def models(case: Case, engines: list[str], laws: list[str], steps: tuple[int, ..
             # the case's own law keeps the case's parameters
             x = replace(experiment(case, None if law == case.law.name else law), numerics=numerics)
             prediction = predict(x)
-            shortest = float(prediction.contact_time.min())
+            shortest = float(prediction.duration.min())
             plans = {n: plan(x, prediction, time_step=shortest / n) for n in steps}
             chosen.append(Model(tool, law, prediction, plans))
     return chosen

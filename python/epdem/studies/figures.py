@@ -1,12 +1,22 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Figures 8.16, 8.17 and 8.19 of Seville and Wu 2016, redrawn from theory; sourced data points are not at hand."""
+"""Figures 8.16, 8.17 and 8.19 of Seville and Wu 2016 and figure 10 of Thornton and Ning 1998, redrawn from theory, the
+last also from LIGGGHTS; sourced data points are not at hand."""
 
+import tempfile
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 
 from ..base.files import atomic
+from ..case.impact import Material
+from ..engines import engine
+from ..impacts.experiment import Experiment, plane, sphere
+from ..impacts.plan import plan
+from ..impacts.prediction import predict
+from ..impacts.run import run_plan
+from ..laws.strengths import ADHESION, LawSpec
 from ..theory import pair, pressure, printed
 from ..theory.backbones import LAWS
 from ..theory.cavity import Cavity
@@ -100,6 +110,30 @@ def restitution(folder: Path) -> Path:
     return _save(figure, folder / "figure_8_19.png")
 
 
+def adhesion_by_strength(folder: Path) -> Path:
+    """Figure 10 of Thornton and Ning 1998: e_n against speed with adhesion for three strengths, and an elastic sphere;
+    lines are theory, points are impacts in LIGGGHTS, where it is installed."""
+    figure, axes = _axes("Adhesive spheres, R* = 10 um, Gamma = 0.2 J/m^2", "V [m/s]", "e_n")
+    steel = Material.model_validate({"young_modulus": "215 GPa", "poisson_ratio": 0.3, "density": "7850 kg/m^3"})
+    body, target = sphere(steel, radius=1e-5, name="steel"), plane(steel, name="steel")
+    tool = engine("liggghts")
+    for k, p_y in enumerate((None, 3.04e9, 1e9, 0.5e9)):
+        law = LawSpec("jkr", {ADHESION: 0.2}, (np.inf, np.inf))
+        if p_y is not None:
+            law = LawSpec("thornton_ning", {ADHESION: 0.2, "yield_pressure": p_y}, (p_y, p_y))
+        x = Experiment(law, body, target, np.geomspace(0.005, 50, 400))
+        name = "elastic (JKR)" if p_y is None else f"p_y = {p_y / 1e9:g} GPa"
+        axes.semilogx(x.speed, predict(x).e_n, color=f"C{k}", lw=1.2, label=name)
+        if tool.missing() is None:
+            points = replace(x, speed=np.geomspace(0.008, 30, 16))
+            with tempfile.TemporaryDirectory(prefix="epdem-figure-") as scratch:
+                found = run_plan(plan(points, predict(points)), tool, Path(scratch)).impacts
+            e_n = found["e_n"].to_numpy().reshape(16, -1)[:, 0]
+            axes.plot(points.speed, e_n, "o", color=f"C{k}", ms=4, mfc="none")
+    axes.legend()
+    return _save(figure, folder / "thornton_ning_1998.png")
+
+
 def draw_all(folder: Path) -> list[Path]:
     """All figures into `folder`; their paths."""
-    return [draw(folder) for draw in (mean_pressure, unloading_pressure, restitution)]
+    return [draw(folder) for draw in (mean_pressure, unloading_pressure, restitution, adhesion_by_strength)]

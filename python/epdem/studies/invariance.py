@@ -40,7 +40,7 @@ def examine(tool: Engine, x: Experiment, folder: Path) -> Invariance | None:
     pair = unequal_spheres(x)
     prediction = predict(tool, pair)
     p = plan(pair, prediction)
-    scene = pairs(p, float(prediction.contact_time[0]))
+    scene = pairs(p, float(prediction.duration[0]))
     mass = np.array([pair.body.mass, pair.target.mass])[:, None, None]
 
     def restitution(v: np.ndarray) -> np.ndarray:

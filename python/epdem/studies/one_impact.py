@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """One impact on a wall of the same material by every law, from theory."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -11,7 +11,7 @@ from ..impacts.experiment import Experiment, pair_of, plane, sphere
 from ..impacts.prediction import predict
 from ..laws.strengths import default_numbers
 from ..theory import printed, yielding
-from ..theory.backbones import LAWS
+from ..theory.backbones import ADHESIVE, LAWS
 
 NAMES = ("e_n", "contact_time", "force_max", "overlap_max", "residual_overlap", "strain_ratio")
 
@@ -38,15 +38,20 @@ class OneImpact:
     plastic: float
 
 
-def one_impact(material: str, *, radius: float, speed: float) -> OneImpact:
-    """A sphere of a material of ours, of `radius` [m], at `speed` [m/s]; both > 0. Raises CaseError."""
+def one_impact(material: str, *, radius: float, speed: float, adhesion: float | None = None) -> OneImpact:
+    """A sphere of a material of ours, of `radius` [m], at `speed` [m/s]; both > 0. Raises CaseError.
+
+    With a work of `adhesion` > 0 [J/m^2] the laws with adhesion come, too.
+    """
     entry = sourced(material)
     if (Y := entry.material.yield_stress) is None:
         raise CaseError(f"--material {material!r} has no yield stress in the materials file; choose another")
     body, target = sphere(entry.material, radius=radius, name=material), plane(entry.material, name=material)
     laws = {}
-    for name in LAWS:
-        x = Experiment(pair_of(default_numbers(name), body, target), body, target, np.array([speed]))
+    for name in [*LAWS, *(ADHESIVE if adhesion else [])]:
+        numbers = default_numbers(name)
+        numbers = replace(numbers, adhesion=adhesion) if name in ADHESIVE else numbers
+        x = Experiment(pair_of(numbers, body, target), body, target, np.array([speed]))
         prediction = predict(x)
         laws[name] = {k: float(getattr(prediction, k)[0]) for k in NAMES}
     plastic, first = LAWS["thornton"].default_ratio, yielding.FIRST_YIELD_ROUNDED

@@ -3,6 +3,9 @@
 
 The yield speed goes as p_y^2.5/E*^2, so E*/k with p_y/k^0.8 keeps it, and with it the whole curve e_n(v/v_y). The time
 step grows by k^0.4, dents and overlaps by k^0.4 and a/R by k^0.2. Softening the modulus alone loses e_n.
+
+The sticking speed goes as Gamma^(5/6)/E*^(1/3), so Gamma/k^0.4 keeps it. Then sqrt(2 pi Gamma a/E*) grows as the
+overlaps and sqrt(2 Gamma E*/(pi a)) falls as p_y: all lengths and pressures of such a contact keep their ratios.
 """
 
 from dataclasses import dataclass
@@ -14,10 +17,10 @@ import tomlkit
 from ..case.library import with_library
 from ..case.toml import named, read_toml
 from ..errors import CaseError
-from ..laws.strengths import law_named
+from ..laws.strengths import ADHESION, law_named
 from ..theory.validity import SMALL_DEFORMATION
 
-STRENGTH_POWER, STEP_POWER, STRAIN_POWER = 0.8, 0.4, 0.2
+STRENGTH_POWER, ADHESION_POWER, STEP_POWER, STRAIN_POWER = 0.8, 0.4, 0.4, 0.2
 
 
 @dataclass(frozen=True)
@@ -55,6 +58,10 @@ def _replacements(data: dict[str, Any], factor: float) -> dict[tuple[str, ...], 
         for key in ("yield_stress", *([strength] if strength else [])):
             if key in material:
                 texts["materials", name, key] = _scaled(material[key], factor**-STRENGTH_POWER)
+        if "surface_energy" in material:
+            texts["materials", name, "surface_energy"] = _scaled(material["surface_energy"], factor**-ADHESION_POWER)
+    if ADHESION in law:
+        texts["law", ADHESION] = _scaled(law[ADHESION], factor**-ADHESION_POWER)
     if strength and strength in law:
         texts["law", strength] = _scaled(law[strength], factor**-STRENGTH_POWER)
     name = f"{data['case']['name']}_soft{factor:g}".replace(".", "_").replace("+", "")[:64]

@@ -105,6 +105,19 @@ def e_n(law: JKR, *, m_star: Numbers, speed: Numbers) -> Numbers:
     return np.sqrt(np.where(a <= law.yield_radius, elastic, flows))
 
 
+def plastic_work(law: JKR, top: Numbers) -> Numbers:
+    """Work lost by yield [J] of a contact that reached the contact radius `top` [m]."""
+    (branch, _), (start, _), first = law.branch(top), law.branch(law.touch_radius), law.touch_radius
+    yields = top > np.maximum(law.yield_radius, first)
+    return np.where(yields, np.maximum(law.work(top) + start.energy(first) - branch.energy(top), 0.0), 0.0)
+
+
+def lost_work(law: JKR, alpha_max: Numbers) -> Numbers:
+    """Work [J] that a contact loses which reaches the overlap alpha_max [m] > 0 and parts: by adhesion and by yield."""
+    top = law.radius(alpha_max)
+    return law.work(top) - _recovered(law, top)
+
+
 def _nodes() -> tuple[Numbers, Numbers, Numbers]:
     """Doubly exponential quadrature on [0, 1]: t, 1 - t and weights, t and 1 - t both with full relative accuracy."""
     s = np.arange(-60, 61) / 16
@@ -149,11 +162,10 @@ def impact(law: JKR, *, m_star: Numbers, speed: Numbers) -> Impact:
     W = 0.5 * m * v * v
     top, first = law.radius_of_work(W), law.touch_radius
     (branch, dent), (start, _) = law.branch(top), law.branch(first)
-    e, stored = e_n(law, m_star=m, speed=v), branch.energy(top)
+    e = e_n(law, m_star=m, speed=v)
     out = e * e * W
     formed, ended = -start.energy(first), branch.energy(branch.fold_radius)
-    yields = top > np.maximum(law.yield_radius, first)
-    plastic = np.where(yields, np.maximum(W - formed - stored, 0.0), 0.0)
+    plastic = plastic_work(law, top)
     adhesive = np.where(e > 0, formed + ended, W - plastic)
     columns = {
         "e_n": e,

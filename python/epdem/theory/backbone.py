@@ -15,6 +15,7 @@ class Parameter(NamedTuple):
     symbol: str  # of the constructor and in formulas
     unit: str
     default: float | None = None  # None: it must be given
+    may_vanish: bool = False  # 0 is a value, not a mistake
 
 
 class Backbone:

@@ -10,6 +10,7 @@ from typing import Any, ClassVar
 
 import numpy as np
 
+from .backbone import Parameter
 from .checks import number
 
 Numbers = Any  # a float or an array of floats; they broadcast
@@ -24,7 +25,12 @@ class JKR:
     E_star [Pa] > 0, R_star [m] > 0, work_of_adhesion Gamma of the pair [J/m^2] >= 0. ValueError outside.
     """
 
-    name = "jkr"
+    name: ClassVar[str] = "jkr"
+    parameters: ClassVar[tuple[Parameter, ...]] = (
+        Parameter("work_of_adhesion", "work_of_adhesion", "J/m^2", may_vanish=True),
+    )
+    strength: ClassVar[str | None] = None
+    default_ratio: ClassVar[float] = 1.0
     keywords: ClassVar[dict[str, str]] = {"work_of_adhesion": "work_of_adhesion"}
 
     def __init__(self, *, E_star: Numbers, R_star: Numbers, work_of_adhesion: Numbers) -> None:

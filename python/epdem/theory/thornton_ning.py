@@ -5,6 +5,7 @@ from typing import ClassVar
 
 import numpy as np
 
+from .backbone import Parameter
 from .checks import number
 from .jkr import JKR, Numbers, Path
 from .numerics import gauss
@@ -23,6 +24,8 @@ class ThorntonNing(JKR):
     """
 
     name = "thornton_ning"
+    parameters = (*JKR.parameters, Parameter("yield_pressure", "p_y", "Pa"))
+    strength = "yield_pressure"
     keywords: ClassVar[dict[str, str]] = {"work_of_adhesion": "work_of_adhesion", "yield_pressure": "p_y"}
     default_ratio = 2.8
 

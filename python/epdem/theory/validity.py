@@ -6,8 +6,10 @@ Each law states its own limits (`Backbone.caveats`); the limits of all laws toge
 
 import numpy as np
 
+from . import adhesion
 from .backbone import Backbone
-from .checks import Real, number
+from .checks import Array, Real, number
+from .jkr import JKR
 from .restitution import impact
 
 SMALL_DEFORMATION = 0.3  # a_max/R* above which results are flagged everywhere
@@ -20,7 +22,21 @@ def caveats(law: Backbone, *, m_star: float, speed: Real) -> list[str]:
     """Sentences, none where all is well, on impacts at `speed` [m/s] > 0 of any shape with m_star [kg] > 0."""
     speed = np.ravel(number("speed", speed))
     strain = impact(law, m_star=m_star, speed=speed).strain_ratio
-    sentences = law.caveats(m_star=m_star, speed=speed)
+    return [*law.caveats(m_star=m_star, speed=speed), *_finite_strain(strain, speed)]
+
+
+def adhesive_caveats(law: JKR, *, m_star: float, speed: Real) -> list[str]:
+    """The same for a law with adhesion; Tabor's number below 3 is one of them."""
+    speed = np.ravel(number("speed", speed))
+    tabor = adhesion.warning(law)
+    return [
+        *([tabor] if tabor else []),
+        *_finite_strain(adhesion.impact(law, m_star=m_star, speed=speed).strain_ratio, speed),
+    ]
+
+
+def _finite_strain(strain: Array, speed: Array) -> list[str]:
+    sentences = []
     for limit, deviation in FINITE_STRAIN.items():
         beyond = speed[strain > limit]
         if beyond.size:

@@ -3,16 +3,19 @@
 
 import math
 import time
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
+from typing import Any
 
 import numpy as np
 
 from ...errors import EngineError, EpdemError
 from ...impacts.engine import EPS, not_representable
 from ...impacts.experiment import Experiment
-from ...impacts.prediction import predict
+from ...impacts.prediction import Prediction, predict
 from ...impacts.timestep import stability_limit
+from ...theory import adhesion
+from ...theory.backbones import JKR
 from ...theory.validity import SMALL_DEFORMATION
 from .cases import Extreme
 from .sampling import Sampler
@@ -67,12 +70,15 @@ class Setting:
     limit: float
     contact_time: float
     strain_ratio: float
+    lost: Callable[[np.ndarray], Any]  # work [J] that a contact loses which reaches an overlap [m]
 
 
 def setting(extreme: Extreme, law: str) -> Setting:
     """Theory of an extreme case, with the work already stored in an overlap at t = 0."""
     x = extreme.experiment(law)
     prediction, theory = predict(x), x.theory()
+    if isinstance(theory, JKR):
+        return _with_adhesion(x, prediction, theory)
     kinetic, top = 0.5 * x.m_star * float(x.speed[0]) ** 2, float(prediction.overlap_max[0])
     start = None if extreme.start is None else extreme.start * top
     energy = kinetic + (float(theory.work(start)) if start else 0.0)
@@ -91,6 +97,22 @@ def setting(extreme: Extreme, law: str) -> Setting:
         float(stability_limit(x, top)),
         float(prediction.contact_time[0]),
         float(theory.radius(top) / x.R_star),
+        theory.plastic_work,
+    )
+
+
+def _with_adhesion(x: Experiment, p: Prediction, law: JKR) -> Setting:
+    return Setting(
+        x,
+        None,
+        0.5 * x.m_star * float(x.speed[0]) ** 2,
+        float(p.overlap_max[0]),
+        float(p.overlap_max[0] - p.residual_overlap[0]),
+        float(p.e_n[0]),
+        float(stability_limit(x, float(p.overlap_max[0]))),
+        float(p.contact_time[0]),
+        float(p.strain_ratio[0]),
+        lambda peak: adhesion.lost_work(law, peak),
     )
 
 
@@ -133,10 +155,10 @@ def measure(s: Setting, sampler: Sampler, share: float, phases: int | None = Non
     except EngineError as stopped:
         return Rung(share, np.inf, np.inf, 0, message=str(stopped))
     e_n, peak = (np.concatenate([getattr(g, name) for g in got]) for name in ("e_n", "overlap_max"))
-    theory, kinetic = s.x.theory(), 0.5 * s.x.m_star * float(s.x.speed[0]) ** 2
+    kinetic = 0.5 * s.x.m_star * float(s.x.speed[0]) ** 2
     with np.errstate(all="ignore"):
         error = np.abs(e_n / s.e_n - 1.0)
-        created = (e_n**2 * kinetic + theory.plastic_work(peak)) / s.energy - 1.0
+        created = (e_n**2 * kinetic + s.lost(peak)) / s.energy - 1.0
     whole = np.isfinite(error) & np.isfinite(created)
     worst = [float(np.where(whole, value, np.inf).max()) for value in (error, created)]
     return Rung(share, worst[0], worst[1], sum(g.steps for g in got), all(g.finite for g in got))

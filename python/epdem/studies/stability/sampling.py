@@ -68,7 +68,7 @@ class PositionSampler:
         self.engine.write(plan, self.folder)
         path = self.engine.run(plan, self.folder)
         force, velocity = path.force, path.velocity
-        loaded = np.where(np.isfinite(force), force, 0.0) > 0
+        loaded = np.where(np.isfinite(force), force, 0.0) != 0  # what adheres pulls
         end = path.force.shape[1] - 1 - np.argmax(np.isfinite(force)[:, ::-1], axis=1)
         row = np.arange(gap.size)
         ended = loaded.any(axis=1) & ~loaded[row, end]

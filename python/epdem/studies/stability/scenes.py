@@ -43,7 +43,9 @@ class Scene:
         E_star = float(pair.E_star(Ei, POISSON, Ej, POISSON))
         spec = default_numbers(self.law).pair(self.strength(pi), self.strength(pj))
         R_star = self.radius if plate else self.radius / 2
-        return spec.backbone(E_star=E_star, R_star=R_star)
+        law = spec.theory(E_star=E_star, R_star=R_star)
+        assert isinstance(law, Backbone)  # laws with adhesion have cases of their own
+        return law
 
     def strength(self, p_y: float) -> float:
         """The law's strength [Pa] of a material of yield pressure p_y [Pa]: that pressure, or a yield stress."""

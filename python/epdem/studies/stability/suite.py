@@ -10,7 +10,7 @@ import pandas as pd
 
 from ...engines import engine
 from ...errors import CaseError, EngineError
-from ...theory.backbones import LAWS
+from ...theory.backbones import ADHESIVE, LAWS
 from . import bulk_checks, precisions
 from .cases import Extreme, extremes
 from .repeats import judge_repeats
@@ -70,12 +70,13 @@ def run(
     scenes run. Raises CaseError for a law or group that does not exist, EngineError for an engine that is not here.
     """
     for option, given, known in (
-        ("--law", laws, LAWS),
+        ("--law", laws, {**LAWS, **ADHESIVE}),
         ("--group", groups or [], dict.fromkeys(e.group for e in extremes())),
     ):
         if wrong := [name for name in given if name not in known]:
             raise CaseError(f"{option} {wrong[0]!r} does not exist; there are {', '.join(known)}")
-    laws = laws or list(LAWS)
+    laws = laws or [*LAWS, *ADHESIVE]
+    plain = [law for law in laws if law in LAWS]
     chosen = [e for e in extremes() if not groups or e.group in groups][::every]
     if steps is not None and not any(e.kind == "bounces" for e in chosen):
         raise CaseError(
@@ -87,7 +88,7 @@ def run(
             coarse = COARSE if not sampler.positions else POSITION_COARSE
             slow = SLOW.get(sampler.name)
             for law in [slow] if slow in laws else laws:
-                for extreme in ends(chosen) if slow else chosen:
+                for extreme in [e for e in (ends(chosen) if slow else chosen) if e.suits(law)]:
                     progress(f"{sampler.name}, {law}: {extreme.name}")
                     if extreme.kind == "impact":
                         rows.append(judge(extreme, law, sampler, coarse))
@@ -96,10 +97,12 @@ def run(
         if not groups:
             progress("round-off")
             others = [s for s in samplers(engines, Path(scratch)) if s.positions]
-            tables = [floors(law, others) for law in laws]
+            tables = [floors(law, others) for law in plain]
     verdicts = pd.DataFrame([asdict(v) for v in rows])
     verdicts["notes"] = verdicts["notes"].map("; ".join)
-    bulk = bulk_checks.run(laws, progress=progress) if "liggghts" in engines and not groups else pd.DataFrame()
+    bulk = (
+        bulk_checks.run(plain, progress=progress) if plain and "liggghts" in engines and not groups else pd.DataFrame()
+    )
     finer = "yade" in engines and not groups and precisions.available()
     return Outcome(
         verdicts,

@@ -14,6 +14,7 @@ from ...case.impact import Case, LawChoice, Material, Quantity
 from ...case.scene import SceneCase, SceneMaterial, is_scene
 from ...errors import CaseError
 from ...laws.library import laws
+from ...laws.strengths import ADHESION
 
 
 @dataclass(frozen=True)
@@ -85,6 +86,8 @@ def _of_law(case: dict[str, Any], *, ratio: bool) -> Iterator[tuple[str, Key]]:
     if law is None:
         return
     for p in law.parameters:
+        if not ratio and p.name == ADHESION:
+            continue  # of pairs; a material has a surface energy
         yield p.name, Key(unit=p.unit)
         if ratio and p == law.strength:
             yield f"{p.name}_ratio", Key(unit="1")

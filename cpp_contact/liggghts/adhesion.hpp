@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// The work of adhesion of pairs of types, and what a deck must not ask of adhesion and cohesion.
+#pragma once
+
+#include "comm.h"
+#include "epdem/adhesive.hpp"
+#include "force.h"
+#include "reader.hpp"
+
+namespace epdem::liggghts {
+
+inline constexpr const char* adhesion_name = "workOfAdhesion";  // of a pair of types [J/m^2]
+inline constexpr const char* surface_name = "surfaceEnergy";    // of a type [J/m^2]
+
+/// Work of adhesion of every pair of types [J/m^2]: as given, or twice the geometric mean of the surface energies.
+class Adhesion {
+ public:
+  explicit Adhesion(const Reader& reader) : reader_(reader), pairs_(reader.find(adhesion_name, "peratomtypepair")) {
+    const bool energy = reader.given(surface_name);
+    if (energy && reader.given(adhesion_name))
+      reader.fail(std::string("both ") + adhesion_name + " and " + surface_name + " are given; keep one");
+    if (energy) surface_ = reader.per_type(surface_name, "J/m^2", range);
+    if (!energy && !pairs_)
+      reader.fail(std::string("property ") + adhesion_name +
+                  " [J/m^2] is missing; give one value per pair of atom types: fix ID all property/global " +
+                  adhesion_name + " peratomtypepair NTYPES VALUE ... (or " + surface_name +
+                  " peratomtype gamma ..., of which it is twice the geometric mean)");
+  }
+
+  double at(int i, int j) const {
+    if (!pairs_) return adhesive::work_of_adhesion(surface_[i], surface_[j]);
+    const double x = pairs_->compute_array(i - 1, j - 1), y = pairs_->compute_array(j - 1, i - 1);
+    if (x != y)
+      reader_.fail(std::string(adhesion_name) + " of " + both(i, j) + " is not symmetric: " + number(x) + " and " +
+                   number(y));
+    return reader_.checked(adhesion_name, "J/m^2", both(i, j), x, range);
+  }
+
+ private:
+  static constexpr Range range{0.0, unlimited, true};
+  const Reader& reader_;
+  FixPropertyGlobal* const pairs_;
+  std::vector<double> surface_;
+};
+
+/// A law without adhesion beside a deck that asks for it.
+inline void refuse_adhesion(const Reader& reader, const Declaration& law) {
+  for (const char* name : {adhesion_name, surface_name}) {
+    if (!reader.given(name)) continue;
+    const std::string model = law.model;
+    const std::string instead = model == "ep/hertz"      ? "take ep/jkr"
+                                : model == "ep/thornton" ? "take ep/thornton_ning"
+                                                         : "no theory of adhesion exists for it, take ep/thornton_ning";
+    reader.fail(std::string(name) + " is given, but this law has no adhesion; " + instead + ", or remove the property");
+  }
+}
+
+}  // namespace epdem::liggghts

@@ -1,0 +1,118 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Impacts with adhesion as cases: what is given how, what sticks, and what is refused. Embedded engine."""
+
+import math
+import re
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from epdem.case.impact import parse
+from epdem.case.toml import read_toml
+from epdem.engines import engine
+from epdem.errors import CaseError
+from epdem.impacts.comparison import compare, impacts_table
+from epdem.impacts.engine import check_abilities
+from epdem.impacts.experiment import experiment
+from epdem.impacts.measurement import measure
+from epdem.impacts.plan import plan
+from epdem.impacts.prediction import predict
+from epdem.impacts.run import run
+from epdem.impacts.timestep import search
+
+CASE = Path(__file__).parents[2] / "cases" / "adhesion_thornton_1998.toml"
+# e_n by an integration of the motion for p_y = 1 GPa, R 10 um, Gamma 0.2 J/m^2
+SPEEDS = {0.02: 0.58302506, 0.05: 0.89379872, 0.1: 0.84720647, 0.3: 0.69885380, 1.0: 0.53459153, 10.0: 0.30370701}
+
+
+def data(law=None, materials=None, **tables):
+    """The case with other keys of its law and material, and other tables."""
+    made = read_toml(CASE)
+    made["law"] = law or made["law"]
+    made["materials"]["steel"] |= materials or {}
+    return made | tables
+
+
+def made(*args, **kwargs):
+    return experiment(parse(data(*args, **kwargs), CASE))
+
+
+def test_the_prediction_is_that_of_the_published_case():
+    speeds = [f"{v} m/s" for v in SPEEDS]
+    x = made(impact=read_toml(CASE)["impact"] | {"speeds": speeds})
+    p = predict(x)
+    assert p.e_n == pytest.approx(list(SPEEDS.values()), abs=2e-6)
+    assert any("Tabor's number is 1.5 (< 3)" in w for w in p.warnings()) and p.yields == ("steel",)
+
+
+def test_surface_energies_make_the_same_pair_and_both_are_too_many():
+    law = {"name": "jkr"}
+    one = made({"name": "jkr", "work_of_adhesion": "0.2 J/m^2"})
+    assert made(law, {"surface_energy": "0.1 J/m^2"}).law.parameters == one.law.parameters
+    uneven = data(law, {"surface_energy": "0.1 J/m^2"})
+    uneven["materials"]["other"] = uneven["materials"]["steel"] | {"surface_energy": "0.4 J/m^2"}
+    uneven["impact"]["target"]["material"] = "other"
+    gamma = experiment(parse(uneven, CASE)).law.parameters["work_of_adhesion"]
+    assert gamma == pytest.approx(2 * math.sqrt(0.1 * 0.4))
+    for wrong, words in (
+        (
+            ({"name": "jkr", "work_of_adhesion": "0.2 J/m^2"}, {"surface_energy": "0.1 J/m^2"}),
+            "both law.work_of_adhesion",
+        ),
+        ((law, None), "law jkr needs law.work_of_adhesion"),
+        (({"name": "jkr", "work_of_adhesion": "-1 J/m^2"},), "must be >= 0"),
+        (({"name": "jkr", "work_of_adhesion": "1 J"},), "wrong dimension"),
+        (({"name": "johnson"}, {"surface_energy": "0.1 J/m^2"}), "no theory of adhesion exists for it"),
+        (({"name": "cavity"}, {"surface_energy": "0.1 J/m^2"}), "no theory of adhesion exists for it"),
+        (({"name": "thornton"}, {"surface_energy": "0.1 J/m^2"}), "take law.name = 'thornton_ning'"),
+        (({"name": "johnson", "work_of_adhesion": "1 J/m^2"},), "has no such parameter"),
+    ):
+        with pytest.raises(CaseError, match=re.escape(words)):
+            made(*wrong)
+
+
+def test_without_adhesion_the_laws_are_hertz_and_thornton():
+    gamma = {"work_of_adhesion": "0 J/m^2"}
+    for name, plain in (("jkr", "hertz"), ("thornton_ning", "thornton")):
+        sticky, bare = predict(made({"name": name} | gamma)), predict(made({"name": plain}))
+        assert sticky.e_n == pytest.approx(bare.e_n, rel=1e-9)
+        assert sticky.contact_time == pytest.approx(bare.contact_time, rel=1e-7)
+
+
+def test_a_dashpot_beside_adhesion_and_yade_are_refused():
+    with pytest.raises(CaseError, match="both adhesion"):
+        made(viscous={"restitution": 0.8})
+    with pytest.raises(CaseError, match="engine yade has hertz"):
+        check_abilities(engine("yade"), made())
+
+
+@pytest.mark.parametrize("law", ["jkr", "thornton_ning"])
+def test_bodies_that_stick_have_no_restitution_are_counted_and_pass(law, tmp_path):
+    text = CASE.read_text().replace("count = 16", "count = 6").replace("phases = 8", "phases = 4")
+    text = re.sub(r'name = "thornton_ning"', f'name = "{law}"', text)
+    text = text if law == "thornton_ning" else text.replace("yield_pressure_ratio = 2.8\n", "")
+    path = tmp_path / "case.toml"
+    path.write_text(text.replace("0.01 m/s", "0.005 m/s").replace("30 m/s", "5 m/s"))
+    outcome = run(path, engines=[engine("embedded")], out=tmp_path / "out")
+    rows = outcome.results.comparison
+    assert outcome.passed and rows["stuck"].to_list() == [4, 0, 0, 0, 0, 0]
+    assert rows["e_n"][0] == 0.0 and np.isinf(rows["contact_time"][0]) and rows["e_n_error"].max() < 1e-4
+    assert rows["energy_residual"][1:].abs().max() < 1e-3
+
+
+def test_a_law_that_lets_go_where_theory_sticks_fails():
+    """And one that sticks where theory lets go."""
+    x = made(impact=read_toml(CASE)["impact"] | {"speeds": ["0.01 m/s", "0.1 m/s"]})
+    prediction = predict(x)
+    p = plan(x, prediction)
+    measured = impacts_table(p, measure(p, engine("embedded").run(p, Path())))
+    assert compare("e", "l", measured, prediction, x.check)["passed"].all()
+    wrong = measured.assign(e_n=measured["e_n"][::-1].to_numpy())
+    assert not compare("e", "l", wrong, prediction, x.check)["passed"].any()
+
+
+def test_the_step_for_an_error_is_found_with_speeds_that_stick():
+    x = made(impact=read_toml(CASE)["impact"] | {"speeds": ["0.005 m/s", "0.05 m/s", "1 m/s"]})
+    found = search(x, predict(x), 1e-3)
+    assert found.error <= 1e-3 and 20 < found.steps_in_contact < 400

@@ -1,0 +1,283 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""ep/jkr and ep/thornton_ning in LIGGGHTS against theory: sticking, pull-off, meshes, contacts across a gap, energy."""
+
+import numpy as np
+import pytest
+from plugin_adhesion import BOX, R, deck, mass, spheres, theory, walls
+from plugin_decks import ADHESIVE, GAMMA, contact, good, materials, per_pair, plate, run
+from test_plugin_energy import BOX as CELL
+from test_plugin_energy import SIDES, gas
+from test_plugin_launch import deck as plain_deck
+from test_plugin_launch import started, told
+
+from epdem.theory import adhesion
+
+pytestmark = pytest.mark.liggghts
+every_law = pytest.mark.parametrize("law", ADHESIVE)
+
+
+@every_law
+def test_spheres_stick_up_to_the_sticking_speed_within_one_percent(tmp_path, law):
+    """And part above: 24 impacts on a wall around the speed of theory."""
+    V_s = float(adhesion.sticking_speed(theory(law), m_star=mass()))
+    share = np.concatenate([np.linspace(0.7, 0.99, 12), np.linspace(1.01, 1.5, 12)])
+    _, v, _ = walls(tmp_path, law, V_s * share, steps_in_contact=200)
+    parted = (v[-1] == v[-3]) & (v[-1] > 0)
+    assert np.array_equal(parted, share > 1)
+
+
+@every_law
+@pytest.mark.parametrize("deepest", [0.0, 30.0])
+def test_pull_off_force_by_slow_separation(tmp_path, law, deepest):
+    """3/2 pi Gamma R_p to 1e-6, of a sphere that is pressed down to some gaps' length and drawn away."""
+    c = theory(law)
+    gap = float(-c.fold_overlap)
+    down = (deepest + 1.0) * gap
+    branch, dent = c.branch(c.radius(down))
+    up = down - float(dent + branch.fold_overlap) + 0.1 * gap
+    fine = gap / 2000
+    text = deck(
+        law,
+        wall="primitive",
+        dt=1e-6,
+        every=1,
+        body=f"fix m all move linear 0 0 {-down / 20 / 1e-6!r}\nrun 20\nunfix m\n"
+        f"fix m all move linear 0 0 {fine / 1e-6!r}\nrun {int(up / fine)}\n",
+    )
+    bodies = spheres([[0, 0, R]], [[0, 0, 0]])
+    frames = good(tmp_path, text, files={"box.data": bodies.data(BOX)}).frames()[1]
+    pull = frames[25:, 0, 9].min()
+    assert pull == pytest.approx(-1.5 * np.pi * GAMMA[0, 1] * float(branch.R_star), rel=1e-6)
+    assert frames[-1, 0, 9] == 0
+
+
+@every_law
+def test_impacts_on_meshes_are_those_on_a_flat_wall(tmp_path, law):
+    """On a face, on the corner of a roof of triangles, and on a plate that comes up to a sphere at rest."""
+    speeds = float(adhesion.sticking_speed(theory(law), m_star=mass())) * np.array([0.5, 1.5, 4.0, 20.0])
+    _, v, dt = walls(tmp_path / "flat", law, speeds)
+    face = walls(tmp_path / "face", law, speeds, wall="mesh", files={"plate.stl": plate()})
+    assert np.abs(face[1] - v).max() < 1e-12 * speeds.max()
+    pyramid = [(0.02, 0.02), (-0.02, 0.02), (-0.02, -0.02), (0.02, -0.02)]
+    lines = ["solid roof"]
+    for (a, b), (p, q) in zip(pyramid, [*pyramid[1:], pyramid[0]], strict=True):
+        lines += ["facet normal 0 0 1", " outer loop", "  vertex 0.0 0.0 0.0"]
+        lines += [f"  vertex {a!r} {b!r} -0.01", f"  vertex {p!r} {q!r} -0.01", " endloop", "endfacet"]
+    roof = {"plate.stl": "\n".join([*lines, "endsolid roof", ""])}
+    for k, speed in enumerate(speeds):
+        _, corner, _ = walls(tmp_path / f"corner{k}", law, [speed], wall="mesh", files=roof)
+        left = [path[-1] if path[-1] == path[-3] else 0.0 for path in (v[:, k], corner[:, 0])]
+        assert left[1] == pytest.approx(left[0], rel=2e-4) and (left[0] > 0) == (k > 0)
+    moving = deck(
+        law,
+        wall="mesh",
+        dt=dt,
+        body=f"fix up all move/mesh mesh plate linear 0 0 {float(speeds[2])!r}\n"
+        f"fix move all nve/sphere\nrun {len(v)}\n",
+    )
+    rest = spheres([[1e-4, 2e-4, R + 0.5 * dt * speeds[2]]], [[0, 0, 0]])
+    done = good(tmp_path / "moving", moving, files={"box.data": rest.data(BOX), "plate.stl": plate()})
+    left = done.frames()[1][-1, 0, 6] - speeds[2]
+    assert left == pytest.approx(v[-1, 2], rel=1e-4)
+
+
+@every_law
+def test_a_sphere_that_is_held_across_a_gap_slides_over_the_triangles_of_a_mesh(tmp_path, law):
+    """Drawn away by half the largest gap it swings there; the same bits up to round-off as on a flat wall."""
+    gap = float(-theory(law).fold_overlap)
+    body = (
+        "fix still all move linear 0 0 0\nrun 2\nunfix still\n"
+        f"displace_atoms all move 0 0 {1.2 * gap!r}\nfix move all nve/sphere\nrun 3000\n"
+    )
+    ends = []
+    for wall, cells in (("primitive", 1), ("mesh", 1), ("mesh", 80)):
+        x = [[1e-4, 2e-4, R - 0.7 * gap], [4e-3, 1.3e-4, R - 0.6 * gap]]
+        bodies = spheres(x, [[3.0, 1.1, 0.0], [3.0, -2.3, 0.0]])
+        text = deck(law, wall=wall, dt=2e-7, body=body)
+        files = {"box.data": bodies.data(BOX), "plate.stl": plate((-0.02, 0.02), (-0.02, 0.02), cells)}
+        frames = good(tmp_path / f"{wall}{cells}", text, files=files).frames()[1]
+        z = frames[3:, :, 3] - R
+        assert z.max() > 0.45 * gap and z.max() < gap  # they stood across a gap, and stayed
+        ends.append(frames[:, :, 1:7])
+    assert np.abs(ends[1] - ends[0]).max() < 1e-9
+    assert np.abs(ends[2] - ends[0]).max() < 1e-9
+
+
+@every_law
+@pytest.mark.parametrize("share", [-0.8, 20.0], ids=["pulled", "loaded"])
+def test_a_pair_turned_through_one_revolution_keeps_its_force(tmp_path, law, share):
+    """Held at an overlap of `share` gaps, over the borders of two ranks and of the periodic box."""
+    c = theory(law, 1, 3, R, 0.7 * R)
+    gap = float(-c.fold_overlap)
+    delta = share * gap
+    start = max(delta, 0.1 * gap)
+    results = []
+    for ranks in (1, 2):
+        body = (
+            "fix still all move linear 0 0 0\nrun 2\nunfix still\n"
+            f"group right id 2\ndisplace_atoms right move {start - delta!r} 0 0\n"
+            f"fix turn all move rotate 0.049 0.0003 0 0 0.3 1 {400 * 1e-6!r}\nrun 400\n"
+        )
+        bodies = spheres([[0.049 - 0.4 * R, 0, 0], [0.049 + 1.3 * R - start, 0, 0]], np.zeros((2, 3)))
+        bodies.type[1], bodies.radius[1] = 3, 0.7 * R
+        top = {"boundary": "p f f", "ranks": (ranks, 1, 1)}
+        text = deck(law, dt=1e-6, body=body, top=top)
+        frames = good(tmp_path / str(ranks), text, ranks=ranks, files={"box.data": bodies.data(BOX)}).frames()[1]
+        results.append(frames)
+        force = frames[2:, :, 7:10]
+        size = np.linalg.norm(force[:, 0], axis=1)
+        branch, dent = c.branch(c.radius(max(start, delta)))
+        expected = float(branch.force(branch.radius(delta - dent)))
+        assert size[1:] == pytest.approx(abs(expected), rel=1e-6)
+        assert np.abs(force[:, 0] + force[:, 1]).max() < 1e-12 * size.max()
+    assert np.array_equal(results[0], results[1])
+
+
+def books(folder, law, steps, ranks=1):
+    """Rows of step, kinetic, plastic, adhesive, elastic energy [J] of a gas of spheres."""
+    words = f"model ep/{law} tangential off"
+    sides = "".join(
+        f"fix w{k} all wall/gran {words} primitive type 2 {side} {at!r} computePlasticWork on\n"
+        for k, (side, at) in enumerate(SIDES)
+    )
+    text = deck(
+        law,
+        dt=5e-8,
+        body=f"{sides}fix move all nve/sphere\nundump d\n"
+        "compute s all reduce sum f_plasticWork f_adhesiveWork f_elasticEnergy\ncompute k all ke\n"
+        f"thermo_style custom step c_k c_s[1] c_s[2] c_s[3]\nthermo 97\n"
+        f"thermo_modify lost error norm no format float %.17g\nrun {steps}\n",
+        settings="computePlasticWork on",
+        top={"ranks": (ranks, 1, 1)},
+    )
+    lines = good(folder, text, ranks=ranks, files={"box.data": gas(3.0).data(CELL)}).text.splitlines()
+    rows = [line.split() for line in lines]
+    return np.array([r for r in rows if len(r) == 5 and all(c.lstrip("-")[0].isdigit() for c in r)], float)
+
+
+@every_law
+def test_the_energy_balance_closes_with_what_adhesion_takes(tmp_path, law):
+    """Without friction no term is a remainder; the sum over 2e4 steps, and the same on two ranks."""
+    rows = books(tmp_path / "one", law, 20000)
+    kinetic, plastic, adhesive, elastic = rows[:, 1:].T
+    assert np.abs((kinetic + plastic + adhesive + elastic) / kinetic[0] - 1).max() < 1e-3
+    assert adhesive[-1] > 0.01 * kinetic[0]
+    assert plastic[-1] == 0 if law == "jkr" else plastic[-1] > 0.05 * kinetic[0]
+    two = books(tmp_path / "two", law, 2000, ranks=2)
+    assert np.allclose(rows[: len(two) - 1], two[:-1], rtol=1e-11, atol=1e-16)
+
+
+@every_law
+def test_the_friction_of_an_attached_sphere_is_limited_by_the_force_and_twice_its_pull_off(tmp_path, law):
+    """Sliding at rest on the wall: mu (F + 2 P_po), F = 0 where it would lie by itself."""
+    c = theory(law)
+    a = (3 * c.c * c.R_star / 2) ** (2 / 3)  # F = 0
+    lies = float(c.overlap(a))
+    text = deck(
+        law,
+        wall="primitive",
+        dt=1e-7,
+        friction=0.4,
+        tangential="history",
+        body="fix m all move linear 20.0 0 0\nrun 400\n",
+    )
+    bodies = spheres([[0, 0, R - lies]], [[0, 0, 0]])
+    frames = good(tmp_path, text, files={"box.data": bodies.data(BOX)}).frames()[1]
+    if law == "jkr":
+        assert abs(frames[-1, 0, 9]) < 1e-9 * c.pull_off_force
+    branch, _ = c.branch(c.radius(lies))
+    limit = 0.4 * (frames[-1, 0, 9] + 2 * float(branch.pull_off_force))
+    assert -frames[-1, 0, 7] == pytest.approx(limit, rel=1e-9)
+
+
+def test_surface_energies_give_the_work_of_adhesion(tmp_path):
+    """2 sqrt(gamma_i gamma_j)."""
+    gamma = "fix g all property/global surfaceEnergy peratomtype 9 16 25\n"
+    table = [[2 * np.sqrt(a * b) for b in (9.0, 16.0, 25.0)] for a in (9.0, 16.0, 25.0)]
+    pairs = "fix g all property/global workOfAdhesion peratomtypepair 3 " + " ".join(str(x) for r in table for x in r)
+    base = materials("ep/any")
+    ends = []
+    for name, text in (("one", gamma), ("pair", pairs + "\n")):
+        both = plain_deck("ep/thornton_ning", properties=base + text, steps=200)
+        done = started(tmp_path / name, both + "dump d all custom 1 out.bin id x y z vx vy vz\nrun 0\n")
+        ends.append(done.last)
+    assert np.array_equal(*ends) and np.abs(ends[0][:, 6]).min() > 0
+
+
+def test_what_is_asked_of_adhesion_and_cannot_be_is_said_in_one_sentence(tmp_path):
+    base, gamma = materials("ep/any"), materials("ep/jkr")
+    surface = "fix s all property/global surfaceEnergy peratomtype 1 1 1\n"
+
+    def error(name, model, properties, **more):
+        return told(tmp_path / name, plain_deck(model, properties=properties, **more))
+
+    assert "both workOfAdhesion and surfaceEnergy are given" in error("both", "ep/jkr", gamma + surface)
+    missing = error("missing", "ep/jkr", base)
+    assert "property/global workOfAdhesion peratomtypepair" in missing and "surfaceEnergy" in missing
+    for law, instead in (("hertz", "ep/jkr"), ("thornton", "ep/thornton_ning")):
+        assert f"has no adhesion; take {instead}" in error(law, f"ep/{law}", gamma)
+    for law in ("johnson", "cavity"):
+        assert "no theory of adhesion exists for it" in error(law, f"ep/{law}", base + surface)
+    cohesion = per_pair("cohesionEnergyDensity", 1e6)
+    for law in ADHESIVE:
+        beside = error(f"sjkr {law}", f"ep/{law}", gamma + cohesion, models="cohesion sjkr")
+        assert "has its attraction already" in beside
+    wrong = gamma.replace("peratomtypepair 3 600.0", "peratomtypepair 3 -600.0")
+    assert "workOfAdhesion = -600 [J/m^2] of types 1 and 1" in error("negative", "ep/jkr", wrong)
+    assert "limitForce" in error("limit", "ep/jkr", gamma, settings="limitForce on")
+
+
+def test_cohesion_that_is_stronger_than_the_bodies_is_warned_of_with_both_numbers(tmp_path):
+    def text(density):
+        properties = materials("ep/any") + per_pair("cohesionEnergyDensity", density)
+        return plain_deck("ep/thornton", properties=properties, models="cohesion sjkr", tangential="off", steps=1)
+
+    said = started(tmp_path / "strong", text(2e8)).text
+    warnings = [line for line in said.splitlines() if "cohesionEnergyDensity" in line and "WARNING" in line]
+    assert len(warnings) == 1
+    assert "cohesionEnergyDensity = 200000000" in warnings[0] and "yieldPressure = 168000000" in warnings[0]
+    assert "collapse" not in started(tmp_path / "weak", text(1e8)).text
+
+
+def test_the_distance_factor_follows_from_the_properties_and_is_said(tmp_path):
+    """1.6088 (Gamma^2 R*/E*^2)^(1/3) of the smallest sphere at a wall over its radius, and half a hundredth."""
+    for law in ADHESIVE:
+        bodies = spheres([[k * 0.01, 0, R] for k in range(3)], np.zeros((3, 3)))
+        bodies.type[:] = 1, 2, 3
+        text = deck(law, dt=1e-7, body="fix move all nve/sphere\nrun 1\n")
+        said = good(tmp_path / law, text, files={"box.data": bodies.data(BOX)}).text
+        (line,) = [ln for ln in said.splitlines() if ln.startswith(f"epdem: ep/{law} pulls")]
+        gaps = [-float(theory(law, i, j).fold_overlap) for i in (1, 2, 3) for j in (1, 2, 3)]
+        assert float(line.split()[-1]) == pytest.approx(1.005 + max(gaps) / R, abs=1e-8)
+        assert f"up to {max(gaps):.4g}" in line
+
+
+@every_law
+def test_rolling_models_and_two_walls_run(tmp_path, law):
+    more = per_pair("coefficientRollingFriction", 0.1) + per_pair("coefficientRollingViscousDamping", 0.1)
+    properties = materials(f"ep/{law}") + more
+    for rolling in ("cdt", "epsd", "epsd2"):
+        words = f"rolling_friction {rolling}"
+        done = run(
+            tmp_path / rolling,
+            plain_deck(f"ep/{law}", properties=properties, models=words, steps=300),
+            files={"box.data": spheres([[0, 0, 4.9e-3]], [[0.3, 0, -1]], radius=5e-3).data(BOX)},
+        )
+        assert done.code == 0, done.error
+    assert contact(f"ep/{law}")
+
+
+@every_law
+def test_a_run_that_stops_after_every_step_gives_the_same_bits(tmp_path, law):
+    """Also in the steps in which contacts form and end, of which the next setup must repeat the force."""
+    c = theory(law, 1, 1, R, R)
+    V = 3 * float(adhesion.sticking_speed(c, m_star=mass() / 2))
+    dt = float(adhesion.contact_time(c, m_star=mass() / 2, speed=V)) / 30
+    ends = []
+    for runs in ("run 60\n", "run 1\n" * 60):
+        x = [[0, 0, 5 * R], [0, 0, 7 * R + 2.3 * dt * V], [0.01, 0, R + 2.3 * dt * V]]
+        bodies = spheres(x, [[0, 0, 0], [0, 0, -V], [0, 0, -V]])
+        text = deck(law, wall="primitive", dt=dt, tangential="history", body="fix move all nve/sphere\n" + runs)
+        frames = good(tmp_path / str(len(runs)), text, files={"box.data": bodies.data(BOX)}).frames()[1]
+        ends.append(frames[-1][:, 1:7])
+    assert np.array_equal(*ends) and ends[0][2, 5] > 0.1 * V and ends[0][1, 5] > ends[0][0, 5] + 0.1 * V  # they part
