@@ -44,7 +44,7 @@ KINDS = {  # words of a call without the option, and the value of every option
         ("crosscheck", "steel.toml"),
         {"law": "cavity", "out": "there", "fresh": None, "force": None},
     ),
-    "theory": (("theory",), {"material": "brass", "radius": "2 mm", "speed": "1 m/s"}),
+    "theory": (("theory",), {"material": "brass", "radius": "2 mm", "speed": "1 m/s", "adhesion": "0.1 J/m^2"}),
     "figures": (("figures",), {"out": "there", "force": None}),
     "timestep of impacts": (("timestep", "steel.toml"), {"error": "1e-2", "law": "hertz"}),
     "cost of impacts": (

@@ -93,8 +93,9 @@ def crosscheck(
         rows, case = c.table.to_dict("records"), c.outcome.case.case
         title = f"{case.title}: values at {rows[0]['speed']:.4g} m/s, largest errors over speeds and phases"
         _show(title, VALUES, rows)
-        _show(CHANGES_TITLE, CHANGES, [row for row in rows if row["momentum"] == row["momentum"]])
-        console().print(CHANGES_NOTE, soft_wrap=True)
+        if changed := [row for row in rows if row["momentum"] == row["momentum"]]:
+            _show(CHANGES_TITLE, CHANGES, changed)
+            console().print(CHANGES_NOTE, soft_wrap=True)
         for name, note in c.notes.items():
             console().print(f"{name} has a law and a theory of its own: {note}", soft_wrap=True)
         for name, reason in c.absent.items():
