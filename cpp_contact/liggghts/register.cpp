@@ -245,8 +245,8 @@ const struct Registration {
 }  // namespace epdem::liggghts
 
 #ifdef EPDEM_BUILT_FOR
-/// In place of LIGGGHTS's own, which calls every wrong name "Invalid model specified": a name that starts with ep
-/// deserves the list of what exists. LIGGGHTS takes this function's address through the dynamic linker, which finds
+/// In place of LIGGGHTS's own, which calls every wrong name "Invalid model specified": for a name that starts with
+/// ep the message lists what exists. LIGGGHTS takes this function's address through the dynamic linker, which finds
 /// the launcher or a preloaded library first; beside those of loop/mesh.cpp it is the one symbol that the plugin
 /// exports.
 [[gnu::visibility("default")]] int64_t LIGGGHTS::ContactModels::Factory::select(

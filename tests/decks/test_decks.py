@@ -18,9 +18,11 @@ from epdem.errors import CaseError
 from epdem.impacts.experiment import experiment
 from epdem.impacts.plan import plan
 from epdem.impacts.prediction import predict
+from epdem.lammps.impacts import LammpsMdr
 from epdem.liggghts import scene_deck
 from epdem.liggghts.impacts import Liggghts
 from epdem.scenes.plan import plan as scene_plan
+from epdem.yade.impacts import Yade
 
 HERE = Path(__file__).parent
 CASES = HERE.parents[1] / "cases"
@@ -85,6 +87,16 @@ def test_a_title_cannot_add_a_line_to_a_deck(tmp_path):
     lines = (tmp_path / "in.impact").read_text().splitlines()
     assert lines[:2] == ["# two shell touch pwned", "# joined"]
     assert (tmp_path / "impact.data").read_text().splitlines()[1] == ""
+
+
+@pytest.mark.parametrize(("engine", "name"), [(Yade(), "impact.py"), (LammpsMdr(), "in.impact")])
+def test_the_header_of_the_other_engines_is_comments_too(engine, name, tmp_path):
+    p = planned({})
+    x = replace(p.experiment, title="two\nprint('run')", source="shell\rtouch pwned")
+    engine.write(replace(p, experiment=x), tmp_path)
+    head = (tmp_path / name).read_text().split("\n")
+    assert head[:2] == ["# two print('run')", "# shell touch pwned"]
+    assert head[3].startswith(f"# epdem {__version__}; by hand, in this folder: ")
 
 
 def test_the_header_names_source_and_version(tmp_path):

@@ -17,7 +17,7 @@ template <class T>
 struct Toy {
   using number = T;
   static constexpr const char* name = "toy";
-  static constexpr int id = 44;
+  static constexpr int id = 62;
   using State = Maximum<T>;
   static constexpr bool yields = true;
   static constexpr bool flattens = false;

@@ -93,11 +93,11 @@ class Pair : public LIGGGHTS::PairStyles::Granular<Model> {
 #endif
 
  private:
-  /// `told`: compute pair/gran/local is told of each contact; `addflag` says so to a LIGGGHTS that has it.
+  /// `listed`: compute pair/gran/local lists each contact; `addflag` says so to a LIGGGHTS that has it.
   template <class... Flag>
-  void forces(LAMMPS_NS::PairGran* pair, int eflag, int vflag, int told, Flag... addflag) {
+  void forces(LAMMPS_NS::PairGran* pair, int eflag, int vflag, int listed, Flag... addflag) {
     const char* why = missing_ ? missing_ : model_.asked().missing();
-    if (!why) why = loop_->obstacle(pair, vflag, told);
+    if (!why) why = loop_->obstacle(pair, vflag, listed);
     if (why) {
       say(why);
       return Base::compute_force(pair, eflag, vflag, addflag...);

@@ -6,7 +6,7 @@
 
 namespace epdem::liggghts::loop {
 
-/// By this LIGGGHTS's walls of our models are told from others.
+/// By this LIGGGHTS's walls of our models differ from others.
 struct OurWall {
   virtual ~OurWall() = default;
 };

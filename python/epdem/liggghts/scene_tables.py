@@ -129,7 +129,7 @@ def _in_contact(table: pd.DataFrame) -> pd.DataFrame:
 
 def _pairs(p: ScenePlan, folder: Path, without: Collection[int]) -> pd.DataFrame:
     table = _local(p, PAIRS, folder, ["i", "j"], without).assign(wall="")
-    # which of the two comes first is LIGGGHTS's own affair, and another one after a restart
+    # LIGGGHTS's order of the two is arbitrary, and another one after a restart
     return table.assign(i=table[["i", "j"]].min(axis=1), j=table[["i", "j"]].max(axis=1))
 
 

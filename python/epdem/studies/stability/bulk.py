@@ -58,12 +58,12 @@ def write(
         every=every,
         frames=frames,
         contacts=contacts,
+        history=memory > 0,
         pair_columns=range(1, 6 + memory + (memory > 0) + 2),
         wall_columns=range(1, 6 + memory + 2),
         settings=("computePlasticWork on",) if memory and frames else (),
     )
-    environment = decks.environment(Path(__file__).parent)
-    (folder / "in.bulk").write_text(environment.get_template("bulk.in.j2").render(deck=deck), encoding="utf-8")
+    (folder / "in.bulk").write_text(decks.render("liggghts/stiff_bulk.in.j2", deck=deck), encoding="utf-8")
     (folder / "bulk.data").write_text(_data(scene, deck.plates), encoding="utf-8")
     if deck.plates:
         for name, z in (("floor", 0.0), ("plate", float(scene.box[2]))):

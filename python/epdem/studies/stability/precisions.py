@@ -44,7 +44,7 @@ def rebound(program: str, folder: Path, script: str) -> np.ndarray:
 def floors(*, times: Sequence[float] = (1e-4, 1e-2, 1e2)) -> pd.DataFrame:
     """One row per speed: largest deviation of e_n from the finest precision over 8 phases, and the formula's."""
     rows = []
-    template = decks.environment(Path(__file__).parent).get_template("roundoff.py.j2")
+    template = decks.environment().get_template("yade/roundoff.py.j2")
     with tempfile.TemporaryDirectory(prefix="epdem-yade-") as scratch:
         for t in times:
             s = setting(build("roundoff", ratio=1e4, times=t), "hertz")

@@ -71,10 +71,10 @@ class Sweep:
     def _pieces(self) -> list[str]:
         """The case file cut at the values of the keys that the points set, each of which stands as its key."""
         document = tomlkit.parse(self.case)
-        marks = {key: f"epdem value {n}" for n, key in enumerate(self.points[0])}
-        for key, mark in marks.items():
-            assign(document, key, mark)
-        keys = {f'"{mark}"': key for key, mark in marks.items()}
+        fillers = {key: f"epdem value {n}" for n, key in enumerate(self.points[0])}
+        for key, filler in fillers.items():
+            assign(document, key, filler)
+        keys = {f'"{filler}"': key for key, filler in fillers.items()}
         return [keys.get(piece, piece) for piece in re.split(r'("epdem value \d+")', document.as_string())]
 
     def text(self, number: int) -> str:
