@@ -22,6 +22,7 @@ from epdem.lammps.impacts import LammpsMdr
 from epdem.liggghts import scene_deck
 from epdem.liggghts.impacts import Liggghts
 from epdem.scenes.plan import plan as scene_plan
+from epdem.yade import scene_deck as yade_scene
 from epdem.yade.impacts import Yade
 
 HERE = Path(__file__).parent
@@ -57,15 +58,26 @@ def compare_with_stored(name: str, text: str) -> None:
 
 
 def rounded(text: str) -> str:
-    """The deck of any version, its time step to 10 digits: the last ones follow the rounding of theory's quadrature."""
+    """The deck of any version, long numbers to 10 digits: the last ones follow the rounding of theory's quadrature."""
     text = re.sub(r"(?m)^# epdem [^;]+;", "# epdem;", text)
-    return re.sub(r"(?m)^timestep (\S+)$", lambda found: f"timestep {float(found[1]):.9e}", text)
+    return re.sub(r"\d+\.\d{10,}(e[-+]?\d+)?", lambda number: f"{float(number[0]):.9e}", text)
 
 
 @pytest.mark.parametrize("name", VARIANTS)
 def test_the_deck_is_as_stored(name, tmp_path):
     Liggghts().write(planned(*VARIANTS[name]), tmp_path)
     compare_with_stored(name, (tmp_path / "in.impact").read_text())
+
+
+@pytest.mark.parametrize(("engine", "name"), [(Yade(), "impact.py"), (LammpsMdr(), "in.impact")])
+def test_the_deck_of_another_engine_is_as_stored(engine, name, tmp_path):
+    engine.write(planned({}), tmp_path)
+    compare_with_stored(f"{engine.name}_wall", (tmp_path / name).read_text())
+
+
+@pytest.mark.parametrize("name", ["settle_glass", "compaction_powder"])
+def test_the_deck_of_a_scene_in_yade_is_as_stored(name):
+    compare_with_stored(f"yade_{name}", yade_scene.files(scene_plan(load_scene(CASES / f"{name}.toml")))["scene.py"])
 
 
 @pytest.mark.parametrize("path", SCENES, ids=lambda p: p.stem)
