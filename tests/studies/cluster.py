@@ -5,6 +5,7 @@ import contextlib
 import os
 import shutil
 import subprocess
+import tempfile
 import time
 from collections.abc import Callable, Iterator
 from pathlib import Path
@@ -20,7 +21,7 @@ SlurmctldHost={host}(127.0.0.1)
 SlurmUser=root
 SlurmdUser=root
 AuthType=auth/munge
-AuthInfo=cred_expire=5
+AuthInfo=socket={socket},cred_expire=5
 StateSaveLocation={place}/state
 SlurmdSpoolDir={place}/spool.%n
 SlurmctldLogFile={place}/slurmctld.log
@@ -74,12 +75,12 @@ def until(true: Callable[[], bool], what: str, seconds: float = 60.0) -> None:
 class Cluster:
     """Daemons by name; the environment in which Slurm's commands find them."""
 
-    def __init__(self, place: Path, port: int):
+    def __init__(self, place: Path, port: int, socket: Path):
         for name in ("state", *(f"{kind}.{node}" for node in NODES for kind in ("spool", "t"))):
             (place / name).mkdir()
         host = os.uname().nodename.split(".")[0]
         conf = place / "slurm.conf"
-        conf.write_text(CONF.format(host=host, place=place, port=port, port1=port + 1, port2=port + 2))
+        conf.write_text(CONF.format(host=host, place=place, socket=socket, port=port, port1=port + 1, port2=port + 2))
         self.place, self.env = place, os.environ | {"SLURM_CONF": str(conf)}
         self.env["PATH"] += ":/usr/sbin"
         self.daemons: dict[str, subprocess.Popen[bytes]] = {}
@@ -111,15 +112,15 @@ class Cluster:
 @contextlib.contextmanager
 def cluster(place: Path) -> Iterator[Cluster]:
     """A cluster of two nodes, both on this machine, the first with two cores; jobs in "main" give way to "urgent"."""
-    munge = None
-    if subprocess.run(["munge", "-n"], capture_output=True).returncode:
-        Path("/run/munge").mkdir(exist_ok=True)
-        shutil.chown("/run/munge", "munge", "munge")
-        user = ["setpriv", "--reuid=munge", "--regid=munge", "--clear-groups"]
-        munge = subprocess.Popen([*user, "/usr/sbin/munged", "--foreground", "--force"], stderr=subprocess.DEVNULL)
-        until(lambda: subprocess.run(["munge", "-n"], capture_output=True).returncode == 0, "munged")
-    found = Cluster(place, 20000 + os.getpid() % 20000)
+    keys = Path(tempfile.mkdtemp(prefix="munge-"))  # of this cluster alone: another one may end before it
+    shutil.chown(keys, "munge", "munge")
+    socket, files = keys / "socket", (f"--{name}-file={keys / name}" for name in ("log", "pid", "seed"))
+    user = ["setpriv", "--reuid=munge", "--regid=munge", "--clear-groups"]
+    munged = ["/usr/sbin/munged", "--foreground", "--force", f"--socket={socket}", *files]
+    munge = subprocess.Popen([*user, *munged], stderr=subprocess.DEVNULL)
+    found = Cluster(place, 20000 + os.getpid() % 20000, socket)
     try:
+        until(lambda: subprocess.run(["munge", "-n", "-S", socket], capture_output=True).returncode == 0, "munged")
         found.start("slurmctld")
         for node in NODES:
             found.start(node)
@@ -129,6 +130,6 @@ def cluster(place: Path) -> Iterator[Cluster]:
         found.ask("scancel", "--user=root")
         for name in reversed(list(found.daemons)):  # slurmd first: it tells the controller
             found.stop(name)
-        if munge:
-            munge.terminate()
-            munge.wait()
+        munge.terminate()
+        munge.wait()
+        shutil.rmtree(keys)

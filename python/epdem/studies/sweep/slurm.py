@@ -28,6 +28,7 @@ from .run import Report, SweepOutcome, check_points, record_death
 
 TASKS = 1000  # of an array; a cluster takes 1001 if it does not say otherwise
 POLL = 1.0  # [s] between two looks at the queue
+SILENCE = 600.0  # [s] that Slurm may be without an answer, as while its controller starts again
 JOBS = "slurm/jobs.json"
 ENDED = ("COMPLETED", "FAILED", "CANCELLED", "TIMEOUT", "NODE_FAIL", "OUT_OF_MEMORY", "BOOT_FAIL", "DEADLINE")
 Parameters = dict[str, str]
@@ -201,10 +202,16 @@ def _living(folder: Path) -> dict[str, list[int]]:
 
 
 def _wait(sweep: Sweep, folder: Path, jobs: dict[str, list[int]], report: Report) -> None:
-    left = dict(jobs)
+    left, heard = dict(jobs), time.monotonic()
     total = sum(map(len, jobs.values()))
     while left:
         there = alive(list(left))  # None while the controller is away: its jobs are still there
+        heard = heard if there is None else time.monotonic()
+        if time.monotonic() - heard > SILENCE:
+            raise EngineError(
+                f"--executor slurm: squeue has not answered for {SILENCE:g} s; the jobs go on, "
+                "and the same command later waits for them"
+            )
         for job in set() if there is None else set(left) - there:
             how = ended(job)
             for n in left.pop(job) if how else ():
