@@ -30,7 +30,7 @@ static double number(std::mt19937_64& r) {
 template <class Law>
 static int bad() {
   std::mt19937_64 r(7);
-  const double parameter[] = {1e9, 1.6, 2.8};
+  const double parameter[] = {1e9, 1.6, 2.8, epdem::no_finite_strain};
   const Law law(1.1e11, parameter);
   int found = 0;
   for (int n = 0; n < 2000000; ++n) {
@@ -39,8 +39,9 @@ static int bad() {
     for (double& slot : slots) slot = number(r);
     std::memcpy(static_cast<void*>(&before), slots, sizeof before);
     const double R_star = n % 3 == 0 ? 1e-9 : n % 3 == 1 ? 0.01 : 10.0;
-    const auto now = epdem::step(law, R_star, before, std::exp(-20.0 * std::abs(std::sin(n * 1.0))));
-    found += !(now.force >= 0.0) || !(now.radius >= 0.0);
+    const auto now = epdem::step(law, R_star, before, std::exp(-20.0 * std::abs(std::sin(n * 1.0))), 0.0);
+    const bool pulls = epdem::adheres<Law> && std::isfinite(now.force);
+    found += !(now.force >= 0.0 || pulls) || !(now.radius >= 0.0);
   }
   return found;
 }

@@ -171,7 +171,7 @@ def test_a_wrong_value_anywhere_is_one_line_with_its_place_in_the_words_of_this_
 
 
 def test_a_file_of_the_other_kind_is_named_as_such():
-    with pytest.raises(CaseError, match=r"^f is a bulk scene .* needs impacts .* soften and sweep take scenes$"):
+    with pytest.raises(CaseError, match=r"^f is a bulk scene .* needs impacts .* --target take scenes$"):
         parse(read_toml(CASES / "settle_glass.toml"), "f")
     with pytest.raises(CaseError, match=r"^f is a case of impacts .* needs a bulk scene"):
         scene.parse(STEEL, "f")
@@ -233,7 +233,12 @@ def test_a_mistake_on_the_command_line_exits_with_2_and_one_sentence(mistake, tm
 
 def test_another_law_drops_the_parameters_of_the_first():
     x = experiment(parse(STEEL, "f"), "cavity")
-    assert x.law.parameters == {"yield_stress": 1e9, "first_yield_ratio": 1.6, "plastic_ratio": 2.8}
+    assert x.law.parameters == {
+        "yield_stress": 1e9,
+        "first_yield_ratio": 1.6,
+        "plastic_ratio": 2.8,
+        "finite_strain": 1e6,
+    }
 
 
 def test_the_softer_body_gives_the_strength_of_the_pair():
