@@ -153,7 +153,10 @@ EPDEM_EXPORT int epdem_step(int law, double E_star, const double* parameters, do
   return with_law(law, E_star, parameters, [&](const auto& l) {
     for (size_t i = 0; i < n; ++i) {
       const auto now = step(l, R_star, remember(l, R_star, delta_max[i]), delta[i], 0.0);
-      out[i] = {now.force, now.radius, std::fmax(delta_max[i], delta[i] > 0.0 ? delta[i] : 0.0)};
+      if constexpr (adheres<std::decay_t<decltype(l)>>)  // its memory is another
+        out[i] = {now.force, now.radius, std::fmax(delta_max[i], delta[i])};
+      else
+        out[i] = {now.force, now.radius, now.after.delta_max};
     }
     return int(EPDEM_OK);
   });

@@ -91,6 +91,11 @@ def test_the_embedded_engine_is_on_theory(tmp_path, law, kind):
     rows = outcome(tmp_path, ["embedded"], **changes).results.comparison
     assert rows["psi_2_error"].max() < LIMITS[law]
     assert rows["passed"].all() and len(rows) == 96
+    # one tangential impulse J turns and moves both: the slip falls by (1 + 5/2) J/m*, whatever law and bodies
+    per_impulse = (rows["psi_1"] - rows["psi_2"]) / (rows["impulse_ratio"] * (1 + rows["e_n"]))
+    moved = rows["impulse_ratio"].abs() > 0.01
+    unit = MU * (2 - NU) / (2 * (1 - NU))  # mu E*/(4 G*) of equal bodies
+    assert per_impulse[moved].to_numpy() == pytest.approx(3.5 / unit, rel=1e-6)
     turned = rows[rows["spin_before"] == 30.0]
     assert turned["psi_1"].min() < -1  # friction that drives the sphere forward
 

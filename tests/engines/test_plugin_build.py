@@ -47,16 +47,22 @@ def test_the_library_loads_by_itself():
     assert done.returncode == 0 and done.stderr == "", done.stderr
 
 
-def test_the_plugin_exports_only_the_function_that_explains_wrong_names():
+def test_the_plugin_exports_only_the_functions_that_it_takes_over():
     """Must 10: with default visibility 298 of LIGGGHTS's own symbols would be interposed."""
     lines = subprocess.run(["nm", "-D", "--defined-only", library()], capture_output=True, text=True, check=True).stdout
     names = [line.split()[-1] for line in lines.splitlines()]
     ours = [n for n in names if "epdem" in n or "LIGGGHTS" in n or "LAMMPS" in n]
-    assert len(ours) == 1 and ours[0].startswith("_ZN8LIGGGHTS13ContactModels7Factory6select")
+    wrong_names, *mesh_loop = sorted(ours)
+    assert wrong_names.startswith("_ZN8LIGGGHTS13ContactModels7Factory6select")
+    assert [re.match(r"_ZN9LAMMPS_NS\d+([A-Za-z]+?)\d", name)[1] for name in mesh_loop] == [
+        "FixWallGran",
+        "FixContactHistoryMesh",
+        "FixContactHistoryMesh",
+    ]
 
 
 def test_library_and_launcher_stay_small():
-    assert Path(library()).stat().st_size < 3e6 and Path(launcher()).stat().st_size < 3e6
+    assert Path(library()).stat().st_size < 5e6 and Path(launcher()).stat().st_size < 5e6
 
 
 # Fixed for ever, because restart files keep them: a law's id, its history values of a pair and of a wall.
