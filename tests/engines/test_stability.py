@@ -225,7 +225,9 @@ def test_the_bulk_ledger_sees_spheres_that_come_back_too_fast(tmp_path):
 def test_the_page_of_the_documentation_names_its_command_and_every_case():
     outcome = stability.run(["embedded"], ["thornton"], steps=10_000, cycles=10)
     text = page.document(outcome, "python docs/stability.py")
-    assert "`python docs/stability.py`" in text and all(f"| {e.name} |" in text for e in extremes())
+    assert "`python docs/stability.py`" in text and all(
+        f"| {e.name} |" in text for e in extremes() if e.adhesion is None
+    )
     assert outcome.passed and json.dumps(outcome.verdicts.to_dict("list"))
 
 

@@ -30,9 +30,10 @@ def both(name, E_star=E_STAR, strength=STRENGTH, **ratios):
 def test_both_know_the_same_laws_and_parameters():
     assert set(numbers.LAWS) == {name for name, info in claw.laws().items() if not info.adheres}
     for name, kind in numbers.LAWS.items():
-        known = [p.name for p in claw.laws()[name].parameters]
+        given = [p for p in claw.laws()[name].parameters if p.name != "finite_strain"]  # YADE refuses it
+        known = [p.name for p in given]
         assert sorted(known) == sorted([*filter(None, [kind.strength_name]), *kind.ratios])
-        for p in claw.laws()[name].parameters:
+        for p in given:
             if p.unit == "1":  # the same number where the user gives none
                 assert getattr(both(name)[0], {"first_yield_ratio": "c_Y", "plastic_ratio": "c_P"}[p.name]) == p.default
 

@@ -124,7 +124,7 @@ class _Search:
 class Options(TypedDict, total=False):
     """How `fit_text` runs its scenes, and when it ends."""
 
-    out: Path | None
+    out: Path | str | None
     engine: str
     ranks: int
     tolerance: float
@@ -144,7 +144,7 @@ def fit_text(
     free: Mapping[str, str],
     *,
     place: object,
-    out: Path | None = None,
+    out: Path | str | None = None,
     engine: str = "liggghts",
     ranks: int = 1,
     tolerance: float = 0.01,
@@ -169,7 +169,7 @@ def fit_text(
     ranges = _ranges(free, axes(free, keys_of(data), "--free"))
     middle = np.full(len(ranges), 0.5)
     base = study.plan_text(text, {name: [axis.at(0.5)] for name, axis in ranges.items()}, engines=[engine], ranks=ranks)
-    folder = out or Path("runs") / f"{base.name}_fit"
+    folder = Path(out) if out else Path("runs") / f"{base.name}_fit"
     search = _Search(base, folder, ranges, targets, jobs=jobs, force=force, report=report)
     search([middle])  # what it has tells whether the targets exist
     _refuse_insensitive(search, middle, tolerance)
