@@ -48,7 +48,8 @@ def carried_out(data: dict) -> None:
     x = experiment(impact.parse(data))
     found = predict(x)
     for name in Prediction.COLUMNS:
-        assert np.isfinite(getattr(found, name)).all(), name
+        sticks = (found.e_n == 0) if name == "contact_time" else False  # and never parts
+        assert (np.isfinite(getattr(found, name)) | sticks).all(), name
     assert plan(x, found).time_step > 0
 
 

@@ -136,6 +136,7 @@ ROWS = [
     Row(pressure.truncated, {"r": (6e-5, M), "p_0": P, "a": A, "p_y": (2e9, PA)}, PA),
     Row(pressure.truncated_force, {"p_0": P, "a": A, "p_y": (2e9, PA)}, N),
     Row(pressure.cavity_mean, {"x": (10.0, ONE)}, ONE),
+    Row(pressure.cavity_end, {"p": (2.8, ONE)}, ONE),
     Row(pressure.elastic_mean, {"x": (10.0, ONE)}, ONE),
     Row(pressure.mean, {"x": (10.0, ONE)}, ONE),
     Row(pressure.regime, {"x": (10.0, ONE)}, ONE),
