@@ -62,13 +62,14 @@ class Ledger {
   template <bool wall, class Law>
   void book(const Law& law, double R_star, const State<Law>& before, const Step<Law>& now, double delta,
             const Bodies& bodies) {
-    double grown, stored, part = wall ? 1.0 : 0.5;
+    constexpr double part = wall ? 1.0 : 0.5;
+    double grown, stored;
     if constexpr (adheres<Law>) {
       const auto lost = losses(law, R_star, before, now.after);
       grown = lost.plastic;
       stored = stored_energy(law, R_star, now.after, delta);
-      adhesive_->vector_atom[bodies.i] += (wall ? 1.0 : 0.5) * lost.adhesive;
-      if (!wall && bodies.j < bodies.nlocal) adhesive_->vector_atom[bodies.j] += 0.5 * lost.adhesive;
+      adhesive_->vector_atom[bodies.i] += part * lost.adhesive;
+      if (!wall && bodies.j < bodies.nlocal) adhesive_->vector_atom[bodies.j] += part * lost.adhesive;
     } else {
       stored = elastic_energy(law, R_star, now, delta);
       grown = plastic_growth(law, R_star, before, now, stored);

@@ -5,11 +5,11 @@ import ast
 import os
 import subprocess
 import sys
-import time
 from pathlib import Path
 
 import numpy as np
 import pytest
+from test_stopping import alive, until
 
 from epdem.base.rendering import render
 from epdem.case.impact import Numerics, parse
@@ -178,18 +178,7 @@ def test_a_run_that_hangs_is_stopped_with_all_its_children(fake, tmp_path, monke
     with pytest.raises(EngineError, match=r"did not end within 3 s.*step 7"):
         run(prepared(steps=20, speeds=["1 m/s"])[0], tmp_path / "deck")
     child = int((tmp_path / "deck/child").read_text())
-    deadline = time.monotonic() + 20  # the system may need a moment to take a killed process away
-    while alive(child) and time.monotonic() < deadline:
-        time.sleep(0.01)
-    assert not alive(child)
-
-
-def alive(process: int) -> bool:
-    """False when the process is gone, or a zombie that waits for its parent."""
-    try:
-        return Path(f"/proc/{process}/stat").read_text().rpartition(")")[2].split()[0] != "Z"
-    except OSError:
-        return False
+    assert until(lambda: not alive(child), 20.0)  # the system may need a moment to take a killed process away
 
 
 @pytest.mark.yade

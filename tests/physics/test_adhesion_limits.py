@@ -5,20 +5,13 @@ import numpy as np
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from test_adhesion_impacts import GAMMA, E, M, R, law_of
 
 from epdem.theory import adhesion, restitution
 from epdem.theory.backbones import Hertz, Thornton
-from epdem.theory.jkr import JKR
 from epdem.theory.thornton_ning import ThorntonNing
 
-E, R, GAMMA = 215e9 / (2 * (1 - 0.3**2)), 1e-5, 0.2
-M = 4 / 3 * np.pi * R**3 * 7850
 V_S = 0.0162490834
-
-
-def law_of(p_y, Gamma=GAMMA):
-    numbers = {"E_star": E, "R_star": R, "work_of_adhesion": Gamma}
-    return JKR(**numbers) if p_y is None else ThorntonNing(**numbers, p_y=p_y)
 
 
 @pytest.mark.parametrize("p_y", [3.04e9, 1e9, 0.5e9, 0.1e9])

@@ -24,13 +24,17 @@ EPDEM = str(Path(sys.executable).parent / "epdem")
 RADII = {"impact.body.radius": "1 mm,2 mm,5 mm"}
 
 
+def ball(folder: Path, speeds: str) -> Path:
+    """The steel wall at these speeds."""
+    path = folder / "ball.toml"
+    text = (ROOT / "cases/steel_wall.toml").read_text()
+    path.write_text(text.replace('{ from = "0.05 m/s", to = "150 m/s", count = 32 }', speeds))
+    return path
+
+
 @pytest.fixture
 def case(tmp_path):
-    """The steel wall at two speeds."""
-    path = tmp_path / "ball.toml"
-    text = (ROOT / "cases/steel_wall.toml").read_text()
-    path.write_text(text.replace('{ from = "0.05 m/s", to = "150 m/s", count = 32 }', '["0.1 m/s", "5 m/s"]'))
-    return path
+    return ball(tmp_path, '["0.1 m/s", "5 m/s"]')
 
 
 def sweep(case: Path, out: Path, settings=RADII, jobs=2, **options):

@@ -11,6 +11,7 @@ from pathlib import Path
 import pandas as pd
 import pytest
 from cluster import cluster, needs_slurm, until
+from test_sweep_run import ball
 from test_sweep_scenes import BED
 
 from epdem.errors import CaseError
@@ -39,10 +40,7 @@ def here(nodes, monkeypatch):
 
 @pytest.fixture
 def case(tmp_path):
-    path = tmp_path / "ball.toml"
-    text = (ROOT / "cases/steel_wall.toml").read_text()
-    path.write_text(text.replace('{ from = "0.05 m/s", to = "150 m/s", count = 32 }', '["5 m/s"]'))
-    return path
+    return ball(tmp_path, '["5 m/s"]')
 
 
 def jobs(out: Path) -> dict[str, list[int]]:

@@ -2,7 +2,6 @@
 """A pool of processes: a process that dies takes its own item with it and no other; none outlives us."""
 
 import contextlib
-import ctypes
 import multiprocessing
 import os
 import signal
@@ -11,12 +10,11 @@ from multiprocessing.connection import Connection, wait
 from multiprocessing.process import BaseProcess
 from typing import Any
 
+from ...base.processes import end_with_parent
 from ...errors import Stopped
 
 _FORK = multiprocessing.get_context("fork")  # with all that is imported here: a start takes a few milliseconds
 STOPPED = 143  # exit code of a process that was told to stop
-_PR_SET_PDEATHSIG = 1
-_libc = ctypes.CDLL(None)
 
 
 class Died(Exception):
@@ -105,7 +103,7 @@ def _work(function: Callable[[Any], Any], pipe: Connection, others: list[Connect
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C reaches all: our parent stops us in good order
     signal.signal(signal.SIGUSR2, signal.SIG_IGN)  # Slurm warns every process of a job; our parent queues it again
     signal.signal(signal.SIGTERM, _stop)
-    _libc.prctl(_PR_SET_PDEATHSIG, signal.SIGTERM)  # a parent that is killed cannot
+    end_with_parent()  # a parent that is killed cannot
     for other in others:  # or the end of a pipe would stay open here, and nobody would see that it has ended
         other.close()
     try:
