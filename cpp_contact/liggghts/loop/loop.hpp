@@ -53,7 +53,7 @@ class PairLoop : protected LAMMPS_NS::Pointers {
 
   const Kernel kernel_;
   const std::unique_ptr<Block> block_;
-  int slot_[block_size + most_lanes];        // place in the neighbour list of i
+  int slot_[block_size + most_lanes];       // place in the neighbour list of i
   bool overlaps_[block_size + most_lanes];  // with adhesion only
   Pass pass_{};
   LAMMPS_NS::PairGran* pair_ = nullptr;
