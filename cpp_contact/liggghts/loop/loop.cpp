@@ -122,11 +122,12 @@ void PairLoop::finish(const Plan& plan, int n) {
   fetch(plan, n);
   pad(n);
   kernel_(*block_, n, pass_);
-  if (plan.tangential != Tangential::off || plan.rolling != Rolling::off)
-    scatter<true>(n);
+  const bool turns = plan.tangential != Tangential::off || plan.rolling != Rolling::off;
+  if (plan.ledger)
+    turns ? scatter<true, true, adheres>(n, plan.ledger) : scatter<false, true, adheres>(n, plan.ledger);
   else
-    scatter<false>(n);
-  if (plan.ledger) book<adheres>(*plan.ledger, plan.tangential >= Tangential::partial_slip, n);
+    turns ? scatter<true, false, adheres>(n, nullptr) : scatter<false, false, adheres>(n, nullptr);
+  if (plan.ledger && plan.tangential >= Tangential::partial_slip) rub(*plan.ledger, n);
 }
 
 /// Of n contacts those that overlap or are attached across a gap; a pair that is not loses its mark.
@@ -202,20 +203,26 @@ void PairLoop::pad(int n) {
   }
 }
 
-/// Forces and torques, in the order of the list; those of a body are kept at hand while its pairs follow each other.
-template <bool torques>
-void PairLoop::scatter(int n) {
+/// Forces and torques in the order of the list, those of a body at hand while its pairs follow each other; with them
+/// the halves of the energies of each pair, and that both bodies have a contact that bears.
+template <bool torques, bool books, bool adheres>
+void PairLoop::scatter(int n, Ledger* ledger) {
   const Block& b = *block_;
   double *const f = atom->f[0], *const t = atom->torque[0];
+  double *const work = books ? ledger->work() : nullptr, *const energy = books ? ledger->energy() : nullptr;
+  double *const bearing = books ? ledger->bearing() : nullptr, *const parted = books ? ledger->adhesive() : nullptr;
   const int nlocal = atom->nlocal;
-  double others[6] = {};  // a ghost's force is computed by its owner
+  double others[10] = {};  // what a ghost gets is computed by its owner
   for (int k = 0; k < n;) {
     const int i = b.i[k];
     double *const fi = f + 3 * i, *const ti = t + 3 * i;
     double fx = fi[0], fy = fi[1], fz = fi[2], tx = ti[0], ty = ti[1], tz = ti[2];
+    double work_i{}, energy_i{}, bearing_i{};
+    if constexpr (books) work_i = work[i], energy_i = energy[i], bearing_i = bearing[i];
     do {
       const int j = b.j[k];
-      double* const fj = j < nlocal ? f + 3 * j : others;
+      const bool ours = j < nlocal;
+      double* const fj = ours ? f + 3 * j : others;
       const double gx = b.force[0].a[k], gy = b.force[1].a[k], gz = b.force[2].a[k];
       fx += gx;
       fy += gy;
@@ -224,13 +231,27 @@ void PairLoop::scatter(int n) {
       fj[1] -= gy;
       fj[2] -= gz;
       if constexpr (torques) {
-        double* const tj = j < nlocal ? t + 3 * j : others + 3;
+        double* const tj = ours ? t + 3 * j : others + 3;
         tx += b.torque_i[0].a[k];
         ty += b.torque_i[1].a[k];
         tz += b.torque_i[2].a[k];
         tj[0] += b.torque_j[0].a[k];
         tj[1] += b.torque_j[1].a[k];
         tj[2] += b.torque_j[2].a[k];
+      }
+      if constexpr (books) {
+        const double grown = b.grown.a[k] > 0.0 ? 0.5 * b.grown.a[k] : 0.0, stored = 0.5 * b.stored.a[k];
+        const bool bears = adheres ? b.radius.a[k] > 0.0 : stored > 0.0;
+        work_i += grown;
+        energy_i += stored;
+        bearing_i += bears;
+        *(ours ? work + j : others + 6) += grown;
+        *(ours ? energy + j : others + 7) += stored;
+        *(ours ? bearing + j : others + 8) += bears;
+        if constexpr (adheres) {
+          parted[i] += 0.5 * b.parted.a[k];
+          *(ours ? parted + j : others + 9) += 0.5 * b.parted.a[k];
+        }
       }
       ++k;
     } while (k < n && b.i[k] == i);
@@ -242,41 +263,14 @@ void PairLoop::scatter(int n) {
       ti[1] = ty;
       ti[2] = tz;
     }
+    if constexpr (books) work[i] = work_i, energy[i] = energy_i, bearing[i] = bearing_i;
   }
 }
 
-/// Halves of the energies of each pair to its bodies, in the order of the list; both count a contact that bears.
-template <bool adheres>
-void PairLoop::book(Ledger& ledger, bool rubs, int n) {
+/// The work of friction with partial slip, in the order of the list.
+void PairLoop::rub(Ledger& ledger, int n) {
   const Block& b = *block_;
-  double *const work = ledger.work(), *const energy = ledger.energy(), *const bearing = ledger.bearing();
-  double* const adhesive = ledger.adhesive();
-  const int nlocal = atom->nlocal;
-  double others[4] = {};
-  for (int k = 0; k < n;) {
-    const int i = b.i[k];
-    double work_i = work[i], energy_i = energy[i], bearing_i = bearing[i];
-    do {
-      const int j = b.j[k];
-      const double grown = b.grown.a[k] > 0.0 ? 0.5 * b.grown.a[k] : 0.0, stored = 0.5 * b.stored.a[k];
-      const bool bears = adheres ? b.radius.a[k] > 0.0 : stored > 0.0;
-      work_i += grown;
-      energy_i += stored;
-      bearing_i += bears;
-      *(j < nlocal ? work + j : others) += grown;
-      *(j < nlocal ? energy + j : others + 1) += stored;
-      *(j < nlocal ? bearing + j : others + 2) += bears;
-      if constexpr (adheres) {
-        adhesive[i] += 0.5 * b.parted.a[k];
-        *(j < nlocal ? adhesive + j : others + 3) += 0.5 * b.parted.a[k];
-      }
-      ++k;
-    } while (k < n && b.i[k] == i);
-    work[i] = work_i;
-    energy[i] = energy_i;
-    bearing[i] = bearing_i;
-  }
-  for (int k = 0; rubs && k < n; ++k) ledger.rub<false>(b.rubbed.a[k], b.sprung.a[k], {b.i[k], b.j[k], nlocal});
+  for (int k = 0; k < n; ++k) ledger.rub<false>(b.rubbed.a[k], b.sprung.a[k], {b.i[k], b.j[k], atom->nlocal});
 }
 
 }  // namespace epdem::liggghts::loop

@@ -46,10 +46,9 @@ class PairLoop : protected LAMMPS_NS::Pointers {
   int without_parted(const Plan& plan, int n);
   void fetch(const Plan& plan, int n);
   void pad(int n);
-  template <bool torques>
-  void scatter(int n);
-  template <bool adheres>
-  void book(Ledger& ledger, bool rubs, int n);
+  template <bool torques, bool books, bool adheres>
+  void scatter(int n, Ledger* ledger);
+  void rub(Ledger& ledger, int n);
 
   const Kernel kernel_;
   const std::unique_ptr<Block> block_;
