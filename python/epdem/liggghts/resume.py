@@ -58,10 +58,8 @@ def write_resume(p: ScenePlan, folder: Path, step: int) -> Path:
     d = deck(p)
     phase = next((i for i, part in enumerate(d.phases) if step < part.end), len(d.phases))
     rows = tables.rows(p, folder / OUT).set_index("step")
-    if (
-        rows["particles"].get(step) == p.case.scene.count
-    ):  # poured out: LIGGGHTS refuses an insertion that lies behind it
-        d = replace(d, insertions=tuple(f for f in d.insertions if not f.rate))
+    if rows["particles"].get(step) == p.layout.count:  # poured out: LIGGGHTS refuses an insertion that lies behind it
+        d = replace(d, insertions=tuple(f for f in d.insertions if f.once))
     path = folder / "in.resume"
     continued = replace(d, from_restart=f"restart.{step}.bin", resumed_phase=phase)
     path.write_text(decks.render("liggghts/scene_resume.in.j2", deck=continued), encoding="utf-8")

@@ -24,8 +24,12 @@ def work_of_walls(p: ScenePlan, rows: pd.DataFrame) -> np.ndarray:
     dt = np.diff(rows["step"], prepend=0) * p.time_step
     if p.plates:
         return np.cumsum(rows["plate_force"].to_numpy() * -plate_velocity(p, rows) * dt)
-    if p.layout.turn:
-        return np.cumsum(-rows["torque"].to_numpy() * p.layout.turn * dt)
+    if p.torque:
+        turn = p.layout.meshes["drum"].turn
+        assert turn is not None
+        return np.cumsum(-rows["torque"].to_numpy() * turn.rate * dt)
+    if p.powered:
+        return np.cumsum(rows["wall_power"].to_numpy() * dt)
     return np.zeros(len(rows))
 
 

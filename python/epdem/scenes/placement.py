@@ -10,7 +10,7 @@ import numpy as np
 from ..case.scene import SceneCase
 from ..errors import CaseError
 from .filling import drawn
-from .kinds import Block
+from .layout import Block
 from .meshes import FloatArray
 from .model import Model
 

@@ -217,6 +217,7 @@ def _left_out(folder: Path, lost: list[int]) -> list[str]:
 
 def _warnings(case: SceneCase) -> list[str]:
     """Doubtful values, and where the scene leaves the domain of theory: impacts on the walls at its highest speed."""
-    first = case.scene.particles[0]
-    x = wall_impact(case, first.material, first.radii()[0], case.scene.walls, highest_speed(case))
+    first = case.scene.leading
+    wall = (*case.scene.wall_materials, first.material)[0]
+    x = wall_impact(case, first.material, first.radii()[0], wall, highest_speed(case))
     return [*doubts(case), *predict(x).warnings()]
