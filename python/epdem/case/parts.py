@@ -6,7 +6,7 @@ from collections.abc import Iterable
 from functools import cached_property
 from typing import Annotated, Literal, NamedTuple, Self
 
-from pydantic import Field, model_validator
+from pydantic import Discriminator, Field, Tag, model_validator
 
 from .impact import Frozen, Length, Name, Quantity, Spin
 from .sizes import FileName, Particles, Share, csv_rows, number_in
@@ -37,6 +37,19 @@ class Upright(Frozen):
         return self
 
 
+def has(key: str) -> Discriminator:
+    """Chooses between the readings of a table by whether it has a key: "with" or "without"."""
+
+    def choose(value: object) -> str:
+        there = key in value if isinstance(value, dict) else hasattr(value, key)
+        return "with" if there else "without"
+
+    return Discriminator(choose)
+
+
+Region = Annotated[Annotated[Upright, Tag("with")] | Annotated[Room, Tag("without")], has("diameter")]
+
+
 class Sphere(NamedTuple):
     """One sphere of a table: place [m], radius [m], material, velocity [m/s], spin [rad/s]."""
 
@@ -55,7 +68,7 @@ class Fill(Frozen):
     """
 
     name: PartName
-    region: Room | Upright
+    region: Region
     particles: Annotated[list[Particles], Field(min_length=1, max_length=64)]
     count: Count | None = None
     mass: Annotated[float, Quantity("kg", above=0.0)] | None = None
@@ -112,6 +125,9 @@ class FileFill(Frozen):
         return self
 
 
+AnyFill = Annotated[Annotated[FileFill, Tag("with")] | Annotated[Fill, Tag("without")], has("file")]
+
+
 class Body(Frozen):
     """A single sphere; frozen: it stays where it is. It comes at the begin of `phase` (the first one)."""
 
@@ -158,7 +174,7 @@ class Parts(Frozen):
     leave: bool = False
     gravity: Annotated[float, Quantity("m/s^2", ge=0.0)] = 9.81
     wall: list[Wall] = Field(default_factory=list, max_length=64)
-    fill: list[Fill | FileFill] = Field(default_factory=list, max_length=64)
+    fill: list[AnyFill] = Field(default_factory=list, max_length=64)
     body: list[Body] = Field(default_factory=list, max_length=1000)
     phase: Annotated[list[Phase], Field(min_length=1, max_length=64)]
 
@@ -235,7 +251,8 @@ class Parts(Frozen):
     @property
     def drive(self) -> float:
         """The highest speed that anything has from outside [m/s]."""
-        speeds = [math.hypot(*x.velocity) for x in (*self.table, *(b.sphere for b in self.later), *self.random_fills)]
+        velocities = [*(s.velocity for s in self.table), *(b.velocity for b in self.body)]
+        speeds = [math.hypot(*v) for v in (*velocities, *(f.velocity for f in self.random_fills))]
         turns = (w for w in self.wall if isinstance(w, CylinderWall | ConeWall))
         return max([*speeds, *(abs(w.turn) * max(w.diameters_of_ends()) / 2 for w in turns), 0.0])
 

@@ -4,11 +4,12 @@
 import csv
 import math
 import re
+from abc import ABC, abstractmethod
 from pathlib import Path
 from statistics import NormalDist
 from typing import Annotated, Any, Self
 
-from pydantic import BeforeValidator, Field, ValidationInfo, model_validator
+from pydantic import BeforeValidator, Discriminator, Field, Tag, ValidationInfo, model_validator
 
 from .impact import Frozen, Length, Name, Quantity
 from .units import to_si, within_limits
@@ -88,12 +89,12 @@ class Range(_Limits):
         return [(float(f"{self.start + k * step:.6g}"), 1.0) for k in range(self.classes)]
 
 
-class _Spread(_Limits):
+class _Spread(_Limits, ABC):
     """Radii of a distribution cut off at the limits, in classes of equal width, each with the radius in its middle."""
 
+    @abstractmethod
     def share_below(self, radius: float) -> float:
         """Share by number of the uncut distribution below a radius [m]."""
-        raise NotImplementedError
 
     def numbers(self) -> list[tuple[float, float]]:
         """(radius [m], weight by number) of each class."""
@@ -176,7 +177,24 @@ class Sieve(Frozen):
         return [(r, share / r**3) for r, share in reversed(classes) if share > 0]
 
 
-Sizes = Range | Normal | LogNormal | Sieve
+SIZES = {"sieve": Sieve, "mean": Normal, "deviation": Normal, "median": LogNormal, "ratio": LogNormal}
+
+
+def _kind(value: object) -> str:
+    """Which table of sizes a user means, by its keys."""
+    if isinstance(value, Normal | LogNormal | Sieve):
+        return type(value).__name__
+    keys = value if isinstance(value, dict) else {}
+    return next((model.__name__ for key, model in SIZES.items() if key in keys), Range.__name__)
+
+
+Sizes = Annotated[
+    Annotated[Range, Tag("Range")]
+    | Annotated[Normal, Tag("Normal")]
+    | Annotated[LogNormal, Tag("LogNormal")]
+    | Annotated[Sieve, Tag("Sieve")],
+    Discriminator(_kind),
+]
 
 
 class Particles(Frozen):

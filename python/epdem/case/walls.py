@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Walls of a scene made of parts: flat, round, boxes, STL files. SI."""
 
+from abc import ABC, abstractmethod
 from typing import Annotated, Literal, Self
 
 from pydantic import Field, model_validator
@@ -85,7 +86,7 @@ class BoxWall(_Wall):
         return self
 
 
-class _Round(_Wall):
+class _Round(_Wall, ABC):
     """A wall about an axis, from one place along it to another; `center`: the two other coordinates.
 
     ends: which ends a disc closes. turn: angular velocity of its surface about its axis. It is a body of revolution, so
@@ -105,9 +106,9 @@ class _Round(_Wall):
             raise ValueError(f"'from' ({self.start:g} m) must be below 'to' ({self.to:g} m)")
         return self
 
+    @abstractmethod
     def diameters_of_ends(self) -> tuple[float, float]:
         """At `from` and at `to` [m]."""
-        raise NotImplementedError
 
 
 class CylinderWall(_Round):

@@ -127,7 +127,8 @@ def _late(p: ScenePlan, b: Body) -> Late:
 def parts(p: ScenePlan) -> tuple[Part, ...]:
     """The phases of a scene."""
     gates = {w.name: plane(p, w) for w in p.layout.gates}
-    parts, before = [], ()
+    parts: list[Part] = []
+    before: tuple[str, ...] = ()
     for phase, after in zip_longest(p.phases, p.phases[1:]):
         motions = {
             name: Motion(

@@ -33,9 +33,10 @@ def _triangles(w: Wall, room: Room, largest: float) -> meshes.FloatArray:
         case CylinderWall() | ConeWall():
             closed = ("from" in w.ends, "to" in w.ends)
             tube = meshes.tube(w.diameters_of_ends(), w.start, w.to, closed=closed)
-            return meshes.along("xyz".index(w.axis), tube) + np.array(_origin(w))
+            turned: meshes.FloatArray = meshes.along("xyz".index(w.axis), tube) + np.array(_origin(w))
+            return turned
         case StlWall():
-            return stl_files.triangles(w, room, largest)
+            return stl_files.placed(w, room, largest)
     raise AssertionError(w)
 
 
@@ -72,7 +73,8 @@ def _meshes(s: Parts, largest: float) -> dict[str, Mesh]:
 
 def _planes(s: Parts) -> tuple[tuple[Plane, ...], tuple[Plane, ...]]:
     """(planes that are always there, planes of some phases)."""
-    always, sometimes = [], []
+    always: list[Plane] = []
+    sometimes: list[Plane] = []
     for w in s.wall:
         if isinstance(w, PlaneWall):
             plane = Plane(w.name, "xyz".index(w.axis), w.at, w.material)

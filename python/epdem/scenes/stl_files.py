@@ -20,8 +20,8 @@ def _read(path: Path, place: str) -> FloatArray:
 
     try:
         with path.open("rb") as stream:
-            mesh = trimesh.load(stream, file_type="stl", process=False, force="mesh")
-        triangles = np.array(mesh.triangles, float)
+            mesh = trimesh.load_mesh(stream, file_type="stl", process=False)
+        triangles: FloatArray = np.asarray(mesh.triangles, dtype=np.float64)
     except Exception as error:  # of a damaged file trimesh says almost anything
         reason = " ".join(str(error).split())[:80] or type(error).__name__
         raise CaseError(f"{place} = '{path}': not an STL file ({reason}); export it anew") from None
@@ -86,17 +86,17 @@ def _refuse_faults(w: StlWall, triangles: FloatArray, place: str) -> None:
         raise CaseError(f"{place}: open along {n} edges, one at {middle(edge)}; close the mesh, or remove 'closed'")
 
 
-def triangles(w: StlWall, room: tuple[float, ...], largest: float) -> FloatArray:
+def placed(w: StlWall, room: tuple[float, ...], largest: float) -> FloatArray:
     """The triangles of an STL wall in the room xlo xhi ylo yhi zlo zhi [m], shape (n, 3, 3).
 
     largest: of the radii [m], against which the size is checked. Raises CaseError for a file that is no good wall.
     """
     place = f"scene.wall.{w.name}.file"
-    points = w.scale * _read(w.file, place)
+    points: FloatArray = w.scale * _read(w.file, place)
     if w.rotate is not None:
         axis = np.array(w.rotate.axis) / np.linalg.norm(w.rotate.axis)
         s, c = math.sin(w.rotate.angle), math.cos(w.rotate.angle)
-        cross = np.cross(np.eye(3), axis)
+        cross = np.cross(axis, np.eye(3))
         points = points @ (c * np.eye(3) + s * cross + (1 - c) * np.outer(axis, axis))
     points = points + np.array(w.place)
     low, high = points.reshape(-1, 3).min(axis=0), points.reshape(-1, 3).max(axis=0)

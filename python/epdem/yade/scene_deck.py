@@ -206,6 +206,6 @@ def _filled(p: ScenePlan) -> Block:
 
 def _table(p: ScenePlan) -> str:
     lines = ["# x y z radius [m], type; random places without overlap"]
-    for *numbers, kind in placement.spheres(p.case, p.model, _filled(p)):
+    for *numbers, kind in placement.spheres(p):
         lines.append(" ".join([*map(decks.number, numbers), str(int(kind))]))
     return "\n".join([*lines, ""])
