@@ -2,6 +2,8 @@
 """Scenes of parts from case file to plan: amounts, sizes, walls; and every mistake in one sentence with its place."""
 
 import math
+import re
+import tomllib
 from pathlib import Path
 
 import numpy as np
@@ -14,6 +16,7 @@ from epdem.errors import CaseError
 from epdem.scenes.plan import plan
 
 STL = {"name": "bowl", "kind": "stl", "file": "wall.stl", "material": "steel"}
+PLATE = {"name": "w", "kind": "plate", "axis": "z", "center": ["0 m"] * 3, "size": ["1 m"] * 2, "material": "steel"}
 BODY = {"name": "ball", "material": "steel", "radius": "2 mm", "place": ["0 mm", "0 mm", "20 mm"]}
 
 
@@ -147,15 +150,21 @@ def test_a_good_stl_is_scaled_turned_and_moved(tmp_path):
         ({"body": [BODY | {"place": ["0 mm", "0 mm", "1 m"]}]}, "lies beyond scene.room"),
         ({"body": [BODY | {"frozen": True, "phase": "fall"}]}, "a frozen body is there from the start"),
         ({"phase": []}, "scene.phase is empty"),
-        ({"wall": [{"name": "w", "kind": "plate", "axis": "z", "center": ["0 m", "0 m", "0 m"], "size": ["1 m", "1 m"],
-                    "material": "steel"}]}, "scene.wall.w: reaches beyond scene.room"),
+        ({"wall": [PLATE]}, "scene.wall.w: reaches beyond scene.room"),
     ],
-)  # fmt: skip
+)
 def test_unknown_and_contradictory_parts_are_refused_in_one_sentence(change, words, tmp_path):
     (tmp_path / "s.csv").write_text("x,y,z,radius\n0,0,0,0.001\n0,0,0,big\n")
     with pytest.raises(CaseError, match=words) as error:
         plan(parse(parts(**change), tmp_path / "case.toml"))
     assert "\n" not in str(error.value)
+
+
+def test_the_example_of_the_page_is_a_scene():
+    (example,) = re.findall(r"^```toml\n(.*?)^```$", (CASES.parent / "docs/scenes.md").read_text(), re.M | re.S)
+    p = plan(parse(parts() | tomllib.loads(example)))
+    mass = 2500 * 4 / 3 * math.pi * 1e-9
+    assert p.layout.count == round(2e-3 / mass) + 1 and [x.name for x in p.phases] == ["settle", "hit"]
 
 
 def test_values_of_a_pair_of_materials_count_for_spheres_and_walls():

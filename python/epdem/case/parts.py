@@ -151,8 +151,8 @@ class Body(Frozen):
     @property
     def sphere(self) -> Sphere:
         """The body as a row of a table."""
-        place, velocity, spin = (tuple(v) for v in (self.place, self.velocity, self.spin))
-        return Sphere(place, self.radius, self.material, velocity, spin, self.frozen)  # type: ignore[arg-type]
+        (x, y, z), (vx, vy, vz), (wx, wy, wz) = self.place, self.velocity, self.spin
+        return Sphere((x, y, z), self.radius, self.material, (vx, vy, vz), (wx, wy, wz), self.frozen)
 
 
 class Phase(Frozen):
