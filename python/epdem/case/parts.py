@@ -9,19 +9,11 @@ from typing import Annotated, Literal, NamedTuple, Self
 from pydantic import Discriminator, Field, Tag, model_validator
 
 from .impact import Frozen, Length, Name, Quantity, Spin
+from .motions import LinearMove, Phase, PressMove, Rate, RotateMove, Speeds, VibrateMove, nothing
 from .sizes import FileName, Particles, Share, csv_rows, number_in
 from .walls import ConeWall, CylinderWall, PartName, PlaneWall, Room, Span, Vector, Wall, ordered
 
-Time = Annotated[float, Quantity("s", above=0.0)]
-Rate = Annotated[float, Quantity("Hz", above=0.0)]
 Count = Annotated[int, Field(ge=1, le=100_000_000)]
-Force = Annotated[float, Quantity("N", above=0.0)]
-Speeds = Annotated[list[Annotated[float, Quantity("m/s")]], Field(min_length=3, max_length=3)]
-
-
-def nothing() -> list[float]:
-    """A vector without length."""
-    return [0.0, 0.0, 0.0]
 
 
 class Upright(Frozen):
@@ -155,13 +147,6 @@ class Body(Frozen):
         return Sphere((x, y, z), self.radius, self.material, (vx, vy, vz), (wx, wy, wz), self.frozen)
 
 
-class Phase(Frozen):
-    """A part of the run."""
-
-    name: PartName
-    duration: Time
-
-
 class Parts(Frozen):
     """A scene of any parts, in a room beyond whose limits spheres are lost.
 
@@ -187,6 +172,16 @@ class Parts(Frozen):
         for place, name in self._named_phases():
             if name not in phases:
                 raise ValueError(f"{place} = {name!r} is no phase; there are {', '.join(phases)}")
+        moving = [w.name for w in self.wall if not isinstance(w, PlaneWall)]
+        for p in self.phase:
+            for m in p.move:
+                if m.wall not in moving:
+                    known = f"there are {', '.join(moving)}" if moving else "there is none"
+                    raise ValueError(
+                        f"phase.{p.name}.move: {m.wall!r} is no wall of triangles, which can move; {known}"
+                    )
+            if p.until and p.until.wall and p.until.wall not in [w.name for w in self.wall]:
+                raise ValueError(f"phase.{p.name}.until.wall = {p.until.wall!r} is no wall")
         for w in self.wall:
             if isinstance(w, PlaneWall) and w.phases:
                 places = sorted(phases.index(name) for name in w.phases)
@@ -254,7 +249,20 @@ class Parts(Frozen):
         velocities = [*(s.velocity for s in self.table), *(b.velocity for b in self.body)]
         speeds = [math.hypot(*v) for v in (*velocities, *(f.velocity for f in self.random_fills))]
         turns = (w for w in self.wall if isinstance(w, CylinderWall | ConeWall))
-        return max([*speeds, *(abs(w.turn) * max(w.diameters_of_ends()) / 2 for w in turns), 0.0])
+        speeds += [abs(w.turn) * max(w.diameters_of_ends()) / 2 for w in turns]
+        limits = self.room.limits
+        across = math.dist(limits[0::2], limits[1::2])
+        for move in (m for p in self.phase for m in p.move):
+            match move:
+                case LinearMove():
+                    speeds.append(math.hypot(*move.velocity))
+                case RotateMove():
+                    speeds.append(abs(move.rate) * across)
+                case VibrateMove():
+                    speeds.append(2 * math.pi * move.frequency * math.hypot(*move.amplitude))
+                case PressMove():
+                    speeds.append(move.highest_speed)
+        return max([*speeds, 0.0])
 
     @property
     def wall_materials(self) -> list[str]:

@@ -23,7 +23,8 @@ from .impact import (
 )
 from .library import with_library
 from .messages import explain
-from .parts import Parts, Rate, Time
+from .motions import Rate, Time
+from .parts import Parts
 from .sizes import Particles, Share, context
 from .toml import read_toml
 

@@ -91,7 +91,9 @@ def insertions(p: ScenePlan) -> tuple[Insertion, ...]:
     seeds = itertools.islice(primes(), 100 * (p.case.numerics.seed - 1), None)
     result: list[Insertion] = []
     first = 1
+    steps = {phase.name: phase.time_step or p.time_step for phase in p.phases}
     for i, fill in enumerate(p.layout.fills, 1):
+        phase = fill.phase or p.phases[0].name
         templates = _templates(p, fill, first, seeds)
         first += len(templates)
         result.append(
@@ -104,10 +106,10 @@ def insertions(p: ScenePlan) -> tuple[Insertion, ...]:
                 region=_region(fill),
                 count=fill.count,
                 # insert/pack counts what is in the region before it; a stream faster than a step does not
-                rate=float(f"{2 * fill.count / p.time_step:.2g}") if fill.exact else fill.rate,
-                every=None if fill.rate is None and not fill.exact else max(1, math.ceil(fill.every / p.time_step)),
+                rate=float(f"{2 * fill.count / steps[phase]:.2g}") if fill.exact else fill.rate,
+                every=None if fill.rate is None and not fill.exact else max(1, math.ceil(fill.every / steps[phase])),
                 velocity=fill.velocity,
-                phase=fill.phase or p.phases[0].name,
+                phase=phase,
                 once=fill.rate is None,
             )
         )

@@ -53,6 +53,7 @@ class Deck:
     insertions: tuple[Insertion, ...]
     time_step: float
     phases: tuple[Part, ...]
+    open: bool
     every: int
     sampling: int
     samples: int
@@ -194,6 +195,7 @@ def deck(p: ScenePlan) -> Deck:
         insertions=insertions(p),
         time_step=p.time_step,
         phases=parts(p),
+        open=p.ends_early or any("${begin}" in part.power for part in parts(p)),
         every=p.every,
         sampling=p.sampling,
         samples=p.every // p.sampling,

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """The tables of a scene from LIGGGHTS's files. Only this module reads its file formats."""
 
+import math
 import re
 from collections.abc import Collection
 from pathlib import Path
@@ -12,6 +13,7 @@ from ..errors import EngineError
 from ..scenes import columns, contacts
 from ..scenes.plan import ScenePlan
 from . import dump, log
+from .launcher import OUT
 
 # thermo words of the deck and their columns; those of the loads of walls beside them, see `_column`
 ROWS = {
@@ -53,6 +55,14 @@ def rows(p: ScenePlan, out: Path) -> pd.DataFrame:
     on_planes = [f"{name}_{force}" for name in planes for force in columns.LOADS[:3]]
     found[on_planes] = -found[on_planes]  # LIGGGHTS stores what acts on the spheres
     return found
+
+
+def ends(folder: Path, upto: float = math.inf) -> dict[str, int]:
+    """The step at the end of each phase, of a scene in which one may end early, up to a step."""
+    out = folder / OUT
+    text = out.read_text(encoding="utf-8", errors="replace") if out.exists() else ""
+    found = re.findall(r"^phase (\w+) ended at step (\d+)", text, re.M)
+    return {name: int(step) for name, step in found if int(step) <= upto}
 
 
 def _frame(path: Path, count: int) -> np.ndarray:

@@ -51,7 +51,8 @@ class LiggghtsScenes:
         return Resumed(step, lost)
 
     def read(self, plan: ScenePlan, folder: Path, *, without: Collection[int] = ()) -> dict[str, pd.DataFrame]:
-        read = {"rows": tables.rows(plan, folder / launcher.OUT)}
+        plan = plan.ended(tables.ends(folder)) if plan.ends_early else plan
+        read = {"rows": tables.rows(plan, folder / launcher.OUT), "phases": plan.phase_table}
         if plan.frames:
             read["particles"] = tables.particles(plan, folder, without=without)
         if plan.contacts:

@@ -11,7 +11,7 @@ from ..errors import EngineError
 from .plan import ScenePlan
 
 UNITS = {
-    "time": "s",
+    **dict.fromkeys(("time", "begin_time", "end_time"), "s"),
     "kinetic_energy": "J",
     "floor_load": "N",
     "plate_force": "N",
@@ -60,7 +60,7 @@ def rows(p: ScenePlan, values: dict[int, list[float]], names: list[str]) -> pd.D
     """The table of rows, sorted, from the values of `names` at each step."""
     table = pd.DataFrame.from_dict(values, orient="index", columns=names).sort_index()
     table.insert(0, "step", table.index.to_numpy())
-    table.insert(1, "time", table["step"] * p.time_step)
+    table.insert(1, "time", p.time_at(table["step"].to_numpy()))
     if isinstance(p.case.scene, Compaction):
         middle = (table["step"] - 0.5 * p.every).clip(lower=0) * p.time_step
         table["plate_z"] = plate_height(p, middle.to_numpy())

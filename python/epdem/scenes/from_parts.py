@@ -5,6 +5,8 @@ import math
 
 import numpy as np
 
+from ..case.motions import LinearMove, Phase, PressMove, RotateMove, VibrateMove
+from ..case.motions import Move as CaseMove
 from ..case.parts import Fill as CaseFill
 from ..case.parts import Parts, Upright
 from ..case.scene import SceneCase
@@ -12,7 +14,23 @@ from ..case.sizes import Particles
 from ..case.walls import BoxWall, ConeWall, CylinderWall, PlaneWall, PlateWall, StlWall, Wall
 from ..errors import CaseError
 from . import meshes, stl_files
-from .layout import Block, Body, Cylinder, Fill, Layout, Mesh, Plane, Stage, Turn, Vector
+from .layout import (
+    Block,
+    Body,
+    Cylinder,
+    Fill,
+    Layout,
+    Linear,
+    Mesh,
+    Move,
+    Plane,
+    Servo,
+    Stage,
+    Turn,
+    Until,
+    Vector,
+    Vibration,
+)
 
 Room = tuple[float, float, float, float, float, float]
 
@@ -168,20 +186,58 @@ def _refuse_outside(s: Parts) -> None:
             )
 
 
+def _move(m: CaseMove) -> Move:
+    match m:
+        case LinearMove():
+            return Linear(_vector(m.velocity))
+        case RotateMove():
+            length = math.hypot(*m.axis)
+            return Turn(_vector(m.origin), _vector([x / length for x in m.axis]), m.rate)
+        case VibrateMove():
+            return Vibration(_vector(m.amplitude), 2 * math.pi * m.frequency)
+        case PressMove():
+            length = math.hypot(*m.direction)
+            return Servo(_vector([x / length for x in m.direction]), m.force, m.highest_speed)
+
+
+def _stage(s: Parts, p: Phase) -> Stage:
+    gates = tuple(w.name for w in s.wall if isinstance(w, PlaneWall) and p.name in w.phases)
+    moves = {m.wall: _move(m) for m in p.move}
+    seconds, until = p.duration, None
+    if u := p.until:
+        after = 0.1 * p.duration if u.after is None else u.after
+        if u.kinetic_energy is not None:
+            until = Until("kinetic_energy", u.kinetic_energy, after)
+        elif u.count is not None:
+            until = Until("count", float(u.count), after)
+        elif u.force is not None:
+            if u.wall in {w.name for w in s.wall if isinstance(w, PlaneWall) and w.phases}:
+                raise CaseError(f"scene.phase.{p.name}.until.wall: {u.wall} is a wall of some phases; name another one")
+            until = Until("force", u.force, after, u.wall or "")
+        elif u.travel is not None:
+            move = moves[u.wall or ""]
+            assert isinstance(move, Linear)
+            seconds = min(seconds, u.travel / math.hypot(*move.velocity))
+    return Stage(p.name, seconds, moves, gates, until, p.time_step)
+
+
 def from_parts(case: SceneCase, s: Parts) -> Layout:
     """The layout of a scene of parts. Raises CaseError for what does not fit together."""
     _refuse_outside(s)
     largest = max(p.radii()[1] for p in s.filled)
     walls = _meshes(s, largest)
     planes, gates = _planes(s)
-    stages = tuple(
-        Stage(
-            p.name,
-            p.duration,
-            gates=tuple(w.name for w in s.wall if isinstance(w, PlaneWall) and p.name in w.phases),
-        )
-        for p in s.phase
-    )
+    stages = tuple(_stage(s, p) for p in s.phase)
+    loads = {w.name for w in s.wall} - {g.name for g in gates} if case.output.loads else set()
+    loads |= {stage.until.wall for stage in stages if stage.until and stage.until.wall}
+    moves = [(name, move) for stage in stages for name, move in stage.moves.items()]
+    served = {name for name, move in moves if isinstance(move, Servo)}
+    if served and case.output.energy:
+        raise CaseError(f"output.energy: the work of wall {min(served)}, which a force drives, is not known; remove it")
+    if both := {name for name, move in moves if name in served and not isinstance(move, Servo)}:
+        raise CaseError(f"scene.wall.{min(both)}: a wall that a force drives has no other motion; take a second wall")
+    if case.output.restarts and any(not isinstance(move, Linear) for _, move in moves):
+        raise CaseError("output.restarts: only walls with linear motions go on where they were; remove it")
     fills = _fills(case, s)
     bodies = tuple(Body(b.name, b.sphere, b.phase or "") for b in s.later)
     return Layout(
@@ -196,5 +252,5 @@ def from_parts(case: SceneCase, s: Parts) -> Layout:
         loses=s.leave,
         table=tuple(s.table),
         bodies=bodies,
-        loads=tuple(w.name for w in s.wall if w.name not in {g.name for g in gates}) if case.output.loads else (),
+        loads=tuple(w.name for w in s.wall if w.name in loads),
     )

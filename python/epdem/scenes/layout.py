@@ -38,6 +38,39 @@ class Linear:
 
 
 @dataclass(frozen=True)
+class Vibration:
+    """The displacement amplitude [m] times sin(omega t) since its begin; omega in rad/s."""
+
+    amplitude: Vector
+    omega: float
+
+
+@dataclass(frozen=True)
+class Servo:
+    """A motion along a direction, at most so fast [m/s], that holds the wall's force on the spheres [N]."""
+
+    direction: Vector
+    force: float
+    highest_speed: float
+
+
+Move = Linear | Turn | Vibration | Servo
+
+
+@dataclass(frozen=True)
+class Until:
+    """What ends a stage early, looked at from `after` [s] on: what is measured is below `limit`, or above, of a force.
+
+    quantity: "kinetic_energy" of a sphere [J], "count" of spheres in the room, "force" on `wall` [N].
+    """
+
+    quantity: str
+    limit: float
+    after: float
+    wall: str = ""
+
+
+@dataclass(frozen=True)
 class Mesh:
     """A wall of triangles, shape (n, 3 corners, 3 coordinates) [m]; `turn`: of its surface, while they stay."""
 
@@ -95,12 +128,14 @@ class Fill:
 
 @dataclass(frozen=True)
 class Stage:
-    """A part of the scene: which meshes move in it and how, and which gates are there."""
+    """A part of the scene: which meshes move in it and how, which gates are there, what ends it early."""
 
     name: str
     seconds: float
-    moves: dict[str, Linear] = field(default_factory=dict)
+    moves: dict[str, Move] = field(default_factory=dict)
     gates: tuple[str, ...] = ()
+    until: Until | None = None
+    time_step: float | None = None
 
 
 @dataclass(frozen=True)

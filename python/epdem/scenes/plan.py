@@ -2,12 +2,16 @@
 """A scene for any engine: bodies, motions, times of output. All SI, without names of engines."""
 
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
+
+import numpy as np
+import pandas as pd
 
 from ..case.scene import Compaction, Drum, Output, SceneCase
 from . import kinds
 from .filling import refuse_too_many
-from .layout import Layout, Linear
+from .layout import Layout, Linear, Move, Until
 from .limits import refuse_faster_than_sound, refuse_steps
 from .model import Model, model
 from .timestep import time_step
@@ -17,17 +21,20 @@ SAMPLES = 50  # of a force, at least, in the mean that a row holds
 
 @dataclass(frozen=True)
 class Phase:
-    """A part of the run up to step `end`; which meshes move in it, and which gates are there."""
+    """A part of the run up to step `end`, or less if `until` holds; what moves in it, which gates are there."""
 
     name: str
     end: int
-    moves: dict[str, Linear]
+    moves: dict[str, Move]
     gates: tuple[str, ...] = ()
+    until: Until | None = None
+    time_step: float | None = None
 
     @property
     def plate(self) -> float:
         """Velocity of the plate along z [m/s]."""
-        return self.moves["plate"].velocity[2] if "plate" in self.moves else 0.0
+        move = self.moves.get("plate")
+        return move.velocity[2] if isinstance(move, Linear) else 0.0
 
 
 @dataclass(frozen=True)
@@ -55,6 +62,38 @@ class ScenePlan:
     def steps(self) -> int:
         """All steps of the run."""
         return self.phases[-1].end
+
+    @property
+    def ends_early(self) -> bool:
+        """Whether a phase may end before its duration, so that the steps of a run are known only after it."""
+        return any(phase.until for phase in self.phases)
+
+    def ended(self, ends: Mapping[str, int]) -> "ScenePlan":
+        """The plan of a run whose phases ended at these steps; those behind a phase that ended early move with it."""
+        phases, shift = [], 0
+        for phase in self.phases:
+            end = ends.get(phase.name, phase.end + shift)
+            shift = end - phase.end
+            phases.append(replace(phase, end=end))
+        return replace(self, phases=tuple(phases))
+
+    @property
+    def phase_table(self) -> pd.DataFrame:
+        """One row per phase: name, steps and times [s] of its begin and end."""
+        ends = np.array([0, *(phase.end for phase in self.phases)])
+        times = self.time_at(ends)
+        names = [phase.name for phase in self.phases]
+        return pd.DataFrame(
+            {"phase": names, "begin": ends[:-1], "end": ends[1:], "begin_time": times[:-1], "end_time": times[1:]}
+        )
+
+    def time_at(self, steps: np.ndarray) -> np.ndarray:
+        """Times [s] of steps."""
+        if not any(phase.time_step for phase in self.phases):
+            return np.asarray(steps * self.time_step)
+        ends = np.array([0, *(phase.end for phase in self.phases)])
+        lengths = np.diff(ends) * [phase.time_step or self.time_step for phase in self.phases]
+        return np.asarray(np.interp(steps, ends, np.concatenate([[0.0], np.cumsum(lengths)])))
 
     @property
     def output(self) -> Output:
@@ -141,8 +180,8 @@ def _intervals(output: Output, steps: float) -> tuple[int, int]:
 def _phases(layout: Layout, rows: int, every: int, dt: float) -> tuple[Phase, ...]:
     phases, end = [], 0
     for stage in layout.stages:
-        end += every * max(1, round(stage.seconds / dt / every))
-        phases.append(Phase(stage.name, end, stage.moves, stage.gates))
+        end += every * max(1, round(stage.seconds / (stage.time_step or dt) / every))
+        phases.append(Phase(stage.name, end, stage.moves, stage.gates, stage.until, stage.time_step))
     last = phases.pop()
     end = max(rows * every, last.end) if phases else rows * every
     return (*phases, replace(last, end=end))
@@ -158,8 +197,11 @@ def plan(case: SceneCase) -> ScenePlan:
     refuse_faster_than_sound(case)
     contact_model, dt, layout, out = model(case), time_step(case), kinds.layout(case), case.output
     refuse_too_many(case, layout.fills)
-    rows, every = _intervals(out, layout.duration / dt)
-    refuse_steps(case, rows, layout.duration, dt)
+    steps = layout.duration / dt
+    if any(stage.time_step for stage in layout.stages):
+        steps = sum(stage.seconds / (stage.time_step or dt) for stage in layout.stages)
+    rows, every = _intervals(out, steps)
+    refuse_steps(case, rows, layout.duration, layout.duration / steps)
 
     def interval(count: int) -> int:
         return 0 if count == 0 else every * max(1, rows // count)

@@ -145,7 +145,14 @@ def _reused(work: _Work, folder: Path, fresh: bool) -> SceneOutcome | None:
     old = None if fresh else _stored(folder / "results.h5")
     if old is None or old.attributes.get("inputs") != work.inputs:
         return None
-    return SceneOutcome(work.plan, folder, old, 0.0, reused=True, warnings=work.notes)
+    return SceneOutcome(_as_run(work.plan, old.tables), folder, old, 0.0, reused=True, warnings=work.notes)
+
+
+def _as_run(p: ScenePlan, tables: dict[str, pd.DataFrame]) -> ScenePlan:
+    """The plan with the ends of phases as they came."""
+    if not p.ends_early:
+        return p
+    return p.ended(dict(zip(tables["phases"]["phase"], tables["phases"]["end"].astype(int), strict=True)))
 
 
 def _anew(work: _Work, place: Results) -> SceneOutcome:
@@ -176,7 +183,7 @@ def _finish(
     work: _Work, folder: Path, start: float, tables: dict[str, pd.DataFrame], went_on: Resumed | None = None
 ) -> SceneOutcome:
     """Complete the tables of a run by ledger and checks, and write results.h5."""
-    p = work.plan
+    p = _as_run(work.plan, tables)
     if p.output.energy:
         if tables["particles"].empty:
             raise EngineError(
