@@ -6,40 +6,15 @@ from collections.abc import Iterable
 from functools import cached_property
 from typing import Annotated, Literal, NamedTuple, Self
 
-from pydantic import Discriminator, Field, Tag, model_validator
+from pydantic import Field, Tag, model_validator
 
 from .impact import Frozen, Length, Name, Quantity, Spin
+from .measures import Measure, Region
 from .motions import LinearMove, Phase, PressMove, Rate, RotateMove, Speeds, VibrateMove, nothing
 from .sizes import FileName, Particles, Share, csv_rows, number_in
-from .walls import ConeWall, CylinderWall, PartName, PlaneWall, Room, Span, Vector, Wall, ordered
+from .walls import ConeWall, CylinderWall, PartName, PlaneWall, Room, Vector, Wall, has
 
 Count = Annotated[int, Field(ge=1, le=100_000_000)]
-
-
-class Upright(Frozen):
-    """An upright cylinder: a room that is filled."""
-
-    diameter: Length
-    z: Span
-    center: Span = Field(default_factory=lambda: [0.0, 0.0])
-
-    @model_validator(mode="after")
-    def _ordered(self) -> Self:
-        ordered("z", self.z)
-        return self
-
-
-def has(key: str) -> Discriminator:
-    """Chooses between the readings of a table by whether it has a key: "with" or "without"."""
-
-    def choose(value: object) -> str:
-        there = key in value if isinstance(value, dict) else hasattr(value, key)
-        return "with" if there else "without"
-
-    return Discriminator(choose)
-
-
-Region = Annotated[Annotated[Upright, Tag("with")] | Annotated[Room, Tag("without")], has("diameter")]
 
 
 class Sphere(NamedTuple):
@@ -162,6 +137,7 @@ class Parts(Frozen):
     fill: list[AnyFill] = Field(default_factory=list, max_length=64)
     body: list[Body] = Field(default_factory=list, max_length=1000)
     phase: Annotated[list[Phase], Field(min_length=1, max_length=64)]
+    measure: list[Measure] = Field(default_factory=list, max_length=64)
 
     @model_validator(mode="after")
     def _parts(self) -> Self:

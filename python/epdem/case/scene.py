@@ -22,6 +22,7 @@ from .impact import (
     Viscous,
 )
 from .library import with_library
+from .measures import Measure
 from .messages import explain
 from .motions import Rate, Time
 from .parts import Parts
@@ -121,6 +122,7 @@ class Common(Frozen):
     count: Annotated[int, Field(ge=1, le=100_000_000)]
     walls: Name  # material of the walls
     gravity: Gravity = 9.81
+    measure: list[Measure] = Field(default_factory=list, max_length=64)
 
     @model_validator(mode="after")
     def _shares(self) -> Self:

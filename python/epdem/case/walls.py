@@ -4,7 +4,7 @@
 from abc import ABC, abstractmethod
 from typing import Annotated, Literal, Self
 
-from pydantic import Field, model_validator
+from pydantic import Discriminator, Field, model_validator
 
 from .impact import Frozen, Length, Name, Quantity
 from .sizes import FileName
@@ -41,6 +41,29 @@ class Room(Frozen):
     def limits(self) -> tuple[float, float, float, float, float, float]:
         """xlo xhi ylo yhi zlo zhi [m]."""
         return (self.x[0], self.x[1], self.y[0], self.y[1], self.z[0], self.z[1])
+
+
+class Upright(Frozen):
+    """An upright cylinder: a room that is filled."""
+
+    diameter: Length
+    z: Span
+    center: Span = Field(default_factory=lambda: [0.0, 0.0])
+
+    @model_validator(mode="after")
+    def _ordered(self) -> Self:
+        ordered("z", self.z)
+        return self
+
+
+def has(key: str) -> Discriminator:
+    """Chooses between the readings of a table by whether it has a key: "with" or "without"."""
+
+    def choose(value: object) -> str:
+        there = key in value if isinstance(value, dict) else hasattr(value, key)
+        return "with" if there else "without"
+
+    return Discriminator(choose)
 
 
 class _Wall(Frozen):

@@ -5,13 +5,14 @@ import math
 
 import numpy as np
 
+from ..case.measures import Load
 from ..case.motions import LinearMove, Phase, PressMove, RotateMove, VibrateMove
 from ..case.motions import Move as CaseMove
 from ..case.parts import Fill as CaseFill
-from ..case.parts import Parts, Upright
+from ..case.parts import Parts
 from ..case.scene import SceneCase
 from ..case.sizes import Particles
-from ..case.walls import BoxWall, ConeWall, CylinderWall, PlaneWall, PlateWall, StlWall, Wall
+from ..case.walls import BoxWall, ConeWall, CylinderWall, PlaneWall, PlateWall, StlWall, Upright, Wall
 from ..errors import CaseError
 from . import meshes, stl_files
 from .layout import (
@@ -230,6 +231,7 @@ def from_parts(case: SceneCase, s: Parts) -> Layout:
     stages = tuple(_stage(s, p) for p in s.phase)
     loads = {w.name for w in s.wall} - {g.name for g in gates} if case.output.loads else set()
     loads |= {stage.until.wall for stage in stages if stage.until and stage.until.wall}
+    loads |= {m.wall for m in s.measure if isinstance(m, Load)} & {w.name for w in s.wall}
     moves = [(name, move) for stage in stages for name, move in stage.moves.items()]
     served = {name for name, move in moves if isinstance(move, Servo)}
     if served and case.output.energy:

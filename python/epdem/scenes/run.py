@@ -19,7 +19,7 @@ from ..case.scene import SceneCase, load
 from ..case.toml import named
 from ..errors import CaseError, EngineError
 from ..impacts.prediction import predict
-from . import checks, ledger, results
+from . import checks, ledger, measures, results
 from .engine import Report, Resumed, SceneEngine, check_abilities
 from .pairs import wall_impact
 from .plan import ScenePlan, plan
@@ -130,6 +130,7 @@ def run_case(
     """
     with named(place):
         p = plan(case)
+        measures.refuse_measures(p)
         check_abilities(engine, p, ranks=ranks, resume=resume)
         files, notes = engine.files(p), [*engine.notes(p), *_warnings(p.case)]
     work = _Work(text, p, engine, files, notes, ranks, lambda step: report(step, p.steps))
@@ -191,6 +192,8 @@ def _finish(
             )
         tables["ledger"] = ledger.ledger(p, tables)
     tables["checks"] = checks.checks(p, tables)
+    if p.case.scene.measure:
+        tables["measures"], tables["histograms"] = measures.curves(p, tables), measures.histograms(p, tables)
     seconds = time.perf_counter() - start
     attributes = {
         "case": p.case.name,
