@@ -10,7 +10,7 @@ UNIT_OF_CHECK = {"floor_load": "N", "mass_flow": "kg/s"}
 
 
 def numbers_of(results: SceneResults) -> dict[str, float]:
-    """COLUMN_last, COLUMN_max and COLUMN_mean (over the last fifth) of all columns of rows and measures, and each check.
+    """COLUMN_last, COLUMN_max, COLUMN_mean (over the last fifth) of all columns of rows and measures, and each check.
 
     A check has the name of what it measures, without the numbers in it: "mass flow / Beverloo" is mass_flow.
     """
