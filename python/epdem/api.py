@@ -245,7 +245,8 @@ def run(
     if isinstance(case, Scene):
         if len(engines) != 1 or laws:
             raise CaseError("a scene has its own law and runs on one engine")
-        return SceneRun(run_scene(case.model, case.text, scene_engine(engines[0]), place=case.name, **options))
+        options |= {"place": case.name, "report": lambda step, steps: log.info("%s: step %d of %d", case.name, step, steps)}
+        return SceneRun(run_scene(case.model, case.text, scene_engine(engines[0]), **options))
     tools = [engine_named(name) for name in engines]
     impacts = run_impacts(
         case.model, case.text, place=case.name, engines=tools, laws=laws, progress=log.info, **options
