@@ -71,8 +71,7 @@ class PartialSlip : public TangentialModelBase {
     const Vec<double> n{s.en[0], s.en[1], s.en[2]};
     Vec<double> w{s.omega_i[0], s.omega_i[1], s.omega_i[2]};
     if (!s.is_wall) w = w + Vec<double>{s.omega_j[0], s.omega_j[1], s.omega_j[2]};
-    const Shear<double> motion{
-        n, {dt * s.vtr1, dt * s.vtr2, dt * s.vtr3}, 0.5 * dt * dot(n, w), 1.0 / dt * s.gammat};
+    const Shear<double> motion{n, {dt * s.vtr1, dt * s.vtr2, dt * s.vtr3}, 0.5 * dt * dot(n, w), 1.0 / dt * s.gammat};
     if (s.gammat > 0.0)
       apply<true>(s, before, now, motion, mu, history, fi, fj);
     else

@@ -183,16 +183,12 @@ def test_a_batch_script_is_submitted_by_hand_and_ranks_go_through_srun(case, her
 
 
 @needs_slurm
-@pytest.mark.parametrize("preempt", ["the end of the walltime", "an urgent job"])
-def test_a_batch_script_queues_its_scene_again(preempt, here, tmp_path):
+def test_a_batch_script_that_is_warned_queues_its_scene_again(here, tmp_path):
     out, planned, script = tmp_path / "out", scene(tmp_path, "0.5 s", 150), tmp_path / "job.sh"
     write_script(planned, out, ["time=10"], script)
     job = here.ask("sbatch", "--parsable", "-o", str(tmp_path / "log"), str(script)).strip()
     until(lambda: len(list(out.glob("points/*/restart.*.bin"))) >= 2, "two restart files", seconds=200)
-    if preempt == "an urgent job":
-        displaced(here, out)
-    else:
-        here.ask("scancel", "-b", "-s", "USR2", f"{job}_1")
+    here.ask("scancel", "-b", "-s", "USR2", f"{job}_1")
     until(lambda: status(out)["done"] + status(out)["failed"] == 1, "the end of the scene", seconds=200)
     assert status(out)["done"] == 1 and (folder.of(planned, out, 1) / "in.resume").exists()
     assert "Restarts=1 " in here.ask("scontrol", "show", "job", "-o", f"{job}_1")

@@ -122,8 +122,8 @@ namespace detail {
 inline constexpr double least = std::numeric_limits<double>::min();  // instead of a division by 0
 
 /// Largest force of the springs at the nodes, as if all of them had it [N]: `most` in all where all nodes slide. They
-/// share it like the load q of the line: Hertz's half-ellipse; Flattens: with tau of it uniform pressure, less the rigid
-/// punches between radius_max and radius (Mesarovic and Johnson 2000, eq. 8.82).
+/// share it like the load q of the line: Hertz's half-ellipse; Flattens: with tau of it uniform pressure, less the
+/// rigid punches between radius_max and radius (Mesarovic and Johnson 2000, eq. 8.82).
 template <int N, bool Flattens, class T>
 EPDEM_INLINE void slip_limits(const Pressed<T>& now, const T& most, T* limit) noexcept {
   using Rule = Lobatto<N>;
