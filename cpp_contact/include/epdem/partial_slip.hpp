@@ -129,11 +129,13 @@ EPDEM_INLINE void slip_limits(const Pressed<T>& now, const T& most, T* limit) no
   using Rule = Lobatto<N>;
   if constexpr (Flattens) {
     const T b = now.radius / max(max(now.radius_max, now.radius), T{} + least), rest = sqrt(1.0 - b * b);
-    T sum{};
-    for (int i = 0; i < N; ++i) {
-      const double x2 = Rule::node[i] * Rule::node[i];
-      const T flat = 2.0 / pi * now.flatness / (sqrt(1.0 - b * b * x2) + rest);
-      limit[i] = (1.0 - x2) * (0.75 * (1.0 - now.flatness) + flat);
+    T depth[N], sum{};
+    for (int i = 0; i < N; ++i) depth[i] = sqrt(1.0 - b * b * (Rule::node[i] * Rule::node[i])) + rest;
+    for (int i = 0; i < N; ++i) {  // q over (1 - x^2), times all depths: none is divided by
+      T q = 0.75 * (1.0 - now.flatness) * depth[i] + 2.0 / pi * now.flatness;
+      for (int j = 0; j < N; ++j)
+        if (j != i) q = q * depth[j];
+      limit[i] = (1.0 - Rule::node[i] * Rule::node[i]) * q;
       sum = sum + Rule::weight[i] * limit[i];
     }
     const T share = most / sum;
