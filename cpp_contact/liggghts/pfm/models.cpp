@@ -116,9 +116,9 @@ class Model {
   }
 
  private:
-  static constexpr Dashpot dashpot = tangential == tangential_off              ? Dashpot::off
+  static constexpr Dashpot dashpot = tangential == tangential_off          ? Dashpot::off
                                      : tangential == TANGENTIAL_NO_HISTORY ? Dashpot::required
-                                                                               : Dashpot::optional;
+                                                                           : Dashpot::optional;
   static constexpr bool others_remember = tangential == TANGENTIAL_HISTORY || rolling > ROLLING_CDT;
 
   LAMMPS* const lmp_;
