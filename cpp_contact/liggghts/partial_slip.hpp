@@ -6,9 +6,8 @@
 #include <cstring>
 #include <string>
 
-#include "epdem/partial_slip.hpp"
+#include "grip.hpp"
 #include "host.hpp"
-#include "ledger.hpp"
 
 namespace epdem::liggghts {
 
@@ -21,15 +20,6 @@ inline constexpr int TANGENTIAL_PARTIAL_SLIP = 40, TANGENTIAL_PARTIAL_SLIP_2 = 4
 constexpr int slip_nodes(int tangential) {
   return tangential == TANGENTIAL_PARTIAL_SLIP ? 3 : tangential == TANGENTIAL_PARTIAL_SLIP_2 ? 2 : 0;
 }
-
-/// What a law's adapter knows of the contact at hand and LIGGGHTS's data have no room for.
-struct Grip {
-  Pressed<double> pressed{};  // but for the load: that is LIGGGHTS's Fn, which cohesion may change
-  double stiffness = 0.0;     // 8 G* [Pa]
-  bool fresh = false;         // the pair parted since it was last stored: what it remembers is void
-  bool flattens = false;
-  Ledger* ledger = nullptr;  // where work is booked, if it is asked for
-};
 
 /// Friction with partial slip beside one of our laws, for pairs (wall = false) or walls; `normal` is the law's own.
 template <int nodes, bool flattens>
