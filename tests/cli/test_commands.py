@@ -37,7 +37,7 @@ DOCUMENTS = {  # words, and what the document must hold
     "doctor": ([], lambda d: {"C library", "engine embedded"} <= {f["part"] for f in d}),
     "crosscheck": (["steel.toml"], lambda d: [r["model"] for r in d["rows"]] == ["theory", "embedded"]),
     "theory": ([], lambda d: abs(d["laws"]["thornton"]["e_n"] - 0.6763264338717) < 1e-12),
-    "figures": (["-o", "f"], lambda d: len(d["files"]) == 4),
+    "figures": (["-o", "f"], lambda d: len(d["files"]) == 8),
     "timestep": (["steel.toml"], lambda d: d["error"] <= d["target"] == 1e-3),
     "cost": (
         ["steel.toml", "-e", "embedded", "--repetitions", "1"],
