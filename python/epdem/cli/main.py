@@ -34,7 +34,6 @@ Exit codes: 0 all within tolerance, 1 a check failed, 2 bad input, 3 an engine f
 """
 UsageError: Any = typer.BadParameter.__base__  # typer gives its own name to its children only
 app = typer.Typer(
-    add_completion=False,
     no_args_is_help=True,
     pretty_exceptions_enable=False,
     help=ABOUT,

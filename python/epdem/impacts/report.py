@@ -14,12 +14,26 @@ from rich.console import Console
 from rich.table import Table
 
 from ..base.folders import claim
-from ..base.terminal import table
+from ..base.terminal import show_table, table
 from . import oblique_report
 from .comparison import CHECKED
 from .prediction import Prediction
 from .run import Outcome
 
+# columns that a narrow terminal has no room for, those of oblique impacts among them
+SPARE = (
+    "steps",
+    "overlap [um]",
+    "F_max [N]",
+    "t_c [us]",
+    "law",
+    "spin",
+    "rebound",
+    "f/mu",
+    "spin [rad/s]",
+    "regime",
+    "e_t",
+)
 FEW = 10  # impacts of each engine and law in the short table
 ROW_KEYS = (
     "engine",
@@ -155,7 +169,7 @@ def summary(outcome: Outcome) -> str:
 def show(outcome: Outcome, console: Console, *, full: bool = False) -> None:
     """Print table, warnings and summary."""
     shown, rows = chosen(outcome, full), outcome.results.comparison
-    console.print(run_table(outcome, full=full))
+    show_table(console, run_table(outcome, full=full), SPARE)
     if len(shown) < len(rows):
         console.print(f"{len(shown)} of {len(rows)} rows; --full prints all", markup=False, highlight=False)
     for line in worst(outcome):

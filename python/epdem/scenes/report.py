@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from rich.console import Console
 
 from ..base.folders import claim
-from ..base.terminal import table
+from ..base.terminal import show_table, table
 from ..impacts.report import records
 from .run import SceneOutcome
 
@@ -46,7 +46,7 @@ def show(outcome: SceneOutcome, console: Console) -> None:
             "yes" if row["passed"] else "NO",
             style=None if row["passed"] else "red",
         )
-    console.print(shown)
+    show_table(console, shown, ("tolerance", "error", "expected"))
     for warning in outcome.warnings:
         console.print(f"warning: {warning}", style="yellow", markup=False, highlight=False)
     p, rows = outcome.plan, outcome.results.tables["rows"]
