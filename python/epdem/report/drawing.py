@@ -21,13 +21,13 @@ STYLE: dict[str, Any] = {
     "axes.grid": True,
     "grid.alpha": 0.3,
     "legend.fontsize": 8.0,
-    "legend.framealpha": 0.85,
     "lines.markersize": 5.0,
     "svg.hashsalt": "epdem",  # the same figure gives the same file
 }
 DASHES = {"solid": "-", "dash": "--", "dot": ":", "dashdot": "-."}
 MARKERS = "ox+^sDv"
 WIDTH, HEIGHT = 7.0, 4.2  # of one panel [inch]
+LEGEND_ROW = 0.22  # [inch]
 BARE_DATE = {"png": {}, "svg": {"Date": None}, "pdf": {"CreationDate": None}}
 
 
@@ -70,8 +70,13 @@ def draw(chart: Chart) -> "Figure":
         for series in panel.series:
             axes.plot(series.x, series.y, **_style(series))
         _scale(axes, panel, labels_x=chart.beside or k == n - 1, labels_y=k == 0 or not chart.beside)
-        if any(series.name for series in panel.series):
-            axes.legend(loc="best")
+    known = {
+        label: handle for axes in grid.flat for handle, label in zip(*axes.get_legend_handles_labels(), strict=True)
+    }
+    if known:  # below the axes, where it covers no data
+        columns = min(len(known), 3)
+        figure.set_figheight(figure.get_figheight() + LEGEND_ROW * math.ceil(len(known) / columns))
+        figure.legend(list(known.values()), list(known), loc="outside lower center", ncols=columns, frameon=False)
     figure.suptitle(chart.title, fontsize=11, parse_math=False)
     return figure
 
