@@ -79,14 +79,17 @@ The limits above are those of one contact. In a dense packing every sphere has m
 step is a smaller share of that limit: 0.5 in a face-centred cubic packing of frictionless spheres, and
 sqrt(1/(20 kappa)) where the contacts have friction and stick, kappa = 4 G*/E* (0.246 at nu = 0.3;
 `epdem.theory.timestep`). LIGGGHTS with `ep/hertz`, 256 spheres, overlaps of 0.2 % of the radius, at rest but for
-displacements of 1e-5 of the overlap, 4000 steps; kinetic energy with spin, the largest of all rows over that at 0.24:
+displacements of 1e-5 of the overlap, 4000 steps (YADE with our `hertz`: 108 spheres, 2000 steps); kinetic energy with
+spin, the largest of all rows over that at 0.24:
 
 | friction | 0.24 | 0.26 | 0.48 | 0.52 |
 |---|---|---|---|---|
-| 0.3, `tangential history` | 1 | 3e5 | - | - |
-| none | 1 | 1 | 1 | 1e16 |
+| 0.3, LIGGGHTS, `tangential history` | 1 | 3e5 | - | - |
+| none, LIGGGHTS | 1 | 1 | 1 | 1e16 |
+| 0.3, YADE | 1 | 1e9 | - | - |
+| none, YADE | 1 | 1.2 | - | - |
 
-    .venv/bin/python -m pytest tests/scenes/test_bed_step.py
+    .venv/bin/python -m pytest tests/scenes/test_bed_step.py tests/engines/test_yade_packing.py
 
 Scenes stay below 0.8 of these limits ([scenes.md](scenes.md)). With friction 0.3 the contacts of a packing above its
 limit begin to slip, which bounds the energy.

@@ -12,10 +12,9 @@
 #include "epdem/law.hpp"
 #include "epdem/tangential.hpp"
 #include "epdem/viscous.hpp"
+#include "grip.hpp"
 #include "host.hpp"
-#include "ledger.hpp"
 #include "materials.hpp"
-#include "partial_slip.hpp"
 
 namespace epdem::liggghts {
 
@@ -85,7 +84,7 @@ class Normal : protected LAMMPS_NS::Pointers {
   }
 
   void connectToProperties(PropertyRegistry& registry, Dashpot dashpot, bool cohesive) {
-    if (!atom->sphere_flag || atom->superquadric_flag || atom->shapetype_flag)
+    if (!only_spheres(lmp))
       fail("it is for spheres; give other particles a model of LIGGGHTS with surface superquadric");
     // Rebuilt at every init: LIGGGHTS frees all properties there, and the user may have changed them.
     if (!tangential_damping_ && dashpot == Dashpot::optional) dashpot = Dashpot::off;
@@ -180,7 +179,8 @@ class Normal : protected LAMMPS_NS::Pointers {
   }
 
   /// Whether bodies that do not overlap are in contact, or parted in the very step that is evaluated once more.
-  bool pulls(const SurfacesCloseData& s) const {
+  template <class Close>
+  bool pulls(const Close& s) const {
     if constexpr (!adheres<Law>) return false;
     if (!s.contact_history) return false;
     const bool keep = s.computeflag && s.shearupdate;

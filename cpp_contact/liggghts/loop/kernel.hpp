@@ -78,7 +78,7 @@ EPDEM_INLINE Three slipping(Block& b, int k, const Contact& c, const Step<Law>& 
   const Lanes stiffness = 8.0 * constant_of[shear_modulus];
   const Shear<Lanes> motion{{c.en.x, c.en.y, c.en.z},
                             {pass.dt * c.vtr.x, pass.dt * c.vtr.y, pass.dt * c.vtr.z},
-                            0.5 * pass.dt * (dot(c.en, c.omega_i) + dot(c.en, c.omega_j)),
+                            0.5 * pass.dt * dot(c.en, c.omega_i + c.omega_j),
                             1.0 / pass.dt * c.gammat};
   SlipStep<nodes, Lanes> out;
   const auto step = [&](auto damped) __attribute__((always_inline)) {
