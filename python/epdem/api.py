@@ -17,6 +17,7 @@ import tomlkit
 from . import theory
 from .base.files import atomic
 from .base.folders import write_own
+from .base.settings import DEFAULT_ENGINE
 from .case import impact as impact_case
 from .case import scene as scene_case
 from .case.toml import read_toml
@@ -29,6 +30,7 @@ from .impacts.prediction import predict as predict_experiment
 from .impacts.run import Outcome, write_deck
 from .impacts.run import run_case as run_impacts
 from .scenes.columns import UNITS as SCENE_UNITS
+from .scenes.engine import files as scene_files
 from .scenes.plan import plan as plan_scene
 from .scenes.run import SceneOutcome
 from .scenes.run import run_case as run_scene
@@ -229,7 +231,7 @@ def run(
 def run(
     case: Case | Scene,
     *,
-    engines: Sequence[str] = ("liggghts",),
+    engines: Sequence[str] = (DEFAULT_ENGINE,),
     laws: Sequence[str] = (),
     out: Path | str | None = None,
     ranks: int = 1,
@@ -260,11 +262,11 @@ def predict(case: Case, law: str | None = None) -> pd.DataFrame:
 
 
 def deck(
-    case: Case | Scene, out: Path | str, *, engine: str = "liggghts", law: str | None = None, force: bool = False
+    case: Case | Scene, out: Path | str, *, engine: str = DEFAULT_ENGINE, law: str | None = None, force: bool = False
 ) -> list[Path]:
     """Write the deck of a case or scene into `out`, where `force` allows other files. Raises CaseError."""
     if isinstance(case, Scene):
-        return write_own(Path(out), scene_engine(engine).files(plan_scene(case.model)), force=force)
+        return write_own(Path(out), scene_files(scene_engine(engine), plan_scene(case.model)), force=force)
     return write_deck(experiment(case.model, law), engine_named(engine), Path(out), force=force)
 
 
@@ -272,7 +274,7 @@ def sweep(
     case: Case | Scene,
     settings: study.Settings,
     *,
-    engines: Sequence[str] = ("liggghts",),
+    engines: Sequence[str] = (DEFAULT_ENGINE,),
     laws: Sequence[str] = (),
     out: Path | str | None = None,
     ranks: int = 1,

@@ -82,9 +82,7 @@ def stability(
     else:
         refuse("stability", "it goes with --out", force=force)
     with status() as progress:
-        outcome = suite.run(
-            engine or ["embedded"], law or [], groups=group, every=every, steps=steps, progress=progress
-        )
+        outcome = suite.run(engine or [], law or [], groups=group, every=every, steps=steps, progress=progress)
     if out:
         with atomic(out) as temporary:
             outcome.verdicts.to_csv(temporary, index=False)
@@ -133,7 +131,7 @@ def cost(
     with claim(folder, force=force, files=["cost.csv"]), status() as progress:
         outcome = study.run(
             case,
-            engines=engine or ["embedded", "liggghts"],
+            engines=engine or [],
             laws=law or [],
             repetitions=repetitions,
             progress=progress,

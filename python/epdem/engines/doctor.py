@@ -64,5 +64,7 @@ def examine() -> list[Finding]:
         tool = kind()
         reason = tool.missing()
         detail, advice = ("not here", reason) if reason else (tool.version(), "")
-        findings.append(Finding(f"engine {name}", reason is None, detail, advice, needed=name == "embedded"))
+        findings.append(
+            Finding(f"engine {name}", reason is None, detail, advice, needed=not kind.can.deck)
+        )  # the embedded one
     return [*findings, _models(), _mpi()]

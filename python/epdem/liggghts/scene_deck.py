@@ -126,9 +126,9 @@ def told(m: Model) -> tuple[str, ...]:
     return ("largest overlap",) * m.yields + ("root of the attached",) * m.adheres
 
 
-def _columns(m: Model, values: int) -> tuple[int, ...]:
-    """Where a local compute has what `told` names, and the overlap: behind three ids and `values` of history."""
-    slots = len(told(m))
+def contact_columns(slots: int, values: int) -> tuple[int, ...]:
+    """Where a local compute has the first `slots` numbers of the history and the overlap: behind three ids and
+    `values` of history."""
     return (*range(4, 4 + slots), 4 + values) if slots else (4,)
 
 
@@ -208,8 +208,8 @@ def deck(p: ScenePlan) -> Deck:
         yields=m.yields,
         adheres=m.adheres,
         slots=told(m),
-        contact_columns=_columns(m, memory(m)),
-        wall_contact_columns=_columns(m, memory(m, wall=True)),
+        contact_columns=contact_columns(len(told(m)), memory(m)),
+        wall_contact_columns=contact_columns(len(told(m)), memory(m, wall=True)),
         dents=p.dents,
         rubs=p.rubs,
         torque=p.torque,

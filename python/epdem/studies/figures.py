@@ -11,7 +11,7 @@ import numpy as np
 
 from ..base.files import atomic
 from ..case.impact import Material
-from ..engines import engine
+from ..engines import DEFAULT_ENGINE, engine
 from ..impacts.experiment import Experiment, plane, sphere
 from ..impacts.plan import plan
 from ..impacts.prediction import predict
@@ -116,7 +116,7 @@ def adhesion_by_strength(folder: Path) -> Path:
     figure, axes = _axes("Adhesive spheres, R* = 10 um, Gamma = 0.2 J/m^2", "V [m/s]", "e_n")
     steel = Material.model_validate({"young_modulus": "215 GPa", "poisson_ratio": 0.3, "density": "7850 kg/m^3"})
     body, target = sphere(steel, radius=1e-5, name="steel"), plane(steel, name="steel")
-    tool = engine("liggghts")
+    tool = engine(DEFAULT_ENGINE)
     for k, p_y in enumerate((None, 3.04e9, 1e9, 0.5e9)):
         law = LawSpec("jkr", {ADHESION: 0.2}, (np.inf, np.inf))
         if p_y is not None:

@@ -16,6 +16,7 @@ from typing import Any, TypedDict, Unpack
 
 import numpy as np
 
+from ..base.settings import DEFAULT_ENGINE
 from ..case.scene import is_scene
 from ..case.units import to_si
 from ..errors import CaseError, EngineError
@@ -145,7 +146,7 @@ def fit_text(
     *,
     place: object,
     out: Path | str | None = None,
-    engine: str = "liggghts",
+    engine: str = DEFAULT_ENGINE,
     ranks: int = 1,
     tolerance: float = 0.01,
     jobs: int | None = None,
