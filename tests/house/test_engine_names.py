@@ -13,7 +13,7 @@ PACKAGE = Path(__file__).parents[2] / "python" / "epdem"
 NAMES = {*ENGINES, *OTHERS, *FOREIGN}
 ROOMS = ("liggghts", "yade", "lammps", "engines")
 # a key of the user's configuration file and the default; the plugin's folder and that key; programs on the path
-KNOWN = {"base/settings.py": 2, "base/paths.py": 3, "base/printed.py": 2}
+KNOWN = {"base/settings.py": 2, "base/paths.py": 3, "cli/printed.py": 2}
 FILES = [path for path in sorted(PACKAGE.rglob("*.py")) if path.relative_to(PACKAGE).parts[0] not in ROOMS]
 CLASSES = re.compile(r"isinstance\([^)]*\b(Liggghts|Yade|Embedded|LammpsMdr)\b")
 PARTS = re.compile(r"\b(tool|engine|sampler)\.name(\.\w+\(| (not )?in | [!=]= )")

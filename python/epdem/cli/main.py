@@ -13,7 +13,6 @@ from typing import Annotated, Any
 import typer
 
 from .. import __version__
-from ..base.printed import Printed
 from ..base.settings import DEFAULT_ENGINE
 from ..base.terminal import bar, console
 from ..errors import CaseError, EpdemError, Stopped
@@ -26,6 +25,7 @@ from . import sweep as cli_sweep
 from . import theory as cli_theory
 from . import trees as cli_trees
 from .options import AsJson, CasePath, Engines, Force, Laws, Out, laws_or_own, refuse, warn
+from .printed import Printed
 
 ABOUT = """Elastic-plastic particle contact for LIGGGHTS and YADE, checked against theory.
 

@@ -120,14 +120,14 @@ def cost(
     as_json: AsJson = False,
 ) -> None:
     """Measure error against run time at 10 to 3000 steps in contact (default engines: embedded and liggghts)."""
-    from ..base.folders import claim
+    from ..base.folders import claim, results_folder
     from ..case.impact import load
     from ..impacts.report import records
     from ..studies import cost as study
     from ..studies import cost_report
 
     scene = None
-    folder = out or Path("runs") / load(case).name / "cost"
+    folder = results_folder(out, load(case).name, "cost")
     with claim(folder, force=force, files=["cost.csv"]), status() as progress:
         outcome = study.run(
             case,

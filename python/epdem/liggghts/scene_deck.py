@@ -120,7 +120,7 @@ def memory(m: Model, *, wall: bool = False) -> int:
     return law + stamp + others
 
 
-def told(m: Model) -> tuple[str, ...]:
+def remembered(m: Model) -> tuple[str, ...]:
     """What a table of contacts takes of the law's memory, which begins with it: the largest overlap of a law that
     yields, whether bodies that adhere are attached (its root is above 0)."""
     return ("largest overlap",) * m.yields + ("root of the attached",) * m.adheres
@@ -207,9 +207,9 @@ def deck(p: ScenePlan) -> Deck:
         has_history=m.yields or m.spins or m.adheres,
         yields=m.yields,
         adheres=m.adheres,
-        slots=told(m),
-        contact_columns=contact_columns(len(told(m)), memory(m)),
-        wall_contact_columns=contact_columns(len(told(m)), memory(m, wall=True)),
+        slots=remembered(m),
+        contact_columns=contact_columns(len(remembered(m)), memory(m)),
+        wall_contact_columns=contact_columns(len(remembered(m)), memory(m, wall=True)),
         dents=p.dents,
         rubs=p.rubs,
         torque=p.torque,

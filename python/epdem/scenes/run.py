@@ -12,7 +12,7 @@ import pandas as pd
 
 from .. import __version__
 from ..base.files import write_texts
-from ..base.folders import Results, claim
+from ..base.folders import Results, claim, results_folder
 from ..base.stages import inputs_hash, library_hash
 from ..case.doubts import doubts
 from ..case.scene import SceneCase, load
@@ -134,7 +134,7 @@ def run_case(
         files, notes = files_for(engine, p), [*engine.notes(p), *_warnings(p.case)]
     check_run(engine, ranks=ranks, resume=resume)
     work = _Work(text, p, engine, files, notes, ranks, lambda step: report(step, p.steps))
-    folder = out or Path("runs") / p.case.name / engine.subfolder
+    folder = results_folder(out, p.case.name, engine.subfolder)
     if resume and not folder.exists():
         raise CaseError(f"{folder}: no such folder, so no run to continue; run the case without --resume")
     with claim(folder, force=force, files=files) as place:
