@@ -6,7 +6,9 @@ import subprocess
 from pathlib import Path
 
 ROOT = Path(__file__).parents[2]
-FOLDERS = ["python", "tests", "bench", "docs"]
+# ruff finds scripts without a suffix only by name
+SCRIPTS = [str(p) for p in sorted((ROOT / "scripts").iterdir()) if p.read_text().startswith("#!/usr/bin/env python3")]
+FOLDERS = ["python", "tests", "bench", "docs", *SCRIPTS]
 CPP = ["cpp_contact", "tests", "bench"]
 
 
