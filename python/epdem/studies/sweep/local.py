@@ -99,7 +99,7 @@ def _stop(number: int, frame: object) -> None:
 
 
 def _work(function: Callable[[Any], Any], pipe: Connection, others: list[Connection], parent: int) -> None:
-    """In a process of the pool: item after item, until the pipe closes or the parent has ended."""
+    """In a process of the pool: item after item, until the parent sends None or has ended."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C reaches all: our parent stops us in good order
     signal.signal(signal.SIGUSR2, signal.SIG_IGN)  # Slurm warns every process of a job; our parent queues it again
     signal.signal(signal.SIGTERM, _stop)
