@@ -1,6 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 import pytest
-from workshop import Tests, copy_of_project
+from workshop import Runner, copy_of_project
 
 
 @pytest.fixture(scope="module")
@@ -12,7 +12,7 @@ def copy(tmp_path_factory):
 @pytest.fixture(scope="module")
 def tests_of_copy(copy):
     """Runs tests of that copy."""
-    tests = Tests(copy)
+    tests = Runner(copy)
     yield tests
     tests.close()
 

@@ -82,7 +82,7 @@ class Done:
     stdout: str
 
 
-class Tests:
+class Runner:
     """Runs tests of a copy against the copy, not against the installed package."""
 
     def __init__(self, folder: Path, env: dict[str, str] | None = None):
