@@ -2,6 +2,7 @@
 """Faults for docs/reliability.py: each takes (folder of the cases, folder for results) and returns what is wrong."""
 
 import os
+import re
 import subprocess
 import sys
 import time
@@ -40,6 +41,7 @@ def engine(work: Path, script: str) -> str:
     return str(path)
 
 
+OURS = (".epdem.json", ".epdem.lock", ".epdem.printed.json")  # hidden files that a results folder keeps
 VERSION = 'case "$*" in *-in\\ in.*) ;; *) exec $REAL "$@" ;; esac\n'  # a question for the version goes to ours
 
 
@@ -79,13 +81,41 @@ def died(work: Path, out: Path) -> str:
     return wrong(call(work, SCENE, out, EPDEM_LAUNCHER=engine(work, script)), 3, "signal 11")
 
 
+def hangs(work: Path, out: Path) -> str:
+    """exit code 3 with the limit in seconds, and the hanging process is stopped"""
+    got = call(work, IMPACTS, out, EPDEM_LAUNCHER=engine(work, VERSION + "sleep 12345"))
+    left = subprocess.run(["pgrep", "-f", "^sleep 12345$"], capture_output=True, check=False).stdout
+    return wrong(got, 3, "did not end within") or ("the engine stays behind" if left else "")
+
+
+def clock_jumps(work: Path, out: Path) -> str:
+    """`--resume` takes the newest restart file by its step, not by its time; a stored run stays stored"""
+    years = iter(range(2001, 2025))  # the newest file is the oldest by its time
+    process = subprocess.Popen([EPDEM, *SCENE, "-o", out], cwd=work, start_new_session=True)
+    while not (out / "restart.20000.bin").exists() and process.poll() is None:
+        time.sleep(0.01)
+    process.kill()
+    process.wait()
+    time.sleep(2.0)  # the engine hears of it and ends
+    for path in sorted(out.glob("*.bin"), key=lambda p: -int(p.name.split(".")[1])):
+        subprocess.run(["touch", "-d", f"{min(next(years, 2024), 2024)}-01-01", path], check=True)
+    if bad := wrong(call(work, [*SCENE, "--resume"], out), 0):
+        return bad
+    taken = re.search(r"restart\.(\d+)\.bin", (out / "in.resume").read_text())
+    if taken is None or int(taken[1]) < 20000:
+        return "not resumed from the newest restart file"
+    subprocess.run(["touch", "-d", "2099-01-01", *out.iterdir()], check=True)
+    before = (out / "results.h5").read_bytes()
+    return wrong(call(work, SCENE, out), 0) or ("" if before == (out / "results.h5").read_bytes() else "run anew")
+
+
 def _full(work: Path, out: Path, words: list[str]) -> str:
     out.mkdir(parents=True)
     for kilobytes in (64, 128, 256, 512, 1024):
         subprocess.run(["mount", "-t", "tmpfs", "-o", f"size={kilobytes}k", "none", out], check=True)
         try:
             got = call(work, words, out / "here")
-            left = [p.name for p in out.rglob(".*") if p.is_file() and p.name not in (".epdem.json", ".epdem.lock")]
+            left = [p.name for p in out.rglob(".*") if p.is_file() and p.name not in OURS]
         finally:
             subprocess.run(["umount", out], check=True)
         if got[0] not in (0, 2, 3) or "Traceback" in got[1] or (got[0] and got[1].count("\n") != 1):
@@ -158,6 +188,8 @@ FAULTS: dict[str, Callable[[Path, Path], str]] = {
     "engine ends by a segmentation fault": died,
     "a sphere is lost half-way": lost_sphere,
     "NaN in a frame": not_a_number,
+    "engine that never ends": hangs,
+    "clock that jumps by years": clock_jumps,
     "disk full, scene": full_disk_scene,
     "disk full, impacts": full_disk_impacts,
     "read-only disk": read_only,

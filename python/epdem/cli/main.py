@@ -272,7 +272,6 @@ def main() -> None:
             reason = f"{reason} ({shutil.disk_usage(Path(place).parent).free} bytes are free)"
         print(f"epdem: {place}: {reason}; choose another folder by --out, or make it writable", file=sys.stderr)
         sys.exit(2)
-
-
-if __name__ == "__main__":
-    main()
+    finally:
+        for name in STOPS:  # all is stored: what comes now must not meet Python's own end
+            signal.signal(name, signal.SIG_DFL)

@@ -198,7 +198,11 @@ def end(
 ) -> None:
     """Store a point's results (columns of rows), or the reason why there are none."""
     place = of(sweep, folder, number)
-    state = {"state": FAILED if rows is None else DONE, "reason": reason, "seconds": time.time() - about["begin"]}
+    state = {
+        "state": FAILED if rows is None else DONE,
+        "reason": reason,
+        "seconds": max(time.time() - about["begin"], 0.0),
+    }
     with atomic(place / FINISHED, sync=False) as temporary:
         temporary.write_text(json.dumps(about | state | {"rows": rows or {}}), encoding="utf-8")
     (place / STARTED).unlink(missing_ok=True)

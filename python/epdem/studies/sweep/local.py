@@ -67,9 +67,10 @@ def each(function: Callable[[Any], Any], items: Iterable[Any], jobs: int) -> Ite
     finally:
         for process, _ in team.values():
             process.terminate()
-        for pipe, (process, _) in team.items():
-            process.join()
+        for pipe in team:  # a process that lost the signal (Python drops errors in callbacks) ends with its item
             pipe.close()
+        for process, _ in team.values():
+            process.join()
 
 
 def _how(code: int | None) -> str:
