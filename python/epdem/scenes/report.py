@@ -9,6 +9,7 @@ from ..base.files import atomic
 from ..base.folders import claim
 from ..base.terminal import table
 from ..impacts.report import records
+from . import key_figures, pictures
 from .measures import unit
 from .run import SceneOutcome
 
@@ -82,9 +83,13 @@ def _show_measures(outcome: SceneOutcome, console: Console) -> None:
 
 
 def figures(outcome: SceneOutcome) -> None:
-    """scene.png and, if there is a ledger, energy.png in the folder of a run, which may write there."""
+    """scene.png, key.png, bed.png and, if there is a ledger, energy.png in the folder of a run."""
+    tables = outcome.results.tables
     with claim(outcome.folder, force=True):
         _rows_figure(outcome)
+        key_figures.key(outcome.plan, tables, outcome.folder / "key.png")
+        if "particles" in tables and len(tables["particles"]):
+            pictures.bed(outcome.plan, tables["particles"], outcome.folder / "bed.png")
         if "ledger" in outcome.results.tables:
             _ledger_figure(outcome)
 
@@ -124,7 +129,8 @@ def _ledger_figure(outcome: SceneOutcome) -> None:
     import matplotlib.pyplot as plt
 
     rows = outcome.results.tables["ledger"]
-    colors = {"kinetic": "C0", "elastic": "C2", "plastic": "C3", "friction": "C1", "springs": "C6", "left": "C5"}
+    colors = {"kinetic": "C0", "rotation": "C9", "elastic": "C2", "plastic": "C3", "friction": "C1", "springs": "C6"}
+    colors["left"] = "C5"
     terms = [name for name in colors if name in rows and rows[name].abs().max() > 0]
     fig, axis = plt.subplots(figsize=(7, 4), layout="constrained")
     gravity = rows["gravity"] - rows["gravity"].min()

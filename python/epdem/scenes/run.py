@@ -19,7 +19,7 @@ from ..case.scene import SceneCase, load
 from ..case.toml import named
 from ..errors import CaseError, EngineError
 from ..impacts.prediction import predict
-from . import checks, ledger, measures, results
+from . import checks, ledger, measures, pictures, results
 from .engine import Report, Resumed, SceneEngine, check_abilities
 from .pairs import wall_impact
 from .plan import ScenePlan, plan
@@ -131,6 +131,7 @@ def run_case(
     with named(place):
         p = plan(case)
         measures.refuse_measures(p)
+        pictures.refuse_color(p)
         check_abilities(engine, p, ranks=ranks, resume=resume)
         files, notes = engine.files(p), [*engine.notes(p), *_warnings(p.case)]
     work = _Work(text, p, engine, files, notes, ranks, lambda step: report(step, p.steps))
