@@ -17,41 +17,39 @@ from epdem.scenes.plan import plan
 
 
 def drawn(name: str):
-    """(plan, tables, axis with the key figure) of a stored run."""
+    """(plan, tables, panels of the key figure) of a stored run."""
     p = planned(name)
     tables = scene_engine("liggghts").read(p, STORED / name)
-    axis = plt.figure().subplots()
-    key_figures.DRAW[type(p.case.scene)](p, p.case.scene, tables, axis)
-    return p, tables, axis
+    (chart,) = key_figures.key(p, tables)
+    return p, tables, chart.panels
 
 
 def test_a_compaction_shows_force_over_the_displacement_of_its_plate():
-    p, tables, axis = drawn("compaction")
-    s, (load, unload) = p.case.scene, axis.lines
-    force = np.concatenate([load.get_ydata(), unload.get_ydata()])
-    assert force.tolist() == tables["rows"]["plate_force"].to_list()
+    p, tables, (panel,) = drawn("compaction")
+    s, (load, unload) = p.case.scene, panel.series
+    assert [*load.y, *unload.y] == tables["rows"]["plate_force"].to_list()
     middle = tables["rows"]["time"][1:] - 0.5 * p.every * p.time_step  # of the interval of a mean
-    n = len(load.get_xdata())
-    assert load.get_xdata()[1:] == pytest.approx(1e3 * s.speed * middle[: n - 1].to_numpy(), rel=1e-6)
-    assert (np.diff(unload.get_xdata()) < 0).all()
+    assert load.x[1:] == pytest.approx(s.speed * middle[: len(load.x) - 1].to_numpy(), rel=1e-6)
+    assert (np.diff(unload.x) < 0).all()
 
 
 def test_the_rebounds_of_shot_stand_beside_theory():
-    p, tables, axis = drawn("peening")
+    p, tables, (panel,) = drawn("peening")
     up = tables["particles"].query("vz > 0").groupby("id")["vz"].max()
-    assert sum(bar.get_height() for bar in axis.patches) == len(up) > 0
-    assert axis.lines[0].get_xdata()[0] == pytest.approx(checks.single_rebound(p.case, p.case.scene))
+    bars, theory = panel.series
+    assert sum(bars.y[::2]) == len(up) > 0 and (bars.x[0], bars.x[-1]) == pytest.approx((up.min(), up.max()), abs=0.5)
+    assert theory.x[0] == pytest.approx(checks.single_rebound(p.case, p.case.scene))
 
 
 def test_a_hopper_a_drum_and_a_bed_show_mass_torque_and_height():
-    p, tables, axis = drawn("hopper")
+    p, tables, (panel,) = drawn("hopper")
     last = tables["particles"].query(f"step == {p.steps}")
-    assert axis.lines[0].get_ydata()[-1] == pytest.approx(1e3 * last[last["z"] < p.layout.gates[0].place]["mass"].sum())
-    _, tables, axis = drawn("drum")
-    assert axis.lines[0].get_ydata().tolist() == tables["rows"]["torque"].to_list()
-    _, tables, axis = drawn("settle")
-    heights = tables["particles"].groupby("step")["z"].quantile(0.95)
-    assert axis.figure.axes[1].lines[0].get_ydata() == pytest.approx(1e3 * heights.to_numpy())
+    assert panel.series[0].y[-1] == pytest.approx(last[last["z"] < p.layout.gates[0].place]["mass"].sum())
+    _, tables, (panel,) = drawn("drum")
+    assert panel.series[0].y.tolist() == tables["rows"]["torque"].to_list()
+    _, tables, (height, energy) = drawn("settle")
+    assert height.series[0].y.tolist() == tables["particles"].groupby("step")["z"].quantile(0.95).to_list()
+    assert energy.series[0].y[-1] == tables["rows"]["kinetic_energy"].iloc[-1]
 
 
 def test_a_picture_shows_the_nearest_sphere_and_its_field(tmp_path):
