@@ -232,6 +232,7 @@ for command in (
     cli_numerics.stability,
     cli_scene.explain,
     cli_scene.tune,
+    cli_scene.view,
     cli_scene.soften,
     cli_calibrate.calibrate,
     cli_sweep.sweep,

@@ -98,6 +98,32 @@ def explain(case: CasePath, as_json: AsJson = False) -> None:
         print(f"  {text.split('  # ')[0].rstrip()}\n      {reason}")
 
 
+def view(
+    case: CasePath,
+    out: Annotated[Path | None, typer.Option("--out", "-o", help="PNG file (default: NAME.png here)")] = None,
+    window: Annotated[bool, typer.Option("--window", help="show it in a window (needs pyvista)")] = False,
+    force: Replace = False,
+    as_json: AsJson = False,
+) -> None:
+    """Draw a scene before it runs: walls, regions, first spheres."""
+    from ..base.folders import refuse_existing
+    from ..case.scene import load
+    from ..case.toml import named
+    from ..scenes import pictures
+    from ..scenes.plan import plan
+
+    with named(case):
+        p = plan(load(case))
+        if window:
+            pictures.window(p)
+            return
+        path = out or Path(f"{p.case.name}.png")
+        refuse_existing(path, force=force)
+        drawn = pictures.before(p, path)
+    said = {"file": str(path), "spheres": p.layout.count, "drawn": drawn}
+    print(json.dumps(said) if as_json else f"{path}: walls, regions and {drawn} of {p.layout.count} spheres")
+
+
 def tune(
     case: CasePath,
     ranks: Annotated[int, typer.Option(min=1, max=1024, help="MPI ranks of LIGGGHTS")] = 1,

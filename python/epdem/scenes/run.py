@@ -19,7 +19,7 @@ from ..case.scene import SceneCase, load
 from ..case.toml import named
 from ..errors import CaseError, EngineError
 from ..impacts.prediction import predict
-from . import checks, ledger, measures, results
+from . import checks, ledger, measures, pictures, results
 from .engine import Report, Resumed, SceneEngine, check_run
 from .engine import files as files_for
 from .pairs import wall_impact
@@ -132,6 +132,7 @@ def run_case(
     with named(place):
         p = plan(case)
         measures.refuse_measures(p)
+        pictures.refuse_color(p)
         files, notes = files_for(engine, p), [*engine.notes(p), *_warnings(p.case)]
     check_run(engine, ranks=ranks, resume=resume)
     work = _Work(text, p, engine, files, notes, ranks, lambda step: report(step, p.steps))

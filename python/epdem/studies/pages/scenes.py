@@ -22,7 +22,7 @@ def of_scene(outcome: SceneOutcome) -> Path:
 def page(outcome: SceneOutcome, command: str = "") -> Page:
     """The page of a scene."""
     tables, about = outcome.results.tables, outcome.results.attributes
-    drawn = {chart.name for chart in charts(outcome)}
+    drawn = {"bed", *(chart.name for chart in charts(outcome))}
     pictures = [
         Picture(path.stem.replace("_", " "), f"{path.name}, as the run left it", file=path)
         for path in sorted(outcome.folder.glob("*.png"))
