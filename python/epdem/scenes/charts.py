@@ -5,6 +5,7 @@ import numpy as np
 
 from ..report.chart import GREY, INK, Axis, Chart, Panel, Series
 from ..report.page import Picture
+from .key_figures import key
 from .run import SceneOutcome
 
 TIME = Axis("time $t$", "s")
@@ -13,15 +14,17 @@ ROWS = {
     "floor_load": Axis("load on the floor", "N"),
     "plate_force": Axis("force on the plate", "N"),
 }
-COLOURS = {"kinetic": 0, "elastic": 2, "plastic": 1, "friction": 4, "springs": 3, "left": 6, "adhesion": 5}
+COLOURS = {"kinetic": 0, "rotation": INK, "elastic": 2, "plastic": 1, "friction": 4, "springs": 3, "left": 6}
+COLOURS["adhesion"] = 5
 MOST = 3000  # spheres in the picture of a bed
 # viridis at eleven places: from slow to fast
 SCALE = ["440154", "482576", "414487", "35608d", "2a788e", "21918c", "22a884", "43bf71", "7ad151", "bddf26", "fde725"]
 
 
 def charts(outcome: SceneOutcome) -> list[Chart]:
-    """scene, what the rows hold against time, and energy, the ledger, if there is one."""
-    return [rows(outcome), *([ledger(outcome)] if "ledger" in outcome.results.tables else [])]
+    """The key figure of the kind; scene, what the rows hold against time; energy, the ledger, if there is one."""
+    found = key(outcome.plan, outcome.results.tables)
+    return [*found, rows(outcome), *([ledger(outcome)] if "ledger" in outcome.results.tables else [])]
 
 
 def rows(outcome: SceneOutcome) -> Chart:
