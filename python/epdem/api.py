@@ -173,6 +173,12 @@ class Run:
 
         return figure(self.outcome)
 
+    def report(self) -> Path:
+        """Write report.html, one page with figures, tables and decks, into the folder; its path."""
+        from .studies.pages.impacts import of_impacts
+
+        return of_impacts(self.outcome)
+
     def _repr_html_(self) -> str:
         return str(self.table.to_html(max_rows=20))
 
@@ -197,6 +203,12 @@ class SceneRun:
     def folder(self) -> Path:
         """Where results.h5, results.csv and the deck are."""
         return self.outcome.folder
+
+    def report(self) -> Path:
+        """Write report.html, one page with figures, tables and decks, into the folder; its path."""
+        from .studies.pages.scenes import of_scene
+
+        return of_scene(self.outcome)
 
     def _repr_html_(self) -> str:
         return str(self.tables["checks"].to_html())

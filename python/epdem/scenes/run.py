@@ -199,6 +199,7 @@ def _finish(
         "case": p.case.name,
         "epdem": __version__,
         "engine": work.engine.name,
+        f"version_{work.engine.name}": work.engine.version(),
         "ranks": work.ranks,
         "time_step": p.time_step,
         "steps": p.steps,
