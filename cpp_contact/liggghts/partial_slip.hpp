@@ -58,11 +58,10 @@ class PartialSlip : public TangentialModelBase {
     now.load = s.Fn;
     const double dt = update->dt, mu = mu_[s.itype][s.jtype];
     // a wall does not turn about the normal
-    const double* const w = s.omega_i;
-    double turn = s.en[0] * w[0] + s.en[1] * w[1] + s.en[2] * w[2];
-    if (!s.is_wall) turn += s.en[0] * s.omega_j[0] + s.en[1] * s.omega_j[1] + s.en[2] * s.omega_j[2];
-    const Shear<double> motion{
-        {s.en[0], s.en[1], s.en[2]}, {dt * s.vtr1, dt * s.vtr2, dt * s.vtr3}, 0.5 * dt * turn, 1.0 / dt * s.gammat};
+    const Vec<double> n{s.en[0], s.en[1], s.en[2]};
+    Vec<double> w{s.omega_i[0], s.omega_i[1], s.omega_i[2]};
+    if (!s.is_wall) w = w + Vec<double>{s.omega_j[0], s.omega_j[1], s.omega_j[2]};
+    const Shear<double> motion{n, {dt * s.vtr1, dt * s.vtr2, dt * s.vtr3}, 0.5 * dt * dot(n, w), 1.0 / dt * s.gammat};
     if (s.gammat > 0.0)
       apply<true>(s, before, now, motion, mu, history, fi, fj);
     else
@@ -90,7 +89,7 @@ class PartialSlip : public TangentialModelBase {
       }
       std::memcpy(history, &step.after, sizeof step.after);
     } else {
-      T = present_friction<nodes, flattens, damped>(before, now, motion, normal_.stiffness, mu);
+      T = present_friction<nodes, damped>(before, now.load, motion, normal_.stiffness, mu);
     }
     const double share = s.is_wall ? s.area_ratio : 1.0;
     const double force[3] = {T.x, T.y, T.z};

@@ -8,6 +8,7 @@ import logging
 import tomllib
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import Any, ClassVar, Self, Unpack, overload
 
@@ -172,6 +173,12 @@ class Run:
 
         return figure(self.outcome)
 
+    def report(self) -> Path:
+        """Write report.html, one page with figures, tables and decks, into the folder; its path."""
+        from .studies.pages.impacts import of_impacts
+
+        return of_impacts(self.outcome)
+
     def _repr_html_(self) -> str:
         return str(self.table.to_html(max_rows=20))
 
@@ -196,6 +203,12 @@ class SceneRun:
     def folder(self) -> Path:
         """Where results.h5, results.csv and the deck are."""
         return self.outcome.folder
+
+    def report(self) -> Path:
+        """Write report.html, one page with figures, tables and decks, into the folder; its path."""
+        from .studies.pages.scenes import of_scene
+
+        return of_scene(self.outcome)
 
     def _repr_html_(self) -> str:
         return str(self.tables["checks"].to_html())
@@ -245,7 +258,8 @@ def run(
     if isinstance(case, Scene):
         if len(engines) != 1 or laws:
             raise CaseError("a scene has its own law and runs on one engine")
-        return SceneRun(run_scene(case.model, case.text, scene_engine(engines[0]), place=case.name, **options))
+        tool, report = scene_engine(engines[0]), partial(log.info, f"{case.name}: step %d of %d")
+        return SceneRun(run_scene(case.model, case.text, tool, place=case.name, report=report, **options))
     tools = [engine_named(name) for name in engines]
     impacts = run_impacts(
         case.model, case.text, place=case.name, engines=tools, laws=laws, progress=log.info, **options

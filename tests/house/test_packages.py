@@ -12,6 +12,7 @@ PACKAGE = Path(__file__).parents[2] / "python" / "epdem"
 ORDER = """
 __init__ errors
 base
+report
 theory
 laws
 case

@@ -1,6 +1,16 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""`python -m epdem.cli` is the command `epdem`."""
+"""Where the command `epdem` begins, also as `python -m epdem.cli`."""
 
-from .main import main
+import signal
 
-main()
+
+def main() -> None:
+    """Ctrl-C while Python still loads modules ends the process without a traceback; then `main` sees to it."""
+    signal.signal(signal.SIGINT, signal.SIG_DFL)
+    from .main import main as command
+
+    command()
+
+
+if __name__ == "__main__":
+    main()

@@ -9,7 +9,7 @@ import typer
 
 from ..base.terminal import console
 from ..base.terminal import table as empty_table
-from .options import AsJson, CasePath, Engines, Force, Laws, laws_or_own, refuse
+from .options import AsJson, CasePath, Engines, Force, Formats, Laws, formats, laws_or_own, refuse
 
 
 def theory(
@@ -52,6 +52,7 @@ def theory(
 
 def figures(
     out: Annotated[Path, typer.Option("--out", "-o", help="folder for the figures")] = Path("runs/figures"),
+    pictures: Formats = None,
     force: Force = False,
     as_json: AsJson = False,
 ) -> None:
@@ -59,8 +60,9 @@ def figures(
     from ..base.folders import claim
     from ..studies.figures import draw_all
 
+    kinds = formats(pictures)
     with claim(out, force=force):
-        names = [str(path) for path in draw_all(out)]
+        names = [str(path) for path in draw_all(out, kinds)]
     print(json.dumps({"files": names}) if as_json else "\n".join(names))
 
 

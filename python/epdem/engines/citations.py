@@ -4,7 +4,7 @@
 import inspect
 
 from .. import __version__
-from ..theory.backbones import LAWS
+from ..laws.strengths import law_named
 from ..theory.sources import CHAPTER, SOURCES
 
 ENGINES = {
@@ -18,7 +18,8 @@ def citations(laws: list[str], engines: list[str], *, dashpot: bool) -> dict[str
     """What is to be cited, by what it is for; the sources of a law are those that its theory names."""
     found = {"epdem": f"The epdem developers, epdem {__version__} (CITATION.cff)", "equations 8.xx": CHAPTER}
     for law in laws:
-        text_of_law = inspect.getsource(inspect.getmodule(LAWS[law]) or LAWS[law])
+        theory = law_named(law)
+        text_of_law = inspect.getsource(inspect.getmodule(theory) or theory)
         found |= {f"law {law}, {name}": text for name, text in SOURCES.items() if name in text_of_law}
     if dashpot:
         found["dashpot"] = SOURCES["Tsuji, Tanaka and Ishida 1992"]
