@@ -17,9 +17,8 @@ from .cost import TARGETS, Outcome
 
 def write(outcome: Outcome, folder: Path, formats: Sequence[str] = ("png",)) -> list[Path]:
     """cost.csv, a row for each model and number of steps, and the figure cost in `folder`; their paths."""
-    files = save(chart(outcome), folder, formats)
-    write_csv(folder / "cost.csv", outcome.rows)  # in place of the data of the figure, of which it has more
-    return files
+    write_csv(folder / "cost.csv", outcome.rows)
+    return [folder / "cost.csv", *save(chart(outcome), folder, formats, data=False)]
 
 
 def chart(outcome: Outcome) -> Chart:
