@@ -57,6 +57,11 @@ def test_figures_of_the_chapter_are_drawn_into_the_folder(tmp_path):
         assert min(picture.shape[:2]) > 400 and len(colours) > 300  # axes alone have the grays only
 
 
+def test_laws_with_adhesion_are_cited():
+    said = run("cite", CASES / "adhesion_thornton_1998.toml", "--law", "jkr", "--law", "thornton_ning")
+    assert "Proc. R. Soc. A 324 (1971) 301" in said and "Powder Technol. 99 (1998) 154" in said
+
+
 @pytest.mark.parametrize("name", FILE)
 def test_every_material_says_where_its_numbers_come_from(name):
     """Its source begins with a short name that the head of the file gives in full."""
