@@ -67,7 +67,7 @@ wheel: setup
 deb: setup
 	@scripts/deb
 
-# TREES="/path/to/lmp_auto ...": executables of other trees that were built after `epdem header`
+# TREES="/path/to/folder /path/to/lmp_auto ...": checkouts of LIGGGHTS, executables that were built after `epdem header`
 trees: setup
 	@.venv/bin/python scripts/trees $(TREES)
 

@@ -8,6 +8,7 @@ import logging
 import tomllib
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import Any, ClassVar, Self, Unpack, overload
 
@@ -257,7 +258,8 @@ def run(
     if isinstance(case, Scene):
         if len(engines) != 1 or laws:
             raise CaseError("a scene has its own law and runs on one engine")
-        return SceneRun(run_scene(case.model, case.text, scene_engine(engines[0]), place=case.name, **options))
+        tool, report = scene_engine(engines[0]), partial(log.info, f"{case.name}: step %d of %d")
+        return SceneRun(run_scene(case.model, case.text, tool, place=case.name, report=report, **options))
     tools = [engine_named(name) for name in engines]
     impacts = run_impacts(
         case.model, case.text, place=case.name, engines=tools, laws=laws, progress=log.info, **options

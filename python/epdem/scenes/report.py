@@ -9,6 +9,7 @@ from rich.console import Console
 from ..base.folders import claim
 from ..base.terminal import show_table, table
 from ..impacts.report import records
+from .measures import unit
 from .run import SceneOutcome
 
 
@@ -26,6 +27,7 @@ def as_json(outcome: SceneOutcome) -> str:
             "resumed_from": outcome.resumed_from,
             "warnings": outcome.warnings,
             "checks": records(outcome.results.tables["checks"]),
+            "measures": records(outcome.results.tables["measures"].tail(1)) if outcome.case.scene.measure else [],
             "last_row": records(outcome.results.tables["rows"].tail(1))[0],
         },
         indent=1,
@@ -47,6 +49,7 @@ def show(outcome: SceneOutcome, console: Console) -> None:
             style=None if row["passed"] else "red",
         )
     show_table(console, shown, ("tolerance", "error", "expected"))
+    _show_measures(outcome, console)
     for warning in outcome.warnings:
         console.print(f"warning: {warning}", style="yellow", markup=False, highlight=False)
     p, rows = outcome.plan, outcome.results.tables["rows"]
@@ -60,6 +63,22 @@ def show(outcome: SceneOutcome, console: Console) -> None:
         highlight=False,
         soft_wrap=True,
     )
+
+
+def _show_measures(outcome: SceneOutcome, console: Console) -> None:
+    """Print the last value of each curve and the mean of each histogram."""
+    curves, histograms = (outcome.results.tables.get(name) for name in ("measures", "histograms"))
+    if curves is None or histograms is None:
+        return
+    shown = table("measures", ("measure", "kind", "at the end", "unit"), left=("measure", "kind"))
+    for m in outcome.case.scene.measure:
+        if m.name in curves:
+            value = float(curves[m.name].iloc[-1])
+        else:
+            part = histograms[histograms["measure"] == m.name]
+            value = float((0.5 * (part["low"] + part["high"]) * part["number"]).sum() / max(part["number"].sum(), 1))
+        shown.add_row(m.name, m.kind if m.name in curves else f"{m.kind}, mean", f"{value:.5g}", unit(m))
+    console.print(shown)
 
 
 def figures(outcome: SceneOutcome, formats: Sequence[str] = ("png",)) -> None:
