@@ -13,6 +13,7 @@ from typer.testing import CliRunner
 from epdem.case import materials
 from epdem.cli.main import app
 
+CASES = Path(__file__).parents[2] / "cases"
 FILE = tomllib.loads(Path(materials.__file__).with_name("materials.toml").read_text())
 
 
