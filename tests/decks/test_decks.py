@@ -13,6 +13,7 @@ from epdem.base import rendering as deck
 from epdem.case.impact import parse
 from epdem.case.scene import is_scene
 from epdem.case.scene import load as load_scene
+from epdem.case.scene import parse as parse_scene
 from epdem.case.toml import read_toml
 from epdem.errors import CaseError
 from epdem.impacts import pairs
@@ -93,6 +94,16 @@ def test_the_deck_of_a_scene_in_yade_is_as_stored(name):
 def test_the_deck_of_a_scene_is_as_stored(path):
     texts = scene_deck.files(scene_plan(load_scene(path)))
     compare_with_stored(path.stem, texts["in.scene"] + texts["setup.in"])
+
+
+def test_the_spheres_of_a_file_are_as_stored(tmp_path):
+    (tmp_path / "spheres.csv").write_text(
+        "x,y,z,radius,material,vz\n0,0,0.02,0.001,powder,-1\n0.004,0,0.01,0.0015,powder,0\n"
+    )
+    data = read_toml(CASES / "sieve_cylinder.toml")
+    data["scene"]["fill"] = [{"name": "table", "file": str(tmp_path / "spheres.csv")}]
+    texts = scene_deck.files(scene_plan(parse_scene(data, CASES / "sieve_cylinder.toml")))
+    compare_with_stored("spheres_of_a_file", texts["spheres.data"])
 
 
 def test_the_deck_of_a_continued_scene_is_as_stored():
