@@ -7,7 +7,8 @@ from typing import Annotated
 
 import typer
 
-from ..base.terminal import console
+from ..base.settings import DEFAULT_ENGINE
+from ..base.terminal import console, status
 from ..base.terminal import table as empty_table
 from .options import AsJson, CasePath, Engines, Force, Formats, Laws, formats, laws_or_own, refuse
 
@@ -61,7 +62,8 @@ def figures(
     from ..studies.figures import draw_all
 
     kinds = formats(pictures)
-    with claim(out, force=force):
+    with claim(out, force=force), status() as progress:
+        progress("four figures")
         names = [str(path) for path in draw_all(out, kinds)]
     print(json.dumps({"files": names}) if as_json else "\n".join(names))
 
@@ -75,7 +77,7 @@ def cite(case: CasePath, engine: Engines = None, law: Laws = None, as_json: AsJs
     from ..engines.citations import citations
     from ..impacts.experiment import experiment
 
-    tools = [find(name).name for name in engine or ["liggghts"]]
+    tools = [find(name) for name in engine or [DEFAULT_ENGINE]]
     with named(case):
         if scene.is_scene(read_toml(case)):
             refuse(case, "a scene has its own law", law=law)

@@ -9,6 +9,7 @@ from ...liggghts.scene_deck import deck
 from ...report.page import NAME, Facts, Lines, Page, Part, Picture, Rows, write
 from ...scenes.charts import bed, charts
 from ...scenes.columns import UNITS
+from ...scenes.measures import unit
 from ...scenes.run import SceneOutcome
 from . import common
 
@@ -22,7 +23,7 @@ def of_scene(outcome: SceneOutcome) -> Path:
 def page(outcome: SceneOutcome, command: str = "") -> Page:
     """The page of a scene."""
     tables, about = outcome.results.tables, outcome.results.attributes
-    drawn = {chart.name for chart in charts(outcome)}
+    drawn = {"bed", *(chart.name for chart in charts(outcome))}
     pictures = [
         Picture(path.stem.replace("_", " "), f"{path.name}, as the run left it", file=path)
         for path in sorted(outcome.folder.glob("*.png"))
@@ -33,8 +34,11 @@ def page(outcome: SceneOutcome, command: str = "") -> Page:
     parts.append(Rows("Checks", tables["checks"], note="Each number against what is expected of it."))
     if "ledger" in tables:
         parts.append(Rows("Energy ledger", tables["ledger"], UNITS, "One row for each frame."))
+    if "measures" in tables:
+        units = {"time": "s"} | {m.name: unit(m) for m in outcome.case.scene.measure}
+        parts += [Rows("Measures", tables["measures"], units), Rows("Histograms", tables["histograms"])]
     parts += [Rows("Rows", tables["rows"], UNITS), _facts(outcome), common.case_lines(outcome.results.case_text)]
-    parts += _decks(outcome, engine)
+    parts += _decks(outcome)
     parts.append(common.origin(about, {engine: about["inputs"]}))
     parts.append(common.cited([outcome.plan.model.law], [engine], dashpot=outcome.case.viscous is not None))
     return Page(
@@ -70,8 +74,9 @@ def _facts(outcome: SceneOutcome) -> Facts:
     return Facts("The scene", facts | {"phases": ", ".join(f"{x.name} up to step {x.end}" for x in p.phases)})
 
 
-def _decks(outcome: SceneOutcome, engine: str) -> list[Lines]:
-    if engine == "liggghts":
+def _decks(outcome: SceneOutcome) -> list[Lines]:
+    """The files of the deck; those from a template of ours with the reason of each line."""
+    if SCENE.keys() <= outcome.results.decks.keys():
         lines = explain(SCENE, deck(outcome.plan))
         files = dict.fromkeys(file for file, _, _ in lines)
         return [Lines(f"Deck {name}", [(line, why) for file, line, why in lines if file == name]) for name in files]
