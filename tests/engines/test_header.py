@@ -94,7 +94,7 @@ def needed(file, seen):
                 break
 
 
-PFM = [SOURCES / "pfm/models.cpp", SOURCES / "materials.cpp"]
+PFM = [SOURCES / name for name in ("pfm/models.cpp", "materials.cpp", "cohesion.cpp")]
 
 
 @pytest.mark.parametrize("pfm", [False, True])

@@ -64,7 +64,8 @@ def files(pfm: bool = False) -> dict[str, str]:
     """
     host, laws = paths.cpp_sources()
     if pfm:
-        return {f"{NAME}.cpp": _together([host / PFM / "models.cpp", host / "materials.cpp"], host, laws)}
+        sources = [host / PFM / "models.cpp", host / "materials.cpp", host / "cohesion.cpp"]
+        return {f"{NAME}.cpp": _together(sources, host, laws)}
     apart = {name: options for name, options in _OPTIONS.findall((host / "CMakeLists.txt").read_text(encoding="utf-8"))}
     left_out = {"main.cpp", f"{PFM}/models.cpp", *apart}
     common = [f for f in sorted(host.rglob("*.cpp")) if f.relative_to(host).as_posix() not in left_out]
