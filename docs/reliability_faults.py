@@ -177,7 +177,7 @@ def half_a_dump(work: Path, out: Path) -> str:
 
 
 def half_a_log(work: Path, out: Path) -> str:
-    """`--resume` goes on from a restart file that the log still tells of, or says that there is none"""
+    """`--resume` goes on from a restart file that the log names, or refuses if there is none"""
     got = _damaged(work, out, SCENE, "out.liggghts", [*SCENE, "--resume"], 0)
     return "" if "no restart file" in got else got
 
@@ -185,7 +185,7 @@ def half_a_log(work: Path, out: Path) -> str:
 FAULTS: dict[str, Callable[[Path, Path], str]] = {
     "engine prints ERROR and exits with 0": error_with_exit_0,
     "engine ends half-way with exit code 0": ended_half_way,
-    "engine dies by a segmentation fault": died,
+    "engine ends by a segmentation fault": died,
     "a sphere is lost half-way": lost_sphere,
     "NaN in a frame": not_a_number,
     "engine that never ends": hangs,

@@ -178,6 +178,7 @@ Materials read_materials(LAMMPS_NS::LAMMPS* lmp, PropertyRegistry& registry, con
   const std::unique_ptr<Adhesion> adhesion(law.adheres ? new Adhesion(reader) : nullptr);
   const Question asked = question(reader, law);
   std::vector<ParameterTable> tables;
+  tables.reserve(asked.parameters.size());
   for (const Parameter& p : asked.parameters) tables.emplace_back(reader, p, adhesion.get());
   const std::vector<double> beta = damping_numbers(reader, dashpot), dashpots = viscous_numbers(reader, viscous);
 

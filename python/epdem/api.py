@@ -18,6 +18,7 @@ import tomlkit
 from . import theory
 from .base.files import atomic
 from .base.folders import write_own
+from .base.settings import DEFAULT_ENGINE
 from .case import impact as impact_case
 from .case import scene as scene_case
 from .case.toml import read_toml
@@ -30,6 +31,7 @@ from .impacts.prediction import predict as predict_experiment
 from .impacts.run import Outcome, write_deck
 from .impacts.run import run_case as run_impacts
 from .scenes.columns import UNITS as SCENE_UNITS
+from .scenes.engine import files as scene_files
 from .scenes.plan import plan as plan_scene
 from .scenes.run import SceneOutcome
 from .scenes.run import run_case as run_scene
@@ -52,8 +54,7 @@ class _File:
     def __init__(self, **tables: Any):
         """From the tables of a case file, `Case(case={"name": "ball"}, materials={...}, impact={...}, law={...})`.
 
-        A plain number where a quantity stands is in SI; texts with units and quantities of pint are taken as they are;
-        title and source can be left out. Raises CaseError.
+        A plain number where a quantity stands is in SI; title and source can be left out. Raises CaseError.
         """
         name = tables.get("case", {}).get("name", self.kind)
         header = {"name": name, "title": name, "source": "made in Python"} | tables.get("case", {})
@@ -242,7 +243,7 @@ def run(
 def run(
     case: Case | Scene,
     *,
-    engines: Sequence[str] = ("liggghts",),
+    engines: Sequence[str] = (DEFAULT_ENGINE,),
     laws: Sequence[str] = (),
     out: Path | str | None = None,
     ranks: int = 1,
@@ -274,11 +275,11 @@ def predict(case: Case, law: str | None = None) -> pd.DataFrame:
 
 
 def deck(
-    case: Case | Scene, out: Path | str, *, engine: str = "liggghts", law: str | None = None, force: bool = False
+    case: Case | Scene, out: Path | str, *, engine: str = DEFAULT_ENGINE, law: str | None = None, force: bool = False
 ) -> list[Path]:
     """Write the deck of a case or scene into `out`, where `force` allows other files. Raises CaseError."""
     if isinstance(case, Scene):
-        return write_own(Path(out), scene_engine(engine).files(plan_scene(case.model)), force=force)
+        return write_own(Path(out), scene_files(scene_engine(engine), plan_scene(case.model)), force=force)
     return write_deck(experiment(case.model, law), engine_named(engine), Path(out), force=force)
 
 
@@ -286,7 +287,7 @@ def sweep(
     case: Case | Scene,
     settings: study.Settings,
     *,
-    engines: Sequence[str] = ("liggghts",),
+    engines: Sequence[str] = (DEFAULT_ENGINE,),
     laws: Sequence[str] = (),
     out: Path | str | None = None,
     ranks: int = 1,

@@ -18,8 +18,10 @@ from rich.console import Console
 
 from epdem.base import paths, terminal
 from epdem.cli import main
-from epdem.engines import ENGINES
+from epdem.engines import ENGINES, engine
+from epdem.engines.citations import citations
 from epdem.errors import Stopped
+from epdem.laws.library import laws
 from epdem.scenes import report
 from epdem.studies import crosscheck
 
@@ -54,6 +56,7 @@ DOCUMENTS = {  # words, and what the document must hold
         lambda d: d["passed"] and d["done"] == 2,
     ),
     "rerun": (["stored/results.h5"], lambda d: d["same"] and len(d["differences"]) == 1),
+    "view": (["beads.toml"], lambda d: d == {"file": "settle_glass.png", "spheres": 30, "drawn": 30}),
     "tune": (["beads.toml"], lambda d: d["ranks"] == 1 and len(d["trials"]) == 5 and not d["written"]),
     "status": (["swept"], lambda d: (d["points"], d["done"], d["waiting"]) == (2, 0, 2)),
     "cite": (["steel.toml"], lambda d: "Thornton" in d["law thornton, Thornton 1997"] and "Kloss" in d["liggghts"]),
@@ -75,6 +78,7 @@ MISTAKES = {  # words, and what the sentence must hold
     "explain": (["bad.toml"], "bad.toml: not valid TOML"),
     "soften": (["steel.toml", "-k", "-3"], "--factor -3, must be > 0"),
     "calibrate": (["steel.toml"], "give one measurement"),
+    "view": (["steel.toml"], "steel.toml is a case of impacts"),
     "tune": (["steel.toml"], "steel.toml is a case of impacts"),
     "cite": (["steel.toml", "-e", "abaqus"], "'abaqus' does not exist; there are embedded"),
     "header": (["--check", "."], "contact_models.h is not there; name the folder src"),
@@ -105,7 +109,7 @@ def test_a_command_prints_one_json_document_and_nothing_else(command, folder, ca
         make_sweep("steel.toml", folder / "swept")
     if command == "rerun":
         assert call(["run", "steel.toml", "-e", "embedded", "-o", "stored"], capsys, monkeypatch).code == 0
-    if command == "tune":
+    if command in ("tune", "view"):
         (folder / "beads.toml").write_text(FEW_BEADS)
     words, holds = DOCUMENTS[command]
     done = call([command, *words, "--json"], capsys, monkeypatch)
@@ -222,3 +226,11 @@ def test_a_second_ctrl_c_does_not_interrupt_the_end_of_a_run(monkeypatch):
     with pytest.raises(Stopped):
         main._stop(signal.SIGINT, None)
     assert handlers == dict.fromkeys((signal.SIGINT, signal.SIGTERM, signal.SIGHUP), signal.SIG_IGN)
+
+
+@pytest.mark.parametrize("law", sorted(laws()))
+def test_every_law_has_a_source_to_cite(law):
+    found = citations([law], [engine("embedded")], dashpot=False)
+    assert "section 8.2" in found["equations 8.xx"]
+    # cavity is made of equations of the chapter
+    assert law == "cavity" or any(what.startswith(f"law {law}, ") for what in found)

@@ -2,6 +2,7 @@
 """A run that is stored is printed again at once, and only while nothing that it depends on has changed."""
 
 import json
+import os
 import shutil
 import subprocess
 import sys
@@ -9,9 +10,9 @@ from pathlib import Path
 
 import pytest
 
-from epdem.base import printed
-from epdem.base.printed import NAME, Printed
 from epdem.case import units
+from epdem.cli import printed
+from epdem.cli.printed import NAME, Printed
 
 CASE = Path(__file__).parents[2] / "cases/steel_wall.toml"
 EPDEM = str(Path(sys.executable).parent / "epdem")
@@ -64,6 +65,15 @@ def test_whatever_has_changed_the_command_does_its_work(place, monkeypatch):
         changed.undo()
         changed.setattr(printed, "INSTALLED", case)  # a package came or went
         assert asked("thornton") is None
+    program = place / "yade"
+    program.touch()
+    monkeypatch.setenv("EPDEM_YADE", str(program))
+    Printed(case, out, "thornton").keep("text\n", 1)
+    assert asked("thornton") is not None
+    os.utime(program, (1, 1))  # another version under the same name
+    assert asked("thornton") is None
+    monkeypatch.delenv("EPDEM_YADE")
+    Printed(case, out, "thornton").keep("text\n", 1)
     (out / ".epdem.lock").touch()
     assert asked("thornton") is None
     (out / ".epdem.lock").unlink()

@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""An engine says what it can do, and refuses the rest in a sentence; nobody asks for its name."""
+"""An engine says what it can do, and refuses the rest in a sentence."""
 
-import re
 from dataclasses import replace
 from pathlib import Path
 
@@ -66,12 +65,3 @@ def test_positions_limit_only_engines_that_have_them():
     refuse(ALL["embedded"](), p, prediction)
     with pytest.raises(CaseError, match="not representable by positions"):
         refuse(ALL["liggghts"](), p, prediction)
-
-
-def test_no_module_asks_which_engine_it_has():
-    """Engines may compare names with each other in `engines`; elsewhere an ability says what matters."""
-    kinds = r"isinstance\([^)]*\b(Liggghts|Yade|Embedded|LammpsMdr)\b"
-    names = r'\b(tool|engine|sampler)\.name(\.startswith\(| [!=]= "embedded")'
-    asks = re.compile(f"{kinds}|{names}")
-    for path in (ROOT / "python/epdem").rglob("*.py"):
-        assert not asks.search(path.read_text()), path

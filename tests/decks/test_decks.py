@@ -13,15 +13,24 @@ from epdem.base import rendering as deck
 from epdem.case.impact import parse
 from epdem.case.scene import is_scene
 from epdem.case.scene import load as load_scene
+from epdem.case.scene import parse as parse_scene
 from epdem.case.toml import read_toml
 from epdem.errors import CaseError
+from epdem.impacts import pairs
 from epdem.impacts.experiment import experiment
 from epdem.impacts.plan import plan
 from epdem.impacts.prediction import predict
 from epdem.lammps.impacts import LammpsMdr
+from epdem.liggghts import pairs as liggghts_pairs
 from epdem.liggghts import scene_deck
+from epdem.liggghts.assemblies import LiggghtsAssemblies
 from epdem.liggghts.impacts import Liggghts
+from epdem.scenes.assembly import AssemblyPlan
 from epdem.scenes.plan import plan as scene_plan
+from epdem.studies.stability.scenes import SCENES as ASSEMBLIES
+from epdem.studies.stability.scenes import with_law
+from epdem.yade import pairs as yade_pairs
+from epdem.yade import precisions
 from epdem.yade import scene_deck as yade_scene
 from epdem.yade.impacts import Yade
 
@@ -37,6 +46,7 @@ VARIANTS = {
     "rigid_wall": ({"target": {"material": "rigid"}}, None),
     "unequal_spheres": (SPHERE, None),
 }
+PARTS = ("header.j2", "macros.j2", "scene_macros.j2")  # of other templates
 
 
 def planned(changes, law=None):
@@ -86,10 +96,56 @@ def test_the_deck_of_a_scene_is_as_stored(path):
     compare_with_stored(path.stem, texts["in.scene"] + texts["setup.in"])
 
 
+def test_the_spheres_of_a_file_are_as_stored(tmp_path):
+    (tmp_path / "spheres.csv").write_text(
+        "x,y,z,radius,material,vz\n0,0,0.02,0.001,powder,-1\n0.004,0,0.01,0.0015,powder,0\n"
+    )
+    data = read_toml(CASES / "sieve_cylinder.toml")
+    data["scene"]["fill"] = [{"name": "table", "file": str(tmp_path / "spheres.csv")}]
+    texts = scene_deck.files(scene_plan(parse_scene(data, CASES / "sieve_cylinder.toml")))
+    compare_with_stored("spheres_of_a_file", texts["spheres.data"])
+
+
 def test_the_deck_of_a_continued_scene_is_as_stored():
     d = scene_deck.deck(scene_plan(load_scene(CASES / "compaction_powder.toml")))
     d = replace(d, from_restart="restart.31200.bin", resumed_phase=1)
     compare_with_stored("compaction_powder_resumed", deck.render("liggghts/scene_resume.in.j2", deck=d))
+
+
+@pytest.mark.parametrize("variant", ["swap", "sort", "migration", "restart"])
+def test_the_decks_of_a_variant_are_as_stored(variant):
+    found = pairs.pairs(planned(SPHERE), 1e-5)
+    compare_with_stored(
+        f"pairs_{variant}", "".join(liggghts_pairs.scripts(Liggghts().deck(found.plan), found, variant))
+    )
+    if variant in Yade.can.variants:
+        compare_with_stored(
+            f"yade_pairs_{variant}", "".join(yade_pairs.scripts(Yade().deck(found.plan), found, variant))
+        )
+
+
+@pytest.mark.parametrize(("name", "law"), [("plate", "cavity"), ("mixture", "hertz"), ("shock", "thornton")])
+def test_the_deck_of_an_assembly_is_as_stored(name, law, tmp_path):
+    scene = with_law(ASSEMBLIES[name]((2, 2, 4)), law)
+    LiggghtsAssemblies().write(AssemblyPlan(scene, scene.time_step(), 4), tmp_path)
+    compare_with_stored(f"assembly_{name}", (tmp_path / "in.assembly").read_text())
+
+
+def test_the_script_of_other_precisions_is_as_stored():
+    p = planned({}, "hertz")
+    compare_with_stored("yade_precisions", precisions.deck(p.experiment, p.time_step, p.gap[:8], p.steps))
+
+
+def test_every_template_has_a_stored_rendering():
+    """Known by its longest line without a name or a condition."""
+    stored = [path.read_text() for path in (HERE / "stored").glob("*.in")]
+    templates = [
+        p for p in (HERE.parents[1] / "templates").rglob("*.j2") if p.name not in PARTS and p.parent.name != "report"
+    ]
+    assert len(templates) >= 10
+    for path in templates:
+        longest = max((line for line in path.read_text().splitlines() if "{" not in line), key=len)
+        assert any(longest in text for text in stored), path
 
 
 def test_a_title_cannot_add_a_line_to_a_deck(tmp_path):

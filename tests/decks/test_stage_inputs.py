@@ -31,8 +31,8 @@ class Recorded(Embedded):
 
 @pytest.fixture
 def product(tmp_path, monkeypatch):
-    """Parts of the product that a test may change: two libraries, a launcher, a template, a source."""
-    names = ("libepdem.so", "libepdem_liggghts.so", "launcher", "templates/a.j2", "package/a.py")
+    """Parts of the product that a test may change: two libraries, a launcher, a template, a source, a table."""
+    names = ("libepdem.so", "libepdem_liggghts.so", "launcher", "templates/a.j2", "package/a.py", "package/a.toml")
     for name in names:
         (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
         (tmp_path / name).write_text("first")
@@ -45,7 +45,7 @@ def product(tmp_path, monkeypatch):
         function.cache_clear()
 
 
-@pytest.mark.parametrize("changed", [0, 1, 2, 3, 4])
+@pytest.mark.parametrize("changed", range(6))
 def test_a_change_of_the_product_is_a_new_hash(product, changed):
     folder, names = product
 

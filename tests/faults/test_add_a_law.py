@@ -3,7 +3,7 @@
 
 import re
 
-from workshop import LAWS, PYTHON, ROOT, build_library, pytest_in
+from workshop import LAWS, PYTHON, ROOT, build_library
 
 # A toy: thornton with a plastic line of 4/5 of its slope.
 HEADER = """// SPDX-License-Identifier: GPL-2.0-or-later
@@ -159,7 +159,7 @@ def test_the_manual_says_what_this_test_does():
     assert len(section.strip().splitlines()) <= 16
 
 
-def test_a_new_law_passes_the_battery_and_lands_on_its_theory(copy):
+def test_a_new_law_passes_the_battery_and_lands_on_its_theory(copy, tests_of_copy):
     (copy / LAWS / "toy.hpp").write_text(HEADER)
     register = copy / LAWS / "laws.hpp"
     text = register.read_text().replace('#include "thornton.hpp"', '#include "thornton.hpp"\n#include "toy.hpp"')
@@ -173,12 +173,12 @@ def test_a_new_law_passes_the_battery_and_lands_on_its_theory(copy):
     assert n == 1
     backbones.write_text(text)
     build_library(copy)
-    done = pytest_in(copy, "tests/battery", only="not liggghts")
+    done = tests_of_copy.run("tests/battery", only="not liggghts")
     assert done.returncode == 0, done.stdout[-3000:]
-    done = pytest_in(copy, "tests/engines/test_laws.py", only="toy and embedded")
+    done = tests_of_copy.run("tests/engines/test_laws.py", only="toy and embedded")
     assert done.returncode == 0, done.stdout[-3000:]
     assert "3 passed" in done.stdout  # 100 steps, 400 steps, dashpot
     (copy / "tests/decks/test_toy.py").write_text(COMMANDS)
-    done = pytest_in(copy, "tests/decks/test_toy.py")
+    done = tests_of_copy.run("tests/decks/test_toy.py")
     assert done.returncode == 0, done.stdout[-3000:]
     assert "6 passed" in done.stdout

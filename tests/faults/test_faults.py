@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import pytest
-from workshop import PYTHON, build_library, build_plugin, pytest_in
+from workshop import PYTHON, Runner, build_library, build_plugin
 
 
 @dataclass(frozen=True)
@@ -56,7 +56,7 @@ def test_there_are_faults_in_every_room():
 
 
 @pytest.mark.parametrize("fault", FAULTS, ids=lambda f: f.name)
-def test_a_planted_fault_turns_its_test_red(fault, copy):
+def test_a_planted_fault_turns_its_test_red(fault, copy, tests_of_copy):
     if needs_an_engine(fault.test):
         pytest.skip("the engine is not installed")
     path = copy / fault.file
@@ -65,17 +65,17 @@ def test_a_planted_fault_turns_its_test_red(fault, copy):
     try:
         if fault.file.startswith("cpp_contact"):
             build_library(copy)
-        done = pytest_in(copy, f"tests/{fault.test}")
+        done = tests_of_copy.run(f"tests/{fault.test}")
     finally:
         path.write_text(good)
         shutil.rmtree(copy / PYTHON / "native", ignore_errors=True)  # the next fault starts from sound parts
-    assert done.returncode == 1, f"the test did not fail:\n{done.stdout[-2000:]}\n{done.stderr[-2000:]}"
+    assert done.returncode == 1, f"the test did not fail:\n{done.stdout[-2000:]}"
 
 
 @pytest.mark.parametrize("tests", HALVES, ids=["first half", "second half"])
-def test_every_named_test_is_green_without_a_fault(tests, copy):
+def test_every_named_test_is_green_without_a_fault(tests, tests_of_copy):
     """In two processes, one for each core."""
-    done = pytest_in(copy, *(f"tests/{test}" for test in tests if not needs_an_engine(test)))
+    done = tests_of_copy.run(*(f"tests/{test}" for test in tests if not needs_an_engine(test)))
     assert done.returncode == 0, done.stdout[-3000:]
 
 
@@ -100,11 +100,13 @@ def test_planted_faults_of_the_plugin_turn_their_tests_red(copy_of_plugin):
         path = copy_of_plugin / fault.file
         path.write_text(planted(fault, path.read_text(), f"(planted<{n}>() ? ({fault.new}) : ({fault.old}))"))
     (copy_of_plugin / "planted.hpp").write_text(SWITCH)
-    env = {"EPDEM_LIGGGHTS": str(build_plugin(copy_of_plugin, f"-include {copy_of_plugin}/planted.hpp"))}
-    done = pytest_in(copy_of_plugin, *sorted({f"tests/{fault.test}" for fault in OF_PLUGIN}), env=env)
+    launcher = build_plugin(copy_of_plugin, f"-O0 -include {copy_of_plugin}/planted.hpp")
+    tests = Runner(copy_of_plugin, {"EPDEM_LIGGGHTS": str(launcher)})
+    done = tests.run(*sorted({f"tests/{fault.test}" for fault in OF_PLUGIN}))
     assert done.returncode == 0, done.stdout[-3000:]
     reds = {
-        fault.name: pytest_in(copy_of_plugin, f"tests/{fault.test}", env=env | {"PLANTED": str(n)}).returncode
+        fault.name: tests.run(f"tests/{fault.test}", env={"PLANTED": str(n)}).returncode
         for n, fault in enumerate(OF_PLUGIN, 1)
     }
+    tests.close()
     assert reds == dict.fromkeys(reds, 1), "a test did not fail"

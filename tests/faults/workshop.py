@@ -1,14 +1,16 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """A copy of the project that a test may spoil or extend, build, and test by itself."""
 
+import json
 import os
 import shutil
 import subprocess
 import sys
+from dataclasses import dataclass
 from pathlib import Path
 
 ROOT = Path(__file__).parents[2]
-LAWS, CAPI, PYTHON = "cpp_contact/include/epdem", "cpp_contact/capi", "python/epdem"
+LAWS, PYTHON = "cpp_contact/include/epdem", "python/epdem"
 
 
 def copy_of_project(folder: Path) -> Path:
@@ -20,45 +22,93 @@ def copy_of_project(folder: Path) -> Path:
     return folder
 
 
-def build_library(folder: Path) -> None:
-    """Compile the C library of a copy."""
+def build_library(folder: Path, flags: str = "-O0") -> None:
+    """Compile the C library of a copy with the compiler's `flags`."""
     native = folder / PYTHON / "native"
     native.mkdir(exist_ok=True)
-    command = ["g++", "-std=c++17", "-O1", "-fPIC", "-shared", f"-I{folder}/cpp_contact/include"]
-    sources = map(str, (folder / CAPI).glob("*.cpp"))
-    version = '-DEPDEM_VERSION="fault"'
-    subprocess.run([*command, version, *sources, "-o", str(native / "libepdem.so")], check=True)
+    shutil.copy(_build(folder, "epdem_capi", flags).with_name("libepdem.so"), native)
 
 
 def build_plugin(folder: Path, flags: str) -> Path:
     """Compile the LIGGGHTS parts of a copy with the compiler's `flags`; the launcher."""
-    tree = folder / "build"
-    configure = ["cmake", "-S", folder, "-B", tree, f"-DCMAKE_CXX_FLAGS=-O1 {flags}"]
-    for command in (configure, ["cmake", "--build", tree, "-j2", "--target", "epdem-liggghts"]):
-        subprocess.run(command, check=True, stdout=subprocess.DEVNULL)
-    return next(tree.rglob("epdem-liggghts"))
+    return _build(folder, "epdem-liggghts", flags)
+
+
+PRODUCTS = {"epdem_capi": "libepdem.so", "epdem-liggghts": "epdem-liggghts"}
+
+
+def _build(folder: Path, target: str, flags: str) -> Path:
+    """What a target of the project's own build file makes, again only where a source has changed."""
+    tree = folder / "build" / target
+    if not tree.exists():
+        plugin = "ON" if target == "epdem-liggghts" else "OFF"
+        configure = ["cmake", "-S", folder, "-B", tree, f"-DCMAKE_CXX_FLAGS={flags}", f"-DEPDEM_PLUGIN={plugin}"]
+        subprocess.run(configure, check=True, stdout=subprocess.DEVNULL)
+    subprocess.run(["cmake", "--build", tree, "-j2", "--target", target], check=True, stdout=subprocess.DEVNULL)
+    return next(tree.rglob(PRODUCTS[target]))
 
 
 # Read when Python starts: the installed package, which is found by a hook of its build tool, hides behind the copy.
 SITE = "import sys\nsys.meta_path[:] = [f for f in sys.meta_path if 'Scikit' not in type(f).__name__]\n"
-CODE = """
-import sys, epdem, pytest
-assert epdem.__file__.startswith(sys.argv[1])
-sys.exit(pytest.main(sys.argv[2:]))
+# Imports what is not ours once; every line of input is a run of pytest in a child that has all this already.
+SERVER = """
+import json, os, signal, sys
+import h5py, hypothesis, jinja2, numpy, pandas, pint, pydantic, pytest, rich, scipy.optimize, tomlkit, typer
+for line in sys.stdin:
+    words, env, out = json.loads(line)
+    if not (child := os.fork()):
+        signal.alarm(600)
+        os.dup2(os.open(os.devnull, os.O_RDONLY), 0)
+        os.dup2(os.open(out, os.O_WRONLY | os.O_CREAT | os.O_TRUNC), 1)
+        os.dup2(1, 2)
+        os.environ.update(env)
+        code = 70
+        try:
+            import epdem
+            assert epdem.__file__.startswith(os.getcwd())
+            code = int(pytest.main(words))
+        finally:
+            sys.stdout.flush()
+            os._exit(code)
+    print(os.waitstatus_to_exitcode(os.waitpid(child, 0)[1]), flush=True)
 """
 
 
-def pytest_in(folder: Path, *tests: str, only: str = "", env: dict[str, str] | None = None):
-    """Run tests (pytest nodes) of the copy against the copy, not against the installed package, up to a failure."""
-    (folder / "site").mkdir(exist_ok=True)
-    (folder / "site" / "sitecustomize.py").write_text(SITE)
-    python = {"PYTHONPATH": f"{folder / 'site'}:{folder / 'python'}", "PYTHONDONTWRITEBYTECODE": "1"}
-    words = [str(folder), "-q", "-x", "-p", "no:cacheprovider", "-p", "no:xdist", *tests, "-k", only]
-    return subprocess.run(
-        [sys.executable, "-c", CODE, *words],
-        cwd=folder,
-        env={k: v for k, v in os.environ.items() if k != "VIRTUAL_ENV"} | python | (env or {}),  # YADE would follow it
-        capture_output=True,
-        text=True,
-        timeout=600,
-    )
+@dataclass(frozen=True)
+class Done:
+    """How a run of tests ended: pytest's exit code, and all that it printed."""
+
+    returncode: int
+    stdout: str
+
+
+class Runner:
+    """Runs tests of a copy against the copy, not against the installed package."""
+
+    def __init__(self, folder: Path, env: dict[str, str] | None = None):
+        self.folder = folder
+        (folder / "site").mkdir(exist_ok=True)
+        (folder / "site" / "sitecustomize.py").write_text(SITE)
+        python = {"PYTHONPATH": f"{folder / 'site'}:{folder / 'python'}", "PYTHONDONTWRITEBYTECODE": "1"}
+        ours = {k: v for k, v in os.environ.items() if k != "VIRTUAL_ENV"}  # YADE would follow it
+        self.server = subprocess.Popen(
+            [sys.executable, "-c", SERVER],
+            cwd=folder,
+            env=ours | python | {"OPENBLAS_NUM_THREADS": "1"} | (env or {}),
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            text=True,
+        )
+
+    def run(self, *words: str, only: str = "", env: dict[str, str] | None = None) -> Done:
+        """Run pytest with `words`, up to a failure, and with `env` in the environment."""
+        out = self.folder / "out.pytest"
+        words = ("-q", "-x", "-p", "no:cacheprovider", "-p", "no:xdist", *words, "-k", only)
+        print(json.dumps([words, env or {}, str(out)]), file=self.server.stdin, flush=True)
+        code = int(self.server.stdout.readline())
+        return Done(code, out.read_text(errors="replace"))
+
+    def close(self) -> None:
+        """End the process that the runs share."""
+        self.server.stdin.close()
+        self.server.wait()

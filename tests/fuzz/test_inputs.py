@@ -26,8 +26,8 @@ from epdem.impacts.experiment import experiment
 from epdem.impacts.plan import plan
 from epdem.impacts.prediction import Prediction, predict
 from epdem.liggghts.own_template import write
+from epdem.scenes.engine import files
 from epdem.scenes.plan import plan as plan_scene
-from epdem.yade.scenes import YadeScenes
 
 FOREIGN = re.compile(r"Input should|should have|Field required|valid (number|string|list)|function-|pydantic|Traceback")
 
@@ -41,9 +41,9 @@ def carried_out(data: dict) -> None:
     if scene.is_scene(data):
         p = plan_scene(scene.parse(data))
         assert doubts(p.case) is not None
-        assert all(scene_engine("liggghts").files(p).values())
-        if p.case.scene.kind in YadeScenes.can.scenes and p.case.scene.count <= 2000:
-            scene_engine("yade").files(p)
+        assert all(files(scene_engine("liggghts"), p).values())
+        if p.case.scene.count <= 2000:
+            files(scene_engine("yade"), p)
         return
     x = experiment(impact.parse(data))
     found = predict(x)

@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """The rules of the house that a machine can hold."""
 
-import ast
 import re
 from pathlib import Path
 
 import pytest
+from modules import imports
 
 ROOT = Path(__file__).parents[2]
 PYTHON = ROOT / "python" / "epdem"
@@ -23,19 +23,7 @@ SOURCES = [
     for p in sorted(ROOT.glob(pattern))
     if "native" not in p.parts
 ]
-
-
-def imports(path: Path) -> set[str]:
-    """Modules that a file imports, relative ones written from the package's root."""
-    found, package = set(), path.relative_to(PYTHON.parent).with_suffix("").parts
-    for node in ast.walk(ast.parse(path.read_text())):
-        if isinstance(node, ast.Import):
-            found |= {alias.name for alias in node.names}
-        elif isinstance(node, ast.ImportFrom):
-            base = ".".join(package[: len(package) - node.level]) if node.level else ""
-            module = ".".join(filter(None, (base, node.module)))
-            found |= {module} | {f"{module}.{alias.name}" for alias in node.names}
-    return found
+SCRIPTS = [p for p in sorted(ROOT.glob("scripts/*")) if not p.suffix]
 
 
 @pytest.mark.parametrize("path", SOURCES, ids=lambda p: str(p.relative_to(ROOT)))
@@ -73,8 +61,8 @@ def test_adapters_leave_powers_and_roots_to_the_laws():
 
 
 def test_every_source_states_its_licence():
-    for path in SOURCES:
-        if path.suffix in (".py", ".hpp", ".cpp", ".h"):
+    for path in [*SOURCES, *SCRIPTS]:
+        if path.suffix in ("", ".py", ".hpp", ".cpp", ".h"):
             assert "SPDX-License-Identifier: GPL-2.0-or-later" in path.read_text()[:200], path
 
 
@@ -86,7 +74,7 @@ def test_links_between_documents_lead_somewhere():
 
 def test_nothing_is_left_unfinished():
     words = re.compile(r"\b(TO" + r"DO|FIX" + r"ME|X" + r"XX|NotImplemented" + r"Error)\b")
-    for path in SOURCES:
+    for path in [*SOURCES, *SCRIPTS]:
         assert not words.search(path.read_text()), path
 
 

@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).parents[2]
-REAL = ["bash", "env", "dirname", "grep", "cat", "rm", "sort", "xargs", "sha256sum", "true"]
+REAL = ["bash", "env", "dirname", "grep", "cat", "mkdir", "rm", "sort", "touch", "xargs", "sha256sum", "true"]
 DEBIAN = """
 case "$*" in
   *base-files*) echo -n 12.4+deb12u12 ;;
@@ -20,6 +20,7 @@ case "$*" in
   *) echo -n "install ok installed" ;;
 esac
 """
+VENV = '[ "$1 $2" = "-m venv" ] && mkdir -p "$3/bin" && touch "$3/bin/python"\n'
 APT = 'echo "$(basename "$0") $* front=$DEBIAN_FRONTEND proxy=$http_proxy" >> "$0.called"\n'
 
 
@@ -29,7 +30,10 @@ class Machine:
     def __init__(self, folder: Path):
         self.clone, self.bin = folder / "a clone", folder / "bin"
         (self.clone / "scripts").mkdir(parents=True)
-        shutil.copy(ROOT / "scripts/setup", self.clone / "scripts/setup")
+        script = (ROOT / "scripts/setup").read_text()
+        assert "command -v /usr/bin/python3 " in script
+        shutil.copy(ROOT / "scripts/setup", self.clone / "scripts/setup")  # with its mode
+        (self.clone / "scripts/setup").write_text(script.replace("/usr/bin/python3", str(self.bin / "python3")))
         self.bin.mkdir()
         for name in REAL:
             (self.bin / name).symlink_to(shutil.which(name))
@@ -38,6 +42,7 @@ class Machine:
         self.tool("id", "echo 1000")
         self.tool("basename", 'echo "${1##*/}"')
         self.tool("find", "exit 9")  # where the build would begin
+        self.tool("python3", VENV)
 
     def tool(self, name: str, text: str) -> None:
         (self.bin / name).write_text(f"#!/bin/bash\n{text}")

@@ -25,13 +25,13 @@ class Stored(LiggghtsScenes):
     can = Abilities(ranks=4, scenes=("settle", "hopper", "drum", "compaction", "peening"), restarts=True)
 
     def __init__(self, name: str = "drum"):
-        self.stored, self.runs, self.told, self.here = STORED / name, 0, "LIGGGHTS 3.8.0", True
+        self.stored, self.runs, self.says, self.here = STORED / name, 0, "LIGGGHTS 3.8.0", True
 
     def missing(self):
         return None if self.here else "LIGGGHTS was not found; apt-get install liggghts"
 
     def version(self):
-        return self.told
+        return self.says
 
     def run(self, plan, folder, *, ranks, report):
         self.runs += 1
@@ -47,11 +47,11 @@ def case(tmp_path) -> Path:
 
 
 def test_the_second_call_takes_the_stored_results(case, tmp_path):
-    engine, told = Stored(), []
-    first = run(case, engine, out=tmp_path / "out", report=lambda step, steps: told.append((step, steps)))
+    engine, reported = Stored(), []
+    first = run(case, engine, out=tmp_path / "out", report=lambda step, steps: reported.append((step, steps)))
     second = run(case, engine, out=tmp_path / "out")
     assert (first.reused, second.reused, engine.runs) == (False, True, 1)
-    assert told == [(8000, 8000)]
+    assert reported == [(8000, 8000)]
     for name, table in first.results.tables.items():
         assert second.results.tables[name].astype(str).equals(table.astype(str)), name
     stored = results.read(tmp_path / "out/results.h5")
@@ -70,7 +70,7 @@ def change_triangles(case, engine, monkeypatch):
 
 
 def change_version(case, engine, monkeypatch):
-    engine.told = "LIGGGHTS 3.8.1"
+    engine.says = "LIGGGHTS 3.8.1"
 
 
 def change_product(case, engine, monkeypatch):

@@ -12,9 +12,11 @@ from scene_runs import run, write_deck
 from epdem.case.scene import parse
 from epdem.case.toml import read_toml
 from epdem.cli import main as cli
+from epdem.engines import scene_engine
 from epdem.errors import CaseError, EngineError
 from epdem.liggghts import launcher, scene_tables
 from epdem.scenes import placement
+from epdem.scenes.engine import files
 from epdem.scenes.plan import plan
 from epdem.yade import scene_deck as yade
 from epdem.yade import scene_tables as yade_tables
@@ -188,6 +190,7 @@ def test_spheres_begin_without_overlap_inside_the_box_and_with_their_shares_of_t
         ("hopper_beads", "output", {}, r"scene.kind = 'hopper'"),
         ("drum_beads", "output", {}, r"scene.kind = 'drum'"),
         ("peening_steel", "output", {}, r"scene.kind = 'peening'"),
+        ("adhesive_powder", "output", {}, r"law.name = 'thornton_ning': engine yade has hertz"),
         ("settle_glass", "scene", {"rate": "2000 Hz"}, r"scene.rate = 2000.0: all spheres are there from the start"),
         ("settle_glass", "contact", {"rolling": {"coefficient": 0.1}}, r"contact.rolling = 'epsd2'.*no rolling"),
         ("settle_glass", "contact", {"cohesion": "1e3 J/m^3"}, r"contact.cohesion = 1000.0"),
@@ -213,8 +216,8 @@ def test_what_yade_cannot_is_refused_with_place_value_and_next_step(name, place,
     data = read_toml(CASES / f"{name}.toml")
     data[place] = data.get(place, {}) | value
     with pytest.raises(CaseError, match=words) as found:
-        yade.files(plan(parse(data)))
-    assert "--engine liggghts" in str(found.value)
+        files(scene_engine("yade"), plan(parse(data)))
+    assert re.search(r"use (another --engine|--engine liggghts)$", str(found.value))
     assert found.value.exit_code == 2
 
 

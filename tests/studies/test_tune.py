@@ -9,7 +9,7 @@ import pytest
 
 from epdem.case.scene import load
 from epdem.errors import EngineError
-from epdem.liggghts import launcher, scene_deck
+from epdem.liggghts import launcher, scene_deck, trials
 from epdem.scenes.plan import plan
 from epdem.studies import tune
 from epdem.studies.tune import Trial, Tuned
@@ -98,6 +98,6 @@ def test_the_case_file_gets_the_choices_and_keeps_its_comments(tmp_path):
 
 
 def test_a_trial_that_is_too_short_says_so(tmp_path, monkeypatch):
-    monkeypatch.setattr(tune, "_run", lambda *words: [(1.0, 200)] * 7)  # seven pieces of five skins
+    monkeypatch.setattr(trials, "run", lambda *words: [(1.0, 200)] * 7)  # seven pieces of five skins
     with pytest.raises(EngineError, match="--seconds"):
         tune.tune(small(tmp_path))

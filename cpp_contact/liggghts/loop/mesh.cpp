@@ -58,7 +58,7 @@ struct Plane {
 /// What a mesh knows of its triangles.
 struct Triangles : TriMesh {
   static Plane plane(TriMesh& mesh, int triangle) {
-    const auto normal = static_cast<double* (LAMMPS_NS::SurfaceMesh<3, 5>::*)(int)>(&Triangles::surfaceNorm);
+    double* (LAMMPS_NS::SurfaceMesh<3, 5>::* const normal)(int) = &Triangles::surfaceNorm;
     return through(mesh, triangle, 0, (mesh.*normal)(triangle));
   }
   /// Through an edge, normal to the triangle's plane, outward.
@@ -84,7 +84,7 @@ class Near {
 
   void reduce(TriMesh& mesh, FixNeighlistMesh& lists, const LAMMPS_NS::Atom& atom) {
     std::vector<LAMMPS_NS::TriangleNeighlist>& triangles = Lists::of(lists);
-    const int count = std::min<int>(mesh.sizeLocal() + mesh.sizeGhost(), triangles.size());
+    const int count = std::min(mesh.sizeLocal() + mesh.sizeGhost(), static_cast<int>(triangles.size()));
     if (atom.nlocal == 0) return;
     const double *const x = atom.x[0], *const radius = atom.radius;
     const int nlocal = atom.nlocal;

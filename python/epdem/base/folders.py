@@ -48,6 +48,11 @@ OUTPUTS = (
 )
 
 
+def results_folder(out: Path | None, *names: str) -> Path:
+    """Where results go: to `out`, without one to runs/<names>."""
+    return out or Path("runs", *names)
+
+
 @dataclass(frozen=True)
 class Results:
     """A folder that this process may write to; `foreign` are the files in it that are the user's.

@@ -7,6 +7,7 @@ from pathlib import Path
 
 from ..errors import CaseError
 
+DEFAULT_ENGINE = "liggghts"  # of every command and function that is given none
 KNOWN = {"engine": ("liggghts",)}
 
 

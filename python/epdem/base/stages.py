@@ -19,9 +19,10 @@ def library_hash() -> str:
 
 @cache
 def product_hash() -> str:
-    """Hash of this product as installed: what is compiled, templates and Python sources."""
-    templates, sources = paths.templates().rglob("*.j2"), Path(__file__).parents[1].rglob("*.py")
-    return _hash(library_hash(), [*sorted(templates), *sorted(sources)])
+    """Hash of this product as installed: what is compiled, templates, Python sources and the materials file."""
+    package = Path(__file__).parents[1]
+    ours = [*paths.templates().rglob("*.j2"), *package.rglob("*.py"), *package.rglob("*.toml")]
+    return _hash(library_hash(), sorted(ours))
 
 
 def _hash(first: str, files: Iterable[Path]) -> str:

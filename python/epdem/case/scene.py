@@ -28,6 +28,7 @@ from .motions import Rate, Time
 from .parts import Parts
 from .sizes import Particles, Share, context
 from .toml import read_toml
+from .walls import PartName
 
 Gravity = Annotated[float, Quantity("m/s^2", ge=0.0)]
 
@@ -92,6 +93,7 @@ class Output(Frozen):
     vtk: Annotated[int, Field(ge=0, le=10_000)] = 0
     pictures: Annotated[int, Field(ge=0, le=10_000)] = 0
     restarts: Annotated[int, Field(ge=0, le=1000)] = 0
+    color: PartName = "speed"  # of the spheres in bed.png: a column of the frames, speed or energy
 
     @model_validator(mode="after")
     def _ledger_frames(self) -> Self:

@@ -13,7 +13,7 @@ from typing import Annotated, Any
 import typer
 
 from .. import __version__
-from ..base.printed import Printed
+from ..base.settings import DEFAULT_ENGINE
 from ..base.terminal import bar, console
 from ..errors import CaseError, EpdemError, Stopped
 from . import calibrate as cli_calibrate
@@ -25,6 +25,7 @@ from . import sweep as cli_sweep
 from . import theory as cli_theory
 from . import trees as cli_trees
 from .options import AsJson, CasePath, Engines, Force, Formats, Laws, Out, formats, laws_or_own, refuse, warn
+from .printed import Printed
 
 ABOUT = """Elastic-plastic particle contact for LIGGGHTS and YADE, checked against theory.
 
@@ -94,7 +95,7 @@ def run(
             raise CaseError(f"{case}: --engine: a scene runs on one engine; give it once")
         if fresh and resume:
             raise CaseError(f"{case}: --resume continues a run and --fresh begins it again; leave one out")
-        chosen = engine[0] if engine else "liggghts"
+        chosen = engine[0] if engine else DEFAULT_ENGINE
         code = cli_scene.run_scene(
             case,
             engine=chosen,
@@ -113,7 +114,7 @@ def run(
     from ..impacts.run import run as run_case
     from ..studies.pages.impacts import of_impacts
 
-    engines = engine or ["liggghts"]
+    engines = engine or [DEFAULT_ENGINE]
     stages = len(set(engines)) * max(len(set(law or [])), 1) + 1  # and the figure
     with bar() as progress:
         task = progress.add_task("", total=stages)
@@ -154,7 +155,7 @@ def deck(
         Path, typer.Argument(metavar="CASE|TEMPLATE", help="case file (TOML), or a template of your own (.j2)")
     ],
     out: Annotated[Path, typer.Option("--out", "-o", help="folder for the deck")],
-    engine: Annotated[str, typer.Option("--engine", "-e", help="liggghts or yade")] = "liggghts",
+    engine: Annotated[str, typer.Option("--engine", "-e", help="liggghts or yade")] = DEFAULT_ENGINE,
     law: Laws = None,
     case: Annotated[Path | None, typer.Option("--case", help="the case that fills the template")] = None,
     given: Annotated[
@@ -168,8 +169,8 @@ def deck(
         if case is None:
             raise CaseError(f"{file}: an own template needs the values of a case; add --case CASE")
         refuse(file, "the deck of an own template has the law of its case", law=law)
-        if engine != "liggghts":
-            raise CaseError(f"{file}: --engine {engine}: own templates are for liggghts; leave it out")
+        if engine != DEFAULT_ENGINE:
+            raise CaseError(f"{file}: --engine {engine}: own templates are for {DEFAULT_ENGINE}; leave it out")
         cli_scene.deck_template(file, case, given or [], out, force=force, as_json=as_json)
         return
     refuse(file, "it goes with an own template (.j2)", case=case, set=given)
@@ -231,6 +232,7 @@ for command in (
     cli_numerics.stability,
     cli_scene.explain,
     cli_scene.tune,
+    cli_scene.view,
     cli_scene.soften,
     cli_calibrate.calibrate,
     cli_sweep.sweep,

@@ -86,9 +86,7 @@ def stability(
     else:
         refuse("stability", "it goes with --out", force=force)
     with status() as progress:
-        outcome = suite.run(
-            engine or ["embedded"], law or [], groups=group, every=every, steps=steps, progress=progress
-        )
+        outcome = suite.run(engine or [], law or [], groups=group, every=every, steps=steps, progress=progress)
     if out:
         from ..studies.pages.tables import of_stability
 
@@ -130,7 +128,7 @@ def cost(
     as_json: AsJson = False,
 ) -> None:
     """Measure error against run time at 10 to 3000 steps in contact (default engines: embedded and liggghts)."""
-    from ..base.folders import claim
+    from ..base.folders import claim, results_folder
     from ..case.impact import load
     from ..impacts.report import records
     from ..studies import cost as study
@@ -138,11 +136,11 @@ def cost(
     from ..studies.pages.tables import of_cost
 
     scene, kinds = None, formats(pictures)
-    folder = out or Path("runs") / load(case).name / "cost"
+    folder = results_folder(out, load(case).name, "cost")
     with claim(folder, force=force, files=["cost.csv"]), status() as progress:
         outcome = study.run(
             case,
-            engines=engine or ["embedded", "liggghts"],
+            engines=engine or [],
             laws=law or [],
             repetitions=repetitions,
             progress=progress,

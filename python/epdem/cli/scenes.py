@@ -7,6 +7,7 @@ from typing import Annotated
 
 import typer
 
+from ..base.settings import DEFAULT_ENGINE
 from ..base.terminal import bar, console
 from .options import AsJson, CasePath, Replace, warn
 
@@ -22,7 +23,7 @@ def is_scene(path: Path) -> bool:
 def run_scene(
     case: Path,
     *,
-    engine: str = "liggghts",
+    engine: str = DEFAULT_ENGINE,
     out: Path | None = None,
     ranks: int = 1,
     fresh: bool = False,
@@ -61,19 +62,22 @@ def run_scene(
     return 0 if outcome.passed else 1
 
 
-def deck_scene(case: Path, out: Path, *, engine: str = "liggghts", force: bool = False, as_json: bool = False) -> None:
+def deck_scene(
+    case: Path, out: Path, *, engine: str = DEFAULT_ENGINE, force: bool = False, as_json: bool = False
+) -> None:
     """Write the deck of a scene."""
     from ..base.folders import write_own
     from ..case.doubts import doubts
     from ..case.scene import load
     from ..case.toml import named
     from ..engines import scene_engine
+    from ..scenes.engine import files as files_for
     from ..scenes.plan import plan
 
     with named(case):
         read = load(case)
         warn(doubts(read))
-        files = scene_engine(engine).files(plan(read))
+        files = files_for(scene_engine(engine), plan(read))
     names = [str(f) for f in write_own(out, files, force=force)]
     print(json.dumps({"files": names}) if as_json else "\n".join(names))
 
@@ -92,6 +96,32 @@ def explain(case: CasePath, as_json: AsJson = False) -> None:
             print(f"{name}:")
             file = name
         print(f"  {text.split('  # ')[0].rstrip()}\n      {reason}")
+
+
+def view(
+    case: CasePath,
+    out: Annotated[Path | None, typer.Option("--out", "-o", help="PNG file (default: NAME.png here)")] = None,
+    window: Annotated[bool, typer.Option("--window", help="show it in a window (needs pyvista)")] = False,
+    force: Replace = False,
+    as_json: AsJson = False,
+) -> None:
+    """Draw a scene before it runs: walls, regions, first spheres."""
+    from ..base.folders import refuse_existing
+    from ..case.scene import load
+    from ..case.toml import named
+    from ..scenes import pictures
+    from ..scenes.plan import plan
+
+    with named(case):
+        p = plan(load(case))
+        if window:
+            pictures.window(p)
+            return
+        path = out or Path(f"{p.case.name}.png")
+        refuse_existing(path, force=force)
+        drawn = pictures.before(p, path)
+    said = {"file": str(path), "spheres": p.layout.count, "drawn": drawn}
+    print(json.dumps(said) if as_json else f"{path}: walls, regions and {drawn} of {p.layout.count} spheres")
 
 
 def tune(

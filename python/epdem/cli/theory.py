@@ -7,6 +7,7 @@ from typing import Annotated
 
 import typer
 
+from ..base.settings import DEFAULT_ENGINE
 from ..base.terminal import console, status
 from ..base.terminal import table as empty_table
 from .options import AsJson, CasePath, Engines, Force, Formats, Laws, formats, laws_or_own, refuse
@@ -76,7 +77,7 @@ def cite(case: CasePath, engine: Engines = None, law: Laws = None, as_json: AsJs
     from ..engines.citations import citations
     from ..impacts.experiment import experiment
 
-    tools = [find(name).name for name in engine or ["liggghts"]]
+    tools = [find(name) for name in engine or [DEFAULT_ENGINE]]
     with named(case):
         if scene.is_scene(read_toml(case)):
             refuse(case, "a scene has its own law", law=law)

@@ -3,19 +3,22 @@
 
 from collections.abc import Callable
 
-from ..errors import CaseError
+from ..base.settings import DEFAULT_ENGINE
+from ..errors import CaseError, EngineError
 from ..impacts.engine import Engine, OwnTheory, Trajectory
 from ..lammps.impacts import LammpsMdr
+from ..liggghts.assemblies import LiggghtsAssemblies
 from ..liggghts.builtin import BuiltinEdinburgh, BuiltinHertz, BuiltinLuding, ThorntonNing
 from ..liggghts.impacts import Liggghts
 from ..liggghts.scenes import LiggghtsScenes
+from ..scenes.assembly import AssemblyEngine
 from ..scenes.engine import SceneEngine
 from ..yade.builtin import YadeLuding
 from ..yade.impacts import Yade
 from ..yade.scenes import YadeScenes
 from .embedded import Embedded
 
-ENGINES: dict[str, type[Engine]] = {"embedded": Embedded, "liggghts": Liggghts, "yade": Yade}
+ENGINES: dict[str, type[Engine]] = {tool.name: tool for tool in (Embedded, Liggghts, Yade)}
 # LIGGGHTS's own models, for comparisons; `run` takes them by name as well.
 OTHERS: dict[str, type[Engine]] = {tool.name: tool for tool in (BuiltinHertz, ThorntonNing)}
 # Laws of other codes that are none of ours, each with a theory of its own: for `crosscheck`.
@@ -23,7 +26,10 @@ FOREIGN: dict[str, type[OwnTheory]] = {
     tool.name: tool for tool in (BuiltinLuding, BuiltinEdinburgh, YadeLuding, LammpsMdr)
 }
 # Engines of bulk scenes.
-SCENES: dict[str, type[SceneEngine]] = {"liggghts": LiggghtsScenes, "yade": YadeScenes}
+SCENES: dict[str, type[SceneEngine]] = {tool.name: tool for tool in (LiggghtsScenes, YadeScenes)}
+# Engines of assemblies.
+ASSEMBLIES: dict[str, type[AssemblyEngine]] = {LiggghtsAssemblies.name: LiggghtsAssemblies}
+REFERENCE = BuiltinHertz.name  # over whose time those of all others are given
 
 
 def engine(name: str, *, stay: bool = False) -> Engine:
@@ -44,4 +50,26 @@ def scene_engine(name: str) -> SceneEngine:
     return SCENES[name]()
 
 
-__all__ = ["ENGINES", "FOREIGN", "OTHERS", "SCENES", "Engine", "OwnTheory", "Trajectory", "engine", "scene_engine"]
+def assembly_engine() -> AssemblyEngine:
+    """The first engine of assemblies. Raises EngineError if it cannot run here."""
+    tool = next(iter(ASSEMBLIES.values()))()
+    if reason := tool.missing():
+        raise EngineError(f"engine {tool.name}: {reason}")
+    return tool
+
+
+__all__ = [
+    "ASSEMBLIES",
+    "DEFAULT_ENGINE",
+    "ENGINES",
+    "FOREIGN",
+    "OTHERS",
+    "REFERENCE",
+    "SCENES",
+    "Engine",
+    "OwnTheory",
+    "Trajectory",
+    "assembly_engine",
+    "engine",
+    "scene_engine",
+]

@@ -6,15 +6,10 @@ import inspect
 from .. import __version__
 from ..laws.strengths import law_named
 from ..theory.sources import CHAPTER, SOURCES
-
-ENGINES = {
-    "embedded": "",
-    "liggghts": "C. Kloss, C. Goniva, A. Hager, S. Amberger, S. Pirker, Prog. Comput. Fluid Dyn. 12 (2012) 140",
-    "yade": "V. Smilauer et al., Yade Documentation, 3rd ed., The Yade Project (2021), doi:10.5281/zenodo.5705394",
-}
+from . import Engine
 
 
-def citations(laws: list[str], engines: list[str], *, dashpot: bool) -> dict[str, str]:
+def citations(laws: list[str], engines: list[Engine], *, dashpot: bool) -> dict[str, str]:
     """What is to be cited, by what it is for; the sources of a law are those that its theory names."""
     found = {"epdem": f"The epdem developers, epdem {__version__} (CITATION.cff)", "equations 8.xx": CHAPTER}
     for law in laws:
@@ -23,4 +18,4 @@ def citations(laws: list[str], engines: list[str], *, dashpot: bool) -> dict[str
         found |= {f"law {law}, {name}": text for name, text in SOURCES.items() if name in text_of_law}
     if dashpot:
         found["dashpot"] = SOURCES["Tsuji, Tanaka and Ishida 1992"]
-    return found | {name: text for name in engines if (text := ENGINES[name.partition("-")[0]])}
+    return found | {tool.name: tool.source for tool in engines if tool.source}

@@ -44,8 +44,8 @@ def _mpi() -> Finding:
 
 def _models() -> Finding:
     """Ask the LIGGGHTS in use for what it has, and let it create every model of ours."""
-    if words := launcher.missing():
-        return Finding("models in LIGGGHTS", False, "not here", words)
+    if reason := launcher.missing():
+        return Finding("models in LIGGGHTS", False, "not here", reason)
     path, laws = paths.launcher(), tuple(claw.laws())
     assert path is not None  # launcher.missing() says so
     try:
@@ -64,5 +64,7 @@ def examine() -> list[Finding]:
         tool = kind()
         reason = tool.missing()
         detail, advice = ("not here", reason) if reason else (tool.version(), "")
-        findings.append(Finding(f"engine {name}", reason is None, detail, advice, needed=name == "embedded"))
+        findings.append(
+            Finding(f"engine {name}", reason is None, detail, advice, needed=not kind.can.deck)
+        )  # the embedded one
     return [*findings, _models(), _mpi()]

@@ -21,6 +21,7 @@ class Embedded:
     """Impacts inside the C library, without any other program."""
 
     name = "embedded"
+    source = ""
     can = Abilities(dashpot=True, friction=tuple(NODES), oblique_spheres=True, deck=False, positions=False)
 
     def missing(self) -> str | None:

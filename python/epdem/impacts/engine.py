@@ -65,6 +65,22 @@ class Edits:
 
 
 @dataclass(frozen=True)
+class Precisions:
+    """Builds of an engine in other floating-point precisions, for round-off.
+
+    `programs`: the plain one first, the finest last. `rebounds` is e_n of a sphere of its own elastic law on a wall
+    from so many gaps [m], shape (n,): program, scratch folder, experiment of one speed, time step [s], gaps, steps.
+    """
+
+    programs: tuple[str, ...]
+    rebounds: Callable[[str, Path, Experiment, float, np.ndarray, int], np.ndarray]
+
+    def available(self) -> bool:
+        """Whether all programs are here."""
+        return all(shutil.which(p) for p in self.programs)
+
+
+@dataclass(frozen=True)
 class Abilities:
     """The abilities of an engine; other code never tests its name."""
 
@@ -84,6 +100,14 @@ class Abilities:
     edits: Edits | None = None  # of its deck
     variants: tuple[str, ...] = ()  # of the same impacts that `run_pairs` can run, beside the plain one
     stays: bool = False  # one process of it can run plan after plan; the class takes `stay`
+    slow: bool = False  # seconds for a plan: long studies give it fewer
+    own_models: tuple[str, ...] = ()  # engines that run the own models of its program
+    precisions: Precisions | None = None  # builds of its program
+
+    @property
+    def only_law(self) -> str | None:
+        """The law of ours for which a model of another code stands, where an engine has no other."""
+        return self.laws[0] if self.laws and len(self.laws) == 1 else None
 
 
 class Engine(Protocol):
@@ -91,6 +115,7 @@ class Engine(Protocol):
 
     name: str
     can: Abilities
+    source: str  # to be cited for its program; "": it is our own
 
     def missing(self) -> str | None:
         """None if the engine can run here, else a sentence with the command that installs it."""
@@ -137,12 +162,16 @@ class OwnTheory(Engine, Protocol):
         """The origin of its numbers, in words."""
 
 
+def check_law(engine: str, can: Abilities, law: str) -> None:
+    """Raise CaseError for a law that an engine does not have."""
+    if can.laws is not None and law not in can.laws:
+        raise CaseError(f"law.name = {law!r}: engine {engine} has {', '.join(can.laws)} only; use another --engine")
+
+
 def check_abilities(tool: Engine, x: Experiment) -> None:
     """Raise CaseError if an experiment needs an ability that the engine does not have."""
     can, wall = tool.can, not np.isfinite(x.target.radius)
-    if can.laws is not None and x.law.name not in can.laws:
-        known = ", ".join(can.laws)
-        raise CaseError(f"law.name = {x.law.name!r}: engine {tool.name} has {known} only; use another --engine")
+    check_law(tool.name, can, x.law.name)
     if x.oblique:
         oblique.check(tool.name, can.friction, can.oblique_spheres, x)
     if x.viscous_restitution is not None and not can.dashpot:

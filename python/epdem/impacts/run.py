@@ -14,7 +14,7 @@ from typing import Required, TypedDict, Unpack
 import pandas as pd
 
 from .. import __version__
-from ..base.folders import claim
+from ..base.folders import claim, results_folder
 from ..base.stages import inputs_hash
 from ..case.doubts import doubts
 from ..case.impact import Case, parse
@@ -214,7 +214,7 @@ def run_case(
     is written or started.
     """
     work = _prepare(case, place, engines, laws, ranks)
-    folder = out or Path("runs") / case.name
+    folder = results_folder(out, case.name)
     with claim(folder, force=force):
         return _run(text, work, folder, ranks, fresh, progress)
 

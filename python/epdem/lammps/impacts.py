@@ -66,6 +66,7 @@ class LammpsMdr:
     """Sphere on a rigid flat under mdr, which has no other wall, with the case's E*; its theory is in `foreign`."""
 
     name = "lammps-mdr"
+    source = "A. P. Thompson et al., Comput. Phys. Commun. 271 (2022) 108171"
     template = "lammps/impact.in.j2"
     can = Abilities(spheres=False)
     end_power = 2 / 3

@@ -9,7 +9,7 @@ from ..impacts.experiment import Experiment
 from ..impacts.plan import Plan
 from ..impacts.prediction import Prediction
 from .deck import Deck
-from .impacts import Liggghts
+from .impacts import OWN_MODELS, Liggghts
 from .properties import Property, of_friction, of_impacts, per_pair, per_type, scalar
 
 
@@ -20,14 +20,14 @@ def _elastic(plan: Plan) -> tuple[int, list[Property]]:
     return types, [*elastic, per_pair("coefficientRestitution", types, 1.0, "-", "no viscous damping")]
 
 
-WITHOUT_OURS = replace(Liggghts.can, dashpot=False, friction=(), scenes=(), restarts=False)
+WITHOUT_OURS = replace(Liggghts.can, dashpot=False, friction=(), scenes=(), restarts=False, own_models=())
 RUBBING = replace(WITHOUT_OURS, friction=Liggghts.can.friction, own_spring=True)
 
 
 class BuiltinHertz(Liggghts):
     """LIGGGHTS's `hertz` without damping: the elastic limit."""
 
-    name = "liggghts-hertz"
+    name = OWN_MODELS[1]
     can = replace(RUBBING, laws=("hertz",))
 
     def model(self, plan: Plan) -> str:
@@ -44,7 +44,7 @@ class BuiltinHertz(Liggghts):
 class ThorntonNing(Liggghts):
     """LIGGGHTS's `thornton_ning` without adhesion, with the yield pressure of the plan's `thornton` law."""
 
-    name = "liggghts-thornton_ning"
+    name = OWN_MODELS[0]
     can = replace(RUBBING, laws=("thornton",))
 
     def model(self, plan: Plan) -> str:

@@ -26,8 +26,8 @@ class Executable:
 
     def __str__(self) -> str:
         parts = {"superquadrics": self.superquadrics, "VTK": self.vtk, "MPI": self.mpi}
-        words = [f"{'with' if has else 'without'} {part}" for part, has in parts.items()]
-        return ", ".join([self.version or "version unknown", *words])
+        built = [f"{'with' if has else 'without'} {part}" for part, has in parts.items()]
+        return ", ".join([self.version or "version unknown", *built])
 
 
 def version(path: Path) -> str:

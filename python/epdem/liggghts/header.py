@@ -124,12 +124,12 @@ def _text(file: Path) -> str:
 
 def _together(sources: list[Path], host: Path, laws: Path, options: str = "") -> str:
     """The sources with each of our headers once, at its first inclusion; `options` name instructions of x86."""
-    words = [word.removeprefix("-m") for word in options.split(";") if word]
+    sets = [word.removeprefix("-m") for word in options.split(";") if word]
     # GCC below 13 takes the pragma as a whole, but does not define what -m... would
-    macros = [f"__{word.upper()}__" for word in ["avx", *words] if word.startswith("avx")]
+    macros = [f"__{word.upper()}__" for word in ["avx", *sets] if word.startswith("avx")]
     target = "".join(f"#ifndef {m}\n#define {m} 1\n#endif\n" for m in macros)
-    target = f'#pragma GCC target("{",".join(words)}")\n{target}' if words else ""
-    condition = "#if defined __x86_64__ && defined __GNUC__ && !defined __clang__" if words else "#if 1"
+    target = f'#pragma GCC target("{",".join(sets)}")\n{target}' if sets else ""
+    condition = "#if defined __x86_64__ && defined __GNUC__ && !defined __clang__" if sets else "#if 1"
     seen: set[Path] = set()
     body = [line for source in sources for line in _lines(source, (host, laws), seen)]
     top = _TOP.format(version=__version__, name=NAME, target=target, condition=condition)

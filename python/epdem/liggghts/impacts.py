@@ -27,12 +27,14 @@ from .properties import HARD, SOFT, Property, atom_types, finite, of_law, tangen
 
 END = "end.bin"
 SCENES = ("settle", "hopper", "drum", "compaction", "peening", "parts")
+OWN_MODELS = ("liggghts-thornton_ning", "liggghts-hertz")
 
 
 class Liggghts:
     """LIGGGHTS with a model of ours; `model` and more can be replaced to run LIGGGHTS's own models."""
 
     name = "liggghts"
+    source = "C. Kloss, C. Goniva, A. Hager, S. Amberger, S. Pirker, Prog. Comput. Fluid Dyn. 12 (2012) 140"
     template = "liggghts/impact.in.j2"
     can = Abilities(
         dashpot=True,
@@ -43,6 +45,7 @@ class Liggghts:
         edits=EDITS,
         variants=("swap", "sort", "migration", "restart"),
         stays=True,
+        own_models=OWN_MODELS,
     )
 
     def __init__(self, *, stay: bool = False):

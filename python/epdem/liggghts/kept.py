@@ -71,12 +71,12 @@ class Kept:
         return self._process
 
     def _started(self, folder: Path) -> "subprocess.Popen[bytes]":
-        words = [launcher.command("none")[0], "-log", "none"]
-        self._screen, theirs = pty.openpty()  # in a pipe its words would stay in its buffer
+        command = [launcher.command("none")[0], "-log", "none"]
+        self._screen, theirs = pty.openpty()  # in a pipe its output would stay in a buffer
         tty.setraw(theirs)
         try:
             return subprocess.Popen(
-                words,
+                command,
                 cwd=folder,
                 stdin=subprocess.PIPE,
                 stdout=theirs,
@@ -86,7 +86,7 @@ class Kept:
                 preexec_fn=processes.end_with_parent,
             )
         except OSError as error:
-            raise EngineError(f"{words[0]}: cannot be started ({error})") from None
+            raise EngineError(f"{command[0]}: cannot be started ({error})") from None
         finally:
             os.close(theirs)
 

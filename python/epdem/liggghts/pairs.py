@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 
 from ..base import rendering as decks
+from ..base.files import write_texts
 from ..impacts.pairs import Pairs
 from ..lammps import data_file
 from . import dump, launcher
@@ -28,30 +29,38 @@ def _data(pairs: Pairs, deck: Deck, swap: bool) -> str:
     return data_file.text("pairs", len(deck.types), _box(pairs), groups)
 
 
-def velocities(deck: Deck, pairs: Pairs, variant: str, folder: Path) -> np.ndarray:
-    """After the impacts, shape (2, n, 3), the body first. Raises EngineError; ValueError if bodies are lost."""
-    p, deck = pairs.plan, replace(deck, path="out.bin")
-    folder.mkdir(parents=True, exist_ok=True)
-    (folder / deck.data).write_text(_data(pairs, deck, variant == "swap"), encoding="utf-8")
-    ranks = 2 if variant == "migration" else 1
+def scripts(deck: Deck, pairs: Pairs, variant: str) -> list[str]:
+    """The decks of a variant in the order in which they run."""
+    steps = pairs.plan.steps
     context: dict[str, Any] = {
         "deck": deck,
         "variant": variant,
-        "ranks": ranks,
+        "ranks": _ranks(variant),
         "restart": None,
         "stop": None,
-        "steps": p.steps,
+        "steps": steps,
+        "sort": 0.499 * _box(pairs)[2][1] if variant == "sort" else None,
     }
-    context["sort"] = 0.499 * _box(pairs)[2][1] if variant == "sort" else None
     parts = [context]
     if variant == "restart":
         parts = [
             context | {"steps": pairs.stop, "stop": "middle.restart"},
-            context | {"steps": p.steps - pairs.stop, "restart": "middle.restart"},
+            context | {"steps": steps - pairs.stop, "restart": "middle.restart"},
         ]
-    for k, part in enumerate(parts):
-        (folder / f"in.{k}").write_text(decks.render("liggghts/invariance.in.j2", **part), encoding="utf-8")
+    return [decks.render("liggghts/invariance.in.j2", **part) for part in parts]
+
+
+def _ranks(variant: str) -> int:
+    return 2 if variant == "migration" else 1
+
+
+def velocities(deck: Deck, pairs: Pairs, variant: str, folder: Path) -> np.ndarray:
+    """After the impacts, shape (2, n, 3), the body first. Raises EngineError; ValueError if bodies are lost."""
+    deck = replace(deck, path="out.bin")
+    texts = {f"in.{k}": text for k, text in enumerate(scripts(deck, pairs, variant))}
+    write_texts(folder, texts | {deck.data: _data(pairs, deck, variant == "swap")})
+    for k in range(len(texts)):
         (folder / deck.path).unlink(missing_ok=True)
-        launcher.run(f"in.{k}", folder, ranks=ranks, log=f"log.{k}", out=f"out.{k}", seconds=120)
-    v = dump.series(folder / deck.path)[-1].reshape(2, p.n, 3)
+        launcher.run(f"in.{k}", folder, ranks=_ranks(variant), log=f"log.{k}", out=f"out.{k}", seconds=120)
+    v = dump.series(folder / deck.path)[-1].reshape(2, pairs.plan.n, 3)
     return np.flip(v, axis=0) if variant == "swap" else v

@@ -128,15 +128,15 @@ def memory(m: Model, *, wall: bool = False) -> int:
     return law + stamp + others
 
 
-def told(m: Model) -> tuple[str, ...]:
+def remembered(m: Model) -> tuple[str, ...]:
     """What a table of contacts takes of the law's memory, which begins with it: the largest overlap of a law that
     yields, whether bodies that adhere are attached (its root is above 0)."""
     return ("largest overlap",) * m.yields + ("root of the attached",) * m.adheres
 
 
-def _columns(m: Model, values: int) -> tuple[int, ...]:
-    """Where a local compute has what `told` names, and the overlap: behind three ids and `values` of history."""
-    slots = len(told(m))
+def contact_columns(slots: int, values: int) -> tuple[int, ...]:
+    """Where a local compute has the first `slots` numbers of the history and the overlap: behind three ids and
+    `values` of history."""
     return (*range(4, 4 + slots), 4 + values) if slots else (4,)
 
 
@@ -210,9 +210,9 @@ def deck(p: ScenePlan) -> Deck:
         has_history=m.yields or m.spins or m.adheres,
         yields=m.yields,
         adheres=m.adheres,
-        slots=told(m),
-        contact_columns=_columns(m, memory(m)),
-        wall_contact_columns=_columns(m, memory(m, wall=True)),
+        slots=remembered(m),
+        contact_columns=contact_columns(len(remembered(m)), memory(m)),
+        wall_contact_columns=contact_columns(len(remembered(m)), memory(m, wall=True)),
         dents=p.dents,
         rubs=p.rubs,
         torque=p.torque,

@@ -100,7 +100,7 @@ def _particle_names(p: ScenePlan) -> list[str]:
 
 
 def _slots(p: ScenePlan) -> list[str]:
-    """What a contact's memory tells, as `scene_deck.told` says."""
+    """The columns of `scene_deck.remembered`."""
     return ["delta_max"] * p.model.yields + ["attached"] * p.model.adheres
 
 

@@ -5,6 +5,7 @@ import numpy as np
 
 from ..report.chart import GREY, INK, PALETTE, Axis, Chart, Panel, Series
 from ..report.page import Picture
+from .key_figures import key
 from .measures import unit
 from .run import SceneOutcome
 
@@ -14,15 +15,18 @@ ROWS = {
     "floor_load": Axis("load on the floor", "N"),
     "plate_force": Axis("force on the plate", "N"),
 }
-COLOURS = {"kinetic": 0, "elastic": 2, "plastic": 1, "friction": 4, "springs": 3, "left": 6, "adhesion": 5}
+COLOURS = {"kinetic": 0, "rotation": INK, "elastic": 2, "plastic": 1, "friction": 4, "springs": 3, "left": 6}
+COLOURS["adhesion"] = 5
 MOST = 3000  # spheres in the picture of a bed
 # viridis at eleven places: from slow to fast
 SCALE = ["440154", "482576", "414487", "35608d", "2a788e", "21918c", "22a884", "43bf71", "7ad151", "bddf26", "fde725"]
 
 
 def charts(outcome: SceneOutcome) -> list[Chart]:
-    """scene, what the rows hold against time; energy, the ledger, and the measures of the scene, if there are such."""
-    return [rows(outcome), *([ledger(outcome)] if "ledger" in outcome.results.tables else []), *measured(outcome)]
+    """The key figure of the kind; scene, what the rows hold against time; energy, the ledger, and the measures of the
+    scene, if there are such."""
+    energy = [ledger(outcome)] if "ledger" in outcome.results.tables else []
+    return [*key(outcome.plan, outcome.results.tables), rows(outcome), *energy, *measured(outcome)]
 
 
 def rows(outcome: SceneOutcome) -> Chart:

@@ -10,7 +10,7 @@ import pandas as pd
 from ..case.parts import Parts
 from ..case.scene import Compaction, Hopper, Peening, SceneCase, Settle
 from ..impacts.prediction import predict
-from .ledger import closure, kinetic, plate_velocity
+from .ledger import closure, kinetic, plate_velocity, rotation
 from .pairs import wall_impact
 from .plan import ScenePlan
 
@@ -66,7 +66,7 @@ def bed_rebound(case: SceneCase, spheres: pd.DataFrame) -> tuple[float, float]:
     """
     present = spheres.groupby("step")["id"].count()
     whole = spheres[spheres["step"].isin(present.index[present == present.max()])]
-    sums = whole.assign(height=whole["mass"] * whole["z"], kinetic=kinetic(whole)).groupby("step")
+    sums = whole.assign(height=whole["mass"] * whole["z"], kinetic=kinetic(whole) + rotation(whole)).groupby("step")
     total = whole["mass"].sum() / sums.ngroups
     place = sums["height"].sum().to_numpy() / total
     fall = place[0] + sums["kinetic"].sum().iloc[0] / (total * case.scene.gravity) - place.min()

@@ -27,8 +27,8 @@ UNITS = {
     **dict.fromkeys(("overlap", "delta_max", "residual_overlap", "dent_radius"), "m"),
     "force": "N",
     **dict.fromkeys(("plastic_work", "adhesive_work", "elastic_energy", "friction_work", "friction_energy"), "J"),
-    **dict.fromkeys(("kinetic", "gravity", "elastic", "plastic", "adhesion", "work", "left", "balance"), "J"),
-    **dict.fromkeys(("friction", "springs"), "J"),
+    **dict.fromkeys(("kinetic", "rotation", "gravity", "elastic", "plastic", "adhesion"), "J"),
+    **dict.fromkeys(("friction", "springs", "work", "left", "balance"), "J"),
 }
 LOADS = ("force_x", "force_y", "force_z", "torque_x", "torque_y", "torque_z")  # of a wall NAME: NAME_force_x, ...
 SMALLEST = 1e-12  # radius [m]

@@ -9,7 +9,7 @@ from typing import Protocol
 import pandas as pd
 
 from ..errors import CaseError, EngineError
-from ..impacts.engine import Abilities, refuse_ranks
+from ..impacts.engine import Abilities, check_law, refuse_ranks
 from .plan import ScenePlan
 
 Report = Callable[[int], None]  # the step of a row that was written
@@ -40,7 +40,7 @@ class SceneEngine(Protocol):
     def files(self, plan: ScenePlan) -> dict[str, str]:
         """Everything written for the engine, by path in the folder; it runs by hand there.
 
-        Raises CaseError for what the engine cannot do.
+        Raises CaseError for what no ability names; others call `files` below.
         """
 
     def notes(self, plan: ScenePlan) -> list[str]:
@@ -59,12 +59,18 @@ class SceneEngine(Protocol):
         """
 
 
-def check_abilities(engine: SceneEngine, p: ScenePlan, *, ranks: int, resume: bool) -> None:
-    """Raise CaseError for what a run asks of an engine that cannot do it, EngineError if it is not here."""
-    kind = p.case.scene.kind
-    if kind not in engine.can.scenes:
-        known = " and ".join(engine.can.scenes)
+def files(engine: SceneEngine, p: ScenePlan) -> dict[str, str]:
+    """Everything written for the engine, by path in the folder. Raises CaseError for what the engine cannot do."""
+    kind, law, can = p.case.scene.kind, p.model.law, engine.can
+    if kind not in can.scenes:
+        known = " and ".join(can.scenes)
         raise CaseError(f"scene.kind = {kind!r}: engine {engine.name} runs {known}; use another --engine")
+    check_law(engine.name, can, law)
+    return engine.files(p)
+
+
+def check_run(engine: SceneEngine, *, ranks: int = 1, resume: bool = False) -> None:
+    """Raise CaseError for what a run asks of an engine that cannot do it, EngineError if it is not here."""
     refuse_ranks(engine.name, engine.can.ranks, ranks)
     if resume and not engine.can.restarts:
         raise CaseError(f"--resume: a scene in {engine.name} runs from its start; leave it out")

@@ -8,12 +8,17 @@ from .plan import ScenePlan
 
 
 def kinetic(spheres: pd.DataFrame) -> pd.Series:
-    """Kinetic energy [J] of each sphere, its spin included if the table has it."""
-    energy = 0.5 * spheres["mass"] * (spheres[["vx", "vy", "vz"]] ** 2).sum(axis=1)
-    if "omega_x" in spheres:
-        spin = (spheres[["omega_x", "omega_y", "omega_z"]] ** 2).sum(axis=1)
-        energy = energy + 0.2 * spheres["mass"] * spheres["radius"] ** 2 * spin
+    """Kinetic energy [J] of each sphere's translation, as in the rows."""
+    energy: pd.Series = 0.5 * spheres["mass"] * (spheres[["vx", "vy", "vz"]] ** 2).sum(axis=1)
     return energy
+
+
+def rotation(spheres: pd.DataFrame) -> pd.Series:
+    """Energy [J] of each sphere's spin; 0 if the table does not have it."""
+    if "omega_x" not in spheres:
+        return 0.0 * spheres["mass"]
+    spin: pd.Series = (spheres[["omega_x", "omega_y", "omega_z"]] ** 2).sum(axis=1)
+    return 0.2 * spheres["mass"] * spheres["radius"] ** 2 * spin
 
 
 def work_of_walls(p: ScenePlan, rows: pd.DataFrame) -> np.ndarray:
@@ -43,7 +48,7 @@ def plate_velocity(p: ScenePlan, rows: pd.DataFrame) -> np.ndarray:
 def _left(spheres: pd.DataFrame, steps: np.ndarray) -> np.ndarray:
     """Energy [J] that spheres took along which were gone at each step: kinetic, plastic, lost by adhesion, rubbed, as
     last seen."""
-    energy = kinetic(spheres)
+    energy = kinetic(spheres) + rotation(spheres)
     for name in ("plastic_work", "adhesive_work", "friction_work"):
         energy = energy + spheres.get(name, 0.0)
     last = spheres.groupby("id")["step"].max()
@@ -56,8 +61,10 @@ def _left(spheres: pd.DataFrame, steps: np.ndarray) -> np.ndarray:
 
 
 def ledger(p: ScenePlan, tables: dict[str, pd.DataFrame]) -> pd.DataFrame:
-    """One row per frame [J]: kinetic, gravity, elastic, plastic, work done by walls, left, and the balance; with
-    adhesion also what its jumps took, and `elastic` holds the surface energy, too.
+    """One row per frame [J]: kinetic, gravity, elastic, plastic, work done by walls, left, and the balance.
+
+    With friction or rolling also rotation, the energy of spins; with adhesion what its jumps took, and `elastic` holds
+    the surface energy, too.
 
     With partial slip also friction, the work that it took, and springs, the elastic energy of its springs. The balance
     is what these leave unexplained since the first frame with all spheres; it must vanish unless contacts roll, have
@@ -65,10 +72,13 @@ def ledger(p: ScenePlan, tables: dict[str, pd.DataFrame]) -> pd.DataFrame:
     """
     spheres, contacts = tables["particles"], tables["contacts"]
     steps = np.sort(spheres["step"].unique())
-    by_step = spheres.assign(kinetic=kinetic(spheres), gravity=spheres["mass"] * p.case.scene.gravity * spheres["z"])
-    sums = by_step.groupby("step")[["kinetic", "gravity"]].sum()
+    gravity = spheres["mass"] * p.case.scene.gravity * spheres["z"]
+    by_step = spheres.assign(kinetic=kinetic(spheres), rotation=rotation(spheres), gravity=gravity)
+    sums = by_step.groupby("step")[["kinetic", "rotation", "gravity"]].sum()
     table = pd.DataFrame({"step": steps, "time": p.time_at(steps)})
     table["kinetic"], table["gravity"] = sums["kinetic"].to_numpy(), sums["gravity"].to_numpy()
+    if p.model.spins:
+        table["rotation"] = sums["rotation"].to_numpy()
     table["elastic"] = contacts.groupby("step")["elastic_energy"].sum().reindex(steps, fill_value=0.0).to_numpy()
     for name, column in (("plastic", "plastic_work"), ("adhesion", "adhesive_work")):
         if column in spheres:
@@ -84,7 +94,7 @@ def ledger(p: ScenePlan, tables: dict[str, pd.DataFrame]) -> pd.DataFrame:
     present = spheres.groupby("step")["id"].count().reindex(steps).to_numpy()
     start = int(np.argmax(present == present.max()))
     rubbed = ["friction", "springs"] if p.rubs else []
-    kinds = ["kinetic", "gravity", "elastic", "plastic", "adhesion", "left", *rubbed]
+    kinds = ["kinetic", "rotation", "gravity", "elastic", "plastic", "adhesion", "left", *rubbed]
     total = table.reindex(columns=kinds, fill_value=0.0).sum(axis=1) - table["work"]
     table["balance"] = total - total.iloc[start]
     table = table.iloc[start:].reset_index(drop=True)
@@ -95,6 +105,6 @@ def ledger(p: ScenePlan, tables: dict[str, pd.DataFrame]) -> pd.DataFrame:
 
 def closure(table: pd.DataFrame) -> float:
     """Largest balance over the energy that moved: of the start, and what walls put in."""
-    terms = table.reindex(columns=["kinetic", "elastic", "plastic", "adhesion", "work"]).abs().max().sum()
+    terms = table.reindex(columns=["kinetic", "rotation", "elastic", "plastic", "adhesion", "work"]).abs().max().sum()
     fall = abs(table["gravity"].iloc[0] - table["gravity"].min())
     return float(table["balance"].abs().max() / max(terms, fall, 1e-300))

@@ -39,7 +39,7 @@ def _somewhere(region: Block | Cylinder, radius: float, rng: random.Random) -> t
 
 
 def spheres(p: ScenePlan) -> FloatArray:
-    """(count, 5) x, y, z, radius [m], type of all spheres at the start: those of the table, then each fill's.
+    """(n, 5) x, y, z, radius [m], type of all spheres of the first phase: those of the table, then each fill's.
 
     Random sequential placement, every sphere wholly in the region of its fill. The same case has the same places
     everywhere. Raises CaseError when full.
@@ -64,7 +64,7 @@ def spheres(p: ScenePlan) -> FloatArray:
 
     for s in p.layout.table:
         put(s.place, s.radius, p.model.type_of(s.material))
-    for fill in p.layout.fills:
+    for fill in (f for f in p.layout.fills if f.phase in ("", p.phases[0].name)):
         for radius, kind in sizes(p.case, p.model, fill, rng):
             for _ in range(ATTEMPTS):
                 place = _somewhere(fill.region, radius, rng)

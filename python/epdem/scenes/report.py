@@ -9,6 +9,7 @@ from rich.console import Console
 from ..base.folders import claim
 from ..base.terminal import show_table, table
 from ..impacts.report import records
+from . import pictures
 from .measures import unit
 from .run import SceneOutcome
 
@@ -82,10 +83,13 @@ def _show_measures(outcome: SceneOutcome, console: Console) -> None:
 
 
 def figures(outcome: SceneOutcome, formats: Sequence[str] = ("png",)) -> None:
-    """The charts of a scene in the folder of a run, which may write there: scene and, with a ledger, energy."""
+    """The charts of a scene in the folder of a run, which may write there, and the picture of its bed."""
     from ..report.drawing import save
     from .charts import charts
 
     with claim(outcome.folder, force=True):
         for chart in charts(outcome):
             save(chart, outcome.folder, formats)
+        particles = outcome.results.tables.get("particles")
+        if particles is not None and len(particles):
+            pictures.bed(outcome.plan, particles, outcome.folder / "bed.png")

@@ -12,15 +12,16 @@ import pandas as pd
 
 from .. import __version__
 from ..base.files import write_texts
-from ..base.folders import Results, claim
+from ..base.folders import Results, claim, results_folder
 from ..base.stages import inputs_hash, library_hash
 from ..case.doubts import doubts
 from ..case.scene import SceneCase, load
 from ..case.toml import named
 from ..errors import CaseError, EngineError
 from ..impacts.prediction import predict
-from . import checks, ledger, measures, results
-from .engine import Report, Resumed, SceneEngine, check_abilities
+from . import checks, ledger, measures, pictures, results
+from .engine import Report, Resumed, SceneEngine, check_run
+from .engine import files as files_for
 from .pairs import wall_impact
 from .plan import ScenePlan, plan
 from .timestep import highest_speed
@@ -87,7 +88,7 @@ def run_plan(
     p: ScenePlan, engine: SceneEngine, folder: Path, *, ranks: int = 1, report: Report = lambda step: None
 ) -> dict[str, pd.DataFrame]:
     """Write a plan's deck into `folder`, run it, read its tables. Raises CaseError, EngineError."""
-    write_texts(folder, engine.files(p))
+    write_texts(folder, files_for(engine, p))
     engine.run(p, folder, ranks=ranks, report=report)
     return engine.read(p, folder)
 
@@ -131,10 +132,11 @@ def run_case(
     with named(place):
         p = plan(case)
         measures.refuse_measures(p)
-        check_abilities(engine, p, ranks=ranks, resume=resume)
-        files, notes = engine.files(p), [*engine.notes(p), *_warnings(p.case)]
+        pictures.refuse_color(p)
+        files, notes = files_for(engine, p), [*engine.notes(p), *_warnings(p.case)]
+    check_run(engine, ranks=ranks, resume=resume)
     work = _Work(text, p, engine, files, notes, ranks, lambda step: report(step, p.steps))
-    folder = out or Path("runs") / p.case.name / engine.subfolder
+    folder = results_folder(out, p.case.name, engine.subfolder)
     if resume and not folder.exists():
         raise CaseError(f"{folder}: no such folder, so no run to continue; run the case without --resume")
     with claim(folder, force=force, files=files) as place:

@@ -16,7 +16,8 @@ import pandas as pd
 
 from ..case.impact import Case, load
 from ..case.toml import named
-from ..engines import OTHERS, Engine, engine
+from ..engines import DEFAULT_ENGINE, REFERENCE, Engine, engine
+from ..engines.embedded import Embedded
 from ..errors import EngineError
 from ..impacts.experiment import experiment
 from ..impacts.plan import Plan, plan
@@ -27,7 +28,7 @@ STEPS = (10, 17, 30, 55, 100, 170, 300, 550, 1000, 1700, 3000)
 QUANTITIES = ("e_n", "contact_time", "force_max")
 TARGETS = (1e-2, 1e-3, 1e-4)
 LEAST_PHASES = 8
-REFERENCE = "liggghts-hertz"
+ENGINES = (Embedded.name, DEFAULT_ENGINE)  # of a study that names none
 
 
 @dataclass(frozen=True)
@@ -41,7 +42,7 @@ class Model:
 
     @property
     def label(self) -> str:
-        return self.engine.name if self.engine.name in OTHERS else f"{self.engine.name}, {self.law}"
+        return self.engine.name if self.engine.can.only_law else f"{self.engine.name}, {self.law}"
 
 
 @dataclass(frozen=True)
@@ -56,15 +57,14 @@ class Outcome:
 
 def models(case: Case, engines: list[str], laws: list[str], steps: tuple[int, ...]) -> list[Model]:
     """What runs against what. With LIGGGHTS come its own thornton_ning and, as the reference, its own hertz."""
-    if "liggghts" in engines:
-        engines = [*engines, *sorted(OTHERS, key=lambda name: name == REFERENCE)]
+    engines = [*engines, *(own for name in engines for own in engine(name).can.own_models)]
     numerics = case.numerics.model_copy(update={"phases": max(case.numerics.phases, LEAST_PHASES), "error": None})
     chosen = []
     for name in dict.fromkeys(engines):
         tool = engine(name)
         if reason := tool.missing():
             raise EngineError(f"engine {name}: {reason}")
-        for law in tool.can.laws or () if name in OTHERS else laws or [case.law.name]:
+        for law in [tool.can.only_law] if tool.can.only_law else laws or [case.law.name]:
             # the case's own law keeps the case's parameters
             x = replace(experiment(case, None if law == case.law.name else law), numerics=numerics)
             prediction = predict(x)
@@ -136,10 +136,10 @@ def run(
     repetitions: int = 5,
     progress: Callable[[str], None] = lambda text: None,
 ) -> Outcome:
-    """Errors and times of every model at every number of steps in the shortest contact."""
+    """Errors and times of every model at every number of steps in the shortest contact; engines none: ENGINES."""
     case, begin = load(case_path), time.perf_counter()
     with named(case_path):
-        chosen = models(case, engines, laws, steps)
+        chosen = models(case, engines or [*ENGINES], laws, steps)
     rows = []
     with tempfile.TemporaryDirectory(prefix="epdem-cost-") as scratch:
         folder = Path(scratch)

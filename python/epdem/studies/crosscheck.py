@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
-from ..base.folders import claim
+from ..base.folders import claim, results_folder
 from ..base.tables import write_csv
 from ..case.impact import load
 from ..case.toml import named
@@ -88,7 +88,7 @@ def crosscheck(
         x = experiment(case, law)
     tools, absent = models(x)
     own = {name: kind() for name, kind in FOREIGN.items() if name in tools}
-    folder = out or Path("runs") / "crosscheck" / case.name
+    folder = results_folder(out, "crosscheck", case.name)
     steps = case.numerics.steps_in_contact
     few = max(10, steps // COARSER)
     with claim(folder, force=force):

@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 
 from ..case.impact import Material
-from ..engines import engine
+from ..engines import DEFAULT_ENGINE, engine
 from ..impacts.experiment import Experiment, plane, sphere
 from ..impacts.plan import plan
 from ..impacts.prediction import predict
@@ -90,7 +90,7 @@ def adhesion_by_strength() -> Chart:
     lines are theory, points are impacts in LIGGGHTS, where it is installed."""
     steel = Material.model_validate({"young_modulus": "215 GPa", "poisson_ratio": 0.3, "density": "7850 kg/m^3"})
     body, target = sphere(steel, radius=1e-5, name="steel"), plane(steel, name="steel")
-    tool, series = engine("liggghts"), []
+    tool, series = engine(DEFAULT_ENGINE), []
     for k, p_y in enumerate((None, 3.04e9, 1e9, 0.5e9)):
         law = LawSpec("jkr", {ADHESION: 0.2}, (np.inf, np.inf))
         if p_y is not None:

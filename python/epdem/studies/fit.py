@@ -16,6 +16,8 @@ from typing import Any, TypedDict, Unpack
 
 import numpy as np
 
+from ..base.folders import results_folder
+from ..base.settings import DEFAULT_ENGINE
 from ..case.scene import is_scene
 from ..case.units import to_si
 from ..errors import CaseError, EngineError
@@ -145,7 +147,7 @@ def fit_text(
     *,
     place: object,
     out: Path | str | None = None,
-    engine: str = "liggghts",
+    engine: str = DEFAULT_ENGINE,
     ranks: int = 1,
     tolerance: float = 0.01,
     jobs: int | None = None,
@@ -169,7 +171,7 @@ def fit_text(
     ranges = _ranges(free, axes(free, keys_of(data), "--free"))
     middle = np.full(len(ranges), 0.5)
     base = study.plan_text(text, {name: [axis.at(0.5)] for name, axis in ranges.items()}, engines=[engine], ranks=ranks)
-    folder = Path(out) if out else Path("runs") / f"{base.name}_fit"
+    folder = results_folder(Path(out) if out else None, f"{base.name}_fit")
     search = _Search(base, folder, ranges, targets, jobs=jobs, force=force, report=report)
     search([middle])  # what it has tells whether the targets exist
     _refuse_insensitive(search, middle, tolerance)

@@ -6,11 +6,7 @@ sees every part of the scene, and what else the machine does hits all of them. T
 loop, without output and set-up.
 """
 
-import contextlib
 import math
-import re
-import tempfile
-import time
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -18,22 +14,21 @@ from pathlib import Path
 import numpy as np
 import tomlkit
 
-from ..base.files import atomic, write_texts
+from ..base.files import atomic
 from ..case.scene import Output, SceneCase, load
 from ..case.toml import named
-from ..engines import scene_engine
 from ..errors import EngineError
-from ..liggghts import launcher, log, scene_deck
-from ..scenes.engine import check_abilities
+from ..liggghts import trials
+from ..liggghts.scenes import LiggghtsScenes
+from ..liggghts.trials import Loops
+from ..scenes.engine import check_run, files
 from ..scenes.plan import ScenePlan, plan
 
 SHARES = (0.25, 0.5, 0.75, 1.0, 1.5)  # of the smallest radius: skins that are tried
 TURNS, SHORTEST, LONGEST = 10, 200, 2000  # turns through all skins in a scene, and steps with one of them
 WORTH = 0.02  # of the time: nobody changes a case for less
 CERTAIN = 3.0  # a saving counts if it exceeds so many times its standard error
-_RUN = re.compile(r"^run (\d+) upto.*$", re.MULTILINE)
 Progress = Callable[[str], None]
-Loops = list[tuple[float, int]]  # (seconds, steps) of pieces of a run
 
 
 @dataclass(frozen=True)
@@ -94,47 +89,9 @@ def _better(trials: tuple[Trial, ...]) -> Trial | None:
     return best if saved > max(WORTH, CERTAIN * error) else None
 
 
-class _Enough(Exception):
-    """The time of a trial is over."""
-
-
 def _silent(case: SceneCase) -> ScenePlan:
     """The plan of a scene without output but rows, which report its progress."""
     return plan(case.model_copy(update={"output": Output(rows=100, particles=0, energy=case.output.energy)}))
-
-
-def _pieces(texts: dict[str, str], skins: list[float], steps: int, length: int) -> tuple[dict[str, str], list[float]]:
-    """The deck with its runs cut into pieces of one skin each, and the skins in that order."""
-    order: list[float] = []
-    begin = 0
-
-    def cut(match: re.Match[str]) -> str:
-        nonlocal begin
-        end, lines = min(int(match[1]), steps), []
-        while begin < end:
-            turn, place = divmod(len(order), len(skins))
-            order.append(skins[place] if turn % 2 == 0 else skins[-1 - place])
-            begin = min(end, begin + length)
-            lines += [f"neighbor {order[-1]!r} bin", f"run {begin} upto"]
-        return "\n".join(lines)
-
-    return texts | {"in.scene": _RUN.sub(cut, texts["in.scene"])}, order
-
-
-def _run(texts: dict[str, str], ranks: int, seconds: float) -> Loops:
-    """The pieces that ended within `seconds`."""
-    end = time.monotonic() + seconds
-
-    def watch(step: int) -> None:
-        if time.monotonic() > end:
-            raise _Enough
-
-    with tempfile.TemporaryDirectory(prefix="epdem_tune_") as name:
-        folder = Path(name)
-        write_texts(folder, texts)
-        with contextlib.suppress(_Enough):
-            launcher.run("in.scene", folder, ranks=ranks, report=watch)
-        return log.loops(folder / launcher.OUT)
 
 
 def _of_skins(order: list[float], loops: Loops, skins: list[float]) -> tuple[list[Trial], int]:
@@ -168,28 +125,29 @@ def _cuts(ranks: int) -> list[str]:
 
 def tune(path: Path, *, ranks: int = 1, seconds: float = 60.0, progress: Progress = lambda text: None) -> Tuned:
     """Trials of the scene in `path`, each of at most `seconds`. Raises CaseError, EngineError."""
+    tool = LiggghtsScenes()
     with named(path):
         case = load(path)
         p = _silent(case)
-        texts = scene_deck.files(p)
-    check_abilities(scene_engine("liggghts"), p, ranks=ranks, resume=False)
-    present = scene_deck.deck(p).skin
+        texts = files(tool, p)
+    check_run(tool, ranks=ranks)
+    present = trials.skin(p)
     others = sorted({float(f"{share * p.smallest:.2e}") for share in SHARES} - {present})
     skins = [present, *others]
     length = max(SHORTEST, min(LONGEST, p.steps // (TURNS * len(skins))))
     progress(f"{len(skins)} skins")
-    deck, order = _pieces(texts, skins, p.steps, length)
-    trials, steps = _of_skins(order, _run(deck, ranks, seconds), skins)
-    result = Tuned(tuple(trials), (), steps, p.steps, ranks)
+    deck, order = trials.pieces(texts, skins, p.steps, length)
+    of_skins, steps = _of_skins(order, trials.run(deck, ranks, seconds), skins)
+    result = Tuned(tuple(of_skins), (), steps, p.steps, ranks)
     if ranks == 1:
         return result
-    best = float((_better(result.skins) or trials[0]).value)
+    best = float((_better(result.skins) or of_skins[0]).value)
     runs: dict[str, Loops] = {}
     for cut in dict.fromkeys([case.numerics.cut or "", *_cuts(ranks)]):
         progress(_axes(cut))
         numerics = case.numerics.model_copy(update={"cut": cut or None})
-        texts = scene_deck.files(_silent(case.model_copy(update={"numerics": numerics})))
-        runs[cut] = _run(_pieces(texts, [best], steps * len(skins), length)[0], ranks, seconds)
+        texts = files(tool, _silent(case.model_copy(update={"numerics": numerics})))
+        runs[cut] = trials.run(trials.pieces(texts, [best], steps * len(skins), length)[0], ranks, seconds)
     return replace(result, cuts=tuple(_of_cuts(runs)))
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Elastic adhesive contact in closed form (Johnson, Kendall and Roberts 1971, Proc. R. Soc. A 324, 301).
+"""Elastic adhesive contact in closed form [Johnson, Kendall and Roberts 1971].
 
 The contact radius a [m] is the natural variable: force and overlap follow from it. All arguments broadcast. Internally
 y = sqrt(a) and c = sqrt(2 pi Gamma/E*), so that the opening of the rim is d(a) = sqrt(2 pi Gamma a/E*) = c y.

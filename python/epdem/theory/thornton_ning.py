@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Elastic, perfectly plastic adhesive contact in closed form (Thornton and Ning 1998, Powder Technol. 99, 154)."""
+"""Elastic, perfectly plastic adhesive contact in closed form [Thornton and Ning 1998]."""
 
 from typing import ClassVar
 

@@ -23,6 +23,7 @@ from .deck_modules.law import LAWS
 from .edits import EDITS
 from .launcher import command, environment, write_deck_modules
 from .pairs import velocities
+from .precisions import PRECISIONS
 
 INSTALL = "apt-get install yade"
 
@@ -31,6 +32,7 @@ class Yade:
     """Impacts in YADE: sphere on sphere or wall, with a copy of the law in the deck."""
 
     name = "yade"
+    source = "V. Smilauer et al., Yade Documentation, 3rd ed., The Yade Project (2021), doi:10.5281/zenodo.5705394"
     # a serial YADE keeps bodies where they are in memory and has no ranks: sorting and migration do not exist
     can = Abilities(
         laws=tuple(LAWS),
@@ -40,6 +42,8 @@ class Yade:
         scenes=("settle", "compaction"),
         edits=EDITS,
         variants=("swap", "restart"),
+        slow=True,
+        precisions=PRECISIONS,
     )
     template = "yade/impact.py.j2"
 

@@ -9,26 +9,23 @@ import numpy as np
 from ..base import rendering as decks
 from ..base.processes import call
 from ..errors import EngineError
-from ..impacts.pairs import Pairs
+from ..impacts.pairs import Group, Pairs
 from .deck import Deck
 from .launcher import command, environment, write_deck_modules
 
 
-def velocities(deck: Deck, pairs: Pairs, variant: str, folder: Path) -> np.ndarray:
-    """After the impacts, shape (2, n, 3), the body first. Raises EngineError; ValueError if bodies are lost."""
-    p = pairs.plan
-    folder.mkdir(parents=True, exist_ok=True)
-    if not deck.native:
-        write_deck_modules(folder)
-    sides = [(f"side{k}.data", side) for k, side in enumerate(pairs.ordered(variant == "swap"))]
-    for name, side in sides:
-        lines = [" ".join(map(decks.number, row)) for row in np.hstack([side.place, side.velocity])]
-        (folder / name).write_text("\n".join(["# x y z v_x v_y v_z, SI", *lines, ""]), encoding="utf-8")
+def _sides(pairs: Pairs, variant: str) -> dict[str, Group]:
+    return {f"side{k}.data": side for k, side in enumerate(pairs.ordered(variant == "swap"))}
+
+
+def scripts(deck: Deck, pairs: Pairs, variant: str) -> list[str]:
+    """The scripts of a variant in the order in which they run."""
+    steps = pairs.plan.steps
     context: dict[str, Any] = {
         "deck": deck,
         "variant": variant,
-        "sides": [(n, s.body.radius, s.body.material) for n, s in sides],
-        "steps": p.steps,
+        "sides": [(name, side.body.radius, side.body.material) for name, side in _sides(pairs, variant).items()],
+        "steps": steps,
         "load": None,
         "save": None,
     }
@@ -36,14 +33,25 @@ def velocities(deck: Deck, pairs: Pairs, variant: str, folder: Path) -> np.ndarr
     if variant == "restart":
         parts = [
             context | {"steps": pairs.stop, "save": "middle.yade.gz"},
-            context | {"steps": p.steps - pairs.stop, "load": "middle.yade.gz"},
+            context | {"steps": steps - pairs.stop, "load": "middle.yade.gz"},
         ]
+    return [decks.render("yade/pairs.py.j2", **part) for part in parts]
+
+
+def velocities(deck: Deck, pairs: Pairs, variant: str, folder: Path) -> np.ndarray:
+    """After the impacts, shape (2, n, 3), the body first. Raises EngineError; ValueError if bodies are lost."""
+    folder.mkdir(parents=True, exist_ok=True)
+    if not deck.native:
+        write_deck_modules(folder)
+    for name, side in _sides(pairs, variant).items():
+        lines = [" ".join(map(decks.number, row)) for row in np.hstack([side.place, side.velocity])]
+        (folder / name).write_text("\n".join(["# x y z v_x v_y v_z, SI", *lines, ""]), encoding="utf-8")
     (folder / deck.path).unlink(missing_ok=True)
-    for k, part in enumerate(parts):
-        (folder / f"pairs{k}.py").write_text(decks.render("yade/pairs.py.j2", **part), encoding="utf-8")
+    for k, text in enumerate(scripts(deck, pairs, variant)):
+        (folder / f"pairs{k}.py").write_text(text, encoding="utf-8")
         call([command(), "-n", "-x", f"pairs{k}.py"], folder, log=f"out{k}.yade", seconds=120, env=environment())
     try:
-        v = np.asarray(np.load(folder / deck.path)).reshape(2, p.n, 3)
+        v = np.asarray(np.load(folder / deck.path)).reshape(2, pairs.plan.n, 3)
     except OSError as error:
         raise EngineError(f"{folder / deck.path}: the run left no result ({error}); see out{k}.yade beside") from None
     return np.flip(v, axis=0) if variant == "swap" else np.asarray(v)

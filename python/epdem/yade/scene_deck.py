@@ -11,14 +11,11 @@ from ..scenes import placement
 from ..scenes.layout import Block, Plane
 from ..scenes.plan import ScenePlan
 from .deck import Material, refuse_parameters, strength_values
-from .deck_modules.law import LAWS
-from .impacts import Yade
 from .launcher import deck_modules
 
 Square = tuple[tuple[float, ...], ...]
 SCRIPT, SPHERES = "scene.py", "spheres.txt"
 SKIN = 0.25  # of the smallest radius: few sortings and few idle neighbours
-KINDS = Yade.can.scenes
 NO_DASHPOT = "contact.tangential_restitution: YADE's law has no dashpot, it was left out"
 NO_RANKS = "numerics.cut: a scene in YADE has one rank, it was left out"
 
@@ -88,12 +85,8 @@ class Deck:
 
 
 def refuse(p: ScenePlan) -> None:
-    """Raises CaseError for what a scene in YADE cannot have."""
-    case, m, out = p.case, p.model, p.output
-    if case.scene.kind not in KINDS:
-        raise CaseError(f"scene.kind = {case.scene.kind!r}: YADE runs {' and '.join(KINDS)}; use --engine liggghts")
-    if m.law not in LAWS:
-        raise CaseError(f"law.name = {m.law!r}: YADE has {', '.join(LAWS)}; use --engine liggghts")
+    """Raises CaseError for what a scene in YADE cannot have, beside what its abilities name."""
+    m, out = p.model, p.output
     refuse_parameters(m.law, m.ratios())
     unknown: dict[str, tuple[object, str]] = {
         "scene.rate": (p.layout.fills[0].rate, "all spheres are there from the start"),

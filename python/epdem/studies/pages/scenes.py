@@ -23,7 +23,7 @@ def of_scene(outcome: SceneOutcome) -> Path:
 def page(outcome: SceneOutcome, command: str = "") -> Page:
     """The page of a scene."""
     tables, about = outcome.results.tables, outcome.results.attributes
-    drawn = {chart.name for chart in charts(outcome)}
+    drawn = {"bed", *(chart.name for chart in charts(outcome))}
     pictures = [
         Picture(path.stem.replace("_", " "), f"{path.name}, as the run left it", file=path)
         for path in sorted(outcome.folder.glob("*.png"))
@@ -38,7 +38,7 @@ def page(outcome: SceneOutcome, command: str = "") -> Page:
         units = {"time": "s"} | {m.name: unit(m) for m in outcome.case.scene.measure}
         parts += [Rows("Measures", tables["measures"], units), Rows("Histograms", tables["histograms"])]
     parts += [Rows("Rows", tables["rows"], UNITS), _facts(outcome), common.case_lines(outcome.results.case_text)]
-    parts += _decks(outcome, engine)
+    parts += _decks(outcome)
     parts.append(common.origin(about, {engine: about["inputs"]}))
     parts.append(common.cited([outcome.plan.model.law], [engine], dashpot=outcome.case.viscous is not None))
     return Page(
@@ -74,8 +74,9 @@ def _facts(outcome: SceneOutcome) -> Facts:
     return Facts("The scene", facts | {"phases": ", ".join(f"{x.name} up to step {x.end}" for x in p.phases)})
 
 
-def _decks(outcome: SceneOutcome, engine: str) -> list[Lines]:
-    if engine == "liggghts":
+def _decks(outcome: SceneOutcome) -> list[Lines]:
+    """The files of the deck; those from a template of ours with the reason of each line."""
+    if SCENE.keys() <= outcome.results.decks.keys():
         lines = explain(SCENE, deck(outcome.plan))
         files = dict.fromkeys(file for file, _, _ in lines)
         return [Lines(f"Deck {name}", [(line, why) for file, line, why in lines if file == name]) for name in files]

@@ -5,16 +5,16 @@ import shutil
 import tempfile
 import time
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 import numpy as np
 import pandas as pd
 
-from ...engines import engine
-from ...errors import EngineError
-from .bulk import FRAMES, execute, frames, ledger, write
-from .scenes import SCENES, Scene, with_law
+from ...engines import assembly_engine
+from ...scenes.assembly import Assembly, AssemblyEngine, AssemblyPlan
+from .bulk import FRAMES, ledger
+from .scenes import SCENES, with_law
 
 # Of the energy brought in, what the total may move: velocity Verlet lets the energy of a contact in progress swing by
 # (omega dt)^2/4 = share^2 of the stability limit, 4e-4 at 2 %.
@@ -48,17 +48,17 @@ def differences(one: np.ndarray, two: np.ndarray, radius: float) -> np.ndarray:
     return np.asarray(np.abs(one[:, :, 1:4] - two[:, :, 1:4]).max(axis=(1, 2)) / radius)
 
 
-def judge_scene(scene: Scene, folder: Path, *, ranks: int = 2) -> BulkVerdict:
-    """Run a scene on 1 and on `ranks` ranks and check it. Raises EngineError if LIGGGHTS fails."""
-    dt = scene.time_step()
-    deck = write(scene, folder, time_step=dt)
+def judge_scene(scene: Assembly, tool: AssemblyEngine, folder: Path, *, ranks: int = 2) -> BulkVerdict:
+    """Run a scene on 1 and on `ranks` ranks and check it. Raises EngineError if the engine fails."""
+    plan = AssemblyPlan(scene, scene.time_step(), FRAMES)
+    tool.write(plan, folder)
     begin = time.perf_counter()
-    execute(folder)
+    tool.run(folder)
     seconds = time.perf_counter() - begin
-    table, one = ledger(scene, deck, folder), frames(folder)
-    write(scene, folder / "ranks", time_step=dt, contacts=False)
-    execute(folder / "ranks", ranks=ranks)
-    two = frames(folder / "ranks")
+    table, one = ledger(plan, tool, folder), tool.frames(folder)
+    tool.write(replace(plan, contacts=False), folder / "ranks")
+    tool.run(folder / "ranks", ranks=ranks)
+    two = tool.frames(folder / "ranks")
     brought = table["kinetic"].iloc[0] + table["brought"].iloc[-1]
     apart = differences(one, two, scene.radius)
     kinetic = [(0.5 * scene.mass * run[-1, :, 4:7] ** 2).sum() for run in (one, two)]
@@ -66,7 +66,7 @@ def judge_scene(scene: Scene, folder: Path, *, ranks: int = 2) -> BulkVerdict:
         scene.name,
         scene.law,
         len(scene.position),
-        deck.steps,
+        plan.steps,
         seconds,
         len(scene.position) - one.shape[1],
         float(table["total"].diff().max() / brought),
@@ -93,18 +93,13 @@ def judge_scene(scene: Scene, folder: Path, *, ranks: int = 2) -> BulkVerdict:
 
 
 def run(laws: list[str], *, progress: Callable[[str], None] = lambda text: None) -> pd.DataFrame:
-    """The verdicts on every scene with every law, one row each."""
-    if reason := engine("liggghts").missing():
-        raise EngineError(f"engine liggghts: {reason}")
-    rows = []
+    """The verdicts on every scene with every law, one row each. Raises EngineError."""
+    tool, rows = assembly_engine(), []
     with tempfile.TemporaryDirectory(prefix="epdem-bulk-") as scratch:
         for name, build in SCENES.items():
             for law in laws:
                 progress(f"{name}, {law}")
-                rows.append(vars(judge_scene(with_law(build(), law), Path(scratch))))
+                rows.append(vars(judge_scene(with_law(build(), law), tool, Path(scratch))))
                 shutil.rmtree(scratch)
                 Path(scratch).mkdir()
     return pd.DataFrame(rows)
-
-
-__all__ = ["FRAMES", "BulkVerdict", "judge_scene", "run"]

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Error of the dissipated energy of a bulk scene against run time, in LIGGGHTS, with its own `hertz` as reference."""
+"""Error of the dissipated energy of a bulk scene against run time, with the engine's own elastic model as reference."""
 
 import tempfile
 from collections.abc import Callable
@@ -9,12 +9,11 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
-from ...engines import engine
-from ...errors import EngineError
+from ...engines import REFERENCE, assembly_engine
 from ...laws.library import laws as declared
-from ..cost import REFERENCE, over_reference, spread
-from .bulk import execute, frames, write
-from .scenes import SHARE, Scene, shock, with_law
+from ...scenes.assembly import SHARE, Assembly, AssemblyEngine, AssemblyPlan
+from ..cost import over_reference, spread
+from .scenes import shock, with_law
 
 SHARES = (0.4, 0.2, 0.1, 0.05, 0.025)  # of the stability limit at the highest speed
 FINEST = 0.25  # share of the finest step, of the run that errors are against: an error of order 2 is known to 1/16
@@ -22,22 +21,23 @@ FINEST = 0.25  # share of the finest step, of the run that errors are against: a
 
 @dataclass(frozen=True)
 class Model:
-    """A scene with a law, by our model or (`model`) by one of LIGGGHTS's own."""
+    """A scene with a law, by our model or (`model`) by one of the engine's own."""
 
     label: str
-    scene: Scene
+    scene: Assembly
+    tool: AssemblyEngine
     model: str | None = None
 
     def dissipated(self, time_step: float, folder: Path) -> np.ndarray:
         """Plastic work of every sphere at the end [J], shape (spheres,)."""
-        write(self.scene, folder, time_step=time_step, frames=1, contacts=False)
-        execute(folder)
-        return np.asarray(frames(folder)[-1][:, 7])
+        self.tool.write(AssemblyPlan(self.scene, time_step, frames=1, contacts=False), folder)
+        self.tool.run(folder)
+        return np.asarray(self.tool.frames(folder)[-1][:, 7])
 
     def seconds(self, time_step: float, folder: Path) -> float:
         """The engine's loop time [s] of a run that records nothing, not even its plastic work."""
-        write(self.scene, folder, time_step=time_step, frames=0, model=self.model)
-        return execute(folder)
+        self.tool.write(AssemblyPlan(self.scene, time_step, frames=0), folder, model=self.model)
+        return self.tool.run(folder)
 
 
 def errors(c: Model, steps: dict[float, float], folder: Path, progress: Callable[[str], None]) -> pd.DataFrame:
@@ -68,19 +68,17 @@ def run(
     shares: tuple[float, ...] = SHARES,
     progress: Callable[[str], None] = lambda text: None,
 ) -> pd.DataFrame:
-    """One row per law (and LIGGGHTS's own hertz) and share: errors, seconds and the ratio to the reference.
+    """One row per law (and the reference) and share: errors, seconds and the ratio to the reference.
 
     The blocks meet for about two collisions a sphere: long enough to be a bulk, too short for round-off to grow.
     All take the same steps, shares of the smallest of their stability limits at the highest speed.
     `seconds` and `ratio` (to the reference) are medians, `..._spread` their distances of the quartiles; models
     alternate, so that drifts of the machine hit all.
-    Raises EngineError without LIGGGHTS.
+    Raises EngineError without an engine of assemblies.
     """
-    if reason := engine("liggghts").missing():
-        raise EngineError(f"engine liggghts: {reason}")
-    scene, rows = shock((8, 8, 8)), []
-    chosen = [Model(f"liggghts, {law}", with_law(scene, law)) for law in laws]
-    chosen.append(Model(REFERENCE, with_law(scene, "hertz"), "hertz"))
+    scene, tool, rows = shock((8, 8, 8)), assembly_engine(), []
+    chosen = [Model(f"{tool.name}, {law}", with_law(scene, law), tool) for law in laws]
+    chosen.append(Model(REFERENCE, with_law(scene, "hertz"), tool, tool.own_elastic))
     limit = min(c.scene.time_step() for c in chosen) / SHARE
     steps = {share: share * limit for share in shares}
     with tempfile.TemporaryDirectory(prefix="epdem-bulk-") as scratch:

@@ -8,6 +8,7 @@ from typing import Protocol
 import numpy as np
 
 from ...engines import Engine
+from ...engines.embedded import Embedded
 from ...impacts.experiment import Experiment
 from ...impacts.plan import Plan
 
@@ -32,6 +33,7 @@ class Sampler(Protocol):
     positions: bool  # its overlap is a difference of positions
     most_steps: int  # of one impact: keeps every run within the time limit of a case
     phases: int
+    slow: bool  # as in Abilities
 
     def __call__(self, x: Experiment, time_step: float, gap: np.ndarray, steps: int) -> Sample: ...
 
@@ -39,7 +41,7 @@ class Sampler(Protocol):
 class EmbeddedSampler:
     """Impacts in the C library, where overlaps are no differences of positions."""
 
-    name, positions, most_steps, phases = "embedded", False, 20_000_000, 16
+    name, positions, most_steps, phases, slow = Embedded.name, False, 20_000_000, 16, False
 
     def __call__(self, x: Experiment, time_step: float, gap: np.ndarray, steps: int) -> Sample:
         out = x.native_law().impacts(
@@ -57,7 +59,7 @@ class PositionSampler:
     positions, most_steps, phases = True, 20_000, 8
 
     def __init__(self, engine: Engine, folder: Path):
-        self.engine, self.folder, self.name = engine, folder, engine.name
+        self.engine, self.folder, self.name, self.slow = engine, folder, engine.name, engine.can.slow
 
     def __call__(self, x: Experiment, time_step: float, gap: np.ndarray, steps: int) -> Sample:
         speed = np.full(gap.size, x.speed[0])

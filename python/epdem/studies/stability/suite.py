@@ -8,7 +8,8 @@ from pathlib import Path
 
 import pandas as pd
 
-from ...engines import engine
+from ...engines import ASSEMBLIES, engine
+from ...engines.embedded import Embedded
 from ...errors import CaseError, EngineError
 from ...theory.backbones import ADHESIVE, LAWS
 from . import bulk_checks, precisions
@@ -20,16 +21,14 @@ from .sampling import EmbeddedSampler, PositionSampler, Sampler
 
 POSITION_COARSE = (0.3, 0.5, 0.7, 1.0, 1.5)  # an engine's start-up costs more than its steps
 BOUNCE_STEPS = 10**9
-SLOW = {
-    "yade": "thornton"
-}  # ten seconds a case: the first and last of each group, with this law if it is among those given
+LAW_OF_SLOW = "thornton"  # if it is among those given; a slow engine runs the first and last case of each group
 
 
 @dataclass(frozen=True)
 class Outcome:
     """verdicts: one row per case, engine and law; roundoff: per law and speed; bulk: per stiff scene and law;
 
-    precisions: round-off in YADE's builds of other precisions, per speed. Empty where they did not run.
+    precisions: round-off in an engine's builds of other precisions, per speed. Empty where they did not run.
     """
 
     verdicts: pd.DataFrame
@@ -63,11 +62,12 @@ def run(
     cycles: int = 10_000,
     progress: Callable[[str], None] = lambda text: None,
 ) -> Outcome:
-    """Judge every `every`-th case of the `groups` (none: all) with every law in every engine.
+    """Judge every `every`-th case of the `groups` (none: all) with every law in every engine (none: embedded).
 
     `steps` is the length of the drift by bounces (1e9), `cycles` the number of reloads. Laws none given: all. Without
-    `groups` the round-off floor is measured (with YADE in its other precisions too) and, with LIGGGHTS, the stiff bulk
-    scenes run. Raises CaseError for a law or group that does not exist, EngineError for an engine that is not here.
+    `groups` the round-off floor is measured, in other precisions too where an engine has them, and the stiff bulk
+    scenes run where an engine runs assemblies. Raises CaseError for a law or group that does not exist, EngineError for
+    an engine that is not here.
     """
     for option, given, known in (
         ("--law", laws, {**LAWS, **ADHESIVE}),
@@ -75,7 +75,7 @@ def run(
     ):
         if wrong := [name for name in given if name not in known]:
             raise CaseError(f"{option} {wrong[0]!r} does not exist; there are {', '.join(known)}")
-    laws = laws or [*LAWS, *ADHESIVE]
+    engines, laws = engines or [Embedded.name], laws or [*LAWS, *ADHESIVE]
     plain = [law for law in laws if law in LAWS]
     chosen = [e for e in extremes() if not groups or e.group in groups][::every]
     if steps is not None and not any(e.kind == "bounces" for e in chosen):
@@ -86,9 +86,8 @@ def run(
     with tempfile.TemporaryDirectory(prefix="epdem-stability-") as scratch:
         for sampler in samplers(engines, Path(scratch)):
             coarse = COARSE if not sampler.positions else POSITION_COARSE
-            slow = SLOW.get(sampler.name)
-            for law in [slow] if slow in laws else laws:
-                for extreme in [e for e in (ends(chosen) if slow else chosen) if e.suits(law)]:
+            for law in [LAW_OF_SLOW] if sampler.slow and LAW_OF_SLOW in laws else laws:
+                for extreme in [e for e in (ends(chosen) if sampler.slow else chosen) if e.suits(law)]:
                     progress(f"{sampler.name}, {law}: {extreme.name}")
                     if extreme.kind == "impact":
                         rows.append(judge(extreme, law, sampler, coarse))
@@ -100,15 +99,15 @@ def run(
             tables = [floors(law, others) for law in plain]
     verdicts = pd.DataFrame([asdict(v) for v in rows])
     verdicts["notes"] = verdicts["notes"].map("; ".join)
-    bulk = (
-        bulk_checks.run(plain, progress=progress) if plain and "liggghts" in engines and not groups else pd.DataFrame()
-    )
-    finer = "yade" in engines and not groups and precisions.available()
+    stiff = plain and not groups and any(name in ASSEMBLIES for name in engines)
+    bulk = bulk_checks.run(plain, progress=progress) if stiff else pd.DataFrame()
+    builds = [] if groups else [engine(name).can.precisions for name in engines]
+    finer = [precisions.floors(b) for b in builds if b and b.available()]
     return Outcome(
         verdicts,
         pd.concat(tables, ignore_index=True) if tables else pd.DataFrame(),
         bulk,
-        precisions.floors() if finer else pd.DataFrame(),
+        pd.concat(finer, ignore_index=True) if finer else pd.DataFrame(),
     )
 
 

@@ -21,7 +21,7 @@ from typing import Any
 import tomlkit
 
 from ...base.files import atomic
-from ...base.folders import MANIFEST
+from ...base.folders import MANIFEST, results_folder
 from ...base.stages import inputs_hash
 from ...case.scene import is_scene
 from ...case.toml import read_toml
@@ -65,7 +65,7 @@ class Sweep:
     @property
     def default_folder(self) -> Path:
         """Where its points are if nobody names a folder."""
-        return Path("runs") / f"{self.name}_sweep"
+        return results_folder(None, f"{self.name}_sweep")
 
     @cached_property
     def _pieces(self) -> list[str]:

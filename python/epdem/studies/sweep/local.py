@@ -15,7 +15,7 @@ from ...base.processes import end_with_parent
 from ...errors import Stopped
 
 _FORK = multiprocessing.get_context("fork")  # with all that is imported here: a start takes a few milliseconds
-STOPPED = 143  # exit code of a process that was told to stop
+STOPPED = 143  # exit code of a process that received SIGTERM
 
 
 class Died(Exception):
@@ -30,7 +30,7 @@ def cores() -> int:
 def each(function: Callable[[Any], Any], items: Iterable[Any], jobs: int) -> Iterator[tuple[Any, Any]]:
     """(item, function(item)) as they come, by `jobs` processes; the result of an item whose process died is a Died.
 
-    Raises what `function` raises, and Stopped if a process was told to stop by somebody else. On any exception, Ctrl-C
+    Raises what `function` raises, and Stopped if a process received SIGTERM from another one. On any exception, Ctrl-C
     too, all processes are stopped.
     """
     waiting = iter(items)
@@ -110,7 +110,7 @@ def _keep_memory() -> None:
 
 
 def _work(function: Callable[[Any], Any], pipe: Connection, others: list[Connection], parent: int) -> None:
-    """In a process of the pool: item after item, until told to end or alone."""
+    """In a process of the pool: item after item, until the parent sends None or has ended."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C reaches all: our parent stops us in good order
     signal.signal(signal.SIGUSR2, signal.SIG_IGN)  # Slurm warns every process of a job; our parent queues it again
     signal.signal(signal.SIGTERM, _stop)

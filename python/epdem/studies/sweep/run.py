@@ -12,7 +12,7 @@ import pandas as pd
 
 from ...base.folders import claim
 from ...case.scene import is_scene
-from ...engines import engine, scene_engine
+from ...engines import DEFAULT_ENGINE, engine, scene_engine
 from ...errors import CaseError, EngineError
 from . import folder as store
 from . import local, points, table
@@ -87,7 +87,7 @@ def plan_text(
     if latin_hypercube is not None and not axes:
         raise CaseError("--latin-hypercube needs ranges; add --set KEY=LOW..HIGH")
     many = points.grid(axes) if latin_hypercube is None else points.latin_hypercube(axes, latin_hypercube, seed)
-    chosen = tuple(dict.fromkeys(engines)) or ("liggghts",)
+    chosen = tuple(dict.fromkeys(engines)) or (DEFAULT_ENGINE,)
     if scene and (len(chosen) > 1 or laws):
         raise CaseError("a scene has its own law and runs on one engine; leave out --law, or sweep law.name")
     return Sweep(

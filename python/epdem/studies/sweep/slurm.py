@@ -74,7 +74,7 @@ def share(numbers: Sequence[int], task: int, tasks: int) -> list[int]:
 class Task:
     """What a job runs; before its walltime ends it, submitit queues the same again, and so does Slurm on a preemption.
 
-    A job that is told to stop waits for its end: were it to end by itself, it would not be queued again.
+    A job that receives the signal to stop waits for its end: Slurm does not queue a job again that ends by itself.
     """
 
     def __call__(self, folder: Path, numbers: list[int]) -> None:

@@ -11,9 +11,9 @@ import shutil
 import tomllib
 from pathlib import Path
 
-from .files import atomic
-from .folders import LOCK
-from .stages import inputs_hash
+from ..base.files import atomic
+from ..base.folders import LOCK, results_folder
+from ..base.stages import inputs_hash
 
 NAME = ".epdem.printed.json"
 INSTALLED = Path("/var/lib/dpkg/status")  # changes with every package of Debian's, so with every engine
@@ -66,7 +66,7 @@ def _folder(case: Path, out: Path | None) -> Path | None:
     """Where the results of a case are; None for a scene, and for what is no case."""
     try:
         tables = tomllib.loads(case.read_text(encoding="utf-8"))
-        return None if "scene" in tables else out or Path("runs") / tables["case"]["name"]
+        return None if "scene" in tables else results_folder(out, tables["case"]["name"])
     except (OSError, ValueError, KeyError, TypeError):
         return None
 
@@ -86,5 +86,6 @@ def _state(folder: Path) -> dict[str, list[int]]:
 def _surroundings() -> list[object]:
     """What tells whether the engines and the terminal are those of before."""
     environment = sorted((name, value) for name, value in os.environ.items() if name.startswith(SEEN))
-    places = [path for name in PROGRAMS if (path := shutil.which(name))] + [str(INSTALLED)]
+    places = [str(INSTALLED), *(path for name in PROGRAMS if (path := shutil.which(name)))]
+    places += [value for name, value in environment if name.startswith("EPDEM") and Path(value).is_file()]
     return [environment, [(path, Path(path).stat().st_mtime_ns) for path in places if Path(path).exists()]]

@@ -10,9 +10,10 @@ from scripts import script
 from typer.testing import CliRunner
 
 from epdem.cli.main import app
-from epdem.engines import engine
+from epdem.engines import assembly_engine, engine
 from epdem.errors import CaseError
 from epdem.laws.native import Law
+from epdem.scenes.assembly import AssemblyPlan
 from epdem.studies import stability
 from epdem.studies.stability import bulk, bulk_checks, precisions, repeats, roundoff
 from epdem.studies.stability.cases import extremes
@@ -21,6 +22,7 @@ from epdem.studies.stability.running import judge, measure, setting
 from epdem.studies.stability.sampling import EmbeddedSampler, PositionSampler, Sample
 from epdem.studies.stability.scenes import SCENES, with_law
 from epdem.studies.stability.two_walls import balance, path, stored
+from epdem.yade.precisions import PRECISIONS
 
 LAWS = ("hertz", "thornton", "johnson", "cavity")
 page = script("stability")
@@ -165,10 +167,10 @@ def test_round_off_of_positions_stays_below_its_formula_and_above_a_tenth_of_it(
 
 
 @pytest.mark.yade
-@pytest.mark.skipif(not precisions.available(), reason="YADE's builds of other precisions are not installed")
+@pytest.mark.skipif(not PRECISIONS.available(), reason="YADE's builds of other precisions are not installed")
 def test_eleven_more_bits_lower_the_floor_of_yade_two_thousandfold():
     """Round-off and nothing else: 2^11 = 2048 up to the scatter of 8 phases, a factor of 3."""
-    row = precisions.floors(times=(1e-2,)).iloc[0]
+    row = precisions.floors(PRECISIONS, times=(1e-2,)).iloc[0]
     assert 2**11 / 3 < row["yade"] / row["yade-longdouble"] < 3 * 2**11
     assert row["yade"] < row["formula"]
 
@@ -204,7 +206,7 @@ def test_energy_of_stiff_bulk_scenes_never_rises_none_is_lost_and_ranks_agree(na
     """Some 150 spheres for half the time here, 2,000 in `epdem stability`; the tolerances are those of full size."""
     small = {"plate": (5, 5, 6), "mixture": (6, 5, 5), "shock": (4, 4, 10)}[name]
     scene = with_law(SCENES[name](small), "cavity")
-    verdict = bulk_checks.judge_scene(replace(scene, duration=scene.duration / 2), tmp_path)
+    verdict = bulk_checks.judge_scene(replace(scene, duration=scene.duration / 2), assembly_engine(), tmp_path)
     assert verdict.passed, verdict.reason
     assert verdict.plastic > 0.02
 
@@ -213,9 +215,10 @@ def test_energy_of_stiff_bulk_scenes_never_rises_none_is_lost_and_ranks_agree(na
 def test_the_bulk_ledger_sees_spheres_that_come_back_too_fast(tmp_path):
     """A planted fault: velocities 1 % too high in the second half of the frames."""
     scene = SCENES["shock"]((4, 4, 8))
-    deck = bulk.write(scene, tmp_path, time_step=scene.time_step())
-    bulk.execute(tmp_path)
-    table = bulk.ledger(scene, deck, tmp_path)
+    plan, tool = AssemblyPlan(scene, scene.time_step(), bulk.FRAMES), assembly_engine()
+    tool.write(plan, tmp_path)
+    tool.run(tmp_path)
+    table = bulk.ledger(plan, tool, tmp_path)
     brought, half = table["kinetic"].iloc[0], len(table) // 2
     assert np.abs(table["total"] - table["total"].iloc[0]).max() <= bulk_checks.SWING * brought
     wrong = table["total"] + np.where(table.index >= half, 0.0201 * table["kinetic"], 0.0)

@@ -1,0 +1,186 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Pictures of a scene, fit for a paper: its walls and spheres before a run, its bed after one."""
+
+from importlib import import_module
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pandas as pd
+
+from ..base.files import atomic
+from ..errors import CaseError
+from . import placement
+from .columns import PARTICLES, SPINS, units
+from .layout import Block
+from .ledger import kinetic
+from .meshes import FloatArray, box, tube
+from .plan import Phase, ScenePlan
+
+AZIMUTH, ELEVATION = np.deg2rad(-60.0), np.deg2rad(18.0)  # from where a picture is seen
+DPI = 200
+MOST_PLACED = 4000  # spheres that are placed for the picture of a scene before its run
+WIDE = 6.0  # inches
+
+
+def _axes() -> tuple[FloatArray, FloatArray]:
+    """(the picture's axes to the right and up, shape (2, 3); the direction towards the viewer)."""
+    c, s, ce, se = np.cos(AZIMUTH), np.sin(AZIMUTH), np.cos(ELEVATION), np.sin(ELEVATION)
+    towards = np.array([c * ce, s * ce, se])
+    right = np.array([-s, c, 0.0])
+    return np.stack([right, np.cross(towards, right)]), towards
+
+
+def colour(spheres: pd.DataFrame, field: str) -> pd.Series:
+    """The values of a field of each sphere: a column of the frames, "speed" [m/s] or "energy" [J].
+
+    Raises KeyError for another one.
+    """
+    if field == "speed":
+        speed: pd.Series = np.sqrt((spheres[["vx", "vy", "vz"]] ** 2).sum(axis=1))
+        return speed
+    return kinetic(spheres) if field == "energy" else spheres[field]
+
+
+def refuse_color(p: ScenePlan) -> None:
+    """Raise CaseError for a field of output.color that the frames do not hold."""
+    known = ["speed", "energy", *PARTICLES, *(SPINS if p.model.spins else []), *(["plastic_work"] if p.dents else [])]
+    if p.output.color not in known:
+        raise CaseError(f"output.color = {p.output.color!r}: spheres of this scene have {', '.join(known)}")
+
+
+def _draw_walls(axis: Any, p: ScenePlan, phase: Phase, *, front: bool) -> None:
+    """The triangles of walls where they are at the start, planes of a phase as their outline in the room."""
+    from matplotlib.collections import PolyCollection
+
+    plane, _ = _axes()
+    for mesh in p.layout.meshes.values():
+        outline = mesh.triangles @ plane.T
+        face, edge = (0.3, 0.4, 0.6, 0.03 if front else 0.10), (0.3, 0.4, 0.6, 0.15)
+        axis.add_collection(PolyCollection([*outline], facecolor=face, edgecolor=edge, lw=0.3))
+    if front:
+        return
+    limits = p.layout.box
+    for w in (*p.layout.planes, *(g for g in p.layout.gates if g.name in phase.gates)):
+        flat = [*limits]
+        flat[2 * w.axis] = flat[2 * w.axis + 1] = w.place
+        corners = np.array([[flat[i], flat[2 + j], flat[4 + k]] for i in (0, 1) for j in (0, 1) for k in (0, 1)])
+        square = np.unique(corners, axis=0)
+        if len(square) == 4:
+            outline = square[[0, 1, 3, 2]] @ plane.T
+            axis.add_collection(PolyCollection([outline], facecolor=(0.5, 0.5, 0.5, 0.12), edgecolor="0.5", lw=0.6))
+
+
+def _draw_spheres(axis: Any, x: FloatArray, radius: FloatArray, **style: Any) -> Any:
+    """Spheres as discs, the nearest on top; returns the collection."""
+    from matplotlib.collections import EllipseCollection
+
+    plane, towards = _axes()
+    order = np.argsort(x @ towards)
+    style |= {name: np.asarray(style[name])[order] for name in ("array", "facecolor") if name in style}
+    size = 2 * radius[order]
+    look = {"units": "xy", "offset_transform": axis.transData, "edgecolor": (0, 0, 0, 0.55), "linewidth": 0.25}
+    discs = EllipseCollection(size, size, np.zeros(len(x)), offsets=(x @ plane.T)[order], **look, **style)
+    axis.add_collection(discs)
+    return discs
+
+
+def _frame(title: str, corners: FloatArray) -> tuple[Any, Any]:
+    """A figure in which these places are seen, lengths in millimetres along its sides."""
+    import matplotlib
+
+    matplotlib.use("Agg")
+    import matplotlib.pyplot as plt
+    from matplotlib.ticker import FuncFormatter
+
+    plane, _ = _axes()
+    seen = corners @ plane.T
+    low, high = seen.min(axis=0), seen.max(axis=0)
+    margin = 0.04 * (high - low).max()
+    ratio = (high[1] - low[1] + 2 * margin) / (high[0] - low[0] + 2 * margin)
+    fig, axis = plt.subplots(figsize=(WIDE, float(np.clip(WIDE * ratio, 2.5, 11.0))), layout="constrained")
+    axis.set(xlim=(low[0] - margin, high[0] + margin), ylim=(low[1] - margin, high[1] + margin), aspect="equal")
+    for side in (axis.xaxis, axis.yaxis):
+        side.set_major_formatter(FuncFormatter(lambda x, _: f"{1e3 * x:g}"))
+    axis.set(xlabel="[mm]", ylabel="[mm]")
+    axis.set_title(title, parse_math=False, fontsize=9)
+    return fig, axis
+
+
+def _room(p: ScenePlan) -> FloatArray:
+    a = p.layout.box
+    return np.array([[a[i], a[2 + j], a[4 + k]] for i in (0, 1) for j in (0, 1) for k in (0, 1)])
+
+
+def _save(fig: Any, path: Path) -> None:
+    import matplotlib.pyplot as plt
+
+    with atomic(path) as temporary:
+        fig.savefig(temporary, dpi=DPI)
+    plt.close(fig)
+
+
+def bed(p: ScenePlan, spheres: pd.DataFrame, path: Path) -> None:
+    """Draw the last frame, coloured by the field `output.color`, into the PNG file `path`."""
+    last = spheres[spheres["step"] == spheres["step"].max()]
+    x, radius, field = last[["x", "y", "z"]].to_numpy(), last["radius"].to_numpy(), p.output.color
+    around = np.concatenate([x - radius[:, None], x + radius[:, None]])
+    fig, axis = _frame(p.case.case.title, around)
+    _draw_walls(axis, p, p.phases[-1], front=False)
+    discs = _draw_spheres(axis, x, radius, array=colour(last, field), cmap="viridis")
+    _draw_walls(axis, p, p.phases[-1], front=True)
+    unit = {"speed": "m/s", "energy": "J"}.get(field, units(last).get(field, ""))
+    fig.colorbar(discs, label=f"{field} [{unit}]" if unit else field, shrink=0.8)
+    _save(fig, path)
+
+
+def before(p: ScenePlan, path: Path) -> int:
+    """Draw walls, regions to be filled and the first spheres of a scene into the PNG file `path`.
+
+    Returns the number of spheres in it: those of regions only if there are few enough to be placed at once.
+    """
+    fig, axis = _frame(p.case.case.title, _room(p))
+    _draw_walls(axis, p, p.phases[0], front=False)
+    for fill in p.layout.fills:
+        _draw_region(axis, fill.region)
+    table = _first(p)
+    if len(table):
+        _draw_spheres(axis, table[:, :3], table[:, 3], facecolor=[f"C{int(kind) - 1}" for kind in table[:, 4]])
+    _save(fig, path)
+    return len(table)
+
+
+def _first(p: ScenePlan) -> FloatArray:
+    """(n, 5) place, radius, type of the spheres that can be placed before a run, and of single ones that come later."""
+    placed = p.layout.count <= MOST_PLACED and bool(p.layout.fills)
+    alone = [b.sphere for b in p.layout.bodies] + ([] if placed else [*p.layout.table])
+    rows = np.array([(*s.place, s.radius, p.model.type_of(s.material)) for s in alone], float).reshape(-1, 5)
+    return np.concatenate([placement.spheres(p), rows]) if placed else rows
+
+
+def _draw_region(axis: Any, region: Any) -> None:
+    from matplotlib.collections import PolyCollection
+
+    if isinstance(region, Block):
+        faces = box(region.limits, {sign + k for sign in "-+" for k in "xyz"})
+    else:
+        faces = tube((2 * region.radius,) * 2, region.low, region.high, closed=(True, True))
+        faces = faces + np.array([*region.center, 0.0])
+    plane, _ = _axes()
+    axis.add_collection(PolyCollection([*(faces @ plane.T)], facecolor=(0.9, 0.6, 0.1, 0.02), edgecolor="none"))
+
+
+def window(p: ScenePlan) -> None:
+    """Show walls and first spheres in a window of pyvista. Raises CaseError if it is not installed."""
+    try:
+        pv = import_module("pyvista")
+    except ImportError:
+        raise CaseError("--window: there is no pyvista; pip install pyvista, or leave --window out") from None
+    shown = pv.Plotter()
+    for mesh in p.layout.meshes.values():
+        faces = np.column_stack([np.full(len(mesh.triangles), 3), np.arange(3 * len(mesh.triangles)).reshape(-1, 3)])
+        shown.add_mesh(pv.PolyData(mesh.triangles.reshape(-1, 3), faces), opacity=0.3, show_edges=True)
+    for x, y, z, radius, _ in _first(p):
+        shown.add_mesh(pv.Sphere(radius, (x, y, z)), color="tan")
+    shown.add_mesh(pv.Box(p.layout.box), style="wireframe", color="gray")
+    shown.show()

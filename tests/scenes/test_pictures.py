@@ -1,0 +1,94 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Figures of scenes: the key figure of each kind holds the numbers of the run, pictures show what is in front."""
+
+import matplotlib.pyplot as plt
+import numpy as np
+import pandas as pd
+import pytest
+from parts_cases import BED, parts
+from stored_runs import STORED, planned
+
+from epdem.case.scene import parse
+from epdem.engines import scene_engine
+from epdem.errors import CaseError
+from epdem.scenes import checks, key_figures, pictures
+from epdem.scenes.ledger import kinetic, rotation
+from epdem.scenes.plan import plan
+
+
+def drawn(name: str):
+    """(plan, tables, panels of the key figure) of a stored run."""
+    p = planned(name)
+    tables = scene_engine("liggghts").read(p, STORED / name)
+    (chart,) = key_figures.key(p, tables)
+    return p, tables, chart.panels
+
+
+def test_a_compaction_shows_force_over_the_displacement_of_its_plate():
+    p, tables, (panel,) = drawn("compaction")
+    s, (load, unload) = p.case.scene, panel.series
+    assert [*load.y, *unload.y] == tables["rows"]["plate_force"].to_list()
+    middle = tables["rows"]["time"][1:] - 0.5 * p.every * p.time_step  # of the interval of a mean
+    assert load.x[1:] == pytest.approx(s.speed * middle[: len(load.x) - 1].to_numpy(), rel=1e-6)
+    assert (np.diff(unload.x) < 0).all()
+
+
+def test_the_rebounds_of_shot_stand_beside_theory():
+    p, tables, (panel,) = drawn("peening")
+    up = tables["particles"].query("vz > 0").groupby("id")["vz"].max()
+    bars, theory = panel.series
+    assert sum(bars.y[::2]) == len(up) > 0 and (bars.x[0], bars.x[-1]) == pytest.approx((up.min(), up.max()), abs=0.5)
+    assert theory.x[0] == pytest.approx(checks.single_rebound(p.case, p.case.scene))
+
+
+def test_a_hopper_a_drum_and_a_bed_show_mass_torque_and_height():
+    p, tables, (panel,) = drawn("hopper")
+    last = tables["particles"].query(f"step == {p.steps}")
+    assert panel.series[0].y[-1] == pytest.approx(last[last["z"] < p.layout.gates[0].place]["mass"].sum())
+    _, tables, (panel,) = drawn("drum")
+    assert panel.series[0].y.tolist() == tables["rows"]["torque"].to_list()
+    _, tables, (height, energy) = drawn("settle")
+    assert height.series[0].y.tolist() == tables["particles"].groupby("step")["z"].quantile(0.95).to_list()
+    assert energy.series[0].y[-1] == tables["rows"]["kinetic_energy"].iloc[-1]
+
+
+def test_a_picture_shows_the_nearest_sphere_and_its_field(tmp_path):
+    """Two spheres in the line of sight: the middle of the picture has the colour of the near one."""
+    _, towards = pictures._axes()
+    p = plan(parse(parts(wall=[], fill=[BED])))
+    places = {"near": 0.005 * towards, "far": -0.005 * towards}
+    fast = {"near": 1.0, "far": 0.0}
+    for order in (["near", "far"], ["far", "near"]):
+        table = pd.DataFrame([[*places[k], fast[k]] for k in order], columns=["x", "y", "z", "vx"])
+        table = table.assign(step=0, id=[1, 2], type=1, radius=2e-3, mass=1e-5, vy=0.0, vz=0.0)
+        pictures.bed(p, table, tmp_path / "bed.png")
+        image = plt.imread(tmp_path / "bed.png")
+        seen = image[..., :3].reshape(-1, 3)
+        yellow, violet = ((np.abs(seen - plt.get_cmap("viridis")(x)[:3]).max(axis=1) < 0.02).sum() for x in (1.0, 0.0))
+        assert image.shape[1] == 1200 and yellow > 20 * violet
+
+
+def test_a_picture_before_the_run_has_the_spheres_that_can_be_placed(tmp_path):
+    ball = {"name": "ball", "material": "steel", "radius": "2 mm", "place": ["0 mm", "0 mm", "20 mm"], "phase": "more"}
+    phases = [{"name": "fall", "duration": "20 ms"}, {"name": "more", "duration": "20 ms"}]
+    p = plan(parse(parts(body=[ball], phase=phases)))
+    assert pictures.before(p, tmp_path / "a.png") == 41
+    assert plt.imread(tmp_path / "a.png").shape[1] == 1200
+
+
+def test_a_window_without_pyvista_and_an_unknown_field_are_refused(monkeypatch):
+    monkeypatch.setitem(__import__("sys").modules, "pyvista", None)
+    p = plan(parse(parts()))
+    with pytest.raises(CaseError, match="there is no pyvista; pip install pyvista"):
+        pictures.window(p)
+    data = parts()
+    data["output"]["color"] = "omega_x"
+    with pytest.raises(CaseError, match=r"output.color = 'omega_x': spheres of this scene have speed, energy, id"):
+        pictures.refuse_color(plan(parse(data)))
+
+
+def test_translation_and_spin_are_counted_apart():
+    table = pd.DataFrame({"mass": [2.0], "radius": [0.5], "vx": [3.0], "vy": [0.0], "vz": [4.0]})
+    assert kinetic(table).item() == 25.0 and rotation(table).item() == 0.0
+    spinning = table.assign(omega_x=0.0, omega_y=2.0, omega_z=0.0)
+    assert kinetic(spinning).item() == 25.0 and rotation(spinning).item() == pytest.approx(0.4)
