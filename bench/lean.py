@@ -19,6 +19,7 @@ from epdem.case.toml import read_toml
 from epdem.liggghts import launcher, log, resume
 from epdem.liggghts.scene_deck import files, memory
 from epdem.scenes.plan import plan
+from epdem.theory.backbones import ADHESIVE
 
 ROOT = Path(__file__).parents[1]
 NOTHING = 1e-9
@@ -32,7 +33,9 @@ def lean(data: dict) -> dict:
 
 def full(data: dict) -> dict:
     """The case with every sub-model and the ledger."""
-    nothing = {"friction": NOTHING, "tangential_restitution": 0.999, "cohesion": f"{NOTHING} J/m^3"}
+    nothing: dict = {"friction": NOTHING, "tangential_restitution": 0.999}
+    if data["law"]["name"] not in ADHESIVE:  # these have their attraction already
+        nothing["cohesion"] = f"{NOTHING} J/m^3"
     rolling = {"rolling": {"model": "epsd2", "coefficient": NOTHING}}
     output = {"rows": 20, "particles": 1, "restarts": 20, "energy": True, "loads": True}
     return data | {"contact": nothing | rolling | data.get("contact", {}), "output": output, "numerics": COARSE}

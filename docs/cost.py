@@ -9,9 +9,10 @@ from pathlib import Path
 import pandas as pd
 from pages import markdown
 
+from epdem.report.drawing import save
 from epdem.studies import cost
 from epdem.studies.cost import REFERENCE, Outcome
-from epdem.studies.cost_report import bulk_table, cheapest_table, error_table, figure
+from epdem.studies.cost_report import bulk_table, chart, cheapest_table, error_table
 from epdem.studies.stability import bulk_cost
 
 DOCS = Path(__file__).parent
@@ -65,7 +66,7 @@ def main() -> None:
     """Run impacts and the bulk scene; write page and figure."""
     case = DOCS.parent / "cases/steel_wall.toml"
     outcome = cost.run(case, engines=["embedded", "liggghts"], laws=LAWS, repetitions=3)
-    figure(outcome, DOCS / "figures/cost.png")
+    save(chart(outcome), DOCS / "figures", data=False)
     (DOCS / "cost.md").write_text(document(outcome, bulk_cost.run(LAWS), "python docs/cost.py"))
 
 

@@ -205,7 +205,7 @@ class Model : public ContactModelBase {
     rolling_.surfacesClose(s, i, j);
   }
 
-  bool contact_match(const std::string kind, const std::string model) {
+  bool contact_match(const std::string& kind, const std::string& model) {
     auto& names = LIGGGHTS::ContactModels::Factory::instance();
     if (kind == "surface") return ids_.surface == names.getSurfaceModelId(model);
     if (kind == "normal") return ids_.normal == names.getNormalModelId(model);

@@ -2,6 +2,7 @@
 // Makes the laws known to LIGGGHTS when the library (or the launcher) is loaded.
 #include <cstring>
 #include <string>
+#include <utility>
 
 #include "epdem/laws.hpp"
 #include "loop/pair.hpp"
@@ -238,7 +239,7 @@ const struct Registration {
       LIGGGHTS::ContactModels::Factory::instance().addTangentialModel(partial_slip_names[k],
                                                                       TANGENTIAL_PARTIAL_SLIP + k);
   }
-} registration;
+} registration;  // NOLINT(bugprone-throwing-static-initialization): LIGGGHTS cannot run without its models
 
 }  // namespace
 
@@ -264,6 +265,6 @@ const struct Registration {
       if (!ours) return refused(foreign_normal).hash();
     }
   }
-  return instance().select_model(narg, arg, custom);
+  return instance().select_model(narg, arg, std::move(custom));
 }
 #endif

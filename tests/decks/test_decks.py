@@ -116,7 +116,17 @@ def test_the_deck_of_a_scene_of_moving_parts_is_as_stored():
     scene["phase"][1] |= {"time_step": "1e-5 s", "move": [down, hold]}
     data["output"] |= {"energy": False}
     texts = scene_deck.files(scene_plan(parse_scene(data, path)))
-    compare_with_stored("moving_parts", texts["in.scene"] + texts["setup.in"] + texts["spheres.data"])
+    compare_with_stored("moving_parts", texts["in.scene"] + texts["setup.in"])
+
+
+def test_the_spheres_of_a_file_are_as_stored(tmp_path):
+    (tmp_path / "spheres.csv").write_text(
+        "x,y,z,radius,material,vz\n0,0,0.02,0.001,powder,-1\n0.004,0,0.01,0.0015,powder,0\n"
+    )
+    data = read_toml(CASES / "sieve_cylinder.toml")
+    data["scene"]["fill"] = [{"name": "table", "file": str(tmp_path / "spheres.csv")}]
+    texts = scene_deck.files(scene_plan(parse_scene(data, CASES / "sieve_cylinder.toml")))
+    compare_with_stored("spheres_of_a_file", texts["spheres.data"])
 
 
 def test_the_deck_of_a_continued_scene_is_as_stored():

@@ -13,6 +13,7 @@ from typer.testing import CliRunner
 from epdem.case import materials
 from epdem.cli.main import app
 
+CASES = Path(__file__).parents[2] / "cases"
 FILE = tomllib.loads(Path(materials.__file__).with_name("materials.toml").read_text())
 
 
@@ -55,6 +56,11 @@ def test_figures_of_the_chapter_are_drawn_into_the_folder(tmp_path):
         picture = matplotlib.image.imread(tmp_path / name)[..., :3]
         colours = np.unique(picture @ np.array([1.0, 256.0, 65536.0]))
         assert min(picture.shape[:2]) > 400 and len(colours) > 300  # axes alone have the grays only
+
+
+def test_laws_with_adhesion_are_cited():
+    said = run("cite", CASES / "adhesion_thornton_1998.toml", "--law", "jkr", "--law", "thornton_ning")
+    assert "Proc. R. Soc. A 324 (1971) 301" in said and "Powder Technol. 99 (1998) 154" in said
 
 
 @pytest.mark.parametrize("name", FILE)

@@ -13,7 +13,9 @@ from scene_runs import run, write_case
 from epdem.case.scene import parse
 from epdem.errors import CaseError
 from epdem.scenes import measures
+from epdem.scenes.charts import charts
 from epdem.scenes.plan import plan
+from epdem.studies.pages.scenes import of_scene
 from epdem.studies.sweep.numbers import numbers_of
 
 ROOM = {"x": ["-2 mm", "2 mm"], "y": ["-2 mm", "2 mm"], "z": ["0 mm", "8 mm"]}
@@ -141,3 +143,8 @@ def test_measures_stand_in_the_results_and_are_numbers_for_studies(tmp_path):
     assert 0.3 * fastest < found.histograms.query("measure == 'speeds'")["high"].max() < 1.02 * fastest
     numbers = numbers_of(SimpleNamespace(tables=found.tables))
     assert numbers["top_last"] == found.measures["top"].iloc[-1] and "pressed_mean" in numbers
+    drawn = {chart.name: chart for chart in charts(outcome)}
+    assert set(drawn) >= {"scene", "scene_measures", "scene_dents", "scene_speeds"}
+    (bins,) = drawn["scene_dents"].panels[0].series
+    assert bins.y[1::2].sum() == 40 and bins.x[-1] == spheres_then.query("step == step.max()")["plastic_work"].max()
+    assert "Histograms" in of_scene(outcome).read_text()

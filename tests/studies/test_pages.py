@@ -34,6 +34,7 @@ def play(wanted: list[tuple[str, str]], folder: Path, env: dict[str, str] | None
 def test_a_study_in_ten_minutes(tmp_path):
     play([(kind, text) for kind, text in blocks("studies") if kind != "sh slurm"], tmp_path)
     assert len(pd.read_csv(tmp_path / "runs/study/sweep.csv")) == 15 * 32
+    assert "15 points on embedded" in (tmp_path / "runs/study/report.html").read_text()
     assert len(pd.read_csv(tmp_path / "runs/table/sweep.csv")) == 2 * 32
     forces = pd.read_csv(tmp_path / "runs/press/sweep.csv")["plate_force_max"]
     assert (abs(forces / 12.0 - 1.0) <= 0.05).any() and len(forces) <= 8

@@ -122,7 +122,13 @@ template <class Law, Tangential tangential, bool rolls>
   Lanes of_all[constants], of_each[constants];
   const Lanes* constant_of = of_all;
   for (int c = 0; c < constants; ++c) of_all[c] = constant<Lanes>(b.material[0][c]);
+  // Behind the history of this block lies that of the next: what is long is on its way while this one is computed.
+  const char* ahead = reinterpret_cast<const char*>(b.history[n - 1]);
+  const long span = nodes > 0 ? ahead - reinterpret_cast<const char*>(b.history[0]) : 0;  // apart: of two pages
+  const long stride = span > 0 && span < 65536 ? span * lane_count / n : 0;
   for (int k = 0; k < n; k += lane_count) {
+    for (long line = 0; line < stride; line += 64) __builtin_prefetch(ahead + line, 1, 2);
+    ahead += stride;
     if (pass.several) {
       for (int c = 0; c < constants; c += 4) {
         const Columns four =

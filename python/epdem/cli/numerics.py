@@ -25,9 +25,10 @@ def timestep(
     from ..impacts.timestep import search
 
     searches = []
-    for name in laws_or_own(law):
-        with named(case):
+    with status() as progress, named(case):
+        for name in laws_or_own(law):
             x = experiment(load(case), name)
+            progress(f"{x.name}, {x.law.name}")
             searches.append((x, search(x, predict(x), error)))
     if as_json:
         documents = [

@@ -8,7 +8,7 @@ from typing import Annotated
 import typer
 
 from ..base.settings import DEFAULT_ENGINE
-from ..base.terminal import console
+from ..base.terminal import console, status
 from ..base.terminal import table as empty_table
 from .options import AsJson, CasePath, Engines, Force, Formats, Laws, formats, laws_or_own, refuse
 
@@ -62,7 +62,8 @@ def figures(
     from ..studies.figures import draw_all
 
     kinds = formats(pictures)
-    with claim(out, force=force):
+    with claim(out, force=force), status() as progress:
+        progress("four figures")
         names = [str(path) for path in draw_all(out, kinds)]
     print(json.dumps({"files": names}) if as_json else "\n".join(names))
 

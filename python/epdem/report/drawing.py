@@ -31,8 +31,10 @@ LEGEND_ROW = 0.22  # [inch]
 BARE_DATE = {"png": {}, "svg": {"Date": None}, "pdf": {"CreationDate": None}}
 
 
-def save(chart: Chart, folder: Path, formats: Sequence[str] = ("png",), *, comment: str = "") -> list[Path]:
-    """Draw a chart into `folder`, a file of each of `formats`, and its data as CSV; their paths.
+def save(
+    chart: Chart, folder: Path, formats: Sequence[str] = ("png",), *, data: bool = True, comment: str = ""
+) -> list[Path]:
+    """Draw a chart into `folder`, a file of each of `formats`, and write its `data` as CSV; their paths.
 
     `comment` is stored in a PNG file. The caller keeps the folder (`claim`).
     """
@@ -51,7 +53,7 @@ def save(chart: Chart, folder: Path, formats: Sequence[str] = ("png",), *, comme
                 figure.savefig(temporary, dpi=130, format=kind, metadata=about)
             paths.append(path)
         plt.close(figure)
-    return paths + write_texts(folder, {f"{chart.name}.csv": chart.csv()})
+    return paths + (write_texts(folder, {f"{chart.name}.csv": chart.csv()}) if data else [])
 
 
 def draw(chart: Chart) -> "Figure":

@@ -3,9 +3,10 @@
 
 import numpy as np
 
-from ..report.chart import GREY, INK, Axis, Chart, Panel, Series
+from ..report.chart import GREY, INK, PALETTE, Axis, Chart, Panel, Series
 from ..report.page import Picture
 from .key_figures import key
+from .measures import unit
 from .run import SceneOutcome
 
 TIME = Axis("time $t$", "s")
@@ -22,9 +23,10 @@ SCALE = ["440154", "482576", "414487", "35608d", "2a788e", "21918c", "22a884", "
 
 
 def charts(outcome: SceneOutcome) -> list[Chart]:
-    """The key figure of the kind; scene, what the rows hold against time; energy, the ledger, if there is one."""
-    found = key(outcome.plan, outcome.results.tables)
-    return [*found, rows(outcome), *([ledger(outcome)] if "ledger" in outcome.results.tables else [])]
+    """The key figure of the kind; scene, what the rows hold against time; energy, the ledger, and the measures of the
+    scene, if there are such."""
+    energy = [ledger(outcome)] if "ledger" in outcome.results.tables else []
+    return [*key(outcome.plan, outcome.results.tables), rows(outcome), *energy, *measured(outcome)]
 
 
 def rows(outcome: SceneOutcome) -> Chart:
@@ -35,6 +37,31 @@ def rows(outcome: SceneOutcome) -> Chart:
     time = table["time"].to_numpy()
     panels = [Panel(TIME, ROWS[name], [Series("", time, table[name].to_numpy(), k)]) for k, name in enumerate(shown)]
     return Chart("scene", title, f"Against time: {names}.", panels)
+
+
+def measured(outcome: SceneOutcome) -> list[Chart]:
+    """measures, each curve against time, and one chart for each histogram."""
+    title, drawn = outcome.case.case.title, []
+    curves, bins = (outcome.results.tables.get(name) for name in ("measures", "histograms"))
+    asked = {m.name: m for m in outcome.case.scene.measure} if curves is not None else {}
+    panels = []
+    for k, (name, m) in enumerate(asked.items()):
+        if curves is not None and name in curves:
+            series = Series("", curves["time"].to_numpy(), curves[name].to_numpy(float), k % len(PALETTE))
+            panels.append(Panel(TIME, Axis(name.replace("_", " "), unit(m)), [series]))
+        elif bins is not None:
+            part = bins[bins["measure"] == name]
+            edges = np.repeat(np.append(part["low"], part["high"].iloc[-1]), 2)
+            heights = np.concatenate([[0], np.repeat(part["number"], 2), [0]])
+            axes = Axis(m.kind.replace("_", " "), unit(m)), Axis("number")
+            alt = f"Histogram of {m.kind.replace('_', ' ')}: {int(part['number'].sum())} values."
+            chart = Chart(
+                f"scene_{name}", f"{title}: {name}", alt, [Panel(*axes, [Series("", edges, heights, k % len(PALETTE))])]
+            )
+            drawn.append(chart)
+    if panels:
+        drawn.insert(0, Chart("scene_measures", f"{title}: measures", f"Against time: {', '.join(asked)}.", panels))
+    return drawn
 
 
 def ledger(outcome: SceneOutcome) -> Chart:

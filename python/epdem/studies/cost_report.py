@@ -17,9 +17,8 @@ from .cost import TARGETS, Outcome
 
 def write(outcome: Outcome, folder: Path, formats: Sequence[str] = ("png",)) -> list[Path]:
     """cost.csv, a row for each model and number of steps, and the figure cost in `folder`; their paths."""
-    files = save(chart(outcome), folder, formats)
-    write_csv(folder / "cost.csv", outcome.rows)  # in place of the data of the figure, of which it has more
-    return files
+    write_csv(folder / "cost.csv", outcome.rows)
+    return [folder / "cost.csv", *save(chart(outcome), folder, formats, data=False)]
 
 
 def chart(outcome: Outcome) -> Chart:
@@ -34,7 +33,7 @@ def chart(outcome: Outcome) -> Chart:
         right.append(Series("", steps, part["e_n_rms"].to_numpy(), colour, "dot", width=1.0))
     n = np.array([outcome.rows["steps"].min(), outcome.rows["steps"].max()], float)
     right.append(Series("order 2", n, 5 * n**-2.0, GREY, "dash"))
-    error_axis = Axis("error of $e_n$, largest over speeds and phases", log=True)
+    error_axis = Axis("largest error of $e_n$", log=True)
     return Chart(
         "cost",
         f"{outcome.case.case.title}: error against run time",

@@ -9,6 +9,7 @@ from ...liggghts.scene_deck import deck
 from ...report.page import NAME, Facts, Lines, Page, Part, Picture, Rows, write
 from ...scenes.charts import bed, charts
 from ...scenes.columns import UNITS
+from ...scenes.measures import unit
 from ...scenes.run import SceneOutcome
 from . import common
 
@@ -33,6 +34,9 @@ def page(outcome: SceneOutcome, command: str = "") -> Page:
     parts.append(Rows("Checks", tables["checks"], note="Each number against what is expected of it."))
     if "ledger" in tables:
         parts.append(Rows("Energy ledger", tables["ledger"], UNITS, "One row for each frame."))
+    if "measures" in tables:
+        units = {"time": "s"} | {m.name: unit(m) for m in outcome.case.scene.measure}
+        parts += [Rows("Measures", tables["measures"], units), Rows("Histograms", tables["histograms"])]
     parts += [Rows("Rows", tables["rows"], UNITS), _facts(outcome), common.case_lines(outcome.results.case_text)]
     parts += _decks(outcome)
     parts.append(common.origin(about, {engine: about["inputs"]}))
