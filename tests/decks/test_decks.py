@@ -96,6 +96,29 @@ def test_the_deck_of_a_scene_is_as_stored(path):
     compare_with_stored(path.stem, texts["in.scene"] + texts["setup.in"])
 
 
+def test_the_deck_of_a_scene_of_moving_parts_is_as_stored():
+    """Spheres of a table, one that comes later, a gate, motions of each kind, a phase that ends by a condition."""
+    path = CASES / "impactor_bowl.toml"
+    data = read_toml(path)
+    scene, plate = data["scene"], {"kind": "plate", "axis": "z", "size": ["9 mm", "9 mm"], "material": "steel"}
+    scene["body"].append(
+        scene["body"][0] | {"name": "held", "phase": "pour", "velocity": ["0 m/s"] * 3, "frozen": True}
+    )
+    del scene["body"][1]["phase"]
+    scene["wall"] += [plate | {"name": name, "center": ["0 mm", "0 mm", "25 mm"]} for name in ("lid", "press")]
+    scene["wall"].append({"name": "gate", "kind": "plane", "axis": "z", "at": "-9 mm", "material": "steel"})
+    scene["wall"][-1]["phases"] = ["pour"]
+    shake = {"wall": "lid", "kind": "vibrate", "amplitude": ["0 m", "0 m", "1 mm"], "frequency": "50 Hz"}
+    turn = {"wall": "bowl", "kind": "rotate", "axis": [0.0, 0.0, 1.0], "rate": "-2 rad/s"}
+    down = {"wall": "tube", "kind": "linear", "velocity": ["0 m/s", "0 m/s", "0.01 m/s"]}
+    hold = {"wall": "press", "kind": "press", "direction": [0.0, 0.0, -1.0], "force": "1 N", "highest_speed": "1 cm/s"}
+    scene["phase"][0] |= {"until": {"kinetic_energy": "1 nJ"}, "move": [shake, turn]}
+    scene["phase"][1] |= {"time_step": "1e-5 s", "move": [down, hold]}
+    data["output"] |= {"energy": False}
+    texts = scene_deck.files(scene_plan(parse_scene(data, path)))
+    compare_with_stored("moving_parts", texts["in.scene"] + texts["setup.in"])
+
+
 def test_the_spheres_of_a_file_are_as_stored(tmp_path):
     (tmp_path / "spheres.csv").write_text(
         "x,y,z,radius,material,vz\n0,0,0.02,0.001,powder,-1\n0.004,0,0.01,0.0015,powder,0\n"

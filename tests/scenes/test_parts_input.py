@@ -14,6 +14,7 @@ from scipy import stats
 from epdem.case.scene import parse
 from epdem.errors import CaseError
 from epdem.scenes.plan import plan
+from epdem.studies.sweep import folder
 
 STL = {"name": "bowl", "kind": "stl", "file": "wall.stl", "material": "steel"}
 PLATE = {"name": "w", "kind": "plate", "axis": "z", "center": ["0 m"] * 3, "size": ["1 m"] * 2, "material": "steel"}
@@ -174,3 +175,10 @@ def test_values_of_a_pair_of_materials_count_for_spheres_and_walls():
     m = plan(parse(data)).model
     assert [t.name for t in m.types] == ["glass", "steel"] and m.wall_types["steel"] == 2
     assert m.friction == ((0.3, 0.1), (0.1, 0.3)) and m.viscous == ((0.8, 0.4), (0.4, 0.8))
+
+
+def test_points_of_a_sweep_find_the_files_that_their_case_names(tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    data = tomllib.loads(folder.base_text(CASES / "sieve_cylinder.toml"))
+    assert fills(data, tmp_path / "case.toml") == fills(own("sieve_cylinder"), CASES / "sieve_cylinder.toml")
+    assert str(CASES.parent) not in (CASES / "sieve_cylinder.toml").read_text()

@@ -134,9 +134,24 @@ def read(folder: Path) -> Sweep:
 
 
 def base_text(path: Path) -> str:
-    """The text of a case file. Raises CaseError as `read_toml` does."""
-    read_toml(path)
-    return path.read_text(encoding="utf-8-sig")
+    """The text of a case file, with whole names of the files that it names, for its points lie in other folders.
+
+    Raises CaseError as `read_toml` does.
+    """
+    found = _named_files(read_toml(path))
+    text = path.read_text(encoding="utf-8-sig")
+    for name in found:
+        text = text.replace(f'"{name}"', f'"{(path.parent / name).resolve()}"')
+    return text
+
+
+def _named_files(data: object) -> set[str]:
+    """The names of files in the data of a case."""
+    parts = data.items() if isinstance(data, dict) else enumerate(data) if isinstance(data, list) else ()
+    found: set[str] = set()
+    for key, value in parts:
+        found |= {value} if key in ("file", "sieve") and isinstance(value, str) else _named_files(value)
+    return found
 
 
 def of(sweep: Sweep, folder: Path, number: int) -> Path:
