@@ -34,6 +34,7 @@ FUNCTIONS = {
     "rerun": ("epdem.studies.rerun", "rerun"),
     "cite": ("epdem.engines.citations", "citations"),
     "header": ("epdem.liggghts.header", "write"),
+    "view": ("epdem.scenes.pictures", "before"),
 }
 
 
