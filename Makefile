@@ -1,5 +1,5 @@
 # Each target is one line that calls a script or a tool.
-.PHONY: setup demo test walltime bench docs tidy sanitize versions fuzz valgrind reliability tutorials wheel deb trees clean
+.PHONY: setup demo test guide browser walltime bench docs tidy sanitize versions fuzz valgrind reliability tutorials wheel deb trees clean
 
 setup:
 	@scripts/setup
@@ -10,6 +10,17 @@ demo: setup
 test:
 	@scripts/setup yade slurmctld slurmd slurm-client munge
 	.venv/bin/python -m pytest -n 2
+
+# the guide as static pages in runs/guide/site
+guide: setup
+	.venv/bin/python -m pip install -q --disable-pip-version-check 'mkdocs-material>=9.5' 'latex2mathml>=3.77'
+	.venv/bin/python docs/guide.py
+
+# the page of results in headless Chromium; pictures of it in runs/browser
+browser:
+	@scripts/setup chromium
+	@mkdir -p runs/browser
+	EPDEM_BROWSER_PICTURES=$(CURDIR)/runs/browser .venv/bin/python -m pytest tests/studies/test_browser.py -q -n 0
 
 # a scene of this duration takes more than a minute, the shortest walltime of Slurm
 walltime: setup
@@ -58,7 +69,7 @@ wheel: setup
 deb: setup
 	@scripts/deb
 
-# TREES="/path/to/lmp_auto ...": executables of other trees that were built after `epdem header`
+# TREES="/path/to/folder /path/to/lmp_auto ...": checkouts of LIGGGHTS, executables that were built after `epdem header`
 trees: setup
 	@.venv/bin/python scripts/trees $(TREES)
 

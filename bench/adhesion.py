@@ -1,13 +1,16 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Errors of the adhesive laws of C++ in two-body impacts by velocity Verlet, and the speed of their theory.
 
-Run: .venv/bin/python bench/adhesion.py      (a minute)
+Run: .venv/bin/python bench/adhesion.py [--liggghts COUNT]      (a minute; in LIGGGHTS half a second for each impact)
 
 The numbers of docs/adhesion.md: error of e_n against theory as a maximum over 8 phases, over the speed and over the
-whole domain, the sticking speed by bisection, and the time of a million e_n of theory.
+whole domain, the sticking speed by bisection, and the time of a million e_n of theory. With --liggghts the whole domain
+alone, COUNT points of a Latin hypercube, in LIGGGHTS.
 """
 
+import argparse
 import sys
+import tempfile
 import time
 from pathlib import Path
 
@@ -16,8 +19,10 @@ import numpy as np
 ROOT = Path(__file__).resolve().parent.parent
 sys.path.insert(0, str(ROOT / "tests" / "battery"))
 
-from adhesive import Contact, ask, e_n_errors  # noqa: E402  it lies beside the tests
+from adhesive import DENSITY, Contact, ask, e_n_errors  # noqa: E402  it lies beside the tests
 
+from epdem import Case, run  # noqa: E402
+from epdem.errors import CaseError  # noqa: E402
 from epdem.theory import adhesion  # noqa: E402
 
 STRENGTHS = {"jkr": None, "3.04 GPa": 3.04e9, "1 GPa": 1e9, "0.5 GPa": 0.5e9}
@@ -46,12 +51,53 @@ def over_the_domain(count: int = 3000) -> None:
         V = c.V_s * (3.0 if rng.random() < 1 / 3 else 10 ** rng.uniform(np.log10(3), np.log10(3000)))
         cases.append((c, V))
         strain.append(float(c.theory.radius_of_work(0.5 * c.m_star * V * V)) / c.R_star)
-    small = np.array(strain)
     errors = e_n_errors(cases, 400)
     print(f"\n{count} random impacts of the whole domain, 400 steps: error of e_n, median and largest")
+    by_strain(np.array(strain), errors)
+
+
+def in_liggghts(count: int) -> None:
+    """The same domain, p_y always finite: a sphere of steel on a wall, one process for each point."""
+    print(f"{count} points of a Latin hypercube in LIGGGHTS, 8 phases, 400 steps in contact")
+    print("| V/V_s | Gamma [J/m2] | R [m] | p_y/E* | a_max/R* | e_n | error | over e_n |\n" + 8 * "|---" + "|")
+    rng, errors, strain = np.random.default_rng(1), [], []
+    places = (np.array([rng.permutation(count) for _ in range(4)]).T + rng.uniform(size=(count, 4))) / count
+    low, high = np.log10([(3, 3000), (1e-6, 10), (1e-6, 1e-2), (1e-4, 0.1)]).T
+    for times, gamma, radius, strength in 10 ** (low + places * (high - low)):
+        c = Contact(None, gamma, radius)
+        c = Contact(strength * c.E_star, gamma, radius)
+        steel = {"young_modulus": 215e9, "poisson_ratio": 0.3, "density": DENSITY, "yield_stress": c.p_y / 2.8}
+        case = Case(
+            materials={"steel": steel},
+            impact={
+                "kind": "sphere-wall",
+                "body": {"radius": radius, "material": "steel"},
+                "target": {"material": "steel"},
+                "speeds": [times * c.V_s],
+            },
+            law={"name": "thornton_ning", "work_of_adhesion": gamma, "yield_pressure": c.p_y},
+            numerics={"steps_in_contact": 400, "phases": 8},
+        )
+        deepest = float(c.theory.radius_of_work(0.5 * c.m_star * (times * c.V_s) ** 2)) / radius
+        point = f"| {times:.3g} | {gamma:.2g} | {radius:.2g} | {strength:.2g} | {deepest:.2g} |"
+        try:
+            with tempfile.TemporaryDirectory(prefix="epdem-adhesion-") as scratch:
+                row = run(case, out=Path(scratch) / "run").table.iloc[0]
+        except CaseError:  # the bodies would pass through each other
+            print(f"{point} not representable | | |", flush=True)
+            continue
+        strain.append(deepest)
+        errors.append(float(row["e_n_error"] * row["e_n_theory"]))
+        print(f"{point} {row['e_n']:.5f} | {errors[-1]:.1e} | {row['e_n_error']:.1e} |", flush=True)
+    by_strain(np.array(strain), np.array(errors))
+
+
+def by_strain(strain: np.ndarray, errors: np.ndarray) -> None:
+    """One line for each range of a_max/R*."""
     for low, high in ((0, 0.1), (0.1, 0.3), (0.3, 1), (1, np.inf)):
-        these = errors[(small >= low) & (small < high)]
-        print(f"  a_max/R* {low:g} to {high:g}: {len(these):5d} impacts  {np.median(these):.1e}  {these.max():.1e}")
+        these = errors[(strain >= low) & (strain < high)]
+        if len(these):
+            print(f"  a_max/R* {low:g} to {high:g}: {len(these):5d} impacts  {np.median(these):.1e}  {these.max():.1e}")
 
 
 def sticking() -> None:
@@ -81,9 +127,18 @@ def speed_of_theory() -> None:
         print(f"  {name:<14} {count} e_n of theory in {best:.3f} s")
 
 
-if __name__ == "__main__":
+def main() -> None:
+    ask_for = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    ask_for.add_argument("--liggghts", type=int, default=0, metavar="COUNT", help="the whole domain in LIGGGHTS")
+    count = ask_for.parse_args().liggghts
+    if count:
+        return in_liggghts(count)
     by_speed()
     over_the_domain()
     sticking()
     print()
     speed_of_theory()
+
+
+if __name__ == "__main__":
+    main()

@@ -1,13 +1,12 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """The powder of cases/adhesive_powder.toml with its adhesion and without: looseness, strength, shape.
 
-Run: .venv/bin/python bench/adhesive_powder.py [--count N]
+Run: .venv/bin/python bench/adhesive_powder.py
 
 Both beds fall, are pressed and released (the case itself). Then the sides, which were periodic, and the plate are taken
 away: the block stands free on the lower plate under gravity. Prints the table of docs/adhesion.md.
 """
 
-import argparse
 import math
 import re
 import tempfile
@@ -90,12 +89,7 @@ def numbers(folder: Path, text: str) -> dict[str, float]:
 
 
 def main() -> None:
-    ask = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    ask.add_argument("--count", type=int, default=2000, help="spheres; the box is as wide as their number asks for")
-    count = ask.parse_args().count
-    text = CASE.read_text(encoding="utf-8").replace("count = 2000", f"count = {count}")
-    side = 0.5 * math.sqrt(count / 2000)
-    text = text.replace('"0.5 mm", "0.5 mm"', f'"{side:.6g} mm", "{side:.6g} mm"')
+    text = CASE.read_text(encoding="utf-8")
 
     def one(gamma: str) -> dict[str, float]:
         with tempfile.TemporaryDirectory(prefix="epdem-powder-") as scratch:

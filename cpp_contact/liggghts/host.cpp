@@ -68,6 +68,10 @@ void check_host(LAMMPS_NS::LAMMPS* lmp) {
   if (lmp->logfile) std::fputs(line.c_str(), lmp->logfile);
 }
 
+bool only_spheres(LAMMPS_NS::LAMMPS* lmp) {
+  return lmp->atom->sphere_flag && !lmp->atom->superquadric_flag && !lmp->atom->shapetype_flag;
+}
+
 double smallest_radius(LAMMPS_NS::LAMMPS* lmp) {
   double smallest = std::numeric_limits<double>::infinity();
   for (int i = 0; i < lmp->atom->nlocal; ++i) smallest = std::min(smallest, lmp->atom->radius[i]);

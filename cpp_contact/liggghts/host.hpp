@@ -28,6 +28,9 @@ std::string model_name() {
 /// All of them, each after a blank.
 std::string model_names();
 
+/// Whether the particles of the simulation are spheres.
+bool only_spheres(LAMMPS_NS::LAMMPS* lmp);
+
 /// The smallest radius of the spheres that are there or will be added; infinite if there are none. Collective.
 double smallest_radius(LAMMPS_NS::LAMMPS* lmp);
 

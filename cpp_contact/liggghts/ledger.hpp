@@ -91,6 +91,7 @@ class Ledger {
   double* work() { return work_->vector_atom; }
   double* energy() { return energy_->vector_atom; }
   double* bearing() { return bearing_->vector_atom; }
+  double* adhesive() { return adhesive_ ? adhesive_->vector_atom : nullptr; }
 
  private:
   static constexpr const char* work_name = "plasticWork";

@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "normal.hpp"
+#include "partial_slip.hpp"
 
 namespace epdem::liggghts {
 

@@ -12,10 +12,9 @@
 #include "epdem/law.hpp"
 #include "epdem/tangential.hpp"
 #include "epdem/viscous.hpp"
+#include "grip.hpp"
 #include "host.hpp"
-#include "ledger.hpp"
 #include "materials.hpp"
-#include "partial_slip.hpp"
 
 namespace epdem::liggghts {
 
@@ -85,7 +84,7 @@ class Normal : protected LAMMPS_NS::Pointers {
   }
 
   void connectToProperties(PropertyRegistry& registry, Dashpot dashpot, bool cohesive) {
-    if (!atom->sphere_flag || atom->superquadric_flag || atom->shapetype_flag)
+    if (!only_spheres(lmp))
       fail("it is for spheres; give other particles a model of LIGGGHTS with surface superquadric");
     // Rebuilt at every init: LIGGGHTS frees all properties there, and the user may have changed them.
     if (!tangential_damping_ && dashpot == Dashpot::optional) dashpot = Dashpot::off;
@@ -165,12 +164,9 @@ class Normal : protected LAMMPS_NS::Pointers {
     grip_.stiffness = 8.0 * t.G_star;
     grip_.pressed = pressed(now);
 
-    s.Fn = force;                                  // friction's limit is mu times it, after what cohesion made of it
-    s.kn = 4.0 / 3.0 * t.law.E_star * now.radius;  // LIGGGHTS's convention for rolling friction: F/alpha of Hertz
-    if constexpr (adheres<Law>) {
-      s.Fn = sliding_load(t.law, R_star, now, force);
-      if (!(delta > 0.0)) s.kn = 0.0;  // rolling friction by the overlap has none here
-    }
+    s.Fn = sliding_load(t.law, R_star, now, force);  // friction's limit is mu times it, after what cohesion made of it
+    s.kn = 4.0 / 3.0 * t.law.E_star * now.radius;    // LIGGGHTS's convention for rolling friction: F/alpha of Hertz
+    if (adheres<Law> && !(delta > 0.0)) s.kn = 0.0;  // rolling friction by the overlap has none across a gap
     s.kt = tangential_stiffness(t.G_star, now.radius);
     s.gamman = 0.0;
     s.gammat = t.damping_number > 0.0 ? tangential_damping(t.damping_number, s.kt, s.meff) : 0.0;
@@ -183,14 +179,16 @@ class Normal : protected LAMMPS_NS::Pointers {
   }
 
   /// Whether bodies that do not overlap are in contact, or parted in the very step that is evaluated once more.
-  bool pulls(const SurfacesCloseData& s) const {
+  template <class Close>
+  bool pulls(const Close& s) const {
     if constexpr (!adheres<Law>) return false;
     if (!s.contact_history) return false;
+    const bool keep = s.computeflag && s.shearupdate;
     if constexpr (stamped)
-      if (now_ - s.contact_history[stamp_] > 1.0) return false;
+      if (now_ - s.contact_history[stamp_] > keep) return false;
     State<Law> before;
     std::memcpy(static_cast<void*>(&before), s.contact_history + offset_, sizeof before);
-    return before.root > 0.0 || (before.jump != 0.0 && !(s.computeflag && s.shearupdate));
+    return before.root > 0.0 || (before.jump != 0.0 && !keep);
   }
 
   /// What LIGGGHTS prepares only for pairs that overlap, by its own operations.
@@ -238,16 +236,6 @@ class Normal : protected LAMMPS_NS::Pointers {
                   model_.c_str(), gap, smallest, factor);
     if (screen) std::fputs(line, screen);
     if (logfile) std::fputs(line, logfile);
-  }
-
-  /// The normal force that limits friction: with adhesion F + 2 P_po, P_po = 3/2 pi Gamma R, while the bodies are in
-  /// contact (Thornton 1991, J. Phys. D 24, 1942).
-  static double sliding_load(const Law& law, double R_star, const Step<Law>& now, double force) {
-    if constexpr (adheres<Law>) {
-      if (!(now.radius > 0.0)) return 0.0;
-      return std::max(0.0, force + 3.0 * law.pull * opening_radius(law, R_star, now.after));
-    }
-    return force;
   }
 
   /// Bodies that touch without being in contact (inside a dent) begin anew in all other models.

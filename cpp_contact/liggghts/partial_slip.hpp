@@ -6,9 +6,8 @@
 #include <cstring>
 #include <string>
 
-#include "epdem/partial_slip.hpp"
+#include "grip.hpp"
 #include "host.hpp"
-#include "ledger.hpp"
 
 namespace epdem::liggghts {
 
@@ -21,15 +20,6 @@ inline constexpr int TANGENTIAL_PARTIAL_SLIP = 40, TANGENTIAL_PARTIAL_SLIP_2 = 4
 constexpr int slip_nodes(int tangential) {
   return tangential == TANGENTIAL_PARTIAL_SLIP ? 3 : tangential == TANGENTIAL_PARTIAL_SLIP_2 ? 2 : 0;
 }
-
-/// What a law's adapter knows of the contact at hand and LIGGGHTS's data have no room for.
-struct Grip {
-  Pressed<double> pressed{};  // but for the load: that is LIGGGHTS's Fn, which cohesion may change
-  double stiffness = 0.0;     // 8 G* [Pa]
-  bool fresh = false;         // the pair parted since it was last stored: what it remembers is void
-  bool flattens = false;
-  Ledger* ledger = nullptr;  // where work is booked, if it is asked for
-};
 
 /// Friction with partial slip beside one of our laws, for pairs (wall = false) or walls; `normal` is the law's own.
 template <int nodes, bool flattens>
@@ -68,11 +58,10 @@ class PartialSlip : public TangentialModelBase {
     now.load = s.Fn;
     const double dt = update->dt, mu = mu_[s.itype][s.jtype];
     // a wall does not turn about the normal
-    const double* const w = s.omega_i;
-    double turn = s.en[0] * w[0] + s.en[1] * w[1] + s.en[2] * w[2];
-    if (!s.is_wall) turn += s.en[0] * s.omega_j[0] + s.en[1] * s.omega_j[1] + s.en[2] * s.omega_j[2];
-    const Shear<double> motion{
-        {s.en[0], s.en[1], s.en[2]}, {dt * s.vtr1, dt * s.vtr2, dt * s.vtr3}, 0.5 * dt * turn, 1.0 / dt * s.gammat};
+    const Vec<double> n{s.en[0], s.en[1], s.en[2]};
+    Vec<double> w{s.omega_i[0], s.omega_i[1], s.omega_i[2]};
+    if (!s.is_wall) w = w + Vec<double>{s.omega_j[0], s.omega_j[1], s.omega_j[2]};
+    const Shear<double> motion{n, {dt * s.vtr1, dt * s.vtr2, dt * s.vtr3}, 0.5 * dt * dot(n, w), 1.0 / dt * s.gammat};
     if (s.gammat > 0.0)
       apply<true>(s, before, now, motion, mu, history, fi, fj);
     else
@@ -100,7 +89,7 @@ class PartialSlip : public TangentialModelBase {
       }
       std::memcpy(history, &step.after, sizeof step.after);
     } else {
-      T = present_friction<nodes, flattens, damped>(before, now, motion, normal_.stiffness, mu);
+      T = present_friction<nodes, damped>(before, now.load, motion, normal_.stiffness, mu);
     }
     const double share = s.is_wall ? s.area_ratio : 1.0;
     const double force[3] = {T.x, T.y, T.z};

@@ -8,6 +8,7 @@ import logging
 import tomllib
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
+from functools import partial
 from pathlib import Path
 from typing import Any, ClassVar, Self, Unpack, overload
 
@@ -17,12 +18,11 @@ import tomlkit
 from . import theory
 from .base.files import atomic
 from .base.folders import write_own
-from .base.settings import DEFAULT_ENGINE
 from .case import impact as impact_case
 from .case import scene as scene_case
 from .case.toml import read_toml
+from .engines import DEFAULT_ENGINE, scene_engine
 from .engines import engine as engine_named
-from .engines import scene_engine
 from .errors import CaseError
 from .impacts.comparison import UNITS
 from .impacts.experiment import experiment
@@ -174,6 +174,12 @@ class Run:
 
         return figure(self.outcome)
 
+    def report(self) -> Path:
+        """Write report.html, one page with figures, tables and decks, into the folder; its path."""
+        from .studies.pages.impacts import of_impacts
+
+        return of_impacts(self.outcome)
+
     def _repr_html_(self) -> str:
         return str(self.table.to_html(max_rows=20))
 
@@ -198,6 +204,12 @@ class SceneRun:
     def folder(self) -> Path:
         """Where results.h5, results.csv and the deck are."""
         return self.outcome.folder
+
+    def report(self) -> Path:
+        """Write report.html, one page with figures, tables and decks, into the folder; its path."""
+        from .studies.pages.scenes import of_scene
+
+        return of_scene(self.outcome)
 
     def _repr_html_(self) -> str:
         return str(self.tables["checks"].to_html())
@@ -247,7 +259,8 @@ def run(
     if isinstance(case, Scene):
         if len(engines) != 1 or laws:
             raise CaseError("a scene has its own law and runs on one engine")
-        return SceneRun(run_scene(case.model, case.text, scene_engine(engines[0]), place=case.name, **options))
+        tool, report = scene_engine(engines[0]), partial(log.info, f"{case.name}: step %d of %d")
+        return SceneRun(run_scene(case.model, case.text, tool, place=case.name, report=report, **options))
     tools = [engine_named(name) for name in engines]
     impacts = run_impacts(
         case.model, case.text, place=case.name, engines=tools, laws=laws, progress=log.info, **options

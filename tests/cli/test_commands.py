@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Every command, once for its JSON document and once for a mistake; text of the user is shown as it is."""
 
+import io
 import json
 import os
 import shutil
@@ -13,10 +14,11 @@ from types import SimpleNamespace
 import pandas as pd
 import pytest
 from calls import CASES, COMMANDS, call, make_sweep
+from rich.console import Console
 
 from epdem.base import paths, terminal
 from epdem.cli import main
-from epdem.engines import ENGINES, engine
+from epdem.engines import ENGINES
 from epdem.engines.citations import citations
 from epdem.errors import Stopped
 from epdem.laws.library import laws
@@ -39,7 +41,7 @@ DOCUMENTS = {  # words, and what the document must hold
     "doctor": ([], lambda d: {"C library", "engine embedded"} <= {f["part"] for f in d}),
     "crosscheck": (["steel.toml"], lambda d: [r["model"] for r in d["rows"]] == ["theory", "embedded"]),
     "theory": ([], lambda d: abs(d["laws"]["thornton"]["e_n"] - 0.6763264338717) < 1e-12),
-    "figures": (["-o", "f"], lambda d: len(d["files"]) == 4),
+    "figures": (["-o", "f"], lambda d: len(d["files"]) == 8),
     "timestep": (["steel.toml"], lambda d: d["error"] <= d["target"] == 1e-3),
     "cost": (
         ["steel.toml", "-e", "embedded", "--repetitions", "1"],
@@ -183,6 +185,17 @@ def test_title_and_folder_of_a_scene_are_shown_as_they_are(capsys):
     assert TITLE in out and "[y]" in out and "warning: [/y]" in out and "see [b]/" in out
 
 
+def test_a_narrow_terminal_shows_whole_cells_and_names_the_columns_left_out():
+    for width, absent in ((80, []), (30, ["c"]), (18, ["c", "b"])):
+        screen = Console(width=width, file=io.StringIO(), force_terminal=True, color_system=None)
+        shown = terminal.table("t", ("a", "b", "c"))
+        shown.add_row(*(letter * 8 for letter in "123"))
+        terminal.show_table(screen, shown, ("c", "b"))
+        said = screen.file.getvalue()
+        assert "\u2026" not in said and ("33333333" in said) == (absent == [])
+        assert not absent or f"narrow: {', '.join(absent)}" in " ".join(said.split())
+
+
 def test_progress_shows_any_text_and_leaves_none_behind(capsys):
     with terminal.status() as progress:
         progress("[/y]")
@@ -215,7 +228,7 @@ def test_a_second_ctrl_c_does_not_interrupt_the_end_of_a_run(monkeypatch):
 
 @pytest.mark.parametrize("law", sorted(laws()))
 def test_every_law_has_a_source_to_cite(law):
-    found = citations([law], [engine("embedded")], dashpot=False)
+    found = citations([law], ["embedded"], dashpot=False)
     assert "section 8.2" in found["equations 8.xx"]
     # cavity is made of equations of the chapter
     assert law == "cavity" or any(what.startswith(f"law {law}, ") for what in found)

@@ -7,15 +7,21 @@ that names the option, nothing written. Long studies are replaced by a record of
 
 import shutil
 from pathlib import Path
+from types import SimpleNamespace
 
 import pandas as pd
 import pytest
 from calls import CASES, COMMANDS, call, make_sweep
 
+from epdem.engines import engine
 from epdem.errors import CaseError
+from epdem.impacts import report as impacts_report
 from epdem.impacts import run as impacts_run
+from epdem.scenes import report as scenes_report
 from epdem.scenes import run as scenes_run
 from epdem.studies import cost, crosscheck, figures, fit, stability, tune
+from epdem.studies.pages import impacts as impacts_page
+from epdem.studies.pages import scenes as scenes_page
 from epdem.studies.stability import bulk_cost
 from epdem.studies.sweep import executors
 
@@ -27,7 +33,7 @@ HARDNESS |= {"target": "floor_load_mean=1 N", "free": "contact.friction=0.1..0.9
 HARDNESS |= {"ranks": "2", "jobs": "1", "out": "there", "force": None}
 TARGET = ("--target", "floor_load_max=1 N", "--free", "contact.friction=0.1..0.5")
 RUN = {"engine": "yade", "law": "cavity", "ranks": "2", "steps": "100", "out": "there", "fresh": None, "resume": None}
-RUN |= {"force": None}
+RUN |= {"full": None, "pictures": "svg", "force": None}
 DECK = {"out": "there", "engine": "yade", "law": "cavity", "case": "other.toml", "given": "a=1", "force": None}
 HYPERCUBE = ("--latin-hypercube", "2")
 SWEEP = {"given": "numerics.error=1e-2", "points": "points.csv", "latin_hypercube": "3", "seed": "2", "jobs": "1"}
@@ -45,11 +51,12 @@ KINDS = {  # words of a call without the option, and the value of every option
         {"law": "cavity", "out": "there", "fresh": None, "force": None},
     ),
     "theory": (("theory",), {"material": "brass", "radius": "2 mm", "speed": "1 m/s", "adhesion": "0.1 J/m^2"}),
-    "figures": (("figures",), {"out": "there", "force": None}),
+    "figures": (("figures",), {"pictures": "svg", "out": "there", "force": None}),
     "timestep of impacts": (("timestep", "steel.toml"), {"error": "1e-2", "law": "hertz"}),
     "cost of impacts": (
         ("cost", "steel.toml"),
-        {"engine": "embedded", "law": "cavity", "repetitions": "2", "bulk": None, "out": "there", "force": None},
+        {"engine": "embedded", "law": "cavity", "repetitions": "2", "bulk": None, "pictures": "svg", "out": "there"}
+        | {"force": None},
     ),
     "stability": (
         ("stability",),
@@ -97,7 +104,11 @@ def outcomes(tmp_path_factory):
     path = tmp_path_factory.mktemp("outcomes") / "steel.toml"
     path.write_text(FAST)
     numbers = {"share": 0.1, "error": 1e-4, "rms": 3e-4, "order": 2.0, "seconds": 0.01, "ratio": 0.9}
+    many = FAST.replace('["1 m/s"]', '{ from = "0.1 m/s", to = "1 m/s", count = 12 }')
+    twelve = path.with_name("twelve.toml")
+    twelve.write_text(many)
     return {
+        "run": impacts_run.run(twelve, engines=[engine("embedded")], out=path.parent / "run"),
         "cost": cost.run(path, engines=["embedded"], laws=[], steps=(30, 100), repetitions=1),
         "bulk": pd.DataFrame([{"model": "x", "spheres": 8, "seconds_spread": 1e-3, "ratio_spread": 0.1} | numbers]),
         "tuned": tune.Tuned(
@@ -121,8 +132,13 @@ def library(tmp_path, monkeypatch, outcomes):
 
         monkeypatch.setattr(module, name, replacement)
 
-    record(impacts_run, "run")
-    record(scenes_run, "run")
+    record(impacts_run, "run", outcomes["run"])
+    record(impacts_report, "figure", Path("drawn.png"))
+    record(impacts_page, "of_impacts", Path("page.html"))
+    record(scenes_run, "run", SimpleNamespace(passed=True))
+    record(scenes_report, "figures", ())
+    record(scenes_report, "show", ())
+    record(scenes_page, "of_scene", Path("page.html"))
     record(crosscheck, "crosscheck")
     record(cost, "run", outcomes["cost"])
     record(bulk_cost, "run", outcomes["bulk"])

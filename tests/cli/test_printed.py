@@ -36,7 +36,7 @@ def test_a_stored_run_is_printed_again_without_the_libraries_of_the_first(place)
     first, again = run(place), run(place)
     assert first.returncode == again.returncode == 0
     *table, summary = first.stdout.splitlines()
-    said = summary.replace("; see out/", " (1 of 1 from out/results.h5); see out/")
+    said = summary.replace("; see out/report", " (1 of 1 from out/results.h5); see out/report")
     assert again.stdout.splitlines() == [*table, said]
     assert "pandas" in first.stderr.split() and not {"numpy", "pandas", "pint"} & set(again.stderr.split())
     (place / "out" / NAME).unlink()

@@ -13,7 +13,7 @@ import epdem.cli
 
 FILES = sorted(Path(epdem.cli.__file__).parent.glob("*.py"))
 PHYSICS = ("numpy", "epdem.theory", "epdem.laws", "scipy", "h5py")
-# The function of each command, and the name under which `from epdem import` has it, if it has one.
+# The function of each command.
 FUNCTIONS = {
     "run": ("epdem.impacts.run", "run"),
     "deck": ("epdem.impacts.run", "write_deck"),
@@ -30,7 +30,15 @@ FUNCTIONS = {
     "calibrate": ("epdem.studies.fit", "fit"),
     "sweep": ("epdem.studies.sweep.executors", "execute"),
     "status": ("epdem.studies.sweep.status", "status"),
+    "tune": ("epdem.studies.tune", "tune"),
+    "rerun": ("epdem.studies.rerun", "rerun"),
+    "cite": ("epdem.engines.citations", "citations"),
+    "header": ("epdem.liggghts.header", "write"),
 }
+
+
+def test_the_table_has_every_command():
+    assert set(FUNCTIONS) == set(COMMANDS) - {"stress"}  # the old name of stability
 
 
 def imports(path: Path) -> set[tuple[str, str]]:

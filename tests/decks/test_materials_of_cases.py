@@ -93,7 +93,7 @@ def test_radii_above_a_metre_are_doubted():
 def test_no_case_of_ours_is_doubted_and_each_library_material_is_sound():
     for path in CASES.glob("*.toml"):
         data = read_toml(path)
-        found = doubts((parse_scene if "scene" in data else parse)(data))
+        found = doubts((parse_scene if "scene" in data else parse)(data, path))
         # the ball of a Leeb device has the mass of the whole impact body
         assert [text.split(" = ")[0] for text in found] == ["materials.carbide.density"] * path.stem.startswith("leeb")
     for name in ("steel", "brass", "aluminium", "alumina", "glass"):

@@ -58,3 +58,23 @@ def walls(folder, law, speeds, *, wall="primitive", files=None, steps_in_contact
     done = good(folder, text, files={"box.data": spheres(x, v, types).data(BOX), **(files or {})})
     frames = done.frames()[1]
     return frames[:, :, 3], frames[:, :, 6], dt
+
+
+def slope(x):
+    """Corners of the two triangles between a ridge along y, at x = z = 0, and a line at x that lies lower [m]."""
+    near, far, start, end = (x, -0.015, -0.01), (x, 0.02, -0.01), (0.0, -0.015, 0.0), (0.0, 0.02, 0.0)
+    return [(start, near, end), (near, far, end)]
+
+
+EDGE = [*slope(0.02), *slope(-0.02)]
+BASE = [(x, y, -0.01) for x, y in ((0.02, 0.02), (-0.02, 0.02), (-0.02, -0.02), (0.02, -0.02))]
+TIP = [((0.0, 0.0, 0.0), BASE[k - 1], BASE[k]) for k in range(4)]
+
+
+def triangles(corners):
+    """Text of an STL file."""
+    lines = ["solid roof"]
+    for three in corners:
+        lines += ["facet normal 0 0 1", " outer loop", *(f"  vertex {x!r} {y!r} {z!r}" for x, y, z in three)]
+        lines += [" endloop", "endfacet"]
+    return "\n".join([*lines, "endsolid roof", ""])

@@ -4,7 +4,7 @@
 from dataclasses import dataclass, replace
 
 import numpy as np
-from plugin_decks import Bodies, good
+from plugin_decks import ADHESIVE, Bodies, good
 
 SPACING = 2e-3  # of the lattice [m]; radii are about half of it
 COLUMNS = "x y z vx vy vz fx fy fz omegax omegay omegaz tqx tqy tqz"
@@ -66,6 +66,7 @@ def deck(scene, *, steps=60, every=1, before="", end="", restart=None):
         f"rolling_friction {scene.rolling} {' '.join(scene.settings)}"
     )
     work = " f_plasticWork f_elasticEnergy f_bearingContacts" if "computePlasticWork on" in scene.settings else ""
+    work += " f_adhesiveWork" if work and scene.law in ADHESIVE else ""
     work += " f_frictionWork f_frictionEnergy" if work and "partial_slip" in scene.tangential else ""
     return (
         "atom_style granular\natom_modify map array sort 0 0\nboundary p p p\nnewton off\n"
@@ -78,6 +79,7 @@ def deck(scene, *, steps=60, every=1, before="", end="", restart=None):
         + f"fix m2 all property/global poissonsRatio peratomtype {values(0.3, 0.25, 0.4)}\n"
         + f"fix p1 all property/global yieldPressure peratomtype {values(2e6, 4e6, 1e6)}\n"
         + f"fix p2 all property/global yieldStress peratomtype {values(7e5, 1.4e6, 3e5)}\n"
+        + (pairs("workOfAdhesion", 30.0, 5.0) if scene.law in ADHESIVE else "")
         + pairs("coefficientFriction", 0.3, 0.1)
         + (pairs("coefficientRestitution", 0.7, 0.05) if damped else "")
         + pairs("coefficientRollingFriction", 0.05, 0.03)
@@ -120,6 +122,13 @@ DIMENSIONS = {
     "slides": (False, True),
 }
 
+WITH_ADHESION = DIMENSIONS | {
+    "law": ADHESIVE,
+    "tangential": ("history", "no_history", "off"),
+    "cohesion": ("off",),
+    "slides": (False,),
+}
+
 
 def scene_of(choice):
     """The scene of one value per dimension; settings that a model does not have are left out."""
@@ -155,6 +164,7 @@ NAMED = (
         settings=("viscous on",),
     ),
     Scene(law="cavity", tangential="ep/partial_slip", types=3, loose=True, settings=("computePlasticWork on",)),
+    Scene(law="thornton_ning", types=3, loose=True, settings=("computePlasticWork on",)),
 )
 
 

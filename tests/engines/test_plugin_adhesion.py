@@ -3,7 +3,7 @@
 
 import numpy as np
 import pytest
-from plugin_adhesion import BOX, R, deck, mass, spheres, theory, walls
+from plugin_adhesion import BOX, EDGE, TIP, R, deck, mass, spheres, theory, triangles, walls
 from plugin_decks import ADHESIVE, GAMMA, contact, good, materials, per_pair, plate, run
 from test_plugin_energy import BOX as CELL
 from test_plugin_energy import SIDES, gas
@@ -53,21 +53,16 @@ def test_pull_off_force_by_slow_separation(tmp_path, law, deepest):
 
 @every_law
 def test_impacts_on_meshes_are_those_on_a_flat_wall(tmp_path, law):
-    """On a face, on the corner of a roof of triangles, and on a plate that comes up to a sphere at rest."""
+    """On a face, on the tip and the edge of roofs of triangles, and on a plate that comes up to a sphere at rest."""
     speeds = float(adhesion.sticking_speed(theory(law), m_star=mass())) * np.array([0.5, 1.5, 4.0, 20.0])
     _, v, dt = walls(tmp_path / "flat", law, speeds)
     face = walls(tmp_path / "face", law, speeds, wall="mesh", files={"plate.stl": plate()})
     assert np.abs(face[1] - v).max() < 1e-12 * speeds.max()
-    pyramid = [(0.02, 0.02), (-0.02, 0.02), (-0.02, -0.02), (0.02, -0.02)]
-    lines = ["solid roof"]
-    for (a, b), (p, q) in zip(pyramid, [*pyramid[1:], pyramid[0]], strict=True):
-        lines += ["facet normal 0 0 1", " outer loop", "  vertex 0.0 0.0 0.0"]
-        lines += [f"  vertex {a!r} {b!r} -0.01", f"  vertex {p!r} {q!r} -0.01", " endloop", "endfacet"]
-    roof = {"plate.stl": "\n".join([*lines, "endsolid roof", ""])}
-    for k, speed in enumerate(speeds):
-        _, corner, _ = walls(tmp_path / f"corner{k}", law, [speed], wall="mesh", files=roof)
-        left = [path[-1] if path[-1] == path[-3] else 0.0 for path in (v[:, k], corner[:, 0])]
-        assert left[1] == pytest.approx(left[0], rel=2e-4) and (left[0] > 0) == (k > 0)
+    for name, roof in {"tip": TIP, "edge": EDGE}.items():
+        for k, speed in enumerate(speeds):
+            _, high, _ = walls(tmp_path / f"{name}{k}", law, [speed], wall="mesh", files={"plate.stl": triangles(roof)})
+            left = [path[-1] if path[-1] == path[-3] else 0.0 for path in (v[:, k], high[:, 0])]
+            assert left[1] == pytest.approx(left[0], rel=2e-4) and (left[0] > 0) == (k > 0)
     moving = deck(
         law,
         wall="mesh",

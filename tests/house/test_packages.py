@@ -10,6 +10,7 @@ from modules import FILES, MODULES, imports, module_of
 ORDER = """
 __init__ errors
 base
+report
 theory
 laws
 case

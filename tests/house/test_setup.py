@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).parents[2]
-REAL = ["bash", "env", "dirname", "grep", "cat", "mkdir", "rm", "sort", "touch", "xargs", "sha256sum"]
+REAL = ["bash", "env", "dirname", "grep", "cat", "mkdir", "rm", "sort", "touch", "xargs", "sha256sum", "true"]
 DEBIAN = """
 case "$*" in
   *base-files*) echo -n 12.4+deb12u12 ;;
@@ -73,12 +73,22 @@ def test_another_release_is_named_before_anything_is_installed(version, shown, m
     machine.tool("dpkg-query", DEBIAN.replace("12.4+deb12u12", version))
     done = machine.setup()
     assert done.returncode == 1 and f"not Debian 12 (base-files {shown})" in done.stderr
+    assert done.stderr.count("\n") == 1 and "'epdem header' (docs/trees.md)" in done.stderr
     assert not (machine.bin / "apt-get.called").exists()
 
 
 def test_without_dpkg_it_says_that_this_is_not_debian(machine):
     (machine.bin / "dpkg-query").unlink()
-    assert "this is not Debian" in machine.setup().stderr
+    done = machine.setup()
+    assert done.returncode == 1 and done.stderr.startswith("setup: this is not Debian, ")
+    assert done.stderr.count("\n") == 1 and "'epdem header' (docs/trees.md)" in done.stderr
+
+
+def test_a_sudo_that_refuses_is_named(machine):
+    machine.tool("sudo", "echo sudo: a password is required >&2; exit 1")
+    done = machine.setup()
+    assert done.returncode == 1 and not (machine.bin / "apt-get.called").exists()
+    assert "liggghts not installed, and sudo refuses; as root: apt-get install liggghts" in done.stderr
 
 
 def test_sudo_that_drops_the_environment_keeps_proxy_and_silence(machine):

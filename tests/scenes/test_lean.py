@@ -45,6 +45,7 @@ SMALL = {
     },
     "drum": {"count": 60, "diameter": "30 mm", "length": "5 mm", "duration": "0.12 s"},
     "peening": {"count": 20, "side": "4 mm", "duration": "0.5 ms"},
+    "parts": {},
 }
 
 
@@ -54,6 +55,8 @@ def small(data: dict) -> dict:
     scene = data["scene"] | SMALL[data["scene"]["kind"]]
     if "fall" in scene:  # finer spheres, which the plate of a wide box would not meet
         scene |= {"fall": "1 ms", "box": ["0.12 mm", "0.12 mm", "0.8 mm"], "count": 40, "height": "0.3 mm"}
+    if "phase" in scene:
+        scene |= {"phase": [phase | {"duration": "0.03 s"} for phase in scene["phase"]]}
     return data | {"scene": scene} | few
 
 
@@ -61,7 +64,7 @@ def decks_of(path: Path, folder: Path) -> tuple[str, list[str]]:
     """Write a case's deck: (file to run, files whose lines are removed)."""
     data = read_toml(path)
     if is_scene(data):
-        write_deck(parse(small(data)), folder)
+        write_deck(parse(small(data), path), folder)
         return "in.scene", ["in.scene", "setup.in"]
     data = data | {"numerics": {"steps_in_contact": 40, "phases": 2}}  # the same lines, in a tenth of the time
     x = experiment(impacts.parse(data))
@@ -93,7 +96,7 @@ def explained(path: Path) -> list[tuple[str, str, str]]:
     """What `explain` says of the deck that `decks_of` writes."""
     data = read_toml(path)
     if is_scene(data):
-        return explain.explain(explain.SCENE, deck(scene_plan(parse(small(data)))))
+        return explain.explain(explain.SCENE, deck(scene_plan(parse(small(data), path))))
     x = experiment(impacts.parse(data | {"numerics": {"steps_in_contact": 40, "phases": 2}}))
     return explain.explain(explain.IMPACT, Liggghts().deck(plan(x, predict(x))))
 

@@ -99,6 +99,8 @@ def test_the_command_takes_its_own_folder_again_and_its_figures_are_no_files_of_
     documents = [json.loads(first.stdout)]
     figures = {name: (out / name).stat().st_size for name in ("scene.png", "energy.png")}
     assert min(figures.values()) > 10_000
+    page = (out / "report.html").read_text()
+    assert page.count("<circle") == 8 and "Energy ledger" in page
     documents += [json.loads(CliRunner().invoke(app, more).stdout) for more in (call, [*call, "--fresh"])]
     assert [d["reused"] for d in documents] == [False, True, False]
     assert all(d["checks"] == documents[0]["checks"] for d in documents)

@@ -31,7 +31,7 @@ SCENES = [p for p in CASES if is_scene(read_toml(p))]
 
 def short(path: Path):
     """A small scene with nine restart files on its way."""
-    return parse(small(read_toml(path)) | {"output": {"rows": 20, "particles": 10, "restarts": 10}})
+    return parse(small(read_toml(path)) | {"output": {"rows": 20, "particles": 10, "restarts": 10}}, path)
 
 
 def last_frame(p: ScenePlan, folder: Path) -> np.ndarray:

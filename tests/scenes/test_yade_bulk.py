@@ -17,8 +17,6 @@ from epdem.errors import CaseError, EngineError
 from epdem.liggghts import launcher, scene_tables
 from epdem.scenes import placement
 from epdem.scenes.engine import files
-from epdem.scenes.kinds import Block
-from epdem.scenes.model import model
 from epdem.scenes.plan import plan
 from epdem.yade import scene_deck as yade
 from epdem.yade import scene_tables as yade_tables
@@ -177,7 +175,7 @@ def test_spheres_begin_without_overlap_inside_the_box_and_with_their_shares_of_t
         {"material": "glass", "radius": "2 mm", "share": 0.7},
     ]
     case = parse(data | {"scene": data["scene"] | {"particles": sizes}})
-    table = placement.spheres(case, model(case), Block((-0.015, 0.015, -0.015, 0.015, 0.0, 0.08)))
+    table = placement.spheres(plan(case))
     x, r = table[:, :3], table[:, 3]
     distance = np.linalg.norm(x[:, None] - x[None], axis=2) - r[:, None] - r[None] + np.diag(np.full(len(r), 1.0))
     assert len(table) == 1000 and distance.min() > 0.0

@@ -164,6 +164,8 @@ def test_crosscheck_tells_our_second_order_from_a_wrong_limit(tmp_path):
         assert rows[name]["e_n"] != pytest.approx(rows["theory"]["e_n"], rel=0.1)  # another law
         assert document["notes"][name]
     assert (tmp_path / "runs/crosscheck/steel_wall/e_n.png").exists()
+    page = (tmp_path / "runs/crosscheck/steel_wall/report.html").read_text()
+    assert "All models" in page and all(f"{name}</td>" in page for name in rows)
 
 
 @in_liggghts

@@ -13,16 +13,18 @@ import pytest
 from cluster import cluster, needs_slurm
 
 ROOT = Path(__file__).parents[2]
-BLOCKS = re.findall(r"^```(sh|python|sh slurm)\n(.*?)^```$", (ROOT / "docs/studies.md").read_text(), re.M | re.S)
 
 
-def play(kind: str, folder: Path, env: dict[str, str] | None = None) -> None:
-    """Run the blocks of a kind in a folder that has our cases."""
+def blocks(page: str) -> list[tuple[str, str]]:
+    """(kind, text) of the blocks of a page that can be run."""
+    return re.findall(r"^```(sh|python|sh slurm)\n(.*?)^```$", (ROOT / f"docs/{page}.md").read_text(), re.M | re.S)
+
+
+def play(wanted: list[tuple[str, str]], folder: Path, env: dict[str, str] | None = None) -> None:
+    """Run blocks in a folder that has our cases."""
     shutil.copytree(ROOT / "cases", folder / "cases", dirs_exist_ok=True)
     found = dict(env or os.environ)
     found["PATH"] = f"{Path(sys.executable).parent}:{found['PATH']}"
-    wanted = [(k, text) for k, text in BLOCKS if (k == "sh slurm") == (kind == "slurm")]
-    assert len(wanted) >= 2
     for k, text in wanted:
         program = [sys.executable, "-c", text] if k == "python" else ["bash", "-e", "-c", text]
         done = subprocess.run(program, cwd=folder, env=found, capture_output=True, text=True)
@@ -30,7 +32,7 @@ def play(kind: str, folder: Path, env: dict[str, str] | None = None) -> None:
 
 
 def test_a_study_in_ten_minutes(tmp_path):
-    play("local", tmp_path)
+    play([(kind, text) for kind, text in blocks("studies") if kind != "sh slurm"], tmp_path)
     assert len(pd.read_csv(tmp_path / "runs/study/sweep.csv")) == 15 * 32
     assert len(pd.read_csv(tmp_path / "runs/table/sweep.csv")) == 2 * 32
     forces = pd.read_csv(tmp_path / "runs/press/sweep.csv")["plate_force_max"]
@@ -41,7 +43,7 @@ def test_a_study_in_ten_minutes(tmp_path):
 def test_on_my_cluster(tmp_path):
     (tmp_path / "slurm").mkdir()
     with cluster(tmp_path / "slurm") as nodes:
-        play("slurm", tmp_path, nodes.env)
+        play([(kind, text) for kind, text in blocks("studies") if kind == "sh slurm"], tmp_path, nodes.env)
     assert pd.read_csv(tmp_path / "runs/byhand/sweep.csv")["status"].tolist() == ["done"] * 64
 
 

@@ -10,6 +10,8 @@ from pathlib import Path
 
 import pytest
 
+from epdem import Scene
+from epdem import run as api_run
 from epdem.scenes import results
 from epdem.studies.sweep import folder, run, status, table
 
@@ -68,6 +70,14 @@ def test_a_scene_is_one_row_of_named_numbers(bed, tmp_path):
     assert table.read_sweep(tmp_path / "out").attrs["units"]["floor_load_mean"] == "N"
     again = run.run(planned, tmp_path / "out")
     assert again.ran == 0
+
+
+def test_a_program_reads_in_its_log_how_far_a_scene_is(bed, tmp_path, caplog):
+    caplog.set_level("INFO", "epdem")
+    scene = Scene.from_toml(bed).replace({"scene.count": 20, "scene.duration": "0.02 s"})
+    steps = api_run(scene, out=tmp_path / "out").outcome.plan.steps
+    said = [record.getMessage() for record in caplog.records]
+    assert len(said) > 5 and said[-1] == f"bed: step {steps} of {steps}"
 
 
 def test_a_killed_scene_goes_on_from_its_restart_file(bed, tmp_path):

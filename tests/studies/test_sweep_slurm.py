@@ -182,6 +182,18 @@ def test_a_batch_script_is_submitted_by_hand_and_ranks_go_through_srun(case, her
     assert len(logs) == 2 and all(" on 2 procs for " in text for text in logs)
 
 
+@needs_slurm
+def test_a_batch_script_that_is_warned_queues_its_scene_again(here, tmp_path):
+    out, planned, script = tmp_path / "out", scene(tmp_path, "0.5 s", 150), tmp_path / "job.sh"
+    write_script(planned, out, ["time=10"], script)
+    job = here.ask("sbatch", "--parsable", "-o", str(tmp_path / "log"), str(script)).strip()
+    until(lambda: len(list(out.glob("points/*/restart.*.bin"))) >= 2, "two restart files", seconds=200)
+    here.ask("scancel", "-b", "-s", "USR2", f"{job}_1")
+    until(lambda: status(out)["done"] + status(out)["failed"] == 1, "the end of the scene", seconds=200)
+    assert status(out)["done"] == 1 and (folder.of(planned, out, 1) / "in.resume").exists()
+    assert "Restarts=1 " in here.ask("scontrol", "show", "job", "-o", f"{job}_1")
+
+
 def test_parameters_are_read_from_words_and_from_lines(tmp_path):
     lines = tmp_path / "mine.sh"
     lines.write_text("#!/bin/bash\n#SBATCH --account=sand\n#SBATCH --exclusive\n")

@@ -83,7 +83,7 @@ EPDEM_INLINE Lanes fabs(Lanes x) noexcept {
 
 EPDEM_INLINE Lanes sqrt(Lanes x) noexcept {
 #if defined __AVX512F__
-  return _mm512_sqrt_pd(x);
+  return _mm512_maskz_sqrt_pd(0xff, x);  // the plain one warns of a number that GCC leaves unset
 #elif defined __AVX__
   return _mm256_sqrt_pd(x);
 #elif defined __SSE2__

@@ -79,6 +79,22 @@ inline Step<Law> step(const Law& law, Number<Law> R_star, const State<Law>& befo
   return step(law, R_star, before, delta);
 }
 
+/// The normal force that limits friction: the contact's own; with adhesion F + 2 P_po, P_po = 3/2 pi Gamma R, while the
+/// bodies are attached (Thornton 1991, J. Phys. D 24, 1942).
+template <class Law>
+inline Number<Law> sliding_load(const Law& law, Number<Law> R_star, const Step<Law>& now, Number<Law> force) noexcept {
+  if constexpr (adheres<Law>) {
+    using T = Number<Law>;
+    const T limit = max(T{}, force + 3.0 * law.pull * opening_radius(law, R_star, now.after));
+    return select(now.radius > 0.0, limit, T{});
+  } else {
+    (void)law;
+    (void)R_star;
+    (void)now;
+    return force;
+  }
+}
+
 /// Work lost for good by a contact that reached delta_max [J]: backbone work less the recoverable part.
 template <class Law>
 inline Number<Law> plastic_work(const Law& law, Number<Law> R_star, Number<Law> delta_max) noexcept {

@@ -10,15 +10,11 @@
 #include "thornton.hpp"
 #include "thornton_ning.hpp"
 
-/// Laws whose force is a function of what the contact remembers and of the overlap.
-#define EPDEM_PLAIN_LAWS(X) \
-  X(Hertz)                  \
-  X(Thornton)               \
-  X(Johnson)                \
-  X(Cavity)
-
 #define EPDEM_LAWS(X) \
-  EPDEM_PLAIN_LAWS(X) \
+  X(Hertz)            \
+  X(Thornton)         \
+  X(Johnson)          \
+  X(Cavity)           \
   X(Jkr)              \
   X(ThorntonNing)
 

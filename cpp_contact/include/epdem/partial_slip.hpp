@@ -121,48 +121,45 @@ namespace detail {
 
 inline constexpr double least = std::numeric_limits<double>::min();  // instead of a division by 0
 
-/// Largest stretch of the springs at the nodes [m], 0 without load: mu q/(4 G*) with the load q of the line, scaled so
-/// that |T| = mu load where all nodes slide. q is Hertz's half-ellipse; Flattens: with tau of it uniform pressure, less
-/// the rigid punches between radius_max and radius (Mesarovic and Johnson 2000, eq. 8.82).
+/// Largest force of the springs at the nodes, as if all of them had it [N]: `most` in all where all nodes slide. They
+/// share it like the load q of the line: Hertz's half-ellipse; Flattens: with tau of it uniform pressure, less the
+/// rigid punches between radius_max and radius (Mesarovic and Johnson 2000, eq. 8.82).
 template <int N, bool Flattens, class T>
-EPDEM_INLINE void slip_limits(const Pressed<T>& now, const T& scale, T* limit) noexcept {
+EPDEM_INLINE void slip_limits(const Pressed<T>& now, const T& most, T* limit) noexcept {
   using Rule = Lobatto<N>;
   if constexpr (Flattens) {
     const T b = now.radius / max(max(now.radius_max, now.radius), T{} + least), rest = sqrt(1.0 - b * b);
-    T sum{};
-    for (int i = 0; i < N; ++i) {
-      const double x2 = Rule::node[i] * Rule::node[i];
-      const T flat = 2.0 / pi * now.flatness / (sqrt(1.0 - b * b * x2) + rest);
-      limit[i] = (1.0 - x2) * (0.75 * (1.0 - now.flatness) + flat);
+    T depth[N], sum{};
+    for (int i = 0; i < N; ++i) depth[i] = sqrt(1.0 - b * b * (Rule::node[i] * Rule::node[i])) + rest;
+    for (int i = 0; i < N; ++i) {  // q over (1 - x^2), times all depths: none is divided by
+      T q = 0.75 * (1.0 - now.flatness) * depth[i] + 2.0 / pi * now.flatness;
+      for (int j = 0; j < N; ++j)
+        if (j != i) q = q * depth[j];
+      limit[i] = (1.0 - Rule::node[i] * Rule::node[i]) * q;
       sum = sum + Rule::weight[i] * limit[i];
     }
-    const T share = scale / sum;
+    const T share = most / sum;
     for (int i = 0; i < N; ++i) limit[i] = share * limit[i];
   } else {
-    for (int i = 0; i < N; ++i) limit[i] = (1.5 * (1.0 - Rule::node[i] * Rule::node[i])) * scale;
+    for (int i = 0; i < N; ++i) limit[i] = (1.5 * (1.0 - Rule::node[i] * Rule::node[i])) * most;
   }
 }
 
-/// A vector, shortened to `limit` if it is longer.
+/// A vector, shortened so that `unit` times its length is at most `limit`.
 template <class T>
-EPDEM_INLINE Vec<T> limited(const Vec<T>& s, const T& limit) noexcept {
-  const T square = dot(s, s);
+EPDEM_INLINE Vec<T> limited(const Vec<T>& s, const T& unit, const T& limit) noexcept {
+  const T square = unit * unit * dot(s, s);
   const auto over = square > limit * limit;
   return any(over) ? select(over, limit / sqrt(square), T{} + 1.0) * s : s;
 }
 
-/// Friction [N] of stretches within their limits, with the dashpot inside the same limits.
+/// Friction [N] of stretches within their limits, with the dashpot inside `most`, the limit of friction.
 template <int N, bool Damped, class T>
-EPDEM_INLINE Vec<T> friction(const SlipState<N, T>& state, const Shear<T>& motion, const T& unit, const T* limit,
+EPDEM_INLINE Vec<T> friction(const SlipState<N, T>& state, const Shear<T>& motion, const T& most,
                              const T& stiffness) noexcept {
-  if constexpr (!Damped) {
-    return slip_force(state, stiffness);
-  } else {
-    const T drag = select(unit > 0.0, motion.damping / (Lobatto<N>::total * unit), T{});
-    SlipState<N, T> pulled{{}, state.radius};
-    for (int i = 0; i < N; ++i) pulled.stretch[i] = limited(state.stretch[i] + drag * motion.slip, limit[i]);
-    return slip_force(pulled, stiffness);
-  }
+  const Vec<T> springs = slip_force(state, stiffness);
+  if constexpr (Damped) return limited(springs - motion.damping * motion.slip, T{} + 1.0, most);
+  return springs;
 }
 
 }  // namespace detail
@@ -179,21 +176,29 @@ EPDEM_INLINE SlipStep<N, T> partial_slip(const SlipState<N, T>& before, const Pr
   using Rule = Lobatto<N>;
   const T one = T{} + 1.0, tiny = T{} + detail::least;
   const Vec<T>& n = motion.normal;
-  const auto pressed = min(now.load, now.radius) > 0.0;
-  const T radius = select(pressed, now.radius, T{}), unit = stiffness * radius;  // [m], [N/m] of force per stretch
-  T limit[N];  // 0 without load, and then the stretch and the force are 0 as well
-  detail::slip_limits<N, Flattens>(now, select(pressed, mu * now.load / unit, T{}), limit);
   // rotation about the normal by `turn` (Cayley: exactly orthogonal)
   const T half = 0.5 * motion.turn, share = 1.0 / (1.0 + half * half);
-  const T cosine = (1.0 - half * half) * share, sine = motion.turn * share;
-  const T ratio = radius / max(before.radius, tiny), square = ratio * ratio;
-
-  Vec<T> c[N];  // of the old profile
+  const T cosine = (1.0 - half * half) * share;
+  const Vec<T> spin = (motion.turn * share) * n;
+  Vec<T> turned[N];
+  for (int i = 0; i < N; ++i) {
+    // the stretch turns with the contact and keeps its length; the series of 1/sqrt(1-e) stays below it
+    const Vec<T>& s = before.stretch[i];
+    const T out_of_plane = dot(n, s), e = out_of_plane * out_of_plane / max(dot(s, s), tiny);
+    turned[i] = (1.0 + e * (0.5 + 0.375 * e)) * (cosine * (s - out_of_plane * n) + cross(spin, s));
+  }
+  Vec<T> c[N];  // of its profile
   for (int k = 0; k < N; ++k) {
-    c[k] = (T{} + Rule::profile[k][0]) * before.stretch[0];
-    for (int j = 1; j < N; ++j) c[k] = c[k] + (T{} + Rule::profile[k][j]) * before.stretch[j];
+    c[k] = (T{} + Rule::profile[k][0]) * turned[0];
+    for (int j = 1; j < N; ++j) c[k] = c[k] + (T{} + Rule::profile[k][j]) * turned[j];
   }
 
+  const auto pressed = min(now.load, now.radius) > 0.0;
+  const T radius = select(pressed, now.radius, T{}), most = select(pressed, mu * now.load, T{});
+  const T ratio = radius * (1.0 / max(before.radius, tiny)), square = ratio * ratio;
+  const T unit = select(pressed, stiffness * radius, one);  // without load every stretch is above its limit, 0
+  T limit[N];
+  detail::slip_limits<N, Flattens>(now, most, limit);
   SlipStep<N, T> out;
   out.after.radius = radius;
   for (int i = 0; i < N; ++i) {
@@ -201,27 +206,19 @@ EPDEM_INLINE SlipStep<N, T> partial_slip(const SlipState<N, T>& before, const Pr
     const T z = min(square * (Rule::node[i] * Rule::node[i]), one);
     Vec<T> s = c[N - 1];
     for (int k = N - 2; k >= 0; --k) s = z * s + c[k];
-    s = (1.0 - z) * s;
-    // it turns with the contact and keeps its length; the series of 1/sqrt(1-e) stays below it
-    const T out_of_plane = dot(n, s), e = out_of_plane * out_of_plane / max(dot(s, s), tiny);
-    const T length = 1.0 + e * (0.5 + 0.375 * e);
-    s = (length * cosine) * (s - out_of_plane * n) + (length * sine) * cross(n, s) + motion.slip;
-    out.after.stretch[i] = detail::limited(s, limit[i]);
+    out.after.stretch[i] = detail::limited((1.0 - z) * s + motion.slip, unit, limit[i]);
   }
-  out.force = detail::friction<N, Damped>(out.after, motion, unit, limit, stiffness);
+  out.force = detail::friction<N, Damped>(out.after, motion, most, stiffness);
   return out;
 }
 
 /// Friction [N] where a contact is looked at and no step is taken: the springs as they are, which gives the bits of the
 /// last step's force again, and the dashpot.
-template <int N, bool Flattens, bool Damped, class T>
-EPDEM_INLINE Vec<T> present_friction(const SlipState<N, T>& state, const Pressed<T>& now, const Shear<T>& motion,
+template <int N, bool Damped, class T>
+EPDEM_INLINE Vec<T> present_friction(const SlipState<N, T>& state, const T& load, const Shear<T>& motion,
                                      const T& stiffness, const T& mu) noexcept {
-  T limit[N];
-  const T unit = stiffness * state.radius;
-  const auto holds = min(now.load, state.radius) > 0.0;
-  detail::slip_limits<N, Flattens>(now, select(holds, mu * now.load / unit, T{}), limit);
-  return detail::friction<N, Damped>(state, motion, unit, limit, stiffness);
+  const auto holds = min(load, state.radius) > 0.0;
+  return detail::friction<N, Damped>(state, motion, select(holds, mu * load, T{}), stiffness);
 }
 
 }  // namespace epdem

@@ -30,6 +30,7 @@ struct Block {
   Line force[3], torque_i[3], torque_j[3];  // on i; the force on j is its negative
   Line grown, stored;                       // plastic work of this step, elastic energy
   Line rubbed, sprung;                      // work of friction in this step, elastic energy of its springs
+  Line parted, radius;                      // with adhesion: what its jumps took in this step, contact radius
 };
 
 /// What all contacts of a pass have in common.
@@ -49,10 +50,10 @@ struct Pass {
 /// Computes n contacts; the lanes behind them have valid indices and a history that nobody reads.
 using Kernel = void (*)(Block&, int n, const Pass&);
 
-/// The kernels of one instruction set, by the place of the law, one without adhesion, in the register.
+/// The kernels of one instruction set, by the place of the law in the register.
 struct Kernels {
   static constexpr int most_laws = 16;
-  Kernel of[most_laws][tangentials][2];  // law, tangential, whether the rolling model has history
+  Kernel of[most_laws][tangentials][2];  // law, tangential, whether the rolling model has history; null: no such model
 };
 
 extern const Kernels kernels_sse2, kernels_avx2, kernels_avx512;

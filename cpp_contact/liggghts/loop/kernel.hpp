@@ -16,7 +16,7 @@ template <int count>
 EPDEM_INLINE void read(double* const* history, Lanes* value) {
   for (int at = count - 4; at > -4; at -= 4) {
     const int first = at < 0 ? 0 : at;  // 3 are left: the fourth is read a second time
-    if (at < -1) break;
+    if (at < -1 || count < 4) break;
     const Columns c = columns([=](int l) __attribute__((always_inline)) { return load<Row>(history[l] + first); });
     value[first] = c.a, value[first + 1] = c.b, value[first + 2] = c.c, value[first + 3] = c.d;
   }
@@ -28,7 +28,7 @@ template <int count>
 EPDEM_INLINE void write(double* const* history, const Lanes* value) {
   for (int at = count - 4; at > -4; at -= 4) {
     const int first = at < 0 ? 0 : at;
-    if (at < -1) break;
+    if (at < -1 || count < 4) break;
     rows({value[first], value[first + 1], value[first + 2], value[first + 3]},
          [=](int l, const Row& row) __attribute__((always_inline)) { store(history[l] + first, row); });
   }
@@ -78,7 +78,7 @@ EPDEM_INLINE Three slipping(Block& b, int k, const Contact& c, const Step<Law>& 
   const Lanes stiffness = 8.0 * constant_of[shear_modulus];
   const Shear<Lanes> motion{{c.en.x, c.en.y, c.en.z},
                             {pass.dt * c.vtr.x, pass.dt * c.vtr.y, pass.dt * c.vtr.z},
-                            0.5 * pass.dt * (dot(c.en, c.omega_i) + dot(c.en, c.omega_j)),
+                            0.5 * pass.dt * dot(c.en, c.omega_i + c.omega_j),
                             1.0 / pass.dt * c.gammat};
   SlipStep<nodes, Lanes> out;
   const auto step = [&](auto damped) __attribute__((always_inline)) {
@@ -97,6 +97,17 @@ EPDEM_INLINE Three slipping(Block& b, int k, const Contact& c, const Step<Law>& 
   return {out.force.x, out.force.y, out.force.z};
 }
 
+/// What adhesion books; outside of the kernels, where it would stand six times.
+template <class Law>
+[[gnu::noinline]] void book(Block& b, int k, const Law& law, Lanes R_star, const State<Law>& before,
+                            const Step<Law>& now, Lanes delta) {
+  const auto lost = losses(law, R_star, before, now.after);
+  store(b.grown.a + k, lost.plastic);
+  store(b.parted.a + k, lost.adhesive);
+  store(b.stored.a + k, stored_energy(law, R_star, now.after, delta));
+  store(b.radius.a + k, now.radius);
+}
+
 /// History of a pair: the law's memory, the step of the last evaluation, the models beside it in LIGGGHTS's order.
 template <class Law, Tangential tangential, bool rolls>
 [[gnu::flatten]] void contacts(Block& b, int n, const Pass& pass) {
@@ -104,7 +115,8 @@ template <class Law, Tangential tangential, bool rolls>
   constexpr int nodes = tangential == Tangential::partial_slip ? 3 : tangential == Tangential::partial_slip_2 ? 2 : 0;
   constexpr int slip_values = springs ? 3 : nodes ? 3 * nodes + 1 : 0;
   constexpr int last_step = memory<Law>, shear = last_step + 1, roll = shear + slip_values;
-  constexpr int slots = Law::yields || slip_values || rolls ? roll + 3 * rolls : 0;
+  constexpr bool remembers = memory<Law> > 0;
+  constexpr int slots = remembers || slip_values || rolls ? roll + 3 * rolls : 0;
   constexpr int needed = law_data + static_cast<int>(sizeof(Law) / sizeof(Lanes)), constants = (needed + 3) / 4 * 4;
   static_assert(constants <= most_constants);
   Lanes of_all[constants], of_each[constants];
@@ -135,13 +147,17 @@ template <class Law, Tangential tangential, bool rolls>
       read<slots>(b.history + k, value);
       const auto parted = pass.now - value[last_step] > 1.0;  // since the last evaluation: a new contact
       for (int s = 0; s < slots; ++s) value[s] = select(parted, Lanes{}, value[s]);
-      if constexpr (Law::yields) __builtin_memcpy(static_cast<void*>(&before), value, sizeof before);
+      if constexpr (remembers) __builtin_memcpy(static_cast<void*>(&before), value, sizeof before);
+      if constexpr (adheres<Law>)  // bodies that touch without being attached begin anew in all other models
+        for (int s = shear; s < slots; ++s) value[s] = select(before.root > 0.0, value[s], Lanes{});
     }
 
     Law law;
     __builtin_memcpy(static_cast<void*>(&law), constant_of + law_data, sizeof law);
-    const Step<Law> now = step(law, c.reff, before, c.deltan);
-    if (pass.work) {
+    const Step<Law> now = step(law, c.reff, before, c.deltan, -c.vn * pass.dt);
+    if constexpr (adheres<Law>) {
+      if (pass.work) book(b, k, law, c.reff, before, now, c.deltan);
+    } else if (pass.work) {
       const Lanes stored = elastic_energy(law, c.reff, now, c.deltan);
       store(b.stored.a + k, stored);
       store(b.grown.a + k, plastic_growth(law, c.reff, before, now, stored));
@@ -158,7 +174,10 @@ template <class Law, Tangential tangential, bool rolls>
     }
 
     Three force = c.Fn * c.en, torque_i{}, torque_j{};
-    if (pass.cohesion != Cohesion::off) {
+    if constexpr (adheres<Law>) {
+      c.Fn = sliding_load(law, c.reff, now, c.Fn);
+      c.kn = select(c.deltan > 0.0, c.kn, Lanes{});
+    } else if (pass.cohesion != Cohesion::off) {
       const Lanes pull = cohesive_force(c, pass.cohesion, constant_of[cohesion_density]);
       if (pass.cohesion_slides) c.Fn += pull;
       force = force + pull * c.en;
@@ -192,7 +211,7 @@ template <class Law, Tangential tangential, bool rolls>
     }
 
     if constexpr (slots > 0) {
-      if constexpr (Law::yields) __builtin_memcpy(value, &now.after, sizeof now.after);
+      if constexpr (remembers) __builtin_memcpy(value, &now.after, sizeof now.after);
       value[last_step] = constant<Lanes>(pass.now);
       write<slots>(b.history + k, value);
     }
@@ -204,13 +223,22 @@ template <class Law, Tangential tangential, bool rolls>
 
 }  // namespace
 
+/// No kernel for what the plugin does not offer: partial slip of contacts with adhesion.
+template <class Law, Tangential tangential, bool rolls>
+constexpr Kernel offered() {
+  if constexpr (adheres<Law> && tangential >= Tangential::partial_slip)
+    return nullptr;
+  else
+    return &contacts<Law, tangential, rolls>;
+}
+
 #define EPDEM_BOTH(Class, model) \
-  {&contacts<Class<Lanes>, Tangential::model, false>, &contacts<Class<Lanes>, Tangential::model, true>}
+  {offered<Class<Lanes>, Tangential::model, false>(), offered<Class<Lanes>, Tangential::model, true>()}
 #define EPDEM_OF_LAW(Class)                                                                                            \
   {EPDEM_BOTH(Class, off), EPDEM_BOTH(Class, no_history), EPDEM_BOTH(Class, history), EPDEM_BOTH(Class, partial_slip), \
    EPDEM_BOTH(Class, partial_slip_2)},
 extern const Kernels EPDEM_KERNELS;
-const Kernels EPDEM_KERNELS = {{EPDEM_PLAIN_LAWS(EPDEM_OF_LAW)}};
+const Kernels EPDEM_KERNELS = {{EPDEM_LAWS(EPDEM_OF_LAW)}};
 #undef EPDEM_OF_LAW
 #undef EPDEM_BOTH
 

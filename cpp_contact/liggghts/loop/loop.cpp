@@ -33,7 +33,7 @@ const Kernels& kernels(LAMMPS_NS::LAMMPS* lmp) {
   return kernels_sse2;
 }
 
-const char* PairLoop::obstacle(PairGran* pair, int vflag, int addflag) const {
+const char* PairLoop::obstacle(PairGran* pair, const Plan& plan, int vflag, int addflag) const {
   static const char* const asked = std::getenv("EPDEM_LOOP");
   if (asked && std::strcmp(asked, "generic") == 0) return "EPDEM_LOOP = generic";
   if (force->newton_pair) return "newton on";
@@ -43,7 +43,7 @@ const char* PairLoop::obstacle(PairGran* pair, int vflag, int addflag) const {
   if (pair->storeContactForces() || pair->storeContactForcesStress()) return "contact forces are stored";
   if (pair->storeSumDelta()) return "surface multicontact";
   if (pair->store_sum_normal_force()) return "normal forces are summed up";
-  if (neighbor->contactDistanceFactor != 1.0) return "contacts at a distance";
+  if (neighbor->contactDistanceFactor != 1.0 && plan.root < 0) return "contacts at a distance";
   if (modify->n_fixes_style("insert/stream/predefined") > 0) return "fix insert/stream/predefined";
   if (vflag) return "steps that ask for the virial";
   if (addflag) return "steps of compute pair/gran/local";
@@ -73,44 +73,82 @@ void PairLoop::run(PairGran* pair, const Plan& plan, double now) {
   flags_ = CONTACT_NORMAL_MODEL | (plan.tangential != Tangential::off ? CONTACT_TANGENTIAL_MODEL : 0) |
            (plan.cohesion != Cohesion::off ? CONTACT_COHESION_MODEL : 0) |
            (plan.rolling == Rolling::epsd2 ? CONTACT_ROLLING_MODEL : 0);
+  plan.root < 0 ? gather<false>(plan) : gather<true>(plan);
+}
 
+/// Notes every neighbour, and those stay that overlap; with adhesion also those that were in contact and are near.
+template <bool adheres>
+void PairLoop::gather(const Plan& plan) {
   Block& b = *block_;
-  const LAMMPS_NS::NeighList& list = *pair->list;
+  const LAMMPS_NS::NeighList& list = *pair_->list;
   const double *const x = atom->x[0], *const radius = atom->radius;
+  const double near = neighbor->contactDistanceFactor * neighbor->contactDistanceFactor;
   int n = 0;
   for (int ii = 0; ii < list.inum; ++ii) {
     const int i = list.ilist[ii], count = list.numneigh[i];
     const int* const neighbours = list.firstneigh[i];
+    const int* const flags = adheres ? pair_->listgranhistory->firstneigh[i] : nullptr;
     const double xi = x[3 * i], yi = x[3 * i + 1], zi = x[3 * i + 2], ri = radius[i];
     for (int first = 0; first < count; first += block_size) {  // nearly always one turn
       const int last = std::min(count, first + block_size);
       if (n + last - first > block_size) {
-        finish(plan, n);
+        finish<adheres>(plan, n);
         n = 0;
       }
-      for (int jj = first; jj < last; ++jj) {  // every neighbour is noted, and stays if it touches
+      for (int jj = first; jj < last; ++jj) {
         const int j = neighbours[jj] & NEIGHMASK;
         const double dx = xi - x[3 * j], dy = yi - x[3 * j + 1], dz = zi - x[3 * j + 2], sum = ri + radius[j];
+        const double rsq = dx * dx + dy * dy + dz * dz;
+        const bool overlaps = rsq < sum * sum;
         b.i[n] = i;
         b.j[n] = j;
         slot_[n] = jj;
-        n += dx * dx + dy * dy + dz * dz < sum * sum;
+        if constexpr (adheres) {
+          overlaps_[n] = overlaps;
+          n += overlaps | ((flags[jj] != 0) & (rsq < near * sum * sum));
+        } else {
+          n += overlaps;
+        }
       }
     }
   }
-  finish(plan, n);
+  finish<adheres>(plan, n);
 }
 
+template <bool adheres>
 void PairLoop::finish(const Plan& plan, int n) {
+  if constexpr (adheres) n = without_parted(plan, n);
   if (n == 0) return;
   fetch(plan, n);
   pad(n);
   kernel_(*block_, n, pass_);
-  if (plan.tangential != Tangential::off || plan.rolling != Rolling::off)
-    scatter<true>(n);
+  const bool turns = plan.tangential != Tangential::off || plan.rolling != Rolling::off;
+  if (plan.ledger)
+    turns ? scatter<true, true, adheres>(n, plan.ledger) : scatter<false, true, adheres>(n, plan.ledger);
   else
-    scatter<false>(n);
-  if (plan.ledger) book(*plan.ledger, plan.tangential >= Tangential::partial_slip, n);
+    turns ? scatter<true, false, adheres>(n, nullptr) : scatter<false, false, adheres>(n, nullptr);
+  if (plan.ledger && plan.tangential >= Tangential::partial_slip) rub(*plan.ledger, n);
+}
+
+/// Of n contacts those that overlap or are attached across a gap; a pair that is not loses its mark.
+int PairLoop::without_parted(const Plan& plan, int n) {
+  Block& b = *block_;
+  const int size = pair_->dnum();
+  int kept = 0;
+  for (int k = 0; k < n; ++k) {
+    const int i = b.i[k], slot = slot_[k];
+    if (!overlaps_[k]) {
+      const double* const h = pair_->listgranhistory->firstdouble[i] + size * slot;
+      if (!(h[plan.root] > 0.0) || pass_.now - h[plan.last_step] > 1.0) {
+        pair_->listgranhistory->firstneigh[i][slot] &= ~flags_;
+        continue;
+      }
+    }
+    b.i[kept] = i;
+    b.j[kept] = b.j[k];
+    slot_[kept++] = slot;
+  }
+  return kept;
 }
 
 /// What lies apart in memory is asked for in time, and contacts are marked as such.
@@ -165,20 +203,26 @@ void PairLoop::pad(int n) {
   }
 }
 
-/// Forces and torques, in the order of the list; those of a body are kept at hand while its pairs follow each other.
-template <bool torques>
-void PairLoop::scatter(int n) {
+/// Forces and torques in the order of the list, those of a body at hand while its pairs follow each other; with them
+/// the halves of the energies of each pair, and that both bodies have a contact that bears.
+template <bool torques, bool books, bool adheres>
+void PairLoop::scatter(int n, Ledger* ledger) {
   const Block& b = *block_;
   double *const f = atom->f[0], *const t = atom->torque[0];
+  double *const work = books ? ledger->work() : nullptr, *const energy = books ? ledger->energy() : nullptr;
+  double *const bearing = books ? ledger->bearing() : nullptr, *const parted = books ? ledger->adhesive() : nullptr;
   const int nlocal = atom->nlocal;
-  double others[6] = {};  // a ghost's force is computed by its owner
+  double others[10] = {};  // what a ghost gets is computed by its owner
   for (int k = 0; k < n;) {
     const int i = b.i[k];
     double *const fi = f + 3 * i, *const ti = t + 3 * i;
     double fx = fi[0], fy = fi[1], fz = fi[2], tx = ti[0], ty = ti[1], tz = ti[2];
+    double work_i{}, energy_i{}, bearing_i{};
+    if constexpr (books) work_i = work[i], energy_i = energy[i], bearing_i = bearing[i];
     do {
       const int j = b.j[k];
-      double* const fj = j < nlocal ? f + 3 * j : others;
+      const bool ours = j < nlocal;
+      double* const fj = ours ? f + 3 * j : others;
       const double gx = b.force[0].a[k], gy = b.force[1].a[k], gz = b.force[2].a[k];
       fx += gx;
       fy += gy;
@@ -187,13 +231,27 @@ void PairLoop::scatter(int n) {
       fj[1] -= gy;
       fj[2] -= gz;
       if constexpr (torques) {
-        double* const tj = j < nlocal ? t + 3 * j : others + 3;
+        double* const tj = ours ? t + 3 * j : others + 3;
         tx += b.torque_i[0].a[k];
         ty += b.torque_i[1].a[k];
         tz += b.torque_i[2].a[k];
         tj[0] += b.torque_j[0].a[k];
         tj[1] += b.torque_j[1].a[k];
         tj[2] += b.torque_j[2].a[k];
+      }
+      if constexpr (books) {
+        const double grown = b.grown.a[k] > 0.0 ? 0.5 * b.grown.a[k] : 0.0, stored = 0.5 * b.stored.a[k];
+        const bool bears = adheres ? b.radius.a[k] > 0.0 : stored > 0.0;
+        work_i += grown;
+        energy_i += stored;
+        bearing_i += bears;
+        *(ours ? work + j : others + 6) += grown;
+        *(ours ? energy + j : others + 7) += stored;
+        *(ours ? bearing + j : others + 8) += bears;
+        if constexpr (adheres) {
+          parted[i] += 0.5 * b.parted.a[k];
+          *(ours ? parted + j : others + 9) += 0.5 * b.parted.a[k];
+        }
       }
       ++k;
     } while (k < n && b.i[k] == i);
@@ -205,34 +263,14 @@ void PairLoop::scatter(int n) {
       ti[1] = ty;
       ti[2] = tz;
     }
+    if constexpr (books) work[i] = work_i, energy[i] = energy_i, bearing[i] = bearing_i;
   }
 }
 
-/// Halves of the energies of each pair to its bodies, in the order of the list; both count a contact that bears.
-void PairLoop::book(Ledger& ledger, bool rubs, int n) {
+/// The work of friction with partial slip, in the order of the list.
+void PairLoop::rub(Ledger& ledger, int n) {
   const Block& b = *block_;
-  double *const work = ledger.work(), *const energy = ledger.energy(), *const bearing = ledger.bearing();
-  const int nlocal = atom->nlocal;
-  double others[3] = {};
-  for (int k = 0; k < n;) {
-    const int i = b.i[k];
-    double work_i = work[i], energy_i = energy[i], bearing_i = bearing[i];
-    do {
-      const int j = b.j[k];
-      const double grown = b.grown.a[k] > 0.0 ? 0.5 * b.grown.a[k] : 0.0, stored = 0.5 * b.stored.a[k];
-      work_i += grown;
-      energy_i += stored;
-      bearing_i += stored > 0.0;
-      *(j < nlocal ? work + j : others) += grown;
-      *(j < nlocal ? energy + j : others + 1) += stored;
-      *(j < nlocal ? bearing + j : others + 2) += stored > 0.0;
-      ++k;
-    } while (k < n && b.i[k] == i);
-    work[i] = work_i;
-    energy[i] = energy_i;
-    bearing[i] = bearing_i;
-  }
-  for (int k = 0; rubs && k < n; ++k) ledger.rub<false>(b.rubbed.a[k], b.sprung.a[k], {b.i[k], b.j[k], nlocal});
+  for (int k = 0; k < n; ++k) ledger.rub<false>(b.rubbed.a[k], b.sprung.a[k], {b.i[k], b.j[k], atom->nlocal});
 }
 
 }  // namespace epdem::liggghts::loop

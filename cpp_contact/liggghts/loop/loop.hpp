@@ -23,6 +23,7 @@ struct Plan {
   Cohesion cohesion = Cohesion::off;
   bool damped = false, viscous = false, torsion = false, cohesion_slides = false;
   Ledger* ledger = nullptr;       // where plastic work is booked, if it is asked for
+  int root = -1, last_step = -1;  // with adhesion: where a history says that the bodies are attached, and when last
   int width = 0;                  // number of types + 1
   std::vector<double> constants;  // most_constants for each type of i * width + type of j; see Constant
 };
@@ -32,22 +33,27 @@ class PairLoop : protected LAMMPS_NS::Pointers {
   PairLoop(LAMMPS_NS::LAMMPS* lmp, Kernel kernel) : Pointers(lmp), kernel_(kernel), block_(std::make_unique<Block>()) {}
 
   /// Why this step cannot take this loop; nullptr: it can.
-  const char* obstacle(LAMMPS_NS::PairGran* pair, int vflag, int addflag) const;
+  const char* obstacle(LAMMPS_NS::PairGran* pair, const Plan& plan, int vflag, int addflag) const;
 
   /// All forces between pairs; `now` is the step.
   void run(LAMMPS_NS::PairGran* pair, const Plan& plan, double now);
 
  private:
+  template <bool adheres>
+  void gather(const Plan& plan);
+  template <bool adheres>
   void finish(const Plan& plan, int n);
+  int without_parted(const Plan& plan, int n);
   void fetch(const Plan& plan, int n);
   void pad(int n);
-  template <bool torques>
-  void scatter(int n);
-  void book(Ledger& ledger, bool rubs, int n);
+  template <bool torques, bool books, bool adheres>
+  void scatter(int n, Ledger* ledger);
+  void rub(Ledger& ledger, int n);
 
   const Kernel kernel_;
   const std::unique_ptr<Block> block_;
-  int slot_[block_size + most_lanes];  // place in the neighbour list of i
+  int slot_[block_size + most_lanes];       // place in the neighbour list of i
+  bool overlaps_[block_size + most_lanes];  // with adhesion only
   Pass pass_{};
   LAMMPS_NS::PairGran* pair_ = nullptr;
   int flags_ = 0;

@@ -70,15 +70,19 @@ EPDEM_INLINE Three sliding_dashpot(const Contact& c, Lanes friction) {
   return (-select(limit < c.gammat * v, limit / v, c.gammat)) * c.vtr;
 }
 
+/// Whether a lane may be above its limit, without a root: all that are far below it stay as they are.
+EPDEM_INLINE bool near_limit(Lanes squared, Lanes limit) { return any(!(squared <= 0.9 * limit * limit)); }
+
 /// tangential history: spring with dashpot, cut off by friction; `stretch` before and after.
 EPDEM_INLINE Three sliding_spring(const Contact& c, Lanes friction, bool damped, double dt, Three& stretch) {
   stretch = stretch + dt * c.vtr;
   stretch = stretch - dot(stretch, c.en) * c.en;
   const Three spring = -(c.kt * stretch);
-  const Lanes most = friction * fabs(c.Fn), pull = c.kt * magnitude(stretch);
-  const auto slides = pull > most;
+  const Lanes most = friction * fabs(c.Fn);
   Three force = damped ? spring - c.gammat * c.vtr : spring;
-  if (any(slides)) {  // four divisions
+  if (near_limit(dot(spring, spring), most)) {
+    const Lanes pull = c.kt * magnitude(stretch);
+    const auto slides = pull > most;
     const Three slipping = (most / pull) * spring;
     stretch = select(slides, (-slipping) / c.kt, stretch);
     force = select(slides, slipping, force);
@@ -100,8 +104,11 @@ EPDEM_INLINE void rolling_spring(const Contact& c, Lanes friction, bool torsion,
   Three w = c.omega_i - c.omega_j;
   if (!torsion) w = w - dot(w, c.en) * c.en;
   torque = torque + (dt * (c.kt * c.reff * c.reff)) * w;
-  const Lanes now = magnitude(torque), most = fabs(c.Fn) * c.reff * friction;
-  torque = select(now > most, (most / now) * torque, torque);
+  const Lanes most = fabs(c.Fn) * c.reff * friction;
+  if (near_limit(dot(torque, torque), most)) {
+    const Lanes now = magnitude(torque);
+    torque = select(now > most, (most / now) * torque, torque);
+  }
 }
 
 }  // namespace

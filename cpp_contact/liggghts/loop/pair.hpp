@@ -3,6 +3,7 @@
 #pragma once
 
 #include <algorithm>
+#include <cstddef>
 #include <cstring>
 #include <set>
 #include <string>
@@ -39,6 +40,10 @@ class Pair : public LIGGGHTS::PairStyles::Granular<Model> {
     plan_.cohesion = ids_.cohesion == COHESION_SJKR    ? Cohesion::sjkr
                      : ids_.cohesion == COHESION_SJKR2 ? Cohesion::sjkr2
                                                        : Cohesion::off;
+    if constexpr (adheres<Law>) {
+      plan_.root = offsetof(State<Law>, root) / sizeof(double);
+      plan_.last_step = memory<Law>;
+    }
     const Kernel kernel =
         kernels(lmp).of[detail::place<Law>()][static_cast<int>(plan_.tangential)][plan_.rolling == Rolling::epsd2];
     loop_ = std::make_unique<PairLoop>(lmp, kernel);
@@ -97,7 +102,7 @@ class Pair : public LIGGGHTS::PairStyles::Granular<Model> {
   template <class... Flag>
   void forces(LAMMPS_NS::PairGran* pair, int eflag, int vflag, int listed, Flag... addflag) {
     const char* why = missing_ ? missing_ : model_.asked().missing();
-    if (!why) why = loop_->obstacle(pair, vflag, listed);
+    if (!why) why = loop_->obstacle(pair, plan_, vflag, listed);
     if (why) {
       say(why);
       return Base::compute_force(pair, eflag, vflag, addflag...);
@@ -115,7 +120,6 @@ class Pair : public LIGGGHTS::PairStyles::Granular<Model> {
   }
 
   static const char* what_is_missing(const Ids& ids) {
-    if (adheres<Law>) return "laws with adhesion";
     if (ids.surface != SURFACE_DEFAULT) return "surface multicontact";
     if (ids.rolling == ROLLING_EPSD) return "rolling_friction epsd";
     if (ids.rolling == ROLLING_EPSD3) return "rolling_friction epsd3";

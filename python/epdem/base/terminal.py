@@ -31,6 +31,22 @@ def table(title: str, heads: Iterable[str], *, left: Collection[str] = (), wrap:
     return shown
 
 
+def show_table(screen: Console, shown: Table, spare: Iterable[str]) -> None:
+    """Print a table; where it is wider than the terminal, without columns of `spare`, from the first on, as few as
+    will do, and with a line that names them."""
+    absent = []
+    for head in spare:
+        if screen.measure(shown, options=screen.options.update(max_width=10_000)).maximum <= screen.width:
+            break
+        found = [column for column in shown.columns if str(column.header) == head]
+        if found:
+            shown.columns.remove(found[-1])
+            absent.append(head)
+    screen.print(shown)
+    if absent:
+        screen.print(f"left out, as the terminal is narrow: {', '.join(absent)}", markup=False, highlight=False)
+
+
 def cell(value: object) -> str:
     """A table cell: three digits, a dash for NaN."""
     if isinstance(value, float):

@@ -64,6 +64,9 @@ Spin = Annotated[float, Quantity("rad/s")]
 Coefficient = Annotated[float, Quantity("1", ge=0.0)]
 Tangential = Literal["history", "partial_slip", "partial_slip_2"]  # the last with 2 nodes in place of 3
 NODES = {"history": 0, "partial_slip": 3, "partial_slip_2": 2}  # of partial slip; 0: one spring
+Restitution = Annotated[
+    float, Quantity("1", ge=0.14, le=1.0, hint="1 is no dashpot, below 0.14 none is strong enough")
+]  # of impacts that do not yield
 Tolerance = Annotated[float, Quantity("1", above=0.0)]
 
 
@@ -196,9 +199,7 @@ class LawChoice(BaseModel):
 class Viscous(Frozen):
     """A dashpot on the elastic branches: `restitution` of impacts that do not yield."""
 
-    restitution: Annotated[
-        float, Quantity("1", ge=0.14, le=1.0, hint="1 is no dashpot, below 0.14 none is strong enough")
-    ]
+    restitution: Restitution
 
 
 class Rate(Frozen):

@@ -7,56 +7,35 @@ from typing import Annotated, Any, Literal, Self
 from pydantic import ConfigDict, Field, ValidationError, model_validator
 
 from ..errors import CaseError
-from .impact import Coefficient, Frozen, Header, LawChoice, Length, Material, Name, Quantity, Speed, Tangential, Viscous
+from .impact import (
+    Coefficient,
+    Frozen,
+    Header,
+    LawChoice,
+    Length,
+    Material,
+    Name,
+    Quantity,
+    Restitution,
+    Speed,
+    Tangential,
+    Viscous,
+)
 from .library import with_library
+from .measures import Measure
 from .messages import explain
+from .motions import Rate, Time
+from .parts import Parts
+from .sizes import Particles, Share, context
 from .toml import read_toml
 
-Time = Annotated[float, Quantity("s", above=0.0)]
-Rate = Annotated[float, Quantity("Hz", above=0.0)]
 Gravity = Annotated[float, Quantity("m/s^2", ge=0.0)]
-Share = Annotated[float, Quantity("1", above=0.0, le=1.0)]
 
 
 class SceneMaterial(Material):
     """A material; keys beside the elastic ones are the law's parameters for it (yield_pressure = "3 GPa")."""
 
     model_config = ConfigDict(frozen=True, extra="allow", strict=True)
-
-
-class Range(Frozen):
-    """Radii evenly spread, by number, between two limits [m], in so many classes of one radius each."""
-
-    start: Length = Field(alias="from")
-    to: Length
-    classes: Annotated[int, Field(ge=2, le=50)] = 5
-
-    @model_validator(mode="after")
-    def _ordered(self) -> Self:
-        if not self.to > self.start:
-            raise ValueError(f"'to' ({self.to:g} m) must exceed 'from' ({self.start:g} m)")
-        return self
-
-
-class Particles(Frozen):
-    """Spheres of one material; `share` is their part of the mass that is filled in."""
-
-    material: Name
-    radius: Length | Range
-    share: Share = 1.0
-
-    def sizes(self) -> list[tuple[float, float]]:
-        """(radius [m], share of the total mass) of each class of equal radii."""
-        if not isinstance(self.radius, Range):
-            return [(self.radius, self.share)]
-        step = (self.radius.to - self.radius.start) / (self.radius.classes - 1)
-        radii = [float(f"{self.radius.start + k * step:.6g}") for k in range(self.radius.classes)]
-        cubes = sum(r**3 for r in radii)
-        return [(r, self.share * r**3 / cubes) for r in radii]
-
-    def radii(self) -> tuple[float, float]:
-        """Smallest and largest radius [m]."""
-        return self.sizes()[0][0], self.sizes()[-1][0]
 
 
 class Rolling(Frozen):
@@ -74,10 +53,20 @@ class Rolling(Frozen):
 
 
 class Between(Frozen):
-    """Values of one pair of materials that differ from the common ones; "wall" names the walls."""
+    """Values of one pair of materials that differ from the common ones; "wall" names the walls.
+
+    restitution: of impacts that do not yield, in place of that of [viscous].
+    """
 
     between: Annotated[list[Name], Field(min_length=2, max_length=2)]
-    friction: Coefficient
+    friction: Coefficient | None = None
+    restitution: Restitution | None = None
+
+    @model_validator(mode="after")
+    def _some(self) -> Self:
+        if self.friction is None and self.restitution is None:
+            raise ValueError("give friction, restitution or both, or remove the pair")
+        return self
 
 
 class Contact(Frozen):
@@ -133,6 +122,7 @@ class Common(Frozen):
     count: Annotated[int, Field(ge=1, le=100_000_000)]
     walls: Name  # material of the walls
     gravity: Gravity = 9.81
+    measure: list[Measure] = Field(default_factory=list, max_length=64)
 
     @model_validator(mode="after")
     def _shares(self) -> Self:
@@ -140,6 +130,26 @@ class Common(Frozen):
         if abs(total - 1.0) > 1e-9:
             raise ValueError(f"the shares of 'particles' add up to {total:g}, must be 1")
         return self
+
+    @property
+    def filled(self) -> list[Particles]:
+        """Everything that is filled in, in the order in which it comes."""
+        return self.particles
+
+    @property
+    def leading(self) -> Particles:
+        """The spheres whose impacts on a wall stand for the scene."""
+        return self.particles[0]
+
+    @property
+    def wall_materials(self) -> list[str]:
+        """Every material of a wall, once."""
+        return [self.walls]
+
+    @property
+    def named_materials(self) -> list[tuple[str, str]]:
+        """(place, material) of every name of a material."""
+        return [("scene.walls", self.walls), *(("scene.particles.material", p.material) for p in self.filled)]
 
 
 class Settle(Common):
@@ -221,6 +231,11 @@ class Peening(Common):
     bed_count: Annotated[int, Field(ge=0, le=10_000_000)] = 0
     bed_fill: Time | None = None
 
+    @property
+    def filled(self) -> list[Particles]:
+        """The bed comes first: as long as it alone is there, the types in use begin at 1, which LIGGGHTS needs."""
+        return [*self.bed, *self.particles]
+
     @model_validator(mode="after")
     def _bed(self) -> Self:
         if bool(self.bed) != bool(self.bed_count) or bool(self.bed) != (self.bed_fill is not None):
@@ -230,7 +245,7 @@ class Peening(Common):
         return self
 
 
-Kinds = Settle | Hopper | Drum | Compaction | Peening
+Kinds = Settle | Hopper | Drum | Compaction | Peening | Parts
 
 
 class SceneCase(Frozen):
@@ -247,10 +262,7 @@ class SceneCase(Frozen):
 
     @model_validator(mode="after")
     def _names(self) -> Self:
-        used = [("scene.walls", self.scene.walls)]
-        parts = [*self.scene.particles, *getattr(self.scene, "bed", [])]
-        used += [("scene.particles.material", p.material) for p in parts]
-        for place, name in used:
+        for place, name in self.scene.named_materials:
             if name not in self.materials:
                 raise ValueError(f"{place} = {name!r} is not defined; add [materials.{name}]")
         tangential = self.contact.tangential_restitution
@@ -263,6 +275,8 @@ class SceneCase(Frozen):
             for name in pair.between:
                 if name not in self.materials and name != "wall":
                     raise ValueError(f"contact.pairs: {name!r} is neither a material nor 'wall'")
+            if pair.restitution is not None and self.viscous is None:
+                raise ValueError("contact.pairs.restitution: there is no dashpot; add [viscous], for all other pairs")
         return self
 
     @property
@@ -279,7 +293,7 @@ def parse(data: dict[str, Any], path: object = "case") -> SceneCase:
     """A scene from TOML data; `path` names the place in messages. Raises CaseError."""
     data = with_library(data, path)
     try:
-        return SceneCase.model_validate(data)
+        return SceneCase.model_validate(data, context=context(path))
     except ValidationError as error:
         raise CaseError(explain(path, data, error, "scene")) from None
 

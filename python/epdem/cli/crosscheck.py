@@ -74,6 +74,7 @@ def crosscheck(
     """Run a case on every installed engine and model, and print errors, order of convergence and invariance."""
     from ..impacts import report
     from ..studies.crosscheck import crosscheck as check
+    from ..studies.pages.tables import of_crosscheck
 
     folders = [out / path.stem for path in cases] if out and len(cases) > 1 else [out for _ in cases]
     if out and len(set(folders)) < len(cases):
@@ -82,6 +83,7 @@ def crosscheck(
     with status() as progress:
         for path, folder in zip(cases, folders, strict=True):
             results.append(check(path, law=law, out=folder, fresh=fresh, force=force, progress=progress))
+            of_crosscheck(results[-1])
     if as_json:
         documents = [
             {"case": c.outcome.case.name, "absent": c.absent, "notes": c.notes, "rows": report.records(c.table)}
@@ -100,4 +102,4 @@ def crosscheck(
             console().print(f"{name} has a law and a theory of its own: {note}", soft_wrap=True)
         for name, reason in c.absent.items():
             console().print(f"left out: {name}: {reason}", soft_wrap=True)
-        console().print(f"figure and data: {c.outcome.folder}/")
+        console().print(f"page, figure and data: {c.outcome.folder}/report.html")

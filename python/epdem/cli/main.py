@@ -24,7 +24,7 @@ from . import scenes as cli_scene
 from . import sweep as cli_sweep
 from . import theory as cli_theory
 from . import trees as cli_trees
-from .options import AsJson, CasePath, Engines, Force, Laws, Out, laws_or_own, refuse, warn
+from .options import AsJson, CasePath, Engines, Force, Formats, Laws, Out, formats, laws_or_own, refuse, warn
 from .printed import Printed
 
 ABOUT = """Elastic-plastic particle contact for LIGGGHTS and YADE, checked against theory.
@@ -35,7 +35,6 @@ Exit codes: 0 all within tolerance, 1 a check failed, 2 bad input, 3 an engine f
 """
 UsageError: Any = typer.BadParameter.__base__  # typer gives its own name to its children only
 app = typer.Typer(
-    add_completion=False,
     no_args_is_help=True,
     pretty_exceptions_enable=False,
     help=ABOUT,
@@ -72,30 +71,48 @@ def run(
     resume: Annotated[
         bool, typer.Option("--resume", help="continue an interrupted scene from its last restart file")
     ] = False,
+    full: Annotated[bool, typer.Option("--full", help="print all rows, not ten impacts of each engine")] = False,
+    pictures: Formats = None,
     force: Force = False,
     as_json: AsJson = False,
 ) -> None:
-    """Run a case and check it against theory, or run a bulk scene (default engine: liggghts)."""
-    screen = console()
-    printed = Printed(case, out, engine, law, ranks, steps, force, as_json, screen.is_terminal, screen.width)
+    """Run a case and check it against theory, or run a bulk scene (default engine: liggghts).
+
+    Its page report.html is beside the results.
+    """
+    screen, kinds = console(), formats(pictures)
+    if full and as_json:
+        raise CaseError("--full: --json holds all rows; leave it out")
+    options = (engine, law, ranks, steps, full, kinds, force, as_json)
+    printed = Printed(case, out, *options, screen.is_terminal, screen.width)
     if not (fresh or resume) and (before := printed.again()):
         print(before[0], end="")
         raise typer.Exit(before[1])
     if cli_scene.is_scene(case):
         refuse(case, "a scene has its own law and time step", law=law, steps=steps)
+        refuse(case, "it is for impacts; a scene prints all its checks", full=full)
         if len(set(engine or [])) > 1:
             raise CaseError(f"{case}: --engine: a scene runs on one engine; give it once")
         if fresh and resume:
             raise CaseError(f"{case}: --resume continues a run and --fresh begins it again; leave one out")
         chosen = engine[0] if engine else DEFAULT_ENGINE
         code = cli_scene.run_scene(
-            case, engine=chosen, out=out, ranks=ranks, fresh=fresh, resume=resume, force=force, as_json=as_json
+            case,
+            engine=chosen,
+            out=out,
+            ranks=ranks,
+            fresh=fresh,
+            resume=resume,
+            pictures=kinds,
+            force=force,
+            as_json=as_json,
         )
         raise typer.Exit(code)
     refuse(case, "it continues bulk scenes; a run of impacts takes finished stages from its store", resume=resume)
     from ..engines import engine as find
     from ..impacts import report
     from ..impacts.run import run as run_case
+    from ..studies.pages.impacts import of_impacts
 
     engines = engine or [DEFAULT_ENGINE]
     stages = len(set(engines)) * max(len(set(law or [])), 1) + 1  # and the figure
@@ -113,21 +130,22 @@ def run(
             progress=lambda text: progress.update(task, advance=1, description=text),
         )
         progress.update(task, advance=1, description="figure")
-        report.figure(outcome)
+        report.figure(outcome, kinds)
+        of_impacts(outcome)
     code = 0 if outcome.passed else 1
-    print(_said(outcome, screen, as_json), end="")
+    print(_said(outcome, screen, full, as_json), end="")
     outcome.reused = list(outcome.results.runs)
-    printed.keep(_said(outcome, screen, as_json), code)
+    printed.keep(_said(outcome, screen, full, as_json), code)
     raise typer.Exit(code)
 
 
-def _said(outcome: Any, screen: Any, as_json: bool) -> str:
+def _said(outcome: Any, screen: Any, full: bool, as_json: bool) -> str:
     from ..impacts import report
 
     if as_json:
         return report.run_json(outcome) + "\n"
     with screen.capture() as said:
-        report.show(outcome, screen)
+        report.show(outcome, screen, full=full)
     return str(said.get())
 
 

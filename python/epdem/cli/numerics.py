@@ -8,7 +8,7 @@ from typing import Annotated
 import typer
 
 from ..base.terminal import console, frame_table, status
-from .options import AsJson, CasePath, Engines, Force, Laws, Out, Replace, laws_or_own, refuse
+from .options import AsJson, CasePath, Engines, Force, Formats, Laws, Out, Replace, formats, laws_or_own, refuse
 
 
 def timestep(
@@ -66,7 +66,9 @@ def stability(
     steps: Annotated[
         int | None, typer.Option(min=1000, help="steps of the drift by repeated bounces (default: 1e9)")
     ] = None,
-    out: Annotated[Path | None, typer.Option("--out", "-o", help="CSV file of all verdicts")] = None,
+    out: Annotated[
+        Path | None, typer.Option("--out", "-o", help="CSV file of all verdicts; its page is beside it, as .html")
+    ] = None,
     force: Replace = False,
     as_json: AsJson = False,
 ) -> None:
@@ -79,13 +81,17 @@ def stability(
 
     if out:
         refuse_existing(out, force=force)
+        refuse_existing(out.with_suffix(".html"), force=force)
     else:
         refuse("stability", "it goes with --out", force=force)
     with status() as progress:
         outcome = suite.run(engine or [], law or [], groups=group, every=every, steps=steps, progress=progress)
     if out:
+        from ..studies.pages.tables import of_stability
+
         with atomic(out) as temporary:
             outcome.verdicts.to_csv(temporary, index=False)
+        of_stability(outcome, out.with_suffix(".html"))
     if as_json:
         print(
             json.dumps(
@@ -115,6 +121,7 @@ def cost(
     law: Laws = None,
     repetitions: Annotated[int, typer.Option(min=1, max=100, help="repetitions of every timed run, interleaved")] = 5,
     bulk: Annotated[bool, typer.Option(help="run a bulk scene in LIGGGHTS as well")] = False,
+    pictures: Formats = None,
     out: Out = None,
     force: Force = False,
     as_json: AsJson = False,
@@ -125,8 +132,9 @@ def cost(
     from ..impacts.report import records
     from ..studies import cost as study
     from ..studies import cost_report
+    from ..studies.pages.tables import of_cost
 
-    scene = None
+    scene, kinds = None, formats(pictures)
     folder = results_folder(out, load(case).name, "cost")
     with claim(folder, force=force, files=["cost.csv"]), status() as progress:
         outcome = study.run(
@@ -140,7 +148,7 @@ def cost(
             from ..studies.stability import bulk_cost
 
             scene = bulk_cost.run(law or [outcome.case.law.name], progress=progress)
-        files = cost_report.write(outcome, folder)
+        files = [*cost_report.write(outcome, folder, kinds), of_cost(outcome, scene, folder)]
     if as_json:
         document = {
             "case": outcome.case.name,
@@ -152,4 +160,4 @@ def cost(
         print(json.dumps(document | ({} if scene is None else {"bulk": records(scene)}), indent=1))
     else:
         cost_report.show(outcome, scene, console())
-        print(f"see {folder}/")
+        print(f"see {folder}/report.html")

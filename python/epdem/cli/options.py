@@ -21,12 +21,25 @@ Laws = Annotated[
 Out = Annotated[Path | None, typer.Option("--out", "-o", help="folder for the results (default: runs/<case>)")]
 Force = Annotated[bool, typer.Option("--force", help="write into a folder that holds other files")]
 Replace = Annotated[bool, typer.Option("--force", help="replace an existing file")]
+Formats = Annotated[
+    list[str] | None,
+    typer.Option("--format", help="of the figures: png, svg or pdf (default: png); repeat for more"),
+]
 AsJson = Annotated[bool, typer.Option("--json", help="print one JSON document and nothing else")]
 
 
 def laws_or_own(names: list[str] | None) -> list[str] | list[None]:
     """The laws named by --law, each once; None, the case's own, without any."""
     return list(dict.fromkeys(names)) if names else [None]
+
+
+def formats(chosen: list[str] | None) -> tuple[str, ...]:
+    """The formats of figures, each once; png without any. Raises CaseError."""
+    known = ("png", "svg", "pdf")
+    for name in chosen or []:
+        if name not in known:
+            raise CaseError(f"--format {name}: not one of {', '.join(known)}; choose one of these")
+    return tuple(dict.fromkeys(chosen or ["png"]))
 
 
 def refuse(place: object, reason: str, **given: object) -> None:

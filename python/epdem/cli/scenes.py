@@ -28,6 +28,7 @@ def run_scene(
     ranks: int = 1,
     fresh: bool = False,
     resume: bool = False,
+    pictures: tuple[str, ...] = ("png",),
     force: bool = False,
     as_json: bool = False,
 ) -> int:
@@ -37,6 +38,7 @@ def run_scene(
     from ..engines import scene_engine
     from ..scenes import report
     from ..scenes.run import run
+    from ..studies.pages.scenes import of_scene
 
     tool = scene_engine(engine)
     with bar(TextColumn("{task.completed}/{task.total} steps"), TimeRemainingColumn()) as progress:
@@ -51,7 +53,8 @@ def run_scene(
             force=force,
             report=lambda step, steps: progress.update(task, completed=step, total=steps),
         )
-    report.figures(outcome)
+    report.figures(outcome, pictures)
+    of_scene(outcome)
     if as_json:
         print(report.as_json(outcome))
     else:

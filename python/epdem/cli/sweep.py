@@ -41,6 +41,7 @@ def sweep(
     as_json: AsJson = False,
 ) -> None:
     """A case or scene at many points; the same command again does only what is missing or has changed."""
+    from ..studies.pages.tables import of_sweep
     from ..studies.sweep import executors as study
     from ..studies.sweep.points import settings
     from ..studies.sweep.run import check_points, plan
@@ -78,6 +79,7 @@ def sweep(
         outcome = study.execute(
             planned, folder, executor, slurm or [], jobs=jobs, retry_failed=retry_failed, force=force, report=report
         )
+    of_sweep(outcome)
     sweep_view.outcome(outcome, as_json, console())
     raise typer.Exit(0 if outcome.passed else 1)
 

@@ -59,7 +59,9 @@ def outcome(result: SweepOutcome, as_json: bool, console: Console) -> None:
     text = f"{counts[DONE]} of {len(result.sweep.points)} points done, {result.ran} of them just now"
     text += f"; {counts[FAILED]} failed (--retry-failed runs them again)" if counts[FAILED] else ""
     text += f"; {outside} outside tolerance" if outside else ""
-    console.print(f"{result.sweep.name}: {text}; see {result.folder}/sweep.csv", highlight=False, soft_wrap=True)
+    console.print(
+        f"{result.sweep.name}: {text}; see {result.folder}/sweep.csv and report.html", highlight=False, soft_wrap=True
+    )
 
 
 def status(summary: dict[str, Any], console: Console) -> None:

@@ -10,7 +10,7 @@ import typer
 from ..base.settings import DEFAULT_ENGINE
 from ..base.terminal import console
 from ..base.terminal import table as empty_table
-from .options import AsJson, CasePath, Engines, Force, Laws, laws_or_own, refuse
+from .options import AsJson, CasePath, Engines, Force, Formats, Laws, formats, laws_or_own, refuse
 
 
 def theory(
@@ -53,6 +53,7 @@ def theory(
 
 def figures(
     out: Annotated[Path, typer.Option("--out", "-o", help="folder for the figures")] = Path("runs/figures"),
+    pictures: Formats = None,
     force: Force = False,
     as_json: AsJson = False,
 ) -> None:
@@ -60,8 +61,9 @@ def figures(
     from ..base.folders import claim
     from ..studies.figures import draw_all
 
+    kinds = formats(pictures)
     with claim(out, force=force):
-        names = [str(path) for path in draw_all(out)]
+        names = [str(path) for path in draw_all(out, kinds)]
     print(json.dumps({"files": names}) if as_json else "\n".join(names))
 
 
@@ -74,7 +76,7 @@ def cite(case: CasePath, engine: Engines = None, law: Laws = None, as_json: AsJs
     from ..engines.citations import citations
     from ..impacts.experiment import experiment
 
-    tools = [find(name) for name in engine or [DEFAULT_ENGINE]]
+    tools = [find(name).name for name in engine or [DEFAULT_ENGINE]]
     with named(case):
         if scene.is_scene(read_toml(case)):
             refuse(case, "a scene has its own law", law=law)

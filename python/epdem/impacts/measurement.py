@@ -81,7 +81,9 @@ def measure(plan: Plan, path: Trajectory, *, end_power: float | None = None) -> 
     peak = np.where(sampled, overlap, -np.inf).max(axis=1)
     energy = 0.5 * plan.experiment.m_star * plan.speed**2
     # at the dent, between two samples, the force is 0 and so is the last piece of work, to third order
-    work = np.where(loaded[:, 1:] | loaded[:, :-1], 0.5 * (force[:, 1:] + force[:, :-1]) * np.diff(overlap), 0.0)
+    work = force[:, 1:] + force[:, :-1]
+    work *= overlap[:, 1:] - overlap[:, :-1]
+    work[~(loaded[:, 1:] | loaded[:, :-1])] = 0.0
     plastic = law.work(peak) - law.recovered_work(peak)
     e_n = -velocity[row, end] / plan.speed
     rebound = None
@@ -93,7 +95,7 @@ def measure(plan: Plan, path: Trajectory, *, end_power: float | None = None) -> 
         force_max=force_max,
         overlap_max=peak,
         residual_overlap=residual,
-        energy_residual=(work.sum(axis=1) - plastic) / energy if own else np.full(plan.n, np.nan),
+        energy_residual=(0.5 * work.sum(axis=1) - plastic) / energy if own else np.full(plan.n, np.nan),
         steps_in_contact=loaded.sum(axis=1),
         rebound=rebound,
     )

@@ -6,23 +6,35 @@ import json
 import math
 from collections.abc import Sequence
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import Any
 
+import numpy as np
 import pandas as pd
 from rich.console import Console
 from rich.table import Table
 
-from ..base.files import atomic
 from ..base.folders import claim
-from ..base.terminal import table
+from ..base.terminal import show_table, table
 from . import oblique_report
 from .comparison import CHECKED
 from .prediction import Prediction
 from .run import Outcome
 
-if TYPE_CHECKING:
-    from matplotlib.figure import Figure
-
+# columns that a narrow terminal has no room for, those of oblique impacts among them
+SPARE = (
+    "steps",
+    "overlap [um]",
+    "F_max [N]",
+    "t_c [us]",
+    "law",
+    "spin",
+    "rebound",
+    "f/mu",
+    "spin [rad/s]",
+    "regime",
+    "e_t",
+)
+FEW = 10  # impacts of each engine and law in the short table
 ROW_KEYS = (
     "engine",
     "law",
@@ -74,12 +86,22 @@ def yielding(prediction: Prediction) -> str:
     return f"yields: {', '.join(prediction.yields)}" if prediction.yields else "nothing yields"
 
 
-def run_table(outcome: Outcome) -> Table:
-    """One row per speed and engine, and per angle and spin of oblique impacts."""
+def chosen(outcome: Outcome, full: bool) -> pd.DataFrame:
+    """The rows to be shown: all, or those of FEW impacts over the whole range and of every engine and law."""
+    rows = outcome.results.comparison
+    place = rows.groupby(["law", "engine"]).cumcount()
+    if full or place.max() < FEW:
+        return rows
+    return rows[place.isin(np.linspace(0, place.max(), FEW).round().astype(int))]
+
+
+def run_table(outcome: Outcome, *, full: bool = False) -> Table:
+    """One row per speed and engine, and per angle and spin of oblique impacts; FEW of them unless `full`."""
+    rows = chosen(outcome, full)
     if outcome.case.impact.oblique:
-        return oblique_report.run_table(outcome)
+        return oblique_report.run_table(outcome, rows)
     yields = "; ".join(f"{law}: {yielding(p)}" for law, p in outcome.predictions.items())
-    laws = outcome.results.comparison["law"].nunique() > 1
+    laws = rows["law"].nunique() > 1
     heads = [
         "v [m/s]",
         "engine",
@@ -94,7 +116,7 @@ def run_table(outcome: Outcome) -> Table:
         "pass",
     ]
     shown = table(f"{outcome.case.case.title} ({yields})", heads, left=("engine", "law"))
-    ordered = outcome.results.comparison.sort_values(["law", "speed", "engine"], kind="stable")
+    ordered = rows.sort_values(["law", "speed", "engine"], kind="stable")
     for row in ordered.to_dict("records"):
         cells = [
             f"{row['speed']:.4g}",
@@ -113,6 +135,19 @@ def run_table(outcome: Outcome) -> Table:
     return shown
 
 
+def worst(outcome: Outcome) -> list[str]:
+    """One line for every engine and law: its largest errors, and how many rows are outside tolerance."""
+    lines = []
+    rows = outcome.results.comparison
+    checked = [*CHECKED, *(["psi_2"] if "psi_2_error" in rows else [])]
+    for (engine, law), part in rows.groupby(["engine", "law"], sort=False):
+        errors = ", ".join(f"{name} {part[name + '_error'].max():.1e}" for name in checked)
+        failed = int((~part["passed"]).sum())
+        verdict = f"{failed} of {len(part)} rows outside tolerance" if failed else "within tolerance"
+        lines.append(f"{engine}, {law}: {verdict}; largest errors: {errors}")
+    return lines
+
+
 def summary(outcome: Outcome) -> str:
     """One line: verdict, worst errors, times, place."""
     rows = outcome.results.comparison
@@ -128,60 +163,39 @@ def summary(outcome: Outcome) -> str:
     worst += f", of psi_2 {rows['psi_2_error'].max():.1e}" if "psi_2_error" in rows else ""
     if stuck := int(rows["stuck"].sum()):
         worst += f"; {stuck} impacts stick"
-    return f"{outcome.case.name}: {verdict}; {worst}; {times}{stored}; see {outcome.folder}/"
+    return f"{outcome.case.name}: {verdict}; {worst}; {times}{stored}; see {outcome.folder}/report.html"
 
 
-def show(outcome: Outcome, console: Console) -> None:
+def show(outcome: Outcome, console: Console, *, full: bool = False) -> None:
     """Print table, warnings and summary."""
-    console.print(run_table(outcome))
+    shown, rows = chosen(outcome, full), outcome.results.comparison
+    show_table(console, run_table(outcome, full=full), SPARE)
+    if len(shown) < len(rows):
+        console.print(f"{len(shown)} of {len(rows)} rows; --full prints all", markup=False, highlight=False)
+    for line in worst(outcome):
+        console.print(line, markup=False, highlight=False, soft_wrap=True)
     for warning in outcome.warnings:
         console.print(f"warning: {warning}", style="yellow", markup=False, highlight=False)
     console.print(summary(outcome), markup=False, highlight=False, soft_wrap=True)
 
 
-def figure(outcome: Outcome) -> Path:
-    """e_n.png: restitution against speed, theory as lines and engines as points, errors below; psi.png if oblique.
+def mark(outcome: Outcome, *facts: object) -> str:
+    """Hash of the inputs of the runs that an outcome holds, and of `facts`: what a picture or page shows."""
+    shown = (sorted((key, run["inputs"]) for key, run in outcome.results.runs.items()), facts)
+    return hashlib.sha256(repr(shown).encode()).hexdigest()
 
-    A picture that shows these very runs already is left as it is: it carries the hash of their inputs.
+
+def figure(outcome: Outcome, formats: Sequence[str] = ("png",)) -> Path:
+    """Draw e_n, restitution against speed with theory and errors, or psi if oblique; the first of its files.
+
+    Pictures that show these very runs already are left as they are: the PNG file carries the hash of their inputs.
     """
-    slips = outcome.case.impact.oblique
-    path = outcome.folder / ("psi.png" if slips else "e_n.png")
-    shown = repr(sorted((key, run["inputs"]) for key, run in outcome.results.runs.items()))
-    digest = hashlib.sha256(shown.encode()).hexdigest()
-    if path.exists() and digest.encode() in path.read_bytes():
-        return path
-    import matplotlib  # slow to import, and only this function needs it
+    name, digest = ("psi" if outcome.case.impact.oblique else "e_n"), mark(outcome)
+    paths = [outcome.folder / f"{name}.{kind}" for kind in formats]
+    if all(p.exists() and p.suffix == ".png" and digest.encode() in p.read_bytes() for p in paths):
+        return paths[0]
+    from ..report.drawing import save
+    from .charts import main_chart
 
-    matplotlib.use("Agg")
-    import matplotlib.pyplot as plt
-
-    fig = oblique_report.figure(outcome) if slips else _restitutions(outcome)
-    with claim(outcome.folder, force=True), atomic(path) as temporary:
-        fig.savefig(temporary, dpi=130, metadata={"Comment": f"inputs {digest}"})
-    plt.close(fig)
-    return path
-
-
-def _restitutions(outcome: Outcome) -> "Figure":
-    """e_n against speed, and its errors."""
-    from matplotlib import pyplot as plt
-
-    fig, (above, below) = plt.subplots(2, 1, sharex=True, figsize=(7, 6), height_ratios=(3, 1.3), layout="constrained")
-    rows = outcome.results.comparison
-    several = len(outcome.predictions) > 1  # colours distinguish laws, or else engines
-    for i, (law, prediction) in enumerate(outcome.predictions.items()):
-        colour = f"C{i}" if several else "0.3"
-        above.plot(prediction.speed, prediction.e_n, "-", color=colour, lw=1.2, label=f"theory, {law}")
-        engines = rows[rows["law"] == law].groupby("engine", sort=False)
-        for k, ((name, part), marker) in enumerate(zip(engines, "ox+^sD", strict=False)):
-            style = {"color": colour if several else f"C{k}", "ls": "none", "marker": marker, "ms": 5, "mfc": "none"}
-            above.plot(part["speed"], part["e_n"], label=f"{name}, {law}", **style)
-            below.plot(part["speed"], part["e_n_error"], **style)
-    below.axhline(outcome.case.check.e_n, color="0.6", lw=0.8, ls="--", label="tolerance")
-    above.set(ylabel="coefficient of restitution e_n", xscale="log")
-    above.set_title(outcome.case.case.title, parse_math=False)
-    below.set(xlabel="impact speed [m/s]", ylabel="error of e_n\n(max over phases)", yscale="log")
-    above.legend(fontsize=8)
-    for axes in (above, below):
-        axes.grid(alpha=0.3)
-    return fig
+    with claim(outcome.folder, force=True):
+        return save(main_chart(outcome), outcome.folder, formats, comment=f"inputs {digest}")[0]

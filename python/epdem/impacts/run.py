@@ -25,6 +25,7 @@ from .comparison import compare, impacts_table
 from .engine import Engine, refuse
 from .experiment import Experiment, experiment
 from .measurement import measure
+from .paths import chosen
 from .plan import Plan, plan
 from .prediction import Prediction, predict
 
@@ -37,6 +38,7 @@ class Outcome:
     folder: Path
     results: store.Results
     predictions: dict[str, Prediction]
+    plans: dict[str, Plan]  # by law
     seconds: dict[str, float] = field(default_factory=dict)
     reused: list[str] = field(default_factory=list)
     warnings: list[str] = field(default_factory=list)
@@ -48,11 +50,13 @@ class Outcome:
 
 @dataclass(frozen=True)
 class Stage:
-    """The result of one engine for one plan: impacts as in `impacts_table`, its times [s], the texts of its deck."""
+    """The result of one engine for one plan: impacts as in `impacts_table`, its times [s], the texts of its deck,
+    and chosen impacts step by step."""
 
     impacts: pd.DataFrame
     seconds: dict[str, float]
     decks: dict[str, str]
+    paths: pd.DataFrame
 
 
 def run_plan(p: Plan, tool: Engine, folder: Path, *, ranks: int = 1, end_power: float | None = None) -> Stage:
@@ -67,7 +71,8 @@ def run_plan(p: Plan, tool: Engine, folder: Path, *, ranks: int = 1, end_power: 
     path = tool.run(p, folder, ranks=ranks)
     table = impacts_table(p, measure(p, path, end_power=end_power))
     seconds = {f"seconds_{k}": v for k, v in path.seconds.items()} | {"seconds": time.perf_counter() - start}
-    return Stage(table, seconds, {f.name: f.read_text(encoding="utf-8") for f in files if f.suffix != ".data"})
+    decks = {f.name: f.read_text(encoding="utf-8") for f in files if f.suffix != ".data"}
+    return Stage(table, seconds, decks, chosen(p, path))
 
 
 def run_and_compare(
@@ -131,6 +136,7 @@ def _beside_earlier(results: store.Results, old: store.Results) -> store.Results
         old.predictions | results.predictions,
         {k: old.runs[k] for k in keep} | results.runs,
         {k: v for k, v in old.decks.items() if k.rsplit("/", 1)[0] in keep} | results.decks,
+        {k: old.paths[k] for k in keep} | results.paths,
     )
 
 
@@ -226,7 +232,8 @@ def _run(text: str, work: _Work, folder: Path, ranks: int, fresh: bool, progress
     attributes = {"case": work.case.name, "epdem": __version__}
     attributes |= {f"version_{name}": version for name, version in work.versions.items()}
     results = store.Results(case_text=text, attributes=attributes)
-    outcome = Outcome(work.case, folder, results, work.predictions, warnings=doubts(work.case))
+    plans = {p.experiment.law.name: p for p in work.plans}
+    outcome = Outcome(work.case, folder, results, work.predictions, plans, warnings=doubts(work.case))
     rows = []
     for p in work.plans:
         law = p.experiment.law.name
@@ -239,11 +246,12 @@ def _run(text: str, work: _Work, folder: Path, ranks: int, fresh: bool, progress
             progress(f"{tool.name}, {law}: {p.n} impacts")
             if not fresh and old.runs.get(key, {}).get("inputs") == inputs:
                 results.impacts[key], results.runs[key] = old.impacts[key], old.runs[key]
+                results.paths[key] = old.paths[key]
                 results.decks |= {k: v for k, v in old.decks.items() if k.startswith(key + "/")}
                 outcome.reused.append(key)
             else:
                 stage = run_plan(p, tool, folder / law / tool.name, ranks=ranks)
-                results.impacts[key] = stage.impacts
+                results.impacts[key], results.paths[key] = stage.impacts, stage.paths
                 results.runs[key] = stage.seconds | {"inputs": inputs, "time_step": p.time_step} | work.how
                 results.decks |= {f"{key}/{name}": text for name, text in stage.decks.items()}
             spent = float(str(results.runs[key]["seconds"]))

@@ -10,6 +10,7 @@ from ..base.files import write_texts
 from ..errors import CaseError
 
 NAME = "normal_model_ep"
+PFM = "pfm"  # folder of the sources for LIGGGHTS-PFM, whose contact models have another interface
 # What keeps a tree from being built with GCC 12 and make 4.3, or from being built with our files: file, what is in it,
 # what to do.
 _OBSTACLES = (
@@ -30,7 +31,7 @@ _OBSTACLES = (
     ),
     (
         "dump_mesh_vtk.cpp",
-        r"\A(?!(?s:.)*LAMMPS_VTK)",
+        r"\A(?!(?s:.)*LAMMPS_VTK)(?=(?s:.)*#include <vtk)",
         "it needs VTK; without VTK remove dump_mesh_vtk.cpp and dump_mesh_vtk.h",
     ),
     ("CMakeLists.txt", r"-std=c\+\+(98|03|0x|11|14)\b", "for a build by CMake write -std=c++17 in its place"),
@@ -55,14 +56,18 @@ _TOP = """\
 """
 
 
-def files() -> dict[str, str]:
+def files(pfm: bool = False) -> dict[str, str]:
     """Names and texts of the files; one for the models, one for each set of instructions that is compiled apart.
 
-    The first is for the processor that the tree is built for. Raises EngineError if the sources are not installed.
+    The first is for the processor that the tree is built for. For LIGGGHTS-PFM (`pfm`) it is the only one, because the
+    pair loop does not run there. Raises EngineError if the sources are not installed.
     """
     host, laws = paths.cpp_sources()
+    if pfm:
+        return {f"{NAME}.cpp": _together([host / PFM / "models.cpp", host / "materials.cpp"], host, laws)}
     apart = {name: options for name, options in _OPTIONS.findall((host / "CMakeLists.txt").read_text(encoding="utf-8"))}
-    common = [f for f in sorted(host.rglob("*.cpp")) if f.name != "main.cpp" and str(f.relative_to(host)) not in apart]
+    left_out = {"main.cpp", f"{PFM}/models.cpp", *apart}
+    common = [f for f in sorted(host.rglob("*.cpp")) if f.relative_to(host).as_posix() not in left_out]
     found = {f"{NAME}.cpp": _together(common, host, laws)}
     for name, options in apart.items():
         source = host / name
@@ -71,10 +76,19 @@ def files() -> dict[str, str]:
 
 
 def write(folder: Path) -> list[Path]:
-    """Write the files into a folder, the `src` of a LIGGGHTS tree. Raises CaseError if it does not exist."""
+    """Write the files into a folder, the `src` of a LIGGGHTS tree; those for LIGGGHTS-PFM if it is one.
+
+    Raises CaseError if the folder does not exist.
+    """
     if not folder.is_dir():
         raise CaseError(f"--out {folder}: there is no such folder; name the folder src of a LIGGGHTS tree")
-    return write_texts(folder, files())
+    return write_texts(folder, files(is_pfm(folder)))
+
+
+def is_pfm(folder: Path) -> bool:
+    """Whether the contact models in the `src` of a tree have the interface collision/noCollision."""
+    models = folder / "contact_models.h"
+    return models.is_file() and "noCollision" in _text(models)
 
 
 def check(folder: Path) -> list[str]:
@@ -85,13 +99,14 @@ def check(folder: Path) -> list[str]:
     models = folder / "contact_models.h"
     if not models.is_file():
         raise CaseError(f"--check {folder}: contact_models.h is not there; name the folder src of a LIGGGHTS tree")
-    if "surfacesIntersect" not in _text(models):
+    pfm = is_pfm(folder)
+    if not pfm and "surfacesIntersect" not in _text(models):
         raise CaseError(
-            f"--check {models}: its models have the interface collision/noCollision (LIGGGHTS before 3.2, LIGGGHTS-PFM)"
-            ", which our files do not serve; take a tree of LIGGGHTS-PUBLIC 3.8 or LIGGGHTS-INL 4.0"
+            f"--check {models}: its models have neither the interface surfacesIntersect nor collision/noCollision; "
+            "take a tree of LIGGGHTS-PUBLIC 3.8, LIGGGHTS-INL 4.0 or LIGGGHTS-PFM 24.01"
         )
     found = []
-    for name, text in files().items():
+    for name, text in files(pfm).items():
         if not (folder / name).is_file():
             found.append(f"{folder / name} is not there; run 'epdem header --out {folder}'")
         elif _text(folder / name) != text:

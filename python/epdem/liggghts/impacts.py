@@ -26,7 +26,7 @@ from .pairs import velocities
 from .properties import HARD, SOFT, Property, atom_types, finite, of_law, tangential
 
 END = "end.bin"
-SCENES = ("settle", "hopper", "drum", "compaction", "peening")
+SCENES = ("settle", "hopper", "drum", "compaction", "peening", "parts")
 OWN_MODELS = ("liggghts-thornton_ning", "liggghts-hertz")
 
 

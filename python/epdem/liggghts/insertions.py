@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from ..scenes.kinds import Block, Fill
+from ..scenes.layout import Block, Fill, Vector
 from ..scenes.plan import ScenePlan
 
 # Volumes [m^3] of a template and of a region below which LIGGGHTS refuses them without a keyword for a smaller limit.
@@ -28,7 +28,10 @@ class Template:
 
 @dataclass(frozen=True)
 class Insertion:
-    """One `fix insert`: a distribution of templates, filled into a region at once or as a stream."""
+    """One `fix insert`: a distribution of templates, filled into a region at once or as a stream.
+
+    `once`: in one step, so that a continued run has it behind it.
+    """
 
     id: str
     seed: int
@@ -39,8 +42,9 @@ class Insertion:
     count: int
     rate: float | None
     every: int | None
-    velocity: float
+    velocity: Vector
     phase: str
+    once: bool
 
 
 def primes() -> Iterator[int]:
@@ -61,7 +65,7 @@ def _region(fill: Fill) -> str:
         centres = math.prod(max(0.0, x[k + 1] - x[k] - 2.0 * largest) for k in (0, 2, 4))
     else:
         c = fill.region
-        style = f"cylinder z 0 0 {c.radius:.10g} {c.low:.10g} {c.high:.10g}"
+        style = f"cylinder z {c.center[0]:g} {c.center[1]:g} {c.radius:.10g} {c.low:.10g} {c.high:.10g}"
         centres = math.pi * (c.radius - largest) ** 2 * (c.high - c.low - 2.0 * largest)
     return style + (f" volume_limit {MEANT:g}" if centres < SMALL_ROOM else "")
 
@@ -87,7 +91,9 @@ def insertions(p: ScenePlan) -> tuple[Insertion, ...]:
     seeds = itertools.islice(primes(), 100 * (p.case.numerics.seed - 1), None)
     result: list[Insertion] = []
     first = 1
+    steps = {phase.name: phase.time_step or p.time_step for phase in p.phases}
     for i, fill in enumerate(p.layout.fills, 1):
+        phase = fill.phase or p.phases[0].name
         templates = _templates(p, fill, first, seeds)
         first += len(templates)
         result.append(
@@ -99,10 +105,12 @@ def insertions(p: ScenePlan) -> tuple[Insertion, ...]:
                 templates=templates,
                 region=_region(fill),
                 count=fill.count,
-                rate=fill.rate,
-                every=None if fill.rate is None else max(1, math.ceil(fill.every / p.time_step)),
+                # insert/pack counts what is in the region before it; a stream faster than a step does not
+                rate=float(f"{2 * fill.count / steps[phase]:.2g}") if fill.exact else fill.rate,
+                every=None if fill.rate is None and not fill.exact else max(1, math.ceil(fill.every / steps[phase])),
                 velocity=fill.velocity,
-                phase=fill.phase or p.phases[0].name,
+                phase=phase,
+                once=fill.rate is None,
             )
         )
     return tuple(result)

@@ -56,12 +56,15 @@ def choose(p: ScenePlan, folder: Path) -> tuple[int, list[int]]:
 def write_resume(p: ScenePlan, folder: Path, step: int) -> Path:
     """in.resume, which continues from the restart file of `step`."""
     d = deck(p)
-    phase = next((i for i, part in enumerate(d.phases) if step < part.end), len(d.phases))
+    ends = tables.ends(folder, step) if p.ends_early else {part.name: part.end for part in d.phases}
+    phase = next((i for i, part in enumerate(d.phases) if ends.get(part.name, step + 1) > step), len(d.phases))
+    if phase < len(d.phases):
+        begun = max([0, *(ends[part.name] for part in d.phases[:phase])])
+        rest = d.phases[phase].after(step - begun, d.every)
+        d = replace(d, phases=(*d.phases[:phase], rest, *d.phases[phase + 1 :]))
     rows = tables.rows(p, folder / OUT).set_index("step")
-    if (
-        rows["particles"].get(step) == p.case.scene.count
-    ):  # poured out: LIGGGHTS refuses an insertion that lies behind it
-        d = replace(d, insertions=tuple(f for f in d.insertions if not f.rate))
+    if rows["particles"].get(step) == p.layout.count:  # poured out: LIGGGHTS refuses an insertion that lies behind it
+        d = replace(d, insertions=tuple(f for f in d.insertions if f.once))
     path = folder / "in.resume"
     continued = replace(d, from_restart=f"restart.{step}.bin", resumed_phase=phase)
     path.write_text(decks.render("liggghts/scene_resume.in.j2", deck=continued), encoding="utf-8")

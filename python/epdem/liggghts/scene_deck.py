@@ -5,13 +5,15 @@ import math
 from dataclasses import dataclass
 
 from ..base import rendering as decks
+from ..case.parts import Sphere
 from ..errors import CaseError
 from ..laws.library import laws
 from ..scenes.model import Model
-from ..scenes.plan import Phase, ScenePlan
+from ..scenes.plan import ScenePlan
 from . import stl
 from .insertions import Insertion, insertions
 from .properties import HARD, SOFT, Property, elastic, per_pair, ratios, strength, tangential, work_of_adhesion
+from .scene_parts import Flat, Part, Surface, load_words, parts, planes, surfaces, table, wall_id
 
 MOST_CELLS = 2**31 - 1  # that LIGGGHTS counts, each half as wide as its longest reach
 SKIN = 0.5  # of the smallest radius: rebuilds cost less than idle neighbours
@@ -41,12 +43,17 @@ class Deck:
     rolling_friction: str | None
     settings: tuple[str, ...]
     wall_type: int
-    planes: tuple[tuple[str, str, float], ...]
-    meshes: tuple[str, ...]
+    planes: tuple[Flat, ...]
+    meshes: tuple[Surface, ...]
+    loads_of: tuple[tuple[int, str, bool], ...]
+    powered: bool
+    table: tuple[Sphere, ...]
+    frozen: tuple[int, ...]
     gravity: float
     insertions: tuple[Insertion, ...]
     time_step: float
-    phases: tuple[Phase, ...]
+    phases: tuple[Part, ...]
+    open: bool
     every: int
     sampling: int
     samples: int
@@ -68,7 +75,6 @@ class Deck:
     rubs: bool
     torque: bool
     row_words: tuple[str, ...]
-    motion: dict[str, float]
     from_restart: str | None = None
     resumed_phase: int = 0
 
@@ -85,7 +91,9 @@ def _properties(p: ScenePlan) -> tuple[Property, ...]:
     if m.sliding:
         properties.append(per_pair("coefficientFriction", n, [mu for row in m.friction for mu in row], "-"))
     if m.viscous is not None:
-        properties.append(per_pair("coefficientRestitution", n, m.viscous, "-", "of impacts that do not yield"))
+        values = [e_n for row in m.viscous for e_n in row]
+        same = values[0] if len({*values}) == 1 else values
+        properties.append(per_pair("coefficientRestitution", n, same, "-", "of impacts that do not yield"))
     elif m.tangential_restitution is not None:
         note = "of the tangential dashpot only"
         properties.append(per_pair("coefficientRestitution", n, m.tangential_restitution, "-", note))
@@ -132,16 +140,6 @@ def contact_columns(slots: int, values: int) -> tuple[int, ...]:
     return (*range(4, 4 + slots), 4 + values) if slots else (4,)
 
 
-def _motion(p: ScenePlan) -> dict[str, float]:
-    """What moves, by the names of the templates."""
-    motion = {ph.name: abs(ph.plate) for ph in p.phases if ph.plate}
-    if p.layout.turn:
-        motion["omega"] = p.layout.turn
-    if p.layout.outlet is not None:
-        motion["outlet"] = p.layout.outlet
-    return motion
-
-
 def default_skin(p: ScenePlan) -> float:
     """The skin of a case that gives none [m]."""
     return float(f"{SKIN * p.smallest:.1e}")
@@ -150,7 +148,7 @@ def default_skin(p: ScenePlan) -> float:
 def _refuse_room(p: ScenePlan) -> None:
     """Raise CaseError for a room in which LIGGGHTS cannot count the cells where it looks for neighbours."""
     sides = [high - low for low, high in zip(p.layout.box[::2], p.layout.box[1::2], strict=True)]
-    width = max(part.radii()[1] for part in p.parts) + 0.5 * SKIN * p.smallest  # half of the longest reach
+    width = p.largest + 0.5 * SKIN * p.smallest  # half of the longest reach
     cells = math.prod(max(1.0, side / width) for side in sides)
     if cells > MOST_CELLS:
         raise CaseError(
@@ -165,7 +163,7 @@ def deck(p: ScenePlan) -> Deck:
     m, s, out = p.model, p.case.scene, p.output
     moduli = [p.case.materials[t.material].young_modulus for t in m.types]
     cut = p.case.numerics.cut
-    row_words = {"f_load": p.floor_load, "f_press_z": p.plates, "f_torque": p.torque}
+    row_words = {"f_load": p.floor_load, "f_press_z": p.plates, "f_torque": p.torque, "f_power": p.powered}
     return Deck(
         title=p.case.case.title,
         source=p.case.case.source,
@@ -186,13 +184,18 @@ def deck(p: ScenePlan) -> Deck:
         cohesion="sjkr" if m.cohesion else None,
         rolling_friction=m.rolling.model if m.rolling else None,
         settings=_settings(p),
-        wall_type=m.wall_type,
-        planes=tuple((w.name, f"{'xyz'[w.axis]}plane", w.place) for w in p.layout.planes),
-        meshes=tuple(p.layout.meshes),
+        wall_type=m.wall_types[""],
+        planes=planes(p),
+        meshes=surfaces(p),
+        loads_of=tuple((n, wall_id(p, name), name in p.layout.meshes) for n, name in enumerate(p.layout.loads, 1)),
+        powered=p.powered,
+        table=p.layout.table,
+        frozen=tuple(n for n, sphere in enumerate(p.layout.table, 1) if sphere.frozen),
         gravity=s.gravity,
         insertions=insertions(p),
         time_step=p.time_step,
-        phases=p.phases,
+        phases=parts(p),
+        open=p.ends_early or any("${begin}" in part.power for part in parts(p)),
         every=p.every,
         sampling=p.sampling,
         samples=p.every // p.sampling,
@@ -213,8 +216,7 @@ def deck(p: ScenePlan) -> Deck:
         dents=p.dents,
         rubs=p.rubs,
         torque=p.torque,
-        row_words=tuple(word for word, asked in row_words.items() if asked),
-        motion=_motion(p),
+        row_words=(*(word for word, asked in row_words.items() if asked), *load_words(p)),
     )
 
 
@@ -225,4 +227,6 @@ def files(p: ScenePlan) -> dict[str, str]:
         "in.scene": decks.render("liggghts/scene.in.j2", deck=data),
         "setup.in": decks.render("liggghts/scene_setup.in.j2", deck=data),
     }
-    return texts | {f"{name}.stl": stl.text(name, triangles) for name, triangles in p.layout.meshes.items()}
+    if data.table:
+        texts["spheres.data"] = decks.render("liggghts/spheres.data.j2", deck=data, rows=table(p))
+    return texts | {f"{name}.stl": stl.text(name, mesh.triangles) for name, mesh in p.layout.meshes.items()}

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """The tables of a scene from LIGGGHTS's files. Only this module reads its file formats."""
 
+import math
+import re
 from collections.abc import Collection
 from pathlib import Path
 
@@ -11,16 +13,26 @@ from ..errors import EngineError
 from ..scenes import columns, contacts
 from ..scenes.plan import ScenePlan
 from . import dump, log
+from .launcher import OUT
 
-# thermo words of the deck and their columns
+# thermo words of the deck and their columns; those of the loads of walls beside them, see `_column`
 ROWS = {
     "Atoms": "particles",
     "KinEng": "kinetic_energy",
     "load": "floor_load",
     "press_z": "plate_force",
     "torque": "torque",
+    "power": "wall_power",
 }
+_LOAD = re.compile(r"load(\d+)\[(\d)\]")
 PARTICLES, PAIRS, MESHES = "particles.{}.bin", "contacts.{}.txt", "wall_contacts.{}.txt"
+
+
+def _column(p: ScenePlan, word: str) -> str | None:
+    """The column of a thermo word; None: one that is not ours."""
+    if load := _LOAD.fullmatch(word):
+        return f"{p.layout.loads[int(load[1]) - 1]}_{columns.LOADS[int(load[2]) - 1]}"
+    return ROWS.get(word)
 
 
 def rows(p: ScenePlan, out: Path) -> pd.DataFrame:
@@ -33,12 +45,24 @@ def rows(p: ScenePlan, out: Path) -> pd.DataFrame:
     if every.empty:
         raise EngineError(f"{out}: no thermo rows; the run ended before its first step")
     table: dict[int, list[float]] = {}
-    names = [name for name in every if name in ROWS]  # and LIGGGHTS's own default
+    words = {name: column for name in every if (column := _column(p, name))}  # and LIGGGHTS's own default
     for _, part in every.groupby("run"):
-        steps, values = part["Step"].astype(int).to_list(), part[names].to_numpy().tolist()
+        steps, values = part["Step"].astype(int).to_list(), part[[*words]].to_numpy().tolist()
         known = {step: row for step, row in table.items() if step <= steps[0]}
         table = known | {step: row for step, row in zip(steps, values, strict=True) if step not in known}
-    return columns.rows(p, table, [ROWS[name] for name in names])
+    found = columns.rows(p, table, [*words.values()])
+    planes = {w.name for w in p.layout.planes} & {*p.layout.loads}
+    on_planes = [f"{name}_{force}" for name in planes for force in columns.LOADS[:3]]
+    found[on_planes] = -found[on_planes]  # LIGGGHTS stores what acts on the spheres
+    return found
+
+
+def ends(folder: Path, upto: float = math.inf) -> dict[str, int]:
+    """The step at the end of each phase, of a scene in which one may end early, up to a step."""
+    out = folder / OUT
+    text = out.read_text(encoding="utf-8", errors="replace") if out.exists() else ""
+    found = re.findall(r"^phase (\w+) ended at step (\d+)", text, re.M)
+    return {name: int(step) for name, step in found if int(step) <= upto}
 
 
 def _frame(path: Path, count: int) -> np.ndarray:
@@ -150,7 +174,9 @@ def contact_table(p: ScenePlan, folder: Path, spheres: pd.DataFrame, *, without:
     """Every contact of every frame; `spheres` is the particles' table. Raises EngineError as `particles` does."""
     parts = [_pairs(p, folder, without), *_planes(p, spheres)]
     if p.layout.meshes:
-        (name,) = p.layout.meshes
-        parts.append(_local(p, MESHES, folder, ["i"], without).assign(j=0, wall=name))
+        names = [*p.layout.meshes]
+        touched = _local(p, MESHES, folder, ["mesh", "i"] if len(names) > 1 else ["i"], without)
+        wall = [names[int(k)] for k in touched["mesh"]] if len(names) > 1 else names[0]
+        parts.append(touched.assign(j=0, wall=wall))
     raw = pd.concat([part for part in parts if len(part)] or parts[:1], ignore_index=True)
     return contacts.complete(p, raw, spheres, folder)

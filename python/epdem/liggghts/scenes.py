@@ -6,6 +6,7 @@ from pathlib import Path
 
 import pandas as pd
 
+from ..case.parts import Parts
 from ..scenes.engine import Report, Resumed
 from ..scenes.plan import ScenePlan
 from . import launcher, resume, scene_deck
@@ -51,7 +52,10 @@ class LiggghtsScenes:
         return Resumed(step, lost)
 
     def read(self, plan: ScenePlan, folder: Path, *, without: Collection[int] = ()) -> dict[str, pd.DataFrame]:
+        plan = plan.ended(tables.ends(folder)) if plan.ends_early else plan
         read = {"rows": tables.rows(plan, folder / launcher.OUT)}
+        if isinstance(plan.case.scene, Parts):
+            read["phases"] = plan.phase_table
         if plan.frames:
             read["particles"] = tables.particles(plan, folder, without=without)
         if plan.contacts:

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 import pandas as pd
 
+from ..case.parts import Parts
 from ..case.scene import Compaction, Hopper, Peening, SceneCase, Settle
 from ..impacts.prediction import predict
 from .ledger import closure, kinetic, plate_velocity
@@ -14,6 +15,7 @@ from .pairs import wall_impact
 from .plan import ScenePlan
 
 Row = dict[str, object]
+AT_REST = 1e-2  # of the energy of a fall by a radius: kinetic energy of a bed at rest
 MANY = 20  # frames from which on motion is followed
 
 
@@ -45,7 +47,7 @@ def _kept(p: ScenePlan, tables: dict[str, pd.DataFrame]) -> list[Row]:
     if p.layout.loses:
         return []
     last = float(tables["rows"]["particles"].iloc[-1])
-    return [_row("spheres in the room at the end", last, float(p.case.scene.count), 0.0)]
+    return [_row("spheres in the room at the end", last, float(p.layout.count), 0.0)]
 
 
 def floor_load(case: SceneCase, tables: dict[str, pd.DataFrame]) -> tuple[float, float]:
@@ -68,9 +70,9 @@ def bed_rebound(case: SceneCase, spheres: pd.DataFrame) -> tuple[float, float]:
     total = whole["mass"].sum() / sums.ngroups
     place = sums["height"].sum().to_numpy() / total
     fall = place[0] + sums["kinetic"].sum().iloc[0] / (total * case.scene.gravity) - place.min()
-    names = {p.material for p in case.scene.particles}
-    v, radius = float(np.sqrt(2 * case.scene.gravity * fall)), case.scene.particles[0].radii()[0]
-    pairs = [(a, b) for a in names for b in names | {case.scene.walls}]
+    names = {p.material for p in case.scene.filled}
+    v, radius = float(np.sqrt(2 * case.scene.gravity * fall)), case.scene.leading.radii()[0]
+    pairs = [(a, b) for a in names for b in names | {*case.scene.wall_materials}]
     e_n = max(float(predict(wall_impact(case, a, radius, b, v)).e_n[-1]) for a, b in pairs)
     return float((place - np.minimum.accumulate(place)).max()), e_n**2 * fall
 
@@ -118,7 +120,7 @@ def discharge(p: ScenePlan, s: Hopper, spheres: pd.DataFrame, part: tuple[float,
     """
     steps = np.sort(spheres["step"].unique())
     bed = spheres[spheres["step"] == steps[steps <= p.phases[0].end].max()]
-    below = spheres[spheres["z"] < p.layout.outlet].groupby("step")["mass"]
+    below = spheres[spheres["z"] < p.layout.gates[0].place].groupby("step")["mass"]
     out = below.sum().reindex(steps, fill_value=0.0).to_numpy()
     during = (out > part[0] * bed["mass"].sum()) & (out < part[1] * bed["mass"].sum())
     count = below.count().reindex(steps, fill_value=0).to_numpy()[during]
@@ -194,6 +196,19 @@ def _of_compaction(p: ScenePlan, tables: dict[str, pd.DataFrame]) -> list[Row]:
     ]
 
 
+def _of_parts(p: ScenePlan, tables: dict[str, pd.DataFrame]) -> list[Row]:
+    """Walls bear the weight of a bed at rest: where its energy is far below that of a fall by a radius."""
+    if not p.layout.loads or p.layout.loses or "particles" not in tables or not p.case.scene.gravity:
+        return []
+    last = tables["particles"][tables["particles"]["step"] == tables["particles"]["step"].max()]
+    weight = last["mass"] * p.case.scene.gravity
+    if kinetic(last).sum() > AT_REST * (weight * last["radius"]).sum():
+        return []
+    row = tables["rows"].iloc[-1]
+    borne = -sum(float(row[f"{name}_force_z"]) for name in p.layout.loads)
+    return [_row("force on all walls / weight", borne, float(weight.sum()), 0.02)]
+
+
 def checks(p: ScenePlan, tables: dict[str, pd.DataFrame]) -> pd.DataFrame:
     """One row per check: value, expected, relative error, tolerance, passed."""
     rows = _kept(p, tables)
@@ -206,6 +221,8 @@ def checks(p: ScenePlan, tables: dict[str, pd.DataFrame]) -> pd.DataFrame:
             rows += _of_peening(p, s, tables)
         case Compaction():
             rows += _of_compaction(p, tables)
+        case Parts():
+            rows += _of_parts(p, tables)
     if "ledger" in tables and not p.model.loses_energy:
         rows.append(_row("energy: all terms but none as remainder", closure(tables["ledger"]), 0.0, 0.01))
     return pd.DataFrame(rows, columns=["check", "value", "expected", "error", "tolerance", "passed"])

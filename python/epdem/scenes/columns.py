@@ -11,11 +11,12 @@ from ..errors import EngineError
 from .plan import ScenePlan
 
 UNITS = {
-    "time": "s",
+    **dict.fromkeys(("time", "begin_time", "end_time"), "s"),
     "kinetic_energy": "J",
     "floor_load": "N",
     "plate_force": "N",
     "torque": "N m",
+    "wall_power": "W",
     "plate_z": "m",
     "stress": "Pa",
     "radius": "m",
@@ -29,9 +30,16 @@ UNITS = {
     **dict.fromkeys(("kinetic", "gravity", "elastic", "plastic", "adhesion", "work", "left", "balance"), "J"),
     **dict.fromkeys(("friction", "springs"), "J"),
 }
+LOADS = ("force_x", "force_y", "force_z", "torque_x", "torque_y", "torque_z")  # of a wall NAME: NAME_force_x, ...
 SMALLEST = 1e-12  # radius [m]
 PARTICLES = ["id", "type", "radius", "mass", "x", "y", "z", "vx", "vy", "vz"]
 SPINS = ["omega_x", "omega_y", "omega_z"]
+
+
+def units(table: pd.DataFrame) -> dict[str, str]:
+    """The unit of each column of a table that has one."""
+    loads = {name: "N" if name[:-1].endswith("_force_") else "N m" for name in table if str(name).endswith(LOADS)}
+    return UNITS | loads
 
 
 def whole(p: ScenePlan, table: pd.DataFrame, folder: Path) -> pd.DataFrame:
@@ -52,7 +60,7 @@ def rows(p: ScenePlan, values: dict[int, list[float]], names: list[str]) -> pd.D
     """The table of rows, sorted, from the values of `names` at each step."""
     table = pd.DataFrame.from_dict(values, orient="index", columns=names).sort_index()
     table.insert(0, "step", table.index.to_numpy())
-    table.insert(1, "time", table["step"] * p.time_step)
+    table.insert(1, "time", p.time_at(table["step"].to_numpy()))
     if isinstance(p.case.scene, Compaction):
         middle = (table["step"] - 0.5 * p.every).clip(lower=0) * p.time_step
         table["plate_z"] = plate_height(p, middle.to_numpy())
@@ -62,7 +70,7 @@ def rows(p: ScenePlan, values: dict[int, list[float]], names: list[str]) -> pd.D
 
 def plate_height(p: ScenePlan, time: np.ndarray) -> np.ndarray:
     """Height [m] of the plate at times [s], each the middle of the interval that a force is the mean of."""
-    height = np.full(len(time), p.layout.meshes["plate"][0, 0, 2])
+    height = np.full(len(time), p.layout.meshes["plate"].triangles[0, 0, 2])
     begin = 0.0
     for phase in p.phases:
         end = phase.end * p.time_step

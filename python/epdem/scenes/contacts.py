@@ -53,7 +53,7 @@ def complete(p: ScenePlan, raw: pd.DataFrame, spheres: pd.DataFrame, folder: Pat
         step = int(raw["step"][unknown].iloc[0])
         raise EngineError(f"{folder}: the contacts of step {step} are damaged: no such spheres; run the case again")
     radius_j = second["radius"].fillna(math.inf).to_numpy()
-    type_j = second["type"].fillna(p.model.wall_type).to_numpy(int)
+    type_j = np.where(raw["j"] == 0, raw["wall"].map(p.wall_types), second["type"]).astype(int)
     radius_i, type_i = first["radius"].to_numpy(), first["type"].to_numpy(int)
     R_star = 1.0 / (1.0 / radius_i + 1.0 / radius_j)
     attached = raw["attached"].to_numpy(bool) if "attached" in raw else np.ones(len(raw), bool)

@@ -3,98 +3,14 @@
 
 import math
 from collections.abc import Callable
-from dataclasses import dataclass, field
 
-from ..case.scene import Compaction, Drum, Hopper, Kinds, Particles, Peening, SceneCase, Settle
+from ..case.parts import Parts
+from ..case.scene import Compaction, Drum, Hopper, Kinds, Peening, SceneCase, Settle
+from ..case.sizes import Particles
 from ..errors import CaseError
 from . import meshes
-from .meshes import FloatArray
-
-
-@dataclass(frozen=True)
-class Plane:
-    """A flat wall across an axis (0, 1, 2) at a place [m]."""
-
-    name: str
-    axis: int
-    place: float
-
-
-@dataclass(frozen=True)
-class Block:
-    """A room between planes: xlo xhi ylo yhi zlo zhi [m]."""
-
-    limits: tuple[float, float, float, float, float, float]
-
-    @property
-    def volume(self) -> float:
-        """[m^3]."""
-        x, y, z = (self.limits[k + 1] - self.limits[k] for k in (0, 2, 4))
-        return x * y * z
-
-
-@dataclass(frozen=True)
-class Cylinder:
-    """An upright room about the z axis [m]."""
-
-    radius: float
-    low: float
-    high: float
-
-    @property
-    def volume(self) -> float:
-        """[m^3]."""
-        return math.pi * self.radius**2 * (self.high - self.low)
-
-
-@dataclass(frozen=True)
-class Fill:
-    """Spheres put into a region: all at once, or `rate` per second every `every` seconds; they begin with velocity -z.
-
-    `place` is the key of `count` in the case file; `phase` that in which it begins, the first one if empty.
-    """
-
-    parts: list[Particles]
-    count: int
-    region: Block | Cylinder
-    place: str = "scene.count"
-    rate: float | None = None
-    every: float = 0.0
-    velocity: float = 0.0
-    phase: str = ""
-
-
-@dataclass(frozen=True)
-class Stage:
-    """A part of the scene; `plate` is the velocity of the plate along z in it [m/s]."""
-
-    name: str
-    seconds: float
-    plate: float = 0.0
-
-
-@dataclass(frozen=True)
-class Layout:
-    """Lengths in m; `box` is xlo xhi ylo yhi zlo zhi of the simulated room.
-
-    periodic: in x and y. turn: angular velocity of the surface of the mesh "drum" about y [rad/s]. outlet: height of
-    an outlet that is closed in the first stage. loses: spheres may leave the room.
-    """
-
-    box: tuple[float, float, float, float, float, float]
-    periodic: bool
-    planes: tuple[Plane, ...]
-    fills: tuple[Fill, ...]
-    stages: tuple[Stage, ...]
-    meshes: dict[str, FloatArray] = field(default_factory=dict)
-    turn: float = 0.0
-    outlet: float | None = None
-    loses: bool = False
-
-    @property
-    def duration(self) -> float:
-        """[s]."""
-        return sum(s.seconds for s in self.stages)
+from .from_parts import from_parts
+from .layout import Block, Cylinder, Fill, Layout, Linear, Mesh, Plane, Stage, Turn
 
 
 def _largest(parts: list[Particles]) -> float:
@@ -129,7 +45,7 @@ def _settle(s: Settle) -> Layout:
             raise CaseError(f"scene.duration = {s.duration:g} s ends before all are poured ({s.count / s.rate:g} s)")
     room = (-x, x, -y, y, 0.0, 1.5 * lz)  # the walls go on above the box: what bounces high falls back
     planes = (_floor(), *(() if s.periodic else _sides(lx, ly)))
-    return Layout(room, s.periodic, planes, (fill,), (Stage("settle", s.duration),))
+    return Layout(room, s.periodic, planes, (fill,), (Stage("settle", s.duration),), s.count)
 
 
 def _hopper(s: Hopper) -> Layout:
@@ -147,9 +63,10 @@ def _hopper(s: Hopper) -> Layout:
         False,
         (_floor(low), *_sides(box[1] - box[0], box[3] - box[2])),
         (fill,),
-        (Stage("fill", s.fill), Stage("discharge", s.duration)),
-        {"hopper": meshes.hopper(s.bin_diameter, s.bin_height, s.outlet, depth)},
-        outlet=-depth,
+        (Stage("fill", s.fill, gates=("shutter",)), Stage("discharge", s.duration)),
+        s.count,
+        {"hopper": Mesh(meshes.hopper(s.bin_diameter, s.bin_height, s.outlet, depth))},
+        gates=(Plane("shutter", 2, -depth),),
     )
 
 
@@ -163,23 +80,24 @@ def _drum(s: Drum) -> Layout:
         (Plane("front", 1, -half), Plane("back", 1, half)),
         (Fill(s.particles, s.count, Block((-a, a, -half, half, -a, a))),),
         (Stage("turn", s.duration),),
-        {"drum": meshes.drum(s.diameter, s.length * 1.02)},
-        turn=s.turn,
+        s.count,
+        {"drum": Mesh(meshes.drum(s.diameter, s.length * 1.02), turn=Turn((0.0, 0.0, 0.0), (0.0, 1.0, 0.0), s.turn))},
     )
 
 
 def _compaction(s: Compaction) -> Layout:
     lx, ly, lz = s.box
     x, y = lx / 2, ly / 2
-    load = Stage("load", (lz - s.height) / s.speed, plate=-s.speed)
-    unload = Stage("unload", s.back / s.release, plate=s.release)
+    load = Stage("load", (lz - s.height) / s.speed, {"plate": Linear((0.0, 0.0, -s.speed))})
+    unload = Stage("unload", s.back / s.release, {"plate": Linear((0.0, 0.0, s.release))})
     return Layout(
         (-x, x, -y, y, 0.0, 1.05 * lz),
         True,
         (_floor(),),
         (Fill(s.particles, s.count, Block((-x, x, -y, y, 0.0, lz))),),
         (*([Stage("fall", s.fall)] if s.fall else []), load, unload),
-        {"plate": meshes.plate(lx, ly, lz)},
+        s.count,
+        {"plate": Mesh(meshes.plate(lx, ly, lz))},
     )
 
 
@@ -192,13 +110,13 @@ def _peening(s: Peening) -> Layout:
     base = s.side if s.bed else 0.0
     foot, a = base + gap, s.side / 2
     top = foot + s.speed * s.count / s.rate
-    fills = [Fill(s.particles, s.count, Block((-a, a, -a, a, foot, top)), velocity=s.speed, phase="peen")]
+    fills = [Fill(s.particles, s.count, Block((-a, a, -a, a, foot, top)), velocity=(0.0, 0.0, -s.speed), phase="peen")]
     stages = [Stage("peen", s.duration)]
     if s.bed_fill is not None:
         fills.insert(0, Fill(s.bed, s.bed_count, Block((-a, a, -a, a, 0.0, base)), "scene.bed_count"))
         stages.insert(0, Stage("fill", s.bed_fill))
     box = (-a, a, -a, a, 0.0, float(f"{top + gap:.10g}"))
-    return Layout(box, True, (_floor(),), tuple(fills), tuple(stages), loses=True)
+    return Layout(box, True, (_floor(),), tuple(fills), tuple(stages), s.count, loses=True)
 
 
 _KINDS: dict[type[Kinds], Callable[..., Layout]] = {
@@ -212,4 +130,6 @@ _KINDS: dict[type[Kinds], Callable[..., Layout]] = {
 
 def layout(case: SceneCase) -> Layout:
     """The layout of a scene. Raises CaseError for lengths that do not fit together."""
+    if isinstance(case.scene, Parts):
+        return from_parts(case, case.scene)
     return _KINDS[type(case.scene)](case.scene)

@@ -21,11 +21,15 @@ def work_of_walls(p: ScenePlan, rows: pd.DataFrame) -> np.ndarray:
 
     The torque of a drum counts normal forces on its flat facets too, which do no work: noise of 0.1 % of the energies.
     """
-    dt = np.diff(rows["step"], prepend=0) * p.time_step
+    dt = np.diff(p.time_at(rows["step"].to_numpy()), prepend=0.0)
     if p.plates:
         return np.cumsum(rows["plate_force"].to_numpy() * -plate_velocity(p, rows) * dt)
-    if p.layout.turn:
-        return np.cumsum(-rows["torque"].to_numpy() * p.layout.turn * dt)
+    if p.torque:
+        turn = p.layout.meshes["drum"].turn
+        assert turn is not None
+        return np.cumsum(-rows["torque"].to_numpy() * turn.rate * dt)
+    if p.powered:
+        return np.cumsum(rows["wall_power"].to_numpy() * dt)
     return np.zeros(len(rows))
 
 
@@ -63,7 +67,7 @@ def ledger(p: ScenePlan, tables: dict[str, pd.DataFrame]) -> pd.DataFrame:
     steps = np.sort(spheres["step"].unique())
     by_step = spheres.assign(kinetic=kinetic(spheres), gravity=spheres["mass"] * p.case.scene.gravity * spheres["z"])
     sums = by_step.groupby("step")[["kinetic", "gravity"]].sum()
-    table = pd.DataFrame({"step": steps, "time": steps * p.time_step})
+    table = pd.DataFrame({"step": steps, "time": p.time_at(steps)})
     table["kinetic"], table["gravity"] = sums["kinetic"].to_numpy(), sums["gravity"].to_numpy()
     table["elastic"] = contacts.groupby("step")["elastic_energy"].sum().reindex(steps, fill_value=0.0).to_numpy()
     for name, column in (("plastic", "plastic_work"), ("adhesion", "adhesive_work")):

@@ -51,3 +51,43 @@ def plate(lx: float, ly: float, z: float) -> FloatArray:
     x, y = lx / 2, ly / 2
     corner = np.array([[-x, -y, z], [x, -y, z], [x, y, z], [-x, y, z]])
     return np.stack([corner[[0, 1, 2]], corner[[0, 2, 3]]])
+
+
+def along(axis: int, points: FloatArray) -> FloatArray:
+    """Triangles about the z axis, about axis 0, 1 or 2 instead."""
+    return points[:, :, {0: [2, 1, 0], 1: [0, 2, 1], 2: [0, 1, 2]}[axis]]
+
+
+def _disc(radius: float, z: float) -> FloatArray:
+    ring = _ring(radius, z)
+    middle = np.broadcast_to([0.0, 0.0, z], ring.shape)
+    return np.stack([middle, ring, np.roll(ring, -1, axis=0)], axis=1)
+
+
+def tube(diameters: tuple[float, float], low: float, high: float, *, closed: tuple[bool, bool]) -> FloatArray:
+    """A round tube about z between two heights, with the diameters there; `closed`: by discs at low, at high."""
+    r0, r1 = diameters[0] / 2, diameters[1] / 2
+    ends = [_disc(r, z) for r, z, shut in ((r0, low, closed[0]), (r1, high, closed[1])) if shut]
+    return np.concatenate([_tube([(r0, low), (r1, high)]), *ends])
+
+
+def rectangle(axis: int, center: FloatArray, size: tuple[float, float]) -> FloatArray:
+    """Two triangles across an axis; `size` along the two other axes, in the order x, y, z."""
+    first, second = (k for k in range(3) if k != axis)
+    corner = np.tile(np.asarray(center, float), (4, 1))
+    corner[:, first] += np.array([-1, 1, 1, -1]) * size[0] / 2
+    corner[:, second] += np.array([-1, -1, 1, 1]) * size[1] / 2
+    return np.stack([corner[[0, 1, 2]], corner[[0, 2, 3]]])
+
+
+def box(limits: tuple[float, ...], faces: set[str]) -> FloatArray:
+    """The faces ("-x", "+z") of a room xlo xhi ylo yhi zlo zhi [m]."""
+    low, high = np.array(limits[0::2]), np.array(limits[1::2])
+    parts = []
+    for face in sorted(faces):
+        axis = "xyz".index(face[1])
+        center = 0.5 * (low + high)
+        center[axis] = (low if face[0] == "-" else high)[axis]
+        others = [k for k in range(3) if k != axis]
+        parts.append(rectangle(axis, center, (float((high - low)[others[0]]), float((high - low)[others[1]]))))
+    return np.concatenate(parts)

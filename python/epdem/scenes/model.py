@@ -16,29 +16,31 @@ WALL = "wall"
 
 @dataclass(frozen=True)
 class Type:
-    """A material, or the walls where they have values of their own; `strength` [Pa] is inf if it never yields."""
+    """A material, or walls where they have values of their own; `strength` [Pa] is inf if it never yields."""
 
     name: str
     material: str
     strength: float
+    wall: bool = False
 
 
 @dataclass(frozen=True)
 class Model:
     """What a contact is made of; numbers of types begin at 1.
 
-    parameters: the law's dimensionless ones. friction: of each pair of types, by the model `tangential`. viscous:
-    restitution of impacts that do not yield; tangential_restitution: of the dashpot beside the tangential spring.
+    parameters: the law's dimensionless ones. wall_types: of each material of a wall; that of the scene's walls is "",
+    too. friction: of each pair of types, by the model `tangential`. viscous: restitution of impacts that do not yield,
+    of each pair; tangential_restitution: of the dashpot beside the tangential spring.
     cohesion: energy density [J/m^3]. adhesion: work of adhesion of each pair of types [J/m^2], of laws with adhesion.
     """
 
     law: str
     parameters: dict[str, float]
     types: tuple[Type, ...]
-    wall_type: int
+    wall_types: dict[str, int]
     friction: tuple[tuple[float, ...], ...]
     tangential: Tangential
-    viscous: float | None
+    viscous: tuple[tuple[float, ...], ...] | None
     tangential_restitution: float | None
     rolling: Rolling | None
     cohesion: float | None
@@ -89,17 +91,22 @@ def model(case: SceneCase) -> Model:
     types = [Type(m, m, strong[m]) for m in used]
     pairs_with_wall = any(WALL in p.between for p in contact.pairs)
     own_friction = contact.wall_friction is not None and contact.wall_friction != contact.friction
-    walls_apart = case.scene.walls not in used or own_friction or pairs_with_wall
-    if walls_apart:
-        types.append(Type(WALL, case.scene.walls, strong[case.scene.walls]))
+    walls = case.scene.wall_materials
+    wall_types = {}
+    for material in walls:
+        wall_types[material] = 1 + used.index(material) if material in used else 0
+        if material not in used or own_friction or pairs_with_wall:
+            types.append(Type(WALL if len(walls) == 1 else f"{WALL} of {material}", material, strong[material], True))
+            wall_types[material] = len(types)
+    wall_types[""] = wall_types[walls[0]] if walls else 1
     result = Model(
         law=case.law.name,
         parameters=numbers(case).ratios,
         types=tuple(types),
-        wall_type=len(types) if walls_apart else 1 + used.index(case.scene.walls),
+        wall_types=wall_types,
         friction=tuple(tuple(_friction(case, a, b) for b in types) for a in types),
         tangential=contact.tangential,
-        viscous=case.viscous.restitution if case.viscous else None,
+        viscous=_viscous(case, types),
         tangential_restitution=contact.tangential_restitution,
         rolling=contact.rolling,
         cohesion=contact.cohesion,
@@ -122,16 +129,35 @@ def _adhesion(case: SceneCase, types: list[Type]) -> tuple[tuple[float, ...], ..
 
 
 def _materials_used(case: SceneCase) -> list[str]:
-    # a bed comes first: as long as it alone is there, the types in use begin at 1, which LIGGGHTS needs
-    parts = [*getattr(case.scene, "bed", []), *case.scene.particles]
-    return list(dict.fromkeys(p.material for p in parts))
+    return list(dict.fromkeys(p.material for p in case.scene.filled))
+
+
+def _viscous(case: SceneCase, types: list[Type]) -> tuple[tuple[float, ...], ...] | None:
+    if case.viscous is None:
+        return None
+    common = case.viscous.restitution
+    return tuple(tuple(_own(case, a, b, "restitution") or common for b in types) for a in types)
 
 
 def _friction(case: SceneCase, a: Type, b: Type) -> float:
-    contact, names = case.contact, {a.name, b.name}
-    for pair in contact.pairs:
-        if names == set(pair.between):
-            return pair.friction
-    if WALL in names and contact.wall_friction is not None:
-        return contact.wall_friction
-    return contact.friction
+    own = _own(case, a, b, "friction")
+    if own is not None:
+        return own
+    if (a.wall or b.wall) and case.contact.wall_friction is not None:
+        return case.contact.wall_friction
+    return case.contact.friction
+
+
+def _own(case: SceneCase, a: Type, b: Type, value: str) -> float | None:
+    """What [contact] pairs gives for a pair of types; a wall goes by "wall", or by a material that is of walls only."""
+    spheres = _materials_used(case)
+
+    def names(t: Type) -> set[str]:
+        return {t.material} if not t.wall else {WALL} if t.material in spheres else {WALL, t.material}
+
+    for pair in case.contact.pairs:
+        one, other = pair.between
+        both = (one in names(a) and other in names(b)) or (one in names(b) and other in names(a))
+        if both and getattr(pair, value) is not None:
+            return float(getattr(pair, value))
+    return None

@@ -10,47 +10,70 @@ import numpy as np
 from ..case.scene import SceneCase
 from ..errors import CaseError
 from .filling import drawn
-from .kinds import Block
+from .layout import Block, Cylinder, Fill
 from .meshes import FloatArray
 from .model import Model
+from .plan import ScenePlan
 
 ATTEMPTS = 10_000  # of one sphere; at the densest filling that a scene allows some hundred are needed
 
 
-def sizes(case: SceneCase, m: Model, rng: random.Random) -> list[tuple[float, int]]:
+def sizes(case: SceneCase, m: Model, fill: Fill, rng: random.Random) -> list[tuple[float, int]]:
     """(radius [m], number of its type) of every sphere, drawn by their share of the mass, the largest first."""
-    classes = drawn(case, case.scene.particles)
+    classes = drawn(case, fill.parts)
     kinds = [(radius, m.type_of(material)) for material, radius, _ in classes]
-    return sorted(rng.choices(kinds, [weight for *_, weight in classes], k=case.scene.count), reverse=True)
+    return sorted(rng.choices(kinds, [weight for *_, weight in classes], k=fill.count), reverse=True)
 
 
-def spheres(case: SceneCase, m: Model, room: Block) -> FloatArray:
-    """(count, 5) x, y, z, radius [m], type: random sequential placement, every sphere wholly in `room`.
+def _somewhere(region: Block | Cylinder, radius: float, rng: random.Random) -> tuple[float, ...] | None:
+    """A random place of a sphere wholly in a region [m]; None if it was not met."""
+    if isinstance(region, Block):
+        low, high = region.limits[0::2], region.limits[1::2]
+    else:
+        (x, y), r = region.center, region.radius
+        low, high = (x - r, y - r, region.low), (x + r, y + r, region.high)
+    place = tuple(rng.uniform(a + radius, b - radius) for a, b in zip(low, high, strict=True))
+    if isinstance(region, Cylinder) and math.dist(place[:2], region.center) > region.radius - radius:
+        return None
+    return place
 
-    The same case has the same places everywhere. Raises CaseError when full.
+
+def spheres(p: ScenePlan) -> FloatArray:
+    """(count, 5) x, y, z, radius [m], type of all spheres at the start: those of the table, then each fill's.
+
+    Random sequential placement, every sphere wholly in the region of its fill. The same case has the same places
+    everywhere. Raises CaseError when full.
     """
-    rng = random.Random(case.numerics.seed)
-    low, high = room.limits[0::2], room.limits[1::2]
+    rng = random.Random(p.case.numerics.seed)
     placed: list[tuple[float, ...]] = []
     cells: dict[tuple[int, ...], list[int]] = {}
-    drawn = sizes(case, m, rng)
-    edge = 2.0 * drawn[0][0]  # no sphere touches one beyond the next cell
-    for radius, kind in drawn:
-        for _ in range(ATTEMPTS):
-            place = tuple(rng.uniform(a + radius, b - radius) for a, b in zip(low, high, strict=True))
-            cell = tuple(math.floor(x / edge) for x in place)
-            near = (
-                k
-                for shift in product((-1, 0, 1), repeat=3)
-                for k in cells.get(tuple(c + d for c, d in zip(cell, shift, strict=True)), ())
-            )
-            if all(math.dist(place, placed[k][:3]) > radius + placed[k][3] for k in near):
-                cells.setdefault(cell, []).append(len(placed))
-                placed.append((*place, radius, kind))
-                break
-        else:
-            raise CaseError(
-                f"scene.count = {case.scene.count}: no room is left for sphere {len(placed) + 1} without overlap "
-                f"after {ATTEMPTS} attempts; enlarge the box"
-            )
+    edge = 2.0 * p.largest  # no sphere touches one beyond the next cell
+
+    def put(place: tuple[float, ...], radius: float, kind: int) -> None:
+        cells.setdefault(tuple(math.floor(x / edge) for x in place), []).append(len(placed))
+        placed.append((*place, radius, kind))
+
+    def is_free(place: tuple[float, ...], radius: float) -> bool:
+        cell = tuple(math.floor(x / edge) for x in place)
+        near = (
+            k
+            for shift in product((-1, 0, 1), repeat=3)
+            for k in cells.get(tuple(c + d for c, d in zip(cell, shift, strict=True)), ())
+        )
+        return all(math.dist(place, placed[k][:3]) > radius + placed[k][3] for k in near)
+
+    for s in p.layout.table:
+        put(s.place, s.radius, p.model.type_of(s.material))
+    for fill in p.layout.fills:
+        for radius, kind in sizes(p.case, p.model, fill, rng):
+            for _ in range(ATTEMPTS):
+                place = _somewhere(fill.region, radius, rng)
+                if place is not None and is_free(place, radius):
+                    put(place, radius, kind)
+                    break
+            else:
+                raise CaseError(
+                    f"{fill.place} = {fill.count}: no room is left for sphere {len(placed) + 1} without overlap "
+                    f"after {ATTEMPTS} attempts; enlarge the box"
+                )
     return np.array(placed)

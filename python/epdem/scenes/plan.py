@@ -2,12 +2,16 @@
 """A scene for any engine: bodies, motions, times of output. All SI, without names of engines."""
 
 import math
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, replace
 
-from ..case.scene import Output, Particles, SceneCase
+import numpy as np
+import pandas as pd
+
+from ..case.scene import Compaction, Drum, Output, SceneCase
 from . import kinds
 from .filling import refuse_too_many
-from .kinds import Layout
+from .layout import Layout, Linear, Move, Until
 from .limits import refuse_faster_than_sound, refuse_steps
 from .model import Model, model
 from .timestep import time_step
@@ -17,11 +21,20 @@ SAMPLES = 50  # of a force, at least, in the mean that a row holds
 
 @dataclass(frozen=True)
 class Phase:
-    """A part of the run up to step `end`; `plate` is the velocity of the plate along z in it [m/s]."""
+    """A part of the run up to step `end`, or less if `until` holds; what moves in it, which gates are there."""
 
     name: str
     end: int
-    plate: float
+    moves: dict[str, Move]
+    gates: tuple[str, ...] = ()
+    until: Until | None = None
+    time_step: float | None = None
+
+    @property
+    def plate(self) -> float:
+        """Velocity of the plate along z [m/s]."""
+        move = self.moves.get("plate")
+        return move.velocity[2] if isinstance(move, Linear) else 0.0
 
 
 @dataclass(frozen=True)
@@ -51,19 +64,51 @@ class ScenePlan:
         return self.phases[-1].end
 
     @property
+    def ends_early(self) -> bool:
+        """Whether a phase may end before its duration, so that the steps of a run are known only after it."""
+        return any(phase.until for phase in self.phases)
+
+    def ended(self, ends: Mapping[str, int]) -> "ScenePlan":
+        """The plan of a run whose phases ended at these steps; those behind a phase that ended early move with it."""
+        phases, shift = [], 0
+        for phase in self.phases:
+            end = ends.get(phase.name, phase.end + shift)
+            shift = end - phase.end
+            phases.append(replace(phase, end=end))
+        return replace(self, phases=tuple(phases))
+
+    @property
+    def phase_table(self) -> pd.DataFrame:
+        """One row per phase: name, steps and times [s] of its begin and end."""
+        ends = np.array([0, *(phase.end for phase in self.phases)])
+        times = self.time_at(ends)
+        names = [phase.name for phase in self.phases]
+        return pd.DataFrame(
+            {"phase": names, "begin": ends[:-1], "end": ends[1:], "begin_time": times[:-1], "end_time": times[1:]}
+        )
+
+    def time_at(self, steps: np.ndarray) -> np.ndarray:
+        """Times [s] of steps."""
+        if not any(phase.time_step for phase in self.phases):
+            return np.asarray(steps * self.time_step)
+        ends = np.array([0, *(phase.end for phase in self.phases)])
+        lengths = np.diff(ends) * [phase.time_step or self.time_step for phase in self.phases]
+        return np.asarray(np.interp(steps, ends, np.concatenate([[0.0], np.cumsum(lengths)])))
+
+    @property
     def output(self) -> Output:
         """The output that the case requests."""
         return self.case.output
 
     @property
-    def parts(self) -> list[Particles]:
-        """Everything that is filled in."""
-        return [p for fill in self.layout.fills for p in fill.parts]
-
-    @property
     def smallest(self) -> float:
         """Smallest radius [m]."""
-        return min(p.radii()[0] for p in self.parts)
+        return min(p.radii()[0] for p in self.case.scene.filled)
+
+    @property
+    def largest(self) -> float:
+        """Largest radius [m]."""
+        return max(p.radii()[1] for p in self.case.scene.filled)
 
     @property
     def types(self) -> tuple[str, ...]:
@@ -71,19 +116,33 @@ class ScenePlan:
         return tuple(t.name for t in self.model.types)
 
     @property
+    def wall_types(self) -> dict[str, int]:
+        """The number of the type of each wall."""
+        walls = {w.name: w.material for w in (*self.layout.planes, *self.layout.gates)}
+        walls |= {name: mesh.material for name, mesh in self.layout.meshes.items()}
+        return {name: self.model.wall_types[material] for name, material in walls.items()}
+
+    @property
     def plates(self) -> bool:
         """Whether there is a plate whose force is measured."""
-        return "plate" in self.layout.meshes
+        return isinstance(self.case.scene, Compaction)
 
     @property
     def floor_load(self) -> bool:
         """Whether the mean force on the floor is in the rows."""
-        return self.output.loads and any(p.name == "floor" for p in self.layout.planes)
+        floor = any(p.name == "floor" for p in self.layout.planes)
+        return floor and self.output.loads and not self.layout.loads
 
     @property
     def torque(self) -> bool:
         """Whether the mean torque on a drum is in the rows."""
-        return bool(self.layout.turn) and (self.output.loads or self.output.energy)
+        return isinstance(self.case.scene, Drum) and (self.output.loads or self.output.energy)
+
+    @property
+    def powered(self) -> bool:
+        """Whether the mean power of moving walls is in the rows: of walls whose work no other column tells."""
+        moving = any(m.turn for m in self.layout.meshes.values()) or any(phase.moves for phase in self.phases)
+        return moving and self.output.energy and not (self.plates or self.torque)
 
     @property
     def dents(self) -> bool:
@@ -104,7 +163,9 @@ class ScenePlan:
     def summary(self) -> str:
         """One line for the head of a deck."""
         s = self.case.scene
-        return f"{s.kind}: {s.count} spheres, law {self.model.law}, {self.steps} steps of {self.time_step:g} s"
+        return (
+            f"{s.kind}: {self.layout.count} spheres, law {self.model.law}, {self.steps} steps of {self.time_step:g} s"
+        )
 
 
 def _intervals(output: Output, steps: float) -> tuple[int, int]:
@@ -119,11 +180,11 @@ def _intervals(output: Output, steps: float) -> tuple[int, int]:
 def _phases(layout: Layout, rows: int, every: int, dt: float) -> tuple[Phase, ...]:
     phases, end = [], 0
     for stage in layout.stages:
-        end += every * max(1, round(stage.seconds / dt / every))
-        phases.append(Phase(stage.name, end, stage.plate))
+        end += every * max(1, round(stage.seconds / (stage.time_step or dt) / every))
+        phases.append(Phase(stage.name, end, stage.moves, stage.gates, stage.until, stage.time_step))
     last = phases.pop()
     end = max(rows * every, last.end) if phases else rows * every
-    return (*phases, Phase(last.name, end, last.plate))
+    return (*phases, replace(last, end=end))
 
 
 def _divisor(n: int, parts: int) -> int:
@@ -135,10 +196,12 @@ def plan(case: SceneCase) -> ScenePlan:
     """The plan of a scene. Raises CaseError for what does not fit."""
     refuse_faster_than_sound(case)
     contact_model, dt, layout, out = model(case), time_step(case), kinds.layout(case), case.output
-    for fill in layout.fills:
-        refuse_too_many(case, fill)
-    rows, every = _intervals(out, layout.duration / dt)
-    refuse_steps(case, rows, layout.duration, dt)
+    refuse_too_many(case, layout.fills)
+    steps = layout.duration / dt
+    if any(stage.time_step for stage in layout.stages):
+        steps = sum(stage.seconds / (stage.time_step or dt) for stage in layout.stages)
+    rows, every = _intervals(out, steps)
+    refuse_steps(case, rows, layout.duration, layout.duration / steps)
 
     def interval(count: int) -> int:
         return 0 if count == 0 else every * max(1, rows // count)

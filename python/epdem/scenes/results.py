@@ -7,7 +7,7 @@ from pathlib import Path
 import pandas as pd
 
 from ..base.tables import Hdf5, opened, read_table, write_csv, write_table
-from .columns import UNITS
+from .columns import units
 
 
 @dataclass
@@ -33,7 +33,7 @@ def write(path: Path, results: SceneResults) -> None:
     file.attrs.update({"kind": "scene", **results.attributes})
     file["case"] = results.case_text
     for name, table in results.tables.items():
-        write_table(file.create_group(name), table, UNITS)
+        write_table(file.create_group(name), table, units(table))
     for name, text in results.decks.items():
         file[f"decks/{name}"] = text
     stored.save(path)

@@ -19,7 +19,7 @@ from ..case.scene import SceneCase, load
 from ..case.toml import named
 from ..errors import CaseError, EngineError
 from ..impacts.prediction import predict
-from . import checks, ledger, results
+from . import checks, ledger, measures, results
 from .engine import Report, Resumed, SceneEngine, check_run
 from .engine import files as files_for
 from .pairs import wall_impact
@@ -131,6 +131,7 @@ def run_case(
     """
     with named(place):
         p = plan(case)
+        measures.refuse_measures(p)
         files, notes = files_for(engine, p), [*engine.notes(p), *_warnings(p.case)]
     check_run(engine, ranks=ranks, resume=resume)
     work = _Work(text, p, engine, files, notes, ranks, lambda step: report(step, p.steps))
@@ -146,7 +147,14 @@ def _reused(work: _Work, folder: Path, fresh: bool) -> SceneOutcome | None:
     old = None if fresh else _stored(folder / "results.h5")
     if old is None or old.attributes.get("inputs") != work.inputs:
         return None
-    return SceneOutcome(work.plan, folder, old, 0.0, reused=True, warnings=work.notes)
+    return SceneOutcome(_as_run(work.plan, old.tables), folder, old, 0.0, reused=True, warnings=work.notes)
+
+
+def _as_run(p: ScenePlan, tables: dict[str, pd.DataFrame]) -> ScenePlan:
+    """The plan with the ends of phases as they came."""
+    if not p.ends_early:
+        return p
+    return p.ended(dict(zip(tables["phases"]["phase"], tables["phases"]["end"].astype(int), strict=True)))
 
 
 def _anew(work: _Work, place: Results) -> SceneOutcome:
@@ -177,7 +185,7 @@ def _finish(
     work: _Work, folder: Path, start: float, tables: dict[str, pd.DataFrame], went_on: Resumed | None = None
 ) -> SceneOutcome:
     """Complete the tables of a run by ledger and checks, and write results.h5."""
-    p = work.plan
+    p = _as_run(work.plan, tables)
     if p.output.energy:
         if tables["particles"].empty:
             raise EngineError(
@@ -185,11 +193,14 @@ def _finish(
             )
         tables["ledger"] = ledger.ledger(p, tables)
     tables["checks"] = checks.checks(p, tables)
+    if p.case.scene.measure:
+        tables["measures"], tables["histograms"] = measures.curves(p, tables), measures.histograms(p, tables)
     seconds = time.perf_counter() - start
     attributes = {
         "case": p.case.name,
         "epdem": __version__,
         "engine": work.engine.name,
+        f"version_{work.engine.name}": work.engine.version(),
         "ranks": work.ranks,
         "time_step": p.time_step,
         "steps": p.steps,
@@ -218,6 +229,7 @@ def _left_out(folder: Path, lost: list[int]) -> list[str]:
 
 def _warnings(case: SceneCase) -> list[str]:
     """Doubtful values, and where the scene leaves the domain of theory: impacts on the walls at its highest speed."""
-    first = case.scene.particles[0]
-    x = wall_impact(case, first.material, first.radii()[0], case.scene.walls, highest_speed(case))
+    first = case.scene.leading
+    wall = (*case.scene.wall_materials, first.material)[0]
+    x = wall_impact(case, first.material, first.radii()[0], wall, highest_speed(case))
     return [*doubts(case), *predict(x).warnings()]

@@ -5,6 +5,7 @@ import math
 
 import numpy as np
 
+from ..case.parts import Parts
 from ..case.scene import Compaction, Drum, Hopper, Kinds, Peening, SceneCase, Settle
 from ..errors import CaseError
 from ..impacts.experiment import Experiment
@@ -42,6 +43,8 @@ def _fall_and_drive(s: Kinds) -> tuple[float, float]:
             return s.box[2], 2.0 * s.speed
         case Peening():
             return 0.0, s.speed
+        case Parts():
+            return s.room.z[1] - s.room.z[0], s.drive
 
 
 def highest_speed(case: SceneCase) -> float:
@@ -67,10 +70,9 @@ def time_step(case: SceneCase) -> float:
         return case.numerics.time_step
     v, sticking = highest_speed(case), model(case).sliding
     best = math.inf
-    parts = [*case.scene.particles, *getattr(case.scene, "bed", [])]
-    bodies = {(p.material, p.radii()[0]) for p in parts}
+    bodies = {(p.material, p.radii()[0]) for p in case.scene.filled}
     for material, radius in sorted(bodies):
-        for other in sorted({m for m, _ in bodies} | {case.scene.walls}):
+        for other in sorted({m for m, _ in bodies} | {*case.scene.wall_materials}):
             x = sphere_impact(case, material, radius, other, v)
             prediction = predict(x)
             try:

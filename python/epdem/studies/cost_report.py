@@ -1,50 +1,51 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Output of error against run time: table, work-precision figure, data file."""
 
+from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
 import pandas as pd
 from rich.console import Console
 
-from ..base.files import atomic
+from ..base.tables import write_csv
 from ..base.terminal import frame_table
+from ..report.chart import GREY, PALETTE, Axis, Chart, Panel, Series
+from ..report.drawing import save
 from .cost import TARGETS, Outcome
 
 
-def write(outcome: Outcome, folder: Path) -> list[Path]:
-    """cost.csv (one row per model and number of steps) and cost.png in `folder`."""
-    data = folder / "cost.csv"
-    with atomic(data) as temporary:
-        outcome.rows.to_csv(temporary, index=False)
-    return [data, figure(outcome, folder / "cost.png")]
+def write(outcome: Outcome, folder: Path, formats: Sequence[str] = ("png",)) -> list[Path]:
+    """cost.csv, a row for each model and number of steps, and the figure cost in `folder`; their paths."""
+    files = save(chart(outcome), folder, formats)
+    write_csv(folder / "cost.csv", outcome.rows)  # in place of the data of the figure, of which it has more
+    return files
 
 
-def figure(outcome: Outcome, path: Path) -> Path:
-    """The work-precision figure: error of e_n against stepping time and against steps, log-log."""
-    import matplotlib
-
-    matplotlib.use("Agg")
-    import matplotlib.pyplot as plt
-
-    fig, (left, right) = plt.subplots(1, 2, sharey=True, figsize=(10, 4.5), layout="constrained")
+def chart(outcome: Outcome) -> Chart:
+    """The work-precision figure: error of e_n against stepping time and against steps."""
+    left: list[Series] = []
+    right: list[Series] = []
     for k, (label, part) in enumerate(outcome.rows.groupby("model", sort=False)):
-        style = {"color": f"C{k}", "marker": "os^Dv<>"[k % 7], "ms": 4, "label": label}
-        left.loglog(part["ns_per_impact"], part["e_n_error"], **style)
-        right.loglog(part["steps"], part["e_n_error"], **style)
-        right.loglog(part["steps"], part["e_n_rms"], ":", color=f"C{k}", lw=1)
+        colour, error = k % len(PALETTE), part["e_n_error"].to_numpy()
+        steps = part["steps"].to_numpy(float)
+        left.append(Series("", part["ns_per_impact"].to_numpy(), error, colour, "solid", k))
+        right.append(Series(str(label), steps, error, colour, "solid", k))
+        right.append(Series("", steps, part["e_n_rms"].to_numpy(), colour, "dot", width=1.0))
     n = np.array([outcome.rows["steps"].min(), outcome.rows["steps"].max()], float)
-    right.loglog(n, 5 * n**-2.0, "--", color="0.5", lw=1, label="order 2")
-    left.set(xlabel="stepping time per impact [ns]", ylabel="error of e_n (max over speeds and phases)")
-    right.set(xlabel="steps in the shortest contact", title="dotted: rms")
-    left.set_title(outcome.case.case.title, parse_math=False)
-    right.legend(fontsize=8)
-    for axes in (left, right):
-        axes.grid(alpha=0.3)
-    with atomic(path) as temporary:
-        fig.savefig(temporary, dpi=130)
-    plt.close(fig)
-    return path
+    right.append(Series("order 2", n, 5 * n**-2.0, GREY, "dash"))
+    error_axis = Axis("error of $e_n$, largest over speeds and phases", log=True)
+    return Chart(
+        "cost",
+        f"{outcome.case.case.title}: error against run time",
+        "Error of e_n against the stepping time of an impact and against the steps in the shortest contact, one curve "
+        "for each model; dotted: root of the mean square.",
+        [
+            Panel(Axis("stepping time of an impact", "ns", log=True), error_axis, left),
+            Panel(Axis("steps in the shortest contact", log=True), error_axis, right),
+        ],
+        beside=True,
+    )
 
 
 def _cell(steps: float, nanoseconds: float) -> str:

@@ -91,8 +91,8 @@ def strain_ratio(data: dict[str, Any], path: Path) -> float:
     case = scenes.parse(data, path)
     with named(path):
         law_named(case.law.name)
-    material, radius = case.scene.particles[0].material, case.scene.particles[0].radii()[0]
-    x = wall_impact(case, material, radius, case.scene.walls, highest_speed(case))
+    material, radius = case.scene.leading.material, case.scene.leading.radii()[0]
+    x = wall_impact(case, material, radius, (*case.scene.wall_materials, material)[0], highest_speed(case))
     return float(predict(x).strain_ratio.max())
 
 

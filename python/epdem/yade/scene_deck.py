@@ -8,7 +8,7 @@ from math import atan
 from ..base import rendering as decks
 from ..errors import CaseError
 from ..scenes import placement
-from ..scenes.kinds import Block, Plane
+from ..scenes.layout import Block, Plane
 from ..scenes.plan import ScenePlan
 from .deck import Material, refuse_parameters, strength_values
 from .launcher import deck_modules
@@ -138,7 +138,7 @@ def _walls(p: ScenePlan) -> tuple[Wall, ...]:
     xlo, xhi, ylo, yhi, *_ = p.layout.box
     lx, ly = xhi - xlo, yhi - ylo
     planes = [*p.layout.planes]
-    planes += [Plane(name, 2, float(triangles[0, 0, 2])) for name, triangles in p.layout.meshes.items()]
+    planes += [Plane(name, 2, float(mesh.triangles[0, 0, 2])) for name, mesh in p.layout.meshes.items()]
 
     def corners(z: float) -> tuple[tuple[str, ...], ...]:
         places = ((-lx, -ly, z), (5 * lx, -ly, z), (-lx, 5 * ly, z)) if p.layout.periodic else ()
@@ -160,7 +160,7 @@ def deck(p: ScenePlan) -> Deck:
         law=m.law,
         ratios=m.ratios(),
         materials=_materials(p, friction),
-        wall_material=m.wall_type - 1,
+        wall_material=m.wall_types[""] - 1,
         frictions=_pairs(friction),
         periodic=p.layout.periodic,
         cell=(xhi - xlo, yhi - ylo, 2.0 * _filled(p).limits[5]),
@@ -199,6 +199,6 @@ def _filled(p: ScenePlan) -> Block:
 
 def _table(p: ScenePlan) -> str:
     lines = ["# x y z radius [m], type; random places without overlap"]
-    for *numbers, kind in placement.spheres(p.case, p.model, _filled(p)):
+    for *numbers, kind in placement.spheres(p):
         lines.append(" ".join([*map(decks.number, numbers), str(int(kind))]))
     return "\n".join([*lines, ""])

@@ -74,12 +74,12 @@ def _contacts(p: ScenePlan, folder: Path, spheres: pd.DataFrame) -> pd.DataFrame
     raw = _frames(p, folder, "contacts", p.contacts, CONTACT)
     raw = raw[raw["overlap"] >= 0].reset_index(drop=True)  # what is only near is no contact yet
     walls = np.array(["", *(w.name for w in p.layout.planes), *p.layout.meshes])
-    last = p.case.scene.count + len(walls) - 2
+    last = p.layout.count + len(walls) - 2
     bodies = raw[["i", "j"]].to_numpy(float)
     if not ((bodies >= 0) & (bodies <= last) & (bodies == np.floor(bodies))).all():
         raise EngineError(f"{folder}: the contacts name bodies beyond the {last + 1} of the scene; run the case again")
     raw = raw.astype({"step": "int64", "i": "int64", "j": "int64"})
-    beyond = raw["j"] - p.case.scene.count + 1
+    beyond = raw["j"] - p.layout.count + 1
     raw["wall"] = walls[beyond.clip(lower=0)]
     raw["i"], raw["j"] = raw["i"] + 1, np.where(beyond > 0, 0, raw["j"] + 1)
     return contacts.complete(p, raw, spheres, folder)

@@ -2,6 +2,7 @@
 """A pool of processes: a process that dies takes its own item with it and no other; none outlives us."""
 
 import contextlib
+import ctypes
 import multiprocessing
 import os
 import signal
@@ -99,12 +100,22 @@ def _stop(number: int, frame: object) -> None:
     raise Stopped
 
 
+def _keep_memory() -> None:
+    """Keep what is freed for the next item: given back, each point's 13 MB came page by page, a third of its time."""
+    trim_threshold, mmap_threshold = -1, -3  # of malloc.h
+    with contextlib.suppress(AttributeError):  # a C library without it
+        mallopt = ctypes.CDLL(None).mallopt
+        mallopt(trim_threshold, 1 << 28)
+        mallopt(mmap_threshold, 1 << 25)
+
+
 def _work(function: Callable[[Any], Any], pipe: Connection, others: list[Connection], parent: int) -> None:
     """In a process of the pool: item after item, until the parent sends None or has ended."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C reaches all: our parent stops us in good order
     signal.signal(signal.SIGUSR2, signal.SIG_IGN)  # Slurm warns every process of a job; our parent queues it again
     signal.signal(signal.SIGTERM, _stop)
     end_with_parent()  # a parent that is killed cannot
+    _keep_memory()
     for other in others:  # or the end of a pipe would stay open here, and nobody would see that it has ended
         other.close()
     try:

@@ -10,16 +10,19 @@ UNIT_OF_CHECK = {"floor_load": "N", "mass_flow": "kg/s"}
 
 
 def numbers_of(results: SceneResults) -> dict[str, float]:
-    """COLUMN_last, COLUMN_max and COLUMN_mean (over the last fifth) of every column of the rows, and each check.
+    """COLUMN_last, COLUMN_max, COLUMN_mean (over the last fifth) of all columns of rows and measures, and each check.
 
     A check has the name of what it measures, without the numbers in it: "mass flow / Beverloo" is mass_flow.
     """
-    rows, numbers = results.tables["rows"], {}
-    tail = rows[rows["step"] > 0.8 * rows["step"].max()]
-    for name in rows.columns.drop(["step", "time"]):
-        numbers[f"{name}_last"] = float(rows[name].iloc[-1])
-        numbers[f"{name}_max"] = float(rows[name].max())
-        numbers[f"{name}_mean"] = float(tail[name].mean())
+    numbers = {}
+    for curves in (results.tables["rows"], results.tables.get("measures")):
+        if curves is None:
+            continue
+        tail = curves[curves["step"] > 0.8 * curves["step"].max()]
+        for name in curves.columns.drop(["step", "time"]):
+            numbers[f"{name}_last"] = float(curves[name].iloc[-1])
+            numbers[f"{name}_max"] = float(curves[name].max())
+            numbers[f"{name}_mean"] = float(tail[name].mean())
     for row in results.tables["checks"].to_dict("records"):
         quantity = re.split(r" / |:", row["check"])[0]
         numbers["_".join(re.findall(r"[a-z]+", quantity.lower()))] = float(row["value"])

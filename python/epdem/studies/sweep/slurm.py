@@ -35,6 +35,7 @@ Parameters = dict[str, str]
 # What submitit sets by itself and what a point needs to be stopped and queued again in good time.
 KEPT = ("array", "output", "error", "signal", "open-mode", "job-name")
 SPREAD = ("nodes", "N", "ntasks", "n", "ntasks-per-node")  # one of these: the ranks of a point may lie on several nodes
+TIME = "60"  # [min] walltime of a job if nobody gives another
 WARNING = 90  # [s] from the signal to the end of the walltime; a third of a short one
 
 
@@ -104,12 +105,12 @@ def _submit(sweep: Sweep, folder: Path, numbers: list[int], given: Parameters) -
         executor = submitit.SlurmExecutor(
             folder=folder / "slurm", max_num_timeout=1000, python=shlex.quote(sys.executable)
         )
-        extra = _cpus(sweep, given) | {"time": "60"} | {k: v or True for k, v in given.items()}
+        extra = _cpus(sweep, given) | {"time": TIME} | {k: v or True for k, v in given.items()}
         executor.update_parameters(
             job_name=sweep.name,
             additional_parameters=extra,
             array_parallelism=TASKS,
-            signal_delay_s=min(WARNING, seconds(str(extra["time"])) // 3),
+            signal_delay_s=_warning(given),
             srun_args=["--nodes=1", "--ntasks=1"],  # of however many nodes, one process works at the points
         )
         jobs = executor.map_array(Task(), [folder] * tasks, shares)
@@ -121,6 +122,10 @@ def _submit(sweep: Sweep, folder: Path, numbers: list[int], given: Parameters) -
 
 def _cpus(sweep: Sweep, given: Parameters) -> dict[str, Any]:
     return {} if set(SPREAD) & set(given) else {"cpus-per-task": str(sweep.ranks)}
+
+
+def _warning(given: Parameters) -> int:
+    return min(WARNING, seconds(given.get("time", TIME)) // 3)
 
 
 def seconds(time: str) -> int:
@@ -225,9 +230,10 @@ def _wait(sweep: Sweep, folder: Path, jobs: dict[str, list[int]], report: Report
 
 
 def script(sweep: Sweep, folder: Path, given: Parameters) -> str:
-    """A batch script that runs a sweep as an array, for people who submit by hand."""
+    """A batch script that runs a sweep as an array, for people who submit by hand; its tasks queue themselves again."""
     tasks = min(len(sweep.points), TASKS)
-    head = {"job-name": sweep.name, "array": f"1-{tasks}", "requeue": ""} | _cpus(sweep, given)
+    head = {"job-name": sweep.name, "array": f"1-{tasks}", "time": TIME, "requeue": "", "open-mode": "append"}
+    head |= {"signal": f"B:USR2@{_warning(given)}"} | _cpus(sweep, given)
     lines = [f"#SBATCH --{name}{'=' if value else ''}{value}" for name, value in (head | given).items()]
     place = shlex.quote(str(folder.absolute()))
     python = shlex.quote(sys.executable)
@@ -236,7 +242,14 @@ def script(sweep: Sweep, folder: Path, given: Parameters) -> str:
             "#!/bin/bash",
             *lines,
             "# Each task runs its share of the points; what is finished does not run again.",
-            f"exec {python} -m epdem.cli points {place} --task $SLURM_ARRAY_TASK_ID --tasks {tasks}",
+            f"{python} -m epdem.cli points {place} --task $SLURM_ARRAY_TASK_ID --tasks {tasks} &",
+            "# Shortly before its walltime ends, a task is queued again and goes on with what is missing.",
+            "trap 'scontrol requeue ${SLURM_ARRAY_JOB_ID}_$SLURM_ARRAY_TASK_ID' USR2",
+            "trap : TERM",
+            "while wait $!; code=$?; kill -0 $! 2>/dev/null; do :; done  # a signal ends a wait, but not the task",
+            "# A task that was told to stop waits for its end: Slurm does not queue again what ends by itself.",
+            "[ $code -ne 130 ] || sleep infinity",
+            "exit $code",
             "",
         ]
     )

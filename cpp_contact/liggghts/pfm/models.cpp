@@ -1,0 +1,168 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// The laws without adhesion in LIGGGHTS-PFM. Its contact models have another interface (collision, noCollision), and
+// its hash code has four bits for each of them.
+#include "interface.hpp"
+
+#include <cstdio>
+
+#include "../normal.hpp"
+#include "epdem/laws.hpp"
+
+namespace epdem::liggghts {
+
+bool only_spheres(LAMMPS_NS::LAMMPS* lmp) { return lmp->atom->sphere_flag && !lmp->atom->superquadric_flag; }
+
+namespace pfm {
+
+using LAMMPS_NS::FixWallGran;
+using LAMMPS_NS::LAMMPS;
+using LAMMPS_NS::PairGran;
+namespace PairStyles = LIGGGHTS::PairStyles;
+namespace Walls = LIGGGHTS::Walls;
+
+/// Ids that are free there, 10 to 15: restart files keep them, they never change.
+template <class Law>
+constexpr int id = Law::id - 30;
+constexpr int tangential_off = 15;
+
+/// LIGGGHTS-PFM has no `tangential off`.
+class NoFriction {
+ public:
+  NoFriction(LAMMPS*, LIGGGHTS::IContactHistorySetup*) {}
+  void registerSettings(Settings&) {}
+  void connectToProperties(PropertyRegistry&) {}
+  void collision(CollisionData&, ForceData&, ForceData&) {}
+  void noCollision(ContactData&, ForceData&, ForceData&) {}
+};
+
+template <int tangential>
+struct OfId {
+  using type = TangentialModel<tangential>;
+};
+template <>
+struct OfId<tangential_off> {
+  using type = NoFriction;
+};
+
+std::string names() {
+  std::string all;
+#define EPDEM_NAME(Class) all += " " + model_name<Class<double>>();
+  EPDEM_PLAIN_LAWS(EPDEM_NAME)
+#undef EPDEM_NAME
+  return all;
+}
+
+/// Names the models once.
+void announce(LAMMPS* lmp) {
+  static LAMMPS* known = nullptr;
+  if (known == lmp) return;
+  known = lmp;
+  std::setvbuf(stdout, nullptr, _IOLBF, 0);  // error->one ends in MPI_Abort: on a pipe its message would be lost
+  if (lmp->comm->me != 0) return;
+  const std::string line = "epdem " EPDEM_VERSION ":" + names() + "\n";
+  if (lmp->screen) std::fputs(line.c_str(), lmp->screen);
+  if (lmp->logfile) std::fputs(line.c_str(), lmp->logfile);
+}
+
+/// What the loops of LIGGGHTS-PFM call: a law with its surface, tangential and rolling models.
+template <class Law, bool wall, int tangential, int rolling>
+class Model {
+ public:
+  static const int64_t STYLE_HASHCODE =
+      GranStyle<id<Law>, tangential, COHESION_OFF, rolling, SURFACE_DEFAULT>::HASHCODE;
+
+  Model(LAMMPS* lmp, LIGGGHTS::IContactHistorySetup* setup)
+      : lmp_(lmp), surface_(lmp, setup), normal_(lmp, setup), tangential_(lmp, setup), rolling_(lmp, setup) {
+    announce(lmp);
+  }
+
+  int64_t hashcode() { return STYLE_HASHCODE; }
+  double stressStrainExponent() { return normal_.stressStrainExponent(); }
+
+  void registerSettings(::Settings& settings) {
+    surface_.registerSettings(settings);
+    normal_.registerSettings(settings);
+    tangential_.registerSettings(settings);
+    rolling_.registerSettings(settings);
+  }
+
+  void connectToProperties(PropertyRegistry& registry) {
+    if (normal_.ledger()) lmp_->error->all(FLERR, "setting computePlasticWork on is not available in LIGGGHTS-PFM");
+    normal_.postSettings(false);
+    surface_.connectToProperties(registry);
+    normal_.connectToProperties(registry, dashpot, false);
+    tangential_.connectToProperties(registry);
+    rolling_.connectToProperties(registry);
+  }
+
+  void beginPass(CollisionData& s, ForceData&, ForceData&) { normal_.beginPass(s); }
+  void endPass(CollisionData&, ForceData&, ForceData&) {}
+
+  bool checkSurfaceIntersect(CollisionData& s) { return surface_.checkSurfaceIntersect(s); }
+
+  void collision(CollisionData& s, ForceData& i, ForceData& j) {
+    const double overlap = s.deltan;  // the surface model computes it again, of a wall less accurately
+    surface_.collision(s, i, j);
+    if (wall) s.deltan = overlap;
+    normal_.surfacesIntersect(s, i, j);
+    tangential_.collision(s, i, j);
+    rolling_.collision(s, i, j);
+  }
+
+  void noCollision(ContactData& s, ForceData& i, ForceData& j) {
+    normal_.surfacesClose(s);
+    tangential_.noCollision(s, i, j);
+    rolling_.noCollision(s, i, j);
+  }
+
+ private:
+  static constexpr Dashpot dashpot = tangential == tangential_off          ? Dashpot::off
+                                     : tangential == TANGENTIAL_NO_HISTORY ? Dashpot::required
+                                                                           : Dashpot::optional;
+  static constexpr bool others_remember = tangential == TANGENTIAL_HISTORY || rolling > ROLLING_CDT;
+
+  LAMMPS* const lmp_;
+  SurfaceModel<SURFACE_DEFAULT> surface_;
+  Normal<Law, wall, others_remember> normal_;
+  typename OfId<tangential>::type tangential_;
+  RollingModel<rolling> rolling_;
+};
+
+template <class Interface, class Part, class Parent>
+Interface* create(LAMMPS* lmp, Parent* parent) {
+  return new Part(lmp, parent);
+}
+
+template <class Law, int tangential, int... rollings>
+void add() {
+  const auto one = [](auto rolling) {
+    using OfPair = PairStyles::Granular<Model<Law, false, tangential, rolling>>;
+    using OfWall = Walls::Granular<Model<Law, true, tangential, rolling>>;
+    const int hash = static_cast<int>(Model<Law, false, tangential, rolling>::STYLE_HASHCODE);
+    PairStyles::Factory::instance().addStyle("gran", hash, &create<PairStyles::IGranularPairStyle, OfPair, PairGran>);
+    Walls::Factory::instance().addStyle("wall/gran", hash, &create<Walls::IGranularWall, OfWall, FixWallGran>);
+  };
+  (one(std::integral_constant<int, rollings>{}), ...);
+}
+
+template <class Law>
+void add_law() {
+  static_assert(id<Law> >= 10 && id<Law> < 16, "four bits, and 0 to 9 are taken");
+  Factory::instance().addNormalModel(model_name<Law>(), id<Law>);
+  add<Law, tangential_off, ROLLING_OFF, ROLLING_CDT, ROLLING_EPSD, ROLLING_EPSD2>();
+  add<Law, TANGENTIAL_NO_HISTORY, ROLLING_OFF, ROLLING_CDT, ROLLING_EPSD, ROLLING_EPSD2>();
+  add<Law, TANGENTIAL_HISTORY, ROLLING_OFF, ROLLING_CDT, ROLLING_EPSD, ROLLING_EPSD2>();
+}
+
+const struct Registration {
+  Registration() {
+#define EPDEM_ADD(Class) add_law<Class<double>>();
+    EPDEM_PLAIN_LAWS(EPDEM_ADD)
+#undef EPDEM_ADD
+    Factory::instance().addTangentialModel("off", tangential_off);
+  }
+} registration;
+
+}  // namespace pfm
+
+}  // namespace epdem::liggghts

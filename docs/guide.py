@@ -1,0 +1,100 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""The guide as a site of static pages in runs/guide/site, from docs/*.md; no page needs a network.
+
+Run: make guide      (installs mkdocs-material and latex2mathml; 15 s)
+
+Equations become MathML, which browsers draw themselves; the reference of commands and of the Python interface is
+written from the code.
+"""
+
+import inspect
+import os
+import re
+import shutil
+import subprocess
+import sys
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import typer
+
+import epdem
+from epdem.cli.main import app
+
+ROOT = Path(__file__).parents[1]
+PAGES = ROOT / "runs/guide/pages"
+BLOCK, INLINE = re.compile(r"\$\$(.+?)\$\$", re.S), re.compile(r"(?<![\\$`\w])\$([^$`\n]+(?:\n[^$`\n]+)?)\$(?![\w`])")
+CODE = re.compile(r"(^```[\s\S]*?^```$|^(?: {4}[^\n]*\n)+|`[^`\n]+`)", re.M)
+OUTSIDE = re.compile(r"\[([^\]]*)\]\(\.\./([^)#]+)(?:#[^)]*)?\)")
+
+
+def mathematics(text: str, convert: Callable[..., str]) -> str:
+    """A page with its LaTeX as MathML; code stays as it is."""
+    parts = CODE.split(text)
+    for k in range(0, len(parts), 2):
+        part = BLOCK.sub(lambda m: f"\n\n<p>{convert(m[1].strip(), display='block')}</p>\n\n", parts[k])
+        parts[k] = INLINE.sub(lambda m: f"<span>{convert(m[1])}</span>", part)
+    return "".join(parts)
+
+
+def commands() -> str:
+    """Every command with its arguments and options, from the command itself."""
+    text = ["# Commands\n"]
+    for name, command in sorted(typer.main.get_command(app).commands.items()):  # type: ignore[attr-defined]
+        if command.hidden:
+            continue
+        text.append(f"## epdem {name}\n\n{inspect.cleandoc(command.help or '')}\n\n| option | meaning |\n|---|---|")
+        text += [f"| {_named(p)} | {_cell(getattr(p, 'help', '') or '')} |" for p in command.params]
+        text.append("")
+    return "\n".join(text)
+
+
+def _named(parameter: Any) -> str:
+    if parameter.param_type_name == "argument":
+        return f"`{_cell(parameter.metavar or parameter.name.upper())}`"
+    return ", ".join(f"`{name}`" for name in [*parameter.opts, *parameter.secondary_opts])
+
+
+def _cell(text: str) -> str:
+    return " ".join(text.split()).replace("|", "\\|")
+
+
+def python() -> str:
+    """The public names of the package with their signatures and docstrings."""
+    text = ["# Python\n"]
+    for name in sorted(epdem.__all__):
+        thing = getattr(epdem, name)
+        if inspect.ismodule(thing):
+            text.append(f"## {name}\n\n{inspect.getdoc(thing)}\n")
+            continue
+        text.append(f"## {name}\n\n```python\n{name}{_signature(thing)}\n```\n\n{inspect.getdoc(thing) or ''}\n")
+        for member, function in inspect.getmembers(thing, inspect.isfunction) if inspect.isclass(thing) else []:
+            if not member.startswith("_") and (said := inspect.getdoc(function)):
+                text.append(f"### {name}.{member}\n\n```python\n{member}{_signature(function)}\n```\n\n{said}\n")
+    return "\n".join(text)
+
+
+def _signature(thing: Any) -> str:
+    return str(inspect.signature(thing)).replace("epdem.", "")
+
+
+def main() -> None:
+    """Write the pages, and build the site; a warning of mkdocs is an error."""
+    from latex2mathml.converter import convert
+
+    shutil.rmtree(PAGES.parent, ignore_errors=True)
+    PAGES.mkdir(parents=True)
+    for page in (ROOT / "docs").glob("*.md"):
+        text = OUTSIDE.sub(r"\1 (`\2`)", page.read_text(encoding="utf-8"))
+        text = mathematics(text, convert).replace("](notebook.ipynb)", "](#)")
+        (PAGES / page.name).write_text(text, encoding="utf-8")
+    shutil.copytree(ROOT / "docs/figures", PAGES / "figures")
+    (PAGES / "reference_commands.md").write_text(commands(), encoding="utf-8")
+    (PAGES / "reference_python.md").write_text(python(), encoding="utf-8")
+    words = [sys.executable, "-m", "mkdocs", "build", "--strict", "--quiet", "-f", str(ROOT / "docs/mkdocs.yml")]
+    sys.exit(subprocess.run(words, env=os.environ | {"NO_MKDOCS_2_WARNING": "1"}).returncode)
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,119 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Phases of a scene made of parts: how long, which walls move in them and how. SI."""
+
+from typing import Annotated, Literal, Self
+
+from pydantic import Field, model_validator
+
+from .impact import Frozen, Quantity, Speed
+from .walls import Direction, PartName, Turn, Vector
+
+Time = Annotated[float, Quantity("s", above=0.0)]
+Rate = Annotated[float, Quantity("Hz", above=0.0)]
+Force = Annotated[float, Quantity("N", above=0.0)]
+Speeds = Annotated[list[Annotated[float, Quantity("m/s")]], Field(min_length=3, max_length=3)]
+
+
+def nothing() -> list[float]:
+    """A vector without length."""
+    return [0.0, 0.0, 0.0]
+
+
+class _Move(Frozen):
+    """A motion of the wall `wall`."""
+
+    wall: PartName
+
+
+class LinearMove(_Move):
+    """A constant velocity."""
+
+    kind: Literal["linear"]
+    velocity: Speeds
+
+
+class RotateMove(_Move):
+    """A turn about an axis through `origin`."""
+
+    kind: Literal["rotate"]
+    axis: Direction
+    origin: Vector = Field(default_factory=nothing)
+    rate: Turn
+
+    @model_validator(mode="after")
+    def _turns(self) -> Self:
+        if not any(self.axis) or not self.rate:
+            raise ValueError("axis or rate is zero, so nothing turns; give other values, or remove the motion")
+        return self
+
+
+class VibrateMove(_Move):
+    """A harmonic motion that begins in the middle: amplitude times sin(2 pi frequency t)."""
+
+    kind: Literal["vibrate"]
+    amplitude: Vector
+    frequency: Rate
+
+
+class PressMove(_Move):
+    """A motion along `direction` that holds the force of the wall on the spheres at `force`."""
+
+    kind: Literal["press"]
+    direction: Direction
+    force: Force
+    highest_speed: Speed
+
+    @model_validator(mode="after")
+    def _direction(self) -> Self:
+        if not any(self.direction):
+            raise ValueError("direction = [0, 0, 0] has no direction; give another one")
+        return self
+
+
+Move = Annotated[LinearMove | RotateMove | VibrateMove | PressMove, Field(discriminator="kind")]
+
+
+class Until(Frozen):
+    """What ends a phase before its duration, looked at in every row from `after` on (a tenth of the duration).
+
+    kinetic_energy: of a sphere, the mean is below. count: so few spheres are in the room. force: mean force of a row on
+    `wall` is reached. travel: way of `wall`, which moves with a constant velocity.
+    """
+
+    kinetic_energy: Annotated[float, Quantity("J", above=0.0)] | None = None
+    count: Annotated[int, Field(ge=0)] | None = None
+    wall: PartName | None = None
+    force: Force | None = None
+    travel: Annotated[float, Quantity("m", above=0.0)] | None = None
+    after: Annotated[float, Quantity("s", ge=0.0)] | None = None
+
+    @model_validator(mode="after")
+    def _one(self) -> Self:
+        if sum(x is not None for x in (self.kinetic_energy, self.count, self.force, self.travel)) != 1:
+            raise ValueError("give one of kinetic_energy, count, force and travel")
+        if (self.wall is None) != (self.force is None and self.travel is None):
+            raise ValueError("'wall' belongs to force and travel, and only to them")
+        return self
+
+
+class Phase(Frozen):
+    """A part of the run; with `until` it lasts at most `duration`. time_step: its own."""
+
+    name: PartName
+    duration: Time
+    until: Until | None = None
+    time_step: Time | None = None
+    move: list[Move] = Field(default_factory=list, max_length=64)
+
+    @model_validator(mode="after")
+    def _consistent(self) -> Self:
+        walls = [m.wall for m in self.move]
+        for wall in walls:
+            if walls.count(wall) > 1:
+                raise ValueError(f"two motions of wall {wall!r}; give one")
+        if self.until and (self.until.after or 0.0) >= self.duration:
+            raise ValueError("until.after must be below duration")
+        linear = [m.wall for m in self.move if isinstance(m, LinearMove) and any(m.velocity)]
+        if self.until and self.until.travel is not None and self.until.wall not in linear:
+            raise ValueError(f"until.travel: wall {self.until.wall!r} has no linear motion in this phase")
+        return self

@@ -1,0 +1,255 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""A scene made of parts: walls, fills, single bodies, phases. SI."""
+
+import math
+from collections.abc import Iterable
+from functools import cached_property
+from typing import Annotated, Literal, NamedTuple, Self
+
+from pydantic import Field, Tag, model_validator
+
+from .impact import Frozen, Length, Name, Quantity, Spin
+from .measures import Measure, Region
+from .motions import LinearMove, Phase, PressMove, Rate, RotateMove, Speeds, VibrateMove, nothing
+from .sizes import FileName, Particles, Share, csv_rows, number_in
+from .walls import ConeWall, CylinderWall, PartName, PlaneWall, Room, Vector, Wall, has
+
+Count = Annotated[int, Field(ge=1, le=100_000_000)]
+
+
+class Sphere(NamedTuple):
+    """One sphere of a table: place [m], radius [m], material, velocity [m/s], spin [rad/s]."""
+
+    place: tuple[float, float, float]
+    radius: float
+    material: str
+    velocity: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    spin: tuple[float, float, float] = (0.0, 0.0, 0.0)
+    frozen: bool = False
+
+
+class Fill(Frozen):
+    """Spheres put at random places of a region without overlap, by one of count, mass [kg] and volume share.
+
+    rate: spheres per second, poured into the region; else all at the begin of `phase` (the first one).
+    """
+
+    name: PartName
+    region: Region
+    particles: Annotated[list[Particles], Field(min_length=1, max_length=64)]
+    count: Count | None = None
+    mass: Annotated[float, Quantity("kg", above=0.0)] | None = None
+    fraction: Share | None = None
+    rate: Rate | None = None
+    velocity: Speeds = Field(default_factory=nothing)
+    phase: PartName | None = None
+
+    @model_validator(mode="after")
+    def _amount(self) -> Self:
+        if sum(x is not None for x in (self.count, self.mass, self.fraction)) != 1:
+            raise ValueError("give one of count, mass and fraction")
+        total = sum(p.share for p in self.particles)
+        if abs(total - 1.0) > 1e-9:
+            raise ValueError(f"the shares of 'particles' add up to {total:g}, must be 1")
+        return self
+
+
+class FileFill(Frozen):
+    """Spheres of a CSV file at the start: x, y, z, radius [m]; optional material, vx, vy, vz [m/s]."""
+
+    name: PartName
+    file: FileName
+    material: Name | None = None
+
+    @cached_property
+    def spheres(self) -> list[Sphere]:
+        """Every sphere of the file. Raises ValueError that names the line."""
+        heads, rows = csv_rows(self.file)
+        known = ["x", "y", "z", "radius", "material", "vx", "vy", "vz"]
+        for head in heads:
+            if head not in known or heads.count(head) > 1:
+                raise ValueError(f"{self.file}: unknown or repeated column {head[:40]!r}; there are {', '.join(known)}")
+        for head in known[:4]:
+            if head not in heads:
+                raise ValueError(f"{self.file}: column {head!r} is missing")
+        if ("material" in heads) == (self.material is not None):
+            raise ValueError(f"{self.file}: give the material in the file or in the case, in one of them")
+        return [self._sphere(heads, line, fields) for line, fields in rows]
+
+    def _sphere(self, heads: list[str], line: int, fields: list[str]) -> Sphere:
+        if len(fields) != len(heads):
+            raise ValueError(f"{self.file} line {line}: {len(fields)} values, expected {len(heads)}")
+        texts = dict(zip(heads, fields, strict=True))
+        x, y, z, radius = (number_in(self.file, line, key, texts[key]) for key in ("x", "y", "z", "radius"))
+        if not 1e-12 < radius < 1e6:
+            raise ValueError(f"{self.file} line {line}: radius = {radius:g} m, must be above 0")
+        vx, vy, vz = (number_in(self.file, line, key, texts.get(key, "0")) for key in ("vx", "vy", "vz"))
+        return Sphere((x, y, z), radius, texts.get("material", self.material or ""), (vx, vy, vz))
+
+    @model_validator(mode="after")
+    def _readable(self) -> Self:
+        assert self.spheres
+        return self
+
+
+AnyFill = Annotated[Annotated[FileFill, Tag("with")] | Annotated[Fill, Tag("without")], has("file")]
+
+
+class Body(Frozen):
+    """A single sphere; frozen: it stays where it is. It comes at the begin of `phase` (the first one)."""
+
+    name: PartName
+    material: Name
+    radius: Length
+    place: Vector
+    velocity: Speeds = Field(default_factory=nothing)
+    spin: Annotated[list[Spin], Field(min_length=3, max_length=3)] = Field(default_factory=nothing)
+    frozen: bool = False
+    phase: PartName | None = None
+
+    @model_validator(mode="after")
+    def _at_rest(self) -> Self:
+        if self.frozen and (any(self.velocity) or any(self.spin) or self.phase):
+            raise ValueError(
+                "a frozen body is there from the start and at rest; remove velocity, spin, phase or frozen"
+            )
+        return self
+
+    @property
+    def sphere(self) -> Sphere:
+        """The body as a row of a table."""
+        (x, y, z), (vx, vy, vz), (wx, wy, wz) = self.place, self.velocity, self.spin
+        return Sphere((x, y, z), self.radius, self.material, (vx, vy, vz), (wx, wy, wz), self.frozen)
+
+
+class Parts(Frozen):
+    """A scene of any parts, in a room beyond whose limits spheres are lost.
+
+    periodic: in x and y. leave: spheres may leave the room. Gravity acts along -z.
+    """
+
+    kind: Literal["parts"]
+    room: Room
+    periodic: bool = False
+    leave: bool = False
+    gravity: Annotated[float, Quantity("m/s^2", ge=0.0)] = 9.81
+    wall: list[Wall] = Field(default_factory=list, max_length=64)
+    fill: list[AnyFill] = Field(default_factory=list, max_length=64)
+    body: list[Body] = Field(default_factory=list, max_length=1000)
+    phase: Annotated[list[Phase], Field(min_length=1, max_length=64)]
+    measure: list[Measure] = Field(default_factory=list, max_length=64)
+
+    @model_validator(mode="after")
+    def _parts(self) -> Self:
+        if not self.fill and not self.body:
+            raise ValueError("no spheres; add [[scene.fill]] or [[scene.body]]")
+        self._unique()
+        phases = [p.name for p in self.phase]
+        for place, name in self._named_phases():
+            if name not in phases:
+                raise ValueError(f"{place} = {name!r} is no phase; there are {', '.join(phases)}")
+        moving = [w.name for w in self.wall if not isinstance(w, PlaneWall)]
+        for p in self.phase:
+            for m in p.move:
+                if m.wall not in moving:
+                    known = f"there are {', '.join(moving)}" if moving else "there is none"
+                    raise ValueError(
+                        f"phase.{p.name}.move: {m.wall!r} is no wall of triangles, which can move; {known}"
+                    )
+            if p.until and p.until.wall and p.until.wall not in [w.name for w in self.wall]:
+                raise ValueError(f"phase.{p.name}.until.wall = {p.until.wall!r} is no wall")
+        for w in self.wall:
+            if isinstance(w, PlaneWall) and w.phases:
+                places = sorted(phases.index(name) for name in w.phases)
+                if places != list(range(places[0], places[-1] + 1)):
+                    raise ValueError(f"wall.{w.name}.phases: a wall that went does not come back; name phases in a row")
+        return self
+
+    def _unique(self) -> None:
+        kinds: tuple[tuple[str, Iterable[Frozen]], ...]
+        kinds = (("wall", self.wall), ("fill", self.fill), ("body", self.body), ("phase", self.phase))
+        for kind, parts in kinds:
+            names = [getattr(part, "name", "") for part in parts]
+            for name in names:
+                if names.count(name) > 1:
+                    raise ValueError(f"two parts of {kind} have the name {name!r}; give each its own")
+
+    def _named_phases(self) -> list[tuple[str, str]]:
+        found = [(f"fill.{f.name}.phase", f.phase) for f in self.fill if isinstance(f, Fill) and f.phase]
+        found += [(f"body.{b.name}.phase", b.phase) for b in self.body if b.phase]
+        found += [(f"wall.{w.name}.phases", p) for w in self.wall if isinstance(w, PlaneWall) for p in w.phases]
+        return found
+
+    @property
+    def duration(self) -> float:
+        """Of all phases [s]."""
+        return sum(p.duration for p in self.phase)
+
+    @cached_property
+    def table(self) -> list[Sphere]:
+        """The spheres with places of their own that are there from the start: of files, then single ones."""
+        first = self.phase[0].name
+        of_files = [s for f in self.fill if isinstance(f, FileFill) for s in f.spheres]
+        return [*of_files, *(b.sphere for b in self.body if b.phase in (None, first))]
+
+    @property
+    def later(self) -> list[Body]:
+        """The single spheres that come at the begin of another phase than the first."""
+        return [b for b in self.body if b.phase not in (None, self.phase[0].name)]
+
+    @property
+    def random_fills(self) -> list[Fill]:
+        """The fills at random places."""
+        return [f for f in self.fill if isinstance(f, Fill)]
+
+    @cached_property
+    def filled(self) -> list[Particles]:
+        """Everything that is filled in, in the order in which it comes; of a table the smallest and largest spheres."""
+        order = {p.name: n for n, p in enumerate(self.phase)}
+        fills = sorted(self.random_fills, key=lambda f: order[f.phase] if f.phase else 0)
+        alone: dict[str, list[float]] = {}
+        for sphere in [*self.table, *(b.sphere for b in self.later)]:
+            alone.setdefault(sphere.material, []).append(sphere.radius)
+        known = [*(p for f in fills if not f.phase or order[f.phase] == 0 for p in f.particles)]
+        known += [Particles.of(m, r) for m, radii in alone.items() for r in sorted({min(radii), max(radii)})]
+        return [*known, *(p for f in fills if f.phase and order[f.phase] > 0 for p in f.particles)]
+
+    @property
+    def leading(self) -> Particles:
+        """The spheres whose impacts on a wall stand for the scene."""
+        return self.filled[0]
+
+    @property
+    def drive(self) -> float:
+        """The highest speed that anything has from outside [m/s]."""
+        velocities = [*(s.velocity for s in self.table), *(b.velocity for b in self.body)]
+        speeds = [math.hypot(*v) for v in (*velocities, *(f.velocity for f in self.random_fills))]
+        turns = (w for w in self.wall if isinstance(w, CylinderWall | ConeWall))
+        speeds += [abs(w.turn) * max(w.diameters_of_ends()) / 2 for w in turns]
+        limits = self.room.limits
+        across = math.dist(limits[0::2], limits[1::2])
+        for move in (m for p in self.phase for m in p.move):
+            match move:
+                case LinearMove():
+                    speeds.append(math.hypot(*move.velocity))
+                case RotateMove():
+                    speeds.append(abs(move.rate) * across)
+                case VibrateMove():
+                    speeds.append(2 * math.pi * move.frequency * math.hypot(*move.amplitude))
+                case PressMove():
+                    speeds.append(move.highest_speed)
+        return max([*speeds, 0.0])
+
+    @property
+    def wall_materials(self) -> list[str]:
+        """Every material of a wall, once."""
+        return list(dict.fromkeys(w.material for w in self.wall))
+
+    @property
+    def named_materials(self) -> list[tuple[str, str]]:
+        """(place, material) of every name of a material."""
+        found = [(f"scene.wall.{w.name}.material", w.material) for w in self.wall]
+        found += [(f"scene.fill.{f.name}", p.material) for f in self.random_fills for p in f.particles]
+        files = (f for f in self.fill if isinstance(f, FileFill))
+        found += [(f"scene.fill.{f.name}", m) for f in files for m in dict.fromkeys(s.material for s in f.spheres)]
+        return [*found, *((f"scene.body.{b.name}.material", b.material) for b in self.body)]

@@ -1,0 +1,227 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Sizes of spheres: one radius, evenly spread, normal, log-normal, or a sieve table, in classes of one radius. SI."""
+
+import csv
+import math
+import re
+from abc import ABC, abstractmethod
+from pathlib import Path
+from statistics import NormalDist
+from typing import Annotated, Any, Self
+
+from pydantic import BeforeValidator, Discriminator, Field, Tag, ValidationInfo, model_validator
+
+from .impact import Frozen, Length, Name, Quantity
+from .units import to_si, within_limits
+
+Share = Annotated[float, Quantity("1", above=0.0, le=1.0)]
+LARGEST_FILE = 200_000_000  # bytes of a file beside a case
+MOST_SIEVES = 64
+
+
+def _found(value: object, info: ValidationInfo) -> Path:
+    """The file that a case names, beside the case or by its whole path. Raises ValueError."""
+    if isinstance(value, Path):
+        return value
+    if not isinstance(value, str) or not value or not value.isprintable():
+        raise ValueError("must be the name of a file in quotes")
+    folder = Path((info.context or {}).get("folder", "."))
+    try:
+        path = folder / value
+        if not path.is_file():
+            raise ValueError(f"no such file; names of files count from the folder of the case ({folder})")
+        if path.stat().st_size > LARGEST_FILE:
+            raise ValueError(f"more than {LARGEST_FILE // 1_000_000} MB; name another file")
+    except OSError as error:
+        raise ValueError(f"cannot be read ({error.strerror}); name another file") from None
+    return path
+
+
+FileName = Annotated[Path, BeforeValidator(_found)]
+
+
+def csv_rows(path: Path) -> tuple[list[str], list[tuple[int, list[str]]]]:
+    """(heads, (line, fields) of each row) of a CSV file; `#` begins a comment. Raises ValueError."""
+    try:
+        lines = path.read_text(encoding="utf-8-sig").splitlines()
+    except UnicodeDecodeError as error:
+        raise ValueError(f"{path} is not UTF-8 at byte {error.start}; save it as UTF-8") from None
+    except OSError as error:
+        raise ValueError(f"{path} cannot be read ({error.strerror})") from None
+    parsed = [(n, line) for n, line in enumerate(lines, 1) if line.strip() and not line.lstrip().startswith("#")]
+    rows = [(n, [field.strip() for field in next(csv.reader([line]))]) for n, line in parsed]
+    if len(rows) < 2:
+        raise ValueError(f"{path} needs a line of heads and at least one row")
+    return rows[0][1], rows[1:]
+
+
+def number_in(path: Path, line: int, name: str, text: str) -> float:
+    """A number in a field of a CSV file. Raises ValueError that names file, line and column."""
+    try:
+        value = float(text)
+    except ValueError:
+        value = math.nan
+    if not math.isfinite(value):
+        raise ValueError(f"{path} line {line}: {name} = {text[:40]!r} is not a number")
+    return value
+
+
+class _Limits(Frozen):
+    """Radii between two limits [m], in so many classes of one radius each."""
+
+    start: Length = Field(alias="from")
+    to: Length
+    classes: Annotated[int, Field(ge=2, le=50)] = 5
+
+    @model_validator(mode="after")
+    def _ordered(self) -> Self:
+        if not self.to > self.start:
+            raise ValueError(f"'to' ({self.to:g} m) must exceed 'from' ({self.start:g} m)")
+        return self
+
+
+class Range(_Limits):
+    """Radii evenly spread, by number, from one limit to the other."""
+
+    def numbers(self) -> list[tuple[float, float]]:
+        """(radius [m], weight by number) of each class."""
+        step = (self.to - self.start) / (self.classes - 1)
+        return [(float(f"{self.start + k * step:.6g}"), 1.0) for k in range(self.classes)]
+
+
+class _Spread(_Limits, ABC):
+    """Radii of a distribution cut off at the limits, in classes of equal width, each with the radius in its middle."""
+
+    @abstractmethod
+    def share_below(self, radius: float) -> float:
+        """Share by number of the uncut distribution below a radius [m]."""
+
+    def numbers(self) -> list[tuple[float, float]]:
+        """(radius [m], weight by number) of each class."""
+        width = (self.to - self.start) / self.classes
+        edges = [self.start + k * width for k in range(self.classes + 1)]
+        below = [self.share_below(edge) for edge in edges]
+        radii = [float(f"{edge + width / 2:.6g}") for edge in edges[:-1]]
+        return [(r, high - low) for r, low, high in zip(radii, below[:-1], below[1:], strict=True) if high > low]
+
+    @model_validator(mode="after")
+    def _some(self) -> Self:
+        if not self.numbers():
+            raise ValueError("no sphere lies between 'from' and 'to'; move them towards the middle of the distribution")
+        return self
+
+
+class Normal(_Spread):
+    """Radii normally distributed by number, cut off at two limits [m]."""
+
+    mean: Length
+    deviation: Length
+
+    def share_below(self, radius: float) -> float:
+        """See `_Spread`."""
+        return NormalDist(self.mean, self.deviation).cdf(radius)
+
+
+class LogNormal(_Spread):
+    """Radii whose logarithm is normally distributed by number, cut off at two limits [m]."""
+
+    median: Length
+    ratio: Annotated[float, Quantity("1", above=1.0)]  # geometric standard deviation
+
+    def share_below(self, radius: float) -> float:
+        """See `_Spread`."""
+        return NormalDist().cdf(math.log(radius / self.median) / math.log(self.ratio))
+
+
+def _table(value: object, info: ValidationInfo) -> tuple[tuple[float, float], ...]:
+    """((opening [m], share of the mass retained on it), ...), from the largest opening, of a sieve table's file."""
+    if isinstance(value, tuple):
+        return value
+    path = _found(value, info)
+    heads, lines = csv_rows(path)
+    units = [re.fullmatch(r".*\[(.+)\]", head) for head in heads]
+    if len(heads) != 2 or not all(units):
+        raise ValueError(f"{path} needs two columns with units, as 'opening [mm],retained [%]'; it has {heads}")
+    length, share = (str(unit[1]) for unit in units if unit)
+    if share not in ("%", "1"):
+        raise ValueError(f"{path}: the mass retained is in [%] or [1], not in [{share}]")
+    rows = []
+    for n, fields in lines:
+        if len(fields) != 2:
+            raise ValueError(f"{path} line {n}: {len(fields)} values, expected 2")
+        opening = number_in(path, n, heads[0], fields[0])
+        retained = number_in(path, n, heads[1], fields[1])
+        if opening < 0 or retained < 0:
+            raise ValueError(f"{path} line {n}: openings and shares must be at least 0")
+        rows.append((within_limits(to_si(f"{opening!r} {length}", "m"), "m"), retained))
+    rows.sort(reverse=True)
+    if not 2 <= len(rows) <= MOST_SIEVES or len({opening for opening, _ in rows}) < len(rows):
+        raise ValueError(f"{path}: from 2 to {MOST_SIEVES} different openings are needed, there are {len(rows)}")
+    total, whole = sum(retained for _, retained in rows), 100.0 if share == "%" else 1.0
+    if abs(total / whole - 1.0) > 0.02:
+        raise ValueError(f"{path}: the shares add up to {total:g}, must be {whole:g} within 2 %")
+    if rows[0][1] > 0:
+        raise ValueError(f"{path}: nothing may be retained on the largest opening; add a larger one with 0")
+    return tuple((opening, retained / total) for opening, retained in rows)
+
+
+class Sieve(Frozen):
+    """A sieve table: what is retained on an opening has the diameter halfway to the next larger opening."""
+
+    sieve: Annotated[tuple[tuple[float, float], ...], BeforeValidator(_table)]
+
+    def numbers(self) -> list[tuple[float, float]]:
+        """(radius [m], weight by number) of each class, the smallest first."""
+        pairs = zip(self.sieve[:-1], self.sieve[1:], strict=True)
+        classes = [(float(f"{(larger + opening) / 4:.6g}"), share) for (larger, _), (opening, share) in pairs]
+        return [(r, share / r**3) for r, share in reversed(classes) if share > 0]
+
+
+SIZES = {"sieve": Sieve, "mean": Normal, "deviation": Normal, "median": LogNormal, "ratio": LogNormal}
+
+
+def _kind(value: object) -> str:
+    """Which table of sizes a user means, by its keys."""
+    if isinstance(value, Normal | LogNormal | Sieve):
+        return type(value).__name__
+    keys = value if isinstance(value, dict) else {}
+    return next((model.__name__ for key, model in SIZES.items() if key in keys), Range.__name__)
+
+
+Sizes = Annotated[
+    Annotated[Range, Tag("Range")]
+    | Annotated[Normal, Tag("Normal")]
+    | Annotated[LogNormal, Tag("LogNormal")]
+    | Annotated[Sieve, Tag("Sieve")],
+    Discriminator(_kind),
+]
+
+
+class Particles(Frozen):
+    """Spheres of one material; `share` is their part of the mass that is filled in."""
+
+    material: Name
+    radius: Length | Sizes
+    share: Share = 1.0
+
+    @classmethod
+    def of(cls, material: str, radius: float) -> Self:
+        """Spheres of one radius [m]."""
+        return cls.model_construct(material=material, radius=radius, share=1.0)
+
+    def sizes(self) -> list[tuple[float, float]]:
+        """(radius [m], share of the total mass) of each class of equal radii."""
+        if isinstance(self.radius, float):
+            return [(self.radius, self.share)]
+        masses = [(r, weight * r**3) for r, weight in self.radius.numbers()]
+        total = sum(mass for _, mass in masses)
+        return [(r, self.share * mass / total) for r, mass in masses]
+
+    def radii(self) -> tuple[float, float]:
+        """Smallest and largest radius [m]."""
+        return self.sizes()[0][0], self.sizes()[-1][0]
+
+
+def context(path: object) -> dict[str, Any]:
+    """What the models of a case read from `path` need to find the files that it names."""
+    return {"folder": Path(str(path)).parent}

@@ -1,0 +1,189 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Walls of a scene made of parts: flat, round, boxes, STL files. SI."""
+
+from abc import ABC, abstractmethod
+from typing import Annotated, Literal, Self
+
+from pydantic import Discriminator, Field, model_validator
+
+from .impact import Frozen, Length, Name, Quantity
+from .sizes import FileName
+
+Place = Annotated[float, Quantity("m")]
+Vector = Annotated[list[Place], Field(min_length=3, max_length=3)]
+Direction = Annotated[list[float], Field(min_length=3, max_length=3)]
+Axis = Literal["x", "y", "z"]
+PartName = Annotated[str, Field(pattern=r"^[A-Za-z][A-Za-z0-9_]{0,31}$")]
+Span = Annotated[list[Place], Field(min_length=2, max_length=2)]
+Turn = Annotated[float, Quantity("rad/s")]
+
+
+def ordered(name: str, span: list[float]) -> None:
+    """Raise ValueError unless a span begins below its end."""
+    if not span[0] < span[1]:
+        raise ValueError(f"{name}: {span[0]:g} m must be below {span[1]:g} m")
+
+
+class Room(Frozen):
+    """A room between planes, x, y, z from and to [m]."""
+
+    x: Span
+    y: Span
+    z: Span
+
+    @model_validator(mode="after")
+    def _ordered(self) -> Self:
+        for name in "xyz":
+            ordered(name, getattr(self, name))
+        return self
+
+    @property
+    def limits(self) -> tuple[float, float, float, float, float, float]:
+        """xlo xhi ylo yhi zlo zhi [m]."""
+        return (self.x[0], self.x[1], self.y[0], self.y[1], self.z[0], self.z[1])
+
+
+class Upright(Frozen):
+    """An upright cylinder: a room that is filled."""
+
+    diameter: Length
+    z: Span
+    center: Span = Field(default_factory=lambda: [0.0, 0.0])
+
+    @model_validator(mode="after")
+    def _ordered(self) -> Self:
+        ordered("z", self.z)
+        return self
+
+
+def has(key: str) -> Discriminator:
+    """Chooses between the readings of a table by whether it has a key: "with" or "without"."""
+
+    def choose(value: object) -> str:
+        there = key in value if isinstance(value, dict) else hasattr(value, key)
+        return "with" if there else "without"
+
+    return Discriminator(choose)
+
+
+class _Wall(Frozen):
+    """What every wall has."""
+
+    name: PartName
+    material: Name
+
+
+class PlaneWall(_Wall):
+    """An infinite plane across an axis, at rest; in the named phases only, if there are any."""
+
+    kind: Literal["plane"]
+    axis: Axis
+    at: Place
+    phases: list[PartName] = Field(default_factory=list)
+
+
+class PlateWall(_Wall):
+    """A rectangle of two triangles across an axis; `size` along the two other axes, in the order x, y, z."""
+
+    kind: Literal["plate"]
+    axis: Axis
+    center: Vector
+    size: Annotated[list[Length], Field(min_length=2, max_length=2)]
+
+
+class BoxWall(_Wall):
+    """The six faces of a room, without those that are `open` ("-z": the lower one)."""
+
+    kind: Literal["box"]
+    x: Span
+    y: Span
+    z: Span
+    open: list[Literal["-x", "+x", "-y", "+y", "-z", "+z"]] = Field(default_factory=list)
+
+    @model_validator(mode="after")
+    def _faces(self) -> Self:
+        for name in "xyz":
+            ordered(name, getattr(self, name))
+        if len(set(self.open)) == 6:
+            raise ValueError("open: all six faces are open, so nothing is left; remove the wall")
+        return self
+
+
+class _Round(_Wall, ABC):
+    """A wall about an axis, from one place along it to another; `center`: the two other coordinates.
+
+    ends: which ends a disc closes. turn: angular velocity of its surface about its axis. It is a body of revolution, so
+    its triangles stay where they are.
+    """
+
+    axis: Axis = "z"
+    start: Place = Field(alias="from")
+    to: Place
+    center: Span = Field(default_factory=lambda: [0.0, 0.0])
+    ends: list[Literal["from", "to"]] = Field(default_factory=list)
+    turn: Turn = 0.0
+
+    @model_validator(mode="after")
+    def _ordered(self) -> Self:
+        if not self.start < self.to:
+            raise ValueError(f"'from' ({self.start:g} m) must be below 'to' ({self.to:g} m)")
+        return self
+
+    @abstractmethod
+    def diameters_of_ends(self) -> tuple[float, float]:
+        """At `from` and at `to` [m]."""
+
+
+class CylinderWall(_Round):
+    """A round tube."""
+
+    kind: Literal["cylinder"]
+    diameter: Length
+
+    def diameters_of_ends(self) -> tuple[float, float]:
+        """At `from` and at `to` [m]."""
+        return self.diameter, self.diameter
+
+
+class ConeWall(_Round):
+    """A round tube whose diameter changes evenly from `from` to `to`."""
+
+    kind: Literal["cone"]
+    diameters: Annotated[list[Length], Field(min_length=2, max_length=2)]
+
+    def diameters_of_ends(self) -> tuple[float, float]:
+        """At `from` and at `to` [m]."""
+        return self.diameters[0], self.diameters[1]
+
+
+class Rotation(Frozen):
+    """A turn about an axis through the origin."""
+
+    axis: Direction
+    angle: Annotated[float, Quantity("rad")]
+
+    @model_validator(mode="after")
+    def _axis(self) -> Self:
+        if not any(self.axis):
+            raise ValueError("axis = [0, 0, 0] has no direction; give another one")
+        return self
+
+
+class StlWall(_Wall):
+    """The triangles of an STL file, multiplied by `scale` (1e-3 if the file is in mm), rotated, then moved.
+
+    closed: whether it must be watertight.
+    """
+
+    kind: Literal["stl"]
+    file: FileName
+    scale: Annotated[float, Quantity("1", above=0.0)] = 1.0
+    rotate: Rotation | None = None
+    place: Vector = Field(default_factory=lambda: [0.0, 0.0, 0.0])
+    closed: bool = False
+
+
+Wall = Annotated[
+    PlaneWall | PlateWall | BoxWall | CylinderWall | ConeWall | StlWall,
+    Field(discriminator="kind"),
+]

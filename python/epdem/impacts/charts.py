@@ -1,0 +1,223 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Figures of a run of impacts as data: restitution, errors, loops, forces, slip."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+import pandas as pd
+
+from ..report.chart import GREY, INK, PALETTE, Axis, Chart, Panel, Series
+from ..theory import printed
+from ..theory.backbones import JKR
+from ..theory.yielding import FIRST_YIELD_ROUNDED
+from . import oblique
+from .comparison import CHECKED
+from .experiment import Experiment
+from .prediction import Prediction, predict
+from .run import Outcome
+
+FINE = 240  # speeds of a line of theory
+SLIPS = 80  # of a line of theory
+ROUND_OFF = 1e-14  # errors below are zeros
+SYMBOLS = {
+    "e_n": "$e_n$",
+    "contact_time": "$t_c$",
+    "force_max": r"$F_\mathrm{max}$",
+    "overlap_max": r"$\alpha_\mathrm{max}$",
+    "residual_overlap": r"$\alpha_\mathrm{res}$",
+}
+SPEED = Axis("impact speed $v$", "m/s", log=True)
+
+
+def main_chart(outcome: Outcome) -> Chart:
+    """The figure of a run: e_n against speed, or slip after against slip before oblique impacts."""
+    return slip(outcome) if outcome.case.impact.oblique else restitution(outcome)
+
+
+def _fine(x: Experiment) -> Experiment:
+    """The experiment at the speeds of a line: a little beyond its own."""
+    low, high = float(x.speed.min()), float(x.speed.max())
+    margin = 1.0 if high > low else 2.0  # one speed alone is drawn with its surroundings
+    return replace(x, speed=np.geomspace(low / margin, high * margin, FINE))
+
+
+def first_yield(x: Experiment) -> float:
+    """Speed [m/s] at which the softer body first yields (8.84 with 1.60 Y); NaN where nothing says so."""
+    known = [b.yield_stress for b in (x.body, x.target) if b.yield_stress is not None and not b.rigid]
+    if not known or x.law.adheres:
+        return math.nan
+    pair = {"E_star": x.E_star, "R_star": x.R_star, "m_star": x.m_star}
+    return float(printed.yield_speed(p_y=FIRST_YIELD_ROUNDED * min(known), **pair))
+
+
+def _error(what: str) -> Axis:
+    return Axis(f"error of {what}", log=True)
+
+
+def _tolerance(speed: np.ndarray, value: float) -> Series:
+    return Series(f"tolerance {value:g}", [speed.min(), speed.max()], [value, value], GREY, "dash")
+
+
+def _visible(values: np.ndarray) -> np.ndarray:
+    """Errors for a logarithmic axis, on which zeros have no place."""
+    return np.where(np.asarray(values, float) > ROUND_OFF, values, math.nan)
+
+
+def restitution(outcome: Outcome) -> Chart:
+    """e_n against speed, theory as lines and engines as points, with the fit 8.88 where it holds; errors below."""
+    rows, several = outcome.results.comparison, len(outcome.predictions) > 1
+    above: list[Series] = []
+    below: list[Series] = []
+
+    def named(name: str, law: str) -> str:
+        return f"{name}, {law}" if several else name
+
+    for i, law in enumerate(outcome.predictions):
+        x = outcome.plans[law].experiment
+        fine = _fine(x)
+        above.append(Series(named("theory", law), fine.speed, predict(fine).e_n, i % len(PALETTE) if several else INK))
+        engines = rows[rows["law"] == law].groupby("engine", sort=False)
+        for k, (name, part) in enumerate(engines):
+            colour = (i if several else k) % len(PALETTE)
+            speed = part["speed"].to_numpy()
+            above.append(Series(named(str(name), law), speed, part["e_n"].to_numpy(), colour, None, k))
+            below.append(Series("", speed, _visible(part["e_n_error"]), colour, None, k))
+    v_y0, plastic = first_yield(x), any(p.yields for p in outcome.predictions.values())
+    if plastic and fine.speed[-1] > 100 * v_y0 and x.viscous_restitution is None:
+        beyond = fine.speed[fine.speed >= 100 * v_y0]
+        above.append(Series("finite-element fit, eq. 8.88", beyond, printed.wu(beyond, v_y0=v_y0), INK, "dash"))
+    below.append(_tolerance(fine.speed, outcome.case.check.e_n))
+    said = ", ".join(rows["engine"].unique())
+    return Chart(
+        "e_n",
+        outcome.case.case.title,
+        f"Coefficient of restitution against impact speed: theory as lines, {said} as points. Below, the largest error "
+        f"over the starting phases; the largest of all is {rows['e_n_error'].max():.1e}.",
+        [
+            Panel(SPEED, Axis("coefficient of restitution $e_n$"), above, 3.0),
+            Panel(SPEED, _error("$e_n$"), below, 1.4),
+        ],
+    )
+
+
+def errors(outcome: Outcome) -> Chart:
+    """The errors of all checked quantities against speed, largest over the phases."""
+    rows, series = outcome.results.comparison, []
+    for k, ((engine, law), part) in enumerate(rows.groupby(["engine", "law"], sort=False)):
+        for i, name in enumerate(CHECKED):
+            values = _visible(part[f"{name}_error"])
+            label = f"{SYMBOLS[name]}, {engine}" + (f", {law}" if rows["law"].nunique() > 1 else "")
+            series.append(Series(label, part["speed"].to_numpy(), values, i, None, k))
+    worst = ", ".join(f"{name} {rows[name + '_error'].max():.1e}" for name in CHECKED)
+    return Chart(
+        "errors",
+        "Errors against theory",
+        f"Largest error over the starting phases against impact speed, for each checked quantity: {worst}. Zeros are "
+        "not on the logarithmic axis.",
+        [Panel(SPEED, Axis("error, largest over phases", log=True), series)],
+    )
+
+
+def loops(outcome: Outcome) -> list[Chart]:
+    """Force against overlap and against time of the chosen impacts, with the theory of the first law."""
+    found = {key: table for key, table in outcome.results.paths.items() if len(table)}
+    if not found:
+        return []
+    law = next(iter(found)).split("/")[0]
+    prediction = predict(replace(outcome.plans[law].experiment, speed=_speeds(found), oblique=None))
+    by_overlap, by_time = _theory_loops(outcome.plans[law].experiment, prediction), []
+    for k, (key, table) in enumerate(found.items()):
+        for i, (speed, part) in enumerate(table.groupby("speed")):
+            name = key.split("/")[1] if len(outcome.plans) == 1 else ", ".join(reversed(key.split("/")))
+            top, lasting = prediction.overlap_max[i], prediction.duration[i]
+            force = part["force"] / prediction.force_max[i]
+            thin = slice(None, None, max(1, len(part) // 40))
+            once = "" if i else name
+            by_overlap.append(Series(once, part["overlap"][thin] / top, force[thin], i, None, k))
+            named = f"{name}, {speed:.3g} m/s" if k == 0 else once
+            by_time.append(Series(named, part["time"] / lasting, force, i, "solid" if k == 0 else "dot"))
+    speeds = ", ".join(f"{v:.3g}" for v in prediction.speed)
+    force_axis = Axis(r"force $F/F_\mathrm{max}$")
+    return [
+        Chart(
+            "loops",
+            "Force against overlap",
+            f"Loading and unloading at {speeds} m/s: theory as lines, engines as points, over the largest of "
+            "theory. The energy between the two "
+            "branches is lost.",
+            [Panel(Axis(r"overlap $\alpha/\alpha_\mathrm{max}$"), force_axis, by_overlap)],
+        ),
+        Chart(
+            "force",
+            "Force against time",
+            f"Contact force from first touch to the end of the contact at {speeds} m/s, as the engines compute it, "
+            "over the peak and the contact time of theory.",
+            [Panel(Axis("time $t/t_c$"), force_axis, by_time)],
+        ),
+    ]
+
+
+def _speeds(paths: dict[str, pd.DataFrame]) -> np.ndarray:
+    return np.unique(next(iter(paths.values()))["speed"])
+
+
+def _theory_loops(x: Experiment, prediction: Prediction) -> list[Series]:
+    """Loading and unloading of theory at each speed; none with adhesion or a dashpot."""
+    law, series = x.theory(), []
+    if isinstance(law, JKR) or x.viscous_restitution is not None:
+        return []
+    for k, (speed, top) in enumerate(zip(prediction.speed, prediction.overlap_max, strict=True)):
+        up = np.linspace(0.0, 1.0, 120)[1:] * top
+        down = np.linspace(float(law.residual_overlap(top)), top, 120)[::-1]
+        force = np.concatenate([law.force(up), law.unloading_force(down, np.full(down.shape, top))])
+        overlap = np.concatenate([up, down]) / top
+        series.append(Series(f"theory, {speed:.3g} m/s", overlap, force / prediction.force_max[k], k))
+    return series
+
+
+def _slip_line(x: Experiment, speed: float, psi_1: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """psi_1 and psi_2 of theory at a speed, on a grid over the range of psi_1: impacts without spin that slip so."""
+    psi = np.linspace(psi_1.min(), psi_1.max(), SLIPS)
+    friction = replace(x.friction_of_oblique(), angle=np.arctan(psi * oblique.unit(x)), spin=np.zeros(SLIPS))
+    line = predict(replace(x, speed=np.full(SLIPS, speed), oblique=friction)).rebound
+    assert line is not None
+    return line.psi_1, line.psi_2
+
+
+def slip(outcome: Outcome) -> Chart:
+    """psi_2 against psi_1: theory with partial slip and the line of sliding; engines as points, errors below."""
+    rows, colour = outcome.results.comparison, 0
+    above: list[Series] = []
+    below: list[Series] = []
+    for law, prediction in outcome.predictions.items():
+        r = prediction.rebound
+        assert r is not None
+        for speed in np.unique(prediction.speed):
+            there = prediction.speed == speed
+            name = f"partial slip, {law} {speed:.3g} m/s, $e_n$ = {prediction.e_n[there][0]:.3f}"
+            above.append(
+                Series(name, *_slip_line(outcome.plans[law].experiment, speed, r.psi_1), colour % len(PALETTE))
+            )
+            part = rows[(rows["law"] == law) & (rows["speed"] == speed)]
+            for k, (engine, points) in enumerate(part.groupby("engine", sort=False)):
+                psi_1, own = points["psi_1"].to_numpy(), colour % len(PALETTE)
+                above.append(
+                    Series(str(engine) if colour == 0 else "", psi_1, points["psi_2"].to_numpy(), own, None, k)
+                )
+                below.append(Series("", psi_1, _visible(points["psi_2_error"]), own, None, k))
+            colour += 1
+    ends = rows["psi_1"].to_numpy()
+    above.append(Series("", [ends.min(), ends.max()], [0.0, 0.0], GREY, "solid", width=0.6))
+    below.append(_tolerance(ends, outcome.case.check.psi_2))
+    before = Axis(r"slip before the impact $\psi_1$, over $\mu v_n/\kappa$")
+    return Chart(
+        "psi",
+        outcome.case.case.title,
+        "Slip of the surfaces after oblique impacts against that before: theory with partial slip as lines, engines as "
+        f"points. Below, the largest error over the starting phases, {rows['psi_2_error'].max():.1e} at most.",
+        [
+            Panel(before, Axis(r"slip after the impact $\psi_2$"), above, 3.0),
+            Panel(before, _error(r"$\psi_2$"), below, 1.4),
+        ],
+    )

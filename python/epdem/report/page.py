@@ -1,0 +1,179 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""The page of a study: report.html, one file with all that it shows, which needs no network.
+
+A study hands over its parts: words, facts, charts, tables, listings, pictures. The page lays them out.
+"""
+
+import base64
+import importlib.util
+import json
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+from functools import cache
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, ClassVar
+
+from .. import __version__
+from ..base import paths
+from ..base.files import atomic
+from ..errors import EngineError
+from .chart import PALETTE, Chart
+
+if TYPE_CHECKING:  # slow to import
+    import jinja2
+    import pandas as pd
+
+NAME = "report.html"
+MOST_CELLS = 12_000  # of a table: about 0.8 MB
+HEAD = 4096  # bytes in which the mark of a page stands
+
+
+@dataclass(frozen=True)
+class Facts:
+    """What is known, by its name."""
+
+    title: str
+    facts: dict[str, str]
+    kind: ClassVar[str] = "facts"
+
+
+@dataclass(frozen=True)
+class Rows:
+    """A table that sorts by a click or the enter key on a heading. `units` by column, in the headings."""
+
+    title: str
+    frame: "pd.DataFrame"
+    units: dict[str, str] = field(default_factory=dict)
+    note: str = ""
+    kind: ClassVar[str] = "rows"
+
+    def heads(self) -> list[str]:
+        """The headings: names with their units."""
+        return [f"{name} [{self.units[name]}]" if self.units.get(name) else name for name in map(str, self.frame)]
+
+    def cells(self) -> list[list[tuple[str, str]]]:
+        """(text, what sorts it) of each cell of the first rows, as many as a page can hold."""
+        shown = self.frame.head(self.fitting)
+        return [[(_cell(v), _key(v)) for v in row] for row in shown.itertuples(index=False)]
+
+    @property
+    def fitting(self) -> int:
+        """How many rows a page can hold."""
+        return int(max(1, MOST_CELLS // max(1, self.frame.shape[1])))
+
+    @property
+    def notes(self) -> str:
+        """The note, and how many rows are left out."""
+        left = len(self.frame) - self.fitting
+        return f"{self.note} The first {self.fitting} of {len(self.frame)} rows." if left > 0 else self.note
+
+
+@dataclass(frozen=True)
+class Lines:
+    """Lines of a file, with the reason of each; folded up."""
+
+    title: str
+    lines: list[tuple[str, str]]
+    kind: ClassVar[str] = "lines"
+
+
+@dataclass(frozen=True)
+class Picture:
+    """A PNG file, or the text of an SVG; `alt` says what it shows."""
+
+    title: str
+    alt: str
+    file: Path | None = None
+    svg: str = ""
+    kind: ClassVar[str] = "picture"
+
+    @property
+    def source(self) -> str:
+        """The file, to stand in the page itself."""
+        return base64.b64encode(self.file.read_bytes()).decode() if self.file else ""
+
+
+Part = Facts | Rows | Lines | Picture | Chart
+
+
+@dataclass(frozen=True)
+class Page:
+    """A page: what was done and came out, in sentences; whether all checks hold (None: there are none); its parts.
+
+    command repeats the study.
+    """
+
+    title: str
+    sentences: list[str]
+    parts: list[Part]
+    passed: bool | None = None
+    command: str = ""
+    warnings: Sequence[str] = ()
+
+
+def _cell(value: Any) -> str:
+    if isinstance(value, bool) or type(value).__name__ == "bool":  # numpy's, too
+        return "yes" if value else "no"
+    if isinstance(value, float):
+        return "–" if math.isnan(value) else f"{value:.5g}"
+    return str(value)
+
+
+def _key(value: Any) -> str:
+    try:
+        number = float(value)
+    except (TypeError, ValueError):
+        return str(value)
+    return "" if math.isnan(number) else repr(number)
+
+
+@cache
+def _templates() -> "jinja2.Environment":
+    import jinja2
+
+    return jinja2.Environment(
+        loader=jinja2.FileSystemLoader(paths.templates() / "report"),
+        autoescape=True,
+        undefined=jinja2.StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+    )
+
+
+@cache
+def _plotly() -> str:
+    """The script of plotly, which comes with its Python package."""
+    found = importlib.util.find_spec("plotly")
+    if found is None or not found.submodule_search_locations:
+        raise EngineError("plotly is not installed; pip install plotly")
+    return (Path(found.submodule_search_locations[0]) / "package_data/plotly.min.js").read_text(encoding="utf-8")
+
+
+def render(page: Page, mark: str = "") -> str:
+    """The page as HTML."""
+    charts = [part for part in page.parts if isinstance(part, Chart)]
+    data = json.dumps([chart.plain() for chart in charts]).replace("</", "<\\/")
+    template = _templates().get_template("page.html.j2")
+    return template.render(
+        page=page,
+        mark=mark,
+        data=data,
+        plotly=_plotly() if charts else "",
+        palette=json.dumps(PALETTE),
+        version=__version__,
+    )
+
+
+def write(path: Path, page: Callable[[], Page], *, mark: str = "") -> Path:
+    """Write what `page` gives to `path`, unless a page with this mark is there. The caller keeps the folder (`claim`).
+
+    mark: hash of the results that the page shows.
+    """
+    if mark and path.exists():
+        with path.open("rb") as stream:
+            if f'content="{mark}"'.encode() in stream.read(HEAD):
+                return path
+    with atomic(path, sync=False) as temporary:
+        temporary.write_text(render(page(), mark), encoding="utf-8")
+    return path

@@ -1,0 +1,193 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Measures that a case asks for, from the tables of any engine: curves over the frames, histograms of the end. SI."""
+
+import math
+
+import numpy as np
+import pandas as pd
+from scipy.spatial import cKDTree
+from scipy.stats import qmc
+
+from ..case.measures import Amount, CenterOfMass, Flow, Height, Histogram, Load, Porosity, Repose
+from ..case.walls import Room, Upright
+from ..errors import CaseError
+from ..theory.backbones import JKR
+from .meshes import FloatArray
+from .pairs import pair_law
+from .plan import ScenePlan
+
+POINTS = 2**14  # in a region whose porosity is measured: an error of some 0.3 % of the volume
+RINGS = 12  # of the surface of a bed
+
+Measure = Amount | Flow | Height | Repose | CenterOfMass | Load | Porosity | Histogram
+
+
+def refuse_measures(p: ScenePlan) -> None:
+    """Raise CaseError for measures that the scene cannot give."""
+    s = p.case.scene
+    names = [m.name for m in s.measure]
+    for m in s.measure:
+        place = f"scene.measure.{m.name}"
+        if names.count(m.name) > 1:
+            raise CaseError(f"{place}: two measures have this name; give each its own")
+        if not p.frames:
+            raise CaseError(f"{place}: measures are taken from frames; give output.particles")
+        if isinstance(m, Load) and m.wall not in p.layout.loads:
+            known = ", ".join(p.layout.loads) or "none; give output.loads in a scene of parts"
+            raise CaseError(f"{place}.wall = {m.wall!r}: walls whose forces are known: {known}")
+        if isinstance(m, Load) and m.kind == "torque" and m.wall not in p.layout.meshes:
+            raise CaseError(f"{place}.wall = {m.wall!r}: a plane has no torque; name a wall of triangles")
+        material = getattr(m, "material", None)
+        if material is not None and material not in {t.material for t in p.model.types if not t.wall}:
+            raise CaseError(f"{place}.material = {material!r}: no sphere is of it")
+        if isinstance(m, Histogram) and m.kind == "plastic_work" and not p.dents:
+            raise CaseError(f"{place}: the plastic work is known with output.energy and a law that yields; give them")
+        if isinstance(m, Histogram) and m.kind == "impact_speed" and (p.model.adheres or not p.contacts):
+            raise CaseError(f"{place}: impact speeds are told by contacts without adhesion; give output.contacts")
+
+
+def _inside(region: Room | Upright, x: FloatArray) -> np.ndarray:
+    """Whether places, shape (n, 3), lie in a region."""
+    if isinstance(region, Upright):
+        near = np.hypot(x[:, 0] - region.center[0], x[:, 1] - region.center[1]) <= region.diameter / 2
+        return np.asarray(near & (x[:, 2] >= region.z[0]) & (x[:, 2] <= region.z[1]))
+    limits = np.array(region.limits)
+    return np.asarray(((x >= limits[0::2]) & (x <= limits[1::2])).all(axis=1))
+
+
+def _chosen(p: ScenePlan, m: Amount | Height | Repose | CenterOfMass | Flow, frame: pd.DataFrame) -> pd.DataFrame:
+    """The spheres of a frame that a measure is about."""
+    if m.material is not None:
+        kinds = [n for n, t in enumerate(p.model.types, 1) if t.material == m.material]
+        frame = frame[frame["type"].isin(kinds)]
+    region = None if isinstance(m, Flow) else m.region
+    return frame if region is None else frame[_inside(region, frame[["x", "y", "z"]].to_numpy())]
+
+
+def _height(frame: pd.DataFrame, share: float) -> float:
+    if frame.empty:
+        return math.nan
+    by_height = frame.sort_values("z")
+    below = by_height["mass"].cumsum().to_numpy() / by_height["mass"].sum()
+    return float(by_height["z"].iloc[min(int(np.searchsorted(below, share)), len(below) - 1)])
+
+
+def _angle(m: Repose, frame: pd.DataFrame) -> float:
+    """Angle [rad] of a line through the highest spheres of rings, or of strips, of equal width."""
+    if len(frame) < 2 * RINGS:
+        return math.nan
+    x, y = frame["x"] - m.center[0], frame["y"] - m.center[1]
+    way = {"distance": np.hypot(x, y), "x": x, "y": y}[m.over].to_numpy()
+    top = (frame["z"] + frame["radius"]).to_numpy()
+    edges = np.linspace(way.min(), way.max() * (1 + 1e-12), RINGS + 1)
+    ring = np.clip(np.digitize(way, edges) - 1, 0, RINGS - 1)
+    there = np.unique(ring)
+    surface = np.array([top[ring == k].max() for k in there])
+    middle = 0.5 * (edges[there] + edges[there + 1])
+    return float(math.atan(abs(np.polyfit(middle, surface, 1)[0])))
+
+
+def _porosity(m: Porosity, frame: pd.DataFrame) -> float:
+    """The share of evenly spread points of the region that lie in no sphere."""
+    r = m.region
+    if isinstance(r, Upright):
+        (a, b), c = r.center, r.diameter / 2
+        low, high = np.array([a - c, b - c, r.z[0]]), np.array([a + c, b + c, r.z[1]])
+    else:
+        low, high = np.array(r.limits[0::2]), np.array(r.limits[1::2])
+    points = low + (high - low) * qmc.Sobol(3, scramble=False).random(POINTS)
+    points = points[_inside(r, points)]
+    taken = np.zeros(len(points), bool)
+    tree = cKDTree(points)
+    for found in tree.query_ball_point(frame[["x", "y", "z"]].to_numpy(), frame["radius"].to_numpy()):
+        taken[found] = True
+    return float(1.0 - taken.mean())
+
+
+def _flow(p: ScenePlan, m: Flow, spheres: pd.DataFrame, steps: np.ndarray) -> FloatArray:
+    """Mass that passes the plane between two frames over the time between them; 0 at the first."""
+    axis, sign = m.direction[1], 1.0 if m.direction[0] == "+" else -1.0
+    chosen = _chosen(p, m, spheres)
+    mass = chosen.groupby("id")["mass"].first()
+    place = chosen.pivot_table(index="step", columns="id", values=axis).reindex(index=steps, columns=mass.index)
+    beyond = (sign * (place - m.at) > 0).to_numpy() & place.notna().to_numpy()
+    there, seen = place.notna().to_numpy(), place.notna().cummax().to_numpy()
+    passed = beyond | (seen & ~there)
+    new = np.diff(passed.astype(int), axis=0)
+    new[~seen[:-1] & seen[1:]] = 0  # what comes beyond the plane has not passed it
+    flow = (new * mass.to_numpy()).sum(axis=1) / np.diff(p.time_at(steps))
+    return np.concatenate([[0.0], flow])
+
+
+def curves(p: ScenePlan, tables: dict[str, pd.DataFrame]) -> pd.DataFrame:
+    """One row per frame: step, time, a column for each measure but histograms."""
+    spheres = tables["particles"]
+    steps = np.sort(spheres["step"].unique())
+    frames = dict(tuple(spheres.groupby("step")))
+    rows = tables["rows"].set_index("step").reindex(steps)
+    table = pd.DataFrame({"step": steps, "time": p.time_at(steps)})
+    for m in p.case.scene.measure:
+        match m:
+            case Amount():
+                chosen = [_chosen(p, m, frames[step])["mass"] for step in steps]
+                table[m.name] = [float(len(c) if m.kind == "count" else c.sum()) for c in chosen]
+            case Height():
+                table[m.name] = [_height(_chosen(p, m, frames[step]), m.share) for step in steps]
+            case Repose():
+                table[m.name] = [_angle(m, _chosen(p, m, frames[step])) for step in steps]
+            case CenterOfMass():
+                chosen = [_chosen(p, m, frames[step]) for step in steps]
+                table[m.name] = [float((c["mass"] * c[m.axis]).sum() / max(c["mass"].sum(), 1e-300)) for c in chosen]
+            case Flow():
+                table[m.name] = _flow(p, m, spheres, steps)
+            case Porosity():
+                table[m.name] = [_porosity(m, frames[step]) for step in steps]
+            case Load():
+                parts = [f"{m.wall}_{m.kind}_{axis}" for axis in "xyz" if m.component in (axis, "magnitude")]
+                parts = [part for part in parts if part in rows]
+                values = rows[parts].to_numpy()
+                table[m.name] = values[:, 0] if m.component != "magnitude" else np.linalg.norm(values, axis=1)
+            case Histogram():
+                pass
+    return table
+
+
+def _impact_speeds(p: ScenePlan, tables: dict[str, pd.DataFrame]) -> FloatArray:
+    """Of every contact of any frame the speed [m/s] of the head-on impact that gives its largest overlap."""
+    contacts = tables["contacts"]
+    largest = contacts.groupby(["wall", "i", "j"], as_index=False)["delta_max"].max()
+    spheres = tables["particles"].groupby("id")[["radius", "mass", "type"]].first()
+    first, second = spheres.reindex(largest["i"]), spheres.reindex(largest["j"])
+    other = np.where(largest["j"] == 0, largest["wall"].map(p.wall_types), second["type"]).astype(int)
+    R_star = 1.0 / (1.0 / first["radius"].to_numpy() + 1.0 / second["radius"].fillna(math.inf).to_numpy())
+    m_star = 1.0 / (1.0 / first["mass"].to_numpy() + 1.0 / second["mass"].fillna(math.inf).to_numpy())
+    keys = pd.DataFrame({"a": first["type"].to_numpy(int), "b": other, "R": R_star})
+    speeds = np.zeros(len(keys))
+    for (a, b, R), at in keys.groupby(["a", "b", "R"]).indices.items():
+        spec, E_star = pair_law(p.case, *(p.model.types[int(k) - 1].material for k in (a, b)))
+        law = spec.theory(E_star=E_star, R_star=float(R))
+        assert not isinstance(law, JKR)  # refused before the run
+        work = np.asarray(law.work(largest["delta_max"].to_numpy()[at]), float)
+        speeds[at] = np.sqrt(2.0 * work / m_star[at])
+    return speeds
+
+
+def histograms(p: ScenePlan, tables: dict[str, pd.DataFrame]) -> pd.DataFrame:
+    """One row per bin: measure, low, high, number."""
+    found = []
+    for m in p.case.scene.measure:
+        if not isinstance(m, Histogram):
+            continue
+        spheres = tables["particles"]
+        last = spheres[spheres["step"] == spheres["step"].max()]
+        values = last["plastic_work"].to_numpy() if m.kind == "plastic_work" else _impact_speeds(p, tables)
+        number, edges = np.histogram(values, m.bins)
+        found.append(pd.DataFrame({"measure": m.name, "low": edges[:-1], "high": edges[1:], "number": number}))
+    return pd.concat(found, ignore_index=True) if found else pd.DataFrame(columns=["measure", "low", "high", "number"])
+
+
+def unit(m: Measure) -> str:
+    """The SI unit of a measure; "" for a plain number."""
+    units = {"mass": "kg", "flow": "kg/s", "repose": "rad", "force": "N", "torque": "N m", "impact_speed": "m/s"}
+    units |= {"height": "m", "center_of_mass": "m", "plastic_work": "J"}
+    return units.get(m.kind, "")

@@ -1,0 +1,114 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""STL files of walls: read, scaled, rotated, moved; what is wrong with one is found before a run."""
+
+import math
+from pathlib import Path
+
+import numpy as np
+
+from ..case.walls import StlWall
+from ..errors import CaseError
+from .meshes import FloatArray
+
+SMALLEST_ANGLE = math.radians(0.52)  # of a triangle: LIGGGHTS refuses sharper ones
+MERGED = 1e-9  # of the size of a mesh: corners closer than this are one
+
+
+def _read(path: Path, place: str) -> FloatArray:
+    """The triangles of a file, shape (n, 3, 3), in its unit. Raises CaseError."""
+    import trimesh
+
+    try:
+        with path.open("rb") as stream:
+            mesh = trimesh.load_mesh(stream, file_type="stl", process=False)
+        triangles: FloatArray = np.asarray(mesh.triangles, dtype=np.float64)
+    except Exception as error:  # of a damaged file trimesh says almost anything
+        reason = " ".join(str(error).split())[:80] or type(error).__name__
+        raise CaseError(f"{place} = '{path}': not an STL file ({reason}); export it anew") from None
+    if not len(triangles) or not np.isfinite(triangles).all():
+        raise CaseError(f"{place} = '{path}': no triangles, or corners that are not numbers; export it anew")
+    return triangles
+
+
+def _at(point: FloatArray) -> str:
+    return "(" + ", ".join(f"{x:.4g}" for x in point) + ") m"
+
+
+def _sharpest(triangles: FloatArray) -> FloatArray:
+    """The smallest angle [rad] of each triangle, 0 if two corners are one."""
+    sides = np.linalg.norm(triangles - np.roll(triangles, -1, axis=1), axis=2)
+    a, b, c = np.sort(sides, axis=1).T
+    with np.errstate(all="ignore"):
+        cosine = (b**2 + c**2 - a**2) / (2 * b * c)
+        angle = np.arccos(np.clip(cosine, -1.0, 1.0))
+    flat = ~(a > 0) | (a + b <= c * (1 + 1e-12))
+    return np.where(flat, 0.0, angle)
+
+
+def _edges(triangles: FloatArray) -> tuple[np.ndarray, np.ndarray]:
+    """(numbers of the two corners of each directed edge, shape (3 n, 2); places of the corners)."""
+    size = float(np.ptp(triangles.reshape(-1, 3), axis=0).max())
+    keys = np.round(triangles.reshape(-1, 3) / (MERGED * size)).astype(np.int64)
+    _, first, numbers = np.unique(keys, axis=0, return_index=True, return_inverse=True)
+    faces = numbers.reshape(-1, 3)
+    edges = np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]])
+    return edges, triangles.reshape(-1, 3)[first]
+
+
+def _refuse_faults(w: StlWall, triangles: FloatArray, place: str) -> None:
+    """Raise CaseError for triangles that no engine takes, with their number and the place of the first."""
+    sharp = np.flatnonzero(_sharpest(triangles) < SMALLEST_ANGLE)
+    if sharp.size:
+        where = _at(triangles[sharp[0]].mean(axis=0))
+        raise CaseError(
+            f"{place}: {sharp.size} degenerate triangles (an angle below {math.degrees(SMALLEST_ANGLE):.2f} deg), the "
+            f"first is number {sharp[0] + 1} at {where}; repair the mesh"
+        )
+    edges, corners = _edges(triangles)
+    undirected, counts = np.unique(np.sort(edges, axis=1), axis=0, return_counts=True)
+    _, repeated = np.unique(edges, axis=0, return_counts=True)
+
+    def middle(edge: np.ndarray) -> str:
+        return _at(corners[edge].mean(axis=0))
+
+    if (counts > 2).any():
+        n, edge = int((counts > 2).sum()), undirected[counts > 2][0]
+        raise CaseError(f"{place}: {n} edges belong to more than two triangles, one at {middle(edge)}; repair the mesh")
+    if (repeated > 1).any():
+        n = int((repeated > 1).sum())
+        edge = np.unique(edges, axis=0)[repeated > 1][0]
+        raise CaseError(
+            f"{place}: neighbouring triangles are flipped against each other at {n} edges, one at {middle(edge)}; make "
+            "their normals consistent"
+        )
+    if w.closed and (counts == 1).any():
+        n, edge = int((counts == 1).sum()), undirected[counts == 1][0]
+        raise CaseError(f"{place}: open along {n} edges, one at {middle(edge)}; close the mesh, or remove 'closed'")
+
+
+def placed(w: StlWall, room: tuple[float, ...], largest: float) -> FloatArray:
+    """The triangles of an STL wall in the room xlo xhi ylo yhi zlo zhi [m], shape (n, 3, 3).
+
+    largest: of the radii [m], against which the size is checked. Raises CaseError for a file that is no good wall.
+    """
+    place = f"scene.wall.{w.name}.file"
+    points: FloatArray = w.scale * _read(w.file, place)
+    if w.rotate is not None:
+        axis = np.array(w.rotate.axis) / np.linalg.norm(w.rotate.axis)
+        s, c = math.sin(w.rotate.angle), math.cos(w.rotate.angle)
+        cross = np.cross(axis, np.eye(3))
+        points = points @ (c * np.eye(3) + s * cross + (1 - c) * np.outer(axis, axis))
+    points = points + np.array(w.place)
+    low, high = points.reshape(-1, 3).min(axis=0), points.reshape(-1, 3).max(axis=0)
+    extent = " x ".join(f"{x:.4g}" for x in high - low)
+    if (high - low).max() < 2 * largest:
+        raise CaseError(
+            f"{place}: the wall of {extent} m is smaller than a sphere; check its unit, scale = {w.scale:g}"
+        )
+    if (low < room[0::2]).any() or (high > room[1::2]).any():
+        raise CaseError(
+            f"{place}: the wall reaches from {_at(low)} to {_at(high)}, beyond scene.room; check its unit (scale = "
+            f"{w.scale:g}; 0.001 if the file is in mm), its place, or enlarge the room"
+        )
+    _refuse_faults(w, points, place)
+    return points

@@ -1,0 +1,41 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Parts that several pages have: the case, decks with reasons, versions, citations."""
+
+import shlex
+import sys
+from collections.abc import Mapping, Sequence
+from pathlib import Path
+
+from ... import __version__
+from ...base.stages import library_hash, product_hash
+from ...engines.citations import citations
+from ...report.page import Facts, Lines
+
+
+def command() -> str:
+    """The command line of this process, if it is one of ours."""
+    name = Path(sys.argv[0]).name
+    return shlex.join(["epdem", *sys.argv[1:]]) if name == "epdem" else ""
+
+
+def case_lines(text: str) -> Lines:
+    """The case file."""
+    return Lines("Case file", [(line, "") for line in text.splitlines()])
+
+
+def deck_lines(title: str, text: str) -> Lines:
+    """A deck, its comments as reasons."""
+    split = [line.partition("  # ") for line in text.splitlines()]
+    return Lines(title, [(line.rstrip(), reason) for line, _, reason in split])
+
+
+def origin(about: Mapping[str, object], hashes: Mapping[str, object]) -> Facts:
+    """Versions and hashes of what made the numbers: the engines' versions are in the attributes of a results file."""
+    versions = {k.removeprefix("version_"): str(v) for k, v in about.items() if k.startswith("version_")}
+    ours = {"epdem": f"{__version__}, sources {product_hash()[:16]}, compiled parts {library_hash()[:16]}"}
+    return Facts("Versions and hashes", ours | versions | {f"inputs of {k}": str(v) for k, v in hashes.items()})
+
+
+def cited(laws: Sequence[str], engines: Sequence[str], *, dashpot: bool) -> Facts:
+    """What to cite."""
+    return Facts("What to cite", citations(list(laws), list(engines), dashpot=dashpot))

@@ -1,0 +1,122 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""The page of a run of impacts."""
+
+from pathlib import Path
+
+from ...base.folders import claim
+from ...impacts import charts
+from ...impacts.comparison import CHECKED, UNITS
+from ...impacts.experiment import Body, Experiment
+from ...impacts.report import mark, worst, yielding
+from ...impacts.run import Outcome
+from ...liggghts.explain import IMPACT, explain
+from ...liggghts.impacts import Liggghts
+from ...report.chart import Chart
+from ...report.page import NAME, Facts, Lines, Page, Part, Rows, write
+from . import common
+
+COLUMNS = ("engine", "law", "speed", *(f"{n}{k}" for n in CHECKED for k in ("", "_theory", "_error")))
+OBLIQUE = ("angle", "spin_before", "e_t", "e_t_theory", "psi_1", "psi_2", "psi_2_theory", "psi_2_error", "spin")
+
+
+def of_impacts(outcome: Outcome) -> Path:
+    """Write report.html into the folder of a run; its path."""
+    said = common.command()
+    with claim(outcome.folder, force=True):
+        digest = mark(outcome, said, NAME)
+        return write(outcome.folder / NAME, lambda: page(outcome, said), mark=digest)
+
+
+def page(outcome: Outcome, command: str = "") -> Page:
+    """The page of a run."""
+    parts: list[Part] = [*figures(outcome), table(outcome), *bodies(outcome), tolerances(outcome)]
+    results = outcome.results
+    parts += [common.case_lines(results.case_text), *decks(outcome)]
+    parts.append(common.origin(results.attributes, {key: run["inputs"] for key, run in results.runs.items()}))
+    engines = list(dict.fromkeys(results.comparison["engine"]))
+    parts.append(common.cited(list(outcome.plans), engines, dashpot=outcome.case.viscous is not None))
+    return Page(
+        outcome.case.case.title,
+        sentences(outcome),
+        parts,
+        passed=outcome.passed,
+        command=command or f"epdem rerun {outcome.folder}/results.h5",
+        warnings=outcome.warnings,
+    )
+
+
+def sentences(outcome: Outcome) -> list[str]:
+    """What ran and came out, in words."""
+    rows, said = outcome.results.comparison, []
+    for law, p in outcome.plans.items():
+        speed, prediction = p.experiment.speed, outcome.predictions[law]
+        span = f"{speed.min():.4g} to {speed.max():.4g} m/s" if speed.size > 1 else f"{speed[0]:.4g} m/s"
+        said.append(
+            f"Law {law}: {speed.size} impacts at {span}, each from {p.phases} starting phases within a step of "
+            f"{p.time_step:.4g} s; {yielding(prediction)}. e_n of theory goes from {prediction.e_n.max():.4f} to "
+            f"{prediction.e_n.min():.4f}."
+        )
+    said += [line[0].upper() + line[1:] + "." for line in worst(outcome)]
+    residual = rows["energy_residual"].abs().max()
+    if residual == residual:
+        said.append(f"The energy balance of an impact closes within {residual:.1e} of its kinetic energy.")
+    return said
+
+
+def figures(outcome: Outcome) -> list[Chart]:
+    """The figures of the page."""
+    return [charts.main_chart(outcome), charts.errors(outcome), *charts.loops(outcome)]
+
+
+def table(outcome: Outcome) -> Rows:
+    """All rows of the comparison."""
+    rows = outcome.results.comparison
+    columns = [*COLUMNS[:3], *(k for k in OBLIQUE if k in rows), *COLUMNS[3:], "steps_in_contact", "passed"]
+    note = "Means over the phases; errors are the largest over the phases. A click on a heading sorts."
+    units = {name: UNITS.get(name.removesuffix("_theory"), "") for name in columns}
+    return Rows("Measured and predicted", rows[columns], units, note)
+
+
+def bodies(outcome: Outcome) -> list[Facts]:
+    """What meets, by law."""
+    return [
+        Facts(f"Bodies and law {law}" if len(outcome.plans) > 1 else "Bodies and law", _facts(p.experiment))
+        for law, p in outcome.plans.items()
+    ]
+
+
+def _facts(x: Experiment) -> dict[str, str]:
+    facts = {"body": _body(x.body), "target": _body(x.target), "law": x.law.name}
+    facts |= {name: f"{value:.6g}" for name, value in x.law.parameters.items()}
+    facts |= {"E*": f"{x.E_star:.6g} Pa", "R*": f"{x.R_star:.6g} m", "m*": f"{x.m_star:.6g} kg"}
+    v_y0 = charts.first_yield(x)
+    facts |= {"speed of first yield (8.84, 1.60 Y)": f"{v_y0:.4g} m/s"} if v_y0 == v_y0 else {}
+    return facts | {"source": x.source}
+
+
+def _body(b: Body) -> str:
+    shape = f"sphere, R = {b.radius:.6g} m" if b.radius < float("inf") else "wall"
+    if b.rigid:
+        return f"{shape}, rigid"
+    strength = "" if b.yield_stress is None else f", Y = {b.yield_stress:.4g} Pa"
+    return f"{shape}, {b.material}: E = {b.young_modulus:.4g} Pa, nu = {b.poisson_ratio:g}{strength}"
+
+
+def tolerances(outcome: Outcome) -> Facts:
+    """What the case allows."""
+    check = outcome.case.check.model_dump()
+    return Facts("Tolerances of the case", {name: f"{value:g}" for name, value in check.items()})
+
+
+def decks(outcome: Outcome) -> list[Lines]:
+    """Every deck that ran, line by line; reasons of LIGGGHTS's are those of its template."""
+    shown = []
+    for key, text in outcome.results.decks.items():
+        law, engine, name = key.split("/", 2)
+        title = f"Deck {name} of {engine}, law {law}"
+        if engine == Liggghts.name and law in outcome.plans:
+            deck = Liggghts().deck(outcome.plans[law])
+            shown.append(Lines(title, [(line, reason) for _, line, reason in explain(IMPACT, deck)]))
+        else:
+            shown.append(common.deck_lines(title, text))
+    return shown

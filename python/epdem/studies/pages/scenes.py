@@ -1,0 +1,78 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""The page of a bulk scene."""
+
+from pathlib import Path
+
+from ...base.folders import claim
+from ...liggghts.explain import SCENE, explain
+from ...liggghts.scene_deck import deck
+from ...report.page import NAME, Facts, Lines, Page, Part, Picture, Rows, write
+from ...scenes.charts import bed, charts
+from ...scenes.columns import UNITS
+from ...scenes.run import SceneOutcome
+from . import common
+
+
+def of_scene(outcome: SceneOutcome) -> Path:
+    """Write report.html into the folder of a scene; its path."""
+    with claim(outcome.folder, force=True):
+        return write(outcome.folder / NAME, lambda: page(outcome, common.command()))
+
+
+def page(outcome: SceneOutcome, command: str = "") -> Page:
+    """The page of a scene."""
+    tables, about = outcome.results.tables, outcome.results.attributes
+    drawn = {chart.name for chart in charts(outcome)}
+    pictures = [
+        Picture(path.stem.replace("_", " "), f"{path.name}, as the run left it", file=path)
+        for path in sorted(outcome.folder.glob("*.png"))
+        if path.stem not in drawn
+    ]
+    engine = str(about["engine"])
+    parts: list[Part] = [*charts(outcome), *bed(outcome), *pictures]
+    parts.append(Rows("Checks", tables["checks"], note="Each number against what is expected of it."))
+    if "ledger" in tables:
+        parts.append(Rows("Energy ledger", tables["ledger"], UNITS, "One row for each frame."))
+    parts += [Rows("Rows", tables["rows"], UNITS), _facts(outcome), common.case_lines(outcome.results.case_text)]
+    parts += _decks(outcome)
+    parts.append(common.origin(about, {engine: about["inputs"]}))
+    parts.append(common.cited([outcome.plan.model.law], [engine], dashpot=outcome.case.viscous is not None))
+    return Page(
+        outcome.case.case.title,
+        sentences(outcome),
+        parts,
+        passed=outcome.passed,
+        command=command or f"epdem rerun {outcome.folder}/results.h5",
+        warnings=outcome.warnings,
+    )
+
+
+def sentences(outcome: SceneOutcome) -> list[str]:
+    """What ran and came out, in words."""
+    p, tables = outcome.plan, outcome.results.tables
+    last, checks = tables["rows"].iloc[-1], tables["checks"]
+    failed = ", ".join(checks["check"][~checks["passed"].astype(bool)])
+    about = outcome.results.attributes
+    said = [
+        f"A scene of kind {outcome.case.scene.kind} with law {p.model.law} in {about['engine']} (MPI ranks: "
+        f"{about['ranks']}): {p.steps} steps of {p.time_step:.4g} s took {float(str(about['seconds'])):.3g} s.",
+        f"At the end, at {last['time']:.4g} s, {int(last['particles'])} spheres are in the room and their kinetic "
+        f"energy is {last['kinetic_energy']:.4g} J.",
+    ]
+    return [*said, f"These checks fail: {failed}." if failed else f"All {len(checks)} checks hold."]
+
+
+def _facts(outcome: SceneOutcome) -> Facts:
+    """The numbers of the plan."""
+    p = outcome.plan
+    facts = {"kind": outcome.case.scene.kind, "law": p.model.law, "time step": f"{p.time_step:.6g} s"}
+    facts |= {"steps": str(p.steps), "smallest radius": f"{p.smallest:.4g} m", "materials": ", ".join(p.types)}
+    return Facts("The scene", facts | {"phases": ", ".join(f"{x.name} up to step {x.end}" for x in p.phases)})
+
+
+def _decks(outcome: SceneOutcome) -> list[Lines]:
+    if SCENE.keys() <= outcome.results.decks.keys():  # templates that state the reason of every line
+        lines = explain(SCENE, deck(outcome.plan))
+        files = dict.fromkeys(file for file, _, _ in lines)
+        return [Lines(f"Deck {name}", [(line, why) for file, line, why in lines if file == name]) for name in files]
+    return [common.deck_lines(f"Deck {name}", text) for name, text in outcome.results.decks.items()]

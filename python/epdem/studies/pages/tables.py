@@ -1,0 +1,120 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""The pages of studies that are tables in the first place: crosscheck, cost, stability, sweep."""
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+
+from ...base.folders import claim
+from ...impacts.charts import SPEED
+from ...impacts.comparison import UNITS
+from ...report.chart import PALETTE, Axis, Chart, Panel, Series
+from ...report.page import NAME, Facts, Page, Part, Rows, write
+from .. import cost_report
+from ..cost import Outcome as Cost
+from ..crosscheck import Crosscheck
+from ..stability.suite import Outcome as Stability
+from ..stability.suite import summary
+from ..sweep.folder import DONE, FAILED
+from ..sweep.run import SweepOutcome
+from . import common, impacts
+
+MOST_PANELS = 4
+
+
+def of_crosscheck(check: Crosscheck) -> Path:
+    """Write the page of a run on all engines with the table of models in front."""
+    base = impacts.page(check.outcome, common.command())
+    models = len(check.table) - 1
+    said = f"{models} models ran the case; their values are those at {check.table['speed'].iloc[0]:.4g} m/s."
+    note = "Errors are the largest over speeds and phases; swap to restart: changes of e_n in variants of the set-up."
+    parts: list[Part] = [Rows("All models", check.table, UNITS, note)]
+    parts += [Facts("Laws and theories of their own", check.notes)] if check.notes else []
+    parts += [Facts("Left out", check.absent)] if check.absent else []
+    page = replace(base, sentences=[said, *base.sentences], parts=parts + base.parts)
+    with claim(check.outcome.folder, force=True):
+        return write(check.outcome.folder / NAME, lambda: page)
+
+
+def of_cost(outcome: Cost, bulk: pd.DataFrame | None, folder: Path) -> Path:
+    """Write the page of error against run time."""
+    parts: list[Part] = [
+        cost_report.chart(outcome),
+        Rows("Cheapest setting for an error of e_n", cost_report.cheapest_table(outcome.models)),
+        Rows("Errors and times", outcome.rows, {"ns_per_impact": "ns"}),
+    ]
+    if bulk is not None:
+        parts.insert(2, Rows("Bulk scene in LIGGGHTS", cost_report.bulk_table(bulk)))
+    names = ", ".join(outcome.models["model"])
+    said = (
+        f"Error of e_n and stepping time of {names} at {outcome.rows['steps'].nunique()} numbers of steps in contact."
+    )
+    parts.append(common.origin({}, {}))
+    page = Page(f"{outcome.case.case.title}: error against run time", [said], parts, command=common.command())
+    return write(folder / NAME, lambda: page)
+
+
+def of_stability(outcome: Stability, path: Path) -> Path:
+    """Write the page of the extreme cases to `path`."""
+    verdicts = outcome.verdicts
+    count = verdicts["status"].value_counts()
+    parts: list[Part] = [Rows("By engine and law", summary(verdicts)), Rows("Every case", verdicts)]
+    named = {"Round-off": outcome.roundoff, "Bulk scenes": outcome.bulk, "Precisions of YADE": outcome.precisions}
+    parts += [Rows(title, table) for title, table in named.items() if not table.empty]
+    parts.append(common.origin({}, {}))
+    said = f"{len(verdicts)} extreme cases: " + ", ".join(f"{n} {status}" for status, n in count.items()) + "."
+    page = Page("Stiff and extreme cases", [said], parts, passed=outcome.passed, command=common.command())
+    return write(path, lambda: page)
+
+
+def of_sweep(result: SweepOutcome) -> Path:
+    """Write the page of a sweep into its folder."""
+    table, sweep = result.table, result.sweep
+    units = table.attrs.get("units", {})
+    failed = table[table["status"] == FAILED][["point", "folder", "reason"]]
+    said = f"{len(sweep.points)} points on {', '.join(sweep.engines)}: {result.count(DONE)} done, {len(failed)} failed."
+    parts: list[Part] = [_by_key(result, units) if sweep.scene else _by_speed(result)]
+    parts += [Rows("Failed points", failed)] if len(failed) else []
+    rows = table.drop(columns=["folder", "reason"])
+    parts += [Rows("All points", rows, units, "sweep.csv beside this page has all rows and columns.")]
+    parts += [common.case_lines(sweep.case), common.origin({f"version_{k}": v for k, v in sweep.versions.items()}, {})]
+    page = Page(f"Sweep of {sweep.name}", [said], parts, passed=result.passed, command=common.command())
+    with claim(result.folder, force=True):
+        return write(result.folder / NAME, lambda: page)
+
+
+def _evenly(values: np.ndarray) -> np.ndarray:
+    """As many of the values as there are colours, the first and the last among them."""
+    places = np.linspace(0, len(values) - 1, min(len(PALETTE), len(values))).round().astype(int)
+    return values[np.unique(places)] if len(values) else values
+
+
+def _by_speed(result: SweepOutcome) -> Chart:
+    """e_n of chosen points against speed, theory as lines."""
+    table, series = result.table[result.table["status"] == DONE], []
+    for k, number in enumerate(_evenly(table["point"].unique())):
+        part = table[table["point"] == number]
+        keys = ", ".join(f"{name.rsplit('.', 1)[-1]} = {v}" for name, v in result.sweep.points[number - 1].items())
+        for i, ((engine, law), rows) in enumerate(part.groupby(["engine", "law"], sort=False)):
+            speed, label = rows["speed"].to_numpy(float), f"{engine}, {law}: {keys}"
+            series.append(Series("", speed, rows["e_n_theory"].to_numpy(float), k))
+            series.append(Series(label, speed, rows["e_n"].to_numpy(float), k, None, i))
+    alt = "Coefficient of restitution of chosen points against impact speed: theory as lines, engines as points."
+    return Chart("sweep", "Restitution of chosen points", alt, [Panel(SPEED, Axis("$e_n$"), series)])
+
+
+def _by_key(result: SweepOutcome, units: dict[str, str]) -> Chart:
+    """Numbers of a scene against the key that the points change."""
+    table = result.table[result.table["status"] == DONE]
+    keys = [name for name in result.sweep.points[0] if name in table and table[name].dtype.kind in "fi"]
+    key = keys[0] if keys else "point"
+    changing = [
+        name for name in table.select_dtypes("number") if name.endswith(("_mean", "_max")) and table[name].std() > 0
+    ]
+    panels = []
+    for k, name in enumerate(changing[:MOST_PANELS]):
+        series = Series("", table[key].to_numpy(float), table[name].to_numpy(float), k, None, 0)
+        panels.append(Panel(Axis(key, units.get(key, "")), Axis(name.replace("_", " "), units.get(name, "")), [series]))
+    return Chart("sweep", "Numbers of the scenes", f"{', '.join(changing[:MOST_PANELS])} against {key}.", panels)

@@ -1,0 +1,176 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Scenes of parts from case file to plan: amounts, sizes, walls; and every mistake in one sentence with its place."""
+
+import math
+import re
+import tomllib
+from pathlib import Path
+
+import numpy as np
+import pytest
+from parts_cases import BED, CASES, FLOOR, own, parts, tetrahedron, write_stl
+from scipy import stats
+
+from epdem.case.scene import parse
+from epdem.errors import CaseError
+from epdem.scenes.plan import plan
+
+STL = {"name": "bowl", "kind": "stl", "file": "wall.stl", "material": "steel"}
+PLATE = {"name": "w", "kind": "plate", "axis": "z", "center": ["0 m"] * 3, "size": ["1 m"] * 2, "material": "steel"}
+BODY = {"name": "ball", "material": "steel", "radius": "2 mm", "place": ["0 mm", "0 mm", "20 mm"]}
+
+
+def fills(data: dict, place: Path | str = "case") -> dict[tuple[str, float], int]:
+    """Number of spheres by material and radius."""
+    found = [(f.parts[0], f.count) for f in plan(parse(data, place)).layout.fills]
+    return {(part.material, round(part.radius, 9)): count for part, count in found}
+
+
+def test_a_sieve_table_gives_the_masses_that_the_laboratory_weighed():
+    numbers = fills(own("sieve_cylinder"), CASES / "sieve_cylinder.toml")
+    # openings 3.55, 2.80, 2.24, 1.80 mm: diameters halfway between them; 70 % of 8 g, density 2500 kg/m^3
+    for diameter, share in ((3.175, 0.184), (2.52, 0.461), (2.02, 0.355)):
+        one = 2500 * math.pi / 6 * (diameter * 1e-3) ** 3
+        assert numbers["powder", diameter / 2000] * one == pytest.approx(0.7 * 8e-3 * share, abs=1.01 * one)
+    assert numbers["beads", 0.0018] * 1200 * 4 / 3 * math.pi * 0.0018**3 == pytest.approx(2.4e-3, abs=3e-5)
+
+
+@pytest.mark.parametrize(
+    ("sizes", "distribution"),
+    [
+        ({"mean": "1.5 mm", "deviation": "0.2 mm"}, stats.norm(1.5e-3, 0.2e-3)),
+        ({"median": "1.5 mm", "ratio": 1.2}, stats.lognorm(math.log(1.2), scale=1.5e-3)),
+    ],
+)
+def test_sizes_are_distributed_as_said_between_the_limits(sizes, distribution):
+    radius = sizes | {"from": "1.1 mm", "to": "1.9 mm", "classes": 4}
+    region = BED["region"] | {"z": ["0 mm", "4000 mm"]}
+    fill = BED | {"particles": [{"material": "glass", "radius": radius}], "region": region, "count": 10_000}
+    room = {"x": ["-10 mm", "10 mm"], "y": ["-10 mm", "10 mm"], "z": ["0 mm", "4 m"]}
+    numbers = fills(parts(fill=[fill], room=room))
+    share = np.diff(distribution.cdf(np.array([1.1, 1.3, 1.5, 1.7, 1.9]) * 1e-3))
+    expected = dict(zip((0.0012, 0.0014, 0.0016, 0.0018), 10_000 * share / share.sum(), strict=True))
+    assert {r: n for (_, r), n in numbers.items()} == pytest.approx(expected, abs=1.0)
+
+
+@pytest.mark.parametrize(
+    ("amount", "expected"),
+    [({"mass": "1 g"}, 1e-3 / (2500 * 4 / 3 * math.pi * 1.5e-3**3)), ({"fraction": 0.1}, 0.1 * 18 * 18 * 38 / 14.137)],
+)
+def test_an_amount_by_mass_or_share_of_the_room_is_that_many_spheres(amount, expected):
+    fill = {key: value for key, value in BED.items() if key != "count"} | amount
+    assert sum(fills(parts(fill=[fill])).values()) == pytest.approx(expected, abs=0.51)
+
+
+def test_a_table_of_spheres_comes_before_what_is_filled_in(tmp_path):
+    (tmp_path / "s.csv").write_text("x,y,z,radius,vz\n0,0,0.01,0.001,-1\n0.004,0,0.01,0.002,0\n")
+    table = {"name": "table", "file": "s.csv", "material": "glass"}
+    p = plan(parse(parts(fill=[table], body=[BODY | {"frozen": True}]), tmp_path / "case.toml"))
+    assert [(s.radius, s.velocity[2], s.frozen) for s in p.layout.table] == [
+        (0.001, -1.0, False),
+        (0.002, 0.0, False),
+        (0.002, 0.0, True),
+    ]
+    assert p.layout.count == 3 and (p.smallest, p.largest) == (0.001, 0.002)
+
+
+def test_walls_made_here_lie_where_they_are_said_to():
+    cone = {"name": "cone", "kind": "cone", "axis": "y", "from": "-8 mm", "to": "8 mm", "diameters": ["4 mm", "8 mm"]}
+    box = {"name": "box", "kind": "box", "x": ["-9 mm", "9 mm"], "y": ["-8 mm", "8 mm"], "z": ["0 mm", "7 mm"]}
+    walls = [cone | {"center": ["1 mm", "10 mm"], "ends": ["to"]}, box | {"open": ["+z", "-x"]}]
+    found = plan(parse(parts(wall=[w | {"material": "steel"} for w in walls]))).layout.meshes
+    x, y, z = np.moveaxis(found["cone"].triangles, 2, 0)
+    radius = np.hypot(x - 1e-3, z - 10e-3)
+    side = (radius > 1e-9) & (np.abs(y - 8e-3) > 1e-12)
+    assert radius[side] == pytest.approx(2e-3 + 2e-3 * (y[side] + 8e-3) / 16e-3, rel=1e-9)
+    assert (radius[~side].max(), radius.min()) == pytest.approx((4e-3, 0.0))
+    edges = np.diff(found["box"].triangles, axis=1)
+    area = 0.5 * np.linalg.norm(np.cross(edges[:, 0], edges[:, 1]), axis=1).sum()
+    assert area == pytest.approx((18 * 16 + 16 * 7 + 2 * 18 * 7) * 1e-6)
+
+
+def broken(kind: str) -> np.ndarray:
+    """A tetrahedron of 10 mm with one fault."""
+    t = tetrahedron(10.0)
+    if kind == "open":
+        return t[1:]
+    if kind == "flipped":
+        t[2] = t[2, ::-1]
+    if kind == "degenerate":
+        t = np.concatenate([t, [[[0, 0, 0], [5, 5, 0], [10, 10, 0]]]])
+    if kind == "many":
+        t = np.concatenate([t, [[[0, 0, 0], [10, 0, 0], [5, 5, 5]]]])
+    return t
+
+
+@pytest.mark.parametrize(
+    ("kind", "change", "words"),
+    [
+        ("open", {"closed": True}, r"bowl.file: open along 3 edges, one at \(0, 0.005, 0\) m; close the mesh"),
+        ("flipped", {}, r"bowl.file: .*flipped against each other at \d edges, one at"),
+        ("degenerate", {}, r"bowl.file: 1 degenerate triangles .* the first is number 5 at \(0.005, 0.005, 0\) m"),
+        ("many", {}, r"bowl.file: 1 edges belong to more than two triangles, one at \(0.005, 0, 0\) m"),
+        ("good", {"scale": 1.0}, r"beyond scene.room; check its unit \(scale = 1; 0.001 if the file is in mm\)"),
+        ("good", {"scale": 1e-6}, r"smaller than a sphere; check its unit"),
+        ("none", {}, r"file = '.*wall.stl': not an STL file|no triangles"),
+    ],
+)
+def test_a_bad_stl_is_found_before_the_run_with_place_and_number(kind, change, words, tmp_path):
+    if kind == "none":
+        (tmp_path / "wall.stl").write_text("solid nothing\nendsolid nothing\n")
+    else:
+        write_stl(tmp_path / "wall.stl", broken(kind))
+    data = parts(wall=[FLOOR, STL | {"scale": 1e-3} | change])
+    with pytest.raises(CaseError, match=words):
+        plan(parse(data, tmp_path / "case.toml"))
+
+
+def test_a_good_stl_is_scaled_turned_and_moved(tmp_path):
+    write_stl(tmp_path / "wall.stl", tetrahedron(5.0))
+    wall = STL | {"scale": 1e-3, "rotate": {"axis": [0.0, 0.0, 2.0], "angle": "90 deg"}, "closed": True}
+    wall |= {"place": ["1 mm", "0 mm", "2 mm"]}
+    mesh = plan(parse(parts(wall=[wall]), tmp_path / "case.toml")).layout.meshes["bowl"].triangles
+    corners = {tuple(float(x) for x in np.round(c * 1e3, 9) + 0.0) for c in mesh.reshape(-1, 3)}
+    assert corners == {(1, 0, 2), (1, 5, 2), (-4, 0, 2), (1, 0, 7)}  # x goes to y, y to -x
+
+
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        ({"wall": [FLOOR, FLOOR]}, "two parts of wall have the name 'floor'"),
+        ({"wall": [FLOOR | {"kind": "sphere"}]}, "scene.wall.0.kind = 'sphere', must be one of"),
+        ({"wall": [FLOOR | {"phases": ["pour"]}]}, "wall.floor.phases = 'pour' is no phase; there are fall"),
+        ({"wall": [FLOOR | {"material": "wood"}]}, r"scene.wall.floor.material = 'wood' is not defined"),
+        ({"fill": [BED | {"mass": "1 g"}]}, "scene.fill.0: give one of count, mass and fraction"),
+        ({"fill": [BED | {"count": 4000}]}, "scene.fill.bed = 4000: the spheres would fill"),
+        ({"fill": [BED | {"rate": "1 Hz"}]}, "fill.bed.rate = 1 Hz: 40 spheres take longer than phase fall"),
+        ({"fill": [], "body": []}, r"no spheres; add \[\[scene.fill\]\]"),
+        ({"fill": [{"name": "a", "file": "none.csv"}]}, "scene.fill.0.file = 'none.csv', no such file"),
+        ({"fill": [{"name": "a", "file": "s.csv", "material": "glass"}]}, "line 3: radius = 'big' is not a number"),
+        ({"body": [BODY | {"place": ["0 mm", "0 mm", "1 m"]}]}, "lies beyond scene.room"),
+        ({"body": [BODY | {"frozen": True, "phase": "fall"}]}, "a frozen body is there from the start"),
+        ({"phase": []}, "scene.phase is empty"),
+        ({"wall": [PLATE]}, "scene.wall.w: reaches beyond scene.room"),
+    ],
+)
+def test_unknown_and_contradictory_parts_are_refused_in_one_sentence(change, words, tmp_path):
+    (tmp_path / "s.csv").write_text("x,y,z,radius\n0,0,0,0.001\n0,0,0,big\n")
+    with pytest.raises(CaseError, match=words) as error:
+        plan(parse(parts(**change), tmp_path / "case.toml"))
+    assert "\n" not in str(error.value)
+
+
+def test_the_example_of_the_page_is_a_scene():
+    (example,) = re.findall(r"^```toml\n(.*?)^```$", (CASES.parent / "docs/scenes.md").read_text(), re.M | re.S)
+    p = plan(parse(parts() | tomllib.loads(example)))
+    mass = 2500 * 4 / 3 * math.pi * 1e-9
+    assert p.layout.count == round(2e-3 / mass) + 1 and [x.name for x in p.phases] == ["settle", "hit"]
+
+
+def test_values_of_a_pair_of_materials_count_for_spheres_and_walls():
+    data = parts(body=[BODY])
+    data["contact"] = {"friction": 0.3, "pairs": [{"between": ["glass", "steel"], "friction": 0.1, "restitution": 0.4}]}
+    data["viscous"] = {"restitution": 0.8}
+    m = plan(parse(data)).model
+    assert [t.name for t in m.types] == ["glass", "steel"] and m.wall_types["steel"] == 2
+    assert m.friction == ((0.3, 0.1), (0.1, 0.3)) and m.viscous == ((0.8, 0.4), (0.4, 0.8))

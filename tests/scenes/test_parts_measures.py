@@ -1,0 +1,143 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Measures of scenes: each one against what its definition gives on a bed whose places are known."""
+
+import math
+from types import SimpleNamespace
+
+import numpy as np
+import pandas as pd
+import pytest
+from parts_cases import BED, FLOOR, parts
+from scene_runs import run, write_case
+
+from epdem.case.scene import parse
+from epdem.errors import CaseError
+from epdem.scenes import measures
+from epdem.scenes.plan import plan
+from epdem.studies.sweep.numbers import numbers_of
+
+ROOM = {"x": ["-2 mm", "2 mm"], "y": ["-2 mm", "2 mm"], "z": ["0 mm", "8 mm"]}
+
+
+def planned(*wanted: dict, **output: object):
+    """The plan of a scene with these measures."""
+    data = parts(measure=list(wanted))
+    data["output"] |= output
+    return plan(parse(data))
+
+
+def spheres(step: int, places: np.ndarray, radius: float = 1e-3, kind: int = 1) -> pd.DataFrame:
+    """A frame of spheres of 2 mg."""
+    table = pd.DataFrame(places, columns=["x", "y", "z"])
+    return table.assign(step=step, id=np.arange(1, len(places) + 1), type=kind, radius=radius, mass=2e-6)
+
+
+def curve(m: dict, *frames: pd.DataFrame, rows: pd.DataFrame | None = None) -> list[float]:
+    """The values of a measure over frames."""
+    p = planned(m | {"name": "value"})
+    table = pd.concat(frames, ignore_index=True)
+    rows = pd.DataFrame({"step": table["step"].unique()}) if rows is None else rows
+    return measures.curves(p, {"particles": table, "rows": rows})["value"].to_list()
+
+
+def test_spheres_are_counted_and_weighed_where_their_centres_are():
+    places = np.array([[0, 0, 1e-3], [1e-3, 0, 7e-3], [3e-3, 0, 1e-3], [0, 0, 9e-3]])
+    assert curve({"kind": "count", "region": ROOM}, spheres(0, places)) == [2.0]
+    assert curve({"kind": "mass", "region": ROOM}, spheres(0, places)) == [pytest.approx(4e-6)]
+    assert curve({"kind": "count", "material": "glass"}, spheres(0, places, kind=2)) == [0.0]
+    upright = {"diameter": "7 mm", "z": ["0 mm", "8 mm"]}
+    assert curve({"kind": "count", "region": upright}, spheres(0, places)) == [3.0]
+
+
+def test_mass_flows_through_a_plane_in_its_direction():
+    heights = [[3e-3, 3e-3, 5e-3], [1e-3, 3e-3, 5e-3], [1e-3, 1e-3, 5e-3]]
+    frames = [spheres(100 * n, np.array([[0, 0, z] for z in row])) for n, row in enumerate(heights)]
+    frames.append(spheres(300, np.array([[0, 0, 1e-3], [0, 0, 1e-3]])))  # the third has left the room
+    late = spheres(300, np.array([[0, 0, 1e-3]])).assign(id=9)  # and one has come beyond the plane
+    rate = 2e-6 / (100 * 2e-5)
+    down = curve({"kind": "flow", "direction": "-z", "at": "2 mm"}, *frames, late)
+    assert down == pytest.approx([0.0, rate, rate, rate])
+    up = curve({"kind": "flow", "direction": "+z", "at": "2 mm"}, *frames[:3])
+    assert up == pytest.approx([0.0, -rate, -rate])
+
+
+def test_height_and_centre_of_mass_are_those_of_the_masses():
+    column = np.array([[1e-3, 0, z * 1e-3] for z in range(1, 21)])
+    assert curve({"kind": "height", "share": 0.5}, spheres(0, column)) == [pytest.approx(10e-3)]
+    assert curve({"kind": "height"}, spheres(0, column)) == [pytest.approx(19e-3)]
+    assert curve({"kind": "center_of_mass"}, spheres(0, column)) == [pytest.approx(10.5e-3)]
+    assert curve({"kind": "center_of_mass", "axis": "x"}, spheres(0, column)) == [pytest.approx(1e-3)]
+
+
+@pytest.mark.parametrize(("over", "angle"), [("distance", 0.4), ("x", 0.3)])
+def test_the_angle_of_repose_is_that_of_a_heap(over, angle):
+    rng = np.random.default_rng(1)
+    x, y = rng.uniform(-0.1, 0.1, (2, 40_000))
+    way = {"distance": np.hypot(x, y), "x": x}[over]
+    z = (0.2 - way * math.tan(angle)) * rng.uniform(0.0, 1.0, x.size) ** 0.05  # most lie near the surface
+    at = {"diameter": "0.2 m", "z": ["0 m", "1 m"]}
+    found = curve({"kind": "repose", "over": over, "region": at}, spheres(0, np.stack([x, y, z], axis=1), 1e-6))
+    assert found[0] == pytest.approx(angle, abs=0.02)
+
+
+def test_porosity_is_what_spheres_leave_of_a_region():
+    grid = np.array([[i, j, k] for i in (-1, 1) for j in (-1, 1) for k in (1, 3, 5, 7)]) * 1e-3
+    simple_cubic = 1 - math.pi / 6
+    assert curve({"kind": "porosity", "region": ROOM}, spheres(0, grid)) == [pytest.approx(simple_cubic, abs=5e-3)]
+    half = ROOM | {"z": ["0 mm", "1 mm"]}  # cuts spheres through their centres
+    assert curve({"kind": "porosity", "region": half}, spheres(0, grid)) == [pytest.approx(simple_cubic, abs=5e-3)]
+
+
+def test_the_speed_of_an_impact_is_read_from_its_largest_overlap():
+    """An elastic sphere on a wall: m v^2/2 = 8/15 E* sqrt(R) alpha^(5/2)."""
+    data = parts(measure=[{"name": "speed", "kind": "impact_speed", "bins": 2}], body=[])
+    data["law"] = {"name": "hertz"}
+    p = plan(parse(data))
+    radius, mass, overlap = 1.5e-3, 3e-5, 2e-5
+    E_star = 1 / ((1 - 0.25**2) / 10e6 + (1 - 0.3**2) / 100e6)
+    tables = {
+        "particles": pd.DataFrame({"step": [0], "id": [1], "radius": [radius], "mass": [mass], "type": [1]}),
+        "contacts": pd.DataFrame({"wall": ["floor"] * 2, "i": 1, "j": 0, "delta_max": [0.5 * overlap, overlap]}),
+    }
+    found = measures.histograms(p, tables)
+    v = math.sqrt(2 * 8 / 15 * E_star * math.sqrt(radius) * overlap**2.5 / mass)
+    assert found["number"].sum() == 1
+    assert 0.5 * (found["low"].iloc[0] + found["high"].iloc[-1]) == pytest.approx(v, rel=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("m", "output", "words"),
+    [
+        ({"kind": "force", "wall": "roof"}, {}, "measure.a.wall = 'roof': walls whose forces are known: floor"),
+        ({"kind": "torque", "wall": "floor"}, {}, "a plane has no torque"),
+        ({"kind": "count", "material": "steel"}, {}, "material = 'steel': no sphere is of it"),
+        ({"kind": "plastic_work"}, {"energy": False}, "is known with output.energy"),
+        ({"kind": "impact_speed"}, {"energy": False}, "give output.contacts"),
+        ({"kind": "count"}, {"particles": 0, "energy": False}, "measures are taken from frames"),
+    ],
+)
+def test_a_measure_that_the_scene_cannot_give_is_refused(m, output, words):
+    with pytest.raises(CaseError, match=words):
+        measures.refuse_measures(planned(m | {"name": "a"}, **output))
+
+
+@pytest.mark.liggghts
+def test_measures_stand_in_the_results_and_are_numbers_for_studies(tmp_path):
+    wanted = [
+        {"name": "top", "kind": "height", "share": 1.0},
+        {"name": "pressed", "kind": "force", "wall": "floor", "component": "z"},
+        {"name": "dents", "kind": "plastic_work", "bins": 5},
+        {"name": "speeds", "kind": "impact_speed", "bins": 5},
+    ]
+    data = parts(measure=wanted, wall=[FLOOR], fill=[BED], periodic=True, phase=[{"name": "fall", "duration": "0.1 s"}])
+    outcome = run(write_case(data, tmp_path), out=tmp_path / "out")
+    found, spheres_then = outcome.results, outcome.results.particles
+    assert found.measures["top"].to_list() == spheres_then.groupby("step")["z"].max().to_list()
+    rows = found.rows.set_index("step").loc[found.measures["step"], "floor_force_z"]
+    assert found.measures["pressed"].to_list() == rows.to_list() and rows.min() < 0
+    number = found.histograms.groupby("measure")["number"].sum()
+    assert number["dents"] == 40 and number["speeds"] >= 10
+    fastest = math.sqrt(2 * 9.81 * 0.038)
+    assert 0.3 * fastest < found.histograms.query("measure == 'speeds'")["high"].max() < 1.02 * fastest
+    numbers = numbers_of(SimpleNamespace(tables=found.tables))
+    assert numbers["top_last"] == found.measures["top"].iloc[-1] and "pressed_mean" in numbers

@@ -1,0 +1,152 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Walls of scenes of parts that move, and phases that end by a condition, in LIGGGHTS."""
+
+import math
+
+import numpy as np
+import pytest
+from parts_cases import BED, FLOOR, parts
+from scene_runs import run, write_case
+
+from epdem.case.scene import parse
+from epdem.errors import CaseError
+from epdem.liggghts import launcher, resume
+from epdem.liggghts import scene_tables as tables
+from epdem.scenes.plan import plan
+
+BOX = {"name": "box", "kind": "box", "x": ["-9 mm", "9 mm"], "y": ["-9 mm", "9 mm"], "z": ["0 mm", "40 mm"]}
+BOX |= {"material": "steel"}
+PLATE = {
+    "name": "lid",
+    "kind": "plate",
+    "axis": "z",
+    "center": ["0 mm", "0 mm", "39 mm"],
+    "size": ["17.9 mm", "17.9 mm"],
+}
+PLATE |= {"material": "steel"}
+FALL = {"name": "fall", "duration": "60 ms"}
+BEATER = PLATE | {"name": "beater", "axis": "x", "center": ["0 mm", "0 mm", "9 mm"], "size": ["17 mm", "16 mm"]}
+
+
+def moved(kind: str) -> dict:
+    """A frictionless bed whose walls do work."""
+    if kind == "vibrate":
+        move = {"wall": "lid", "kind": "vibrate", "amplitude": ["0 mm", "0 mm", "1 mm"], "frequency": "60 Hz"}
+        floor = PLATE | {"center": ["0 mm", "0 mm", "2 mm"]}
+        bed = BED | {"region": BED["region"] | {"z": ["4 mm", "38 mm"]}}
+        return parts(wall=[BOX, floor], fill=[bed], phase=[FALL, FALL | {"name": "shake", "move": [move]}])
+    if kind == "rotate":
+        move = {"wall": "beater", "kind": "rotate", "axis": [0.0, 1.0, 0.0], "origin": ["0 m", "0 m", "9 mm"]}
+        phase = {"name": "beat", "duration": "60 ms", "move": [move | {"rate": "-20 rad/s"}]}
+        bed = BED | {"region": BED["region"] | {"x": ["0.5 mm", "9 mm"]}}
+        return parts(wall=[BOX, BEATER], fill=[bed], phase=[phase])
+    move = {"wall": "lid", "kind": "linear", "velocity": ["0 m/s", "0 m/s", "-0.4 m/s"]}
+    press = {"name": "press", "duration": "1 s", "until": {"wall": "lid", "travel": "30 mm"}, "move": [move]}
+    return parts(wall=[BOX, PLATE], phase=[press | {"time_step": "1e-5 s"}])
+
+
+@pytest.mark.liggghts
+@pytest.mark.parametrize("kind", ["vibrate", "rotate", "linear"])
+def test_energy_closes_with_the_work_of_walls_that_move(kind, tmp_path):
+    outcome = run(write_case(moved(kind), tmp_path), out=tmp_path / "out")
+    ledger = outcome.results.ledger
+    assert outcome.passed, outcome.results.checks
+    assert abs(ledger["work"]).max() > 0.1 * ledger["kinetic"].max() > 0  # so that it counts
+
+
+@pytest.mark.liggghts
+def test_a_plate_stops_where_it_was_to_and_its_step_of_time_is_its_own(tmp_path):
+    data = moved("linear")
+    data["output"] = {"rows": 10, "particles": 2}
+    outcome = run(write_case(data, tmp_path), out=tmp_path / "out")
+    last, rows = outcome.results.particles, outcome.results.rows
+    top = last[last["step"] == last["step"].max()].eval("z + radius").max()
+    assert rows["time"].iloc[-1] == pytest.approx(0.075, rel=0.03)  # 30 mm at 0.4 m/s
+    assert rows["time"].iloc[-1] == pytest.approx(1e-5 * rows["step"].iloc[-1])
+    assert top < 39e-3 - 30e-3 + 0.5e-3 * 3  # under the plate, but for overlaps
+
+
+@pytest.mark.liggghts
+def test_phases_end_by_force_and_by_energy_and_a_servo_holds_its_force(tmp_path):
+    hold = {
+        "wall": "lid",
+        "kind": "press",
+        "direction": [0.0, 0.0, -1.0],
+        "force": "0.2 N",
+        "highest_speed": "0.03 m/s",
+    }
+    lid = PLATE | {"center": ["0 mm", "0 mm", "15 mm"]}
+    bed = BED | {"region": BED["region"] | {"z": ["0 mm", "14 mm"]}}
+    phases = [
+        {"name": "settle", "duration": "1 s", "until": {"kinetic_energy": "5 nJ", "after": "40 ms"}},
+        {
+            "name": "press",
+            "duration": "1 s",
+            "until": {"wall": "lid", "force": "0.1 N", "after": "0 s"},
+            "move": [hold],
+        },
+        {"name": "hold", "duration": "0.1 s", "move": [hold]},
+    ]
+    data = parts(wall=[BOX, lid], fill=[bed], phase=phases) | {"viscous": {"restitution": 0.4}}
+    data["output"] = {"rows": 800, "particles": 2, "loads": True, "restarts": 0}
+    outcome = run(write_case(data, tmp_path), out=tmp_path / "out")
+    rows, phase = outcome.results.rows, outcome.results.phases.set_index("phase")
+    force = np.linalg.norm(rows[["lid_force_x", "lid_force_y", "lid_force_z"]], axis=1)
+    at = {name: int(np.flatnonzero(rows["step"] == phase.loc[name, "end"])[0]) for name in phase.index}
+    mean = rows["kinetic_energy"] / rows["particles"]
+    begin = int(np.flatnonzero(rows["time"] >= 0.04)[0])
+    assert mean[at["settle"]] < 5e-9 <= mean[begin : at["settle"] - 1].min()
+    assert force[at["press"]] >= 0.1 > force[at["settle"] : at["press"]].max()
+    assert phase.loc["press", "end_time"] < 1.5 and phase.loc["hold", "end"] == rows["step"].iloc[-1]
+    assert force[-50:].mean() == pytest.approx(0.2, rel=0.02)
+    assert outcome.plan.steps == rows["step"].iloc[-1]
+
+
+@pytest.mark.liggghts
+def test_a_run_that_ends_by_a_condition_goes_on_bitwise(tmp_path):
+    gate = FLOOR | {"name": "gate", "at": "2 mm", "phases": ["settle", "more"]}
+    bed = BED | {"region": BED["region"] | {"z": ["4 mm", "38 mm"]}}
+    phases = [
+        {"name": "settle", "duration": "1 s", "until": {"kinetic_energy": "5 nJ", "after": "40 ms"}},
+        {"name": "more", "duration": "20 ms"},
+        {"name": "fall", "duration": "20 ms"},
+    ]
+    data = parts(wall=[FLOOR, BOX | {"open": ["-z"]}, gate], fill=[bed], phase=phases, leave=True)
+    data |= {"viscous": {"restitution": 0.4}, "output": {"rows": 100, "particles": 100, "restarts": 20}}
+    outcome = run(write_case(data, tmp_path), out=tmp_path / "out")
+    whole, ends = outcome.results, outcome.results.phases["end"].to_list()
+    files = sorted(int(path.name.split(".")[1]) for path in (tmp_path / "out").glob("restart.*.bin"))
+    p = plan(parse(data))
+    for step in files:
+        resume.write_resume(p, tmp_path / "out", step)
+        launcher.run("in.resume", tmp_path / "out", append=True)
+        again = tables.particles(p.ended(tables.ends(tmp_path / "out")), tmp_path / "out")
+        assert [*tables.ends(tmp_path / "out").values()] == ends
+        assert again.equals(whole.particles)
+    assert files
+
+
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        (
+            {"move": [{"wall": "floor", "kind": "vibrate", "amplitude": ["0 m"] * 3, "frequency": "1 Hz"}]},
+            "no wall of tri",
+        ),
+        ({"until": {"wall": "lid", "travel": "1 mm"}}, "wall 'lid' has no linear motion in this phase"),
+        ({"until": {"count": 1, "kinetic_energy": "1 J"}}, "give one of kinetic_energy, count, force and travel"),
+        ({"until": {"force": "1 N"}}, "'wall' belongs to force and travel"),
+        ({"until": {"wall": "roof", "force": "1 N"}}, "phase.fall.until.wall = 'roof' is no wall"),
+        ({"until": {"count": 1, "after": "2 s"}}, "until.after must be below duration"),
+        ({"move": [{"wall": "lid", "kind": "spin"}]}, "scene.phase.0.move.0.kind = 'spin', must be one of"),
+    ],
+)
+def test_a_motion_or_an_end_that_cannot_be_is_refused(change, words):
+    with pytest.raises(CaseError, match=words):
+        plan(parse(parts(wall=[FLOOR, PLATE], phase=[FALL | change])))
+
+
+def test_a_motion_counts_for_the_highest_speed():
+    move = {"wall": "lid", "kind": "vibrate", "amplitude": ["0 mm", "3 mm", "4 mm"], "frequency": "100 Hz"}
+    scene = parse(parts(wall=[PLATE], phase=[FALL | {"move": [move]}])).scene
+    assert scene.drive == pytest.approx(2 * math.pi * 100 * 5e-3)

@@ -1,0 +1,94 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Scenes of parts in LIGGGHTS: what is filled in, what walls bear, what single spheres do."""
+
+import math
+
+import numpy as np
+import pytest
+from parts_cases import BED, CASES, FLOOR, own, parts
+from scene_runs import run, write_case
+
+pytestmark = pytest.mark.liggghts
+
+
+@pytest.fixture(scope="module")
+def sieved(tmp_path_factory):
+    """The case of the sieve table, short: what is weighed is there from the first step."""
+    folder = tmp_path_factory.mktemp("sieved")
+    data = own("sieve_cylinder")
+    data["scene"]["fill"][0]["particles"][0]["radius"]["sieve"] = str(CASES / "parts/sieve.csv")
+    data["numerics"] = {"time_step": "2e-5 s"}
+    return run(write_case(data, folder), out=folder / "out")
+
+
+def test_the_spheres_have_the_masses_that_the_sieve_table_gives(sieved):
+    spheres = sieved.results.particles
+    last = spheres[spheres["step"] == spheres["step"].max()]
+    mass = last.groupby(["type", "radius"])["mass"].sum()
+    heaviest = 2500 * 4 / 3 * math.pi * 1.5875e-3**3
+    assert mass.sum() == pytest.approx(8e-3, abs=heaviest)
+    for diameter, share in ((3.175, 0.184), (2.52, 0.461), (2.02, 0.355)):
+        here = mass[[(t, r) for t, r in mass.index if t == 1 and abs(r - diameter / 2000) < 1e-9]].sum()
+        assert here == pytest.approx(0.7 * 8e-3 * share, abs=1.01 * 2500 * math.pi / 6 * (diameter * 1e-3) ** 3)
+
+
+def test_the_floor_of_a_smooth_cylinder_bears_the_weight_of_the_bed(sieved):
+    spheres, last = sieved.results.particles, sieved.results.rows.iloc[-1]
+    weight = 9.81 * spheres[spheres["step"] == spheres["step"].max()]["mass"].sum()
+    assert -last["floor_force_z"] == pytest.approx(weight, rel=0.02)
+    assert abs(last["cylinder_force_z"]) < 1e-9 * weight  # no friction
+    checks = sieved.results.checks.set_index("check")
+    assert checks["passed"].all() and "force on all walls / weight" in checks.index
+
+
+def test_the_energy_of_a_scene_with_an_stl_wall_and_an_impactor_closes(tmp_path):
+    data = own("impactor_bowl")
+    del data["contact"]
+    data["scene"]["wall"][0]["file"] = str(CASES / "parts/bowl.stl")
+    for phase, duration in zip(data["scene"]["phase"], ("40 ms", "30 ms"), strict=True):
+        phase["duration"] = duration
+    outcome = run(write_case(data, tmp_path), out=tmp_path / "out")
+    ledger, spheres = outcome.results.ledger, outcome.results.particles
+    assert outcome.passed, outcome.results.checks
+    came = spheres[spheres["radius"] > 3e-3]
+    start = outcome.plan.phases[0].end
+    assert came["step"].min() >= start and (came["z"].diff().iloc[1:3] < 0).all()
+    assert ledger["step"].iloc[0] >= start and ledger["plastic"].iloc[-1] > 0.1 * ledger["kinetic"].iloc[0]
+
+
+def test_spheres_of_a_table_begin_where_it_says_and_frozen_ones_stay(tmp_path):
+    (tmp_path / "s.csv").write_text("x,y,z,radius,material,vz\n0,0,0.03,0.001,glass,-1\n0.004,0,0.01,0.002,steel,0.5\n")
+    held = {"name": "held", "material": "steel", "radius": "2 mm", "place": ["0 mm", "0 mm", "20 mm"], "frozen": True}
+    late = {"name": "late", "material": "glass", "radius": "1 mm", "place": ["-5 mm", "5 mm", "20 mm"]}
+    late |= {"velocity": ["0.2 m/s", "0 m/s", "0 m/s"], "phase": "second"}
+    gate = FLOOR | {"name": "gate", "at": "5 mm", "phases": ["first"]}
+    scene = {
+        "wall": [FLOOR, gate],
+        "fill": [{"name": "table", "file": "s.csv"}],
+        "body": [held, late],
+        "phase": [{"name": "first", "duration": "20 ms"}, {"name": "second", "duration": "20 ms"}],
+    }
+    results = run(write_case(parts(**scene), tmp_path), out=tmp_path / "out").results
+    frames = dict(tuple(results.particles.groupby("step")))
+    start, end = frames[0].set_index("id"), frames[max(frames)].set_index("id")
+    columns = ["x", "y", "z", "vx", "vy", "vz", "radius"]
+    assert start.loc[1, columns].to_numpy() == pytest.approx([0, 0, 0.03, 0, 0, -1, 0.001])
+    assert start.loc[2, columns].to_numpy() == pytest.approx([0.004, 0, 0.01, 0, 0, 0.5, 0.002])
+    assert start.loc[2, "mass"] == pytest.approx(7800 * 4 / 3 * math.pi * 0.002**3)
+    assert end.loc[3, columns].to_numpy() == pytest.approx([0, 0, 0.02, 0, 0, 0, 0.002], abs=1e-15)
+    t = 0.02
+    assert end.loc[4, "x"] == pytest.approx(-0.005 + 0.2 * t, rel=1e-6)
+    assert end.loc[4, "z"] == pytest.approx(0.02 - 9.81 / 2 * t**2, rel=1e-3)
+    assert np.isin([0, max(frames)], [*frames]).all() and len(end) == 4
+
+
+def test_a_gate_holds_what_falls_until_its_phase_ends(tmp_path):
+    gate = FLOOR | {"name": "gate", "at": "5 mm", "phases": ["first"]}
+    phases = [{"name": "first", "duration": "0.1 s"}, {"name": "second", "duration": "30 ms"}]
+    region = BED["region"] | {"z": ["6 mm", "30 mm"]}
+    data = parts(wall=[gate, FLOOR], fill=[BED | {"region": region}], phase=phases, leave=True)
+    outcome = run(write_case(data, tmp_path), out=tmp_path / "out")
+    lowest = outcome.results.particles.groupby("step").apply(lambda x: (x["z"] - x["radius"]).min())
+    opened = outcome.plan.phases[0].end
+    assert lowest[lowest.index <= opened].min() > 4.9e-3
+    assert lowest.iloc[-1] < 3e-3

@@ -1,0 +1,130 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""The page of a run and its figures: what they show is what is stored, and nothing of it comes from elsewhere."""
+
+import json
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+import pytest
+
+from epdem.report import chart, drawing, page
+
+CASE = Path(__file__).parents[2] / "cases/steel_wall.toml"
+TITLE = "Steel sphere on a steel wall"
+HOSTILE = "</script><script>alert(1)</script> $x & <b>"
+
+
+def run(folder: Path, *more: str) -> str:
+    """`epdem run` in a folder; its page."""
+    words = [Path(sys.executable).with_name("epdem"), "run", "steel.toml", "-o", "out", *more]
+    done = subprocess.run(list(map(str, words)), cwd=folder, capture_output=True, text=True)
+    assert done.returncode == 0, done.stderr
+    return (folder / "out/report.html").read_text(encoding="utf-8")
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory):
+    """A folder with a run of two engines, its title a hostile one; few steps, so that means differ from theory."""
+    place = tmp_path_factory.mktemp("report")
+    text = CASE.read_text().replace(f'"{TITLE}"', f"'{HOSTILE}'").replace("= 400", "= 60")
+    (place / "steel.toml").write_text(text.replace("e_n = 1e-4", "e_n = 1e-2"))
+    run(place, "-e", "embedded", "-e", "liggghts", "--format", "svg", "--format", "png")
+    return place
+
+
+def drawn(text: str) -> dict[str, dict]:
+    """The charts in a page by name."""
+    return {c["name"]: c for c in json.loads(re.search(r"const charts = (\[.*\]), palette", text)[1])}
+
+
+@pytest.mark.liggghts
+def test_the_page_shows_the_stored_numbers_and_theory_between_them(folder):
+    charts = drawn((folder / "out/report.html").read_text())
+    assert list(charts) == ["e_n", "errors", "loops", "force"]
+    table = pd.read_csv(folder / "out/results.csv")
+    above, below = ({s["name"]: s for s in panel["series"]} for panel in charts["e_n"]["panels"])
+    for engine in ("embedded", "liggghts"):
+        rows = table[table["engine"] == engine]
+        assert np.allclose(above[engine]["x"], rows["speed"], rtol=1e-6)
+        assert np.allclose(above[engine]["y"], rows["e_n"], rtol=1e-6)
+        assert not np.allclose(rows["e_n_theory"], rows["e_n"], rtol=1e-5)
+    assert below["tolerance 0.01"]["y"] == [1e-2, 1e-2]
+    line = above["theory"]
+    assert len(line["x"]) > 200 and (line["x"][0], line["x"][-1]) == (0.05, 150.0)
+    r = 0.5595 / np.array(line["x"][100:])  # eq. 8.83 with v_y of this case, in four digits
+    closed = np.sqrt(1.2 * np.sqrt(3)) * np.sqrt(1 - r * r / 6) * (r / (r + 2 * np.sqrt(1.2 - r * r / 5))) ** 0.25
+    assert np.allclose(line["y"][100:], closed, rtol=2e-3)
+
+
+@pytest.mark.liggghts
+def test_a_loop_begins_at_touch_reaches_its_peak_and_leaves_a_dent(folder):
+    loops = drawn((folder / "out/report.html").read_text())["loops"]["panels"][0]["series"]
+    dents = {}
+    for series in loops:
+        assert max(series["x"]) == pytest.approx(1, abs=2e-3) and max(series["y"]) == pytest.approx(1, abs=2e-3)
+        dents.setdefault(series["colour"], []).append(series["x"][-1])
+    assert len(dents) == 3 and dents[0][0] == 0 and dents[2][0] > 0.85
+    for theory, *measured in dents.values():
+        assert len(measured) == 2 and np.allclose(measured, theory, atol=0.08)  # the end lies between two points
+
+
+@pytest.mark.liggghts
+def test_the_page_stands_alone_and_says_where_its_numbers_come_from(folder):
+    text = (folder / "out/report.html").read_text()
+    assert len(text.encode()) < 6e6
+    own = text.replace(page._plotly(), "")
+    assert not re.search(r"""(?:src|href)=["']?(?:https?:)?//|url\(|@import""", own)
+    assert HOSTILE not in text and "alert(1)&lt;/script&gt;" in text
+    assert "epdem run steel.toml -o out -e embedded -e liggghts" in own and "LIGGGHTS" in own
+    assert "C. Thornton, J. Appl. Mech. 64 (1997) 383" in own and "All checks hold" in own
+    charts, alts = drawn(text), re.findall(r'class="chart" data-chart="(\w+)" role="img" aria-label="([^"]{40,})"', own)
+    assert [name for name, _ in alts] == list(charts)
+    reasons = re.findall(r"<tr><td><code>([^<]+)</code></td><td>([^<]*)</td>", own)
+    assert sum(bool(why) for _, why in reasons) > 15 and any("ep/thornton" in line for line, why in reasons if why)
+
+
+@pytest.mark.liggghts
+def test_a_page_of_the_same_results_and_command_is_left_as_it_is(folder):
+    place = folder / "out/report.html"
+    before = place.stat().st_mtime_ns
+    (folder / "out/.epdem.printed.json").unlink()
+    words = ("-e", "embedded", "-e", "liggghts", "--format", "svg", "--format", "png")
+    run(folder, *words)
+    assert place.stat().st_mtime_ns == before
+    run(folder, *words, "--full")
+    assert place.stat().st_mtime_ns > before
+
+
+@pytest.mark.liggghts
+def test_figures_come_in_the_formats_that_were_asked_for_with_their_data(folder):
+    assert "<svg" in (folder / "out/e_n.svg").read_text()[:1000] and (folder / "out/e_n.png").stat().st_size > 10_000
+    data = pd.read_csv(folder / "out/e_n.csv")
+    assert list(data) == ["panel", "series", "x", "y"] and {"theory", "embedded", "liggghts"} <= set(data["series"])
+
+
+def test_one_point_has_an_axis_with_room_on_both_sides():
+    from matplotlib import pyplot as plt
+
+    one = chart.Series("one", [2.0], [0.5], 0, None, 0)
+    axes = [chart.Axis("$v$", "m/s", log=True), chart.Axis("$e_n$")]
+    figure = drawing.draw(chart.Chart("x", "x", "x", [chart.Panel(*axes, [one])]))
+    (low, high), (bottom, top) = figure.axes[0].get_xlim(), figure.axes[0].get_ylim()
+    plt.close(figure)
+    assert (low, high) == (1.0, 4.0) and bottom < 0.3 and top > 0.7
+
+
+def test_labels_are_mathematics_on_the_page_and_plain_in_data():
+    label = r"overlap $\alpha/\alpha_\mathrm{max}$ <x>"
+    assert chart.html(label) == "overlap <i>α/α<sub>max</sub></i> &lt;x>"
+    assert chart.plain(label) == "overlap alpha/alpha_max <x>"
+    assert chart.html("$F^2 R_{ij}$") == "<i>F<sup>2</sup> R<sub>ij</sub></i>"
+
+
+def test_a_long_table_is_cut_and_says_so():
+    rows = page.Rows("x", pd.DataFrame({"a": np.arange(20_000), "b": 0.5}))
+    assert len(rows.cells()) == 6000 and "first 6000 of 20000 rows" in rows.notes
+    assert rows.cells()[1] == [("1", "1.0"), ("0.5", "0.5")]
