@@ -18,12 +18,11 @@ import tomlkit
 from . import theory
 from .base.files import atomic
 from .base.folders import write_own
-from .base.settings import DEFAULT_ENGINE
 from .case import impact as impact_case
 from .case import scene as scene_case
 from .case.toml import read_toml
+from .engines import DEFAULT_ENGINE, scene_engine
 from .engines import engine as engine_named
-from .engines import scene_engine
 from .errors import CaseError
 from .impacts.comparison import UNITS
 from .impacts.experiment import experiment

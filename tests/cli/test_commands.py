@@ -18,7 +18,7 @@ from rich.console import Console
 
 from epdem.base import paths, terminal
 from epdem.cli import main
-from epdem.engines import ENGINES, engine
+from epdem.engines import ENGINES
 from epdem.engines.citations import citations
 from epdem.errors import Stopped
 from epdem.laws.library import laws
@@ -230,7 +230,7 @@ def test_a_second_ctrl_c_does_not_interrupt_the_end_of_a_run(monkeypatch):
 
 @pytest.mark.parametrize("law", sorted(laws()))
 def test_every_law_has_a_source_to_cite(law):
-    found = citations([law], [engine("embedded")], dashpot=False)
+    found = citations([law], ["embedded"], dashpot=False)
     assert "section 8.2" in found["equations 8.xx"]
     # cavity is made of equations of the chapter
     assert law == "cavity" or any(what.startswith(f"law {law}, ") for what in found)

@@ -77,7 +77,7 @@ def cite(case: CasePath, engine: Engines = None, law: Laws = None, as_json: AsJs
     from ..engines.citations import citations
     from ..impacts.experiment import experiment
 
-    tools = [find(name) for name in engine or [DEFAULT_ENGINE]]
+    tools = [find(name).name for name in engine or [DEFAULT_ENGINE]]
     with named(case):
         if scene.is_scene(read_toml(case)):
             refuse(case, "a scene has its own law", law=law)
