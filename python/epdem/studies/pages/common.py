@@ -8,7 +8,6 @@ from pathlib import Path
 
 from ... import __version__
 from ...base.stages import library_hash, product_hash
-from ...engines import engine
 from ...engines.citations import citations
 from ...report.page import Facts, Lines
 
@@ -39,4 +38,4 @@ def origin(about: Mapping[str, object], hashes: Mapping[str, object]) -> Facts:
 
 def cited(laws: Sequence[str], engines: Sequence[str], *, dashpot: bool) -> Facts:
     """What to cite."""
-    return Facts("What to cite", citations(list(laws), [engine(name) for name in engines], dashpot=dashpot))
+    return Facts("What to cite", citations(list(laws), list(engines), dashpot=dashpot))
