@@ -23,6 +23,7 @@ SOURCES = {
     "Miller and Pursey 1955": "G. F. Miller, H. Pursey, Proc. R. Soc. A 233 (1955) 55",
     "Popov and Hess 2015": "V. L. Popov, M. Hess, Method of Dimensionality Reduction, Springer (2015)",
     "Thakur et al. 2014": "S. C. Thakur, J. P. Morrissey, J. Sun, J. F. Chen, J. Y. Ooi, Granular Matter 16 (2014) 383",
+    "Thornton and Ning 1998": "C. Thornton, Z. Ning, Powder Technol. 99 (1998) 154",
     "Thornton 1997": "C. Thornton, J. Appl. Mech. 64 (1997) 383",
     "Tsuji, Tanaka and Ishida 1992": "Y. Tsuji, T. Tanaka, T. Ishida, Powder Technol. 71 (1992) 239",
     "Wu et al. 2003": "C.-Y. Wu, L.-Y. Li, C. Thornton, Int. J. Impact Eng. 28 (2003) 929",
