@@ -88,15 +88,19 @@ def hangs(work: Path, out: Path) -> str:
     return wrong(got, 3, "did not end within") or ("the engine stays behind" if left else "")
 
 
-def clock_jumps(work: Path, out: Path) -> str:
-    """`--resume` takes the newest restart file by its step, not by its time; a stored run stays stored"""
-    years = iter(range(2001, 2025))  # the newest file is the oldest by its time
+def _killed_half_way(work: Path, out: Path) -> None:
     process = subprocess.Popen([EPDEM, *SCENE, "-o", out], cwd=work, start_new_session=True)
     while not (out / "restart.20000.bin").exists() and process.poll() is None:
         time.sleep(0.01)
     process.kill()
     process.wait()
     time.sleep(2.0)  # the engine hears of it and ends
+
+
+def clock_jumps(work: Path, out: Path) -> str:
+    """`--resume` takes the newest restart file by its step, not by its time; a stored run stays stored"""
+    years = iter(range(2001, 2025))  # the newest file is the oldest by its time
+    _killed_half_way(work, out)
     for path in sorted(out.glob("*.bin"), key=lambda p: -int(p.name.split(".")[1])):
         subprocess.run(["touch", "-d", f"{min(next(years, 2024), 2024)}-01-01", path], check=True)
     if bad := wrong(call(work, [*SCENE, "--resume"], out), 0):
@@ -160,12 +164,7 @@ def half_a_results_file(work: Path, out: Path) -> str:
 
 def half_a_restart_file(work: Path, out: Path) -> str:
     """exit code 3 with the engine's last words"""
-    process = subprocess.Popen([EPDEM, *SCENE, "-o", out], cwd=work, start_new_session=True)
-    while not (out / "restart.20000.bin").exists() and process.poll() is None:
-        time.sleep(0.01)
-    process.kill()
-    process.wait()
-    time.sleep(2.0)  # the engine hears of it and ends
+    _killed_half_way(work, out)
     for path in out.glob("restart.*.bin"):
         path.write_bytes(path.read_bytes()[: path.stat().st_size // 2])
     return wrong(call(work, [*SCENE, "--resume"], out), 3)
