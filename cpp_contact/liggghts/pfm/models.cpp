@@ -73,6 +73,7 @@ class Model {
 
   Model(LAMMPS* lmp, LIGGGHTS::IContactHistorySetup* setup)
       : lmp_(lmp), surface_(lmp, setup), normal_(lmp, setup), tangential_(lmp, setup), rolling_(lmp, setup) {
+    if (wall && memory<Law> == 1) setup->add_history_value("spare", "0");  // a wall's history of one value is refused
     announce(lmp);
   }
 
