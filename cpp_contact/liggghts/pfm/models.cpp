@@ -8,6 +8,9 @@
 #include "../normal.hpp"
 #include "epdem/laws.hpp"
 
+/// The laws without adhesion.
+#define EPDEM_PFM_LAWS(X) X(Hertz) X(Thornton) X(Johnson) X(Cavity)
+
 namespace epdem::liggghts {
 
 bool only_spheres(LAMMPS_NS::LAMMPS* lmp) { return lmp->atom->sphere_flag && !lmp->atom->superquadric_flag; }
@@ -47,7 +50,7 @@ struct OfId<tangential_off> {
 std::string names() {
   std::string all;
 #define EPDEM_NAME(Class) all += " " + model_name<Class<double>>();
-  EPDEM_PLAIN_LAWS(EPDEM_NAME)
+  EPDEM_PFM_LAWS(EPDEM_NAME)
 #undef EPDEM_NAME
   return all;
 }
@@ -73,6 +76,7 @@ class Model {
 
   Model(LAMMPS* lmp, LIGGGHTS::IContactHistorySetup* setup)
       : lmp_(lmp), surface_(lmp, setup), normal_(lmp, setup), tangential_(lmp, setup), rolling_(lmp, setup) {
+    if (wall && memory<Law> == 1) setup->add_history_value("spare", "0");  // a wall's history of one value is refused
     announce(lmp);
   }
 
@@ -157,7 +161,7 @@ void add_law() {
 const struct Registration {
   Registration() {
 #define EPDEM_ADD(Class) add_law<Class<double>>();
-    EPDEM_PLAIN_LAWS(EPDEM_ADD)
+    EPDEM_PFM_LAWS(EPDEM_ADD)
 #undef EPDEM_ADD
     Factory::instance().addTangentialModel("off", tangential_off);
   }
