@@ -67,7 +67,7 @@ def flow(outlet: float, count: int, width: float, folder: Path, angle: float = 9
     p = plan(case)
     spheres = run_plan(p, LiggghtsScenes(), folder)["particles"]
     last = spheres[spheres["step"] == spheres["step"].max()]
-    out = last[last["z"] < p.layout.outlet]["mass"].sum() / last["mass"].sum()
+    out = last[last["z"] < p.layout.gates[0].place]["mass"].sum() / last["mass"].sum()
     if out < END:
         raise RuntimeError(f"outlet {outlet} d: only {out:.0%} of the filling came out; the flow has stopped")
     found = discharge(p, case.scene, spheres, (BEGIN, END))

@@ -137,17 +137,19 @@ def stopped_run(path: Path, out: Path, share: float = 0.6) -> None:
 def test_every_table_of_a_continued_run_is_that_of_the_uninterrupted_one(path, tmp_path):
     data = read_toml(path)
     output = {"rows": 40, "particles": 20, "restarts": 20, "energy": True, "loads": True}
-    path = write_case(small(data) | {"output": output}, tmp_path)
+    shutil.copytree(path.parent / "parts", tmp_path / "case/parts")  # files that a case names
+    path = write_case(small(data) | {"output": output}, tmp_path / "case")
     whole = run(path, out=tmp_path / "whole")
     stopped_run(path, tmp_path / "parts")
     again = run(path, out=tmp_path / "parts", resume=True)
     assert 0 < again.resumed_from < again.plan.steps
     a, b = (results.read(tmp_path / name / "results.h5") for name in ("whole", "parts"))
-    assert set(a.tables) == set(b.tables) == {"rows", "particles", "contacts", "ledger", "checks"}
+    assert set(a.tables) == set(b.tables) >= {"rows", "particles", "contacts", "ledger", "checks"}
     for name, table in a.tables.items():
         for column in table:
             assert table[column].equals(b.tables[name][column]), f"{name}.{column} differs"
-    assert a.rows.drop(columns=["step", "time"]).any().all(), "no column of the rows is empty"
+    if data["scene"]["kind"] != "parts":  # there a smooth wall has three forces, and some stay zero
+        assert a.rows.drop(columns=["step", "time"]).any().all(), "no column of the rows is empty"
     assert whole.passed == again.passed
 
 

@@ -90,7 +90,7 @@ def refuse(p: ScenePlan) -> None:
     refuse_parameters(m.law, m.ratios())
     unknown: dict[str, tuple[object, str]] = {
         "scene.rate": (p.layout.fills[0].rate, "all spheres are there from the start"),
-        "viscous.restitution": (m.viscous, "YADE's law has no dashpot"),
+        "viscous.restitution": (p.case.viscous and p.case.viscous.restitution, "YADE's law has no dashpot"),
         "contact.tangential": (m.nodes and m.tangential, "YADE's law has one spring"),
         "contact.rolling": (m.rolling and m.rolling.model, "YADE's law has no rolling resistance"),
         "contact.cohesion": (m.cohesion, "YADE's law has no cohesion"),
