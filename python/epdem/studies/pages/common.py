@@ -9,7 +9,9 @@ from pathlib import Path
 from ... import __version__
 from ...base.stages import library_hash, product_hash
 from ...engines.citations import citations
-from ...report.page import Facts, Lines
+from ...impacts.run import Outcome
+from ...report.page import Facts, Lines, Page, Part
+from ...scenes.run import SceneOutcome
 
 
 def command() -> str:
@@ -39,3 +41,28 @@ def origin(about: Mapping[str, object], hashes: Mapping[str, object]) -> Facts:
 def cited(laws: Sequence[str], engines: Sequence[str], *, dashpot: bool) -> Facts:
     """What to cite."""
     return Facts("What to cite", citations(list(laws), list(engines), dashpot=dashpot))
+
+
+def page_of(
+    outcome: Outcome | SceneOutcome,
+    sentences: list[str],
+    parts: Sequence[Part],
+    *,
+    hashes: Mapping[str, object],
+    laws: Sequence[str],
+    engines: Sequence[str],
+    command: str,
+) -> Page:
+    """The page of a case: these parts, then versions, `hashes` of the inputs by run, and what to cite."""
+    return Page(
+        outcome.case.case.title,
+        sentences,
+        [
+            *parts,
+            origin(outcome.results.attributes, hashes),
+            cited(laws, engines, dashpot=outcome.case.viscous is not None),
+        ],
+        passed=outcome.passed,
+        command=command or f"epdem rerun {outcome.folder}/results.h5",
+        warnings=outcome.warnings,
+    )

@@ -32,16 +32,14 @@ def page(outcome: Outcome, command: str = "") -> Page:
     parts: list[Part] = [*figures(outcome), table(outcome), *bodies(outcome), tolerances(outcome)]
     results = outcome.results
     parts += [common.case_lines(results.case_text), *decks(outcome)]
-    parts.append(common.origin(results.attributes, {key: run["inputs"] for key, run in results.runs.items()}))
-    engines = list(dict.fromkeys(results.comparison["engine"]))
-    parts.append(common.cited(list(outcome.plans), engines, dashpot=outcome.case.viscous is not None))
-    return Page(
-        outcome.case.case.title,
+    return common.page_of(
+        outcome,
         sentences(outcome),
         parts,
-        passed=outcome.passed,
-        command=command or f"epdem rerun {outcome.folder}/results.h5",
-        warnings=outcome.warnings,
+        hashes={key: run["inputs"] for key, run in results.runs.items()},
+        laws=list(outcome.plans),
+        engines=list(dict.fromkeys(results.comparison["engine"])),
+        command=command,
     )
 
 

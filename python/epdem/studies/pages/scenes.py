@@ -23,14 +23,15 @@ def of_scene(outcome: SceneOutcome) -> Path:
 def page(outcome: SceneOutcome, command: str = "") -> Page:
     """The page of a scene."""
     tables, about = outcome.results.tables, outcome.results.attributes
-    drawn = {"bed", *(chart.name for chart in charts(outcome))}
+    shown = charts(outcome)
+    drawn = {"bed", *(chart.name for chart in shown)}
     pictures = [
         Picture(path.stem.replace("_", " "), f"{path.name}, as the run left it", file=path)
         for path in sorted(outcome.folder.glob("*.png"))
         if path.stem not in drawn
     ]
     engine = str(about["engine"])
-    parts: list[Part] = [*charts(outcome), *bed(outcome), *pictures]
+    parts: list[Part] = [*shown, *bed(outcome), *pictures]
     parts.append(Rows("Checks", tables["checks"], note="Each number against what is expected of it."))
     if "ledger" in tables:
         parts.append(Rows("Energy ledger", tables["ledger"], UNITS, "One row for each frame."))
@@ -39,15 +40,14 @@ def page(outcome: SceneOutcome, command: str = "") -> Page:
         parts += [Rows("Measures", tables["measures"], units), Rows("Histograms", tables["histograms"])]
     parts += [Rows("Rows", tables["rows"], UNITS), _facts(outcome), common.case_lines(outcome.results.case_text)]
     parts += _decks(outcome)
-    parts.append(common.origin(about, {engine: about["inputs"]}))
-    parts.append(common.cited([outcome.plan.model.law], [engine], dashpot=outcome.case.viscous is not None))
-    return Page(
-        outcome.case.case.title,
+    return common.page_of(
+        outcome,
         sentences(outcome),
         parts,
-        passed=outcome.passed,
-        command=command or f"epdem rerun {outcome.folder}/results.h5",
-        warnings=outcome.warnings,
+        hashes={engine: about["inputs"]},
+        laws=[outcome.plan.model.law],
+        engines=[engine],
+        command=command,
     )
 
 
