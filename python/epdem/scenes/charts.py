@@ -7,6 +7,7 @@ from ..report.chart import GREY, INK, PALETTE, Axis, Chart, Panel, Series
 from ..report.page import Picture
 from .key_figures import key
 from .measures import unit
+from .pictures import colour, unit_of
 from .run import SceneOutcome
 
 TIME = Axis("time $t$", "s")
@@ -18,7 +19,7 @@ ROWS = {
 COLOURS = {"kinetic": 0, "rotation": INK, "elastic": 2, "plastic": 1, "friction": 4, "springs": 3, "left": 6}
 COLOURS["adhesion"] = 5
 MOST = 3000  # spheres in the picture of a bed
-# viridis at eleven places: from slow to fast
+# viridis at eleven places: from low to high
 SCALE = ["440154", "482576", "414487", "35608d", "2a788e", "21918c", "22a884", "43bf71", "7ad151", "bddf26", "fde725"]
 
 
@@ -71,10 +72,10 @@ def ledger(outcome: SceneOutcome) -> Chart:
     gravity = table["gravity"] - table["gravity"].min()
     if gravity.max() > 0:
         series.append(Series("gravity, above its lowest", time, gravity.to_numpy(), INK, "dashdot"))
-    for name, colour in COLOURS.items():
+    for name, shade in COLOURS.items():
         if name in table and table[name].abs().max() > 0:
             label = "friction (remainder)" if name == "friction" and "springs" not in table else name
-            series.append(Series(label, time, table[name].to_numpy(), colour))
+            series.append(Series(label, time, table[name].to_numpy(), shade))
     if table["work"].abs().max() > 0:
         series.append(Series("work of the walls", time, table["work"].to_numpy(), INK, "dash"))
     if "friction" not in table or "springs" in table:
@@ -84,15 +85,17 @@ def ledger(outcome: SceneOutcome) -> Chart:
 
 
 def bed(outcome: SceneOutcome) -> list[Picture]:
-    """The spheres of the last frame seen along y, the nearest in front, coloured by speed; none without frames."""
+    """The spheres of the last frame seen along y, the nearest in front, by `output.color`; none without frames."""
     table = outcome.results.tables.get("particles")
     if table is None or table.empty:
         return []
     frame = table[table["step"] == table["step"].max()]
     last = frame.sort_values("y", ascending=False).tail(MOST)
     x, z, r = (last[name].to_numpy() for name in ("x", "z", "radius"))
-    speed = np.sqrt((last[["vx", "vy", "vz"]] ** 2).sum(axis=1)).to_numpy()
-    place = (10 * speed / (np.quantile(speed, 0.98) or 1.0)).clip(0, 10).round().astype(int)
+    field = outcome.plan.output.color
+    value = colour(last, field).to_numpy()
+    least = min(value.min(), 0.0)
+    place = (10 * (value - least) / ((np.quantile(value, 0.98) - least) or 1.0)).clip(0, 10).round().astype(int)
     low, high, bottom, top = (x - r).min(), (x + r).max(), (z - r).min(), (z + r).max()
     unit = 1000 / max(high - low, top - bottom)  # so many points of the picture in a metre
     circles = [
@@ -102,7 +105,8 @@ def bed(outcome: SceneOutcome) -> list[Picture]:
     size = f"{(high - low) * unit:.0f} {(top - bottom) * unit:.0f}"
     time = last["step"].iloc[0] * outcome.plan.time_step
     seen = f"the {MOST} nearest spheres" if len(frame) > MOST else "all spheres"
-    alt = f"The bed at {time:.3g} s from the front: {seen}; bright ones are fast, up to {speed.max():.3g} m/s."
+    most = f"{value.max():.3g} {unit_of(last, field)}".strip()
+    alt = f"The bed at {time:.3g} s from the front: {seen}; bright ones have the largest {field}, up to {most}."
     svg = (
         f'<svg viewBox="0 0 {size}" stroke="#0008" stroke-width="0.7" style="max-height:34rem">{"".join(circles)}</svg>'
     )

@@ -42,6 +42,11 @@ def colour(spheres: pd.DataFrame, field: str) -> pd.Series:
     return kinetic(spheres) if field == "energy" else spheres[field]
 
 
+def unit_of(spheres: pd.DataFrame, field: str) -> str:
+    """The unit of `colour`."""
+    return {"speed": "m/s", "energy": "J"}.get(field, units(spheres).get(field, ""))
+
+
 def refuse_color(p: ScenePlan) -> None:
     """Raise CaseError for a field of output.color that the frames do not hold."""
     known = ["speed", "energy", *PARTICLES, *(SPINS if p.model.spins else []), *(["plastic_work"] if p.dents else [])]
@@ -129,7 +134,7 @@ def bed(p: ScenePlan, spheres: pd.DataFrame, path: Path) -> None:
     _draw_walls(axis, p, p.phases[-1], front=False)
     discs = _draw_spheres(axis, x, radius, array=colour(last, field), cmap="viridis")
     _draw_walls(axis, p, p.phases[-1], front=True)
-    unit = {"speed": "m/s", "energy": "J"}.get(field, units(last).get(field, ""))
+    unit = unit_of(last, field)
     fig.colorbar(discs, label=f"{field} [{unit}]" if unit else field, shrink=0.8)
     _save(fig, path)
 
