@@ -3,8 +3,8 @@
 #ifdef COMMAND_CLASS
 
 // clang-format off
-CommandStyle(hard_particles, HardParticles)
-CommandStyle(soft_particles, SoftParticles)
+CommandStyle(hard_particles, ModulusLimits)
+CommandStyle(soft_particles, ModulusLimits)
 // clang-format on
 
 #else
@@ -12,24 +12,15 @@ CommandStyle(soft_particles, SoftParticles)
 #ifndef EPDEM_COMMANDS_H
 #define EPDEM_COMMANDS_H
 
-#include "error.h"
 #include "pointers.h"
 
 namespace LAMMPS_NS {
 
-/// LIGGGHTS-PFM has no upper limit of youngsModulus: there is nothing to allow.
-class HardParticles : protected Pointers {
+/// LIGGGHTS-PFM has no upper limit of youngsModulus; its lower one, 5e6 Pa, cannot be lifted, and it says so itself.
+class ModulusLimits : protected Pointers {
  public:
-  explicit HardParticles(LAMMPS* lmp) : Pointers(lmp) {}
+  explicit ModulusLimits(LAMMPS* lmp) : Pointers(lmp) {}
   void command(int, char**) {}
-};
-
-class SoftParticles : protected Pointers {
- public:
-  explicit SoftParticles(LAMMPS* lmp) : Pointers(lmp) {}
-  void command(int, char**) {
-    error->all(FLERR, "soft_particles is not available in LIGGGHTS-PFM, which refuses youngsModulus below 5e6 Pa");
-  }
 };
 
 }  // namespace LAMMPS_NS
