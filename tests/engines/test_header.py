@@ -195,6 +195,7 @@ def test_doctor_says_which_models_an_executable_has(built, monkeypatch):
         assert not found.superquadrics  # Debian's library has none
     paths.launcher.cache_clear()
     assert executable.advice(()) == "" and "epdem header --out" in executable.advice(("hertz",))
+    assert "take LIGGGHTS-PUBLIC" in executable.advice(("jkr",), "LIGGGHTS-PFM 24.01")
 
 
 SUPERQUADRIC = """atom_style superquadric
