@@ -5,10 +5,14 @@ from pathlib import Path
 
 import numpy as np
 
+from epdem.liggghts import log
+from epdem.liggghts.launcher import OUT
 from epdem.liggghts.scenes import LiggghtsScenes
 from epdem.scenes.plan import ScenePlan
 
 MODELS = {"hertz": "hertz", "ep/hertz": "hertz", "ep/thornton": "thornton"}  # and the law of their plan
+YADE = "yade"  # its own model of Hertz and Mindlin
+SHORT = 10_000  # steps of a case that is for larger machines
 CURVE, EVERY = "impactor.txt", 100  # steps between two lines
 
 
@@ -28,7 +32,8 @@ class Recorded(LiggghtsScenes):
             return text
         last = len(plan.layout.table)
         return text + (
-            f"variable curve_t equal step*dt\nvariable curve_z equal z[{last}]\nvariable curve_v equal vz[{last}]\n"
+            f"group curve id {last}\nvariable curve_t equal step*dt\n"
+            "variable curve_z equal xcm(curve,z)\nvariable curve_v equal vcm(curve,z)\n"
             f'fix curve all print {EVERY} "${{curve_t}} ${{curve_z}} ${{curve_v}}" append {CURVE} screen no\n'
         )
 
@@ -55,3 +60,9 @@ def curve(folder: Path) -> np.ndarray:
     table = np.array(rows, dtype=float).reshape(-1, 3)
     _, last = np.unique(table[::-1, 0], return_index=True)
     return table[::-1][last]
+
+
+def loop(folder: Path) -> tuple[float, int]:
+    """(seconds, steps) of all that LIGGGHTS has computed in a folder."""
+    found = log.loops(folder / OUT)
+    return sum(seconds for seconds, _ in found), sum(steps for _, steps in found)
