@@ -40,7 +40,9 @@ def document(outcome: Outcome, bulk: pd.DataFrame | None, command: str) -> str:
 
 Written by
 
-    {command}
+```sh by hand
+{command}
+```
 
 (case `{outcome.case.name}`, {outcome.seconds:.0f} s). Errors are maxima over all speeds and phases of the case. Times
 are medians of the loop time of the engine in interleaved runs without output. Absolute times depend on the machine and

@@ -38,10 +38,25 @@ def mathematics(text: str, convert: Callable[..., str]) -> str:
     return "".join(parts)
 
 
+def languages(text: str) -> str:
+    """A page whose blocks name their language alone, without what a test reads after it."""
+    return re.sub(r"^(```\w+) .*$", r"\1", text, flags=re.M)
+
+
+def names() -> set[str]:
+    """The commands of epdem."""
+    return {name for name, command in _commands().items() if not command.hidden}
+
+
+def _commands() -> dict[str, Any]:
+    found: dict[str, Any] = typer.main.get_command(app).commands  # type: ignore[attr-defined]
+    return found
+
+
 def commands() -> str:
     """Every command with its arguments and options, from the command itself."""
     text = ["# Commands\n"]
-    for name, command in sorted(typer.main.get_command(app).commands.items()):  # type: ignore[attr-defined]
+    for name, command in sorted(_commands().items()):
         if command.hidden:
             continue
         text.append(f"## epdem {name}\n\n{inspect.cleandoc(command.help or '')}\n\n| option | meaning |\n|---|---|")
@@ -87,7 +102,7 @@ def main() -> None:
     PAGES.mkdir(parents=True)
     for page in (ROOT / "docs").glob("*.md"):
         text = OUTSIDE.sub(r"\1 (`\2`)", page.read_text(encoding="utf-8"))
-        text = mathematics(text, convert).replace("](notebook.ipynb)", "](#)")
+        text = mathematics(languages(text), convert).replace("](notebook.ipynb)", "](#)")
         (PAGES / page.name).write_text(text, encoding="utf-8")
     shutil.copytree(ROOT / "docs/figures", PAGES / "figures")
     (PAGES / "reference_commands.md").write_text(commands(), encoding="utf-8")
