@@ -35,7 +35,7 @@ OWN = ("upstream.md", "studies.md")  # test_plugin_upstream and test_pages run t
 FEW = 'speeds = { from = "0.5 m/s", to = "50 m/s", count = 3 }'
 SMALL = {
     "settle_glass": {"scene.box": ["10 mm", "10 mm", "60 mm"], "scene.count": 30, "scene.duration": "0.3 s"}
-    | {"output.particles": 4, "output.restarts": 2},
+    | {"output.particles": 4},
     "compaction_powder": {"scene.box": ["0.5 mm", "0.5 mm", "1.2 mm"], "scene.count": 100, "scene.height": "0.28 mm"}
     | {"scene.back": "0.01 mm", "scene.speed": "4 m/s", "output.rows": 20, "output.particles": 3},
     "hopper_beads": {"scene.count": 60, "scene.fill": "20 ms", "scene.duration": "40 ms"},
@@ -120,7 +120,7 @@ def test_the_script_for_yade_runs(tmp_path):
     (tmp_path / "beds.py").write_text(
         text.replace("/path/to/epdem/python", str(ROOT / "python")).replace("100000", "500")
     )
-    done = subprocess.run(["yade", "-n", "-x", "script.py"], cwd=tmp_path, capture_output=True, text=True, timeout=120)
+    done = subprocess.run(["yade", "-n", "-x", "beds.py"], cwd=tmp_path, capture_output=True, text=True, timeout=120)
     assert done.returncode == 0 and "Traceback" not in done.stderr, done.stderr
 
 
