@@ -33,7 +33,7 @@ CODE = re.compile(
 )
 # what a measurement looks like: an error, a time, a share, a decimal; equations have numbers from 8.76 to 8.89
 NUMBER = re.compile(
-    r"(?<![\w.])\d+(?:\.\d+)?e-\d+|\b\d+(?:\.\d+)? (?:ns|us|ms|s|min|minutes|seconds|GB|MB)\b|\b\d+(?:\.\d+)? %"
+    r"(?<![\w.])\d+(?:\.\d+)?e-\d+|\b\d+(?:\.\d+)? (?:ns|us|ms|s|min|minutes|seconds|GB|MB)\b|\b\d+(?:\.\d+)? ?%"
     r"|(?<=\|) *-?\d+\.\d+ *(?=\|)|(?<![\w.])(?!8\.[1789]\d\b)\d+\.\d{2,}\b"
 )
 HEAD = """# What is claimed, and what holds it
