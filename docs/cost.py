@@ -55,6 +55,8 @@ its other load; the ratio to LIGGGHTS's own elastic `hertz` (`{REFERENCE}`) in t
 
 ![error of e_n against stepping time and steps](figures/cost.png)
 
+`.venv/bin/python docs/cost.py` draws this figure.
+
 ## All errors
 
 {markdown(error_table(outcome.rows))}
@@ -69,7 +71,7 @@ def main() -> None:
     case = DOCS.parent / "cases/steel_wall.toml"
     outcome = cost.run(case, engines=["embedded", "liggghts"], laws=LAWS, repetitions=3)
     save(chart(outcome), DOCS / "figures", data=False)
-    (DOCS / "cost.md").write_text(document(outcome, bulk_cost.run(LAWS), "python docs/cost.py"))
+    (DOCS / "cost.md").write_text(document(outcome, bulk_cost.run(LAWS), ".venv/bin/python docs/cost.py"))
 
 
 if __name__ == "__main__":

@@ -142,4 +142,4 @@ def test_the_command_prints_what_the_function_finds(place):
     points, target = chart["series"]
     assert target["y"] == pytest.approx([weight(20, 1700.0)] * 2) and min(target["x"]) == 1000.0
     assert len(points["x"]) == found.points and "epdem calibrate bed.toml" in page
-    assert all(y == pytest.approx(weight(20, x), rel=0.03) for x, y in zip(points["x"], points["y"], strict=True))
+    assert all(y == pytest.approx(weight(20, x), rel=0.1) for x, y in zip(points["x"], points["y"], strict=True))

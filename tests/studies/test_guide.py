@@ -86,6 +86,24 @@ def test_programs_files_and_commands_of_blocks_that_run_elsewhere_exist():
     assert seen >= 15
 
 
+def test_every_figure_is_shown_with_words_and_with_its_command_below():
+    spec = importlib.util.spec_from_file_location("make_docs", ROOT / "docs/make.py")
+    make = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(make)
+    shown = set()
+    for path in PAGES:
+        for alt, file, below in re.findall(r"!\[([^\]]*)\]\(([^)]+)\)\n\n(.*?)\n\n", path.read_text() + "\n\n", re.S):
+            name = file.rpartition("/")[2]
+            command = make.FIGURES[name][0].partition(" -o ")[0]
+            assert len(alt) > 20 and f"`{command}`" in below, f"{path.name}: say below {name}: `{command}`"
+            assert (path.parent / file).exists()
+            shown.add(name)
+    assert shown == set(make.FIGURES) == {p.name for p in (ROOT / "docs/figures").iterdir()}
+    for command in [*make.PAGES.values(), *(command for command, _ in make.FIGURES.values())]:
+        program, word, *_ = command.split()
+        assert word in guide.names() if program == "epdem" else (ROOT / word).exists(), command
+
+
 @pytest.mark.liggghts
 def test_every_block_of_the_tour_runs(tmp_path):
     for page in ("tutorial", "choose", "results", "faq"):

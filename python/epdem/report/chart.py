@@ -45,6 +45,7 @@ class Axis:
     log: bool = False
     low: float | None = None  # limits; None: as the data need
     high: float | None = None
+    ticks: dict[float, str] | None = None  # texts at places, instead of numbers
 
     def __str__(self) -> str:
         return f"{self.label} [{self.unit}]" if self.unit else self.label
