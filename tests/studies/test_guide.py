@@ -200,6 +200,16 @@ def test_the_reference_names_every_command_and_what_the_package_offers():
     assert all(f"| {code} |" in errors for code in (0, 1, CaseError.exit_code, EngineError.exit_code, 130))
 
 
+def test_the_reference_of_case_files_has_every_key_of_our_cases():
+    keys = set(re.findall(r"^\| `([\w.]+)` \|", guide.cases(), re.M))
+    assert "| `materials.NAME.poisson_ratio` | a number, > -1, <= 0.5 | required |" in guide.cases()
+    assert {"impact.body.radius", "measured.e_n", "scene.wall.turn", "output.restarts", "numerics.skin"} <= keys
+    for path in sorted((ROOT / "cases").glob("*.toml")):
+        for table, entries in read_toml(path).items():
+            if table not in ("materials", "law") and isinstance(entries, dict):
+                assert {f"{table}.{key}" for key, v in entries.items() if not isinstance(v, dict | list)} <= keys, path
+
+
 def test_equations_become_mathml_and_code_stays():
     text = "of $a^2$ and `$HOME`\n\n    echo $PATH and $x\n\n```sh in a/b.py\necho $y\n```\n\n$$b$$\n"
     found = guide.mathematics(text, lambda latex, display="inline": f"<{display}:{latex}>")
