@@ -103,6 +103,7 @@ def restitution(outcome: Outcome) -> Chart:
             Panel(SPEED, Axis("coefficient of restitution $e_n$"), above, 3.0),
             Panel(SPEED, _error("$e_n$"), below, 1.4),
         ],
+        heading="Restitution against impact speed",
     )
 
 
@@ -225,4 +226,5 @@ def slip(outcome: Outcome) -> Chart:
             Panel(before, Axis(r"slip after the impact $\psi_2$"), above, 3.0),
             Panel(before, _error(r"$\psi_2$"), below, 1.4),
         ],
+        heading="Slip after against slip before",
     )

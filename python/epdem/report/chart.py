@@ -73,6 +73,7 @@ class Chart:
     alt: str
     panels: list[Panel] = field(default_factory=list)
     beside: bool = False
+    heading: str = ""  # on a page, which has a title of its own; empty: the title
     kind: ClassVar[str] = "chart"
 
     def csv(self) -> str:
