@@ -65,9 +65,11 @@ def look(page: Path, *more: str) -> subprocess.CompletedProcess[str]:
 def test_the_page_of_a_strength_is_drawn_and_silent(tmp_path):
     case = ROOT / "cases/cavity_wall.toml"
     path = of_calibration(case, from_restitution(case, 0.6, 5.0), tmp_path / "page")
-    look_for = """document.body.append(Object.assign(document.createElement("pre"), {id: "seen", textContent: JSON.stringify({
+    look_for = """const seen = document.body.appendChild(document.createElement("pre"));
+    seen.id = "seen";
+    seen.textContent = JSON.stringify({
       curves: document.querySelectorAll(".chart .scatterlayer .trace").length,
-      wide: document.documentElement.scrollWidth - window.innerWidth})}));"""
+      wide: document.documentElement.scrollWidth - window.innerWidth});"""
     path.write_text(path.read_text().replace("</body>", f"<script>{look_for}</script></body>"))
     done = look(path, "--window-size=500,900", "--dump-dom")
     assert not re.findall(r"CONSOLE.*", done.stderr)
