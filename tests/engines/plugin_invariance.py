@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The same impacts told to LIGGGHTS in other ways: which contact model gives the same answer?
+"""The same impacts in LIGGGHTS in another order or place: which contact model gives the same answer?
 
 One scene: 12 oblique impacts of unequal spheres and 12 of spheres on a wall, all drifting across x = CENTRE while they
 touch. Each way of telling it (swapped ids, sorted atoms, two ranks, a periodic face, ...) must not change the outcome.

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The same impacts told to LIGGGHTS in other ways: epdem's models give the same bits, LIGGGHTS's own do not."""
+"""The same impacts in LIGGGHTS in another order or place: epdem's models give the same bits, LIGGGHTS's own do not."""
 
 import pytest
 from plugin_decks import ADHESIVE, LAWS

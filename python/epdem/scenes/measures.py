@@ -43,7 +43,7 @@ def refuse_measures(p: ScenePlan) -> None:
         if isinstance(m, Histogram) and m.kind == "plastic_work" and not p.dents:
             raise CaseError(f"{place}: the plastic work is known with output.energy and a law that yields; give them")
         if isinstance(m, Histogram) and m.kind == "impact_speed" and (p.model.adheres or not p.contacts):
-            raise CaseError(f"{place}: impact speeds are told by contacts without adhesion; give output.contacts")
+            raise CaseError(f"{place}: impact speeds follow from contacts without adhesion; give output.contacts")
 
 
 def _inside(region: Room | Upright, x: FloatArray) -> np.ndarray:
