@@ -26,7 +26,7 @@ def rows(request, tmp_path_factory):
 
 
 @pytest.mark.parametrize("law", OURS)
-def test_the_way_of_telling_changes_no_bit(rows, law):
+def test_order_and_place_change_no_bit(rows, law):
     off = {k: v for k, v in rows(f"ep/{law}").items() if "momentum" not in k and "mesh" not in k and "second" not in k}
     assert len(off) == 11
     assert off == dict.fromkeys(off, (0.0, 0.0))
