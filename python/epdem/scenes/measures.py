@@ -5,8 +5,6 @@ import math
 
 import numpy as np
 import pandas as pd
-from scipy.spatial import cKDTree
-from scipy.stats import qmc
 
 from ..case.measures import Amount, CenterOfMass, Flow, Height, Histogram, Load, Porosity, Repose
 from ..case.walls import Room, Upright
@@ -89,6 +87,9 @@ def _angle(m: Repose, frame: pd.DataFrame) -> float:
 
 def _porosity(m: Porosity, frame: pd.DataFrame) -> float:
     """The share of evenly spread points of the region that lie in no sphere."""
+    from scipy.spatial import cKDTree
+    from scipy.stats import qmc
+
     r = m.region
     if isinstance(r, Upright):
         (a, b), c = r.center, r.diameter / 2
