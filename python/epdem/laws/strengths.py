@@ -20,6 +20,11 @@ def law_named(name: str) -> type[Backbone] | type[JKR]:
     return known[name]
 
 
+def yields_by_stress(name: str) -> bool:
+    """Whether the strength of a law is the yield stress itself, not a contact pressure. Raises CaseError."""
+    return law_named(name).strength == "yield_stress"
+
+
 @dataclass(frozen=True)
 class Surface:
     """The surface of a material: its name and its surface energy gamma [J/m^2], None: not given."""
