@@ -95,6 +95,11 @@ def refused(base: str | dict, changes: dict, says: str, folder: Path) -> None:
         ),
         ("steel_wall", {"materials.steel.surface_energy": "1 J/m^2"}, "has no adhesion"),
         ("steel_wall", {"law": {"name": "cavity", "first_yield_ratio": 3.0}}, "plastic_ratio (c_P) must exceed"),
+        (
+            "steel_wall",
+            {"measured": {"source": "x", "speeds": ["1 m/s"], "e_n": [0.5, 0.6]}},
+            "1 speeds and 2 values of e_n; give one for each",
+        ),
         ("steel_wall", {"materials.steel.yield_stress": 3}, "expected a quantity with a unit in quotes"),
         ("steel_wall", {"materials.steel.yield_stress": "3 blah"}, "unknown unit 'blah'"),
     ],

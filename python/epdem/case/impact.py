@@ -17,6 +17,7 @@ from .fields import (
     Header,
     LawChoice,
     Length,
+    Line,
     Material,
     Name,
     Quantity,
