@@ -18,17 +18,21 @@ from epdem.case.toml import read_toml
 from epdem.errors import CaseError
 from epdem.impacts import pairs
 from epdem.impacts.experiment import experiment
+from epdem.impacts.motions import shear_elastic
 from epdem.impacts.plan import plan
 from epdem.impacts.prediction import predict
 from epdem.lammps.impacts import LammpsMdr
+from epdem.liggghts import motions as liggghts_motions
 from epdem.liggghts import pairs as liggghts_pairs
 from epdem.liggghts import scene_deck
 from epdem.liggghts.assemblies import LiggghtsAssemblies
 from epdem.liggghts.impacts import Liggghts
 from epdem.scenes.assembly import AssemblyPlan
 from epdem.scenes.plan import plan as scene_plan
+from epdem.studies.motions import touch_of
 from epdem.studies.stability.scenes import SCENES as ASSEMBLIES
 from epdem.studies.stability.scenes import with_law
+from epdem.yade import motions as yade_motions
 from epdem.yade import pairs as yade_pairs
 from epdem.yade import precisions
 from epdem.yade import scene_deck as yade_scene
@@ -83,6 +87,13 @@ def test_the_deck_is_as_stored(name, tmp_path):
 def test_the_deck_of_another_engine_is_as_stored(engine, name, tmp_path):
     engine.write(planned({}), tmp_path)
     compare_with_stored(f"{engine.name}_wall", (tmp_path / name).read_text())
+
+
+@pytest.mark.parametrize(("engine", "script"), [(liggghts_motions, "in.motion"), (yade_motions, "motion.py")])
+def test_the_deck_of_a_motion_is_as_stored(engine, script):
+    """The materials are of one name each: the second sphere is of the wall's."""
+    touch = touch_of(CASES / "oblique_steel.toml")
+    compare_with_stored(f"motion_{script[-2:]}", engine.files(touch, shear_elastic(touch))[script])
 
 
 @pytest.mark.parametrize("name", ["settle_glass", "compaction_powder"])
