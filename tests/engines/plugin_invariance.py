@@ -149,7 +149,7 @@ class Suite:
         return np.abs(one - other)[:, :3].max()
 
     def revolution(self):
-        """Change of the force on a sphere, over the force, after its loaded and sheared pair has turned once as a whole.
+        """Change of the force on a sphere, over the force, after its loaded, sheared pair has turned once as a whole.
 
         The axis is none of the pair's: it turns about its normal, too. 1000 steps.
         """

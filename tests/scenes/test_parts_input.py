@@ -11,7 +11,8 @@ import pytest
 from parts_cases import BED, CASES, FLOOR, own, parts, tetrahedron, write_stl
 from scipy import stats
 
-from epdem.case.scene import parse
+from epdem.case.scene import load, parse
+from epdem.case.toml import named
 from epdem.errors import CaseError
 from epdem.scenes.plan import plan
 from epdem.studies.sweep import folder
@@ -182,3 +183,30 @@ def test_points_of_a_sweep_find_the_files_that_their_case_names(tmp_path, monkey
     data = tomllib.loads(folder.base_text(CASES / "sieve_cylinder.toml"))
     assert fills(data, tmp_path / "case.toml") == fills(own("sieve_cylinder"), CASES / "sieve_cylinder.toml")
     assert str(CASES.parent) not in (CASES / "sieve_cylinder.toml").read_text()
+
+
+LINES = {  # what is put in place of a line of cases/impactor_bowl.toml, and the words of the sentence
+    'kind = "cylinder"': ('kind = "cylindre"', "scene.wall.1.kind = 'cylindre', must be one of"),
+    'diameter = "40 mm"': ('diameter = "400 mm"', "scene.wall.tube: reaches beyond scene.room"),
+    'mass = "8 g"': ('weight = "8 g"', "scene.fill.0.weight = '8 g', unknown key"),
+    'radius = "4 mm"': ('radius = "-4 mm"', "scene.body.0.radius = '-4 mm', must lie in"),
+    'phase = "hit"': ('phase = "hid"', "scene: body.impactor.phase = 'hid' is no phase"),
+    'duration = "0.1 s"': (
+        'duration = "0.1 s"\n[[scene.phase.move]]\nwall = "bowl"\n[[scene.phase.move]]\nkind = "spin"',
+        "scene.phase.1.move.0.kind is missing",
+    ),
+}
+
+
+@pytest.mark.parametrize("old", LINES)
+def test_a_mistake_in_a_part_is_said_with_its_line(old, tmp_path):
+    text = (CASES / "impactor_bowl.toml").read_text()
+    new, words = LINES[old]
+    (tmp_path / "parts").symlink_to(CASES / "parts")
+    path = tmp_path / "bowl.toml"
+    path.write_text(text.replace(old, new))
+    line = text[: text.index(old)].count("\n") + (2 if "move" in new else 1)
+    if "reaches" in words:  # a matter of the whole wall
+        line = text[: text.index('name = "tube"')].count("\n")
+    with pytest.raises(CaseError, match=re.escape(f"bowl.toml line {line}: {words}")), named(path):
+        plan(load(path))

@@ -172,7 +172,7 @@ class Parts(Frozen):
             names = [getattr(part, "name", "") for part in parts]
             for name in names:
                 if names.count(name) > 1:
-                    raise ValueError(f"two parts of {kind} have the name {name!r}; give each its own")
+                    raise ValueError(f"{kind}.{name}: two parts of {kind} have the name {name!r}; give each its own")
 
     def _named_phases(self) -> list[tuple[str, str]]:
         found = [(f"fill.{f.name}.phase", f.phase) for f in self.fill if isinstance(f, Fill) and f.phase]
