@@ -40,13 +40,19 @@ def moved(kind: str) -> dict:
         phase = {"name": "beat", "duration": "60 ms", "move": [move | {"rate": "-20 rad/s"}]}
         bed = BED | {"region": BED["region"] | {"x": ["0.5 mm", "9 mm"]}}
         return parts(wall=[BOX, BEATER], fill=[bed], phase=[phase])
+    if kind == "press":
+        move = {"wall": "lid", "kind": "press", "direction": [0.0, 0.0, -1.0], "force": "0.2 N"}
+        hold = {"name": "hold", "duration": "0.2 s", "move": [move | {"highest_speed": "0.1 m/s"}]}
+        lid = PLATE | {"center": ["0 mm", "0 mm", "15 mm"]}
+        bed = BED | {"region": BED["region"] | {"z": ["0 mm", "14 mm"]}}
+        return parts(wall=[BOX, lid], fill=[bed], phase=[hold])
     move = {"wall": "lid", "kind": "linear", "velocity": ["0 m/s", "0 m/s", "-0.4 m/s"]}
     press = {"name": "press", "duration": "1 s", "until": {"wall": "lid", "travel": "30 mm"}, "move": [move]}
     return parts(wall=[BOX, PLATE], phase=[press | {"time_step": "1e-5 s"}])
 
 
 @pytest.mark.liggghts
-@pytest.mark.parametrize("kind", ["vibrate", "rotate", "linear"])
+@pytest.mark.parametrize("kind", ["vibrate", "rotate", "linear", "press"])
 def test_energy_closes_with_the_work_of_walls_that_move(kind, tmp_path):
     outcome = run(write_case(moved(kind), tmp_path), out=tmp_path / "out")
     ledger = outcome.results.ledger

@@ -172,6 +172,14 @@ def _times(name: str, first: int, values: Vector) -> list[str]:
     return [f"f_{name}[{first + k}]*{decks.number(v)}" for k, v in enumerate(values) if v]
 
 
+def _of_servo(id: str, servo: Servo) -> str:
+    """The force on a wall that a force drives, along its direction, times its speed: see GAIN; at most the highest."""
+    force = f"({'+'.join(_times(id, 1, servo.direction))})"
+    error = f"(1+{force}/{decks.number(servo.force)})"
+    share = f"({error}*({error}<=1)*({error}>=-1)+({error}>1)-({error}<-1))"
+    return f"{force}*{share}*{decks.number(servo.highest_speed)}"
+
+
 def _power(p: ScenePlan, phase: Phase) -> str:
     """The power of all that moves in a phase, as LIGGGHTS's formula: force and torque are those on the walls."""
     terms = []
@@ -183,6 +191,8 @@ def _power(p: ScenePlan, phase: Phase) -> str:
                 terms += _times(id, 4, (turn.rate * x, turn.rate * y, turn.rate * z))
         if isinstance(move, Linear):
             terms += _times(id, 1, move.velocity)
+        if isinstance(move, Servo):
+            terms.append(_of_servo(id, move))
         if isinstance(move, Vibration):
             x, y, z = (move.omega * a for a in move.amplitude)
             omega = decks.number(move.omega * (phase.time_step or p.time_step))

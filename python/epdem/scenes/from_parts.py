@@ -234,8 +234,6 @@ def from_parts(case: SceneCase, s: Parts) -> Layout:
     loads |= {m.wall for m in s.measure if isinstance(m, Load)} & {w.name for w in s.wall}
     moves = [(name, move) for stage in stages for name, move in stage.moves.items()]
     served = {name for name, move in moves if isinstance(move, Servo)}
-    if served and case.output.energy:
-        raise CaseError(f"output.energy: the work of wall {min(served)}, which a force drives, is not known; remove it")
     if both := {name for name, move in moves if name in served and not isinstance(move, Servo)}:
         raise CaseError(f"scene.wall.{min(both)}: a wall that a force drives has no other motion; take a second wall")
     if case.output.restarts and any(not isinstance(move, Linear) for _, move in moves):
