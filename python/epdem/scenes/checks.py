@@ -202,7 +202,7 @@ def _of_parts(p: ScenePlan, tables: dict[str, pd.DataFrame]) -> list[Row]:
         return []
     last = tables["particles"][tables["particles"]["step"] == tables["particles"]["step"].max()]
     weight = last["mass"] * p.case.scene.gravity
-    if kinetic(last).sum() > AT_REST * (weight * last["radius"]).sum():
+    if last.empty or kinetic(last).sum() > AT_REST * (weight * last["radius"]).sum():
         return []
     row = tables["rows"].iloc[-1]
     forces = [-float(row[f"{name}_force_z"]) for name in p.layout.loads]
