@@ -10,7 +10,7 @@ from ..errors import CaseError
 from ..laws.library import laws
 from ..scenes.model import Model
 from ..scenes.plan import ScenePlan
-from . import stl
+from . import stl, wall_stress
 from .insertions import Insertion, insertions
 from .properties import HARD, SOFT, Property, elastic, per_pair, ratios, strength, tangential, work_of_adhesion
 from .scene_parts import Flat, Part, Surface, load_words, parts, planes, surfaces, table, wall_id
@@ -59,6 +59,7 @@ class Deck:
     samples: int
     frames: int
     contacts: int
+    watched: tuple[tuple[str, str, bool], ...]
     vtk: int
     pictures: int
     restarts: int
@@ -105,7 +106,7 @@ def _properties(p: ScenePlan) -> tuple[Property, ...]:
         properties.append(work_of_adhesion(n, [x for row in m.adhesion for x in row]))
     if m.cohesion:
         properties.append(per_pair("cohesionEnergyDensity", n, m.cohesion, "J/m^3"))
-    return tuple(properties)
+    return (*properties, *wall_stress.properties(p))
 
 
 def _settings(p: ScenePlan) -> tuple[str, ...]:
@@ -201,6 +202,7 @@ def deck(p: ScenePlan) -> Deck:
         samples=p.every // p.sampling,
         frames=p.frames,
         contacts=p.contacts,
+        watched=tuple((name, wall_id(p, name), p.layout.meshes[name].wear > 0) for name in wall_stress.watched(p)),
         vtk=p.vtk,
         pictures=p.pictures,
         restarts=p.restarts,

@@ -150,10 +150,16 @@ def surfaces(p: ScenePlan) -> tuple[Surface, ...]:
     force = p.plates or p.output.loads or p.output.energy
     found = []
     for name, mesh in p.layout.meshes.items():
-        turn, words, style = mesh.turn, "", "/stress" if force or name in p.layout.loads else ""
+        turn, words, style = (
+            mesh.turn,
+            "",
+            "/stress" if force or name in p.layout.loads or mesh.stress or mesh.wear else "",
+        )
         origins = _origins(p, name)
         if style and any(origins):
             words = f" reference_point {_words(origins)}"
+        if mesh.wear:
+            words += " wear finnie"
         if turn is not None:
             axis = " ".join(f"{x:g}" for x in turn.axis)
             words += f" surface_ang_vel origin {_words(turn.origin)} axis {axis} omega {decks.number(turn.rate)}"

@@ -72,11 +72,16 @@ class Until:
 
 @dataclass(frozen=True)
 class Mesh:
-    """A wall of triangles, shape (n, 3 corners, 3 coordinates) [m]; `turn`: of its surface, while they stay."""
+    """A wall of triangles, shape (n, 3 corners, 3 coordinates) [m]; `turn`: of its surface, while they stay.
+
+    stress: whether the frames have the pressure on each; wear: its constant of Finnie's law [m^2/N], 0: none.
+    """
 
     triangles: FloatArray
     material: str = ""
     turn: Turn | None = None
+    stress: bool = False
+    wear: float = 0.0
 
 
 @dataclass(frozen=True)
