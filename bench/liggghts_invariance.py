@@ -41,8 +41,8 @@ half step, which a split run computes slightly differently. `hertz` also leaves 
 undefined when a restart file creates it.
 
 LIGGGHTS's `tangential history` projects its spring on the plane of the contact in every step, but does not turn it with
-the pair about the normal: after the revolution the friction, 4 to 17 % of the force here, has another direction.
-Partial slip (`ep/partial_slip`) turns it; what is left is the 2 pi^2/1000 of the steps.
+the pair about the normal: after the revolution the friction has another direction. Partial slip (`ep/partial_slip`)
+turns it; what is left is of second order in the angle of a step (1000 steps).
 """
 
 

@@ -107,6 +107,20 @@ def test_the_deck_of_a_scene_is_as_stored(path):
     compare_with_stored(path.stem, texts["in.scene"] + texts["setup.in"])
 
 
+def test_the_deck_of_a_scene_of_parts_in_yade_is_as_stored():
+    """Facets, motions of each kind, a phase with a time step of its own, forces on walls and their power."""
+    data = read_toml(CASES / "sieve_cylinder.toml")
+    scene, sides = data["scene"], {"kind": "plate", "axis": "z", "size": ["9 mm", "9 mm"], "material": "steel"}
+    del data["viscous"]
+    scene["wall"] += [sides | {"name": name, "center": ["0 mm", "0 mm", "58 mm"]} for name in ("lid", "sieve")]
+    shake = {"wall": "sieve", "kind": "vibrate", "amplitude": ["0 m", "0 m", "1 mm"], "frequency": "50 Hz"}
+    down = {"wall": "lid", "kind": "linear", "velocity": ["0 m/s", "0 m/s", "-0.01 m/s"]}
+    turn = {"wall": "cylinder", "kind": "rotate", "axis": [0.0, 0.0, 1.0], "rate": "-2 rad/s"}
+    scene["phase"] += [{"name": "work", "duration": "1 ms", "time_step": "1e-6 s", "move": [shake, down, turn]}]
+    texts = yade_scene.files(scene_plan(parse_scene(data, CASES / "sieve_cylinder.toml")))
+    compare_with_stored("yade_moving_parts", texts["scene.py"])
+
+
 def test_the_deck_of_a_scene_of_moving_parts_is_as_stored():
     """Spheres of a table, one that comes later, a gate, motions of each kind, a phase that ends by a condition."""
     path = CASES / "impactor_bowl.toml"
