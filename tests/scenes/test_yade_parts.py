@@ -34,7 +34,7 @@ BODIES = """x,y,z,radius,vx,vy,vz
 @pytest.mark.yade
 @pytest.mark.liggghts
 def test_the_same_bodies_do_the_same_in_both_engines(tmp_path):
-    """Without friction, of which YADE has another: of a file, one frozen; a plate of triangles rises; two time steps."""
+    """Without friction (YADE has another); of a file, one frozen; a plate of triangles rises; two time steps."""
     table = {"name": "table", "file": str(tmp_path / "spheres.csv"), "material": "glass"}
     (tmp_path / "spheres.csv").write_text(BODIES)
     frozen = {"name": "held", "material": "steel", "radius": "2 mm", "place": ["0 mm", "0 mm", "11 mm"], "frozen": True}
