@@ -11,6 +11,7 @@ import pandas as pd
 
 from ..base.files import atomic, write_texts
 from ..base.folders import claim, results_folder
+from ..base.settings import DEFAULT_ENGINE
 from ..case.impact import load
 from ..case.toml import named
 from ..engines import MOTIONS as ENGINES
@@ -21,7 +22,7 @@ from ..impacts.motion import Loads, Motion, MotionEngine, Touch, read, refuse, t
 from ..impacts.motions import MOTIONS, objectivity, rigid_rotation
 from ..theory.pair import sphere_mass
 
-DEFAULT = ("embedded", "liggghts")
+DEFAULT = (next(iter(ENGINES)), DEFAULT_ENGINE)
 TABLE = "motions.csv"
 FRICTION = 0.3  # of a case that has none
 TOLERANCE = 1e-9  # of the largest force
