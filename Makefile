@@ -1,5 +1,5 @@
 # Each target is one line that calls a script or a tool.
-.PHONY: setup demo test guide browser walltime bench docs tidy sanitize versions fuzz valgrind reliability tutorials wheel deb trees clean
+.PHONY: setup demo test guide browser walltime bench bench-community docs tidy sanitize versions fuzz valgrind reliability tutorials wheel deb trees clean
 
 setup:
 	@scripts/setup
@@ -28,6 +28,12 @@ walltime: setup
 
 bench: setup
 	.venv/bin/python bench/all.py
+
+# the benchmarks of Dosta et al. 2024 in LIGGGHTS and YADE: hours; goes on where it was stopped, writes docs/benchmarks.md
+bench-community:
+	@scripts/setup yade
+	.venv/bin/python bench/community.py
+	.venv/bin/python docs/benchmarks.py
 
 docs: setup
 	.venv/bin/python docs/make.py

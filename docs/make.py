@@ -23,6 +23,7 @@ COMMANDS = {
     "figures/figure_8_16.png": [BIN / "epdem", "figures", "--out", "runs/docs/figures"],
     "equations.md": [sys.executable, "docs/equations.py"],
     "cost.md": [sys.executable, "docs/cost.py"],
+    "benchmarks.md": [sys.executable, "docs/benchmarks.py"],
     "stability.md": [sys.executable, "docs/stability.py"],
 }
 

@@ -65,6 +65,10 @@ DOCUMENTS = {  # words, and what the document must hold
     "status": (["swept"], lambda d: (d["points"], d["done"], d["waiting"]) == (2, 0, 2)),
     "cite": (["steel.toml"], lambda d: "Thornton" in d["law thornton, Thornton 1997"] and "Kloss" in d["liggghts"]),
     "header": (["-o", "."], lambda d: d["files"][0] == "normal_model_ep.cpp" and not d["lacks"]),
+    "validate": (
+        ["-s", "leeb_G", "-e", "embedded", "-l", "hertz"],
+        lambda d: [round(row["error"], 4) for row in d["rows"] if row["quantity"] == "e_n"] == [0.3333],
+    ),
     "calibrate": (["steel.toml", "--hv", "100"], lambda d: abs(d["value"] / 1057.66e6 - 1) < 1e-5),
 }
 MISTAKES = {  # words, and what the sentence must hold
@@ -90,6 +94,7 @@ MISTAKES = {  # words, and what the sentence must hold
     "sweep": (["steel.toml", "--set", "impact.body.radios=1 mm"], "the nearest: impact.body.radius"),
     "rerun": (["steel.toml"], "steel.toml: not a results file of epdem, or damaged"),
     "status": (["nowhere"], "nowhere: not a folder of a sweep"),
+    "validate": (["-s", "leeb_X"], "--set 'leeb_X' does not exist; there are hutchings_1979, leeb_C"),
 }
 
 

@@ -19,7 +19,7 @@ from epdem.impacts import report as impacts_report
 from epdem.impacts import run as impacts_run
 from epdem.scenes import report as scenes_report
 from epdem.scenes import run as scenes_run
-from epdem.studies import cost, crosscheck, figures, fit, motions, stability, tune
+from epdem.studies import cost, crosscheck, figures, fit, motions, stability, tune, validate
 from epdem.studies.pages import impacts as impacts_page
 from epdem.studies.pages import scenes as scenes_page
 from epdem.studies.stability import bulk_cost
@@ -86,6 +86,7 @@ KINDS = {  # words of a call without the option, and the value of every option
     "latin hypercube": (("sweep", "steel.toml", "--set", "impact.body.radius=1 mm..2 mm", *HYPERCUBE), SWEEP),
     "status": (("status", "swept"), {"table": None}),
     "rerun": (("rerun", "stored/results.h5"), {}),
+    "validate": (("validate",), {"sets": "leeb_G", "engine": "yade", "law": "hertz", "out": "there", "force": None}),
 }
 OTHERS = [
     "d/in.impact",
@@ -94,6 +95,7 @@ OTHERS = [
     "settle_glass.png",
     "runs/figures/figure_8_16.png",
     "runs/steel_wall/cost/cost.csv",
+    "runs/validate/validate.csv",
 ]
 IMPACTS_ONLY = ("predict", "timestep", "cost", "crosscheck", "motion", "calibrate")
 
@@ -160,6 +162,7 @@ def library(tmp_path, monkeypatch, outcomes):
     record(figures, "draw_all", [Path("drawn.png")])
     record(executors, "execute")
     record(fit, "fit")
+    record(validate, "validate")
     return reached
 
 

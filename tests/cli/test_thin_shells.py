@@ -36,6 +36,7 @@ FUNCTIONS = {
     "cite": ("epdem.engines.citations", "citations"),
     "header": ("epdem.liggghts.header", "write"),
     "view": ("epdem.scenes.pictures", "before"),
+    "validate": ("epdem.studies.validate", "validate"),
 }
 
 

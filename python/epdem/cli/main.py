@@ -25,6 +25,7 @@ from . import scenes as cli_scene
 from . import sweep as cli_sweep
 from . import theory as cli_theory
 from . import trees as cli_trees
+from . import validate as cli_validate
 from .options import AsJson, CasePath, Engines, Force, Formats, Laws, Out, formats, laws_or_own, refuse, warn
 from .printed import Printed
 
@@ -241,6 +242,7 @@ for command in (
     cli_sweep.status,
     cli_rerun.rerun,
     cli_trees.header,
+    cli_validate.validate,
 ):
     app.command()(command)
 app.command("points", hidden=True)(cli_sweep.points)  # what batch scripts call

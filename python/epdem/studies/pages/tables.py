@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The pages of studies that are tables in the first place: crosscheck, cost, stability, sweep."""
+"""The pages of studies that are tables in the first place: crosscheck, cost, stability, sweep, validate."""
 
 from dataclasses import replace
 from pathlib import Path
@@ -10,7 +10,8 @@ import pandas as pd
 from ...base.folders import claim
 from ...impacts.charts import SPEED
 from ...impacts.comparison import UNITS
-from ...report.chart import PALETTE, Axis, Chart, Panel, Series
+from ...report.chart import GREY, PALETTE, Axis, Chart, Panel, Series
+from ...report.drawing import save
 from ...report.page import NAME, Facts, Page, Part, Rows, write
 from .. import cost_report
 from ..cost import Outcome as Cost
@@ -19,9 +20,11 @@ from ..stability.suite import Outcome as Stability
 from ..stability.suite import summary
 from ..sweep.folder import DONE, FAILED
 from ..sweep.run import SweepOutcome
+from ..validate import QUANTITIES, Validation
 from . import common, impacts
 
 MOST_PANELS = 4
+LABELS = {"e_n": "$e_n$", "dent_width": "width of the dent"}
 
 
 def of_crosscheck(check: Crosscheck) -> Path:
@@ -118,3 +121,39 @@ def _by_key(result: SweepOutcome, units: dict[str, str]) -> Chart:
         series = Series("", table[key].to_numpy(float), table[name].to_numpy(float), k, None, 0)
         panels.append(Panel(Axis(key, units.get(key, "")), Axis(name.replace("_", " "), units.get(name, "")), [series]))
     return Chart("sweep", "Numbers of the scenes", f"{', '.join(changing[:MOST_PANELS])} against {key}.", panels)
+
+
+def validation_chart(v: Validation) -> Chart:
+    """What the first engine gives over the measured value, for every law and point."""
+    points = v.points[v.points["engine"] == v.points["engine"].iloc[0]]
+    points = points.assign(ratio=1.0 + points["error"])
+    panels, order = [], list(dict.fromkeys(points["law"]))
+    for quantity in QUANTITIES:
+        part = points[points["quantity"] == quantity]
+        series = [
+            Series(law, own["measured"].to_numpy(float), own["ratio"].to_numpy(float), order.index(law), None, k)
+            for k, (law, own) in enumerate(part.groupby("law", sort=False))
+        ]
+        if not series:
+            continue
+        ends = [part["measured"].min(), part["measured"].max()]
+        series.append(Series("measured", ends, [1.0, 1.0], GREY, "solid", width=0.8))
+        unit = "" if quantity == "e_n" else "m"
+        panels.append(Panel(Axis(f"measured {LABELS[quantity]}", unit), Axis("law over measured"), series))
+    names = ", ".join(dict.fromkeys(points["set"]))
+    alt = f"Restitution and widths of dents over the measured values of {names}, one mark for each law and point."
+    return Chart("validate", "Laws against measured impacts", alt, panels)
+
+
+def of_validation(v: Validation) -> Path:
+    """Draw the figure of measured sets and write their page into the folder of the study."""
+    chart = validation_chart(v)
+    parts: list[Part] = [chart, Rows("By set, law and engine", v.summary), Rows("Every point", v.points)]
+    parts += [Facts(one.head["title"], {k: one.head[k] for k in ("source", "material", "read")}) for one in v.sets]
+    parts += [Facts("Left out", v.absent)] if v.absent else []
+    parts.append(common.origin({}, {}))
+    said = f"{len(v.points)} comparisons with measured numbers; nothing is fitted, and no law has a tolerance here."
+    page = Page("Laws against measured impacts", [said], parts, command=common.command())
+    with claim(v.folder, force=True):
+        save(chart, v.folder)
+        return write(v.folder / NAME, lambda: page)
