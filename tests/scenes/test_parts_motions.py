@@ -156,3 +156,30 @@ def test_a_motion_counts_for_the_highest_speed():
     move = {"wall": "lid", "kind": "vibrate", "amplitude": ["0 mm", "3 mm", "4 mm"], "frequency": "100 Hz"}
     scene = parse(parts(wall=[PLATE], phase=[FALL | {"move": [move]}])).scene
     assert scene.drive == pytest.approx(2 * math.pi * 100 * 5e-3)
+
+
+@pytest.mark.liggghts
+def test_a_phase_that_is_not_recorded_has_rows_and_no_frames(tmp_path):
+    """The others have the same ones, at their begin and end too; a run that goes on in it writes none."""
+    phases = [FALL | {"duration": "20 ms", "name": name} for name in ("first", "second", "third", "last")]
+    for kept in (True, False):
+        place = tmp_path / str(kept)
+        data = parts(phase=[phases[0], phases[1] | {"record": kept}, phases[2] | {"record": kept}, phases[3]])
+        data["output"] = {"rows": 8, "particles": 8, "contacts": 8, "restarts": 8}
+        outcome = run(write_case(data, place), out=place / "out")
+        if kept:
+            whole, every = outcome.results, outcome.plan.every
+            continue
+        found = outcome.results
+        assert [*found.particles["step"].unique()] == [k * every for k in (1, 2, 6, 7, 8)]  # before 1 nothing is there
+        there = whole.particles[whole.particles["step"].isin(found.particles["step"])].reset_index(drop=True)
+        assert found.particles.equals(there) and found.rows.equals(whole.rows)
+        assert {*found.contacts["step"]} <= {*found.particles["step"]} and outcome.passed
+        assert not {f"particles.{k * every}.bin" for k in (3, 4, 5)} & {p.name for p in (place / "out").iterdir()}
+        resume.write_resume(outcome.plan, place / "out", 4 * every)
+        assert "dump_modify particles every 1000000000" in (place / "out/in.resume").read_text()
+
+
+def test_the_last_phase_is_recorded():
+    with pytest.raises(CaseError, match=r"phase.fall.record = false: the last phase is recorded"):
+        parse(parts(phase=[FALL | {"record": False}]))

@@ -145,6 +145,10 @@ class Parts(Frozen):
             raise ValueError("no spheres; add [[scene.fill]] or [[scene.body]]")
         self._unique()
         phases = [p.name for p in self.phase]
+        if not self.phase[-1].record:
+            raise ValueError(
+                f"phase.{phases[-1]}.record = false: the last phase is recorded, for its end is the result"
+            )
         for place, name in self._named_phases():
             if name not in phases:
                 raise ValueError(f"{place} = {name!r} is no phase; there are {', '.join(phases)}")

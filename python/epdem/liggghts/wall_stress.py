@@ -61,7 +61,7 @@ def table(p: ScenePlan, folder: Path, *, without: Collection[int] = ()) -> pd.Da
     """
     frames = []
     for name in watched(p):
-        for step in (s for s in range(0, p.steps + 1, p.frames) if s not in without):
+        for step in (s for s in p.frame_steps(p.frames) if s not in without):
             path = folder / FILES.format(name, step)
             try:
                 fields = _fields(path)

@@ -219,7 +219,7 @@ def _stage(s: Parts, p: Phase) -> Stage:
             move = moves[u.wall or ""]
             assert isinstance(move, Linear)
             seconds = min(seconds, u.travel / math.hypot(*move.velocity))
-    return Stage(p.name, seconds, moves, gates, until, p.time_step)
+    return Stage(p.name, seconds, moves, gates, until, p.time_step, p.record)
 
 
 def from_parts(case: SceneCase, s: Parts) -> Layout:

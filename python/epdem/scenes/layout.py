@@ -133,7 +133,8 @@ class Fill:
 
 @dataclass(frozen=True)
 class Stage:
-    """A part of the scene: which meshes move in it and how, which gates are there, what ends it early."""
+    """A part of the scene: which meshes move in it and how, which gates are there, what ends it early, whether it has
+    frames."""
 
     name: str
     seconds: float
@@ -141,6 +142,7 @@ class Stage:
     gates: tuple[str, ...] = ()
     until: Until | None = None
     time_step: float | None = None
+    record: bool = True
 
 
 @dataclass(frozen=True)

@@ -58,6 +58,7 @@ def refuse(p: ScenePlan, s: Parts) -> None:
         **{f"scene.body.{b.name}.phase": b.phase for b in p.layout.bodies},
         **{f"scene.wall.{w.name}.phases": True for w in p.layout.gates},
         **{f"scene.phase.{phase.name}.until": phase.until is not None for phase in p.phases},
+        **{f"scene.phase.{phase.name}.record": not phase.record for phase in p.phases},
         **{f"scene.wall.{name}.stress": mesh.stress for name, mesh in p.layout.meshes.items()},
         **{f"scene.wall.{name}.wear": mesh.wear for name, mesh in p.layout.meshes.items()},
     }
