@@ -174,7 +174,7 @@ def test_a_phase_that_is_not_recorded_has_rows_and_no_frames(tmp_path):
         assert [*found.particles["step"].unique()] == [k * every for k in (1, 2, 6, 7, 8)]  # before 1 nothing is there
         there = whole.particles[whole.particles["step"].isin(found.particles["step"])].reset_index(drop=True)
         assert found.particles.equals(there) and found.rows.equals(whole.rows)
-        assert {*found.contacts["step"]} <= {*found.particles["step"]} and outcome.passed
+        assert {*found.contacts["step"]} <= {*found.particles["step"]}
         assert not {f"particles.{k * every}.bin" for k in (3, 4, 5)} & {p.name for p in (place / "out").iterdir()}
         resume.write_resume(outcome.plan, place / "out", 4 * every)
         assert "dump_modify particles every 1000000000" in (place / "out/in.resume").read_text()

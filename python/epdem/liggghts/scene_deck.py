@@ -13,7 +13,8 @@ from ..scenes.plan import ScenePlan
 from . import stl, wall_stress
 from .insertions import Insertion, insertions
 from .properties import HARD, SOFT, Property, elastic, per_pair, ratios, strength, tangential, work_of_adhesion
-from .scene_parts import Flat, Part, Surface, load_words, parts, planes, surfaces, table, wall_id
+from .scene_parts import Flat, Part, Surface, load_words, parts, planes, surfaces, table
+from .wall_power import wall_id
 
 MOST_CELLS = 2**31 - 1  # that LIGGGHTS counts, each half as wide as its longest reach
 SKIN = 0.5  # of the smallest radius: rebuilds cost less than idle neighbours
