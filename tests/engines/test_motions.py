@@ -174,6 +174,26 @@ def test_a_wrong_file_is_named_with_what_is_wrong(says, tmp_path):
         read(tmp_path / "m.json")
 
 
+@pytest.mark.parametrize(
+    ("name", "content", "says"),
+    [
+        ("m.json", '{"t": [[0], [1, 2]]}', "m.json: not JSON of lists of numbers"),
+        ("m.json", '{"t": [], "x_i": 3}', "m.json: t is missing"),
+        ("m.json", "[1, 2]", "m.json: t is missing"),
+        ("m.csv", "t,x_i\n0,1,2\n", "m.csv line 2: 3 values, must be 4 or more"),
+        ("m.csv", "t,x_i\n0,1,2,a\n", "m.csv line 2: could not convert"),
+        ("m.csv", "# t x_i what v_i\n0 1 2 3\n", "m.csv: x_j is missing"),
+        ("m.csv", "", "m.csv: no line of names"),
+        ("n.csv", None, "n.csv: cannot be read"),
+    ],
+)
+def test_text_that_is_no_motion_is_refused_in_words(name, content, says, tmp_path):
+    if content is not None:
+        (tmp_path / name).write_text(content)
+    with pytest.raises(CaseError, match=says):
+        read(tmp_path / name)
+
+
 def test_a_motion_for_other_radii_is_refused():
     motion = OWN["shear_slip"](touch())
     small = replace(touch().experiment, body=replace(touch().experiment.body, radius=5e-3))

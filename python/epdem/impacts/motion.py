@@ -169,7 +169,7 @@ def _json(path: Path, text: str) -> dict[str, Array]:
         columns = {name: np.asarray(data[name], float) for name in WIDTHS if name in data}
     except (ValueError, TypeError, RecursionError) as error:
         raise CaseError(f"{path}: not JSON of lists of numbers by name ({error})") from None
-    return {name: values.reshape(len(values), -1) for name, values in columns.items() if values.ndim}
+    return {name: values.reshape(len(values), -1) for name, values in columns.items() if values.size and values.ndim}
 
 
 def _csv(path: Path, text: str) -> dict[str, Array]:
