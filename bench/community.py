@@ -19,7 +19,9 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-from community_models import MODELS, SHORT, YADE, engine, loop
+import numpy as np
+import pandas as pd
+from community_models import MODELS, SHORT, YADE, curve, engine, loop
 
 from epdem.case.scene import SceneCase, parse
 from epdem.errors import CaseError
@@ -31,8 +33,8 @@ ROOT = Path(__file__).resolve().parents[1]
 CASES, RUNS = ROOT / "cases/benchmarks", ROOT / "runs/community"
 LONG = ("impact_50k", "impact_100k", "silo_large", "silo_small")  # for larger machines
 SOFT = 100.0  # divides their moduli during their rain
-FALL = 0.018  # [s] before which the impactor has not reached any bed: YADE begins then
-YADE_END = 0.032
+YADE_END = 0.032  # [s]
+NEAR, G = 2e-3, 9.81  # [m] above the bed, [m/s^2]
 
 
 class Enough(Exception):
@@ -48,6 +50,7 @@ def rain(name: str, seed: int, *, soft: float) -> SceneCase:
     """All phases of a case but the last, with moduli that are `soft` times smaller."""
     data = read(name)
     data["numerics"]["seed"] = seed
+    data["numerics"].pop("skin", None)  # it is for a sphere that comes later
     scene = data["scene"]
     last = scene["phase"].pop()["name"]
     scene["body"] = [b for b in scene.get("body", []) if b.get("phase") != last]
@@ -62,9 +65,23 @@ def rain(name: str, seed: int, *, soft: float) -> SceneCase:
     return parse(data, CASES / f"{name}.toml")
 
 
+def fall(name: str, spheres: Path) -> float:
+    """The time [s] that the body of a case falls freely, down to NEAR above the highest sphere; 0 without a body.
+
+    The bed is at rest then, and the fall is known exactly: every model and engine begins behind it.
+    """
+    bodies = read(name)["scene"].get("body", [])
+    if not bodies:
+        return 0.0
+    (height, radius), speed = (float(x.split()[0]) * 1e-3 for x in (bodies[0]["place"][2], bodies[0]["radius"])), 5.0
+    table = pd.read_csv(spheres)
+    way = height - radius - NEAR - float((table["z"] + table["radius"]).max())
+    return float(np.floor(2e3 * (np.sqrt(speed**2 + 2 * G * way) - speed) / G)) / 2e3
+
+
 def after_rain(name: str, seed: int, model: str, spheres: Path, *, steps: int | None) -> SceneCase:
-    """The last phase of a case, with the spheres of a file; `steps` of it, or all."""
-    data = read(name)
+    """The last phase of a case behind the free fall, with the spheres of a file; `steps` of it, or all."""
+    data, begin = read(name), fall(name, spheres)
     data["numerics"]["seed"] = seed
     data["law"]["name"] = MODELS[model]
     scene = data["scene"]
@@ -73,13 +90,17 @@ def after_rain(name: str, seed: int, model: str, spheres: Path, *, steps: int | 
     (phase,) = scene["phase"]
     for body in scene.get("body", []):
         body.pop("phase", None)
+        body["place"][2] = f"{0.06 - 5.0 * begin - G * begin**2 / 2!r} m"
+        body["velocity"][2] = f"{-5.0 - G * begin!r} m/s"
     scene["wall"] = [w for w in scene["wall"] if phase["name"] in w.pop("phases", [phase["name"]])]
     if steps is not None:
         number, unit = data["numerics"]["time_step"].split()
         phase["duration"] = f"{steps * float(number)!r} {unit}"
         data["output"]["particles"] = 1
-    elif "move" not in phase:
-        data["output"]["restarts"] = 10
+    else:
+        phase["duration"] = f"{float(phase['duration'].split()[0]) - begin!r} s"
+        if "move" not in phase:
+            data["output"]["restarts"] = 10
     return parse(data, CASES / f"{name}.toml")
 
 
@@ -132,14 +153,14 @@ def bed(name: str, seed: int, *, soft: float) -> Path:
     return path
 
 
-def in_yade(spheres: Path, until: float) -> None:
-    """The impact with YADE's own model, on the same spheres; a run that was stopped begins anew."""
+def in_yade(spheres: Path, begin: float, until: float) -> None:
+    """The impact with YADE's own model, on the same spheres; a run that was stopped goes on."""
     folder = spheres.parent / YADE
     if (folder / "done").exists():
         return
     folder.mkdir(exist_ok=True)
     script = Path(__file__).with_name("community_yade.py")
-    words = ["yade", "-n", "-x", str(script), str(spheres), str(folder / "impactor.txt"), str(FALL), str(until)]
+    words = ["yade", "-n", "-x", str(script), str(spheres), str(folder / "impactor.txt"), str(begin), str(until)]
     with (folder / "out.yade").open("wb") as stream:
         subprocess.run(words, check=True, stdout=stream, stderr=stream, env=os.environ | {"OMP_NUM_THREADS": "1"})
     (folder / "done").touch()
@@ -149,12 +170,15 @@ def one(name: str, seed: int, model: str, *, full: bool, until: float | None) ->
     """One case, seed and model; what it leaves is read by the report."""
     short = name in LONG and not full
     spheres = bed(name, seed, soft=SOFT if short else 1.0)
+    begin = fall(name, spheres)
     if model == YADE:
-        in_yade(spheres, min(until or YADE_END, YADE_END))
+        in_yade(spheres, begin, min(until or YADE_END, YADE_END))
         return
     case = after_rain(name, seed, model, spheres, steps=SHORT if short else None)
     folder = spheres.parent / model.replace("/", "_")
-    run(case, engine(model), folder, None if short else until)
+    if until and (known := curve(folder)).size and known[-1, 0] >= until:
+        return
+    run(case, engine(model, begin), folder, until - begin if until and not short else None)
     seconds, steps = loop(folder)
     if steps:
         print(f"{name}, seed {seed}, {model}: {steps} steps, {1e3 * seconds / steps:.3g} ms each", flush=True)
