@@ -10,6 +10,7 @@ from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
+import pandas as pd
 from pages import markdown
 
 from epdem.errors import CaseError
@@ -103,6 +104,20 @@ def _long(runs: Path) -> str:
     return "\n".join(lines) if len(lines) > 2 else ""
 
 
+def _points(points: pd.DataFrame) -> str:
+    """Every measured number with what the laws give in LIGGGHTS."""
+    here = points[points["engine"] == "liggghts"]
+    here = here.assign(error=[f"{e:+.1%}" for e in here["error"]])
+    wide = here.pivot_table(
+        index=["number", "set", "quantity", "measured", "speed"], columns="law", values="error", aggfunc="first"
+    ).reset_index()
+    wide["measured"] = [
+        f"{m:g}" if q == "e_n" else f"{1e3 * m:g} mm" for m, q in zip(wide["measured"], wide["quantity"], strict=True)
+    ]
+    wide["speed"] = [f"{v:g} m/s" for v in wide["speed"]]
+    return markdown(wide)
+
+
 def main() -> None:
     """Replace the tables between their marks by those of the runs that are there."""
     runs, text = ROOT / "runs/community", PAGE.read_text(encoding="utf-8")
@@ -110,6 +125,7 @@ def main() -> None:
     save(validation_chart(result), ROOT / "docs/figures", data=False)
     measured = markdown(shown(result.summary))
     tables = {"impact": _impact(runs), "drum": _drum(runs), "long": _long(runs), "measured": measured}
+    tables["points"] = _points(result.points)
     for name, table in tables.items():
         if table:
             mark = rf"(<!--{name}-->\n).*?(<!--/-->)"
