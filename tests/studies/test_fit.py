@@ -4,6 +4,7 @@
 import json
 import logging
 import math
+import re
 import subprocess
 import sys
 from pathlib import Path
@@ -136,3 +137,9 @@ def test_the_command_prints_what_the_function_finds(place):
     assert done.returncode == 0, done.stderr
     assert done.stdout.splitlines()[0] == f"materials.glass.density = {found.values['materials.glass.density']}"
     assert json.loads(subprocess.check_output([*words, "-o", "points", "--json"], cwd=place))["values"] == found.values
+    page = (place / "points/report.html").read_text()
+    chart = json.loads(re.search(r"const charts = (\[.*\]), palette", page)[1])[0]["panels"][0]
+    points, target = chart["series"]
+    assert target["y"] == pytest.approx([weight(20, 1700.0)] * 2) and min(target["x"]) == 1000.0
+    assert len(points["x"]) == found.points and "epdem calibrate bed.toml" in page
+    assert all(y == pytest.approx(weight(20, x), rel=0.1) for x, y in zip(points["x"], points["y"], strict=True))

@@ -234,6 +234,20 @@ class Check(Frozen):
     psi_2: Tolerance = 0.05  # absolute: of the sliding velocity after an oblique impact, in mu/kappa times the speed
 
 
+class Measured(Frozen):
+    """Measured restitution beside theory in figure and page; no check uses it."""
+
+    source: Line
+    speeds: Annotated[list[Speed], Field(min_length=1, max_length=1000)]
+    e_n: list[Annotated[float, Quantity("1", ge=0.0, le=1.0, hint="percent?")]]
+
+    @model_validator(mode="after")
+    def _pairs(self) -> Self:
+        if len(self.speeds) != len(self.e_n):
+            raise ValueError(f"{len(self.speeds)} speeds and {len(self.e_n)} values of e_n; give one for each")
+        return self
+
+
 class Friction(Frozen):
     """Friction of oblique impacts."""
 
@@ -253,6 +267,7 @@ class Case(Frozen):
     contact: Friction | None = None
     numerics: Numerics = Numerics()
     check: Check = Check()
+    measured: Measured | None = None
 
     @model_validator(mode="after")
     def _consistent(self) -> Self:
@@ -278,6 +293,8 @@ class Case(Frozen):
             raise ValueError("contact: nothing rubs in a normal impact; give impact.angles, or remove it")
         if self.impact.oblique and self.viscous:
             raise ValueError("viscous: there is no theory of oblique impacts with a dashpot; remove one of both")
+        if self.impact.oblique and self.measured:
+            raise ValueError("measured: these are e_n of normal impacts; remove it, or impact.angles and impact.spins")
 
     @property
     def name(self) -> str:

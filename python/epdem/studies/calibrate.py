@@ -101,6 +101,11 @@ def _unknown(path: Path) -> _Unknown:
         return _Unknown(case, law_numbers(case.law.name, given), parameter)
 
 
+def experiment(path: Path, found: Calibration) -> Experiment:
+    """The impact of the case with the strength that was found, at the measured speed or at that of first yield."""
+    return _unknown(path).experiment(found.value, found.speed or found.yield_speed)
+
+
 def from_restitution(path: Path, e_n: float, speed: float) -> Calibration:
     """The strength with which the case's impact at `speed` [m/s] has the measured e_n. Raises CaseError.
 

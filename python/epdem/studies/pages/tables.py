@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The pages of studies that are tables in the first place: crosscheck, cost, stability, sweep, validate."""
+"""The pages of studies that are tables in the first place: crosscheck, cost, stability, sweep, fit, validate."""
 
 from dataclasses import replace
 from pathlib import Path
@@ -10,16 +10,18 @@ import pandas as pd
 from ...base.folders import claim
 from ...impacts.charts import SPEED
 from ...impacts.comparison import UNITS
-from ...report.chart import GREY, PALETTE, Axis, Chart, Panel, Series
+from ...report.chart import GREY, INK, PALETTE, Axis, Chart, Panel, Series
 from ...report.drawing import save
 from ...report.page import NAME, Facts, Page, Part, Rows, write
 from .. import cost_report
 from ..cost import Outcome as Cost
 from ..crosscheck import Crosscheck
+from ..fit import Fit
 from ..stability.suite import Outcome as Stability
 from ..stability.suite import summary
 from ..sweep.folder import DONE, FAILED
 from ..sweep.run import SweepOutcome
+from ..sweep.table import read_sweep
 from ..validate import Validation
 from . import common, impacts
 
@@ -70,6 +72,38 @@ def of_stability(outcome: Stability, path: Path) -> Path:
     said = f"{len(verdicts)} extreme cases: " + ", ".join(f"{n} {status}" for status, n in count.items()) + "."
     page = Page("Stiff and extreme cases", [said], parts, passed=outcome.passed, command=common.command())
     return write(path, lambda: page)
+
+
+def of_fit(found: Fit) -> Path:
+    """Write the page of a fit of a scene into the folder of its points."""
+    folder = found.case.parents[2]
+    table = read_sweep(folder).dropna(subset=list(found.targets))
+    units = table.attrs.get("units", {}) | found.units
+    panels = []
+    for name, target in found.targets.items():
+        for k, key in enumerate(found.values):
+            x, y = table[key].to_numpy(float), table[name].to_numpy(float)
+            shown = [
+                Series("points", x, y, k, None, 0),
+                Series("target", [x.min(), x.max()], [target] * 2, INK, "dash"),
+            ]
+            panels.append(
+                Panel(Axis(key, units.get(key, "")), Axis(name.replace("_", " "), units.get(name, "")), shown)
+            )
+    names = ", ".join(found.targets)
+    said = [
+        f"{', '.join(f'{key} = {value}' for key, value in found.values.items())} gives "
+        + ", ".join(f"{n} = {v:.6g} {found.units[n]} (target {found.targets[n]:.6g})" for n, v in found.numbers.items())
+        + ".",
+        f"{found.points} scenes, {found.ran} of them just now; the case with these values is {found.case}.",
+    ]
+    alt = f"{names} of every scene of the fit against the keys that it frees; the target as a dashed line."
+    charts = [Chart(f"fit{n}", "Target against key", alt, [panel]) for n, panel in enumerate(panels)]
+    rows = Rows("All scenes", table[["point", *found.values, *found.targets]], units)
+    case = common.case_lines(found.case.read_text(encoding="utf-8"))
+    page = Page(f"Fit of {names}", said, [*charts, rows, case, common.origin({}, {})], command=common.command())
+    with claim(folder, force=True):
+        return write(folder / NAME, lambda: page)
 
 
 def of_sweep(result: SweepOutcome) -> Path:
