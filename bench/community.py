@@ -6,7 +6,7 @@
 Each case of cases/benchmarks is run in two parts: the rain, whose last frame is stored as spheres.csv in
 runs/community/CASE/seedN, and the last phase, which every model and engine begins with these spheres. A run that was
 stopped goes on from its last restart file. Without --full the cases in LONG run 10,000 steps, on a bed that fell with
-moduli a hundredth of theirs. docs/benchmarks.py makes tables and figures of what is there.
+smaller moduli. docs/benchmarks.py makes tables and figures of what is there.
 """
 
 import argparse
@@ -19,7 +19,9 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-from community_models import MODELS, SHORT, YADE, engine, loop
+import numpy as np
+import pandas as pd
+from community_models import MODELS, SHORT, YADE, curve, engine, loop
 
 from epdem.case.scene import SceneCase, parse
 from epdem.errors import CaseError
@@ -29,10 +31,10 @@ from epdem.scenes.run import SceneOutcome, run_case
 
 ROOT = Path(__file__).resolve().parents[1]
 CASES, RUNS = ROOT / "cases/benchmarks", ROOT / "runs/community"
-LONG = ("impact_50k", "impact_100k", "silo_large", "silo_small")  # for larger machines
-SOFT = 100.0  # divides their moduli during their rain
-FALL = 0.018  # [s] before which the impactor has not reached any bed: YADE begins then
-YADE_END = 0.032
+# Cases for larger machines, and what divides their moduli during the rain where only SHORT steps of them are run.
+LONG = {"drum": 1.0, "impact_50k": 100.0, "impact_100k": 100.0, "silo_large": 100.0, "silo_small": 100.0}
+YADE_END = 0.032  # [s]
+NEAR, G = 2e-3, 9.81  # [m] above the bed, [m/s^2]
 
 
 class Enough(Exception):
@@ -44,15 +46,18 @@ def read(name: str) -> dict[str, Any]:
     return tomllib.loads((CASES / f"{name}.toml").read_text(encoding="utf-8"))
 
 
-def rain(name: str, seed: int, *, soft: float) -> SceneCase:
-    """All phases of a case but the last, with moduli that are `soft` times smaller."""
+def rain(name: str, seed: int, *, soft: float, smooth: bool) -> SceneCase:
+    """All phases of a case but the last, with moduli that are `soft` times smaller; `smooth`: without friction."""
     data = read(name)
     data["numerics"]["seed"] = seed
+    data["numerics"].pop("skin", None)  # it is for a sphere that comes later
     scene = data["scene"]
     last = scene["phase"].pop()["name"]
     scene["body"] = [b for b in scene.get("body", []) if b.get("phase") != last]
     scene.pop("measure", None)
     data["output"] |= {"restarts": 20, "particles": 2}
+    if smooth:
+        data["contact"] = {"pairs": [{k: v for k, v in p.items() if k != "friction"} for p in data["contact"]["pairs"]]}
     for material in data["materials"].values():
         number, unit = material["young_modulus"].split()
         material["young_modulus"] = f"{float(number) / soft!r} {unit}"
@@ -62,9 +67,23 @@ def rain(name: str, seed: int, *, soft: float) -> SceneCase:
     return parse(data, CASES / f"{name}.toml")
 
 
+def fall(name: str, spheres: Path) -> float:
+    """The time [s] that the body of a case falls freely, down to NEAR above the highest sphere; 0 without a body.
+
+    The bed is at rest then, and the fall is known exactly: every model and engine begins behind it.
+    """
+    bodies = read(name)["scene"].get("body", [])
+    if not bodies:
+        return 0.0
+    (height, radius), speed = (float(x.split()[0]) * 1e-3 for x in (bodies[0]["place"][2], bodies[0]["radius"])), 5.0
+    table = pd.read_csv(spheres)
+    way = height - radius - NEAR - float((table["z"] + table["radius"]).max())
+    return float(np.floor(2e3 * (np.sqrt(speed**2 + 2 * G * way) - speed) / G)) / 2e3
+
+
 def after_rain(name: str, seed: int, model: str, spheres: Path, *, steps: int | None) -> SceneCase:
-    """The last phase of a case, with the spheres of a file; `steps` of it, or all."""
-    data = read(name)
+    """The last phase of a case behind the free fall, with the spheres of a file; `steps` of it, or all."""
+    data, begin = read(name), fall(name, spheres)
     data["numerics"]["seed"] = seed
     data["law"]["name"] = MODELS[model]
     scene = data["scene"]
@@ -73,13 +92,17 @@ def after_rain(name: str, seed: int, model: str, spheres: Path, *, steps: int | 
     (phase,) = scene["phase"]
     for body in scene.get("body", []):
         body.pop("phase", None)
+        body["place"][2] = f"{0.06 - 5.0 * begin - G * begin**2 / 2!r} m"
+        body["velocity"][2] = f"{-5.0 - G * begin!r} m/s"
     scene["wall"] = [w for w in scene["wall"] if phase["name"] in w.pop("phases", [phase["name"]])]
     if steps is not None:
         number, unit = data["numerics"]["time_step"].split()
         phase["duration"] = f"{steps * float(number)!r} {unit}"
-        data["output"]["particles"] = 1
-    elif "move" not in phase:
-        data["output"]["restarts"] = 10
+        data["output"]["particles"] = 10
+    else:
+        phase["duration"] = f"{float(phase['duration'].split()[0]) - begin!r} s"
+        if "move" not in phase:
+            data["output"]["restarts"] = 50
     return parse(data, CASES / f"{name}.toml")
 
 
@@ -117,12 +140,12 @@ def run(case: SceneCase, what: LiggghtsScenes, folder: Path, until: float | None
         return None
 
 
-def bed(name: str, seed: int, *, soft: float) -> Path:
+def bed(name: str, seed: int, *, soft: float, smooth: bool) -> Path:
     """spheres.csv: the last frame of the rain, which is run if it is not there yet."""
-    folder = RUNS / name / (f"seed{seed}" if soft == 1.0 else f"soft{seed}")
+    folder = RUNS / name / f"{'smooth' if smooth else 'seed' if soft == 1.0 else 'soft'}{seed}"
     path = folder / "spheres.csv"
     if not path.exists():
-        done = run(rain(name, seed, soft=soft), LiggghtsScenes(), folder / "bed")
+        done = run(rain(name, seed, soft=soft, smooth=smooth), LiggghtsScenes(), folder / "bed")
         assert done is not None
         frames = done.results.tables["particles"]
         last = frames[frames["step"] == frames["step"].max()].sort_values("id")
@@ -132,29 +155,32 @@ def bed(name: str, seed: int, *, soft: float) -> Path:
     return path
 
 
-def in_yade(spheres: Path, until: float) -> None:
-    """The impact with YADE's own model, on the same spheres; a run that was stopped begins anew."""
+def in_yade(spheres: Path, begin: float, until: float) -> None:
+    """The impact with YADE's own model, on the same spheres; a run that was stopped goes on."""
     folder = spheres.parent / YADE
     if (folder / "done").exists():
         return
     folder.mkdir(exist_ok=True)
     script = Path(__file__).with_name("community_yade.py")
-    words = ["yade", "-n", "-x", str(script), str(spheres), str(folder / "impactor.txt"), str(FALL), str(until)]
+    words = ["yade", "-n", "-x", str(script), str(spheres), str(folder / "impactor.txt"), str(begin), str(until)]
     with (folder / "out.yade").open("wb") as stream:
         subprocess.run(words, check=True, stdout=stream, stderr=stream, env=os.environ | {"OMP_NUM_THREADS": "1"})
     (folder / "done").touch()
 
 
-def one(name: str, seed: int, model: str, *, full: bool, until: float | None) -> None:
+def one(name: str, seed: int, model: str, *, full: bool, smooth: bool, until: float | None) -> None:
     """One case, seed and model; what it leaves is read by the report."""
     short = name in LONG and not full
-    spheres = bed(name, seed, soft=SOFT if short else 1.0)
+    spheres = bed(name, seed, soft=LONG[name] if short else 1.0, smooth=smooth)
+    begin = fall(name, spheres)
     if model == YADE:
-        in_yade(spheres, min(until or YADE_END, YADE_END))
+        in_yade(spheres, begin, min(until or YADE_END, YADE_END))
         return
     case = after_rain(name, seed, model, spheres, steps=SHORT if short else None)
     folder = spheres.parent / model.replace("/", "_")
-    run(case, engine(model), folder, None if short else until)
+    if until and (known := curve(folder)).size and known[-1, 0] >= until:
+        return
+    run(case, engine(model, begin), folder, until - begin if until and not short else None)
     seconds, steps = loop(folder)
     if steps:
         print(f"{name}, seed {seed}, {model}: {steps} steps, {1e3 * seconds / steps:.3g} ms each", flush=True)
@@ -163,12 +189,13 @@ def one(name: str, seed: int, model: str, *, full: bool, until: float | None) ->
 def main() -> int:
     """Run what is asked for."""
     ask = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    ask.add_argument("cases", nargs="*", default=["impact_25k", "drum", *LONG])
+    ask.add_argument("cases", nargs="*", default=["impact_25k", *LONG])
     ask.add_argument(
         "--models", help="of hertz, ep/hertz, ep/thornton, yade; default: all for impact_25k, else ep/hertz"
     )
     ask.add_argument("--seeds", help="default: 1,2,3 for impact_25k, else 1")
     ask.add_argument("--until", type=float, help="[s] of the last phase; default: all of it")
+    ask.add_argument("--smooth", action="store_true", help="a denser bed: the rain alone has no friction")
     ask.add_argument("--full", action="store_true", help="all steps of the long cases")
     options = ask.parse_args()
     for name in options.cases:
@@ -176,7 +203,7 @@ def main() -> int:
         models = (options.models or (",".join([*MODELS, YADE]) if many else "ep/hertz")).split(",")
         for model in models:
             for seed in map(int, (options.seeds or ("1,2,3" if many and model != YADE else "1")).split(",")):
-                one(name, seed, model, full=options.full, until=options.until)
+                one(name, seed, model, full=options.full, smooth=options.smooth, until=options.until)
     return 0
 
 

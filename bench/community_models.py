@@ -21,6 +21,9 @@ class Recorded(LiggghtsScenes):
 
     leftovers = (*LiggghtsScenes.leftovers, CURVE)
 
+    def __init__(self, begin: float = 0.0):
+        self.begin = begin  # [s] at step 0
+
     def files(self, plan: ScenePlan) -> dict[str, str]:
         texts = super().files(plan)
         texts["setup.in"] = self.setup(plan, texts["setup.in"])
@@ -32,7 +35,7 @@ class Recorded(LiggghtsScenes):
             return text
         last = len(plan.layout.table)
         return text + (
-            f"group curve id {last}\nvariable curve_t equal step*dt\n"
+            f"group curve id {last}\nvariable curve_t equal step*dt+{self.begin!r}\n"
             "variable curve_z equal xcm(curve,z)\nvariable curve_v equal vcm(curve,z)\n"
             f'fix curve all print {EVERY} "${{curve_t}} ${{curve_z}} ${{curve_v}}" append {CURVE} screen no\n'
         )
@@ -47,9 +50,9 @@ class OwnHertz(Recorded):
         return super().setup(plan, text).replace("model ep/hertz", "model hertz").replace(" viscous on", "")
 
 
-def engine(model: str) -> LiggghtsScenes:
-    """The engine of a model."""
-    return OwnHertz() if model == "hertz" else Recorded()
+def engine(model: str, begin: float = 0.0) -> LiggghtsScenes:
+    """The engine of a model, for a run whose step 0 is at time `begin` [s]."""
+    return OwnHertz(begin) if model == "hertz" else Recorded(begin)
 
 
 def curve(folder: Path) -> np.ndarray:

@@ -11,7 +11,7 @@ from ..case.parts import Parts
 from ..errors import CaseError
 from ..scenes.engine import Report, Resumed
 from ..scenes.plan import ScenePlan
-from . import executable, launcher, resume, scene_deck
+from . import executable, launcher, resume, scene_deck, wall_stress
 from . import scene_tables as tables
 from .impacts import Liggghts
 
@@ -28,6 +28,7 @@ class LiggghtsScenes:
         "wall_contacts.*.txt",
         "restart.*.bin",
         "scene_*.vtk",
+        "stress_*.vtk",
         "picture.*.ppm",
         "in.resume",
     )
@@ -64,6 +65,8 @@ class LiggghtsScenes:
             read["particles"] = tables.particles(plan, folder, without=without)
         if plan.contacts:
             read["contacts"] = tables.contact_table(plan, folder, read["particles"], without=without)
+        if wall_stress.watched(plan):
+            read["walls"] = wall_stress.table(plan, folder, without=without)
         return read
 
 

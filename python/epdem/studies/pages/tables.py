@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The pages of studies that are tables in the first place: crosscheck, cost, stability, sweep, validate."""
+"""The pages of studies that are tables in the first place: crosscheck, cost, stability, sweep, fit, validate."""
 
 from dataclasses import replace
 from pathlib import Path
@@ -10,21 +10,23 @@ import pandas as pd
 from ...base.folders import claim
 from ...impacts.charts import SPEED
 from ...impacts.comparison import UNITS
-from ...report.chart import GREY, PALETTE, Axis, Chart, Panel, Series
+from ...report.chart import GREY, INK, PALETTE, Axis, Chart, Panel, Series
 from ...report.drawing import save
 from ...report.page import NAME, Facts, Page, Part, Rows, write
 from .. import cost_report
 from ..cost import Outcome as Cost
 from ..crosscheck import Crosscheck
+from ..fit import Fit
 from ..stability.suite import Outcome as Stability
 from ..stability.suite import summary
 from ..sweep.folder import DONE, FAILED
 from ..sweep.run import SweepOutcome
-from ..validate import QUANTITIES, Validation
+from ..sweep.table import read_sweep
+from ..validate import Validation
 from . import common, impacts
 
 MOST_PANELS = 4
-LABELS = {"e_n": "$e_n$", "dent_width": "width of the dent"}
+LABELS = {"e_n": "e_n", "dent_width": "width of the dent [m]"}
 
 
 def of_crosscheck(check: Crosscheck) -> Path:
@@ -70,6 +72,38 @@ def of_stability(outcome: Stability, path: Path) -> Path:
     said = f"{len(verdicts)} extreme cases: " + ", ".join(f"{n} {status}" for status, n in count.items()) + "."
     page = Page("Stiff and extreme cases", [said], parts, passed=outcome.passed, command=common.command())
     return write(path, lambda: page)
+
+
+def of_fit(found: Fit) -> Path:
+    """Write the page of a fit of a scene into the folder of its points."""
+    folder = found.case.parents[2]
+    table = read_sweep(folder).dropna(subset=list(found.targets))
+    units = table.attrs.get("units", {}) | found.units
+    panels = []
+    for name, target in found.targets.items():
+        for k, key in enumerate(found.values):
+            x, y = table[key].to_numpy(float), table[name].to_numpy(float)
+            shown = [
+                Series("points", x, y, k, None, 0),
+                Series("target", [x.min(), x.max()], [target] * 2, INK, "dash"),
+            ]
+            panels.append(
+                Panel(Axis(key, units.get(key, "")), Axis(name.replace("_", " "), units.get(name, "")), shown)
+            )
+    names = ", ".join(found.targets)
+    said = [
+        f"{', '.join(f'{key} = {value}' for key, value in found.values.items())} gives "
+        + ", ".join(f"{n} = {v:.6g} {found.units[n]} (target {found.targets[n]:.6g})" for n, v in found.numbers.items())
+        + ".",
+        f"{found.points} scenes, {found.ran} of them just now; the case with these values is {found.case}.",
+    ]
+    alt = f"{names} of every scene of the fit against the keys that it frees; the target as a dashed line."
+    charts = [Chart(f"fit{n}", "Target against key", alt, [panel]) for n, panel in enumerate(panels)]
+    rows = Rows("All scenes", table[["point", *found.values, *found.targets]], units)
+    case = common.case_lines(found.case.read_text(encoding="utf-8"))
+    page = Page(f"Fit of {names}", said, [*charts, rows, case, common.origin({}, {})], command=common.command())
+    with claim(folder, force=True):
+        return write(folder / NAME, lambda: page)
 
 
 def of_sweep(result: SweepOutcome) -> Path:
@@ -126,23 +160,16 @@ def _by_key(result: SweepOutcome, units: dict[str, str]) -> Chart:
 def validation_chart(v: Validation) -> Chart:
     """What the first engine gives over the measured value, for every law and point."""
     points = v.points[v.points["engine"] == v.points["engine"].iloc[0]]
-    points = points.assign(ratio=1.0 + points["error"])
-    panels, order = [], list(dict.fromkeys(points["law"]))
-    for quantity in QUANTITIES:
-        part = points[points["quantity"] == quantity]
-        series = [
-            Series(law, own["measured"].to_numpy(float), own["ratio"].to_numpy(float), order.index(law), None, k)
-            for k, (law, own) in enumerate(part.groupby("law", sort=False))
-        ]
-        if not series:
-            continue
-        ends = [part["measured"].min(), part["measured"].max()]
-        series.append(Series("measured", ends, [1.0, 1.0], GREY, "solid", width=0.8))
-        unit = "" if quantity == "e_n" else "m"
-        panels.append(Panel(Axis(f"measured {LABELS[quantity]}", unit), Axis("law over measured"), series))
-    names = ", ".join(dict.fromkeys(points["set"]))
-    alt = f"Restitution and widths of dents over the measured values of {names}, one mark for each law and point."
-    return Chart("validate", "Laws against measured impacts", alt, panels)
+    series = [
+        Series(law, own["number"].to_numpy(float), 1.0 + own["error"].to_numpy(float), k, None, k)
+        for k, (law, own) in enumerate(points.groupby("law", sort=False))
+    ]
+    series.append(Series("measured", [1.0, float(points["number"].max())], [1.0, 1.0], GREY, "solid", width=0.8))
+    first = points.drop_duplicates("number")
+    names = ", ".join(f"{r.number} {r.set} {LABELS[r.quantity]} {r.measured:g}" for r in first.itertuples())
+    alt = f"Law over measured value for every law; the measured numbers are {names}."
+    x = Axis("measured number, in the order of the table")
+    return Chart("validate", "Laws against measured impacts", alt, [Panel(x, Axis("law over measured"), series)])
 
 
 def of_validation(v: Validation) -> Path:
