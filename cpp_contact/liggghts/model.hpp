@@ -205,7 +205,9 @@ class Model : public ContactModelBase {
     rolling_.surfacesClose(s, i, j);
   }
 
-  bool contact_match(const std::string& kind, const std::string& model) {
+  // by value: LIGGGHTS-INL declares it so, as a virtual function
+  // NOLINTNEXTLINE(performance-unnecessary-value-param)
+  bool contact_match(std::string kind, std::string model) {
     auto& names = LIGGGHTS::ContactModels::Factory::instance();
     if (kind == "surface") return ids_.surface == names.getSurfaceModelId(model);
     if (kind == "normal") return ids_.normal == names.getNormalModelId(model);
