@@ -223,7 +223,7 @@ def test_no_progress_line_stands_above_the_error_of_a_scene(folder, capsys, monk
     assert done.code == 3 and done.err.startswith("epdem: ")
 
 
-def test_a_file_whose_name_begins_with_a_dash_is_told_how_to_be_written(folder, capsys, monkeypatch):
+def test_the_message_for_a_name_that_begins_with_a_dash_says_how_to_write_it(folder, capsys, monkeypatch):
     (folder / "-x.toml").write_text(ONE_SPEED)
     assert "write the file as ./-x.toml" in call(["predict", "-x.toml"], capsys, monkeypatch).err
     assert call(["predict", "./-x.toml"], capsys, monkeypatch).code == 0

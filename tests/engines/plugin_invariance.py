@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The same impacts told to LIGGGHTS in other ways: which contact model gives the same answer?
+"""The same impacts in LIGGGHTS in another order or place: which contact model gives the same answer?
 
 One scene: 12 oblique impacts of unequal spheres and 12 of spheres on a wall, all drifting across x = CENTRE while they
 touch. Each way of telling it (swapped ids, sorted atoms, two ranks, a periodic face, ...) must not change the outcome.
@@ -169,7 +169,7 @@ class Suite:
         frames = good(self.folder / "revolution", text, files={"box.data": bodies.data(box)}).frames()[1][1:, 0, 1:]
         return np.linalg.norm(frames[-1] - frames[0]) / np.linalg.norm(frames[0])
 
-    def ways(self):
+    def variants(self):
         """name -> outcome; the names are the rows of the table in the documentation."""
         b = self.bodies
         swapped = replace(b, ids=b.ids[::-1].copy())
@@ -218,8 +218,8 @@ class Suite:
         """name -> largest deviation of (pairs, wall impacts), relative to the largest velocity or spin."""
         scale = np.repeat([np.abs(self.plain[:, :3]).max(), np.abs(self.plain[:, 3:]).max()], 3)
         rows = {"momentum of a pair": (self.momentum(self.plain), None)}
-        for name, way in self.ways().items():
-            outcome = way()
+        for name, run_variant in self.variants().items():
+            outcome = run_variant()
             off = np.abs(outcome - self.plain) / scale
             rows[name] = (off[: 2 * N].max(), off[2 * N :].max())
             if name == "migration between 2 ranks":

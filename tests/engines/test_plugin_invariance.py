@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The same impacts told to LIGGGHTS in other ways: epdem's models give the same bits, LIGGGHTS's own do not."""
+"""The same impacts in LIGGGHTS in another order or place: epdem's models give the same bits, LIGGGHTS's own do not."""
 
 import pytest
 from plugin_decks import ADHESIVE, LAWS
@@ -26,7 +26,7 @@ def rows(request, tmp_path_factory):
 
 
 @pytest.mark.parametrize("law", OURS)
-def test_the_way_of_telling_changes_no_bit(rows, law):
+def test_order_and_place_change_no_bit(rows, law):
     others = ("momentum", "mesh", "second", "rotation")
     off = {k: v for k, v in rows(f"ep/{law}").items() if not any(word in k for word in others)}
     assert len(off) == 11

@@ -5,7 +5,7 @@ from typing import Annotated, Literal, Self
 
 from pydantic import Field, model_validator
 
-from .impact import Frozen, Quantity, Speed
+from .fields import Frozen, Quantity, Speed
 from .walls import Direction, PartName, Turn, Vector
 
 Time = Annotated[float, Quantity("s", above=0.0)]

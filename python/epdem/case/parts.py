@@ -8,7 +8,7 @@ from typing import Annotated, Literal, NamedTuple, Self
 
 from pydantic import Field, Tag, model_validator
 
-from .impact import Frozen, Length, Name, Quantity, Spin
+from .fields import Frozen, Length, Name, Quantity, Spin
 from .measures import Measure, Region
 from .motions import LinearMove, Phase, PressMove, Rate, RotateMove, Speeds, VibrateMove, nothing
 from .sizes import FileName, Particles, Share, csv_rows, number_in

@@ -7,7 +7,7 @@ from typing import Annotated, Any, Literal, Self
 from pydantic import ConfigDict, Field, ValidationError, model_validator
 
 from ..errors import CaseError
-from .impact import (
+from .fields import (
     Coefficient,
     Frozen,
     Header,

@@ -6,7 +6,7 @@ from typing import Annotated, Literal, Self
 
 from pydantic import Discriminator, Field, model_validator
 
-from .impact import Frozen, Length, Name, Quantity
+from .fields import Frozen, Length, Name, Quantity
 from .sizes import FileName
 
 Place = Annotated[float, Quantity("m")]

@@ -14,7 +14,7 @@ import typer
 
 from .. import __version__
 from ..base.settings import DEFAULT_ENGINE
-from ..base.terminal import bar, console
+from ..base.terminal import bar, console, status
 from ..errors import CaseError, EpdemError, Stopped
 from . import calibrate as cli_calibrate
 from . import crosscheck as cli_crosscheck
@@ -219,7 +219,9 @@ def doctor(as_json: AsJson = False) -> None:
     from ..engines.doctor import examine
     from . import show
 
-    findings = examine()
+    with status() as line:
+        line("engines")
+        findings = examine()
     show.findings(findings, as_json, console())
     raise typer.Exit(0 if all(f.ok for f in findings if f.needed) else 3)
 

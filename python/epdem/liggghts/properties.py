@@ -5,7 +5,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from ..case.impact import NODES
+from ..case.fields import NODES
 from ..impacts.experiment import Body
 from ..impacts.plan import Plan
 from ..laws import library as claw
