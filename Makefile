@@ -9,7 +9,7 @@ demo: setup
 
 test:
 	@scripts/setup yade slurmctld slurmd slurm-client munge
-	.venv/bin/python -m pytest -n 2
+	.venv/bin/python -m pytest -n 3 --dist worksteal
 
 # the guide as static pages in runs/guide/site
 guide: setup
@@ -38,9 +38,10 @@ bench-community:
 docs: setup
 	.venv/bin/python docs/make.py
 
-# all of C++ but the two sources that repeat loop/sse2.cpp; the wheel of clang-tidy brings its own compiler
+# all of C++ but the two sources that repeat loop/sse2.cpp and the one for the headers of LIGGGHTS-PFM; the wheel of
+# clang-tidy brings its own compiler
 tidy: setup
-	.venv/bin/clang-tidy --quiet $(filter-out %/avx2.cpp %/avx512.cpp, $(wildcard cpp_contact/*/*.cpp \
+	.venv/bin/clang-tidy --quiet $(filter-out %/avx2.cpp %/avx512.cpp %/pfm/models.cpp, $(wildcard cpp_contact/*/*.cpp \
 	  cpp_contact/*/*/*.cpp tests/*/*.cpp)) -- -std=c++17 -Icpp_contact/include -Icpp_contact/capi -Icpp_contact/liggghts \
 	  -Icpp_contact/liggghts/styles -isystem /usr/include/liggghts $(subst -I,-isystem ,$(shell mpicxx --showme:compile)) \
 	  -DOMPI_SKIP_MPICXX -DEPDEM_VERSION='""' -DEPDEM_BUILT_FOR='""'

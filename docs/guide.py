@@ -23,7 +23,8 @@ import typer
 from pydantic import BaseModel
 
 import epdem
-from epdem.case.impact import Case, Quantity
+from epdem.case.fields import Quantity
+from epdem.case.impact import Case
 from epdem.case.scene import SceneCase
 from epdem.cli.main import app
 

@@ -42,6 +42,7 @@ def test_a_study_in_ten_minutes(tmp_path):
 
 
 @needs_slurm
+@pytest.mark.waits
 def test_on_my_cluster(tmp_path):
     (tmp_path / "slurm").mkdir()
     with cluster(tmp_path / "slurm") as nodes:

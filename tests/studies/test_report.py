@@ -154,3 +154,15 @@ def test_a_long_table_is_cut_and_says_so():
     rows = page.Rows("x", pd.DataFrame({"a": np.arange(20_000), "b": 0.5}))
     assert len(rows.cells()) == 6000 and "first 6000 of 20000 rows" in rows.notes
     assert rows.cells()[1] == [("1", "1.0"), ("0.5", "0.5")]
+
+
+def test_a_page_is_written_again_for_another_mark_alone(tmp_path):
+    made = []
+
+    def results(name: str) -> page.Page:
+        made.append(name)
+        return page.Page(name, ["x"], [])
+
+    for name, mark in (("one", "a1"), ("again", "a1"), ("two", "b2"), ("three", "")):
+        page.write(tmp_path / "report.html", lambda name=name: results(name), mark=mark)
+    assert made == ["one", "two", "three"] and "three" in (tmp_path / "report.html").read_text()

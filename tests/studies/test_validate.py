@@ -7,7 +7,10 @@ import pandas as pd
 import pytest
 
 from epdem.base import paths
+from epdem.case.impact import parse
+from epdem.case.toml import read_toml
 from epdem.errors import CaseError
+from epdem.impacts.experiment import experiment
 from epdem.studies import validate
 
 E_STAR = 1.0 / ((1 - 0.22**2) / 600e9 + (1 - 0.3**2) / 208e9)
@@ -64,3 +67,9 @@ def test_a_set_without_its_source_is_refused(tmp_path, monkeypatch):
     (tmp_path / "restitution/odd.csv").write_text(text.replace("e_n,0.890", "e_t,0.890"))
     with pytest.raises(CaseError, match=r"odd\.csv: unknown column or quantity"):
         validate.read("odd")
+
+
+def test_the_width_of_a_dent_is_asked_of_laws_without_adhesion():
+    data = read_toml(paths.cases() / "adhesion_thornton_1998.toml")
+    with pytest.raises(CaseError, match="the width of a dent under adhesion is not computed"):
+        validate._simulated(experiment(parse(data)), pd.Series({"overlap_max": 1e-9}), "dent")

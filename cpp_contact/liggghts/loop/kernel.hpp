@@ -231,7 +231,7 @@ template <class Law, Tangential tangential, bool rolls>
 
 /// No kernel for what the plugin does not offer: partial slip of contacts with adhesion.
 template <class Law, Tangential tangential, bool rolls>
-constexpr Kernel offered() {
+constexpr Kernel offered() noexcept {
   if constexpr (adheres<Law> && tangential >= Tangential::partial_slip)
     return nullptr;
   else

@@ -18,6 +18,7 @@ from ..base.terminal import bar, console, status
 from ..errors import CaseError, EpdemError, Stopped
 from . import calibrate as cli_calibrate
 from . import crosscheck as cli_crosscheck
+from . import motion as cli_motion
 from . import numerics as cli_numerics
 from . import rerun as cli_rerun
 from . import scenes as cli_scene
@@ -227,6 +228,7 @@ def doctor(as_json: AsJson = False) -> None:
 
 for command in (
     cli_crosscheck.crosscheck,
+    cli_motion.motion,
     cli_theory.theory,
     cli_theory.figures,
     cli_theory.cite,
