@@ -40,6 +40,10 @@ DOCUMENTS = {  # words, and what the document must hold
     "predict": (["steel.toml"], lambda d: abs(d["rows"][0]["e_n"] - 0.6763264338717) < 1e-12),
     "doctor": ([], lambda d: {"C library", "engine embedded"} <= {f["part"] for f in d}),
     "crosscheck": (["steel.toml"], lambda d: [r["model"] for r in d["rows"]] == ["theory", "embedded"]),
+    "motion": (
+        ["steel.toml", "-e", "embedded"],
+        lambda d: d["passed"] and len(d["rows"]) == 6 and d["rows"][0]["force_max"] > 1e3,
+    ),
     "theory": ([], lambda d: abs(d["laws"]["thornton"]["e_n"] - 0.6763264338717) < 1e-12),
     "figures": (["-o", "f"], lambda d: len(d["files"]) == 8),
     "timestep": (["steel.toml"], lambda d: d["error"] <= d["target"] == 1e-3),
@@ -73,6 +77,7 @@ MISTAKES = {  # words, and what the sentence must hold
     "predict": (["steel.toml", "-l", "hook"], "steel.toml: law.name = 'hook' does not exist; there are hertz"),
     "doctor": (["steel.toml"], "extra argument(s) (steel.toml); see epdem doctor --help"),
     "crosscheck": (["nowhere.toml"], "nowhere.toml: no such file"),
+    "motion": (["steel.toml", "-m", "bad.toml"], "bad.toml: no line of names that begins with t"),
     "theory": (["--radius", "3 kg"], "--radius = '3 kg', the unit 'kg' has the wrong dimension"),
     "figures": (["-o", "steel.toml"], "steel.toml"),
     "timestep": (["steel.toml", "--error", "1"], "'--error': must be less than or equal to 0.1; see epdem timestep"),

@@ -16,6 +16,7 @@ WRITERS = {  # words of a command that writes, and a file of the user's in its w
     "own template": (["deck", "mill.j2", "--case", "steel.toml", "-o", "d"], "d/mill"),
     "figures": (["figures", "-o", "d"], "d/figure_8_17.png"),
     "cost": (["cost", "steel.toml", "-e", "embedded", "--repetitions", "1", "-o", "d"], "d/cost.png"),
+    "motion": (["motion", "steel.toml", "-e", "embedded", "-o", "d"], "d/motions.csv"),
     "stability": (["stability", "-g", "poisson", "-l", "hertz", "--every", "2", "-o", "d/all.csv"], "d/all.csv"),
     "soften": (["soften", "steel.toml", "-k", "10", "-o", "d/soft.toml"], "d/soft.toml"),
     "batch script": (

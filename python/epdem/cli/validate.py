@@ -6,7 +6,7 @@ from typing import Annotated
 
 import typer
 
-from ..base.terminal import console, frame_table, status
+from ..base.terminal import console, frame_table, show_table, status
 from .options import AsJson, Engines, Force, Laws, Out
 
 
@@ -33,7 +33,7 @@ def validate(
         document = {"rows": records(result.points), "summary": records(result.summary), "absent": result.absent}
         print(json.dumps(document | {"page": str(page)}, indent=1))
         return
-    console().print(frame_table("errors against measured values; nothing is fitted", shown(result.summary)))
+    show_table(console(), frame_table("errors against measured values; nothing is fitted", shown(result.summary)))
     for name, reason in result.absent.items():
         console().print(f"left out: {name}: {reason}", soft_wrap=True)
     print(f"see {page}")

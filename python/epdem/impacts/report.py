@@ -34,6 +34,8 @@ SPARE = (
     "spin [rad/s]",
     "regime",
     "e_t",
+    "theory",
+    "engine",
 )
 FEW = 10  # impacts of each engine and law in the short table
 ROW_KEYS = (

@@ -189,6 +189,11 @@ def histograms(p: ScenePlan, tables: dict[str, pd.DataFrame]) -> pd.DataFrame:
 
 def unit(m: Measure) -> str:
     """The SI unit of a measure; "" for a plain number."""
+    return unit_of_kind(m.kind)
+
+
+def unit_of_kind(kind: str) -> str:
+    """The SI unit of the measures of a kind; "" for a plain number."""
     units = {"mass": "kg", "flow": "kg/s", "repose": "rad", "force": "N", "torque": "N m", "impact_speed": "m/s"}
     units |= {"height": "m", "center_of_mass": "m", "plastic_work": "J"}
-    return units.get(m.kind, "")
+    return units.get(kind, "")

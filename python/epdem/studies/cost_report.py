@@ -9,7 +9,7 @@ import pandas as pd
 from rich.console import Console
 
 from ..base.tables import write_csv
-from ..base.terminal import frame_table
+from ..base.terminal import frame_table, show_table
 from ..report.chart import GREY, INK, PALETTE, Axis, Chart, Panel, Series
 from ..report.drawing import save
 from .cost import TARGETS, Outcome
@@ -122,4 +122,4 @@ def show(outcome: Outcome, bulk: pd.DataFrame | None, console: Console) -> None:
     if bulk is not None:
         tables.append((f"{bulk['spheres'].iloc[0]} spheres in LIGGGHTS: dissipated energy", bulk_table(bulk)))
     for title, frame in tables:
-        console.print(frame_table(title, frame))
+        show_table(console, frame_table(title, frame))

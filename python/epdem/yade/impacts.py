@@ -39,7 +39,7 @@ class Yade:
         friction=tuple(NODES),
         own_spring=True,
         staggered=True,
-        scenes=("settle", "compaction"),
+        scenes=("settle", "compaction", "parts"),
         edits=EDITS,
         variants=("swap", "restart"),
         slow=True,

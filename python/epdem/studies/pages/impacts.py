@@ -147,7 +147,7 @@ def decks(outcome: Outcome) -> list[Lines]:
         title = f"Deck {name} of {engine}, law {law}"
         if engine == Liggghts.name and law in outcome.plans:
             deck = Liggghts().deck(outcome.plans[law])
-            shown.append(Lines(title, [(line, reason) for _, line, reason in explain(IMPACT, deck)]))
+            shown.append(common.reasoned(title, [(line, reason) for _, line, reason in explain(IMPACT, deck)]))
         else:
             shown.append(common.deck_lines(title, text))
     return shown
