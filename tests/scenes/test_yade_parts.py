@@ -87,3 +87,12 @@ def test_what_yade_does_not_have_is_refused_in_a_sentence(change, words):
     with pytest.raises(CaseError) as error:
         files(scene_engine("yade"), plan(parse(parts(**change))))
     assert str(error.value) == f"{words}: a scene in YADE does not have it; remove it or use --engine liggghts"
+
+
+def test_a_wall_that_turns_by_itself_has_no_other_motion_in_yade():
+    tube = {"name": "tube", "kind": "cylinder", "axis": "z", "center": ["0 mm", "0 mm"], "diameter": "12 mm"}
+    tube |= {"from": "0 mm", "to": "9 mm", "material": "steel", "turn": "60 rpm"}
+    rise = {"wall": "tube", "kind": "linear", "velocity": ["0 m/s", "0 m/s", "1 mm/s"]}
+    case = parts(wall=[BOX, tube], phase=[FALL | {"move": [rise]}])
+    with pytest.raises(CaseError, match=r"tube\.turn: YADE turns the wall itself, which moves otherwise; remove one"):
+        files(scene_engine("yade"), plan(parse(case)))
