@@ -15,6 +15,7 @@ from epdem.errors import CaseError
 from epdem.impacts import motions
 from epdem.impacts.motion import read, refuse, text
 from epdem.studies.motions import compare, touch_of
+from epdem.studies.motions import engine as named
 
 CASES = Path(__file__).parents[2] / "cases"
 OWN = {make.__name__: make for make in motions.MOTIONS}
@@ -157,7 +158,7 @@ def test_quaternions_are_those_of_the_spins():
 
 
 WRONG = {
-    "v_j is missing": lambda c: c.pop("v_j"),
+    "v_j is missing; a motion has t, ": lambda c: c.pop("v_j"),
     "v_i has 441 x 2 values, must be 441 x 3": lambda c: c.update(v_i=c["v_i"][:, :2]),
     "t must grow by the same step": lambda c: c.update(t=c["t"] ** 2),
     "q_i, q_j must have the length 1": lambda c: c.update(q_i=2 * c["q_i"]),
@@ -202,6 +203,11 @@ def test_a_motion_for_other_radii_is_refused():
     near = replace(motion, place=0.3 * motion.place)
     with pytest.raises(CaseError, match=r"the centres come as near as 0\.00598\d* m; the least is the smaller radius"):
         refuse(touch(), near)
+
+
+def test_an_engine_without_motions_is_refused():
+    with pytest.raises(CaseError, match="--engine abaqus: motions run on embedded, "):
+        named("abaqus")
 
 
 def test_two_files_of_one_name_are_refused(tmp_path):
