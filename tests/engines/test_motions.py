@@ -15,7 +15,6 @@ from epdem.errors import CaseError
 from epdem.impacts import motions
 from epdem.impacts.motion import read, refuse, text
 from epdem.studies.motions import compare, touch_of
-from epdem.studies.motions import engine as named
 
 CASES = Path(__file__).parents[2] / "cases"
 OWN = {make.__name__: make for make in motions.MOTIONS}
@@ -203,11 +202,6 @@ def test_a_motion_for_other_radii_is_refused():
     near = replace(motion, place=0.3 * motion.place)
     with pytest.raises(CaseError, match=r"the centres come as near as 0\.00598\d* m; the least is the smaller radius"):
         refuse(touch(), near)
-
-
-def test_an_engine_without_motions_is_refused():
-    with pytest.raises(CaseError, match="--engine abaqus: motions run on embedded, "):
-        named("abaqus")
 
 
 def test_two_files_of_one_name_are_refused(tmp_path):
