@@ -59,7 +59,6 @@ def test_both_loops_give_the_same_bits(tmp_path, scene, instruction_sets):
     assert text.count(SAID) == 1 and SAID + "EPDEM_LOOP = generic" in text
     assert len(theirs) == 61 and np.abs(theirs[-1][:, 7:10]).max() > 0
     if scene.walls:
-        assert text.count(SAID_OF_WALLS) == 2  # one line of the floor, one of the lid
         assert np.all(np.abs(theirs[1:, :, [-4, -1]]).max(axis=(0, 1)) > 0)  # normal forces of both
     for simd in instruction_sets:
         ours, text = outcome(tmp_path / simd, scene, simd=simd)
@@ -148,7 +147,10 @@ def test_what_our_loop_over_walls_cannot_do_takes_liggghts_loop_and_says_so_once
         text = text.replace("store_force yes", "store_force yes store_force_contact yes")
     frames, said = outcome(tmp_path / "ours", scene, text=text)
     assert said.count(SAID_OF_WALLS) == said.count(SAID_OF_WALLS + reason) == 2  # the floor and the lid
-    assert np.array_equal(frames, outcome(tmp_path / "generic", scene, text=text, loop="generic")[0])
+    theirs, said = outcome(tmp_path / "generic", scene, text=text, loop="generic")
+    why = "EPDEM_LOOP = generic" if "stored" in reason else reason  # what the models lack comes first
+    assert said.count(SAID_OF_WALLS + why) == 2
+    assert np.array_equal(frames, theirs)
 
 
 def test_a_wrong_instruction_set_is_refused(tmp_path):

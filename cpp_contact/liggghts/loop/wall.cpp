@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#ifdef EPDEM_BUILT_FOR
+
 namespace epdem::liggghts::loop {
 
 using LAMMPS_NS::FixWallGran;
@@ -105,3 +107,4 @@ void WallLoop::scatter() {
 }
 
 }  // namespace epdem::liggghts::loop
+#endif

@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // LIGGGHTS's wall of one contact model: its loop finds the contacts and their geometry; where our loop can compute
-// them, they are noted and computed as lanes, with forces added in the order of LIGGGHTS's loop.
+// them, they are noted and computed as lanes, with forces added in the order of LIGGGHTS's loop. In a source tree,
+// where nothing stands around LIGGGHTS's loops (mesh.cpp), all is left to them.
 #pragma once
 
 #include "planned.hpp"
+
+#ifdef EPDEM_BUILT_FOR
 
 namespace epdem::liggghts::loop {
 
@@ -88,3 +91,4 @@ class Wall : public LIGGGHTS::Walls::Granular<Model>, public OurWall, private Pl
 };
 
 }  // namespace epdem::liggghts::loop
+#endif
