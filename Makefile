@@ -1,5 +1,5 @@
 # Each target is one line that calls a script or a tool.
-.PHONY: setup demo test guide browser walltime bench docs tidy sanitize versions fuzz valgrind reliability tutorials wheel deb trees clean
+.PHONY: setup demo test guide browser walltime bench bench-community docs tidy sanitize versions fuzz valgrind reliability tutorials wheel deb trees clean
 
 setup:
 	@scripts/setup
@@ -9,7 +9,7 @@ demo: setup
 
 test:
 	@scripts/setup yade slurmctld slurmd slurm-client munge
-	.venv/bin/python -m pytest -n 2
+	.venv/bin/python -m pytest -n 3 --dist worksteal
 
 # the guide as static pages in runs/guide/site
 guide: setup
@@ -29,12 +29,19 @@ walltime: setup
 bench: setup
 	.venv/bin/python bench/all.py
 
+# the benchmarks of Dosta et al. 2024 in LIGGGHTS and YADE: hours; goes on where it was stopped, writes docs/benchmarks.md
+bench-community:
+	@scripts/setup yade
+	.venv/bin/python bench/community.py
+	.venv/bin/python docs/benchmarks.py
+
 docs: setup
 	.venv/bin/python docs/make.py
 
-# all of C++ but the two sources that repeat loop/sse2.cpp; the wheel of clang-tidy brings its own compiler
+# all of C++ but the two sources that repeat loop/sse2.cpp and the one for the headers of LIGGGHTS-PFM; the wheel of
+# clang-tidy brings its own compiler
 tidy: setup
-	.venv/bin/clang-tidy --quiet $(filter-out %/avx2.cpp %/avx512.cpp, $(wildcard cpp_contact/*/*.cpp \
+	.venv/bin/clang-tidy --quiet $(filter-out %/avx2.cpp %/avx512.cpp %/pfm/models.cpp, $(wildcard cpp_contact/*/*.cpp \
 	  cpp_contact/*/*/*.cpp tests/*/*.cpp)) -- -std=c++17 -Icpp_contact/include -Icpp_contact/capi -Icpp_contact/liggghts \
 	  -Icpp_contact/liggghts/styles -isystem /usr/include/liggghts $(subst -I,-isystem ,$(shell mpicxx --showme:compile)) \
 	  -DOMPI_SKIP_MPICXX -DEPDEM_VERSION='""' -DEPDEM_BUILT_FOR='""'

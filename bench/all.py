@@ -18,7 +18,7 @@ def main() -> int:
     """Run the scripts of this folder, the quick ones first; the exit code counts those that failed."""
     slow = ["million.py", "scenes_speed.py"]
     parts = ["all.py", "store.py", "dense_packings.py", "lammps_packings.py"]
-    names = sorted(p.name for p in HERE.glob("*.py") if p.name not in parts)
+    names = sorted(p.name for p in HERE.glob("*.py") if p.name not in parts and not p.name.startswith("community"))
     order = [n for n in names if n not in slow] + [n for n in slow if n in names]
     wanted = [n for n in order if not sys.argv[1:] or n.removesuffix(".py") in sys.argv[1:]]
     failed = 0

@@ -25,7 +25,9 @@ Written by `.venv/bin/python bench/liggghts_invariance.py`; do not edit.
 the tangential model that a column names, drift across a face of the box during contact. Each row is the same scene in
 another set-up. Its numbers are the largest deviation of any final velocity or spin from the plain run, relative to the
 largest velocity or spin of the scene; 0 means bitwise equality. Rows about momentum show the change of the momentum of
-a pair, relative to the momentum that its bodies exchange. The scene is in `tests/engines/plugin_invariance.py`;
+a pair, relative to the momentum that its bodies exchange. The row of the rigid rotation is a scene of its own: a loaded
+and sheared pair turns once as one body about an axis that is none of its own ([motions](motions.md)), and the number is
+the change of the force on a sphere over that force. The scene is in `tests/engines/plugin_invariance.py`;
 `tests/engines/test_plugin_invariance.py` asserts the columns of epdem and the main failures of the other models.
 
 """
@@ -37,6 +39,10 @@ They register no contact distance factor; their history therefore outlives a con
 lists, as does the shear spring of `hertz` with `tangential history`. Their viscous force depends on velocities of the
 half step, which a split run computes slightly differently. `hertz` also leaves its setting `tangential_damping`
 undefined when a restart file creates it.
+
+LIGGGHTS's `tangential history` projects its spring on the plane of the contact in every step, but does not turn it with
+the pair about the normal: after the revolution the friction has another direction. Partial slip (`ep/partial_slip`)
+turns it; what is left is of second order in the angle of a step (1000 steps).
 """
 
 

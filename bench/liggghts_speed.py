@@ -222,24 +222,20 @@ def table_of_pairs(costs):
 
 
 def figure(times):
-    """docs/figures/contact_cost.png: both costs of each model as bars."""
-    import matplotlib
-
-    matplotlib.use("Agg")
-    from matplotlib import pyplot
+    """docs/figures/contact_cost.png: both costs of each model as points, ours in colour."""
+    from epdem.report.chart import GREY, Axis, Chart, Panel, Series
+    from epdem.report.drawing import save
 
     names = [name for name in times if "@" not in name]
-    drawn, axes = pyplot.subplots(figsize=(7, 0.42 * len(names) + 1.1), layout="constrained")
-    places = np.arange(len(names))
-    ours = ["tab:blue" if name.startswith("ep/") else "tab:gray" for name in names]
-    axes.barh(places - 0.2, [times[n][0] for n in names], 0.4, color=ours, label="a pair that touches")
-    axes.barh(places + 0.2, [times[n][1] for n in names], 0.4, color=ours, alpha=0.45, label="one that does not")
-    for place, name in zip(places, names, strict=True):
-        axes.text(times[name][0], place - 0.2, f" {times[name][0]:.0f}", va="center", fontsize=8)
-    axes.set(yticks=places, yticklabels=names, xlabel="ns per step on one core", xscale="log", xlim=(1, 2e3))
-    axes.invert_yaxis()
-    axes.legend(fontsize=8)
-    drawn.savefig(ROOT / "docs" / "figures" / "contact_cost.png", dpi=150)
+    series = []
+    for k, (what, marker) in enumerate((("touches", 0), ("apart", 4))):
+        for colour, whose in ((0, "our models"), (GREY, "others")):
+            at = [n for n, name in enumerate(names) if name.startswith("ep/") is (colour == 0)]
+            cost, places = [times[names[n]][k] for n in at], [len(names) - n for n in at]
+            series.append(Series(f"{what}, {whose}", cost, places, colour, None, marker))
+    rows = Axis("", ticks=dict(zip(range(len(names), 0, -1), names, strict=True)))
+    panel = Panel(Axis("time of a pair and step on one core", "ns", log=True), rows, series)
+    save(Chart("contact_cost", "Cost of a contact", "ns of each model", [panel]), ROOT / "docs" / "figures", data=False)
 
 
 def table_beside(folder, repeats):

@@ -40,7 +40,9 @@ def document(outcome: Outcome, bulk: pd.DataFrame | None, command: str) -> str:
 
 Written by
 
-    {command}
+```sh by hand
+{command}
+```
 
 (case `{outcome.case.name}`, {outcome.seconds:.0f} s). Errors are maxima over all speeds and phases of the case. Times
 are medians of the loop time of the engine in interleaved runs without output. Absolute times depend on the machine and
@@ -52,6 +54,8 @@ its other load; the ratio to LIGGGHTS's own elastic `hertz` (`{REFERENCE}`) in t
 `not reached`: no number of steps up to {outcome.rows["steps"].max()} keeps e_n within that error.
 
 ![error of e_n against stepping time and steps](figures/cost.png)
+
+`.venv/bin/python docs/cost.py` draws this figure.
 
 ## All errors
 
@@ -67,7 +71,7 @@ def main() -> None:
     case = DOCS.parent / "cases/steel_wall.toml"
     outcome = cost.run(case, engines=["embedded", "liggghts"], laws=LAWS, repetitions=3)
     save(chart(outcome), DOCS / "figures", data=False)
-    (DOCS / "cost.md").write_text(document(outcome, bulk_cost.run(LAWS), "python docs/cost.py"))
+    (DOCS / "cost.md").write_text(document(outcome, bulk_cost.run(LAWS), ".venv/bin/python docs/cost.py"))
 
 
 if __name__ == "__main__":

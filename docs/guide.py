@@ -13,13 +13,19 @@ import re
 import shutil
 import subprocess
 import sys
+import types
 from collections.abc import Callable
+from math import inf
 from pathlib import Path
-from typing import Any
+from typing import Annotated, Any, Literal, Union, get_args, get_origin
 
 import typer
+from pydantic import BaseModel
 
 import epdem
+from epdem.case.fields import Quantity
+from epdem.case.impact import Case
+from epdem.case.scene import SceneCase
 from epdem.cli.main import app
 
 ROOT = Path(__file__).parents[1]
@@ -38,10 +44,25 @@ def mathematics(text: str, convert: Callable[..., str]) -> str:
     return "".join(parts)
 
 
+def languages(text: str) -> str:
+    """A page whose blocks name their language alone, without what a test reads after it."""
+    return re.sub(r"^(```\w+) .*$", r"\1", text, flags=re.M)
+
+
+def names() -> set[str]:
+    """The commands of epdem."""
+    return {name for name, command in _commands().items() if not command.hidden}
+
+
+def _commands() -> dict[str, Any]:
+    found: dict[str, Any] = typer.main.get_command(app).commands  # type: ignore[attr-defined]
+    return found
+
+
 def commands() -> str:
     """Every command with its arguments and options, from the command itself."""
     text = ["# Commands\n"]
-    for name, command in sorted(typer.main.get_command(app).commands.items()):  # type: ignore[attr-defined]
+    for name, command in sorted(_commands().items()):
         if command.hidden:
             continue
         text.append(f"## epdem {name}\n\n{inspect.cleandoc(command.help or '')}\n\n| option | meaning |\n|---|---|")
@@ -75,6 +96,63 @@ def python() -> str:
     return "\n".join(text)
 
 
+def cases() -> str:
+    """Every key of case files with unit, limits and default, from the models that read them."""
+    text = [
+        "# Keys of case files\n",
+        "Quantities are texts with a unit; the unit here is that of the limits and in Python.\n",
+    ]
+    for whole, title in ((Case, "Impacts"), (SceneCase, "Bulk scenes")):
+        text.append(f"## {title}\n\n{_tables(whole, '', set())}")
+    return "\n".join(text)
+
+
+def _tables(model: type[BaseModel], place: str, seen: set[type[BaseModel]]) -> str:
+    """A table of the keys of a model, and below it those of the models within that are not `seen` yet."""
+    rows, below = [], []
+    seen.add(model)
+    for name, field in model.model_fields.items():
+        key = f"{place}{field.alias or name}"
+        kinds = [k for k in _kinds(field.annotation, field.metadata) if k is not type(None)]
+        inner = [k for k in kinds if isinstance(k, type) and issubclass(k, BaseModel)]
+        inside = f"{key}.NAME." if name == "materials" else f"{key}."
+        below += [_tables(k, inside, seen) for k in inner if k not in seen]
+        said = ", ".join(dict.fromkeys(_said(k) for k in kinds if k not in inner))
+        known = isinstance(field.default, str | int | float)
+        default = "required" if field.is_required() else f"`{field.default}`" if known else ""
+        if said:
+            rows.append(f"| `{key}` | {_cell(said)} | {default} |")
+    head = f"{_cell((model.__doc__ or '').strip())}\n\n| key | what | default |\n|---|---|---|\n" if rows else ""
+    return head + "\n".join(rows) + "\n\n" + "\n".join(below)
+
+
+def _kinds(kind: Any, metadata: Any = ()) -> list[Any]:
+    """What a field can be: quantities, plain types, choices and models."""
+    if found := [m for m in metadata if isinstance(m, Quantity)]:
+        return found
+    origin, arguments = get_origin(kind), get_args(kind)
+    if origin is Annotated:
+        return _kinds(arguments[0], arguments[1:])
+    if origin in (Union, types.UnionType):
+        return [k for part in arguments for k in _kinds(part)]
+    if origin in (list, dict, tuple):
+        return [k for part in arguments[-1:] for k in _kinds(part)]
+    return [kind]
+
+
+def _said(kind: Any) -> str:
+    if isinstance(kind, Quantity):
+        unit = "a number" if kind.si == "1" else f"[{kind.si}]"
+        low = f"> {kind.above:g}" if kind.above > -inf else f">= {kind.ge:g}" if kind.ge > -inf else ""
+        high = f"<= {kind.le:g}" if kind.le < inf else ""
+        return ", ".join(filter(None, (unit, low, high)))
+    if get_origin(kind) is Literal:
+        return ", ".join(f"`{value}`" for value in get_args(kind))
+    return {str: "a text", int: "a whole number", float: "a number", bool: "true or false", Path: "a file"}.get(
+        kind, ""
+    )
+
+
 def _signature(thing: Any) -> str:
     return str(inspect.signature(thing)).replace("epdem.", "")
 
@@ -87,10 +165,11 @@ def main() -> None:
     PAGES.mkdir(parents=True)
     for page in (ROOT / "docs").glob("*.md"):
         text = OUTSIDE.sub(r"\1 (`\2`)", page.read_text(encoding="utf-8"))
-        text = mathematics(text, convert).replace("](notebook.ipynb)", "](#)")
+        text = mathematics(languages(text), convert).replace("](notebook.ipynb)", "](#)")
         (PAGES / page.name).write_text(text, encoding="utf-8")
     shutil.copytree(ROOT / "docs/figures", PAGES / "figures")
     (PAGES / "reference_commands.md").write_text(commands(), encoding="utf-8")
+    (PAGES / "reference_cases.md").write_text(cases(), encoding="utf-8")
     (PAGES / "reference_python.md").write_text(python(), encoding="utf-8")
     words = [sys.executable, "-m", "mkdocs", "build", "--strict", "--quiet", "-f", str(ROOT / "docs/mkdocs.yml")]
     sys.exit(subprocess.run(words, env=os.environ | {"NO_MKDOCS_2_WARNING": "1"}).returncode)

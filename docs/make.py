@@ -1,45 +1,58 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""`make docs`: every generated page and figure of docs/, each by the command that a reader can run."""
+"""`make docs`: every generated page and figure of docs/, each by the command that a reader can run.
 
+Run: .venv/bin/python docs/make.py [figures/NAME.png] [PAGE.md]      (without names: all)
+
+Figures of `epdem` are copied from its folder of results.
+"""
+
+import os
 import subprocess
 import sys
 from pathlib import Path
 
 ROOT = Path(__file__).parents[1]
-BIN = Path(sys.executable).parent
-COMMANDS = {
-    "figures/steel_wall.png": [
-        BIN / "epdem",
-        "run",
-        "cases/steel_wall.toml",
-        "-e",
-        "liggghts",
-        "-e",
-        "liggghts-thornton_ning",
-        "--out",
-        "runs/docs",
-    ],
-    "figures/laws.png": [sys.executable, "docs/laws.py"],
-    "figures/figure_8_16.png": [BIN / "epdem", "figures", "--out", "runs/docs/figures"],
-    "equations.md": [sys.executable, "docs/equations.py"],
-    "cost.md": [sys.executable, "docs/cost.py"],
-    "stability.md": [sys.executable, "docs/stability.py"],
+FIGURES = {  # the command, and where the figure is then
+    "steel_wall.png": (
+        "epdem run cases/steel_wall.toml -e liggghts -e liggghts-thornton_ning -o runs/docs/steel",
+        "runs/docs/steel/e_n.png",
+    ),
+    "oblique_steel.png": (
+        "epdem run cases/oblique_steel.toml -e embedded -e liggghts -o runs/docs/oblique",
+        "runs/docs/oblique/psi.png",
+    ),
+    "figure_8_16.png": ("epdem figures -o runs/figures", "runs/figures/figure_8_16.png"),
+    "figure_8_17.png": ("epdem figures -o runs/figures", "runs/figures/figure_8_17.png"),
+    "figure_8_19.png": ("epdem figures -o runs/figures", "runs/figures/figure_8_19.png"),
+    "thornton_ning_1998.png": ("epdem figures -o runs/figures", "runs/figures/thornton_ning_1998.png"),
+    "laws.png": (".venv/bin/python docs/laws.py", "docs/figures/laws.png"),
+    "cost.png": (".venv/bin/python docs/cost.py", "docs/figures/cost.png"),
+    "validate.png": (".venv/bin/python docs/benchmarks.py", "docs/figures/validate.png"),
+    "contact_cost.png": (".venv/bin/python bench/liggghts_speed.py --quick", "docs/figures/contact_cost.png"),
+}
+PAGES = {
+    "equations.md": ".venv/bin/python docs/equations.py",
+    "cost.md": ".venv/bin/python docs/cost.py",
+    "benchmarks.md": ".venv/bin/python docs/benchmarks.py",
+    "stability.md": ".venv/bin/python docs/stability.py",
+    "validation.md": ".venv/bin/python docs/validation.py",
 }
 
 
 def main() -> None:
-    """Run the commands whose page is named on the command line, or all."""
+    """Run the commands whose page or figure is named on the command line, or all, each once."""
     (ROOT / "docs/figures").mkdir(exist_ok=True)
-    for page, command in COMMANDS.items():
-        if len(sys.argv) > 1 and page not in sys.argv[1:]:
-            continue
-        print(f"docs/{page}: {' '.join(str(c) for c in command).replace(str(BIN) + '/', '')}", flush=True)
-        subprocess.run(list(map(str, command)), cwd=ROOT, stdout=subprocess.DEVNULL)  # thornton_ning fails its checks
-        if page == "figures/steel_wall.png":
-            (ROOT / "docs" / page).write_bytes((ROOT / "runs/docs/e_n.png").read_bytes())
-        if page == "figures/figure_8_16.png":
-            for picture in (ROOT / "runs/docs/figures").glob("*.png"):
-                (ROOT / "docs/figures" / picture.name).write_bytes(picture.read_bytes())
+    path = f"{Path(sys.executable).parent}:{os.environ['PATH']}"
+    commands = {f"figures/{name}": command for name, (command, _) in FIGURES.items()} | PAGES
+    wanted = {name: command for name, command in commands.items() if name in sys.argv[1:] or len(sys.argv) == 1}
+    for command in dict.fromkeys(wanted.values()):
+        print(f"{', '.join(name for name in wanted if wanted[name] == command)}: {command}", flush=True)
+        words = command.replace(".venv/bin/python", sys.executable).split()
+        # thornton_ning fails its checks
+        subprocess.run(words, cwd=ROOT, env=os.environ | {"PATH": path}, stdout=subprocess.DEVNULL)
+    for name, (_, place) in FIGURES.items():
+        if f"figures/{name}" in wanted:
+            (ROOT / "docs/figures" / name).write_bytes((ROOT / place).read_bytes())
 
 
 if __name__ == "__main__":

@@ -89,7 +89,9 @@ spin, the largest of all rows over that at 0.24:
 | 0.3, YADE | 1 | 1e9 | - | - |
 | none, YADE | 1 | 1.2 | - | - |
 
-    .venv/bin/python -m pytest tests/scenes/test_bed_step.py tests/engines/test_yade_packing.py
+```sh in scenes/test_bed_step.py
+.venv/bin/python -m pytest tests/scenes/test_bed_step.py tests/engines/test_yade_packing.py
+```
 
 Scenes stay below 0.8 of these limits ([scenes.md](scenes.md)). With friction 0.3 the contacts of a packing above its
 limit begin to slip, which bounds the energy.
@@ -100,7 +102,9 @@ An engine with positions computes an overlap as a difference of positions. Each 
 velocity does not contain this displacement. Over N steps in contact the error is, as the largest of ten phases
 (delta_e: elastic recovery),
 
-    error of e_n = {formula}
+```text
+error of e_n = {formula}
+```
 
 An engine with positions reports 'not representable' and does not run where alpha_max < 1e4 eps max(R) (at 200 steps the
 floor comes to 7e-4) or alpha_max > min(R)/2 (the centres are so close that contact detection and normal are undefined).

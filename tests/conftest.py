@@ -14,7 +14,9 @@ ENGINES = {"liggghts": "apt-get install liggghts libliggghts-dev libopenmpi-dev"
 
 
 def pytest_collection_modifyitems(items):
-    """An engine test is skipped, with its reason, only where the engine is not installed; never in CI."""
+    """An engine test is skipped, with its reason, only where the engine is not installed; never in CI. Tests that wait
+    come first, so that a process waits while the others compute."""
+    items.sort(key=lambda item: item.get_closest_marker("waits") is None)
     for item in items:
         for name, command in ENGINES.items():
             if item.get_closest_marker(name) and not shutil.which(name) and not os.environ.get("CI"):

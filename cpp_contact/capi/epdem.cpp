@@ -7,6 +7,7 @@
 
 #include "epdem/impact.hpp"
 #include "epdem/laws.hpp"
+#include "epdem/motion.hpp"
 #include "epdem/oblique.hpp"
 
 #define EPDEM_EXPORT extern "C" __attribute__((visibility("default")))
@@ -85,6 +86,20 @@ ImpactInput<double> input(const epdem_impact_input& c) {
 
 epdem_impact_output output(const ImpactOutput<double>& o) {
   return {o.rebound_speed, o.force_max, o.overlap_max, o.last_overlap, o.first, o.last, o.steps};
+}
+
+bool known_nodes(int nodes) { return nodes == 0 || nodes == 2 || nodes == 3; }
+
+template <int nodes, class Law>
+void move(const Law& law, double R_star, double stiffness, double mu, size_t n, const double* m, double* out) {
+  MovedContact<nodes, Law> contact(law, R_star, stiffness, mu);
+  for (size_t i = 0; i < n; ++i, m += 9, out += 4) {
+    const auto [force, friction] = contact({m[0], m[1], {{m[2], m[3], m[4]}, {m[5], m[6], m[7]}, m[8], 0.0}});
+    out[0] = force;
+    out[1] = friction.x;
+    out[2] = friction.y;
+    out[3] = friction.z;
+  }
 }
 
 static_assert(sizeof(epdem_impact_input) == sizeof(ImpactInput<double>), "the C struct mirrors the C++ one");
@@ -201,8 +216,7 @@ EPDEM_EXPORT int epdem_impacts(int law, double E_star, const double* parameters,
 
 EPDEM_EXPORT int epdem_oblique(int law, double E_star, const double* parameters, double G_star, double mu, int nodes,
                                size_t n, const epdem_impact_input* in, const double* slip, double* slip_after_out) {
-  if (!positive(G_star) || !std::isfinite(mu) || mu < 0.0 || (nodes != 0 && nodes != 2 && nodes != 3))
-    return EPDEM_BAD_INPUT;
+  if (!positive(G_star) || !std::isfinite(mu) || mu < 0.0 || !known_nodes(nodes)) return EPDEM_BAD_INPUT;
   for (size_t i = 0; i < n; ++i)
     if (!sane(in[i]) || !std::isfinite(slip[i])) return EPDEM_BAD_INPUT;
   return with_law(law, E_star, parameters, [&](const auto& l) {
@@ -213,6 +227,20 @@ EPDEM_EXPORT int epdem_oblique(int law, double E_star, const double* parameters,
                           : nodes == 2 ? slip_after<2>(l, normal, beside)
                                        : slip_after<3>(l, normal, beside);
     }
+    return int(EPDEM_OK);
+  });
+}
+
+EPDEM_EXPORT int epdem_motion(int law, double E_star, const double* parameters, double R_star, double G_star, double mu,
+                              int nodes, size_t n, const double* motion, double* out) {
+  if (!positive(R_star) || !positive(G_star) || !std::isfinite(mu) || mu < 0.0 || !known_nodes(nodes))
+    return EPDEM_BAD_INPUT;
+  for (size_t k = 0; k < 9 * n; ++k)
+    if (!std::isfinite(motion[k])) return EPDEM_BAD_INPUT;
+  return with_law(law, E_star, parameters, [&](const auto& l) {
+    (nodes == 0   ? move<0, std::decay_t<decltype(l)>>
+     : nodes == 2 ? move<2, std::decay_t<decltype(l)>>
+                  : move<3, std::decay_t<decltype(l)>>)(l, R_star, 8.0 * G_star, mu, n, motion, out);
     return int(EPDEM_OK);
   });
 }

@@ -14,7 +14,7 @@
 extern "C" {
 #endif
 
-#define EPDEM_ABI 5
+#define EPDEM_ABI 6
 #define EPDEM_MAX_PARAMETERS 8
 
 typedef enum { EPDEM_OK = 0, EPDEM_UNKNOWN_LAW = 1, EPDEM_BAD_PARAMETER = 2, EPDEM_BAD_INPUT = 3 } epdem_status;
@@ -86,6 +86,12 @@ int epdem_impacts(int law, double E_star, const double* parameters, size_t n, co
  * each other before, slip_after[i] after [m/s]; nodes: 2 or 3 of partial slip, or 0 for one spring. */
 int epdem_oblique(int law, double E_star, const double* parameters, double G_star, double mu, int nodes, size_t n,
                   const epdem_impact_input* in, const double* slip, double* slip_after);
+
+/* One contact through n steps of a prescribed motion, each of 9 numbers: overlap [m], closing speed times the time step
+ * [m], normal (3, unit), slip of the surfaces in the step (3) [m], rotation about the normal in it, mean of both [rad];
+ * out: of each step normal force and friction (3) on the body that the normal points to [N]. nodes as above. */
+int epdem_motion(int law, double E_star, const double* parameters, double R_star, double G_star, double mu, int nodes,
+                 size_t n, const double* motion, double* out);
 
 /* The same impacts computed in long double and rounded once, at the end: what is left to double is round-off. */
 int epdem_impacts_long_double(int law, double E_star, const double* parameters, size_t n, const epdem_impact_input* in,

@@ -146,8 +146,24 @@ def _units(table: pd.DataFrame, units: Mapping[str, str]) -> pd.DataFrame:
     return marked
 
 
+class _HasRun:
+    """What impacts and scenes that have run have in common: whether they passed, and where their files are."""
+
+    outcome: Outcome | SceneOutcome
+
+    @property
+    def passed(self) -> bool:
+        """Whether all numbers are within the tolerances of the case, or all checks of the scene hold."""
+        return self.outcome.passed
+
+    @property
+    def folder(self) -> Path:
+        """Where results.h5, results.csv and the decks are."""
+        return self.outcome.folder
+
+
 @dataclass(frozen=True)
-class Run:
+class Run(_HasRun):
     """Impacts that have run: `outcome` has everything; in a notebook it shows its table."""
 
     outcome: Outcome
@@ -156,16 +172,6 @@ class Run:
     def table(self) -> pd.DataFrame:
         """Measured and predicted numbers, one row for each speed, engine and law."""
         return _units(self.outcome.results.comparison, UNITS)
-
-    @property
-    def passed(self) -> bool:
-        """Whether all numbers are within the tolerances of the case."""
-        return self.outcome.passed
-
-    @property
-    def folder(self) -> Path:
-        """Where results.h5, results.csv and the decks are."""
-        return self.outcome.folder
 
     def plot(self) -> Path:
         """Draw e_n.png, restitution against speed with theory; its path."""
@@ -184,7 +190,7 @@ class Run:
 
 
 @dataclass(frozen=True)
-class SceneRun:
+class SceneRun(_HasRun):
     """A scene that has run: `outcome` has everything; in a notebook it shows its checks."""
 
     outcome: SceneOutcome
@@ -193,16 +199,6 @@ class SceneRun:
     def tables(self) -> dict[str, pd.DataFrame]:
         """rows, particles, contacts, ledger and checks, as far as the scene requests them."""
         return {name: _units(table, SCENE_UNITS) for name, table in self.outcome.results.tables.items()}
-
-    @property
-    def passed(self) -> bool:
-        """Whether all checks of the scene hold."""
-        return self.outcome.passed
-
-    @property
-    def folder(self) -> Path:
-        """Where results.h5, results.csv and the deck are."""
-        return self.outcome.folder
 
     def report(self) -> Path:
         """Write report.html, one page with figures, tables and decks, into the folder; its path."""

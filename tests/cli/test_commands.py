@@ -40,6 +40,10 @@ DOCUMENTS = {  # words, and what the document must hold
     "predict": (["steel.toml"], lambda d: abs(d["rows"][0]["e_n"] - 0.6763264338717) < 1e-12),
     "doctor": ([], lambda d: {"C library", "engine embedded"} <= {f["part"] for f in d}),
     "crosscheck": (["steel.toml"], lambda d: [r["model"] for r in d["rows"]] == ["theory", "embedded"]),
+    "motion": (
+        ["steel.toml", "-e", "embedded"],
+        lambda d: d["passed"] and len(d["rows"]) == 6 and d["rows"][0]["force_max"] > 1e3,
+    ),
     "theory": ([], lambda d: abs(d["laws"]["thornton"]["e_n"] - 0.6763264338717) < 1e-12),
     "figures": (["-o", "f"], lambda d: len(d["files"]) == 8),
     "timestep": (["steel.toml"], lambda d: d["error"] <= d["target"] == 1e-3),
@@ -61,6 +65,10 @@ DOCUMENTS = {  # words, and what the document must hold
     "status": (["swept"], lambda d: (d["points"], d["done"], d["waiting"]) == (2, 0, 2)),
     "cite": (["steel.toml"], lambda d: "Thornton" in d["law thornton, Thornton 1997"] and "Kloss" in d["liggghts"]),
     "header": (["-o", "."], lambda d: d["files"][0] == "normal_model_ep.cpp" and not d["lacks"]),
+    "validate": (
+        ["-s", "leeb_G", "-e", "embedded", "-l", "hertz"],
+        lambda d: [round(row["error"], 4) for row in d["rows"] if row["quantity"] == "e_n"] == [0.3333],
+    ),
     "calibrate": (["steel.toml", "--hv", "100"], lambda d: abs(d["value"] / 1057.66e6 - 1) < 1e-5),
 }
 MISTAKES = {  # words, and what the sentence must hold
@@ -69,6 +77,7 @@ MISTAKES = {  # words, and what the sentence must hold
     "predict": (["steel.toml", "-l", "hook"], "steel.toml: law.name = 'hook' does not exist; there are hertz"),
     "doctor": (["steel.toml"], "extra argument(s) (steel.toml); see epdem doctor --help"),
     "crosscheck": (["nowhere.toml"], "nowhere.toml: no such file"),
+    "motion": (["steel.toml", "-m", "bad.toml"], "bad.toml: no line of names that begins with t"),
     "theory": (["--radius", "3 kg"], "--radius = '3 kg', the unit 'kg' has the wrong dimension"),
     "figures": (["-o", "steel.toml"], "steel.toml"),
     "timestep": (["steel.toml", "--error", "1"], "'--error': must be less than or equal to 0.1; see epdem timestep"),
@@ -85,6 +94,7 @@ MISTAKES = {  # words, and what the sentence must hold
     "sweep": (["steel.toml", "--set", "impact.body.radios=1 mm"], "the nearest: impact.body.radius"),
     "rerun": (["steel.toml"], "steel.toml: not a results file of epdem, or damaged"),
     "status": (["nowhere"], "nowhere: not a folder of a sweep"),
+    "validate": (["-s", "leeb_X"], "--set 'leeb_X' does not exist; there are hutchings_1979, leeb_C"),
 }
 
 
@@ -213,7 +223,7 @@ def test_no_progress_line_stands_above_the_error_of_a_scene(folder, capsys, monk
     assert done.code == 3 and done.err.startswith("epdem: ")
 
 
-def test_a_file_whose_name_begins_with_a_dash_is_told_how_to_be_written(folder, capsys, monkeypatch):
+def test_the_message_for_a_name_that_begins_with_a_dash_says_how_to_write_it(folder, capsys, monkeypatch):
     (folder / "-x.toml").write_text(ONE_SPEED)
     assert "write the file as ./-x.toml" in call(["predict", "-x.toml"], capsys, monkeypatch).err
     assert call(["predict", "./-x.toml"], capsys, monkeypatch).code == 0

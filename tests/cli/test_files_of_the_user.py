@@ -7,6 +7,8 @@ import shutil
 import pytest
 from calls import CASES, call
 
+from epdem.studies import figures
+
 WRITERS = {  # words of a command that writes, and a file of the user's in its way
     "deck of impacts": (["deck", "steel.toml", "-o", "d"], "d/in.impact"),
     "deck of a scene": (["deck", "scene.toml", "-o", "d"], "d/setup.in"),
@@ -14,6 +16,7 @@ WRITERS = {  # words of a command that writes, and a file of the user's in its w
     "own template": (["deck", "mill.j2", "--case", "steel.toml", "-o", "d"], "d/mill"),
     "figures": (["figures", "-o", "d"], "d/figure_8_17.png"),
     "cost": (["cost", "steel.toml", "-e", "embedded", "--repetitions", "1", "-o", "d"], "d/cost.png"),
+    "motion": (["motion", "steel.toml", "-e", "embedded", "-o", "d"], "d/motions.csv"),
     "stability": (["stability", "-g", "poisson", "-l", "hertz", "--every", "2", "-o", "d/all.csv"], "d/all.csv"),
     "soften": (["soften", "steel.toml", "-k", "10", "-o", "d/soft.toml"], "d/soft.toml"),
     "batch script": (
@@ -21,6 +24,13 @@ WRITERS = {  # words of a command that writes, and a file of the user's in its w
         "d/job.sh",
     ),
 }
+
+
+@pytest.fixture(autouse=True)
+def quick_figures(monkeypatch):
+    """The figure of pressures for the two that run impacts: what is drawn is not the matter here."""
+    for name in ("restitution", "adhesion_by_strength"):
+        monkeypatch.setattr(figures, name, figures.mean_pressure)
 
 
 @pytest.mark.parametrize("kind", WRITERS)

@@ -19,7 +19,7 @@ from epdem.impacts import report as impacts_report
 from epdem.impacts import run as impacts_run
 from epdem.scenes import report as scenes_report
 from epdem.scenes import run as scenes_run
-from epdem.studies import cost, crosscheck, figures, fit, stability, tune
+from epdem.studies import cost, crosscheck, figures, fit, motions, stability, tune, validate
 from epdem.studies.pages import impacts as impacts_page
 from epdem.studies.pages import scenes as scenes_page
 from epdem.studies.stability import bulk_cost
@@ -49,6 +49,10 @@ KINDS = {  # words of a call without the option, and the value of every option
     "crosscheck impacts": (
         ("crosscheck", "steel.toml"),
         {"law": "cavity", "out": "there", "fresh": None, "force": None},
+    ),
+    "motion of impacts": (
+        ("motion", "steel.toml"),
+        {"file": "other.toml", "engine": "yade", "law": "cavity", "out": "there", "force": None},
     ),
     "theory": (("theory",), {"material": "brass", "radius": "2 mm", "speed": "1 m/s", "adhesion": "0.1 J/m^2"}),
     "figures": (("figures",), {"pictures": "svg", "out": "there", "force": None}),
@@ -82,6 +86,7 @@ KINDS = {  # words of a call without the option, and the value of every option
     "latin hypercube": (("sweep", "steel.toml", "--set", "impact.body.radius=1 mm..2 mm", *HYPERCUBE), SWEEP),
     "status": (("status", "swept"), {"table": None}),
     "rerun": (("rerun", "stored/results.h5"), {}),
+    "validate": (("validate",), {"sets": "leeb_G", "engine": "yade", "law": "hertz", "out": "there", "force": None}),
 }
 OTHERS = [
     "d/in.impact",
@@ -90,8 +95,9 @@ OTHERS = [
     "settle_glass.png",
     "runs/figures/figure_8_16.png",
     "runs/steel_wall/cost/cost.csv",
+    "runs/validate/validate.csv",
 ]
-IMPACTS_ONLY = ("predict", "timestep", "cost", "crosscheck", "calibrate")
+IMPACTS_ONLY = ("predict", "timestep", "cost", "crosscheck", "motion", "calibrate")
 
 
 def options(command: str) -> dict[str, str]:
@@ -148,6 +154,7 @@ def library(tmp_path, monkeypatch, outcomes):
     record(scenes_report, "show", ())
     record(scenes_page, "of_scene", Path("page.html"))
     record(crosscheck, "crosscheck")
+    record(motions, "compare")
     record(cost, "run", outcomes["cost"])
     record(bulk_cost, "run", outcomes["bulk"])
     record(stability, "run", outcomes["stability"])
@@ -155,6 +162,7 @@ def library(tmp_path, monkeypatch, outcomes):
     record(figures, "draw_all", [Path("drawn.png")])
     record(executors, "execute")
     record(fit, "fit")
+    record(validate, "validate")
     return reached
 
 

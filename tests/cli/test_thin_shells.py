@@ -20,6 +20,7 @@ FUNCTIONS = {
     "predict": ("epdem.impacts.prediction", "predict"),
     "doctor": ("epdem.engines.doctor", "examine"),
     "crosscheck": ("epdem.studies.crosscheck", "crosscheck"),
+    "motion": ("epdem.studies.motions", "compare"),
     "theory": ("epdem.studies.one_impact", "one_impact"),
     "figures": ("epdem.studies.figures", "draw_all"),
     "timestep": ("epdem.impacts.timestep", "search"),
@@ -35,6 +36,7 @@ FUNCTIONS = {
     "cite": ("epdem.engines.citations", "citations"),
     "header": ("epdem.liggghts.header", "write"),
     "view": ("epdem.scenes.pictures", "before"),
+    "validate": ("epdem.studies.validate", "validate"),
 }
 
 

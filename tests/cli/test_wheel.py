@@ -76,6 +76,7 @@ def test_the_wheel_holds_library_templates_cases_and_sources_for_trees(wheel):
         "native/libepdem.so",
         "templates/liggghts/impact.in.j2",
         "cases/steel_wall.toml",
+        "data/restitution/leeb_D.csv",
         "cpp_contact/liggghts/register.cpp",
         "include/epdem/laws.hpp",
     ):

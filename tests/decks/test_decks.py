@@ -18,17 +18,21 @@ from epdem.case.toml import read_toml
 from epdem.errors import CaseError
 from epdem.impacts import pairs
 from epdem.impacts.experiment import experiment
+from epdem.impacts.motions import shear_elastic
 from epdem.impacts.plan import plan
 from epdem.impacts.prediction import predict
 from epdem.lammps.impacts import LammpsMdr
+from epdem.liggghts import motions as liggghts_motions
 from epdem.liggghts import pairs as liggghts_pairs
 from epdem.liggghts import scene_deck
 from epdem.liggghts.assemblies import LiggghtsAssemblies
 from epdem.liggghts.impacts import Liggghts
 from epdem.scenes.assembly import AssemblyPlan
 from epdem.scenes.plan import plan as scene_plan
+from epdem.studies.motions import touch_of
 from epdem.studies.stability.scenes import SCENES as ASSEMBLIES
 from epdem.studies.stability.scenes import with_law
+from epdem.yade import motions as yade_motions
 from epdem.yade import pairs as yade_pairs
 from epdem.yade import precisions
 from epdem.yade import scene_deck as yade_scene
@@ -85,6 +89,13 @@ def test_the_deck_of_another_engine_is_as_stored(engine, name, tmp_path):
     compare_with_stored(f"{engine.name}_wall", (tmp_path / name).read_text())
 
 
+@pytest.mark.parametrize(("engine", "script"), [(liggghts_motions, "in.motion"), (yade_motions, "motion.py")])
+def test_the_deck_of_a_motion_is_as_stored(engine, script):
+    """The materials are of one name each: the second sphere is of the wall's."""
+    touch = touch_of(CASES / "oblique_steel.toml")
+    compare_with_stored(f"motion_{script[-2:]}", engine.files(touch, shear_elastic(touch))[script])
+
+
 @pytest.mark.parametrize("name", ["settle_glass", "compaction_powder"])
 def test_the_deck_of_a_scene_in_yade_is_as_stored(name):
     compare_with_stored(f"yade_{name}", yade_scene.files(scene_plan(load_scene(CASES / f"{name}.toml")))["scene.py"])
@@ -94,6 +105,20 @@ def test_the_deck_of_a_scene_in_yade_is_as_stored(name):
 def test_the_deck_of_a_scene_is_as_stored(path):
     texts = scene_deck.files(scene_plan(load_scene(path)))
     compare_with_stored(path.stem, texts["in.scene"] + texts["setup.in"])
+
+
+def test_the_deck_of_a_scene_of_parts_in_yade_is_as_stored():
+    """Facets, motions of each kind, a phase with a time step of its own, forces on walls and their power."""
+    data = read_toml(CASES / "sieve_cylinder.toml")
+    scene, sides = data["scene"], {"kind": "plate", "axis": "z", "size": ["9 mm", "9 mm"], "material": "steel"}
+    del data["viscous"]
+    scene["wall"] += [sides | {"name": name, "center": ["0 mm", "0 mm", "58 mm"]} for name in ("lid", "sieve")]
+    shake = {"wall": "sieve", "kind": "vibrate", "amplitude": ["0 m", "0 m", "1 mm"], "frequency": "50 Hz"}
+    down = {"wall": "lid", "kind": "linear", "velocity": ["0 m/s", "0 m/s", "-0.01 m/s"]}
+    turn = {"wall": "cylinder", "kind": "rotate", "axis": [0.0, 0.0, 1.0], "rate": "-2 rad/s"}
+    scene["phase"] += [{"name": "work", "duration": "1 ms", "time_step": "1e-6 s", "move": [shake, down, turn]}]
+    texts = yade_scene.files(scene_plan(parse_scene(data, CASES / "sieve_cylinder.toml")))
+    compare_with_stored("yade_moving_parts", texts["scene.py"])
 
 
 def test_the_deck_of_a_scene_of_moving_parts_is_as_stored():

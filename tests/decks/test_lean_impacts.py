@@ -5,6 +5,7 @@ The removal must break the run or change a result, but for comments, the output 
 carry their reason in the deck.
 """
 
+import re
 import shutil
 import subprocess
 from pathlib import Path
@@ -21,6 +22,7 @@ from epdem.impacts.prediction import predict
 
 pytestmark = pytest.mark.liggghts
 CASES = Path(__file__).parents[2] / "cases"
+EXAMINED: set[str] = set()
 IMPACTS = [p for p in sorted(CASES.glob("*.toml")) if "impact" in read_toml(p)]
 
 
@@ -51,7 +53,11 @@ def result(folder: Path) -> bytes | None:
 def test_every_line_of_the_deck_is_needed(path, law, tmp_path):
     p = small(path, law)
     engine("liggghts").write(p, tmp_path / "whole")
-    whole, lines = result(tmp_path / "whole"), (tmp_path / "whole/in.impact").read_text().splitlines()
+    lines = (tmp_path / "whole/in.impact").read_text().splitlines()
+    form = "\n".join(re.sub(r"-?\d[\d.e+-]*", "0", line) for line in lines if not line.startswith("#"))
+    if form in EXAMINED:
+        return  # the same deck with other numbers
+    whole = result(tmp_path / "whole")
     assert whole is not None and result(tmp_path / "whole") == whole  # the engine repeats itself to the last bit
     needless = []
     for k, line in enumerate(lines):
@@ -64,3 +70,4 @@ def test_every_line_of_the_deck_is_needed(path, law, tmp_path):
         if result(without) == whole:
             needless.append(line)
     assert not needless
+    EXAMINED.add(form)

@@ -41,7 +41,7 @@ def test_a_material_of_the_file_is_taken_by_name_and_its_keys_can_be_replaced(re
 
 
 @pytest.mark.parametrize("name", ["stell", 7, ["steel"]])
-def test_a_material_that_is_not_in_the_file_is_told_with_those_that_are(name):
+def test_a_material_that_is_not_in_the_file_is_named_with_those_that_are(name):
     with pytest.raises(CaseError, match=r"c.toml: materials.steel.from = .* there are steel, brass, aluminium"):
         parse(impact(**{"from": name}), "c.toml")
 

@@ -4,6 +4,7 @@
 from dataclasses import replace
 from pathlib import Path
 
+import h5py
 import numpy as np
 import pandas as pd
 import pytest
@@ -109,6 +110,23 @@ def test_a_write_that_fails_leaves_the_old_results(tmp_path):
         store.write(path, store.Results("two", attributes={"bad": object()}))
     assert store.read(path).case_text == "one"
     assert sorted(p.name for p in tmp_path.iterdir()) == ["results.csv", "results.h5"]
+
+
+def test_every_table_is_read_back_as_it_was_written(tmp_path):
+    tables = [
+        pd.DataFrame({"speed": [1.0, 2.0], "case": [name, "b"], "steps": [k, 3]}) for k, name in enumerate("xyzu")
+    ]
+    written = store.Results("text", {"version": "7"})
+    written.comparison, written.impacts["law/engine"], written.predictions["law"], written.paths["law/engine"] = tables
+    written.runs["law/engine"] = {"hash": "h"}
+    store.write(tmp_path / "results.h5", written)
+    found = store.read(tmp_path / "results.h5")
+    assert (found.case_text, found.attributes["version"], found.runs["law/engine"]["hash"]) == ("text", "7", "h")
+    read = (found.comparison, found.impacts["law/engine"], found.predictions["law"], found.paths["law/engine"])
+    for before, after in zip(tables, read, strict=True):
+        pd.testing.assert_frame_equal(before, after)
+    with h5py.File(tmp_path / "results.h5") as file:
+        assert file["impacts/law/engine/speed"].attrs["unit"] == "m/s"
 
 
 def test_a_file_that_is_no_result_is_refused(tmp_path):

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The same impacts told to LIGGGHTS in other ways: which contact model gives the same answer?
+"""The same impacts in LIGGGHTS in another order or place: which contact model gives the same answer?
 
 One scene: 12 oblique impacts of unequal spheres and 12 of spheres on a wall, all drifting across x = CENTRE while they
 touch. Each way of telling it (swapped ids, sorted atoms, two ranks, a periodic face, ...) must not change the outcome.
@@ -148,7 +148,28 @@ class Suite:
         )
         return np.abs(one - other)[:, :3].max()
 
-    def ways(self):
+    def revolution(self):
+        """Change of the force on a sphere, over the force, after its loaded, sheared pair has turned once as a whole.
+
+        The axis is none of the pair's: it turns about its normal, too. 1000 steps.
+        """
+        radius, delta, dt, turn = 2e-3, 2e-5, 1e-7, 1000
+        x = np.array([[0, 0, radius - delta / 2], [0, 0, delta / 2 - radius], [0.04, 0, 0], [0.04, 0.03, 0]])
+        bodies, box = Bodies(np.array([2, 2, 1, 3]), np.full(4, radius), x, 0 * x), [(-0.02, 0.06)] * 3
+        text = (
+            head()
+            + "read_data box.data\nneighbor 1e-3 bin\nneigh_modify delay 0\n"
+            + materials(self.model)
+            + contact(self.model, tangential=self.tangential)
+            + f"timestep {dt!r}\nthermo_modify lost error norm no\ngroup one id 1\ngroup two id <= 2\n"
+            + f"dump out one custom {turn} out.bin id fx fy fz\n"
+            + "fix go one move linear 7e-3 3e-3 0\nrun 900\nunfix go\nvelocity all set 0 0 0\nrun 100\n"
+            + f"fix go two move rotate 0 0 0 1 2 2 {turn * dt!r}\nrun {turn}\n"
+        )
+        frames = good(self.folder / "revolution", text, files={"box.data": bodies.data(box)}).frames()[1][1:, 0, 1:]
+        return np.linalg.norm(frames[-1] - frames[0]) / np.linalg.norm(frames[0])
+
+    def variants(self):
         """name -> outcome; the names are the rows of the table in the documentation."""
         b = self.bodies
         swapped = replace(b, ids=b.ids[::-1].copy())
@@ -197,12 +218,13 @@ class Suite:
         """name -> largest deviation of (pairs, wall impacts), relative to the largest velocity or spin."""
         scale = np.repeat([np.abs(self.plain[:, :3]).max(), np.abs(self.plain[:, 3:]).max()], 3)
         rows = {"momentum of a pair": (self.momentum(self.plain), None)}
-        for name, way in self.ways().items():
-            outcome = way()
+        for name, run_variant in self.variants().items():
+            outcome = run_variant()
             off = np.abs(outcome - self.plain) / scale
             rows[name] = (off[: 2 * N].max(), off[2 * N :].max())
             if name == "migration between 2 ranks":
                 rows["momentum of a pair on 2 ranks"] = (self.momentum(outcome), None)
+        rows["rigid rotation, one revolution"] = (self.revolution(), None)
         rows["second impact in one list"] = (self.second_impact(fast=False), None)
         rows["second impact, fast parting"] = (self.second_impact(fast=True), None)
         return rows

@@ -146,20 +146,20 @@ def test_a_program_that_is_deaf_to_sigterm_is_ended_with_all_that_it_started(tmp
     assert session(leader) == [] and members(tmp_path) == []
 
 
-def test_rows_are_told_while_the_program_runs_and_an_exception_stops_it(tmp_path):
+def test_rows_are_reported_while_the_program_runs_and_an_exception_stops_it(tmp_path):
     class EnoughError(Exception):
         pass
 
-    told = []
+    reported = []
 
     def report(step: int) -> None:
-        told.append(step)
+        reported.append(step)
         if step == 20:
             raise EnoughError
 
     with pytest.raises(EnoughError):
         call(["sh", "-c", "printf 'words\\n 10 1.5\\n 20 -1e-3\\n'; sleep 63"], tmp_path, log="out", report=report)
-    assert told == [10, 20] and members(tmp_path) == []
+    assert reported == [10, 20] and members(tmp_path) == []
     assert (tmp_path / "out").read_text() == "words\n 10 1.5\n 20 -1e-3\n"
 
 

@@ -8,7 +8,7 @@ from plugin_decks import ADHESIVE, GAMMA, contact, good, materials, per_pair, pl
 from test_plugin_energy import BOX as CELL
 from test_plugin_energy import SIDES, gas
 from test_plugin_launch import deck as plain_deck
-from test_plugin_launch import started, told
+from test_plugin_launch import refusal, started
 
 from epdem.theory import adhesion
 
@@ -204,7 +204,7 @@ def test_what_is_asked_of_adhesion_and_cannot_be_is_said_in_one_sentence(tmp_pat
     surface = "fix s all property/global surfaceEnergy peratomtype 1 1 1\n"
 
     def error(name, model, properties, **more):
-        return told(tmp_path / name, plain_deck(model, properties=properties, **more))
+        return refusal(tmp_path / name, plain_deck(model, properties=properties, **more))
 
     assert "both workOfAdhesion and surfaceEnergy are given" in error("both", "ep/jkr", gamma + surface)
     missing = error("missing", "ep/jkr", base)

@@ -72,7 +72,7 @@ def test_two_ranks_book_the_same_energy(tmp_path):
     assert np.allclose(one, two, rtol=1e-12, atol=1e-18) and one[-1, 2] > 0
 
 
-def test_a_wall_alone_is_told_that_the_pair_style_keeps_the_books(tmp_path):
+def test_a_wall_alone_is_refused_as_the_pair_style_keeps_the_books(tmp_path):
     text = deck("thornton", steps=10, every=10, pair_setting="")
     text = text.replace("compute s", "# ").replace("c_s[1] c_s[2]", "")
     result = run(tmp_path, text, files={"box.data": gas().data(BOX)})

@@ -56,7 +56,7 @@ def deck(
     return edit(text)
 
 
-def told(folder, text, **kwargs):
+def refusal(folder, text, **kwargs):
     """The error of a deck that must fail."""
     result = run(folder, text, files={"box.data": bodies().data(BOX)}, **kwargs)
     assert result.code == 1, result.text[-500:]
@@ -109,19 +109,19 @@ def test_an_error_on_one_rank_is_not_lost_on_a_pipe(tmp_path):
 
 
 @pytest.mark.parametrize("preloaded", [False, True])
-def test_a_wrong_name_is_told_what_exists(tmp_path, preloaded):
+def test_the_refusal_of_a_wrong_name_lists_what_exists(tmp_path, preloaded):
     how = {"command": "liggghts", "preload": library()} if preloaded else {}
-    assert NAMES in told(tmp_path / "a", deck("ep/thorton"), **how)
+    assert NAMES in refusal(tmp_path / "a", deck("ep/thorton"), **how)
     wrong_wall = deck(edit=lambda t: t.replace("wall/gran model ep/thornton", "wall/gran model ep/x"))
-    assert NAMES in told(tmp_path / "b", wrong_wall, **how)
-    assert "Invalid model" in told(tmp_path / "c", deck("hertzz"), **how)
+    assert NAMES in refusal(tmp_path / "b", wrong_wall, **how)
+    assert "Invalid model" in refusal(tmp_path / "c", deck("hertzz"), **how)
 
 
 @pytest.mark.parametrize(
     "extra", ["rolling_friction luding", "cohesion washino/capillary/viscous", "surface superquadric"]
 )
 def test_a_combination_that_does_not_exist_is_refused_with_those_that_do(tmp_path, extra):
-    assert "epdem's models combine with" in told(tmp_path, deck(models=extra))
+    assert "epdem's models combine with" in refusal(tmp_path, deck(models=extra))
 
 
 COMBINATIONS = [

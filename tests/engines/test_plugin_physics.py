@@ -183,7 +183,7 @@ def test_tangential_spring_follows_the_contact_radius_on_unloading(tmp_path, law
 
 
 def test_softer_body_decides_per_type_and_a_pair_value_wins(tmp_path):
-    """Aluminium on steel yields like aluminium; told per pair, the pair's value counts."""
+    """Aluminium on steel yields like aluminium; given per pair, the pair's value counts."""
     v = [(0, 0, -5.0), (0, 0, -5.0), (0, 0, -5.0)]
     base = materials("ep/thornton", friction=0.0)
     softer = wall_impacts(tmp_path / "a", "ep/thornton", [1, 2, 3], v, properties=base).last[:, 6]

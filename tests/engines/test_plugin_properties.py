@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Material properties and settings of the models: what is accepted, and what a wrong deck is told."""
+"""Material properties and settings of the models: what is accepted, and the refusal of a wrong deck."""
 
 import re
 
 import numpy as np
 import pytest
 from plugin_decks import DUMP, YIELDING, Bodies, good, materials, per_pair
-from test_plugin_launch import BOX, bodies, deck, started, told
+from test_plugin_launch import BOX, bodies, deck, refusal, started
 
 pytestmark = pytest.mark.liggghts
 
@@ -30,7 +30,7 @@ def test_an_absurd_property_is_refused_with_model_property_value_and_range(tmp_p
     fix, values, limits = RANGES[name]
     for value, said in values.items():
         text = re.sub(rf"(fix {fix} .* peratomtype \S+) \S+", rf"\1 {value}", materials("ep/any"))
-        error = told(tmp_path / value, deck(properties=text))
+        error = refusal(tmp_path / value, deck(properties=text))
         assert "model ep/thornton" in error and f"{name} = {said}" in error and limits in error and "type 2" in error
 
 
@@ -38,55 +38,57 @@ def test_an_absurd_property_is_refused_with_model_property_value_and_range(tmp_p
     ("law", "name"), [("thornton", "yieldPressure"), ("johnson", "yieldPressure"), ("cavity", "yieldStress")]
 )
 def test_a_missing_property_is_named_with_the_line_to_write(tmp_path, law, name):
-    error = told(tmp_path, deck(f"ep/{law}", properties=without(name, "yieldStress")))
+    error = refusal(tmp_path, deck(f"ep/{law}", properties=without(name, "yieldStress")))
     assert f"model ep/{law}" in error and f"property/global {name} peratomtype" in error
 
 
 @pytest.mark.parametrize("law", ("thornton", "johnson"))
 def test_a_strength_in_two_ways_or_half_given_is_refused(tmp_path, law):
-    twice = told(tmp_path / "a", deck(f"ep/{law}", properties=materials("ep/any") + RATIO.format(2.9)))
+    twice = refusal(tmp_path / "a", deck(f"ep/{law}", properties=materials("ep/any") + RATIO.format(2.9)))
     assert f"model ep/{law}" in twice and "both yieldPressure and yieldPressureRatio are given" in twice
     no_stress = without("yieldPressure", "yieldStress") + RATIO.format(2.9)
-    assert "property/global yieldStress peratomtype" in told(tmp_path / "b", deck(f"ep/{law}", properties=no_stress))
-    nothing = told(tmp_path / "c", deck(f"ep/{law}", properties=without("yieldPressure", "yieldStress")))
+    assert "property/global yieldStress peratomtype" in refusal(tmp_path / "b", deck(f"ep/{law}", properties=no_stress))
+    nothing = refusal(tmp_path / "c", deck(f"ep/{law}", properties=without("yieldPressure", "yieldStress")))
     assert "property/global yieldPressure peratomtype" in nothing and "yieldStress" in nothing
     assert f"is {2.8 if law == 'thornton' else 3} times, or yieldPressureRatio" in nothing
 
 
 def test_an_absurd_yield_stress_or_ratio_is_refused(tmp_path):
-    negative = told(tmp_path / "a", deck(properties=without("yieldPressure") + RATIO.format(-2)))
+    negative = refusal(tmp_path / "a", deck(properties=without("yieldPressure") + RATIO.format(-2)))
     assert "yieldPressureRatio = -2 of all types, must be finite and > 0" in negative
     no_stress = re.sub(r"(fix p2 .* peratomtype \S+) \S+", r"\1 0", without("yieldPressure"))
-    assert "yieldStress = 0 [Pa] of type 2, must be finite and > 0" in told(tmp_path / "b", deck(properties=no_stress))
+    assert "yieldStress = 0 [Pa] of type 2, must be finite and > 0" in refusal(
+        tmp_path / "b", deck(properties=no_stress)
+    )
     open_question = without("yieldPressure", "yieldStress") + (
         "fix y all property/global yieldStress peratomtypepair 3" + " 1e9" * 9 + "\n"
         "fix q all property/global yieldPressureRatio peratomtype 2.8 3 2.8\n"
     )
-    told_so = told(tmp_path / "c", deck(properties=open_question))
-    assert "yieldPressureRatio per type and yieldStress per pair leave open which body" in told_so
+    ambiguous = refusal(tmp_path / "c", deck(properties=open_question))
+    assert "yieldPressureRatio per type and yieldStress per pair leave open which body" in ambiguous
 
 
 def test_parameters_that_create_energy_are_refused(tmp_path):
     odd = materials("ep/any") + "fix q all property/global firstYieldRatio scalar 1.1\n"
-    error = told(tmp_path, deck("ep/cavity", properties=odd))
+    error = refusal(tmp_path, deck("ep/cavity", properties=odd))
     assert "firstYieldRatio = 1.1" in error and "do not go together" in error
 
 
 def test_a_pair_value_must_be_symmetric(tmp_path):
     pairs = "\n".join(line for line in materials("ep/any").splitlines() if "yieldPressure" not in line)
     pairs += "\nfix q all property/global yieldPressure peratomtypepair 3 1e9 2e9 1e9 1e9 1e9 1e9 1e9 1e9 1e9\n"
-    error = told(tmp_path, deck(properties=pairs))
+    error = refusal(tmp_path, deck(properties=pairs))
     assert "symmetric" in error or "Symmetric" in error
 
 
 def test_no_history_without_restitution_says_why_it_is_needed(tmp_path):
-    error = told(tmp_path, deck(tangential="no_history"))
+    error = refusal(tmp_path, deck(tangential="no_history"))
     assert "no_history needs coefficientRestitution" in error
 
 
 def test_moduli_keep_the_limits_that_hold_for_all_models(tmp_path):
     soft_only = deck(edit=lambda t: t.replace("hard_particles yes\n", ""))
-    assert "hard_particles" in told(tmp_path, soft_only)
+    assert "hard_particles" in refusal(tmp_path, soft_only)
 
 
 @pytest.mark.parametrize(
@@ -108,7 +110,7 @@ def test_settings_of_hertz_in_an_existing_deck_are_accepted(tmp_path, law, setti
     "setting", ["heating_normal_hertz", "computeElasticPotential", "computeDissipatedEnergy", "disableNormalWhenBonded"]
 )
 def test_other_settings_of_hertz_are_refused_by_name(tmp_path, setting):
-    error = told(tmp_path, deck(settings=f"{setting} on"))
+    error = refusal(tmp_path, deck(settings=f"{setting} on"))
     assert setting in error and "not available" in error
 
 
@@ -160,6 +162,6 @@ def test_a_property_that_changes_between_runs_counts_from_there_on_and_only_it(t
 @pytest.mark.parametrize(("units", "said"), [("si", "[Pa]"), ("cgs", "[units cgs]")])
 def test_a_message_names_the_unit_of_the_deck(units, said, tmp_path):
     text = re.sub(r"(fix p1 .* peratomtype \S+) \S+", r"\1 0", materials("ep/any"))
-    assert f"yieldPressure = 0 {said} of type 2" in told(
+    assert f"yieldPressure = 0 {said} of type 2" in refusal(
         tmp_path, deck(properties=text).replace("units si", f"units {units}")
     )

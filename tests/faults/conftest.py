@@ -18,6 +18,6 @@ def tests_of_copy(copy):
 
 
 @pytest.fixture
-def copy_of_plugin(tmp_path_factory):
-    """A copy of the project whose LIGGGHTS plugin is spoilt."""
-    return copy_of_project(tmp_path_factory.mktemp("plugin"))
+def spoilt(tmp_path_factory):
+    """A copy of the project for all faults of a compiled part."""
+    return copy_of_project(tmp_path_factory.mktemp("spoilt"))

@@ -34,8 +34,9 @@ def faults(*names: str) -> list[Fault]:
     return found
 
 
-ROOMS = [path.stem for path in sorted((Path(__file__).parent / "planted").glob("*.toml")) if path.stem != "plugin"]
-FAULTS, OF_PLUGIN = faults(*ROOMS), faults("plugin")
+SWITCHED = ("library", "plugin")  # all faults in one build
+ROOMS = [path.stem for path in sorted((Path(__file__).parent / "planted").glob("*.toml")) if path.stem not in SWITCHED]
+FAULTS, OF_LIBRARY, OF_PLUGIN = faults(*ROOMS), faults("library"), faults("plugin")
 HALVES = [sorted({fault.test for fault in FAULTS})[half::2] for half in (0, 1)]
 
 
@@ -51,8 +52,8 @@ def needs_an_engine(test: str) -> bool:
 
 
 def test_there_are_faults_in_every_room():
-    assert len(FAULTS) + len(OF_PLUGIN) >= 40
-    assert len({fault.name for fault in FAULTS + OF_PLUGIN}) == len(FAULTS + OF_PLUGIN)
+    everything = FAULTS + OF_LIBRARY + OF_PLUGIN
+    assert len(everything) >= 40 and len({fault.name for fault in everything}) == len(everything)
 
 
 @pytest.mark.parametrize("fault", FAULTS, ids=lambda f: f.name)
@@ -79,7 +80,7 @@ def test_every_named_test_is_green_without_a_fault(tests, tests_of_copy):
     assert done.returncode == 0, done.stdout[-3000:]
 
 
-# One build of the plugin has all its faults, each of which an environment variable switches on.
+# One build of the library or the plugin has all its faults, each of which an environment variable switches on.
 SWITCH = """#pragma once
 #include <cstdlib>
 template <int n>
@@ -93,20 +94,33 @@ inline bool planted() {
 """
 
 
-@pytest.mark.liggghts
-def test_planted_faults_of_the_plugin_turn_their_tests_red(copy_of_plugin):
-    """`old` and `new` are expressions."""
-    for n, fault in enumerate(OF_PLUGIN, 1):
-        path = copy_of_plugin / fault.file
+def with_switches(folder: Path, found: list[Fault]) -> str:
+    """Plant all faults, whose `old` and `new` are expressions; the compiler's flags."""
+    for n, fault in enumerate(found, 1):
+        path = folder / fault.file
         path.write_text(planted(fault, path.read_text(), f"(planted<{n}>() ? ({fault.new}) : ({fault.old}))"))
-    (copy_of_plugin / "planted.hpp").write_text(SWITCH)
-    launcher = build_plugin(copy_of_plugin, f"-O0 -include {copy_of_plugin}/planted.hpp")
-    tests = Runner(copy_of_plugin, {"EPDEM_LIGGGHTS": str(launcher)})
-    done = tests.run(*sorted({f"tests/{fault.test}" for fault in OF_PLUGIN}))
+    (folder / "planted.hpp").write_text(SWITCH)
+    return f"-O0 -include {folder}/planted.hpp"
+
+
+def all_turn_red(tests: Runner, found: list[Fault]) -> None:
+    """Every named test is green while no fault is switched on, and red with its own."""
+    done = tests.run(*sorted({f"tests/{fault.test}" for fault in found}))
     assert done.returncode == 0, done.stdout[-3000:]
     reds = {
         fault.name: tests.run(f"tests/{fault.test}", env={"PLANTED": str(n)}).returncode
-        for n, fault in enumerate(OF_PLUGIN, 1)
+        for n, fault in enumerate(found, 1)
     }
     tests.close()
     assert reds == dict.fromkeys(reds, 1), "a test did not fail"
+
+
+def test_planted_faults_of_the_library_turn_their_tests_red(spoilt):
+    build_library(spoilt, with_switches(spoilt, OF_LIBRARY))
+    all_turn_red(Runner(spoilt), OF_LIBRARY)
+
+
+@pytest.mark.liggghts
+def test_planted_faults_of_the_plugin_turn_their_tests_red(spoilt):
+    launcher = build_plugin(spoilt, with_switches(spoilt, OF_PLUGIN))
+    all_turn_red(Runner(spoilt, {"EPDEM_LIGGGHTS": str(launcher)}), OF_PLUGIN)

@@ -15,7 +15,7 @@ LAWS, PYTHON = "cpp_contact/include/epdem", "python/epdem"
 
 def copy_of_project(folder: Path) -> Path:
     """A copy of the project; the compiled parts that it uses are the installed ones until it has its own."""
-    for name in ("cpp_contact", "python", "templates", "tests", "cases", "docs"):
+    for name in ("cpp_contact", "python", "templates", "tests", "cases", "data", "docs"):
         shutil.copytree(ROOT / name, folder / name, ignore=shutil.ignore_patterns("__pycache__", "*.png"))
     for name in ("pyproject.toml", "CMakeLists.txt", "ARCHITECTURE.md"):
         shutil.copy(ROOT / name, folder)

@@ -43,7 +43,7 @@ void must(bool condition) {
 
 extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
   Source source(data, size);
-  const int law = source.take<int8_t>();
+  const int law = source.take<uint8_t>() % 16 - 4;  // some that do not exist, on both sides
   const size_t n = source.take<uint8_t>() % 4;
   const double E_star = source.take<double>(), R_star = source.take<double>();
   const std::vector<double> parameters = source.doubles(EPDEM_MAX_PARAMETERS);

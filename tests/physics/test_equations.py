@@ -29,6 +29,14 @@ def test_every_equation_of_the_chapter_has_a_formula_a_function_and_a_test():
     assert [row.function for row in rows if not row.tests] == []
 
 
+def test_the_page_of_theory_sets_every_equation_of_the_chapter():
+    text = (PAGE.parent / "theory.md").read_text()
+    for n in range(76, 90):
+        near = [text[m.start() : m.start() + 700] for m in re.finditer(rf"8\.{n}\b", text)]
+        assert any("$" in part for part in near), f"8.{n}"
+    assert text.count("$$") >= 44 and "ISBN 978-0-08-098337-0" in text
+
+
 R, E, Y = 0.01, 1.1e11, 1e9
 CAVITY = Law("cavity", E_star=E, yield_stress=Y, first_yield_ratio=1.6, plastic_ratio=2.8)
 JOHNSON, THORNTON = Law("johnson", E_star=E, yield_pressure=3 * Y), Law("thornton", E_star=E, yield_pressure=2.8 * Y)

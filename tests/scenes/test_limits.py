@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""What an engine could not run, or would run otherwise than it is meant, is told before anything is written."""
+"""What an engine could not run, or would run otherwise than it is meant, is said before anything is written."""
 
 import pytest
 from scene_runs import run, write_case
@@ -31,9 +31,9 @@ def test_beyond_a_limit_one_sentence_names_place_value_and_limit(name, tmp_path)
     case, table, key, value, said = BEYOND[name]
     data = read_toml(CASES / f"{case}.toml")
     path = write_case(data | {table: data.get(table, {}) | {key: value}}, tmp_path)
-    with pytest.raises(CaseError, match=f"case.toml: .*{said}") as told:
+    with pytest.raises(CaseError, match=f"case.toml: .*{said}") as refused:
         run(path, out=tmp_path / "out")
-    assert "\n" not in str(told.value) and not (tmp_path / "out").exists()
+    assert "\n" not in str(refused.value) and not (tmp_path / "out").exists()
 
 
 def test_a_rate_is_taken_up_to_the_layer_s_filling():

@@ -45,7 +45,7 @@ def bed() -> dict:
 
 
 def tiny() -> dict:
-    """Powder in a room so small that LIGGGHTS has to be told that it is meant."""
+    """Powder in a room so small that LIGGGHTS runs it only if it is asked to."""
     data = read_toml(CASES / "compaction_powder.toml")
     scene = {"box": ["0.3 mm", "0.3 mm", "0.6 mm"], "count": 8, "height": "0.5 mm", "speed": "4 m/s"}
     return data | {"scene": data["scene"] | scene, "output": {"rows": 20}, "numerics": {"error": 0.1}}

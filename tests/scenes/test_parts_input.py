@@ -11,8 +11,10 @@ import pytest
 from parts_cases import BED, CASES, FLOOR, own, parts, tetrahedron, write_stl
 from scipy import stats
 
-from epdem.case.scene import parse
+from epdem.case.scene import load, parse
+from epdem.case.toml import named
 from epdem.errors import CaseError
+from epdem.liggghts import scene_deck
 from epdem.scenes.plan import plan
 from epdem.studies.sweep import folder
 
@@ -177,8 +179,62 @@ def test_values_of_a_pair_of_materials_count_for_spheres_and_walls():
     assert m.friction == ((0.3, 0.1), (0.1, 0.3)) and m.viscous == ((0.8, 0.4), (0.4, 0.8))
 
 
+def test_a_preset_is_made_of_the_same_parts():
+    """A settle without loads, written in parts: the lines of its deck but names of walls and how spheres are put in."""
+    preset = own("settle_glass")
+    preset["scene"]["particles"][0]["radius"], preset["output"]["loads"] = "1.5 mm", False
+    preset["numerics"] = {"time_step": "1e-5 s"}
+    x, y, z = (float(side.split()[0]) for side in preset["scene"]["box"])
+    spans = {"x": x / 2, "y": y / 2}
+    planes = [("floor", "z", 0.0), ("left", "x", -x / 2), ("right", "x", x / 2), ("front", "y", -y / 2)]
+    wall = [
+        {"name": name, "kind": "plane", "axis": axis, "at": f"{at} mm", "material": "glass"}
+        for name, axis, at in (*planes, ("back", "y", y / 2))
+    ]
+    region = {axis: [f"{-half} mm", f"{half} mm"] for axis, half in spans.items()} | {"z": ["0 mm", f"{z} mm"]}
+    fill = {"name": "bed", "region": region, "particles": preset["scene"]["particles"], "count": 1000}
+    room = region | {"z": ["0 mm", f"{1.5 * z} mm"]}
+    phase = {"name": "settle", "duration": preset["scene"]["duration"]}
+    scene = {"kind": "parts", "room": room, "wall": wall, "fill": [fill], "phase": [phase]}
+    one, other = (deck_lines(data) for data in (preset, preset | {"scene": scene}))
+    only = [line for line in one ^ other if not line.startswith(("# settle:", "# parts:"))]
+    assert len(one) > 30 and len(only) == 2 and all("fix fill1 all insert/" in line for line in only)
+
+
+def deck_lines(data: dict) -> set[str]:
+    files = scene_deck.files(plan(parse(data, CASES / "settle_glass.toml")))
+    return {*(files["in.scene"] + files["setup.in"]).replace("wall_", "").splitlines()}
+
+
 def test_points_of_a_sweep_find_the_files_that_their_case_names(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
     data = tomllib.loads(folder.base_text(CASES / "sieve_cylinder.toml"))
     assert fills(data, tmp_path / "case.toml") == fills(own("sieve_cylinder"), CASES / "sieve_cylinder.toml")
     assert str(CASES.parent) not in (CASES / "sieve_cylinder.toml").read_text()
+
+
+LINES = {  # what is put in place of a line of cases/impactor_bowl.toml, and the words of the sentence
+    'kind = "cylinder"': ('kind = "cylindre"', "scene.wall.1.kind = 'cylindre', must be one of"),
+    'diameter = "40 mm"': ('diameter = "400 mm"', "scene.wall.tube: reaches beyond scene.room"),
+    'mass = "8 g"': ('weight = "8 g"', "scene.fill.0.weight = '8 g', unknown key"),
+    'radius = "4 mm"': ('radius = "-4 mm"', "scene.body.0.radius = '-4 mm', must lie in"),
+    'phase = "hit"': ('phase = "hid"', "scene: body.impactor.phase = 'hid' is no phase"),
+    'duration = "0.1 s"': (
+        'duration = "0.1 s"\n[[scene.phase.move]]\nwall = "bowl"\n[[scene.phase.move]]\nkind = "spin"',
+        "scene.phase.1.move.0.kind is missing",
+    ),
+}
+
+
+@pytest.mark.parametrize("old", LINES)
+def test_a_mistake_in_a_part_is_said_with_its_line(old, tmp_path):
+    text = (CASES / "impactor_bowl.toml").read_text()
+    new, words = LINES[old]
+    (tmp_path / "parts").symlink_to(CASES / "parts")
+    path = tmp_path / "bowl.toml"
+    path.write_text(text.replace(old, new))
+    line = text[: text.index(old)].count("\n") + (2 if "move" in new else 1)
+    if "reaches" in words:  # a matter of the whole wall
+        line = text[: text.index('name = "tube"')].count("\n")
+    with pytest.raises(CaseError, match=re.escape(f"bowl.toml line {line}: {words}")), named(path):
+        plan(load(path))

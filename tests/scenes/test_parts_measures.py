@@ -15,6 +15,7 @@ from epdem.errors import CaseError
 from epdem.scenes import measures
 from epdem.scenes.charts import charts
 from epdem.scenes.plan import plan
+from epdem.studies.fit import fit
 from epdem.studies.pages.scenes import of_scene
 from epdem.studies.sweep.numbers import numbers_of
 
@@ -148,3 +149,20 @@ def test_measures_stand_in_the_results_and_are_numbers_for_studies(tmp_path):
     (bins,) = drawn["scene_dents"].panels[0].series
     assert bins.y[1::2].sum() == 40 and bins.x[-1] == spheres_then.query("step == step.max()")["plastic_work"].max()
     assert "Histograms" in of_scene(outcome).read_text()
+
+
+@pytest.mark.liggghts
+def test_a_measure_is_a_target_with_its_unit(tmp_path):
+    """The mass in a region at rest gives the density: m = 8 beads of 4/3 pi R^3 rho; a sweep has the same column."""
+    mass = {"name": "held", "kind": "mass", "region": {"diameter": "16 mm", "z": ["0 mm", "40 mm"]}}
+    data = parts(fill=[BED | {"count": 8}], measure=[mass], phase=[{"name": "fall", "duration": "2 ms"}])
+    data["output"] = {"rows": 2, "particles": 2}
+    one = 8 * 4 / 3 * math.pi * 1.5e-3**3
+    free = {"materials.glass.density": "1000 kg/m^3..4000 kg/m^3"}
+    path = write_case(data | {"numerics": {"time_step": "1e-5 s"}}, tmp_path)
+    inside = run(path, out=tmp_path / "once").results.measures["held"].iloc[-1] / (one * 2500)
+    found = fit(path, {"held_last": f"{float(one * inside * 1700 * 1e3)!r} g"}, free, out=tmp_path / "fit", jobs=1)
+    assert float(found.values["materials.glass.density"].split()[0]) == pytest.approx(1700, rel=0.04)
+    assert found.units == {"held_last": "kg"} and 0 < inside <= 1
+    with pytest.raises(CaseError, match=r"wrong dimension.*held_last=1 kg"):
+        fit(path, {"held_last": "1 m"}, free, out=tmp_path / "fit", jobs=1)

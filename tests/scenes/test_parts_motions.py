@@ -40,13 +40,19 @@ def moved(kind: str) -> dict:
         phase = {"name": "beat", "duration": "60 ms", "move": [move | {"rate": "-20 rad/s"}]}
         bed = BED | {"region": BED["region"] | {"x": ["0.5 mm", "9 mm"]}}
         return parts(wall=[BOX, BEATER], fill=[bed], phase=[phase])
+    if kind == "press":
+        move = {"wall": "lid", "kind": "press", "direction": [0.0, 0.0, -1.0], "force": "0.2 N"}
+        hold = {"name": "hold", "duration": "0.2 s", "move": [move | {"highest_speed": "0.1 m/s"}]}
+        lid = PLATE | {"center": ["0 mm", "0 mm", "15 mm"]}
+        bed = BED | {"region": BED["region"] | {"z": ["0 mm", "14 mm"]}}
+        return parts(wall=[BOX, lid], fill=[bed], phase=[hold])
     move = {"wall": "lid", "kind": "linear", "velocity": ["0 m/s", "0 m/s", "-0.4 m/s"]}
     press = {"name": "press", "duration": "1 s", "until": {"wall": "lid", "travel": "30 mm"}, "move": [move]}
     return parts(wall=[BOX, PLATE], phase=[press | {"time_step": "1e-5 s"}])
 
 
 @pytest.mark.liggghts
-@pytest.mark.parametrize("kind", ["vibrate", "rotate", "linear"])
+@pytest.mark.parametrize("kind", ["vibrate", "rotate", "linear", "press"])
 def test_energy_closes_with_the_work_of_walls_that_move(kind, tmp_path):
     outcome = run(write_case(moved(kind), tmp_path), out=tmp_path / "out")
     ledger = outcome.results.ledger
@@ -150,3 +156,30 @@ def test_a_motion_counts_for_the_highest_speed():
     move = {"wall": "lid", "kind": "vibrate", "amplitude": ["0 mm", "3 mm", "4 mm"], "frequency": "100 Hz"}
     scene = parse(parts(wall=[PLATE], phase=[FALL | {"move": [move]}])).scene
     assert scene.drive == pytest.approx(2 * math.pi * 100 * 5e-3)
+
+
+@pytest.mark.liggghts
+def test_a_phase_that_is_not_recorded_has_rows_and_no_frames(tmp_path):
+    """The others have the same ones, at their begin and end too; a run that goes on in it writes none."""
+    phases = [FALL | {"duration": "20 ms", "name": name} for name in ("first", "second", "third", "last")]
+    for kept in (True, False):
+        place = tmp_path / str(kept)
+        data = parts(phase=[phases[0], phases[1] | {"record": kept}, phases[2] | {"record": kept}, phases[3]])
+        data["output"] = {"rows": 8, "particles": 8, "contacts": 8, "restarts": 8}
+        outcome = run(write_case(data, place), out=place / "out")
+        if kept:
+            whole, every = outcome.results, outcome.plan.every
+            continue
+        found = outcome.results
+        assert [*found.particles["step"].unique()] == [k * every for k in (1, 2, 6, 7, 8)]  # before 1 nothing is there
+        there = whole.particles[whole.particles["step"].isin(found.particles["step"])].reset_index(drop=True)
+        assert found.particles.equals(there) and found.rows.equals(whole.rows)
+        assert {*found.contacts["step"]} <= {*found.particles["step"]}
+        assert not {f"particles.{k * every}.bin" for k in (3, 4, 5)} & {p.name for p in (place / "out").iterdir()}
+        resume.write_resume(outcome.plan, place / "out", 4 * every)
+        assert "dump_modify particles every 1000000000" in (place / "out/in.resume").read_text()
+
+
+def test_the_last_phase_is_recorded():
+    with pytest.raises(CaseError, match=r"phase.fall.record = false: the last phase is recorded"):
+        parse(parts(phase=[FALL | {"record": False}]))

@@ -92,3 +92,18 @@ def test_translation_and_spin_are_counted_apart():
     assert kinetic(table).item() == 25.0 and rotation(table).item() == 0.0
     spinning = table.assign(omega_x=0.0, omega_y=2.0, omega_z=0.0)
     assert kinetic(spinning).item() == 25.0 and rotation(spinning).item() == pytest.approx(0.4)
+
+
+def test_the_window_of_pyvista_shows_walls_and_spheres(monkeypatch):
+    """Off the screen; only where pyvista is installed."""
+    pyvista = pytest.importorskip("pyvista")
+    shown = []
+    monkeypatch.setattr(pyvista, "OFF_SCREEN", True)
+    monkeypatch.setattr(pyvista.Plotter, "show", lambda plotter: shown.append(plotter.meshes))
+    tube = {"name": "tube", "kind": "cylinder", "diameter": "18 mm", "from": "0 mm", "to": "30 mm", "material": "steel"}
+    p = plan(parse(parts(wall=[tube])))
+    pictures.window(p)
+    wall, spheres, room = shown[0]
+    assert wall.n_cells == len(p.layout.meshes["tube"].triangles) and room.bounds == pytest.approx(p.layout.box)
+    assert spheres.n_cells % p.layout.count == 0 and spheres.n_cells > 100 * p.layout.count
+    assert spheres.volume == pytest.approx(p.layout.count * 14.137e-9, rel=0.06)

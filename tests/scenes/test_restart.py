@@ -248,6 +248,6 @@ def test_restart_files_are_kept_until_the_engine_has_gone_on_after_a_later_one(t
     """The log may be far behind the engine: what it does not tell of yet is no reason to remove anything."""
     for step in (100, 200, 300, 400):
         (tmp_path / f"restart.{step}.bin").touch()
-    for told, kept in ((100, [100, 200, 300, 400]), (250, [200, 300, 400]), (300, [200, 300, 400]), (900, [400])):
-        resume.prune(tmp_path, told)
+    for step, kept in ((100, [100, 200, 300, 400]), (250, [200, 300, 400]), (300, [200, 300, 400]), (900, [400])):
+        resume.prune(tmp_path, step)
         assert steps_of(tmp_path, "restart.*.bin") == kept

@@ -151,14 +151,14 @@ STRENGTH = {"yield_pressure": "3 MPa"}
         ("scene", {"gravity": "0 m/s^2"}, r"scene.gravity = 0: nothing moves.*numerics.highest_speed"),
     ],
 )
-def test_mistakes_are_told_in_the_words_of_the_case_file(table, value, words):
+def test_mistakes_are_named_in_the_words_of_the_case_file(table, value, words):
     data = data_of("settle")
     changed = value if table == "law" else data[table] | value
     with pytest.raises(CaseError, match=words):
         plan(parse(data | {table: changed} | {"numerics": {}}))
 
 
-def test_an_error_that_no_step_reaches_is_told_by_its_key():
+def test_an_error_that_no_step_reaches_is_named_by_its_key():
     """A dashpot converges with first order, so that e_n within 1e-9 takes more steps than anyone runs."""
     data = data_of("settle") | {"viscous": {"restitution": 0.5}, "numerics": {"error": 1e-9}}
     with pytest.raises(CaseError, match=r"numerics\.error = 1e-09 is not reached.*numerics\.time_step"):

@@ -51,8 +51,8 @@ def verdicts(outcome) -> dict[str, bool]:
 @pytest.mark.parametrize("sides", ["walls", "periodic"])
 def test_the_floor_of_a_yade_bed_carries_its_weight(sides, tmp_path):
     path = small("settle_glass", tmp_path, BEADS | {"walls": '"glass"' + "\nperiodic = true" * (sides == "periodic")})
-    told = []
-    outcome = run(path, engine="yade", out=tmp_path / "out", report=lambda step, steps: told.append((step, steps)))
+    reported = []
+    outcome = run(path, engine="yade", out=tmp_path / "out", report=lambda step, steps: reported.append((step, steps)))
     rows, spheres = outcome.results.rows, outcome.results.particles
     radius = spheres[spheres["step"] == 0]["radius"].to_numpy()
     weight = 2500 * 4 / 3 * np.pi * (radius**3).sum() * 9.81
@@ -61,7 +61,7 @@ def test_the_floor_of_a_yade_bed_carries_its_weight(sides, tmp_path):
     assert tail == pytest.approx(weight, rel=0.02)
     assert all(verdicts(outcome).values()) and "floor load / weight (smooth walls: hydrostatic)" in verdicts(outcome)
     assert len(radius) == 40 and (rows["particles"] == 40).all()
-    assert told == [(step, outcome.plan.steps) for step in rows["step"]], "progress by rows"
+    assert reported == [(step, outcome.plan.steps) for step in rows["step"]], "progress by rows"
     assert outcome.warnings[0] == yade.NO_DASHPOT
     assert run(path, engine="yade", out=tmp_path / "out").reused
 

@@ -4,6 +4,7 @@
 import json
 import logging
 import math
+import re
 import subprocess
 import sys
 from pathlib import Path
@@ -94,14 +95,18 @@ def test_two_targets_give_two_keys(place, caplog):
             {"materials.glas.density": "1 kg/m^3..2 kg/m^3"},
             "--free.*materials.glass.density",
         ),
-        ({"floor_load_mean": "1 kg"}, DENSITY, "wrong dimension.*floor_load_mean=1 N"),
+        ({"floor_load_mean": "1 kg"}, DENSITY, "wrong dimension.*write it as floor_load_mean=1 N"),
         ({"floor_load_mean": "0 N"}, DENSITY, "other than 0"),
-        ({"floor_load_mean": "1 N"}, {"materials.glass.density": "1 kg/m^3..2 kg/m^3:5"}, "LOW..HIGH"),
-        ({"floor_load_mean": "1 N"}, {}, "one to 3 keys"),
+        (
+            {"floor_load_mean": "1 N"},
+            {"materials.glass.density": "1 kg/m^3..2 kg/m^3:5"},
+            "write its range as LOW",
+        ),
+        ({"floor_load_mean": "1 N"}, {}, "a fit needs a --target NAME=VALUE, and one to 3 keys"),
         (
             {"floor_load_mean": "1 N"},
             {"materials.glass.poisson_ratio": "0.2..0.3"},
-            "changes floor_load_mean by .* another",
+            "changes floor_load_mean by .* of the value, not more than --tolerance .* another",
         ),
         ({"floor_load_mean": "90 N"}, DENSITY, "floor_load_mean = 90 N is out of reach: .* nearest .* = 4000 kg/m"),
     ],
@@ -136,3 +141,9 @@ def test_the_command_prints_what_the_function_finds(place):
     assert done.returncode == 0, done.stderr
     assert done.stdout.splitlines()[0] == f"materials.glass.density = {found.values['materials.glass.density']}"
     assert json.loads(subprocess.check_output([*words, "-o", "points", "--json"], cwd=place))["values"] == found.values
+    page = (place / "points/report.html").read_text()
+    chart = json.loads(re.search(r"const charts = (\[.*\]), palette", page)[1])[0]["panels"][0]
+    points, target = chart["series"]
+    assert target["y"] == pytest.approx([weight(20, 1700.0)] * 2) and min(target["x"]) == 1000.0
+    assert len(points["x"]) == found.points and "epdem calibrate bed.toml" in page
+    assert all(y == pytest.approx(weight(20, x), rel=0.1) for x, y in zip(points["x"], points["y"], strict=True))

@@ -1,28 +1,112 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The guide: every block runs as it stands, columns and exit codes are explained, the site builds without a warning."""
+"""The guide: every block is run or checked, columns and exit codes are explained, the site builds without a warning.
+
+The first word of a block is its language, the others say what happens to it. `sh` and `python` run in the order of the
+page; `sh in FILE` is run by that test; `sh by hand` takes minutes, another tree or root. `toml CASE` changes a case,
+`toml config` is the file of settings. `deck` is a deck of LIGGGHTS, or lines of one. `text` is output or a formula.
+"""
 
 import importlib.util
 import re
+import shutil
 import subprocess
 import sys
+import tomllib
 
 import pandas as pd
 import pytest
 from test_pages import ROOT, blocks, play
 
 import epdem
+from epdem import Scene
+from epdem.base import settings
+from epdem.case.impact import parse
+from epdem.case.toml import read_toml
 from epdem.errors import CaseError, EngineError
 
 spec = importlib.util.spec_from_file_location("guide", ROOT / "docs/guide.py")
 guide = importlib.util.module_from_spec(spec)
 spec.loader.exec_module(guide)
-PAGES = ("tutorial", "choose", "results", "faq")
 TOOLS = [name for name in ("mkdocs", "latex2mathml") if importlib.util.find_spec(name) is None]
+FENCE = re.compile(r"^```([^\n]*)\n(.*?)^```$", re.M | re.S)
+PAGES = [ROOT / "README.md", *sorted((ROOT / "docs").glob("*.md"))]
+ALL = [(path.name, info.split(), text) for path in PAGES for info, text in FENCE.findall(path.read_text())]
+OWN = ("upstream.md", "studies.md")  # test_plugin_upstream and test_pages run theirs
+FEW = 'speeds = { from = "0.5 m/s", to = "50 m/s", count = 3 }'
+SMALL = {
+    "settle_glass": {"scene.box": ["10 mm", "10 mm", "60 mm"], "scene.count": 30, "scene.duration": "0.3 s"}
+    | {"output.particles": 4},
+    "compaction_powder": {"scene.box": ["0.5 mm", "0.5 mm", "1.2 mm"], "scene.count": 100, "scene.height": "0.28 mm"}
+    | {"scene.back": "0.01 mm", "scene.speed": "4 m/s", "output.rows": 20, "output.particles": 3},
+    "hopper_beads": {"scene.count": 60, "scene.fill": "20 ms", "scene.duration": "40 ms"},
+}
+
+
+def of(kind: str, page: str | None = None) -> list[tuple[str, list[str], str]]:
+    """(page, words after the language, text) of the blocks of a language."""
+    return [(name, words[1:], text) for name, words, text in ALL if words[:1] == [kind] and page in (None, name)]
+
+
+def small(folder):
+    """Our cases in a folder, with few impacts and spheres."""
+    shutil.copytree(ROOT / "cases", folder / "cases")
+    for name, keys in SMALL.items():
+        (folder / f"cases/{name}.toml").write_text(Scene.from_toml(ROOT / f"cases/{name}.toml").replace(keys).text)
+    for name in ("steel_wall", "viscous_steel", "adhesion_thornton_1998"):
+        text = re.sub(r"^speeds = .*$", FEW, (ROOT / f"cases/{name}.toml").read_text(), flags=re.M)
+        (folder / f"cases/{name}.toml").write_text(text)
+
+
+def test_every_block_says_what_it_is_and_none_is_only_indented():
+    for name, words, text in ALL:
+        where = f"{name}: {' '.join(words)}\n{text}"
+        assert words and words[0] in ("sh", "python", "toml", "deck", "jinja", "text"), where
+        if words[0] == "sh" and words[1:2] == ["in"]:
+            assert (ROOT / "tests" / words[2]).exists(), where
+        elif words[0] == "sh":
+            assert words[1:] in ([], ["slurm"], ["by", "hand"]), where
+    for path in PAGES:
+        bare = FENCE.sub("", path.read_text())
+        assert not re.search(r"\n\n {4}\S", bare), f"{path.name}: put ``` and the language around this block"
+
+
+def test_programs_files_and_commands_of_blocks_that_run_elsewhere_exist():
+    commands, makefile = guide.names(), (ROOT / "Makefile").read_text()
+    seen = 0
+    for _, words, text in of("sh"):
+        for line in text.splitlines() if words[:1] in (["in"], ["by"]) else ():
+            line = re.sub(r"^\w+=\S+ ", "", line)
+            program, *rest = line.split()
+            known = {"epdem": lambda r: r[0] in commands, "make": lambda r: f"\n{r[0]}:" in makefile}
+            known[".venv/bin/python"] = lambda r: all((ROOT / w).exists() for w in r if w.endswith(".py"))
+            known["python"] = known[".venv/bin/python"]
+            known |= dict.fromkeys(("epdem-liggghts", "mpirun", "liggghts", "pip", "apt-get"), lambda r: True)
+            assert known[program](rest), line
+            seen += 1
+    assert seen >= 15
+
+
+def test_every_figure_is_shown_with_words_and_with_its_command_below():
+    spec = importlib.util.spec_from_file_location("make_docs", ROOT / "docs/make.py")
+    make = importlib.util.module_from_spec(spec)
+    spec.loader.exec_module(make)
+    shown = set()
+    for path in PAGES:
+        for alt, file, below in re.findall(r"!\[([^\]]*)\]\(([^)]+)\)\n\n(.*?)\n\n", path.read_text() + "\n\n", re.S):
+            name = file.rpartition("/")[2]
+            command = make.FIGURES[name][0].partition(" -o ")[0]
+            assert len(alt) > 20 and f"`{command}`" in below, f"{path.name}: say below {name}: `{command}`"
+            assert (path.parent / file).exists()
+            shown.add(name)
+    assert shown == set(make.FIGURES) == {p.name for p in (ROOT / "docs/figures").iterdir()}
+    for command in [*make.PAGES.values(), *(command for command, _ in make.FIGURES.values())]:
+        program, word, *_ = command.split()
+        assert word in guide.names() if program == "epdem" else (ROOT / word).exists(), command
 
 
 @pytest.mark.liggghts
-def test_every_block_of_the_guide_runs(tmp_path):
-    for page in PAGES:
+def test_every_block_of_the_tour_runs(tmp_path):
+    for page in ("tutorial", "choose", "results", "faq"):
         play(blocks(page), tmp_path)
     found = pd.read_csv(tmp_path / "runs/ball/results.csv")
     assert len(found) == 24 and found["passed"].all() and (tmp_path / "runs/ball/report.html").exists()
@@ -31,8 +115,76 @@ def test_every_block_of_the_guide_runs(tmp_path):
         assert re.sub(r"_(theory|error|rms)$", "", name) in said, name
 
 
-def test_pages_that_run_are_in_the_tour_and_hold_blocks():
-    assert all(len(blocks(page)) >= 1 for page in PAGES) and len(blocks("tutorial")) >= 6
+@pytest.mark.liggghts
+@pytest.mark.yade
+@pytest.mark.parametrize("page", ["laws", "adhesion", "partial_slip", "yade", "scenes"])
+def test_every_block_of_a_page_runs_with_small_cases(page, tmp_path):
+    small(tmp_path)
+    for _, _, text in of("jinja", f"{page}.md"):
+        (tmp_path / "my.in.j2").write_text(text)
+    play(blocks(page), tmp_path, cases=False)
+    assert list(tmp_path.glob("runs/*/report.html"))
+
+
+def test_no_page_has_blocks_that_no_test_runs():
+    played = {"tutorial.md", "choose.md", "results.md", "faq.md", "laws.md", "adhesion.md", "partial_slip.md"}
+    played |= {"yade.md", "scenes.md", *OWN}
+    assert {name for name, words, _ in ALL if words in (["sh"], ["python"])} <= played
+
+
+@pytest.mark.yade
+def test_the_script_for_yade_runs(tmp_path):
+    ((_, _, text),) = [b for b in of("python") if b[1] == ["yade"]]
+    (tmp_path / "beds.py").write_text(
+        text.replace("/path/to/epdem/python", str(ROOT / "python")).replace("100000", "500")
+    )
+    done = subprocess.run(["yade", "-n", "-x", "beds.py"], cwd=tmp_path, capture_output=True, text=True, timeout=120)
+    assert done.returncode == 0 and "Traceback" not in done.stderr, done.stderr
+
+
+def merged(base: dict, more: dict) -> dict:
+    """A table with the keys of another, tables within as well."""
+    return base | {k: merged(base.get(k, {}), v) if isinstance(v, dict) else v for k, v in more.items()}
+
+
+def test_every_block_of_toml_is_a_case_a_part_of_one_or_a_setting(tmp_path, monkeypatch):
+    assert len(of("toml")) >= 5
+    for name, words, text in of("toml"):
+        if words == ["config"]:
+            (tmp_path / "epdem").mkdir()
+            (tmp_path / "epdem/config.toml").write_text(text)
+            monkeypatch.setenv("XDG_CONFIG_HOME", str(tmp_path))
+            assert settings.setting("engine", "liggghts")
+        elif words:
+            data = merged(read_toml(ROOT / f"cases/{words[0]}.toml"), tomllib.loads(text))
+            assert parse(data, name)
+        else:  # a scene without its head, which test_parts_input runs
+            assert tomllib.loads(text)["scene"]["kind"] == "parts"
+
+
+@pytest.mark.liggghts
+def test_lines_of_decks_run_in_the_deck_of_the_page_on_liggghts(tmp_path):
+    whole = next(text for name, _, text in of("deck") if name == "liggghts.md")
+    parts = [(name, text) for name, _, text in of("deck") if "pair_style" in text and "atom_style" not in text]
+    parts = [(name, text) for name, text in parts if name not in OWN]
+    assert {name for name, _ in parts} >= {"README.md", "partial_slip.md", "scenes.md"}
+    for name, text in parts:
+        given = [line.partition("  # ")[0] for line in text.splitlines()]
+        heads = [" ".join(line.split()[:2]) for line in given]
+        lines = [line for line in whole.splitlines() if " ".join(line.split()[:2]) not in heads]
+        if "yieldPressure" in text:
+            lines = [line for line in lines if "yieldPressure" not in line]
+        at = next(k for k, line in enumerate(lines) if line.startswith("pair_coeff"))
+        for line in given:
+            lines.insert(at + (line.startswith("fix wall")), line)
+            at += not line.startswith("fix wall")
+        (tmp_path / "in.deck").write_text("\n".join(lines) + "\n")
+        words = [str(sys.executable).replace("python", "epdem-liggghts"), "-in", "in.deck", "-log", "none"]
+        done = subprocess.run(words, cwd=tmp_path, capture_output=True, text=True)
+        assert done.returncode == 0 and "restitution 0.9" in done.stdout, f"{name}\n{done.stdout[-600:]}"
+
+
+def test_every_page_is_in_the_tour():
     nav = (ROOT / "docs/mkdocs.yml").read_text()
     for path in (ROOT / "docs").glob("*.md"):
         assert path.name in nav, f"docs/mkdocs.yml does not have {path.name}"
@@ -48,11 +200,22 @@ def test_the_reference_names_every_command_and_what_the_package_offers():
     assert all(f"| {code} |" in errors for code in (0, 1, CaseError.exit_code, EngineError.exit_code, 130))
 
 
+def test_the_reference_of_case_files_has_every_key_of_our_cases():
+    keys = set(re.findall(r"^\| `([\w.]+)` \|", guide.cases(), re.M))
+    assert "| `materials.NAME.poisson_ratio` | a number, > -1, <= 0.5 | required |" in guide.cases()
+    assert {"impact.body.radius", "measured.e_n", "scene.wall.turn", "output.restarts", "numerics.skin"} <= keys
+    for path in sorted((ROOT / "cases").glob("*.toml")):
+        for table, entries in read_toml(path).items():
+            if table not in ("materials", "law") and isinstance(entries, dict):
+                assert {f"{table}.{key}" for key, v in entries.items() if not isinstance(v, dict | list)} <= keys, path
+
+
 def test_equations_become_mathml_and_code_stays():
-    text = "of $a^2$ and `$HOME`\n\n    echo $PATH and $x\n\n$$b$$\n"
+    text = "of $a^2$ and `$HOME`\n\n    echo $PATH and $x\n\n```sh in a/b.py\necho $y\n```\n\n$$b$$\n"
     found = guide.mathematics(text, lambda latex, display="inline": f"<{display}:{latex}>")
     assert found.splitlines()[0] == "of <span><inline:a^2></span> and `$HOME`"
     assert "    echo $PATH and $x\n" in found and "<p><block:b></p>" in found
+    assert "```sh\necho $y\n```" in guide.languages(text)
 
 
 @pytest.mark.skipif(bool(TOOLS), reason=f"{', '.join(TOOLS)} not installed; 'make guide' installs it")
@@ -61,3 +224,4 @@ def test_the_site_builds_without_a_warning():
     assert done.returncode == 0, done.stdout + done.stderr
     page = (ROOT / "runs/guide/site/theory.html").read_text()
     assert page.count("<math") > 60 and not re.search(r'(?:src|href)="https?://(?!squidfunk)', page)
+    assert "<code>sh slurm" not in (ROOT / "runs/guide/site/studies.html").read_text()

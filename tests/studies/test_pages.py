@@ -20,9 +20,10 @@ def blocks(page: str) -> list[tuple[str, str]]:
     return re.findall(r"^```(sh|python|sh slurm)\n(.*?)^```$", (ROOT / f"docs/{page}.md").read_text(), re.M | re.S)
 
 
-def play(wanted: list[tuple[str, str]], folder: Path, env: dict[str, str] | None = None) -> None:
-    """Run blocks in a folder that has our cases."""
-    shutil.copytree(ROOT / "cases", folder / "cases", dirs_exist_ok=True)
+def play(wanted: list[tuple[str, str]], folder: Path, env: dict[str, str] | None = None, *, cases: bool = True) -> None:
+    """Run blocks in a folder, which gets our `cases`."""
+    if cases:
+        shutil.copytree(ROOT / "cases", folder / "cases", dirs_exist_ok=True)
     found = dict(env or os.environ)
     found["PATH"] = f"{Path(sys.executable).parent}:{found['PATH']}"
     for k, text in wanted:
@@ -41,6 +42,7 @@ def test_a_study_in_ten_minutes(tmp_path):
 
 
 @needs_slurm
+@pytest.mark.waits
 def test_on_my_cluster(tmp_path):
     (tmp_path / "slurm").mkdir()
     with cluster(tmp_path / "slurm") as nodes:

@@ -15,6 +15,12 @@ from epdem.report import chart, drawing, page
 
 CASE = Path(__file__).parents[2] / "cases/steel_wall.toml"
 TITLE = "Steel sphere on a steel wall"
+MEASURED = """
+[measured]
+source = "a table"
+speeds = ["0.3 m/s", "5.595 m/s", "300 m/s"]
+e_n = [1.0, 0.7, 0.2]
+"""
 HOSTILE = "</script><script>alert(1)</script> $x & <b>"
 
 
@@ -31,7 +37,7 @@ def folder(tmp_path_factory):
     """A folder with a run of two engines, its title a hostile one; few steps, so that means differ from theory."""
     place = tmp_path_factory.mktemp("report")
     text = CASE.read_text().replace(f'"{TITLE}"', f"'{HOSTILE}'").replace("= 400", "= 60")
-    (place / "steel.toml").write_text(text.replace("e_n = 1e-4", "e_n = 1e-2"))
+    (place / "steel.toml").write_text(text.replace("e_n = 1e-4", "e_n = 1e-2") + MEASURED)
     run(place, "-e", "embedded", "-e", "liggghts", "--format", "svg", "--format", "png")
     return place
 
@@ -54,10 +60,26 @@ def test_the_page_shows_the_stored_numbers_and_theory_between_them(folder):
         assert not np.allclose(rows["e_n_theory"], rows["e_n"], rtol=1e-5)
     assert below["tolerance 0.01"]["y"] == [1e-2, 1e-2]
     line = above["theory"]
-    assert len(line["x"]) > 200 and (line["x"][0], line["x"][-1]) == (0.05, 150.0)
+    assert len(line["x"]) > 200 and (line["x"][0], line["x"][-1]) == (0.05, 300.0)
     r = 0.5595 / np.array(line["x"][100:])  # eq. 8.83 with v_y of this case, in four digits
     closed = np.sqrt(1.2 * np.sqrt(3)) * np.sqrt(1 - r * r / 6) * (r / (r + 2 * np.sqrt(1.2 - r * r / 5))) ** 0.25
     assert np.allclose(line["y"][100:], closed, rtol=2e-3)
+
+
+@pytest.mark.liggghts
+def test_measured_points_are_drawn_and_their_distance_from_theory_is_said(folder):
+    text = (folder / "out/report.html").read_text()
+    above = {s["name"]: s for s in drawn(text)["e_n"]["panels"][0]["series"]}
+    assert above["measured"]["x"] == [0.3, 5.595, 300.0] and above["measured"]["y"] == [1.0, 0.7, 0.2]
+    assert {s["marker"] for n, s in above.items() if n in ("embedded", "liggghts")} == {0, 1}
+    # by hand, 8.83: nothing yields at 0.3 m/s; at ten times v_y 0.6585; at 300 m/s (v/v_y = 536.3) 0.2462
+    found = re.search(r"less the measured one is ([+-][\d.]+) in the mean, ([+-][\d.]+) to ([+-][\d.]+) over 3", text)
+    assert found and [float(x) for x in found.groups()] == pytest.approx([0.0016, -0.0415, 0.0462], abs=1e-3)
+    before = (folder / "out/report.html").stat().st_mtime_ns
+    case = folder / "steel.toml"
+    case.write_text(case.read_text().replace("[1.0, 0.7, 0.2]", "[1.0, 0.7, 0.3]"))
+    run(folder, "-e", "embedded", "-e", "liggghts", "--format", "svg", "--format", "png")
+    assert (folder / "out/report.html").stat().st_mtime_ns > before
 
 
 @pytest.mark.liggghts
@@ -83,7 +105,11 @@ def test_the_page_stands_alone_and_says_where_its_numbers_come_from(folder):
     assert "C. Thornton, J. Appl. Mech. 64 (1997) 383" in own and "All checks hold" in own
     charts, alts = drawn(text), re.findall(r'class="chart" data-chart="(\w+)" role="img" aria-label="([^"]{40,})"', own)
     assert [name for name, _ in alts] == list(charts)
+    heads = re.findall(r'<h2 id="title\d+">([^<]+)</h2>', own)
+    assert len(set(heads)) == len(heads) > 8 and heads[0] == "Restitution against impact speed"
+    assert re.search(r"<dt>yield_pressure</dt><dd>[\de.+]+ Pa</dd>", own)
     reasons = re.findall(r"<tr><td><code>([^<]+)</code></td><td>([^<]*)</td>", own)
+    assert ("units si", "guard: the default, stated explicitly") in reasons
     assert sum(bool(why) for _, why in reasons) > 15 and any("ep/thornton" in line for line, why in reasons if why)
 
 
@@ -128,3 +154,15 @@ def test_a_long_table_is_cut_and_says_so():
     rows = page.Rows("x", pd.DataFrame({"a": np.arange(20_000), "b": 0.5}))
     assert len(rows.cells()) == 6000 and "first 6000 of 20000 rows" in rows.notes
     assert rows.cells()[1] == [("1", "1.0"), ("0.5", "0.5")]
+
+
+def test_a_page_is_written_again_for_another_mark_alone(tmp_path):
+    made = []
+
+    def results(name: str) -> page.Page:
+        made.append(name)
+        return page.Page(name, ["x"], [])
+
+    for name, mark in (("one", "a1"), ("again", "a1"), ("two", "b2"), ("three", "")):
+        page.write(tmp_path / "report.html", lambda name=name: results(name), mark=mark)
+    assert made == ["one", "two", "three"] and "three" in (tmp_path / "report.html").read_text()

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """A softened twin keeps e_n at every speed; a measured e_n or a hardness gives back the strength it came from."""
 
+import json
 import math
 import re
 import tomllib
@@ -195,11 +196,26 @@ def test_a_brinell_indentation_has_a_diameter():
     assert "--dent-ratio 0, must lie in (0, 1]" in str(done.exception)
 
 
+def test_the_page_of_a_strength_shows_the_curve_through_the_measured_point(tmp_path):
+    words = ["calibrate", str(STEEL), "--e-n", "0.6", "--speed", "5 m/s", "--out", str(tmp_path / "page")]
+    assert "page/report.html" in CliRunner().invoke(app, words).stdout
+    text = (tmp_path / "page/report.html").read_text()
+    line, point = json.loads(re.search(r"const charts = (\[.*\]), palette", text)[1])[0]["panels"][0]["series"]
+    assert (point["x"], point["y"]) == ([5.0], [0.6]) and max(line["y"]) > 0.9 > 0.3 > min(line["y"])
+    assert np.interp(5.0, line["x"], line["y"]) == pytest.approx(0.6, abs=1e-3)
+    assert "C. Thornton, J. Appl. Mech. 64 (1997) 383" in text and "Y = 1e+09" not in text
+    foreign = tmp_path / "mine"
+    foreign.mkdir()
+    (foreign / "report.html").write_text("mine")
+    assert "--force" in str(CliRunner().invoke(app, [*words[:-1], str(foreign)]).exception)
+    assert (foreign / "report.html").read_text() == "mine"
+
+
 def test_impossible_measurements_are_refused(tmp_path):
     for e_n, speed in ((0.0, 1.0), (1.0, 1.0), (0.6, -1.0), (1e-7, 1.0)):
-        with pytest.raises(CaseError):
+        with pytest.raises(CaseError, match=r"must lie in|must be > 0|no strength between 1e-8 and 1 of E"):
             from_restitution(STEEL, e_n, speed)
-    with pytest.raises(CaseError, match="never yields"):
+    with pytest.raises(CaseError, match="never yields; it has nothing to calibrate"):
         from_restitution(with_law(tmp_path, "hertz"), 0.6, 1.0)
-    with pytest.raises(CaseError, match="one hardness"):
+    with pytest.raises(CaseError, match="give one hardness, --hv or --hb"):
         pressure_of_hardness()

@@ -58,10 +58,10 @@ def test_whole_numbers_stay_whole():
         ("1 mm..2 mm", "how many values"),
         ("1 mm..2 mm:1", "'1' is not a number of values"),
         ("1 mm..2 mm:x", "'x' is not a number of values"),
-        ("1 mm..1 mm:3", "two limits that differ"),
+        ("1 mm..1 mm:3", "a range needs two limits that differ"),
         ("1 mm..2 kg:3", "wrong dimension"),
         ("one..2 mm:3", "'one' is not a number"),
-        ("log:-1 mm..2 mm:3", "two limits > 0"),
+        ("log:-1 mm..2 mm:3", "a range needs two limits > 0"),
         ("log:1 mm", "needs a range"),
         ("1 mm,,2 mm", "a value is empty"),
     ],
@@ -153,13 +153,15 @@ def test_a_table_has_units_in_its_cells_or_its_heading(tmp_path):
         ("impact.body.radius\n", "no points"),
         ("impact.radius\n1 mm\n", "impact.body.radius"),
         ("impact.body.radius,law.yield_pressure\n1 mm\n", "point 1 has 1 values, the heading 2 keys"),
-        ("impact.body.radius,impact.body.radius\n1 mm,2 mm\n", "two columns"),
+        ("impact.body.radius,impact.body.radius\n1 mm,2 mm\n", "a key has two columns; keep one"),
         ("impact.body.radius,law.yield_pressure\n1 mm,\n", "point 1: a value is empty"),
+        ("impact.body.radius [mm\n1\n", r"the heading 'impact.body.radius \[mm' is not KEY or KEY"),
+        ("impact.body.radius\n\xe4", r"cannot be read \(.*\); give a CSV file"),
     ],
 )
 def test_a_table_that_makes_no_sense_is_refused(text, words, tmp_path):
     path = tmp_path / "points.csv"
-    path.write_text(text)
+    path.write_bytes(text.encode("latin-1"))
     with pytest.raises(CaseError, match=words):
         points.table(path, KEYS)
 

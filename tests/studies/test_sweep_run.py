@@ -145,7 +145,7 @@ def test_a_process_that_dies_takes_no_other_item_with_it():
     assert "signal 9" in str(found.pop(3)) and found == {n: -n for n in (1, 2, 4, 5, 6, 7)}
 
 
-def test_a_process_that_is_told_to_stop_stops_all_and_leaves_no_result(case, tmp_path, monkeypatch):
+def test_a_process_that_gets_a_signal_stops_all_and_leaves_no_result(case, tmp_path, monkeypatch):
     from epdem.engines.embedded import Embedded
 
     monkeypatch.setattr(Embedded, "run", lambda *a, **k: os.kill(os.getpid(), signal.SIGTERM))

@@ -21,7 +21,7 @@ from epdem.studies.sweep.status import status
 
 ROOT = Path(__file__).parents[2]
 EPDEM = str(Path(sys.executable).parent / "epdem")
-pytestmark = pytest.mark.liggghts
+pytestmark = [pytest.mark.liggghts, pytest.mark.waits]
 
 
 @pytest.fixture(scope="module")

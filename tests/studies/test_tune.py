@@ -99,5 +99,5 @@ def test_the_case_file_gets_the_choices_and_keeps_its_comments(tmp_path):
 
 def test_a_trial_that_is_too_short_says_so(tmp_path, monkeypatch):
     monkeypatch.setattr(trials, "run", lambda *words: [(1.0, 200)] * 7)  # seven pieces of five skins
-    with pytest.raises(EngineError, match="--seconds"):
+    with pytest.raises(EngineError, match="ended before each skin had two turns; give it more time"):
         tune.tune(small(tmp_path))

@@ -239,7 +239,7 @@ template <class Law, Tangential tangential, bool rolls, bool wall>
 
 /// No kernel for what the plugin does not offer, partial slip of contacts with adhesion, nor for walls with adhesion.
 template <class Law, Tangential tangential, bool rolls, bool wall>
-constexpr Kernel offered() {
+constexpr Kernel offered() noexcept {
   if constexpr (adheres<Law> && (wall || tangential >= Tangential::partial_slip))
     return nullptr;
   else

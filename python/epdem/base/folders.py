@@ -39,6 +39,7 @@ OUTPUTS = (
     "wall_contacts*",
     "restart.*",
     "scene*",
+    "stress_*",
     "picture.*",
     "path.*",
     "*.data",

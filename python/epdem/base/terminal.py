@@ -2,14 +2,16 @@
 """Consoles, tables and progress. Text is printed unchanged, even if it has the form of rich's markup."""
 
 import contextlib
+import copy
 import math
 import sys
 from collections.abc import Callable, Collection, Iterable, Iterator
 from typing import TYPE_CHECKING, Literal
 
+from rich.cells import cell_len
 from rich.console import Console
 from rich.progress import BarColumn, Progress, ProgressColumn, TextColumn, TimeElapsedColumn
-from rich.table import Table
+from rich.table import Column, Table
 from rich.text import Text
 
 if TYPE_CHECKING:  # slow to import, and most commands begin by printing nothing
@@ -31,20 +33,50 @@ def table(title: str, heads: Iterable[str], *, left: Collection[str] = (), wrap:
     return shown
 
 
-def show_table(screen: Console, shown: Table, spare: Iterable[str]) -> None:
+def show_table(screen: Console, shown: Table, spare: Iterable[str] = ()) -> None:
     """Print a table; where it is wider than the terminal, without columns of `spare`, from the first on, as few as
-    will do, and with a line that names them."""
+    will do, and with a line that names them. What is still too wide comes in parts, each with the first column."""
     absent = []
     for head in spare:
-        if screen.measure(shown, options=screen.options.update(max_width=10_000)).maximum <= screen.width:
+        if _width(shown) <= screen.width:
             break
         found = [column for column in shown.columns if str(column.header) == head]
         if found:
             shown.columns.remove(found[-1])
             absent.append(head)
-    screen.print(shown)
+    for column in shown.columns:
+        column.min_width = _longest(column)  # else rich cuts words
+    first, *others = shown.columns
+    while True:
+        part = copy.copy(shown)
+        part.columns = [first, *others[:1]]
+        others = others[1:]
+        while others and _width(_with(part, others[0])) <= screen.width:
+            part.columns.append(others.pop(0))
+        screen.print(part)
+        if not others:
+            break
+        shown.title = None
     if absent:
         screen.print(f"left out, as the terminal is narrow: {', '.join(absent)}", markup=False, highlight=False)
+
+
+def _with(shown: Table, column: Column) -> Table:
+    wider = copy.copy(shown)
+    wider.columns = [*shown.columns, column]
+    return wider
+
+
+def _width(shown: Table) -> int:
+    """Of a table in which no text is cut."""
+    return 1 + sum(3 + _longest(column) for column in shown.columns)
+
+
+def _longest(column: Column) -> int:
+    """Width of the longest text of a column, or of its longest word where it may wrap."""
+    texts = [str(text) for text in (column.header, *column.cells)]
+    parts = texts if column.no_wrap else [word for text in texts for word in text.split()]
+    return max(column.min_width or 0, *map(cell_len, parts or [""]))
 
 
 def cell(value: object) -> str:

@@ -3,7 +3,8 @@
 
 from collections.abc import Iterator, Mapping
 
-from .impact import Case, Material
+from .fields import Material
+from .impact import Case
 from .scene import SceneCase
 
 MODULI = (1e5, 1.3e12)  # [Pa] from rubber foam to diamond

@@ -4,105 +4,39 @@
 Every mistake is a CaseError that names file, key, value, limit and next step.
 """
 
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated, Any, Literal, Self
 
 import numpy as np
-from pydantic import (
-    BaseModel,
-    BeforeValidator,
-    ConfigDict,
-    Field,
-    GetCoreSchemaHandler,
-    ValidationError,
-    model_validator,
-)
-from pydantic_core.core_schema import CoreSchema, no_info_before_validator_function
+from pydantic import Field, ValidationError, model_validator
 
 from ..errors import CaseError
+from .fields import (
+    Coefficient,
+    Frozen,
+    Header,
+    LawChoice,
+    Length,
+    Line,
+    Material,
+    Name,
+    Quantity,
+    Speed,
+    Spin,
+    Tangential,
+    Viscous,
+)
 from .library import with_library
 from .messages import explain
 from .toml import read_toml
-from .units import to_si, within_limits
 
 RIGID = "rigid"
 MAX_IMPACTS = 4096
 # Largest relative errors of a case without tolerances of its own (maximum over the phases, 400 steps in contact).
 DEFAULT_CHECKS = {"e_n": 1e-4, "contact_time": 5e-3, "force_max": 1e-3, "overlap_max": 1e-3, "residual_overlap": 1e-3}
 
-
-@dataclass(frozen=True)
-class Quantity:
-    """Annotation of a pydantic field: a quantity in `si` above `above` or in [ge, le]; `hint` ends the message."""
-
-    si: str
-    above: float = -np.inf
-    ge: float = -np.inf
-    le: float = np.inf
-    hint: str = ""
-
-    def read(self, value: object) -> float:
-        """The SI value of a quantity as a user writes it. Raises ValueError."""
-        x = to_si(value, self.si)
-        if x > self.above and self.ge <= x <= self.le:
-            return within_limits(x, self.si)
-        left = f"[{self.ge:g}" if self.ge > self.above else f"({self.above:g}"
-        right = f"{self.le:g}{']' if self.le < np.inf else ')'}"
-        unit, hint = "" if self.si == "1" else f" {self.si}", f"; {self.hint}" if self.hint else ""
-        raise ValueError(f"must lie in {left}, {right}{unit}{hint}")
-
-    def __get_pydantic_core_schema__(self, source: type[float], handler: GetCoreSchemaHandler) -> CoreSchema:
-        return no_info_before_validator_function(self.read, handler(source))
-
-
-Length = Annotated[float, Quantity("m", above=0.0)]
-Speed = Annotated[float, Quantity("m/s", above=0.0)]
-Pressure = Annotated[float, Quantity("Pa", above=0.0)]
 Angle = Annotated[float, Quantity("rad", ge=0.0, le=1.5, hint="from the normal")]
-Spin = Annotated[float, Quantity("rad/s")]
-Coefficient = Annotated[float, Quantity("1", ge=0.0)]
-Tangential = Literal["history", "partial_slip", "partial_slip_2"]  # the last with 2 nodes in place of 3
-NODES = {"history": 0, "partial_slip": 3, "partial_slip_2": 2}  # of partial slip; 0: one spring
-Restitution = Annotated[
-    float, Quantity("1", ge=0.14, le=1.0, hint="1 is no dashpot, below 0.14 none is strong enough")
-]  # of impacts that do not yield
 Tolerance = Annotated[float, Quantity("1", above=0.0)]
-
-
-def _printable_line(value: object) -> str:
-    if not isinstance(value, str) or not value.strip() or not value.isprintable() or len(value) > 200:
-        raise ValueError("must be one printable line of at most 200 characters")
-    if value.rstrip().endswith("&"):  # LIGGGHTS would read the next command as part of a comment
-        raise ValueError("must not end in '&' (it would swallow the next line of the deck)")
-    return value
-
-
-Line = Annotated[str, BeforeValidator(_printable_line)]
-Name = Annotated[str, Field(pattern=r"^[A-Za-z0-9_][A-Za-z0-9_-]{0,63}$")]
-
-
-class Frozen(BaseModel):
-    model_config = ConfigDict(frozen=True, extra="forbid", strict=True)
-
-
-class Header(Frozen):
-    """The name of a case, its title and the source of its numbers."""
-
-    name: Name
-    title: Line
-    source: Line
-
-
-class Material(Frozen):
-    """Elastic constants, density, (if the law yields) the yield stress in simple compression and (if it adheres) the
-    surface energy, of which the work of adhesion of a pair is 2 sqrt(gamma_i gamma_j); SI."""
-
-    young_modulus: Pressure
-    poisson_ratio: Annotated[float, Quantity("1", above=-1.0, le=0.5, hint="percent?")]
-    density: Annotated[float, Quantity("kg/m^3", above=0.0)]
-    yield_stress: Pressure | None = None
-    surface_energy: Annotated[float, Quantity("J/m^2", ge=0.0)] | None = None
 
 
 class Body(Frozen):
@@ -185,23 +119,6 @@ class Impact(Frozen):
         return np.array([axis.ravel() for axis in grid])
 
 
-class LawChoice(BaseModel):
-    """The law by name; its parameters are checked against the law itself, see case.law."""
-
-    model_config = ConfigDict(frozen=True, extra="allow", strict=True)
-    name: Name
-
-    def parameters(self) -> dict[str, Any]:
-        """The keys beside the name, as written."""
-        return dict(self.model_extra or {})
-
-
-class Viscous(Frozen):
-    """A dashpot on the elastic branches: `restitution` of impacts that do not yield."""
-
-    restitution: Restitution
-
-
 class Rate(Frozen):
     """Strength that grows with the strain rate: times 1 + sensitivity ln(rate/reference)."""
 
@@ -234,6 +151,20 @@ class Check(Frozen):
     psi_2: Tolerance = 0.05  # absolute: of the sliding velocity after an oblique impact, in mu/kappa times the speed
 
 
+class Measured(Frozen):
+    """Measured restitution beside theory in figure and page; no check uses it."""
+
+    source: Line
+    speeds: Annotated[list[Speed], Field(min_length=1, max_length=1000)]
+    e_n: list[Annotated[float, Quantity("1", ge=0.0, le=1.0, hint="percent?")]]
+
+    @model_validator(mode="after")
+    def _pairs(self) -> Self:
+        if len(self.speeds) != len(self.e_n):
+            raise ValueError(f"{len(self.speeds)} speeds and {len(self.e_n)} values of e_n; give one for each")
+        return self
+
+
 class Friction(Frozen):
     """Friction of oblique impacts."""
 
@@ -253,6 +184,7 @@ class Case(Frozen):
     contact: Friction | None = None
     numerics: Numerics = Numerics()
     check: Check = Check()
+    measured: Measured | None = None
 
     @model_validator(mode="after")
     def _consistent(self) -> Self:
@@ -278,6 +210,8 @@ class Case(Frozen):
             raise ValueError("contact: nothing rubs in a normal impact; give impact.angles, or remove it")
         if self.impact.oblique and self.viscous:
             raise ValueError("viscous: there is no theory of oblique impacts with a dashpot; remove one of both")
+        if self.impact.oblique and self.measured:
+            raise ValueError("measured: these are e_n of normal impacts; remove it, or impact.angles and impact.spins")
 
     @property
     def name(self) -> str:

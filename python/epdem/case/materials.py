@@ -6,7 +6,7 @@ from functools import cache
 
 from ..errors import CaseError
 from . import library
-from .impact import Material
+from .fields import Material
 
 
 @dataclass(frozen=True)

@@ -5,7 +5,7 @@ from typing import Annotated, Literal
 
 from pydantic import Field, Tag
 
-from .impact import Frozen, Name, Quantity
+from .fields import Frozen, Name, Quantity
 from .walls import Axis, PartName, Place, Room, Span, Upright, has
 
 Region = Annotated[Annotated[Upright, Tag("with")] | Annotated[Room, Tag("without")], has("diameter")]

@@ -22,6 +22,7 @@ TEXTS = {
     "greater_than_equal": "must be at least {ge}",
     "literal_error": "must be {expected}",
 }
+KINDS = "settle, hopper, drum, compaction, peening, parts"  # of scenes, where none is given
 OTHER_KIND = {
     "impact": "is a bulk scene ([scene]) and this needs impacts ([impact]); "
     "run, deck, explain, cite, soften, tune, sweep and calibrate --target take scenes",
@@ -87,7 +88,8 @@ def explain(path: object, data: dict[str, Any], error: ValidationError, kind: st
         keys, value = (*keys, "kind"), value.get("kind") if isinstance(value, dict) else None
     place = ".".join(map(_key, keys))
     if problem["type"].startswith("union_tag"):
-        text = f"must be one of {context.get('expected_tags', 'settle, hopper, drum, compaction, peening')}"
+        known = context.get("expected_tags") or (KINDS if place == "scene.kind" else "")
+        text = f"must be one of {known}" if known else "is missing; add it"
     elif problem["type"] == "too_short":
         least, given = context["min_length"], context["actual_length"]
         text = f"has {given} values, must have at least {least}" if given else "is empty; give at least one value"

@@ -5,7 +5,7 @@ from typing import Annotated, Literal, Self
 
 from pydantic import Field, model_validator
 
-from .impact import Frozen, Quantity, Speed
+from .fields import Frozen, Quantity, Speed
 from .walls import Direction, PartName, Turn, Vector
 
 Time = Annotated[float, Quantity("s", above=0.0)]
@@ -97,12 +97,13 @@ class Until(Frozen):
 
 
 class Phase(Frozen):
-    """A part of the run; with `until` it lasts at most `duration`. time_step: its own."""
+    """A part of the run; with `until` at most for `duration`. time_step: its own. record: whether it has frames."""
 
     name: PartName
     duration: Time
     until: Until | None = None
     time_step: Time | None = None
+    record: bool = True
     move: list[Move] = Field(default_factory=list, max_length=64)
 
     @model_validator(mode="after")

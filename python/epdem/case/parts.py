@@ -8,7 +8,7 @@ from typing import Annotated, Literal, NamedTuple, Self
 
 from pydantic import Field, Tag, model_validator
 
-from .impact import Frozen, Length, Name, Quantity, Spin
+from .fields import Frozen, Length, Name, Quantity, Spin
 from .measures import Measure, Region
 from .motions import LinearMove, Phase, PressMove, Rate, RotateMove, Speeds, VibrateMove, nothing
 from .sizes import FileName, Particles, Share, csv_rows, number_in
@@ -145,6 +145,10 @@ class Parts(Frozen):
             raise ValueError("no spheres; add [[scene.fill]] or [[scene.body]]")
         self._unique()
         phases = [p.name for p in self.phase]
+        if not self.phase[-1].record:
+            raise ValueError(
+                f"phase.{phases[-1]}.record = false: the last phase is recorded, for its end is the result"
+            )
         for place, name in self._named_phases():
             if name not in phases:
                 raise ValueError(f"{place} = {name!r} is no phase; there are {', '.join(phases)}")
@@ -172,7 +176,7 @@ class Parts(Frozen):
             names = [getattr(part, "name", "") for part in parts]
             for name in names:
                 if names.count(name) > 1:
-                    raise ValueError(f"two parts of {kind} have the name {name!r}; give each its own")
+                    raise ValueError(f"{kind}.{name}: two parts of {kind} have the name {name!r}; give each its own")
 
     def _named_phases(self) -> list[tuple[str, str]]:
         found = [(f"fill.{f.name}.phase", f.phase) for f in self.fill if isinstance(f, Fill) and f.phase]

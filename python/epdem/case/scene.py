@@ -7,7 +7,7 @@ from typing import Annotated, Any, Literal, Self
 from pydantic import ConfigDict, Field, ValidationError, model_validator
 
 from ..errors import CaseError
-from .impact import (
+from .fields import (
     Coefficient,
     Frozen,
     Header,
@@ -27,7 +27,7 @@ from .messages import explain
 from .motions import Rate, Time
 from .parts import Parts
 from .sizes import Particles, Share, context
-from .toml import read_toml
+from .toml import named, read_toml
 from .walls import PartName
 
 Gravity = Annotated[float, Quantity("m/s^2", ge=0.0)]
@@ -302,4 +302,6 @@ def parse(data: dict[str, Any], path: object = "case") -> SceneCase:
 
 def load(path: Path | str) -> SceneCase:
     """The scene in a file. Raises CaseError."""
-    return parse(read_toml(path), path)
+    data = read_toml(path)
+    with named(path):
+        return parse(data, path)

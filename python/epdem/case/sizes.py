@@ -11,7 +11,7 @@ from typing import Annotated, Any, Self
 
 from pydantic import BeforeValidator, Discriminator, Field, Tag, ValidationInfo, model_validator
 
-from .impact import Frozen, Length, Name, Quantity
+from .fields import Frozen, Length, Name, Quantity
 from .units import to_si, within_limits
 
 Share = Annotated[float, Quantity("1", above=0.0, le=1.0)]

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from ..errors import CaseError
+from .lines import line_of
 
 MAX_BYTES = 4_000_000  # of a case file
 
@@ -35,8 +36,27 @@ def read_toml(path: Path | str) -> dict[str, Any]:
 
 @contextlib.contextmanager
 def named(place: object) -> Iterator[None]:
-    """Errors of a case name its `place`: the file that it was read from, or its own name."""
+    """Errors of a case name its `place`: the file that it was read from, or its own name; of a scene of parts the line,
+    too."""
     try:
         yield
     except CaseError as error:
-        raise error if str(place) in str(error) else CaseError(f"{place}: {error}") from None
+        text = str(error)
+        text = text.removeprefix(f"{place}: ") if text.startswith(f"{place}: ") else text
+        if str(place) in text:
+            raise error
+        line = _line(place, text)
+        raise CaseError(f"{place}{line}: {text}") from None
+
+
+def _line(place: object, message: str) -> str:
+    """ " line 7", of a file with a scene of parts; "" of others."""
+    path = Path(str(place))
+    if path.suffix != ".toml" or not path.is_file():
+        return ""
+    data = read_toml(path)
+    scene = data.get("scene")
+    if not isinstance(scene, dict) or scene.get("kind") != "parts":
+        return ""
+    line = line_of(message, path.read_text(encoding="utf-8-sig"), data)
+    return "" if line is None else f" line {line}"

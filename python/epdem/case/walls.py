@@ -6,7 +6,7 @@ from typing import Annotated, Literal, Self
 
 from pydantic import Discriminator, Field, model_validator
 
-from .impact import Frozen, Length, Name, Quantity
+from .fields import Frozen, Length, Name, Quantity
 from .sizes import FileName
 
 Place = Annotated[float, Quantity("m")]
@@ -82,7 +82,14 @@ class PlaneWall(_Wall):
     phases: list[PartName] = Field(default_factory=list)
 
 
-class PlateWall(_Wall):
+class _Triangles(_Wall):
+    """A wall of triangles. stress: the frames have the pressure on each; wear: its constant of Finnie's law [m^2/N]."""
+
+    stress: bool = False
+    wear: Annotated[float, Quantity("m^2/N", above=0.0)] | None = None
+
+
+class PlateWall(_Triangles):
     """A rectangle of two triangles across an axis; `size` along the two other axes, in the order x, y, z."""
 
     kind: Literal["plate"]
@@ -91,7 +98,7 @@ class PlateWall(_Wall):
     size: Annotated[list[Length], Field(min_length=2, max_length=2)]
 
 
-class BoxWall(_Wall):
+class BoxWall(_Triangles):
     """The six faces of a room, without those that are `open` ("-z": the lower one)."""
 
     kind: Literal["box"]
@@ -109,7 +116,7 @@ class BoxWall(_Wall):
         return self
 
 
-class _Round(_Wall, ABC):
+class _Round(_Triangles, ABC):
     """A wall about an axis, from one place along it to another; `center`: the two other coordinates.
 
     ends: which ends a disc closes. turn: angular velocity of its surface about its axis. It is a body of revolution, so
@@ -169,7 +176,7 @@ class Rotation(Frozen):
         return self
 
 
-class StlWall(_Wall):
+class StlWall(_Triangles):
     """The triangles of an STL file, multiplied by `scale` (1e-3 if the file is in mm), rotated, then moved.
 
     closed: whether it must be watertight.

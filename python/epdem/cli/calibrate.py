@@ -37,26 +37,34 @@ def calibrate(
     force: Force = False,
     as_json: AsJson = False,
 ) -> None:
-    """Compute the strength of a law from one e_n or a hardness, or keys of a scene from numbers of its results."""
-    of_scene = {"tolerance": tolerance, "engine": engine, "ranks": ranks, "jobs": jobs, "out": out, "force": force}
+    """Compute the strength of a law from one e_n or a hardness, or keys of a scene from numbers of its results.
+
+    A fit of a scene leaves report.html in its folder; for a strength, --out says where.
+    """
+    of_scene = {"tolerance": tolerance, "engine": engine, "ranks": ranks, "jobs": jobs}
     if target or free:
         refuse(
             case, "it does not go with --target and --free", e_n=e_n, speed=speed, hv=hv, hb=hb, dent_ratio=dent_ratio
         )
-        _of_scene(case, target or [], free or [], {k: v for k, v in of_scene.items() if v is not None}, as_json)
+        given = {k: v for k, v in (of_scene | {"out": out, "force": force}).items() if v is not None}
+        _of_scene(case, target or [], free or [], given, as_json)
         return
     refuse(case, "it goes with --target and --free", **of_scene)
-    _of_impact(case, e_n, speed, hv, hb, dent_ratio, as_json)
+    if out is None:
+        refuse(case, "it belongs to --out", force=force)
+    _of_impact(case, e_n, speed, hv, hb, dent_ratio, as_json, out, force)
 
 
 def _of_scene(case: Path, target: list[str], free: list[str], options: dict[str, Any], as_json: bool) -> None:
     from ..studies.fit import fit
+    from ..studies.pages.tables import of_fit
     from ..studies.sweep.points import settings
     from . import sweep_view
 
     targets = settings(target, "--target", "plate_force_max='12 N'")
     with sweep_view.progress() as report:
         found = fit(case, targets, settings(free, "--free", "contact.friction=0.1..0.9"), report=report, **options)
+    page = of_fit(found)
     if as_json:
         print(json.dumps(vars(found) | {"case": str(found.case)}, indent=1))
         return
@@ -64,7 +72,7 @@ def _of_scene(case: Path, target: list[str], free: list[str], options: dict[str,
         print(f"{key} = {value}")
     for name, value in found.numbers.items():
         print(f"  gives {name} = {value:.6g} {found.units[name]}".rstrip() + f" (target {found.targets[name]:.6g})")
-    print(f"{found.points} scenes, {found.ran} of them just now; the case with these values: {found.case}")
+    print(f"{found.points} scenes, {found.ran} of them just now; the case with these values: {found.case}; see {page}")
 
 
 def _of_impact(
@@ -75,9 +83,12 @@ def _of_impact(
     hb: float | None,
     dent_ratio: float | None,
     as_json: bool,
+    out: Path | None,
+    force: bool,
 ) -> None:
     from ..case.units import read_number
     from ..studies import calibrate as c
+    from ..studies.pages.impacts import of_calibration
 
     if (e_n is None) == (hv is None and hb is None):
         raise CaseError("give one measurement: --e-n with --speed, or --hv, or --hb")
@@ -91,6 +102,7 @@ def _of_impact(
         refuse(case, "it belongs to --e-n", speed=speed)
         pressure = c.pressure_of_hardness(vickers=hv, brinell=hb, dent_ratio=dent_ratio)
         result = c.from_hardness(case, pressure, f"HV {hv:g}" if hv is not None else f"HB {hb:g}")
+    page = of_calibration(case, result, out, force=force) if out else None
     if as_json:
         print(json.dumps(vars(result), indent=1))
         return
@@ -98,4 +110,5 @@ def _of_impact(
         f"law {result.law}, {result.source}: {result.parameter} = {result.value / 1e6:.6g} MPa, "
         f"that is yield_stress = {result.yield_stress / 1e6:.6g} MPa, yield speed {result.yield_speed:.4g} m/s\n"
         f'in the case file, under [law]: {result.parameter} = "{result.value / 1e6:.6g} MPa"'
+        + (f"\nsee {page}" if page else "")
     )

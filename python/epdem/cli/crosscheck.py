@@ -8,7 +8,7 @@ from typing import Annotated, Any
 
 import typer
 
-from ..base.terminal import console, status, table
+from ..base.terminal import console, show_table, status, table
 from ..errors import CaseError
 from .options import AsJson, Force, Out
 
@@ -60,7 +60,7 @@ def _show(title: str, heads: dict[str, str], rows: list[dict[Hashable, Any]]) ->
     shown = table(title, heads.values(), left=("model",))
     for row in rows:
         shown.add_row(*(_cell(name, row[name]) for name in heads))
-    console().print(shown)
+    show_table(console(), shown)
 
 
 def crosscheck(

@@ -14,16 +14,18 @@ import typer
 
 from .. import __version__
 from ..base.settings import DEFAULT_ENGINE
-from ..base.terminal import bar, console
+from ..base.terminal import bar, console, status
 from ..errors import CaseError, EpdemError, Stopped
 from . import calibrate as cli_calibrate
 from . import crosscheck as cli_crosscheck
+from . import motion as cli_motion
 from . import numerics as cli_numerics
 from . import rerun as cli_rerun
 from . import scenes as cli_scene
 from . import sweep as cli_sweep
 from . import theory as cli_theory
 from . import trees as cli_trees
+from . import validate as cli_validate
 from .options import AsJson, CasePath, Engines, Force, Formats, Laws, Out, formats, laws_or_own, refuse, warn
 from .printed import Printed
 
@@ -217,13 +219,16 @@ def doctor(as_json: AsJson = False) -> None:
     from ..engines.doctor import examine
     from . import show
 
-    findings = examine()
+    with status() as line:
+        line("engines")
+        findings = examine()
     show.findings(findings, as_json, console())
     raise typer.Exit(0 if all(f.ok for f in findings if f.needed) else 3)
 
 
 for command in (
     cli_crosscheck.crosscheck,
+    cli_motion.motion,
     cli_theory.theory,
     cli_theory.figures,
     cli_theory.cite,
@@ -239,6 +244,7 @@ for command in (
     cli_sweep.status,
     cli_rerun.rerun,
     cli_trees.header,
+    cli_validate.validate,
 ):
     app.command()(command)
 app.command("points", hidden=True)(cli_sweep.points)  # what batch scripts call

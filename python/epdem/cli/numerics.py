@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from ..base.terminal import console, frame_table, status
+from ..base.terminal import console, frame_table, show_table, status
 from .options import AsJson, CasePath, Engines, Force, Formats, Laws, Out, Replace, formats, laws_or_own, refuse
 
 
@@ -108,11 +108,13 @@ def stability(
         )
     else:
         screen = console()
-        screen.print(frame_table("extreme cases; steps as shares of the stability limit", summary(outcome.verdicts)))
+        show_table(
+            screen, frame_table("extreme cases; steps as shares of the stability limit", summary(outcome.verdicts))
+        )
         for v in outcome.verdicts[outcome.verdicts["status"] == "failed"].itertuples():
             screen.print(f"failed: {v.engine}, {v.law}, {v.case}: {v.reason}", style="red")
         if not outcome.bulk.empty:
-            screen.print(frame_table("stiff bulk scenes in LIGGGHTS", outcome.bulk))
+            show_table(screen, frame_table("stiff bulk scenes in LIGGGHTS", outcome.bulk))
     raise typer.Exit(0 if outcome.passed else 1)
 
 

@@ -107,6 +107,7 @@ def view(
 ) -> None:
     """Draw a scene before it runs: walls, regions, first spheres."""
     from ..base.folders import refuse_existing
+    from ..base.terminal import status
     from ..case.scene import load
     from ..case.toml import named
     from ..scenes import pictures
@@ -119,7 +120,9 @@ def view(
             return
         path = out or Path(f"{p.case.name}.png")
         refuse_existing(path, force=force)
-        drawn = pictures.before(p, path)
+        with status() as line:
+            line(f"{p.case.name}: walls, regions, first spheres")
+            drawn = pictures.before(p, path)
     said = {"file": str(path), "spheres": p.layout.count, "drawn": drawn}
     print(json.dumps(said) if as_json else f"{path}: walls, regions and {drawn} of {p.layout.count} spheres")
 

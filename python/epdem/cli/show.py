@@ -10,7 +10,7 @@ from rich.console import Console
 from rich.table import Table
 from rich.text import Text
 
-from ..base.terminal import table
+from ..base.terminal import show_table, table
 from ..engines.doctor import Finding
 from ..impacts.experiment import Experiment
 from ..impacts.prediction import Prediction
@@ -43,7 +43,7 @@ def predictions(pairs: list[tuple[Experiment, Prediction]], doubts: list[str], a
                 }
             )
         else:
-            console.print(_table(f"{x.title}: law {x.law.name} (SI units; {yielding(p)})", frame))
+            show_table(console, _table(f"{x.title}: law {x.law.name} (SI units; {yielding(p)})", frame))
             for material, speed in p.yield_speeds.items():
                 never = "never: the softer body limits the pressure"
                 when = f"from {speed:.4g} m/s on" if math.isfinite(speed) else never

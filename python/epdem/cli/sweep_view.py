@@ -10,7 +10,7 @@ from typing import Any
 from rich.console import Console
 from rich.progress import MofNCompleteColumn, TimeRemainingColumn
 
-from ..base.terminal import bar, table
+from ..base.terminal import bar, show_table, table
 from ..studies.sweep.folder import DONE, FAILED, Sweep
 from ..studies.sweep.run import Report, SweepOutcome
 
@@ -26,7 +26,7 @@ def points(sweep: Sweep, as_json: bool, console: Console) -> None:
     shown = table(title, ("point", *sweep.points[0]))
     for n, point in enumerate(sweep.points, start=1):
         shown.add_row(str(n), *map(str, point.values()))
-    console.print(shown)
+    show_table(console, shown)
 
 
 @contextlib.contextmanager

@@ -8,7 +8,7 @@ from typing import Annotated
 import typer
 
 from ..base.settings import DEFAULT_ENGINE
-from ..base.terminal import console, status
+from ..base.terminal import console, show_table, status
 from ..base.terminal import table as empty_table
 from .options import AsJson, CasePath, Engines, Force, Formats, Laws, formats, laws_or_own, refuse
 
@@ -41,7 +41,7 @@ def theory(
     table = empty_table(title, ("law", *x.laws["hertz"]), left=("law",))
     for name, row in x.laws.items():
         table.add_row(name, *(f"{value:.6g}" for value in row.values()))
-    console().print(table)
+    show_table(console(), table)
     console().print(
         f"E* = {x.E_star:.5g} Pa, m* = {x.m_star:.5g} kg; first yield at p_0 = {x.first_yield_p0_over_Y:.4f} Y, depth "
         f"{x.first_yield_depth_over_a:.3f} a; v_y0 = {x.v_y0:.4g} m/s ({x.first:.2f} Y), "

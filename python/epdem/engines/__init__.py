@@ -6,17 +6,21 @@ from collections.abc import Callable
 from ..base.settings import DEFAULT_ENGINE
 from ..errors import CaseError, EngineError
 from ..impacts.engine import Engine, OwnTheory, Trajectory
+from ..impacts.motion import MotionEngine
 from ..lammps.impacts import LammpsMdr
 from ..liggghts.assemblies import LiggghtsAssemblies
 from ..liggghts.builtin import BuiltinEdinburgh, BuiltinHertz, BuiltinLuding, ThorntonNing
 from ..liggghts.impacts import Liggghts
+from ..liggghts.motions import LiggghtsMotions
 from ..liggghts.scenes import LiggghtsScenes
 from ..scenes.assembly import AssemblyEngine
 from ..scenes.engine import SceneEngine
 from ..yade.builtin import YadeLuding
 from ..yade.impacts import Yade
+from ..yade.motions import YadeMotions
 from ..yade.scenes import YadeScenes
 from .embedded import Embedded
+from .embedded_motion import EmbeddedMotions
 
 ENGINES: dict[str, type[Engine]] = {tool.name: tool for tool in (Embedded, Liggghts, Yade)}
 # LIGGGHTS's own models, for comparisons; `run` takes them by name as well.
@@ -27,6 +31,8 @@ FOREIGN: dict[str, type[OwnTheory]] = {
 }
 # Engines of bulk scenes.
 SCENES: dict[str, type[SceneEngine]] = {tool.name: tool for tool in (LiggghtsScenes, YadeScenes)}
+# Engines of prescribed motions.
+MOTIONS: dict[str, type[MotionEngine]] = {tool.name: tool for tool in (EmbeddedMotions, LiggghtsMotions, YadeMotions)}
 # Engines of assemblies.
 ASSEMBLIES: dict[str, type[AssemblyEngine]] = {LiggghtsAssemblies.name: LiggghtsAssemblies}
 REFERENCE = BuiltinHertz.name  # over whose time those of all others are given
@@ -63,6 +69,7 @@ __all__ = [
     "DEFAULT_ENGINE",
     "ENGINES",
     "FOREIGN",
+    "MOTIONS",
     "OTHERS",
     "REFERENCE",
     "SCENES",

@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from ..base import paths
-from ..case.impact import NODES
+from ..case.fields import NODES
 from ..errors import CaseError
 from ..impacts import oblique
 from ..impacts.engine import Abilities, Trajectory, check_abilities

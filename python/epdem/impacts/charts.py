@@ -2,6 +2,7 @@
 """Figures of a run of impacts as data: restitution, errors, loops, forces, slip."""
 
 import math
+from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
@@ -27,6 +28,7 @@ SYMBOLS = {
     "overlap_max": r"$\alpha_\mathrm{max}$",
     "residual_overlap": r"$\alpha_\mathrm{res}$",
 }
+MEASURED = 5  # kind of the points of a measurement, which engines do not reach
 SPEED = Axis("impact speed $v$", "m/s", log=True)
 
 
@@ -35,9 +37,9 @@ def main_chart(outcome: Outcome) -> Chart:
     return slip(outcome) if outcome.case.impact.oblique else restitution(outcome)
 
 
-def _fine(x: Experiment) -> Experiment:
-    """The experiment at the speeds of a line: a little beyond its own."""
-    low, high = float(x.speed.min()), float(x.speed.max())
+def _fine(x: Experiment, others: Sequence[float] = ()) -> Experiment:
+    """The experiment at the speeds of a line: over its own and `others`."""
+    low, high = float(min([*x.speed, *others])), float(max([*x.speed, *others]))
     margin = 1.0 if high > low else 2.0  # one speed alone is drawn with its surroundings
     return replace(x, speed=np.geomspace(low / margin, high * margin, FINE))
 
@@ -73,9 +75,10 @@ def restitution(outcome: Outcome) -> Chart:
     def named(name: str, law: str) -> str:
         return f"{name}, {law}" if several else name
 
+    known = outcome.case.measured
     for i, law in enumerate(outcome.predictions):
         x = outcome.plans[law].experiment
-        fine = _fine(x)
+        fine = _fine(x, known.speeds if known else ())
         above.append(Series(named("theory", law), fine.speed, predict(fine).e_n, i % len(PALETTE) if several else INK))
         engines = rows[rows["law"] == law].groupby("engine", sort=False)
         for k, (name, part) in enumerate(engines):
@@ -87,6 +90,8 @@ def restitution(outcome: Outcome) -> Chart:
     if plastic and fine.speed[-1] > 100 * v_y0 and x.viscous_restitution is None:
         beyond = fine.speed[fine.speed >= 100 * v_y0]
         above.append(Series("finite-element fit, eq. 8.88", beyond, printed.wu(beyond, v_y0=v_y0), INK, "dash"))
+    if known:
+        above.append(Series("measured", np.array(known.speeds), np.array(known.e_n), INK, None, MEASURED))
     below.append(_tolerance(fine.speed, outcome.case.check.e_n))
     said = ", ".join(rows["engine"].unique())
     return Chart(
@@ -98,6 +103,7 @@ def restitution(outcome: Outcome) -> Chart:
             Panel(SPEED, Axis("coefficient of restitution $e_n$"), above, 3.0),
             Panel(SPEED, _error("$e_n$"), below, 1.4),
         ],
+        heading="Restitution against impact speed",
     )
 
 
@@ -220,4 +226,5 @@ def slip(outcome: Outcome) -> Chart:
             Panel(before, Axis(r"slip after the impact $\psi_2$"), above, 3.0),
             Panel(before, _error(r"$\psi_2$"), below, 1.4),
         ],
+        heading="Slip after against slip before",
     )

@@ -10,7 +10,8 @@ from functools import cached_property
 
 import numpy as np
 
-from ..case.impact import RIGID, Case, Check, Material, Numerics, Rate, Tangential
+from ..case.fields import Material, Tangential
+from ..case.impact import RIGID, Case, Check, Numerics, Rate
 from ..case.law import law_numbers
 from ..errors import CaseError
 from ..laws import library

@@ -10,7 +10,7 @@ from dataclasses import dataclass, fields
 
 import numpy as np
 
-from ..case.impact import NODES
+from ..case.fields import NODES
 from ..errors import CaseError
 from ..theory import partial_slip
 from ..theory.backbones import Backbone

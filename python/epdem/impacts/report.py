@@ -5,6 +5,7 @@ import hashlib
 import json
 import math
 from collections.abc import Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -17,7 +18,7 @@ from ..base.folders import claim
 from ..base.terminal import show_table, table
 from . import oblique_report
 from .comparison import CHECKED
-from .prediction import Prediction
+from .prediction import Prediction, predict
 from .run import Outcome
 
 # columns that a narrow terminal has no room for, those of oblique impacts among them
@@ -33,6 +34,8 @@ SPARE = (
     "spin [rad/s]",
     "regime",
     "e_t",
+    "theory",
+    "engine",
 )
 FEW = 10  # impacts of each engine and law in the short table
 ROW_KEYS = (
@@ -166,13 +169,27 @@ def summary(outcome: Outcome) -> str:
     return f"{outcome.case.name}: {verdict}; {worst}; {times}{stored}; see {outcome.folder}/report.html"
 
 
+def against_measured(outcome: Outcome) -> list[str]:
+    """One line for every law: how far theory is from the measured restitution of the case, if it has any."""
+    if (known := outcome.case.measured) is None:
+        return []
+    lines = []
+    for law, p in outcome.plans.items():
+        found = predict(replace(p.experiment, speed=np.array(known.speeds))).e_n - np.array(known.e_n)
+        lines.append(
+            f"theory, {law}: e_n less the measured one is {found.mean():+.3f} in the mean, {found.min():+.3f} to "
+            f"{found.max():+.3f} over {found.size} values ({known.source})"
+        )
+    return lines
+
+
 def show(outcome: Outcome, console: Console, *, full: bool = False) -> None:
     """Print table, warnings and summary."""
     shown, rows = chosen(outcome, full), outcome.results.comparison
     show_table(console, run_table(outcome, full=full), SPARE)
     if len(shown) < len(rows):
         console.print(f"{len(shown)} of {len(rows)} rows; --full prints all", markup=False, highlight=False)
-    for line in worst(outcome):
+    for line in [*worst(outcome), *against_measured(outcome)]:
         console.print(line, markup=False, highlight=False, soft_wrap=True)
     for warning in outcome.warnings:
         console.print(f"warning: {warning}", style="yellow", markup=False, highlight=False)
@@ -181,7 +198,8 @@ def show(outcome: Outcome, console: Console, *, full: bool = False) -> None:
 
 def mark(outcome: Outcome, *facts: object) -> str:
     """Hash of the inputs of the runs that an outcome holds, and of `facts`: what a picture or page shows."""
-    shown = (sorted((key, run["inputs"]) for key, run in outcome.results.runs.items()), facts)
+    runs = sorted((key, run["inputs"]) for key, run in outcome.results.runs.items())
+    shown = (runs, outcome.case.measured, facts)
     return hashlib.sha256(repr(shown).encode()).hexdigest()
 
 

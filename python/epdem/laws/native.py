@@ -136,6 +136,19 @@ class Law:
         self._call("epdem_oblique", c_double(G_star), c_double(mu), nodes, *places)
         return after
 
+    def motion(self, steps: npt.ArrayLike, *, R_star: float, G_star: float, mu: float, nodes: int) -> Array:
+        """Normal force and friction (3) [N] of one contact, (n, 4), in a prescribed motion, (n, 9).
+
+        A step is overlap, closing speed times time step [m], unit normal (3), slip in the step (3) [m], rotation about
+        the normal in it, mean of both bodies [rad]. The normal points to the body that the forces act on. nodes as in
+        `oblique`.
+        """
+        motion = np.ascontiguousarray(steps, dtype=np.float64)
+        out = np.empty((len(motion), 4))
+        numbers = (c_double(R_star), c_double(G_star), c_double(mu), nodes)
+        self._call("epdem_motion", *numbers, len(motion), _pointer(motion), _pointer(out))
+        return out
+
     def impacts_long_double(self, *, steps: int, **numbers: Unpack[ImpactNumbers]) -> Array:
         """The same impacts computed in long double, IMPACT_OUTPUT rounded at the end: a reference for round-off."""
         cases = self._cases(steps, **numbers)

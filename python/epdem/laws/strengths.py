@@ -7,7 +7,6 @@ from dataclasses import dataclass
 
 from ..errors import CaseError
 from ..theory.backbones import ADHESIVE, JKR, LAWS, Backbone
-from .library import laws
 
 ADHESION = "work_of_adhesion"  # the parameter of laws with adhesion [J/m^2]
 NO_ADHESION = dict.fromkeys(("johnson", "cavity"), ", and no theory of adhesion exists for it")
@@ -19,6 +18,11 @@ def law_named(name: str) -> type[Backbone] | type[JKR]:
     if name not in known:
         raise CaseError(f"law.name = {name!r} does not exist; there are {', '.join(known)}")
     return known[name]
+
+
+def yields_by_stress(name: str) -> bool:
+    """Whether the strength of a law is the yield stress itself, not a contact pressure. Raises CaseError."""
+    return law_named(name).strength == "yield_stress"
 
 
 @dataclass(frozen=True)
@@ -62,12 +66,6 @@ class LawSpec:
     def adheres(self) -> bool:
         """Whether bodies attract each other."""
         return self.name in ADHESIVE
-
-    @property
-    def strength_property(self) -> str | None:
-        """LIGGGHTS's name of the strength, or None if the law has none."""
-        strength = laws()[self.name].strength
-        return None if strength is None else strength.property
 
     def ratios(self) -> dict[str, float]:
         """The dimensionless parameters that differ from the law's defaults."""

@@ -9,7 +9,7 @@ import numpy as np
 from ..base import paths
 from ..base import rendering as decks
 from ..base.files import write_texts
-from ..case.impact import NODES
+from ..case.fields import NODES
 from ..errors import CaseError, EngineError
 from ..impacts.engine import Abilities, Trajectory, check_abilities
 from ..impacts.pairs import Pairs

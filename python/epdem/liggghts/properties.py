@@ -5,7 +5,7 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from ..case.impact import NODES
+from ..case.fields import NODES
 from ..impacts.experiment import Body
 from ..impacts.plan import Plan
 from ..laws import library as claw
@@ -24,6 +24,7 @@ _REASONS = {
     "coefficientRollingFriction": "contact.rolling.coefficient: limit of the rolling moment",
     "coefficientRollingViscousDamping": "contact.rolling.damping: dashpot of the rolling moment",
     "workOfAdhesion": "work of adhesion Gamma of the law: the bodies attract each other",
+    "k_finnie": "scene.wall.wear: Finnie's constant of pairs with this wall",
     "cohesionEnergyDensity": "contact.cohesion: attraction over the contact area",
 }
 

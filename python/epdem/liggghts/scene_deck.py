@@ -10,10 +10,11 @@ from ..errors import CaseError
 from ..laws.library import laws
 from ..scenes.model import Model
 from ..scenes.plan import ScenePlan
-from . import stl
+from . import stl, wall_stress
 from .insertions import Insertion, insertions
 from .properties import HARD, SOFT, Property, elastic, per_pair, ratios, strength, tangential, work_of_adhesion
-from .scene_parts import Flat, Part, Surface, load_words, parts, planes, surfaces, table, wall_id
+from .scene_parts import Flat, Part, Surface, load_words, parts, planes, surfaces, table
+from .wall_power import wall_id
 
 MOST_CELLS = 2**31 - 1  # that LIGGGHTS counts, each half as wide as its longest reach
 SKIN = 0.5  # of the smallest radius: rebuilds cost less than idle neighbours
@@ -59,6 +60,7 @@ class Deck:
     samples: int
     frames: int
     contacts: int
+    watched: tuple[tuple[str, str, bool], ...]
     vtk: int
     pictures: int
     restarts: int
@@ -105,7 +107,7 @@ def _properties(p: ScenePlan) -> tuple[Property, ...]:
         properties.append(work_of_adhesion(n, [x for row in m.adhesion for x in row]))
     if m.cohesion:
         properties.append(per_pair("cohesionEnergyDensity", n, m.cohesion, "J/m^3"))
-    return tuple(properties)
+    return (*properties, *wall_stress.properties(p))
 
 
 def _settings(p: ScenePlan) -> tuple[str, ...]:
@@ -201,6 +203,7 @@ def deck(p: ScenePlan) -> Deck:
         samples=p.every // p.sampling,
         frames=p.frames,
         contacts=p.contacts,
+        watched=tuple((name, wall_id(p, name), p.layout.meshes[name].wear > 0) for name in wall_stress.watched(p)),
         vtk=p.vtk,
         pictures=p.pictures,
         restarts=p.restarts,

@@ -7,12 +7,10 @@ from dataclasses import dataclass, replace
 from itertools import zip_longest
 
 from ..base import rendering as decks
-from ..case.parts import Parts
 from ..errors import CaseError
 from ..scenes.layout import Body, Linear, Mesh, Move, Plane, Servo, Turn, Vector, Vibration
 from ..scenes.plan import Phase, ScenePlan
-
-GAIN = 1.0  # of a wall that a force drives: its speed over the highest is the relative error of the force
+from .wall_power import GAIN, power, wall_id
 
 
 @dataclass(frozen=True)
@@ -88,6 +86,7 @@ class Part:
     held: tuple[str, ...]
     ends: tuple[str, ...]
     late: tuple[Late, ...]
+    record: bool
     power: str
     wait: Wait | None
 
@@ -102,11 +101,6 @@ class Part:
 
 def _words(*vectors: tuple[float, ...]) -> str:
     return " ".join(decks.number(x) if x else "0" for vector in vectors for x in vector)
-
-
-def wall_id(p: ScenePlan, name: str) -> str:
-    """The id of a wall's fix: names that a user gave to parts cannot be those of other fixes."""
-    return f"wall_{name}" if isinstance(p.case.scene, Parts) else name
 
 
 def plane(p: ScenePlan, w: Plane, *, force: bool = False) -> Flat:
@@ -150,10 +144,16 @@ def surfaces(p: ScenePlan) -> tuple[Surface, ...]:
     force = p.plates or p.output.loads or p.output.energy
     found = []
     for name, mesh in p.layout.meshes.items():
-        turn, words, style = mesh.turn, "", "/stress" if force or name in p.layout.loads else ""
+        turn, words, style = (
+            mesh.turn,
+            "",
+            "/stress" if force or name in p.layout.loads or mesh.stress or mesh.wear else "",
+        )
         origins = _origins(p, name)
         if style and any(origins):
             words = f" reference_point {_words(origins)}"
+        if mesh.wear:
+            words += " wear finnie"
         if turn is not None:
             axis = " ".join(f"{x:g}" for x in turn.axis)
             words += f" surface_ang_vel origin {_words(turn.origin)} axis {axis} omega {decks.number(turn.rate)}"
@@ -165,29 +165,6 @@ def surfaces(p: ScenePlan) -> tuple[Surface, ...]:
         waits = servo is not None and name not in p.phases[0].moves
         found.append(Surface(wall_id(p, name), f"{name}.stl", p.wall_types[name], style, words, waits))
     return tuple(found)
-
-
-def _times(name: str, first: int, values: Vector) -> list[str]:
-    """Products of components of a fix, from number `first` on, and values."""
-    return [f"f_{name}[{first + k}]*{decks.number(v)}" for k, v in enumerate(values) if v]
-
-
-def _power(p: ScenePlan, phase: Phase) -> str:
-    """The power of all that moves in a phase, as LIGGGHTS's formula: force and torque are those on the walls."""
-    terms = []
-    for name, mesh in p.layout.meshes.items():
-        id, move = wall_id(p, name), phase.moves.get(name)
-        for turn in (mesh.turn, move):
-            if isinstance(turn, Turn):
-                x, y, z = turn.axis
-                terms += _times(id, 4, (turn.rate * x, turn.rate * y, turn.rate * z))
-        if isinstance(move, Linear):
-            terms += _times(id, 1, move.velocity)
-        if isinstance(move, Vibration):
-            x, y, z = (move.omega * a for a in move.amplitude)
-            omega = decks.number(move.omega * (phase.time_step or p.time_step))
-            terms.append(f"({'+'.join(_times(id, 1, (x, y, z)))})*cos((step-${{begin}})*{omega})")
-    return f"-({'+'.join(terms)})" if terms else "0.0"
 
 
 def _motion(p: ScenePlan, name: str, move: Move) -> Motion:
@@ -255,8 +232,9 @@ def parts(p: ScenePlan) -> tuple[Part, ...]:
             held_gates=tuple(gates[name] for name in phase.gates),
             held=tuple(m.begin for m in motions.values()),
             ends=(*ends, *(m.end for name, m in motions.items() if after and not _goes_on(name, phase, after))),
+            record=phase.record,
             late=tuple(_late(p, b) for b in p.layout.bodies if b.phase == phase.name),
-            power=_power(p, phase) if p.powered else "",
+            power=power(p, phase) if p.powered else "",
             wait=_wait(p, phase, phase.end - begin),
         )
         found.append(part)

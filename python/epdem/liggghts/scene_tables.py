@@ -83,7 +83,7 @@ def damaged(p: ScenePlan, folder: Path, upto: int) -> list[int]:
     """Steps up to `upto` of which a frame is missing or not whole."""
     steps = set()
     for kind, every in _written(p).items():
-        for step in range(0, upto + 1, every):
+        for step in (n for n in p.frame_steps(every) if n <= upto):
             path = folder / kind.format(step)
             try:
                 _frame(path, len(_particle_names(p))) if kind == PARTICLES else dump.local(path)
@@ -107,7 +107,7 @@ def _slots(p: ScenePlan) -> list[str]:
 def _steps(p: ScenePlan, kind: str, folder: Path, without: Collection[int]) -> list[tuple[int, Path]]:
     """(step, file) of the frames of a kind, by step."""
     every = _written(p).get(kind, 0)
-    steps = range(0, p.steps + 1, every) if every else range(0)
+    steps = p.frame_steps(every) if every else []
     return [(step, folder / kind.format(step)) for step in steps if step not in without]
 
 

@@ -9,7 +9,7 @@ import pandas as pd
 from ..case.parts import Parts
 from ..scenes.engine import Report, Resumed
 from ..scenes.plan import ScenePlan
-from . import launcher, resume, scene_deck
+from . import launcher, resume, scene_deck, wall_stress
 from . import scene_tables as tables
 from .impacts import Liggghts
 
@@ -26,6 +26,7 @@ class LiggghtsScenes:
         "wall_contacts.*.txt",
         "restart.*.bin",
         "scene_*.vtk",
+        "stress_*.vtk",
         "picture.*.ppm",
         "in.resume",
     )
@@ -60,6 +61,8 @@ class LiggghtsScenes:
             read["particles"] = tables.particles(plan, folder, without=without)
         if plan.contacts:
             read["contacts"] = tables.contact_table(plan, folder, read["particles"], without=without)
+        if wall_stress.watched(plan):
+            read["walls"] = wall_stress.table(plan, folder, without=without)
         return read
 
 

@@ -45,6 +45,7 @@ class Axis:
     log: bool = False
     low: float | None = None  # limits; None: as the data need
     high: float | None = None
+    ticks: dict[float, str] | None = None  # texts at places, instead of numbers
 
     def __str__(self) -> str:
         return f"{self.label} [{self.unit}]" if self.unit else self.label
@@ -72,6 +73,7 @@ class Chart:
     alt: str
     panels: list[Panel] = field(default_factory=list)
     beside: bool = False
+    heading: str = ""  # on a page, which has a title of its own; empty: the title
     kind: ClassVar[str] = "chart"
 
     def csv(self) -> str:

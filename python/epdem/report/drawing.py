@@ -92,6 +92,8 @@ def _style(series: Series) -> dict[str, Any]:
 
 
 def _scale(axes: "Axes", panel: Panel, *, labels_x: bool, labels_y: bool) -> None:
+    from matplotlib.ticker import NullFormatter
+
     for name, axis, labelled in (("x", panel.x, labels_x), ("y", panel.y, labels_y)):
         setting: dict[str, Any] = {f"{name}scale": "log" if axis.log else "linear"}
         if labelled:
@@ -99,6 +101,9 @@ def _scale(axes: "Axes", panel: Panel, *, labels_x: bool, labels_y: bool) -> Non
         if limits := _limits(axis, [v for s in panel.series for v in np.atleast_1d(getattr(s, name))]):
             setting[f"{name}lim"] = limits
         axes.set(**setting)
+        if axis.ticks:
+            getattr(axes, f"set_{name}ticks")(list(axis.ticks), list(axis.ticks.values()))
+            getattr(axes, f"{name}axis").set_minor_formatter(NullFormatter())
 
 
 def _limits(axis: Axis, values: Sequence[float]) -> tuple[float | None, float | None] | None:

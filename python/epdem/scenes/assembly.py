@@ -8,7 +8,7 @@ from typing import Protocol
 
 import numpy as np
 
-from ..laws.strengths import default_numbers
+from ..laws.strengths import default_numbers, yields_by_stress
 from ..theory import pair
 from ..theory.backbones import LAWS, Backbone
 from ..theory.timestep import stability_limit
@@ -53,7 +53,7 @@ class Assembly:
     def strength(self, p_y: float) -> float:
         """The law's strength [Pa] of a material of yield pressure p_y [Pa]: that pressure, or a yield stress."""
         pressure_over_stress = LAWS["thornton"].default_ratio
-        return p_y / pressure_over_stress if LAWS[self.law].strength == "yield_stress" else p_y
+        return p_y / pressure_over_stress if yields_by_stress(self.law) else p_y
 
     def time_step(self) -> float:
         """SHARE of the smallest stability limit of all pairs at the highest speed [s]."""

@@ -37,7 +37,7 @@ def rows(outcome: SceneOutcome) -> Chart:
     names = ", ".join(ROWS[name].label for name in shown)
     time = table["time"].to_numpy()
     panels = [Panel(TIME, ROWS[name], [Series("", time, table[name].to_numpy(), k)]) for k, name in enumerate(shown)]
-    return Chart("scene", title, f"Against time: {names}.", panels)
+    return Chart("scene", title, f"Against time: {names}.", panels, heading="Rows against time")
 
 
 def measured(outcome: SceneOutcome) -> list[Chart]:
@@ -81,7 +81,13 @@ def ledger(outcome: SceneOutcome) -> Chart:
     if "friction" not in table or "springs" in table:
         series.append(Series("left over", time, table["balance"].to_numpy(), GREY))
     alt = "Energy balance against time: what moves, what is stored and what has been lost."
-    return Chart("energy", f"{outcome.case.case.title}: energy", alt, [Panel(TIME, Axis("energy", "J"), series)])
+    return Chart(
+        "energy",
+        f"{outcome.case.case.title}: energy",
+        alt,
+        [Panel(TIME, Axis("energy", "J"), series)],
+        heading="Energy balance",
+    )
 
 
 def bed(outcome: SceneOutcome) -> list[Picture]:

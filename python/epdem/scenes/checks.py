@@ -202,11 +202,12 @@ def _of_parts(p: ScenePlan, tables: dict[str, pd.DataFrame]) -> list[Row]:
         return []
     last = tables["particles"][tables["particles"]["step"] == tables["particles"]["step"].max()]
     weight = last["mass"] * p.case.scene.gravity
-    if kinetic(last).sum() > AT_REST * (weight * last["radius"]).sum():
+    if last.empty or kinetic(last).sum() > AT_REST * (weight * last["radius"]).sum():
         return []
     row = tables["rows"].iloc[-1]
-    borne = -sum(float(row[f"{name}_force_z"]) for name in p.layout.loads)
-    return [_row("force on all walls / weight", borne, float(weight.sum()), 0.02)]
+    forces = [-float(row[f"{name}_force_z"]) for name in p.layout.loads]
+    of_largest = max(1.0, *(abs(f) / float(weight.sum()) for f in forces))  # a lid may press with many times the weight
+    return [_row("force on all walls / weight", sum(forces), float(weight.sum()), 0.02 * of_largest)]
 
 
 def checks(p: ScenePlan, tables: dict[str, pd.DataFrame]) -> pd.DataFrame:

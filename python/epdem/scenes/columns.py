@@ -18,7 +18,9 @@ UNITS = {
     "torque": "N m",
     "wall_power": "W",
     "plate_z": "m",
-    "stress": "Pa",
+    **dict.fromkeys(("stress", "normal_stress", "shear_stress"), "Pa"),
+    "area": "m^2",
+    "wear": "m",
     "radius": "m",
     "mass": "kg",
     **dict.fromkeys(("x", "y", "z"), "m"),
@@ -36,9 +38,14 @@ PARTICLES = ["id", "type", "radius", "mass", "x", "y", "z", "vx", "vy", "vz"]
 SPINS = ["omega_x", "omega_y", "omega_z"]
 
 
+def unit_of_load(column: str) -> str | None:
+    """The unit of a column of a wall's mean force or torque; None for another one."""
+    return ("N" if column[:-1].endswith("_force_") else "N m") if column.endswith(LOADS) else None
+
+
 def units(table: pd.DataFrame) -> dict[str, str]:
     """The unit of each column of a table that has one."""
-    loads = {name: "N" if name[:-1].endswith("_force_") else "N m" for name in table if str(name).endswith(LOADS)}
+    loads = {str(name): unit for name in table if (unit := unit_of_load(str(name)))}
     return UNITS | loads
 
 

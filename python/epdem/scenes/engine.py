@@ -63,7 +63,7 @@ def files(engine: SceneEngine, p: ScenePlan) -> dict[str, str]:
     """Everything written for the engine, by path in the folder. Raises CaseError for what the engine cannot do."""
     kind, law, can = p.case.scene.kind, p.model.law, engine.can
     if kind not in can.scenes:
-        known = " and ".join(can.scenes)
+        known = ", ".join(can.scenes)
         raise CaseError(f"scene.kind = {kind!r}: engine {engine.name} runs {known}; use another --engine")
     check_law(engine.name, can, law)
     return engine.files(p)

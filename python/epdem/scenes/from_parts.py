@@ -86,7 +86,7 @@ def _meshes(s: Parts, largest: float) -> dict[str, Mesh]:
             raise CaseError(
                 f"scene.wall.{w.name}: reaches beyond scene.room; enlarge the room, or make the wall smaller"
             )
-        found[w.name] = Mesh(triangles, w.material, _turn(w))
+        found[w.name] = Mesh(triangles, w.material, _turn(w), w.stress, w.wear or 0.0)
     return found
 
 
@@ -219,7 +219,7 @@ def _stage(s: Parts, p: Phase) -> Stage:
             move = moves[u.wall or ""]
             assert isinstance(move, Linear)
             seconds = min(seconds, u.travel / math.hypot(*move.velocity))
-    return Stage(p.name, seconds, moves, gates, until, p.time_step)
+    return Stage(p.name, seconds, moves, gates, until, p.time_step, p.record)
 
 
 def from_parts(case: SceneCase, s: Parts) -> Layout:
@@ -234,12 +234,17 @@ def from_parts(case: SceneCase, s: Parts) -> Layout:
     loads |= {m.wall for m in s.measure if isinstance(m, Load)} & {w.name for w in s.wall}
     moves = [(name, move) for stage in stages for name, move in stage.moves.items()]
     served = {name for name, move in moves if isinstance(move, Servo)}
-    if served and case.output.energy:
-        raise CaseError(f"output.energy: the work of wall {min(served)}, which a force drives, is not known; remove it")
     if both := {name for name, move in moves if name in served and not isinstance(move, Servo)}:
         raise CaseError(f"scene.wall.{min(both)}: a wall that a force drives has no other motion; take a second wall")
     if case.output.restarts and any(not isinstance(move, Linear) for _, move in moves):
         raise CaseError("output.restarts: only walls with linear motions go on where they were; remove it")
+    for name, mesh in walls.items():
+        if (mesh.stress or mesh.wear) and not case.output.particles:
+            raise CaseError(f"scene.wall.{name}: stress and wear are written with the frames; give output.particles")
+        if mesh.wear and case.output.restarts:
+            raise CaseError(
+                f"output.restarts: a continued run does not know the wear of wall {name}; remove one of both"
+            )
     fills = _fills(case, s)
     bodies = tuple(Body(b.name, b.sphere, b.phase or "") for b in s.later)
     return Layout(

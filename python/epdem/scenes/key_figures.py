@@ -8,7 +8,7 @@ import pandas as pd
 
 from ..case.parts import Parts
 from ..case.scene import Compaction, Drum, Hopper, Peening, Settle
-from ..report.chart import INK, Axis, Chart, Panel, Series
+from ..report.chart import INK, Axis, Chart, Panel, Series, plain
 from . import checks
 from .measures import unit
 from .plan import ScenePlan
@@ -110,5 +110,6 @@ def panels(p: ScenePlan, tables: Tables) -> list[Panel]:
 def key(p: ScenePlan, tables: Tables) -> list[Chart]:
     """The key figure of a scene, if there is one."""
     found = panels(p, tables)
-    said = " and ".join(f"{panel.y.label} against {panel.x.label}" for panel in found).replace("$", "")
-    return [Chart("key", p.case.case.title, f"{said}.", found)] if found else []
+    said = plain(" and ".join(f"{panel.y.label} against {panel.x.label}" for panel in found))
+    said = said[:1].upper() + said[1:]
+    return [Chart("key", p.case.case.title, f"{said}.", found, heading=said)] if found else []

@@ -72,11 +72,16 @@ class Until:
 
 @dataclass(frozen=True)
 class Mesh:
-    """A wall of triangles, shape (n, 3 corners, 3 coordinates) [m]; `turn`: of its surface, while they stay."""
+    """A wall of triangles, shape (n, 3 corners, 3 coordinates) [m]; `turn`: of its surface, while they stay.
+
+    stress: whether the frames have the pressure on each; wear: its constant of Finnie's law [m^2/N], 0: none.
+    """
 
     triangles: FloatArray
     material: str = ""
     turn: Turn | None = None
+    stress: bool = False
+    wear: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -128,7 +133,8 @@ class Fill:
 
 @dataclass(frozen=True)
 class Stage:
-    """A part of the scene: which meshes move in it and how, which gates are there, what ends it early."""
+    """A part of the scene: which meshes move in it and how, which gates are there, what ends it early, whether it has
+    frames."""
 
     name: str
     seconds: float
@@ -136,6 +142,7 @@ class Stage:
     gates: tuple[str, ...] = ()
     until: Until | None = None
     time_step: float | None = None
+    record: bool = True
 
 
 @dataclass(frozen=True)

@@ -5,8 +5,6 @@ import math
 
 import numpy as np
 import pandas as pd
-from scipy.spatial import cKDTree
-from scipy.stats import qmc
 
 from ..case.measures import Amount, CenterOfMass, Flow, Height, Histogram, Load, Porosity, Repose
 from ..case.walls import Room, Upright
@@ -43,7 +41,7 @@ def refuse_measures(p: ScenePlan) -> None:
         if isinstance(m, Histogram) and m.kind == "plastic_work" and not p.dents:
             raise CaseError(f"{place}: the plastic work is known with output.energy and a law that yields; give them")
         if isinstance(m, Histogram) and m.kind == "impact_speed" and (p.model.adheres or not p.contacts):
-            raise CaseError(f"{place}: impact speeds are told by contacts without adhesion; give output.contacts")
+            raise CaseError(f"{place}: impact speeds follow from contacts without adhesion; give output.contacts")
 
 
 def _inside(region: Room | Upright, x: FloatArray) -> np.ndarray:
@@ -89,6 +87,9 @@ def _angle(m: Repose, frame: pd.DataFrame) -> float:
 
 def _porosity(m: Porosity, frame: pd.DataFrame) -> float:
     """The share of evenly spread points of the region that lie in no sphere."""
+    from scipy.spatial import cKDTree
+    from scipy.stats import qmc
+
     r = m.region
     if isinstance(r, Upright):
         (a, b), c = r.center, r.diameter / 2
@@ -188,6 +189,11 @@ def histograms(p: ScenePlan, tables: dict[str, pd.DataFrame]) -> pd.DataFrame:
 
 def unit(m: Measure) -> str:
     """The SI unit of a measure; "" for a plain number."""
+    return unit_of_kind(m.kind)
+
+
+def unit_of_kind(kind: str) -> str:
+    """The SI unit of the measures of a kind; "" for a plain number."""
     units = {"mass": "kg", "flow": "kg/s", "repose": "rad", "force": "N", "torque": "N m", "impact_speed": "m/s"}
     units |= {"height": "m", "center_of_mass": "m", "plastic_work": "J"}
-    return units.get(m.kind, "")
+    return units.get(kind, "")

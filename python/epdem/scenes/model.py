@@ -4,7 +4,7 @@
 import math
 from dataclasses import dataclass
 
-from ..case.impact import NODES, Tangential
+from ..case.fields import NODES, Tangential
 from ..case.scene import Rolling, SceneCase
 from ..errors import CaseError
 from ..laws.library import laws

@@ -185,7 +185,11 @@ def window(p: ScenePlan) -> None:
     for mesh in p.layout.meshes.values():
         faces = np.column_stack([np.full(len(mesh.triangles), 3), np.arange(3 * len(mesh.triangles)).reshape(-1, 3)])
         shown.add_mesh(pv.PolyData(mesh.triangles.reshape(-1, 3), faces), opacity=0.3, show_edges=True)
-    for x, y, z, radius, _ in _first(p):
-        shown.add_mesh(pv.Sphere(radius, (x, y, z)), color="tan")
+    table = _first(p)
+    if len(table):
+        spheres = pv.PolyData(table[:, :3])
+        spheres["radius"] = table[:, 3]
+        ball = pv.Sphere(radius=1.0, theta_resolution=16, phi_resolution=16)
+        shown.add_mesh(spheres.glyph(geom=ball, scale="radius", orient=False), color="tan")
     shown.add_mesh(pv.Box(p.layout.box), style="wireframe", color="gray")
     shown.show()

@@ -21,7 +21,8 @@ SAMPLES = 50  # of a force, at least, in the mean that a row holds
 
 @dataclass(frozen=True)
 class Phase:
-    """A part of the run up to step `end`, or less if `until` holds; what moves in it, which gates are there."""
+    """A part of the run up to step `end`, or less if `until` holds; what moves in it, which gates are there; record:
+    whether it has frames."""
 
     name: str
     end: int
@@ -29,6 +30,7 @@ class Phase:
     gates: tuple[str, ...] = ()
     until: Until | None = None
     time_step: float | None = None
+    record: bool = True
 
     @property
     def plate(self) -> float:
@@ -76,6 +78,12 @@ class ScenePlan:
             shift = end - phase.end
             phases.append(replace(phase, end=end))
         return replace(self, phases=tuple(phases))
+
+    def frame_steps(self, every: int) -> list[int]:
+        """The steps of the frames that are written each so many steps: those of phases that are recorded."""
+        begins = [0, *(phase.end for phase in self.phases)]
+        recorded = [(begin, phase.end) for begin, phase in zip(begins, self.phases, strict=False) if phase.record]
+        return [n for n in range(0, self.steps + 1, every) if any(low <= n <= high for low, high in recorded)]
 
     @property
     def phase_table(self) -> pd.DataFrame:
@@ -181,7 +189,7 @@ def _phases(layout: Layout, rows: int, every: int, dt: float) -> tuple[Phase, ..
     phases, end = [], 0
     for stage in layout.stages:
         end += every * max(1, round(stage.seconds / (stage.time_step or dt) / every))
-        phases.append(Phase(stage.name, end, stage.moves, stage.gates, stage.until, stage.time_step))
+        phases.append(Phase(stage.name, end, stage.moves, stage.gates, stage.until, stage.time_step, stage.record))
     last = phases.pop()
     end = max(rows * every, last.end) if phases else rows * every
     return (*phases, replace(last, end=end))

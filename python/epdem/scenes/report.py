@@ -79,7 +79,7 @@ def _show_measures(outcome: SceneOutcome, console: Console) -> None:
             part = histograms[histograms["measure"] == m.name]
             value = float((0.5 * (part["low"] + part["high"]) * part["number"]).sum() / max(part["number"].sum(), 1))
         shown.add_row(m.name, m.kind if m.name in curves else f"{m.kind}, mean", f"{value:.5g}", unit(m))
-    console.print(shown)
+    show_table(console, shown)
 
 
 def figures(outcome: SceneOutcome, formats: Sequence[str] = ("png",)) -> None:

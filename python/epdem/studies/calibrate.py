@@ -13,7 +13,7 @@ from ..case.toml import named
 from ..errors import CaseError
 from ..impacts.experiment import Experiment, bodies, pair_of
 from ..impacts.prediction import predict
-from ..laws.strengths import LawNumbers, law_named
+from ..laws.strengths import LawNumbers, law_named, yields_by_stress
 from ..theory import adhesion
 from ..theory.backbones import JKR, LAWS
 from ..theory.numerics import bisect
@@ -82,7 +82,7 @@ class _Unknown:
         x = self.experiment(strength, speed or 1.0)
         theory = x.theory()
         e_n = float(predict(x).e_n[0]) if speed else None
-        stress = strength if self.parameter == "yield_stress" else strength / law_named(self.law.name).default_ratio
+        stress = strength / law_named(self.law.name).default_ratio
         if isinstance(theory, JKR):
             yield_speed = float(adhesion.yield_speed(theory, m_star=x.m_star))
         else:
@@ -99,6 +99,11 @@ def _unknown(path: Path) -> _Unknown:
     given = {k: v for k, v in case.law.parameters().items() if k not in (parameter, f"{parameter}_ratio")}
     with named(path):
         return _Unknown(case, law_numbers(case.law.name, given), parameter)
+
+
+def experiment(path: Path, found: Calibration) -> Experiment:
+    """The impact of the case with the strength that was found, at the measured speed or at that of first yield."""
+    return _unknown(path).experiment(found.value, found.speed or found.yield_speed)
 
 
 def from_restitution(path: Path, e_n: float, speed: float) -> Calibration:
@@ -127,5 +132,5 @@ def from_hardness(path: Path, pressure: float, source: str) -> Calibration:
     """The strength from the mean pressure [Pa] of full plasticity. Raises CaseError."""
     unknown = _unknown(path)
     ratio = unknown.law.ratios.get("plastic_ratio", TABOR)  # the law's own pressure of full plasticity over its stress
-    value = pressure / ratio if unknown.parameter == "yield_stress" else pressure
+    value = pressure / ratio if yields_by_stress(unknown.law.name) else pressure
     return unknown.result(value, None, source)

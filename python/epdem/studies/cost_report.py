@@ -9,8 +9,8 @@ import pandas as pd
 from rich.console import Console
 
 from ..base.tables import write_csv
-from ..base.terminal import frame_table
-from ..report.chart import GREY, PALETTE, Axis, Chart, Panel, Series
+from ..base.terminal import frame_table, show_table
+from ..report.chart import GREY, INK, PALETTE, Axis, Chart, Panel, Series
 from ..report.drawing import save
 from .cost import TARGETS, Outcome
 
@@ -22,12 +22,21 @@ def write(outcome: Outcome, folder: Path, formats: Sequence[str] = ("png",)) -> 
 
 
 def chart(outcome: Outcome) -> Chart:
-    """The work-precision figure: error of e_n against stepping time and against steps."""
+    """The work-precision figure: error of e_n against stepping time and against steps.
+
+    A colour is a law, a kind of points an engine; models of other codes are black and grey.
+    """
     left: list[Series] = []
     right: list[Series] = []
-    for k, (label, part) in enumerate(outcome.rows.groupby("model", sort=False)):
-        colour, error = k % len(PALETTE), part["e_n_error"].to_numpy()
-        steps = part["steps"].to_numpy(float)
+    engines: list[str] = []
+    laws: list[str] = []
+    for label, part in outcome.rows.groupby("model", sort=False):
+        engine, _, law = str(label).partition(", ")
+        engines += [engine] if engine not in engines else []
+        laws += [law] if law and law not in laws else []
+        other = INK if engine.endswith("hertz") else GREY
+        colour, k = laws.index(law) % len(PALETTE) if law else other, engines.index(engine)
+        error, steps = part["e_n_error"].to_numpy(), part["steps"].to_numpy(float)
         left.append(Series("", part["ns_per_impact"].to_numpy(), error, colour, "solid", k))
         right.append(Series(str(label), steps, error, colour, "solid", k))
         right.append(Series("", steps, part["e_n_rms"].to_numpy(), colour, "dot", width=1.0))
@@ -113,4 +122,4 @@ def show(outcome: Outcome, bulk: pd.DataFrame | None, console: Console) -> None:
     if bulk is not None:
         tables.append((f"{bulk['spheres'].iloc[0]} spheres in LIGGGHTS: dissipated energy", bulk_table(bulk)))
     for title, frame in tables:
-        console.print(frame_table(title, frame))
+        show_table(console, frame_table(title, frame))

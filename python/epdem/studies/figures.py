@@ -9,7 +9,7 @@ from pathlib import Path
 
 import numpy as np
 
-from ..case.impact import Material
+from ..case.fields import Material
 from ..engines import DEFAULT_ENGINE, engine
 from ..impacts.experiment import Experiment, plane, sphere
 from ..impacts.plan import plan

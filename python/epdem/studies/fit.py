@@ -105,7 +105,7 @@ class _Search:
         if name not in self.found[0]:
             near = ", ".join(difflib.get_close_matches(name, self.found[0], n=3, cutoff=0.0))
             raise CaseError(f"--target {name}: the results have no such number; the nearest: {near}")
-        si = unit(name)
+        si = unit(name, self.base.tables)
         try:
             value = text if isinstance(text, float | int) else to_si(text, si) if si else float(text)
         except ValueError as error:
@@ -183,7 +183,7 @@ def fit_text(
     if errors[best] > tolerance:
         raise CaseError(f"{place}: {_missed(search, values, numbers)}")
     case = store.of(search.sweep, folder, best + 1) / store.CASE
-    units = {name: unit(name) or "" for name in numbers}
+    units = {name: unit(name, base.tables) or "" for name in numbers}
     return Fit(values, numbers, search.targets, units, case, search.ran, len(search.shares))
 
 
@@ -253,7 +253,7 @@ def _missed(search: _Search, values: Point, numbers: dict[str, float]) -> str:
     for name, target in search.targets.items():
         reached = [found[name] for found in search.found]
         where = "out of reach" if not min(reached) <= target <= max(reached) else "not met"
-        si = f" {unit(name)}" if unit(name) else ""
+        si = f" {of}" if (of := unit(name, search.base.tables)) else ""
         said.append(f"{name} = {target:g}{si} is {where}: {min(reached):.4g} to {max(reached):.4g}{si}")
     nearest = ", ".join(f"{name} = {value:.4g}" for name, value in numbers.items())
     where = ", ".join(f"{key} = {value}" for key, value in values.items())

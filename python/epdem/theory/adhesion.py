@@ -186,7 +186,7 @@ def impact(law: JKR, *, m_star: Numbers, speed: Numbers) -> Impact:
 
 
 def tabor_number(law: JKR, *, z_0: Numbers = 0.2e-9) -> Numbers:
-    """Tabor's number (R* Gamma^2/(E*^2 z_0^3))^(1/3) (Tabor 1977, J. Colloid Interface Sci. 58, 2).
+    """Tabor's number (R* Gamma^2/(E*^2 z_0^3))^(1/3) (Tabor 1977).
 
     z_0 [m] > 0 is the range of the attraction, about an atom's distance. ValueError outside.
     """

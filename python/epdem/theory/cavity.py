@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """The three-phase law: first yield (8.78), expanding cavity (8.81), fully plastic (8.80, 8.85).
 
-This project's own combination of equations 8.78, 8.80, 8.81 and 8.85; no parameter is fitted.
+This project's own combination of equations 8.78, 8.80, 8.81 and 8.85 (Johnson 1985); it unloads as in
+Mesarovic and Johnson 2000. No parameter is fitted.
 """
 
 import numpy as np
@@ -10,7 +11,7 @@ from .backbone import Backbone, Parameter
 from .checks import Array, Real, number
 from .numerics import gauss
 
-FINITE_STRAIN = 0.82  # Jackson and Green 2005, J. Tribol. 127, 343: p_m falls by 1 - exp(-0.82 (a/R*)^-0.7)
+FINITE_STRAIN = 0.82  # Jackson and Green 2005: p_m falls by 1 - exp(-0.82 (a/R*)^-0.7)
 NO_FINITE_STRAIN = 1e6  # so large a number changes nothing
 
 

@@ -11,7 +11,7 @@ import numpy as np
 
 from ..base import rendering as decks
 from ..base.processes import ask, call
-from ..case.impact import NODES
+from ..case.fields import NODES
 from ..errors import EngineError
 from ..impacts.engine import Abilities, Trajectory, check_abilities, recorded_seconds
 from ..impacts.experiment import Body, Experiment
@@ -39,7 +39,7 @@ class Yade:
         friction=tuple(NODES),
         own_spring=True,
         staggered=True,
-        scenes=("settle", "compaction"),
+        scenes=("settle", "compaction", "parts"),
         edits=EDITS,
         variants=("swap", "restart"),
         slow=True,

@@ -6,12 +6,16 @@ from itertools import combinations_with_replacement
 from math import atan
 
 from ..base import rendering as decks
+from ..case.parts import Parts
 from ..errors import CaseError
 from ..scenes import placement
 from ..scenes.layout import Block, Plane
 from ..scenes.plan import ScenePlan
 from .deck import Material, refuse_parameters, strength_values
 from .launcher import deck_modules
+from .scene_parts import EDGES, Facets, Load, Motion, facets, loads, motions, spheres
+from .scene_parts import files as facet_files
+from .scene_parts import refuse as refuse_parts
 
 Square = tuple[tuple[float, ...], ...]
 SCRIPT, SPHERES = "scene.py", "spheres.txt"
@@ -28,15 +32,21 @@ class Wall:
     axis: int
     place: float
     corners: tuple[tuple[str, ...], ...]
+    material: int
 
 
 @dataclass(frozen=True)
 class Phase:
-    """A part of the run; `plate` is the velocity of the moving wall along z [m/s], 0 where none begins to move."""
+    """A part of the run; `plate` is the velocity of the moving wall along z [m/s], 0 where none begins to move.
+
+    time_step: its own [s]. motions: of walls of triangles in it.
+    """
 
     name: str
     steps: int
     plate: float
+    time_step: float | None
+    motions: tuple[Motion, ...]
 
 
 @dataclass(frozen=True)
@@ -49,7 +59,6 @@ class Deck:
     law: str
     ratios: dict[str, float]
     materials: tuple[Material, ...]
-    wall_material: int
     frictions: tuple[tuple[int, int, float], ...]
     periodic: bool
     cell: tuple[float, float, float]
@@ -67,6 +76,15 @@ class Deck:
     spins: bool
     dents: bool
     load: str
+    parts: bool
+    facets: tuple[Facets, ...]
+    loads: tuple[Load, ...]
+    powered: bool
+
+    @property
+    def moving(self) -> bool:
+        """Whether walls move by other motions than a constant velocity."""
+        return any(m.axis or m.amplitude for phase in self.phases for m in phase.motions)
 
     @property
     def wall(self) -> str:
@@ -86,10 +104,12 @@ class Deck:
 
 def refuse(p: ScenePlan) -> None:
     """Raises CaseError for what a scene in YADE cannot have, beside what its abilities name."""
-    m, out = p.model, p.output
+    m, out, s = p.model, p.output, p.case.scene
+    if isinstance(s, Parts):
+        refuse_parts(p, s)
     refuse_parameters(m.law, m.ratios())
     unknown: dict[str, tuple[object, str]] = {
-        "scene.rate": (p.layout.fills[0].rate, "all spheres are there from the start"),
+        "scene.rate": (any(f.rate for f in p.layout.fills), "all spheres are there from the start"),
         "viscous.restitution": (p.case.viscous and p.case.viscous.restitution, "YADE's law has no dashpot"),
         "contact.tangential": (m.nodes and m.tangential, "YADE's law has one spring"),
         "contact.rolling": (m.rolling and m.rolling.model, "YADE's law has no rolling resistance"),
@@ -106,7 +126,12 @@ def refuse(p: ScenePlan) -> None:
 def notes(p: ScenePlan) -> list[str]:
     """The parts of a case that a YADE scene leaves out, in words."""
     found = [NO_DASHPOT] if p.model.tangential_restitution is not None else []
-    return [*found, NO_RANKS] if p.case.numerics.cut else found
+    found += [NO_RANKS] if p.case.numerics.cut else []
+    return [*found, EDGES] if _parts(p) and p.layout.meshes else found
+
+
+def _parts(p: ScenePlan) -> bool:
+    return isinstance(p.case.scene, Parts)
 
 
 def _materials(p: ScenePlan, friction: Square) -> tuple[Material, ...]:
@@ -138,13 +163,14 @@ def _walls(p: ScenePlan) -> tuple[Wall, ...]:
     xlo, xhi, ylo, yhi, *_ = p.layout.box
     lx, ly = xhi - xlo, yhi - ylo
     planes = [*p.layout.planes]
-    planes += [Plane(name, 2, float(mesh.triangles[0, 0, 2])) for name, mesh in p.layout.meshes.items()]
+    if not _parts(p):
+        planes += [Plane(name, 2, float(mesh.triangles[0, 0, 2])) for name, mesh in p.layout.meshes.items()]
 
     def corners(z: float) -> tuple[tuple[str, ...], ...]:
         places = ((-lx, -ly, z), (5 * lx, -ly, z), (-lx, 5 * ly, z)) if p.layout.periodic else ()
         return tuple(tuple(decks.number(x) for x in place) for place in places)
 
-    return tuple(Wall(w.name, w.axis, w.place, corners(w.place)) for w in planes)
+    return tuple(Wall(w.name, w.axis, w.place, corners(w.place), p.wall_types[w.name] - 1) for w in planes)
 
 
 def deck(p: ScenePlan) -> Deck:
@@ -160,10 +186,9 @@ def deck(p: ScenePlan) -> Deck:
         law=m.law,
         ratios=m.ratios(),
         materials=_materials(p, friction),
-        wall_material=m.wall_types[""] - 1,
         frictions=_pairs(friction),
         periodic=p.layout.periodic,
-        cell=(xhi - xlo, yhi - ylo, 2.0 * _filled(p).limits[5]),
+        cell=(xhi - xlo, yhi - ylo, 2.0 * _filled(p).limits[5] if p.layout.periodic else 0.0),
         walls=_walls(p),
         low=(*(low for low, _ in sides), zlo),
         high=(*(high for _, high in sides), zhi),
@@ -171,23 +196,33 @@ def deck(p: ScenePlan) -> Deck:
         skin=p.case.numerics.skin or float(f"{SKIN * p.smallest:.1e}"),
         time_step=p.time_step,
         phases=tuple(
-            Phase(phase.name, end - begin, phase.plate)
+            Phase(
+                phase.name,
+                end - begin,
+                0.0 if _parts(p) else phase.plate,
+                (phase.time_step or p.time_step) if any(x.time_step for x in p.phases) else None,
+                motions(p, phase) if _parts(p) else (),
+            )
             for phase, begin, end in zip(p.phases, ends[:-1], ends[1:], strict=True)
         ),
-        sampling=1 if p.plates else p.sampling if p.output.loads else p.every,
+        sampling=1 if p.plates or p.powered else p.sampling if p.output.loads else p.every,
         every=p.every,
         frames=p.frames,
         contacts=p.contacts,
         spins=m.spins,
         dents=p.dents,
-        load="plate" if p.plates else "floor" if p.output.loads else "",
+        load="plate" if p.plates else "floor" if p.floor_load else "",
+        parts=_parts(p),
+        facets=facets(p) if _parts(p) else (),
+        loads=loads(p),
+        powered=p.powered,
     )
 
 
 def files(p: ScenePlan) -> dict[str, str]:
     """All files of a YADE scene by name; they run by hand in one folder. Raises CaseError."""
     deck_files = {SCRIPT: decks.render("yade/scene.py.j2", deck=deck(p)), SPHERES: _table(p)}
-    return deck_files | deck_modules()
+    return deck_files | (facet_files(p) if _parts(p) else {}) | deck_modules()
 
 
 def _filled(p: ScenePlan) -> Block:
@@ -199,6 +234,9 @@ def _filled(p: ScenePlan) -> Block:
 
 def _table(p: ScenePlan) -> str:
     lines = ["# x y z radius [m], type; random places without overlap"]
+    if _parts(p):
+        rows = [" ".join(map(decks.number, row)) for row in spheres(p)]
+        return "\n".join(["# x y z radius [m], type, velocity [m/s], spin [rad/s], 1: frozen", *rows, ""])
     for *numbers, kind in placement.spheres(p):
         lines.append(" ".join([*map(decks.number, numbers), str(int(kind))]))
     return "\n".join([*lines, ""])

@@ -6,6 +6,7 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
+from ..case.parts import Parts
 from ..errors import EngineError
 from ..scenes import columns, contacts
 from ..scenes.plan import ScenePlan
@@ -59,6 +60,8 @@ def particles(p: ScenePlan, folder: Path) -> pd.DataFrame:
 def read(p: ScenePlan, folder: Path, log: Path) -> dict[str, pd.DataFrame]:
     """The tables rows, particles and contacts of a run, SI. Raises EngineError for an incomplete frame."""
     tables = {"rows": rows(p, log)}
+    if isinstance(p.case.scene, Parts):
+        tables["phases"] = p.phase_table
     if p.frames:
         tables["particles"] = particles(p, folder)
     if p.contacts:
@@ -73,7 +76,9 @@ def _contacts(p: ScenePlan, folder: Path, spheres: pd.DataFrame) -> pd.DataFrame
     """Every contact of every frame; with overlap 0 those that ended since the frame before."""
     raw = _frames(p, folder, "contacts", p.contacts, CONTACT)
     raw = raw[raw["overlap"] >= 0].reset_index(drop=True)  # what is only near is no contact yet
-    walls = np.array(["", *(w.name for w in p.layout.planes), *p.layout.meshes])
+    triangles = [name for name, mesh in p.layout.meshes.items() for _ in mesh.triangles]
+    of_meshes = triangles if isinstance(p.case.scene, Parts) else [*p.layout.meshes]
+    walls = np.array(["", *(w.name for w in p.layout.planes), *of_meshes])
     last = p.layout.count + len(walls) - 2
     bodies = raw[["i", "j"]].to_numpy(float)
     if not ((bodies >= 0) & (bodies <= last) & (bodies == np.floor(bodies))).all():

@@ -31,6 +31,11 @@ def deck_lines(title: str, text: str) -> Lines:
     return Lines(title, [(line.rstrip(), reason) for line, _, reason in split])
 
 
+def reasoned(title: str, lines: Sequence[tuple[str, str]]) -> Lines:
+    """Lines with their reasons; a comment that is the reason stands once."""
+    return Lines(title, [(line.removesuffix(why).rstrip(" #") if why else line, why) for line, why in lines])
+
+
 def origin(about: Mapping[str, object], hashes: Mapping[str, object]) -> Facts:
     """Versions and hashes of what made the numbers: the engines' versions are in the attributes of a results file."""
     versions = {k.removeprefix("version_"): str(v) for k, v in about.items() if k.startswith("version_")}

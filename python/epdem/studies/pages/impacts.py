@@ -1,18 +1,24 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """The page of a run of impacts."""
 
+from dataclasses import replace
 from pathlib import Path
+
+import numpy as np
 
 from ...base.folders import claim
 from ...impacts import charts
 from ...impacts.comparison import CHECKED, UNITS
 from ...impacts.experiment import Body, Experiment
-from ...impacts.report import mark, worst, yielding
+from ...impacts.prediction import predict
+from ...impacts.report import against_measured, mark, worst, yielding
 from ...impacts.run import Outcome
+from ...laws.strengths import law_named
 from ...liggghts.explain import IMPACT, explain
 from ...liggghts.impacts import Liggghts
-from ...report.chart import Chart
+from ...report.chart import Axis, Chart, Panel, Series
 from ...report.page import NAME, Facts, Lines, Page, Part, Rows, write
+from ..calibrate import Calibration, experiment
 from . import common
 
 COLUMNS = ("engine", "law", "speed", *(f"{n}{k}" for n in CHECKED for k in ("", "_theory", "_error")))
@@ -25,6 +31,31 @@ def of_impacts(outcome: Outcome) -> Path:
     with claim(outcome.folder, force=True):
         digest = mark(outcome, said, NAME)
         return write(outcome.folder / NAME, lambda: page(outcome, said), mark=digest)
+
+
+def of_calibration(case: Path, found: Calibration, folder: Path, *, force: bool = False) -> Path:
+    """Write the page of a strength that was found for a case into `folder`: the curve e_n(v) that it gives.
+
+    Raises CaseError for a folder with a page of another kind, without `force`.
+    """
+    x = experiment(case, found)
+    line = replace(x, speed=np.geomspace(0.1, 100.0, 200) * (found.speed or found.yield_speed))
+    series = [Series("theory", line.speed, predict(line).e_n)]
+    if found.e_n is not None and found.speed is not None:
+        series.append(Series("measured", found.speed, found.e_n, 1, None, charts.MEASURED))
+    alt = f"Coefficient of restitution of law {found.law} with {found.parameter} = {found.value:.4g} Pa against speed."
+    chart = Chart("e_n", "Restitution with this strength", alt, [Panel(charts.SPEED, Axis("$e_n$"), series)])
+    said = [
+        f"From {found.source}: {found.parameter} = {found.value / 1e6:.6g} MPa, that is a yield stress of "
+        f"{found.yield_stress / 1e6:.6g} MPa and a yield speed of {found.yield_speed:.4g} m/s.",
+        f'In the case file, under [law]: {found.parameter} = "{found.value / 1e6:.6g} MPa".',
+    ]
+    bare = [replace(b, yield_stress=None) for b in (x.body, x.target)]  # whose own strength plays no part
+    facts = Facts("Bodies and law", _facts(replace(x, body=bare[0], target=bare[1], source=found.source)))
+    parts: list[Part] = [chart, facts, common.origin({}, {}), common.cited([found.law], [], dashpot=False)]
+    made = Page(f"Strength of law {found.law} from {found.source}", said, parts, command=common.command())
+    with claim(folder, force=force, files=[NAME]):
+        return write(folder / NAME, lambda: made)
 
 
 def page(outcome: Outcome, command: str = "") -> Page:
@@ -54,7 +85,8 @@ def sentences(outcome: Outcome) -> list[str]:
             f"{p.time_step:.4g} s; {yielding(prediction)}. e_n of theory goes from {prediction.e_n.max():.4f} to "
             f"{prediction.e_n.min():.4f}."
         )
-    said += [line[0].upper() + line[1:] + "." for line in worst(outcome)]
+    said += [f"Engine {line}." for line in worst(outcome)]
+    said += [line[0].upper() + line[1:] + "." for line in against_measured(outcome)]
     residual = rows["energy_residual"].abs().max()
     if residual == residual:
         said.append(f"The energy balance of an impact closes within {residual:.1e} of its kinetic energy.")
@@ -85,7 +117,8 @@ def bodies(outcome: Outcome) -> list[Facts]:
 
 def _facts(x: Experiment) -> dict[str, str]:
     facts = {"body": _body(x.body), "target": _body(x.target), "law": x.law.name}
-    facts |= {name: f"{value:.6g}" for name, value in x.law.parameters.items()}
+    units = {p.name: p.unit for p in law_named(x.law.name).parameters if p.unit != "1"}
+    facts |= {name: f"{value:.6g} {units.get(name, '')}".rstrip() for name, value in x.law.parameters.items()}
     facts |= {"E*": f"{x.E_star:.6g} Pa", "R*": f"{x.R_star:.6g} m", "m*": f"{x.m_star:.6g} kg"}
     v_y0 = charts.first_yield(x)
     facts |= {"speed of first yield (8.84, 1.60 Y)": f"{v_y0:.4g} m/s"} if v_y0 == v_y0 else {}
@@ -114,7 +147,7 @@ def decks(outcome: Outcome) -> list[Lines]:
         title = f"Deck {name} of {engine}, law {law}"
         if engine == Liggghts.name and law in outcome.plans:
             deck = Liggghts().deck(outcome.plans[law])
-            shown.append(Lines(title, [(line, reason) for _, line, reason in explain(IMPACT, deck)]))
+            shown.append(common.reasoned(title, [(line, reason) for _, line, reason in explain(IMPACT, deck)]))
         else:
             shown.append(common.deck_lines(title, text))
     return shown

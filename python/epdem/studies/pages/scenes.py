@@ -79,5 +79,8 @@ def _decks(outcome: SceneOutcome) -> list[Lines]:
     if SCENE.keys() <= outcome.results.decks.keys():
         lines = explain(SCENE, deck(outcome.plan))
         files = dict.fromkeys(file for file, _, _ in lines)
-        return [Lines(f"Deck {name}", [(line, why) for file, line, why in lines if file == name]) for name in files]
+        return [
+            common.reasoned(f"Deck {name}", [(line, why) for file, line, why in lines if file == name])
+            for name in files
+        ]
     return [common.deck_lines(f"Deck {name}", text) for name, text in outcome.results.decks.items()]

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The pages of studies that are tables in the first place: crosscheck, cost, stability, sweep."""
+"""The pages of studies that are tables in the first place: crosscheck, cost, stability, sweep, fit, validate."""
 
 from dataclasses import replace
 from pathlib import Path
@@ -10,18 +10,23 @@ import pandas as pd
 from ...base.folders import claim
 from ...impacts.charts import SPEED
 from ...impacts.comparison import UNITS
-from ...report.chart import PALETTE, Axis, Chart, Panel, Series
+from ...report.chart import GREY, INK, PALETTE, Axis, Chart, Panel, Series
+from ...report.drawing import save
 from ...report.page import NAME, Facts, Page, Part, Rows, write
 from .. import cost_report
 from ..cost import Outcome as Cost
 from ..crosscheck import Crosscheck
+from ..fit import Fit
 from ..stability.suite import Outcome as Stability
 from ..stability.suite import summary
 from ..sweep.folder import DONE, FAILED
 from ..sweep.run import SweepOutcome
+from ..sweep.table import read_sweep
+from ..validate import QUANTITIES, Validation
 from . import common, impacts
 
 MOST_PANELS = 4
+LABELS = {"e_n": "$e_n$", "dent_width": "width of the dent"}
 
 
 def of_crosscheck(check: Crosscheck) -> Path:
@@ -67,6 +72,38 @@ def of_stability(outcome: Stability, path: Path) -> Path:
     said = f"{len(verdicts)} extreme cases: " + ", ".join(f"{n} {status}" for status, n in count.items()) + "."
     page = Page("Stiff and extreme cases", [said], parts, passed=outcome.passed, command=common.command())
     return write(path, lambda: page)
+
+
+def of_fit(found: Fit) -> Path:
+    """Write the page of a fit of a scene into the folder of its points."""
+    folder = found.case.parents[2]
+    table = read_sweep(folder).dropna(subset=list(found.targets))
+    units = table.attrs.get("units", {}) | found.units
+    panels = []
+    for name, target in found.targets.items():
+        for k, key in enumerate(found.values):
+            x, y = table[key].to_numpy(float), table[name].to_numpy(float)
+            shown = [
+                Series("points", x, y, k, None, 0),
+                Series("target", [x.min(), x.max()], [target] * 2, INK, "dash"),
+            ]
+            panels.append(
+                Panel(Axis(key, units.get(key, "")), Axis(name.replace("_", " "), units.get(name, "")), shown)
+            )
+    names = ", ".join(found.targets)
+    said = [
+        f"{', '.join(f'{key} = {value}' for key, value in found.values.items())} gives "
+        + ", ".join(f"{n} = {v:.6g} {found.units[n]} (target {found.targets[n]:.6g})" for n, v in found.numbers.items())
+        + ".",
+        f"{found.points} scenes, {found.ran} of them just now; the case with these values is {found.case}.",
+    ]
+    alt = f"{names} of every scene of the fit against the keys that it frees; the target as a dashed line."
+    charts = [Chart(f"fit{n}", "Target against key", alt, [panel]) for n, panel in enumerate(panels)]
+    rows = Rows("All scenes", table[["point", *found.values, *found.targets]], units)
+    case = common.case_lines(found.case.read_text(encoding="utf-8"))
+    page = Page(f"Fit of {names}", said, [*charts, rows, case, common.origin({}, {})], command=common.command())
+    with claim(folder, force=True):
+        return write(folder / NAME, lambda: page)
 
 
 def of_sweep(result: SweepOutcome) -> Path:
@@ -118,3 +155,39 @@ def _by_key(result: SweepOutcome, units: dict[str, str]) -> Chart:
         series = Series("", table[key].to_numpy(float), table[name].to_numpy(float), k, None, 0)
         panels.append(Panel(Axis(key, units.get(key, "")), Axis(name.replace("_", " "), units.get(name, "")), [series]))
     return Chart("sweep", "Numbers of the scenes", f"{', '.join(changing[:MOST_PANELS])} against {key}.", panels)
+
+
+def validation_chart(v: Validation) -> Chart:
+    """What the first engine gives over the measured value, for every law and point."""
+    points = v.points[v.points["engine"] == v.points["engine"].iloc[0]]
+    points = points.assign(ratio=1.0 + points["error"])
+    panels, order = [], list(dict.fromkeys(points["law"]))
+    for quantity in QUANTITIES:
+        part = points[points["quantity"] == quantity]
+        series = [
+            Series(law, own["measured"].to_numpy(float), own["ratio"].to_numpy(float), order.index(law), None, k)
+            for k, (law, own) in enumerate(part.groupby("law", sort=False))
+        ]
+        if not series:
+            continue
+        ends = [part["measured"].min(), part["measured"].max()]
+        series.append(Series("measured", ends, [1.0, 1.0], GREY, "solid", width=0.8))
+        unit = "" if quantity == "e_n" else "m"
+        panels.append(Panel(Axis(f"measured {LABELS[quantity]}", unit), Axis("law over measured"), series))
+    names = ", ".join(dict.fromkeys(points["set"]))
+    alt = f"Restitution and widths of dents over the measured values of {names}, one mark for each law and point."
+    return Chart("validate", "Laws against measured impacts", alt, panels)
+
+
+def of_validation(v: Validation) -> Path:
+    """Draw the figure of measured sets and write their page into the folder of the study."""
+    chart = validation_chart(v)
+    parts: list[Part] = [chart, Rows("By set, law and engine", v.summary), Rows("Every point", v.points)]
+    parts += [Facts(one.head["title"], {k: one.head[k] for k in ("source", "material", "read")}) for one in v.sets]
+    parts += [Facts("Left out", v.absent)] if v.absent else []
+    parts.append(common.origin({}, {}))
+    said = f"{len(v.points)} comparisons with measured numbers; nothing is fitted, and no law has a tolerance here."
+    page = Page("Laws against measured impacts", [said], parts, command=common.command())
+    with claim(v.folder, force=True):
+        save(chart, v.folder)
+        return write(v.folder / NAME, lambda: page)

@@ -10,7 +10,8 @@ from typing import Annotated, Any, Literal, Union, get_args, get_origin
 import tomlkit
 from pydantic import BaseModel
 
-from ...case.impact import Case, LawChoice, Material, Quantity
+from ...case.fields import LawChoice, Material, Quantity
+from ...case.impact import Case
 from ...case.scene import SceneCase, SceneMaterial, is_scene
 from ...errors import CaseError
 from ...laws.library import laws

@@ -2,8 +2,11 @@
 """The numbers of a scene that have names: what its rows end at and reach, and what its checks have found."""
 
 import re
+from collections.abc import Mapping
+from typing import Any
 
-from ...scenes.columns import UNITS
+from ...scenes.columns import UNITS, unit_of_load
+from ...scenes.measures import unit_of_kind
 from ...scenes.results import SceneResults
 
 UNIT_OF_CHECK = {"floor_load": "N", "mass_flow": "kg/s"}
@@ -29,6 +32,10 @@ def numbers_of(results: SceneResults) -> dict[str, float]:
     return numbers
 
 
-def unit(name: str) -> str | None:
-    """The SI unit of a number of `numbers_of`."""
-    return UNITS.get(re.sub(r"_(last|max|mean)$", "", name), UNIT_OF_CHECK.get(name))
+def unit(name: str, case: Mapping[str, Any]) -> str | None:
+    """The SI unit of a number of `numbers_of` of a scene with these TOML tables; None for a plain number."""
+    column = re.sub(r"_(last|max|mean)$", "", name)
+    kinds = {m["name"]: m["kind"] for m in case.get("scene", {}).get("measure", [])}
+    if column in kinds:
+        return unit_of_kind(kinds[column]) or None
+    return UNITS.get(column, UNIT_OF_CHECK.get(name)) or unit_of_load(column)

@@ -247,7 +247,7 @@ def script(sweep: Sweep, folder: Path, given: Parameters) -> str:
             "trap 'scontrol requeue ${SLURM_ARRAY_JOB_ID}_$SLURM_ARRAY_TASK_ID' USR2",
             "trap : TERM",
             "while wait $!; code=$?; kill -0 $! 2>/dev/null; do :; done  # a signal ends a wait, but not the task",
-            "# A task that was told to stop waits for its end: Slurm does not queue again what ends by itself.",
+            "# A task that got the signal to stop waits for its end: Slurm does not queue again what ends by itself.",
             "[ $code -ne 130 ] || sleep infinity",
             "exit $code",
             "",

@@ -44,7 +44,9 @@ def collect(sweep: Sweep, folder: Path) -> pd.DataFrame:
         table["passed"] = table["passed"] == True  # noqa: E712  (None has not passed)
     table = table.infer_objects()
     units = {name: unit for name, unit in sweep.units.items() if unit and unit != "1"}
-    units |= {name: u for name in table.columns if (u := numbers.unit(name) if sweep.scene else UNITS.get(name))}
+    for name in table.columns:
+        if of_column := numbers.unit(name, sweep.tables) if sweep.scene else UNITS.get(name):
+            units[name] = of_column
     theory = {f"{name}_theory": u for name, u in units.items() if f"{name}_theory" in table}
     table.attrs["units"] = units | theory
     return table

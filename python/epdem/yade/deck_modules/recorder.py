@@ -11,6 +11,8 @@ from yade import O
 from .contact import Contact
 from .contacts import Contacts
 
+KINDS = ("force", "torque")  # of loads
+
 
 class Remembering(Contacts):
     """Keeps every contact that has yielded until its end is written: YADE deletes it when the bodies separate."""
@@ -36,6 +38,8 @@ class Recorder:
               0: none
     tables    steps between two tables contacts.STEP.npy: see `contact_table`; 0: none
     load      (column, body, sign): the mean of sign times the body's force along z since the last row; None: none
+    loads     (wall, its bodies, origin) of walls: means of their force and, where an origin [m] is given, torque
+    moving    bodies of walls that move: the mean of the power that they give, wall_power; none: no such column
     """
 
     def __init__(
@@ -52,26 +56,52 @@ class Recorder:
         spins: bool = False,
         tables: int = 0,
         load: tuple[str, int, float] | None = None,
+        loads: Sequence[tuple[str, Sequence[int], Sequence[float] | None]] = (),
+        moving: Sequence[int] = (),
     ):
         self.folder, self.spheres, self.contacts, self.low, self.high = folder, spheres, contacts, low, high
         self.every, self.frames, self.spins, self.tables, self.load = every, frames, spins, tables, load
         self.states = [O.bodies[k].state for k in range(len(spheres))]
         self.mass = np.array([s.mass for s in self.states])
+        self.free = np.array([[not s.blockedDOFs] for s in self.states])
         self.gravity = np.array([0.0, 0.0, fall])
+        self.loads, self.moving = loads, moving
+        kinds = [f"{name}_{kind}" for name, _, origin in loads for kind in KINDS[: 1 if origin is None else 2]]
+        self.names = ["wall_power"] * bool(moving) + [f"{kind}_{axis}" for kind in kinds for axis in "xyz"]
+        self._sums = np.zeros(len(self.names))
         self._sum, self._samples = 0.0, 0
-        print("Step particles kinetic_energy" + (f" {load[0]}" if load else ""))
+        print(
+            "Step particles kinetic_energy" + "".join(f" {name}" for name in ([load[0]] if load else []) + self.names)
+        )
 
     def record(self) -> None:
         """Between forces and motion: all that is due at this step."""
         if self.load:
             _, body, sign = self.load
             self._sum, self._samples = self._sum + sign * O.forces.f(body)[2], self._samples + 1
+        if self.names:
+            self._sums, self._samples = self._sums + self.on_walls(), self._samples + (not self.load)
         if O.iter % self.every == 0:
             self.row()
         if self.frames and O.iter % self.frames == 0:
             self.frame()
         if self.tables and O.iter % self.tables == 0:
             self.contact_table()
+
+    def on_walls(self) -> Any:
+        """The power of moving walls [W], then force [N] and torque [N m] on each wall, in the order of the names."""
+        values = []
+        if self.moving:
+            states = [(k, O.bodies[k].state) for k in self.moving]
+            values.append(-sum(O.forces.f(k).dot(s.vel) + O.forces.t(k).dot(s.angVel) for k, s in states))
+        for _, bodies, origin in self.loads:
+            forces = np.array([tuple(O.forces.f(k)) for k in bodies])
+            values += [*forces.sum(axis=0)]
+            if origin is not None:
+                arms = np.array([tuple(O.bodies[k].state.pos) for k in bodies]) - np.array(origin)
+                own = np.array([tuple(O.forces.t(k)) for k in bodies])
+                values += [*(own + np.cross(arms, forces)).sum(axis=0)]
+        return np.array(values)
 
     def positions(self) -> Any:
         """(n, 3) [m]."""
@@ -80,7 +110,8 @@ class Recorder:
     def velocities(self) -> Any:
         """(n, 3) at the time of the positions: YADE keeps velocities of half a step before [m/s]."""
         force = np.array([tuple(O.forces.f(k)) for k in range(len(self.states))])
-        return np.array([tuple(s.vel) for s in self.states]) + 0.5 * O.dt * (force / self.mass[:, None] + self.gravity)
+        gain = 0.5 * O.dt * (force / self.mass[:, None] + self.gravity)
+        return np.array([tuple(s.vel) for s in self.states]) + self.free * gain
 
     def row(self) -> None:
         """Print step, spheres in the room, kinetic energy of their motion [J], mean load [N]."""
@@ -90,7 +121,8 @@ class Recorder:
         line = f" {O.iter} {inside} {energy:.10g}"
         if self.load:
             line += f" {self._sum / self._samples:.10g}"
-            self._sum, self._samples = 0.0, 0
+        line += "".join(f" {x / self._samples:.10g}" for x in self._sums)
+        self._sum, self._sums, self._samples = 0.0, np.zeros(len(self.names)), 0
         print(line, flush=True)
 
     def frame(self) -> None:
@@ -101,7 +133,7 @@ class Recorder:
             inertia = np.array([s.inertia[0] for s in self.states])
             torque = np.array([tuple(O.forces.t(k)) for k in range(len(self.states))])
             spin = np.array([tuple(s.angVel) for s in self.states])
-            columns += [*(spin + 0.5 * O.dt * torque / inertia[:, None]).T]
+            columns += [*(spin + self.free * (0.5 * O.dt * torque / inertia[:, None])).T]
         np.save(self.folder / f"particles.{O.iter}.npy", np.column_stack(columns))
 
     def contact_table(self) -> None:

@@ -1,0 +1,71 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""What runs the benchmarks of other people: our laws in LIGGGHTS, and LIGGGHTS's own `hertz` on the same deck."""
+
+from pathlib import Path
+
+import numpy as np
+
+from epdem.liggghts import log
+from epdem.liggghts.launcher import OUT
+from epdem.liggghts.scenes import LiggghtsScenes
+from epdem.scenes.plan import ScenePlan
+
+MODELS = {"hertz": "hertz", "ep/hertz": "hertz", "ep/thornton": "thornton"}  # and the law of their plan
+YADE = "yade"  # its own model of Hertz and Mindlin
+SHORT = 10_000  # steps of a case that is for larger machines
+CURVE, EVERY = "impactor.txt", 100  # steps between two lines
+
+
+class Recorded(LiggghtsScenes):
+    """LIGGGHTS with our model of a plan, and the height of the last sphere of its table in a file of its own."""
+
+    leftovers = (*LiggghtsScenes.leftovers, CURVE)
+
+    def __init__(self, begin: float = 0.0):
+        self.begin = begin  # [s] at step 0
+
+    def files(self, plan: ScenePlan) -> dict[str, str]:
+        texts = super().files(plan)
+        texts["setup.in"] = self.setup(plan, texts["setup.in"])
+        return texts
+
+    def setup(self, plan: ScenePlan, text: str) -> str:
+        """The deck's common part with the lines that record; `append`: a run that goes on has them again."""
+        if not plan.layout.table:
+            return text
+        last = len(plan.layout.table)
+        return text + (
+            f"group curve id {last}\nvariable curve_t equal step*dt+{self.begin!r}\n"
+            "variable curve_z equal xcm(curve,z)\nvariable curve_v equal vcm(curve,z)\n"
+            f'fix curve all print {EVERY} "${{curve_t}} ${{curve_z}} ${{curve_v}}" append {CURVE} screen no\n'
+        )
+
+
+class OwnHertz(Recorded):
+    """LIGGGHTS's own `hertz` with its dashpot, on the deck of `ep/hertz`."""
+
+    name = "liggghts-hertz"
+
+    def setup(self, plan: ScenePlan, text: str) -> str:
+        return super().setup(plan, text).replace("model ep/hertz", "model hertz").replace(" viscous on", "")
+
+
+def engine(model: str, begin: float = 0.0) -> LiggghtsScenes:
+    """The engine of a model, for a run whose step 0 is at time `begin` [s]."""
+    return OwnHertz(begin) if model == "hertz" else Recorded(begin)
+
+
+def curve(folder: Path) -> np.ndarray:
+    """(n, 3) time [s], height and velocity [m] of the last sphere; lines that a continued run repeats stand once."""
+    path = folder / CURVE
+    rows = [line.split() for line in path.read_text().splitlines() if not line.startswith("#")] if path.exists() else []
+    rows = [row for row in rows if len(row) == 3]
+    table = np.array(rows, dtype=float).reshape(-1, 3)
+    _, last = np.unique(table[::-1, 0], return_index=True)
+    return table[::-1][last]
+
+
+def loop(folder: Path) -> tuple[float, int]:
+    """(seconds, steps) of all that LIGGGHTS has computed in a folder."""
+    found = log.loops(folder / OUT)
+    return sum(seconds for seconds, _ in found), sum(steps for _, steps in found)

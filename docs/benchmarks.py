@@ -1,0 +1,121 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Tables and figures of docs/benchmarks.md: what bench/community.py has left in runs/community, and `epdem validate`.
+
+Run: .venv/bin/python docs/benchmarks.py      (without runs of community.py only the measured sets)
+"""
+
+import re
+import sys
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+from pages import markdown
+
+from epdem.errors import CaseError
+from epdem.report.chart import GREY, Axis, Chart, Panel, Series
+from epdem.report.drawing import save
+from epdem.scenes import results
+from epdem.studies.pages.tables import validation_chart
+from epdem.studies.validate import shown, validate
+
+ROOT = Path(__file__).resolve().parents[1]
+sys.path.insert(0, str(ROOT / "bench"))
+from community_models import CURVE, MODELS, SHORT, YADE, curve, loop  # noqa: E402
+
+PAGE = ROOT / "docs/benchmarks.md"
+START = 0.06  # height of the impactor [m], from which its displacement counts
+LOWEST, AT_30 = (-138.60, -138.33), (-136.73, -135.97)  # [mm] published for 25,000 spheres: 7 codes, 10 seeds
+LOWEST_TIME, AT_100 = (31.0, 32.0), (-85.0, -31.0)  # [ms], [mm]
+STEPS = {"impact_50k": 200_000, "impact_100k": 200_000, "silo_large": 3_333_333, "silo_small": 3_333_333}
+
+
+def _inside(value: float, limits: tuple[float, float]) -> str:
+    """A number with how far it is beyond the published range, if it is."""
+    low, high = limits
+    beyond = min(value - low, 0.0) + max(value - high, 0.0)
+    return f"{value:.2f}" + (f" ({beyond:+.2f})" if abs(beyond) >= 0.005 else "")
+
+
+def _impact_rows(runs: Path) -> tuple[list[str], list[Series]]:
+    rows, series, colours = [], [], [*MODELS, YADE]
+    for model in colours:
+        paths = sorted((runs / "impact_25k").glob(f"seed*/{model.replace('/', '_')}/{CURVE}"))
+        for k, path in enumerate(paths):
+            table = curve(path.parent)
+            time, moved = 1e3 * table[:, 0], 1e3 * (table[:, 1] - START)
+            if not len(time) or time[-1] < 31.5:
+                continue
+            early = time < 40.0
+            at = int(np.argmin(np.where(early, moved, np.inf)))
+            name = "LIGGGHTS `hertz`" if model == "hertz" else "YADE" if model == YADE else f"`{model}`"
+            last = _inside(float(moved[-1]), AT_100) if time[-1] > 99.9 else f"run to {time[-1]:.0f} ms"
+            seed, at_30 = path.parts[-3].removeprefix("seed"), float(np.interp(30.0, time, moved))
+            cells = (name, seed, _inside(at_30, AT_30), _inside(float(moved[at]), LOWEST))
+            rows.append(f"| {' | '.join(cells)} | {_inside(float(time[at]), LOWEST_TIME)} | {last} |")
+            dash = ("solid", "dash", "dot")[k % 3]
+            series.append(Series("" if k else model, table[:, 0], table[:, 1] - START, colours.index(model), dash))
+    return rows, series
+
+
+def _impact(runs: Path) -> str:
+    rows, series = _impact_rows(runs)
+    if not rows:
+        return ""
+    for (low, high), time, name in ((AT_30, 0.030, "published range"), (LOWEST, 0.0315, ""), (AT_100, 0.1, "")):
+        series.append(Series(name, [time, time], [1e-3 * low, 1e-3 * high], GREY, "solid", 0))
+    alt = (
+        "Displacement of the sphere against time for every model and seed, with the published ranges at 30 ms, at the "
+        "lowest point and at 100 ms."
+    )
+    whole = Panel(Axis("time", "s"), Axis("displacement", "m"), series)
+    low = replace(
+        whole, x=Axis("time", "s", low=0.029, high=0.034), y=Axis("displacement", "m", low=-0.1392, high=-0.134)
+    )
+    for name, panel in (("impact_25k", whole), ("impact_25k_lowest", low)):
+        save(Chart(name, "A steel sphere hits 25,000 spheres", alt, [panel]), ROOT / "docs/figures", data=False)
+    spans = " | ".join(f"{low:g} to {high:g}" for low, high in (AT_30, LOWEST, LOWEST_TIME, AT_100))
+    published = f"| published, 7 codes | 10 seeds | {spans} |"
+    head = ["| model | seed | at 30 ms [mm] | lowest [mm] | at [ms] | at 100 ms [mm] |", "|---|---|---|---|---|---|"]
+    return "\n".join([*head, published, *rows])
+
+
+def _drum(runs: Path) -> str:
+    names = ("left_below", "right_below", "left_above", "right_above")
+    lines = ["| t [s] | x < 0, z < 0 | x > 0, z < 0 | x < 0, z > 0 | x > 0, z > 0 |", "|---|---|---|---|---|"]
+    try:
+        measures = results.read(runs / "drum/seed1/ep_hertz/results.h5").tables["measures"]
+    except CaseError:
+        return ""
+    for t in (0.0, 0.5, 1.0, 2.0, 3.0, 4.0, 5.0):
+        row = measures.iloc[(measures["time"] - t).abs().argmin()]
+        lines.append(f"| {row['time']:.1f} | " + " | ".join(f"{row[n]:.0f}" for n in names) + " |")
+    return "\n".join(lines)
+
+
+def _long(runs: Path) -> str:
+    lines = ["| case | steps run | ms per step | steps of the whole | hours of the whole |", "|---|---|---|---|---|"]
+    for name, whole in STEPS.items():
+        seconds, steps = loop(runs / name / "soft1/ep_hertz")
+        if steps >= SHORT:
+            each = seconds / steps
+            lines.append(f"| `{name}` | {steps:,} | {1e3 * each:.1f} | {whole:,} | {each * whole / 3600:.1f} |")
+    return "\n".join(lines) if len(lines) > 2 else ""
+
+
+def main() -> None:
+    """Replace the tables between their marks by those of the runs that are there."""
+    runs, text = ROOT / "runs/community", PAGE.read_text(encoding="utf-8")
+    result = validate(out=ROOT / "runs/validate", force=True)
+    save(validation_chart(result), ROOT / "docs/figures", data=False)
+    measured = markdown(shown(result.summary))
+    tables = {"impact": _impact(runs), "drum": _drum(runs), "long": _long(runs), "measured": measured}
+    for name, table in tables.items():
+        if table:
+            mark = rf"(<!--{name}-->\n).*?(<!--/-->)"
+            text = re.sub(mark, lambda m, t=table: f"{m[1]}{t}\n{m[2]}", text, flags=re.DOTALL)
+    PAGE.write_text(text, encoding="utf-8")
+
+
+if __name__ == "__main__":
+    main()

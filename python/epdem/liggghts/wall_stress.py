@@ -1,0 +1,76 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Pressure and wear of walls of triangles: LIGGGHTS's words, and the table from its files."""
+
+from collections.abc import Collection
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+
+from ..errors import CaseError, EngineError
+from ..scenes.plan import ScenePlan
+from .properties import Property, per_pair
+
+FILES = "stress_{}.{}.vtk"  # wall, step
+COLUMNS = {"meshid": "triangle", "area": "area", "normal_stress_average": "normal_stress"}
+COLUMNS |= {"shear_stress_average": "shear_stress", "wear": "wear"}
+
+
+def watched(p: ScenePlan) -> tuple[str, ...]:
+    """The walls whose triangles are in the table."""
+    return tuple(name for name, mesh in p.layout.meshes.items() if mesh.stress or mesh.wear)
+
+
+def properties(p: ScenePlan) -> tuple[Property, ...]:
+    """Finnie's constant [m^2/N] of each pair of types with a wall that wears. Raises CaseError for two values."""
+    worn = {name: mesh.wear for name, mesh in p.layout.meshes.items() if mesh.wear}
+    if not worn:
+        return ()
+    n, of_type = len(p.model.types), dict[int, float]()
+    for name, wear in worn.items():
+        kind = p.wall_types[name]
+        if of_type.setdefault(kind, wear) != wear:
+            raise CaseError(
+                f"scene.wall.{name}.wear = {wear:g} m^2/N: another wall of its material has another; give one"
+            )
+    values = [of_type.get(a, 0.0) or of_type.get(b, 0.0) for a in range(1, n + 1) for b in range(1, n + 1)]
+    return (per_pair("k_finnie", n, values, "m^2/N"),)
+
+
+def _fields(path: Path) -> dict[str, np.ndarray]:
+    """The numbers of each triangle in a file of LIGGGHTS's `dump mesh/vtk`, sorted by their ids."""
+    lines = path.read_text(encoding="ascii").partition("FieldData")[2].splitlines()[1:]
+    words: dict[str, list[str]] = {}
+    name = ""
+    for line in lines:
+        if line[:1].isalpha():
+            name = line.split()[0]
+            words[name] = []
+        else:
+            words[name] += line.split()
+    count = len(words["area"])
+    found = {name: np.array(values, float).reshape(count, -1) for name, values in words.items()}
+    order = np.argsort(found["meshid"][:, 0])
+    return {name: values[order, 0] for name, values in found.items()}
+
+
+def table(p: ScenePlan, folder: Path, *, without: Collection[int] = ()) -> pd.DataFrame:
+    """step, wall, triangle, area, normal_stress, shear_stress, wear (0 where none is asked for) in every frame.
+
+    Raises EngineError for a file that is not whole.
+    """
+    frames = []
+    for name in watched(p):
+        for step in (s for s in p.frame_steps(p.frames) if s not in without):
+            path = folder / FILES.format(name, step)
+            try:
+                fields = _fields(path)
+                columns = {ours: fields.get(theirs, np.zeros(len(fields["area"]))) for theirs, ours in COLUMNS.items()}
+            except (OSError, ValueError, IndexError, KeyError) as error:
+                raise EngineError(f"{path}: incomplete ({error}); the run was stopped there") from None
+            if len(columns["area"]) != len(p.layout.meshes[name].triangles):
+                raise EngineError(
+                    f"{path}: {len(columns['area'])} triangles, expected {len(p.layout.meshes[name].triangles)}"
+                )
+            frames.append(pd.DataFrame({"step": step, "wall": name} | columns))
+    return pd.concat(frames, ignore_index=True).astype({"triangle": int})

@@ -1,0 +1,131 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""What scenes of parts have in YADE: facets, motions of walls, spheres of a table; and what they cannot have."""
+
+from collections.abc import Iterator
+from dataclasses import dataclass
+
+from ..base import rendering as decks
+from ..case.parts import Parts
+from ..errors import CaseError
+from ..scenes import placement
+from ..scenes.layout import Linear, Move, Servo, Turn, Vector, Vibration
+from ..scenes.plan import Phase, ScenePlan
+
+EDGES = (
+    "walls of triangles: YADE counts a sphere that touches an edge once for each triangle there, so that its force is "
+    "up to twice as large near the inner edges of flat walls"
+)
+
+
+@dataclass(frozen=True)
+class Facets:
+    """A wall of triangles: `file` holds their corners; material: its number; turn: of its surface."""
+
+    name: str
+    file: str
+    material: int
+
+
+@dataclass(frozen=True)
+class Motion:
+    """What moves a wall in a phase: a velocity [m/s], an amplitude [m] with omega [rad/s], or a turn."""
+
+    wall: str
+    velocity: Vector | None = None
+    amplitude: Vector | None = None
+    omega: float = 0.0
+    axis: Vector | None = None
+    origin: Vector | None = None
+    rate: float = 0.0
+
+
+@dataclass(frozen=True)
+class Load:
+    """A wall whose mean force is in the rows; of facets the torque about `origin` [m], too."""
+
+    name: str
+    origin: Vector | None
+
+
+def refuse(p: ScenePlan, s: Parts) -> None:
+    """Raise CaseError for what a scene of parts has in LIGGGHTS only."""
+    first = p.phases[0].name
+    unknown: dict[str, object] = {
+        "scene.periodic": s.periodic,
+        "scene.leave": s.leave,
+        **{f"{f.place}.rate": f.rate for f in p.layout.fills},
+        **{f"{f.place}.phase": f.phase not in ("", first) and f.phase for f in p.layout.fills},
+        **{f"scene.body.{b.name}.phase": b.phase for b in p.layout.bodies},
+        **{f"scene.wall.{w.name}.phases": True for w in p.layout.gates},
+        **{f"scene.phase.{phase.name}.until": phase.until is not None for phase in p.phases},
+        **{f"scene.phase.{phase.name}.record": not phase.record for phase in p.phases},
+        **{f"scene.wall.{name}.stress": mesh.stress for name, mesh in p.layout.meshes.items()},
+        **{f"scene.wall.{name}.wear": mesh.wear for name, mesh in p.layout.meshes.items()},
+    }
+    for phase in p.phases:
+        for name, move in phase.moves.items():
+            unknown[f"scene.phase.{phase.name}.move of {name}"] = "press" if isinstance(move, Servo) else None
+            if p.layout.meshes[name].turn is not None:
+                raise CaseError(
+                    f"scene.wall.{name}.turn: YADE turns the wall itself, which moves otherwise; remove one"
+                )
+    for place, value in unknown.items():
+        if value:
+            shown = "" if value is True else f" = {value!r}"
+            raise CaseError(f"{place}{shown}: a scene in YADE does not have it; remove it or use --engine liggghts")
+
+
+def facets(p: ScenePlan) -> tuple[Facets, ...]:
+    """The walls of triangles."""
+    return tuple(Facets(name, f"{name}.txt", p.wall_types[name] - 1) for name in p.layout.meshes)
+
+
+def _motion(name: str, move: Move) -> Motion:
+    match move:
+        case Linear():
+            return Motion(name, velocity=move.velocity)
+        case Vibration():
+            return Motion(name, amplitude=move.amplitude, omega=move.omega)
+        case Turn():
+            return Motion(name, axis=move.axis, origin=move.origin, rate=move.rate)
+    raise AssertionError(move)  # a servo is refused
+
+
+def motions(p: ScenePlan, phase: Phase) -> tuple[Motion, ...]:
+    """What moves in a phase. A surface that turns is a wall of revolution that turns."""
+    turns = {name: mesh.turn for name, mesh in p.layout.meshes.items() if mesh.turn is not None}
+    return tuple(_motion(name, move) for name, move in (turns | phase.moves).items())
+
+
+def loads(p: ScenePlan) -> tuple[Load, ...]:
+    """The walls whose forces are in the rows; torques are about the axis of a wall's turn, else about 0."""
+    found = []
+    for name in p.layout.loads:
+        if name not in p.layout.meshes:
+            found.append(Load(name, None))
+            continue
+        moves = [p.layout.meshes[name].turn, *(phase.moves.get(name) for phase in p.phases)]
+        origins = [move.origin for move in moves if isinstance(move, Turn)]
+        found.append(Load(name, origins[0] if origins else (0.0, 0.0, 0.0)))
+    return tuple(found)
+
+
+def files(p: ScenePlan) -> dict[str, str]:
+    """The corners of each wall's triangles by file."""
+    texts = {}
+    for name, mesh in p.layout.meshes.items():
+        lines = [" ".join(map(decks.number, row)) for row in mesh.triangles.reshape(-1, 9).tolist()]
+        texts[f"{name}.txt"] = "\n".join(["# corners of a triangle, x y z of each [m]", *lines, ""])
+    return texts
+
+
+def spheres(p: ScenePlan) -> Iterator[tuple[float, ...]]:
+    """x y z radius [m], type, velocity [m/s], spin [rad/s], 1 if frozen, of each sphere: the table, then the fills."""
+    fills = [f for f in p.layout.fills for _ in range(f.count)]
+    still = (0.0, 0.0, 0.0)
+    for n, row in enumerate(placement.spheres(p).tolist()):
+        if n < len(p.layout.table):
+            s = p.layout.table[n]
+            yield (*row, *s.velocity, *s.spin, float(s.frozen))
+        else:
+            yield (*row, *fills[n - len(p.layout.table)].velocity, *still, 0.0)

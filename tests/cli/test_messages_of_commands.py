@@ -1,0 +1,58 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""What a command says of options, files and folders that do not fit: sentences that no other test asks for."""
+
+from pathlib import Path
+
+import pytest
+from calls import CASES, call
+
+CASE = ("--case", "steel.toml", "-o", "d")
+SET = ("--set", "impact.body.radius=1 mm,2 mm")
+SENTENCES = {
+    ("run", "scene.toml", "--resume", "--fresh"): "--resume continues a run and --fresh begins it again; leave one out",
+    ("run", "scene.toml", "-e", "embedded"): "--engine embedded: a scene runs on liggghts or yade",
+    ("run", "steel.toml", "-e", "embedded", "--format", "gif"): "--format gif: not one of png, svg, pdf; choose one of",
+    ("run", "steel.toml", "-e", "embedded", "-o", "mine"): "a.txt was there before; the folder is not ours; choose",
+    ("predict", "."): "cannot be read ([Errno 21]",
+    ("predict", "/dev/zero"): "/dev/zero: more than 4 MB, which no case has; name the case file",
+    ("predict", "steel.toml", "-l", "jkr"): "law jkr needs law.work_of_adhesion (of all pairs), or",
+    ("theory", "--speed", "0 m/s"): "--speed = '0 m/s', must be > 0; correct it",
+    ("theory", "--speed", "3"): "'3' has no unit; write \"3 m/s\" if that is what is meant",
+    ("header",): "epdem header: name a folder by --out or --check",
+    ("deck", "own.j2", *CASE, "--set", "1=2"): "must be key=value with a key of letters",
+    ("deck", "own.j2", *CASE, "--set", "deck=2"): "this name holds the case's values",
+    ("deck", "own.j2", *CASE, "--set", "a=1", "--set", "a=2"): "is given twice; keep",
+    ("deck", "own.j2", *CASE, "--set", "b=1"): "own.j2 does not use it; check the",
+    ("deck", "long.j2", *CASE): "bytes; a template is shorter",
+    ("sweep", "steel.toml", "--set", "impact.body.radius"): "--set 'impact.body.radius': write it as --set impact",
+    ("sweep", "steel.toml", *SET, *SET): "--set impact.body.radius: given twice; write all its values behind one",
+    ("sweep", "steel.toml", *SET, "--points", "points.csv"): "impact.body.radius: the key is in points.csv too; keep",
+    ("sweep", "steel.toml", "--points", "points.csv", "--latin-hypercube", "3"): "--latin-hypercube needs ranges; add",
+    ("sweep", "steel.toml", *SET, "--slurm", "time=1"): "--slurm goes with --executor slurm or --write-script",
+    (
+        "sweep",
+        "steel.toml",
+        *SET,
+        "--executor",
+        "slurm",
+        "--jobs",
+        "2",
+    ): "--jobs is for --executor local; give the jobs",
+    ("calibrate", "hertz.toml", "--hv", "100"): "law hertz never yields; it has nothing to calibrate",
+}
+
+
+@pytest.mark.parametrize("words", SENTENCES, ids=" ".join)
+def test_a_command_says_it_in_one_sentence(words, tmp_path, capsys, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    steel = (CASES / "steel_wall.toml").read_text()
+    Path("steel.toml").write_text(steel)
+    Path("hertz.toml").write_text(steel.replace('name = "thornton"', 'name = "hertz"'))
+    Path("scene.toml").write_text((CASES / "settle_glass.toml").read_text())
+    Path("points.csv").write_text("impact.body.radius\n3 mm\n")
+    Path("own.j2").write_text("{{ a | default(0) }}\n")
+    Path("long.j2").write_text("x" * 10_000_000)
+    Path("mine").mkdir()
+    Path("mine/a.txt").write_text("of the user")
+    done = call(words, capsys, monkeypatch)
+    assert done.code == 2 and SENTENCES[words] in done.err and done.err.count("\n") == 1, done.err

@@ -1,0 +1,100 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""What a terminal shows: progress, colour, narrow ones, other encodings, completion; and nothing of it in a pipe."""
+
+import fcntl
+import inspect
+import os
+import pty
+import re
+import struct
+import subprocess
+import sys
+import termios
+from pathlib import Path
+
+import pytest
+from calls import CASES, COMMANDS
+from rich.console import Console
+
+from epdem.base import terminal
+
+EPDEM = str(Path(sys.executable).parent / "epdem")
+RUN = ["run", str(CASES / "steel_wall.toml"), "-e", "embedded", "--steps", "50", "-o", "out", "--fresh"]
+COLOUR, ESCAPE = re.compile(r"\x1b\[[\d;]*3\dm"), re.compile(r"\x1b\[[\d;?]*[A-Za-z]")
+
+
+def shown(words: list[str], folder: Path, width: int, **environment: str) -> str:
+    """What a command writes on a terminal of this width, standard output and error together."""
+    child, fd = pty.fork()
+    if child == 0:  # pragma: no cover
+        fcntl.ioctl(1, termios.TIOCSWINSZ, struct.pack("HHHH", 40, width, 0, 0))
+        os.chdir(folder)
+        os.execve(EPDEM, [EPDEM, *words], os.environ | {"TERM": "xterm-256color"} | environment)
+    text = b""
+    while True:
+        try:
+            text += os.read(fd, 65536)
+        except OSError:
+            break
+    os.waitpid(child, 0)
+    return text.decode()
+
+
+def piped(words: list[str], folder: Path, **environment: str) -> subprocess.CompletedProcess[str]:
+    return subprocess.run([EPDEM, *words], cwd=folder, capture_output=True, text=True, env=os.environ | environment)
+
+
+def test_a_terminal_has_progress_and_colour_and_a_narrow_one_cuts_no_number(tmp_path):
+    text = shown(RUN, tmp_path, 50)
+    plain = ESCAPE.sub("", text)
+    assert COLOUR.search(text) and "\x1b[31m" in text  # rows that fail are red
+    assert "figure" in plain and "━━━" in plain and "…" not in plain
+    rows = [line for line in plain.splitlines() if line.startswith("│")]
+    assert len(rows) == 10 and all(len(line) <= 50 for line in rows)
+    assert "left out, as the terminal is narrow: steps" in plain
+
+
+def test_no_color_and_a_dumb_terminal_are_kept(tmp_path):
+    assert not COLOUR.search(shown(RUN, tmp_path, 100, NO_COLOR="1"))
+    assert "\x1b" not in shown(["predict", RUN[1]], tmp_path, 100, TERM="dumb")
+
+
+def test_a_pipe_gets_plain_text_without_progress_and_ascii_where_asked(tmp_path):
+    done = piped(RUN, tmp_path)
+    assert "\x1b" not in done.stdout + done.stderr and not done.stderr and "figure" not in done.stdout
+    done = piped(["predict", RUN[1]], tmp_path, PYTHONIOENCODING="ascii")
+    assert done.returncode == 0 and done.stdout.isascii()
+    assert len([line for line in done.stdout.splitlines() if line.startswith("|")]) == 34  # with head and rule
+
+
+@pytest.mark.parametrize("shell", ["bash", "zsh", "fish"])
+def test_shells_get_a_script_that_completes_commands(shell, tmp_path):
+    done = piped([], tmp_path, _EPDEM_COMPLETE=f"source_{shell}")
+    assert done.returncode == 0 and "_EPDEM_COMPLETE" in done.stdout
+    if shell == "bash":
+        asked = {"_EPDEM_COMPLETE": "complete_bash", "COMP_WORDS": "epdem c", "COMP_CWORD": "1"}
+        found = set(piped([], tmp_path, **asked).stdout.split())
+        assert found == {name for name in COMMANDS if name.startswith("c")} and len(found) == 4
+
+
+def test_a_table_that_is_too_wide_comes_in_parts_with_the_first_column(capsys):
+    screen = Console(width=40, force_terminal=False)
+    table = terminal.table("many", ["name", *(f"column{k}" for k in range(5))], left=("name",))
+    table.add_row("first", *(f"{k}.123456" for k in range(5)))
+    terminal.show_table(screen, table)
+    text = capsys.readouterr().out
+    assert all(f"{k}.123456" in text and f"column{k}" in text for k in range(5)) and "…" not in text
+    assert max(map(len, text.splitlines())) <= 40 and text.count("first") == 3 and text.count("many") == 1
+    one = terminal.table("", ["only"])
+    one.add_row("text")
+    terminal.show_table(screen, one)
+    assert "text" in capsys.readouterr().out
+
+
+def test_what_takes_long_says_what_it_does():
+    """Commands that only read, write or compute for less than two seconds need no progress."""
+    short = {"deck", "predict", "theory", "cite", "explain", "soften", "status", "header", "stress"}
+    for name, command in COMMANDS.items():
+        module = inspect.getsource(inspect.getmodule(command.callback))
+        if name not in short:
+            assert re.search(r"with .*(?:status|bar|progress)\(", module), name

@@ -1,0 +1,185 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""What is said of runs that left nothing, or something damaged, and of programs that are not there."""
+
+import shutil
+from dataclasses import replace
+from pathlib import Path
+from types import SimpleNamespace
+
+import numpy as np
+import pandas as pd
+import pytest
+from stored_runs import STORED, planned
+
+from epdem.base import folders, paths, processes, settings
+from epdem.case import impact
+from epdem.case.toml import read_toml
+from epdem.engines import engine
+from epdem.errors import CaseError, EngineError
+from epdem.impacts.engine import Edit, Trajectory
+from epdem.impacts.experiment import experiment
+from epdem.impacts.measurement import measure
+from epdem.impacts.plan import plan
+from epdem.impacts.prediction import predict
+from epdem.lammps import impacts as lammps
+from epdem.liggghts import dump, kept, own_template, scene_tables
+from epdem.liggghts import impacts as liggghts
+from epdem.scenes import columns, contacts, run, stl_files
+from epdem.studies import one_impact, tune
+from epdem.studies.stability import variants
+from epdem.studies.sweep import slurm
+from epdem.theory.yielding import principal
+from epdem.yade import scene_tables as yade_tables
+from epdem.yade.deck_modules.law import Cavity
+
+CASES = Path(__file__).parents[2] / "cases"
+
+
+def steel(**changes):
+    data = read_toml(CASES / "steel_wall.toml") | changes
+    data["impact"]["speeds"] = ["1 m/s"]
+    x = experiment(impact.parse(data))
+    return plan(x, predict(x))
+
+
+def says(words: str, error: type[Exception] = EngineError):
+    return pytest.raises(error, match=words)
+
+
+def test_impacts_that_never_touch_or_never_end():
+    p = steel()
+    flat = np.zeros((p.n, 4))
+    with says("never touched; the run is too short or went wrong"):
+        measure(p, Trajectory(p.time_step, flat, flat, flat, {}))
+    with says("was still in contact at the end; the run is too short or went wrong"):
+        measure(p, Trajectory(p.time_step, flat + 1e-6, flat + 1.0, flat, {}))
+    sticky = steel(law={"name": "jkr", "work_of_adhesion": "1 J/m^2"})
+    flat = np.zeros((sticky.n, 4))
+    with says("never touched; the run is too short or went wrong"):
+        measure(sticky, Trajectory(sticky.time_step, flat, flat, flat, {}))
+
+
+def test_dumps_of_impacts(tmp_path, monkeypatch):
+    p, path = steel(), tmp_path / "path.bin"
+    with says("path.bin: the dump cannot be read .*; see the log beside it"):
+        dump.frames(path)
+    path.write_bytes(b"\0" * 9)
+    with says(r"frame 0 is incomplete \(.*\); the run was stopped there"):
+        dump.frames(path)
+    path.write_text("ITEM: NUMBER OF ENTRIES\n2\nITEM: ENTRIES a b\n1 2\n")
+    with says(r"incomplete \(1 rows of 2\); the run was stopped while it wrote this frame"):
+        dump.local(path)
+    monkeypatch.setattr(dump, "series", lambda path: np.zeros((3, 2, 3)))
+    with says(r"the run left an incomplete dump \(3 frames of 2 bodies, expected .*see log.liggghts beside it"):
+        liggghts.trajectory(p, path, {})
+    monkeypatch.setattr(lammps, "call", lambda *words, **named: 1.0)
+    monkeypatch.setattr(lammps, "program", lambda: "lmp")
+    with says("path.txt: the run left an incomplete dump .*; see log.lammps beside it"):
+        lammps.LammpsMdr().run(p, tmp_path)
+
+
+def test_frames_and_rows_of_scenes(tmp_path):
+    p, q = planned("settle"), planned("yade_settle")
+    out = tmp_path / scene_tables.OUT
+    out.write_text("")
+    with says("no thermo rows; the run ended before its first step"):
+        scene_tables.rows(p, out)
+    with says("no rows; the run ended before its first step"):
+        yade_tables.rows(q, out)
+    out.write_text("Step a\n7 x\n")
+    with says("the row of step 7 is damaged; run the case again"):
+        yade_tables.rows(q, out)
+    with says(r"particles.0.npy: incomplete \(.*\); run the case again"):
+        yade_tables.particles(q, tmp_path)
+    shutil.copytree(STORED / "settle", tmp_path / "run")
+    whole = scene_tables.particles(p, tmp_path / "run")
+    with says("the frame of step 1260 is damaged; run the case again"):
+        columns.whole(p, whole.assign(radius=-1.0), tmp_path)
+    raw = pd.DataFrame([{"step": 1260, "wall": "", "i": 99, "j": 98, "overlap": 1e-6, "delta_max": 1e-6}])
+    with says("the contacts of step 1260 are damaged: no such spheres; run the case again"):
+        contacts.complete(p, raw, whole, tmp_path)
+    shutil.copy(STORED / "hopper/particles.2800.bin", tmp_path / "two.bin")
+    with (tmp_path / "two.bin").open("ab") as stream:
+        stream.write((STORED / "hopper/particles.2800.bin").read_bytes())
+    with says("two.bin: not one frame of 10 columns; run the case again"):
+        scene_tables._frame(tmp_path / "two.bin", 10)
+
+
+def test_programs_that_are_not_there(tmp_path, monkeypatch):
+    with says("/no/program: cannot be started"):
+        processes.call(["/no/program"], tmp_path, log="out", seconds=9)
+    monkeypatch.setattr(kept.launcher, "command", lambda *words: ["/no/program"])
+    with says("/no/program: cannot be started"):
+        kept.Kept()._started(tmp_path)
+    monkeypatch.setattr(paths, "_first", lambda *candidates: None)
+    with says("templates not found beside the package; install epdem again"):
+        paths.templates.__wrapped__()
+    with says(r"C\+\+ sources not found beside the package; install epdem again"):
+        paths.cpp_sources.__wrapped__()
+
+
+def test_clusters_that_do_not_answer(tmp_path, monkeypatch):
+    (tmp_path / slurm.JOBS).parent.mkdir()
+    (tmp_path / slurm.JOBS).write_text('{"7": [1]}')
+    monkeypatch.setattr(slurm, "alive", lambda jobs: None)
+    with says("squeue does not answer; is this a node of a Slurm cluster"):
+        slurm._living(tmp_path)
+    monkeypatch.setattr(slurm, "SILENCE", -1.0)
+    with says("squeue has not answered for -1 s; the jobs go on"):
+        slurm._wait(None, tmp_path, {"7": [1]}, lambda done, total: None)
+
+
+def test_jobs_that_slurm_does_not_take(tmp_path, monkeypatch):
+    monkeypatch.setattr(slurm, "_cpus", lambda *words: (_ for _ in ()).throw(RuntimeError("no partition")))
+    monkeypatch.setattr("submitit.SlurmExecutor", lambda **named: None)
+    with says("--executor slurm: the jobs were not taken: no partition"):
+        slurm._submit(SimpleNamespace(name="x"), tmp_path, [1], {})
+
+
+def test_scenes_that_cannot_go_on(tmp_path):
+    p = planned("settle")
+    place = SimpleNamespace(folder=tmp_path, versions={"liggghts": "1"})
+    work = SimpleNamespace(plan=p, files={}, versions={"liggghts": "2"}, notes=())
+    with says("begun by liggghts 1, and here is liggghts 2; run it anew .--fresh", CaseError):
+        run._resumed(work, place)
+    empty = {"particles": pd.DataFrame({"step": []})}
+    with says("no frame holds a sphere; all have left the room, see"):
+        run._finish(work, tmp_path, 0.0, empty)
+
+
+def test_decks_and_studies(tmp_path, monkeypatch):
+    deck = tmp_path / "deck"
+    deck.write_text("run 1\nrun 2\n")
+    with says("2 lines start with 'run', expected 1"):
+        variants.edit(deck, Edit("run", ()))
+    with says("a trial ended before its second piece; give it more time"):
+        tune._of_cuts({"x": [(1.0, 1)]})
+    with says("engine embedded: one contact has no order, owner or restart to depend on", CaseError):
+        engine("embedded").run_pairs(None, "swap", tmp_path)
+    with says("deck cannot be made into another set-up"):
+        variants.edits(variants.PositionSampler(engine("embedded"), tmp_path))
+    with says(r"a template's name ends in \.j2; the deck is written without it", CaseError):
+        own_template.write(Path(".j2"), CASES / "steel_wall.toml", {}, tmp_path)
+    with says(r"stress has shape \(3,\), must end in \(3, 3\)", ValueError):
+        principal([1.0, 2.0, 3.0])
+    with says("would create energy at yield", ValueError):
+        Cavity(1e9, 1e6, 1.0, 9.0)
+    steel = one_impact.sourced("steel")
+    soft = replace(steel, material=steel.material.model_copy(update={"yield_stress": None}))
+    monkeypatch.setattr(one_impact, "sourced", lambda name: soft)
+    with says("has no yield stress in the materials file; choose another", CaseError):
+        one_impact.one_impact("steel", radius=1.0, speed=1.0)
+
+
+def test_folders_and_files_of_a_user(tmp_path, monkeypatch):
+    with (tmp_path / "lock").open("w+") as lock, says("another run has just ended here; run the command", CaseError):
+        folders._lock(tmp_path, lock)
+    config = tmp_path / "epdem/config.toml"
+    config.parent.mkdir()
+    config.write_text("a = ")
+    monkeypatch.setenv("XDG_CONFIG_HOME", str(tmp_path))
+    with says("config.toml: .*; mend or remove it", CaseError):
+        settings.setting("liggghts", "command")
+    (tmp_path / "x.stl").write_bytes(b"\0" * 84)
+    with says("no triangles, or corners that are not numbers; export it anew", CaseError):
+        stl_files._read(tmp_path / "x.stl", "scene.wall.x.file")

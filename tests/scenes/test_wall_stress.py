@@ -1,0 +1,64 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Pressure and wear of walls of triangles, in LIGGGHTS."""
+
+import math
+
+import pytest
+from parts_cases import BED, parts
+from scene_runs import run, write_case
+
+from epdem.case.scene import parse
+from epdem.errors import CaseError
+from epdem.liggghts import scene_deck
+from epdem.scenes.plan import plan
+
+BOX = {"name": "box", "kind": "box", "x": ["-9 mm", "9 mm"], "y": ["-9 mm", "9 mm"], "z": ["0 mm", "40 mm"]}
+BOX |= {"material": "steel"}
+
+
+def scene(*, wear=None, friction=0.0, **output):
+    data = parts(
+        wall=[BOX | {"stress": True} | ({"wear": wear} if wear else {})],
+        fill=[BED | {"velocity": ["0.2 m/s", "0 m/s", "0 m/s"]}],
+        phase=[{"name": "fall", "duration": "0.2 s"}],
+    )
+    data["viscous"], data["contact"] = {"restitution": 0.4}, {"friction": friction}
+    data["output"] = {"rows": 8, "particles": 4} | output
+    return data
+
+
+@pytest.mark.liggghts
+def test_the_pressure_on_the_floor_bears_the_bed_and_nothing_wears(tmp_path):
+    outcome = run(write_case(scene(), tmp_path), out=tmp_path / "out")
+    walls = outcome.results.walls
+    last = walls[walls["step"] == walls["step"].max()]
+    weight = 40 * 2500 * 4 / 3 * math.pi * 1.5e-3**3 * 9.81
+    floor = last[(last["area"] * last["normal_stress"]).abs() > 0.2 * weight]
+    assert len(walls) == 12 * 5 and (floor["area"] * floor["normal_stress"]).sum() == pytest.approx(weight, rel=0.05)
+    assert last["area"].sum() == pytest.approx((2 * 18 * 18 + 4 * 18 * 40) * 1e-6)
+    assert not walls["wear"].any() and not walls["shear_stress"].any()
+
+
+@pytest.mark.liggghts
+def test_wear_grows_and_is_proportional_to_its_constant(tmp_path):
+    wear = {}
+    for constant in ("1e-9 m^2/N", "2e-9 m^2/N"):
+        place = tmp_path / constant[0]
+        place.mkdir()
+        outcome = run(write_case(scene(wear=constant, friction=0.3), place), out=place / "out")
+        wear[constant] = outcome.results.walls.pivot(index="step", columns="triangle", values="wear")
+    one, two = wear.values()
+    assert (one.diff().iloc[1:] >= 0).all(axis=None) and one.iloc[-1].max() > 0 and not one.iloc[0].any()
+    assert two.to_numpy() == pytest.approx(2 * one.to_numpy(), rel=1e-9)
+
+
+def test_two_walls_of_a_material_wear_alike_and_frames_are_needed():
+    other = BOX | {"name": "other", "x": ["-8 mm", "8 mm"], "wear": "2e-9 m^2/N"}
+    data = scene(wear="1e-9 m^2/N")
+    data["scene"]["wall"].append(other)
+    with pytest.raises(CaseError, match=r"scene.wall.other.wear = 2e-09 m\^2/N: another wall of its material"):
+        scene_deck.files(plan(parse(data)))
+    with pytest.raises(CaseError, match=r"scene.wall.box: stress and wear are written with the frames"):
+        plan(parse(scene(particles=0)))
+    with pytest.raises(CaseError, match="continued run does not know the wear of wall box"):
+        plan(parse(scene(wear="1e-9 m^2/N", restarts=1)))

@@ -1,0 +1,89 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Scenes of parts in YADE: facets, motions, spheres of a table beside LIGGGHTS; what is refused."""
+
+import numpy as np
+import pytest
+from parts_cases import BED, FLOOR, parts
+from scene_runs import run, write_case
+from test_parts_motions import BEATER, BOX, FALL, PLATE, moved
+
+from epdem.case.scene import parse
+from epdem.engines import scene_engine
+from epdem.errors import CaseError
+from epdem.scenes.engine import files
+from epdem.scenes.plan import plan
+
+
+@pytest.mark.yade
+@pytest.mark.parametrize("kind", ["vibrate", "rotate"])
+def test_energy_closes_with_the_work_of_walls_that_move_in_yade(kind, tmp_path):
+    outcome = run(write_case(moved(kind), tmp_path), engine="yade", out=tmp_path / "out")
+    ledger = outcome.results.ledger
+    assert outcome.passed, outcome.results.checks
+    assert abs(ledger["work"]).max() > 0.1 * ledger["kinetic"].max() > 0  # so that it counts
+    assert {"floor", "box", "beater", "lid"} >= {*outcome.results.contacts["wall"]} - {""}
+    assert any("once for each triangle" in text for text in outcome.warnings)
+
+
+BODIES = """x,y,z,radius,vx,vy,vz
+0.0002,0.0001,0.0162,0.0015,0,0,-1
+-0.0051,0.0042,0.0115,0.0012,0.3,0,-0.5
+"""
+
+
+@pytest.mark.yade
+@pytest.mark.liggghts
+def test_the_same_bodies_do_the_same_in_both_engines(tmp_path):
+    """Without friction (YADE has another); of a file, one frozen; a plate of triangles rises; two time steps."""
+    table = {"name": "table", "file": str(tmp_path / "spheres.csv"), "material": "glass"}
+    (tmp_path / "spheres.csv").write_text(BODIES)
+    frozen = {"name": "held", "material": "steel", "radius": "2 mm", "place": ["0 mm", "0 mm", "11 mm"], "frozen": True}
+    fast = {"name": "fast", "material": "glass", "radius": "1.5 mm", "place": ["5 mm", "-4 mm", "12 mm"]}
+    fast |= {"velocity": ["0 m/s", "0 m/s", "-1 m/s"]}
+    up = {"wall": "lid", "kind": "linear", "velocity": ["0 m/s", "0 m/s", "0.3 m/s"]}
+    phases = [FALL | {"duration": "5 ms", "move": [up]}, FALL | {"name": "on", "duration": "5 ms"}]
+    data = parts(
+        wall=[FLOOR, PLATE | {"center": ["0 mm", "1 mm", "6 mm"]}], fill=[table], body=[frozen, fast], phase=phases
+    )
+    data["scene"]["phase"][1]["time_step"] = "5e-6 s"
+    data["numerics"] = {"time_step": "1e-5 s"}
+    data["output"] = {"rows": 10, "particles": 10, "loads": True}
+    found = {}
+    for engine in ("yade", "liggghts"):
+        outcome = run(write_case(data, tmp_path), engine=engine, out=tmp_path / engine)
+        found[engine] = outcome.results
+    one, other = (r.particles.set_index(["step", "id"]) for r in found.values())
+    assert one.index.equals(other.index) and len(one) == 4 * 11
+    speeds = ["vx", "vy", "vz"]
+    assert np.abs(one[["x", "y", "z"]] - other[["x", "y", "z"]]).to_numpy().max() < 1e-6
+    assert np.abs(one[speeds] - other[speeds]).to_numpy().max() < 2e-4
+    assert other.loc[other.index[-1][0], "vz"].max() > 0.3  # something rebounds
+    assert not one.xs(3, level="id")[speeds].to_numpy().any()  # the frozen one
+    loads = [f"lid_force_{axis}" for axis in "xyz"] + ["floor_force_z"]
+    one, other = (r.rows[[*loads, "time", "lid_torque_y"]].to_numpy() for r in found.values())
+    assert np.abs(one - other).max(axis=0) == pytest.approx(0, abs=0.02 * np.abs(other[:, 2]).max())
+    assert np.abs(other[:, 2]).max() > 1e-3 and found["yade"].phases.equals(found["liggghts"].phases)
+
+
+SHAKE = {"wall": "lid", "kind": "press", "direction": [0.0, 0.0, -1.0], "force": "1 N", "highest_speed": "1 cm/s"}
+BALL = {"name": "ball", "material": "steel", "radius": "2 mm", "place": ["0 mm", "0 mm", "20 mm"], "phase": "on"}
+TWO = [FALL, FALL | {"name": "on"}]
+
+
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        ({"leave": True}, "scene.leave"),
+        ({"fill": [BED | {"rate": "3 kHz"}]}, "scene.fill.bed.rate = 3000.0"),
+        ({"fill": [BED, BED | {"name": "more", "phase": "on"}], "phase": TWO}, "scene.fill.more.phase = 'on'"),
+        ({"body": [BALL], "phase": TWO}, "scene.body.ball.phase = 'on'"),
+        ({"wall": [FLOOR | {"phases": ["fall"]}]}, "scene.wall.floor.phases"),
+        ({"phase": [FALL | {"until": {"count": 3}}]}, "scene.phase.fall.until"),
+        ({"wall": [BOX, PLATE], "phase": [FALL | {"move": [SHAKE]}]}, "scene.phase.fall.move of lid = 'press'"),
+        ({"wall": [BEATER | {"stress": True}]}, "scene.wall.beater.stress"),
+    ],
+)
+def test_what_yade_does_not_have_is_refused_in_a_sentence(change, words):
+    with pytest.raises(CaseError) as error:
+        files(scene_engine("yade"), plan(parse(parts(**change))))
+    assert str(error.value) == f"{words}: a scene in YADE does not have it; remove it or use --engine liggghts"
