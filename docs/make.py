@@ -28,6 +28,8 @@ FIGURES = {  # the command, and where the figure is then
     "laws.png": (".venv/bin/python docs/laws.py", "docs/figures/laws.png"),
     "cost.png": (".venv/bin/python docs/cost.py", "docs/figures/cost.png"),
     "validate.png": (".venv/bin/python docs/benchmarks.py", "docs/figures/validate.png"),
+    "impact_25k.png": (".venv/bin/python docs/benchmarks.py", "docs/figures/impact_25k.png"),
+    "impact_25k_lowest.png": (".venv/bin/python docs/benchmarks.py", "docs/figures/impact_25k_lowest.png"),
     "contact_cost.png": (".venv/bin/python bench/liggghts_speed.py --quick", "docs/figures/contact_cost.png"),
 }
 PAGES = {

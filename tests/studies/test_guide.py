@@ -36,8 +36,6 @@ FEW = 'speeds = { from = "0.5 m/s", to = "50 m/s", count = 3 }'
 SMALL = {
     "settle_glass": {"scene.box": ["10 mm", "10 mm", "60 mm"], "scene.count": 30, "scene.duration": "0.3 s"}
     | {"output.particles": 4},
-    "compaction_powder": {"scene.box": ["0.5 mm", "0.5 mm", "1.2 mm"], "scene.count": 100, "scene.height": "0.28 mm"}
-    | {"scene.back": "0.01 mm", "scene.speed": "4 m/s", "output.rows": 20, "output.particles": 3},
     "hopper_beads": {"scene.count": 60, "scene.fill": "20 ms", "scene.duration": "40 ms"},
 }
 

@@ -44,7 +44,7 @@ class Measured:
 
 @dataclass(frozen=True)
 class Validation:
-    """points: one row per point, law and engine; summary: per set, law and engine; absent: laws left out, and why."""
+    """points: one row per measured number, law and engine; summary: per set, law and engine; absent: laws left out."""
 
     sets: list[Measured]
     points: pd.DataFrame
@@ -173,5 +173,7 @@ def validate(
                         raise
                     absent[law] = str(error)
         points = pd.DataFrame(rows)
+        same = points.groupby(["set", "quantity", "yield_stress", "speed"], sort=False)
+        points.insert(0, "number", same.ngroup() + 1)
         write_csv(folder / "validate.csv", points)
     return Validation(measured, points, summary(points), absent, folder)

@@ -22,11 +22,11 @@ from ..stability.suite import summary
 from ..sweep.folder import DONE, FAILED
 from ..sweep.run import SweepOutcome
 from ..sweep.table import read_sweep
-from ..validate import QUANTITIES, Validation
+from ..validate import Validation
 from . import common, impacts
 
 MOST_PANELS = 4
-LABELS = {"e_n": "$e_n$", "dent_width": "width of the dent"}
+LABELS = {"e_n": "e_n", "dent_width": "width of the dent [m]"}
 
 
 def of_crosscheck(check: Crosscheck) -> Path:
@@ -160,23 +160,16 @@ def _by_key(result: SweepOutcome, units: dict[str, str]) -> Chart:
 def validation_chart(v: Validation) -> Chart:
     """What the first engine gives over the measured value, for every law and point."""
     points = v.points[v.points["engine"] == v.points["engine"].iloc[0]]
-    points = points.assign(ratio=1.0 + points["error"])
-    panels, order = [], list(dict.fromkeys(points["law"]))
-    for quantity in QUANTITIES:
-        part = points[points["quantity"] == quantity]
-        series = [
-            Series(law, own["measured"].to_numpy(float), own["ratio"].to_numpy(float), order.index(law), None, k)
-            for k, (law, own) in enumerate(part.groupby("law", sort=False))
-        ]
-        if not series:
-            continue
-        ends = [part["measured"].min(), part["measured"].max()]
-        series.append(Series("measured", ends, [1.0, 1.0], GREY, "solid", width=0.8))
-        unit = "" if quantity == "e_n" else "m"
-        panels.append(Panel(Axis(f"measured {LABELS[quantity]}", unit), Axis("law over measured"), series))
-    names = ", ".join(dict.fromkeys(points["set"]))
-    alt = f"Restitution and widths of dents over the measured values of {names}, one mark for each law and point."
-    return Chart("validate", "Laws against measured impacts", alt, panels)
+    series = [
+        Series(law, own["number"].to_numpy(float), 1.0 + own["error"].to_numpy(float), k, None, k)
+        for k, (law, own) in enumerate(points.groupby("law", sort=False))
+    ]
+    series.append(Series("measured", [1.0, float(points["number"].max())], [1.0, 1.0], GREY, "solid", width=0.8))
+    first = points.drop_duplicates("number")
+    names = ", ".join(f"{r.number} {r.set} {LABELS[r.quantity]} {r.measured:g}" for r in first.itertuples())
+    alt = f"Law over measured value for every law; the measured numbers are {names}."
+    x = Axis("measured number, in the order of the table")
+    return Chart("validate", "Laws against measured impacts", alt, [Panel(x, Axis("law over measured"), series)])
 
 
 def of_validation(v: Validation) -> Path:
