@@ -5,7 +5,7 @@ from pathlib import Path
 
 import numpy as np
 
-from ..case.impact import NODES
+from ..case.fields import NODES
 from ..impacts.engine import Abilities
 from ..impacts.motion import Loads, Motion, Touch, unit_normals
 from .embedded import Embedded

@@ -14,7 +14,7 @@ from typing import Protocol
 import numpy as np
 import numpy.typing as npt
 
-from ..case.impact import NODES, Tangential
+from ..case.fields import NODES, Tangential
 from ..errors import CaseError
 from ..laws.library import Array
 from .engine import Abilities
