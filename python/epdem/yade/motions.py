@@ -9,7 +9,7 @@ import numpy as np
 from ..base import rendering as decks
 from ..base.files import write_texts
 from ..base.processes import call
-from ..case.impact import NODES
+from ..case.fields import NODES
 from ..errors import EngineError
 from ..impacts.engine import Abilities
 from ..impacts.motion import Loads, Motion, Touch
