@@ -40,10 +40,12 @@ def files(case: Path, model: str) -> dict[str, str]:
     if not any(x.name == "coefficientRestitution" for x in properties):
         properties = (*properties, per_pair("coefficientRestitution", d.n_types, 0.5, "-"))
     settings = tuple(s for s in d.settings if s != "computePlasticWork on")
-    d = replace(d, model="hertz", properties=properties, settings=settings, yields=False)
+    columns = scene_deck.contact_columns(0, 0)
+    memoryless = dict(yields=False, dents=False, rubs=False, slots=(), contact_columns=columns)
+    d = replace(d, model="hertz", properties=properties, settings=settings, wall_contact_columns=columns, **memoryless)
     names = {"in.scene": "liggghts/scene.in.j2", "setup.in": "liggghts/scene_setup.in.j2"}
     texts = {name: rendering.render(template, deck=d) for name, template in names.items()}
-    return texts | {f"{name}.stl": stl.text(name, triangles) for name, triangles in p.layout.meshes.items()}
+    return texts | {f"{name}.stl": stl.text(name, mesh.triangles) for name, mesh in p.layout.meshes.items()}
 
 
 def measure(texts: dict[str, str]) -> dict[str, float]:

@@ -87,6 +87,13 @@ class Ledger {
     if (!wall && bodies.j < bodies.nlocal) rub_one(bodies.j, part * lost, part * stored);
   }
 
+  /// What one contact adds to one body [J].
+  void credit(int body, double grown, double stored, bool bears) {
+    if (grown > 0.0) work_->vector_atom[body] += grown;  // few contacts grow
+    energy_->vector_atom[body] += stored;
+    bearing_->vector_atom[body] += bears;
+  }
+
   /// One number per body, for a loop that books by itself as `book` does.
   double* work() { return work_->vector_atom; }
   double* energy() { return energy_->vector_atom; }
@@ -104,12 +111,6 @@ class Ledger {
   static LAMMPS_NS::FixPropertyAtom* find(LAMMPS_NS::LAMMPS* lmp, const char* name, const char* caller) {
     return static_cast<LAMMPS_NS::FixPropertyAtom*>(
         lmp->modify->find_fix_property(name, "property/atom", "scalar", 0, 0, caller, false));
-  }
-
-  void credit(int body, double grown, double stored, bool bears) {
-    if (grown > 0.0) work_->vector_atom[body] += grown;  // few contacts grow
-    energy_->vector_atom[body] += stored;
-    bearing_->vector_atom[body] += bears;
   }
 
   void rub_one(int body, double lost, double stored) {

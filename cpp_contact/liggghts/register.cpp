@@ -103,7 +103,11 @@ PairStyles::IGranularPairStyle* new_pair(LAMMPS* lmp, PairGran* parent, int64_t 
 
 template <class Part>
 Walls::IGranularWall* new_wall(LAMMPS* lmp, FixWallGran* parent, int64_t hash) {
+#ifdef EPDEM_BUILT_FOR
   return new loop::Wall<Part>(lmp, parent, hash);
+#else
+  return new Walls::Granular<Part>(lmp, parent, hash);
+#endif
 }
 
 /// Laws with adhesion bring their own attraction, and multicontact is not measured with them.

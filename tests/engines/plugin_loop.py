@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Small dense scenes for the pair loop: every combination of models that it knows, run by it and by LIGGGHTS's own."""
+"""Small dense scenes for our loops: every combination of models that they know, run by them and by LIGGGHTS's own."""
 
 from dataclasses import dataclass, replace
 
@@ -8,7 +8,7 @@ from plugin_decks import ADHESIVE, Bodies, good
 
 SPACING = 2e-3  # of the lattice [m]; radii are about half of it
 COLUMNS = "x y z vx vy vz fx fy fz omegax omegay omegaz tqx tqy tqz"
-SAID = "epdem: pair loop of LIGGGHTS for "
+SAID, SAID_OF_WALLS = (f"epdem: {what} loop of LIGGGHTS for " for what in ("pair", "wall"))
 SIMD = ("sse2", "avx2", "avx512")
 
 
@@ -27,11 +27,12 @@ class Scene:
     loose: bool = False  # contacts open and close
     dashpot: bool = True  # of the tangential model; no_history cannot do without
     settings: tuple[str, ...] = ()
+    walls: bool = False  # a floor, and a lid that shears
 
     def __str__(self):
-        return "-".join(
-            str(v) if isinstance(v, str) else f"{k}{v:d}" for k, v in vars(self).items() if k != "settings"
-        ) + "".join(f"-{s.replace(' ', '_')}" for s in self.settings)
+        shown = {k: v for k, v in vars(self).items() if k != "settings" and (k != "walls" or v)}
+        settings = "".join(f"-{s.replace(' ', '_')}" for s in self.settings)
+        return "-".join(str(v) if isinstance(v, str) else f"{k}{v:d}" for k, v in shown.items()) + settings
 
 
 def bodies(scene, cells=3):
@@ -40,13 +41,29 @@ def bodies(scene, cells=3):
     edge = SPACING * np.sqrt(2) * (1.004 if scene.loose else 0.985)
     corner = np.stack(np.meshgrid(*[np.arange(cells)] * 3, indexing="ij"), -1).reshape(-1, 1, 3)
     x = ((corner + np.array([[0, 0, 0], [0.5, 0.5, 0], [0.5, 0, 0.5], [0, 0.5, 0.5]])) * edge).reshape(-1, 3)
-    x = (x + rng.uniform(-2e-5, 2e-5, x.shape)) % (cells * edge)
+    x += rng.uniform(-2e-5, 2e-5, x.shape)
+    x[:, : 2 if scene.walls else 3] %= cells * edge
     n = len(x)
     radius = SPACING / 2 * (rng.uniform(0.98, 1.02, n) if scene.types > 1 else np.ones(n))
     kinds = rng.integers(1, scene.types + 1, n)
     speed = 2.0 if scene.loose else 0.3
     made = Bodies(kinds, radius, x, rng.uniform(-speed, speed, x.shape), rng.uniform(-400, 400, x.shape))
-    return made.data(((0.0, float(cells * edge)),) * 3, types=scene.types)
+    room = [(0.0, float(cells * edge))] * 3
+    if scene.walls:
+        room[2] = (-SPACING, float(cells * edge + SPACING))
+    return made.data(room, types=scene.types)
+
+
+def walls(scene, models, cells=3):
+    """A floor and a lid, pressed into the outer layers by 3 % of a radius; the lid moves along x."""
+    edge = SPACING * np.sqrt(2) * (1.004 if scene.loose else 0.985)
+    reach = 0.97 * SPACING / 2
+    places = {"floor": f"{-reach!r}", "lid": f"{float((cells - 0.5) * edge + reach)!r} shear x 0.5"}
+    return "".join(
+        f"fix {name} all wall/gran {models} primitive type {min(2, scene.types)} zplane {place} store_force yes "
+        f"{' '.join(scene.settings)}\n"
+        for name, place in places.items()
+    )
 
 
 def deck(scene, *, steps=60, every=1, before="", end="", restart=None):
@@ -61,16 +78,16 @@ def deck(scene, *, steps=60, every=1, before="", end="", restart=None):
         return f"fix {name} all property/global {name} peratomtypepair {n} {table}\n"
 
     damped = scene.dashpot or scene.tangential == "no_history" or "viscous on" in scene.settings
-    words = (
-        f"model ep/{scene.law} tangential {scene.tangential} cohesion {scene.cohesion} "
-        f"rolling_friction {scene.rolling} {' '.join(scene.settings)}"
+    models = (
+        f"model ep/{scene.law} tangential {scene.tangential} cohesion {scene.cohesion} rolling_friction {scene.rolling}"
     )
     work = " f_plasticWork f_elasticEnergy f_bearingContacts" if "computePlasticWork on" in scene.settings else ""
     work += " f_adhesiveWork" if work and scene.law in ADHESIVE else ""
     work += " f_frictionWork f_frictionEnergy" if work and "partial_slip" in scene.tangential else ""
+    work += "".join(f" f_force_{w}[{k}]" for w in ("floor", "lid") for k in (1, 2, 3)) if scene.walls else ""
     return (
-        "atom_style granular\natom_modify map array sort 0 0\nboundary p p p\nnewton off\n"
-        "communicate single vel yes\nunits si\n"
+        f"atom_style granular\natom_modify map array sort 0 0\nboundary p p {'f' if scene.walls else 'p'}\n"
+        "newton off\ncommunicate single vel yes\nunits si\n"
         + ("processors 2 1 1\n" if scene.ranks == 2 else "")
         + (f"read_restart {restart}\n" if restart else "read_data packing.data\n")
         + f"neighbor {'2e-5' if scene.rebuild else '4e-4'} bin\nneigh_modify delay 0 "
@@ -84,7 +101,8 @@ def deck(scene, *, steps=60, every=1, before="", end="", restart=None):
         + (pairs("coefficientRestitution", 0.7, 0.05) if damped else "")
         + pairs("coefficientRollingFriction", 0.05, 0.03)
         + pairs("cohesionEnergyDensity", 2e4, 5e3)
-        + f"pair_style gran {words}\npair_coeff * *\n"
+        + f"pair_style gran {models} {' '.join(scene.settings)}\npair_coeff * *\n"
+        + (walls(scene, models) if scene.walls else "")
         + "timestep 1e-6\n"
         + ("group still id <= 20\ngroup loose subtract all still\n" if scene.freeze else "")
         + ("fix still still freeze\nfix move loose nve/sphere\n" if scene.freeze else "fix move all nve/sphere\n")
@@ -120,6 +138,7 @@ DIMENSIONS = {
     "work": (False, True),
     "torsion": (False, True),
     "slides": (False, True),
+    "walls": (False, True),
 }
 
 WITH_ADHESION = DIMENSIONS | {
@@ -127,6 +146,7 @@ WITH_ADHESION = DIMENSIONS | {
     "tangential": ("history", "no_history", "off"),
     "cohesion": ("off",),
     "slides": (False,),
+    "walls": (False,),
 }
 
 
@@ -165,6 +185,7 @@ NAMED = (
     ),
     Scene(law="cavity", tangential="ep/partial_slip", types=3, loose=True, settings=("computePlasticWork on",)),
     Scene(law="thornton_ning", types=3, loose=True, settings=("computePlasticWork on",)),
+    Scene(rolling="cdt", cohesion="sjkr", types=3, loose=True, settings=("computePlasticWork on",), walls=True),
 )
 
 

@@ -157,7 +157,7 @@ def test_quaternions_are_those_of_the_spins():
 
 
 WRONG = {
-    "v_j is missing": lambda c: c.pop("v_j"),
+    "v_j is missing; a motion has t, ": lambda c: c.pop("v_j"),
     "v_i has 441 x 2 values, must be 441 x 3": lambda c: c.update(v_i=c["v_i"][:, :2]),
     "t must grow by the same step": lambda c: c.update(t=c["t"] ** 2),
     "q_i, q_j must have the length 1": lambda c: c.update(q_i=2 * c["q_i"]),

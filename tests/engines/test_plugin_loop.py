@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Our loop over pairs and LIGGGHTS's own, with the same models: not one bit differs, whatever the processor."""
+"""Our loops over pairs and walls and LIGGGHTS's own, with the same models: not one bit differs on any processor."""
 
 import subprocess
 from dataclasses import replace
@@ -7,7 +7,19 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from plugin_decks import launcher, run
-from plugin_loop import DIMENSIONS, NAMED, SAID, SIMD, WITH_ADHESION, Scene, bodies, covering, deck, outcome
+from plugin_loop import (
+    DIMENSIONS,
+    NAMED,
+    SAID,
+    SAID_OF_WALLS,
+    SIMD,
+    WITH_ADHESION,
+    Scene,
+    bodies,
+    covering,
+    deck,
+    outcome,
+)
 
 pytestmark = pytest.mark.liggghts
 
@@ -28,7 +40,9 @@ def supported(simd, folder):
 
 @pytest.fixture(scope="module")
 def instruction_sets(tmp_path_factory):
-    return [simd for simd in SIMD if supported(simd, tmp_path_factory.mktemp("simd"))]
+    found = [simd for simd in SIMD if supported(simd, tmp_path_factory.mktemp("simd"))]
+    assert "sse2" in found
+    return found
 
 
 def test_the_scenes_meet_every_two_values():
@@ -44,9 +58,11 @@ def test_both_loops_give_the_same_bits(tmp_path, scene, instruction_sets):
     theirs, text = outcome(tmp_path / "generic", scene, loop="generic")
     assert text.count(SAID) == 1 and SAID + "EPDEM_LOOP = generic" in text
     assert len(theirs) == 61 and np.abs(theirs[-1][:, 7:10]).max() > 0
+    if scene.walls:
+        assert np.all(np.abs(theirs[1:, :, [-4, -1]]).max(axis=(0, 1)) > 0)  # normal forces of both
     for simd in instruction_sets:
         ours, text = outcome(tmp_path / simd, scene, simd=simd)
-        assert SAID not in text
+        assert SAID not in text and SAID_OF_WALLS not in text
         assert np.array_equal(ours, theirs), f"{simd}: {np.abs(ours - theirs).max()}"
 
 
@@ -65,7 +81,7 @@ def test_in_loose_scenes_contacts_open_and_close(tmp_path):
 @pytest.mark.parametrize("law", ["hertz", "cavity", "thornton_ning"])
 def test_a_restart_goes_on_with_the_other_loop(tmp_path, law):
     """In the middle of contacts, three materials: equal bits in all four combinations."""
-    scene = Scene(law=law, types=3, rolling="epsd2", loose=True)
+    scene = Scene(law=law, types=3, rolling="epsd2", loose=True, walls=law != "thornton_ning")
     ends = []
     for first in ("", "generic"):
         folder = tmp_path / f"first{first}"
@@ -112,6 +128,29 @@ def test_what_our_loop_cannot_do_takes_liggghts_loop_and_says_so_once(tmp_path, 
     assert said.count(SAID) == 1 and SAID + reason in said
     assert (tmp_path / "ours" / "log.liggghts").read_text().count(SAID) == 1
     assert np.array_equal(frames, outcome(tmp_path / "generic", scene, text=text, loop="generic")[0])
+
+
+OF_WALLS = {
+    "rolling_friction epsd3": {"rolling": "epsd3"},
+    "contacts with adhesion": {"law": "jkr"},
+    "contact forces are stored": {},
+}
+
+
+@pytest.mark.parametrize("reason", OF_WALLS)
+def test_what_our_loop_over_walls_cannot_do_takes_liggghts_loop_and_says_so_once(tmp_path, reason):
+    scene = replace(Scene(walls=True), **OF_WALLS[reason])
+    text = deck(scene)
+    if scene.rolling == "epsd3":
+        text = text.replace("pair_style", REASONS[reason]["before"] + "pair_style", 1)
+    if "stored" in reason:
+        text = text.replace("store_force yes", "store_force yes store_force_contact yes")
+    frames, said = outcome(tmp_path / "ours", scene, text=text)
+    assert said.count(SAID_OF_WALLS) == said.count(SAID_OF_WALLS + reason) == 2  # the floor and the lid
+    theirs, said = outcome(tmp_path / "generic", scene, text=text, loop="generic")
+    why = "EPDEM_LOOP = generic" if "stored" in reason else reason  # what the models lack comes first
+    assert said.count(SAID_OF_WALLS + why) == 2
+    assert np.array_equal(frames, theirs)
 
 
 def test_a_wrong_instruction_set_is_refused(tmp_path):

@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Mesh walls of our models: the loop that skips what cannot touch, and LIGGGHTS's own, do not differ in one bit."""
+"""Mesh walls of our models: our loops, which skip what cannot touch and compute contacts as lanes, and LIGGGHTS's own
+do not differ in one bit."""
 
 import numpy as np
 import pytest
@@ -64,9 +65,10 @@ def deck(law, tangential, move, *, ranks=1, steps=3000, stress=False, restart=No
 
 
 def outcome(folder, text, *, loop="", ranks=1):
-    """(all frames, the table of wall contacts) of a run."""
+    """(all frames, the table of wall contacts) of a run, whose log names the steps of the table."""
     files = {"box.data": bodies().data(ROOM), "plate.stl": box()}
     done = good(folder, text, ranks=ranks, files=files, env={"EPDEM_LOOP": loop} if loop else None)
+    assert f"wall loop of LIGGGHTS for {'EPDEM_LOOP' if loop else 'steps of compute wall/gran/local'}" in done.text
     return done.frames()[1], (folder / "walls.txt").read_text()
 
 

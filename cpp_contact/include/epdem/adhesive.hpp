@@ -25,11 +25,21 @@ inline double work_of_adhesion(double gamma_i, double gamma_j) noexcept { return
 /// What an attached contact remembers as its root where Gamma = 0.
 inline constexpr double no_root = std::numeric_limits<double>::min();
 
-/// (c R)^(1/3), the root of a contact; `known` is it already unless R has changed, or 0.
+/// (c R)^(1/3), the root of a contact; `known` is it already unless R has changed, or 0. Of an R that grew a little
+/// two steps of Halley's method (third order) give it to round-off; the library's cbrt takes one lane at a time.
 template <class T>
 inline T refreshed(T known, T cube) noexcept {
-  const auto stale = fabs(known * known * known - cube) > 1e-12 * cube;
-  return any(stale) ? select(stale, cbrt(only(stale, cube)), known) : known;
+  const T off = fabs(known * known * known - cube);
+  const auto stale = off > 1e-12 * cube;
+  if (!any(stale)) return known;
+  T root = known;
+  for (int k = 0; k < 2; ++k) {
+    const T power = root * root * root;
+    root = root * ((power + 2.0 * cube) / (2.0 * power + cube));
+  }
+  const auto far = stale & !(off < 0.05 * cube);
+  if (any(far)) root = select(far, cbrt(only(far, cube)), root);
+  return select(stale, root, known);
 }
 
 /// y = sqrt(a) of the standing contact at X = R (alpha - alpha_p): the largest root of y^4 - 4 y_f^3 y = X >= -3 y_f^4.

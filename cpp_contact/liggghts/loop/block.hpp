@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Contacts on their way through the pair loop: gathered into a block, computed as lanes, scattered in the list's order.
+// Contacts on their way through our loops: gathered into a block, computed as lanes, scattered in the list's order.
 // No header of LIGGGHTS and no inline function in here: files that are compiled for newer processors include it.
 #pragma once
 
@@ -31,6 +31,7 @@ struct Block {
   Line grown, stored;                       // plastic work of this step, elastic energy
   Line rubbed, sprung;                      // work of friction in this step, elastic energy of its springs
   Line parted, radius;                      // with adhesion: what its jumps took in this step, contact radius
+  Line overlap, apart[3], wall_v[3];        // of a wall: as LIGGGHTS's loop found them; from the wall to the sphere
 };
 
 /// What all contacts of a pass have in common.
@@ -53,7 +54,7 @@ using Kernel = void (*)(Block&, int n, const Pass&);
 /// The kernels of one instruction set, by the place of the law in the register.
 struct Kernels {
   static constexpr int most_laws = 16;
-  Kernel of[most_laws][tangentials][2];  // law, tangential, whether the rolling model has history; null: no such model
+  Kernel of[most_laws][tangentials][2][2];  // law, tangential, whether rolling has history, walls; null: no such model
 };
 
 extern const Kernels kernels_sse2, kernels_avx2, kernels_avx512;

@@ -37,6 +37,7 @@ EPDEM_INLINE void write(double* const* history, const Lanes* value) {
 }
 
 EPDEM_INLINE Lanes at(const Line& line, int k) { return load<Lanes>(line.a + k); }
+EPDEM_INLINE Three at(const Line* lines, int k) { return {at(lines[0], k), at(lines[1], k), at(lines[2], k)}; }
 
 /// Rows of the atoms of lanes k, k + 1, ...
 EPDEM_INLINE Three of(const double* base, const int* index) {
@@ -70,7 +71,7 @@ EPDEM_INLINE Pressed<Lanes> pressed(const Contact& c, const Step<Law>& now) {
 }
 
 /// Friction with partial slip; `memory` before and after.
-template <int nodes, class Law>
+template <int nodes, bool wall, class Law>
 EPDEM_INLINE Three slipping(Block& b, int k, const Contact& c, const Step<Law>& now, const Pass& pass,
                             const Lanes* constant_of, Lanes* memory) {
   SlipState<nodes, Lanes> before;
@@ -78,7 +79,7 @@ EPDEM_INLINE Three slipping(Block& b, int k, const Contact& c, const Step<Law>& 
   const Lanes stiffness = 8.0 * constant_of[shear_modulus];
   const Shear<Lanes> motion{{c.en.x, c.en.y, c.en.z},
                             {pass.dt * c.vtr.x, pass.dt * c.vtr.y, pass.dt * c.vtr.z},
-                            0.5 * pass.dt * dot(c.en, c.omega_i + c.omega_j),
+                            0.5 * pass.dt * dot(c.en, wall ? c.omega_i : c.omega_i + c.omega_j),
                             1.0 / pass.dt * c.gammat};
   SlipStep<nodes, Lanes> out;
   const auto step = [&](auto damped) __attribute__((always_inline)) {
@@ -108,13 +109,14 @@ template <class Law>
   store(b.radius.a + k, now.radius);
 }
 
-/// History of a pair: the law's memory, the step of the last evaluation, the models beside it in LIGGGHTS's order.
-template <class Law, Tangential tangential, bool rolls>
+/// History of a pair: the law's memory, the step of the last evaluation (not of walls, whose contacts LIGGGHTS ends),
+/// the models beside it in LIGGGHTS's order.
+template <class Law, Tangential tangential, bool rolls, bool wall>
 [[gnu::flatten]] void contacts(Block& b, int n, const Pass& pass) {
   constexpr bool springs = tangential == Tangential::history;
   constexpr int nodes = tangential == Tangential::partial_slip ? 3 : tangential == Tangential::partial_slip_2 ? 2 : 0;
   constexpr int slip_values = springs ? 3 : nodes ? 3 * nodes + 1 : 0;
-  constexpr int last_step = memory<Law>, shear = last_step + 1, roll = shear + slip_values;
+  constexpr int last_step = memory<Law>, shear = last_step + !wall, roll = shear + slip_values;
   constexpr bool remembers = memory<Law> > 0;
   constexpr int slots = remembers || slip_values || rolls ? roll + 3 * rolls : 0;
   constexpr int needed = law_data + static_cast<int>(sizeof(Law) / sizeof(Lanes)), constants = (needed + 3) / 4 * 4;
@@ -140,19 +142,25 @@ template <class Law, Tangential tangential, bool rolls>
 
     Contact c;
     c.radi = at(b.radi, k);
-    c.radj = at(b.radj, k);
-    c.delta = difference(pass.x, b.i + k, b.j + k);
     c.omega_i = of(pass.omega, b.i + k);
-    c.omega_j = of(pass.omega, b.j + k);
-    surface(c, difference(pass.v, b.i + k, b.j + k));
-    c.reff = reduced_finite(c.radi, c.radj);
+    if constexpr (wall) {
+      c.delta = at(b.apart, k);
+      surface_of_wall(c, of(pass.v, b.i + k) - at(b.wall_v, k), at(b.overlap, k));
+    } else {
+      c.radj = at(b.radj, k);
+      c.delta = difference(pass.x, b.i + k, b.j + k);
+      c.omega_j = of(pass.omega, b.j + k);
+      surface(c, difference(pass.v, b.i + k, b.j + k));
+    }
 
     Lanes value[slots ? slots : 1] = {};
     State<Law> before{};
     if constexpr (slots > 0) {
       read<slots>(b.history + k, value);
-      const auto parted = pass.now - value[last_step] > 1.0;  // since the last evaluation: a new contact
-      for (int s = 0; s < slots; ++s) value[s] = select(parted, Lanes{}, value[s]);
+      if constexpr (!wall) {
+        const auto parted = pass.now - value[last_step] > 1.0;  // since the last evaluation: a new contact
+        for (int s = 0; s < slots; ++s) value[s] = select(parted, Lanes{}, value[s]);
+      }
       if constexpr (remembers) __builtin_memcpy(static_cast<void*>(&before), value, sizeof before);
       if constexpr (adheres<Law>)  // bodies that touch without being attached begin anew in all other models
         for (int s = shear; s < slots; ++s) value[s] = select(before.root > 0.0, value[s], Lanes{});
@@ -174,7 +182,7 @@ template <class Law, Tangential tangential, bool rolls>
     c.kt = tangential_stiffness(constant_of[shear_modulus], now.radius);
     c.gammat = Lanes{};
     if (pass.damped || pass.viscous) {
-      const Lanes mass = effective_mass(b, k, pass.freeze);
+      const Lanes mass = wall ? at(b.mi, k) : effective_mass(b, k, pass.freeze);
       if (pass.viscous) c.Fn = damped_force(law, c.reff, before, now, constant_of[dashpot], mass, -c.vn);
       c.gammat = tangential_damping(constant_of[damping], c.kt, mass);
     }
@@ -184,7 +192,7 @@ template <class Law, Tangential tangential, bool rolls>
       c.Fn = sliding_load(law, c.reff, now, c.Fn);
       c.kn = select(c.deltan > 0.0, c.kn, Lanes{});
     } else if (pass.cohesion != Cohesion::off) {
-      const Lanes pull = cohesive_force(c, pass.cohesion, constant_of[cohesion_density]);
+      const Lanes pull = cohesive_force<wall>(c, pass.cohesion, constant_of[cohesion_density]);
       if (pass.cohesion_slides) c.Fn += pull;
       force = force + pull * c.en;
     }
@@ -195,14 +203,14 @@ template <class Law, Tangential tangential, bool rolls>
         Ft = sliding_spring(c, constant_of[friction], pass.damped, pass.dt, stretch);
         value[shear] = stretch.x, value[shear + 1] = stretch.y, value[shear + 2] = stretch.z;
       } else if constexpr (nodes > 0) {
-        Ft = slipping<nodes>(b, k, c, now, pass, constant_of, value + shear);
+        Ft = slipping<nodes, wall>(b, k, c, now, pass, constant_of, value + shear);
       } else {
         Ft = sliding_dashpot(c, constant_of[friction]);
       }
       const Three lever = cross(c.en, Ft);
       force = force + Ft;
       torque_i = -c.cri * lever;
-      torque_j = -c.crj * lever;
+      if constexpr (!wall) torque_j = -c.crj * lever;
     }
     if constexpr (rolls) {
       Three torque{value[roll], value[roll + 1], value[roll + 2]};
@@ -211,35 +219,36 @@ template <class Law, Tangential tangential, bool rolls>
       torque_i = torque_i - torque;
       torque_j = torque_j + torque;
     } else if (pass.rolling == Rolling::cdt) {
-      const Three torque = rolling_torque(c, constant_of[rolling_friction], pass.torsion);
+      const Three torque = rolling_torque<wall>(c, constant_of[rolling_friction], pass.torsion);
       torque_i = torque_i - torque;
       torque_j = torque_j + torque;
     }
 
     if constexpr (slots > 0) {
       if constexpr (remembers) __builtin_memcpy(value, &now.after, sizeof now.after);
-      value[last_step] = constant<Lanes>(pass.now);
+      if constexpr (!wall) value[last_step] = constant<Lanes>(pass.now);
       write<slots>(b.history + k, value);
     }
     put(b.force, k, force);
     put(b.torque_i, k, torque_i);
-    put(b.torque_j, k, torque_j);
+    if constexpr (!wall) put(b.torque_j, k, torque_j);
   }
 }
 
 }  // namespace
 
-/// No kernel for what the plugin does not offer: partial slip of contacts with adhesion.
-template <class Law, Tangential tangential, bool rolls>
+/// No kernel for what the plugin does not offer, partial slip of contacts with adhesion, nor for walls with adhesion.
+template <class Law, Tangential tangential, bool rolls, bool wall>
 constexpr Kernel offered() noexcept {
-  if constexpr (adheres<Law> && tangential >= Tangential::partial_slip)
+  if constexpr (adheres<Law> && (wall || tangential >= Tangential::partial_slip))
     return nullptr;
   else
-    return &contacts<Law, tangential, rolls>;
+    return &contacts<Law, tangential, rolls, wall>;
 }
 
-#define EPDEM_BOTH(Class, model) \
-  {offered<Class<Lanes>, Tangential::model, false>(), offered<Class<Lanes>, Tangential::model, true>()}
+#define EPDEM_WALLS(Class, model, rolls) \
+  {offered<Class<Lanes>, Tangential::model, rolls, false>(), offered<Class<Lanes>, Tangential::model, rolls, true>()}
+#define EPDEM_BOTH(Class, model) {EPDEM_WALLS(Class, model, false), EPDEM_WALLS(Class, model, true)}
 #define EPDEM_OF_LAW(Class)                                                                                            \
   {EPDEM_BOTH(Class, off), EPDEM_BOTH(Class, no_history), EPDEM_BOTH(Class, history), EPDEM_BOTH(Class, partial_slip), \
    EPDEM_BOTH(Class, partial_slip_2)},
@@ -247,5 +256,6 @@ extern const Kernels EPDEM_KERNELS;
 const Kernels EPDEM_KERNELS = {{EPDEM_LAWS(EPDEM_OF_LAW)}};
 #undef EPDEM_OF_LAW
 #undef EPDEM_BOTH
+#undef EPDEM_WALLS
 
 }  // namespace epdem::liggghts::loop

@@ -33,9 +33,24 @@ const Kernels& kernels(LAMMPS_NS::LAMMPS* lmp) {
   return kernels_sse2;
 }
 
-const char* PairLoop::obstacle(PairGran* pair, const Plan& plan, int vflag, int addflag) const {
+bool generic_asked() {
   static const char* const asked = std::getenv("EPDEM_LOOP");
-  if (asked && std::strcmp(asked, "generic") == 0) return "EPDEM_LOOP = generic";
+  return asked && std::strcmp(asked, "generic") == 0;
+}
+
+void pad(Block& b, int n) {
+  static double nobodys[64];
+  for (int k = n; k < n + most_lanes; ++k) {
+    b.i[k] = b.i[0];
+    b.j[k] = b.j[0];
+    b.history[k] = nobodys;
+    b.material[k] = b.material[0];
+    b.radi.a[k] = b.radj.a[k] = b.mi.a[k] = b.mj.a[k] = 1.0;
+  }
+}
+
+const char* PairLoop::obstacle(PairGran* pair, const Plan& plan, int vflag, int addflag) const {
+  if (generic_asked()) return "EPDEM_LOOP = generic";
   if (force->newton_pair) return "newton on";
   if (pair->fr_pair()) return "rigid bodies";
   if (!atom->rmass || !atom->sphere_flag || atom->shapetype_flag) return "particles other than spheres";
@@ -120,7 +135,7 @@ void PairLoop::finish(const Plan& plan, int n) {
   if constexpr (adheres) n = without_parted(plan, n);
   if (n == 0) return;
   fetch(plan, n);
-  pad(n);
+  pad(*block_, n);
   kernel_(*block_, n, pass_);
   const bool turns = plan.tangential != Tangential::off || plan.rolling != Rolling::off;
   if (plan.ledger)
@@ -188,19 +203,6 @@ void PairLoop::fetch(const Plan& plan, int n) {
     }
   }
   pass_.several = several;
-}
-
-/// Something harmless for the lanes behind the last contact.
-void PairLoop::pad(int n) {
-  Block& b = *block_;
-  static double nobodys[64];
-  for (int k = n; k < n + most_lanes; ++k) {
-    b.i[k] = b.i[0];
-    b.j[k] = b.j[0];
-    b.history[k] = nobodys;
-    b.material[k] = b.material[0];
-    b.radi.a[k] = b.radj.a[k] = b.mi.a[k] = b.mj.a[k] = 1.0;
-  }
 }
 
 /// Forces and torques in the order of the list, those of a body at hand while its pairs follow each other; with them

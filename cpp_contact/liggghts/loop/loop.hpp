@@ -28,6 +28,12 @@ struct Plan {
   std::vector<double> constants;  // most_constants for each type of i * width + type of j; see Constant
 };
 
+/// Whether the user chose LIGGGHTS's loops by EPDEM_LOOP=generic.
+bool generic_asked();
+
+/// Gives the lanes behind the last of n contacts something harmless.
+void pad(Block& block, int n);
+
 class PairLoop : protected LAMMPS_NS::Pointers {
  public:
   PairLoop(LAMMPS_NS::LAMMPS* lmp, Kernel kernel) : Pointers(lmp), kernel_(kernel), block_(std::make_unique<Block>()) {}
@@ -45,7 +51,6 @@ class PairLoop : protected LAMMPS_NS::Pointers {
   void finish(const Plan& plan, int n);
   int without_parted(const Plan& plan, int n);
   void fetch(const Plan& plan, int n);
-  void pad(int n);
   template <bool torques, bool books, bool adheres>
   void scatter(int n, Ledger* ledger);
   void rub(Ledger& ledger, int n);

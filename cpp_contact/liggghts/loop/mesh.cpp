@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Mesh walls of our models. LIGGGHTS evaluates each sphere near a triangle, and resets the marks of all contacts that
-// the neighbour lists allow, in every step. Here its loop sees the spheres that can touch, and the marks of spheres
-// with contacts; forces and histories are computed by LIGGGHTS's own functions, so that not one bit differs.
+// Around LIGGGHTS's loops over the walls of our models: contacts that they found are computed by ours (wall.hpp).
+//
+// On meshes LIGGGHTS evaluates each sphere near a triangle, and resets the marks of all contacts that the neighbour
+// lists allow, in every step. Here its loop sees the spheres that can touch, and the marks of spheres with contacts;
+// geometry and marks are computed by LIGGGHTS's own functions, so that not one bit differs.
 //
 // LIGGGHTS takes the addresses of these functions through the dynamic linker, which finds ours first; ours find
 // LIGGGHTS's as the next of the same name. In a source tree, where all is one program, LIGGGHTS's loop remains.
@@ -9,8 +11,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
-#include <cstring>
 #include <unordered_map>
 #include <vector>
 
@@ -35,11 +35,6 @@ using Function = void (*)(Words...);
 template <class... Words>
 Function<Words...> next(const char* name) {
   return reinterpret_cast<Function<Words...>>(dlsym(RTLD_NEXT, name));
-}
-
-bool generic() {
-  const char* const asked = std::getenv("EPDEM_LOOP");
-  return asked && std::strcmp(asked, "generic") == 0;
 }
 
 struct Lists : FixNeighlistMesh {
@@ -132,8 +127,24 @@ class Near {
   std::size_t used_ = 0;
 };
 
-bool ours = false;                                                // whether a mesh wall of our models is at work
+OurWall* at_work = nullptr;                                       // the wall of our models over which a loop runs
+bool ours = false;                                                // whether it is a mesh wall whose lists are reduced
 std::unordered_map<const FixContactHistoryMesh*, bigint> marked;  // the last step of a mesh in which one was
+
+/// While LIGGGHTS's loop over a wall runs.
+class AtWork {
+ public:
+  AtWork(LIGGGHTS::Walls::IGranularWall* impl, FixWallGran& wall) {
+    at_work = dynamic_cast<OurWall*>(impl);
+    if (at_work) at_work->open(wall);
+  }
+  AtWork(const AtWork&) = delete;
+  AtWork& operator=(const AtWork&) = delete;
+  ~AtWork() {
+    if (at_work) at_work->close();
+    at_work = nullptr;
+  }
+};
 
 /// Whether all contacts but those of spheres with contacts are unmarked: they were in the step before, and no list was
 /// made since.
@@ -150,10 +161,16 @@ namespace LAMMPS_NS {
 
 namespace loop = epdem::liggghts::loop;
 
+[[gnu::visibility("default")]] void FixWallGran::post_force_primitive(int vflag) {
+  static const auto original = loop::next<FixWallGran*, int>("_ZN9LAMMPS_NS11FixWallGran20post_force_primitiveEi");
+  const loop::AtWork work(impl, *this);
+  original(this, vflag);
+}
+
 [[gnu::visibility("default")]] void FixWallGran::post_force_mesh(int vflag) {
   static const auto original = loop::next<FixWallGran*, int>("_ZN9LAMMPS_NS11FixWallGran15post_force_meshEi");
-  static const bool generic = loop::generic();
-  if (generic || !dynamic_cast<loop::OurWall*>(impl) || neighbor->contactDistanceFactor != 1.0 || !atom->sphere_flag ||
+  const loop::AtWork work(impl, *this);
+  if (!loop::at_work || loop::generic_asked() || neighbor->contactDistanceFactor != 1.0 || !atom->sphere_flag ||
       atom->shapetype_flag)
     return original(this, vflag);
   loop::Near near;
@@ -177,6 +194,7 @@ namespace loop = epdem::liggghts::loop;
 [[gnu::visibility("default")]] void FixContactHistoryMesh::cleanUpContacts() {
   static const auto original =
       loop::next<FixContactHistoryMesh*>("_ZN9LAMMPS_NS21FixContactHistoryMesh15cleanUpContactsEv");
+  if (loop::at_work) loop::at_work->compute();  // histories are going to move
   if (!loop::settled(this, *update, *neighbor)) {
     original(this);
   } else {

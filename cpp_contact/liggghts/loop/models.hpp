@@ -33,30 +33,52 @@ EPDEM_INLINE Three select(M m, const Three& a, const Three& b) {
 /// A contact as LIGGGHTS's models see it; names are theirs.
 struct Contact {
   Lanes radi, radj, r, rinv, radsum, deltan, cri, crj, vn;
-  Three delta, en, vtr, omega_i, omega_j;
+  Three delta, en, vtr, omega_i, omega_j, roll;  // roll: what rolling friction resists
   Lanes Fn, kn, kt, gammat, reff;
 };
 
-/// surface default.
+/// What surface default makes of the relative velocity and of `spin`, the sum of radius times spin over the distance.
+EPDEM_INLINE Three sliding(const Contact& c, const Three& v, const Three& spin) {
+  const Three vt = v - c.vn * c.en;
+  const Three& d = c.delta;
+  return {vt.x - (d.z * spin.y - d.y * spin.z), vt.y - (d.x * spin.z - d.z * spin.x),
+          vt.z - (d.y * spin.x - d.x * spin.y)};
+}
+
+/// surface default, of two spheres.
 EPDEM_INLINE void surface(Contact& c, const Three& v) {
   c.r = sqrt(dot(c.delta, c.delta));
   c.rinv = 1.0 / c.r;
   c.en = c.rinv * c.delta;
   c.vn = dot(v, c.en);
-  const Three vt = v - c.vn * c.en;
   c.radsum = c.radi + c.radj;
   c.deltan = c.radsum - c.r;
   c.cri = c.radi - 0.5 * c.deltan;
   c.crj = c.radj - 0.5 * c.deltan;
-  const Three wr = c.rinv * (c.cri * c.omega_i + c.crj * c.omega_j);
-  const Three& d = c.delta;
-  c.vtr = {vt.x - (d.z * wr.y - d.y * wr.z), vt.y - (d.x * wr.z - d.z * wr.x), vt.z - (d.y * wr.x - d.x * wr.y)};
+  c.reff = reduced_finite(c.radi, c.radj);
+  c.vtr = sliding(c, v, c.rinv * (c.cri * c.omega_i + c.crj * c.omega_j));
+  c.roll = c.omega_i - c.omega_j;
+}
+
+/// The same of a sphere and a wall, whose overlap LIGGGHTS's loop has found.
+EPDEM_INLINE void surface_of_wall(Contact& c, const Three& v, Lanes overlap) {
+  c.r = c.radi - overlap;
+  c.rinv = 1.0 / c.r;
+  c.en = c.rinv * c.delta;
+  c.vn = dot(v, c.en);
+  c.deltan = c.radi - c.r;
+  c.cri = c.radi - 0.5 * overlap;
+  c.reff = c.radi;
+  c.roll = c.rinv * (c.cri * c.omega_i);
+  c.vtr = sliding(c, v, c.roll);
 }
 
 /// cohesion sjkr, sjkr2: a force along the normal.
+template <bool wall>
 EPDEM_INLINE Lanes cohesive_force(const Contact& c, Cohesion model, Lanes density) {
   constexpr double pi = 3.14159265358979323846;
   const Lanes &r = c.r, &ri = c.radi, &rj = c.radj;
+  if constexpr (wall) return -density * (model == Cohesion::sjkr ? (ri * ri - r * r) * pi : pi * 2. * ri * (ri - r));
   if (model == Cohesion::sjkr) {
     const Lanes area = -pi / 4 * ((r - ri - rj) * (r + ri - rj) * (r - ri + rj) * (r + ri + rj)) / (r * r);
     return -density * area;
@@ -91,17 +113,22 @@ EPDEM_INLINE Three sliding_spring(const Contact& c, Lanes friction, bool damped,
 }
 
 /// rolling_friction cdt: the torque on j.
+template <bool wall>
 EPDEM_INLINE Three rolling_torque(const Contact& c, Lanes friction, bool torsion) {
-  const Three w = c.omega_i - c.omega_j;
+  const Three& w = c.roll;
   const Lanes speed = magnitude(w);
-  Three torque = (friction * c.kn * c.deltan * c.reff / speed) * w;
+  Three torque;
+  if constexpr (wall)
+    torque = c.reff * (((friction * (c.deltan * c.kn)) * w) / speed);
+  else
+    torque = (friction * c.kn * c.deltan * c.reff / speed) * w;
   if (!torsion) torque = torque - dot(torque, c.en) * c.en;
   return select(speed > 0.0, torque, Three{});
 }
 
 /// rolling_friction epsd2: a spring, cut off; `torque` before and after is that on j.
 EPDEM_INLINE void rolling_spring(const Contact& c, Lanes friction, bool torsion, double dt, Three& torque) {
-  Three w = c.omega_i - c.omega_j;
+  Three w = c.roll;
   if (!torsion) w = w - dot(w, c.en) * c.en;
   torque = torque + (dt * (c.kt * c.reff * c.reff)) * w;
   const Lanes most = fabs(c.Fn) * c.reff * friction;

@@ -1,20 +1,94 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// LIGGGHTS's wall of one contact model, known as ours: its loop over triangles is shortened (mesh.cpp).
+// LIGGGHTS's wall of one contact model: its loop finds the contacts and their geometry; where our loop can compute
+// them, they are noted and computed as lanes, with forces added in the order of LIGGGHTS's loop. In a source tree,
+// where nothing stands around LIGGGHTS's loops (mesh.cpp), all is left to them.
 #pragma once
 
-#include "host.hpp"
+#include "planned.hpp"
+
+#ifdef EPDEM_BUILT_FOR
 
 namespace epdem::liggghts::loop {
 
-/// By this LIGGGHTS's walls of our models differ from others.
-struct OurWall {
+/// What LIGGGHTS's loops over walls know of ours; mesh.cpp stands around them.
+class OurWall {
+ public:
   virtual ~OurWall() = default;
+
+  /// Before and after LIGGGHTS's loop over the spheres at a wall, and before it moves histories of contacts.
+  virtual void open(LAMMPS_NS::FixWallGran& wall) = 0;
+  virtual void compute() = 0;
+  virtual void close() = 0;
+};
+
+/// The contacts of walls, noted one by one.
+class WallLoop : protected LAMMPS_NS::Pointers {
+ public:
+  WallLoop(LAMMPS_NS::LAMMPS* lmp, Kernel kernel) : Pointers(lmp), kernel_(kernel), block_(std::make_unique<Block>()) {}
+
+  /// Why this step cannot take this loop; nullptr: it can.
+  const char* obstacle(LAMMPS_NS::FixWallGran& wall) const;
+
+  void open(LAMMPS_NS::FixWallGran& wall, const Plan& plan);
+  bool is_open() const { return wall_ != nullptr; }
+  void close();
+
+  /// One sphere that overlaps with the wall; `triangle` of a mesh, or none.
+  void note(const LIGGGHTS::ContactModels::SurfacesIntersectData& s, const double* v_wall,
+            LAMMPS_NS::FixMeshSurface* mesh, int triangle);
+
+  /// All that is noted.
+  void compute();
+
+ private:
+  void scatter();
+
+  const Kernel kernel_;
+  const std::unique_ptr<Block> block_;
+  LAMMPS_NS::FixMeshSurface* mesh_[block_size];
+  int triangle_[block_size];
+  Pass pass_{};
+  const Plan* plan_ = nullptr;
+  LAMMPS_NS::FixWallGran* wall_ = nullptr;
+  int n_ = 0;
 };
 
 template <class Model>
-class Wall : public LIGGGHTS::Walls::Granular<Model>, public OurWall {
+class Wall : public LIGGGHTS::Walls::Granular<Model>, public OurWall, private Planned<Model> {
+  using Base = LIGGGHTS::Walls::Granular<Model>;
+
  public:
-  using LIGGGHTS::Walls::Granular<Model>::Granular;
+  Wall(LAMMPS_NS::LAMMPS* lmp, LAMMPS_NS::FixWallGran* parent, int64_t hash)
+      : Base(lmp, parent, hash), Planned<Model>(lmp, hash, true), loop_(lmp, this->kernel()) {}
+
+  void init_granular() override {
+    Base::init_granular();
+    if (!this->missing()) this->prepare();
+  }
+
+  void open(LAMMPS_NS::FixWallGran& wall) override {
+    const char* why = this->missing();
+    if (!why) why = loop_.obstacle(wall);
+    if (why)
+      this->say(why);
+    else
+      loop_.open(wall, this->plan_);
+  }
+  void compute() override { loop_.compute(); }
+  void close() override { loop_.close(); }
+
+  void compute_force(LAMMPS_NS::FixWallGran* wall, SurfacesIntersectData& s, bool intersects, double* v_wall,
+                     LAMMPS_NS::FixMeshSurface* mesh = nullptr, int at = 0, LAMMPS_NS::TriMesh* triangles = nullptr,
+                     int triangle = 0) override {
+    if (loop_.is_open() && intersects)
+      loop_.note(s, v_wall, mesh, triangle);
+    else
+      Base::compute_force(wall, s, intersects, v_wall, mesh, at, triangles, triangle);
+  }
+
+ private:
+  WallLoop loop_;
 };
 
 }  // namespace epdem::liggghts::loop
+#endif

@@ -1,0 +1,116 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// What our loops over pairs and walls take from a contact model: its parts, settings and properties.
+#pragma once
+
+#include <cstddef>
+#include <cstring>
+#include <set>
+#include <string>
+
+#include "epdem/laws.hpp"
+#include "loop.hpp"
+#include "model.hpp"
+
+namespace epdem::liggghts::loop {
+
+/// LIGGGHTS's styles keep their model to themselves; the model built last is that of the style under construction.
+template <class Model>
+class Planned {
+  using Law = typename Model::law_type;
+
+ protected:
+  Planned(LAMMPS_NS::LAMMPS* lmp, int64_t hash, bool wall)
+      : lmp_(lmp), model_(*Model::latest), ids_(Ids::of(hash)), missing_(what_is_missing(ids_)), wall_(wall) {
+    plan_.tangential = ids_.tangential == TANGENTIAL_HISTORY          ? Tangential::history
+                       : ids_.tangential == TANGENTIAL_NO_HISTORY     ? Tangential::no_history
+                       : ids_.tangential == TANGENTIAL_PARTIAL_SLIP   ? Tangential::partial_slip
+                       : ids_.tangential == TANGENTIAL_PARTIAL_SLIP_2 ? Tangential::partial_slip_2
+                                                                      : Tangential::off;
+    plan_.rolling = ids_.rolling == ROLLING_CDT     ? Rolling::cdt
+                    : ids_.rolling == ROLLING_EPSD2 ? Rolling::epsd2
+                                                    : Rolling::off;
+    plan_.cohesion = ids_.cohesion == COHESION_SJKR    ? Cohesion::sjkr
+                     : ids_.cohesion == COHESION_SJKR2 ? Cohesion::sjkr2
+                                                       : Cohesion::off;
+    if constexpr (adheres<Law>) {
+      plan_.root = offsetof(State<Law>, root) / sizeof(double);
+      plan_.last_step = memory<Law>;
+      if (wall && !missing_) missing_ = "contacts with adhesion";
+    }
+  }
+
+  Kernel kernel() const {
+    const auto& of_law = kernels(lmp_).of[detail::place<Law>()];
+    return of_law[static_cast<int>(plan_.tangential)][plan_.rolling == Rolling::epsd2][wall_];
+  }
+
+  /// What our loop does not include, by models and settings; nullptr: nothing.
+  const char* missing() const { return missing_ ? missing_ : model_.asked().missing(); }
+
+  /// At the start of each run: settings and properties may have changed.
+  void prepare() {
+    auto& normal = model_.normal();
+    const auto& asked = model_.asked();
+    plan_.damped = plan_.viscous = false;
+    plan_.torsion = asked.torsion;
+    plan_.cohesion_slides = asked.cohesion_slides;
+    plan_.ledger = normal.ledger();
+    plan_.width = normal.width();
+    double** const mu =
+        plan_.tangential == Tangential::off ? nullptr : property("coeffFrict", &MODEL_PARAMS::createCoeffFrict);
+    double** const rolling =
+        plan_.rolling == Rolling::off ? nullptr : property("coeffRollFrict", &MODEL_PARAMS::createCoeffRollFrict);
+    double** const density = plan_.cohesion == Cohesion::off
+                                 ? nullptr
+                                 : property("cohEnergyDens", &MODEL_PARAMS::createCohesionEnergyDensity);
+    plan_.constants.assign(plan_.width * plan_.width * most_constants, 0.0);
+    for (int i = 1; i < plan_.width; ++i)
+      for (int j = 1; j < plan_.width; ++j) {
+        const auto& entry = normal.entry(i, j);
+        double* const c = plan_.constants.data() + most_constants * (i * plan_.width + j);
+        c[shear_modulus] = entry.G_star;
+        c[damping] = entry.damping_number;
+        c[dashpot] = entry.viscous_number;
+        c[friction] = mu ? mu[i][j] : 0.0;
+        c[rolling_friction] = rolling ? rolling[i][j] : 0.0;
+        c[cohesion_density] = density ? density[i][j] : 0.0;
+        std::memcpy(c + law_data, &entry.law, sizeof(Law));
+        plan_.damped |= entry.damping_number > 0.0;
+        plan_.viscous |= entry.viscous_number > 0.0;
+      }
+  }
+
+  /// That LIGGGHTS's loop runs: once for each reason, on the first rank.
+  void say(const char* why) {
+    if (!*why || lmp_->comm->me != 0 || !said_.insert(why).second) return;
+    const std::string line = std::string("epdem: ") + (wall_ ? "wall" : "pair") + " loop of LIGGGHTS for " + why + "\n";
+    if (lmp_->screen) std::fputs(line.c_str(), lmp_->screen);
+    if (lmp_->logfile) std::fputs(line.c_str(), lmp_->logfile);
+  }
+
+  LAMMPS_NS::LAMMPS* const lmp_;
+  Model& model_;
+  Plan plan_;
+
+ private:
+  static const char* what_is_missing(const Ids& ids) {
+    if (ids.surface != SURFACE_DEFAULT) return "surface multicontact";
+    if (ids.rolling == ROLLING_EPSD) return "rolling_friction epsd";
+    if (ids.rolling == ROLLING_EPSD3) return "rolling_friction epsd3";
+    return nullptr;
+  }
+
+  double** property(const char* name, MatrixPropertyCreator creator) {
+    double** values = nullptr;
+    lmp_->force->registry.registerProperty(name, creator);
+    lmp_->force->registry.connect(name, values, "epdem");
+    return values;
+  }
+
+  const Ids ids_;
+  const char* missing_;
+  const bool wall_;
+  std::set<std::string> said_;
+};
+
+}  // namespace epdem::liggghts::loop

@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include "wall.hpp"
+
+#include <algorithm>
+
+#ifdef EPDEM_BUILT_FOR
+
+namespace epdem::liggghts::loop {
+
+using LAMMPS_NS::FixWallGran;
+
+const char* WallLoop::obstacle(FixWallGran& wall) const {
+  if (generic_asked()) return "EPDEM_LOOP = generic";
+  if (wall.fix_rigid()) return "rigid bodies";
+  if (!atom->rmass || !atom->sphere_flag || atom->shapetype_flag) return "particles other than spheres";
+  if (wall.store_force_contact() || wall.store_force_contact_stress()) return "contact forces are stored";
+  if (wall.store_sum_normal_force()) return "normal forces are summed up";
+  if (wall.heattransfer_flag()) return "heat that walls conduct";
+  if (neighbor->contactDistanceFactor != 1.0) return "contacts at a distance";
+  if (wall.compute_wall_gran_local() && wall.addflag()) return "steps of compute wall/gran/local";
+  if (!wall.computeflag() || !wall.shearupdate()) return "";  // not worth a line, as in the pair loop
+  if (atom->nlocal + atom->nghost >= atom->nmax) return "";
+  return nullptr;
+}
+
+void WallLoop::open(FixWallGran& wall, const Plan& plan) {
+  if (atom->nlocal == 0) return;
+  wall_ = &wall;
+  plan_ = &plan;
+  pass_ = {};
+  pass_.v = atom->v[0];
+  pass_.omega = atom->omega[0];
+  pass_.dt = update->dt;
+  pass_.rolling = plan.rolling;
+  pass_.cohesion = plan.cohesion;
+  pass_.damped = plan.damped;
+  pass_.viscous = plan.viscous;
+  pass_.work = plan.ledger != nullptr;
+  pass_.torsion = plan.torsion;
+  pass_.cohesion_slides = plan.cohesion_slides;
+}
+
+void WallLoop::close() {
+  compute();
+  wall_ = nullptr;
+}
+
+void WallLoop::note(const LIGGGHTS::ContactModels::SurfacesIntersectData& s, const double* v_wall,
+                    LAMMPS_NS::FixMeshSurface* mesh, int triangle) {
+  Block& b = *block_;
+  const int k = n_++;
+  b.i[k] = s.i;
+  b.history[k] = s.contact_history;
+  b.material[k] = plan_->constants.data() + most_constants * (atom->type[s.i] * plan_->width + wall_->atom_type_wall());
+  b.radi.a[k] = s.radi;
+  b.mi.a[k] = atom->rmass[s.i];
+  b.overlap.a[k] = s.deltan;
+  for (int x = 0; x < 3; ++x) {
+    b.apart[x].a[k] = s.delta[x];
+    b.wall_v[x].a[k] = v_wall[x];
+  }
+  mesh_[k] = mesh;
+  triangle_[k] = triangle;
+  if (n_ == block_size) compute();
+}
+
+void WallLoop::compute() {
+  if (n_ == 0) return;
+  Block& b = *block_;
+  pass_.several = std::any_of(b.material, b.material + n_, [&](const double* m) { return m != b.material[0]; });
+  pad(b, n_);
+  kernel_(b, n_, pass_);
+  scatter();
+  n_ = 0;
+}
+
+/// Forces and torques in the order of LIGGGHTS's loop, and who asks for them: the ledger, forces of the wall, the mesh.
+void WallLoop::scatter() {
+  const Block& b = *block_;
+  const bool turns = plan_->tangential != Tangential::off || plan_->rolling != Rolling::off;
+  const bool rubs = plan_->tangential >= Tangential::partial_slip;
+  for (int k = 0; k < n_; ++k) {
+    const int i = b.i[k];
+    double *const f = atom->f[i], *const t = atom->torque[i];
+    double share[3];
+    for (int x = 0; x < 3; ++x) {
+      const double before = f[x];
+      f[x] += b.force[x].a[k];
+      share[x] = f[x] - before;
+      if (turns) t[x] += b.torque_i[x].a[k];
+    }
+    if (wall_->store_force())
+      for (int x = 0; x < 3; ++x) wall_->fix_wallforce()->array_atom[i][x] += share[x];
+    if (mesh_[k]) {
+      double to_wall[3], v[3];
+      for (int x = 0; x < 3; ++x) {
+        to_wall[x] = -b.apart[x].a[k];
+        v[x] = b.wall_v[x].a[k];
+      }
+      mesh_[k]->add_particle_contribution(i, share, to_wall, triangle_[k], v);
+    }
+    if (!plan_->ledger) continue;
+    const double stored = b.stored.a[k];
+    plan_->ledger->credit(i, b.grown.a[k], stored, stored > 0.0);
+    if (rubs) plan_->ledger->rub<true>(b.rubbed.a[k], b.sprung.a[k], {i, i, atom->nlocal});
+  }
+}
+
+}  // namespace epdem::liggghts::loop
+#endif
