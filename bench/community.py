@@ -46,8 +46,8 @@ def read(name: str) -> dict[str, Any]:
     return tomllib.loads((CASES / f"{name}.toml").read_text(encoding="utf-8"))
 
 
-def rain(name: str, seed: int, *, soft: float, smooth: bool) -> SceneCase:
-    """All phases of a case but the last, with moduli that are `soft` times smaller; `smooth`: without friction."""
+def rain(name: str, seed: int, *, soft: float) -> SceneCase:
+    """All phases of a case but the last, with moduli that are `soft` times smaller."""
     data = read(name)
     data["numerics"]["seed"] = seed
     data["numerics"].pop("skin", None)  # it is for a sphere that comes later
@@ -56,8 +56,6 @@ def rain(name: str, seed: int, *, soft: float, smooth: bool) -> SceneCase:
     scene["body"] = [b for b in scene.get("body", []) if b.get("phase") != last]
     scene.pop("measure", None)
     data["output"] |= {"restarts": 20, "particles": 2}
-    if smooth:
-        data["contact"] = {"pairs": [{k: v for k, v in p.items() if k != "friction"} for p in data["contact"]["pairs"]]}
     for material in data["materials"].values():
         number, unit = material["young_modulus"].split()
         material["young_modulus"] = f"{float(number) / soft!r} {unit}"
@@ -140,19 +138,28 @@ def run(case: SceneCase, what: LiggghtsScenes, folder: Path, until: float | None
         return None
 
 
-def bed(name: str, seed: int, *, soft: float, smooth: bool) -> Path:
-    """spheres.csv: the last frame of the rain, which is run if it is not there yet."""
-    folder = RUNS / name / f"{'smooth' if smooth else 'seed' if soft == 1.0 else 'soft'}{seed}"
+def bed(name: str, seed: int, *, soft: float, height: float) -> Path:
+    """spheres.csv: the last frame of the rain, which is run if it is not there yet.
+
+    height: by which the heights of the spheres above the lowest one are multiplied.
+    """
+    folder = RUNS / name / f"{'seed' if soft == 1.0 else 'soft'}{seed}"
     path = folder / "spheres.csv"
     if not path.exists():
-        done = run(rain(name, seed, soft=soft, smooth=smooth), LiggghtsScenes(), folder / "bed")
+        done = run(rain(name, seed, soft=soft), LiggghtsScenes(), folder / "bed")
         assert done is not None
         frames = done.results.tables["particles"]
         last = frames[frames["step"] == frames["step"].max()].sort_values("id")
         materials = [done.plan.model.types[int(t) - 1].material for t in last["type"]]
         table = last[["x", "y", "z", "radius", "vx", "vy", "vz"]].assign(material=materials)
         table.to_csv(path, index=False, float_format="%.17g")
-    return path
+    if height == 1.0:
+        return path
+    table, other = pd.read_csv(path), folder.with_name(f"{folder.name}_height{height:g}") / path.name
+    other.parent.mkdir(exist_ok=True)
+    low = table["z"].min()
+    table.assign(z=low + height * (table["z"] - low)).to_csv(other, index=False, float_format="%.17g")
+    return other
 
 
 def in_yade(spheres: Path, begin: float, until: float) -> None:
@@ -168,10 +175,10 @@ def in_yade(spheres: Path, begin: float, until: float) -> None:
     (folder / "done").touch()
 
 
-def one(name: str, seed: int, model: str, *, full: bool, smooth: bool, until: float | None) -> None:
+def one(name: str, seed: int, model: str, *, full: bool, height: float, until: float | None) -> None:
     """One case, seed and model; what it leaves is read by the report."""
     short = name in LONG and not full
-    spheres = bed(name, seed, soft=LONG[name] if short else 1.0, smooth=smooth)
+    spheres = bed(name, seed, soft=LONG[name] if short else 1.0, height=height)
     begin = fall(name, spheres)
     if model == YADE:
         in_yade(spheres, begin, min(until or YADE_END, YADE_END))
@@ -195,7 +202,7 @@ def main() -> int:
     )
     ask.add_argument("--seeds", help="default: 1,2,3 for impact_25k, else 1")
     ask.add_argument("--until", type=float, help="[s] of the last phase; default: all of it")
-    ask.add_argument("--smooth", action="store_true", help="a denser bed: the rain alone has no friction")
+    ask.add_argument("--height", type=float, default=1.0, help="of the bed, over that of the rain: what looseness does")
     ask.add_argument("--full", action="store_true", help="all steps of the long cases")
     options = ask.parse_args()
     for name in options.cases:
@@ -203,7 +210,7 @@ def main() -> int:
         models = (options.models or (",".join([*MODELS, YADE]) if many else "ep/hertz")).split(",")
         for model in models:
             for seed in map(int, (options.seeds or ("1,2,3" if many and model != YADE else "1")).split(",")):
-                one(name, seed, model, full=options.full, smooth=options.smooth, until=options.until)
+                one(name, seed, model, full=options.full, height=options.height, until=options.until)
     return 0
 
 

@@ -57,7 +57,10 @@ def _impact_rows(runs: Path) -> tuple[list[str], list[Series]]:
             at = int(np.argmin(np.where(early, moved, np.inf)))
             name = "LIGGGHTS `hertz`" if model == "hertz" else "YADE" if model == YADE else f"`{model}`"
             last = _inside(float(moved[-1]), AT_100) if time[-1] > 99.9 else f"run to {time[-1]:.0f} ms"
-            seed, at_30 = path.parts[-3].removeprefix("seed"), float(np.interp(30.0, time, moved))
+            seed, at_30 = (
+                path.parts[-3].removeprefix("seed").replace("_height", ", bed times "),
+                float(np.interp(30.0, time, moved)),
+            )
             cells = (name, seed, _inside(at_30, AT_30), _inside(float(moved[at]), LOWEST))
             rows.append(f"| {' | '.join(cells)} | {_inside(float(time[at]), LOWEST_TIME)} | {last} |")
             dash = ("solid", "dash", "dot")[k % 3]

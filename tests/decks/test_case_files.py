@@ -92,6 +92,16 @@ def test_pint_never_sees_powers_that_it_would_compute_for_hours(text, monkeypatc
     [
         ("materials.steel.poisson_ratio", 30, "materials.steel.poisson_ratio = 30, must lie in (-1, 0.5]; percent?"),
         ("materials.steel.young_modulus", "208 kg", "wrong dimension"),
+        (
+            "measured",
+            {"source": "x", "speeds": ["1 m/s"], "e_n": [1.2]},
+            "measured.e_n.0 = 1.2, must lie in [0, 1]; percent",
+        ),
+        (
+            "measured",
+            {"source": "x", "speeds": ["1 m/s"], "e_n": []},
+            "measured: speeds: 1, e_n: 0; give one e_n for each",
+        ),
         ("materials.steel.young_modulus", "-1 GPa", "must lie in (0, inf) Pa"),
         ("materials.steel.young_modulus", float("nan"), "expected a quantity with a unit"),
         ("materials.steel.poisson_ratio", float("nan"), "not a finite number"),

@@ -101,7 +101,9 @@ PFM = [SOURCES / name for name in ("pfm/models.cpp", "materials.cpp", "cohesion.
 def test_the_files_hold_every_line_of_the_sources_that_they_need_and_no_other(pfm):
     files = header.files(pfm)
     named = ["normal_model_ep.cpp", "normal_model_ep_avx2.cpp", "normal_model_ep_avx512.cpp"]
-    assert list(files) == (named[:1] if pfm else named)
+    assert list(files) == ([named[0], "normal_model_ep.h"] if pfm else named)
+    if pfm:
+        assert files.pop("normal_model_ep.h") == (SOURCES / "pfm" / "commands.h").read_text()
     parts = {name: set() for name in files}
     common = [f for f in SOURCES.rglob("*.cpp") if f.name != "main.cpp" and f.parent.name != "pfm"]
     for source in PFM if pfm else common:
@@ -193,6 +195,7 @@ def test_doctor_says_which_models_an_executable_has(built, monkeypatch):
         assert not found.superquadrics  # Debian's library has none
     paths.launcher.cache_clear()
     assert executable.advice(()) == "" and "epdem header --out" in executable.advice(("hertz",))
+    assert "take LIGGGHTS-PUBLIC" in executable.advice(("jkr",), "LIGGGHTS-PFM 24.01")
 
 
 SUPERQUADRIC = """atom_style superquadric
@@ -256,7 +259,8 @@ def test_check_says_what_a_tree_lacks(tmp_path):
 
 def test_a_tree_of_liggghts_pfm_gets_a_file_of_its_own(tmp_path):
     (tmp_path / "contact_models.h").write_text("void noCollision();\n")
-    assert [f.name for f in header.write(tmp_path)] == ["normal_model_ep.cpp"] and header.check(tmp_path) == []
+    assert [f.name for f in header.write(tmp_path)] == ["normal_model_ep.cpp", "normal_model_ep.h"]
+    assert header.check(tmp_path) == []
     assert "class NoFriction" in (tmp_path / "normal_model_ep.cpp").read_text()
     (tmp_path / "normal_model_ep.cpp").write_text(header.files()["normal_model_ep.cpp"])
     assert ["another version" in sentence for sentence in header.check(tmp_path)] == [True]

@@ -157,7 +157,7 @@ def test_quaternions_are_those_of_the_spins():
 
 
 WRONG = {
-    "v_j is missing": lambda c: c.pop("v_j"),
+    "v_j is missing; a motion has t, ": lambda c: c.pop("v_j"),
     "v_i has 441 x 2 values, must be 441 x 3": lambda c: c.update(v_i=c["v_i"][:, :2]),
     "t must grow by the same step": lambda c: c.update(t=c["t"] ** 2),
     "q_i, q_j must have the length 1": lambda c: c.update(q_i=2 * c["q_i"]),
@@ -182,7 +182,7 @@ def test_a_wrong_file_is_named_with_what_is_wrong(says, tmp_path):
         ("m.json", "[1, 2]", "m.json: t is missing"),
         ("m.csv", "t,x_i\n0,1,2\n", "m.csv line 2: 3 values, must be 4 or more"),
         ("m.csv", "t,x_i\n0,1,2,a\n", "m.csv line 2: could not convert"),
-        ("m.csv", "# t x_i what v_i\n0 1 2 3\n", "m.csv: x_j is missing"),
+        ("m.csv", "# t x_i what v_i\n0 1 2 3\n", "m.csv: x_j is missing; a motion has t, x_i"),
         ("m.csv", "", "m.csv: no line of names"),
         ("n.csv", None, "n.csv: cannot be read"),
     ],
@@ -199,9 +199,28 @@ def test_a_motion_for_other_radii_is_refused():
     small = replace(touch().experiment, body=replace(touch().experiment.body, radius=5e-3))
     with pytest.raises(CaseError, match=r"nothing touches, the least distance is 0\.01995 m and the radii are 0\.005"):
         refuse(replace(touch(), experiment=small), motion)
+    near = replace(motion, place=0.3 * motion.place)
+    with pytest.raises(CaseError, match=r"the centres come as near as 0\.00598\d* m; the least is the smaller radius"):
+        refuse(touch(), near)
 
 
 def test_two_files_of_one_name_are_refused(tmp_path):
     (tmp_path / "m.json").write_text(text(OWN["shear_slip"](touch()).columns()))
     with pytest.raises(CaseError, match="two motions have the name m"):
         compare(CASES / "steel_wall.toml", files=[tmp_path / "m.json"] * 2, engines=["embedded"], out=tmp_path / "o")
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "says"),
+    [
+        ('target = { material = "steel" }', 'target = { material = "rigid" }', "no sphere is rigid"),
+        ("[numerics]", "[viscous]\nrestitution = 0.9\n[numerics]", "motions are compared without a dashpot"),
+        ("", "", "--engine abaqus: motions run on embedded"),
+    ],
+)
+def test_a_case_that_has_no_two_spheres_is_refused(old, new, says, tmp_path):
+    (tmp_path / "case.toml").write_text((CASES / "steel_wall.toml").read_text().replace(old, new, bool(old)))
+    engines = ["embedded" if old else "abaqus"]
+    with pytest.raises(CaseError, match=says):
+        compare(tmp_path / "case.toml", engines=engines, out=tmp_path / "o")
+    assert not (tmp_path / "o").exists()

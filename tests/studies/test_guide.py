@@ -59,7 +59,7 @@ def test_every_block_says_what_it_is_and_none_is_only_indented():
     for name, words, text in ALL:
         where = f"{name}: {' '.join(words)}\n{text}"
         assert words and words[0] in ("sh", "python", "toml", "deck", "jinja", "text"), where
-        if words[0] == "sh" and words[1:2] == ["in"]:
+        if words[1:2] == ["in"]:
             assert (ROOT / "tests" / words[2]).exists(), where
         elif words[0] == "sh":
             assert words[1:] in ([], ["slurm"], ["by", "hand"]), where

@@ -4,6 +4,7 @@
 #include "interface.hpp"
 
 #include <cstdio>
+#include <cstring>
 
 #include "../normal.hpp"
 #include "epdem/laws.hpp"
@@ -75,7 +76,7 @@ class Model {
       GranStyle<id<Law>, tangential, COHESION_OFF, rolling, SURFACE_DEFAULT>::HASHCODE;
 
   Model(LAMMPS* lmp, LIGGGHTS::IContactHistorySetup* setup)
-      : lmp_(lmp), surface_(lmp, setup), normal_(lmp, setup), tangential_(lmp, setup), rolling_(lmp, setup) {
+      : surface_(lmp, setup), normal_(lmp, setup), tangential_(lmp, setup), rolling_(lmp, setup) {
     if (wall && memory<Law> == 1) setup->add_history_value("spare", "0");  // a wall's history of one value is refused
     announce(lmp);
   }
@@ -91,7 +92,6 @@ class Model {
   }
 
   void connectToProperties(PropertyRegistry& registry) {
-    if (normal_.ledger()) lmp_->error->all(FLERR, "setting computePlasticWork on is not available in LIGGGHTS-PFM");
     normal_.postSettings(false);
     surface_.connectToProperties(registry);
     normal_.connectToProperties(registry, dashpot, false);
@@ -125,11 +125,27 @@ class Model {
                                                                            : Dashpot::optional;
   static constexpr bool others_remember = tangential == TANGENTIAL_HISTORY || rolling > ROLLING_CDT;
 
-  LAMMPS* const lmp_;
   SurfaceModel<SURFACE_DEFAULT> surface_;
   Normal<Law, wall, others_remember> normal_;
   typename OfId<tangential>::type tangential_;
   RollingModel<rolling> rolling_;
+};
+
+/// A pair style; the properties of computePlasticWork are there as soon as its settings are, for dumps that name them.
+template <class Contact>
+class Pairs : public PairStyles::Granular<Contact> {
+ public:
+  Pairs(LAMMPS* lmp, PairGran* parent) : PairStyles::Granular<Contact>(lmp, parent), lmp_(lmp) {}
+
+  void settings(int n, char** words) override {
+    PairStyles::Granular<Contact>::settings(n, words);
+    for (int k = 0; k + 1 < n; ++k)
+      if (!std::strcmp(words[k], "computePlasticWork") && !std::strcmp(words[k + 1], "on"))
+        Ledger().create(lmp_, false, false);
+  }
+
+ private:
+  LAMMPS* const lmp_;
 };
 
 template <class Interface, class Part, class Parent>
@@ -140,7 +156,7 @@ Interface* create(LAMMPS* lmp, Parent* parent) {
 template <class Law, int tangential, int... rollings>
 void add() {
   const auto one = [](auto rolling) {
-    using OfPair = PairStyles::Granular<Model<Law, false, tangential, rolling>>;
+    using OfPair = Pairs<Model<Law, false, tangential, rolling>>;
     using OfWall = Walls::Granular<Model<Law, true, tangential, rolling>>;
     const int hash = static_cast<int>(Model<Law, false, tangential, rolling>::STYLE_HASHCODE);
     PairStyles::Factory::instance().addStyle("gran", hash, &create<PairStyles::IGranularPairStyle, OfPair, PairGran>);

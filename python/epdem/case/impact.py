@@ -161,7 +161,7 @@ class Measured(Frozen):
     @model_validator(mode="after")
     def _pairs(self) -> Self:
         if len(self.speeds) != len(self.e_n):
-            raise ValueError(f"{len(self.speeds)} speeds and {len(self.e_n)} values of e_n; give one for each")
+            raise ValueError(f"speeds: {len(self.speeds)}, e_n: {len(self.e_n)}; give one e_n for each speed")
         return self
 
 

@@ -54,7 +54,8 @@ def _models() -> Finding:
         return Finding("models in LIGGGHTS", False, str(error), "run 'make setup', or name another one")
     lacks = tuple(law for law in laws if law not in found.models)
     names = ", ".join(f"ep/{law}" for law in found.models) or "none of ours"
-    return Finding("models in LIGGGHTS", not lacks, f"{names}: {path} ({found})", executable.advice(lacks))
+    advice = executable.advice(lacks, found.version)
+    return Finding("models in LIGGGHTS", not lacks, f"{names}: {path} ({found})", advice, needed=not found.models)
 
 
 def examine() -> list[Finding]:

@@ -12,6 +12,8 @@ from ..base.processes import ask
 from ..errors import EngineError
 from . import launcher
 
+_VTK = "custom/vtk"  # the dump style of output.vtk
+
 
 @dataclass(frozen=True)
 class Executable:
@@ -35,6 +37,11 @@ def version(path: Path) -> str:
     return _version(_help(path))
 
 
+def writes_vtk(path: Path) -> bool:
+    """Whether it was built with VTK. Raises EngineError."""
+    return _VTK in _styles(_help(path), "Dump styles")
+
+
 def examine(path: Path, laws: tuple[str, ...]) -> Executable:
     """What a LIGGGHTS has, found by one short run for each of `laws`. Raises EngineError if it does not start."""
     text = _help(path)
@@ -42,7 +49,7 @@ def examine(path: Path, laws: tuple[str, ...]) -> Executable:
         path,
         _version(text),
         superquadrics="superquadric" in _styles(text, "Atom styles"),
-        vtk="custom/vtk" in _styles(text, "Dump styles"),
+        vtk=_VTK in _styles(text, "Dump styles"),
         mpi="libmpi" in ask(["ldd", str(path)]) if shutil.which("ldd") else False,
         models=tuple(law for law in laws if _has(law)),
     )
@@ -79,13 +86,18 @@ def _has(law: str) -> bool:
     return True
 
 
-def advice(laws: tuple[str, ...]) -> str:
-    """How an executable without these models gets them; "" for none."""
+def advice(laws: tuple[str, ...], version: str = "") -> str:
+    """How an executable without these models, of a LIGGGHTS that says this version, gets them; "" for none."""
     if not laws:
         return ""
+    get = f"to get {', '.join('ep/' + law for law in laws)}: "
+    if version.startswith("LIGGGHTS-PFM"):
+        return (
+            f"{get}'epdem header --out SRC' has the laws without adhesion for LIGGGHTS-PFM; for the others take "
+            "LIGGGHTS-PUBLIC or LIGGGHTS-INL"
+        )
     plugin = paths.native("libepdem_liggghts.so")
     preload = f"LD_PRELOAD={plugin} with Debian's liggghts, " if plugin else ""
     return (
-        f"to get {', '.join('ep/' + law for law in laws)}: {preload}epdem-liggghts in place of it, or "
-        "'epdem header --out SRC' for a tree that you build yourself"
+        f"{get}{preload}epdem-liggghts in place of it, or 'epdem header --out SRC' for a tree that you build yourself"
     )

@@ -41,7 +41,7 @@ _OPTIONS = re.compile(r'set_source_files_properties\((\S+) PROPERTIES COMPILE_OP
 _TOP = """\
 // SPDX-License-Identifier: GPL-2.0-or-later
 // epdem {version}: elastic-plastic contact models for LIGGGHTS. Made by `epdem header`; changes here are lost.
-// Copy every {name}*.cpp into the folder src of a LIGGGHTS tree and build as usual.
+// Copy every {name}* into the folder src of a LIGGGHTS tree and build as usual.
 #if __cplusplus < 201703L
 #error "epdem needs C++17: add -std=c++17 to the compiler flags of this tree, in place of an older standard"
 #endif
@@ -60,12 +60,14 @@ def files(pfm: bool = False) -> dict[str, str]:
     """Names and texts of the files; one for the models, one for each set of instructions that is compiled apart.
 
     The first is for the processor that the tree is built for. For LIGGGHTS-PFM (`pfm`) it is the only one, because the
-    pair loop does not run there. Raises EngineError if the sources are not installed.
+    pair loop does not run there; beside it is a header with two commands of decks that are unknown there. Raises
+    EngineError if the sources are not installed.
     """
     host, laws = paths.cpp_sources()
     if pfm:
         sources = [host / PFM / "models.cpp", host / "materials.cpp", host / "cohesion.cpp"]
-        return {f"{NAME}.cpp": _together(sources, host, laws)}
+        commands = (host / PFM / "commands.h").read_text(encoding="utf-8")
+        return {f"{NAME}.cpp": _together(sources, host, laws), f"{NAME}.h": commands}
     apart = {name: options for name, options in _OPTIONS.findall((host / "CMakeLists.txt").read_text(encoding="utf-8"))}
     left_out = {"main.cpp", f"{PFM}/models.cpp", *apart}
     common = [f for f in sorted(host.rglob("*.cpp")) if f.relative_to(host).as_posix() not in left_out]

@@ -6,10 +6,12 @@ from pathlib import Path
 
 import pandas as pd
 
+from ..base import paths
 from ..case.parts import Parts
+from ..errors import CaseError
 from ..scenes.engine import Report, Resumed
 from ..scenes.plan import ScenePlan
-from . import launcher, resume, scene_deck, wall_stress
+from . import executable, launcher, resume, scene_deck, wall_stress
 from . import scene_tables as tables
 from .impacts import Liggghts
 
@@ -44,9 +46,11 @@ class LiggghtsScenes:
         return []
 
     def run(self, plan: ScenePlan, folder: Path, *, ranks: int, report: Report) -> None:
+        _refuse_vtk(plan)
         launcher.run("in.scene", folder, ranks=ranks, report=_pruning(folder, report))
 
     def resume(self, plan: ScenePlan, folder: Path, *, ranks: int, report: Report) -> Resumed:
+        _refuse_vtk(plan)
         step, lost = resume.choose(plan, folder)
         deck = resume.write_resume(plan, folder, step)
         launcher.run(deck.name, folder, ranks=ranks, append=True, report=_pruning(folder, report))
@@ -64,6 +68,16 @@ class LiggghtsScenes:
         if wall_stress.watched(plan):
             read["walls"] = wall_stress.table(plan, folder, without=without)
         return read
+
+
+def _refuse_vtk(plan: ScenePlan) -> None:
+    """Raise CaseError for VTK files of a LIGGGHTS without VTK."""
+    path = paths.launcher()
+    if plan.vtk and path and not executable.writes_vtk(path):
+        raise CaseError(
+            f"output.vtk: {path} was built without VTK; leave output.vtk out (output.particles holds the same), or "
+            "take a LIGGGHTS with VTK"
+        )
 
 
 def _pruning(folder: Path, report: Report) -> Report:

@@ -109,7 +109,7 @@ def refuse(p: ScenePlan) -> None:
         refuse_parts(p, s)
     refuse_parameters(m.law, m.ratios())
     unknown: dict[str, tuple[object, str]] = {
-        "scene.rate": (any(f.rate for f in p.layout.fills), "all spheres are there from the start"),
+        "scene.rate": (next((f.rate for f in p.layout.fills if f.rate), None), "all spheres are there from the start"),
         "viscous.restitution": (p.case.viscous and p.case.viscous.restitution, "YADE's law has no dashpot"),
         "contact.tangential": (m.nodes and m.tangential, "YADE's law has one spring"),
         "contact.rolling": (m.rolling and m.rolling.model, "YADE's law has no rolling resistance"),
