@@ -52,9 +52,10 @@ def test_the_plugin_exports_only_the_functions_that_it_takes_over():
     lines = subprocess.run(["nm", "-D", "--defined-only", library()], capture_output=True, text=True, check=True).stdout
     names = [line.split()[-1] for line in lines.splitlines()]
     ours = [n for n in names if "epdem" in n or "LIGGGHTS" in n or "LAMMPS" in n]
-    wrong_names, *mesh_loop = sorted(ours)
+    wrong_names, *walls = sorted(ours)
     assert wrong_names.startswith("_ZN8LIGGGHTS13ContactModels7Factory6select")
-    assert [re.match(r"_ZN9LAMMPS_NS\d+([A-Za-z]+?)\d", name)[1] for name in mesh_loop] == [
+    assert [re.match(r"_ZN9LAMMPS_NS\d+([A-Za-z]+?)\d", name)[1] for name in walls] == [
+        "FixWallGran",
         "FixWallGran",
         "FixContactHistoryMesh",
         "FixContactHistoryMesh",
@@ -62,7 +63,8 @@ def test_the_plugin_exports_only_the_functions_that_it_takes_over():
 
 
 def test_library_and_launcher_stay_small():
-    assert Path(library()).stat().st_size < 5e6 and Path(launcher()).stat().st_size < 5e6
+    """4.4 MB without the kernels of walls, 5.7 MB with them (three instruction sets)."""
+    assert Path(library()).stat().st_size < 6e6 and Path(launcher()).stat().st_size < 6e6
 
 
 # Fixed for ever, because restart files keep them: a law's id, its history values of a pair and of a wall.
