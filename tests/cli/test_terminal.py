@@ -29,7 +29,8 @@ def shown(words: list[str], folder: Path, width: int, **environment: str) -> str
     if child == 0:  # pragma: no cover
         fcntl.ioctl(1, termios.TIOCSWINSZ, struct.pack("HHHH", 40, width, 0, 0))
         os.chdir(folder)
-        os.execve(EPDEM, [EPDEM, *words], os.environ | {"TERM": "xterm-256color"} | environment)
+        surroundings = {name: value for name, value in os.environ.items() if name != "COLUMNS"}  # of another terminal
+        os.execve(EPDEM, [EPDEM, *words], surroundings | {"TERM": "xterm-256color"} | environment)
     text = b""
     while True:
         try:
