@@ -33,7 +33,9 @@ def lean(data: dict) -> dict:
 
 def full(data: dict) -> dict:
     """The case with every sub-model and the ledger."""
-    nothing: dict = {"friction": NOTHING, "tangential_restitution": 0.999}
+    nothing: dict = {"friction": NOTHING}
+    if "viscous" not in data:  # LIGGGHTS has one restitution for both dashpots
+        nothing["tangential_restitution"] = 0.999
     if data["law"]["name"] not in ADHESIVE:  # these have their attraction already
         nothing["cohesion"] = f"{NOTHING} J/m^3"
     rolling = {"rolling": {"model": "epsd2", "coefficient": NOTHING}}

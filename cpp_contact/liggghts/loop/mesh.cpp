@@ -194,7 +194,6 @@ namespace loop = epdem::liggghts::loop;
 [[gnu::visibility("default")]] void FixContactHistoryMesh::cleanUpContacts() {
   static const auto original =
       loop::next<FixContactHistoryMesh*>("_ZN9LAMMPS_NS21FixContactHistoryMesh15cleanUpContactsEv");
-  if (loop::at_work) loop::at_work->compute();  // histories are going to move
   if (!loop::settled(this, *update, *neighbor)) {
     original(this);
   } else {
