@@ -180,6 +180,12 @@ def test_folders_and_files_of_a_user(tmp_path, monkeypatch):
     monkeypatch.setenv("XDG_CONFIG_HOME", str(tmp_path))
     with says("config.toml: .*; mend or remove it", CaseError):
         settings.setting("liggghts", "command")
+    config.write_text("[engines]\n")
+    with says(r"config.toml: engines: is not known; there is \[", CaseError):
+        settings.setting("engine", "liggghts")
+    config.write_text("[engine]\nlammps = 'lmp'\n")
+    with says("config.toml: engine.lammps: is not known; there is liggghts", CaseError):
+        settings.setting("engine", "liggghts")
     (tmp_path / "x.stl").write_bytes(b"\0" * 84)
     with says("no triangles, or corners that are not numbers; export it anew", CaseError):
         stl_files._read(tmp_path / "x.stl", "scene.wall.x.file")
