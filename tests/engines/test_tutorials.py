@@ -39,4 +39,6 @@ def test_a_tutorial_has_the_rows_of_hertz_and_loses_energy_where_it_yields(name,
     soft = rows(name, tmp_path / "soft", "ep/thornton", extra=YIELD)
     assert hertz.shape == ours.shape and len(hertz) > 7 and hertz[-1, 1] > 0
     assert ours == pytest.approx(hertz, rel=1e-9, abs=1e-15)
-    assert (soft[:, :2] == hertz[:, :2]).all() and soft[-1, 2] < 0.999 * hertz[-1, 2]
+    assert (soft[:, 0] == hertz[:, 0]).all()
+    energy = [table[-1, 2] / table[-1, 1] for table in (soft, hertz)]  # of a sphere: where a bed is low, more fit in
+    assert energy[0] < 0.999 * energy[1]
