@@ -88,7 +88,9 @@ epdem_impact_output output(const ImpactOutput<double>& o) {
   return {o.rebound_speed, o.force_max, o.overlap_max, o.last_overlap, o.first, o.last, o.steps};
 }
 
-bool known_nodes(int nodes) { return nodes == 0 || nodes == 2 || nodes == 3; }
+bool sane_friction(double G_star, double mu, int nodes) {
+  return positive(G_star) && std::isfinite(mu) && mu >= 0.0 && (nodes == 0 || nodes == 2 || nodes == 3);
+}
 
 template <int nodes, class Law>
 void move(const Law& law, double R_star, double stiffness, double mu, size_t n, const double* m, double* out) {
@@ -216,7 +218,7 @@ EPDEM_EXPORT int epdem_impacts(int law, double E_star, const double* parameters,
 
 EPDEM_EXPORT int epdem_oblique(int law, double E_star, const double* parameters, double G_star, double mu, int nodes,
                                size_t n, const epdem_impact_input* in, const double* slip, double* slip_after_out) {
-  if (!positive(G_star) || !std::isfinite(mu) || mu < 0.0 || !known_nodes(nodes)) return EPDEM_BAD_INPUT;
+  if (!sane_friction(G_star, mu, nodes)) return EPDEM_BAD_INPUT;
   for (size_t i = 0; i < n; ++i)
     if (!sane(in[i]) || !std::isfinite(slip[i])) return EPDEM_BAD_INPUT;
   return with_law(law, E_star, parameters, [&](const auto& l) {
@@ -233,8 +235,7 @@ EPDEM_EXPORT int epdem_oblique(int law, double E_star, const double* parameters,
 
 EPDEM_EXPORT int epdem_motion(int law, double E_star, const double* parameters, double R_star, double G_star, double mu,
                               int nodes, size_t n, const double* motion, double* out) {
-  if (!positive(R_star) || !positive(G_star) || !std::isfinite(mu) || mu < 0.0 || !known_nodes(nodes))
-    return EPDEM_BAD_INPUT;
+  if (!positive(R_star) || !sane_friction(G_star, mu, nodes)) return EPDEM_BAD_INPUT;
   for (size_t k = 0; k < 9 * n; ++k)
     if (!std::isfinite(motion[k])) return EPDEM_BAD_INPUT;
   return with_law(law, E_star, parameters, [&](const auto& l) {

@@ -4,8 +4,8 @@
 from collections.abc import Callable
 
 from ..base.settings import DEFAULT_ENGINE
-from ..errors import CaseError, EngineError
-from ..impacts.engine import Engine, OwnTheory, Trajectory
+from ..errors import CaseError
+from ..impacts.engine import Engine, OwnTheory, Trajectory, require
 from ..impacts.motion import MotionEngine
 from ..lammps.impacts import LammpsMdr
 from ..liggghts.assemblies import LiggghtsAssemblies
@@ -59,8 +59,7 @@ def scene_engine(name: str) -> SceneEngine:
 def assembly_engine() -> AssemblyEngine:
     """The first engine of assemblies. Raises EngineError if it cannot run here."""
     tool = next(iter(ASSEMBLIES.values()))()
-    if reason := tool.missing():
-        raise EngineError(f"engine {tool.name}: {reason}")
+    require(tool)
     return tool
 
 

@@ -162,6 +162,22 @@ class OwnTheory(Engine, Protocol):
         """The origin of its numbers, in words."""
 
 
+class Installable(Protocol):
+    """What may be missing here: an engine of any kind."""
+
+    name: str
+
+    def missing(self) -> str | None:
+        """None if it can run here, else a sentence with the command that installs it."""
+
+
+def require(*tools: Installable) -> None:
+    """Raise EngineError for the first of `tools` that cannot run here."""
+    for tool in tools:
+        if reason := tool.missing():
+            raise EngineError(f"engine {tool.name}: {reason}")
+
+
 def check_law(engine: str, can: Abilities, law: str) -> None:
     """Raise CaseError for a law that an engine does not have."""
     if can.laws is not None and law not in can.laws:

@@ -19,10 +19,10 @@ from ..base.stages import inputs_hash
 from ..case.doubts import doubts
 from ..case.impact import Case, parse
 from ..case.toml import named, read_toml
-from ..errors import CaseError, EngineError
+from ..errors import CaseError
 from . import store
 from .comparison import compare, impacts_table
-from .engine import Engine, refuse
+from .engine import Engine, refuse, require
 from .experiment import Experiment, experiment
 from .measurement import measure
 from .paths import chosen
@@ -158,9 +158,7 @@ def _prepare(case: Case, place: object, tools: Sequence[Engine], laws: Sequence[
     with named(place):
         chosen: list[str | None] = [*dict.fromkeys(laws)] or [None]
         experiments = [experiment(case, law) for law in chosen]
-    for tool in tools:
-        if reason := tool.missing():
-            raise EngineError(f"engine {tool.name}: {reason}")
+    require(*tools)
     predictions = {x.law.name: predict(x) for x in experiments}
     with named(place):
         plans = [plan(x, predictions[x.law.name]) for x in experiments]

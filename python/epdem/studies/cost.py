@@ -19,6 +19,7 @@ from ..case.toml import named
 from ..engines import DEFAULT_ENGINE, REFERENCE, Engine, engine
 from ..engines.embedded import Embedded
 from ..errors import EngineError
+from ..impacts.engine import require
 from ..impacts.experiment import experiment
 from ..impacts.plan import Plan, plan
 from ..impacts.prediction import Prediction, predict
@@ -62,8 +63,7 @@ def models(case: Case, engines: list[str], laws: list[str], steps: tuple[int, ..
     chosen = []
     for name in dict.fromkeys(engines):
         tool = engine(name)
-        if reason := tool.missing():
-            raise EngineError(f"engine {name}: {reason}")
+        require(tool)
         for law in [tool.can.only_law] if tool.can.only_law else laws or [case.law.name]:
             # the case's own law keeps the case's parameters
             x = replace(experiment(case, None if law == case.law.name else law), numerics=numerics)

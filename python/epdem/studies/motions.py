@@ -15,8 +15,8 @@ from ..base.settings import DEFAULT_ENGINE
 from ..case.impact import load
 from ..case.toml import named
 from ..engines import MOTIONS as ENGINES
-from ..errors import CaseError, EngineError
-from ..impacts.engine import check_law
+from ..errors import CaseError
+from ..impacts.engine import check_law, require
 from ..impacts.experiment import experiment
 from ..impacts.motion import Loads, Motion, MotionEngine, Touch, read, refuse, text, unit_normals
 from ..impacts.motions import MOTIONS, objectivity, rigid_rotation
@@ -93,9 +93,7 @@ def compare(
         refuse(touch, motion)
         for tool in tools:
             check_law(tool.name, tool.can, touch.experiment.law.name)
-    for tool in tools:
-        if reason := tool.missing():
-            raise EngineError(f"engine {tool.name}: {reason}")
+    require(*tools)
     folder = results_folder(out, load(case).name, "motion")
     rows = []
     with claim(folder, force=force, files=[TABLE]):

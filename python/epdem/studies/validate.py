@@ -17,7 +17,8 @@ from ..case.impact import Case, parse
 from ..case.toml import named, read_toml
 from ..engines import DEFAULT_ENGINE, Engine, engine
 from ..engines.embedded import Embedded
-from ..errors import CaseError, EngineError
+from ..errors import CaseError
+from ..impacts.engine import require
 from ..impacts.experiment import Experiment, experiment
 from ..impacts.plan import plan
 from ..impacts.prediction import predict
@@ -155,9 +156,7 @@ def validate(
     """
     measured = [read(name) for name in dict.fromkeys(sets)] or [read(name) for name in names()]
     tools = [engine(name) for name in dict.fromkeys(engines or ENGINES)]
-    for tool in tools:
-        if reason := tool.missing():
-            raise EngineError(f"engine {tool.name}: {reason}")
+    require(*tools)
     absent: dict[str, str] = {}
     rows: list[dict[str, object]] = []
     folder = results_folder(out, "validate")

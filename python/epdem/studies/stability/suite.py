@@ -10,7 +10,8 @@ import pandas as pd
 
 from ...engines import ASSEMBLIES, engine
 from ...engines.embedded import Embedded
-from ...errors import CaseError, EngineError
+from ...errors import CaseError
+from ...impacts.engine import require
 from ...theory.backbones import ADHESIVE, LAWS
 from . import bulk_checks, precisions
 from .cases import Extreme, extremes
@@ -46,8 +47,7 @@ def samplers(names: list[str], folder: Path) -> list[Sampler]:
     chosen: list[Sampler] = []
     for name in names:
         tool = engine(name)
-        if reason := tool.missing():
-            raise EngineError(f"engine {name}: {reason}")
+        require(tool)
         chosen.append(PositionSampler(tool, folder / name) if tool.can.positions else EmbeddedSampler())
     return chosen
 

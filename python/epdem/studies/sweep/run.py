@@ -13,7 +13,8 @@ import pandas as pd
 from ...base.folders import claim
 from ...case.scene import is_scene
 from ...engines import DEFAULT_ENGINE, engine, scene_engine
-from ...errors import CaseError, EngineError
+from ...errors import CaseError
+from ...impacts.engine import require
 from . import folder as store
 from . import local, points, table
 from .evaluate import check, evaluate
@@ -103,9 +104,7 @@ def plan_text(
 
 def _versions(engines: Sequence[str], *, scene: bool) -> dict[str, str]:
     tools = [scene_engine(name) if scene else engine(name) for name in engines]
-    for tool in tools:
-        if reason := tool.missing():
-            raise EngineError(f"engine {tool.name}: {reason}")
+    require(*tools)
     return {tool.name: tool.version() for tool in tools}
 
 
