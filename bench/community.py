@@ -21,7 +21,7 @@ from typing import Any
 
 import numpy as np
 import pandas as pd
-from community_models import MODELS, SHORT, YADE, curve, engine, loop
+from community_models import MODELS, SHORT, SPEED, START, YADE, curve, engine, loop
 
 from epdem.case.scene import SceneCase, parse
 from epdem.errors import CaseError
@@ -73,10 +73,10 @@ def fall(name: str, spheres: Path) -> float:
     bodies = read(name)["scene"].get("body", [])
     if not bodies:
         return 0.0
-    (height, radius), speed = (float(x.split()[0]) * 1e-3 for x in (bodies[0]["place"][2], bodies[0]["radius"])), 5.0
+    radius = float(bodies[0]["radius"].split()[0]) * 1e-3
     table = pd.read_csv(spheres)
-    way = height - radius - NEAR - float((table["z"] + table["radius"]).max())
-    return float(np.floor(2e3 * (np.sqrt(speed**2 + 2 * G * way) - speed) / G)) / 2e3
+    way = START - radius - NEAR - float((table["z"] + table["radius"]).max())
+    return float(np.floor(2e3 * (np.sqrt(SPEED**2 + 2 * G * way) - SPEED) / G)) / 2e3
 
 
 def after_rain(name: str, seed: int, model: str, spheres: Path, *, steps: int | None) -> SceneCase:
@@ -90,8 +90,8 @@ def after_rain(name: str, seed: int, model: str, spheres: Path, *, steps: int | 
     (phase,) = scene["phase"]
     for body in scene.get("body", []):
         body.pop("phase", None)
-        body["place"][2] = f"{0.06 - 5.0 * begin - G * begin**2 / 2!r} m"
-        body["velocity"][2] = f"{-5.0 - G * begin!r} m/s"
+        body["place"][2] = f"{START - SPEED * begin - G * begin**2 / 2!r} m"
+        body["velocity"][2] = f"{-SPEED - G * begin!r} m/s"
     scene["wall"] = [w for w in scene["wall"] if phase["name"] in w.pop("phases", [phase["name"]])]
     if steps is not None:
         number, unit = data["numerics"]["time_step"].split()

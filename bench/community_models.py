@@ -13,6 +13,7 @@ from epdem.scenes.plan import ScenePlan
 MODELS = {"hertz": "hertz", "ep/hertz": "hertz", "ep/thornton": "thornton"}  # and the law of their plan
 YADE = "yade"  # its own model of Hertz and Mindlin
 SHORT = 10_000  # steps of a case that is for larger machines
+START, SPEED = 0.06, 5.0  # of the impactor: height [m] and speed [m/s] at the time 0
 CURVE, EVERY = "impactor.txt", 100  # steps between two lines
 
 

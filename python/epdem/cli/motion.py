@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from ..base.terminal import console, frame_table, status
+from ..base.terminal import console, frame_table, show_table, status
 from .options import AsJson, CasePath, Engines, Force, Laws, Out
 
 
@@ -38,6 +38,6 @@ def motion(
         said = {"passed": outcome.passed, "folder": str(outcome.folder), "rows": records(outcome.rows)}
         print(json.dumps(said, indent=1))
     else:
-        console().print(frame_table("deviations from the first engine, over its largest force", outcome.rows))
+        show_table(console(), frame_table("deviations from the first engine, over its largest force", outcome.rows))
         console().print(f"motions, forces and torques: {outcome.folder}/LAW/ENGINE/MOTION/motion.json")
     raise typer.Exit(0 if outcome.passed else 1)
