@@ -119,7 +119,13 @@ def test_a_run_that_ends_by_a_condition_goes_on_bitwise(tmp_path):
         {"name": "fall", "duration": "20 ms"},
     ]
     more = BED | {"name": "more", "count": 5, "phase": "more"}
-    ball = {"name": "ball", "material": "steel", "radius": "1.5 mm", "place": ["0 mm", "0 mm", "36 mm"], "phase": "fall"}
+    ball = {
+        "name": "ball",
+        "material": "steel",
+        "radius": "1.5 mm",
+        "place": ["0 mm", "0 mm", "36 mm"],
+        "phase": "fall",
+    }
     walls = [FLOOR, BOX | {"open": ["-z"]}, gate]
     data = parts(wall=walls, fill=[bed, more], body=[ball], phase=phases, leave=True)
     data |= {"viscous": {"restitution": 0.4}, "output": {"rows": 100, "particles": 100, "restarts": 100}}
