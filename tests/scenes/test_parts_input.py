@@ -223,6 +223,13 @@ LINES = {  # what is put in place of a line of cases/impactor_bowl.toml, and the
         'duration = "0.1 s"\n[[scene.phase.move]]\nwall = "bowl"\n[[scene.phase.move]]\nkind = "spin"',
         "scene.phase.1.move.0.kind is missing",
     ),
+    "\nfriction = 0.3": ("\nfriction = -0.3", "contact.friction = -0.3, must lie in"),
+    "[contact]": ("[contacts]", "contacts: unknown key"),
+    "[[scene.body]]": ("[[scene.bodies]]", "scene.bodies: unknown key"),
+    '[materials.steel]\nyoung_modulus = "100 MPa"': (
+        "[materials.steel]",
+        "materials.steel.young_modulus is missing",
+    ),
 }
 
 
@@ -233,7 +240,7 @@ def test_a_mistake_in_a_part_is_said_with_its_line(old, tmp_path):
     (tmp_path / "parts").symlink_to(CASES / "parts")
     path = tmp_path / "bowl.toml"
     path.write_text(text.replace(old, new))
-    line = text[: text.index(old)].count("\n") + (2 if "move" in new else 1)
+    line = text[: text.index(old)].count("\n") + (2 if "move" in new or old[0] == "\n" else 1)
     if "reaches" in words:  # a matter of the whole wall
         line = text[: text.index('name = "tube"')].count("\n")
     with pytest.raises(CaseError, match=re.escape(f"bowl.toml line {line}: {words}")), named(path):
