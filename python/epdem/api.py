@@ -20,7 +20,7 @@ from .base.files import atomic
 from .base.folders import write_own
 from .case import impact as impact_case
 from .case import scene as scene_case
-from .case.toml import read_toml
+from .case.files import text_for_anywhere
 from .engines import DEFAULT_ENGINE, scene_engine
 from .engines import engine as engine_named
 from .errors import CaseError
@@ -71,9 +71,8 @@ class _File:
     @classmethod
     def from_toml(cls, path: Path | str) -> Self:
         """The case in a file. Raises CaseError."""
-        read_toml(path)
         case = cls.__new__(cls)
-        case._read(Path(path).read_text(encoding="utf-8-sig"), path)
+        case._read(text_for_anywhere(path), path)
         return case
 
     def to_toml(self, path: Path | str) -> Path:
