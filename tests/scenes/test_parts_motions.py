@@ -12,6 +12,7 @@ from epdem.case.scene import parse
 from epdem.errors import CaseError
 from epdem.liggghts import launcher, resume
 from epdem.liggghts import scene_tables as tables
+from epdem.scenes.checks import doubtful_phases
 from epdem.scenes.plan import plan
 
 BOX = {"name": "box", "kind": "box", "x": ["-9 mm", "9 mm"], "y": ["-9 mm", "9 mm"], "z": ["0 mm", "40 mm"]}
@@ -70,6 +71,21 @@ def test_a_plate_stops_where_it_was_to_and_its_step_of_time_is_its_own(tmp_path)
     assert rows["time"].iloc[-1] == pytest.approx(0.075, rel=0.03)  # 30 mm at 0.4 m/s
     assert rows["time"].iloc[-1] == pytest.approx(1e-5 * rows["step"].iloc[-1])
     assert top < 39e-3 - 30e-3 + 0.5e-3 * 3  # under the plate, but for overlaps
+
+
+def test_a_wall_that_moves_last_goes_no_farther_than_it_should_and_other_lengths_are_said():
+    """2 mm at 0.1 m/s after 80 ms; a step of time that is given is not changed, and then the way may be longer."""
+    up = {"wall": "lid", "kind": "linear", "velocity": ["0 m/s", "0 m/s", "0.1 m/s"]}
+    last = {"name": "lift", "duration": "1 s", "move": [up], "until": {"wall": "lid", "travel": "2 mm"}}
+    data = parts(wall=[FLOOR, BOX, PLATE | {"center": ["0 mm", "0 mm", "35 mm"]}], phase=[FALL, last])
+    data["output"] = {"rows": 200, "particles": 20}
+    given = plan(parse(data | {"numerics": {"time_step": "1.17e-5 s"}}))
+    p = plan(parse(data | {"numerics": {"error": 0.02}}))
+    lengths = [float(table.eval("end_time - begin_time").iloc[-1]) for table in (given.phase_table, p.phase_table)]
+    assert lengths[0] > 0.021 and lengths[1] == pytest.approx(0.02, rel=0.02)
+    (said,) = doubtful_phases(given)
+    assert said.startswith(f"scene.phase.lift takes {lengths[0]:.4g} s, not 0.02 s")
+    assert not doubtful_phases(p)
 
 
 @pytest.mark.liggghts
