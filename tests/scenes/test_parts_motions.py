@@ -12,6 +12,7 @@ from epdem.case.scene import parse
 from epdem.errors import CaseError
 from epdem.liggghts import launcher, resume
 from epdem.liggghts import scene_tables as tables
+from epdem.liggghts.scene_deck import files as deck_of
 from epdem.scenes.checks import doubtful_phases
 from epdem.scenes.plan import plan
 
@@ -193,6 +194,14 @@ def test_a_run_that_ends_by_a_condition_goes_on_bitwise(tmp_path):
 def test_a_motion_or_an_end_that_cannot_be_is_refused(change, words):
     with pytest.raises(CaseError, match=words):
         plan(parse(parts(wall=[FLOOR, PLATE], phase=[FALL | change])))
+
+
+def test_a_vibration_goes_on_with_its_step_of_time_if_its_work_is_counted():
+    data = moved("vibrate")
+    data["scene"]["phase"][2]["time_step"] = "1e-5 s"
+    with pytest.raises(CaseError, match=r"phase.on.time_step: wall lid vibrates on .* give both phases the same one"):
+        deck_of(plan(parse(data)))
+    deck_of(plan(parse(data | {"output": {"rows": 20}})))
 
 
 def test_a_motion_counts_for_the_highest_speed():
