@@ -189,6 +189,10 @@ def test_a_run_that_ends_by_a_condition_goes_on_bitwise(tmp_path):
         ({"until": {"wall": "roof", "force": "1 N"}}, "phase.fall.until.wall = 'roof' is no wall"),
         ({"until": {"count": 1, "after": "2 s"}}, "until.after must be below duration"),
         ({"move": [{"wall": "lid", "kind": "spin"}]}, "scene.phase.0.move.0.kind = 'spin', must be one of"),
+        (
+            {"move": [{"wall": "lid", "kind": "linear", "velocity": ["0 m/s", "0 m/s", "0.1 m/s"]}]},
+            "scene.phase.fall.move: wall lid leaves scene.room; shorten its way",
+        ),
     ],
 )
 def test_a_motion_or_an_end_that_cannot_be_is_refused(change, words):
