@@ -90,6 +90,15 @@ def test_radii_above_a_metre_are_doubted():
     assert doubts(parse_scene(data)) == ["scene.particles.0.radius = 1.5 m; is the unit right?"]
 
 
+def test_a_friction_in_percent_is_doubted():
+    data = scene(**SOUND) | {"contact": {"friction": 30, "pairs": [{"between": ["glass", "glass"], "friction": 5.1}]}}
+    said = [
+        f"contact.{key} = {mu}, of solids up to 5; percent?"
+        for key, mu in (("friction", 30), ("pairs.0.friction", 5.1))
+    ]
+    assert doubts(parse_scene(data)) == said
+
+
 def test_no_case_of_ours_is_doubted_and_each_library_material_is_sound():
     for path in CASES.glob("*.toml"):
         data = read_toml(path)

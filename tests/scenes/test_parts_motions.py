@@ -12,6 +12,8 @@ from epdem.case.scene import parse
 from epdem.errors import CaseError
 from epdem.liggghts import launcher, resume
 from epdem.liggghts import scene_tables as tables
+from epdem.liggghts.scene_deck import files as deck_of
+from epdem.scenes.checks import doubtful_phases
 from epdem.scenes.plan import plan
 
 BOX = {"name": "box", "kind": "box", "x": ["-9 mm", "9 mm"], "y": ["-9 mm", "9 mm"], "z": ["0 mm", "40 mm"]}
@@ -30,11 +32,13 @@ BEATER = PLATE | {"name": "beater", "axis": "x", "center": ["0 mm", "0 mm", "9 m
 
 def moved(kind: str) -> dict:
     """A frictionless bed whose walls do work."""
-    if kind == "vibrate":
+    if kind == "vibrate":  # and goes on after 1.8 periods
         move = {"wall": "lid", "kind": "vibrate", "amplitude": ["0 mm", "0 mm", "1 mm"], "frequency": "60 Hz"}
         floor = PLATE | {"center": ["0 mm", "0 mm", "2 mm"]}
         bed = BED | {"region": BED["region"] | {"z": ["4 mm", "38 mm"]}}
-        return parts(wall=[BOX, floor], fill=[bed], phase=[FALL, FALL | {"name": "shake", "move": [move]}])
+        shakes = [FALL | {"name": name, "duration": "30 ms", "move": [move]} for name in ("shake", "on")]
+        data = parts(wall=[BOX, floor], fill=[bed], phase=[FALL, *shakes])
+        return data | {"output": data["output"] | {"rows": 200, "particles": 200}}
     if kind == "rotate":
         move = {"wall": "beater", "kind": "rotate", "axis": [0.0, 1.0, 0.0], "origin": ["0 m", "0 m", "9 mm"]}
         phase = {"name": "beat", "duration": "60 ms", "move": [move | {"rate": "-20 rad/s"}]}
@@ -51,12 +55,27 @@ def moved(kind: str) -> dict:
     return parts(wall=[BOX, PLATE], phase=[press | {"time_step": "1e-5 s"}])
 
 
+def assert_the_lid_shakes_on(found) -> None:
+    """Where spheres touch it, it is at 2 mm + 1 mm sin(2 pi 60 Hz t) since the begin of its first phase."""
+    begin = found.phases.set_index("phase").loc["shake", "begin_time"]
+    frames = found.particles.set_index(["step", "id"])
+    touching = found.contacts[(found.contacts["wall"] == "lid") & (found.contacts["force"] > 0)]
+    sphere = frames.loc[list(zip(touching["step"], touching["i"], strict=True))]
+    place = sphere["z"].to_numpy() - sphere["radius"].to_numpy() + touching["overlap"].to_numpy()
+    time = touching["step"].map(found.rows.set_index("step")["time"]).to_numpy() - begin
+    late = time > 0.035
+    assert late.any()
+    assert place[late] == pytest.approx(2e-3 + 1e-3 * np.sin(2 * math.pi * 60 * time[late]), abs=2e-5)
+
+
 @pytest.mark.liggghts
 @pytest.mark.parametrize("kind", ["vibrate", "rotate", "linear", "press"])
 def test_energy_closes_with_the_work_of_walls_that_move(kind, tmp_path):
     outcome = run(write_case(moved(kind), tmp_path), out=tmp_path / "out")
     ledger = outcome.results.ledger
     assert outcome.passed, outcome.results.checks
+    if kind == "vibrate":
+        assert_the_lid_shakes_on(outcome.results)
     assert abs(ledger["work"]).max() > 0.1 * ledger["kinetic"].max() > 0  # so that it counts
 
 
@@ -70,6 +89,21 @@ def test_a_plate_stops_where_it_was_to_and_its_step_of_time_is_its_own(tmp_path)
     assert rows["time"].iloc[-1] == pytest.approx(0.075, rel=0.03)  # 30 mm at 0.4 m/s
     assert rows["time"].iloc[-1] == pytest.approx(1e-5 * rows["step"].iloc[-1])
     assert top < 39e-3 - 30e-3 + 0.5e-3 * 3  # under the plate, but for overlaps
+
+
+def test_a_wall_that_moves_last_goes_no_farther_than_it_should_and_other_lengths_are_said():
+    """2 mm at 0.1 m/s after 80 ms; a step of time that is given is not changed, and then the way may be longer."""
+    up = {"wall": "lid", "kind": "linear", "velocity": ["0 m/s", "0 m/s", "0.1 m/s"]}
+    last = {"name": "lift", "duration": "1 s", "move": [up], "until": {"wall": "lid", "travel": "2 mm"}}
+    data = parts(wall=[FLOOR, BOX, PLATE | {"center": ["0 mm", "0 mm", "35 mm"]}], phase=[FALL, last])
+    data["output"] = {"rows": 200, "particles": 20}
+    given = plan(parse(data | {"numerics": {"time_step": "1.17e-5 s"}}))
+    p = plan(parse(data | {"numerics": {"error": 0.02}}))
+    lengths = [float(table.eval("end_time - begin_time").iloc[-1]) for table in (given.phase_table, p.phase_table)]
+    assert lengths[0] > 0.021 and lengths[1] == pytest.approx(0.02, rel=0.02)
+    (said,) = doubtful_phases(given)
+    assert said.startswith(f"scene.phase.lift takes {lengths[0]:.4g} s, not 0.02 s")
+    assert not doubtful_phases(p)
 
 
 @pytest.mark.liggghts
@@ -155,11 +189,23 @@ def test_a_run_that_ends_by_a_condition_goes_on_bitwise(tmp_path):
         ({"until": {"wall": "roof", "force": "1 N"}}, "phase.fall.until.wall = 'roof' is no wall"),
         ({"until": {"count": 1, "after": "2 s"}}, "until.after must be below duration"),
         ({"move": [{"wall": "lid", "kind": "spin"}]}, "scene.phase.0.move.0.kind = 'spin', must be one of"),
+        (
+            {"move": [{"wall": "lid", "kind": "linear", "velocity": ["0 m/s", "0 m/s", "0.1 m/s"]}]},
+            "scene.phase.fall.move: wall lid leaves scene.room; shorten its way",
+        ),
     ],
 )
 def test_a_motion_or_an_end_that_cannot_be_is_refused(change, words):
     with pytest.raises(CaseError, match=words):
         plan(parse(parts(wall=[FLOOR, PLATE], phase=[FALL | change])))
+
+
+def test_a_vibration_goes_on_with_its_step_of_time_if_its_work_is_counted():
+    data = moved("vibrate")
+    data["scene"]["phase"][2]["time_step"] = "1e-5 s"
+    with pytest.raises(CaseError, match=r"phase.on.time_step: wall lid vibrates on .* give both phases the same one"):
+        deck_of(plan(parse(data)))
+    deck_of(plan(parse(data | {"output": {"rows": 20}})))
 
 
 def test_a_motion_counts_for_the_highest_speed():

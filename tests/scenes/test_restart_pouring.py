@@ -5,6 +5,7 @@ import re
 from pathlib import Path
 
 import pytest
+from parts_cases import BED, parts
 from scene_runs import write_deck
 
 from epdem.case.scene import parse
@@ -78,4 +79,24 @@ def test_a_run_interrupted_after_the_last_sphere_was_poured_ends_bitwise_the_sam
     counts = whole.groupby("step")["id"].count()
     begin = next(s for s in restarts(folder) if counts[s] == COUNT)
     again = continued(poured, begin, tmp_path)
+    assert again.equals(whole[whole["step"] > begin].reset_index(drop=True))
+
+
+def test_a_stream_that_has_ended_does_not_begin_again_where_spheres_are_still_to_come(tmp_path):
+    """Forty single ones, each with a velocity of its own: more than LIGGGHTS has groups."""
+    stream = BED | {"count": 10, "rate": "1 kHz", "velocity": ["0 m/s", "0 m/s", "-1 m/s"]}
+    ball = {"material": "steel", "radius": "0.4 mm", "velocity": ["0 m/s", "0 m/s", "-0.5 m/s"], "phase": "rain"}
+    place = [(x, y) for x in range(-7, 9, 2) for y in range(-4, 6, 2)]
+    balls = [ball | {"name": f"b{n}", "place": [f"{x} mm", f"{y} mm", "39 mm"]} for n, (x, y) in enumerate(place)]
+    phases = [{"name": "pour", "duration": "60 ms"}, {"name": "rain", "duration": "10 ms"}]
+    data = parts(fill=[stream], body=balls, phase=phases, periodic=True)
+    data |= {"output": {"rows": 28, "particles": 28, "restarts": 28}, "numerics": {"time_step": "1e-5 s"}}
+    p = write_deck(parse(data), tmp_path)
+    launcher.run("in.scene", tmp_path)
+    whole = tables.particles(p, tmp_path)
+    counts = whole.groupby("step")["id"].count()
+    begin = next(s for s in restarts(tmp_path) if counts.get(s) == 10)
+    (tmp_path / "again").mkdir()
+    again = continued((p, tmp_path, whole), begin, tmp_path / "again")
+    assert begin < p.phases[0].end and counts.iloc[-1] == 50
     assert again.equals(whole[whole["step"] > begin].reset_index(drop=True))

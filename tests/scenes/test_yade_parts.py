@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 from parts_cases import BED, FLOOR, parts
 from scene_runs import run, write_case
-from test_parts_motions import BEATER, BOX, FALL, PLATE, moved
+from test_parts_motions import BEATER, BOX, FALL, PLATE, assert_the_lid_shakes_on, moved
 
 from epdem.case.scene import parse
 from epdem.engines import scene_engine
@@ -20,6 +20,8 @@ def test_energy_closes_with_the_work_of_walls_that_move_in_yade(kind, tmp_path):
     outcome = run(write_case(moved(kind), tmp_path), engine="yade", out=tmp_path / "out")
     ledger = outcome.results.ledger
     assert outcome.passed, outcome.results.checks
+    if kind == "vibrate":
+        assert_the_lid_shakes_on(outcome.results)
     assert abs(ledger["work"]).max() > 0.1 * ledger["kinetic"].max() > 0  # so that it counts
     assert {"floor", "box", "beater", "lid"} >= {*outcome.results.contacts["wall"]} - {""}
     assert any("once for each triangle" in text for text in outcome.warnings)

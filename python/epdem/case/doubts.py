@@ -11,6 +11,7 @@ MODULI = (1e5, 1.3e12)  # [Pa] from rubber foam to diamond
 DENSITIES = (100.0, 25_000.0)  # [kg/m^3] from foam to osmium
 LARGEST_RADIUS = 1.0  # [m]
 LARGEST_STRAIN = 0.1  # Y/E, above that of any bulk solid
+LARGEST_FRICTION = 5.0  # of clean metals in vacuum; above it stands a percentage
 
 
 def _of_materials(materials: Mapping[str, Material]) -> Iterator[str]:
@@ -34,8 +35,19 @@ def _radii(case: Case | SceneCase) -> Iterator[tuple[str, float]]:
         yield f"scene.particles.{n}.radius", part.radii()[1]
 
 
+def _frictions(case: Case | SceneCase) -> Iterator[tuple[str, float | None]]:
+    if case.contact is None:
+        return
+    yield "contact.friction", case.contact.friction
+    if isinstance(case, SceneCase):
+        yield "contact.wall_friction", case.contact.wall_friction
+        yield from ((f"contact.pairs.{n}.friction", pair.friction) for n, pair in enumerate(case.contact.pairs))
+
+
 def doubts(case: Case | SceneCase) -> list[str]:
     """A sentence for each value that is probably in another unit than its author meant."""
     found = list(_of_materials(case.materials))
     found += [f"{place} = {r:g} m" for place, r in _radii(case) if r > LARGEST_RADIUS]
-    return [f"{text}; is the unit right?" for text in found]
+    units = [f"{text}; is the unit right?" for text in found]
+    high = [(place, mu) for place, mu in _frictions(case) if mu is not None and mu > LARGEST_FRICTION]
+    return [*units, *(f"{place} = {mu:g}, of solids up to {LARGEST_FRICTION:g}; percent?" for place, mu in high)]

@@ -71,13 +71,16 @@ def deck_scene(
     from ..case.scene import load
     from ..case.toml import named
     from ..engines import scene_engine
+    from ..scenes.checks import doubtful_phases
     from ..scenes.engine import files as files_for
     from ..scenes.plan import plan
 
     with named(case):
         read = load(case)
         warn(doubts(read))
-        files = files_for(scene_engine(engine), plan(read))
+        p = plan(read)
+        warn(doubtful_phases(p))
+        files = files_for(scene_engine(engine), p)
     names = [str(f) for f in write_own(out, files, force=force)]
     print(json.dumps({"files": names}) if as_json else "\n".join(names))
 

@@ -8,6 +8,8 @@ from pathlib import Path
 import pandas as pd
 
 _LOOP = re.compile(r"Loop time of (\S+) on \d+ procs for (\d+) steps")
+_INSERTED = re.compile(r"INFO: Particle insertion (\w+): inserted .* at step (\d+)$")
+_TOTAL = re.compile(r" - a total of (\d+) particle templates ")
 
 
 def rows(log: Path) -> pd.DataFrame:
@@ -30,6 +32,24 @@ def rows(log: Path) -> pd.DataFrame:
             except ValueError:
                 names = []  # the rows of this run are over
     return pd.DataFrame(table)
+
+
+def inserted(log: Path, step: int) -> dict[str, int]:
+    """The spheres that each insertion has put in up to a step; what a run did beyond the step from which another one
+    went on is not counted."""
+    found: list[tuple[int, str, int]] = []
+    name, at, begins = "", 0, False
+    for line in log.read_text(errors="replace").splitlines() if log.exists() else []:
+        fields = line.split()
+        if match := _INSERTED.match(line):
+            name, at = match[1], int(match[2])
+        elif match := _TOTAL.match(line):
+            found.append((at, name, int(match[1])))
+        elif fields[:1] == ["Step"]:
+            begins = True
+        elif begins and fields and fields[0].isdigit():
+            found, begins = [x for x in found if x[0] <= int(fields[0])], False
+    return {name: total for at, name, total in found if at <= step}
 
 
 def loops(log: Path) -> list[tuple[float, int]]:

@@ -2,6 +2,7 @@
 """Restart files of a scene: the one from which an interrupted run continues, and its deck."""
 
 import re
+from collections.abc import Iterator
 from dataclasses import replace
 from itertools import pairwise
 from pathlib import Path
@@ -11,9 +12,11 @@ from ..base.folders import held
 from ..base.processes import ROW
 from ..errors import CaseError
 from ..scenes.plan import ScenePlan
+from . import log
 from . import scene_tables as tables
+from .insertions import Insertion
 from .launcher import OUT
-from .scene_deck import deck
+from .scene_deck import Deck, deck
 
 
 def _restarts(folder: Path) -> list[tuple[int, Path]]:
@@ -24,10 +27,10 @@ def _restarts(folder: Path) -> list[tuple[int, Path]]:
 
 def whole_restarts(folder: Path) -> list[int]:
     """Steps of the whole restart files: LIGGGHTS went on after them, so their rows stand twice in succession."""
-    log = folder / OUT
-    if not log.exists():
+    out = folder / OUT
+    if not out.exists():
         return []
-    rows = [int(m.group(1)) for line in log.read_bytes().splitlines() if (m := ROW.match(line))]
+    rows = [int(m.group(1)) for line in out.read_bytes().splitlines() if (m := ROW.match(line))]
     gone_on = {a for a, b in pairwise(rows) if a == b}
     return [step for step, _ in _restarts(folder) if step in gone_on]
 
@@ -53,6 +56,17 @@ def choose(p: ScenePlan, folder: Path) -> tuple[int, list[int]]:
     return step, [s for s in lost if s < step]
 
 
+def _going_on(d: Deck, phase: int, inserted: dict[str, int]) -> Iterator[Insertion]:
+    """The insertions of a run that goes on in a phase, without streams that have ended: LIGGGHTS refuses these. A
+    stream of an earlier phase goes on in this one."""
+    names = [part.name for part in d.phases]
+    for f in d.insertions:
+        if f.once:
+            yield f
+        elif inserted.get(f.id, 0) < f.count:
+            yield replace(f, phase=names[min(max(names.index(f.phase), phase), len(names) - 1)])
+
+
 def write_resume(p: ScenePlan, folder: Path, step: int) -> Path:
     """in.resume, which continues from the restart file of `step`."""
     d = deck(p)
@@ -65,9 +79,7 @@ def write_resume(p: ScenePlan, folder: Path, step: int) -> Path:
         comes = step == begin and bool(part.late or [f for f in d.insertions if f.once and f.phase == part.name])
         rest = part.after(step - begin, d.every)
         d = replace(d, phases=(*d.phases[:phase], rest, *d.phases[phase + 1 :]))
-    rows = tables.rows(p, folder / OUT).set_index("step")
-    if rows["particles"].get(step) == p.layout.count:  # poured out: LIGGGHTS refuses an insertion that lies behind it
-        d = replace(d, insertions=tuple(f for f in d.insertions if f.once))
+    d = replace(d, insertions=tuple(_going_on(d, phase, log.inserted(folder / OUT, step))))
     path = folder / "in.resume"
     continued = replace(d, from_restart=f"restart.{step}.bin", resumed_phase=phase, comes=comes)
     path.write_text(decks.render("liggghts/scene_resume.in.j2", deck=continued), encoding="utf-8")

@@ -198,7 +198,7 @@ def deck(p: ScenePlan) -> Deck:
         insertions=insertions(p),
         time_step=p.time_step,
         phases=parts(p),
-        open=p.ends_early or any("${begin}" in part.power for part in parts(p)),
+        open=p.ends_early or any(part.clocks for part in parts(p)),
         every=p.every,
         sampling=p.sampling,
         samples=p.every // p.sampling,

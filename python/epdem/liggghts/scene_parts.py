@@ -73,7 +73,8 @@ class Surface:
 @dataclass(frozen=True)
 class Part:
     """A phase and what begins with it; `ends`: commands at its end. held: all its gates and motions, for a run that
-    continues in it. upto: whether the step at its end is known before the run."""
+    continues in it. upto: whether the step at its end is known before the run. clocks: the walls whose power needs the
+    step at which their vibration begins, here."""
 
     name: str
     end: int
@@ -88,6 +89,7 @@ class Part:
     late: tuple[Late, ...]
     record: bool
     power: str
+    clocks: tuple[str, ...]
     wait: Wait | None
 
     def after(self, steps: int, every: int) -> "Part":
@@ -219,6 +221,7 @@ def parts(p: ScenePlan) -> tuple[Part, ...]:
     for phase, after in zip_longest(p.phases, p.phases[1:]):
         motions = {name: _motion(p, name, move) for name, move in phase.moves.items()}
         new = [name for name, move in phase.moves.items() if before is None or before.moves.get(name) != move]
+        _refuse_other_step(p, before, phase)
         ends = [f"unfix {wall_id(p, name)}" for name in phase.gates if after and name not in after.gates]
         upto = upto and phase.until is None
         part = Part(
@@ -235,11 +238,24 @@ def parts(p: ScenePlan) -> tuple[Part, ...]:
             record=phase.record,
             late=tuple(_late(p, b) for b in p.layout.bodies if b.phase == phase.name),
             power=power(p, phase) if p.powered else "",
+            clocks=tuple(name for name in new if p.powered and isinstance(phase.moves[name], Vibration)),
             wait=_wait(p, phase, phase.end - begin),
         )
         found.append(part)
         begin, before = phase.end, phase
     return tuple(found)
+
+
+def _refuse_other_step(p: ScenePlan, before: Phase | None, phase: Phase) -> None:
+    """Raise CaseError for a vibration that goes on with another time step: its power is counted in steps."""
+    if before is None or not p.powered or before.time_step == phase.time_step:
+        return
+    for name, move in phase.moves.items():
+        if isinstance(move, Vibration) and before.moves.get(name) == move:
+            raise CaseError(
+                f"scene.phase.{phase.name}.time_step: wall {name} vibrates on from the phase before, and its work is "
+                "known with one step of time only; give both phases the same one, or remove output.energy"
+            )
 
 
 def _goes_on(name: str, phase: Phase, after: Phase) -> bool:

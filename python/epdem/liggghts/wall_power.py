@@ -43,5 +43,5 @@ def power(p: ScenePlan, phase: Phase) -> str:
         if isinstance(move, Vibration):
             x, y, z = (move.omega * a for a in move.amplitude)
             omega = decks.number(move.omega * (phase.time_step or p.time_step))
-            terms.append(f"({'+'.join(_times(id, 1, (x, y, z)))})*cos((step-${{begin}})*{omega})")
+            terms.append(f"({'+'.join(_times(id, 1, (x, y, z)))})*cos((step-${{begin_{name}}})*{omega})")
     return f"-({'+'.join(terms)})" if terms else "0.0"

@@ -222,6 +222,22 @@ def _stage(s: Parts, p: Phase) -> Stage:
     return Stage(p.name, seconds, moves, gates, until, p.time_step, p.record)
 
 
+def _refuse_leaving(stages: tuple[Stage, ...], walls: dict[str, Mesh], room: Room) -> None:
+    """Raise CaseError for a wall whose linear motions take it out of the room, up to a phase that may end early."""
+    place = {name: mesh.triangles.mean(axis=1) for name, mesh in walls.items()}
+    for stage in stages:
+        if stage.until:
+            return
+        for name, move in stage.moves.items():
+            if name in place and isinstance(move, Linear):
+                place[name] = place[name] + stage.seconds * np.array(move.velocity)
+                if (place[name] < room[0::2]).any() or (place[name] > room[1::2]).any():
+                    where = f"scene.phase.{stage.name}.move"
+                    raise CaseError(f"{where}: wall {name} leaves scene.room; shorten its way, or enlarge the room")
+            else:
+                place.pop(name, None)
+
+
 def from_parts(case: SceneCase, s: Parts) -> Layout:
     """The layout of a scene of parts. Raises CaseError for what does not fit together."""
     _refuse_outside(s)
@@ -229,6 +245,7 @@ def from_parts(case: SceneCase, s: Parts) -> Layout:
     walls = _meshes(s, largest)
     planes, gates = _planes(s)
     stages = tuple(_stage(s, p) for p in s.phase)
+    _refuse_leaving(stages, walls, s.room.limits)
     loads = {w.name for w in s.wall} - {g.name for g in gates} if case.output.loads else set()
     loads |= {stage.until.wall for stage in stages if stage.until and stage.until.wall}
     loads |= {m.wall for m in s.measure if isinstance(m, Load)} & {w.name for w in s.wall}

@@ -8,6 +8,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 import pandas as pd
 
+from ..case.parts import Parts
 from ..case.scene import Compaction, Drum, Output, SceneCase
 from . import kinds
 from .filling import refuse_too_many
@@ -200,6 +201,12 @@ def _divisor(n: int, parts: int) -> int:
     return next(d for d in range(max(1, n // parts), 0, -1) if n % d == 0)
 
 
+def _may_shrink(case: SceneCase, layout: Layout) -> bool:
+    """Whether the step becomes a little smaller, so that the last phase is not longer than a motion in it should be."""
+    given = case.numerics.time_step or any(stage.time_step for stage in layout.stages)
+    return isinstance(case.scene, Parts) and bool(layout.stages[-1].moves) and not given
+
+
 def plan(case: SceneCase) -> ScenePlan:
     """The plan of a scene. Raises CaseError for what does not fit."""
     refuse_faster_than_sound(case)
@@ -209,6 +216,8 @@ def plan(case: SceneCase) -> ScenePlan:
     if any(stage.time_step for stage in layout.stages):
         steps = sum(stage.seconds / (stage.time_step or dt) for stage in layout.stages)
     rows, every = _intervals(out, steps)
+    if _may_shrink(case, layout):
+        dt = layout.duration / (rows * every)
     refuse_steps(case, rows, layout.duration, layout.duration / steps)
 
     def interval(count: int) -> int:

@@ -136,7 +136,7 @@ def run_case(
         p = plan(case)
         measures.refuse_measures(p)
         pictures.refuse_color(p)
-        files, notes = files_for(engine, p), [*engine.notes(p), *_warnings(p.case)]
+        files, notes = files_for(engine, p), [*engine.notes(p), *checks.doubtful_phases(p), *_warnings(p.case)]
     check_run(engine, ranks=ranks, resume=resume)
     beside = Path(str(place)).parent
     contents = {name: (beside / name).read_bytes() for name in sorted(names_in(tomllib.loads(text)))}
