@@ -3,7 +3,6 @@
 
 import contextlib
 import json
-import math
 from collections.abc import Iterator
 from typing import Any
 
@@ -35,11 +34,6 @@ def progress() -> Iterator[Report]:
     with bar(MofNCompleteColumn(), TimeRemainingColumn()) as shown:
         task = shown.add_task("points", total=None)
         yield lambda done, total: shown.update(task, completed=done, total=total)
-
-
-def plain(state: dict[str, Any]) -> dict[str, Any]:
-    """The status for JSON: null for what is not known."""
-    return {k: None if isinstance(v, float) and not math.isfinite(v) else v for k, v in state.items()}
 
 
 def outcome(result: SweepOutcome, as_json: bool, console: Console) -> None:
