@@ -35,7 +35,13 @@ class Plan:
 
     @property
     def n(self) -> int:
+        """How many impacts."""
         return self.speed.size
+
+    @property
+    def summary(self) -> str:
+        """One line for the head of a deck."""
+        return f"{self.experiment.speed.size} speeds x {self.phases} phases = {self.n} independent impacts"
 
 
 def plan(experiment: Experiment, prediction: Prediction, *, time_step: float | None = None) -> Plan:

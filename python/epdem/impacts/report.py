@@ -50,7 +50,7 @@ ROW_KEYS = (
 )
 
 
-def _plain(value: Any) -> Any:
+def plain(value: Any) -> Any:
     """A value for JSON: numpy scalars as Python's, NaN and infinity as null."""
     value = value.item() if hasattr(value, "item") else value
     return None if isinstance(value, float) and not math.isfinite(value) else value
@@ -58,7 +58,7 @@ def _plain(value: Any) -> Any:
 
 def records(rows: pd.DataFrame, keys: Sequence[str] | None = None) -> list[dict[str, object]]:
     """The rows of a table for JSON."""
-    return [{k: _plain(row[k]) for k in (keys or rows.columns)} for row in rows.to_dict("records")]
+    return [{k: plain(row[k]) for k in (keys or rows.columns)} for row in rows.to_dict("records")]
 
 
 def _keys(outcome: Outcome) -> tuple[str, ...]:

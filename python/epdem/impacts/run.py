@@ -236,7 +236,7 @@ def _run(text: str, work: _Work, folder: Path, ranks: int, fresh: bool, progress
     for p in work.plans:
         law = p.experiment.law.name
         prediction = work.predictions[law]
-        outcome.warnings += prediction.warnings()
+        outcome.warnings += prediction.caveats
         outcome.warnings += [_spring(p, tool) for tool in work.tools if _spring(p, tool)]
         results.predictions[law] = prediction.table()
         for tool in work.tools:

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..case.impact import MOST_STEPS
 from ..errors import CaseError
 from ..theory import timestep as times
 from .experiment import Experiment
@@ -16,7 +17,6 @@ from .prediction import Prediction
 PHASES = 32  # four times the 8 of a case, so that the search does not miss the worst phase
 LADDER = 2**0.25  # ratio of neighbouring steps tried; an error of second order changes by 1.41
 SAFETY = 0.8  # the share of the target that the search accepts: phases between the tried ones are a little worse
-MOST_STEPS = 100_000  # in contact; the limit of case files too
 
 
 @dataclass(frozen=True)

@@ -13,7 +13,7 @@ from ..case.fields import NODES
 from ..errors import CaseError, EngineError
 from ..impacts.engine import Abilities, Trajectory, check_abilities
 from ..impacts.pairs import Pairs
-from ..impacts.places import room, side_by_side
+from ..impacts.places import approach, room, side_by_side
 from ..impacts.plan import Plan
 from ..lammps import data_file
 from ..laws.library import laws
@@ -83,7 +83,7 @@ class Liggghts:
         return Deck(
             title=x.title,
             source=x.source,
-            summary=f"{x.speed.size} speeds x {plan.phases} phases = {plan.n} independent impacts, law {x.law.name}",
+            summary=f"{plan.summary}, law {x.law.name}",
             has_history=laws()[x.law.name].memory > 0 or x.oblique is not None,
             hard=max(moduli) > HARD,
             soft=min(moduli) < SOFT,
@@ -161,18 +161,13 @@ def _end(plan: Plan, path: Path) -> tuple[np.ndarray, np.ndarray] | tuple[None, 
 
 def trajectory(plan: Plan, path: Path, seconds: dict[str, float]) -> Trajectory:
     """Overlap, force and approach velocity from z, vz, fz of every body. Raises EngineError if samples are missing."""
-    x, n = plan.experiment, plan.n
-    wall = math.isinf(x.target.radius)
+    n = plan.n
     try:
         z, vz, fz = np.moveaxis(dump.series(path), 2, 0)
-        bodies = n if wall else 2 * n
+        bodies = n if math.isinf(plan.experiment.target.radius) else 2 * n
         if z.shape != (plan.steps + 1, bodies):
             raise ValueError(f"{z.shape[0]} frames of {z.shape[1]} bodies, expected {plan.steps + 1} of {bodies}")
     except ValueError as error:
         raise EngineError(f"{path}: the run left an incomplete dump ({error}); see log.liggghts beside it") from None
-    if wall:
-        overlap, velocity = x.body.radius - z, -vz
-    else:
-        overlap = x.body.radius + x.target.radius - (z[:, :n] - z[:, n:])
-        velocity = vz[:, n:] - vz[:, :n]
-    return Trajectory(plan.time_step, overlap.T, fz[:, :n].T, velocity.T, seconds, *_end(plan, path.with_name(END)))
+    overlap, velocity = approach(plan, z, vz)
+    return Trajectory(plan.time_step, overlap, fz[:, :n].T, velocity, seconds, *_end(plan, path.with_name(END)))

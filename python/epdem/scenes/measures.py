@@ -6,18 +6,17 @@ import math
 import numpy as np
 import pandas as pd
 
-from ..case.measures import Amount, CenterOfMass, Flow, Height, Histogram, Load, Porosity, Repose
+from ..case.measures import Amount, CenterOfMass, Flow, Height, Histogram, Load, Measure, Porosity, Repose
 from ..case.walls import Room, Upright
 from ..errors import CaseError
 from ..theory.backbones import JKR
+from .columns import last_frame
 from .meshes import FloatArray
 from .pairs import pair_law
 from .plan import ScenePlan
 
 POINTS = 2**14  # in a region whose porosity is measured: an error of some 0.3 % of the volume
 RINGS = 12  # of the surface of a bed
-
-Measure = Amount | Flow | Height | Repose | CenterOfMass | Load | Porosity | Histogram
 
 
 def refuse_measures(p: ScenePlan) -> None:
@@ -179,8 +178,7 @@ def histograms(p: ScenePlan, tables: dict[str, pd.DataFrame]) -> pd.DataFrame:
     for m in p.case.scene.measure:
         if not isinstance(m, Histogram):
             continue
-        spheres = tables["particles"]
-        last = spheres[spheres["step"] == spheres["step"].max()]
+        last = last_frame(tables["particles"])
         values = last["plastic_work"].to_numpy() if m.kind == "plastic_work" else _impact_speeds(p, tables)
         number, edges = np.histogram(values, m.bins)
         found.append(pd.DataFrame({"measure": m.name, "low": edges[:-1], "high": edges[1:], "number": number}))
