@@ -15,6 +15,7 @@ import pandas as pd
 
 from .. import theory
 from ..base.folders import write_own
+from ..base.tables import unit_of
 from ..engines import DEFAULT_ENGINE, scene_engine
 from ..engines import engine as engine_named
 from ..errors import CaseError
@@ -40,7 +41,7 @@ log = logging.getLogger("epdem")
 
 def _units(table: pd.DataFrame, units: Mapping[str, str]) -> pd.DataFrame:
     marked = table.copy()
-    names = {name: units.get(name.removesuffix("_theory")) for name in map(str, marked.columns)}
+    names = {name: unit_of(name, units) for name in map(str, marked.columns)}
     marked.attrs["units"] = {name: unit for name, unit in names.items() if unit}
     return marked
 

@@ -66,6 +66,8 @@ Name = Annotated[str, Field(pattern=r"^[A-Za-z0-9_][A-Za-z0-9_-]{0,63}$")]
 
 
 class Frozen(BaseModel):
+    """Keys that a case may have, and no others; values are never changed."""
+
     model_config = ConfigDict(frozen=True, extra="forbid", strict=True)
 
 

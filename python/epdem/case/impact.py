@@ -216,6 +216,7 @@ class Case(Frozen):
 
     @property
     def name(self) -> str:
+        """The name of the case."""
         return self.case.name
 
 

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """The kinds of scenes and their keys. SI."""
 
-from typing import Annotated, Literal, Self
+from typing import Annotated, Literal, Self, get_args
 
 from pydantic import Field, model_validator
 
@@ -141,3 +141,4 @@ class Peening(Common):
 
 
 Kinds = Settle | Hopper | Drum | Compaction | Peening | Parts
+KINDS: tuple[str, ...] = tuple(get_args(kind.model_fields["kind"].annotation)[0] for kind in get_args(Kinds))

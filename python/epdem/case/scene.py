@@ -147,6 +147,7 @@ class SceneCase(Frozen):
 
     @property
     def name(self) -> str:
+        """The name of the case."""
         return self.case.name
 
 

@@ -188,12 +188,12 @@ def show(outcome: Outcome, console: Console, *, full: bool = False) -> None:
     shown, rows = chosen(outcome, full), outcome.results.comparison
     show_table(console, run_table(outcome, full=full), SPARE)
     if len(shown) < len(rows):
-        console.print(f"{len(shown)} of {len(rows)} rows; --full prints all", markup=False, highlight=False)
+        console.print(f"{len(shown)} of {len(rows)} rows; --full prints all")
     for line in [*worst(outcome), *against_measured(outcome)]:
-        console.print(line, markup=False, highlight=False, soft_wrap=True)
+        console.print(line, soft_wrap=True)
     for warning in outcome.warnings:
-        console.print(f"warning: {warning}", style="yellow", markup=False, highlight=False)
-    console.print(summary(outcome), markup=False, highlight=False, soft_wrap=True)
+        console.print(f"warning: {warning}", style="yellow")
+    console.print(summary(outcome), soft_wrap=True)
 
 
 def mark(outcome: Outcome, *facts: object) -> str:

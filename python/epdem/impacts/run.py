@@ -45,6 +45,7 @@ class Outcome:
 
     @property
     def passed(self) -> bool:
+        """Whether all rows are within the tolerances of the case."""
         return bool(self.results.comparison["passed"].all())
 
 

@@ -45,6 +45,11 @@ class Found:
         return {name: self.time_step / t for name, t in vars(self.reference).items()}
 
 
+def starting_phases(count: int) -> np.ndarray:
+    """The shares of a step at which contacts begin, evenly over the step, shape (count,)."""
+    return (np.arange(count) + 0.5) / count
+
+
 def stability_limit(x: Experiment, overlap_max: float) -> float:
     """Largest stable step of velocity Verlet at the stiffest point of a contact [s], by the law's own radius.
 
@@ -81,8 +86,7 @@ def restitution_errors(x: Experiment, prediction: Prediction, time_step: float, 
 
     Where theory lets the bodies stick the error is e_n itself.
     """
-    phase = (np.arange(phases) + 0.5) / phases
-    gap = phase[None, :] * x.speed[:, None] * time_step
+    gap = starting_phases(phases)[None, :] * x.speed[:, None] * time_step
     speed = np.broadcast_to(x.speed[:, None], gap.shape)
     steps = int(np.ceil(1.5 * prediction.duration.max() / time_step)) + 20
     out = x.native_law().impacts(

@@ -10,6 +10,7 @@ from ..base import paths
 from ..base import rendering as decks
 from ..base.files import write_texts
 from ..case.fields import NODES
+from ..case.kinds import KINDS
 from ..errors import CaseError, EngineError
 from ..impacts.engine import Abilities, Trajectory, check_abilities
 from ..impacts.pairs import Pairs
@@ -25,8 +26,7 @@ from .log import loop_seconds
 from .pairs import velocities
 from .properties import HARD, SOFT, Property, atom_types, finite, of_law, tangential
 
-END = "end.bin"
-SCENES = ("settle", "hopper", "drum", "compaction", "peening", "parts")
+PATH, END = "path.bin", "end.bin"
 OWN_MODELS = ("liggghts-thornton_ning", "liggghts-hertz")
 
 
@@ -40,7 +40,7 @@ class Liggghts:
         dashpot=True,
         friction=tuple(NODES),
         ranks=launcher.most_ranks(),
-        scenes=SCENES,
+        scenes=KINDS,
         restarts=True,
         edits=EDITS,
         variants=("swap", "sort", "migration", "restart"),
@@ -97,7 +97,7 @@ class Liggghts:
             oblique=x.oblique is not None,
             wall_type=len(types) if math.isinf(x.target.radius) else None,
             time_step=plan.time_step,
-            path="path.bin",
+            path=PATH,
             steps=plan.steps,
         )
 
@@ -110,7 +110,7 @@ class Liggghts:
         return write_texts(folder, texts)
 
     def run(self, plan: Plan, folder: Path, *, ranks: int = 1) -> Trajectory:
-        path = folder / "path.bin"
+        path = folder / PATH
         path.unlink(missing_ok=True)
         (folder / END).unlink(missing_ok=True)
         allowed = 120 + 2e-6 * plan.n * plan.steps
@@ -148,6 +148,10 @@ def data_text(plan: Plan, types: int) -> str:
     return data_file.text(plan.experiment.name, types, room(plan), groups)
 
 
+def _incomplete(path: Path, error: Exception) -> EngineError:
+    return EngineError(f"{path}: the run left an incomplete dump ({error}); see {launcher.LOG} beside it")
+
+
 def _end(plan: Plan, path: Path) -> tuple[np.ndarray, np.ndarray] | tuple[None, None]:
     """v_x [m/s] and omega_y [rad/s] of the bodies at the end of oblique impacts; None for normal ones."""
     if plan.experiment.oblique is None:
@@ -155,7 +159,7 @@ def _end(plan: Plan, path: Path) -> tuple[np.ndarray, np.ndarray] | tuple[None, 
     try:
         vx, spin = dump.series(path)[-1].T
     except (ValueError, IndexError) as error:
-        raise EngineError(f"{path}: the run left an incomplete dump ({error}); see log.liggghts beside it") from None
+        raise _incomplete(path, error) from None
     return vx, spin
 
 
@@ -168,6 +172,6 @@ def trajectory(plan: Plan, path: Path, seconds: dict[str, float]) -> Trajectory:
         if z.shape != (plan.steps + 1, bodies):
             raise ValueError(f"{z.shape[0]} frames of {z.shape[1]} bodies, expected {plan.steps + 1} of {bodies}")
     except ValueError as error:
-        raise EngineError(f"{path}: the run left an incomplete dump ({error}); see log.liggghts beside it") from None
+        raise _incomplete(path, error) from None
     overlap, velocity = approach(plan, z, vz)
     return Trajectory(plan.time_step, overlap, fz[:, :n].T, velocity, seconds, *_end(plan, path.with_name(END)))

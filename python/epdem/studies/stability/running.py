@@ -13,7 +13,7 @@ from ...errors import EngineError, EpdemError
 from ...impacts.engine import EPS, not_representable
 from ...impacts.experiment import Experiment
 from ...impacts.prediction import Prediction, predict
-from ...impacts.timestep import stability_limit
+from ...impacts.timestep import stability_limit, starting_phases
 from ...theory import adhesion
 from ...theory.backbones import JKR
 from ...theory.validity import SMALL_DEFORMATION
@@ -123,7 +123,7 @@ def phased(s: Setting, dt: float, phases: int) -> list[tuple[float, np.ndarray]]
     """
     if s.start is not None:
         return [(dt * (1 - 0.2 * k / phases), np.array([-s.start])) for k in range(0, phases, 2)]
-    return [(dt, (np.arange(phases) + 0.5) / phases * s.x.speed[0] * dt)]
+    return [(dt, starting_phases(phases) * s.x.speed[0] * dt)]
 
 
 @dataclass(frozen=True)
