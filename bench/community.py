@@ -2,6 +2,7 @@
 """The benchmarks of Dosta et al. 2024 (Comput. Phys. Commun. 296, 109066): `make bench-community`.
 
     .venv/bin/python bench/community.py [CASE ...] [--models hertz,yade,...] [--seeds 1,2,3] [--until 0.1] [--full]
+        [--rain-friction 0.3]
 
 Each case of cases/benchmarks is run in two parts: the rain, whose last frame is stored as spheres.csv in
 runs/community/CASE/seedN, and the last phase, which every model and engine begins with these spheres. A run that was
@@ -21,7 +22,7 @@ from typing import Any
 
 import numpy as np
 import pandas as pd
-from community_models import MODELS, SHORT, SPEED, START, YADE, curve, engine, loop
+from community_models import MODELS, RAIN_FRICTION, SHORT, SPEED, START, YADE, curve, engine, loop
 
 from epdem.case.scene import SceneCase, parse
 from epdem.errors import CaseError
@@ -46,9 +47,11 @@ def read(name: str) -> dict[str, Any]:
     return tomllib.loads((CASES / f"{name}.toml").read_text(encoding="utf-8"))
 
 
-def rain(name: str, seed: int, *, soft: float) -> SceneCase:
-    """All phases of a case but the last, with moduli that are `soft` times smaller."""
+def rain(name: str, seed: int, *, soft: float, friction: float) -> SceneCase:
+    """All phases of a case but the last, with one friction for all pairs and moduli that are `soft` times smaller."""
     data = read(name)
+    for contact in (data["contact"], *data["contact"].get("pairs", [])):
+        contact["friction"] = friction
     data["numerics"]["seed"] = seed
     data["numerics"].pop("skin", None)  # it is for a sphere that comes later
     scene = data["scene"]
@@ -138,28 +141,19 @@ def run(case: SceneCase, what: LiggghtsScenes, folder: Path, until: float | None
         return None
 
 
-def bed(name: str, seed: int, *, soft: float, height: float) -> Path:
-    """spheres.csv: the last frame of the rain, which is run if it is not there yet.
-
-    height: by which the heights of the spheres above the lowest one are multiplied.
-    """
-    folder = RUNS / name / f"{'seed' if soft == 1.0 else 'soft'}{seed}"
-    path = folder / "spheres.csv"
+def bed(name: str, seed: int, *, soft: float, friction: float) -> Path:
+    """spheres.csv: the last frame of the rain, which is run if it is not there yet."""
+    other = "" if friction == RAIN_FRICTION else f"_friction{friction:g}"
+    path = RUNS / name / f"{'seed' if soft == 1.0 else 'soft'}{seed}{other}" / "spheres.csv"
     if not path.exists():
-        done = run(rain(name, seed, soft=soft), LiggghtsScenes(), folder / "bed")
+        done = run(rain(name, seed, soft=soft, friction=friction), LiggghtsScenes(), path.parent / "bed")
         assert done is not None
         frames = done.results.tables["particles"]
         last = frames[frames["step"] == frames["step"].max()].sort_values("id")
         materials = [done.plan.model.types[int(t) - 1].material for t in last["type"]]
         table = last[["x", "y", "z", "radius", "vx", "vy", "vz"]].assign(material=materials)
         table.to_csv(path, index=False, float_format="%.17g")
-    if height == 1.0:
-        return path
-    table, other = pd.read_csv(path), folder.with_name(f"{folder.name}_height{height:g}") / path.name
-    other.parent.mkdir(exist_ok=True)
-    low = table["z"].min()
-    table.assign(z=low + height * (table["z"] - low)).to_csv(other, index=False, float_format="%.17g")
-    return other
+    return path
 
 
 def in_yade(spheres: Path, begin: float, until: float) -> None:
@@ -175,10 +169,10 @@ def in_yade(spheres: Path, begin: float, until: float) -> None:
     (folder / "done").touch()
 
 
-def one(name: str, seed: int, model: str, *, full: bool, height: float, until: float | None) -> None:
+def one(name: str, seed: int, model: str, *, full: bool, friction: float, until: float | None) -> None:
     """One case, seed and model; what it leaves is read by the report."""
     short = name in LONG and not full
-    spheres = bed(name, seed, soft=LONG[name] if short else 1.0, height=height)
+    spheres = bed(name, seed, soft=LONG[name] if short else 1.0, friction=friction)
     begin = fall(name, spheres)
     if model == YADE:
         in_yade(spheres, begin, min(until or YADE_END, YADE_END))
@@ -202,7 +196,7 @@ def main() -> int:
     )
     ask.add_argument("--seeds", help="default: 1,2,3 for impact_25k, else 1")
     ask.add_argument("--until", type=float, help="[s] of the last phase; default: all of it")
-    ask.add_argument("--height", type=float, default=1.0, help="of the bed, over that of the rain: what looseness does")
+    ask.add_argument("--rain-friction", type=float, default=RAIN_FRICTION, help="of all pairs: loose or dense beds")
     ask.add_argument("--full", action="store_true", help="all steps of the long cases")
     options = ask.parse_args()
     for name in options.cases:
@@ -210,7 +204,7 @@ def main() -> int:
         models = (options.models or (",".join([*MODELS, YADE]) if many else "ep/hertz")).split(",")
         for model in models:
             for seed in map(int, (options.seeds or ("1,2,3" if many and model != YADE else "1")).split(",")):
-                one(name, seed, model, full=options.full, height=options.height, until=options.until)
+                one(name, seed, model, full=options.full, friction=options.rain_friction, until=options.until)
     return 0
 
 
