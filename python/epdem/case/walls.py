@@ -18,6 +18,9 @@ Span = Annotated[list[Place], Field(min_length=2, max_length=2)]
 Side = Literal["-x", "+x", "-y", "+y", "-z", "+z"]
 
 
+Limits = tuple[float, float, float, float, float, float]  # xlo xhi ylo yhi zlo zhi [m]
+
+
 def ordered(name: str, span: list[float]) -> None:
     """Raise ValueError unless a span begins below its end."""
     if not span[0] < span[1]:
@@ -38,7 +41,7 @@ class Room(Frozen):
         return self
 
     @property
-    def limits(self) -> tuple[float, float, float, float, float, float]:
+    def limits(self) -> Limits:
         """xlo xhi ylo yhi zlo zhi [m]."""
         return (self.x[0], self.x[1], self.y[0], self.y[1], self.z[0], self.z[1])
 
