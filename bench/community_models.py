@@ -14,7 +14,7 @@ MODELS = {"hertz": "hertz", "ep/hertz": "hertz", "ep/thornton": "thornton"}  # a
 YADE = "yade"  # its own model of Hertz and Mindlin
 SHORT = 10_000  # steps of a case that is for larger machines
 START, SPEED = 0.06, 5.0  # of the impactor: height [m] and speed [m/s] at the time 0
-RAIN_FRICTION = 0.1  # of all pairs while a bed falls: a medium dense one; with the cases' own friction it is looser
+RAIN_FRICTION = 0.05  # of all pairs while a bed falls: a medium dense one; with the cases' own friction it is looser
 CURVE, EVERY = "impactor.txt", 100  # steps between two lines
 
 

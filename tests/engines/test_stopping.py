@@ -34,6 +34,49 @@ def alive(process: int) -> bool:
         return False
 
 
+# Signals in a callback, where Python drops what their handler raises, and before a new process is known.
+IN_FORK = "os.register_at_fork(after_in_parent=signalled)\n"
+CALL = "processes.call(['sleep', '60'], Path.cwd(), log='out')"
+STOPPED_IN = {
+    "fork of a program": IN_FORK + CALL,
+    "fork of a pool": IN_FORK + "list(local.each(time.sleep, [60.0], 1))",
+    "start of a program": """class Late(subprocess.Popen):
+    def __init__(self, *words, **options):
+        super().__init__(*words, **options)
+        signalled()
+subprocess.Popen = Late
+"""
+    + CALL,
+    "destructor": """class Gone:
+    def __del__(self):
+        signalled()
+Gone()
+time.sleep(60.0)
+""",
+}
+SCRIPT = """import atexit, os, signal, subprocess, time
+from pathlib import Path
+from epdem.base import processes, stopping
+from epdem.studies.sweep import local
+def signalled():
+    os.kill(os.getpid(), signal.SIGTERM)
+def at_end():
+    children = Path(f"/proc/self/task/{os.getpid()}/children").read_text().split()
+    print("children:", [c for c in children if ") Z " not in Path(f"/proc/{c}/stat").read_text()])
+atexit.register(at_end)
+stopping.listen()
+"""
+
+
+@pytest.mark.parametrize("place", STOPPED_IN)
+def test_no_signal_is_lost_and_no_process_stays(place, tmp_path):
+    run = subprocess.run(
+        [sys.executable, "-c", SCRIPT + STOPPED_IN[place]], cwd=tmp_path, capture_output=True, text=True, timeout=50
+    )
+    assert run.stderr.splitlines()[-1].startswith("epdem.errors.Stopped") and "ignored" not in run.stderr
+    assert run.stdout == "children: []\n"
+
+
 @pytest.mark.liggghts
 @pytest.mark.parametrize("how", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP])
 def test_a_stopped_run_says_so_and_leaves_no_engine_behind(how, tmp_path, monkeypatch):

@@ -3,6 +3,7 @@
 
 import math
 import re
+import shutil
 import tomllib
 from pathlib import Path
 
@@ -11,12 +12,15 @@ import pytest
 from parts_cases import BED, CASES, FLOOR, own, parts, tetrahedron, write_stl
 from scipy import stats
 
+from epdem import Scene
+from epdem.case import files
 from epdem.case.scene import load, parse
 from epdem.case.toml import named
 from epdem.errors import CaseError
 from epdem.liggghts import scene_deck
 from epdem.scenes.plan import plan
-from epdem.studies.sweep import folder
+from epdem.studies.soften import soften
+from epdem.studies.sweep import run as study
 
 STL = {"name": "bowl", "kind": "stl", "file": "wall.stl", "material": "steel"}
 PLATE = {"name": "w", "kind": "plate", "axis": "z", "center": ["0 m"] * 3, "size": ["1 m"] * 2, "material": "steel"}
@@ -208,9 +212,31 @@ def deck_lines(data: dict) -> set[str]:
 
 def test_points_of_a_sweep_find_the_files_that_their_case_names(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
-    data = tomllib.loads(folder.base_text(CASES / "sieve_cylinder.toml"))
+    data = tomllib.loads(files.text_for_anywhere(CASES / "sieve_cylinder.toml"))
     assert fills(data, tmp_path / "case.toml") == fills(own("sieve_cylinder"), CASES / "sieve_cylinder.toml")
     assert str(CASES.parent) not in (CASES / "sieve_cylinder.toml").read_text()
+
+
+def test_a_copy_of_a_case_finds_its_files(tmp_path, monkeypatch):
+    """In Python, and softened into another folder; a file that changes makes the points of a sweep run again."""
+    shutil.copytree(CASES / "parts", tmp_path / "lab/parts")
+    text = (CASES / "sieve_cylinder.toml").read_text()
+    path, table = tmp_path / "lab/case.toml", tmp_path / "lab/parts/sieve.csv"
+    path.write_text(text.replace('"parts/sieve.csv"', "'parts/sieve.csv'"))
+    monkeypatch.chdir(tmp_path)
+    scene = Scene.from_toml("lab/case.toml").replace({"numerics.seed": 2})
+    assert scene.model.scene.fill == load(path).scene.fill
+    twin = soften(path, 10.0, folder=tmp_path).text
+    assert parse(tomllib.loads(twin), tmp_path / "twin.toml").scene.fill == load(path).scene.fill
+    assert soften(path, 10.0, folder=path.parent).text.count("'parts/sieve.csv'") == 1
+
+    def points() -> str:
+        return study.plan(path, {"numerics.seed": "1,2"}).inputs(1)
+
+    before = points()
+    assert points() == before
+    table.write_text(table.read_text().replace("18.4", "18.5"))
+    assert points() != before
 
 
 LINES = {  # what is put in place of a line of cases/impactor_bowl.toml, and the words of the sentence
@@ -223,6 +249,13 @@ LINES = {  # what is put in place of a line of cases/impactor_bowl.toml, and the
         'duration = "0.1 s"\n[[scene.phase.move]]\nwall = "bowl"\n[[scene.phase.move]]\nkind = "spin"',
         "scene.phase.1.move.0.kind is missing",
     ),
+    "\nfriction = 0.3": ("\nfriction = -0.3", "contact.friction = -0.3, must lie in"),
+    "[contact]": ("[contacts]", "contacts: unknown key"),
+    "[[scene.body]]": ("[[scene.bodies]]", "scene.bodies: unknown key"),
+    '[materials.steel]\nyoung_modulus = "100 MPa"': (
+        "[materials.steel]",
+        "materials.steel.young_modulus is missing",
+    ),
 }
 
 
@@ -233,7 +266,7 @@ def test_a_mistake_in_a_part_is_said_with_its_line(old, tmp_path):
     (tmp_path / "parts").symlink_to(CASES / "parts")
     path = tmp_path / "bowl.toml"
     path.write_text(text.replace(old, new))
-    line = text[: text.index(old)].count("\n") + (2 if "move" in new else 1)
+    line = text[: text.index(old)].count("\n") + (2 if "move" in new or old[0] == "\n" else 1)
     if "reaches" in words:  # a matter of the whole wall
         line = text[: text.index('name = "tube"')].count("\n")
     with pytest.raises(CaseError, match=re.escape(f"bowl.toml line {line}: {words}")), named(path):

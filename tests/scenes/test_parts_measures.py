@@ -8,11 +8,12 @@ import numpy as np
 import pandas as pd
 import pytest
 from parts_cases import BED, FLOOR, parts
+from rich.console import Console
 from scene_runs import run, write_case
 
 from epdem.case.scene import parse
 from epdem.errors import CaseError
-from epdem.scenes import measures
+from epdem.scenes import measures, report
 from epdem.scenes.charts import charts
 from epdem.scenes.plan import plan
 from epdem.studies.fit import fit
@@ -68,6 +69,8 @@ def test_height_and_centre_of_mass_are_those_of_the_masses():
     column = np.array([[1e-3, 0, z * 1e-3] for z in range(1, 21)])
     assert curve({"kind": "height", "share": 0.5}, spheres(0, column)) == [pytest.approx(10e-3)]
     assert curve({"kind": "height"}, spheres(0, column)) == [pytest.approx(19e-3)]
+    alike = spheres(0, column).assign(mass=1.809557368e-5)  # 7 of them over 20 are a little below 0.35
+    assert curve({"kind": "height", "share": 0.35}, alike) == [pytest.approx(7e-3)]
     assert curve({"kind": "center_of_mass"}, spheres(0, column)) == [pytest.approx(10.5e-3)]
     assert curve({"kind": "center_of_mass", "axis": "x"}, spheres(0, column)) == [pytest.approx(1e-3)]
 
@@ -117,15 +120,17 @@ def test_the_speed_of_an_impact_is_read_from_its_largest_overlap():
         ({"kind": "plastic_work"}, {"energy": False}, "is known with output.energy"),
         ({"kind": "impact_speed"}, {"energy": False}, "give output.contacts"),
         ({"kind": "count"}, {"particles": 0, "energy": False}, "measures are taken from frames"),
+        ({"kind": "count", "name": "time"}, {}, "measure.time: a column of the rows has this name"),
+        ({"kind": "count", "name": "floor_force_z"}, {}, "a column of the rows has this name"),
     ],
 )
 def test_a_measure_that_the_scene_cannot_give_is_refused(m, output, words):
     with pytest.raises(CaseError, match=words):
-        measures.refuse_measures(planned(m | {"name": "a"}, **output))
+        measures.refuse_measures(planned({"name": "a"} | m, **output))
 
 
 @pytest.mark.liggghts
-def test_measures_stand_in_the_results_and_are_numbers_for_studies(tmp_path):
+def test_measures_stand_in_the_results_and_are_numbers_for_studies(tmp_path, capsys):
     wanted = [
         {"name": "top", "kind": "height", "share": 1.0},
         {"name": "pressed", "kind": "force", "wall": "floor", "component": "z"},
@@ -149,6 +154,10 @@ def test_measures_stand_in_the_results_and_are_numbers_for_studies(tmp_path):
     (bins,) = drawn["scene_dents"].panels[0].series
     assert bins.y[1::2].sum() == 40 and bins.x[-1] == spheres_then.query("step == step.max()")["plastic_work"].max()
     assert "Histograms" in of_scene(outcome).read_text()
+    report.show(outcome, Console(width=120))
+    said = capsys.readouterr().out
+    dents = spheres_then.query("step == step.max()")["plastic_work"]
+    assert f"{dents.mean():.5g}" in said and f" at {found.measures['time'].iloc[-1]:.4g} s " in said
 
 
 @pytest.mark.liggghts

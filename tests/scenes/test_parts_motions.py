@@ -6,7 +6,7 @@ import math
 import numpy as np
 import pytest
 from parts_cases import BED, FLOOR, parts
-from scene_runs import run, write_case
+from scene_runs import run, write_case, write_deck
 
 from epdem.case.scene import parse
 from epdem.errors import CaseError
@@ -110,6 +110,7 @@ def test_phases_end_by_force_and_by_energy_and_a_servo_holds_its_force(tmp_path)
 
 @pytest.mark.liggghts
 def test_a_run_that_ends_by_a_condition_goes_on_bitwise(tmp_path):
+    """From every row, those at which a phase ends and other spheres come included."""
     gate = FLOOR | {"name": "gate", "at": "2 mm", "phases": ["settle", "more"]}
     bed = BED | {"region": BED["region"] | {"z": ["4 mm", "38 mm"]}}
     phases = [
@@ -117,19 +118,28 @@ def test_a_run_that_ends_by_a_condition_goes_on_bitwise(tmp_path):
         {"name": "more", "duration": "20 ms"},
         {"name": "fall", "duration": "20 ms"},
     ]
-    data = parts(wall=[FLOOR, BOX | {"open": ["-z"]}, gate], fill=[bed], phase=phases, leave=True)
-    data |= {"viscous": {"restitution": 0.4}, "output": {"rows": 100, "particles": 100, "restarts": 20}}
-    outcome = run(write_case(data, tmp_path), out=tmp_path / "out")
-    whole, ends = outcome.results, outcome.results.phases["end"].to_list()
-    files = sorted(int(path.name.split(".")[1]) for path in (tmp_path / "out").glob("restart.*.bin"))
-    p = plan(parse(data))
+    more = BED | {"name": "more", "count": 5, "phase": "more"}
+    ball = {
+        "name": "ball",
+        "material": "steel",
+        "radius": "1.5 mm",
+        "place": ["0 mm", "0 mm", "36 mm"],
+        "phase": "fall",
+    }
+    walls = [FLOOR, BOX | {"open": ["-z"]}, gate]
+    data = parts(wall=walls, fill=[bed, more], body=[ball], phase=phases, leave=True)
+    data |= {"viscous": {"restitution": 0.4}, "output": {"rows": 100, "particles": 100, "restarts": 100}}
+    p = write_deck(parse(data), tmp_path)
+    launcher.run("in.scene", tmp_path)
+    ends = tables.ends(tmp_path)
+    whole = tables.particles(p.ended(ends), tmp_path)
+    files = sorted(int(path.name.split(".")[1]) for path in tmp_path.glob("restart.*.bin"))
     for step in files:
-        resume.write_resume(p, tmp_path / "out", step)
-        launcher.run("in.resume", tmp_path / "out", append=True)
-        again = tables.particles(p.ended(tables.ends(tmp_path / "out")), tmp_path / "out")
-        assert [*tables.ends(tmp_path / "out").values()] == ends
-        assert again.equals(whole.particles)
-    assert files
+        resume.write_resume(p, tmp_path, step)
+        launcher.run("in.resume", tmp_path, append=True)
+        assert tables.ends(tmp_path) == ends
+        assert tables.particles(p.ended(ends), tmp_path).equals(whole)
+    assert {ends["settle"], ends["more"]} <= {*files}
 
 
 @pytest.mark.parametrize(

@@ -6,12 +6,17 @@ import math
 import numpy as np
 import pandas as pd
 import pytest
+from parts_cases import FLOOR, parts
 from stored_runs import data_of
 
 from epdem.case.scene import parse
 from epdem.scenes import checks, ledger
 from epdem.scenes.columns import rows as table_of_rows
 from epdem.scenes.plan import ScenePlan, plan
+
+BOX = {"name": "box", "kind": "box", "x": ["-9 mm", "9 mm"], "y": ["-9 mm", "9 mm"], "z": ["0 mm", "40 mm"]}
+BOX |= {"material": "steel"}
+STONE = {"name": "stone", "material": "steel", "radius": "2 mm", "place": ["0 mm", "0 mm", "5 mm"], "frozen": True}
 
 
 def planned(name: str, law: str | None = None, n_rows: int = 40, **scene: object) -> ScenePlan:
@@ -163,3 +168,24 @@ def test_a_row_of_a_press_has_the_height_in_the_middle_of_its_interval():
     expected = np.where(table["step"] <= turn, down, up)[1:]
     assert table["plate_z"].to_numpy()[1:] == pytest.approx(expected, rel=1e-9)
     assert table["stress"].to_numpy() == pytest.approx(1.0 / 4e-4**2)
+
+
+@pytest.mark.parametrize(
+    ("change", "output"),
+    [
+        ({"measure": [{"name": "up", "kind": "force", "wall": "box"}]}, {"loads": False}),
+        ({"wall": [FLOOR | {"phases": ["fall"]}, BOX]}, {}),
+        ({"body": [STONE]}, {}),
+    ],
+    ids=["one wall of two", "a gate", "a stone that stays"],
+)
+def test_the_weight_of_a_bed_is_compared_only_with_all_that_bears_it(change, output):
+    """A bed of one sphere at rest; the walls whose force is known say nothing."""
+    data = parts(**({"wall": [FLOOR, BOX]} | change))
+    data["output"] |= {"energy": False} | output
+    p = plan(parse(data))
+    columns = {f"{wall}_force_z": 0.0 for wall in p.layout.loads}
+    table = {n: [1.0, 0.0, *columns.values()] for n in (0, p.steps)}
+    found = table_of_rows(p, table, ["particles", "kinetic_energy", *columns])
+    checked = checks.checks(p, {"rows": found, "particles": frames(p, [{}])})["check"]
+    assert columns and not checked.str.contains("weight").any()

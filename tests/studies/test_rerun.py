@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """A stored run is repeated from its results file alone; what differs is named."""
 
+import shutil
 from pathlib import Path
 
 import h5py
@@ -50,12 +51,21 @@ def test_a_file_that_does_not_say_how_it_was_made_is_refused(tmp_path):
 
 @pytest.mark.liggghts
 def test_a_scene_and_impacts_in_liggghts_have_the_same_decks_and_numbers_again(tmp_path):
-    text = (CASES / "settle_glass.toml").read_text().replace("count = 1000", "count = 40").replace("0.5 s", "0.05 s")
-    (tmp_path / "bed.toml").write_text(text)
-    run_scene(tmp_path / "bed.toml", scene_engine("liggghts"), out=tmp_path / "bed")
+    """The scene from a file that names a sieve table, both of which have gone since."""
+    text = (CASES / "sieve_cylinder.toml").read_text().replace('mass = "8 g"', "count = 40").replace("0.3 s", "0.05 s")
+    place = tmp_path / "lab"
+    shutil.copytree(CASES / "parts", place / "parts")
+    (place / "bed.toml").write_text(text)
+    run_scene(place / "bed.toml", scene_engine("liggghts"), out=tmp_path / "bed")
+    shutil.rmtree(place)
     found = rerun(tmp_path / "bed/results.h5")
-    tables = {"rows", "particles", "contacts", "ledger", "checks"}
-    assert found.same and set(found.differences) == {f"table {t}" for t in tables} | {"deck in.scene", "deck setup.in"}
+    tables = {"rows", "particles", "contacts", "ledger", "checks", "phases"}
+    decks = {"deck in.scene", "deck setup.in", "deck cylinder.stl"}
+    assert found.same and set(found.differences) == {f"table {t}" for t in tables} | decks
+    with h5py.File(tmp_path / "bed/results.h5", "a") as file:
+        del file["files"]  # as earlier versions wrote it
+    with pytest.raises(CaseError, match="does not hold the files that its case names"):
+        rerun(tmp_path / "bed/results.h5")
     run(CASES / "two_materials.toml", engines=[engine("liggghts")], out=tmp_path / "impacts", steps=60)
     with h5py.File(tmp_path / "impacts/results.h5", "a") as file:
         (law,) = file["impacts"]

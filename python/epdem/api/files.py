@@ -12,7 +12,7 @@ import tomlkit
 from ..base.files import atomic
 from ..case import impact as impact_case
 from ..case import scene as scene_case
-from ..case.toml import read_toml
+from ..case.files import text_for_anywhere
 from ..studies.sweep import keys
 from ..studies.sweep.points import plain, with_unit, with_units
 
@@ -43,9 +43,8 @@ class _File:
     @classmethod
     def from_toml(cls, path: Path | str) -> Self:
         """The case in a file. Raises CaseError."""
-        read_toml(path)
         case = cls.__new__(cls)
-        case._read(Path(path).read_text(encoding="utf-8-sig"), path)
+        case._read(text_for_anywhere(path), path)
         return case
 
     def to_toml(self, path: Path | str) -> Path:

@@ -12,8 +12,10 @@ import tempfile
 import time
 from collections.abc import Callable
 from pathlib import Path
+from typing import IO
 
 from ..errors import EngineError
+from . import stopping
 
 # A row of a table of numbers that begins with the number of a step: the progress of an engine.
 ROW = re.compile(rb"^ +(\d+)( +[-+.\deainf]+)+ *$")
@@ -53,21 +55,10 @@ def call(
     end = math.inf if seconds is None else start + seconds
     with path.open("ab" if append else "wb") as stream, path.open("rb") as reader:
         begin = reader.seek(0, os.SEEK_END)
+        rows, process = _Rows(report), None
         try:
-            process = subprocess.Popen(
-                command,
-                cwd=folder,
-                stdin=subprocess.DEVNULL,
-                stdout=stream,
-                stderr=subprocess.STDOUT,
-                env=env,
-                start_new_session=True,
-                preexec_fn=end_with_parent,
-            )
-        except OSError as error:
-            raise EngineError(f"{command[0]}: cannot be started ({error})") from None
-        rows = _Rows(report)
-        try:
+            with stopping.uninterrupted():
+                process = started(command, folder, stdin=subprocess.DEVNULL, stdout=stream, env=env)
             while process.poll() is None:
                 left = end - time.monotonic()
                 if left <= 0.0:
@@ -82,11 +73,34 @@ def call(
             reader.seek(begin)
             failed = process.returncode or any(line.startswith(b"ERROR") for line in reader)
         except BaseException:  # a time-out, Ctrl-C or an error of the caller: the process is stopped too
-            kill(process)
+            if process:
+                kill(process)
             raise
     if failed:
         raise EngineError(failure(command[0], process.returncode, path))
     return time.monotonic() - start
+
+
+def started(
+    command: list[str], folder: Path, *, stdin: int, stdout: int | IO[bytes], env: dict[str, str] | None
+) -> subprocess.Popen[bytes]:
+    """A program in a session of its own, which ends with this process; both its streams go to `stdout`.
+
+    Raises EngineError if it cannot be started.
+    """
+    try:
+        return subprocess.Popen(
+            command,
+            cwd=folder,
+            stdin=stdin,
+            stdout=stdout,
+            stderr=subprocess.STDOUT,
+            env=env,
+            start_new_session=True,
+            preexec_fn=end_with_parent,
+        )
+    except OSError as error:
+        raise EngineError(f"{command[0]}: cannot be started ({error})") from None
 
 
 def failure(program: str, status: int, log: Path) -> str:

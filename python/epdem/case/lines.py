@@ -51,19 +51,23 @@ def _resolved(words: list[str], data: Any) -> Keys:
 
 
 def _places(message: str, data: dict[str, Any]) -> Iterator[Keys]:
+    """Whatever a message names of the data: first places of two keys and more, then the table that it begins with."""
     scene = data.get("scene", {})
     for words in re.findall(r"\w+(?:\.\w+)+", message):
         for start, tables in ((), data), (("scene",), scene):
             keys = (*start, *_resolved(words.split("."), tables))
-            if len(keys) > 2:
+            if len(keys) >= 2 + len(start):
                 yield keys
+    if first := re.match(r"\w+", message):
+        yield (first[0],)
 
 
 def line_of(message: str, text: str, data: dict[str, Any]) -> int | None:
     """The line that the first place in a message names, as scene.wall.floor.at or wall.0; None: no place is found."""
     lines = lines_of(text)
     for keys in _places(message, data):
-        for end in range(len(keys), 1, -1):
-            if keys[:end] in lines:
-                return lines[keys[:end]]
-    return lines.get(("scene",))
+        for end in range(len(keys), 0, -1):
+            for place in (keys[:end], (*keys[:end], 0)):  # a list begins with its first table
+                if place in lines:
+                    return lines[place]
+    return None

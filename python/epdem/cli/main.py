@@ -12,6 +12,7 @@ from typing import Annotated, Any
 import typer
 
 from .. import __version__
+from ..base import stopping
 from ..base.settings import DEFAULT_ENGINE
 from ..base.terminal import console, status
 from ..errors import CaseError, EpdemError, Stopped
@@ -204,20 +205,9 @@ def _usage(error: Any) -> int:
     return 2
 
 
-STOPS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
-
-
-def _stop(number: int, frame: object) -> None:
-    """The first signal ends the run; further ones must not interrupt that end, or an engine writes on."""
-    for name in STOPS:
-        signal.signal(name, signal.SIG_IGN)
-    raise Stopped
-
-
 def main() -> None:
     """Entry point: errors that a user can correct become one sentence and an exit code."""
-    for name in STOPS:  # whatever stops us, no engine stays behind
-        signal.signal(name, _stop)
+    stopping.listen()  # whatever stops us, no engine stays behind
     if isinstance(sys.stdout, io.TextIOWrapper):
         sys.stdout.reconfigure(errors="backslashreplace")  # a title may hold what the terminal's encoding does not
     try:
@@ -239,5 +229,5 @@ def main() -> None:
         print(f"epdem: {place}: {reason}; choose another folder by --out, or make it writable", file=sys.stderr)
         sys.exit(2)
     finally:
-        for name in STOPS:  # all is stored: what comes now must not meet Python's own end
+        for name in stopping.SIGNALS:  # all is stored: what comes now must not meet Python's own end
             signal.signal(name, signal.SIG_DFL)

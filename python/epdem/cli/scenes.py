@@ -172,8 +172,8 @@ def soften(
     from ..base.folders import refuse_existing
     from ..studies.soften import soften as twin_of
 
-    twin = twin_of(case, factor)
     target = out or case.with_name(f"{case.stem}_soft{factor:g}.toml")
+    twin = twin_of(case, factor, folder=target.parent)
     refuse_existing(target, force=force)
     with atomic(target) as temporary:
         temporary.write_text(twin.text, encoding="utf-8")

@@ -10,7 +10,7 @@ import time
 import tty
 from pathlib import Path
 
-from ..base import processes
+from ..base import processes, stopping
 from ..errors import EngineError
 from . import launcher
 
@@ -66,7 +66,8 @@ class Kept:
             self._process.stdin.write(f"shell cd {way}\n".encode())
         else:
             self.stop()
-            self._process = self._started(place)
+            with stopping.uninterrupted():
+                self._process = self._started(place)
         self._folder = place
         return self._process
 
@@ -75,18 +76,7 @@ class Kept:
         self._screen, theirs = pty.openpty()  # in a pipe its output would stay in a buffer
         tty.setraw(theirs)
         try:
-            return subprocess.Popen(
-                command,
-                cwd=folder,
-                stdin=subprocess.PIPE,
-                stdout=theirs,
-                stderr=theirs,
-                env=launcher.environment(),
-                start_new_session=True,
-                preexec_fn=processes.end_with_parent,
-            )
-        except OSError as error:
-            raise EngineError(f"{command[0]}: cannot be started ({error})") from None
+            return processes.started(command, folder, stdin=subprocess.PIPE, stdout=theirs, env=launcher.environment())
         finally:
             os.close(theirs)
 

@@ -58,14 +58,17 @@ def write_resume(p: ScenePlan, folder: Path, step: int) -> Path:
     d = deck(p)
     ends = tables.ends(folder, step) if p.ends_early else {part.name: part.end for part in d.phases}
     phase = next((i for i, part in enumerate(d.phases) if ends.get(part.name, step + 1) > step), len(d.phases))
+    begin = max([0, *(ends[part.name] for part in d.phases[:phase])])
+    comes = False  # spheres that come with this phase and are not in the restart file
     if phase < len(d.phases):
-        begun = max([0, *(ends[part.name] for part in d.phases[:phase])])
-        rest = d.phases[phase].after(step - begun, d.every)
+        part = d.phases[phase]
+        comes = step == begin and bool(part.late or [f for f in d.insertions if f.once and f.phase == part.name])
+        rest = part.after(step - begin, d.every)
         d = replace(d, phases=(*d.phases[:phase], rest, *d.phases[phase + 1 :]))
     rows = tables.rows(p, folder / OUT).set_index("step")
     if rows["particles"].get(step) == p.layout.count:  # poured out: LIGGGHTS refuses an insertion that lies behind it
         d = replace(d, insertions=tuple(f for f in d.insertions if f.once))
     path = folder / "in.resume"
-    continued = replace(d, from_restart=f"restart.{step}.bin", resumed_phase=phase)
+    continued = replace(d, from_restart=f"restart.{step}.bin", resumed_phase=phase, comes=comes)
     path.write_text(decks.render("liggghts/scene_resume.in.j2", deck=continued), encoding="utf-8")
     return path

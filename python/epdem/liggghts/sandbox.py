@@ -19,7 +19,7 @@ from jinja2 import meta
 from jinja2.sandbox import ImmutableSandboxedEnvironment
 from pydantic import BaseModel
 
-from ..base import paths, rendering
+from ..base import paths, rendering, stopping
 from ..errors import CaseError
 
 MOST_SOURCE, MOST_TEXT = 1_000_000, 20_000_000  # characters of a template, and of what it becomes
@@ -87,7 +87,8 @@ def render(template: Path, values: Mapping[str, object]) -> tuple[str, set[str]]
         raise CaseError(f"{template}: there is no such file; name a template")
     reader, writer = multiprocessing.Pipe(duplex=False)
     child = multiprocessing.get_context("fork").Process(target=_work, args=(writer, template, values))
-    child.start()
+    with stopping.uninterrupted():
+        child.start()
     writer.close()
     try:
         result = reader.recv()

@@ -79,6 +79,7 @@ class Deck:
     row_words: tuple[str, ...]
     from_restart: str | None = None
     resumed_phase: int = 0
+    comes: bool = False  # whether the spheres that come with that phase are still to come
 
 
 def _properties(p: ScenePlan) -> tuple[Property, ...]:

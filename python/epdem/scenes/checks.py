@@ -198,8 +198,13 @@ def _of_compaction(p: ScenePlan, tables: dict[str, pd.DataFrame]) -> list[Row]:
 
 
 def _of_parts(p: ScenePlan, tables: dict[str, pd.DataFrame]) -> list[Row]:
-    """Walls bear the weight of a bed at rest: where its energy is far below that of a fall by a radius."""
-    if not p.layout.loads or p.layout.loses or "particles" not in tables or not p.case.scene.gravity:
+    """Walls bear the weight of a bed at rest: where its energy is far below that of a fall by a radius.
+
+    Not where something else may bear it: a wall whose force is not in the rows, a sphere that stays where it is.
+    """
+    there = {w.name for w in p.layout.planes} | {*p.layout.meshes, *p.phases[-1].gates}
+    known = there <= {*p.layout.loads} and not any(s.frozen for s in p.layout.table)
+    if not (there and known) or p.layout.loses or "particles" not in tables or not p.case.scene.gravity:
         return []
     last = last_frame(tables["particles"])
     weight = last["mass"] * p.case.scene.gravity

@@ -54,6 +54,14 @@ def units(table: pd.DataFrame) -> dict[str, str]:
     return UNITS | loads
 
 
+def columns_of_rows(p: ScenePlan) -> set[str]:
+    """The names of the columns that the rows of a scene have."""
+    some = {"floor_load": p.floor_load, "torque": p.torque, "wall_power": p.powered}
+    some |= dict.fromkeys(("plate_force", "plate_z", "stress"), p.plates)
+    loads = {f"{name}_{load}" for name in p.layout.loads for load in LOADS}
+    return {"step", "time", "particles", "kinetic_energy", *(name for name, there in some.items() if there)} | loads
+
+
 def whole(p: ScenePlan, table: pd.DataFrame, folder: Path) -> pd.DataFrame:
     """The particles' table with whole numbers where they belong. Raises EngineError for a frame that is damaged or
     holds numbers that are not finite.

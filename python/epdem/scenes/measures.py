@@ -10,7 +10,7 @@ from ..case.measures import Amount, CenterOfMass, Flow, Height, Histogram, Load,
 from ..case.walls import Room, Upright
 from ..errors import CaseError
 from ..theory.backbones import JKR
-from .columns import last_frame
+from .columns import columns_of_rows, last_frame
 from .meshes import FloatArray
 from .pairs import pair_law
 from .plan import ScenePlan
@@ -22,11 +22,13 @@ RINGS = 12  # of the surface of a bed
 def refuse_measures(p: ScenePlan) -> None:
     """Raise CaseError for measures that the scene cannot give."""
     s = p.case.scene
-    names = [m.name for m in s.measure]
+    names, taken = [m.name for m in s.measure], columns_of_rows(p)
     for m in s.measure:
         place = f"scene.measure.{m.name}"
         if names.count(m.name) > 1:
             raise CaseError(f"{place}: two measures have this name; give each its own")
+        if m.name in taken:
+            raise CaseError(f"{place}: a column of the rows has this name; give another one")
         if not p.frames:
             raise CaseError(f"{place}: measures are taken from frames; give output.particles")
         if isinstance(m, Load) and m.wall not in p.layout.loads:
@@ -66,7 +68,7 @@ def _height(frame: pd.DataFrame, share: float) -> float:
         return math.nan
     by_height = frame.sort_values("z")
     below = by_height["mass"].cumsum().to_numpy() / by_height["mass"].sum()
-    return float(by_height["z"].iloc[min(int(np.searchsorted(below, share)), len(below) - 1)])
+    return float(by_height["z"].iloc[min(int(np.searchsorted(below, share * (1.0 - 1e-9))), len(below) - 1)])
 
 
 def _angle(m: Repose, frame: pd.DataFrame) -> float:
@@ -172,15 +174,20 @@ def _impact_speeds(p: ScenePlan, tables: dict[str, pd.DataFrame]) -> FloatArray:
     return speeds
 
 
+def values_of(p: ScenePlan, m: Histogram, tables: dict[str, pd.DataFrame]) -> FloatArray:
+    """What a histogram counts: the plastic work of each sphere in the last frame [J], or the impact speeds [m/s]."""
+    if m.kind == "impact_speed":
+        return _impact_speeds(p, tables)
+    return np.asarray(last_frame(tables["particles"])["plastic_work"], float)
+
+
 def histograms(p: ScenePlan, tables: dict[str, pd.DataFrame]) -> pd.DataFrame:
     """One row per bin: measure, low, high, number."""
     found = []
     for m in p.case.scene.measure:
         if not isinstance(m, Histogram):
             continue
-        last = last_frame(tables["particles"])
-        values = last["plastic_work"].to_numpy() if m.kind == "plastic_work" else _impact_speeds(p, tables)
-        number, edges = np.histogram(values, m.bins)
+        number, edges = np.histogram(values_of(p, m, tables), m.bins)
         found.append(pd.DataFrame({"measure": m.name, "low": edges[:-1], "high": edges[1:], "number": number}))
     return pd.concat(found, ignore_index=True) if found else pd.DataFrame(columns=["measure", "low", "high", "number"])
 

@@ -2,15 +2,17 @@
 """The output of a scene: checks, summary, JSON, figures."""
 
 import json
+import math
 from collections.abc import Sequence
 
 from rich.console import Console
 
 from ..base.folders import claim
 from ..base.terminal import show_table, table
+from ..case.measures import Histogram
 from ..impacts.report import records
 from . import pictures
-from .measures import unit
+from .measures import unit, values_of
 from .run import SceneOutcome
 
 
@@ -65,18 +67,20 @@ def show(outcome: SceneOutcome, console: Console) -> None:
 
 
 def _show_measures(outcome: SceneOutcome, console: Console) -> None:
-    """Print the last value of each curve and the mean of each histogram."""
-    curves, histograms = (outcome.results.tables.get(name) for name in ("measures", "histograms"))
-    if curves is None or histograms is None:
+    """Print the value of each curve in the last frame and the mean of what each histogram counts."""
+    tables = outcome.results.tables
+    curves = tables.get("measures")
+    if curves is None or curves.empty:
         return
-    shown = table("measures", ("measure", "kind", "at the end", "unit"), left=("measure", "kind"))
+    time = f"at {curves['time'].iloc[-1]:.4g} s"
+    shown = table("measures", ("measure", "kind", time, "unit"), left=("measure", "kind"))
     for m in outcome.case.scene.measure:
-        if m.name in curves:
-            value = float(curves[m.name].iloc[-1])
+        if isinstance(m, Histogram):
+            values = values_of(outcome.plan, m, tables)
+            kind, value = f"{m.kind}, mean", float(values.mean()) if values.size else math.nan
         else:
-            part = histograms[histograms["measure"] == m.name]
-            value = float((0.5 * (part["low"] + part["high"]) * part["number"]).sum() / max(part["number"].sum(), 1))
-        shown.add_row(m.name, m.kind if m.name in curves else f"{m.kind}, mean", f"{value:.5g}", unit(m))
+            kind, value = m.kind, float(curves[m.name].iloc[-1])
+        shown.add_row(m.name, kind, f"{value:.5g}", unit(m))
     show_table(console, shown)
 
 

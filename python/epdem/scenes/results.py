@@ -4,20 +4,27 @@
 from dataclasses import dataclass, field
 from pathlib import Path
 
+import numpy as np
 import pandas as pd
 
 from ..base.tables import Hdf5, opened, read_table, write_csv, write_table
 from .columns import units
 
+FILES = "files"  # group of the files that the case names
+
 
 @dataclass
 class SceneResults:
-    """Tables by name (rows, particles, contacts, ledger, checks), deck texts, attributes of the file."""
+    """Tables by name (rows, particles, contacts, ledger, checks), deck texts, attributes of the file.
+
+    files: the contents of those that the case names; None: of an earlier version, which did not store them.
+    """
 
     case_text: str = ""
     attributes: dict[str, object] = field(default_factory=dict)
     tables: dict[str, pd.DataFrame] = field(default_factory=dict)
     decks: dict[str, str] = field(default_factory=dict)
+    files: dict[str, bytes] | None = field(default_factory=dict)
 
     def __getattr__(self, name: str) -> pd.DataFrame:
         tables: dict[str, pd.DataFrame] = self.__dict__.get("tables", {})
@@ -36,6 +43,9 @@ def write(path: Path, results: SceneResults) -> None:
         write_table(file.create_group(name), table, units(table))
     for name, text in results.decks.items():
         file[f"decks/{name}"] = text
+    group = file.create_group(FILES)
+    for n, (name, content) in enumerate((results.files or {}).items()):
+        group.create_dataset(str(n), data=np.frombuffer(content, np.uint8), compression="gzip").attrs["name"] = name
     stored.save(path)
     write_csv(path.with_suffix(".csv"), results.tables["rows"])
 
@@ -48,4 +58,6 @@ def read(path: Path | str) -> SceneResults:
             if "columns" in getattr(group, "attrs", {}):
                 results.tables[name] = read_table(group)
         results.decks = {name: text[()].decode() for name, text in file.get("decks", {}).items()}
+        stored = file[FILES].values() if FILES in file else None
+        results.files = None if stored is None else {x.attrs["name"]: x[()].tobytes() for x in stored}
         return results

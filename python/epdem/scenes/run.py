@@ -2,6 +2,7 @@
 """A scene from case file to results.h5: deck, run with progress, tables, ledger, checks; and its continuation."""
 
 import time
+import tomllib
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -15,6 +16,7 @@ from ..base.files import write_texts
 from ..base.folders import Results, claim, results_folder
 from ..base.stages import inputs_hash, library_hash
 from ..case.doubts import doubts
+from ..case.files import names_in
 from ..case.scene import SceneCase, load
 from ..case.toml import named
 from ..errors import CaseError, EngineError
@@ -61,6 +63,7 @@ class _Work:
     engine: SceneEngine
     files: dict[str, str]
     notes: list[str]
+    named: dict[str, bytes]  # the files that the case names
     ranks: int
     report: Report
 
@@ -134,7 +137,9 @@ def run_case(
         pictures.refuse_color(p)
         files, notes = files_for(engine, p), [*engine.notes(p), *_warnings(p.case)]
     check_run(engine, ranks=ranks, resume=resume)
-    work = _Work(text, p, engine, files, notes, ranks, lambda step: report(step, p.steps))
+    beside = Path(str(place)).parent
+    contents = {name: (beside / name).read_bytes() for name in sorted(names_in(tomllib.loads(text)))}
+    work = _Work(text, p, engine, files, notes, contents, ranks, lambda step: report(step, p.steps))
     folder = results_folder(out, p.case.name, engine.subfolder)
     if resume and not folder.exists():
         raise CaseError(f"{folder}: no such folder, so no run to continue; run the case without --resume")
@@ -208,7 +213,7 @@ def _finish(
         "seconds": seconds,
     }
     decks = {name: text for name, text in work.files.items() if "/" not in name}  # without the modules of a deck
-    kept = results.SceneResults(work.text, attributes, tables, decks)
+    kept = results.SceneResults(work.text, attributes, tables, decks, work.named)
     results.write(folder / "results.h5", kept)
     return SceneOutcome(
         p,

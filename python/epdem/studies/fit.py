@@ -18,6 +18,7 @@ import numpy as np
 
 from ..base.folders import results_folder
 from ..base.settings import DEFAULT_ENGINE
+from ..case.files import text_for_anywhere
 from ..case.scene import is_scene
 from ..case.units import to_si
 from ..errors import CaseError, EngineError
@@ -137,7 +138,7 @@ class Options(TypedDict, total=False):
 
 def fit(path: Path, targets: Targets, free: Mapping[str, str], **options: Unpack[Options]) -> Fit:
     """`fit_text` of the scene in a file."""
-    return fit_text(store.base_text(path), targets, free, place=path, **options)
+    return fit_text(text_for_anywhere(path), targets, free, place=path, **options)
 
 
 def fit_text(

@@ -2,6 +2,7 @@
 """A stored run once more, from nothing but its results file: the same decks and, on one rank, the same numbers."""
 
 import tempfile
+import tomllib
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
@@ -9,6 +10,7 @@ from pathlib import Path
 import pandas as pd
 
 from ..base.tables import opened
+from ..case.files import names_in, renamed
 from ..engines import engine, scene_engine
 from ..errors import CaseError
 from ..impacts import run as impacts
@@ -54,11 +56,22 @@ def _scene(path: Path, scratch: Path, progress: Progress) -> Rerun:
     old = scene_store.read(path)
     about = old.attributes
     name, ranks = str(about["engine"]), int(str(about["ranks"]))
+    text = renamed(old.case_text, _files(path, old, scratch))
     progress(f"{name}: {about['steps']} steps")
-    scenes.run(_case(old.case_text, scratch), scene_engine(name), out=scratch / "out", ranks=ranks)
+    scenes.run(_case(text, scratch), scene_engine(name), out=scratch / "out", ranks=ranks)
     new = scene_store.read(scratch / "out/results.h5")
     found = _texts(old.decks, new.decks) | _tables(old.tables, new.tables)
     return Rerun(path, _versions(about, new.attributes), found)
+
+
+def _files(path: Path, old: scene_store.SceneResults, scratch: Path) -> dict[str, Path]:
+    """The files that a scene names, written to `scratch`: their names and places."""
+    if old.files is None and names_in(tomllib.loads(old.case_text)):
+        raise CaseError(f"{path}: does not hold the files that its case names (an earlier version); run the case again")
+    places = {name: scratch / f"{n}_{Path(name).name}" for n, name in enumerate(old.files or {})}
+    for name, place in places.items():
+        place.write_bytes((old.files or {})[name])
+    return places
 
 
 def _impacts(path: Path, scratch: Path, progress: Progress) -> Rerun:

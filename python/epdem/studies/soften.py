@@ -14,6 +14,7 @@ from typing import Any
 
 import tomlkit
 
+from ..case.files import text_for_anywhere
 from ..case.library import with_library
 from ..case.toml import named, read_toml
 from ..errors import CaseError
@@ -93,14 +94,15 @@ def strain_ratio(data: dict[str, Any], path: Path) -> float:
     return float(predict(leading_impact(case)).strain_ratio.max())
 
 
-def soften(path: Path, factor: float) -> Twin:
-    """The twin of the case in `path` with E/factor. Raises CaseError if the case is wrong."""
+def soften(path: Path, factor: float, *, folder: Path | None = None) -> Twin:
+    """The twin of the case in `path` with E/factor, to lie in `folder` (beside it). Raises CaseError."""
     if not 0.0 < factor < 1e12:
         raise CaseError(f"--factor {factor:g}, must be > 0; 100 makes the time step 6.3 times larger")
     data = with_library(read_toml(path), path)
     before = strain_ratio(data, path)
     after = before * factor**STRAIN_POWER
-    document = tomlkit.parse(path.read_text(encoding="utf-8-sig"))
+    moved = folder is not None and folder.resolve() != path.parent.resolve()
+    document = tomlkit.parse(text_for_anywhere(path) if moved else path.read_text(encoding="utf-8-sig"))
     changes = [_change(document, data, keys, text) for keys, text in _replacements(data, factor).items()]
     warnings = []
     if before > SMALL_DEFORMATION:

@@ -23,8 +23,8 @@ import tomlkit
 from ...base.files import atomic
 from ...base.folders import MANIFEST, results_folder
 from ...base.stages import inputs_hash
+from ...case.files import names_in
 from ...case.scene import is_scene
-from ...case.toml import read_toml
 from ...errors import CaseError
 from .keys import assign, keys_of
 from .points import Point
@@ -109,9 +109,15 @@ class Sweep:
         settings = ", ".join(f"{key} = {value}" for key, value in self.points[number - 1].items())
         return f"point {number} ({settings})"
 
+    @cached_property
+    def _contents(self) -> list[str]:
+        """Hashes of the files that the case names."""
+        there = [path for path in map(Path, sorted(names_in(self.tables))) if path.is_file()]
+        return [hashlib.sha256(path.read_bytes()).hexdigest() for path in there]
+
     def inputs(self, number: int) -> str:
         """Hash of all that the result of a point depends on."""
-        return inputs_hash([], self.identities[number - 1], sorted(self.versions.items()))
+        return inputs_hash([], self.identities[number - 1], sorted(self.versions.items()), *self._contents)
 
 
 def write(sweep: Sweep, folder: Path) -> None:
@@ -131,27 +137,6 @@ def read(folder: Path) -> Sweep:
         return Sweep(**(raw | {key: tuple(raw[key]) for key in ("points", "engines", "laws")}))
     except (OSError, ValueError, KeyError, TypeError):
         raise CaseError(f"{folder}: not a folder of a sweep; 'epdem sweep CASE --out {folder}' makes one") from None
-
-
-def base_text(path: Path) -> str:
-    """The text of a case file, with whole names of the files that it names, for its points lie in other folders.
-
-    Raises CaseError as `read_toml` does.
-    """
-    found = _named_files(read_toml(path))
-    text = path.read_text(encoding="utf-8-sig")
-    for name in found:
-        text = text.replace(f'"{name}"', f'"{(path.parent / name).resolve()}"')
-    return text
-
-
-def _named_files(data: object) -> set[str]:
-    """The names of files in the data of a case."""
-    parts = data.items() if isinstance(data, dict) else enumerate(data) if isinstance(data, list) else ()
-    found: set[str] = set()
-    for key, value in parts:
-        found |= {value} if key in ("file", "sieve") and isinstance(value, str) else _named_files(value)
-    return found
 
 
 def of(sweep: Sweep, folder: Path, number: int) -> Path:

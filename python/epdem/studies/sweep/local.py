@@ -11,6 +11,7 @@ from multiprocessing.connection import Connection, wait
 from multiprocessing.process import BaseProcess
 from typing import Any
 
+from ...base import stopping
 from ...base.processes import end_with_parent
 from ...errors import Stopped
 
@@ -43,23 +44,24 @@ def each(function: Callable[[Any], Any], items: Iterable[Any], jobs: int) -> Ite
         while team:
             for ready in wait(list(team)):
                 assert isinstance(ready, Connection)
-                process, item = team.pop(ready)
+                process, item = team[ready]
                 try:
                     good, result = ready.recv()
                 except (EOFError, OSError):
+                    del team[ready]
                     process.join()
                     ready.close()
                     if process.exitcode == STOPPED:
                         raise Stopped from None
                     good, result = True, Died(_how(process.exitcode))
                 if not good:
-                    team[ready] = process, item
                     raise result
                 following = next(waiting, None)
                 if isinstance(result, Died):
                     if following is not None:
                         _start(function, following, team)
                 elif following is None:
+                    del team[ready]
                     _dismiss(process, ready)
                 else:
                     ready.send(following)
@@ -83,10 +85,11 @@ def _how(code: int | None) -> str:
 def _start(function: Callable[[Any], Any], item: Any, team: dict[Connection, tuple[BaseProcess, Any]]) -> None:
     ours, theirs = _FORK.Pipe()
     process = _FORK.Process(target=_work, args=(function, theirs, [*team, ours], os.getpid()))
-    process.start()
+    with stopping.uninterrupted():
+        process.start()
+        team[ours] = process, item
     theirs.close()
     ours.send(item)
-    team[ours] = process, item
 
 
 def _dismiss(process: BaseProcess, pipe: Connection) -> None:
@@ -94,10 +97,6 @@ def _dismiss(process: BaseProcess, pipe: Connection) -> None:
         pipe.send(None)
     process.join()
     pipe.close()
-
-
-def _stop(number: int, frame: object) -> None:
-    raise Stopped
 
 
 def _keep_memory() -> None:
@@ -113,7 +112,7 @@ def _work(function: Callable[[Any], Any], pipe: Connection, others: list[Connect
     """In a process of the pool: item after item, until the parent sends None or has ended."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C reaches all: our parent stops us in good order
     signal.signal(signal.SIGUSR2, signal.SIG_IGN)  # Slurm warns every process of a job; our parent queues it again
-    signal.signal(signal.SIGTERM, _stop)
+    stopping.listen(signal.SIGTERM)
     end_with_parent()  # a parent that is killed cannot
     _keep_memory()
     for other in others:  # or the end of a pipe would stay open here, and nobody would see that it has ended

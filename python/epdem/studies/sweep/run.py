@@ -11,6 +11,7 @@ from typing import TypedDict, Unpack
 import pandas as pd
 
 from ...base.folders import claim
+from ...case.files import text_for_anywhere
 from ...case.scene import is_scene
 from ...engines import DEFAULT_ENGINE, engine, scene_engine
 from ...errors import CaseError
@@ -62,7 +63,7 @@ class Options(TypedDict, total=False):
 
 def plan(case: Path, settings: Settings, **options: Unpack[Options]) -> Sweep:
     """`plan_text` of the case in a file."""
-    return plan_text(store.base_text(case), settings, **options)
+    return plan_text(text_for_anywhere(case), settings, **options)
 
 
 def plan_text(

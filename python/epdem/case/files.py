@@ -1,0 +1,37 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""The files that a case names: triangles of walls, sieve tables, tables of spheres."""
+
+import re
+from collections.abc import Mapping
+from pathlib import Path
+
+from .toml import read_toml
+
+KEYS = ("file", "sieve")
+
+
+def names_in(data: object) -> set[str]:
+    """The names of files in the data of a case."""
+    parts = data.items() if isinstance(data, dict) else enumerate(data) if isinstance(data, list) else ()
+    found: set[str] = set()
+    for key, value in parts:
+        found |= {value} if key in KEYS and isinstance(value, str) else names_in(value)
+    return found
+
+
+def renamed(text: str, names: Mapping[str, Path]) -> str:
+    """The text of a case with other names of files."""
+    for old, new in names.items():
+        key = rf"(\b(?:{'|'.join(KEYS)})\"?\s*=\s*)"
+        quoted = f'"{new}"'.replace("\\", r"\\")  # in a pattern a backslash counts twice
+        text = re.sub(rf"{key}([\"']){re.escape(old)}\2", rf"\1{quoted}", text)
+    return text
+
+
+def text_for_anywhere(path: Path | str) -> str:
+    """The text of a case file with whole names of its files, for a copy of it may lie in another folder.
+
+    Raises CaseError as `read_toml` does.
+    """
+    path, names = Path(path), names_in(read_toml(path))
+    return renamed(path.read_text(encoding="utf-8-sig"), {name: (path.parent / name).resolve() for name in names})
