@@ -92,6 +92,17 @@ bool sane_friction(double G_star, double mu, int nodes) {
   return positive(G_star) && std::isfinite(mu) && mu >= 0.0 && (nodes == 0 || nodes == 2 || nodes == 3);
 }
 
+/// Calls `body` with the number of nodes as a type.
+template <class Body>
+void with_nodes(int nodes, const Body& body) {
+  if (nodes == 2)
+    body(std::integral_constant<int, 2>{});
+  else if (nodes == 3)
+    body(std::integral_constant<int, 3>{});
+  else
+    body(std::integral_constant<int, 0>{});
+}
+
 template <int nodes, class Law>
 void move(const Law& law, double R_star, double stiffness, double mu, size_t n, const double* m, double* out) {
   MovedContact<nodes, Law> contact(law, R_star, stiffness, mu);
@@ -222,13 +233,10 @@ EPDEM_EXPORT int epdem_oblique(int law, double E_star, const double* parameters,
   for (size_t i = 0; i < n; ++i)
     if (!sane(in[i]) || !std::isfinite(slip[i])) return EPDEM_BAD_INPUT;
   return with_law(law, E_star, parameters, [&](const auto& l) {
-    for (size_t i = 0; i < n; ++i) {
-      const ImpactInput<double> normal = input(in[i]);
-      const ObliqueInput<double> beside{slip[i], 8.0 * G_star, mu};
-      slip_after_out[i] = nodes == 0   ? slip_after<0>(l, normal, beside)
-                          : nodes == 2 ? slip_after<2>(l, normal, beside)
-                                       : slip_after<3>(l, normal, beside);
-    }
+    with_nodes(nodes, [&](auto count) {
+      for (size_t i = 0; i < n; ++i)
+        slip_after_out[i] = slip_after<count>(l, input(in[i]), {slip[i], 8.0 * G_star, mu});
+    });
     return int(EPDEM_OK);
   });
 }
@@ -239,9 +247,7 @@ EPDEM_EXPORT int epdem_motion(int law, double E_star, const double* parameters, 
   for (size_t k = 0; k < 9 * n; ++k)
     if (!std::isfinite(motion[k])) return EPDEM_BAD_INPUT;
   return with_law(law, E_star, parameters, [&](const auto& l) {
-    (nodes == 0   ? move<0, std::decay_t<decltype(l)>>
-     : nodes == 2 ? move<2, std::decay_t<decltype(l)>>
-                  : move<3, std::decay_t<decltype(l)>>)(l, R_star, 8.0 * G_star, mu, n, motion, out);
+    with_nodes(nodes, [&](auto count) { move<count>(l, R_star, 8.0 * G_star, mu, n, motion, out); });
     return int(EPDEM_OK);
   });
 }

@@ -29,11 +29,7 @@ class Adhesion {
 
   double at(int i, int j) const {
     if (!pairs_) return adhesive::work_of_adhesion(surface_[i], surface_[j]);
-    const double x = pairs_->compute_array(i - 1, j - 1), y = pairs_->compute_array(j - 1, i - 1);
-    if (x != y)
-      reader_.fail(std::string(adhesion_name) + " of " + both(i, j) + " is not symmetric: " + number(x) + " and " +
-                   number(y));
-    return reader_.checked(adhesion_name, "J/m^2", both(i, j), x, range);
+    return reader_.of_pair(pairs_, adhesion_name, "J/m^2", i, j, range);
   }
 
  private:

@@ -62,10 +62,7 @@ void check_host(LAMMPS_NS::LAMMPS* lmp) {
   // error->one ends in MPI_Abort without flushing: on a pipe or in a file the message would be lost
   std::setvbuf(stdout, nullptr, _IOLBF, 0);
   check_library(lmp);
-  if (lmp->comm->me != 0) return;
-  const std::string line = "epdem " EPDEM_VERSION ":" + model_names() + "\n";
-  if (lmp->screen) std::fputs(line.c_str(), lmp->screen);
-  if (lmp->logfile) std::fputs(line.c_str(), lmp->logfile);
+  say(lmp, "epdem " EPDEM_VERSION ":" + model_names());
 }
 
 bool only_spheres(LAMMPS_NS::LAMMPS* lmp) {

@@ -11,8 +11,10 @@
 #include "neighbor.h"
 #include "update.h"
 
+#include <cstdio>
 #include <string>
 
+#include "comm.h"
 #include "contact_models.h"
 #include "fix_wall_gran_base.h"
 #include "pair_gran_base.h"
@@ -33,6 +35,13 @@ bool only_spheres(LAMMPS_NS::LAMMPS* lmp);
 
 /// The smallest radius of the spheres that are there or will be added; infinite if there are none. Collective.
 double smallest_radius(LAMMPS_NS::LAMMPS* lmp);
+
+/// Prints a line on the screen and into the log, on the first rank.
+inline void say(const LAMMPS_NS::LAMMPS* lmp, const std::string& line) {
+  if (lmp->comm->me != 0) return;
+  for (FILE* out : {lmp->screen, lmp->logfile})
+    if (out) std::fputs((line + "\n").c_str(), out);
+}
 
 /// Ends the run if the library in use is not the one that the headers describe; names the models once.
 void check_host(LAMMPS_NS::LAMMPS* lmp);

@@ -46,11 +46,7 @@ class ParameterTable {
   double at(int i, int j) const {
     if (adhesion_) return adhesion_->at(i, j);
     if (!pairs_) return common_;
-    const double x = pairs_->compute_array(i - 1, j - 1), y = pairs_->compute_array(j - 1, i - 1);
-    if (x != y)
-      reader_.fail(std::string(p_.property) + " of " + both(i, j) + " is not symmetric: " + number(x) + " and " +
-                   number(y));
-    return reader_.checked(p_.property, p_.unit, both(i, j), x, {0.0, unlimited, false});
+    return reader_.of_pair(pairs_, p_.property, p_.unit, i, j, {0.0, unlimited, false});
   }
 
  private:
@@ -126,40 +122,33 @@ std::vector<double> parameters_of(const Reader& reader, const Declaration& law, 
   reader.fail(text + " of " + both(i, j) + " do not go together: the law would create energy at yield");
 }
 
-std::vector<double> damping_numbers(const Reader& reader, Dashpot dashpot) {
-  const int n = reader.types();
-  std::vector<double> beta((n + 1) * (n + 1), 0.0);
-  if (dashpot == Dashpot::off) return beta;
-  FixPropertyGlobal* e = reader.find("coefficientRestitution", "peratomtypepair");
-  if (!e) {
-    if (dashpot == Dashpot::required)
-      reader.fail(
-          "tangential no_history needs coefficientRestitution (peratomtypepair): its only force is the "
-          "dashpot that follows from it; the normal force does not use it");
-    return beta;
-  }
-  for (int i = 1; i <= n; ++i)
-    for (int j = 1; j <= n; ++j)
-      beta[i * (n + 1) + j] = damping_number(
-          reader.checked("coefficientRestitution", "1", both(i, j), e->compute_array(i - 1, j - 1), {0.0, 1.0, false}));
-  return beta;
-}
-
-std::vector<double> viscous_numbers(const Reader& reader, bool viscous) {
+/// A number that follows from the restitution of each pair of types; 0 where none is given, if `needed` does not say
+/// why one must be.
+std::vector<double> of_restitution(const Reader& reader, double (*number_of)(double), Range range,
+                                   const char* needed = nullptr) {
   const int n = reader.types();
   std::vector<double> numbers((n + 1) * (n + 1), 0.0);
-  if (!viscous) return numbers;
-  FixPropertyGlobal* e = reader.find("coefficientRestitution", "peratomtypepair");
-  if (!e)
-    reader.fail(
-        "viscous on needs coefficientRestitution (peratomtypepair), the restitution of slow impacts that do "
-        "not yield");
-  for (int i = 1; i <= n; ++i)
+  FixPropertyGlobal* const e = reader.find("coefficientRestitution", "peratomtypepair");
+  if (!e && needed) reader.fail(needed);
+  for (int i = 1; e && i <= n; ++i)
     for (int j = 1; j <= n; ++j)
       numbers[i * (n + 1) + j] =
-          viscous_number(reader.checked("coefficientRestitution", "1", both(i, j), e->compute_array(i - 1, j - 1),
-                                        {viscous_restitution_min, 1.0, true}));
+          number_of(reader.checked("coefficientRestitution", "1", both(i, j), e->compute_array(i - 1, j - 1), range));
   return numbers;
+}
+
+std::vector<double> damping_numbers(const Reader& reader, Dashpot dashpot) {
+  return of_restitution(reader, damping_number, {0.0, 1.0, false},
+                        dashpot == Dashpot::required
+                            ? "tangential no_history needs coefficientRestitution (peratomtypepair): its only force is "
+                              "the dashpot that follows from it; the normal force does not use it"
+                            : nullptr);
+}
+
+std::vector<double> viscous_numbers(const Reader& reader) {
+  return of_restitution(reader, viscous_number, {viscous_restitution_min, 1.0, true},
+                        "viscous on needs coefficientRestitution (peratomtypepair), the restitution of slow impacts "
+                        "that do not yield");
 }
 
 }  // namespace
@@ -180,7 +169,9 @@ Materials read_materials(LAMMPS_NS::LAMMPS* lmp, PropertyRegistry& registry, con
   std::vector<ParameterTable> tables;
   tables.reserve(asked.parameters.size());
   for (const Parameter& p : asked.parameters) tables.emplace_back(reader, p, adhesion.get());
-  const std::vector<double> beta = damping_numbers(reader, dashpot), dashpots = viscous_numbers(reader, viscous);
+  const std::vector<double> none(width * width, 0.0);
+  const std::vector<double> beta = dashpot == Dashpot::off ? none : damping_numbers(reader, dashpot);
+  const std::vector<double> dashpots = viscous ? viscous_numbers(reader) : none;
 
   const double pascal = 1.0 / lmp->force->nktv2p;  // pressure unit of the deck in force/length^2
   Materials materials{width, std::vector<PairOfTypes>(width * width)};

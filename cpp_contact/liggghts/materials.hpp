@@ -46,9 +46,9 @@ struct Materials {
   std::vector<PairOfTypes> pairs;
 };
 
-/// Warns if cohesion sjkr pulls harder than the law resists: its energy density, which is a pressure over the contact
-/// area, exceeds the law's strength.
-void compare_cohesion(LAMMPS_NS::LAMMPS* lmp, const Declaration& law, const Materials& materials);
+/// Warns if cohesion pulls harder than the law resists: its energy density, a pressure over an area of the contact,
+/// exceeds `resists` of the pair of types, row i * width + column j.
+void compare_cohesion(LAMMPS_NS::LAMMPS* lmp, const char* model, int width, const std::vector<double>& resists);
 
 /// Reads every type in use; a value that is missing or out of range ends the run with an error that names model,
 /// property, value and range. Collective: every rank must call it.

@@ -140,7 +140,7 @@ class Model : public ContactModelBase {
 
   void connectToProperties(PropertyRegistry& registry) {
     surface_.connectToProperties(registry);
-    normal_.connectToProperties(registry, dashpot(), ids_.cohesion != COHESION_OFF);
+    normal_.connectToProperties(registry, dashpot(), cohesive());
     cohesion_.connectToProperties(registry);
     tangential_.connectToProperties(registry);
     rolling_.connectToProperties(registry);
@@ -227,6 +227,12 @@ class Model : public ContactModelBase {
   Dashpot dashpot() const {
     if (ids_.tangential == TANGENTIAL_OFF) return Dashpot::off;
     return ids_.tangential == TANGENTIAL_NO_HISTORY ? Dashpot::required : Dashpot::optional;
+  }
+
+  /// sjkr2 takes twice the area of the lens between spheres.
+  double cohesive() const {
+    if (ids_.cohesion == COHESION_OFF) return 0.0;
+    return ids_.cohesion == COHESION_SJKR2 && !wall ? 2.0 : 1.0;
   }
 
   const Ids ids_;

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "epdem/adhesive.hpp"
-#include "epdem/law.hpp"
+#include "epdem/friction.hpp"
 #include "epdem/tangential.hpp"
 #include "epdem/viscous.hpp"
 #include "grip.hpp"
@@ -83,7 +83,8 @@ class Normal : protected LAMMPS_NS::Pointers {
     if (plastic_work_ && !wall) ledger_.create(lmp, rubs_, adheres<Law>);
   }
 
-  void connectToProperties(PropertyRegistry& registry, Dashpot dashpot, bool cohesive) {
+  /// cohesive: area on which cohesion pulls over that of the overlap's lens, 0 without cohesion.
+  void connectToProperties(PropertyRegistry& registry, Dashpot dashpot, double cohesive) {
     if (!only_spheres(lmp))
       fail("it is for spheres; give other particles a model of LIGGGHTS with surface superquadric");
     // Rebuilt at every init: LIGGGHTS frees all properties there, and the user may have changed them.
@@ -91,7 +92,6 @@ class Normal : protected LAMMPS_NS::Pointers {
     const Declaration law{model_.c_str(), Law::parameters,    Law::n_parameters,      &Law::valid,
                           Law::strength,  Law::default_ratio, Law::strength_by_ratio, adheres<Law>};
     const Materials m = read_materials(lmp, registry, law, dashpot, viscous_);
-    if (cohesive) compare_cohesion(lmp, law, m);
     width_ = m.width;
     table_.assign(m.pairs.size(), Entry{});
     for (int i = 1; i < width_; ++i)
@@ -100,6 +100,11 @@ class Normal : protected LAMMPS_NS::Pointers {
         table_[i * width_ + j] = {Law(effective_modulus(p.i, p.j), p.parameters.data()),
                                   effective_shear_modulus(p.i, p.j), p.damping_number, p.viscous_number};
       }
+    if (cohesive > 0.0) {
+      std::vector<double> resists;
+      for (const Entry& t : table_) resists.push_back(resistance(t.law) / cohesive);
+      compare_cohesion(lmp, model_.c_str(), width_, resists);
+    }
     if (plastic_work_) ledger_.connect(lmp, model_, rubs_, adheres<Law>);
     grip_.ledger = ledger();
     if constexpr (adheres<Law>) reach();
@@ -162,7 +167,7 @@ class Normal : protected LAMMPS_NS::Pointers {
     if (t.viscous_number > 0.0) force = damped_force(t.law, R_star, before, now, t.viscous_number, s.meff, -s.vn);
 
     grip_.stiffness = 8.0 * t.G_star;
-    grip_.pressed = pressed(now);
+    grip_.pressed = pressed_by(now, now.force);
 
     s.Fn = sliding_load(t.law, R_star, now, force);  // friction's limit is mu times it, after what cohesion made of it
     s.kn = 4.0 / 3.0 * t.law.E_star * now.radius;    // LIGGGHTS's convention for rolling friction: F/alpha of Hertz
@@ -229,24 +234,17 @@ class Normal : protected LAMMPS_NS::Pointers {
     const double factor = 1.005 + gap / smallest;
     if (!(factor > neighbor->contactDistanceFactor)) return;
     neighbor->register_contact_dist_factor(factor);
-    if (comm->me != 0) return;
     char line[160];
     std::snprintf(line, sizeof line,
-                  "epdem: %s pulls across gaps up to %.4g (radius %.4g), contact distance factor %.9g\n",
-                  model_.c_str(), gap, smallest, factor);
-    if (screen) std::fputs(line, screen);
-    if (logfile) std::fputs(line, logfile);
+                  "epdem: %s pulls across gaps up to %.4g (radius %.4g), contact distance factor %.9g", model_.c_str(),
+                  gap, smallest, factor);
+    say(lmp, line);
   }
 
   /// Bodies that touch without being in contact (inside a dent) begin anew in all other models.
   void forget_others(double* history) const {
     const int first = offset_ + memory + stamped, last = wall ? wall_->dnum() : pair_->dnum_pair();
     std::fill_n(history + first, std::max(0, last - first), 0.0);
-  }
-
-  static Pressed<double> pressed(const Step<Law>& now) {
-    if constexpr (Law::flattens) return {now.force, now.radius, now.after.point.radius, now.after.point.flatness};
-    return {now.force, now.radius, now.radius, 0.0};
   }
 
   /// The pair parted since its last evaluation: it is a new contact, for the other models as well.

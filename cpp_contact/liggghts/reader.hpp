@@ -27,6 +27,8 @@ inline std::string number(double x) {
   return text;
 }
 
+inline std::string both(int i, int j) { return "types " + std::to_string(i) + " and " + std::to_string(j); }
+
 /// A half-open range (low, high] or [low, high] of a property.
 struct Range {
   double low, high;
@@ -74,6 +76,13 @@ class Reader {
     return x;
   }
 
+  /// A value of two types, which must be the same from both sides.
+  double of_pair(FixPropertyGlobal* pairs, const char* name, const char* unit, int i, int j, Range range) const {
+    const double x = pairs->compute_array(i - 1, j - 1), y = pairs->compute_array(j - 1, i - 1);
+    if (x != y) fail(std::string(name) + " of " + both(i, j) + " is not symmetric: " + number(x) + " and " + number(y));
+    return checked(name, unit, both(i, j), x, range);
+  }
+
   std::string missing(const char* name, const char* unit) const {
     return std::string("property ") + name + unit_of(unit) +
            " is missing; give one value per atom type: " + "fix ID all property/global " + name +
@@ -94,7 +103,5 @@ class Reader {
   const Declaration& law_;
   int n_;
 };
-
-inline std::string both(int i, int j) { return "types " + std::to_string(i) + " and " + std::to_string(j); }
 
 }  // namespace epdem::liggghts

@@ -111,12 +111,17 @@ Walls::IGranularWall* new_wall(LAMMPS* lmp, FixWallGran* parent, int64_t hash) {
 }
 
 /// Laws with adhesion bring their own attraction, and multicontact is not measured with them.
-bool with_adhesion(const Ids& ids) { return ids.normal == Jkr<double>::id || ids.normal == ThorntonNing<double>::id; }
+bool with_adhesion(const Ids& ids) {
+#define EPDEM_ADHERES(Class) \
+  if (ids.normal == Class<double>::id) return adheres<Class<double>>;
+  EPDEM_LAWS(EPDEM_ADHERES)
+#undef EPDEM_ADHERES
+  return false;
+}
 
 constexpr const char* combinations =
     "epdem's models combine with tangential off, no_history, history, ep/partial_slip, ep/partial_slip_2; cohesion "
-    "off, "
-    "sjkr, sjkr2; rolling_friction off, cdt, epsd, epsd2, epsd3; surface default, multicontact; nothing else";
+    "off, sjkr, sjkr2; rolling_friction off, cdt, epsd, epsd2, epsd3; surface default, multicontact; nothing else";
 
 std::string tangential_names() {
   std::string names;
@@ -131,14 +136,13 @@ Interface* refuse(LAMMPS* lmp, Parent*, int64_t hash) {
       with_adhesion(ids) && ids.cohesion != COHESION_OFF
           ? "a law with adhesion has its attraction already: leave out the cohesion model beside it"
       : with_adhesion(ids) ? "laws with adhesion combine with tangential off, no_history, history; rolling_friction "
-                             "off, cdt, epsd, epsd2, "
-                             "epsd3; surface default; nothing else"
+                             "off, cdt, epsd, epsd2, epsd3; surface default; nothing else"
       : ids.normal != unknown_law            ? combinations
       : ids.tangential == unknown_tangential ? "unknown tangential model: those of epdem are" + tangential_names()
-      : ids.tangential == foreign_normal     ? "tangential ep/partial_slip goes with the normal models of epdem only: "
-                                               "LIGGGHTS's own do not pass the contact "
-                                               "radius on (its hertz is ep/hertz, with viscous on for its dashpot)"
-                                             : "unknown normal model: the models of epdem are" + model_names();
+      : ids.tangential == foreign_normal
+          ? "tangential ep/partial_slip goes with the normal models of epdem only: "
+            "LIGGGHTS's own do not pass the contact radius on (its hertz is ep/hertz, with viscous on for its dashpot)"
+          : "unknown normal model: the models of epdem are" + model_names();
   lmp->error->all(FLERR, text.c_str());
   return nullptr;
 }

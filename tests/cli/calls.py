@@ -9,6 +9,7 @@ import pytest
 import typer
 
 from epdem.cli import main
+from epdem.studies import figures
 from epdem.studies.sweep import folder as sweep_folder
 from epdem.studies.sweep.run import plan
 
@@ -25,6 +26,12 @@ class Call:
     out: str
     err: str
     files: tuple[tuple[str, str], ...]
+
+
+def quick_figures(monkeypatch) -> None:
+    """The figure of pressures for the two that run impacts: what is drawn is not the matter."""
+    for name in ("restitution", "adhesion_by_strength"):
+        monkeypatch.setattr(figures, name, figures.mean_pressure)
 
 
 def call(words, capsys, monkeypatch) -> Call:

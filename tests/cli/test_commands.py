@@ -13,7 +13,7 @@ from types import SimpleNamespace
 
 import pandas as pd
 import pytest
-from calls import CASES, COMMANDS, call, make_sweep
+from calls import CASES, COMMANDS, call, make_sweep, quick_figures
 from rich.console import Console
 
 from epdem.base import paths, terminal
@@ -115,6 +115,7 @@ def test_a_command_prints_one_json_document_and_nothing_else(command, folder, ca
     monkeypatch.setattr(crosscheck, "ENGINES", {"embedded": ENGINES["embedded"]})
     monkeypatch.setattr(crosscheck, "OTHERS", {})
     monkeypatch.setattr(crosscheck, "FOREIGN", {})
+    quick_figures(monkeypatch)
     if command == "status":
         make_sweep("steel.toml", folder / "swept")
     if command == "rerun":

@@ -5,9 +5,7 @@ import re
 import shutil
 
 import pytest
-from calls import CASES, call
-
-from epdem.studies import figures
+from calls import CASES, call, quick_figures
 
 WRITERS = {  # words of a command that writes, and a file of the user's in its way
     "deck of impacts": (["deck", "steel.toml", "-o", "d"], "d/in.impact"),
@@ -27,10 +25,8 @@ WRITERS = {  # words of a command that writes, and a file of the user's in its w
 
 
 @pytest.fixture(autouse=True)
-def quick_figures(monkeypatch):
-    """The figure of pressures for the two that run impacts: what is drawn is not the matter here."""
-    for name in ("restitution", "adhesion_by_strength"):
-        monkeypatch.setattr(figures, name, figures.mean_pressure)
+def quick(monkeypatch):
+    quick_figures(monkeypatch)
 
 
 @pytest.mark.parametrize("kind", WRITERS)

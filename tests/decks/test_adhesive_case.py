@@ -43,7 +43,7 @@ def test_the_prediction_is_that_of_the_published_case():
     x = made(impact=read_toml(CASE)["impact"] | {"speeds": speeds})
     p = predict(x)
     assert p.e_n == pytest.approx(list(SPEEDS.values()), abs=2e-6)
-    assert any("Tabor's number is 1.5 (< 3)" in w for w in p.warnings()) and p.yields == ("steel",)
+    assert any("Tabor's number is 1.5 (< 3)" in w for w in p.caveats) and p.yields == ("steel",)
 
 
 def test_surface_energies_make_the_same_pair_and_both_are_too_many():

@@ -117,10 +117,22 @@ def test_the_files_hold_every_line_of_the_sources_that_they_need_and_no_other(pf
         assert sorted(code(body)[1:-1]) == expected  # without the version and the last #endif
 
 
-def test_with_superquadrics_the_files_compile_without_a_warning(sources):
+def base_of_inl(folder):
+    """The base of contact models with LIGGGHTS-INL's virtual function, to be included before all else."""
+    base, first = folder / "base_of_inl.h", "virtual void tally_pp("
+    text = Path("/usr/include/liggghts/contact_model_base.h").read_text(errors="replace")
+    assert text.count(first) == 1
+    match = "virtual bool contact_match(const std::string kind, const std::string model) = 0;\n"
+    head = '#include <map>\n#include <string>\n#include "pointers.h"\nusing namespace LAMMPS_NS;\n'
+    base.write_text(head + text.replace(first, match + first))
+    return base
+
+
+def test_with_superquadrics_and_the_base_of_inl_the_files_compile_without_a_warning(sources):
     """The structure of a contact then has 392 bytes; a user's tree has them on by default."""
+    base = base_of_inl(sources)
     for name in header.files():
-        line = compiler("-fsyntax-only", *SUPERQUADRICS, sources / name)
+        line = compiler("-fsyntax-only", "-include", base, *SUPERQUADRICS, sources / name)
         done = subprocess.run(line, capture_output=True, text=True, check=False)
         assert (done.returncode, done.stderr) == (0, "")
 

@@ -1,10 +1,12 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """ep/jkr and ep/thornton_ning in LIGGGHTS against theory: sticking, pull-off, meshes, contacts across a gap, energy."""
 
+import re
+
 import numpy as np
 import pytest
 from plugin_adhesion import BOX, EDGE, TIP, R, deck, mass, spheres, theory, triangles, walls
-from plugin_decks import ADHESIVE, GAMMA, contact, good, materials, per_pair, plate, run
+from plugin_decks import ADHESIVE, GAMMA, P_Y, contact, good, materials, per_pair, plate, run
 from test_plugin_energy import BOX as CELL
 from test_plugin_energy import SIDES, gas
 from test_plugin_launch import deck as plain_deck
@@ -222,16 +224,24 @@ def test_what_is_asked_of_adhesion_and_cannot_be_is_said_in_one_sentence(tmp_pat
     assert "limitForce" in error("limit", "ep/jkr", gamma, settings="limitForce on")
 
 
-def test_cohesion_that_is_stronger_than_the_bodies_is_warned_of_with_both_numbers(tmp_path):
-    def text(density):
-        properties = materials("ep/any") + per_pair("cohesionEnergyDensity", density)
-        return plain_deck("ep/thornton", properties=properties, models="cohesion sjkr", tangential="off", steps=1)
-
-    said = started(tmp_path / "strong", text(2e8)).text
-    warnings = [line for line in said.splitlines() if "cohesionEnergyDensity" in line and "WARNING" in line]
-    assert len(warnings) == 1
-    assert "cohesionEnergyDensity = 200000000" in warnings[0] and "yieldPressure = 168000000" in warnings[0]
-    assert "collapse" not in started(tmp_path / "weak", text(1e8)).text
+@pytest.mark.parametrize("share", [0.95, 1.05])
+def test_cohesion_that_is_stronger_than_the_bodies_is_warned_of_and_they_collapse(tmp_path, share):
+    """sjkr pulls with its density times 2 pi R* alpha, the plastic line of thornton rises by pi p_y R*: half of p_y."""
+    density = float(share * P_Y[0] / 2)
+    properties = materials("ep/any") + per_pair("cohesionEnergyDensity", density)
+    text = plain_deck("ep/thornton", properties=properties, models="cohesion sjkr", tangential="off", steps=4000)
+    two = spheres([[0, 0, 4 * R], [2 * R - 1e-6, 0, 4 * R]], np.zeros((2, 3)))
+    text = text.replace("run ", "dump d all custom 400 out.bin id x\nrun ")
+    done = good(tmp_path, text, files={"box.data": two.data(BOX)})
+    overlap = 2 * R - np.abs(np.diff(done.frames()[1][:, :, 1])).min()
+    warnings = [line for line in done.text.splitlines() if "WARNING" in line and "cohesionEnergyDensity" in line]
+    if share < 1:
+        assert warnings == [] and overlap < 0.05 * R
+        return
+    assert overlap > 0.2 * R
+    assert len(warnings) == 1 and f"= {density:.9g} of types 1 and 1 pulls contacts in harder" in warnings[0]
+    limit = float(re.search(r"above (\S+) the spheres collapse", warnings[0])[1])
+    assert limit == pytest.approx(P_Y[0] / 2, rel=0.03)
 
 
 def test_the_distance_factor_follows_from_the_properties_and_is_said(tmp_path):

@@ -128,6 +128,8 @@ def cluster(place: Path) -> Iterator[Cluster]:
         yield found
     finally:
         found.ask("scancel", "--user=root")
+        with contextlib.suppress(AssertionError):  # a step that cannot tell the controller of its end waits for ever
+            until(lambda: not found.ask("squeue", "-h"), "the end of all jobs", seconds=20)
         for name in reversed(list(found.daemons)):  # slurmd first: it tells the controller
             found.stop(name)
         munge.terminate()

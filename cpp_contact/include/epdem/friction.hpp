@@ -9,7 +9,7 @@ namespace epdem {
 
 /// What friction reads of a step of a law; `load` is the force that limits it.
 template <class Law, class T>
-inline Pressed<T> pressed_by(const Step<Law>& now, const T& load) noexcept {
+EPDEM_INLINE Pressed<T> pressed_by(const Step<Law>& now, const T& load) noexcept {
   if constexpr (Law::flattens) return {load, now.radius, now.after.point.radius, now.after.point.flatness};
   return {load, now.radius, now.radius, T{}};
 }

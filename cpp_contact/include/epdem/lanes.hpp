@@ -132,83 +132,65 @@ struct Columns {
   Lanes a, b, c, d;
 };
 
-#if defined __AVX512F__
+#if defined __AVX__
 
-typedef long long Order __attribute__((vector_size(64)));
+typedef long long Order __attribute__((vector_size(8 * lane_count)));
+
+/// Rows of four as columns, or columns as rows: it is its own inverse. AVX-512 does it in both halves of its vectors.
+EPDEM_INLINE Columns transposed(const Columns& r) noexcept {
+#if defined __AVX512F__
+  const Order even{0, 8, 2, 10, 4, 12, 6, 14}, odd{1, 9, 3, 11, 5, 13, 7, 15};
+  const Order low{0, 1, 8, 9, 4, 5, 12, 13}, high{2, 3, 10, 11, 6, 7, 14, 15};
+#else
+  const Order even{0, 4, 2, 6}, odd{1, 5, 3, 7}, low{0, 1, 4, 5}, high{2, 3, 6, 7};
+#endif
+  const Lanes t0 = __builtin_shuffle(r.a, r.b, even), t1 = __builtin_shuffle(r.a, r.b, odd);
+  const Lanes t2 = __builtin_shuffle(r.c, r.d, even), t3 = __builtin_shuffle(r.c, r.d, odd);
+  return {__builtin_shuffle(t0, t2, low), __builtin_shuffle(t1, t3, low), __builtin_shuffle(t0, t2, high),
+          __builtin_shuffle(t1, t3, high)};
+}
+
+#endif
 
 template <class F>
 EPDEM_INLINE Columns columns(F row) noexcept {
+#if defined __AVX512F__
   const auto two = [&](int l) __attribute__((always_inline)) {
     return static_cast<Lanes>(
         _mm512_insertf64x4(_mm512_castpd256_pd512(static_cast<__m256d>(row(l))), static_cast<__m256d>(row(l + 4)), 1));
   };
-  const Lanes r0 = two(0), r1 = two(1), r2 = two(2), r3 = two(3);
-  const Order even{0, 8, 2, 10, 4, 12, 6, 14}, odd{1, 9, 3, 11, 5, 13, 7, 15};
-  const Order low{0, 1, 8, 9, 4, 5, 12, 13}, high{2, 3, 10, 11, 6, 7, 14, 15};
-  const Lanes t0 = __builtin_shuffle(r0, r1, even), t1 = __builtin_shuffle(r0, r1, odd);
-  const Lanes t2 = __builtin_shuffle(r2, r3, even), t3 = __builtin_shuffle(r2, r3, odd);
-  return {__builtin_shuffle(t0, t2, low), __builtin_shuffle(t1, t3, low), __builtin_shuffle(t0, t2, high),
-          __builtin_shuffle(t1, t3, high)};
+  return transposed({two(0), two(1), two(2), two(3)});
+#elif defined __AVX__
+  return transposed({row(0), row(1), row(2), row(3)});
+#else
+  const Row p = row(0), q = row(1);
+  return {Lanes{p[0], q[0]}, Lanes{p[1], q[1]}, Lanes{p[2], q[2]}, Lanes{p[3], q[3]}};
+#endif
 }
 
 /// The way back: write(l, row).
 template <class F>
 EPDEM_INLINE void rows(const Columns& from, F write) noexcept {
-  const Order even{0, 8, 2, 10, 4, 12, 6, 14}, odd{1, 9, 3, 11, 5, 13, 7, 15};
-  const Order low{0, 1, 8, 9, 4, 5, 12, 13}, high{2, 3, 10, 11, 6, 7, 14, 15};
-  const Lanes t0 = __builtin_shuffle(from.a, from.b, even), t1 = __builtin_shuffle(from.a, from.b, odd);
-  const Lanes t2 = __builtin_shuffle(from.c, from.d, even), t3 = __builtin_shuffle(from.c, from.d, odd);
+#if defined __AVX512F__
   const auto two = [&](int l, Lanes r) __attribute__((always_inline)) {
     write(l, static_cast<Row>(_mm512_castpd512_pd256(r)));
     write(l + 4, static_cast<Row>(_mm512_extractf64x4_pd(r, 1)));
   };
-  two(0, __builtin_shuffle(t0, t2, low));
-  two(1, __builtin_shuffle(t1, t3, low));
-  two(2, __builtin_shuffle(t0, t2, high));
-  two(3, __builtin_shuffle(t1, t3, high));
-}
-
+  const Columns r = transposed(from);
+  two(0, r.a);
+  two(1, r.b);
+  two(2, r.c);
+  two(3, r.d);
 #elif defined __AVX__
-
-typedef long long Order __attribute__((vector_size(32)));
-
-template <class F>
-EPDEM_INLINE Columns columns(F row) noexcept {
-  const Lanes r0 = row(0), r1 = row(1), r2 = row(2), r3 = row(3);
-  const Order even{0, 4, 2, 6}, odd{1, 5, 3, 7}, low{0, 1, 4, 5}, high{2, 3, 6, 7};
-  const Lanes t0 = __builtin_shuffle(r0, r1, even), t1 = __builtin_shuffle(r0, r1, odd);
-  const Lanes t2 = __builtin_shuffle(r2, r3, even), t3 = __builtin_shuffle(r2, r3, odd);
-  return {__builtin_shuffle(t0, t2, low), __builtin_shuffle(t1, t3, low), __builtin_shuffle(t0, t2, high),
-          __builtin_shuffle(t1, t3, high)};
-}
-
-/// The way back: write(l, row).
-template <class F>
-EPDEM_INLINE void rows(const Columns& from, F write) noexcept {
-  const Order even{0, 4, 2, 6}, odd{1, 5, 3, 7}, low{0, 1, 4, 5}, high{2, 3, 6, 7};
-  const Lanes t0 = __builtin_shuffle(from.a, from.b, even), t1 = __builtin_shuffle(from.a, from.b, odd);
-  const Lanes t2 = __builtin_shuffle(from.c, from.d, even), t3 = __builtin_shuffle(from.c, from.d, odd);
-  write(0, __builtin_shuffle(t0, t2, low));
-  write(1, __builtin_shuffle(t1, t3, low));
-  write(2, __builtin_shuffle(t0, t2, high));
-  write(3, __builtin_shuffle(t1, t3, high));
-}
-
+  const Columns r = transposed(from);
+  write(0, r.a);
+  write(1, r.b);
+  write(2, r.c);
+  write(3, r.d);
 #else
-
-template <class F>
-EPDEM_INLINE Columns columns(F row) noexcept {
-  const Row p = row(0), q = row(1);
-  return {Lanes{p[0], q[0]}, Lanes{p[1], q[1]}, Lanes{p[2], q[2]}, Lanes{p[3], q[3]}};
-}
-
-/// The way back: write(l, row).
-template <class F>
-EPDEM_INLINE void rows(const Columns& from, F write) noexcept {
   write(0, Row{from.a[0], from.b[0], from.c[0], from.d[0]});
   write(1, Row{from.a[1], from.b[1], from.c[1], from.d[1]});
-}
-
 #endif
+}
 
 }  // namespace epdem

@@ -79,6 +79,14 @@ inline Step<Law> step(const Law& law, Number<Law> R_star, const State<Law>& befo
   return step(law, R_star, before, delta);
 }
 
+/// Force at an overlap of a tenth of R* over 2 pi R* alpha, the area of the lens of the overlap [Pa]: half of p_y of
+/// Thornton's law, p_m of Johnson's.
+template <class Law>
+inline double resistance(const Law& law) noexcept {
+  constexpr double delta = 0.1;
+  return step(law, 1.0, {}, delta, 0.0).force / (2.0 * pi * delta);
+}
+
 /// The normal force that limits friction: the contact's own; with adhesion F + 2 P_po, P_po = 3/2 pi Gamma R, while the
 /// bodies are attached (Thornton 1991, J. Phys. D 24, 1942).
 template <class Law>

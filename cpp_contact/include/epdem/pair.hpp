@@ -2,7 +2,6 @@
 // What two bodies in contact have in common: effective modulus, radius and mass (Johnson 1985, section 4.2).
 #pragma once
 
-#include <algorithm>
 #include <cmath>
 #include <limits>
 
@@ -11,6 +10,7 @@
 namespace epdem {
 
 inline constexpr double pi = 3.14159265358979323846;
+inline constexpr double hertz_damping = 1.8257418583505538;  // 2 sqrt(5/6), of dashpots beside Hertz's springs
 
 /// Elastic constants of one body; young_modulus may be infinite (a rigid body).
 struct Elastic {
@@ -32,13 +32,7 @@ inline double effective_shear_modulus(Elastic i, Elastic j) noexcept {
   return 1.0 / (compliance(i) + compliance(j));
 }
 
-/// 1/x = 1/a + 1/b for radii or masses; either may be infinite (a plane, a fixed body).
-inline double reduced(double a, double b) noexcept {
-  const double small = std::min(a, b), large = std::max(a, b);
-  return small / (1.0 + small / large);
-}
-
-/// The same for two finite values, in a contact loop: a b/(a + b).
+/// 1/x = 1/a + 1/b of two finite radii or masses, as a b/(a + b).
 template <class T>
 EPDEM_INLINE T reduced_finite(T a, T b) noexcept {
   return a * b / (a + b);

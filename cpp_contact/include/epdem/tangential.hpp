@@ -21,7 +21,7 @@ inline double damping_number(double e) noexcept {
 /// Dashpot [N s/m] beside the spring k_t: 2 sqrt(5/6) beta sqrt(k_t m*).
 template <class T>
 inline T tangential_damping(T beta, T k_t, T m_star) noexcept {
-  return 1.8257418583505538 * beta * sqrt(k_t * m_star);
+  return hertz_damping * beta * sqrt(k_t * m_star);
 }
 
 }  // namespace epdem

@@ -18,7 +18,7 @@ inline double viscous_number(double e) noexcept {
     const double phi = 0.5 * (low + high);
     (std::exp(-(pi - 2.0 * phi) * std::tan(phi)) > e ? low : high) = phi;
   }
-  return 1.8257418583505538 * std::sin(low);  // 2 sqrt(5/6)
+  return hertz_damping * std::sin(low);
 }
 
 /// Whether a contact with this memory has yielded.

@@ -2,8 +2,8 @@
 // The contacts of a block, computed as lanes. Compiled once per instruction set, which EPDEM_KERNELS names: everything
 // is in unnamed namespaces or depends on the width of Lanes, so that no function compiled for a newer processor can
 // stand in for one of the same name compiled for an older one.
+#include "epdem/friction.hpp"
 #include "epdem/laws.hpp"
-#include "epdem/partial_slip.hpp"
 #include "epdem/tangential.hpp"
 #include "epdem/viscous.hpp"
 #include "models.hpp"
@@ -63,13 +63,6 @@ EPDEM_INLINE Lanes effective_mass(const Block& b, int k, bool freeze) {
   return select(at(b.frozen_j, k) > 0.0, mi, select(at(b.frozen_i, k) > 0.0, mj, m));
 }
 
-/// What partial slip sees of the normal contact.
-template <class Law>
-EPDEM_INLINE Pressed<Lanes> pressed(const Contact& c, const Step<Law>& now) {
-  if constexpr (Law::flattens) return {c.Fn, now.radius, now.after.point.radius, now.after.point.flatness};
-  return {c.Fn, now.radius, now.radius, Lanes{}};
-}
-
 /// Friction with partial slip; `memory` before and after.
 template <int nodes, bool wall, class Law>
 EPDEM_INLINE Three slipping(Block& b, int k, const Contact& c, const Step<Law>& now, const Pass& pass,
@@ -77,13 +70,11 @@ EPDEM_INLINE Three slipping(Block& b, int k, const Contact& c, const Step<Law>& 
   SlipState<nodes, Lanes> before;
   __builtin_memcpy(static_cast<void*>(&before), memory, sizeof before);
   const Lanes stiffness = 8.0 * constant_of[shear_modulus];
-  const Shear<Lanes> motion{{c.en.x, c.en.y, c.en.z},
-                            {pass.dt * c.vtr.x, pass.dt * c.vtr.y, pass.dt * c.vtr.z},
-                            0.5 * pass.dt * dot(c.en, wall ? c.omega_i : c.omega_i + c.omega_j),
+  const Shear<Lanes> motion{c.en, pass.dt * c.vtr, 0.5 * pass.dt * dot(c.en, wall ? c.omega_i : c.omega_i + c.omega_j),
                             1.0 / pass.dt * c.gammat};
   SlipStep<nodes, Lanes> out;
   const auto step = [&](auto damped) __attribute__((always_inline)) {
-    out = partial_slip<nodes, Law::flattens, damped>(before, pressed<Law>(c, now), motion, stiffness,
+    out = partial_slip<nodes, Law::flattens, damped>(before, pressed_by(now, c.Fn), motion, stiffness,
                                                      constant_of[friction]);
   };
   if (pass.damped)
@@ -95,7 +86,7 @@ EPDEM_INLINE Three slipping(Block& b, int k, const Contact& c, const Step<Law>& 
     store(b.sprung.a + k, slip_energy(out.after, stiffness));
   }
   __builtin_memcpy(memory, &out.after, sizeof out.after);
-  return {out.force.x, out.force.y, out.force.z};
+  return out.force;
 }
 
 /// What adhesion books; outside of the kernels, where it would stand six times.

@@ -49,42 +49,53 @@ void pad(Block& b, int n) {
   }
 }
 
-const char* PairLoop::obstacle(PairGran* pair, const Plan& plan, int vflag, int addflag) const {
+const char* obstacle_of_both(const LAMMPS_NS::Atom& atom, bool rigid, bool stores, bool sums) {
   if (generic_asked()) return "EPDEM_LOOP = generic";
+  if (rigid) return "rigid bodies";
+  if (!atom.rmass || !atom.sphere_flag || atom.shapetype_flag) return "particles other than spheres";
+  if (stores) return "contact forces are stored";
+  return sums ? "normal forces are summed up" : nullptr;
+}
+
+bool beside_the_steps(const LAMMPS_NS::Atom& atom, bool computes, bool shears) {
+  return !computes || !shears || atom.nlocal + atom.nghost >= atom.nmax;
+}
+
+Pass pass_of(const LAMMPS_NS::Atom& atom, const Plan& plan, double dt) {
+  Pass pass{};
+  pass.x = atom.x[0];
+  pass.v = atom.v[0];
+  pass.omega = atom.omega[0];
+  pass.dt = dt;
+  pass.rolling = plan.rolling;
+  pass.cohesion = plan.cohesion;
+  pass.damped = plan.damped;
+  pass.viscous = plan.viscous;
+  pass.work = plan.ledger != nullptr;
+  pass.torsion = plan.torsion;
+  pass.cohesion_slides = plan.cohesion_slides;
+  return pass;
+}
+
+const char* PairLoop::obstacle(PairGran* pair, const Plan& plan, int vflag, int addflag) const {
+  const bool stores = pair->storeContactForces() || pair->storeContactForcesStress();
+  if (const char* why = obstacle_of_both(*atom, pair->fr_pair(), stores, pair->store_sum_normal_force())) return why;
   if (force->newton_pair) return "newton on";
-  if (pair->fr_pair()) return "rigid bodies";
-  if (!atom->rmass || !atom->sphere_flag || atom->shapetype_flag) return "particles other than spheres";
   if (atom->molecular) return "bonded particles";
-  if (pair->storeContactForces() || pair->storeContactForcesStress()) return "contact forces are stored";
   if (pair->storeSumDelta()) return "surface multicontact";
-  if (pair->store_sum_normal_force()) return "normal forces are summed up";
   if (neighbor->contactDistanceFactor != 1.0 && plan.root < 0) return "contacts at a distance";
   if (modify->n_fixes_style("insert/stream/predefined") > 0) return "fix insert/stream/predefined";
   if (vflag) return "steps that ask for the virial";
   if (addflag) return "steps of compute pair/gran/local";
-  // what happens beside the steps, or too seldom to speak of, costs nobody anything: no reason is given
-  if (!pair->computeflag() || !pair->shearupdate()) return "";
-  if (atom->nlocal + atom->nghost >= atom->nmax) return "";  // no number can be read behind the last atom
-  return nullptr;
+  return beside_the_steps(*atom, pair->computeflag(), pair->shearupdate()) ? "" : nullptr;
 }
 
 void PairLoop::run(PairGran* pair, const Plan& plan, double now) {
   if (atom->nlocal == 0) return;
   pair_ = pair;
-  pass_ = {atom->x[0],
-           atom->v[0],
-           atom->omega[0],
-           now,
-           update->dt,
-           plan.rolling,
-           plan.cohesion,
-           false,
-           plan.damped,
-           plan.viscous,
-           pair->freeze_group_bit() != 0,
-           plan.ledger != nullptr,
-           plan.torsion,
-           plan.cohesion_slides};
+  pass_ = pass_of(*atom, plan, update->dt);
+  pass_.now = now;
+  pass_.freeze = pair->freeze_group_bit() != 0;
   flags_ = CONTACT_NORMAL_MODEL | (plan.tangential != Tangential::off ? CONTACT_TANGENTIAL_MODEL : 0) |
            (plan.cohesion != Cohesion::off ? CONTACT_COHESION_MODEL : 0) |
            (plan.rolling == Rolling::epsd2 ? CONTACT_ROLLING_MODEL : 0);

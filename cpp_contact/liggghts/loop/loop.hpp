@@ -31,6 +31,15 @@ struct Plan {
 /// Whether the user chose LIGGGHTS's loops by EPDEM_LOOP=generic.
 bool generic_asked();
 
+/// Why the atoms of a run, or what it stores of its contacts, keep pairs and walls from our loops; nullptr: nothing.
+const char* obstacle_of_both(const LAMMPS_NS::Atom& atom, bool rigid, bool stores, bool sums);
+
+/// Whether a step changes no history, or no number can be read behind the last atom: rare, and no reason is given.
+bool beside_the_steps(const LAMMPS_NS::Atom& atom, bool computes, bool shears);
+
+/// What contacts of pairs and walls have in common in a step of length dt.
+Pass pass_of(const LAMMPS_NS::Atom& atom, const Plan& plan, double dt);
+
 /// Gives the lanes behind the last of n contacts something harmless.
 void pad(Block& block, int n);
 

@@ -3,28 +3,19 @@
 #pragma once
 
 #include "block.hpp"
-#include "epdem/lanes.hpp"
+#include "epdem/partial_slip.hpp"
 
 namespace epdem::liggghts::loop {
 namespace {
 
 using epdem::select;
 
-struct Three {
-  Lanes x, y, z;
-};
+using Three = epdem::Vec<Lanes>;
 
-EPDEM_INLINE Three operator*(Lanes s, const Three& a) { return {s * a.x, s * a.y, s * a.z}; }
 EPDEM_INLINE Three operator*(double s, const Three& a) { return {s * a.x, s * a.y, s * a.z}; }
 EPDEM_INLINE Three operator/(const Three& a, Lanes s) { return {a.x / s, a.y / s, a.z / s}; }
-EPDEM_INLINE Three operator+(const Three& a, const Three& b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
-EPDEM_INLINE Three operator-(const Three& a, const Three& b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
 EPDEM_INLINE Three operator-(const Three& a) { return {-a.x, -a.y, -a.z}; }
-EPDEM_INLINE Lanes dot(const Three& a, const Three& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
 EPDEM_INLINE Lanes magnitude(const Three& a) { return sqrt(dot(a, a)); }
-EPDEM_INLINE Three cross(const Three& a, const Three& b) {
-  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
-}
 template <class M>
 EPDEM_INLINE Three select(M m, const Three& a, const Three& b) {
   return {select(m, a.x, b.x), select(m, a.y, b.y), select(m, a.z, b.z)};
@@ -76,7 +67,6 @@ EPDEM_INLINE void surface_of_wall(Contact& c, const Three& v, Lanes overlap) {
 /// cohesion sjkr, sjkr2: a force along the normal.
 template <bool wall>
 EPDEM_INLINE Lanes cohesive_force(const Contact& c, Cohesion model, Lanes density) {
-  constexpr double pi = 3.14159265358979323846;
   const Lanes &r = c.r, &ri = c.radi, &rj = c.radj;
   if constexpr (wall) return -density * (model == Cohesion::sjkr ? (ri * ri - r * r) * pi : pi * 2. * ri * (ri - r));
   if (model == Cohesion::sjkr) {

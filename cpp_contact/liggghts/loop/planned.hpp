@@ -82,10 +82,8 @@ class Planned {
 
   /// That LIGGGHTS's loop runs: once for each reason, on the first rank.
   void say(const char* why) {
-    if (!*why || lmp_->comm->me != 0 || !said_.insert(why).second) return;
-    const std::string line = std::string("epdem: ") + (wall_ ? "wall" : "pair") + " loop of LIGGGHTS for " + why + "\n";
-    if (lmp_->screen) std::fputs(line.c_str(), lmp_->screen);
-    if (lmp_->logfile) std::fputs(line.c_str(), lmp_->logfile);
+    if (!*why || !said_.insert(why).second) return;
+    liggghts::say(lmp_, std::string("epdem: ") + (wall_ ? "wall" : "pair") + " loop of LIGGGHTS for " + why);
   }
 
   LAMMPS_NS::LAMMPS* const lmp_;

@@ -10,34 +10,19 @@ namespace epdem::liggghts::loop {
 using LAMMPS_NS::FixWallGran;
 
 const char* WallLoop::obstacle(FixWallGran& wall) const {
-  if (generic_asked()) return "EPDEM_LOOP = generic";
-  if (wall.fix_rigid()) return "rigid bodies";
-  if (!atom->rmass || !atom->sphere_flag || atom->shapetype_flag) return "particles other than spheres";
-  if (wall.store_force_contact() || wall.store_force_contact_stress()) return "contact forces are stored";
-  if (wall.store_sum_normal_force()) return "normal forces are summed up";
+  const bool stores = wall.store_force_contact() || wall.store_force_contact_stress();
+  if (const char* why = obstacle_of_both(*atom, wall.fix_rigid(), stores, wall.store_sum_normal_force())) return why;
   if (wall.heattransfer_flag()) return "heat that walls conduct";
   if (neighbor->contactDistanceFactor != 1.0) return "contacts at a distance";
   if (wall.compute_wall_gran_local() && wall.addflag()) return "steps of compute wall/gran/local";
-  if (!wall.computeflag() || !wall.shearupdate()) return "";  // not worth a line, as in the pair loop
-  if (atom->nlocal + atom->nghost >= atom->nmax) return "";
-  return nullptr;
+  return beside_the_steps(*atom, wall.computeflag(), wall.shearupdate()) ? "" : nullptr;
 }
 
 void WallLoop::open(FixWallGran& wall, const Plan& plan) {
   if (atom->nlocal == 0) return;
   wall_ = &wall;
   plan_ = &plan;
-  pass_ = {};
-  pass_.v = atom->v[0];
-  pass_.omega = atom->omega[0];
-  pass_.dt = update->dt;
-  pass_.rolling = plan.rolling;
-  pass_.cohesion = plan.cohesion;
-  pass_.damped = plan.damped;
-  pass_.viscous = plan.viscous;
-  pass_.work = plan.ledger != nullptr;
-  pass_.torsion = plan.torsion;
-  pass_.cohesion_slides = plan.cohesion_slides;
+  pass_ = pass_of(*atom, plan, update->dt);
 }
 
 void WallLoop::close() {

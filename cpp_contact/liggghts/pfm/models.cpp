@@ -62,10 +62,7 @@ void announce(LAMMPS* lmp) {
   if (known == lmp) return;
   known = lmp;
   std::setvbuf(stdout, nullptr, _IOLBF, 0);  // error->one ends in MPI_Abort: on a pipe its message would be lost
-  if (lmp->comm->me != 0) return;
-  const std::string line = "epdem " EPDEM_VERSION ":" + names() + "\n";
-  if (lmp->screen) std::fputs(line.c_str(), lmp->screen);
-  if (lmp->logfile) std::fputs(line.c_str(), lmp->logfile);
+  say(lmp, "epdem " EPDEM_VERSION ":" + names());
 }
 
 /// What the loops of LIGGGHTS-PFM call: a law with its surface, tangential and rolling models.
@@ -94,7 +91,7 @@ class Model {
   void connectToProperties(PropertyRegistry& registry) {
     normal_.postSettings(false);
     surface_.connectToProperties(registry);
-    normal_.connectToProperties(registry, dashpot, false);
+    normal_.connectToProperties(registry, dashpot, 0.0);
     tangential_.connectToProperties(registry);
     rolling_.connectToProperties(registry);
   }

@@ -12,6 +12,7 @@ KNOWN = {"engine": ("liggghts",)}
 
 
 def config_file() -> Path:
+    """Where the user's configuration file is, if there is one."""
     return Path(os.environ.get("XDG_CONFIG_HOME") or Path.home() / ".config") / "epdem" / "config.toml"
 
 

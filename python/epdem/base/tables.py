@@ -4,7 +4,7 @@
 import contextlib
 import hashlib
 import io
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 
 import h5py
@@ -63,15 +63,20 @@ def opened(path: Path | str, what: str) -> Iterator[h5py.File]:
         raise CaseError(f"{path}: not {what}, or damaged ({reason}); run the case again") from None
 
 
+def unit_of(column: str, units: Mapping[str, str]) -> str:
+    """The unit of a column by its name ("x_theory" has that of "x"); "" without."""
+    return units.get(column.removesuffix("_theory"), "")
+
+
 def write_table(group: h5py.Group, table: pd.DataFrame, units: dict[str, str]) -> None:
-    """Store `table` in `group`; `units` gives the unit of a column by its name ("x_theory" has that of "x")."""
+    """Store `table` in `group`, its columns with their `units` (see `unit_of`)."""
     for name in table.columns:
         column = table[name].to_numpy()
         if column.dtype == object or column.dtype.kind in "US":
             column = np.array([str(v).encode() for v in column])
         large = {"compression": "gzip", "compression_opts": 1, "shuffle": True} if column.size > LARGE else {}
         dataset = group.create_dataset(name, data=column, **large)
-        if unit := units.get(name.split("_theory")[0]):
+        if unit := unit_of(name, units):
             dataset.attrs["unit"] = unit
     group.attrs["columns"] = list(table.columns)
 

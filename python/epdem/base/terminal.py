@@ -58,7 +58,7 @@ def show_table(screen: Console, shown: Table, spare: Iterable[str] = ()) -> None
             break
         shown.title = None
     if absent:
-        screen.print(f"left out, as the terminal is narrow: {', '.join(absent)}", markup=False, highlight=False)
+        screen.print(f"left out, as the terminal is narrow: {', '.join(absent)}")
 
 
 def _with(shown: Table, column: Column) -> Table:

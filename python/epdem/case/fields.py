@@ -39,12 +39,18 @@ Length = Annotated[float, Quantity("m", above=0.0)]
 Speed = Annotated[float, Quantity("m/s", above=0.0)]
 Pressure = Annotated[float, Quantity("Pa", above=0.0)]
 Spin = Annotated[float, Quantity("rad/s")]
+Gravity = Annotated[float, Quantity("m/s^2", ge=0.0)]
 Coefficient = Annotated[float, Quantity("1", ge=0.0)]
 Tangential = Literal["history", "partial_slip", "partial_slip_2"]  # the last with 2 nodes in place of 3
 NODES = {"history": 0, "partial_slip": 3, "partial_slip_2": 2}  # of partial slip; 0: one spring
 Restitution = Annotated[
     float, Quantity("1", ge=0.14, le=1.0, hint="1 is no dashpot, below 0.14 none is strong enough")
 ]  # of impacts that do not yield
+
+
+def nothing() -> list[float]:
+    """A vector without length."""
+    return [0.0, 0.0, 0.0]
 
 
 def _printable_line(value: object) -> str:
@@ -60,6 +66,8 @@ Name = Annotated[str, Field(pattern=r"^[A-Za-z0-9_][A-Za-z0-9_-]{0,63}$")]
 
 
 class Frozen(BaseModel):
+    """Keys that a case may have, and no others; values are never changed."""
+
     model_config = ConfigDict(frozen=True, extra="forbid", strict=True)
 
 

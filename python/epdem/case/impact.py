@@ -32,6 +32,7 @@ from .toml import read_toml
 
 RIGID = "rigid"
 MAX_IMPACTS = 4096
+MOST_STEPS = 100_000  # in contact
 # Largest relative errors of a case without tolerances of its own (maximum over the phases, 400 steps in contact).
 DEFAULT_CHECKS = {"e_n": 1e-4, "contact_time": 5e-3, "force_max": 1e-3, "overlap_max": 1e-3, "residual_overlap": 1e-3}
 
@@ -129,7 +130,7 @@ class Rate(Frozen):
 class Numerics(Frozen):
     """Steps of the shortest contact, or the largest relative `error` of e_n, for which the step is then searched."""
 
-    steps_in_contact: Annotated[int, Field(ge=5, le=100_000)] = 400
+    steps_in_contact: Annotated[int, Field(ge=5, le=MOST_STEPS)] = 400
     error: Annotated[float, Field(ge=1e-9, le=0.1)] | None = None
     phases: Annotated[int, Field(ge=1, le=64)] = 8
 
@@ -215,6 +216,7 @@ class Case(Frozen):
 
     @property
     def name(self) -> str:
+        """The name of the case."""
         return self.case.name
 
 

@@ -5,8 +5,9 @@ from typing import Annotated, Literal
 
 from pydantic import Field, Tag
 
-from .fields import Frozen, Name, Quantity
-from .walls import Axis, PartName, Place, Room, Span, Upright, has
+from .fields import Frozen, Name
+from .sizes import Share
+from .walls import Axis, PartName, Place, Room, Side, Span, Upright, has
 
 Region = Annotated[Annotated[Upright, Tag("with")] | Annotated[Room, Tag("without")], has("diameter")]
 Bins = Annotated[int, Field(ge=2, le=1000)]
@@ -35,7 +36,7 @@ class Flow(_Measure):
     """Mass per time [kg/s] through a plane in a direction, between frames; what leaves the room has passed it."""
 
     kind: Literal["flow"]
-    direction: Literal["-x", "+x", "-y", "+y", "-z", "+z"] = "-z"
+    direction: Side = "-z"
     at: Place
     material: Name | None = None
 
@@ -44,7 +45,7 @@ class Height(_OfSpheres):
     """Height [m] below which `share` of the mass has its centres."""
 
     kind: Literal["height"]
-    share: Annotated[float, Quantity("1", above=0.0, le=1.0)] = 0.95
+    share: Share = 0.95
 
 
 class Repose(_OfSpheres):

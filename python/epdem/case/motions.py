@@ -5,18 +5,13 @@ from typing import Annotated, Literal, Self
 
 from pydantic import Field, model_validator
 
-from .fields import Frozen, Quantity, Speed
-from .walls import Direction, PartName, Turn, Vector
+from .fields import Frozen, Quantity, Speed, Spin, nothing
+from .walls import Direction, PartName, Vector
 
 Time = Annotated[float, Quantity("s", above=0.0)]
 Rate = Annotated[float, Quantity("Hz", above=0.0)]
 Force = Annotated[float, Quantity("N", above=0.0)]
 Speeds = Annotated[list[Annotated[float, Quantity("m/s")]], Field(min_length=3, max_length=3)]
-
-
-def nothing() -> list[float]:
-    """A vector without length."""
-    return [0.0, 0.0, 0.0]
 
 
 class _Move(Frozen):
@@ -38,7 +33,7 @@ class RotateMove(_Move):
     kind: Literal["rotate"]
     axis: Direction
     origin: Vector = Field(default_factory=nothing)
-    rate: Turn
+    rate: Spin
 
     @model_validator(mode="after")
     def _turns(self) -> Self:

@@ -8,13 +8,11 @@ from typing import Annotated, Literal, NamedTuple, Self
 
 from pydantic import Field, Tag, model_validator
 
-from .fields import Frozen, Length, Name, Quantity, Spin
+from .fields import Frozen, Gravity, Length, Name, Quantity, Spin, nothing
 from .measures import Measure, Region
-from .motions import LinearMove, Phase, PressMove, Rate, RotateMove, Speeds, VibrateMove, nothing
-from .sizes import FileName, Particles, Share, csv_rows, number_in
+from .motions import LinearMove, Phase, PressMove, Rate, RotateMove, Speeds, VibrateMove
+from .sizes import Count, FileName, Mixture, Particles, Share, csv_rows, number_in, refuse_shares
 from .walls import ConeWall, CylinderWall, PartName, PlaneWall, Room, Vector, Wall, has
-
-Count = Annotated[int, Field(ge=1, le=100_000_000)]
 
 
 class Sphere(NamedTuple):
@@ -36,7 +34,7 @@ class Fill(Frozen):
 
     name: PartName
     region: Region
-    particles: Annotated[list[Particles], Field(min_length=1, max_length=64)]
+    particles: Mixture
     count: Count | None = None
     mass: Annotated[float, Quantity("kg", above=0.0)] | None = None
     fraction: Share | None = None
@@ -48,9 +46,7 @@ class Fill(Frozen):
     def _amount(self) -> Self:
         if sum(x is not None for x in (self.count, self.mass, self.fraction)) != 1:
             raise ValueError("give one of count, mass and fraction")
-        total = sum(p.share for p in self.particles)
-        if abs(total - 1.0) > 1e-9:
-            raise ValueError(f"the shares of 'particles' add up to {total:g}, must be 1")
+        refuse_shares(self.particles)
         return self
 
 
@@ -132,7 +128,7 @@ class Parts(Frozen):
     room: Room
     periodic: bool = False
     leave: bool = False
-    gravity: Annotated[float, Quantity("m/s^2", ge=0.0)] = 9.81
+    gravity: Gravity = 9.81
     wall: list[Wall] = Field(default_factory=list, max_length=64)
     fill: list[AnyFill] = Field(default_factory=list, max_length=64)
     body: list[Body] = Field(default_factory=list, max_length=1000)

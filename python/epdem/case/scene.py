@@ -21,16 +21,13 @@ from .fields import (
     Tangential,
     Viscous,
 )
+from .kinds import Kinds
 from .library import with_library
-from .measures import Measure
 from .messages import explain
-from .motions import Rate, Time
-from .parts import Parts
-from .sizes import Particles, Share, context
+from .motions import Time
+from .sizes import Share, context
 from .toml import named, read_toml
 from .walls import PartName
-
-Gravity = Annotated[float, Quantity("m/s^2", ge=0.0)]
 
 
 class SceneMaterial(Material):
@@ -117,139 +114,6 @@ class SceneNumerics(Frozen):
     seed: Annotated[int, Field(ge=1, le=1000)] = 1
 
 
-class Common(Frozen):
-    """The keys of every kind of scene."""
-
-    particles: Annotated[list[Particles], Field(min_length=1, max_length=64)]
-    count: Annotated[int, Field(ge=1, le=100_000_000)]
-    walls: Name  # material of the walls
-    gravity: Gravity = 9.81
-    measure: list[Measure] = Field(default_factory=list, max_length=64)
-
-    @model_validator(mode="after")
-    def _shares(self) -> Self:
-        total = sum(p.share for p in self.particles)
-        if abs(total - 1.0) > 1e-9:
-            raise ValueError(f"the shares of 'particles' add up to {total:g}, must be 1")
-        return self
-
-    @property
-    def filled(self) -> list[Particles]:
-        """Everything that is filled in, in the order in which it comes."""
-        return self.particles
-
-    @property
-    def leading(self) -> Particles:
-        """The spheres whose impacts on a wall stand for the scene."""
-        return self.particles[0]
-
-    @property
-    def wall_materials(self) -> list[str]:
-        """Every material of a wall, once."""
-        return [self.walls]
-
-    @property
-    def named_materials(self) -> list[tuple[str, str]]:
-        """(place, material) of every name of a material."""
-        return [("scene.walls", self.walls), *(("scene.particles.material", p.material) for p in self.filled)]
-
-
-class Settle(Common):
-    """Spheres poured into a box (x, y, z inside) with its floor at z = 0."""
-
-    kind: Literal["settle"]
-    duration: Time
-    box: Annotated[list[Length], Field(min_length=3, max_length=3)]
-    periodic: bool = False  # in x and y, instead of side walls
-    rate: Rate | None = None  # spheres per second; none: all at once
-
-
-class Hopper(Common):
-    """Discharge of a round bin with a conical hopper of triangles; `fill` is the time before the outlet opens."""
-
-    kind: Literal["hopper"]
-    duration: Time
-    bin_diameter: Length
-    bin_height: Length
-    outlet: Length
-    half_angle: Annotated[float, Quantity("rad", above=0.0, le=1.5707963267948966)]
-    drop: Length  # from the outlet to the floor
-    fill: Time
-
-
-class Drum(Common):
-    """A drum of triangles turning about y, with flat ends.
-
-    It is round, so its surface moves and its triangles stay: the same to a sphere, without rebuilding lists, and a
-    continued run meets the wall's velocity at its first step, which LIGGGHTS's move/mesh has only a step later.
-    """
-
-    kind: Literal["drum"]
-    duration: Time
-    diameter: Length
-    length: Length
-    turn: Annotated[float, Quantity("rad/s", above=0.0)]  # "20 rpm"
-
-
-class Compaction(Common):
-    """Uniaxial loading and unloading between plates; sides periodic. No `duration`: strokes and speed give it."""
-
-    kind: Literal["compaction"]
-    gravity: Gravity = 0.0
-    duration: Time | None = None
-    box: Annotated[list[Length], Field(min_length=3, max_length=3)]
-    height: Length  # of the gap between the plates at the end of loading
-    back: Length  # stroke of unloading
-    fall: Time | None = None  # before loading: the spheres fall on the lower plate
-    speed: Speed  # of the upper plate, loading
-    back_speed: Speed | None = None  # unloading; default: a tenth, because it ends within a short stroke
-
-    @property
-    def release(self) -> float:
-        """Speed of the upper plate while unloading [m/s]."""
-        return self.back_speed or 0.1 * self.speed
-
-    @model_validator(mode="after")
-    def _order(self) -> Self:
-        if not self.height < self.box[2]:
-            raise ValueError(f"height ({self.height:g} m) must be below the box's height ({self.box[2]:g} m)")
-        if self.fall is not None and not self.gravity:
-            raise ValueError("spheres fall under gravity; give gravity, or remove fall")
-        if self.duration is not None:
-            raise ValueError("duration: loading and unloading follow from height, back and speed; remove it")
-        return self
-
-
-class Peening(Common):
-    """A stream of shot along -z on a plate of the walls' material, or on a bed of spheres that lies on it."""
-
-    kind: Literal["peening"]
-    duration: Time
-    gravity: Gravity = 0.0
-    side: Length  # of the square that the stream hits
-    speed: Speed
-    rate: Rate  # spheres per second
-    bed: list[Particles] = Field(default_factory=list)
-    bed_count: Annotated[int, Field(ge=0, le=10_000_000)] = 0
-    bed_fill: Time | None = None
-
-    @property
-    def filled(self) -> list[Particles]:
-        """The bed comes first: as long as it alone is there, the types in use begin at 1, which LIGGGHTS needs."""
-        return [*self.bed, *self.particles]
-
-    @model_validator(mode="after")
-    def _bed(self) -> Self:
-        if bool(self.bed) != bool(self.bed_count) or bool(self.bed) != (self.bed_fill is not None):
-            raise ValueError("a bed needs 'bed', 'bed_count' and 'bed_fill'; give all three or none")
-        if self.bed and not self.gravity:
-            raise ValueError("a bed settles under gravity; give gravity")
-        return self
-
-
-Kinds = Settle | Hopper | Drum | Compaction | Peening | Parts
-
-
 class SceneCase(Frozen):
     """One bulk scene."""
 
@@ -283,6 +147,7 @@ class SceneCase(Frozen):
 
     @property
     def name(self) -> str:
+        """The name of the case."""
         return self.case.name
 
 

@@ -15,6 +15,7 @@ from .fields import Frozen, Length, Name, Quantity
 from .units import to_si, within_limits
 
 Share = Annotated[float, Quantity("1", above=0.0, le=1.0)]
+Count = Annotated[int, Field(ge=1, le=100_000_000)]
 LARGEST_FILE = 200_000_000  # bytes of a file beside a case
 MOST_SIEVES = 64
 
@@ -220,6 +221,16 @@ class Particles(Frozen):
     def radii(self) -> tuple[float, float]:
         """Smallest and largest radius [m]."""
         return self.sizes()[0][0], self.sizes()[-1][0]
+
+
+Mixture = Annotated[list[Particles], Field(min_length=1, max_length=64)]
+
+
+def refuse_shares(particles: list[Particles]) -> None:
+    """Raise ValueError unless the shares of a mixture add up to 1."""
+    total = sum(p.share for p in particles)
+    if abs(total - 1.0) > 1e-9:
+        raise ValueError(f"the shares of 'particles' add up to {total:g}, must be 1")
 
 
 def context(path: object) -> dict[str, Any]:

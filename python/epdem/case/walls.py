@@ -6,7 +6,7 @@ from typing import Annotated, Literal, Self
 
 from pydantic import Discriminator, Field, model_validator
 
-from .fields import Frozen, Length, Name, Quantity
+from .fields import Frozen, Length, Name, Quantity, Spin, nothing
 from .sizes import FileName
 
 Place = Annotated[float, Quantity("m")]
@@ -15,7 +15,10 @@ Direction = Annotated[list[float], Field(min_length=3, max_length=3)]
 Axis = Literal["x", "y", "z"]
 PartName = Annotated[str, Field(pattern=r"^[A-Za-z][A-Za-z0-9_]{0,31}$")]
 Span = Annotated[list[Place], Field(min_length=2, max_length=2)]
-Turn = Annotated[float, Quantity("rad/s")]
+Side = Literal["-x", "+x", "-y", "+y", "-z", "+z"]
+
+
+Limits = tuple[float, float, float, float, float, float]  # xlo xhi ylo yhi zlo zhi [m]
 
 
 def ordered(name: str, span: list[float]) -> None:
@@ -38,7 +41,7 @@ class Room(Frozen):
         return self
 
     @property
-    def limits(self) -> tuple[float, float, float, float, float, float]:
+    def limits(self) -> Limits:
         """xlo xhi ylo yhi zlo zhi [m]."""
         return (self.x[0], self.x[1], self.y[0], self.y[1], self.z[0], self.z[1])
 
@@ -105,7 +108,7 @@ class BoxWall(_Triangles):
     x: Span
     y: Span
     z: Span
-    open: list[Literal["-x", "+x", "-y", "+y", "-z", "+z"]] = Field(default_factory=list)
+    open: list[Side] = Field(default_factory=list)
 
     @model_validator(mode="after")
     def _faces(self) -> Self:
@@ -128,7 +131,7 @@ class _Round(_Triangles, ABC):
     to: Place
     center: Span = Field(default_factory=lambda: [0.0, 0.0])
     ends: list[Literal["from", "to"]] = Field(default_factory=list)
-    turn: Turn = 0.0
+    turn: Spin = 0.0
 
     @model_validator(mode="after")
     def _ordered(self) -> Self:
@@ -186,7 +189,7 @@ class StlWall(_Triangles):
     file: FileName
     scale: Annotated[float, Quantity("1", above=0.0)] = 1.0
     rotate: Rotation | None = None
-    place: Vector = Field(default_factory=lambda: [0.0, 0.0, 0.0])
+    place: Vector = Field(default_factory=nothing)
     closed: bool = False
 
 

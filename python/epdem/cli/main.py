@@ -3,7 +3,6 @@
 
 import errno
 import io
-import json
 import shutil
 import signal
 import sys
@@ -15,10 +14,11 @@ import typer
 from .. import __version__
 from ..base import stopping
 from ..base.settings import DEFAULT_ENGINE
-from ..base.terminal import bar, console, status
+from ..base.terminal import console, status
 from ..errors import CaseError, EpdemError, Stopped
 from . import calibrate as cli_calibrate
 from . import crosscheck as cli_crosscheck
+from . import impacts as cli_impacts
 from . import motion as cli_motion
 from . import numerics as cli_numerics
 from . import rerun as cli_rerun
@@ -27,7 +27,7 @@ from . import sweep as cli_sweep
 from . import theory as cli_theory
 from . import trees as cli_trees
 from . import validate as cli_validate
-from .options import AsJson, CasePath, Engines, Force, Formats, Laws, Out, formats, laws_or_own, refuse, warn
+from .options import AsJson, CasePath, Engines, Force, Formats, Laws, Out, formats, refuse
 from .printed import Printed
 
 ABOUT = """Elastic-plastic particle contact for LIGGGHTS and YADE, checked against theory.
@@ -106,50 +106,20 @@ def run(
             ranks=ranks,
             fresh=fresh,
             resume=resume,
-            pictures=kinds,
+            formats=kinds,
             force=force,
             as_json=as_json,
         )
         raise typer.Exit(code)
     refuse(case, "it continues bulk scenes; a run of impacts takes finished stages from its store", resume=resume)
-    from ..engines import engine as find
-    from ..impacts import report
-    from ..impacts.run import run as run_case
-    from ..studies.pages.impacts import of_impacts
-
-    engines = engine or [DEFAULT_ENGINE]
-    stages = len(set(engines)) * max(len(set(law or [])), 1) + 1  # and the figure
-    with bar() as progress:
-        task = progress.add_task("", total=stages)
-        outcome = run_case(
-            case,
-            engines=[find(name) for name in engines],
-            laws=law or [],
-            out=out,
-            ranks=ranks,
-            steps=steps,
-            fresh=fresh,
-            force=force,
-            progress=lambda text: progress.update(task, advance=1, description=text),
-        )
-        progress.update(task, advance=1, description="figure")
-        report.figure(outcome, kinds)
-        of_impacts(outcome)
+    outcome = cli_impacts.run_impacts(
+        case, engines=engine, laws=law, out=out, ranks=ranks, steps=steps, fresh=fresh, formats=kinds, force=force
+    )
     code = 0 if outcome.passed else 1
-    print(_said(outcome, screen, full, as_json), end="")
+    print(cli_impacts.said(outcome, screen, full, as_json), end="")
     outcome.reused = list(outcome.results.runs)
-    printed.keep(_said(outcome, screen, full, as_json), code)
+    printed.keep(cli_impacts.said(outcome, screen, full, as_json), code)
     raise typer.Exit(code)
-
-
-def _said(outcome: Any, screen: Any, full: bool, as_json: bool) -> str:
-    from ..impacts import report
-
-    if as_json:
-        return report.run_json(outcome) + "\n"
-    with screen.capture() as said:
-        report.show(outcome, screen, full=full)
-    return str(said.get())
 
 
 @app.command()
@@ -181,37 +151,7 @@ def deck(
         refuse(file, "a scene has its own law", law=law)
         cli_scene.deck_scene(file, out, engine=engine, force=force, as_json=as_json)
         return
-    from ..case.doubts import doubts
-    from ..case.impact import load
-    from ..case.toml import named
-    from ..engines import engine as find
-    from ..impacts.experiment import experiment
-    from ..impacts.run import write_deck
-
-    if len(law or []) > 1:
-        raise CaseError("--law: a deck has one law; write one deck for each")
-    with named(file):
-        read = load(file)
-        warn(doubts(read))
-        x = experiment(read, law[0] if law else None)
-        names = [str(f) for f in write_deck(x, find(engine), out, force=force)]
-    print(json.dumps({"files": names}) if as_json else "\n".join(names))
-
-
-@app.command()
-def predict(case: CasePath, law: Laws = None, as_json: AsJson = False) -> None:
-    """Print the prediction of theory for a case; no engine runs."""
-    from ..case.doubts import doubts
-    from ..case.impact import load
-    from ..case.toml import named
-    from ..impacts.experiment import experiment
-    from ..impacts.prediction import predict as predict_experiment
-    from . import show
-
-    with named(case):
-        read = load(case)
-        experiments = [experiment(read, name) for name in laws_or_own(law)]
-    show.predictions([(x, predict_experiment(x)) for x in experiments], doubts(read), as_json, console())
+    cli_impacts.deck_impacts(file, out, engine=engine, laws=law, force=force, as_json=as_json)
 
 
 @app.command()
@@ -228,6 +168,7 @@ def doctor(as_json: AsJson = False) -> None:
 
 
 for command in (
+    cli_impacts.predict,
     cli_crosscheck.crosscheck,
     cli_motion.motion,
     cli_theory.theory,

@@ -74,8 +74,8 @@ def stability(
     as_json: AsJson = False,
 ) -> None:
     """Test stiff and extreme cases, and find the time step at which each fails (default engine: embedded)."""
-    from ..base.files import atomic
     from ..base.folders import refuse_existing
+    from ..base.tables import write_csv
     from ..impacts.report import records
     from ..studies import stability as suite
     from ..studies.stability.suite import summary
@@ -90,8 +90,7 @@ def stability(
     if out:
         from ..studies.pages.tables import of_stability
 
-        with atomic(out) as temporary:
-            outcome.verdicts.to_csv(temporary, index=False)
+        write_csv(out, outcome.verdicts)
         of_stability(outcome, out.with_suffix(".html"))
     if as_json:
         print(

@@ -1,7 +1,9 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Options that several commands share."""
 
+import json
 import sys
+from collections.abc import Iterable
 from pathlib import Path
 from typing import Annotated
 
@@ -9,6 +11,7 @@ import typer
 
 from ..errors import CaseError
 
+FORMATS = ("png", "svg", "pdf")  # of figures
 CasePath = Annotated[Path, typer.Argument(metavar="CASE", help="case file (TOML)")]
 Engines = Annotated[
     list[str] | None,
@@ -35,10 +38,9 @@ def laws_or_own(names: list[str] | None) -> list[str] | list[None]:
 
 def formats(chosen: list[str] | None) -> tuple[str, ...]:
     """The formats of figures, each once; png without any. Raises CaseError."""
-    known = ("png", "svg", "pdf")
     for name in chosen or []:
-        if name not in known:
-            raise CaseError(f"--format {name}: not one of {', '.join(known)}; choose one of these")
+        if name not in FORMATS:
+            raise CaseError(f"--format {name}: not one of {', '.join(FORMATS)}; choose one of these")
     return tuple(dict.fromkeys(chosen or ["png"]))
 
 
@@ -47,6 +49,12 @@ def refuse(place: object, reason: str, **given: object) -> None:
     for name, value in given.items():
         if not (value is None or value is False or value == []):
             raise CaseError(f"{place}: --{name.replace('_', '-')}: {reason}; leave it out")
+
+
+def say_files(paths: Iterable[Path], as_json: bool) -> None:
+    """Print the files that a command has written."""
+    names = list(map(str, paths))
+    print(json.dumps({"files": names}) if as_json else "\n".join(names))
 
 
 def warn(sentences: list[str]) -> None:

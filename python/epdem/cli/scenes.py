@@ -7,9 +7,8 @@ from typing import Annotated
 
 import typer
 
-from ..base.settings import DEFAULT_ENGINE
 from ..base.terminal import bar, console
-from .options import AsJson, CasePath, Replace, warn
+from .options import AsJson, CasePath, Replace, say_files, warn
 
 
 def is_scene(path: Path) -> bool:
@@ -23,14 +22,14 @@ def is_scene(path: Path) -> bool:
 def run_scene(
     case: Path,
     *,
-    engine: str = DEFAULT_ENGINE,
-    out: Path | None = None,
-    ranks: int = 1,
-    fresh: bool = False,
-    resume: bool = False,
-    pictures: tuple[str, ...] = ("png",),
-    force: bool = False,
-    as_json: bool = False,
+    engine: str,
+    out: Path | None,
+    ranks: int,
+    fresh: bool,
+    resume: bool,
+    formats: tuple[str, ...],
+    force: bool,
+    as_json: bool,
 ) -> int:
     """Run a scene with a progress bar; print its checks. Exit code: 0, or 1 if a check failed."""
     from rich.progress import TextColumn, TimeRemainingColumn
@@ -53,7 +52,7 @@ def run_scene(
             force=force,
             report=lambda step, steps: progress.update(task, completed=step, total=steps),
         )
-    report.figures(outcome, pictures)
+    report.figures(outcome, formats)
     of_scene(outcome)
     if as_json:
         print(report.as_json(outcome))
@@ -62,9 +61,7 @@ def run_scene(
     return 0 if outcome.passed else 1
 
 
-def deck_scene(
-    case: Path, out: Path, *, engine: str = DEFAULT_ENGINE, force: bool = False, as_json: bool = False
-) -> None:
+def deck_scene(case: Path, out: Path, *, engine: str, force: bool, as_json: bool) -> None:
     """Write the deck of a scene."""
     from ..base.folders import write_own
     from ..case.doubts import doubts
@@ -81,8 +78,7 @@ def deck_scene(
         p = plan(read)
         warn(doubtful_phases(p))
         files = files_for(scene_engine(engine), p)
-    names = [str(f) for f in write_own(out, files, force=force)]
-    print(json.dumps({"files": names}) if as_json else "\n".join(names))
+    say_files(write_own(out, files, force=force), as_json)
 
 
 def explain(case: CasePath, as_json: AsJson = False) -> None:
@@ -208,11 +204,8 @@ def soften(
         print(f"warning: {warning}")
 
 
-def deck_template(
-    template: Path, case: Path, sets: list[str], out: Path, *, force: bool = False, as_json: bool = False
-) -> None:
+def deck_template(template: Path, case: Path, sets: list[str], out: Path, *, force: bool, as_json: bool) -> None:
     """Write a deck from a template of the user's own and the values of a case."""
     from ..liggghts.own_template import settings, write
 
-    names = [str(f) for f in write(template, case, settings(sets), out, force=force)]
-    print(json.dumps({"files": names}) if as_json else "\n".join(names))
+    say_files(write(template, case, settings(sets), out, force=force), as_json)

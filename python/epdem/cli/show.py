@@ -14,7 +14,7 @@ from ..base.terminal import show_table, table
 from ..engines.doctor import Finding
 from ..impacts.experiment import Experiment
 from ..impacts.prediction import Prediction
-from ..impacts.report import records, yielding
+from ..impacts.report import plain, records, yielding
 from ..theory.yielding import FIRST_YIELD_ROUNDED
 
 
@@ -37,8 +37,8 @@ def predictions(pairs: list[tuple[Experiment, Prediction]], doubts: list[str], a
                     "law": x.law.name,
                     "parameters": x.law.parameters,
                     "yields": p.yields,
-                    "yield_speeds": {k: v if math.isfinite(v) else None for k, v in p.yield_speeds.items()},
-                    "warnings": [*doubts, *p.warnings()],
+                    "yield_speeds": {k: plain(v) for k, v in p.yield_speeds.items()},
+                    "warnings": [*doubts, *p.caveats],
                     "rows": records(frame),
                 }
             )
@@ -48,7 +48,7 @@ def predictions(pairs: list[tuple[Experiment, Prediction]], doubts: list[str], a
                 never = "never: the softer body limits the pressure"
                 when = f"from {speed:.4g} m/s on" if math.isfinite(speed) else never
                 console.print(f"{material} yields beneath its surface ({FIRST_YIELD_ROUNDED:.2f} Y) {when}")
-            for warning in [*doubts, *p.warnings()]:
+            for warning in [*doubts, *p.caveats]:
                 console.print(f"warning: {warning}", style="yellow")
     if as_json:
         print(json.dumps(document[0] if len(document) == 1 else document, indent=1))

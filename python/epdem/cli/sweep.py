@@ -90,6 +90,7 @@ def status(
     as_json: AsJson = False,
 ) -> None:
     """How far a sweep is: points waiting, running, done and failed, with times and reasons."""
+    from ..impacts.report import plain
     from ..studies.sweep import folder as store
     from ..studies.sweep.status import status as ask
     from ..studies.sweep.table import write
@@ -99,7 +100,7 @@ def status(
     if table:
         write(store.read(folder), folder)
     if as_json:
-        print(json.dumps(sweep_view.plain(state), indent=1))
+        print(json.dumps({name: plain(value) for name, value in state.items()}, indent=1))
     else:
         sweep_view.status(state, console())
 

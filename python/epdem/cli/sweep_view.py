@@ -3,7 +3,6 @@
 
 import contextlib
 import json
-import math
 from collections.abc import Iterator
 from typing import Any
 
@@ -37,11 +36,6 @@ def progress() -> Iterator[Report]:
         yield lambda done, total: shown.update(task, completed=done, total=total)
 
 
-def plain(state: dict[str, Any]) -> dict[str, Any]:
-    """The status for JSON: null for what is not known."""
-    return {k: None if isinstance(v, float) and not math.isfinite(v) else v for k, v in state.items()}
-
-
 def outcome(result: SweepOutcome, as_json: bool, console: Console) -> None:
     """Print the failed points and a summary."""
     counts = {state: result.count(state) for state in (DONE, FAILED)}
@@ -52,28 +46,24 @@ def outcome(result: SweepOutcome, as_json: bool, console: Console) -> None:
         print(json.dumps(about | counts | {"failures": failures}, indent=1))
         return
     for row in failed.head(SHOWN).to_dict("records"):
-        console.print(f"point {row['point']} failed: {row['reason']}", style="red", highlight=False, soft_wrap=True)
+        console.print(f"point {row['point']} failed: {row['reason']}", style="red", soft_wrap=True)
     if len(failed) > SHOWN:
-        console.print(f"... and {len(failed) - SHOWN} more", style="red", highlight=False)
+        console.print(f"... and {len(failed) - SHOWN} more", style="red")
     outside = result.table[(result.table["status"] == DONE) & ~result.table["passed"]]["point"].nunique()
     text = f"{counts[DONE]} of {len(result.sweep.points)} points done, {result.ran} of them just now"
     text += f"; {counts[FAILED]} failed (--retry-failed runs them again)" if counts[FAILED] else ""
     text += f"; {outside} outside tolerance" if outside else ""
-    console.print(
-        f"{result.sweep.name}: {text}; see {result.folder}/sweep.csv and report.html", highlight=False, soft_wrap=True
-    )
+    console.print(f"{result.sweep.name}: {text}; see {result.folder}/sweep.csv and report.html", soft_wrap=True)
 
 
 def status(summary: dict[str, Any], console: Console) -> None:
     """Print the status of a sweep."""
     states = ", ".join(f"{summary[state]} {state}" for state in ("waiting", "running", "done", "failed"))
-    console.print(f"{summary['case']}: {summary['points']} points: {states}", highlight=False, soft_wrap=True)
+    console.print(f"{summary['case']}: {summary['points']} points: {states}", soft_wrap=True)
     if summary["done"] + summary["failed"]:
         left = f"; about {summary['work_left']:.3g} s of work left" if summary["work_left"] else ""
-        console.print(
-            f"{summary['seconds']:.3g} s of work, longest point {summary['longest']:.3g} s{left}", highlight=False
-        )
+        console.print(f"{summary['seconds']:.3g} s of work, longest point {summary['longest']:.3g} s{left}")
     for row in summary["failures"][:SHOWN]:
-        console.print(f"point {row['point']} failed: {row['reason']}; {row['folder']}", highlight=False, soft_wrap=True)
+        console.print(f"point {row['point']} failed: {row['reason']}; {row['folder']}", soft_wrap=True)
     if len(summary["failures"]) > SHOWN:
-        console.print(f"... and {len(summary['failures']) - SHOWN} more", highlight=False)
+        console.print(f"... and {len(summary['failures']) - SHOWN} more")

@@ -10,7 +10,7 @@ import typer
 from ..base.settings import DEFAULT_ENGINE
 from ..base.terminal import console, show_table, status
 from ..base.terminal import table as empty_table
-from .options import AsJson, CasePath, Engines, Force, Formats, Laws, formats, laws_or_own, refuse
+from .options import AsJson, CasePath, Engines, Force, Formats, Laws, formats, laws_or_own, refuse, say_files
 
 
 def theory(
@@ -64,8 +64,8 @@ def figures(
     kinds = formats(pictures)
     with claim(out, force=force), status() as progress:
         progress("four figures")
-        names = [str(path) for path in draw_all(out, kinds)]
-    print(json.dumps({"files": names}) if as_json else "\n".join(names))
+        paths = draw_all(out, kinds)
+    say_files(paths, as_json)
 
 
 def cite(case: CasePath, engine: Engines = None, law: Laws = None, as_json: AsJson = False) -> None:

@@ -4,12 +4,12 @@
 import numpy as np
 import pandas as pd
 
-from ..case.impact import Check
+from ..case.impact import DEFAULT_CHECKS, Check
 from .measurement import Measured
 from .plan import Plan
 from .prediction import Prediction
 
-CHECKED = ("e_n", "contact_time", "force_max", "overlap_max", "residual_overlap")
+CHECKED = tuple(DEFAULT_CHECKS)
 OBLIQUE = ("psi_2", "e_t", "impulse_ratio", "rebound_angle", "spin")
 UNITS = {
     "speed": "m/s",

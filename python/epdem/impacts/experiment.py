@@ -36,6 +36,7 @@ class Body:
 
     @property
     def rigid(self) -> bool:
+        """Whether it does not deform."""
         return math.isinf(self.young_modulus)
 
 

@@ -66,6 +66,7 @@ def predict_edinburgh(x: Experiment) -> Prediction:
 
 
 def edinburgh_note(x: Experiment) -> str:
+    """The rule for the numbers of edinburgh."""
     return f"k_1 = 4/3 E* sqrt(R*), k_2/k_1 = {STIFFENING:g}, n = {EXPONENT:g}, no adhesion"
 
 

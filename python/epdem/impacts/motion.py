@@ -107,6 +107,11 @@ class Loads:
         return {f"{name}_{side}": values[:, k] for name, values in both for k, side in enumerate("ij")}
 
 
+def summary(touch: Touch, motion: Motion) -> str:
+    """One line for the head of a deck."""
+    return f"{motion.name}: {motion.steps} steps of a prescribed motion, law {touch.experiment.law.name}"
+
+
 class MotionEngine(Protocol):
     """One way to compute the forces of a prescribed motion."""
 

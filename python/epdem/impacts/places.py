@@ -36,6 +36,17 @@ def side_by_side(plan: Plan) -> tuple[Group, ...]:
     return body, group(x.target, -x.target.radius - (1 - share) * plan.gap, (1 - share) * plan.speed, (share - 1) * vx)
 
 
+def approach(plan: Plan, z: np.ndarray, v: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
+    """Overlap [m] and approach velocity [m/s], shape (n, samples), from height and vertical velocity of every body.
+
+    z [m] and v [m/s] have the shape (samples, bodies); targets that move come after all bodies.
+    """
+    x, n = plan.experiment, plan.n
+    if math.isinf(x.target.radius):
+        return (x.body.radius - z).T, -v.T
+    return (x.body.radius + x.target.radius - (z[:, :n] - z[:, n:])).T, (v[:, n:] - v[:, :n]).T
+
+
 def room(plan: Plan) -> tuple[tuple[float, float], ...]:
     """(low, high) [m] along x, y and z of a box that holds all bodies to the end: they part no faster than they met."""
     reach, spacing = _reach(plan), _spacing(plan)

@@ -8,7 +8,7 @@ import numpy as np
 from ..errors import CaseError
 from .experiment import Experiment
 from .prediction import Prediction
-from .timestep import search
+from .timestep import search, starting_phases
 
 MAX_SAMPLES = 1e8  # of a trajectory: three numbers each, 2.4 GB
 
@@ -35,7 +35,13 @@ class Plan:
 
     @property
     def n(self) -> int:
+        """How many impacts."""
         return self.speed.size
+
+    @property
+    def summary(self) -> str:
+        """One line for the head of a deck."""
+        return f"{self.experiment.speed.size} speeds x {self.phases} phases = {self.n} independent impacts"
 
 
 def plan(experiment: Experiment, prediction: Prediction, *, time_step: float | None = None) -> Plan:
@@ -47,9 +53,8 @@ def plan(experiment: Experiment, prediction: Prediction, *, time_step: float | N
         dt = search(experiment, prediction, numerics.error).time_step
     else:
         dt = float(prediction.duration.min() / numerics.steps_in_contact)
-    phase = (np.arange(numerics.phases) + 0.5) / numerics.phases
     speed = np.repeat(experiment.speed, numerics.phases)
-    gap = np.tile(phase, experiment.speed.size) * speed * dt
+    gap = np.tile(starting_phases(numerics.phases), experiment.speed.size) * speed * dt
     # a few steps more than the longest contact: integration errors stretch it, and its end must be among the samples
     steps = int(np.ceil(1.02 * prediction.duration.max() / dt)) + 8
     if speed.size * steps > MAX_SAMPLES:

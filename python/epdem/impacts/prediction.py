@@ -31,7 +31,7 @@ class Prediction:
     yields: tuple[str, ...]  # materials that the law lets flow somewhere in the range of speeds
     yield_speeds: dict[str, float]  # from which each material yields beneath its surface [m/s], eq. 8.78; inf: never
     rebound: oblique.Rebound | None = None  # of oblique impacts
-    caveats: tuple[str, ...] = ()  # where the prediction leaves its domain
+    caveats: tuple[str, ...] = ()  # where law or theory leaves its own domain, in words
     lasting: float = np.nan  # how long bodies that stick are watched [s]; NaN: without adhesion
 
     COLUMNS = (
@@ -61,10 +61,6 @@ class Prediction:
         """One row per impact, with the rebound of oblique ones."""
         rebound = {} if self.rebound is None else self.rebound.columns()
         return pd.DataFrame({name: getattr(self, name) for name in self.COLUMNS} | rebound)
-
-    def warnings(self) -> list[str]:
-        """Where the law or theory leaves its own domain, in words."""
-        return list(self.caveats)
 
 
 def predict(experiment: Experiment) -> Prediction:

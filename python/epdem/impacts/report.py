@@ -50,7 +50,7 @@ ROW_KEYS = (
 )
 
 
-def _plain(value: Any) -> Any:
+def plain(value: Any) -> Any:
     """A value for JSON: numpy scalars as Python's, NaN and infinity as null."""
     value = value.item() if hasattr(value, "item") else value
     return None if isinstance(value, float) and not math.isfinite(value) else value
@@ -58,7 +58,7 @@ def _plain(value: Any) -> Any:
 
 def records(rows: pd.DataFrame, keys: Sequence[str] | None = None) -> list[dict[str, object]]:
     """The rows of a table for JSON."""
-    return [{k: _plain(row[k]) for k in (keys or rows.columns)} for row in rows.to_dict("records")]
+    return [{k: plain(row[k]) for k in (keys or rows.columns)} for row in rows.to_dict("records")]
 
 
 def _keys(outcome: Outcome) -> tuple[str, ...]:
@@ -188,12 +188,12 @@ def show(outcome: Outcome, console: Console, *, full: bool = False) -> None:
     shown, rows = chosen(outcome, full), outcome.results.comparison
     show_table(console, run_table(outcome, full=full), SPARE)
     if len(shown) < len(rows):
-        console.print(f"{len(shown)} of {len(rows)} rows; --full prints all", markup=False, highlight=False)
+        console.print(f"{len(shown)} of {len(rows)} rows; --full prints all")
     for line in [*worst(outcome), *against_measured(outcome)]:
-        console.print(line, markup=False, highlight=False, soft_wrap=True)
+        console.print(line, soft_wrap=True)
     for warning in outcome.warnings:
-        console.print(f"warning: {warning}", style="yellow", markup=False, highlight=False)
-    console.print(summary(outcome), markup=False, highlight=False, soft_wrap=True)
+        console.print(f"warning: {warning}", style="yellow")
+    console.print(summary(outcome), soft_wrap=True)
 
 
 def mark(outcome: Outcome, *facts: object) -> str:

@@ -45,6 +45,7 @@ class Outcome:
 
     @property
     def passed(self) -> bool:
+        """Whether all rows are within the tolerances of the case."""
         return bool(self.results.comparison["passed"].all())
 
 
@@ -236,7 +237,7 @@ def _run(text: str, work: _Work, folder: Path, ranks: int, fresh: bool, progress
     for p in work.plans:
         law = p.experiment.law.name
         prediction = work.predictions[law]
-        outcome.warnings += prediction.warnings()
+        outcome.warnings += prediction.caveats
         outcome.warnings += [_spring(p, tool) for tool in work.tools if _spring(p, tool)]
         results.predictions[law] = prediction.table()
         for tool in work.tools:

@@ -8,6 +8,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ..case.impact import MOST_STEPS
 from ..errors import CaseError
 from ..theory import timestep as times
 from .experiment import Experiment
@@ -16,7 +17,6 @@ from .prediction import Prediction
 PHASES = 32  # four times the 8 of a case, so that the search does not miss the worst phase
 LADDER = 2**0.25  # ratio of neighbouring steps tried; an error of second order changes by 1.41
 SAFETY = 0.8  # the share of the target that the search accepts: phases between the tried ones are a little worse
-MOST_STEPS = 100_000  # in contact; the limit of case files too
 
 
 @dataclass(frozen=True)
@@ -43,6 +43,11 @@ class Found:
     def shares(self) -> dict[str, float]:
         """The step over each reference time."""
         return {name: self.time_step / t for name, t in vars(self.reference).items()}
+
+
+def starting_phases(count: int) -> np.ndarray:
+    """The shares of a step at which contacts begin, evenly over the step, shape (count,)."""
+    return (np.arange(count) + 0.5) / count
 
 
 def stability_limit(x: Experiment, overlap_max: float) -> float:
@@ -81,8 +86,7 @@ def restitution_errors(x: Experiment, prediction: Prediction, time_step: float, 
 
     Where theory lets the bodies stick the error is e_n itself.
     """
-    phase = (np.arange(phases) + 0.5) / phases
-    gap = phase[None, :] * x.speed[:, None] * time_step
+    gap = starting_phases(phases)[None, :] * x.speed[:, None] * time_step
     speed = np.broadcast_to(x.speed[:, None], gap.shape)
     steps = int(np.ceil(1.5 * prediction.duration.max() / time_step)) + 20
     out = x.native_law().impacts(

@@ -18,7 +18,7 @@ from ..impacts import foreign
 from ..impacts.engine import Abilities, Trajectory, check_abilities, recorded_seconds
 from ..impacts.experiment import Experiment
 from ..impacts.pairs import Pairs
-from ..impacts.places import room, side_by_side
+from ..impacts.places import approach, room, side_by_side
 from ..impacts.plan import Plan
 from ..impacts.prediction import Prediction
 from . import data_file
@@ -95,7 +95,7 @@ class LammpsMdr:
         return Deck(
             title=x.title,
             source=x.source,
-            summary=f"{x.speed.size} speeds x {plan.phases} phases = {plan.n} independent impacts, LAMMPS's mdr",
+            summary=f"{plan.summary}, LAMMPS's mdr",
             data="impact.data",
             skin=0.2 * x.body.radius,
             types=(x.body.material,),
@@ -145,7 +145,8 @@ class LammpsMdr:
         except (OSError, ValueError) as error:
             raise EngineError(f"{path}: the run left an incomplete dump ({error}); see log.lammps beside it") from None
         path.unlink()
-        return Trajectory(plan.time_step, (plan.experiment.body.radius - z).T, fz.T, -vz.T, {"total": wall})
+        overlap, velocity = approach(plan, z, vz)
+        return Trajectory(plan.time_step, overlap, fz.T, velocity, {"total": wall})
 
     def seconds(self, plan: Plan, folder: Path) -> dict[str, float]:
         return recorded_seconds(self, plan, folder)

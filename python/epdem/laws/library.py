@@ -24,6 +24,8 @@ _D = POINTER(c_double)
 
 
 class StepResult(Structure):
+    """`epdem_step_result` of the C interface."""
+
     _fields_ = [("force", c_double), ("radius", c_double), ("delta_max", c_double)]
 
 

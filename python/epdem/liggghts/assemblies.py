@@ -11,6 +11,7 @@ from ..base.files import write_texts
 from ..lammps import data_file
 from ..laws.library import laws
 from ..scenes.assembly import Assembly, AssemblyPlan, ContactFrame
+from ..scenes.meshes import rectangle
 from . import dump, launcher, log, stl
 from .impacts import Liggghts
 from .properties import SOFT, Property, elastic, per_pair, strength
@@ -79,12 +80,6 @@ def _data(a: Assembly) -> str:
     return data_file.text(a.title, len(a.materials), [(0.0, lx), (0.0, ly), (-margin, lz + margin)], spheres)
 
 
-def _square(lx: float, ly: float, z: float) -> np.ndarray:
-    """Two triangles of the rectangle from the origin to (lx, ly) at height z."""
-    corners = np.array([[0.0, 0.0, z], [lx, 0.0, z], [lx, ly, z], [0.0, ly, z]])
-    return corners[[[0, 1, 2], [0, 2, 3]]]
-
-
 class LiggghtsAssemblies:
     """LIGGGHTS with our models, or with one of its own."""
 
@@ -99,7 +94,8 @@ class LiggghtsAssemblies:
         files = {SCRIPT: decks.render("liggghts/assembly.in.j2", deck=_deck(plan, model)), DATA: _data(a)}
         if a.plate_speed:
             lx, ly, lz = map(float, a.box)
-            files |= {f"{name}.stl": stl.text(name, _square(lx, ly, z)) for name, z in (("floor", 0.0), ("plate", lz))}
+            for name, z in (("floor", 0.0), ("plate", lz)):
+                files[f"{name}.stl"] = stl.text(name, rectangle(2, (lx / 2, ly / 2, z), (lx, ly)))
         write_texts(folder, files)
 
     def run(self, folder: Path, *, ranks: int = 1) -> float:

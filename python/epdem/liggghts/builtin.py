@@ -21,37 +21,39 @@ def _elastic(plan: Plan) -> tuple[int, list[Property]]:
 
 
 WITHOUT_OURS = replace(Liggghts.can, dashpot=False, friction=(), scenes=(), restarts=False, own_models=())
-RUBBING = replace(WITHOUT_OURS, friction=Liggghts.can.friction, own_spring=True)
 
 
-class BuiltinHertz(Liggghts):
-    """LIGGGHTS's `hertz` without damping: the elastic limit."""
+class _Rubbing(Liggghts):
+    """A model with LIGGGHTS's own tangential spring, whatever tangential model the case has."""
 
-    name = OWN_MODELS[1]
-    can = replace(RUBBING, laws=("hertz",))
-
-    def model(self, plan: Plan) -> str:
-        return "hertz"
+    can = replace(WITHOUT_OURS, friction=Liggghts.can.friction, own_spring=True)
 
     def tangential(self, plan: Plan) -> str | None:
         return "history" if plan.experiment.oblique else None
+
+
+class BuiltinHertz(_Rubbing):
+    """LIGGGHTS's `hertz` without damping: the elastic limit."""
+
+    name = OWN_MODELS[1]
+    can = replace(_Rubbing.can, laws=("hertz",))
+
+    def model(self, plan: Plan) -> str:
+        return "hertz"
 
     def properties(self, plan: Plan) -> tuple[Property, ...]:
         types, elastic = _elastic(plan)
         return (*elastic, *of_friction(plan, types))
 
 
-class ThorntonNing(Liggghts):
+class ThorntonNing(_Rubbing):
     """LIGGGHTS's `thornton_ning` without adhesion, with the yield pressure of the plan's `thornton` law."""
 
     name = OWN_MODELS[0]
-    can = replace(RUBBING, laws=("thornton",))
+    can = replace(_Rubbing.can, laws=("thornton",))
 
     def model(self, plan: Plan) -> str:
         return "thornton_ning"
-
-    def tangential(self, plan: Plan) -> str | None:
-        return "history" if plan.experiment.oblique else None
 
     def properties(self, plan: Plan) -> tuple[Property, ...]:
         x, (types, elastic) = plan.experiment, _elastic(plan)

@@ -10,10 +10,11 @@ from ..base import paths
 from ..base import rendering as decks
 from ..base.files import write_texts
 from ..case.fields import NODES
+from ..case.kinds import KINDS
 from ..errors import CaseError, EngineError
 from ..impacts.engine import Abilities, Trajectory, check_abilities
 from ..impacts.pairs import Pairs
-from ..impacts.places import room, side_by_side
+from ..impacts.places import approach, room, side_by_side
 from ..impacts.plan import Plan
 from ..lammps import data_file
 from ..laws.library import laws
@@ -25,8 +26,7 @@ from .log import loop_seconds
 from .pairs import velocities
 from .properties import HARD, SOFT, Property, atom_types, finite, of_law, tangential
 
-END = "end.bin"
-SCENES = ("settle", "hopper", "drum", "compaction", "peening", "parts")
+PATH, END = "path.bin", "end.bin"
 OWN_MODELS = ("liggghts-thornton_ning", "liggghts-hertz")
 
 
@@ -40,7 +40,7 @@ class Liggghts:
         dashpot=True,
         friction=tuple(NODES),
         ranks=launcher.most_ranks(),
-        scenes=SCENES,
+        scenes=KINDS,
         restarts=True,
         edits=EDITS,
         variants=("swap", "sort", "migration", "restart"),
@@ -83,7 +83,7 @@ class Liggghts:
         return Deck(
             title=x.title,
             source=x.source,
-            summary=f"{x.speed.size} speeds x {plan.phases} phases = {plan.n} independent impacts, law {x.law.name}",
+            summary=f"{plan.summary}, law {x.law.name}",
             has_history=laws()[x.law.name].memory > 0 or x.oblique is not None,
             hard=max(moduli) > HARD,
             soft=min(moduli) < SOFT,
@@ -97,7 +97,7 @@ class Liggghts:
             oblique=x.oblique is not None,
             wall_type=len(types) if math.isinf(x.target.radius) else None,
             time_step=plan.time_step,
-            path="path.bin",
+            path=PATH,
             steps=plan.steps,
         )
 
@@ -110,7 +110,7 @@ class Liggghts:
         return write_texts(folder, texts)
 
     def run(self, plan: Plan, folder: Path, *, ranks: int = 1) -> Trajectory:
-        path = folder / "path.bin"
+        path = folder / PATH
         path.unlink(missing_ok=True)
         (folder / END).unlink(missing_ok=True)
         allowed = 120 + 2e-6 * plan.n * plan.steps
@@ -148,6 +148,10 @@ def data_text(plan: Plan, types: int) -> str:
     return data_file.text(plan.experiment.name, types, room(plan), groups)
 
 
+def _incomplete(path: Path, error: Exception) -> EngineError:
+    return EngineError(f"{path}: the run left an incomplete dump ({error}); see {launcher.LOG} beside it")
+
+
 def _end(plan: Plan, path: Path) -> tuple[np.ndarray, np.ndarray] | tuple[None, None]:
     """v_x [m/s] and omega_y [rad/s] of the bodies at the end of oblique impacts; None for normal ones."""
     if plan.experiment.oblique is None:
@@ -155,24 +159,19 @@ def _end(plan: Plan, path: Path) -> tuple[np.ndarray, np.ndarray] | tuple[None, 
     try:
         vx, spin = dump.series(path)[-1].T
     except (ValueError, IndexError) as error:
-        raise EngineError(f"{path}: the run left an incomplete dump ({error}); see log.liggghts beside it") from None
+        raise _incomplete(path, error) from None
     return vx, spin
 
 
 def trajectory(plan: Plan, path: Path, seconds: dict[str, float]) -> Trajectory:
     """Overlap, force and approach velocity from z, vz, fz of every body. Raises EngineError if samples are missing."""
-    x, n = plan.experiment, plan.n
-    wall = math.isinf(x.target.radius)
+    n = plan.n
     try:
         z, vz, fz = np.moveaxis(dump.series(path), 2, 0)
-        bodies = n if wall else 2 * n
+        bodies = n if math.isinf(plan.experiment.target.radius) else 2 * n
         if z.shape != (plan.steps + 1, bodies):
             raise ValueError(f"{z.shape[0]} frames of {z.shape[1]} bodies, expected {plan.steps + 1} of {bodies}")
     except ValueError as error:
-        raise EngineError(f"{path}: the run left an incomplete dump ({error}); see log.liggghts beside it") from None
-    if wall:
-        overlap, velocity = x.body.radius - z, -vz
-    else:
-        overlap = x.body.radius + x.target.radius - (z[:, :n] - z[:, n:])
-        velocity = vz[:, n:] - vz[:, :n]
-    return Trajectory(plan.time_step, overlap.T, fz[:, :n].T, velocity.T, seconds, *_end(plan, path.with_name(END)))
+        raise _incomplete(path, error) from None
+    overlap, velocity = approach(plan, z, vz)
+    return Trajectory(plan.time_step, overlap, fz[:, :n].T, velocity, seconds, *_end(plan, path.with_name(END)))

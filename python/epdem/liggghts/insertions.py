@@ -15,7 +15,7 @@ SMALL, SMALL_ROOM, MEANT = 1e-12, 1e-10, 1e-20
 
 @dataclass(frozen=True)
 class Template:
-    """A particle template; `small`: its volume needs LIGGGHTS's keyword for tiny volumes."""
+    """A particle template; `limit`: the words for a tiny volume, if it has one."""
 
     id: str
     seed: int
@@ -23,7 +23,7 @@ class Template:
     density: float
     radius: float
     share: float
-    small: bool
+    limit: str
 
 
 @dataclass(frozen=True)
@@ -56,6 +56,11 @@ def primes() -> Iterator[int]:
         n += 2
 
 
+def _limit(volume: float, least: float) -> str:
+    """The words that let LIGGGHTS take a volume [m^3] below its least one."""
+    return f" volume_limit {MEANT:g}" if volume < least else ""
+
+
 def _region(fill: Fill) -> str:
     """The region of a fill; one with little room for the centres of its spheres has to be meant."""
     largest = max(part.radii()[1] for part in fill.parts)
@@ -67,7 +72,7 @@ def _region(fill: Fill) -> str:
         c = fill.region
         style = f"cylinder z {c.center[0]:g} {c.center[1]:g} {c.radius:.10g} {c.low:.10g} {c.high:.10g}"
         centres = math.pi * (c.radius - largest) ** 2 * (c.high - c.low - 2.0 * largest)
-    return style + (f" volume_limit {MEANT:g}" if centres < SMALL_ROOM else "")
+    return style + _limit(centres, SMALL_ROOM)
 
 
 def _templates(p: ScenePlan, fill: Fill, first: int, seeds: Iterator[int]) -> tuple[Template, ...]:
@@ -80,7 +85,7 @@ def _templates(p: ScenePlan, fill: Fill, first: int, seeds: Iterator[int]) -> tu
             p.case.materials[material].density,
             radius,
             share,
-            4.0 / 3.0 * math.pi * radius**3 < SMALL,
+            _limit(4.0 / 3.0 * math.pi * radius**3, SMALL),
         )
         for i, (material, radius, share) in enumerate(sizes, first)
     )

@@ -12,7 +12,7 @@ from ..base.files import write_texts
 from ..case.fields import NODES
 from ..errors import EngineError
 from ..impacts.engine import Abilities
-from ..impacts.motion import Loads, Motion, Touch
+from ..impacts.motion import Loads, Motion, Touch, summary
 from ..lammps import data_file
 from . import dump, launcher
 from .deck import Deck
@@ -51,7 +51,7 @@ def deck(touch: Touch, motion: Motion) -> Deck:
     plain = Liggghts().deck(touch.plan(motion))
     return replace(
         plain,
-        summary=f"{motion.name}: {motion.steps} steps of a prescribed motion, law {touch.experiment.law.name}",
+        summary=summary(touch, motion),
         has_history=True,
         data=DATA,
         properties=(*plain.properties, per_pair("coefficientFriction", len(plain.types), touch.friction, "-")),

@@ -118,8 +118,7 @@ def planes(p: ScenePlan) -> tuple[Flat, ...]:
 
 def _origins(p: ScenePlan, name: str) -> Vector:
     """The place that torques on a mesh refer to [m]: on the axis of its turn."""
-    turns = [p.layout.meshes[name].turn, *(phase.moves.get(name) for phase in p.phases)]
-    origins = {turn.origin for turn in turns if isinstance(turn, Turn)}
+    origins = {turn.origin for turn in p.turns(name)}
     if len(origins) > 1:
         raise CaseError(f"scene.wall.{name}: it turns about several origins, LIGGGHTS refers torques to one; give one")
     return next(iter(origins), (0.0, 0.0, 0.0))
@@ -146,11 +145,8 @@ def surfaces(p: ScenePlan) -> tuple[Surface, ...]:
     force = p.plates or p.output.loads or p.output.energy
     found = []
     for name, mesh in p.layout.meshes.items():
-        turn, words, style = (
-            mesh.turn,
-            "",
-            "/stress" if force or name in p.layout.loads or mesh.stress or mesh.wear else "",
-        )
+        turn, words = mesh.turn, ""
+        style = "/stress" if force or name in p.layout.loads or mesh.stress or mesh.wear else ""
         origins = _origins(p, name)
         if style and any(origins):
             words = f" reference_point {_words(origins)}"

@@ -15,7 +15,6 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-FORMATS = ("png", "svg", "pdf")
 STYLE: dict[str, Any] = {
     "font.size": 10.0,
     "axes.grid": True,

@@ -5,6 +5,7 @@ import numpy as np
 
 from ..report.chart import GREY, INK, PALETTE, Axis, Chart, Panel, Series
 from ..report.page import Picture
+from .columns import last_frame
 from .key_figures import key
 from .measures import unit
 from .pictures import colour, unit_of
@@ -95,7 +96,7 @@ def bed(outcome: SceneOutcome) -> list[Picture]:
     table = outcome.results.tables.get("particles")
     if table is None or table.empty:
         return []
-    frame = table[table["step"] == table["step"].max()]
+    frame = last_frame(table)
     last = frame.sort_values("y", ascending=False).tail(MOST)
     x, z, r = (last[name].to_numpy() for name in ("x", "z", "radius"))
     field = outcome.plan.output.color

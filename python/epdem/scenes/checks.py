@@ -7,9 +7,11 @@ from dataclasses import dataclass
 import numpy as np
 import pandas as pd
 
+from ..case.kinds import Compaction, Hopper, Peening, Settle
 from ..case.parts import Parts
-from ..case.scene import Compaction, Hopper, Peening, SceneCase, Settle
+from ..case.scene import SceneCase
 from ..impacts.prediction import predict
+from .columns import last_frame
 from .ledger import closure, kinetic, plate_velocity, rotation
 from .pairs import wall_impact
 from .plan import ScenePlan
@@ -53,8 +55,7 @@ def _kept(p: ScenePlan, tables: dict[str, pd.DataFrame]) -> list[Row]:
 
 def floor_load(case: SceneCase, tables: dict[str, pd.DataFrame]) -> tuple[float, float]:
     """(mean floor load over the last fifth of the run, weight of the spheres) [N]."""
-    rows, last = tables["rows"], tables["particles"]
-    mass = last[last["step"] == last["step"].max()]["mass"].sum()
+    rows, mass = tables["rows"], last_frame(tables["particles"])["mass"].sum()
     tail = rows[rows["step"] > 0.8 * rows["step"].max()]
     return float(tail["floor_load"].mean()), float(mass * case.scene.gravity)
 
@@ -206,7 +207,7 @@ def _of_parts(p: ScenePlan, tables: dict[str, pd.DataFrame]) -> list[Row]:
     known = there <= {*p.layout.loads} and not any(s.frozen for s in p.layout.table)
     if not (there and known) or p.layout.loses or "particles" not in tables or not p.case.scene.gravity:
         return []
-    last = tables["particles"][tables["particles"]["step"] == tables["particles"]["step"].max()]
+    last = last_frame(tables["particles"])
     weight = last["mass"] * p.case.scene.gravity
     if last.empty or kinetic(last).sum() > AT_REST * (weight * last["radius"]).sum():
         return []

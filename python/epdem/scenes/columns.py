@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
-from ..case.scene import Compaction
+from ..case.kinds import Compaction
 from ..errors import EngineError
 from .plan import ScenePlan
 
@@ -36,6 +36,11 @@ LOADS = ("force_x", "force_y", "force_z", "torque_x", "torque_y", "torque_z")  #
 SMALLEST = 1e-12  # radius [m]
 PARTICLES = ["id", "type", "radius", "mass", "x", "y", "z", "vx", "vy", "vz"]
 SPINS = ["omega_x", "omega_y", "omega_z"]
+
+
+def last_frame(table: pd.DataFrame) -> pd.DataFrame:
+    """The rows of the last frame of a table."""
+    return table[table["step"] == table["step"].max()]
 
 
 def unit_of_load(column: str) -> str | None:

@@ -12,7 +12,7 @@ from ..case.parts import Fill as CaseFill
 from ..case.parts import Parts
 from ..case.scene import SceneCase
 from ..case.sizes import Particles
-from ..case.walls import BoxWall, ConeWall, CylinderWall, PlaneWall, PlateWall, StlWall, Upright, Wall
+from ..case.walls import BoxWall, ConeWall, CylinderWall, Limits, PlaneWall, PlateWall, StlWall, Upright, Wall
 from ..errors import CaseError
 from . import meshes, stl_files
 from .layout import (
@@ -33,15 +33,13 @@ from .layout import (
     Vibration,
 )
 
-Room = tuple[float, float, float, float, float, float]
-
 
 def _vector(values: list[float]) -> Vector:
     x, y, z = values
     return (x, y, z)
 
 
-def _triangles(w: Wall, room: Room, largest: float) -> meshes.FloatArray:
+def _triangles(w: Wall, room: Limits, largest: float) -> meshes.FloatArray:
     match w:
         case PlateWall():
             first, second = w.size

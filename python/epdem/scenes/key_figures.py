@@ -6,8 +6,8 @@ from collections.abc import Callable
 import numpy as np
 import pandas as pd
 
+from ..case.kinds import Compaction, Drum, Hopper, Peening, Settle
 from ..case.parts import Parts
-from ..case.scene import Compaction, Drum, Hopper, Peening, Settle
 from ..report.chart import INK, Axis, Chart, Panel, Series, plain
 from . import checks
 from .measures import unit

@@ -4,8 +4,9 @@
 import math
 from collections.abc import Callable
 
+from ..case.kinds import Compaction, Drum, Hopper, Kinds, Peening, Settle
 from ..case.parts import Parts
-from ..case.scene import Compaction, Drum, Hopper, Kinds, Peening, SceneCase, Settle
+from ..case.scene import SceneCase
 from ..case.sizes import Particles
 from ..errors import CaseError
 from . import meshes
@@ -97,7 +98,7 @@ def _compaction(s: Compaction) -> Layout:
         (Fill(s.particles, s.count, Block((-x, x, -y, y, 0.0, lz))),),
         (*([Stage("fall", s.fall)] if s.fall else []), load, unload),
         s.count,
-        {"plate": Mesh(meshes.plate(lx, ly, lz))},
+        {"plate": Mesh(meshes.rectangle(2, (0.0, 0.0, lz), (lx, ly)))},
     )
 
 

@@ -6,6 +6,7 @@ from dataclasses import dataclass, field
 
 from ..case.parts import Sphere
 from ..case.sizes import Particles
+from ..case.walls import Limits
 from .meshes import FloatArray
 
 Vector = tuple[float, float, float]
@@ -88,7 +89,7 @@ class Mesh:
 class Block:
     """A room between planes: xlo xhi ylo yhi zlo zhi [m]."""
 
-    limits: tuple[float, float, float, float, float, float]
+    limits: Limits
 
     @property
     def volume(self) -> float:
@@ -163,7 +164,7 @@ class Layout:
     their own. loads: walls whose force, and if they are meshes torque, is in the rows with all components.
     """
 
-    box: tuple[float, float, float, float, float, float]
+    box: Limits
     periodic: bool
     planes: tuple[Plane, ...]
     fills: tuple[Fill, ...]

@@ -6,19 +6,17 @@ import math
 import numpy as np
 import pandas as pd
 
-from ..case.measures import Amount, CenterOfMass, Flow, Height, Histogram, Load, Porosity, Repose
+from ..case.measures import Amount, CenterOfMass, Flow, Height, Histogram, Load, Measure, Porosity, Repose
 from ..case.walls import Room, Upright
 from ..errors import CaseError
 from ..theory.backbones import JKR
-from .columns import columns_of_rows
+from .columns import columns_of_rows, last_frame
 from .meshes import FloatArray
 from .pairs import pair_law
 from .plan import ScenePlan
 
 POINTS = 2**14  # in a region whose porosity is measured: an error of some 0.3 % of the volume
 RINGS = 12  # of the surface of a bed
-
-Measure = Amount | Flow | Height | Repose | CenterOfMass | Load | Porosity | Histogram
 
 
 def refuse_measures(p: ScenePlan) -> None:
@@ -180,8 +178,7 @@ def values_of(p: ScenePlan, m: Histogram, tables: dict[str, pd.DataFrame]) -> Fl
     """What a histogram counts: the plastic work of each sphere in the last frame [J], or the impact speeds [m/s]."""
     if m.kind == "impact_speed":
         return _impact_speeds(p, tables)
-    spheres = tables["particles"]
-    return np.asarray(spheres[spheres["step"] == spheres["step"].max()]["plastic_work"], float)
+    return np.asarray(last_frame(tables["particles"])["plastic_work"], float)
 
 
 def histograms(p: ScenePlan, tables: dict[str, pd.DataFrame]) -> pd.DataFrame:

@@ -42,15 +42,7 @@ def hopper(bin_diameter: float, bin_height: float, outlet: float, depth: float) 
 
 def drum(diameter: float, length: float) -> FloatArray:
     """A tube about the y axis, open at its ends."""
-    tube = _tube([(diameter / 2, -length / 2), (diameter / 2, length / 2)])
-    return tube[:, :, [0, 2, 1]]
-
-
-def plate(lx: float, ly: float, z: float) -> FloatArray:
-    """A horizontal rectangle of two triangles about the z axis."""
-    x, y = lx / 2, ly / 2
-    corner = np.array([[-x, -y, z], [x, -y, z], [x, y, z], [-x, y, z]])
-    return np.stack([corner[[0, 1, 2]], corner[[0, 2, 3]]])
+    return along(1, _tube([(diameter / 2, -length / 2), (diameter / 2, length / 2)]))
 
 
 def along(axis: int, points: FloatArray) -> FloatArray:
@@ -71,7 +63,7 @@ def tube(diameters: tuple[float, float], low: float, high: float, *, closed: tup
     return np.concatenate([_tube([(r0, low), (r1, high)]), *ends])
 
 
-def rectangle(axis: int, center: FloatArray, size: tuple[float, float]) -> FloatArray:
+def rectangle(axis: int, center: npt.ArrayLike, size: tuple[float, float]) -> FloatArray:
     """Two triangles across an axis; `size` along the two other axes, in the order x, y, z."""
     first, second = (k for k in range(3) if k != axis)
     corner = np.tile(np.asarray(center, float), (4, 1))

@@ -1,7 +1,9 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Pictures of a scene, fit for a paper: its walls and spheres before a run, its bed after one."""
 
+from collections.abc import Sequence
 from importlib import import_module
+from itertools import product
 from pathlib import Path
 from typing import Any
 
@@ -11,7 +13,7 @@ import pandas as pd
 from ..base.files import atomic
 from ..errors import CaseError
 from . import placement
-from .columns import PARTICLES, SPINS, units
+from .columns import PARTICLES, SPINS, last_frame, units
 from .layout import Block
 from .ledger import kinetic
 from .meshes import FloatArray, box, tube
@@ -54,6 +56,11 @@ def refuse_color(p: ScenePlan) -> None:
         raise CaseError(f"output.color = {p.output.color!r}: spheres of this scene have {', '.join(known)}")
 
 
+def _corners(limits: Sequence[float]) -> FloatArray:
+    """The eight corners of a room xlo xhi ylo yhi zlo zhi [m], shape (8, 3)."""
+    return np.array([*product(limits[0:2], limits[2:4], limits[4:6])])
+
+
 def _draw_walls(axis: Any, p: ScenePlan, phase: Phase, *, front: bool) -> None:
     """The triangles of walls where they are at the start, planes of a phase as their outline in the room."""
     from matplotlib.collections import PolyCollection
@@ -69,8 +76,7 @@ def _draw_walls(axis: Any, p: ScenePlan, phase: Phase, *, front: bool) -> None:
     for w in (*p.layout.planes, *(g for g in p.layout.gates if g.name in phase.gates)):
         flat = [*limits]
         flat[2 * w.axis] = flat[2 * w.axis + 1] = w.place
-        corners = np.array([[flat[i], flat[2 + j], flat[4 + k]] for i in (0, 1) for j in (0, 1) for k in (0, 1)])
-        square = np.unique(corners, axis=0)
+        square = np.unique(_corners(flat), axis=0)
         if len(square) == 4:
             outline = square[[0, 1, 3, 2]] @ plane.T
             axis.add_collection(PolyCollection([outline], facecolor=(0.5, 0.5, 0.5, 0.12), edgecolor="0.5", lw=0.6))
@@ -112,11 +118,6 @@ def _frame(title: str, corners: FloatArray) -> tuple[Any, Any]:
     return fig, axis
 
 
-def _room(p: ScenePlan) -> FloatArray:
-    a = p.layout.box
-    return np.array([[a[i], a[2 + j], a[4 + k]] for i in (0, 1) for j in (0, 1) for k in (0, 1)])
-
-
 def _save(fig: Any, path: Path) -> None:
     import matplotlib.pyplot as plt
 
@@ -127,7 +128,7 @@ def _save(fig: Any, path: Path) -> None:
 
 def bed(p: ScenePlan, spheres: pd.DataFrame, path: Path) -> None:
     """Draw the last frame, coloured by the field `output.color`, into the PNG file `path`."""
-    last = spheres[spheres["step"] == spheres["step"].max()]
+    last = last_frame(spheres)
     x, radius, field = last[["x", "y", "z"]].to_numpy(), last["radius"].to_numpy(), p.output.color
     around = np.concatenate([x - radius[:, None], x + radius[:, None]])
     fig, axis = _frame(p.case.case.title, around)
@@ -144,7 +145,7 @@ def before(p: ScenePlan, path: Path) -> int:
 
     Returns the number of spheres in it: those of regions only if there are few enough to be placed at once.
     """
-    fig, axis = _frame(p.case.case.title, _room(p))
+    fig, axis = _frame(p.case.case.title, _corners(p.layout.box))
     _draw_walls(axis, p, p.phases[0], front=False)
     for fill in p.layout.fills:
         _draw_region(axis, fill.region)

@@ -8,11 +8,12 @@ from dataclasses import dataclass, replace
 import numpy as np
 import pandas as pd
 
+from ..case.kinds import Compaction, Drum
 from ..case.parts import Parts
-from ..case.scene import Compaction, Drum, Output, SceneCase
+from ..case.scene import Output, SceneCase
 from . import kinds
 from .filling import refuse_too_many
-from .layout import Layout, Linear, Move, Until
+from .layout import Layout, Linear, Move, Turn, Until
 from .limits import refuse_faster_than_sound, refuse_steps
 from .model import Model, model
 from .timestep import time_step
@@ -167,6 +168,11 @@ class ScenePlan:
     def rubs(self) -> bool:
         """Whether the work of friction of each sphere is in the frames."""
         return self.output.energy and self.model.nodes > 0
+
+    def turns(self, wall: str) -> list[Turn]:
+        """The turns of a wall of triangles: of its surface, and in each phase."""
+        moves = [self.layout.meshes[wall].turn, *(phase.moves.get(wall) for phase in self.phases)]
+        return [move for move in moves if isinstance(move, Turn)]
 
     @property
     def summary(self) -> str:

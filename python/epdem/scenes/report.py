@@ -54,7 +54,7 @@ def show(outcome: SceneOutcome, console: Console) -> None:
     show_table(console, shown, ("tolerance", "error", "expected"))
     _show_measures(outcome, console)
     for warning in outcome.warnings:
-        console.print(f"warning: {warning}", style="yellow", markup=False, highlight=False)
+        console.print(f"warning: {warning}", style="yellow")
     p, rows = outcome.plan, outcome.results.tables["rows"]
     came = " (from results.h5)" if outcome.reused else ""
     if outcome.resumed_from is not None:
@@ -62,8 +62,6 @@ def show(outcome: SceneOutcome, console: Console) -> None:
     console.print(
         f"{outcome.case.name}: {int(rows['particles'].iloc[-1])} spheres, {p.steps} steps of {p.time_step:g} s, "
         f"{outcome.seconds:.1f} s{came}; see {outcome.folder}/report.html",
-        markup=False,
-        highlight=False,
         soft_wrap=True,
     )
 

@@ -24,9 +24,8 @@ from ..impacts.prediction import predict
 from . import checks, ledger, measures, pictures, results
 from .engine import Report, Resumed, SceneEngine, check_run
 from .engine import files as files_for
-from .pairs import wall_impact
 from .plan import ScenePlan, plan
-from .timestep import highest_speed
+from .timestep import leading_impact
 
 Progress = Callable[[int, int], None]  # (step, of so many)
 
@@ -235,7 +234,4 @@ def _left_out(folder: Path, lost: list[int]) -> list[str]:
 
 def _warnings(case: SceneCase) -> list[str]:
     """Doubtful values, and where the scene leaves the domain of theory: impacts on the walls at its highest speed."""
-    first = case.scene.leading
-    wall = (*case.scene.wall_materials, first.material)[0]
-    x = wall_impact(case, first.material, first.radii()[0], wall, highest_speed(case))
-    return [*doubts(case), *predict(x).warnings()]
+    return [*doubts(case), *predict(leading_impact(case)).caveats]

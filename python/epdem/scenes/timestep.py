@@ -5,15 +5,16 @@ import math
 
 import numpy as np
 
+from ..case.kinds import Compaction, Drum, Hopper, Kinds, Peening, Settle
 from ..case.parts import Parts
-from ..case.scene import Compaction, Drum, Hopper, Kinds, Peening, SceneCase, Settle
+from ..case.scene import SceneCase
 from ..errors import CaseError
 from ..impacts.experiment import Experiment
 from ..impacts.prediction import predict
 from ..impacts.timestep import search, stability_limit
 from ..theory.timestep import DENSE_PACKING, sticking_packing
 from .model import model
-from .pairs import sphere_impact
+from .pairs import sphere_impact, wall_impact
 
 MARGIN = 0.8  # of the stable step of a bed: contacts there are a little stiffer than in the impact that stands for them
 
@@ -62,6 +63,18 @@ def highest_speed(case: SceneCase) -> float:
             "give gravity, or numerics.highest_speed"
         )
     return v
+
+
+def leading_impact(case: SceneCase) -> Experiment:
+    """The impact that stands for a scene: of its leading spheres on a wall, else on one, at its highest speed."""
+    first = case.scene.leading
+    return wall_impact(
+        case,
+        first.material,
+        first.radii()[0],
+        (*case.scene.wall_materials, first.material)[0],
+        highest_speed(case),
+    )
 
 
 def time_step(case: SceneCase) -> float:

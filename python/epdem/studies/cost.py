@@ -43,6 +43,7 @@ class Model:
 
     @property
     def label(self) -> str:
+        """The model in tables and figures."""
         return self.engine.name if self.engine.can.only_law else f"{self.engine.name}, {self.law}"
 
 

@@ -9,9 +9,10 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
-from ..base.files import atomic, write_texts
+from ..base.files import write_texts
 from ..base.folders import claim, results_folder
 from ..base.settings import DEFAULT_ENGINE
+from ..base.tables import write_csv
 from ..case.impact import load
 from ..case.toml import named
 from ..engines import MOTIONS as ENGINES
@@ -110,8 +111,7 @@ def compare(
                 row = {"motion": motion.name, "law": law, "engine": tool.name, "friction": friction}
                 rows.append(row | deviations(touch, motion, found, first, own_spring=tool.can.own_spring))
         table = pd.DataFrame(rows)
-        with atomic(folder / TABLE) as temporary:
-            table.to_csv(temporary, index=False)
+        write_csv(folder / TABLE, table)
     return Outcome(table, folder)
 
 

@@ -84,17 +84,14 @@ def strain_ratio(data: dict[str, Any], path: Path) -> float:
     from ..case import scene as scenes
     from ..impacts.experiment import experiment
     from ..impacts.prediction import predict
-    from ..scenes.pairs import wall_impact
-    from ..scenes.timestep import highest_speed
+    from ..scenes.timestep import leading_impact
 
     if not scenes.is_scene(data):
         return float(predict(experiment(impacts.parse(data, path))).strain_ratio.max())
     case = scenes.parse(data, path)
     with named(path):
         law_named(case.law.name)
-    material, radius = case.scene.leading.material, case.scene.leading.radii()[0]
-    x = wall_impact(case, material, radius, (*case.scene.wall_materials, material)[0], highest_speed(case))
-    return float(predict(x).strain_ratio.max())
+    return float(predict(leading_impact(case)).strain_ratio.max())
 
 
 def soften(path: Path, factor: float, *, folder: Path | None = None) -> Twin:

@@ -40,6 +40,9 @@ class Backbone:
     def _hertz_work(self, alpha: Real) -> Real:
         return 8 / 15 * self.E_star * np.sqrt(self.R_star * alpha) * alpha**2
 
+    def _hertz_overlap(self, W: Real) -> Real:
+        return (15 / 8 * W / (self.E_star * np.sqrt(self.R_star))) ** 0.4
+
     def force(self, alpha: Real) -> Real:
         """Backbone force F [N] at overlaps alpha [m] >= 0."""
         raise TypeError(f"{type(self).__name__} does not define it")

@@ -126,7 +126,7 @@ class Cavity(Backbone):
         W = np.asarray(W, float)
         W_Y = self._hertz_work(self.yield_overlap)
         W_P = W_Y + self._middle_work(self.ln_s_P)[0]
-        elastic = (15 / 8 * W / (self.E_star * np.sqrt(self.R_star))) ** 0.4
+        elastic = self._hertz_overlap(W)
         more = np.maximum(W - W_P, 0.0)
         slope, P = np.pi * self.R_star * self.c_P * self.Y, self.plastic_overlap
         plastic = P + more / slope / (P + np.sqrt(P * P + more / slope))

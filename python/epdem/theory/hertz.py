@@ -26,4 +26,4 @@ class Hertz(Backbone):
         return self._hertz_work(alpha)
 
     def overlap_of_work(self, W: Real) -> Real:
-        return (15 / 8 * W / (self.E_star * np.sqrt(self.R_star))) ** 0.4
+        return self._hertz_overlap(W)

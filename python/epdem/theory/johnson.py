@@ -42,8 +42,7 @@ class Johnson(Backbone):
         y, slope = self.yield_overlap, np.pi * self.R_star * self.p_m
         more = np.maximum(W - self._hertz_work(y), 0.0)
         x = more / slope / (y + np.sqrt(y * y + more / slope))
-        elastic = (15 / 8 * np.asarray(W) / (self.E_star * np.sqrt(self.R_star))) ** 0.4
-        return np.where(more > 0, y + x, elastic)
+        return np.where(more > 0, y + x, self._hertz_overlap(np.asarray(W)))
 
     def caveats(self, *, m_star: Real, speed: Array) -> list[str]:
         """Between first yield (1.60 Y, p_m = 3 Y) and 2 v_c the law is elastic, or just past the jump of its radius."""

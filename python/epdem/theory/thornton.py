@@ -41,8 +41,7 @@ class Thornton(Backbone):
         more = np.maximum(W - self._hertz_work(y), 0.0)
         h = 2 / 3 * y
         x = 2 * more / slope / (h + np.sqrt(h * h + 2 * more / slope))  # the root without cancellation
-        elastic = (15 / 8 * np.asarray(W) / (self.E_star * np.sqrt(self.R_star))) ** 0.4
-        return np.where(more > 0, y + x, elastic)
+        return np.where(more > 0, y + x, self._hertz_overlap(np.asarray(W)))
 
     def _beyond_yield(self, alpha_max: Real) -> tuple[Real, Real]:
         """t = sqrt(alpha_max/alpha_y), at least 1, and t - 1 without cancellation."""

@@ -16,7 +16,7 @@ from ..errors import EngineError
 from ..impacts.engine import Abilities, Trajectory, check_abilities, recorded_seconds
 from ..impacts.experiment import Body, Experiment
 from ..impacts.pairs import Pairs
-from ..impacts.places import side_by_side
+from ..impacts.places import approach, side_by_side
 from ..impacts.plan import Plan
 from .deck import Deck, Group, Material, refuse_parameters, strength_values
 from .deck_modules.law import LAWS
@@ -87,7 +87,7 @@ class Yade:
         return Deck(
             title=x.title,
             source=x.source,
-            summary=f"{x.speed.size} speeds x {plan.phases} phases = {plan.n} independent impacts, law {x.law.name}",
+            summary=f"{plan.summary}, law {x.law.name}",
             rigid=x.target.rigid,
             law=x.law.name,
             native=False,
@@ -157,25 +157,20 @@ def tables(plan: Plan) -> list[np.ndarray]:
 
 def trajectory(plan: Plan, path: Path, seconds: dict[str, float]) -> Trajectory:
     """Overlap, force, approach velocity from z, v_z, F_z of every body. Raises EngineError if samples are missing."""
-    x, n = plan.experiment, plan.n
-    wall = isinf(x.target.radius)
-    expected = (plan.steps + 2, 3, n if wall else 2 * n)
+    n = plan.n
+    expected = (plan.steps + 2, 3, n if isinf(plan.experiment.target.radius) else 2 * n)
     tangential = spin = None
     try:
         with path.open("rb") as file:
             samples = np.load(file)
-            if x.oblique:
+            if plan.experiment.oblique:
                 tangential, spin = np.load(file)
         if samples.shape != expected or not np.isfinite(samples).all():
             raise ValueError(f"{samples.shape} samples, expected {expected}, all finite")
     except (OSError, ValueError) as error:
         raise EngineError(f"{path}: the run left no complete result ({error}); see out.yade beside it") from None
-    z, v, force = samples[:-1, 0], 0.5 * (samples[:-1, 1] + samples[1:, 1]), samples[:-1, 2]
-    if wall:
-        overlap, velocity = x.body.radius - z, -v
-    else:
-        overlap, velocity = x.body.radius + x.target.radius - (z[:, :n] - z[:, n:]), v[:, n:] - v[:, :n]
-    return Trajectory(plan.time_step, overlap.T, force[:, :n].T, velocity.T, seconds, tangential, spin)
+    overlap, velocity = approach(plan, samples[:-1, 0], 0.5 * (samples[:-1, 1] + samples[1:, 1]))
+    return Trajectory(plan.time_step, overlap, samples[:-1, 2, :n].T, velocity, seconds, tangential, spin)
 
 
 def stepping_seconds(log: Path) -> float:

@@ -12,7 +12,7 @@ from ..base.processes import call
 from ..case.fields import NODES
 from ..errors import EngineError
 from ..impacts.engine import Abilities
-from ..impacts.motion import Loads, Motion, Touch
+from ..impacts.motion import Loads, Motion, Touch, summary
 from .deck import Deck, Material
 from .deck_modules.law import LAWS
 from .impacts import Yade
@@ -48,7 +48,7 @@ def deck(touch: Touch, motion: Motion) -> Deck:
     plain = Yade().deck(touch.plan(motion))
     return replace(
         plain,
-        summary=f"{motion.name}: {motion.steps} steps of a prescribed motion, law {touch.experiment.law.name}",
+        summary=summary(touch, motion),
         materials=tuple(Material(m.name, m.values | {"friction": touch.friction}) for m in plain.materials),
         path="path.npy",
     )

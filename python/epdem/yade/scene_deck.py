@@ -3,7 +3,6 @@
 
 from dataclasses import dataclass
 from itertools import combinations_with_replacement
-from math import atan
 
 from ..base import rendering as decks
 from ..case.parts import Parts
@@ -12,6 +11,7 @@ from ..scenes import placement
 from ..scenes.layout import Block, Plane
 from ..scenes.plan import ScenePlan
 from .deck import Material, refuse_parameters, strength_values
+from .deck_modules import cone
 from .launcher import deck_modules
 from .scene_parts import EDGES, Facets, Load, Motion, facets, loads, motions, spheres
 from .scene_parts import files as facet_files
@@ -153,7 +153,7 @@ def _pairs(friction: Square) -> tuple[tuple[int, int, float], ...]:
     """(type, type, friction angle [rad]) of the pairs, from 0, where YADE's own rule, the smaller one, is not meant."""
     pairs = combinations_with_replacement(range(len(friction)), 2)
     return tuple(
-        (a, b, max(atan(friction[a][b]), 1e-9))  # YADE's law needs more than 0
+        (a, b, cone.friction_angle(friction[a][b]))
         for a, b in pairs
         if friction[a][b] != min(friction[a][a], friction[b][b])
     )
@@ -233,10 +233,10 @@ def _filled(p: ScenePlan) -> Block:
 
 
 def _table(p: ScenePlan) -> str:
-    lines = ["# x y z radius [m], type; random places without overlap"]
     if _parts(p):
+        head = "# x y z radius [m], type, velocity [m/s], spin [rad/s], 1: frozen"
         rows = [" ".join(map(decks.number, row)) for row in spheres(p)]
-        return "\n".join(["# x y z radius [m], type, velocity [m/s], spin [rad/s], 1: frozen", *rows, ""])
-    for *numbers, kind in placement.spheres(p):
-        lines.append(" ".join([*map(decks.number, numbers), str(int(kind))]))
-    return "\n".join([*lines, ""])
+    else:
+        head = "# x y z radius [m], type; random places without overlap"
+        rows = [" ".join([*map(decks.number, place), str(int(kind))]) for *place, kind in placement.spheres(p)]
+    return "\n".join([head, *rows, ""])

@@ -99,15 +99,10 @@ def motions(p: ScenePlan, phase: Phase) -> tuple[Motion, ...]:
 
 def loads(p: ScenePlan) -> tuple[Load, ...]:
     """The walls whose forces are in the rows; torques are about the axis of a wall's turn, else about 0."""
-    found = []
-    for name in p.layout.loads:
-        if name not in p.layout.meshes:
-            found.append(Load(name, None))
-            continue
-        moves = [p.layout.meshes[name].turn, *(phase.moves.get(name) for phase in p.phases)]
-        origins = [move.origin for move in moves if isinstance(move, Turn)]
-        found.append(Load(name, origins[0] if origins else (0.0, 0.0, 0.0)))
-    return tuple(found)
+    origins = {name: [turn.origin for turn in p.turns(name)] for name in p.layout.meshes}
+    return tuple(
+        Load(name, [*origins[name], (0.0, 0.0, 0.0)][0] if name in origins else None) for name in p.layout.loads
+    )
 
 
 def files(p: ScenePlan) -> dict[str, str]:

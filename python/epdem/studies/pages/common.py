@@ -7,10 +7,11 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 from ... import __version__
+from ...base.folders import claim
 from ...base.stages import library_hash, product_hash
 from ...engines.citations import citations
 from ...impacts.run import Outcome
-from ...report.page import Facts, Lines, Page, Part
+from ...report.page import NAME, Facts, Lines, Page, Part, write
 from ...scenes.run import SceneOutcome
 
 
@@ -71,3 +72,9 @@ def page_of(
         command=command or f"epdem rerun {outcome.folder}/results.h5",
         warnings=outcome.warnings,
     )
+
+
+def written(page: Page, folder: Path) -> Path:
+    """Write a page into the folder of its study; its path."""
+    with claim(folder, force=True):
+        return write(folder / NAME, lambda: page)

@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from ...base.folders import claim
+from ...base.tables import unit_of
 from ...impacts import charts
 from ...impacts.comparison import CHECKED, UNITS
 from ...impacts.experiment import Body, Experiment
@@ -103,7 +104,7 @@ def table(outcome: Outcome) -> Rows:
     rows = outcome.results.comparison
     columns = [*COLUMNS[:3], *(k for k in OBLIQUE if k in rows), *COLUMNS[3:], "steps_in_contact", "passed"]
     note = "Means over the phases; errors are the largest over the phases. A click on a heading sorts."
-    units = {name: UNITS.get(name.removesuffix("_theory"), "") for name in columns}
+    units = {name: unit_of(name, UNITS) for name in columns}
     return Rows("Measured and predicted", rows[columns], units, note)
 
 

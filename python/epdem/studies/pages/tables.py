@@ -12,7 +12,7 @@ from ...impacts.charts import SPEED
 from ...impacts.comparison import UNITS
 from ...report.chart import GREY, INK, PALETTE, Axis, Chart, Panel, Series
 from ...report.drawing import save
-from ...report.page import NAME, Facts, Page, Part, Rows, write
+from ...report.page import Facts, Page, Part, Rows, write
 from .. import cost_report
 from ..cost import Outcome as Cost
 from ..crosscheck import Crosscheck
@@ -39,8 +39,7 @@ def of_crosscheck(check: Crosscheck) -> Path:
     parts += [Facts("Laws and theories of their own", check.notes)] if check.notes else []
     parts += [Facts("Left out", check.absent)] if check.absent else []
     page = replace(base, sentences=[said, *base.sentences], parts=parts + base.parts)
-    with claim(check.outcome.folder, force=True):
-        return write(check.outcome.folder / NAME, lambda: page)
+    return common.written(page, check.outcome.folder)
 
 
 def of_cost(outcome: Cost, bulk: pd.DataFrame | None, folder: Path) -> Path:
@@ -58,7 +57,7 @@ def of_cost(outcome: Cost, bulk: pd.DataFrame | None, folder: Path) -> Path:
     )
     parts.append(common.origin({}, {}))
     page = Page(f"{outcome.case.case.title}: error against run time", [said], parts, command=common.command())
-    return write(folder / NAME, lambda: page)
+    return common.written(page, folder)
 
 
 def of_stability(outcome: Stability, path: Path) -> Path:
@@ -102,8 +101,7 @@ def of_fit(found: Fit) -> Path:
     rows = Rows("All scenes", table[["point", *found.values, *found.targets]], units)
     case = common.case_lines(found.case.read_text(encoding="utf-8"))
     page = Page(f"Fit of {names}", said, [*charts, rows, case, common.origin({}, {})], command=common.command())
-    with claim(folder, force=True):
-        return write(folder / NAME, lambda: page)
+    return common.written(page, folder)
 
 
 def of_sweep(result: SweepOutcome) -> Path:
@@ -118,8 +116,7 @@ def of_sweep(result: SweepOutcome) -> Path:
     parts += [Rows("All points", rows, units, "sweep.csv beside this page has all rows and columns.")]
     parts += [common.case_lines(sweep.case), common.origin({f"version_{k}": v for k, v in sweep.versions.items()}, {})]
     page = Page(f"Sweep of {sweep.name}", [said], parts, passed=result.passed, command=common.command())
-    with claim(result.folder, force=True):
-        return write(result.folder / NAME, lambda: page)
+    return common.written(page, result.folder)
 
 
 def _evenly(values: np.ndarray) -> np.ndarray:
@@ -183,4 +180,4 @@ def of_validation(v: Validation) -> Path:
     page = Page("Laws against measured impacts", [said], parts, command=common.command())
     with claim(v.folder, force=True):
         save(chart, v.folder)
-        return write(v.folder / NAME, lambda: page)
+        return common.written(page, v.folder)

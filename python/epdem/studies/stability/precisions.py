@@ -9,6 +9,7 @@ import numpy as np
 import pandas as pd
 
 from ...impacts.engine import Precisions
+from ...impacts.timestep import starting_phases
 from .cases import build
 from .running import position_floor, setting
 
@@ -22,7 +23,7 @@ def floors(known: Precisions, *, times: Sequence[float] = (1e-4, 1e-2, 1e2)) -> 
         for t in times:
             s = setting(build("roundoff", ratio=1e4, times=t), "hertz")
             dt = SHARE * s.limit
-            gaps, steps = (np.arange(8) + 0.5) / 8 * float(s.x.speed[0]) * dt, int(2 * s.contact_time / dt)
+            gaps, steps = starting_phases(8) * float(s.x.speed[0]) * dt, int(2 * s.contact_time / dt)
             e = {program: known.rebounds(program, Path(scratch), s.x, dt, gaps, steps) for program in known.programs}
             row = {"overlap_max": s.overlap_max, "steps": s.contact_time / dt}
             row |= {p: float(np.abs(e[p] / e[known.programs[-1]] - 1).max()) for p in known.programs[:-1]}

@@ -1,16 +1,11 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """One contact many times: drift over 1e9 steps and 10^4 reloads; and the verdict on these and on two walls."""
 
-import time
-
 import numpy as np
 
-from ...errors import EpdemError
-from ...impacts.engine import not_representable
 from ...laws.native import ImpactNumbers
-from ...theory.validity import SMALL_DEFORMATION
 from .cases import Extreme
-from .running import Setting, Verdict, setting
+from .running import Setting, Verdict, judged
 from .sampling import PositionSampler, Sampler
 from .two_walls import judge_two_walls
 from .variants import CYCLE, carried
@@ -79,24 +74,16 @@ def reloads(v: Verdict, s: Setting, sampler: Sampler, cycles: int) -> None:
 
 def judge_repeats(extreme: Extreme, law: str, sampler: Sampler, *, steps: int, cycles: int) -> Verdict:
     """The verdict on bounces, reloads or a sphere between two walls; the first run in the embedded engine alone."""
-    v, begin = Verdict(extreme.name, extreme.group, sampler.name, law), time.perf_counter()
     if sampler.positions and extreme.kind == "bounces":
-        v.status, v.reason = "embedded only", "not run: 1e9 steps take hours in an engine with positions"
-        return v
-    try:
-        s = setting(extreme, law)
-        v.e_n_theory, v.strain_ratio = s.e_n, s.strain_ratio
-        v.large_deformation = s.strain_ratio > SMALL_DEFORMATION
-        why = None if not sampler.positions else not_representable(s.x, 2 * s.overlap_max)
-        if why:
-            v.status, v.reason = "not representable", why
-        elif extreme.kind == "bounces":
+        reason = "not run: 1e9 steps take hours in an engine with positions"
+        return Verdict(extreme.name, extreme.group, sampler.name, law, "embedded only", reason)
+
+    def judges(v: Verdict, s: Setting) -> None:
+        if extreme.kind == "bounces":
             bounces(v, s, steps)
         elif extreme.kind == "reloads":
             reloads(v, s, sampler, cycles)
         else:
             judge_two_walls(v, s, sampler)
-    except EpdemError as error:
-        v.fail(str(error))
-    v.seconds = time.perf_counter() - begin
-    return v
+
+    return judged(extreme, law, sampler, judges, reach=2.0)

@@ -7,6 +7,7 @@ import numpy as np
 import pandas as pd
 
 from ...errors import EpdemError
+from ...impacts.timestep import starting_phases
 from .cases import build
 from .running import Setting, position_floor, setting
 from .sampling import Sampler
@@ -50,7 +51,7 @@ def floors(
         s = setting(build("roundoff", ratio=1e4, times=t), law)
         dt = share * s.limit
         steps = int(1.5 * s.contact_time / dt) + 20
-        gap = (np.arange(8) + 0.5) / 8 * s.x.speed[0] * dt
+        gap = starting_phases(8) * s.x.speed[0] * dt
         exact = in_long_double(s, dt, gap, steps)
         double = (
             s.x.native_law().impacts(

@@ -13,7 +13,7 @@ from ...errors import EngineError, EpdemError
 from ...impacts.engine import EPS, not_representable
 from ...impacts.experiment import Experiment
 from ...impacts.prediction import Prediction, predict
-from ...impacts.timestep import stability_limit
+from ...impacts.timestep import stability_limit, starting_phases
 from ...theory import adhesion
 from ...theory.backbones import JKR
 from ...theory.validity import SMALL_DEFORMATION
@@ -123,7 +123,7 @@ def phased(s: Setting, dt: float, phases: int) -> list[tuple[float, np.ndarray]]
     """
     if s.start is not None:
         return [(dt * (1 - 0.2 * k / phases), np.array([-s.start])) for k in range(0, phases, 2)]
-    return [(dt, (np.arange(phases) + 0.5) / phases * s.x.speed[0] * dt)]
+    return [(dt, starting_phases(phases) * s.x.speed[0] * dt)]
 
 
 @dataclass(frozen=True)
@@ -194,16 +194,22 @@ def slope(shares: list[float], errors: list[float], noise: float) -> float:
 
 def judge(extreme: Extreme, law: str, sampler: Sampler, coarse: Sequence[float] = COARSE) -> Verdict:
     """The verdict on an impact case."""
+    return judged(extreme, law, sampler, lambda v, s: _ladder(v, s, sampler, coarse))
+
+
+def judged(
+    extreme: Extreme, law: str, sampler: Sampler, judges: Callable[[Verdict, Setting], None], *, reach: float = 1.0
+) -> Verdict:
+    """The verdict of `judges` on a case, if the sampler can represent overlaps of `reach` times the largest."""
     v, begin = Verdict(extreme.name, extreme.group, sampler.name, law), time.perf_counter()
     try:
         s = setting(extreme, law)
         v.e_n_theory, v.strain_ratio = s.e_n, s.strain_ratio
         v.large_deformation = s.strain_ratio > SMALL_DEFORMATION
-        why = None if not sampler.positions else not_representable(s.x, s.overlap_max)
-        if why:
+        if sampler.positions and (why := not_representable(s.x, reach * s.overlap_max)):
             v.status, v.reason = "not representable", why
         else:
-            _ladder(v, s, sampler, coarse)
+            judges(v, s)
     except EpdemError as error:
         v.fail(str(error))
     v.seconds = time.perf_counter() - begin

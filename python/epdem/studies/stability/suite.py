@@ -39,6 +39,7 @@ class Outcome:
 
     @property
     def passed(self) -> bool:
+        """Whether no case failed, and every bulk scene passed."""
         return bool((self.verdicts["status"] != "failed").all() and (self.bulk.empty or self.bulk["passed"].all()))
 
 

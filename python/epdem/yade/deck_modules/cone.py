@@ -10,13 +10,18 @@ h = (pi sigmaMax/(2E))^2, and sets isYielding. So R and (R - radius) alphaFac = 
 sigmaMax places its end, and alphaFac, otherwise free, gives the slope beyond that end.
 """
 
-from math import pi, sqrt
+from math import atan, pi, sqrt
 
 # Shortest increment for a secant, relative to the overlap: below it F_next/F - 1 would be all round-off.
 SMALL = 1e-6
 
 # sigmaMax over Young's modulus: of a material that never yields (YADE refuses 1 and more); the most of one that does
 NEVER, STRONGEST = 0.4, 0.36
+
+
+def friction_angle(friction: float) -> float:
+    """The angle [rad] of a coefficient of friction; YADE's law needs one above 0."""
+    return max(atan(friction), 1e-9)
 
 
 def strongest(young_modulus: float, trigger_factor: float) -> float:

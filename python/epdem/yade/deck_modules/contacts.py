@@ -21,7 +21,7 @@ can be imported. As everywhere in YADE the history of a contact ends when the bo
 import builtins
 import warnings
 from itertools import compress
-from math import asin, atan, inf, isfinite, pi
+from math import asin, inf, isfinite, pi
 from operator import attrgetter
 from typing import Any
 
@@ -46,7 +46,6 @@ from .law import LAWS, Law
 PATIENCE = 100  # most steps between two looks at the speeds
 LABEL = "epdem_visit"  # of our PyRunner: YADE binds it anew whenever a scene is loaded
 RIGID = 1e30  # modulus [Pa] of a rigid body; YADE cannot take infinity
-NO_FRICTION = 1e-9  # YADE's law needs a friction angle > 0
 
 _yielding, _depth, _real, _birth = map(attrgetter, ("isYielding", "penetrationDepth", "isReal", "iterMadeReal"))
 _managers: dict[tuple[object, ...], "Contacts"] = {}
@@ -127,7 +126,7 @@ class Contacts:
             density=density,
             sigmaMax=trigger,
             alpha=alpha,
-            frictionAngle=max(atan(friction), NO_FRICTION),
+            frictionAngle=cone.friction_angle(friction),
         )
         O.materials.append(material)
         return material

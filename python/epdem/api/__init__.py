@@ -5,142 +5,43 @@ Tables have the SI units of their columns in `attrs["units"]`. Progress goes to 
 """
 
 import logging
-import tomllib
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
-from typing import Any, ClassVar, Self, Unpack, overload
+from typing import Any, Unpack, overload
 
 import pandas as pd
-import tomlkit
 
-from . import theory
-from .base.files import atomic
-from .base.folders import write_own
-from .case import impact as impact_case
-from .case import scene as scene_case
-from .case.files import text_for_anywhere
-from .engines import DEFAULT_ENGINE, scene_engine
-from .engines import engine as engine_named
-from .errors import CaseError
-from .impacts.comparison import UNITS
-from .impacts.experiment import experiment
-from .impacts.prediction import predict as predict_experiment
-from .impacts.run import Outcome, write_deck
-from .impacts.run import run_case as run_impacts
-from .scenes.columns import UNITS as SCENE_UNITS
-from .scenes.engine import files as scene_files
-from .scenes.plan import plan as plan_scene
-from .scenes.run import SceneOutcome
-from .scenes.run import run_case as run_scene
-from .studies.fit import Fit, Targets, fit_text
-from .studies.fit import Options as FitOptions
-from .studies.sweep import keys
-from .studies.sweep import run as study
-from .studies.sweep.points import plain, with_unit, with_units
-from .studies.sweep.run import SweepOutcome
+from .. import theory
+from ..base.folders import write_own
+from ..base.tables import unit_of
+from ..engines import DEFAULT_ENGINE, scene_engine
+from ..engines import engine as engine_named
+from ..errors import CaseError
+from ..impacts.comparison import UNITS
+from ..impacts.experiment import experiment
+from ..impacts.prediction import predict as predict_experiment
+from ..impacts.run import Outcome, write_deck
+from ..impacts.run import run_case as run_impacts
+from ..scenes.columns import UNITS as SCENE_UNITS
+from ..scenes.engine import files as scene_files
+from ..scenes.plan import plan as plan_scene
+from ..scenes.run import SceneOutcome
+from ..scenes.run import run_case as run_scene
+from ..studies.fit import Fit, Targets, fit_text
+from ..studies.fit import Options as FitOptions
+from ..studies.sweep import run as study
+from ..studies.sweep.run import SweepOutcome
+from .files import Case, Scene
 
 __all__ = ["Case", "Fit", "Run", "Scene", "SceneRun", "calibrate", "deck", "predict", "run", "sweep", "theory"]
 log = logging.getLogger("epdem")
 
 
-class _File:
-    """A case or scene: the text of its file, checked. Its `model` has every value in SI; both are never changed."""
-
-    kind: ClassVar[str]
-
-    def __init__(self, **tables: Any):
-        """From the tables of a case file, `Case(case={"name": "ball"}, materials={...}, impact={...}, law={...})`.
-
-        A plain number where a quantity stands is in SI; title and source can be left out. Raises CaseError.
-        """
-        name = tables.get("case", {}).get("name", self.kind)
-        header = {"name": name, "title": name, "source": "made in Python"} | tables.get("case", {})
-        data = plain({"case": header} | {key: value for key, value in tables.items() if key != "case"})
-        self._read(tomlkit.dumps(with_units(data, keys.keys_of(data))), name)
-
-    def _read(self, text: str, path: object) -> None:
-        self.text = text
-        self.model = self._parse(tomllib.loads(text), path)
-
-    @staticmethod
-    def _parse(data: dict[str, Any], path: object) -> Any:
-        raise AttributeError("a case is a Case or a Scene")
-
-    @classmethod
-    def from_toml(cls, path: Path | str) -> Self:
-        """The case in a file. Raises CaseError."""
-        case = cls.__new__(cls)
-        case._read(text_for_anywhere(path), path)
-        return case
-
-    def to_toml(self, path: Path | str) -> Path:
-        """Write the case as a file that the commands take."""
-        with atomic(Path(path)) as temporary:
-            temporary.write_text(self.text, encoding="utf-8")
-        return Path(path)
-
-    def replace(self, changes: Mapping[str, Any]) -> Self:
-        """A case that differs in some keys, by their dotted names: `replace({"impact.body.radius": "5 mm"})`.
-
-        Raises CaseError for a key that no case has, with the nearest one, and for a wrong value.
-        """
-        document = tomlkit.parse(self.text)
-        names = keys.keys_of(document.unwrap())
-        for name, value in changes.items():
-            keys.assign(document, name, with_unit(value, keys.known(name, names, "replace")))
-        case = type(self).__new__(type(self))
-        case._read(document.as_string(), self.name)
-        return case
-
-    @property
-    def name(self) -> str:
-        """The name of the case."""
-        return str(self.model.name)
-
-    @property
-    def title(self) -> str:
-        """The title of the case."""
-        return str(self.model.case.title)
-
-    def __eq__(self, other: object) -> bool:
-        return type(self) is type(other) and isinstance(other, _File) and self.model == other.model
-
-    __hash__ = None  # type: ignore[assignment]
-
-    def __repr__(self) -> str:
-        return f"{type(self).__name__}({self.name!r}: {self.title})"
-
-    def _repr_html_(self) -> str:
-        import html
-
-        return f"<b>{html.escape(self.title)}</b><pre>{html.escape(self.text)}</pre>"
-
-
-class Case(_File):
-    """Impacts of one body on one target over a range of speeds."""
-
-    kind = "impact"
-
-    @staticmethod
-    def _parse(data: dict[str, Any], path: object) -> Any:
-        return impact_case.parse(data, path)
-
-
-class Scene(_File):
-    """A bulk scene."""
-
-    kind = "scene"
-
-    @staticmethod
-    def _parse(data: dict[str, Any], path: object) -> Any:
-        return scene_case.parse(data, path)
-
-
 def _units(table: pd.DataFrame, units: Mapping[str, str]) -> pd.DataFrame:
     marked = table.copy()
-    names = {name: units.get(name.removesuffix("_theory")) for name in map(str, marked.columns)}
+    names = {name: unit_of(name, units) for name in map(str, marked.columns)}
     marked.attrs["units"] = {name: unit for name, unit in names.items() if unit}
     return marked
 
@@ -174,13 +75,13 @@ class Run(_HasRun):
 
     def plot(self) -> Path:
         """Draw e_n.png, restitution against speed with theory; its path."""
-        from .impacts.report import figure
+        from ..impacts.report import figure
 
         return figure(self.outcome)
 
     def report(self) -> Path:
         """Write report.html, one page with figures, tables and decks, into the folder; its path."""
-        from .studies.pages.impacts import of_impacts
+        from ..studies.pages.impacts import of_impacts
 
         return of_impacts(self.outcome)
 
@@ -201,7 +102,7 @@ class SceneRun(_HasRun):
 
     def report(self) -> Path:
         """Write report.html, one page with figures, tables and decks, into the folder; its path."""
-        from .studies.pages.scenes import of_scene
+        from ..studies.pages.scenes import of_scene
 
         return of_scene(self.outcome)
 

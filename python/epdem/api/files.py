@@ -1,0 +1,108 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Cases and scenes as objects: the text of a file, checked."""
+
+import html
+import tomllib
+from collections.abc import Mapping
+from pathlib import Path
+from typing import Any, ClassVar, Self
+
+import tomlkit
+
+from ..base.files import atomic
+from ..case import impact as impact_case
+from ..case import scene as scene_case
+from ..case.files import text_for_anywhere
+from ..studies.sweep import keys
+from ..studies.sweep.points import plain, with_unit, with_units
+
+
+class _File:
+    """A case or scene: the text of its file, checked. Its `model` has every value in SI; both are never changed."""
+
+    kind: ClassVar[str]
+
+    def __init__(self, **tables: Any):
+        """From the tables of a case file, `Case(case={"name": "ball"}, materials={...}, impact={...}, law={...})`.
+
+        A plain number where a quantity stands is in SI; title and source can be left out. Raises CaseError.
+        """
+        name = tables.get("case", {}).get("name", self.kind)
+        header = {"name": name, "title": name, "source": "made in Python"} | tables.get("case", {})
+        data = plain({"case": header} | {key: value for key, value in tables.items() if key != "case"})
+        self._read(tomlkit.dumps(with_units(data, keys.keys_of(data))), name)
+
+    def _read(self, text: str, path: object) -> None:
+        self.text = text
+        self.model = self._parse(tomllib.loads(text), path)
+
+    @staticmethod
+    def _parse(data: dict[str, Any], path: object) -> Any:
+        raise AttributeError("a case is a Case or a Scene")
+
+    @classmethod
+    def from_toml(cls, path: Path | str) -> Self:
+        """The case in a file. Raises CaseError."""
+        case = cls.__new__(cls)
+        case._read(text_for_anywhere(path), path)
+        return case
+
+    def to_toml(self, path: Path | str) -> Path:
+        """Write the case as a file that the commands take."""
+        with atomic(Path(path)) as temporary:
+            temporary.write_text(self.text, encoding="utf-8")
+        return Path(path)
+
+    def replace(self, changes: Mapping[str, Any]) -> Self:
+        """A case that differs in some keys, by their dotted names: `replace({"impact.body.radius": "5 mm"})`.
+
+        Raises CaseError for a key that no case has, with the nearest one, and for a wrong value.
+        """
+        document = tomlkit.parse(self.text)
+        names = keys.keys_of(document.unwrap())
+        for name, value in changes.items():
+            keys.assign(document, name, with_unit(value, keys.known(name, names, "replace")))
+        case = type(self).__new__(type(self))
+        case._read(document.as_string(), self.name)
+        return case
+
+    @property
+    def name(self) -> str:
+        """The name of the case."""
+        return str(self.model.name)
+
+    @property
+    def title(self) -> str:
+        """The title of the case."""
+        return str(self.model.case.title)
+
+    def __eq__(self, other: object) -> bool:
+        return type(self) is type(other) and isinstance(other, _File) and self.model == other.model
+
+    __hash__ = None  # type: ignore[assignment]
+
+    def __repr__(self) -> str:
+        return f"{type(self).__name__}({self.name!r}: {self.title})"
+
+    def _repr_html_(self) -> str:
+        return f"<b>{html.escape(self.title)}</b><pre>{html.escape(self.text)}</pre>"
+
+
+class Case(_File):
+    """Impacts of one body on one target over a range of speeds."""
+
+    kind = "impact"
+
+    @staticmethod
+    def _parse(data: dict[str, Any], path: object) -> Any:
+        return impact_case.parse(data, path)
+
+
+class Scene(_File):
+    """A bulk scene."""
+
+    kind = "scene"
+
+    @staticmethod
+    def _parse(data: dict[str, Any], path: object) -> Any:
+        return scene_case.parse(data, path)

@@ -1,0 +1,99 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Commands for cases of impacts: functions of a few lines that call the library."""
+
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from ..base.settings import DEFAULT_ENGINE
+from ..base.terminal import bar, console
+from ..errors import CaseError
+from .options import AsJson, CasePath, Laws, laws_or_own, say_files, warn
+
+if TYPE_CHECKING:  # slow to import, and a command may print what it has stored
+    from rich.console import Console
+
+    from ..impacts.run import Outcome
+
+
+def run_impacts(
+    case: Path,
+    *,
+    engines: list[str] | None,
+    laws: list[str] | None,
+    out: Path | None,
+    ranks: int,
+    steps: int | None,
+    fresh: bool,
+    formats: tuple[str, ...],
+    force: bool,
+) -> "Outcome":
+    """Run a case with a progress bar; draw its figure and write its page."""
+    from ..engines import engine as find
+    from ..impacts import report
+    from ..impacts.run import run
+    from ..studies.pages.impacts import of_impacts
+
+    names = engines or [DEFAULT_ENGINE]
+    stages = len(set(names)) * max(len(set(laws or [])), 1) + 1  # and the figure
+    with bar() as progress:
+        task = progress.add_task("", total=stages)
+        outcome = run(
+            case,
+            engines=[find(name) for name in names],
+            laws=laws or [],
+            out=out,
+            ranks=ranks,
+            steps=steps,
+            fresh=fresh,
+            force=force,
+            progress=lambda text: progress.update(task, advance=1, description=text),
+        )
+        progress.update(task, advance=1, description="figure")
+        report.figure(outcome, formats)
+        of_impacts(outcome)
+    return outcome
+
+
+def said(outcome: "Outcome", screen: "Console", full: bool, as_json: bool) -> str:
+    """What a run prints."""
+    from ..impacts import report
+
+    if as_json:
+        return report.run_json(outcome) + "\n"
+    with screen.capture() as text:
+        report.show(outcome, screen, full=full)
+    return text.get()
+
+
+def deck_impacts(case: Path, out: Path, *, engine: str, laws: list[str] | None, force: bool, as_json: bool) -> None:
+    """Write the deck of a case."""
+    from ..case.doubts import doubts
+    from ..case.impact import load
+    from ..case.toml import named
+    from ..engines import engine as find
+    from ..impacts.experiment import experiment
+    from ..impacts.run import write_deck
+
+    if len(laws or []) > 1:
+        raise CaseError("--law: a deck has one law; write one deck for each")
+    with named(case):
+        read = load(case)
+        warn(doubts(read))
+        x = experiment(read, laws[0] if laws else None)
+        files = write_deck(x, find(engine), out, force=force)
+    say_files(files, as_json)
+
+
+def predict(case: CasePath, law: Laws = None, as_json: AsJson = False) -> None:
+    """Print the prediction of theory for a case; no engine runs."""
+    from ..case.doubts import doubts
+    from ..case.impact import load
+    from ..case.toml import named
+    from ..impacts.experiment import experiment
+    from ..impacts.prediction import predict as predict_experiment
+    from . import show
+
+    with named(case):
+        read = load(case)
+        experiments = [experiment(read, name) for name in laws_or_own(law)]
+    show.predictions([(x, predict_experiment(x)) for x in experiments], doubts(read), as_json, console())
