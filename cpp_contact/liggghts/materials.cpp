@@ -39,7 +39,6 @@ class ParameterTable {
     values_ = reader.per_type(p.property, p.unit, range);
   }
 
-  bool per_pair() const { return pairs_ != nullptr; }
   bool per_type() const { return !values_.empty(); }
   double of_type(int i) const { return values_[i]; }
 

@@ -123,10 +123,8 @@ def test_velocity_verlet_of_one_contact_is_stable_up_to_the_limit():
     assert 2 - 2e7 * limit**2 / 0.02 == pytest.approx(-2, rel=1e-13)
 
 
-def test_a_tangential_spring_and_a_dense_packing_shorten_the_stable_step():
-    """By the highest frequency: the surface of a rolling sphere weighs 2/7 m; in a lattice all neighbours pull."""
-    kappa = 14 / 17  # k_t/k_n = 8 G*/(2 E*) = 2 (1-nu)/(2-nu) at nu = 0.3
-    assert pytest.approx((3.5 * kappa) ** -0.5, abs=5e-3) == timestep.WITH_TANGENTIAL_SPRING  # 2 digits
+def test_a_dense_packing_shortens_the_stable_step():
+    """By the highest frequency: in a lattice all neighbours pull."""
     # face-centred cubic at the edge of the zone: n n^T (1 - cos q.d) summed over 12 neighbours
     near = [(np.array(d) - 1) / 2 for d in np.ndindex(3, 3, 3) if sum(x != 1 for x in d) == 2]
     assert len(near) == 12

@@ -6,9 +6,8 @@ import numpy as np
 from .checks import Real, number, poisson_ratio
 from .restitution import UNLOADING_TIME
 
-# Shares of the limit of one normal contact that stay stable: with a tangential spring (sphere on a plane, nu = 0.3),
-# and in a dense frictionless packing (face-centred cubic, central springs). With friction see `sticking_packing`.
-WITH_TANGENTIAL_SPRING = 0.59
+# Share of the limit of one normal contact that stays stable in a dense frictionless packing (face-centred cubic,
+# central springs). With friction see `sticking_packing`.
 DENSE_PACKING = 0.5
 HERTZ_TIME = 2 * UNLOADING_TIME * (15 / 16) ** 0.4  # 2.8682657: contact time of Hertz in (m*^2/(R* E*^2 v))^(1/5)
 
