@@ -222,10 +222,10 @@ TEXT = """# Reliability
 
 Written by `make reliability` (`.venv/bin/python docs/reliability.py {count}`); every number below comes from it.
 
-{count} runs were stopped at random moments between their start and their end; a run that had ended before its moment was
-begun again with an earlier one. A trial counts as right if the command ends with the exit code of its kind (130 stopped,
-3 an engine died), leaves no process behind and no traceback, and if the next command (`--resume` for scenes, the same one
-otherwise) gives tables that are bitwise equal to those of an undisturbed run. {wrong} trials were wrong.
+{count} runs were stopped at random moments between their start and their end; a run that had ended before its moment
+was begun again with an earlier one. A trial counts as right if the command ends with the exit code of its kind (130
+stopped, 3 an engine died), leaves no process behind and no traceback, and if the next command (`--resume` for scenes,
+the same one otherwise) gives tables that are bitwise equal to those of an undisturbed run. {wrong} trials were wrong.
 
 {table}
 
