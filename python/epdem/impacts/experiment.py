@@ -16,9 +16,9 @@ from ..case.law import law_numbers
 from ..errors import CaseError
 from ..laws import library
 from ..laws.native import Law
-from ..laws.strengths import ADHESIVE, LawNumbers, LawSpec, Surface, default_numbers, law_named
+from ..laws.strengths import LawNumbers, LawSpec, Surface, default_numbers, law_named
 from ..theory import pair
-from ..theory.backbones import JKR, Backbone
+from ..theory.backbones import ADHESIVE, JKR, Backbone
 
 
 @dataclass(frozen=True)
