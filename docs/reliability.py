@@ -204,10 +204,12 @@ def trials(count: int) -> None:
         return
     whole, seconds = references()
     for number, kind, way in missing:
-        moment = random.Random(number).uniform(0.0, 1.05 * seconds[kind])
+        moment, wrong = random.Random(number).uniform(0.0, seconds[kind]), "late"
         out = WORK / "out"
-        shutil.rmtree(out, ignore_errors=True)
-        wrong = kill_once(kind, way, moment, whole[kind], out)
+        while wrong == "late":
+            shutil.rmtree(out, ignore_errors=True)
+            wrong = kill_once(kind, way, moment, whole[kind], out)
+            moment *= 0.7 if wrong == "late" else 1.0
         keep({"what": kind, "how": way, "number": number, "moment": round(moment, 3), "wrong": wrong})
 
 
@@ -220,10 +222,10 @@ TEXT = """# Reliability
 
 Written by `make reliability` (`.venv/bin/python docs/reliability.py {count}`); every number below comes from it.
 
-{kills} runs were stopped at random moments between their start and their end, {late} more had ended before. A trial
-counts as right if the command ends with the exit code of its kind (130 stopped, 3 an engine died), leaves no process
-behind and no traceback, and if the next command (`--resume` for scenes, the same one otherwise) gives tables that are
-bitwise equal to those of an undisturbed run. {wrong} trials were wrong.
+{count} runs were stopped at random moments between their start and their end; a run that had ended before its moment
+was begun again with an earlier one. A trial counts as right if the command ends with the exit code of its kind (130
+stopped, 3 an engine died), leaves no process behind and no traceback, and if the next command (`--resume` for scenes,
+the same one otherwise) gives tables that are bitwise equal to those of an undisturbed run. {wrong} trials were wrong.
 
 {table}
 
@@ -237,7 +239,7 @@ def page() -> str:
     """The text of docs/reliability.md."""
     found = stored()
     kills = [t for t in found if t["what"] != "fault"]
-    count = Counter((t["what"], t["how"], "late" if t["wrong"] == "late" else not t["wrong"]) for t in kills)
+    count = Counter((t["what"], t["how"], not t["wrong"]) for t in kills)
     rows = []
     for kind in COMMANDS:
         row: dict[str, object] = {"killed": kind}
@@ -252,9 +254,7 @@ def page() -> str:
     ]
     return TEXT.format(
         count=len(kills),
-        kills=sum(t["wrong"] != "late" for t in kills),
-        late=sum(t["wrong"] == "late" for t in kills),
-        wrong=sum(t["wrong"] not in ("", "late") for t in kills),
+        wrong=sum(t["wrong"] != "" for t in kills),
         table=markdown(pd.DataFrame(rows)),
         faults=markdown(pd.DataFrame(faults)),
     )
@@ -265,4 +265,4 @@ if __name__ == "__main__":
     cases()
     trials(int(sys.argv[1]) if len(sys.argv) > 1 else 200)
     (ROOT / "docs/reliability.md").write_text(page(), encoding="utf-8")
-    sys.exit(any(t["wrong"] not in ("", "late") for t in stored()))
+    sys.exit(any(t["wrong"] for t in stored()))

@@ -116,3 +116,15 @@ def test_the_step_for_an_error_is_found_with_speeds_that_stick():
     x = made(impact=read_toml(CASE)["impact"] | {"speeds": ["0.005 m/s", "0.05 m/s", "1 m/s"]})
     found = search(x, predict(x), 1e-3)
     assert found.error <= 1e-3 and 20 < found.steps_in_contact < 400
+
+
+def test_the_law_of_the_case_keeps_its_numbers_if_it_is_named_and_others_have_their_own():
+    case = parse(
+        read_toml(CASE.with_name("steel_wall.toml")) | {"law": {"name": "thornton", "yield_pressure": "3.2 GPa"}}
+    )
+    assert [experiment(case, law).law.parameters["yield_pressure"] for law in (None, "thornton", "johnson")] == [
+        pytest.approx(x) for x in (3.2e9, 3.2e9, 3e9)
+    ]
+    sticky = parse(read_toml(CASE))
+    assert experiment(sticky, "jkr").law.parameters == {"work_of_adhesion": 0.2}
+    assert "work_of_adhesion" not in experiment(sticky, "hertz").law.parameters

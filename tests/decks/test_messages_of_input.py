@@ -257,6 +257,8 @@ def test_limits_of_size_place_and_steps(tmp_path, monkeypatch):
     ("text", "says"),
     [
         ("opening,retained\n1,2\n", "needs two columns with units, as 'opening [mm],retained [%]'"),
+        ("opening [mm];retained [%]\n3;0\n2;100\n", "(divided by a comma); it has"),
+        ("opening [mm],passing [%]\n3,80\n2,20\n1,0\n", "the column 'passing [%]' is a running sum; give what each"),
         ("opening [mm],retained [g]\n1,2\n", "the mass retained is in [%] or [1], not in [g]"),
         ("opening [mm],retained [%]\n1\n", "line 2: 1 values, expected 2"),
         ("opening [mm],retained [%]\n-1,100\n", "openings and shares must be at least 0"),

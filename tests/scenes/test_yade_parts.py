@@ -93,7 +93,7 @@ def test_what_yade_does_not_have_is_refused_in_a_sentence(change, words):
 
 def test_a_wall_whose_surface_turns_has_no_other_motion_in_yade():
     tube = {"name": "tube", "kind": "cylinder", "diameter": "18 mm", "from": "0 mm", "to": "30 mm", "material": "steel"}
-    up = {"wall": "tube", "kind": "linear", "velocity": ["0 m/s", "0 m/s", "0.3 m/s"]}
+    up = {"wall": "tube", "kind": "linear", "velocity": ["0 m/s", "0 m/s", "1 cm/s"]}
     data = parts(wall=[FLOOR, tube | {"turn": "2 rad/s"}], phase=[FALL | {"move": [up]}])
     with pytest.raises(CaseError, match=r"scene\.wall\.tube\.turn: YADE turns the wall itself, which moves otherwise"):
         files(scene_engine("yade"), plan(parse(data)))

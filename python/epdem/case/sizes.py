@@ -142,7 +142,10 @@ def _table(value: object, info: ValidationInfo) -> tuple[tuple[float, float], ..
     heads, lines = csv_rows(path)
     units = [re.fullmatch(r".*\[(.+)\]", head) for head in heads]
     if len(heads) != 2 or not all(units):
-        raise ValueError(f"{path} needs two columns with units, as 'opening [mm],retained [%]'; it has {heads}")
+        form = "'opening [mm],retained [%]' (divided by a comma)"
+        raise ValueError(f"{path} needs two columns with units, as {form}; it has {heads}")
+    if re.search("pass|cumul", heads[1], re.IGNORECASE):
+        raise ValueError(f"{path}: the column {heads[1]!r} is a running sum; give what each sieve retains")
     length, share = (str(unit[1]) for unit in units if unit)
     if share not in ("%", "1"):
         raise ValueError(f"{path}: the mass retained is in [%] or [1], not in [{share}]")
@@ -160,7 +163,9 @@ def _table(value: object, info: ValidationInfo) -> tuple[tuple[float, float], ..
         raise ValueError(f"{path}: from 2 to {MOST_SIEVES} different openings are needed, there are {len(rows)}")
     total, whole = sum(retained for _, retained in rows), 100.0 if share == "%" else 1.0
     if abs(total / whole - 1.0) > 0.02:
-        raise ValueError(f"{path}: the shares add up to {total:g}, must be {whole:g} within 2 %")
+        raise ValueError(
+            f"{path}: the shares add up to {total:g}, must be {whole:g} within 2 %; give what each sieve retains"
+        )
     if rows[0][1] > 0:
         raise ValueError(f"{path}: nothing may be retained on the largest opening; add a larger one with 0")
     return tuple((opening, retained / total) for opening, retained in rows)

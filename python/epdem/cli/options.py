@@ -19,7 +19,11 @@ Engines = Annotated[
 ]
 Laws = Annotated[
     list[str] | None,
-    typer.Option("--law", "-l", help="law instead of the case's ('epdem theory' lists them); repeat for more"),
+    typer.Option(
+        "--law",
+        "-l",
+        help="law instead of the case's, with its default numbers ('epdem theory' lists them); repeat for more",
+    ),
 ]
 Out = Annotated[Path | None, typer.Option("--out", "-o", help="folder for the results (default: runs/<case>)")]
 Force = Annotated[bool, typer.Option("--force", help="write into a folder that holds other files")]

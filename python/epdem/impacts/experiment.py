@@ -5,7 +5,7 @@ A case file is one way to make an experiment; `sphere`, `plane` and `Experiment`
 """
 
 import math
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
@@ -18,7 +18,7 @@ from ..laws import library
 from ..laws.native import Law
 from ..laws.strengths import LawNumbers, LawSpec, Surface, default_numbers, law_named
 from ..theory import pair
-from ..theory.backbones import JKR, Backbone
+from ..theory.backbones import ADHESIVE, JKR, Backbone
 
 
 @dataclass(frozen=True)
@@ -189,10 +189,12 @@ def bodies(case: Case) -> tuple[Body, Body]:
 
 
 def experiment(case: Case, law: str | None = None) -> Experiment:
-    """A case as physics; `law` replaces the case's law and drops its parameters. Raises CaseError."""
+    """A case as physics; another `law` than the case's has its default numbers. Raises CaseError."""
     body, target = bodies(case)
     speed, angle, spin = case.impact.rows()
-    numbers = law_numbers(case.law.name, case.law.parameters()) if law is None else default_numbers(law)
+    numbers = law_numbers(case.law.name, case.law.parameters())
+    if law not in (None, case.law.name):  # the attraction of the surfaces is not a matter of the law
+        numbers = replace(default_numbers(law), adhesion=numbers.adhesion if law in ADHESIVE else None)
     spec = pair_of(numbers, body, target)
     if case.rate:
         spec = rated(

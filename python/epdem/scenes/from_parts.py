@@ -220,7 +220,7 @@ def _stage(s: Parts, p: Phase) -> Stage:
     return Stage(p.name, seconds, moves, gates, until, p.time_step, p.record)
 
 
-def _refuse_leaving(stages: tuple[Stage, ...], walls: dict[str, Mesh], room: Room) -> None:
+def _refuse_leaving(stages: tuple[Stage, ...], walls: dict[str, Mesh], room: Limits) -> None:
     """Raise CaseError for a wall whose linear motions take it out of the room, up to a phase that may end early."""
     place = {name: mesh.triangles.mean(axis=1) for name, mesh in walls.items()}
     for stage in stages:
