@@ -13,7 +13,7 @@ from epdem.errors import CaseError
 from epdem.liggghts import launcher, resume
 from epdem.liggghts import scene_tables as tables
 from epdem.liggghts.scene_deck import files as deck_of
-from epdem.scenes.checks import doubtful_phases
+from epdem.scenes.doubts import planned_doubts
 from epdem.scenes.plan import plan
 
 BOX = {"name": "box", "kind": "box", "x": ["-9 mm", "9 mm"], "y": ["-9 mm", "9 mm"], "z": ["0 mm", "40 mm"]}
@@ -101,9 +101,9 @@ def test_a_wall_that_moves_last_goes_no_farther_than_it_should_and_other_lengths
     p = plan(parse(data | {"numerics": {"error": 0.02}}))
     lengths = [float(table.eval("end_time - begin_time").iloc[-1]) for table in (given.phase_table, p.phase_table)]
     assert lengths[0] > 0.021 and lengths[1] == pytest.approx(0.02, rel=0.02)
-    (said,) = doubtful_phases(given)
+    (said,) = planned_doubts(given)
     assert said.startswith(f"scene.phase.lift takes {lengths[0]:.4g} s, not 0.02 s")
-    assert not doubtful_phases(p)
+    assert not planned_doubts(p)
 
 
 @pytest.mark.liggghts

@@ -68,7 +68,7 @@ def deck_scene(case: Path, out: Path, *, engine: str, force: bool, as_json: bool
     from ..case.scene import load
     from ..case.toml import named
     from ..engines import scene_engine
-    from ..scenes.checks import doubtful_phases
+    from ..scenes.doubts import planned_doubts
     from ..scenes.engine import files as files_for
     from ..scenes.plan import plan
 
@@ -76,7 +76,7 @@ def deck_scene(case: Path, out: Path, *, engine: str, force: bool, as_json: bool
         read = load(case)
         warn(doubts(read))
         p = plan(read)
-        warn(doubtful_phases(p))
+        warn(planned_doubts(p))
         files = files_for(scene_engine(engine), p)
     say_files(write_own(out, files, force=force), as_json)
 

@@ -18,7 +18,6 @@ from .plan import ScenePlan
 
 Row = dict[str, object]
 AT_REST = 1e-2  # of the energy of a fall by a radius: kinetic energy of a bed at rest
-MOVED, LONGER = 0.02, 0.2  # by which share a phase may miss its duration: one in which walls move, another one
 MANY = 20  # frames from which on motion is followed
 
 
@@ -215,20 +214,6 @@ def _of_parts(p: ScenePlan, tables: dict[str, pd.DataFrame]) -> list[Row]:
     forces = [-float(row[f"{name}_force_z"]) for name in p.layout.loads]
     of_largest = max(1.0, *(abs(f) / float(weight.sum()) for f in forces))  # a lid may press with many times the weight
     return [_row("force on all walls / weight", sum(forces), float(weight.sum()), 0.02 * of_largest)]
-
-
-def doubtful_phases(p: ScenePlan) -> list[str]:
-    """A sentence for each phase that is longer or shorter than asked for, because it ends with a row."""
-    found = []
-    for phase, stage in zip(p.phase_table.to_dict("records"), p.layout.stages, strict=True):
-        seconds = phase["end_time"] - phase["begin_time"]
-        if isinstance(p.case.scene, Parts) and abs(seconds / stage.seconds - 1.0) > (MOVED if stage.moves else LONGER):
-            row = p.every * (stage.time_step or p.time_step)
-            found.append(
-                f"scene.phase.{stage.name} takes {seconds:.4g} s, not {stage.seconds:.4g} s: a phase ends with a row "
-                f"(each {row:.2g} s) and the last one with a frame; give more output.rows"
-            )
-    return found
 
 
 def checks(p: ScenePlan, tables: dict[str, pd.DataFrame]) -> pd.DataFrame:

@@ -22,6 +22,7 @@ from ..case.toml import named
 from ..errors import CaseError, EngineError
 from ..impacts.prediction import predict
 from . import checks, ledger, measures, pictures, results
+from .doubts import planned_doubts
 from .engine import Report, Resumed, SceneEngine, check_run
 from .engine import files as files_for
 from .plan import ScenePlan, plan
@@ -135,7 +136,7 @@ def run_case(
         p = plan(case)
         measures.refuse_measures(p)
         pictures.refuse_color(p)
-        files, notes = files_for(engine, p), [*engine.notes(p), *checks.doubtful_phases(p), *_warnings(p.case)]
+        files, notes = files_for(engine, p), [*engine.notes(p), *planned_doubts(p), *_warnings(p.case)]
     check_run(engine, ranks=ranks, resume=resume)
     beside = Path(str(place)).parent
     contents = {name: (beside / name).read_bytes() for name in sorted(names_in(tomllib.loads(text)))}
