@@ -44,7 +44,7 @@ def _overlaps(p: ScenePlan) -> list[str]:
     worst = int(share.argmax())
     one, other = sorted((i[worst] + 1, j[worst] + 1))
     return [
-        f"scene: {many} pairs of spheres overlap at the start by more than {OVERLAP:.0%} of the smaller radius; the most "
-        f"spheres {one} and {other} of scene.fill and scene.body, by {share[worst]:.0%}; check places and radii, or the "
+        f"scene: {many} pairs of spheres overlap at the start by more than {OVERLAP:.0%} of the smaller radius, "
+        f"spheres {one} and {other} of scene.fill and scene.body by {share[worst]:.0%}; check places and radii, or the "
         "bed begins with a burst"
     ]
