@@ -5,7 +5,6 @@ import io
 import json
 import os
 import shutil
-import signal
 import subprocess
 import sys
 from pathlib import Path
@@ -17,10 +16,8 @@ from calls import CASES, COMMANDS, call, make_sweep, quick_figures
 from rich.console import Console
 
 from epdem.base import paths, terminal
-from epdem.cli import main
 from epdem.engines import ENGINES
 from epdem.engines.citations import citations
-from epdem.errors import Stopped
 from epdem.laws.library import laws
 from epdem.scenes import report
 from epdem.studies import crosscheck
@@ -228,15 +225,6 @@ def test_the_message_for_a_name_that_begins_with_a_dash_says_how_to_write_it(fol
     (folder / "-x.toml").write_text(ONE_SPEED)
     assert "write the file as ./-x.toml" in call(["predict", "-x.toml"], capsys, monkeypatch).err
     assert call(["predict", "./-x.toml"], capsys, monkeypatch).code == 0
-
-
-def test_a_second_ctrl_c_does_not_interrupt_the_end_of_a_run(monkeypatch):
-    """The engine is stopped and the list of files written before the command ends."""
-    handlers = {}
-    monkeypatch.setattr("signal.signal", handlers.__setitem__)
-    with pytest.raises(Stopped):
-        main._stop(signal.SIGINT, None)
-    assert handlers == dict.fromkeys((signal.SIGINT, signal.SIGTERM, signal.SIGHUP), signal.SIG_IGN)
 
 
 @pytest.mark.parametrize("law", sorted(laws()))

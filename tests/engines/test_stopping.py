@@ -9,6 +9,9 @@ from pathlib import Path
 
 import pytest
 
+from epdem.base import stopping
+from epdem.errors import Stopped
+
 CASE = Path(__file__).parents[2] / "cases/steel_wall.toml"
 SLEEPER = """#!/bin/sh
 [ "$1" = -h ] && exit 0
@@ -75,6 +78,15 @@ def test_no_signal_is_lost_and_no_process_stays(place, tmp_path):
     )
     assert run.stderr.splitlines()[-1].startswith("epdem.errors.Stopped") and "ignored" not in run.stderr
     assert run.stdout == "children: []\n"
+
+
+def test_a_second_ctrl_c_does_not_interrupt_the_end_of_a_run(monkeypatch):
+    """The engine is stopped and the list of files written before the command ends."""
+    handlers = {}
+    monkeypatch.setattr("signal.signal", handlers.__setitem__)
+    with pytest.raises(Stopped):
+        stopping._stop(signal.SIGINT, None)
+    assert handlers == dict.fromkeys((signal.SIGINT, signal.SIGTERM, signal.SIGHUP), signal.SIG_IGN)
 
 
 @pytest.mark.liggghts
