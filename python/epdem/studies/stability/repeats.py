@@ -2,6 +2,7 @@
 """One contact many times: drift over 1e9 steps and 10^4 reloads; and the verdict on these and on two walls."""
 
 import numpy as np
+from scipy.integrate import trapezoid
 
 from ...laws.native import ImpactNumbers
 from .cases import Extreme
@@ -60,7 +61,7 @@ def reloads(v: Verdict, s: Setting, sampler: Sampler, cycles: int) -> None:
     else:
         overlap, force = embedded_cycles(s, cycles)
     drift = float(np.abs(force - force[0]).max() / force.max())
-    work = float(np.abs(np.trapezoid(force, overlap, axis=1)).max() / s.energy)
+    work = float(np.abs(trapezoid(force, overlap, axis=1)).max() / s.energy)
     law = s.x.native_law().step(R_star=s.x.R_star, delta_max=overlap.max(), delta=overlap[0])[0]
     off = float(np.abs(force[0] - law).max() / law.max())
     v.steps, v.e_n_error, v.created = force.size, max(drift, off), work
