@@ -4,6 +4,7 @@
 import mpmath as mp
 import numpy as np
 import pytest
+from scipy.integrate import trapezoid
 
 from epdem.theory import oblique, partial_slip, pressure, restitution
 from epdem.theory.backbones import Cavity, Hertz
@@ -106,7 +107,7 @@ def test_a_closed_cycle_loses_the_area_of_mindlins_loop():
     u = LIMIT * top * np.sin(np.linspace(0, 2.5 * np.pi, 2501))
     force = np.array([float(one.move([step], **LOADED)[0]) for step in np.diff(u, prepend=0.0)])
     loop = slice(500, 2501)
-    assert np.trapezoid(force[loop], u[loop]) == pytest.approx(float(area) * MU * 1000 * LIMIT, rel=1e-3)
+    assert trapezoid(force[loop], u[loop]) == pytest.approx(float(area) * MU * 1000 * LIMIT, rel=1e-3)
 
 
 def test_shear_in_a_plane_knows_no_axis_and_nothing_stays_without_force():
@@ -161,9 +162,9 @@ def test_nearly_normal_impacts_stick_and_rebound_as_without_slip():
         A, U = np.array(rim_a), np.array(rim_u)
         k = np.searchsorted(A, a)
         if k == len(A):
-            return float(np.trapezoid(U, A) + (a - A[-1]) * U[-1])
+            return float(trapezoid(U, A) + (a - A[-1]) * U[-1])
         end = float(np.interp(a, A, U))
-        return float(np.trapezoid(np.append(U[:k], end), np.append(A[:k], a)))
+        return float(trapezoid(np.append(U[:k], end), np.append(A[:k], a)))
 
     pull = 0.0
     for _ in range(n):

@@ -4,6 +4,7 @@
 import mpmath
 import numpy as np
 import pytest
+from scipy.integrate import trapezoid
 
 from epdem.theory import restitution, viscous
 from epdem.theory.backbones import LAWS, Hertz, Thornton
@@ -145,7 +146,7 @@ def test_equation_of_motion_of_a_yielding_impact_by_plain_time_steps(name):
         lost += dt / 6 * (k1[2] + 2 * k2[2] + 2 * k3[2] + k4[2])
         top, t = max(top, alpha), t + dt
     way = np.linspace(law.residual_overlap(top), alpha, 2001)  # what the contact still stores when the bodies part
-    stored = np.trapezoid(law.unloading_force(way, top), way)
+    stored = trapezoid(law.unloading_force(way, top), way)
     assert -speed / v == pytest.approx(float(found.e_n), abs=2e-5)
     assert t == pytest.approx(float(found.contact_time), abs=1.1 * dt)  # seen at the step after
     assert top == pytest.approx(float(found.overlap_max), rel=1e-4, abs=0)  # the force jumps inside a step
