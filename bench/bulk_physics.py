@@ -21,6 +21,7 @@ from epdem.case.scene import parse
 from epdem.case.toml import read_toml
 from epdem.liggghts.scenes import LiggghtsScenes
 from epdem.scenes.checks import discharge
+from epdem.scenes.columns import last_frame
 from epdem.scenes.plan import plan
 from epdem.scenes.run import run_plan
 
@@ -66,7 +67,7 @@ def flow(outlet: float, count: int, width: float, folder: Path, angle: float = 9
     case = parse(scene(outlet, count, width, angle))
     p = plan(case)
     spheres = run_plan(p, LiggghtsScenes(), folder)["particles"]
-    last = spheres[spheres["step"] == spheres["step"].max()]
+    last = last_frame(spheres)
     out = last[last["z"] < p.layout.gates[0].place]["mass"].sum() / last["mass"].sum()
     if out < END:
         raise RuntimeError(f"outlet {outlet} d: only {out:.0%} of the filling came out; the flow has stopped")

@@ -28,6 +28,7 @@ from epdem.case.scene import SceneCase, parse
 from epdem.errors import CaseError
 from epdem.liggghts import resume
 from epdem.liggghts.scenes import LiggghtsScenes
+from epdem.scenes.columns import last_frame
 from epdem.scenes.run import SceneOutcome, run_case
 
 ROOT = Path(__file__).resolve().parents[1]
@@ -148,8 +149,7 @@ def bed(name: str, seed: int, *, soft: float, friction: float) -> Path:
     if not path.exists():
         done = run(rain(name, seed, soft=soft, friction=friction), LiggghtsScenes(), path.parent / "bed")
         assert done is not None
-        frames = done.results.tables["particles"]
-        last = frames[frames["step"] == frames["step"].max()].sort_values("id")
+        last = last_frame(done.results.tables["particles"]).sort_values("id")
         materials = [done.plan.model.types[int(t) - 1].material for t in last["type"]]
         table = last[["x", "y", "z", "radius", "vx", "vy", "vz"]].assign(material=materials)
         table.to_csv(path, index=False, float_format="%.17g")

@@ -73,10 +73,10 @@ def _impact_rows(runs: Path) -> tuple[list[str], list[Series]]:
             last = _inside(float(moved[-1]), AT_100) if time[-1] > 99.9 else f"run to {time[-1]:.0f} ms"
             friction, seed = _beds(path)
             bed = f"{solid(path.parents[1] / 'spheres.csv'):.3f} ({friction or RAIN_FRICTION})"
-            cells = (name, seed, bed, _inside(float(places[1]), AT_30), _inside(float(places.min()), LOWEST))
             deepest = f"{moved[time < 40.0].min():.2f}"
             up = f"{np.interp(33.5, time, table[:, 2]):.2f}" if time[-1] > 33.5 else ""
-            cells = (*cells, _inside(float(whole[places.argmin()]), LOWEST_TIME), deepest, up, last)
+            cells = [name, seed, bed, _inside(float(places[1]), AT_30), _inside(float(places.min()), LOWEST)]
+            cells += [_inside(float(whole[places.argmin()]), LOWEST_TIME), deepest, up, last]
             rows.append(f"| {' | '.join(cells)} |")
             dash = ("solid", "dash", "dot")[k % 3]
             series.append(Series("" if k else model, table[:, 0], table[:, 1] - START, colours.index(model), dash))

@@ -117,6 +117,7 @@ def stop(process: subprocess.Popen[bytes], way: str, out: Path) -> bool:
 def kill_once(kind: str, way: str, moment: float, reference: dict[str, pd.DataFrame], out: Path) -> str:
     """ "" if all is as it must be, "late" if the command had ended before, else what is wrong."""
     words = COMMANDS[kind]
+    shutil.rmtree(out, ignore_errors=True)
     if kind == "resume":
         first = begin(COMMANDS["scene"], out)
         while not (out / "restart.20000.bin").exists() and first.poll() is None:
@@ -204,12 +205,9 @@ def trials(count: int) -> None:
         return
     whole, seconds = references()
     for number, kind, way in missing:
-        moment, wrong = random.Random(number).uniform(0.0, seconds[kind]), "late"
-        out = WORK / "out"
-        while wrong == "late":
-            shutil.rmtree(out, ignore_errors=True)
-            wrong = kill_once(kind, way, moment, whole[kind], out)
-            moment *= 0.7 if wrong == "late" else 1.0
+        moment = random.Random(number).uniform(0.0, seconds[kind])
+        while (wrong := kill_once(kind, way, moment, whole[kind], WORK / "out")) == "late":
+            moment *= 0.7
         keep({"what": kind, "how": way, "number": number, "moment": round(moment, 3), "wrong": wrong})
 
 
