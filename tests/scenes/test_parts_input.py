@@ -18,7 +18,6 @@ from epdem.case.scene import load, parse
 from epdem.case.toml import named
 from epdem.errors import CaseError
 from epdem.liggghts import scene_deck
-from epdem.scenes.doubts import planned_doubts
 from epdem.scenes.plan import plan
 from epdem.studies.soften import soften
 from epdem.studies.sweep import run as study
@@ -80,17 +79,6 @@ def test_a_table_of_spheres_comes_before_what_is_filled_in(tmp_path):
         (0.002, 0.0, True),
     ]
     assert p.layout.count == 3 and (p.smallest, p.largest) == (0.001, 0.002)
-
-
-@pytest.mark.parametrize(("distance", "said"), [(2.96, 0), (2.9, 1)])
-def test_spheres_that_lie_in_each_other_at_the_start_are_named(distance, said):
-    """Radii of 1 and 2 mm: an overlap of 4 or 10 % of the smaller one."""
-    ball = {"material": "steel", "radius": "1 mm", "place": ["0 mm", "0 mm", "10 mm"]}
-    other = {"material": "steel", "radius": "2 mm", "place": ["0 mm", "0 mm", f"{10 + distance} mm"]}
-    data = parts(body=[ball | {"name": "one"}, other | {"name": "two"}])
-    found = planned_doubts(plan(parse(data)))
-    assert len(found) == said
-    assert all("1 pairs of spheres overlap at the start" in x and "spheres 1 and 2" in x for x in found)
 
 
 def test_walls_made_here_lie_where_they_are_said_to():

@@ -4,7 +4,12 @@
 import numpy as np
 
 from ..case.parts import Parts
+from ..errors import CaseError
+from .crossings import crosses, depth
+from .layout import Plane
+from .meshes import FloatArray, rectangle
 from .plan import ScenePlan
+from .timestep import stable_step
 
 MOVED, LONGER = 0.02, 0.2  # by which share a phase may miss its duration: one in which walls move, another one
 OVERLAP = 0.05  # of the smaller radius; a bed of an earlier run has less
@@ -12,7 +17,25 @@ OVERLAP = 0.05  # of the smaller radius; a bed of an earlier run has less
 
 def planned_doubts(p: ScenePlan) -> list[str]:
     """A sentence for each."""
-    return _phases(p) + _overlaps(p)
+    return _time_steps(p) + _phases(p) + _overlaps(p) + _walls(p)
+
+
+def _time_steps(p: ScenePlan) -> list[str]:
+    """Given time steps with which not even a single contact is stable."""
+    given = {"numerics.time_step": p.case.numerics.time_step}
+    given |= {f"scene.phase.{stage.name}.time_step": stage.time_step for stage in p.layout.stages}
+    if not (given := {place: step for place, step in given.items() if step}):
+        return []
+    try:
+        stable = stable_step(p.case)
+    except CaseError:  # no speed follows from the case
+        return []
+    return [
+        f"{place} = {step:g} s: an impact at the scene's highest speed is stable up to {stable:.2g} s, a bed of "
+        "spheres up to a quarter or a half of it; give less, or leave it out"
+        for place, step in given.items()
+        if step > stable
+    ]
 
 
 def _phases(p: ScenePlan) -> list[str]:
@@ -37,7 +60,9 @@ def _overlaps(p: ScenePlan) -> list[str]:
 
     places = np.array([s.place for s in p.layout.table])
     radius = np.array([s.radius for s in p.layout.table])
+    frozen = np.array([s.frozen for s in p.layout.table])
     i, j = cKDTree(places).query_pairs(2 * radius.max(), output_type="ndarray").T
+    i, j = i[free := ~(frozen[i] & frozen[j])], j[free]
     share = (radius[i] + radius[j] - np.linalg.norm(places[i] - places[j], axis=1)) / np.minimum(radius[i], radius[j])
     if not (many := int((share > OVERLAP).sum())):
         return []
@@ -48,3 +73,32 @@ def _overlaps(p: ScenePlan) -> list[str]:
         f"spheres {one} and {other} of scene.fill and scene.body by {share[worst]:.0%}; check places and radii, or the "
         "bed begins with a burst"
     ]
+
+
+def _sheet(p: ScenePlan, plane: Plane) -> FloatArray:
+    """A plane as two triangles as large as the room."""
+    low, high = np.array(p.layout.box[0::2]), np.array(p.layout.box[1::2])
+    center, size = (low + high) / 2, np.delete(high - low, plane.axis)
+    center[plane.axis] = plane.place
+    return rectangle(plane.axis, center, (size[0], size[1]))
+
+
+def _walls(p: ScenePlan) -> list[str]:
+    """Regions that a wall runs through and spheres that lie in one, of walls that have not moved yet."""
+    first, moved, found = p.layout.stages[0].name, set[str](), {}
+    table = [(f"sphere {n} of scene.fill and scene.body", s, first) for n, s in enumerate(p.layout.table, 1)]
+    table += [(f"scene.body.{b.name}", b.sphere, b.phase) for b in p.layout.bodies]
+    for stage in p.layout.stages if isinstance(p.case.scene, Parts) else ():
+        planes = [w for w in (*p.layout.planes, *p.layout.gates) if w in p.layout.planes or w.name in stage.gates]
+        walls = {w.name: _sheet(p, w) for w in planes}
+        walls |= {name: mesh.triangles for name, mesh in p.layout.meshes.items() if name not in moved}
+        moved |= set(stage.moves)
+        for name, triangles in walls.items():
+            for f in p.layout.fills:
+                free = OVERLAP * min(particles.radii()[0] for particles in f.parts)
+                if (f.phase or first) == stage.name and crosses(f.region, triangles, free):
+                    found[f.place, name] = f"{f.place}.region: wall {name} runs through it; move one of them"
+            for place, s, phase in table:
+                if phase == stage.name and not s.frozen and (share := depth(triangles, s) / s.radius) > OVERLAP:
+                    found.setdefault(("", name), f"{place} lies in wall {name} by {share:.0%} of its radius; move it")
+    return list(found.values())

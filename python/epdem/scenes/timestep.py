@@ -2,6 +2,7 @@
 """The time step of a scene, from its highest speed."""
 
 import math
+from collections.abc import Iterator
 
 import numpy as np
 
@@ -10,7 +11,7 @@ from ..case.parts import Parts
 from ..case.scene import SceneCase
 from ..errors import CaseError
 from ..impacts.experiment import Experiment
-from ..impacts.prediction import predict
+from ..impacts.prediction import Prediction, predict
 from ..impacts.timestep import search, stability_limit
 from ..theory.timestep import DENSE_PACKING, sticking_packing
 from .model import model
@@ -77,23 +78,33 @@ def leading_impact(case: SceneCase) -> Experiment:
     )
 
 
-def time_step(case: SceneCase) -> float:
-    """The step [s] of a scene: the target error of e_n at its speeds, below the stable step of a bed."""
-    if case.numerics.time_step is not None:
-        return case.numerics.time_step
-    v, sticking = highest_speed(case), model(case).sliding
-    best = math.inf
+def _impacts(case: SceneCase) -> Iterator[tuple[Experiment, Prediction, float]]:
+    """The impacts of the spheres of a scene on each material at its highest speed, and their stable steps [s]."""
+    v = highest_speed(case)
     bodies = {(p.material, p.radii()[0]) for p in case.scene.filled}
     for material, radius in sorted(bodies):
         for other in sorted({m for m, _ in bodies} | {*case.scene.wall_materials}):
             x = sphere_impact(case, material, radius, other, v)
             prediction = predict(x)
-            try:
-                step = search(x, prediction, case.numerics.error).time_step
-            except CaseError as error:
-                raise CaseError(f"numerics.{error}; give a larger one, or numerics.time_step") from None
-            limit = stability_limit(x, float(prediction.overlap_max.max()))
-            best = min(best, step, bed_share(x, sticking=sticking) * limit)
+            yield x, prediction, stability_limit(x, float(prediction.overlap_max.max()))
+
+
+def stable_step(case: SceneCase) -> float:
+    """The largest step [s] with which each contact of the scene alone is stable at its highest speed."""
+    return min(stable for *_, stable in _impacts(case))
+
+
+def time_step(case: SceneCase) -> float:
+    """The step [s] of a scene: the target error of e_n at its speeds, below the stable step of a bed."""
+    if case.numerics.time_step is not None:
+        return case.numerics.time_step
+    best, sticking = math.inf, model(case).sliding
+    for x, prediction, stable in _impacts(case):
+        try:
+            step = search(x, prediction, case.numerics.error).time_step
+        except CaseError as error:
+            raise CaseError(f"numerics.{error}; give a larger one, or numerics.time_step") from None
+        best = min(best, step, bed_share(x, sticking=sticking) * stable)
     return _round_down(best)
 
 

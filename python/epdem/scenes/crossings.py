@@ -1,0 +1,61 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Where triangles of walls run through regions and spheres."""
+
+import math
+
+import numpy as np
+
+from ..case.parts import Sphere
+from .layout import Block, Cylinder
+from .meshes import FloatArray
+
+SIDES = 24  # of the prism that stands for a round region
+
+
+def _faces(region: Block | Cylinder, free: float) -> tuple[FloatArray, FloatArray]:
+    """(normals, shape (n, 3); distances [m] from the origin, shape (n,)) of the faces of a region, `free` inside it."""
+    both = np.array([[-1.0], [1.0]])
+    if isinstance(region, Block):
+        normals: FloatArray = np.kron(np.eye(3), both)
+        return normals, np.array(region.limits) * normals.sum(axis=1) - free
+    angle = 2 * math.pi * np.arange(SIDES) / SIDES
+    sides = np.column_stack([np.cos(angle), np.sin(angle), np.zeros(SIDES)])
+    apothem = region.radius * math.cos(math.pi / SIDES)
+    around = apothem + sides[:, :2] @ np.array(region.center)
+    return np.concatenate([both * [0.0, 0.0, 1.0], sides]), np.array([-region.low, region.high, *around]) - free
+
+
+def _remains(triangle: FloatArray, normals: FloatArray, distances: FloatArray) -> bool:
+    """Whether a part of a triangle lies below all faces: they cut off what is beyond, one after another."""
+    polygon = triangle
+    for normal, distance in zip(normals, distances, strict=True):
+        height = polygon @ normal - distance
+        corners = []
+        for a, b, x, y in zip(polygon, np.roll(polygon, -1, axis=0), height, np.roll(height, -1), strict=True):
+            if x < 0.0:
+                corners.append(a)
+            if x * y < 0.0:
+                corners.append(a + (b - a) * x / (x - y))
+        if not corners:
+            return False
+        polygon = np.array(corners)
+    return True
+
+
+def crosses(region: Block | Cylinder, triangles: FloatArray, free: float) -> bool:
+    """Whether one of the triangles, shape (n, 3 corners, 3), has a part more than `free` [m] inside a region."""
+    normals, distances = _faces(region, free)
+    beyond = np.any(np.all(triangles @ normals.T >= distances, axis=1), axis=1)
+    return any(_remains(t, normals, distances) for t in triangles[~beyond])
+
+
+def depth(triangles: FloatArray, s: Sphere) -> float:
+    """How far [m] the nearest of the triangles, shape (n, 3 corners, 3), lies in a sphere; below 0: it does not."""
+    import trimesh
+
+    place = np.array(s.place)
+    outside = (triangles.min(axis=1) > place + s.radius) | (triangles.max(axis=1) < place - s.radius)
+    if not len(near := triangles[~outside.any(axis=1)]):
+        return -math.inf
+    closest = trimesh.triangles.closest_point(near, np.tile(place, (len(near), 1)))  # type: ignore[no-untyped-call]
+    return float(s.radius - np.linalg.norm(closest - place, axis=1).min())

@@ -1,0 +1,102 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Warnings of what a scene probably does not mean."""
+
+import math
+from pathlib import Path
+
+import pytest
+from parts_cases import BED, CASES, FLOOR, GLASS, parts
+
+from epdem.case.scene import load, parse
+from epdem.scenes.doubts import planned_doubts
+from epdem.scenes.plan import plan
+
+BALL = {"name": "ball", "material": "steel", "radius": "2 mm", "place": ["0 mm", "0 mm", "20 mm"]}
+PLATE = {"name": "plate", "kind": "plate", "axis": "z", "center": ["0 mm", "0 mm", "5 mm"], "size": ["10 mm"] * 2}
+TUBE = {"name": "tube", "kind": "cylinder", "axis": "z", "center": ["0 mm"] * 2, "from": "0 mm", "to": "40 mm"}
+FALL, REST = {"name": "fall", "duration": "20 ms"}, {"name": "rest", "duration": "20 ms"}
+LIFT = FALL | {"move": [{"wall": "plate", "kind": "linear", "velocity": ["0 m/s", "0 m/s", "1 m/s"]}]}
+
+
+def doubts(data: dict) -> list[str]:
+    return planned_doubts(plan(parse(data)))
+
+
+def place(*mm: float) -> list[str]:
+    return [f"{x} mm" for x in mm]
+
+
+@pytest.mark.parametrize(
+    "path", sorted([*CASES.glob("*.toml"), *CASES.glob("benchmarks/*.toml")]), ids=lambda p: p.stem
+)
+def test_scenes_of_the_project_leave_no_doubt(path: Path):
+    if "[scene]" in path.read_text(encoding="utf-8"):
+        assert planned_doubts(plan(load(path))) == []
+
+
+@pytest.mark.parametrize(("distance", "frozen", "said"), [(2.96, False, 0), (2.9, False, 1), (2.9, True, 0)])
+def test_spheres_that_lie_in_each_other_at_the_start_are_named(distance, frozen, said):
+    """Radii of 1 and 2 mm: an overlap of 4 or 10 % of the smaller one."""
+    one = BALL | {"name": "one", "radius": "1 mm", "place": place(0, 0, 10), "frozen": frozen}
+    two = BALL | {"name": "two", "place": place(0, 0, 10 + distance), "frozen": frozen}
+    found = doubts(parts(body=[one, two]))
+    assert len(found) == said
+    assert all("1 pairs of spheres overlap at the start" in x and "spheres 1 and 2" in x for x in found)
+
+
+@pytest.mark.parametrize(("at", "said"), [("0 mm", 0), ("0.05 mm", 0), ("5 mm", 1)])
+def test_a_region_with_a_plane_in_it_is_named(at, said):
+    found = doubts(parts(wall=[FLOOR | {"at": at}]))
+    assert found == ["scene.fill.bed.region: wall floor runs through it; move one of them"] * said
+
+
+@pytest.mark.parametrize(("diameter", "said"), [("13.8 mm", 0), ("14 mm", 0), ("14.6 mm", 1), ("19 mm", 1)])
+def test_a_round_region_with_a_round_wall_in_it_is_named(diameter, said):
+    """Spheres of 1.5 mm: less than 0.075 mm beyond a wall of 7 mm goes without a word."""
+    region = {"diameter": diameter, "center": ["0 mm"] * 2, "z": ["0 mm", "38 mm"]}
+    wall = TUBE | {"diameter": "14 mm", "ends": ["from"], "material": "steel"}
+    found = doubts(parts(wall=[wall], fill=[BED | {"region": region}]))
+    assert ["wall tube runs through it" in x for x in found] == [True] * said
+
+
+@pytest.mark.parametrize(
+    ("ball", "share"),
+    [
+        ({"place": place(0, 0, 1.95)}, None),
+        ({"place": place(0, 0, 1.5)}, "floor by 25%"),
+        ({"place": place(0, 0, 1.5), "frozen": True}, None),
+        ({"place": place(6, 0, 6)}, "plate by 29%"),  # 1 - sqrt(1 + 1) / 2: beside its edge
+        ({"place": place(6.5, 6.5, 5)}, None),  # sqrt(1.5^2 + 1.5^2) > 2: beside its corner
+        ({"place": place(0, 0, 5), "phase": "rest"}, "plate by 100%"),
+    ],
+)
+def test_a_sphere_in_a_wall_is_named(ball, share):
+    walls = [FLOOR, PLATE | {"material": "steel"}]
+    found = doubts(parts(wall=walls, fill=[], body=[BALL | ball], phase=[FALL, REST]))
+    assert [share in x for x in found] == [True] * (share is not None)
+
+
+def test_a_wall_that_has_moved_and_a_gate_of_another_phase_are_in_nobodys_way():
+    gate = FLOOR | {"name": "gate", "at": "5 mm", "phases": ["rest"]}
+    ball = BALL | {"place": place(0, 0, 5)}
+    plate = PLATE | {"material": "steel"}
+    for wall, phase, named in (
+        ([FLOOR, gate], "fall", False),
+        ([FLOOR, gate], "rest", True),
+        ([FLOOR, plate], "fall", True),
+        ([FLOOR, plate], "rest", False),
+    ):
+        phases = [LIFT if plate in wall else FALL, REST]
+        found = doubts(parts(wall=wall, fill=[], body=[ball | {"phase": phase}], phase=phases))
+        assert len(found) == named, (wall, phase)
+
+
+@pytest.mark.parametrize(("factor", "said"), [(0.95, 0), (1.05, 1)])
+def test_a_time_step_that_no_contact_bears_is_named(factor, said):
+    """Spheres that fall 45 mm on each other stay elastic, and stable up to 2 sqrt(m* / k) of their largest overlap."""
+    E_star, R_star, m_star = 10e6 / (1 - 0.25**2) / 2, 0.75e-3, 2500 * 4 / 3 * math.pi * 1.5e-3**3 / 2
+    overlap = (15 * m_star * 2 * 9.80665 * 0.045 / (16 * E_star * math.sqrt(R_star))) ** 0.4
+    stable = 2 * math.sqrt(m_star / (2 * E_star * math.sqrt(R_star * overlap)))
+    data = parts(wall=[FLOOR | {"material": "glass"}]) | {"numerics": {"time_step": f"{factor * stable} s"}}
+    data["materials"] = {"glass": GLASS | {"yield_stress": "9 MPa"}}
+    assert ["impact at the scene's highest speed is stable" in x for x in doubts(data)] == [True] * said
