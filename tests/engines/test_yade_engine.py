@@ -100,6 +100,8 @@ def test_the_deck_is_plain_travels_with_its_law_and_runs_by_hand(tmp_path):
     assert (tmp_path / "a/impact.py") in files and all(f.exists() for f in files)
     assert {"law.py", "contacts.py"} <= {f.name for f in files}
     (tmp_path / "a").rename(tmp_path / "b")  # it knows no absolute path, and nothing of this package
+    with (tmp_path / "b/impact.py").open("a") as deck:
+        deck.write("print('YADE leaves a folder:', Path(O.tmpFilename()).parent.exists())\n")
     alone = {"PATH": os.environ["PATH"], "HOME": str(tmp_path)}
     done = subprocess.run(
         ["yade", "-n", "-x", "b/impact.py"],
@@ -111,6 +113,7 @@ def test_the_deck_is_plain_travels_with_its_law_and_runs_by_hand(tmp_path):
         timeout=60,
     )
     assert done.returncode == 0, done.stderr
+    assert "YADE leaves a folder: False" in done.stdout
     samples = np.load(tmp_path / "b/path.bin")
     assert samples.shape == (p.steps + 2, 3, 2 * p.n) and samples[:, 2].max() > 0
     assert not list((tmp_path / "b").glob("*.part"))

@@ -153,6 +153,8 @@ def test_the_folder_of_a_yade_scene_runs_by_hand_and_repeats_itself(tmp_path):
     assert (
         cli.app(["deck", str(path), "--engine", "yade", "--out", str(tmp_path / "deck")], standalone_mode=False) is None
     )
+    with (tmp_path / "deck/scene.py").open("a") as deck:
+        deck.write("print('YADE leaves a folder:', Path(O.tmpFilename()).parent.exists(), file=sys.stderr)\n")
     done = subprocess.run(
         ["yade", "-n", "-x", "scene.py"],
         cwd=tmp_path / "deck",
@@ -162,6 +164,7 @@ def test_the_folder_of_a_yade_scene_runs_by_hand_and_repeats_itself(tmp_path):
         text=True,
         check=True,
     )
+    assert "YADE leaves a folder: False" in done.stderr
     (tmp_path / "deck" / OUT).write_text(done.stdout)
     outcome = run(path, engine="yade", out=tmp_path / "out")
     rows = yade_tables.rows(outcome.plan, tmp_path / "deck" / OUT)
