@@ -9,7 +9,6 @@ files, so that what else the machine does hits both, and the shortest time count
 """
 
 import argparse
-import shutil
 import tempfile
 from pathlib import Path
 
@@ -107,15 +106,12 @@ def main() -> None:
     parser.add_argument("--out", type=Path, default=ROOT / "docs/lean.md")
     parser.add_argument("--repeats", type=int, default=5)
     options = parser.parse_args()
-    scratch = Path(tempfile.mkdtemp(prefix="epdem_lean_"))
-    try:
+    with tempfile.TemporaryDirectory(prefix="epdem_lean_") as scratch:
         rows = [
-            measure(p, options.repeats, scratch)
+            measure(p, options.repeats, Path(scratch))
             for p in sorted((ROOT / "cases").glob("*.toml"))
             if scenes.is_scene(read_toml(p))
         ]
-    finally:
-        shutil.rmtree(scratch, ignore_errors=True)
     options.out.write_text(page(rows))
     print(options.out.read_text())
 

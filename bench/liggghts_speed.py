@@ -99,7 +99,8 @@ def read(text, times):
 @cache
 def stopwatch():
     """step_times.cpp as a library to preload."""
-    made = Path(tempfile.mkdtemp(prefix="epdem_times_")) / "libtimes.so"
+    made = store.FOLDER / "libtimes.so"
+    made.parent.mkdir(parents=True, exist_ok=True)
     mpi = subprocess.run(["mpicxx", "--showme:compile"], capture_output=True, text=True, check=True).stdout.split()
     styles = ROOT / "cpp_contact" / "liggghts" / "styles"
     line = ["g++", "-std=c++17", "-O2", "-fPIC", "-shared", "-DOMPI_SKIP_MPICXX", f"-I{styles}"]

@@ -42,10 +42,11 @@ IMPACTS = [
 @cache
 def library() -> ctypes.CDLL:
     """slip.cpp, compiled once per process."""
-    path = Path(tempfile.mkdtemp()) / "slip.so"
-    source = Path(__file__).with_suffix(".cpp")
-    subprocess.run(["g++", *FLAGS, f"-I{ROOT}/cpp_contact/include", "-o", path, source], check=True)
-    return ctypes.CDLL(str(path))
+    with tempfile.TemporaryDirectory() as folder:
+        path = Path(folder) / "slip.so"
+        source = Path(__file__).with_suffix(".cpp")
+        subprocess.run(["g++", *FLAGS, f"-I{ROOT}/cpp_contact/include", "-o", path, source], check=True)
+        return ctypes.CDLL(str(path))
 
 
 def _pointer(x):
