@@ -90,7 +90,7 @@ def test_anything_else_is_refused(text):
 )
 def test_a_frequency_is_no_angular_speed(text, unit):
     """Both are 1/s to pint: 3000 rpm were 314 Hz, and a spin of 50 Hz 8 turns a second."""
-    with pytest.raises(ValueError, match="turn|angles"):
+    with pytest.raises(ValueError, match=r"turn|angles"):
         to_si(text, unit)
 
 

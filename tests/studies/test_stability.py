@@ -259,6 +259,7 @@ def test_a_choice_that_leaves_nothing_to_run_or_to_keep_is_refused(words, says, 
     assert isinstance(done.exception, CaseError) and says in str(done.exception) and not list(tmp_path.iterdir())
 
 
+@pytest.mark.liggghts
 def test_an_engine_is_tested_with_the_laws_that_it_has():
     rows = stability.run(["liggghts-hertz", "embedded"], [], groups=["rigid"], every=2).verdicts
     assert rows.groupby("engine")["law"].unique().map(list).to_dict() == {
