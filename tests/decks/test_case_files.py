@@ -51,9 +51,7 @@ def test_every_case_of_the_project_is_valid(path):
         ("36 km/hour", "m/s", 10.0),
         ("-3 um", "m", -3e-6),
         ("60 rpm", "rad/s", 2 * math.pi),
-        ("50 turn/s", "rad/s", 100 * math.pi),
         ("1e-3 1/s", "1/s", 1e-3),
-        ("2 s^-1", "1/s", 2.0),
     ],
 )
 def test_a_quantity_is_number_blank_unit(text, unit, value):
@@ -85,12 +83,15 @@ def test_anything_else_is_refused(text):
         to_si(text, "m")
 
 
+TURNS = ("does not say whether it counts turns", r"is one of angles; write how many in a second")
+
+
 @pytest.mark.parametrize(
-    ("text", "unit"), [("50 Hz", "rad/s"), ("50 1/s", "rad/s"), ("3000 rpm", "Hz"), ("1 rad/s", "1/s")]
+    ("text", "unit"), [("50 Hz", "rad/s"), ("1 1/s", "rad/s"), ("1 rpm", "Hz"), ("1 rad/s", "1/s")]
 )
 def test_a_frequency_is_no_angular_speed(text, unit):
     """Both are 1/s to pint: 3000 rpm were 314 Hz, and a spin of 50 Hz 8 turns a second."""
-    with pytest.raises(ValueError, match=r"turn|angles"):
+    with pytest.raises(ValueError, match=TURNS[unit != "rad/s"]):
         to_si(text, unit)
 
 
