@@ -2,6 +2,7 @@
 """Case files: what is refused, and how the sentence reads; nothing is written for a bad one."""
 
 import copy
+import math
 import re
 import subprocess
 import sys
@@ -49,6 +50,8 @@ def test_every_case_of_the_project_is_valid(path):
         ("1e-2 m", "m", 1e-2),
         ("36 km/hour", "m/s", 10.0),
         ("-3 um", "m", -3e-6),
+        ("60 rpm", "rad/s", 2 * math.pi),
+        ("1e-3 1/s", "1/s", 1e-3),
     ],
 )
 def test_a_quantity_is_number_blank_unit(text, unit, value):
@@ -78,6 +81,18 @@ def test_a_quantity_is_number_blank_unit(text, unit, value):
 def test_anything_else_is_refused(text):
     with pytest.raises(ValueError):
         to_si(text, "m")
+
+
+TURNS = ("does not say whether it counts turns", r"is one of angles; write how many in a second")
+
+
+@pytest.mark.parametrize(
+    ("text", "unit"), [("50 Hz", "rad/s"), ("1 1/s", "rad/s"), ("1 rpm", "Hz"), ("1 rad/s", "1/s")]
+)
+def test_a_frequency_is_no_angular_speed(text, unit):
+    """Both are 1/s to pint: 3000 rpm were 314 Hz, and a spin of 50 Hz 8 turns a second."""
+    with pytest.raises(ValueError, match=TURNS[unit != "rad/s"]):
+        to_si(text, unit)
 
 
 @pytest.mark.parametrize("text", ["9**9**9 m", "1 m**9**9**9", "1 (9**9**9)", "1 m*9**9**9"])

@@ -44,6 +44,13 @@ def test_every_smaller_step_is_good_too(law):
         assert timestep.restitution_errors(x, prediction, share * found.time_step, 24).max() <= 1e-3
 
 
+def test_a_good_step_without_smaller_ones_to_confirm_it_is_not_called_too_bad(monkeypatch):
+    """80 steps in contact reach 1e-3, but 152 must be good as well; the best error, 4e-4, is below the target."""
+    monkeypatch.setattr(timestep, "MOST_STEPS", 100)
+    with pytest.raises(CaseError, match=r"is not reached by every step near 100 in contact; the best is 0\.0004"):
+        timestep.search(*ready(STEEL), 1e-3)
+
+
 def test_a_hundredth_of_the_error_costs_about_ten_times_the_steps_second_order():
     """Verlet is of second order: sqrt(100) = 10 in the step; the ladder's ratio 1.19 and phases leave a factor 2."""
     x, prediction = ready(STEEL)

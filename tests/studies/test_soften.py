@@ -54,6 +54,21 @@ def test_the_twin_keeps_e_n_of_every_speed_while_contacts_last_longer(law, facto
     assert math.isclose(twin.time_step_factor, factor**0.4)
 
 
+RATE = "[rate]\nsensitivity = 0.05\n"
+
+
+@pytest.mark.parametrize("text", ["finite_strain = true", "finite_strain = 0.5", RATE, RATE + 'reference = "2 1/s"'])
+def test_the_twin_keeps_e_n_where_the_strength_depends_on_strain_or_rate(text, tmp_path):
+    """The pressure falls with a/R*, which grows as k^0.2; the strain rate 0.2 v/a falls as k^-0.2."""
+    path = with_law(tmp_path, "cavity")
+    path.write_text(re.sub(r"\n+\[numerics\]", f"\n{text}\n[numerics]", path.read_text()))
+    soft = tmp_path / "soft.toml"
+    soft.write_text(soften(path, 10.0).text)
+    hard, now = predict(experiment(load(path))), predict(experiment(load(soft)))
+    assert np.abs(now.e_n / hard.e_n - 1).max() < 1e-10
+    assert np.abs(predict(experiment(load(with_law(tmp_path, "cavity")))).e_n / hard.e_n - 1).max() > 1e-3
+
+
 def test_softening_the_modulus_alone_loses_e_n(tmp_path):
     soft = tmp_path / "soft.toml"
     soft.write_text(STEEL.read_text().replace("208 GPa", "2.08 GPa"))
@@ -172,6 +187,16 @@ def test_the_strength_of_an_adhesive_law_is_found_from_e_n(tmp_path):
     assert math.isclose(found.yield_speed, float(yield_speed(x.theory(), m_star=x.m_star)), rel_tol=1e-6)
 
 
+def test_the_strength_that_grows_with_the_rate_is_found_at_the_rate_of_the_measurement(tmp_path):
+    """A case with [rate] and one speed: the strength of its file is that at the reference rate."""
+    path = tmp_path / "rated.toml"
+    text = re.sub(r"speeds = .*", 'speeds = ["3 m/s"]', STEEL.read_text())
+    path.write_text(f"{text}\n{RATE}")
+    e_n = float(predict(experiment(load(path))).e_n[0])
+    assert math.isclose(from_restitution(path, e_n, 3.0).yield_stress, 1e9, rel_tol=1e-7)
+    assert from_hardness(path, 2.8e9, "HV").value == 2.8e9
+
+
 def test_vickers_hardness_is_the_load_on_the_facets_of_the_pyramid_and_the_mean_pressure_that_on_its_projection():
     edge = 1e-3  # of the square that a pyramid with 136 degrees between opposite facets leaves [m]
     slant_height = edge / 2 / math.sin(math.radians(136 / 2))
@@ -181,10 +206,10 @@ def test_vickers_hardness_is_the_load_on_the_facets_of_the_pyramid_and_the_mean_
     assert math.isclose(found.yield_stress, found.value / 2.8)
 
 
-@pytest.mark.parametrize("ratio", [0.01, 0.24, 0.375, 0.6, 1.0])
+@pytest.mark.parametrize("ratio", [1e-9, 0.01, 0.24, 0.375, 0.6, 1.0])
 def test_brinell_hardness_is_the_load_on_the_cap_and_the_mean_pressure_that_on_its_circle(ratio):
     radius = 5e-3
-    depth = radius * (1 - math.cos(math.asin(ratio)))
+    depth = 2 * radius * math.sin(math.asin(ratio) / 2) ** 2
     load = 200 * 9.80665e6 * 2 * math.pi * radius * depth
     mean = load / (math.pi * (ratio * radius) ** 2)
     assert math.isclose(pressure_of_hardness(brinell=200, dent_ratio=ratio), mean, rel_tol=1e-9)

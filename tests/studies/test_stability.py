@@ -244,5 +244,29 @@ def test_the_command_names_the_groups_there_are_and_keeps_its_former_name(comman
     assert [row["case"] for row in json.loads(done.stdout)["rows"]] == ["poisson_0"]
 
 
+@pytest.mark.parametrize(
+    ("words", "says"),
+    [
+        (["-l", "jkr", "--every", "60"], "--engine embedded: --law, --group and --every leave it no case"),
+        (["-e", "yade", "-g", "adhesion"], "--engine yade: --law, --group and --every leave it no case"),
+        (["-e", "liggghts-hertz", "-l", "cavity"], "engine liggghts-hertz has hertz only"),
+        (["-g", "poisson", "-l", "hertz", "--out", "all.html"], "the page beside the table has this name"),
+    ],
+)
+def test_a_choice_that_leaves_nothing_to_run_or_to_keep_is_refused(words, says, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    done = CliRunner().invoke(app, ["stability", *words])
+    assert isinstance(done.exception, CaseError) and says in str(done.exception) and not list(tmp_path.iterdir())
+
+
+@pytest.mark.liggghts
+def test_an_engine_is_tested_with_the_laws_that_it_has():
+    rows = stability.run(["liggghts-hertz", "embedded"], [], groups=["rigid"], every=2).verdicts
+    assert rows.groupby("engine")["law"].unique().map(list).to_dict() == {
+        "liggghts-hertz": ["hertz"],
+        "embedded": [*LAWS],
+    }
+
+
 def test_extreme_cases_are_the_same_on_every_call():
     assert extremes() == extremes.__wrapped__()

@@ -26,7 +26,7 @@ TEXTS = {
 }
 OTHER_KIND = {
     "impact": "is a bulk scene ([scene]) and this needs impacts ([impact]); "
-    "run, deck, explain, cite, soften, tune, sweep and calibrate --target take scenes",
+    "run, deck, explain, cite, view, soften, tune, sweep and calibrate --target take scenes",
     "scene": "is a case of impacts ([impact]) and this needs a bulk scene ([scene])",
 }
 

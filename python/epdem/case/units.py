@@ -12,7 +12,8 @@ from ..errors import CaseError
 _NUMBER = r"[+-]?(?:\d+(?:\.\d*)?|\.\d+)(?:[eE][+-]?\d{1,3})?"
 _NAME = r"[A-Za-zµ°%]{1,20}"
 _FACTOR = rf"{_NAME}(?:(?:\^|\*\*)-?\d)?"
-_QUANTITY = re.compile(rf"({_NUMBER})(?: +({_FACTOR}(?: ?[*/·] ?{_FACTOR}|/\d)*))?")
+_QUANTITY = re.compile(rf"({_NUMBER})(?: +((?:1/)?{_FACTOR}(?: ?[*/·] ?{_FACTOR}|/\d)*))?")
+_ANGLES = ("radian", "degree", "turn", "grade", "revolutions_per_minute", "revolutions_per_second")  # pint's names
 
 
 @cache
@@ -39,11 +40,18 @@ def _by_pint(unit: str, si: str) -> float:
 
     registry = _registry()
     try:
-        return float(registry.Quantity(1.0, unit.replace("·", "*")).to(si).magnitude)
+        quantity = registry.Quantity(1.0, unit.replace("·", "*"))
+        factor = float(quantity.to(si).magnitude)
     except pint.UndefinedUnitError as error:
         raise ValueError(f"unknown unit {unit!r}") from error
     except pint.DimensionalityError as error:
         raise ValueError(f"the unit {unit!r} has the wrong dimension; expected a unit like {si!r}") from error
+    turns = any(name.endswith(_ANGLES) for name, _ in quantity.unit_items())  # pint takes a radian for the number 1
+    if si == "rad/s" and not turns:
+        raise ValueError(f"the unit {unit!r} does not say whether it counts turns; write turn/s, rpm or rad/s")
+    if si in ("Hz", "1/s") and turns:
+        raise ValueError(f"the unit {unit!r} is one of angles; write how many in a second, in Hz (60 rpm are 1 Hz)")
+    return factor
 
 
 def to_si(text: object, si: str) -> float:

@@ -72,6 +72,7 @@ def crosscheck(
     as_json: AsJson = False,
 ) -> None:
     """Run a case on every installed engine and model, and print errors, order of convergence and invariance."""
+    from ..case.impact import load
     from ..impacts import report
     from ..studies.crosscheck import crosscheck as check
     from ..studies.pages.tables import of_crosscheck
@@ -79,6 +80,8 @@ def crosscheck(
     folders = [out / path.stem for path in cases] if out and len(cases) > 1 else [out for _ in cases]
     if out and len(set(folders)) < len(cases):
         raise CaseError(f"--out {out}: two of the cases have one file name and would share a folder; rename one")
+    for path in cases:
+        load(path)  # a mistake in the last one is not said after minutes with the first
     results = []
     with status() as progress:
         for path, folder in zip(cases, folders, strict=True):

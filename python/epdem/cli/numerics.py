@@ -8,6 +8,7 @@ from typing import Annotated
 import typer
 
 from ..base.terminal import console, frame_table, show_table, status
+from ..errors import CaseError
 from .options import AsJson, CasePath, Engines, Force, Formats, Laws, Out, Replace, formats, laws_or_own, refuse
 
 
@@ -81,6 +82,8 @@ def stability(
     from ..studies.stability.suite import summary
 
     if out:
+        if out.suffix == ".html":
+            raise CaseError(f"--out {out}: the page beside the table has this name; name the table {out.stem}.csv")
         refuse_existing(out, force=force)
         refuse_existing(out.with_suffix(".html"), force=force)
     else:

@@ -8,7 +8,7 @@ from typing import Annotated
 import typer
 
 from ..base.terminal import bar, console
-from .options import AsJson, CasePath, Replace, say_files, warn
+from .options import AsJson, CasePath, Replace, refuse, say_files, warn
 
 
 def is_scene(path: Path) -> bool:
@@ -115,6 +115,7 @@ def view(
     with named(case):
         p = plan(load(case))
         if window:
+            refuse(case, "--window shows the scene and writes nothing", out=out, force=force)
             pictures.window(p)
             return
         path = out or Path(f"{p.case.name}.png")

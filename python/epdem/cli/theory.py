@@ -26,6 +26,7 @@ def theory(
     from dataclasses import asdict
 
     from ..case.units import read_number
+    from ..impacts.report import plain
     from ..studies.one_impact import one_impact
 
     x = one_impact(
@@ -35,7 +36,8 @@ def theory(
         adhesion=None if adhesion is None else read_number("--work-of-adhesion", adhesion, "J/m^2"),
     )
     if as_json:
-        print(json.dumps({k: v for k, v in asdict(x).items() if k not in ("first", "plastic")}))
+        rows = {name: {k: plain(v) for k, v in row.items()} for name, row in x.laws.items()}
+        print(json.dumps({k: v for k, v in asdict(x).items() if k not in ("first", "plastic")} | {"laws": rows}))
         return
     title = f"{material} sphere, R = {x.radius:g} m, on {material} at {x.speed:g} m/s (SI units)"
     table = empty_table(title, ("law", *x.laws["hertz"]), left=("law",))

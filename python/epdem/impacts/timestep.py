@@ -129,4 +129,7 @@ def search(x: Experiment, prediction: Prediction, target: float) -> Found:
         elif last.time_step > 1.9 * dt:  # a factor of two of good steps below it is evidence
             return last
         dt /= LADDER**rungs
-    raise CaseError(f"error = {target:g} is not reached with {MOST_STEPS} steps in contact; the best is {best:.2g}")
+    raise CaseError(
+        f"error = {target:g} is not reached by every step near {MOST_STEPS} in contact; the best is {best:.2g}; "
+        "give a larger one"
+    )

@@ -143,9 +143,12 @@ def bed(p: ScenePlan, spheres: pd.DataFrame, path: Path) -> None:
 def before(p: ScenePlan, path: Path) -> int:
     """Draw walls, regions to be filled and the first spheres of a scene into the PNG file `path`.
 
-    Returns the number of spheres in it: those of regions only if there are few enough to be placed at once.
+    Returns the number of spheres in it: those of regions only if there are few enough to be placed at once. Raises
+    CaseError for an ending that no picture has.
     """
     fig, axis = _frame(p.case.case.title, _corners(p.layout.box))
+    if path.suffix[1:].lower() not in fig.canvas.get_supported_filetypes():
+        raise CaseError(f"--out {path}: no picture has this ending; name it {path.stem}.png")
     _draw_walls(axis, p, p.phases[0], front=False)
     for fill in p.layout.fills:
         _draw_region(axis, fill.region)

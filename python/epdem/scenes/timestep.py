@@ -103,7 +103,7 @@ def time_step(case: SceneCase) -> float:
         try:
             step = search(x, prediction, case.numerics.error).time_step
         except CaseError as error:
-            raise CaseError(f"numerics.{error}; give a larger one, or numerics.time_step") from None
+            raise CaseError(f"numerics.{error}, or numerics.time_step") from None
         best = min(best, step, bed_share(x, sticking=sticking) * stable)
     return _round_down(best)
 

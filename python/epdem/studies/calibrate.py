@@ -11,7 +11,7 @@ from ..case.impact import Case, load
 from ..case.law import law_numbers
 from ..case.toml import named
 from ..errors import CaseError
-from ..impacts.experiment import Experiment, bodies, pair_of
+from ..impacts.experiment import Experiment, bodies, pair_of, rated
 from ..impacts.prediction import predict
 from ..laws.strengths import LawNumbers, law_named, yields_by_stress
 from ..theory import adhesion
@@ -45,7 +45,7 @@ def pressure_of_hardness(
 
     Both hardnesses are the load over the area of the surface that the indenter leaves; the mean pressure (Meyer's
     hardness) is the load over its projection. For the pyramid of Vickers p_m = 1.0785 HV. For the cap of Brinell
-    p_m = HB 2 (1 - sqrt(1 - x^2))/x^2 with x = `dent_ratio` in (0, 1], diameter of the indentation over that of the
+    p_m = HB 2/(1 + sqrt(1 - x^2)) with x = `dent_ratio` in (0, 1], diameter of the indentation over that of the
     ball (None: BRINELL_DENT). Raises CaseError unless one hardness > 0 is given.
     """
     values = [value for value in (vickers, brinell) if value is not None]
@@ -59,7 +59,7 @@ def pressure_of_hardness(
     x = BRINELL_DENT if dent_ratio is None else dent_ratio
     if not 0.0 < x <= 1.0:
         raise CaseError(f"--dent-ratio {x:g}, must lie in (0, 1]")
-    return hardness * KGF_PER_MM2 * 2.0 * (1.0 - math.sqrt(1.0 - x**2)) / x**2
+    return hardness * KGF_PER_MM2 * 2.0 / (1.0 + math.sqrt(1.0 - x**2))
 
 
 @dataclass(frozen=True)
@@ -71,9 +71,11 @@ class _Unknown:
     parameter: str
 
     def experiment(self, strength: float, speed: float) -> Experiment:
-        """One impact at `speed` [m/s] of bodies that all have this strength [Pa]."""
+        """One impact at `speed` [m/s] of bodies that all have this strength [Pa], with [rate] at its reference."""
         body, target = bodies(self.case)
         spec = pair_of(replace(self.law, absolute=strength), body, target)
+        if self.case.rate:
+            spec = rated(spec, self.case.rate, body, target, speed)
         viscous = self.case.viscous.restitution if self.case.viscous else None
         return Experiment(spec, body, target, np.array([speed]), viscous)
 

@@ -6,6 +6,9 @@ step grows by k^0.4, dents and overlaps by k^0.4 and a/R by k^0.2. Softening the
 
 The sticking speed goes as Gamma^(5/6)/E*^(1/3), so Gamma/k^0.4 keeps it. Then sqrt(2 pi Gamma a/E*) grows as the
 overlaps and sqrt(2 Gamma E*/(pi a)) falls as p_y: all lengths and pressures of such a contact keep their ratios.
+
+What depends on a/R itself follows it: finite strain takes c k^0.14 in exp(-c (a/R*)^-0.7), and the reference of a
+strength that grows with the rate 0.2 v/a falls as the rate.
 """
 
 from dataclasses import dataclass
@@ -15,10 +18,12 @@ from typing import Any
 import tomlkit
 
 from ..case.files import text_for_anywhere
+from ..case.impact import Rate
 from ..case.library import with_library
 from ..case.toml import named, read_toml
 from ..errors import CaseError
 from ..laws.strengths import ADHESION, law_named
+from ..theory.cavity import FINITE_STRAIN, NO_FINITE_STRAIN, STRAIN_EXPONENT
 from ..theory.validity import SMALL_DEFORMATION
 
 STRENGTH_POWER, ADHESION_POWER, STEP_POWER, STRAIN_POWER = 0.8, 0.4, 0.4, 0.2
@@ -49,11 +54,11 @@ def _scaled(value: str, factor: float) -> str:
     return f"{float(number) * factor:.15g} {unit.strip()}"
 
 
-def _replacements(data: dict[str, Any], factor: float) -> dict[tuple[str, ...], str]:
-    """The new text of every value that changes, by its keys."""
+def _replacements(data: dict[str, Any], factor: float) -> dict[tuple[str, ...], str | float]:
+    """The new value of every key that changes."""
     law = data["law"]
     strength = law_named(law["name"]).strength
-    texts: dict[tuple[str, ...], str] = {}
+    texts: dict[tuple[str, ...], str | float] = {}
     for name, material in data["materials"].items():
         texts["materials", name, "young_modulus"] = _scaled(material["young_modulus"], 1.0 / factor)
         for key in ("yield_stress", *([strength] if strength else [])):
@@ -65,17 +70,23 @@ def _replacements(data: dict[str, Any], factor: float) -> dict[tuple[str, ...], 
         texts["law", ADHESION] = _scaled(law[ADHESION], factor**-ADHESION_POWER)
     if strength and strength in law:
         texts["law", strength] = _scaled(law[strength], factor**-STRENGTH_POWER)
+    if (strain := law.get("finite_strain", False)) and strain < NO_FINITE_STRAIN:
+        strain = FINITE_STRAIN if strain is True else strain
+        texts["law", "finite_strain"] = strain * factor ** (STRAIN_POWER * STRAIN_EXPONENT)
+    if "rate" in data:
+        reference = data["rate"].get("reference", f"{Rate.model_fields['reference'].default} 1/s")
+        texts["rate", "reference"] = _scaled(reference, factor**-STRAIN_POWER)
     name = f"{data['case']['name']}_soft{factor:g}".replace(".", "_").replace("+", "")[:64]
     return texts | {("case", "name"): name}
 
 
-def _change(document: tomlkit.TOMLDocument, data: dict[str, Any], keys: tuple[str, ...], after: str) -> Change:
-    """Replace one text of the document, which holds `data`; comments and order stay."""
+def _change(document: tomlkit.TOMLDocument, data: dict[str, Any], keys: tuple[str, ...], after: str | float) -> Change:
+    """Replace one value of the document, which holds `data`; comments and order stay."""
     table: Any = document
     for key in keys[:-1]:
         table, data = table[key], data[key]
     table[keys[-1]] = after
-    return Change(".".join(keys), str(data[keys[-1]]), after)
+    return Change(".".join(keys), str(data.get(keys[-1], "the default")), str(after))
 
 
 def strain_ratio(data: dict[str, Any], path: Path) -> float:
@@ -97,7 +108,7 @@ def strain_ratio(data: dict[str, Any], path: Path) -> float:
 def soften(path: Path, factor: float, *, folder: Path | None = None) -> Twin:
     """The twin of the case in `path` with E/factor, to lie in `folder` (beside it). Raises CaseError."""
     if not 0.0 < factor < 1e12:
-        raise CaseError(f"--factor {factor:g}, must be > 0; 100 makes the time step 6.3 times larger")
+        raise CaseError(f"--factor {factor:g}, must lie in (0, 1e12); 100 makes the time step 6.3 times larger")
     data = with_library(read_toml(path), path)
     before = strain_ratio(data, path)
     after = before * factor**STRAIN_POWER

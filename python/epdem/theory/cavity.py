@@ -12,6 +12,7 @@ from .checks import Array, Real, number
 from .numerics import gauss
 
 FINITE_STRAIN = 0.82  # Jackson and Green 2005: p_m falls by 1 - exp(-0.82 (a/R*)^-0.7)
+STRAIN_EXPONENT = 0.7
 NO_FINITE_STRAIN = 1e6  # so large a number changes nothing
 
 
@@ -86,7 +87,7 @@ class Cavity(Backbone):
     def _fallen(self, alpha: Real) -> Array:
         """Share of the mean pressure that is gone at finite strain."""
         strain = np.maximum(self.radius(alpha) / self.R_star, 1e-9)
-        return np.asarray(np.exp(-self.c_strain * strain**-0.7))
+        return np.asarray(np.exp(-self.c_strain * strain**-STRAIN_EXPONENT))
 
     def _small_strain_force(self, alpha: Real) -> Real:
         p_m = self.Y * (2 / 3 * self.c_Y + (1 + self.beta) / 3 * self._ln_s(alpha))

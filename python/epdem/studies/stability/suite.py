@@ -4,6 +4,7 @@
 import tempfile
 from collections.abc import Callable
 from dataclasses import asdict, dataclass
+from itertools import product
 from pathlib import Path
 
 import pandas as pd
@@ -11,7 +12,7 @@ import pandas as pd
 from ...engines import ASSEMBLIES, engine
 from ...engines.embedded import Embedded
 from ...errors import CaseError
-from ...impacts.engine import require
+from ...impacts.engine import Abilities, check_law, require
 from ...theory.backbones import ADHESIVE, LAWS
 from . import bulk_checks, precisions
 from .cases import Extreme, extremes
@@ -65,10 +66,11 @@ def run(
 ) -> Outcome:
     """Judge every `every`-th case of the `groups` (none: all) with every law in every engine (none: embedded).
 
-    `steps` is the length of the drift by bounces (1e9), `cycles` the number of reloads. Laws none given: all. Without
+    `steps` is the length of the drift by bounces (1e9), `cycles` the number of reloads. Laws none given: all that the
+    engine has. Without
     `groups` the round-off floor is measured, in other precisions too where an engine has them, and the stiff bulk
-    scenes run where an engine runs assemblies. Raises CaseError for a law or group that does not exist, EngineError for
-    an engine that is not here.
+    scenes run where an engine runs assemblies. Raises CaseError for a law or group that does not exist, a law that an
+    engine does not have and a choice that leaves an engine no case, EngineError for an engine that is not here.
     """
     for option, given, known in (
         ("--law", laws, {**LAWS, **ADHESIVE}),
@@ -76,24 +78,29 @@ def run(
     ):
         if wrong := [name for name in given if name not in known]:
             raise CaseError(f"{option} {wrong[0]!r} does not exist; there are {', '.join(known)}")
-    engines, laws = engines or [Embedded.name], laws or [*LAWS, *ADHESIVE]
+    engines = list(dict.fromkeys(engines)) or [Embedded.name]
+    for name, law in product(engines, laws):
+        check_law(name, engine(name).can, law)
+    laws = list(dict.fromkeys(laws)) or [*LAWS, *ADHESIVE]
     plain = [law for law in laws if law in LAWS]
     chosen = [e for e in extremes() if not groups or e.group in groups][::every]
     if steps is not None and not any(e.kind == "bounces" for e in chosen):
         raise CaseError(
             "--steps is the length of the drift by bounces, which --group or --every leaves out; leave it out"
         )
+    work = {name: _work(engine(name).can, laws, chosen) for name in engines}
+    if idle := [name for name in engines if not work[name]]:
+        raise CaseError(f"--engine {idle[0]}: --law, --group and --every leave it no case; leave one of them out")
     rows, tables = [], []
     with tempfile.TemporaryDirectory(prefix="epdem-stability-") as scratch:
         for sampler in samplers(engines, Path(scratch)):
             coarse = COARSE if not sampler.positions else POSITION_COARSE
-            for law in [LAW_OF_SLOW] if sampler.slow and LAW_OF_SLOW in laws else laws:
-                for extreme in [e for e in (ends(chosen) if sampler.slow else chosen) if e.suits(law)]:
-                    progress(f"{sampler.name}, {law}: {extreme.name}")
-                    if extreme.kind == "impact":
-                        rows.append(judge(extreme, law, sampler, coarse))
-                    else:
-                        rows.append(judge_repeats(extreme, law, sampler, steps=steps or BOUNCE_STEPS, cycles=cycles))
+            for law, extreme in work[sampler.name]:
+                progress(f"{sampler.name}, {law}: {extreme.name}")
+                if extreme.kind == "impact":
+                    rows.append(judge(extreme, law, sampler, coarse))
+                else:
+                    rows.append(judge_repeats(extreme, law, sampler, steps=steps or BOUNCE_STEPS, cycles=cycles))
         if not groups:
             progress("round-off")
             others = [s for s in samplers(engines, Path(scratch)) if s.positions]
@@ -110,6 +117,14 @@ def run(
         bulk,
         pd.concat(finer, ignore_index=True) if finer else pd.DataFrame(),
     )
+
+
+def _work(can: Abilities, laws: list[str], chosen: list[Extreme]) -> list[tuple[str, Extreme]]:
+    """The laws and cases of an engine with these abilities."""
+    known = [law for law in laws if can.laws is None or law in can.laws]
+    if can.slow:
+        known, chosen = [LAW_OF_SLOW] if LAW_OF_SLOW in known else known, ends(chosen)
+    return [(law, extreme) for law in known for extreme in chosen if extreme.suits(law)]
 
 
 def ends(chosen: list[Extreme]) -> list[Extreme]:
