@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // libFuzzer on the C interface: any bytes are the numbers of a call. scripts/fuzz builds it with clang's sanitizers.
+#include <cmath>
 #include <cstdint>
 #include <cstdlib>
 #include <cstring>
@@ -54,7 +55,9 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
   bool usual = within(E_star, 1e-9, 1e30) && within(R_star, 1e-12, 1e6);
   for (double x : parameters) usual = usual && within(x, 1e-9, 1e30);
   for (size_t k = 0; k < n; ++k) usual = usual && within(largest[k], 0, R_star) && within(delta[k], -R_star, R_star);
-  for (size_t k = 0; usual && status == EPDEM_OK && k < n; ++k) must(out[k].force >= 0 && out[k].radius >= 0);
+  const bool pulls = epdem_law_adheres(law) > 0;
+  for (size_t k = 0; usual && status == EPDEM_OK && k < n; ++k)
+    must(std::isfinite(out[k].force) && (pulls || out[k].force >= 0) && out[k].radius >= 0);
   std::vector<double> column[4];
   for (auto& c : column) c.resize(n);
   epdem_backbone(law, E_star, parameters.data(), R_star, n, delta.data(), column[0].data(), column[1].data(),

@@ -109,7 +109,7 @@ void PairLoop::gather(const Plan& plan) {
   const LAMMPS_NS::NeighList& list = *pair_->list;
   const double *const x = atom->x[0], *const radius = atom->radius;
   const double near = neighbor->contactDistanceFactor * neighbor->contactDistanceFactor;
-  int n = 0;
+  long n = 0;
   for (int ii = 0; ii < list.inum; ++ii) {
     const int i = list.ilist[ii], count = list.numneigh[i];
     const int* const neighbours = list.firstneigh[i];
@@ -122,7 +122,7 @@ void PairLoop::gather(const Plan& plan) {
         n = 0;
       }
       for (int jj = first; jj < last; ++jj) {
-        const int j = neighbours[jj] & NEIGHMASK;
+        const long j = neighbours[jj] & NEIGHMASK;
         const double dx = xi - x[3 * j], dy = yi - x[3 * j + 1], dz = zi - x[3 * j + 2], sum = ri + radius[j];
         const double rsq = dx * dx + dy * dy + dz * dz;
         const bool overlaps = rsq < sum * sum;
@@ -182,21 +182,19 @@ void PairLoop::fetch(const Plan& plan, int n) {
   Block& b = *block_;
   const double *const v = atom->v[0], *const w = atom->omega[0], *const f = atom->f[0], *const t = atom->torque[0];
   const double *const radius = atom->radius, *const mass = atom->rmass;
-  const int *const type = atom->type, *const mask = atom->mask;
-  const int frozen = pair_->freeze_group_bit(), size = pair_->dnum();
+  const int frozen = pair_->freeze_group_bit(), size = pair_->dnum(), marked = flags_;
   int** const flags = pair_->listgranhistory ? pair_->listgranhistory->firstneigh : nullptr;
   double** const histories = pair_->listgranhistory ? pair_->listgranhistory->firstdouble : nullptr;
-  const double* const constants = plan.constants.data();
-  bool several = false;
   for (int k = 0; k < n; ++k) {
-    const int i = b.i[k], j = b.j[k];
+    const long i = b.i[k], j = b.j[k];
     if (histories) {
       double* const h = histories[i] + size * slot_[k];
-      for (int line = 0; line < size; line += 8) __builtin_prefetch(h + line, 1);
+      __builtin_prefetch(h, 1);
+      for (int line = 8; line < size - 8; line += 8) __builtin_prefetch(h + line, 1);
       __builtin_prefetch(h + size - 1, 1);
       b.history[k] = h;
       int& flag = flags[i][slot_[k]];
-      if (flag != flags_) flag |= flags_;
+      if (flag != marked) flag |= marked;
     }
     __builtin_prefetch(v + 3 * j);
     __builtin_prefetch(w + 3 * j);
@@ -206,14 +204,21 @@ void PairLoop::fetch(const Plan& plan, int n) {
     b.radj.a[k] = radius[j];
     b.mi.a[k] = mass[i];
     b.mj.a[k] = mass[j];
-    b.material[k] = constants + most_constants * (type[i] * plan.width + type[j]);
+  }
+  const int width = plan.width, *const type = atom->type, *const mask = atom->mask;
+  const double* const constants = plan.constants.data();
+  const auto material = [=](int i, int j) { return constants + most_constants * (type[i] * width + type[j]); };
+  b.material[0] = material(b.i[0], b.j[0]);
+  bool several = false;
+  for (int k = 0; k < n && width > 2; ++k) {  // more than one type
+    b.material[k] = material(b.i[k], b.j[k]);
     several |= b.material[k] != b.material[0];
-    if (frozen) {
-      b.frozen_i.a[k] = (mask[i] & frozen) != 0;
-      b.frozen_j.a[k] = (mask[j] & frozen) != 0;
-    }
   }
   pass_.several = several;
+  for (int k = 0; k < n && frozen; ++k) {
+    b.frozen_i.a[k] = (mask[b.i[k]] & frozen) != 0;
+    b.frozen_j.a[k] = (mask[b.j[k]] & frozen) != 0;
+  }
 }
 
 /// Forces and torques in the order of the list, those of a body at hand while its pairs follow each other; with them

@@ -5,7 +5,6 @@ import math
 
 import numpy as np
 
-from ..case.parts import Sphere
 from .layout import Block, Cylinder
 from .meshes import FloatArray
 
@@ -49,13 +48,20 @@ def crosses(region: Block | Cylinder, triangles: FloatArray, free: float) -> boo
     return any(_remains(t, normals, distances) for t in triangles[~beyond])
 
 
-def depth(triangles: FloatArray, s: Sphere) -> float:
-    """How far [m] the nearest of the triangles, shape (n, 3 corners, 3), lies in a sphere; below 0: it does not."""
+def depths(triangles: FloatArray, places: FloatArray, radii: FloatArray) -> FloatArray:
+    """How far [m] the nearest of the triangles, shape (n, 3 corners, 3), lies in each sphere; below 0: it does not.
+
+    places: centres, shape (m, 3), radii: shape (m,).
+    """
     import trimesh
 
-    place = np.array(s.place)
-    outside = (triangles.min(axis=1) > place + s.radius) | (triangles.max(axis=1) < place - s.radius)
-    if not len(near := triangles[~outside.any(axis=1)]):
-        return -math.inf
-    closest = trimesh.triangles.closest_point(near, np.tile(place, (len(near), 1)))  # type: ignore[no-untyped-call]
-    return float(s.radius - np.linalg.norm(closest - place, axis=1).min())
+    found = np.full(len(radii), -np.inf)
+    low, high = places - radii[:, None], places + radii[:, None]
+    beside = (triangles.min(axis=1) > high.max(axis=0)) | (triangles.max(axis=1) < low.min(axis=0))
+    for triangle in triangles[~beside.any(axis=1)]:
+        near = np.flatnonzero(((triangle.min(axis=0) <= high) & (triangle.max(axis=0) >= low)).all(axis=1))
+        if near.size:
+            same = np.tile(triangle, (near.size, 1, 1))
+            closest = trimesh.triangles.closest_point(same, places[near])  # type: ignore[no-untyped-call]
+            found[near] = np.maximum(found[near], radii[near] - np.linalg.norm(closest - places[near], axis=1))
+    return found

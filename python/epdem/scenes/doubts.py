@@ -5,7 +5,7 @@ import numpy as np
 
 from ..case.parts import Parts
 from ..errors import CaseError
-from .crossings import crosses, depth
+from .crossings import crosses, depths
 from .layout import Plane
 from .meshes import FloatArray, rectangle
 from .plan import ScenePlan
@@ -93,12 +93,15 @@ def _walls(p: ScenePlan) -> list[str]:
         walls = {w.name: _sheet(p, w) for w in planes}
         walls |= {name: mesh.triangles for name, mesh in p.layout.meshes.items() if name not in moved}
         moved |= set(stage.moves)
+        fills = [f for f in p.layout.fills if (f.phase or first) == stage.name]
+        spheres = [(place, s) for place, s, phase in table if phase == stage.name and not s.frozen]
+        places, radii = np.array([s.place for _, s in spheres]), np.array([s.radius for _, s in spheres])
         for name, triangles in walls.items():
-            for f in p.layout.fills:
-                free = OVERLAP * min(particles.radii()[0] for particles in f.parts)
-                if (f.phase or first) == stage.name and crosses(f.region, triangles, free):
+            for f in fills:
+                if crosses(f.region, triangles, OVERLAP * min(particles.radii()[0] for particles in f.parts)):
                     found[f.place, name] = f"{f.place}.region: wall {name} runs through it; move one of them"
-            for place, s, phase in table:
-                if phase == stage.name and not s.frozen and (share := depth(triangles, s) / s.radius) > OVERLAP:
-                    found.setdefault(("", name), f"{place} lies in wall {name} by {share:.0%} of its radius; move it")
+            share = depths(triangles, places, radii) / radii if spheres else np.zeros(1)
+            if share.max() > OVERLAP:
+                place = spheres[int(share.argmax())][0]
+                found["", name] = f"{place} lies in wall {name} by {share.max():.0%} of its radius; move it"
     return list(found.values())
