@@ -7,6 +7,9 @@ import shutil
 import pytest
 from calls import CASES, call, quick_figures
 
+from epdem.base.files import atomic
+from epdem.studies import stability
+
 WRITERS = {  # words of a command that writes, and a file of the user's in its way
     "deck of impacts": (["deck", "steel.toml", "-o", "d"], "d/in.impact"),
     "deck of a scene": (["deck", "scene.toml", "-o", "d"], "d/setup.in"),
@@ -58,3 +61,15 @@ def test_what_a_command_wrote_it_replaces_without_force(kind, tmp_path, capsys, 
         assert call(words, capsys, monkeypatch).code == 0
     (tmp_path / name).write_text("changed by the user")
     assert call(words, capsys, monkeypatch).code == 2
+
+
+def test_a_place_that_cannot_be_written_to_is_said_before_the_work_and_by_its_name(tmp_path, capsys, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr(stability, "run", lambda *words, **options: pytest.fail("it ran"))
+    (tmp_path / "d").write_text("a file")
+    done = call(WRITERS["stability"][0], capsys, monkeypatch)
+    assert done.code == 2 and f"{tmp_path}/d is not a folder that can be written to" in done.err
+    long = tmp_path / ("x" * 250)  # the temporary file beside it has a longer name
+    with pytest.raises(OSError, match="File name too long") as found, atomic(long):
+        pass
+    assert found.value.filename == str(long)

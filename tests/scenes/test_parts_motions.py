@@ -95,7 +95,8 @@ def test_a_wall_that_moves_last_goes_no_farther_than_it_should_and_other_lengths
     """2 mm at 0.1 m/s after 80 ms; a step of time that is given is not changed, and then the way may be longer."""
     up = {"wall": "lid", "kind": "linear", "velocity": ["0 m/s", "0 m/s", "0.1 m/s"]}
     last = {"name": "lift", "duration": "1 s", "move": [up], "until": {"wall": "lid", "travel": "2 mm"}}
-    data = parts(wall=[FLOOR, BOX, PLATE | {"center": ["0 mm", "0 mm", "35 mm"]}], phase=[FALL, last])
+    data = parts(wall=[FLOOR, BOX, PLATE | {"center": ["0 mm", "0 mm", "37 mm"]}], phase=[FALL, last])
+    data["scene"]["fill"][0]["region"]["z"] = ["0 mm", "36 mm"]
     data["output"] = {"rows": 200, "particles": 20}
     given = plan(parse(data | {"numerics": {"time_step": "1.17e-5 s"}}))
     p = plan(parse(data | {"numerics": {"error": 0.02}}))

@@ -5,13 +5,14 @@ import json
 import subprocess
 import sys
 from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pandas as pd
 import pint
 import pytest
 
-from epdem import Case, Scene, deck, predict, run, sweep, theory
+from epdem import Case, Scene, SceneRun, deck, predict, run, sweep, theory
 from epdem.errors import CaseError
 
 ROOT = Path(__file__).parents[2]
@@ -86,6 +87,12 @@ def test_run_and_command_give_the_same(ball, tmp_path):
     assert found.plot() == picture and picture.stat().st_mtime_ns == drawn  # of the same runs: not drawn again
     other = run(ball, engines=["embedded"], laws=["hertz"], out=tmp_path / "a")
     assert other.plot().stat().st_mtime_ns > drawn
+
+
+def test_a_table_of_a_scene_has_the_units_of_the_columns_of_every_wall():
+    table = pd.DataFrame([[1.0, 2.0, 3.0]], columns=["lid_force_z", "bowl_torque_x", "delta_max_floor"])
+    scene = SceneRun(SimpleNamespace(results=SimpleNamespace(tables={"rows": table})))
+    assert scene.tables["rows"].attrs["units"] == {"lid_force_z": "N", "bowl_torque_x": "N m", "delta_max_floor": "m"}
 
 
 def test_sweep_and_command_give_the_same_table(ball, tmp_path):

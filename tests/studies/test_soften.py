@@ -143,6 +143,16 @@ def test_the_twin_of_a_scene_scales_the_strength_of_every_material():
         assert math.isclose(soft.materials[name].young_modulus, 208e9 / 32.0, rel_tol=1e-12)
 
 
+def test_a_time_step_that_is_given_does_not_grow_by_itself(tmp_path):
+    path = tmp_path / "given.toml"
+    path.write_text((CASES / "peening_steel.toml").read_text())
+    assert not any("time_step" in w for w in soften(path, 32.0).warnings)
+    path.write_text(re.sub(r"\[numerics\]\n", '[numerics]\ntime_step = "1e-9 s"\n', path.read_text()))
+    twin = soften(path, 32.0)
+    assert any("time_step is kept as given; it can be 4 times larger" in w for w in twin.warnings)
+    assert tomllib.loads(twin.text)["numerics"]["time_step"] == "1e-9 s"
+
+
 def test_a_twin_with_contacts_too_wide_is_warned_of(tmp_path):
     path = tmp_path / "slow.toml"
     path.write_text(STEEL.read_text().replace('"150 m/s"', '"0.2 m/s"'))

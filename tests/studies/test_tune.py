@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from epdem.case.scene import load
-from epdem.errors import EngineError
+from epdem.errors import CaseError, EngineError
 from epdem.liggghts import launcher, scene_deck, trials
 from epdem.scenes.plan import plan
 from epdem.studies import tune
@@ -86,7 +86,8 @@ def test_the_case_file_gets_the_choices_and_keeps_its_comments(tmp_path):
     path = small(tmp_path)
     before = path.read_text()
     found = tuned((2.0, 2.0), (1.0, 1.0), cuts=[("", (4.0, 4.0)), ("x", (3.0, 3.0))])
-    tune.write(path, found)
+    (tmp_path / "link.toml").symlink_to(path)
+    tune.write(tmp_path / "link.toml", found)
     text = path.read_text()
     assert [line for line in text.splitlines() if line not in before.splitlines()] == found.lines
     assert all(line in text for line in before.splitlines())
@@ -101,3 +102,7 @@ def test_a_trial_that_is_too_short_says_so(tmp_path, monkeypatch):
     monkeypatch.setattr(trials, "run", lambda *words: [(1.0, 200)] * 7)  # seven pieces of five skins
     with pytest.raises(EngineError, match="ended before each skin had two turns; give it more time"):
         tune.tune(small(tmp_path))
+    path = small(tmp_path)
+    path.write_text(path.read_text().replace("0.1 s", "0.01 s"))
+    with pytest.raises(CaseError, match=r"has 200 steps, two turns through its skins 2000; it is short as it is"):
+        tune.tune(path)

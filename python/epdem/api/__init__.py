@@ -24,7 +24,7 @@ from ..impacts.experiment import experiment
 from ..impacts.prediction import predict as predict_experiment
 from ..impacts.run import Outcome, write_deck
 from ..impacts.run import run_case as run_impacts
-from ..scenes.columns import UNITS as SCENE_UNITS
+from ..scenes.columns import units as scene_units
 from ..scenes.engine import files as scene_files
 from ..scenes.plan import plan as plan_scene
 from ..scenes.run import SceneOutcome
@@ -98,7 +98,7 @@ class SceneRun(_HasRun):
     @property
     def tables(self) -> dict[str, pd.DataFrame]:
         """rows, particles, contacts, ledger and checks, as far as the scene requests them."""
-        return {name: _units(table, SCENE_UNITS) for name, table in self.outcome.results.tables.items()}
+        return {name: _units(table, scene_units(table)) for name, table in self.outcome.results.tables.items()}
 
     def report(self) -> Path:
         """Write report.html, one page with figures, tables and decks, into the folder; its path."""

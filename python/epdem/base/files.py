@@ -16,7 +16,10 @@ def atomic(path: Path, *, sync: bool = True) -> Iterator[Path]:
     `sync`, which takes a millisecond a file, this does not hold for a crash of the machine itself.
     """
     path.parent.mkdir(parents=True, exist_ok=True)
-    handle, name = tempfile.mkstemp(dir=path.parent, prefix="." + path.name + ".", suffix=path.suffix)
+    try:
+        handle, name = tempfile.mkstemp(dir=path.parent, prefix="." + path.name + ".", suffix=path.suffix)
+    except OSError as error:  # names a file that the user has never heard of
+        raise OSError(error.errno, error.strerror, str(path)) from None
     os.close(handle)
     temporary = Path(name)
     try:

@@ -208,6 +208,12 @@ def write_own(folder: Path, texts: dict[str, str], *, force: bool = False) -> li
 
 
 def refuse_existing(path: Path, *, force: bool, option: str = "--out") -> None:
-    """Raise CaseError if a file that a user has named by `option` is there, unless `force` allows to replace it."""
+    """Raise CaseError if a file that a user has named by `option` is there, unless `force` allows to replace it.
+
+    Also if its folder can neither be made nor written to, which is so known before the work that it is for.
+    """
     if path.exists() and not force:
         raise CaseError(f"{path} exists; name another file by {option}, or replace it by --force")
+    parent = next(p for p in path.absolute().parents if p.exists())
+    if not (parent.is_dir() and os.access(parent, os.W_OK | os.X_OK)):
+        raise CaseError(f"{path}: {parent} is not a folder that can be written to; name another file by {option}")

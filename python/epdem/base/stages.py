@@ -12,9 +12,9 @@ from . import paths
 
 @cache
 def library_hash() -> str:
-    """Hash of what is compiled: both libraries and the launcher."""
+    """Hash of what is compiled: both libraries and the launcher, as far as they are there."""
     compiled = [paths.native("libepdem.so"), paths.native("libepdem_liggghts.so"), paths.launcher()]
-    return _hash(__version__, filter(None, compiled))
+    return _hash(__version__, [path for path in compiled if path and path.is_file()])
 
 
 @cache

@@ -51,7 +51,8 @@ def unit_of_load(column: str) -> str | None:
 def units(table: pd.DataFrame) -> dict[str, str]:
     """The unit of each column of a table that has one."""
     loads = {str(name): unit for name in table if (unit := unit_of_load(str(name)))}
-    return UNITS | loads
+    dents = {str(name): "m" for name in table if str(name).startswith("delta_max_")}  # of a flat wall NAME
+    return UNITS | loads | dents
 
 
 def columns_of_rows(p: ScenePlan) -> set[str]:

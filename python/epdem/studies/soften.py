@@ -128,4 +128,7 @@ def soften(path: Path, factor: float, *, folder: Path | None = None) -> Twin:
         warnings.append("contact.cohesion is kept: its share of the contact force grows with the contact area")
     if data.get("scene", {}).get("kind") == "compaction":
         warnings.append("forces and stresses of the press scale with the modulus, not with the real material")
+    steps = [data.get("numerics", {}), *data.get("scene", {}).get("phase", [])]
+    if any("time_step" in table for table in steps):
+        warnings.append(f"every time_step is kept as given; it can be {factor**STEP_POWER:.3g} times larger")
     return Twin(document.as_string(), tuple(changes), (before, after), factor**STEP_POWER, tuple(warnings))

@@ -17,7 +17,7 @@ import tomlkit
 from ..base.files import atomic
 from ..case.scene import Output, SceneCase, load
 from ..case.toml import named
-from ..errors import EngineError
+from ..errors import CaseError, EngineError
 from ..liggghts import trials
 from ..liggghts.scenes import LiggghtsScenes
 from ..liggghts.trials import Loops
@@ -137,6 +137,11 @@ def tune(path: Path, *, ranks: int = 1, seconds: float = 60.0, progress: Progres
     length = max(SHORTEST, min(LONGEST, p.steps // (TURNS * len(skins))))
     progress(f"{len(skins)} skins")
     deck, order = trials.pieces(texts, skins, p.steps, length)
+    if len(order) < 2 * len(skins):
+        least = 2 * length * len(skins)
+        raise CaseError(
+            f"{path}: the scene has {p.steps} steps, two turns through its skins {least}; it is short as it is"
+        )
     of_skins, steps = _of_skins(order, trials.run(deck, ranks, seconds), skins)
     result = Tuned(tuple(of_skins), (), steps, p.steps, ranks)
     if ranks == 1:
@@ -159,5 +164,5 @@ def write(path: Path, result: Tuned) -> None:
     numerics = document.setdefault("numerics", tomlkit.table())
     for key, (value, reason) in result.choices.items():
         numerics[key] = tomlkit.item(value).comment(reason)
-    with atomic(path) as temporary:
+    with atomic(path.resolve()) as temporary:  # the path may be a link
         temporary.write_text(document.as_string(), encoding="utf-8")
