@@ -85,7 +85,7 @@ def test_run_and_command_give_the_same(ball, tmp_path):
     picture = found.plot()
     drawn = picture.stat().st_mtime_ns
     assert found.plot() == picture and picture.stat().st_mtime_ns == drawn  # of the same runs: not drawn again
-    other = run(ball, engines=["embedded"], laws=["hertz"], out=tmp_path / "a")
+    other = run(ball, engines="embedded", laws="hertz", out=tmp_path / "a")  # one name needs no list
     assert other.plot().stat().st_mtime_ns > drawn
 
 

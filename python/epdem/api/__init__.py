@@ -110,12 +110,17 @@ class SceneRun(_HasRun):
         return str(self.tables["checks"].to_html())
 
 
+def _names(given: str | Sequence[str]) -> Sequence[str]:
+    """The names given; a text is one name, not a sequence of letters."""
+    return (given,) if isinstance(given, str) else given
+
+
 @overload
 def run(
     case: Case,
     *,
-    engines: Sequence[str] = ...,
-    laws: Sequence[str] = ...,
+    engines: str | Sequence[str] = ...,
+    laws: str | Sequence[str] = ...,
     out: Path | str | None = ...,
     ranks: int = ...,
     fresh: bool = ...,
@@ -127,7 +132,7 @@ def run(
 def run(
     case: Scene,
     *,
-    engines: Sequence[str] = ...,
+    engines: str | Sequence[str] = ...,
     out: Path | str | None = ...,
     ranks: int = ...,
     fresh: bool = ...,
@@ -138,8 +143,8 @@ def run(
 def run(
     case: Case | Scene,
     *,
-    engines: Sequence[str] = (DEFAULT_ENGINE,),
-    laws: Sequence[str] = (),
+    engines: str | Sequence[str] = (DEFAULT_ENGINE,),
+    laws: str | Sequence[str] = (),
     out: Path | str | None = None,
     ranks: int = 1,
     fresh: bool = False,
@@ -149,6 +154,7 @@ def run(
 
     Stored results in `out` (default: runs/<name>) are taken, unless `fresh`; `force` allows other files there.
     """
+    engines, laws = _names(engines), _names(laws)
     place = None if out is None else Path(out)
     options: dict[str, Any] = {"out": place, "ranks": ranks, "fresh": fresh, "force": force}
     if isinstance(case, Scene):
@@ -182,8 +188,8 @@ def sweep(
     case: Case | Scene,
     settings: study.Settings,
     *,
-    engines: Sequence[str] = (DEFAULT_ENGINE,),
-    laws: Sequence[str] = (),
+    engines: str | Sequence[str] = (DEFAULT_ENGINE,),
+    laws: str | Sequence[str] = (),
     out: Path | str | None = None,
     ranks: int = 1,
     jobs: int | None = None,
@@ -196,6 +202,7 @@ def sweep(
     `settings` gives the values of keys by their dotted names, as a text ("1 mm..5 mm:9") or a sequence of values. What
     is finished in `out` (default: runs/<name>_sweep) does not run again. Raises CaseError, EngineError, OSError.
     """
+    engines, laws = _names(engines), _names(laws)
     planned = study.plan_text(
         case.text, settings, engines=engines, laws=laws, ranks=ranks, latin_hypercube=latin_hypercube, seed=seed
     )
