@@ -127,7 +127,7 @@ void PairLoop::gather(const Plan& plan) {
         const double rsq = dx * dx + dy * dy + dz * dz;
         const bool overlaps = rsq < sum * sum;
         b.i[n] = i;
-        b.j[n] = j;
+        b.j[n] = static_cast<int>(j);
         slot_[n] = jj;
         if constexpr (adheres) {
           overlaps_[n] = overlaps;
