@@ -53,14 +53,14 @@ def depths(triangles: FloatArray, places: FloatArray, radii: FloatArray) -> Floa
 
     places: centres, shape (m, 3), radii: shape (m,).
     """
-    import trimesh
-
     found = np.full(len(radii), -np.inf)
     low, high = places - radii[:, None], places + radii[:, None]
     beside = (triangles.min(axis=1) > high.max(axis=0)) | (triangles.max(axis=1) < low.min(axis=0))
     for triangle in triangles[~beside.any(axis=1)]:
         near = np.flatnonzero(((triangle.min(axis=0) <= high) & (triangle.max(axis=0) >= low)).all(axis=1))
         if near.size:
+            import trimesh  # a second: only where a wall is near
+
             same = np.tile(triangle, (near.size, 1, 1))
             closest = trimesh.triangles.closest_point(same, places[near])  # type: ignore[no-untyped-call]
             found[near] = np.maximum(found[near], radii[near] - np.linalg.norm(closest - places[near], axis=1))

@@ -89,8 +89,8 @@ def _walls(p: ScenePlan) -> list[str]:
     table = [(f"sphere {n} of scene.fill and scene.body", s, first) for n, s in enumerate(p.layout.table, 1)]
     table += [(f"scene.body.{b.name}", b.sphere, b.phase) for b in p.layout.bodies]
     for stage in p.layout.stages if isinstance(p.case.scene, Parts) else ():
-        planes = [w for w in (*p.layout.planes, *p.layout.gates) if w in p.layout.planes or w.name in stage.gates]
-        walls = {w.name: _sheet(p, w) for w in planes}
+        gates = [w for w in p.layout.gates if w.name in stage.gates]
+        walls = {w.name: _sheet(p, w) for w in (*p.layout.planes, *gates)}
         walls |= {name: mesh.triangles for name, mesh in p.layout.meshes.items() if name not in moved}
         moved |= set(stage.moves)
         fills = [f for f in p.layout.fills if (f.phase or first) == stage.name]

@@ -67,10 +67,10 @@ def run(
     """Judge every `every`-th case of the `groups` (none: all) with every law in every engine (none: embedded).
 
     `steps` is the length of the drift by bounces (1e9), `cycles` the number of reloads. Laws none given: all that the
-    engine has. Without
-    `groups` the round-off floor is measured, in other precisions too where an engine has them, and the stiff bulk
-    scenes run where an engine runs assemblies. Raises CaseError for a law or group that does not exist, a law that an
-    engine does not have and a choice that leaves an engine no case, EngineError for an engine that is not here.
+    engine has. Without `groups` the round-off floor is measured, in other precisions too where an engine has them, and
+    the stiff bulk scenes run where an engine runs assemblies. Raises CaseError for a law or group that does not exist,
+    a law that an engine does not have and a choice that leaves an engine no case, EngineError for an engine that is not
+    here.
     """
     for option, given, known in (
         ("--law", laws, {**LAWS, **ADHESIVE}),
