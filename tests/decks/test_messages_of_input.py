@@ -1,6 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""What is said of a case, a scene or a file beside it that is wrong: every sentence once, with the change that asks for
-it. `tests/house/test_messages.py` finds sentences without a test."""
+"""The message of each mistake in a case, a scene or a file beside it, with the change that causes it."""
 
 import copy
 import sys

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 import pytest
-from workshop import PYTHON, Runner, build_library, build_plugin
+from workshop import PYTHON, ROOT, Runner, build_library, build_plugin
 
 
 @dataclass(frozen=True)
@@ -51,9 +51,11 @@ def needs_an_engine(test: str) -> bool:
     return any(name in test.partition("[")[2] and not shutil.which(name) for name in ("liggghts", "yade"))
 
 
-def test_there_are_faults_in_every_room():
+def test_every_planted_fault_has_its_own_name_and_a_text_that_exists():
     everything = FAULTS + OF_LIBRARY + OF_PLUGIN
     assert len(everything) >= 40 and len({fault.name for fault in everything}) == len(everything)
+    for fault in everything:
+        planted(fault, (ROOT / fault.file).read_text())
 
 
 @pytest.mark.parametrize("fault", FAULTS, ids=lambda f: f.name)

@@ -52,7 +52,7 @@ def _say_version(wanted: bool) -> None:
 
 
 @app.callback()
-def options(
+def _options(
     version: Annotated[
         bool, typer.Option("--version", callback=_say_version, is_eager=True, help="print the version and end")
     ] = False,

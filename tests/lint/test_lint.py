@@ -1,0 +1,61 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Linters, formatters and the type checker find nothing; documents agree with the files beside them."""
+
+import re
+import subprocess
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).parents[2]
+# ruff finds scripts without a suffix only by name
+SCRIPTS = [str(p) for p in sorted((ROOT / "scripts").iterdir()) if p.read_text().startswith("#!/usr/bin/env python3")]
+PYTHON = ["python", "tests", "bench", "docs", *SCRIPTS]
+CPP = [str(p) for room in ("cpp_contact", "tests", "bench") for p in sorted((ROOT / room).rglob("*.[hc]*"))]
+CPP = [path for path in CPP if path.endswith((".hpp", ".h", ".cpp"))]
+# clang-tidy reads one source that includes every header of the laws; `make tidy` reads all of C++, in minutes
+LAWS = ["cpp_contact/capi/epdem.cpp", "--", "-std=c++17", "-Icpp_contact/include", '-DEPDEM_VERSION=""']
+TOOLS = {
+    "ruff check": ["ruff", "check", "--output-format", "concise", *PYTHON],
+    "ruff format": ["ruff", "format", "--check", *PYTHON],
+    "mypy": ["mypy"],
+    "clang-format": ["clang-format", "--dry-run", "--Werror", *CPP],
+    "clang-tidy": ["clang-tidy", "--quiet", *LAWS],
+}
+
+
+@pytest.mark.parametrize("command", TOOLS.values(), ids=TOOLS)
+def test_the_tool_finds_nothing(command):
+    path = f"{ROOT}/.venv/bin:/usr/bin:/bin"
+    done = subprocess.run(command, cwd=ROOT, capture_output=True, text=True, env={"PATH": path})
+    assert done.returncode == 0, done.stdout + done.stderr
+
+
+def test_every_source_states_its_licence():
+    python = [path for room in PYTHON[:4] for path in (ROOT / room).rglob("*.py")]
+    scripts = [path for path in (ROOT / "scripts").iterdir() if not path.suffix]
+    for path in [*python, *scripts, *CPP]:
+        assert "SPDX-License-Identifier: GPL-2.0-or-later" in Path(path).read_text()[:200], path
+
+
+def test_adapters_leave_powers_and_roots_to_the_laws():
+    """A formula in an adapter is a second copy of the physics."""
+    for path in [*(ROOT / "cpp_contact/liggghts").glob("*.[hc]pp"), *(ROOT / "cpp_contact/capi").glob("*.cpp")]:
+        assert not re.search(r"\b(sqrt|pow|exp|log|cbrt)\s*\(", path.read_text()), path
+
+
+def test_links_between_documents_lead_to_files():
+    for page in [*ROOT.glob("*.md"), *ROOT.glob("docs/*.md")]:
+        for target in re.findall(r"\]\(([^)#:]+)(?:#[^)]*)?\)", page.read_text()):
+            assert (page.parent / target).exists(), f"{page.name} -> {target}"
+
+
+def test_all_files_state_one_version():
+    places = {
+        "pyproject.toml": r'^version = "(.+)"',
+        "CMakeLists.txt": r"^project\(epdem VERSION (\S+)",
+        "python/epdem/__init__.py": r'^__version__ = "(.+)"',
+        "CITATION.cff": r"^version: (.+)",
+    }
+    found = {re.search(pattern, (ROOT / name).read_text(), re.MULTILINE)[1] for name, pattern in places.items()}
+    assert len(found) == 1, found
