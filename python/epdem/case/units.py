@@ -24,13 +24,14 @@ def _registry() -> Any:
 
 
 PREFIXES = {"n": 1e-9, "u": 1e-6, "m": 1e-3, "c": 1e-2, "k": 1e3, "M": 1e6, "G": 1e9}
+_TAKES_PREFIX = re.compile(r"(?!kg)[A-Za-z]+(?![A-Za-z^])")  # mm^2 is (mm)^2, so m^2 does not
 
 
 @cache
 def _factor(unit: str, si: str) -> float:
     if unit == si:
         return 1.0
-    if unit[1:] == si and not si.startswith("kg"):  # what most cases have, without the half second
+    if unit[1:] == si and _TAKES_PREFIX.match(si):  # what most cases have, without the half second
         return PREFIXES.get(unit[0]) or _by_pint(unit, si)
     return _by_pint(unit, si)
 

@@ -5,6 +5,7 @@ import numpy as np
 
 from ..case.parts import Parts
 from ..errors import CaseError
+from . import shares
 from .crossings import crosses, depths
 from .layout import Plane
 from .meshes import FloatArray, rectangle
@@ -17,7 +18,7 @@ OVERLAP = 0.05  # of the smaller radius; a bed of an earlier run has less
 
 def planned_doubts(p: ScenePlan) -> list[str]:
     """A sentence for each."""
-    return _time_steps(p) + _phases(p) + _overlaps(p) + _walls(p)
+    return shares.warnings(p.case, p.layout) + _time_steps(p) + _phases(p) + _overlaps(p) + _walls(p)
 
 
 def _time_steps(p: ScenePlan) -> list[str]:

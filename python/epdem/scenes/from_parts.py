@@ -14,7 +14,7 @@ from ..case.scene import SceneCase
 from ..case.sizes import Particles
 from ..case.walls import BoxWall, ConeWall, CylinderWall, Limits, PlaneWall, PlateWall, StlWall, Upright, Wall
 from ..errors import CaseError
-from . import meshes, stl_files
+from . import meshes, shares, stl_files
 from .layout import (
     Block,
     Body,
@@ -106,39 +106,14 @@ def _region(f: CaseFill) -> Block | Cylinder:
     return Block(r.limits)
 
 
-def _wholes(exact: list[float]) -> list[int]:
-    """Whole numbers with the sum of the exact ones, rounded: the largest remainders go up."""
-    result = [math.floor(x) for x in exact]
-    order = sorted(range(len(exact)), key=lambda k: result[k] - exact[k])
-    for k in order[: round(sum(exact)) - sum(result)]:
-        result[k] += 1
-    return result
-
-
-def amounts(case: SceneCase, f: CaseFill) -> list[tuple[str, float, int]]:
-    """(material, radius [m], number) of each size of a fill, the largest first."""
-    classes = [(p.material, radius, share) for p in f.particles for radius, share in p.sizes()]
-    masses = [case.materials[m].density * 4.0 / 3.0 * math.pi * r**3 for m, r, _ in classes]
-    if f.count is not None:
-        total = f.count / sum(share / mass for (*_, share), mass in zip(classes, masses, strict=True))
-    elif f.mass is not None:
-        total = f.mass
-    else:
-        assert f.fraction is not None
-        room = f.fraction * _region(f).volume
-        total = room / sum(share / case.materials[m].density for m, _, share in classes)
-    numbers = _wholes([total * share / mass for (*_, share), mass in zip(classes, masses, strict=True)])
-    kinds = [(m, r, n) for (m, r, _), n in zip(classes, numbers, strict=True) if n]
-    return sorted(kinds, key=lambda kind: -kind[1])
-
-
 def _fills(case: SceneCase, s: Parts) -> list[Fill]:
     """A fill at once is one of exactly so many spheres for each size, the largest first; a stream is drawn from all."""
     found = []
     first = s.phase[0].name
     for f in s.random_fills:
         place, region, phase = f"scene.fill.{f.name}", _region(f), f.phase or first
-        kinds = amounts(case, f)
+        kinds = [(x.material, x.radius, x.placed) for x in shares.counted(case, f, region.volume) if x.placed]
+        kinds.sort(key=lambda kind: -kind[1])
         number, velocity = sum(n for *_, n in kinds), _vector(f.velocity)
         if not number:
             raise CaseError(f"{place}: not one sphere; give more, or smaller ones")

@@ -16,6 +16,7 @@ from .filling import refuse_too_many
 from .layout import Layout, Linear, Move, Turn, Until
 from .limits import refuse_faster_than_sound, refuse_steps
 from .model import Model, model
+from .shares import refuse_missing
 from .timestep import time_step
 
 SAMPLES = 50  # of a force, at least, in the mean that a row holds
@@ -218,6 +219,7 @@ def plan(case: SceneCase) -> ScenePlan:
     refuse_faster_than_sound(case)
     contact_model, dt, layout, out = model(case), time_step(case), kinds.layout(case), case.output
     refuse_too_many(case, layout.fills)
+    refuse_missing(case, layout)
     steps = layout.duration / dt
     if any(stage.time_step for stage in layout.stages):
         steps = sum(stage.seconds / (stage.time_step or dt) for stage in layout.stages)

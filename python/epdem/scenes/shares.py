@@ -1,0 +1,127 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Number of spheres of each size of a fill, beside the requested number."""
+
+import math
+from collections.abc import Iterator
+from itertools import groupby
+from typing import NamedTuple
+
+from ..case.parts import Fill as CaseFill
+from ..case.parts import Parts
+from ..case.scene import SceneCase
+from ..case.sizes import Particles
+from ..errors import CaseError
+from .filling import drawn
+from .layout import Fill, Layout
+
+PARTICLES = {"scene.count": "scene.particles", "scene.bed_count": "scene.bed"}  # by the key of the number
+LARGEST_ERROR = 0.01  # of the mass of a component, as a share of the mass of its fill
+
+
+class Size(NamedTuple):
+    """Spheres of one size: number of the component, radius [m], mass of a sphere [kg], requested and placed number.
+
+    placed: None where the engine draws each sphere at random.
+    """
+
+    component: int
+    material: str
+    radius: float
+    mass: float
+    requested: float
+    placed: int | None = None
+
+    @property
+    def missing(self) -> bool:
+        """Whether the fill has no sphere of this size; of random draws, whether the mean number is below one half."""
+        return self.requested < 0.5 if self.placed is None else self.placed == 0
+
+
+def _wholes(exact: list[float]) -> list[int]:
+    """Whole numbers with the sum of the exact ones, rounded: the largest remainders go up."""
+    result = [math.floor(x) for x in exact]
+    order = sorted(range(len(exact)), key=lambda k: result[k] - exact[k])
+    for k in order[: round(sum(exact)) - sum(result)]:
+        result[k] += 1
+    return result
+
+
+def _classes(case: SceneCase, particles: list[Particles]) -> list[tuple[int, str, float, float, float]]:
+    """(component, material, radius [m], mass of a sphere [kg], share of the mass of the fill) of each size."""
+    return [
+        (n, p.material, r, case.materials[p.material].density * 4.0 / 3.0 * math.pi * r**3, share)
+        for n, p in enumerate(particles)
+        for r, share in p.sizes()
+    ]
+
+
+def counted(case: SceneCase, f: CaseFill, volume: float) -> list[Size]:
+    """The sizes of a fill of a region of `volume` [m^3] by count, mass or fraction, in whole numbers."""
+    classes = _classes(case, f.particles)
+    if f.count is not None:
+        total = f.count / sum(share / mass for *_, mass, share in classes)
+    elif f.mass is not None:
+        total = f.mass
+    else:
+        assert f.fraction is not None
+        total = f.fraction * volume / sum(share / case.materials[m].density for _, m, *_, share in classes)
+    requested = [total * share / mass for *_, mass, share in classes]
+    return [Size(*c[:4], x, n) for c, x, n in zip(classes, requested, _wholes(requested), strict=True)]
+
+
+def _random(case: SceneCase, fill: Fill) -> list[Size]:
+    """The sizes of a fill whose spheres are drawn at random, with the mean number of each."""
+    weights = [weight for *_, weight in drawn(case, fill.parts)]
+    classes = _classes(case, fill.parts)
+    return [Size(*c[:4], fill.count * w / sum(weights)) for c, w in zip(classes, weights, strict=True)]
+
+
+def _fills(case: SceneCase, layout: Layout) -> Iterator[tuple[str, list[Size]]]:
+    """(key of the particles, their sizes) of each fill."""
+    of_case = {f"scene.fill.{f.name}": f for f in case.scene.random_fills} if isinstance(case.scene, Parts) else {}
+    for place, group in groupby(layout.fills, key=lambda fill: fill.place):
+        first = next(group)
+        if first.exact:
+            yield f"{place}.particles", counted(case, of_case[place], first.region.volume)
+        else:
+            yield PARTICLES.get(place, f"{place}.particles"), _random(case, first)
+
+
+def _by_component(sizes: list[Size]) -> Iterator[tuple[int, list[Size]]]:
+    return ((n, list(group)) for n, group in groupby(sizes, key=lambda size: size.component))
+
+
+def refuse_missing(case: SceneCase, layout: Layout) -> None:
+    """Raise CaseError for a component without a sphere."""
+    for place, sizes in _fills(case, layout):
+        for n, own in _by_component(sizes):
+            if all(size.missing for size in own):
+                total = sum(size.requested for size in own)
+                raise CaseError(
+                    f"{place}.{n}: its share of the mass is {total:.2g} of one sphere of {own[0].material}, "
+                    "so that the fill has none; give more or smaller spheres, or remove the component"
+                )
+
+
+def warnings(case: SceneCase, layout: Layout) -> list[str]:
+    """A sentence for each size without spheres, and for each component whose mass differs from the requested one."""
+    found = []
+    for place, sizes in _fills(case, layout):
+        whole = sum(size.mass * size.requested for size in sizes)
+        for n, own in _by_component(sizes):
+            found += [
+                f"{place}.{n}: 0 spheres with radius {size.radius:g} m, for its share of the mass is "
+                f"{size.requested:.2g} of one sphere; give more spheres, or other sizes"
+                for size in own
+                if size.missing
+            ]
+            if own[0].placed is None:
+                continue
+            requested = sum(size.mass * size.requested for size in own)
+            mass = sum(size.mass * (size.placed or 0) for size in own)
+            if abs(mass - requested) > LARGEST_ERROR * whole:
+                found.append(
+                    f"{place}.{n}: whole spheres of {own[0].material} have {mass:.4g} kg, requested are "
+                    f"{requested:.4g} kg; give more or smaller spheres"
+                )
+    return found
