@@ -56,7 +56,7 @@ def scene(outlet: float, count: int, width: float, angle: float) -> dict:
         "outlet": f"{outlet * d} m",
         "half_angle": f"{angle} deg",
         "count": count,
-        "fill": "0.12 s",
+        "fill_time": "0.12 s",
         "duration": f"{0.38 * count / per_second:.3g} s",
     }
     return data | {"output": {"rows": 100, "particles": 100}, "numerics": {"error": 0.1}}

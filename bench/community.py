@@ -94,7 +94,7 @@ def after_rain(name: str, seed: int, model: str, spheres: Path, *, steps: int | 
     (phase,) = scene["phase"]
     for body in scene.get("body", []):
         body.pop("phase", None)
-        body["place"][2] = f"{START - SPEED * begin - G * begin**2 / 2!r} m"
+        body["position"][2] = f"{START - SPEED * begin - G * begin**2 / 2!r} m"
         body["velocity"][2] = f"{-SPEED - G * begin!r} m/s"
     scene["wall"] = [w for w in scene["wall"] if phase["name"] in w.pop("phases", [phase["name"]])]
     if steps is not None:

@@ -24,17 +24,17 @@ PRESS = {
     "box": ["0.4 mm", "0.4 mm", "0.6 mm"],
     "count": 16,
     "height": "0.13 mm",
-    "back": "0.05 mm",
+    "unload_stroke": "0.05 mm",
     "speed": "4 m/s",
-    "back_speed": "2 m/s",
+    "unload_speed": "2 m/s",
 }
 BIN = {
     "count": 12,
     "bin_height": "20 mm",
     "bin_diameter": "20 mm",
     "outlet": "12 mm",
-    "fill": "0.05 s",
-    "drop": "5 mm",
+    "fill_time": "0.05 s",
+    "outlet_height": "5 mm",
     "duration": "0.06 s",
 }
 # kind: (engine, case file, changes of [scene], step)
@@ -48,7 +48,7 @@ RUNS: dict[str, tuple[str, str, dict[str, object], str]] = {
         "1e-5 s",
     ),
     "compaction": ("liggghts", "compaction_powder", PRESS, "5e-8 s"),
-    "peening": ("liggghts", "peening_steel", {"count": 8, "side": "3 mm", "duration": "0.15 ms"}, "4e-8 s"),
+    "peening": ("liggghts", "peening_steel", {"count": 8, "width": "3 mm", "duration": "0.15 ms"}, "4e-8 s"),
     "yade_settle": ("yade", "settle_glass", BED, "1e-5 s"),
     "yade_compaction": ("yade", "compaction_powder", PRESS, "5e-8 s"),
 }

@@ -11,7 +11,7 @@ from epdem.case.scene import load, parse
 from epdem.scenes.doubts import planned_doubts
 from epdem.scenes.plan import plan
 
-BALL = {"name": "ball", "material": "steel", "radius": "2 mm", "place": ["0 mm", "0 mm", "20 mm"]}
+BALL = {"name": "ball", "material": "steel", "radius": "2 mm", "position": ["0 mm", "0 mm", "20 mm"]}
 PLATE = {"name": "plate", "kind": "plate", "axis": "z", "center": ["0 mm", "0 mm", "5 mm"], "size": ["10 mm"] * 2}
 TUBE = {"name": "tube", "kind": "cylinder", "axis": "z", "center": ["0 mm"] * 2, "from": "0 mm", "to": "40 mm"}
 FALL, REST = {"name": "fall", "duration": "20 ms"}, {"name": "rest", "duration": "20 ms"}
@@ -37,8 +37,8 @@ def test_scenes_of_the_project_leave_no_doubt(path: Path):
 @pytest.mark.parametrize(("distance", "frozen", "said"), [(2.96, False, 0), (2.9, False, 1), (2.9, True, 0)])
 def test_spheres_that_lie_in_each_other_at_the_start_are_named(distance, frozen, said):
     """Radii of 1 and 2 mm: an overlap of 4 or 10 % of the smaller one."""
-    one = BALL | {"name": "one", "radius": "1 mm", "place": place(0, 0, 10), "frozen": frozen}
-    two = BALL | {"name": "two", "place": place(0, 0, 10 + distance), "frozen": frozen}
+    one = BALL | {"name": "one", "radius": "1 mm", "position": place(0, 0, 10), "frozen": frozen}
+    two = BALL | {"name": "two", "position": place(0, 0, 10 + distance), "frozen": frozen}
     found = doubts(parts(body=[one, two]))
     assert len(found) == said
     assert all("1 pairs of spheres overlap at the start" in x and "spheres 1 and 2" in x for x in found)
@@ -62,12 +62,12 @@ def test_a_round_region_with_a_round_wall_in_it_is_named(diameter, said):
 @pytest.mark.parametrize(
     ("ball", "share"),
     [
-        ({"place": place(0, 0, 1.95)}, None),
-        ({"place": place(0, 0, 1.5)}, "floor by 25%"),
-        ({"place": place(0, 0, 1.5), "frozen": True}, None),
-        ({"place": place(6, 0, 6)}, "plate by 29%"),  # 1 - sqrt(1 + 1) / 2: beside its edge
-        ({"place": place(6.5, 6.5, 5)}, None),  # sqrt(1.5^2 + 1.5^2) > 2: beside its corner
-        ({"place": place(0, 0, 5), "phase": "rest"}, "plate by 100%"),
+        ({"position": place(0, 0, 1.95)}, None),
+        ({"position": place(0, 0, 1.5)}, "floor by 25%"),
+        ({"position": place(0, 0, 1.5), "frozen": True}, None),
+        ({"position": place(6, 0, 6)}, "plate by 29%"),  # 1 - sqrt(1 + 1) / 2: beside its edge
+        ({"position": place(6.5, 6.5, 5)}, None),  # sqrt(1.5^2 + 1.5^2) > 2: beside its corner
+        ({"position": place(0, 0, 5), "phase": "rest"}, "plate by 100%"),
     ],
 )
 def test_a_sphere_in_a_wall_is_named(ball, share):
@@ -78,7 +78,7 @@ def test_a_sphere_in_a_wall_is_named(ball, share):
 
 def test_a_wall_that_has_moved_and_a_gate_of_another_phase_are_in_nobodys_way():
     gate = FLOOR | {"name": "gate", "at": "5 mm", "phases": ["rest"]}
-    ball = BALL | {"place": place(0, 0, 5)}
+    ball = BALL | {"position": place(0, 0, 5)}
     plate = PLATE | {"material": "steel"}
     for wall, phase, named in (
         ([FLOOR, gate], "fall", False),

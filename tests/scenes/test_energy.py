@@ -63,12 +63,12 @@ HOPPER = {
     "bin_height": '"20 mm"',
     "bin_diameter": '"20 mm"',
     "outlet": '"12 mm"',
-    "fill": '"0.06 s"',
-    "drop": '"5 mm"',
+    "fill_time": '"0.06 s"',
+    "outlet_height": '"5 mm"',
     "duration": '"0.1 s"',
 }
 DRUM = {"count": "100", "diameter": '"30 mm"', "length": '"6 mm"', "duration": '"0.2 s"'}
-PEENING = {"count": "60", "side": '"8 mm"', "duration": '"1.2 ms"'}
+PEENING = {"count": "60", "width": '"8 mm"', "duration": '"1.2 ms"'}
 KINDS = {
     "settle_glass": SETTLE,
     "compaction_powder": PRESS,

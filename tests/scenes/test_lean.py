@@ -33,19 +33,19 @@ SMALL = {
         "count": 60,
         "height": "0.3 mm",
         "speed": "3 m/s",
-        "back_speed": "3 m/s",
+        "unload_speed": "3 m/s",
     },
     "hopper": {
         "count": 150,
         "bin_height": "20 mm",
         "bin_diameter": "20 mm",
         "outlet": "12 mm",
-        "fill": "0.06 s",
-        "drop": "5 mm",
+        "fill_time": "0.06 s",
+        "outlet_height": "5 mm",
         "duration": "0.1 s",
     },
     "drum": {"count": 60, "diameter": "30 mm", "length": "5 mm", "duration": "0.12 s"},
-    "peening": {"count": 20, "side": "4 mm", "duration": "0.5 ms"},
+    "peening": {"count": 20, "width": "4 mm", "duration": "0.5 ms"},
     "parts": {},
 }
 
@@ -54,8 +54,8 @@ def small(data: dict) -> dict:
     """The TOML data of a scene with the numbers of SMALL, and a coarse time step: what the lines do, not how well."""
     few = {"output": data.get("output", {}) | {"rows": 20, "particles": 5}, "numerics": {"error": 0.1}}
     scene = data["scene"] | SMALL[data["scene"]["kind"]]
-    if "fall" in scene:  # finer spheres, which the plate of a wide box would not meet
-        scene |= {"fall": "1 ms", "box": ["0.12 mm", "0.12 mm", "0.8 mm"], "count": 40, "height": "0.3 mm"}
+    if "settle_time" in scene:  # finer spheres, which the plate of a wide box would not meet
+        scene |= {"settle_time": "1 ms", "box": ["0.12 mm", "0.12 mm", "0.8 mm"], "count": 40, "height": "0.3 mm"}
     if "phase" in scene:
         scene |= {"phase": [phase | {"duration": "0.03 s"} for phase in scene["phase"]]}
     return data | {"scene": scene} | few

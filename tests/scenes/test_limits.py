@@ -21,8 +21,8 @@ BEYOND = {  # case, table, key, value, what the sentence must hold
     "thin stream": ("peening_steel", "scene", "rate", "1e-9 Hz", r"6e\+12 m has .* check the units"),
     "speed": ("peening_steel", "scene", "speed", "1e9 m/s", r"speeds reach 1e\+09 m/s, faster than sound in shot"),
     "gravity": ("settle_glass", "scene", "gravity", "1e12 m/s^2", r"sound in glass \(sqrt\(E/rho\) = 141 m/s\)"),
-    "turn": ("drum_beads", "scene", "turn", "1e9 rpm", "faster than sound in beads"),
-    "drop": ("hopper_beads", "scene", "drop", "10 km", "faster than sound in beads"),
+    "turn": ("drum_beads", "scene", "angular_velocity", "1e9 rpm", "faster than sound in beads"),
+    "drop": ("hopper_beads", "scene", "outlet_height", "10 km", "faster than sound in beads"),
 }
 
 

@@ -39,8 +39,8 @@ def poured() -> dict:
 def bed() -> dict:
     """Shot on a bed of another material than the shot."""
     data = read_toml(CASES / "peening_steel.toml")
-    scene = {"side": "6 mm", "count": 12, "duration": "0.3 ms", "gravity": "9.81 m/s^2"}
-    scene |= {"bed": [{"material": "plate", "radius": "0.5 mm"}], "bed_count": 30, "bed_fill": "1 ms"}
+    scene = {"width": "6 mm", "count": 12, "duration": "0.3 ms", "gravity": "9.81 m/s^2"}
+    scene |= {"bed": [{"material": "plate", "radius": "0.5 mm"}], "bed_count": 30, "bed_settle_time": "1 ms"}
     return data | {"scene": data["scene"] | scene, "output": {"rows": 20, "particles": 2}, "numerics": {"error": 0.1}}
 
 

@@ -24,7 +24,7 @@ from epdem.studies.sweep import run as study
 
 STL = {"name": "bowl", "kind": "stl", "file": "wall.stl", "material": "steel"}
 PLATE = {"name": "w", "kind": "plate", "axis": "z", "center": ["0 m"] * 3, "size": ["1 m"] * 2, "material": "steel"}
-BODY = {"name": "ball", "material": "steel", "radius": "2 mm", "place": ["0 mm", "0 mm", "20 mm"]}
+BODY = {"name": "ball", "material": "steel", "radius": "2 mm", "position": ["0 mm", "0 mm", "20 mm"]}
 
 
 def fills(data: dict, place: Path | str = "case") -> dict[tuple[str, float], int]:
@@ -135,7 +135,7 @@ def test_a_bad_stl_is_found_before_the_run_with_place_and_number(kind, change, w
 def test_a_good_stl_is_scaled_turned_and_moved(tmp_path):
     write_stl(tmp_path / "wall.stl", tetrahedron(5.0))
     wall = STL | {"scale": 1e-3, "rotate": {"axis": [0.0, 0.0, 2.0], "angle": "90 deg"}, "closed": True}
-    wall |= {"place": ["1 mm", "0 mm", "2 mm"]}
+    wall |= {"position": ["1 mm", "0 mm", "2 mm"]}
     mesh = plan(parse(parts(wall=[wall]), tmp_path / "case.toml")).layout.meshes["bowl"].triangles
     corners = {tuple(float(x) for x in np.round(c * 1e3, 9) + 0.0) for c in mesh.reshape(-1, 3)}
     assert corners == {(1, 0, 2), (1, 5, 2), (-4, 0, 2), (1, 0, 7)}  # x goes to y, y to -x
@@ -154,7 +154,7 @@ def test_a_good_stl_is_scaled_turned_and_moved(tmp_path):
         ({"fill": [], "body": []}, r"no spheres; add \[\[scene.fill\]\]"),
         ({"fill": [{"name": "a", "file": "none.csv"}]}, "scene.fill.0.file = 'none.csv', no such file"),
         ({"fill": [{"name": "a", "file": "s.csv", "material": "glass"}]}, "line 3: radius = 'big' is not a number"),
-        ({"body": [BODY | {"place": ["0 mm", "0 mm", "1 m"]}]}, "lies beyond scene.room"),
+        ({"body": [BODY | {"position": ["0 mm", "0 mm", "1 m"]}]}, "lies beyond scene.room"),
         ({"body": [BODY | {"frozen": True, "phase": "fall"}]}, "a frozen body is there from the start"),
         ({"phase": []}, "scene.phase is empty"),
         ({"wall": [PLATE]}, "scene.wall.w: reaches beyond scene.room"),

@@ -158,7 +158,7 @@ def test_a_run_that_ends_by_a_condition_goes_on_bitwise(tmp_path):
         "name": "ball",
         "material": "steel",
         "radius": "1.5 mm",
-        "place": ["0 mm", "0 mm", "36 mm"],
+        "position": ["0 mm", "0 mm", "36 mm"],
         "phase": "fall",
     }
     walls = [FLOOR, BOX | {"open": ["-z"]}, gate]

@@ -58,8 +58,14 @@ def test_the_energy_of_a_scene_with_an_stl_wall_and_an_impactor_closes(tmp_path)
 
 def test_spheres_of_a_table_begin_where_it_says_and_frozen_ones_stay(tmp_path):
     (tmp_path / "s.csv").write_text("x,y,z,radius,material,vz\n0,0,0.03,0.001,glass,-1\n0.004,0,0.01,0.002,steel,0.5\n")
-    held = {"name": "held", "material": "steel", "radius": "2 mm", "place": ["0 mm", "0 mm", "20 mm"], "frozen": True}
-    late = {"name": "late", "material": "glass", "radius": "1 mm", "place": ["-5 mm", "5 mm", "20 mm"]}
+    held = {
+        "name": "held",
+        "material": "steel",
+        "radius": "2 mm",
+        "position": ["0 mm", "0 mm", "20 mm"],
+        "frozen": True,
+    }
+    late = {"name": "late", "material": "glass", "radius": "1 mm", "position": ["-5 mm", "5 mm", "20 mm"]}
     late |= {"velocity": ["0.2 m/s", "0 m/s", "0 m/s"], "phase": "second"}
     gate = FLOOR | {"name": "gate", "at": "5 mm", "phases": ["first"]}
     scene = {

@@ -69,7 +69,13 @@ def test_a_picture_shows_the_nearest_sphere_and_its_field(tmp_path):
 
 
 def test_a_picture_before_the_run_has_the_spheres_that_can_be_placed(tmp_path):
-    ball = {"name": "ball", "material": "steel", "radius": "2 mm", "place": ["0 mm", "0 mm", "20 mm"], "phase": "more"}
+    ball = {
+        "name": "ball",
+        "material": "steel",
+        "radius": "2 mm",
+        "position": ["0 mm", "0 mm", "20 mm"],
+        "phase": "more",
+    }
     phases = [{"name": "fall", "duration": "20 ms"}, {"name": "more", "duration": "20 ms"}]
     p = plan(parse(parts(body=[ball], phase=phases)))
     assert pictures.before(p, tmp_path / "a.png") == 41

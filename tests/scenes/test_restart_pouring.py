@@ -87,7 +87,7 @@ def test_a_stream_that_has_ended_does_not_begin_again_where_spheres_are_still_to
     stream = BED | {"count": 10, "rate": "1 kHz", "velocity": ["0 m/s", "0 m/s", "-1 m/s"]}
     ball = {"material": "steel", "radius": "0.4 mm", "velocity": ["0 m/s", "0 m/s", "-0.5 m/s"], "phase": "rain"}
     place = [(x, y) for x in range(-7, 9, 2) for y in range(-4, 6, 2)]
-    balls = [ball | {"name": f"b{n}", "place": [f"{x} mm", f"{y} mm", "39 mm"]} for n, (x, y) in enumerate(place)]
+    balls = [ball | {"name": f"b{n}", "position": [f"{x} mm", f"{y} mm", "39 mm"]} for n, (x, y) in enumerate(place)]
     phases = [{"name": "pour", "duration": "60 ms"}, {"name": "rain", "duration": "10 ms"}]
     data = parts(fill=[stream], body=balls, phase=phases, periodic=True)
     data |= {"output": {"rows": 28, "particles": 28, "restarts": 28}, "numerics": {"time_step": "1e-5 s"}}

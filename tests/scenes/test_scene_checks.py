@@ -16,7 +16,7 @@ from epdem.scenes.plan import ScenePlan, plan
 
 BOX = {"name": "box", "kind": "box", "x": ["-9 mm", "9 mm"], "y": ["-9 mm", "9 mm"], "z": ["0 mm", "40 mm"]}
 BOX |= {"material": "steel"}
-STONE = {"name": "stone", "material": "steel", "radius": "2 mm", "place": ["0 mm", "0 mm", "5 mm"], "frozen": True}
+STONE = {"name": "stone", "material": "steel", "radius": "2 mm", "position": ["0 mm", "0 mm", "5 mm"], "frozen": True}
 
 
 def planned(name: str, law: str | None = None, n_rows: int = 40, **scene: object) -> ScenePlan:
@@ -108,7 +108,7 @@ def test_stiffness_and_work_of_a_press_are_those_of_its_force_curve():
     def force(step):
         middle = np.maximum(step - 0.5 * p.every, 0) * p.time_step
         down = s.speed * np.minimum(middle, turn * p.time_step)
-        up = s.back_speed * np.maximum(middle - turn * p.time_step, 0)
+        up = s.unload_speed * np.maximum(middle - turn * p.time_step, 0)
         return np.maximum(k * down - k_back * up, 0)
 
     table = rows(p, plate_force=force)

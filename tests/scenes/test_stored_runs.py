@@ -95,7 +95,7 @@ def plate_ends(p, tables):
     s, turn = p.case.scene, p.phases[0].end * p.time_step
     rows = tables["rows"][["step", "time"]].copy()
     rows["plate_end"] = (
-        s.box[2] - s.speed * rows["time"].clip(upper=turn) + s.back_speed * (rows["time"] - turn).clip(lower=0)
+        s.box[2] - s.speed * rows["time"].clip(upper=turn) + s.unload_speed * (rows["time"] - turn).clip(lower=0)
     )
     return rows.itertuples()
 

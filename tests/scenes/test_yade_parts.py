@@ -39,8 +39,14 @@ def test_the_same_bodies_do_the_same_in_both_engines(tmp_path):
     """Without friction (YADE has another); of a file, one frozen; a plate of triangles rises; two time steps."""
     table = {"name": "table", "file": str(tmp_path / "spheres.csv"), "material": "glass"}
     (tmp_path / "spheres.csv").write_text(BODIES)
-    frozen = {"name": "held", "material": "steel", "radius": "2 mm", "place": ["0 mm", "0 mm", "11 mm"], "frozen": True}
-    fast = {"name": "fast", "material": "glass", "radius": "1.5 mm", "place": ["5 mm", "-4 mm", "12 mm"]}
+    frozen = {
+        "name": "held",
+        "material": "steel",
+        "radius": "2 mm",
+        "position": ["0 mm", "0 mm", "11 mm"],
+        "frozen": True,
+    }
+    fast = {"name": "fast", "material": "glass", "radius": "1.5 mm", "position": ["5 mm", "-4 mm", "12 mm"]}
     fast |= {"velocity": ["0 m/s", "0 m/s", "-1 m/s"]}
     up = {"wall": "lid", "kind": "linear", "velocity": ["0 m/s", "0 m/s", "0.3 m/s"]}
     phases = [FALL | {"duration": "5 ms", "move": [up]}, FALL | {"name": "on", "duration": "5 ms"}]
@@ -68,14 +74,14 @@ def test_the_same_bodies_do_the_same_in_both_engines(tmp_path):
 
 
 SHAKE = {"wall": "lid", "kind": "press", "direction": [0.0, 0.0, -1.0], "force": "1 N", "highest_speed": "1 cm/s"}
-BALL = {"name": "ball", "material": "steel", "radius": "2 mm", "place": ["0 mm", "0 mm", "20 mm"], "phase": "on"}
+BALL = {"name": "ball", "material": "steel", "radius": "2 mm", "position": ["0 mm", "0 mm", "20 mm"], "phase": "on"}
 TWO = [FALL, FALL | {"name": "on"}]
 
 
 @pytest.mark.parametrize(
     ("change", "words"),
     [
-        ({"leave": True}, "scene.leave"),
+        ({"open_boundary": True}, "scene.open_boundary"),
         ({"fill": [BED | {"rate": "3 kHz"}]}, "scene.fill.bed.rate = 3000.0"),
         ({"fill": [BED, BED | {"name": "more", "phase": "on"}], "phase": TWO}, "scene.fill.more.phase = 'on'"),
         ({"body": [BALL], "phase": TWO}, "scene.body.ball.phase = 'on'"),
@@ -94,6 +100,8 @@ def test_what_yade_does_not_have_is_refused_in_a_sentence(change, words):
 def test_a_wall_whose_surface_turns_has_no_other_motion_in_yade():
     tube = {"name": "tube", "kind": "cylinder", "diameter": "18 mm", "from": "0 mm", "to": "30 mm", "material": "steel"}
     up = {"wall": "tube", "kind": "linear", "velocity": ["0 m/s", "0 m/s", "1 cm/s"]}
-    data = parts(wall=[FLOOR, tube | {"turn": "2 rad/s"}], phase=[FALL | {"move": [up]}])
-    with pytest.raises(CaseError, match=r"scene\.wall\.tube\.turn: YADE turns the wall itself, which moves otherwise"):
+    data = parts(wall=[FLOOR, tube | {"angular_velocity": "2 rad/s"}], phase=[FALL | {"move": [up]}])
+    with pytest.raises(
+        CaseError, match=r"scene\.wall\.tube\.angular_velocity: YADE turns the wall itself, which moves otherwise"
+    ):
         files(scene_engine("yade"), plan(parse(data)))

@@ -36,7 +36,7 @@ FEW = 'speeds = { from = "0.5 m/s", to = "50 m/s", count = 3 }'
 SMALL = {
     "settle_glass": {"scene.box": ["10 mm", "10 mm", "60 mm"], "scene.count": 30, "scene.duration": "0.3 s"}
     | {"output.particles": 4},
-    "hopper_beads": {"scene.count": 60, "scene.fill": "20 ms", "scene.duration": "40 ms"},
+    "hopper_beads": {"scene.count": 60, "scene.fill_time": "20 ms", "scene.duration": "40 ms"},
 }
 
 
@@ -201,7 +201,13 @@ def test_the_reference_names_every_command_and_what_the_package_offers():
 def test_the_reference_of_case_files_has_every_key_of_our_cases():
     keys = set(re.findall(r"^\| `([\w.]+)` \|", guide.cases(), re.M))
     assert "| `materials.NAME.poisson_ratio` | a number, > -1, <= 0.5 | required |" in guide.cases()
-    assert {"impact.body.radius", "measured.e_n", "scene.wall.turn", "output.restarts", "numerics.skin"} <= keys
+    assert {
+        "impact.body.radius",
+        "measured.e_n",
+        "scene.wall.angular_velocity",
+        "output.restarts",
+        "numerics.skin",
+    } <= keys
     for path in sorted((ROOT / "cases").glob("*.toml")):
         for table, entries in read_toml(path).items():
             if table not in ("materials", "law") and isinstance(entries, dict):

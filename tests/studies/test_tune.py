@@ -92,7 +92,7 @@ def test_the_case_file_gets_the_choices_and_keeps_its_comments(tmp_path):
     assert [line for line in text.splitlines() if line not in before.splitlines()] == found.lines
     assert all(line in text for line in before.splitlines())
     numerics = tomllib.loads(text)["numerics"]
-    assert (numerics["skin"], numerics["cut"], numerics["time_step"]) == ("2 mm", "x", "5e-5 s")
+    assert (numerics["skin"], numerics["processors"], numerics["time_step"]) == ("2 mm", "x", "5e-5 s")
     assert load(path).numerics.skin == 2e-3
     tune.write(path, tuned((1.0, 1.0), (1.0, 1.0)))
     assert path.read_text() == text

@@ -58,7 +58,7 @@ class Settle(Common):
 
 
 class Hopper(Common):
-    """Discharge of a round bin with a conical hopper of triangles; `fill` is the time before the outlet opens."""
+    """Discharge of a round bin with a conical hopper of triangles; `fill_time` is the time before the outlet opens."""
 
     kind: Literal["hopper"]
     duration: Time
@@ -66,8 +66,8 @@ class Hopper(Common):
     bin_height: Length
     outlet: Length
     half_angle: Annotated[float, Quantity("rad", above=0.0, le=1.5707963267948966)]
-    drop: Length  # from the outlet to the floor
-    fill: Time
+    outlet_height: Length  # from the outlet to the floor
+    fill_time: Time
 
 
 class Drum(Common):
@@ -81,7 +81,7 @@ class Drum(Common):
     duration: Time
     diameter: Length
     length: Length
-    turn: Annotated[float, Quantity("rad/s", above=0.0)]  # "20 rpm"
+    angular_velocity: Annotated[float, Quantity("rad/s", above=0.0)]  # "20 rpm"
 
 
 class Compaction(Common):
@@ -92,24 +92,24 @@ class Compaction(Common):
     duration: Time | None = None
     box: Annotated[list[Length], Field(min_length=3, max_length=3)]
     height: Length  # of the gap between the plates at the end of loading
-    back: Length  # stroke of unloading
-    fall: Time | None = None  # before loading: the spheres fall on the lower plate
+    unload_stroke: Length  # stroke of unloading
+    settle_time: Time | None = None  # before loading: the spheres fall on the lower plate
     speed: Speed  # of the upper plate, loading
-    back_speed: Speed | None = None  # unloading; default: a tenth, because it ends within a short stroke
+    unload_speed: Speed | None = None  # unloading; default: a tenth, because it ends within a short stroke
 
     @property
     def release(self) -> float:
         """Speed of the upper plate while unloading [m/s]."""
-        return self.back_speed or 0.1 * self.speed
+        return self.unload_speed or 0.1 * self.speed
 
     @model_validator(mode="after")
     def _order(self) -> Self:
         if not self.height < self.box[2]:
             raise ValueError(f"height ({self.height:g} m) must be below the box's height ({self.box[2]:g} m)")
-        if self.fall is not None and not self.gravity:
-            raise ValueError("spheres fall under gravity; give gravity, or remove fall")
+        if self.settle_time is not None and not self.gravity:
+            raise ValueError("spheres fall under gravity; give gravity, or remove settle_time")
         if self.duration is not None:
-            raise ValueError("duration: loading and unloading follow from height, back and speed; remove it")
+            raise ValueError("duration: loading and unloading follow from height, unload_stroke and speed; remove it")
         return self
 
 
@@ -119,12 +119,12 @@ class Peening(Common):
     kind: Literal["peening"]
     duration: Time
     gravity: Gravity = 0.0
-    side: Length  # of the square that the stream hits
+    width: Length  # of the square that the stream hits
     speed: Speed
     rate: Rate  # spheres per second
     bed: list[Particles] = Field(default_factory=list)
     bed_count: Annotated[int, Field(ge=0, le=10_000_000)] = 0
-    bed_fill: Time | None = None
+    bed_settle_time: Time | None = None
 
     @property
     def filled(self) -> list[Particles]:
@@ -133,8 +133,8 @@ class Peening(Common):
 
     @model_validator(mode="after")
     def _bed(self) -> Self:
-        if bool(self.bed) != bool(self.bed_count) or bool(self.bed) != (self.bed_fill is not None):
-            raise ValueError("a bed needs 'bed', 'bed_count' and 'bed_fill'; give all three or none")
+        if bool(self.bed) != bool(self.bed_count) or bool(self.bed) != (self.bed_settle_time is not None):
+            raise ValueError("a bed needs 'bed', 'bed_count' and 'bed_settle_time'; give all three or none")
         if self.bed and not self.gravity:
             raise ValueError("a bed settles under gravity; give gravity")
         return self

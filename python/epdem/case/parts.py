@@ -97,7 +97,7 @@ class Body(Frozen):
     name: PartName
     material: Name
     radius: Length
-    place: Vector
+    position: Vector
     velocity: Speeds = Field(default_factory=nothing)
     spin: Annotated[list[Spin], Field(min_length=3, max_length=3)] = Field(default_factory=nothing)
     frozen: bool = False
@@ -114,20 +114,20 @@ class Body(Frozen):
     @property
     def sphere(self) -> Sphere:
         """The body as a row of a table."""
-        (x, y, z), (vx, vy, vz), (wx, wy, wz) = self.place, self.velocity, self.spin
+        (x, y, z), (vx, vy, vz), (wx, wy, wz) = self.position, self.velocity, self.spin
         return Sphere((x, y, z), self.radius, self.material, (vx, vy, vz), (wx, wy, wz), self.frozen)
 
 
 class Parts(Frozen):
     """A scene of any parts, in a room beyond whose limits spheres are lost.
 
-    periodic: in x and y. leave: spheres may leave the room. Gravity acts along -z.
+    periodic: in x and y. open_boundary: spheres may leave the room. Gravity acts along -z.
     """
 
     kind: Literal["parts"]
     room: Room
     periodic: bool = False
-    leave: bool = False
+    open_boundary: bool = False
     gravity: Gravity = 9.81
     wall: list[Wall] = Field(default_factory=list, max_length=64)
     fill: list[AnyFill] = Field(default_factory=list, max_length=64)
@@ -225,7 +225,7 @@ class Parts(Frozen):
         velocities = [*(s.velocity for s in self.table), *(b.velocity for b in self.body)]
         speeds = [math.hypot(*v) for v in (*velocities, *(f.velocity for f in self.random_fills))]
         turns = (w for w in self.wall if isinstance(w, CylinderWall | ConeWall))
-        speeds += [abs(w.turn) * max(w.diameters_of_ends()) / 2 for w in turns]
+        speeds += [abs(w.angular_velocity) * max(w.diameters_of_ends()) / 2 for w in turns]
         limits = self.room.limits
         across = math.dist(limits[0::2], limits[1::2])
         for move in (m for p in self.phase for m in p.move):

@@ -102,7 +102,8 @@ class Output(Frozen):
 class SceneNumerics(Frozen):
     """`error`: limit of the error of e_n at speeds up to `highest_speed` (default: the highest of the scene).
 
-    skin: by how much neighbour lists reach farther than contacts [m]. cut: axes along which ranks divide the room.
+    skin: by how much neighbour lists reach farther than contacts [m]. processors: axes along which ranks divide the
+    room.
     Neither changes results beyond round-off; `epdem tune` measures which are fastest.
     """
 
@@ -110,7 +111,7 @@ class SceneNumerics(Frozen):
     highest_speed: Speed | None = None
     time_step: Time | None = None
     skin: Length | None = None
-    cut: Literal["x", "y", "z", "xy", "xz", "yz", "xyz"] | None = None
+    processors: Literal["x", "y", "z", "xy", "xz", "yz", "xyz"] | None = None
     seed: Annotated[int, Field(ge=1, le=1000)] = 1
 
 

@@ -122,8 +122,8 @@ class BoxWall(_Triangles):
 class _Round(_Triangles, ABC):
     """A wall about an axis, from one place along it to another; `center`: the two other coordinates.
 
-    ends: which ends a disc closes. turn: angular velocity of its surface about its axis. It is a body of revolution, so
-    its triangles stay where they are.
+    ends: which ends a disc closes. angular_velocity: that of the surface about the axis. The wall is a body of
+    revolution, so that its triangles stay where they are.
     """
 
     axis: Axis = "z"
@@ -131,7 +131,7 @@ class _Round(_Triangles, ABC):
     to: Place
     center: Span = Field(default_factory=lambda: [0.0, 0.0])
     ends: list[Literal["from", "to"]] = Field(default_factory=list)
-    turn: Spin = 0.0
+    angular_velocity: Spin = 0.0
 
     @model_validator(mode="after")
     def _ordered(self) -> Self:
@@ -189,7 +189,7 @@ class StlWall(_Triangles):
     file: FileName
     scale: Annotated[float, Quantity("1", above=0.0)] = 1.0
     rotate: Rotation | None = None
-    place: Vector = Field(default_factory=nothing)
+    position: Vector = Field(default_factory=nothing)
     closed: bool = False
 
 

@@ -165,7 +165,7 @@ def deck(p: ScenePlan) -> Deck:
     _refuse_room(p)
     m, s, out = p.model, p.case.scene, p.output
     moduli = [p.case.materials[t.material].young_modulus for t in m.types]
-    cut = p.case.numerics.cut
+    cut = p.case.numerics.processors
     row_words = {"f_load": p.floor_load, "f_press_z": p.plates, "f_torque": p.torque, "f_power": p.powered}
     return Deck(
         title=p.case.case.title,

@@ -67,9 +67,9 @@ def _origin(w: CylinderWall | ConeWall) -> Vector:
 
 
 def _turn(w: Wall) -> Turn | None:
-    if not isinstance(w, CylinderWall | ConeWall) or not w.turn:
+    if not isinstance(w, CylinderWall | ConeWall) or not w.angular_velocity:
         return None
-    return Turn(_origin(w), _vector([float(axis == w.axis) for axis in "xyz"]), w.turn)
+    return Turn(_origin(w), _vector([float(axis == w.axis) for axis in "xyz"]), w.angular_velocity)
 
 
 def _meshes(s: Parts, largest: float) -> dict[str, Mesh]:
@@ -141,7 +141,7 @@ def _refuse_outside(s: Parts) -> None:
     """Raise CaseError for spheres and regions beyond the room."""
     low, high = s.room.limits[0::2], s.room.limits[1::2]
     places = [(f"sphere {n} of scene.fill and scene.body", x.place) for n, x in enumerate(s.table, 1)]
-    places += [(f"scene.body.{b.name}.place", _vector(b.place)) for b in s.later]
+    places += [(f"scene.body.{b.name}.position", _vector(b.position)) for b in s.later]
     for name, place in places:
         if not all(a <= x <= b for a, x, b in zip(low, place, high, strict=True)):
             raise CaseError(f"{name}: {tuple(place)} m lies beyond scene.room; move it, or enlarge the room")
@@ -246,7 +246,7 @@ def from_parts(case: SceneCase, s: Parts) -> Layout:
         sum(f.count for f in fills) + len(s.table) + len(bodies),
         walls,
         gates,
-        loses=s.leave,
+        loses=s.open_boundary,
         table=tuple(s.table),
         bodies=bodies,
         loads=tuple(w.name for w in s.wall if w.name in loads),

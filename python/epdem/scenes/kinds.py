@@ -55,8 +55,8 @@ def _hopper(s: Hopper) -> Layout:
     r, top = s.bin_diameter / 2, s.bin_height
     depth = (s.bin_diameter - s.outlet) / 2 / math.tan(s.half_angle)
     margin = 0.1 * r
-    low = float(f"{-depth - s.drop:.10g}")
-    depth = -low - s.drop
+    low = float(f"{-depth - s.outlet_height:.10g}")
+    depth = -low - s.outlet_height
     box = (-r - margin, r + margin, -r - margin, r + margin, low, 1.5 * top)  # what bounces high stays in the room
     fill = Fill(s.particles, s.count, Cylinder(r - _largest(s.particles), 0.0, top))
     return Layout(
@@ -64,7 +64,7 @@ def _hopper(s: Hopper) -> Layout:
         False,
         (_floor(low), *_sides(box[1] - box[0], box[3] - box[2])),
         (fill,),
-        (Stage("fill", s.fill, gates=("shutter",)), Stage("discharge", s.duration)),
+        (Stage("fill", s.fill_time, gates=("shutter",)), Stage("discharge", s.duration)),
         s.count,
         {"hopper": Mesh(meshes.hopper(s.bin_diameter, s.bin_height, s.outlet, depth))},
         gates=(Plane("shutter", 2, -depth),),
@@ -82,7 +82,12 @@ def _drum(s: Drum) -> Layout:
         (Fill(s.particles, s.count, Block((-a, a, -half, half, -a, a))),),
         (Stage("turn", s.duration),),
         s.count,
-        {"drum": Mesh(meshes.drum(s.diameter, s.length * 1.02), turn=Turn((0.0, 0.0, 0.0), (0.0, 1.0, 0.0), s.turn))},
+        {
+            "drum": Mesh(
+                meshes.drum(s.diameter, s.length * 1.02),
+                turn=Turn((0.0, 0.0, 0.0), (0.0, 1.0, 0.0), s.angular_velocity),
+            )
+        },
     )
 
 
@@ -90,13 +95,13 @@ def _compaction(s: Compaction) -> Layout:
     lx, ly, lz = s.box
     x, y = lx / 2, ly / 2
     load = Stage("load", (lz - s.height) / s.speed, {"plate": Linear((0.0, 0.0, -s.speed))})
-    unload = Stage("unload", s.back / s.release, {"plate": Linear((0.0, 0.0, s.release))})
+    unload = Stage("unload", s.unload_stroke / s.release, {"plate": Linear((0.0, 0.0, s.release))})
     return Layout(
         (-x, x, -y, y, 0.0, 1.05 * lz),
         True,
         (_floor(),),
         (Fill(s.particles, s.count, Block((-x, x, -y, y, 0.0, lz))),),
-        (*([Stage("fall", s.fall)] if s.fall else []), load, unload),
+        (*([Stage("fall", s.settle_time)] if s.settle_time else []), load, unload),
         s.count,
         {"plate": Mesh(meshes.rectangle(2, (0.0, 0.0, lz), (lx, ly)))},
     )
@@ -108,14 +113,14 @@ def _peening(s: Peening) -> Layout:
     So its places are known at the start, and a continued run has no other ones.
     """
     gap = 4 * _largest(s.particles)
-    base = s.side if s.bed else 0.0
-    foot, a = base + gap, s.side / 2
+    base = s.width if s.bed else 0.0
+    foot, a = base + gap, s.width / 2
     top = foot + s.speed * s.count / s.rate
     fills = [Fill(s.particles, s.count, Block((-a, a, -a, a, foot, top)), velocity=(0.0, 0.0, -s.speed), phase="peen")]
     stages = [Stage("peen", s.duration)]
-    if s.bed_fill is not None:
+    if s.bed_settle_time is not None:
         fills.insert(0, Fill(s.bed, s.bed_count, Block((-a, a, -a, a, 0.0, base)), "scene.bed_count"))
-        stages.insert(0, Stage("fill", s.bed_fill))
+        stages.insert(0, Stage("fill", s.bed_settle_time))
     box = (-a, a, -a, a, 0.0, float(f"{top + gap:.10g}"))
     return Layout(box, True, (_floor(),), tuple(fills), tuple(stages), s.count, loses=True)
 

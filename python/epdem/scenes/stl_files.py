@@ -98,7 +98,7 @@ def placed(w: StlWall, room: tuple[float, ...], largest: float) -> FloatArray:
         s, c = math.sin(w.rotate.angle), math.cos(w.rotate.angle)
         cross = np.cross(axis, np.eye(3))
         points = points @ (c * np.eye(3) + s * cross + (1 - c) * np.outer(axis, axis))
-    points = points + np.array(w.place)
+    points = points + np.array(w.position)
     low, high = points.reshape(-1, 3).min(axis=0), points.reshape(-1, 3).max(axis=0)
     extent = " x ".join(f"{x:.4g}" for x in high - low)
     if (high - low).max() < 2 * largest:

@@ -67,7 +67,7 @@ class Tuned:
         if best := _better(self.skins):
             choices["skin"] = f"{float(best.value) * 1e3:.4g} mm", self._reason(best, self.skins[0])
         if best := _better(self.cuts):
-            choices["cut"] = str(best.value), self._reason(best, self.cuts[0])
+            choices["processors"] = str(best.value), self._reason(best, self.cuts[0])
         return choices
 
     @property
@@ -148,9 +148,9 @@ def tune(path: Path, *, ranks: int = 1, seconds: float = 60.0, progress: Progres
         return result
     best = float((_better(result.skins) or of_skins[0]).value)
     runs: dict[str, Loops] = {}
-    for cut in dict.fromkeys([case.numerics.cut or "", *_cuts(ranks)]):
+    for cut in dict.fromkeys([case.numerics.processors or "", *_cuts(ranks)]):
         progress(_axes(cut))
-        numerics = case.numerics.model_copy(update={"cut": cut or None})
+        numerics = case.numerics.model_copy(update={"processors": cut or None})
         texts = files(tool, _silent(case.model_copy(update={"numerics": numerics})))
         runs[cut] = trials.run(trials.pieces(texts, [best], steps * len(skins), length)[0], ranks, seconds)
     return replace(result, cuts=tuple(_of_cuts(runs)))

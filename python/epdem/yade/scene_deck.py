@@ -21,7 +21,7 @@ Square = tuple[tuple[float, ...], ...]
 SCRIPT, SPHERES = "scene.py", "spheres.txt"
 SKIN = 0.25  # of the smallest radius: few sortings and few idle neighbours
 NO_DASHPOT = "contact.tangential_restitution: YADE's law has no dashpot, it was left out"
-NO_RANKS = "numerics.cut: a scene in YADE has one rank, it was left out"
+NO_RANKS = "numerics.processors: a scene in YADE has one rank, it was left out"
 
 
 @dataclass(frozen=True)
@@ -126,7 +126,7 @@ def refuse(p: ScenePlan) -> None:
 def notes(p: ScenePlan) -> list[str]:
     """The parts of a case that a YADE scene leaves out, in words."""
     found = [NO_DASHPOT] if p.model.tangential_restitution is not None else []
-    found += [NO_RANKS] if p.case.numerics.cut else []
+    found += [NO_RANKS] if p.case.numerics.processors else []
     return [*found, EDGES] if _parts(p) and p.layout.meshes else found
 
 

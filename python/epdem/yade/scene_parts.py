@@ -52,7 +52,7 @@ def refuse(p: ScenePlan, s: Parts) -> None:
     first = p.phases[0].name
     unknown: dict[str, object] = {
         "scene.periodic": s.periodic,
-        "scene.leave": s.leave,
+        "scene.open_boundary": s.open_boundary,
         **{f"{f.place}.rate": f.rate for f in p.layout.fills},
         **{f"{f.place}.phase": f.phase not in ("", first) and f.phase for f in p.layout.fills},
         **{f"scene.body.{b.name}.phase": b.phase for b in p.layout.bodies},
@@ -67,7 +67,7 @@ def refuse(p: ScenePlan, s: Parts) -> None:
             unknown[f"scene.phase.{phase.name}.move of {name}"] = "press" if isinstance(move, Servo) else None
             if p.layout.meshes[name].turn is not None:
                 raise CaseError(
-                    f"scene.wall.{name}.turn: YADE turns the wall itself, which moves otherwise; remove one"
+                    f"scene.wall.{name}.angular_velocity: YADE turns the wall itself, which moves otherwise; remove one"
                 )
     for place, value in unknown.items():
         if value:
