@@ -56,7 +56,7 @@ def test_trials_take_the_steps_of_the_scene_in_turns(tmp_path, monkeypatch):
 
 
 def test_a_skin_and_a_cut_of_the_case_are_in_its_decks(tmp_path):
-    path = small(tmp_path, skin="1.5 mm", cut="yz")
+    path = small(tmp_path, skin="1.5 mm", processors="yz")
     texts = scene_deck.files(plan(load(path)))
     assert re.search(r"^neighbor 0\.0015 bin ", texts["setup.in"], re.M)
     assert "\nprocessors 1 * *\n" in texts["in.scene"]
