@@ -41,7 +41,7 @@ def engine(work: Path, script: str) -> str:
     return str(path)
 
 
-OURS = (".epdem.json", ".epdem.lock", ".epdem.printed.json")  # hidden files that a results folder keeps
+OURS = (".epdem.json", ".epdem.lock")  # hidden files that a results folder keeps
 VERSION = 'case "$*" in *-in\\ in.*) ;; *) exec $REAL "$@" ;; esac\n'  # a question for the version goes to ours
 
 

@@ -9,9 +9,7 @@ from ..base.terminal import bar, console
 from ..errors import CaseError
 from .options import AsJson, CasePath, Laws, laws_or_own, say_files, warn
 
-if TYPE_CHECKING:  # slow to import, and a command may print what it has stored
-    from rich.console import Console
-
+if TYPE_CHECKING:  # slow to import
     from ..impacts.run import Outcome
 
 
@@ -54,15 +52,14 @@ def run_impacts(
     return outcome
 
 
-def said(outcome: "Outcome", screen: "Console", full: bool, as_json: bool) -> str:
-    """What a run prints."""
+def show_run(outcome: "Outcome", full: bool, as_json: bool) -> None:
+    """Print the table of a run, with all rows if `full`, or its JSON."""
     from ..impacts import report
 
     if as_json:
-        return report.run_json(outcome) + "\n"
-    with screen.capture() as text:
-        report.show(outcome, screen, full=full)
-    return text.get()
+        print(report.run_json(outcome))
+    else:
+        report.show(outcome, console(), full=full)
 
 
 def deck_impacts(case: Path, out: Path, *, engine: str, laws: list[str] | None, force: bool, as_json: bool) -> None:

@@ -28,7 +28,6 @@ from . import theory as cli_theory
 from . import trees as cli_trees
 from . import validate as cli_validate
 from .options import AsJson, CasePath, Engines, Force, Formats, Laws, Out, formats, refuse
-from .printed import Printed
 
 ABOUT = """Elastic-plastic particle contact for LIGGGHTS and YADE, checked against theory.
 
@@ -83,14 +82,9 @@ def run(
 
     Its page report.html is beside the results.
     """
-    screen, kinds = console(), formats(pictures)
+    kinds = formats(pictures)
     if full and as_json:
         raise CaseError("--full: --json holds all rows; leave it out")
-    options = (engine, law, ranks, steps, full, kinds, force, as_json)
-    printed = Printed(case, out, *options, screen.is_terminal, screen.width)
-    if not (fresh or resume) and (before := printed.again()):
-        print(before[0], end="")
-        raise typer.Exit(before[1])
     if cli_scene.is_scene(case):
         refuse(case, "a scene has its own law and time step", law=law, steps=steps)
         refuse(case, "it is for impacts; a scene prints all its checks", full=full)
@@ -115,11 +109,8 @@ def run(
     outcome = cli_impacts.run_impacts(
         case, engines=engine, laws=law, out=out, ranks=ranks, steps=steps, fresh=fresh, formats=kinds, force=force
     )
-    code = 0 if outcome.passed else 1
-    print(cli_impacts.said(outcome, screen, full, as_json), end="")
-    outcome.reused = list(outcome.results.runs)
-    printed.keep(cli_impacts.said(outcome, screen, full, as_json), code)
-    raise typer.Exit(code)
+    cli_impacts.show_run(outcome, full, as_json)
+    raise typer.Exit(0 if outcome.passed else 1)
 
 
 @app.command()
