@@ -3,8 +3,11 @@
 
 import math
 
+import numpy as np
 import pytest
-from parts_cases import BED, parts
+from hypothesis import given
+from hypothesis import strategies as st
+from parts_cases import BED, STEEL, parts
 from scene_runs import run, write_case
 
 from epdem.case.scene import parse
@@ -56,9 +59,54 @@ def test_two_walls_of_a_material_wear_alike_and_frames_are_needed():
     other = BOX | {"name": "other", "x": ["-8 mm", "8 mm"], "wear": "2e-9 m^2/N"}
     data = scene(wear="1e-9 m^2/N")
     data["scene"]["wall"].append(other)
-    with pytest.raises(CaseError, match=r"scene.wall.other.wear = 2e-09 m\^2/N: another wall of its material"):
+    with pytest.raises(CaseError, match=r"scene.wall.other.wear = 2e-09 m\^2/N: wall box has 1e-09 m\^2/N, and"):
         scene_deck.files(plan(parse(data)))
     with pytest.raises(CaseError, match=r"scene.wall.box: stress and wear are written with the frames"):
         plan(parse(scene(particles=0)))
     with pytest.raises(CaseError, match="continued run does not know the wear of wall box"):
         plan(parse(scene(wear="1e-9 m^2/N", restarts=1)))
+
+
+def sliding_on_two_plates(wears=("1e-9 m^2/N", "3e-9 m^2/N"), walls=("steel", "iron"), spheres=("glass", "glass")):
+    """A sphere slides on each of two plates."""
+    wall, body = [], []
+    for x, wear, of_wall, of_sphere, name in zip((-5, 5), wears, walls, spheres, ("left", "right"), strict=True):
+        place = [f"{x} mm", "0 mm", "0 mm"]
+        plate = {"name": name, "kind": "plate", "axis": "z", "center": place, "size": ["9 mm", "18 mm"]}
+        wall.append(plate | {"material": of_wall} | ({"wear": wear} if wear else {}))
+        ball = {"name": f"on_{name}", "material": of_sphere, "radius": "1 mm", "place": [*place[:2], "0.999 mm"]}
+        body.append(ball | {"velocity": ["0 m/s", "0.1 m/s", "0 m/s"]})
+    data = parts(wall=wall, fill=[], body=body)
+    data["materials"]["iron"] = STEEL
+    data["output"] = {"rows": 8, "particles": 4}
+    return data
+
+
+@pytest.mark.liggghts
+def test_walls_of_two_materials_wear_by_their_own_constants(tmp_path):
+    walls = run(write_case(sliding_on_two_plates(), tmp_path), out=tmp_path / "out").results.walls
+    wear = walls.groupby("wall")["wear"].max()
+    assert wear["right"] == pytest.approx(3 * wear["left"], rel=1e-6) and wear["left"] > 0
+
+
+@given(
+    wears=st.tuples(*[st.sampled_from([None, "1e-9 m^2/N", "3e-9 m^2/N"])] * 2),
+    walls=st.tuples(*[st.sampled_from(["steel", "iron"])] * 2),
+    spheres=st.tuples(*[st.sampled_from(["steel", "iron", "glass"])] * 2),
+)
+def test_each_sphere_wears_each_wall_by_the_constant_of_the_wall_or_the_case_is_refused(wears, walls, spheres):
+    p = plan(parse(sliding_on_two_plates(wears, walls, spheres)))
+    worn = {name: float(w.split()[0]) for name, w in zip(("left", "right"), wears, strict=True) if w}
+    pairs = [({walls[name == "right"], sphere}, value) for name, value in worn.items() for sphere in spheres]
+    try:
+        found = [x.values for x in scene_deck.deck(p).properties if x.name == "k_finnie"]
+    except CaseError:
+        assert any(a == b and x != y for a, x in pairs for b, y in pairs)
+        return
+    assert bool(found) == bool(worn)
+    for types, *values in found:
+        matrix = np.reshape(values, (types, types))
+        assert (matrix == matrix.T).all()
+        for name, value in worn.items():
+            for sphere in spheres:
+                assert matrix[p.wall_types[name] - 1, p.model.type_of(sphere) - 1] == value

@@ -22,19 +22,25 @@ def watched(p: ScenePlan) -> tuple[str, ...]:
 
 
 def properties(p: ScenePlan) -> tuple[Property, ...]:
-    """Finnie's constant [m^2/N] of each pair of types with a wall that wears. Raises CaseError for two values."""
-    worn = {name: mesh.wear for name, mesh in p.layout.meshes.items() if mesh.wear}
-    if not worn:
+    """Finnie's constant [m^2/N] of each pair of a sphere's type and a wall's, the same in both orders.
+
+    Raises CaseError for two values of one pair.
+    """
+    spheres = {p.model.type_of(particles.material) for particles in p.case.scene.filled}
+    of_pair = dict[frozenset[int], tuple[str, float]]()  # the wall that gives the value, the value
+    for name, mesh in p.layout.meshes.items():
+        for sphere in spheres if mesh.wear else ():
+            other, wear = of_pair.setdefault(frozenset((sphere, p.wall_types[name])), (name, mesh.wear))
+            if wear != mesh.wear:
+                raise CaseError(
+                    f"scene.wall.{name}.wear = {mesh.wear:g} m^2/N: wall {other} has {wear:g} m^2/N, and LIGGGHTS has "
+                    "one value for each pair of materials; give both walls one value, or a material of their own"
+                )
+    if not of_pair:
         return ()
-    n, of_type = len(p.model.types), dict[int, float]()
-    for name, wear in worn.items():
-        kind = p.wall_types[name]
-        if of_type.setdefault(kind, wear) != wear:
-            raise CaseError(
-                f"scene.wall.{name}.wear = {wear:g} m^2/N: another wall of its material has another; give one"
-            )
-    values = [of_type.get(a, 0.0) or of_type.get(b, 0.0) for a in range(1, n + 1) for b in range(1, n + 1)]
-    return (per_pair("k_finnie", n, values, "m^2/N"),)
+    types = range(1, len(p.model.types) + 1)
+    values = [of_pair.get(frozenset((a, b)), ("", 0.0))[1] for a in types for b in types]
+    return (per_pair("k_finnie", len(types), values, "m^2/N"),)
 
 
 def _fields(path: Path) -> dict[str, np.ndarray]:
