@@ -13,8 +13,6 @@ SENTENCES = {
     ("run", "scene.toml", "-e", "embedded"): "--engine embedded: a scene runs on liggghts or yade",
     ("run", "steel.toml", "-e", "embedded", "--format", "gif"): "--format gif: not one of png, svg, pdf; choose one of",
     ("run", "steel.toml", "-e", "embedded", "-o", "mine"): "a.txt was there before; the folder is not ours; choose",
-    ("predict", "."): "cannot be read ([Errno 21]",
-    ("predict", "/dev/zero"): "/dev/zero: more than 4 MB, which no case has; name the case file",
     ("predict", "steel.toml", "-l", "jkr"): "law jkr needs law.work_of_adhesion (of all pairs), or",
     ("theory", "--speed", "0 m/s"): "--speed = '0 m/s', must be > 0; correct it",
     ("theory", "--speed", "3"): "'3' has no unit; write \"3 m/s\" if that is what is meant",

@@ -184,7 +184,7 @@ def test_a_wrong_file_is_named_with_what_is_wrong(says, tmp_path):
         ("m.csv", "t,x_i\n0,1,2,a\n", "m.csv line 2: could not convert"),
         ("m.csv", "# t x_i what v_i\n0 1 2 3\n", "m.csv: x_j is missing; a motion has t, x_i"),
         ("m.csv", "", "m.csv: no line of names"),
-        ("n.csv", None, "n.csv: cannot be read"),
+        ("n.csv", None, "n.csv: no such file"),
     ],
 )
 def test_text_that_is_no_motion_is_refused_in_words(name, content, says, tmp_path):

@@ -156,7 +156,7 @@ def test_a_table_has_units_in_its_cells_or_its_heading(tmp_path):
         ("impact.body.radius,impact.body.radius\n1 mm,2 mm\n", "a key has two columns; keep one"),
         ("impact.body.radius,law.yield_pressure\n1 mm,\n", "point 1: a value is empty"),
         ("impact.body.radius [mm\n1\n", r"the heading 'impact.body.radius \[mm' is not KEY or KEY"),
-        ("impact.body.radius\n\xe4", r"cannot be read \(.*\); give a CSV file"),
+        ("impact.body.radius\n\xe4", "not UTF-8 at byte 19; save the file as UTF-8"),
     ],
 )
 def test_a_table_that_makes_no_sense_is_refused(text, words, tmp_path):

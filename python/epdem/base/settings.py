@@ -23,7 +23,7 @@ def setting(table: str, key: str) -> str | None:
         values = tomllib.loads(path.read_text(encoding="utf-8"))
     except FileNotFoundError:
         return None
-    except (OSError, ValueError) as error:
+    except (OSError, ValueError, RecursionError) as error:
         raise CaseError(f"{path}: {error}; mend or remove it") from None
     for name, keys in values.items():
         if name not in KNOWN or not isinstance(keys, dict):

@@ -5,7 +5,7 @@ import re
 from collections.abc import Mapping
 from pathlib import Path
 
-from .toml import read_toml
+from .toml import tables, text_of
 
 KEYS = ("file", "sieve")
 
@@ -33,5 +33,5 @@ def text_for_anywhere(path: Path | str) -> str:
 
     Raises CaseError as `read_toml` does.
     """
-    path, names = Path(path), names_in(read_toml(path))
-    return renamed(path.read_text(encoding="utf-8-sig"), {name: (path.parent / name).resolve() for name in names})
+    text, folder = text_of(path), Path(path).parent
+    return renamed(text, {name: (folder / name).resolve() for name in names_in(tables(text, path))})

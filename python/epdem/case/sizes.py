@@ -50,7 +50,12 @@ def csv_rows(path: Path) -> tuple[list[str], list[tuple[int, list[str]]]]:
     except OSError as error:
         raise ValueError(f"{path} cannot be read ({error.strerror})") from None
     parsed = [(n, line) for n, line in enumerate(lines, 1) if line.strip() and not line.lstrip().startswith("#")]
-    rows = [(n, [field.strip() for field in next(csv.reader([line]))]) for n, line in parsed]
+    try:
+        rows = [(n, [field.strip() for field in next(csv.reader([line]))]) for n, line in parsed]
+    except csv.Error as error:
+        raise ValueError(
+            f"{path} cannot be read ({error}); divide its values by commas, its rows by line ends"
+        ) from None
     if len(rows) < 2:
         raise ValueError(f"{path} needs a line of heads and at least one row")
     return rows[0][1], rows[1:]

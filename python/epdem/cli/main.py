@@ -3,6 +3,7 @@
 
 import errno
 import io
+import os
 import shutil
 import signal
 import sys
@@ -198,6 +199,7 @@ def _usage(error: Any) -> int:
 
 def main() -> None:
     """Entry point: errors that a user can correct become one sentence and an exit code."""
+    os.environ.pop("MPLBACKEND", None)  # figures are only saved, and an unknown backend ends matplotlib's import
     stopping.listen()  # whatever stops us, no engine stays behind
     if isinstance(sys.stdout, io.TextIOWrapper):
         sys.stdout.reconfigure(errors="backslashreplace")  # a title may hold what the terminal's encoding does not

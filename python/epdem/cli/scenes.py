@@ -176,7 +176,7 @@ def soften(
     from ..base.folders import refuse_existing
     from ..studies.soften import soften as twin_of
 
-    target = out or case.with_name(f"{case.stem}_soft{factor:g}.toml")
+    target = out or case.parent / f"{case.stem}_soft{factor:g}.toml"
     twin = twin_of(case, factor, folder=target.parent)
     refuse_existing(target, force=force)
     with atomic(target) as temporary:

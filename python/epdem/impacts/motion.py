@@ -15,6 +15,8 @@ import numpy as np
 import numpy.typing as npt
 
 from ..case.fields import NODES, Tangential
+from ..case.sizes import LARGEST_FILE
+from ..case.toml import text_of
 from ..errors import CaseError
 from ..laws.library import Array
 from .engine import Abilities
@@ -137,10 +139,7 @@ def read(path: Path) -> Motion:
     JSON holds lists by these names; a CSV file a line of names, each for its 3 (q: 4, t: 1) columns, with commas or
     spaces. Other names are passed over, in a CSV file from the first one on. Raises CaseError.
     """
-    try:
-        text = path.read_text(encoding="utf-8-sig")
-    except (OSError, UnicodeDecodeError) as error:
-        raise CaseError(f"{path}: cannot be read ({error}); name a file of a motion") from None
+    text = text_of(path, LARGEST_FILE)
     columns = _json(path, text) if path.suffix == ".json" else _csv(path, text)
     for name in NEEDED:
         if name not in columns:

@@ -18,7 +18,7 @@ from ..base.folders import claim, results_folder
 from ..base.stages import inputs_hash
 from ..case.doubts import doubts
 from ..case.impact import Case, parse
-from ..case.toml import named, read_toml
+from ..case.toml import named, read_toml, text_of
 from ..errors import CaseError
 from . import store
 from .comparison import compare, impacts_table
@@ -189,7 +189,7 @@ def run(case_path: Path | str, *, steps: int | None = None, **options: Unpack[Op
     if steps is not None:
         data["numerics"] = data.get("numerics", {}) | {"steps_in_contact": steps}
         data["numerics"].pop("error", None)
-    text = Path(case_path).read_text(encoding="utf-8-sig")
+    text = text_of(case_path)
     return run_case(parse(data, case_path), text, place=case_path, **options)
 
 

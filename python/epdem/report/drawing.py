@@ -37,12 +37,9 @@ def save(
 
     `comment` is stored in a PNG file. The caller keeps the folder (`claim`).
     """
-    import matplotlib
+    from matplotlib import rc_context
 
-    matplotlib.use("Agg")
-    from matplotlib import pyplot as plt
-
-    with plt.rc_context(STYLE):  # type: ignore[arg-type]
+    with rc_context(STYLE):  # type: ignore[arg-type]
         figure = draw(chart)
         paths = []
         for kind in formats:
@@ -51,22 +48,21 @@ def save(
             with atomic(path) as temporary:
                 figure.savefig(temporary, dpi=130, format=kind, metadata=about)
             paths.append(path)
-        plt.close(figure)
     return paths + (write_texts(folder, {f"{chart.name}.csv": chart.csv()}) if data else [])
 
 
 def draw(chart: Chart) -> "Figure":
-    """A chart as a figure of matplotlib."""
-    from matplotlib import pyplot as plt
+    """A chart as a figure of matplotlib, without pyplot: it is only saved, and needs no backend."""
+    from matplotlib.figure import Figure
 
     n, shares = len(chart.panels), [panel.share for panel in chart.panels]
     if chart.beside:
-        figure, grid = plt.subplots(1, n, sharey=True, figsize=(5 * n, 4.5), layout="constrained", squeeze=False)
+        figure = Figure(figsize=(5 * n, 4.5), layout="constrained")
+        grid = figure.subplots(1, n, sharey=True, squeeze=False)
     else:
         size = (WIDTH, max(HEIGHT, HEIGHT * sum(shares) / max(shares)))
-        figure, grid = plt.subplots(
-            n, 1, sharex=True, figsize=size, height_ratios=shares, layout="constrained", squeeze=False
-        )
+        figure = Figure(figsize=size, layout="constrained")
+        grid = figure.subplots(n, 1, sharex=True, height_ratios=shares, squeeze=False)
     for k, (axes, panel) in enumerate(zip(grid.flat, chart.panels, strict=True)):
         for series in panel.series:
             axes.plot(series.x, series.y, **_style(series))

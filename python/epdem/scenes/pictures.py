@@ -98,10 +98,7 @@ def _draw_spheres(axis: Any, x: FloatArray, radius: FloatArray, **style: Any) ->
 
 def _frame(title: str, corners: FloatArray) -> tuple[Any, Any]:
     """A figure in which these places are seen, lengths in millimetres along its sides."""
-    import matplotlib
-
-    matplotlib.use("Agg")
-    import matplotlib.pyplot as plt
+    from matplotlib.figure import Figure
     from matplotlib.ticker import FuncFormatter
 
     plane, _ = _axes()
@@ -109,7 +106,8 @@ def _frame(title: str, corners: FloatArray) -> tuple[Any, Any]:
     low, high = seen.min(axis=0), seen.max(axis=0)
     margin = 0.04 * (high - low).max()
     ratio = (high[1] - low[1] + 2 * margin) / (high[0] - low[0] + 2 * margin)
-    fig, axis = plt.subplots(figsize=(WIDE, float(np.clip(WIDE * ratio, 2.5, 11.0))), layout="constrained")
+    fig = Figure(figsize=(WIDE, float(np.clip(WIDE * ratio, 2.5, 11.0))), layout="constrained")
+    axis = fig.subplots()
     axis.set(xlim=(low[0] - margin, high[0] + margin), ylim=(low[1] - margin, high[1] + margin), aspect="equal")
     for side in (axis.xaxis, axis.yaxis):
         side.set_major_formatter(FuncFormatter(lambda x, _: f"{1e3 * x:g}"))
@@ -119,11 +117,8 @@ def _frame(title: str, corners: FloatArray) -> tuple[Any, Any]:
 
 
 def _save(fig: Any, path: Path) -> None:
-    import matplotlib.pyplot as plt
-
     with atomic(path) as temporary:
         fig.savefig(temporary, dpi=DPI)
-    plt.close(fig)
 
 
 def bed(p: ScenePlan, spheres: pd.DataFrame, path: Path) -> None:

@@ -2,7 +2,6 @@
 """A scene from case file to results.h5: deck, run with progress, tables, ledger, checks; and its continuation."""
 
 import time
-import tomllib
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from functools import cached_property
@@ -18,7 +17,8 @@ from ..base.stages import inputs_hash, library_hash
 from ..case.doubts import doubts
 from ..case.files import names_in
 from ..case.scene import SceneCase, load
-from ..case.toml import named
+from ..case.toml import named, text_of
+from ..case.toml import tables as toml_tables
 from ..errors import CaseError, EngineError
 from ..impacts.prediction import predict
 from . import checks, ledger, measures, pictures, results
@@ -110,7 +110,7 @@ class Options(TypedDict, total=False):
 def run(path: Path | str, engine: SceneEngine, **options: Unpack[Options]) -> SceneOutcome:
     """`run_case` of the scene in a case file."""
     case = load(path)
-    return run_case(case, Path(path).read_text(encoding="utf-8-sig"), engine, place=path, **options)
+    return run_case(case, text_of(path), engine, place=path, **options)
 
 
 def run_case(
@@ -139,7 +139,7 @@ def run_case(
         files, notes = files_for(engine, p), [*engine.notes(p), *planned_doubts(p), *_warnings(p.case)]
     check_run(engine, ranks=ranks, resume=resume)
     beside = Path(str(place)).parent
-    contents = {name: (beside / name).read_bytes() for name in sorted(names_in(tomllib.loads(text)))}
+    contents = {name: (beside / name).read_bytes() for name in sorted(names_in(toml_tables(text, place)))}
     work = _Work(text, p, engine, files, notes, contents, ranks, lambda step: report(step, p.steps))
     folder = results_folder(out, p.case.name, engine.subfolder)
     if resume and not folder.exists():

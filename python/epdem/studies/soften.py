@@ -20,7 +20,7 @@ import tomlkit
 from ..case.files import text_for_anywhere
 from ..case.impact import Rate
 from ..case.library import with_library
-from ..case.toml import named, read_toml
+from ..case.toml import named, read_toml, text_of
 from ..errors import CaseError
 from ..laws.strengths import ADHESION, law_named
 from ..theory.cavity import FINITE_STRAIN, NO_FINITE_STRAIN, STRAIN_EXPONENT
@@ -113,7 +113,7 @@ def soften(path: Path, factor: float, *, folder: Path | None = None) -> Twin:
     before = strain_ratio(data, path)
     after = before * factor**STRAIN_POWER
     moved = folder is not None and folder.resolve() != path.parent.resolve()
-    document = tomlkit.parse(text_for_anywhere(path) if moved else path.read_text(encoding="utf-8-sig"))
+    document = tomlkit.parse(text_for_anywhere(path) if moved else text_of(path))
     changes = [_change(document, data, keys, text) for keys, text in _replacements(data, factor).items()]
     warnings = []
     if before > SMALL_DEFORMATION:

@@ -16,7 +16,7 @@ import tomlkit
 
 from ..base.files import atomic
 from ..case.scene import Output, SceneCase, load
-from ..case.toml import named
+from ..case.toml import named, text_of
 from ..errors import CaseError, EngineError
 from ..liggghts import trials
 from ..liggghts.scenes import LiggghtsScenes
@@ -160,7 +160,7 @@ def write(path: Path, result: Tuned) -> None:
     """Put the choices into [numerics] of the case file; its other comments and its order stay."""
     if not result.choices:
         return
-    document = tomlkit.parse(path.read_text(encoding="utf-8-sig"))
+    document = tomlkit.parse(text_of(path))
     numerics = document.setdefault("numerics", tomlkit.table())
     for key, (value, reason) in result.choices.items():
         numerics[key] = tomlkit.item(value).comment(reason)

@@ -24,6 +24,7 @@ from ...base.files import atomic
 from ...base.folders import MANIFEST, results_folder
 from ...base.stages import inputs_hash
 from ...case.files import names_in
+from ...case.messages import shorten
 from ...case.scene import is_scene
 from ...errors import CaseError
 from .keys import assign, keys_of
@@ -106,7 +107,7 @@ class Sweep:
 
     def place(self, number: int) -> str:
         """The point in words, for messages."""
-        settings = ", ".join(f"{key} = {value}" for key, value in self.points[number - 1].items())
+        settings = ", ".join(f"{key} = {shorten(str(value))}" for key, value in self.points[number - 1].items())
         return f"point {number} ({settings})"
 
     @cached_property

@@ -2,6 +2,7 @@
 """Points of a sweep: ranges, lists and tables of values of keys; grids and latin hypercubes."""
 
 import csv
+import io
 import itertools
 import math
 import re
@@ -13,6 +14,8 @@ from typing import Any
 
 import numpy as np
 
+from ...case.sizes import LARGEST_FILE
+from ...case.toml import text_of
 from ...case.units import to_si
 from ...errors import CaseError
 from .keys import Key, known
@@ -125,7 +128,7 @@ def _value(text: str, place: str) -> Value:
         raise CaseError(f"{place}: a value is empty; write one between the commas, or remove a comma")
     try:
         table = tomllib.loads(f"x = {text.strip()}")
-    except tomllib.TOMLDecodeError:
+    except (ValueError, RecursionError):
         return text.strip()
     value = table.get("x")
     return value if len(table) == 1 and isinstance(value, str | int | float | list | dict) else text.strip()
@@ -215,9 +218,9 @@ def latin_hypercube(all_axes: dict[str, Axis], count: int, seed: int) -> list[Po
 def table(path: Path, keys: dict[str, Key]) -> list[Point]:
     """The points in a CSV file: a column per key, "KEY" with units in the cells or "KEY [UNIT]". Raises CaseError."""
     try:
-        with path.open(newline="", encoding="utf-8-sig") as stream:
-            heads, *rows = [row for row in csv.reader(stream) if any(map(str.strip, row))] or [[]]
-    except (OSError, UnicodeDecodeError, csv.Error) as error:
+        lines = io.StringIO(text_of(path, LARGEST_FILE), newline="")
+        heads, *rows = [row for row in csv.reader(lines) if any(map(str.strip, row))] or [[]]
+    except csv.Error as error:
         raise CaseError(f"--points {path}: cannot be read ({error}); give a CSV file") from None
     columns = []
     for head in heads:
