@@ -11,7 +11,6 @@ from pathlib import Path
 from typing import Any
 
 from ..errors import CaseError
-from .lines import line_of
 
 MAX_BYTES = 1_000_000  # of a case file
 MAX_DEPTH = 20  # of tables and lists in each other
@@ -68,8 +67,7 @@ def read_toml(path: Path | str) -> dict[str, Any]:
 
 @contextlib.contextmanager
 def named(place: object) -> Iterator[None]:
-    """Errors of a case name its `place`: the file that it was read from, or its own name; of a scene of parts the line,
-    too."""
+    """Errors of a case name its `place`: the file of the case, or its own name."""
     try:
         yield
     except CaseError as error:
@@ -77,18 +75,4 @@ def named(place: object) -> Iterator[None]:
         text = text.removeprefix(f"{place}: ") if text.startswith(f"{place}: ") else text
         if str(place) in text:
             raise error
-        line = _line(place, text)
-        raise CaseError(f"{place}{line}: {text}") from None
-
-
-def _line(place: object, message: str) -> str:
-    """ " line 7", of a file with a scene of parts; "" of others."""
-    path = Path(str(place))
-    if path.suffix != ".toml" or not path.is_file():
-        return ""
-    data = read_toml(path)
-    scene = data.get("scene")
-    if not isinstance(scene, dict) or scene.get("kind") != "parts":
-        return ""
-    line = line_of(message, text_of(path), data)
-    return "" if line is None else f" line {line}"
+        raise CaseError(f"{place}: {text}") from None
