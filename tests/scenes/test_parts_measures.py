@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Measures of scenes: each one against what its definition gives on a bed whose places are known."""
 
+import json
 import math
 from types import SimpleNamespace
 
@@ -15,9 +16,13 @@ from epdem.case.scene import parse
 from epdem.errors import CaseError
 from epdem.scenes import measures, report
 from epdem.scenes.charts import charts
+from epdem.scenes.columns import units
+from epdem.scenes.key_figures import key
 from epdem.scenes.plan import plan
+from epdem.scenes.results import read
 from epdem.studies.fit import fit
 from epdem.studies.pages.scenes import of_scene
+from epdem.studies.sweep import run as study
 from epdem.studies.sweep.numbers import numbers_of
 
 ROOM = {"x": ["-2 mm", "2 mm"], "y": ["-2 mm", "2 mm"], "z": ["0 mm", "8 mm"]}
@@ -141,8 +146,9 @@ def test_measures_stand_in_the_results_and_are_numbers_for_studies(tmp_path, cap
     outcome = run(write_case(data, tmp_path), out=tmp_path / "out")
     found, spheres_then = outcome.results, outcome.results.particles
     assert found.measures["top"].to_list() == spheres_then.groupby("step")["z"].max().to_list()
-    rows = found.rows.set_index("step").loc[found.measures["step"], "floor_force_z"]
-    assert found.measures["pressed"].to_list() == rows.to_list() and rows.min() < 0
+    assert found.rows["pressed"].to_list() == found.rows["floor_force_z"].to_list() and found.rows["pressed"].min() < 0
+    stored = read(outcome.folder / "results.h5")
+    assert (units(stored.rows)["pressed"], units(stored.measures)["top"]) == ("N", "m")
     number = found.histograms.groupby("measure")["number"].sum()
     assert number["dents"] == 40 and number["speeds"] >= 10
     fastest = math.sqrt(2 * 9.81 * 0.038)
@@ -157,7 +163,7 @@ def test_measures_stand_in_the_results_and_are_numbers_for_studies(tmp_path, cap
     report.show(outcome, Console(width=120))
     said = capsys.readouterr().out
     dents = spheres_then.query("step == step.max()")["plastic_work"]
-    assert f"{dents.mean():.5g}" in said and f" at {found.measures['time'].iloc[-1]:.4g} s " in said
+    assert f"{dents.mean():.5g}" in said and f" {found.measures['time'].iloc[-1]:.4g} " in said
 
 
 @pytest.mark.liggghts
@@ -175,3 +181,46 @@ def test_a_measure_is_a_target_with_its_unit(tmp_path):
     assert found.units == {"held_last": "kg"} and 0 < inside <= 1
     with pytest.raises(CaseError, match=r"wrong dimension.*held_last=1 kg"):
         fit(path, {"held_last": "1 m"}, free, out=tmp_path / "fit", jobs=1)
+
+
+LIFT = {"name": "lift", "kind": "force", "wall": "floor", "component": "z"}
+TILT = {"name": "tilt", "kind": "force", "wall": "floor"}
+
+
+def test_a_force_has_a_value_in_every_row_and_its_peak_counts():
+    """The largest force lies between two frames: 125.9 N in one row of five, 0 in both frames."""
+    rows = pd.DataFrame({"step": [0, 10, 20, 30, 40], "time": np.arange(5.0), "floor_force_x": 0.0})
+    rows = rows.assign(floor_force_y=[0, 0, 3.0, 0, 0], floor_force_z=[0, 0, 125.9, 4.0, 0])
+    p = planned(LIFT, TILT, {"name": "all", "kind": "count"})
+    frames = pd.concat([spheres(step, np.zeros((1, 3))) for step in (0, 40)], ignore_index=True)
+    tables = {"particles": frames, "rows": measures.with_loads(p, rows), "checks": pd.DataFrame()}
+    tables["measures"] = measures.curves(p, tables)
+    numbers = numbers_of(SimpleNamespace(tables=tables))
+    assert (numbers["lift_max"], numbers["lift_mean"], numbers["lift_last"]) == (125.9, 0.0, 0.0)
+    assert numbers["tilt_max"] == pytest.approx(math.hypot(125.9, 3.0)) and numbers["all_max"] == 1.0
+    panels = {panel.y.label: panel.series[0].y for panel in key(p, tables)[0].panels}
+    assert panels["lift"].max() == 125.9 and len(panels["lift"]) == 5 and len(panels["all"]) == 2
+
+
+@pytest.mark.liggghts
+@pytest.mark.parametrize("frames", [0, 1])
+def test_a_force_needs_no_frames_and_is_a_target(frames, tmp_path, capsys):
+    """A ball that lands and leaves between two frames presses the floor, by its density: a sweep and a fit see it."""
+    ball = {"name": "ball", "material": "glass", "radius": "1.5 mm", "position": ["0 mm", "0 mm", "1.6 mm"]}
+    data = parts(fill=[], body=[ball | {"velocity": ["0 m/s", "0 m/s", "-0.5 m/s"]}], measure=[LIFT])
+    data["scene"]["phase"] = [{"name": "fall", "duration": "2 ms"}]
+    data |= {"output": {"rows": 40, "particles": frames}, "numerics": {"time_step": "2e-6 s"}}
+    path = write_case(data, tmp_path)
+    outcome = run(path, out=tmp_path / "once")
+    peak = -outcome.results.rows["floor_force_z"].min()
+    assert peak > 0.01 and outcome.results.rows["lift"].to_list() == outcome.results.rows["floor_force_z"].to_list()
+    report.show(outcome, Console(width=120))
+    assert f"{-peak:.5g}" in capsys.readouterr().out
+    document = json.loads(report.as_json(outcome))
+    assert document["measures"][0]["lift"] == outcome.results.rows["lift"].iloc[-1]
+    of_scene(outcome)
+    swept = study.run(study.plan(path, {"materials.glass.density": ["2500 kg/m^3"]}), tmp_path / "sweep", jobs=1)
+    assert swept.table["lift_min"].iloc[0] == -peak
+    target, free = {"lift_min": "-0.07 N"}, {"materials.glass.density": "1000 kg/m^3..4000 kg/m^3"}
+    found = fit(path, target, free, out=tmp_path / "fit", jobs=1, tolerance=0.05)
+    assert found.numbers["lift_min"] == pytest.approx(-0.07, rel=0.05) and found.units == {"lift_min": "N"}

@@ -82,12 +82,16 @@ def write_table(group: h5py.Group, table: pd.DataFrame, units: dict[str, str]) -
 
 
 def read_table(group: h5py.Group) -> pd.DataFrame:
-    """The table that `write_table` stored in `group`."""
-    columns = {}
+    """The table that `write_table` stored in `group`, with the units of its columns in `attrs["units"]`."""
+    columns, units = {}, {}
     for name in group.attrs["columns"]:
         data = group[name][()]
         columns[name] = [v.decode() for v in data] if data.dtype.kind == "S" else data
-    return pd.DataFrame(columns)
+        if "unit" in group[name].attrs:
+            units[name] = group[name].attrs["unit"]
+    table = pd.DataFrame(columns)
+    table.attrs["units"] = units
+    return table
 
 
 def write_csv(path: Path, table: pd.DataFrame) -> None:

@@ -3,11 +3,12 @@
 
 import numpy as np
 
+from ..case.measures import Histogram
 from ..report.chart import GREY, INK, PALETTE, Axis, Chart, Panel, Series
 from ..report.page import Picture
 from .columns import last_frame
 from .key_figures import key
-from .measures import unit
+from .measures import curve, unit
 from .pictures import colour, unit_of
 from .run import SceneOutcome
 
@@ -43,16 +44,16 @@ def rows(outcome: SceneOutcome) -> Chart:
 
 def measured(outcome: SceneOutcome) -> list[Chart]:
     """measures, each curve against time, and one chart for each histogram."""
-    title, drawn = outcome.case.case.title, []
-    curves, bins = (outcome.results.tables.get(name) for name in ("measures", "histograms"))
-    asked = {m.name: m for m in outcome.case.scene.measure} if curves is not None else {}
-    panels = []
-    for k, (name, m) in enumerate(asked.items()):
-        if curves is not None and name in curves:
-            series = Series("", curves["time"].to_numpy(), curves[name].to_numpy(float), k % len(PALETTE))
+    title, tables, drawn = outcome.case.case.title, outcome.results.tables, []
+    panels, names = [], []
+    for k, m in enumerate(outcome.case.scene.measure):
+        name = m.name
+        if not isinstance(m, Histogram):
+            series = Series("", *curve(m, tables), k % len(PALETTE))
             panels.append(Panel(TIME, Axis(name.replace("_", " "), unit(m)), [series]))
-        elif bins is not None:
-            part = bins[bins["measure"] == name]
+            names.append(name)
+        else:
+            part = tables["histograms"].query("measure == @name")
             edges = np.repeat(np.append(part["low"], part["high"].iloc[-1]), 2)
             heights = np.concatenate([[0], np.repeat(part["number"], 2), [0]])
             axes = Axis(m.kind.replace("_", " "), unit(m)), Axis("number")
@@ -62,7 +63,7 @@ def measured(outcome: SceneOutcome) -> list[Chart]:
             )
             drawn.append(chart)
     if panels:
-        drawn.insert(0, Chart("scene_measures", f"{title}: measures", f"Against time: {', '.join(asked)}.", panels))
+        drawn.insert(0, Chart("scene_measures", f"{title}: measures", f"Against time: {', '.join(names)}.", panels))
     return drawn
 
 

@@ -49,10 +49,11 @@ def unit_of_load(column: str) -> str | None:
 
 
 def units(table: pd.DataFrame) -> dict[str, str]:
-    """The unit of each column of a table that has one."""
+    """The unit of each column of a table that has one; `attrs["units"]` has those of measures."""
     loads = {str(name): unit for name in table if (unit := unit_of_load(str(name)))}
     dents = {str(name): "m" for name in table if str(name).startswith("delta_max_")}  # of a flat wall NAME
-    return UNITS | loads | dents
+    own: dict[str, str] = table.attrs.get("units", {})
+    return UNITS | loads | dents | own
 
 
 def columns_of_rows(p: ScenePlan) -> set[str]:

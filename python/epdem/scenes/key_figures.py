@@ -7,10 +7,11 @@ import numpy as np
 import pandas as pd
 
 from ..case.kinds import Compaction, Drum, Hopper, Peening, Settle
+from ..case.measures import Histogram
 from ..case.parts import Parts
 from ..report.chart import INK, Axis, Chart, Panel, Series, plain
 from . import checks
-from .measures import unit
+from .measures import curve, unit
 from .plan import ScenePlan
 
 Tables = dict[str, pd.DataFrame]
@@ -93,15 +94,10 @@ PANELS: dict[type, Callable[..., list[Panel]]] = {
 
 def panels(p: ScenePlan, tables: Tables) -> list[Panel]:
     """The panels of the key figure; of a scene of parts its measures. None where the tables lack what it shows."""
-    s, measured = p.case.scene, tables.get("measures", pd.DataFrame())
+    s = p.case.scene
     if isinstance(s, Parts):
-        shown = [m for m in s.measure if m.name in measured]
-        return [
-            Panel(
-                TIME, Axis(m.name, unit(m)), [Series("", measured["time"].to_numpy(), measured[m.name].to_numpy(), 0)]
-            )
-            for m in shown
-        ]
+        shown = [m for m in s.measure if not isinstance(m, Histogram)]
+        return [Panel(TIME, Axis(m.name, unit(m)), [Series("", *curve(m, tables), 0)]) for m in shown]
     frames = "particles" in tables and tables["particles"]["step"].nunique() > 1
     drawn = frames or isinstance(s, Compaction) or "torque" in tables["rows"]
     return PANELS[type(s)](p, s, tables) if drawn else []

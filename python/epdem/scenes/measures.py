@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Measures that a case asks for, from the tables of any engine: curves over the frames, histograms of the end. SI."""
+"""Measures of a case, from the tables of any engine: loads over the rows, curves over the frames, histograms. SI."""
 
 import math
 
@@ -29,7 +29,7 @@ def refuse_measures(p: ScenePlan) -> None:
             raise CaseError(f"{place}: two measures have this name; give each its own")
         if m.name in taken:
             raise CaseError(f"{place}: a column of the rows has this name; give another one")
-        if not p.frames:
+        if not (p.frames or isinstance(m, Load)):
             raise CaseError(f"{place}: measures are taken from frames; give output.particles")
         if isinstance(m, Load) and m.wall not in p.layout.loads:
             known = ", ".join(p.layout.loads) or "none; give output.loads in a scene of parts"
@@ -121,12 +121,29 @@ def _flow(p: ScenePlan, m: Flow, spheres: pd.DataFrame, steps: np.ndarray) -> Fl
     return np.concatenate([[0.0], flow])
 
 
+def with_loads(p: ScenePlan, rows: pd.DataFrame) -> pd.DataFrame:
+    """The rows with a column for each force and torque: the mean over each row [N, N m]."""
+    found = rows.copy()
+    loads = [m for m in p.case.scene.measure if isinstance(m, Load)]
+    for m in loads:
+        parts = [f"{m.wall}_{m.kind}_{axis}" for axis in "xyz" if m.component in (axis, "magnitude")]
+        values = rows[[part for part in parts if part in rows]].to_numpy()
+        found[m.name] = values[:, 0] if m.component != "magnitude" else np.linalg.norm(values, axis=1)
+    found.attrs["units"] = {m.name: unit(m) for m in loads}
+    return found
+
+
+def curve(m: Measure, tables: dict[str, pd.DataFrame]) -> tuple[FloatArray, FloatArray]:
+    """(times [s], values) of a measure but a histogram: of a force or torque in each row, of another in each frame."""
+    table = tables["rows" if isinstance(m, Load) else "measures"]
+    return table["time"].to_numpy(float), table[m.name].to_numpy(float)
+
+
 def curves(p: ScenePlan, tables: dict[str, pd.DataFrame]) -> pd.DataFrame:
-    """One row per frame: step, time, a column for each measure but histograms."""
-    spheres = tables["particles"]
+    """One row per frame: step, time, a column for each measure but loads and histograms."""
+    spheres = tables.get("particles", pd.DataFrame(columns=["step"]))  # loads need no frames
     steps = np.sort(spheres["step"].unique())
     frames = dict(tuple(spheres.groupby("step")))
-    rows = tables["rows"].set_index("step").reindex(steps)
     table = pd.DataFrame({"step": steps, "time": p.time_at(steps)})
     for m in p.case.scene.measure:
         match m:
@@ -144,13 +161,9 @@ def curves(p: ScenePlan, tables: dict[str, pd.DataFrame]) -> pd.DataFrame:
                 table[m.name] = _flow(p, m, spheres, steps)
             case Porosity():
                 table[m.name] = [_porosity(m, frames[step]) for step in steps]
-            case Load():
-                parts = [f"{m.wall}_{m.kind}_{axis}" for axis in "xyz" if m.component in (axis, "magnitude")]
-                parts = [part for part in parts if part in rows]
-                values = rows[parts].to_numpy()
-                table[m.name] = values[:, 0] if m.component != "magnitude" else np.linalg.norm(values, axis=1)
-            case Histogram():
+            case Load() | Histogram():
                 pass
+    table.attrs["units"] = {m.name: unit(m) for m in p.case.scene.measure if m.name in table}
     return table
 
 

@@ -5,14 +5,15 @@ import json
 import math
 from collections.abc import Sequence
 
+import numpy as np
 from rich.console import Console
 
 from ..base.folders import claim
 from ..base.terminal import show_table, table
-from ..case.measures import Histogram
+from ..case.measures import Histogram, Load
 from ..impacts.report import records
 from . import pictures
-from .measures import unit, values_of
+from .measures import curve, unit, values_of
 from .run import SceneOutcome
 
 
@@ -30,11 +31,19 @@ def as_json(outcome: SceneOutcome) -> str:
             "resumed_from": outcome.resumed_from,
             "warnings": outcome.warnings,
             "checks": records(outcome.results.tables["checks"]),
-            "measures": records(outcome.results.tables["measures"].tail(1)) if outcome.case.scene.measure else [],
+            "measures": _final(outcome) if outcome.case.scene.measure else [],
             "last_row": records(outcome.results.tables["rows"].tail(1))[0],
         },
         indent=1,
     )
+
+
+def _final(outcome: SceneOutcome) -> list[dict[str, object]]:
+    """The last frame of the measures, with the forces and torques of the last row."""
+    tables = outcome.results.tables
+    row = records(tables["measures"].tail(1)) or records(tables["rows"][["step", "time"]].tail(1))
+    loads = [m for m in outcome.case.scene.measure if isinstance(m, Load)]
+    return [row[0] | {m.name: float(curve(m, tables)[1][-1]) for m in loads}]
 
 
 def show(outcome: SceneOutcome, console: Console) -> None:
@@ -67,20 +76,23 @@ def show(outcome: SceneOutcome, console: Console) -> None:
 
 
 def _show_measures(outcome: SceneOutcome, console: Console) -> None:
-    """Print the value of each curve in the last frame and the mean of what each histogram counts."""
+    """Print the last value of each curve or the mean of the values of a histogram, the smallest and the largest."""
     tables = outcome.results.tables
-    curves = tables.get("measures")
-    if curves is None or curves.empty:
+    if not outcome.case.scene.measure:
         return
-    time = f"at {curves['time'].iloc[-1]:.4g} s"
-    shown = table("measures", ("measure", "kind", time, "unit"), left=("measure", "kind"))
+    heads = ("measure", "kind", "time [s]", "value", "smallest", "largest", "unit")
+    shown = table("measures", heads, left=("measure", "kind"))
     for m in outcome.case.scene.measure:
         if isinstance(m, Histogram):
             values = values_of(outcome.plan, m, tables)
             kind, value = f"{m.kind}, mean", float(values.mean()) if values.size else math.nan
+            time = tables["measures"]["time"].iloc[-1]
         else:
-            kind, value = m.kind, float(curves[m.name].iloc[-1])
-        shown.add_row(m.name, kind, f"{value:.5g}", unit(m))
+            times, values = curve(m, tables)
+            kind, value, time = m.kind, float(values[-1]), times[-1]
+        known = values[np.isfinite(values)]
+        limits = (f"{known.min():.5g}", f"{known.max():.5g}") if known.size else ("nan", "nan")
+        shown.add_row(m.name, kind, f"{time:.4g}", f"{value:.5g}", *limits, unit(m))
     show_table(console, shown)
 
 

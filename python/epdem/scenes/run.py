@@ -200,6 +200,7 @@ def _finish(
         tables["ledger"] = ledger.ledger(p, tables)
     tables["checks"] = checks.checks(p, tables)
     if p.case.scene.measure:
+        tables["rows"] = measures.with_loads(p, tables["rows"])
         tables["measures"], tables["histograms"] = measures.curves(p, tables), measures.histograms(p, tables)
     seconds = time.perf_counter() - start
     attributes = {

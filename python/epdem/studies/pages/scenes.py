@@ -8,8 +8,7 @@ from ...liggghts.explain import SCENE, explain
 from ...liggghts.scene_deck import deck
 from ...report.page import NAME, Facts, Lines, Page, Part, Picture, Rows, write
 from ...scenes.charts import bed, charts
-from ...scenes.columns import UNITS
-from ...scenes.measures import unit
+from ...scenes.columns import UNITS, units
 from ...scenes.run import SceneOutcome
 from . import common
 
@@ -36,9 +35,10 @@ def page(outcome: SceneOutcome, command: str = "") -> Page:
     if "ledger" in tables:
         parts.append(Rows("Energy ledger", tables["ledger"], UNITS, "One row for each frame."))
     if "measures" in tables:
-        units = {"time": "s"} | {m.name: unit(m) for m in outcome.case.scene.measure}
-        parts += [Rows("Measures", tables["measures"], units), Rows("Histograms", tables["histograms"])]
-    parts += [Rows("Rows", tables["rows"], UNITS), _facts(outcome), common.case_lines(outcome.results.case_text)]
+        parts += [Rows("Measures", tables["measures"], units(tables["measures"]))]
+        parts += [Rows("Histograms", tables["histograms"])]
+    parts += [Rows("Rows", tables["rows"], units(tables["rows"])), _facts(outcome)]
+    parts += [common.case_lines(outcome.results.case_text)]
     parts += _decks(outcome)
     return common.page_of(
         outcome,

@@ -82,7 +82,4 @@ def read_sweep(folder: Path | str) -> pd.DataFrame:
     if not path.exists():
         raise CaseError(f"{path}: no table of a sweep; 'epdem sweep CASE --out {folder}' writes it")
     with opened(path, "a table of a sweep") as file:
-        table = read_table(file["sweep"])
-        units = {name: file["sweep"][name].attrs.get("unit") for name in table.columns}
-    table.attrs["units"] = {name: unit for name, unit in units.items() if unit}
-    return table
+        return read_table(file["sweep"])
