@@ -5,7 +5,7 @@ import importlib
 from typing import Any
 
 __version__ = "0.1.0"
-__all__ = ["Case", "Fit", "Run", "Scene", "SceneRun", "calibrate", "deck", "predict", "run", "sweep", "theory"]
+__all__ = ["Case", "Fit", "Run", "Scene", "SceneRun", "calibrate", "cite", "deck", "predict", "run", "sweep", "theory"]
 
 
 def __getattr__(name: str) -> Any:

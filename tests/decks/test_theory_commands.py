@@ -12,7 +12,7 @@ from typer.testing import CliRunner
 
 from epdem.case import materials
 from epdem.cli.main import app
-from epdem.engines.citations import citations
+from epdem.engines.citations import of_laws
 
 CASES = Path(__file__).parents[2] / "cases"
 FILE = tomllib.loads(Path(materials.__file__).with_name("materials.toml").read_text())
@@ -61,7 +61,7 @@ def test_figures_of_the_chapter_are_drawn_into_the_folder(tmp_path):
 
 def test_laws_with_adhesion_are_cited():
     assert "Powder Technol. 99 (1998) 154" in run("cite", CASES / "adhesion_thornton_1998.toml")
-    assert "Proc. R. Soc. A 324 (1971) 301" in str(citations(["jkr"], [], dashpot=False))
+    assert "Proc. R. Soc. A 324 (1971) 301" in str(of_laws(["jkr"])["law jkr, Johnson, Kendall and Roberts 1971"])
 
 
 @pytest.mark.parametrize("name", FILE)

@@ -174,8 +174,8 @@ def test_numbers_of_a_program_are_si_and_quantities_of_pint_keep_their_unit():
         "0.001 m",
         "0.002 m",
     ]
-    assert points.with_unit(q, KEYS["materials.steel.density"]) == "7850.0 kg/m**3"
-    assert points.with_unit(np.float64(0.3), KEYS["materials.steel.poisson_ratio"]) == 0.3
+    assert points.with_units(q, KEYS, "materials.steel.density") == "7850.0 kg/m**3"
+    assert points.with_units(np.float64(0.3), KEYS, "materials.steel.poisson_ratio") == 0.3
 
 
 def test_a_point_replaces_its_keys_alone_and_what_says_the_same_in_another_way():

@@ -16,8 +16,11 @@ import pandas as pd
 from .. import theory
 from ..base.folders import write_own
 from ..base.tables import unit_of
+from ..case.scene import is_scene
+from ..case.toml import read_toml
 from ..engines import DEFAULT_ENGINE, scene_engine
 from ..engines import engine as engine_named
+from ..engines.citations import Citations, citations
 from ..errors import CaseError
 from ..impacts.comparison import UNITS
 from ..impacts.experiment import experiment
@@ -32,10 +35,13 @@ from ..scenes.run import run_case as run_scene
 from ..studies.fit import Fit, Targets, fit_text
 from ..studies.fit import Options as FitOptions
 from ..studies.sweep import run as study
+from ..studies.sweep.points import MOST
 from ..studies.sweep.run import SweepOutcome
+from . import arguments
 from .files import Case, Scene
 
-__all__ = ["Case", "Fit", "Run", "Scene", "SceneRun", "calibrate", "deck", "predict", "run", "sweep", "theory"]
+__all__ = ["Case", "Fit", "Run", "Scene", "SceneRun", "calibrate", "cite", "deck", "predict", "run", "sweep", "theory"]
+MOST_RANKS = 1024
 log = logging.getLogger("epdem")
 
 
@@ -110,9 +116,12 @@ class SceneRun(_HasRun):
         return str(self.tables["checks"].to_html())
 
 
-def _names(given: str | Sequence[str]) -> Sequence[str]:
-    """The names given; a text is one name, not a sequence of letters."""
-    return (given,) if isinstance(given, str) else given
+def _case(given: object) -> Case | Scene:
+    """A case or scene, from an object or the path of its file."""
+    if isinstance(given, Case | Scene):
+        return given
+    path = arguments.path("case", given, "a Case, a Scene or the path of a case file")
+    return Scene.from_toml(path) if is_scene(read_toml(path)) else Case.from_toml(path)
 
 
 @overload
@@ -140,8 +149,21 @@ def run(
 ) -> SceneRun: ...
 
 
+@overload
 def run(
-    case: Case | Scene,
+    case: Path | str,
+    *,
+    engines: str | Sequence[str] = ...,
+    laws: str | Sequence[str] = ...,
+    out: Path | str | None = ...,
+    ranks: int = ...,
+    fresh: bool = ...,
+    force: bool = ...,
+) -> Run | SceneRun: ...
+
+
+def run(
+    case: Case | Scene | Path | str,
     *,
     engines: str | Sequence[str] = (DEFAULT_ENGINE,),
     laws: str | Sequence[str] = (),
@@ -152,10 +174,13 @@ def run(
 ) -> Run | SceneRun:
     """Run a case on every engine with every law (none: its own), or a scene on one engine. Raises EpdemError.
 
-    Stored results in `out` (default: runs/<name>) are taken, unless `fresh`; `force` allows other files there.
+    `case` can be the path of a case file. Stored results in `out` (default: runs/<name>) are taken, unless `fresh`;
+    `force` allows other files there.
     """
-    engines, laws = _names(engines), _names(laws)
-    place = None if out is None else Path(out)
+    case = _case(case)
+    engines, laws = arguments.names("engines", engines), arguments.names("laws", laws)
+    place = None if out is None else arguments.path("out", out)
+    ranks = arguments.whole("ranks", ranks, 1, MOST_RANKS)
     options: dict[str, Any] = {"out": place, "ranks": ranks, "fresh": fresh, "force": force}
     if isinstance(case, Scene):
         if len(engines) != 1 or laws:
@@ -169,23 +194,53 @@ def run(
     return Run(impacts)
 
 
-def predict(case: Case, law: str | None = None) -> pd.DataFrame:
+def predict(case: Case | Path | str, law: str | None = None) -> pd.DataFrame:
     """The prediction of theory for a case, one row for each speed; no engine runs. Raises CaseError."""
-    prediction = predict_experiment(experiment(case.model, law))
+    found = _case(case)
+    if not isinstance(found, Case):
+        raise arguments.wrong("case", found, "a Case, which theory predicts; a scene has no prediction")
+    prediction = predict_experiment(experiment(found.model, None if law is None else arguments.text("law", law)))
     return _units(prediction.table(), UNITS)
 
 
 def deck(
-    case: Case | Scene, out: Path | str, *, engine: str = DEFAULT_ENGINE, law: str | None = None, force: bool = False
+    case: Case | Scene | Path | str,
+    out: Path | str,
+    *,
+    engine: str = DEFAULT_ENGINE,
+    law: str | None = None,
+    force: bool = False,
 ) -> list[Path]:
     """Write the deck of a case or scene into `out`, where `force` allows other files. Raises CaseError."""
+    case, folder = _case(case), arguments.path("out", out)
+    engine = arguments.text("engine", engine)
+    law = None if law is None else arguments.text("law", law)
     if isinstance(case, Scene):
-        return write_own(Path(out), scene_files(scene_engine(engine), plan_scene(case.model)), force=force)
-    return write_deck(experiment(case.model, law), engine_named(engine), Path(out), force=force)
+        if law is not None:
+            raise CaseError(f"law = {law!r}: a scene has its own law; leave it out")
+        return write_own(folder, scene_files(scene_engine(engine), plan_scene(case.model)), force=force)
+    return write_deck(experiment(case.model, law), engine_named(engine), folder, force=force)
+
+
+def cite(
+    case: Case | Scene | Path | str,
+    *,
+    engines: str | Sequence[str] = (DEFAULT_ENGINE,),
+    laws: str | Sequence[str] = (),
+) -> Citations:
+    """What to cite for a case and the engines that run the case: text by what it is cited for.
+
+    `cite(case).bibtex()` gives entries of BibTeX. Raises CaseError.
+    """
+    case, laws = _case(case), arguments.names("laws", laws)
+    if isinstance(case, Scene) and laws:
+        raise CaseError(f"laws = {laws!r}: a scene has its own law; leave it out")
+    tools = [engine_named(name).name for name in arguments.names("engines", engines)]
+    return citations(case.model, laws or [case.model.law.name], tools)
 
 
 def sweep(
-    case: Case | Scene,
+    case: Case | Scene | Path | str,
     settings: study.Settings,
     *,
     engines: str | Sequence[str] = (DEFAULT_ENGINE,),
@@ -199,23 +254,39 @@ def sweep(
 ) -> SweepOutcome:
     """Run a case or scene at many points, by `jobs` processes; its `table` has a row for every result.
 
-    `settings` gives the values of keys by their dotted names, as a text ("1 mm..5 mm:9") or a sequence of values. What
-    is finished in `out` (default: runs/<name>_sweep) does not run again. Raises CaseError, EngineError, OSError.
+    `settings` gives the values of keys by their dotted names, as a text ("1 mm..5 mm:9"), a sequence of values or one
+    value. What is finished in `out` (default: runs/<name>_sweep) does not run again. Raises CaseError, EngineError,
+    OSError.
     """
-    engines, laws = _names(engines), _names(laws)
     planned = study.plan_text(
-        case.text, settings, engines=engines, laws=laws, ranks=ranks, latin_hypercube=latin_hypercube, seed=seed
+        _case(case).text,
+        arguments.mapping("settings", settings, '{"impact.body.radius": [0.001, 0.002]}'),
+        engines=arguments.names("engines", engines),
+        laws=arguments.names("laws", laws),
+        ranks=arguments.whole("ranks", ranks, 1, MOST_RANKS),
+        latin_hypercube=None
+        if latin_hypercube is None
+        else arguments.whole("latin_hypercube", latin_hypercube, 1, MOST),
+        seed=arguments.whole("seed", seed, 0, 2**63),
     )
-    folder = Path(out) if out is not None else planned.default_folder
-    return study.run(planned, folder, jobs=jobs, retry_failed=retry_failed, report=_report)
+    folder = planned.default_folder if out is None else arguments.path("out", out)
+    processes = None if jobs is None else arguments.whole("jobs", jobs, 1, MOST)
+    return study.run(planned, folder, jobs=processes, retry_failed=retry_failed, report=_report)
 
 
-def calibrate(scene: Scene, targets: Targets, free: Mapping[str, str], **options: Unpack[FitOptions]) -> Fit:
+def calibrate(
+    scene: Scene | Path | str, targets: Targets, free: Mapping[str, str], **options: Unpack[FitOptions]
+) -> Fit:
     """Find one to three keys of a scene with which numbers of its results have the values `targets`; see `fit_text`.
 
     `scene.replace(found.values)` is the scene that was found. Raises CaseError, EngineError.
     """
-    return fit_text(scene.text, targets, free, place=scene.name, **({"report": _report} | options))
+    found = _case(scene)
+    if not isinstance(found, Scene):
+        raise arguments.wrong("scene", found, "a Scene; `epdem calibrate` finds the strength of a law from impacts")
+    goals = arguments.mapping("targets", targets, '{"plate_force_max": "12 N"}')
+    ranges = arguments.mapping("free", free, '{"contact.friction": "0.1..0.5"}')
+    return fit_text(found.text, goals, ranges, place=found.name, **({"report": _report} | options))
 
 
 def _report(done: int, total: int) -> None:

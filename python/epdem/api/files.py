@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Cases and scenes as objects: the text of a file, checked."""
 
+import copy
 import html
 import tomllib
 from collections.abc import Mapping
@@ -14,7 +15,8 @@ from ..case import impact as impact_case
 from ..case import scene as scene_case
 from ..case.files import text_for_anywhere
 from ..studies.sweep import keys
-from ..studies.sweep.points import plain, with_unit, with_units
+from ..studies.sweep.points import plain, with_units
+from . import arguments
 
 
 class _File:
@@ -27,9 +29,10 @@ class _File:
 
         A plain number where a quantity stands is in SI; title and source can be left out. Raises CaseError.
         """
-        name = tables.get("case", {}).get("name", self.kind)
-        header = {"name": name, "title": name, "source": "made in Python"} | tables.get("case", {})
-        data = plain({"case": header} | {key: value for key, value in tables.items() if key != "case"})
+        given = tables.pop("case", {})
+        name = given.get("name", self.kind) if isinstance(given, dict) else self.kind
+        header = {"name": name, "title": name, "source": "made in Python"}
+        data = plain({"case": header | given if isinstance(given, dict) else given} | tables)
         self._read(tomlkit.dumps(with_units(data, keys.keys_of(data))), name)
 
     def _read(self, text: str, path: object) -> None:
@@ -43,25 +46,40 @@ class _File:
     @classmethod
     def from_toml(cls, path: Path | str) -> Self:
         """The case in a file. Raises CaseError."""
+        path = arguments.path("path", path, "the path of a case file")
         case = cls.__new__(cls)
         case._read(text_for_anywhere(path), path)
         return case
 
     def to_toml(self, path: Path | str) -> Path:
         """Write the case as a file that the commands take."""
+        path = arguments.path("path", path, "the path of a file")
         with atomic(Path(path)) as temporary:
             temporary.write_text(self.text, encoding="utf-8")
         return Path(path)
 
-    def replace(self, changes: Mapping[str, Any]) -> Self:
-        """A case that differs in some keys, by their dotted names: `replace({"impact.body.radius": "5 mm"})`.
+    def replace(self, changes: Mapping[str, Any] | None = None, /, **tables: Any) -> Self:
+        """A case that differs in some keys or tables, by their dotted names: `replace({"impact.body.radius": "5 mm"})`.
 
+        Values and `tables` are what `Case(...)` takes: `replace(law={"name": "johnson", "yield_pressure": 2e9})`.
         Raises CaseError for a key that no case has, with the nearest one, and for a wrong value.
         """
+        example = '{"impact.body.radius": "5 mm"}'
+        changes = arguments.mapping("changes", {} if changes is None else changes, example) | tables
         document = tomlkit.parse(self.text)
-        names = keys.keys_of(document.unwrap())
+        before = document.unwrap()
+        data = copy.deepcopy(before)
         for name, value in changes.items():
-            keys.assign(document, name, with_unit(value, keys.known(name, names, "replace")))
+            try:
+                keys.assign(data, name, plain(value))
+            except (TypeError, ValueError, LookupError):  # a name below a value, or beyond the end of a list
+                keys.known(name, keys.keys_of(before), "replace")
+                raise
+        names = keys.keys_of(data)  # those of a law or kind that the changes choose, too
+        for name, value in changes.items():
+            if not any(key.startswith(f"{name}.") for key in names):
+                keys.known(name, names, "replace")
+            keys.assign(document, name, with_units(value, names, name))
         case = type(self).__new__(type(self))
         case._read(document.as_string(), self.name)
         return case

@@ -10,7 +10,7 @@ import typer
 from ..base.settings import DEFAULT_ENGINE
 from ..base.terminal import console, show_table, status
 from ..base.terminal import table as empty_table
-from .options import AsJson, CasePath, Engines, Force, Formats, Laws, formats, laws_or_own, refuse, say_files
+from .options import AsJson, CasePath, Engines, Force, Formats, Laws, formats, refuse, say_files
 
 
 def theory(
@@ -70,24 +70,31 @@ def figures(
     say_files(paths, as_json)
 
 
-def cite(case: CasePath, engine: Engines = None, law: Laws = None, as_json: AsJson = False) -> None:
-    """Print what to cite for the law of a case and for the engines that ran it."""
+def cite(
+    case: CasePath,
+    engine: Engines = None,
+    law: Laws = None,
+    bibtex: Annotated[bool, typer.Option("--bibtex", help="print entries of BibTeX")] = False,
+    as_json: AsJson = False,
+) -> None:
+    """Print what to cite for the law of a case and for the engines that run the case."""
     from ..case import scene
     from ..case.impact import load
     from ..case.toml import named, read_toml
     from ..engines import engine as find
     from ..engines.citations import citations
-    from ..impacts.experiment import experiment
 
+    refuse(case, "--bibtex prints BibTeX", json=as_json and bibtex)
     tools = [find(name).name for name in engine or [DEFAULT_ENGINE]]
     with named(case):
         if scene.is_scene(read_toml(case)):
             refuse(case, "a scene has its own law", law=law)
             bulk = scene.load(case)
-            laws, dashpot = [bulk.law.name], bulk.viscous is not None
+            found = citations(bulk, [bulk.law.name], tools)
         else:
-            experiments = [experiment(load(case), name) for name in laws_or_own(law)]
-            laws = [x.law.name for x in experiments]
-            dashpot = experiments[0].viscous_restitution is not None
-    found = citations(laws, tools, dashpot=dashpot)
-    print(json.dumps(found) if as_json else "\n".join(f"{what}: {text}" for what, text in found.items()))
+            impacts = load(case)
+            found = citations(impacts, law or [impacts.law.name], tools)
+    if bibtex:
+        print(found.bibtex(), end="")
+    else:
+        print(json.dumps(found) if as_json else "\n".join(f"{what}: {text}" for what, text in found.items()))

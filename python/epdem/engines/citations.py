@@ -1,22 +1,53 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""`epdem cite`: what to cite for the law of a case and for the engines that ran it."""
+"""What to cite for a case: the law, the friction, the dashpot, and the engines that run it."""
 
 import inspect
+from collections.abc import Sequence
 
 from .. import __version__
+from ..case.impact import Case
+from ..case.scene import SceneCase
 from ..laws.strengths import law_named
-from ..theory.sources import CHAPTER, SOURCES
+from ..theory.sources import CHAPTER, SOURCES, Source
 from . import ENGINES, FOREIGN, OTHERS
 
+PROGRAM = Source("The epdem developers", f"epdem {__version__}", "CITATION.cff", kind="misc")
 
-def citations(laws: list[str], engines: list[str], *, dashpot: bool) -> dict[str, str]:
-    """What is to be cited, by what it is for; the sources of a law are those that its theory names."""
-    found = {"epdem": f"The epdem developers, epdem {__version__} (CITATION.cff)", "equations 8.xx": CHAPTER}
+
+class Citations(dict[str, str]):
+    """Sources as lines of text, by what each is cited for; `bibtex` gives the same sources as entries of BibTeX."""
+
+    def __init__(self, sources: dict[str, Source]):
+        super().__init__({what: str(source) for what, source in sources.items()})
+        self._sources = sources
+
+    def bibtex(self) -> str:
+        """One entry for each source, separated by empty lines."""
+        return "\n".join(source.bibtex() for source in dict.fromkeys(self._sources.values()))
+
+
+def citations(case: Case | SceneCase, laws: Sequence[str], engines: Sequence[str]) -> Citations:
+    """What to cite for a case that runs with `laws` on `engines`.
+
+    The sources of a law are those that the docstrings of its theory name.
+    """
+    found = {"epdem": PROGRAM, "equations 8.xx": CHAPTER} | of_laws(laws)
+    if case.viscous is not None:
+        found["dashpot"] = SOURCES["Tsuji, Tanaka and Ishida 1992"]
+    if isinstance(case, Case) and case.impact.oblique:
+        found["oblique impacts"] = SOURCES["Maw, Barber and Fawcett 1976"]
+    if case.contact is not None and case.contact.tangential != "history":
+        names = ("Jaeger 1993", "Popov and Hess 2015")
+        found |= {f"partial slip, {name}": SOURCES[name] for name in names}
+    known = ENGINES | OTHERS | FOREIGN
+    return Citations(found | {name: source for name in engines if (source := known[name].source)})
+
+
+def of_laws(laws: Sequence[str]) -> dict[str, Source]:
+    """The sources of laws, by law and short name."""
+    found: dict[str, Source] = {}
     for law in laws:
         theory = law_named(law)
         text_of_law = inspect.getsource(inspect.getmodule(theory) or theory)
-        found |= {f"law {law}, {name}": text for name, text in SOURCES.items() if name in text_of_law}
-    if dashpot:
-        found["dashpot"] = SOURCES["Tsuji, Tanaka and Ishida 1992"]
-    known = ENGINES | OTHERS | FOREIGN
-    return found | {name: known[name].source for name in engines if known[name].source}
+        found |= {f"law {law}, {name}": source for name, source in SOURCES.items() if name in text_of_law}
+    return found

@@ -15,13 +15,14 @@ from ..impacts.pairs import Pairs
 from ..impacts.plan import Plan
 from ..laws import library as claw
 from ..laws.native import ImpactNumbers
+from ..theory.sources import Source
 
 
 class Embedded:
     """Impacts inside the C library, without any other program."""
 
     name = "embedded"
-    source = ""
+    source: Source | None = None
     can = Abilities(dashpot=True, friction=tuple(NODES), oblique_spheres=True, deck=False, positions=False)
 
     def missing(self) -> str | None:

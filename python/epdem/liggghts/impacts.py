@@ -18,6 +18,7 @@ from ..impacts.places import approach, room, side_by_side
 from ..impacts.plan import Plan
 from ..lammps import data_file
 from ..laws.library import laws
+from ..theory.sources import Source
 from . import dump, executable, launcher
 from .deck import Deck
 from .edits import EDITS
@@ -34,7 +35,14 @@ class Liggghts:
     """LIGGGHTS with a model of ours; `model` and more can be replaced to run LIGGGHTS's own models."""
 
     name = "liggghts"
-    source = "C. Kloss, C. Goniva, A. Hager, S. Amberger, S. Pirker, Prog. Comput. Fluid Dyn. 12 (2012) 140"
+    source: Source | None = Source(
+        "C. Kloss, C. Goniva, A. Hager, S. Amberger, S. Pirker",
+        "Models, algorithms and validation for opensource DEM and CFD-DEM",
+        "Prog. Comput. Fluid Dyn.",
+        "12",
+        "140",
+        2012,
+    )
     template = "liggghts/impact.in.j2"
     can = Abilities(
         dashpot=True,

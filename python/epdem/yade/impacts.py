@@ -18,6 +18,7 @@ from ..impacts.experiment import Body, Experiment
 from ..impacts.pairs import Pairs
 from ..impacts.places import approach, side_by_side
 from ..impacts.plan import Plan
+from ..theory.sources import Source
 from .deck import Deck, Group, Material, refuse_parameters, strength_values
 from .deck_modules.law import LAWS
 from .edits import EDITS
@@ -32,7 +33,14 @@ class Yade:
     """Impacts in YADE: sphere on sphere or wall, with a copy of the law in the deck."""
 
     name = "yade"
-    source = "V. Smilauer et al., Yade Documentation, 3rd ed., The Yade Project (2021), doi:10.5281/zenodo.5705394"
+    source: Source | None = Source(
+        "V. Smilauer et al.",
+        "Yade Documentation, 3rd ed.",
+        "The Yade Project",
+        year=2021,
+        kind="manual",
+        note="doi:10.5281/zenodo.5705394",
+    )
     # a serial YADE keeps bodies where they are in memory and has no ranks: sorting and migration do not exist
     can = Abilities(
         laws=tuple(LAWS),

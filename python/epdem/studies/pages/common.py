@@ -9,6 +9,8 @@ from pathlib import Path
 from ... import __version__
 from ...base.folders import claim
 from ...base.stages import library_hash, product_hash
+from ...case.impact import Case
+from ...case.scene import SceneCase
 from ...engines.citations import citations
 from ...impacts.run import Outcome
 from ...report.page import NAME, Facts, Lines, Page, Part, write
@@ -44,9 +46,9 @@ def origin(about: Mapping[str, object], hashes: Mapping[str, object]) -> Facts:
     return Facts("Versions and hashes", ours | versions | {f"inputs of {k}": str(v) for k, v in hashes.items()})
 
 
-def cited(laws: Sequence[str], engines: Sequence[str], *, dashpot: bool) -> Facts:
+def cited(case: Case | SceneCase, laws: Sequence[str], engines: Sequence[str]) -> Facts:
     """What to cite."""
-    return Facts("What to cite", citations(list(laws), list(engines), dashpot=dashpot))
+    return Facts("What to cite", citations(case, laws, engines))
 
 
 def page_of(
@@ -66,7 +68,7 @@ def page_of(
         [
             *parts,
             origin(outcome.results.attributes, hashes),
-            cited(laws, engines, dashpot=outcome.case.viscous is not None),
+            cited(outcome.case, laws, engines),
         ],
         passed=outcome.passed,
         command=command or f"epdem rerun {outcome.folder}/results.h5",

@@ -8,6 +8,7 @@ import numpy as np
 
 from ...base.folders import claim
 from ...base.tables import unit_of
+from ...case.impact import load
 from ...impacts import charts
 from ...impacts.comparison import CHECKED, UNITS
 from ...impacts.experiment import Body, Experiment
@@ -53,7 +54,7 @@ def of_calibration(case: Path, found: Calibration, folder: Path, *, force: bool 
     ]
     bare = [replace(b, yield_stress=None) for b in (x.body, x.target)]  # whose own strength plays no part
     facts = Facts("Bodies and law", _facts(replace(x, body=bare[0], target=bare[1], source=found.source)))
-    parts: list[Part] = [chart, facts, common.origin({}, {}), common.cited([found.law], [], dashpot=False)]
+    parts: list[Part] = [chart, facts, common.origin({}, {}), common.cited(load(case), [found.law], [])]
     made = Page(f"Strength of law {found.law} from {found.source}", said, parts, command=common.command())
     with claim(folder, force=force, files=[NAME]):
         return write(folder / NAME, lambda: made)

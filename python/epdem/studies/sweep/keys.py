@@ -14,7 +14,7 @@ from ...case.fields import LawChoice, Material, Quantity
 from ...case.impact import Case
 from ...case.scene import SceneCase, SceneMaterial, is_scene
 from ...errors import CaseError
-from ...laws.library import laws
+from ...laws.library import LawInfo, laws
 from ...laws.strengths import ADHESION
 
 
@@ -81,9 +81,15 @@ def _fields(
             yield (*place, parameter), entry
 
 
+def _law(data: dict[str, Any]) -> LawInfo | None:
+    """The law that a case names; None if there is no such law."""
+    table = data.get("law")
+    return laws().get(str(table.get("name"))) if isinstance(table, dict) else None
+
+
 def _of_law(case: dict[str, Any], *, ratio: bool) -> Iterator[tuple[str, Key]]:
     """Parameters of the case's law, and the ratio that can stand for its strength."""
-    law = laws().get(str(case.get("law", {}).get("name")))
+    law = _law(case)
     if law is None:
         return
     for p in law.parameters:
@@ -110,7 +116,7 @@ def _rivals(key: str, data: dict[str, Any]) -> tuple[str, ...]:
         return ("numerics.steps_in_contact",)
     if key == "numerics.steps_in_contact":
         return ("numerics.error",)
-    law = laws().get(str(data.get("law", {}).get("name")))
+    law = _law(data)
     if law and law.strength and key in (f"law.{law.strength.name}", f"law.{law.strength.name}_ratio"):
         return (f"law.{law.strength.name}", f"law.{law.strength.name}_ratio")
     return ()

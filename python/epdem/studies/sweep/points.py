@@ -149,30 +149,47 @@ def settings(
     return given
 
 
-def axes(given: Mapping[str, str | Sequence[Value]], keys: dict[str, Key], option: str = "--set") -> dict[str, Axis]:
-    """The values of each key, from text as in `axis` or from a sequence of values. Raises CaseError."""
+def axes(given: Mapping[str, Any], keys: dict[str, Key], option: str = "--set") -> dict[str, Axis]:
+    """The values of each key, from text as in `axis`, from a sequence, or from one value. Raises CaseError."""
     axes: dict[str, Axis] = {}
     for name, values in given.items():
         key = known(name, keys, f"{option} {name}")
         if isinstance(values, str):
             axes[name] = axis(values, key, f"{option} {name}")
         else:
-            axes[name] = Listed(tuple(with_unit(v, key) for v in values))
+            axes[name] = Listed(tuple(with_units(v, keys, name) for v in _listed(values)))
             if not axes[name].values():
                 raise CaseError(f"{option} {name}: no values; give at least one")
     return axes
 
 
-def with_unit(value: Value, key: Key) -> Value:
-    """A value of a program as a case file has it: a plain number of a quantity is in SI; numpy's become Python's."""
+def _listed(values: Any) -> list[Any]:
+    """The values of a sequence; one value, a table among them, as a list of it."""
+    if isinstance(values, Mapping):
+        return [values]
+    try:
+        return list(values)
+    except TypeError:
+        return [values]
+
+
+def with_units(value: Any, names: dict[str, Key], place: str = "") -> Value:
+    """A value of a program as a case file has it: a table, a list or a single value of the key `place`.
+
+    A plain number of a quantity is in SI and gets its unit; numpy's values become Python's. `names`: every key of the
+    case. Raises CaseError for a value of a type that TOML does not have.
+    """
     value = value.tolist() if isinstance(value, np.generic | np.ndarray) else value
+    if isinstance(value, Mapping):
+        return {str(k): with_units(v, names, f"{place}.{k}" if place else str(k)) for k, v in value.items()}
     if isinstance(value, list | tuple):
-        return [with_unit(v, key) for v in value]
+        return [with_units(v, names, f"{place}.{n}" if isinstance(v, Mapping) else place) for n, v in enumerate(value)]
     if hasattr(value, "magnitude"):  # a quantity of pint
         return f"{value:~C}"
-    if key.unit not in (None, "1") and isinstance(value, int | float) and not isinstance(value, bool):
-        return f"{float(value)!r} {key.unit}"
-    return value
+    if not isinstance(value, str | int | float):
+        raise CaseError(f"{place} = {value!r}: of type {type(value).__name__}; give a number in SI or a text")
+    unit = names.get(place, Key()).unit
+    return f"{float(value)!r} {unit}" if unit not in (None, "1") and not isinstance(value, str | bool) else value
 
 
 def plain(value: Any) -> Any:
@@ -182,16 +199,6 @@ def plain(value: Any) -> Any:
     if isinstance(value, np.ndarray):
         return value.tolist()
     return [plain(v) for v in value] if isinstance(value, list | tuple) else value
-
-
-def with_units(value: Any, names: dict[str, Key], place: str = "") -> Any:
-    """Tables of a program as a case file has them: see `with_unit`. `names`: every key of the case."""
-    below = f"{place}." if place else ""
-    if isinstance(value, dict):
-        return {k: with_units(v, names, f"{below}{k}") for k, v in value.items()}
-    if isinstance(value, list) and any(isinstance(v, dict) for v in value):
-        return [with_units(v, names, f"{below}{n}") for n, v in enumerate(value)]
-    return with_unit(value, names.get(place, Key()))
 
 
 def grid(all_axes: dict[str, Axis]) -> list[Point]:
