@@ -2,6 +2,7 @@
 // The C interface: selects the law, checks the arguments, loops over contacts. It has no arithmetic of its own.
 #include "epdem.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 
@@ -175,12 +176,12 @@ EPDEM_EXPORT double epdem_viscous_number(double restitution) {
   return restitution >= viscous_restitution_min && restitution <= 1.0 ? viscous_number(restitution) : std::nan("");
 }
 
-EPDEM_EXPORT int epdem_step(int law, double E_star, const double* parameters, double R_star, size_t n,
+EPDEM_EXPORT int epdem_step(int law, double E_star, const double* parameters, size_t n, const double* R_star,
                             const double* delta_max, const double* delta, epdem_step_result* out) {
-  if (!positive(R_star)) return EPDEM_BAD_INPUT;
+  if (!std::all_of(R_star, R_star + n, positive)) return EPDEM_BAD_INPUT;
   return with_law(law, E_star, parameters, [&](const auto& l) {
     for (size_t i = 0; i < n; ++i) {
-      const auto now = step(l, R_star, remember(l, R_star, delta_max[i]), delta[i], 0.0);
+      const auto now = step(l, R_star[i], remember(l, R_star[i], delta_max[i]), delta[i], 0.0);
       if constexpr (adheres<std::decay_t<decltype(l)>>)  // its memory is another
         out[i] = {now.force, now.radius, std::fmax(delta_max[i], delta[i])};
       else
@@ -190,20 +191,20 @@ EPDEM_EXPORT int epdem_step(int law, double E_star, const double* parameters, do
   });
 }
 
-EPDEM_EXPORT int epdem_backbone(int law, double E_star, const double* parameters, double R_star, size_t n,
+EPDEM_EXPORT int epdem_backbone(int law, double E_star, const double* parameters, size_t n, const double* R_star,
                                 const double* delta, double* force, double* radius, double* work,
                                 double* plastic_work_out) {
-  if (!positive(R_star)) return EPDEM_BAD_INPUT;
+  if (!std::all_of(R_star, R_star + n, positive)) return EPDEM_BAD_INPUT;
   return with_law(law, E_star, parameters, [&](const auto& l) {
     for (size_t i = 0; i < n; ++i) {
-      const auto now = step(l, R_star, {}, delta[i], 0.0);
+      const auto now = step(l, R_star[i], {}, delta[i], 0.0);
       force[i] = now.force;
       radius[i] = now.radius;
-      work[i] = l.work(R_star, delta[i]);
+      work[i] = l.work(R_star[i], delta[i]);
       if constexpr (adheres<std::decay_t<decltype(l)>>)
-        plastic_work_out[i] = losses(l, R_star, {}, now.after).plastic;
+        plastic_work_out[i] = losses(l, R_star[i], {}, now.after).plastic;
       else
-        plastic_work_out[i] = plastic_work(l, R_star, delta[i]);
+        plastic_work_out[i] = plastic_work(l, R_star[i], delta[i]);
     }
     return int(EPDEM_OK);
   });

@@ -14,7 +14,7 @@
 extern "C" {
 #endif
 
-#define EPDEM_ABI 6
+#define EPDEM_ABI 7
 #define EPDEM_MAX_PARAMETERS 8
 
 typedef enum { EPDEM_OK = 0, EPDEM_UNKNOWN_LAW = 1, EPDEM_BAD_PARAMETER = 2, EPDEM_BAD_INPUT = 3 } epdem_status;
@@ -65,17 +65,18 @@ const char* epdem_law_parameter_unit(int law, int k);
 double epdem_law_parameter_default(int law, int k); /* NaN: must be given */
 int epdem_law_parameter_may_vanish(int law, int k); /* 1: it can be 0 */
 
-/* n steps, each from its own delta_max and delta (with adhesion: of a contact that has stood since it reached
+/* n steps, each from its own R_star, delta_max and delta (with adhesion: of a contact that has stood since it reached
  * delta_max, at rest); `parameters` as in epdem_law_parameter_name. */
-int epdem_step(int law, double E_star, const double* parameters, double R_star, size_t n, const double* delta_max,
-               const double* delta, epdem_step_result* out);
+int epdem_step(int law, double E_star, const double* parameters, size_t n, const double* R_star,
+               const double* delta_max, const double* delta, epdem_step_result* out);
 
 /* Dashpot number of a restitution at low speed in [0.14, 1]; NaN outside. */
 double epdem_viscous_number(double restitution);
 
-/* The backbone at n overlaps: force [N], radius [m], work [J], plastic work of a contact that got there [J]. */
-int epdem_backbone(int law, double E_star, const double* parameters, double R_star, size_t n, const double* delta,
-                   double* force, double* radius, double* work, double* plastic_work);
+/* The backbone of n contacts of radii R_star at their overlaps: force [N], radius [m], work [J], plastic work of a
+ * contact that got there [J]. */
+int epdem_backbone(int law, double E_star, const double* parameters, size_t n, const double* R_star,
+                   const double* delta, double* force, double* radius, double* work, double* plastic_work);
 
 /* n independent two-body impacts. overlap, force and velocity may be NULL, or hold n * stride samples
  * (stride >= steps + 1 of every impact); the samples after the end of an impact are left as they were. */

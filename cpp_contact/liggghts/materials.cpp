@@ -2,12 +2,14 @@
 #include "materials.hpp"
 
 #include <memory>
+#include <set>
 
 #include "adhesion.hpp"
 #include "epdem/tangential.hpp"
 #include "epdem/viscous.hpp"
 #include "force.h"
 #include "global_properties.h"
+#include "host.hpp"
 #include "update.h"
 
 namespace epdem::liggghts {
@@ -56,6 +58,11 @@ class ParameterTable {
   std::vector<double> values_;
   double common_ = 0.0;
 };
+
+/// Strength over E* above which a contact yields at overlaps beyond the range of the laws only (2.5 % of R*).
+constexpr double elastic_share = 0.1;
+/// A strength [Pa] of this size says that a body never yields.
+constexpr double rigid_strength = 1e25;
 
 /// A strength as a ratio, which has a default, of the yield stress.
 constexpr const char* ratio_name = "yieldPressureRatio";
@@ -150,6 +157,35 @@ std::vector<double> viscous_numbers(const Reader& reader) {
                         "that do not yield");
 }
 
+/// Prints a line once in the life of the program, although every pair style, wall and run reads the materials.
+void say_once(LAMMPS_NS::LAMMPS* lmp, const std::string& line) {
+  static std::set<std::string> said;
+  if (said.insert(line).second) say(lmp, line);
+}
+
+/// Names the first pair of types whose strength lies so high above the modulus that the contact does not yield.
+void compare_strength(LAMMPS_NS::LAMMPS* lmp, const Declaration& law, const Materials& m) {
+  if (law.strength < 0) return;
+  for (int i = 1; i < m.width; ++i)
+    for (int j = i; j < m.width; ++j) {
+      const PairOfTypes& p = m.pairs[i * m.width + j];
+      const double strength = p.parameters[law.strength], share = strength / effective_modulus(p.i, p.j);
+      if (!(share > elastic_share) || strength >= rigid_strength) continue;
+      const char* const name = law.parameters[law.strength].property;
+      return say_once(lmp, std::string("epdem: ") + law.model + ": " + name + " of " + both(i, j) + " is " +
+                               number(share) + " E*, above " + number(elastic_share) +
+                               " E*: the contacts stay elastic; give youngsModulus its real value");
+    }
+}
+
+/// Says what is left of a restitution that damps the normal force in LIGGGHTS's own models.
+void explain_restitution(LAMMPS_NS::LAMMPS* lmp, const Reader& reader, const Declaration& law, Dashpot dashpot) {
+  if (!reader.given("coefficientRestitution")) return;
+  const char* const effect = dashpot == Dashpot::off ? " has no effect" : " acts on the tangential dashpot only";
+  say_once(lmp, std::string("epdem: ") + law.model + ": coefficientRestitution" + effect +
+                    "; the setting 'viscous on' adds the normal dashpot");
+}
+
 }  // namespace
 
 Materials read_materials(LAMMPS_NS::LAMMPS* lmp, PropertyRegistry& registry, const Declaration& law, Dashpot dashpot,
@@ -181,6 +217,8 @@ Materials read_materials(LAMMPS_NS::LAMMPS* lmp, PropertyRegistry& registry, con
                                         parameters_of(reader, law, asked, tables, pascal, i, j),
                                         beta[i * width + j],
                                         dashpots[i * width + j]};
+  compare_strength(lmp, law, materials);
+  if (!viscous) explain_restitution(lmp, reader, law, dashpot);
   return materials;
 }
 

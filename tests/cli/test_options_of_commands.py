@@ -35,6 +35,10 @@ TARGET = ("--target", "floor_load_max=1 N", "--free", "contact.friction=0.1..0.5
 RUN = {"engine": "yade", "law": "cavity", "ranks": "2", "steps": "100", "out": "there", "fresh": None, "resume": None}
 RUN |= {"full": None, "pictures": "svg", "force": None}
 DECK = {"out": "there", "engine": "yade", "law": "cavity", "case": "other.toml", "given": "a=1", "force": None}
+DECK |= {"convert": None}
+MY_DECK = """fix m all property/global youngsModulus peratomtype 1e7
+pair_style gran model hertz
+"""
 HYPERCUBE = ("--latin-hypercube", "2")
 SWEEP = {"given": "numerics.error=1e-2", "points": "points.csv", "latin_hypercube": "3", "seed": "2", "jobs": "1"}
 SWEEP |= {"engine": "yade", "law": "cavity", "ranks": "2", "out": "there", "dry_run": None, "retry_failed": None}
@@ -44,6 +48,10 @@ KINDS = {  # words of a call without the option, and the value of every option
     "run a scene": (("run", "scene.toml"), RUN),
     "deck of impacts": (("deck", "steel.toml", "-o", "d"), DECK),
     "deck of a scene": (("deck", "scene.toml", "-o", "d"), DECK),
+    "converted deck": (
+        ("deck", "my.in", "--convert", "--set", "yieldPressure=1", "-o", "d"),
+        DECK | {"law": "johnson"},
+    ),
     "deck of an own template": (("deck", "own.j2", "-o", "d", "--case", "steel.toml"), DECK),
     "predict impacts": (("predict", "steel.toml"), {"law": "cavity"}),
     "crosscheck impacts": (
@@ -92,6 +100,7 @@ OTHERS = [
     "d/in.impact",
     "d/in.scene",
     "d/own",
+    "d/my.in",
     "settle_glass.png",
     "runs/figures/figure_8_16.png",
     "runs/steel_wall/cost/cost.csv",
@@ -174,6 +183,7 @@ def evidence(words, folder, library, capsys, monkeypatch, in_the_way=()):
     (folder / "steel.toml").write_text(FAST)
     (folder / "other.toml").write_text(FAST.replace("10 mm", "20 mm"))
     (folder / "own.j2").write_text(TEMPLATE)
+    (folder / "my.in").write_text(MY_DECK)
     (folder / "points.csv").write_text("impact.body.radius\n3 mm\n")
     if words[0] == "status":
         make_sweep("steel.toml", folder / "swept")

@@ -48,9 +48,10 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
   const size_t n = source.take<uint8_t>() % 4;
   const double E_star = source.take<double>(), R_star = source.take<double>();
   const std::vector<double> parameters = source.doubles(EPDEM_MAX_PARAMETERS);
-  const std::vector<double> largest = source.doubles(n), delta = source.doubles(n);
+  const std::vector<double> radii(n, R_star), largest = source.doubles(n), delta = source.doubles(n);
   std::vector<epdem_step_result> out(n);
-  const int status = epdem_step(law, E_star, parameters.data(), R_star, n, largest.data(), delta.data(), out.data());
+  const int status =
+      epdem_step(law, E_star, parameters.data(), n, radii.data(), largest.data(), delta.data(), out.data());
   must(status >= EPDEM_OK && status <= EPDEM_BAD_INPUT && epdem_message(status) != nullptr);
   bool usual = within(E_star, 1e-9, 1e30) && within(R_star, 1e-12, 1e6);
   for (double x : parameters) usual = usual && within(x, 1e-9, 1e30);
@@ -60,7 +61,7 @@ extern "C" int LLVMFuzzerTestOneInput(const uint8_t* data, size_t size) {
     must(std::isfinite(out[k].force) && (pulls || out[k].force >= 0) && out[k].radius >= 0);
   std::vector<double> column[4];
   for (auto& c : column) c.resize(n);
-  epdem_backbone(law, E_star, parameters.data(), R_star, n, delta.data(), column[0].data(), column[1].data(),
+  epdem_backbone(law, E_star, parameters.data(), n, radii.data(), delta.data(), column[0].data(), column[1].data(),
                  column[2].data(), column[3].data());
   std::vector<epdem_impact_input> in(n);
   const int64_t steps = source.take<uint8_t>();

@@ -27,9 +27,10 @@ def test_steps_and_backbones_have_a_status_or_are_finite(law, E_star, parameters
     n = data.draw(st.integers(0, 4))
     largest, delta = (np.array(data.draw(st.lists(doubles, min_size=n, max_size=n)), float) for _ in range(2))
     numbers = np.array(parameters, float)
+    radii = np.full(n, R_star)
     out = (StepResult * (n + 1))()
     out[n].force = 7.0
-    status = library().epdem_step(law, E_star, pointer(numbers), R_star, n, pointer(largest), pointer(delta), out)
+    status = library().epdem_step(law, E_star, pointer(numbers), n, *map(pointer, (radii, largest, delta)), out)
     assert status in (0, 1, 2, 3) and out[n].force == 7.0
     assert status != (1 if law in range(len(laws())) else 0)
     usual = 1e-9 <= E_star <= 1e30 and 1e-12 <= R_star <= 1e6 and ((numbers >= 1e-9) & (numbers <= 1e30)).all()
@@ -38,7 +39,7 @@ def test_steps_and_backbones_have_a_status_or_are_finite(law, E_star, parameters
         for k in range(n):
             assert out[k].force >= 0.0 and out[k].radius >= 0.0 and out[k].delta_max >= 0.0
     columns = [np.full(n + GUARD, 7.0) for _ in range(4)]
-    code = library().epdem_backbone(law, E_star, pointer(numbers), R_star, n, pointer(delta), *map(pointer, columns))
+    code = library().epdem_backbone(law, E_star, pointer(numbers), n, *map(pointer, (radii, delta, *columns)))
     assert code in (0, 1, 2, 3) and all((c[n:] == 7.0).all() for c in columns)
 
 

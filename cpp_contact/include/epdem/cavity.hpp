@@ -37,7 +37,8 @@ struct Cavity {
 
   /// Whether positive, finite parameters also make sense together.
   static bool valid(const T* parameter) noexcept {
-    return parameter[2] > parameter[1] && yield_excess(parameter[1], parameter[2]) <= 2.5;
+    const T c_Y = parameter[1], c_P = parameter[2];
+    return c_P > c_Y && log_plastic(c_Y, c_P) > 0.0 && yield_excess(c_Y, c_P) <= 2.5;
   }
 
   Cavity() = default;
@@ -45,14 +46,17 @@ struct Cavity {
       : E_star(E_star_), Y(parameter[0]), c_Y(parameter[1]), c_P(parameter[2]), c_strain(parameter[3]) {
     a_ratio = pi * c_Y * Y / (2.0 * E_star);
     yield_ratio = a_ratio * a_ratio;
-    log_s_P = 3.0 * (c_P - 2.0 * c_Y / 3.0) - log(T(2.0));
+    log_s_P = log_plastic(c_Y, c_P);
     plastic_ratio = yield_ratio * exp(log_s_P);
     beta = log(T(2.0)) / log_s_P;
   }
 
+  /// ln s_P; a value <= 0 puts full plasticity before first yield.
+  static T log_plastic(T c_Y, T c_P) noexcept { return 3.0 * (c_P - 2.0 * c_Y / 3.0) - log(T(2.0)); }
+
   /// Left side of the condition that no energy is created just above yield; it must not exceed 2.5.
   static T yield_excess(T c_Y, T c_P) noexcept {
-    const T log_s = 3.0 * (c_P - 2.0 * c_Y / 3.0) - log(T(2.0)), b = log(T(2.0)) / log_s;
+    const T log_s = log_plastic(c_Y, c_P), b = log(T(2.0)) / log_s;
     return 2.0 * (1.0 + b) * (1.0 + 1.0 / (2.0 * c_Y)) - 0.5 * (1.0 + b) - 0.125 / log_s;
   }
 

@@ -2,6 +2,7 @@
 """Commands for bulk scenes: functions of a few lines that call the library."""
 
 import json
+import sys
 from pathlib import Path
 from typing import Annotated
 
@@ -210,3 +211,13 @@ def deck_template(template: Path, case: Path, sets: list[str], out: Path, *, for
     from ..liggghts.own_template import settings, write
 
     say_files(write(template, case, settings(sets), out, force=force), as_json)
+
+
+def deck_converted(deck: Path, law: str, sets: list[str], out: Path, *, force: bool, as_json: bool) -> None:
+    """Write a LIGGGHTS deck of the user with one of the laws, and print the changes on standard error."""
+    from ..liggghts.convert import convert_file
+
+    files, notes = convert_file(deck, law, sets, out, force=force)
+    for note in notes:
+        print(note, file=sys.stderr)
+    say_files(files, as_json)

@@ -18,7 +18,7 @@ import numpy.typing as npt
 from ..base import paths
 from ..errors import CaseError, EngineError
 
-ABI = 6
+ABI = 7
 Array = npt.NDArray[Any]  # float64, or structured by IMPACT_OUTPUT
 _D = POINTER(c_double)
 
@@ -64,9 +64,9 @@ _SIGNATURES = {
     "epdem_law_parameter_unit": (c_char_p, [c_int, c_int]),
     "epdem_law_parameter_default": (c_double, [c_int, c_int]),
     "epdem_law_parameter_may_vanish": (c_int, [c_int, c_int]),
-    "epdem_step": (c_int, [c_int, c_double, _D, c_double, c_size_t, _D, _D, POINTER(StepResult)]),
+    "epdem_step": (c_int, [c_int, c_double, _D, c_size_t, _D, _D, _D, POINTER(StepResult)]),
     "epdem_motion": (c_int, [c_int, c_double, _D, c_double, c_double, c_double, c_int, c_size_t, _D, _D]),
-    "epdem_backbone": (c_int, [c_int, c_double, _D, c_double, c_size_t, _D, _D, _D, _D, _D]),
+    "epdem_backbone": (c_int, [c_int, c_double, _D, c_size_t, _D, _D, _D, _D, _D, _D]),
     "epdem_impacts": (c_int, [c_int, c_double, _D, c_size_t, ctypes.c_void_p, ctypes.c_void_p, c_size_t, _D, _D, _D]),
 }
 

@@ -18,6 +18,11 @@ def _array(x: npt.ArrayLike) -> Array:
     return np.ascontiguousarray(np.atleast_1d(x), dtype=np.float64)
 
 
+def _columns(*values: npt.ArrayLike) -> list[Array]:
+    """The values broadcast to one shape (n,)."""
+    return [_array(x) for x in np.broadcast_arrays(*map(_array, values))]
+
+
 def _pointer(x: Array | None) -> Any:
     return None if x is None else x.ctypes.data_as(_D)
 
@@ -63,20 +68,25 @@ class Law:
         if status:
             raise CaseError(f"law {self.name}: {library().epdem_message(status).decode()}")
 
-    def step(self, *, R_star: float, delta_max: npt.ArrayLike, delta: npt.ArrayLike) -> tuple[Array, Array, Array]:
-        """(force [N], contact radius [m], new delta_max [m]) at overlap delta [m]; delta_max and delta broadcast."""
-        before, now = np.broadcast_arrays(_array(delta_max), _array(delta))
-        before, now = _array(before), _array(now)
-        out = np.empty((now.size, 3))
-        results = out.ctypes.data_as(POINTER(StepResult))
-        self._call("epdem_step", R_star, now.size, _pointer(before), _pointer(now), results)
+    def step(
+        self, *, R_star: npt.ArrayLike, delta_max: npt.ArrayLike, delta: npt.ArrayLike
+    ) -> tuple[Array, Array, Array]:
+        """(force [N], contact radius [m], new delta_max [m]) at overlap delta [m]; R_star, delta_max, delta broadcast.
+
+        Each result has the shape (n,).
+        """
+        contacts = _columns(R_star, delta_max, delta)
+        n = contacts[0].size
+        out = np.empty((n, 3))
+        self._call("epdem_step", n, *map(_pointer, contacts), out.ctypes.data_as(POINTER(StepResult)))
         return out[:, 0], out[:, 1], out[:, 2]
 
-    def backbone(self, *, R_star: float, delta: npt.ArrayLike) -> tuple[Array, Array, Array, Array]:
-        """(force [N], radius [m], work [J], plastic work [J]) of first loading to delta [m], > 0."""
-        at = _array(delta)
-        force, radius, work, plastic = (np.empty(at.size) for _ in range(4))
-        self._call("epdem_backbone", R_star, at.size, *map(_pointer, (at, force, radius, work, plastic)))
+    def backbone(self, *, R_star: npt.ArrayLike, delta: npt.ArrayLike) -> tuple[Array, Array, Array, Array]:
+        """(force [N], radius [m], work [J], plastic work [J]) of first loading to delta [m], > 0; arrays broadcast."""
+        contacts = _columns(R_star, delta)
+        n = contacts[0].size
+        force, radius, work, plastic = (np.empty(n) for _ in range(4))
+        self._call("epdem_backbone", n, *map(_pointer, (*contacts, force, radius, work, plastic)))
         return force, radius, work, plastic
 
     @staticmethod

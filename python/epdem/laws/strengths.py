@@ -7,6 +7,7 @@ from dataclasses import dataclass
 
 from ..errors import CaseError
 from ..theory.backbones import ADHESIVE, JKR, LAWS, Backbone
+from ..theory.checks import Real
 
 ADHESION = "work_of_adhesion"  # the parameter of laws with adhesion [J/m^2]
 NO_ADHESION = dict.fromkeys(("johnson", "cavity"), ", and no theory of adhesion exists for it")
@@ -51,8 +52,11 @@ class LawSpec:
     parameters: dict[str, float]
     strengths: tuple[float, float]
 
-    def theory(self, *, E_star: float, R_star: float) -> Backbone | JKR:
-        """The law in the theory. Raises ValueError for parameters that make no sense together."""
+    def theory(self, *, E_star: float, R_star: Real) -> Backbone | JKR:
+        """The law in the theory for one R_star [m] or many, shape (n,).
+
+        Raises ValueError for parameters that make no sense together.
+        """
         law = law_named(self.name)
         return law(E_star=E_star, R_star=R_star, **{law.keywords[n]: x for n, x in self.parameters.items()})
 

@@ -76,19 +76,19 @@ def energies(
     out = pd.DataFrame(0.0, index=range(len(overlap)), columns=COLUMNS[6:])
     material = ["", *(t.material for t in p.model.types)]
     low, high = np.minimum(type_i, type_j), np.maximum(type_i, type_j)
-    keys = pd.DataFrame({"a": low, "b": high, "R": R_star})
-    for (a, b, R), rows in keys.groupby(["a", "b", "R"]).groups.items():
+    keys = pd.DataFrame({"a": low, "b": high})
+    for (a, b), rows in keys.groupby(["a", "b"]).groups.items():
         at = rows.to_numpy()
-        values = _one_kind(p.case, material[a], material[b], float(R), overlap[at], delta_max[at], attached[at])
+        values = _one_kind(p.case, material[a], material[b], R_star[at], overlap[at], delta_max[at], attached[at])
         for name, value in values.items():
             out.loc[at, name] = value
     return out
 
 
 def _one_kind(
-    case: SceneCase, a: str, b: str, R: float, overlap: np.ndarray, largest: np.ndarray, attached: np.ndarray
+    case: SceneCase, a: str, b: str, R: np.ndarray, overlap: np.ndarray, largest: np.ndarray, attached: np.ndarray
 ) -> dict[str, np.ndarray]:
-    """Contacts of one pair of materials and one R* [m]."""
+    """Contacts of one pair of materials; R* [m] and the other arrays have the shape (n,)."""
     spec, E_star = pair_law(case, a, b)
     theory = spec.theory(E_star=E_star, R_star=R)
     if isinstance(theory, JKR):
@@ -101,7 +101,8 @@ def _one_kind(
     # elastic energy: the force below delta_max, integrated from where it begins; squared nodes take its root away there
     way = np.maximum(overlap - residual, 0.0)
     delta = residual[:, None] + way[:, None] * _NODES**2
-    F, _, _ = law.step(R_star=R, delta_max=np.broadcast_to(largest[:, None], delta.shape).ravel(), delta=delta.ravel())
+    at_nodes = [np.broadcast_to(x[:, None], delta.shape).ravel() for x in (R, largest)]
+    F, _, _ = law.step(R_star=at_nodes[0], delta_max=at_nodes[1], delta=delta.ravel())
     elastic = 2.0 * (F.reshape(delta.shape) * _NODES * _WEIGHTS).sum(axis=1) * way  # 2 from the square
     return {
         "force": force,
