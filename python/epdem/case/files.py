@@ -4,7 +4,9 @@
 import re
 from collections.abc import Mapping
 from pathlib import Path
+from typing import Any
 
+from ..errors import CaseError
 from .toml import tables, text_of
 
 KEYS = ("file", "sieve")
@@ -17,6 +19,23 @@ def names_in(data: object) -> set[str]:
     for key, value in parts:
         found |= {value} if key in KEYS and isinstance(value, str) else names_in(value)
     return found
+
+
+def located(key: str, value: Any, folder: Path) -> Any:
+    """The value of a key of a case with whole names of its files, which count from `folder`.
+
+    Raises CaseError for a file that is not there.
+    """
+    if isinstance(value, dict):
+        return {name: located(f"{key}.{name}", v, folder) for name, v in value.items()}
+    if isinstance(value, list):
+        return [located(f"{key}.{n}", v, folder) for n, v in enumerate(value)]
+    if key.rpartition(".")[2] not in KEYS or not isinstance(value, str):
+        return value
+    path = (folder / value).resolve()
+    if not path.is_file():
+        raise CaseError(f"{key} = {value!r}: no such file; names of files count from the folder of the case ({folder})")
+    return str(path)
 
 
 def renamed(text: str, names: Mapping[str, Path]) -> str:

@@ -111,14 +111,21 @@ class Sweep:
         return f"point {number} ({settings})"
 
     @cached_property
-    def _contents(self) -> list[str]:
-        """Hashes of the files that the case names."""
-        there = [path for path in map(Path, sorted(names_in(self.tables))) if path.is_file()]
-        return [hashlib.sha256(path.read_bytes()).hexdigest() for path in there]
+    def _hashes(self) -> dict[str, str]:
+        """Hash of each file that the case or a point names."""
+        names = names_in(self.tables).union(*map(self._files, self.points))
+        return {name: hashlib.sha256(Path(name).read_bytes()).hexdigest() for name in names if Path(name).is_file()}
+
+    @staticmethod
+    def _files(point: Point) -> set[str]:
+        """The files that the values of a point name."""
+        return names_in([{key.rpartition(".")[2]: value} for key, value in point.items()])
 
     def inputs(self, number: int) -> str:
         """Hash of all that the result of a point depends on."""
-        return inputs_hash([], self.identities[number - 1], sorted(self.versions.items()), *self._contents)
+        names = names_in(self.data(number)) if self._files(self.points[number - 1]) else names_in(self.tables)
+        contents = [self._hashes[name] for name in sorted(names) if name in self._hashes]
+        return inputs_hash([], self.identities[number - 1], sorted(self.versions.items()), *contents)
 
 
 def write(sweep: Sweep, folder: Path) -> None:

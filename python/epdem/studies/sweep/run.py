@@ -11,7 +11,7 @@ from typing import TypedDict, Unpack
 import pandas as pd
 
 from ...base.folders import claim
-from ...case.files import text_for_anywhere
+from ...case.files import located, text_for_anywhere
 from ...case.scene import is_scene
 from ...engines import DEFAULT_ENGINE, engine, scene_engine
 from ...errors import CaseError
@@ -63,13 +63,14 @@ class Options(TypedDict, total=False):
 
 def plan(case: Path, settings: Settings, **options: Unpack[Options]) -> Sweep:
     """`plan_text` of the case in a file."""
-    return plan_text(text_for_anywhere(case), settings, **options)
+    return plan_text(text_for_anywhere(case), settings, folder=case.parent, **options)
 
 
 def plan_text(
     text: str,
     settings: Settings,
     *,
+    folder: Path = Path(),
     engines: Sequence[str] = (),
     laws: Sequence[str] = (),
     ranks: int = 1,
@@ -77,7 +78,10 @@ def plan_text(
     latin_hypercube: int | None = None,
     seed: int = 1,
 ) -> Sweep:
-    """A sweep of a case (TOML text) with all its points, not yet checked. Raises CaseError, EngineError."""
+    """A sweep of a case (TOML text) with all its points, not yet checked. Raises CaseError, EngineError.
+
+    Names of files among the values count from `folder`.
+    """
     data = tomllib.loads(text)
     keys, scene = keys_of(data), is_scene(data)
     axes = points.axes(settings, keys)
@@ -95,7 +99,9 @@ def plan_text(
     return Sweep(
         name=str(data.get("case", {}).get("name", "case")),
         case=text,
-        points=tuple(row | point for row in rows for point in many),
+        points=tuple(
+            {key: located(key, value, folder) for key, value in (row | point).items()} for row in rows for point in many
+        ),
         engines=chosen,
         laws=tuple(dict.fromkeys(laws)),
         ranks=ranks,
