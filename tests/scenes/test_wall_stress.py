@@ -74,7 +74,7 @@ def sliding_on_two_plates(wears=("1e-9 m^2/N", "3e-9 m^2/N"), walls=("steel", "i
         place = [f"{x} mm", "0 mm", "0 mm"]
         plate = {"name": name, "kind": "plate", "axis": "z", "center": place, "size": ["9 mm", "18 mm"]}
         wall.append(plate | {"material": of_wall} | ({"wear": wear} if wear else {}))
-        ball = {"name": f"on_{name}", "material": of_sphere, "radius": "1 mm", "place": [*place[:2], "0.999 mm"]}
+        ball = {"name": f"on_{name}", "material": of_sphere, "radius": "1 mm", "position": [*place[:2], "0.999 mm"]}
         body.append(ball | {"velocity": ["0 m/s", "0.1 m/s", "0 m/s"]})
     data = parts(wall=wall, fill=[], body=body)
     data["materials"]["iron"] = STEEL
