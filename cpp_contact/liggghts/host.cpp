@@ -37,7 +37,7 @@ void check_library(LAMMPS_NS::LAMMPS* lmp) {
     return lammps_extract_global(lmp, const_cast<char*>(name)) == here;
   };
   const bool theirs = dlsym(RTLD_DEFAULT, "_ZTVN9LAMMPS_NS19AtomVecSuperquadricE") != nullptr;
-  if (std::strstr(lmp->universe->version, built_for) && found_at("dt", &lmp->update->dt) &&
+  if (strcasestr(lmp->universe->version, built_for) && found_at("dt", &lmp->update->dt) &&
       found_at("boxxlo", &lmp->domain->boxlo[0]) && theirs == superquadrics)
     return;
   const std::string text = std::string("epdem was built for ") + built_for +

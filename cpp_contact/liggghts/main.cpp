@@ -5,10 +5,12 @@
 #include <csignal>
 #include <cstdio>
 #include <cstdlib>
+#include <cstring>
 
 #include "input.h"
 #include "lammps.h"
 #include "signal_handling.h"
+#include "universe.h"
 
 namespace {
 
@@ -35,6 +37,8 @@ int main(int argc, char** argv) {
   handle_signals();
   {
     LAMMPS_NS::LAMMPS lammps(argc, argv, MPI_COMM_WORLD);
+    // after every fifth error LIGGGHTS prints a tip from memory that it has freed, if its version has this word
+    if (char* edition = std::strstr(lammps.universe->version, "PUBLIC")) *edition = 'p';
     lammps.input->file();
   }
   MPI_Finalize();

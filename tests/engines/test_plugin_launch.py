@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """How the plugin is started, what it prints, and which combinations of models run."""
 
+import ctypes
 import os
 import re
 import subprocess
@@ -187,3 +188,21 @@ def test_the_deck_of_the_user_page_prints_what_the_page_says(tmp_path):
     printed = re.search(r"The deck prints (\S+),", page).group(1)
     got = re.search(r"^restitution (\S+)", good(tmp_path, text).text, re.M).group(1)
     assert f"{float(got):.4f}" == printed == "0.9476"
+
+
+def test_nothing_follows_the_error_of_a_deck(tmp_path):
+    """At some times of the clock LIGGGHTS prints a tip behind an error, from memory that it has freed."""
+    libc = ctypes.CDLL(None)
+
+    def tips(seconds):
+        libc.srand(seconds)
+        return libc.rand() % 10 < 2
+
+    (tmp_path / "in.x").write_text("nonsense\n")
+    for now in [seconds for seconds in range(1_700_000_000, 1_700_000_100) if tips(seconds)][:4]:
+        (tmp_path / "clock.c").write_text(f"long time(long* t) {{ if (t) *t = {now}; return {now}; }}\n")
+        subprocess.run(["cc", "-shared", "-fPIC", "-o", "clock.so", "clock.c"], cwd=tmp_path, check=True)
+        words = [launcher(), "-in", "in.x", "-log", "none"]
+        env = os.environ | {"LD_PRELOAD": str(tmp_path / "clock.so")}
+        done = subprocess.run(words, cwd=tmp_path, env=env, capture_output=True, check=False)
+        assert done.stdout.splitlines()[-1].startswith(b"ERROR: Unknown command: nonsense"), done.stdout
