@@ -15,6 +15,7 @@
 #include "grip.hpp"
 #include "host.hpp"
 #include "materials.hpp"
+#include "strain.hpp"
 
 namespace epdem::liggghts {
 
@@ -59,6 +60,7 @@ class Normal : protected LAMMPS_NS::Pointers {
 
   void registerSettings(::Settings& settings) {
     settings.registerOnOff("computePlasticWork", plastic_work_, false);
+    settings.registerOnOff("computeContactStrain", contact_strain_, false);
     settings.registerOnOff("tangential_damping", tangential_damping_, true);
     settings.registerOnOff("viscous", viscous_, false);
     settings.registerOnOff("limitForce", limit_force_, false);
@@ -81,6 +83,7 @@ class Normal : protected LAMMPS_NS::Pointers {
       refuse("computeDissipatedEnergy", "it would miss the plastic work (use computePlasticWork)");
     if (disable_when_bonded_) refuse("disableNormalWhenBonded", "bonds are not part of the public LIGGGHTS");
     if (plastic_work_ && !wall) ledger_.create(lmp, rubs_, adheres<Law>);
+    if (contact_strain_ && !wall) LargestStrain::create(lmp);
   }
 
   /// cohesive: area on which cohesion pulls over that of the overlap's lens, 0 without cohesion.
@@ -106,6 +109,7 @@ class Normal : protected LAMMPS_NS::Pointers {
       compare_cohesion(lmp, model_.c_str(), width_, resists);
     }
     if (plastic_work_) ledger_.connect(lmp, model_, rubs_, adheres<Law>);
+    if (contact_strain_) strain_.connect(lmp, model_);
     grip_.ledger = ledger();
     if constexpr (adheres<Law>) reach();
   }
@@ -121,6 +125,7 @@ class Normal : protected LAMMPS_NS::Pointers {
   const Entry& entry(int i, int j) const { return table_[i * width_ + j]; }
   double now() const { return now_; }
   Ledger* ledger() { return plastic_work_ ? &ledger_ : nullptr; }
+  LargestStrain* strain() { return contact_strain_ ? &strain_ : nullptr; }
   const Grip* grip() const { return &grip_; }
 
   /// LIGGGHTS calls it before the loop over all pairs, never for walls.
@@ -157,6 +162,7 @@ class Normal : protected LAMMPS_NS::Pointers {
 
     if (keep) {
       if (plastic_work_) ledger_.template book<wall>(t.law, R_star, before, now, delta, {s.i, s.j, atom->nlocal});
+      if (contact_strain_) strain_.note(s.i, now.radius / R_star, delta / R_star);
       if constexpr (remembers) std::memcpy(history + offset_, &now.after, sizeof now.after);
       if constexpr (stamped) history[stamp_] = now_;
     }
@@ -280,9 +286,10 @@ class Normal : protected LAMMPS_NS::Pointers {
   bigint clock_ = 0;  // step of the last pass
   double now_ = 0.0;
   Ledger ledger_;
+  LargestStrain strain_;
   Grip grip_{{}, 0.0, false, Law::flattens, nullptr};
   bool rubs_ = false;
-  bool plastic_work_ = false;
+  bool plastic_work_ = false, contact_strain_ = false;
   bool viscous_ = false, tangential_damping_ = true, limit_force_ = false, heating_ = false, heating_tracking_ = false;
   bool elastic_potential_ = false, dissipated_energy_ = false, disable_when_bonded_ = false;
 };

@@ -31,7 +31,8 @@ struct Block {
   Line grown, stored;                       // plastic work of this step, elastic energy
   Line rubbed, sprung;                      // work of friction in this step, elastic energy of its springs
   Line parted, radius;                      // with adhesion: what its jumps took in this step, contact radius
-  Line overlap, apart[3], wall_v[3];        // of a wall: as LIGGGHTS's loop found them; from the wall to the sphere
+  double radius_ratio[most_lanes], overlap_ratio[most_lanes];  // largest of all contacts so far, over R*
+  Line overlap, apart[3], wall_v[3];  // of a wall: as LIGGGHTS's loop found them; from the wall to the sphere
 };
 
 /// What all contacts of a pass have in common.
@@ -44,6 +45,7 @@ struct Pass {
   bool damped, viscous;  // whether any pair has a tangential dashpot, a normal one
   bool freeze;           // whether a group of atoms is frozen
   bool work;             // plastic work and elastic energy are asked for
+  bool strain;           // the largest contact radius and overlap over R* are requested
   bool torsion;          // rolling friction also resists torsion
   bool cohesion_slides;  // cohesion lowers the normal force that friction sees
 };

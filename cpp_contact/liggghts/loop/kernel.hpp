@@ -89,6 +89,19 @@ EPDEM_INLINE Three slipping(Block& b, int k, const Contact& c, const Step<Law>& 
   return out.force;
 }
 
+/// The largest contact radius and overlap over R*, of contacts k, k + 1, ... below n: no contact is in the lanes
+/// behind.
+EPDEM_INLINE void largest(Block& b, int k, int n, Lanes radius, Lanes overlap, Lanes R_star) {
+  Lanes lane;
+  for (int l = 0; l < lane_count; ++l) lane[l] = l;
+  const Mask contact = lane < constant<Lanes>(n - k);
+  const auto keep = [=](double* most, Lanes value) __attribute__((always_inline)) {
+    store(most, max(load<Lanes>(most), select(contact, value / R_star, Lanes{})));
+  };
+  keep(b.radius_ratio, radius);
+  keep(b.overlap_ratio, overlap);
+}
+
 /// What adhesion books; outside of the kernels, where it would stand six times.
 template <class Law>
 [[gnu::noinline]] void book(Block& b, int k, const Law& law, Lanes R_star, const State<Law>& before,
@@ -160,6 +173,7 @@ template <class Law, Tangential tangential, bool rolls, bool wall>
     Law law;
     __builtin_memcpy(static_cast<void*>(&law), constant_of + law_data, sizeof law);
     const Step<Law> now = step(law, c.reff, before, c.deltan, -c.vn * pass.dt);
+    if (pass.strain) largest(b, k, n, now.radius, c.deltan, c.reff);
     if constexpr (adheres<Law>) {
       if (pass.work) book(b, k, law, c.reff, before, now, c.deltan);
     } else if (pass.work) {

@@ -72,9 +72,15 @@ Pass pass_of(const LAMMPS_NS::Atom& atom, const Plan& plan, double dt) {
   pass.damped = plan.damped;
   pass.viscous = plan.viscous;
   pass.work = plan.ledger != nullptr;
+  pass.strain = plan.strain != nullptr;
   pass.torsion = plan.torsion;
   pass.cohesion_slides = plan.cohesion_slides;
   return pass;
+}
+
+void note_strain(LargestStrain& strain, const Block& b) {
+  strain.note(b.i[0], *std::max_element(b.radius_ratio, b.radius_ratio + most_lanes),
+              *std::max_element(b.overlap_ratio, b.overlap_ratio + most_lanes));
 }
 
 const char* PairLoop::obstacle(PairGran* pair, const Plan& plan, int vflag, int addflag) const {
@@ -148,6 +154,7 @@ void PairLoop::finish(const Plan& plan, int n) {
   fetch(plan, n);
   pad(*block_, n);
   kernel_(*block_, n, pass_);
+  if (plan.strain) note_strain(*plan.strain, *block_);
   const bool turns = plan.tangential != Tangential::off || plan.rolling != Rolling::off;
   if (plan.ledger)
     turns ? scatter<true, true, adheres>(n, plan.ledger) : scatter<false, true, adheres>(n, plan.ledger);

@@ -9,6 +9,7 @@
 #include "block.hpp"
 #include "host.hpp"
 #include "ledger.hpp"
+#include "strain.hpp"
 
 namespace epdem::liggghts::loop {
 
@@ -22,10 +23,11 @@ struct Plan {
   Rolling rolling = Rolling::off;
   Cohesion cohesion = Cohesion::off;
   bool damped = false, viscous = false, torsion = false, cohesion_slides = false;
-  Ledger* ledger = nullptr;       // where plastic work is booked, if it is asked for
-  int root = -1, last_step = -1;  // with adhesion: where a history says that the bodies are attached, and when last
-  int width = 0;                  // number of types + 1
-  std::vector<double> constants;  // most_constants for each type of i * width + type of j; see Constant
+  Ledger* ledger = nullptr;         // where plastic work is booked, if it is asked for
+  LargestStrain* strain = nullptr;  // where the largest strain is noted, if it is requested
+  int root = -1, last_step = -1;    // with adhesion: where a history says that the bodies are attached, and when last
+  int width = 0;                    // number of types + 1
+  std::vector<double> constants;    // most_constants for each type of i * width + type of j; see Constant
 };
 
 /// Whether the user chose LIGGGHTS's loops by EPDEM_LOOP=generic.
@@ -39,6 +41,9 @@ bool beside_the_steps(const LAMMPS_NS::Atom& atom, bool computes, bool shears);
 
 /// What contacts of pairs and walls have in common in a step of length dt.
 Pass pass_of(const LAMMPS_NS::Atom& atom, const Plan& plan, double dt);
+
+/// Notes the largest strain of the contacts of a block.
+void note_strain(LargestStrain& strain, const Block& block);
 
 /// Gives the lanes behind the last of n contacts something harmless.
 void pad(Block& block, int n);

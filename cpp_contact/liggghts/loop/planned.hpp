@@ -55,6 +55,7 @@ class Planned {
     plan_.torsion = asked.torsion;
     plan_.cohesion_slides = asked.cohesion_slides;
     plan_.ledger = normal.ledger();
+    plan_.strain = normal.strain();
     plan_.width = normal.width();
     double** const mu =
         plan_.tangential == Tangential::off ? nullptr : property("coeffFrict", &MODEL_PARAMS::createCoeffFrict);

@@ -128,7 +128,8 @@ class Model {
   RollingModel<rolling> rolling_;
 };
 
-/// A pair style; the properties of computePlasticWork are there as soon as its settings are, for dumps that name them.
+/// A pair style; the properties of computePlasticWork and computeContactStrain are there as soon as its settings are,
+/// for dumps that name them.
 template <class Contact>
 class Pairs : public PairStyles::Granular<Contact> {
  public:
@@ -136,9 +137,11 @@ class Pairs : public PairStyles::Granular<Contact> {
 
   void settings(int n, char** words) override {
     PairStyles::Granular<Contact>::settings(n, words);
-    for (int k = 0; k + 1 < n; ++k)
-      if (!std::strcmp(words[k], "computePlasticWork") && !std::strcmp(words[k + 1], "on"))
-        Ledger().create(lmp_, false, false);
+    for (int k = 0; k + 1 < n; ++k) {
+      if (std::strcmp(words[k + 1], "on")) continue;
+      if (!std::strcmp(words[k], "computePlasticWork")) Ledger().create(lmp_, false, false);
+      if (!std::strcmp(words[k], "computeContactStrain")) LargestStrain::create(lmp_);
+    }
   }
 
  private:

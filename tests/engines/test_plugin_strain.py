@@ -1,0 +1,98 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Setting computeContactStrain: the largest contact radius and overlap over R* of all contacts and steps."""
+
+from dataclasses import replace
+from itertools import product
+
+import numpy as np
+import pytest
+from plugin_decks import LAWS, NU, P_Y, RHO, Bodies, E, Y, contact, good, head, materials, plate, run
+from plugin_loop import ADHESIVE, SPACING, Scene, bodies, covering, deck, outcome
+
+from epdem.theory import backbones, restitution
+
+pytestmark = pytest.mark.liggghts
+
+ON = "computeContactStrain on"
+ROWS = (
+    "compute strain all reduce max f_contactStrain[1] f_contactStrain[2]\n"
+    "thermo_style custom step c_strain[1] c_strain[2]\nthermo_modify lost ignore norm no format float %.17g\n"
+)
+
+
+def rows(text):
+    """Rows of step, largest a/R* and largest overlap/R*."""
+    words = [line.split() for line in text.splitlines()]
+    return np.array([row for row in words if len(row) == 3 and row[0].isdigit() and row[1][0] in "-0123456789"], float)
+
+
+def impact(law, wall, *, steps, every):
+    """An aluminium sphere of 5 mm on a steel wall, frictionless."""
+    return (
+        head()
+        + "read_data box.data\nneighbor 1e-3 bin\nneigh_modify delay 0\n"
+        + materials(f"ep/{law}")
+        + contact(f"ep/{law}", tangential="off", wall=wall, settings=ON)
+        + f"timestep 2e-8\nfix move all nve/sphere\n{ROWS}thermo {every}\nrun {steps}\n"
+    )
+
+
+def files(speed=10.0):
+    sphere = Bodies(np.array([1]), np.array([5e-3]), np.array([[0, 0, 5.1e-3]]), np.array([[0, 0, -speed]]))
+    return {"box.data": sphere.data(((-0.05, 0.05), (-0.05, 0.05), (-0.01, 0.1))), "plate.stl": plate()}
+
+
+def expected(law, speed=10.0, radius=5e-3):
+    """(largest a/R*, largest overlap/R*) of the impact, by the equations; aluminium is the softer body."""
+    strength = {"hertz": {}, "thornton": {"p_y": P_Y[0]}, "johnson": {"p_m": P_Y[0]}, "cavity": {"Y": Y[0]}}[law]
+    theory = backbones.LAWS[law](E_star=1 / ((1 - NU[:2] ** 2) / E[:2]).sum(), R_star=radius, **strength)
+    hit = restitution.impact(theory, m_star=RHO[0] * 4 / 3 * np.pi * radius**3, speed=speed)
+    return float(hit.strain_ratio), float(hit.overlap_max) / radius
+
+
+@pytest.mark.parametrize(("law", "wall"), [*product(LAWS, ["primitive", "mesh"])])
+def test_the_largest_strain_of_an_impact_between_two_rows_is_kept(tmp_path, law, wall):
+    """The contact has ended long before the only row after it."""
+    found = rows(good(tmp_path, impact(law, wall, steps=20000, every=20000), files=files()).text)
+    np.testing.assert_allclose(found[-1, 1:], expected(law), rtol=3e-4)
+
+
+def test_the_largest_strain_of_a_bed_is_that_of_its_geometry(tmp_path):
+    """Thornton: a^2 = R* overlap on loading; overlaps from the positions of all steps."""
+    scene = Scene(settings=(ON,), dashpot=False)
+    frames, text = outcome(tmp_path, scene, before=ROWS)
+    half, edge = SPACING / 2, SPACING * np.sqrt(2) * 0.985 * 3
+    apart = frames[:, :, None, 1:4] - frames[:, None, :, 1:4]
+    apart -= edge * np.round(apart / edge)
+    distance = np.linalg.norm(apart, axis=-1) + 1e3 * np.eye(frames.shape[1])
+    overlap = np.maximum.accumulate((2 * half - distance).max(axis=(1, 2))[1:]) / (half / 2)
+    found = rows(text)[1:]
+    assert len(found) == 60 and overlap[-1] > overlap[0]
+    np.testing.assert_allclose(found[:, 2], overlap, rtol=1e-9)
+    np.testing.assert_allclose(found[:, 1], np.sqrt(overlap), rtol=1e-9)
+
+
+@pytest.mark.parametrize("scene", [*covering()[::3], *(Scene(law=law, loose=True) for law in ADHESIVE)], ids=str)
+def test_every_loop_finds_the_same_and_no_force_changes(tmp_path, scene):
+    asked = replace(scene, settings=(*scene.settings, ON))
+    generic, text = outcome(tmp_path / "generic", asked, loop="generic", before=ROWS)
+    lanes, other = outcome(tmp_path / "lanes", asked, before=ROWS)
+    plain, _ = outcome(tmp_path / "plain", scene)
+    assert np.array_equal(rows(text), rows(other)) and np.array_equal(lanes, generic)
+    assert np.array_equal(lanes, plain) and 0.0 < rows(text)[1, 2] <= rows(text)[-1, 2]
+
+
+def test_the_largest_strain_goes_on_after_a_restart(tmp_path):
+    scene = Scene(settings=(ON,))
+    whole = rows(outcome(tmp_path / "whole", scene, steps=60, before=ROWS)[1])
+    files = {"packing.data": bodies(scene)}
+    good(tmp_path, deck(scene, steps=40, before=ROWS, end="write_restart half.bin\n"), files=files)
+    rest = rows(good(tmp_path, deck(scene, steps=20, before=ROWS, restart="half.bin")).text)
+    assert np.array_equal(rest[-1], whole[-1])
+
+
+def test_a_wall_that_records_alone_is_refused(tmp_path):
+    text = impact("thornton", "primitive", steps=10, every=10).replace(ROWS, "")
+    text = text.replace(f" {ON}\npair_coeff", "\npair_coeff")
+    done = run(tmp_path, text, files=files())
+    assert done.code == 1 and "computeContactStrain" in done.error and "pair style" in done.error
