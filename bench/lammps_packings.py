@@ -8,7 +8,7 @@ import subprocess
 
 from dense_packings import RADIUS, SHRINK
 
-from epdem.lammps.impacts import mpich, program
+from epdem.verification.models.lammps import mpich, program
 
 MODELS = {
     "LAMMPS hertz/material": "hertz/material 1e8 0.7 0.3 tangential mindlin NULL 1.0 0.5 damping tsuji",

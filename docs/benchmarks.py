@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Tables and figures of docs/benchmarks.md: what bench/community.py has left in runs/community, and `epdem validate`.
+"""Tables and figures of docs/benchmarks.md: what bench/community.py left in runs/community, and `epdem verify data`.
 
 Run: .venv/bin/python docs/benchmarks.py      (without runs of community.py only the measured sets)
 """
@@ -18,7 +18,7 @@ from epdem.report.chart import GREY, Axis, Chart, Panel, Series
 from epdem.report.drawing import save
 from epdem.scenes import results
 from epdem.studies.pages.tables import validation_chart
-from epdem.studies.validate import shown, validate
+from epdem.verification.measured_data import shown, validate
 
 ROOT = Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(ROOT / "bench"))

@@ -10,10 +10,10 @@ import pandas as pd
 from pages import markdown
 
 from epdem.report.drawing import save
-from epdem.studies import cost
-from epdem.studies.cost import REFERENCE, Outcome
-from epdem.studies.cost_report import bulk_table, chart, cheapest_table, error_table
-from epdem.studies.stability import bulk_cost
+from epdem.verification import cost
+from epdem.verification.cost import REFERENCE, Outcome
+from epdem.verification.cost_report import bulk_table, chart, cheapest_table, error_table
+from epdem.verification.stability import bulk_cost
 
 DOCS = Path(__file__).parent
 LAWS = ["thornton", "cavity", "johnson", "hertz"]

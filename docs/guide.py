@@ -55,8 +55,9 @@ def names() -> set[str]:
 
 
 def _commands() -> dict[str, Any]:
-    found: dict[str, Any] = typer.main.get_command(app).commands  # type: ignore[attr-defined]
-    return found
+    top: dict[str, Any] = typer.main.get_command(app).commands  # type: ignore[attr-defined]
+    verify = {f"verify {name}": command for name, command in top["verify"].commands.items()}
+    return {name: command for name, command in top.items() if name != "verify"} | verify
 
 
 def commands() -> str:

@@ -22,7 +22,9 @@ import pandas as pd
 import tomlkit
 
 from epdem.engines import engine
+from epdem.impacts import store
 from epdem.impacts.run import run
+from epdem.verification import crosscheck
 
 ROOT = Path(__file__).parents[1]
 CLAIMS, PAGE = ROOT / "docs/claims.toml", ROOT / "docs/validation.md"
@@ -90,12 +92,16 @@ def _leaves(value: Any) -> list[float]:
     return [x for v in value.values() for x in _leaves(v)] if isinstance(value, dict) else [float(value)]
 
 
-def rows(command: str, folder: Path) -> pd.DataFrame:
+def rows(command: str, folder: Path, place: str = "") -> pd.DataFrame:
     """The comparison that `epdem run CASE -e ENGINE [-l LAW ...] [--steps N]` makes, without its figures.
 
-    Raises ValueError for another command.
+    Of `epdem verify crosscheck CASE -e MODEL` that in its folder, or in the `place` there. Raises ValueError for
+    another command.
     """
-    program, name, case, *options = shlex.split(command)
+    if (words := shlex.split(command))[:3] == ["epdem", "verify", "crosscheck"] and words[4] == "-e":
+        crosscheck(ROOT / words[3], engines=words[5:], out=folder)
+        return store.read(folder / place / "results.h5").comparison
+    program, name, case, *options = words
     given = list(zip(options[::2], options[1::2], strict=True))
     if (program, name) != ("epdem", "run") or {flag for flag, _ in given} - {"-e", "-l", "--steps"}:
         raise ValueError(f"{command}: not a command that this script measures")
@@ -109,11 +115,11 @@ def measure(claims: dict[str, Any]) -> dict[str, Any]:
     """The values that the commands give now, by name; each command runs once."""
     known = {n: c for n, c in values(claims).items() if "column" in c or "columns" in c}
     with tempfile.TemporaryDirectory() as scratch:
-        commands = dict.fromkeys(c["command"] for c in known.values())
-        tables = {command: rows(command, Path(scratch) / str(k)) for k, command in enumerate(commands)}
+        commands = dict.fromkeys((c["command"], c.get("place", "")) for c in known.values())
+        tables = {key: rows(key[0], Path(scratch) / str(k), key[1]) for k, key in enumerate(commands)}
     found: dict[str, Any] = {}
     for name, claim in known.items():
-        table = tables[claim["command"]]
+        table = tables[claim["command"], claim.get("place", "")]
         if "column" in claim:
             found[name] = float(table[claim["column"]].max())
             continue

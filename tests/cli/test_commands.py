@@ -20,7 +20,7 @@ from epdem.engines import ENGINES
 from epdem.engines.citations import of_laws
 from epdem.laws.library import laws
 from epdem.scenes import report
-from epdem.studies import crosscheck
+from epdem.verification import engine_comparison as crosscheck
 
 STEEL = (CASES / "steel_wall.toml").read_text()
 SPEEDS = STEEL[STEEL.index("speeds =") : STEEL.index("\n", STEEL.index("speeds ="))]
@@ -36,8 +36,8 @@ DOCUMENTS = {  # words, and what the document must hold
     "deck": (["steel.toml", "-o", "d"], lambda d: d["files"][0] == "d/in.impact"),
     "predict": (["steel.toml"], lambda d: abs(d["rows"][0]["e_n"] - 0.6763264338717) < 1e-12),
     "doctor": ([], lambda d: {"C library", "engine embedded"} <= {f["part"] for f in d}),
-    "crosscheck": (["steel.toml"], lambda d: [r["model"] for r in d["rows"]] == ["theory", "embedded"]),
-    "motion": (
+    "verify crosscheck": (["steel.toml"], lambda d: [r["model"] for r in d["rows"]] == ["theory", "embedded"]),
+    "verify motion": (
         ["steel.toml", "-e", "embedded"],
         lambda d: d["passed"] and len(d["rows"]) == 6 and d["rows"][0]["force_max"] > 1e3,
     ),
@@ -47,27 +47,29 @@ DOCUMENTS = {  # words, and what the document must hold
             abs(d["laws"]["thornton"]["e_n"] - 0.6763264338717) < 1e-12 and d["laws"]["jkr"]["contact_time"] is None
         ),
     ),
-    "figures": (["-o", "f"], lambda d: len(d["files"]) == 8),
+    "verify figures": (["-o", "f"], lambda d: len(d["files"]) == 8),
     "timestep": (["steel.toml"], lambda d: d["error"] <= d["target"] == 1e-3),
-    "cost": (
+    "verify cost": (
         ["steel.toml", "-e", "embedded", "--repetitions", "1"],
         lambda d: d["models"][0]["model"] == "embedded, thornton" and len(d["rows"]) == 11,
     ),
-    "stability": (["-g", "poisson", "-l", "hertz", "--every", "2"], lambda d: d["passed"] and len(d["rows"]) == 1),
-    "stress": (["-g", "poisson", "-l", "hertz", "--every", "2"], lambda d: d["passed"] and len(d["rows"]) == 1),
+    "verify stability": (
+        ["-g", "poisson", "-l", "hertz", "--every", "2"],
+        lambda d: d["passed"] and len(d["rows"]) == 1,
+    ),
     "explain": (["steel.toml"], lambda d: all(line["reason"] for line in d)),
     "soften": (["steel.toml", "-k", "32"], lambda d: d["file"] == "steel_soft32.toml" and len(d["changes"]) == 3),
     "sweep": (
         ["steel.toml", "-e", "embedded", "--set", "impact.body.radius=1 mm,2 mm", "-j", "1"],
         lambda d: d["passed"] and d["done"] == 2,
     ),
-    "rerun": (["stored/results.h5"], lambda d: d["same"] and len(d["differences"]) == 1),
+    "verify rerun": (["stored/results.h5"], lambda d: d["same"] and len(d["differences"]) == 1),
     "view": (["beads.toml"], lambda d: d == {"file": "settle_glass.png", "spheres": 30, "drawn": 30}),
     "tune": (["beads.toml"], lambda d: d["ranks"] == 1 and len(d["trials"]) == 5 and not d["written"]),
     "status": (["swept"], lambda d: (d["points"], d["done"], d["waiting"]) == (2, 0, 2)),
     "cite": (["steel.toml"], lambda d: "Thornton" in d["law thornton, Thornton 1997"] and "Kloss" in d["liggghts"]),
     "header": (["-o", "."], lambda d: d["files"][0] == "normal_model_ep.cpp" and not d["lacks"]),
-    "validate": (
+    "verify data": (
         ["-s", "leeb_G", "-e", "embedded", "-l", "hertz"],
         lambda d: [round(row["error"], 4) for row in d["rows"] if row["quantity"] == "e_n"] == [0.3333],
     ),
@@ -78,14 +80,13 @@ MISTAKES = {  # words, and what the sentence must hold
     "deck": (["steel.toml", "-o", "d", "-e", "embedded"], "reads no deck"),
     "predict": (["steel.toml", "-l", "hook"], "steel.toml: law.name = 'hook' does not exist; there are hertz"),
     "doctor": (["steel.toml"], "extra argument(s) (steel.toml); see epdem doctor --help"),
-    "crosscheck": (["steel.toml", "nowhere.toml"], "nowhere.toml: no such file"),
-    "motion": (["steel.toml", "-m", "bad.toml"], "bad.toml: no line of names that begins with t"),
+    "verify crosscheck": (["steel.toml", "nowhere.toml"], "nowhere.toml: no such file"),
+    "verify motion": (["steel.toml", "-m", "bad.toml"], "bad.toml: no line of names that begins with t"),
     "theory": (["--radius", "3 kg"], "--radius = '3 kg', the unit 'kg' has the wrong dimension"),
-    "figures": (["-o", "steel.toml"], "steel.toml"),
+    "verify figures": (["-o", "steel.toml"], "steel.toml"),
     "timestep": (["steel.toml", "--error", "1"], "'--error': must be less than or equal to 0.1; see epdem timestep"),
-    "cost": (["steel.toml", "-l", "hook"], "steel.toml: law.name = 'hook' does not exist"),
-    "stability": (["-g", "modulu"], "--group 'modulu' does not exist; there are modulus"),
-    "stress": (["--steps", "1"], "'--steps': must be greater than or equal to 1000"),
+    "verify cost": (["steel.toml", "-l", "hook"], "steel.toml: law.name = 'hook' does not exist"),
+    "verify stability": (["-g", "modulu"], "--group 'modulu' does not exist; there are modulus"),
     "explain": (["bad.toml"], "bad.toml: not valid TOML"),
     "soften": (["steel.toml", "-k", "-3"], "--factor -3, must lie in (0, 1e12)"),
     "calibrate": (["steel.toml"], "give one measurement"),
@@ -94,9 +95,9 @@ MISTAKES = {  # words, and what the sentence must hold
     "cite": (["steel.toml", "-e", "abaqus"], "'abaqus' does not exist; there are embedded"),
     "header": (["--check", "."], "contact_models.h is not there; name the folder src"),
     "sweep": (["steel.toml", "--set", "impact.body.radios=1 mm"], "the nearest: impact.body.radius"),
-    "rerun": (["steel.toml"], "steel.toml: not a results file of epdem, or damaged"),
+    "verify rerun": (["steel.toml"], "steel.toml: not a results file of epdem, or damaged"),
     "status": (["nowhere"], "nowhere: not a folder of a sweep"),
-    "validate": (["-s", "leeb_X"], "--set 'leeb_X' does not exist; there are hutchings_1979, leeb_C"),
+    "verify data": (["-s", "leeb_X"], "--set 'leeb_X' does not exist; there are hutchings_1979, leeb_C"),
 }
 
 
@@ -116,12 +117,12 @@ def test_the_tables_name_every_command():
 @pytest.mark.parametrize("command", COMMANDS)
 def test_a_command_prints_one_json_document_and_nothing_else(command, folder, capsys, monkeypatch):
     monkeypatch.setattr(crosscheck, "ENGINES", {"embedded": ENGINES["embedded"]})
-    monkeypatch.setattr(crosscheck, "OTHERS", {})
-    monkeypatch.setattr(crosscheck, "FOREIGN", {})
+    monkeypatch.setattr(crosscheck, "SAME_LAW", {})
+    monkeypatch.setattr(crosscheck, "OWN_LAW", {})
     quick_figures(monkeypatch)
     if command == "status":
         make_sweep("steel.toml", folder / "swept")
-    if command == "rerun":
+    if command == "verify rerun":
         assert call(["run", "steel.toml", "-e", "embedded", "-o", "stored"], capsys, monkeypatch).code == 0
     words, holds = DOCUMENTS[command]
     done = call([command, *words, "--json"], capsys, monkeypatch)
@@ -140,14 +141,14 @@ def test_a_mistake_is_one_sentence_exit_code_2_and_no_file(command, folder, caps
     assert {name for name, _ in done.files} == {"steel.toml", "bad.toml", "beads.toml"}
 
 
-@pytest.mark.parametrize("command", ["run", "predict", "cost", "crosscheck"])
+@pytest.mark.parametrize("command", ["run", "predict", "verify cost", "verify crosscheck"])
 def test_titles_and_paths_that_look_like_markup_are_shown_as_they_are(command, folder, capsys, monkeypatch):
     (folder / "[b]").mkdir()
     (folder / "[b]/steel.toml").write_text(ONE_SPEED.replace("Steel sphere on a steel wall", TITLE))
-    for name in ("OTHERS", "FOREIGN"):
+    for name in ("SAME_LAW", "OWN_LAW"):
         monkeypatch.setattr(crosscheck, name, {})
     monkeypatch.setattr(crosscheck, "ENGINES", {"embedded": ENGINES["embedded"]})
-    words = [] if command in ("predict", "crosscheck") else ["-e", "embedded"]
+    words = [] if command in ("predict", "verify crosscheck") else ["-e", "embedded"]
     words += [] if command == "predict" else ["-o", "[b]/out"]
     done = call([command, "[b]/steel.toml", *words], capsys, monkeypatch)
     assert done.code == 0, done.err
@@ -170,11 +171,11 @@ def test_long_values_are_cut_at_80_characters(folder, capsys, monkeypatch):
 
 
 def test_two_cases_of_one_file_name_do_not_share_a_folder(folder, capsys, monkeypatch):
-    for name in ("ENGINES", "OTHERS", "FOREIGN"):
+    for name in ("ENGINES", "SAME_LAW", "OWN_LAW"):
         monkeypatch.setattr(crosscheck, name, {"embedded": ENGINES["embedded"]} if name == "ENGINES" else {})
     (folder / "b").mkdir()
     shutil.copy("steel.toml", "b/steel.toml")
-    done = call(["crosscheck", "steel.toml", "b/steel.toml", "-o", "out"], capsys, monkeypatch)
+    done = call(["verify", "crosscheck", "steel.toml", "b/steel.toml", "-o", "out"], capsys, monkeypatch)
     assert done.code == 2 and "--out out: two of the cases have one file name" in done.err and not Path("out").exists()
 
 
@@ -235,3 +236,10 @@ def test_the_message_for_a_name_that_begins_with_a_dash_says_how_to_write_it(fol
 def test_every_law_has_a_source_to_cite(law):
     # cavity is made of equations of the chapter
     assert law == "cavity" or any(what.startswith(f"law {law}, ") for what in of_laws([law]))
+
+
+@pytest.mark.parametrize("name", ["cost", "crosscheck", "figures", "motion", "rerun", "stability", "validate"])
+def test_the_former_name_of_a_command_of_the_proof_is_refused_with_its_new_one(name, capsys, monkeypatch):
+    done = call([name, "case.toml"], capsys, monkeypatch)
+    new = f"epdem verify {'data' if name == 'validate' else name}"
+    assert done.code == 2 and done.err == f"epdem: 'epdem {name}' is now '{new}'; see {new} --help\n"

@@ -8,17 +8,20 @@ import pytest
 from calls import CASES, call, quick_figures
 
 from epdem.base.files import atomic
-from epdem.studies import stability
+from epdem.verification import stability
 
 WRITERS = {  # words of a command that writes, and a file of the user's in its way
     "deck of impacts": (["deck", "steel.toml", "-o", "d"], "d/in.impact"),
     "deck of a scene": (["deck", "scene.toml", "-o", "d"], "d/setup.in"),
     "deck for YADE": (["deck", "scene.toml", "-o", "d", "-e", "yade"], "d/scene.py"),
     "own template": (["deck", "mill.j2", "--case", "steel.toml", "-o", "d"], "d/mill"),
-    "figures": (["figures", "-o", "d"], "d/figure_8_17.png"),
-    "cost": (["cost", "steel.toml", "-e", "embedded", "--repetitions", "1", "-o", "d"], "d/cost.png"),
-    "motion": (["motion", "steel.toml", "-e", "embedded", "-o", "d"], "d/motions.csv"),
-    "stability": (["stability", "-g", "poisson", "-l", "hertz", "--every", "2", "-o", "d/all.csv"], "d/all.csv"),
+    "figures": (["verify", "figures", "-o", "d"], "d/figure_8_17.png"),
+    "cost": (["verify", "cost", "steel.toml", "-e", "embedded", "--repetitions", "1", "-o", "d"], "d/cost.png"),
+    "motion": (["verify", "motion", "steel.toml", "-e", "embedded", "-o", "d"], "d/motions.csv"),
+    "stability": (
+        ["verify", "stability", "-g", "poisson", "-l", "hertz", "--every", "2", "-o", "d/all.csv"],
+        "d/all.csv",
+    ),
     "soften": (["soften", "steel.toml", "-k", "10", "-o", "d/soft.toml"], "d/soft.toml"),
     "batch script": (
         ["sweep", "steel.toml", "--set", "impact.body.radius=1 mm", "-o", "s", "--write-script", "d/job.sh"],

@@ -19,11 +19,15 @@ from epdem.impacts import report as impacts_report
 from epdem.impacts import run as impacts_run
 from epdem.scenes import report as scenes_report
 from epdem.scenes import run as scenes_run
-from epdem.studies import cost, crosscheck, figures, fit, motions, stability, tune, validate
+from epdem.studies import fit, tune
 from epdem.studies.pages import impacts as impacts_page
 from epdem.studies.pages import scenes as scenes_page
-from epdem.studies.stability import bulk_cost
 from epdem.studies.sweep import executors
+from epdem.verification import cost, figures, stability
+from epdem.verification import engine_comparison as crosscheck
+from epdem.verification import measured_data as validate
+from epdem.verification.motion import compare as motions
+from epdem.verification.stability import bulk_cost
 
 STEEL = (CASES / "steel_wall.toml").read_text()
 FAST = STEEL[: STEEL.index("speeds =")] + 'speeds = ["1 m/s"]' + STEEL[STEEL.index("\n", STEEL.index("speeds =")) :]
@@ -55,23 +59,23 @@ KINDS = {  # words of a call without the option, and the value of every option
     "deck of an own template": (("deck", "own.j2", "-o", "d", "--case", "steel.toml"), DECK),
     "predict impacts": (("predict", "steel.toml"), {"law": "cavity"}),
     "crosscheck impacts": (
-        ("crosscheck", "steel.toml"),
-        {"law": "cavity", "out": "there", "fresh": None, "force": None},
+        ("verify crosscheck", "steel.toml"),
+        {"engine": "embedded", "law": "cavity", "out": "there", "fresh": None, "force": None},
     ),
     "motion of impacts": (
-        ("motion", "steel.toml"),
+        ("verify motion", "steel.toml"),
         {"file": "other.toml", "engine": "yade", "law": "cavity", "out": "there", "force": None},
     ),
     "theory": (("theory",), {"material": "brass", "radius": "2 mm", "speed": "1 m/s", "adhesion": "0.1 J/m^2"}),
-    "figures": (("figures",), {"pictures": "svg", "out": "there", "force": None}),
+    "figures": (("verify figures",), {"pictures": "svg", "out": "there", "force": None}),
     "timestep of impacts": (("timestep", "steel.toml"), {"error": "1e-2", "law": "hertz"}),
     "cost of impacts": (
-        ("cost", "steel.toml"),
+        ("verify cost", "steel.toml"),
         {"engine": "embedded", "law": "cavity", "repetitions": "2", "bulk": None, "pictures": "svg", "out": "there"}
         | {"force": None},
     ),
     "stability": (
-        ("stability",),
+        ("verify stability",),
         {"engine": "yade", "law": "cavity", "group": "poisson", "every": "2", "steps": "1000", "out": "there.csv"}
         | {"force": None},
     ),
@@ -93,8 +97,8 @@ KINDS = {  # words of a call without the option, and the value of every option
     "sweep of a scene": (("sweep", "scene.toml", "--set", "scene.gravity=9.81 m/s^2,1.62 m/s^2"), SWEEP),
     "latin hypercube": (("sweep", "steel.toml", "--set", "impact.body.radius=1 mm..2 mm", *HYPERCUBE), SWEEP),
     "status": (("status", "swept"), {"table": None}),
-    "rerun": (("rerun", "stored/results.h5"), {}),
-    "validate": (("validate",), {"sets": "leeb_G", "engine": "yade", "law": "hertz", "out": "there", "force": None}),
+    "rerun": (("verify rerun", "stored/results.h5"), {}),
+    "validate": (("verify data",), {"sets": "leeb_G", "engine": "yade", "law": "hertz", "out": "there", "force": None}),
 }
 OTHERS = [
     "d/in.impact",
@@ -106,7 +110,7 @@ OTHERS = [
     "runs/steel_wall/cost/cost.csv",
     "runs/validate/validate.csv",
 ]
-IMPACTS_ONLY = ("predict", "timestep", "cost", "crosscheck", "motion", "calibrate")
+IMPACTS_ONLY = ("predict", "timestep", "verify cost", "verify crosscheck", "verify motion", "calibrate")
 
 
 def options(command: str) -> dict[str, str]:
@@ -116,7 +120,7 @@ def options(command: str) -> dict[str, str]:
 
 
 def test_the_table_names_every_command_and_every_option():
-    assert {words[0] for words, _ in KINDS.values()} == set(COMMANDS) - {"stress"}
+    assert {words[0] for words, _ in KINDS.values()} == set(COMMANDS)
     for kind, (words, values) in KINDS.items():
         assert set(options(words[0])) == set(values), kind
 

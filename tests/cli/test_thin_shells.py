@@ -11,7 +11,8 @@ from calls import COMMANDS
 
 import epdem.cli
 
-FILES = sorted(Path(epdem.cli.__file__).parent.glob("*.py"))
+PACKAGE = Path(epdem.cli.__file__).parents[1]
+FILES = [*sorted(PACKAGE.glob("cli/*.py")), *sorted(PACKAGE.glob("verification/cli/*.py"))]
 PHYSICS = ("numpy", "epdem.theory", "epdem.laws", "scipy", "h5py")
 # The function of each command.
 FUNCTIONS = {
@@ -19,38 +20,38 @@ FUNCTIONS = {
     "deck": ("epdem.impacts.run", "write_deck"),
     "predict": ("epdem.impacts.prediction", "predict"),
     "doctor": ("epdem.engines.doctor", "examine"),
-    "crosscheck": ("epdem.studies.crosscheck", "crosscheck"),
-    "motion": ("epdem.studies.motions", "compare"),
+    "verify crosscheck": ("epdem.verification.engine_comparison", "crosscheck"),
+    "verify motion": ("epdem.verification.motion.compare", "compare"),
     "theory": ("epdem.studies.one_impact", "one_impact"),
-    "figures": ("epdem.studies.figures", "draw_all"),
+    "verify figures": ("epdem.verification.figures", "draw_all"),
     "timestep": ("epdem.impacts.timestep", "search"),
-    "cost": ("epdem.studies.cost", "run"),
-    "stability": ("epdem.studies.stability", "run"),
+    "verify cost": ("epdem.verification.cost", "run"),
+    "verify stability": ("epdem.verification.stability", "run"),
     "explain": ("epdem.liggghts.explain", "explain_case"),
     "soften": ("epdem.studies.soften", "soften"),
     "calibrate": ("epdem.studies.fit", "fit"),
     "sweep": ("epdem.studies.sweep.executors", "execute"),
     "status": ("epdem.studies.sweep.status", "status"),
     "tune": ("epdem.studies.tune", "tune"),
-    "rerun": ("epdem.studies.rerun", "rerun"),
+    "verify rerun": ("epdem.verification.rerun", "rerun"),
     "cite": ("epdem.engines.citations", "citations"),
     "header": ("epdem.liggghts.header", "write"),
     "view": ("epdem.scenes.pictures", "before"),
-    "validate": ("epdem.studies.validate", "validate"),
+    "verify data": ("epdem.verification.measured_data", "validate"),
 }
 
 
 def test_the_table_has_every_command():
-    assert set(FUNCTIONS) == set(COMMANDS) - {"stress"}  # the old name of stability
+    assert set(FUNCTIONS) == set(COMMANDS)
 
 
 def imports(path: Path) -> set[tuple[str, str]]:
     """(module, name) of what a file of the commands imports anywhere in it."""
-    found = set()
+    found, here = set(), ("epdem", *path.parent.relative_to(PACKAGE).parts)
     for node in ast.walk(ast.parse(path.read_text())):
         if isinstance(node, ast.ImportFrom):
-            base = ".".join(["epdem.cli".rsplit(".", node.level - 1)[0]] if node.level else [])
-            module = ".".join(filter(None, [base, node.module]))
+            base = here[: len(here) - node.level + 1] if node.level else ()
+            module = ".".join(filter(None, [*base, node.module]))
             found |= {(module, alias.name) for alias in node.names}
         elif isinstance(node, ast.Import):
             found |= {(alias.name, "") for alias in node.names}
@@ -68,7 +69,7 @@ def test_what_a_command_does_is_a_function_for_programs(command):
     assert command in COMMANDS
 
 
-@pytest.mark.parametrize("path", FILES, ids=lambda p: p.stem)
+@pytest.mark.parametrize("path", FILES, ids=lambda p: p.relative_to(PACKAGE).as_posix())
 def test_no_command_computes(path):
     """Formulas are in the rooms below, whose names a view alone may print."""
     if path.name != "show.py":

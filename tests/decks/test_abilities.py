@@ -8,16 +8,17 @@ import pytest
 
 from epdem.case.impact import parse
 from epdem.case.toml import read_toml
-from epdem.engines import ENGINES, FOREIGN, OTHERS
+from epdem.engines import ENGINES
 from epdem.errors import CaseError
 from epdem.impacts.engine import refuse
 from epdem.impacts.experiment import experiment
 from epdem.impacts.plan import plan
 from epdem.impacts.prediction import predict
 from epdem.laws.library import laws
+from epdem.verification.models import OWN_LAW, SAME_LAW
 
 ROOT = Path(__file__).parents[2]
-ALL = ENGINES | OTHERS | FOREIGN
+ALL = ENGINES | SAME_LAW | OWN_LAW
 SPHERES = {"kind": "sphere-sphere", "target": {"material": "steel", "radius": "4 mm"}}
 
 
@@ -32,7 +33,6 @@ def planned(changes=None, law=None):
 def test_what_an_engine_names_exists():
     for tool in (kind() for kind in ALL.values()):
         assert set(tool.can.laws or ()) <= set(laws()), tool.name
-        assert set(tool.can.variants) <= {"swap", "sort", "migration", "restart"}
         assert tool.can.ranks >= 1 and (tool.can.scenes or not tool.can.restarts)
 
 
@@ -56,7 +56,7 @@ def test_a_law_that_an_engine_lacks_is_refused_in_a_sentence(name):
 
 def test_lammps_runs_impacts_on_walls_only():
     refuse(ALL["lammps-mdr"](), *planned())
-    with pytest.raises(CaseError, match="lammps-mdr does not run impacts of two spheres"):
+    with pytest.raises(CaseError, match="mdr is compared on walls"):
         refuse(ALL["lammps-mdr"](), *planned(SPHERES))
 
 

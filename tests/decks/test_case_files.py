@@ -235,7 +235,7 @@ def test_bad_input_exits_with_2_one_line_and_writes_nothing(tmp_path):
 COMMANDS = {
     "a folder that is a file": (("run", "-e", "embedded", "-o", "taken"), "taken"),
     "a folder nobody can make": (("run", "-e", "embedded", "-o", "/proc/here"), "/proc/here"),
-    "a model without this law": (("run", "-e", "liggghts-thornton_ning", "-l", "cavity"), "has thornton only"),
+    "a model of another code": (("run", "-e", "liggghts-thornton_ning"), "'epdem verify crosscheck' runs models"),
     "ranks of an engine that has one": (("run", "-e", "embedded", "--ranks", "2"), "leave it out"),
     "a deck of an engine without decks": (("deck", "-e", "embedded", "-o", "d"), "reads no deck"),
     "two laws in one deck": (("deck", "-l", "hertz", "-l", "cavity", "-o", "d"), "one deck for each"),

@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Decks are words around numbers that Python decided: stored renderings, full precision, nothing undefined."""
 
-import re
 from dataclasses import replace
 from pathlib import Path
 
@@ -16,33 +15,18 @@ from epdem.case.scene import load as load_scene
 from epdem.case.scene import parse as parse_scene
 from epdem.case.toml import read_toml
 from epdem.errors import CaseError
-from epdem.impacts import pairs
 from epdem.impacts.experiment import experiment
-from epdem.impacts.motions import shear_elastic
 from epdem.impacts.plan import plan
 from epdem.impacts.prediction import predict
-from epdem.lammps.impacts import LammpsMdr
-from epdem.liggghts import motions as liggghts_motions
-from epdem.liggghts import pairs as liggghts_pairs
 from epdem.liggghts import scene_deck
-from epdem.liggghts.assemblies import LiggghtsAssemblies
 from epdem.liggghts.impacts import Liggghts
-from epdem.scenes.assembly import AssemblyPlan
 from epdem.scenes.plan import plan as scene_plan
-from epdem.studies.motions import touch_of
-from epdem.studies.stability.scenes import SCENES as ASSEMBLIES
-from epdem.studies.stability.scenes import with_law
-from epdem.yade import motions as yade_motions
-from epdem.yade import pairs as yade_pairs
-from epdem.yade import precisions
 from epdem.yade import scene_deck as yade_scene
 from epdem.yade.impacts import Yade
+from stored_decks import CASES, SPHERE, compare, planned
 
 HERE = Path(__file__).parent
-CASES = HERE.parents[1] / "cases"
 SCENES = [p for p in sorted(CASES.glob("*.toml")) if is_scene(read_toml(p))]
-BRASS = {"young_modulus": "100 GPa", "poisson_ratio": 0.35, "density": "8500 kg/m^3", "yield_stress": "0.3 GPa"}
-SPHERE = {"kind": "sphere-sphere", "target": {"material": "brass", "radius": "4 mm"}}
 VARIANTS = {
     "wall_thornton": ({}, None),
     "wall_hertz": ({}, "hertz"),
@@ -53,58 +37,27 @@ VARIANTS = {
 PARTS = ("header.j2", "macros.j2", "scene_macros.j2")  # of other templates
 
 
-def planned(changes, law=None):
-    data = read_toml(CASES / "steel_wall.toml")
-    data["materials"]["brass"] = BRASS
-    data["impact"] |= changes
-    x = experiment(parse(data, "test"), law)
-    return plan(x, predict(x))
-
-
-def compare_with_stored(name: str, text: str) -> None:
-    """A change of a deck is seen in review: to store it anew, delete the file in `stored` and run twice."""
-    stored = HERE / "stored" / f"{name}.in"
-    if not stored.exists():
-        stored.parent.mkdir(exist_ok=True)
-        stored.write_text(text)
-        pytest.fail(f"{stored} did not exist and was written; look at it and run again")
-    assert rounded(text) == rounded(stored.read_text())
-
-
-def rounded(text: str) -> str:
-    """The deck of any version, long numbers to 10 digits: the last ones follow the rounding of theory's quadrature."""
-    text = re.sub(r"(?m)^# epdem [^;]+;", "# epdem;", text)
-    return re.sub(r"\d+\.\d{10,}(e[-+]?\d+)?", lambda number: f"{float(number[0]):.9e}", text)
-
-
 @pytest.mark.parametrize("name", VARIANTS)
 def test_the_deck_is_as_stored(name, tmp_path):
     Liggghts().write(planned(*VARIANTS[name]), tmp_path)
-    compare_with_stored(name, (tmp_path / "in.impact").read_text())
+    compare(HERE, name, (tmp_path / "in.impact").read_text())
 
 
-@pytest.mark.parametrize(("engine", "name"), [(Yade(), "impact.py"), (LammpsMdr(), "in.impact")])
+@pytest.mark.parametrize(("engine", "name"), [(Yade(), "impact.py")])
 def test_the_deck_of_another_engine_is_as_stored(engine, name, tmp_path):
     engine.write(planned({}), tmp_path)
-    compare_with_stored(f"{engine.name}_wall", (tmp_path / name).read_text())
-
-
-@pytest.mark.parametrize(("engine", "script"), [(liggghts_motions, "in.motion"), (yade_motions, "motion.py")])
-def test_the_deck_of_a_motion_is_as_stored(engine, script):
-    """The materials are of one name each: the second sphere is of the wall's."""
-    touch = touch_of(CASES / "oblique_steel.toml")
-    compare_with_stored(f"motion_{script[-2:]}", engine.files(touch, shear_elastic(touch))[script])
+    compare(HERE, f"{engine.name}_wall", (tmp_path / name).read_text())
 
 
 @pytest.mark.parametrize("name", ["settle_glass", "compaction_powder"])
 def test_the_deck_of_a_scene_in_yade_is_as_stored(name):
-    compare_with_stored(f"yade_{name}", yade_scene.files(scene_plan(load_scene(CASES / f"{name}.toml")))["scene.py"])
+    compare(HERE, f"yade_{name}", yade_scene.files(scene_plan(load_scene(CASES / f"{name}.toml")))["scene.py"])
 
 
 @pytest.mark.parametrize("path", SCENES, ids=lambda p: p.stem)
 def test_the_deck_of_a_scene_is_as_stored(path):
     texts = scene_deck.files(scene_plan(load_scene(path)))
-    compare_with_stored(path.stem, texts["in.scene"] + texts["setup.in"])
+    compare(HERE, path.stem, texts["in.scene"] + texts["setup.in"])
 
 
 def test_the_deck_of_a_scene_of_parts_in_yade_is_as_stored():
@@ -118,7 +71,7 @@ def test_the_deck_of_a_scene_of_parts_in_yade_is_as_stored():
     turn = {"wall": "cylinder", "kind": "rotate", "axis": [0.0, 0.0, 1.0], "rate": "-2 rad/s"}
     scene["phase"] += [{"name": "work", "duration": "1 ms", "time_step": "1e-6 s", "move": [shake, down, turn]}]
     texts = yade_scene.files(scene_plan(parse_scene(data, CASES / "sieve_cylinder.toml")))
-    compare_with_stored("yade_moving_parts", texts["scene.py"])
+    compare(HERE, "yade_moving_parts", texts["scene.py"])
 
 
 def test_the_deck_of_a_scene_of_moving_parts_is_as_stored():
@@ -141,7 +94,7 @@ def test_the_deck_of_a_scene_of_moving_parts_is_as_stored():
     scene["phase"][1] |= {"time_step": "1e-5 s", "move": [down, hold]}
     data["output"] |= {"energy": False}
     texts = scene_deck.files(scene_plan(parse_scene(data, path)))
-    compare_with_stored("moving_parts", texts["in.scene"] + texts["setup.in"])
+    compare(HERE, "moving_parts", texts["in.scene"] + texts["setup.in"])
 
 
 def test_the_spheres_of_a_file_are_as_stored(tmp_path):
@@ -151,42 +104,18 @@ def test_the_spheres_of_a_file_are_as_stored(tmp_path):
     data = read_toml(CASES / "sieve_cylinder.toml")
     data["scene"]["fill"] = [{"name": "table", "file": str(tmp_path / "spheres.csv")}]
     texts = scene_deck.files(scene_plan(parse_scene(data, CASES / "sieve_cylinder.toml")))
-    compare_with_stored("spheres_of_a_file", texts["spheres.data"])
+    compare(HERE, "spheres_of_a_file", texts["spheres.data"])
 
 
 def test_the_deck_of_a_continued_scene_is_as_stored():
     d = scene_deck.deck(scene_plan(load_scene(CASES / "compaction_powder.toml")))
     d = replace(d, from_restart="restart.31200.bin", resumed_phase=1)
-    compare_with_stored("compaction_powder_resumed", deck.render("liggghts/scene_resume.in.j2", deck=d))
-
-
-@pytest.mark.parametrize("variant", ["swap", "sort", "migration", "restart"])
-def test_the_decks_of_a_variant_are_as_stored(variant):
-    found = pairs.pairs(planned(SPHERE), 1e-5)
-    compare_with_stored(
-        f"pairs_{variant}", "".join(liggghts_pairs.scripts(Liggghts().deck(found.plan), found, variant))
-    )
-    if variant in Yade.can.variants:
-        compare_with_stored(
-            f"yade_pairs_{variant}", "".join(yade_pairs.scripts(Yade().deck(found.plan), found, variant))
-        )
-
-
-@pytest.mark.parametrize(("name", "law"), [("plate", "cavity"), ("mixture", "hertz"), ("shock", "thornton")])
-def test_the_deck_of_an_assembly_is_as_stored(name, law, tmp_path):
-    scene = with_law(ASSEMBLIES[name]((2, 2, 4)), law)
-    LiggghtsAssemblies().write(AssemblyPlan(scene, scene.time_step(), 4), tmp_path)
-    compare_with_stored(f"assembly_{name}", (tmp_path / "in.assembly").read_text())
-
-
-def test_the_script_of_other_precisions_is_as_stored():
-    p = planned({}, "hertz")
-    compare_with_stored("yade_precisions", precisions.deck(p.experiment, p.time_step, p.gap[:8], p.steps))
+    compare(HERE, "compaction_powder_resumed", deck.render("liggghts/scene_resume.in.j2", deck=d))
 
 
 def test_every_template_has_a_stored_rendering():
     """Known by its longest line without a name or a condition."""
-    stored = [path.read_text() for path in (HERE / "stored").glob("*.in")]
+    stored = [path.read_text() for path in HERE.parent.rglob("stored/*.in")]
     templates = [
         p for p in (HERE.parents[1] / "templates").rglob("*.j2") if p.name not in PARTS and p.parent.name != "report"
     ]
@@ -205,7 +134,7 @@ def test_a_title_cannot_add_a_line_to_a_deck(tmp_path):
     assert (tmp_path / "impact.data").read_text().splitlines()[1] == ""
 
 
-@pytest.mark.parametrize(("engine", "name"), [(Yade(), "impact.py"), (LammpsMdr(), "in.impact")])
+@pytest.mark.parametrize(("engine", "name"), [(Yade(), "impact.py")])
 def test_the_header_of_the_other_engines_is_comments_too(engine, name, tmp_path):
     p = planned({})
     x = replace(p.experiment, title="two\nprint('run')", source="shell\rtouch pwned")

@@ -13,7 +13,6 @@ from epdem.engines import scene_engine
 from epdem.errors import CaseError
 from epdem.impacts import timestep
 from epdem.impacts.experiment import experiment
-from epdem.impacts.foreign import mdr, predict_mdr
 from epdem.impacts.plan import plan as plan_impacts
 from epdem.impacts.prediction import predict
 from epdem.laws.native import Law
@@ -21,6 +20,7 @@ from epdem.scenes import placement
 from epdem.scenes.engine import files
 from epdem.scenes.measures import refuse_measures
 from epdem.scenes.plan import plan
+from epdem.verification.models.predictions import mdr, predict_mdr
 
 sys.path.append(str(Path(__file__).parents[1] / "scenes"))
 from parts_cases import BED, CASE, FLOOR

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The commands that need no engine: `epdem theory`, `epdem figures`, and the materials file behind them."""
+"""The commands that need no engine: `epdem theory`, `epdem verify figures`, and the materials file behind them."""
 
 import json
 import tomllib

@@ -6,8 +6,8 @@ import pytest
 
 from epdem.engines import engine
 from epdem.impacts.plan import Plan
-from epdem.studies.stability.cases import build
-from epdem.studies.stability.running import setting
+from epdem.verification.stability.cases import build
+from epdem.verification.stability.running import setting
 
 SHARE = 0.01  # of the stability limit
 

@@ -19,6 +19,7 @@ TOOLS = {
     "ruff check": ["ruff", "check", "--output-format", "concise", *PYTHON],
     "ruff format": ["ruff", "format", "--check", *PYTHON],
     "mypy": ["mypy"],
+    "lint-imports": ["lint-imports", "--no-cache"],
     "clang-format": ["clang-format", "--dry-run", "--Werror", *CPP],
     "clang-tidy": ["clang-tidy", "--quiet", *LAWS],
 }

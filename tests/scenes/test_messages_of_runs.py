@@ -16,19 +16,20 @@ from epdem.case import impact
 from epdem.case.toml import read_toml
 from epdem.engines import engine
 from epdem.errors import CaseError, EngineError
-from epdem.impacts.engine import Edit, Trajectory
+from epdem.impacts.engine import Trajectory
 from epdem.impacts.experiment import experiment
 from epdem.impacts.measurement import measure
 from epdem.impacts.plan import plan
 from epdem.impacts.prediction import predict
-from epdem.lammps import impacts as lammps
 from epdem.liggghts import dump, kept, own_template, scene_tables
 from epdem.liggghts import impacts as liggghts
 from epdem.scenes import columns, contacts, run, stl_files
 from epdem.studies import one_impact, tune
-from epdem.studies.stability import variants
 from epdem.studies.sweep import slurm
 from epdem.theory.yielding import principal
+from epdem.verification.models import lammps
+from epdem.verification.stability import variants
+from epdem.verification.stability.edits import Edit
 from epdem.yade import scene_tables as yade_tables
 from epdem.yade.deck_modules.law import Cavity
 
@@ -154,8 +155,6 @@ def test_decks_and_studies(tmp_path, monkeypatch):
         variants.edit(deck, Edit("run", ()))
     with says("a trial ended before its second piece; give it more time"):
         tune._of_cuts({"x": [(1.0, 1)]})
-    with says("engine embedded: one contact has no order, owner or restart to depend on", CaseError):
-        engine("embedded").run_pairs(None, "swap", tmp_path)
     with says("deck cannot be made into another set-up"):
         variants.edits(variants.PositionSampler(engine("embedded"), tmp_path))
     with says(r"a template's name ends in \.j2; the deck is written without it", CaseError):

@@ -17,17 +17,14 @@ from ..base import stopping
 from ..base.settings import DEFAULT_ENGINE
 from ..base.terminal import console, status
 from ..errors import CaseError, EpdemError, Stopped
+from ..verification.cli import app as verify
 from . import calibrate as cli_calibrate
-from . import crosscheck as cli_crosscheck
 from . import impacts as cli_impacts
-from . import motion as cli_motion
 from . import numerics as cli_numerics
-from . import rerun as cli_rerun
 from . import scenes as cli_scene
 from . import sweep as cli_sweep
 from . import theory as cli_theory
 from . import trees as cli_trees
-from . import validate as cli_validate
 from .options import AsJson, CasePath, Engines, Force, Formats, Laws, Out, formats, refuse
 
 ABOUT = """Elastic-plastic particle contact for LIGGGHTS and YADE, checked against theory.
@@ -36,6 +33,9 @@ Begin with: epdem run cases/steel_wall.toml -e embedded -e liggghts
 
 Exit codes: 0 all within tolerance, 1 a check failed, 2 bad input, 3 an engine failed, 130 stopped.
 """
+MOVED = {name: f"epdem verify {name}" for name in ("cost", "crosscheck", "figures", "motion", "rerun", "stability")} | {
+    "validate": "epdem verify data"
+}
 UsageError: Any = typer.BadParameter.__base__  # typer gives its own name to its children only
 app = typer.Typer(
     no_args_is_help=True,
@@ -179,14 +179,9 @@ def doctor(as_json: AsJson = False) -> None:
 
 for command in (
     cli_impacts.predict,
-    cli_crosscheck.crosscheck,
-    cli_motion.motion,
     cli_theory.theory,
-    cli_theory.figures,
     cli_theory.cite,
     cli_numerics.timestep,
-    cli_numerics.cost,
-    cli_numerics.stability,
     cli_scene.explain,
     cli_scene.tune,
     cli_scene.view,
@@ -194,13 +189,11 @@ for command in (
     cli_calibrate.calibrate,
     cli_sweep.sweep,
     cli_sweep.status,
-    cli_rerun.rerun,
     cli_trees.header,
-    cli_validate.validate,
 ):
     app.command()(command)
 app.command("points", hidden=True)(cli_sweep.points)  # what batch scripts call
-app.command("stress", hidden=True, deprecated=True)(cli_numerics.stability)  # its name in version 0.1
+app.add_typer(verify, name="verify")
 
 
 def _usage(error: Any) -> int:
@@ -209,6 +202,8 @@ def _usage(error: Any) -> int:
         error.show()
         return 2
     name = error.ctx.command_path if error.ctx else "epdem"
+    if name == "epdem" and (moved := MOVED.get(next(iter(sys.argv[1:]), ""))):
+        text, name = f"'epdem {sys.argv[1]}' is now '{moved}'", moved
     dash = next((word for word in sys.argv[1:] if word.startswith("-") and Path(word).exists()), None)
     advice = f"write the file as ./{dash}" if dash else f"see {name} --help"
     print(f"epdem: {text.rstrip('.').replace('Input should be', 'must be')}; {advice}", file=sys.stderr)

@@ -1,16 +1,15 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The commands `epdem theory` and `epdem figures`."""
+"""The commands `epdem theory` and `epdem cite`."""
 
 import json
-from pathlib import Path
 from typing import Annotated
 
 import typer
 
 from ..base.settings import DEFAULT_ENGINE
-from ..base.terminal import console, show_table, status
+from ..base.terminal import console, show_table
 from ..base.terminal import table as empty_table
-from .options import AsJson, CasePath, Engines, Force, Formats, Laws, formats, refuse, say_files
+from .options import AsJson, CasePath, Engines, Laws, refuse
 
 
 def theory(
@@ -51,23 +50,6 @@ def theory(
         soft_wrap=True,
     )
     console().print(f"source: {x.source}", soft_wrap=True)
-
-
-def figures(
-    out: Annotated[Path, typer.Option("--out", "-o", help="folder for the figures")] = Path("runs/figures"),
-    pictures: Formats = None,
-    force: Force = False,
-    as_json: AsJson = False,
-) -> None:
-    """Draw figures 8.16, 8.17 and 8.19 of Seville and Wu (2016) and figure 10 of Thornton and Ning (1998)."""
-    from ..base.folders import claim
-    from ..studies.figures import draw_all
-
-    kinds = formats(pictures)
-    with claim(out, force=force), status() as progress:
-        progress("four figures")
-        paths = draw_all(out, kinds)
-    say_files(paths, as_json)
 
 
 def cite(

@@ -9,7 +9,7 @@ from ..case.impact import Case
 from ..case.scene import SceneCase
 from ..laws.strengths import law_named
 from ..theory.sources import CHAPTER, SOURCES, Source
-from . import ENGINES, FOREIGN, OTHERS
+from . import ENGINES
 
 PROGRAM = Source("The epdem developers", f"epdem {__version__}", "CITATION.cff", kind="misc")
 
@@ -39,8 +39,8 @@ def citations(case: Case | SceneCase, laws: Sequence[str], engines: Sequence[str
     if case.contact is not None and case.contact.tangential != "history":
         names = ("Jaeger 1993", "Popov and Hess 2015")
         found |= {f"partial slip, {name}": SOURCES[name] for name in names}
-    known = ENGINES | OTHERS | FOREIGN
-    return Citations(found | {name: source for name in engines if (source := known[name].source)})
+    programs = {name: ENGINES[name].source for name in engines if name in ENGINES}
+    return Citations(found | {name: source for name, source in programs.items() if source})
 
 
 def of_laws(laws: Sequence[str]) -> dict[str, Source]:

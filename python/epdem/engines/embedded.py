@@ -4,14 +4,10 @@
 import time
 from pathlib import Path
 
-import numpy as np
-
 from ..base import paths
 from ..case.fields import NODES
-from ..errors import CaseError
 from ..impacts import oblique
 from ..impacts.engine import Abilities, Trajectory, check_abilities
-from ..impacts.pairs import Pairs
 from ..impacts.plan import Plan
 from ..laws import library as claw
 from ..laws.native import ImpactNumbers
@@ -43,7 +39,7 @@ class Embedded:
         x = plan.experiment
         start = time.perf_counter()
         law = x.native_law()
-        _, overlap, force, velocity = law.impact_paths(steps=plan.steps, **_numbers(plan))
+        _, overlap, force, velocity = law.impact_paths(steps=plan.steps, **numbers(plan))
         tangential = spin = None
         if x.oblique:
             slip = law.oblique(
@@ -52,24 +48,15 @@ class Embedded:
                 mu=x.oblique.friction,
                 nodes=oblique.nodes(x),
                 steps=plan.steps,
-                **_numbers(plan),
+                **numbers(plan),
             )
             tangential, spin = oblique.after_slip(x, slip)
         seconds = {"stepping": time.perf_counter() - start}
         return Trajectory(plan.time_step, overlap, force, velocity, seconds, tangential, spin)
 
-    def seconds(self, plan: Plan, folder: Path) -> dict[str, float]:
-        x, begin = plan.experiment, time.perf_counter()
-        law = x.native_law()
-        ready = time.perf_counter()
-        law.impacts(steps=plan.steps, **_numbers(plan))
-        return {"startup": 0.0, "setup": ready - begin, "stepping": time.perf_counter() - ready}
 
-    def run_pairs(self, pairs: Pairs, variant: str, folder: Path) -> np.ndarray:
-        raise CaseError("engine embedded: one contact has no order, owner or restart to depend on")
-
-
-def _numbers(plan: Plan) -> ImpactNumbers:
+def numbers(plan: Plan) -> ImpactNumbers:
+    """What the impacts of a plan have in common, as the C library takes it."""
     x = plan.experiment
     return {
         "R_star": x.R_star,

@@ -1,10 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """The interface of an engine of impacts: a plan goes in, a trajectory comes out."""
 
-import math
 import shutil
-import time
-from collections.abc import Callable
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Protocol
@@ -15,7 +12,6 @@ from ..errors import CaseError, EngineError
 from ..theory.sources import Source
 from . import oblique
 from .experiment import Experiment
-from .pairs import Pairs
 from .plan import Plan
 from .prediction import Prediction
 
@@ -41,47 +37,6 @@ class Trajectory:
 
 
 @dataclass(frozen=True)
-class Edit:
-    """`lines` after, or `instead` of, the one line of a deck that begins with `start`."""
-
-    start: str
-    lines: tuple[str, ...]
-    instead: bool = False
-
-
-@dataclass(frozen=True)
-class Edits:
-    """How the deck of an impact on a wall becomes another set-up.
-
-    `wall` is how the line of the wall begins, of which `second_wall` makes that of a wall at another height [m].
-    `carry` moves the sphere from its place down by a rise [m] and back, in cycles of so many steps. `unknown` samples
-    at the start are not known to the history of a contact that is there from the start.
-    """
-
-    deck: str
-    wall: str
-    second_wall: Callable[[str, float], str]
-    carry: Callable[[float, float, int], list[Edit]]
-    unknown: int = 0
-
-
-@dataclass(frozen=True)
-class Precisions:
-    """Builds of an engine in other floating-point precisions, for round-off.
-
-    `programs`: the plain one first, the finest last. `rebounds` is e_n of a sphere of its own elastic law on a wall
-    from so many gaps [m], shape (n,): program, scratch folder, experiment of one speed, time step [s], gaps, steps.
-    """
-
-    programs: tuple[str, ...]
-    rebounds: Callable[[str, Path, Experiment, float, np.ndarray, int], np.ndarray]
-
-    def available(self) -> bool:
-        """Whether all programs are here."""
-        return all(shutil.which(p) for p in self.programs)
-
-
-@dataclass(frozen=True)
 class Abilities:
     """The abilities of an engine; other code never tests its name."""
 
@@ -95,20 +50,9 @@ class Abilities:
     ranks: int = 1  # the largest number on this machine
     deck: bool = True  # it reads a deck, which runs without epdem too
     positions: bool = True  # its overlap is a difference of positions
-    staggered: bool = False  # its velocity belongs to half a step before the position
     scenes: tuple[str, ...] = ()  # kinds of bulk scenes
     restarts: bool = False  # it continues an interrupted bulk scene
-    edits: Edits | None = None  # of its deck
-    variants: tuple[str, ...] = ()  # of the same impacts that `run_pairs` can run, beside the plain one
     stays: bool = False  # one process of it can run plan after plan; the class takes `stay`
-    slow: bool = False  # seconds for a plan: long studies give it fewer
-    own_models: tuple[str, ...] = ()  # engines that run the own models of its program
-    precisions: Precisions | None = None  # builds of its program
-
-    @property
-    def only_law(self) -> str | None:
-        """The law of ours for which a model of another code stands, where an engine has no other."""
-        return self.laws[0] if self.laws and len(self.laws) == 1 else None
 
 
 class Engine(Protocol):
@@ -132,35 +76,6 @@ class Engine(Protocol):
 
     def run(self, plan: Plan, folder: Path, *, ranks: int = 1) -> Trajectory:
         """Run what `write` wrote. Raises EngineError with the end of the engine's log."""
-
-    def seconds(self, plan: Plan, folder: Path) -> dict[str, float]:
-        """Times of one run with the least possible output [s]: startup, setup, stepping; NaN where unknown."""
-
-    def run_pairs(self, pairs: Pairs, variant: str, folder: Path) -> np.ndarray:
-        """Velocities [m/s] after the impacts of `pairs`, "plain" or in one of `can.variants`: (2, n, 3), body first.
-
-        Raises EngineError; ValueError if bodies are lost.
-        """
-
-
-def recorded_seconds(tool: Engine, plan: Plan, folder: Path) -> dict[str, float]:
-    """`seconds` of an engine that always writes samples: its own stepping, and the rest as setup."""
-    begin = time.perf_counter()
-    tool.write(plan, folder)
-    stepping = tool.run(plan, folder).seconds.get("stepping", math.nan)
-    return {"startup": math.nan, "setup": time.perf_counter() - begin - stepping, "stepping": stepping}
-
-
-class OwnTheory(Engine, Protocol):
-    """An engine with a law of another code, and the theory of that law."""
-
-    end_power: float  # the power of the force that falls linearly with the overlap at the end of an impact
-
-    def predict(self, x: Experiment) -> Prediction:
-        """The prediction of the model's own theory. Raises CaseError if the model cannot represent the case."""
-
-    def note(self, x: Experiment) -> str:
-        """The origin of its numbers, in words."""
 
 
 class Installable(Protocol):

@@ -2,14 +2,24 @@
 """Initial positions of the bodies of a plan: one cell of a grid per impact, contact at z = 0."""
 
 import math
+from dataclasses import dataclass
 
 import numpy as np
 
 from .experiment import Body
-from .pairs import Group
 from .plan import Plan
 
 SPACING = 2.6  # larger radii between two impacts
+
+
+@dataclass(frozen=True)
+class Group:
+    """The bodies of one side: places [m] and velocities [m/s], shape (n, 3); spin about y [rad/s], shape (n,)."""
+
+    body: Body
+    place: np.ndarray
+    velocity: np.ndarray
+    spin: np.ndarray | None = None  # none
 
 
 def side_by_side(plan: Plan) -> tuple[Group, ...]:

@@ -13,22 +13,17 @@ from ..case.fields import NODES
 from ..case.kinds import KINDS
 from ..errors import CaseError, EngineError
 from ..impacts.engine import Abilities, Trajectory, check_abilities
-from ..impacts.pairs import Pairs
 from ..impacts.places import approach, room, side_by_side
 from ..impacts.plan import Plan
-from ..lammps import data_file
 from ..laws.library import laws
 from ..theory.sources import Source
-from . import dump, executable, launcher
+from . import data_file, dump, executable, launcher
 from .deck import Deck
-from .edits import EDITS
 from .kept import Kept
 from .log import loop_seconds
-from .pairs import velocities
 from .properties import HARD, SOFT, Property, atom_types, finite, of_law, tangential
 
 PATH, END = "path.bin", "end.bin"
-OWN_MODELS = ("liggghts-thornton_ning", "liggghts-hertz")
 
 
 class Liggghts:
@@ -50,10 +45,7 @@ class Liggghts:
         ranks=launcher.most_ranks(),
         scenes=KINDS,
         restarts=True,
-        edits=EDITS,
-        variants=("swap", "sort", "migration", "restart"),
         stays=True,
-        own_models=OWN_MODELS,
     )
 
     def __init__(self, *, stay: bool = False):
@@ -129,21 +121,6 @@ class Liggghts:
         result = trajectory(plan, path, {"total": wall, "stepping": loop_seconds(folder / launcher.LOG)})
         path.unlink()  # large
         return result
-
-    def seconds(self, plan: Plan, folder: Path) -> dict[str, float]:
-        files = self.write(plan, folder)
-        lines = files[0].read_text(encoding="utf-8").splitlines(keepends=True)
-        files[0].write_text(
-            "".join(line for line in lines if not line.startswith("dump ")), encoding="utf-8"
-        )  # stepping, not writing
-        (folder / "in.empty").write_text("# nothing\n", encoding="utf-8")
-        startup = launcher.run("in.empty", folder, out="out.empty", seconds=120)
-        total = launcher.run(files[0].name, folder, log=launcher.LOG, seconds=600)
-        stepping = loop_seconds(folder / launcher.LOG)
-        return {"startup": startup, "setup": max(total - startup - stepping, 0.0), "stepping": stepping}
-
-    def run_pairs(self, pairs: Pairs, variant: str, folder: Path) -> np.ndarray:
-        return velocities(self.deck(pairs.plan), pairs, variant, folder)
 
 
 def data_text(plan: Plan, types: int) -> str:

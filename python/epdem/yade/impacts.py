@@ -13,18 +13,14 @@ from ..base import rendering as decks
 from ..base.processes import ask, call
 from ..case.fields import NODES
 from ..errors import EngineError
-from ..impacts.engine import Abilities, Trajectory, check_abilities, recorded_seconds
+from ..impacts.engine import Abilities, Trajectory, check_abilities
 from ..impacts.experiment import Body, Experiment
-from ..impacts.pairs import Pairs
 from ..impacts.places import approach, side_by_side
 from ..impacts.plan import Plan
 from ..theory.sources import Source
 from .deck import Deck, Group, Material, refuse_parameters, strength_values
 from .deck_modules.law import LAWS
-from .edits import EDITS
 from .launcher import command, environment, write_deck_modules
-from .pairs import velocities
-from .precisions import PRECISIONS
 
 INSTALL = "apt-get install yade"
 
@@ -46,12 +42,7 @@ class Yade:
         laws=tuple(LAWS),
         friction=tuple(NODES),
         own_spring=True,
-        staggered=True,
         scenes=("settle", "compaction", "parts"),
-        edits=EDITS,
-        variants=("swap", "restart"),
-        slow=True,
-        precisions=PRECISIONS,
     )
     template = "yade/impact.py.j2"
 
@@ -145,12 +136,6 @@ class Yade:
         result = trajectory(plan, path, {"total": wall, "stepping": stepping_seconds(log)})
         path.unlink()  # large
         return result
-
-    def seconds(self, plan: Plan, folder: Path) -> dict[str, float]:
-        return recorded_seconds(self, plan, folder)
-
-    def run_pairs(self, pairs: Pairs, variant: str, folder: Path) -> np.ndarray:
-        return velocities(self.deck(pairs.plan), pairs, variant, folder)
 
 
 def tables(plan: Plan) -> list[np.ndarray]:

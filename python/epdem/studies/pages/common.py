@@ -71,7 +71,7 @@ def page_of(
             cited(outcome.case, laws, engines),
         ],
         passed=outcome.passed,
-        command=command or f"epdem rerun {outcome.folder}/results.h5",
+        command=command or f"epdem verify rerun {outcome.folder}/results.h5",
         warnings=outcome.warnings,
     )
 

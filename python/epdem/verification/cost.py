@@ -1,0 +1,185 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Error against run time: the same impacts at 10 to 3000 steps in contact, by every given engine and law.
+
+Absolute times are noisy; the figure of merit is the ratio to LIGGGHTS's own elastic `hertz` in the same run.
+"""
+
+import tempfile
+import time
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pandas as pd
+
+from ..case.impact import Case, load
+from ..case.toml import named
+from ..engines import DEFAULT_ENGINE, Engine
+from ..engines.embedded import Embedded
+from ..errors import EngineError
+from ..impacts.engine import require
+from ..impacts.experiment import experiment
+from ..impacts.plan import Plan, plan
+from ..impacts.prediction import Prediction, predict
+from ..impacts.run import run_and_compare
+from .models import REFERENCE, SAME_LAW, engine, only_law
+from .timing import seconds
+
+STEPS = (10, 17, 30, 55, 100, 170, 300, 550, 1000, 1700, 3000)
+QUANTITIES = ("e_n", "contact_time", "force_max")
+TARGETS = (1e-2, 1e-3, 1e-4)
+LEAST_PHASES = 8
+ENGINES = (Embedded.name, DEFAULT_ENGINE)  # of a study that names none
+
+
+@dataclass(frozen=True)
+class Model:
+    """An engine with a law, and the plan of each number of steps."""
+
+    engine: Engine
+    law: str
+    prediction: Prediction
+    plans: dict[int, Plan]
+
+    @property
+    def label(self) -> str:
+        """The model in tables and figures."""
+        return self.engine.name if only_law(self.engine) else f"{self.engine.name}, {self.law}"
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """rows: one per model and number of steps; models: one per model."""
+
+    case: Case
+    rows: pd.DataFrame
+    models: pd.DataFrame
+    seconds: float
+
+
+def models(case: Case, engines: list[str], laws: list[str], steps: tuple[int, ...]) -> list[Model]:
+    """What runs against what. With LIGGGHTS come its own thornton_ning and, as the reference, its own hertz."""
+    engines = [*engines, *(SAME_LAW if DEFAULT_ENGINE in engines else ())]
+    numerics = case.numerics.model_copy(update={"phases": max(case.numerics.phases, LEAST_PHASES), "error": None})
+    chosen = []
+    for name in dict.fromkeys(engines):
+        tool = engine(name)
+        require(tool)
+        for law in [only] if (only := only_law(tool)) else laws or [case.law.name]:
+            # the case's own law keeps the case's parameters
+            x = replace(experiment(case, None if law == case.law.name else law), numerics=numerics)
+            prediction = predict(x)
+            shortest = float(prediction.duration.min())
+            plans = {n: plan(x, prediction, time_step=shortest / n) for n in steps}
+            chosen.append(Model(tool, law, prediction, plans))
+    return chosen
+
+
+def errors(c: Model, p: Plan, folder: Path) -> dict[str, float]:
+    """Largest and rms errors over all speeds and phases, relative to theory; NaN where a contact did not end."""
+    for longer in (1.0, 1.3, 2.0):  # coarse steps stretch contacts
+        try:
+            longest = replace(p, steps=int(p.steps * longer))
+            rows, _ = run_and_compare(longest, c.prediction, c.engine, folder)
+            break
+        except EngineError:
+            if longer == 2.0:
+                return {f"{q}_{kind}": np.nan for q in QUANTITIES for kind in ("error", "rms")}
+    return {f"{q}_error": float(rows[f"{q}_error"].max()) for q in QUANTITIES} | {
+        f"{q}_rms": float(np.sqrt((rows[f"{q}_rms"] ** 2).mean())) for q in QUANTITIES
+    }
+
+
+def order(steps: np.ndarray, error: np.ndarray) -> float:
+    """Observed order: minus the slope of log error over log steps while the error still falls; NaN below 3 points."""
+    good = np.isfinite(error) & (error < 0.2) & (error > 3 * np.nanmin(error))
+    return float(-np.polyfit(np.log(steps[good]), np.log(error[good]), 1)[0]) if good.sum() > 2 else np.nan
+
+
+def cheapest(rows: pd.DataFrame, target: float) -> pd.Series | None:
+    """The coarsest row from which on all finer ones keep e_n within `target`; None if there is none."""
+    rows = rows.sort_values("steps", ascending=False)
+    good = (rows["e_n_error"] <= target).cumprod().astype(bool)
+    return rows[good].iloc[-1] if good.any() else None
+
+
+def _timings(
+    chosen: list[Model], steps: tuple[int, ...], repetitions: int, folder: Path, progress: Callable[[str], None]
+) -> pd.DataFrame:
+    """One row per repetition, model and steps. Models alternate, so that drifts of the machine hit all."""
+    rows: list[dict[str, Any]] = []
+    for k in range(repetitions):
+        for n in steps:
+            for c in chosen:
+                progress(f"time {k + 1}/{repetitions}: {c.label}, {n} steps")
+                rows.append({"repetition": k, "model": c.label, "steps": n} | seconds(c.engine, c.plans[n], folder))
+                rows[-1]["ns_per_step"] = rows[-1]["stepping"] / (c.plans[n].n * c.plans[n].steps) * 1e9
+    return pd.DataFrame(rows)
+
+
+def spread(x: pd.Series) -> float:
+    """Distance of the quartiles."""
+    return float(x.quantile(0.75) - x.quantile(0.25))
+
+
+def over_reference(times: pd.DataFrame, value: str, keys: list[str]) -> pd.Series:
+    """Column `value` over that of the reference in the row with the same `keys`; NaN without a reference."""
+    reference = times[times["model"] == REFERENCE].set_index(keys)[value]
+    return times[value] / reference.reindex(pd.MultiIndex.from_frame(times[keys])).to_numpy()
+
+
+def run(
+    case_path: Path | str,
+    *,
+    engines: list[str],
+    laws: list[str],
+    steps: tuple[int, ...] = STEPS,
+    repetitions: int = 5,
+    progress: Callable[[str], None] = lambda text: None,
+) -> Outcome:
+    """Errors and times of every model at every number of steps in the shortest contact; engines none: ENGINES."""
+    case, begin = load(case_path), time.perf_counter()
+    with named(case_path):
+        chosen = models(case, engines or [*ENGINES], laws, steps)
+    rows = []
+    with tempfile.TemporaryDirectory(prefix="epdem-cost-") as scratch:
+        folder = Path(scratch)
+        for c in chosen:
+            for n in steps:
+                progress(f"error: {c.label}, {n} steps")
+                row = {"model": c.label, "engine": c.engine.name, "law": c.law, "steps": n, "impacts": c.plans[n].n}
+                rows.append(row | errors(c, c.plans[n], folder))
+        times = _timings(chosen, steps, repetitions, folder, progress)
+    return Outcome(case, *_combine(pd.DataFrame(rows), times), time.perf_counter() - begin)
+
+
+def _combine(rows: pd.DataFrame, times: pd.DataFrame) -> tuple[pd.DataFrame, pd.DataFrame]:
+    """Medians and quartile distances beside the errors; then one row per model."""
+    times["ratio"] = over_reference(times, "ns_per_step", ["repetition", "steps"])
+    groups = times.groupby(["model", "steps"])
+    middle = groups[["startup", "setup", "stepping", "ns_per_step", "ratio"]].median()
+    middle["stepping_spread"] = groups["stepping"].apply(spread)
+    rows = rows.merge(middle.reset_index(), on=["model", "steps"])
+    rows["ns_per_impact"] = rows["stepping"] / rows["impacts"] * 1e9
+    summary = []
+    for label, part in rows.groupby("model", sort=False):
+        fine = times[(times["model"] == label) & (times["steps"] >= 300)]  # a long loop: little but stepping
+        fine = times[times["model"] == label] if fine.empty else fine
+        row = {
+            "model": label,
+            "order": order(part["steps"].to_numpy(), part["e_n_error"].to_numpy()),
+            "best_error": part["e_n_error"].min(),
+            "ns_per_step": fine["ns_per_step"].median(),
+            "ratio_to_hertz": fine["ratio"].median(),
+            "ratio_spread": spread(fine["ratio"]),
+            "startup": part["startup"].median(),
+            "setup": part["setup"].median(),
+        }
+        for target in TARGETS:
+            best = cheapest(part, target)
+            row[f"steps_for_{target:g}"] = np.nan if best is None else int(best["steps"])
+            row[f"ns_for_{target:g}"] = np.nan if best is None else float(best["ns_per_impact"])
+        summary.append(row)
+    return rows, pd.DataFrame(summary)

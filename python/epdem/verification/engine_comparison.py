@@ -1,0 +1,171 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""One case on every installed engine: theory, our laws and those of other codes, in one table and figure."""
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+
+from ..base.folders import claim, results_folder
+from ..base.tables import write_csv
+from ..case.impact import Check, load
+from ..case.toml import named
+from ..engines import ENGINES, Engine
+from ..errors import CaseError, EngineError
+from ..impacts import report
+from ..impacts.comparison import CHECKED
+from ..impacts.experiment import Experiment, experiment
+from ..impacts.plan import plan
+from ..impacts.run import Outcome, run, run_and_compare
+from .invariance.check import VARIANTS, Invariance, examine
+from .models import OWN_LAW, SAME_LAW, OwnTheory
+from .models.predictions import prediction as predict
+
+COARSER = 4  # the order of convergence is seen between steps/4 and steps
+OBLIQUE = ("psi_2_error", "e_t_error")  # absolute, the largest
+PASS, FAIL, OTHERS_WITHIN, OTHERS_OUTSIDE = "pass", "fail", "other code: within", "other code: outside"
+SHOWN = ("e_n", "contact_time", "force_max")
+
+
+@dataclass(frozen=True)
+class Crosscheck:
+    """The table, one row per model; the run behind it; why models are absent; notes on those with own laws.
+
+    Column `check` is PASS or FAIL for epdem's engines, and OTHERS_WITHIN or OTHERS_OUTSIDE for models of other codes,
+    whose errors are no fault of epdem.
+    """
+
+    table: pd.DataFrame
+    outcome: Outcome
+    absent: dict[str, str]
+    notes: dict[str, str]
+
+    @property
+    def passed(self) -> bool:
+        """Whether epdem's engines are within the tolerances of the case, in every variant of the set-up."""
+        return FAIL not in set(self.table["check"])
+
+    @property
+    def others_outside(self) -> list[str]:
+        """The models of other codes that are outside of the tolerances of the case."""
+        return [str(name) for name in self.table["model"][self.table["check"] == OTHERS_OUTSIDE]]
+
+
+def models(x: Experiment, chosen: Sequence[str] = ()) -> tuple[dict[str, Engine], dict[str, str]]:
+    """Engines and models (those `chosen`; none: all) that can run this case here, and why the others cannot.
+
+    Raises CaseError for a name that does not exist, EngineError if nothing can run.
+    """
+    known = ENGINES | SAME_LAW | OWN_LAW
+    if wrong := [name for name in chosen if name not in known]:
+        raise CaseError(f"--engine {wrong[0]!r} does not exist; there are {', '.join(known)}")
+    other_law = {n for n, kind in SAME_LAW.items() if x.law.name not in (kind.can.laws or ())}
+    tools = {n: kind() for n, kind in known.items() if n in chosen or not (chosen or n in other_law)}
+    absent = {name: reason for name, tool in tools.items() if (reason := tool.missing())}
+    for name, tool in tools.items():
+        try:
+            if name not in absent:
+                tool.check(plan(_with_steps(x, 100), predict(tool, x)))
+        except CaseError as error:
+            absent[name] = str(error)
+    if not (here := {n: t for n, t in tools.items() if n not in absent}):
+        raise EngineError("; ".join(f"{name}: {reason}" for name, reason in absent.items()))
+    return here, absent
+
+
+def _own_theory(tool: OwnTheory, x: Experiment, folder: Path) -> tuple[pd.DataFrame, float]:
+    """An engine with a law of its own against its own theory: (one row per speed, seconds)."""
+    prediction = tool.predict(x)
+    p = plan(x, prediction)
+    rows, stage = run_and_compare(p, prediction, tool, folder, law=tool.name, end_power=tool.end_power)
+    return rows, stage.seconds["seconds"]
+
+
+def _row(tool: Engine, fine: pd.DataFrame, coarse: pd.DataFrame, x: Experiment, folder: Path) -> dict[str, object]:
+    middle = fine.iloc[len(fine) // 2]
+    row: dict[str, object] = {"model": tool.name, "speed": middle["speed"]}
+    row |= {name: middle[name] for q in SHOWN for name in (q, q + "_theory")}
+    row |= {f"{q}_error": float(fine[f"{q}_error"].max()) for q in SHOWN}
+    row["order"] = math.log(coarse["e_n_error"].max() / fine["e_n_error"].max()) / math.log(COARSER)
+    row |= {k: float(fine[k].max()) for k in OBLIQUE if k in fine}
+    invariance = examine(tool, x, folder / "invariance" / tool.name)
+    row["unequal_error"] = invariance.unequal_error if invariance else math.nan
+    row |= {variant: invariance.e_n[variant] if invariance else math.nan for variant in VARIANTS}
+    row["momentum"] = float(np.nanmax(list(invariance.momentum.values()))) if invariance else math.nan
+    within = _within(tool, fine, x.check) and _invariant(invariance, x.check.e_n)
+    names = (PASS, FAIL) if tool.name in ENGINES else (OTHERS_WITHIN, OTHERS_OUTSIDE)
+    return row | {"check": names[0] if within else names[1]}
+
+
+def _within(tool: Engine, rows: pd.DataFrame, check: Check) -> bool:
+    """Whether all errors are within tolerance; psi_2 counts where the friction is the case's, not the host's own."""
+    names = [*CHECKED, *(["psi_2"] if "psi_2_error" in rows and not tool.can.own_spring else [])]
+    return all(bool((rows[f"{name}_error"] <= getattr(check, name)).all()) for name in names)
+
+
+def _invariant(found: Invariance | None, tolerance: float) -> bool:
+    """Whether e_n of unequal spheres is that of theory, and changes in no variant by more than the tolerance of e_n."""
+    return found is None or not any(off > tolerance for off in (found.unequal_error, *found.e_n.values()))
+
+
+def crosscheck(
+    path: Path,
+    *,
+    engines: Sequence[str] = (),
+    law: str | None = None,
+    out: Path | None = None,
+    fresh: bool = False,
+    force: bool = False,
+    progress: Callable[[str], None] = lambda text: None,
+) -> Crosscheck:
+    """Run a case on every engine and every model of another code, or on those named by `engines`.
+
+    Engines that are not installed or cannot run the case are left out. Raises CaseError, EngineError.
+    """
+    case = load(path)
+    with named(path):
+        x = experiment(case, law)
+    tools, absent = models(x, engines)
+    own = {name: kind() for name, kind in OWN_LAW.items() if name in tools}
+    folder = results_folder(out, "crosscheck", case.name)
+    steps = case.numerics.steps_in_contact
+    few = max(10, steps // COARSER)
+    with claim(folder, force=force):
+        fine, coarse = (
+            run(
+                path,
+                engines=[tool for name, tool in tools.items() if name not in own],
+                laws=[law] if law else [],
+                out=place,
+                steps=n,
+                fresh=fresh,
+                progress=progress,
+            )
+            for place, n in ((folder, steps), (folder / "coarse", few))
+        )
+        prediction, middle = fine.predictions[x.law.name], x.speed.size // 2
+        rows = [
+            {"model": "theory", "speed": x.speed[middle]}
+            | {q: getattr(prediction, q)[middle] for q in SHOWN}
+            | {"check": ""}
+        ]
+        for name, tool in tools.items():
+            progress(f"{name}: invariance")
+            if name in own:
+                many, seconds = _own_theory(own[name], _with_steps(x, steps), folder / name)
+                less, _ = _own_theory(own[name], _with_steps(x, few), folder / "coarse" / name)
+            else:
+                many, less = (t[t["engine"] == name] for t in (fine.results.comparison, coarse.results.comparison))
+                seconds = fine.seconds[name]
+            rows.append(_row(tool, many, less, x, folder) | {"seconds": seconds})
+        table = pd.DataFrame(rows)
+        write_csv(folder / "crosscheck.csv", table)
+        report.figure(fine)
+    return Crosscheck(table, fine, absent, {name: tool.note(x) for name, tool in own.items()})
+
+
+def _with_steps(x: Experiment, steps: int) -> Experiment:
+    return replace(x, numerics=x.numerics.model_copy(update={"steps_in_contact": steps, "error": None}))

@@ -1,0 +1,63 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Pairs of spheres for YADE in variants of the set-up with the same physics."""
+
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+
+from ...base import rendering as decks
+from ...base.processes import call
+from ...errors import EngineError
+from ...impacts.places import Group
+from ...yade.deck import Deck
+from ...yade.impacts import Yade
+from ...yade.launcher import command, environment, write_deck_modules
+from .pairs import Pairs
+
+# a serial YADE keeps bodies where they are in memory and has no ranks: sorting and migration do not exist
+VARIANTS: tuple[str, ...] = ("swap", "restart")
+
+
+def _sides(pairs: Pairs, variant: str) -> dict[str, Group]:
+    return {f"side{k}.data": side for k, side in enumerate(pairs.ordered(variant == "swap"))}
+
+
+def scripts(deck: Deck, pairs: Pairs, variant: str) -> list[str]:
+    """The scripts of a variant in the order in which they run."""
+    steps = pairs.plan.steps
+    context: dict[str, Any] = {
+        "deck": deck,
+        "variant": variant,
+        "sides": [(name, side.body.radius, side.body.material) for name, side in _sides(pairs, variant).items()],
+        "steps": steps,
+        "load": None,
+        "save": None,
+    }
+    parts = [context]
+    if variant == "restart":
+        parts = [
+            context | {"steps": pairs.stop, "save": "middle.yade.gz"},
+            context | {"steps": steps - pairs.stop, "load": "middle.yade.gz"},
+        ]
+    return [decks.render("verification/yade/pairs.py.j2", **part) for part in parts]
+
+
+def velocities(tool: Yade, pairs: Pairs, variant: str, folder: Path) -> np.ndarray:
+    """After the impacts, shape (2, n, 3), the body first. Raises EngineError; ValueError if bodies are lost."""
+    deck = tool.deck(pairs.plan)
+    folder.mkdir(parents=True, exist_ok=True)
+    if not deck.native:
+        write_deck_modules(folder)
+    for name, side in _sides(pairs, variant).items():
+        lines = [" ".join(map(decks.number, row)) for row in np.hstack([side.place, side.velocity])]
+        (folder / name).write_text("\n".join(["# x y z v_x v_y v_z, SI", *lines, ""]), encoding="utf-8")
+    (folder / deck.path).unlink(missing_ok=True)
+    for k, text in enumerate(scripts(deck, pairs, variant)):
+        (folder / f"pairs{k}.py").write_text(text, encoding="utf-8")
+        call([command(), "-n", "-x", f"pairs{k}.py"], folder, log=f"out{k}.yade", seconds=120, env=environment())
+    try:
+        v = np.asarray(np.load(folder / deck.path)).reshape(2, pairs.plan.n, 3)
+    except OSError as error:
+        raise EngineError(f"{folder / deck.path}: the run left no result ({error}); see out{k}.yade beside") from None
+    return np.flip(v, axis=0) if variant == "swap" else np.asarray(v)

@@ -1,0 +1,48 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Contact models of other codes by name, run on the same plans as epdem's engines."""
+
+from typing import Protocol
+
+from ...engines import ENGINES, Engine
+from ...errors import CaseError
+from ...impacts.experiment import Experiment
+from ...impacts.prediction import Prediction
+from .lammps import LammpsMdr
+from .liggghts import BuiltinEdinburgh, BuiltinHertz, BuiltinLuding, ThorntonNing
+from .yade import YadeLuding
+
+
+class OwnTheory(Engine, Protocol):
+    """A model with a law of another code, and the theory of that law."""
+
+    end_power: float  # the power of the force that falls linearly with the overlap at the end of an impact
+
+    def predict(self, x: Experiment) -> Prediction:
+        """The prediction of the model's own theory. Raises CaseError if the model cannot represent the case."""
+
+    def note(self, x: Experiment) -> str:
+        """The origin of its numbers, in words."""
+
+
+# Models that have one of epdem's laws: the theory of the case is theirs, too.
+SAME_LAW: dict[str, type[Engine]] = {tool.name: tool for tool in (ThorntonNing, BuiltinHertz)}
+# Models with a law and a theory of their own: for `crosscheck`.
+OWN_LAW: dict[str, type[OwnTheory]] = {
+    tool.name: tool for tool in (BuiltinLuding, BuiltinEdinburgh, YadeLuding, LammpsMdr)
+}
+REFERENCE = BuiltinHertz.name  # run times are given as ratios to the time of this model
+
+
+def engine(name: str) -> Engine:
+    """The engine or the model of that name. Raises CaseError for a model with a law of its own."""
+    known = ENGINES | SAME_LAW
+    if name in OWN_LAW:
+        raise CaseError(f"--engine {name!r} has a law of its own, not the case's; see 'epdem verify crosscheck'")
+    if name not in known:
+        raise CaseError(f"--engine {name!r} does not exist; there are {', '.join(known)}")
+    return known[name]()
+
+
+def only_law(tool: Engine) -> str | None:
+    """The law of epdem for which a model of another code stands; None: the engine has several."""
+    return tool.can.laws[0] if tool.can.laws and len(tool.can.laws) == 1 else None

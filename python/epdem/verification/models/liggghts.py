@@ -1,0 +1,131 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""LIGGGHTS's own contact models on the same plans, for comparison; their forces do not involve the plugin."""
+
+import math
+from dataclasses import replace
+
+from ...impacts.experiment import Experiment
+from ...impacts.plan import Plan
+from ...impacts.prediction import Prediction
+from ...liggghts.deck import Deck
+from ...liggghts.impacts import Liggghts
+from ...liggghts.properties import Property, of_friction, of_impacts, per_pair, per_type, scalar
+from . import predictions
+
+
+def _elastic(plan: Plan) -> tuple[int, list[Property]]:
+    """Number of atom types; their elastic properties and the restitution of a model without a dashpot."""
+    elastic = of_impacts(plan)
+    types = len(elastic[0].values)
+    return types, [*elastic, per_pair("coefficientRestitution", types, 1.0, "-", "no viscous damping")]
+
+
+WITHOUT_OURS = replace(Liggghts.can, dashpot=False, friction=(), scenes=(), restarts=False)
+
+
+class _Rubbing(Liggghts):
+    """A model with LIGGGHTS's own tangential spring, whatever tangential model the case has."""
+
+    can = replace(WITHOUT_OURS, friction=Liggghts.can.friction, own_spring=True)
+
+    def tangential(self, plan: Plan) -> str | None:
+        return "history" if plan.experiment.oblique else None
+
+
+class BuiltinHertz(_Rubbing):
+    """LIGGGHTS's `hertz` without damping: the elastic limit."""
+
+    name = "liggghts-hertz"
+    can = replace(_Rubbing.can, laws=("hertz",))
+
+    def model(self, plan: Plan) -> str:
+        return "hertz"
+
+    def properties(self, plan: Plan) -> tuple[Property, ...]:
+        types, elastic = _elastic(plan)
+        return (*elastic, *of_friction(plan, types))
+
+
+class ThorntonNing(_Rubbing):
+    """LIGGGHTS's `thornton_ning` without adhesion, with the yield pressure of the plan's `thornton` law."""
+
+    name = "liggghts-thornton_ning"
+    can = replace(_Rubbing.can, laws=("thornton",))
+
+    def model(self, plan: Plan) -> str:
+        return "thornton_ning"
+
+    def properties(self, plan: Plan) -> tuple[Property, ...]:
+        x, (types, elastic) = plan.experiment, _elastic(plan)
+        # its yield pressure is 2 E* R_i yield_ratio/(pi R*) (the wall: R_i = R*)
+        radius = x.body.radius if math.isfinite(x.target.radius) else x.R_star
+        ratio = math.pi * x.law.parameters["yield_pressure"] * x.R_star / (2 * x.E_star * radius)
+        return (
+            *elastic,
+            *of_friction(plan, types),
+            per_type("coefficientYieldRatio", [ratio] * types, "-", "pi p_y R*/(2 E* R_i)"),
+            per_pair("surfaceEnergy", types, 0.0, "J/m^2"),
+        )
+
+
+class _OwnTheory(Liggghts):
+    """A model whose numbers and theory are in `predictions`."""
+
+    can = WITHOUT_OURS
+    end_power = 1.0  # the force falls linearly with the overlap
+
+    def deck(self, plan: Plan) -> Deck:
+        return replace(super().deck(plan), has_history=True)
+
+
+class BuiltinLuding(_OwnTheory):
+    """LIGGGHTS's `luding` without adhesion and damping."""
+
+    name = "liggghts-luding"
+
+    def predict(self, x: Experiment) -> Prediction:
+        return predictions.predict_luding(x)
+
+    def note(self, x: Experiment) -> str:
+        return predictions.luding_note(x)
+
+    def model(self, plan: Plan) -> str:
+        return "luding"
+
+    def properties(self, plan: Plan) -> tuple[Property, ...]:
+        (types, elastic), law = _elastic(plan), predictions.luding(plan.experiment)
+        return (
+            *elastic,
+            per_pair("LoadingStiffness", types, law.k_1, "N/m", "k_1"),
+            per_pair("UnloadingStiffness", types, law.k_p / law.k_1, "-", "k_p/k_1"),
+            per_pair("coefficientPlasticityDepth", types, law.phi_f, "-", "phi_f"),
+            per_pair("coefficientAdhesionStiffness", types, 0.0, "-", "k_c/k_1"),
+            per_pair("pullOffForce", types, 0.0, "N"),
+        )
+
+
+class BuiltinEdinburgh(_OwnTheory):
+    """LIGGGHTS's `edinburgh` without adhesion and damping."""
+
+    name = "liggghts-edinburgh"
+
+    def predict(self, x: Experiment) -> Prediction:
+        return predictions.predict_edinburgh(x)
+
+    def note(self, x: Experiment) -> str:
+        return predictions.edinburgh_note(x)
+
+    def model(self, plan: Plan) -> str:
+        return "edinburgh"
+
+    def properties(self, plan: Plan) -> tuple[Property, ...]:
+        types, elastic = _elastic(plan)
+        return (
+            *elastic,
+            per_pair("UnloadingStiffness", types, predictions.STIFFENING, "-", "k_2/k_1"),
+            scalar("overlapExponent", predictions.EXPONENT, "-", "n"),
+            per_pair("coefficientAdhesionStiffness", types, 0.0, "-", "k_c/k_1"),
+            scalar("adhesionExponent", 1.0, "-", "without adhesion of no effect"),
+            per_pair("pullOffForce", types, 0.0, "N"),
+            per_pair("surfaceEnergy", types, 0.0, "J/m^2"),
+        )

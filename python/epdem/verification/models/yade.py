@@ -1,0 +1,55 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""YADE's own Luding law on the same plans, for comparison."""
+
+import math
+from dataclasses import replace
+
+from ...impacts.experiment import Body, Experiment
+from ...impacts.plan import Plan
+from ...impacts.prediction import Prediction
+from ...yade.deck import Anvil, Deck, Material
+from ...yade.impacts import Yade
+from . import predictions
+
+
+class YadeLuding(Yade):
+    """YADE's `Law2_ScGeom_LudingPhys_Basic` without adhesion and damping; its numbers and theory are in `predictions`.
+
+    At walls YADE 2023.02a takes its plasticity depth as 0 and rebounds elastically. There a fixed sphere of the same
+    radius stands for the wall, with the depth of the contact with the wall.
+    """
+
+    name = "yade-luding"
+    can = replace(Yade.can, laws=None, friction=(), scenes=())
+    end_power = 1.0  # the force falls linearly with the overlap
+
+    def predict(self, x: Experiment) -> Prediction:
+        return predictions.predict_luding(x)
+
+    def note(self, x: Experiment) -> str:
+        return predictions.luding_note(x)
+
+    def material(self, x: Experiment, body: Body, strength: float) -> Material:
+        law, wall = predictions.luding(x), math.isinf(x.target.radius)
+        phi_f = 2 * law.phi_f if wall else law.phi_f  # YADE multiplies it by 2 R*, here half that of the wall
+        values = {
+            "density": x.body.density if wall else body.density,
+            "k1": law.k_1,
+            "kp": law.k_p,
+            "kc": 0.0,
+            "ks": 0.0,
+            "PhiF": phi_f,
+            "G0": 0.0,
+            "frictionAngle": 0.0,
+        }
+        return Material(body.material, values)
+
+    def ratios(self, x: Experiment) -> dict[str, float]:
+        return {}
+
+    def deck(self, plan: Plan) -> Deck:
+        x, deck = plan.experiment, super().deck(plan)
+        anvil = None
+        if deck.wall_material:
+            anvil = Anvil(x.body.radius, x.target.material, -x.body.radius)
+        return replace(deck, law="Luding", native=True, rigid=False, wall_material=None, anvil=anvil)

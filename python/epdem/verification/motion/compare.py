@@ -1,0 +1,134 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Forces and torques of two spheres whose motion is prescribed, compared between engines."""
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+
+from ...base.files import write_texts
+from ...base.folders import claim, results_folder
+from ...base.settings import DEFAULT_ENGINE
+from ...base.tables import write_csv
+from ...case.impact import load
+from ...case.toml import named
+from ...errors import CaseError
+from ...impacts.engine import check_law, require
+from ...impacts.experiment import experiment
+from ...theory.pair import sphere_mass
+from .embedded import EmbeddedMotions
+from .liggghts import LiggghtsMotions
+from .paths import MOTIONS, objectivity, rigid_rotation
+from .prescribed import Loads, Motion, MotionEngine, Touch, read, refuse, text, unit_normals
+from .yade import YadeMotions
+
+ENGINES: dict[str, type[MotionEngine]] = {tool.name: tool for tool in (EmbeddedMotions, LiggghtsMotions, YadeMotions)}
+DEFAULT = (next(iter(ENGINES)), DEFAULT_ENGINE)
+TABLE = "motions.csv"
+FRICTION = 0.3  # of a case that has none
+TOLERANCE = 1e-9  # of the largest force
+
+
+@dataclass(frozen=True)
+class Outcome:
+    """rows: motion, law, engine, friction, force_max [N], deviations from the first engine over its largest force.
+
+    normal: of the law's forces; force: of all forces; torque: of the torques, over the smaller radius, too. An engine
+    with a spring of its own answers for `normal` alone. turned: see `paths.objectivity`; NaN for other motions.
+    """
+
+    rows: pd.DataFrame
+    folder: Path
+
+    @property
+    def passed(self) -> bool:
+        """Whether every deviation that counts is within TOLERANCE."""
+        return not bool(self.rows["wrong"].any())
+
+
+def touch_of(case: Path, law: str | None = None) -> Touch:
+    """The spheres of a case of impacts; in place of a wall a second sphere of its material. Raises CaseError."""
+    with named(case):
+        read_case = load(case)
+        x = experiment(read_case, law)
+        if x.viscous_restitution is not None:
+            raise CaseError("viscous: motions are compared without a dashpot; remove it")
+        if x.target.rigid:
+            raise CaseError("impact.target.material = 'rigid': no sphere is rigid; name a material")
+        if math.isinf(x.target.radius):
+            mass = float(sphere_mass(radius=x.body.radius, density=x.target.density))
+            x = replace(x, target=replace(x.target, radius=x.body.radius, mass=mass))
+        contact = read_case.contact
+        x = replace(x, oblique=None)
+        return Touch(x, contact.friction if contact else FRICTION, contact.tangential if contact else "history")
+
+
+def engine(name: str) -> MotionEngine:
+    """The engine of motions of that name. Raises CaseError."""
+    if name not in ENGINES:
+        raise CaseError(f"--engine {name}: motions run on {', '.join(ENGINES)}")
+    return ENGINES[name]()
+
+
+def compare(
+    case: Path,
+    *,
+    files: Sequence[Path] = (),
+    engines: Sequence[str] = (),
+    laws: Sequence[str] = (),
+    out: Path | None = None,
+    force: bool = False,
+    progress: Callable[[str], None] = lambda text: None,
+) -> Outcome:
+    """Run each motion (of `files`, else our own) with each law on each engine. Raises CaseError, EngineError.
+
+    Motion, forces and torques of each are in FOLDER/LAW/ENGINE/MOTION/motion.json, the rows in FOLDER/motions.csv.
+    """
+    tools = [engine(name) for name in dict.fromkeys(engines or DEFAULT)]
+    given = [read(path) for path in files]
+    if twice := [m.name for m in given if [x.name for x in given].count(m.name) > 1]:
+        raise CaseError(f"two motions have the name {twice[0]}, which their folders have; rename one file")
+    touches = [touch_of(case, law) for law in dict.fromkeys(laws) or [None]]
+    runs = [(touch, motion) for touch in touches for motion in given or [make(touch) for make in MOTIONS]]
+    for touch, motion in runs:
+        refuse(touch, motion)
+        for tool in tools:
+            check_law(tool.name, tool.can, touch.experiment.law.name)
+    require(*tools)
+    folder = results_folder(out, load(case).name, "motion")
+    rows = []
+    with claim(folder, force=force, files=[TABLE]):
+        for touch, motion in runs:
+            first: Loads | None = None
+            for tool in tools:
+                law = touch.experiment.law.name
+                progress(f"{motion.name}, {law}, {tool.name}")
+                place = folder / law / tool.name / motion.name
+                found = tool.loads(touch, motion, place)
+                write_texts(place, {"motion.json": text(motion.columns() | found.columns())})
+                first = first or found
+                friction = "own" if tool.can.own_spring else touch.tangential
+                row = {"motion": motion.name, "law": law, "engine": tool.name, "friction": friction}
+                rows.append(row | deviations(touch, motion, found, first, own_spring=tool.can.own_spring))
+        table = pd.DataFrame(rows)
+        write_csv(folder / TABLE, table)
+    return Outcome(table, folder)
+
+
+def deviations(
+    touch: Touch, motion: Motion, found: Loads, first: Loads, *, own_spring: bool
+) -> dict[str, float | bool]:
+    """How far forces and torques lie from the first ones; see `Outcome`."""
+    normals, scale = unit_normals(motion), max(first.peak, 1e-300)
+    off = {
+        "normal": np.abs(found.along(normals) - first.along(normals)).max(),
+        "force": np.linalg.norm(found.force - first.force, axis=2).max(),
+        "torque": np.linalg.norm(found.torque - first.torque, axis=2).max() / min(touch.radii),
+    }
+    shares = {name: float(value / scale) for name, value in off.items()}
+    wrong = any(not shares[name] <= TOLERANCE for name in (["normal"] if own_spring else shares))
+    turned = objectivity(found) if motion.name == rigid_rotation.__name__ else math.nan
+    return {"force_max": found.peak} | shares | {"turned": turned, "wrong": wrong}

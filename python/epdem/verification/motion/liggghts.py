@@ -1,0 +1,85 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Prescribed motions of two spheres in LIGGGHTS: every step sets both, then runs once."""
+
+from collections.abc import Iterator
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+
+from ...base import rendering as decks
+from ...base.files import write_texts
+from ...case.fields import NODES
+from ...errors import EngineError
+from ...impacts.engine import Abilities
+from ...liggghts import data_file, dump, launcher
+from ...liggghts.deck import Deck
+from ...liggghts.impacts import Liggghts
+from ...liggghts.properties import per_pair, tangential
+from .prescribed import Loads, Motion, Touch, summary
+
+DECK, STEPS, DATA = "in.motion", "motion.steps", "motion.data"
+SET = [f"{name}{axis}" for name in ("", "v", "omega") for axis in "xyz"]
+
+
+class LiggghtsMotions:
+    """LIGGGHTS with a law and a friction of ours, or with its own spring."""
+
+    name = Liggghts.name
+    can = Abilities(friction=tuple(NODES))
+
+    def missing(self) -> str | None:
+        return launcher.missing()
+
+    def loads(self, touch: Touch, motion: Motion, folder: Path) -> Loads:
+        write_texts(folder, files(touch, motion))
+        path = folder / "path.bin"
+        path.unlink(missing_ok=True)
+        launcher.run(DECK, folder, seconds=120 + 0.01 * motion.steps)
+        try:
+            found = dump.series(path)[1:].reshape(motion.steps, 2, 2, 3)  # the first frame is the start
+        except ValueError as error:
+            raise EngineError(
+                f"{path}: the run left an incomplete dump ({error}); see {launcher.OUT} beside it"
+            ) from None
+        return Loads(found[:, :, 0], found[:, :, 1])
+
+
+def deck(touch: Touch, motion: Motion) -> Deck:
+    """The deck of a motion. Raises CaseError for what LIGGGHTS cannot do."""
+    plain = Liggghts().deck(touch.plan(motion))
+    return replace(
+        plain,
+        summary=summary(touch, motion),
+        has_history=True,
+        data=DATA,
+        properties=(*plain.properties, per_pair("coefficientFriction", len(plain.types), touch.friction, "-")),
+        tangential=tangential(touch.tangential),
+        path="path.bin",
+    )
+
+
+def files(touch: Touch, motion: Motion) -> dict[str, str]:
+    """Deck, start and steps of a motion by name; they run by hand in one folder. Raises CaseError."""
+    d, x = deck(touch, motion), touch.experiment
+    reach = 4 * max(touch.radii)
+    box = [(float(a.min()) - reach, float(a.max()) + reach) for a in motion.place.reshape(-1, 3).T]
+    spheres = [
+        data_file.Spheres(n, 2 * b.radius, b.density, motion.place[:1, k], motion.velocity[:1, k])
+        for k, (b, n) in enumerate(((x.body, 1), (x.target, len(d.types))))
+    ]
+    text = data_file.text(motion.name, len(d.types), box, spheres)
+    return {
+        DECK: decks.render("verification/liggghts/motion.in.j2", deck=d, steps=STEPS),
+        STEPS: "".join(_steps(motion)),
+        DATA: text,
+    }
+
+
+def _steps(motion: Motion) -> Iterator[str]:
+    table = np.concatenate([motion.place, motion.velocity, motion.spin], axis=2).tolist()
+    for bodies in table:
+        for id, values in enumerate(bodies, 1):
+            words = " ".join(f"{name} {decks.number(value)}" for name, value in zip(SET, values, strict=True))
+            yield f"set atom {id} {words}\n"
+        yield "run 1 pre no post no\n"

@@ -1,0 +1,63 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Prescribed motions of two spheres in YADE: no integrator, every step sets both."""
+
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+
+from ...base import rendering as decks
+from ...base.files import write_texts
+from ...base.processes import call
+from ...case.fields import NODES
+from ...errors import EngineError
+from ...impacts.engine import Abilities
+from ...yade.deck import Deck, Material
+from ...yade.deck_modules.law import LAWS
+from ...yade.impacts import Yade
+from ...yade.launcher import command, deck_modules, environment
+from .prescribed import Loads, Motion, Touch, summary
+
+SCRIPT, STEPS = "motion.py", "motion.txt"
+
+
+class YadeMotions:
+    """YADE with our laws and its own friction: one spring whose kinematics are YADE's."""
+
+    name = Yade.name
+    can = Abilities(laws=tuple(LAWS), friction=tuple(NODES), own_spring=True)
+
+    def missing(self) -> str | None:
+        return Yade().missing()
+
+    def loads(self, touch: Touch, motion: Motion, folder: Path) -> Loads:
+        write_texts(folder, files(touch, motion))
+        path = folder / "path.npy"
+        path.unlink(missing_ok=True)
+        call([command(), "-n", "-x", SCRIPT], folder, log="out.yade", seconds=300, env=environment())
+        try:
+            table = np.load(path).reshape(motion.steps, 13)
+        except (OSError, ValueError) as error:
+            raise EngineError(f"{path}: the run left no result ({error}); see out.yade beside it") from None
+        found = table[:, 1:].reshape(motion.steps, 2, 2, 3)
+        return Loads(found[:, :, 0], found[:, :, 1], table[:, 0])
+
+
+def deck(touch: Touch, motion: Motion) -> Deck:
+    """The deck of a motion. Raises CaseError for what YADE cannot do."""
+    plain = Yade().deck(touch.plan(motion))
+    return replace(
+        plain,
+        summary=summary(touch, motion),
+        materials=tuple(Material(m.name, m.values | {"friction": touch.friction}) for m in plain.materials),
+        path="path.npy",
+    )
+
+
+def files(touch: Touch, motion: Motion) -> dict[str, str]:
+    """Script, steps and modules of a motion by name; they run by hand in one folder. Raises CaseError."""
+    table = np.concatenate([motion.place, motion.velocity, motion.spin], axis=2).reshape(motion.steps, 18)
+    lines = ["# of i, then of j: x y z [m], v [m/s], omega [rad/s]"]
+    lines += [" ".join(map(decks.number, row)) for row in table.tolist()]
+    script = decks.render("verification/yade/motion.py.j2", deck=deck(touch, motion), steps=STEPS)
+    return {SCRIPT: script, STEPS: "\n".join([*lines, ""])} | deck_modules()

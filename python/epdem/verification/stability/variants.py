@@ -1,0 +1,60 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""An impact's deck made into another one: a second wall above the sphere, or a sphere carried up and down."""
+
+from pathlib import Path
+
+import numpy as np
+
+from ...errors import EngineError
+from ...impacts.engine import Trajectory
+from ...impacts.plan import Plan
+from ...liggghts.impacts import Liggghts
+from ...yade.impacts import Yade
+from . import edits_liggghts, edits_yade
+from .edits import Edit, Edits
+from .running import Setting
+from .sampling import PositionSampler
+
+CYCLE = 64  # samples of a cycle of overlaps: a triangle, up in the first half
+LOWEST = 1 / 32  # smallest overlap of a cycle over the largest: contacts that end lose their history
+
+
+def edits(sampler: PositionSampler) -> Edits:
+    """The edits of an engine's deck. Raises EngineError for an engine without."""
+    for kind, known in ((Liggghts, edits_liggghts.EDITS), (Yade, edits_yade.EDITS)):
+        if isinstance(sampler.engine, kind):
+            return known
+    raise EngineError(f"engine {sampler.name}: its deck cannot be made into another set-up")
+
+
+def edit(deck: Path, change: Edit) -> str:
+    """Change a deck; returns the line at which it is changed. Raises EngineError if there is not exactly one."""
+    lines = deck.read_text(encoding="utf-8").splitlines()
+    places = [k for k, line in enumerate(lines) if line.startswith(change.start)]
+    if len(places) != 1:
+        raise EngineError(f"{deck}: {len(places)} lines start with {change.start!r}, expected 1")
+    at = places[0]
+    line = lines[at]
+    lines[at : at + 1] = change.lines if change.instead else [line, *change.lines]
+    deck.write_text("\n".join(lines) + "\n", encoding="utf-8")
+    return line
+
+
+def between_walls(s: Setting, sampler: PositionSampler, overlap: float, time_step: float, steps: int) -> Trajectory:
+    """A sphere that overlaps two walls by `overlap` [m] at the start and moves towards the first."""
+    x, known = s.x, edits(sampler)
+    p, deck = Plan(x, time_step, steps, 1, x.speed[:1], np.array([-overlap])), sampler.folder / known.deck
+    sampler.engine.write(p, sampler.folder)
+    first = edit(deck, Edit(known.wall, ()))
+    edit(deck, Edit(known.wall, (known.second_wall(first, 2 * (x.body.radius - overlap)),)))
+    return sampler.engine.run(p, sampler.folder)
+
+
+def carried(s: Setting, sampler: PositionSampler, cycles: int) -> Trajectory:
+    """A sphere carried from LOWEST to its largest overlap and back, `cycles` times CYCLE steps with the same bits."""
+    known, low = edits(sampler), LOWEST * s.overlap_max
+    p = Plan(s.x, 1e-3 * s.limit, cycles * CYCLE, 1, np.zeros(1), np.array([-low]))
+    sampler.engine.write(p, sampler.folder)
+    for change in known.carry(s.x.body.radius - low, s.overlap_max - low, CYCLE):
+        edit(sampler.folder / known.deck, change)
+    return sampler.engine.run(p, sampler.folder)

@@ -1,0 +1,94 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Error against run time: what is measured, how it is summed up, and what it must see. Nothing here is timed."""
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+import pytest
+from scripts import script
+
+from epdem.verification import cost, cost_report
+from epdem.verification.stability import bulk_cost
+
+page = script("cost")
+STEEL = Path(__file__).parents[2] / "cases/steel_wall.toml"
+
+
+@pytest.fixture(scope="module")
+def embedded():
+    return cost.run(STEEL, engines=["embedded"], laws=["thornton", "cavity"], steps=(30, 100, 300, 1000), repetitions=2)
+
+
+def test_restitution_converges_with_second_order_and_the_rms_stays_below_the_maximum(embedded):
+    """Velocity Verlet: order 2; phases and speeds blur the slope over a factor of 33 in dt by less than 0.4."""
+    assert np.all(np.abs(embedded.models["order"] - 2) < 0.4)
+    for quantity in cost.QUANTITIES:
+        assert np.all(embedded.rows[f"{quantity}_rms"] <= embedded.rows[f"{quantity}_error"])
+        worst = embedded.rows.groupby("model")[f"{quantity}_error"]
+        assert np.all(worst.last() < 1e-4 * 10) and np.all(worst.last() < worst.first() / 100)
+
+
+def test_the_cheapest_setting_is_the_coarsest_from_which_all_finer_ones_are_good():
+    rows = pd.DataFrame({"steps": [10, 30, 100, 300], "e_n_error": [5e-4, 5e-3, 8e-4, 1e-5]})
+    assert cost.cheapest(rows, 1e-3)["steps"] == 100  # that of 10 is luck
+    assert cost.cheapest(rows, 1e-2)["steps"] == 10
+    assert cost.cheapest(rows, 1e-6) is None
+
+
+def test_order_is_that_of_a_known_power_and_none_where_nothing_converges():
+    steps = np.array([10.0, 30, 100, 300, 1000])
+    assert cost.order(steps, 3 * steps**-2.0) == pytest.approx(2)
+    assert cost.order(steps, 3 * steps**-1.0) == pytest.approx(1)
+    assert np.isnan(cost.order(steps, 0.08 + 1e-4 / steps))
+
+
+def test_table_figure_and_data_are_written_and_the_page_names_its_command(embedded, tmp_path):
+    data, figure = cost_report.write(embedded, tmp_path)
+    assert len(pd.read_csv(data)) == len(embedded.rows) == 8 and figure.stat().st_size > 10_000
+    numbers = {"share": 0.1, "error": 1e-4, "rms": 3e-4, "order": 2.0, "seconds": 0.01, "ratio": 0.9}
+    bulk = pd.DataFrame(
+        [{"model": "liggghts, cavity", "spheres": 512, "seconds_spread": 2e-3, "ratio_spread": 0.1} | numbers]
+    )
+    text = page.document(embedded, bulk, "python docs/cost.py")
+    assert "512 steel spheres" in text
+    assert "| liggghts, cavity | 0.1 | 0.0001 | 0.0003 | 2.00 | 0.01 +- 0.001 | 0.90 +- 0.05 |" in text
+    text = page.document(embedded, None, "python docs/cost.py")
+    assert "```sh by hand\npython docs/cost.py\n```" in text and "embedded, cavity" in text
+    assert json.dumps(embedded.models.to_dict("list"))
+
+
+@pytest.mark.liggghts
+def test_our_plugin_converges_where_the_built_in_thornton_ning_does_not():
+    """thornton_ning integrates its force step by step: 5 to 8 % off eq. 8.83 at any step; hertz is the reference."""
+    outcome = cost.run(STEEL, engines=["liggghts"], laws=[], steps=(30, 100, 300), repetitions=1)
+    found = outcome.models.set_index("model")
+    assert found.loc["liggghts, thornton", "best_error"] < 1e-4
+    assert found.loc["liggghts-hertz", "best_error"] < 1e-5
+    assert 0.02 < found.loc["liggghts-thornton_ning", "best_error"] < 0.2
+    assert np.isnan(found.loc["liggghts-thornton_ning", "steps_for_0.01"])
+    assert found.loc["liggghts-hertz", "ratio_to_hertz"] == 1
+    parts = outcome.rows[["startup", "setup", "stepping"]]
+    assert np.all(np.isfinite(parts)) and np.all(parts >= 0) and np.all(outcome.rows["stepping"] > 0)
+
+
+def test_the_ratio_is_to_the_reference_of_the_same_repetition_and_step():
+    rows = [("a", 0, 10, 6.0), (cost.REFERENCE, 0, 10, 3.0), ("a", 1, 10, 8.0), (cost.REFERENCE, 1, 10, 2.0)]
+    times = pd.DataFrame(rows, columns=["model", "repetition", "steps", "time"])
+    assert cost.over_reference(times, "time", ["repetition", "steps"]).tolist() == [2, 1, 4, 1]
+    alone = times[times["model"] == "a"]
+    assert cost.over_reference(alone, "time", ["repetition", "steps"]).isna().all()
+
+
+@pytest.mark.liggghts
+def test_dissipated_energy_of_a_bulk_converges_with_second_order_for_every_law_that_yields():
+    """Velocity Verlet: order 2 of the spheres' rms at fine steps; few collisions blur it by less than 0.5."""
+    laws, shares = ["thornton", "johnson", "cavity", "hertz"], (0.1, 0.025)
+    table = bulk_cost.run(laws, repetitions=1, shares=shares).set_index(["model", "share"])
+    for law in laws[:3]:
+        part = table.loc[f"liggghts, {law}"]
+        assert abs(part["order"].iloc[-1] - 2) < 0.5
+        assert np.all(part["error"] <= part["rms"]) and part["rms"].iloc[-1] < 1e-3
+    assert table.loc["liggghts, hertz"]["error"].isna().all()  # nothing is dissipated
+    assert (table.loc[cost.REFERENCE]["ratio"] == 1).all() and np.isfinite(table["ratio"]).all()

@@ -1,0 +1,66 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Decks of motions, variants of a set-up, assemblies, precisions and LAMMPS's mdr are as stored."""
+
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+
+from epdem.liggghts.impacts import Liggghts
+from epdem.verification.invariance import liggghts as liggghts_pairs
+from epdem.verification.invariance import pairs
+from epdem.verification.invariance import yade as yade_pairs
+from epdem.verification.models.lammps import LammpsMdr
+from epdem.verification.motion import liggghts as liggghts_motions
+from epdem.verification.motion import yade as yade_motions
+from epdem.verification.motion.compare import touch_of
+from epdem.verification.motion.paths import shear_elastic
+from epdem.verification.stability import precisions_yade as precisions
+from epdem.verification.stability.assembly import AssemblyPlan
+from epdem.verification.stability.assembly_liggghts import LiggghtsAssemblies
+from epdem.verification.stability.scenes import SCENES as ASSEMBLIES
+from epdem.verification.stability.scenes import with_law
+from epdem.yade.impacts import Yade
+from stored_decks import CASES, SPHERE, compare, planned
+
+HERE = Path(__file__).parent
+
+
+def test_the_deck_of_mdr_is_as_stored(tmp_path):
+    LammpsMdr().write(planned({}), tmp_path)
+    compare(HERE, "lammps-mdr_wall", (tmp_path / "in.impact").read_text())
+
+
+def test_the_header_of_the_deck_of_mdr_is_comments(tmp_path):
+    p = planned({})
+    LammpsMdr().write(
+        replace(p, experiment=replace(p.experiment, title="two\nshell touch pwned", source="joined &")), tmp_path
+    )
+    assert (tmp_path / "in.impact").read_text().splitlines()[:2] == ["# two shell touch pwned", "# joined"]
+
+
+@pytest.mark.parametrize(("engine", "script"), [(liggghts_motions, "in.motion"), (yade_motions, "motion.py")])
+def test_the_deck_of_a_motion_is_as_stored(engine, script):
+    """The materials are of one name each: the second sphere is of the wall's."""
+    touch = touch_of(CASES / "oblique_steel.toml")
+    compare(HERE, f"motion_{script[-2:]}", engine.files(touch, shear_elastic(touch))[script])
+
+
+@pytest.mark.parametrize("variant", ["swap", "sort", "migration", "restart"])
+def test_the_decks_of_a_variant_are_as_stored(variant):
+    found = pairs.pairs(planned(SPHERE), 1e-5)
+    compare(HERE, f"pairs_{variant}", "".join(liggghts_pairs.scripts(Liggghts().deck(found.plan), found, variant)))
+    if variant in yade_pairs.VARIANTS:
+        compare(HERE, f"yade_pairs_{variant}", "".join(yade_pairs.scripts(Yade().deck(found.plan), found, variant)))
+
+
+@pytest.mark.parametrize(("name", "law"), [("plate", "cavity"), ("mixture", "hertz"), ("shock", "thornton")])
+def test_the_deck_of_an_assembly_is_as_stored(name, law, tmp_path):
+    scene = with_law(ASSEMBLIES[name]((2, 2, 4)), law)
+    LiggghtsAssemblies().write(AssemblyPlan(scene, scene.time_step(), 4), tmp_path)
+    compare(HERE, f"assembly_{name}", (tmp_path / "in.assembly").read_text())
+
+
+def test_the_script_of_other_precisions_is_as_stored():
+    p = planned({}, "hertz")
+    compare(HERE, "yade_precisions", precisions.deck(p.experiment, p.time_step, p.gap[:8], p.steps))

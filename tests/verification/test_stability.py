@@ -1,0 +1,271 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Stability on stiff and extreme cases: the set, its judges and LIGGGHTS's stiff bulk scenes."""
+
+import json
+from dataclasses import replace
+
+import numpy as np
+import pytest
+from scripts import script
+from typer.testing import CliRunner
+
+from epdem.cli.main import app
+from epdem.errors import CaseError
+from epdem.laws.native import Law
+from epdem.verification import stability
+from epdem.verification.models import engine
+from epdem.verification.stability import bulk, bulk_checks, precisions, precisions_yade, repeats, roundoff
+from epdem.verification.stability.assembly import AssemblyPlan
+from epdem.verification.stability.assembly_liggghts import assembly_engine
+from epdem.verification.stability.cases import extremes
+from epdem.verification.stability.repeats import judge_repeats
+from epdem.verification.stability.running import judge, measure, setting
+from epdem.verification.stability.sampling import EmbeddedSampler, PositionSampler, Sample
+from epdem.verification.stability.scenes import SCENES, with_law
+from epdem.verification.stability.two_walls import balance, path, stored
+
+LAWS = ("hertz", "thornton", "johnson", "cavity")
+page = script("stability")
+BY_NAME = {e.name: e for e in extremes()}
+
+
+def test_the_set_holds_at_least_sixty_cases_and_spans_what_it_promises():
+    assert len(extremes()) == len(BY_NAME) >= 60
+    data = [e.experiment("thornton") for e in extremes()]
+    ratio = [x.E_star / x.law.parameters["yield_pressure"] for x in data]
+    moduli, radii = [x.body.young_modulus for x in data], [x.body.radius for x in data]
+    speeds = [x.speed[0] for x in data]
+    assert min(moduli) == 1e3 and max(moduli) == 1e13 and min(radii) == 1e-7 and max(radii) == 10
+    assert min(ratio) == pytest.approx(3) and max(ratio) == pytest.approx(1e7)
+    assert min(speeds) < 1e-9 and max(speeds) >= 1e4
+    pairs = [x for x in data if np.isfinite(x.target.radius)]
+    assert max(x.target.radius / x.body.radius for x in pairs) == pytest.approx(1e4)
+    assert max(x.target.mass / x.body.mass for x in pairs) == pytest.approx(1e12)
+    assert {0.0, 0.5} <= {x.body.poisson_ratio for x in data} and any(x.target.rigid for x in data)
+
+
+@pytest.mark.parametrize("law", LAWS)
+def test_every_extreme_impact_is_finite_second_order_and_creates_no_energy(law):
+    """Embedded engine, all dt from 1e-4 to 1.5 of the stability limit: the judges' own tolerances."""
+    verdicts = [judge(e, law, EmbeddedSampler()) for e in extremes() if e.kind == "impact"]
+    assert [(v.case, v.reason) for v in verdicts if v.status != "passed"] == []
+    assert any(v.large_deformation for v in verdicts)
+    # an explicit scheme must break somewhere at or below 1.5 times its limit, or the search for it is blind
+    assert all(np.isfinite(v.useless_at) for v in verdicts)
+
+
+@pytest.mark.parametrize("law", LAWS)
+def test_one_contact_bounced_reloaded_and_held_between_walls_neither_gains_nor_drifts(law):
+    """1e6 steps here, 1e9 in `epdem verify stability`; drift goes with dt^3 and is 6e-11 a bounce at this step."""
+    chosen = [e for e in extremes() if e.kind != "impact"]
+    verdicts = [judge_repeats(e, law, EmbeddedSampler(), steps=10**6, cycles=300) for e in chosen]
+    assert len(verdicts) == 5 and [(v.case, v.reason) for v in verdicts if v.status != "passed"] == []
+
+
+class Springy(EmbeddedSampler):
+    """A planted fault: every rebound comes back 0.1 % too fast."""
+
+    def __call__(self, x, time_step, gap, steps) -> Sample:
+        good = super().__call__(x, time_step, gap, steps)
+        return replace(good, e_n=1.001 * good.e_n)
+
+
+class Blind(EmbeddedSampler):
+    """A planted fault: a number that is none."""
+
+    def __call__(self, x, time_step, gap, steps) -> Sample:
+        return replace(super().__call__(x, time_step, gap, steps), finite=False)
+
+
+class Sluggish(EmbeddedSampler):
+    """A planted fault: an integrator of first order."""
+
+    def __call__(self, x, time_step, gap, steps) -> Sample:
+        good = super().__call__(x, time_step, gap, steps)
+        return replace(good, e_n=good.e_n * (1 - 0.05 * time_step / setting(BY_NAME["modulus_1e11"], "thornton").limit))
+
+
+@pytest.mark.parametrize(("fault", "word"), [(Springy, "created"), (Blind, "not finite"), (Sluggish, "order")])
+def test_the_judge_sees_energy_from_nothing_a_number_that_is_none_and_a_lower_order(fault, word):
+    assert word in judge(BY_NAME["modulus_1e11"], "thornton", fault()).reason
+
+
+def test_stored_energy_is_the_work_along_loading_and_back_to_the_dent():
+    """Quadrature of the branch against closed forms: all work at the top, plastic work alone at the dent; 1e-12."""
+    for law in LAWS:
+        s = setting(BY_NAME["modulus_1e11"], law)
+        theory, top = s.x.theory(), np.array([s.overlap_max])
+        assert stored(theory, top, top) == pytest.approx(theory.work(top), rel=1e-12)
+        if top > theory.yield_overlap:
+            dent = top - theory.recovered_overlap(top)
+            plastic = theory.work(top) - theory.recovered_work(top)
+            assert stored(theory, dent, top) == pytest.approx(plastic, rel=1e-12)
+
+
+def test_a_sphere_between_two_walls_keeps_its_energy_but_not_with_a_wrong_mass():
+    s = setting(BY_NAME["two_walls_3e0"], "thornton")
+    samples = path(s, EmbeddedSampler(), 0.01)
+    assert np.abs(balance(s, *samples) - 1).max() < 1e-4
+    wrong = replace(s, x=replace(s.x, body=replace(s.x.body, mass=1.01 * s.x.body.mass)))
+    assert np.abs(balance(wrong, *samples) - 1).max() > 1e-3
+
+
+ENGINES = [pytest.param(name, marks=getattr(pytest.mark, name)) for name in ("liggghts", "yade")]
+
+
+@pytest.mark.parametrize("name", ENGINES)
+def test_engines_take_the_steps_of_the_embedded_one_with_a_sphere_between_two_walls(name, tmp_path):
+    """Same scheme: without memory only the round-off of positions differs; with it the balance of both holds."""
+    sampler = PositionSampler(engine(name), tmp_path)
+    s = setting(BY_NAME["two_walls_3e0"], "hertz")
+    ours, theirs = path(s, EmbeddedSampler(), 0.05), path(s, sampler, 0.05)
+    assert np.abs(ours[0][-theirs[0].size :] - theirs[0]).max() < 1e-9 * s.overlap_max
+    s = setting(BY_NAME["two_walls_3e0"], "cavity")
+    assert np.abs(balance(s, *path(s, sampler, 0.01)) - 1).max() < 1e-4
+
+
+@pytest.mark.parametrize("name", ENGINES)
+def test_reloads_in_an_engine_repeat_the_laws_force_to_the_last_bit(name, tmp_path):
+    """100 here, 10^4 in the command; a carried sphere has the same overlaps, bit for bit, in every cycle."""
+    verdict = judge_repeats(
+        BY_NAME["reloads_1e4"], "cavity", PositionSampler(engine(name), tmp_path), steps=0, cycles=100
+    )
+    assert (verdict.status, verdict.reason) == ("passed", "")
+    assert verdict.steps == 100 * 65 and verdict.e_n_error < 1e-8
+
+
+@pytest.mark.parametrize(("fault", "word"), [(1e-15, "cycle to cycle"), (0.0, "off the law's"), (None, "work")])
+def test_the_judge_of_reloads_sees_a_last_bit_a_wrong_branch_and_a_loop(fault, word, monkeypatch):
+    """Planted in what the embedded engine gives: a change per cycle, a force of another law, a hysteresis."""
+    good = repeats.embedded_cycles
+
+    def wrong(s, cycles):
+        overlap, force = good(s, cycles)
+        if fault is None:
+            return overlap, force * np.where(np.arange(force.shape[1]) > force.shape[1] // 2, 1 + 1e-9, 1.0)
+        return overlap, force * (1.0 + fault * np.arange(cycles)[:, None]) * (1.0 if fault else 1 + 1e-7)
+
+    monkeypatch.setattr(repeats, "embedded_cycles", wrong)
+    verdict = judge_repeats(BY_NAME["reloads_1e4"], "thornton", EmbeddedSampler(), steps=0, cycles=10)
+    assert verdict.status == "failed" and word in verdict.reason
+
+
+def test_double_and_long_double_agree_to_a_few_eps_per_thousand_steps():
+    """Round-off of the law itself: 200 to 2000 steps, at most 1e-13 of e_n; and long double is not just double."""
+    law = Law("cavity", E_star=1.1428571428571429e11, yield_stress=1e9)
+    some = dict(R_star=0.01, m_star=0.0329, speed=[0.2, 1.0, 5.0, 20.0], time_step=5e-8, steps=5000)
+    double, extended = law.impacts(**some)["rebound_speed"], law.impacts_long_double(**some)["rebound_speed"]
+    assert np.abs(double / extended - 1).max() < 1e-13
+    assert np.any(double != extended)
+
+
+def test_round_off_of_positions_stays_below_its_formula_and_above_a_tenth_of_it():
+    """0.5 sqrt(N) eps R/delta_e is two standard deviations: 8 phases lie within a factor of ten below it."""
+    table = roundoff.floors("hertz", [], times=(1e-4, 1e-2, 1.0, 1e2))
+    assert np.all(table["positions"] < table["formula"]) and np.all(table["positions"] > 0.1 * table["formula"])
+    assert table["double"].max() < 1e-14
+
+
+@pytest.mark.yade
+@pytest.mark.skipif(not precisions_yade.available(), reason="YADE's builds of other precisions are not installed")
+def test_eleven_more_bits_lower_the_floor_of_yade_two_thousandfold():
+    """Round-off and nothing else: 2^11 = 2048 up to the scatter of 8 phases, a factor of 3."""
+    row = precisions.floors(times=(1e-2,)).iloc[0]
+    assert 2**11 / 3 < row["yade"] / row["yade-longdouble"] < 3 * 2**11
+    assert row["yade"] < row["formula"]
+
+
+def test_overlap_at_the_start_stores_its_work():
+    """Energy: a contact that starts at 2 alpha_max comes back faster than it was thrown, by the elastic share."""
+    s = setting(BY_NAME["start_overlap_2"], "hertz")
+    assert s.e_n == pytest.approx(np.sqrt(1 + 2**2.5), rel=1e-9)
+    assert measure(s, EmbeddedSampler(), 0.01).error < 1e-3
+
+
+@pytest.mark.liggghts
+def test_liggghts_passes_extreme_cases_and_says_what_it_cannot_represent(tmp_path):
+    sampler = PositionSampler(engine("liggghts"), tmp_path)
+    chosen = ("modulus_1e3", "modulus_1e13", "radius_1em7", "radius_ratio_1e4", "mass_ratio_1e12", "corner_02")
+    verdicts = [judge(BY_NAME[name], "thornton", sampler, (1.0, 1.5)) for name in chosen]
+    assert [(v.case, v.reason) for v in verdicts if v.status not in ("passed", "not representable")] == []
+    assert sum(v.status == "passed" for v in verdicts) >= 4
+    assert judge(BY_NAME["ratio_1e7"], "thornton", sampler).status == "not representable"
+    assert judge(BY_NAME["ratio_3e0"], "thornton", sampler).status == "not representable"
+
+
+@pytest.mark.liggghts
+def test_round_off_of_liggghts_is_that_of_positions_and_of_nothing_else(tmp_path):
+    """Same statements in another order: equal to the digits that order leaves, 1e-3 of the deviation itself."""
+    table = roundoff.floors("thornton", [PositionSampler(engine("liggghts"), tmp_path)], times=(1e-2, 1e2))
+    assert table["liggghts"].to_numpy() == pytest.approx(table["positions"].to_numpy(), rel=1e-3)
+
+
+@pytest.mark.liggghts
+@pytest.mark.parametrize("name", list(SCENES))
+def test_energy_of_stiff_bulk_scenes_never_rises_none_is_lost_and_ranks_agree(name, tmp_path):
+    """Some 150 spheres for half the time here, 2,000 in the command; the tolerances are those of full size."""
+    small = {"plate": (5, 5, 6), "mixture": (6, 5, 5), "shock": (4, 4, 10)}[name]
+    scene = with_law(SCENES[name](small), "cavity")
+    verdict = bulk_checks.judge_scene(replace(scene, duration=scene.duration / 2), assembly_engine(), tmp_path)
+    assert verdict.passed, verdict.reason
+    assert verdict.plastic > 0.02
+
+
+@pytest.mark.liggghts
+def test_the_bulk_ledger_sees_spheres_that_come_back_too_fast(tmp_path):
+    """A planted fault: velocities 1 % too high in the second half of the frames."""
+    scene = SCENES["shock"]((4, 4, 8))
+    plan, tool = AssemblyPlan(scene, scene.time_step(), bulk.FRAMES), assembly_engine()
+    tool.write(plan, tmp_path)
+    tool.run(tmp_path)
+    table = bulk.ledger(plan, tool, tmp_path)
+    brought, half = table["kinetic"].iloc[0], len(table) // 2
+    assert np.abs(table["total"] - table["total"].iloc[0]).max() <= bulk_checks.SWING * brought
+    wrong = table["total"] + np.where(table.index >= half, 0.0201 * table["kinetic"], 0.0)
+    assert wrong.diff().max() > bulk_checks.SWING * brought
+
+
+def test_the_page_of_the_documentation_names_its_command_and_every_case():
+    outcome = stability.run(["embedded"], ["thornton"], steps=10_000, cycles=10)
+    text = page.document(outcome, "python docs/stability.py")
+    assert "`python docs/stability.py`" in text and all(
+        f"| {e.name} |" in text for e in extremes() if e.adhesion is None
+    )
+    assert outcome.passed and json.dumps(outcome.verdicts.to_dict("list"))
+
+
+def test_the_command_names_the_groups_there_are():
+    wrong = CliRunner().invoke(app, ["verify", "stability", "--group", "nogroup"])
+    assert isinstance(wrong.exception, CaseError)
+    assert "'nogroup' does not exist; there are modulus, ratio" in str(wrong.exception)
+    done = CliRunner().invoke(app, ["verify", "stability", "-g", "poisson", "-l", "hertz", "--every", "2", "--json"])
+    assert done.exit_code == 0
+    assert [row["case"] for row in json.loads(done.stdout)["rows"]] == ["poisson_0"]
+
+
+@pytest.mark.parametrize(
+    ("words", "says"),
+    [
+        (["-l", "jkr", "--every", "60"], "--engine embedded: --law, --group and --every leave it no case"),
+        (["-e", "yade", "-g", "adhesion"], "--engine yade: --law, --group and --every leave it no case"),
+        (["-e", "liggghts-hertz", "-l", "cavity"], "engine liggghts-hertz has hertz only"),
+        (["-g", "poisson", "-l", "hertz", "--out", "all.html"], "the page beside the table has this name"),
+    ],
+)
+def test_a_choice_that_leaves_nothing_to_run_or_to_keep_is_refused(words, says, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    done = CliRunner().invoke(app, ["verify", "stability", *words])
+    assert isinstance(done.exception, CaseError) and says in str(done.exception) and not list(tmp_path.iterdir())
+
+
+@pytest.mark.liggghts
+def test_an_engine_is_tested_with_the_laws_that_it_has():
+    rows = stability.run(["liggghts-hertz", "embedded"], [], groups=["rigid"], every=2).verdicts
+    assert rows.groupby("engine")["law"].unique().map(list).to_dict() == {
+        "liggghts-hertz": ["hertz"],
+        "embedded": [*LAWS],
+    }
+
+
+def test_extreme_cases_are_the_same_on_every_call():
+    assert extremes() == extremes.__wrapped__()
