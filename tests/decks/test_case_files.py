@@ -105,7 +105,8 @@ def test_pint_never_sees_powers_that_it_would_compute_for_hours(text, monkeypatc
 @pytest.mark.parametrize(
     ("place", "value", "says"),
     [
-        ("materials.steel.poisson_ratio", 30, "materials.steel.poisson_ratio = 30, must lie in (-1, 0.5]; percent?"),
+        ("materials.steel.poisson_ratio", 30, "materials.steel.poisson_ratio = 30, must lie in [-0.99, 0.5]; percent?"),
+        ("materials.steel.poisson_ratio", -0.9999999999, "poisson_ratio = -0.9999999999, must lie in [-0.99, 0.5]"),
         ("materials.steel.young_modulus", "208 kg", "wrong dimension"),
         (
             "measured",

@@ -157,3 +157,10 @@ def test_a_wrong_instruction_set_is_refused(tmp_path):
     scene = Scene()
     done = run(tmp_path, deck(scene), files={"packing.data": bodies(scene)}, env={"EPDEM_SIMD": "avx1024"})
     assert done.code == 1 and "EPDEM_SIMD = avx1024" in done.error and "sse2, avx2 or avx512" in done.error
+
+
+@pytest.mark.parametrize("models", ["of the loop", "of LIGGGHTS alone"])
+def test_a_wrong_loop_is_refused(tmp_path, models):
+    scene = Scene() if models == "of the loop" else Scene(rolling="epsd")
+    done = run(tmp_path, deck(scene), files={"packing.data": bodies(scene)}, env={"EPDEM_LOOP": "nonsense"})
+    assert done.code == 1 and "EPDEM_LOOP = nonsense: no such loop" in done.error

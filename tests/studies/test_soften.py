@@ -143,6 +143,87 @@ def test_the_twin_of_a_scene_scales_the_strength_of_every_material():
         assert math.isclose(soft.materials[name].young_modulus, 208e9 / 32.0, rel_tol=1e-12)
 
 
+PRESS = """
+[case]
+name = "pressed"
+title = "a plate presses spheres"
+source = "a test"
+
+[materials.steel]
+young_modulus = "208 GPa"
+poisson_ratio = 0.3
+density = "7850 kg/m^3"
+yield_stress = "1 GPa"
+
+[law]
+name = "thornton"
+
+[scene]
+kind = "parts"
+gravity = "GRAVITY m/s^2"
+room = { x = ["-5 mm", "5 mm"], y = ["-5 mm", "5 mm"], z = ["0 mm", "20 mm"] }
+
+[[scene.wall]]
+name = "lid"
+kind = "plate"
+axis = "z"
+center = ["0 mm", "0 mm", "15 mm"]
+size = ["9 mm", "9 mm"]
+material = "steel"
+
+[[scene.body]]
+name = "ball"
+material = "steel"
+radius = "1 mm"
+position = ["0 mm", "0 mm", "5 mm"]
+
+[[scene.phase]]
+name = "rest"
+duration = "1 ms"
+
+[[scene.phase]]
+name = "press"
+duration = "1 ms"
+until = { wall = "lid", force = "0.2 kN" }  # of the wall
+
+[[scene.phase.move]]
+wall = "lid"
+kind = "press"
+direction = [0, 0, -1]
+force = "80 N"
+highest_speed = "1 m/s"
+"""
+
+
+def yield_force(case, radius):
+    """Thornton 1997: F_y = pi^3 R*^2 p_y^3/(6 E*^2) of two equal spheres."""
+    m = case.materials["steel"]
+    E_star = m.young_modulus / 2 / (1 - m.poisson_ratio**2)
+    return math.pi**3 * (radius / 2) ** 2 * strengths(case)["steel"] ** 3 / (6 * E_star**2)
+
+
+def test_prescribed_forces_of_a_twin_are_the_same_multiples_of_the_yield_force(tmp_path):
+    path = tmp_path / "press.toml"
+    path.write_text(PRESS.replace("GRAVITY", "9.81"))
+    twin = soften(path, 100.0)
+    hard, soft = scenes.load(path), scenes.parse(tomllib.loads(twin.text))
+    for force in (lambda c: c.scene.phase[1].move[0].force, lambda c: c.scene.phase[1].until.force):
+        multiples = [force(case) / yield_force(case, 1e-3) for case in (hard, soft)]
+        assert math.isclose(*multiples, rel_tol=1e-12)
+    assert {"scene.phase.1.move.0.force", "scene.phase.1.until.force"} <= {c.place for c in twin.changes}
+    assert "# of the wall" in twin.text
+
+
+@pytest.mark.parametrize("gravity", ["0", "9.81"])
+def test_static_loads_of_every_kind_are_warned_of(gravity, tmp_path):
+    path = tmp_path / "press.toml"
+    path.write_text(PRESS.replace("GRAVITY", gravity))
+    assert any("falls by a factor of 6.31 (k^0.4)" in w for w in soften(path, 100.0).warnings) == (gravity != "0")
+    for name in ("settle_glass", "hopper_beads", "drum_beads", "impactor_bowl", "peening_steel"):
+        weighs = scenes.load(CASES / f"{name}.toml").scene.gravity > 0
+        assert any("static loads" in w for w in soften(CASES / f"{name}.toml", 2.0).warnings) == weighs
+
+
 def test_a_time_step_that_is_given_does_not_grow_by_itself(tmp_path):
     path = tmp_path / "given.toml"
     path.write_text((CASES / "peening_steel.toml").read_text())
@@ -246,9 +327,16 @@ def test_the_page_of_a_strength_shows_the_curve_through_the_measured_point(tmp_p
     assert (foreign / "report.html").read_text() == "mine"
 
 
+@pytest.mark.parametrize("words", [["--hv", "1e9"], ["--hv", "1e-5"], ["--hb", "1e9"]])
+def test_a_hardness_beyond_the_modulus_is_refused_with_its_unit(words):
+    error = CliRunner().invoke(app, ["calibrate", str(STEEL), *words]).exception
+    assert isinstance(error, CaseError) and "must lie between 1e-08 and 1 of E*" in str(error)
+    assert f"{words[0].upper()[2:]} {float(words[1]):g}: " in str(error) and "kgf/mm^2" in str(error)
+
+
 def test_impossible_measurements_are_refused(tmp_path):
     for e_n, speed in ((0.0, 1.0), (1.0, 1.0), (0.6, -1.0), (1e-7, 1.0)):
-        with pytest.raises(CaseError, match=r"must lie in|must be > 0|no strength between 1e-8 and 1 of E"):
+        with pytest.raises(CaseError, match=r"must lie in|must be > 0|no strength between 1e-08 and 1 of E"):
             from_restitution(STEEL, e_n, speed)
     with pytest.raises(CaseError, match="never yields; it has nothing to calibrate"):
         from_restitution(with_law(tmp_path, "hertz"), 0.6, 1.0)

@@ -38,6 +38,13 @@ bool generic_asked() {
   return asked && std::strcmp(asked, "generic") == 0;
 }
 
+void refuse_unknown_loop(LAMMPS_NS::LAMMPS* lmp) {
+  const char* const loop = std::getenv("EPDEM_LOOP");
+  if (!loop || !*loop || generic_asked()) return;
+  const std::string text = "EPDEM_LOOP = " + std::string(loop) + ": no such loop; leave it unset, or take generic";
+  lmp->error->all(FLERR, text.c_str());
+}
+
 void pad(Block& b, int n) {
   static double nobodys[64];
   for (int k = n; k < n + most_lanes; ++k) {

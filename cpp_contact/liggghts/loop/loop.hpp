@@ -33,6 +33,9 @@ struct Plan {
 /// Whether the user chose LIGGGHTS's loops by EPDEM_LOOP=generic.
 bool generic_asked();
 
+/// Ends the run if EPDEM_LOOP is set to anything but generic.
+void refuse_unknown_loop(LAMMPS_NS::LAMMPS* lmp);
+
 /// Why the atoms of a run, or what it stores of its contacts, keep pairs and walls from our loops; nullptr: nothing.
 const char* obstacle_of_both(const LAMMPS_NS::Atom& atom, bool rigid, bool stores, bool sums);
 

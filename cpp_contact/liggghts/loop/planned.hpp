@@ -21,6 +21,7 @@ class Planned {
  protected:
   Planned(LAMMPS_NS::LAMMPS* lmp, int64_t hash, bool wall)
       : lmp_(lmp), model_(*Model::latest), ids_(Ids::of(hash)), missing_(what_is_missing(ids_)), wall_(wall) {
+    refuse_unknown_loop(lmp);
     plan_.tangential = ids_.tangential == TANGENTIAL_HISTORY          ? Tangential::history
                        : ids_.tangential == TANGENTIAL_NO_HISTORY     ? Tangential::no_history
                        : ids_.tangential == TANGENTIAL_PARTIAL_SLIP   ? Tangential::partial_slip

@@ -84,7 +84,7 @@ class Material(Frozen):
     surface energy, of which the work of adhesion of a pair is 2 sqrt(gamma_i gamma_j); SI."""
 
     young_modulus: Pressure
-    poisson_ratio: Annotated[float, Quantity("1", above=-1.0, le=0.5, hint="percent?")]
+    poisson_ratio: Annotated[float, Quantity("1", ge=-0.99, le=0.5, hint="percent?")]
     density: Annotated[float, Quantity("kg/m^3", above=0.0)]
     yield_stress: Pressure | None = None
     surface_energy: Annotated[float, Quantity("J/m^2", ge=0.0)] | None = None

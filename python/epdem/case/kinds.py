@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """The kinds of scenes and their keys. SI."""
 
+import math
 from typing import Annotated, Literal, Self, get_args
 
 from pydantic import Field, model_validator
@@ -68,6 +69,17 @@ class Hopper(Common):
     half_angle: Annotated[float, Quantity("rad", above=0.0, le=1.5707963267948966)]
     outlet_height: Length  # from the outlet to the floor
     fill_time: Time
+
+    @property
+    def cone_depth(self) -> float:
+        """Height of the cone [m]."""
+        return (self.bin_diameter - self.outlet) / 2 / math.tan(self.half_angle)
+
+    @model_validator(mode="after")
+    def _narrows(self) -> Self:
+        if not self.outlet < self.bin_diameter:
+            raise ValueError(f"outlet ({self.outlet:g} m) must be below bin_diameter ({self.bin_diameter:g} m)")
+        return self
 
 
 class Drum(Common):

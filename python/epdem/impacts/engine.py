@@ -126,7 +126,9 @@ def refuse(tool: Engine, plan: Plan, prediction: Prediction, *, ranks: int = 1) 
 
 
 def refuse_ranks(engine: str, most: int, ranks: int) -> None:
-    """Raise CaseError for more ranks than the `most` of an engine, EngineError if there is no mpirun for them."""
+    """Raise CaseError for a number of ranks outside 1 to `most`, EngineError if there is no mpirun for them."""
+    if ranks < 1:
+        raise CaseError(f"--ranks {ranks}: must be at least 1; leave it out for one rank")
     if ranks > most:
         limit = "one rank; leave it out" if most == 1 else f"at most {most} ranks here; ask for no more"
         raise CaseError(f"--ranks {ranks}: engine {engine} runs on {limit}")

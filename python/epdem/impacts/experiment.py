@@ -150,7 +150,8 @@ def pair_of(numbers: LawNumbers, body: Body, target: Body) -> LawSpec:
     """The law of two bodies. Raises CaseError where a yield stress or surface energy is missing."""
     strong = [numbers.strength(b.material, b.yield_stress) for b in (body, target)]
     surfaces = [Surface(b.material, b.surface_energy) for b in (body, target)]
-    return numbers.pair(strong[0], strong[1], numbers.work_of_adhesion(*surfaces))
+    spec = numbers.pair(strong[0], strong[1], numbers.work_of_adhesion(*surfaces))
+    return replace(spec, common=numbers.absolute is not None)
 
 
 def rated(spec: LawSpec, rate: Rate, body: Body, target: Body, speed: float) -> LawSpec:

@@ -7,6 +7,7 @@ from typing import Any
 import numpy as np
 import pandas as pd
 
+from ..laws.strengths import law_named
 from ..theory import adhesion, restitution, validity, viscous
 from ..theory.backbones import JKR
 from ..theory.yielding import first_yield_speed
@@ -28,7 +29,7 @@ class Prediction:
     work_out: np.ndarray
     plastic_work: np.ndarray
     strain_ratio: np.ndarray  # a_max/R*
-    yields: tuple[str, ...]  # materials that the law lets flow somewhere in the range of speeds
+    yields: tuple[str, ...]  # materials that flow somewhere in the range of speeds; law.STRENGTH if it is one for all
     yield_speeds: dict[str, float]  # from which each material yields beneath its surface [m/s], eq. 8.78; inf: never
     rebound: oblique.Rebound | None = None  # of oblique impacts
     caveats: tuple[str, ...] = ()  # where law or theory leaves its own domain, in words
@@ -88,7 +89,9 @@ def predict(experiment: Experiment) -> Prediction:
 
 
 def _softer(x: Experiment) -> tuple[str, ...]:
-    """The materials of the smaller strength."""
+    """The materials of the smaller strength, or the key of the strength of all bodies."""
+    if x.law.common:
+        return (f"law.{law_named(x.law.name).strength}",)
     bodies = zip((x.body, x.target), x.law.strengths, strict=True)
     return tuple(dict.fromkeys(b.material for b, strength in bodies if strength == min(x.law.strengths)))
 

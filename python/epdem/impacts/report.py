@@ -85,7 +85,9 @@ def run_json(outcome: Outcome) -> str:
 
 
 def yielding(prediction: Prediction) -> str:
-    """The materials that yield, in words."""
+    """What yields, in words: materials, or the pair at the strength of all bodies."""
+    if prediction.yields and prediction.yields[0].startswith("law."):
+        return f"the pair yields at {prediction.yields[0]}"
     return f"yields: {', '.join(prediction.yields)}" if prediction.yields else "nothing yields"
 
 

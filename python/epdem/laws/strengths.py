@@ -3,7 +3,7 @@
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from ..errors import CaseError
 from ..theory.backbones import ADHESIVE, JKR, LAWS, Backbone
@@ -45,12 +45,14 @@ class LawSpec:
     """A law and its parameters for one pair of bodies.
 
     `parameters` are those of the pair, by the law's own names; `strengths` is the law's strength [Pa] of body and
-    target (inf: never yields), of which the smaller one is the pair's: the softer body yields first.
+    target (inf: never yields), of which the smaller one is the pair's: the softer body yields first. `common`: both
+    strengths are the one that the law gives for all bodies.
     """
 
     name: str
     parameters: dict[str, float]
     strengths: tuple[float, float]
+    common: bool = False
 
     def theory(self, *, E_star: float, R_star: Real) -> Backbone | JKR:
         """The law in the theory for one R_star [m] or many, shape (n,).
@@ -64,7 +66,7 @@ class LawSpec:
         """The same law for two bodies of these strengths [Pa]."""
         strength = law_named(self.name).strength
         own = {} if strength is None else {strength: min(body, target)}
-        return LawSpec(self.name, self.parameters | own, (body, target))
+        return replace(self, parameters=self.parameters | own, strengths=(body, target))
 
     @property
     def adheres(self) -> bool:

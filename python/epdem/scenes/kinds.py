@@ -50,12 +50,9 @@ def _settle(s: Settle) -> Layout:
 
 
 def _hopper(s: Hopper) -> Layout:
-    if not s.outlet < s.bin_diameter:
-        raise CaseError(f"scene.outlet = {s.outlet:g} m must be below bin_diameter ({s.bin_diameter:g} m)")
     r, top = s.bin_diameter / 2, s.bin_height
-    depth = (s.bin_diameter - s.outlet) / 2 / math.tan(s.half_angle)
     margin = 0.1 * r
-    low = float(f"{-depth - s.outlet_height:.10g}")
+    low = float(f"{-s.cone_depth - s.outlet_height:.10g}")
     depth = -low - s.outlet_height
     box = (-r - margin, r + margin, -r - margin, r + margin, low, 1.5 * top)  # what bounces high stays in the room
     fill = Fill(s.particles, s.count, Cylinder(r - _largest(s.particles), 0.0, top))

@@ -38,7 +38,7 @@ def _fall_and_drive(s: Kinds) -> tuple[float, float]:
         case Settle():
             return s.box[2], 0.0
         case Hopper():
-            return s.bin_height + s.outlet_height + s.bin_diameter, 0.0
+            return s.bin_height + s.cone_depth + s.outlet_height, 0.0
         case Drum():
             return s.diameter, s.angular_velocity * s.diameter / 2
         case Compaction():

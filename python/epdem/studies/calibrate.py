@@ -21,6 +21,7 @@ from ..theory.numerics import bisect
 KGF_PER_MM2 = 9.80665e6  # Pa
 VICKERS_FACETS = 2 / 1.8544  # area of the facets of a Vickers indentation over that of its projection, 1/sin(136 deg/2)
 TABOR = LAWS["thornton"].default_ratio  # mean pressure of full plasticity over the yield stress (Tabor 1951)
+LEAST_STRENGTH = 1e-8  # of E*; the largest is E* itself
 BRINELL_DENT = 0.375  # dent over ball diameter in a usual Brinell test (0.24 to 0.6)
 
 
@@ -123,9 +124,9 @@ def from_restitution(path: Path, e_n: float, speed: float) -> Calibration:
         return float(predict(unknown.experiment(math.exp(log_strength), speed)).e_n[0])
 
     modulus = unknown.experiment(1e9, speed).E_star
-    low, high = math.log(1e-8 * modulus), math.log(modulus)
+    low, high = math.log(LEAST_STRENGTH * modulus), math.log(modulus)
     if not restitution(low) < e_n < restitution(high):
-        raise CaseError(f"e_n = {e_n:g} at {speed:g} m/s: no strength between 1e-8 and 1 of E* gives it")
+        raise CaseError(f"e_n = {e_n:g} at {speed:g} m/s: no strength between {LEAST_STRENGTH:g} and 1 of E* gives it")
     strength = math.exp(bisect(lambda middle: restitution(middle) < e_n, low, high)[0])
     return unknown.result(strength, speed, f"e_n = {e_n:g} at {speed:g} m/s")
 
@@ -135,4 +136,10 @@ def from_hardness(path: Path, pressure: float, source: str) -> Calibration:
     unknown = _unknown(path)
     ratio = unknown.law.ratios.get("plastic_ratio", TABOR)  # the law's own pressure of full plasticity over its stress
     value = pressure / ratio if yields_by_stress(unknown.law.name) else pressure
+    modulus = unknown.experiment(value, 1.0).E_star
+    if not LEAST_STRENGTH <= pressure / modulus <= 1.0:
+        raise CaseError(
+            f"{source}: its mean pressure {pressure:.3g} Pa must lie between {LEAST_STRENGTH:g} and 1 of E* = "
+            f"{modulus:.3g} Pa; a hardness is in kgf/mm^2, for steel 100 to 1000"
+        )
     return unknown.result(value, None, source)

@@ -7,10 +7,14 @@ step grows by k^0.4, dents and overlaps by k^0.4 and a/R by k^0.2. Softening the
 The sticking speed goes as Gamma^(5/6)/E*^(1/3), so Gamma/k^0.4 keeps it. Then sqrt(2 pi Gamma a/E*) grows as the
 overlaps and sqrt(2 Gamma E*/(pi a)) falls as p_y: all lengths and pressures of such a contact keep their ratios.
 
+The force of a contact at a speed, its yield force and its pull-off force fall as k^0.4. Forces that a scene prescribes
+fall with them, weight does not.
+
 What depends on a/R itself follows it: finite strain takes c k^0.14 in exp(-c (a/R*)^-0.7), and the reference of a
 strength that grows with the rate 0.2 v/a falls as the rate.
 """
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
@@ -26,7 +30,8 @@ from ..laws.strengths import ADHESION, law_named
 from ..theory.cavity import FINITE_STRAIN, NO_FINITE_STRAIN, STRAIN_EXPONENT
 from ..theory.validity import SMALL_DEFORMATION
 
-STRENGTH_POWER, ADHESION_POWER, STEP_POWER, STRAIN_POWER = 0.8, 0.4, 0.4, 0.2
+STRENGTH_POWER, ADHESION_POWER, FORCE_POWER, STEP_POWER, STRAIN_POWER = 0.8, 0.4, 0.4, 0.4, 0.2
+Key = tuple[str | int, ...]  # names of tables and numbers of entries
 
 
 @dataclass(frozen=True)
@@ -54,11 +59,25 @@ def _scaled(value: str, factor: float) -> str:
     return f"{float(number) * factor:.15g} {unit.strip()}"
 
 
-def _replacements(data: dict[str, Any], factor: float) -> dict[tuple[str, ...], str | float]:
+def _phases(data: dict[str, Any]) -> list[dict[str, Any]]:
+    phases: list[dict[str, Any]] = data.get("scene", {}).get("phase", [])
+    return phases
+
+
+def _forces(data: dict[str, Any]) -> Iterator[tuple[Key, str]]:
+    """(key, value) of each force that a scene of parts prescribes: of presses and of conditions."""
+    for n, phase in enumerate(_phases(data)):
+        moves = [((n, "move", m), move) for m, move in enumerate(phase.get("move", []))]
+        for place, table in [*moves, ((n, "until"), phase.get("until", {}))]:
+            if "force" in table:
+                yield ("scene", "phase", *place, "force"), table["force"]
+
+
+def _replacements(data: dict[str, Any], factor: float) -> dict[Key, str | float]:
     """The new value of every key that changes."""
     law = data["law"]
     strength = law_named(law["name"]).strength
-    texts: dict[tuple[str, ...], str | float] = {}
+    texts: dict[Key, str | float] = {}
     for name, material in data["materials"].items():
         texts["materials", name, "young_modulus"] = _scaled(material["young_modulus"], 1.0 / factor)
         for key in ("yield_stress", *([strength] if strength else [])):
@@ -76,17 +95,18 @@ def _replacements(data: dict[str, Any], factor: float) -> dict[tuple[str, ...], 
     if "rate" in data:
         reference = data["rate"].get("reference", f"{Rate.model_fields['reference'].default} 1/s")
         texts["rate", "reference"] = _scaled(reference, factor**-STRAIN_POWER)
+    texts |= {key: _scaled(force, factor**-FORCE_POWER) for key, force in _forces(data)}
     name = f"{data['case']['name']}_soft{factor:g}".replace(".", "_").replace("+", "")[:64]
     return texts | {("case", "name"): name}
 
 
-def _change(document: tomlkit.TOMLDocument, data: dict[str, Any], keys: tuple[str, ...], after: str | float) -> Change:
+def _change(document: tomlkit.TOMLDocument, data: Any, keys: Key, after: str | float) -> Change:
     """Replace one value of the document, which holds `data`; comments and order stay."""
     table: Any = document
     for key in keys[:-1]:
         table, data = table[key], data[key]
     table[keys[-1]] = after
-    return Change(".".join(keys), str(data.get(keys[-1], "the default")), str(after))
+    return Change(".".join(map(str, keys)), str(data.get(keys[-1], "the default")), str(after))
 
 
 def strain_ratio(data: dict[str, Any], path: Path) -> float:
@@ -103,6 +123,26 @@ def strain_ratio(data: dict[str, Any], path: Path) -> float:
     with named(path):
         law_named(case.law.name)
     return float(predict(leading_impact(case)).strain_ratio.max())
+
+
+def _loads(data: dict[str, Any], path: Path, factor: float) -> list[str]:
+    """Warnings of forces that do not scale as those of impacts do."""
+    from ..case import scene as scenes
+
+    scene, fall = data.get("scene", {}), factor**FORCE_POWER
+    found = []
+    if scene.get("kind") == "compaction" or any("velocity" in m for p in _phases(data) for m in p.get("move", [])):
+        found.append(
+            "a wall that moves with a given velocity compresses the same way: its forces and stresses scale with the "
+            "modulus, not with the real material"
+        )
+    if scenes.is_scene(data) and scenes.parse(data, path).scene.gravity:
+        found.append(
+            f"weight is kept, and the force of a contact at a speed falls by a factor of {fall:.3g} "
+            f"(k^{FORCE_POWER:g}): overlaps and dents under static loads grow by more than those of impacts; "
+            "take a small --factor where they matter"
+        )
+    return found
 
 
 def soften(path: Path, factor: float, *, folder: Path | None = None) -> Twin:
@@ -126,8 +166,7 @@ def soften(path: Path, factor: float, *, folder: Path | None = None) -> Twin:
         )
     if data.get("contact", {}).get("cohesion"):
         warnings.append("contact.cohesion is kept: its share of the contact force grows with the contact area")
-    if data.get("scene", {}).get("kind") == "compaction":
-        warnings.append("forces and stresses of the press scale with the modulus, not with the real material")
+    warnings += _loads(data, path, factor)
     steps = [data.get("numerics", {}), *data.get("scene", {}).get("phase", [])]
     if any("time_step" in table for table in steps):
         warnings.append(f"every time_step is kept as given; it can be {factor**STEP_POWER:.3g} times larger")

@@ -84,6 +84,8 @@ def plan_text(
     """
     data = tomllib.loads(text)
     keys, scene = keys_of(data), is_scene(data)
+    if ranks < 1:
+        raise CaseError(f"ranks = {ranks}: must be at least 1")
     axes = points.axes(settings, keys)
     rows: list[Point] = points.table(table, keys) if table else [{}]
     if both := set(axes) & set(rows[0]):
