@@ -6,7 +6,7 @@ import sys
 from pathlib import Path
 from types import ModuleType
 
-DOCS = Path(__file__).parents[2] / "docs"
+DOCS = Path(__file__).parents[1] / "docs"
 
 
 def script(name: str) -> ModuleType:
