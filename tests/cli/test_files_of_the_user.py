@@ -1,8 +1,10 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """No command that writes replaces a file of the user's without --force; with it, it does."""
 
+import errno
 import re
 import shutil
+from pathlib import Path
 
 import pytest
 from calls import CASES, call, quick_figures
@@ -72,7 +74,18 @@ def test_a_place_that_cannot_be_written_to_is_said_before_the_work_and_by_its_na
     (tmp_path / "d").write_text("a file")
     done = call(WRITERS["stability"][0], capsys, monkeypatch)
     assert done.code == 2 and f"{tmp_path}/d is not a folder that can be written to" in done.err
-    long = tmp_path / ("x" * 250)  # the temporary file beside it has a longer name
+    long = tmp_path / ("x" * 256)
     with pytest.raises(OSError, match="File name too long") as found, atomic(long):
         pass
     assert found.value.filename == str(long)
+
+
+def test_a_full_disk_is_said_with_its_free_bytes_though_the_folder_has_gone(tmp_path, capsys, monkeypatch):
+    def full(*words, **options):
+        raise OSError(errno.ENOSPC, "No space left on device", "out/law/in.impact")
+
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr(Path, "mkdir", full)
+    done = call(("run", CASES / "steel_wall.toml", "-e", "embedded", "-o", "out"), capsys, monkeypatch)
+    assert done.code == 2 and done.err.startswith("epdem: out/law/in.impact: No space left on device (")
+    assert "bytes are free); choose another folder by --out" in done.err

@@ -1,7 +1,10 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """A folder of results holds what runs have written; what is the user's is never removed nor overwritten unasked."""
 
+import errno
 import json
+import os
+import stat
 import subprocess
 import sys
 import time
@@ -9,6 +12,8 @@ from pathlib import Path
 
 import pytest
 
+from epdem.base import folders
+from epdem.base.files import TEMPORARY, atomic
 from epdem.base.folders import LOCK, MANIFEST, claim
 from epdem.errors import CaseError
 
@@ -120,3 +125,64 @@ def test_versions_are_kept_through_a_crash_until_another_run_notes_its_own(tmp_p
         results.note({"engine": "2"})
     with claim(tmp_path / "out") as results:
         assert results.versions == {"engine": "2"}
+
+
+def full(*words, **options):
+    raise OSError(errno.ENOSPC, "No space left on device")
+
+
+@pytest.mark.parametrize("broken", ["mkdir", "lock", "block"])
+def test_a_full_disk_is_named_and_leaves_no_folder(broken, tmp_path, monkeypatch):
+    folder = tmp_path / "a/b"
+    with monkeypatch.context() as disk, pytest.raises(OSError, match="No space left") as found:
+        if broken == "mkdir":
+            disk.setattr(Path, "mkdir", full)
+        if broken == "lock":
+            disk.setattr(folders.os, "write", full)
+        with claim(folder):
+            full()
+    assert Path(found.value.filename).is_relative_to(folder) and not (tmp_path / "a").exists()
+
+
+@pytest.mark.parametrize(("umask", "mode"), [(0o077, 0o600), (0o022, 0o644), (0o002, 0o664)])
+def test_new_files_have_the_mode_of_the_umask_and_others_keep_theirs(umask, mode, tmp_path):
+    (tmp_path / "old").write_text("x")
+    (tmp_path / "old").chmod(0o640)
+    before = os.umask(umask)
+    try:
+        for name in ("new", "old"):
+            with atomic(tmp_path / name) as temporary:
+                temporary.write_text("y")
+    finally:
+        os.umask(before)
+    assert [stat.S_IMODE((tmp_path / name).stat().st_mode) for name in ("new", "old")] == [mode, 0o640]
+
+
+WRITE = """
+import sys, time
+from pathlib import Path
+from epdem.base.files import atomic
+with atomic(Path(sys.argv[1])) as temporary:
+    temporary.write_text("half")
+    print("in", flush=True)
+    time.sleep(60)
+"""
+
+
+def test_what_a_killed_process_was_writing_goes_with_the_next_run(tmp_path):
+    first_run(tmp_path)
+    (tmp_path / ".mine").write_text("of the user")
+    places = [tmp_path / "results.h5", tmp_path / "law/liggghts/in.impact"]
+    commands = [[sys.executable, "-c", WRITE, str(place)] for place in places]
+    killed, alive = (subprocess.Popen(words, stdout=subprocess.PIPE) for words in commands)
+    for process in (killed, alive):
+        assert process.stdout.readline() == b"in\n"
+    killed.kill()
+    killed.wait()
+    with claim(tmp_path):
+        assert [p.parent for p in tmp_path.rglob(f"{TEMPORARY}*")] == [places[1].parent]
+    alive.kill()
+    alive.wait()
+    with claim(tmp_path):
+        assert not [*tmp_path.rglob(f"{TEMPORARY}*")]
+    assert (tmp_path / ".mine").read_text() == "of the user" and places[1].read_text() == "deck"

@@ -19,7 +19,7 @@ from pathlib import Path
 from typing import Any, TextIO
 
 from ..errors import CaseError
-from .files import atomic, write_texts
+from .files import atomic, remove_stale, write_texts
 
 LOCK, MANIFEST = ".epdem.lock", ".epdem.json"
 # Names that a run may write, in the folder or below it.
@@ -99,29 +99,45 @@ def claim(folder: Path, *, force: bool = False, files: Collection[str] = ()) -> 
     if place in _held:
         yield _held[place]
         return
-    new = not folder.exists()
-    folder.mkdir(parents=True, exist_ok=True)
-    with (folder / LOCK).open("a+") as lock:
-        _lock(folder, lock)
+    made = [p for p in (folder, *folder.parents) if not p.exists()]
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        with (folder / LOCK).open("a+") as lock:
+            _lock(folder, lock)
+            yield from _claimed(folder, place, force, files)
+    except OSError as error:
+        if error.errno and not error.filename:  # a full disk, while a file was written that was open
+            raise OSError(error.errno, error.strerror, str(folder)) from None
+        raise
+    finally:
+        for path in made:  # those of a run that has come to nothing are empty
+            with contextlib.suppress(OSError):
+                path.rmdir()
+
+
+def _claimed(folder: Path, place: Path, force: bool, files: Collection[str]) -> Iterator[Results]:
+    """The block of `claim`, with the lock."""
+    try:
+        for path in _folders(folder):
+            remove_stale(path)
+        known = _known(folder)
+        foreign = _foreign(folder, known)
+        if not force:
+            _refuse(folder, foreign, files, known is not None)
+        results = Results(folder, frozenset(foreign), (known or {}).get("versions", {}))
+        results.note(dict(results.versions))
+        _held[place] = results
+        yield results
+    finally:
         try:
-            known = _known(folder)
-            foreign = _foreign(folder, known)
-            if not force:
-                _refuse(folder, foreign, files, known is not None)
-            results = Results(folder, frozenset(foreign), (known or {}).get("versions", {}))
-            results.note(dict(results.versions))
-            _held[place] = results
-            yield results
-        finally:
             if _held.pop(place, None):
                 old = (known or {}).get("files", {})
                 ours = {n: _about(folder / n, old.get(n)) for n in sorted(_names(folder) - foreign)}
                 _write(folder, {"files": ours, "versions": results.versions})
                 if not ours and known is None:  # a run that has come to nothing
                     (folder / MANIFEST).unlink()
+        finally:
             (folder / LOCK).unlink(missing_ok=True)
-            if new and not any(folder.iterdir()):
-                folder.rmdir()
 
 
 def _lock(folder: Path, lock: TextIO) -> None:
@@ -133,23 +149,27 @@ def _lock(folder: Path, lock: TextIO) -> None:
         raise CaseError(f"{folder}: in use by {owner}; wait for its end, or choose another folder by --out") from None
     if not (folder / LOCK).exists() or (folder / LOCK).stat().st_ino != os.fstat(lock.fileno()).st_ino:
         raise CaseError(f"{folder}: another run has just ended here; run the command again")
-    lock.truncate(0)
-    lock.write(f"process {os.getpid()} since {time.strftime('%Y-%m-%d %H:%M:%S')}\n")
-    lock.flush()
+    try:
+        os.truncate(lock.fileno(), 0)
+        os.write(lock.fileno(), f"process {os.getpid()} since {time.strftime('%Y-%m-%d %H:%M:%S')}\n".encode())
+    except OSError as error:
+        (folder / LOCK).unlink()
+        raise OSError(error.errno, error.strerror, str(folder / LOCK)) from None
 
 
-def _names(folder: Path, below: Path = Path()) -> set[str]:
-    """All files below a folder by their path in it; no hidden ones, and no folders that have a list of their own."""
-    names: set[str] = set()
-    for path in (folder / below).iterdir():
-        if path.name.startswith("."):
-            continue
-        if path.is_dir() and not path.is_symlink():
-            if not (path / MANIFEST).exists():
-                names |= _names(folder, below / path.name)
-        else:
-            names.add(str(below / path.name))
-    return names
+def _folders(folder: Path) -> Iterator[Path]:
+    """A folder and those below it; no hidden ones, and none that have a list of their own."""
+    yield folder
+    for path in folder.iterdir():
+        hidden = path.name.startswith(".") or path.is_symlink()
+        if path.is_dir() and not hidden and not (path / MANIFEST).exists():
+            yield from _folders(path)
+
+
+def _names(folder: Path) -> set[str]:
+    """All files in `_folders` by their path in the folder, without hidden ones."""
+    paths = (path for place in _folders(folder) for path in place.iterdir() if not path.name.startswith("."))
+    return {str(path.relative_to(folder)) for path in paths if path.is_symlink() or not path.is_dir()}
 
 
 def _about(path: Path, before: About | None = None) -> About:

@@ -231,7 +231,8 @@ def main() -> None:
     except OSError as error:
         place, reason = error.filename or "a file", error.strerror or error
         if error.errno == errno.ENOSPC:
-            reason = f"{reason} ({shutil.disk_usage(Path(place).parent).free} bytes are free)"
+            there = next(parent for parent in Path(place).absolute().parents if parent.exists())
+            reason = f"{reason} ({shutil.disk_usage(there).free} bytes are free)"
         print(f"epdem: {place}: {reason}; choose another folder by --out, or make it writable", file=sys.stderr)
         sys.exit(2)
     finally:

@@ -102,7 +102,7 @@ class Sweep:
         """The names of the points' folders."""
         rest = repr((self.engines, self.laws, self.ranks)).encode()
         return tuple(
-            hashlib.sha256(self.text(n).encode() + rest).hexdigest()[:12] for n in range(1, len(self.points) + 1)
+            hashlib.sha256(self.text(n).encode() + rest).hexdigest()[:32] for n in range(1, len(self.points) + 1)
         )
 
     def place(self, number: int) -> str:
