@@ -4,6 +4,7 @@
 import math
 import re
 import shutil
+import struct
 import tomllib
 from pathlib import Path
 
@@ -130,6 +131,34 @@ def test_a_bad_stl_is_found_before_the_run_with_place_and_number(kind, change, w
     data = parts(wall=[FLOOR, STL | {"scale": 1e-3} | change])
     with pytest.raises(CaseError, match=words):
         plan(parse(data, tmp_path / "case.toml"))
+
+
+def binary_stl(triangles: np.ndarray, count: int, name: bytes) -> bytes:
+    """A binary STL file whose header names `count` triangles."""
+    corners = [struct.pack("<12fH", 0, 0, 0, *t.ravel(), 0) for t in triangles]
+    return name.ljust(80) + struct.pack("<I", count) + b"".join(corners)
+
+
+@pytest.mark.parametrize("count", [3, 5, 2**32 - 1])
+@pytest.mark.parametrize("name", [b"a bowl", b"solid bowl"])
+def test_an_stl_file_whose_header_lies_about_its_triangles_is_refused(count, name, tmp_path):
+    (tmp_path / "wall.stl").write_bytes(binary_stl(tetrahedron(10.0), count, name))
+    data = parts(wall=[FLOOR, STL | {"scale": 1e-3}])
+    says = rf"not an STL file \(284 bytes; the {count} triangles of its header have {84 + 50 * count}"
+    with pytest.raises(CaseError, match=says):
+        plan(parse(data, tmp_path / "case.toml"))
+
+
+def test_an_stl_file_may_be_binary_or_a_text_in_any_encoding(tmp_path):
+    found = []
+    write_stl(tmp_path / "wall.stl", tetrahedron(10.0))
+    text = (tmp_path / "wall.stl").read_text()
+    named = text.replace("solid wall", "solid Gehäuse").encode("latin-1")
+    for raw in (text.encode(), named, binary_stl(tetrahedron(10.0), 4, b"solid bowl")):
+        (tmp_path / "wall.stl").write_bytes(raw)
+        data = parts(wall=[FLOOR, STL | {"scale": 1e-3}])
+        found.append(plan(parse(data, tmp_path / "case.toml")).layout.meshes["bowl"].triangles)
+    assert found[1] == pytest.approx(found[0]) and found[2] == pytest.approx(found[0])
 
 
 def test_a_good_stl_is_scaled_turned_and_moved(tmp_path):

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """STL files of walls: read, scaled, rotated, moved; what is wrong with one is found before a run."""
 
+import io
 import math
 from pathlib import Path
 
@@ -18,9 +19,17 @@ def _read(path: Path, place: str) -> FloatArray:
     """The triangles of a file, shape (n, 3, 3), in its unit. Raises CaseError."""
     import trimesh
 
+    raw = path.read_bytes()
+    count = int.from_bytes(raw[80:84], "little")
+    if len(raw) != 84 + 50 * count:  # not a binary file, so it must be a text
+        if b"facet" not in raw:
+            raise CaseError(
+                f"{place} = '{path}': not an STL file ({len(raw)} bytes; the {count} triangles of its header have "
+                f"{84 + 50 * count}, and a text has the word 'facet'); export it anew"
+            )
+        raw = raw.decode("utf-8", errors="replace").encode()
     try:
-        with path.open("rb") as stream:
-            mesh = trimesh.load_mesh(stream, file_type="stl", process=False)
+        mesh = trimesh.load_mesh(io.BytesIO(raw), file_type="stl", process=False)
         triangles: FloatArray = np.asarray(mesh.triangles, dtype=np.float64)
     except Exception as error:  # of a damaged file trimesh says almost anything
         reason = " ".join(str(error).split())[:80] or type(error).__name__
