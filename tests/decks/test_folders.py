@@ -14,7 +14,7 @@ import pytest
 
 from epdem.base import folders
 from epdem.base.files import TEMPORARY, atomic
-from epdem.base.folders import LOCK, MANIFEST, claim
+from epdem.base.folders import LOCK, MARKER, claim
 from epdem.errors import CaseError
 
 HOLD = """
@@ -85,7 +85,8 @@ def test_two_runs_never_share_a_folder_and_a_killed_one_leaves_its_files_ours(tm
         holder.wait()
     with claim(tmp_path / "out") as results:
         results.remove("restart.*")
-    assert json.loads((tmp_path / "out" / MANIFEST).read_text())["files"] == {}
+    assert json.loads((tmp_path / "out" / MARKER).read_text())["foreign"] == []
+    assert [p.name for p in (tmp_path / "out").iterdir()] == [MARKER]
 
 
 def test_blocks_of_one_process_nest_and_keep_the_lists_of_inner_folders_apart(tmp_path):

@@ -126,10 +126,24 @@ def test_every_table_is_read_back_as_it_was_written(tmp_path):
     for before, after in zip(tables, read, strict=True):
         pd.testing.assert_frame_equal(before, after)
     with h5py.File(tmp_path / "results.h5") as file:
-        assert file["impacts/law/engine/speed"].attrs["unit"] == "m/s"
+        assert file["impacts/law/engine/speed"].attrs["unit"] == b"m/s"
 
 
 def test_a_file_that_is_no_result_is_refused(tmp_path):
     (tmp_path / "x.h5").write_text("hello")
     with pytest.raises(CaseError, match="not a results file"):
         store.read(tmp_path / "x.h5")
+
+
+def test_one_wrong_bit_in_a_column_or_a_text_is_refused(tmp_path):
+    """Without HDF5's checksums the wrong number is read."""
+    path, table = tmp_path / "results.h5", pd.DataFrame({"speed": np.linspace(0.1, 0.7, 7)})
+    store.write(path, store.Results("the case", {}, table, {"law/engine": table}, paths={"law/engine": table}))
+    whole = path.read_bytes()
+    assert store.read(path).impacts["law/engine"].equals(table)
+    with h5py.File(path) as file:
+        places = [file[name].id.get_chunk_info(0).byte_offset for name in ("impacts/law/engine/speed", "case")]
+    for place in places:
+        path.write_bytes(whole[: place + 5] + bytes([whole[place + 5] ^ 1]) + whole[place + 6 :])
+        with pytest.raises(CaseError, match="damaged"):
+            store.read(path)

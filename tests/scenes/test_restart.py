@@ -16,7 +16,7 @@ import pytest
 from scene_runs import run, write_case, write_deck
 from test_lean import CASES, small
 
-from epdem.base.folders import MANIFEST
+from epdem.base.folders import MARKER
 from epdem.case.scene import is_scene, load, parse
 from epdem.case.toml import read_toml
 from epdem.errors import CaseError
@@ -191,11 +191,11 @@ def test_a_hopper_with_another_outlet_is_not_continued(hopper, tmp_path):
 @pytest.mark.parametrize("program", ["liggghts", "epdem", None])
 def test_a_run_that_other_programs_began_is_not_continued(program, hopper, tmp_path):
     shutil.copytree(hopper[1], tmp_path, dirs_exist_ok=True)
-    manifest = tmp_path / "out" / MANIFEST
-    known = json.loads(manifest.read_text())
+    marker = tmp_path / "out" / MARKER
+    known = json.loads(marker.read_text())
     assert set(known["versions"]) == {"liggghts", "epdem"}
     known["versions"] = known["versions"] | {program: "0.0.9"} if program else {}
-    manifest.write_text(json.dumps(known))
+    marker.write_text(json.dumps(known))
     said = f"begun by .*{program} 0.0.9" if program else "programs of unknown versions"
     with pytest.raises(CaseError, match=said):
         run(tmp_path / "case.toml", out=tmp_path / "out", resume=True)

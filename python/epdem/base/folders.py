@@ -1,14 +1,13 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """A folder of results: one run writes it at a time, and no file of the user in it is changed.
 
-`.epdem.json` in the folder lists the files of earlier runs by size, time and hash. A file that is not in the list, or
-has changed since, is the user's. During a run the list instead names the files that were the user's at its begin; after
-a crash all other files are those of the run.
+The marker `.epdem.json` says that the folder belongs to epdem, and lists the files of the user from before. After a run
+a file that is newer than the marker is the user's, too; after a crash all files that the marker does not list are those
+of the run.
 """
 
 import contextlib
 import fcntl
-import hashlib
 import json
 import os
 import time
@@ -21,7 +20,7 @@ from typing import Any, TextIO
 from ..errors import CaseError
 from .files import atomic, remove_stale, write_texts
 
-LOCK, MANIFEST = ".epdem.lock", ".epdem.json"
+LOCK, MARKER = ".epdem.lock", ".epdem.json"
 # Names that a run may write, in the folder or below it.
 OUTPUTS = (
     "in.*",
@@ -69,7 +68,13 @@ class Results:
         """Keep the versions of the programs that are about to write, through a crash too."""
         self.versions.clear()
         self.versions.update(versions)
-        _write(self.folder, {"foreign": sorted(self.foreign), "versions": self.versions})
+        self.mark(ended=False)
+
+    def mark(self, *, ended: bool) -> None:
+        """Write the marker of the folder."""
+        content = {"foreign": sorted(self.foreign), "versions": self.versions, "ended": ended}
+        with atomic(self.folder / MARKER) as temporary:
+            temporary.write_text(json.dumps(content, indent=1), encoding="utf-8")
 
     def remove(self, *patterns: str) -> None:
         """Remove the files of earlier runs whose path in the folder matches a pattern, and only these."""
@@ -78,8 +83,7 @@ class Results:
                 (self.folder / name).unlink()
 
 
-About = list[Any]  # size, time of change, hash
-Known = dict[str, Any]  # what `.epdem.json` holds
+Known = dict[str, Any]  # content of the marker
 _held: dict[Path, Results] = {}  # folders that this process keeps now
 
 
@@ -131,11 +135,10 @@ def _claimed(folder: Path, place: Path, force: bool, files: Collection[str]) -> 
     finally:
         try:
             if _held.pop(place, None):
-                old = (known or {}).get("files", {})
-                ours = {n: _about(folder / n, old.get(n)) for n in sorted(_names(folder) - foreign)}
-                _write(folder, {"files": ours, "versions": results.versions})
-                if not ours and known is None:  # a run that has come to nothing
-                    (folder / MANIFEST).unlink()
+                if known is None and not _names(folder) - foreign:  # the run has written nothing
+                    (folder / MARKER).unlink()
+                else:
+                    results.mark(ended=True)
         finally:
             (folder / LOCK).unlink(missing_ok=True)
 
@@ -158,11 +161,11 @@ def _lock(folder: Path, lock: TextIO) -> None:
 
 
 def _folders(folder: Path) -> Iterator[Path]:
-    """A folder and those below it; no hidden ones, and none that have a list of their own."""
+    """A folder and those below it; no hidden ones, and none that have a marker."""
     yield folder
     for path in folder.iterdir():
         hidden = path.name.startswith(".") or path.is_symlink()
-        if path.is_dir() and not hidden and not (path / MANIFEST).exists():
+        if path.is_dir() and not hidden and not (path / MARKER).exists():
             yield from _folders(path)
 
 
@@ -172,41 +175,25 @@ def _names(folder: Path) -> set[str]:
     return {str(path.relative_to(folder)) for path in paths if path.is_symlink() or not path.is_dir()}
 
 
-def _about(path: Path, before: About | None = None) -> About:
-    """[size, time of change in ns, hash] of a file; the hash of `before` counts where the others are the same."""
-    if not path.is_file():  # a link that leads nowhere
-        return [0, 0, ""]
-    status, sha = path.stat(), hashlib.blake2b(digest_size=16)
-    if before and before[:2] == [status.st_size, status.st_mtime_ns]:
-        return before
-    with path.open("rb") as stream:
-        for block in iter(lambda: stream.read(1 << 20), b""):
-            sha.update(block)
-    return [status.st_size, status.st_mtime_ns, sha.hexdigest()]
-
-
 def _known(folder: Path) -> Known | None:
-    """The content of `.epdem.json`, or None if the folder has none that can be read."""
+    """The content of the marker, or None if the folder has no marker that can be read."""
     try:
-        manifest = json.loads((folder / MANIFEST).read_text(encoding="utf-8"))
+        marker = json.loads((folder / MARKER).read_text(encoding="utf-8"))
     except (OSError, ValueError):
         return None
-    return manifest if isinstance(manifest, dict) else None
+    return marker if isinstance(marker, dict) else None
 
 
 def _foreign(folder: Path, known: Known | None) -> set[str]:
+    """The user's files in a folder."""
     names = _names(folder)
     if known is None:
         return names
-    if "files" not in known:  # the last run was interrupted
-        return names & set(known.get("foreign", []))
-    return {name for name in names if not _unchanged(folder / name, known["files"].get(name))}
-
-
-def _unchanged(path: Path, about: About | None) -> bool:
-    if about is None:
-        return False
-    return bool(_about(path, about)[2] == about[2])
+    foreign = names & set(known.get("foreign", []))
+    if known.get("ended"):
+        end = (folder / MARKER).stat().st_mtime_ns
+        foreign |= {name for name in names if (folder / name).lstat().st_mtime_ns > end}
+    return foreign
 
 
 def _refuse(folder: Path, foreign: set[str], files: Collection[str], ours: bool) -> None:
@@ -214,11 +201,6 @@ def _refuse(folder: Path, foreign: set[str], files: Collection[str], ours: bool)
     if in_the_way:
         what = "was not written by epdem, or has changed since" if ours else "was there before; the folder is not ours"
         raise CaseError(f"{folder}: {min(in_the_way)} {what}; choose another folder by --out, or add --force")
-
-
-def _write(folder: Path, content: dict[str, object]) -> None:
-    with atomic(folder / MANIFEST) as temporary:
-        temporary.write_text(json.dumps(content, indent=1), encoding="utf-8")
 
 
 def write_own(folder: Path, texts: dict[str, str], *, force: bool = False) -> list[Path]:

@@ -1,11 +1,15 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Tables in HDF5: DataFrames as groups of one dataset per column, with units; a file is complete or absent."""
+"""Tables in HDF5: DataFrames as groups of one dataset per column, with units; a file is complete or absent.
+
+HDF5's checksums cover a file: fletcher32 the data, format 1.10 the metadata. Strings have a fixed length, because HDF5
+stores strings of variable length without a checksum.
+"""
 
 import contextlib
-import hashlib
 import io
 from collections.abc import Iterator, Mapping
 from pathlib import Path
+from typing import Any
 
 import h5py
 import numpy as np
@@ -14,7 +18,6 @@ import pandas as pd
 from ..errors import CaseError
 from .files import atomic
 
-SEAL = b"epdem blake2b "
 LARGE = 5000  # values from which a column is compressed
 
 
@@ -23,37 +26,40 @@ class Hdf5:
 
     def __init__(self) -> None:
         self._bytes = io.BytesIO()
-        self.file = h5py.File(self._bytes, "w")
+        self.file = h5py.File(self._bytes, "w", libver="v110")
 
     def save(self, path: Path) -> None:
         """Write the file to `path` in place of what is there. Raises OSError and leaves what is there."""
         self.file.close()
         with atomic(path) as temporary, temporary.open("wb") as stream:
             stream.write(self._bytes.getbuffer())
-            stream.write(_seal(self._bytes.getbuffer()))
 
 
-def _seal(data: bytes | memoryview) -> bytes:
-    """What stands behind the data of a file, where HDF5 does not look: their hash."""
-    return SEAL + hashlib.blake2b(data, digest_size=32).digest()
+def write_attributes(target: h5py.HLObject, values: Mapping[str, object]) -> None:
+    """Store `values` as attributes of a group or dataset."""
+    for name, value in values.items():
+        target.attrs[name] = np.bytes_(value.encode() or b"\0") if isinstance(value, str) else value
 
 
-def _changed(path: Path) -> bool:
-    """Whether the data are others than those that were written: HDF5 may read damaged ones for ever.
+def attributes(target: h5py.HLObject) -> dict[str, Any]:
+    """The attributes of a group or dataset, texts as str."""
+    return {name: value.decode() if isinstance(value, bytes) else value for name, value in target.attrs.items()}
 
-    A file without a seal is one that another program has written to.
-    """
-    data = path.read_bytes()
-    at = len(data) - len(SEAL) - 32
-    return at > 0 and data[at:].startswith(SEAL) and _seal(memoryview(data)[:at]) != data[at:]
+
+def write_text(group: h5py.Group, name: str, text: str) -> None:
+    """Store `text` as the dataset `name`."""
+    group.create_dataset(name, data=np.array([text.encode() or b"\0"]), fletcher32=True)
+
+
+def read_text(dataset: h5py.Dataset) -> str:
+    """The text that `write_text` stored."""
+    return str(dataset[0].decode())
 
 
 @contextlib.contextmanager
 def opened(path: Path | str, what: str) -> Iterator[h5py.File]:
     """An HDF5 file to read. Raises CaseError if it is not there, or if it or what is read of it is damaged."""
     try:
-        if _changed(Path(path)):
-            raise OSError("its data are not those that were written")
         with h5py.File(path) as file:
             yield file
     except FileNotFoundError:
@@ -75,20 +81,19 @@ def write_table(group: h5py.Group, table: pd.DataFrame, units: dict[str, str]) -
         if column.dtype == object or column.dtype.kind in "US":
             column = np.array([str(v).encode() for v in column])
         large = {"compression": "gzip", "compression_opts": 1, "shuffle": True} if column.size > LARGE else {}
-        dataset = group.create_dataset(name, data=column, **large)
+        dataset = group.create_dataset(name, data=column, fletcher32=True if column.size else None, **large)
         if unit := unit_of(name, units):
-            dataset.attrs["unit"] = unit
-    group.attrs["columns"] = list(table.columns)
+            write_attributes(dataset, {"unit": unit})
+    group.attrs["columns"] = np.array([name.encode() for name in table.columns], dtype="S")
 
 
 def read_table(group: h5py.Group) -> pd.DataFrame:
     """The table that `write_table` stored in `group`, with the units of its columns in `attrs["units"]`."""
     columns, units = {}, {}
-    for name in group.attrs["columns"]:
+    for name in (name.decode() for name in group.attrs["columns"]):
         data = group[name][()]
         columns[name] = [v.decode() for v in data] if data.dtype.kind == "S" else data
-        if "unit" in group[name].attrs:
-            units[name] = group[name].attrs["unit"]
+        units |= {name: unit for key, unit in attributes(group[name]).items() if key == "unit"}
     table = pd.DataFrame(columns)
     table.attrs["units"] = units
     return table

@@ -6,7 +6,17 @@ from pathlib import Path
 
 import pandas as pd
 
-from ..base.tables import Hdf5, opened, read_table, write_csv, write_table
+from ..base.tables import (
+    Hdf5,
+    attributes,
+    opened,
+    read_table,
+    read_text,
+    write_attributes,
+    write_csv,
+    write_table,
+    write_text,
+)
 from .comparison import UNITS
 
 
@@ -31,16 +41,16 @@ def write(path: Path, results: Results) -> None:
     """Store `results` in the HDF5 file `path` and its comparison as CSV beside it."""
     stored = Hdf5()
     file = stored.file
-    file.attrs.update(results.attributes)
-    file["case"] = results.case_text
+    write_attributes(file, results.attributes)
+    write_text(file, "case", results.case_text)
     write_table(file.create_group("comparison"), results.comparison, UNITS)
     for kind, tables in (("impacts", results.impacts), ("predictions", results.predictions), ("paths", results.paths)):
         for key, table in tables.items():
             write_table(file.create_group(f"{kind}/{key}"), table, UNITS)
-    for key, attributes in results.runs.items():
-        file[f"impacts/{key}"].attrs.update(attributes)
+    for key, about in results.runs.items():
+        write_attributes(file[f"impacts/{key}"], about)
     for key, text in results.decks.items():
-        file[f"decks/{key}"] = text
+        write_text(file, f"decks/{key}", text)
     stored.save(path)
     write_csv(path.with_suffix(".csv"), results.comparison)
 
@@ -48,7 +58,7 @@ def write(path: Path, results: Results) -> None:
 def read(path: Path | str) -> Results:
     """The results in an HDF5 file that `write` made. Raises CaseError."""
     with opened(path, "a results file of epdem") as file:
-        results = Results(file["case"][()].decode(), dict(file.attrs), read_table(file["comparison"]))
+        results = Results(read_text(file["case"]), attributes(file), read_table(file["comparison"]))
         for law, group in file.get("predictions", {}).items():
             results.predictions[law] = read_table(group)
         for law, engines in file.get("impacts", {}).items():
@@ -56,7 +66,7 @@ def read(path: Path | str) -> Results:
                 key = f"{law}/{engine}"
                 results.impacts[key] = read_table(group)
                 results.paths[key] = read_table(file[f"paths/{key}"])
-                results.runs[key] = {k: v for k, v in group.attrs.items() if k != "columns"}
+                results.runs[key] = {k: v for k, v in attributes(group).items() if k != "columns"}
                 for name, text in file.get(f"decks/{key}", {}).items():
-                    results.decks[f"{key}/{name}"] = text[()].decode()
+                    results.decks[f"{key}/{name}"] = read_text(text)
         return results

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pandas as pd
 
-from ..base.tables import opened
+from ..base.tables import attributes, opened
 from ..case.files import names_in, renamed
 from ..engines import scene_engine
 from ..errors import CaseError
@@ -42,7 +42,7 @@ def rerun(path: Path, progress: Progress = lambda text: None) -> Rerun:
     Raises CaseError for a file that is none, EngineError.
     """
     with opened(path, "a results file of epdem") as file:
-        scene = file.attrs.get("kind") == "scene"
+        scene = attributes(file).get("kind") == "scene"
     with tempfile.TemporaryDirectory(prefix="epdem-rerun-") as scratch:
         return (_scene if scene else _impacts)(path, Path(scratch), progress)
 

@@ -21,7 +21,7 @@ from typing import Any
 import tomlkit
 
 from ...base.files import atomic
-from ...base.folders import MANIFEST, results_folder
+from ...base.folders import MARKER, results_folder
 from ...base.stages import inputs_hash
 from ...case.files import names_in
 from ...case.messages import shorten
@@ -131,9 +131,7 @@ class Sweep:
 def write(sweep: Sweep, folder: Path) -> None:
     """Store the definition in `folder`."""
     (folder / POINTS).mkdir(parents=True, exist_ok=True)
-    (folder / POINTS / MANIFEST).write_text(
-        "{}", encoding="utf-8"
-    )  # each point keeps account of its own: a job may work at it alone
+    (folder / POINTS / MARKER).write_text("{}", encoding="utf-8")  # each point has a marker: a job may run it alone
     with atomic(folder / DEFINITION) as temporary:
         temporary.write_text(json.dumps(asdict(sweep)), encoding="utf-8")
 

@@ -6,7 +6,7 @@ from typing import Any
 
 import pandas as pd
 
-from ...base.tables import Hdf5, opened, read_table, write_csv, write_table
+from ...base.tables import Hdf5, opened, read_table, write_attributes, write_csv, write_table, write_text
 from ...case.units import to_si
 from ...errors import CaseError
 from ...impacts.comparison import UNITS
@@ -68,8 +68,8 @@ def write(sweep: Sweep, folder: Path) -> pd.DataFrame:
     """Collect the table of a sweep and store it as sweep.csv and sweep.h5."""
     table = collect(sweep, folder)
     stored = Hdf5()
-    stored.file.attrs["case"] = sweep.name
-    stored.file["case_text"] = sweep.case
+    write_attributes(stored.file, {"case": sweep.name})
+    write_text(stored.file, "case_text", sweep.case)
     write_table(stored.file.create_group("sweep"), table, table.attrs["units"])
     stored.save(folder / TABLE)
     write_csv(folder / "sweep.csv", table)
