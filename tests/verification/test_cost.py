@@ -7,10 +7,10 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 import pytest
-from scripts import script
 
 from epdem.verification import cost, cost_report
 from epdem.verification.stability import bulk_cost
+from scripts import script
 
 page = script("cost")
 STEEL = Path(__file__).parents[2] / "cases/steel_wall.toml"

@@ -6,7 +6,6 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from scripts import script
 from typer.testing import CliRunner
 
 from epdem.cli.main import app
@@ -23,6 +22,7 @@ from epdem.verification.stability.running import judge, measure, setting
 from epdem.verification.stability.sampling import EmbeddedSampler, PositionSampler, Sample
 from epdem.verification.stability.scenes import SCENES, with_law
 from epdem.verification.stability.two_walls import balance, path, stored
+from scripts import script
 
 LAWS = ("hertz", "thornton", "johnson", "cavity")
 page = script("stability")

@@ -93,7 +93,8 @@ def read_table(group: h5py.Group) -> pd.DataFrame:
     for name in (name.decode() for name in group.attrs["columns"]):
         data = group[name][()]
         columns[name] = [v.decode() for v in data] if data.dtype.kind == "S" else data
-        units |= {name: unit for key, unit in attributes(group[name]).items() if key == "unit"}
+        if unit := attributes(group[name]).get("unit"):
+            units[name] = unit
     table = pd.DataFrame(columns)
     table.attrs["units"] = units
     return table
