@@ -43,10 +43,10 @@ class Adhesion {
 inline void refuse_adhesion(const Reader& reader, const Declaration& law) {
   for (const char* name : {adhesion_name, surface_name}) {
     if (!reader.given(name)) continue;
-    const std::string model = law.model;
-    const std::string instead = model == "ep/hertz"      ? "take ep/jkr"
-                                : model == "ep/thornton" ? "take ep/thornton_ning"
-                                                         : "no theory of adhesion exists for it, take ep/thornton_ning";
+    const std::string instead = law.model == "ep/hertz" ? "take ep/jkr"
+                                : law.model == "ep/thornton"
+                                    ? "take ep/thornton_ning"
+                                    : "no theory of adhesion exists for it, take ep/thornton_ning";
     reader.fail(std::string(name) + " is given, but this law has no adhesion; " + instead + ", or remove the property");
   }
 }

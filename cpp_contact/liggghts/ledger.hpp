@@ -26,9 +26,9 @@ class Ledger {
   };
 
   /// For the pair style, whose settings come first: creates the properties.
-  void create(LAMMPS_NS::LAMMPS* lmp, bool rubs, bool adheres) {
+  void create(LAMMPS_NS::LAMMPS* lmp, bool books_friction, bool adheres) {
     for (const char* name : {work_name, energy_name, bearing_name, friction_name, springs_name, adhesive_name}) {
-      if (!rubs && (name == friction_name || name == springs_name)) continue;
+      if (!books_friction && (name == friction_name || name == springs_name)) continue;
       if (!adheres && name == adhesive_name) continue;
       const char* words[] = {name, "all", "property/atom", name, "scalar", "yes", "no", "no", "0.0"};
       if (!find(lmp, name, name)) lmp->modify->add_fix_property_atom(9, const_cast<char**>(words), name);
@@ -36,19 +36,19 @@ class Ledger {
   }
 
   /// Before each run, for pairs and walls.
-  void connect(LAMMPS_NS::LAMMPS* lmp, const std::string& model, bool rubs, bool adheres) {
+  void connect(LAMMPS_NS::LAMMPS* lmp, const std::string& model, bool books_friction, bool adheres) {
     work_ = find(lmp, work_name, model.c_str());
     energy_ = find(lmp, energy_name, model.c_str());
     friction_ = find(lmp, friction_name, model.c_str());
     springs_ = find(lmp, springs_name, model.c_str());
     adhesive_ = find(lmp, adhesive_name, model.c_str());
     bearing_ = find(lmp, bearing_name, model.c_str());
-    if (work_ && energy_ && bearing_ && (friction_ || !rubs) && (adhesive_ || !adheres)) return;
+    if (work_ && energy_ && bearing_ && (friction_ || !books_friction) && (adhesive_ || !adheres)) return;
     const std::string text = "model " + model +
                              ": computePlasticWork on of a wall needs it for the pair style as well" +
-                             (rubs      ? ", with the same tangential model"
-                              : adheres ? ", whose model has adhesion, too"
-                                        : "");
+                             (books_friction ? ", with the same tangential model"
+                              : adheres      ? ", whose model has adhesion, too"
+                                             : "");
     lmp->error->all(FLERR, text.c_str());
   }
 
@@ -59,10 +59,10 @@ class Ledger {
     if (springs_) std::fill_n(springs_->vector_atom, nlocal, 0.0);
   }
 
-  template <bool wall, class Law>
-  void book(const Law& law, double R_star, const State<Law>& before, const Step<Law>& now, double delta,
+  template <class Law>
+  void book(bool wall, const Law& law, double R_star, const State<Law>& before, const Step<Law>& now, double delta,
             const Bodies& bodies) {
-    constexpr double part = wall ? 1.0 : 0.5;
+    const double part = wall ? 1.0 : 0.5;
     double grown, stored;
     if constexpr (adheres<Law>) {
       const auto lost = losses(law, R_star, before, now.after);
@@ -80,11 +80,10 @@ class Ledger {
   }
 
   /// The same for friction: work that it took in this step, elastic energy of its springs [J].
-  template <bool wall>
-  void rub(double lost, double stored, const Bodies& bodies) {
-    constexpr double part = wall ? 1.0 : 0.5;
-    rub_one(bodies.i, part * lost, part * stored);
-    if (!wall && bodies.j < bodies.nlocal) rub_one(bodies.j, part * lost, part * stored);
+  void book_friction(bool wall, double lost, double stored, const Bodies& bodies) {
+    const double part = wall ? 1.0 : 0.5;
+    book_friction_of(bodies.i, part * lost, part * stored);
+    if (!wall && bodies.j < bodies.nlocal) book_friction_of(bodies.j, part * lost, part * stored);
   }
 
   /// What one contact adds to one body [J].
@@ -113,7 +112,7 @@ class Ledger {
         lmp->modify->find_fix_property(name, "property/atom", "scalar", 0, 0, caller, false));
   }
 
-  void rub_one(int body, double lost, double stored) {
+  void book_friction_of(int body, double lost, double stored) {
     friction_->vector_atom[body] += lost;
     springs_->vector_atom[body] += stored;
   }

@@ -172,8 +172,8 @@ void compare_strength(LAMMPS_NS::LAMMPS* lmp, const Declaration& law, const Mate
       const double strength = p.parameters[law.strength], share = strength / effective_modulus(p.i, p.j);
       if (!(share > elastic_share) || strength >= rigid_strength) continue;
       const char* const name = law.parameters[law.strength].property;
-      return say_once(lmp, std::string("epdem: ") + law.model + ": " + name + " of " + both(i, j) + " is " +
-                               number(share) + " E*, above " + number(elastic_share) +
+      return say_once(lmp, "epdem: " + law.model + ": " + name + " of " + both(i, j) + " is " + number(share) +
+                               " E*, above " + number(elastic_share) +
                                " E*: the contacts stay elastic; give youngsModulus its real value");
     }
 }
@@ -195,8 +195,8 @@ Materials read_materials(LAMMPS_NS::LAMMPS* lmp, PropertyRegistry& registry, con
   const std::vector<double> E = reader.per_type("youngsModulus", "Pa", {0.0, unlimited, false});
   const std::vector<double> nu = reader.per_type("poissonsRatio", "1", {0.0, 0.5, true});
   // LIGGGHTS's own limits on the modulus (soft_particles, hard_particles) hold for every model of a simulation
-  registry.registerProperty("youngsModulus", &MODEL_PARAMS::createYoungsModulus, law.model);
-  registry.getVectorProperty("youngsModulus", law.model);
+  registry.registerProperty("youngsModulus", &MODEL_PARAMS::createYoungsModulus, law.model.c_str());
+  registry.getVectorProperty("youngsModulus", law.model.c_str());
 
   if (!law.adheres) refuse_adhesion(reader, law);
   const std::unique_ptr<Adhesion> adhesion(law.adheres ? new Adhesion(reader) : nullptr);

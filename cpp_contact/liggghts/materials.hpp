@@ -2,6 +2,7 @@
 // The material properties of a simulation, read from LIGGGHTS by name and checked before a law sees them.
 #pragma once
 
+#include <string>
 #include <vector>
 
 #include "epdem/backbone.hpp"
@@ -22,7 +23,7 @@ enum class Dashpot {
 
 /// What a law declares about its parameters.
 struct Declaration {
-  const char* model;  // "ep/thornton"
+  std::string model;  // "ep/thornton"
   const Parameter* parameters;
   int count;
   bool (*valid)(const double*);
@@ -48,7 +49,7 @@ struct Materials {
 
 /// Warns if cohesion pulls harder than the law resists: its energy density, a pressure over an area of the contact,
 /// exceeds `resists` of the pair of types, row i * width + column j.
-void compare_cohesion(LAMMPS_NS::LAMMPS* lmp, const char* model, int width, const std::vector<double>& resists);
+void compare_cohesion(LAMMPS_NS::LAMMPS* lmp, const std::string& model, int width, const std::vector<double>& resists);
 
 /// Reads every type in use; a value that is missing or out of range ends the run with an error that names model,
 /// property, value and range. Collective: every rank must call it.

@@ -5,9 +5,16 @@
 #include <memory>
 
 #include "normal.hpp"
-#include "partial_slip.hpp"
 
 namespace epdem::liggghts {
+
+/// Ids of LIGGGHTS's tangential models: restart files keep them, they never change.
+inline constexpr int TANGENTIAL_PARTIAL_SLIP = 40, TANGENTIAL_PARTIAL_SLIP_2 = 41;
+
+/// Nodes of a tangential model; 0 for those of LIGGGHTS.
+constexpr int slip_nodes(int tangential) {
+  return tangential == TANGENTIAL_PARTIAL_SLIP ? 3 : tangential == TANGENTIAL_PARTIAL_SLIP_2 ? 2 : 0;
+}
 
 /// Which models a contact combines; LIGGGHTS packs them into its hash code, which is stored in restart files.
 struct Ids {
@@ -28,14 +35,7 @@ struct Site {
   LIGGGHTS::IContactHistorySetup* history;
   ContactModelBase* contact;
   Ids ids;
-  const Grip* grip = nullptr;  // for tangential models
-};
-
-/// A model that is known at compile time.
-template <class Part>
-class Fixed : public Part {
- public:
-  explicit Fixed(const Site& site) : Part(site.lmp, site.history, site.contact) {}
+  const NormalContactState* normal = nullptr;  // for tangential models
 };
 
 /// A model that is chosen by its id when the simulation starts; choose returns a shared_ptr because LIGGGHTS's base
@@ -66,73 +66,75 @@ class Chosen {
   std::shared_ptr<Base> part_;
 };
 
-/// Whether a model may keep history of its own; to be denied only for those that are known to keep none.
-template <class Part>
-inline constexpr bool remembers = true;
-template <>
-inline constexpr bool remembers<Fixed<TangentialModel<TANGENTIAL_OFF>>> = false;
-template <>
-inline constexpr bool remembers<Fixed<TangentialModel<TANGENTIAL_NO_HISTORY>>> = false;
-template <>
-inline constexpr bool remembers<Fixed<RollingModel<ROLLING_OFF>>> = false;
-template <>
-inline constexpr bool remembers<Fixed<RollingModel<ROLLING_CDT>>> = false;
+std::shared_ptr<SurfaceModelBase> surface_model(const Site& site);
+std::shared_ptr<CohesionModelBase> cohesion_model(const Site& site);
+std::shared_ptr<TangentialModelBase> tangential_model(const Site& site);
+std::shared_ptr<RollingModelBase> rolling_model(const Site& site);
 
-/// What LIGGGHTS's pair and wall loops call. The order of the parts is that of LIGGGHTS's own models.
-template <class Law, bool wall, class Surface, class Cohesion, class Tangential, class Rolling>
+/// The normal model of one of our laws; others_have_history: a model beside it keeps values of its own.
+std::unique_ptr<NormalModel> normal_model(LAMMPS_NS::LAMMPS* lmp, LIGGGHTS::IContactHistorySetup* setup, bool wall,
+                                          int law, bool others_have_history);
+
+/// Whether the tangential or the rolling model of a contact has a history.
+inline bool others_have_history(const Ids& ids) {
+  return ids.tangential > TANGENTIAL_NO_HISTORY || ids.rolling > ROLLING_CDT;
+}
+
+/// What LIGGGHTS's pair and wall loops call, with all models behind virtual calls: the loops for throughput are in
+/// loop/. The order of the parts is that of LIGGGHTS's own models.
 class Model : public ContactModelBase {
  public:
   Model(LAMMPS_NS::LAMMPS* lmp, LIGGGHTS::IContactHistorySetup* setup, bool is_wall, const int64_t hash)
       : ContactModelBase(lmp, is_wall),
+        wall_(is_wall),
         ids_(checked(lmp, hash)),
         surface_({lmp, setup, this, ids_}),
-        normal_(lmp, setup),
+        normal_(normal_model(lmp, setup, is_wall, ids_.normal, others_have_history(ids_))),
         cohesion_({lmp, setup, this, ids_}),
-        tangential_(Site{lmp, setup, this, ids_, normal_.grip()}),
+        tangential_(Site{lmp, setup, this, ids_, &normal_->state()}),
         rolling_({lmp, setup, this, ids_}) {
     latest = this;
   }
 
-  using law_type = Law;
-
-  /// LIGGGHTS's loop over pairs keeps its model to itself; ours asks for the one that was built with it.
+  /// LIGGGHTS's loops keep their model to themselves; ours ask for the one that was built with them.
   static inline Model* latest = nullptr;
 
-  /// Settings of LIGGGHTS's models that our loop must know.
-  struct Asked {
+  /// Settings of LIGGGHTS's models that our loops must know.
+  struct LoopSettings {
     bool torsion = false, cohesion_slides = false, heating = false, twist = false;
 
-    /// What our loop does not include; nullptr: nothing.
+    /// What our loops do not include; nullptr: nothing.
     const char* missing() const {
       if (heating) return "heating_tangential_history on";
       return twist ? "torsion on" : nullptr;
     }
   };
-  const Asked& asked() const { return asked_; }
-  auto& normal() { return normal_; }
+  const LoopSettings& loop_settings() const { return loop_settings_; }
+  NormalModel& normal() { return *normal_; }
 
   int64_t hashcode() { return ids_.hash(); }
 
   void registerSettings(::Settings& settings) {
     surface_.registerSettings(settings);
-    normal_.registerSettings(settings);
+    normal_->registerSettings(settings);
     cohesion_.registerSettings(settings);
     tangential_.registerSettings(settings);
     rolling_.registerSettings(settings);
     if (ids_.rolling == ROLLING_CDT || ids_.rolling == ROLLING_EPSD2)
-      settings.registerOnOff("torsionTorque", asked_.torsion, false);
-    if (ids_.cohesion != COHESION_OFF) settings.registerOnOff("tangential_reduce", asked_.cohesion_slides, false);
+      settings.registerOnOff("torsionTorque", loop_settings_.torsion, false);
+    if (ids_.cohesion != COHESION_OFF)
+      settings.registerOnOff("tangential_reduce", loop_settings_.cohesion_slides, false);
     if (ids_.tangential == TANGENTIAL_HISTORY) {
-      settings.registerOnOff("heating_tangential_history", asked_.heating, false);
+      settings.registerOnOff("heating_tangential_history", loop_settings_.heating, false);
 #if __has_include("iloopcallbackcallable.h")  // LIGGGHTS-INL
-      settings.registerOnOff("torsion", asked_.twist, false);
+      settings.registerOnOff("torsion", loop_settings_.twist, false);
 #endif
     }
   }
 
   void postSettings(LIGGGHTS::IContactHistorySetup* setup) {
     surface_.postSettings(setup, this);
-    normal_.postSettings(slip_nodes(ids_.tangential) > 0);
+    normal_->postSettings(slip_nodes(ids_.tangential) > 0);
     cohesion_.postSettings(setup, this);
     tangential_.postSettings(setup, this);
     rolling_.postSettings(setup, this);
@@ -140,7 +142,7 @@ class Model : public ContactModelBase {
 
   void connectToProperties(PropertyRegistry& registry) {
     surface_.connectToProperties(registry);
-    normal_.connectToProperties(registry, dashpot(), cohesive());
+    normal_->connectToProperties(registry, dashpot(), cohesive());
     cohesion_.connectToProperties(registry);
     tangential_.connectToProperties(registry);
     rolling_.connectToProperties(registry);
@@ -148,7 +150,7 @@ class Model : public ContactModelBase {
 
   void beginPass(SurfacesIntersectData& s, ForceData& i, ForceData& j) {
     surface_.beginPass(s, i, j);
-    normal_.beginPass(s);
+    normal_->beginPass(s);
     cohesion_.beginPass(s, i, j);
     tangential_.beginPass(s, i, j);
     rolling_.beginPass(s, i, j);
@@ -161,7 +163,7 @@ class Model : public ContactModelBase {
     surface_.endPass(s, i, j);
   }
 
-  double stressStrainExponent() { return normal_.stressStrainExponent(); }
+  double stressStrainExponent() { return normal_->stressStrainExponent(); }
   void tally_pp(double x, int i, int j, int k) override { surface_.tally_pp(x, i, j, k); }
   void tally_pw(double x, int i, int j, int k) override { surface_.tally_pw(x, i, j, k); }
 
@@ -173,11 +175,9 @@ class Model : public ContactModelBase {
     return surface_.checkSurfaceIntersect(s);
   }
 
-  /// The loop: all parts inlined, and what LIGGGHTS asks at run time settled where the class already knows it.
-  [[gnu::flatten]] void surfacesIntersect(SurfacesIntersectData& s, ForceData& i, ForceData& j) {
-    if (s.is_wall != wall) __builtin_unreachable();
+  void surfacesIntersect(SurfacesIntersectData& s, ForceData& i, ForceData& j) {
     surface_.surfacesIntersect(s, i, j);
-    normal_.surfacesIntersect(s, i, j);
+    normal_->surfacesIntersect(s, i, j);
     cohesion_.surfacesIntersect(s, i, j);
     tangential_.surfacesIntersect(s, i, j);
     rolling_.surfacesIntersect(s, i, j);
@@ -189,17 +189,15 @@ class Model : public ContactModelBase {
   }
 
   void surfacesClose(SurfacesCloseData& s, ForceData& i, ForceData& j) {
-    if constexpr (adheres<Law>) {
-      if (normal_.pulls(s)) {
-        auto& all = static_cast<SurfacesIntersectData&>(s);  // both loops of LIGGGHTS pass the whole
-        normal_.prepare(all);
-        surfacesIntersect(all, i, j);
-        s.has_force_update = true;
-        return;
-      }
+    if (normal_->attracts(s)) {
+      auto& all = static_cast<SurfacesIntersectData&>(s);  // both loops of LIGGGHTS pass the whole
+      normal_->prepare(all);
+      surfacesIntersect(all, i, j);
+      s.has_force_update = true;
+      return;
     }
     surface_.surfacesClose(s, i, j);
-    normal_.surfacesClose(s);
+    normal_->surfacesClose(s);
     cohesion_.surfacesClose(s, i, j);
     tangential_.surfacesClose(s, i, j);
     rolling_.surfacesClose(s, i, j);
@@ -232,16 +230,17 @@ class Model : public ContactModelBase {
   /// sjkr2 takes twice the area of the lens between spheres.
   double cohesive() const {
     if (ids_.cohesion == COHESION_OFF) return 0.0;
-    return ids_.cohesion == COHESION_SJKR2 && !wall ? 2.0 : 1.0;
+    return ids_.cohesion == COHESION_SJKR2 && !wall_ ? 2.0 : 1.0;
   }
 
+  const bool wall_;
   const Ids ids_;
-  Asked asked_;
-  Surface surface_;
-  Normal<Law, wall, remembers<Tangential> || remembers<Rolling>> normal_;
-  Cohesion cohesion_;
-  Tangential tangential_;
-  Rolling rolling_;
+  LoopSettings loop_settings_;
+  Chosen<SurfaceModelBase, surface_model> surface_;
+  const std::unique_ptr<NormalModel> normal_;
+  Chosen<CohesionModelBase, cohesion_model> cohesion_;
+  Chosen<TangentialModelBase, tangential_model> tangential_;
+  Chosen<RollingModelBase, rolling_model> rolling_;
 };
 
 }  // namespace epdem::liggghts

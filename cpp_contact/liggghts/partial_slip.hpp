@@ -6,32 +6,24 @@
 #include <cstring>
 #include <string>
 
-#include "grip.hpp"
 #include "host.hpp"
+#include "normal_state.hpp"
 
 namespace epdem::liggghts {
 
 using namespace LIGGGHTS::ContactModels;
 
-/// Ids of LIGGGHTS's tangential models: restart files keep them, they never change.
-inline constexpr int TANGENTIAL_PARTIAL_SLIP = 40, TANGENTIAL_PARTIAL_SLIP_2 = 41;
-
-/// Nodes of a tangential model; 0 for those of LIGGGHTS.
-constexpr int slip_nodes(int tangential) {
-  return tangential == TANGENTIAL_PARTIAL_SLIP ? 3 : tangential == TANGENTIAL_PARTIAL_SLIP_2 ? 2 : 0;
-}
-
 /// Friction with partial slip beside one of our laws, for pairs (wall = false) or walls; `normal` is the law's own.
 template <int nodes, bool flattens>
 class PartialSlip : public TangentialModelBase {
-  static constexpr int memory = 3 * nodes + 1;
+  static constexpr int history_size = 3 * nodes + 1;
   using State = SlipState<nodes, double>;
-  static_assert(sizeof(State) == memory * sizeof(double));
+  static_assert(sizeof(State) == history_size * sizeof(double));
 
  public:
   template <class Site>
   explicit PartialSlip(const Site& site)
-      : TangentialModelBase(site.lmp, site.history, site.contact), normal_(*site.grip) {
+      : TangentialModelBase(site.lmp, site.history, site.contact), normal_(*site.normal) {
     // Flag "1": these change their sign when the pair is stored from the other side; the radius does not.
     for (int k = 0; k < 3 * nodes; ++k) {
       const int at = site.history->add_history_value("stretch" + std::to_string(k), "1");
@@ -53,7 +45,7 @@ class PartialSlip : public TangentialModelBase {
     if (s.contact_flags) *s.contact_flags |= CONTACT_TANGENTIAL_MODEL;
     double* const history = s.contact_history + offset_;
     State before{};
-    if (!normal_.fresh) std::memcpy(static_cast<void*>(&before), history, sizeof before);
+    if (!normal_.is_new) std::memcpy(static_cast<void*>(&before), history, sizeof before);
     Pressed<double> now = normal_.pressed;
     now.load = s.Fn;
     const double dt = update->dt, mu = mu_[s.itype][s.jtype];
@@ -70,7 +62,7 @@ class PartialSlip : public TangentialModelBase {
 
   void surfacesClose(SurfacesCloseData& s, ForceData&, ForceData&) override {
     if (s.contact_flags) *s.contact_flags &= ~CONTACT_TANGENTIAL_MODEL;
-    if (s.contact_history) std::fill_n(s.contact_history + offset_, memory, 0.0);
+    if (s.contact_history) std::fill_n(s.contact_history + offset_, history_size, 0.0);
   }
 
  private:
@@ -85,7 +77,7 @@ class PartialSlip : public TangentialModelBase {
         const double lost = slip_loss(before, step, motion.slip, normal_.stiffness);
         const double held = slip_energy(step.after, normal_.stiffness);
         const Ledger::Bodies bodies{s.i, s.j, atom->nlocal};
-        s.is_wall ? normal_.ledger->rub<true>(lost, held, bodies) : normal_.ledger->rub<false>(lost, held, bodies);
+        normal_.ledger->book_friction(s.is_wall, lost, held, bodies);
       }
       std::memcpy(history, &step.after, sizeof step.after);
     } else {
@@ -104,7 +96,7 @@ class PartialSlip : public TangentialModelBase {
     }
   }
 
-  const Grip& normal_;
+  const NormalContactState& normal_;
   double** mu_ = nullptr;
   int offset_ = -1;
 };

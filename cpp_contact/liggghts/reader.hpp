@@ -56,14 +56,14 @@ class Reader {
   }
 
   [[noreturn]] void fail(const std::string& what) const {
-    lmp_->error->all(FLERR, (std::string("model ") + law_.model + ": " + what).c_str());
+    lmp_->error->all(FLERR, ("model " + law_.model + ": " + what).c_str());
     std::abort();  // not reached: error->all ends the run
   }
 
   FixPropertyGlobal* find(const char* name, const char* style) const {
     const int rows = style[0] == 's' ? 0 : n_, columns = std::string(style) == "peratomtypepair" ? n_ : 0;
     return static_cast<FixPropertyGlobal*>(
-        lmp_->modify->find_fix_property(name, "property/global", style, rows, columns, law_.model, false));
+        lmp_->modify->find_fix_property(name, "property/global", style, rows, columns, law_.model.c_str(), false));
   }
 
   bool given(const char* name) const {

@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // Makes the laws known to LIGGGHTS when the library (or the launcher) is loaded.
-#include <cstring>
 #include <string>
 #include <utility>
 
@@ -8,6 +7,7 @@
 #include "loop/pair.hpp"
 #include "loop/wall.hpp"
 #include "model.hpp"
+#include "partial_slip.hpp"
 
 namespace epdem::liggghts {
 
@@ -62,31 +62,36 @@ std::shared_ptr<Part> make(const Site& s) {
   return std::make_shared<Part>(s.lmp, s.history, s.contact);
 }
 
-template <int nodes, bool flattens>
-std::shared_ptr<TangentialModelBase> slip(const Site& s) {
-  return std::make_shared<PartialSlip<nodes, flattens>>(s);
+template <int nodes>
+std::shared_ptr<TangentialModelBase> partial_slip_model(const Site& s) {
+  if (s.normal->flattens) return std::make_shared<PartialSlip<nodes, true>>(s);
+  return std::make_shared<PartialSlip<nodes, false>>(s);
 }
 
-std::shared_ptr<SurfaceModelBase> choose_surface(const Site& s) {
+}  // namespace
+
+std::shared_ptr<SurfaceModelBase> surface_model(const Site& s) {
   if (s.ids.surface == SURFACE_MULTICONTACT) return make<SurfaceModel<SURFACE_MULTICONTACT>>(s);
   return make<SurfaceModel<SURFACE_DEFAULT>>(s);
 }
 
-std::shared_ptr<CohesionModelBase> choose_cohesion(const Site& s) {
+std::shared_ptr<CohesionModelBase> cohesion_model(const Site& s) {
   if (s.ids.cohesion == COHESION_SJKR) return make<CohesionModel<COHESION_SJKR>>(s);
   if (s.ids.cohesion == COHESION_SJKR2) return make<CohesionModel<COHESION_SJKR2>>(s);
   return make<CohesionModel<COHESION_OFF>>(s);
 }
 
-std::shared_ptr<TangentialModelBase> choose_tangential(const Site& s) {
-  if (s.ids.tangential == TANGENTIAL_HISTORY) return make<TangentialModel<TANGENTIAL_HISTORY>>(s);
-  if (s.ids.tangential == TANGENTIAL_NO_HISTORY) return make<TangentialModel<TANGENTIAL_NO_HISTORY>>(s);
-  if (s.ids.tangential == TANGENTIAL_PARTIAL_SLIP) return s.grip->flattens ? slip<3, true>(s) : slip<3, false>(s);
-  if (s.ids.tangential == TANGENTIAL_PARTIAL_SLIP_2) return s.grip->flattens ? slip<2, true>(s) : slip<2, false>(s);
-  return make<TangentialModel<TANGENTIAL_OFF>>(s);
+std::shared_ptr<TangentialModelBase> tangential_model(const Site& s) {
+  switch (s.ids.tangential) {
+    case TANGENTIAL_HISTORY: return make<TangentialModel<TANGENTIAL_HISTORY>>(s);
+    case TANGENTIAL_NO_HISTORY: return make<TangentialModel<TANGENTIAL_NO_HISTORY>>(s);
+    case TANGENTIAL_PARTIAL_SLIP: return partial_slip_model<3>(s);
+    case TANGENTIAL_PARTIAL_SLIP_2: return partial_slip_model<2>(s);
+    default: return make<TangentialModel<TANGENTIAL_OFF>>(s);
+  }
 }
 
-std::shared_ptr<RollingModelBase> choose_rolling(const Site& s) {
+std::shared_ptr<RollingModelBase> rolling_model(const Site& s) {
   switch (s.ids.rolling) {
     case ROLLING_CDT: return make<RollingModel<ROLLING_CDT>>(s);
     case ROLLING_EPSD: return make<RollingModel<ROLLING_EPSD>>(s);
@@ -96,21 +101,20 @@ std::shared_ptr<RollingModelBase> choose_rolling(const Site& s) {
   }
 }
 
-template <class Part>
+namespace {
+
 PairStyles::IGranularPairStyle* new_pair(LAMMPS* lmp, PairGran* parent, int64_t hash) {
-  return new loop::Pair<Part>(lmp, parent, hash);
+  return new loop::Pair(lmp, parent, hash);
 }
 
-template <class Part>
 Walls::IGranularWall* new_wall(LAMMPS* lmp, FixWallGran* parent, int64_t hash) {
 #ifdef EPDEM_BUILT_FOR
-  return new loop::Wall<Part>(lmp, parent, hash);
+  return new loop::Wall(lmp, parent, hash);
 #else
-  return new Walls::Granular<Part>(lmp, parent, hash);
+  return new Walls::Granular<Model>(lmp, parent, hash);
 #endif
 }
 
-/// Laws with adhesion bring their own attraction, and multicontact is not measured with them.
 bool with_adhesion(const Ids& ids) {
 #define EPDEM_ADHERES(Class) \
   if (ids.normal == Class<double>::id) return adheres<Class<double>>;
@@ -157,59 +161,10 @@ void add_refusal(const Ids& ids) {
   add(ids, &refuse<PairStyles::IGranularPairStyle, PairGran>, &refuse<Walls::IGranularWall, FixWallGran>);
 }
 
-template <class Law, int tangential>
-struct OfId {
-  using type = Fixed<TangentialModel<tangential>>;
-};
-template <class Law>
-struct OfId<Law, TANGENTIAL_PARTIAL_SLIP> {
-  using type = PartialSlip<3, Law::flattens>;
-};
-template <class Law>
-struct OfId<Law, TANGENTIAL_PARTIAL_SLIP_2> {
-  using type = PartialSlip<2, Law::flattens>;
-};
-
-/// The combinations that most decks use, each compiled on its own: no virtual call in the loop.
-template <class Law, int tangential, int rolling>
-bool add_fast(const Ids& ids) {
-  const Ids mine{ids.normal, tangential, COHESION_OFF, rolling, SURFACE_DEFAULT};
-  if (ids.hash() != mine.hash()) return false;
-  using Surface = Fixed<SurfaceModel<SURFACE_DEFAULT>>;
-  using Cohesion = Fixed<CohesionModel<COHESION_OFF>>;
-  using Tangential = typename OfId<Law, tangential>::type;
-  using Rolling = Fixed<RollingModel<rolling>>;
-  add(ids, &new_pair<Model<Law, false, Surface, Cohesion, Tangential, Rolling>>,
-      &new_wall<Model<Law, true, Surface, Cohesion, Tangential, Rolling>>);
-  return true;
-}
-
-/// All others: cohesion, tangential, rolling and surface model behind virtual calls.
-template <class Law>
-void add_general(const Ids& ids) {
-  using Surface = Chosen<SurfaceModelBase, choose_surface>;
-  using Cohesion = Chosen<CohesionModelBase, choose_cohesion>;
-  using Tangential = Chosen<TangentialModelBase, choose_tangential>;
-  using Rolling = Chosen<RollingModelBase, choose_rolling>;
-  add(ids, &new_pair<Model<Law, false, Surface, Cohesion, Tangential, Rolling>>,
-      &new_wall<Model<Law, true, Surface, Cohesion, Tangential, Rolling>>);
-}
-
-template <class Law>
-void add_combination(const Ids& ids) {
-  if (!available(ids) || (adheres<Law> && (ids.cohesion != COHESION_OFF || ids.surface != SURFACE_DEFAULT ||
-                                           ids.tangential > TANGENTIAL_HISTORY)))
-    return add_refusal(ids);
-  if (add_fast<Law, TANGENTIAL_OFF, ROLLING_OFF>(ids)) return;
-  if (add_fast<Law, TANGENTIAL_NO_HISTORY, ROLLING_OFF>(ids)) return;
-  if (add_fast<Law, TANGENTIAL_HISTORY, ROLLING_OFF>(ids)) return;
-  if constexpr (!adheres<Law>) {
-    if (add_fast<Law, TANGENTIAL_PARTIAL_SLIP, ROLLING_OFF>(ids)) return;
-    if (add_fast<Law, TANGENTIAL_PARTIAL_SLIP_2, ROLLING_OFF>(ids)) return;
-  }
-  if (add_fast<Law, TANGENTIAL_HISTORY, ROLLING_CDT>(ids)) return;
-  if (add_fast<Law, TANGENTIAL_HISTORY, ROLLING_EPSD2>(ids)) return;
-  add_general<Law>(ids);
+/// Partial slip and cohesion are not measured with adhesion, which brings an attraction of its own.
+bool offered(const Ids& ids) {
+  return available(ids) && !(with_adhesion(ids) && (ids.cohesion != COHESION_OFF || ids.surface != SURFACE_DEFAULT ||
+                                                    ids.tangential > TANGENTIAL_HISTORY));
 }
 
 template <class Law>
@@ -219,7 +174,10 @@ void add_law() {
   for (int t : tangentials)
     for (int c : cohesions)
       for (int r : rollings)
-        for (int s : surfaces) add_combination<Law>({Law::id, t, c, r, s});
+        for (int s : surfaces) {
+          const Ids ids{Law::id, t, c, r, s};
+          offered(ids) ? add(ids, &new_pair, &new_wall) : add_refusal(ids);
+        }
 }
 
 Ids refused(int why) { return {unknown_law, why, COHESION_OFF, ROLLING_OFF, SURFACE_DEFAULT}; }

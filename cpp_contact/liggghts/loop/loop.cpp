@@ -167,7 +167,7 @@ void PairLoop::finish(const Plan& plan, int n) {
     turns ? scatter<true, true, adheres>(n, plan.ledger) : scatter<false, true, adheres>(n, plan.ledger);
   else
     turns ? scatter<true, false, adheres>(n, nullptr) : scatter<false, false, adheres>(n, nullptr);
-  if (plan.ledger && plan.tangential >= Tangential::partial_slip) rub(*plan.ledger, n);
+  if (plan.ledger && plan.tangential >= Tangential::partial_slip) book_friction(*plan.ledger, n);
 }
 
 /// Of n contacts those that overlap or are attached across a gap; a pair that is not loses its mark.
@@ -300,9 +300,9 @@ void PairLoop::scatter(int n, Ledger* ledger) {
 }
 
 /// The work of friction with partial slip, in the order of the list.
-void PairLoop::rub(Ledger& ledger, int n) {
+void PairLoop::book_friction(Ledger& ledger, int n) {
   const Block& b = *block_;
-  for (int k = 0; k < n; ++k) ledger.rub<false>(b.rubbed.a[k], b.sprung.a[k], {b.i[k], b.j[k], atom->nlocal});
+  for (int k = 0; k < n; ++k) ledger.book_friction(false, b.rubbed.a[k], b.sprung.a[k], {b.i[k], b.j[k], atom->nlocal});
 }
 
 }  // namespace epdem::liggghts::loop

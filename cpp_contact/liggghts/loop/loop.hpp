@@ -70,7 +70,7 @@ class PairLoop : protected LAMMPS_NS::Pointers {
   void fetch(const Plan& plan, int n);
   template <bool torques, bool books, bool adheres>
   void scatter(int n, Ledger* ledger);
-  void rub(Ledger& ledger, int n);
+  void book_friction(Ledger& ledger, int n);
 
   const Kernel kernel_;
   const std::unique_ptr<Block> block_;

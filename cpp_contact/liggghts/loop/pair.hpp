@@ -11,18 +11,17 @@
 
 namespace epdem::liggghts::loop {
 
-template <class Model>
-class Pair : public LIGGGHTS::PairStyles::Granular<Model>, private Planned<Model> {
+class Pair : public LIGGGHTS::PairStyles::Granular<Model>, private Planned {
   using Base = LIGGGHTS::PairStyles::Granular<Model>;
-  using Planned<Model>::lmp_, Planned<Model>::model_, Planned<Model>::plan_;
+  using Planned::lmp_;
 
  public:
   Pair(LAMMPS_NS::LAMMPS* lmp, LAMMPS_NS::PairGran* parent, int64_t hash)
-      : Base(lmp, parent, hash), Planned<Model>(lmp, hash, false), loop_(lmp, this->kernel()) {}
+      : Base(lmp, parent, hash), Planned(lmp, hash, false), loop_(lmp, kernel()) {}
 
   void init_granular() override {
     Base::init_granular();
-    if (!this->missing()) this->prepare();
+    if (!missing()) prepare();
   }
 
 #if __has_include("iloopcallbackcallable.h")  // LIGGGHTS-INL: a compute asks for its steps in place of a flag
@@ -43,10 +42,10 @@ class Pair : public LIGGGHTS::PairStyles::Granular<Model>, private Planned<Model
   /// `listed`: compute pair/gran/local lists each contact; `addflag` says so to a LIGGGHTS that has it.
   template <class... Flag>
   void forces(LAMMPS_NS::PairGran* pair, int eflag, int vflag, int listed, Flag... addflag) {
-    const char* why = this->missing();
+    const char* why = missing();
     if (!why) why = loop_.obstacle(pair, plan_, vflag, listed);
     if (why) {
-      this->say(why);
+      say(why);
       return Base::compute_force(pair, eflag, vflag, addflag...);
     }
     if (eflag)

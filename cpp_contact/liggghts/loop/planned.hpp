@@ -2,22 +2,16 @@
 // What our loops over pairs and walls take from a contact model: its parts, settings and properties.
 #pragma once
 
-#include <cstddef>
-#include <cstring>
 #include <set>
 #include <string>
 
-#include "epdem/laws.hpp"
 #include "loop.hpp"
 #include "model.hpp"
 
 namespace epdem::liggghts::loop {
 
 /// LIGGGHTS's styles keep their model to themselves; the model built last is that of the style under construction.
-template <class Model>
 class Planned {
-  using Law = typename Model::law_type;
-
  protected:
   Planned(LAMMPS_NS::LAMMPS* lmp, int64_t hash, bool wall)
       : lmp_(lmp), model_(*Model::latest), ids_(Ids::of(hash)), missing_(what_is_missing(ids_)), wall_(wall) {
@@ -33,28 +27,25 @@ class Planned {
     plan_.cohesion = ids_.cohesion == COHESION_SJKR    ? Cohesion::sjkr
                      : ids_.cohesion == COHESION_SJKR2 ? Cohesion::sjkr2
                                                        : Cohesion::off;
-    if constexpr (adheres<Law>) {
-      plan_.root = offsetof(State<Law>, root) / sizeof(double);
-      plan_.last_step = memory<Law>;
-      if (wall && !missing_) missing_ = "contacts with adhesion";
-    }
+    plan_.root = model_.normal().root_slot();
+    plan_.last_step = model_.normal().history_size();
+    if (wall && plan_.root >= 0 && !missing_) missing_ = "contacts with adhesion";
   }
 
   Kernel kernel() const {
-    const auto& of_law = kernels(lmp_).of[detail::place<Law>()];
+    const auto& of_law = kernels(lmp_).of[model_.normal().place()];
     return of_law[static_cast<int>(plan_.tangential)][plan_.rolling == Rolling::epsd2][wall_];
   }
 
   /// What our loop does not include, by models and settings; nullptr: nothing.
-  const char* missing() const { return missing_ ? missing_ : model_.asked().missing(); }
+  const char* missing() const { return missing_ ? missing_ : model_.loop_settings().missing(); }
 
   /// At the start of each run: settings and properties may have changed.
   void prepare() {
-    auto& normal = model_.normal();
-    const auto& asked = model_.asked();
+    NormalModel& normal = model_.normal();
     plan_.damped = plan_.viscous = false;
-    plan_.torsion = asked.torsion;
-    plan_.cohesion_slides = asked.cohesion_slides;
+    plan_.torsion = model_.loop_settings().torsion;
+    plan_.cohesion_slides = model_.loop_settings().cohesion_slides;
     plan_.ledger = normal.ledger();
     plan_.strain = normal.strain();
     plan_.width = normal.width();
@@ -68,17 +59,13 @@ class Planned {
     plan_.constants.assign(plan_.width * plan_.width * most_constants, 0.0);
     for (int i = 1; i < plan_.width; ++i)
       for (int j = 1; j < plan_.width; ++j) {
-        const auto& entry = normal.entry(i, j);
         double* const c = plan_.constants.data() + most_constants * (i * plan_.width + j);
-        c[shear_modulus] = entry.G_star;
-        c[damping] = entry.damping_number;
-        c[dashpot] = entry.viscous_number;
+        normal.put_constants(i, j, c);
         c[friction] = mu ? mu[i][j] : 0.0;
         c[rolling_friction] = rolling ? rolling[i][j] : 0.0;
         c[cohesion_density] = density ? density[i][j] : 0.0;
-        std::memcpy(c + law_data, &entry.law, sizeof(Law));
-        plan_.damped |= entry.damping_number > 0.0;
-        plan_.viscous |= entry.viscous_number > 0.0;
+        plan_.damped |= c[damping] > 0.0;
+        plan_.viscous |= c[dashpot] > 0.0;
       }
   }
 

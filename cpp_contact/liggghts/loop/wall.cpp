@@ -64,7 +64,7 @@ void WallLoop::compute() {
 void WallLoop::scatter() {
   const Block& b = *block_;
   const bool turns = plan_->tangential != Tangential::off || plan_->rolling != Rolling::off;
-  const bool rubs = plan_->tangential >= Tangential::partial_slip;
+  const bool books_friction = plan_->tangential >= Tangential::partial_slip;
   for (int k = 0; k < n_; ++k) {
     const int i = b.i[k];
     double *const f = atom->f[i], *const t = atom->torque[i];
@@ -88,7 +88,7 @@ void WallLoop::scatter() {
     if (!plan_->ledger) continue;
     const double stored = b.stored.a[k];
     plan_->ledger->credit(i, b.grown.a[k], stored, stored > 0.0);
-    if (rubs) plan_->ledger->rub<true>(b.rubbed.a[k], b.sprung.a[k], {i, i, atom->nlocal});
+    if (books_friction) plan_->ledger->book_friction(true, b.rubbed.a[k], b.sprung.a[k], {i, i, atom->nlocal});
   }
 }
 

@@ -53,26 +53,25 @@ class WallLoop : protected LAMMPS_NS::Pointers {
   int n_ = 0;
 };
 
-template <class Model>
-class Wall : public LIGGGHTS::Walls::Granular<Model>, public OurWall, private Planned<Model> {
+class Wall : public LIGGGHTS::Walls::Granular<Model>, public OurWall, private Planned {
   using Base = LIGGGHTS::Walls::Granular<Model>;
 
  public:
   Wall(LAMMPS_NS::LAMMPS* lmp, LAMMPS_NS::FixWallGran* parent, int64_t hash)
-      : Base(lmp, parent, hash), Planned<Model>(lmp, hash, true), loop_(lmp, this->kernel()) {}
+      : Base(lmp, parent, hash), Planned(lmp, hash, true), loop_(lmp, kernel()) {}
 
   void init_granular() override {
     Base::init_granular();
-    if (!this->missing()) this->prepare();
+    if (!missing()) prepare();
   }
 
   void open(LAMMPS_NS::FixWallGran& wall) override {
-    const char* why = this->missing();
+    const char* why = missing();
     if (!why) why = loop_.obstacle(wall);
     if (why)
-      this->say(why);
+      say(why);
     else
-      loop_.open(wall, this->plan_);
+      loop_.open(wall, plan_);
   }
   void compute() override { loop_.compute(); }
   void close() override { loop_.close(); }

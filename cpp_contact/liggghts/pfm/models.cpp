@@ -6,8 +6,7 @@
 #include <cstdio>
 #include <cstring>
 
-#include "../normal.hpp"
-#include "epdem/laws.hpp"
+#include "../law_model.hpp"
 
 /// The laws without adhesion.
 #define EPDEM_PFM_LAWS(X) X(Hertz) X(Thornton) X(Johnson) X(Cavity)
@@ -73,7 +72,10 @@ class Model {
       GranStyle<id<Law>, tangential, COHESION_OFF, rolling, SURFACE_DEFAULT>::HASHCODE;
 
   Model(LAMMPS* lmp, LIGGGHTS::IContactHistorySetup* setup)
-      : surface_(lmp, setup), normal_(lmp, setup), tangential_(lmp, setup), rolling_(lmp, setup) {
+      : surface_(lmp, setup),
+        normal_(lmp, setup, wall, others_have_history),
+        tangential_(lmp, setup),
+        rolling_(lmp, setup) {
     if (wall && memory<Law> == 1) setup->add_history_value("spare", "0");  // a wall's history of one value is refused
     announce(lmp);
   }
@@ -120,10 +122,10 @@ class Model {
   static constexpr Dashpot dashpot = tangential == tangential_off          ? Dashpot::off
                                      : tangential == TANGENTIAL_NO_HISTORY ? Dashpot::required
                                                                            : Dashpot::optional;
-  static constexpr bool others_remember = tangential == TANGENTIAL_HISTORY || rolling > ROLLING_CDT;
+  static constexpr bool others_have_history = tangential == TANGENTIAL_HISTORY || rolling > ROLLING_CDT;
 
   SurfaceModel<SURFACE_DEFAULT> surface_;
-  Normal<Law, wall, others_remember> normal_;
+  LawModel<Law> normal_;
   typename OfId<tangential>::type tangential_;
   RollingModel<rolling> rolling_;
 };

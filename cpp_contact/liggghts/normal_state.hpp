@@ -7,13 +7,13 @@
 
 namespace epdem::liggghts {
 
-/// What a law's adapter knows of the contact at hand and LIGGGHTS's data have no room for.
-struct Grip {
+/// What the normal model knows of the contact at hand and LIGGGHTS's data have no room for.
+struct NormalContactState {
   Pressed<double> pressed{};  // but for the load: that is LIGGGHTS's Fn, which cohesion may change
   double stiffness = 0.0;     // 8 G* [Pa]
-  bool fresh = false;         // the pair parted since it was last stored: what it remembers is void
+  bool is_new = false;        // the pair parted since it was last stored: its history is void
   bool flattens = false;
-  Ledger* ledger = nullptr;  // where work is booked, if it is asked for
+  Ledger* ledger = nullptr;  // where work is booked, if computePlasticWork is on
 };
 
 }  // namespace epdem::liggghts
