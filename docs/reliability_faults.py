@@ -48,22 +48,22 @@ VERSION = 'case "$*" in *-in\\ in.*) ;; *) exec $REAL "$@" ;; esac\n'  # a quest
 def error_with_exit_0(work: Path, out: Path) -> str:
     """exit code 3 with the engine's last words"""
     script = engine(work, VERSION + "echo 'ERROR: out of luck'; exit 0")
-    return wrong(call(work, SCENE, out, EPDEM_LAUNCHER=script), 3, "out of luck") or wrong(
-        call(work, IMPACTS, out.with_name("fault2"), EPDEM_LAUNCHER=script), 3, "out of luck"
+    return wrong(call(work, SCENE, out, EPDEM_LIGGGHTS=script), 3, "out of luck") or wrong(
+        call(work, IMPACTS, out.with_name("fault2"), EPDEM_LIGGGHTS=script), 3, "out of luck"
     )
 
 
 def ended_half_way(work: Path, out: Path) -> str:
     """exit code 3; a run without the last steps is not taken for a whole one"""
     half = VERSION + "sed -i 's/^run .*/run 1000/' in.scene\n" + 'exec $REAL "$@"'
-    return wrong(call(work, SCENE, out, EPDEM_LAUNCHER=engine(work, half)), 3)
+    return wrong(call(work, SCENE, out, EPDEM_LIGGGHTS=engine(work, half)), 3)
 
 
 def lost_sphere(work: Path, out: Path) -> str:
     """exit code 1: the check of the number of spheres fails"""
     lines = "run 25000\\ngroup gone id 5\\ndelete_atoms group gone compress no\\nrun 25000"
     script = VERSION + f"sed -i 's/^run .*/{lines}/' in.scene\n" + 'exec $REAL "$@"'
-    code, said = call(work, SCENE, out, EPDEM_LAUNCHER=engine(work, script))
+    code, said = call(work, SCENE, out, EPDEM_LIGGGHTS=engine(work, script))
     return "" if code == 1 else f"exit code {code} instead of 1: {said[-200:]}"
 
 
@@ -72,18 +72,18 @@ def not_a_number(work: Path, out: Path) -> str:
     poison = "import struct,sys; p='particles.50000.bin'; b=bytearray(open(p,'rb').read()); "
     poison += "b[-24:-16]=struct.pack('<d', float('nan')); open(p,'wb').write(b)"
     script = VERSION + f'$REAL "$@"; code=$?; {sys.executable} -c "{poison}"; exit $code'
-    return wrong(call(work, SCENE, out, EPDEM_LAUNCHER=engine(work, script)), 3, "50000")
+    return wrong(call(work, SCENE, out, EPDEM_LIGGGHTS=engine(work, script)), 3, "50000")
 
 
 def died(work: Path, out: Path) -> str:
     """exit code 3 with the signal"""
     script = VERSION + "kill -SEGV $$"
-    return wrong(call(work, SCENE, out, EPDEM_LAUNCHER=engine(work, script)), 3, "signal 11")
+    return wrong(call(work, SCENE, out, EPDEM_LIGGGHTS=engine(work, script)), 3, "signal 11")
 
 
 def hangs(work: Path, out: Path) -> str:
     """exit code 3 with the limit in seconds, and the hanging process is stopped"""
-    got = call(work, IMPACTS, out, EPDEM_LAUNCHER=engine(work, VERSION + "sleep 12345"))
+    got = call(work, IMPACTS, out, EPDEM_LIGGGHTS=engine(work, VERSION + "sleep 12345"))
     left = subprocess.run(["pgrep", "-f", "^sleep 12345$"], capture_output=True, check=False).stdout
     return wrong(got, 3, "did not end within") or ("the engine stays behind" if left else "")
 

@@ -128,7 +128,7 @@ def test_a_command_prints_one_json_document_and_nothing_else(command, folder, ca
     done = call([command, *words, "--json"], capsys, monkeypatch)
     assert done.code == 0 or command == "doctor", done.err
     assert holds(json.loads(done.out, parse_constant=pytest.fail))
-    assert done.err == "" or command == "stress"
+    assert done.err == ""
 
 
 @pytest.mark.parametrize("command", COMMANDS)
@@ -232,10 +232,9 @@ def test_the_message_for_a_name_that_begins_with_a_dash_says_how_to_write_it(fol
     assert call(["predict", "./-x.toml"], capsys, monkeypatch).code == 0
 
 
-@pytest.mark.parametrize("law", sorted(laws()))
-def test_every_law_has_a_source_to_cite(law):
-    # cavity is made of equations of the chapter
-    assert law == "cavity" or any(what.startswith(f"law {law}, ") for what in of_laws([law]))
+def test_every_law_has_a_source_to_cite():
+    for law in laws():
+        assert any(what.startswith(f"law {law}, ") for what in of_laws([law]))
 
 
 @pytest.mark.parametrize("name", ["cost", "crosscheck", "figures", "motion", "rerun", "stability", "validate"])

@@ -2,7 +2,6 @@
 """What a terminal shows: progress, colour, narrow ones, other encodings, completion; and nothing of it in a pipe."""
 
 import fcntl
-import inspect
 import os
 import pty
 import re
@@ -90,12 +89,3 @@ def test_a_table_that_is_too_wide_comes_in_parts_with_the_first_column(capsys):
     one.add_row("text")
     terminal.show_table(screen, one)
     assert "text" in capsys.readouterr().out
-
-
-def test_what_takes_long_says_what_it_does():
-    """Commands that only read, write or compute for less than two seconds need no progress."""
-    short = {"deck", "predict", "theory", "cite", "explain", "soften", "status", "header", "stress"}
-    for name, command in COMMANDS.items():
-        module = inspect.getsource(inspect.getmodule(command.callback))
-        if name not in short:
-            assert re.search(r"with .*(?:status|bar|progress)\(", module), name

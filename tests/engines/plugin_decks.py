@@ -59,8 +59,7 @@ FOREIGN = {
 
 def launcher():
     """The LIGGGHTS under test: EPDEM_LIGGGHTS, or the launcher beside this Python."""
-    named = os.environ.get("EPDEM_LIGGGHTS") or os.environ.get("EPDEM_LAUNCHER")
-    return named or str(Path(sys.executable).with_name("epdem-liggghts"))
+    return os.environ.get("EPDEM_LIGGGHTS") or str(Path(sys.executable).with_name("epdem-liggghts"))
 
 
 @dataclass

@@ -65,10 +65,9 @@ def launcher() -> Path | None:
     """The LIGGGHTS with our models that runs decks, or None.
 
     EPDEM_LIGGGHTS names it, or [engine] liggghts in the user's configuration file; else it is our own
-    `epdem-liggghts` beside this Python or on PATH. EPDEM_LAUNCHER is the name of the variable in version 0.1.
-    Raises CaseError for a configuration file that is wrong.
+    `epdem-liggghts` beside this Python or on PATH. Raises CaseError for a configuration file that is wrong.
     """
-    named = os.environ.get("EPDEM_LIGGGHTS") or os.environ.get("EPDEM_LAUNCHER") or setting("engine", "liggghts")
+    named = os.environ.get("EPDEM_LIGGGHTS") or setting("engine", "liggghts")
     if named:
         return Path(named).expanduser().absolute()
     beside = Path(sys.executable).parent / "epdem-liggghts"

@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """What to cite for a case: the law, the friction, the dashpot, and the engines that run it."""
 
-import inspect
 from collections.abc import Sequence
 
 from .. import __version__
@@ -27,10 +26,7 @@ class Citations(dict[str, str]):
 
 
 def citations(case: Case | SceneCase, laws: Sequence[str], engines: Sequence[str]) -> Citations:
-    """What to cite for a case that runs with `laws` on `engines`.
-
-    The sources of a law are those that the docstrings of its theory name.
-    """
+    """What to cite for a case that runs with `laws` on `engines`."""
     found = {"epdem": PROGRAM, "equations 8.xx": CHAPTER} | of_laws(laws)
     if case.viscous is not None:
         found["dashpot"] = SOURCES["Tsuji, Tanaka and Ishida 1992"]
@@ -45,9 +41,4 @@ def citations(case: Case | SceneCase, laws: Sequence[str], engines: Sequence[str
 
 def of_laws(laws: Sequence[str]) -> dict[str, Source]:
     """The sources of laws, by law and short name."""
-    found: dict[str, Source] = {}
-    for law in laws:
-        theory = law_named(law)
-        text_of_law = inspect.getsource(inspect.getmodule(theory) or theory)
-        found |= {f"law {law}, {name}": source for name, source in SOURCES.items() if name in text_of_law}
-    return found
+    return {f"law {law}, {name}": SOURCES[name] for law in laws for name in law_named(law).sources}

@@ -22,6 +22,7 @@ class Backbone:
     """What all laws share: the elastic start and, below alpha_max, superposed rigid punches (Mesarovic and Johnson)."""
 
     name: ClassVar[str]
+    sources: ClassVar[tuple[str, ...]] = ()  # keys of `sources.SOURCES`
     parameters: ClassVar[tuple[Parameter, ...]] = ()
     strength: ClassVar[str | None] = None  # which parameter: the softer body's counts in a pair
     default_ratio: ClassVar[float] = 1.0  # strength in units of the softer body's yield stress, where it is not given

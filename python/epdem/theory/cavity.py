@@ -25,6 +25,7 @@ class Cavity(Backbone):
     """
 
     name = "cavity"
+    sources = ("Johnson 1985", "Jackson and Green 2005", "Mesarovic and Johnson 2000")
     parameters = (
         Parameter("yield_stress", "Y", "Pa"),
         Parameter("first_yield_ratio", "c_Y", "1", 1.60),

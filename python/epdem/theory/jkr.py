@@ -26,6 +26,7 @@ class JKR:
     """
 
     name: ClassVar[str] = "jkr"
+    sources: ClassVar[tuple[str, ...]] = ("Johnson, Kendall and Roberts 1971",)
     parameters: ClassVar[tuple[Parameter, ...]] = (
         Parameter("work_of_adhesion", "work_of_adhesion", "J/m^2", may_vanish=True),
     )

@@ -16,6 +16,7 @@ class Johnson(Backbone):
     """
 
     name = "johnson"
+    sources = ("Johnson 1985",)
     parameters = (Parameter("yield_pressure", "p_m", "Pa"),)
     strength = "yield_pressure"
     default_ratio = 3.0

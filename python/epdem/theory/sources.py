@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The sources that docstrings of the theory name, in full. Equation numbers 8.xx are those of CHAPTER."""
+"""The sources of the theory in full, by their short names. Equation numbers 8.xx are those of CHAPTER."""
 
 from dataclasses import dataclass
 

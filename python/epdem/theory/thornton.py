@@ -14,6 +14,7 @@ class Thornton(Backbone):
     """
 
     name = "thornton"
+    sources = ("Thornton 1997",)
     parameters = (Parameter("yield_pressure", "p_y", "Pa"),)
     strength = "yield_pressure"
     default_ratio = 2.8

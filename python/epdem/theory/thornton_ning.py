@@ -24,6 +24,7 @@ class ThorntonNing(JKR):
     """
 
     name = "thornton_ning"
+    sources = ("Thornton and Ning 1998",)
     parameters = (*JKR.parameters, Parameter("yield_pressure", "p_y", "Pa"))
     strength = "yield_pressure"
     keywords: ClassVar[dict[str, str]] = {"work_of_adhesion": "work_of_adhesion", "yield_pressure": "p_y"}
