@@ -33,9 +33,9 @@ class Recorded(LiggghtsScenes):
 
     def setup(self, plan: ScenePlan, text: str) -> str:
         """The deck's common part with the lines that record; `append`: a run that goes on has them again."""
-        if not plan.layout.table:
+        if not plan.scene.table:
             return text
-        last = len(plan.layout.table)
+        last = len(plan.scene.table)
         return text + (
             f"group curve id {last}\nvariable curve_t equal step*dt+{self.begin!r}\n"
             "variable curve_z equal xcm(curve,z)\nvariable curve_v equal vcm(curve,z)\n"

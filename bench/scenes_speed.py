@@ -45,7 +45,7 @@ def files(case: Path, model: str) -> dict[str, str]:
     d = replace(d, model="hertz", properties=properties, settings=settings, wall_contact_columns=columns, **memoryless)
     names = {"in.scene": "liggghts/scene.in.j2", "setup.in": "liggghts/scene_setup.in.j2"}
     texts = {name: rendering.render(template, deck=d) for name, template in names.items()}
-    return texts | {f"{name}.stl": stl.text(name, mesh.triangles) for name, mesh in p.layout.meshes.items()}
+    return texts | {f"{name}.stl": stl.text(name, triangles) for name, triangles in p.triangles.items()}
 
 
 def measure(texts: dict[str, str]) -> dict[str, float]:

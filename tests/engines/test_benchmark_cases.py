@@ -73,7 +73,7 @@ def test_scenes_of_the_benchmark_have_its_numbers(about, pairs):
     name, spheres, step = about
     p = plan(load(CASES / f"{name}.toml"))
     deck = scene_deck.deck(p)
-    assert (p.layout.count, p.time_step) == (spheres, step)
+    assert (p.count, p.time_step) == (spheres, step)
     assert deck.settings == ("viscous on",)  # with the tangential dashpot
     restitution, friction = (matrix(deck, f"coefficient{key}") for key in ("Restitution", "Friction"))
     for (a, b), expected in pairs.items():
@@ -82,9 +82,9 @@ def test_scenes_of_the_benchmark_have_its_numbers(about, pairs):
 
 @pytest.mark.parametrize(("name", "radius", "z"), [("silo_large", 0.03, -0.0554222), ("silo_small", 0.02, -0.0593008)])
 def test_the_cone_of_a_silo_has_45_degrees_and_its_outlet(name, radius, z):
-    layout = plan(load(CASES / f"{name}.toml")).layout
-    corners = layout.meshes["cone"].triangles.reshape(-1, 3)
+    scene = plan(load(CASES / f"{name}.toml"))
+    corners = scene.triangles["cone"].reshape(-1, 3)
     distance = np.hypot(corners[:, 0], corners[:, 1])
-    assert corners[:, 2].min() == pytest.approx(z) == layout.gates[0].place
+    assert corners[:, 2].min() == pytest.approx(z) == scene.scene.gates[0].at
     assert distance.min() == pytest.approx(radius, rel=3e-3) and distance.max() == pytest.approx(0.1, rel=3e-3)
     assert np.ptp(corners[:, 2]) == pytest.approx(0.1 - radius)

@@ -45,9 +45,8 @@ def test_a_fill_by_mass_has_the_mass_of_every_component_or_says_so(share, radii,
     except CaseError as error:
         assert (min(numbers.values()) < 1.0 and "one sphere" in str(error)) or "would fill" in str(error)
         return
-    got = {
-        m: sum(f.count * ball(m, f.parts[0].radius) for f in p.layout.fills if f.parts[0].material == m) for m in wanted
-    }
+    filled_in = [(f.particles[0], f.count) for f in p.insertions]
+    got = {m: sum(n * ball(m, x.radius) for x, n in filled_in if x.material == m) for m in wanted}
     assert min(got.values()) > 0.0
     wrong = any(abs(got[m] - wanted[m]) > 0.01 * mass for m in wanted)
     assert wrong == any("requested" in said for said in planned_doubts(p))

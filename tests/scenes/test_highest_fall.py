@@ -10,7 +10,7 @@ from parts_cases import CASE
 
 from epdem.case.scene import parse
 from epdem.errors import CaseError
-from epdem.scenes import kinds
+from epdem.scenes.presets import parts
 from epdem.scenes.timestep import highest_speed
 
 COMMON = {"particles": [{"material": "glass", "radius": "1 mm"}], "count": 10, "walls": "steel", "duration": "1 s"}
@@ -42,10 +42,9 @@ def hopper(**keys):
 )
 def test_the_highest_speed_is_that_of_the_highest_fall(case):
     """v = sqrt(2 g h) with h between the planned top of the filling and the planned floor."""
-    layout = kinds.layout(case)
-    region = layout.fills[0].region
-    top = region.high if case.scene.kind == "hopper" else region.limits[5]
-    floor = next(plane.place for plane in layout.planes if plane.name == "floor")
+    scene = parts(case.scene)
+    top = scene.random_fills[0].region.limits[5]
+    floor = next(plane.at for plane in scene.planes if plane.name == "floor")
     assert highest_speed(case) == pytest.approx(math.sqrt(2 * 9.81 * (top - floor)), rel=1e-9)
 
 

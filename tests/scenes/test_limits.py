@@ -45,7 +45,7 @@ def test_a_rate_is_taken_up_to_the_layer_s_filling():
     for rate in (0.999 * most, 1.001 * most):
         case = parse(data | {"scene": data["scene"] | {"rate": f"{rate:.9g} Hz"}})
         if rate < most:
-            assert plan(case).layout.fills[0].rate == pytest.approx(rate)
+            assert plan(case).insertions[0].rate == pytest.approx(rate)
         else:
             with pytest.raises(CaseError, match="rate"):
                 plan(case)

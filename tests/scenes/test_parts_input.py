@@ -30,7 +30,7 @@ BODY = {"name": "ball", "material": "steel", "radius": "2 mm", "position": ["0 m
 
 def fills(data: dict, place: Path | str = "case") -> dict[tuple[str, float], int]:
     """Number of spheres by material and radius."""
-    found = [(f.parts[0], f.count) for f in plan(parse(data, place)).layout.fills]
+    found = [(f.particles[0], f.count) for f in plan(parse(data, place)).insertions]
     return {(part.material, round(part.radius, 9)): count for part, count in found}
 
 
@@ -74,25 +74,25 @@ def test_a_table_of_spheres_comes_before_what_is_filled_in(tmp_path):
     (tmp_path / "s.csv").write_text("x,y,z,radius,vz\n0,0,0.01,0.001,-1\n0.004,0,0.01,0.002,0\n")
     table = {"name": "table", "file": "s.csv", "material": "glass"}
     p = plan(parse(parts(fill=[table], body=[BODY | {"frozen": True}]), tmp_path / "case.toml"))
-    assert [(s.radius, s.velocity[2], s.frozen) for s in p.layout.table] == [
+    assert [(s.radius, s.velocity[2], s.frozen) for s in p.scene.table] == [
         (0.001, -1.0, False),
         (0.002, 0.0, False),
         (0.002, 0.0, True),
     ]
-    assert p.layout.count == 3 and (p.smallest, p.largest) == (0.001, 0.002)
+    assert p.count == 3 and (p.smallest, p.largest) == (0.001, 0.002)
 
 
 def test_walls_made_here_lie_where_they_are_said_to():
     cone = {"name": "cone", "kind": "cone", "axis": "y", "from": "-8 mm", "to": "8 mm", "diameters": ["4 mm", "8 mm"]}
     box = {"name": "box", "kind": "box", "x": ["-9 mm", "9 mm"], "y": ["-8 mm", "8 mm"], "z": ["0 mm", "7 mm"]}
     walls = [cone | {"center": ["1 mm", "10 mm"], "ends": ["to"]}, box | {"open": ["+z", "-x"]}]
-    found = plan(parse(parts(wall=[w | {"material": "steel"} for w in walls]))).layout.meshes
-    x, y, z = np.moveaxis(found["cone"].triangles, 2, 0)
+    found = plan(parse(parts(wall=[w | {"material": "steel"} for w in walls]))).triangles
+    x, y, z = np.moveaxis(found["cone"], 2, 0)
     radius = np.hypot(x - 1e-3, z - 10e-3)
     side = (radius > 1e-9) & (np.abs(y - 8e-3) > 1e-12)
     assert radius[side] == pytest.approx(2e-3 + 2e-3 * (y[side] + 8e-3) / 16e-3, rel=1e-9)
     assert (radius[~side].max(), radius.min()) == pytest.approx((4e-3, 0.0))
-    edges = np.diff(found["box"].triangles, axis=1)
+    edges = np.diff(found["box"], axis=1)
     area = 0.5 * np.linalg.norm(np.cross(edges[:, 0], edges[:, 1]), axis=1).sum()
     assert area == pytest.approx((18 * 16 + 16 * 7 + 2 * 18 * 7) * 1e-6)
 
@@ -157,7 +157,7 @@ def test_an_stl_file_may_be_binary_or_a_text_in_any_encoding(tmp_path):
     for raw in (text.encode(), named, binary_stl(tetrahedron(10.0), 4, b"solid bowl")):
         (tmp_path / "wall.stl").write_bytes(raw)
         data = parts(wall=[FLOOR, STL | {"scale": 1e-3}])
-        found.append(plan(parse(data, tmp_path / "case.toml")).layout.meshes["bowl"].triangles)
+        found.append(plan(parse(data, tmp_path / "case.toml")).triangles["bowl"])
     assert found[1] == pytest.approx(found[0]) and found[2] == pytest.approx(found[0])
 
 
@@ -165,7 +165,7 @@ def test_a_good_stl_is_scaled_turned_and_moved(tmp_path):
     write_stl(tmp_path / "wall.stl", tetrahedron(5.0))
     wall = STL | {"scale": 1e-3, "rotate": {"axis": [0.0, 0.0, 2.0], "angle": "90 deg"}, "closed": True}
     wall |= {"position": ["1 mm", "0 mm", "2 mm"]}
-    mesh = plan(parse(parts(wall=[wall]), tmp_path / "case.toml")).layout.meshes["bowl"].triangles
+    mesh = plan(parse(parts(wall=[wall]), tmp_path / "case.toml")).triangles["bowl"]
     corners = {tuple(float(x) for x in np.round(c * 1e3, 9) + 0.0) for c in mesh.reshape(-1, 3)}
     assert corners == {(1, 0, 2), (1, 5, 2), (-4, 0, 2), (1, 0, 7)}  # x goes to y, y to -x
 
@@ -200,7 +200,7 @@ def test_the_example_of_the_page_is_a_scene():
     (example,) = re.findall(r"^```toml\n(.*?)^```$", (CASES.parent / "docs/scenes.md").read_text(), re.M | re.S)
     p = plan(parse(parts() | tomllib.loads(example)))
     mass = 2500 * 4 / 3 * math.pi * 1e-9
-    assert p.layout.count == round(2e-3 / mass) + 1 and [x.name for x in p.phases] == ["settle", "hit"]
+    assert p.count == round(2e-3 / mass) + 1 and [x.name for x in p.phases] == ["settle", "hit"]
 
 
 def test_values_of_a_pair_of_materials_count_for_spheres_and_walls():
@@ -232,6 +232,18 @@ def test_a_preset_is_made_of_the_same_parts():
     one, other = (deck_lines(data) for data in (preset, preset | {"scene": scene}))
     only = [line for line in one ^ other if not line.startswith(("# settle:", "# parts:"))]
     assert len(one) > 30 and len(only) == 2 and all("fix fill1 all insert/" in line for line in only)
+
+
+def test_a_hopper_is_a_wall_of_revolution():
+    preset = own("hopper_beads")
+    mesh = plan(parse(preset)).triangles["hopper"]
+    s = preset["scene"]
+    r, outlet, top = (float(s[k].split()[0]) / n for k, n in (("bin_diameter", 2), ("outlet", 2), ("bin_height", 1)))
+    low = -(r - outlet) / math.tan(math.radians(float(s["half_angle"].split()[0])))
+    profile = [[f"{x!r} mm", f"{z!r} mm"] for x, z in ((outlet, low), (r, 0.0), (r, top))]
+    wall = {"name": "bin", "kind": "revolved", "material": "steel", "profile": profile}
+    room = {k: ["-1 m", "1 m"] for k in "xyz"}
+    assert np.abs(plan(parse(parts(wall=[wall], room=room))).triangles["bin"] - mesh).max() < 1e-12
 
 
 def deck_lines(data: dict) -> set[str]:

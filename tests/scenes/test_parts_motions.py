@@ -162,7 +162,7 @@ def test_a_run_that_ends_by_a_condition_goes_on_bitwise(tmp_path):
         "phase": "fall",
     }
     walls = [FLOOR, BOX | {"open": ["-z"]}, gate]
-    data = parts(wall=walls, fill=[bed, more], body=[ball], phase=phases, leave=True)
+    data = parts(wall=walls, fill=[bed, more], body=[ball], phase=phases, open_boundary=True)
     data |= {"viscous": {"restitution": 0.4}, "output": {"rows": 100, "particles": 100, "restarts": 100}}
     p = write_deck(parse(data), tmp_path)
     launcher.run("in.scene", tmp_path)

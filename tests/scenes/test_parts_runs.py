@@ -92,7 +92,7 @@ def test_a_gate_holds_what_falls_until_its_phase_ends(tmp_path):
     gate = FLOOR | {"name": "gate", "at": "5 mm", "phases": ["first"]}
     phases = [{"name": "first", "duration": "0.1 s"}, {"name": "second", "duration": "30 ms"}]
     region = BED["region"] | {"z": ["6 mm", "30 mm"]}
-    data = parts(wall=[gate, FLOOR], fill=[BED | {"region": region}], phase=phases, leave=True)
+    data = parts(wall=[gate, FLOOR], fill=[BED | {"region": region}], phase=phases, open_boundary=True)
     outcome = run(write_case(data, tmp_path), out=tmp_path / "out")
     lowest = outcome.results.particles.groupby("step").apply(lambda x: (x["z"] - x["radius"]).min())
     opened = outcome.plan.phases[0].end

@@ -44,7 +44,7 @@ def test_the_rebounds_of_shot_stand_beside_theory():
 def test_a_hopper_a_drum_and_a_bed_show_mass_torque_and_height():
     p, tables, (panel,) = drawn("hopper")
     last = tables["particles"].query(f"step == {p.steps}")
-    assert panel.series[0].y[-1] == pytest.approx(last[last["z"] < p.layout.gates[0].place]["mass"].sum())
+    assert panel.series[0].y[-1] == pytest.approx(last[last["z"] < p.scene.gates[0].at]["mass"].sum())
     _, tables, (panel,) = drawn("drum")
     assert panel.series[0].y.tolist() == tables["rows"]["torque"].to_list()
     _, tables, (height, energy) = drawn("settle")
@@ -110,6 +110,6 @@ def test_the_window_of_pyvista_shows_walls_and_spheres(monkeypatch):
     p = plan(parse(parts(wall=[tube])))
     pictures.window(p)
     wall, spheres, room = shown[0]
-    assert wall.n_cells == len(p.layout.meshes["tube"].triangles) and room.bounds == pytest.approx(p.layout.box)
-    assert spheres.n_cells % p.layout.count == 0 and spheres.n_cells > 100 * p.layout.count
-    assert spheres.volume == pytest.approx(p.layout.count * 14.137e-9, rel=0.06)
+    assert wall.n_cells == len(p.triangles["tube"]) and room.bounds == pytest.approx(p.box)
+    assert spheres.n_cells % p.count == 0 and spheres.n_cells > 100 * p.count
+    assert spheres.volume == pytest.approx(p.count * 14.137e-9, rel=0.06)

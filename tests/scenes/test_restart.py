@@ -156,8 +156,8 @@ def test_every_table_of_a_continued_run_is_that_of_the_uninterrupted_one(case, t
     for name, table in a.tables.items():
         for column in table:
             other = b.tables[name][column]
-            if name == "particles" and column in ("x", "y") and whole.plan.layout.periodic:
-                low, high = np.reshape(whole.plan.layout.box, (3, 2))["xyz".index(column)]
+            if name == "particles" and column in ("x", "y") and whole.plan.scene.periodic:
+                low, high = np.reshape(whole.plan.box, (3, 2))["xyz".index(column)]
                 beyond = abs(abs(table[column] - other) - (high - low)) < 1e-12  # one frame before, one after the move
                 other = other.mask(beyond, table[column])
             assert table[column].equals(other), f"{name}.{column} differs"

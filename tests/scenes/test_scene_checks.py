@@ -100,7 +100,7 @@ def test_an_elastic_bed_may_rise_as_far_as_it_fell_and_no_farther(rise, passed):
 
 def test_stiffness_and_work_of_a_press_are_those_of_its_force_curve():
     """Loading F = k x, unloading four times as steep from the turn on: work 1/2 F x in, a quarter of it back."""
-    p = planned("compaction", n_rows=1000, height="0.5 mm", back_speed="0.4 m/s")
+    p = planned("compaction", n_rows=1000, height="0.5 mm", unload_speed="0.4 m/s")
     s, turn = p.case.scene, p.phases[0].end
     k, k_back = 1e4, 4e4
     way = s.box[2] - s.height
@@ -184,7 +184,7 @@ def test_the_weight_of_a_bed_is_compared_only_with_all_that_bears_it(change, out
     data = parts(**({"wall": [FLOOR, BOX]} | change))
     data["output"] |= {"energy": False} | output
     p = plan(parse(data))
-    columns = {f"{wall}_force_z": 0.0 for wall in p.layout.loads}
+    columns = {f"{wall}_force_z": 0.0 for wall in p.loads}
     table = {n: [1.0, 0.0, *columns.values()] for n in (0, p.steps)}
     found = table_of_rows(p, table, ["particles", "kinetic_energy", *columns])
     checked = checks.checks(p, {"rows": found, "particles": frames(p, [{}])})["check"]

@@ -47,11 +47,11 @@ def test_rows_and_frames_tell_of_the_same_motion(stored):
 
 def overlaps(p, frame: pd.DataFrame) -> dict[tuple[int, int], float]:
     """Overlap of every pair that touches, by the places of the spheres alone."""
-    length = np.array([p.layout.box[1] - p.layout.box[0], p.layout.box[3] - p.layout.box[2]])
+    length = np.array([p.box[1] - p.box[0], p.box[3] - p.box[2]])
     found = {}
     for a, b in itertools.combinations(frame.to_dict("records"), 2):
         d = np.array([b[x] - a[x] for x in "xyz"])
-        if p.layout.periodic:
+        if p.scene.periodic:
             d[:2] -= length * np.round(d[:2] / length)
         if (overlap := a["radius"] + b["radius"] - float(np.linalg.norm(d))) > 0:
             found[a["id"], b["id"]] = overlap
@@ -63,8 +63,8 @@ def test_the_contacts_between_spheres_are_all_that_their_places_make(stored):
     pairs = tables["contacts"][tables["contacts"]["wall"] == ""]
     for step, frame in tables["particles"].groupby("step"):
         expected = overlaps(p, frame)
-        if p.layout.periodic:
-            low, high = p.layout.box[0:4:2], p.layout.box[1:4:2]
+        if p.scene.periodic:
+            low, high = p.box[0:4:2], p.box[1:4:2]
             places = frame[["x", "y"]].to_numpy()
             assert (places >= low).all() and (places <= high).all()
         table = pairs[pairs["step"] == step].set_index(["i", "j"])["overlap"]
@@ -75,7 +75,7 @@ def test_the_contacts_between_spheres_are_all_that_their_places_make(stored):
 
 def test_the_contacts_with_flat_walls_and_the_plate_are_where_these_are(stored):
     p, tables = stored
-    places = {w.name: (w.axis, w.place) for w in p.layout.planes}
+    places = {w.name: ("xyz".index(w.axis), w.at) for w in p.scene.planes}
     touched = tables["contacts"][tables["contacts"]["wall"].isin([*places, "plate"])]
     spheres = tables["particles"].set_index(["step", "id"])
     top = {row.step: row.plate_end for row in plate_ends(p, tables)}
@@ -144,7 +144,7 @@ def test_the_ledger_adds_up(stored):
     assert (np.diff(table["plastic"]) >= -1e-12 * table["plastic"].max()).all()
     verdicts = checks.checks(p, tables | {"ledger": table}).set_index("check")["passed"]
     assert verdicts["energy: all terms but none as remainder"] == (ledger.closure(table) <= 0.01)
-    if not p.layout.loses:
+    if not p.scene.open_boundary:
         assert verdicts["spheres in the room at the end"]
 
 
@@ -152,7 +152,7 @@ def test_every_column_with_a_unit_of_its_own_has_one(stored):
     p, tables = stored
     found = {c for table in [*tables.values(), ledger.ledger(p, tables)] for c in table}
     assert found - set(UNITS) == {"step", "particles", "id", "type", "wall", "i", "j"} | {
-        f"delta_max_{w.name}" for w in p.layout.planes if f"delta_max_{w.name}" in tables["particles"]
+        f"delta_max_{w.name}" for w in p.scene.planes if f"delta_max_{w.name}" in tables["particles"]
     }
 
 

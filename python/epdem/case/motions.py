@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Phases of a scene made of parts: how long, which walls move in them and how. SI."""
 
+import math
 from typing import Annotated, Literal, Self
 
 from pydantic import Field, model_validator
@@ -12,6 +13,15 @@ Time = Annotated[float, Quantity("s", above=0.0)]
 Rate = Annotated[float, Quantity("Hz", above=0.0)]
 Force = Annotated[float, Quantity("N", above=0.0)]
 Speeds = Annotated[list[Annotated[float, Quantity("m/s")]], Field(min_length=3, max_length=3)]
+
+Vector3 = tuple[float, float, float]
+
+
+def unit(direction: list[float]) -> Vector3:
+    """The direction with the length 1."""
+    length = math.hypot(*direction)
+    x, y, z = (value / length for value in direction)
+    return (x, y, z)
 
 
 class _Move(Frozen):
@@ -41,6 +51,11 @@ class RotateMove(_Move):
             raise ValueError("axis or rate is zero, so nothing turns; give other values, or remove the motion")
         return self
 
+    @property
+    def unit_axis(self) -> Vector3:
+        """The axis with the length 1."""
+        return unit(self.axis)
+
 
 class VibrateMove(_Move):
     """A harmonic motion that begins in the middle: amplitude times sin(2 pi frequency t)."""
@@ -48,6 +63,11 @@ class VibrateMove(_Move):
     kind: Literal["vibrate"]
     amplitude: Vector
     frequency: Rate
+
+    @property
+    def omega(self) -> float:
+        """Angular frequency [rad/s]."""
+        return 2 * math.pi * self.frequency
 
 
 class PressMove(_Move):
@@ -63,6 +83,11 @@ class PressMove(_Move):
         if not any(self.direction):
             raise ValueError("direction = [0, 0, 0] has no direction; give another one")
         return self
+
+    @property
+    def unit_direction(self) -> Vector3:
+        """The direction with the length 1."""
+        return unit(self.direction)
 
 
 Move = Annotated[LinearMove | RotateMove | VibrateMove | PressMove, Field(discriminator="kind")]
@@ -90,6 +115,11 @@ class Until(Frozen):
             raise ValueError("'wall' belongs to force and travel, and only to them")
         return self
 
+    @property
+    def limit(self) -> float:
+        """The value of the one condition: [J], number of spheres, [N] or [m]."""
+        return float(next(x for x in (self.kinetic_energy, self.count, self.force, self.travel) if x is not None))
+
 
 class Phase(Frozen):
     """A part of the run; with `until` at most for `duration`. time_step: its own. record: whether it has frames."""
@@ -113,3 +143,28 @@ class Phase(Frozen):
         if self.until and self.until.travel is not None and self.until.wall not in linear:
             raise ValueError(f"until.travel: wall {self.until.wall!r} has no linear motion in this phase")
         return self
+
+    @property
+    def moves(self) -> dict[str, Move]:
+        """The motion of each wall that moves."""
+        return {m.wall: m for m in self.move}
+
+    @property
+    def seconds(self) -> float:
+        """The duration, shorter where a wall with a constant velocity has made its travel [s]."""
+        if self.until is None or self.until.travel is None:
+            return self.duration
+        move = self.moves[self.until.wall or ""]
+        assert isinstance(move, LinearMove)
+        return min(self.duration, self.until.travel / math.hypot(*move.velocity))
+
+    @property
+    def condition(self) -> Until | None:
+        """What may end the phase at a step that is not known before the run."""
+        return None if self.until is None or self.until.travel is not None else self.until
+
+    @property
+    def condition_from(self) -> float:
+        """Time in the phase from which the condition is looked at [s]."""
+        after = None if self.until is None else self.until.after
+        return 0.1 * self.duration if after is None else after

@@ -12,7 +12,7 @@ from .fields import Frozen, Gravity, Length, Name, Quantity, Spin, nothing
 from .measures import Measure, Region
 from .motions import LinearMove, Phase, PressMove, Rate, RotateMove, Speeds, VibrateMove
 from .sizes import Count, FileName, Mixture, Particles, Share, csv_rows, number_in, refuse_shares
-from .walls import ConeWall, CylinderWall, PartName, PlaneWall, Room, Vector, Wall, has
+from .walls import ConeWall, CylinderWall, MeshWall, PartName, PlaneWall, Room, Vector, Wall, has
 
 
 class Sphere(NamedTuple):
@@ -193,6 +193,21 @@ class Parts(Frozen):
         return [*of_files, *(b.sphere for b in self.body if b.phase in (None, first))]
 
     @property
+    def planes(self) -> list[PlaneWall]:
+        """The planes that are there in every phase."""
+        return [w for w in self.wall if isinstance(w, PlaneWall) and not w.phases]
+
+    @property
+    def gates(self) -> list[PlaneWall]:
+        """The planes that are there in some phases only."""
+        return [w for w in self.wall if isinstance(w, PlaneWall) and w.phases]
+
+    @property
+    def meshes(self) -> dict[str, MeshWall]:
+        """The walls of triangles by name."""
+        return {w.name: w for w in self.wall if isinstance(w, MeshWall)}
+
+    @property
     def later(self) -> list[Body]:
         """The single spheres that come at the begin of another phase than the first."""
         return [b for b in self.body if b.phase not in (None, self.phase[0].name)]
@@ -218,6 +233,11 @@ class Parts(Frozen):
     def leading(self) -> Particles:
         """The spheres whose impacts on a wall stand for the scene."""
         return self.filled[0]
+
+    @property
+    def fall_height(self) -> float:
+        """The height of the highest free fall [m]."""
+        return self.room.z[1] - self.room.z[0]
 
     @property
     def drive(self) -> float:

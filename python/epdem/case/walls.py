@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Walls of a scene made of parts: flat, round, boxes, STL files. SI."""
 
+import itertools
+import math
 from abc import ABC, abstractmethod
 from typing import Annotated, Literal, Self
 
@@ -45,6 +47,12 @@ class Room(Frozen):
         """xlo xhi ylo yhi zlo zhi [m]."""
         return (self.x[0], self.x[1], self.y[0], self.y[1], self.z[0], self.z[1])
 
+    @property
+    def volume(self) -> float:
+        """[m^3]."""
+        xlo, xhi, ylo, yhi, zlo, zhi = self.limits
+        return (xhi - xlo) * (yhi - ylo) * (zhi - zlo)
+
 
 class Upright(Frozen):
     """An upright cylinder: a room that is filled."""
@@ -57,6 +65,22 @@ class Upright(Frozen):
     def _ordered(self) -> Self:
         ordered("z", self.z)
         return self
+
+    @property
+    def radius(self) -> float:
+        """[m]."""
+        return self.diameter / 2
+
+    @property
+    def limits(self) -> Limits:
+        """xlo xhi ylo yhi zlo zhi [m] of the box around the cylinder."""
+        (x, y), r = self.center, self.radius
+        return (x - r, x + r, y - r, y + r, self.z[0], self.z[1])
+
+    @property
+    def volume(self) -> float:
+        """[m^3]."""
+        return math.pi * self.radius**2 * (self.z[1] - self.z[0])
 
 
 def has(key: str) -> Discriminator:
@@ -85,14 +109,14 @@ class PlaneWall(_Wall):
     phases: list[PartName] = Field(default_factory=list)
 
 
-class _Triangles(_Wall):
+class MeshWall(_Wall):
     """A wall of triangles. stress: the frames have the pressure on each; wear: its constant of Finnie's law [m^2/N]."""
 
     stress: bool = False
     wear: Annotated[float, Quantity("m^2/N", above=0.0)] | None = None
 
 
-class PlateWall(_Triangles):
+class PlateWall(MeshWall):
     """A rectangle of two triangles across an axis; `size` along the two other axes, in the order x, y, z."""
 
     kind: Literal["plate"]
@@ -101,7 +125,7 @@ class PlateWall(_Triangles):
     size: Annotated[list[Length], Field(min_length=2, max_length=2)]
 
 
-class BoxWall(_Triangles):
+class BoxWall(MeshWall):
     """The six faces of a room, without those that are `open` ("-z": the lower one)."""
 
     kind: Literal["box"]
@@ -119,7 +143,7 @@ class BoxWall(_Triangles):
         return self
 
 
-class _Round(_Triangles, ABC):
+class _Round(MeshWall, ABC):
     """A wall about an axis, from one place along it to another; `center`: the two other coordinates.
 
     ends: which ends a disc closes. angular_velocity: that of the surface about the axis. The wall is a body of
@@ -138,6 +162,13 @@ class _Round(_Triangles, ABC):
         if not self.start < self.to:
             raise ValueError(f"'from' ({self.start:g} m) must be below 'to' ({self.to:g} m)")
         return self
+
+    @property
+    def axis_point(self) -> list[float]:
+        """A point on the axis, x y z [m]."""
+        point = list(self.center)
+        point.insert("xyz".index(self.axis), 0.0)
+        return point
 
     @abstractmethod
     def diameters_of_ends(self) -> tuple[float, float]:
@@ -166,6 +197,21 @@ class ConeWall(_Round):
         return self.diameters[0], self.diameters[1]
 
 
+class RevolvedWall(MeshWall):
+    """A surface of revolution about an upright axis through `center`; `profile`: points (radius, z), from one end."""
+
+    kind: Literal["revolved"]
+    profile: Annotated[list[Annotated[tuple[Length, Place], Field(strict=False)]], Field(min_length=2, max_length=100)]
+    center: Span = Field(default_factory=lambda: [0.0, 0.0])
+
+    @model_validator(mode="after")
+    def _points(self) -> Self:
+        for one, two in itertools.pairwise(self.profile):
+            if one == two:
+                raise ValueError(f"profile: two points in a row are the same, {list(one)} m; remove one")
+        return self
+
+
 class Rotation(Frozen):
     """A turn about an axis through the origin."""
 
@@ -179,7 +225,7 @@ class Rotation(Frozen):
         return self
 
 
-class StlWall(_Triangles):
+class StlWall(MeshWall):
     """The triangles of an STL file, multiplied by `scale` (1e-3 if the file is in mm), rotated, then moved.
 
     closed: whether it must be watertight.
@@ -193,7 +239,5 @@ class StlWall(_Triangles):
     closed: bool = False
 
 
-Wall = Annotated[
-    PlaneWall | PlateWall | BoxWall | CylinderWall | ConeWall | StlWall,
-    Field(discriminator="kind"),
-]
+AnyWall = PlaneWall | PlateWall | BoxWall | CylinderWall | ConeWall | RevolvedWall | StlWall
+Wall = Annotated[AnyWall, Field(discriminator="kind")]

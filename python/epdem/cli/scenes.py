@@ -124,8 +124,8 @@ def view(
         with status() as line:
             line(f"{p.case.name}: walls, regions, first spheres")
             drawn = pictures.before(p, path)
-    said = {"file": str(path), "spheres": p.layout.count, "drawn": drawn}
-    print(json.dumps(said) if as_json else f"{path}: walls, regions and {drawn} of {p.layout.count} spheres")
+    said = {"file": str(path), "spheres": p.count, "drawn": drawn}
+    print(json.dumps(said) if as_json else f"{path}: walls, regions and {drawn} of {p.count} spheres")
 
 
 def tune(

@@ -6,7 +6,9 @@ import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from ..scenes.layout import Block, Fill, Vector
+from ..case.motions import Vector3
+from ..case.walls import Room
+from ..scenes import filling
 from ..scenes.plan import ScenePlan
 
 # Volumes [m^3] of a template and of a region below which LIGGGHTS refuses them without a keyword for a smaller limit.
@@ -42,7 +44,7 @@ class Insertion:
     count: int
     rate: float | None
     every: int | None
-    velocity: Vector
+    velocity: Vector3
     phase: str
     once: bool
 
@@ -61,22 +63,22 @@ def _limit(volume: float, least: float) -> str:
     return f" volume_limit {MEANT:g}" if volume < least else ""
 
 
-def _region(fill: Fill) -> str:
+def _region(fill: filling.Insertion) -> str:
     """The region of a fill; one with little room for the centres of its spheres has to be meant."""
-    largest = max(part.radii()[1] for part in fill.parts)
-    if isinstance(fill.region, Block):
+    largest = max(part.radii()[1] for part in fill.particles)
+    if isinstance(fill.region, Room):
         x = fill.region.limits
         style = "block " + " ".join(f"{v:.10g}" for v in x)
         centres = math.prod(max(0.0, x[k + 1] - x[k] - 2.0 * largest) for k in (0, 2, 4))
     else:
         c = fill.region
-        style = f"cylinder z {c.center[0]:g} {c.center[1]:g} {c.radius:.10g} {c.low:.10g} {c.high:.10g}"
-        centres = math.pi * (c.radius - largest) ** 2 * (c.high - c.low - 2.0 * largest)
+        style = f"cylinder z {c.center[0]:g} {c.center[1]:g} {c.radius:.10g} {c.z[0]:.10g} {c.z[1]:.10g}"
+        centres = math.pi * (c.radius - largest) ** 2 * (c.z[1] - c.z[0] - 2.0 * largest)
     return style + _limit(centres, SMALL_ROOM)
 
 
-def _templates(p: ScenePlan, fill: Fill, first: int, seeds: Iterator[int]) -> tuple[Template, ...]:
-    sizes = [(part.material, radius, share) for part in fill.parts for radius, share in part.sizes()]
+def _templates(p: ScenePlan, fill: filling.Insertion, first: int, seeds: Iterator[int]) -> tuple[Template, ...]:
+    sizes = [(part.material, radius, share) for part in fill.particles for radius, share in part.sizes()]
     return tuple(
         Template(
             f"template{i}",
@@ -96,11 +98,11 @@ def insertions(p: ScenePlan) -> tuple[Insertion, ...]:
     seeds = itertools.islice(primes(), 100 * (p.case.numerics.seed - 1), None)
     result: list[Insertion] = []
     first = 1
-    steps = {phase.name: phase.time_step or p.time_step for phase in p.phases}
-    for i, fill in enumerate(p.layout.fills, 1):
-        phase = fill.phase or p.phases[0].name
+    steps = {phase.name: phase.case.time_step or p.time_step for phase in p.phases}
+    for i, fill in enumerate(p.insertions, 1):
         templates = _templates(p, fill, first, seeds)
         first += len(templates)
+        step = steps[fill.phase]
         result.append(
             Insertion(
                 id=f"fill{i}",
@@ -111,10 +113,10 @@ def insertions(p: ScenePlan) -> tuple[Insertion, ...]:
                 region=_region(fill),
                 count=fill.count,
                 # insert/pack counts what is in the region before it; a stream faster than a step does not
-                rate=float(f"{2 * fill.count / steps[phase]:.2g}") if fill.exact else fill.rate,
-                every=None if fill.rate is None and not fill.exact else max(1, math.ceil(fill.every / steps[phase])),
+                rate=float(f"{2 * fill.count / step:.2g}") if fill.exact else fill.rate,
+                every=None if fill.rate is None and not fill.exact else max(1, math.ceil(fill.period / step)),
                 velocity=fill.velocity,
-                phase=phase,
+                phase=fill.phase,
                 once=fill.rate is None,
             )
         )

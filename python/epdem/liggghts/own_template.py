@@ -78,7 +78,7 @@ def write(
     if scenes.is_scene(read_toml(case_path)):
         scene = scene_plan(scenes.load(case_path))
         values |= {"deck": scene_deck(scene), "case": scene.case}
-        beside |= {f"{n}.stl": stl.text(n, mesh.triangles) for n, mesh in scene.layout.meshes.items()}
+        beside |= {f"{n}.stl": stl.text(n, triangles) for n, triangles in scene.triangles.items()}
     else:
         case = load_impact(case_path)
         x = experiment(case)

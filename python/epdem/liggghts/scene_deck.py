@@ -150,7 +150,7 @@ def default_skin(p: ScenePlan) -> float:
 
 def _refuse_room(p: ScenePlan) -> None:
     """Raise CaseError for a room in which LIGGGHTS cannot count the cells where it looks for neighbours."""
-    sides = [high - low for low, high in zip(p.layout.box[::2], p.layout.box[1::2], strict=True)]
+    sides = [high - low for low, high in zip(p.box[::2], p.box[1::2], strict=True)]
     width = p.largest + 0.5 * SKIN * p.smallest  # half of the longest reach
     cells = math.prod(max(1.0, side / width) for side in sides)
     if cells > MOST_CELLS:
@@ -174,8 +174,8 @@ def deck(p: ScenePlan) -> Deck:
         kind=s.kind,
         hard=max(moduli) > HARD,
         soft=min(moduli) < SOFT,
-        boundary="p p f" if p.layout.periodic else "f f f",
-        box=p.layout.box,
+        boundary="p p f" if p.scene.periodic else "f f f",
+        box=p.box,
         n_types=len(m.types),
         skin=p.case.numerics.skin or default_skin(p),
         own_skin=p.case.numerics.skin is not None,
@@ -190,10 +190,10 @@ def deck(p: ScenePlan) -> Deck:
         wall_type=m.wall_types[""],
         planes=planes(p),
         meshes=surfaces(p),
-        loads_of=tuple((n, wall_id(p, name), name in p.layout.meshes) for n, name in enumerate(p.layout.loads, 1)),
+        loads_of=tuple((n, wall_id(p, name), name in p.scene.meshes) for n, name in enumerate(p.loads, 1)),
         powered=p.powered,
-        table=p.layout.table,
-        frozen=tuple(n for n, sphere in enumerate(p.layout.table, 1) if sphere.frozen),
+        table=tuple(p.scene.table),
+        frozen=tuple(n for n, sphere in enumerate(p.scene.table, 1) if sphere.frozen),
         gravity=s.gravity,
         insertions=insertions(p),
         time_step=p.time_step,
@@ -204,7 +204,7 @@ def deck(p: ScenePlan) -> Deck:
         samples=p.every // p.sampling,
         frames=p.frames,
         contacts=p.contacts,
-        watched=tuple((name, wall_id(p, name), p.layout.meshes[name].wear > 0) for name in wall_stress.watched(p)),
+        watched=tuple((name, wall_id(p, name), bool(p.scene.meshes[name].wear)) for name in wall_stress.watched(p)),
         vtk=p.vtk,
         pictures=p.pictures,
         restarts=p.restarts,
@@ -233,4 +233,4 @@ def files(p: ScenePlan) -> dict[str, str]:
     }
     if data.table:
         texts["spheres.data"] = decks.render("liggghts/spheres.data.j2", deck=data, rows=table(p))
-    return texts | {f"{name}.stl": stl.text(name, mesh.triangles) for name, mesh in p.layout.meshes.items()}
+    return texts | {f"{name}.stl": stl.text(name, triangles) for name, triangles in p.triangles.items()}

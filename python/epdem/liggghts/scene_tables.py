@@ -31,7 +31,7 @@ PARTICLES, PAIRS, MESHES = "particles.{}.bin", "contacts.{}.txt", "wall_contacts
 def _column(p: ScenePlan, word: str) -> str | None:
     """The column of a thermo word; None: one that is not ours."""
     if load := _LOAD.fullmatch(word):
-        return f"{p.layout.loads[int(load[1]) - 1]}_{columns.LOADS[int(load[2]) - 1]}"
+        return f"{p.loads[int(load[1]) - 1]}_{columns.LOADS[int(load[2]) - 1]}"
     return ROWS.get(word)
 
 
@@ -51,7 +51,7 @@ def rows(p: ScenePlan, out: Path) -> pd.DataFrame:
         known = {step: row for step, row in table.items() if step <= steps[0]}
         table = known | {step: row for step, row in zip(steps, values, strict=True) if step not in known}
     found = columns.rows(p, table, [*words.values()])
-    planes = {w.name for w in p.layout.planes} & {*p.layout.loads}
+    planes = {w.name for w in p.scene.planes} & {*p.loads}
     on_planes = [f"{name}_{force}" for name in planes for force in columns.LOADS[:3]]
     found[on_planes] = -found[on_planes]  # LIGGGHTS stores what acts on the spheres
     return found
@@ -75,7 +75,7 @@ def _frame(path: Path, count: int) -> np.ndarray:
 
 def _written(p: ScenePlan) -> dict[str, int]:
     """The kinds of frames that a run writes, each with the steps between two of them."""
-    kinds = {PARTICLES: p.frames, PAIRS: p.contacts, MESHES: p.contacts if p.layout.meshes else 0}
+    kinds = {PARTICLES: p.frames, PAIRS: p.contacts, MESHES: p.contacts if p.scene.meshes else 0}
     return {kind: every for kind, every in kinds.items() if every}
 
 
@@ -94,7 +94,7 @@ def damaged(p: ScenePlan, folder: Path, upto: int) -> list[int]:
 
 def _particle_names(p: ScenePlan) -> list[str]:
     names = [*columns.PARTICLES, *(columns.SPINS if p.model.spins else [])]
-    names += [f"{slot}_{w.name}" for w in p.layout.planes for slot in _slots(p)] if p.contacts else []
+    names += [f"{slot}_{w.name}" for w in p.scene.planes for slot in _slots(p)] if p.contacts else []
     names += ["plastic_work"] * p.dents + ["adhesive_work"] * p.jumps
     return [*names, *(["friction_work", "friction_energy"] if p.rubs else [])]
 
@@ -160,9 +160,8 @@ def _pairs(p: ScenePlan, folder: Path, without: Collection[int]) -> pd.DataFrame
 def _planes(p: ScenePlan, spheres: pd.DataFrame) -> list[pd.DataFrame]:
     """Contacts with flat walls: overlap by geometry, its largest value from LIGGGHTS's memory of the wall."""
     planes = []
-    for w in p.layout.planes:
-        axis = "xyz"[w.axis]
-        overlap = spheres["radius"] - (spheres[axis] - w.place).abs()
+    for w in p.scene.planes:
+        overlap = spheres["radius"] - (spheres[w.axis] - w.at).abs()
         largest = np.maximum(spheres[f"delta_max_{w.name}"], overlap) if p.model.yields else overlap
         columns = {"step": spheres["step"], "wall": w.name, "i": spheres["id"], "j": 0, "overlap": overlap}
         attached = {"attached": spheres[f"attached_{w.name}"]} if p.model.adheres else {}
@@ -173,8 +172,8 @@ def _planes(p: ScenePlan, spheres: pd.DataFrame) -> list[pd.DataFrame]:
 def contact_table(p: ScenePlan, folder: Path, spheres: pd.DataFrame, *, without: Collection[int] = ()) -> pd.DataFrame:
     """Every contact of every frame; `spheres` is the particles' table. Raises EngineError as `particles` does."""
     parts = [_pairs(p, folder, without), *_planes(p, spheres)]
-    if p.layout.meshes:
-        names = [*p.layout.meshes]
+    if p.scene.meshes:
+        names = [*p.scene.meshes]
         touched = _local(p, MESHES, folder, ["mesh", "i"] if len(names) > 1 else ["i"], without)
         wall = [names[int(k)] for k in touched["mesh"]] if len(names) > 1 else names[0]
         parts.append(touched.assign(j=0, wall=wall))

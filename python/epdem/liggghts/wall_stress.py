@@ -18,7 +18,7 @@ COLUMNS |= {"shear_stress_average": "shear_stress", "wear": "wear"}
 
 def watched(p: ScenePlan) -> tuple[str, ...]:
     """The walls whose triangles are in the table."""
-    return tuple(name for name, mesh in p.layout.meshes.items() if mesh.stress or mesh.wear)
+    return tuple(name for name, mesh in p.scene.meshes.items() if mesh.stress or mesh.wear)
 
 
 def properties(p: ScenePlan) -> tuple[Property, ...]:
@@ -28,8 +28,10 @@ def properties(p: ScenePlan) -> tuple[Property, ...]:
     """
     spheres = {p.model.type_of(particles.material) for particles in p.case.scene.filled}
     of_pair = dict[frozenset[int], tuple[str, float]]()  # the wall that gives the value, the value
-    for name, mesh in p.layout.meshes.items():
-        for sphere in spheres if mesh.wear else ():
+    for name, mesh in p.scene.meshes.items():
+        if not mesh.wear:
+            continue
+        for sphere in spheres:
             other, wear = of_pair.setdefault(frozenset((sphere, p.wall_types[name])), (name, mesh.wear))
             if wear != mesh.wear:
                 raise CaseError(
@@ -74,9 +76,7 @@ def table(p: ScenePlan, folder: Path, *, without: Collection[int] = ()) -> pd.Da
                 columns = {ours: fields.get(theirs, np.zeros(len(fields["area"]))) for theirs, ours in COLUMNS.items()}
             except (OSError, ValueError, IndexError, KeyError) as error:
                 raise EngineError(f"{path}: incomplete ({error}); the run was stopped there") from None
-            if len(columns["area"]) != len(p.layout.meshes[name].triangles):
-                raise EngineError(
-                    f"{path}: {len(columns['area'])} triangles, expected {len(p.layout.meshes[name].triangles)}"
-                )
+            if len(columns["area"]) != len(p.triangles[name]):
+                raise EngineError(f"{path}: {len(columns['area'])} triangles, expected {len(p.triangles[name])}")
             frames.append(pd.DataFrame({"step": step, "wall": name} | columns))
     return pd.concat(frames, ignore_index=True).astype({"triangle": int})

@@ -46,10 +46,10 @@ def _below(name: str, value: float, limit: float, tolerance: float) -> Row:
 
 
 def _kept(p: ScenePlan, tables: dict[str, pd.DataFrame]) -> list[Row]:
-    if p.layout.loses:
+    if p.scene.open_boundary:
         return []
     last = float(tables["rows"]["particles"].iloc[-1])
-    return [_row("spheres in the room at the end", last, float(p.layout.count), 0.0)]
+    return [_row("spheres in the room at the end", last, float(p.count), 0.0)]
 
 
 def floor_load(case: SceneCase, tables: dict[str, pd.DataFrame]) -> tuple[float, float]:
@@ -121,7 +121,7 @@ def discharge(p: ScenePlan, s: Hopper, spheres: pd.DataFrame, part: tuple[float,
     """
     steps = np.sort(spheres["step"].unique())
     bed = spheres[spheres["step"] == steps[steps <= p.phases[0].end].max()]
-    below = spheres[spheres["z"] < p.layout.gates[0].place].groupby("step")["mass"]
+    below = spheres[spheres["z"] < p.scene.gates[0].at].groupby("step")["mass"]
     out = below.sum().reindex(steps, fill_value=0.0).to_numpy()
     during = (out > part[0] * bed["mass"].sum()) & (out < part[1] * bed["mass"].sum())
     count = below.count().reindex(steps, fill_value=0).to_numpy()[during]
@@ -202,16 +202,16 @@ def _of_parts(p: ScenePlan, tables: dict[str, pd.DataFrame]) -> list[Row]:
 
     Not where something else may bear it: a wall whose force is not in the rows, a sphere that stays where it is.
     """
-    there = {w.name for w in p.layout.planes} | {*p.layout.meshes, *p.phases[-1].gates}
-    known = there <= {*p.layout.loads} and not any(s.frozen for s in p.layout.table)
-    if not (there and known) or p.layout.loses or "particles" not in tables or not p.case.scene.gravity:
+    there = {w.name for w in p.scene.planes} | {*p.scene.meshes, *p.phases[-1].gates}
+    known = there <= {*p.loads} and not any(s.frozen for s in p.scene.table)
+    if not (there and known) or p.scene.open_boundary or "particles" not in tables or not p.case.scene.gravity:
         return []
     last = last_frame(tables["particles"])
     weight = last["mass"] * p.case.scene.gravity
     if last.empty or kinetic(last).sum() > AT_REST * (weight * last["radius"]).sum():
         return []
     row = tables["rows"].iloc[-1]
-    forces = [-float(row[f"{name}_force_z"]) for name in p.layout.loads]
+    forces = [-float(row[f"{name}_force_z"]) for name in p.loads]
     of_largest = max(1.0, *(abs(f) / float(weight.sum()) for f in forces))  # a lid may press with many times the weight
     return [_row("force on all walls / weight", sum(forces), float(weight.sum()), 0.02 * of_largest)]
 

@@ -60,7 +60,7 @@ def columns_of_rows(p: ScenePlan) -> set[str]:
     """The names of the columns that the rows of a scene have."""
     some = {"floor_load": p.floor_load, "torque": p.torque, "wall_power": p.powered}
     some |= dict.fromkeys(("plate_force", "plate_z", "stress"), p.plates)
-    loads = {f"{name}_{load}" for name in p.layout.loads for load in LOADS}
+    loads = {f"{name}_{load}" for name in p.loads for load in LOADS}
     return {"step", "time", "particles", "kinetic_energy", *(name for name, there in some.items() if there)} | loads
 
 
@@ -92,7 +92,7 @@ def rows(p: ScenePlan, values: dict[int, list[float]], names: list[str]) -> pd.D
 
 def plate_height(p: ScenePlan, time: np.ndarray) -> np.ndarray:
     """Height [m] of the plate at times [s], each the middle of the interval that a force is the mean of."""
-    height = np.full(len(time), p.layout.meshes["plate"].triangles[0, 0, 2])
+    height = np.full(len(time), p.triangles["plate"][0, 0, 2])
     begin = 0.0
     for phase in p.phases:
         end = phase.end * p.time_step

@@ -5,23 +5,24 @@ import math
 
 import numpy as np
 
-from .layout import Block, Cylinder
+from ..case.measures import Region
+from ..case.walls import Room
 from .meshes import FloatArray
 
 SIDES = 24  # of the prism that stands for a round region
 
 
-def _faces(region: Block | Cylinder, free: float) -> tuple[FloatArray, FloatArray]:
+def _faces(region: Region, free: float) -> tuple[FloatArray, FloatArray]:
     """(normals, shape (n, 3); distances [m] from the origin, shape (n,)) of the faces of a region, `free` inside it."""
     both = np.array([[-1.0], [1.0]])
-    if isinstance(region, Block):
+    if isinstance(region, Room):
         normals: FloatArray = np.kron(np.eye(3), both)
         return normals, np.array(region.limits) * normals.sum(axis=1) - free
     angle = 2 * math.pi * np.arange(SIDES) / SIDES
     sides = np.column_stack([np.cos(angle), np.sin(angle), np.zeros(SIDES)])
     apothem = region.radius * math.cos(math.pi / SIDES)
     around = apothem + sides[:, :2] @ np.array(region.center)
-    return np.concatenate([both * [0.0, 0.0, 1.0], sides]), np.array([-region.low, region.high, *around]) - free
+    return np.concatenate([both * [0.0, 0.0, 1.0], sides]), np.array([-region.z[0], region.z[1], *around]) - free
 
 
 def _remains(triangle: FloatArray, normals: FloatArray, distances: FloatArray) -> bool:
@@ -41,7 +42,7 @@ def _remains(triangle: FloatArray, normals: FloatArray, distances: FloatArray) -
     return True
 
 
-def crosses(region: Block | Cylinder, triangles: FloatArray, free: float) -> bool:
+def crosses(region: Region, triangles: FloatArray, free: float) -> bool:
     """Whether one of the triangles, shape (n, 3 corners, 3), has a part more than `free` [m] inside a region."""
     normals, distances = _faces(region, free)
     beyond = np.any(np.all(triangles @ normals.T >= distances, axis=1), axis=1)

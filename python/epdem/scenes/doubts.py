@@ -3,14 +3,13 @@
 
 import numpy as np
 
-from ..case.parts import Parts
 from ..errors import CaseError
 from . import shares
 from .crossings import crosses, depths
-from .layout import Plane
-from .meshes import FloatArray, rectangle
 from .plan import ScenePlan
+from .presets import Preset
 from .timestep import stable_step
+from .walls import sheet
 
 MOVED, LONGER = 0.02, 0.2  # by which share a phase may miss its duration: one in which walls move, another one
 OVERLAP = 0.05  # of the smaller radius; a bed of an earlier run has less
@@ -18,13 +17,13 @@ OVERLAP = 0.05  # of the smaller radius; a bed of an earlier run has less
 
 def planned_doubts(p: ScenePlan) -> list[str]:
     """A sentence for each."""
-    return shares.warnings(p.case, p.layout) + _time_steps(p) + _phases(p) + _overlaps(p) + _walls(p)
+    return shares.warnings(p.case, p.insertions) + _time_steps(p) + _phases(p) + _overlaps(p) + _walls(p)
 
 
 def _time_steps(p: ScenePlan) -> list[str]:
     """Given time steps with which not even a single contact is stable."""
     given = {"numerics.time_step": p.case.numerics.time_step}
-    given |= {f"scene.phase.{stage.name}.time_step": stage.time_step for stage in p.layout.stages}
+    given |= {f"scene.phase.{phase.name}.time_step": phase.time_step for phase in p.scene.phase}
     if not (given := {place: step for place, step in given.items() if step}):
         return []
     try:
@@ -42,12 +41,12 @@ def _time_steps(p: ScenePlan) -> list[str]:
 def _phases(p: ScenePlan) -> list[str]:
     """Phases that are longer or shorter than asked for, because they end with a row."""
     found = []
-    for phase, stage in zip(p.phase_table.to_dict("records"), p.layout.stages, strict=True):
-        seconds = phase["end_time"] - phase["begin_time"]
-        if isinstance(p.case.scene, Parts) and abs(seconds / stage.seconds - 1.0) > (MOVED if stage.moves else LONGER):
-            row = p.every * (stage.time_step or p.time_step)
+    for times, phase in zip(p.phase_table.to_dict("records"), p.scene.phase, strict=True):
+        seconds = times["end_time"] - times["begin_time"]
+        if not isinstance(p.scene, Preset) and abs(seconds / phase.seconds - 1.0) > (MOVED if phase.move else LONGER):
+            row = p.every * (phase.time_step or p.time_step)
             found.append(
-                f"scene.phase.{stage.name} takes {seconds:.4g} s, not {stage.seconds:.4g} s: a phase ends with a row "
+                f"scene.phase.{phase.name} takes {seconds:.4g} s, not {phase.seconds:.4g} s: a phase ends with a row "
                 f"(each {row:.2g} s) and the last one with a frame; give more output.rows"
             )
     return found
@@ -55,13 +54,13 @@ def _phases(p: ScenePlan) -> list[str]:
 
 def _overlaps(p: ScenePlan) -> list[str]:
     """Spheres of a table that lie in each other at the start."""
-    if len(p.layout.table) < 2:
+    if len(p.scene.table) < 2:
         return []
     from scipy.spatial import cKDTree
 
-    places = np.array([s.place for s in p.layout.table])
-    radius = np.array([s.radius for s in p.layout.table])
-    frozen = np.array([s.frozen for s in p.layout.table])
+    places = np.array([s.place for s in p.scene.table])
+    radius = np.array([s.radius for s in p.scene.table])
+    frozen = np.array([s.frozen for s in p.scene.table])
     i, j = cKDTree(places).query_pairs(2 * radius.max(), output_type="ndarray").T
     i, j = i[free := ~(frozen[i] & frozen[j])], j[free]
     share = (radius[i] + radius[j] - np.linalg.norm(places[i] - places[j], axis=1)) / np.minimum(radius[i], radius[j])
@@ -76,31 +75,23 @@ def _overlaps(p: ScenePlan) -> list[str]:
     ]
 
 
-def _sheet(p: ScenePlan, plane: Plane) -> FloatArray:
-    """A plane as two triangles as large as the room."""
-    low, high = np.array(p.layout.box[0::2]), np.array(p.layout.box[1::2])
-    center, size = (low + high) / 2, np.delete(high - low, plane.axis)
-    center[plane.axis] = plane.place
-    return rectangle(plane.axis, center, (size[0], size[1]))
-
-
 def _walls(p: ScenePlan) -> list[str]:
     """Regions that a wall runs through and spheres that lie in one, of walls that have not moved yet."""
-    first, moved, found = p.layout.stages[0].name, set[str](), {}
-    table = [(f"sphere {n} of scene.fill and scene.body", s, first) for n, s in enumerate(p.layout.table, 1)]
-    table += [(f"scene.body.{b.name}", b.sphere, b.phase) for b in p.layout.bodies]
-    for stage in p.layout.stages if isinstance(p.case.scene, Parts) else ():
-        gates = [w for w in p.layout.gates if w.name in stage.gates]
-        walls = {w.name: _sheet(p, w) for w in (*p.layout.planes, *gates)}
-        walls |= {name: mesh.triangles for name, mesh in p.layout.meshes.items() if name not in moved}
-        moved |= set(stage.moves)
-        fills = [f for f in p.layout.fills if (f.phase or first) == stage.name]
-        spheres = [(place, s) for place, s, phase in table if phase == stage.name and not s.frozen]
+    moved, found = set[str](), {}
+    table = [(f"sphere {n} of scene.fill and scene.body", s, p.phases[0].name) for n, s in enumerate(p.scene.table, 1)]
+    table += [(f"scene.body.{b.name}", b.sphere, b.phase or "") for b in p.scene.later]
+    for phase in () if isinstance(p.scene, Preset) else p.phases:
+        gates = [w for w in p.scene.gates if w.name in phase.gates]
+        walls = {w.name: sheet(w, p.box) for w in (*p.scene.planes, *gates)}
+        walls |= {name: triangles for name, triangles in p.triangles.items() if name not in moved}
+        moved |= set(phase.moves)
+        fills = [f for f in p.insertions if f.phase == phase.name]
+        spheres = [(place, s) for place, s, begin in table if begin == phase.name and not s.frozen]
         places, radii = np.array([s.place for _, s in spheres]), np.array([s.radius for _, s in spheres])
         for name, triangles in walls.items():
             for f in fills:
-                if crosses(f.region, triangles, OVERLAP * min(particles.radii()[0] for particles in f.parts)):
-                    found[f.place, name] = f"{f.place}.region: wall {name} runs through it; move one of them"
+                if crosses(f.region, triangles, OVERLAP * min(particles.radii()[0] for particles in f.particles)):
+                    found[f.key, name] = f"{f.key}.region: wall {name} runs through it; move one of them"
             share = depths(triangles, places, radii) / radii if spheres else np.zeros(1)
             if share.max() > OVERLAP:
                 place = spheres[int(share.argmax())][0]

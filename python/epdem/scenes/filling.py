@@ -3,14 +3,35 @@
 
 import math
 from collections.abc import Iterable
+from dataclasses import dataclass
 from itertools import groupby
 
 import numpy as np
 
+from ..case.measures import Region
+from ..case.motions import Vector3
 from ..case.scene import SceneCase
 from ..case.sizes import Particles
 from ..errors import CaseError
-from .layout import Fill
+
+
+@dataclass(frozen=True)
+class Insertion:
+    """`count` spheres of `particles` put into a region in a phase: at once, or `rate` per second every `period` [s].
+
+    key: of the number in the case. exact: `count` is the number of spheres beside those that are in the region before.
+    """
+
+    particles: list[Particles]
+    count: int
+    region: Region
+    key: str
+    phase: str
+    velocity: Vector3 = (0.0, 0.0, 0.0)
+    rate: float | None = None
+    period: float = 0.0
+    exact: bool = False
+
 
 MOST_FILLED = 0.26  # volume share that random sequential placement reaches in reasonable time
 
@@ -24,30 +45,31 @@ def drawn(case: SceneCase, parts: list[Particles]) -> list[tuple[str, float, flo
     ]
 
 
-def _volume(case: SceneCase, fill: Fill) -> float:
+def _volume(case: SceneCase, fill: Insertion) -> float:
     """Of the spheres that are there at once [m^3]: all, or those of one interval of a stream."""
-    sizes = drawn(case, fill.parts)
+    sizes = drawn(case, fill.particles)
     one = np.average([4.0 / 3.0 * math.pi * r**3 for _, r, _ in sizes], weights=[w for _, _, w in sizes])
-    return float(one) * (fill.count if fill.rate is None else min(fill.rate * fill.every, fill.count))
+    return float(one) * (fill.count if fill.rate is None else min(fill.rate * fill.period, fill.count))
 
 
-def refuse_too_many(case: SceneCase, fills: Iterable[Fill]) -> None:
+def refuse_too_many(case: SceneCase, fills: Iterable[Insertion]) -> None:
     """Raises CaseError for more spheres at once than the room takes that they are put into."""
-    for place, group in groupby(fills, key=lambda fill: fill.place):
+    for key, group in groupby(fills, key=lambda fill: fill.key):
         together = list(group)
         first, count = together[0], sum(fill.count for fill in together)
         share = sum(_volume(case, fill) for fill in together) / first.region.volume
         if share <= MOST_FILLED:
             continue
         if first.rate is not None:
-            key, at_once = place.removesuffix(".count") + ".rate", min(first.rate * first.every, first.count)
+            at_once = min(first.rate * first.period, first.count)
             raise CaseError(
-                f"{key} = {first.rate:g} Hz: the {at_once:.0f} spheres of {first.every:.3g} s would fill {share:.0%} "
-                f"of the layer that they are poured into, at most {MOST_FILLED:.0%} "
-                f"({first.rate * MOST_FILLED / share:.3g} Hz); give a lower rate, or a larger box"
+                f"{key.removesuffix('.count')}.rate = {first.rate:g} Hz: the {at_once:.0f} spheres of "
+                f"{first.period:.3g} s would fill {share:.0%} of the layer that they are poured into, "
+                f"at most {MOST_FILLED:.0%} ({first.rate * MOST_FILLED / share:.3g} Hz); give a lower rate, or a "
+                "larger box"
             )
         most = int(count * MOST_FILLED / share)
         raise CaseError(
-            f"{place} = {count}: the spheres would fill {share:.0%} of the room that they are poured into, "
+            f"{key} = {count}: the spheres would fill {share:.0%} of the room that they are poured into, "
             f"at most {MOST_FILLED:.0%} ({most} spheres); enlarge the room"
         )

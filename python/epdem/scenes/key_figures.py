@@ -23,7 +23,7 @@ def _hopper(p: ScenePlan, s: Hopper, tables: Tables) -> list[Panel]:
     """Mass below the outlet against time, and the line of Beverloo from where a fifth has come out."""
     spheres = tables["particles"]
     steps = np.sort(spheres["step"].unique())
-    below = spheres[spheres["z"] < p.layout.gates[0].place].groupby("step")["mass"].sum().reindex(steps, fill_value=0.0)
+    below = spheres[spheres["z"] < p.scene.gates[0].at].groupby("step")["mass"].sum().reindex(steps, fill_value=0.0)
     time, out = p.time_at(steps), below.to_numpy()
     rate = checks.beverloo(checks.discharge(p, s, spheres), s.outlet, s.gravity)
     total = float(spheres[spheres["step"] == steps[-1]]["mass"].sum())

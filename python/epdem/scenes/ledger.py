@@ -30,9 +30,8 @@ def work_of_walls(p: ScenePlan, rows: pd.DataFrame) -> np.ndarray:
     if p.plates:
         return np.cumsum(rows["plate_force"].to_numpy() * -plate_velocity(p, rows) * dt)
     if p.torque:
-        turn = p.layout.meshes["drum"].turn
-        assert turn is not None
-        return np.cumsum(-rows["torque"].to_numpy() * turn.rate * dt)
+        (rotation_of_drum,) = p.rotations("drum")
+        return np.cumsum(-rows["torque"].to_numpy() * rotation_of_drum.rate * dt)
     if p.powered:
         return np.cumsum(rows["wall_power"].to_numpy() * dt)
     return np.zeros(len(rows))
@@ -90,7 +89,7 @@ def ledger(p: ScenePlan, tables: dict[str, pd.DataFrame]) -> pd.DataFrame:
         table["friction"], table["springs"] = both["friction_work"].to_numpy(), both["friction_energy"].to_numpy()
     rows = tables["rows"]
     table["work"] = np.interp(steps, rows["step"], work_of_walls(p, rows))
-    table["left"] = _left(spheres, steps) if p.layout.loses else 0.0
+    table["left"] = _left(spheres, steps) if p.scene.open_boundary else 0.0
     present = spheres.groupby("step")["id"].count().reindex(steps).to_numpy()
     start = int(np.argmax(present == present.max()))
     rubbed = ["friction", "springs"] if p.rubs else []

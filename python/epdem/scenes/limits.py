@@ -3,8 +3,14 @@
 
 import math
 
+import numpy as np
+
+from ..case.motions import LinearMove, PressMove
+from ..case.parts import Parts
 from ..case.scene import SceneCase
+from ..case.walls import MeshWall
 from ..errors import CaseError
+from .meshes import FloatArray
 from .timestep import highest_speed
 
 MOST_STEPS = 2_000_000_000  # engines count steps in 32 bits
@@ -36,3 +42,62 @@ def refuse_steps(case: SceneCase, rows: int, duration: float, dt: float) -> None
             f"output.rows: {rows} rows (a multiple of output.particles), and the {duration:g} s of the run have only "
             f"{steps:.3g} steps of {dt:g} s; give fewer rows, or a longer duration"
         )
+
+
+def refuse_outside(s: Parts, triangles: dict[str, FloatArray]) -> None:
+    """Raise CaseError for spheres, regions and walls beyond the room, and for motions that take a wall out of it.
+
+    Where a wall is after a phase that may end early is not known.
+    """
+    low, high = np.array(s.room.limits[0::2]), np.array(s.room.limits[1::2])
+    places = [(f"sphere {n} of scene.fill and scene.body", x.place) for n, x in enumerate(s.table, 1)]
+    places += [(f"scene.body.{b.name}.position", b.sphere.place) for b in s.later]
+    for name, place in places:
+        if (np.array(place) < low).any() or (np.array(place) > high).any():
+            raise CaseError(f"{name}: {tuple(place)} m lies beyond scene.room; move it, or enlarge the room")
+    for f in s.random_fills:
+        limits = np.array(f.region.limits)
+        if (limits[0::2] < low).any() or (limits[1::2] > high).any():
+            raise CaseError(
+                f"scene.fill.{f.name}.region reaches beyond scene.room; make it smaller, or enlarge the room"
+            )
+    for name, corners in triangles.items():
+        if (corners < low).any() or (corners > high).any():
+            raise CaseError(f"scene.wall.{name}: reaches beyond scene.room; enlarge the room, or make the wall smaller")
+    centers = {name: corners.mean(axis=1) for name, corners in triangles.items()}
+    for phase in s.phase:
+        if phase.condition:
+            return
+        for name, move in phase.moves.items():
+            if name in centers and isinstance(move, LinearMove):
+                centers[name] = centers[name] + phase.seconds * np.array(move.velocity)
+                if (centers[name] < low).any() or (centers[name] > high).any():
+                    where = f"scene.phase.{phase.name}.move"
+                    raise CaseError(f"{where}: wall {name} leaves scene.room; shorten its way, or enlarge the room")
+            else:
+                centers.pop(name, None)
+
+
+def refuse_combinations(case: SceneCase, s: Parts) -> None:
+    """Raise CaseError for parts that exclude each other."""
+    gates = {w.name for w in s.gates}
+    for phase in s.phase:
+        if phase.until and phase.until.force is not None and phase.until.wall in gates:
+            raise CaseError(
+                f"scene.phase.{phase.name}.until.wall: {phase.until.wall} is a wall of some phases; name another one"
+            )
+    moves = [(name, move) for phase in s.phase for name, move in phase.moves.items()]
+    pressed = {name for name, move in moves if isinstance(move, PressMove)}
+    if both := {name for name, move in moves if name in pressed and not isinstance(move, PressMove)}:
+        raise CaseError(f"scene.wall.{min(both)}: a wall that a force drives has no other motion; take a second wall")
+    if case.output.restarts and any(not isinstance(move, LinearMove) for _, move in moves):
+        raise CaseError("output.restarts: only walls with linear motions go on where they were; remove it")
+    for w in s.wall:
+        if not isinstance(w, MeshWall):
+            continue
+        if (w.stress or w.wear) and not case.output.particles:
+            raise CaseError(f"scene.wall.{w.name}: stress and wear are written with the frames; give output.particles")
+        if w.wear and case.output.restarts:
+            raise CaseError(
+                f"output.restarts: a continued run does not know the wear of wall {w.name}; remove one of both"
+            )

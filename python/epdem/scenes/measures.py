@@ -31,10 +31,10 @@ def refuse_measures(p: ScenePlan) -> None:
             raise CaseError(f"{place}: a column of the rows has this name; give another one")
         if not (p.frames or isinstance(m, Load)):
             raise CaseError(f"{place}: measures are taken from frames; give output.particles")
-        if isinstance(m, Load) and m.wall not in p.layout.loads:
-            known = ", ".join(p.layout.loads) or "none; give output.loads in a scene of parts"
+        if isinstance(m, Load) and m.wall not in p.loads:
+            known = ", ".join(p.loads) or "none; give output.loads in a scene of parts"
             raise CaseError(f"{place}.wall = {m.wall!r}: walls whose forces are known: {known}")
-        if isinstance(m, Load) and m.kind == "torque" and m.wall not in p.layout.meshes:
+        if isinstance(m, Load) and m.kind == "torque" and m.wall not in p.scene.meshes:
             raise CaseError(f"{place}.wall = {m.wall!r}: a plane has no torque; name a wall of triangles")
         material = getattr(m, "material", None)
         if material is not None and material not in {t.material for t in p.model.types if not t.wall}:

@@ -2,6 +2,7 @@
 """Triangles of the scenes' walls. Arrays of shape (n, 3 corners, 3 coordinates), metres."""
 
 import math
+from collections.abc import Sequence
 
 import numpy as np
 import numpy.typing as npt
@@ -21,7 +22,7 @@ def _band(lower: FloatArray, upper: FloatArray) -> FloatArray:
     return np.concatenate([np.stack([lower, a, upper], axis=1), np.stack([a, b, upper], axis=1)])
 
 
-def _tube(profile: list[tuple[float, float]]) -> FloatArray:
+def revolved(profile: Sequence[tuple[float, float]]) -> FloatArray:
     """Surface of revolution about z through (radius, z) points, split so that no triangle is a needle."""
     bands = []
     for (r0, z0), (r1, z1) in zip(profile[:-1], profile[1:], strict=True):
@@ -33,16 +34,6 @@ def _tube(profile: list[tuple[float, float]]) -> FloatArray:
                 _band(_ring(r0 + s * (r1 - r0), z0 + s * (z1 - z0)), _ring(r0 + t * (r1 - r0), z0 + t * (z1 - z0)))
             )
     return np.concatenate(bands)
-
-
-def hopper(bin_diameter: float, bin_height: float, outlet: float, depth: float) -> FloatArray:
-    """A cone from the outlet (z = -depth) to the bin (z = 0), and the bin above it; depth 0 is a flat bottom."""
-    return _tube([(outlet / 2, -depth), (bin_diameter / 2, 0.0), (bin_diameter / 2, bin_height)])
-
-
-def drum(diameter: float, length: float) -> FloatArray:
-    """A tube about the y axis, open at its ends."""
-    return along(1, _tube([(diameter / 2, -length / 2), (diameter / 2, length / 2)]))
 
 
 def along(axis: int, points: FloatArray) -> FloatArray:
@@ -60,7 +51,7 @@ def tube(diameters: tuple[float, float], low: float, high: float, *, closed: tup
     """A round tube about z between two heights, with the diameters there; `closed`: by discs at low, at high."""
     r0, r1 = diameters[0] / 2, diameters[1] / 2
     ends = [_disc(r, z) for r, z, shut in ((r0, low, closed[0]), (r1, high, closed[1])) if shut]
-    return np.concatenate([_tube([(r0, low), (r1, high)]), *ends])
+    return np.concatenate([revolved([(r0, low), (r1, high)]), *ends])
 
 
 def rectangle(axis: int, center: npt.ArrayLike, size: tuple[float, float]) -> FloatArray:

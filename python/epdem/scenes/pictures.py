@@ -11,10 +11,10 @@ import numpy as np
 import pandas as pd
 
 from ..base.files import atomic
+from ..case.walls import Room
 from ..errors import CaseError
 from . import placement
 from .columns import PARTICLES, SPINS, last_frame, units
-from .layout import Block
 from .ledger import kinetic
 from .meshes import FloatArray, box, tube
 from .plan import Phase, ScenePlan
@@ -66,16 +66,17 @@ def _draw_walls(axis: Any, p: ScenePlan, phase: Phase, *, front: bool) -> None:
     from matplotlib.collections import PolyCollection
 
     plane, _ = _axes()
-    for mesh in p.layout.meshes.values():
-        outline = mesh.triangles @ plane.T
+    for triangles in p.triangles.values():
+        outline = triangles @ plane.T
         face, edge = (0.3, 0.4, 0.6, 0.03 if front else 0.10), (0.3, 0.4, 0.6, 0.15)
         axis.add_collection(PolyCollection([*outline], facecolor=face, edgecolor=edge, lw=0.3))
     if front:
         return
-    limits = p.layout.box
-    for w in (*p.layout.planes, *(g for g in p.layout.gates if g.name in phase.gates)):
+    limits = p.box
+    for w in (*p.scene.planes, *(g for g in p.scene.gates if g.name in phase.gates)):
         flat = [*limits]
-        flat[2 * w.axis] = flat[2 * w.axis + 1] = w.place
+        axis_number = "xyz".index(w.axis)
+        flat[2 * axis_number] = flat[2 * axis_number + 1] = w.at
         square = np.unique(_corners(flat), axis=0)
         if len(square) == 4:
             outline = square[[0, 1, 3, 2]] @ plane.T
@@ -141,11 +142,11 @@ def before(p: ScenePlan, path: Path) -> int:
     Returns the number of spheres in it: those of regions only if there are few enough to be placed at once. Raises
     CaseError for an ending that no picture has.
     """
-    fig, axis = _frame(p.case.case.title, _corners(p.layout.box))
+    fig, axis = _frame(p.case.case.title, _corners(p.box))
     if path.suffix[1:].lower() not in fig.canvas.get_supported_filetypes():
         raise CaseError(f"--out {path}: no picture has this ending; name it {path.stem}.png")
     _draw_walls(axis, p, p.phases[0], front=False)
-    for fill in p.layout.fills:
+    for fill in p.insertions:
         _draw_region(axis, fill.region)
     table = _first(p)
     if len(table):
@@ -156,8 +157,8 @@ def before(p: ScenePlan, path: Path) -> int:
 
 def _first(p: ScenePlan) -> FloatArray:
     """(n, 5) place, radius, type of the spheres that can be placed before a run, and of single ones that come later."""
-    placed = p.layout.count <= MOST_PLACED and bool(p.layout.fills)
-    alone = [b.sphere for b in p.layout.bodies] + ([] if placed else [*p.layout.table])
+    placed = p.count <= MOST_PLACED and bool(p.insertions)
+    alone = [b.sphere for b in p.scene.later] + ([] if placed else [*p.scene.table])
     rows = np.array([(*s.place, s.radius, p.model.type_of(s.material)) for s in alone], float).reshape(-1, 5)
     return np.concatenate([placement.spheres(p), rows]) if placed else rows
 
@@ -165,10 +166,10 @@ def _first(p: ScenePlan) -> FloatArray:
 def _draw_region(axis: Any, region: Any) -> None:
     from matplotlib.collections import PolyCollection
 
-    if isinstance(region, Block):
+    if isinstance(region, Room):
         faces = box(region.limits, {sign + k for sign in "-+" for k in "xyz"})
     else:
-        faces = tube((2 * region.radius,) * 2, region.low, region.high, closed=(True, True))
+        faces = tube((2 * region.radius,) * 2, *region.z, closed=(True, True))
         faces = faces + np.array([*region.center, 0.0])
     plane, _ = _axes()
     axis.add_collection(PolyCollection([*(faces @ plane.T)], facecolor=(0.9, 0.6, 0.1, 0.02), edgecolor="none"))
@@ -181,14 +182,14 @@ def window(p: ScenePlan) -> None:
     except ImportError:
         raise CaseError("--window: there is no pyvista; pip install pyvista, or leave --window out") from None
     shown = pv.Plotter()
-    for mesh in p.layout.meshes.values():
-        faces = np.column_stack([np.full(len(mesh.triangles), 3), np.arange(3 * len(mesh.triangles)).reshape(-1, 3)])
-        shown.add_mesh(pv.PolyData(mesh.triangles.reshape(-1, 3), faces), opacity=0.3, show_edges=True)
+    for triangles in p.triangles.values():
+        faces = np.column_stack([np.full(len(triangles), 3), np.arange(3 * len(triangles)).reshape(-1, 3)])
+        shown.add_mesh(pv.PolyData(triangles.reshape(-1, 3), faces), opacity=0.3, show_edges=True)
     table = _first(p)
     if len(table):
         spheres = pv.PolyData(table[:, :3])
         spheres["radius"] = table[:, 3]
         ball = pv.Sphere(radius=1.0, theta_resolution=16, phi_resolution=16)
         shown.add_mesh(spheres.glyph(geom=ball, scale="radius", orient=False), color="tan")
-    shown.add_mesh(pv.Box(p.layout.box), style="wireframe", color="gray")
+    shown.add_mesh(pv.Box(p.box), style="wireframe", color="gray")
     shown.show()

@@ -7,10 +7,11 @@ from itertools import product
 
 import numpy as np
 
+from ..case.measures import Region
 from ..case.scene import SceneCase
+from ..case.walls import Upright
 from ..errors import CaseError
-from .filling import drawn
-from .layout import Block, Cylinder, Fill
+from .filling import Insertion, drawn
 from .meshes import FloatArray
 from .model import Model
 from .plan import ScenePlan
@@ -18,22 +19,18 @@ from .plan import ScenePlan
 ATTEMPTS = 10_000  # of one sphere; at the densest filling that a scene allows some hundred are needed
 
 
-def sizes(case: SceneCase, m: Model, fill: Fill, rng: random.Random) -> list[tuple[float, int]]:
+def sizes(case: SceneCase, m: Model, fill: Insertion, rng: random.Random) -> list[tuple[float, int]]:
     """(radius [m], number of its type) of every sphere, drawn by their share of the mass, the largest first."""
-    classes = drawn(case, fill.parts)
+    classes = drawn(case, fill.particles)
     kinds = [(radius, m.type_of(material)) for material, radius, _ in classes]
     return sorted(rng.choices(kinds, [weight for *_, weight in classes], k=fill.count), reverse=True)
 
 
-def _somewhere(region: Block | Cylinder, radius: float, rng: random.Random) -> tuple[float, ...] | None:
+def _somewhere(region: Region, radius: float, rng: random.Random) -> tuple[float, ...] | None:
     """A random place of a sphere wholly in a region [m]; None if it was not met."""
-    if isinstance(region, Block):
-        low, high = region.limits[0::2], region.limits[1::2]
-    else:
-        (x, y), r = region.center, region.radius
-        low, high = (x - r, y - r, region.low), (x + r, y + r, region.high)
+    low, high = region.limits[0::2], region.limits[1::2]
     place = tuple(rng.uniform(a + radius, b - radius) for a, b in zip(low, high, strict=True))
-    if isinstance(region, Cylinder) and math.dist(place[:2], region.center) > region.radius - radius:
+    if isinstance(region, Upright) and math.dist(place[:2], region.center) > region.radius - radius:
         return None
     return place
 
@@ -62,9 +59,9 @@ def spheres(p: ScenePlan) -> FloatArray:
         )
         return all(math.dist(place, placed[k][:3]) > radius + placed[k][3] for k in near)
 
-    for s in p.layout.table:
+    for s in p.scene.table:
         put(s.place, s.radius, p.model.type_of(s.material))
-    for fill in (f for f in p.layout.fills if f.phase in ("", p.phases[0].name)):
+    for fill in (f for f in p.insertions if f.phase == p.phases[0].name):
         for radius, kind in sizes(p.case, p.model, fill, rng):
             for _ in range(ATTEMPTS):
                 place = _somewhere(fill.region, radius, rng)
@@ -73,7 +70,7 @@ def spheres(p: ScenePlan) -> FloatArray:
                     break
             else:
                 raise CaseError(
-                    f"{fill.place} = {fill.count}: no room is left for sphere {len(placed) + 1} without overlap "
+                    f"{fill.key} = {fill.count}: no room is left for sphere {len(placed) + 1} without overlap "
                     f"after {ATTEMPTS} attempts; enlarge the box"
                 )
     return np.array(placed)

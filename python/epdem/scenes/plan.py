@@ -8,15 +8,20 @@ from dataclasses import dataclass, replace
 import numpy as np
 import pandas as pd
 
+from ..case import motions
 from ..case.kinds import Compaction, Drum
+from ..case.measures import Load
+from ..case.motions import LinearMove, Move, RotateMove
 from ..case.parts import Parts
 from ..case.scene import Output, SceneCase
-from . import kinds
-from .filling import refuse_too_many
-from .layout import Layout, Linear, Move, Turn, Until
-from .limits import refuse_faster_than_sound, refuse_steps
+from ..case.walls import Limits
+from . import walls
+from .filling import Insertion, refuse_too_many
+from .limits import refuse_combinations, refuse_faster_than_sound, refuse_outside, refuse_steps
+from .meshes import FloatArray
 from .model import Model, model
-from .shares import refuse_missing
+from .presets import Preset, parts
+from .shares import insertions, refuse_missing
 from .timestep import time_step
 
 SAMPLES = 50  # of a force, at least, in the mean that a row holds
@@ -24,35 +29,48 @@ SAMPLES = 50  # of a force, at least, in the mean that a row holds
 
 @dataclass(frozen=True)
 class Phase:
-    """A part of the run up to step `end`, or less if `until` holds; what moves in it, which gates are there; record:
-    whether it has frames."""
+    """A phase of the case. end: its last step, or an earlier one if its condition is met.
 
-    name: str
+    gates: walls that are present in some phases, this one among them.
+    """
+
+    case: motions.Phase
     end: int
-    moves: dict[str, Move]
     gates: tuple[str, ...] = ()
-    until: Until | None = None
-    time_step: float | None = None
-    record: bool = True
+
+    @property
+    def name(self) -> str:
+        """The name of the phase."""
+        return self.case.name
+
+    @property
+    def moves(self) -> dict[str, Move]:
+        """The motion of each wall that moves."""
+        return self.case.moves
 
     @property
     def plate(self) -> float:
         """Velocity of the plate along z [m/s]."""
         move = self.moves.get("plate")
-        return move.velocity[2] if isinstance(move, Linear) else 0.0
+        return move.velocity[2] if isinstance(move, LinearMove) else 0.0
 
 
 @dataclass(frozen=True)
 class ScenePlan:
     """What an engine runs, and what its tables are made from.
 
+    scene: the parts, of which a scene of each kind consists. triangles: of each wall that is not a plane, at the start,
+    shape (n, 3 corners, 3 coordinates) [m]. loads: walls whose force, and if they are meshes torque, is in the rows.
     every: steps of a row, and so of the mean forces in it, which are sampled every `sampling` steps; frames, contacts,
     vtk, pictures, restarts: steps between two of them, 0: none.
     """
 
     case: SceneCase
+    scene: Parts
     model: Model
-    layout: Layout
+    triangles: dict[str, FloatArray]
+    insertions: tuple[Insertion, ...]
+    loads: tuple[str, ...]
     time_step: float
     phases: tuple[Phase, ...]
     every: int
@@ -71,7 +89,7 @@ class ScenePlan:
     @property
     def ends_early(self) -> bool:
         """Whether a phase may end before its duration, so that the steps of a run are known only after it."""
-        return any(phase.until for phase in self.phases)
+        return any(phase.case.condition for phase in self.phases)
 
     def ended(self, ends: Mapping[str, int]) -> "ScenePlan":
         """The plan of a run whose phases ended at these steps; those behind a phase that ended early move with it."""
@@ -85,7 +103,7 @@ class ScenePlan:
     def frame_steps(self, every: int) -> list[int]:
         """The steps of the frames that are written each so many steps: those of phases that are recorded."""
         begins = [0, *(phase.end for phase in self.phases)]
-        recorded = [(begin, phase.end) for begin, phase in zip(begins, self.phases, strict=False) if phase.record]
+        recorded = [(begin, phase.end) for begin, phase in zip(begins, self.phases, strict=False) if phase.case.record]
         return [n for n in range(0, self.steps + 1, every) if any(low <= n <= high for low, high in recorded)]
 
     @property
@@ -100,10 +118,10 @@ class ScenePlan:
 
     def time_at(self, steps: np.ndarray) -> np.ndarray:
         """Times [s] of steps."""
-        if not any(phase.time_step for phase in self.phases):
+        if not any(phase.case.time_step for phase in self.phases):
             return np.asarray(steps * self.time_step)
         ends = np.array([0, *(phase.end for phase in self.phases)])
-        lengths = np.diff(ends) * [phase.time_step or self.time_step for phase in self.phases]
+        lengths = np.diff(ends) * [phase.case.time_step or self.time_step for phase in self.phases]
         return np.asarray(np.interp(steps, ends, np.concatenate([[0.0], np.cumsum(lengths)])))
 
     @property
@@ -129,9 +147,17 @@ class ScenePlan:
     @property
     def wall_types(self) -> dict[str, int]:
         """The number of the type of each wall."""
-        walls = {w.name: w.material for w in (*self.layout.planes, *self.layout.gates)}
-        walls |= {name: mesh.material for name, mesh in self.layout.meshes.items()}
-        return {name: self.model.wall_types[material] for name, material in walls.items()}
+        return {w.name: self.model.wall_types[w.material] for w in self.scene.wall}
+
+    @property
+    def box(self) -> Limits:
+        """xlo xhi ylo yhi zlo zhi of the simulated room [m]."""
+        return self.scene.room.limits
+
+    @property
+    def count(self) -> int:
+        """All spheres that the room gets."""
+        return sum(i.count for i in self.insertions) + len(self.scene.table) + len(self.scene.later)
 
     @property
     def plates(self) -> bool:
@@ -141,8 +167,8 @@ class ScenePlan:
     @property
     def floor_load(self) -> bool:
         """Whether the mean force on the floor is in the rows."""
-        floor = any(p.name == "floor" for p in self.layout.planes)
-        return floor and self.output.loads and not self.layout.loads
+        floor = any(w.name == "floor" for w in self.scene.planes)
+        return floor and self.output.loads and not self.loads
 
     @property
     def torque(self) -> bool:
@@ -152,7 +178,8 @@ class ScenePlan:
     @property
     def powered(self) -> bool:
         """Whether the mean power of moving walls is in the rows: of walls whose work no other column tells."""
-        moving = any(m.turn for m in self.layout.meshes.values()) or any(phase.moves for phase in self.phases)
+        meshes = self.scene.meshes
+        moving = any(map(walls.surface_rotation, meshes.values())) or any(phase.moves for phase in self.phases)
         return moving and self.output.energy and not (self.plates or self.torque)
 
     @property
@@ -170,18 +197,17 @@ class ScenePlan:
         """Whether the work of friction of each sphere is in the frames."""
         return self.output.energy and self.model.nodes > 0
 
-    def turns(self, wall: str) -> list[Turn]:
-        """The turns of a wall of triangles: of its surface, and in each phase."""
-        moves = [self.layout.meshes[wall].turn, *(phase.moves.get(wall) for phase in self.phases)]
-        return [move for move in moves if isinstance(move, Turn)]
+    def rotations(self, wall: str) -> list[RotateMove]:
+        """The rotations of a wall of triangles: of its surface, and in each phase."""
+        moves = (phase.moves.get(wall) for phase in self.phases)
+        all_moves = [walls.surface_rotation(self.scene.meshes[wall]), *moves]
+        return [move for move in all_moves if isinstance(move, RotateMove)]
 
     @property
     def summary(self) -> str:
         """One line for the head of a deck."""
         s = self.case.scene
-        return (
-            f"{s.kind}: {self.layout.count} spheres, law {self.model.law}, {self.steps} steps of {self.time_step:g} s"
-        )
+        return f"{s.kind}: {self.count} spheres, law {self.model.law}, {self.steps} steps of {self.time_step:g} s"
 
 
 def _intervals(output: Output, steps: float) -> tuple[int, int]:
@@ -193,11 +219,11 @@ def _intervals(output: Output, steps: float) -> tuple[int, int]:
     return rows, tens * math.ceil(every / tens)
 
 
-def _phases(layout: Layout, rows: int, every: int, dt: float) -> tuple[Phase, ...]:
+def _phases(scene: Parts, rows: int, every: int, dt: float) -> tuple[Phase, ...]:
     phases, end = [], 0
-    for stage in layout.stages:
-        end += every * max(1, round(stage.seconds / (stage.time_step or dt) / every))
-        phases.append(Phase(stage.name, end, stage.moves, stage.gates, stage.until, stage.time_step, stage.record))
+    for phase in scene.phase:
+        end += every * max(1, round(phase.seconds / (phase.time_step or dt) / every))
+        phases.append(Phase(phase, end, tuple(w.name for w in scene.gates if phase.name in w.phases)))
     last = phases.pop()
     end = max(rows * every, last.end) if phases else rows * every
     return (*phases, replace(last, end=end))
@@ -208,35 +234,55 @@ def _divisor(n: int, parts: int) -> int:
     return next(d for d in range(max(1, n // parts), 0, -1) if n % d == 0)
 
 
-def _may_shrink(case: SceneCase, layout: Layout) -> bool:
+def _may_shrink(case: SceneCase, scene: Parts) -> bool:
     """Whether the step becomes a little smaller, so that the last phase is not longer than a motion in it should be."""
-    given = case.numerics.time_step or any(stage.time_step for stage in layout.stages)
-    return isinstance(case.scene, Parts) and bool(layout.stages[-1].moves) and not given
+    given = case.numerics.time_step or any(phase.time_step for phase in scene.phase)
+    return not isinstance(scene, Preset) and bool(scene.phase[-1].move) and not given
+
+
+def _loads(case: SceneCase, scene: Parts) -> tuple[str, ...]:
+    """The walls whose forces a scene of parts requests: for its output, for a condition, for a measure."""
+    if isinstance(scene, Preset):
+        return ()
+    gates = {w.name for w in scene.gates}
+    loads = {w.name for w in scene.wall} - gates if case.output.loads else set()
+    loads |= {p.condition.wall for p in scene.phase if p.condition and p.condition.wall}
+    loads |= {m.wall for m in scene.measure if isinstance(m, Load)}
+    return tuple(w.name for w in scene.wall if w.name in loads)
 
 
 def plan(case: SceneCase) -> ScenePlan:
     """The plan of a scene. Raises CaseError for what does not fit."""
     refuse_faster_than_sound(case)
-    contact_model, dt, layout, out = model(case), time_step(case), kinds.layout(case), case.output
-    refuse_too_many(case, layout.fills)
-    refuse_missing(case, layout)
-    steps = layout.duration / dt
-    if any(stage.time_step for stage in layout.stages):
-        steps = sum(stage.seconds / (stage.time_step or dt) for stage in layout.stages)
+    contact_model, dt, scene, out = model(case), time_step(case), parts(case.scene), case.output
+    triangles = walls.triangles(scene)
+    if not isinstance(scene, Preset):
+        refuse_outside(scene, triangles)
+        refuse_combinations(case, scene)
+    filled = insertions(case, scene)
+    refuse_too_many(case, filled)
+    refuse_missing(case, filled)
+    duration = sum(phase.seconds for phase in scene.phase)
+    steps = duration / dt
+    if any(phase.time_step for phase in scene.phase):
+        steps = sum(phase.seconds / (phase.time_step or dt) for phase in scene.phase)
     rows, every = _intervals(out, steps)
-    if _may_shrink(case, layout):
-        dt = layout.duration / (rows * every)
-    refuse_steps(case, rows, layout.duration, layout.duration / steps)
+    if _may_shrink(case, scene):
+        dt = duration / (rows * every)
+    refuse_steps(case, rows, duration, duration / steps)
 
     def interval(count: int) -> int:
         return 0 if count == 0 else every * max(1, rows // count)
 
     return ScenePlan(
         case=case,
+        scene=scene,
         model=contact_model,
-        layout=layout,
+        triangles=triangles,
+        insertions=filled,
+        loads=_loads(case, scene),
         time_step=dt,
-        phases=_phases(layout, rows, every, dt),
+        phases=_phases(scene, rows, every, dt),
         every=every,
         sampling=_divisor(every, SAMPLES),
         frames=interval(out.particles),

@@ -2,17 +2,17 @@
 """Number of spheres of each size of a fill, beside the requested number."""
 
 import math
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
+from dataclasses import replace
 from itertools import groupby
 from typing import NamedTuple
 
-from ..case.parts import Fill as CaseFill
-from ..case.parts import Parts
+from ..case.parts import Fill, Parts
 from ..case.scene import SceneCase
 from ..case.sizes import Particles
 from ..errors import CaseError
-from .filling import drawn
-from .layout import Fill, Layout
+from .filling import Insertion, drawn
+from .presets import DrawnFill
 
 PARTICLES = {"scene.count": "scene.particles", "scene.bed_count": "scene.bed"}  # by the key of the number
 LARGEST_ERROR = 0.01  # of the mass of a component, as a share of the mass of its fill
@@ -55,8 +55,8 @@ def _classes(case: SceneCase, particles: list[Particles]) -> list[tuple[int, str
     ]
 
 
-def counted(case: SceneCase, f: CaseFill, volume: float) -> list[Size]:
-    """The sizes of a fill of a region of `volume` [m^3] by count, mass or fraction, in whole numbers."""
+def counted(case: SceneCase, f: Fill) -> list[Size]:
+    """The sizes of a fill by count, mass or fraction, in whole numbers."""
     classes = _classes(case, f.particles)
     if f.count is not None:
         total = f.count / sum(share / mass for *_, mass, share in classes)
@@ -64,36 +64,76 @@ def counted(case: SceneCase, f: CaseFill, volume: float) -> list[Size]:
         total = f.mass
     else:
         assert f.fraction is not None
-        total = f.fraction * volume / sum(share / case.materials[m].density for _, m, *_, share in classes)
+        total = f.fraction * f.region.volume / sum(share / case.materials[m].density for _, m, *_, share in classes)
     requested = [total * share / mass for *_, mass, share in classes]
     return [Size(*c[:4], x, n) for c, x, n in zip(classes, requested, _wholes(requested), strict=True)]
 
 
-def _random(case: SceneCase, fill: Fill) -> list[Size]:
+def _random(case: SceneCase, fill: Insertion) -> list[Size]:
     """The sizes of a fill whose spheres are drawn at random, with the mean number of each."""
-    weights = [weight for *_, weight in drawn(case, fill.parts)]
-    classes = _classes(case, fill.parts)
+    weights = [weight for *_, weight in drawn(case, fill.particles)]
+    classes = _classes(case, fill.particles)
     return [Size(*c[:4], fill.count * w / sum(weights)) for c, w in zip(classes, weights, strict=True)]
 
 
-def _fills(case: SceneCase, layout: Layout) -> Iterator[tuple[str, list[Size]]]:
+def _insertion(case: SceneCase, scene: Parts, f: Fill, key: str, count: int) -> Insertion:
+    """The spheres of a fill, drawn at random from all its sizes."""
+    vx, vy, vz = f.velocity
+    phase = next(p for p in scene.phase if f.phase in (None, p.name))
+    if f.rate is None:
+        return Insertion(f.particles, count, f.region, key, phase.name, (vx, vy, vz))
+    down, depth = -vz, f.region.z[1] - f.region.z[0]
+    if not (down > 0 or scene.gravity):
+        raise CaseError(f"{key}.rate: nothing falls out of the region; give gravity, or a velocity along -z")
+    period = 2 * depth / (down + math.sqrt(down**2 + 2 * scene.gravity * depth))
+    if count / f.rate > phase.duration:
+        raise CaseError(f"{key}.rate = {f.rate:g} Hz: {count} spheres take longer than phase {phase.name}; pour faster")
+    return Insertion(f.particles, count, f.region, key, phase.name, (vx, vy, vz), f.rate, period)
+
+
+def insertions(case: SceneCase, scene: Parts) -> tuple[Insertion, ...]:
+    """The insertions of a scene's fills: one for each size of a fill at once, the largest first; one of a stream.
+
+    Raises CaseError for a fill without a sphere, and for a stream that does not flow or takes too long.
+    """
+    found: list[Insertion] = []
+    for f in scene.random_fills:
+        if isinstance(f, DrawnFill):
+            found.append(_insertion(case, scene, f, f.key, f.count or 0))
+            continue
+        key = f"scene.fill.{f.name}"
+        sizes = sorted((size for size in counted(case, f) if size.placed), key=lambda size: -size.radius)
+        if not sizes:
+            raise CaseError(f"{key}: not one sphere; give more, or smaller ones")
+        all_sizes = _insertion(case, scene, f, key, sum(size.placed or 0 for size in sizes))
+        if f.rate is not None:
+            found.append(all_sizes)
+            continue
+        found += [
+            replace(all_sizes, particles=[Particles.of(x.material, x.radius)], count=x.placed or 0, exact=True)
+            for x in sizes
+        ]
+    return tuple(found)
+
+
+def _fills(case: SceneCase, fills: Iterable[Insertion]) -> Iterator[tuple[str, list[Size]]]:
     """(key of the particles, their sizes) of each fill."""
     of_case = {f"scene.fill.{f.name}": f for f in case.scene.random_fills} if isinstance(case.scene, Parts) else {}
-    for place, group in groupby(layout.fills, key=lambda fill: fill.place):
+    for key, group in groupby(fills, key=lambda fill: fill.key):
         first = next(group)
         if first.exact:
-            yield f"{place}.particles", counted(case, of_case[place], first.region.volume)
+            yield f"{key}.particles", counted(case, of_case[key])
         else:
-            yield PARTICLES.get(place, f"{place}.particles"), _random(case, first)
+            yield PARTICLES.get(key, f"{key}.particles"), _random(case, first)
 
 
 def _by_component(sizes: list[Size]) -> Iterator[tuple[int, list[Size]]]:
     return ((n, list(group)) for n, group in groupby(sizes, key=lambda size: size.component))
 
 
-def refuse_missing(case: SceneCase, layout: Layout) -> None:
+def refuse_missing(case: SceneCase, fills: Iterable[Insertion]) -> None:
     """Raise CaseError for a component without a sphere."""
-    for place, sizes in _fills(case, layout):
+    for place, sizes in _fills(case, fills):
         for n, own in _by_component(sizes):
             if all(size.missing for size in own):
                 total = sum(size.requested for size in own)
@@ -103,10 +143,10 @@ def refuse_missing(case: SceneCase, layout: Layout) -> None:
                 )
 
 
-def warnings(case: SceneCase, layout: Layout) -> list[str]:
+def warnings(case: SceneCase, fills: Iterable[Insertion]) -> list[str]:
     """A sentence for each size without spheres, and for each component whose mass differs from the requested one."""
     found = []
-    for place, sizes in _fills(case, layout):
+    for place, sizes in _fills(case, fills):
         whole = sum(size.mass * size.requested for size in sizes)
         for n, own in _by_component(sizes):
             found += [

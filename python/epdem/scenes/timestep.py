@@ -6,8 +6,6 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from ..case.kinds import Compaction, Drum, Hopper, Kinds, Peening, Settle
-from ..case.parts import Parts
 from ..case.scene import SceneCase
 from ..errors import CaseError
 from ..impacts.experiment import Experiment
@@ -16,6 +14,7 @@ from ..impacts.timestep import search, stability_limit
 from ..theory.timestep import DENSE_PACKING, sticking_packing
 from .model import model
 from .pairs import sphere_impact, wall_impact
+from .presets import parts
 
 MARGIN = 0.8  # of the stable step of a bed: contacts there are a little stiffer than in the impact that stands for them
 
@@ -32,23 +31,6 @@ def bed_share(x: Experiment, *, sticking: bool) -> float:
     return MARGIN * stable
 
 
-def _fall_and_drive(s: Kinds) -> tuple[float, float]:
-    """(height of the highest free fall [m], speed that stream, plate or drum add to it [m/s])."""
-    match s:
-        case Settle():
-            return s.box[2], 0.0
-        case Hopper():
-            return s.bin_height + s.cone_depth + s.outlet_height, 0.0
-        case Drum():
-            return s.diameter, s.angular_velocity * s.diameter / 2
-        case Compaction():
-            return s.box[2], 2.0 * s.speed
-        case Peening():
-            return 0.0, s.speed
-        case Parts():
-            return s.room.z[1] - s.room.z[0], s.drive
-
-
 def highest_speed(case: SceneCase) -> float:
     """The highest possible speed [m/s]: free fall, the stream, the moving wall; or numerics.highest_speed.
 
@@ -56,8 +38,8 @@ def highest_speed(case: SceneCase) -> float:
     """
     if case.numerics.highest_speed is not None:
         return case.numerics.highest_speed
-    fall, drive = _fall_and_drive(case.scene)
-    v = math.sqrt(2.0 * case.scene.gravity * fall) + drive
+    scene = parts(case.scene)
+    v = math.sqrt(2.0 * scene.gravity * scene.fall_height) + scene.drive
     if v == 0.0:
         raise CaseError(
             "scene.gravity = 0: nothing moves the spheres, so no time step follows; "

@@ -6,9 +6,9 @@ from itertools import combinations_with_replacement
 
 from ..base import rendering as decks
 from ..case.parts import Parts
+from ..case.walls import Limits
 from ..errors import CaseError
 from ..scenes import placement
-from ..scenes.layout import Block, Plane
 from ..scenes.plan import ScenePlan
 from .deck import Material, refuse_parameters, strength_values
 from .deck_modules import cone
@@ -109,7 +109,7 @@ def refuse(p: ScenePlan) -> None:
         refuse_parts(p, s)
     refuse_parameters(m.law, m.ratios())
     unknown: dict[str, tuple[object, str]] = {
-        "scene.rate": (next((f.rate for f in p.layout.fills if f.rate), None), "all spheres are there from the start"),
+        "scene.rate": (next((f.rate for f in p.insertions if f.rate), None), "all spheres are there from the start"),
         "viscous.restitution": (p.case.viscous and p.case.viscous.restitution, "YADE's law has no dashpot"),
         "contact.tangential": (m.nodes and m.tangential, "YADE's law has one spring"),
         "contact.rolling": (m.rolling and m.rolling.model, "YADE's law has no rolling resistance"),
@@ -127,7 +127,7 @@ def notes(p: ScenePlan) -> list[str]:
     """The parts of a case that a YADE scene leaves out, in words."""
     found = [NO_DASHPOT] if p.model.tangential_restitution is not None else []
     found += [NO_RANKS] if p.case.numerics.processors else []
-    return [*found, EDGES] if _parts(p) and p.layout.meshes else found
+    return [*found, EDGES] if _parts(p) and p.scene.meshes else found
 
 
 def _parts(p: ScenePlan) -> bool:
@@ -160,25 +160,25 @@ def _pairs(friction: Square) -> tuple[tuple[int, int, float], ...]:
 
 
 def _walls(p: ScenePlan) -> tuple[Wall, ...]:
-    xlo, xhi, ylo, yhi, *_ = p.layout.box
+    xlo, xhi, ylo, yhi, *_ = p.box
     lx, ly = xhi - xlo, yhi - ylo
-    planes = [*p.layout.planes]
+    planes = [(w.name, "xyz".index(w.axis), w.at) for w in p.scene.planes]
     if not _parts(p):
-        planes += [Plane(name, 2, float(mesh.triangles[0, 0, 2])) for name, mesh in p.layout.meshes.items()]
+        planes += [(name, 2, float(triangles[0, 0, 2])) for name, triangles in p.triangles.items()]
 
     def corners(z: float) -> tuple[tuple[str, ...], ...]:
-        places = ((-lx, -ly, z), (5 * lx, -ly, z), (-lx, 5 * ly, z)) if p.layout.periodic else ()
+        places = ((-lx, -ly, z), (5 * lx, -ly, z), (-lx, 5 * ly, z)) if p.scene.periodic else ()
         return tuple(tuple(decks.number(x) for x in place) for place in places)
 
-    return tuple(Wall(w.name, w.axis, w.place, corners(w.place), p.wall_types[w.name] - 1) for w in planes)
+    return tuple(Wall(name, axis, at, corners(at), p.wall_types[name] - 1) for name, axis, at in planes)
 
 
 def deck(p: ScenePlan) -> Deck:
     """The YADE deck of a scene. Raises CaseError for what YADE cannot do."""
     refuse(p)
     m, friction, ends = p.model, p.model.friction, [0, *(phase.end for phase in p.phases)]
-    xlo, xhi, ylo, yhi, zlo, zhi = p.layout.box
-    sides = () if p.layout.periodic else ((xlo, xhi), (ylo, yhi))
+    xlo, xhi, ylo, yhi, zlo, zhi = p.box
+    sides = () if p.scene.periodic else ((xlo, xhi), (ylo, yhi))
     return Deck(
         title=p.case.case.title,
         source=p.case.case.source,
@@ -187,8 +187,8 @@ def deck(p: ScenePlan) -> Deck:
         ratios=m.ratios(),
         materials=_materials(p, friction),
         frictions=_pairs(friction),
-        periodic=p.layout.periodic,
-        cell=(xhi - xlo, yhi - ylo, 2.0 * _filled(p).limits[5] if p.layout.periodic else 0.0),
+        periodic=p.scene.periodic,
+        cell=(xhi - xlo, yhi - ylo, 2.0 * _filled(p)[5] if p.scene.periodic else 0.0),
         walls=_walls(p),
         low=(*(low for low, _ in sides), zlo),
         high=(*(high for _, high in sides), zhi),
@@ -200,7 +200,7 @@ def deck(p: ScenePlan) -> Deck:
                 phase.name,
                 end - begin,
                 0.0 if _parts(p) else phase.plate,
-                (phase.time_step or p.time_step) if any(x.time_step for x in p.phases) else None,
+                (phase.case.time_step or p.time_step) if any(x.case.time_step for x in p.phases) else None,
                 motions(p, phase) if _parts(p) else (),
             )
             for phase, begin, end in zip(p.phases, ends[:-1], ends[1:], strict=True)
@@ -225,11 +225,10 @@ def files(p: ScenePlan) -> dict[str, str]:
     return deck_files | (facet_files(p) if _parts(p) else {}) | deck_modules()
 
 
-def _filled(p: ScenePlan) -> Block:
-    """The room of the one filling that a YADE scene has."""
-    (fill,) = p.layout.fills
-    assert isinstance(fill.region, Block)
-    return fill.region
+def _filled(p: ScenePlan) -> Limits:
+    """The box of the one filling that a YADE scene has."""
+    (fill,) = p.insertions
+    return fill.region.limits
 
 
 def _table(p: ScenePlan) -> str:

@@ -1,15 +1,16 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """What scenes of parts have in YADE: facets, motions of walls, spheres of a table; and what they cannot have."""
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 from ..base import rendering as decks
+from ..case.motions import LinearMove, Move, PressMove, RotateMove, VibrateMove
 from ..case.parts import Parts
 from ..errors import CaseError
 from ..scenes import placement
-from ..scenes.layout import Linear, Move, Servo, Turn, Vector, Vibration
 from ..scenes.plan import Phase, ScenePlan
+from ..scenes.walls import surface_rotation
 
 EDGES = (
     "walls of triangles: YADE counts a sphere that touches an edge once for each triangle there, so that its force is "
@@ -31,11 +32,11 @@ class Motion:
     """What moves a wall in a phase: a velocity [m/s], an amplitude [m] with omega [rad/s], or a turn."""
 
     wall: str
-    velocity: Vector | None = None
-    amplitude: Vector | None = None
+    velocity: Sequence[float] | None = None
+    amplitude: Sequence[float] | None = None
     omega: float = 0.0
-    axis: Vector | None = None
-    origin: Vector | None = None
+    axis: Sequence[float] | None = None
+    origin: Sequence[float] | None = None
     rate: float = 0.0
 
 
@@ -44,7 +45,7 @@ class Load:
     """A wall whose mean force is in the rows; of facets the torque about `origin` [m], too."""
 
     name: str
-    origin: Vector | None
+    origin: Sequence[float] | None
 
 
 def refuse(p: ScenePlan, s: Parts) -> None:
@@ -53,19 +54,19 @@ def refuse(p: ScenePlan, s: Parts) -> None:
     unknown: dict[str, object] = {
         "scene.periodic": s.periodic,
         "scene.open_boundary": s.open_boundary,
-        **{f"{f.place}.rate": f.rate for f in p.layout.fills},
-        **{f"{f.place}.phase": f.phase not in ("", first) and f.phase for f in p.layout.fills},
-        **{f"scene.body.{b.name}.phase": b.phase for b in p.layout.bodies},
-        **{f"scene.wall.{w.name}.phases": True for w in p.layout.gates},
-        **{f"scene.phase.{phase.name}.until": phase.until is not None for phase in p.phases},
-        **{f"scene.phase.{phase.name}.record": not phase.record for phase in p.phases},
-        **{f"scene.wall.{name}.stress": mesh.stress for name, mesh in p.layout.meshes.items()},
-        **{f"scene.wall.{name}.wear": mesh.wear for name, mesh in p.layout.meshes.items()},
+        **{f"{f.key}.rate": f.rate for f in p.insertions},
+        **{f"{f.key}.phase": f.phase != first and f.phase for f in p.insertions},
+        **{f"scene.body.{b.name}.phase": b.phase for b in p.scene.later},
+        **{f"scene.wall.{w.name}.phases": True for w in p.scene.gates},
+        **{f"scene.phase.{phase.name}.until": phase.case.condition is not None for phase in p.phases},
+        **{f"scene.phase.{phase.name}.record": not phase.case.record for phase in p.phases},
+        **{f"scene.wall.{name}.stress": mesh.stress for name, mesh in p.scene.meshes.items()},
+        **{f"scene.wall.{name}.wear": mesh.wear for name, mesh in p.scene.meshes.items()},
     }
     for phase in p.phases:
         for name, move in phase.moves.items():
-            unknown[f"scene.phase.{phase.name}.move of {name}"] = "press" if isinstance(move, Servo) else None
-            if p.layout.meshes[name].turn is not None:
+            unknown[f"scene.phase.{phase.name}.move of {name}"] = "press" if isinstance(move, PressMove) else None
+            if surface_rotation(p.scene.meshes[name]):
                 raise CaseError(
                     f"scene.wall.{name}.angular_velocity: YADE turns the wall itself, which moves otherwise; remove one"
                 )
@@ -77,50 +78,48 @@ def refuse(p: ScenePlan, s: Parts) -> None:
 
 def facets(p: ScenePlan) -> tuple[Facets, ...]:
     """The walls of triangles."""
-    return tuple(Facets(name, f"{name}.txt", p.wall_types[name] - 1) for name in p.layout.meshes)
+    return tuple(Facets(name, f"{name}.txt", p.wall_types[name] - 1) for name in p.scene.meshes)
 
 
 def _motion(name: str, move: Move) -> Motion:
     match move:
-        case Linear():
+        case LinearMove():
             return Motion(name, velocity=move.velocity)
-        case Vibration():
+        case VibrateMove():
             return Motion(name, amplitude=move.amplitude, omega=move.omega)
-        case Turn():
-            return Motion(name, axis=move.axis, origin=move.origin, rate=move.rate)
-    raise AssertionError(move)  # a servo is refused
+        case RotateMove():
+            return Motion(name, axis=move.unit_axis, origin=move.origin, rate=move.rate)
+    raise AssertionError(move)  # a press is refused
 
 
 def motions(p: ScenePlan, phase: Phase) -> tuple[Motion, ...]:
     """What moves in a phase. A surface that turns is a wall of revolution that turns."""
-    turns = {name: mesh.turn for name, mesh in p.layout.meshes.items() if mesh.turn is not None}
-    return tuple(_motion(name, move) for name, move in (turns | phase.moves).items())
+    found = {name: rotation for name, mesh in p.scene.meshes.items() if (rotation := surface_rotation(mesh))}
+    return tuple(_motion(name, move) for name, move in (found | phase.moves).items())
 
 
 def loads(p: ScenePlan) -> tuple[Load, ...]:
     """The walls whose forces are in the rows; torques are about the axis of a wall's turn, else about 0."""
-    origins = {name: [turn.origin for turn in p.turns(name)] for name in p.layout.meshes}
-    return tuple(
-        Load(name, [*origins[name], (0.0, 0.0, 0.0)][0] if name in origins else None) for name in p.layout.loads
-    )
+    origins = {name: [rotation.origin for rotation in p.rotations(name)] for name in p.scene.meshes}
+    return tuple(Load(name, [*origins[name], (0.0, 0.0, 0.0)][0] if name in origins else None) for name in p.loads)
 
 
 def files(p: ScenePlan) -> dict[str, str]:
     """The corners of each wall's triangles by file."""
     texts = {}
-    for name, mesh in p.layout.meshes.items():
-        lines = [" ".join(map(decks.number, row)) for row in mesh.triangles.reshape(-1, 9).tolist()]
+    for name, triangles in p.triangles.items():
+        lines = [" ".join(map(decks.number, row)) for row in triangles.reshape(-1, 9).tolist()]
         texts[f"{name}.txt"] = "\n".join(["# corners of a triangle, x y z of each [m]", *lines, ""])
     return texts
 
 
 def spheres(p: ScenePlan) -> Iterator[tuple[float, ...]]:
     """x y z radius [m], type, velocity [m/s], spin [rad/s], 1 if frozen, of each sphere: the table, then the fills."""
-    fills = [f for f in p.layout.fills for _ in range(f.count)]
+    fills = [f for f in p.insertions for _ in range(f.count)]
     still = (0.0, 0.0, 0.0)
     for n, row in enumerate(placement.spheres(p).tolist()):
-        if n < len(p.layout.table):
-            s = p.layout.table[n]
+        if n < len(p.scene.table):
+            s = p.scene.table[n]
             yield (*row, *s.velocity, *s.spin, float(s.frozen))
         else:
-            yield (*row, *fills[n - len(p.layout.table)].velocity, *still, 0.0)
+            yield (*row, *fills[n - len(p.scene.table)].velocity, *still, 0.0)

@@ -51,8 +51,8 @@ def rows(p: ScenePlan, log: Path) -> pd.DataFrame:
 def particles(p: ScenePlan, folder: Path) -> pd.DataFrame:
     """Every sphere of every frame, SI. Raises EngineError for an incomplete frame."""
     table = _frames(p, folder, "particles", p.frames, [*columns.PARTICLES, *(columns.SPINS if p.model.spins else [])])
-    if p.layout.periodic:  # YADE does not put back what leaves its periodic cell
-        for axis, low, high in zip("xy", p.layout.box[0:4:2], p.layout.box[1:4:2], strict=True):
+    if p.scene.periodic:  # YADE does not put back what leaves its periodic cell
+        for axis, low, high in zip("xy", p.box[0:4:2], p.box[1:4:2], strict=True):
             table[axis] = (table[axis] - low) % (high - low) + low
     return columns.whole(p, table, folder)
 
@@ -76,15 +76,15 @@ def _contacts(p: ScenePlan, folder: Path, spheres: pd.DataFrame) -> pd.DataFrame
     """Every contact of every frame; with overlap 0 those that ended since the frame before."""
     raw = _frames(p, folder, "contacts", p.contacts, CONTACT)
     raw = raw[raw["overlap"] >= 0].reset_index(drop=True)  # what is only near is no contact yet
-    triangles = [name for name, mesh in p.layout.meshes.items() for _ in mesh.triangles]
-    of_meshes = triangles if isinstance(p.case.scene, Parts) else [*p.layout.meshes]
-    walls = np.array(["", *(w.name for w in p.layout.planes), *of_meshes])
-    last = p.layout.count + len(walls) - 2
+    triangles = [name for name, triangles in p.triangles.items() for _ in triangles]
+    of_meshes = triangles if isinstance(p.case.scene, Parts) else [*p.scene.meshes]
+    walls = np.array(["", *(w.name for w in p.scene.planes), *of_meshes])
+    last = p.count + len(walls) - 2
     bodies = raw[["i", "j"]].to_numpy(float)
     if not ((bodies >= 0) & (bodies <= last) & (bodies == np.floor(bodies))).all():
         raise EngineError(f"{folder}: the contacts name bodies beyond the {last + 1} of the scene; run the case again")
     raw = raw.astype({"step": "int64", "i": "int64", "j": "int64"})
-    beyond = raw["j"] - p.layout.count + 1
+    beyond = raw["j"] - p.count + 1
     raw["wall"] = walls[beyond.clip(lower=0)]
     raw["i"], raw["j"] = raw["i"] + 1, np.where(beyond > 0, 0, raw["j"] + 1)
     return contacts.complete(p, raw, spheres, folder)
