@@ -52,7 +52,7 @@ def test_theory_refuses_a_material_that_is_not_there():
 def test_figures_of_the_chapter_are_drawn_into_the_folder(tmp_path):
     names = [*(f"figure_8_{n}.png" for n in (16, 17, 19)), "thornton_ning_1998.png"]
     expected = [str(tmp_path / f"{name.removesuffix('.png')}.{kind}") for name in names for kind in ("png", "csv")]
-    assert run("figures", "--out", tmp_path).split() == expected
+    assert run("verify", "figures", "--out", tmp_path).split() == expected
     for name in names:
         picture = matplotlib.image.imread(tmp_path / name)[..., :3]
         colours = np.unique(picture @ np.array([1.0, 256.0, 65536.0]))
