@@ -3,8 +3,8 @@
 
     .venv/bin/python bench/lean.py [--out docs/lean.md] [--repeats 5]
 
-The full deck has friction, tangential dashpot, rolling friction, cohesion and the ledger, with coefficients so small
-that the spheres do the same in the same time steps. Both run to 95 % of the scene once; the rest is then repeated in
+The full deck has friction, tangential dashpot, rolling friction, cohesion and the energy balance, with coefficients so
+small that the spheres do the same in the same time steps. Both run to 95 % of the scene once; the rest is then repeated in
 turns from the restart files, so that what else the machine does hits both, and the shortest time counts.
 """
 
@@ -30,7 +30,7 @@ def lean(data: dict) -> dict:
 
 
 def full(data: dict) -> dict:
-    """The case with every sub-model and the ledger."""
+    """The case with every sub-model and the energy balance."""
     nothing: dict = {"friction": NOTHING}
     if "viscous" not in data:  # LIGGGHTS has one restitution for both dashpots
         nothing["tangential_restitution"] = 0.999

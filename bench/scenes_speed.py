@@ -41,8 +41,9 @@ def files(case: Path, model: str) -> dict[str, str]:
         properties = (*properties, per_pair("coefficientRestitution", d.n_types, 0.5, "-"))
     settings = tuple(s for s in d.settings if s != "computePlasticWork on")
     columns = scene_deck.contact_columns(0, 0)
-    memoryless = dict(yields=False, dents=False, rubs=False, slots=(), contact_columns=columns)
-    d = replace(d, model="hertz", properties=properties, settings=settings, wall_contact_columns=columns, **memoryless)
+    unused = dict(yields=False, writes_plastic_work=False, writes_friction_work=False, slots=())
+    columns_of = dict(contact_columns=columns, wall_contact_columns=columns)
+    d = replace(d, model="hertz", properties=properties, settings=settings, **unused, **columns_of)
     names = {"in.scene": "liggghts/scene.in.j2", "setup.in": "liggghts/scene_setup.in.j2"}
     texts = {name: rendering.render(template, deck=d) for name, template in names.items()}
     return texts | {f"{name}.stl": stl.text(name, triangles) for name, triangles in p.triangles.items()}

@@ -7,10 +7,10 @@ from pathlib import Path
 
 import pytest
 
-from epdem.case.doubts import doubts
 from epdem.case.impact import load, parse
 from epdem.case.scene import parse as parse_scene
 from epdem.case.toml import read_toml
+from epdem.case.warnings import case_warnings
 from epdem.cli import main as cli
 from epdem.errors import CaseError
 from epdem.studies.soften import soften
@@ -77,17 +77,17 @@ def test_a_value_that_is_probably_of_another_unit_is_doubted(key, value, said):
     material = SOUND | {key: value}
     if value == "208 kPa":  # plausible alone, but the yield stress is above it
         said = "yield_stress = 1e+09 Pa is 4.8e+03 of young_modulus"
-    assert any(f"materials.steel.{said}" in text for text in doubts(parse(impact(**material))))
-    assert any(f"materials.glass.{said}" in text for text in doubts(parse_scene(scene(**material))))
+    assert any(f"materials.steel.{said}" in text for text in case_warnings(parse(impact(**material))))
+    assert any(f"materials.glass.{said}" in text for text in case_warnings(parse_scene(scene(**material))))
 
 
 def test_radii_above_a_metre_are_doubted():
     data = impact(**SOUND)
     data["impact"] = STEEL["impact"] | {"body": {"radius": "10 m", "material": "steel"}}
-    assert doubts(parse(data)) == ["impact.body.radius = 10 m; is the unit right?"]
+    assert case_warnings(parse(data)) == ["impact.body.radius = 10 m; is the unit right?"]
     particles = [{"material": "glass", "radius": {"from": "0.5 m", "to": "1.5 m"}}]
     data = scene(**SOUND) | {"scene": BEADS["scene"] | {"particles": particles}}
-    assert doubts(parse_scene(data)) == ["scene.particles.0.radius = 1.5 m; is the unit right?"]
+    assert case_warnings(parse_scene(data)) == ["scene.particles.0.radius = 1.5 m; is the unit right?"]
 
 
 def test_a_friction_in_percent_is_doubted():
@@ -96,17 +96,17 @@ def test_a_friction_in_percent_is_doubted():
         f"contact.{key} = {mu}, of solids up to 5; percent?"
         for key, mu in (("friction", 30), ("pairs.0.friction", 5.1))
     ]
-    assert doubts(parse_scene(data)) == said
+    assert case_warnings(parse_scene(data)) == said
 
 
 def test_no_case_of_ours_is_doubted_and_each_library_material_is_sound():
     for path in CASES.glob("*.toml"):
         data = read_toml(path)
-        found = doubts((parse_scene if "scene" in data else parse)(data, path))
+        found = case_warnings((parse_scene if "scene" in data else parse)(data, path))
         # the ball of a Leeb device has the mass of the whole impact body
         assert [text.split(" = ")[0] for text in found] == ["materials.carbide.density"] * path.stem.startswith("leeb")
     for name in ("steel", "brass", "aluminium", "alumina", "glass"):
-        assert doubts(parse(impact(**{"from": name}))) == []
+        assert case_warnings(parse(impact(**{"from": name}))) == []
 
 
 @pytest.mark.parametrize("command", ["predict", "run", "deck"])

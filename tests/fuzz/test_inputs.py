@@ -17,8 +17,8 @@ from hypothesis import strategies as st
 from strategies import CASES, FILES, cases, damaged, numbers, quantities, toml, values, words
 
 from epdem.case import impact, scene
-from epdem.case.doubts import doubts
 from epdem.case.toml import read_toml
+from epdem.case.warnings import case_warnings
 from epdem.cli import main as cli
 from epdem.engines import scene_engine
 from epdem.errors import CaseError
@@ -40,7 +40,7 @@ def carried_out(data: dict) -> None:
     """All that a case leads to without an engine. Raises CaseError."""
     if scene.is_scene(data):
         p = plan_scene(scene.parse(data))
-        assert doubts(p.case) is not None
+        assert case_warnings(p.case) is not None
         assert all(files(scene_engine("liggghts"), p).values())
         if p.case.scene.count <= 2000:
             files(scene_engine("yade"), p)

@@ -60,7 +60,7 @@ def planned(name: str) -> ScenePlan:
 
 
 def data_of(name: str) -> dict:
-    """TOML data of a stored run: without friction, so that its ledger closes."""
+    """TOML data of a stored run: without friction, so that its energy balance closes."""
     _, case, scene, step = RUNS[name]
     data = read_toml(CASES / f"{case}.toml")
     without = {key: value for key, value in data.items() if key != "contact"}

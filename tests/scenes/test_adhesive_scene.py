@@ -83,7 +83,7 @@ def test_contacts_across_a_gap_are_in_the_table(beds):
 
 def test_the_ledger_of_a_smooth_bed_closes_within_one_percent(tmp_path):
     """Kinetic, gravity, elastic and surface, plastic energy, what adhesion took, and the plate's work."""
-    from epdem.scenes.ledger import closure, ledger
+    from epdem.scenes.energy_balance import closure, energy_balance
 
     smooth = {
         "friction = 0.5\ntangential_restitution = 0.5": "friction = 0.0",
@@ -91,7 +91,7 @@ def test_the_ledger_of_a_smooth_bed_closes_within_one_percent(tmp_path):
         "error = 1e-2": "error = 1e-3",
     }
     p, tables = outcome(tmp_path, smooth)
-    table = ledger(p, tables)
+    table = energy_balance(p, tables)
     assert closure(table) < 0.01
     scale = table[["kinetic", "plastic", "work"]].abs().max().sum()
     assert table["adhesion"].iloc[-1] > 0.02 * scale and table["plastic"].iloc[-1] > 0.01 * scale

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The ledger of bulk scenes: with frictionless contacts all terms together leave nothing over.
+"""The energy balance of bulk scenes: with frictionless contacts all terms together leave nothing over.
 
 They come by different routes: kinetic and potential energy from LIGGGHTS's particles, elastic energy from the law's
 force integrated over the stored overlaps, the work of a plate from LIGGGHTS's own mesh forces.
@@ -17,7 +17,7 @@ CASES = Path(__file__).parents[2] / "cases"
 
 
 def frictionless(name: str, folder: Path, law: str, scene: dict[str, str], frames: int = 20) -> Path:
-    """A case without [contact], with its ledger."""
+    """A case without [contact], with its energy balance."""
     text = re.sub(r"\[contact\]\n(.+\n)+", "", (CASES / f"{name}.toml").read_text())
     text = re.sub(r'(\[law\]\nname = )"\w+"', rf'\1"{law}"', text)
     text = re.sub(r"particles = \d+\n", f"particles = {frames}\n", text)
@@ -34,7 +34,7 @@ PRESS = {"box": '["0.6 mm", "0.6 mm", "1.8 mm"]', "count": "300", "height": '"0.
 
 
 def with_contacts(law: str, folder: Path) -> Path:
-    """A press with contact tables and no ledger."""
+    """A press with contact tables and no energy balance."""
     path = frictionless("compaction_powder", folder, law, PRESS, frames=50)
     path.write_text(path.read_text().replace("energy = true", "contacts = 50"))
     return path
@@ -42,7 +42,7 @@ def with_contacts(law: str, folder: Path) -> Path:
 
 def test_elastic_spheres_falling_into_a_box_keep_their_energy(tmp_path):
     outcome = run(frictionless("settle_glass", tmp_path, "hertz", SETTLE), out=tmp_path / "out")
-    table = outcome.results.ledger
+    table = outcome.results.energy_balance
     fallen = table["gravity"].iloc[0] - table["gravity"].min()
     # velocity Verlet at the step for e_n within 1e-3; a second-order error, no drift
     assert table["balance"].abs().max() < 1e-3 * fallen
@@ -52,7 +52,7 @@ def test_elastic_spheres_falling_into_a_box_keep_their_energy(tmp_path):
 
 def test_the_work_of_a_press_on_elastic_spheres_is_all_in_them(tmp_path):
     outcome = run(frictionless("compaction_powder", tmp_path, "hertz", PRESS), out=tmp_path / "out")
-    table = outcome.results.ledger
+    table = outcome.results.energy_balance
     # the work is a sum over steps of force times way, first order in the step
     assert table["balance"].abs().max() < 0.01 * table["work"].max()
     assert table["elastic"].max() > 0.2 * table["work"].max()
@@ -81,7 +81,7 @@ KINDS = {
 @pytest.mark.parametrize(("name", "law"), [*((n, "thornton") for n in KINDS), ("settle_glass", "cavity")])
 def test_kinetic_elastic_plastic_and_potential_energy_leave_nothing_over_without_friction(name, law, tmp_path):
     outcome = run(frictionless(name, tmp_path, law, KINDS[name], 40), out=tmp_path / "out")
-    table = outcome.results.ledger
+    table = outcome.results.energy_balance
     moved = table[["kinetic", "plastic"]].abs().max().sum()
     # 1 % is promised; the step for e_n within 1e-3 gives less, a missing term would give tens of percent
     assert table["balance"].abs().max() < 3e-3 * moved
@@ -94,7 +94,7 @@ def test_kinetic_elastic_plastic_and_potential_energy_leave_nothing_over_without
 def test_rubbing_contacts_have_friction_as_the_remainder_and_it_only_grows(tmp_path):
     path = frictionless("drum_beads", tmp_path, "thornton", DRUM, 20)
     path.write_text(path.read_text() + "\n[contact]\nfriction = 0.5\n")
-    table = run(path, out=tmp_path / "out").results.ledger
+    table = run(path, out=tmp_path / "out").results.energy_balance
     grown = np.diff(table["friction"])
     assert table["friction"].iloc[-1] > 0.1 * table["work"].iloc[-1]
     # tangential springs are in it: they give back a little
@@ -109,7 +109,7 @@ def test_with_partial_slip_the_work_of_friction_is_computed_and_nothing_is_left_
     path = frictionless(name, tmp_path, law, KINDS[name], 20)
     path.write_text(path.read_text() + RUBBING)
     outcome = run(path, out=tmp_path / "out")
-    table = outcome.results.ledger
+    table = outcome.results.energy_balance
     moved = table[["kinetic", "plastic", "friction"]].abs().max().sum()
     assert table["balance"].abs().max() < 0.01 * moved
     assert table["friction"].iloc[-1] > 0.1 * moved and table["springs"].max() > 1e-4 * moved

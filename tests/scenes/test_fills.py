@@ -10,8 +10,8 @@ from parts_cases import BED, GLASS, STEEL, parts
 
 from epdem.case.scene import parse
 from epdem.errors import CaseError
-from epdem.scenes.doubts import planned_doubts
 from epdem.scenes.plan import plan
+from epdem.scenes.warnings import planned_warnings
 
 DENSITY = {"glass": 2500.0, "steel": 7800.0}
 SETTLE = {"kind": "settle", "box": ["40 mm"] * 3, "count": 12, "duration": "20 ms", "walls": "steel"}
@@ -49,7 +49,7 @@ def test_a_fill_by_mass_has_the_mass_of_every_component_or_says_so(share, radii,
     got = {m: sum(n * ball(m, x.radius) for x, n in filled_in if x.material == m) for m in wanted}
     assert min(got.values()) > 0.0
     wrong = any(abs(got[m] - wanted[m]) > 0.01 * mass for m in wanted)
-    assert wrong == any("requested" in said for said in planned_doubts(p))
+    assert wrong == any("requested" in said for said in planned_warnings(p))
 
 
 @pytest.mark.parametrize("first", [0, 1])
@@ -70,7 +70,7 @@ def test_a_size_below_half_a_sphere_is_named(kind, tmp_path):
     elif kind == "settle":
         data = filled(sieve, count=12) | {"scene": SETTLE | {"particles": sieve}}
         data["output"] = {"rows": 10, "particles": 2}
-    said = planned_doubts(plan(parse(data, tmp_path / "case.toml")))
+    said = planned_warnings(plan(parse(data, tmp_path / "case.toml")))
     place = "scene.particles.0" if kind == "settle" else "scene.fill.bed.particles.0"
     assert any(s.startswith(f"{place}: 0 spheres with radius 0.0025 m") for s in said)
     assert GLASS != STEEL

@@ -21,7 +21,7 @@ from epdem.impacts.experiment import experiment
 from epdem.impacts.measurement import measure
 from epdem.impacts.plan import plan
 from epdem.impacts.prediction import predict
-from epdem.liggghts import dump, kept, own_template, scene_tables
+from epdem.liggghts import dump, own_template, scene_tables, session
 from epdem.liggghts import impacts as liggghts
 from epdem.scenes import columns, contacts, run, stl_files
 from epdem.studies import one_impact, tune
@@ -109,9 +109,9 @@ def test_frames_and_rows_of_scenes(tmp_path):
 def test_programs_that_are_not_there(tmp_path, monkeypatch):
     with says("/no/program: cannot be started"):
         processes.call(["/no/program"], tmp_path, log="out", seconds=9)
-    monkeypatch.setattr(kept.launcher, "command", lambda *words: ["/no/program"])
+    monkeypatch.setattr(session.launcher, "command", lambda *words: ["/no/program"])
     with says("/no/program: cannot be started"):
-        kept.Kept()._started(tmp_path)
+        session.Session()._started(tmp_path)
     monkeypatch.setattr(paths, "_first", lambda *candidates: None)
     with says("templates not found beside the package; install epdem again"):
         paths.templates.__wrapped__()

@@ -13,8 +13,8 @@ from epdem.errors import CaseError
 from epdem.liggghts import launcher, resume
 from epdem.liggghts import scene_tables as tables
 from epdem.liggghts.scene_deck import files as deck_of
-from epdem.scenes.doubts import planned_doubts
 from epdem.scenes.plan import plan
+from epdem.scenes.warnings import planned_warnings
 
 BOX = {"name": "box", "kind": "box", "x": ["-9 mm", "9 mm"], "y": ["-9 mm", "9 mm"], "z": ["0 mm", "40 mm"]}
 BOX |= {"material": "steel"}
@@ -72,11 +72,11 @@ def assert_the_lid_shakes_on(found) -> None:
 @pytest.mark.parametrize("kind", ["vibrate", "rotate", "linear", "press"])
 def test_energy_closes_with_the_work_of_walls_that_move(kind, tmp_path):
     outcome = run(write_case(moved(kind), tmp_path), out=tmp_path / "out")
-    ledger = outcome.results.ledger
+    balance = outcome.results.energy_balance
     assert outcome.passed, outcome.results.checks
     if kind == "vibrate":
         assert_the_lid_shakes_on(outcome.results)
-    assert abs(ledger["work"]).max() > 0.1 * ledger["kinetic"].max() > 0  # so that it counts
+    assert abs(balance["work"]).max() > 0.1 * balance["kinetic"].max() > 0  # so that it counts
 
 
 @pytest.mark.liggghts
@@ -102,9 +102,9 @@ def test_a_wall_that_moves_last_goes_no_farther_than_it_should_and_other_lengths
     p = plan(parse(data | {"numerics": {"error": 0.02}}))
     lengths = [float(table.eval("end_time - begin_time").iloc[-1]) for table in (given.phase_table, p.phase_table)]
     assert lengths[0] > 0.021 and lengths[1] == pytest.approx(0.02, rel=0.02)
-    (said,) = planned_doubts(given)
+    (said,) = planned_warnings(given)
     assert said.startswith(f"scene.phase.lift takes {lengths[0]:.4g} s, not 0.02 s")
-    assert not planned_doubts(p)
+    assert not planned_warnings(p)
 
 
 @pytest.mark.liggghts

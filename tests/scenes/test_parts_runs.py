@@ -48,12 +48,12 @@ def test_the_energy_of_a_scene_with_an_stl_wall_and_an_impactor_closes(tmp_path)
     for phase, duration in zip(data["scene"]["phase"], ("40 ms", "30 ms"), strict=True):
         phase["duration"] = duration
     outcome = run(write_case(data, tmp_path), out=tmp_path / "out")
-    ledger, spheres = outcome.results.ledger, outcome.results.particles
+    balance, spheres = outcome.results.energy_balance, outcome.results.particles
     assert outcome.passed, outcome.results.checks
     came = spheres[spheres["radius"] > 3e-3]
     start = outcome.plan.phases[0].end
     assert came["step"].min() >= start and (came["z"].diff().iloc[1:3] < 0).all()
-    assert ledger["step"].iloc[0] >= start and ledger["plastic"].iloc[-1] > 0.1 * ledger["kinetic"].iloc[0]
+    assert balance["step"].iloc[0] >= start and balance["plastic"].iloc[-1] > 0.1 * balance["kinetic"].iloc[0]
 
 
 def test_spheres_of_a_table_begin_where_it_says_and_frozen_ones_stay(tmp_path):

@@ -12,7 +12,7 @@ from epdem.case.scene import parse
 from epdem.engines import scene_engine
 from epdem.errors import CaseError
 from epdem.scenes import checks, key_figures, pictures
-from epdem.scenes.ledger import kinetic, rotation
+from epdem.scenes.energy_balance import kinetic, rotation
 from epdem.scenes.plan import plan
 
 

@@ -14,7 +14,7 @@ from epdem.case.scene import parse
 from epdem.engines import scene_engine
 from epdem.errors import EngineError
 from epdem.liggghts import scene_tables
-from epdem.scenes import checks, ledger
+from epdem.scenes import checks, energy_balance
 from epdem.scenes.columns import UNITS
 
 
@@ -132,25 +132,25 @@ def test_forces_on_the_backbone_are_those_of_hertz_and_of_thornton_s_line():
     assert elastic >= 3 and plastic >= 3
 
 
-def test_the_ledger_adds_up(stored):
+def test_the_energy_balance_adds_up(stored):
     p, tables = stored
-    table, spheres = ledger.ledger(p, tables), tables["particles"]
+    table, spheres = energy_balance.energy_balance(p, tables), tables["particles"]
     first = spheres[spheres["step"] == table["step"].iloc[0]]
     lift = p.case.scene.gravity * (first["mass"] * first["z"]).sum()
     assert table["gravity"].iloc[0] == pytest.approx(lift, rel=1e-12, abs=1e-300)
     assert "friction" not in table, "nothing rubs"
     # the work of plate and drum is the sum of means over a row; eight rows are few
-    assert ledger.closure(table) < 0.02
+    assert energy_balance.closure(table) < 0.02
     assert (np.diff(table["plastic"]) >= -1e-12 * table["plastic"].max()).all()
-    verdicts = checks.checks(p, tables | {"ledger": table}).set_index("check")["passed"]
-    assert verdicts["energy: all terms but none as remainder"] == (ledger.closure(table) <= 0.01)
+    verdicts = checks.checks(p, tables | {"energy_balance": table}).set_index("check")["passed"]
+    assert verdicts["energy: all terms but none as remainder"] == (energy_balance.closure(table) <= 0.01)
     if not p.scene.open_boundary:
         assert verdicts["spheres in the room at the end"]
 
 
 def test_every_column_with_a_unit_of_its_own_has_one(stored):
     p, tables = stored
-    found = {c for table in [*tables.values(), ledger.ledger(p, tables)] for c in table}
+    found = {c for table in [*tables.values(), energy_balance.energy_balance(p, tables)] for c in table}
     assert found - set(UNITS) == {"step", "particles", "id", "type", "wall", "i", "j"} | {
         f"delta_max_{w.name}" for w in p.scene.planes if f"delta_max_{w.name}" in tables["particles"]
     }

@@ -90,7 +90,7 @@ def test_elastic_beads_come_to_rest_by_a_dashpot_alone_and_the_ledger_names_the_
     text += "[viscous]\nrestitution = 0.3\n[output]\nparticles = 20\nenergy = true\n[numerics]\nerror = 0.1\n"
     (tmp_path / "case.toml").write_text(text)
     found = run(tmp_path / "case.toml", out=tmp_path / "out").results
-    table = found.ledger
+    table = found.energy_balance
     given = table.loc[0, ["kinetic", "elastic", "gravity"]].sum() - table["gravity"].iloc[-1]
     assert table["kinetic"].iloc[-1] < 1e-4 * given
     # nothing else takes energy here: what fell and is neither moving nor elastic (below 1 % in a bed at rest) is lost

@@ -72,7 +72,7 @@ def test_the_energy_of_a_frictionless_bed_in_yade_leaves_nothing_over(law, tmp_p
     path = small("settle_glass", tmp_path, FALL, "")
     path.write_text(path.read_text().replace('"thornton"', f'"{law}"'))
     outcome = run(path, engine="yade", out=tmp_path / "out")
-    table = outcome.results.ledger
+    table = outcome.results.energy_balance
     fallen = table["gravity"].iloc[0] - table["gravity"].min()
     # velocity Verlet at the step for e_n within 1e-3 leaves 1e-4; a missing term would be tens of percent
     assert table["balance"].abs().max() < 1e-3 * fallen
@@ -133,8 +133,8 @@ def test_a_press_on_rubbing_spheres_has_its_peak_force_and_a_steeper_unloading_i
     assert way(rows[rows["step"] > turn]) < 0.5 * way(rows[rows["step"] <= turn]), "plastic spheres give little back"
     found = verdicts(outcome)
     assert found["loading / unloading stiffness"] and found["work got back / put in"]
-    ledger = outcome.results.ledger
-    assert np.diff(ledger["friction"]).min() > -0.02 * ledger["friction"].max() < 0.0
+    balance = outcome.results.energy_balance
+    assert np.diff(balance["friction"]).min() > -0.02 * balance["friction"].max() < 0.0
 
 
 @pytest.mark.yade

@@ -218,7 +218,7 @@ def test_the_bulk_ledger_sees_spheres_that_come_back_too_fast(tmp_path):
     plan, tool = AssemblyPlan(scene, scene.time_step(), bulk.FRAMES), assembly_engine()
     tool.write(plan, tmp_path)
     tool.run(tmp_path)
-    table = bulk.ledger(plan, tool, tmp_path)
+    table = bulk.energy_balance(plan, tool, tmp_path)
     brought, half = table["kinetic"].iloc[0], len(table) // 2
     assert np.abs(table["total"] - table["total"].iloc[0]).max() <= bulk_checks.SWING * brought
     wrong = table["total"] + np.where(table.index >= half, 0.0201 * table["kinetic"], 0.0)

@@ -103,7 +103,7 @@ class SceneRun(_HasRun):
 
     @property
     def tables(self) -> dict[str, pd.DataFrame]:
-        """rows, particles, contacts, ledger and checks, as far as the scene requests them."""
+        """rows, particles, contacts, energy_balance and checks, as far as the scene requests them."""
         return {name: _units(table, scene_units(table)) for name, table in self.outcome.results.tables.items()}
 
     def report(self) -> Path:

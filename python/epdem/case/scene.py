@@ -95,7 +95,7 @@ class Output(Frozen):
     @model_validator(mode="after")
     def _ledger_frames(self) -> Self:
         if self.energy and self.contacts and self.contacts != self.particles:
-            raise ValueError("the energy ledger needs particles and contacts at the same steps; give the same number")
+            raise ValueError("the energy balance needs particles and contacts at the same steps; give the same number")
         return self
 
 

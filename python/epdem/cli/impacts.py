@@ -64,9 +64,9 @@ def show_run(outcome: "Outcome", full: bool, as_json: bool) -> None:
 
 def deck_impacts(case: Path, out: Path, *, engine: str, laws: list[str] | None, force: bool, as_json: bool) -> None:
     """Write the deck of a case."""
-    from ..case.doubts import doubts
     from ..case.impact import load
     from ..case.toml import named
+    from ..case.warnings import case_warnings
     from ..engines import engine as find
     from ..impacts.experiment import experiment
     from ..impacts.run import write_deck
@@ -75,7 +75,7 @@ def deck_impacts(case: Path, out: Path, *, engine: str, laws: list[str] | None, 
         raise CaseError("--law: a deck has one law; write one deck for each")
     with named(case):
         read = load(case)
-        warn(doubts(read))
+        warn(case_warnings(read))
         x = experiment(read, laws[0] if laws else None)
         files = write_deck(x, find(engine), out, force=force)
     say_files(files, as_json)
@@ -83,9 +83,9 @@ def deck_impacts(case: Path, out: Path, *, engine: str, laws: list[str] | None, 
 
 def predict(case: CasePath, law: Laws = None, as_json: AsJson = False) -> None:
     """Print the prediction of theory for a case; no engine runs."""
-    from ..case.doubts import doubts
     from ..case.impact import load
     from ..case.toml import named
+    from ..case.warnings import case_warnings
     from ..impacts.experiment import experiment
     from ..impacts.prediction import predict as predict_experiment
     from . import show
@@ -93,4 +93,4 @@ def predict(case: CasePath, law: Laws = None, as_json: AsJson = False) -> None:
     with named(case):
         read = load(case)
         experiments = [experiment(read, name) for name in laws_or_own(law)]
-    show.predictions([(x, predict_experiment(x)) for x in experiments], doubts(read), as_json, console())
+    show.predictions([(x, predict_experiment(x)) for x in experiments], case_warnings(read), as_json, console())

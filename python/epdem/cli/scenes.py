@@ -65,19 +65,19 @@ def run_scene(
 def deck_scene(case: Path, out: Path, *, engine: str, force: bool, as_json: bool) -> None:
     """Write the deck of a scene."""
     from ..base.folders import write_own
-    from ..case.doubts import doubts
     from ..case.scene import load
     from ..case.toml import named
+    from ..case.warnings import case_warnings
     from ..engines import scene_engine
-    from ..scenes.doubts import planned_doubts
     from ..scenes.engine import files as files_for
     from ..scenes.plan import plan
+    from ..scenes.warnings import planned_warnings
 
     with named(case):
         read = load(case)
-        warn(doubts(read))
+        warn(case_warnings(read))
         p = plan(read)
-        warn(planned_doubts(p))
+        warn(planned_warnings(p))
         files = files_for(scene_engine(engine), p)
     say_files(write_own(out, files, force=force), as_json)
 

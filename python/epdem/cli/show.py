@@ -25,8 +25,10 @@ def _table(title: str, frame: pd.DataFrame) -> Table:
     return shown
 
 
-def predictions(pairs: list[tuple[Experiment, Prediction]], doubts: list[str], as_json: bool, console: Console) -> None:
-    """Print predictions, one table per law, with the doubts about their case."""
+def predictions(
+    pairs: list[tuple[Experiment, Prediction]], warnings: list[str], as_json: bool, console: Console
+) -> None:
+    """Print predictions, one table per law, with the warnings about their case."""
     document = []
     for x, p in pairs:
         frame = p.table()
@@ -38,7 +40,7 @@ def predictions(pairs: list[tuple[Experiment, Prediction]], doubts: list[str], a
                     "parameters": x.law.parameters,
                     "yields": p.yields,
                     "yield_speeds": {k: plain(v) for k, v in p.yield_speeds.items()},
-                    "warnings": [*doubts, *p.caveats],
+                    "warnings": [*warnings, *p.caveats],
                     "rows": records(frame),
                 }
             )
@@ -48,7 +50,7 @@ def predictions(pairs: list[tuple[Experiment, Prediction]], doubts: list[str], a
                 never = "never: the softer body limits the pressure"
                 when = f"from {speed:.4g} m/s on" if math.isfinite(speed) else never
                 console.print(f"{material} yields beneath its surface ({FIRST_YIELD_ROUNDED:.2f} Y) {when}")
-            for warning in [*doubts, *p.caveats]:
+            for warning in [*warnings, *p.caveats]:
                 console.print(f"warning: {warning}", style="yellow")
     if as_json:
         print(json.dumps(document[0] if len(document) == 1 else document, indent=1))

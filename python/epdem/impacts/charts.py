@@ -136,13 +136,13 @@ def loops(outcome: Outcome) -> list[Chart]:
     for k, (key, table) in enumerate(found.items()):
         for i, (speed, part) in enumerate(table.groupby("speed")):
             name = key.split("/")[1] if len(outcome.plans) == 1 else ", ".join(reversed(key.split("/")))
-            top, lasting = prediction.overlap_max[i], prediction.duration[i]
+            top, observation_time = prediction.overlap_max[i], prediction.duration[i]
             force = part["force"] / prediction.force_max[i]
             thin = slice(None, None, max(1, len(part) // 40))
             once = "" if i else name
             by_overlap.append(Series(once, part["overlap"][thin] / top, force[thin], i, None, k))
             named = f"{name}, {speed:.3g} m/s" if k == 0 else once
-            by_time.append(Series(named, part["time"] / lasting, force, i, "solid" if k == 0 else "dot"))
+            by_time.append(Series(named, part["time"] / observation_time, force, i, "solid" if k == 0 else "dot"))
     speeds = ", ".join(f"{v:.3g}" for v in prediction.speed)
     force_axis = Axis(r"force $F/F_\mathrm{max}$")
     return [

@@ -33,7 +33,7 @@ class Prediction:
     yield_speeds: dict[str, float]  # from which each material yields beneath its surface [m/s], eq. 8.78; inf: never
     rebound: oblique.Rebound | None = None  # of oblique impacts
     caveats: tuple[str, ...] = ()  # where law or theory leaves its own domain, in words
-    lasting: float = np.nan  # how long bodies that stick are watched [s]; NaN: without adhesion
+    observation_time: float = np.nan  # how long bodies that stick are watched [s]; NaN: without adhesion
 
     COLUMNS = (
         "speed",
@@ -56,7 +56,7 @@ class Prediction:
     @property
     def duration(self) -> np.ndarray:
         """Times to be watched [s]: of contact, and where bodies stick a while in which they would part."""
-        return np.where(np.isfinite(self.contact_time), self.contact_time, self.lasting)
+        return np.where(np.isfinite(self.contact_time), self.contact_time, self.observation_time)
 
     def table(self) -> pd.DataFrame:
         """One row per impact, with the rebound of oblique ones."""
@@ -109,6 +109,8 @@ def _with_adhesion(x: Experiment, law: JKR) -> Prediction:
         yields=_softer(x) if impact.radius_max.max() > first else (),
         yield_speeds={},
         caveats=tuple(validity.adhesive_caveats(law, m_star=x.m_star, speed=x.speed)),
-        lasting=1.5 * float(adhesion.contact_time(law, m_star=x.m_star, speed=barely)) if barely > 0 else np.nan,
+        observation_time=1.5 * float(adhesion.contact_time(law, m_star=x.m_star, speed=barely))
+        if barely > 0
+        else np.nan,
         **columns,
     )

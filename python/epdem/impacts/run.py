@@ -16,9 +16,9 @@ import pandas as pd
 from .. import __version__
 from ..base.folders import claim, results_folder
 from ..base.stages import inputs_hash
-from ..case.doubts import doubts
 from ..case.impact import Case, parse
 from ..case.toml import named, read_toml, text_of
+from ..case.warnings import case_warnings
 from ..errors import CaseError
 from . import store
 from .comparison import compare, impacts_table
@@ -232,7 +232,7 @@ def _run(text: str, work: _Work, folder: Path, ranks: int, fresh: bool, progress
     attributes |= {f"version_{name}": version for name, version in work.versions.items()}
     results = store.Results(case_text=text, attributes=attributes)
     plans = {p.experiment.law.name: p for p in work.plans}
-    outcome = Outcome(work.case, folder, results, work.predictions, plans, warnings=doubts(work.case))
+    outcome = Outcome(work.case, folder, results, work.predictions, plans, warnings=case_warnings(work.case))
     rows = []
     for p in work.plans:
         law = p.experiment.law.name

@@ -13,15 +13,15 @@ from ..case.fields import NODES
 from ..case.kinds import KINDS
 from ..errors import CaseError, EngineError
 from ..impacts.engine import Abilities, Trajectory, check_abilities
-from ..impacts.places import approach, room, side_by_side
+from ..impacts.placement import approach, room, side_by_side
 from ..impacts.plan import Plan
 from ..laws.library import laws
 from ..theory.sources import Source
 from . import data_file, dump, executable, launcher
 from .deck import Deck
-from .kept import Kept
 from .log import loop_seconds
 from .properties import HARD, SOFT, Property, atom_types, finite, of_law, tangential
+from .session import Session
 
 PATH, END = "path.bin", "end.bin"
 
@@ -49,7 +49,7 @@ class Liggghts:
     )
 
     def __init__(self, *, stay: bool = False):
-        self.kept = Kept() if stay else None
+        self.session = Session() if stay else None
 
     def missing(self) -> str | None:
         return launcher.missing()
@@ -114,8 +114,8 @@ class Liggghts:
         path.unlink(missing_ok=True)
         (folder / END).unlink(missing_ok=True)
         allowed = 120 + 2e-6 * plan.n * plan.steps
-        if self.kept and ranks == 1:
-            wall = self.kept.run("in.impact", folder, log=launcher.LOG, seconds=allowed)
+        if self.session and ranks == 1:
+            wall = self.session.run("in.impact", folder, log=launcher.LOG, seconds=allowed)
         else:
             wall = launcher.run("in.impact", folder, ranks=ranks, log=launcher.LOG, seconds=allowed)
         result = trajectory(plan, path, {"total": wall, "stepping": loop_seconds(folder / launcher.LOG)})

@@ -47,7 +47,7 @@ class Deck:
     planes: tuple[Flat, ...]
     meshes: tuple[Surface, ...]
     loads_of: tuple[tuple[int, str, bool], ...]
-    powered: bool
+    writes_wall_power: bool
     table: tuple[Sphere, ...]
     frozen: tuple[int, ...]
     gravity: float
@@ -73,8 +73,8 @@ class Deck:
     slots: tuple[str, ...]
     contact_columns: tuple[int, ...]
     wall_contact_columns: tuple[int, ...]
-    dents: bool
-    rubs: bool
+    writes_plastic_work: bool
+    writes_friction_work: bool
     torque: bool
     row_words: tuple[str, ...]
     from_restart: str | None = None
@@ -117,7 +117,7 @@ def _settings(p: ScenePlan) -> tuple[str, ...]:
     wanted = {
         "viscous on": m.viscous is not None,
         "tangential_damping off": m.viscous is not None and m.sliding and m.tangential_restitution is None,
-        "computePlasticWork on": p.dents or p.rubs or p.jumps,
+        "computePlasticWork on": p.writes_plastic_work or p.writes_friction_work or p.writes_adhesive_work,
     }
     return tuple(setting for setting, asked in wanted.items() if asked)
 
@@ -166,7 +166,7 @@ def deck(p: ScenePlan) -> Deck:
     m, s, out = p.model, p.case.scene, p.output
     moduli = [p.case.materials[t.material].young_modulus for t in m.types]
     cut = p.case.numerics.processors
-    row_words = {"f_load": p.floor_load, "f_press_z": p.plates, "f_torque": p.torque, "f_power": p.powered}
+    row_words = {"f_load": p.floor_load, "f_press_z": p.plates, "f_torque": p.torque, "f_power": p.writes_wall_power}
     return Deck(
         title=p.case.case.title,
         source=p.case.case.source,
@@ -191,7 +191,7 @@ def deck(p: ScenePlan) -> Deck:
         planes=planes(p),
         meshes=surfaces(p),
         loads_of=tuple((n, wall_id(p, name), name in p.scene.meshes) for n, name in enumerate(p.loads, 1)),
-        powered=p.powered,
+        writes_wall_power=p.writes_wall_power,
         table=tuple(p.scene.table),
         frozen=tuple(n for n, sphere in enumerate(p.scene.table, 1) if sphere.frozen),
         gravity=s.gravity,
@@ -217,8 +217,8 @@ def deck(p: ScenePlan) -> Deck:
         slots=remembered(m),
         contact_columns=contact_columns(len(remembered(m)), memory(m)),
         wall_contact_columns=contact_columns(len(remembered(m)), memory(m, wall=True)),
-        dents=p.dents,
-        rubs=p.rubs,
+        writes_plastic_work=p.writes_plastic_work,
+        writes_friction_work=p.writes_friction_work,
         torque=p.torque,
         row_words=(*(word for word, asked in row_words.items() if asked), *load_words(p)),
     )

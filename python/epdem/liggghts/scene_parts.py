@@ -234,8 +234,8 @@ def parts(p: ScenePlan) -> tuple[Part, ...]:
             ends=(*ends, *(m.end for name, m in motions.items() if after and not _goes_on(name, phase, after))),
             record=phase.case.record,
             late=tuple(_late(p, b) for b in p.scene.later if b.phase == phase.name),
-            power=power(p, phase) if p.powered else "",
-            clocks=tuple(name for name in new if p.powered and isinstance(phase.moves[name], VibrateMove)),
+            power=power(p, phase) if p.writes_wall_power else "",
+            clocks=tuple(name for name in new if p.writes_wall_power and isinstance(phase.moves[name], VibrateMove)),
             wait=_wait(p, phase, phase.end - begin),
         )
         found.append(part)
@@ -245,7 +245,7 @@ def parts(p: ScenePlan) -> tuple[Part, ...]:
 
 def _refuse_other_step(p: ScenePlan, before: Phase | None, phase: Phase) -> None:
     """Raise CaseError for a vibration that goes on with another time step: its power is counted in steps."""
-    if before is None or not p.powered or before.case.time_step == phase.case.time_step:
+    if before is None or not p.writes_wall_power or before.case.time_step == phase.case.time_step:
         return
     for name, move in phase.moves.items():
         if isinstance(move, VibrateMove) and before.moves.get(name) == move:

@@ -26,9 +26,8 @@ SCALE = ["440154", "482576", "414487", "35608d", "2a788e", "21918c", "22a884", "
 
 
 def charts(outcome: SceneOutcome) -> list[Chart]:
-    """The key figure of the kind; scene, what the rows hold against time; energy, the ledger, and the measures of the
-    scene, if there are such."""
-    energy = [ledger(outcome)] if "ledger" in outcome.results.tables else []
+    """The key figure of the kind; scene, what the rows hold against time; energy, the energy balance; measures."""
+    energy = [energy_balance(outcome)] if "energy_balance" in outcome.results.tables else []
     return [*key(outcome.plan, outcome.results.tables), rows(outcome), *energy, *measured(outcome)]
 
 
@@ -67,9 +66,9 @@ def measured(outcome: SceneOutcome) -> list[Chart]:
     return drawn
 
 
-def ledger(outcome: SceneOutcome) -> Chart:
-    """Every term of the ledger against time."""
-    table = outcome.results.tables["ledger"]
+def energy_balance(outcome: SceneOutcome) -> Chart:
+    """Every term of the energy balance against time."""
+    table = outcome.results.tables["energy_balance"]
     time, series = table["time"].to_numpy(), []
     gravity = table["gravity"] - table["gravity"].min()
     if gravity.max() > 0:

@@ -12,7 +12,7 @@ from ..case.parts import Parts
 from ..case.scene import SceneCase
 from ..impacts.prediction import predict
 from .columns import last_frame
-from .ledger import closure, kinetic, plate_velocity, rotation
+from .energy_balance import closure, kinetic, plate_velocity, rotation
 from .pairs import wall_impact
 from .plan import ScenePlan
 
@@ -230,6 +230,6 @@ def checks(p: ScenePlan, tables: dict[str, pd.DataFrame]) -> pd.DataFrame:
             rows += _of_compaction(p, tables)
         case Parts():
             rows += _of_parts(p, tables)
-    if "ledger" in tables and not p.model.loses_energy:
-        rows.append(_row("energy: all terms but none as remainder", closure(tables["ledger"]), 0.0, 0.01))
+    if "energy_balance" in tables and not p.model.loses_energy:
+        rows.append(_row("energy: all terms but none as remainder", closure(tables["energy_balance"]), 0.0, 0.01))
     return pd.DataFrame(rows, columns=["check", "value", "expected", "error", "tolerance", "passed"])

@@ -58,7 +58,7 @@ def units(table: pd.DataFrame) -> dict[str, str]:
 
 def columns_of_rows(p: ScenePlan) -> set[str]:
     """The names of the columns that the rows of a scene have."""
-    some = {"floor_load": p.floor_load, "torque": p.torque, "wall_power": p.powered}
+    some = {"floor_load": p.floor_load, "torque": p.torque, "wall_power": p.writes_wall_power}
     some |= dict.fromkeys(("plate_force", "plate_z", "stress"), p.plates)
     loads = {f"{name}_{load}" for name in p.loads for load in LOADS}
     return {"step", "time", "particles", "kinetic_energy", *(name for name, there in some.items() if there)} | loads

@@ -176,24 +176,24 @@ class ScenePlan:
         return isinstance(self.case.scene, Drum) and (self.output.loads or self.output.energy)
 
     @property
-    def powered(self) -> bool:
+    def writes_wall_power(self) -> bool:
         """Whether the mean power of moving walls is in the rows: of walls whose work no other column tells."""
         meshes = self.scene.meshes
         moving = any(map(walls.surface_rotation, meshes.values())) or any(phase.moves for phase in self.phases)
         return moving and self.output.energy and not (self.plates or self.torque)
 
     @property
-    def dents(self) -> bool:
+    def writes_plastic_work(self) -> bool:
         """Whether the plastic work of each sphere is in the frames."""
         return self.output.energy and self.model.yields
 
     @property
-    def jumps(self) -> bool:
+    def writes_adhesive_work(self) -> bool:
         """Whether the work that adhesion took of each sphere is in the frames."""
         return self.output.energy and self.model.adheres
 
     @property
-    def rubs(self) -> bool:
+    def writes_friction_work(self) -> bool:
         """Whether the work of friction of each sphere is in the frames."""
         return self.output.energy and self.model.nodes > 0
 

@@ -25,7 +25,7 @@ FILES = "files"  # group of the files that the case names
 
 @dataclass
 class SceneResults:
-    """Tables by name (rows, particles, contacts, ledger, checks), deck texts, attributes of the file.
+    """Tables by name (rows, particles, contacts, energy_balance, checks), deck texts, attributes of the file.
 
     files: the contents of those that the case names; None: of an earlier version, which did not store them.
     """

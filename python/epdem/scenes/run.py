@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""A scene from case file to results.h5: deck, run with progress, tables, ledger, checks; and its continuation."""
+"""A scene from case file to results.h5: deck, run, tables, energy balance, checks; and its continuation."""
 
 import time
 from collections.abc import Callable
@@ -14,19 +14,19 @@ from .. import __version__
 from ..base.files import write_texts
 from ..base.folders import Results, claim, results_folder
 from ..base.stages import inputs_hash, library_hash
-from ..case.doubts import doubts
 from ..case.files import names_in
 from ..case.scene import SceneCase, load
 from ..case.toml import named, text_of
 from ..case.toml import tables as toml_tables
+from ..case.warnings import case_warnings
 from ..errors import CaseError, EngineError
 from ..impacts.prediction import predict
-from . import checks, ledger, measures, pictures, results
-from .doubts import planned_doubts
+from . import checks, energy_balance, measures, pictures, results
 from .engine import Report, Resumed, SceneEngine, check_run
 from .engine import files as files_for
 from .plan import ScenePlan, plan
 from .timestep import leading_impact
+from .warnings import planned_warnings
 
 Progress = Callable[[int, int], None]  # (step, of so many)
 
@@ -136,7 +136,7 @@ def run_case(
         p = plan(case)
         measures.refuse_measures(p)
         pictures.refuse_color(p)
-        files, notes = files_for(engine, p), [*engine.notes(p), *planned_doubts(p), *_warnings(p.case)]
+        files, notes = files_for(engine, p), [*engine.notes(p), *planned_warnings(p), *_warnings(p.case)]
     check_run(engine, ranks=ranks, resume=resume)
     beside = Path(str(place)).parent
     contents = {name: (beside / name).read_bytes() for name in sorted(names_in(toml_tables(text, place)))}
@@ -190,14 +190,14 @@ def _resumed(work: _Work, place: Results) -> SceneOutcome:
 def _finish(
     work: _Work, folder: Path, start: float, tables: dict[str, pd.DataFrame], went_on: Resumed | None = None
 ) -> SceneOutcome:
-    """Complete the tables of a run by ledger and checks, and write results.h5."""
+    """Complete the tables of a run by energy balance and checks, and write results.h5."""
     p = _as_run(work.plan, tables)
     if p.output.energy:
         if tables["particles"].empty:
             raise EngineError(
                 f"{folder}: no frame holds a sphere; all have left the room, see the engine's output there"
             )
-        tables["ledger"] = ledger.ledger(p, tables)
+        tables["energy_balance"] = energy_balance.energy_balance(p, tables)
     tables["checks"] = checks.checks(p, tables)
     if p.case.scene.measure:
         tables["rows"] = measures.with_loads(p, tables["rows"])
@@ -236,4 +236,4 @@ def _left_out(folder: Path, lost: list[int]) -> list[str]:
 
 def _warnings(case: SceneCase) -> list[str]:
     """Doubtful values, and where the scene leaves the domain of theory: impacts on the walls at its highest speed."""
-    return [*doubts(case), *predict(leading_impact(case)).caveats]
+    return [*case_warnings(case), *predict(leading_impact(case)).caveats]

@@ -69,15 +69,15 @@ def sticking_speed(law: JKR, *, m_star: Numbers) -> Numbers:
         return np.sqrt(2 * sticking_work(law) / m)
     share = _REACH / 1.5 - 1
 
-    def comes_loose(a: Numbers) -> Numbers:
+    def detaches(a: Numbers) -> Numbers:
         return law.force(a) > share * law.adhesive_load(a)
 
     low, high = np.maximum(reach, law.touch_radius), 2 * reach
     for _ in range(2000):
-        if np.all(comes_loose(high) | (reach == 0)):
+        if np.all(detaches(high) | (reach == 0)):
             break
-        high = np.where(comes_loose(high), high, 2 * high)
-    _, high = bisect(lambda a: np.logical_not(comes_loose(a)), low, high, steps=120)
+        high = np.where(detaches(high), high, 2 * high)
+    _, high = bisect(lambda a: np.logical_not(detaches(a)), low, high, steps=120)
     flows = np.sqrt(2 * np.maximum(law.work(high), 0.0) / m)
     return np.where(reach <= law.yield_radius, np.sqrt(2 * sticking_work(law) / m), flows)
 

@@ -15,7 +15,7 @@ from ..case.fields import NODES
 from ..errors import EngineError
 from ..impacts.engine import Abilities, Trajectory, check_abilities
 from ..impacts.experiment import Body, Experiment
-from ..impacts.places import approach, side_by_side
+from ..impacts.placement import approach, side_by_side
 from ..impacts.plan import Plan
 from ..theory.sources import Source
 from .deck import Deck, Group, Material, refuse_parameters, strength_values

@@ -74,12 +74,12 @@ class Deck:
     frames: int
     contacts: int
     spins: bool
-    dents: bool
+    writes_plastic_work: bool
     load: str
     parts: bool
     facets: tuple[Facets, ...]
     loads: tuple[Load, ...]
-    powered: bool
+    writes_wall_power: bool
 
     @property
     def moving(self) -> bool:
@@ -205,17 +205,17 @@ def deck(p: ScenePlan) -> Deck:
             )
             for phase, begin, end in zip(p.phases, ends[:-1], ends[1:], strict=True)
         ),
-        sampling=1 if p.plates or p.powered else p.sampling if p.output.loads else p.every,
+        sampling=1 if p.plates or p.writes_wall_power else p.sampling if p.output.loads else p.every,
         every=p.every,
         frames=p.frames,
         contacts=p.contacts,
         spins=m.spins,
-        dents=p.dents,
+        writes_plastic_work=p.writes_plastic_work,
         load="plate" if p.plates else "floor" if p.floor_load else "",
         parts=_parts(p),
         facets=facets(p) if _parts(p) else (),
         loads=loads(p),
-        powered=p.powered,
+        writes_wall_power=p.writes_wall_power,
     )
 
 

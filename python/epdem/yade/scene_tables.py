@@ -66,7 +66,7 @@ def read(p: ScenePlan, folder: Path, log: Path) -> dict[str, pd.DataFrame]:
         tables["particles"] = particles(p, folder)
     if p.contacts:
         every = _contacts(p, folder, tables["particles"])
-        if p.dents:
+        if p.writes_plastic_work:
             tables["particles"]["plastic_work"] = _plastic_work(every, tables["particles"])
         tables["contacts"] = every[every["overlap"] > 0].reset_index(drop=True)
     return tables

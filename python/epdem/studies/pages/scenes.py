@@ -32,8 +32,8 @@ def page(outcome: SceneOutcome, command: str = "") -> Page:
     engine = str(about["engine"])
     parts: list[Part] = [*shown, *bed(outcome), *pictures]
     parts.append(Rows("Checks", tables["checks"], note="Each number against what is expected of it."))
-    if "ledger" in tables:
-        parts.append(Rows("Energy ledger", tables["ledger"], UNITS, "One row for each frame."))
+    if "energy_balance" in tables:
+        parts.append(Rows("Energy balance", tables["energy_balance"], UNITS, "One row for each frame."))
     if "measures" in tables:
         parts += [Rows("Measures", tables["measures"], units(tables["measures"]))]
         parts += [Rows("Histograms", tables["histograms"])]

@@ -10,7 +10,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ...impacts.experiment import Body, Experiment
-from ...impacts.places import Group
+from ...impacts.placement import Group
 from ...impacts.plan import Plan
 from ...theory.pair import sphere_mass
 

@@ -9,7 +9,7 @@ import numpy as np
 from ...base import rendering as decks
 from ...base.processes import call
 from ...errors import EngineError
-from ...impacts.places import Group
+from ...impacts.placement import Group
 from ...yade.deck import Deck
 from ...yade.impacts import Yade
 from ...yade.launcher import command, environment, write_deck_modules

@@ -16,7 +16,7 @@ from ...base.processes import ask, call
 from ...errors import EngineError
 from ...impacts.engine import Abilities, Trajectory, check_abilities
 from ...impacts.experiment import Experiment
-from ...impacts.places import approach, room, side_by_side
+from ...impacts.placement import approach, room, side_by_side
 from ...impacts.plan import Plan
 from ...impacts.prediction import Prediction
 from ...liggghts import data_file

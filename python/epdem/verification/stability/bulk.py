@@ -27,7 +27,7 @@ def _elastic(scene: Assembly, kind: np.ndarray, contacts: ContactFrame, *, plate
     return energy
 
 
-def ledger(plan: AssemblyPlan, tool: LiggghtsAssemblies, folder: Path) -> pd.DataFrame:
+def energy_balance(plan: AssemblyPlan, tool: LiggghtsAssemblies, folder: Path) -> pd.DataFrame:
     """Energies at every frame [J]: kinetic, elastic (theory's, from overlap and memory of each contact), plastic (what
     the engine has booked), brought in by the plate; no term is the remainder. `total` is their sum.
     """

@@ -13,7 +13,7 @@ import pandas as pd
 
 from .assembly import Assembly, AssemblyPlan
 from .assembly_liggghts import LiggghtsAssemblies, assembly_engine
-from .bulk import FRAMES, ledger
+from .bulk import FRAMES, energy_balance
 from .scenes import SCENES, with_law
 
 # Of the energy brought in, what the total may move: velocity Verlet lets the energy of a contact in progress swing by
@@ -55,7 +55,7 @@ def judge_scene(scene: Assembly, tool: LiggghtsAssemblies, folder: Path, *, rank
     begin = time.perf_counter()
     tool.run(folder)
     seconds = time.perf_counter() - begin
-    table, one = ledger(plan, tool, folder), tool.frames(folder)
+    table, one = energy_balance(plan, tool, folder), tool.frames(folder)
     tool.write(replace(plan, contacts=False), folder / "ranks")
     tool.run(folder / "ranks", ranks=ranks)
     two = tool.frames(folder / "ranks")

@@ -8,8 +8,8 @@ import pytest
 from parts_cases import BED, CASES, FLOOR, GLASS, parts
 
 from epdem.case.scene import load, parse
-from epdem.scenes.doubts import planned_doubts
 from epdem.scenes.plan import plan
+from epdem.scenes.warnings import planned_warnings
 
 BALL = {"name": "ball", "material": "steel", "radius": "2 mm", "position": ["0 mm", "0 mm", "20 mm"]}
 PLATE = {"name": "plate", "kind": "plate", "axis": "z", "center": ["0 mm", "0 mm", "5 mm"], "size": ["10 mm"] * 2}
@@ -18,8 +18,8 @@ FALL, REST = {"name": "fall", "duration": "20 ms"}, {"name": "rest", "duration":
 LIFT = FALL | {"move": [{"wall": "plate", "kind": "linear", "velocity": ["0 m/s", "0 m/s", "1 m/s"]}]}
 
 
-def doubts(data: dict) -> list[str]:
-    return planned_doubts(plan(parse(data)))
+def warnings_of(data: dict) -> list[str]:
+    return planned_warnings(plan(parse(data)))
 
 
 def place(*mm: float) -> list[str]:
@@ -31,7 +31,7 @@ def place(*mm: float) -> list[str]:
 )
 def test_scenes_of_the_project_leave_no_doubt(path: Path):
     if "[scene]" in path.read_text(encoding="utf-8"):
-        assert planned_doubts(plan(load(path))) == []
+        assert planned_warnings(plan(load(path))) == []
 
 
 @pytest.mark.parametrize(("distance", "frozen", "said"), [(2.96, False, 0), (2.9, False, 1), (2.9, True, 0)])
@@ -39,14 +39,14 @@ def test_spheres_that_lie_in_each_other_at_the_start_are_named(distance, frozen,
     """Radii of 1 and 2 mm: an overlap of 4 or 10 % of the smaller one."""
     one = BALL | {"name": "one", "radius": "1 mm", "position": place(0, 0, 10), "frozen": frozen}
     two = BALL | {"name": "two", "position": place(0, 0, 10 + distance), "frozen": frozen}
-    found = doubts(parts(body=[one, two]))
+    found = warnings_of(parts(body=[one, two]))
     assert len(found) == said
     assert all("1 pairs of spheres overlap at the start" in x and "spheres 1 and 2" in x for x in found)
 
 
 @pytest.mark.parametrize(("at", "said"), [("0 mm", 0), ("0.05 mm", 0), ("5 mm", 1)])
 def test_a_region_with_a_plane_in_it_is_named(at, said):
-    found = doubts(parts(wall=[FLOOR | {"at": at}]))
+    found = warnings_of(parts(wall=[FLOOR | {"at": at}]))
     assert found == ["scene.fill.bed.region: wall floor runs through it; move one of them"] * said
 
 
@@ -55,7 +55,7 @@ def test_a_round_region_with_a_round_wall_in_it_is_named(diameter, said):
     """Spheres of 1.5 mm: less than 0.075 mm beyond a wall of 7 mm goes without a word."""
     region = {"diameter": diameter, "center": ["0 mm"] * 2, "z": ["0 mm", "38 mm"]}
     wall = TUBE | {"diameter": "14 mm", "ends": ["from"], "material": "steel"}
-    found = doubts(parts(wall=[wall], fill=[BED | {"region": region}]))
+    found = warnings_of(parts(wall=[wall], fill=[BED | {"region": region}]))
     assert ["wall tube runs through it" in x for x in found] == [True] * said
 
 
@@ -72,7 +72,7 @@ def test_a_round_region_with_a_round_wall_in_it_is_named(diameter, said):
 )
 def test_a_sphere_in_a_wall_is_named(ball, share):
     walls = [FLOOR, PLATE | {"material": "steel"}]
-    found = doubts(parts(wall=walls, fill=[], body=[BALL | ball], phase=[FALL, REST]))
+    found = warnings_of(parts(wall=walls, fill=[], body=[BALL | ball], phase=[FALL, REST]))
     assert [share in x for x in found] == [True] * (share is not None)
 
 
@@ -87,7 +87,7 @@ def test_a_wall_that_has_moved_and_a_gate_of_another_phase_are_in_nobodys_way():
         ([FLOOR, plate], "rest", False),
     ):
         phases = [LIFT if plate in wall else FALL, REST]
-        found = doubts(parts(wall=wall, fill=[], body=[ball | {"phase": phase}], phase=phases))
+        found = warnings_of(parts(wall=wall, fill=[], body=[ball | {"phase": phase}], phase=phases))
         assert len(found) == named, (wall, phase)
 
 
@@ -99,4 +99,4 @@ def test_a_time_step_that_no_contact_bears_is_named(factor, said):
     stable = 2 * math.sqrt(m_star / (2 * E_star * math.sqrt(R_star * overlap)))
     data = parts(wall=[FLOOR | {"material": "glass"}]) | {"numerics": {"time_step": f"{factor * stable} s"}}
     data["materials"] = {"glass": GLASS | {"yield_stress": "9 MPa"}}
-    assert ["impact at the scene's highest speed is stable" in x for x in doubts(data)] == [True] * said
+    assert ["impact at the scene's highest speed is stable" in x for x in warnings_of(data)] == [True] * said

@@ -32,7 +32,7 @@ def work_of_walls(p: ScenePlan, rows: pd.DataFrame) -> np.ndarray:
     if p.torque:
         (rotation_of_drum,) = p.rotations("drum")
         return np.cumsum(-rows["torque"].to_numpy() * rotation_of_drum.rate * dt)
-    if p.powered:
+    if p.writes_wall_power:
         return np.cumsum(rows["wall_power"].to_numpy() * dt)
     return np.zeros(len(rows))
 
@@ -59,7 +59,7 @@ def _left(spheres: pd.DataFrame, steps: np.ndarray) -> np.ndarray:
     return taken
 
 
-def ledger(p: ScenePlan, tables: dict[str, pd.DataFrame]) -> pd.DataFrame:
+def energy_balance(p: ScenePlan, tables: dict[str, pd.DataFrame]) -> pd.DataFrame:
     """One row per frame [J]: kinetic, gravity, elastic, plastic, work done by walls, left, and the balance.
 
     With friction or rolling also rotation, the energy of spins; with adhesion what its jumps took, and `elastic` holds
@@ -84,7 +84,7 @@ def ledger(p: ScenePlan, tables: dict[str, pd.DataFrame]) -> pd.DataFrame:
             table[name] = spheres.groupby("step")[column].sum().reindex(steps).to_numpy()
         elif name == "plastic":
             table[name] = 0.0
-    if p.rubs:
+    if p.writes_friction_work:
         both = spheres.groupby("step")[["friction_work", "friction_energy"]].sum().reindex(steps)
         table["friction"], table["springs"] = both["friction_work"].to_numpy(), both["friction_energy"].to_numpy()
     rows = tables["rows"]
@@ -92,12 +92,12 @@ def ledger(p: ScenePlan, tables: dict[str, pd.DataFrame]) -> pd.DataFrame:
     table["left"] = _left(spheres, steps) if p.scene.open_boundary else 0.0
     present = spheres.groupby("step")["id"].count().reindex(steps).to_numpy()
     start = int(np.argmax(present == present.max()))
-    rubbed = ["friction", "springs"] if p.rubs else []
+    rubbed = ["friction", "springs"] if p.writes_friction_work else []
     kinds = ["kinetic", "rotation", "gravity", "elastic", "plastic", "adhesion", "left", *rubbed]
     total = table.reindex(columns=kinds, fill_value=0.0).sum(axis=1) - table["work"]
     table["balance"] = total - total.iloc[start]
     table = table.iloc[start:].reset_index(drop=True)
-    if p.model.loses_energy and not p.rubs:
+    if p.model.loses_energy and not p.writes_friction_work:
         table["friction"] = -table["balance"]
     return table
 

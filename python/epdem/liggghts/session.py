@@ -19,7 +19,7 @@ END = "epdem: end of the deck"
 PLAIN = re.compile(r"[\w./+=-]+")
 
 
-class Kept:
+class Session:
     """A process of LIGGGHTS on one rank, which reads decks from us; `clear` behind each leaves nothing to the next.
 
     If it dies, the deck that it ran has failed, and the next one starts another process. It ends with our process.

@@ -5,7 +5,7 @@ import numpy as np
 
 from ..errors import CaseError
 from . import shares
-from .crossings import crosses, depths
+from .boundary_crossings import crosses, depths
 from .plan import ScenePlan
 from .presets import Preset
 from .timestep import stable_step
@@ -15,7 +15,7 @@ MOVED, LONGER = 0.02, 0.2  # by which share a phase may miss its duration: one i
 OVERLAP = 0.05  # of the smaller radius; a bed of an earlier run has less
 
 
-def planned_doubts(p: ScenePlan) -> list[str]:
+def planned_warnings(p: ScenePlan) -> list[str]:
     """A sentence for each."""
     return shares.warnings(p.case, p.insertions) + _time_steps(p) + _phases(p) + _overlaps(p) + _walls(p)
 

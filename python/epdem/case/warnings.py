@@ -44,7 +44,7 @@ def _frictions(case: Case | SceneCase) -> Iterator[tuple[str, float | None]]:
         yield from ((f"contact.pairs.{n}.friction", pair.friction) for n, pair in enumerate(case.contact.pairs))
 
 
-def doubts(case: Case | SceneCase) -> list[str]:
+def case_warnings(case: Case | SceneCase) -> list[str]:
     """A sentence for each value that is probably in another unit than its author meant."""
     found = list(_of_materials(case.materials))
     found += [f"{place} = {r:g} m" for place, r in _radii(case) if r > LARGEST_RADIUS]

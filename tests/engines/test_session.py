@@ -14,7 +14,7 @@ from epdem.impacts.experiment import experiment
 from epdem.impacts.plan import plan
 from epdem.impacts.prediction import predict
 from epdem.liggghts.impacts import Liggghts
-from epdem.liggghts.kept import Kept
+from epdem.liggghts.session import Session
 from epdem.studies.sweep import run as study
 
 pytestmark = pytest.mark.liggghts
@@ -23,7 +23,7 @@ CASES = Path(__file__).parents[2] / "cases"
 
 @pytest.fixture
 def kept():
-    found = Kept()
+    found = Session()
     yield found
     found.stop()
 
