@@ -4,8 +4,8 @@
     .venv/bin/python bench/lean.py [--out docs/lean.md] [--repeats 5]
 
 The full deck has friction, tangential dashpot, rolling friction, cohesion and the energy balance, with coefficients so
-small that the spheres do the same in the same time steps. Both run to 95 % of the scene once; the rest is then repeated in
-turns from the restart files, so that what else the machine does hits both, and the shortest time counts.
+small that the spheres do the same in the same time steps. Both run to 95 % of the scene once; the rest is then repeated
+in turns from the restart files, so that what else the machine does hits both, and the shortest time counts.
 """
 
 import argparse

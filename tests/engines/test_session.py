@@ -40,9 +40,9 @@ def test_decks_of_several_cases_one_after_the_other_give_the_same_bits(tmp_path)
         for column in ("overlap", "force", "velocity"):
             assert np.array_equal(getattr(one, column), getattr(other, column), equal_nan=True), name
         assert one.seconds["stepping"] > 0
-        pids.add(tool.kept._process.pid)
+        pids.add(tool.session._process.pid)
     assert len(pids) == 1
-    tool.kept.stop()
+    tool.session.stop()
     assert not session(pids.pop())
 
 
