@@ -19,7 +19,7 @@ import numpy as np
 
 from epdem.case.scene import parse
 from epdem.case.toml import read_toml
-from epdem.liggghts.scenes import LiggghtsScenes
+from epdem.liggghts.impacts import Liggghts
 from epdem.scenes.checks import discharge
 from epdem.scenes.columns import last_frame
 from epdem.scenes.plan import plan
@@ -66,7 +66,7 @@ def flow(outlet: float, count: int, width: float, folder: Path, angle: float = 9
     """Run a discharge in `folder` and measure it; lengths in bead diameters, `angle` in degrees (90: flat bottom)."""
     case = parse(scene(outlet, count, width, angle))
     p = plan(case)
-    spheres = run_plan(p, LiggghtsScenes(), folder)["particles"]
+    spheres = run_plan(p, Liggghts(), folder)["particles"]
     last = last_frame(spheres)
     out = last[last["z"] < p.scene.gates[0].place]["mass"].sum() / last["mass"].sum()
     if out < END:

@@ -27,7 +27,7 @@ from community_models import MODELS, RAIN_FRICTION, SHORT, SPEED, START, YADE, c
 from epdem.case.scene import SceneCase, parse
 from epdem.errors import CaseError
 from epdem.liggghts import resume
-from epdem.liggghts.scenes import LiggghtsScenes
+from epdem.liggghts.impacts import Liggghts
 from epdem.scenes.columns import last_frame
 from epdem.scenes.run import SceneOutcome, run_case
 
@@ -121,7 +121,7 @@ def say(what: str) -> Callable[[int, int], None]:
     return report
 
 
-def run(case: SceneCase, what: LiggghtsScenes, folder: Path, until: float | None = None) -> SceneOutcome | None:
+def run(case: SceneCase, what: Liggghts, folder: Path, until: float | None = None) -> SceneOutcome | None:
     """A run that goes on where an earlier one was stopped; None if it was stopped at `until` [s]."""
     show, text = say(str(folder.relative_to(RUNS))), (CASES / f"{case.name}.toml").read_text(encoding="utf-8")
 
@@ -147,7 +147,7 @@ def bed(name: str, seed: int, *, soft: float, friction: float) -> Path:
     other = "" if friction == RAIN_FRICTION else f"_friction{friction:g}"
     path = RUNS / name / f"{'seed' if soft == 1.0 else 'soft'}{seed}{other}" / "spheres.csv"
     if not path.exists():
-        done = run(rain(name, seed, soft=soft, friction=friction), LiggghtsScenes(), path.parent / "bed")
+        done = run(rain(name, seed, soft=soft, friction=friction), Liggghts(), path.parent / "bed")
         assert done is not None
         last = last_frame(done.results.tables["particles"]).sort_values("id")
         materials = [done.plan.model.types[int(t) - 1].material for t in last["type"]]

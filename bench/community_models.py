@@ -6,8 +6,8 @@ from pathlib import Path
 import numpy as np
 
 from epdem.liggghts import log
+from epdem.liggghts.impacts import Liggghts
 from epdem.liggghts.launcher import OUT
-from epdem.liggghts.scenes import LiggghtsScenes
 from epdem.scenes.plan import ScenePlan
 
 MODELS = {"hertz": "hertz", "ep/hertz": "hertz", "ep/thornton": "thornton"}  # and the law of their plan
@@ -18,12 +18,13 @@ RAIN_FRICTION = 0.05  # of all pairs while a bed falls: a medium dense one; with
 CURVE, EVERY = "impactor.txt", 100  # steps between two lines
 
 
-class Recorded(LiggghtsScenes):
+class Recorded(Liggghts):
     """LIGGGHTS with our model of a plan, and the height of the last sphere of its table in a file of its own."""
 
-    leftovers = (*LiggghtsScenes.leftovers, CURVE)
+    leftovers = (*Liggghts.leftovers, CURVE)
 
     def __init__(self, begin: float = 0.0):
+        super().__init__()
         self.begin = begin  # [s] at step 0
 
     def files(self, plan: ScenePlan) -> dict[str, str]:
@@ -52,7 +53,7 @@ class OwnHertz(Recorded):
         return super().setup(plan, text).replace("model ep/hertz", "model hertz").replace(" viscous on", "")
 
 
-def engine(model: str, begin: float = 0.0) -> LiggghtsScenes:
+def engine(model: str, begin: float = 0.0) -> Liggghts:
     """The engine of a model, for a run whose step 0 is at time `begin` [s]."""
     return OwnHertz(begin) if model == "hertz" else Recorded(begin)
 

@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """An engine says what it can do, and refuses the rest in a sentence."""
 
-from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -10,7 +9,7 @@ from epdem.case.impact import parse
 from epdem.case.toml import read_toml
 from epdem.engines import ENGINES
 from epdem.errors import CaseError
-from epdem.impacts.engine import refuse
+from epdem.impacts.engine import Feature, refuse
 from epdem.impacts.experiment import experiment
 from epdem.impacts.plan import plan
 from epdem.impacts.prediction import predict
@@ -32,14 +31,14 @@ def planned(changes=None, law=None):
 
 def test_what_an_engine_names_exists():
     for tool in (kind() for kind in ALL.values()):
-        assert set(tool.can.laws or ()) <= set(laws()), tool.name
-        assert tool.can.ranks >= 1 and (tool.can.scenes or not tool.can.restarts)
+        assert set(tool.laws or ()) <= set(laws()), tool.name
+        assert tool.ranks >= 1 and tool.features <= set(Feature)
 
 
 @pytest.mark.parametrize("name", ["embedded", "yade", "yade-luding", "lammps-mdr"])
 def test_an_engine_of_one_rank_refuses_two(name):
     tool = ALL[name]()
-    assert tool.can.ranks == 1
+    assert tool.ranks == 1
     with pytest.raises(CaseError, match=rf"--ranks 2: engine {name} runs on one rank"):
         refuse(tool, *planned(), ranks=2)
 
@@ -49,7 +48,7 @@ def test_a_law_that_an_engine_lacks_is_refused_in_a_sentence(name):
     tool = ALL[name]()
     p, prediction = planned()
     refuse(tool, p, prediction)
-    tool.can = replace(tool.can, laws=("hertz",))
+    tool.laws = ("hertz",)
     with pytest.raises(CaseError, match=rf"law\.name = 'thornton': engine {name} has hertz only; use another --eng"):
         refuse(tool, p, prediction)
 

@@ -13,7 +13,7 @@ from epdem.case.toml import read_toml
 from epdem.engines import engine
 from epdem.errors import CaseError
 from epdem.impacts.comparison import compare, impacts_table
-from epdem.impacts.engine import check_abilities
+from epdem.impacts.engine import check_features
 from epdem.impacts.experiment import experiment
 from epdem.impacts.measurement import measure
 from epdem.impacts.plan import plan
@@ -84,7 +84,7 @@ def test_a_dashpot_beside_adhesion_and_yade_are_refused():
     with pytest.raises(CaseError, match="both adhesion"):
         made(viscous={"restitution": 0.8})
     with pytest.raises(CaseError, match="engine yade has hertz"):
-        check_abilities(engine("yade"), made())
+        check_features(engine("yade"), made())
 
 
 @pytest.mark.parametrize("law", ["jkr", "thornton_ning"])

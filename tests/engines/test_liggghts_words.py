@@ -16,8 +16,7 @@ from test_stopping import alive, until
 from epdem.base import paths
 from epdem.base.processes import call, session
 from epdem.errors import CaseError, EngineError
-from epdem.liggghts import dump, launcher, log, stl
-from epdem.liggghts.scenes import LiggghtsScenes
+from epdem.liggghts import dump, launcher, log, scenes, stl
 
 CASE = Path(__file__).parents[2] / "cases/steel_wall.toml"
 
@@ -188,7 +187,7 @@ def test_vtk_files_are_refused_where_liggghts_was_built_without_vtk(styles, tmp_
     monkeypatch.setenv("EPDEM_LIGGGHTS", str(program))
     paths.launcher.cache_clear()
     try:
-        LiggghtsScenes().run(SimpleNamespace(vtk=5), tmp_path, ranks=1, report=lambda step: None)
+        scenes.run(SimpleNamespace(vtk=5), tmp_path, ranks=1, report=lambda step: None)
         assert "custom/vtk" in styles
     except CaseError as refusal:
         assert "custom/vtk" not in styles and f"output.vtk: {program} was built without VTK" in str(refusal)

@@ -11,18 +11,18 @@ from stored_runs import STORED, data_of
 from epdem.base import stages
 from epdem.case.scene import parse
 from epdem.errors import CaseError, EngineError
-from epdem.impacts.engine import Abilities
-from epdem.liggghts.scenes import LiggghtsScenes
+from epdem.impacts.engine import Feature
+from epdem.liggghts.impacts import Liggghts
 from epdem.scenes import results
 from epdem.scenes.pairs import pair_law
 from epdem.scenes.plan import plan
 from epdem.scenes.run import run
 
 
-class Stored(LiggghtsScenes):
+class Stored(Liggghts):
     """LIGGGHTS whose runs are copies of stored ones."""
 
-    can = Abilities(ranks=4, scenes=("settle", "hopper", "drum", "compaction", "peening"), restarts=True)
+    ranks = 4
 
     def __init__(self, name: str = "drum"):
         self.stored, self.runs, self.says, self.here = STORED / name, 0, "LIGGGHTS 3.8.0", True
@@ -33,12 +33,13 @@ class Stored(LiggghtsScenes):
     def version(self):
         return self.says
 
-    def run(self, plan, folder, *, ranks, report):
+    def run(self, job, folder, *, ranks, report):
         self.runs += 1
         for path in self.stored.iterdir():
             if path.suffix != ".toml":
                 shutil.copy(path, folder)
-        report(plan.steps)
+        report(job.steps)
+        return self.read(job, folder)
 
 
 @pytest.fixture
@@ -106,17 +107,17 @@ def test_a_comment_in_the_case_is_no_input(case, tmp_path):
 
 
 @pytest.mark.parametrize(
-    ("can", "options", "words"),
+    ("lacks", "options", "words"),
     [
-        (Abilities(scenes=("settle",), ranks=4), {}, r"scene.kind = 'drum'.*settle.*another --engine"),
-        (Stored.can, {"ranks": 5}, r"--ranks 5: .* at most 4 ranks"),
-        (Abilities(scenes=("drum",)), {"ranks": 2}, r"--ranks 2: .* one rank"),
-        (Abilities(scenes=("drum",)), {"resume": True}, r"--resume: .* from its start"),
+        ({"laws": ("hertz",)}, {}, r"law.name = .*has hertz only; use another --engine"),
+        ({"ranks": 4}, {"ranks": 5}, r"--ranks 5: .* at most 4 ranks"),
+        ({"ranks": 1}, {"ranks": 2}, r"--ranks 2: .* one rank"),
+        ({"features": Stored.features - {Feature.RESTART}}, {"resume": True}, r"--resume: .* from its start"),
     ],
 )
-def test_what_an_engine_cannot_do_is_refused_before_anything_is_written(can, options, words, case, tmp_path):
+def test_what_an_engine_cannot_do_is_refused_before_anything_is_written(lacks, options, words, case, tmp_path):
     engine = Stored()
-    engine.can = can
+    vars(engine).update(lacks)
     with pytest.raises(CaseError, match=words):
         run(case, engine, out=tmp_path / "out", **options)
     assert not (tmp_path / "out").exists() and engine.runs == 0

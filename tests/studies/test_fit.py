@@ -123,12 +123,12 @@ def test_a_case_of_impacts_has_no_such_numbers(place):
 
 
 def test_a_scene_that_fails_ends_the_fit_with_its_reason(place, monkeypatch, tmp_path):
-    from epdem.liggghts.scenes import LiggghtsScenes
+    from epdem.liggghts.impacts import Liggghts
 
     def fails(*words, **named):
         raise EngineError("out of glass")
 
-    monkeypatch.setattr(LiggghtsScenes, "run", fails)
+    monkeypatch.setattr(Liggghts, "run", fails)
     with pytest.raises(EngineError, match=r"point 1 \(.*density.*\): out of glass"):
         fit(place, {"floor_load_mean": "1 N"}, DENSITY, out=tmp_path)
 

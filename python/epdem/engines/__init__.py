@@ -5,28 +5,26 @@ from collections.abc import Callable
 
 from ..base.settings import DEFAULT_ENGINE
 from ..errors import CaseError
-from ..impacts.engine import Engine, Trajectory
+from ..impacts.engine import Feature, ImpactEngine, Trajectory
 from ..liggghts.impacts import Liggghts
-from ..liggghts.scenes import LiggghtsScenes
 from ..scenes.engine import SceneEngine
 from ..yade.impacts import Yade
-from ..yade.scenes import YadeScenes
 from .embedded import Embedded
 
-ENGINES: dict[str, type[Engine]] = {tool.name: tool for tool in (Embedded, Liggghts, Yade)}
+ENGINES: dict[str, type[ImpactEngine]] = {tool.name: tool for tool in (Embedded, Liggghts, Yade)}
 # Engines of bulk scenes.
-SCENES: dict[str, type[SceneEngine]] = {tool.name: tool for tool in (LiggghtsScenes, YadeScenes)}
+SCENES: dict[str, type[SceneEngine]] = {tool.name: tool for tool in (Liggghts, Yade)}
 
 
-def engine(name: str, *, stay: bool = False) -> Engine:
+def engine(name: str, *, stay: bool = False) -> ImpactEngine:
     """The engine of that name; with `stay` its process stays for the next plan where it can. Raises CaseError."""
     if name not in ENGINES:
         raise CaseError(
             f"--engine {name!r} does not exist; there are {', '.join(ENGINES)}, and 'epdem verify crosscheck' runs "
             "models of other codes"
         )
-    kind: Callable[..., Engine] = ENGINES[name]
-    return kind(stay=True) if stay and ENGINES[name].can.stays else kind()
+    kind: Callable[..., ImpactEngine] = ENGINES[name]
+    return kind(stay=True) if stay and Feature.STAY in ENGINES[name].features else kind()
 
 
 def scene_engine(name: str) -> SceneEngine:
@@ -36,4 +34,4 @@ def scene_engine(name: str) -> SceneEngine:
     return SCENES[name]()
 
 
-__all__ = ["DEFAULT_ENGINE", "ENGINES", "SCENES", "Engine", "Trajectory", "engine", "scene_engine"]
+__all__ = ["DEFAULT_ENGINE", "ENGINES", "SCENES", "ImpactEngine", "Trajectory", "engine", "scene_engine"]

@@ -8,6 +8,7 @@ from importlib import metadata
 from ..base import paths
 from ..base.processes import ask
 from ..errors import EngineError, EpdemError
+from ..impacts.engine import Feature
 from ..laws import library as claw
 from ..liggghts import executable, launcher
 from . import ENGINES
@@ -75,6 +76,6 @@ def examine() -> list[Finding]:
         reason = tool.missing()
         detail, advice = ("not here", reason) if reason else (tool.version(), "")
         findings.append(
-            Finding(f"engine {name}", reason is None, detail, advice, needed=not kind.can.deck)
+            Finding(f"engine {name}", reason is None, detail, advice, needed=Feature.DECK not in kind.features)
         )  # the embedded one
     return [*findings, _models(), _lammps(), _mpi()]

@@ -5,9 +5,8 @@ import time
 from pathlib import Path
 
 from ..base import paths
-from ..case.fields import NODES
 from ..impacts import oblique
-from ..impacts.engine import Abilities, Trajectory, check_abilities
+from ..impacts.engine import Feature, Report, Trajectory, check_features, silent
 from ..impacts.plan import Plan
 from ..laws import library as claw
 from ..laws.native import ImpactNumbers
@@ -19,7 +18,9 @@ class Embedded:
 
     name = "embedded"
     source: Source | None = None
-    can = Abilities(dashpot=True, friction=tuple(NODES), oblique_spheres=True, deck=False, positions=False)
+    laws: tuple[str, ...] | None = None
+    ranks = 1
+    features = frozenset({Feature.DASHPOT, Feature.FRICTION, Feature.SPHERE_FRICTION})
 
     def missing(self) -> str | None:
         if paths.native("libepdem.so") is None:
@@ -29,30 +30,31 @@ class Embedded:
     def version(self) -> str:
         return f"epdem {claw.version()}"
 
-    def check(self, plan: Plan) -> None:
-        check_abilities(self, plan.experiment)
+    def check(self, job: Plan) -> list[str]:
+        check_features(self, job.experiment)
+        return []
 
-    def write(self, plan: Plan, folder: Path) -> list[Path]:
+    def write(self, job: Plan, folder: Path) -> list[Path]:
         return []  # nothing to run by hand
 
-    def run(self, plan: Plan, folder: Path, *, ranks: int = 1) -> Trajectory:
-        x = plan.experiment
+    def run(self, job: Plan, folder: Path, *, ranks: int = 1, report: Report = silent) -> Trajectory:
+        x = job.experiment
         start = time.perf_counter()
         law = x.native_law()
-        _, overlap, force, velocity = law.impact_paths(steps=plan.steps, **numbers(plan))
+        _, overlap, force, velocity = law.impact_paths(steps=job.steps, **numbers(job))
         tangential = spin = None
         if x.oblique:
             slip = law.oblique(
-                oblique.slip_before(x, phases=plan.phases),
+                oblique.slip_before(x, phases=job.phases),
                 G_star=x.G_star,
                 mu=x.oblique.friction,
                 nodes=oblique.nodes(x),
-                steps=plan.steps,
-                **numbers(plan),
+                steps=job.steps,
+                **numbers(job),
             )
             tangential, spin = oblique.after_slip(x, slip)
         seconds = {"stepping": time.perf_counter() - start}
-        return Trajectory(plan.time_step, overlap, force, velocity, seconds, tangential, spin)
+        return Trajectory(job.time_step, overlap, force, velocity, seconds, tangential, spin)
 
 
 def numbers(plan: Plan) -> ImpactNumbers:

@@ -1,16 +1,18 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The interface of an engine of impacts: a plan goes in, a trajectory comes out."""
+"""The interface of an engine: a job goes in, and a trajectory of impacts or the tables of a scene come out."""
 
 import shutil
+import tempfile
+from collections.abc import Callable
 from dataclasses import dataclass, field
+from enum import StrEnum
 from pathlib import Path
-from typing import Protocol
+from typing import Protocol, TypeVar
 
 import numpy as np
 
 from ..errors import CaseError, EngineError
 from ..theory.sources import Source
-from . import oblique
 from .experiment import Experiment
 from .plan import Plan
 from .prediction import Prediction
@@ -36,31 +38,36 @@ class Trajectory:
     spin: np.ndarray | None = None
 
 
-@dataclass(frozen=True)
-class Abilities:
-    """The abilities of an engine; other code never tests its name."""
+class Feature(StrEnum):
+    """A named ability of an engine; other code never tests the name of the engine."""
 
-    laws: tuple[str, ...] | None = None  # of ours that it can run; None: every one
-    walls: bool = True  # planes as targets
-    spheres: bool = True  # spheres as targets
-    dashpot: bool = False  # [viscous] of a case
-    friction: tuple[str, ...] = ()  # its tangential models for oblique impacts
-    oblique_spheres: bool = False  # oblique impacts of two spheres too
-    own_spring: bool = False  # whatever tangential model is asked for, its own one spring runs
-    ranks: int = 1  # the largest number on this machine
-    deck: bool = True  # it reads a deck, which runs without epdem too
-    positions: bool = True  # its overlap is a difference of positions
-    scenes: tuple[str, ...] = ()  # kinds of bulk scenes
-    restarts: bool = False  # it continues an interrupted bulk scene
-    stays: bool = False  # one process of it can run plan after plan; the class takes `stay`
+    DASHPOT = "dashpot"  # [viscous] of a case of impacts
+    FRICTION = "friction"  # oblique impacts on walls
+    SPHERE_FRICTION = "friction of two spheres"  # oblique impacts of two spheres
+    DECK = "deck"  # the engine reads a deck, which runs without epdem
+    POSITIONS = "positions"  # an overlap is a difference of positions
+    RESTART = "restart"  # an interrupted scene continues from a restart file
+    STAY = "stay"  # one process runs plan after plan; the class takes `stay`
 
 
-class Engine(Protocol):
-    """One way to run a plan."""
+Report = Callable[[int], None]  # takes the step that a run has reached
+Job = TypeVar("Job", contravariant=True)
+Result = TypeVar("Result", covariant=True)
+AnyJob = TypeVar("AnyJob")
+
+
+def silent(step: int) -> None:
+    """Report nothing."""
+
+
+class Engine(Protocol[Job, Result]):
+    """One way to run a job: the plan of impacts gives a trajectory, the plan of a scene gives tables."""
 
     name: str
-    can: Abilities
     source: Source | None  # what to cite for its program; None: epdem itself
+    laws: tuple[str, ...] | None  # the laws of epdem that the engine has; None: every one
+    ranks: int  # the largest number on this machine
+    features: frozenset[Feature]
 
     def missing(self) -> str | None:
         """None if the engine can run here, else a sentence with the command that installs it."""
@@ -68,14 +75,28 @@ class Engine(Protocol):
     def version(self) -> str:
         """One line: the engine's version, and that of our part in it."""
 
-    def check(self, plan: Plan) -> None:
-        """Raise CaseError for a plan that the engine cannot run."""
+    def check(self, job: Job) -> list[str]:
+        """What the engine leaves out or replaces, in words. Raises CaseError for a job that the engine cannot run."""
 
-    def write(self, plan: Plan, folder: Path) -> list[Path]:
-        """Write the deck and its data files into `folder`, where they run without epdem."""
+    def write(self, job: Job, folder: Path) -> list[Path]:
+        """Write the deck and its data files into `folder`, where they run without epdem; their paths, the deck first.
 
-    def run(self, plan: Plan, folder: Path, *, ranks: int = 1) -> Trajectory:
+        Raises CaseError for a job that the engine cannot run.
+        """
+
+    def run(self, job: Job, folder: Path, *, ranks: int = 1, report: Report = silent) -> Result:
         """Run what `write` wrote. Raises EngineError with the end of the engine's log."""
+
+
+ImpactEngine = Engine[Plan, Trajectory]
+
+
+def texts(tool: Engine[AnyJob, object], job: AnyJob) -> dict[str, str]:
+    """The text of every file of a job by its path in the folder. Raises CaseError."""
+    with tempfile.TemporaryDirectory(prefix="epdem-") as scratch:
+        folder = Path(scratch)
+        files = tool.write(job, folder)
+        return {file.relative_to(folder).as_posix(): file.read_text(encoding="utf-8") for file in files}
 
 
 class Installable(Protocol):
@@ -94,34 +115,41 @@ def require(*tools: Installable) -> None:
             raise EngineError(f"engine {tool.name}: {reason}")
 
 
-def check_law(engine: str, can: Abilities, law: str) -> None:
+class HasLaws(Protocol):
+    """An engine of any kind, with its laws."""
+
+    name: str
+    laws: tuple[str, ...] | None
+
+
+def check_law(tool: HasLaws, law: str) -> None:
     """Raise CaseError for a law that an engine does not have."""
-    if can.laws is not None and law not in can.laws:
-        raise CaseError(f"law.name = {law!r}: engine {engine} has {', '.join(can.laws)} only; use another --engine")
+    if tool.laws is not None and law not in tool.laws:
+        raise CaseError(f"law.name = {law!r}: engine {tool.name} has {', '.join(tool.laws)} only; use another --engine")
 
 
-def check_abilities(tool: Engine, x: Experiment) -> None:
-    """Raise CaseError if an experiment needs an ability that the engine does not have."""
-    can, wall = tool.can, not np.isfinite(x.target.radius)
-    check_law(tool.name, can, x.law.name)
-    if x.oblique:
-        oblique.check(tool.name, can.friction, can.oblique_spheres, x)
-    if x.viscous_restitution is not None and not can.dashpot:
+def check_features(tool: ImpactEngine, x: Experiment) -> None:
+    """Raise CaseError if an experiment needs a law or a feature that the engine does not have."""
+    check_law(tool, x.law.name)
+    if x.oblique and Feature.FRICTION not in tool.features:
+        raise CaseError(
+            f"impact.angles: engine {tool.name} runs normal impacts only; use --engine embedded or liggghts"
+        )
+    if x.oblique and np.isfinite(x.target.radius) and Feature.SPHERE_FRICTION not in tool.features:
+        raise CaseError(f"impact.angles: engine {tool.name} runs oblique impacts on walls only; use --engine embedded")
+    if x.viscous_restitution is not None and Feature.DASHPOT not in tool.features:
         raise CaseError(f"viscous: engine {tool.name} does not have this dashpot; use --engine liggghts or embedded")
-    if (wall and not can.walls) or (not wall and not can.spheres):
-        kind = "walls" if wall else "impacts of two spheres"
-        raise CaseError(f"impact.kind: engine {tool.name} does not run {kind}; use another --engine")
 
 
-def refuse(tool: Engine, plan: Plan, prediction: Prediction, *, ranks: int = 1) -> None:
+def refuse(tool: ImpactEngine, plan: Plan, prediction: Prediction, *, ranks: int = 1) -> None:
     """Raise CaseError if `tool` cannot run `plan` as it is, EngineError if its ranks cannot be started.
 
     `prediction` is that of the plan's experiment.
     """
-    refuse_ranks(tool.name, tool.can.ranks, ranks)
+    refuse_ranks(tool.name, tool.ranks, ranks)
     tool.check(plan)
     for speed, overlap in zip(prediction.speed, prediction.overlap_max, strict=True):
-        if tool.can.positions and (why := not_representable(plan.experiment, float(overlap))):
+        if Feature.POSITIONS in tool.features and (why := not_representable(plan.experiment, float(overlap))):
             raise CaseError(f"{speed:.4g} m/s is not representable by positions ({why}); use --engine embedded for it")
 
 

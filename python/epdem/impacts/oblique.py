@@ -11,7 +11,6 @@ from dataclasses import dataclass, fields
 import numpy as np
 
 from ..case.fields import NODES
-from ..errors import CaseError
 from ..theory import partial_slip
 from ..theory.backbones import Backbone
 from .experiment import Experiment
@@ -102,19 +101,6 @@ def predict(x: Experiment, e_n: np.ndarray) -> Rebound:
         )
     tangential, spin = after_slip(x, after)
     return rebound(x, e_n, tangential=tangential, spin=spin)
-
-
-def check(engine: str, models: tuple[str, ...], spheres: bool, x: Experiment) -> None:
-    """Raise CaseError if an engine that has these tangential models cannot run the oblique impacts of `x`."""
-    o = x.friction_of_oblique()
-    if not models:
-        raise CaseError(f"impact.angles: engine {engine} runs normal impacts only; use --engine embedded or liggghts")
-    if o.tangential not in models:
-        raise CaseError(
-            f"contact.tangential = {o.tangential!r}: engine {engine} has {', '.join(models)}; use another --engine"
-        )
-    if math.isfinite(x.target.radius) and not spheres:
-        raise CaseError(f"impact.angles: engine {engine} runs oblique impacts on walls only; use --engine embedded")
 
 
 def nodes(x: Experiment) -> int:

@@ -22,7 +22,7 @@ from ..case.warnings import case_warnings
 from ..errors import CaseError
 from . import store
 from .comparison import compare, impacts_table
-from .engine import Engine, refuse, require
+from .engine import Feature, ImpactEngine, refuse, require
 from .experiment import Experiment, experiment
 from .measurement import measure
 from .paths import chosen
@@ -60,7 +60,7 @@ class Stage:
     paths: pd.DataFrame
 
 
-def run_plan(p: Plan, tool: Engine, folder: Path, *, ranks: int = 1, end_power: float | None = None) -> Stage:
+def run_plan(p: Plan, tool: ImpactEngine, folder: Path, *, ranks: int = 1, end_power: float | None = None) -> Stage:
     """Write a plan's deck into `folder`, run it and measure it.
 
     `end_power` as in `measure`, for an engine with a law of its own. Raises EngineError, and CaseError for what the
@@ -79,7 +79,7 @@ def run_plan(p: Plan, tool: Engine, folder: Path, *, ranks: int = 1, end_power: 
 def run_and_compare(
     p: Plan,
     prediction: Prediction,
-    tool: Engine,
+    tool: ImpactEngine,
     folder: Path,
     *,
     law: str | None = None,
@@ -94,16 +94,16 @@ def run_and_compare(
     return compare(tool.name, law or x.law.name, stage.impacts, prediction, x.check), stage
 
 
-def write_deck(x: Experiment, tool: Engine, folder: Path, *, force: bool = False) -> list[Path]:
+def write_deck(x: Experiment, tool: ImpactEngine, folder: Path, *, force: bool = False) -> list[Path]:
     """Write the deck of an experiment into `folder`, where `force` allows other files; its files. Raises CaseError."""
-    if not tool.can.deck:
+    if Feature.DECK not in tool.features:
         raise CaseError(f"engine {tool.name}: it reads no deck; use liggghts or yade")
     p = plan(x, predict(x))
     with claim(folder, force=force):
         return tool.write(p, folder)
 
 
-def _inputs(p: Plan, tool: Engine, version: str, ranks: int) -> str:
+def _inputs(p: Plan, tool: ImpactEngine, version: str, ranks: int) -> str:
     """Hash of all that the result of a stage depends on: the plan, the files an engine reads, its version, ours."""
     x = p.experiment
     numbers = (p.time_step, p.steps, p.phases, p.speed.tobytes(), p.gap.tobytes())
@@ -146,14 +146,14 @@ class _Work:
     """A checked case with its engines and laws."""
 
     case: Case
-    tools: list[Engine]
+    tools: list[ImpactEngine]
     versions: dict[str, str]
     predictions: dict[str, Prediction]
     plans: list[Plan]
     how: dict[str, object]  # the options on which the numbers depend: ranks, steps (0: searched), own_law
 
 
-def _prepare(case: Case, place: object, tools: Sequence[Engine], laws: Sequence[str], ranks: int) -> _Work:
+def _prepare(case: Case, place: object, tools: Sequence[ImpactEngine], laws: Sequence[str], ranks: int) -> _Work:
     """Check all input and look for every engine, before anything is written or started."""
     tools = list({tool.name: tool for tool in tools}.values())
     with named(place):
@@ -174,7 +174,7 @@ def _prepare(case: Case, place: object, tools: Sequence[Engine], laws: Sequence[
 class Options(TypedDict, total=False):
     """What `run_case` takes beside the case."""
 
-    engines: Required[Sequence[Engine]]
+    engines: Required[Sequence[ImpactEngine]]
     laws: Sequence[str]
     out: Path | None
     ranks: int
@@ -198,7 +198,7 @@ def run_case(
     text: str,
     *,
     place: object,
-    engines: Sequence[Engine],
+    engines: Sequence[ImpactEngine],
     laws: Sequence[str] = (),
     out: Path | None = None,
     ranks: int = 1,
@@ -218,13 +218,6 @@ def run_case(
         return _run(text, work, folder, ranks, fresh, progress)
 
 
-def _spring(p: Plan, tool: Engine) -> str:
-    """What to say of an engine whose friction is not the case's."""
-    if p.experiment.oblique is None or not tool.can.own_spring:
-        return ""
-    return f"{tool.name}: friction by its own one spring; theory is that of partial slip"
-
-
 def _run(text: str, work: _Work, folder: Path, ranks: int, fresh: bool, progress: Callable[[str], None]) -> Outcome:
     stored = folder / "results.h5"
     old = _stored(stored)
@@ -238,7 +231,7 @@ def _run(text: str, work: _Work, folder: Path, ranks: int, fresh: bool, progress
         law = p.experiment.law.name
         prediction = work.predictions[law]
         outcome.warnings += prediction.caveats
-        outcome.warnings += [_spring(p, tool) for tool in work.tools if _spring(p, tool)]
+        outcome.warnings += [f"{tool.name}: {note}" for tool in work.tools for note in tool.check(p)]
         results.predictions[law] = prediction.table()
         for tool in work.tools:
             key, inputs = f"{law}/{tool.name}", _inputs(p, tool, work.versions[tool.name], ranks)

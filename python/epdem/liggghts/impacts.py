@@ -1,23 +1,27 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""LIGGGHTS with our plugin: a plan becomes one deck with all impacts side by side, its dump a trajectory."""
+"""LIGGGHTS with our plugin: impacts side by side in one deck, whose dump is a trajectory, and bulk scenes."""
 
 import math
+from collections.abc import Collection
 from pathlib import Path
+from typing import overload
 
 import numpy as np
 
 from ..base import paths
 from ..base import rendering as decks
 from ..base.files import write_texts
-from ..case.fields import NODES
+from ..base.folders import held
 from ..case.kinds import KINDS
 from ..errors import CaseError, EngineError
-from ..impacts.engine import Abilities, Trajectory, check_abilities
+from ..impacts.engine import Feature, Report, Trajectory, check_features, silent
 from ..impacts.placement import approach, room, side_by_side
 from ..impacts.plan import Plan
 from ..laws.library import laws
+from ..scenes.engine import Resumed, Tables, check_scene
+from ..scenes.plan import ScenePlan
 from ..theory.sources import Source
-from . import data_file, dump, executable, launcher
+from . import data_file, dump, executable, launcher, scene_deck, scenes
 from .deck import Deck
 from .log import loop_seconds
 from .properties import HARD, SOFT, Property, atom_types, finite, of_law, tangential
@@ -39,14 +43,10 @@ class Liggghts:
         2012,
     )
     template = "liggghts/impact.in.j2"
-    can = Abilities(
-        dashpot=True,
-        friction=tuple(NODES),
-        ranks=launcher.most_ranks(),
-        scenes=KINDS,
-        restarts=True,
-        stays=True,
-    )
+    laws: tuple[str, ...] | None = None
+    ranks = launcher.most_ranks()
+    features = frozenset(Feature) - {Feature.SPHERE_FRICTION}
+    leftovers: tuple[str, ...] = scenes.LEFTOVERS
 
     def __init__(self, *, stay: bool = False):
         self.session = Session() if stay else None
@@ -72,7 +72,7 @@ class Liggghts:
     def deck(self, plan: Plan) -> Deck:
         """The deck of a plan. Raises CaseError for what LIGGGHTS cannot do."""
         x, types = plan.experiment, atom_types(plan)
-        check_abilities(self, x)
+        check_features(self, x)
         for b, _ in types:
             if b.poisson_ratio < 0:
                 raise CaseError(
@@ -101,26 +101,57 @@ class Liggghts:
             steps=plan.steps,
         )
 
-    def check(self, plan: Plan) -> None:
-        self.deck(plan)
+    def files(self, plan: ScenePlan) -> dict[str, str]:
+        """The text of every file of the deck of a scene by its name. Raises CaseError."""
+        return scene_deck.files(plan)
 
-    def write(self, plan: Plan, folder: Path) -> list[Path]:
-        deck = self.deck(plan)
-        texts = {"in.impact": decks.render(self.template, deck=deck), deck.data: data_text(plan, len(deck.types))}
+    def check(self, job: Plan | ScenePlan) -> list[str]:
+        if isinstance(job, ScenePlan):
+            check_scene(self, job, KINDS)
+            scene_deck.deck(job)
+        else:
+            self.deck(job)
+        return []
+
+    def write(self, job: Plan | ScenePlan, folder: Path) -> list[Path]:
+        if isinstance(job, ScenePlan):
+            return write_texts(folder, self.files(job))
+        deck = self.deck(job)
+        texts = {"in.impact": decks.render(self.template, deck=deck), deck.data: data_text(job, len(deck.types))}
         return write_texts(folder, texts)
 
-    def run(self, plan: Plan, folder: Path, *, ranks: int = 1) -> Trajectory:
+    @overload
+    def run(self, job: Plan, folder: Path, *, ranks: int = 1, report: Report = silent) -> Trajectory: ...
+
+    @overload
+    def run(self, job: ScenePlan, folder: Path, *, ranks: int = 1, report: Report = silent) -> Tables: ...
+
+    def run(
+        self, job: Plan | ScenePlan, folder: Path, *, ranks: int = 1, report: Report = silent
+    ) -> Trajectory | Tables:
+        if isinstance(job, ScenePlan):
+            held(folder).remove(*self.leftovers)
+            scenes.run(job, folder, ranks=ranks, report=report)
+            return self.read(job, folder)
         path = folder / PATH
         path.unlink(missing_ok=True)
         (folder / END).unlink(missing_ok=True)
-        allowed = 120 + 2e-6 * plan.n * plan.steps
+        allowed = 120 + 2e-6 * job.n * job.steps
         if self.session and ranks == 1:
             wall = self.session.run("in.impact", folder, log=launcher.LOG, seconds=allowed)
         else:
             wall = launcher.run("in.impact", folder, ranks=ranks, log=launcher.LOG, seconds=allowed)
-        result = trajectory(plan, path, {"total": wall, "stepping": loop_seconds(folder / launcher.LOG)})
+        result = trajectory(job, path, {"total": wall, "stepping": loop_seconds(folder / launcher.LOG)})
         path.unlink()  # large
         return result
+
+    def resume(self, job: ScenePlan, folder: Path, *, ranks: int, report: Report) -> tuple[Tables, Resumed]:
+        resumed = scenes.resume(job, folder, ranks=ranks, report=report)
+        return self.read(job, folder, without=resumed.lost), resumed
+
+    def read(self, plan: ScenePlan, folder: Path, *, without: Collection[int] = ()) -> Tables:
+        """The tables of a scene; see `scenes.read`."""
+        return scenes.read(plan, folder, without=without)
 
 
 def data_text(plan: Plan, types: int) -> str:

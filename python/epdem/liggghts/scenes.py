@@ -1,73 +1,63 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""LIGGGHTS as an engine of bulk scenes."""
+"""Bulk scenes in LIGGGHTS: run, continue, read."""
 
 from collections.abc import Collection
 from pathlib import Path
 
-import pandas as pd
-
 from ..base import paths
 from ..case.parts import Parts
 from ..errors import CaseError
-from ..scenes.engine import Report, Resumed
+from ..impacts.engine import Report
+from ..scenes.engine import Resumed, Tables
 from ..scenes.plan import ScenePlan
-from . import executable, launcher, resume, scene_deck, wall_stress
+from . import executable, launcher, wall_stress
+from . import resume as restarts
 from . import scene_tables as tables
-from .impacts import Liggghts
+
+# patterns of files that an earlier run may have left in the folder
+LEFTOVERS = (
+    "particles.*.bin",
+    "contacts.*.txt",
+    "wall_contacts.*.txt",
+    "restart.*.bin",
+    "scene_*.vtk",
+    "stress_*.vtk",
+    "picture.*.ppm",
+    "in.resume",
+)
 
 
-class LiggghtsScenes:
-    """LIGGGHTS with our models."""
+def run(plan: ScenePlan, folder: Path, *, ranks: int, report: Report) -> None:
+    """Run the deck of a scene, which is in `folder`. Raises CaseError, EngineError."""
+    _refuse_vtk(plan)
+    launcher.run("in.scene", folder, ranks=ranks, report=_pruning(folder, report))
 
-    name = Liggghts.name
-    can = Liggghts.can
-    subfolder = ""
-    leftovers: tuple[str, ...] = (
-        "particles.*.bin",
-        "contacts.*.txt",
-        "wall_contacts.*.txt",
-        "restart.*.bin",
-        "scene_*.vtk",
-        "stress_*.vtk",
-        "picture.*.ppm",
-        "in.resume",
-    )
 
-    def missing(self) -> str | None:
-        return launcher.missing()
+def resume(plan: ScenePlan, folder: Path, *, ranks: int, report: Report) -> Resumed:
+    """Continue a run from its newest restart file. Raises CaseError, EngineError."""
+    _refuse_vtk(plan)
+    step, lost = restarts.choose(plan, folder)
+    deck = restarts.write_resume(plan, folder, step)
+    launcher.run(deck.name, folder, ranks=ranks, append=True, report=_pruning(folder, report))
+    return Resumed(step, lost)
 
-    def version(self) -> str:
-        return Liggghts().version()
 
-    def files(self, plan: ScenePlan) -> dict[str, str]:
-        return scene_deck.files(plan)
+def read(plan: ScenePlan, folder: Path, *, without: Collection[int] = ()) -> Tables:
+    """The tables of a run, without the frames of the steps `without`.
 
-    def notes(self, plan: ScenePlan) -> list[str]:
-        return []
-
-    def run(self, plan: ScenePlan, folder: Path, *, ranks: int, report: Report) -> None:
-        _refuse_vtk(plan)
-        launcher.run("in.scene", folder, ranks=ranks, report=_pruning(folder, report))
-
-    def resume(self, plan: ScenePlan, folder: Path, *, ranks: int, report: Report) -> Resumed:
-        _refuse_vtk(plan)
-        step, lost = resume.choose(plan, folder)
-        deck = resume.write_resume(plan, folder, step)
-        launcher.run(deck.name, folder, ranks=ranks, append=True, report=_pruning(folder, report))
-        return Resumed(step, lost)
-
-    def read(self, plan: ScenePlan, folder: Path, *, without: Collection[int] = ()) -> dict[str, pd.DataFrame]:
-        plan = plan.ended(tables.ends(folder)) if plan.ends_early else plan
-        read = {"rows": tables.rows(plan, folder / launcher.OUT)}
-        if isinstance(plan.case.scene, Parts):
-            read["phases"] = plan.phase_table
-        if plan.frames:
-            read["particles"] = tables.particles(plan, folder, without=without)
-        if plan.contacts:
-            read["contacts"] = tables.contact_table(plan, folder, read["particles"], without=without)
-        if wall_stress.watched(plan):
-            read["walls"] = wall_stress.table(plan, folder, without=without)
-        return read
+    Raises EngineError for any other frame that is missing or not whole.
+    """
+    plan = plan.ended(tables.ends(folder)) if plan.ends_early else plan
+    found = {"rows": tables.rows(plan, folder / launcher.OUT)}
+    if isinstance(plan.case.scene, Parts):
+        found["phases"] = plan.phase_table
+    if plan.frames:
+        found["particles"] = tables.particles(plan, folder, without=without)
+    if plan.contacts:
+        found["contacts"] = tables.contact_table(plan, folder, found["particles"], without=without)
+    if wall_stress.watched(plan):
+        found["walls"] = wall_stress.table(plan, folder, without=without)
+    return found
 
 
 def _refuse_vtk(plan: ScenePlan) -> None:
@@ -82,7 +72,7 @@ def _refuse_vtk(plan: ScenePlan) -> None:
 
 def _pruning(folder: Path, report: Report) -> Report:
     def row(step: int) -> None:
-        resume.prune(folder, step)
+        restarts.prune(folder, step)
         report(step)
 
     return row

@@ -11,8 +11,8 @@ from typing import TypedDict, Unpack
 import pandas as pd
 
 from .. import __version__
-from ..base.files import write_texts
 from ..base.folders import Results, claim, results_folder
+from ..base.settings import DEFAULT_ENGINE
 from ..base.stages import inputs_hash, library_hash
 from ..case.files import names_in
 from ..case.scene import SceneCase, load
@@ -20,10 +20,10 @@ from ..case.toml import named, text_of
 from ..case.toml import tables as toml_tables
 from ..case.warnings import case_warnings
 from ..errors import CaseError, EngineError
+from ..impacts.engine import Report, silent, texts
 from ..impacts.prediction import predict
 from . import checks, energy_balance, measures, pictures, results
-from .engine import Report, Resumed, SceneEngine, check_run
-from .engine import files as files_for
+from .engine import Resumed, SceneEngine, check_run
 from .plan import ScenePlan, plan
 from .timestep import leading_impact
 from .warnings import planned_warnings
@@ -88,12 +88,12 @@ def _stored(path: Path) -> results.SceneResults | None:
 
 
 def run_plan(
-    p: ScenePlan, engine: SceneEngine, folder: Path, *, ranks: int = 1, report: Report = lambda step: None
+    p: ScenePlan, engine: SceneEngine, folder: Path, *, ranks: int = 1, report: Report = silent
 ) -> dict[str, pd.DataFrame]:
     """Write a plan's deck into `folder`, run it, read its tables. Raises CaseError, EngineError."""
-    write_texts(folder, files_for(engine, p))
-    engine.run(p, folder, ranks=ranks, report=report)
-    return engine.read(p, folder)
+    engine.check(p)
+    engine.write(p, folder)
+    return engine.run(p, folder, ranks=ranks, report=report)
 
 
 class Options(TypedDict, total=False):
@@ -136,12 +136,13 @@ def run_case(
         p = plan(case)
         measures.refuse_measures(p)
         pictures.refuse_color(p)
-        files, notes = files_for(engine, p), [*engine.notes(p), *planned_warnings(p), *_warnings(p.case)]
+        notes = [*engine.check(p), *planned_warnings(p), *_warnings(p.case)]
+        files = texts(engine, p)
     check_run(engine, ranks=ranks, resume=resume)
     beside = Path(str(place)).parent
     contents = {name: (beside / name).read_bytes() for name in sorted(names_in(toml_tables(text, place)))}
     work = _Work(text, p, engine, files, notes, contents, ranks, lambda step: report(step, p.steps))
-    folder = results_folder(out, p.case.name, engine.subfolder)
+    folder = results_folder(out, p.case.name, "" if engine.name == DEFAULT_ENGINE else engine.name)
     if resume and not folder.exists():
         raise CaseError(f"{folder}: no such folder, so no run to continue; run the case without --resume")
     with claim(folder, force=force, files=files) as place:
@@ -165,7 +166,6 @@ def _as_run(p: ScenePlan, tables: dict[str, pd.DataFrame]) -> ScenePlan:
 
 def _anew(work: _Work, place: Results) -> SceneOutcome:
     start = time.perf_counter()
-    place.remove(*work.engine.leftovers)
     place.note(work.versions)
     tables = run_plan(work.plan, work.engine, place.folder, ranks=work.ranks, report=work.report)
     return _finish(work, place.folder, start, tables)
@@ -182,8 +182,7 @@ def _resumed(work: _Work, place: Results) -> SceneOutcome:
         was, now = (", ".join(f"{k} {v}" for k, v in versions.items()) for versions in (place.versions, work.versions))
         begun = f"{folder}: begun by {was or 'programs of unknown versions'}, and here is {now}"
         raise CaseError(f"{begun}; run it anew (--fresh)")
-    went_on = work.engine.resume(work.plan, folder, ranks=work.ranks, report=work.report)
-    tables = work.engine.read(work.plan, folder, without=went_on.lost)
+    tables, went_on = work.engine.resume(work.plan, folder, ranks=work.ranks, report=work.report)
     return _finish(work, folder, start, tables, went_on)
 
 

@@ -19,9 +19,9 @@ from ..case.scene import Output, SceneCase, load
 from ..case.toml import named, text_of
 from ..errors import CaseError, EngineError
 from ..liggghts import trials
-from ..liggghts.scenes import LiggghtsScenes
+from ..liggghts.impacts import Liggghts
 from ..liggghts.trials import Loops
-from ..scenes.engine import check_run, files
+from ..scenes.engine import check_run
 from ..scenes.plan import ScenePlan, plan
 
 SHARES = (0.25, 0.5, 0.75, 1.0, 1.5)  # of the smallest radius: skins that are tried
@@ -125,11 +125,12 @@ def _cuts(ranks: int) -> list[str]:
 
 def tune(path: Path, *, ranks: int = 1, seconds: float = 60.0, progress: Progress = lambda text: None) -> Tuned:
     """Trials of the scene in `path`, each of at most `seconds`. Raises CaseError, EngineError."""
-    tool = LiggghtsScenes()
+    tool = Liggghts()
     with named(path):
         case = load(path)
         p = _silent(case)
-        texts = files(tool, p)
+        tool.check(p)
+        texts = tool.files(p)
     check_run(tool, ranks=ranks)
     present = trials.skin(p)
     others = sorted({float(f"{share * p.smallest:.2e}") for share in SHARES} - {present})
@@ -151,7 +152,7 @@ def tune(path: Path, *, ranks: int = 1, seconds: float = 60.0, progress: Progres
     for cut in dict.fromkeys([case.numerics.processors or "", *_cuts(ranks)]):
         progress(_axes(cut))
         numerics = case.numerics.model_copy(update={"processors": cut or None})
-        texts = files(tool, _silent(case.model_copy(update={"numerics": numerics})))
+        texts = tool.files(_silent(case.model_copy(update={"numerics": numerics})))
         runs[cut] = trials.run(trials.pieces(texts, [best], steps * len(skins), length)[0], ranks, seconds)
     return replace(result, cuts=tuple(_of_cuts(runs)))
 

@@ -16,7 +16,7 @@ import pandas as pd
 
 from ..case.impact import Case, load
 from ..case.toml import named
-from ..engines import DEFAULT_ENGINE, Engine
+from ..engines import DEFAULT_ENGINE, ImpactEngine
 from ..engines.embedded import Embedded
 from ..errors import EngineError
 from ..impacts.engine import require
@@ -38,7 +38,7 @@ ENGINES = (Embedded.name, DEFAULT_ENGINE)  # of a study that names none
 class Model:
     """An engine with a law, and the plan of each number of steps."""
 
-    engine: Engine
+    engine: ImpactEngine
     law: str
     prediction: Prediction
     plans: dict[int, Plan]

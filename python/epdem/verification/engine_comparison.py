@@ -13,13 +13,14 @@ from ..base.folders import claim, results_folder
 from ..base.tables import write_csv
 from ..case.impact import Check, load
 from ..case.toml import named
-from ..engines import ENGINES, Engine
+from ..engines import ENGINES, ImpactEngine
 from ..errors import CaseError, EngineError
 from ..impacts import report
 from ..impacts.comparison import CHECKED
 from ..impacts.experiment import Experiment, experiment
 from ..impacts.plan import plan
 from ..impacts.run import Outcome, run, run_and_compare
+from ..yade.impacts import Yade
 from .invariance.check import VARIANTS, Invariance, examine
 from .models import OWN_LAW, SAME_LAW, OwnTheory
 from .models.predictions import prediction as predict
@@ -54,7 +55,7 @@ class Crosscheck:
         return [str(name) for name in self.table["model"][self.table["check"] == OTHERS_OUTSIDE]]
 
 
-def models(x: Experiment, chosen: Sequence[str] = ()) -> tuple[dict[str, Engine], dict[str, str]]:
+def models(x: Experiment, chosen: Sequence[str] = ()) -> tuple[dict[str, ImpactEngine], dict[str, str]]:
     """Engines and models (those `chosen`; none: all) that can run this case here, and why the others cannot.
 
     Raises CaseError for a name that does not exist, EngineError if nothing can run.
@@ -62,7 +63,7 @@ def models(x: Experiment, chosen: Sequence[str] = ()) -> tuple[dict[str, Engine]
     known = ENGINES | SAME_LAW | OWN_LAW
     if wrong := [name for name in chosen if name not in known]:
         raise CaseError(f"--engine {wrong[0]!r} does not exist; there are {', '.join(known)}")
-    other_law = {n for n, kind in SAME_LAW.items() if x.law.name not in (kind.can.laws or ())}
+    other_law = {n for n, kind in SAME_LAW.items() if x.law.name not in (kind.laws or ())}
     tools = {n: kind() for n, kind in known.items() if n in chosen or not (chosen or n in other_law)}
     absent = {name: reason for name, tool in tools.items() if (reason := tool.missing())}
     for name, tool in tools.items():
@@ -84,7 +85,9 @@ def _own_theory(tool: OwnTheory, x: Experiment, folder: Path) -> tuple[pd.DataFr
     return rows, stage.seconds["seconds"]
 
 
-def _row(tool: Engine, fine: pd.DataFrame, coarse: pd.DataFrame, x: Experiment, folder: Path) -> dict[str, object]:
+def _row(
+    tool: ImpactEngine, fine: pd.DataFrame, coarse: pd.DataFrame, x: Experiment, folder: Path
+) -> dict[str, object]:
     middle = fine.iloc[len(fine) // 2]
     row: dict[str, object] = {"model": tool.name, "speed": middle["speed"]}
     row |= {name: middle[name] for q in SHOWN for name in (q, q + "_theory")}
@@ -100,9 +103,9 @@ def _row(tool: Engine, fine: pd.DataFrame, coarse: pd.DataFrame, x: Experiment, 
     return row | {"check": names[0] if within else names[1]}
 
 
-def _within(tool: Engine, rows: pd.DataFrame, check: Check) -> bool:
+def _within(tool: ImpactEngine, rows: pd.DataFrame, check: Check) -> bool:
     """Whether all errors are within tolerance; psi_2 counts where the friction is the case's, not the host's own."""
-    names = [*CHECKED, *(["psi_2"] if "psi_2_error" in rows and not tool.can.own_spring else [])]
+    names = [*CHECKED, *(["psi_2"] if "psi_2_error" in rows and not isinstance(tool, Yade) else [])]
     return all(bool((rows[f"{name}_error"] <= getattr(check, name)).all()) for name in names)
 
 

@@ -15,7 +15,7 @@ from ..base.folders import claim, results_folder
 from ..base.tables import write_csv
 from ..case.impact import Case, parse
 from ..case.toml import named, read_toml
-from ..engines import DEFAULT_ENGINE, Engine
+from ..engines import DEFAULT_ENGINE, ImpactEngine
 from ..engines.embedded import Embedded
 from ..errors import CaseError
 from ..impacts.engine import require
@@ -100,7 +100,7 @@ def _simulated(x: Experiment, row: pd.Series, quantity: str) -> float:
     return 2.0 * float(law.radius(row["overlap_max"]))
 
 
-def _of_law(measured: Measured, law: str, tools: list[Engine], scratch: Path) -> list[dict[str, object]]:
+def _of_law(measured: Measured, law: str, tools: list[ImpactEngine], scratch: Path) -> list[dict[str, object]]:
     """One row for each point and engine. Raises CaseError if the law does not have its numbers in the set's case."""
     rows: list[dict[str, object]] = []
     for (material, strength), points in measured.points.groupby(["strength of", "yield_stress"]):

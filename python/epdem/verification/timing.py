@@ -5,7 +5,7 @@ import math
 import time
 from pathlib import Path
 
-from ..engines import Engine
+from ..engines import ImpactEngine
 from ..engines.embedded import Embedded, numbers
 from ..impacts.plan import Plan
 from ..liggghts import launcher
@@ -13,7 +13,7 @@ from ..liggghts.impacts import Liggghts
 from ..liggghts.log import loop_seconds
 
 
-def seconds(tool: Engine, plan: Plan, folder: Path) -> dict[str, float]:
+def seconds(tool: ImpactEngine, plan: Plan, folder: Path) -> dict[str, float]:
     """Times of one run with the least possible output [s]: startup, setup, stepping; NaN where unknown."""
     if isinstance(tool, Embedded):
         return _embedded(plan)

@@ -1,23 +1,28 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""YADE with our laws: a plan becomes one Python deck with all impacts side by side and a copy of the law."""
+"""YADE with our laws: impacts side by side in one Python deck with a copy of the law, and bulk scenes."""
 
 import re
 import shutil
 import time
 from math import isfinite, isinf
 from pathlib import Path
+from typing import overload
 
 import numpy as np
 
 from ..base import rendering as decks
+from ..base.files import write_texts
+from ..base.folders import held
 from ..base.processes import ask, call
-from ..case.fields import NODES
-from ..errors import EngineError
-from ..impacts.engine import Abilities, Trajectory, check_abilities
+from ..errors import CaseError, EngineError
+from ..impacts.engine import Feature, Report, Trajectory, check_features, silent
 from ..impacts.experiment import Body, Experiment
 from ..impacts.placement import approach, side_by_side
 from ..impacts.plan import Plan
+from ..scenes.engine import Resumed, Tables, check_scene
+from ..scenes.plan import ScenePlan
 from ..theory.sources import Source
+from . import scene_deck, scenes
 from .deck import Deck, Group, Material, refuse_parameters, strength_values
 from .deck_modules.law import LAWS
 from .launcher import command, environment, write_deck_modules
@@ -26,7 +31,7 @@ INSTALL = "apt-get install yade"
 
 
 class Yade:
-    """Impacts in YADE: sphere on sphere or wall, with a copy of the law in the deck."""
+    """YADE with a copy of the law in the deck; a run has one core."""
 
     name = "yade"
     source: Source | None = Source(
@@ -37,13 +42,9 @@ class Yade:
         kind="manual",
         note="doi:10.5281/zenodo.5705394",
     )
-    # a serial YADE keeps bodies where they are in memory and has no ranks: sorting and migration do not exist
-    can = Abilities(
-        laws=tuple(LAWS),
-        friction=tuple(NODES),
-        own_spring=True,
-        scenes=("settle", "compaction", "parts"),
-    )
+    laws: tuple[str, ...] | None = tuple(LAWS)
+    ranks = 1
+    features = frozenset({Feature.FRICTION, Feature.DECK, Feature.POSITIONS})
     template = "yade/impact.py.j2"
 
     def missing(self) -> str | None:
@@ -73,7 +74,7 @@ class Yade:
     def deck(self, plan: Plan) -> Deck:
         """The deck of a plan. Raises CaseError for what YADE cannot do."""
         x, wall = plan.experiment, isinf(plan.experiment.target.radius)
-        check_abilities(self, x)
+        check_features(self, x)
         if x.law.name in LAWS:
             refuse_parameters(x.law.name, x.law.ratios())
         materials = {
@@ -102,17 +103,24 @@ class Yade:
             path="path.bin",
         )
 
-    def check(self, plan: Plan) -> None:
-        self.deck(plan)
+    def check(self, job: Plan | ScenePlan) -> list[str]:
+        if isinstance(job, ScenePlan):
+            check_scene(self, job, scenes.KINDS)
+            scene_deck.deck(job)
+            return scene_deck.notes(job)
+        self.deck(job)
+        return ["friction by its own one spring; theory is that of partial slip"] if job.experiment.oblique else []
 
-    def write(self, plan: Plan, folder: Path) -> list[Path]:
-        deck = self.deck(plan)
+    def write(self, job: Plan | ScenePlan, folder: Path) -> list[Path]:
+        if isinstance(job, ScenePlan):
+            return write_texts(folder, scene_deck.files(job))
+        deck = self.deck(job)
         folder.mkdir(parents=True, exist_ok=True)
         modules = [] if deck.native else write_deck_modules(folder)
         script = folder / "impact.py"
         script.write_text(decks.render(self.template, deck=deck), encoding="utf-8")
         files = [folder / b.data for b in deck.bodies]
-        for path, table in zip(files, tables(plan), strict=True):
+        for path, table in zip(files, tables(job), strict=True):
             lines = [
                 "# x y z v_z v_x omega_y, SI" if deck.oblique else "# x y z v_z, SI",
                 *(" ".join(map(decks.number, row)) for row in table),
@@ -121,7 +129,19 @@ class Yade:
             path.write_text("\n".join(lines), encoding="utf-8")
         return [script, *files, *modules]
 
-    def run(self, plan: Plan, folder: Path, *, ranks: int = 1) -> Trajectory:
+    @overload
+    def run(self, job: Plan, folder: Path, *, ranks: int = 1, report: Report = silent) -> Trajectory: ...
+
+    @overload
+    def run(self, job: ScenePlan, folder: Path, *, ranks: int = 1, report: Report = silent) -> Tables: ...
+
+    def run(
+        self, job: Plan | ScenePlan, folder: Path, *, ranks: int = 1, report: Report = silent
+    ) -> Trajectory | Tables:
+        if isinstance(job, ScenePlan):
+            held(folder).remove(*scenes.LEFTOVERS)
+            scenes.run(folder, report=report)
+            return self.read(job, folder)
         path, log = folder / "path.bin", folder / "out.yade"
         path.unlink(missing_ok=True)
         start = time.perf_counter()
@@ -129,13 +149,20 @@ class Yade:
             [command(), "-n", "-x", "impact.py"],
             folder,
             log=log.name,
-            seconds=120 + 2e-5 * plan.n * plan.steps,
+            seconds=120 + 2e-5 * job.n * job.steps,
             env=environment(),
         )
         wall = time.perf_counter() - start
-        result = trajectory(plan, path, {"total": wall, "stepping": stepping_seconds(log)})
+        result = trajectory(job, path, {"total": wall, "stepping": stepping_seconds(log)})
         path.unlink()  # large
         return result
+
+    def resume(self, job: ScenePlan, folder: Path, *, ranks: int, report: Report) -> tuple[Tables, Resumed]:
+        raise CaseError(f"{folder}: a scene in YADE runs from its start; run it anew")
+
+    def read(self, plan: ScenePlan, folder: Path) -> Tables:
+        """The tables of a scene; see `scenes.read`."""
+        return scenes.read(plan, folder)
 
 
 def tables(plan: Plan) -> list[np.ndarray]:

@@ -14,7 +14,7 @@ from ...case import impact, scene
 from ...case.toml import named
 from ...engines import engine, scene_engine
 from ...errors import CaseError, EngineError, EpdemError
-from ...impacts.engine import Engine, refuse
+from ...impacts.engine import Feature, ImpactEngine, refuse
 from ...impacts.experiment import experiment
 from ...impacts.plan import plan
 from ...impacts.prediction import predict
@@ -67,7 +67,7 @@ def evaluate(sweep: Sweep, folder: Path, number: int, *, resume: bool = True) ->
 
 
 @cache
-def _tools(names: tuple[str, ...]) -> tuple[Engine, ...]:
+def _tools(names: tuple[str, ...]) -> tuple[ImpactEngine, ...]:
     """Engines of impacts; a process that works at many points starts each of them once."""
     return tuple(engine(name, stay=True) for name in names)
 
@@ -81,7 +81,7 @@ def _impacts(sweep: Sweep, number: int, place: Path) -> dict[str, list[Any]]:
         p = plan(x, prediction)
         for tool in _tools(sweep.engines):
             refuse(tool, p, prediction, ranks=sweep.ranks)
-            at = place / x.law.name / tool.name if tool.can.deck else place
+            at = place / x.law.name / tool.name if Feature.DECK in tool.features else place
             tables.append(run_and_compare(p, prediction, tool, at, ranks=sweep.ranks)[0])
     table = tables[0] if len(tables) == 1 else pd.concat(tables, ignore_index=True)
     return {str(name): table[name].tolist() for name in table.columns}
@@ -96,7 +96,8 @@ def _scene(sweep: Sweep, place: Path, *, resume: bool) -> dict[str, list[Any]]:
         row = {"engine": tool.name, **numbers_of(outcome.results), "passed": outcome.passed}
         return {name: [value] for name, value in row.items()}
 
-    if resume and tool.can.restarts and any(place.glob("restart.*.bin")) and not (place / "results.h5").exists():
+    interrupted = any(place.glob("restart.*.bin")) and not (place / "results.h5").exists()
+    if resume and interrupted and Feature.RESTART in tool.features:
         with contextlib.suppress(CaseError, EngineError):  # no whole restart file, or one of another deck
             return once(True)
     return once(False)

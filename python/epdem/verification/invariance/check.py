@@ -11,7 +11,7 @@ from typing import Any, Protocol
 
 import numpy as np
 
-from ...engines import Engine
+from ...engines import ImpactEngine
 from ...errors import EngineError
 from ...impacts.experiment import Experiment
 from ...impacts.plan import plan
@@ -49,13 +49,13 @@ class _Host(Protocol):
         """
 
 
-def _host(tool: Engine) -> _Host | None:
+def _host(tool: ImpactEngine) -> _Host | None:
     if isinstance(tool, Liggghts):
         return liggghts
     return yade if isinstance(tool, Yade) else None
 
 
-def examine(tool: Engine, x: Experiment, folder: Path) -> Invariance | None:
+def examine(tool: ImpactEngine, x: Experiment, folder: Path) -> Invariance | None:
     """Run the impacts of unequal spheres in every variant; None: the engine has none. Raises EngineError."""
     if (host := _host(tool)) is None:
         return None

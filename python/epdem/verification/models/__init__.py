@@ -3,7 +3,7 @@
 
 from typing import Protocol
 
-from ...engines import ENGINES, Engine
+from ...engines import ENGINES, ImpactEngine
 from ...errors import CaseError
 from ...impacts.experiment import Experiment
 from ...impacts.prediction import Prediction
@@ -12,7 +12,7 @@ from .liggghts import BuiltinEdinburgh, BuiltinHertz, BuiltinLuding, ThorntonNin
 from .yade import YadeLuding
 
 
-class OwnTheory(Engine, Protocol):
+class OwnTheory(ImpactEngine, Protocol):
     """A model with a law of another code, and the theory of that law."""
 
     end_power: float  # the power of the force that falls linearly with the overlap at the end of an impact
@@ -25,7 +25,7 @@ class OwnTheory(Engine, Protocol):
 
 
 # Models that have one of epdem's laws: the theory of the case is theirs, too.
-SAME_LAW: dict[str, type[Engine]] = {tool.name: tool for tool in (ThorntonNing, BuiltinHertz)}
+SAME_LAW: dict[str, type[ImpactEngine]] = {tool.name: tool for tool in (ThorntonNing, BuiltinHertz)}
 # Models with a law and a theory of their own: for `crosscheck`.
 OWN_LAW: dict[str, type[OwnTheory]] = {
     tool.name: tool for tool in (BuiltinLuding, BuiltinEdinburgh, YadeLuding, LammpsMdr)
@@ -33,7 +33,7 @@ OWN_LAW: dict[str, type[OwnTheory]] = {
 REFERENCE = BuiltinHertz.name  # run times are given as ratios to the time of this model
 
 
-def engine(name: str) -> Engine:
+def engine(name: str) -> ImpactEngine:
     """The engine or the model of that name. Raises CaseError for a model with a law of its own."""
     known = ENGINES | SAME_LAW
     if name in OWN_LAW:
@@ -43,6 +43,6 @@ def engine(name: str) -> Engine:
     return known[name]()
 
 
-def only_law(tool: Engine) -> str | None:
+def only_law(tool: ImpactEngine) -> str | None:
     """The law of epdem for which a model of another code stands; None: the engine has several."""
-    return tool.can.laws[0] if tool.can.laws and len(tool.can.laws) == 1 else None
+    return tool.laws[0] if tool.laws and len(tool.laws) == 1 else None

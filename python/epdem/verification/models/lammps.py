@@ -14,7 +14,7 @@ from ...base import rendering as decks
 from ...base.files import write_texts
 from ...base.processes import ask, call
 from ...errors import EngineError
-from ...impacts.engine import Abilities, Trajectory, check_abilities
+from ...impacts.engine import Feature, Report, Trajectory, check_features, silent
 from ...impacts.experiment import Experiment
 from ...impacts.placement import approach, room, side_by_side
 from ...impacts.plan import Plan
@@ -76,7 +76,9 @@ class LammpsMdr:
         2022,
     )
     template = "verification/lammps/impact.in.j2"
-    can = Abilities()
+    laws: tuple[str, ...] | None = None
+    ranks = 1
+    features = frozenset({Feature.DECK, Feature.POSITIONS})
     end_power = 2 / 3
 
     def missing(self) -> str | None:
@@ -96,7 +98,7 @@ class LammpsMdr:
     def deck(self, plan: Plan) -> Deck:
         """The deck of a plan. Raises CaseError for cases outside mdr."""
         x = plan.experiment
-        check_abilities(self, x)
+        check_features(self, x)
         law = predictions.mdr(x)
         numbers = (law.young_modulus, law.poisson_ratio, law.yield_stress, 0.0, BULK, 0.0)
         contact = f"mdr {' '.join(map(decks.number, numbers))} tangential linear_history 0.0 0.0 0.0 damping mdr 1"
@@ -114,12 +116,13 @@ class LammpsMdr:
             steps=plan.steps,
         )
 
-    def check(self, plan: Plan) -> None:
-        self.deck(plan)
+    def check(self, job: Plan) -> list[str]:
+        self.deck(job)
+        return []
 
-    def write(self, plan: Plan, folder: Path) -> list[Path]:
-        deck = self.deck(plan)
-        texts = {"in.impact": decks.render(self.template, deck=deck), deck.data: self.data(plan)}
+    def write(self, job: Plan, folder: Path) -> list[Path]:
+        deck = self.deck(job)
+        texts = {"in.impact": decks.render(self.template, deck=deck), deck.data: self.data(job)}
         files = write_texts(folder, texts)
         library = folder / "libmpi.so.12"
         library.unlink(missing_ok=True)
@@ -133,7 +136,7 @@ class LammpsMdr:
         spheres = data_file.Spheres(1, 2 * g.body.radius, g.body.density, g.place, g.velocity)
         return data_file.text(plan.experiment.name, 1, room(plan), [spheres])
 
-    def run(self, plan: Plan, folder: Path, *, ranks: int = 1) -> Trajectory:
+    def run(self, job: Plan, folder: Path, *, ranks: int = 1, report: Report = silent) -> Trajectory:
         path = folder / "path.txt"
         path.unlink(missing_ok=True)
         env = os.environ | {"LD_LIBRARY_PATH": str(folder.resolve()), "OMP_NUM_THREADS": "1"}
@@ -141,7 +144,7 @@ class LammpsMdr:
             [str(program()), "-in", "in.impact", "-log", "log.lammps"],
             folder,
             log="out.lammps",
-            seconds=120 + 1e-5 * plan.n * plan.steps,
+            seconds=120 + 1e-5 * job.n * job.steps,
             env=env,
         )
         try:
@@ -149,9 +152,9 @@ class LammpsMdr:
             frames = np.array(
                 [row.split() for row in lines if row.count(" ") == 3 and not row.startswith("ITEM")], float
             )
-            z, vz, fz = np.moveaxis(frames.reshape(plan.steps + 1, plan.n, 4)[:, :, 1:], 2, 0)
+            z, vz, fz = np.moveaxis(frames.reshape(job.steps + 1, job.n, 4)[:, :, 1:], 2, 0)
         except (OSError, ValueError) as error:
             raise EngineError(f"{path}: the run left an incomplete dump ({error}); see log.lammps beside it") from None
         path.unlink()
-        overlap, velocity = approach(plan, z, vz)
-        return Trajectory(plan.time_step, overlap, fz.T, velocity, {"total": wall})
+        overlap, velocity = approach(job, z, vz)
+        return Trajectory(job.time_step, overlap, fz.T, velocity, {"total": wall})

@@ -4,6 +4,7 @@
 import math
 from dataclasses import replace
 
+from ...impacts.engine import Feature
 from ...impacts.experiment import Experiment
 from ...impacts.plan import Plan
 from ...impacts.prediction import Prediction
@@ -20,13 +21,13 @@ def _elastic(plan: Plan) -> tuple[int, list[Property]]:
     return types, [*elastic, per_pair("coefficientRestitution", types, 1.0, "-", "no viscous damping")]
 
 
-WITHOUT_OURS = replace(Liggghts.can, dashpot=False, friction=(), scenes=(), restarts=False)
+WITHOUT_OURS = Liggghts.features - {Feature.DASHPOT, Feature.FRICTION, Feature.RESTART}
 
 
 class _Rubbing(Liggghts):
     """A model with LIGGGHTS's own tangential spring, whatever tangential model the case has."""
 
-    can = replace(WITHOUT_OURS, friction=Liggghts.can.friction, own_spring=True)
+    features = WITHOUT_OURS | {Feature.FRICTION}
 
     def tangential(self, plan: Plan) -> str | None:
         return "history" if plan.experiment.oblique else None
@@ -36,7 +37,7 @@ class BuiltinHertz(_Rubbing):
     """LIGGGHTS's `hertz` without damping: the elastic limit."""
 
     name = "liggghts-hertz"
-    can = replace(_Rubbing.can, laws=("hertz",))
+    laws: tuple[str, ...] | None = ("hertz",)
 
     def model(self, plan: Plan) -> str:
         return "hertz"
@@ -50,7 +51,7 @@ class ThorntonNing(_Rubbing):
     """LIGGGHTS's `thornton_ning` without adhesion, with the yield pressure of the plan's `thornton` law."""
 
     name = "liggghts-thornton_ning"
-    can = replace(_Rubbing.can, laws=("thornton",))
+    laws: tuple[str, ...] | None = ("thornton",)
 
     def model(self, plan: Plan) -> str:
         return "thornton_ning"
@@ -71,7 +72,7 @@ class ThorntonNing(_Rubbing):
 class _OwnTheory(Liggghts):
     """A model whose numbers and theory are in `predictions`."""
 
-    can = WITHOUT_OURS
+    features = WITHOUT_OURS
     end_power = 1.0  # the force falls linearly with the overlap
 
     def deck(self, plan: Plan) -> Deck:

@@ -4,6 +4,7 @@
 import math
 from dataclasses import replace
 
+from ...impacts.engine import Feature
 from ...impacts.experiment import Body, Experiment
 from ...impacts.plan import Plan
 from ...impacts.prediction import Prediction
@@ -20,7 +21,8 @@ class YadeLuding(Yade):
     """
 
     name = "yade-luding"
-    can = replace(Yade.can, laws=None, friction=(), scenes=())
+    laws: tuple[str, ...] | None = None
+    features = Yade.features - {Feature.FRICTION}
     end_power = 1.0  # the force falls linearly with the overlap
 
     def predict(self, x: Experiment) -> Prediction:

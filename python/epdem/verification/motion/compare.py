@@ -96,7 +96,7 @@ def compare(
     for touch, motion in runs:
         refuse(touch, motion)
         for tool in tools:
-            check_law(tool.name, tool.can, touch.experiment.law.name)
+            check_law(tool, touch.experiment.law.name)
     require(*tools)
     folder = results_folder(out, load(case).name, "motion")
     rows = []
@@ -110,9 +110,9 @@ def compare(
                 found = tool.loads(touch, motion, place)
                 write_texts(place, {"motion.json": text(motion.columns() | found.columns())})
                 first = first or found
-                friction = "own" if tool.can.own_spring else touch.tangential
+                friction = "own" if tool.own_spring else touch.tangential
                 row = {"motion": motion.name, "law": law, "engine": tool.name, "friction": friction}
-                rows.append(row | deviations(touch, motion, found, first, own_spring=tool.can.own_spring))
+                rows.append(row | deviations(touch, motion, found, first, own_spring=tool.own_spring))
         table = pd.DataFrame(rows)
         write_csv(folder / TABLE, table)
     return Outcome(table, folder)

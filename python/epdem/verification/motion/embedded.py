@@ -5,9 +5,7 @@ from pathlib import Path
 
 import numpy as np
 
-from ...case.fields import NODES
 from ...engines.embedded import Embedded
-from ...impacts.engine import Abilities
 from .prescribed import Loads, Motion, Touch, unit_normals
 
 
@@ -15,7 +13,8 @@ class EmbeddedMotions:
     """One contact, without any other program."""
 
     name = Embedded.name
-    can = Abilities(friction=tuple(NODES))
+    laws: tuple[str, ...] | None = None
+    own_spring = False
 
     def missing(self) -> str | None:
         return Embedded().missing()

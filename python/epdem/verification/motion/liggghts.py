@@ -9,9 +9,7 @@ import numpy as np
 
 from ...base import rendering as decks
 from ...base.files import write_texts
-from ...case.fields import NODES
 from ...errors import EngineError
-from ...impacts.engine import Abilities
 from ...liggghts import data_file, dump, launcher
 from ...liggghts.deck import Deck
 from ...liggghts.impacts import Liggghts
@@ -26,7 +24,8 @@ class LiggghtsMotions:
     """LIGGGHTS with a law and a friction of ours, or with its own spring."""
 
     name = Liggghts.name
-    can = Abilities(friction=tuple(NODES))
+    laws: tuple[str, ...] | None = None
+    own_spring = False
 
     def missing(self) -> str | None:
         return launcher.missing()

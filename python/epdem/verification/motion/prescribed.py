@@ -18,7 +18,6 @@ from ...case.fields import NODES, Tangential
 from ...case.sizes import LARGEST_FILE
 from ...case.toml import text_of
 from ...errors import CaseError
-from ...impacts.engine import Abilities
 from ...impacts.experiment import Experiment
 from ...impacts.plan import Plan
 from ...laws.library import Array
@@ -118,7 +117,8 @@ class MotionEngine(Protocol):
     """One way to compute the forces of a prescribed motion."""
 
     name: str
-    can: Abilities
+    laws: tuple[str, ...] | None  # as in `Engine`
+    own_spring: bool  # its own spring runs for any tangential model
 
     def missing(self) -> str | None:
         """None if the engine can run here, else a sentence with the command that installs it."""

@@ -9,9 +9,7 @@ import numpy as np
 from ...base import rendering as decks
 from ...base.files import write_texts
 from ...base.processes import call
-from ...case.fields import NODES
 from ...errors import EngineError
-from ...impacts.engine import Abilities
 from ...yade.deck import Deck, Material
 from ...yade.deck_modules.law import LAWS
 from ...yade.impacts import Yade
@@ -25,7 +23,8 @@ class YadeMotions:
     """YADE with our laws and its own friction: one spring whose kinematics are YADE's."""
 
     name = Yade.name
-    can = Abilities(laws=tuple(LAWS), friction=tuple(NODES), own_spring=True)
+    laws: tuple[str, ...] | None = tuple(LAWS)
+    own_spring = True
 
     def missing(self) -> str | None:
         return Yade().missing()

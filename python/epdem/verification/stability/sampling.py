@@ -7,7 +7,7 @@ from typing import Protocol
 
 import numpy as np
 
-from ...engines import Engine
+from ...engines import ImpactEngine
 from ...engines.embedded import Embedded
 from ...impacts.experiment import Experiment
 from ...impacts.plan import Plan
@@ -59,7 +59,7 @@ class PositionSampler:
 
     positions, most_steps, phases = True, 20_000, 8
 
-    def __init__(self, engine: Engine, folder: Path):
+    def __init__(self, engine: ImpactEngine, folder: Path):
         self.engine, self.folder, self.name, self.slow = engine, folder, engine.name, isinstance(engine, Yade)
 
     def __call__(self, x: Experiment, time_step: float, gap: np.ndarray, steps: int) -> Sample:

@@ -9,10 +9,10 @@ from pathlib import Path
 
 import pandas as pd
 
-from ...engines import Engine
+from ...engines import ImpactEngine
 from ...engines.embedded import Embedded
 from ...errors import CaseError
-from ...impacts.engine import check_law, require
+from ...impacts.engine import Feature, check_law, require
 from ...theory.backbones import ADHESIVE, LAWS
 from ...yade.impacts import Yade
 from ..models import engine
@@ -53,7 +53,7 @@ def samplers(names: list[str], folder: Path) -> list[Sampler]:
     for name in names:
         tool = engine(name)
         require(tool)
-        chosen.append(PositionSampler(tool, folder / name) if tool.can.positions else EmbeddedSampler())
+        chosen.append(PositionSampler(tool, folder / name) if Feature.POSITIONS in tool.features else EmbeddedSampler())
     return chosen
 
 
@@ -83,7 +83,7 @@ def run(
             raise CaseError(f"{option} {wrong[0]!r} does not exist; there are {', '.join(known)}")
     engines = list(dict.fromkeys(engines)) or [Embedded.name]
     for name, law in product(engines, laws):
-        check_law(name, engine(name).can, law)
+        check_law(engine(name), law)
     laws = list(dict.fromkeys(laws)) or [*LAWS, *ADHESIVE]
     plain = [law for law in laws if law in LAWS]
     chosen = [e for e in extremes() if not groups or e.group in groups][::every]
@@ -121,9 +121,9 @@ def run(
     )
 
 
-def _work(tool: Engine, laws: list[str], chosen: list[Extreme]) -> list[tuple[str, Extreme]]:
+def _work(tool: ImpactEngine, laws: list[str], chosen: list[Extreme]) -> list[tuple[str, Extreme]]:
     """The laws and cases of an engine."""
-    known = [law for law in laws if tool.can.laws is None or law in tool.can.laws]
+    known = [law for law in laws if tool.laws is None or law in tool.laws]
     if isinstance(tool, Yade):  # seconds for a plan
         known, chosen = [LAW_OF_SLOW] if LAW_OF_SLOW in known else known, ends(chosen)
     return [(law, extreme) for law in known for extreme in chosen if extreme.suits(law)]
