@@ -60,7 +60,7 @@ def primes() -> Iterator[int]:
 
 def _limit(volume: float, least: float) -> str:
     """The words that let LIGGGHTS take a volume [m^3] below its least one."""
-    return f" volume_limit {MEANT:g}" if volume < least else ""
+    return f" volume_limit {min(MEANT, volume / 2):.3g}" if 0 < volume < least else ""
 
 
 def _region(fill: filling.Insertion) -> str:

@@ -45,16 +45,8 @@ def refuse_steps(case: SceneCase, rows: int, duration: float, dt: float) -> None
 
 
 def refuse_outside(s: Parts, triangles: dict[str, FloatArray]) -> None:
-    """Raise CaseError for spheres, regions and walls beyond the room, and for motions that take a wall out of it.
-
-    Where a wall is after a phase that may end early is not known.
-    """
+    """Raise CaseError for regions and walls beyond the room."""
     low, high = np.array(s.room.limits[0::2]), np.array(s.room.limits[1::2])
-    places = [(f"sphere {n} of scene.fill and scene.body", x.place) for n, x in enumerate(s.table, 1)]
-    places += [(f"scene.body.{b.name}.position", b.sphere.place) for b in s.later]
-    for name, place in places:
-        if (np.array(place) < low).any() or (np.array(place) > high).any():
-            raise CaseError(f"{name}: {tuple(place)} m lies beyond scene.room; move it, or enlarge the room")
     for f in s.random_fills:
         limits = np.array(f.region.limits)
         if (limits[0::2] < low).any() or (limits[1::2] > high).any():
@@ -64,18 +56,6 @@ def refuse_outside(s: Parts, triangles: dict[str, FloatArray]) -> None:
     for name, corners in triangles.items():
         if (corners < low).any() or (corners > high).any():
             raise CaseError(f"scene.wall.{name}: reaches beyond scene.room; enlarge the room, or make the wall smaller")
-    centers = {name: corners.mean(axis=1) for name, corners in triangles.items()}
-    for phase in s.phase:
-        if phase.condition:
-            return
-        for name, move in phase.moves.items():
-            if name in centers and isinstance(move, LinearMove):
-                centers[name] = centers[name] + phase.seconds * np.array(move.velocity)
-                if (centers[name] < low).any() or (centers[name] > high).any():
-                    where = f"scene.phase.{phase.name}.move"
-                    raise CaseError(f"{where}: wall {name} leaves scene.room; shorten its way, or enlarge the room")
-            else:
-                centers.pop(name, None)
 
 
 def refuse_combinations(case: SceneCase, s: Parts) -> None:

@@ -22,7 +22,9 @@ from .meshes import FloatArray
 from .model import Model, model
 from .presets import Preset, parts
 from .shares import insertions, refuse_missing
+from .start import refuse_positions
 from .timestep import time_step
+from .wall_paths import refuse_leaving
 
 SAMPLES = 50  # of a force, at least, in the mean that a row holds
 
@@ -257,7 +259,9 @@ def plan(case: SceneCase) -> ScenePlan:
     contact_model, dt, scene, out = model(case), time_step(case), parts(case.scene), case.output
     triangles = walls.triangles(scene)
     if not isinstance(scene, Preset):
+        refuse_positions(scene)
         refuse_outside(scene, triangles)
+        refuse_leaving(scene, triangles)
         refuse_combinations(case, scene)
     filled = insertions(case, scene)
     refuse_too_many(case, filled)

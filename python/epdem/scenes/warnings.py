@@ -8,15 +8,17 @@ from . import shares
 from .boundary_crossings import crosses, depths
 from .plan import ScenePlan
 from .presets import Preset
+from .start import overlaps
 from .timestep import stable_step
 from .walls import sheet
 
 MOVED, LONGER = 0.02, 0.2  # by which share a phase may miss its duration: one in which walls move, another one
+IN_WALL = 0.999  # of the radius: an engine divides by the distance to the wall
 OVERLAP = 0.05  # of the smaller radius; a bed of an earlier run has less
 
 
 def planned_warnings(p: ScenePlan) -> list[str]:
-    """A sentence for each."""
+    """A sentence for each. Raises CaseError for a sphere whose centre lies in a wall."""
     return shares.warnings(p.case, p.insertions) + _time_steps(p) + _phases(p) + _overlaps(p) + _walls(p)
 
 
@@ -54,16 +56,7 @@ def _phases(p: ScenePlan) -> list[str]:
 
 def _overlaps(p: ScenePlan) -> list[str]:
     """Spheres of a table that lie in each other at the start."""
-    if len(p.scene.table) < 2:
-        return []
-    from scipy.spatial import cKDTree
-
-    places = np.array([s.place for s in p.scene.table])
-    radius = np.array([s.radius for s in p.scene.table])
-    frozen = np.array([s.frozen for s in p.scene.table])
-    i, j = cKDTree(places).query_pairs(2 * radius.max(), output_type="ndarray").T
-    i, j = i[free := ~(frozen[i] & frozen[j])], j[free]
-    share = (radius[i] + radius[j] - np.linalg.norm(places[i] - places[j], axis=1)) / np.minimum(radius[i], radius[j])
+    i, j, share = overlaps(p.scene.table)
     if not (many := int((share > OVERLAP).sum())):
         return []
     worst = int(share.argmax())
@@ -93,6 +86,9 @@ def _walls(p: ScenePlan) -> list[str]:
                 if crosses(f.region, triangles, OVERLAP * min(particles.radii()[0] for particles in f.particles)):
                     found[f.key, name] = f"{f.key}.region: wall {name} runs through it; move one of them"
             share = depths(triangles, places, radii) / radii if spheres else np.zeros(1)
+            if share.max() > IN_WALL:
+                place = spheres[int(share.argmax())][0]
+                raise CaseError(f"{place}: its centre lies in wall {name}; move it")
             if share.max() > OVERLAP:
                 place = spheres[int(share.argmax())][0]
                 found["", name] = f"{place} lies in wall {name} by {share.max():.0%} of its radius; move it"

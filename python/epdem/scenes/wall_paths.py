@@ -1,0 +1,76 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""How far walls move, and walls that leave the room."""
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..case.motions import LinearMove, Move, PressMove, RotateMove, VibrateMove
+from ..case.parts import Parts
+from ..errors import CaseError
+from .meshes import FloatArray
+
+
+@dataclass(frozen=True)
+class Path:
+    """Points that move for some time: their least and largest coordinates on the way, and where they are at its end."""
+
+    low: FloatArray
+    high: FloatArray
+    end: FloatArray
+
+
+def path(move: LinearMove | RotateMove | VibrateMove, points: FloatArray, seconds: float) -> Path:
+    """The path of `points`, shape (n, 3), from the begin of a motion on [m]."""
+    if isinstance(move, LinearMove):
+        end = points + seconds * np.array(move.velocity)
+        return Path(np.minimum(points, end), np.maximum(points, end), end)
+    if isinstance(move, VibrateMove):
+        angle, amplitude = move.omega * seconds, np.array(move.amplitude)
+        sines = [0.0, math.sin(angle)] + [1.0] * (angle >= math.pi / 2) + [-1.0] * (angle >= 3 * math.pi / 2)
+        places = np.stack([points + sine * amplitude for sine in sines])
+        return Path(places.min(axis=0), places.max(axis=0), places[1])
+    axis, angle = np.array(move.unit_axis) * math.copysign(1.0, move.rate), abs(move.rate) * seconds
+    arm = points - np.array(move.origin)
+    center = np.array(move.origin) + (arm @ axis)[:, None] * axis
+    arm = points - center
+    side = np.cross(axis, arm)
+    turned = center + arm * math.cos(angle) + side * math.sin(angle)
+    first = np.arctan2(side, arm) % math.pi  # where a coordinate is extreme, for the first time
+    extremes = [points, turned]
+    for extreme in (first, first + math.pi):
+        there = center + arm * np.cos(extreme) + side * np.sin(extreme)
+        extremes.append(np.where(extreme <= angle, there, points))
+    return Path(np.min(extremes, axis=0), np.max(extremes, axis=0), turned)
+
+
+def refuse_leaving(scene: Parts, triangles: dict[str, FloatArray]) -> None:
+    """Raise CaseError for a wall whose motion takes the centre of a triangle out of the room.
+
+    Not looked at are walls that a force drives, and what comes with a phase that may end early or later.
+    """
+    room = scene.room.limits
+    here = {name: corners.mean(axis=1) for name, corners in triangles.items()}
+    moving: dict[str, tuple[Move, FloatArray, float]] = {}  # motion, where and how long ago it began
+    for phase in scene.phase:
+        if phase.condition:
+            return
+        moving = {name: begun for name, begun in moving.items() if phase.moves.get(name) == begun[0]}
+        for name, move in phase.moves.items():
+            if isinstance(move, PressMove) or name not in here:
+                here.pop(name, None)
+                continue
+            _, begin, seconds = moving.get(name, (move, here[name], 0.0))
+            moving[name] = (move, begin, seconds + phase.seconds)
+            way = path(move, begin, seconds + phase.seconds)
+            here[name] = way.end
+            for k, axis in enumerate("xyz"):
+                low, high = float(way.low[:, k].min()), float(way.high[:, k].max())
+                if low < room[2 * k] or high > room[2 * k + 1]:
+                    reached = high if high > room[2 * k + 1] else low
+                    raise CaseError(
+                        f"scene.phase.{phase.name}.move: wall {name} leaves scene.room, the centre of a triangle "
+                        f"reaches {axis} = {reached:.4g} m and the room is from {room[2 * k]:g} m to "
+                        f"{room[2 * k + 1]:g} m; shorten its way, or enlarge the room"
+                    )

@@ -1,0 +1,184 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Spheres that no engine can begin with and walls that leave the room: refused with place and value before the run."""
+
+import math
+from itertools import combinations
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+from parts_cases import BED, FLOOR, parts
+from scene_runs import run, write_case
+
+from epdem.case.motions import LinearMove, RotateMove, VibrateMove
+from epdem.case.parts import Sphere
+from epdem.case.scene import parse
+from epdem.errors import CaseError
+from epdem.scenes.plan import plan
+from epdem.scenes.start import overlaps
+from epdem.scenes.wall_paths import path
+from epdem.scenes.warnings import planned_warnings
+
+PLATE = {"name": "plate", "kind": "plate", "axis": "z", "center": ["0 mm", "0 mm", "5 mm"], "size": ["6 mm"] * 2}
+PLATE |= {"material": "steel"}
+FALL = {"name": "fall", "duration": "20 ms"}
+SECOND = {"name": "second", "duration": "20 ms"}
+
+
+def body(name, *mm, **more):
+    return {"name": name, "material": "glass", "radius": "1 mm", "position": [f"{x} mm" for x in mm]} | more
+
+
+def moved(**phases):
+    """The plate above a floor, with its motion in each phase."""
+    motions = [{"wall": "plate"} | motion for motion in phases.values()]
+    made = [{"name": n, "duration": "20 ms", "move": [m]} for n, m in zip(phases, motions, strict=True)]
+    return parts(wall=[FLOOR, PLATE], fill=[], body=[body("a", 0, 0, 20)], phase=made)
+
+
+spheres = st.builds(
+    lambda x, y, radius, frozen: Sphere((x, y, 0.0), radius, "glass", frozen=frozen),
+    st.sampled_from([0.0, 1.0, 2.0, 2.5]),
+    st.sampled_from([0.0, 1.0]),
+    st.sampled_from([0.25, 1.0, 1.5]),
+    st.booleans(),
+)
+
+
+@given(st.lists(spheres, max_size=5))
+def test_overlaps_are_those_of_all_pairs_or_name_one_that_is_whole(table):
+    expected = {}
+    for (i, a), (j, b) in combinations(enumerate(table), 2):
+        share = (a.radius + b.radius - math.dist(a.place, b.place)) / min(a.radius, b.radius)
+        if share > 0 and not (a.frozen and b.frozen):
+            expected[i, j] = share
+    i, j, share = overlaps(table)
+    found = {(min(a, b), max(a, b)): s for a, b, s in zip(i.tolist(), j.tolist(), share.tolist(), strict=True)}
+    assert found.items() <= {key: pytest.approx(s) for key, s in expected.items()}.items() or not found
+    assert max(found.values(), default=0) >= 1 or len(found) == len(expected)
+    assert (max(found.values(), default=0) >= 1) == (max(expected.values(), default=0) >= 1)
+
+
+@given(
+    apart=st.sampled_from([0.0, 0.4, 0.99, 1.01, 1.9]),
+    phases=st.tuples(*[st.sampled_from(["fall", "second", None])] * 2),
+    frozen=st.tuples(st.booleans(), st.booleans()),
+)
+def test_spheres_that_come_together_with_a_centre_in_each_other_are_refused(apart, phases, frozen):
+    """Radii of 1 mm: the centres are nearer than 1 mm. A frozen sphere is there from the start."""
+    comes = [None if still else phase for phase, still in zip(phases, frozen, strict=True)]
+    more = [{"frozen": still} | ({"phase": p} if p else {}) for p, still in zip(comes, frozen, strict=True)]
+    data = parts(
+        fill=[],
+        body=[body("a", 0, 0, 20, **more[0]), body("b", 0, 0, 20 + apart, **more[1])],
+        phase=[FALL, SECOND],
+    )
+    together = (comes[0] or "fall") == (comes[1] or "fall")
+    if together and apart <= 1.0 and not all(frozen):
+        with pytest.raises(CaseError, match=r"scene.body.b.position: overlaps scene.body.a.position by \d+% of the"):
+            plan(parse(data))
+    else:
+        plan(parse(data))
+
+
+def test_many_spheres_at_one_position_are_refused_at_once(tmp_path):
+    (tmp_path / "t.csv").write_text("x,y,z,radius\n" + "0,0,0.02,0.001\n" * 50_000)
+    data = parts(fill=[{"name": "bed", "file": "t.csv", "material": "glass"}])
+    with pytest.raises(CaseError, match=r"scene.fill.bed, sphere \d+: overlaps scene.fill.bed, sphere \d+ by 200%"):
+        plan(parse(data, tmp_path / "case.toml"))
+
+
+@pytest.mark.parametrize("phase", ["fall", "second"])
+@pytest.mark.parametrize("periodic", [False, True])
+@pytest.mark.parametrize("position", [(10, 0, 20), (-10, 0, 20), (0, 0, 40), (0, 0, -5), (0, 10.001, 20)])
+def test_a_sphere_on_the_limit_of_the_room_is_refused_where_it_is_one(position, periodic, phase):
+    ball = body("ball", *position, phase=phase)
+    data = parts(periodic=periodic, fill=[], body=[body("a", 0, 0, 20), ball], phase=[FALL, SECOND])
+    if periodic and abs(position[0]) == 10:
+        plan(parse(data))
+    else:
+        with pytest.raises(CaseError, match=r"scene.body.ball.position: \(.*\) m lies beyond scene.room or on its"):
+            plan(parse(data))
+
+
+@pytest.mark.parametrize(("wall", "z"), [(FLOOR, 0), (PLATE, 5)])
+def test_a_sphere_with_its_centre_in_a_wall_is_refused(wall, z):
+    p = plan(parse(parts(wall=[wall], fill=[], body=[body("a", 0, 0, z)])))
+    with pytest.raises(CaseError, match=f"its centre lies in wall {wall['name']}; move it"):
+        planned_warnings(p)
+
+
+vectors = st.tuples(*[st.sampled_from([-1.0, 0.0, 0.5])] * 3)
+motions = st.one_of(
+    st.builds(LinearMove.model_construct, velocity=vectors),
+    st.builds(VibrateMove.model_construct, amplitude=vectors, frequency=st.sampled_from([0.05, 0.3, 0.8])),
+    st.builds(
+        RotateMove.model_construct,
+        origin=vectors,
+        axis=st.sampled_from([[0.0, 0.0, 2.0], [0.6, 0.0, -0.8]]),
+        rate=st.sampled_from([-2.0, 0.7, 9.0]),
+    ),
+)
+
+
+@given(motions, st.sampled_from([0.4, 1.0, 3.0]))
+def test_the_path_of_a_wall_is_that_of_its_points_at_many_times(move, seconds):
+    points = np.array([[0.3, -0.2, 0.1], [1.0, 1.0, -1.0]])
+    way = []
+    for t in np.linspace(0.0, seconds, 2001):
+        if isinstance(move, LinearMove):
+            way.append(points + t * np.array(move.velocity))
+        elif isinstance(move, VibrateMove):
+            way.append(points + np.sin(move.omega * t) * np.array(move.amplitude))
+        else:  # Rodrigues' matrix
+            x, y, z = np.array(move.axis) / np.linalg.norm(move.axis)
+            cross = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
+            angle = move.rate * t
+            matrix = np.eye(3) + math.sin(angle) * cross + (1 - math.cos(angle)) * cross @ cross
+            way.append((points - np.array(move.origin)) @ matrix.T + np.array(move.origin))
+    found = path(move, points, seconds)
+    assert found.low == pytest.approx(np.min(way, axis=0), abs=1e-3)
+    assert found.high == pytest.approx(np.max(way, axis=0), abs=1e-3)
+    assert found.end == pytest.approx(way[-1], abs=1e-9)
+
+
+VIBRATE = {"kind": "vibrate", "frequency": "100 Hz"}
+SPIN = {"kind": "rotate", "axis": [0.0, 0.0, 1.0]}
+PUSH = {"kind": "linear", "velocity": ["0.4 m/s", "0 m/s", "0 m/s"]}  # 8 mm in a phase
+
+
+@pytest.mark.parametrize(
+    ("phases", "says"),
+    [  # the centres of the two triangles lie at 1 mm on both sides of the plate's own
+        ({"one": VIBRATE | {"amplitude": ["8 mm", "0 mm", "0 mm"]}}, None),
+        ({"one": VIBRATE | {"amplitude": ["9.5 mm", "0 mm", "0 mm"]}}, r"one.move: wall plate .* x = 0.0105 m"),
+        (
+            {"one": VIBRATE | {"amplitude": ["0 mm", "0 mm", "11 mm"]}},
+            r"reaches z = -0.006 m and the room is from -0.0",
+        ),
+        ({"one": SPIN | {"rate": "600 rpm", "origin": ["4 mm", "0 mm", "0 mm"]}}, None),
+        ({"one": SPIN | {"rate": "3000 rpm", "origin": ["6 mm", "0 mm", "0 mm"]}}, r"leaves scene.room.* x = 0.013"),
+        ({"one": SPIN | {"rate": "10 rpm", "origin": ["6 mm", "0 mm", "0 mm"]}}, None),  # 1.2 degrees
+        ({"one": PUSH, "two": VIBRATE | {"amplitude": ["0.5 mm", "0 mm", "0 mm"]}}, None),
+        ({"one": PUSH, "two": VIBRATE | {"amplitude": ["1.5 mm", "0 mm", "0 mm"]}}, r"two.move.* x = 0.0105 m"),
+        ({"one": PUSH, "two": SPIN | {"rate": "600 rpm"}}, None),
+        ({"one": PUSH, "two": PUSH}, r"two.move.* x = 0.017 m"),
+    ],
+)
+def test_a_wall_that_turns_or_vibrates_out_of_the_room_is_refused(phases, says):
+    if says is None:
+        plan(parse(moved(**phases)))
+    else:
+        with pytest.raises(CaseError, match=rf"scene.phase.{says}" if says.startswith(("one", "two")) else says):
+            plan(parse(moved(**phases)))
+
+
+@pytest.mark.liggghts
+def test_spheres_from_a_nanometre_to_a_millimetre_are_filled_in(tmp_path):
+    sizes = {"from": "1 nm", "to": "1.6 mm"}
+    data = parts(fill=[BED | {"count": 20, "particles": [{"material": "glass", "radius": sizes}]}])
+    del data["output"]["energy"]
+    spheres = run(write_case(data, tmp_path), out=tmp_path / "out").results.particles
+    radii = spheres[spheres["step"] == spheres["step"].min()]["radius"]
+    assert len(radii) == 20 and radii.min() == pytest.approx(1e-9) and radii.max() == pytest.approx(1.6e-3)
