@@ -17,8 +17,8 @@ from epdem.errors import CaseError
 from epdem.report.chart import GREY, Axis, Chart, Panel, Series
 from epdem.report.drawing import save
 from epdem.scenes import results
-from epdem.studies.pages.tables import validation_chart
 from epdem.verification.measured_data import shown, validate
+from epdem.verification.pages import validation_chart
 
 ROOT = Path(__file__).resolve().parents[1]
 sys.path.insert(0, str(ROOT / "bench"))

@@ -16,8 +16,8 @@ from epdem.case.scene import parse
 from epdem.errors import CaseError
 from epdem.scenes import measures, report
 from epdem.scenes.charts import charts
+from epdem.scenes.charts import measures as curves_of
 from epdem.scenes.columns import units
-from epdem.scenes.key_figures import key
 from epdem.scenes.plan import plan
 from epdem.scenes.results import read
 from epdem.studies.fit import fit
@@ -198,8 +198,9 @@ def test_a_force_has_a_value_in_every_row_and_its_peak_counts():
     numbers = numbers_of(SimpleNamespace(tables=tables))
     assert (numbers["lift_max"], numbers["lift_mean"], numbers["lift_last"]) == (125.9, 0.0, 0.0)
     assert numbers["tilt_max"] == pytest.approx(math.hypot(125.9, 3.0)) and numbers["all_max"] == 1.0
-    panels = {panel.y.label: panel.series[0].y for panel in key(p, tables)[0].panels}
-    assert panels["lift"].max() == 125.9 and len(panels["lift"]) == 5 and len(panels["all"]) == 2
+    (drawn,) = curves_of(p, tables)
+    panels = {panel.y.label: panel.series[0].y for panel in drawn.panels}
+    assert panels["lift"].max() == 125.9 and len(panels["lift"]) == 5 and "all = 1" in drawn.alt
 
 
 @pytest.mark.liggghts

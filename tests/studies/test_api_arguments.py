@@ -98,7 +98,7 @@ def test_replace_takes_what_a_case_is_made_of(steel):
     assert other.model.law.name == "johnson" and other.model.law.parameters()["yield_pressure"] == "2000000000.0 Pa"
     assert steel.replace({"law.name": "johnson", "law.yield_pressure": 2e9}) == other
     scene = Scene.from_toml(CASES / "impactor_bowl.toml")
-    ball = {"name": "ball", "material": "steel", "radius": 3e-3, "place": np.array([0.0, 0.0, 0.03]), "phase": "hit"}
+    ball = {"name": "ball", "material": "steel", "radius": 3e-3, "position": np.array([0.0, 0.0, 0.03]), "phase": "hit"}
     assert scene.replace({"scene.body": [ball]}).model.scene.body[0].radius == 3e-3
 
 

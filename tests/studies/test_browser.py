@@ -5,7 +5,9 @@ A script that the test appends clicks on a heading and writes what it sees into 
 Chromium and keeps the pictures in runs/browser.
 """
 
+import html
 import json
+import math
 import os
 import re
 import shutil
@@ -30,7 +32,14 @@ heads[2].querySelector("button").click();
 const up = column();
 heads[2].querySelector("button").click();
 document.body.append(Object.assign(document.createElement("pre"), {id: "seen", textContent: JSON.stringify({
-  curves: [...document.querySelectorAll(".chart")].map(c => c.querySelectorAll(".scatterlayer .trace").length),
+  charts: [...document.querySelectorAll(".chart svg")].map(c => c.getBoundingClientRect().height),
+  told: [...document.querySelectorAll("svg[data-axes]")].slice(0, 1).map(drawing => {
+    const r = drawing.getBoundingClientRect(), [left, low, right, high] = JSON.parse(drawing.dataset.axes)[0].box;
+    const at = {clientX: r.left + (left + right) / 2 * r.width, clientY: r.bottom - (low + high) / 2 * r.height};
+    drawing.dispatchEvent(new PointerEvent("pointermove", at));
+    return drawing.closest("figure").querySelector("output").textContent;
+  })[0],
+  ink: getComputedStyle(document.querySelector(".chart svg text")).fill,
   before, up, down: column(), sorted: heads[2].getAttribute("aria-sort"),
   wide: document.documentElement.scrollWidth - window.innerWidth,
 })}));
@@ -68,12 +77,12 @@ def test_the_page_of_a_strength_is_drawn_and_silent(tmp_path):
     look_for = """const seen = document.body.appendChild(document.createElement("pre"));
     seen.id = "seen";
     seen.textContent = JSON.stringify({
-      curves: document.querySelectorAll(".chart .scatterlayer .trace").length,
+      charts: document.querySelectorAll(".chart svg").length,
       wide: document.documentElement.scrollWidth - window.innerWidth});"""
     path.write_text(path.read_text().replace("</body>", f"<script>{look_for}</script></body>"))
     done = look(path, "--window-size=500,900", "--dump-dom")
     assert not re.findall(r"CONSOLE.*", done.stderr)
-    assert json.loads(re.search(r'<pre id="seen">(.*?)</pre>', done.stdout, re.S)[1]) == {"curves": 2, "wide": 0}
+    assert json.loads(re.search(r'<pre id="seen">(.*?)</pre>', done.stdout, re.S)[1]) == {"charts": 1, "wide": 0}
 
 
 @pytest.mark.parametrize(("name", "more"), [("wide", ["1200,900"]), ("phone", ["500,900", "--force-dark-mode"])])
@@ -81,7 +90,14 @@ def test_figures_are_drawn_tables_sort_and_the_console_is_silent(page, name, mor
     done = look(page, f"--window-size={more[0]}", *more[1:], "--dump-dom")
     assert not re.findall(r"CONSOLE.*", done.stderr)
     seen = json.loads(re.search(r'<pre id="seen">(.*?)</pre>', done.stdout, re.S)[1])
-    assert len(seen["curves"]) == 4 and min(seen["curves"]) >= 3
+    assert len(seen["charts"]) == 4 and min(seen["charts"]) > 200
+    # in the middle of the panel: speed is the geometric mean of its limits, e_n the mean
+    axes = json.loads(html.unescape(re.search(r"data-axes='([^']+)'", page.read_text())[1]))[0]
+    (low, high), (bottom, top) = axes["x"]["limits"], axes["y"]["limits"]
+    told = re.fullmatch(r"speed ([\d.]+) m/s, coefficient of restitution e_n ([\d.]+)", seen["told"])
+    expected = (math.sqrt(low * high), (bottom + top) / 2)
+    assert [float(number) for number in told.groups()] == pytest.approx(expected, rel=2e-3)
+    assert seen["ink"] == ("rgb(230, 237, 243)" if "--force-dark-mode" in more else "rgb(27, 31, 36)")
     assert seen["before"] == seen["up"] == sorted(seen["up"]) and seen["down"] == sorted(seen["up"], reverse=True)
     assert seen["sorted"] == "descending" and seen["wide"] <= 0
     if PICTURES:

@@ -2,6 +2,7 @@
 """Bulk scenes as points of a sweep: named numbers in one row, and a killed scene goes on from its restart file."""
 
 import json
+import re
 import signal
 import subprocess
 import sys
@@ -13,6 +14,7 @@ import pytest
 from epdem import Scene
 from epdem import run as api_run
 from epdem.scenes import results
+from epdem.studies.pages.sweep import _by_key, of_sweep
 from epdem.studies.sweep import folder, run, status, table
 
 pytestmark = pytest.mark.liggghts
@@ -49,6 +51,17 @@ particles = 1
 restarts = 0
 """
 
+MEASURES = """
+[[scene.measure]]
+name = "held"
+kind = "mass"
+region = { x = ["-10 mm", "10 mm"], y = ["-10 mm", "10 mm"], z = ["0 mm", "15 mm"] }
+
+[[scene.measure]]
+name = "top"
+kind = "height"
+"""
+
 
 @pytest.fixture
 def bed(tmp_path):
@@ -70,6 +83,29 @@ def test_a_scene_is_one_row_of_named_numbers(bed, tmp_path):
     assert table.read_sweep(tmp_path / "out").attrs["units"]["floor_load_mean"] == "N"
     again = run.run(planned, tmp_path / "out")
     assert again.ran == 0
+
+
+def test_the_page_shows_the_measures_of_the_case_first_and_every_number_that_changes(bed, tmp_path):
+    """Two keys: a chart for each. Every number that differs between the points stands in both, and no other one."""
+    bed.write_text(BED.replace("particles = 1\n", "particles = 4\n").replace("0.3 s", "0.02 s") + MEASURES)
+    planned = run.plan(bed, {"scene.count": "10,20", "materials.glass.density": "2000 kg/m^3,3000 kg/m^3"})
+    found = run.run(planned, tmp_path / "out")
+    page = of_sweep(found).read_text()
+    drawn = _by_key(found, found.table.attrs["units"])
+    assert re.findall(r'data-chart="([^"]+)"', page) == [chart.name for chart in drawn]
+    assert [chart.panels[0].x.label for chart in drawn] == ["scene.count", "materials.glass.density"]
+    keys = [*found.sweep.points[0], "point"]
+    numbers = found.table.drop(columns=keys).select_dtypes("number")
+    changing = {name for name in numbers if numbers[name].nunique() > 1}
+    for chart in drawn:
+        assert {panel.y.label for panel in chart.panels[:2]} == {"held", "top"} and chart.panels[0].y.unit == "kg"
+        named = {
+            panel.y.label + ("" if series.name == "check" else f"_{series.name}"): series.y
+            for panel in chart.panels
+            for series in panel.series
+        }
+        assert set(named) == changing and len(changing) > 8
+        assert all(list(named[name]) == found.table[name].tolist() for name in named)
 
 
 def test_a_program_reads_in_its_log_how_far_a_scene_is(bed, tmp_path, caplog):

@@ -41,7 +41,7 @@ def sweep(
     as_json: AsJson = False,
 ) -> None:
     """A case or scene at many points; the same command again does only what is missing or has changed."""
-    from ..studies.pages.tables import of_sweep
+    from ..studies.pages.sweep import of_sweep
     from ..studies.sweep import executors as study
     from ..studies.sweep.points import settings
     from ..studies.sweep.run import check_points, plan

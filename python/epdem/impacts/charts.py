@@ -21,15 +21,8 @@ from .run import Outcome
 FINE = 240  # speeds of a line of theory
 SLIPS = 80  # of a line of theory
 ROUND_OFF = 1e-14  # errors below are zeros
-SYMBOLS = {
-    "e_n": "$e_n$",
-    "contact_time": "$t_c$",
-    "force_max": r"$F_\mathrm{max}$",
-    "overlap_max": r"$\alpha_\mathrm{max}$",
-    "residual_overlap": r"$\alpha_\mathrm{res}$",
-}
 MEASURED = 5  # kind of the points of a measurement, which engines do not reach
-SPEED = Axis("impact speed $v$", "m/s", log=True)
+SPEED = Axis("speed", "m/s", log=True)
 
 
 def main_chart(outcome: Outcome) -> Chart:
@@ -54,7 +47,7 @@ def first_yield(x: Experiment) -> float:
 
 
 def _error(what: str) -> Axis:
-    return Axis(f"error of {what}", log=True)
+    return Axis(f"{what}_error", log=True)
 
 
 def _tolerance(speed: np.ndarray, value: float) -> Series:
@@ -100,8 +93,8 @@ def restitution(outcome: Outcome) -> Chart:
         f"Coefficient of restitution against impact speed: theory as lines, {said} as points. Below, the largest error "
         f"over the starting phases; the largest of all is {rows['e_n_error'].max():.1e}.",
         [
-            Panel(SPEED, Axis("coefficient of restitution $e_n$"), above, 3.0),
-            Panel(SPEED, _error("$e_n$"), below, 1.4),
+            Panel(SPEED, Axis("coefficient of restitution e_n"), above, 3.0),
+            Panel(SPEED, _error("e_n"), below, 1.4),
         ],
         heading="Restitution against impact speed",
     )
@@ -113,7 +106,7 @@ def errors(outcome: Outcome) -> Chart:
     for k, ((engine, law), part) in enumerate(rows.groupby(["engine", "law"], sort=False)):
         for i, name in enumerate(CHECKED):
             values = _visible(part[f"{name}_error"])
-            label = f"{SYMBOLS[name]}, {engine}" + (f", {law}" if rows["law"].nunique() > 1 else "")
+            label = f"{name}, {engine}" + (f", {law}" if rows["law"].nunique() > 1 else "")
             series.append(Series(label, part["speed"].to_numpy(), values, i, None, k))
     worst = ", ".join(f"{name} {rows[name + '_error'].max():.1e}" for name in CHECKED)
     return Chart(
@@ -144,7 +137,7 @@ def loops(outcome: Outcome) -> list[Chart]:
             named = f"{name}, {speed:.3g} m/s" if k == 0 else once
             by_time.append(Series(named, part["time"] / observation_time, force, i, "solid" if k == 0 else "dot"))
     speeds = ", ".join(f"{v:.3g}" for v in prediction.speed)
-    force_axis = Axis(r"force $F/F_\mathrm{max}$")
+    force_axis = Axis("force / force_max")
     return [
         Chart(
             "loops",
@@ -152,14 +145,14 @@ def loops(outcome: Outcome) -> list[Chart]:
             f"Loading and unloading at {speeds} m/s: theory as lines, engines as points, over the largest of "
             "theory. The energy between the two "
             "branches is lost.",
-            [Panel(Axis(r"overlap $\alpha/\alpha_\mathrm{max}$"), force_axis, by_overlap)],
+            [Panel(Axis("overlap / overlap_max"), force_axis, by_overlap)],
         ),
         Chart(
             "force",
             "Force against time",
             f"Contact force from first touch to the end of the contact at {speeds} m/s, as the engines compute it, "
             "over the peak and the contact time of theory.",
-            [Panel(Axis("time $t/t_c$"), force_axis, by_time)],
+            [Panel(Axis("time / contact_time"), force_axis, by_time)],
         ),
     ]
 
@@ -201,7 +194,7 @@ def slip(outcome: Outcome) -> Chart:
         assert r is not None
         for speed in np.unique(prediction.speed):
             there = prediction.speed == speed
-            name = f"partial slip, {law} {speed:.3g} m/s, $e_n$ = {prediction.e_n[there][0]:.3f}"
+            name = f"partial slip, {law} {speed:.3g} m/s, e_n = {prediction.e_n[there][0]:.3f}"
             above.append(
                 Series(name, *_slip_line(outcome.plans[law].experiment, speed, r.psi_1), colour % len(PALETTE))
             )
@@ -216,15 +209,15 @@ def slip(outcome: Outcome) -> Chart:
     ends = rows["psi_1"].to_numpy()
     above.append(Series("", [ends.min(), ends.max()], [0.0, 0.0], GREY, "solid", width=0.6))
     below.append(_tolerance(ends, outcome.case.check.psi_2))
-    before = Axis(r"slip before the impact $\psi_1$, over $\mu v_n/\kappa$")
+    before = Axis("psi_1: slip before the impact over mu v_n / kappa")
     return Chart(
         "psi",
         outcome.case.case.title,
         "Slip of the surfaces after oblique impacts against that before: theory with partial slip as lines, engines as "
         f"points. Below, the largest error over the starting phases, {rows['psi_2_error'].max():.1e} at most.",
         [
-            Panel(before, Axis(r"slip after the impact $\psi_2$"), above, 3.0),
-            Panel(before, _error(r"$\psi_2$"), below, 1.4),
+            Panel(before, Axis("psi_2: slip after the impact"), above, 3.0),
+            Panel(before, _error("psi_2"), below, 1.4),
         ],
         heading="Slip after against slip before",
     )

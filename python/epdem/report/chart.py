@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""A figure as data: panels of lines and points with their axes. `drawing` draws it for a paper, `page` in a browser."""
+"""A figure as data: panels of lines and points with their axes; `drawing` draws the figure for papers and pages."""
 
 import csv
 import io
@@ -14,8 +14,6 @@ Dash = Literal["solid", "dash", "dot", "dashdot"]
 INK, GREY = -1, -2  # colours beside those of the palette
 # Okabe and Ito's palette, which colour-blind readers can tell apart
 PALETTE = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#8C564B")
-DIGITS = 7
-GREEK = {"alpha": "α", "psi": "ψ", "mu": "μ", "kappa": "κ", "nu": "ν", "pi": "π"}
 Numbers = Sequence[float] | np.ndarray | float
 
 
@@ -65,7 +63,8 @@ class Panel:
 class Chart:
     """A figure: panels that share the x axis one above the other, or `beside` each other with the same y axis.
 
-    name: of its files. alt: what it shows, in words, for those who do not see it.
+    columns: of small panels with the same x axis, each with its y axis as title. name: of its files. alt: what the
+    figure shows, in words, for those who do not see it.
     """
 
     name: str
@@ -73,6 +72,7 @@ class Chart:
     alt: str
     panels: list[Panel] = field(default_factory=list)
     beside: bool = False
+    columns: int = 1
     heading: str = ""  # on a page, which has a title of its own; empty: the title
     kind: ClassVar[str] = "chart"
 
@@ -88,46 +88,7 @@ class Chart:
                     table.writerow((place, plain(series.name), f"{x:.9g}", f"{y:.9g}"))
         return text.getvalue()
 
-    def plain(self) -> dict[str, object]:
-        """For the script of the page: labels as HTML, numbers with seven digits, None for what is not finite."""
-        return {
-            "name": self.name,
-            "beside": self.beside,
-            "panels": [
-                {
-                    "x": _axis(panel.x),
-                    "y": _axis(panel.y),
-                    "share": panel.share,
-                    "series": [
-                        vars(s) | {"name": html(s.name), "x": _numbers(s.x), "y": _numbers(s.y)} for s in panel.series
-                    ],
-                }
-                for panel in self.panels
-            ],
-        }
-
-
-def _axis(axis: Axis) -> dict[str, object]:
-    return {"label": html(str(axis)), "log": axis.log, "low": axis.low, "high": axis.high}
-
-
-def _numbers(values: Numbers) -> list[float | None]:
-    return [float(f"{v:.{DIGITS}g}") if np.isfinite(v) else None for v in np.atleast_1d(values)]
-
-
-def html(text: str) -> str:
-    """A label as HTML: $e_n$ becomes an italic e with an index."""
-    parts = text.replace("&", "&amp;").replace("<", "&lt;").split("$")
-    return "".join(_mathematics(part) if k % 2 else part for k, part in enumerate(parts))
-
 
 def plain(text: str) -> str:
     """A label as plain text: $e_n$ becomes e_n."""
     return re.sub(r"\\mathrm|[$\\{}]", "", text)
-
-
-def _mathematics(text: str) -> str:
-    text = re.sub(r"\\([a-z]+)", lambda found: GREEK.get(found[1], ""), re.sub(r"\\mathrm(\{[^}]*\})", r"\1", text))
-    for sign, tag in (("_", "sub"), (r"\^", "sup")):
-        text = re.sub(sign + r"(\{[^}]*\}|.)", rf"<{tag}>\1</{tag}>", text)
-    return f"<i>{re.sub('[{}]', '', text)}</i>"

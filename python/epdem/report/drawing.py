@@ -1,7 +1,11 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Figures for a paper: every chart in one style, as PNG, SVG or PDF, with its data as CSV beside it."""
+"""Drawings of charts in one style: as PNG, SVG or PDF files with their data as CSV, and as SVG of a page."""
 
+import html
+import io
+import json
 import math
+import re
 from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -9,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ..base.files import atomic, write_texts
-from .chart import GREY, INK, PALETTE, Axis, Chart, Panel, Series
+from .chart import GREY, INK, PALETTE, Axis, Chart, Panel, Series, plain
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -17,6 +21,7 @@ if TYPE_CHECKING:
 
 STYLE: dict[str, Any] = {
     "font.size": 10.0,
+    "font.sans-serif": ["DejaVu Sans"],
     "axes.grid": True,
     "grid.alpha": 0.3,
     "legend.fontsize": 8.0,
@@ -26,7 +31,9 @@ STYLE: dict[str, Any] = {
 DASHES = {"solid": "-", "dash": "--", "dot": ":", "dashdot": "-."}
 MARKERS = "ox+^sDv"
 WIDTH, HEIGHT = 7.0, 4.2  # of one panel [inch]
+SMALL = 3.3, 2.1  # of one panel among columns [inch]
 LEGEND_ROW = 0.22  # [inch]
+VARIABLES = {"#000000": "ink", "#0072b2": "blue", "#8c564b": "brown"}  # of a page: a dark page has lighter colours
 BARE_DATE = {"png": {}, "svg": {"Date": None}, "pdf": {"CreationDate": None}}
 
 
@@ -51,22 +58,60 @@ def save(
     return paths + (write_texts(folder, {f"{chart.name}.csv": chart.csv()}) if data else [])
 
 
-def draw(chart: Chart) -> "Figure":
-    """A chart as a figure of matplotlib, without pyplot: it is only saved, and needs no backend."""
-    from matplotlib.figure import Figure
+def svg(chart: Chart) -> str:
+    """A chart without its title as an element `svg` of a page.
 
-    n, shares = len(chart.panels), [panel.share for panel in chart.panels]
-    if chart.beside:
-        figure = Figure(figsize=(5 * n, 4.5), layout="constrained")
-        grid = figure.subplots(1, n, sharey=True, squeeze=False)
-    else:
-        size = (WIDTH, max(HEIGHT, HEIGHT * sum(shares) / max(shares)))
-        figure = Figure(figsize=size, layout="constrained")
-        grid = figure.subplots(n, 1, sharex=True, height_ratios=shares, squeeze=False)
-    for k, (axes, panel) in enumerate(zip(grid.flat, chart.panels, strict=True)):
+    Black and PALETTE's dark colours are CSS variables of the page; `data-axes` holds for each panel its place in the
+    drawing, as fractions from the lower left corner, and its axes: label, limits, whether logarithmic.
+    """
+    import matplotlib
+
+    matplotlib.use("Agg")
+    from matplotlib import pyplot as plt
+
+    text = io.StringIO()
+    with plt.rc_context(STYLE | {"svg.fonttype": "none"}):  # type: ignore[arg-type]
+        figure = draw(chart, title=False)
+        figure.savefig(text, format="svg", transparent=True, metadata={"Date": None})
+        panels = [_place(axes, panel) for axes, panel in zip(figure.axes, chart.panels, strict=False)]
+        plt.close(figure)
+    drawn = text.getvalue()
+    drawn = re.sub(
+        r"<metadata>.*?</metadata>|<style.*?</style>|<!--.*?-->", "", drawn[drawn.index("<svg") :], flags=re.S
+    )
+    drawn = re.sub(r'<g id="[^"]*">', "<g>", drawn)  # one page has several drawings
+    for colour, variable in VARIABLES.items():
+        drawn = drawn.replace(colour, f"var(--{variable})")
+    return drawn.replace("<svg", f"<svg data-axes='{html.escape(json.dumps(panels))}'", 1)
+
+
+def _place(axes: "Axes", panel: Panel) -> dict[str, object]:
+    box = axes.get_position()
+    sides = ((panel.x, axes.get_xlim()), (panel.y, axes.get_ylim()))
+    return {
+        "box": [round(float(v), 5) for v in (box.x0, box.y0, box.x1, box.y1)],
+        **{
+            k: {"label": plain(axis.label), "unit": axis.unit, "log": axis.log, "limits": list(map(float, limits))}
+            for k, (axis, limits) in zip("xy", sides, strict=True)
+        },
+    }
+
+
+def draw(chart: Chart, *, title: bool = True) -> "Figure":
+    """A chart as a figure of matplotlib."""
+    figure, grid = _grid(chart)
+    n, columns = len(chart.panels), grid.shape[1]
+    for k, (axes, panel) in enumerate(zip(grid.flat, chart.panels, strict=False)):
         for series in panel.series:
             axes.plot(series.x, series.y, **_style(series))
-        _scale(axes, panel, labels_x=chart.beside or k == n - 1, labels_y=k == 0 or not chart.beside)
+        alone = chart.columns > 1
+        _scale(
+            axes, panel, labels_x=chart.beside or k + columns >= n, labels_y=not alone and (k == 0 or not chart.beside)
+        )
+        if alone:
+            axes.set_title(str(panel.y), loc="left", fontsize="medium")
+    for axes in grid.flat[n:]:
+        axes.remove()
     known = {
         label: handle for axes in grid.flat for handle, label in zip(*axes.get_legend_handles_labels(), strict=True)
     }
@@ -74,8 +119,28 @@ def draw(chart: Chart) -> "Figure":
         columns = min(len(known), 3)
         figure.set_figheight(figure.get_figheight() + LEGEND_ROW * math.ceil(len(known) / columns))
         figure.legend(list(known.values()), list(known), loc="outside lower center", ncols=columns, frameon=False)
-    figure.suptitle(chart.title, fontsize=11, parse_math=False)
+    if title:
+        figure.suptitle(chart.title, fontsize=11, parse_math=False)
     return figure
+
+
+def _grid(chart: Chart) -> tuple["Figure", np.ndarray]:
+    """A figure and its axes, shape (rows, columns)."""
+    from matplotlib import pyplot as plt
+
+    n, shares = len(chart.panels), [panel.share for panel in chart.panels]
+    shape: dict[str, Any] = {"layout": "constrained", "squeeze": False}
+    if chart.beside:
+        return plt.subplots(1, n, sharey=True, figsize=(5 * n, 4.5), **shape)
+    if chart.columns > 1:
+        rows = math.ceil(n / chart.columns)
+        size = (SMALL[0] * chart.columns, SMALL[1] * rows)
+        figure, grid = plt.subplots(rows, chart.columns, sharex=True, figsize=size, **shape)
+        for axes in grid.flat[n - chart.columns : n]:  # the last one of each column
+            axes.tick_params(labelbottom=True)
+        return figure, grid
+    height = max(HEIGHT, HEIGHT * sum(shares) / max(shares))
+    return plt.subplots(n, 1, sharex=True, figsize=(WIDTH, height), height_ratios=shares, **shape)
 
 
 def _style(series: Series) -> dict[str, Any]:

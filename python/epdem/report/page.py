@@ -5,8 +5,6 @@ A study hands over its parts: words, facts, charts, tables, listings, pictures. 
 """
 
 import base64
-import importlib.util
-import json
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
@@ -17,8 +15,8 @@ from typing import TYPE_CHECKING, Any, ClassVar
 from .. import __version__
 from ..base import paths
 from ..base.files import atomic
-from ..errors import EngineError
-from .chart import PALETTE, Chart
+from .chart import Chart
+from .drawing import svg
 
 if TYPE_CHECKING:  # slow to import
     import jinja2
@@ -80,18 +78,17 @@ class Lines:
 
 @dataclass(frozen=True)
 class Picture:
-    """A PNG file, or the text of an SVG; `alt` says what it shows."""
+    """A PNG file; `alt` says what the picture shows."""
 
     title: str
     alt: str
-    file: Path | None = None
-    svg: str = ""
+    file: Path
     kind: ClassVar[str] = "picture"
 
     @property
     def source(self) -> str:
         """The file, to stand in the page itself."""
-        return base64.b64encode(self.file.read_bytes()).decode() if self.file else ""
+        return base64.b64encode(self.file.read_bytes()).decode()
 
 
 Part = Facts | Rows | Lines | Picture | Chart
@@ -141,28 +138,10 @@ def _templates() -> "jinja2.Environment":
     )
 
 
-@cache
-def _plotly() -> str:
-    """The script of plotly, which comes with its Python package."""
-    found = importlib.util.find_spec("plotly")
-    if found is None or not found.submodule_search_locations:
-        raise EngineError("plotly is not installed; pip install plotly")
-    return (Path(found.submodule_search_locations[0]) / "package_data/plotly.min.js").read_text(encoding="utf-8")
-
-
 def render(page: Page, mark: str = "") -> str:
     """The page as HTML."""
-    charts = [part for part in page.parts if isinstance(part, Chart)]
-    data = json.dumps([chart.plain() for chart in charts]).replace("</", "<\\/")
     template = _templates().get_template("page.html.j2")
-    return template.render(
-        page=page,
-        mark=mark,
-        data=data,
-        plotly=_plotly() if charts else "",
-        palette=json.dumps(PALETTE),
-        version=__version__,
-    )
+    return template.render(page=page, mark=mark, drawn=svg, version=__version__)
 
 
 def write(path: Path, page: Callable[[], Page], *, mark: str = "") -> Path:

@@ -7,15 +7,12 @@ import numpy as np
 import pandas as pd
 
 from ..case.kinds import Compaction, Drum, Hopper, Peening, Settle
-from ..case.measures import Histogram
-from ..case.parts import Parts
 from ..report.chart import INK, Axis, Chart, Panel, Series, plain
 from . import checks
-from .measures import curve, unit
 from .plan import ScenePlan
 
 Tables = dict[str, pd.DataFrame]
-TIME = Axis("time $t$", "s")
+TIME = Axis("time", "s")
 BINS = 30
 
 
@@ -42,7 +39,7 @@ def _compaction(p: ScenePlan, s: Compaction, tables: Tables) -> list[Panel]:
         Series("loading", way[loading], force[loading], 0),
         Series("unloading", way[~loading], force[~loading], 1),
     ]
-    return [Panel(Axis("displacement of the plate", "m"), Axis("force on the plate", "N"), series)]
+    return [Panel(Axis("displacement of the plate", "m"), Axis("plate_force", "N"), series)]
 
 
 def _drum(p: ScenePlan, s: Drum, tables: Tables) -> list[Panel]:
@@ -52,9 +49,7 @@ def _drum(p: ScenePlan, s: Drum, tables: Tables) -> list[Panel]:
         return [Panel(TIME, Axis("torque", "N m"), [Series("", rows["time"].to_numpy(), rows["torque"].to_numpy(), 0)])]
     sums = tables["particles"].eval("mx = mass * x").groupby("step")[["mx", "mass"]].sum()
     place = (sums["mx"] / sums["mass"]).to_numpy()
-    return [
-        Panel(TIME, Axis("$x$ of the centre of mass", "m"), [Series("", p.time_at(sums.index.to_numpy()), place, 0)])
-    ]
+    return [Panel(TIME, Axis("x of the centre of mass", "m"), [Series("", p.time_at(sums.index.to_numpy()), place, 0)])]
 
 
 def _peening(p: ScenePlan, s: Peening, tables: Tables) -> list[Panel]:
@@ -79,7 +74,7 @@ def _settle(p: ScenePlan, s: Settle, tables: Tables) -> list[Panel]:
         Panel(
             TIME, Axis("height of 95 %", "m"), [Series("", p.time_at(heights.index.to_numpy()), heights.to_numpy(), 0)]
         ),
-        Panel(TIME, Axis("kinetic energy", "J", log=True), [energy]),
+        Panel(TIME, Axis("kinetic_energy", "J", log=True), [energy]),
     ]
 
 
@@ -93,14 +88,11 @@ PANELS: dict[type, Callable[..., list[Panel]]] = {
 
 
 def panels(p: ScenePlan, tables: Tables) -> list[Panel]:
-    """The panels of the key figure; of a scene of parts its measures. None where the tables lack what it shows."""
+    """The panels of the key figure; none of a scene of parts, and none where the tables lack the data."""
     s = p.case.scene
-    if isinstance(s, Parts):
-        shown = [m for m in s.measure if not isinstance(m, Histogram)]
-        return [Panel(TIME, Axis(m.name, unit(m)), [Series("", *curve(m, tables), 0)]) for m in shown]
     frames = "particles" in tables and tables["particles"]["step"].nunique() > 1
     drawn = frames or isinstance(s, Compaction) or "torque" in tables["rows"]
-    return PANELS[type(s)](p, s, tables) if drawn else []
+    return PANELS[type(s)](p, s, tables) if drawn and type(s) in PANELS else []
 
 
 def key(p: ScenePlan, tables: Tables) -> list[Chart]:

@@ -12,7 +12,6 @@ from ..base.folders import claim
 from ..base.terminal import show_table, table
 from ..case.measures import Histogram, Load
 from ..impacts.report import records
-from . import pictures
 from .measures import curve, unit, values_of
 from .run import SceneOutcome
 
@@ -97,13 +96,10 @@ def _show_measures(outcome: SceneOutcome, console: Console) -> None:
 
 
 def figures(outcome: SceneOutcome, formats: Sequence[str] = ("png",)) -> None:
-    """The charts of a scene in the folder of a run, which may write there, and the picture of its bed."""
+    """Draw the charts of a scene into the folder of a run, which may write there."""
     from ..report.drawing import save
     from .charts import charts
 
     with claim(outcome.folder, force=True):
         for chart in charts(outcome):
             save(chart, outcome.folder, formats)
-        particles = outcome.results.tables.get("particles")
-        if particles is not None and len(particles):
-            pictures.bed(outcome.plan, particles, outcome.folder / "bed.png")

@@ -46,7 +46,7 @@ def of_calibration(case: Path, found: Calibration, folder: Path, *, force: bool 
     if found.e_n is not None and found.speed is not None:
         series.append(Series("measured", found.speed, found.e_n, 1, None, charts.MEASURED))
     alt = f"Coefficient of restitution of law {found.law} with {found.parameter} = {found.value:.4g} Pa against speed."
-    chart = Chart("e_n", "Restitution with this strength", alt, [Panel(charts.SPEED, Axis("$e_n$"), series)])
+    chart = Chart("e_n", "Restitution with this strength", alt, [Panel(charts.SPEED, Axis("e_n"), series)])
     said = [
         f"From {found.source}: {found.parameter} = {found.value / 1e6:.6g} MPa, that is a yield stress of "
         f"{found.yield_stress / 1e6:.6g} MPa and a yield speed of {found.yield_speed:.4g} m/s.",

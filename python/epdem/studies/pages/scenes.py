@@ -8,9 +8,18 @@ from ...liggghts.explain import SCENE, explain
 from ...liggghts.scene_deck import deck
 from ...report.page import NAME, Facts, Lines, Page, Part, Picture, Rows, write
 from ...scenes.charts import bed, charts
-from ...scenes.columns import UNITS, units
+from ...scenes.columns import units
 from ...scenes.run import SceneOutcome
 from . import common
+
+DRAWN = {"bed", "key", "scene", "energy"}  # pictures of a folder that are charts of the page
+TABLES = [
+    ("checks", "Checks", "Each number against its expected value."),
+    ("energy_balance", "Energy balance", "One row for each frame."),
+    ("measures", "Measures", "One row for each frame."),
+    ("histograms", "Histograms", ""),
+    ("rows", "Rows", ""),
+]
 
 
 def of_scene(outcome: SceneOutcome) -> Path:
@@ -23,23 +32,18 @@ def page(outcome: SceneOutcome, command: str = "") -> Page:
     """The page of a scene."""
     tables, about = outcome.results.tables, outcome.results.attributes
     shown = charts(outcome)
-    drawn = {"bed", *(chart.name for chart in shown)}
     pictures = [
         Picture(path.stem.replace("_", " "), f"{path.name}, as the run left it", file=path)
         for path in sorted(outcome.folder.glob("*.png"))
-        if path.stem not in drawn
+        if path.stem not in DRAWN and not path.stem.startswith("scene_")
     ]
     engine = str(about["engine"])
-    parts: list[Part] = [*shown, *bed(outcome), *pictures]
-    parts.append(Rows("Checks", tables["checks"], note="Each number against what is expected of it."))
-    if "energy_balance" in tables:
-        parts.append(Rows("Energy balance", tables["energy_balance"], UNITS, "One row for each frame."))
-    if "measures" in tables:
-        parts += [Rows("Measures", tables["measures"], units(tables["measures"]))]
-        parts += [Rows("Histograms", tables["histograms"])]
-    parts += [Rows("Rows", tables["rows"], units(tables["rows"])), _facts(outcome)]
-    parts += [common.case_lines(outcome.results.case_text)]
-    parts += _decks(outcome)
+    parts: list[Part] = [*shown[:1], *bed(outcome), *shown[1:], *pictures]
+    for name, title, note in TABLES:
+        table = tables.get(name)
+        if table is not None and not table.drop(columns=["step", "time"], errors="ignore").empty:
+            parts.append(Rows(title, table, units(table), note))
+    parts += [_facts(outcome), common.case_lines(outcome.results.case_text), *_decks(outcome)]
     return common.page_of(
         outcome,
         sentences(outcome),

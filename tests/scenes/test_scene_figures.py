@@ -1,0 +1,89 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""The page of a scene: each figure once, every column that changes is drawn, no empty table, the bed with its walls."""
+
+import base64
+import re
+
+import matplotlib.pyplot as plt
+import numpy as np
+import pytest
+from parts_cases import BED, parts
+from scene_runs import run, write_case
+from test_parts_motions import PLATE
+
+from epdem.scenes.charts import charts
+from epdem.studies.pages.scenes import of_scene
+
+TUBE = {"name": "tube", "kind": "cylinder", "diameter": "18 mm", "from": "0 mm", "to": "30 mm", "material": "steel"}
+
+
+@pytest.fixture(scope="module")
+def outcome(tmp_path_factory):
+    """Beads fall in a tube with a lid of triangles; one measure grows, one never changes; no histogram."""
+    place = tmp_path_factory.mktemp("figures")
+    wanted = [{"name": "all", "kind": "count"}, {"name": "top", "kind": "height"}]
+    data = parts(wall=[TUBE, PLATE | {"name": "lid"}], fill=[BED], measure=wanted)
+    data["scene"]["phase"] = [{"name": "fall", "duration": "30 ms"}]
+    data["output"] = {"rows": 10, "particles": 5, "loads": True, "energy": True}
+    return run(write_case(data, place), out=place / "out")
+
+
+@pytest.fixture(scope="module")
+def page(outcome):
+    return of_scene(outcome).read_text()
+
+
+@pytest.mark.liggghts
+def test_every_column_of_the_rows_that_changes_is_drawn_once(outcome):
+    rows = outcome.results.rows.drop(columns=["step", "time"])
+    changing = [name for name in rows if rows[name].nunique() > 1]
+    chart = {c.name: c for c in charts(outcome)}["scene"]
+    drawn = {}
+    for panel in chart.panels:
+        for series in panel.series:
+            drawn[f"{panel.y.label}_{series.name}".removesuffix("_")] = series.y
+    assert sorted(drawn) == sorted(changing) and len(drawn) > 6
+    assert all(np.array_equal(drawn[name], rows[name]) for name in drawn)
+    for name in set(rows) - set(changing):  # a flat curve is a number in the text
+        assert f"{name} = {rows[name].iloc[0]:.5g}" in chart.alt
+
+
+@pytest.mark.liggghts
+def test_measures_are_the_first_figure_and_come_once(outcome, page):
+    found = charts(outcome)
+    assert [panel.y.label for panel in found[0].panels] == ["top"] and "all = " in found[0].alt
+    labels = [panel.y.label for chart in found for panel in chart.panels]
+    assert len(labels) == len(set(labels))
+    drawn = re.findall(r'data-chart="(\w+)"', page)
+    assert drawn == [chart.name for chart in found] and len(set(drawn)) == len(drawn)
+
+
+@pytest.mark.liggghts
+def test_a_page_has_no_empty_table_and_units_of_all_columns(page):
+    assert "Histograms" not in page and re.search(r">Measures</h2>", page)
+    assert "<tbody>\n</tbody>" not in page
+    assert "tube_force_x [N]" in page and "lid_torque_z [N m]" in page and "top [m]" in page
+
+
+@pytest.mark.liggghts
+def test_the_bed_is_the_picture_of_walls_and_spheres_with_its_scale(outcome, page):
+    """The picture in the page is the file bed.png: wall outlines (grey-blue), colour bar (all of viridis) and scale."""
+    found = re.findall(r'<img src="data:image/png;base64,([^"]+)" alt="([^"]+)"', page)
+    assert [base64.b64decode(png) for png, _ in found] == [(outcome.folder / "bed.png").read_bytes()]
+    assert "walls" in found[0][1] and "speed [m/s]" in found[0][1] and "<circle" not in page
+    image = plt.imread(outcome.folder / "bed.png")[..., :3].reshape(-1, 3)
+    shades = plt.get_cmap("viridis")(np.linspace(0, 1, 9))[:, :3]
+    assert all((np.abs(image - shade).max(axis=1) < 0.01).sum() > 50 for shade in shades)
+
+
+@pytest.mark.liggghts
+def test_figures_and_tables_have_one_name_for_one_thing(outcome, page):
+    """Axes carry names of columns: no symbol of its own, and no dollar sign is left in the page."""
+    body = re.sub(r"<script.*?</script>", "", page, flags=re.S)
+    assert "$" not in re.sub(r"<details>.*?</details>", "", body, flags=re.S)
+    tables = outcome.results.tables
+    named = {name for table in tables.values() for name in table}
+    for panel in (panel for chart in charts(outcome) for panel in chart.panels):
+        label = panel.y.label
+        assert label in named or {f"{label}_{axis}" for axis in "xyz"} <= named or label == "energy", label
+        assert panel.x.label == "time"
