@@ -84,7 +84,7 @@ def deck_scene(case: Path, out: Path, *, engine: str, force: bool, as_json: bool
 
 def explain(case: CasePath, as_json: AsJson = False) -> None:
     """Print each line of the LIGGGHTS deck of a case with its reason."""
-    from ..liggghts.explain import explain_case
+    from ..engines.reasons import explain_case
 
     lines = explain_case(case)
     if as_json:

@@ -1,15 +1,9 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """The reason of each line of a deck: the templates state it beside the line, and only this module reads it."""
 
-from pathlib import Path
-
 from ..base import rendering
-from ..case import impact, scene
-from ..case.toml import named, read_toml
-from ..impacts.experiment import experiment
-from ..impacts.plan import plan
-from ..impacts.prediction import predict
-from ..scenes.plan import plan as scene_plan
+from ..impacts.plan import Plan
+from ..scenes.plan import ScenePlan
 from . import scene_deck
 from .impacts import Liggghts
 
@@ -32,11 +26,8 @@ def explain(templates: dict[str, str], deck: object) -> list[tuple[str, str, str
     return explained
 
 
-def explain_case(path: Path) -> list[tuple[str, str, str]]:
-    """`explain` of the deck of the case or scene in a file. Raises CaseError."""
-    data = read_toml(path)
-    with named(path):
-        if scene.is_scene(data):
-            return explain(SCENE, scene_deck.deck(scene_plan(scene.parse(data, path))))
-        x = experiment(impact.parse(data, path))
-        return explain(IMPACT, Liggghts().deck(plan(x, predict(x))))
+def reasons(job: Plan | ScenePlan) -> list[tuple[str, str, str]]:
+    """`explain` of the deck of a job. Raises CaseError."""
+    if isinstance(job, ScenePlan):
+        return explain(SCENE, scene_deck.deck(job))
+    return explain(IMPACT, Liggghts().deck(job))

@@ -9,6 +9,7 @@ import numpy as np
 from ...base.folders import claim
 from ...base.tables import unit_of
 from ...case.impact import load
+from ...engines.reasons import reasons
 from ...impacts import charts
 from ...impacts.comparison import CHECKED, UNITS
 from ...impacts.experiment import Body, Experiment
@@ -16,8 +17,6 @@ from ...impacts.prediction import predict
 from ...impacts.report import against_measured, mark, worst, yielding
 from ...impacts.run import Outcome
 from ...laws.strengths import law_named
-from ...liggghts.explain import IMPACT, explain
-from ...liggghts.impacts import Liggghts
 from ...report.chart import Axis, Chart, Panel, Series
 from ...report.page import NAME, Facts, Lines, Page, Part, Rows, write
 from ..calibrate import Calibration, experiment
@@ -142,14 +141,13 @@ def tolerances(outcome: Outcome) -> Facts:
 
 
 def decks(outcome: Outcome) -> list[Lines]:
-    """Every deck that ran, line by line; reasons of LIGGGHTS's are those of its template."""
+    """Every deck that ran, line by line; with the reasons that the templates of the engine state."""
     shown = []
     for key, text in outcome.results.decks.items():
         law, engine, name = key.split("/", 2)
         title = f"Deck {name} of {engine}, law {law}"
-        if engine == Liggghts.name and law in outcome.plans:
-            deck = Liggghts().deck(outcome.plans[law])
-            shown.append(common.reasoned(title, [(line, reason) for _, line, reason in explain(IMPACT, deck)]))
+        if law in outcome.plans and (lines := reasons(engine, outcome.plans[law])):
+            shown.append(common.reasoned(title, [(line, reason) for _, line, reason in lines]))
         else:
             shown.append(common.deck_lines(title, text))
     return shown

@@ -4,8 +4,7 @@
 from pathlib import Path
 
 from ...base.folders import claim
-from ...liggghts.explain import SCENE, explain
-from ...liggghts.scene_deck import deck
+from ...engines.reasons import reasons
 from ...report.page import NAME, Facts, Lines, Page, Part, Picture, Rows, write
 from ...scenes.charts import bed, charts
 from ...scenes.columns import units
@@ -79,9 +78,8 @@ def _facts(outcome: SceneOutcome) -> Facts:
 
 
 def _decks(outcome: SceneOutcome) -> list[Lines]:
-    """The files of the deck; those from a template of ours with the reason of each line."""
-    if SCENE.keys() <= outcome.results.decks.keys():
-        lines = explain(SCENE, deck(outcome.plan))
+    """The files of the deck, with the reasons that the templates of the engine state."""
+    if lines := reasons(str(outcome.results.attributes["engine"]), outcome.plan):
         files = dict.fromkeys(file for file, _, _ in lines)
         return [
             common.reasoned(f"Deck {name}", [(line, why) for file, line, why in lines if file == name])
