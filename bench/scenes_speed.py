@@ -41,7 +41,7 @@ def files(case: Path, model: str) -> dict[str, str]:
         properties = (*properties, per_pair("coefficientRestitution", d.n_types, 0.5, "-"))
     settings = tuple(s for s in d.settings if s != "computePlasticWork on")
     columns = scene_deck.contact_columns(0, 0)
-    unused = dict(yields=False, writes_plastic_work=False, writes_friction_work=False, slots=())
+    unused = dict(yields=False, writes_plastic_work=False, writes_friction_work=False, history_columns=())
     columns_of = dict(contact_columns=columns, wall_contact_columns=columns)
     d = replace(d, model="hertz", properties=properties, settings=settings, **unused, **columns_of)
     names = {"in.scene": "liggghts/scene.in.j2", "setup.in": "liggghts/scene_setup.in.j2"}

@@ -76,7 +76,7 @@ def write_resume(p: ScenePlan, folder: Path, step: int) -> Path:
     comes = False  # spheres that come with this phase and are not in the restart file
     if phase < len(d.phases):
         part = d.phases[phase]
-        comes = step == begin and bool(part.late or [f for f in d.insertions if f.once and f.phase == part.name])
+        comes = step == begin and bool(part.particles or [f for f in d.insertions if f.once and f.phase == part.name])
         rest = part.after(step - begin, d.every)
         d = replace(d, phases=(*d.phases[:phase], rest, *d.phases[phase + 1 :]))
     d = replace(d, insertions=tuple(_going_on(d, phase, log.inserted(folder / OUT, step))))

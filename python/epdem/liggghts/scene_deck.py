@@ -13,7 +13,7 @@ from ..scenes.plan import ScenePlan
 from . import stl, wall_stress
 from .insertions import Insertion, insertions
 from .properties import HARD, SOFT, Property, elastic, per_pair, ratios, strength, tangential, work_of_adhesion
-from .scene_parts import Flat, Part, Surface, load_words, parts, planes, surfaces, table
+from .scene_parts import DeckPlane, DeckPhase, DeckMesh, load_words, parts, planes, surfaces, table
 from .wall_power import wall_id
 
 MOST_CELLS = 2**31 - 1  # that LIGGGHTS counts, each half as wide as its longest reach
@@ -44,8 +44,8 @@ class Deck:
     rolling_friction: str | None
     settings: tuple[str, ...]
     wall_type: int
-    planes: tuple[Flat, ...]
-    meshes: tuple[Surface, ...]
+    planes: tuple[DeckPlane, ...]
+    meshes: tuple[DeckMesh, ...]
     loads_of: tuple[tuple[int, str, bool], ...]
     writes_wall_power: bool
     table: tuple[Sphere, ...]
@@ -53,14 +53,14 @@ class Deck:
     gravity: float
     insertions: tuple[Insertion, ...]
     time_step: float
-    phases: tuple[Part, ...]
+    phases: tuple[DeckPhase, ...]
     open: bool
     every: int
     sampling: int
     samples: int
     frames: int
     contacts: int
-    watched: tuple[tuple[str, str, bool], ...]
+    stress_walls: tuple[tuple[str, str, bool], ...]
     vtk: int
     pictures: int
     restarts: int
@@ -70,7 +70,7 @@ class Deck:
     has_history: bool
     yields: bool
     adheres: bool
-    slots: tuple[str, ...]
+    history_columns: tuple[str, ...]
     contact_columns: tuple[int, ...]
     wall_contact_columns: tuple[int, ...]
     writes_plastic_work: bool
@@ -131,7 +131,7 @@ def memory(m: Model, *, wall: bool = False) -> int:
     return law + stamp + others
 
 
-def remembered(m: Model) -> tuple[str, ...]:
+def history_columns(m: Model) -> tuple[str, ...]:
     """What a table of contacts takes of the law's memory, which begins with it: the largest overlap of a law that
     yields, whether bodies that adhere are attached (its root is above 0)."""
     return ("largest overlap",) * m.yields + ("root of the attached",) * m.adheres
@@ -198,13 +198,15 @@ def deck(p: ScenePlan) -> Deck:
         insertions=insertions(p),
         time_step=p.time_step,
         phases=parts(p),
-        open=p.ends_early or any(part.clocks for part in parts(p)),
+        open=p.ends_early or any(phase.vibrations for phase in parts(p)),
         every=p.every,
         sampling=p.sampling,
         samples=p.every // p.sampling,
         frames=p.frames,
         contacts=p.contacts,
-        watched=tuple((name, wall_id(p, name), bool(p.scene.meshes[name].wear)) for name in wall_stress.watched(p)),
+        stress_walls=tuple(
+            (name, wall_id(p, name), bool(p.scene.meshes[name].wear)) for name in wall_stress.stress_walls(p)
+        ),
         vtk=p.vtk,
         pictures=p.pictures,
         restarts=p.restarts,
@@ -214,9 +216,9 @@ def deck(p: ScenePlan) -> Deck:
         has_history=m.yields or m.spins or m.adheres,
         yields=m.yields,
         adheres=m.adheres,
-        slots=remembered(m),
-        contact_columns=contact_columns(len(remembered(m)), memory(m)),
-        wall_contact_columns=contact_columns(len(remembered(m)), memory(m, wall=True)),
+        history_columns=history_columns(m),
+        contact_columns=contact_columns(len(history_columns(m)), memory(m)),
+        wall_contact_columns=contact_columns(len(history_columns(m)), memory(m, wall=True)),
         writes_plastic_work=p.writes_plastic_work,
         writes_friction_work=p.writes_friction_work,
         torque=p.torque,

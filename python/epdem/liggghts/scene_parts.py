@@ -18,7 +18,7 @@ from .wall_power import GAIN, power, wall_id
 
 
 @dataclass(frozen=True)
-class Motion:
+class WallMotion:
     """What moves a mesh: `begin` and `end` are commands."""
 
     wall: str
@@ -27,7 +27,7 @@ class Motion:
 
 
 @dataclass(frozen=True)
-class Wait:
+class StopCondition:
     """How a phase ends early: after `first` steps at most `rows` times `every`, until the condition holds."""
 
     first: int
@@ -37,7 +37,7 @@ class Wait:
 
 
 @dataclass(frozen=True)
-class Late:
+class PhaseParticle:
     """A sphere that comes with a phase; place and velocity in words; no other centre is as `near` to its place [m]."""
 
     name: str
@@ -50,7 +50,7 @@ class Late:
 
 
 @dataclass(frozen=True)
-class Flat:
+class DeckPlane:
     """A plane of LIGGGHTS's kind `axis` ("zplane"); `force`: LIGGGHTS stores that of each sphere on it."""
 
     id: str
@@ -61,23 +61,23 @@ class Flat:
 
 
 @dataclass(frozen=True)
-class Surface:
-    """A wall of triangles of a file; `style`: with sums of forces, driven by one; `words`: what its surface does.
+class DeckMesh:
+    """A wall of triangles of a file; `style`: with sums of forces, driven by one; `keywords`: what its surface does.
 
-    waits: the force that drives it acts in later phases only."""
+    pressed_later: the force that drives it acts in later phases only."""
 
     id: str
     file: str
     type: int
     style: str
-    words: str
-    waits: bool
+    keywords: str
+    pressed_later: bool
 
 
 @dataclass(frozen=True)
-class Part:
-    """A phase and what begins with it; `ends`: commands at its end. held: all its gates and motions, for a run that
-    continues in it. upto: whether the step at its end is known before the run. clocks: the walls whose power needs the
+class DeckPhase:
+    """A phase and what begins with it; end_commands: at its end. resume_gates, resume_commands: all its gates and motions, for a run that
+    continues in it. upto: whether the step at its end is known before the run. vibrations: the walls whose power needs the
     step at which their vibration begins, here."""
 
     name: str
@@ -85,36 +85,36 @@ class Part:
     steps: int
     upto: bool
     time_step: float | None
-    begins: tuple[str, ...]
-    gates: tuple[Flat, ...]
-    held_gates: tuple[Flat, ...]
-    held: tuple[str, ...]
-    ends: tuple[str, ...]
-    late: tuple[Late, ...]
+    start_commands: tuple[str, ...]
+    gates: tuple[DeckPlane, ...]
+    resume_gates: tuple[DeckPlane, ...]
+    resume_commands: tuple[str, ...]
+    end_commands: tuple[str, ...]
+    particles: tuple[PhaseParticle, ...]
     record: bool
     power: str
-    clocks: tuple[str, ...]
-    wait: Wait | None
+    vibrations: tuple[str, ...]
+    stop: StopCondition | None
 
-    def after(self, steps: int, every: int) -> "Part":
+    def after(self, steps: int, every: int) -> "DeckPhase":
         """What is left of the phase after so many of its steps."""
-        wait = self.wait
-        if wait is not None:
-            looked = max(0, steps - wait.first) // every
-            wait = replace(wait, first=max(0, wait.first - steps), rows=wait.rows - looked)
-        return replace(self, steps=self.steps - steps, wait=wait)
+        stop = self.stop
+        if stop is not None:
+            looked = max(0, steps - stop.first) // every
+            stop = replace(stop, first=max(0, stop.first - steps), rows=stop.rows - looked)
+        return replace(self, steps=self.steps - steps, stop=stop)
 
 
 def _words(*vectors: Sequence[float]) -> str:
     return " ".join(decks.number(x) if x else "0" for vector in vectors for x in vector)
 
 
-def plane(p: ScenePlan, w: PlaneWall, *, force: bool = False) -> Flat:
+def plane(p: ScenePlan, w: PlaneWall, *, force: bool = False) -> DeckPlane:
     """A plane of the scene."""
-    return Flat(wall_id(p, w.name), p.wall_types[w.name], f"{w.axis}plane", w.at, force)
+    return DeckPlane(wall_id(p, w.name), p.wall_types[w.name], f"{w.axis}plane", w.at, force)
 
 
-def planes(p: ScenePlan) -> tuple[Flat, ...]:
+def planes(p: ScenePlan) -> tuple[DeckPlane, ...]:
     """The planes that are always there."""
     stored = {"floor"} if p.floor_load else {*p.loads}
     return tuple(plane(p, w, force=w.name in stored) for w in p.scene.planes)
@@ -142,7 +142,7 @@ def _middle(triangles: FloatArray) -> list[float]:
     return [float(v) for v in 0.5 * (corners.min(axis=0) + corners.max(axis=0))]
 
 
-def surfaces(p: ScenePlan) -> tuple[Surface, ...]:
+def surfaces(p: ScenePlan) -> tuple[DeckMesh, ...]:
     """The walls of triangles."""
     force = p.plates or p.output.loads or p.output.energy
     found = []
@@ -163,11 +163,11 @@ def surfaces(p: ScenePlan) -> tuple[Surface, ...]:
             words += f" com {_words(_middle(p.triangles[name]))} ctrlPV force axis {_words(press.unit_direction)}"
             words += f" target_val {decks.number(press.force)} vel_max {decks.number(press.highest_speed)} kp {GAIN}"
         waits = press is not None and name not in p.phases[0].moves
-        found.append(Surface(wall_id(p, name), f"{name}.stl", p.wall_types[name], style, words, waits))
+        found.append(DeckMesh(wall_id(p, name), f"{name}.stl", p.wall_types[name], style, words, waits))
     return tuple(found)
 
 
-def _motion(p: ScenePlan, name: str, move: Move) -> Motion:
+def _motion(p: ScenePlan, name: str, move: Move) -> WallMotion:
     wall = wall_id(p, name)
     fix = "press" if name == "plate" else f"move_{name}"
     match move:
@@ -180,11 +180,13 @@ def _motion(p: ScenePlan, name: str, move: Move) -> Motion:
         case VibrateMove():
             words = f"wiggle amplitude {_words(move.amplitude)} period {decks.number(2 * math.pi / move.omega)}"
         case PressMove():
-            return Motion(wall, f"fix_modify {wall} servo/integrate start", f"fix_modify {wall} servo/integrate stop")
-    return Motion(wall, f"fix {fix} all move/mesh mesh {wall} {words}", f"unfix {fix}")
+            return WallMotion(
+                wall, f"fix_modify {wall} servo/integrate start", f"fix_modify {wall} servo/integrate stop"
+            )
+    return WallMotion(wall, f"fix {fix} all move/mesh mesh {wall} {words}", f"unfix {fix}")
 
 
-def _wait(p: ScenePlan, phase: Phase, steps: int) -> Wait | None:
+def _stop_condition(p: ScenePlan, phase: Phase, steps: int) -> StopCondition | None:
     until = phase.case.condition
     if until is None:
         return None
@@ -197,22 +199,22 @@ def _wait(p: ScenePlan, phase: Phase, steps: int) -> Wait | None:
     else:
         load = f"f_load{1 + p.loads.index(until.wall or '')}"
         formula, sign = "sqrt(" + "+".join(f"{load}[{k}]*{load}[{k}]" for k in (1, 2, 3)) + ")", ">="
-    return Wait(first, (steps - first) // p.every, formula, f"{sign} {decks.number(until.limit)}")
+    return StopCondition(first, (steps - first) // p.every, formula, f"{sign} {decks.number(until.limit)}")
 
 
-def _late(p: ScenePlan, b: Body) -> Late:
+def _phase_particle(p: ScenePlan, b: Body) -> PhaseParticle:
     s = b.sphere
     density, velocity = p.case.materials[s.material].density, _words(s.velocity) if any(s.velocity) else ""
-    return Late(
+    return PhaseParticle(
         f"body_{b.name}", p.model.type_of(s.material), 2 * s.radius, density, _words(s.place), 1e-3 * s.radius, velocity
     )
 
 
-def parts(p: ScenePlan) -> tuple[Part, ...]:
+def parts(p: ScenePlan) -> tuple[DeckPhase, ...]:
     """The phases of a scene."""
     gates = {w.name: plane(p, w) for w in p.scene.gates}
     own_steps = any(phase.case.time_step for phase in p.phases)
-    found: list[Part] = []
+    found: list[DeckPhase] = []
     begin, upto = 0, True
     before: Phase | None = None
     for phase, after in zip_longest(p.phases, p.phases[1:]):
@@ -221,22 +223,24 @@ def parts(p: ScenePlan) -> tuple[Part, ...]:
         _refuse_other_step(p, before, phase)
         ends = [f"unfix {wall_id(p, name)}" for name in phase.gates if after and name not in after.gates]
         upto = upto and phase.case.condition is None
-        part = Part(
+        part = DeckPhase(
             phase.name,
             phase.end,
             phase.end - begin,
             upto=upto,
             time_step=phase.case.time_step or p.time_step if own_steps else None,
-            begins=tuple(motions[name].begin for name in new),
+            start_commands=tuple(motions[name].begin for name in new),
             gates=tuple(gates[name] for name in phase.gates if before is None or name not in before.gates),
-            held_gates=tuple(gates[name] for name in phase.gates),
-            held=tuple(m.begin for m in motions.values()),
-            ends=(*ends, *(m.end for name, m in motions.items() if after and not _goes_on(name, phase, after))),
+            resume_gates=tuple(gates[name] for name in phase.gates),
+            resume_commands=tuple(m.begin for m in motions.values()),
+            end_commands=(*ends, *(m.end for name, m in motions.items() if after and not _goes_on(name, phase, after))),
             record=phase.case.record,
-            late=tuple(_late(p, b) for b in p.scene.later if b.phase == phase.name),
+            particles=tuple(_phase_particle(p, b) for b in p.scene.later if b.phase == phase.name),
             power=power(p, phase) if p.writes_wall_power else "",
-            clocks=tuple(name for name in new if p.writes_wall_power and isinstance(phase.moves[name], VibrateMove)),
-            wait=_wait(p, phase, phase.end - begin),
+            vibrations=tuple(
+                name for name in new if p.writes_wall_power and isinstance(phase.moves[name], VibrateMove)
+            ),
+            stop=_stop_condition(p, phase, phase.end - begin),
         )
         found.append(part)
         begin, before = phase.end, phase

@@ -55,7 +55,7 @@ def read(plan: ScenePlan, folder: Path, *, without: Collection[int] = ()) -> Tab
         found["particles"] = tables.particles(plan, folder, without=without)
     if plan.contacts:
         found["contacts"] = tables.contact_table(plan, folder, found["particles"], without=without)
-    if wall_stress.watched(plan):
+    if wall_stress.stress_walls(plan):
         found["walls"] = wall_stress.table(plan, folder, without=without)
     return found
 

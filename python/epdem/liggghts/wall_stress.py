@@ -16,7 +16,7 @@ COLUMNS = {"meshid": "triangle", "area": "area", "normal_stress_average": "norma
 COLUMNS |= {"shear_stress_average": "shear_stress", "wear": "wear"}
 
 
-def watched(p: ScenePlan) -> tuple[str, ...]:
+def stress_walls(p: ScenePlan) -> tuple[str, ...]:
     """The walls whose triangles are in the table."""
     return tuple(name for name, mesh in p.scene.meshes.items() if mesh.stress or mesh.wear)
 
@@ -68,7 +68,7 @@ def table(p: ScenePlan, folder: Path, *, without: Collection[int] = ()) -> pd.Da
     Raises EngineError for a file that is not whole.
     """
     frames = []
-    for name in watched(p):
+    for name in stress_walls(p):
         for step in (s for s in p.frame_steps(p.frames) if s not in without):
             path = folder / FILES.format(name, step)
             try:
