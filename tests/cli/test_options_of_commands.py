@@ -17,9 +17,10 @@ from epdem.engines import engine
 from epdem.errors import CaseError
 from epdem.impacts import report as impacts_report
 from epdem.impacts import run as impacts_run
+from epdem.liggghts import tune
 from epdem.scenes import report as scenes_report
 from epdem.scenes import run as scenes_run
-from epdem.studies import fit, tune
+from epdem.studies import fit
 from epdem.studies.pages import impacts as impacts_page
 from epdem.studies.pages import scenes as scenes_page
 from epdem.studies.sweep import executors

@@ -21,10 +21,10 @@ from epdem.impacts.experiment import experiment
 from epdem.impacts.measurement import measure
 from epdem.impacts.plan import plan
 from epdem.impacts.prediction import predict
-from epdem.liggghts import dump, own_template, scene_tables, session
+from epdem.liggghts import dump, own_template, scene_tables, session, tune
 from epdem.liggghts import impacts as liggghts
 from epdem.scenes import columns, contacts, run, stl_files
-from epdem.studies import one_impact, tune
+from epdem.studies import one_impact
 from epdem.studies.sweep import slurm
 from epdem.theory.yielding import principal
 from epdem.verification.models import lammps

@@ -9,10 +9,9 @@ import pytest
 
 from epdem.case.scene import load
 from epdem.errors import CaseError, EngineError
-from epdem.liggghts import launcher, scene_deck, trials
+from epdem.liggghts import launcher, scene_deck, trials, tune
+from epdem.liggghts.tune import Trial, Tuned
 from epdem.scenes.plan import plan
-from epdem.studies import tune
-from epdem.studies.tune import Trial, Tuned
 
 CASES = Path(__file__).parents[2] / "cases"
 SMALL = {"count = 1000": "count = 30", '"0.5 s"': '"0.1 s"', "error = 1e-2": "time_step = '5e-5 s'"}

@@ -137,7 +137,7 @@ def tune(
 ) -> None:
     """Find the neighbour skin, and with --ranks the cut of the room, with which a scene runs fastest in LIGGGHTS."""
     from ..base.terminal import status
-    from ..studies import tune as t
+    from ..liggghts import tune as t
 
     with status() as line:
         tuned = t.tune(case, ranks=ranks, seconds=seconds, progress=lambda text: line(f"{case.stem}: {text}"))

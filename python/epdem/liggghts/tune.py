@@ -18,11 +18,11 @@ from ..base.files import atomic
 from ..case.scene import Output, SceneCase, load
 from ..case.toml import named, text_of
 from ..errors import CaseError, EngineError
-from ..liggghts import trials
-from ..liggghts.impacts import Liggghts
-from ..liggghts.trials import Loops
 from ..scenes.engine import check_run
 from ..scenes.plan import ScenePlan, plan
+from . import trials
+from .impacts import Liggghts
+from .trials import Loops
 
 SHARES = (0.25, 0.5, 0.75, 1.0, 1.5)  # of the smallest radius: skins that are tried
 TURNS, SHORTEST, LONGEST = 10, 200, 2000  # turns through all skins in a scene, and steps with one of them
