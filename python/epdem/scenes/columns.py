@@ -71,7 +71,14 @@ def whole(p: ScenePlan, table: pd.DataFrame, folder: Path) -> pd.DataFrame:
     keys = table[["id", "type"]].to_numpy(float)
     with np.errstate(invalid="ignore"):
         good = ((keys >= 1) & (keys == np.floor(keys)) & (keys <= [2**53, len(p.model.types)])).all(axis=1)
-    good &= np.isfinite(table.to_numpy(float)).all(axis=1)
+    finite = np.isfinite(table.to_numpy(float)).all(axis=1)
+    if (good & ~finite).any():
+        first = table[good & ~finite].iloc[0]
+        raise EngineError(
+            f"{folder}: sphere {first['id']:.0f} has values that are no numbers in the frame of step "
+            f"{first['step']:.0f}; give a smaller numerics.time_step, or, if the file is damaged, run the case again"
+        )
+    good &= finite
     good &= (table["radius"].to_numpy(float) > SMALLEST) & ~table.duplicated(["step", "id"]).to_numpy()
     if not good.all():
         raise EngineError(f"{folder}: the frame of step {table['step'][~good].iloc[0]} is damaged; run the case again")

@@ -24,6 +24,7 @@ from ..impacts.engine import Report, silent, texts
 from ..impacts.prediction import predict
 from . import checks, energy_balance, measures, pictures, results
 from .engine import Resumed, SceneEngine, check_run
+from .lost import lost_spheres
 from .plan import ScenePlan, plan
 from .timestep import leading_impact
 from .warnings import planned_warnings
@@ -154,7 +155,8 @@ def _reused(work: _Work, folder: Path, fresh: bool) -> SceneOutcome | None:
     old = None if fresh else _stored(folder / "results.h5")
     if old is None or old.attributes.get("inputs") != work.inputs:
         return None
-    return SceneOutcome(_as_run(work.plan, old.tables), folder, old, 0.0, reused=True, warnings=work.notes)
+    p = _as_run(work.plan, old.tables)
+    return SceneOutcome(p, folder, old, 0.0, reused=True, warnings=[*work.notes, *lost_spheres(p, old.tables)])
 
 
 def _as_run(p: ScenePlan, tables: dict[str, pd.DataFrame]) -> ScenePlan:
@@ -222,7 +224,7 @@ def _finish(
         kept,
         seconds,
         resumed_from=went_on.step if went_on else None,
-        warnings=[*work.notes, *_left_out(folder, went_on.lost if went_on else [])],
+        warnings=[*work.notes, *lost_spheres(p, tables), *_left_out(folder, went_on.lost if went_on else [])],
     )
 
 
