@@ -21,9 +21,9 @@ STATEMENT = re.compile(r"^Eq\. (8\.\d\d) \[(.+?)\]: (.+?)(?=\n\n|\Z)", re.DOTALL
 HEADERS, THEORY, TESTS = "cpp_contact/include/epdem", "python/epdem/theory", "tests"
 # header, function and code of what computes with an equation; a law that merely leads to one (8.83, 8.84) does not
 CPP = {
-    "8.78": [("cavity.hpp", "Cavity::parameters", '"firstYieldRatio", "1", 1.60')],
+    "8.78": [("cavity.hpp", "Cavity::parameters", '"c_Y", "1", 1.60')],
     "8.80": [
-        ("cavity.hpp", "Cavity::parameters", '"plasticRatio", "1", 2.8'),
+        ("cavity.hpp", "Cavity::parameters", '"c_P", "1", 2.8'),
         ("johnson.hpp", "Johnson::default_ratio", "default_ratio = 3.0"),
         ("thornton.hpp", "Thornton::default_ratio", "default_ratio = 2.8"),
     ],

@@ -57,7 +57,7 @@ def figure() -> Chart:
     pair = steel("cavity", SPEEDS)
     numbers = {"E_star": pair.E_star, "R_star": pair.R_star, "m_star": pair.m_star}
     Y = YIELD_STRESS
-    ratios = (FIRST_YIELD_ROUNDED, BACKBONES["thornton"].default_ratio)
+    ratios = (FIRST_YIELD_ROUNDED, BACKBONES["thornton"].declaration().default_ratio)
     v_y0, v_y = (printed.yield_speed(p_y=ratio * Y, **numbers) for ratio in ratios)
     fine = np.geomspace(SPEEDS[0], SPEEDS[-1], 400)
     fit = printed.wu(fine * v_y0, v_y0=v_y0)
@@ -71,7 +71,7 @@ def figure() -> Chart:
         if name != "hertz":
             there = points / printed.wu(SPEEDS * v_y0, v_y0=v_y0) - 1
             below += [Series("", fine, line / fit - 1, k), Series("", SPEEDS, there, k, None, k)]
-    johnson = printed.johnson(fine * v_y0, p_m=BACKBONES["johnson"].default_ratio * Y, **numbers)
+    johnson = printed.johnson(fine * v_y0, p_m=BACKBONES["johnson"].declaration().default_ratio * Y, **numbers)
     above.append(Series("8.83 Thornton 1997", fine, printed.thornton(fine * v_y0, v_y=v_y), INK, "dot"))
     above.append(Series("8.86 Johnson 1985", fine, np.where(johnson <= 1.1, johnson, np.nan), INK, "dashdot"))
     above.append(Series("8.88 Wu et al. 2003, finite elements", fine, fit, INK, "dash"))

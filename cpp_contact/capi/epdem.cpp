@@ -21,55 +21,24 @@ namespace {
 
 using namespace epdem;
 
-struct LawInfo {
-  const char* name;
-  int id;
-  int n_parameters;
-  const Parameter* parameters;
-  int strength;
-  double default_ratio;
-  int memory;
-  bool adheres;
-};
-
-template <class Law>
-constexpr LawInfo info() {
-  return {Law::name,          Law::id,     Law::n_parameters, Law::parameters, Law::strength,
-          Law::default_ratio, memory<Law>, adheres<Law>};
-}
-
-#define EPDEM_INFO(Class) info<Class<double>>(),
-constexpr LawInfo laws[] = {EPDEM_LAWS(EPDEM_INFO)};
-#undef EPDEM_INFO
-constexpr int n_laws = int(sizeof(laws) / sizeof(laws[0]));
-
-bool known(int law) { return law >= 0 && law < n_laws; }
-
-const Parameter* parameter(int law, int k) {
-  if (!known(law) || k < 0 || k >= laws[law].n_parameters) return nullptr;
-  return &laws[law].parameters[k];
-}
-
 bool positive(double x) { return std::isfinite(x) && x > 0.0; }
 
-int check(int law, double E_star, const double* parameters) {
-  if (!known(law)) return EPDEM_UNKNOWN_LAW;
-  if (!positive(E_star)) return EPDEM_BAD_PARAMETER;
-  for (int k = 0; k < laws[law].n_parameters; ++k)
-    if (!positive(parameters[k]) && !(laws[law].parameters[k].may_vanish && parameters[k] == 0.0))
-      return EPDEM_BAD_PARAMETER;
-  return EPDEM_OK;
+/// Whether the numbers are in the range of a law, each alone and together.
+template <class Law>
+bool in_range(double E_star, const double* parameters) {
+  for (int k = 0; k < Law::n_parameters; ++k)
+    if (!positive(parameters[k]) && !(Law::parameters[k].may_vanish && parameters[k] == 0.0)) return false;
+  return positive(E_star) && Law::valid(parameters);
 }
 
 /// Calls `body(law object)` for the law of that index; only here an index becomes a type.
 template <class Body>
 int with_law(int index, double E_star, const double* parameters, const Body& body) {
-  if (const int status = check(index, E_star, parameters)) return status;
   int i = 0;
-#define EPDEM_CASE(Class)                                              \
-  if (index == i++) {                                                  \
-    if (!Class<double>::valid(parameters)) return EPDEM_BAD_PARAMETER; \
-    return body(Class<double>(E_star, parameters));                    \
+#define EPDEM_CASE(Class)                                                         \
+  if (index == i++) {                                                             \
+    if (!in_range<Class<double>>(E_star, parameters)) return EPDEM_BAD_PARAMETER; \
+    return body(Class<double>(E_star, parameters));                               \
   }
   EPDEM_LAWS(EPDEM_CASE)
 #undef EPDEM_CASE
@@ -141,37 +110,6 @@ EPDEM_EXPORT size_t epdem_size_of(const char* name) {
   return 0;
 }
 
-EPDEM_EXPORT int epdem_law_count(void) { return n_laws; }
-EPDEM_EXPORT const char* epdem_law_name(int law) { return known(law) ? laws[law].name : nullptr; }
-EPDEM_EXPORT int epdem_law_id(int law) { return known(law) ? laws[law].id : -1; }
-EPDEM_EXPORT int epdem_law_strength(int law) { return known(law) ? laws[law].strength : -1; }
-EPDEM_EXPORT double epdem_law_default_ratio(int law) { return known(law) ? laws[law].default_ratio : not_given; }
-EPDEM_EXPORT int epdem_law_memory(int law) { return known(law) ? laws[law].memory : -1; }
-EPDEM_EXPORT int epdem_law_adheres(int law) { return known(law) ? laws[law].adheres : -1; }
-EPDEM_EXPORT int epdem_law_parameter_count(int law) { return known(law) ? laws[law].n_parameters : -1; }
-
-EPDEM_EXPORT const char* epdem_law_parameter_name(int law, int k) {
-  const Parameter* p = parameter(law, k);
-  return p ? p->name : nullptr;
-}
-EPDEM_EXPORT const char* epdem_law_parameter_property(int law, int k) {
-  const Parameter* p = parameter(law, k);
-  return p ? p->property : nullptr;
-}
-EPDEM_EXPORT const char* epdem_law_parameter_unit(int law, int k) {
-  const Parameter* p = parameter(law, k);
-  return p ? p->unit : nullptr;
-}
-EPDEM_EXPORT double epdem_law_parameter_default(int law, int k) {
-  const Parameter* p = parameter(law, k);
-  return p ? p->fallback : std::nan("");
-}
-
-EPDEM_EXPORT int epdem_law_parameter_may_vanish(int law, int k) {
-  const Parameter* p = parameter(law, k);
-  return p ? p->may_vanish : -1;
-}
-
 EPDEM_EXPORT double epdem_viscous_number(double restitution) {
   return restitution >= viscous_restitution_min && restitution <= 1.0 ? viscous_number(restitution) : std::nan("");
 }
@@ -207,6 +145,22 @@ EPDEM_EXPORT int epdem_backbone(int law, double E_star, const double* parameters
         plastic_work_out[i] = plastic_work(l, R_star[i], delta[i]);
     }
     return int(EPDEM_OK);
+  });
+}
+
+EPDEM_EXPORT int epdem_yield(int law, double E_star, const double* parameters, size_t n, const double* R_star,
+                             const double* delta_max, double* yield_overlap, double* dent) {
+  if (!std::all_of(R_star, R_star + n, positive)) return EPDEM_BAD_INPUT;
+  return with_law(law, E_star, parameters, [&](const auto& l) {
+    if constexpr (adheres<std::decay_t<decltype(l)>>) {
+      return int(EPDEM_UNKNOWN_LAW);
+    } else {
+      for (size_t i = 0; i < n; ++i) {
+        yield_overlap[i] = l.elastic_overlap(R_star[i]);
+        dent[i] = residual_overlap(l, R_star[i], delta_max[i]);
+      }
+      return int(EPDEM_OK);
+    }
   });
 }
 

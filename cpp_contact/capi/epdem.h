@@ -14,7 +14,7 @@
 extern "C" {
 #endif
 
-#define EPDEM_ABI 7
+#define EPDEM_ABI 8
 #define EPDEM_MAX_PARAMETERS 8
 
 typedef enum { EPDEM_OK = 0, EPDEM_UNKNOWN_LAW = 1, EPDEM_BAD_PARAMETER = 2, EPDEM_BAD_INPUT = 3 } epdem_status;
@@ -50,25 +50,24 @@ const char* epdem_version(void);
 const char* epdem_message(int status);
 size_t epdem_size_of(const char* struct_name); /* 0 if there is no such struct */
 
-/* Laws, by index 0 .. epdem_law_count()-1, and their parameters. NULL or -1 outside the range. */
-int epdem_law_count(void);
-const char* epdem_law_name(int law);
-int epdem_law_id(int law);               /* of the LIGGGHTS model "ep/" + name, stored in restart files */
-int epdem_law_strength(int law);         /* which parameter is the strength; -1: none */
-double epdem_law_default_ratio(int law); /* strength over the yield stress of the softer body; NaN: no strength */
-int epdem_law_memory(int law);           /* doubles that a host keeps from step to step */
-int epdem_law_adheres(int law);          /* 1: bodies attract each other, the step takes the closing speed; 0: not */
-int epdem_law_parameter_count(int law);
-const char* epdem_law_parameter_name(int law, int k);
-const char* epdem_law_parameter_property(int law, int k); /* LIGGGHTS property/global */
-const char* epdem_law_parameter_unit(int law, int k);
-double epdem_law_parameter_default(int law, int k); /* NaN: must be given */
-int epdem_law_parameter_may_vanish(int law, int k); /* 1: it can be 0 */
+/* What each law declares of itself: a JSON array, in the order of the index of a law. Of a law: name, id (of the
+ * LIGGGHTS model "ep/" + name, stored in restart files), title, sources (short names of publications, separated by semicolons), condition (on its parameters together, or
+ * null), parameters, strength (the parameter at which a body yields, or null), default_ratio (strength over the yield
+ * stress of the softer body), memory (doubles that a host keeps from step to step), yields, flattens (unloading is not
+ * Hertz's), adheres (bodies attract each other, the step takes the closing speed), without_adhesion (the law for work
+ * 0, or null). Of a parameter: name, property (LIGGGHTS property/global), symbol, unit, default (or null), may_vanish
+ * (0 is a value), of_pair (of two surfaces, not of a body). */
+const char* epdem_declarations(void);
 
 /* n steps, each from its own R_star, delta_max and delta (with adhesion: of a contact that has stood since it reached
- * delta_max, at rest); `parameters` as in epdem_law_parameter_name. */
+ * delta_max, at rest); `parameters` in the order of the declaration. */
 int epdem_step(int law, double E_star, const double* parameters, size_t n, const double* R_star,
                const double* delta_max, const double* delta, epdem_step_result* out);
+
+/* Overlap of first yield (inf: never) and, of contacts that reached delta_max, the overlap at which the force returns
+ * to 0 (the dent; 0 before yield), both [m]. Of laws without adhesion; EPDEM_UNKNOWN_LAW of others. */
+int epdem_yield(int law, double E_star, const double* parameters, size_t n, const double* R_star,
+                const double* delta_max, double* yield_overlap, double* dent);
 
 /* Dashpot number of a restitution at low speed in [0.14, 1]; NaN outside. */
 double epdem_viscous_number(double restitution);

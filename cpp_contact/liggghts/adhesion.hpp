@@ -4,6 +4,7 @@
 
 #include "comm.h"
 #include "epdem/adhesive.hpp"
+#include "epdem/laws.hpp"
 #include "force.h"
 #include "reader.hpp"
 
@@ -39,16 +40,26 @@ class Adhesion {
   std::vector<double> surface_;
 };
 
+/// The models with adhesion for a law without: that for the same bodies, else all of them.
+inline std::string models_with_adhesion(const std::string& model) {
+  std::string all, own;
+#define EPDEM_ADHESIVE(Class)                                                        \
+  if constexpr (adheres<Class<double>>) {                                            \
+    const std::string name = std::string("ep/") + Class<double>::name;               \
+    all += (all.empty() ? "" : " or ") + name;                                       \
+    if (model == std::string("ep/") + without_adhesion<Class<double>>()) own = name; \
+  }
+  EPDEM_LAWS(EPDEM_ADHESIVE)
+#undef EPDEM_ADHESIVE
+  return own.empty() ? "no theory of adhesion exists for it, take " + all : "take " + own;
+}
+
 /// A law without adhesion beside a deck that asks for it.
 inline void refuse_adhesion(const Reader& reader, const Declaration& law) {
-  for (const char* name : {adhesion_name, surface_name}) {
-    if (!reader.given(name)) continue;
-    const std::string instead = law.model == "ep/hertz" ? "take ep/jkr"
-                                : law.model == "ep/thornton"
-                                    ? "take ep/thornton_ning"
-                                    : "no theory of adhesion exists for it, take ep/thornton_ning";
-    reader.fail(std::string(name) + " is given, but this law has no adhesion; " + instead + ", or remove the property");
-  }
+  for (const char* name : {adhesion_name, surface_name})
+    if (reader.given(name))
+      reader.fail(std::string(name) + " is given, but this law has no adhesion; " + models_with_adhesion(law.model) +
+                  ", or remove the property");
 }
 
 }  // namespace epdem::liggghts

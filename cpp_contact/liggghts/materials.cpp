@@ -66,7 +66,7 @@ constexpr double rigid_strength = 1e25;
 
 /// A strength as a ratio, which has a default, of the yield stress.
 constexpr const char* ratio_name = "yieldPressureRatio";
-constexpr Parameter yield_stress = {"yield_stress", "yieldStress", "Pa", not_given};
+constexpr Parameter yield_stress = {"yield_stress", "yieldStress", "Y", "Pa", not_given};
 
 /// What the deck is asked for: the law's parameters, or the yield stress in place of the strength, and the ratio last.
 struct Question {
@@ -88,7 +88,7 @@ Question question(const Reader& reader, const Declaration& law) {
     reader.fail(reader.missing(pressure.property, pressure.unit) + " (or " + yield_stress.property + ", of which " +
                 pressure.property + " is " + number(law.default_ratio) + " times, or " + ratio_name + ")");
   q.parameters[law.strength] = yield_stress;
-  q.parameters.push_back({"yield_pressure_ratio", ratio_name, "1", law.default_ratio});
+  q.parameters.push_back({"yield_pressure_ratio", ratio_name, "ratio", "1", law.default_ratio});
   q.by_ratio = true;
   return q;
 }

@@ -54,7 +54,7 @@ class Contact:
 
     @functools.cached_property
     def theory(self) -> JKR:
-        numbers = {"E_star": self.E_star, "R_star": self.R_star, "work_of_adhesion": self.Gamma}
+        numbers = {"E_star": self.E_star, "R_star": self.R_star, "Gamma": self.Gamma}
         return JKR(**numbers) if self.p_y is None else ThorntonNing(**numbers, p_y=self.p_y)
 
     @functools.cached_property

@@ -25,7 +25,7 @@ class TheoryLaw:
 
     def __init__(self, name: str, *, E_star: float, **parameters: float):
         self.cls = backbones.LAWS[name]
-        self.numbers = {"E_star": E_star} | {self.cls.keywords[k]: v for k, v in parameters.items()}
+        self.numbers = {"E_star": E_star} | {self.cls.declaration().symbols[k]: v for k, v in parameters.items()}
 
     def step(self, *, R_star, delta_max, delta):
         law = self.cls(R_star=R_star, **self.numbers)
@@ -74,7 +74,7 @@ def yield_overlap(name: str, E_star: float, R_star: float, strength: float) -> f
     if name == "hertz":
         return 1e-3 * R_star
     if pressure is None:
-        (keyword,) = backbones.LAWS[name].keywords.values()
+        (keyword,) = backbones.LAWS[name].declaration().symbols.values()
         return backbones.LAWS[name](E_star=E_star, R_star=R_star, **{keyword: strength}).yield_overlap
     return R_star * (math.pi * pressure / (2 * E_star)) ** 2
 

@@ -10,6 +10,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 from laws import YIELDING, contacts
 
+from epdem.base import declarations
 from epdem.errors import EngineError
 from epdem.laws import library as claw
 
@@ -79,7 +80,8 @@ def test_a_dent_that_is_hit_again_as_hard_answers_elastically(c, decade):
 
 
 def test_a_library_of_another_version_is_told_before_what_it_lacks(monkeypatch):
-    older = SimpleNamespace(epdem_abi=lambda: claw.ABI - 1)
-    monkeypatch.setattr(claw.ctypes, "CDLL", lambda path: older)
-    with pytest.raises(EngineError, match=f"ABI {claw.ABI - 1}, this package needs {claw.ABI}; run 'make setup'"):
-        claw.library.__wrapped__()
+    older = SimpleNamespace(epdem_abi=lambda: declarations.ABI - 1)
+    monkeypatch.setattr(declarations.ctypes, "CDLL", lambda path: older)
+    sentence = f"ABI {declarations.ABI - 1}, this package needs {declarations.ABI}; run 'make setup'"
+    with pytest.raises(EngineError, match=sentence):
+        declarations.loaded.__wrapped__()

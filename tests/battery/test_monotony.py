@@ -12,9 +12,8 @@ from epdem.theory import backbones, restitution
 @given(contacts())
 def test_restitution_of_any_contact_falls_with_speed_from_one(c):
     """v/v_y from 1e-2 to 1e4; 1e-12 is the accuracy that the closed forms promise."""
-    words = (
-        {backbones.LAWS[c.name].keywords[laws()[c.name].parameters[0].name]: c.strength} if c.name != "hertz" else {}
-    )
+    declared = laws()[c.name]
+    words = {declared.parameters[0].symbol: c.strength} if declared.parameters else {}
     law = backbones.LAWS[c.name](E_star=c.E_star, R_star=c.R_star, **words)
     m = 1e4 * c.R_star**3
     v_y = np.sqrt(2 * law.work(c.delta_y) / m)

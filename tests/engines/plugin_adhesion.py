@@ -15,7 +15,7 @@ BOX = ((-0.05, 0.05), (-0.05, 0.05), (-0.02, 0.05))
 def theory(law, i=1, j=2, radius=R, other=np.inf):
     """The contact of two types and radii; a wall is of type 2."""
     E_star = 1 / ((1 - NU[i - 1] ** 2) / E[i - 1] + (1 - NU[j - 1] ** 2) / E[j - 1])
-    numbers = {"E_star": E_star, "R_star": 1 / (1 / radius + 1 / other), "work_of_adhesion": GAMMA[i - 1, j - 1]}
+    numbers = {"E_star": E_star, "R_star": 1 / (1 / radius + 1 / other), "Gamma": GAMMA[i - 1, j - 1]}
     return JKR(**numbers) if law == "jkr" else ThorntonNing(**numbers, p_y=min(P_Y[i - 1], P_Y[j - 1]))
 
 

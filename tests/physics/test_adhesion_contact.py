@@ -12,19 +12,19 @@ from epdem.theory.jkr import JKR
 from epdem.theory.thornton_ning import ThorntonNing
 
 E, R, GAMMA = 215e9 / (2 * (1 - 0.3**2)), 1e-5, 0.2
-STEEL = {"E_star": E, "R_star": R, "work_of_adhesion": GAMMA}
-SOFT = {"E_star": 4e6, "R_star": 2e-3, "work_of_adhesion": 0.05}
+STEEL = {"E_star": E, "R_star": R, "Gamma": GAMMA}
+SOFT = {"E_star": 4e6, "R_star": 2e-3, "Gamma": 0.05}
 elastic = pytest.mark.parametrize("numbers", [STEEL, SOFT], ids=["steel", "rubber"])
 _X, _W = np.polynomial.legendre.leggauss(200)
 _X, _W = 0.5 * (_X + 1), 0.5 * _W
 
 
-def pressures(a, *, E_star, R_star, work_of_adhesion):
+def pressures(a, *, E_star, R_star, Gamma):
     """Hertz's peak pressure and that of a flat punch in tension whose rim has the stress intensity of Gamma.
 
     K = p_1 sqrt(pi a) for p = -p_1/sqrt(1 - r^2/a^2), and K^2/(2 E*) = Gamma (Griffith, Irwin).
     """
-    return 2 * E_star * a / (np.pi * R_star), np.sqrt(2 * E_star * work_of_adhesion / (np.pi * a))
+    return 2 * E_star * a / (np.pi * R_star), np.sqrt(2 * E_star * Gamma / (np.pi * a))
 
 
 @elastic
@@ -87,7 +87,7 @@ def test_extremes_of_the_curve_are_the_touch_the_pull_off_and_the_fold(numbers):
 @given(st.floats(3, 12), st.floats(-7, 0), st.floats(-9, 2), st.floats(0, 1))
 def test_radius_inverts_the_overlap(log_E, log_R, log_Gamma, share):
     """From the fold, where the root is double, to 1e6 times the radius at touch."""
-    law = JKR(E_star=10**log_E, R_star=10**log_R, work_of_adhesion=10**log_Gamma)
+    law = JKR(E_star=10**log_E, R_star=10**log_R, Gamma=10**log_Gamma)
     a = law.fold_radius * 10 ** (6.5 * share)
     al = law.overlap(a)
     # rounding of the overlap (180 eps) over the slope; at the fold the root of it
@@ -143,8 +143,8 @@ def test_without_adhesion_the_laws_are_those_of_hertz_and_thornton():
     numbers = {"E_star": E, "R_star": R}
     al = R * np.geomspace(1e-7, 1e-1, 200)
     for law, old in (
-        (JKR(**numbers, work_of_adhesion=0.0), Hertz(**numbers)),
-        (ThorntonNing(**numbers, work_of_adhesion=0.0, p_y=1e9), Thornton(**numbers, p_y=1e9)),
+        (JKR(**numbers, Gamma=0.0), Hertz(**numbers)),
+        (ThorntonNing(**numbers, Gamma=0.0, p_y=1e9), Thornton(**numbers, p_y=1e9)),
     ):
         a = law.radius(al)
         assert a == pytest.approx(old.radius(al), rel=1e-14)
@@ -159,7 +159,7 @@ def test_a_very_strong_contact_does_not_yield_and_weak_adhesion_changes_little()
     strong, jkr = ThorntonNing(**STEEL, p_y=1e13), JKR(**STEEL)
     a = jkr.touch_radius * np.geomspace(0.7, 100, 50)
     assert np.array_equal(strong.force(a), jkr.force(a))
-    weak = ThorntonNing(E_star=E, R_star=R, work_of_adhesion=1e-12, p_y=1e9)
+    weak = ThorntonNing(E_star=E, R_star=R, Gamma=1e-12, p_y=1e9)
     none = Thornton(E_star=E, R_star=R, p_y=1e9)
     al = none.yield_overlap * np.geomspace(0.1, 100, 50)
     assert weak.force(weak.radius(al)) == pytest.approx(none.force(al), rel=2e-5)  # as P_t/F ~ sqrt(Gamma)
@@ -171,10 +171,10 @@ def test_tabor_number_of_steel_and_rubber_and_its_warning():
     assert adhesion.tabor_number(JKR(**SOFT)) == pytest.approx(3393, abs=0.5)
     assert "1.5 (< 3)" in adhesion.warning(JKR(**STEEL))
     assert adhesion.warning(JKR(**SOFT)) is None
-    assert adhesion.warning(JKR(E_star=E, R_star=R, work_of_adhesion=0.0)) is None
+    assert adhesion.warning(JKR(E_star=E, R_star=R, Gamma=0.0)) is None
 
 
-@pytest.mark.parametrize("bad", [{"E_star": 0.0}, {"R_star": -1.0}, {"work_of_adhesion": -0.1}, {"p_y": 0.0}])
+@pytest.mark.parametrize("bad", [{"E_star": 0.0}, {"R_star": -1.0}, {"Gamma": -0.1}, {"p_y": 0.0}])
 def test_numbers_outside_their_domain_are_refused_by_name(bad):
     with pytest.raises(ValueError, match=next(iter(bad))):
         ThorntonNing(**(STEEL | {"p_y": 1e9} | bad))

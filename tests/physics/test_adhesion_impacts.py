@@ -29,7 +29,7 @@ every_impact = pytest.mark.parametrize(("p_y", "V"), IMPACTS)
 
 
 def law_of(p_y, Gamma=GAMMA):
-    numbers = {"E_star": E, "R_star": R, "work_of_adhesion": Gamma}
+    numbers = {"E_star": E, "R_star": R, "Gamma": Gamma}
     return JKR(**numbers) if p_y is None else ThorntonNing(**numbers, p_y=p_y)
 
 

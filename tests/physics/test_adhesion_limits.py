@@ -68,9 +68,7 @@ def test_a_change_of_units_changes_nothing(powers, log_p, log_V):
     pressure = mass / (length * time**2)
     p_y, V = 10.0**log_p * 1e9, 10.0**log_V * V_S
     here = adhesion.impact(law_of(p_y), m_star=M, speed=V)
-    law = ThorntonNing(
-        E_star=E * pressure, R_star=R * length, work_of_adhesion=GAMMA * pressure * length, p_y=p_y * pressure
-    )
+    law = ThorntonNing(E_star=E * pressure, R_star=R * length, Gamma=GAMMA * pressure * length, p_y=p_y * pressure)
     there = adhesion.impact(law, m_star=M * mass, speed=V * length / time)
     # where e_n is near 0 rounding of the energy is seen as its root
     assert float(there.e_n) ** 2 == pytest.approx(float(here.e_n) ** 2, abs=1e-12)
@@ -89,7 +87,7 @@ def test_softening_by_powers_keeps_the_restitution_at_every_speed(softer):
     """W_s ~ (Gamma^5/E*^2)^(1/3) keeps its value if Gamma ~ E*^(2/5), e_n(V) if also p_y ~ E*^(4/5)."""
     speed = V_S * np.geomspace(0.5, 1e4, 50)
     for p_y in (3.04e9, 1e9, 0.5e9, 0.1e9):
-        soft = ThorntonNing(E_star=E * softer, R_star=R, work_of_adhesion=GAMMA * softer**0.4, p_y=p_y * softer**0.8)
+        soft = ThorntonNing(E_star=E * softer, R_star=R, Gamma=GAMMA * softer**0.4, p_y=p_y * softer**0.8)
         stiff = law_of(p_y)
         here, there = (adhesion.e_n(law, m_star=M, speed=speed) for law in (stiff, soft))
         assert there**2 == pytest.approx(here**2, abs=1e-12)
@@ -101,10 +99,10 @@ def test_arrays_of_contacts_are_their_scalars():
     """Every argument may be an array; a million e_n of `jkr` come at once."""
     E_, R_, G_, p_ = np.array([1e6, 1e11]), np.array([1e-3, 1e-6]), np.array([0.05, 0.5]), np.array([1e4, 1e9])
     speed = np.geomspace(0.1, 10, 5)[:, None]
-    law = ThorntonNing(E_star=E_, R_star=R_, work_of_adhesion=G_, p_y=p_)
+    law = ThorntonNing(E_star=E_, R_star=R_, Gamma=G_, p_y=p_)
     both = adhesion.impact(law, m_star=1e-6, speed=speed)
     for k in range(2):
-        one = ThorntonNing(E_star=E_[k], R_star=R_[k], work_of_adhesion=G_[k], p_y=p_[k])
+        one = ThorntonNing(E_star=E_[k], R_star=R_[k], Gamma=G_[k], p_y=p_[k])
         for i, v in enumerate(speed[:, 0]):
             single = adhesion.impact(one, m_star=1e-6, speed=v)
             for name in vars(single):

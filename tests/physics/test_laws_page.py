@@ -1,14 +1,12 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """docs/laws.md gives every law, property, parameter and default as the laws declare them."""
 
-import math
 import re
 from pathlib import Path
 
 import pytest
 
 from epdem.laws import library as claw
-from epdem.theory.backbones import ADHESIVE, LAWS
 
 ROOT = Path(__file__).parents[2]
 PAGE = (ROOT / "docs/laws.md").read_text()
@@ -24,7 +22,7 @@ def test_the_page_states_the_properties_and_defaults_of_every_law(name):
     for p in claw.laws()[name].parameters:
         assert f"`{p.property}`" in row
         assert f"`{p.name}`" in PAGE
-        if math.isfinite(p.default):
+        if p.default is not None:
             assert f"`{p.property}` ({p.default:g})" in row
         elif p.name == "yield_pressure":
-            assert f"{(LAWS | ADHESIVE)[name].default_ratio:.1f} Y" in row
+            assert f"{claw.laws()[name].default_ratio:.1f} Y" in row

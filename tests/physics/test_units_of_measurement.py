@@ -40,7 +40,7 @@ class Row:
 
 
 def law(name, E_star, R_star, strength):
-    key = next(iter(LAWS[name].keywords.values()), None)
+    key = next(iter(LAWS[name].declaration().symbols.values()), None)
     return LAWS[name](E_star=E_star, R_star=R_star, **({key: strength} if key else {}))
 
 

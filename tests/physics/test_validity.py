@@ -19,8 +19,9 @@ V_C = 0.559430455498519 * (9 / 2.8) ** 2.5  # of p_m = 3 GPa, from the printed v
 @pytest.mark.parametrize("name", LAWS)
 def test_a_law_is_made_from_what_it_declares(name):
     """With its strength by default ratio and the defaults of the others: Y = 1 GPa."""
-    law = LAWS[name]
-    numbers = {p.symbol: 1e9 * law.default_ratio if p.default is None else p.default for p in law.parameters}
+    law, declared = LAWS[name], LAWS[name].declaration()
+    ratio = declared.default_ratio
+    numbers = {p.symbol: 1e9 * ratio if p.default is None else p.default for p in declared.parameters}
     assert law(**STEEL, **numbers).force(1e-6) > 0
 
 

@@ -21,13 +21,15 @@ EPDEM_INLINE Point<T> select(M mask, const Point<T>& a, const Point<T>& b) noexc
   return {select(mask, a.force, b.force), select(mask, a.radius, b.radius), select(mask, a.flatness, b.flatness)};
 }
 
-/// A material parameter of a law, as a host names and checks it.
+/// A material parameter of a law, as hosts, theory and pages name and check it. Its range is (0, inf).
 struct Parameter {
-  const char* name;      // in case files and in the C ABI
+  const char* name;      // in case files
   const char* property;  // LIGGGHTS property/global
+  const char* symbol;    // in formulas, and of the theory's constructor
   const char* unit;
   double fallback;          // NaN: the host must give it
-  bool may_vanish = false;  // 0 is a value, not a mistake
+  bool may_vanish = false;  // the range is [0, inf)
+  bool of_pair = false;     // a value of two surfaces, not of a body
 };
 
 inline constexpr double not_given = std::numeric_limits<double>::quiet_NaN();

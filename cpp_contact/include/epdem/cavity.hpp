@@ -17,13 +17,16 @@ struct Cavity {
   using number = T;
   static constexpr const char* name = "cavity";
   static constexpr int id = 43;
+  static constexpr const char* title = "elastic, expanding cavity, fully plastic";
+  static constexpr const char* sources = "Johnson 1985; Jackson and Green 2005; Mesarovic and Johnson 2000";
+  static constexpr const char* condition = "plastic_ratio > first_yield_ratio, ln s_P > 0, no energy created at yield";
   using State = Peak<T>;
   static constexpr bool yields = true;
   static constexpr bool flattens = true;
-  static constexpr Parameter parameters[] = {{"yield_stress", "yieldStress", "Pa", not_given},
-                                             {"first_yield_ratio", "firstYieldRatio", "1", 1.60},
-                                             {"plastic_ratio", "plasticRatio", "1", 2.8},
-                                             {"finite_strain", "finiteStrain", "1", no_finite_strain}};
+  static constexpr Parameter parameters[] = {{"yield_stress", "yieldStress", "Y", "Pa", not_given},
+                                             {"first_yield_ratio", "firstYieldRatio", "c_Y", "1", 1.60},
+                                             {"plastic_ratio", "plasticRatio", "c_P", "1", 2.8},
+                                             {"finite_strain", "finiteStrain", "c_strain", "1", no_finite_strain}};
   static constexpr int n_parameters = 4;
   static constexpr int strength = 0;
   static constexpr double default_ratio = 1.0;

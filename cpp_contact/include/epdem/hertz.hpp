@@ -10,11 +10,14 @@ template <class T>
 struct Hertz {
   using number = T;
   static constexpr const char* name = "hertz";
-  static constexpr int id = 40;            // of the LIGGGHTS model ep/hertz; restart files keep it, it never changes
+  static constexpr int id = 40;  // of the LIGGGHTS model ep/hertz; restart files keep it, it never changes
+  static constexpr const char* title = "elastic";
+  static constexpr const char* sources = "Hertz 1882";
+  static constexpr const char* condition = nullptr;
   using State = Maximum<T>;                // what a contact remembers from step to step
   static constexpr bool yields = false;    // false: a host need not keep it
   static constexpr bool flattens = false;  // unloading needs the flatness tau
-  static constexpr Parameter parameters[] = {{nullptr, nullptr, nullptr, 0.0}};
+  static constexpr Parameter parameters[] = {{nullptr, nullptr, nullptr, nullptr, 0.0}};
   static constexpr int n_parameters = 0;
   static constexpr int strength = -1;                 // index of the parameter at which a body yields
   static constexpr double default_ratio = not_given;  // strength over the yield stress Y of the softer body

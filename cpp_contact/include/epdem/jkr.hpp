@@ -13,9 +13,14 @@ struct Jkr {
   using number = T;
   static constexpr const char* name = "jkr";
   static constexpr int id = 44;  // of a LIGGGHTS model: restart files keep it, it never changes
+  static constexpr const char* title = "elastic with adhesion";
+  static constexpr const char* sources = "Johnson, Kendall and Roberts 1971";
+  static constexpr const char* condition = nullptr;
+  static constexpr const char* without_adhesion = "hertz";  // the law of the same bodies with Gamma = 0
   static constexpr bool yields = false;
   static constexpr bool flattens = false;
-  static constexpr Parameter parameters[] = {{"work_of_adhesion", "workOfAdhesion", "J/m^2", not_given, true}};
+  static constexpr Parameter parameters[] = {
+      {"work_of_adhesion", "workOfAdhesion", "Gamma", "J/m^2", not_given, true, true}};
   static constexpr int n_parameters = 1;
   static constexpr int strength = -1;
   static constexpr double default_ratio = not_given;

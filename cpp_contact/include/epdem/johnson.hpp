@@ -13,10 +13,13 @@ struct Johnson {
   using number = T;
   static constexpr const char* name = "johnson";
   static constexpr int id = 42;
+  static constexpr const char* title = "elastic, then fully plastic";
+  static constexpr const char* sources = "Johnson 1985";
+  static constexpr const char* condition = nullptr;
   using State = Maximum<T>;
   static constexpr bool yields = true;
   static constexpr bool flattens = false;
-  static constexpr Parameter parameters[] = {{"yield_pressure", "yieldPressure", "Pa", not_given}};
+  static constexpr Parameter parameters[] = {{"yield_pressure", "yieldPressure", "p_m", "Pa", not_given}};
   static constexpr int n_parameters = 1;
   static constexpr int strength = 0;
   static constexpr double default_ratio = 3.0;

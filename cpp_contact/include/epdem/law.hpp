@@ -103,6 +103,16 @@ inline Number<Law> sliding_load(const Law& law, Number<Law> R_star, const Step<L
   }
 }
 
+/// Overlap [m] at which the force of a contact that reached delta_max returns to 0: its dent, 0 before yield.
+template <class Law>
+inline Number<Law> residual_overlap(const Law& law, Number<Law> R_star, Number<Law> delta_max) noexcept {
+  using T = Number<Law>;
+  const auto yielded = delta_max > law.elastic_overlap(R_star);
+  if (!any(yielded)) return T{};
+  const T reached = only(yielded, delta_max);
+  return select(yielded, reached - recovered_overlap(law.E_star, law.load(R_star, reached)), T{});
+}
+
 /// Work lost for good by a contact that reached delta_max [J]: backbone work less the recoverable part.
 template <class Law>
 inline Number<Law> plastic_work(const Law& law, Number<Law> R_star, Number<Law> delta_max) noexcept {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The register of laws: a new law is its header above this list and one line in it. X(class template)
+// The register of laws: a new law is its header and a line at the end of this list, whose order numbers the laws of the
+// C interface and of LIGGGHTS-PFM. X(class template)
 #pragma once
 
 #include "cavity.hpp"
@@ -54,3 +55,16 @@ EPDEM_LAWS(EPDEM_CHECK)
 #undef EPDEM_CHECK
 
 }  // namespace epdem::detail
+
+namespace epdem {
+
+/// The name of the law that a law with adhesion is for a work of adhesion of 0; nullptr of a law without adhesion.
+template <class Law>
+constexpr const char* without_adhesion() noexcept {
+  if constexpr (adheres<Law>)
+    return Law::without_adhesion;
+  else
+    return nullptr;
+}
+
+}  // namespace epdem

@@ -13,10 +13,13 @@ struct Thornton {
   using number = T;
   static constexpr const char* name = "thornton";
   static constexpr int id = 41;
+  static constexpr const char* title = "elastic, perfectly plastic";
+  static constexpr const char* sources = "Thornton 1997";
+  static constexpr const char* condition = nullptr;
   using State = Maximum<T>;
   static constexpr bool yields = true;
   static constexpr bool flattens = false;
-  static constexpr Parameter parameters[] = {{"yield_pressure", "yieldPressure", "Pa", not_given}};
+  static constexpr Parameter parameters[] = {{"yield_pressure", "yieldPressure", "p_y", "Pa", not_given}};
   static constexpr int n_parameters = 1;
   static constexpr int strength = 0;
   static constexpr double default_ratio = 2.8;

@@ -14,10 +14,15 @@ struct ThorntonNing {
   using number = T;
   static constexpr const char* name = "thornton_ning";
   static constexpr int id = 45;  // of a LIGGGHTS model: restart files keep it, it never changes
+  static constexpr const char* title = "elastic, perfectly plastic with adhesion";
+  static constexpr const char* sources = "Thornton and Ning 1998";
+  static constexpr const char* condition = nullptr;
+  static constexpr const char* without_adhesion = "thornton";  // the law of the same bodies with Gamma = 0
   static constexpr bool yields = true;
   static constexpr bool flattens = false;
-  static constexpr Parameter parameters[] = {{"work_of_adhesion", "workOfAdhesion", "J/m^2", not_given, true},
-                                             {"yield_pressure", "yieldPressure", "Pa", not_given}};
+  static constexpr Parameter parameters[] = {
+      {"work_of_adhesion", "workOfAdhesion", "Gamma", "J/m^2", not_given, true, true},
+      {"yield_pressure", "yieldPressure", "p_y", "Pa", not_given}};
   static constexpr int n_parameters = 2;
   static constexpr int strength = 1;
   static constexpr double default_ratio = 2.8;

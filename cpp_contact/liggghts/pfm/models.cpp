@@ -8,9 +8,6 @@
 
 #include "../law_model.hpp"
 
-/// The laws without adhesion.
-#define EPDEM_PFM_LAWS(X) X(Hertz) X(Thornton) X(Johnson) X(Cavity)
-
 namespace epdem::liggghts {
 
 bool only_spheres(LAMMPS_NS::LAMMPS* lmp) { return lmp->atom->sphere_flag && !lmp->atom->superquadric_flag; }
@@ -23,9 +20,24 @@ using LAMMPS_NS::PairGran;
 namespace PairStyles = LIGGGHTS::PairStyles;
 namespace Walls = LIGGGHTS::Walls;
 
-/// Ids that are free there, 10 to 15: restart files keep them, they never change.
+/// Ids that are free there, 10 to 15, for the first six laws without adhesion in the order of the register. Restart
+/// files keep them: they never change, because new laws are added at the end.
+constexpr int first_id = 10, last_id = 15;
 template <class Law>
-constexpr int id = Law::id - 30;
+constexpr int id_of() {
+  int id = first_id;
+  bool before = true;
+#define EPDEM_BEFORE(Class)                        \
+  before = before && Class<double>::id != Law::id; \
+  if (before && !adheres<Class<double>>) ++id;
+  EPDEM_LAWS(EPDEM_BEFORE)
+#undef EPDEM_BEFORE
+  return id;
+}
+template <class Law>
+constexpr int id = id_of<Law>();
+template <class Law>
+constexpr bool offered = !adheres<Law> && id<Law> <= last_id;
 constexpr int tangential_off = 15;
 
 /// LIGGGHTS-PFM has no `tangential off`.
@@ -49,8 +61,9 @@ struct OfId<tangential_off> {
 
 std::string names() {
   std::string all;
-#define EPDEM_NAME(Class) all += " " + model_name<Class<double>>();
-  EPDEM_PFM_LAWS(EPDEM_NAME)
+#define EPDEM_NAME(Class) \
+  if (offered<Class<double>>) all += " " + model_name<Class<double>>();
+  EPDEM_LAWS(EPDEM_NAME)
 #undef EPDEM_NAME
   return all;
 }
@@ -169,7 +182,6 @@ void add() {
 
 template <class Law>
 void add_law() {
-  static_assert(id<Law> >= 10 && id<Law> < 16, "four bits, and 0 to 9 are taken");
   Factory::instance().addNormalModel(model_name<Law>(), id<Law>);
   add<Law, tangential_off, ROLLING_OFF, ROLLING_CDT, ROLLING_EPSD, ROLLING_EPSD2>();
   add<Law, TANGENTIAL_NO_HISTORY, ROLLING_OFF, ROLLING_CDT, ROLLING_EPSD, ROLLING_EPSD2>();
@@ -178,8 +190,9 @@ void add_law() {
 
 const struct Registration {
   Registration() {
-#define EPDEM_ADD(Class) add_law<Class<double>>();
-    EPDEM_PFM_LAWS(EPDEM_ADD)
+#define EPDEM_ADD(Class) \
+  if constexpr (offered<Class<double>>) add_law<Class<double>>();
+    EPDEM_LAWS(EPDEM_ADD)
 #undef EPDEM_ADD
     Factory::instance().addTangentialModel("off", tangential_off);
   }

@@ -5,7 +5,7 @@ from typing import Any
 
 from ..errors import CaseError
 from ..laws.strengths import ADHESION, LawNumbers, law_named
-from ..theory.cavity import FINITE_STRAIN, NO_FINITE_STRAIN
+from ..theory.cavity import FINITE_STRAIN
 from .units import read_number
 
 
@@ -17,8 +17,9 @@ def law_numbers(name: str, given: dict[str, Any]) -> LawNumbers:
     finite_strain = true or false stands for its number.
     """
     law = law_named(name)
-    if isinstance(given.get("finite_strain"), bool):
-        given = given | {"finite_strain": FINITE_STRAIN if given["finite_strain"] else NO_FINITE_STRAIN}
+    none = next((p.default for p in law.parameters if p.name == "finite_strain"), None)
+    if none is not None and isinstance(given.get("finite_strain"), bool):
+        given = given | {"finite_strain": FINITE_STRAIN if given["finite_strain"] else none}
     strength, ratio = law.strength, f"{law.strength}_ratio"
     known = [key for p in law.parameters for key in ((p.name, ratio) if p.name == strength else (p.name,))]
     for key in given:

@@ -56,17 +56,20 @@ class Law:
         for key in parameters:
             if key not in known:
                 raise CaseError(f"law {name} has no parameter {key!r}; it has {', '.join(known) or 'none'}")
-        values = [parameters.get(p.name, p.default) for p in self.info.parameters]
-        for p, value in zip(self.info.parameters, values, strict=True):
-            if not (math.isfinite(value) and (value > 0 or (value == 0 and p.may_vanish))):
+        values = []
+        for p in self.info.parameters:
+            value = parameters.get(p.name, p.default)
+            if value is None or not (math.isfinite(value) and (value > 0 or (value == 0 and p.may_vanish))):
                 raise CaseError(f"law {name}: {p.name} = {value}, must be a finite number > 0 [{p.unit}]")
+            values.append(value)
         self.name, self.E_star = name, float(E_star)
         self._parameters = (c_double * max(len(values), 1))(*values)
 
     def _call(self, function: str, *arguments: object) -> None:
         status = getattr(library(), function)(self.info.index, self.E_star, self._parameters, *arguments)
         if status:
-            raise CaseError(f"law {self.name}: {library().epdem_message(status).decode()}")
+            condition = f" ({self.info.condition})" if self.info.condition else ""
+            raise CaseError(f"law {self.name}: {library().epdem_message(status).decode()}{condition}")
 
     def step(
         self, *, R_star: npt.ArrayLike, delta_max: npt.ArrayLike, delta: npt.ArrayLike

@@ -5,20 +5,19 @@ import math
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
+from ..base.declarations import Declaration, declarations
 from ..errors import CaseError
 from ..theory.backbones import ADHESIVE, JKR, LAWS, Backbone
 from ..theory.checks import Real
 
 ADHESION = "work_of_adhesion"  # the parameter of laws with adhesion [J/m^2]
-NO_ADHESION = dict.fromkeys(("johnson", "cavity"), ", and no theory of adhesion exists for it")
 
 
-def law_named(name: str) -> type[Backbone] | type[JKR]:
-    """The law of that name, as the theory declares it. Raises CaseError."""
-    known: dict[str, type[Backbone] | type[JKR]] = {**LAWS, **ADHESIVE}
-    if name not in known:
-        raise CaseError(f"law.name = {name!r} does not exist; there are {', '.join(known)}")
-    return known[name]
+def law_named(name: str) -> Declaration:
+    """What the law of that name declares. Raises CaseError."""
+    if name not in declarations():
+        raise CaseError(f"law.name = {name!r} does not exist; there are {', '.join(declarations())}")
+    return declarations()[name]
 
 
 def yields_by_stress(name: str) -> bool:
@@ -59,8 +58,9 @@ class LawSpec:
 
         Raises ValueError for parameters that make no sense together.
         """
-        law = law_named(self.name)
-        return law(E_star=E_star, R_star=R_star, **{law.keywords[n]: x for n, x in self.parameters.items()})
+        symbols = law_named(self.name).symbols
+        classes: dict[str, type[Backbone] | type[JKR]] = {**LAWS, **ADHESIVE}
+        return classes[self.name](E_star=E_star, R_star=R_star, **{symbols[n]: x for n, x in self.parameters.items()})
 
     def of(self, body: float, target: float) -> "LawSpec":
         """The same law for two bodies of these strengths [Pa]."""
@@ -71,7 +71,7 @@ class LawSpec:
     @property
     def adheres(self) -> bool:
         """Whether bodies attract each other."""
-        return self.name in ADHESIVE
+        return law_named(self.name).adheres
 
     def ratios(self) -> dict[str, float]:
         """The dimensionless parameters that differ from the law's defaults."""
@@ -116,12 +116,15 @@ class LawNumbers:
         Raises CaseError if it does not follow from what is given, or if more is given than the law takes.
         """
         given = [s for s in (body, target) if s.energy is not None]
-        if self.name not in ADHESIVE:
+        if not law_named(self.name).adheres:
             if wrong := next((s for s in given if s.energy), None):
-                other = "jkr" if self.name == "hertz" else "thornton_ning"
+                adhesive = [law for law in declarations().values() if law.adheres]
+                own = [law.name for law in adhesive if law.without_adhesion == self.name]
+                reason = "" if own else ", and no theory of adhesion exists for it"
+                others = " or ".join(map(repr, own or [law.name for law in adhesive]))
                 raise CaseError(
                     f"materials.{wrong.material}.surface_energy = {wrong.energy:g} J/m^2: law {self.name} has no "
-                    f"adhesion{NO_ADHESION.get(self.name, '')}; take law.name = {other!r}, or remove the surface energy"
+                    f"adhesion{reason}; take law.name = {others}, or remove the surface energy"
                 )
             return None
         if self.adhesion is not None:

@@ -7,9 +7,10 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
 
+from ..base.declarations import Declaration
 from ..base.folders import write_own
 from ..errors import CaseError
-from ..laws.library import LawInfo, laws
+from ..laws.library import laws
 
 REPLACED = ("hertz", "hooke")  # normal models with the elastic constants of a law
 SETTINGS = (  # of these models, refused or unknown beside a law
@@ -66,7 +67,7 @@ def _contact_line(texts: list[str]) -> bool:
     return (texts[:1] == ["pair_style"] and "gran" in texts) or (texts[:1] == ["fix"] and texts[3:4] == ["wall/gran"])
 
 
-def _converted(command: str, words: list[_Word], law: LawInfo, place: str) -> tuple[str, list[str]]:
+def _converted(command: str, words: list[_Word], law: Declaration, place: str) -> tuple[str, list[str]]:
     """The command with the law's model and without settings that the model does not have; what was dropped."""
     texts = [w.text for w in words]
     at = texts.index("model") + 1 if "model" in texts[:-1] else 0
@@ -87,7 +88,7 @@ def _converted(command: str, words: list[_Word], law: LawInfo, place: str) -> tu
     return command, notes
 
 
-def _property_lines(law: LawInfo, given: dict[str, str], present: set[str], types: int, place: Path) -> list[str]:
+def _property_lines(law: Declaration, given: dict[str, str], present: set[str], types: int, place: Path) -> list[str]:
     """The `property/global` lines of the law's parameters. Raises CaseError for a missing or wrong value."""
     own = {p.property: p for p in law.parameters}
     for name in given:
@@ -100,7 +101,7 @@ def _property_lines(law: LawInfo, given: dict[str, str], present: set[str], type
         if name in present:
             continue
         if name not in given:
-            if math.isnan(p.default):
+            if p.default is None:
                 raise CaseError(f"{place}: ep/{law.name} needs {name} [{p.unit}]; add --set {name}=VALUE")
             continue
         try:
@@ -109,8 +110,7 @@ def _property_lines(law: LawInfo, given: dict[str, str], present: set[str], type
             number = math.nan
         if not (math.isfinite(number) and (number > 0 or (number == 0 and p.may_vanish))):
             raise CaseError(f"--set {name}={given[name]}: must be a number > 0 in the units of the deck [{p.unit}]")
-        of_pair = p.unit == "J/m^2"  # an energy between two surfaces
-        head, count = (f"peratomtypepair {types}", types * types) if of_pair else ("peratomtype", types)
+        head, count = (f"peratomtypepair {types}", types * types) if p.of_pair else ("peratomtype", types)
         values = " ".join([given[name]] * count)
         lines.append(f"fix epdem_{name} all property/global {name} {head} {values}\n")
     return lines

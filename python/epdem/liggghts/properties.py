@@ -48,9 +48,9 @@ class Property:
     def reason(self) -> str:
         """Why the property stands in a deck; '' if there is none."""
         laws = claw.laws().values()
-        if any(info.strength and info.strength.property == self.name for info in laws):
+        if any(p.property == self.name for law in laws for p in law.parameters if p.name == law.strength):
             return "the law yields at this strength; the softer body's counts"
-        if self.name not in _REASONS and any(p.property == self.name for info in laws for p in info.parameters):
+        if self.name not in _REASONS and any(p.property == self.name for law in laws for p in law.parameters):
             return "a parameter of the law that differs from its default"
         return "; ".join(filter(None, [_REASONS.get(self.name, ""), self.note]))
 
@@ -92,9 +92,10 @@ def elastic(moduli: Sequence[float], ratios: Sequence[float]) -> tuple[Property,
 
 def strength(law: str, values: Sequence[float]) -> tuple[Property, ...]:
     """The law's strength [Pa] of the atom types; nothing for a law that has none."""
-    parameter = claw.laws()[law].strength
-    if parameter is None:
+    declared = claw.laws()[law]
+    if declared.strength is None:
         return ()
+    parameter = declared.parameter(declared.strength)
     return (per_type(parameter.property, values, parameter.unit, "the softer body's counts" * (len(values) > 1)),)
 
 

@@ -20,7 +20,8 @@ from ..theory.numerics import bisect
 
 KGF_PER_MM2 = 9.80665e6  # Pa
 VICKERS_FACETS = 2 / 1.8544  # area of the facets of a Vickers indentation over that of its projection, 1/sin(136 deg/2)
-TABOR = LAWS["thornton"].default_ratio  # mean pressure of full plasticity over the yield stress (Tabor 1951)
+# mean pressure of full plasticity over the yield stress (Tabor 1951)
+TABOR = LAWS["thornton"].declaration().default_ratio
 LEAST_STRENGTH = 1e-8  # of E*; the largest is E* itself
 BRINELL_DENT = 0.375  # dent over ball diameter in a usual Brinell test (0.24 to 0.6)
 

@@ -54,7 +54,7 @@ def one_impact(material: str, *, radius: float, speed: float, adhesion: float | 
         x = Experiment(pair_of(numbers, body, target), body, target, np.array([speed]))
         prediction = predict(x)
         laws[name] = {k: float(getattr(prediction, k)[0]) for k in NAMES}
-    plastic, first = LAWS["thornton"].default_ratio, yielding.FIRST_YIELD_ROUNDED
+    plastic, first = LAWS["thornton"].declaration().default_ratio, yielding.FIRST_YIELD_ROUNDED
     p_0, depth = yielding.first_yield(entry.material.poisson_ratio)
     pair = {"E_star": x.E_star, "R_star": x.R_star, "m_star": x.m_star}
     return OneImpact(

@@ -27,7 +27,7 @@ from ..case.library import with_library
 from ..case.toml import named, read_toml, text_of
 from ..errors import CaseError
 from ..laws.strengths import ADHESION, law_named
-from ..theory.cavity import FINITE_STRAIN, NO_FINITE_STRAIN, STRAIN_EXPONENT
+from ..theory.cavity import FINITE_STRAIN, STRAIN_EXPONENT
 from ..theory.validity import SMALL_DEFORMATION
 
 STRENGTH_POWER, ADHESION_POWER, FORCE_POWER, STEP_POWER, STRAIN_POWER = 0.8, 0.4, 0.4, 0.4, 0.2
@@ -89,7 +89,8 @@ def _replacements(data: dict[str, Any], factor: float) -> dict[Key, str | float]
         texts["law", ADHESION] = _scaled(law[ADHESION], factor**-ADHESION_POWER)
     if strength and strength in law:
         texts["law", strength] = _scaled(law[strength], factor**-STRENGTH_POWER)
-    if (strain := law.get("finite_strain", False)) and strain < NO_FINITE_STRAIN:
+    none = {p.name: p.default for p in law_named(law["name"]).parameters}.get("finite_strain")
+    if none and (strain := law.get("finite_strain", False)) and strain < none:
         strain = FINITE_STRAIN if strain is True else strain
         texts["law", "finite_strain"] = strain * factor ** (STRAIN_POWER * STRAIN_EXPONENT)
     if "rate" in data:

@@ -1,36 +1,35 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Common parts of all laws: declarations, the elastic start, and the unloading below the largest overlap."""
+"""Common parts of all laws: their declaration, the elastic start, and the unloading below the largest overlap."""
 
-from typing import ClassVar, NamedTuple
+from typing import ClassVar
 
 import numpy as np
 
+from ..base.declarations import Declaration, declarations
 from .checks import Array, Real, number
 
 
-class Parameter(NamedTuple):
-    """A material parameter of a law."""
-
-    name: str  # in case files and in C++
-    symbol: str  # of the constructor and in formulas
-    unit: str
-    default: float | None = None  # None: it must be given
-    may_vanish: bool = False  # 0 is a value, not a mistake
-
-
-class Backbone:
-    """What all laws share: the elastic start and, below alpha_max, superposed rigid punches (Mesarovic and Johnson)."""
+class Declared:
+    """A law whose declaration stands in C++: names, defaults and ranges of its parameters are read from there."""
 
     name: ClassVar[str]
-    sources: ClassVar[tuple[str, ...]] = ()  # keys of `sources.SOURCES`
-    parameters: ClassVar[tuple[Parameter, ...]] = ()
-    strength: ClassVar[str | None] = None  # which parameter: the softer body's counts in a pair
-    default_ratio: ClassVar[float] = 1.0  # strength in units of the softer body's yield stress, where it is not given
-    keywords: ClassVar[dict[str, str]]  # name of a parameter -> its symbol
-    yield_overlap: Real  # end of the elastic branch [m]
 
-    def __init_subclass__(cls) -> None:
-        cls.keywords = {p.name: p.symbol for p in cls.parameters}
+    @classmethod
+    def declaration(cls) -> Declaration:
+        """What the law declares of itself."""
+        return declarations()[cls.name]
+
+    def given(self, **values: Real | None) -> tuple[Real, ...]:
+        """Parameters by their symbols, each its default if it is None. ValueError outside of their ranges."""
+        known = {p.symbol: p for p in self.declaration().parameters}
+        chosen = {s: known[s].default if x is None else x for s, x in values.items()}
+        return tuple(number(s, np.nan if x is None else x, low_ok=known[s].may_vanish) for s, x in chosen.items())
+
+
+class Backbone(Declared):
+    """What all laws share: the elastic start and, below alpha_max, superposed rigid punches (Mesarovic and Johnson)."""
+
+    yield_overlap: Real  # end of the elastic branch [m]
 
     def __init__(self, E_star: Real, R_star: Real):
         self.E_star, self.R_star = number("E_star", E_star), number("R_star", R_star)

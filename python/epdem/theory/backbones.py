@@ -1,7 +1,12 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The register of laws by name: a new law is its file beside this one and a line here."""
+"""The theory of each law that is declared in C++, by name: the class with this name in the module of this name."""
 
-from .backbone import Backbone, Parameter
+from collections.abc import Iterator, Mapping
+from importlib import import_module
+from typing import TypeVar
+
+from ..base.declarations import declarations
+from .backbone import Backbone
 from .cavity import Cavity
 from .hertz import Hertz
 from .jkr import JKR
@@ -9,8 +14,31 @@ from .johnson import Johnson
 from .thornton import Thornton
 from .thornton_ning import ThorntonNing
 
-LAWS: dict[str, type[Backbone]] = {law.name: law for law in (Hertz, Thornton, Johnson, Cavity)}
-# With adhesion: the contact radius is the natural variable, and the theory of impacts is in `adhesion`.
-ADHESIVE: dict[str, type[JKR]] = {law.name: law for law in (JKR, ThorntonNing)}
+Law = TypeVar("Law", Backbone, JKR)
 
-__all__ = ["ADHESIVE", "JKR", "LAWS", "Backbone", "Cavity", "Hertz", "Johnson", "Parameter", "Thornton", "ThorntonNing"]
+
+class _Laws(Mapping[str, type[Law]]):
+    """Classes by the name of the law; the C library is read when they are looked at."""
+
+    def __init__(self, base: type[Law], adheres: bool):
+        self.base: type[Law] = base
+        self.adheres = adheres
+
+    def __iter__(self) -> Iterator[str]:
+        return (name for name, law in declarations().items() if law.adheres is self.adheres)
+
+    def __len__(self) -> int:
+        return sum(1 for _ in self)
+
+    def __getitem__(self, name: str) -> type[Law]:
+        if name not in list(self):
+            raise KeyError(name)
+        classes = [c for c in vars(import_module(f".{name}", __package__)).values() if isinstance(c, type)]
+        return next(c for c in classes if issubclass(c, self.base) and vars(c).get("name") == name)
+
+
+LAWS = _Laws(Backbone, adheres=False)
+# The contact radius is the natural variable, and the theory of impacts is in `adhesion`.
+ADHESIVE = _Laws(JKR, adheres=True)
+
+__all__ = ["ADHESIVE", "JKR", "LAWS", "Backbone", "Cavity", "Hertz", "Johnson", "Thornton", "ThorntonNing"]

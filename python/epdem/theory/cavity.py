@@ -7,13 +7,12 @@ Mesarovic and Johnson 2000. No parameter is fitted.
 
 import numpy as np
 
-from .backbone import Backbone, Parameter
-from .checks import Array, Real, number
+from .backbone import Backbone
+from .checks import Array, Real
 from .numerics import gauss
 
 FINITE_STRAIN = 0.82  # Jackson and Green 2005: p_m falls by 1 - exp(-0.82 (a/R*)^-0.7)
 STRAIN_EXPONENT = 0.7
-NO_FINITE_STRAIN = 1e6  # so large a number changes nothing
 
 
 class Cavity(Backbone):
@@ -25,14 +24,6 @@ class Cavity(Backbone):
     """
 
     name = "cavity"
-    sources = ("Johnson 1985", "Jackson and Green 2005", "Mesarovic and Johnson 2000")
-    parameters = (
-        Parameter("yield_stress", "Y", "Pa"),
-        Parameter("first_yield_ratio", "c_Y", "1", 1.60),
-        Parameter("plastic_ratio", "c_P", "1", 2.8),
-        Parameter("finite_strain", "c_strain", "1", NO_FINITE_STRAIN),
-    )
-    strength = "yield_stress"
     narrowest, latest = 1.3, 1.88  # c_P/c_Y and c_Y beyond which the three phases are no picture of a metal
 
     def __init__(
@@ -41,14 +32,14 @@ class Cavity(Backbone):
         E_star: Real,
         R_star: Real,
         Y: Real,
-        c_Y: Real = 1.60,
-        c_P: Real = 2.8,
-        c_strain: Real = NO_FINITE_STRAIN,
+        c_Y: Real | None = None,
+        c_P: Real | None = None,
+        c_strain: Real | None = None,
     ):
         super().__init__(E_star, R_star)
-        self.c_strain = number("c_strain", c_strain)
-        self.softens = bool(np.any(self.c_strain < NO_FINITE_STRAIN))
-        self.Y, self.c_Y, self.c_P = number("Y", Y), number("c_Y", c_Y), number("c_P", c_P)
+        (none,) = self.given(c_strain=None)  # so large a number that nothing changes
+        self.Y, self.c_Y, self.c_P, self.c_strain = self.given(Y=Y, c_Y=c_Y, c_P=c_P, c_strain=c_strain)
+        self.softens = bool(np.any(self.c_strain < none))
         self.a_Y = np.pi * self.R_star * self.c_Y * self.Y / (2 * self.E_star)
         self.yield_overlap = self.a_Y**2 / self.R_star
         self.ln_s_P = 3 * (self.c_P - 2 * self.c_Y / 3) - np.log(2)

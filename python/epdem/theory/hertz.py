@@ -11,7 +11,6 @@ class Hertz(Backbone):
     """Elastic contact (Hertz 1882): F = 4/3 E* sqrt(R*) alpha^1.5, a^2 = R* alpha, W = 8/15 E* sqrt(R*) alpha^2.5."""
 
     name = "hertz"
-    sources = ("Hertz 1882",)
 
     def __init__(self, *, E_star: Real, R_star: Real):
         super().__init__(E_star, R_star)

@@ -10,33 +10,26 @@ from typing import Any, ClassVar
 
 import numpy as np
 
-from .backbone import Parameter
+from .backbone import Declared
 from .checks import number
 
 Numbers = Any  # a float or an array of floats; they broadcast
 Path = tuple[Callable[[Numbers], Numbers], Callable[[Numbers], Numbers]]
 
 
-class JKR:
+class JKR(Declared):
     """Elastic adhesive contact: F = 4 E* a^3/(3 R*) - P_t, alpha = a^2/R* - d (Johnson, Kendall and Roberts 1971).
 
     P_t(a) = 2 E* a d = sqrt(8 pi E* Gamma a^3), d(a) = sqrt(2 pi Gamma a/E*). A contact forms at alpha = 0 with a_0 and
     ends, under a given overlap, at the fold a_f, where d alpha/da = 0. Gamma = 0 is Hertz's contact.
-    E_star [Pa] > 0, R_star [m] > 0, work_of_adhesion Gamma of the pair [J/m^2] >= 0. ValueError outside.
+    E_star [Pa] > 0, R_star [m] > 0, work of adhesion Gamma of the pair [J/m^2] >= 0. ValueError outside.
     """
 
     name: ClassVar[str] = "jkr"
-    sources: ClassVar[tuple[str, ...]] = ("Johnson, Kendall and Roberts 1971",)
-    parameters: ClassVar[tuple[Parameter, ...]] = (
-        Parameter("work_of_adhesion", "work_of_adhesion", "J/m^2", may_vanish=True),
-    )
-    strength: ClassVar[str | None] = None
-    default_ratio: ClassVar[float] = 1.0
-    keywords: ClassVar[dict[str, str]] = {"work_of_adhesion": "work_of_adhesion"}
 
-    def __init__(self, *, E_star: Numbers, R_star: Numbers, work_of_adhesion: Numbers) -> None:
+    def __init__(self, *, E_star: Numbers, R_star: Numbers, Gamma: Numbers) -> None:
         self.E_star, self.R_star = number("E_star", E_star), number("R_star", R_star)
-        self.Gamma = number("work_of_adhesion", work_of_adhesion, low_ok=True)
+        (self.Gamma,) = self.given(Gamma=Gamma)
         self.c = np.sqrt(2 * np.pi * self.Gamma / self.E_star)
         self.yield_radius: Numbers = np.inf  # contact radius at which the contact yields [m]
 

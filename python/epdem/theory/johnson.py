@@ -3,8 +3,8 @@
 
 import numpy as np
 
-from .backbone import Backbone, Parameter
-from .checks import Array, Real, number
+from .backbone import Backbone
+from .checks import Array, Real
 
 
 class Johnson(Backbone):
@@ -16,15 +16,11 @@ class Johnson(Backbone):
     """
 
     name = "johnson"
-    sources = ("Johnson 1985",)
-    parameters = (Parameter("yield_pressure", "p_m", "Pa"),)
-    strength = "yield_pressure"
-    default_ratio = 3.0
     trusted_from = 2.0  # in units of v_c, the speed that reaches alpha_c
 
     def __init__(self, *, E_star: Real, R_star: Real, p_m: Real):
         super().__init__(E_star, R_star)
-        self.p_m = number("p_m", p_m)
+        (self.p_m,) = self.given(p_m=p_m)
         self.yield_overlap = self.R_star * (3 * np.pi * self.p_m / (2 * self.E_star)) ** 2
 
     def force(self, alpha: Real) -> Real:

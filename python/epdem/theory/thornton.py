@@ -3,8 +3,8 @@
 
 import numpy as np
 
-from .backbone import Backbone, Parameter
-from .checks import Real, number
+from .backbone import Backbone
+from .checks import Real
 
 
 class Thornton(Backbone):
@@ -14,14 +14,10 @@ class Thornton(Backbone):
     """
 
     name = "thornton"
-    sources = ("Thornton 1997",)
-    parameters = (Parameter("yield_pressure", "p_y", "Pa"),)
-    strength = "yield_pressure"
-    default_ratio = 2.8
 
     def __init__(self, *, E_star: Real, R_star: Real, p_y: Real):
         super().__init__(E_star, R_star)
-        self.p_y = number("p_y", p_y)
+        (self.p_y,) = self.given(p_y=p_y)
         self.yield_overlap = self.R_star * (np.pi * self.p_y / (2 * self.E_star)) ** 2
 
     def force(self, alpha: Real) -> Real:

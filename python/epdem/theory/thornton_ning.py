@@ -1,12 +1,8 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Elastic, perfectly plastic adhesive contact in closed form [Thornton and Ning 1998]."""
 
-from typing import ClassVar
-
 import numpy as np
 
-from .backbone import Parameter
-from .checks import number
 from .jkr import JKR, Numbers, Path
 from .numerics import gauss
 
@@ -24,15 +20,10 @@ class ThorntonNing(JKR):
     """
 
     name = "thornton_ning"
-    sources = ("Thornton and Ning 1998",)
-    parameters = (*JKR.parameters, Parameter("yield_pressure", "p_y", "Pa"))
-    strength = "yield_pressure"
-    keywords: ClassVar[dict[str, str]] = {"work_of_adhesion": "work_of_adhesion", "yield_pressure": "p_y"}
-    default_ratio = 2.8
 
-    def __init__(self, *, E_star: Numbers, R_star: Numbers, work_of_adhesion: Numbers, p_y: Numbers) -> None:
-        super().__init__(E_star=E_star, R_star=R_star, work_of_adhesion=work_of_adhesion)
-        self.p_y = number("p_y", p_y)
+    def __init__(self, *, E_star: Numbers, R_star: Numbers, Gamma: Numbers, p_y: Numbers) -> None:
+        super().__init__(E_star=E_star, R_star=R_star, Gamma=Gamma)
+        (self.p_y,) = self.given(p_y=p_y)
         self._A = 2 * self.E_star / (np.pi * self.R_star)  # A = _A y^2
         self._B = np.sqrt(2 * self.Gamma * self.E_star / np.pi)  # B = _B/y
         self.yield_radius = self._yield_root() ** 2
@@ -93,5 +84,5 @@ class ThorntonNing(JKR):
         safe: Numbers = np.where(yields, a_max, self.yield_radius)
         R_p: Numbers = 4 / 3 * self.E_star * safe**3 / (self.force(safe) + self.adhesive_load(safe))
         R_p = np.where(yields, R_p, self.R_star)
-        opened = JKR(E_star=self.E_star, R_star=R_p, work_of_adhesion=self.Gamma)
+        opened = JKR(E_star=self.E_star, R_star=R_p, Gamma=self.Gamma)
         return opened, np.where(yields, safe**2 * (1 / self.R_star - 1 / R_p), 0.0)

@@ -72,12 +72,14 @@ def restitution() -> Chart:
     v_y0 = printed.yield_speed(p_y=FIRST_YIELD_ROUNDED * s["Y"], **both)
     ratio, series = np.geomspace(0.3, 1e4, 500), []
     for k, (name, law) in enumerate(LAWS.items()):
-        strength = {key: law.default_ratio * s["Y"] for key in list(law.keywords.values())[:1]}
+        declared = law.declaration()
+        Y = declared.default_ratio * s["Y"]
+        strength = {declared.parameter(declared.strength).symbol: Y} if declared.strength else {}
         found = e_n(law(E_star=E, R_star=s["R"], **strength), m_star=m, speed=ratio * v_y0)
         series.append(Series(name, ratio, found, k))
-    v_y = printed.yield_speed(p_y=LAWS["thornton"].default_ratio * s["Y"], **both) / v_y0
+    v_y = printed.yield_speed(p_y=LAWS["thornton"].declaration().default_ratio * s["Y"], **both) / v_y0
     series.append(Series("8.83", ratio, printed.thornton(ratio, v_y=v_y), INK, "dot", width=1.5))
-    p_m = LAWS["johnson"].default_ratio * s["Y"]
+    p_m = LAWS["johnson"].declaration().default_ratio * s["Y"]
     series.append(Series("8.86", ratio, printed.johnson(ratio * v_y0, p_m=p_m, **both), INK, "dash", width=1.0))
     series.append(Series("8.88 (finite elements)", ratio, printed.wu(ratio, v_y0=1.0), INK, "dashdot", width=1.0))
     axes = Axis("$v/v_{y0}$", log=True), Axis("$e_n$", log=True)

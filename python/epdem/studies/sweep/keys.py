@@ -10,11 +10,12 @@ from typing import Annotated, Any, Literal, Union, get_args, get_origin
 import tomlkit
 from pydantic import BaseModel
 
+from ...base.declarations import Declaration
 from ...case.fields import LawChoice, Material, Quantity
 from ...case.impact import Case
 from ...case.scene import SceneCase, SceneMaterial, is_scene
 from ...errors import CaseError
-from ...laws.library import LawInfo, laws
+from ...laws.library import laws
 from ...laws.strengths import ADHESION
 
 
@@ -81,7 +82,7 @@ def _fields(
             yield (*place, parameter), entry
 
 
-def _law(data: dict[str, Any]) -> LawInfo | None:
+def _law(data: dict[str, Any]) -> Declaration | None:
     """The law that a case names; None if there is no such law."""
     table = data.get("law")
     return laws().get(str(table.get("name"))) if isinstance(table, dict) else None
@@ -96,7 +97,7 @@ def _of_law(case: dict[str, Any], *, ratio: bool) -> Iterator[tuple[str, Key]]:
         if not ratio and p.name == ADHESION:
             continue  # of pairs; a material has a surface energy
         yield p.name, Key(unit=p.unit)
-        if ratio and p == law.strength:
+        if ratio and p.name == law.strength:
             yield f"{p.name}_ratio", Key(unit="1")
 
 
@@ -117,8 +118,8 @@ def _rivals(key: str, data: dict[str, Any]) -> tuple[str, ...]:
     if key == "numerics.steps_in_contact":
         return ("numerics.error",)
     law = _law(data)
-    if law and law.strength and key in (f"law.{law.strength.name}", f"law.{law.strength.name}_ratio"):
-        return (f"law.{law.strength.name}", f"law.{law.strength.name}_ratio")
+    if law and law.strength and key in (f"law.{law.strength}", f"law.{law.strength}_ratio"):
+        return (f"law.{law.strength}", f"law.{law.strength}_ratio")
     return ()
 
 

@@ -50,7 +50,7 @@ class Assembly:
 
     def strength(self, p_y: float) -> float:
         """The law's strength [Pa] of a material of yield pressure p_y [Pa]: that pressure, or a yield stress."""
-        pressure_over_stress = LAWS["thornton"].default_ratio
+        pressure_over_stress = LAWS["thornton"].declaration().default_ratio
         return p_y / pressure_over_stress if yields_by_stress(self.law) else p_y
 
     def time_step(self) -> float:

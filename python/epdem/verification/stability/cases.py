@@ -68,7 +68,7 @@ def build(
     plane_strain = 1 / (1 - nu**2)
     E_star = E * plane_strain if rigid else E * plane_strain / 2
     p_y = E_star / ratio
-    yield_stress = p_y / LAWS["thornton"].default_ratio
+    yield_stress = p_y / LAWS["thornton"].declaration().default_ratio
     solid = (E, nu, yield_stress)
     body = Body(R, float(pair.sphere_mass(radius=R, density=DENSITY)), DENSITY, *solid, "solid")
     target = RIGID_PLANE if rigid else Body(np.inf, np.inf, DENSITY, *solid, "solid")
@@ -78,7 +78,7 @@ def build(
     R_star, m_star = pair.R_star(body.radius, target.radius), pair.m_star(body.mass, target.mass)
     unit = float(yield_speed(E_star=E_star, p_y=p_y, R_star=R_star, m_star=m_star))
     if adhesion is not None:
-        unit = float(sticking_speed(JKR(E_star=E_star, R_star=R_star, work_of_adhesion=adhesion), m_star=m_star))
+        unit = float(sticking_speed(JKR(E_star=E_star, R_star=R_star, Gamma=adhesion), m_star=m_star))
     return Extreme(name, group, body, target, times * unit if speed is None else speed, start, kind, adhesion)
 
 
