@@ -51,12 +51,13 @@ const char* epdem_message(int status);
 size_t epdem_size_of(const char* struct_name); /* 0 if there is no such struct */
 
 /* What each law declares of itself: a JSON array, in the order of the index of a law. Of a law: name, id (of the
- * LIGGGHTS model "ep/" + name, stored in restart files), title, sources (short names of publications, separated by semicolons), condition (on its parameters together, or
- * null), parameters, strength (the parameter at which a body yields, or null), default_ratio (strength over the yield
- * stress of the softer body), memory (doubles that a host keeps from step to step), yields, flattens (unloading is not
- * Hertz's), adheres (bodies attract each other, the step takes the closing speed), without_adhesion (the law for work
- * 0, or null). Of a parameter: name, property (LIGGGHTS property/global), symbol, unit, default (or null), may_vanish
- * (0 is a value), of_pair (of two surfaces, not of a body). */
+ * LIGGGHTS model "ep/" + name, stored in restart files), title, sources (short names of publications, separated by
+ * semicolons), condition (on its parameters together, or null), parameters, strength (the parameter at which a body
+ * yields, or null), default_ratio (strength over the yield stress of the softer body), memory (doubles that a host
+ * keeps from step to step), yields, flattens (unloading is not Hertz's), adheres (bodies attract each other, the step
+ * takes the closing speed), without_adhesion (the law for work 0, or null). Of a parameter: name, property (LIGGGHTS
+ * property/global), symbol, unit, default (or null), may_vanish (0 is a value), of_pair (of two surfaces, not of a
+ * body). */
 const char* epdem_declarations(void);
 
 /* n steps, each from its own R_star, delta_max and delta (with adhesion: of a contact that has stood since it reached
