@@ -151,3 +151,69 @@ def test_the_command_ends_with_2_and_the_sentence(tmp_path):
     done = subprocess.run(words, cwd=tmp_path, capture_output=True, text=True)
     assert done.returncode == 2 and done.stderr.startswith("epdem: own.in.j2:1: "), done.stderr
     assert done.stderr.count("\n") == 1
+
+
+HEAD = """units si
+atom_style granular
+boundary f f f
+newton off
+communicate single vel yes
+region box block -1 1 -1 1 -1 1 units box
+create_box 1 box
+neighbor 0.1 bin
+create_atoms 1 single 0 0 0 units box
+pair_style none
+fix motion all nve/sphere
+"""
+REFUSED = [
+    "shell rm -rf ~",
+    "  shell touch x",
+    "she&\nll touch x",
+    'if "1 > 0" then "shell touch x"',
+    'if "1 > 0" then "run 0" else "run 1 every 1 \'shell touch x\'"',
+    'if "1 < 0" then "run 0" elif "2 > 1" "shell touch x"',
+    'run 10 every 5 "print \'#\'" "shell touch x"',
+    "partition yes 1 shell touch x",
+    "variable c string shell\n${c} touch x",
+    "variable c string ell\nif '1' then 'sh${c} touch x'",
+    "python f input 1",
+    "include /etc/passwd",
+    "include ../in.other",
+    "include ${file}",
+    "jump /tmp/in.x",
+]
+TAKEN = [
+    "# shell rm is a comment",
+    'print "shell we dance"',
+    "include setup.in",
+    "jump SELF next",
+    'variable x equal step\nif "${x} > 3" then "jump SELF end" else "print ${x}"',
+    'run 100 every 10 "write_restart a.*"',
+    "run ${n}",
+    "fix shell all nve/sphere",
+]
+
+
+@pytest.mark.parametrize("line", REFUSED)
+def test_a_deck_that_starts_a_program_or_reads_another_folder_is_refused(line, own, tmp_path):
+    own.write_text(OWN + line + "\n")
+    with pytest.raises(CaseError, match="a deck of a template starts no program and reads no file of another folder"):
+        write(own, SETTLE, settings(["height=0.02", "steps=1"]), tmp_path / "out")
+    assert not (tmp_path / "out").exists()
+
+
+@pytest.mark.parametrize("line", TAKEN)
+def test_a_deck_with_such_words_elsewhere_is_written(line, own, tmp_path):
+    own.write_text(OWN + line + "\n")
+    assert line in write(own, SETTLE, settings(["height=0.02", "steps=1"]), tmp_path / "out")[0].read_text()
+
+
+@pytest.mark.liggghts
+@pytest.mark.parametrize(
+    "line",
+    [x.replace("touch x", "mkdir ran") for x in REFUSED if "touch x" in x and "run " not in x and "part" not in x],
+)
+def test_liggghts_runs_what_is_refused(line, tmp_path):
+    (tmp_path / "in.x").write_text(HEAD + line + "\n")
+    subprocess.run([str(paths.launcher()), "-in", "in.x", "-log", "none"], cwd=tmp_path, capture_output=True)
+    assert (tmp_path / "ran").is_dir()

@@ -20,6 +20,7 @@ from ..impacts.plan import plan
 from ..impacts.prediction import predict
 from ..scenes.plan import plan as scene_plan
 from . import stl
+from .deck_commands import refuse_programs
 from .impacts import Liggghts, data_text
 from .scene_deck import deck as scene_deck
 
@@ -68,7 +69,7 @@ def write(
 
     In the template: `deck` (materials, model, time step ...), `case`, the names of `sets`, and our macros by
     {% import "liggghts/macros.j2" as macros %}. Raises CaseError for a mistake in the template, an undefined name, a
-    set one that is not used, or a file of the user's in the way, unless `force`.
+    set one that is not used, a command that starts a program, or a file of the user's in the way, unless `force`.
     """
     name = template.name.removesuffix(".j2")
     if not name or name == template.name:
@@ -87,6 +88,7 @@ def write(
         values |= {"deck": deck, "case": case}
         beside[deck.data] = data_text(p, len(deck.types))
     text, unused = _render(template, values | sets)
+    refuse_programs(text, template)
     if wrong := unused & set(sets):
         raise CaseError(f"--set {min(wrong)}: {template} does not use it; check the spelling")
     return write_own(out, {name: text} | {n: content for n, content in beside.items() if n in text}, force=force)
