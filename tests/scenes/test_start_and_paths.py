@@ -14,7 +14,7 @@ from scene_runs import run, write_case
 from epdem.case.motions import LinearMove, RotateMove, VibrateMove
 from epdem.case.parts import Sphere
 from epdem.case.scene import parse
-from epdem.errors import CaseError
+from epdem.errors import CaseError, EngineError
 from epdem.scenes.plan import plan
 from epdem.scenes.start import overlaps
 from epdem.scenes.wall_paths import path
@@ -182,3 +182,11 @@ def test_spheres_from_a_nanometre_to_a_millimetre_are_filled_in(tmp_path):
     spheres = run(write_case(data, tmp_path), out=tmp_path / "out").results.particles
     radii = spheres[spheres["step"] == spheres["step"].min()]["radius"]
     assert len(radii) == 20 and radii.min() == pytest.approx(1e-9) and radii.max() == pytest.approx(1.6e-3)
+
+
+@pytest.mark.liggghts
+def test_a_wall_that_its_force_drives_out_of_the_room_is_named(tmp_path):
+    press = {"wall": "plate", "kind": "press", "direction": [0.0, 0.0, 1.0], "force": "1 N", "highest_speed": "9 m/s"}
+    data = parts(wall=[FLOOR, PLATE], fill=[], body=[body("a", 5, 0, 1)], phase=[FALL | {"move": [press]}])
+    with pytest.raises(EngineError, match=r"scene.wall.plate: the wall has left scene.room after step \d+; enlarge"):
+        run(write_case(data, tmp_path), out=tmp_path / "out")

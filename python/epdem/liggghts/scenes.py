@@ -1,16 +1,18 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Bulk scenes in LIGGGHTS: run, continue, read."""
 
-from collections.abc import Collection
+import contextlib
+import re
+from collections.abc import Collection, Iterator
 from pathlib import Path
 
 from ..base import paths
 from ..case.parts import Parts
-from ..errors import CaseError
+from ..errors import CaseError, EngineError
 from ..impacts.engine import Report
 from ..scenes.engine import Resumed, Tables
 from ..scenes.plan import ScenePlan
-from . import executable, launcher, wall_stress
+from . import executable, launcher, log, wall_stress
 from . import resume as restarts
 from . import scene_tables as tables
 
@@ -30,7 +32,24 @@ LEFTOVERS = (
 def run(plan: ScenePlan, folder: Path, *, ranks: int, report: Report) -> None:
     """Run the deck of a scene, which is in `folder`. Raises CaseError, EngineError."""
     _refuse_vtk(plan)
-    launcher.run("in.scene", folder, ranks=ranks, report=_pruning(folder, report))
+    with _lost_walls_named(folder):
+        launcher.run("in.scene", folder, ranks=ranks, report=_pruning(folder, report))
+
+
+@contextlib.contextmanager
+def _lost_walls_named(folder: Path) -> Iterator[None]:
+    """An error of LIGGGHTS about a mesh that has left the domain names the wall and the step."""
+    try:
+        yield
+    except EngineError as error:
+        lost = re.search(r"Mesh \(id (?:wall_)?(\w+)\): Mesh elements have been lost", str(error))
+        if lost is None:
+            raise
+        step = int(log.rows(folder / launcher.OUT)["Step"].iloc[-1])
+        raise EngineError(
+            f"scene.wall.{lost[1]}: the wall has left scene.room after step {step}; enlarge the room, or stop the wall "
+            f"before by the duration or the 'until' of its phase ({folder / launcher.OUT})"
+        ) from None
 
 
 def resume(plan: ScenePlan, folder: Path, *, ranks: int, report: Report) -> Resumed:
@@ -38,7 +57,8 @@ def resume(plan: ScenePlan, folder: Path, *, ranks: int, report: Report) -> Resu
     _refuse_vtk(plan)
     step, lost = restarts.choose(plan, folder)
     deck = restarts.write_resume(plan, folder, step)
-    launcher.run(deck.name, folder, ranks=ranks, append=True, report=_pruning(folder, report))
+    with _lost_walls_named(folder):
+        launcher.run(deck.name, folder, ranks=ranks, append=True, report=_pruning(folder, report))
     return Resumed(step, lost)
 
 
