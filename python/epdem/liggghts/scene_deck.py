@@ -13,7 +13,7 @@ from ..scenes.plan import ScenePlan
 from . import stl, wall_stress
 from .insertions import Insertion, insertions
 from .properties import HARD, SOFT, Property, elastic, per_pair, ratios, strength, tangential, work_of_adhesion
-from .scene_parts import DeckPlane, DeckPhase, DeckMesh, load_words, parts, planes, surfaces, table
+from .scene_parts import DeckMesh, DeckPhase, DeckPlane, load_words, parts, planes, surfaces, table
 from .wall_power import wall_id
 
 MOST_CELLS = 2**31 - 1  # that LIGGGHTS counts, each half as wide as its longest reach
@@ -213,7 +213,7 @@ def deck(p: ScenePlan) -> Deck:
         energy=out.energy,
         loads=out.loads,
         spins=m.spins,
-        has_history=m.yields or m.spins or m.adheres,
+        has_history=m.yields or m.spins or m.adheres or m.cohesion is not None,  # sjkr keeps one, too
         yields=m.yields,
         adheres=m.adheres,
         history_columns=history_columns(m),

@@ -141,7 +141,7 @@ def curve(m: Measure, tables: dict[str, pd.DataFrame]) -> tuple[FloatArray, Floa
 
 def curves(p: ScenePlan, tables: dict[str, pd.DataFrame]) -> pd.DataFrame:
     """One row per frame: step, time, a column for each measure but loads and histograms."""
-    spheres = tables.get("particles", pd.DataFrame(columns=["step"]))  # loads need no frames
+    spheres = tables.get("particles", pd.DataFrame({"step": np.zeros(0, int)}))  # loads need no frames
     steps = np.sort(spheres["step"].unique())
     frames = dict(tuple(spheres.groupby("step")))
     table = pd.DataFrame({"step": steps, "time": p.time_at(steps)})

@@ -38,9 +38,10 @@ class Size(NamedTuple):
 
 
 def _wholes(exact: list[float]) -> list[int]:
-    """Whole numbers with the sum of the exact ones, rounded: the largest remainders go up."""
+    """Whole numbers with the sum of the exact ones, rounded: the largest remainders go up, of equal ones the first."""
+    exact = [round(x, 9) for x in exact]  # round-off, as of other units, decides nothing
     result = [math.floor(x) for x in exact]
-    order = sorted(range(len(exact)), key=lambda k: result[k] - exact[k])
+    order = sorted(range(len(exact)), key=lambda k: round(result[k] - exact[k], 9))
     for k in order[: round(sum(exact)) - sum(result)]:
         result[k] += 1
     return result
@@ -116,15 +117,19 @@ def insertions(case: SceneCase, scene: Parts) -> tuple[Insertion, ...]:
     return tuple(found)
 
 
-def _fills(case: SceneCase, fills: Iterable[Insertion]) -> Iterator[tuple[str, list[Size]]]:
-    """(key of the particles, their sizes) of each fill."""
+def _fills(case: SceneCase, fills: Iterable[Insertion]) -> Iterator[tuple[str, list[Size], float]]:
+    """(key of the particles, their sizes, requested mass [kg]) of each fill; a number of spheres requests no mass, so
+    that the mass is that of the placed spheres."""
     of_case = {f"scene.fill.{f.name}": f for f in case.scene.random_fills} if isinstance(case.scene, Parts) else {}
     for key, group in groupby(fills, key=lambda fill: fill.key):
         first = next(group)
         if first.exact:
-            yield f"{key}.particles", counted(case, of_case[key])
+            f = of_case[key]
+            sizes = counted(case, f)
+            mass = sum(x.mass * ((x.placed or 0) if f.count else x.requested) for x in sizes)
+            yield f"{key}.particles", sizes, mass
         else:
-            yield PARTICLES.get(key, f"{key}.particles"), _random(case, first)
+            yield PARTICLES.get(key, f"{key}.particles"), _random(case, first), 0.0
 
 
 def _by_component(sizes: list[Size]) -> Iterator[tuple[int, list[Size]]]:
@@ -133,7 +138,7 @@ def _by_component(sizes: list[Size]) -> Iterator[tuple[int, list[Size]]]:
 
 def refuse_missing(case: SceneCase, fills: Iterable[Insertion]) -> None:
     """Raise CaseError for a component without a sphere."""
-    for place, sizes in _fills(case, fills):
+    for place, sizes, _ in _fills(case, fills):
         for n, own in _by_component(sizes):
             if all(size.missing for size in own):
                 total = sum(size.requested for size in own)
@@ -146,8 +151,8 @@ def refuse_missing(case: SceneCase, fills: Iterable[Insertion]) -> None:
 def warnings(case: SceneCase, fills: Iterable[Insertion]) -> list[str]:
     """A sentence for each size without spheres, and for each component whose mass differs from the requested one."""
     found = []
-    for place, sizes in _fills(case, fills):
-        whole = sum(size.mass * size.requested for size in sizes)
+    for place, sizes, whole in _fills(case, fills):
+        ideal = sum(size.mass * size.requested for size in sizes)
         for n, own in _by_component(sizes):
             found += [
                 f"{place}.{n}: 0 spheres with radius {size.radius:g} m, for its share of the mass is "
@@ -157,7 +162,7 @@ def warnings(case: SceneCase, fills: Iterable[Insertion]) -> list[str]:
             ]
             if own[0].placed is None:
                 continue
-            requested = sum(size.mass * size.requested for size in own)
+            requested = whole / ideal * sum(size.mass * size.requested for size in own)
             mass = sum(size.mass * (size.placed or 0) for size in own)
             if abs(mass - requested) > LARGEST_ERROR * whole:
                 found.append(

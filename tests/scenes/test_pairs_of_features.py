@@ -1,0 +1,244 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Scenes with one feature of each kind, drawn at random, so that every pair of features occurs.
+
+Each number is compared with another route: amounts with the definition of mass and volume, decks with the plan, other
+units, a sweep and a softened copy with the case itself.
+"""
+
+import math
+import re
+import tomllib
+from itertools import pairwise
+
+import numpy as np
+import pytest
+import tomlkit
+from features import CHOICES, DENSITY, MIXTURES, SLOTS, case_of, files
+from hypothesis import Phase, assume, example, given, settings
+from hypothesis import strategies as st
+from scene_runs import run, write_case
+
+from epdem.case.scene import parse
+from epdem.engines import scene_engine
+from epdem.errors import CaseError
+from epdem.scenes import measures, shares
+from epdem.scenes.engine import files as deck_files
+from epdem.scenes.plan import plan
+from epdem.studies.soften import soften
+from epdem.studies.sweep.folder import Sweep
+from epdem.studies.sweep.keys import keys_of
+
+ADHESIVE, FRAMELESS = {"law": {"jkr"}}, {"output": {"rows alone"}}
+NOT_LINEAR = {"phases": {"wall vibrates", "wall presses"}}
+WORN = {"walls": {"plates of two worn materials"}}
+BOTH_MATERIALS_OF_WALLS = {"mixture": {"two materials"}, "bodies": {"body", "frozen body", "late body"}}
+SHARED_TYPES = {"contact": set(SLOTS["contact"]) - {"wall friction", "friction of pairs"}}  # of spheres and walls
+# Features that exclude each other, and the sentence that says so. A case with none of these is never refused.
+EXCLUDED = [
+    (ADHESIVE | {"contact": {"cohesion"}}, "has its attraction already"),
+    (ADHESIVE | {"contact": {"partial slip"}}, "laws with adhesion have 'history' only"),
+    (ADHESIVE | {"measure": {"speeds of impacts"}}, "impact speeds follow from contacts without adhesion"),
+    (FRAMELESS | {"measure": {"flow", "height", "porosity", "speeds of impacts", "plastic work"}}, "taken from frames"),
+    (FRAMELESS | {"walls": {"plate with stress", *WORN["walls"]}}, "written with the frames"),
+    (WORN | {"output": {"restarts"}}, "does not know the wear"),
+    (NOT_LINEAR | {"output": {"restarts"}}, "only walls with linear motions"),
+    ({"mixture": {"rare component first"}}, "of one sphere of steel, so that the fill has none"),
+    ({"measure": {"plastic work"}, "output": set(SLOTS["output"]) - {"energy"}}, "known with output.energy"),
+    ({"measure": {"plastic work"}, "law": {"hertz", "jkr"}}, "a law that yields"),
+    ({"measure": {"speeds of impacts"}, "output": {"frames", "loads", "restarts"}}, "give output.contacts"),
+    (WORN | BOTH_MATERIALS_OF_WALLS | SHARED_TYPES, "one value for each pair"),
+]
+
+
+PLAIN = {slot: next(iter(options)) for slot, options in SLOTS.items()}
+
+
+def sentences_against(chosen):
+    return [words for rule, words in EXCLUDED if all(chosen[slot] in options for slot, options in rule.items())]
+
+
+def planned(chosen, folder):
+    """The plan and the files for LIGGGHTS, as `run` makes them."""
+    p = plan(parse(case_of(chosen), folder / "case.toml"))
+    measures.refuse_measures(p)
+    return p, deck_files(scene_engine("liggghts"), p)
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory):
+    path = tmp_path_factory.mktemp("pairs")
+    files(path)
+    return path
+
+
+def ball(material, radius):
+    return DENSITY[material] * 4 / 3 * math.pi * radius**3
+
+
+def requested(chosen):
+    """(mass, share) of each component of the fill [kg]; mass is None where the fill has a number of spheres."""
+    mass = {"mass": 0.9e-3}.get(chosen["amount"])
+    found = {part["material"]: part.get("share", 1.0) for part in MIXTURES[chosen["mixture"]]}
+    if chosen["amount"] == "fraction":
+        volume = 0.06 * 13e-3 * 13e-3 * 28e-3
+        mass = volume / sum(share / DENSITY[m] for m, share in found.items())
+    return mass, found
+
+
+def masses(p):
+    """Mass [kg] of each material that the fills of a plan put in; of random draws the mean."""
+    found = {}
+    for f in p.insertions:
+        sizes = [(part.material, r, share) for part in f.particles for r, share in part.sizes()]
+        number = f.count / sum(share / ball(m, r) for m, r, share in sizes)
+        for m, _, share in sizes:
+            found[m] = found.get(m, 0.0) + share * number
+    return found
+
+
+def matrices(text):
+    """The properties of pairs of types in a deck, by name."""
+    found = re.findall(r"property/global (\w+) peratomtypepair (\d+) ([-+.e\d ]+)", text)
+    return {name: np.array(values.split(), float).reshape(int(n), int(n)) for name, n, values in found}
+
+
+@settings(max_examples=80)
+@given(chosen=CHOICES)
+def test_the_plan_and_the_deck_have_what_the_case_requests(chosen, folder):
+    against = sentences_against(chosen)
+    try:
+        p, decks = planned(chosen, folder)
+    except CaseError as error:
+        assert any(words in str(error) for words in against), error
+        assert "\n" not in str(error)
+        return
+    assert not against
+    mass, parts = requested(chosen)
+    got = masses(p)
+    if chosen["amount"] in ("count", "poured"):
+        assert sum(f.count for f in p.insertions) == 60
+        mass = sum(got.values())
+    off = [m for m, share in parts.items() if abs(got[m] - share * mass) > 0.0101 * mass]
+    assert bool(off) == any("whole spheres of" in said for said in shares.warnings(p.case, p.insertions))
+    text = decks["in.scene"] + decks["setup.in"]
+    inserted = re.findall(r"nparticles (\d+)|particles_in_region (\d+)", text)
+    alone = len(p.scene.table) + len(p.scene.later)
+    assert sum(int(a or b) for a, b in inserted) + alone == p.count
+    assert all(np.array_equal(m, m.T) for m in matrices(text).values())
+    n_types = re.search(r"create_box (\d+)|(\d+) atom types", text + decks.get("spheres.data", ""))
+    assert int(n_types[1] or n_types[2]) == len(p.model.types)
+    assert {len(m) for m in matrices(text).values()} <= {len(p.model.types)}
+    assert len(re.findall(r"mesh/surface", text)) == len(p.triangles)
+    assert not re.search(r"(?<![\w.])(nan|inf|None)(?![\w.])", text)
+    ends = [0, *(phase.end for phase in p.phases)]
+    assert all(a < b and (b - a) % p.every == 0 for a, b in pairwise(ends)) and ends[-1] == p.steps
+
+
+SMALLER = {"mm": 1e3, "m/s": 1e3, "ms": 1e3, "MPa": 1e3, "kg/m^3": 1e3, "g": 1e3, "mN": 1e3, "s": 1e3, "m^2/N": 1e6}
+SMALLER |= {"Hz": 1e3, "kHz": 1e3, "J/m^2": 1e3, "J/m^3": 1e3, "nJ": 1e-3, "mm^2/N": 1e6}
+NAMES = {"mm": "um", "m/s": "mm/s", "ms": "us", "MPa": "kPa", "kg/m^3": "g/m^3", "g": "mg", "mN": "uN", "s": "ms"}
+NAMES |= {"Hz": "mHz", "kHz": "Hz", "J/m^2": "mJ/m^2", "J/m^3": "mJ/m^3", "nJ": "uJ", "mm^2/N": "um^2/N"}
+NAMES |= {"m^2/N": "mm^2/N"}
+
+
+def in_other_units(value):
+    """A value of a case with every quantity in another unit."""
+    if isinstance(value, dict):
+        return {key: in_other_units(v) for key, v in value.items()}
+    if isinstance(value, list):
+        return [in_other_units(v) for v in value]
+    number, _, unit = value.partition(" ") if isinstance(value, str) else ("", "", "")
+    return f"{float(number) * SMALLER[unit]!r} {NAMES[unit]}" if unit in NAMES else value
+
+
+def numbers_in(files):
+    """(texts between numbers, numbers) of the files of a deck."""
+    text = "\n".join(files.values())
+    number = r"(?<![\w.])[-+]?\d+\.?\d*(?:[eE][-+]?\d+)?"
+    return re.sub(number, "#", text), np.array(re.findall(number, text), float)
+
+
+@settings(max_examples=25)
+@given(chosen=CHOICES)
+def test_other_units_make_the_same_deck(chosen, folder):
+    assume(not sentences_against(chosen))
+    data = case_of(chosen)
+    other = in_other_units(data)
+    assert other["materials"]["glass"] != data["materials"]["glass"]
+    decks = [deck_files(scene_engine("liggghts"), plan(parse(x, folder / "case.toml"))) for x in (data, other)]
+    (text, values), (again, found) = map(numbers_in, decks)
+    assert again == text
+    assert np.allclose(found, values, rtol=1e-9, atol=1e-300)
+
+
+@settings(max_examples=25)
+@given(chosen=CHOICES, other=CHOICES)
+def test_a_point_of_a_sweep_is_the_case_that_it_says(chosen, other, folder):
+    """The tables of one case, set as the values of a sweep over another one, give the one."""
+    base, wanted = case_of(chosen), case_of(other)
+    wanted = {key: wanted[key] if key == "scene" else table for key, table in base.items()}
+    wanted["scene"].setdefault("measure", [])
+    keys = [f"scene.{key}" for key in ("wall", "fill", "body", "phase", "measure")]
+    point = {key: wanted["scene"][key.removeprefix("scene.")] for key in keys}
+    assert set(keys) <= set(keys_of(base))
+    sweep = Sweep("pairs", tomlkit.dumps(base), (point,), ("liggghts",))
+    expected = parse(wanted, folder / "case.toml")
+    assert parse(sweep.data(1), folder / "case.toml") == expected
+    assert parse(tomllib.loads(sweep.text(1)), folder / "case.toml") == expected
+
+
+@settings(max_examples=15)
+@given(chosen=CHOICES, factor=st.sampled_from([4.0, 100.0]))
+def test_a_softened_copy_scales_every_quantity_by_its_unit(chosen, factor, folder):
+    """Moduli by 1/k, strengths by k^-0.8, forces and works of adhesion by k^-0.4; nothing else changes."""
+    data = case_of(chosen)
+    twin = tomllib.loads(soften(write_case(data, folder, "soft.toml"), factor).text)
+    powers = {"Pa": {-1.0, -0.8}, "N": {-0.4}, "J/m^2": {-0.4}}
+    for key, about in keys_of(data).items():
+        before, after = value_of(data, key), value_of(twin, key)
+        if before is None or key == "case.name":
+            assert after is None or key == "case.name"
+        elif about.unit in powers:
+            ratio = float(after.split()[0]) / float(before.split()[0])
+            assert any(math.isclose(ratio, factor**power, rel_tol=1e-12) for power in powers[about.unit])
+        elif not isinstance(before, dict | list):
+            assert after == before, key
+
+
+def value_of(data, key):
+    """The value of a dotted key; None: absent."""
+    for name in key.split("."):
+        if isinstance(data, list):
+            data = dict(zip(map(str, range(len(data))), data, strict=True))
+        data = data.get(name) if isinstance(data, dict) else None
+    return data
+
+
+@pytest.mark.liggghts
+@settings(max_examples=8, phases=[Phase.explicit, Phase.generate])
+@example(chosen=PLAIN | {"contact": "cohesion"})  # of all models cohesion alone has a history
+@example(chosen=PLAIN | {"output": "rows alone", "measure": "force", "phases": "own step"})
+@given(chosen=CHOICES)
+def test_liggghts_runs_what_is_drawn(chosen, folder):
+    """Its frames have the planned spheres of each material, its rows finite numbers and the measured curve."""
+    assume(not sentences_against(chosen))
+    outcome = run(write_case(case_of(chosen), folder, "run.toml"), out=folder / "out", fresh=True)
+    p, tables = outcome.plan, outcome.results.tables
+    assert outcome.passed, tables["checks"]
+    assert tables["rows"]["particles"].max() == p.count
+    assert np.isfinite(tables["rows"].to_numpy(float)).all()
+    if p.frames:
+        last = tables["particles"].query("step == step.max()")
+        materials = [p.model.types[int(n) - 1].material for n in last["type"]]
+        alone = [*p.scene.table, *(b.sphere for b in p.scene.later)]
+        expected = {m: sum(ball(m, s.radius) for s in alone if s.material == m) for m in DENSITY}
+        if chosen["amount"] != "poured":  # its spheres are drawn at random
+            expected = {m: mass + masses(p).get(m, 0.0) for m, mass in expected.items()}
+            assert last["mass"].groupby(materials).sum().to_dict() == pytest.approx(
+                {m: mass for m, mass in expected.items() if mass}, rel=1e-6
+            )
+    kind = SLOTS["measure"][chosen["measure"]] or {}
+    if kind.get("kind") in ("force", "torque"):
+        assert len(tables["rows"]["measured"]) == len(tables["rows"])
+    elif "bins" not in kind and kind:
+        assert np.isfinite(tables["measures"]["measured"].iloc[-1])
