@@ -8,6 +8,8 @@ from types import SimpleNamespace
 import numpy as np
 import pandas as pd
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
 from parts_cases import BED, FLOOR, parts
 from rich.console import Console
 from scene_runs import run, write_case
@@ -94,9 +96,29 @@ def test_the_angle_of_repose_is_that_of_a_heap(over, angle):
 def test_porosity_is_what_spheres_leave_of_a_region():
     grid = np.array([[i, j, k] for i in (-1, 1) for j in (-1, 1) for k in (1, 3, 5, 7)]) * 1e-3
     simple_cubic = 1 - math.pi / 6
-    assert curve({"kind": "porosity", "region": ROOM}, spheres(0, grid)) == [pytest.approx(simple_cubic, abs=5e-3)]
+    assert curve({"kind": "porosity", "region": ROOM}, spheres(0, grid)) == [pytest.approx(simple_cubic, abs=1e-4)]
     half = ROOM | {"z": ["0 mm", "1 mm"]}  # cuts spheres through their centres
-    assert curve({"kind": "porosity", "region": half}, spheres(0, grid)) == [pytest.approx(simple_cubic, abs=5e-3)]
+    assert curve({"kind": "porosity", "region": half}, spheres(0, grid)) == [pytest.approx(simple_cubic, abs=1e-4)]
+
+
+@settings(max_examples=20, deadline=None)
+@given(st.integers(0, 2**32 - 1), st.floats(0.0, 0.6), st.booleans())
+def test_porosity_is_exact_to_a_ten_thousandth(seed, overlap, upright):
+    """Two spheres at random places that overlap by a share of a radius, within the region: each less half the lens."""
+    rng, r = np.random.default_rng(seed), 1e-3
+    way = rng.normal(size=3)
+    first = rng.uniform(-0.3e-3, 0.3e-3, 3) + np.array([0, 0, 4e-3])
+    places = np.array([first, first + (2 - overlap) * r * way / np.linalg.norm(way)])
+    region = (
+        {"diameter": "8 mm", "z": ["0 mm", "8 mm"]}
+        if upright
+        else ROOM | {"x": ["-4 mm", "4 mm"], "y": ["-4 mm", "4 mm"]}
+    )
+    volume = math.pi * 4e-3**2 * 8e-3 if upright else 8e-3**3
+    h = overlap * r / 2  # of each cap of the lens
+    lens = 2 * math.pi * h**2 * (r - h / 3)
+    taken = (2 * 4 / 3 * math.pi * r**3 - lens) / volume
+    assert curve({"kind": "porosity", "region": region}, spheres(0, places)) == [pytest.approx(1 - taken, abs=1e-4)]
 
 
 def test_the_speed_of_an_impact_is_read_from_its_largest_overlap():
@@ -126,6 +148,12 @@ def test_the_speed_of_an_impact_is_read_from_its_largest_overlap():
         ({"kind": "impact_speed"}, {"energy": False}, "give output.contacts"),
         ({"kind": "count"}, {"particles": 0, "energy": False}, "measures are taken from frames"),
         ({"kind": "count", "name": "time"}, {}, "measure.time: a column of the rows has this name"),
+        (
+            {"kind": "porosity", "region": ROOM | {"x": ["0 mm", "20 mm"]}},
+            {},
+            r"a.region: it reaches beyond the room of the scene, \[-0.01, 0.01\] x .*, whose outside would count",
+        ),
+        ({"kind": "count", "region": ROOM | {"x": ["11 mm", "20 mm"]}}, {}, "it lies outside of the room of the scene"),
         ({"kind": "count", "name": "floor_force_z"}, {}, "a column of the rows has this name"),
     ],
 )

@@ -15,7 +15,7 @@ from .meshes import FloatArray
 from .pairs import pair_law
 from .plan import ScenePlan
 
-POINTS = 2**14  # in a region whose porosity is measured: an error of some 0.3 % of the volume
+LINES = 2**16  # through a region whose porosity is measured
 RINGS = 12  # of the surface of a bed
 
 
@@ -36,6 +36,7 @@ def refuse_measures(p: ScenePlan) -> None:
             raise CaseError(f"{place}.wall = {m.wall!r}: walls whose forces are known: {known}")
         if isinstance(m, Load) and m.kind == "torque" and m.wall not in p.scene.meshes:
             raise CaseError(f"{place}.wall = {m.wall!r}: a plane has no torque; name a wall of triangles")
+        _refuse_beyond(p, m, place)
         material = getattr(m, "material", None)
         if material is not None and material not in {t.material for t in p.model.types if not t.wall}:
             raise CaseError(f"{place}.material = {material!r}: no sphere is of it")
@@ -52,6 +53,24 @@ def _inside(region: Room | Upright, x: FloatArray) -> np.ndarray:
         return np.asarray(near & (x[:, 2] >= region.z[0]) & (x[:, 2] <= region.z[1]))
     limits = np.array(region.limits)
     return np.asarray(((x >= limits[0::2]) & (x <= limits[1::2])).all(axis=1))
+
+
+def _refuse_beyond(p: ScenePlan, m: Measure, place: str) -> None:
+    """Raise CaseError for a region of void that does not belong to the scene, or in which no sphere can be."""
+    region = getattr(m, "region", None)
+    if region is None:
+        return
+    low, high = np.array(region.limits).reshape(3, 2).T
+    first, last = np.array(p.scene.room.limits).reshape(3, 2).T
+    room = " x ".join(f"[{a:g}, {b:g}]" for a, b in zip(first, last, strict=True)) + " m"
+    slack = 1e-9 * (last - first)
+    if isinstance(m, Porosity) and ((low < first - slack) | (high > last + slack)).any():
+        raise CaseError(
+            f"{place}.region: it reaches beyond the room of the scene, {room}, whose outside would count as void; "
+            "move it, or make it smaller"
+        )
+    if ((low >= last) | (high <= first)).any():
+        raise CaseError(f"{place}.region: it lies outside of the room of the scene, {room}; move it")
 
 
 def _chosen(p: ScenePlan, m: Amount | Height | Repose | CenterOfMass | Flow, frame: pd.DataFrame) -> pd.DataFrame:
@@ -87,23 +106,31 @@ def _angle(m: Repose, frame: pd.DataFrame) -> float:
 
 
 def _porosity(m: Porosity, frame: pd.DataFrame) -> float:
-    """The share of evenly spread points of the region that lie in no sphere."""
+    """The share of a region that lies in no sphere: along z exact, by the union of what spheres cut out of lines that
+    are evenly spread over x and y; the error is below 1e-4 (tests/scenes/test_parts_measures.py)."""
     from scipy.spatial import cKDTree
     from scipy.stats import qmc
 
-    r = m.region
-    if isinstance(r, Upright):
-        (a, b), c = r.center, r.diameter / 2
-        low, high = np.array([a - c, b - c, r.z[0]]), np.array([a + c, b + c, r.z[1]])
-    else:
-        low, high = np.array(r.limits[0::2]), np.array(r.limits[1::2])
-    points = low + (high - low) * qmc.Sobol(3, scramble=False).random(POINTS)
-    points = points[_inside(r, points)]
-    taken = np.zeros(len(points), bool)
-    tree = cKDTree(points)
-    for found in tree.query_ball_point(frame[["x", "y", "z"]].to_numpy(), frame["radius"].to_numpy()):
-        taken[found] = True
-    return float(1.0 - taken.mean())
+    low, high = np.array(m.region.limits).reshape(3, 2).T
+    lines = low[:2] + (high - low)[:2] * qmc.Sobol(2, scramble=False).random(LINES)
+    if isinstance(m.region, Upright):
+        lines = lines[np.hypot(*(lines - m.region.center).T) <= m.region.diameter / 2]
+    x, radius = frame[["x", "y", "z"]].to_numpy(), frame["radius"].to_numpy()
+    near = (x[:, 2] + radius > low[2]) & (x[:, 2] - radius < high[2])
+    x, radius = x[near], radius[near]
+    found = cKDTree(lines).query_ball_point(x[:, :2], radius)
+    sphere = np.repeat(np.arange(len(x)), [len(some) for some in found])
+    line = np.concatenate([np.zeros(0, int), *(np.array(some, int) for some in found)])
+    half = np.sqrt(np.maximum(radius[sphere] ** 2 - ((lines[line] - x[sphere, :2]) ** 2).sum(axis=1), 0.0))
+    begin = np.clip(x[sphere, 2] - half, low[2], high[2])
+    end = np.clip(x[sphere, 2] + half, low[2], high[2])
+    order = np.lexsort((begin, line))
+    line, begin, end = line[order], begin[order], end[order]
+    height = high[2] - low[2]
+    # of each line by itself: one above the other, so that the largest end so far is one running maximum
+    covered = np.maximum.accumulate(np.append(-np.inf, end + 2 * height * line))[:-1] - 2 * height * line
+    taken = np.maximum(end - np.maximum(begin, covered), 0.0).sum()
+    return float(1.0 - taken / (len(lines) * height))
 
 
 def _flow(p: ScenePlan, m: Flow, spheres: pd.DataFrame, steps: np.ndarray) -> FloatArray:
