@@ -124,6 +124,15 @@ def test_what_both_options_do_to_leebs_numbers(device, hardness, quantity, measu
         assert 100 * (found / measured - 1) == pytest.approx(number, abs=0.06)
 
 
+def test_the_rate_is_that_of_the_middle_speed_in_any_order():
+    tables = {"rate": RATE}
+    strengths = []
+    for speeds in (["1 m/s", "2 m/s", "50 m/s"], ["50 m/s", "1 m/s", "2 m/s"], ["2 m/s", "50 m/s", "1 m/s"]):
+        impact = read_toml(CASES / "leeb_D.toml")["impact"] | {"speeds": speeds}
+        strengths.append(experiment(changed("leeb_D.toml", impact=impact, **tables)).law.strengths)
+    assert strengths[0] == strengths[1] == strengths[2]
+
+
 def test_the_factor_of_the_rate_is_that_of_its_formula():
     x, plain = (experiment(changed("leeb_D.toml", **tables)) for tables in ({"rate": RATE}, {}))
     factor = x.law.strengths[1] / plain.law.strengths[1]

@@ -191,3 +191,20 @@ def test_the_weight_of_a_bed_is_compared_only_with_all_that_bears_it(change, out
     found = table_of_rows(p, table, ["particles", "kinetic_energy", *columns])
     checked = checks.checks(p, {"rows": found, "particles": frames(p, [{}])})["check"]
     assert columns and not checked.str.contains("weight").any()
+
+
+@pytest.mark.parametrize(("pressed", "compared"), [(0.0, True), (4.0, True), (65.0, False)])
+def test_the_weight_is_not_compared_with_a_sum_of_much_larger_forces(pressed, compared):
+    """A lid presses with a force in weights of the bed: the tolerance of 2 % of the largest force stays below 12 %."""
+    lid = FLOOR | {"name": "lid", "at": "39 mm"}
+    data = parts(wall=[FLOOR, lid])
+    data["output"] |= {"energy": False}
+    p, spheres = plan(parse(data)), frames(planned("settle"), [{}])
+    weight = float(spheres["mass"].iloc[0]) * 9.81
+    forces = {"floor_force_z": -(1 + pressed) * weight, "lid_force_z": pressed * weight}
+    found = table_of_rows(
+        p, {n: [1.0, 0.0, *forces.values()] for n in (0, p.steps)}, ["particles", "kinetic_energy", *forces]
+    )
+    checked = checks.checks(p, {"rows": found, "particles": spheres})
+    checked = checked[checked["check"].str.contains("weight")]
+    assert (len(checked) == 1) == compared and checked["passed"].all() and (checked["tolerance"] < 0.12).all()

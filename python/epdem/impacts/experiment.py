@@ -198,9 +198,8 @@ def experiment(case: Case, law: str | None = None) -> Experiment:
         numbers = replace(default_numbers(law), adhesion=numbers.adhesion if law in ADHESIVE else None)
     spec = pair_of(numbers, body, target)
     if case.rate:
-        spec = rated(
-            spec, case.rate, body, target, float(case.impact.speed_values()[len(case.impact.speed_values()) // 2])
-        )
+        speeds = sorted(case.impact.speed_values())
+        spec = rated(spec, case.rate, body, target, float(speeds[len(speeds) // 2]))
     return Experiment(
         law=spec,
         body=body,

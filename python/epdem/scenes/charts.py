@@ -121,7 +121,7 @@ def bed(outcome: SceneOutcome) -> list[Picture]:
     path, field = outcome.folder / "bed.png", outcome.plan.output.color
     pictures.bed(outcome.plan, table, path)
     frame = last_frame(table)
-    time = frame["step"].iloc[0] * outcome.plan.time_step
+    time = float(outcome.plan.time_at(frame["step"].to_numpy()[:1])[0])
     values, of = pictures.colour(frame, field), pictures.unit_of(frame, field)
     label = f"{field} [{of}]" if of else field
     alt = f"Spheres and walls at {time:.3g} s; the colour is {label}, from {values.min():.3g} to {values.max():.3g}."
