@@ -1,7 +1,11 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """What an engine could not run, or would run otherwise than it is meant, is said before anything is written."""
 
+import numpy as np
 import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+from parts_cases import BED, FLOOR, parts
 from scene_runs import run, write_case
 from stored_runs import CASES
 
@@ -49,3 +53,60 @@ def test_a_rate_is_taken_up_to_the_layer_s_filling():
         else:
             with pytest.raises(CaseError, match="rate"):
                 plan(case)
+
+
+def pressed(height: float, kind: str):
+    """The case of 1500 spheres of 50 um on 1 mm^2 (0.785 mm without void), or of 40 of 1.5 mm under a plate."""
+    if kind == "compaction":
+        data = read_toml(CASES / "compaction_powder.toml")
+        return data | {"scene": data["scene"] | {"height": f"{height} mm"}}
+    down = {"wall": "lid", "kind": "linear", "velocity": ["0 m/s", "0 m/s", "-0.1 m/s"]}
+    size = {"room": ["20 mm", "20 mm"], "tube": ["16.4 mm", "16.4 mm"], "small": ["18 mm", "18 mm"]}[kind]
+    lid = {
+        "name": "lid",
+        "kind": "plate",
+        "axis": "z",
+        "center": ["0 mm", "0 mm", "39 mm"],
+        "size": size,
+        "material": "steel",
+    }
+    tube = {
+        "name": "tube",
+        "kind": "cylinder",
+        "diameter": "16 mm",
+        "from": "-1 mm",
+        "to": "39 mm",
+        "material": "steel",
+    }
+    region = {"diameter": "16 mm", "z": ["0 mm", "38 mm"]}
+    phase = {
+        "name": "press",
+        "duration": "1 s",
+        "move": [down],
+        "until": {"wall": "lid", "travel": f"{39 - height} mm"},
+    }
+    if kind == "tube":
+        return parts(wall=[FLOOR, lid, tube], fill=[BED | {"region": region}], phase=[phase])
+    return parts(wall=[FLOOR, lid], phase=[phase])
+
+
+SOLID = {  # height without void [mm]: sum of volumes over the area
+    "compaction": 1500 * 4 / 3 * np.pi * 0.05**3,
+    "room": 40 * 4 / 3 * np.pi * 1.5**3 / 400,
+    "tube": 40 * 4 / 3 * np.pi * 1.5**3 / (np.pi * 8**2),
+}
+
+
+@settings(max_examples=30, deadline=None)
+@given(st.sampled_from(sorted(SOLID)), st.floats(0.3, 3.0).filter(lambda x: abs(x - 1) > 1e-3))
+def test_a_plate_is_not_pressed_below_the_height_without_void(kind, share):
+    case = parse(pressed(share * SOLID[kind], kind))
+    if share > 1:
+        plan(case)
+    else:
+        with pytest.raises(CaseError, match=rf"are {1e-3 * SOLID[kind]:.4g} m high .* give a larger height"):
+            plan(case)
+
+
+def test_spheres_may_pass_beside_a_plate_that_does_not_cover_the_room():
+    plan(parse(pressed(0.5 * SOLID["room"], "small")))

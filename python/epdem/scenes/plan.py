@@ -22,6 +22,7 @@ from .meshes import FloatArray
 from .model import Model, model
 from .presets import Preset, parts
 from .shares import insertions, refuse_missing
+from .solid import refuse_below_solid
 from .start import refuse_positions
 from .timestep import time_step
 from .wall_paths import refuse_leaving
@@ -266,6 +267,7 @@ def plan(case: SceneCase) -> ScenePlan:
     filled = insertions(case, scene)
     refuse_too_many(case, filled)
     refuse_missing(case, filled)
+    refuse_below_solid(case, scene, filled)
     duration = sum(phase.seconds for phase in scene.phase)
     steps = duration / dt
     if any(phase.time_step for phase in scene.phase):
