@@ -144,6 +144,28 @@ def test_phases_end_by_force_and_by_energy_and_a_servo_holds_its_force(tmp_path)
 
 
 @pytest.mark.liggghts
+def test_a_condition_that_is_not_reached_is_named(tmp_path):
+    """The first is met, the second is not: the phase, the place and the time of its end, and its row in the results."""
+    phases = [
+        {"name": "settle", "duration": "40 ms", "until": {"kinetic_energy": "1 J", "after": "1 ms"}},
+        {"name": "calm", "duration": "40 ms", "until": {"kinetic_energy": "1e-30 J"}},
+        {"name": "rest", "duration": "10 ms"},
+    ]
+    data = parts(wall=[FLOOR, BOX], phase=phases) | {"output": {"rows": 30, "particles": 2}}
+    path = write_case(data, tmp_path)
+    for _ in range(2):  # and as it is read again
+        outcome = run(path, out=tmp_path / "out")
+        table = outcome.results.phases.set_index("phase")
+        assert table["until"].to_list() == ["reached", "not reached", ""]
+        (said,) = [x for x in outcome.warnings if "until" in x]
+        assert said.startswith(
+            f"scene.phase.calm.until was not reached: the phase ended by its duration, at "
+            f"{table.loc['calm', 'end_time']:.4g} s"
+        )
+    assert outcome.reused
+
+
+@pytest.mark.liggghts
 def test_a_run_that_ends_by_a_condition_goes_on_bitwise(tmp_path):
     """From every row, those at which a phase ends and other spheres come included."""
     gate = FLOOR | {"name": "gate", "at": "2 mm", "phases": ["settle", "more"]}

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Figures of scenes: the key figure of each kind holds the numbers of the run, pictures show what is in front."""
 
+from types import SimpleNamespace
+
 import matplotlib.pyplot as plt
 import numpy as np
 import pandas as pd
@@ -12,6 +14,7 @@ from epdem.case.scene import parse
 from epdem.engines import scene_engine
 from epdem.errors import CaseError
 from epdem.scenes import checks, key_figures, pictures
+from epdem.scenes.charts import bed
 from epdem.scenes.energy_balance import kinetic, rotation
 from epdem.scenes.plan import plan
 
@@ -113,3 +116,14 @@ def test_the_window_of_pyvista_shows_walls_and_spheres(monkeypatch):
     assert wall.n_cells == len(p.triangles["tube"]) and room.bounds == pytest.approx(p.box)
     assert spheres.n_cells % p.count == 0 and spheres.n_cells > 100 * p.count
     assert spheres.volume == pytest.approx(p.count * 14.137e-9, rel=0.06)
+
+
+def test_the_time_of_the_bed_counts_the_steps_of_each_phase():
+    """1000 steps of 2e-5 s and 1000 of 1e-5 s."""
+    phases = [{"name": "fall", "duration": "20 ms"}, {"name": "rest", "duration": "10 ms", "time_step": "1e-5 s"}]
+    p = plan(parse(parts(phase=phases)))
+    frame = pd.DataFrame(
+        {"step": [p.steps], "x": 0.0, "y": 0.0, "z": 1e-3, "radius": 1e-3, "vx": 0.0, "vy": 0.0, "vz": 0.0}
+    )
+    (picture,) = bed(SimpleNamespace(plan=p, results=SimpleNamespace(tables={"particles": frame})))
+    assert p.steps == 2000 and "The bed at 0.03 s" in picture.alt

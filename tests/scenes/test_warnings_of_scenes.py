@@ -4,12 +4,17 @@
 import math
 from pathlib import Path
 
+import numpy as np
+import pandas as pd
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 from parts_cases import BED, CASES, FLOOR, GLASS, parts
 
 from epdem.case.scene import load, parse
+from epdem.scenes.columns import rows
 from epdem.scenes.plan import plan
-from epdem.scenes.warnings import planned_warnings
+from epdem.scenes.warnings import measured_warnings, planned_warnings
 
 BALL = {"name": "ball", "material": "steel", "radius": "2 mm", "position": ["0 mm", "0 mm", "20 mm"]}
 PLATE = {"name": "plate", "kind": "plate", "axis": "z", "center": ["0 mm", "0 mm", "5 mm"], "size": ["10 mm"] * 2}
@@ -100,3 +105,43 @@ def test_a_time_step_that_no_contact_bears_is_named(factor, said):
     data = parts(wall=[FLOOR | {"material": "glass"}]) | {"numerics": {"time_step": f"{factor * stable} s"}}
     data["materials"] = {"glass": GLASS | {"yield_stress": "9 MPa"}}
     assert ["impact at the scene's highest speed is stable" in x for x in warnings_of(data)] == [True] * said
+
+
+@given(st.floats(0.0, 0.8), st.booleans())
+def test_finite_strain_is_said_once_by_the_largest_contact_radius_of_the_rows(largest, yields):
+    """Two contacts of spheres of 1 mm, one of half the radius: the share of those above the limit."""
+    R_star = 0.5e-3
+    radius = np.array([largest, 0.5 * largest]) * R_star
+    contacts = {"step": [5, 5], "wall": "", "i": [1, 1], "j": [2, 3], "delta_max": radius**2 / R_star}
+    tables = {
+        "rows": pd.DataFrame({"largest_radius_ratio": [0.0, largest]}),
+        "particles": pd.DataFrame({"id": [1, 2, 3], "radius": 1e-3}),
+        "contacts": pd.DataFrame(contacts | {"dent_radius": radius if yields else 0.0}),
+    }
+    found = measured_warnings(tables)
+    limit = 0.3 if largest > 0.3 else 0.2 if largest > 0.2 else None
+    if limit is None:
+        assert found == []
+        return
+    (said,) = found
+    assert f"a/R* reaches {largest:.2f}, above {limit}" in said
+    if abs(0.5 * largest - limit) > 1e-9 and abs(largest - limit) > 1e-9:
+        assert f"in up to {100 if 0.5 * largest > limit else 50} % of the contacts" in said
+
+
+def test_the_largest_strain_of_rows_never_falls():
+    """No sphere is there at first (LIGGGHTS: -1e20); the sphere that holds the largest value may leave the room."""
+    p = plan(parse(parts()))
+    values = {0: [0.0, 0.0, -1e20, -1e20], 10: [2.0, 0.0, 0.3, 0.09], 20: [1.0, 0.0, 0.1, 0.01]}
+    found = rows(p, values, ["particles", "kinetic_energy", "largest_radius_ratio", "largest_overlap_ratio"])
+    assert found["largest_radius_ratio"].to_list() == [0.0, 0.3, 0.3]
+    assert found["largest_overlap_ratio"].to_list() == [0.0, 0.09, 0.09]
+
+
+def test_a_way_that_a_phase_is_too_short_for_is_named():
+    until = {"wall": "plate", "travel": "30 mm"}
+    for duration, said in (("29 ms", ["until was not reached"]), ("31 ms", [])):
+        phase = LIFT | {"duration": duration, "until": until}
+        p = plan(parse(parts(wall=[FLOOR, PLATE | {"material": "steel"}], phase=[phase, REST], fill=[], body=[BALL])))
+        found = measured_warnings({"rows": pd.DataFrame({"largest_radius_ratio": [0.0]}), "phases": p.phase_table})
+        assert ["until was not reached" in x for x in found] == [True] * len(said)

@@ -152,11 +152,21 @@ class Phase(Frozen):
     @property
     def seconds(self) -> float:
         """The duration, shorter where a wall with a constant velocity has made its travel [s]."""
+        return min(self.duration, self._travel_time)
+
+    @property
+    def travels(self) -> bool | None:
+        """Whether the duration is long enough for the travel that ends the phase; None: no travel does."""
+        return self._travel_time <= self.duration * (1.0 + 1e-9) if self.until and self.until.travel else None
+
+    @property
+    def _travel_time(self) -> float:
+        """[s]; inf: no travel ends the phase."""
         if self.until is None or self.until.travel is None:
-            return self.duration
+            return math.inf
         move = self.moves[self.until.wall or ""]
         assert isinstance(move, LinearMove)
-        return min(self.duration, self.until.travel / math.hypot(*move.velocity))
+        return self.until.travel / math.hypot(*move.velocity)
 
     @property
     def condition(self) -> Until | None:

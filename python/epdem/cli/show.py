@@ -40,7 +40,7 @@ def predictions(
                     "parameters": x.law.parameters,
                     "yields": p.yields,
                     "yield_speeds": {k: plain(v) for k, v in p.yield_speeds.items()},
-                    "warnings": [*warnings, *p.caveats],
+                    "warnings": [*warnings, *p.warnings],
                     "rows": records(frame),
                 }
             )
@@ -50,7 +50,7 @@ def predictions(
                 never = "never: the softer body limits the pressure"
                 when = f"from {speed:.4g} m/s on" if math.isfinite(speed) else never
                 console.print(f"{material} yields beneath its surface ({FIRST_YIELD_ROUNDED:.2f} Y) {when}")
-            for warning in [*warnings, *p.caveats]:
+            for warning in [*warnings, *p.warnings]:
                 console.print(f"warning: {warning}", style="yellow")
     if as_json:
         print(json.dumps(document[0] if len(document) == 1 else document, indent=1))

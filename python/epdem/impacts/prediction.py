@@ -32,7 +32,8 @@ class Prediction:
     yields: tuple[str, ...]  # materials that flow somewhere in the range of speeds; law.STRENGTH if it is one for all
     yield_speeds: dict[str, float]  # from which each material yields beneath its surface [m/s], eq. 8.78; inf: never
     rebound: oblique.Rebound | None = None  # of oblique impacts
-    caveats: tuple[str, ...] = ()  # where law or theory leaves its own domain, in words
+    caveats: tuple[str, ...] = ()  # where the law leaves its own domain, in words
+    finite_strain: tuple[str, ...] = ()  # whether contacts leave small strain, in words
     observation_time: float = np.nan  # how long bodies that stick are watched [s]; NaN: without adhesion
 
     COLUMNS = (
@@ -47,6 +48,11 @@ class Prediction:
         "plastic_work",
         "strain_ratio",
     )
+
+    @property
+    def warnings(self) -> tuple[str, ...]:
+        """All sentences on the domain of the law and of the theory."""
+        return self.caveats + self.finite_strain
 
     @property
     def sticks(self) -> np.ndarray:
@@ -84,8 +90,17 @@ def predict(experiment: Experiment) -> Prediction:
         if b.yield_stress is not None and not b.rigid
     }
     caveats = tuple(validity.caveats(law, m_star=m_star, speed=speed))
+    strained = tuple(validity.finite_strain_of_impacts(columns["strain_ratio"], speed))
     rebound = oblique.predict(experiment, columns["e_n"]) if experiment.oblique else None
-    return Prediction(speed=speed, yields=yields, yield_speeds=speeds, rebound=rebound, caveats=caveats, **columns)
+    return Prediction(
+        speed=speed,
+        yields=yields,
+        yield_speeds=speeds,
+        rebound=rebound,
+        caveats=caveats,
+        finite_strain=strained,
+        **columns,
+    )
 
 
 def _softer(x: Experiment) -> tuple[str, ...]:
@@ -108,7 +123,8 @@ def _with_adhesion(x: Experiment, law: JKR) -> Prediction:
         speed=x.speed,
         yields=_softer(x) if impact.radius_max.max() > first else (),
         yield_speeds={},
-        caveats=tuple(validity.adhesive_caveats(law, m_star=x.m_star, speed=x.speed)),
+        caveats=tuple(validity.caveats(law, m_star=x.m_star, speed=x.speed)),
+        finite_strain=tuple(validity.finite_strain_of_impacts(columns["strain_ratio"], x.speed)),
         observation_time=1.5 * float(adhesion.contact_time(law, m_star=x.m_star, speed=barely))
         if barely > 0
         else np.nan,

@@ -230,7 +230,7 @@ def _run(text: str, work: _Work, folder: Path, ranks: int, fresh: bool, progress
     for p in work.plans:
         law = p.experiment.law.name
         prediction = work.predictions[law]
-        outcome.warnings += prediction.caveats
+        outcome.warnings += prediction.warnings
         outcome.warnings += [f"{tool.name}: {note}" for tool in work.tools for note in tool.check(p)]
         results.predictions[law] = prediction.table()
         for tool in work.tools:

@@ -118,6 +118,7 @@ def _settings(p: ScenePlan) -> tuple[str, ...]:
         "viscous on": m.viscous is not None,
         "tangential_damping off": m.viscous is not None and m.sliding and m.tangential_restitution is None,
         "computePlasticWork on": p.writes_plastic_work or p.writes_friction_work or p.writes_adhesive_work,
+        "computeContactStrain on": True,
     }
     return tuple(setting for setting, asked in wanted.items() if asked)
 
@@ -166,7 +167,8 @@ def deck(p: ScenePlan) -> Deck:
     m, s, out = p.model, p.case.scene, p.output
     moduli = [p.case.materials[t.material].young_modulus for t in m.types]
     cut = p.case.numerics.processors
-    row_words = {"f_load": p.floor_load, "f_press_z": p.plates, "f_torque": p.torque, "f_power": p.writes_wall_power}
+    row_words = {"c_ratio[1]": True, "c_ratio[2]": True, "f_load": p.floor_load, "f_press_z": p.plates}
+    row_words |= {"f_torque": p.torque, "f_power": p.writes_wall_power}
     return Deck(
         title=p.case.case.title,
         source=p.case.case.source,

@@ -23,6 +23,8 @@ ROWS = {
     "press_z": "plate_force",
     "torque": "torque",
     "power": "wall_power",
+    "ratio[1]": columns.STRAINS[0],
+    "ratio[2]": columns.STRAINS[1],
 }
 _LOAD = re.compile(r"load(\d+)\[(\d)\]")
 PARTICLES, PAIRS, MESHES = "particles.{}.bin", "contacts.{}.txt", "wall_contacts.{}.txt"
@@ -63,6 +65,12 @@ def ends(folder: Path, upto: float = math.inf) -> dict[str, int]:
     text = out.read_text(encoding="utf-8", errors="replace") if out.exists() else ""
     found = re.findall(r"^phase (\w+) ended at step (\d+)", text, re.M)
     return {name: int(step) for name, step in found if int(step) <= upto}
+
+
+def not_reached(folder: Path) -> set[str]:
+    """The phases whose condition did not hold in any row."""
+    out = folder / OUT
+    return set(re.findall(r"^phase (\w+) was not ended by its condition", out.read_text(errors="replace"), re.M))
 
 
 def _frame(path: Path, count: int) -> np.ndarray:

@@ -34,6 +34,7 @@ UNITS = {
 }
 LOADS = ("force_x", "force_y", "force_z", "torque_x", "torque_y", "torque_z")  # of a wall NAME: NAME_force_x, ...
 SMALLEST = 1e-12  # radius [m]
+STRAINS = ("largest_radius_ratio", "largest_overlap_ratio")  # a/R* and overlap/R*, of all contacts since the start
 PARTICLES = ["id", "type", "radius", "mass", "x", "y", "z", "vx", "vy", "vz"]
 SPINS = ["omega_x", "omega_y", "omega_z"]
 
@@ -61,7 +62,8 @@ def columns_of_rows(p: ScenePlan) -> set[str]:
     some = {"floor_load": p.floor_load, "torque": p.torque, "wall_power": p.writes_wall_power}
     some |= dict.fromkeys(("plate_force", "plate_z", "stress"), p.plates)
     loads = {f"{name}_{load}" for name in p.loads for load in LOADS}
-    return {"step", "time", "particles", "kinetic_energy", *(name for name, there in some.items() if there)} | loads
+    always = {"step", "time", "particles", "kinetic_energy", *STRAINS}
+    return always | {name for name, there in some.items() if there} | loads
 
 
 def whole(p: ScenePlan, table: pd.DataFrame, folder: Path) -> pd.DataFrame:
@@ -90,6 +92,8 @@ def rows(p: ScenePlan, values: dict[int, list[float]], names: list[str]) -> pd.D
     table = pd.DataFrame.from_dict(values, orient="index", columns=names).sort_index()
     table.insert(0, "step", table.index.to_numpy())
     table.insert(1, "time", p.time_at(table["step"].to_numpy()))
+    strains = [name for name in STRAINS if name in table]
+    table[strains] = table[strains].clip(lower=0.0).cummax()  # no sphere is there yet, or the one that held it left
     if isinstance(p.case.scene, Compaction):
         middle = (table["step"] - 0.5 * p.every).clip(lower=0) * p.time_step
         table["plate_z"] = plate_height(p, middle.to_numpy())

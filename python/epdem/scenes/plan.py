@@ -2,7 +2,7 @@
 """A scene for any engine: bodies, motions, times of output. All SI, without names of engines."""
 
 import math
-from collections.abc import Mapping
+from collections.abc import Collection, Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -27,6 +27,7 @@ from .start import refuse_positions
 from .timestep import time_step
 from .wall_paths import refuse_leaving
 
+REACHED, NOT_REACHED = "reached", "not reached"  # of a phase with `until`
 SAMPLES = 50  # of a force, at least, in the mean that a row holds
 
 
@@ -34,12 +35,14 @@ SAMPLES = 50  # of a force, at least, in the mean that a row holds
 class Phase:
     """A phase of the case. end: its last step, or an earlier one if its condition is met.
 
-    gates: walls that are present in some phases, this one among them.
+    gates: walls that are present in some phases, this one among them. reached: whether `until` ended the phase, REACHED
+    or NOT_REACHED; "" without `until`, or before a run.
     """
 
     case: motions.Phase
     end: int
     gates: tuple[str, ...] = ()
+    reached: str = ""
 
     @property
     def name(self) -> str:
@@ -94,13 +97,17 @@ class ScenePlan:
         """Whether a phase may end before its duration, so that the steps of a run are known only after it."""
         return any(phase.case.condition for phase in self.phases)
 
-    def ended(self, ends: Mapping[str, int]) -> "ScenePlan":
-        """The plan of a run whose phases ended at these steps; those behind a phase that ended early move with it."""
+    def ended(self, ends: Mapping[str, int], not_reached: Collection[str] = ()) -> "ScenePlan":
+        """The plan of a run whose phases ended at these steps; those behind a phase that ended early move with it.
+
+        not_reached: names of the phases that ended by their duration although they have a condition.
+        """
         phases, shift = [], 0
         for phase in self.phases:
             end = ends.get(phase.name, phase.end + shift)
             shift = end - phase.end
-            phases.append(replace(phase, end=end))
+            reached = NOT_REACHED if phase.name in not_reached else REACHED if phase.case.condition else phase.reached
+            phases.append(replace(phase, end=end, reached=reached))
         return replace(self, phases=tuple(phases))
 
     def frame_steps(self, every: int) -> list[int]:
@@ -111,13 +118,12 @@ class ScenePlan:
 
     @property
     def phase_table(self) -> pd.DataFrame:
-        """One row per phase: name, steps and times [s] of its begin and end."""
+        """One row per phase: name, steps and times [s] of its begin and end, whether `until` ended it."""
         ends = np.array([0, *(phase.end for phase in self.phases)])
         times = self.time_at(ends)
         names = [phase.name for phase in self.phases]
-        return pd.DataFrame(
-            {"phase": names, "begin": ends[:-1], "end": ends[1:], "begin_time": times[:-1], "end_time": times[1:]}
-        )
+        table = {"phase": names, "begin": ends[:-1], "end": ends[1:], "begin_time": times[:-1], "end_time": times[1:]}
+        return pd.DataFrame(table | {"until": [phase.reached for phase in self.phases]})
 
     def time_at(self, steps: np.ndarray) -> np.ndarray:
         """Times [s] of steps."""
@@ -226,7 +232,9 @@ def _phases(scene: Parts, rows: int, every: int, dt: float) -> tuple[Phase, ...]
     phases, end = [], 0
     for phase in scene.phase:
         end += every * max(1, round(phase.seconds / (phase.time_step or dt) / every))
-        phases.append(Phase(phase, end, tuple(w.name for w in scene.gates if phase.name in w.phases)))
+        gates = tuple(w.name for w in scene.gates if phase.name in w.phases)
+        reached = "" if phase.travels is None else REACHED if phase.travels else NOT_REACHED
+        phases.append(Phase(phase, end, gates, reached))
     last = phases.pop()
     end = max(rows * every, last.end) if phases else rows * every
     return (*phases, replace(last, end=end))

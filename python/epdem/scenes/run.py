@@ -25,9 +25,9 @@ from ..impacts.prediction import predict
 from . import checks, energy_balance, measures, pictures, results
 from .engine import Resumed, SceneEngine, check_run
 from .lost import lost_spheres
-from .plan import ScenePlan, plan
+from .plan import NOT_REACHED, ScenePlan, plan
 from .timestep import leading_impact
-from .warnings import planned_warnings
+from .warnings import measured_warnings, planned_warnings
 
 Progress = Callable[[int, int], None]  # (step, of so many)
 
@@ -156,14 +156,17 @@ def _reused(work: _Work, folder: Path, fresh: bool) -> SceneOutcome | None:
     if old is None or old.attributes.get("inputs") != work.inputs:
         return None
     p = _as_run(work.plan, old.tables)
-    return SceneOutcome(p, folder, old, 0.0, reused=True, warnings=[*work.notes, *lost_spheres(p, old.tables)])
+    warnings = [*work.notes, *measured_warnings(old.tables), *lost_spheres(p, old.tables)]
+    return SceneOutcome(p, folder, old, 0.0, reused=True, warnings=warnings)
 
 
 def _as_run(p: ScenePlan, tables: dict[str, pd.DataFrame]) -> ScenePlan:
     """The plan with the ends of phases as they came."""
     if not p.ends_early:
         return p
-    return p.ended(dict(zip(tables["phases"]["phase"], tables["phases"]["end"].astype(int), strict=True)))
+    phases = tables["phases"]
+    not_reached = phases["phase"][phases["until"] == NOT_REACHED]
+    return p.ended(dict(zip(phases["phase"], phases["end"].astype(int), strict=True)), {*not_reached})
 
 
 def _anew(work: _Work, place: Results) -> SceneOutcome:
@@ -224,7 +227,12 @@ def _finish(
         kept,
         seconds,
         resumed_from=went_on.step if went_on else None,
-        warnings=[*work.notes, *lost_spheres(p, tables), *_left_out(folder, went_on.lost if went_on else [])],
+        warnings=[
+            *work.notes,
+            *measured_warnings(tables),
+            *lost_spheres(p, tables),
+            *_left_out(folder, went_on.lost if went_on else []),
+        ],
     )
 
 
@@ -236,5 +244,5 @@ def _left_out(folder: Path, lost: list[int]) -> list[str]:
 
 
 def _warnings(case: SceneCase) -> list[str]:
-    """Doubtful values, and where the scene leaves the domain of theory: impacts on the walls at its highest speed."""
+    """Doubtful values, and where the law leaves its own domain: impacts on the walls at the highest speed."""
     return [*case_warnings(case), *predict(leading_impact(case)).caveats]

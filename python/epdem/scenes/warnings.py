@@ -1,12 +1,15 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""What a planned scene probably does not mean: sentences for warnings."""
+"""What a scene probably does not mean, before its run and after it: sentences for warnings."""
 
 import numpy as np
+import pandas as pd
 
 from ..errors import CaseError
+from ..theory import validity
 from . import shares
 from .boundary_crossings import crosses, depths
-from .plan import ScenePlan
+from .columns import STRAINS
+from .plan import NOT_REACHED, ScenePlan
 from .presets import Preset
 from .start import overlaps
 from .timestep import stable_step
@@ -20,6 +23,42 @@ OVERLAP = 0.05  # of the smaller radius; a bed of an earlier run has less
 def planned_warnings(p: ScenePlan) -> list[str]:
     """A sentence for each. Raises CaseError for a sphere whose centre lies in a wall."""
     return shares.warnings(p.case, p.insertions) + _time_steps(p) + _phases(p) + _overlaps(p) + _walls(p)
+
+
+def measured_warnings(tables: dict[str, pd.DataFrame]) -> list[str]:
+    """A sentence for contacts beyond small strain, and for each phase whose `until` was not reached."""
+    return _finite_strain(tables) + _not_reached(tables)
+
+
+def _finite_strain(tables: dict[str, pd.DataFrame]) -> list[str]:
+    """By the largest a/R* of the rows; with the share of the contacts above the limit where a frame has any."""
+    largest = float(tables["rows"][STRAINS[0]].iloc[-1])
+    limit = max((limit for limit in validity.FINITE_STRAIN if largest > limit), default=0.0)
+    share = _share_above(tables, limit) if limit and "contacts" in tables else 0.0
+    return validity.finite_strain(largest, f" in up to {share:.3g} % of the contacts of a frame" if share else "")
+
+
+def _share_above(tables: dict[str, pd.DataFrame], limit: float) -> float:
+    """Largest share of the contacts of a frame whose largest a/R* is above the limit [%]."""
+    contacts = tables["contacts"]
+    if contacts.empty:
+        return 0.0
+    radius = tables["particles"].groupby("id")["radius"].first()
+    first, second = radius.reindex(contacts["i"]).to_numpy(), radius.reindex(contacts["j"]).fillna(np.inf).to_numpy()
+    R_star = 1.0 / (1.0 / first + 1.0 / second)
+    elastic = np.sqrt(R_star * contacts["delta_max"].clip(lower=0.0))  # Hertz, where there is no dent
+    strain = np.maximum(contacts["dent_radius"], elastic) / R_star
+    return float(100.0 * (strain > limit).groupby(contacts["step"]).mean().max())
+
+
+def _not_reached(tables: dict[str, pd.DataFrame]) -> list[str]:
+    """Phases that ended by their duration although a condition should end them."""
+    phases = tables.get("phases", pd.DataFrame(columns=["until"]))
+    return [
+        f"scene.phase.{phase['phase']}.until was not reached: the phase ended by its duration, at "
+        f"{phase['end_time']:.4g} s; give a longer duration, or another condition"
+        for phase in phases[phases["until"] == NOT_REACHED].to_dict("records")
+    ]
 
 
 def _time_steps(p: ScenePlan) -> list[str]:

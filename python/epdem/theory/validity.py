@@ -10,38 +10,36 @@ from . import adhesion
 from .backbone import Backbone
 from .checks import Array, Real, number
 from .jkr import JKR
-from .restitution import impact
 
 SMALL_DEFORMATION = 0.3  # a_max/R* above which results are flagged everywhere
-# a_max/R* from which finite-element impacts leave the -1/4 law, whatever Y is, and by how much e_n is then too high
-# (finite-strain branch of Wu et al. 2003)
-FINITE_STRAIN = {0.2: "0 to 6 % too high, growing", SMALL_DEFORMATION: "13 to 23 % too high, growing"}
+# a/R* from which finite-element impacts leave the -1/4 law, whatever Y is, and by how much e_n of theory exceeds theirs
+# there (finite-strain branch of Wu et al. 2003)
+FINITE_STRAIN = {0.2: "0 to 6 %", SMALL_DEFORMATION: "13 to 23 %"}
 
 
-def caveats(law: Backbone, *, m_star: float, speed: Real) -> list[str]:
-    """Sentences, none where all is well, on impacts at `speed` [m/s] > 0 of any shape with m_star [kg] > 0."""
-    speed = np.ravel(number("speed", speed))
-    strain = impact(law, m_star=m_star, speed=speed).strain_ratio
-    return [*law.caveats(m_star=m_star, speed=speed), *_finite_strain(strain, speed)]
+def caveats(law: Backbone | JKR, *, m_star: float, speed: Real) -> list[str]:
+    """Sentences, none where all is well, on the law itself at `speed` [m/s] > 0 of any shape with m_star [kg] > 0."""
+    if isinstance(law, JKR):
+        tabor = adhesion.warning(law)
+        return [tabor] if tabor else []
+    return law.caveats(m_star=m_star, speed=np.ravel(number("speed", speed)))
 
 
-def adhesive_caveats(law: JKR, *, m_star: float, speed: Real) -> list[str]:
-    """The same for a law with adhesion; Tabor's number below 3 is one of them."""
-    speed = np.ravel(number("speed", speed))
-    tabor = adhesion.warning(law)
+def finite_strain(largest: float, where: str = "") -> list[str]:
+    """A sentence for the highest limit that the largest a/R* of contacts exceeds; none below all limits.
+
+    `where`: which part of the results is above the limit, in words.
+    """
+    limit = max((limit for limit in FINITE_STRAIN if largest > limit), default=None)
+    if limit is None:
+        return []
     return [
-        *([tabor] if tabor else []),
-        *_finite_strain(adhesion.impact(law, m_star=m_star, speed=speed).strain_ratio, speed),
+        f"a/R* reaches {largest:.2f}, above {limit}{where}: finite strain; at {limit} e_n of theory is "
+        f"{FINITE_STRAIN[limit]} too high (Wu et al. 2003), beyond it more"
     ]
 
 
-def _finite_strain(strain: Array, speed: Array) -> list[str]:
-    sentences = []
-    for limit, deviation in FINITE_STRAIN.items():
-        beyond = speed[strain > limit]
-        if beyond.size:
-            sentences.append(
-                f"a_max/R* reaches {strain.max():.2f}, above {limit} from {beyond.min():.3g} m/s on: finite strain, "
-                f"e_n is {deviation}"
-            )
-    return sentences
+def finite_strain_of_impacts(strain: Array, speed: Array) -> list[str]:
+    """The same for impacts with the largest ratios `strain` = a_max/R* at `speed` [m/s], arrays of one shape."""
+    limit = max((limit for limit in FINITE_STRAIN if strain.max() > limit), default=np.inf)
+    return finite_strain(strain.max(), f" from {speed[strain > limit].min():.3g} m/s on") if limit < np.inf else []

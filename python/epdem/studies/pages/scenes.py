@@ -7,8 +7,9 @@ from ...base.folders import claim
 from ...engines.reasons import reasons
 from ...report.page import NAME, Facts, Lines, Page, Part, Picture, Rows, write
 from ...scenes.charts import bed, charts
-from ...scenes.columns import units
+from ...scenes.columns import STRAINS, units
 from ...scenes.run import SceneOutcome
+from ...theory.validity import SMALL_DEFORMATION
 from . import common
 
 DRAWN = {"bed", "key", "scene", "energy"}  # pictures of a folder that are charts of the page
@@ -66,6 +67,11 @@ def sentences(outcome: SceneOutcome) -> list[str]:
         f"At the end, at {last['time']:.4g} s, {int(last['particles'])} spheres are in the room and their kinetic "
         f"energy is {last['kinetic_energy']:.4g} J.",
     ]
+    radius, overlap = (last[name] for name in STRAINS)
+    said.append(
+        f"The contacts reach a contact radius of {radius:.3g} R* and an overlap of {overlap:.3g} R*; small strain "
+        f"ends at a contact radius of {SMALL_DEFORMATION} R*."
+    )
     return [*said, f"These checks fail: {failed}." if failed else f"All {len(checks)} checks hold."]
 
 
@@ -74,7 +80,8 @@ def _facts(outcome: SceneOutcome) -> Facts:
     p = outcome.plan
     facts = {"kind": outcome.case.scene.kind, "law": p.model.law, "time step": f"{p.time_step:.6g} s"}
     facts |= {"steps": str(p.steps), "smallest radius": f"{p.smallest:.4g} m", "materials": ", ".join(p.types)}
-    return Facts("The scene", facts | {"phases": ", ".join(f"{x.name} up to step {x.end}" for x in p.phases)})
+    phases = [f"{x.name} up to step {x.end}" + f" (until {x.reached})" * bool(x.reached) for x in p.phases]
+    return Facts("The scene", facts | {"phases": ", ".join(phases)})
 
 
 def _decks(outcome: SceneOutcome) -> list[Lines]:

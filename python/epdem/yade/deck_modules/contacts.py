@@ -85,6 +85,7 @@ class Contacts:
         self.ratios, self.interval, self.tolerance = ratios, interval, tolerance
         self.key = (law, interval, tolerance, *sorted(ratios.items()))
         self.visits = 0  # of contacts, by Python
+        self.strain: list[float] | None = None  # largest contact radius and overlap over R* so far; None: not recorded
         self._laws: dict[tuple[float, float], Law] = {}
         self._age, self._every, self._lasts = 0, 1, 1
         self._runner: object = None
@@ -162,6 +163,17 @@ class Contacts:
                 self._move(contact, contact.geom.penetrationDepth)
         if self._flat:
             self._follow()
+        if self.strain and self._contacts:
+            self._record(self.strain)
+
+    def _record(self, strain: list[float]) -> None:
+        """Keep the largest contact radius and overlap over R*, after the contacts that yield in this step have moved.
+
+        An elastic contact has the radius of Hertz; one that has yielded has a larger one at the same overlap.
+        """
+        u = np.fromiter(map(_depth, self._geometries), float, len(self._contacts)) / self._R_star
+        strain[1] = max(strain[1], float(u.max()))
+        strain[0] = max(strain[0], strain[1] ** 0.5)
 
     def _begin(self, runner: object) -> None:
         """Another scene than in the last visit: only what YADE saves counts."""
@@ -220,6 +232,8 @@ class Contacts:
     def _list(self) -> None:
         self._interactions = [c.interaction for c in self._contacts]
         self._births = sum(c.born for c in self._contacts)  # YADE sets it to -1 where a contact ends
+        self._geometries = [c.geom for c in self._contacts]
+        self._R_star = np.array([c.R_star for c in self._contacts])
 
     def _sort(self) -> None:
         """The contacts by the way they are looked at: by YADE's flag, or (flattened ones) by their overlap."""
@@ -263,6 +277,8 @@ class Contacts:
             self._start(contact)
         self._contacts.append(contact)
         self._interactions.append(interaction)
+        self._geometries.append(contact.geom)
+        self._R_star = np.append(self._R_star, contact.R_star)
         self._births += contact.born
         self._add(contact)
 
@@ -286,6 +302,9 @@ class Contacts:
 
     def _correct(self, contact: Contact, force: float, computed: float) -> None:
         self.visits += 1
+        if self.strain and contact.delta_max > 0.0:
+            self.strain[0] = max(self.strain[0], contact.peak[1] / contact.R_star)
+            self.strain[1] = max(self.strain[1], contact.delta_max / contact.R_star)
         if abs(force - computed) > self.tolerance * force:
             contact.correct(force, force - computed)
 

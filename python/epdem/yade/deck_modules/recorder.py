@@ -12,6 +12,7 @@ from .contact import Contact
 from .contacts import Contacts
 
 KINDS = ("force", "torque")  # of loads
+STRAINS = ("largest_radius_ratio", "largest_overlap_ratio")  # contact radius and overlap over R*, so far
 
 
 class Remembering(Contacts):
@@ -70,9 +71,9 @@ class Recorder:
         self.names = ["wall_power"] * bool(moving) + [f"{kind}_{axis}" for kind in kinds for axis in "xyz"]
         self._sums = np.zeros(len(self.names))
         self._sum, self._samples = 0.0, 0
-        print(
-            "Step particles kinetic_energy" + "".join(f" {name}" for name in ([load[0]] if load else []) + self.names)
-        )
+        self.strain = contacts.strain = [0.0, 0.0]
+        names = [*STRAINS, *([load[0]] if load else []), *self.names]
+        print("Step particles kinetic_energy" + "".join(f" {name}" for name in names))
 
     def record(self) -> None:
         """Between forces and motion: all that is due at this step."""
@@ -114,11 +115,11 @@ class Recorder:
         return np.array([tuple(s.vel) for s in self.states]) + self.free * gain
 
     def row(self) -> None:
-        """Print step, spheres in the room, kinetic energy of their motion [J], mean load [N]."""
+        """Print step, spheres in the room, kinetic energy of their motion [J], largest strain so far, mean load [N]."""
         x, v = self.positions()[:, 3 - len(self.low) :], self.velocities()
         inside = int(((x > self.low) & (x < self.high)).all(axis=1).sum())
         energy = float(0.5 * self.mass @ (v * v).sum(axis=1))
-        line = f" {O.iter} {inside} {energy:.10g}"
+        line = f" {O.iter} {inside} {energy:.10g} {self.strain[0]:.10g} {self.strain[1]:.10g}"
         if self.load:
             line += f" {self._sum / self._samples:.10g}"
         line += "".join(f" {x / self._samples:.10g}" for x in self._sums)
