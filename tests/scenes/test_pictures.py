@@ -118,12 +118,12 @@ def test_the_window_of_pyvista_shows_walls_and_spheres(monkeypatch):
     assert spheres.volume == pytest.approx(p.count * 14.137e-9, rel=0.06)
 
 
-def test_the_time_of_the_bed_counts_the_steps_of_each_phase():
+def test_the_time_of_the_bed_counts_the_steps_of_each_phase(tmp_path):
     """1000 steps of 2e-5 s and 1000 of 1e-5 s."""
     phases = [{"name": "fall", "duration": "20 ms"}, {"name": "rest", "duration": "10 ms", "time_step": "1e-5 s"}]
     p = plan(parse(parts(phase=phases)))
     frame = pd.DataFrame(
         {"step": [p.steps], "x": 0.0, "y": 0.0, "z": 1e-3, "radius": 1e-3, "vx": 0.0, "vy": 0.0, "vz": 0.0}
     )
-    (picture,) = bed(SimpleNamespace(plan=p, results=SimpleNamespace(tables={"particles": frame})))
-    assert p.steps == 2000 and "The bed at 0.03 s" in picture.alt
+    (picture,) = bed(SimpleNamespace(plan=p, folder=tmp_path, results=SimpleNamespace(tables={"particles": frame})))
+    assert p.steps == 2000 and "at 0.03 s;" in picture.alt
