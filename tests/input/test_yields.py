@@ -14,7 +14,7 @@ from epdem.impacts.report import yielding
 from epdem.laws.library import laws
 
 STEEL = Path(__file__).parents[2] / "cases/steel_wall.toml"
-STRENGTHS = {name: law.strength.name for name, law in laws().items() if law.strength and not law.adheres}
+STRENGTHS = {name: law.strength for name, law in laws().items() if law.strength and not law.adheres}
 
 
 def said(law, stresses, absolute=None, **tables):
