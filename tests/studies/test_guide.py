@@ -87,25 +87,6 @@ def test_programs_files_and_commands_of_blocks_that_run_elsewhere_exist():
     assert seen >= 15
 
 
-def test_every_figure_is_shown_with_words_and_with_its_command_below():
-    spec = importlib.util.spec_from_file_location("make_docs", ROOT / "docs/make.py")
-    make = importlib.util.module_from_spec(spec)
-    spec.loader.exec_module(make)
-    shown = set()
-    for path in PAGES:
-        for alt, file, below in re.findall(r"!\[([^\]]*)\]\(([^)]+)\)\n\n(.*?)\n\n", path.read_text() + "\n\n", re.S):
-            name = file.rpartition("/")[2]
-            command = make.FIGURES[name][0].partition(" -o ")[0]
-            assert len(alt) > 20 and f"`{command}`" in below, f"{path.name}: say below {name}: `{command}`"
-            assert (path.parent / file).exists()
-            shown.add(name)
-    assert shown == set(make.FIGURES) == {p.name for p in (ROOT / "docs/figures").iterdir()}
-    for command in [*make.PAGES.values(), *(command for command, _ in make.FIGURES.values())]:
-        program, word, *more = command.split()
-        word = f"verify {more[0]}" if word == "verify" else word
-        assert word in guide.names() if program == "epdem" else (ROOT / word).exists(), command
-
-
 @pytest.mark.liggghts
 def test_every_block_of_the_tour_runs(tmp_path):
     for page in ("tutorial", "choose", "results", "faq"):
@@ -184,12 +165,6 @@ def test_lines_of_decks_run_in_the_deck_of_the_page_on_liggghts(tmp_path):
         words = [str(sys.executable).replace("python", "epdem-liggghts"), "-in", "in.deck", "-log", "none"]
         done = subprocess.run(words, cwd=tmp_path, capture_output=True, text=True)
         assert done.returncode == 0 and "restitution 0.9" in done.stdout, f"{name}\n{done.stdout[-600:]}"
-
-
-def test_every_page_is_in_the_tour():
-    nav = (ROOT / "docs/mkdocs.yml").read_text()
-    for path in (ROOT / "docs").glob("*.md"):
-        assert path.name in nav, f"docs/mkdocs.yml does not have {path.name}"
 
 
 def test_the_reference_names_every_command_and_what_the_package_offers():
