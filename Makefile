@@ -76,7 +76,7 @@ wheel: setup
 deb: setup
 	@scripts/deb
 
-# TREES="/path/to/folder /path/to/lmp_auto ...": checkouts of LIGGGHTS, executables that were built after `epdem header`
+# TREES="/path/to/folder /path/to/lmp_auto ...": checkouts of LIGGGHTS, executables that were built after `epdem export liggghts`
 trees: setup
 	@.venv/bin/python scripts/trees $(TREES)
 

@@ -16,8 +16,8 @@ from epdem.verification import figures
 CASES = Path(__file__).parents[2] / "cases"
 HIDDEN = "points"  # what batch scripts call; its tests are those of the cluster
 TOP = typer.main.get_command(main.app).commands
-COMMANDS = {name: c for name, c in TOP.items() if name not in (HIDDEN, "verify")}
-COMMANDS |= {f"verify {name}": c for name, c in TOP["verify"].commands.items()}
+COMMANDS = {name: c for name, c in TOP.items() if name not in (HIDDEN, "export", "verify")}
+COMMANDS |= {f"{group} {name}": c for group in ("export", "verify") for name, c in TOP[group].commands.items()}
 
 
 @dataclass(frozen=True)

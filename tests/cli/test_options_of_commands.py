@@ -48,6 +48,7 @@ HYPERCUBE = ("--latin-hypercube", "2")
 SWEEP = {"given": "numerics.error=1e-2", "points": "points.csv", "latin_hypercube": "3", "seed": "2", "jobs": "1"}
 SWEEP |= {"engine": "yade", "law": "cavity", "ranks": "2", "out": "there", "dry_run": None, "retry_failed": None}
 SWEEP |= {"executor": "slurm", "slurm": "partition=p", "write_script": "job.sh", "force": None}
+ONE_IMPACT = {"material": "brass", "radius": "2 mm", "speed": "1 m/s", "adhesion": "0.1 J/m^2"}
 KINDS = {  # words of a call without the option, and the value of every option
     "run impacts": (("run", "steel.toml"), RUN),
     "run a scene": (("run", "scene.toml"), RUN),
@@ -58,7 +59,7 @@ KINDS = {  # words of a call without the option, and the value of every option
         DECK | {"law": "johnson"},
     ),
     "deck of an own template": (("deck", "own.j2", "-o", "d", "--case", "steel.toml"), DECK),
-    "predict impacts": (("predict", "steel.toml"), {"law": "cavity"}),
+    "predict impacts": (("predict", "steel.toml"), {"law": "cavity", "error": "1e-2"} | ONE_IMPACT),
     "crosscheck impacts": (
         ("verify crosscheck", "steel.toml"),
         {"engine": "embedded", "law": "cavity", "out": "there", "fresh": None, "force": None},
@@ -67,9 +68,8 @@ KINDS = {  # words of a call without the option, and the value of every option
         ("verify motion", "steel.toml"),
         {"file": "other.toml", "engine": "yade", "law": "cavity", "out": "there", "force": None},
     ),
-    "theory": (("theory",), {"material": "brass", "radius": "2 mm", "speed": "1 m/s", "adhesion": "0.1 J/m^2"}),
+    "one impact": (("predict",), {"law": "cavity", "error": "1e-2"} | ONE_IMPACT),
     "figures": (("verify figures",), {"pictures": "svg", "out": "there", "force": None}),
-    "timestep of impacts": (("timestep", "steel.toml"), {"error": "1e-2", "law": "hertz"}),
     "cost of impacts": (
         ("verify cost", "steel.toml"),
         {"engine": "embedded", "law": "cavity", "repetitions": "2", "bulk": None, "pictures": "svg", "out": "there"}
@@ -93,7 +93,7 @@ KINDS = {  # words of a call without the option, and the value of every option
     "doctor": (("doctor",), {}),
     "cite for impacts": (("cite", "steel.toml"), {"engine": "yade", "law": "hertz", "bibtex": None}),
     "cite for a scene": (("cite", "scene.toml"), {"engine": "yade", "law": "hertz", "bibtex": None}),
-    "header": (("header", "-o", "."), {"out": "there", "check": "tree"}),
+    "export": (("export liggghts", "-o", "."), {"out": "there", "check": "tree"}),
     "sweep of impacts": (("sweep", "steel.toml", "--set", "impact.body.radius=1 mm..2 mm:2"), SWEEP),
     "sweep of a scene": (("sweep", "scene.toml", "--set", "scene.gravity=9.81 m/s^2,1.62 m/s^2"), SWEEP),
     "latin hypercube": (("sweep", "steel.toml", "--set", "impact.body.radius=1 mm..2 mm", *HYPERCUBE), SWEEP),
@@ -111,7 +111,7 @@ OTHERS = [
     "runs/steel_wall/cost/cost.csv",
     "runs/validate/validate.csv",
 ]
-IMPACTS_ONLY = ("predict", "timestep", "verify cost", "verify crosscheck", "verify motion", "calibrate")
+IMPACTS_ONLY = ("predict", "verify cost", "verify crosscheck", "verify motion", "calibrate")
 
 
 def options(command: str) -> dict[str, str]:

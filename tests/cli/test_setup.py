@@ -73,7 +73,7 @@ def test_another_release_is_named_before_anything_is_installed(version, shown, m
     machine.tool("dpkg-query", DEBIAN.replace("12.4+deb12u12", version))
     done = machine.setup()
     assert done.returncode == 1 and f"not Debian 12 (base-files {shown})" in done.stderr
-    assert done.stderr.count("\n") == 1 and "'epdem header' (docs/trees.md)" in done.stderr
+    assert done.stderr.count("\n") == 1 and "'epdem export liggghts' (docs/trees.md)" in done.stderr
     assert not (machine.bin / "apt-get.called").exists()
 
 
@@ -81,7 +81,7 @@ def test_without_dpkg_it_says_that_this_is_not_debian(machine):
     (machine.bin / "dpkg-query").unlink()
     done = machine.setup()
     assert done.returncode == 1 and done.stderr.startswith("setup: this is not Debian, ")
-    assert done.stderr.count("\n") == 1 and "'epdem header' (docs/trees.md)" in done.stderr
+    assert done.stderr.count("\n") == 1 and "'epdem export liggghts' (docs/trees.md)" in done.stderr
 
 
 def test_a_sudo_that_refuses_is_named(machine):

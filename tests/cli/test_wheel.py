@@ -87,11 +87,11 @@ def test_the_wheel_holds_library_templates_cases_and_sources_for_trees(wheel):
 def test_the_commands_that_need_no_engine_run_from_the_wheel(python, wheel):
     case = wheel.parent / "installed" / "epdem" / "cases" / "steel_wall.toml"
     command = ("-m", "epdem.cli")
-    assert "johnson" in python(*command, "theory")
+    assert "johnson" in python(*command, "predict")
     assert "steel" in python(*command, "predict", case)
     assert "in.impact" in python(*command, "deck", case, "--out", "deck")
     assert "all within tolerance" in python(*command, "run", case, "--engine", "embedded", "--out", "runs")
-    assert "normal_model_ep.cpp" in python(*command, "header", "--out", ".")
+    assert "normal_model_ep.cpp" in python(*command, "export", "liggghts", "--out", ".")
     assert re.fullmatch(r"epdem \d+\.\d+\.\d+\n", python(*command, "--version"))
     for name, text in header.files().items():  # the installed sources are those of this checkout
         assert (wheel.parent / name).read_text() == text

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The commands that need no engine: `epdem theory`, `epdem verify figures`, and the materials file behind them."""
+"""The commands that need no engine: `epdem predict`, `epdem verify figures`, and the materials file behind them."""
 
 import json
 import tomllib
@@ -26,7 +26,7 @@ def run(*words):
 
 def test_theory_prints_restitution_peaks_and_first_yield_of_every_law():
     """The reference sphere at 5 m/s: e_n 0.676326 and 0.716768, cavity's peak force 10265.3 N, to 6 digits printed."""
-    text = run("theory", "--material", "steel", "--radius", "10 mm", "--speed", "5 m/s")
+    text = run("predict", "--material", "steel", "--radius", "10 mm", "--speed", "5 m/s")
     for law, e_n in (("hertz", "1"), ("thornton", "0.676326"), ("johnson", "1"), ("cavity", "0.716768")):
         row = next(line for line in text.splitlines() if f" {law} " in line)
         assert f" {e_n} " in row
@@ -36,7 +36,7 @@ def test_theory_prints_restitution_peaks_and_first_yield_of_every_law():
 
 
 def test_theory_in_json_is_the_same_in_si():
-    found = json.loads(run("theory", "--radius", "1 cm", "--speed", "500 cm/s", "--json"))
+    found = json.loads(run("predict", "--radius", "1 cm", "--speed", "500 cm/s", "--json"))
     assert (found["radius"], found["speed"]) == (0.01, 5.0)
     assert found["source"] == FILE["steel"]["source"]
     assert found["m_star"] == pytest.approx(0.032882003107573169, rel=1e-12)  # 4/3 pi R^3 7850 kg/m^3
@@ -45,7 +45,7 @@ def test_theory_in_json_is_the_same_in_si():
 
 
 def test_theory_refuses_a_material_that_is_not_there():
-    done = CliRunner().invoke(app, ["theory", "--material", "unobtainium"])
+    done = CliRunner().invoke(app, ["predict", "--material", "unobtainium"])
     assert done.exit_code != 0 and "brass" in str(done.exception)
 
 

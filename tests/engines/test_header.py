@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""`epdem header`: our models as sources for a LIGGGHTS tree do in it what the plugin does.
+"""`epdem export liggghts`: our models as sources for a LIGGGHTS tree do in it what the plugin does.
 
 Compiled here against the headers of Debian's package and linked with its library; EPDEM_TREES, paths of executables
 that were built from other trees with a ':' between them, brings those in (`make trees`).
@@ -206,7 +206,7 @@ def test_doctor_says_which_models_an_executable_has(built, monkeypatch):
         assert found.models == has and found.mpi and found.version == "LIGGGHTS-PUBLIC 3.8.0"
         assert not found.superquadrics  # Debian's library has none
     paths.launcher.cache_clear()
-    assert executable.advice(()) == "" and "epdem header --out" in executable.advice(("hertz",))
+    assert executable.advice(()) == "" and "epdem export liggghts --out" in executable.advice(("hertz",))
     assert "take LIGGGHTS-PUBLIC" in executable.advice(("jkr",), "LIGGGHTS-PFM 24.01")
 
 
@@ -259,7 +259,7 @@ def test_check_says_what_a_tree_lacks(tmp_path):
     for name, (text, _) in OLD.items():
         (tmp_path / name).write_text(text)
     lacks = header.check(tmp_path)
-    assert len(lacks) == 3 + len(OLD) and all("is not there; run 'epdem header --out" in s for s in lacks[:3])
+    assert len(lacks) == 3 + len(OLD) and all("is not there; run 'epdem export liggghts --out" in s for s in lacks[:3])
     for sentence, (name, (_, says)) in zip(lacks[3:], OLD.items(), strict=True):
         assert sentence.startswith(f"{tmp_path / name}{says}")
     header.write(tmp_path)

@@ -111,7 +111,7 @@ COMMANDS = [
     "explain",
     "soften",
     "calibrate",
-    "theory",
+    "export",
     "status",
     "sweep",
     "points",

@@ -169,7 +169,7 @@ def test_lines_of_decks_run_in_the_deck_of_the_page_on_liggghts(tmp_path):
 
 def test_the_reference_names_every_command_and_what_the_package_offers():
     commands, python = guide.commands(), guide.python()
-    for name in ("run", "verify crosscheck", "sweep", "verify rerun", "header"):
+    for name in ("run", "verify crosscheck", "sweep", "verify rerun", "export liggghts"):
         assert f"## epdem {name}\n" in commands
     assert "| `--full` |" in commands and "points" not in re.findall(r"## epdem (\w+)", commands)
     assert {f"## {name}" for name in epdem.__all__} <= set(python.splitlines())

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 from ..base.settings import DEFAULT_ENGINE
 from ..base.terminal import bar, console
 from ..errors import CaseError
-from .options import AsJson, CasePath, Laws, laws_or_own, say_files, warn
+from .options import say_files, warn
 
 if TYPE_CHECKING:  # slow to import
     from ..impacts.run import Outcome
@@ -79,18 +79,3 @@ def deck_impacts(case: Path, out: Path, *, engine: str, laws: list[str] | None, 
         x = experiment(read, laws[0] if laws else None)
         files = write_deck(x, find(engine), out, force=force)
     say_files(files, as_json)
-
-
-def predict(case: CasePath, law: Laws = None, as_json: AsJson = False) -> None:
-    """Print the prediction of theory for a case; no engine runs."""
-    from ..case.impact import load
-    from ..case.toml import named
-    from ..case.warnings import case_warnings
-    from ..impacts.experiment import experiment
-    from ..impacts.prediction import predict as predict_experiment
-    from . import show
-
-    with named(case):
-        read = load(case)
-        experiments = [experiment(read, name) for name in laws_or_own(law)]
-    show.predictions([(x, predict_experiment(x)) for x in experiments], case_warnings(read), as_json, console())

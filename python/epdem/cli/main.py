@@ -19,12 +19,12 @@ from ..base.terminal import console, status
 from ..errors import CaseError, EpdemError, Stopped
 from ..verification.cli import app as verify
 from . import calibrate as cli_calibrate
+from . import cite as cli_cite
 from . import impacts as cli_impacts
-from . import numerics as cli_numerics
+from . import predict as cli_predict
 from . import scenes as cli_scene
 from . import sweep as cli_sweep
-from . import theory as cli_theory
-from . import trees as cli_trees
+from .export import app as export
 from .options import AsJson, CasePath, Engines, Force, Formats, Laws, Out, formats, refuse
 
 ABOUT = """Elastic-plastic particle contact for LIGGGHTS and YADE, checked against theory.
@@ -34,7 +34,10 @@ Begin with: epdem run cases/steel_wall.toml -e embedded -e liggghts
 Exit codes: 0 all within tolerance, 1 a check failed, 2 bad input, 3 an engine failed, 130 stopped.
 """
 MOVED = {name: f"epdem verify {name}" for name in ("cost", "crosscheck", "figures", "motion", "rerun", "stability")} | {
-    "validate": "epdem verify data"
+    "validate": "epdem verify data",
+    "theory": "epdem predict",
+    "timestep": "epdem predict CASE --error",
+    "header": "epdem export liggghts",
 }
 UsageError: Any = typer.BadParameter.__base__  # typer gives its own name to its children only
 app = typer.Typer(
@@ -178,10 +181,8 @@ def doctor(as_json: AsJson = False) -> None:
 
 
 for command in (
-    cli_impacts.predict,
-    cli_theory.theory,
-    cli_theory.cite,
-    cli_numerics.timestep,
+    cli_predict.predict,
+    cli_cite.cite,
     cli_scene.explain,
     cli_scene.tune,
     cli_scene.view,
@@ -189,10 +190,10 @@ for command in (
     cli_calibrate.calibrate,
     cli_sweep.sweep,
     cli_sweep.status,
-    cli_trees.header,
 ):
     app.command()(command)
 app.command("points", hidden=True)(cli_sweep.points)  # what batch scripts call
+app.add_typer(export, name="export")
 app.add_typer(verify, name="verify")
 
 

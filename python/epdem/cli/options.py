@@ -22,7 +22,7 @@ Laws = Annotated[
     typer.Option(
         "--law",
         "-l",
-        help="law instead of the case's, with its default numbers ('epdem theory' lists them); repeat for more",
+        help="law instead of the case's, with its default numbers ('epdem predict' lists them); repeat for more",
     ),
 ]
 Out = Annotated[Path | None, typer.Option("--out", "-o", help="folder for the results (default: runs/<case>)")]

@@ -93,11 +93,10 @@ def advice(laws: tuple[str, ...], version: str = "") -> str:
     get = f"to get {', '.join('ep/' + law for law in laws)}: "
     if version.startswith("LIGGGHTS-PFM"):
         return (
-            f"{get}'epdem header --out SRC' has the laws without adhesion for LIGGGHTS-PFM; for the others take "
-            "LIGGGHTS-PUBLIC or LIGGGHTS-INL"
+            f"{get}'epdem export liggghts --out SRC' has the laws without adhesion for LIGGGHTS-PFM; for the others "
+            "take LIGGGHTS-PUBLIC or LIGGGHTS-INL"
         )
     plugin = paths.native("libepdem_liggghts.so")
     preload = f"LD_PRELOAD={plugin} with Debian's liggghts, " if plugin else ""
-    return (
-        f"{get}{preload}epdem-liggghts in place of it, or 'epdem header --out SRC' for a tree that you build yourself"
-    )
+    own = "'epdem export liggghts --out SRC' for a tree that you build yourself"
+    return f"{get}{preload}epdem-liggghts in place of it, or {own}"

@@ -40,7 +40,7 @@ _INCLUDE = re.compile(r'\s*#include "([^"]+)"')
 _OPTIONS = re.compile(r'set_source_files_properties\((\S+) PROPERTIES COMPILE_OPTIONS\s+"([^"]+)"\)')
 _TOP = """\
 // SPDX-License-Identifier: GPL-2.0-or-later
-// epdem {version}: elastic-plastic contact models for LIGGGHTS. Made by `epdem header`; changes here are lost.
+// epdem {version}: elastic-plastic contact models for LIGGGHTS. Made by `epdem export liggghts`; changes here are lost.
 // Copy every {name}* into the folder src of a LIGGGHTS tree and build as usual.
 #if __cplusplus < 201703L
 #error "epdem needs C++17: add -std=c++17 to the compiler flags of this tree, in place of an older standard"
@@ -111,9 +111,9 @@ def check(folder: Path) -> list[str]:
     found = []
     for name, text in files(pfm).items():
         if not (folder / name).is_file():
-            found.append(f"{folder / name} is not there; run 'epdem header --out {folder}'")
+            found.append(f"{folder / name} is not there; run 'epdem export liggghts --out {folder}'")
         elif _text(folder / name) != text:
-            found.append(f"{folder / name} is of another version of epdem; run 'epdem header --out {folder}'")
+            found.append(f"{folder / name} is of another version of epdem; run 'epdem export liggghts --out {folder}'")
     for name, pattern, advice in _OBSTACLES:
         text = _text(folder / name) if (folder / name).is_file() else ""
         if text and (match := re.search(pattern, text, re.MULTILINE)):

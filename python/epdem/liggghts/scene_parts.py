@@ -76,9 +76,11 @@ class DeckMesh:
 
 @dataclass(frozen=True)
 class DeckPhase:
-    """A phase and what begins with it; end_commands: at its end. resume_gates, resume_commands: all its gates and motions, for a run that
-    continues in it. upto: whether the step at its end is known before the run. vibrations: the walls whose power needs the
-    step at which their vibration begins, here."""
+    """A phase with the commands at its start and end, and those of a run that continues in it.
+
+    gates: planes that come with the phase. upto: whether the step at its end is known before the run. particles:
+    spheres that come with it. vibrations: walls whose power needs the step at which their vibration begins.
+    """
 
     name: str
     end: int

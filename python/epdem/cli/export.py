@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The command `epdem header`: our models for LIGGGHTS trees that users build themselves."""
+"""The commands `epdem export ENGINE`: sources of the contact models for engines that users build themselves."""
 
 import json
 from pathlib import Path
@@ -10,17 +10,25 @@ import typer
 from ..errors import CaseError
 from .options import AsJson
 
+app = typer.Typer(no_args_is_help=True, help="Write the contact models as sources for an engine that you build.")
 
-def header(
+
+@app.callback()
+def _export() -> None:
+    pass
+
+
+@app.command()
+def liggghts(
     out: Annotated[Path | None, typer.Option("--out", "-o", help="folder src of a LIGGGHTS tree")] = None,
     check: Annotated[Path | None, typer.Option("--check", help="folder src of a tree: print what it lacks")] = None,
     as_json: AsJson = False,
 ) -> None:
-    """Write our models as sources for a LIGGGHTS tree, or print what a tree lacks to be built with them."""
+    """Write the models as sources for a LIGGGHTS tree, or print what a tree lacks to be built with them."""
     from ..liggghts import header as sources
 
     if out is None and check is None:
-        raise CaseError("epdem header: name a folder by --out or --check")
+        raise CaseError("epdem export liggghts: name a folder by --out or --check")
     written = [str(f) for f in sources.write(out)] if out else []
     lacks = sources.check(check) if check else []
     print(json.dumps({"files": written, "lacks": lacks}) if as_json else "\n".join(written + lacks))

@@ -1,0 +1,135 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""The command `epdem predict`: what theory says of a case, of its time step, or of one impact for every law."""
+
+import json
+from pathlib import Path
+from typing import Annotated
+
+import typer
+
+from ..base.terminal import console, show_table, status
+from ..base.terminal import table as empty_table
+from .options import AsJson, Laws, laws_or_own, refuse
+
+
+def predict(
+    case: Annotated[
+        Path | None, typer.Argument(metavar="[CASE]", help="case file (TOML); without it one impact for every law")
+    ] = None,
+    law: Laws = None,
+    error: Annotated[
+        float | None,
+        typer.Option(min=1e-9, max=0.1, help="find the time step of the case for this largest relative error of e_n"),
+    ] = None,
+    material: Annotated[
+        str | None, typer.Option(help="one impact: material of sphere and wall, from the materials file [steel]")
+    ] = None,
+    radius: Annotated[str | None, typer.Option(help='one impact: radius of the sphere ["10 mm"]')] = None,
+    speed: Annotated[str | None, typer.Option(help='one impact: its speed ["5 m/s"]')] = None,
+    adhesion: Annotated[
+        str | None, typer.Option("--work-of-adhesion", help='one impact: as "0.1 J/m^2", the laws with adhesion, too')
+    ] = None,
+    as_json: AsJson = False,
+) -> None:
+    """Print the prediction of theory for a case; no engine runs.
+
+    With --error print the time step for a target error. Without a case print one impact on a wall for every law.
+    """
+    if case is None:
+        refuse("epdem predict", "it belongs to a case", law=law, error=error)
+        _one_impact(material or "steel", radius or "10 mm", speed or "5 m/s", adhesion, as_json)
+        return
+    own = "the case has its own numbers"
+    refuse(case, own, material=material, radius=radius, speed=speed, work_of_adhesion=adhesion)
+    if error is None:
+        _case(case, law, as_json)
+    else:
+        _time_step(case, law, error, as_json)
+
+
+def _case(case: Path, law: list[str] | None, as_json: bool) -> None:
+    """The impacts of a case."""
+    from ..case.impact import load
+    from ..case.toml import named
+    from ..case.warnings import case_warnings
+    from ..impacts.experiment import experiment
+    from ..impacts.prediction import predict as predict_experiment
+    from . import show
+
+    with named(case):
+        read = load(case)
+        experiments = [experiment(read, name) for name in laws_or_own(law)]
+    show.predictions([(x, predict_experiment(x)) for x in experiments], case_warnings(read), as_json, console())
+
+
+def _time_step(case: Path, law: list[str] | None, error: float, as_json: bool) -> None:
+    """The time step of a case for a target error, found with the embedded engine."""
+    from ..case.impact import load
+    from ..case.toml import named
+    from ..impacts.experiment import experiment
+    from ..impacts.prediction import predict as predict_experiment
+    from ..impacts.timestep import search
+
+    searches = []
+    with status() as progress, named(case):
+        for name in laws_or_own(law):
+            x = experiment(load(case), name)
+            progress(f"{x.name}, {x.law.name}")
+            searches.append((x, search(x, predict_experiment(x), error)))
+    if as_json:
+        documents = [
+            {
+                "case": x.name,
+                "law": x.law.name,
+                "target": f.target,
+                "time_step": f.time_step,
+                "error": f.error,
+                "rms": f.rms,
+                "steps_in_contact": f.steps_in_contact,
+                "reference": vars(f.reference),
+                "share": f.shares(),
+            }
+            for x, f in searches
+        ]
+        print(json.dumps(documents[0] if len(documents) == 1 else documents, indent=1))
+        return
+    for x, f in searches:
+        share = f.shares()
+        print(
+            f"{x.name}, law {x.law.name}: timestep {f.time_step:.4g} s for e_n within {f.target:g} "
+            f"(largest {f.error:.2g}, rms {f.rms:.2g}; {f.steps_in_contact:.0f} steps in the shortest contact)\n"
+            f"  {share['stability']:.2%} of the stability limit, {share['rayleigh']:.2%} of the Rayleigh time, "
+            f"{share['hertz']:.2%} of the elastic contact time"
+        )
+
+
+def _one_impact(material: str, radius: str, speed: str, adhesion: str | None, as_json: bool) -> None:
+    """One impact on a wall of the same material for every law."""
+    from dataclasses import asdict
+
+    from ..case.units import read_number
+    from ..impacts.report import plain
+    from ..studies.one_impact import one_impact
+
+    x = one_impact(
+        material,
+        radius=read_number("--radius", radius, "m"),
+        speed=read_number("--speed", speed, "m/s"),
+        adhesion=None if adhesion is None else read_number("--work-of-adhesion", adhesion, "J/m^2"),
+    )
+    if as_json:
+        rows = {name: {k: plain(v) for k, v in row.items()} for name, row in x.laws.items()}
+        print(json.dumps({k: v for k, v in asdict(x).items() if k not in ("first", "plastic")} | {"laws": rows}))
+        return
+    title = f"{material} sphere, R = {x.radius:g} m, on {material} at {x.speed:g} m/s (SI units)"
+    table = empty_table(title, ("law", *x.laws["hertz"]), left=("law",))
+    for name, row in x.laws.items():
+        table.add_row(name, *(f"{value:.6g}" for value in row.values()))
+    show_table(console(), table)
+    console().print(
+        f"E* = {x.E_star:.5g} Pa, m* = {x.m_star:.5g} kg; first yield at p_0 = {x.first_yield_p0_over_Y:.4f} Y, depth "
+        f"{x.first_yield_depth_over_a:.3f} a; v_y0 = {x.v_y0:.4g} m/s ({x.first:.2f} Y), "
+        f"v_y = {x.v_y:.4g} m/s ({x.plastic:g} Y)",
+        soft_wrap=True,
+    )
+    console().print(f"source: {x.source}", soft_wrap=True)
