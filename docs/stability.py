@@ -158,7 +158,8 @@ def practice(verdicts: pd.DataFrame) -> str:
     return (
         f"up to 1 % of the limit the error of e_n is at most {ran['e_n_error'].max():.1g} in every case that ran; "
         f"from {ran['useless_at'].min():g} of the limit on it can exceed 10 %, and from {ran['breaks_at'].min():g} on "
-        "an impact can create more than 1 % of the energy. `epdem predict CASE --error E` finds the step for a target error."
+        "an impact can create more than 1 % of the energy. `epdem predict CASE --error E` finds the step for a target "
+        "error."
     )
 
 
