@@ -15,7 +15,7 @@ from epdem.engines import scene_engine
 from epdem.errors import EngineError
 from epdem.liggghts import scene_tables
 from epdem.scenes import checks, energy_balance
-from epdem.scenes.columns import UNITS
+from epdem.scenes.columns import STRAINS, UNITS
 
 
 @pytest.fixture(scope="module", params=RUNS)
@@ -151,7 +151,7 @@ def test_the_energy_balance_adds_up(stored):
 def test_every_column_with_a_unit_of_its_own_has_one(stored):
     p, tables = stored
     found = {c for table in [*tables.values(), energy_balance.energy_balance(p, tables)] for c in table}
-    assert found - set(UNITS) == {"step", "particles", "id", "type", "wall", "i", "j"} | {
+    assert found - set(UNITS) == {"step", "particles", "id", "type", "wall", "i", "j", *STRAINS} | {
         f"delta_max_{w.name}" for w in p.scene.planes if f"delta_max_{w.name}" in tables["particles"]
     }
 
