@@ -9,6 +9,7 @@ import pandas as pd
 import pytest
 from parts_cases import BED, parts
 from stored_runs import STORED, planned
+from test_start_and_paths import PLATE
 
 from epdem.case.scene import parse
 from epdem.engines import scene_engine
@@ -127,3 +128,16 @@ def test_the_time_of_the_bed_counts_the_steps_of_each_phase(tmp_path):
     )
     (picture,) = bed(SimpleNamespace(plan=p, folder=tmp_path, results=SimpleNamespace(tables={"particles": frame})))
     assert p.steps == 2000 and "at 0.03 s;" in picture.alt
+
+
+def test_a_wall_is_drawn_where_it_is_in_the_last_frame(tmp_path, monkeypatch):
+    """A plate sinks 2 mm in a phase of 20 ms; the frame at half of it shows 1 mm."""
+    shown = []
+    monkeypatch.setattr(pictures, "_draw_walls", lambda axis, p, walls, phase, front: shown.append(walls["plate"]))
+    move = {"wall": "plate", "kind": "linear", "velocity": ["0 m/s", "0 m/s", "-0.1 m/s"]}
+    phase = {"name": "sink", "duration": "20 ms", "move": [move]}
+    p = plan(parse(parts(wall=[PLATE], fill=[BED], phase=[phase])))
+    ball = {"id": 1, "type": 1, "radius": 2e-3, "mass": 1e-5, **dict.fromkeys(("x", "y", "z", "vx", "vy", "vz"), 0.0)}
+    pictures.bed(p, pd.DataFrame([{"step": 0} | ball, {"step": p.steps // 2} | ball]), tmp_path / "bed.png")
+    sunk = p.triangles["plate"] - shown[0]
+    assert sunk[..., 2] == pytest.approx(1e-3, rel=1e-3) and not sunk[..., :2].any()

@@ -17,7 +17,7 @@ from epdem.case.scene import parse
 from epdem.errors import CaseError, EngineError
 from epdem.scenes.plan import plan
 from epdem.scenes.start import overlaps
-from epdem.scenes.wall_paths import path
+from epdem.scenes.wall_paths import at_end, path
 from epdem.scenes.warnings import planned_warnings
 
 PLATE = {"name": "plate", "kind": "plate", "axis": "z", "center": ["0 mm", "0 mm", "5 mm"], "size": ["6 mm"] * 2}
@@ -190,3 +190,31 @@ def test_a_wall_that_its_force_drives_out_of_the_room_is_named(tmp_path):
     data = parts(wall=[FLOOR, PLATE], fill=[], body=[body("a", 5, 0, 1)], phase=[FALL | {"move": [press]}])
     with pytest.raises(EngineError, match=r"scene.wall.plate: the wall has left scene.room after step \d+; enlarge"):
         run(write_case(data, tmp_path), out=tmp_path / "out")
+
+
+TUBE = {"name": "tube", "kind": "cylinder", "diameter": "10 mm", "from": "10 mm", "to": "20 mm", "material": "steel"}
+UP = {"kind": "linear", "velocity": ["0 m/s", "0 m/s", "0.1 m/s"]}
+TURN = {"kind": "rotate", "axis": [1, 0, 0], "origin": ["0 mm", "0 mm", "15 mm"], "rate": "12.5 turn/s"}
+PRESS = {"kind": "press", "direction": [0, 0, -1], "force": "1 N", "highest_speed": "0.1 m/s"}
+
+
+@given(
+    both=st.sampled_from([(None, None), (UP, None), (None, UP), (UP, UP), (None, PRESS)]),
+    turns=st.sampled_from([(), (0,), (1,), (0, 1)]),
+)
+def test_walls_at_the_end_are_where_their_motions_take_them(both, turns):
+    """By hand: 2 mm up in each phase of 20 ms; a quarter turn in each, so z - 15 mm becomes -y or y."""
+    moves = [[] if m is None else [m | {"wall": "plate"}] for m in both]
+    for n in turns:
+        moves[n].append(TURN | {"wall": "tube"})
+    phases = [{"name": name, "duration": "20 ms", "move": m} for name, m in zip(("a", "b"), moves, strict=True)]
+    p = plan(parse(parts(wall=[FLOOR, PLATE, TUBE], fill=[BED | {"count": 3}], phase=phases)))
+    found = at_end([(phase.moves, 0.02) for phase in p.phases], p.triangles)
+    assert ("plate" in found) == (PRESS not in both)
+    if PRESS not in both:
+        way = 2e-3 * both.count(UP)
+        assert found["plate"] == pytest.approx(p.triangles["plate"] + np.array([0, 0, way]), abs=1e-12)
+    x, y, z = np.moveaxis(p.triangles["tube"], -1, 0) - np.array([0, 0, 0.015]).reshape(3, 1, 1)
+    for _ in turns:
+        y, z = -z, y
+    assert np.moveaxis(found["tube"], -1, 0) == pytest.approx(np.stack([x, y, z + 0.015]), abs=1e-12)

@@ -64,17 +64,13 @@ def svg(chart: Chart) -> str:
     Black and PALETTE's dark colours are CSS variables of the page; `data-axes` holds for each panel its place in the
     drawing, as fractions from the lower left corner, and its axes: label, limits, whether logarithmic.
     """
-    import matplotlib
-
-    matplotlib.use("Agg")
-    from matplotlib import pyplot as plt
+    from matplotlib import rc_context
 
     text = io.StringIO()
-    with plt.rc_context(STYLE | {"svg.fonttype": "none"}):  # type: ignore[arg-type]
+    with rc_context(STYLE | {"svg.fonttype": "none"}):  # type: ignore[arg-type]
         figure = draw(chart, title=False)
         figure.savefig(text, format="svg", transparent=True, metadata={"Date": None})
         panels = [_place(axes, panel) for axes, panel in zip(figure.axes, chart.panels, strict=False)]
-        plt.close(figure)
     drawn = text.getvalue()
     drawn = re.sub(
         r"<metadata>.*?</metadata>|<style.*?</style>|<!--.*?-->", "", drawn[drawn.index("<svg") :], flags=re.S
@@ -110,6 +106,9 @@ def draw(chart: Chart, *, title: bool = True) -> "Figure":
         )
         if alone:
             axes.set_title(str(panel.y), loc="left", fontsize="medium")
+            for name, axis in (("x", panel.x), ("y", panel.y)):
+                if not axis.log:
+                    axes.locator_params(axis=name, nbins=4)
     for axes in grid.flat[n:]:
         axes.remove()
     known = {
@@ -126,21 +125,21 @@ def draw(chart: Chart, *, title: bool = True) -> "Figure":
 
 def _grid(chart: Chart) -> tuple["Figure", np.ndarray]:
     """A figure and its axes, shape (rows, columns)."""
-    from matplotlib import pyplot as plt
+    from matplotlib.figure import Figure
 
     n, shares = len(chart.panels), [panel.share for panel in chart.panels]
-    shape: dict[str, Any] = {"layout": "constrained", "squeeze": False}
     if chart.beside:
-        return plt.subplots(1, n, sharey=True, figsize=(5 * n, 4.5), **shape)
+        figure = Figure(figsize=(5 * n, 4.5), layout="constrained")
+        return figure, figure.subplots(1, n, sharey=True, squeeze=False)
     if chart.columns > 1:
         rows = math.ceil(n / chart.columns)
-        size = (SMALL[0] * chart.columns, SMALL[1] * rows)
-        figure, grid = plt.subplots(rows, chart.columns, sharex=True, figsize=size, **shape)
+        figure = Figure(figsize=(SMALL[0] * chart.columns, SMALL[1] * rows), layout="constrained")
+        grid = figure.subplots(rows, chart.columns, sharex=True, squeeze=False)
         for axes in grid.flat[n - chart.columns : n]:  # the last one of each column
             axes.tick_params(labelbottom=True)
         return figure, grid
-    height = max(HEIGHT, HEIGHT * sum(shares) / max(shares))
-    return plt.subplots(n, 1, sharex=True, figsize=(WIDTH, height), height_ratios=shares, **shape)
+    figure = Figure(figsize=(WIDTH, max(HEIGHT, HEIGHT * sum(shares) / max(shares))), layout="constrained")
+    return figure, figure.subplots(n, 1, sharex=True, height_ratios=shares, squeeze=False)
 
 
 def _style(series: Series) -> dict[str, Any]:

@@ -45,7 +45,7 @@ def _against_time(
     alt = f"Against time: {', '.join(panel.y.label for panel in panels)}."
     if constant:
         alt += f" Constant: {', '.join(f'{label} = {value:.5g}' for label, value in constant.items())}."
-    columns = COLUMNS if len(panels) > 2 else 1
+    columns = min(COLUMNS, len(panels))
     return [Chart(name, p.case.case.title, alt, panels, columns=columns, heading=heading)]
 
 

@@ -99,5 +99,4 @@ def key(p: ScenePlan, tables: Tables) -> list[Chart]:
     """The key figure of a scene, if there is one."""
     found = panels(p, tables)
     said = plain(" and ".join(f"{panel.y.label} against {panel.x.label}" for panel in found))
-    said = said[:1].upper() + said[1:]
-    return [Chart("key", p.case.case.title, f"{said}.", found, heading=said)] if found else []
+    return [Chart("key", p.case.case.title, f"{said}.", found, heading=f"Key figure: {said}")] if found else []

@@ -11,6 +11,7 @@ import numpy as np
 import pandas as pd
 
 from ..base.files import atomic
+from ..case.motions import Move
 from ..case.walls import Room
 from ..errors import CaseError
 from . import placement
@@ -18,11 +19,14 @@ from .columns import PARTICLES, SPINS, last_frame, units
 from .energy_balance import kinetic
 from .meshes import FloatArray, box, tube
 from .plan import Phase, ScenePlan
+from .wall_paths import at_end
 
 AZIMUTH, ELEVATION = np.deg2rad(-60.0), np.deg2rad(18.0)  # from where a picture is seen
 DPI = 200
 MOST_PLACED = 4000  # spheres that are placed for the picture of a scene before its run
 WIDE = 6.0  # inches
+LABELS = 0.7, 0.8  # room of labels and title beside and above the axes [inch]
+BAR = 1.0  # room of a colour bar [inch]
 
 
 def _axes() -> tuple[FloatArray, FloatArray]:
@@ -67,12 +71,12 @@ def _corners(limits: Sequence[float]) -> FloatArray:
     return np.array([*product(limits[0:2], limits[2:4], limits[4:6])])
 
 
-def _draw_walls(axis: Any, p: ScenePlan, phase: Phase, *, front: bool) -> None:
-    """The triangles of walls where they are at the start, planes of a phase as their outline in the room."""
+def _draw_walls(axis: Any, p: ScenePlan, walls: dict[str, FloatArray], phase: Phase, *, front: bool) -> None:
+    """The triangles of `walls`, shape (n, 3 corners, 3); planes of a phase as their outline in the room."""
     from matplotlib.collections import PolyCollection
 
     plane, _ = _axes()
-    for triangles in p.triangles.values():
+    for triangles in walls.values():
         outline = triangles @ plane.T
         face, edge = (0.3, 0.4, 0.6, 0.03 if front else 0.10), (0.3, 0.4, 0.6, 0.15)
         axis.add_collection(PolyCollection([*outline], facecolor=face, edgecolor=edge, lw=0.3))
@@ -103,8 +107,8 @@ def _draw_spheres(axis: Any, x: FloatArray, radius: FloatArray, **style: Any) ->
     return discs
 
 
-def _frame(title: str, corners: FloatArray) -> tuple[Any, Any]:
-    """A figure in which these places are seen, lengths in millimetres along its sides."""
+def _frame(title: str, corners: FloatArray, *, beside: float = 0.0) -> tuple[Any, Any]:
+    """A figure in which these places are seen, lengths in millimetres along its sides; room `beside` it [inch]."""
     from matplotlib.figure import Figure
     from matplotlib.ticker import FuncFormatter
 
@@ -113,7 +117,8 @@ def _frame(title: str, corners: FloatArray) -> tuple[Any, Any]:
     low, high = seen.min(axis=0), seen.max(axis=0)
     margin = 0.04 * (high - low).max()
     ratio = (high[1] - low[1] + 2 * margin) / (high[0] - low[0] + 2 * margin)
-    fig = Figure(figsize=(WIDE, float(np.clip(WIDE * ratio, 2.5, 11.0))), layout="constrained")
+    height = (WIDE - LABELS[0] - beside) * ratio + LABELS[1]
+    fig = Figure(figsize=(WIDE, float(np.clip(height, 2.5, 11.0))), layout="constrained")
     axis = fig.subplots()
     axis.set(xlim=(low[0] - margin, high[0] + margin), ylim=(low[1] - margin, high[1] + margin), aspect="equal")
     for side in (axis.xaxis, axis.yaxis):
@@ -129,17 +134,28 @@ def _save(fig: Any, path: Path) -> None:
 
 
 def bed(p: ScenePlan, spheres: pd.DataFrame, path: Path) -> None:
-    """Draw the last frame, coloured by the field `output.color`, into the PNG file `path`."""
+    """Draw walls and spheres of the last frame, coloured by the field `output.color`, into the PNG file `path`.
+
+    A wall that a force drives is left out: no table holds its position.
+    """
     last = last_frame(spheres)
     x, radius, field = last[["x", "y", "z"]].to_numpy(), last["radius"].to_numpy(), p.output.color
     around = np.concatenate([x - radius[:, None], x + radius[:, None]])
-    fig, axis = _frame(p.case.case.title, around)
-    _draw_walls(axis, p, p.phases[-1], front=False)
+    fig, axis = _frame(p.case.case.title, around, beside=BAR)
+    walls = at_end(_until(p, int(last["step"].iloc[0])), p.triangles)
+    _draw_walls(axis, p, walls, p.phases[-1], front=False)
     discs = _draw_spheres(axis, x, radius, array=colour(last, field), cmap="viridis")
-    _draw_walls(axis, p, p.phases[-1], front=True)
+    _draw_walls(axis, p, walls, p.phases[-1], front=True)
     unit = unit_of(last, field)
     fig.colorbar(discs, label=f"{field} [{unit}]" if unit else field, shrink=0.8)
     _save(fig, path)
+
+
+def _until(p: ScenePlan, step: int) -> list[tuple[dict[str, Move], float]]:
+    """The motions of each phase and how long [s] the phase has lasted at a step."""
+    table, now = p.phase_table, float(p.time_at(np.array([step]))[0])
+    lasted = (np.minimum(table["end_time"], now) - table["begin_time"]).clip(lower=0.0)
+    return [(phase.moves, float(seconds)) for phase, seconds in zip(p.phases, lasted, strict=True)]
 
 
 def before(p: ScenePlan, path: Path) -> int:
@@ -151,7 +167,7 @@ def before(p: ScenePlan, path: Path) -> int:
     fig, axis = _frame(p.case.case.title, _corners(p.box))
     if path.suffix[1:].lower() not in fig.canvas.get_supported_filetypes():
         raise CaseError(f"--out {path}: no picture has this ending; name it {path.stem}.png")
-    _draw_walls(axis, p, p.phases[0], front=False)
+    _draw_walls(axis, p, p.triangles, p.phases[0], front=False)
     for fill in p.insertions:
         _draw_region(axis, fill.region)
     table = _first(p)

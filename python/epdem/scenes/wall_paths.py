@@ -1,8 +1,10 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""How far walls move, and walls that leave the room."""
+"""How far walls move, where they are at the end, and walls that leave the room."""
 
 import math
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
+from itertools import takewhile
 
 import numpy as np
 
@@ -45,32 +47,54 @@ def path(move: LinearMove | RotateMove | VibrateMove, points: FloatArray, second
     return Path(np.min(extremes, axis=0), np.max(extremes, axis=0), turned)
 
 
+def paths(
+    phases: Iterable[tuple[Mapping[str, Move], float]], points: Mapping[str, FloatArray]
+) -> Iterator[tuple[int, str, Path]]:
+    """(number of the phase, wall, path) of every wall that moves in `phases`, each with its motions and duration [s].
+
+    A wall that a force drives is left out from then on. points: of each wall at the start, shape (n, 3) [m].
+    """
+    here = dict(points)
+    moving: dict[str, tuple[Move, FloatArray, float]] = {}  # motion, where and how long ago it began
+    for number, (moves, duration) in enumerate(phases):
+        moving = {name: begun for name, begun in moving.items() if moves.get(name) == begun[0]}
+        for name, move in moves.items():
+            if isinstance(move, PressMove) or name not in here:
+                here.pop(name, None)
+                continue
+            _, begin, seconds = moving.get(name, (move, here[name], 0.0))
+            moving[name] = (move, begin, seconds + duration)
+            way = path(move, begin, seconds + duration)
+            here[name] = way.end
+            yield number, name, way
+
+
+def at_end(
+    phases: Sequence[tuple[Mapping[str, Move], float]], triangles: dict[str, FloatArray]
+) -> dict[str, FloatArray]:
+    """The triangles of each wall, shape (n, 3 corners, 3), after `phases`; without walls that a force drives."""
+    pressed = {name for moves, _ in phases for name, move in moves.items() if isinstance(move, PressMove)}
+    found = {name: corners for name, corners in triangles.items() if name not in pressed}
+    for _, name, way in paths(phases, {name: corners.reshape(-1, 3) for name, corners in found.items()}):
+        found[name] = way.end.reshape(-1, 3, 3)
+    return found
+
+
 def refuse_leaving(scene: Parts, triangles: dict[str, FloatArray]) -> None:
     """Raise CaseError for a wall whose motion takes the centre of a triangle out of the room.
 
     Not looked at are walls that a force drives, and what comes with a phase that may end early or later.
     """
     room = scene.room.limits
-    here = {name: corners.mean(axis=1) for name, corners in triangles.items()}
-    moving: dict[str, tuple[Move, FloatArray, float]] = {}  # motion, where and how long ago it began
-    for phase in scene.phase:
-        if phase.condition:
-            return
-        moving = {name: begun for name, begun in moving.items() if phase.moves.get(name) == begun[0]}
-        for name, move in phase.moves.items():
-            if isinstance(move, PressMove) or name not in here:
-                here.pop(name, None)
-                continue
-            _, begin, seconds = moving.get(name, (move, here[name], 0.0))
-            moving[name] = (move, begin, seconds + phase.seconds)
-            way = path(move, begin, seconds + phase.seconds)
-            here[name] = way.end
-            for k, axis in enumerate("xyz"):
-                low, high = float(way.low[:, k].min()), float(way.high[:, k].max())
-                if low < room[2 * k] or high > room[2 * k + 1]:
-                    reached = high if high > room[2 * k + 1] else low
-                    raise CaseError(
-                        f"scene.phase.{phase.name}.move: wall {name} leaves scene.room, the centre of a triangle "
-                        f"reaches {axis} = {reached:.4g} m and the room is from {room[2 * k]:g} m to "
-                        f"{room[2 * k + 1]:g} m; shorten its way, or enlarge the room"
-                    )
+    phases = [*takewhile(lambda phase: not phase.condition, scene.phase)]
+    centers = {name: corners.mean(axis=1) for name, corners in triangles.items()}
+    for number, name, way in paths([(phase.moves, phase.seconds) for phase in phases], centers):
+        for k, axis in enumerate("xyz"):
+            low, high = float(way.low[:, k].min()), float(way.high[:, k].max())
+            if low < room[2 * k] or high > room[2 * k + 1]:
+                reached = high if high > room[2 * k + 1] else low
+                raise CaseError(
+                    f"scene.phase.{phases[number].name}.move: wall {name} leaves scene.room, the centre of a triangle "
+                    f"reaches {axis} = {reached:.4g} m and the room is from {room[2 * k]:g} m to "
+                    f"{room[2 * k + 1]:g} m; shorten its way, or enlarge the room"
+                )

@@ -74,9 +74,7 @@ def _by_key(result: SweepOutcome, units: dict[str, str]) -> list[Chart]:
         alt = f"Against {key}: {', '.join(shown)}." + (f" {len(left)} columns are in the table alone." if left else "")
         name = "sweep" if key == numeric[0] else f"sweep_{key}"
         charts += (
-            [Chart(name, f"Results against {key}", alt, panels, columns=COLUMNS if len(panels) > 2 else 1)]
-            if panels
-            else []
+            [Chart(name, f"Results against {key}", alt, panels, columns=min(COLUMNS, len(panels)))] if panels else []
         )
     return charts
 
