@@ -94,6 +94,8 @@ class Output(Frozen):
 
     @model_validator(mode="after")
     def _ledger_frames(self) -> Self:
+        if self.energy and not self.particles:
+            raise ValueError("energy: the energy balance is taken from the frames; give output.particles")
         if self.energy and self.contacts and self.contacts != self.particles:
             raise ValueError("the energy balance needs particles and contacts at the same steps; give the same number")
         return self

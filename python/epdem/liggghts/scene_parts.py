@@ -152,13 +152,13 @@ def surfaces(p: ScenePlan) -> tuple[DeckMesh, ...]:
         rotation, words = surface_rotation(mesh), ""
         style = "/stress" if force or name in p.loads or mesh.stress or mesh.wear else ""
         origin = _origin(p, name)
+        if rotation is not None:  # LIGGGHTS takes the words in this order only
+            axis, omega = " ".join(f"{x:g}" for x in rotation.axis), decks.number(rotation.rate)
+            words = f" surface_ang_vel origin {_words(rotation.origin)} axis {axis} omega {omega}"
         if style and any(origin):
-            words = f" reference_point {_words(origin)}"
+            words += f" reference_point {_words(origin)}"
         if mesh.wear:
             words += " wear finnie"
-        if rotation is not None:
-            axis, omega = " ".join(f"{x:g}" for x in rotation.axis), decks.number(rotation.rate)
-            words += f" surface_ang_vel origin {_words(rotation.origin)} axis {axis} omega {omega}"
         press = _press(p, name)
         if press is not None:
             style = "/stress/servo"

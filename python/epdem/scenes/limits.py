@@ -8,7 +8,7 @@ import numpy as np
 from ..case.motions import LinearMove, PressMove
 from ..case.parts import Parts
 from ..case.scene import SceneCase
-from ..case.walls import MeshWall
+from ..case.walls import ConeWall, CylinderWall, MeshWall
 from ..errors import CaseError
 from .meshes import FloatArray
 from .timestep import highest_speed
@@ -70,6 +70,11 @@ def refuse_combinations(case: SceneCase, s: Parts) -> None:
     pressed = {name for name, move in moves if isinstance(move, PressMove)}
     if both := {name for name, move in moves if name in pressed and not isinstance(move, PressMove)}:
         raise CaseError(f"scene.wall.{min(both)}: a wall that a force drives has no other motion; take a second wall")
+    turning = {w.name for w in s.wall if isinstance(w, CylinderWall | ConeWall) and w.angular_velocity}
+    if both := pressed & turning:
+        raise CaseError(
+            f"scene.wall.{min(both)}: a wall that a force drives has no angular_velocity; remove one of both"
+        )
     if case.output.restarts and any(not isinstance(move, LinearMove) for _, move in moves):
         raise CaseError("output.restarts: only walls with linear motions go on where they were; remove it")
     for w in s.wall:

@@ -139,8 +139,8 @@ def _flow(p: ScenePlan, m: Flow, spheres: pd.DataFrame, steps: np.ndarray) -> Fl
     chosen = _chosen(p, m, spheres)
     mass = chosen.groupby("id")["mass"].first()
     place = chosen.pivot_table(index="step", columns="id", values=axis).reindex(index=steps, columns=mass.index)
-    beyond = (sign * (place - m.at) > 0).to_numpy() & place.notna().to_numpy()
-    there, seen = place.notna().to_numpy(), place.notna().cummax().to_numpy()
+    there, seen = place.notna().to_numpy(bool), place.notna().cummax().to_numpy(bool)
+    beyond = (sign * (place - m.at) > 0).to_numpy(bool) & there
     passed = beyond | (seen & ~there)
     new = np.diff(passed.astype(int), axis=0)
     new[~seen[:-1] & seen[1:]] = 0  # what comes beyond the plane has not passed it
