@@ -2,6 +2,7 @@
 """The main job: e_n(v) and the rest of an impact, from each engine, against theory."""
 
 import json
+import re
 import subprocess
 import sys
 from dataclasses import replace
@@ -20,6 +21,7 @@ from epdem.impacts.experiment import experiment
 from epdem.impacts.measurement import measure
 from epdem.impacts.plan import plan
 from epdem.impacts.prediction import predict
+from epdem.impacts.run import run as run_case
 
 CASES = Path(__file__).parents[2] / "cases"
 ENGINES = ["embedded", pytest.param("liggghts", marks=pytest.mark.liggghts)]
@@ -149,32 +151,33 @@ def test_run_json_prints_one_document_with_the_promised_keys(tmp_path):
 
 
 def test_results_open_as_data_frames_and_a_second_run_takes_them_from_the_store(tmp_path):
-    words = ("run", str(CASES / "steel_wall.toml"), "-e", "embedded")
+    words = ("run", str(CASES / "steel_wall.toml"), "-e", "embedded", "-o", "out")
     assert epdem(*words, cwd=tmp_path).returncode == 0
-    found = store.read(tmp_path / "runs/steel_wall/results.h5")
+    found = store.read(tmp_path / "out/results.h5")
     assert isinstance(found.comparison, pd.DataFrame) and len(found.impacts["thornton/embedded"]) == 256
     assert found.case_text == (CASES / "steel_wall.toml").read_text()
-    written = pd.read_csv(tmp_path / "runs/steel_wall/results.csv")
+    written = pd.read_csv(tmp_path / "out/results.csv")
     assert np.array_equal(written["e_n"], found.comparison["e_n"])
     assert "1 of 1 from" in epdem(*words, cwd=tmp_path).stdout
-    assert "from" not in epdem(*words, "--fresh", cwd=tmp_path).stdout.splitlines()[-1]
-    assert (tmp_path / "runs/steel_wall/e_n.png").stat().st_size > 10_000
+    assert (tmp_path / "out/e_n.png").stat().st_size > 10_000
+    for fresh, reused in ((False, ["thornton/embedded"]), (True, [])):
+        again = run_case(CASES / "steel_wall.toml", engines=[engine("embedded")], out=tmp_path / "out", fresh=fresh)
+        assert again.reused == reused and np.array_equal(again.results.comparison["e_n"], found.comparison["e_n"])
 
 
 def test_a_run_with_another_law_keeps_what_is_stored(tmp_path):
-    case = str(CASES / "steel_wall.toml")
-    for law in ("thornton", "cavity"):
-        assert epdem("run", case, "-e", "embedded", "-l", law, cwd=tmp_path).returncode == 0
-    found = store.read(tmp_path / "runs/steel_wall/results.h5")
-    assert (
-        set(found.runs) == set(found.impacts) == {"thornton/embedded", "cavity/embedded"}
-        and len(found.comparison) == 64
-    )
-    assert "1 of 1 from" in epdem("run", case, "-e", "embedded", cwd=tmp_path).stdout
+    def run_with(*laws):
+        return run_case(CASES / "steel_wall.toml", engines=[engine("embedded")], laws=laws, out=tmp_path / "out")
+
+    assert run_with("thornton").reused == run_with("cavity").reused == []
+    found = store.read(tmp_path / "out/results.h5")
+    assert set(found.runs) == set(found.impacts) == {"thornton/embedded", "cavity/embedded"}
+    assert len(found.comparison) == 64 and run_with().reused == ["thornton/embedded"]
 
 
 def test_a_failed_check_exits_with_1(tmp_path):
     text = (CASES / "steel_wall.toml").read_text().replace("e_n = 1e-4", "e_n = 1e-9")
+    text = re.sub("^speeds = .*$", 'speeds = ["5 m/s"]', text, flags=re.M)
     (tmp_path / "strict.toml").write_text(text)
     assert epdem("run", "strict.toml", "-e", "embedded", cwd=tmp_path).returncode == 1
 
