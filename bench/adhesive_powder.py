@@ -16,7 +16,7 @@ from pathlib import Path
 import numpy as np
 
 from epdem.engines import scene_engine
-from epdem.liggghts import dump, launcher
+from epdem.engines.liggghts import dump, launcher
 from epdem.scenes.run import run
 
 CASE = Path(__file__).resolve().parent.parent / "cases" / "adhesive_powder.toml"

@@ -19,7 +19,7 @@ import numpy as np
 
 from epdem.case.scene import parse
 from epdem.case.toml import read_toml
-from epdem.liggghts.impacts import Liggghts
+from epdem.engines.liggghts.engine import Liggghts
 from epdem.scenes.checks import discharge
 from epdem.scenes.columns import last_frame
 from epdem.scenes.plan import plan

@@ -25,9 +25,9 @@ import pandas as pd
 from community_models import MODELS, RAIN_FRICTION, SHORT, SPEED, START, YADE, curve, engine, loop
 
 from epdem.case.scene import SceneCase, parse
+from epdem.engines.liggghts import resume
+from epdem.engines.liggghts.engine import Liggghts
 from epdem.errors import CaseError
-from epdem.liggghts import resume
-from epdem.liggghts.impacts import Liggghts
 from epdem.scenes.columns import last_frame
 from epdem.scenes.run import SceneOutcome, run_case
 

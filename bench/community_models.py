@@ -5,9 +5,9 @@ from pathlib import Path
 
 import numpy as np
 
-from epdem.liggghts import log
-from epdem.liggghts.impacts import Liggghts
-from epdem.liggghts.launcher import OUT
+from epdem.engines.liggghts import log
+from epdem.engines.liggghts.engine import Liggghts
+from epdem.engines.liggghts.launcher import OUT
 from epdem.scenes.plan import ScenePlan
 
 MODELS = {"hertz": "hertz", "ep/hertz": "hertz", "ep/thornton": "thornton"}  # and the law of their plan

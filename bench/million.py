@@ -20,7 +20,7 @@ from pathlib import Path
 
 import numpy as np
 
-from epdem.liggghts import launcher
+from epdem.engines.liggghts import launcher
 
 DIAMETER, DENSITY, PRESS = 2e-3, 2500.0, 2e-3
 # Bytes that a step reads and writes per sphere at least: 6 contacts (history 80, list and flag 8, atoms 37); numbers of

@@ -22,8 +22,8 @@ import store
 from epdem.base import rendering
 from epdem.base.files import write_texts
 from epdem.case.scene import load
-from epdem.liggghts import launcher, scene_deck, stl
-from epdem.liggghts.properties import per_pair
+from epdem.engines.liggghts import launcher, scene_deck, stl
+from epdem.engines.liggghts.properties import per_pair
 from epdem.scenes.plan import plan
 
 LIMITS = {"settle_glass": 0.5, "compaction_powder": 0.5, "hopper_beads": 0.6, "drum_beads": 0.6}

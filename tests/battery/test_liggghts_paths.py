@@ -8,9 +8,9 @@ import pytest
 from laws import NAMES, YIELDING, yield_overlap
 
 from epdem.base import paths
+from epdem.engines.liggghts import dump
 from epdem.laws import library as claw
 from epdem.laws.native import Law
-from epdem.liggghts import dump
 from epdem.theory import pair, viscous
 
 pytestmark = pytest.mark.liggghts

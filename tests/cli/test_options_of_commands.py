@@ -14,10 +14,10 @@ import pytest
 from calls import CASES, COMMANDS, call, make_sweep
 
 from epdem.engines import engine
+from epdem.engines.liggghts import tune
 from epdem.errors import CaseError
 from epdem.impacts import report as impacts_report
 from epdem.impacts import run as impacts_run
-from epdem.liggghts import tune
 from epdem.scenes import report as scenes_report
 from epdem.scenes import run as scenes_run
 from epdem.studies import fit

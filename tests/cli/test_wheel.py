@@ -11,7 +11,7 @@ from pathlib import Path
 
 import pytest
 
-from epdem.liggghts import header
+from epdem.engines.liggghts import header
 
 ROOT = Path(__file__).resolve().parents[2]
 BLOCKED = """

@@ -7,8 +7,8 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from epdem.engines.liggghts.convert import convert
 from epdem.errors import CaseError
-from epdem.liggghts.convert import convert
 
 DECK = """# model hertz in a comment, don't touch
 units si

@@ -14,15 +14,15 @@ from epdem.case.scene import is_scene
 from epdem.case.scene import load as load_scene
 from epdem.case.scene import parse as parse_scene
 from epdem.case.toml import read_toml
+from epdem.engines.liggghts import scene_deck
+from epdem.engines.liggghts.engine import Liggghts
+from epdem.engines.yade import scene_deck as yade_scene
+from epdem.engines.yade.engine import Yade
 from epdem.errors import CaseError
 from epdem.impacts.experiment import experiment
 from epdem.impacts.plan import plan
 from epdem.impacts.prediction import predict
-from epdem.liggghts import scene_deck
-from epdem.liggghts.impacts import Liggghts
 from epdem.scenes.plan import plan as scene_plan
-from epdem.yade import scene_deck as yade_scene
-from epdem.yade.impacts import Yade
 from stored_decks import CASES, SPHERE, compare, planned
 
 HERE = Path(__file__).parent

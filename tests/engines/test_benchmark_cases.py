@@ -9,8 +9,8 @@ import pytest
 
 from epdem.case.scene import load
 from epdem.engines import engine
+from epdem.engines.liggghts import scene_deck
 from epdem.impacts.run import run
-from epdem.liggghts import scene_deck
 from epdem.scenes.plan import plan
 
 CASES = Path(__file__).parents[2] / "cases/benchmarks"

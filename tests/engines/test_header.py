@@ -17,13 +17,13 @@ from plugin_loop import SAID, Scene, outcome
 
 from epdem.base import paths
 from epdem.case.impact import load
+from epdem.engines.liggghts import executable, header
+from epdem.engines.liggghts.engine import Liggghts
 from epdem.errors import CaseError
 from epdem.impacts.experiment import experiment
 from epdem.impacts.measurement import measure
 from epdem.impacts.plan import plan
 from epdem.impacts.prediction import predict
-from epdem.liggghts import executable, header
-from epdem.liggghts.impacts import Liggghts
 
 pytestmark = pytest.mark.liggghts
 

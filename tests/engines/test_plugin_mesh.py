@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from plugin_decks import Bodies, contact, good, head, materials, per_pair
 
-from epdem.liggghts import stl
+from epdem.engines.liggghts import stl
 
 pytestmark = pytest.mark.liggghts
 

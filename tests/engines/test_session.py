@@ -9,12 +9,12 @@ import pytest
 from epdem.base.processes import session
 from epdem.case.impact import load
 from epdem.engines import engine
+from epdem.engines.liggghts.engine import Liggghts
+from epdem.engines.liggghts.session import Session
 from epdem.errors import EngineError, Stopped
 from epdem.impacts.experiment import experiment
 from epdem.impacts.plan import plan
 from epdem.impacts.prediction import predict
-from epdem.liggghts.impacts import Liggghts
-from epdem.liggghts.session import Session
 from epdem.studies.sweep import run as study
 
 pytestmark = pytest.mark.liggghts

@@ -15,6 +15,7 @@ from epdem.base.rendering import render
 from epdem.case.impact import Numerics, parse
 from epdem.case.toml import read_toml
 from epdem.engines import engine
+from epdem.engines.yade import engine as module
 from epdem.errors import CaseError, EngineError
 from epdem.impacts import store
 from epdem.impacts.engine import refuse
@@ -22,7 +23,6 @@ from epdem.impacts.experiment import experiment
 from epdem.impacts.measurement import measure
 from epdem.impacts.plan import plan
 from epdem.impacts.prediction import predict
-from epdem.yade import impacts as module
 
 CASES = Path(__file__).parents[2] / "cases"
 BRASS = {"young_modulus": "100 GPa", "poisson_ratio": 0.35, "density": "8500 kg/m^3", "yield_stress": "0.3 GPa"}

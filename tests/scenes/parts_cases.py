@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from epdem.case.toml import read_toml
-from epdem.liggghts import stl
+from epdem.engines.liggghts import stl
 
 CASES = Path(__file__).parents[2] / "cases"
 GLASS = {

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from epdem.base.processes import ROW
-from epdem.liggghts.launcher import command
+from epdem.engines.liggghts.launcher import command
 
 GUARD = "# guard: "
 

@@ -10,7 +10,7 @@ import pytest
 
 from epdem.case.scene import parse
 from epdem.case.toml import read_toml
-from epdem.liggghts import launcher, log
+from epdem.engines.liggghts import launcher, log
 from epdem.scenes.pairs import sphere_impact
 from epdem.scenes.timestep import bed_share, time_step
 

@@ -12,13 +12,13 @@ from epdem.case import impact as impacts
 from epdem.case.scene import is_scene, parse
 from epdem.case.toml import read_toml
 from epdem.engines import engine
+from epdem.engines.liggghts import explain
+from epdem.engines.liggghts.engine import Liggghts
+from epdem.engines.liggghts.scene_deck import deck
 from epdem.impacts.experiment import experiment
 from epdem.impacts.plan import plan
 from epdem.impacts.prediction import predict
 from epdem.laws.library import laws
-from epdem.liggghts import explain
-from epdem.liggghts.impacts import Liggghts
-from epdem.liggghts.scene_deck import deck
 from epdem.scenes.plan import plan as scene_plan
 
 CASES = sorted((Path(__file__).parents[2] / "cases").glob("*.toml"))

@@ -15,14 +15,15 @@ from epdem.base import folders, paths, processes, settings
 from epdem.case import impact
 from epdem.case.toml import read_toml
 from epdem.engines import engine
+from epdem.engines.liggghts import dump, own_template, scene_tables, session, tune
+from epdem.engines.liggghts import engine as liggghts
+from epdem.engines.yade import scene_tables as yade_tables
 from epdem.errors import CaseError, EngineError
 from epdem.impacts.engine import Trajectory
 from epdem.impacts.experiment import experiment
 from epdem.impacts.measurement import measure
 from epdem.impacts.plan import plan
 from epdem.impacts.prediction import predict
-from epdem.liggghts import dump, own_template, scene_tables, session, tune
-from epdem.liggghts import impacts as liggghts
 from epdem.scenes import columns, contacts, run, stl_files
 from epdem.studies import one_impact
 from epdem.studies.sweep import slurm
@@ -30,7 +31,6 @@ from epdem.theory.yielding import principal
 from epdem.verification.models import lammps
 from epdem.verification.stability import variants
 from epdem.verification.stability.edits import Edit
-from epdem.yade import scene_tables as yade_tables
 from epdem.yade.deck_modules.law import Cavity
 
 CASES = Path(__file__).parents[2] / "cases"

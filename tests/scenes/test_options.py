@@ -13,9 +13,9 @@ from typer.testing import CliRunner
 from epdem.case.scene import parse
 from epdem.case.toml import read_toml
 from epdem.cli.main import app
+from epdem.engines.liggghts import explain
+from epdem.engines.liggghts.scene_deck import deck
 from epdem.errors import CaseError
-from epdem.liggghts import explain
-from epdem.liggghts.scene_deck import deck
 from epdem.scenes.plan import plan
 
 CASES = Path(__file__).parents[2] / "cases"

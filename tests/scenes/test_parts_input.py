@@ -17,8 +17,8 @@ from epdem import Scene
 from epdem.case import files
 from epdem.case.scene import load, parse
 from epdem.case.toml import named
+from epdem.engines.liggghts import scene_deck
 from epdem.errors import CaseError
-from epdem.liggghts import scene_deck
 from epdem.scenes.plan import plan
 from epdem.studies.soften import soften
 from epdem.studies.sweep import run as study

@@ -9,10 +9,10 @@ from parts_cases import BED, FLOOR, parts
 from scene_runs import run, write_case, write_deck
 
 from epdem.case.scene import parse
+from epdem.engines.liggghts import launcher, resume
+from epdem.engines.liggghts import scene_tables as tables
+from epdem.engines.liggghts.scene_deck import files as deck_of
 from epdem.errors import CaseError
-from epdem.liggghts import launcher, resume
-from epdem.liggghts import scene_tables as tables
-from epdem.liggghts.scene_deck import files as deck_of
 from epdem.scenes.plan import plan
 from epdem.scenes.warnings import planned_warnings
 

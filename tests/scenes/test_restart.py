@@ -19,9 +19,9 @@ from test_lean import CASES, small
 from epdem.base.folders import MARKER
 from epdem.case.scene import is_scene, load, parse
 from epdem.case.toml import read_toml
+from epdem.engines.liggghts import launcher, resume
+from epdem.engines.liggghts import scene_tables as tables
 from epdem.errors import CaseError
-from epdem.liggghts import launcher, resume
-from epdem.liggghts import scene_tables as tables
 from epdem.scenes import results
 from epdem.scenes.plan import ScenePlan, plan
 

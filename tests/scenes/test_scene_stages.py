@@ -10,9 +10,9 @@ from stored_runs import STORED, data_of
 
 from epdem.base import stages
 from epdem.case.scene import parse
+from epdem.engines.liggghts.engine import Liggghts
 from epdem.errors import CaseError, EngineError
 from epdem.impacts.engine import Feature
-from epdem.liggghts.impacts import Liggghts
 from epdem.scenes import results
 from epdem.scenes.pairs import pair_law
 from epdem.scenes.plan import plan

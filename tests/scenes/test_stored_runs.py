@@ -12,8 +12,8 @@ from stored_runs import RUNS, STORED, data_of, planned
 
 from epdem.case.scene import parse
 from epdem.engines import scene_engine
+from epdem.engines.liggghts import scene_tables
 from epdem.errors import EngineError
-from epdem.liggghts import scene_tables
 from epdem.scenes import checks, energy_balance
 from epdem.scenes.columns import STRAINS, UNITS
 

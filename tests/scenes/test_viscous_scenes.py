@@ -9,9 +9,9 @@ from scene_runs import run
 
 from epdem.case.scene import parse
 from epdem.case.toml import read_toml
+from epdem.engines.liggghts import explain
+from epdem.engines.liggghts.scene_deck import deck, files
 from epdem.errors import CaseError
-from epdem.liggghts import explain
-from epdem.liggghts.scene_deck import deck, files
 from epdem.scenes.plan import plan
 from epdem.scenes.timestep import time_step
 

@@ -11,8 +11,8 @@ from parts_cases import BED, STEEL, parts
 from scene_runs import run, write_case
 
 from epdem.case.scene import parse
+from epdem.engines.liggghts import scene_deck
 from epdem.errors import CaseError
-from epdem.liggghts import scene_deck
 from epdem.scenes.plan import plan
 
 BOX = {"name": "box", "kind": "box", "x": ["-9 mm", "9 mm"], "y": ["-9 mm", "9 mm"], "z": ["0 mm", "40 mm"]}

@@ -13,15 +13,15 @@ from epdem.case.scene import parse
 from epdem.case.toml import read_toml
 from epdem.cli import main as cli
 from epdem.engines import scene_engine
+from epdem.engines.liggghts import launcher, scene_tables
+from epdem.engines.yade import scene_deck as yade
+from epdem.engines.yade import scene_tables as yade_tables
+from epdem.engines.yade.launcher import environment
+from epdem.engines.yade.scenes import OUT
 from epdem.errors import CaseError, EngineError
-from epdem.liggghts import launcher, scene_tables
 from epdem.scenes import placement
 from epdem.scenes.engine import files
 from epdem.scenes.plan import plan
-from epdem.yade import scene_deck as yade
-from epdem.yade import scene_tables as yade_tables
-from epdem.yade.launcher import environment
-from epdem.yade.scenes import OUT
 
 CASES = Path(__file__).parents[2] / "cases"
 BEADS = {"box": '["9 mm", "9 mm", "30 mm"]', "count": "40", "duration": '"0.3 s"'}

@@ -123,7 +123,7 @@ def test_a_case_of_impacts_has_no_such_numbers(place):
 
 
 def test_a_scene_that_fails_ends_the_fit_with_its_reason(place, monkeypatch, tmp_path):
-    from epdem.liggghts.impacts import Liggghts
+    from epdem.engines.liggghts.engine import Liggghts
 
     def fails(*words, **named):
         raise EngineError("out of glass")

@@ -8,9 +8,9 @@ from pathlib import Path
 import pytest
 
 from epdem.case.scene import load
+from epdem.engines.liggghts import launcher, scene_deck, trials, tune
+from epdem.engines.liggghts.tune import Trial, Tuned
 from epdem.errors import CaseError, EngineError
-from epdem.liggghts import launcher, scene_deck, trials, tune
-from epdem.liggghts.tune import Trial, Tuned
 from epdem.scenes.plan import plan
 
 CASES = Path(__file__).parents[2] / "cases"

@@ -6,7 +6,8 @@ from pathlib import Path
 
 import pytest
 
-from epdem.liggghts.impacts import Liggghts
+from epdem.engines.liggghts.engine import Liggghts
+from epdem.engines.yade.engine import Yade
 from epdem.verification.invariance import liggghts as liggghts_pairs
 from epdem.verification.invariance import pairs
 from epdem.verification.invariance import yade as yade_pairs
@@ -20,7 +21,6 @@ from epdem.verification.stability.assembly import AssemblyPlan
 from epdem.verification.stability.assembly_liggghts import LiggghtsAssemblies
 from epdem.verification.stability.scenes import SCENES as ASSEMBLIES
 from epdem.verification.stability.scenes import with_law
-from epdem.yade.impacts import Yade
 from stored_decks import CASES, SPHERE, compare, planned
 
 HERE = Path(__file__).parent

@@ -137,7 +137,7 @@ def tune(
 ) -> None:
     """Find the neighbour skin, and with --ranks the cut of the room, with which a scene runs fastest in LIGGGHTS."""
     from ..base.terminal import status
-    from ..liggghts import tune as t
+    from ..engines.liggghts import tune as t
 
     with status() as line:
         tuned = t.tune(case, ranks=ranks, seconds=seconds, progress=lambda text: line(f"{case.stem}: {text}"))
@@ -208,14 +208,14 @@ def soften(
 
 def deck_template(template: Path, case: Path, sets: list[str], out: Path, *, force: bool, as_json: bool) -> None:
     """Write a deck from a template of the user's own and the values of a case."""
-    from ..liggghts.own_template import settings, write
+    from ..engines.liggghts.own_template import settings, write
 
     say_files(write(template, case, settings(sets), out, force=force), as_json)
 
 
 def deck_converted(deck: Path, law: str, sets: list[str], out: Path, *, force: bool, as_json: bool) -> None:
     """Write a LIGGGHTS deck of the user with one of the laws, and print the changes on standard error."""
-    from ..liggghts.convert import convert_file
+    from ..engines.liggghts.convert import convert_file
 
     files, notes = convert_file(deck, law, sets, out, force=force)
     for note in notes:

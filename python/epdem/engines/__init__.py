@@ -6,10 +6,10 @@ from collections.abc import Callable
 from ..base.settings import DEFAULT_ENGINE
 from ..errors import CaseError
 from ..impacts.engine import Feature, ImpactEngine, Trajectory
-from ..liggghts.impacts import Liggghts
 from ..scenes.engine import SceneEngine
-from ..yade.impacts import Yade
 from .embedded import Embedded
+from .liggghts.engine import Liggghts
+from .yade.engine import Yade
 
 ENGINES: dict[str, type[ImpactEngine]] = {tool.name: tool for tool in (Embedded, Liggghts, Yade)}
 # Engines of bulk scenes.

@@ -10,8 +10,8 @@ from ..base.processes import ask
 from ..errors import EngineError, EpdemError
 from ..impacts.engine import Feature
 from ..laws import library as claw
-from ..liggghts import executable, launcher
 from . import ENGINES
+from .liggghts import executable, launcher
 
 
 @dataclass(frozen=True)

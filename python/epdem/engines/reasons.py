@@ -9,10 +9,10 @@ from ..case.toml import named, read_toml
 from ..impacts.experiment import experiment
 from ..impacts.plan import Plan, plan
 from ..impacts.prediction import predict
-from ..liggghts.explain import reasons as liggghts_reasons
-from ..liggghts.impacts import Liggghts
 from ..scenes.plan import ScenePlan
 from ..scenes.plan import plan as scene_plan
+from .liggghts.engine import Liggghts
+from .liggghts.explain import reasons as liggghts_reasons
 
 Lines = list[tuple[str, str, str]]  # file, line, reason
 

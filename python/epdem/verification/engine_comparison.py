@@ -14,13 +14,13 @@ from ..base.tables import write_csv
 from ..case.impact import Check, load
 from ..case.toml import named
 from ..engines import ENGINES, ImpactEngine
+from ..engines.yade.engine import Yade
 from ..errors import CaseError, EngineError
 from ..impacts import report
 from ..impacts.comparison import CHECKED
 from ..impacts.experiment import Experiment, experiment
 from ..impacts.plan import plan
 from ..impacts.run import Outcome, run, run_and_compare
-from ..yade.impacts import Yade
 from .invariance.check import VARIANTS, Invariance, examine
 from .models import OWN_LAW, SAME_LAW, OwnTheory
 from .models.predictions import prediction as predict

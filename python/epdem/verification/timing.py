@@ -7,10 +7,10 @@ from pathlib import Path
 
 from ..engines import ImpactEngine
 from ..engines.embedded import Embedded, numbers
+from ..engines.liggghts import launcher
+from ..engines.liggghts.engine import Liggghts
+from ..engines.liggghts.log import loop_seconds
 from ..impacts.plan import Plan
-from ..liggghts import launcher
-from ..liggghts.impacts import Liggghts
-from ..liggghts.log import loop_seconds
 
 
 def seconds(tool: ImpactEngine, plan: Plan, folder: Path) -> dict[str, float]:

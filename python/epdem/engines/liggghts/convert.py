@@ -7,10 +7,10 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from ..base.declarations import Declaration
-from ..base.folders import write_own
-from ..errors import CaseError
-from ..laws.library import laws
+from ...base.declarations import Declaration
+from ...base.folders import write_own
+from ...errors import CaseError
+from ...laws.library import laws
 
 REPLACED = ("hertz", "hooke")  # normal models with the elastic constants of a law
 SETTINGS = (  # of these models, refused or unknown beside a law

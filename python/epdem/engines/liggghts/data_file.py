@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..base.rendering import number
+from ...base.rendering import number
 
 
 @dataclass(frozen=True)

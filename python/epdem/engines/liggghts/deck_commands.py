@@ -5,7 +5,7 @@ import re
 from collections.abc import Iterator
 from pathlib import Path
 
-from ..errors import CaseError
+from ...errors import CaseError
 
 _ARGUMENT = re.compile(r"\"[^\"]*\"|'[^']*'|\S+")
 

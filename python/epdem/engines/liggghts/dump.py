@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
-from ..errors import EngineError
+from ...errors import EngineError
 
 # step, atoms; triclinic; boundary (6), box (6); columns, blocks (one per rank)
 _HEAD = struct.Struct("<qqi6i6dii")

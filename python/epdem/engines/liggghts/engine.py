@@ -8,19 +8,19 @@ from typing import overload
 
 import numpy as np
 
-from ..base import paths
-from ..base import rendering as decks
-from ..base.files import write_texts
-from ..base.folders import held
-from ..case.kinds import KINDS
-from ..errors import CaseError, EngineError
-from ..impacts.engine import Feature, Report, Trajectory, check_features, silent
-from ..impacts.placement import approach, room, side_by_side
-from ..impacts.plan import Plan
-from ..laws.library import laws
-from ..scenes.engine import Resumed, Tables, check_scene
-from ..scenes.plan import ScenePlan
-from ..theory.sources import Source
+from ...base import paths
+from ...base import rendering as decks
+from ...base.files import write_texts
+from ...base.folders import held
+from ...case.kinds import KINDS
+from ...errors import CaseError, EngineError
+from ...impacts.engine import Feature, Report, Trajectory, check_features, silent
+from ...impacts.placement import approach, room, side_by_side
+from ...impacts.plan import Plan
+from ...laws.library import laws
+from ...scenes.engine import Resumed, Tables, check_scene
+from ...scenes.plan import ScenePlan
+from ...theory.sources import Source
 from . import data_file, dump, executable, launcher, scene_deck, scenes
 from .deck import Deck
 from .log import loop_seconds

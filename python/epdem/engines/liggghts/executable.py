@@ -7,9 +7,9 @@ import tempfile
 from dataclasses import dataclass
 from pathlib import Path
 
-from ..base import paths
-from ..base.processes import ask
-from ..errors import EngineError
+from ...base import paths
+from ...base.processes import ask
+from ...errors import EngineError
 from . import launcher
 
 _VTK = "custom/vtk"  # the dump style of output.vtk

@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """The reason of each line of a deck: the templates state it beside the line, and only this module reads it."""
 
-from ..base import rendering
-from ..impacts.plan import Plan
-from ..scenes.plan import ScenePlan
+from ...base import rendering
+from ...impacts.plan import Plan
+from ...scenes.plan import ScenePlan
 from . import scene_deck
-from .impacts import Liggghts
+from .engine import Liggghts
 
 IMPACT = {"in.impact": "liggghts/impact.in.j2"}
 SCENE = {"in.scene": "liggghts/scene.in.j2", "setup.in": "liggghts/scene_setup.in.j2"}

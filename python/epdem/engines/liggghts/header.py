@@ -4,10 +4,10 @@
 import re
 from pathlib import Path
 
-from .. import __version__
-from ..base import paths
-from ..base.files import write_texts
-from ..errors import CaseError
+from ... import __version__
+from ...base import paths
+from ...base.files import write_texts
+from ...errors import CaseError
 
 NAME = "normal_model_ep"
 PFM = "pfm"  # folder of the sources for LIGGGHTS-PFM, whose contact models have another interface

@@ -6,10 +6,10 @@ import math
 from collections.abc import Iterator
 from dataclasses import dataclass
 
-from ..case.motions import Vector3
-from ..case.walls import Room
-from ..scenes import filling
-from ..scenes.plan import ScenePlan
+from ...case.motions import Vector3
+from ...case.walls import Room
+from ...scenes import filling
+from ...scenes.plan import ScenePlan
 
 # Volumes [m^3] of a template and of a region below which LIGGGHTS refuses them without a keyword for a smaller limit.
 SMALL, SMALL_ROOM, MEANT = 1e-12, 1e-10, 1e-20

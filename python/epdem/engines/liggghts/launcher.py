@@ -7,11 +7,11 @@ import shutil
 from collections.abc import Callable
 from pathlib import Path
 
-from ..base import paths
-from ..base.processes import call
-from ..base.settings import config_file
-from ..errors import EngineError
-from ..impacts.engine import refuse_ranks
+from ...base import paths
+from ...base.processes import call
+from ...base.settings import config_file
+from ...errors import EngineError
+from ...impacts.engine import refuse_ranks
 
 INSTALL = "apt-get install liggghts libliggghts-dev libopenmpi-dev, then 'make setup'"
 LOG = "log.liggghts"  # LIGGGHTS's own log

@@ -9,19 +9,19 @@ import jinja2
 from jinja2 import meta
 from jinja2.sandbox import ImmutableSandboxedEnvironment
 
-from ..base import paths, rendering
-from ..base.folders import write_own
-from ..case import scene as scenes
-from ..case.impact import load as load_impact
-from ..case.toml import read_toml
-from ..errors import CaseError
-from ..impacts.experiment import experiment
-from ..impacts.plan import plan
-from ..impacts.prediction import predict
-from ..scenes.plan import plan as scene_plan
+from ...base import paths, rendering
+from ...base.folders import write_own
+from ...case import scene as scenes
+from ...case.impact import load as load_impact
+from ...case.toml import read_toml
+from ...errors import CaseError
+from ...impacts.experiment import experiment
+from ...impacts.plan import plan
+from ...impacts.prediction import predict
+from ...scenes.plan import plan as scene_plan
 from . import stl
 from .deck_commands import refuse_programs
-from .impacts import Liggghts, data_text
+from .engine import Liggghts, data_text
 from .scene_deck import deck as scene_deck
 
 

@@ -5,11 +5,11 @@ import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from ..case.fields import NODES
-from ..impacts.experiment import Body
-from ..impacts.plan import Plan
-from ..laws import library as claw
-from ..laws.strengths import ADHESION
+from ...case.fields import NODES
+from ...impacts.experiment import Body
+from ...impacts.plan import Plan
+from ...laws import library as claw
+from ...laws.strengths import ADHESION
 
 RIGID = 1e30  # modulus [Pa] of a rigid type: 1e15 would change E* of steel by 2e-4
 HARD, SOFT = 1e9, 5e6  # LIGGGHTS refuses moduli [Pa] outside these without a keyword

@@ -7,11 +7,11 @@ from dataclasses import replace
 from itertools import pairwise
 from pathlib import Path
 
-from ..base import rendering as decks
-from ..base.folders import held
-from ..base.processes import ROW
-from ..errors import CaseError
-from ..scenes.plan import ScenePlan
+from ...base import rendering as decks
+from ...base.folders import held
+from ...base.processes import ROW
+from ...errors import CaseError
+from ...scenes.plan import ScenePlan
 from . import log
 from . import scene_tables as tables
 from .insertions import Insertion

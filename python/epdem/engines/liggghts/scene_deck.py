@@ -4,12 +4,12 @@
 import math
 from dataclasses import dataclass
 
-from ..base import rendering as decks
-from ..case.parts import Sphere
-from ..errors import CaseError
-from ..laws.library import laws
-from ..scenes.model import Model
-from ..scenes.plan import ScenePlan
+from ...base import rendering as decks
+from ...case.parts import Sphere
+from ...errors import CaseError
+from ...laws.library import laws
+from ...scenes.model import Model
+from ...scenes.plan import ScenePlan
 from . import stl, wall_stress
 from .insertions import Insertion, insertions
 from .properties import HARD, SOFT, Property, elastic, per_pair, ratios, strength, tangential, work_of_adhesion

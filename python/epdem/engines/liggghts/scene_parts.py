@@ -6,14 +6,14 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, replace
 from itertools import zip_longest
 
-from ..base import rendering as decks
-from ..case.motions import LinearMove, Move, PressMove, RotateMove, VibrateMove
-from ..case.parts import Body
-from ..case.walls import PlaneWall
-from ..errors import CaseError
-from ..scenes.meshes import FloatArray
-from ..scenes.plan import Phase, ScenePlan
-from ..scenes.walls import surface_rotation
+from ...base import rendering as decks
+from ...case.motions import LinearMove, Move, PressMove, RotateMove, VibrateMove
+from ...case.parts import Body
+from ...case.walls import PlaneWall
+from ...errors import CaseError
+from ...scenes.meshes import FloatArray
+from ...scenes.plan import Phase, ScenePlan
+from ...scenes.walls import surface_rotation
 from .wall_power import GAIN, power, wall_id
 
 

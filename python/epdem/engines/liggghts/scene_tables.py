@@ -9,9 +9,9 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
-from ..errors import EngineError
-from ..scenes import columns, contacts
-from ..scenes.plan import ScenePlan
+from ...errors import EngineError
+from ...scenes import columns, contacts
+from ...scenes.plan import ScenePlan
 from . import dump, log
 from .launcher import OUT
 

@@ -6,12 +6,12 @@ import re
 from collections.abc import Collection, Iterator
 from pathlib import Path
 
-from ..base import paths
-from ..case.parts import Parts
-from ..errors import CaseError, EngineError
-from ..impacts.engine import Report
-from ..scenes.engine import Resumed, Tables
-from ..scenes.plan import ScenePlan
+from ...base import paths
+from ...case.parts import Parts
+from ...errors import CaseError, EngineError
+from ...impacts.engine import Report
+from ...scenes.engine import Resumed, Tables
+from ...scenes.plan import ScenePlan
 from . import executable, launcher, log, wall_stress
 from . import resume as restarts
 from . import scene_tables as tables

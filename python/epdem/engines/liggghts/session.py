@@ -10,8 +10,8 @@ import time
 import tty
 from pathlib import Path
 
-from ..base import processes, stopping
-from ..errors import EngineError
+from ...base import processes, stopping
+from ...errors import EngineError
 from . import launcher
 
 END = "epdem: end of the deck"

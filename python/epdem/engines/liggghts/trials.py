@@ -7,8 +7,8 @@ import tempfile
 import time
 from pathlib import Path
 
-from ..base.files import write_texts
-from ..scenes.plan import ScenePlan
+from ...base.files import write_texts
+from ...scenes.plan import ScenePlan
 from . import launcher, log, scene_deck
 
 Loops = list[tuple[float, int]]  # (seconds, steps) of pieces of a run

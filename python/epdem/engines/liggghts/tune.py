@@ -14,14 +14,14 @@ from pathlib import Path
 import numpy as np
 import tomlkit
 
-from ..base.files import atomic
-from ..case.scene import Output, SceneCase, load
-from ..case.toml import named, text_of
-from ..errors import CaseError, EngineError
-from ..scenes.engine import check_run
-from ..scenes.plan import ScenePlan, plan
+from ...base.files import atomic
+from ...case.scene import Output, SceneCase, load
+from ...case.toml import named, text_of
+from ...errors import CaseError, EngineError
+from ...scenes.engine import check_run
+from ...scenes.plan import ScenePlan, plan
 from . import trials
-from .impacts import Liggghts
+from .engine import Liggghts
 from .trials import Loops
 
 SHARES = (0.25, 0.5, 0.75, 1.0, 1.5)  # of the smallest radius: skins that are tried

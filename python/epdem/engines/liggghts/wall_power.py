@@ -3,11 +3,11 @@
 
 from collections.abc import Sequence
 
-from ..base import rendering as decks
-from ..case.motions import LinearMove, PressMove, RotateMove, VibrateMove
-from ..case.parts import Parts
-from ..scenes.plan import Phase, ScenePlan
-from ..scenes.walls import surface_rotation
+from ...base import rendering as decks
+from ...case.motions import LinearMove, PressMove, RotateMove, VibrateMove
+from ...case.parts import Parts
+from ...scenes.plan import Phase, ScenePlan
+from ...scenes.walls import surface_rotation
 
 GAIN = 1.0  # of a wall that a force drives: its speed over the highest is the relative error of the force
 

@@ -7,8 +7,8 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
-from ..errors import CaseError, EngineError
-from ..scenes.plan import ScenePlan
+from ...errors import CaseError, EngineError
+from ...scenes.plan import ScenePlan
 from .properties import Property, per_pair
 
 FILES = "stress_{}.{}.vtk"  # wall, step

@@ -5,9 +5,9 @@ from collections.abc import Iterable
 from dataclasses import dataclass
 from math import inf
 
-from ..errors import CaseError
-from .deck_modules import cone
-from .deck_modules.law import LAWS
+from ...errors import CaseError
+from ...yade.deck_modules import cone
+from ...yade.deck_modules.law import LAWS
 
 
 @dataclass(frozen=True)

@@ -10,21 +10,21 @@ from typing import overload
 
 import numpy as np
 
-from ..base import rendering as decks
-from ..base.files import write_texts
-from ..base.folders import held
-from ..base.processes import ask, call
-from ..errors import CaseError, EngineError
-from ..impacts.engine import Feature, Report, Trajectory, check_features, silent
-from ..impacts.experiment import Body, Experiment
-from ..impacts.placement import approach, side_by_side
-from ..impacts.plan import Plan
-from ..scenes.engine import Resumed, Tables, check_scene
-from ..scenes.plan import ScenePlan
-from ..theory.sources import Source
+from ...base import rendering as decks
+from ...base.files import write_texts
+from ...base.folders import held
+from ...base.processes import ask, call
+from ...errors import CaseError, EngineError
+from ...impacts.engine import Feature, Report, Trajectory, check_features, silent
+from ...impacts.experiment import Body, Experiment
+from ...impacts.placement import approach, side_by_side
+from ...impacts.plan import Plan
+from ...scenes.engine import Resumed, Tables, check_scene
+from ...scenes.plan import ScenePlan
+from ...theory.sources import Source
+from ...yade.deck_modules.law import LAWS
 from . import scene_deck, scenes
 from .deck import Deck, Group, Material, refuse_parameters, strength_values
-from .deck_modules.law import LAWS
 from .launcher import command, environment, write_deck_modules
 
 INSTALL = "apt-get install yade"

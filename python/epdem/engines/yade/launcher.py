@@ -4,9 +4,9 @@
 import os
 from pathlib import Path
 
-from ..base.files import write_texts
+from ...base.files import write_texts
 
-MODULES = Path(__file__).with_name("deck_modules")
+MODULES = Path(__file__).parents[2] / "yade/deck_modules"
 
 
 def command() -> str:

@@ -4,14 +4,14 @@
 from dataclasses import dataclass
 from itertools import combinations_with_replacement
 
-from ..base import rendering as decks
-from ..case.parts import Parts
-from ..case.walls import Limits
-from ..errors import CaseError
-from ..scenes import placement
-from ..scenes.plan import ScenePlan
+from ...base import rendering as decks
+from ...case.parts import Parts
+from ...case.walls import Limits
+from ...errors import CaseError
+from ...scenes import placement
+from ...scenes.plan import ScenePlan
+from ...yade.deck_modules import cone
 from .deck import Material, refuse_parameters, strength_values
-from .deck_modules import cone
 from .launcher import deck_modules
 from .scene_parts import EDGES, Facets, Load, Motion, facets, loads, motions, spheres
 from .scene_parts import files as facet_files

@@ -4,13 +4,13 @@
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
-from ..base import rendering as decks
-from ..case.motions import LinearMove, Move, PressMove, RotateMove, VibrateMove
-from ..case.parts import Parts
-from ..errors import CaseError
-from ..scenes import placement
-from ..scenes.plan import Phase, ScenePlan
-from ..scenes.walls import surface_rotation
+from ...base import rendering as decks
+from ...case.motions import LinearMove, Move, PressMove, RotateMove, VibrateMove
+from ...case.parts import Parts
+from ...errors import CaseError
+from ...scenes import placement
+from ...scenes.plan import Phase, ScenePlan
+from ...scenes.walls import surface_rotation
 
 EDGES = (
     "walls of triangles: YADE counts a sphere that touches an edge once for each triangle there, so that its force is "

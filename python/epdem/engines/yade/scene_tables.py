@@ -6,10 +6,10 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
-from ..case.parts import Parts
-from ..errors import EngineError
-from ..scenes import columns, contacts
-from ..scenes.plan import ScenePlan
+from ...case.parts import Parts
+from ...errors import EngineError
+from ...scenes import columns, contacts
+from ...scenes.plan import ScenePlan
 
 # of a contact: number of the sphere and of the other body (from 0; walls after the spheres), overlaps [m]
 CONTACT = ["i", "j", "overlap", "delta_max"]

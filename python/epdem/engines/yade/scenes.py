@@ -3,10 +3,10 @@
 
 from pathlib import Path
 
-from ..base.processes import call
-from ..impacts.engine import Report
-from ..scenes.engine import Tables
-from ..scenes.plan import ScenePlan
+from ...base.processes import call
+from ...impacts.engine import Report
+from ...scenes.engine import Tables
+from ...scenes.plan import ScenePlan
 from . import scene_deck
 from . import scene_tables as tables
 from .launcher import command, environment

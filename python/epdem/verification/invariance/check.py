@@ -12,11 +12,11 @@ from typing import Any, Protocol
 import numpy as np
 
 from ...engines import ImpactEngine
+from ...engines.liggghts.engine import Liggghts
+from ...engines.yade.engine import Yade
 from ...errors import EngineError
 from ...impacts.experiment import Experiment
 from ...impacts.plan import plan
-from ...liggghts.impacts import Liggghts
-from ...yade.impacts import Yade
 from ..models.predictions import prediction as predict
 from . import liggghts, yade
 from .pairs import AXIS, Pairs, pairs, unequal_spheres

@@ -9,9 +9,9 @@ import numpy as np
 
 from ...base import rendering as decks
 from ...base.files import write_texts
-from ...liggghts import data_file, dump, launcher
-from ...liggghts.deck import Deck
-from ...liggghts.impacts import Liggghts
+from ...engines.liggghts import data_file, dump, launcher
+from ...engines.liggghts.deck import Deck
+from ...engines.liggghts.engine import Liggghts
 from .pairs import Pairs
 
 VARIANTS: tuple[str, ...] = ("swap", "sort", "migration", "restart")

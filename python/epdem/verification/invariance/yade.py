@@ -8,11 +8,11 @@ import numpy as np
 
 from ...base import rendering as decks
 from ...base.processes import call
+from ...engines.yade.deck import Deck
+from ...engines.yade.engine import Yade
+from ...engines.yade.launcher import command, environment, write_deck_modules
 from ...errors import EngineError
 from ...impacts.placement import Group
-from ...yade.deck import Deck
-from ...yade.impacts import Yade
-from ...yade.launcher import command, environment, write_deck_modules
 from .pairs import Pairs
 
 # a serial YADE keeps bodies where they are in memory and has no ranks: sorting and migration do not exist

@@ -13,13 +13,13 @@ import numpy as np
 from ...base import rendering as decks
 from ...base.files import write_texts
 from ...base.processes import ask, call
+from ...engines.liggghts import data_file
 from ...errors import EngineError
 from ...impacts.engine import Feature, Report, Trajectory, check_features, silent
 from ...impacts.experiment import Experiment
 from ...impacts.placement import approach, room, side_by_side
 from ...impacts.plan import Plan
 from ...impacts.prediction import Prediction
-from ...liggghts import data_file
 from ...theory.sources import Source
 from . import predictions
 

@@ -4,13 +4,13 @@
 import math
 from dataclasses import replace
 
+from ...engines.liggghts.deck import Deck
+from ...engines.liggghts.engine import Liggghts
+from ...engines.liggghts.properties import Property, of_friction, of_impacts, per_pair, per_type, scalar
 from ...impacts.engine import Feature
 from ...impacts.experiment import Experiment
 from ...impacts.plan import Plan
 from ...impacts.prediction import Prediction
-from ...liggghts.deck import Deck
-from ...liggghts.impacts import Liggghts
-from ...liggghts.properties import Property, of_friction, of_impacts, per_pair, per_type, scalar
 from . import predictions
 
 

@@ -4,12 +4,12 @@
 import math
 from dataclasses import replace
 
+from ...engines.yade.deck import Anvil, Deck, Material
+from ...engines.yade.engine import Yade
 from ...impacts.engine import Feature
 from ...impacts.experiment import Body, Experiment
 from ...impacts.plan import Plan
 from ...impacts.prediction import Prediction
-from ...yade.deck import Anvil, Deck, Material
-from ...yade.impacts import Yade
 from . import predictions
 
 

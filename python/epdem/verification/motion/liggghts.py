@@ -9,11 +9,11 @@ import numpy as np
 
 from ...base import rendering as decks
 from ...base.files import write_texts
+from ...engines.liggghts import data_file, dump, launcher
+from ...engines.liggghts.deck import Deck
+from ...engines.liggghts.engine import Liggghts
+from ...engines.liggghts.properties import per_pair, tangential
 from ...errors import EngineError
-from ...liggghts import data_file, dump, launcher
-from ...liggghts.deck import Deck
-from ...liggghts.impacts import Liggghts
-from ...liggghts.properties import per_pair, tangential
 from .prescribed import Loads, Motion, Touch, summary
 
 DECK, STEPS, DATA = "in.motion", "motion.steps", "motion.data"

@@ -9,11 +9,11 @@ import numpy as np
 from ...base import rendering as decks
 from ...base.files import write_texts
 from ...base.processes import call
+from ...engines.yade.deck import Deck, Material
+from ...engines.yade.engine import Yade
+from ...engines.yade.launcher import command, deck_modules, environment
 from ...errors import EngineError
-from ...yade.deck import Deck, Material
 from ...yade.deck_modules.law import LAWS
-from ...yade.impacts import Yade
-from ...yade.launcher import command, deck_modules, environment
 from .prescribed import Loads, Motion, Touch, summary
 
 SCRIPT, STEPS = "motion.py", "motion.txt"

@@ -8,12 +8,12 @@ import numpy as np
 
 from ...base import rendering as decks
 from ...base.files import write_texts
+from ...engines.liggghts import data_file, dump, launcher, log, stl
+from ...engines.liggghts.engine import Liggghts
+from ...engines.liggghts.properties import SOFT, Property, elastic, per_pair, strength
+from ...engines.liggghts.scene_deck import contact_columns
 from ...impacts.engine import require
 from ...laws.library import laws
-from ...liggghts import data_file, dump, launcher, log, stl
-from ...liggghts.impacts import Liggghts
-from ...liggghts.properties import SOFT, Property, elastic, per_pair, strength
-from ...liggghts.scene_deck import contact_columns
 from ...scenes.meshes import rectangle
 from .assembly import Assembly, AssemblyPlan, ContactFrame
 

@@ -13,9 +13,9 @@ import numpy as np
 from ...base import rendering as decks
 from ...base.files import write_texts
 from ...base.processes import call, last_words
+from ...engines.yade.launcher import environment
 from ...errors import EngineError
 from ...impacts.experiment import Experiment
-from ...yade.launcher import environment
 
 SCRIPT, OUT = "roundoff.py", "out.roundoff"
 

@@ -9,9 +9,9 @@ import numpy as np
 
 from ...engines import ImpactEngine
 from ...engines.embedded import Embedded
+from ...engines.yade.engine import Yade
 from ...impacts.experiment import Experiment
 from ...impacts.plan import Plan
-from ...yade.impacts import Yade
 
 
 @dataclass(frozen=True)

@@ -11,10 +11,10 @@ import pandas as pd
 
 from ...engines import ImpactEngine
 from ...engines.embedded import Embedded
+from ...engines.yade.engine import Yade
 from ...errors import CaseError
 from ...impacts.engine import Feature, check_law, require
 from ...theory.backbones import ADHESIVE, LAWS
-from ...yade.impacts import Yade
 from ..models import engine
 from . import bulk_checks, precisions, precisions_yade
 from .assembly_liggghts import LiggghtsAssemblies

@@ -5,11 +5,11 @@ from pathlib import Path
 
 import numpy as np
 
+from ...engines.liggghts.engine import Liggghts
+from ...engines.yade.engine import Yade
 from ...errors import EngineError
 from ...impacts.engine import Trajectory
 from ...impacts.plan import Plan
-from ...liggghts.impacts import Liggghts
-from ...yade.impacts import Yade
 from . import edits_liggghts, edits_yade
 from .edits import Edit, Edits
 from .running import Setting
