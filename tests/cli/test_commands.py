@@ -228,8 +228,8 @@ def test_every_law_has_a_source_to_cite():
         assert any(what.startswith(f"law {law}, ") for what in of_laws([law]))
 
 
-@pytest.mark.parametrize("name", ["cost", "crosscheck", "figures", "motion", "rerun", "stability", "validate"])
-def test_the_former_name_of_a_command_of_the_proof_is_refused_with_its_new_one(name, capsys, monkeypatch):
-    done = call([name, "case.toml"], capsys, monkeypatch)
-    new = f"epdem verify {'data' if name == 'validate' else name}"
-    assert done.code == 2 and done.err == f"epdem: 'epdem {name}' is now '{new}'; see {new} --help\n"
+def test_the_former_name_of_a_command_of_the_proof_is_refused_with_its_new_one(folder, capsys, monkeypatch):
+    for name in ("cost", "crosscheck", "figures", "motion", "rerun", "stability", "validate"):
+        done = call([name, "case.toml"], capsys, monkeypatch)
+        new = f"epdem verify {'data' if name == 'validate' else name}"
+        assert done.code == 2 and done.err == f"epdem: 'epdem {name}' is now '{new}'; see {new} --help\n"
