@@ -23,6 +23,7 @@ import typer
 from pydantic import BaseModel
 
 import epdem
+from epdem.base.declarations import declarations
 from epdem.case.fields import Quantity
 from epdem.case.impact import Case
 from epdem.case.scene import SceneCase
@@ -105,7 +106,24 @@ def cases() -> str:
     ]
     for whole, title in ((Case, "Impacts"), (SceneCase, "Bulk scenes")):
         text.append(f"## {title}\n\n{_tables(whole, '', set())}")
-    return "\n".join(text)
+    return "\n".join([*text, laws()])
+
+
+def laws() -> str:
+    """Every law with its parameters, from the declarations."""
+    head = "| law.name | key | symbol | range | default | LIGGGHTS property |\n|---|---|---|---|---|---|"
+    rows, texts = [], []
+    for law in declarations().values():
+        condition = f" Condition: {law.condition}." if law.condition else ""
+        texts.append(f"- `{law.name}`: {law.title} ({'; '.join(law.sources)}).{condition}")
+        for p in law.parameters:
+            low, unit = "[0" if p.may_vanish else "(0", "" if p.unit == "1" else f" {p.unit}"
+            times = "" if law.default_ratio == 1.0 else f"{law.default_ratio:g} times "
+            ratio = f"{times}the yield stress" if p.name == law.strength else "required"
+            default = ratio if p.default is None else f"{p.default:g}"
+            row = (law.name, f"`law.{p.name}`", p.symbol, f"{low}, inf){unit}", default, f"`{p.property}`")
+            rows.append(f"| {' | '.join(row)} |")
+    return "\n".join(["## Laws\n", *texts, "", head, *rows, ""])
 
 
 def _tables(model: type[BaseModel], place: str, seen: set[type[BaseModel]]) -> str:

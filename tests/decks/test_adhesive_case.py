@@ -83,7 +83,7 @@ def test_without_adhesion_the_laws_are_hertz_and_thornton():
 def test_a_dashpot_beside_adhesion_and_yade_are_refused():
     with pytest.raises(CaseError, match="both adhesion"):
         made(viscous={"restitution": 0.8})
-    with pytest.raises(CaseError, match="engine yade has hertz"):
+    with pytest.raises(CaseError, match="engine yade has no law with adhesion"):
         check_features(engine("yade"), made())
 
 

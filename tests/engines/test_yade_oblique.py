@@ -69,7 +69,7 @@ def spring(law, G_star, mass, v_n, theta, dt):
     delta, delta_max, v_z, v_x, w, T = -1e-8, 0.0, v_n, v_n * np.tan(theta), 0.0, 0.0
     inertia = 0.4 * mass * R * R
     while v_z > 0 or delta > 0:
-        F, a, delta_max = numbers.step(law, R, delta_max, delta)
+        F, a, delta_max = law.step(R, delta_max, delta)
         T = min(max(T + 8 * G_star * a * (v_x - w * R) * dt, -MU * F), MU * F)
         v_z, v_x, w = v_z - F / mass * dt, v_x - T / mass * dt, w + T * (R - delta) / inertia * dt
         delta += v_z * dt
@@ -84,7 +84,7 @@ def test_where_a_contact_sticks_yade_has_one_spring_and_no_partial_slip(tmp_path
     E, nu = 208e9, 0.3
     E_star, G_star = 0.5 * E / (1 - nu**2), float(pair.G_star(E, nu, E, nu))
     mass, theta = float(pair.sphere_mass(radius=R, density=7850.0)), np.radians(ANGLES)
-    law = numbers.Thornton(E_star, 2.8e9)
+    law = numbers.Law("thornton", E_star, 2.8e9)
     plain = np.array([spring(law, G_star, mass, SPEEDS[0], angle, 1e-7) for angle in theta])
     assert np.abs(e_t[0] - plain[:, 0]).max() < 5e-4  # of first order in the time step
     assert np.abs(spin[0] - plain[:, 1]).max() < 2e-3 * plain[:, 1].max()

@@ -24,7 +24,7 @@ law = pair("steel", "steel")
 for k in (1, late):
     contact = O.interactions[0, k]
     u = contact.geom.penetrationDepth
-    worst = max(worst, abs(contact.phys.normalForce.norm() / numbers.step(law, R, u, u)[0] - 1))  # at the largest
+    worst = max(worst, abs(contact.phys.normalForce.norm() / law.step(R, u, u)[0] - 1))  # at the largest
 answer(held=held, worst=worst)
 """
 

@@ -31,7 +31,7 @@ from epdem.theory.yielding import principal
 from epdem.verification.models import lammps
 from epdem.verification.stability import variants
 from epdem.verification.stability.edits import Edit
-from epdem.yade.deck_modules.law import Cavity
+from epdem.yade.deck_modules.law import Law
 
 CASES = Path(__file__).parents[2] / "cases"
 
@@ -161,8 +161,8 @@ def test_decks_and_studies(tmp_path, monkeypatch):
         own_template.write(Path(".j2"), CASES / "steel_wall.toml", {}, tmp_path)
     with says(r"stress has shape \(3,\), must end in \(3, 3\)", ValueError):
         principal([1.0, 2.0, 3.0])
-    with says("would create energy at yield", ValueError):
-        Cavity(1e9, 1e6, 1.0, 9.0)
+    with says("law cavity: .*no energy created at yield", ValueError):
+        Law("cavity", 1e9, 1e6, first_yield_ratio=1.0, plastic_ratio=9.0)
     steel = one_impact.sourced("steel")
     soft = replace(steel, material=steel.material.model_copy(update={"yield_stress": None}))
     monkeypatch.setattr(one_impact, "sourced", lambda name: soft)

@@ -22,6 +22,7 @@ from epdem import Scene
 from epdem.base import settings
 from epdem.case.impact import parse
 from epdem.case.toml import read_toml
+from epdem.engines.yade.launcher import write_deck_modules
 from epdem.errors import CaseError, EngineError
 
 spec = importlib.util.spec_from_file_location("guide", ROOT / "docs/guide.py")
@@ -118,9 +119,8 @@ def test_no_page_has_blocks_that_no_test_runs():
 @pytest.mark.yade
 def test_the_script_for_yade_runs(tmp_path):
     ((_, _, text),) = [b for b in of("python") if b[1] == ["yade"]]
-    (tmp_path / "beds.py").write_text(
-        text.replace("/path/to/epdem/python", str(ROOT / "python")).replace("100000", "500")
-    )
+    write_deck_modules(tmp_path)
+    (tmp_path / "beds.py").write_text(text.replace("/path/to/deck", str(tmp_path)).replace("100000", "500"))
     done = subprocess.run(["yade", "-n", "-x", "beds.py"], cwd=tmp_path, capture_output=True, text=True, timeout=120)
     assert done.returncode == 0 and "Traceback" not in done.stderr, done.stderr
 

@@ -14,7 +14,6 @@ from typing import Any, Unpack, overload
 import pandas as pd
 
 from .. import theory
-from ..base.folders import write_own
 from ..base.tables import unit_of
 from ..case.scene import is_scene
 from ..case.toml import read_toml
@@ -28,7 +27,7 @@ from ..impacts.prediction import predict as predict_experiment
 from ..impacts.run import Outcome, write_deck
 from ..impacts.run import run_case as run_impacts
 from ..scenes.columns import units as scene_units
-from ..scenes.engine import files as scene_files
+from ..scenes.engine import write_deck as write_scene_deck
 from ..scenes.plan import plan as plan_scene
 from ..scenes.run import SceneOutcome
 from ..scenes.run import run_case as run_scene
@@ -218,7 +217,7 @@ def deck(
     if isinstance(case, Scene):
         if law is not None:
             raise CaseError(f"law = {law!r}: a scene has its own law; leave it out")
-        return write_own(folder, scene_files(scene_engine(engine), plan_scene(case.model)), force=force)
+        return write_scene_deck(scene_engine(engine), plan_scene(case.model), folder, force=force)
     return write_deck(experiment(case.model, law), engine_named(engine), folder, force=force)
 
 

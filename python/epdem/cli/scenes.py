@@ -64,12 +64,11 @@ def run_scene(
 
 def deck_scene(case: Path, out: Path, *, engine: str, force: bool, as_json: bool) -> None:
     """Write the deck of a scene."""
-    from ..base.folders import write_own
     from ..case.scene import load
     from ..case.toml import named
     from ..case.warnings import case_warnings
     from ..engines import scene_engine
-    from ..scenes.engine import files as files_for
+    from ..scenes.engine import write_deck
     from ..scenes.plan import plan
     from ..scenes.warnings import planned_warnings
 
@@ -78,8 +77,8 @@ def deck_scene(case: Path, out: Path, *, engine: str, force: bool, as_json: bool
         warn(case_warnings(read))
         p = plan(read)
         warn(planned_warnings(p))
-        files = files_for(scene_engine(engine), p)
-    say_files(write_own(out, files, force=force), as_json)
+        files = write_deck(scene_engine(engine), p, out, force=force)
+    say_files(files, as_json)
 
 
 def explain(case: CasePath, as_json: AsJson = False) -> None:

@@ -20,7 +20,7 @@ class Embedded:
     source: Source | None = None
     laws: tuple[str, ...] | None = None
     ranks = 1
-    features = frozenset({Feature.DASHPOT, Feature.FRICTION, Feature.SPHERE_FRICTION})
+    features = frozenset({Feature.ADHESION, Feature.DASHPOT, Feature.FRICTION, Feature.SPHERE_FRICTION})
 
     def missing(self) -> str | None:
         if paths.native("libepdem.so") is None:

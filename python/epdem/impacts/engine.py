@@ -12,6 +12,7 @@ from typing import Protocol, TypeVar
 import numpy as np
 
 from ..errors import CaseError, EngineError
+from ..laws.strengths import law_named
 from ..theory.sources import Source
 from .experiment import Experiment
 from .plan import Plan
@@ -41,6 +42,7 @@ class Trajectory:
 class Feature(StrEnum):
     """A named ability of an engine; other code never tests the name of the engine."""
 
+    ADHESION = "adhesion"  # laws with adhesion
     DASHPOT = "dashpot"  # [viscous] of a case of impacts
     FRICTION = "friction"  # oblique impacts on walls
     SPHERE_FRICTION = "friction of two spheres"  # oblique impacts of two spheres
@@ -96,7 +98,12 @@ def texts(tool: Engine[AnyJob, object], job: AnyJob) -> dict[str, str]:
     with tempfile.TemporaryDirectory(prefix="epdem-") as scratch:
         folder = Path(scratch)
         files = tool.write(job, folder)
-        return {file.relative_to(folder).as_posix(): file.read_text(encoding="utf-8") for file in files}
+        return {f.relative_to(folder).as_posix(): f.read_text(encoding="utf-8") for f in files if is_text(f)}
+
+
+def is_text(file: Path) -> bool:
+    """Whether a file of a deck is text: every one but a copy of the C library."""
+    return file.suffix != ".so"
 
 
 class Installable(Protocol):
@@ -120,12 +127,20 @@ class HasLaws(Protocol):
 
     name: str
     laws: tuple[str, ...] | None
+    features: frozenset[Feature]
+
+
+def has_law(tool: HasLaws, law: str) -> bool:
+    """Whether an engine has a law of epdem."""
+    named = tool.laws is None or law in tool.laws
+    return named and (Feature.ADHESION in tool.features or not law_named(law).adheres)
 
 
 def check_law(tool: HasLaws, law: str) -> None:
     """Raise CaseError for a law that an engine does not have."""
-    if tool.laws is not None and law not in tool.laws:
-        raise CaseError(f"law.name = {law!r}: engine {tool.name} has {', '.join(tool.laws)} only; use another --engine")
+    if not has_law(tool, law):
+        known = "no law with adhesion" if tool.laws is None else f"{', '.join(tool.laws)} only"
+        raise CaseError(f"law.name = {law!r}: engine {tool.name} has {known}; use another --engine")
 
 
 def check_features(tool: ImpactEngine, x: Experiment) -> None:

@@ -22,7 +22,7 @@ from ..case.warnings import case_warnings
 from ..errors import CaseError
 from . import store
 from .comparison import compare, impacts_table
-from .engine import Feature, ImpactEngine, refuse, require
+from .engine import Feature, ImpactEngine, is_text, refuse, require
 from .experiment import Experiment, experiment
 from .measurement import measure
 from .paths import chosen
@@ -72,7 +72,7 @@ def run_plan(p: Plan, tool: ImpactEngine, folder: Path, *, ranks: int = 1, end_p
     path = tool.run(p, folder, ranks=ranks)
     table = impacts_table(p, measure(p, path, end_power=end_power))
     seconds = {f"seconds_{k}": v for k, v in path.seconds.items()} | {"seconds": time.perf_counter() - start}
-    decks = {f.name: f.read_text(encoding="utf-8") for f in files if f.suffix != ".data"}
+    decks = {f.name: f.read_text(encoding="utf-8") for f in files if is_text(f) and f.suffix != ".data"}
     return Stage(table, seconds, decks, chosen(p, path))
 
 

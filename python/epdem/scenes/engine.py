@@ -8,6 +8,7 @@ from typing import Protocol
 
 import pandas as pd
 
+from ..base.folders import claim
 from ..errors import CaseError, EngineError
 from ..impacts.engine import Engine, Feature, Report, check_law, refuse_ranks, texts
 from .plan import ScenePlan
@@ -41,6 +42,12 @@ def files(engine: SceneEngine, p: ScenePlan) -> dict[str, str]:
     """The text of every file of a scene by its path in the folder. Raises CaseError for what the engine cannot do."""
     engine.check(p)
     return texts(engine, p)
+
+
+def write_deck(engine: SceneEngine, p: ScenePlan, folder: Path, *, force: bool = False) -> list[Path]:
+    """Write the deck of a scene into `folder`, where `force` allows other files; its files. Raises CaseError."""
+    with claim(folder, force=force, files=files(engine, p)):
+        return engine.write(p, folder)
 
 
 def check_run(engine: SceneEngine, *, ranks: int = 1, resume: bool = False) -> None:

@@ -1,13 +1,13 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """The data of the template of an impact deck."""
 
-from collections.abc import Iterable
 from dataclasses import dataclass
 from math import inf
 
 from ...errors import CaseError
+from ...laws.strengths import law_named
 from ...yade.deck_modules import cone
-from ...yade.deck_modules.law import LAWS
+from ...yade.deck_modules.law import trigger_factor
 
 
 @dataclass(frozen=True)
@@ -22,24 +22,16 @@ def strength_values(
     law: str, ratios: dict[str, float], strength: float, young_modulus: float, material: str
 ) -> dict[str, float]:
     """The law's strength [Pa] by its name, nothing for a law without one. Raises CaseError where YADE's class ends."""
-    kind = LAWS[law]
-    if not kind.strength_name:
+    name = law_named(law).strength
+    if name is None:
         return {}
-    limit = cone.strongest(young_modulus, kind(1.0, 1e-3, **ratios).trigger_factor)
+    limit = cone.strongest(young_modulus, trigger_factor(law, **ratios))
     if limit <= strength < inf:
         raise CaseError(
-            f"materials.{material}: {kind.strength_name} = {strength:.6g} Pa, YADE's law takes less than "
+            f"materials.{material}: {name} = {strength:.6g} Pa, YADE's law takes less than "
             f"{limit:.6g} Pa at this young_modulus; use --engine liggghts"
         )
-    return {kind.strength_name: strength}
-
-
-def refuse_parameters(law: str, given: Iterable[str]) -> None:
-    """Raise CaseError for a parameter of the law that its copy in YADE does not have."""
-    for name in given:
-        if name not in LAWS[law].ratios:
-            reason = f"YADE's copy of {law} has no such parameter; remove it or use --engine liggghts"
-            raise CaseError(f"law.{name}: {reason}")
+    return {name: strength}
 
 
 @dataclass(frozen=True)

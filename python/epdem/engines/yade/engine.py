@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""YADE with our laws: impacts side by side in one Python deck with a copy of the law, and bulk scenes."""
+"""YADE with our laws: impacts side by side in one Python deck with a copy of the C library, and bulk scenes."""
 
 import re
 import shutil
@@ -22,16 +22,15 @@ from ...impacts.plan import Plan
 from ...scenes.engine import Resumed, Tables, check_scene
 from ...scenes.plan import ScenePlan
 from ...theory.sources import Source
-from ...yade.deck_modules.law import LAWS
 from . import scene_deck, scenes
-from .deck import Deck, Group, Material, refuse_parameters, strength_values
+from .deck import Deck, Group, Material, strength_values
 from .launcher import command, environment, write_deck_modules
 
 INSTALL = "apt-get install yade"
 
 
 class Yade:
-    """YADE with a copy of the law in the deck; a run has one core."""
+    """YADE with a copy of the C library in the deck; a run has one core."""
 
     name = "yade"
     source: Source | None = Source(
@@ -42,7 +41,7 @@ class Yade:
         kind="manual",
         note="doi:10.5281/zenodo.5705394",
     )
-    laws: tuple[str, ...] | None = tuple(LAWS)
+    laws: tuple[str, ...] | None = None
     ranks = 1
     features = frozenset({Feature.FRICTION, Feature.DECK, Feature.POSITIONS})
     template = "yade/impact.py.j2"
@@ -75,8 +74,6 @@ class Yade:
         """The deck of a plan. Raises CaseError for what YADE cannot do."""
         x, wall = plan.experiment, isinf(plan.experiment.target.radius)
         check_features(self, x)
-        if x.law.name in LAWS:
-            refuse_parameters(x.law.name, x.law.ratios())
         materials = {
             x.target.material: self.material(x, x.target, x.law.strengths[1]),
             x.body.material: self.material(x, x.body, x.law.strengths[0]),
@@ -113,7 +110,7 @@ class Yade:
 
     def write(self, job: Plan | ScenePlan, folder: Path) -> list[Path]:
         if isinstance(job, ScenePlan):
-            return write_texts(folder, scene_deck.files(job))
+            return write_texts(folder, scene_deck.files(job)) + write_deck_modules(folder)
         deck = self.deck(job)
         folder.mkdir(parents=True, exist_ok=True)
         modules = [] if deck.native else write_deck_modules(folder)

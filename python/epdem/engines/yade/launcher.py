@@ -2,9 +2,12 @@
 """Starting YADE, and the modules in a deck."""
 
 import os
+import shutil
 from pathlib import Path
 
-from ...base.files import write_texts
+from ...base.declarations import library_path
+from ...base.files import atomic, write_texts
+from ...yade.deck_modules.law import LIBRARY
 
 MODULES = Path(__file__).parents[2] / "yade/deck_modules"
 
@@ -24,8 +27,12 @@ def deck_modules() -> dict[str, str]:
 
 
 def write_deck_modules(folder: Path) -> list[Path]:
-    """`deck_modules` in a deck's folder."""
-    return write_texts(folder, deck_modules())
+    """Write `deck_modules` and a copy of the C library beside them into a deck's folder. Raises EngineError."""
+    written = write_texts(folder, deck_modules())
+    copy = folder / "epdem/yade/deck_modules" / LIBRARY
+    with atomic(copy, sync=False) as temporary:
+        shutil.copyfile(library_path(), temporary)
+    return [*written, copy]
 
 
 def environment() -> dict[str, str]:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Scenes in YADE: one plain Python deck, the table of the spheres and a copy of the law's modules."""
+"""Scenes in YADE: one plain Python deck, the table of the spheres, modules and a copy of the C library."""
 
 from dataclasses import dataclass
 from itertools import combinations_with_replacement
@@ -11,8 +11,7 @@ from ...errors import CaseError
 from ...scenes import placement
 from ...scenes.plan import ScenePlan
 from ...yade.deck_modules import cone
-from .deck import Material, refuse_parameters, strength_values
-from .launcher import deck_modules
+from .deck import Material, strength_values
 from .scene_parts import EDGES, Facets, Load, Motion, facets, loads, motions, spheres
 from .scene_parts import files as facet_files
 from .scene_parts import refuse as refuse_parts
@@ -107,7 +106,6 @@ def refuse(p: ScenePlan) -> None:
     m, out, s = p.model, p.output, p.case.scene
     if isinstance(s, Parts):
         refuse_parts(p, s)
-    refuse_parameters(m.law, m.ratios())
     unknown: dict[str, tuple[object, str]] = {
         "scene.rate": (next((f.rate for f in p.insertions if f.rate), None), "all spheres are there from the start"),
         "viscous.restitution": (p.case.viscous and p.case.viscous.restitution, "YADE's law has no dashpot"),
@@ -222,7 +220,7 @@ def deck(p: ScenePlan) -> Deck:
 def files(p: ScenePlan) -> dict[str, str]:
     """All files of a YADE scene by name; they run by hand in one folder. Raises CaseError."""
     deck_files = {SCRIPT: decks.render("yade/scene.py.j2", deck=deck(p)), SPHERES: _table(p)}
-    return deck_files | (facet_files(p) if _parts(p) else {}) | deck_modules()
+    return deck_files | (facet_files(p) if _parts(p) else {})
 
 
 def _filled(p: ScenePlan) -> Limits:

@@ -25,6 +25,7 @@ class LiggghtsMotions:
 
     name = Liggghts.name
     laws: tuple[str, ...] | None = None
+    features = Liggghts.features
     own_spring = False
 
     def missing(self) -> str | None:

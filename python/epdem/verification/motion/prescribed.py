@@ -18,6 +18,7 @@ from ...case.fields import NODES, Tangential
 from ...case.sizes import LARGEST_FILE
 from ...case.toml import text_of
 from ...errors import CaseError
+from ...impacts.engine import Feature
 from ...impacts.experiment import Experiment
 from ...impacts.plan import Plan
 from ...laws.library import Array
@@ -118,6 +119,7 @@ class MotionEngine(Protocol):
 
     name: str
     laws: tuple[str, ...] | None  # as in `Engine`
+    features: frozenset[Feature]  # as in `Engine`
     own_spring: bool  # its own spring runs for any tangential model
 
     def missing(self) -> str | None:

@@ -11,9 +11,8 @@ from ...base.files import write_texts
 from ...base.processes import call
 from ...engines.yade.deck import Deck, Material
 from ...engines.yade.engine import Yade
-from ...engines.yade.launcher import command, deck_modules, environment
+from ...engines.yade.launcher import command, environment, write_deck_modules
 from ...errors import EngineError
-from ...yade.deck_modules.law import LAWS
 from .prescribed import Loads, Motion, Touch, summary
 
 SCRIPT, STEPS = "motion.py", "motion.txt"
@@ -23,7 +22,8 @@ class YadeMotions:
     """YADE with our laws and its own friction: one spring whose kinematics are YADE's."""
 
     name = Yade.name
-    laws: tuple[str, ...] | None = tuple(LAWS)
+    laws: tuple[str, ...] | None = None
+    features = Yade.features
     own_spring = True
 
     def missing(self) -> str | None:
@@ -31,6 +31,7 @@ class YadeMotions:
 
     def loads(self, touch: Touch, motion: Motion, folder: Path) -> Loads:
         write_texts(folder, files(touch, motion))
+        write_deck_modules(folder)
         path = folder / "path.npy"
         path.unlink(missing_ok=True)
         call([command(), "-n", "-x", SCRIPT], folder, log="out.yade", seconds=300, env=environment())
@@ -54,9 +55,9 @@ def deck(touch: Touch, motion: Motion) -> Deck:
 
 
 def files(touch: Touch, motion: Motion) -> dict[str, str]:
-    """Script, steps and modules of a motion by name; they run by hand in one folder. Raises CaseError."""
+    """Script and steps of a motion by name; they run beside the modules of a deck. Raises CaseError."""
     table = np.concatenate([motion.place, motion.velocity, motion.spin], axis=2).reshape(motion.steps, 18)
     lines = ["# of i, then of j: x y z [m], v [m/s], omega [rad/s]"]
     lines += [" ".join(map(decks.number, row)) for row in table.tolist()]
     script = decks.render("verification/yade/motion.py.j2", deck=deck(touch, motion), steps=STEPS)
-    return {SCRIPT: script, STEPS: "\n".join([*lines, ""])} | deck_modules()
+    return {SCRIPT: script, STEPS: "\n".join([*lines, ""])}

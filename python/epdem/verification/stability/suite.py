@@ -13,7 +13,7 @@ from ...engines import ImpactEngine
 from ...engines.embedded import Embedded
 from ...engines.yade.engine import Yade
 from ...errors import CaseError
-from ...impacts.engine import Feature, check_law, require
+from ...impacts.engine import Feature, check_law, has_law, require
 from ...theory.backbones import ADHESIVE, LAWS
 from ..models import engine
 from . import bulk_checks, precisions, precisions_yade
@@ -123,7 +123,7 @@ def run(
 
 def _work(tool: ImpactEngine, laws: list[str], chosen: list[Extreme]) -> list[tuple[str, Extreme]]:
     """The laws and cases of an engine."""
-    known = [law for law in laws if tool.laws is None or law in tool.laws]
+    known = [law for law in laws if has_law(tool, law)]
     if isinstance(tool, Yade):  # seconds for a plan
         known, chosen = [LAW_OF_SLOW] if LAW_OF_SLOW in known else known, ends(chosen)
     return [(law, extreme) for law in known for extreme in chosen if extreme.suits(law)]

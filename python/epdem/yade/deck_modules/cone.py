@@ -44,6 +44,18 @@ def damage_limit(E_star: float, R: float, dent: float, delta_max: float) -> tupl
 def growth_by_secant(R: float, h: float, step: float, rise: float) -> float:
     """alphaFac with which the force beyond the end of the branch rises by the share `rise` over `step` [m].
 
-    F grows there as R^2, and R by step/(h + alphaFac): hence R sqrt(1 + rise) = R + step/(h + alphaFac).
+    F grows there as R^2, and R by step/(h + alphaFac): hence R sqrt(1 + rise) = R + step/(h + alphaFac). If the force
+    does not rise, the result is h/3, with which F goes on as the branch.
     """
+    if not rise > 0.0:
+        return h / 3.0
     return step * (sqrt(1.0 + rise) + 1.0) / (R * rise) - h
+
+
+def hertz_branch(E_star: float, force: float, radius: float, delta: float) -> tuple[float, float]:
+    """(R, dent) of the Hertz contact F = 4/3 E* sqrt(R) (delta - dent)^1.5 with this force and slope 2 E* a at delta.
+
+    For a law that does not flatten it is the whole elastic branch, exactly; else it touches the branch at delta.
+    """
+    x = 0.75 * force / (E_star * radius)
+    return radius * radius / x, delta - x

@@ -16,7 +16,7 @@ from yade import O
 from yade.wrapper import Facet, FrictMatCDM, Sphere, Wall
 
 from . import cone
-from .law import Law, Point, hertz_branch, recovered_overlap, unload
+from .law import Law
 
 FAR = 1e99  # sigmaMax [Pa] of a contact that never yields
 REACH = 1e-5  # how far a contact may move from its branch's touching point, over its elastic depth: 1e-10 of the force
@@ -59,6 +59,7 @@ class Contact:
     __slots__ = (
         "E",
         "R_star",
+        "a_max",
         "bodies",
         "born",
         "delta_max",
@@ -67,7 +68,6 @@ class Contact:
         "interaction",
         "law",
         "levers",
-        "peak",
         "phys",
         "place",
         "radius",
@@ -84,7 +84,7 @@ class Contact:
         self.bodies = interaction.id1, interaction.id2
         self.levers = tuple(k for k in (0, 1) if not isinstance(O.bodies[self.bodies[k]].shape, Sphere))
         self.delta_max: float = phys.adhesionForce
-        self.peak: Point = law.load(R_star, self.delta_max) if self.delta_max > 0.0 else (0.0, 0.0, 0.0)
+        self.a_max = law.load(R_star, self.delta_max)[1] if self.delta_max > 0.0 else 0.0  # contact radius there
 
     @property
     def alive(self) -> bool:
@@ -109,7 +109,7 @@ class Contact:
         """Follow the branch (R, dent) up to overlap `limit`; beyond, F rises by the share `rise` over `step`."""
         phys = self.phys
         h, sigma = cone.damage_limit(self.E, R, dent, limit)
-        self.growth = cone.growth_by_secant(R, h, step, rise) if rise > 0.0 else h / 3.0  # h/3: as the branch
+        self.growth = cone.growth_by_secant(R, h, step, rise)
         self.radius = R - dent / self.growth
         phys.R, phys.radius, phys.alphaFac, phys.sigmaMax = R, self.radius, self.growth, sigma
 
@@ -128,10 +128,11 @@ class Contact:
     def load(self, u: float) -> float:
         """The contact is at its new maximum u: the law's force, and the course from here."""
         last = self.delta_max or self.yield_overlap
-        self.peak = force, radius, _ = self.law.load(self.R_star, u)
+        force, radius = self.law.load(self.R_star, u)
         self.delta_max = self.phys.adhesionForce = u
+        self.a_max = radius
         step = max(u - last, cone.SMALL * u)
-        R, dent = hertz_branch(self.E, force, radius, u)
+        R, dent = cone.hertz_branch(self.E, force, radius, u)
         self._steer(R, dent, u, step, self.law.load(self.R_star, u + step)[0] / force - 1.0)
         if self.law.flattens:
             self.phys.kr = self.phys.ktw = u
@@ -140,36 +141,36 @@ class Contact:
     def remember(self, delta_max: float) -> None:
         """Take over a maximum that passed without us; the branch is that of the law from here."""
         self.delta_max = self.phys.adhesionForce = delta_max
-        self.peak = force, radius, _ = self.law.load(self.R_star, delta_max)
-        self._steer(*hertz_branch(self.E, force, radius, delta_max), delta_max)
+        force, self.a_max = self.law.load(self.R_star, delta_max)
+        self._steer(*cone.hertz_branch(self.E, force, self.a_max, delta_max), delta_max)
         self.phys.kr = self.phys.ktw = delta_max
 
     def unload(self, u: float) -> float:
         """The law's force at u <= delta_max; for a flattened contact also the branch that touches the law's where the
         next step is expected, in force and in slope (so in contact radius)."""
-        force, _ = unload(self.E, self.peak, self.delta_max, u)
+        force, radius = self.law.unload(self.R_star, self.delta_max, u)
         if not self.law.flattens:
             return force
         phys = self.phys
         ahead = min(2.0 * u - phys.kr, self.delta_max)
-        there = unload(self.E, self.peak, self.delta_max, ahead)
+        there = self.law.unload(self.R_star, self.delta_max, ahead)
         if not there[0] > 0.0:
-            ahead, there = u, unload(self.E, self.peak, self.delta_max, u)
+            ahead, there = u, (force, radius)
         phys.kr = u
         if there[0] > 0.0:
             phys.ktw = ahead
         else:  # parted: the branch of the first touch
-            phys.ktw, share = PARTED, recovered_overlap(self.E, self.peak)
-            ahead = self.delta_max - (1.0 - cone.SMALL) * share
-            there = unload(self.E, self.peak, self.delta_max, ahead)
-        self._steer(*hertz_branch(self.E, *there, ahead), self.delta_max)
+            dent = self.law.dent(self.R_star, self.delta_max)
+            phys.ktw, ahead = PARTED, dent + cone.SMALL * (self.delta_max - dent)
+            there = self.law.unload(self.R_star, self.delta_max, ahead)
+        self._steer(*cone.hertz_branch(self.E, *there, ahead), self.delta_max)
         return force
 
     def bounds(self) -> tuple[float, float]:
         """Overlaps between which the branch stands for the law's (flattened contacts), from what YADE saves alone."""
         touch, dent = self.phys.ktw, (self.phys.R - self.radius) * self.growth
         if touch == PARTED:
-            return -inf, min(dent, self.delta_max - recovered_overlap(self.E, self.peak))
+            return -inf, min(dent, self.law.dent(self.R_star, self.delta_max))
         reach = REACH * (touch - dent)
         return touch - reach, min(touch + reach, self.delta_max)
 

@@ -11,8 +11,8 @@
                  *contacts.engines(), NewtonIntegrator(damping=0)]
 
 YADE's own C++ (see cone.py) computes every contact. Between its interaction loop and the integrator `visit` looks for
-contacts that have just yielded, adds the difference to the law's force and steers their next step. For `cavity`, whose
-elastic branch is not Hertz's once it has yielded, it also visits those that have moved.
+contacts that have just yielded, adds the difference to the law's force and steers their next step. Of a law whose
+elastic branch is not Hertz's once it has yielded (`cavity`) it also visits those that have moved.
 
 O.save keeps all history (see contact.py) and the law's name; a loaded scene continues wherever this module
 can be imported. As everywhere in YADE the history of a contact ends when the bodies separate (overlap < 0).
@@ -41,7 +41,7 @@ from yade.wrapper import (
 
 from . import cone
 from .contact import FAR, Contact, effective_radius, survey, trigger_pressure
-from .law import LAWS, Law
+from .law import Law, trigger_factor
 
 PATIENCE = 100  # most steps between two looks at the speeds
 LABEL = "epdem_visit"  # of our PyRunner: YADE binds it anew whenever a scene is loaded
@@ -64,7 +64,7 @@ def visit(*key: Any) -> None:
 class Contacts:
     """All contacts of a scene under one law.
 
-    law        hertz, thornton, johnson or cavity; `ratios` are its dimensionless parameters (first_yield_ratio, ...)
+    law        one without adhesion; `ratios` are its dimensionless parameters (first_yield_ratio, ...)
     interval   largest number of steps between two complete searches for new contacts (a change of the number of
                contacts starts one at once). None: it follows from the fastest body. If a given interval lets a body
                pass half the smallest yield overlap, there is a warning, and a search in every step while this lasts
@@ -72,14 +72,9 @@ class Contacts:
     """
 
     def __init__(self, law: str, interval: int | None = None, tolerance: float = 0.0, **ratios: float):
-        if law not in LAWS:
-            raise ValueError(f"law {law!r} does not exist; there are {', '.join(LAWS)}")
-        self.kind = LAWS[law]
-        for name in ratios:
-            if name not in self.kind.ratios:
-                raise ValueError(f"law {law} has no parameter {name!r}; it has {', '.join(self.kind.ratios) or 'none'}")
-        probe = self.kind(1.0, 1e-3, **ratios)  # refuses ratios that do not fit together
-        self.factor = probe.trigger_factor
+        self.law = law
+        self.strength_name = Law(law, 1.0, **ratios).strength_name
+        self.factor = trigger_factor(law, **ratios)  # refuses ratios that do not fit together
         if interval is not None and interval < 1:
             raise ValueError(f"interval = {interval!r} steps, must be >= 1")
         self.ratios, self.interval, self.tolerance = ratios, interval, tolerance
@@ -104,10 +99,10 @@ class Contacts:
 
         young_modulus = inf is a rigid body. Of two materials the weaker one's strength counts.
         """
-        name = self.kind.strength_name
+        name = self.strength_name
         if set(strength) != ({name} - {None}):
             given = ", ".join(strength) or "none"
-            raise TypeError(f"law {self.kind.name} needs {name or 'no strength'}, given: {given}")
+            raise TypeError(f"law {self.law} needs {name or 'no strength'}, given: {given}")
         young, value = min(young_modulus, RIGID), strength.get(name or "", inf)
         like = 0.5 * young / (1.0 - poisson_ratio**2)  # E* of two bodies of this material
         trigger, alpha = cone.NEVER * young, 0.5
@@ -245,7 +240,7 @@ class Contacts:
 
     def _law(self, E_star: float, strength: float) -> Law:
         if (E_star, strength) not in self._laws:
-            self._laws[E_star, strength] = self.kind(E_star, strength, **self.ratios)
+            self._laws[E_star, strength] = Law(self.law, E_star, strength, **self.ratios)
         return self._laws[E_star, strength]
 
     def _enter(self, contact: Contact) -> tuple[float, float] | None:
@@ -303,7 +298,7 @@ class Contacts:
     def _correct(self, contact: Contact, force: float, computed: float) -> None:
         self.visits += 1
         if self.strain and contact.delta_max > 0.0:
-            self.strain[0] = max(self.strain[0], contact.peak[1] / contact.R_star)
+            self.strain[0] = max(self.strain[0], contact.a_max / contact.R_star)
             self.strain[1] = max(self.strain[1], contact.delta_max / contact.R_star)
         if abs(force - computed) > self.tolerance * force:
             contact.correct(force, force - computed)
