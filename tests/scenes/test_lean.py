@@ -57,6 +57,7 @@ def small(data: dict) -> dict:
         scene |= {"settle_time": "1 ms", "box": ["0.12 mm", "0.12 mm", "0.8 mm"], "count": 40, "height": "0.3 mm"}
     if "phase" in scene:
         scene |= {"phase": [phase | {"duration": "0.03 s"} for phase in scene["phase"]]}
+        few["numerics"] = {"time_step": "1.5e-5 s"}  # the search of a step takes seconds with a dashpot
     return data | {"scene": scene} | few
 
 
