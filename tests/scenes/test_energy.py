@@ -87,7 +87,7 @@ def test_kinetic_elastic_plastic_and_potential_energy_leave_nothing_over_without
     assert table["balance"].abs().max() < 3e-3 * moved
     assert table["plastic"].iloc[-1] > 0.1 * moved, "the plastic term matters"
     assert "friction" not in table
-    verdict = outcome.results.checks.set_index("check").loc["energy: all terms but none as remainder"]
+    verdict = outcome.results.checks.set_index("key").loc["energy_residual"]
     assert verdict["passed"] and verdict["tolerance"] == 0.01
 
 
@@ -114,7 +114,7 @@ def test_with_partial_slip_the_work_of_friction_is_computed_and_nothing_is_left_
     assert table["balance"].abs().max() < 0.01 * moved
     assert table["friction"].iloc[-1] > 0.1 * moved and table["springs"].max() > 1e-4 * moved
     assert np.diff(table["friction"]).min() >= -1e-9 * moved
-    verdict = outcome.results.checks.set_index("check").loc["energy: all terms but none as remainder"]
+    verdict = outcome.results.checks.set_index("key").loc["energy_residual"]
     assert verdict["passed"]
 
 

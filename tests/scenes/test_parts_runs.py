@@ -37,8 +37,8 @@ def test_the_floor_of_a_smooth_cylinder_bears_the_weight_of_the_bed(sieved):
     weight = 9.81 * spheres[spheres["step"] == spheres["step"].max()]["mass"].sum()
     assert -last["floor_force_z"] == pytest.approx(weight, rel=0.02)
     assert abs(last["cylinder_force_z"]) < 1e-9 * weight  # no friction
-    checks = sieved.results.checks.set_index("check")
-    assert checks["passed"].all() and "force on all walls / weight" in checks.index
+    checks = sieved.results.checks.set_index("key")
+    assert checks["passed"].all() and "force_on_all_walls" in checks.index
 
 
 def test_the_energy_of_a_scene_with_an_stl_wall_and_an_impactor_closes(tmp_path):

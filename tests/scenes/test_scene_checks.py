@@ -2,6 +2,9 @@
 """The checks that a user sees, on tables made by hand: each gives the number put in, and fails when it should."""
 
 import math
+import re
+from pathlib import Path
+from types import SimpleNamespace
 
 import numpy as np
 import pandas as pd
@@ -13,6 +16,7 @@ from epdem.case.scene import parse
 from epdem.scenes import checks, energy_balance
 from epdem.scenes.columns import rows as table_of_rows
 from epdem.scenes.plan import ScenePlan, plan
+from epdem.studies.sweep.numbers import numbers_of, unit
 
 BOX = {"name": "box", "kind": "box", "x": ["-9 mm", "9 mm"], "y": ["-9 mm", "9 mm"], "z": ["0 mm", "40 mm"]}
 BOX |= {"material": "steel"}
@@ -47,9 +51,9 @@ def rows(p: ScenePlan, **columns) -> pd.DataFrame:
 
 
 def verdict(p: ScenePlan, name: str, **tables: pd.DataFrame) -> dict:
-    """The row of the check whose name begins so; rows that say nothing where none are given."""
+    """The row of the check with this key; rows that say nothing where none are given."""
     table = checks.checks(p, tables if "rows" in tables else {"rows": rows(p)} | tables)
-    (row,) = table[table["check"].str.startswith(name)].to_dict("records")
+    (row,) = table[table["key"] == name].to_dict("records")
     return row
 
 
@@ -62,7 +66,7 @@ def test_the_mass_flow_is_the_slope_of_what_is_out_and_beverloo_s_that_of_the_bu
     height = 0.019 * (np.arange(n) + 0.5) / n
     leaves = low + (high - low) * (np.arange(n) + 0.5) / n
     spheres = [{"z": np.where(step > t, -0.02, z)} for z, t in zip(height, leaves, strict=True)]
-    found = verdict(p, "mass flow", particles=frames(p, spheres))
+    found = verdict(p, "mass_flow", particles=frames(p, spheres))
     flow = n * 1e-5 / ((high - low) * p.time_step)
     # the frames cut the flow into 12 pieces
     assert found["value"] == pytest.approx(flow, rel=0.03)
@@ -75,7 +79,7 @@ def test_the_mass_flow_is_the_slope_of_what_is_out_and_beverloo_s_that_of_the_bu
 
 def test_a_hopper_that_does_not_flow_fails_its_check():
     p = planned("hopper")
-    found = verdict(p, "mass flow", particles=frames(p, [{"z": 0.001 * k} for k in range(12)]))
+    found = verdict(p, "mass_flow", particles=frames(p, [{"z": 0.001 * k} for k in range(12)]))
     assert math.isnan(found["value"]) and not found["passed"]
 
 
@@ -84,7 +88,7 @@ def test_the_floor_load_is_the_mean_of_the_last_fifth_over_the_weight(load, pass
     p = planned("settle")
     weight = 8 * 1e-5 * 9.81
     table = rows(p, floor_load=lambda s: np.where(s > 0.8 * s.max(), load * weight, 99.0))
-    found = verdict(p, "floor load", rows=table, particles=frames(p, [{"z": np.linspace(5e-3, 1e-3, 21)}] * 8))
+    found = verdict(p, "floor_load", rows=table, particles=frames(p, [{"z": np.linspace(5e-3, 1e-3, 21)}] * 8))
     assert found["value"] == pytest.approx(load * weight, rel=1e-9, abs=1e-300)
     assert found["expected"] == pytest.approx(weight) and found["passed"] == passed
 
@@ -93,7 +97,7 @@ def test_the_floor_load_is_the_mean_of_the_last_fifth_over_the_weight(load, pass
 def test_an_elastic_bed_may_rise_as_far_as_it_fell_and_no_farther(rise, passed):
     p = planned("settle", law="hertz")
     heights = np.concatenate([np.linspace(5e-3, 1e-3, 11), np.linspace(1e-3, 1e-3 + rise * 4e-3, 11)[1:]])
-    found = verdict(p, "rebound of the bed", particles=frames(p, [{"z": heights}]))
+    found = verdict(p, "rebound_of_the_bed", particles=frames(p, [{"z": heights}]))
     assert found["value"] == pytest.approx(rise * 4e-3) and found["expected"] == pytest.approx(4e-3)
     assert found["passed"] == passed
 
@@ -113,15 +117,36 @@ def test_stiffness_and_work_of_a_press_are_those_of_its_force_curve():
 
     table = rows(p, plate_force=force)
     top = table["plate_force"].max()
-    found = verdict(p, "loading / unloading", rows=table)
+    found = verdict(p, "loading_stiffness", rows=table)
     assert found["value"] == pytest.approx(k, rel=1e-9)
     assert found["expected"] == pytest.approx(k_back, rel=0.02) and found["passed"]  # the turn lies between two rows
-    work = verdict(p, "work got back", rows=table)
+    work = verdict(p, "recovered_work", rows=table)
     assert work["expected"] == pytest.approx(0.5 * k * way**2, rel=0.01)
     assert work["value"] == pytest.approx(0.5 * top**2 / k_back, rel=0.01) and work["passed"]
     late = rows(p, plate_force=lambda step: np.where(step > turn, 1.0, 0.0))
-    assert not verdict(p, "work got back", rows=late)["passed"], "more got back than put in"
-    verdict(p, "loading / unloading", rows=rows(p, plate_force=0.0))  # a plate that touches nothing has a verdict too
+    assert not verdict(p, "recovered_work", rows=late)["passed"], "more got back than put in"
+    verdict(p, "loading_stiffness", rows=rows(p, plate_force=0.0))  # a plate that touches nothing has a verdict too
+
+
+def test_a_sweep_has_a_check_by_its_key_and_with_the_unit_of_its_value():
+    """A stiffness is a force per length, work is force times length; a count has no unit."""
+    p = planned("compaction")
+    tables = {"rows": rows(p, plate_force=1.0)}
+    tables["checks"] = checks.checks(p, tables)
+    named = numbers_of(SimpleNamespace(tables=tables))
+    units = {"loading_stiffness": "N/m", "recovered_work": "J", "spheres_in_room": None}
+    assert units.keys() <= named.keys() and {name: unit(name, {}) for name in units} == units
+    of_table = dict(zip(tables["checks"]["key"], tables["checks"]["unit"], strict=True))
+    assert of_table == {name: of or "" for name, of in units.items()}
+        k: u or "" for k, u in units.items()
+    }
+
+
+def test_the_page_of_results_has_the_key_unit_and_sentence_of_every_check():
+    page = (Path(__file__).parents[2] / "docs/results.md").read_text()
+    rows_of_page = re.findall(r"^\| `(\w+)` \| ([^|]*) \| (.*) \|$", page, re.M)
+    known = {(key, unit, text.replace("{count}", "N")) for key, (unit, text) in checks.CHECKS.items()}
+    assert known == {row for row in rows_of_page if row[0] in checks.CHECKS}
 
 
 def test_only_shot_that_met_the_plate_alone_counts():
@@ -133,16 +158,17 @@ def test_only_shot_that_met_the_plate_alone_counts():
         {"vz": 12.0 * up, "vx": 3.0},  # met another one
         {"vz": -30.0},  # still on its way
     ]
-    found = verdict(p, "rebound of 2 shots", particles=frames(p, spheres))
+    found = verdict(p, "rebound_speed", particles=frames(p, spheres))
+    assert found["check"].startswith("2 shots ")
     assert found["value"] == pytest.approx(29.99) and found["expected"] == pytest.approx(30.0, rel=1e-9)
     assert found["passed"]
-    assert not verdict(p, "rebound of 1 shots", particles=frames(p, [{"vz": 29.9 * up}]))["passed"]
+    assert not verdict(p, "rebound_speed", particles=frames(p, [{"vz": 29.9 * up}]))["passed"]
 
 
 def test_a_lost_sphere_fails_the_check_of_the_room():
     p = planned("drum")
-    assert verdict(p, "spheres in the room")["passed"]
-    assert not verdict(p, "spheres in the room", rows=rows(p, particles=7.0))["passed"]
+    assert verdict(p, "spheres_in_room")["passed"]
+    assert not verdict(p, "spheres_in_room", rows=rows(p, particles=7.0))["passed"]
 
 
 def test_what_shot_takes_along_when_it_leaves_the_room_stays_in_the_ledger():
@@ -189,8 +215,8 @@ def test_the_weight_of_a_bed_is_compared_only_with_all_that_bears_it(change, out
     columns = {f"{wall}_force_z": 0.0 for wall in p.loads}
     table = {n: [1.0, 0.0, *columns.values()] for n in (0, p.steps)}
     found = table_of_rows(p, table, ["particles", "kinetic_energy", *columns])
-    checked = checks.checks(p, {"rows": found, "particles": frames(p, [{}])})["check"]
-    assert columns and not checked.str.contains("weight").any()
+    checked = checks.checks(p, {"rows": found, "particles": frames(p, [{}])})["key"]
+    assert columns and "force_on_all_walls" not in set(checked)
 
 
 @pytest.mark.parametrize(("pressed", "compared"), [(0.0, True), (4.0, True), (65.0, False)])
@@ -206,5 +232,5 @@ def test_the_weight_is_not_compared_with_a_sum_of_much_larger_forces(pressed, co
         p, {n: [1.0, 0.0, *forces.values()] for n in (0, p.steps)}, ["particles", "kinetic_energy", *forces]
     )
     checked = checks.checks(p, {"rows": found, "particles": spheres})
-    checked = checked[checked["check"].str.contains("weight")]
+    checked = checked[checked["key"] == "force_on_all_walls"]
     assert (len(checked) == 1) == compared and checked["passed"].all() and (checked["tolerance"] < 0.12).all()

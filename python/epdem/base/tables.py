@@ -9,7 +9,7 @@ import contextlib
 import io
 from collections.abc import Iterator, Mapping
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 import h5py
 import numpy as np
@@ -19,6 +19,13 @@ from ..errors import CaseError
 from .files import atomic
 
 LARGE = 5000  # values from which a column is compressed
+
+
+class Quantity(NamedTuple):
+    """The number in a column, measure or check: SI unit ("" for a plain number), and its meaning in a sentence."""
+
+    unit: str
+    sentence: str
 
 
 class Hdf5:

@@ -5,6 +5,7 @@ from typing import Annotated, Literal
 
 from pydantic import Field, Tag
 
+from ..base.tables import Quantity
 from .fields import Frozen, Name
 from .sizes import Share
 from .walls import Axis, PartName, Place, Room, Side, Span, Upright, has
@@ -91,3 +92,17 @@ class Histogram(_Measure):
 Measure = Annotated[
     Amount | Flow | Height | Repose | CenterOfMass | Load | Porosity | Histogram, Field(discriminator="kind")
 ]
+
+KINDS = {
+    "count": Quantity("", "number of spheres"),
+    "mass": Quantity("kg", "mass of the spheres"),
+    "flow": Quantity("kg/s", "mass per time through a plane"),
+    "height": Quantity("m", "height below which a share of the mass lies"),
+    "repose": Quantity("rad", "angle of the surface of the bed"),
+    "center_of_mass": Quantity("m", "coordinate of the centre of mass"),
+    "force": Quantity("N", "force on a wall, mean over a row"),
+    "torque": Quantity("N m", "torque on a wall, mean over a row"),
+    "porosity": Quantity("", "void share of a region"),
+    "plastic_work": Quantity("J", "plastic work of each sphere"),
+    "impact_speed": Quantity("m/s", "speed of the head-on impact with the largest overlap of a contact"),
+}

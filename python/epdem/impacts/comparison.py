@@ -4,6 +4,7 @@
 import numpy as np
 import pandas as pd
 
+from ..base.tables import Quantity
 from ..case.impact import DEFAULT_CHECKS, Check
 from .measurement import Measured
 from .plan import Plan
@@ -11,25 +12,39 @@ from .prediction import Prediction
 
 CHECKED = tuple(DEFAULT_CHECKS)
 OBLIQUE = ("psi_2", "e_t", "impulse_ratio", "rebound_angle", "spin")
-UNITS = {
-    "speed": "m/s",
-    "gap": "m",
-    "angle": "rad",
-    "rebound_angle": "rad",
-    "spin": "rad/s",
-    "spin_before": "rad/s",
-    "contact_time": "s",
-    "time": "s",
-    "overlap": "m",
-    "force": "N",
-    "force_max": "N",
-    "overlap_max": "m",
-    "residual_overlap": "m",
-    "radius_max": "m",
-    "work_in": "J",
-    "work_out": "J",
-    "plastic_work": "J",
+COLUMNS = {
+    "engine": Quantity("", "engine that ran the impact"),
+    "law": Quantity("", "contact law"),
+    "speed": Quantity("m/s", "normal impact speed"),
+    "gap": Quantity("m", "distance of the surfaces at the start"),
+    "e_n": Quantity("", "coefficient of restitution"),
+    "contact_time": Quantity("s", "time between the first and the last contact force"),
+    "force_max": Quantity("N", "largest normal force"),
+    "overlap_max": Quantity("m", "largest overlap"),
+    "residual_overlap": Quantity("m", "overlap at the end of the contact"),
+    "energy_residual": Quantity("", "work in less work out less plastic work, over the kinetic energy"),
+    "stuck": Quantity("", "number of starting phases after which the bodies stay together"),
+    "steps_in_contact": Quantity("", "smallest number of samples with a force"),
+    "passed": Quantity("", "whether every error is within the tolerance of the case"),
+    # oblique impacts
+    "angle": Quantity("rad", "impact angle, from the normal"),
+    "spin_before": Quantity("rad/s", "angular velocity before the impact"),
+    "e_t": Quantity("", "tangential restitution of the centres"),
+    "impulse_ratio": Quantity("", "tangential over normal impulse"),
+    "rebound_angle": Quantity("rad", "rebound angle, from the normal"),
+    "spin": Quantity("rad/s", "angular velocity after the impact"),
+    "psi_1": Quantity("", "slip before the impact over the speed, times kappa/mu"),
+    "psi_2": Quantity("", "slip after the impact over the speed, times kappa/mu"),
+    # theory and paths
+    "radius_max": Quantity("m", "largest contact radius"),
+    "work_in": Quantity("J", "work of the loading"),
+    "work_out": Quantity("J", "work of the unloading"),
+    "plastic_work": Quantity("J", "plastic work"),
+    "time": Quantity("s", "time since the start"),
+    "overlap": Quantity("m", "overlap"),
+    "force": Quantity("N", "normal force"),
 }
+UNITS = {name: column.unit for name, column in COLUMNS.items() if column.unit}
 
 
 def impacts_table(plan: Plan, measured: Measured) -> pd.DataFrame:

@@ -4,13 +4,13 @@
 import numpy as np
 import pandas as pd
 
-from ..case.measures import Histogram
+from ..case.measures import KINDS, Histogram
 from ..report.chart import GREY, INK, PALETTE, Axis, Chart, Panel, Series
 from ..report.page import Picture
 from . import pictures
 from .columns import LOADS, last_frame, units
 from .key_figures import TIME, Tables, key
-from .measures import curve, unit
+from .measures import curve
 from .plan import ScenePlan
 from .run import SceneOutcome
 
@@ -32,7 +32,7 @@ def measures(p: ScenePlan, tables: Tables) -> list[Chart]:
     curves = {m.name: curve(m, tables) for m in found}
     constant = {name: y[0] for name, (_, y) in curves.items() if np.unique(y).size == 1}
     shown = [m for m in found if m.name not in constant]
-    panels = [Panel(TIME, Axis(m.name, unit(m)), [Series("", *curves[m.name], 0)]) for m in shown]
+    panels = [Panel(TIME, Axis(m.name, KINDS[m.kind].unit), [Series("", *curves[m.name], 0)]) for m in shown]
     return _against_time(p, "scene_measures", "Measures against time", panels, constant)
 
 
@@ -81,7 +81,7 @@ def histograms(outcome: SceneOutcome) -> list[Chart]:
         part = bins[bins["measure"] == m.name]
         edges = np.repeat(np.append(part["low"], part["high"].iloc[-1]), 2)
         heights = np.concatenate([[0], np.repeat(part["number"], 2), [0]])
-        panel = Panel(Axis(m.kind, unit(m)), Axis("number"), [Series("", edges, heights, k % len(PALETTE))])
+        panel = Panel(Axis(m.kind, KINDS[m.kind].unit), Axis("number"), [Series("", edges, heights, k % len(PALETTE))])
         alt = f"Histogram of {m.kind}: {int(part['number'].sum())} values."
         drawn.append(Chart(f"scene_{m.name}", f"{title}: {m.name}", alt, [panel], heading=f"Histogram {m.name}"))
     return drawn

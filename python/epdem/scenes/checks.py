@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 import pandas as pd
 
+from ..base.tables import Quantity
 from ..case.kinds import Compaction, Hopper, Peening, Settle
 from ..case.parts import Parts
 from ..case.scene import SceneCase
@@ -17,40 +18,43 @@ from .pairs import wall_impact
 from .plan import ScenePlan
 
 Row = dict[str, object]
+CHECKS = {  # the unit of value and expected; what passes
+    "spheres_in_room": Quantity("", "all spheres are in the room at the end"),
+    "floor_load": Quantity("N", "the floor load is the weight of the spheres (smooth walls: hydrostatic)"),
+    "rebound_of_the_bed": Quantity("m", "the bed rises by at most e_n^2 times its fall"),
+    "mass_flow": Quantity("kg/s", "the mass flow is that of Beverloo's formula"),
+    "rebound_speed": Quantity("m/s", "{count} shots that hit the plate alone leave it with e_n v"),
+    "loading_stiffness": Quantity("N/m", "loading is at most as stiff as unloading"),
+    "recovered_work": Quantity("J", "the plate recovers at most the work that it did"),
+    "force_on_all_walls": Quantity("N", "the force on all walls is the weight of the spheres"),
+    "energy_residual": Quantity("", "the energy balance closes: no term is a remainder"),
+}
+COLUMNS = ("key", "check", "value", "expected", "error", "tolerance", "unit", "passed")
 AT_REST = 1e-2  # of the energy of a fall by a radius: kinetic energy of a bed at rest
 MOST_PRESSED = 5.0  # of a wall, in weights of the bed: up to a tolerance of 10 % the sum of forces tells the weight
 MANY = 20  # frames from which on motion is followed
 
 
-def _row(name: str, value: float, expected: float, tolerance: float) -> Row:
+def _row(key: str, value: float, expected: float, tolerance: float, *, passed: bool | None = None, **words: int) -> Row:
+    """A check of CHECKS. passed: by default whether the relative error (absolute of 0) is within the tolerance."""
+    unit, sentence = CHECKS[key]
     error = abs(value / expected - 1.0) if expected else abs(value)
-    return {
-        "check": name,
-        "value": value,
-        "expected": expected,
-        "error": error,
-        "tolerance": tolerance,
-        "passed": bool(error <= tolerance),
-    }
+    verdict = error <= tolerance if passed is None else passed
+    cells = (key, sentence.format(**words), value, expected, error, tolerance, unit, bool(verdict))
+    return dict(zip(COLUMNS, cells, strict=True))
 
 
-def _below(name: str, value: float, limit: float, tolerance: float) -> Row:
-    beyond = value / limit - 1.0 if limit else math.copysign(math.inf, value) if value else 0.0
-    return {
-        "check": name,
-        "value": value,
-        "expected": limit,
-        "error": max(0.0, beyond),
-        "tolerance": tolerance,
-        "passed": bool(value <= limit * (1 + tolerance)),
-    }
+def _below(key: str, value: float, limit: float) -> Row:
+    """A check of CHECKS: the value is at most the limit; the error is the excess."""
+    excess = value / limit - 1.0 if limit else math.copysign(math.inf, value) if value else 0.0
+    return _row(key, value, limit, 0.0, passed=value <= limit) | {"error": max(0.0, excess)}
 
 
 def _kept(p: ScenePlan, tables: dict[str, pd.DataFrame]) -> list[Row]:
     if p.scene.open_boundary:
         return []
     last = float(tables["rows"]["particles"].iloc[-1])
-    return [_row("spheres in the room at the end", last, float(p.count), 0.0)]
+    return [_row("spheres_in_room", last, float(p.count), 0.0)]
 
 
 def floor_load(case: SceneCase, tables: dict[str, pd.DataFrame]) -> tuple[float, float]:
@@ -169,9 +173,9 @@ def _of_settle(p: ScenePlan, s: Settle, tables: dict[str, pd.DataFrame]) -> list
     smooth = smooth and not any("wall" in pair.between for pair in contact.pairs) and not contact.cohesion
     if "floor_load" in tables["rows"] and "particles" in tables and smooth:
         load, weight = floor_load(p.case, tables)
-        rows.append(_row("floor load / weight (smooth walls: hydrostatic)", load, weight, 0.02))
+        rows.append(_row("floor_load", load, weight, 0.02))
     if not s.rate and s.gravity and p.output.particles >= MANY and not p.model.adheres:  # what sticks swings back
-        rows.append(_below("rebound of the bed / e_n^2 fall", *bed_rebound(p.case, tables["particles"]), 0.0))
+        rows.append(_below("rebound_of_the_bed", *bed_rebound(p.case, tables["particles"])))
     return rows
 
 
@@ -179,7 +183,7 @@ def _of_hopper(p: ScenePlan, s: Hopper, tables: dict[str, pd.DataFrame]) -> list
     if p.output.particles < MANY:
         return []
     flow = discharge(p, s, tables["particles"])
-    return [_row("mass flow / Beverloo", flow.rate, beverloo(flow, s.outlet, s.gravity), 0.2)]
+    return [_row("mass_flow", flow.rate, beverloo(flow, s.outlet, s.gravity), 0.2)]
 
 
 def _of_peening(p: ScenePlan, s: Peening, tables: dict[str, pd.DataFrame]) -> list[Row]:
@@ -187,14 +191,14 @@ def _of_peening(p: ScenePlan, s: Peening, tables: dict[str, pd.DataFrame]) -> li
         return []
     expected = single_rebound(p.case, s)
     speed, count = rebounds(tables["particles"], s.speed, expected)
-    return [_row(f"rebound of {count} shots that met the plate alone / e_n v", speed, expected, 1e-3)]
+    return [_row("rebound_speed", speed, expected, 1e-3, count=count)]
 
 
 def _of_compaction(p: ScenePlan, tables: dict[str, pd.DataFrame]) -> list[Row]:
     put_in, back = recovered(p, tables["rows"])
     return [
-        _below("loading / unloading stiffness", *stiffness(p, tables["rows"]), 0.0),
-        _below("work got back / put in", back, put_in, 0.0),
+        _below("loading_stiffness", *stiffness(p, tables["rows"])),
+        _below("recovered_work", back, put_in),
     ]
 
 
@@ -216,11 +220,11 @@ def _of_parts(p: ScenePlan, tables: dict[str, pd.DataFrame]) -> list[Row]:
     of_largest = max(1.0, *(abs(f) / float(weight.sum()) for f in forces))  # a lid may press with many times the weight
     if of_largest > MOST_PRESSED:  # the weight vanishes in what presses
         return []
-    return [_row("force on all walls / weight", sum(forces), float(weight.sum()), 0.02 * of_largest)]
+    return [_row("force_on_all_walls", sum(forces), float(weight.sum()), 0.02 * of_largest)]
 
 
 def checks(p: ScenePlan, tables: dict[str, pd.DataFrame]) -> pd.DataFrame:
-    """One row per check: value, expected, relative error, tolerance, passed."""
+    """One row per check: key, sentence, value, expected, relative error, tolerance, unit, passed."""
     rows = _kept(p, tables)
     match p.case.scene:
         case Settle() as s:
@@ -234,5 +238,5 @@ def checks(p: ScenePlan, tables: dict[str, pd.DataFrame]) -> pd.DataFrame:
         case Parts():
             rows += _of_parts(p, tables)
     if "energy_balance" in tables and not p.model.loses_energy:
-        rows.append(_row("energy: all terms but none as remainder", closure(tables["energy_balance"]), 0.0, 0.01))
-    return pd.DataFrame(rows, columns=["check", "value", "expected", "error", "tolerance", "passed"])
+        rows.append(_row("energy_residual", closure(tables["energy_balance"]), 0.0, 0.01))
+    return pd.DataFrame(rows, columns=COLUMNS)

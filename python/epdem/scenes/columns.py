@@ -6,31 +6,72 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
+from ..base.tables import Quantity
 from ..case.kinds import Compaction
 from ..errors import EngineError
 from .plan import ScenePlan
 
-UNITS = {
-    **dict.fromkeys(("time", "begin_time", "end_time"), "s"),
-    "kinetic_energy": "J",
-    "floor_load": "N",
-    "plate_force": "N",
-    "torque": "N m",
-    "wall_power": "W",
-    "plate_z": "m",
-    **dict.fromkeys(("stress", "normal_stress", "shear_stress"), "Pa"),
-    "area": "m^2",
-    "wear": "m",
-    "radius": "m",
-    "mass": "kg",
-    **dict.fromkeys(("x", "y", "z"), "m"),
-    **dict.fromkeys(("vx", "vy", "vz"), "m/s"),
-    **dict.fromkeys(("omega_x", "omega_y", "omega_z"), "rad/s"),
-    **dict.fromkeys(("overlap", "delta_max", "residual_overlap", "dent_radius"), "m"),
-    "force": "N",
-    **dict.fromkeys(("plastic_work", "adhesive_work", "elastic_energy", "friction_work", "friction_energy"), "J"),
-    **dict.fromkeys(("kinetic", "rotation", "gravity", "elastic", "plastic", "adhesion"), "J"),
-    **dict.fromkeys(("friction", "springs", "work", "left", "balance"), "J"),
+COLUMNS = {
+    "step": Quantity("", "number of the time step"),
+    "time": Quantity("s", "time since the begin of the run"),
+    # rows
+    "particles": Quantity("", "number of spheres in the room"),
+    "kinetic_energy": Quantity("J", "translational kinetic energy of the spheres"),
+    "largest_radius_ratio": Quantity("", "largest contact radius over R*, of all contacts since the start"),
+    "largest_overlap_ratio": Quantity("", "largest overlap over R*, of all contacts since the start"),
+    "floor_load": Quantity("N", "force of the spheres on the floor, mean over a row"),
+    "torque": Quantity("N m", "torque of the spheres on the drum, mean over a row"),
+    "wall_power": Quantity("W", "power of all moving walls, mean over a row"),
+    "plate_force": Quantity("N", "force of the spheres on the plate, mean over a row"),
+    "plate_z": Quantity("m", "height of the plate in the middle of a row"),
+    "stress": Quantity("Pa", "plate_force over the area of the box"),
+    # frames of spheres
+    "id": Quantity("", "number of the sphere"),
+    "type": Quantity("", "number of the material"),
+    "radius": Quantity("m", "radius of the sphere"),
+    "mass": Quantity("kg", "mass of the sphere"),
+    **{axis: Quantity("m", f"{axis} of the centre") for axis in "xyz"},
+    **{f"v{axis}": Quantity("m/s", f"{axis} component of the velocity") for axis in "xyz"},
+    **{f"omega_{axis}": Quantity("rad/s", f"{axis} component of the angular velocity") for axis in "xyz"},
+    "plastic_work": Quantity("J", "plastic work so far; of a sphere half of the work of each of its contacts"),
+    "adhesive_work": Quantity("J", "work lost by adhesion, half of each contact"),
+    "friction_work": Quantity("J", "work of friction, half of each contact"),
+    "friction_energy": Quantity("J", "elastic energy of the friction springs, half of each contact"),
+    # contacts
+    "wall": Quantity("", "name of the wall, empty between two spheres"),
+    "i": Quantity("", "id of the first sphere"),
+    "j": Quantity("", "id of the second sphere, 0 for a wall"),
+    "overlap": Quantity("m", "overlap"),
+    "force": Quantity("N", "normal force"),
+    "delta_max": Quantity("m", "largest overlap so far"),
+    "residual_overlap": Quantity("m", "overlap at which the unloaded contact has no force"),
+    "dent_radius": Quantity("m", "contact radius at the largest overlap, 0 without plastic work"),
+    "elastic_energy": Quantity("J", "elastic energy of the normal force"),
+    # triangles of walls
+    "triangle": Quantity("", "number of the triangle"),
+    "area": Quantity("m^2", "area of the triangle"),
+    "normal_stress": Quantity("Pa", "normal force on the triangle over its area"),
+    "shear_stress": Quantity("Pa", "tangential force on the triangle over its area"),
+    "wear": Quantity("m", "depth of wear of the triangle"),
+    # energy balance
+    "kinetic": Quantity("J", "translational kinetic energy"),
+    "rotation": Quantity("J", "rotational kinetic energy"),
+    "gravity": Quantity("J", "potential energy of the weight"),
+    "elastic": Quantity("J", "elastic energy of the normal forces"),
+    "plastic": Quantity("J", "plastic work so far"),
+    "adhesion": Quantity("J", "work lost by adhesion so far"),
+    "friction": Quantity("J", "work of friction so far"),
+    "springs": Quantity("J", "elastic energy of the friction springs"),
+    "work": Quantity("J", "work of the walls on the spheres so far"),
+    "left": Quantity("J", "energy of the spheres that left the room"),
+    "balance": Quantity("J", "sum of all energies less the work of the walls, above its first value"),
+    # phases
+    "phase": Quantity("", "name of the phase"),
+    "begin": Quantity("", "first step of the phase"),
+    "end": Quantity("", "last step of the phase"),
+    "until": Quantity("", "whether the stop condition was reached; empty without one"),
+    "begin_time": Quantity("s", "time of the first step of the phase"),
+    "end_time": Quantity("s", "time of the last step of the phase"),
 }
 LOADS = ("force_x", "force_y", "force_z", "torque_x", "torque_y", "torque_z")  # of a wall NAME: NAME_force_x, ...
 SMALLEST = 1e-12  # radius [m]
@@ -51,10 +92,13 @@ def unit_of_load(column: str) -> str | None:
 
 def units(table: pd.DataFrame) -> dict[str, str]:
     """The unit of each column of a table that has one; `attrs["units"]` has those of measures."""
-    loads = {str(name): unit for name in table if (unit := unit_of_load(str(name)))}
-    dents = {str(name): "m" for name in table if str(name).startswith("delta_max_")}  # of a flat wall NAME
-    own: dict[str, str] = table.attrs.get("units", {})
-    return UNITS | loads | dents | own
+    found: dict[str, str] = {}
+    for name in map(str, table):
+        dent = "m" if name.startswith("delta_max_") else None  # of a flat wall NAME
+        unit = table.attrs.get("units", {}).get(name) or unit_of_load(name) or dent
+        if unit := unit or (COLUMNS[name].unit if name in COLUMNS else ""):
+            found[name] = unit
+    return found
 
 
 def columns_of_rows(p: ScenePlan) -> set[str]:

@@ -6,7 +6,7 @@ import math
 import numpy as np
 import pandas as pd
 
-from ..case.measures import Amount, CenterOfMass, Flow, Height, Histogram, Load, Measure, Porosity, Repose
+from ..case.measures import KINDS, Amount, CenterOfMass, Flow, Height, Histogram, Load, Measure, Porosity, Repose
 from ..case.walls import Room, Upright
 from ..errors import CaseError
 from ..theory.backbones import JKR
@@ -156,7 +156,7 @@ def with_loads(p: ScenePlan, rows: pd.DataFrame) -> pd.DataFrame:
         parts = [f"{m.wall}_{m.kind}_{axis}" for axis in "xyz" if m.component in (axis, "magnitude")]
         values = rows[[part for part in parts if part in rows]].to_numpy()
         found[m.name] = values[:, 0] if m.component != "magnitude" else np.linalg.norm(values, axis=1)
-    found.attrs["units"] = {m.name: unit(m) for m in loads}
+    found.attrs["units"] = {m.name: KINDS[m.kind].unit for m in loads}
     return found
 
 
@@ -190,7 +190,7 @@ def curves(p: ScenePlan, tables: dict[str, pd.DataFrame]) -> pd.DataFrame:
                 table[m.name] = [_porosity(m, frames[step]) for step in steps]
             case Load() | Histogram():
                 pass
-    table.attrs["units"] = {m.name: unit(m) for m in p.case.scene.measure if m.name in table}
+    table.attrs["units"] = {m.name: KINDS[m.kind].unit for m in p.case.scene.measure if m.name in table}
     return table
 
 
@@ -230,15 +230,3 @@ def histograms(p: ScenePlan, tables: dict[str, pd.DataFrame]) -> pd.DataFrame:
         number, edges = np.histogram(values_of(p, m, tables), m.bins)
         found.append(pd.DataFrame({"measure": m.name, "low": edges[:-1], "high": edges[1:], "number": number}))
     return pd.concat(found, ignore_index=True) if found else pd.DataFrame(columns=["measure", "low", "high", "number"])
-
-
-def unit(m: Measure) -> str:
-    """The SI unit of a measure; "" for a plain number."""
-    return unit_of_kind(m.kind)
-
-
-def unit_of_kind(kind: str) -> str:
-    """The SI unit of the measures of a kind; "" for a plain number."""
-    units = {"mass": "kg", "flow": "kg/s", "repose": "rad", "force": "N", "torque": "N m", "impact_speed": "m/s"}
-    units |= {"height": "m", "center_of_mass": "m", "plastic_work": "J"}
-    return units.get(kind, "")

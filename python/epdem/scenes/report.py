@@ -10,9 +10,10 @@ from rich.console import Console
 
 from ..base.folders import claim
 from ..base.terminal import show_table, table
-from ..case.measures import Histogram, Load
+from ..case.measures import KINDS, Histogram, Load
 from ..impacts.report import records
-from .measures import curve, unit, values_of
+from .columns import units
+from .measures import curve, values_of
 from .run import SceneOutcome
 
 
@@ -32,6 +33,7 @@ def as_json(outcome: SceneOutcome) -> str:
             "checks": records(outcome.results.tables["checks"]),
             "measures": _final(outcome) if outcome.case.scene.measure else [],
             "last_row": records(outcome.results.tables["rows"].tail(1))[0],
+            "units": units(outcome.results.tables["rows"]),
         },
         indent=1,
     )
@@ -47,13 +49,14 @@ def _final(outcome: SceneOutcome) -> list[dict[str, object]]:
 
 def show(outcome: SceneOutcome, console: Console) -> None:
     """Print checks and a summary line."""
-    heads = ("check", "value", "expected", "error", "tolerance", "pass")
-    shown = table(outcome.case.case.title, heads, left=("check",))
+    heads = ("check", "value", "expected", "unit", "error", "tolerance", "pass")
+    shown = table(outcome.case.case.title, heads, left=("check", "unit"))
     for row in outcome.results.tables["checks"].to_dict("records"):
         shown.add_row(
             row["check"],
             f"{row['value']:.5g}",
             f"{row['expected']:.5g}",
+            row["unit"],
             f"{row['error']:.1e}",
             f"{row['tolerance']:.1e}",
             "yes" if row["passed"] else "NO",
@@ -91,7 +94,7 @@ def _show_measures(outcome: SceneOutcome, console: Console) -> None:
             kind, value, time = m.kind, float(values[-1]), times[-1]
         known = values[np.isfinite(values)]
         limits = (f"{known.min():.5g}", f"{known.max():.5g}") if known.size else ("nan", "nan")
-        shown.add_row(m.name, kind, f"{time:.4g}", f"{value:.5g}", *limits, unit(m))
+        shown.add_row(m.name, kind, f"{time:.4g}", f"{value:.5g}", *limits, KINDS[m.kind].unit)
     show_table(console, shown)
 
 
