@@ -173,15 +173,6 @@ def test_two_cases_of_one_file_name_do_not_share_a_folder(folder, capsys, monkey
 def test_title_and_folder_of_a_scene_are_shown_as_they_are(capsys):
     check = {"key": "y", "check": "[y]", "value": 1.0, "expected": 1.0, "error": 0.0, "tolerance": 1e-3}
     check |= {"unit": "N", "passed": True}
-        "key": "y",
-        "check": "[y]",
-        "value": 1.0,
-        "expected": 1.0,
-        "error": 0.0,
-        "tolerance": 1e-3,
-        "unit": "N",
-        "passed": True,
-    }
     tables = {"checks": pd.DataFrame([check]), "rows": pd.DataFrame({"particles": [1]})}
     report.show(
         SimpleNamespace(

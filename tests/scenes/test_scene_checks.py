@@ -138,8 +138,6 @@ def test_a_sweep_has_a_check_by_its_key_and_with_the_unit_of_its_value():
     assert units.keys() <= named.keys() and {name: unit(name, {}) for name in units} == units
     of_table = dict(zip(tables["checks"]["key"], tables["checks"]["unit"], strict=True))
     assert of_table == {name: of or "" for name, of in units.items()}
-        k: u or "" for k, u in units.items()
-    }
 
 
 def test_the_page_of_results_has_the_key_unit_and_sentence_of_every_check():
