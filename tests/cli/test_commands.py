@@ -230,7 +230,8 @@ def test_every_law_has_a_source_to_cite():
 
 
 def test_the_former_name_of_a_command_of_the_proof_is_refused_with_its_new_one(folder, capsys, monkeypatch):
-    for name in ("cost", "crosscheck", "figures", "motion", "rerun", "stability", "validate"):
+    names = {name: name for name in ("cost", "crosscheck", "figures", "motion", "rerun", "stability")}
+    for name, new in (names | {"validate": "data", "stress": "stability"}).items():
         done = call([name, "case.toml"], capsys, monkeypatch)
-        new = f"epdem verify {'data' if name == 'validate' else name}"
+        new = f"epdem verify {new}"
         assert done.code == 2 and done.err == f"epdem: 'epdem {name}' is now '{new}'; see {new} --help\n"

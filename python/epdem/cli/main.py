@@ -35,6 +35,7 @@ Exit codes: 0 all within tolerance, 1 a check failed, 2 bad input, 3 an engine f
 """
 MOVED = {name: f"epdem verify {name}" for name in ("cost", "crosscheck", "figures", "motion", "rerun", "stability")} | {
     "validate": "epdem verify data",
+    "stress": "epdem verify stability",
     "theory": "epdem predict",
     "timestep": "epdem predict CASE --error",
     "header": "epdem export liggghts",
