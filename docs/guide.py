@@ -57,8 +57,11 @@ def names() -> set[str]:
 
 def _commands() -> dict[str, Any]:
     top: dict[str, Any] = typer.main.get_command(app).commands  # type: ignore[attr-defined]
-    verify = {f"verify {name}": command for name, command in top["verify"].commands.items()}
-    return {name: command for name, command in top.items() if name != "verify"} | verify
+    found = {}
+    for name, command in top.items():
+        members = getattr(command, "commands", None)
+        found |= {f"{name} {member}": c for member, c in members.items()} if members else {name: command}
+    return found
 
 
 def commands() -> str:
