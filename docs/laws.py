@@ -25,9 +25,10 @@ from epdem.impacts.run import run_plan
 from epdem.laws.strengths import default_numbers
 from epdem.report.chart import GREY, INK, Axis, Chart, Panel, Series
 from epdem.report.drawing import save
-from epdem.theory import printed
 from epdem.theory.backbones import LAWS as BACKBONES
-from epdem.theory.yielding import FIRST_YIELD_ROUNDED
+from epdem.theory.restitution import wu
+from epdem.theory.yielding import FIRST_YIELD_ROUNDED, yield_speed
+from epdem.verification.theory import printed
 
 ROOT = Path(__file__).parents[1]
 YIELD_STRESS = 50e6  # [Pa]
@@ -58,9 +59,9 @@ def figure() -> Chart:
     numbers = {"E_star": pair.E_star, "R_star": pair.R_star, "m_star": pair.m_star}
     Y = YIELD_STRESS
     ratios = (FIRST_YIELD_ROUNDED, BACKBONES["thornton"].declaration().default_ratio)
-    v_y0, v_y = (printed.yield_speed(p_y=ratio * Y, **numbers) for ratio in ratios)
+    v_y0, v_y = (yield_speed(p_y=ratio * Y, **numbers) for ratio in ratios)
     fine = np.geomspace(SPEEDS[0], SPEEDS[-1], 400)
-    fit = printed.wu(fine * v_y0, v_y0=v_y0)
+    fit = wu(fine * v_y0, v_y0=v_y0)
     above: list[Series] = []
     below: list[Series] = []
     for k, name in enumerate(LAWS):
@@ -69,7 +70,7 @@ def figure() -> Chart:
         print(f"{name:<10} largest error of e_n in LIGGGHTS, 400 steps in contact, 8 phases: {error:.1e}")
         above += [Series(f"{name}, theory", fine, line, k), Series(f"ep/{name}, LIGGGHTS", SPEEDS, points, k, None, k)]
         if name != "hertz":
-            there = points / printed.wu(SPEEDS * v_y0, v_y0=v_y0) - 1
+            there = points / wu(SPEEDS * v_y0, v_y0=v_y0) - 1
             below += [Series("", fine, line / fit - 1, k), Series("", SPEEDS, there, k, None, k)]
     johnson = printed.johnson(fine * v_y0, p_m=BACKBONES["johnson"].declaration().default_ratio * Y, **numbers)
     above.append(Series("8.83 Thornton 1997", fine, printed.thornton(fine * v_y0, v_y=v_y), INK, "dot"))

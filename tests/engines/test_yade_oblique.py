@@ -5,7 +5,8 @@ import numpy as np
 import pytest
 from test_yade_contacts import LAWS, yade
 
-from epdem.theory import backbones, oblique, pair
+from epdem.theory import backbones, pair
+from epdem.verification.theory import oblique
 from epdem.yade.deck_modules import law as numbers
 
 R, MU, SPEEDS = 0.01, 0.2, (2.0, 10.0)

@@ -6,8 +6,9 @@ import numpy as np
 import pytest
 from scipy.integrate import trapezoid
 
-from epdem.theory import oblique, partial_slip, pressure, restitution
+from epdem.theory import partial_slip, restitution
 from epdem.theory.backbones import Cavity, Hertz
+from epdem.verification.theory import oblique
 
 E_STAR, G_STAR, MU, M, R = 1.142857e11, 2.3529e10, 0.3, 0.032882, 0.01  # steel sphere on steel
 KAPPA = 4 * G_STAR / E_STAR
@@ -28,10 +29,10 @@ def test_line_load_is_abels_transform_of_the_pressure(a, tau):
             x = share * a  # r^2 = x^2 + h^2 u^2: r dr/sqrt(r^2 - x^2) = h du
             h = mp.sqrt(a * a - x * x)
             q = 2 * h * mp.quad(lambda u, h=h: p(h * h * (1 - u * u)), [0, 1])
-            found = pressure.line_load(float(x), force=3.0, a=float(a), a_max=1.0, flatness=tau)
+            found = partial_slip.line_load(float(x), force=3.0, a=float(a), a_max=1.0, flatness=tau)
             # arcsin(a/a_max) and the segment: a few roundings
             assert float(found) == pytest.approx(float(3 * q / force), rel=1e-12, abs=0)
-    assert pressure.line_load(1.01 * float(a), force=3.0, a=float(a), a_max=1.0, flatness=tau) == 0
+    assert partial_slip.line_load(1.01 * float(a), force=3.0, a=float(a), a_max=1.0, flatness=tau) == 0
 
 
 def plain_springs(law, v_n, slips, steps, springs):
@@ -142,7 +143,7 @@ def test_maw_barber_and_fawcetts_curve_ends_on_the_sliding_line():
     """psi_2 = psi_1 - 7 kappa from psi_1 = 7 kappa - 1 on, above it before (1976); 1e-3: 2000 steps."""
     kappa = 14 / 17  # nu = 0.3
     psi_1 = 7 * kappa - 1 + np.array([-1.0, -0.3, 0.0, 0.5, 4.0])
-    above = partial_slip.maw_barber_fawcett(psi_1, kappa=kappa) - (psi_1 - 7 * kappa)
+    above = oblique.maw_barber_fawcett(psi_1, kappa=kappa) - (psi_1 - 7 * kappa)
     assert above[2:] == pytest.approx(0, abs=1e-3) and np.all(above[:2] > 5e-3)
 
 
@@ -176,5 +177,5 @@ def test_nearly_normal_impacts_stick_and_rebound_as_without_slip():
             rim_u.append(u)
         pull = 3.5 * kappa * 1.875 * (a * u - touched(a))
         v, w = v_half - dt / 2 * 1.25 * max(alpha, 0) ** 1.5, w_half - dt / 2 * pull
-    found = partial_slip.maw_barber_fawcett(np.array([0.003]), kappa=kappa, steps=4000) / 0.003
+    found = oblique.maw_barber_fawcett(np.array([0.003]), kappa=kappa, steps=4000) / 0.003
     assert found == pytest.approx(w, abs=5e-3)

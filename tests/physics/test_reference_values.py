@@ -8,8 +8,9 @@ import mpmath as mp
 import numpy as np
 import pytest
 
-from epdem.theory import energy, oblique, pair, pressure, printed, restitution, timestep, viscous, yielding
+from epdem.theory import pair, restitution, timestep, viscous, yielding
 from epdem.theory.backbones import Cavity, Hertz, Johnson, Thornton
+from epdem.verification.theory import criteria, energy, oblique, pressure
 
 STEEL = {"E_star": 1.1428571428571429e11, "R_star": 0.01}  # E = 208 GPa, nu = 0.3, sphere of 10 mm on a plane
 M = 0.032882003107573169
@@ -90,7 +91,7 @@ def test_unloading_force_keeps_its_digits_down_to_a_tiny_circle(share):
 
 def test_mean_pressure_at_first_yield_is_two_thirds_of_the_peak():
     """Printed p_0/Y: 1.61280 at nu = 0.3, 1.55435 at 0.25; 2/3 of their 5 decimals."""
-    assert yielding.first_yield_mean(np.array([0.3, 0.25])) == pytest.approx([1.07520, 1.03623], abs=4e-6)
+    assert criteria.first_yield_mean(np.array([0.3, 0.25])) == pytest.approx([1.07520, 1.03623], abs=4e-6)
 
 
 def test_each_body_yields_from_the_speed_whose_energy_presses_hertz_to_1_60_of_its_stress():
@@ -113,7 +114,7 @@ def test_each_body_yields_from_the_speed_whose_energy_presses_hertz_to_1_60_of_i
 def test_mass_of_a_sphere_and_first_yield_speed_of_the_reference_case():
     """Printed: m* = 0.032882003107573169 kg, v_y = 0.559430455498519 m/s."""
     assert pair.sphere_mass(radius=0.01, density=7850.0) == exactly(M)
-    assert printed.yield_speed(p_y=2.8e9, m_star=M, **STEEL) == exactly(0.559430455498519)
+    assert yielding.yield_speed(p_y=2.8e9, m_star=M, **STEEL) == exactly(0.559430455498519)
 
 
 def test_velocity_verlet_of_one_contact_is_stable_up_to_the_limit():

@@ -7,9 +7,10 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from epdem.theory import pair, printed, restitution
+from epdem.theory import pair, restitution, yielding
 from epdem.theory.backbones import LAWS, Cavity, Hertz, Thornton
 from epdem.theory.johnson import Johnson
+from epdem.verification.theory import printed
 
 STEEL = {"E_star": 1.1428571428571429e11, "R_star": 0.01}
 M = 0.032882003107573169
@@ -100,7 +101,7 @@ def test_reference_peaks_of_cavity():
 
 def test_thornton_law_and_equation_8_83_are_the_same_number():
     """Quadrature of the law in closed form against the printed equation, over twelve decades of speed."""
-    v_y = printed.yield_speed(p_y=2.8e9, m_star=M, **STEEL)
+    v_y = yielding.yield_speed(p_y=2.8e9, m_star=M, **STEEL)
     speed = v_y * np.geomspace(1e-6, 1e6, 400)
     e_n = restitution.e_n(steel("thornton"), m_star=M, speed=speed)
     assert e_n == pytest.approx(printed.thornton(speed, v_y=v_y), rel=1e-13, abs=0)
@@ -214,7 +215,7 @@ def test_restitution_falls_as_minus_quarter_power_far_above_yield(name):
 
 def test_cavity_predicts_the_constant_of_the_finite_element_fit():
     """2.069 (v/v_y0)^(-1/4) far above yield, where the fit 8.88 prints 2.08; and its table on the way there."""
-    v_y0 = printed.yield_speed(p_y=1.6e9, m_star=M, **STEEL)
+    v_y0 = yielding.yield_speed(p_y=1.6e9, m_star=M, **STEEL)
     ratio = np.array([100, 145, 216, 300, 1000, 3000])
     e_n = restitution.e_n(steel("cavity"), m_star=M, speed=ratio * v_y0)
     assert e_n == pytest.approx([0.630, 0.600, 0.569, 0.511, 0.369, 0.280], abs=6e-4)

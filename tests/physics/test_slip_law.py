@@ -9,7 +9,7 @@ import pytest
 import slip
 from slip import G_STAR, LAWS, MU, Contacts
 
-from epdem.theory import pressure
+from epdem.theory import partial_slip
 from epdem.theory.partial_slip import Springs
 
 NODES = pytest.mark.parametrize("nodes", [2, 3])
@@ -82,7 +82,7 @@ def test_sliding_nodes_carry_the_load_of_the_line_and_all_of_friction(nodes, b, 
     assert np.abs(T[0]) == pytest.approx([MU * F, 0, 0], rel=TINY, abs=TINY)
     xi, w, *_ = found = [np.zeros(nodes), np.zeros(nodes), np.zeros(nodes * nodes), np.zeros(1)]
     slip.library().slip_rule(ctypes.c_int(nodes), *map(slip._pointer, found))
-    q = pressure.line_load(xi * b * a_max, force=F, a=b * a_max, a_max=a_max, flatness=tau)
+    q = partial_slip.line_load(xi * b * a_max, force=F, a=b * a_max, a_max=a_max, flatness=tau)
     whole = 2 * b * a_max * w @ q  # F, but for the rule of few nodes
     assert whole == pytest.approx(F, rel=0.06)
     assert one.state[0, :-1:3] == pytest.approx(MU * q * F / whole / (4 * G_STAR), rel=1e-11)

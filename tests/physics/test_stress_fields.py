@@ -7,8 +7,9 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from epdem.theory import pressure, sliding, yielding
+from epdem.theory import yielding
 from epdem.theory.backbones import Cavity, Thornton
+from epdem.verification.theory import criteria, pressure, sliding
 
 NU = [0, 0.1, 0.2, 0.25, 0.3, 0.35, 0.4, 0.5]
 P_Y0 = [1.29931, 1.39448, 1.49859, 1.55435, 1.61280, 1.67411, 1.73848, 1.87724]
@@ -29,7 +30,7 @@ def test_first_yield_under_a_sphere_for_any_poisson_ratio():
     assert p_0 == pytest.approx(P_Y0, abs=6e-6)  # 5 printed decimals
     assert depth == pytest.approx(DEPTH, abs=6e-5)
     assert round(float(yielding.first_yield(0.3)[0]), 1) == 1.6 == yielding.FIRST_YIELD_ROUNDED
-    assert yielding.first_yield_mean(0.3) == pytest.approx(yielding.FIRST_YIELD_MEAN_ROUNDED, abs=0.03)  # 8.79 rounds
+    assert criteria.first_yield_mean(0.3) == pytest.approx(criteria.FIRST_YIELD_MEAN_ROUNDED, abs=0.03)  # 8.79 rounds
 
 
 def test_first_yield_is_the_maximum_of_the_axial_stress_for_any_poisson_ratio():
@@ -50,7 +51,7 @@ def test_first_yield_is_the_maximum_of_the_axial_stress_for_any_poisson_ratio():
 
 def test_fully_plastic_pressure_lies_where_the_expanding_cavity_ends():
     """8.80 against 8.81: from E* a/(Y R*) of about 40, within a sixth, the cavity's pressure reaches 2.8 to 3.0 Y."""
-    low, high = yielding.fully_plastic_mean(np.array([1e9, 2e9]))
+    low, high = criteria.fully_plastic_mean(np.array([1e9, 2e9]))
     assert low == pytest.approx([2.8e9, 5.6e9]) and high == pytest.approx([3e9, 6e9])
     assert pressure.cavity_mean(40.0) == pytest.approx(2.4, abs=0.02)  # (2/3)(1 + ln(40/3)), still below
     x = 3 * np.exp(1.5 * 2.8 - 1)  # 8.81 solved for p_m = 2.8 Y
@@ -60,17 +61,17 @@ def test_fully_plastic_pressure_lies_where_the_expanding_cavity_ends():
     assert 1e3 * law.radius(law.plastic_overlap) == pytest.approx(33.84, abs=0.01)
     assert 1e3 * law.a_Y * np.exp(1.5 * (2.8 - 3.2 / 3)) == pytest.approx(33.84, abs=0.01) and round(x, 1) == 73.6
     with pytest.raises(ValueError, match="Y"):
-        yielding.fully_plastic_mean(-1.0)
+        criteria.fully_plastic_mean(-1.0)
 
 
 @given(st.tuples(*[st.floats(-1e3, 1e3)] * 3), st.floats(-1e3, 1e3))
 def test_criteria_see_neither_hydrostatic_pressure_nor_order(s, p):
-    for criterion in (yielding.von_mises, yielding.tresca):
+    for criterion in (criteria.von_mises, criteria.tresca):
         value = criterion(*s)
         assert criterion(s[2], s[0], s[1]) == pytest.approx(value, abs=1e-12)
         assert criterion(*(x + p for x in s)) == pytest.approx(value, abs=1e-9)
         assert criterion(value, 0, 0) == pytest.approx(value)  # uniaxial: yield at Y
-    assert yielding.von_mises(*s) <= yielding.tresca(*s) + 1e-9 <= 2 / np.sqrt(3) * yielding.von_mises(*s) + 2e-9
+    assert criteria.von_mises(*s) <= criteria.tresca(*s) + 1e-9 <= 2 / np.sqrt(3) * criteria.von_mises(*s) + 2e-9
 
 
 @pytest.mark.parametrize("criterion", ["von_mises", "tresca"])

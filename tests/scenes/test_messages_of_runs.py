@@ -27,10 +27,10 @@ from epdem.impacts.prediction import predict
 from epdem.scenes import columns, contacts, run, stl_files
 from epdem.studies import one_impact
 from epdem.studies.sweep import slurm
-from epdem.theory.yielding import principal
 from epdem.verification.models import lammps
 from epdem.verification.stability import variants
 from epdem.verification.stability.edits import Edit
+from epdem.verification.theory.criteria import principal
 from epdem.yade.deck_modules.law import Law
 
 CASES = Path(__file__).parents[2] / "cases"

@@ -9,9 +9,9 @@ import numpy as np
 import pandas as pd
 
 from ..report.chart import GREY, INK, PALETTE, Axis, Chart, Panel, Series
-from ..theory import printed
 from ..theory.backbones import JKR
-from ..theory.yielding import FIRST_YIELD_ROUNDED
+from ..theory.restitution import wu
+from ..theory.yielding import FIRST_YIELD_ROUNDED, yield_speed
 from . import oblique
 from .comparison import CHECKED
 from .experiment import Experiment
@@ -43,7 +43,7 @@ def first_yield(x: Experiment) -> float:
     if not known or x.law.adheres:
         return math.nan
     pair = {"E_star": x.E_star, "R_star": x.R_star, "m_star": x.m_star}
-    return float(printed.yield_speed(p_y=FIRST_YIELD_ROUNDED * min(known), **pair))
+    return float(yield_speed(p_y=FIRST_YIELD_ROUNDED * min(known), **pair))
 
 
 def _error(what: str) -> Axis:
@@ -82,7 +82,7 @@ def restitution(outcome: Outcome) -> Chart:
     v_y0, plastic = first_yield(x), any(p.yields for p in outcome.predictions.values())
     if plastic and fine.speed[-1] > 100 * v_y0 and x.viscous_restitution is None:
         beyond = fine.speed[fine.speed >= 100 * v_y0]
-        above.append(Series("finite-element fit, eq. 8.88", beyond, printed.wu(beyond, v_y0=v_y0), INK, "dash"))
+        above.append(Series("finite-element fit, eq. 8.88", beyond, wu(beyond, v_y0=v_y0), INK, "dash"))
     if known:
         above.append(Series("measured", np.array(known.speeds), np.array(known.e_n), INK, None, MEASURED))
     below.append(_tolerance(fine.speed, outcome.case.check.e_n))

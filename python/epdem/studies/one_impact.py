@@ -10,7 +10,7 @@ from ..errors import CaseError
 from ..impacts.experiment import Experiment, pair_of, plane, sphere
 from ..impacts.prediction import predict
 from ..laws.strengths import default_numbers
-from ..theory import printed, yielding
+from ..theory import yielding
 from ..theory.backbones import ADHESIVE, LAWS
 
 NAMES = ("e_n", "contact_time", "force_max", "overlap_max", "residual_overlap", "strain_ratio")
@@ -66,8 +66,8 @@ def one_impact(material: str, *, radius: float, speed: float, adhesion: float | 
         m_star=x.m_star,
         first_yield_p0_over_Y=float(p_0),
         first_yield_depth_over_a=float(depth),
-        v_y0=float(printed.yield_speed(p_y=first * Y, **pair)),
-        v_y=float(printed.yield_speed(p_y=plastic * Y, **pair)),
+        v_y0=float(yielding.yield_speed(p_y=first * Y, **pair)),
+        v_y=float(yielding.yield_speed(p_y=plastic * Y, **pair)),
         laws=laws,
         first=float(first),
         plastic=float(plastic),

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Friction with partial slip for any history of load and shear: independent springs along a contact line.
 
-Per length the line carries 4 G* tangentially and the law's own load normally (`pressure.line_load`); each spring sticks
+Per length the line carries 4 G* tangentially and the law's own load normally (`line_load`); each spring sticks
 until it carries mu times its load. That is Cattaneo's and Mindlin's friction for any history (Jaeger 1993; the method
 of dimensionality reduction, Popov and Hess 2015), and the reference of the C++ law with few nodes.
 """
@@ -10,9 +10,28 @@ import numpy as np
 
 from .backbone import Backbone
 from .checks import Array, Real, number
-from .hertz import Hertz
-from .pressure import line_load
+from .numerics import segment
 from .restitution import impact as normal_impact
+
+
+def line_load(x: Real, *, force: Real, a: Real, a_max: Real, flatness: Real) -> Array:
+    """Load per length [N/m] of the contact line at distance x [m] from its middle: Abel's transform of the pressure.
+
+    q(x) = 2 times the integral of r p(r)/sqrt(r^2 - x^2) from x to a. p is (1-tau) of Hertz's half-ellipse and tau of
+    uniform pressure over the circle a_max, less the rigid punches that took it from there to a: a constant of q. Its
+    integral over the line is `force` [N]; a <= a_max [m] > 0, flatness tau in [0, 1], all broadcast. 0 beyond a.
+    """
+    a, a_max = number("a", a), number("a_max", a_max)
+    tau = number("flatness", flatness, high=1.0, low_ok=True)
+    if np.any(a > a_max):
+        raise ValueError(f"a = {np.max(a):g}, must lie in (0, a_max = {np.min(a_max):g}]")
+    x = np.asarray(x, float)
+    b, inside = a / a_max, np.maximum((a - x) * (a + x), 0.0)
+    # sqrt(a_max^2 - x^2) - sqrt(a_max^2 - a^2), without cancellation
+    roots = np.sqrt(np.maximum((a_max - x) * (a_max + x), 0.0)) + np.sqrt((a_max - a) * (a_max + a))
+    flat = np.divide(inside, roots, out=np.zeros(np.broadcast(inside, roots).shape), where=roots > 0)
+    share = (1 - tau) * 0.75 * inside / a_max**3 + tau * 2 / np.pi * flat / a_max**2
+    return np.asarray(force * share / ((1 - tau) * b**3 + tau * 2 / np.pi * segment(np.arcsin(b))))
 
 
 class Springs:
@@ -92,23 +111,3 @@ def rebound(
         if force == 0 and v < 0:
             break
     return u[..., 0], impulse[..., 0]
-
-
-def maw_barber_fawcett(psi_1: Real, *, kappa: float, steps: int = 2000) -> Array:
-    """psi_2 of elastic oblique impacts of a solid sphere: psi = (kappa/mu) times slip velocity over v_n.
-
-    (Maw, Barber and Fawcett 1976.) psi_1 >= 0 before, of any shape; kappa = 4 G*/E*, 2 (1-nu)/(2-nu) for like bodies.
-    From psi_1 = 7 kappa - 1 on everything slides: psi_2 = psi_1 - 7 kappa.
-    """
-    psi_1, kappa = number("psi_1", psi_1, low_ok=True), float(number("kappa", kappa))
-    after, _ = rebound(
-        Hertz(E_star=1.0, R_star=1.0),
-        m_star=1.0,
-        m_tangential=2 / 7,
-        mu=kappa,
-        G_star=kappa / 4,
-        v_n=1e-3,
-        slip=1e-3 * np.asarray(psi_1),
-        steps=steps,
-    )
-    return 1e3 * after

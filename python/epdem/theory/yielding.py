@@ -1,55 +1,15 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""When and where a contact yields: criteria, first yield under a sphere, fully plastic range, which body."""
+"""First yield under a sphere: pressure, depth, impact speed."""
 
 from typing import Any
 
 import numpy as np
-from numpy.typing import ArrayLike
 
 from .backbone import Backbone
 from .checks import Array, Real, number, poisson_ratio
 from .numerics import bisect
 
 FIRST_YIELD_ROUNDED = 1.60  # p_0/Y at first yield, nu = 0.3; eq. 8.78
-FIRST_YIELD_MEAN_ROUNDED = 1.10  # p_m/Y at first yield; eq. 8.79
-FULLY_PLASTIC = (2.8, 3.0)  # p_m/Y; see fully_plastic_mean
-
-
-def principal(stress: ArrayLike) -> Array:
-    """Principal stresses, shape (..., 3), ascending, of symmetric tensors of shape (..., 3, 3)."""
-    stress = np.asarray(stress, float)
-    if stress.shape[-2:] != (3, 3):
-        raise ValueError(f"stress has shape {stress.shape}, must end in (3, 3)")
-    return np.asarray(np.linalg.eigvalsh(stress))
-
-
-def von_mises(s1: ArrayLike, s2: ArrayLike, s3: ArrayLike) -> Array:
-    """Equivalent stress sqrt(3 J2) of principal stresses [Pa]: yield when it reaches Y. Any shapes that broadcast.
-
-    Eq. 8.76 [Johnson 1985]: J2 = [(s1-s2)^2 + (s2-s3)^2 + (s3-s1)^2]/6 = k^2 = Y^2/3
-    """
-    s1, s2, s3 = (np.asarray(s, float) for s in (s1, s2, s3))
-    return np.asarray(np.sqrt(((s1 - s2) ** 2 + (s2 - s3) ** 2 + (s3 - s1) ** 2) / 2))
-
-
-def tresca(s1: ArrayLike, s2: ArrayLike, s3: ArrayLike) -> Array:
-    """Largest difference of principal stresses [Pa]: yield when it reaches Y. Any shapes that broadcast.
-
-    Eq. 8.77 [Johnson 1985]: max(|s1-s2|, |s2-s3|, |s3-s1|) = 2k = Y
-    """
-    s = np.stack(np.broadcast_arrays(*(np.asarray(x, float) for x in (s1, s2, s3))))
-    return np.asarray(s.max(axis=0) - s.min(axis=0))
-
-
-CRITERIA = {"von_mises": von_mises, "tresca": tresca}
-
-
-def equivalent(stress: ArrayLike, criterion: str) -> Array:
-    """Equivalent stress of tensors (..., 3, 3) by "von_mises" or "tresca". ValueError for another name."""
-    if criterion not in CRITERIA:
-        raise ValueError(f"criterion = {criterion!r}, must be one of {', '.join(CRITERIA)}")
-    p = principal(stress)
-    return CRITERIA[criterion](p[..., 0], p[..., 1], p[..., 2])
 
 
 def axis_difference(z: Real, nu: Real) -> Array:
@@ -78,24 +38,6 @@ def first_yield(nu: Real) -> tuple[Array, Array]:
     return 1 / axis_difference(z, nu), z
 
 
-def first_yield_mean(nu: Real) -> Array:
-    """Mean pressure p_m/Y at first yield, exactly. nu in (-1, 0.5], any shape; ValueError outside.
-
-    Eq. 8.79 [Johnson 1985]: p_m = 2/3 p_0, rounded to 1.10 Y
-    """
-    return 2 / 3 * first_yield(nu)[0]
-
-
-def fully_plastic_mean(Y: Real) -> tuple[Real, Real]:
-    """Mean pressure of fully plastic contact (low, high) [Pa]; Y [Pa] > 0, any shape; ValueError outside.
-
-    Eq. 8.80 [Johnson 1985]: p_m = 2.8 Y to 3.0 Y
-    """
-    Y = number("Y", Y)
-    low, high = FULLY_PLASTIC
-    return low * Y, high * Y
-
-
 def first_yield_speed(law: Backbone, Y: Real, *, m_star: Real, ratio: Real = FIRST_YIELD_ROUNDED) -> Array:
     """Impact speed [m/s] from which a body of yield stress Y [Pa] yields (section 8.2.2): its peak pressure is ratio Y.
 
@@ -116,3 +58,15 @@ def first_yield_speed(law: Backbone, Y: Real, *, m_star: Real, ratio: Real = FIR
 
     alpha = low * np.exp(bisect(below, 0.0, np.log(high / low))[1])
     return np.where(wanted <= limit, np.sqrt(2 * law.work(alpha) / number("m_star", m_star)), np.inf)
+
+
+def yield_speed(*, p_y: Real, E_star: Real, R_star: Real, m_star: Real) -> Real:
+    """Impact speed at which the peak pressure reaches p_y [m/s].
+
+    Eq. 8.84 [Thornton 1997]: v_y = (pi/(2E*))^2 sqrt(8 pi R*^3 p_y^5/(15 m*))
+
+    With p_y = 2.8 Y it is v_y, with 1.60 Y v_y0 = v_y/4.0513. p_y, E_star [Pa], R_star [m], m_star [kg] > 0.
+    """
+    p_y, E_star = number("p_y", p_y), number("E_star", E_star)
+    R_star, m_star = number("R_star", R_star), number("m_star", m_star)
+    return (np.pi / (2 * E_star)) ** 2 * np.sqrt(8 * np.pi * R_star**3 * p_y**5 / (15 * m_star))

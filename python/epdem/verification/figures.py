@@ -18,11 +18,13 @@ from ..impacts.run import run_plan
 from ..laws.strengths import ADHESION, LawSpec
 from ..report.chart import GREY, INK, Axis, Chart, Panel, Series
 from ..report.drawing import save
-from ..theory import pair, pressure, printed
+from ..theory import pair
 from ..theory.backbones import LAWS
 from ..theory.cavity import Cavity
-from ..theory.restitution import e_n
-from ..theory.yielding import FIRST_YIELD_ROUNDED, FULLY_PLASTIC
+from ..theory.restitution import e_n, wu
+from ..theory.yielding import FIRST_YIELD_ROUNDED, yield_speed
+from .theory import pressure, printed
+from .theory.criteria import FULLY_PLASTIC
 
 STEEL = {"E": 208e9, "nu": 0.3, "density": 7850.0, "Y": 1e9, "R": 0.01}  # the reference case
 
@@ -69,7 +71,7 @@ def restitution() -> Chart:
     E = pair.E_star(s["E"], s["nu"], s["E"], s["nu"])
     m = pair.sphere_mass(radius=s["R"], density=s["density"])
     both = {"E_star": E, "R_star": s["R"], "m_star": m}
-    v_y0 = printed.yield_speed(p_y=FIRST_YIELD_ROUNDED * s["Y"], **both)
+    v_y0 = yield_speed(p_y=FIRST_YIELD_ROUNDED * s["Y"], **both)
     ratio, series = np.geomspace(0.3, 1e4, 500), []
     for k, (name, law) in enumerate(LAWS.items()):
         declared = law.declaration()
@@ -77,11 +79,11 @@ def restitution() -> Chart:
         strength = {declared.parameter(declared.strength).symbol: Y} if declared.strength else {}
         found = e_n(law(E_star=E, R_star=s["R"], **strength), m_star=m, speed=ratio * v_y0)
         series.append(Series(name, ratio, found, k))
-    v_y = printed.yield_speed(p_y=LAWS["thornton"].declaration().default_ratio * s["Y"], **both) / v_y0
+    v_y = yield_speed(p_y=LAWS["thornton"].declaration().default_ratio * s["Y"], **both) / v_y0
     series.append(Series("8.83", ratio, printed.thornton(ratio, v_y=v_y), INK, "dot", width=1.5))
     p_m = LAWS["johnson"].declaration().default_ratio * s["Y"]
     series.append(Series("8.86", ratio, printed.johnson(ratio * v_y0, p_m=p_m, **both), INK, "dash", width=1.0))
-    series.append(Series("8.88 (finite elements)", ratio, printed.wu(ratio, v_y0=1.0), INK, "dashdot", width=1.0))
+    series.append(Series("8.88 (finite elements)", ratio, wu(ratio, v_y0=1.0), INK, "dashdot", width=1.0))
     axes = Axis("$v/v_{y0}$", log=True), Axis("$e_n$", log=True)
     alt = "Coefficient of restitution of every law against the speed over that of first yield."
     return Chart("figure_8_19", "Restitution, steel sphere on a plane", alt, [Panel(*axes, series)])

@@ -13,7 +13,7 @@ from ...laws.strengths import default_numbers
 from ...theory import pair
 from ...theory.adhesion import sticking_speed
 from ...theory.backbones import ADHESIVE, JKR, LAWS
-from ...theory.printed import yield_speed
+from ...theory.yielding import yield_speed
 
 MODULUS, RATIO, RADIUS, DENSITY, POISSON = 2e11, 100.0, 0.01, 7800.0, 0.3  # base: E [Pa], E*/p_y, R [m], rho [kg/m^3]
 TIMES_YIELD = 30.0  # base speed over the yield speed

@@ -4,8 +4,8 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from .checks import Array, Real, number
-from .numerics import segment
+from ...theory.checks import Array, Real, number
+from ...theory.numerics import segment
 
 
 def hertz(r: Real, *, p_0: Real, a: Real) -> Real:
@@ -100,20 +100,3 @@ def unloading_force(*, a: Real, a_max: Real, p: Real) -> Array:
     """
     a, a_max = _opening(a, a_max)
     return 2 * number("p", p) * a_max**2 * segment(np.arcsin(a / a_max))
-
-
-def line_load(x: Real, *, force: Real, a: Real, a_max: Real, flatness: Real) -> Array:
-    """Load per length [N/m] of the contact line at distance x [m] from its middle: Abel's transform of the pressure.
-
-    q(x) = 2 times the integral of r p(r)/sqrt(r^2 - x^2) from x to a. p is (1-tau) of Hertz's half-ellipse and tau of
-    uniform pressure over the circle a_max, less the rigid punches that took it from there to a: a constant of q. Its
-    integral over the line is `force` [N]; a <= a_max [m] > 0, flatness tau in [0, 1], all broadcast. 0 beyond a.
-    """
-    (a, a_max), tau = _opening(a, a_max), number("flatness", flatness, high=1.0, low_ok=True)
-    x = np.asarray(x, float)
-    b, inside = a / a_max, np.maximum((a - x) * (a + x), 0.0)
-    # sqrt(a_max^2 - x^2) - sqrt(a_max^2 - a^2), without cancellation
-    roots = np.sqrt(np.maximum((a_max - x) * (a_max + x), 0.0)) + np.sqrt((a_max - a) * (a_max + a))
-    flat = np.divide(inside, roots, out=np.zeros(np.broadcast(inside, roots).shape), where=roots > 0)
-    share = (1 - tau) * 0.75 * inside / a_max**3 + tau * 2 / np.pi * flat / a_max**2
-    return np.asarray(force * share / ((1 - tau) * b**3 + tau * 2 / np.pi * segment(np.arcsin(b))))

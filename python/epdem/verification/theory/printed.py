@@ -3,19 +3,7 @@
 
 import numpy as np
 
-from .checks import Array, Real, number
-
-
-def yield_speed(*, p_y: Real, E_star: Real, R_star: Real, m_star: Real) -> Real:
-    """Impact speed at which the peak pressure reaches p_y [m/s].
-
-    Eq. 8.84 [Thornton 1997]: v_y = (pi/(2E*))^2 sqrt(8 pi R*^3 p_y^5/(15 m*))
-
-    With p_y = 2.8 Y it is v_y, with 1.60 Y v_y0 = v_y/4.0513. p_y, E_star [Pa], R_star [m], m_star [kg] > 0.
-    """
-    p_y, E_star = number("p_y", p_y), number("E_star", E_star)
-    R_star, m_star = number("R_star", R_star), number("m_star", m_star)
-    return (np.pi / (2 * E_star)) ** 2 * np.sqrt(8 * np.pi * R_star**3 * p_y**5 / (15 * m_star))
+from ...theory.checks import Array, Real, number
 
 
 def thornton(speed: Real, *, v_y: Real) -> Array:
@@ -52,17 +40,6 @@ def johnson_plane(speed: Real, *, p_m: Real, E_star: Real, density: Real) -> Arr
     p_m, E_star = number("p_m", p_m), number("E_star", E_star)
     e_n = 1.718 * (p_m**5 / (E_star**4 * number("density", density))) ** 0.125 * number("speed", speed) ** -0.25
     return np.where(e_n <= 1, e_n, np.nan)
-
-
-def wu(speed: Real, *, v_y0: Real) -> Array:
-    """Finite-element fit. NaN below v/v_y0 = 100.
-
-    Eq. 8.88 [Wu et al. 2003]: e_n = 2.08 (v/v_y0)^(-1/4), v/v_y0 >= 100
-
-    v_y0 [m/s] is the speed of first yield (1.60 Y), not that of 2.8 Y.
-    """
-    ratio = number("speed", speed) / number("v_y0", v_y0)
-    return np.where(ratio >= 100, 2.08 * ratio**-0.25, np.nan)
 
 
 def bridges(speed: Real) -> Array:

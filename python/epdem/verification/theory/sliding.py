@@ -15,9 +15,10 @@ from typing import Any, TypeAlias
 import numpy as np
 from numpy.typing import ArrayLike
 
-from .checks import Array, Real, number, poisson_ratio
-from .numerics import gauss
-from .yielding import equivalent, first_yield
+from ...theory.checks import Array, Real, number, poisson_ratio
+from ...theory.numerics import gauss
+from ...theory.yielding import first_yield
+from .criteria import equivalent
 
 # All singularities lie at t = i z +- r: from t = -i to 1 below them. The nodes crowd towards t = 1, where the edge of
 # the contact comes near; the other half of the way, from -1 to -i, gives the complex conjugate.

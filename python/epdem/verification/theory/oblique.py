@@ -8,10 +8,11 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from .backbone import Backbone
-from .checks import Array, Real, number, poisson_ratio
-from .partial_slip import rebound
-from .restitution import e_n as normal_restitution
+from ...theory.backbone import Backbone
+from ...theory.checks import Array, Real, number, poisson_ratio
+from ...theory.hertz import Hertz
+from ...theory.partial_slip import rebound
+from ...theory.restitution import e_n as normal_restitution
 
 STEEPEST = 1.5707  # of impact angles [rad]: just below pi/2
 
@@ -104,3 +105,23 @@ def impact(
     e_t = 1 - np.divide(f * (1 + e_n), tangent, out=np.full(theta.shape, np.nan), where=tangent > 0)
     turned, patch = np.asarray(spin(f, e_n=e_n, v_n=v_n, R=R)), np.asarray(patch_rebound(f, e_n=e_n, theta=theta))
     return Oblique(f=f, e_n=e_n, e_t=e_t, spin=turned, patch=patch)
+
+
+def maw_barber_fawcett(psi_1: Real, *, kappa: float, steps: int = 2000) -> Array:
+    """psi_2 of elastic oblique impacts of a solid sphere: psi = (kappa/mu) times slip velocity over v_n.
+
+    (Maw, Barber and Fawcett 1976.) psi_1 >= 0 before, of any shape; kappa = 4 G*/E*, 2 (1-nu)/(2-nu) for like bodies.
+    From psi_1 = 7 kappa - 1 on everything slides: psi_2 = psi_1 - 7 kappa.
+    """
+    psi_1, kappa = number("psi_1", psi_1, low_ok=True), float(number("kappa", kappa))
+    after, _ = rebound(
+        Hertz(E_star=1.0, R_star=1.0),
+        m_star=1.0,
+        m_tangential=2 / 7,
+        mu=kappa,
+        G_star=kappa / 4,
+        v_n=1e-3,
+        slip=1e-3 * np.asarray(psi_1),
+        steps=steps,
+    )
+    return 1e3 * after

@@ -8,10 +8,10 @@ Hutchings 1979).
 import numpy as np
 from numpy.typing import ArrayLike
 
-from .backbone import Backbone
-from .checks import Array, Real, number, poisson_ratio
-from .numerics import bisect, gauss
-from .restitution import history, impact
+from ...theory.backbone import Backbone
+from ...theory.checks import Array, Real, number, poisson_ratio
+from ...theory.numerics import bisect, gauss
+from ...theory.restitution import history, impact
 
 
 def _rayleigh(k2: Array, g: float) -> Array:

@@ -1,0 +1,66 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Yield criteria, and mean pressures at first yield and at full plasticity."""
+
+import numpy as np
+from numpy.typing import ArrayLike
+
+from ...theory.checks import Array, Real, number
+from ...theory.yielding import first_yield
+
+FIRST_YIELD_MEAN_ROUNDED = 1.10  # p_m/Y at first yield; eq. 8.79
+FULLY_PLASTIC = (2.8, 3.0)  # p_m/Y; see fully_plastic_mean
+
+
+def principal(stress: ArrayLike) -> Array:
+    """Principal stresses, shape (..., 3), ascending, of symmetric tensors of shape (..., 3, 3)."""
+    stress = np.asarray(stress, float)
+    if stress.shape[-2:] != (3, 3):
+        raise ValueError(f"stress has shape {stress.shape}, must end in (3, 3)")
+    return np.asarray(np.linalg.eigvalsh(stress))
+
+
+def von_mises(s1: ArrayLike, s2: ArrayLike, s3: ArrayLike) -> Array:
+    """Equivalent stress sqrt(3 J2) of principal stresses [Pa]: yield when it reaches Y. Any shapes that broadcast.
+
+    Eq. 8.76 [Johnson 1985]: J2 = [(s1-s2)^2 + (s2-s3)^2 + (s3-s1)^2]/6 = k^2 = Y^2/3
+    """
+    s1, s2, s3 = (np.asarray(s, float) for s in (s1, s2, s3))
+    return np.asarray(np.sqrt(((s1 - s2) ** 2 + (s2 - s3) ** 2 + (s3 - s1) ** 2) / 2))
+
+
+def tresca(s1: ArrayLike, s2: ArrayLike, s3: ArrayLike) -> Array:
+    """Largest difference of principal stresses [Pa]: yield when it reaches Y. Any shapes that broadcast.
+
+    Eq. 8.77 [Johnson 1985]: max(|s1-s2|, |s2-s3|, |s3-s1|) = 2k = Y
+    """
+    s = np.stack(np.broadcast_arrays(*(np.asarray(x, float) for x in (s1, s2, s3))))
+    return np.asarray(s.max(axis=0) - s.min(axis=0))
+
+
+CRITERIA = {"von_mises": von_mises, "tresca": tresca}
+
+
+def equivalent(stress: ArrayLike, criterion: str) -> Array:
+    """Equivalent stress of tensors (..., 3, 3) by "von_mises" or "tresca". ValueError for another name."""
+    if criterion not in CRITERIA:
+        raise ValueError(f"criterion = {criterion!r}, must be one of {', '.join(CRITERIA)}")
+    p = principal(stress)
+    return CRITERIA[criterion](p[..., 0], p[..., 1], p[..., 2])
+
+
+def first_yield_mean(nu: Real) -> Array:
+    """Mean pressure p_m/Y at first yield, exactly. nu in (-1, 0.5], any shape; ValueError outside.
+
+    Eq. 8.79 [Johnson 1985]: p_m = 2/3 p_0, rounded to 1.10 Y
+    """
+    return 2 / 3 * first_yield(nu)[0]
+
+
+def fully_plastic_mean(Y: Real) -> tuple[Real, Real]:
+    """Mean pressure of fully plastic contact (low, high) [Pa]; Y [Pa] > 0, any shape; ValueError outside.
+
+    Eq. 8.80 [Johnson 1985]: p_m = 2.8 Y to 3.0 Y
+    """
+    Y = number("Y", Y)
+    low, high = FULLY_PLASTIC
+    return low * Y, high * Y
