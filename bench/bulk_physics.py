@@ -68,7 +68,7 @@ def flow(outlet: float, count: int, width: float, folder: Path, angle: float = 9
     p = plan(case)
     spheres = run_plan(p, Liggghts(), folder)["particles"]
     last = last_frame(spheres)
-    out = last[last["z"] < p.scene.gates[0].place]["mass"].sum() / last["mass"].sum()
+    out = last[last["z"] < p.scene.gates[0].at]["mass"].sum() / last["mass"].sum()
     if out < END:
         raise RuntimeError(f"outlet {outlet} d: only {out:.0%} of the filling came out; the flow has stopped")
     found = discharge(p, case.scene, spheres, (BEGIN, END))
