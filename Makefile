@@ -38,11 +38,11 @@ bench-community:
 docs: setup
 	.venv/bin/python docs/make.py
 
-# all of C++ but the two sources that repeat loop/sse2.cpp and the one for the headers of LIGGGHTS-PFM; the wheel of
+# all of C++ but the two sources that repeat kernels/sse2.cpp and the one for the headers of LIGGGHTS-PFM; the wheel of
 # clang-tidy brings its own compiler
 tidy: setup
 	.venv/bin/clang-tidy --quiet $(filter-out %/avx2.cpp %/avx512.cpp %/pfm/models.cpp, $(wildcard cpp_contact/*/*.cpp \
-	  cpp_contact/*/*/*.cpp tests/*/*.cpp)) -- -std=c++17 -Icpp_contact/include -Icpp_contact/capi -Icpp_contact/liggghts \
+	  cpp_contact/*/*/*.cpp tests/*/*.cpp)) -- -std=c++17 -Icpp_contact/include -Icpp_contact -Icpp_contact/capi -Icpp_contact/liggghts \
 	  -Icpp_contact/liggghts/styles -isystem /usr/include/liggghts $(subst -I,-isystem ,$(shell mpicxx --showme:compile)) \
 	  -DOMPI_SKIP_MPICXX -DEPDEM_VERSION='""' -DEPDEM_BUILT_FOR='""'
 

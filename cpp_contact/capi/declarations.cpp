@@ -40,7 +40,7 @@ std::string declaration() {
   return "{" + field("name", Law::name) + ", " + field("id", Law::id) + ", " + field("title", Law::title) + ", " +
          field("sources", Law::sources) + ", " + field("condition", static_cast<const char*>(Law::condition)) +
          ", \"parameters\": [" + parameters + "], " + field("strength", strength) + ", " +
-         field("default_ratio", Law::default_ratio) + ", " + field("memory", memory<Law>) + ", " +
+         field("default_ratio", Law::default_ratio) + ", " + field("memory", history_size<Law>) + ", " +
          field("yields", Law::yields) + ", " + field("flattens", Law::flattens) + ", " +
          field("adheres", adheres<Law>) + ", " + field("without_adhesion", without_adhesion<Law>()) + "}";
 }

@@ -62,22 +62,22 @@ bool sane_friction(double G_star, double mu, int nodes) {
   return positive(G_star) && std::isfinite(mu) && mu >= 0.0 && (nodes == 0 || nodes == 2 || nodes == 3);
 }
 
-/// Calls `body` with the number of nodes as a type.
+/// Calls `body` with the model of friction: partial slip with so many nodes, or one spring.
 template <class Body>
-void with_nodes(int nodes, const Body& body) {
+void with_friction(int nodes, const Body& body) {
   if (nodes == 2)
-    body(std::integral_constant<int, 2>{});
+    body(PartialSlip<2>{});
   else if (nodes == 3)
-    body(std::integral_constant<int, 3>{});
+    body(PartialSlip<3>{});
   else
-    body(std::integral_constant<int, 0>{});
+    body(SlidingSpring{});
 }
 
-template <int nodes, class Law>
-void move(const Law& law, double R_star, double stiffness, double mu, size_t n, const double* m, double* out) {
-  MovedContact<nodes, Law> contact(law, R_star, stiffness, mu);
+template <class Friction, class Law>
+void move(const ContactConstants<Law>& pair, double R_star, size_t n, const double* m, double* out) {
+  MovedContact<Friction, Law> contact(pair, R_star);
   for (size_t i = 0; i < n; ++i, m += 9, out += 4) {
-    const auto [force, friction] = contact({m[0], m[1], {{m[2], m[3], m[4]}, {m[5], m[6], m[7]}, m[8], 0.0}});
+    const auto [force, friction] = contact({m[0], m[1], {m[2], m[3], m[4]}, {m[5], m[6], m[7]}, m[8]});
     out[0] = force;
     out[1] = friction.x;
     out[2] = friction.y;
@@ -188,9 +188,9 @@ EPDEM_EXPORT int epdem_oblique(int law, double E_star, const double* parameters,
   for (size_t i = 0; i < n; ++i)
     if (!sane(in[i]) || !std::isfinite(slip[i])) return EPDEM_BAD_INPUT;
   return with_law(law, E_star, parameters, [&](const auto& l) {
-    with_nodes(nodes, [&](auto count) {
+    with_friction(nodes, [&](auto friction) {
       for (size_t i = 0; i < n; ++i)
-        slip_after_out[i] = slip_after<count>(l, input(in[i]), {slip[i], 8.0 * G_star, mu});
+        slip_after_out[i] = slip_after<decltype(friction)>(l, input(in[i]), {slip[i], G_star, mu});
     });
     return int(EPDEM_OK);
   });
@@ -202,7 +202,10 @@ EPDEM_EXPORT int epdem_motion(int law, double E_star, const double* parameters, 
   for (size_t k = 0; k < 9 * n; ++k)
     if (!std::isfinite(motion[k])) return EPDEM_BAD_INPUT;
   return with_law(law, E_star, parameters, [&](const auto& l) {
-    with_nodes(nodes, [&](auto count) { move<count>(l, R_star, 8.0 * G_star, mu, n, motion, out); });
+    ContactConstants<std::decay_t<decltype(l)>> pair = of_law(l);
+    pair.shear_modulus = G_star;
+    pair.friction = mu;
+    with_friction(nodes, [&](auto friction) { move<decltype(friction)>(pair, R_star, n, motion, out); });
     return int(EPDEM_OK);
   });
 }

@@ -5,18 +5,16 @@
 #include <cstring>
 #include <memory>
 
-#include "epdem/friction.hpp"
+#include "epdem/contact.hpp"
 #include "epdem/laws.hpp"
-#include "epdem/tangential.hpp"
-#include "epdem/viscous.hpp"
-#include "loop/block.hpp"
+#include "kernels/block.hpp"
 #include "normal.hpp"
 
 namespace epdem::liggghts {
 
 template <class Law>
 class LawModel : public NormalModel {
-  static constexpr int size = epdem::memory<Law>;
+  static constexpr int size = epdem::history_size<Law>;
 
  public:
   LawModel(LAMMPS_NS::LAMMPS* lmp, LIGGGHTS::IContactHistorySetup* setup, bool wall, bool others_have_history)
@@ -31,16 +29,13 @@ class LawModel : public NormalModel {
     return -1;
   }
   void put_constants(int i, int j, double* c) const override {
-    const Entry& t = table_[i * width_ + j];
-    c[loop::shear_modulus] = t.G_star;
-    c[loop::damping] = t.damping_number;
-    c[loop::dashpot] = t.viscous_number;
-    std::memcpy(c + loop::law_data, &t.law, sizeof t.law);
+    static_assert(sizeof(ContactConstants<Law>) <= kernels::most_constants * sizeof(double));
+    std::memcpy(c, &table_[i * width_ + j], sizeof(ContactConstants<Law>));
   }
 
   void surfacesIntersect(SurfacesIntersectData& s, ForceData& fi, ForceData& fj) override {
     if (s.contact_flags) *s.contact_flags |= CONTACT_NORMAL_MODEL;
-    const Entry& t = table_[s.itype * width_ + s.jtype];
+    const ContactConstants<Law>& pair = table_[s.itype * width_ + s.jtype];
     const double R_star = wall_ ? s.radi : reduced_finite(s.radi, s.radj);
     const double delta = wall_ ? s.deltan : s.radsum - s.r;
     const bool keep = s.computeflag && s.shearupdate;
@@ -55,32 +50,28 @@ class LawModel : public NormalModel {
     if constexpr (adheres<Law>)
       if (others_have_history_ && keep && !(before.root > 0.0)) forget_others(history);
 
-    // with adhesion: a step that is not kept repeats the last one that was
-    const Step<Law> now = step(t.law, R_star, before, delta, keep ? -s.vn * update->dt : 0.0);
+    // a step that is not kept repeats the last one that was
+    const NormalContact<Law> contact = normal_contact(
+        pair, R_star, before, delta, keep ? -s.vn * update->dt : 0.0, -s.vn, pair.damping > 0.0, pair.dashpot > 0.0,
+        [&] { return s.meff; }, !keep);
+    const Step<Law>& now = contact.step;
 
     if (keep) {
-      if (plastic_work_) ledger_.book(wall_, t.law, R_star, before, now, delta, {s.i, s.j, atom->nlocal});
+      if (plastic_work_) ledger_.book(wall_, pair.law, R_star, before, now, delta, {s.i, s.j, atom->nlocal});
       if (contact_strain_) strain_.note(s.i, now.radius / R_star, delta / R_star);
       if constexpr (size > 0) std::memcpy(history + offset_, &now.after, sizeof now.after);
       if (has_step()) history[step_slot_] = now_;
     }
 
-    double force = now.force;
-    if constexpr (adheres<Law>)
-      if (!keep) force += before.jump;
-    if (t.viscous_number > 0.0) force = damped_force(t.law, R_star, before, now, t.viscous_number, s.meff, -s.vn);
-
-    state_.stiffness = 8.0 * t.G_star;
+    state_.stiffness = 8.0 * pair.shear_modulus;
     state_.pressed = pressed_by(now, now.force);
-
-    s.Fn = sliding_load(t.law, R_star, now, force);  // friction's limit is mu times it, after what cohesion made of it
-    s.kn = 4.0 / 3.0 * t.law.E_star * now.radius;    // LIGGGHTS's convention for rolling friction: F/alpha of Hertz
-    if (adheres<Law> && !(delta > 0.0)) s.kn = 0.0;  // rolling friction by the overlap has none across a gap
-    s.kt = tangential_stiffness(t.G_star, now.radius);
+    s.Fn = contact.load;  // friction's limit is mu times it, after what cohesion made of it
+    s.kn = contact.k_n;
+    s.kt = contact.k_t;
     s.gamman = 0.0;
-    s.gammat = t.damping_number > 0.0 ? tangential_damping(t.damping_number, s.kt, s.meff) : 0.0;
+    s.gammat = contact.damping;
 
-    const double share = wall_ ? force * s.area_ratio : force;
+    const double share = wall_ ? contact.force * s.area_ratio : contact.force;
     for (int k = 0; k < 3; ++k) {
       fi.delta_F[k] += share * s.en[k];
       if (!wall_) fj.delta_F[k] -= share * s.en[k];
@@ -102,18 +93,21 @@ class LawModel : public NormalModel {
 
  protected:
   void set_materials(const Materials& m) override {
-    table_.assign(m.pairs.size(), Entry{});
+    table_.assign(m.pairs.size(), ContactConstants<Law>{});
     for (int i = 1; i < width_; ++i)
       for (int j = 1; j < width_; ++j) {
         const PairOfTypes& p = m.pairs[i * width_ + j];
-        table_[i * width_ + j] = {Law(effective_modulus(p.i, p.j), p.parameters.data()),
-                                  effective_shear_modulus(p.i, p.j), p.damping_number, p.viscous_number};
+        ContactConstants<Law>& pair = table_[i * width_ + j];
+        pair.law = Law(effective_modulus(p.i, p.j), p.parameters.data());
+        pair.shear_modulus = effective_shear_modulus(p.i, p.j);
+        pair.damping = p.damping_number;
+        pair.dashpot = p.viscous_number;
       }
   }
 
   std::vector<double> resistances(double cohesive) const override {
     std::vector<double> all;
-    for (const Entry& t : table_) all.push_back(resistance(t.law) / cohesive);
+    for (const auto& pair : table_) all.push_back(resistance(pair.law) / cohesive);
     return all;
   }
 
@@ -127,18 +121,12 @@ class LawModel : public NormalModel {
   }
 
  private:
-  /// What a pair of types has in common.
-  struct Entry {
-    Law law;
-    double G_star = 0.0, damping_number = 0.0, viscous_number = 0.0;
-  };
-
   static Declaration declaration() {
     return {model_name<Law>(), Law::parameters,    Law::n_parameters,      &Law::valid,
             Law::strength,     Law::default_ratio, Law::strength_by_ratio, adheres<Law>};
   }
 
-  std::vector<Entry> table_;
+  std::vector<ContactConstants<Law>> table_;  // by types
 };
 
 }  // namespace epdem::liggghts

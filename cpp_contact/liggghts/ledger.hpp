@@ -5,8 +5,7 @@
 #include <algorithm>
 #include <string>
 
-#include "epdem/adhesive.hpp"
-#include "epdem/law.hpp"
+#include "epdem/contact.hpp"
 #include "host.hpp"
 
 namespace epdem::liggghts {
@@ -63,20 +62,14 @@ class Ledger {
   void book(bool wall, const Law& law, double R_star, const State<Law>& before, const Step<Law>& now, double delta,
             const Bodies& bodies) {
     const double part = wall ? 1.0 : 0.5;
-    double grown, stored;
+    const NormalEnergies<double> e = energies(law, R_star, before, now, delta);
     if constexpr (adheres<Law>) {
-      const auto lost = losses(law, R_star, before, now.after);
-      grown = lost.plastic;
-      stored = stored_energy(law, R_star, now.after, delta);
-      adhesive_->vector_atom[bodies.i] += part * lost.adhesive;
-      if (!wall && bodies.j < bodies.nlocal) adhesive_->vector_atom[bodies.j] += part * lost.adhesive;
-    } else {
-      stored = elastic_energy(law, R_star, now, delta);
-      grown = plastic_growth(law, R_star, before, now, stored);
+      adhesive_->vector_atom[bodies.i] += part * e.adhesion_loss;
+      if (!wall && bodies.j < bodies.nlocal) adhesive_->vector_atom[bodies.j] += part * e.adhesion_loss;
     }
-    const bool bears = adheres<Law> ? now.radius > 0.0 : stored > 0.0;
-    credit(bodies.i, part * grown, part * stored, bears);
-    if (!wall && bodies.j < bodies.nlocal) credit(bodies.j, part * grown, part * stored, bears);
+    const bool bears = adheres<Law> ? now.radius > 0.0 : e.stored > 0.0;
+    credit(bodies.i, part * e.plastic_work_step, part * e.stored, bears);
+    if (!wall && bodies.j < bodies.nlocal) credit(bodies.j, part * e.plastic_work_step, part * e.stored, bears);
   }
 
   /// The same for friction: work that it took in this step, elastic energy of its springs [J].

@@ -4,17 +4,10 @@
 
 #include <memory>
 
+#include "epdem/sub_models.hpp"
 #include "normal.hpp"
 
 namespace epdem::liggghts {
-
-/// Ids of LIGGGHTS's tangential models: restart files keep them, they never change.
-inline constexpr int TANGENTIAL_PARTIAL_SLIP = 40, TANGENTIAL_PARTIAL_SLIP_2 = 41;
-
-/// Nodes of a tangential model; 0 for those of LIGGGHTS.
-constexpr int slip_nodes(int tangential) {
-  return tangential == TANGENTIAL_PARTIAL_SLIP ? 3 : tangential == TANGENTIAL_PARTIAL_SLIP_2 ? 2 : 0;
-}
 
 /// Which models a contact combines; LIGGGHTS packs them into its hash code, which is stored in restart files.
 struct Ids {
@@ -77,7 +70,17 @@ std::unique_ptr<NormalModel> normal_model(LAMMPS_NS::LAMMPS* lmp, LIGGGHTS::ICon
 
 /// Whether the tangential or the rolling model of a contact has a history.
 inline bool others_have_history(const Ids& ids) {
-  return ids.tangential > TANGENTIAL_NO_HISTORY || ids.rolling > ROLLING_CDT;
+  bool found = ids.rolling == ROLLING_EPSD || ids.rolling == ROLLING_EPSD3;
+  Frictions::each([&](auto m, int) { found |= m.id == ids.tangential && values_of<decltype(m), double> > 0; });
+  Rollings::each([&](auto m, int) { found |= m.id == ids.rolling && m.has_history; });
+  return found;
+}
+
+/// Whether the tangential model of a contact computes its work.
+inline bool books_friction(const Ids& ids) {
+  bool found = false;
+  Frictions::each([&](auto m, int) { found |= m.id == ids.tangential && m.books_work; });
+  return found;
 }
 
 /// What LIGGGHTS's pair and wall loops call, with all models behind virtual calls: the loops for throughput are in
@@ -120,8 +123,7 @@ class Model : public ContactModelBase {
     cohesion_.registerSettings(settings);
     tangential_.registerSettings(settings);
     rolling_.registerSettings(settings);
-    if (ids_.rolling == ROLLING_CDT || ids_.rolling == ROLLING_EPSD2)
-      settings.registerOnOff("torsionTorque", loop_settings_.torsion, false);
+    if (Rollings::place(ids_.rolling) > 0) settings.registerOnOff("torsionTorque", loop_settings_.torsion, false);
     if (ids_.cohesion != COHESION_OFF)
       settings.registerOnOff("tangential_reduce", loop_settings_.cohesion_slides, false);
     if (ids_.tangential == TANGENTIAL_HISTORY) {
@@ -134,7 +136,7 @@ class Model : public ContactModelBase {
 
   void postSettings(LIGGGHTS::IContactHistorySetup* setup) {
     surface_.postSettings(setup, this);
-    normal_->postSettings(slip_nodes(ids_.tangential) > 0);
+    normal_->postSettings(books_friction(ids_));
     cohesion_.postSettings(setup, this);
     tangential_.postSettings(setup, this);
     rolling_.postSettings(setup, this);
@@ -227,10 +229,13 @@ class Model : public ContactModelBase {
     return ids_.tangential == TANGENTIAL_NO_HISTORY ? Dashpot::required : Dashpot::optional;
   }
 
-  /// sjkr2 takes twice the area of the lens between spheres.
+  /// Area on which cohesion pulls over that of the overlap's lens.
   double cohesive() const {
-    if (ids_.cohesion == COHESION_OFF) return 0.0;
-    return ids_.cohesion == COHESION_SJKR2 && !wall_ ? 2.0 : 1.0;
+    double ratio = 0.0;
+    Cohesions::each([&](auto m, int) {
+      if (m.id == ids_.cohesion && m.id != 0) ratio = wall_ ? 1.0 : m.area_ratio;
+    });
+    return ratio;
   }
 
   const bool wall_;

@@ -2,7 +2,7 @@
 // What passes from a law's adapter to a tangential model of ours beside it.
 #pragma once
 
-#include "epdem/partial_slip.hpp"
+#include "epdem/friction/sliding.hpp"
 #include "ledger.hpp"
 
 namespace epdem::liggghts {

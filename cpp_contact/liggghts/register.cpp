@@ -2,12 +2,13 @@
 // Makes the laws known to LIGGGHTS when the library (or the launcher) is loaded.
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "epdem/laws.hpp"
 #include "loop/pair.hpp"
 #include "loop/wall.hpp"
 #include "model.hpp"
-#include "partial_slip.hpp"
+#include "sub_models.hpp"
 
 namespace epdem::liggghts {
 
@@ -20,15 +21,14 @@ namespace PairStyles = LIGGGHTS::PairStyles;
 namespace Walls = LIGGGHTS::Walls;
 
 // every model that this LIGGGHTS has, from its own lists
-#define TANGENTIAL_MODEL(name, text, id) name,
-#define COHESION_MODEL(name, text, id) name,
-#define ROLLING_MODEL(name, text, id) name,
-#define SURFACE_MODEL(name, text, id) name,
+#define EPDEM_ID(name, text, id) name,
+#define TANGENTIAL_MODEL EPDEM_ID
+#define COHESION_MODEL EPDEM_ID
+#define ROLLING_MODEL EPDEM_ID
+#define SURFACE_MODEL EPDEM_ID
 constexpr int tangentials[] = {
     TANGENTIAL_OFF,
 #include "style_tangential_model.h"
-    TANGENTIAL_PARTIAL_SLIP,
-    TANGENTIAL_PARTIAL_SLIP_2,
 };
 constexpr int cohesions[] = {
     COHESION_OFF,
@@ -45,27 +45,42 @@ constexpr int surfaces[] = {
 #undef COHESION_MODEL
 #undef ROLLING_MODEL
 #undef SURFACE_MODEL
-constexpr const char* partial_slip_names[] = {"ep/partial_slip", "ep/partial_slip_2"};
+#undef EPDEM_ID
 constexpr int unknown_law = 63;  // normal id of what is refused: by its name, or for its tangential model
 
 /// Why, as the tangential id of a refusal.
 enum Refusal { unknown_normal, unknown_tangential, foreign_normal };
 
+/// Ids of LIGGGHTS's models and of those of ours that it does not have.
+template <class Ours, int n>
+std::vector<int> with_ours(const int (&theirs)[n], Ours) {
+  std::vector<int> ids(theirs, theirs + n);
+  Ours::each([&](auto m, int) {
+    if (!m.of_liggghts) ids.push_back(m.id);
+  });
+  return ids;
+}
+
+/// The names of models of ours, those that LIGGGHTS does not have if only_new, with a separator between them.
+template <class Ours>
+std::string names_of(Ours, const char* separator, bool only_new = false) {
+  std::string names;
+  Ours::each([&](auto m, int) {
+    if (!only_new || !m.of_liggghts) names += (names.empty() ? "" : separator) + std::string(m.name);
+  });
+  return names;
+}
+
 /// Luding's models need slots of Luding's normal model; capillary forces and superquadrics bring their own contact law.
 bool available(const Ids& ids) {
-  return (ids.tangential <= TANGENTIAL_HISTORY || slip_nodes(ids.tangential) > 0) && ids.rolling <= ROLLING_EPSD3 &&
-         ids.cohesion <= COHESION_SJKR2 && (ids.surface == SURFACE_DEFAULT || ids.surface == SURFACE_MULTICONTACT);
+  return Frictions::place(ids.tangential) >= 0 && Cohesions::place(ids.cohesion) >= 0 &&
+         (Rollings::place(ids.rolling) >= 0 || ids.rolling == ROLLING_EPSD || ids.rolling == ROLLING_EPSD3) &&
+         (ids.surface == SURFACE_DEFAULT || ids.surface == SURFACE_MULTICONTACT);
 }
 
 template <class Part>
 std::shared_ptr<Part> make(const Site& s) {
   return std::make_shared<Part>(s.lmp, s.history, s.contact);
-}
-
-template <int nodes>
-std::shared_ptr<TangentialModelBase> partial_slip_model(const Site& s) {
-  if (s.normal->flattens) return std::make_shared<PartialSlip<nodes, true>>(s);
-  return std::make_shared<PartialSlip<nodes, false>>(s);
 }
 
 }  // namespace
@@ -78,17 +93,29 @@ std::shared_ptr<SurfaceModelBase> surface_model(const Site& s) {
 std::shared_ptr<CohesionModelBase> cohesion_model(const Site& s) {
   if (s.ids.cohesion == COHESION_SJKR) return make<CohesionModel<COHESION_SJKR>>(s);
   if (s.ids.cohesion == COHESION_SJKR2) return make<CohesionModel<COHESION_SJKR2>>(s);
-  return make<CohesionModel<COHESION_OFF>>(s);
+  std::shared_ptr<CohesionModelBase> found = make<CohesionModel<COHESION_OFF>>(s);
+  Cohesions::each([&](auto m, int) {
+    if constexpr (!decltype(m)::of_liggghts)
+      if (m.id == s.ids.cohesion) found = std::make_shared<AttractionModel<decltype(m)>>(s);
+  });
+  return found;
 }
 
 std::shared_ptr<TangentialModelBase> tangential_model(const Site& s) {
-  switch (s.ids.tangential) {
-    case TANGENTIAL_HISTORY: return make<TangentialModel<TANGENTIAL_HISTORY>>(s);
-    case TANGENTIAL_NO_HISTORY: return make<TangentialModel<TANGENTIAL_NO_HISTORY>>(s);
-    case TANGENTIAL_PARTIAL_SLIP: return partial_slip_model<3>(s);
-    case TANGENTIAL_PARTIAL_SLIP_2: return partial_slip_model<2>(s);
-    default: return make<TangentialModel<TANGENTIAL_OFF>>(s);
-  }
+  if (s.ids.tangential == TANGENTIAL_HISTORY) return make<TangentialModel<TANGENTIAL_HISTORY>>(s);
+  if (s.ids.tangential == TANGENTIAL_NO_HISTORY) return make<TangentialModel<TANGENTIAL_NO_HISTORY>>(s);
+  if (s.ids.tangential == TANGENTIAL_OFF) return make<TangentialModel<TANGENTIAL_OFF>>(s);
+  std::shared_ptr<TangentialModelBase> found;
+  Frictions::each([&](auto m, int) {
+    if constexpr (!decltype(m)::of_liggghts) {
+      if (m.id != s.ids.tangential) return;
+      if (s.normal->flattens)
+        found = std::make_shared<FrictionModel<decltype(m), true>>(s);
+      else
+        found = std::make_shared<FrictionModel<decltype(m), false>>(s);
+    }
+  });
+  return found;
 }
 
 std::shared_ptr<RollingModelBase> rolling_model(const Site& s) {
@@ -97,8 +124,14 @@ std::shared_ptr<RollingModelBase> rolling_model(const Site& s) {
     case ROLLING_EPSD: return make<RollingModel<ROLLING_EPSD>>(s);
     case ROLLING_EPSD2: return make<RollingModel<ROLLING_EPSD2>>(s);
     case ROLLING_EPSD3: return make<RollingModel<ROLLING_EPSD3>>(s);
-    default: return make<RollingModel<ROLLING_OFF>>(s);
+    default: break;
   }
+  std::shared_ptr<RollingModelBase> found = make<RollingModel<ROLLING_OFF>>(s);
+  Rollings::each([&](auto m, int) {
+    if constexpr (!decltype(m)::of_liggghts)
+      if (m.id == s.ids.rolling) found = std::make_shared<RollingFrictionModel<decltype(m)>>(s);
+  });
+  return found;
 }
 
 namespace {
@@ -123,14 +156,10 @@ bool with_adhesion(const Ids& ids) {
   return false;
 }
 
-constexpr const char* combinations =
-    "epdem's models combine with tangential off, no_history, history, ep/partial_slip, ep/partial_slip_2; cohesion "
-    "off, sjkr, sjkr2; rolling_friction off, cdt, epsd, epsd2, epsd3; surface default, multicontact; nothing else";
-
-std::string tangential_names() {
-  std::string names;
-  for (const char* name : partial_slip_names) names += std::string(" ") + name;
-  return names;
+std::string combinations() {
+  return "epdem's models combine with tangential " + names_of(Frictions{}, ", ") + "; cohesion " +
+         names_of(Cohesions{}, ", ") + "; rolling_friction " + names_of(Rollings{}, ", ") +
+         ", epsd, epsd3; surface default, multicontact; nothing else";
 }
 
 template <class Interface, class Parent>
@@ -141,8 +170,9 @@ Interface* refuse(LAMMPS* lmp, Parent*, int64_t hash) {
           ? "a law with adhesion has its attraction already: leave out the cohesion model beside it"
       : with_adhesion(ids) ? "laws with adhesion combine with tangential off, no_history, history; rolling_friction "
                              "off, cdt, epsd, epsd2, epsd3; surface default; nothing else"
-      : ids.normal != unknown_law            ? combinations
-      : ids.tangential == unknown_tangential ? "unknown tangential model: those of epdem are" + tangential_names()
+      : ids.normal != unknown_law ? combinations()
+      : ids.tangential == unknown_tangential
+          ? "unknown tangential model: those of epdem are " + names_of(Frictions{}, " ", true)
       : ids.tangential == foreign_normal
           ? "tangential ep/partial_slip goes with the normal models of epdem only: "
             "LIGGGHTS's own do not pass the contact radius on (its hertz is ep/hertz, with viscous on for its dashpot)"
@@ -171,9 +201,9 @@ template <class Law>
 void add_law() {
   static_assert(sizeof(int) >= 4, "LIGGGHTS's tables are indexed by int");
   LIGGGHTS::ContactModels::Factory::instance().addNormalModel(model_name<Law>(), Law::id);
-  for (int t : tangentials)
-    for (int c : cohesions)
-      for (int r : rollings)
+  for (int t : with_ours(tangentials, Frictions{}))
+    for (int c : with_ours(cohesions, Cohesions{}))
+      for (int r : with_ours(rollings, Rollings{}))
         for (int s : surfaces) {
           const Ids ids{Law::id, t, c, r, s};
           offered(ids) ? add(ids, &new_pair, &new_wall) : add_refusal(ids);
@@ -184,6 +214,12 @@ Ids refused(int why) { return {unknown_law, why, COHESION_OFF, ROLLING_OFF, SURF
 
 #ifdef EPDEM_BUILT_FOR
 bool starts_with_ep(const std::string& name) { return name.compare(0, 2, "ep") == 0; }
+
+bool is_friction(const std::string& name) {
+  bool found = false;
+  Frictions::each([&](auto m, int) { found |= name == m.name; });
+  return found;
+}
 
 bool unknown_name(const std::string& name) {
   if (!starts_with_ep(name)) return false;
@@ -201,9 +237,16 @@ const struct Registration {
     EPDEM_LAWS(EPDEM_ADD)
 #undef EPDEM_ADD
     for (int why : {unknown_normal, unknown_tangential, foreign_normal}) add_refusal(refused(why));
-    for (int k = 0; k < 2; ++k)
-      LIGGGHTS::ContactModels::Factory::instance().addTangentialModel(partial_slip_names[k],
-                                                                      TANGENTIAL_PARTIAL_SLIP + k);
+    auto& factory = LIGGGHTS::ContactModels::Factory::instance();
+    Frictions::each([&](auto m, int) {
+      if (!m.of_liggghts) factory.addTangentialModel(m.name, m.id);
+    });
+    Rollings::each([&](auto m, int) {
+      if (!m.of_liggghts) factory.addRollingModel(m.name, m.id);
+    });
+    Cohesions::each([&](auto m, int) {
+      if (!m.of_liggghts) factory.addCohesionModel(m.name, m.id);
+    });
   }
 } registration;  // NOLINT(bugprone-throwing-static-initialization): LIGGGHTS cannot run without its models
 
@@ -227,7 +270,7 @@ const struct Registration {
       ours = starts_with_ep(name);
     }
     if (word == "tangential" && starts_with_ep(name)) {
-      if (name != partial_slip_names[0] && name != partial_slip_names[1]) return refused(unknown_tangential).hash();
+      if (!is_friction(name)) return refused(unknown_tangential).hash();
       if (!ours) return refused(foreign_normal).hash();
     }
   }

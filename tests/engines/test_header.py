@@ -88,7 +88,7 @@ def needed(file, seen):
         return
     seen.add(file)
     for name in re.findall(r'^#include "(.*)"', file.read_text(), re.MULTILINE):
-        for folder in (file.parent, SOURCES, ROOT / "cpp_contact" / "include"):
+        for folder in (file.parent, SOURCES, SOURCES.parent / "include", SOURCES.parent):
             if (folder / name).is_file():
                 needed((folder / name).resolve(), seen)
                 break
@@ -106,6 +106,7 @@ def test_the_files_hold_every_line_of_the_sources_that_they_need_and_no_other(pf
         assert files.pop("normal_model_ep.h") == (SOURCES / "pfm" / "commands.h").read_text()
     parts = {name: set() for name in files}
     common = [f for f in SOURCES.rglob("*.cpp") if f.name != "main.cpp" and f.parent.name != "pfm"]
+    common += (SOURCES.parent / "kernels").glob("*.cpp")
     for source in PFM if pfm else common:
         apart = f"normal_model_ep_{source.stem}.cpp"
         needed(source, parts[apart if apart in files else "normal_model_ep.cpp"])

@@ -22,7 +22,14 @@ def compiles(folder, header):
     (folder / "alone.cpp").write_text(f'#include "{header}"\n')
     mpi = subprocess.run(["mpicxx", "--showme:compile"], capture_output=True, text=True, check=True).stdout.split()
     line = ["g++", "-fsyntax-only", "-std=c++17", "-DOMPI_SKIP_MPICXX", f"-I{SOURCES}/liggghts"]
-    line += [f"-I{SOURCES}/liggghts/styles", f"-I{SOURCES}/include", "-isystem", "/usr/include/liggghts", *mpi]
+    line += [
+        f"-I{SOURCES}/liggghts/styles",
+        f"-I{SOURCES}/include",
+        f"-I{SOURCES}",
+        "-isystem",
+        "/usr/include/liggghts",
+        *mpi,
+    ]
     return subprocess.run([*line, folder / "alone.cpp"], capture_output=True, check=False).returncode == 0
 
 

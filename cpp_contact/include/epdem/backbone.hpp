@@ -61,7 +61,7 @@ inline constexpr bool adheres = false;
 
 /// How many values a host must keep from step to step.
 template <class Law>
-inline constexpr int memory = Law::yields || adheres<Law> ? static_cast<int>(std::size(State<Law>::slots)) : 0;
+inline constexpr int history_size = Law::yields || adheres<Law> ? static_cast<int>(std::size(State<Law>::slots)) : 0;
 
 /// What a step of a law returns.
 template <class Law>

@@ -4,7 +4,7 @@
 
 #include <cstdint>
 
-#include "viscous.hpp"
+#include "contact.hpp"
 
 namespace epdem {
 
@@ -38,31 +38,28 @@ struct Path {
   T* velocity = nullptr;  // of approach [m/s]
 };
 
-/// Nothing beside a normal impact.
-struct Alone {
-  template <class... Any>
-  void operator()(const Any&...) const noexcept {}
-};
-
 /// Integrates until the bodies have parted (no force for two steps after contact) or `steps` is reached;
-/// `state` is what the contact remembers, before and after. beside(step, force) is called in every step.
-template <class Law, class Beside = Alone>
-inline ImpactOutput<Number<Law>> impact(const Law& law, const ImpactInput<Number<Law>>& in,
-                                        const Path<Number<Law>>& path, State<Law>& state, Beside beside = {}) noexcept {
+/// `state` is the history, before and after; the dashpot of `pair` is that of `in`. observer.step(normal contact) is
+/// called in every step.
+template <class Law, class Observer = NoObserver>
+inline ImpactOutput<Number<Law>> impact(ContactConstants<Law> pair, const ImpactInput<Number<Law>>& in,
+                                        const Path<Number<Law>>& path, State<Law>& state,
+                                        Observer observer = {}) noexcept {
   using T = Number<Law>;
   const T half = 0.5 * in.time_step / in.m_star;
+  pair.dashpot = in.viscous;
   T alpha = -in.gap, v = in.speed, force = 0.0;
   ImpactOutput<T> out{in.speed, 0.0, 0.0, 0.0, -1, -1, 0};
   std::int64_t n = 0;
   for (;; ++n) {
     // dashpot and adhesion see the speed of the middle of the last step, as in an engine that moves before it finds
     // contacts
-    const Step<Law> now = step(law, in.R_star, state, alpha, T(n > 0 ? v * in.time_step : 0.0));
-    const bool damped = in.viscous > 0.0 && (adheres<Law> ? now.radius > 0.0 : alpha > 0.0);
-    const T F = damped ? damped_force(law, in.R_star, state, now, in.viscous, in.m_star, v) : now.force;
-    if (n > 0) v -= half * F;
-    force = F;
-    beside(now, F);
+    const NormalContact<Law> contact = normal_contact(pair, in.R_star, state, alpha, T(n > 0 ? v * in.time_step : 0.0),
+                                                      v, false, in.viscous > 0.0, [&] { return in.m_star; });
+    const Step<Law>& now = contact.step;
+    force = contact.force;
+    if (n > 0) v -= half * contact.force;
+    observer.step(contact);
     state = now.after;
     if (path.overlap) path.overlap[n] = alpha;
     if (path.force) path.force[n] = force;
@@ -90,7 +87,7 @@ template <class Law>
 inline ImpactOutput<Number<Law>> impact(const Law& law, const ImpactInput<Number<Law>>& in,
                                         const Path<Number<Law>>& path) noexcept {
   State<Law> state{};
-  return impact(law, in, path, state);
+  return impact(of_law(law), in, path, state);
 }
 
 /// The overlap [m] at which a contact with this memory takes force again.
@@ -118,7 +115,7 @@ inline ImpactOutput<Number<Law>> bounces(const Law& law, const ImpactInput<Numbe
   T phase = 0.5;
   for (std::int64_t k = 0; k < count; ++k) {
     in.gap = phase * in.speed * in.time_step - reforming_overlap(law, in.R_star, state);
-    out = impact(law, in, {}, state);
+    out = impact(of_law(law), in, {}, state);
     steps += out.steps;
     if (speeds) speeds[k] = out.rebound_speed;
     if (!(out.rebound_speed > 0.0)) break;

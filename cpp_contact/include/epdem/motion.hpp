@@ -2,26 +2,29 @@
 // One contact of two bodies whose motion is prescribed: every step of it counts.
 #pragma once
 
-#include "friction.hpp"
+#include <utility>
+
+#include "contact.hpp"
 
 namespace epdem {
 
-/// What the bodies do in one step; the field `damping` of `shear` is not read.
+/// What the bodies do in one step.
 template <class T>
 struct MotionStep {
   T overlap;  // [m]
   T closing;  // closing speed times the time step [m]
-  Shear<T> shear;
+  Vec<T> normal;
+  Vec<T> slip;  // relative tangential displacement of the surfaces [m]
+  T turn;       // rotation about the normal, mean of both bodies [rad]
 };
 
-/// A contact that remembers what its law and its friction do. stiffness = 8 G* [Pa].
-template <int nodes, class Law>
+/// A contact that keeps the history of its law and of its friction.
+template <class Friction, class Law>
 class MovedContact {
   using T = Number<Law>;
 
  public:
-  MovedContact(const Law& law, T R_star, T stiffness, T mu)
-      : law_(law), R_star_(R_star), stiffness_(stiffness), mu_(mu) {}
+  MovedContact(const ContactConstants<Law>& pair, T R_star) : pair_(pair), R_star_(R_star) {}
 
   /// (normal force [N], friction on the body that the normal points to [N]) of the next step.
   std::pair<T, Vec<T>> operator()(const MotionStep<T>& motion) noexcept {
@@ -29,11 +32,13 @@ class MovedContact {
       friction_ = {};
       if constexpr (!adheres<Law>) state_ = {};
     }
-    const Step<Law> now = step(law_, R_star_, state_, motion.overlap, motion.closing);
-    state_ = now.after;
-    if (!(now.radius > 0.0 || motion.overlap > 0.0)) return {now.force, {}};
-    const T load = sliding_load(law_, R_star_, now, now.force);
-    return {now.force, friction_(pressed_by<Law>(now, load), motion.shear, stiffness_, mu_)};
+    const NormalContact<Law> now =
+        normal_contact(pair_, R_star_, state_, motion.overlap, motion.closing, T{}, false, false, [] { return T{}; });
+    state_ = now.step.after;
+    if (!(now.step.radius > 0.0 || motion.overlap > 0.0)) return {now.force, {}};
+    // velocities are displacements in a step of length 1
+    const auto sliding = sliding_of(pair_, now, motion.normal, motion.slip, motion.turn, 1.0, false);
+    return {now.force, Friction::template force<Law::flattens>(sliding, friction_, NoObserver{})};
   }
 
  private:
@@ -43,10 +48,10 @@ class MovedContact {
     return overlap > 0.0;
   }
 
-  const Law& law_;
-  T R_star_, stiffness_, mu_;
+  const ContactConstants<Law> pair_;
+  const T R_star_;
   State<Law> state_{};
-  Friction<nodes, Law> friction_{};
+  typename Friction::template History<T> friction_{};
 };
 
 }  // namespace epdem

@@ -2,7 +2,6 @@
 // Oblique impact of solid spheres by velocity Verlet: the normal impact with friction beside it, of a plane motion.
 #pragma once
 
-#include "friction.hpp"
 #include "impact.hpp"
 
 namespace epdem {
@@ -10,27 +9,41 @@ namespace epdem {
 /// What a plane oblique impact has beside a normal one.
 template <class T>
 struct ObliqueInput {
-  T slip;       // velocity of the surfaces against each other before [m/s]
-  T stiffness;  // 8 G* [Pa]
+  T slip;    // velocity of the surfaces against each other before [m/s]
+  T G_star;  // [Pa]
   T mu;
 };
 
+/// Slip of a plane impact, moved on by the friction of each step.
+template <class Friction, class Law>
+struct ObliqueSlip {
+  using T = Number<Law>;
+  ContactConstants<Law> pair;
+  double time_step, m_star;
+  T& slip;  // [m/s]
+  typename Friction::template History<T>& history;
+
+  void step(const NormalContact<Law>& now) const noexcept {
+    const auto sliding = sliding_of<Law>(pair, now, {T{}, T{}, T{} + 1.0}, {slip, T{}, T{}}, T{}, time_step, false);
+    const T F = Friction::template force<Law::flattens>(sliding, history, NoObserver{}).x;
+    // the whole kick of this step's friction, half before and half after it is known: the slip is that of half a step
+    slip += 3.5 * time_step / m_star * F;
+  }
+};
+
 /// Velocity of the surfaces against each other [m/s] after an impact of solid spheres, or one on a plane: its reduced
-/// mass is 2/7 m*. nodes: of partial slip, 2 or 3; 0: one spring.
-template <int nodes, class Law>
+/// mass is 2/7 m*.
+template <class Friction, class Law>
 inline Number<Law> slip_after(const Law& law, const ImpactInput<Number<Law>>& in,
                               const ObliqueInput<Number<Law>>& beside) noexcept {
-  using T = Number<Law>;
-  Friction<nodes, Law> friction;
-  T u = beside.slip;
+  ContactConstants<Law> pair = of_law(law);
+  pair.shear_modulus = beside.G_star;
+  pair.friction = beside.mu;
+  Number<Law> slip = beside.slip;
+  typename Friction::template History<Number<Law>> history{};
   State<Law> state{};
-  impact(law, in, {}, state, [&](const Step<Law>& now, T force) noexcept {
-    const Shear<T> motion{{T{}, T{}, T{} + 1.0}, {in.time_step * u, T{}, T{}}, T{}, T{}};
-    const T kick = friction(pressed_by<Law>(now, force), motion, beside.stiffness, beside.mu).x;
-    // the whole kick of this step's friction, half before and half after it is known: the slip is that of half a step
-    u += 3.5 * in.time_step / in.m_star * kick;
-  });
-  return u;
+  impact(pair, in, {}, state, ObliqueSlip<Friction, Law>{pair, in.time_step, in.m_star, slip, history});
+  return slip;
 }
 
 }  // namespace epdem

@@ -6,36 +6,10 @@
 // change their sign when the pair is stored from the other side, the radius does not.
 #pragma once
 
+#include "friction/sliding.hpp"
 #include "pair.hpp"
 
 namespace epdem {
-
-/// A vector of numbers: one contact (double) or many lanes.
-template <class T>
-struct Vec {
-  T x, y, z;
-};
-
-template <class T>
-EPDEM_INLINE Vec<T> operator+(const Vec<T>& a, const Vec<T>& b) noexcept {
-  return {a.x + b.x, a.y + b.y, a.z + b.z};
-}
-template <class T>
-EPDEM_INLINE Vec<T> operator-(const Vec<T>& a, const Vec<T>& b) noexcept {
-  return {a.x - b.x, a.y - b.y, a.z - b.z};
-}
-template <class T>
-EPDEM_INLINE Vec<T> operator*(const T& c, const Vec<T>& a) noexcept {
-  return {c * a.x, c * a.y, c * a.z};
-}
-template <class T>
-EPDEM_INLINE T dot(const Vec<T>& a, const Vec<T>& b) noexcept {
-  return a.x * b.x + a.y * b.y + a.z * b.z;
-}
-template <class T>
-EPDEM_INLINE Vec<T> cross(const Vec<T>& a, const Vec<T>& b) noexcept {
-  return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
-}
 
 /// Positive interior nodes xi = x/a of Gauss and Lobatto's rule of 2 N + 2 points, their weights, and the profile
 /// s(xi) = (1 - xi^2) sum_k c_k xi^(2k), c_k = sum_j profile[k][j] s_j, which vanishes at the rim.
@@ -66,15 +40,6 @@ template <int N, class T>
 struct SlipState {
   Vec<T> stretch[N];  // of the springs at the nodes [m]
   T radius;           // contact radius they belong to [m]
-};
-
-/// What the normal law says of the contact in this step.
-template <class T>
-struct Pressed {
-  T load;        // [N] friction is at most mu times it: F; F + 2 P_po for a law with pull-off force P_po
-  T radius;      // contact radius a [m]
-  T radius_max;  // the same at the largest overlap [m]; read by laws that flatten only
-  T flatness;    // tau there
 };
 
 /// How the surfaces move in this step.

@@ -13,24 +13,16 @@ namespace epdem::liggghts::loop {
 using namespace LIGGGHTS::ContactModels;
 using LAMMPS_NS::PairGran;
 
-const Kernels& kernels(LAMMPS_NS::LAMMPS* lmp) {
-  const char* const asked = std::getenv("EPDEM_SIMD");
-  const std::string want = asked ? asked : "";
-#if defined __x86_64__
-  __builtin_cpu_init();
-  const bool avx2 = __builtin_cpu_supports("avx2");
-  const bool avx512 =
-      __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512vl");
-  if (avx512 && (want.empty() || want == "avx512")) return kernels_avx512;
-  if (avx2 && (want.empty() || want == "avx2")) return kernels_avx2;
-#endif
-  if (!want.empty() && want != "sse2") {
-    const std::string text = "EPDEM_SIMD = " + want +
+const Kernels& chosen_kernels(LAMMPS_NS::LAMMPS* lmp) {
+  const char* const named = std::getenv("EPDEM_SIMD");
+  const Kernels* const found = kernels_of(named ? named : "");
+  if (!found) {
+    const std::string text = std::string("EPDEM_SIMD = ") + named +
                              ": this processor has no such instructions; leave it unset, or "
                              "take sse2, avx2 or avx512";
     lmp->error->all(FLERR, text.c_str());
   }
-  return kernels_sse2;
+  return *found;
 }
 
 bool generic_asked() {
@@ -43,17 +35,6 @@ void refuse_unknown_loop(LAMMPS_NS::LAMMPS* lmp) {
   if (!loop || !*loop || generic_asked()) return;
   const std::string text = "EPDEM_LOOP = " + std::string(loop) + ": no such loop; leave it unset, or take generic";
   lmp->error->all(FLERR, text.c_str());
-}
-
-void pad(Block& b, int n) {
-  static double nobodys[64];
-  for (int k = n; k < n + most_lanes; ++k) {
-    b.i[k] = b.i[0];
-    b.j[k] = b.j[0];
-    b.history[k] = nobodys;
-    b.material[k] = b.material[0];
-    b.radi.a[k] = b.radj.a[k] = b.mi.a[k] = b.mj.a[k] = 1.0;
-  }
 }
 
 const char* obstacle_of_both(const LAMMPS_NS::Atom& atom, bool rigid, bool stores, bool sums) {
@@ -73,15 +54,10 @@ Pass pass_of(const LAMMPS_NS::Atom& atom, const Plan& plan, double dt) {
   pass.x = atom.x[0];
   pass.v = atom.v[0];
   pass.omega = atom.omega[0];
+  static_cast<ContactSettings&>(pass) = plan.settings;
   pass.dt = dt;
-  pass.rolling = plan.rolling;
-  pass.cohesion = plan.cohesion;
-  pass.damped = plan.damped;
-  pass.viscous = plan.viscous;
   pass.work = plan.ledger != nullptr;
   pass.strain = plan.strain != nullptr;
-  pass.torsion = plan.torsion;
-  pass.cohesion_slides = plan.cohesion_slides;
   return pass;
 }
 
@@ -109,9 +85,8 @@ void PairLoop::run(PairGran* pair, const Plan& plan, double now) {
   pass_ = pass_of(*atom, plan, update->dt);
   pass_.now = now;
   pass_.freeze = pair->freeze_group_bit() != 0;
-  flags_ = CONTACT_NORMAL_MODEL | (plan.tangential != Tangential::off ? CONTACT_TANGENTIAL_MODEL : 0) |
-           (plan.cohesion != Cohesion::off ? CONTACT_COHESION_MODEL : 0) |
-           (plan.rolling == Rolling::epsd2 ? CONTACT_ROLLING_MODEL : 0);
+  flags_ = CONTACT_NORMAL_MODEL | (plan.friction ? CONTACT_TANGENTIAL_MODEL : 0) |
+           (plan.settings.cohesion ? CONTACT_COHESION_MODEL : 0) | (plan.rolls ? CONTACT_ROLLING_MODEL : 0);
   plan.root < 0 ? gather<false>(plan) : gather<true>(plan);
 }
 
@@ -162,12 +137,12 @@ void PairLoop::finish(const Plan& plan, int n) {
   pad(*block_, n);
   kernel_(*block_, n, pass_);
   if (plan.strain) note_strain(*plan.strain, *block_);
-  const bool turns = plan.tangential != Tangential::off || plan.rolling != Rolling::off;
+  const bool turns = plan.friction || plan.settings.rolling;
   if (plan.ledger)
     turns ? scatter<true, true, adheres>(n, plan.ledger) : scatter<false, true, adheres>(n, plan.ledger);
   else
     turns ? scatter<true, false, adheres>(n, nullptr) : scatter<false, false, adheres>(n, nullptr);
-  if (plan.ledger && plan.tangential >= Tangential::partial_slip) book_friction(*plan.ledger, n);
+  if (plan.ledger && plan.books_friction) book_friction(*plan.ledger, n);
 }
 
 /// Of n contacts those that overlap or are attached across a gap; a pair that is not loses its mark.
@@ -214,10 +189,10 @@ void PairLoop::fetch(const Plan& plan, int n) {
     __builtin_prefetch(w + 3 * j);
     __builtin_prefetch(f + 3 * j, 1);
     __builtin_prefetch(t + 3 * j, 1);
-    b.radi.a[k] = radius[i];
-    b.radj.a[k] = radius[j];
-    b.mi.a[k] = mass[i];
-    b.mj.a[k] = mass[j];
+    b.radius_i.a[k] = radius[i];
+    b.radius_j.a[k] = radius[j];
+    b.mass_i.a[k] = mass[i];
+    b.mass_j.a[k] = mass[j];
   }
   const int width = plan.width, *const type = atom->type, *const mask = atom->mask;
   const double* const constants = plan.constants.data();
@@ -272,8 +247,9 @@ void PairLoop::scatter(int n, Ledger* ledger) {
         tj[2] += b.torque_j[2].a[k];
       }
       if constexpr (books) {
-        const double grown = b.grown.a[k] > 0.0 ? 0.5 * b.grown.a[k] : 0.0, stored = 0.5 * b.stored.a[k];
-        const bool bears = adheres ? b.radius.a[k] > 0.0 : stored > 0.0;
+        const double grown = b.plastic_work_step.a[k] > 0.0 ? 0.5 * b.plastic_work_step.a[k] : 0.0,
+                     stored = 0.5 * b.stored_energy.a[k];
+        const bool bears = adheres ? b.contact_radius.a[k] > 0.0 : stored > 0.0;
         work_i += grown;
         energy_i += stored;
         bearing_i += bears;
@@ -281,8 +257,8 @@ void PairLoop::scatter(int n, Ledger* ledger) {
         *(ours ? energy + j : others + 7) += stored;
         *(ours ? bearing + j : others + 8) += bears;
         if constexpr (adheres) {
-          parted[i] += 0.5 * b.parted.a[k];
-          *(ours ? parted + j : others + 9) += 0.5 * b.parted.a[k];
+          parted[i] += 0.5 * b.adhesion_loss.a[k];
+          *(ours ? parted + j : others + 9) += 0.5 * b.adhesion_loss.a[k];
         }
       }
       ++k;
@@ -302,7 +278,8 @@ void PairLoop::scatter(int n, Ledger* ledger) {
 /// The work of friction with partial slip, in the order of the list.
 void PairLoop::book_friction(Ledger& ledger, int n) {
   const Block& b = *block_;
-  for (int k = 0; k < n; ++k) ledger.book_friction(false, b.rubbed.a[k], b.sprung.a[k], {b.i[k], b.j[k], atom->nlocal});
+  for (int k = 0; k < n; ++k)
+    ledger.book_friction(false, b.friction_work.a[k], b.spring_energy.a[k], {b.i[k], b.j[k], atom->nlocal});
 }
 
 }  // namespace epdem::liggghts::loop

@@ -6,24 +6,26 @@
 #include <memory>
 #include <vector>
 
-#include "block.hpp"
 #include "host.hpp"
+#include "kernels/block.hpp"
 #include "ledger.hpp"
 #include "strain.hpp"
 
 namespace epdem::liggghts::loop {
 
+using namespace epdem::kernels;
+
 /// The kernels of the widest instruction set of this processor, or of EPDEM_SIMD=sse2|avx2|avx512; ends the run if that
 /// is none of them or the processor lacks it.
-const Kernels& kernels(LAMMPS_NS::LAMMPS* lmp);
+const Kernels& chosen_kernels(LAMMPS_NS::LAMMPS* lmp);
 
 /// What the settings and properties of a run say, the same for all its steps.
 struct Plan {
-  Tangential tangential = Tangential::off;
-  Rolling rolling = Rolling::off;
-  Cohesion cohesion = Cohesion::off;
-  bool damped = false, viscous = false, torsion = false, cohesion_slides = false;
-  Ledger* ledger = nullptr;         // where plastic work is booked, if it is asked for
+  int friction = 0;  // place in Frictions
+  ContactSettings settings{};
+  bool rolls = false;               // rolling friction has a history
+  bool books_friction = false;      // friction computes its work
+  Ledger* ledger = nullptr;         // where plastic work is booked, if it is requested
   LargestStrain* strain = nullptr;  // where the largest strain is noted, if it is requested
   int root = -1, last_step = -1;    // with adhesion: where a history says that the bodies are attached, and when last
   int width = 0;                    // number of types + 1
@@ -47,9 +49,6 @@ Pass pass_of(const LAMMPS_NS::Atom& atom, const Plan& plan, double dt);
 
 /// Notes the largest strain of the contacts of a block.
 void note_strain(LargestStrain& strain, const Block& block);
-
-/// Gives the lanes behind the last of n contacts something harmless.
-void pad(Block& block, int n);
 
 class PairLoop : protected LAMMPS_NS::Pointers {
  public:

@@ -2,6 +2,7 @@
 // What our loops over pairs and walls take from a contact model: its parts, settings and properties.
 #pragma once
 
+#include <algorithm>
 #include <set>
 #include <string>
 
@@ -16,26 +17,17 @@ class Planned {
   Planned(LAMMPS_NS::LAMMPS* lmp, int64_t hash, bool wall)
       : lmp_(lmp), model_(*Model::latest), ids_(Ids::of(hash)), missing_(what_is_missing(ids_)), wall_(wall) {
     refuse_unknown_loop(lmp);
-    plan_.tangential = ids_.tangential == TANGENTIAL_HISTORY          ? Tangential::history
-                       : ids_.tangential == TANGENTIAL_NO_HISTORY     ? Tangential::no_history
-                       : ids_.tangential == TANGENTIAL_PARTIAL_SLIP   ? Tangential::partial_slip
-                       : ids_.tangential == TANGENTIAL_PARTIAL_SLIP_2 ? Tangential::partial_slip_2
-                                                                      : Tangential::off;
-    plan_.rolling = ids_.rolling == ROLLING_CDT     ? Rolling::cdt
-                    : ids_.rolling == ROLLING_EPSD2 ? Rolling::epsd2
-                                                    : Rolling::off;
-    plan_.cohesion = ids_.cohesion == COHESION_SJKR    ? Cohesion::sjkr
-                     : ids_.cohesion == COHESION_SJKR2 ? Cohesion::sjkr2
-                                                       : Cohesion::off;
+    plan_.friction = std::max(0, Frictions::place(ids_.tangential));
+    plan_.settings.rolling = std::max(0, Rollings::place(ids_.rolling));
+    plan_.settings.cohesion = std::max(0, Cohesions::place(ids_.cohesion));
+    plan_.books_friction = books_friction(ids_);
+    Rollings::each([&](auto m, int place) { plan_.rolls |= place == plan_.settings.rolling && m.has_history; });
     plan_.root = model_.normal().root_slot();
     plan_.last_step = model_.normal().history_size();
     if (wall && plan_.root >= 0 && !missing_) missing_ = "contacts with adhesion";
   }
 
-  Kernel kernel() const {
-    const auto& of_law = kernels(lmp_).of[model_.normal().place()];
-    return of_law[static_cast<int>(plan_.tangential)][plan_.rolling == Rolling::epsd2][wall_];
-  }
+  Kernel kernel() const { return chosen_kernels(lmp_).of[model_.normal().place()][plan_.friction][plan_.rolls][wall_]; }
 
   /// What our loop does not include, by models and settings; nullptr: nothing.
   const char* missing() const { return missing_ ? missing_ : model_.loop_settings().missing(); }
@@ -43,19 +35,17 @@ class Planned {
   /// At the start of each run: settings and properties may have changed.
   void prepare() {
     NormalModel& normal = model_.normal();
-    plan_.damped = plan_.viscous = false;
-    plan_.torsion = model_.loop_settings().torsion;
-    plan_.cohesion_slides = model_.loop_settings().cohesion_slides;
+    plan_.settings.damped = plan_.settings.viscous = false;
+    plan_.settings.torsion = model_.loop_settings().torsion;
+    plan_.settings.cohesion_slides = model_.loop_settings().cohesion_slides;
     plan_.ledger = normal.ledger();
     plan_.strain = normal.strain();
     plan_.width = normal.width();
-    double** const mu =
-        plan_.tangential == Tangential::off ? nullptr : property("coeffFrict", &MODEL_PARAMS::createCoeffFrict);
+    double** const mu = plan_.friction ? property("coeffFrict", &MODEL_PARAMS::createCoeffFrict) : nullptr;
     double** const rolling =
-        plan_.rolling == Rolling::off ? nullptr : property("coeffRollFrict", &MODEL_PARAMS::createCoeffRollFrict);
-    double** const density = plan_.cohesion == Cohesion::off
-                                 ? nullptr
-                                 : property("cohEnergyDens", &MODEL_PARAMS::createCohesionEnergyDensity);
+        plan_.settings.rolling ? property("coeffRollFrict", &MODEL_PARAMS::createCoeffRollFrict) : nullptr;
+    double** const density =
+        plan_.settings.cohesion ? property("cohEnergyDens", &MODEL_PARAMS::createCohesionEnergyDensity) : nullptr;
     plan_.constants.assign(plan_.width * plan_.width * most_constants, 0.0);
     for (int i = 1; i < plan_.width; ++i)
       for (int j = 1; j < plan_.width; ++j) {
@@ -64,8 +54,8 @@ class Planned {
         c[friction] = mu ? mu[i][j] : 0.0;
         c[rolling_friction] = rolling ? rolling[i][j] : 0.0;
         c[cohesion_density] = density ? density[i][j] : 0.0;
-        plan_.damped |= c[damping] > 0.0;
-        plan_.viscous |= c[dashpot] > 0.0;
+        plan_.settings.damped |= c[damping] > 0.0;
+        plan_.settings.viscous |= c[dashpot] > 0.0;
       }
   }
 

@@ -37,11 +37,11 @@ void WallLoop::note(const LIGGGHTS::ContactModels::SurfacesIntersectData& s, con
   b.i[k] = s.i;
   b.history[k] = s.contact_history;
   b.material[k] = plan_->constants.data() + most_constants * (atom->type[s.i] * plan_->width + wall_->atom_type_wall());
-  b.radi.a[k] = s.radi;
-  b.mi.a[k] = atom->rmass[s.i];
+  b.radius_i.a[k] = s.radi;
+  b.mass_i.a[k] = atom->rmass[s.i];
   b.overlap.a[k] = s.deltan;
   for (int x = 0; x < 3; ++x) {
-    b.apart[x].a[k] = s.delta[x];
+    b.from_wall[x].a[k] = s.delta[x];
     b.wall_v[x].a[k] = v_wall[x];
   }
   mesh_[k] = mesh;
@@ -63,8 +63,7 @@ void WallLoop::compute() {
 /// Forces and torques in the order of LIGGGHTS's loop, and who asks for them: the ledger, forces of the wall, the mesh.
 void WallLoop::scatter() {
   const Block& b = *block_;
-  const bool turns = plan_->tangential != Tangential::off || plan_->rolling != Rolling::off;
-  const bool books_friction = plan_->tangential >= Tangential::partial_slip;
+  const bool turns = plan_->friction || plan_->settings.rolling;
   for (int k = 0; k < n_; ++k) {
     const int i = b.i[k];
     double *const f = atom->f[i], *const t = atom->torque[i];
@@ -80,15 +79,16 @@ void WallLoop::scatter() {
     if (mesh_[k]) {
       double to_wall[3], v[3];
       for (int x = 0; x < 3; ++x) {
-        to_wall[x] = -b.apart[x].a[k];
+        to_wall[x] = -b.from_wall[x].a[k];
         v[x] = b.wall_v[x].a[k];
       }
       mesh_[k]->add_particle_contribution(i, share, to_wall, triangle_[k], v);
     }
     if (!plan_->ledger) continue;
-    const double stored = b.stored.a[k];
-    plan_->ledger->credit(i, b.grown.a[k], stored, stored > 0.0);
-    if (books_friction) plan_->ledger->book_friction(true, b.rubbed.a[k], b.sprung.a[k], {i, i, atom->nlocal});
+    const double stored = b.stored_energy.a[k];
+    plan_->ledger->credit(i, b.plastic_work_step.a[k], stored, stored > 0.0);
+    if (plan_->books_friction)
+      plan_->ledger->book_friction(true, b.friction_work.a[k], b.spring_energy.a[k], {i, i, atom->nlocal});
   }
 }
 

@@ -89,7 +89,8 @@ class Model {
         normal_(lmp, setup, wall, others_have_history),
         tangential_(lmp, setup),
         rolling_(lmp, setup) {
-    if (wall && memory<Law> == 1) setup->add_history_value("spare", "0");  // a wall's history of one value is refused
+    if (wall && history_size<Law> == 1)
+      setup->add_history_value("spare", "0");  // a wall's history of one value is refused
     announce(lmp);
   }
 

@@ -64,17 +64,18 @@ def files(pfm: bool = False) -> dict[str, str]:
     EngineError if the sources are not installed.
     """
     host, laws = paths.cpp_sources()
+    kernels, roots = host.parent / "kernels", (host, laws, host.parent)
     if pfm:
         sources = [host / PFM / "models.cpp", host / "materials.cpp", host / "cohesion.cpp"]
         commands = (host / PFM / "commands.h").read_text(encoding="utf-8")
-        return {f"{NAME}.cpp": _together(sources, host, laws), f"{NAME}.h": commands}
-    apart = {name: options for name, options in _OPTIONS.findall((host / "CMakeLists.txt").read_text(encoding="utf-8"))}
-    left_out = {"main.cpp", f"{PFM}/models.cpp", *apart}
-    common = [f for f in sorted(host.rglob("*.cpp")) if f.relative_to(host).as_posix() not in left_out]
-    found = {f"{NAME}.cpp": _together(common, host, laws)}
+        return {f"{NAME}.cpp": _together(sources, roots), f"{NAME}.h": commands}
+    apart = dict(_OPTIONS.findall((kernels / "CMakeLists.txt").read_text(encoding="utf-8")))
+    common = [f for f in sorted(host.rglob("*.cpp")) if f.name != "main.cpp" and f.parent.name != PFM]
+    common += [f for f in sorted(kernels.glob("*.cpp")) if f.name not in apart]
+    found = {f"{NAME}.cpp": _together(common, roots)}
     for name, options in apart.items():
-        source = host / name
-        found[f"{NAME}_{source.stem}.cpp"] = _together([source], host, laws, options)
+        source = kernels / name
+        found[f"{NAME}_{source.stem}.cpp"] = _together([source], roots, options)
     return found
 
 
@@ -125,7 +126,7 @@ def _text(file: Path) -> str:
     return file.read_text(encoding="utf-8", errors="replace")
 
 
-def _together(sources: list[Path], host: Path, laws: Path, options: str = "") -> str:
+def _together(sources: list[Path], roots: tuple[Path, ...], options: str = "") -> str:
     """The sources with each of our headers once, at its first inclusion; `options` name instructions of x86."""
     sets = [word.removeprefix("-m") for word in options.split(";") if word]
     # GCC below 13 takes the pragma as a whole, but does not define what -m... would
@@ -134,7 +135,7 @@ def _together(sources: list[Path], host: Path, laws: Path, options: str = "") ->
     target = f'#pragma GCC target("{",".join(sets)}")\n{target}' if sets else ""
     condition = "#if defined __x86_64__ && defined __GNUC__ && !defined __clang__" if sets else "#if 1"
     seen: set[Path] = set()
-    body = [line for source in sources for line in _lines(source, (host, laws), seen)]
+    body = [line for source in sources for line in _lines(source, roots, seen)]
     top = _TOP.format(version=__version__, name=NAME, target=target, condition=condition)
     return top + "\n".join(body) + "\n\n#endif\n"
 

@@ -1,3 +1,3 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #define EPDEM_KERNELS kernels_avx2
-#include "kernel.hpp"
+#include "kernels/kernel.hpp"

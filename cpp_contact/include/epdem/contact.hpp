@@ -1,0 +1,210 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// One contact in one step: normal law, dashpot, adhesion, cohesion, friction, rolling friction and their energies, a
+// pure function of constants, history and motion. Hosts gather and scatter; the order of a contact stands here only.
+#pragma once
+
+#include <cstddef>
+
+#include "adhesive.hpp"
+#include "settings.hpp"
+#include "sub_models.hpp"
+#include "tangential.hpp"
+#include "viscous.hpp"
+
+namespace epdem {
+
+/// What a pair of materials has in common; numbers of one type only.
+template <class Law>
+struct ContactConstants {
+  Number<Law> shear_modulus{};  // G* [Pa]
+  Number<Law> damping{};        // damping_number of the dashpot beside friction, 0: none
+  Number<Law> dashpot{};        // viscous_number of the normal dashpot, 0: none
+  Number<Law> friction{};       // coefficients
+  Number<Law> rolling_friction{};
+  Number<Law> cohesion_density{};  // [Pa]
+  Law law{};
+};
+
+/// A pair with a law alone.
+template <class Law>
+inline ContactConstants<Law> of_law(const Law& law) noexcept {
+  ContactConstants<Law> pair;
+  pair.law = law;
+  return pair;
+}
+
+/// Nobody looks at what a contact does inside.
+struct NoObserver {
+  template <class... Any>
+  void normal(const Any&...) const noexcept {}
+  template <class Work>
+  void friction(const Work&) const noexcept {}
+  template <class Contact>
+  void step(const Contact&) const noexcept {}
+};
+
+/// Normal force of a contact and what the models beside it read.
+template <class Law>
+struct NormalContact {
+  Step<Law> step;
+  Number<Law> force;    // [N] with the dashpot
+  Number<Law> load;     // [N] friction is at most mu times it
+  Number<Law> k_n;      // [N/m] of rolling friction, F/alpha of Hertz; none across a gap
+  Number<Law> k_t;      // [N/m]
+  Number<Law> damping;  // of the dashpot beside friction [N s/m]
+};
+
+/// A step of the law with its dashpots; closing: closing speed at the half step times the time step [m];
+/// approach_speed [m/s]; m_star() is evaluated where there is a dashpot. repeats: `before` is the history after a step
+/// that is evaluated once more, with closing = 0.
+template <class Law, class Mass, class Observer = NoObserver>
+inline NormalContact<Law> normal_contact(const ContactConstants<Law>& pair, Number<Law> R_star,
+                                         const State<Law>& before, Number<Law> overlap, Number<Law> closing,
+                                         Number<Law> approach_speed, bool damped, bool viscous, Mass m_star,
+                                         bool repeats = false, Observer&& observer = {}) noexcept {
+  using T = Number<Law>;
+  const Law& law = pair.law;
+  NormalContact<Law> now{step(law, R_star, before, overlap, closing), T{}, T{}, T{}, T{}, T{}};
+  observer.normal(law, R_star, before, now.step, overlap);
+  if constexpr (adheres<Law>)
+    if (repeats) now.step.force = now.step.force + before.jump;
+  now.force = now.step.force;
+  now.k_n = 4.0 / 3.0 * law.E_star * now.step.radius;
+  now.k_t = tangential_stiffness(pair.shear_modulus, now.step.radius);
+  if (damped || viscous) {
+    const T mass = m_star();
+    if (viscous) now.force = damped_force(law, R_star, before, now.step, pair.dashpot, mass, approach_speed);
+    now.damping = tangential_damping(pair.damping, now.k_t, mass);
+  }
+  now.load = sliding_load(law, R_star, now.step, now.force);
+  if constexpr (adheres<Law>) now.k_n = select(overlap > 0.0, now.k_n, T{});
+  return now;
+}
+
+/// Energies of a step of a law [J]: plastic work of this step, elastic energy at its end (with adhesion less the
+/// surface energy), and what adhesion lost in its jumps.
+template <class T>
+struct NormalEnergies {
+  T plastic_work_step, stored, adhesion_loss;
+};
+
+template <class Law>
+inline NormalEnergies<Number<Law>> energies(const Law& law, Number<Law> R_star, const State<Law>& before,
+                                            const Step<Law>& now, Number<Law> overlap) noexcept {
+  if constexpr (adheres<Law>) {
+    const auto lost = losses(law, R_star, before, now.after);
+    return {lost.plastic, stored_energy(law, R_star, now.after, overlap), lost.adhesive};
+  } else {
+    const Number<Law> stored = elastic_energy(law, R_star, now, overlap);
+    return {plastic_growth(law, R_star, before, now, stored), stored, Number<Law>{}};
+  }
+}
+
+/// What friction reads of a step of a law; `load` is the force that limits it.
+template <class Law>
+EPDEM_INLINE Pressed<Number<Law>> pressed_by(const Step<Law>& now, const Number<Law>& load) noexcept {
+  if constexpr (Law::flattens) return {load, now.radius, now.after.point.radius, now.after.point.flatness};
+  return {load, now.radius, now.radius, Number<Law>{}};
+}
+
+/// A sliding contact in a step of length dt [s], in which it turns by `turn` about its normal [rad].
+template <class Law>
+EPDEM_INLINE Sliding<Number<Law>> sliding_of(const ContactConstants<Law>& pair, const NormalContact<Law>& now,
+                                             const Vec<Number<Law>>& normal, const Vec<Number<Law>>& velocity,
+                                             Number<Law> turn, double dt, bool damped) noexcept {
+  return {pressed_by<Law>(now.step, now.load),
+          normal,
+          velocity,
+          dt * velocity,
+          turn,
+          pair.friction,
+          8.0 * pair.shear_modulus,
+          now.k_t,
+          now.damping,
+          1.0 / dt * now.damping,
+          damped,
+          true};
+}
+
+/// What a contact keeps from step to step: the values of the law, then those of the models beside it.
+template <class Law, class Friction>
+struct ContactHistory {
+  State<Law> law{};
+  typename Friction::template History<Number<Law>> friction{};
+  Vec<Number<Law>> rolling{};
+};
+
+/// Forces and torques of a contact [N], [N m]; the force on j is the negative of that on i.
+template <class T>
+struct ContactLoads {
+  Vec<T> force, torque_i, torque_j;
+};
+
+namespace detail {
+
+/// All values of a history where the mask says so, else 0.
+template <class T, class M, class History>
+EPDEM_INLINE void keep_where(M mask, History& history) noexcept {
+  if constexpr (!std::is_empty_v<History>) {
+    T* const value = reinterpret_cast<T*>(&history);
+    for (std::size_t k = 0; k < sizeof(History) / sizeof(T); ++k) value[k] = select(mask, value[k], T{});
+  }
+}
+
+}  // namespace detail
+
+/// One contact. rolls: the rolling model has a history. The history is that of before, then that of after.
+template <class Friction, bool rolls, bool wall, class Law, class Mass, class Observer>
+inline ContactLoads<Number<Law>> contact(const ContactConstants<Law>& pair, const ContactSettings& settings,
+                                         const Kinematics<Number<Law>>& c, ContactHistory<Law, Friction>& history,
+                                         Mass m_star, Observer&& observer) noexcept {
+  using T = Number<Law>;
+  if constexpr (adheres<Law>) {  // bodies that touch without being attached begin anew in all other models
+    const auto attached = history.law.root > 0.0;
+    detail::keep_where<T>(attached, history.friction);
+    if constexpr (rolls) detail::keep_where<T>(attached, history.rolling);
+  }
+  NormalContact<Law> now =
+      normal_contact(pair, c.R_star, history.law, c.overlap, T(-c.normal_velocity * settings.dt), -c.normal_velocity,
+                     settings.damped, settings.viscous, m_star, false, observer);
+  history.law = now.step.after;
+
+  ContactLoads<T> loads{now.force * c.normal, {}, {}};
+  if constexpr (!adheres<Law>)
+    if (settings.cohesion != 0) {
+      T pull{};
+      Cohesions::each([&](auto model, int place) __attribute__((always_inline)) {
+        if (place == settings.cohesion) pull = decltype(model)::template force<wall>(c, pair.cohesion_density);
+      });
+      if (settings.cohesion_slides) now.load = now.load + pull;
+      loads.force = loads.force + pull * c.normal;
+    }
+
+  if constexpr (!std::is_same_v<Friction, NoFriction>) {
+    const T turn = 0.5 * settings.dt * dot(c.normal, c.spin);
+    const auto sliding = sliding_of(pair, now, c.normal, c.slip_velocity, turn, settings.dt, settings.damped);
+    const Vec<T> F = Friction::template force<Law::flattens>(sliding, history.friction, observer);
+    const Vec<T> lever = cross(c.normal, F);
+    loads.force = loads.force + F;
+    loads.torque_i = -c.arm_i * lever;
+    if constexpr (!wall) loads.torque_j = -c.arm_j * lever;
+  }
+
+  if (rolls || settings.rolling != 0) {
+    const epdem::Rolling<T> rolling{c.normal,    c.rolling,       c.R_star, c.overlap,
+                                    now.load,    now.k_n,         now.k_t,  pair.rolling_friction,
+                                    settings.dt, settings.torsion};
+    Rollings::each([&](auto model, int place) __attribute__((always_inline)) {
+      using Model = decltype(model);
+      if constexpr (Model::has_history == rolls && !std::is_same_v<Model, NoRolling>)
+        if (place == settings.rolling) {
+          const Vec<T> torque = Model::template torque<wall>(rolling, history.rolling);
+          loads.torque_i = loads.torque_i - torque;
+          loads.torque_j = loads.torque_j + torque;
+        }
+    });
+  }
+  return loads;
+}
+
+}  // namespace epdem

@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// What a friction model reads of a contact. A model is a header beside this one and a line in sub_models.hpp:
+//   name, id          of LIGGGHTS's tangential_model; restart files keep the id
+//   of_liggghts       LIGGGHTS has a class of the same model
+//   books_work        `force` gives the work of friction to the observer
+//   History<T>        the values that a contact keeps, all of type T; they change their sign with the order of the
+//   bodies even_values       as many of the last of them keep their sign force<flattens>(sliding, history, observer)
+//   friction on i [N]; history before and after
+#pragma once
+
+#include <type_traits>
+
+#include "../vec.hpp"
+
+namespace epdem {
+
+/// What the normal law says of the contact in this step.
+template <class T>
+struct Pressed {
+  T load;        // [N] friction is at most mu times it: F; F + 2 P_po for a law with pull-off force P_po
+  T radius;      // contact radius a [m]
+  T radius_max;  // the same at the largest overlap [m]; read by laws that flatten only
+  T flatness;    // tau there
+};
+
+template <class T>
+struct Sliding {
+  Pressed<T> pressed;
+  Vec<T> normal;
+  Vec<T> velocity;     // of the surfaces against each other [m/s]
+  Vec<T> slip;         // the same times the time step [m]
+  T turn;              // rotation about the normal, mean of both bodies [rad]
+  T mu;                // coefficient of friction
+  T stiffness;         // 8 G* [Pa]
+  T k_t;               // 8 G* a [N/m]
+  T damping;           // of the dashpot [N s/m]
+  T damping_per_step;  // over the time step [N/m]
+  bool damped;         // whether there may be a dashpot
+  bool keeps;          // else the step is looked at and its history is not stored
+};
+
+/// Work that friction took in a step and elastic energy of its springs [J].
+template <class T>
+struct FrictionWork {
+  T lost, stored;
+};
+
+/// How many values a contact keeps for a model.
+template <class Model, class T>
+inline constexpr int values_of =
+    std::is_empty_v<typename Model::template History<T>> ? 0
+                                                         : int(sizeof(typename Model::template History<T>) / sizeof(T));
+
+/// Whether a vector of this square may be longer than its limit, without a root.
+template <class T>
+EPDEM_INLINE bool near_limit(const T& square, const T& limit) noexcept {
+  return any(!(square <= 0.9 * limit * limit));
+}
+
+/// tangential off.
+struct NoFriction {
+  static constexpr const char* name = "off";
+  static constexpr int id = 0, even_values = 0;
+  static constexpr bool of_liggghts = true, books_work = false;
+  template <class T>
+  struct History {};
+  template <bool flattens, class T, class Observer>
+  EPDEM_INLINE static Vec<T> force(const Sliding<T>&, History<T>&, Observer&&) noexcept {
+    return {};
+  }
+};
+
+}  // namespace epdem

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#pragma once
+
+#include "sliding.hpp"
+
+namespace epdem {
+
+/// tangential history: a spring k_t = 8 G* a with a dashpot, cut off by Coulomb's limit (Cundall and Strack 1979).
+struct SlidingSpring {
+  static constexpr const char* name = "history";
+  static constexpr int id = 2, even_values = 0;
+  static constexpr bool of_liggghts = true, books_work = false;
+  template <class T>
+  struct History {
+    Vec<T> stretch;  // [m]
+  };
+
+  template <bool flattens, class T, class Observer>
+  EPDEM_INLINE static Vec<T> force(const Sliding<T>& s, History<T>& history, Observer&&) noexcept {
+    Vec<T> stretch = history.stretch + s.slip;
+    stretch = stretch - dot(stretch, s.normal) * s.normal;
+    const Vec<T> spring = -(s.k_t * stretch);
+    const T most = s.mu * fabs(s.pressed.load);
+    Vec<T> force = s.damped ? spring - s.damping * s.velocity : spring;
+    if (near_limit(dot(spring, spring), most)) {
+      const T pull = s.k_t * length(stretch);
+      const auto slides = pull > most;
+      const Vec<T> slipping = (most / pull) * spring;
+      stretch = select(slides, (-slipping) / s.k_t, stretch);
+      force = select(slides, slipping, force);
+    }
+    history.stretch = stretch;
+    return force;
+  }
+};
+
+}  // namespace epdem

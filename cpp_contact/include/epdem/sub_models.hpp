@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// The models beside a law: a new one is its header and one line in its list. The first of each list is no model.
+#pragma once
+
+#include "cohesion/sjkr.hpp"
+#include "cohesion/sjkr2.hpp"
+#include "friction/partial_slip.hpp"
+#include "friction/sliding_dashpot.hpp"
+#include "friction/sliding_spring.hpp"
+#include "rolling/constant_torque.hpp"
+#include "rolling/rolling_spring.hpp"
+
+namespace epdem {
+
+template <class... Models>
+struct List {
+  static constexpr int size = sizeof...(Models);
+
+  /// Calls f(model, place) for all of them.
+  template <class F>
+  EPDEM_INLINE static void each(F f) {
+    int place = 0;
+    (f(Models{}, place++), ...);
+  }
+
+  /// The place of the model with this id, -1: none.
+  static constexpr int place(int id) noexcept {
+    int at = 0, found = -1;
+    ((Models::id == id ? void(found = at++) : void(++at)), ...);
+    return found;
+  }
+};
+
+// clang-format off
+using Frictions = List<
+    NoFriction,
+    SlidingDashpot,
+    SlidingSpring,
+    PartialSlip<3>,
+    PartialSlip<2>>;
+
+using Rollings = List<
+    NoRolling,
+    ConstantTorque,
+    RollingSpring>;
+
+using Cohesions = List<
+    NoCohesion,
+    Sjkr,
+    Sjkr2>;
+// clang-format on
+
+}  // namespace epdem

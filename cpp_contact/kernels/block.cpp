@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include "kernels/block.hpp"
+
+#include <cstring>
+
+namespace epdem::kernels {
+
+const Kernels* kernels_of(const char* name) {
+  const auto wanted = [name](const char* set) { return !*name || std::strcmp(name, set) == 0; };
+#if defined __x86_64__
+  __builtin_cpu_init();
+  const bool avx512 =
+      __builtin_cpu_supports("avx512f") && __builtin_cpu_supports("avx512dq") && __builtin_cpu_supports("avx512vl");
+  if (avx512 && wanted("avx512")) return &kernels_avx512;
+  if (__builtin_cpu_supports("avx2") && wanted("avx2")) return &kernels_avx2;
+#endif
+  return wanted("sse2") ? &kernels_sse2 : nullptr;
+}
+
+void pad(Block& b, int n) {
+  static double dummy_history[64];
+  for (int k = n; k < n + most_lanes; ++k) {
+    b.i[k] = b.i[0];
+    b.j[k] = b.j[0];
+    b.history[k] = dummy_history;
+    b.material[k] = b.material[0];
+    b.radius_i.a[k] = b.radius_j.a[k] = b.mass_i.a[k] = b.mass_j.a[k] = 1.0;
+  }
+}
+
+}  // namespace epdem::kernels

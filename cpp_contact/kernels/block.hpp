@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// Contacts on their way through the loops of a host: gathered into a block, computed as lanes, scattered in the order
+// of the host's list. No header of a host in this folder, and no inline function in this file: sources that are
+// compiled for newer processors include it.
+#pragma once
+
+#include "epdem/settings.hpp"
+
+namespace epdem::kernels {
+
+constexpr int block_size = 128, most_lanes = 8;
+
+/// A pair of materials as numbers: ContactConstants, the data of its law from `law_data` on.
+enum Constant { shear_modulus, damping, dashpot, friction, rolling_friction, cohesion_density, law_data };
+constexpr int most_constants = 16;
+
+/// One number per contact; whole vectors of lanes may be read and written behind the last.
+struct alignas(64) Line {
+  double a[block_size + most_lanes];
+};
+
+struct Block {
+  int i[block_size + most_lanes], j[block_size + most_lanes];
+  double* history[block_size + most_lanes];
+  const double* material[block_size + most_lanes];  // constants of the pair of types
+  Line radius_i, radius_j, mass_i, mass_j;
+  Line frozen_i, frozen_j;                                     // 1 or 0
+  Line force[3], torque_i[3], torque_j[3];                     // on i; the force on j is its negative
+  Line plastic_work_step, stored_energy;                       // [J]
+  Line friction_work, spring_energy;                           // of friction in this step, elastic at its end [J]
+  Line adhesion_loss, contact_radius;                          // with adhesion: lost in jumps in this step [J], [m]
+  double radius_ratio[most_lanes], overlap_ratio[most_lanes];  // largest of all contacts so far, over R*
+  Line overlap, from_wall[3], wall_v[3];                       // of a wall: as the host found them
+};
+
+/// What all contacts of a pass have in common.
+struct Pass : ContactSettings {
+  const double *x, *v, *omega;  // rows of three; one number behind the last row can be read
+  double now;                   // step
+  bool several;                 // pairs of materials in this block; else that of its first contact
+  bool freeze;                  // whether a group of atoms is frozen
+  bool work;                    // energies are requested
+  bool strain;                  // the largest contact radius and overlap over R* are requested
+};
+
+/// Computes n contacts; the lanes behind them have valid indices and a history that nobody reads (`pad`).
+using Kernel = void (*)(Block&, int n, const Pass&);
+
+/// The kernels of one instruction set: law and friction by their places in their lists, whether rolling has a history,
+/// whether the contacts are at walls; null: no such model.
+struct Kernels {
+  static constexpr int most_laws = 16, most_frictions = 16;
+  Kernel of[most_laws][most_frictions][2][2];
+};
+
+extern const Kernels kernels_sse2, kernels_avx2, kernels_avx512;
+
+/// The kernels of sse2, avx2 or avx512, or of the widest of them if the name is empty; nullptr: this processor lacks
+/// them, or the name is none of these.
+const Kernels* kernels_of(const char* name);
+
+/// Gives the lanes behind the last of n contacts something harmless.
+void pad(Block& block, int n);
+
+}  // namespace epdem::kernels

@@ -1,0 +1,234 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// The contacts of a block, computed as lanes. Compiled once per instruction set, which EPDEM_KERNELS names: everything
+// is in unnamed namespaces or depends on the width of Lanes, so that no function compiled for a newer processor can
+// stand in for one of the same name compiled for an older one.
+#include "epdem/contact.hpp"
+#include "epdem/laws.hpp"
+#include "kernels/block.hpp"
+
+namespace epdem::kernels {
+namespace {
+
+/// The first `count` numbers of each lane's history.
+template <int count>
+EPDEM_INLINE void read(double* const* history, Lanes* value) {
+  for (int at = count - 4; at > -4; at -= 4) {
+    const int first = at < 0 ? 0 : at;  // 3 are left: the fourth is read a second time
+    if (at < -1 || count < 4) break;
+    const Columns c = columns([=](int l) __attribute__((always_inline)) { return load<Row>(history[l] + first); });
+    value[first] = c.a, value[first + 1] = c.b, value[first + 2] = c.c, value[first + 3] = c.d;
+  }
+  for (int k = 0; k < (count < 4 ? count : count % 4 == 3 ? 0 : count % 4); ++k)
+    for (int l = 0; l < lane_count; ++l) value[k][l] = history[l][k];
+}
+
+template <int count>
+EPDEM_INLINE void write(double* const* history, const Lanes* value) {
+  for (int at = count - 4; at > -4; at -= 4) {
+    const int first = at < 0 ? 0 : at;
+    if (at < -1 || count < 4) break;
+    rows({value[first], value[first + 1], value[first + 2], value[first + 3]},
+         [=](int l, const Row& row) __attribute__((always_inline)) { store(history[l] + first, row); });
+  }
+  for (int k = 0; k < (count < 4 ? count : count % 4 == 3 ? 0 : count % 4); ++k)
+    for (int l = 0; l < lane_count; ++l) history[l][k] = value[k][l];
+}
+
+EPDEM_INLINE Lanes at(const Line& line, int k) { return load<Lanes>(line.a + k); }
+EPDEM_INLINE Vec<Lanes> at(const Line* lines, int k) { return {at(lines[0], k), at(lines[1], k), at(lines[2], k)}; }
+
+/// Rows of the atoms of lanes k, k + 1, ...
+EPDEM_INLINE Vec<Lanes> of(const double* base, const int* index) {
+  const Columns c = columns([=](int l) __attribute__((always_inline)) { return load<Row>(base + 3 * long(index[l])); });
+  return {c.a, c.b, c.c};
+}
+EPDEM_INLINE Vec<Lanes> difference(const double* base, const int* i, const int* j) {
+  const Columns c = columns([=](int l) __attribute__((always_inline)) {
+    return load<Row>(base + 3 * long(i[l])) - load<Row>(base + 3 * long(j[l]));
+  });
+  return {c.a, c.b, c.c};
+}
+
+EPDEM_INLINE void put(Line* lines, int k, Vec<Lanes> t) {
+  store(lines[0].a + k, t.x);
+  store(lines[1].a + k, t.y);
+  store(lines[2].a + k, t.z);
+}
+
+EPDEM_INLINE Lanes effective_mass(const Block& b, int k, bool freeze) {
+  const Lanes mi = at(b.mass_i, k), mj = at(b.mass_j, k), m = reduced_finite(mi, mj);
+  if (!freeze) return m;
+  return select(at(b.frozen_j, k) > 0.0, mi, select(at(b.frozen_i, k) > 0.0, mj, m));
+}
+
+/// The largest contact radius and overlap over R*, of contacts k, k + 1, ... below n: no contact is in the lanes
+/// behind.
+EPDEM_INLINE void largest(Block& b, int k, int n, Lanes radius, Lanes overlap, Lanes R_star) {
+  Lanes lane;
+  for (int l = 0; l < lane_count; ++l) lane[l] = l;
+  const Mask contact = lane < constant<Lanes>(n - k);
+  const auto keep = [=](double* most, Lanes value) __attribute__((always_inline)) {
+    store(most, max(load<Lanes>(most), select(contact, value / R_star, Lanes{})));
+  };
+  keep(b.radius_ratio, radius);
+  keep(b.overlap_ratio, overlap);
+}
+
+/// What adhesion books; outside of the kernels, where it would stand six times.
+template <class Law>
+[[gnu::noinline]] void book_adhesive(Block& b, int k, const Law& law, Lanes R_star, const State<Law>& before,
+                                     const Step<Law>& now, Lanes overlap) {
+  const auto e = energies(law, R_star, before, now, overlap);
+  store(b.plastic_work_step.a + k, e.plastic_work_step);
+  store(b.adhesion_loss.a + k, e.adhesion_loss);
+  store(b.stored_energy.a + k, e.stored);
+  store(b.contact_radius.a + k, now.radius);
+}
+
+/// Writes energies and the largest strain of contacts k, k + 1, ... of n into their block.
+struct Recorder {
+  Block& b;
+  const int k, n;
+  const Pass& pass;
+
+  template <class Law>
+  void normal(const Law& law, Lanes R_star, const State<Law>& before, const Step<Law>& now, Lanes overlap) const {
+    if (pass.strain) largest(b, k, n, now.radius, overlap, R_star);
+    if (!pass.work) return;
+    if constexpr (adheres<Law>) {
+      const State<Law> from = before;  // copies: what is passed by its address stays in memory
+      const Step<Law> to = now;
+      book_adhesive(b, k, law, R_star, from, to, overlap);
+    } else {
+      const auto e = energies(law, R_star, before, now, overlap);
+      store(b.stored_energy.a + k, e.stored);
+      store(b.plastic_work_step.a + k, e.plastic_work_step);
+    }
+  }
+
+  template <class Work>
+  void friction(const Work& work) const {
+    if (!pass.work) return;
+    const FrictionWork<Lanes> w = work();
+    store(b.friction_work.a + k, w.lost);
+    store(b.spring_energy.a + k, w.stored);
+  }
+};
+
+/// The values of a history one by one: a copy as a whole would go through memory.
+template <int count, class From, class To>
+EPDEM_INLINE void copy(const From* from, To* to) {
+  const Lanes* const source = reinterpret_cast<const Lanes*>(from);
+  Lanes* const target = reinterpret_cast<Lanes*>(to);
+  for (int k = 0; k < count; ++k) target[k] = source[k];
+}
+
+/// History of a contact: the values of the law, of pairs the step of the last evaluation (hosts end the contacts of
+/// walls), friction, rolling friction.
+template <class Law, class Friction, bool rolls, bool wall>
+[[gnu::flatten]] void contacts(Block& b, int n, const Pass& pass) {
+  constexpr int law_values = history_size<Law>, friction_values = values_of<Friction, Lanes>;
+  constexpr int last_step = law_values, sliding = last_step + !wall, rolling = sliding + friction_values;
+  constexpr int values = law_values || friction_values || rolls ? rolling + 3 * rolls : 0;
+  using Pair = ContactConstants<Law>;
+  constexpr int constants = (sizeof(Pair) / sizeof(Lanes) + 3) / 4 * 4;
+  static_assert(constants <= most_constants && offsetof(Pair, law) == law_data * sizeof(Lanes));
+  Lanes of_all[constants], of_each[constants];
+  const Lanes* constant_of = of_all;
+  for (int c = 0; c < constants; ++c) of_all[c] = constant<Lanes>(b.material[0][c]);
+  // Behind the history of this block lies that of the next: what is long is on its way while this one is computed.
+  const char* ahead = reinterpret_cast<const char*>(b.history[n - 1]);
+  const long span =
+      friction_values > 3 ? ahead - reinterpret_cast<const char*>(b.history[0]) : 0;  // apart: of two pages
+  const long stride = span > 0 && span < 65536 ? span * lane_count / n : 0;
+  for (int k = 0; k < n; k += lane_count) {
+    for (long line = 0; line < stride; line += 64) __builtin_prefetch(ahead + line, 1, 2);
+    ahead += stride;
+    if (pass.several) {
+      for (int c = 0; c < constants; c += 4) {
+        const Columns four =
+            columns([&](int l) __attribute__((always_inline)) { return load<Row>(b.material[k + l] + c); });
+        of_each[c] = four.a, of_each[c + 1] = four.b, of_each[c + 2] = four.c, of_each[c + 3] = four.d;
+      }
+      constant_of = of_each;
+    }
+    const Pair& pair = *reinterpret_cast<const Pair*>(constant_of);
+
+    Kinematics<Lanes> c;
+    const Vec<Lanes> spin_i = of(pass.omega, b.i + k);
+    if constexpr (wall) {
+      const Vec<Lanes> from_wall = at(b.from_wall, k), v = of(pass.v, b.i + k) - at(b.wall_v, k);
+      c = at_wall(at(b.radius_i, k), at(b.overlap, k), from_wall, v, spin_i);
+    } else {
+      const Vec<Lanes> d = difference(pass.x, b.i + k, b.j + k), spin_j = of(pass.omega, b.j + k);
+      const Vec<Lanes> v = difference(pass.v, b.i + k, b.j + k);
+      c = between_spheres(at(b.radius_i, k), at(b.radius_j, k), d, v, spin_i, spin_j);
+    }
+
+    Lanes value[values ? values : 1] = {};
+    ContactHistory<Law, Friction> history;
+    if constexpr (values > 0) {
+      read<values>(b.history + k, value);
+      if constexpr (!wall) {
+        const auto is_new = pass.now - value[last_step] > 1.0;  // the pair parted since the last evaluation
+        for (int s = 0; s < values; ++s) value[s] = select(is_new, Lanes{}, value[s]);
+      }
+      copy<law_values>(value, &history.law);
+      copy<friction_values>(value + sliding, &history.friction);
+      if constexpr (rolls) history.rolling = {value[rolling], value[rolling + 1], value[rolling + 2]};
+    }
+
+    const auto mass = [&]() __attribute__((always_inline)) {
+      return wall ? at(b.mass_i, k) : effective_mass(b, k, pass.freeze);
+    };
+    ContactLoads<Lanes> loads;  // assigned below: GCC leaves in memory what it initialises with the result
+    loads = contact<Friction, rolls, wall>(pair, pass, c, history, mass, Recorder{b, k, n, pass});
+
+    if constexpr (values > 0) {
+      copy<law_values>(&history.law, value);
+      copy<friction_values>(&history.friction, value + sliding);
+      if constexpr (rolls)
+        value[rolling] = history.rolling.x, value[rolling + 1] = history.rolling.y,
+        value[rolling + 2] = history.rolling.z;
+      if constexpr (!wall) value[last_step] = constant<Lanes>(pass.now);
+      write<values>(b.history + k, value);
+    }
+    put(b.force, k, loads.force);
+    put(b.torque_i, k, loads.torque_i);
+    if constexpr (!wall) put(b.torque_j, k, loads.torque_j);
+  }
+}
+
+/// No kernel for what no host offers: contacts with adhesion that have partial slip or are at walls.
+template <class Law, class Friction, bool rolls, bool wall>
+constexpr Kernel offered() noexcept {
+  if constexpr (adheres<Law> && (wall || !Friction::of_liggghts))
+    return nullptr;
+  else
+    return &contacts<Law, Friction, rolls, wall>;
+}
+
+template <class Law, class... Models>
+constexpr void fill(Kernels& kernels, List<Models...>) noexcept {
+  int k = 0;
+  (([&](Kernel(&of)[2][2]) {
+     of[0][0] = offered<Law, Models, false, false>(), of[0][1] = offered<Law, Models, false, true>();
+     of[1][0] = offered<Law, Models, true, false>(), of[1][1] = offered<Law, Models, true, true>();
+   }(kernels.of[detail::place<Law>()][k++])),
+   ...);
+}
+
+constexpr Kernels all() noexcept {
+  Kernels kernels{};
+#define EPDEM_FILL(Class) fill<Class<Lanes>>(kernels, Frictions{});
+  EPDEM_LAWS(EPDEM_FILL)
+#undef EPDEM_FILL
+  return kernels;
+}
+
+}  // namespace
+
+extern const Kernels EPDEM_KERNELS;
+constexpr Kernels EPDEM_KERNELS = all();
+
+}  // namespace epdem::kernels
