@@ -25,7 +25,7 @@ from epdem.engines.liggghts.own_template import write
 from epdem.errors import CaseError
 from epdem.impacts.experiment import experiment
 from epdem.impacts.plan import plan
-from epdem.impacts.prediction import Prediction, predict
+from epdem.impacts.prediction import COLUMNS, predict
 from epdem.scenes.engine import files
 from epdem.scenes.plan import plan as plan_scene
 
@@ -47,7 +47,7 @@ def carried_out(data: dict) -> None:
         return
     x = experiment(impact.parse(data))
     found = predict(x)
-    for name in Prediction.COLUMNS:
+    for name in COLUMNS:
         sticks = (found.e_n == 0) if name == "contact_time" else False  # and never parts
         assert (np.isfinite(getattr(found, name)) | sticks).all(), name
     assert plan(x, found).time_step > 0

@@ -105,8 +105,6 @@ def _time_step(case: Path, law: list[str] | None, error: float, as_json: bool) -
 
 def _one_impact(material: str, radius: str, speed: str, adhesion: str | None, as_json: bool) -> None:
     """One impact on a wall of the same material for every law."""
-    from dataclasses import asdict
-
     from ..case.units import read_number
     from ..impacts.report import plain
     from ..studies.one_impact import one_impact
@@ -118,18 +116,18 @@ def _one_impact(material: str, radius: str, speed: str, adhesion: str | None, as
         adhesion=None if adhesion is None else read_number("--work-of-adhesion", adhesion, "J/m^2"),
     )
     if as_json:
-        rows = {name: {k: plain(v) for k, v in row.items()} for name, row in x.laws.items()}
-        print(json.dumps({k: v for k, v in asdict(x).items() if k not in ("first", "plastic")} | {"laws": rows}))
+        rows = {name: {k: plain(v) for k, v in row.items()} for name, row in x["laws"].items()}
+        print(json.dumps({k: v for k, v in x.items() if k not in ("first", "plastic")} | {"laws": rows}))
         return
-    title = f"{material} sphere, R = {x.radius:g} m, on {material} at {x.speed:g} m/s (SI units)"
-    table = empty_table(title, ("law", *x.laws["hertz"]), left=("law",))
-    for name, row in x.laws.items():
+    title = f"{material} sphere, R = {x['radius']:g} m, on {material} at {x['speed']:g} m/s (SI units)"
+    table = empty_table(title, ("law", *x["laws"]["hertz"]), left=("law",))
+    for name, row in x["laws"].items():
         table.add_row(name, *(f"{value:.6g}" for value in row.values()))
     show_table(console(), table)
     console().print(
-        f"E* = {x.E_star:.5g} Pa, m* = {x.m_star:.5g} kg; first yield at p_0 = {x.first_yield_p0_over_Y:.4f} Y, depth "
-        f"{x.first_yield_depth_over_a:.3f} a; v_y0 = {x.v_y0:.4g} m/s ({x.first:.2f} Y), "
-        f"v_y = {x.v_y:.4g} m/s ({x.plastic:g} Y)",
+        f"E* = {x['E_star']:.5g} Pa, m* = {x['m_star']:.5g} kg; first yield at p_0 = "
+        f"{x['first_yield_p0_over_Y']:.4f} Y, depth {x['first_yield_depth_over_a']:.3f} a; v_y0 = {x['v_y0']:.4g} m/s ({x['first']:.2f} Y), "
+        f"v_y = {x['v_y']:.4g} m/s ({x['plastic']:g} Y)",
         soft_wrap=True,
     )
-    console().print(f"source: {x.source}", soft_wrap=True)
+    console().print(f"source: {x['source']}", soft_wrap=True)

@@ -6,6 +6,7 @@ import pandas as pd
 
 from ..base.tables import Quantity
 from ..case.impact import DEFAULT_CHECKS, Check
+from .measurement import COLUMNS as MEASURED
 from .measurement import Measured
 from .plan import Plan
 from .prediction import Prediction
@@ -52,7 +53,7 @@ def impacts_table(plan: Plan, measured: Measured) -> pd.DataFrame:
     columns = {"speed": plan.speed, "gap": plan.gap}
     if measured.rebound:
         columns |= measured.rebound.columns()
-    return pd.DataFrame(columns | {name: getattr(measured, name) for name in Measured.COLUMNS})
+    return pd.DataFrame(columns | {name: getattr(measured, name) for name in MEASURED})
 
 
 def compare(engine: str, law: str, impacts: pd.DataFrame, prediction: Prediction, check: Check) -> pd.DataFrame:

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Restitution, times, peaks and energies of the impacts of a trajectory; independent of engines."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 
 import numpy as np
 
@@ -32,15 +32,8 @@ class Measured:
     steps_in_contact: np.ndarray
     rebound: oblique.Rebound | None = None  # of oblique impacts
 
-    COLUMNS = (
-        "e_n",
-        "contact_time",
-        "force_max",
-        "overlap_max",
-        "residual_overlap",
-        "energy_residual",
-        "steps_in_contact",
-    )
+
+COLUMNS = tuple(f.name for f in fields(Measured) if f.type is np.ndarray)
 
 
 def _last(valid: np.ndarray) -> np.ndarray:

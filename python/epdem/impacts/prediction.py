@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """The prediction of theory for an experiment."""
 
-from dataclasses import dataclass
+from dataclasses import dataclass, fields
 from typing import Any
 
 import numpy as np
@@ -36,19 +36,6 @@ class Prediction:
     finite_strain: tuple[str, ...] = ()  # whether contacts leave small strain, in words
     observation_time: float = np.nan  # how long bodies that stick are watched [s]; NaN: without adhesion
 
-    COLUMNS = (
-        "speed",
-        "e_n",
-        "contact_time",
-        "force_max",
-        "overlap_max",
-        "residual_overlap",
-        "work_in",
-        "work_out",
-        "plastic_work",
-        "strain_ratio",
-    )
-
     @property
     def warnings(self) -> tuple[str, ...]:
         """All sentences on the domain of the law and of the theory."""
@@ -67,7 +54,10 @@ class Prediction:
     def table(self) -> pd.DataFrame:
         """One row per impact, with the rebound of oblique ones."""
         rebound = {} if self.rebound is None else self.rebound.columns()
-        return pd.DataFrame({name: getattr(self, name) for name in self.COLUMNS} | rebound)
+        return pd.DataFrame({name: getattr(self, name) for name in COLUMNS} | rebound)
+
+
+COLUMNS = tuple(f.name for f in fields(Prediction) if f.type is np.ndarray)
 
 
 def predict(experiment: Experiment) -> Prediction:
@@ -80,7 +70,7 @@ def predict(experiment: Experiment) -> Prediction:
         impact = restitution.impact(law, m_star=m_star, speed=speed)
     else:
         impact = viscous.impact(law, m_star=m_star, speed=speed, restitution=experiment.viscous_restitution)
-    names = Prediction.COLUMNS[1:]
+    names = COLUMNS[1:]
     columns: dict[str, Any] = {n: np.asarray(getattr(impact, n), float) for n in names}
     pair = (experiment.body, experiment.target)
     yields = _softer(experiment) if columns["overlap_max"].max() > law.yield_overlap else ()
@@ -115,7 +105,7 @@ def _with_adhesion(x: Experiment, law: JKR) -> Prediction:
     """residual_overlap is that at which the contact ends, 3/4 d below the dent; what adhesion takes is neither in
     work_out nor in plastic_work."""
     impact = adhesion.impact(law, m_star=x.m_star, speed=x.speed)
-    columns: dict[str, Any] = {n: np.asarray(getattr(impact, n), float) for n in Prediction.COLUMNS[1:]}
+    columns: dict[str, Any] = {n: np.asarray(getattr(impact, n), float) for n in COLUMNS[1:]}
     columns["residual_overlap"] = impact.parting_overlap
     first = max(float(law.touch_radius), float(law.yield_radius))
     barely = 1.001 * float(adhesion.sticking_speed(law, m_star=x.m_star))

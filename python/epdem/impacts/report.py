@@ -22,7 +22,7 @@ from .prediction import Prediction, predict
 from .run import Outcome
 
 # columns that a narrow terminal has no room for, those of oblique impacts among them
-SPARE = (
+SPARE: tuple[str, ...] = (
     "steps",
     "overlap [um]",
     "F_max [N]",
@@ -32,11 +32,8 @@ SPARE = (
     "rebound",
     "f/mu",
     "spin [rad/s]",
-    "regime",
-    "e_t",
-    "theory",
-    "engine",
 )
+SPARE += ("regime", "e_t", "theory", "engine")
 FEW = 10  # impacts of each engine and law in the short table
 ROW_KEYS = (
     "engine",
@@ -107,19 +104,8 @@ def run_table(outcome: Outcome, *, full: bool = False) -> Table:
         return oblique_report.run_table(outcome, rows)
     yields = "; ".join(f"{law}: {yielding(p)}" for law, p in outcome.predictions.items())
     laws = rows["law"].nunique() > 1
-    heads = [
-        "v [m/s]",
-        "engine",
-        *(["law"] if laws else []),
-        "e_n",
-        "theory",
-        "error",
-        "t_c [us]",
-        "F_max [N]",
-        "overlap [um]",
-        "steps",
-        "pass",
-    ]
+    heads = ["v [m/s]", "engine", *(["law"] if laws else []), "e_n", "theory", "error", "t_c [us]", "F_max [N]"]
+    heads += ["overlap [um]", "steps", "pass"]
     shown = table(f"{outcome.case.case.title} ({yields})", heads, left=("engine", "law"))
     ordered = rows.sort_values(["law", "speed", "engine"], kind="stable")
     for row in ordered.to_dict("records"):

@@ -19,19 +19,8 @@ from .plan import ScenePlan
 
 Array = npt.NDArray[np.float64]
 
-COLUMNS = [
-    "step",
-    "wall",
-    "i",
-    "j",
-    "overlap",
-    "delta_max",
-    "force",
-    "residual_overlap",
-    "dent_radius",
-    "plastic_work",
-    "elastic_energy",
-]
+BY_LAW = ["force", "residual_overlap", "dent_radius", "plastic_work", "elastic_energy"]
+COLUMNS = ["step", "wall", "i", "j", "overlap", "delta_max", *BY_LAW]
 _NODES, _WEIGHTS = gauss(16)  # on [0, 1]
 
 
@@ -73,7 +62,7 @@ def energies(
     attached: npt.NDArray[np.bool_],
 ) -> pd.DataFrame:
     """force, residual_overlap, dent_radius, plastic_work, elastic_energy of contacts; arrays of shape (n,)."""
-    out = pd.DataFrame(0.0, index=range(len(overlap)), columns=COLUMNS[6:])
+    out = pd.DataFrame(0.0, index=range(len(overlap)), columns=BY_LAW)
     material = ["", *(t.material for t in p.model.types)]
     low, high = np.minimum(type_i, type_j), np.maximum(type_i, type_j)
     keys = pd.DataFrame({"a": low, "b": high})

@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """One impact on a wall of the same material by every law, from theory."""
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
+from typing import Any
 
 import numpy as np
 
@@ -16,32 +17,12 @@ from ..theory.backbones import ADHESIVE, LAWS
 NAMES = ("e_n", "contact_time", "force_max", "overlap_max", "residual_overlap", "strain_ratio")
 
 
-@dataclass(frozen=True)
-class OneImpact:
-    """SI: the impact; E* and m*; where it first yields; the yield speeds at p_0 = `first` Y and p_m = `plastic` Y.
-
-    `laws` has the numbers NAMES of each law.
-    """
-
-    material: str
-    source: str
-    radius: float
-    speed: float
-    E_star: float
-    m_star: float
-    first_yield_p0_over_Y: float
-    first_yield_depth_over_a: float
-    v_y0: float
-    v_y: float
-    laws: dict[str, dict[str, float]]
-    first: float
-    plastic: float
-
-
-def one_impact(material: str, *, radius: float, speed: float, adhesion: float | None = None) -> OneImpact:
+def one_impact(material: str, *, radius: float, speed: float, adhesion: float | None = None) -> dict[str, Any]:
     """A sphere of a material of ours, of `radius` [m], at `speed` [m/s]; both > 0. Raises CaseError.
 
-    With a work of `adhesion` > 0 [J/m^2] the laws with adhesion come, too.
+    SI: the impact; E* and m*; pressure and depth of first yield; the yield speeds v_y0 and v_y, at which p_0 is
+    `first` Y and p_m is `plastic` Y; in `laws` the numbers NAMES of each law. With a work of `adhesion` > 0 [J/m^2] the
+    laws with adhesion come, too.
     """
     entry = sourced(material)
     if (Y := entry.material.yield_stress) is None:
@@ -49,26 +30,16 @@ def one_impact(material: str, *, radius: float, speed: float, adhesion: float | 
     body, target = sphere(entry.material, radius=radius, name=material), plane(entry.material, name=material)
     laws = {}
     for name in [*LAWS, *(ADHESIVE if adhesion else [])]:
-        numbers = default_numbers(name)
-        numbers = replace(numbers, adhesion=adhesion) if name in ADHESIVE else numbers
-        x = Experiment(pair_of(numbers, body, target), body, target, np.array([speed]))
+        law = default_numbers(name)
+        law = replace(law, adhesion=adhesion) if name in ADHESIVE else law
+        x = Experiment(pair_of(law, body, target), body, target, np.array([speed]))
         prediction = predict(x)
         laws[name] = {k: float(getattr(prediction, k)[0]) for k in NAMES}
     plastic, first = LAWS["thornton"].declaration().default_ratio, yielding.FIRST_YIELD_ROUNDED
     p_0, depth = yielding.first_yield(entry.material.poisson_ratio)
     pair = {"E_star": x.E_star, "R_star": x.R_star, "m_star": x.m_star}
-    return OneImpact(
-        material=material,
-        source=entry.source,
-        radius=radius,
-        speed=speed,
-        E_star=x.E_star,
-        m_star=x.m_star,
-        first_yield_p0_over_Y=float(p_0),
-        first_yield_depth_over_a=float(depth),
-        v_y0=float(yielding.yield_speed(p_y=first * Y, **pair)),
-        v_y=float(yielding.yield_speed(p_y=plastic * Y, **pair)),
-        laws=laws,
-        first=float(first),
-        plastic=float(plastic),
-    )
+    found: dict[str, Any] = {"material": material, "source": entry.source, "radius": radius, "speed": speed}
+    found |= {"E_star": x.E_star, "m_star": x.m_star}
+    found |= {"first_yield_p0_over_Y": float(p_0), "first_yield_depth_over_a": float(depth)}
+    speeds = {name: float(yielding.yield_speed(p_y=k * Y, **pair)) for name, k in (("v_y0", first), ("v_y", plastic))}
+    return found | speeds | {"laws": laws, "first": float(first), "plastic": float(plastic)}

@@ -91,7 +91,10 @@ def _better(trials: tuple[Trial, ...]) -> Trial | None:
 
 def _silent(case: SceneCase) -> ScenePlan:
     """The plan of a scene without output but rows, which report its progress."""
-    return plan(case.model_copy(update={"output": Output(rows=100, particles=0, energy=case.output.energy)}))
+    silent = Output(rows=100, particles=0).model_copy(
+        update={"energy": case.output.energy}
+    )  # of contacts without frames
+    return plan(case.model_copy(update={"output": silent}))
 
 
 def _of_skins(order: list[float], loops: Loops, skins: list[float]) -> tuple[list[Trial], int]:
