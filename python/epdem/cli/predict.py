@@ -126,8 +126,8 @@ def _one_impact(material: str, radius: str, speed: str, adhesion: str | None, as
     show_table(console(), table)
     console().print(
         f"E* = {x['E_star']:.5g} Pa, m* = {x['m_star']:.5g} kg; first yield at p_0 = "
-        f"{x['first_yield_p0_over_Y']:.4f} Y, depth {x['first_yield_depth_over_a']:.3f} a; v_y0 = {x['v_y0']:.4g} m/s ({x['first']:.2f} Y), "
-        f"v_y = {x['v_y']:.4g} m/s ({x['plastic']:g} Y)",
+        f"{x['first_yield_p0_over_Y']:.4f} Y, depth {x['first_yield_depth_over_a']:.3f} a; "
+        f"v_y0 = {x['v_y0']:.4g} m/s ({x['first']:.2f} Y), v_y = {x['v_y']:.4g} m/s ({x['plastic']:g} Y)",
         soft_wrap=True,
     )
     console().print(f"source: {x['source']}", soft_wrap=True)

@@ -22,18 +22,8 @@ from .prediction import Prediction, predict
 from .run import Outcome
 
 # columns that a narrow terminal has no room for, those of oblique impacts among them
-SPARE: tuple[str, ...] = (
-    "steps",
-    "overlap [um]",
-    "F_max [N]",
-    "t_c [us]",
-    "law",
-    "spin",
-    "rebound",
-    "f/mu",
-    "spin [rad/s]",
-)
-SPARE += ("regime", "e_t", "theory", "engine")
+SPARE: tuple[str, ...] = ("steps", "overlap [um]", "F_max [N]", "t_c [us]", "law", "spin", "rebound", "f/mu")
+SPARE += ("spin [rad/s]", "regime", "e_t", "theory", "engine")
 FEW = 10  # impacts of each engine and law in the short table
 ROW_KEYS = (
     "engine",
