@@ -68,15 +68,16 @@ constexpr double rigid_strength = 1e25;
 constexpr const char* ratio_name = "yieldPressureRatio";
 constexpr Parameter yield_stress = {"yield_stress", "yieldStress", "Y", "Pa", not_given};
 
-/// What the deck is asked for: the law's parameters, or the yield stress in place of the strength, and the ratio last.
-struct Question {
+/// Properties that the deck must have: the law's parameters, or the yield stress in place of the strength, and the
+/// ratio last.
+struct RequiredProperties {
   std::vector<Parameter> parameters;
   bool by_ratio;
 };
 
 /// A yield stress beside a strength may belong to another model of the deck: the strength counts.
-Question question(const Reader& reader, const Declaration& law) {
-  Question q{{law.parameters, law.parameters + law.count}, false};
+RequiredProperties required_properties(const Reader& reader, const Declaration& law) {
+  RequiredProperties q{{law.parameters, law.parameters + law.count}, false};
   if (!law.strength_by_ratio) return q;
   const Parameter pressure = law.parameters[law.strength];
   const bool ratio = reader.given(ratio_name);
@@ -94,7 +95,7 @@ Question question(const Reader& reader, const Declaration& law) {
 }
 
 /// The law's parameters for one pair of types; `pascal` is the deck's unit of pressure.
-std::vector<double> parameters_of(const Reader& reader, const Declaration& law, const Question& asked,
+std::vector<double> parameters_of(const Reader& reader, const Declaration& law, const RequiredProperties& required,
                                   const std::vector<ParameterTable>& tables, double pascal, int i, int j) {
   std::vector<double> values;
   // equal strength: the smaller type number, so that swapping i and j changes nothing
@@ -109,22 +110,22 @@ std::vector<double> parameters_of(const Reader& reader, const Declaration& law, 
       continue;
     }
     if (strength && !strength_per_type && t.of_type(i) != t.of_type(j))
-      reader.fail(std::string(asked.parameters[k].property) + " per type and " +
-                  asked.parameters[law.strength].property + " per pair leave open which body of " + both(i, j) +
+      reader.fail(std::string(required.parameters[k].property) + " per type and " +
+                  required.parameters[law.strength].property + " per pair leave open which body of " + both(i, j) +
                   " is the softer one; give both per pair");
     values.push_back(t.of_type(softer));
   }
   const std::vector<double> as_given = values;
   for (size_t k = 0; k < values.size(); ++k)
-    if (std::string(asked.parameters[k].unit) == "Pa") values[k] *= pascal;
-  if (asked.by_ratio) {
+    if (std::string(required.parameters[k].unit) == "Pa") values[k] *= pascal;
+  if (required.by_ratio) {
     values[law.strength] = strength_from(values[law.strength], values.back());
     values.pop_back();
   }
   if (law.valid(values.data())) return values;
   std::string text;
   for (size_t k = 0; k < as_given.size(); ++k)
-    text += std::string(k ? ", " : "") + asked.parameters[k].property + " = " + number(as_given[k]);
+    text += std::string(k ? ", " : "") + required.parameters[k].property + " = " + number(as_given[k]);
   reader.fail(text + " of " + both(i, j) + " do not go together: the law would create energy at yield");
 }
 
@@ -200,10 +201,10 @@ Materials read_materials(LAMMPS_NS::LAMMPS* lmp, PropertyRegistry& registry, con
 
   if (!law.adheres) refuse_adhesion(reader, law);
   const std::unique_ptr<Adhesion> adhesion(law.adheres ? new Adhesion(reader) : nullptr);
-  const Question asked = question(reader, law);
+  const RequiredProperties required = required_properties(reader, law);
   std::vector<ParameterTable> tables;
-  tables.reserve(asked.parameters.size());
-  for (const Parameter& p : asked.parameters) tables.emplace_back(reader, p, adhesion.get());
+  tables.reserve(required.parameters.size());
+  for (const Parameter& p : required.parameters) tables.emplace_back(reader, p, adhesion.get());
   const std::vector<double> none(width * width, 0.0);
   const std::vector<double> beta = dashpot == Dashpot::off ? none : damping_numbers(reader, dashpot);
   const std::vector<double> dashpots = viscous ? viscous_numbers(reader) : none;
@@ -214,7 +215,7 @@ Materials read_materials(LAMMPS_NS::LAMMPS* lmp, PropertyRegistry& registry, con
     for (int j = 1; j <= n; ++j)
       materials.pairs[i * width + j] = {{E[i] * pascal, nu[i]},
                                         {E[j] * pascal, nu[j]},
-                                        parameters_of(reader, law, asked, tables, pascal, i, j),
+                                        parameters_of(reader, law, required, tables, pascal, i, j),
                                         beta[i * width + j],
                                         dashpots[i * width + j]};
   compare_strength(lmp, law, materials);

@@ -16,7 +16,7 @@ namespace epdem::liggghts {
 
 /// What the dashpot of the tangential model makes of coefficientRestitution.
 enum class Dashpot {
-  off,       // not asked for
+  off,       // not used
   optional,  // used if the property is there, else no dashpot
   required,  // the dashpot is the whole tangential model
 };

@@ -25,20 +25,20 @@ const Kernels& chosen_kernels(LAMMPS_NS::LAMMPS* lmp) {
   return *found;
 }
 
-bool generic_asked() {
-  static const char* const asked = std::getenv("EPDEM_LOOP");
-  return asked && std::strcmp(asked, "generic") == 0;
+bool generic_loop() {
+  static const char* const loop = std::getenv("EPDEM_LOOP");
+  return loop && std::strcmp(loop, "generic") == 0;
 }
 
 void refuse_unknown_loop(LAMMPS_NS::LAMMPS* lmp) {
   const char* const loop = std::getenv("EPDEM_LOOP");
-  if (!loop || !*loop || generic_asked()) return;
+  if (!loop || !*loop || generic_loop()) return;
   const std::string text = "EPDEM_LOOP = " + std::string(loop) + ": no such loop; leave it unset, or take generic";
   lmp->error->all(FLERR, text.c_str());
 }
 
 const char* obstacle_of_both(const LAMMPS_NS::Atom& atom, bool rigid, bool stores, bool sums) {
-  if (generic_asked()) return "EPDEM_LOOP = generic";
+  if (generic_loop()) return "EPDEM_LOOP = generic";
   if (rigid) return "rigid bodies";
   if (!atom.rmass || !atom.sphere_flag || atom.shapetype_flag) return "particles other than spheres";
   if (stores) return "contact forces are stored";
@@ -166,7 +166,7 @@ int PairLoop::without_parted(const Plan& plan, int n) {
   return kept;
 }
 
-/// What lies apart in memory is asked for in time, and contacts are marked as such.
+/// What lies apart in memory is prefetched, and contacts are marked as such.
 void PairLoop::fetch(const Plan& plan, int n) {
   Block& b = *block_;
   const double *const v = atom->v[0], *const w = atom->omega[0], *const f = atom->f[0], *const t = atom->torque[0];

@@ -33,7 +33,7 @@ struct Plan {
 };
 
 /// Whether the user chose LIGGGHTS's loops by EPDEM_LOOP=generic.
-bool generic_asked();
+bool generic_loop();
 
 /// Ends the run if EPDEM_LOOP is set to anything but generic.
 void refuse_unknown_loop(LAMMPS_NS::LAMMPS* lmp);

@@ -71,9 +71,9 @@ struct Triangles : TriMesh {
 };
 
 /// The neighbour lists of meshes, reduced to spheres that may touch for as long as this object lives.
-class Near {
+class ReducedNeighborLists {
  public:
-  ~Near() {
+  ~ReducedNeighborLists() {
     for (const auto& [list, kept] : swapped_) list->swap(spare()[kept]);
   }
 
@@ -127,22 +127,22 @@ class Near {
   std::size_t used_ = 0;
 };
 
-OurWall* at_work = nullptr;                                       // the wall of our models over which a loop runs
+OurWall* active_wall = nullptr;                                   // the wall of our models over which a loop runs
 bool ours = false;                                                // whether it is a mesh wall whose lists are reduced
 std::unordered_map<const FixContactHistoryMesh*, bigint> marked;  // the last step of a mesh in which one was
 
 /// While LIGGGHTS's loop over a wall runs.
-class AtWork {
+class ScopedWall {
  public:
-  AtWork(LIGGGHTS::Walls::IGranularWall* impl, FixWallGran& wall) {
-    at_work = dynamic_cast<OurWall*>(impl);
-    if (at_work) at_work->open(wall);
+  ScopedWall(LIGGGHTS::Walls::IGranularWall* impl, FixWallGran& wall) {
+    active_wall = dynamic_cast<OurWall*>(impl);
+    if (active_wall) active_wall->open(wall);
   }
-  AtWork(const AtWork&) = delete;
-  AtWork& operator=(const AtWork&) = delete;
-  ~AtWork() {
-    if (at_work) at_work->close();
-    at_work = nullptr;
+  ScopedWall(const ScopedWall&) = delete;
+  ScopedWall& operator=(const ScopedWall&) = delete;
+  ~ScopedWall() {
+    if (active_wall) active_wall->close();
+    active_wall = nullptr;
   }
 };
 
@@ -163,17 +163,17 @@ namespace loop = epdem::liggghts::loop;
 
 [[gnu::visibility("default")]] void FixWallGran::post_force_primitive(int vflag) {
   static const auto original = loop::next<FixWallGran*, int>("_ZN9LAMMPS_NS11FixWallGran20post_force_primitiveEi");
-  const loop::AtWork work(impl, *this);
+  const loop::ScopedWall work(impl, *this);
   original(this, vflag);
 }
 
 [[gnu::visibility("default")]] void FixWallGran::post_force_mesh(int vflag) {
   static const auto original = loop::next<FixWallGran*, int>("_ZN9LAMMPS_NS11FixWallGran15post_force_meshEi");
-  const loop::AtWork work(impl, *this);
-  if (!loop::at_work || loop::generic_asked() || neighbor->contactDistanceFactor != 1.0 || !atom->sphere_flag ||
+  const loop::ScopedWall work(impl, *this);
+  if (!loop::active_wall || loop::generic_loop() || neighbor->contactDistanceFactor != 1.0 || !atom->sphere_flag ||
       atom->shapetype_flag)
     return original(this, vflag);
-  loop::Near near;
+  loop::ReducedNeighborLists near;
   for (int m = 0; m < n_FixMesh_; ++m) {
     TriMesh& mesh = *FixMesh_list_[m]->triMesh();
     if (!mesh.isDeforming() && !mesh.isScaling()) near.reduce(mesh, *FixMesh_list_[m]->meshNeighlist(), *atom);
