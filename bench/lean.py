@@ -75,12 +75,12 @@ def measure(path: Path, repeats: int, scratch: Path) -> dict:
     return found | {f"{name}_seconds": min(values) for name, values in times.items()}
 
 
-HEAD = """# The cost of what a scene does not need
+HEAD = """# Lean and full decks
 
-Written by `.venv/bin/python bench/lean.py`. The *lean* deck contains only what the physics of the case requires. The
-*full* deck is the same scene with every sub-model on (friction, dashpot, rolling friction, cohesion, plastic work, wall
-loads), with coefficients of 1e-9 where the case has none and the same time step. The times are those of the last 5 % of
-each scene on one rank, the shortest of several interleaved runs.
+`.venv/bin/python bench/lean.py` writes this page. The *lean* deck contains only what the physics of the case requires.
+The *full* deck is the same scene with every sub-model on (friction, dashpot, rolling friction, cohesion, plastic work,
+wall loads), the same time step, and coefficients of 1e-9 for models that the case does not have. Times are for the last
+5 % of each scene on one rank, the shortest of several interleaved runs.
 
 | scene | deck lines full | lean | history bytes per contact full | lean | us per step full | lean | ratio |
 |---|---|---|---|---|---|---|---|

@@ -19,15 +19,15 @@ MODELS = (*(f"ep/{law}" for law in (*LAWS, *ADHESIVE)), *SLIPS, "hertz", "thornt
 
 HEAD = """# One scene in different set-ups
 
-Written by `.venv/bin/python bench/liggghts_invariance.py`; do not edit.
+`.venv/bin/python bench/liggghts_invariance.py` writes this page.
 
-24 oblique impacts (12 pairs of unequal spheres of three materials, 12 spheres on a wall) with `tangential history`, or
-the tangential model that a column names, drift across a face of the box during contact. Each row is the same scene in
-another set-up. Its numbers are the largest deviation of any final velocity or spin from the plain run, relative to the
-largest velocity or spin of the scene; 0 means bitwise equality. Rows about momentum show the change of the momentum of
-a pair, relative to the momentum that its bodies exchange. The row of the rigid rotation is a scene of its own: a loaded
-and sheared pair turns once as one body about an axis that is none of its own ([motions](motions.md)), and the number is
-the change of the force on a sphere over that force. The scene is in `tests/engines/plugin_invariance.py`;
+The scene has 24 oblique impacts (12 pairs of unequal spheres of three materials, 12 spheres on a wall). The tangential
+model is `history` or the model in the head of the column. The bodies drift across a face of the box during contact.
+Each row runs the scene in another set-up. A number is the largest deviation of a final velocity or spin from the plain
+run, relative to the largest velocity or spin of the scene; 0 means bitwise equality. Rows of momentum show the change
+of the momentum of a pair, relative to the exchanged momentum. The row of the rigid rotation is a separate scene: a
+loaded and sheared pair rotates once as one body about a skew axis ([motions](motions.md)), and the number is the
+relative change of the force on a sphere. The scene is in `tests/engines/plugin_invariance.py`;
 `tests/engines/test_plugin_invariance.py` asserts the columns of epdem and the main failures of the other models.
 
 """
@@ -35,14 +35,14 @@ the change of the force on a sphere over that force. The scene is in `tests/engi
 TAIL = """
 The other models fail for the following reasons. `thornton_ning` and `edinburgh` register even quantities (largest
 overlap, force, flags) with newton flag 1, and LIGGGHTS negates such values when a pair is stored from its other side.
-They register no contact distance factor; their history therefore outlives a contact that ends between two neighbour
-lists, as does the shear spring of `hertz` with `tangential history`. Their viscous force depends on velocities of the
-half step, which a split run computes slightly differently. `hertz` also leaves its setting `tangential_damping`
-undefined when a restart file creates it.
+They register no contact distance factor. Their history therefore survives a contact that ends between two neighbour
+lists, like the shear spring of `hertz` with `tangential history`. Their viscous force depends on velocities of the half
+step, which differ slightly in a split run. `hertz` also leaves its setting `tangential_damping` undefined when a
+restart file creates it.
 
-LIGGGHTS's `tangential history` projects its spring on the plane of the contact in every step, but does not turn it with
-the pair about the normal: after the revolution the friction has another direction. Partial slip (`ep/partial_slip`)
-turns it; what is left is of second order in the angle of a step (1000 steps).
+LIGGGHTS's `tangential history` projects its spring on the plane of the contact in every step, but does not rotate the
+spring about the normal. After the revolution the friction has another direction. Partial slip (`ep/partial_slip`)
+rotates the spring; the remaining error is of second order in the angle of a step (1000 steps).
 """
 
 

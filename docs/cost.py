@@ -21,14 +21,14 @@ LAWS = ["thornton", "cavity", "johnson", "hertz"]
 BULK = """
 ## A bulk scene
 
-The scene consists of two blocks of {spheres} steel spheres together that collide at 300 m/s. The table shows the error
-of the plastic work against a run at a quarter of the finest step: that of its mean, and the rms error of single
-spheres, both over the mean. The time is the loop time of the engine in runs without any output and without the
-computation of that work; the last column is its ratio to LIGGGHTS's own elastic `hertz` (`{reference}`) with the same
-steps (medians of interleaved runs and half the distance of the quartiles). `order` is that of the rms error between
-neighbouring rows; the error of the mean may pass through zero. Steps are shares of the smallest stability limit of
-these laws at 300 m/s. Elastic spheres separate and collide with others, while yielding spheres stay together; the ratio
-therefore compares the scenes, not the models alone. Hertz contacts dissipate no energy.
+The scene consists of two blocks of {spheres} steel spheres that collide at 300 m/s. The table shows the error of the
+plastic work against a run at a quarter of the finest step: the error of the mean and the rms error of single spheres,
+both over the mean. The time is the loop time of the engine in runs without output and without the computation of
+plastic work. The last column is the ratio to LIGGGHTS's own elastic `hertz` (`{reference}`) with the same steps
+(medians of interleaved runs and half the distance of the quartiles). `order` is the order of the rms error between
+neighbouring rows. Steps are shares of the smallest stability limit of these laws at 300 m/s. Elastic spheres separate
+and collide with others, while yielding spheres stay together; the ratio therefore compares the scenes, not the models
+alone.
 
 {table}
 """
@@ -36,22 +36,22 @@ therefore compares the scenes, not the models alone. Hertz contacts dissipate no
 
 def document(outcome: Outcome, bulk: pd.DataFrame | None, command: str) -> str:
     """The text of docs/cost.md."""
-    text = f"""# Error against run time
+    text = f"""# Accuracy and cost
 
-Written by
+This command writes the page:
 
 ```sh by hand
 {command}
 ```
 
-(case `{outcome.case.name}`, {outcome.seconds:.0f} s). Errors are maxima over all speeds and phases of the case. Times
-are medians of the loop time of the engine in interleaved runs without output. Absolute times depend on the machine and
-its other load; the ratio to LIGGGHTS's own elastic `hertz` (`{REFERENCE}`) in the same run is the figure of merit
-(median and half the distance of the quartiles, from 300 steps in contact on).
+The case is `{outcome.case.name}` ({outcome.seconds:.0f} s). Errors are maxima over all speeds and phases. Times are
+medians of the loop time of the engine in interleaved runs without output. Absolute times depend on the machine and its
+load. The figure of merit is the ratio to LIGGGHTS's own elastic `hertz` (`{REFERENCE}`) in the same run: median and
+half the distance of the quartiles, from 300 steps in contact on.
 
 {markdown(cheapest_table(outcome.models))}
 
-`not reached`: no number of steps up to {outcome.rows["steps"].max()} keeps e_n within that error.
+`not reached`: no number of steps up to {outcome.rows["steps"].max()} keeps e_n within the error.
 
 ![error of e_n against stepping time and steps](figures/cost.png)
 

@@ -218,16 +218,17 @@ def tried(fault: Callable[[Path, Path], str], out: Path) -> str:
 
 TEXT = """# Reliability
 
-Written by `make reliability` (`.venv/bin/python docs/reliability.py {count}`); every number below comes from it.
+Written by `make reliability` (`.venv/bin/python docs/reliability.py {count}`), which computes every number.
 
-{count} runs were stopped at random moments between their start and their end; a run that had ended before its moment
-was begun again with an earlier one. A trial counts as right if the command ends with the exit code of its kind (130
-stopped, 3 an engine died), leaves no process behind and no traceback, and if the next command (`--resume` for scenes,
-the same one otherwise) gives tables that are bitwise equal to those of an undisturbed run. {wrong} trials were wrong.
+{count} trials stop a run at a random moment between its start and its end. A trial passes if the command ends with the
+exit code of its kind (130: stopped, 3: an engine died) without a traceback and without remaining processes, and if the
+next command (`--resume` for scenes, otherwise the same command) gives tables that are bitwise equal to an undisturbed
+run. {wrong} trials failed.
 
 {table}
 
-Faults in engines, disks and files. Right: one sentence and the exit code in the table, nothing of an earlier run lost.
+The next table lists faults in engines, disks and files. A trial passes if the command gives one sentence and the exit
+code of the table and keeps the results of earlier runs.
 
 {faults}
 """
@@ -246,7 +247,7 @@ def page() -> str:
             row[way] = f"{good} of {good + bad}"
         rows.append(row)
     faults = [
-        {"fault": t["how"], "result": t["wrong"] or f"as it must be: {FAULTS[t['how']].__doc__}"}
+        {"fault": t["how"], "result": t["wrong"] or f"pass: {FAULTS[t['how']].__doc__}"}
         for t in found
         if t["what"] == "fault" and t["how"] in FAULTS
     ]

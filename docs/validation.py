@@ -23,8 +23,8 @@ ROOT = Path(__file__).parents[1]
 CLAIMS, PAGE = ROOT / "docs/claims.toml", ROOT / "docs/validation.md"
 HEAD = """# Claims and their tests
 
-`.venv/bin/python docs/validation.py` writes this page: it runs the commands of `docs/claims.toml`. An error is the
-largest over all speeds and 8 starting phases. A test runs the commands again.
+`.venv/bin/python docs/validation.py` runs the commands of `docs/claims.toml` and writes this page. An error is the
+maximum over all speeds and 8 starting phases. A test runs the commands again.
 
 | claim | value | tolerance | compared with | command | test |
 |---|---|---|---|---|---|
@@ -32,7 +32,7 @@ largest over all speeds and 8 starting phases. A test runs the commands again.
 COMMANDS = """
 ## Commands of the other numbers
 
-Run times are those of one machine on one day.
+Run times come from one machine on one day.
 
 | page | numbers | command |
 |---|---|---|

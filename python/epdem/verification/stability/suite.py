@@ -152,12 +152,12 @@ def summary(verdicts: pd.DataFrame) -> pd.DataFrame:
                 "failed": count.get("failed", 0),
                 "not representable": count.get("not representable", 0),
                 "embedded only": count.get("embedded only", 0),
-                "worst error": hit["e_n_error"].max(),
-                "most created": ran["created"].max(),
-                "least order": ran["order"].min(),
-                "first useless at": ran["useless_at"].min(),
-                "first breaks at": ran["breaks_at"].min(),
-                "slowest": part["seconds"].max(),
+                "largest error of e_n": hit["e_n_error"].max(),
+                "largest energy gain": ran["created"].max(),
+                "smallest order": ran["order"].min(),
+                "error above 10 % at": ran["useless_at"].min(),
+                "unstable at": ran["breaks_at"].min(),
+                "longest run [s]": part["seconds"].max(),
             }
         )
     return pd.DataFrame(rows)
