@@ -18,7 +18,7 @@ def entries() -> dict[str, dict[str, Any]]:
 def with_library(data: dict[str, Any], path: object) -> dict[str, Any]:
     """The tables of a case in which `from = "steel"` of a material has become the numbers of the materials file.
 
-    Keys beside `from` go before those of the file. Raises CaseError for a name that is not there.
+    Keys beside `from` replace the keys of the file. Raises CaseError for a name that is not there.
     """
     materials = data.get("materials")
     if not isinstance(materials, dict) or not any(isinstance(m, dict) and "from" in m for m in materials.values()):

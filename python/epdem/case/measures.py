@@ -34,7 +34,10 @@ class Amount(_OfSpheres):
 
 
 class Flow(_Measure):
-    """Mass per time [kg/s] through a plane in a direction, between frames; what leaves the room has passed it."""
+    """Mass per time [kg/s] through a plane in a direction, between frames.
+
+    A sphere that leaves the room has passed the plane.
+    """
 
     kind: Literal["flow"]
     direction: Side = "-z"
@@ -82,7 +85,7 @@ class Porosity(_Measure):
 class Histogram(_Measure):
     """Distribution at the end: of the plastic work of each sphere [J], or of the impact speed [m/s] of each contact.
 
-    The impact speed is that of the head-on impact which gives the contact's largest overlap.
+    The impact speed belongs to the head-on impact that gives the largest overlap of the contact.
     """
 
     kind: Literal["plastic_work", "impact_speed"]

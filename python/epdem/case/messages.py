@@ -89,7 +89,7 @@ def _likeliest(data: dict[str, Any], problems: list[Any]) -> Any:
 
 
 def explain(path: object, data: dict[str, Any], error: ValidationError, kind: str) -> str:
-    """The sentence about `error` in `data`, which `path` holds; `kind`, "impact" or "scene", is what was expected."""
+    """The sentence about `error` in `data`, which `path` holds; `kind`: the expected table, "impact" or "scene"."""
     other = "scene" if kind == "impact" else "impact"
     if kind not in data and other in data:
         return f"{path} {OTHER_KIND[kind]}"

@@ -53,7 +53,7 @@ class Rolling(Frozen):
 class Between(Frozen):
     """Values of one pair of materials that differ from the common ones; "wall" names the walls.
 
-    restitution: of impacts that do not yield, in place of that of [viscous].
+    restitution: of elastic impacts, in place of the restitution in [viscous].
     """
 
     between: Annotated[list[Name], Field(min_length=2, max_length=2)]

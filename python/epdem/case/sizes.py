@@ -73,7 +73,7 @@ def number_in(path: Path, line: int, name: str, text: str) -> float:
 
 
 class _Limits(Frozen):
-    """Radii between two limits [m], in so many classes of one radius each."""
+    """Radii between two limits [m], in `classes` classes of one radius each."""
 
     start: Length = Field(alias="from")
     to: Length
@@ -177,7 +177,7 @@ def _table(value: object, info: ValidationInfo) -> tuple[tuple[float, float], ..
 
 
 class Sieve(Frozen):
-    """A sieve table: what is retained on an opening has the diameter halfway to the next larger opening."""
+    """A sieve table: spheres retained on an opening have the diameter halfway to the next larger opening."""
 
     sieve: Annotated[tuple[tuple[float, float], ...], BeforeValidator(_table)]
 

@@ -146,7 +146,7 @@ class BoxWall(MeshWall):
 class _Round(MeshWall, ABC):
     """A wall about an axis, from one place along it to another; `center`: the two other coordinates.
 
-    ends: which ends a disc closes. angular_velocity: that of the surface about the axis. The wall is a body of
+    ends: the ends that a disc closes. angular_velocity: of the surface about the axis. The wall is a body of
     revolution, so that its triangles stay where they are.
     """
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Values that no law forbids and that are most often a mistaken unit, in words."""
+"""Sentences on values that are possible and most often have a wrong unit."""
 
 from collections.abc import Iterator, Mapping
 

@@ -59,8 +59,8 @@ def impacts_table(plan: Plan, measured: Measured) -> pd.DataFrame:
 def compare(engine: str, law: str, impacts: pd.DataFrame, prediction: Prediction, check: Check) -> pd.DataFrame:
     """One row per speed: means over the phases, theory, errors (max over the phases), and whether all checks hold.
 
-    An error is relative to theory; that of the residual overlap is relative to overlap_max (it is 0 below yield), those
-    of the quantities of oblique impacts are absolute. Bodies that stick (`stuck` of the phases) have e_n = 0; if theory
+    An error is relative to theory; the error of the residual overlap is relative to overlap_max (theory is 0 below
+    yield), errors of oblique quantities are absolute. Bodies that stick (`stuck` of the phases) have e_n = 0; if theory
     says so, too, there is no end to compare.
     """
     n, rebound = prediction.speed.size, prediction.rebound

@@ -25,7 +25,7 @@ EPS = float(np.finfo(float).eps)
 class Trajectory:
     """Samples of n impacts, every step; arrays of shape (n, samples), SI. Force and overlap belong together.
 
-    overlap [m] is negative while apart, force [N] is never negative, velocity [m/s] is that of approach.
+    overlap [m] is negative while apart, force [N] is never negative, velocity [m/s] is positive on approach.
     NaN after the end of an impact. `seconds` is the engine's own account of its time. tangential: velocity [m/s] of the
     centres against each other after oblique impacts, spin: of the body then [rad/s], shape (n,).
     """
@@ -75,10 +75,10 @@ class Engine(Protocol[Job, Result]):
         """None if the engine can run here, else a sentence with the command that installs it."""
 
     def version(self) -> str:
-        """One line: the engine's version, and that of our part in it."""
+        """One line: the version of the engine and of epdem's part in it."""
 
     def check(self, job: Job) -> list[str]:
-        """What the engine leaves out or replaces, in words. Raises CaseError for a job that the engine cannot run."""
+        """Sentences on what the engine leaves out or replaces. Raises CaseError for a job that it cannot run."""
 
     def write(self, job: Job, folder: Path) -> list[Path]:
         """Write the deck and its data files into `folder`, where they run without epdem; their paths, the deck first.
@@ -159,7 +159,7 @@ def check_features(tool: ImpactEngine, x: Experiment) -> None:
 def refuse(tool: ImpactEngine, plan: Plan, prediction: Prediction, *, ranks: int = 1) -> None:
     """Raise CaseError if `tool` cannot run `plan` as it is, EngineError if its ranks cannot be started.
 
-    `prediction` is that of the plan's experiment.
+    `prediction` belongs to the plan's experiment.
     """
     refuse_ranks(tool.name, tool.ranks, ranks)
     tool.check(plan)

@@ -157,8 +157,8 @@ def pair_of(numbers: LawNumbers, body: Body, target: Body) -> LawSpec:
 def rated(spec: LawSpec, rate: Rate, body: Body, target: Body, speed: float) -> LawSpec:
     """The law with its strengths at the strain rate of an impact at `speed` [m/s], 0.2 v/a at its largest a.
 
-    (Johnson 1985, section 11.5: strains are 0.2 a/R.) One strength serves all speeds of a case: the rate is that of the
-    middle one, and a tenfold speed changes the factor by 3 % at a sensitivity of 0.012.
+    (Johnson 1985, section 11.5: strains are 0.2 a/R.) One strength serves all speeds of a case: the rate belongs to the
+    median speed, and a tenfold speed changes the factor by 3 % at a sensitivity of 0.012.
     """
     if law_named(spec.name).strength is None:
         return spec

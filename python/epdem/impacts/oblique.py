@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Oblique impacts of solid spheres in a plane: what they have beside normal ones, and their rebound.
+"""Oblique impacts of solid spheres in a plane: tangential velocities, spins and their rebound.
 
 Angles are measured from the normal, and speeds are along it. A spin is positive as friction turns the body. psi is the
 velocity of the surfaces against each other, over the speed, times kappa/mu (Maw, Barber and Fawcett 1976).
@@ -36,7 +36,7 @@ class Rebound:
         return {f.name: getattr(self, f.name) for f in fields(self)}
 
     def regimes(self, friction: float) -> np.ndarray:
-        """The kind of each impact, in words."""
+        """The regime of each impact: sliding, sticking or partial slip."""
         slides = np.abs(self.impulse_ratio) > (1 - SLIDING) * friction
         return np.where(slides, "sliding", np.where(np.abs(self.psi_1) < 1, "sticking", "partial slip"))
 

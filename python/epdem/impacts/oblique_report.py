@@ -14,7 +14,7 @@ HEADS += ["f/mu", "regime", "rebound", "spin", "pass"]
 
 
 def run_table(outcome: Outcome, rows: pd.DataFrame) -> Table:
-    """One row per speed, angle, spin and engine of `rows`; the regime is that of theory."""
+    """One row per speed, angle, spin and engine of `rows`; the regime is predicted by theory."""
     friction = outcome.case.contact.friction if outcome.case.contact else 0.0
     shown = table(outcome.case.case.title, HEADS, left=("engine", "regime"))
     regimes = {law: p.rebound.regimes(friction) for law, p in outcome.predictions.items() if p.rebound}

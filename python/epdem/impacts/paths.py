@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Chosen impacts of a trajectory, step by step: what is kept of it, to be looked at."""
+"""Chosen impacts of a trajectory, step by step, for figures."""
 
 import numpy as np
 import pandas as pd

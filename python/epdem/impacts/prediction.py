@@ -32,8 +32,8 @@ class Prediction:
     yields: tuple[str, ...]  # materials that flow somewhere in the range of speeds; law.STRENGTH if it is one for all
     yield_speeds: dict[str, float]  # from which each material yields beneath its surface [m/s], eq. 8.78; inf: never
     rebound: oblique.Rebound | None = None  # of oblique impacts
-    caveats: tuple[str, ...] = ()  # where the law leaves its own domain, in words
-    finite_strain: tuple[str, ...] = ()  # whether contacts leave small strain, in words
+    caveats: tuple[str, ...] = ()  # sentences on impacts outside the law's domain
+    finite_strain: tuple[str, ...] = ()  # sentences on contacts beyond small strain
     observation_time: float = np.nan  # how long bodies that stick are watched [s]; NaN: without adhesion
 
     @property

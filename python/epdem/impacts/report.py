@@ -21,7 +21,7 @@ from .comparison import CHECKED
 from .prediction import Prediction, predict
 from .run import Outcome
 
-# columns that a narrow terminal has no room for, those of oblique impacts among them
+# columns that are left out on a narrow terminal, of normal and oblique impacts
 SPARE: tuple[str, ...] = ("steps", "overlap [um]", "F_max [N]", "t_c [us]", "law", "spin", "rebound", "f/mu")
 SPARE += ("spin [rad/s]", "regime", "e_t", "theory", "engine")
 FEW = 10  # impacts of each engine and law in the short table
@@ -72,14 +72,14 @@ def run_json(outcome: Outcome) -> str:
 
 
 def yielding(prediction: Prediction) -> str:
-    """What yields, in words: materials, or the pair at the strength of all bodies."""
+    """The materials that yield, or the common strength at which the pair yields, as a sentence."""
     if prediction.yields and prediction.yields[0].startswith("law."):
         return f"the pair yields at {prediction.yields[0]}"
     return f"yields: {', '.join(prediction.yields)}" if prediction.yields else "nothing yields"
 
 
 def chosen(outcome: Outcome, full: bool) -> pd.DataFrame:
-    """The rows to be shown: all, or those of FEW impacts over the whole range and of every engine and law."""
+    """The printed rows: all, or FEW impacts over the whole range of every engine and law."""
     rows = outcome.results.comparison
     place = rows.groupby(["law", "engine"]).cumcount()
     if full or place.max() < FEW:
@@ -175,7 +175,7 @@ def show(outcome: Outcome, console: Console, *, full: bool = False) -> None:
 
 
 def mark(outcome: Outcome, *facts: object) -> str:
-    """Hash of the inputs of the runs that an outcome holds, and of `facts`: what a picture or page shows."""
+    """Hash of the inputs of the runs that an outcome holds, and of `facts`, the other contents of a picture or page."""
     runs = sorted((key, run["inputs"]) for key, run in outcome.results.runs.items())
     shown = (runs, outcome.case.measured, facts)
     return hashlib.sha256(repr(shown).encode()).hexdigest()

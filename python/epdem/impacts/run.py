@@ -63,7 +63,7 @@ class Stage:
 def run_plan(p: Plan, tool: ImpactEngine, folder: Path, *, ranks: int = 1, end_power: float | None = None) -> Stage:
     """Write a plan's deck into `folder`, run it and measure it.
 
-    `end_power` as in `measure`, for an engine with a law of its own. Raises EngineError, and CaseError for what the
+    `end_power` as in `measure`, for an engine with its own law. Raises EngineError, and CaseError for what the
     engine cannot do.
     """
     start = time.perf_counter()
@@ -88,7 +88,7 @@ def run_and_compare(
 ) -> tuple[pd.DataFrame, Stage]:
     """`run_plan`, and its impacts compared with their prediction: one row per speed.
 
-    `law` is the name in the rows (None: that of the plan).
+    `law` is the name in the rows (None: the plan's law).
     """
     stage, x = run_plan(p, tool, folder, ranks=ranks, end_power=end_power), p.experiment
     return compare(tool.name, law or x.law.name, stage.impacts, prediction, x.check), stage
@@ -123,7 +123,7 @@ def _stored(path: Path) -> store.Results:
 
 
 def _beside_earlier(results: store.Results, old: store.Results) -> store.Results:
-    """The results to store: these, and those of other engines and laws from earlier runs of the same case."""
+    """These results, with results of other engines and laws from earlier runs of the same case."""
     if old.case_text != results.case_text:
         return results
     keep = [key for key in old.runs if key not in results.runs]
@@ -208,7 +208,7 @@ def run_case(
 ) -> Outcome:
     """Run a case on every engine with every law (none given: the case's own). Raises CaseError or EngineError.
 
-    `text` is stored with the results, `place` names the case in messages. `fresh` runs again what is stored; `force`
+    `text` is stored with the results, `place` names the case in messages. `fresh` ignores stored results; `force`
     allows a folder in which there are other files. All input is checked and every engine looked for before anything
     is written or started.
     """

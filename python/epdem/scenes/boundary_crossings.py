@@ -26,7 +26,7 @@ def _faces(region: Region, free: float) -> tuple[FloatArray, FloatArray]:
 
 
 def _remains(triangle: FloatArray, normals: FloatArray, distances: FloatArray) -> bool:
-    """Whether a part of a triangle lies below all faces: they cut off what is beyond, one after another."""
+    """Whether a part of a triangle lies below all faces; each face in turn cuts off the part beyond it."""
     polygon = triangle
     for normal, distance in zip(normals, distances, strict=True):
         height = polygon @ normal - distance

@@ -101,7 +101,7 @@ def energy_balance(outcome: SceneOutcome) -> Chart:
         series.append(Series("work", time, table["work"].to_numpy(), INK, "dash"))
     if "friction" not in table or "springs" in table:
         series.append(Series("balance", time, table["balance"].to_numpy(), GREY))
-    alt = "Terms of the energy balance against time; gravity is above its lowest value, work is that of the walls."
+    alt = "Terms of the energy balance against time; gravity is above its lowest value, work is done by the walls."
     if "friction" in table and "springs" not in table:
         alt += " Friction is the remainder of the balance."
     return Chart(

@@ -22,7 +22,7 @@ CHECKS = {  # the unit of value and expected; what passes
     "spheres_in_room": Quantity("", "all spheres are in the room at the end"),
     "floor_load": Quantity("N", "the floor load is the weight of the spheres (smooth walls: hydrostatic)"),
     "rebound_of_the_bed": Quantity("m", "the bed rises by at most e_n^2 times its fall"),
-    "mass_flow": Quantity("kg/s", "the mass flow is that of Beverloo's formula"),
+    "mass_flow": Quantity("kg/s", "the mass flow agrees with Beverloo's formula"),
     "rebound_speed": Quantity("m/s", "{count} shots that hit the plate alone leave it with e_n v"),
     "loading_stiffness": Quantity("N/m", "loading is at most as stiff as unloading"),
     "recovered_work": Quantity("J", "the plate recovers at most the work that it did"),
@@ -65,10 +65,10 @@ def floor_load(case: SceneCase, tables: dict[str, pd.DataFrame]) -> tuple[float,
 
 
 def bed_rebound(case: SceneCase, spheres: pd.DataFrame) -> tuple[float, float]:
-    """(largest rise of the centre of mass from a place below, what e_n of theory allows: e_n^2 times its fall) [m].
+    """(largest rise of the centre of mass above an earlier minimum, largest rise by theory: e_n^2 times its fall) [m].
 
-    e_n is that of the bounciest pair at the speed of the fall. Spheres that land one after the other, and each impact
-    within the bed, only take from it: e_n^2 v^2 is concave in v^2, so that a mean over falls is below that of the mean.
+    The pair with the largest e_n at the speed of the fall gives e_n. Landing one after the other and impacts within the
+    bed only reduce the rise: e_n^2 v^2 is concave in v^2, so that its mean over falls is below its value at the mean.
     """
     present = spheres.groupby("step")["id"].count()
     whole = spheres[spheres["step"].isin(present.index[present == present.max()])]
@@ -203,9 +203,9 @@ def _of_compaction(p: ScenePlan, tables: dict[str, pd.DataFrame]) -> list[Row]:
 
 
 def _of_parts(p: ScenePlan, tables: dict[str, pd.DataFrame]) -> list[Row]:
-    """Walls bear the weight of a bed at rest: where its energy is far below that of a fall by a radius.
+    """Walls carry the weight of a bed at rest, whose energy is far below the energy of a fall by a radius.
 
-    Not where something else may bear it: a wall whose force is not in the rows, a sphere that stays where it is.
+    No check where other bodies may carry the weight: a wall whose force is not in the rows, a frozen sphere.
     """
     there = {w.name for w in p.scene.planes} | {*p.scene.meshes, *p.phases[-1].gates}
     known = there <= {*p.loads} and not any(s.frozen for s in p.scene.table)

@@ -91,7 +91,7 @@ def unit_of_load(column: str) -> str | None:
 
 
 def units(table: pd.DataFrame) -> dict[str, str]:
-    """The unit of each column of a table that has one; `attrs["units"]` has those of measures."""
+    """The unit of each column of a table that has one; `attrs["units"]` has the units of measures."""
     found: dict[str, str] = {}
     for name in map(str, table):
         dent = "m" if name.startswith("delta_max_") else None  # of a flat wall NAME

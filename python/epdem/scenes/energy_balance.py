@@ -45,8 +45,8 @@ def plate_velocity(p: ScenePlan, rows: pd.DataFrame) -> np.ndarray:
 
 
 def _left(spheres: pd.DataFrame, steps: np.ndarray) -> np.ndarray:
-    """Energy [J] that spheres took along which were gone at each step: kinetic, plastic, lost by adhesion, rubbed, as
-    last seen."""
+    """Energy [J] of the spheres that left before each step, from their last frame: kinetic, plastic, adhesive and
+    friction."""
     energy = kinetic(spheres) + rotation(spheres)
     for name in ("plastic_work", "adhesive_work", "friction_work"):
         energy = energy + spheres.get(name, 0.0)
@@ -62,12 +62,12 @@ def _left(spheres: pd.DataFrame, steps: np.ndarray) -> np.ndarray:
 def energy_balance(p: ScenePlan, tables: dict[str, pd.DataFrame]) -> pd.DataFrame:
     """One row per frame [J]: kinetic, gravity, elastic, plastic, work done by walls, left, and the balance.
 
-    With friction or rolling also rotation, the energy of spins; with adhesion what its jumps took, and `elastic` holds
-    the surface energy, too.
+    With friction or rolling also rotation; with adhesion the work lost by jumps, and `elastic` includes the surface
+    energy. With partial slip also friction, the work of friction, and springs, the elastic energy of the springs.
 
-    With partial slip also friction, the work that it took, and springs, the elastic energy of its springs. The balance
-    is what these leave unexplained since the first frame with all spheres; it must vanish unless contacts roll, have
-    dashpots, or rub with one spring: then it is the work of these, and `friction` stands for it where none is computed.
+    The balance is the sum of all energies less the work of walls, relative to the first frame with all spheres. The
+    balance vanishes unless contacts have rolling friction, dashpots or a friction spring: then the balance is their
+    work, and `friction` is the negative balance where friction work is not computed.
     """
     spheres, contacts = tables["particles"], tables["contacts"]
     steps = np.sort(spheres["step"].unique())

@@ -46,18 +46,18 @@ def drawn(case: SceneCase, parts: list[Particles]) -> list[tuple[str, float, flo
 
 
 def mean_volume(case: SceneCase, fill: Insertion) -> float:
-    """Of a sphere of a fill [m^3]."""
+    """Mean volume of the spheres of a fill [m^3]."""
     sizes = drawn(case, fill.particles)
     return float(np.average([4.0 / 3.0 * math.pi * r**3 for _, r, _ in sizes], weights=[w for _, _, w in sizes]))
 
 
 def _volume(case: SceneCase, fill: Insertion) -> float:
-    """Of the spheres that are there at once [m^3]: all, or those of one interval of a stream."""
+    """Volume of the spheres that are inserted at once [m^3]: all spheres, or one interval of a stream."""
     return mean_volume(case, fill) * (fill.count if fill.rate is None else min(fill.rate * fill.period, fill.count))
 
 
 def refuse_too_many(case: SceneCase, fills: Iterable[Insertion]) -> None:
-    """Raises CaseError for more spheres at once than the room takes that they are put into."""
+    """Raise CaseError for fills with more spheres at once than their region takes."""
     for key, group in groupby(fills, key=lambda fill: fill.key):
         together = list(group)
         first, count = together[0], sum(fill.count for fill in together)

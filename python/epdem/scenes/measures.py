@@ -143,7 +143,7 @@ def _flow(p: ScenePlan, m: Flow, spheres: pd.DataFrame, steps: np.ndarray) -> Fl
     beyond = (sign * (place - m.at) > 0).to_numpy(bool) & there
     passed = beyond | (seen & ~there)
     new = np.diff(passed.astype(int), axis=0)
-    new[~seen[:-1] & seen[1:]] = 0  # what comes beyond the plane has not passed it
+    new[~seen[:-1] & seen[1:]] = 0  # a sphere that is inserted beyond the plane has not passed the plane
     flow = (new * mass.to_numpy()).sum(axis=1) / np.diff(p.time_at(steps))
     return np.concatenate([[0.0], flow])
 

@@ -28,10 +28,10 @@ class Type:
 class Model:
     """What a contact is made of; numbers of types begin at 1.
 
-    parameters: the law's dimensionless ones. wall_types: of each material of a wall; that of the scene's walls is "",
-    too. friction: of each pair of types, by the model `tangential`. viscous: restitution of impacts that do not yield,
-    of each pair; tangential_restitution: of the dashpot beside the tangential spring.
-    cohesion: energy density [J/m^3]. adhesion: work of adhesion of each pair of types [J/m^2], of laws with adhesion.
+    parameters: dimensionless parameters of the law. wall_types: the type of each wall material; the key "" stands for
+    the material of the scene's walls. friction: of each pair of types, by the model `tangential`. viscous: restitution
+    of elastic impacts of each pair; tangential_restitution: of the dashpot beside the tangential spring. cohesion:
+    energy density [J/m^3]. adhesion: work of adhesion of each pair of types [J/m^2], of laws with adhesion.
     """
 
     law: str

@@ -161,7 +161,7 @@ def _until(p: ScenePlan, step: int) -> list[tuple[dict[str, Move], float]]:
 def before(p: ScenePlan, path: Path) -> int:
     """Draw walls, regions to be filled and the first spheres of a scene into the PNG file `path`.
 
-    Returns the number of spheres in it: those of regions only if there are few enough to be placed at once. Raises
+    Returns the number of drawn spheres; spheres of regions are drawn only if few enough to be placed at once. Raises
     CaseError for an ending that no picture has.
     """
     fig, axis = _frame(p.case.case.title, _corners(p.box))

@@ -36,7 +36,7 @@ def _somewhere(region: Region, radius: float, rng: random.Random) -> tuple[float
 
 
 def spheres(p: ScenePlan) -> FloatArray:
-    """(n, 5) x, y, z, radius [m], type of all spheres of the first phase: those of the table, then each fill's.
+    """(n, 5) x, y, z, radius [m], type of all spheres of the first phase: spheres of the table, then of each fill.
 
     Random sequential placement, every sphere wholly in the region of its fill. The same case has the same places
     everywhere. Raises CaseError when full.

@@ -63,7 +63,7 @@ class Phase:
 
 @dataclass(frozen=True)
 class ScenePlan:
-    """What an engine runs, and what its tables are made from.
+    """The job of an engine, from which its tables are made as well.
 
     scene: the parts, of which a scene of each kind consists. triangles: of each wall that is not a plane, at the start,
     shape (n, 3 corners, 3 coordinates) [m]. loads: walls whose force, and if they are meshes torque, is in the rows.
@@ -111,7 +111,7 @@ class ScenePlan:
         return replace(self, phases=tuple(phases))
 
     def frame_steps(self, every: int) -> list[int]:
-        """The steps of the frames that are written each so many steps: those of phases that are recorded."""
+        """The steps of frames written every `every` steps, in recorded phases only."""
         begins = [0, *(phase.end for phase in self.phases)]
         recorded = [(begin, phase.end) for begin, phase in zip(begins, self.phases, strict=False) if phase.case.record]
         return [n for n in range(0, self.steps + 1, every) if any(low <= n <= high for low, high in recorded)]
@@ -241,7 +241,7 @@ def _phases(scene: Parts, rows: int, every: int, dt: float) -> tuple[Phase, ...]
 
 
 def _divisor(n: int, parts: int) -> int:
-    """The largest divisor of n that leaves at least `parts` parts (1 if there is none)."""
+    """The largest divisor d of n with n/d >= `parts`; 1 if no such divisor exists."""
     return next(d for d in range(max(1, n // parts), 0, -1) if n % d == 0)
 
 

@@ -19,7 +19,7 @@ class DrawnFill(Fill):
 
 
 class Preset(Parts):
-    """The parts of a kind of scene; `bounds`: fall_height [m] and drive [m/s], closer than those of any parts."""
+    """The parts of a kind of scene; bounds: fall_height [m] and drive [m/s], below the bounds of Parts."""
 
     bounds: tuple[float, float]
 

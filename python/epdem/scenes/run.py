@@ -29,7 +29,7 @@ from .plan import NOT_REACHED, ScenePlan, plan
 from .timestep import leading_impact
 from .warnings import measured_warnings, planned_warnings
 
-Progress = Callable[[int, int], None]  # (step, of so many)
+Progress = Callable[[int, int], None]  # (step, steps of the run)
 
 
 @dataclass
@@ -58,7 +58,7 @@ class SceneOutcome:
 
 @dataclass(frozen=True)
 class _Work:
-    """A checked case: what is to run, on what."""
+    """A checked case with its plan, engine and files."""
 
     text: str  # of the case
     plan: ScenePlan
@@ -76,7 +76,7 @@ class _Work:
 
     @cached_property
     def inputs(self) -> str:
-        """Hash of all that a result depends on: the case, every file for the engine, its version, all of ours."""
+        """Hash of all inputs of a result: case, files for the engine, version of the engine, sources of epdem."""
         facts = (self.plan.case, sorted(self.files.items()), self.engine.name, self.engine.version(), self.ranks)
         return inputs_hash([], *facts)
 
@@ -129,7 +129,7 @@ def run_case(
 ) -> SceneOutcome:
     """Run a scene, or continue it from its last restart file. Raises CaseError, EngineError.
 
-    `text` is stored with the results, `place` names the case in messages. `fresh` runs again what is stored; `force`
+    `text` is stored with the results, `place` names the case in messages. `fresh` ignores stored results; `force`
     allows a folder in which there are other files. All input is checked and the engine looked for before anything is
     written or started.
     """

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""STL files of walls: read, scaled, rotated, moved; what is wrong with one is found before a run."""
+"""STL files of walls: read, scaled, rotated, moved; an invalid file is refused before a run."""
 
 import io
 import math

@@ -80,7 +80,7 @@ def _time_steps(p: ScenePlan) -> list[str]:
 
 
 def _phases(p: ScenePlan) -> list[str]:
-    """Phases that are longer or shorter than asked for, because they end with a row."""
+    """Phases that are longer or shorter than requested, because a phase ends with a row."""
     found = []
     for times, phase in zip(p.phase_table.to_dict("records"), p.scene.phase, strict=True):
         seconds = times["end_time"] - times["begin_time"]

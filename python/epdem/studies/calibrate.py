@@ -19,7 +19,7 @@ from ..theory.backbones import JKR, LAWS
 from ..theory.numerics import bisect
 
 KGF_PER_MM2 = 9.80665e6  # Pa
-VICKERS_FACETS = 2 / 1.8544  # area of the facets of a Vickers indentation over that of its projection, 1/sin(136 deg/2)
+VICKERS_FACETS = 2 / 1.8544  # area of the facets of a Vickers indentation over its projected area, 1/sin(136 deg/2)
 # mean pressure of full plasticity over the yield stress (Tabor 1951)
 TABOR = LAWS["thornton"].declaration().default_ratio
 LEAST_STRENGTH = 1e-8  # of E*; the largest is E* itself
@@ -106,7 +106,7 @@ def _unknown(path: Path) -> _Unknown:
 
 
 def experiment(path: Path, found: Calibration) -> Experiment:
-    """The impact of the case with the strength that was found, at the measured speed or at that of first yield."""
+    """The impact of the case with the strength that was found, at the measured speed or at the speed of first yield."""
     return _unknown(path).experiment(found.value, found.speed or found.yield_speed)
 
 

@@ -39,7 +39,7 @@ SMALLEST = 1e-3  # step of the optimiser, as a share of a key's range
 
 @dataclass(frozen=True)
 class Fit:
-    """The values of the free keys as a case file has them, what they give, and the point of the sweep that shows it.
+    """The found values of the free keys as in a case file, the numbers at these values, and the point of the sweep.
 
     `numbers` and `targets` are in SI, of these `units` ("": none); `ran` counts the scenes that ran just now, `points`
     all that the fit needed.
@@ -54,7 +54,7 @@ class Fit:
     points: int
 
     def _repr_html_(self) -> str:
-        """In a notebook it shows what was found."""
+        """The found values as a table, for a notebook."""
         cells = [*self.values.items()]
         cells += [(name, f"{value:.6g} {self.units[name]}") for name, value in self.numbers.items()]
         rows = "".join(f"<tr><th>{html.escape(name)}</th><td>{html.escape(str(v))}</td></tr>" for name, v in cells)
@@ -174,7 +174,7 @@ def fit_text(
     base = study.plan_text(text, {name: [axis.at(0.5)] for name, axis in ranges.items()}, engines=[engine], ranks=ranks)
     folder = results_folder(Path(out) if out else None, f"{base.name}_fit")
     search = _Search(base, folder, ranges, targets, jobs=jobs, force=force, report=report)
-    search([middle])  # what it has tells whether the targets exist
+    search([middle])  # its results show whether the targets exist
     _refuse_insensitive(search, middle, tolerance)
     _solve(search, tolerance)
     errors = np.abs(search([np.array(s) for s in search.shares])).max(axis=1)
@@ -249,7 +249,7 @@ def _changes_sign(search: _Search, low: float, high: float) -> bool:
 
 
 def _missed(search: _Search, values: Point, numbers: dict[str, float]) -> str:
-    """What the targets are, what was reached, and where."""
+    """The targets, the numbers that were reached, and the nearest point."""
     said = []
     for name, target in search.targets.items():
         reached = [found[name] for found in search.found]

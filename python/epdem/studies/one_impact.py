@@ -18,7 +18,7 @@ NAMES = ("e_n", "contact_time", "force_max", "overlap_max", "residual_overlap", 
 
 
 def one_impact(material: str, *, radius: float, speed: float, adhesion: float | None = None) -> dict[str, Any]:
-    """A sphere of a material of ours, of `radius` [m], at `speed` [m/s]; both > 0. Raises CaseError.
+    """A sphere of `radius` [m], of a material in the materials file, at `speed` [m/s]; both > 0. Raises CaseError.
 
     SI: the impact; E* and m*; pressure and depth of first yield; the yield speeds v_y0 and v_y, at which p_0 is
     `first` Y and p_m is `plastic` Y; in `laws` the numbers NAMES of each law. With a work of `adhesion` > 0 [J/m^2] the

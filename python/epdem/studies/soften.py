@@ -127,7 +127,7 @@ def strain_ratio(data: dict[str, Any], path: Path) -> float:
 
 
 def _loads(data: dict[str, Any], path: Path, factor: float) -> list[str]:
-    """Warnings of forces that do not scale as those of impacts do."""
+    """Warnings of forces that do not scale as impact forces."""
     from ..case import scene as scenes
 
     scene, fall = data.get("scene", {}), factor**FORCE_POWER

@@ -24,7 +24,7 @@ from . import folder as store
 from .folder import Sweep
 from .numbers import numbers_of
 
-FULL = 1 << 16  # bytes; with less of the disk left, whatever failed has failed for want of them
+FULL = 1 << 16  # bytes; with less free space on the disk, a failure is a full disk
 
 
 def check(sweep: Sweep, number: int) -> CaseError | None:
@@ -44,7 +44,7 @@ def check(sweep: Sweep, number: int) -> CaseError | None:
 
 
 def evaluate(sweep: Sweep, folder: Path, number: int, *, resume: bool = True) -> str:
-    """Run a point and store what came of it; the reason why it failed, or "".
+    """Run a point and store its results; returns the reason of a failure, or "".
 
     Raises OSError if results cannot be stored, and whatever stops the process; the point is then as if it had not run,
     except that a scene with restart files goes on from them.
@@ -55,7 +55,7 @@ def evaluate(sweep: Sweep, folder: Path, number: int, *, resume: bool = True) ->
         rows = _scene(sweep, place, resume=resume) if sweep.scene else _impacts(sweep, number, place)
     except OSError:
         raise
-    except Exception as error:  # whatever it is, the other points run
+    except Exception as error:  # of any kind: the other points run
         if shutil.disk_usage(place).free < FULL:
             raise OSError(errno.ENOSPC, "no space left on the disk", str(place)) from None
         reason = str(error) if isinstance(error, EpdemError) else f"{type(error).__name__}: {error}"

@@ -59,13 +59,13 @@ class Sweep:
 
     @cached_property
     def units(self) -> dict[str, str | None]:
-        """The SI unit of each key that the points set; None for what is no quantity."""
+        """The SI unit of each key that the points set; None for a key that is no quantity."""
         keys = keys_of(self.tables)
         return {name: keys[name].unit for point in self.points[:1] for name in point}
 
     @property
     def default_folder(self) -> Path:
-        """Where its points are if nobody names a folder."""
+        """The default folder of its points."""
         return results_folder(None, f"{self.name}_sweep")
 
     @cached_property
@@ -106,7 +106,7 @@ class Sweep:
         )
 
     def place(self, number: int) -> str:
-        """The point in words, for messages."""
+        """The number and keys of a point, for messages."""
         settings = ", ".join(f"{key} = {shorten(str(value))}" for key, value in self.points[number - 1].items())
         return f"point {number} ({settings})"
 
@@ -173,7 +173,7 @@ def records(sweep: Sweep, folder: Path) -> list[dict[str, Any]]:
 
 
 def begin(sweep: Sweep, folder: Path, number: int) -> dict[str, Any]:
-    """Make a point's folder, write its case, and mark it as running; what is to be given to `end`."""
+    """Make a point's folder, write its case, and mark it as running; returns the record that `end` takes."""
     place = of(sweep, folder, number)
     place.mkdir(parents=True, exist_ok=True)
     (place / FINISHED).unlink(missing_ok=True)
@@ -215,12 +215,12 @@ def end(
 
 
 def forget(sweep: Sweep, folder: Path, number: int) -> None:
-    """Remove what is stored of a point's end."""
+    """Remove the stored result of a point."""
     (of(sweep, folder, number) / FINISHED).unlink(missing_ok=True)
 
 
 def to_do(sweep: Sweep, folder: Path, *, retry_failed: bool) -> list[int]:
-    """The numbers of the points that are to run: whatever is not finished; one of a kind where points are alike."""
+    """The numbers of the points to run: all unfinished points, once where points are equal."""
     done = (DONE,) if retry_failed else (DONE, FAILED)
     wanted = [n for n, about in enumerate(records(sweep, folder), start=1) if about["state"] not in done]
     return list({sweep.identities[n - 1]: n for n in reversed(wanted)}.values())[::-1]

@@ -124,7 +124,7 @@ def _rivals(key: str, data: dict[str, Any]) -> tuple[str, ...]:
 
 
 def assign(document: Any, key: str, value: Any) -> None:
-    """Set `key` in a TOML document or plain tables; tables that are missing are made, what it replaces is removed."""
+    """Set `key` in a TOML document or plain tables; missing tables are made, rival keys are removed."""
     *way, last = key.split(".")
     for rival in _rivals(key, document):
         table, name = rival.rsplit(".", 1)

@@ -115,7 +115,7 @@ def _work(function: Callable[[Any], Any], pipe: Connection, others: list[Connect
     stopping.listen(signal.SIGTERM)
     end_with_parent()  # a parent that is killed cannot
     _keep_memory()
-    for other in others:  # or the end of a pipe would stay open here, and nobody would see that it has ended
+    for other in others:  # an open end of a pipe here would hide that the process has ended
         other.close()
     try:
         while os.getppid() == parent and (item := pipe.recv()) is not None:

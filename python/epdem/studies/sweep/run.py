@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""A sweep from its command to its table: points, checks, what is missing, and who runs it."""
+"""A sweep from its command to its table: points, checks, missing points, executors."""
 
 import tomllib
 from collections.abc import Callable, Iterable, Mapping, Sequence
@@ -24,7 +24,7 @@ from .keys import keys_of
 from .points import Point, Value
 
 Settings = Mapping[str, str | Sequence[Value]]
-Report = Callable[[int, int], None]  # (points that have run, of so many)
+Report = Callable[[int, int], None]  # (points that have run, points of the sweep)
 
 
 @dataclass(frozen=True)

@@ -32,10 +32,10 @@ SILENCE = 600.0  # [s] that Slurm may be without an answer, as while its control
 JOBS = "slurm/jobs.json"
 ENDED = ("COMPLETED", "FAILED", "CANCELLED", "TIMEOUT", "NODE_FAIL", "OUT_OF_MEMORY", "BOOT_FAIL", "DEADLINE")
 Parameters = dict[str, str]
-# What submitit sets by itself and what a point needs to be stopped and queued again in good time.
+# Options that submitit sets itself, and options by which a point is stopped and requeued in time.
 KEPT = ("array", "output", "error", "signal", "open-mode", "job-name")
 SPREAD = ("nodes", "N", "ntasks", "n", "ntasks-per-node")  # one of these: the ranks of a point may lie on several nodes
-TIME = "60"  # [min] walltime of a job if nobody gives another
+TIME = "60"  # [min] default walltime of a job
 WARNING = 90  # [s] from the signal to the end of the walltime; a third of a short one
 
 
@@ -151,7 +151,7 @@ def alive(jobs: Sequence[str]) -> set[str] | None:
 
 
 def ended(job: str) -> str | None:
-    """How a job that `alive` does not name has ended, in words; None if it is between two runs, for it is requeued.
+    """A sentence on the end of a job that `alive` does not name; None if the job is requeued and waits.
 
     Slurm keeps nothing of a task that is cancelled before it begins.
     """
