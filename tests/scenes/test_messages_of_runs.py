@@ -2,7 +2,6 @@
 """What is said of runs that left nothing, or something damaged, and of programs that are not there."""
 
 import shutil
-from dataclasses import replace
 from pathlib import Path
 from types import SimpleNamespace
 
@@ -163,8 +162,8 @@ def test_decks_and_studies(tmp_path, monkeypatch):
         principal([1.0, 2.0, 3.0])
     with says("law cavity: .*no energy created at yield", ValueError):
         Law("cavity", 1e9, 1e6, first_yield_ratio=1.0, plastic_ratio=9.0)
-    steel = one_impact.sourced("steel")
-    soft = replace(steel, material=steel.material.model_copy(update={"yield_stress": None}))
+    steel, source = one_impact.sourced("steel")
+    soft = steel.model_copy(update={"yield_stress": None}), source
     monkeypatch.setattr(one_impact, "sourced", lambda name: soft)
     with says("has no yield stress in the materials file; choose another", CaseError):
         one_impact.one_impact("steel", radius=1.0, speed=1.0)

@@ -98,18 +98,8 @@ def run(
         if fresh and resume:
             raise CaseError(f"{case}: --resume continues a run and --fresh begins it again; leave one out")
         chosen = engine[0] if engine else DEFAULT_ENGINE
-        code = cli_scene.run_scene(
-            case,
-            engine=chosen,
-            out=out,
-            ranks=ranks,
-            fresh=fresh,
-            resume=resume,
-            formats=kinds,
-            force=force,
-            as_json=as_json,
-        )
-        raise typer.Exit(code)
+        how: dict[str, Any] = {"out": out, "ranks": ranks, "fresh": fresh, "resume": resume, "force": force}
+        raise typer.Exit(cli_scene.run_scene(case, engine=chosen, formats=kinds, as_json=as_json, **how))
     refuse(case, "it continues bulk scenes; a run of impacts takes finished stages from its store", resume=resume)
     outcome = cli_impacts.run_impacts(
         case, engines=engine, laws=law, out=out, ranks=ranks, steps=steps, fresh=fresh, formats=kinds, force=force

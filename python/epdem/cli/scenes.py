@@ -4,12 +4,15 @@
 import json
 import sys
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated, Unpack
 
 import typer
 
 from ..base.terminal import bar, console
 from .options import AsJson, CasePath, Replace, refuse, say_files, warn
+
+if TYPE_CHECKING:  # slow to import
+    from ..scenes.run import Options
 
 
 def is_scene(path: Path) -> bool:
@@ -20,18 +23,7 @@ def is_scene(path: Path) -> bool:
     return holds_scene(read_toml(path))
 
 
-def run_scene(
-    case: Path,
-    *,
-    engine: str,
-    out: Path | None,
-    ranks: int,
-    fresh: bool,
-    resume: bool,
-    formats: tuple[str, ...],
-    force: bool,
-    as_json: bool,
-) -> int:
+def run_scene(case: Path, *, engine: str, formats: tuple[str, ...], as_json: bool, **options: Unpack["Options"]) -> int:
     """Run a scene with a progress bar; print its checks. Exit code: 0, or 1 if a check failed."""
     from rich.progress import TextColumn, TimeRemainingColumn
 
@@ -43,16 +35,8 @@ def run_scene(
     tool = scene_engine(engine)
     with bar(TextColumn("{task.completed}/{task.total} steps"), TimeRemainingColumn()) as progress:
         task = progress.add_task(Path(case).stem, total=None)
-        outcome = run(
-            case,
-            tool,
-            out=out,
-            ranks=ranks,
-            fresh=fresh,
-            resume=resume,
-            force=force,
-            report=lambda step, steps: progress.update(task, completed=step, total=steps),
-        )
+        options["report"] = lambda step, steps: progress.update(task, completed=step, total=steps)
+        outcome = run(case, tool, **options)
     report.figures(outcome, formats)
     of_scene(outcome)
     if as_json:

@@ -6,17 +6,7 @@ from pathlib import Path
 
 import pandas as pd
 
-from ..base.tables import (
-    Hdf5,
-    attributes,
-    opened,
-    read_table,
-    read_text,
-    write_attributes,
-    write_csv,
-    write_table,
-    write_text,
-)
+from ..base import tables as h5
 from .comparison import UNITS
 
 
@@ -39,34 +29,34 @@ class Results:
 
 def write(path: Path, results: Results) -> None:
     """Store `results` in the HDF5 file `path` and its comparison as CSV beside it."""
-    stored = Hdf5()
+    stored = h5.Hdf5()
     file = stored.file
-    write_attributes(file, results.attributes)
-    write_text(file, "case", results.case_text)
-    write_table(file.create_group("comparison"), results.comparison, UNITS)
+    h5.write_attributes(file, results.attributes)
+    h5.write_text(file, "case", results.case_text)
+    h5.write_table(file.create_group("comparison"), results.comparison, UNITS)
     for kind, tables in (("impacts", results.impacts), ("predictions", results.predictions), ("paths", results.paths)):
         for key, table in tables.items():
-            write_table(file.create_group(f"{kind}/{key}"), table, UNITS)
+            h5.write_table(file.create_group(f"{kind}/{key}"), table, UNITS)
     for key, about in results.runs.items():
-        write_attributes(file[f"impacts/{key}"], about)
+        h5.write_attributes(file[f"impacts/{key}"], about)
     for key, text in results.decks.items():
-        write_text(file, f"decks/{key}", text)
+        h5.write_text(file, f"decks/{key}", text)
     stored.save(path)
-    write_csv(path.with_suffix(".csv"), results.comparison)
+    h5.write_csv(path.with_suffix(".csv"), results.comparison)
 
 
 def read(path: Path | str) -> Results:
     """The results in an HDF5 file that `write` made. Raises CaseError."""
-    with opened(path, "a results file of epdem") as file:
-        results = Results(read_text(file["case"]), attributes(file), read_table(file["comparison"]))
+    with h5.opened(path, "a results file of epdem") as file:
+        results = Results(h5.read_text(file["case"]), h5.attributes(file), h5.read_table(file["comparison"]))
         for law, group in file.get("predictions", {}).items():
-            results.predictions[law] = read_table(group)
+            results.predictions[law] = h5.read_table(group)
         for law, engines in file.get("impacts", {}).items():
             for engine, group in engines.items():
                 key = f"{law}/{engine}"
-                results.impacts[key] = read_table(group)
-                results.paths[key] = read_table(file[f"paths/{key}"])
-                results.runs[key] = {k: v for k, v in attributes(group).items() if k != "columns"}
+                results.impacts[key] = h5.read_table(group)
+                results.paths[key] = h5.read_table(file[f"paths/{key}"])
+                results.runs[key] = {k: v for k, v in h5.attributes(group).items() if k != "columns"}
                 for name, text in file.get(f"decks/{key}", {}).items():
-                    results.decks[f"{key}/{name}"] = read_text(text)
+                    results.decks[f"{key}/{name}"] = h5.read_text(text)
         return results

@@ -7,17 +7,7 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
-from ..base.tables import (
-    Hdf5,
-    attributes,
-    opened,
-    read_table,
-    read_text,
-    write_attributes,
-    write_csv,
-    write_table,
-    write_text,
-)
+from ..base import tables as h5
 from .columns import units
 
 FILES = "files"  # group of the files that the case names
@@ -45,30 +35,32 @@ class SceneResults:
 
 def write(path: Path, results: SceneResults) -> None:
     """Store `results` in the HDF5 file `path`, its rows as CSV beside it."""
-    stored = Hdf5()
+    stored = h5.Hdf5()
     file = stored.file
-    write_attributes(file, {"kind": "scene", **results.attributes})
-    write_text(file, "case", results.case_text)
+    h5.write_attributes(file, {"kind": "scene", **results.attributes})
+    h5.write_text(file, "case", results.case_text)
     for name, table in results.tables.items():
-        write_table(file.create_group(name), table, units(table))
+        h5.write_table(file.create_group(name), table, units(table))
     for name, text in results.decks.items():
-        write_text(file, f"decks/{name}", text)
+        h5.write_text(file, f"decks/{name}", text)
     group = file.create_group(FILES)
     for n, (name, content) in enumerate((results.files or {}).items()):
         data = np.frombuffer(content, np.uint8)
-        write_attributes(group.create_dataset(str(n), data=data, compression="gzip", fletcher32=True), {"name": name})
+        h5.write_attributes(
+            group.create_dataset(str(n), data=data, compression="gzip", fletcher32=True), {"name": name}
+        )
     stored.save(path)
-    write_csv(path.with_suffix(".csv"), results.tables["rows"])
+    h5.write_csv(path.with_suffix(".csv"), results.tables["rows"])
 
 
 def read(path: Path | str) -> SceneResults:
     """The results in a file that `write` made. Raises CaseError."""
-    with opened(path, "a results file of a scene") as file:
-        results = SceneResults(read_text(file["case"]), attributes(file))
+    with h5.opened(path, "a results file of a scene") as file:
+        results = SceneResults(h5.read_text(file["case"]), h5.attributes(file))
         for name, group in file.items():
             if "columns" in getattr(group, "attrs", {}):
-                results.tables[name] = read_table(group)
-        results.decks = {name: read_text(text) for name, text in file.get("decks", {}).items()}
+                results.tables[name] = h5.read_table(group)
+        results.decks = {name: h5.read_text(text) for name, text in file.get("decks", {}).items()}
         stored = file[FILES].values() if FILES in file else None
-        results.files = None if stored is None else {attributes(x)["name"]: x[()].tobytes() for x in stored}
+        results.files = None if stored is None else {h5.attributes(x)["name"]: x[()].tobytes() for x in stored}
         return results

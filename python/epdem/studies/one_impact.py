@@ -6,7 +6,7 @@ from typing import Any
 
 import numpy as np
 
-from ..case.materials import material as sourced
+from ..case.library import sourced
 from ..errors import CaseError
 from ..impacts.experiment import Experiment, pair_of, plane, sphere
 from ..impacts.prediction import predict
@@ -24,10 +24,10 @@ def one_impact(material: str, *, radius: float, speed: float, adhesion: float | 
     `first` Y and p_m is `plastic` Y; in `laws` the numbers NAMES of each law. With a work of `adhesion` > 0 [J/m^2] the
     laws with adhesion come, too.
     """
-    entry = sourced(material)
-    if (Y := entry.material.yield_stress) is None:
+    properties, source = sourced(material)
+    if (Y := properties.yield_stress) is None:
         raise CaseError(f"--material {material!r} has no yield stress in the materials file; choose another")
-    body, target = sphere(entry.material, radius=radius, name=material), plane(entry.material, name=material)
+    body, target = sphere(properties, radius=radius, name=material), plane(properties, name=material)
     laws = {}
     for name in [*LAWS, *(ADHESIVE if adhesion else [])]:
         law = default_numbers(name)
@@ -36,9 +36,9 @@ def one_impact(material: str, *, radius: float, speed: float, adhesion: float | 
         prediction = predict(x)
         laws[name] = {k: float(getattr(prediction, k)[0]) for k in NAMES}
     plastic, first = LAWS["thornton"].declaration().default_ratio, yielding.FIRST_YIELD_ROUNDED
-    p_0, depth = yielding.first_yield(entry.material.poisson_ratio)
+    p_0, depth = yielding.first_yield(properties.poisson_ratio)
     pair = {"E_star": x.E_star, "R_star": x.R_star, "m_star": x.m_star}
-    found: dict[str, Any] = {"material": material, "source": entry.source, "radius": radius, "speed": speed}
+    found: dict[str, Any] = {"material": material, "source": source, "radius": radius, "speed": speed}
     found |= {"E_star": x.E_star, "m_star": x.m_star}
     found |= {"first_yield_p0_over_Y": float(p_0), "first_yield_depth_over_a": float(depth)}
     speeds = {name: float(yielding.yield_speed(p_y=k * Y, **pair)) for name, k in (("v_y0", first), ("v_y", plastic))}
