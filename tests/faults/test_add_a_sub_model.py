@@ -99,5 +99,5 @@ def test_a_new_model_runs_in_both_loops_with_the_same_bits(launcher, tmp_path, k
 
 
 def test_the_manual_says_what_this_test_does():
-    section = ROOT.joinpath("ARCHITECTURE.md").read_text().split("## Add a model beside a law")[1].split("## ")[0]
+    section = ROOT.joinpath("ARCHITECTURE.md").read_text().split("## Add a sub-model")[1].split("## ")[0]
     assert all(re.search(rf"`{kind}/`", section) for kind in HEADERS) and "`sub_models.hpp`" in section
