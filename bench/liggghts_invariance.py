@@ -17,7 +17,7 @@ from plugin_invariance import Suite  # noqa: E402
 SLIPS = ("ep/thornton ep/partial_slip_2", "ep/cavity ep/partial_slip")  # with another tangential model than history
 MODELS = (*(f"ep/{law}" for law in (*LAWS, *ADHESIVE)), *SLIPS, "hertz", "thornton_ning", "edinburgh")
 
-HEAD = """# One scene in different set-ups
+HEAD = """# Invariance under changes of the set-up
 
 `.venv/bin/python bench/liggghts_invariance.py` writes this page.
 
