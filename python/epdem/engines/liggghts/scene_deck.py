@@ -3,6 +3,7 @@
 
 import math
 from dataclasses import dataclass
+from typing import Any
 
 from ...base import rendering as decks
 from ...case.parts import Sphere
@@ -24,19 +25,17 @@ SKIN = 0.5  # of the smallest radius: rebuilds cost less than idle neighbours
 class Deck:
     """The data of the templates; `row_words`: thermo keywords beside step, atoms and kinetic energy."""
 
+    plan: ScenePlan
     title: str
     source: str
-    summary: str
     kind: str
     hard: bool
     soft: bool
     boundary: str
-    box: tuple[float, ...]
     n_types: int
     skin: float
     own_skin: bool
     processors: str | None
-    types: tuple[str, ...]
     properties: tuple[Property, ...]
     model: str
     tangential: str
@@ -47,23 +46,14 @@ class Deck:
     planes: tuple[DeckPlane, ...]
     meshes: tuple[DeckMesh, ...]
     loads_of: tuple[tuple[int, str, bool], ...]
-    writes_wall_power: bool
     table: tuple[Sphere, ...]
     frozen: tuple[int, ...]
     gravity: float
     insertions: tuple[Insertion, ...]
-    time_step: float
     phases: tuple[DeckPhase, ...]
     open: bool
-    every: int
-    sampling: int
     samples: int
-    frames: int
-    contacts: int
     stress_walls: tuple[tuple[str, str, bool], ...]
-    vtk: int
-    pictures: int
-    restarts: int
     energy: bool
     loads: bool
     spins: bool
@@ -73,13 +63,16 @@ class Deck:
     history_columns: tuple[str, ...]
     contact_columns: tuple[int, ...]
     wall_contact_columns: tuple[int, ...]
-    writes_plastic_work: bool
-    writes_friction_work: bool
-    torque: bool
     row_words: tuple[str, ...]
     from_restart: str | None = None
     resumed_phase: int = 0
     comes: bool = False  # whether the spheres that come with that phase are still to come
+
+    def __getattr__(self, name: str) -> Any:
+        """A number that the plan has by the same name: time_step, every, frames and more."""
+        if name == "plan" or name.startswith("__"):
+            raise AttributeError(name)
+        return getattr(self.plan, name)
 
 
 def _properties(p: ScenePlan) -> tuple[Property, ...]:
@@ -170,19 +163,17 @@ def deck(p: ScenePlan) -> Deck:
     row_words = {"c_ratio[1]": True, "c_ratio[2]": True, "f_load": p.floor_load, "f_press_z": p.plates}
     row_words |= {"f_torque": p.torque, "f_power": p.writes_wall_power}
     return Deck(
+        plan=p,
         title=p.case.case.title,
         source=p.case.case.source,
-        summary=p.summary,
         kind=s.kind,
         hard=max(moduli) > HARD,
         soft=min(moduli) < SOFT,
         boundary="p p f" if p.scene.periodic else "f f f",
-        box=p.box,
         n_types=len(m.types),
         skin=p.case.numerics.skin or default_skin(p),
         own_skin=p.case.numerics.skin is not None,
         processors=" ".join("*" if axis in cut else "1" for axis in "xyz") if cut else None,
-        types=p.types,
         properties=_properties(p),
         model=f"ep/{m.law}",
         tangential=tangential(m.tangential if m.sliding else None),
@@ -193,25 +184,16 @@ def deck(p: ScenePlan) -> Deck:
         planes=planes(p),
         meshes=surfaces(p),
         loads_of=tuple((n, wall_id(p, name), name in p.scene.meshes) for n, name in enumerate(p.loads, 1)),
-        writes_wall_power=p.writes_wall_power,
         table=tuple(p.scene.table),
         frozen=tuple(n for n, sphere in enumerate(p.scene.table, 1) if sphere.frozen),
         gravity=s.gravity,
         insertions=insertions(p),
-        time_step=p.time_step,
         phases=parts(p),
         open=p.ends_early or any(phase.vibrations for phase in parts(p)),
-        every=p.every,
-        sampling=p.sampling,
         samples=p.every // p.sampling,
-        frames=p.frames,
-        contacts=p.contacts,
         stress_walls=tuple(
             (name, wall_id(p, name), bool(p.scene.meshes[name].wear)) for name in wall_stress.stress_walls(p)
         ),
-        vtk=p.vtk,
-        pictures=p.pictures,
-        restarts=p.restarts,
         energy=out.energy,
         loads=out.loads,
         spins=m.spins,
@@ -221,9 +203,6 @@ def deck(p: ScenePlan) -> Deck:
         history_columns=history_columns(m),
         contact_columns=contact_columns(len(history_columns(m)), memory(m)),
         wall_contact_columns=contact_columns(len(history_columns(m)), memory(m, wall=True)),
-        writes_plastic_work=p.writes_plastic_work,
-        writes_friction_work=p.writes_friction_work,
-        torque=p.torque,
         row_words=(*(word for word, asked in row_words.items() if asked), *load_words(p)),
     )
 

@@ -3,6 +3,7 @@
 
 from dataclasses import dataclass
 from itertools import combinations_with_replacement
+from typing import Any
 
 from ...base import rendering as decks
 from ...case.parts import Parts
@@ -52,9 +53,9 @@ class Phase:
 class Deck:
     """Everything that the template writes; every number was decided here."""
 
+    plan: ScenePlan
     title: str
     source: str
-    summary: str
     law: str
     ratios: dict[str, float]
     materials: tuple[Material, ...]
@@ -66,19 +67,19 @@ class Deck:
     high: tuple[float, ...]
     fall: float
     skin: float
-    time_step: float
     phases: tuple[Phase, ...]
     sampling: int
-    every: int
-    frames: int
-    contacts: int
     spins: bool
-    writes_plastic_work: bool
     load: str
     parts: bool
     facets: tuple[Facets, ...]
     loads: tuple[Load, ...]
-    writes_wall_power: bool
+
+    def __getattr__(self, name: str) -> Any:
+        """A number that the plan has by the same name: time_step, every, frames and more."""
+        if name == "plan" or name.startswith("__"):
+            raise AttributeError(name)
+        return getattr(self.plan, name)
 
     @property
     def moving(self) -> bool:
@@ -178,9 +179,9 @@ def deck(p: ScenePlan) -> Deck:
     xlo, xhi, ylo, yhi, zlo, zhi = p.box
     sides = () if p.scene.periodic else ((xlo, xhi), (ylo, yhi))
     return Deck(
+        plan=p,
         title=p.case.case.title,
         source=p.case.case.source,
-        summary=p.summary,
         law=m.law,
         ratios=m.ratios(),
         materials=_materials(p, friction),
@@ -192,7 +193,6 @@ def deck(p: ScenePlan) -> Deck:
         high=(*(high for _, high in sides), zhi),
         fall=-p.case.scene.gravity if p.case.scene.gravity else 0.0,
         skin=p.case.numerics.skin or float(f"{SKIN * p.smallest:.1e}"),
-        time_step=p.time_step,
         phases=tuple(
             Phase(
                 phase.name,
@@ -204,16 +204,11 @@ def deck(p: ScenePlan) -> Deck:
             for phase, begin, end in zip(p.phases, ends[:-1], ends[1:], strict=True)
         ),
         sampling=1 if p.plates or p.writes_wall_power else p.sampling if p.output.loads else p.every,
-        every=p.every,
-        frames=p.frames,
-        contacts=p.contacts,
         spins=m.spins,
-        writes_plastic_work=p.writes_plastic_work,
         load="plate" if p.plates else "floor" if p.floor_load else "",
         parts=_parts(p),
         facets=facets(p) if _parts(p) else (),
         loads=loads(p),
-        writes_wall_power=p.writes_wall_power,
     )
 
 
