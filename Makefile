@@ -1,5 +1,5 @@
 # Each target is one line that calls a script or a tool.
-.PHONY: setup demo test guide browser walltime bench bench-community docs tidy sanitize versions fuzz valgrind reliability tutorials wheel deb trees clean
+.PHONY: setup demo yade test guide browser walltime bench bench-community docs tidy sanitize versions fuzz valgrind reliability tutorials wheel deb trees clean
 
 setup:
 	@scripts/setup
@@ -7,8 +7,13 @@ setup:
 demo: setup
 	.venv/bin/epdem run cases/steel_wall.toml --engine embedded --engine liggghts
 
+# the module epdem_yade for the YADE on PATH; YADE_SOURCE=DIR: source of the same version, else its tag is cloned
+yade:
+	@scripts/yade $(YADE_SOURCE)
+
+# with YADE_SOURCE the tests of epdem_yade run, too
 test:
-	@scripts/setup yade slurmctld slurmd slurm-client munge
+	@scripts/setup yade slurmctld slurmd slurm-client munge $(if $(YADE_SOURCE),libboost-dev libeigen3-dev libpython3-dev)
 	.venv/bin/python -m pytest -n 3 --dist worksteal
 
 # the guide as static pages in runs/guide/site
@@ -38,11 +43,11 @@ bench-community:
 docs: setup
 	.venv/bin/python docs/make.py
 
-# all of C++ but the two sources that repeat kernels/sse2.cpp and the one for the headers of LIGGGHTS-PFM; the wheel of
-# clang-tidy brings its own compiler
+# all of C++ but the two sources that repeat kernels/sse2.cpp and those for the headers of LIGGGHTS-PFM and YADE; the
+# wheel of clang-tidy brings its own compiler
 tidy: setup
-	.venv/bin/clang-tidy --quiet $(filter-out %/avx2.cpp %/avx512.cpp %/pfm/models.cpp, $(wildcard cpp_contact/*/*.cpp \
-	  cpp_contact/*/*/*.cpp tests/*/*.cpp)) -- -std=c++17 -Icpp_contact/include -Icpp_contact -Icpp_contact/capi -Icpp_contact/liggghts \
+	.venv/bin/clang-tidy --quiet $(filter-out %/avx2.cpp %/avx512.cpp %/pfm/models.cpp %/yade/module.cpp, $(wildcard \
+	  cpp_contact/*/*.cpp cpp_contact/*/*/*.cpp tests/*/*.cpp)) -- -std=c++17 -Icpp_contact/include -Icpp_contact -Icpp_contact/capi -Icpp_contact/liggghts \
 	  -Icpp_contact/liggghts/styles -isystem /usr/include/liggghts $(subst -I,-isystem ,$(shell mpicxx --showme:compile)) \
 	  -DOMPI_SKIP_MPICXX -DEPDEM_VERSION='""' -DEPDEM_BUILT_FOR='""'
 

@@ -82,7 +82,8 @@ def test_programs_files_and_commands_of_blocks_that_run_elsewhere_exist():
             }
             known[".venv/bin/python"] = lambda r: all((ROOT / w).exists() for w in r if w.endswith(".py"))
             known["python"] = known[".venv/bin/python"]
-            known |= dict.fromkeys(("epdem-liggghts", "mpirun", "liggghts", "pip", "apt-get"), lambda r: True)
+            others = ("epdem-liggghts", "mpirun", "liggghts", "pip", "apt-get", "cmake", "yade")
+            known |= dict.fromkeys(others, lambda r: True)
             assert known[program](rest), line
             seen += 1
     assert seen >= 15

@@ -123,6 +123,12 @@ inline Number<Law> plastic_work(const Law& law, Number<Law> R_star, Number<Law> 
   return select(yielded, law.work(R_star, reached) - recovered_work(law.E_star, law.load(R_star, reached)), T{});
 }
 
+/// Tangent stiffness 2 E* a [N/m] of a contact of this radius on its elastic branches.
+template <class T>
+inline T normal_stiffness(T E_star, T radius) noexcept {
+  return 2.0 * E_star * radius;
+}
+
 /// Elastic energy [J] of a contact at overlap `delta` after a step; it returns on separation. With a half-ellipse of
 /// pressure it is 0.3 F^2/(E* a) on any branch: 0.4 F times the overlap that is still to be recovered.
 template <class Law>

@@ -51,13 +51,13 @@ def data() -> Path:
 
 
 @cache
-def cpp_sources() -> tuple[Path, Path]:
-    """The folders of the plugin's C++ sources and of the laws' headers: the checkout's, else the installed copies."""
-    host = _first(_PACKAGE.parents[1] / "cpp_contact" / "liggghts", _PACKAGE / "cpp_contact" / "liggghts")
+def cpp_sources(host: str = "liggghts") -> tuple[Path, Path]:
+    """The folders of the C++ sources for a host and of the laws' headers: the checkout's, else the installed copies."""
+    folder = _first(_PACKAGE.parents[1] / "cpp_contact" / host, _PACKAGE / "cpp_contact" / host)
     laws = _first(_PACKAGE.parents[1] / "cpp_contact" / "include", _PACKAGE / "include")
-    if host is None or laws is None:
+    if folder is None or laws is None:
         raise EngineError("C++ sources not found beside the package; install epdem again: pip install .")
-    return host, laws
+    return folder, laws
 
 
 @cache

@@ -33,3 +33,15 @@ def liggghts(
     lacks = sources.check(check) if check else []
     print(json.dumps({"files": written, "lacks": lacks}) if as_json else "\n".join(written + lacks))
     raise typer.Exit(1 if lacks else 0)
+
+
+@app.command()
+def yade(
+    out: Annotated[Path, typer.Option("--out", "-o", help="new folder for the sources")],
+    as_json: AsJson = False,
+) -> None:
+    """Write the sources of the module epdem_yade, which gives YADE the contact laws as C++ classes."""
+    from ..engines.yade import sources
+
+    written = [str(f) for f in sources.write(out)]
+    print(json.dumps({"files": written}) if as_json else "\n".join([*written, "", *sources.commands(out)]))

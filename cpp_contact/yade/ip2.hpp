@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// Ip2_EpMat_EpMat_EpPhys: what two materials have in common.
+#pragma once
+
+#include "contact_phys.hpp"
+
+namespace yade {
+
+class Ip2_EpMat_EpMat_EpPhys : public IPhysFunctor {
+ public:
+  void go(const shared_ptr<Material>& b1, const shared_ptr<Material>& b2,
+          const shared_ptr<Interaction>& contact) override {
+    if (contact->phys) return;
+    try {
+      contact->phys = pair(static_cast<const EpMat&>(*b1), static_cast<const EpMat&>(*b2), *contact);
+    } catch (const std::exception& error) {
+      epdem::in_yade::refuse(std::string("Ip2_EpMat_EpMat_EpPhys: ") + error.what());
+    }
+  }
+
+  FUNCTOR2D(EpMat, EpMat);
+  // clang-format off
+  YADE_CLASS_BASE_DOC_ATTRS(Ip2_EpMat_EpMat_EpPhys, IPhysFunctor,
+    "Makes the :yref:`EpPhys` of two :yref:`EpMat`. Values of pairs are given by :yref:`MatchMaker` or as one number.",
+    ((shared_ptr<MatchMaker>, frictAngle, , , "angle of friction [rad]; default: the smaller of both"))
+    ((shared_ptr<MatchMaker>, en, , , "restitution of the normal dashpot, which acts where nothing yields, in [0.14, 1]; default: no dashpot"))
+    ((shared_ptr<MatchMaker>, es, , , "restitution of the dashpot beside friction, in (0, 1]; default: no dashpot"))
+    ((shared_ptr<MatchMaker>, rollingFriction, , , "coefficient of rolling friction; default: the smaller of both"))
+    ((shared_ptr<MatchMaker>, workOfAdhesion, , , "work of adhesion [J/m^2]; default: by both surface energies")));
+  // clang-format on
+
+ private:
+  static double checked(const char* name, double value, const epdem::in_yade::Range& range, const Interaction& i) {
+    if (!range.holds(value))
+      throw std::invalid_argument(std::string(name) + " of bodies " + std::to_string(i.getId1()) + " and " +
+                                  std::to_string(i.getId2()) + " = " + epdem::in_yade::text_of(value) + ", " +
+                                  range.text());
+    return value;
+  }
+
+  /// The value of a matchmaker, or its default.
+  static double of_pair(const shared_ptr<MatchMaker>& match, const Interaction& i, double v1, double v2, double other) {
+    return match ? (*match)(i.getId1(), i.getId2(), v1, v2) : other;
+  }
+
+  /// 1 or 2: this body is a wall; 0: both are spheres.
+  int wall_of(const Interaction& i) const {
+    const auto kind = [&](Body::id_t id) { return Body::byId(id, scene)->shape->getClassName(); };
+    const auto is_wall = [](const string& s) { return s == "Wall" || s == "Facet" || s == "Box"; };
+    const string first = kind(i.getId1()), second = kind(i.getId2());
+    if (first == "Sphere" && second == "Sphere") return 0;
+    if (second == "Sphere" && is_wall(first)) return 1;
+    if (first == "Sphere" && is_wall(second)) return 2;
+    throw std::invalid_argument("bodies " + std::to_string(i.getId1()) + " (" + first + ") and " +
+                                std::to_string(i.getId2()) + " (" + second +
+                                ") touch, contacts are between spheres or of a sphere with a Wall, Facet or Box");
+  }
+
+  /// Mass of the body that moves [kg], infinite if it is not dynamic.
+  double mass_of(Body::id_t id) const {
+    const Body* body = Body::byId(id, scene).get();
+    if (body->isClumpMember()) body = Body::byId(body->clumpId, scene).get();
+    return body->isDynamic() ? body->state->mass : epdem::in_yade::unlimited;
+  }
+
+  shared_ptr<EpPhys> pair(const EpMat& m1, const EpMat& m2, const Interaction& i) const {
+    namespace iy = epdem::in_yade;
+    const epdem::Elastic e1{m1.young, m1.poisson}, e2{m2.young, m2.poisson};
+    const auto phys = boost::make_shared<EpPhys>();
+    phys->wall = wall_of(i);
+    phys->effectiveModulus = epdem::effective_modulus(e1, e2);
+    phys->effectiveShearModulus = epdem::effective_shear_modulus(e1, e2);
+    const double mass1 = mass_of(i.getId1()), mass2 = mass_of(i.getId2());
+    phys->effectiveMass = std::isinf(mass1) ? mass2 : std::isinf(mass2) ? mass1 : epdem::reduced_finite(mass1, mass2);
+    const double angle =
+        of_pair(frictAngle, i, m1.frictionAngle, m2.frictionAngle, std::min(m1.frictionAngle, m2.frictionAngle));
+    phys->tangensOfFrictionAngle = std::tan(checked("frictAngle", angle, {0.0, std::atan(iy::unlimited), true}, i));
+    phys->en = checked("en", of_pair(en, i, NaN, NaN, 1.0), {epdem::viscous_restitution_min, 1.0, true, true}, i);
+    phys->es = checked("es", of_pair(es, i, NaN, NaN, 1.0), {0.0, 1.0, false, true}, i);
+    const double rolling = of_pair(rollingFriction, i, m1.rollingFriction, m2.rollingFriction,
+                                   std::min(m1.rollingFriction, m2.rollingFriction));
+    phys->rollingFriction = checked("rollingFriction", rolling, {0.0, iy::unlimited, true}, i);
+    for (int k = 0; k < iy::parameter_count; ++k) {
+      if (!iy::is_first(k)) continue;
+      const iy::LawParameter& p = iy::parameters[k];
+      phys->lawValues[k] = p.declared->of_pair
+                               ? of_pair(workOfAdhesion, i, NaN, NaN,
+                                         epdem::adhesive::work_of_adhesion(m1.surfaceEnergy, m2.surfaceEnergy))
+                               : softer(p, m1, m2).lawValues[k];
+    }
+    return phys;
+  }
+
+  /// The body with the lower strength; of equal ones that of the first material, and one without strength.
+  static const EpMat& softer(const epdem::in_yade::LawParameter& p, const EpMat& m1, const EpMat& m2) {
+    if (!p.strength) return m1;
+    const int at = epdem::in_yade::place_of(p.strength);
+    const double s1 = m1.lawValues[at], s2 = m2.lawValues[at];
+    return std::isnan(s2) || s2 < s1 || (s2 == s1 && m2.id < m1.id) ? m2 : m1;
+  }
+};
+REGISTER_SERIALIZABLE(Ip2_EpMat_EpMat_EpPhys);
+
+}  // namespace yade

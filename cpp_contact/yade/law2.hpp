@@ -1,0 +1,254 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// Law2_ScGeom_EpPhys_<Law>: one contact in one step. Motion of the bodies and history in, forces and history out.
+#pragma once
+
+#include "contact_phys.hpp"
+
+namespace yade {
+
+class Law2_ScGeom_EpPhys : public LawFunctor {
+ public:
+  void postLoad(Law2_ScGeom_EpPhys&) {
+    if (partialSlip != 0 && partialSlip != 2 && partialSlip != 3)
+      throw std::invalid_argument(getClassName() + ".partialSlip = " + std::to_string(partialSlip) +
+                                  ", must be 0, 2 or 3");
+    string names;
+    rollingModel_ = -1;
+    epdem::Rollings::each([&](auto model, int place) {
+      names += (place ? ", " : "") + string(model.name);
+      if (rolling == model.name) rollingModel_ = place;
+    });
+    if (rollingModel_ < 0)
+      throw std::invalid_argument(getClassName() + ".rolling = '" + rolling + "', must be one of " + names);
+  }
+
+  // clang-format off
+  YADE_CLASS_BASE_DOC_ATTRS(Law2_ScGeom_EpPhys, LawFunctor,
+    "What the contact laws of :yref:`EpPhys` have in common; a simulation has one of the laws derived from this class. With O.trackEnergy the laws book plasticWork, contactElastic, adhesionLoss and, with partial slip, frictionWork and frictionElastic in O.energy.",
+    ((int, partialSlip, 0, Attr::triggerPostLoad, "friction: 0 one spring of stiffness 8 G* a up to Coulomb's limit (Cundall and Strack 1979), 2 or 3 partial slip of the contact circle by that many nodes"))
+    ((string, rolling, "off", Attr::triggerPostLoad, "rolling friction: off, cdt (constant torque) or epsd2 (spring)"))
+    ((bool, torsion, false, , "whether rolling friction also resists torsion")));
+  // clang-format on
+
+ protected:
+  /// One contact; false: it has ended.
+  template <class Law>
+  bool act(const ScGeom& geom, EpPhys& phys, const Interaction& contact) {
+    if (phys.constantsOf != Law::id) prepare<Law>(phys, contact);
+    if (partialSlip == 3) return act<epdem::PartialSlip<3>, Law>(geom, phys, contact);
+    if (partialSlip == 2) return act<epdem::PartialSlip<2>, Law>(geom, phys, contact);
+    return act<epdem::SlidingSpring, Law>(geom, phys, contact);
+  }
+
+ private:
+  using Vec = epdem::Vec<double>;
+  enum Energy { plastic, elastic, adhesion, friction, friction_elastic, energies };
+
+  template <class Law, class Friction>
+  using ContactHistory = epdem::ContactHistory<Law, Friction>;
+
+  static Vec vec(const Vector3r& v) { return {v[0], v[1], v[2]}; }
+  static Vector3r eigen(const Vec& v) { return Vector3r(v.x, v.y, v.z); }
+
+  /// Copies what stands in the history of a contact to `part`, or back.
+  template <class Part>
+  static void load(const EpPhys& phys, int at, Part& part) {
+    if constexpr (!std::is_empty_v<Part>) std::memcpy(static_cast<void*>(&part), phys.history.data() + at, sizeof part);
+  }
+  template <class Part>
+  static void store(EpPhys& phys, int at, const Part& part) {
+    if constexpr (!std::is_empty_v<Part>) std::memcpy(phys.history.data() + at, &part, sizeof part);
+  }
+  static constexpr int friction_at = epdem::in_yade::law_history,
+                       rolling_at = friction_at + epdem::in_yade::friction_history;
+
+  /// What a step says of itself, for scripts and O.energy.
+  struct Observer {
+    Law2_ScGeom_EpPhys& functor;
+    EpPhys& phys;
+    bool books;
+
+    template <class Law, class State, class Step>
+    void normal(const Law& law, double R_star, const State& before, const Step& now, double overlap) const {
+      phys.contactRadius = now.radius;
+      phys.kn = epdem::normal_stiffness(law.E_star, now.radius);
+      if (!books) return;
+      const auto e = epdem::energies(law, R_star, before, now, overlap);
+      phys.plasticWork += e.plastic_work_step;
+      phys.elasticEnergy = e.stored;
+      phys.adhesionLoss += e.adhesion_loss;
+      functor.book(plastic, e.plastic_work_step);
+      functor.book(elastic, e.stored);
+      functor.book(adhesion, e.adhesion_loss);
+    }
+    template <class Work>
+    void friction(const Work& work) const {
+      if (!books) return;
+      const auto w = work();
+      functor.book(Energy::friction, w.lost);
+      functor.book(friction_elastic, w.stored);
+    }
+    template <class Any>
+    void step(const Any&) const {}
+  };
+
+  /// Constants of the contact from its attributes.
+  template <class Law>
+  void prepare(EpPhys& phys, const Interaction& contact) const {
+    namespace iy = epdem::in_yade;
+    double values[Law::n_parameters + 1];
+    const string bodies = "bodies " + std::to_string(contact.getId1()) + " and " + std::to_string(contact.getId2());
+    for (int k = 0; k < Law::n_parameters; ++k) {
+      const epdem::Parameter& p = Law::parameters[k];
+      values[k] = phys.lawValues[iy::place_of(p.property)];
+      const iy::Range range = iy::range_of(p);
+      if (!range.holds(values[k]))
+        iy::refuse(getClassName() + ": " + p.property + " of " + bodies + " = " + iy::text_of(values[k]) + ", " +
+                   range.text() + " " + p.unit + "; give " + p.property + " to the EpMat of both");
+    }
+    if (!Law::valid(values))
+      iy::refuse(getClassName() + ": the parameters of " + bodies +
+                 " do not go together: " + (Law::condition ? Law::condition : ""));
+    epdem::ContactConstants<Law> pair;
+    pair.law = Law(phys.effectiveModulus, values);
+    pair.shear_modulus = phys.effectiveShearModulus;
+    pair.dashpot = epdem::viscous_number(phys.en);
+    pair.damping = epdem::damping_number(phys.es);
+    pair.rolling_friction = phys.rollingFriction;
+    std::memcpy(phys.constants.data(), &pair, sizeof pair);
+    if (phys.lawId != Law::id) phys.history = {};
+    phys.lawId = phys.constantsOf = Law::id;
+  }
+
+  template <class Friction, class Law>
+  bool act(const ScGeom& geom, EpPhys& phys, const Interaction& contact) {
+    const bool rolls = rolls_with_history();
+    if (phys.wall)
+      return rolls ? act<Friction, true, true, Law>(geom, phys, contact)
+                   : act<Friction, false, true, Law>(geom, phys, contact);
+    return rolls ? act<Friction, true, false, Law>(geom, phys, contact)
+                 : act<Friction, false, false, Law>(geom, phys, contact);
+  }
+
+  /// Whether the rolling model has a history.
+  bool rolls_with_history() const {
+    bool rolls = false;
+    epdem::Rollings::each([&](auto model, int place) {
+      if (place == rollingModel_) rolls = model.has_history;
+    });
+    return rolls;
+  }
+
+  template <class Friction, bool rolls, bool wall, class Law>
+  bool act(const ScGeom& geom, EpPhys& phys, const Interaction& contact) {
+    const auto& bodies = *scene->bodies;
+    const Body::id_t id1 = contact.getId1(), id2 = contact.getId2();
+    const State &s1 = *bodies[id1]->state, &s2 = *bodies[id2]->state;
+    const bool periodic = scene->isPeriodic;
+    const Vector3r shift = periodic ? scene->cell->intrShiftPos(contact.cellDist) : Vector3r(Vector3r::Zero());
+    const Vector3r drift = periodic ? scene->cell->intrShiftVel(contact.cellDist) : Vector3r(Vector3r::Zero());
+
+    // i is the first sphere; of a wall and a sphere the sphere
+    const bool swapped = wall && phys.wall == 1;
+    epdem::Kinematics<double> c;
+    if constexpr (wall) {
+      const State &sphere = swapped ? s2 : s1, &plane = swapped ? s1 : s2;
+      const Vector3r apart = swapped || !periodic ? Vector3r(geom.contactPoint - plane.pos)
+                                                  : Vector3r(geom.contactPoint - plane.pos - shift);
+      const double radius = swapped ? geom.radius2 : geom.radius1, side = swapped ? 1.0 : -1.0;
+      const Vector3r at_contact = plane.vel + plane.angVel.cross(apart);
+      const Vector3r velocity = sphere.vel - at_contact + side * drift;
+      c = epdem::at_wall(radius, double(geom.penetrationDepth),
+                         vec(side * (radius - geom.penetrationDepth) * geom.normal), vec(velocity), vec(sphere.angVel));
+    } else {
+      c = epdem::between_spheres(double(geom.radius1), double(geom.radius2), vec(s1.pos - s2.pos - shift),
+                                 vec(s1.vel - s2.vel - drift), vec(s1.angVel), vec(s2.angVel));
+    }
+
+    epdem::ContactConstants<Law> pair;
+    std::memcpy(static_cast<void*>(&pair), phys.constants.data(), sizeof pair);
+    pair.friction = phys.tangensOfFrictionAngle;
+    ContactHistory<Law, Friction> history;
+    load(phys, 0, history.law);
+    if constexpr (epdem::adheres<Law>) {
+      if (!(c.overlap > 0.0 || history.law.root > 0.0)) return false;
+    } else {
+      if (!(c.overlap > 0.0)) return false;
+    }
+    if (phys.frictionId == Friction::id) load(phys, friction_at, history.friction);
+    phys.frictionId = Friction::id;
+    load(phys, rolling_at, history.rolling);
+
+    const epdem::ContactSettings settings{scene->dt,          rollingModel_, 0,    pair.damping > 0.0,
+                                          pair.dashpot > 0.0, torsion,       false};
+    const auto loads = epdem::contact<Friction, rolls, wall>(
+        pair, settings, c, history, [&] { return phys.effectiveMass; },
+        Observer{*this, phys, bool(scene->trackEnergy)});
+    store(phys, 0, history.law);
+    store(phys, friction_at, history.friction);
+    if constexpr (rolls) store(phys, rolling_at, history.rolling);
+
+    const Vector3r force = swapped ? Vector3r(-eigen(loads.force)) : eigen(loads.force);  // on body 1
+    phys.ks = epdem::tangential_stiffness(pair.shear_modulus, phys.contactRadius);
+    phys.normalForce = -force.dot(geom.normal) * geom.normal;
+    phys.shearForce = -force - phys.normalForce;
+    scene->forces.addForce(id1, force);
+    scene->forces.addForce(id2, -force);
+    if constexpr (wall) {
+      const Vector3r arm = geom.contactPoint - (swapped ? s1.pos : Vector3r(s2.pos + shift));
+      scene->forces.addTorque(swapped ? id2 : id1, eigen(loads.torque_i));
+      scene->forces.addTorque(swapped ? id1 : id2,
+                              arm.cross(swapped ? force : Vector3r(-force)) + eigen(loads.torque_j));
+    } else {
+      scene->forces.addTorque(id1, eigen(loads.torque_i));
+      scene->forces.addTorque(id2, eigen(loads.torque_j));
+    }
+    if constexpr (epdem::adheres<Law>) return c.overlap > 0.0 || history.law.root > 0.0;
+    return true;
+  }
+
+  /// Adds to an energy of O.energy. All names are there before the first of them is used by any thread.
+  void book(Energy which, double value) {
+    static constexpr const char* names[energies] = {"plasticWork", "contactElastic", "adhesionLoss", "frictionWork",
+                                                    "frictionElastic"};
+    static constexpr bool momentary[energies] = {false, true, false, false, true};
+    if (!booked_.load(std::memory_order_acquire)) {
+#ifdef YADE_OPENMP
+#pragma omp critical(epdem_energies)
+#endif
+      if (!booked_.load(std::memory_order_relaxed)) {
+        for (int k = 0; k < energies; ++k) scene->energy->findId(names[k], energyId_[k], momentary[k]);
+        booked_.store(true, std::memory_order_release);
+      }
+    }
+    scene->energy->add(value, names[which], energyId_[which], momentary[which]);
+  }
+
+  int rollingModel_ = 0;
+  std::atomic<bool> booked_{false};
+  int energyId_[energies] = {-1, -1, -1, -1, -1};
+};
+REGISTER_SERIALIZABLE(Law2_ScGeom_EpPhys);
+
+/// The text that YADE's help shows of a law.
+template <class Law>
+const char* law_text() {
+  static const std::string text = std::string("Contact law `") + Law::name + "` (" + Law::title + "; " + Law::sources +
+                                  ") of :yref:`EpPhys`; its attributes are those of :yref:`Law2_ScGeom_EpPhys`.";
+  return text.c_str();
+}
+
+#define EPDEM_LAW2(Class)                                                                                   \
+  class Law2_ScGeom_EpPhys_##Class : public Law2_ScGeom_EpPhys {                                            \
+   public:                                                                                                  \
+    bool go(shared_ptr<IGeom>& geom, shared_ptr<IPhys>& phys, Interaction* contact) override {              \
+      return act<epdem::Class<double>>(static_cast<ScGeom&>(*geom), static_cast<EpPhys&>(*phys), *contact); \
+    }                                                                                                       \
+    FUNCTOR2D(ScGeom, EpPhys);                                                                              \
+    YADE_CLASS_BASE_DOC(Law2_ScGeom_EpPhys_##Class, Law2_ScGeom_EpPhys, law_text<epdem::Class<double>>());  \
+  };                                                                                                        \
+  REGISTER_SERIALIZABLE(Law2_ScGeom_EpPhys_##Class);
+EPDEM_LAWS(EPDEM_LAW2)
+#undef EPDEM_LAW2
+
+}  // namespace yade

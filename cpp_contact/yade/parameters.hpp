@@ -1,0 +1,140 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// The laws' parameters and history as attributes of YADE's classes: names, units and defaults come from the laws.
+#pragma once
+
+#include <cctype>
+
+#include "epdem/contact.hpp"
+#include "epdem/laws.hpp"
+#include "host.hpp"
+
+namespace epdem::in_yade {
+
+#define EPDEM_COUNT(Class) +Class<double>::n_parameters
+inline constexpr int parameter_count = 0 EPDEM_LAWS(EPDEM_COUNT);
+#undef EPDEM_COUNT
+
+/// A parameter of a law and the strength of this law; laws may share parameters.
+struct LawParameter {
+  const Parameter* declared = nullptr;
+  const char* law = nullptr;
+  const char* strength = nullptr;  // property; nullptr: the law has no strength
+};
+
+template <class Law>
+constexpr void append(std::array<LawParameter, parameter_count>& all, int& at) {
+  for (int k = 0; k < Law::n_parameters; ++k) {
+    all[at].declared = &Law::parameters[k];
+    all[at].law = Law::name;
+    if constexpr (Law::strength >= 0) all[at].strength = Law::parameters[Law::strength].property;
+    ++at;
+  }
+}
+
+constexpr std::array<LawParameter, parameter_count> all_parameters() {
+  std::array<LawParameter, parameter_count> all{};
+  int at = 0;
+#define EPDEM_APPEND(Class) append<Class<double>>(all, at);
+  EPDEM_LAWS(EPDEM_APPEND)
+#undef EPDEM_APPEND
+  return all;
+}
+inline constexpr std::array<LawParameter, parameter_count> parameters = all_parameters();
+
+constexpr bool same(const char* a, const char* b) {
+  while (*a && *a == *b) ++a, ++b;
+  return *a == *b;
+}
+
+/// Where the value of a property is kept: at the place of its first law.
+constexpr int place_of(const char* property) {
+  int at = 0;
+  while (!same(parameters[at].declared->property, property)) ++at;
+  return at;
+}
+constexpr bool is_first(int at) { return place_of(parameters[at].declared->property) == at; }
+
+/// Values of all parameters.
+using LawValues = std::array<double, parameter_count>;
+
+inline LawValues fallbacks() {
+  LawValues values;
+  for (int k = 0; k < parameter_count; ++k) values[k] = parameters[k].declared->fallback;
+  return values;
+}
+
+/// The laws that read a property, as text.
+inline std::string laws_with(const char* property) {
+  std::string names;
+  for (const LawParameter& p : parameters)
+    if (same(p.declared->property, property)) names += (names.empty() ? "" : ", ") + std::string(p.law);
+  return names;
+}
+
+template <class Law>
+inline constexpr int numbers_of = int(sizeof(Law) / sizeof(double));
+
+constexpr int most(std::initializer_list<int> sizes) {
+  int largest = 0;
+  for (const int size : sizes) largest = size > largest ? size : largest;
+  return largest;
+}
+
+// The numbers that a contact keeps: of its law, of friction, of rolling friction.
+#define EPDEM_SIZE(Class) numbers_of<Class<double>::State>,
+inline constexpr int law_history = most({EPDEM_LAWS(EPDEM_SIZE)});
+#undef EPDEM_SIZE
+inline constexpr int friction_history = numbers_of<SlipState<3, double>>, rolling_history = 3;
+using History = std::array<double, law_history + friction_history + rolling_history>;
+
+// Constants of a contact; they follow from its parameters and are not saved.
+#define EPDEM_SIZE(Class) numbers_of<ContactConstants<Class<double>>>,
+using Constants = std::array<double, most({EPDEM_LAWS(EPDEM_SIZE)})>;
+#undef EPDEM_SIZE
+
+/// delta_max -> deltaMax
+inline std::string camel(const std::string& name) {
+  std::string text;
+  for (size_t k = 0; k < name.size(); ++k) {
+    if (name[k] == '_' && k + 1 < name.size())
+      text += char(std::toupper(name[++k]));
+    else
+      text += char(std::tolower(name[k]));
+  }
+  return text;
+}
+
+/// A number with as many digits as tell it apart, at most 15.
+inline std::string text_of(double value) {
+  std::ostringstream text;
+  text.precision(15);
+  text << value;
+  return text.str();
+}
+
+/// Values that an attribute may have.
+struct Range {
+  double low, high;
+  bool with_low = false, with_high = false;
+
+  bool holds(double x) const { return (with_low ? x >= low : x > low) && (with_high ? x <= high : x < high); }
+  std::string text() const {
+    if (std::isinf(high)) return (with_low ? "must be >= " : "must be > ") + text_of(low);
+    return std::string("must lie in ") + (with_low ? "[" : "(") + text_of(low) + ", " + text_of(high) +
+           (with_high ? "]" : ")");
+  }
+};
+inline constexpr double unlimited = std::numeric_limits<double>::infinity();
+
+inline Range range_of(const Parameter& p) { return {0.0, unlimited, p.may_vanish}; }
+/// The same for one body, whose strength may be infinite.
+inline Range range_of_body(const Parameter& p) { return {0.0, unlimited, p.may_vanish, true}; }
+
+/// Ends the program with one sentence. YADE calls functors in a parallel region, which no exception can leave.
+[[noreturn]] inline void refuse(const std::string& sentence) {
+  std::cout.flush();
+  std::cerr << "epdem_yade: " << sentence << std::endl;
+  _exit(1);
+}
+
+}  // namespace epdem::in_yade

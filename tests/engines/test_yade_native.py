@@ -1,0 +1,485 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""The laws as C++ classes in YADE: impacts against theory, saving, errors, threads, friction, dashpots, energies."""
+
+import math
+from pathlib import Path
+
+import numpy as np
+import pytest
+from yade_native import HEAD, impacts, needs_source, result, yade
+
+from epdem.case.impact import Numerics, parse
+from epdem.case.toml import read_toml
+from epdem.engines import engine
+from epdem.impacts.experiment import experiment
+from epdem.impacts.measurement import measure
+from epdem.impacts.plan import plan
+from epdem.impacts.prediction import predict
+
+pytestmark = [pytest.mark.yade, needs_source]
+
+CASES = Path(__file__).parents[2] / "cases"
+WITHOUT_ADHESION = ("hertz", "thornton", "johnson", "cavity")
+BRASS = {"young_modulus": "100 GPa", "poisson_ratio": 0.35, "density": "8500 kg/m^3", "yield_stress": "0.3 GPa"}
+
+
+def prepared(case="steel_wall", law=None, steps=100, **impact):
+    """(plan, prediction) of a case with other values of its impact."""
+    data = read_toml(CASES / f"{case}.toml")
+    if "target" in impact:
+        data["materials"]["brass"] = BRASS
+    data["impact"] |= impact
+    numerics = Numerics(steps_in_contact=steps, phases=8)
+    x = experiment(parse(data, "test").model_copy(update={"numerics": numerics}), law)
+    prediction = predict(x)
+    return plan(x, prediction), prediction
+
+
+def errors(p, prediction, found):
+    """Largest relative errors over all speeds and phases; the dent relative to the largest overlap."""
+    m = measure(p, found)
+    theory = {k: p.each(getattr(prediction, k)) for k in ("e_n", "contact_time", "force_max", "overlap_max")}
+    worst = {k: np.abs(getattr(m, k) / v - 1).max() for k, v in theory.items()}
+    dent = np.abs(m.residual_overlap - p.each(prediction.residual_overlap)) / theory["overlap_max"]
+    return worst | {"residual_overlap": dent.max()}
+
+
+# Contact begins within a step, and the peak lies between two: sampled quantities have limits of their own, from
+# (pi/steps)^2/8 of the peak and a share of one step of the contact time.
+@pytest.mark.parametrize("law", WITHOUT_ADHESION)
+def test_impacts_from_0_09_to_268_yield_speeds_agree_with_theory(law, tmp_path):
+    for steps, limit in ((100, 1e-3), (400, 1e-4)):
+        p, prediction = prepared(law=law, steps=steps, speeds={"from": "0.05 m/s", "to": "150 m/s", "count": 16})
+        worst = errors(p, prediction, impacts(p, tmp_path / str(steps)))
+        assert max(worst.values()) <= limit, (steps, worst)
+
+
+@pytest.mark.parametrize("law", WITHOUT_ADHESION)
+@pytest.mark.parametrize("kind", ["sphere-wall", "sphere-sphere"])
+def test_yade_takes_the_steps_of_the_embedded_engine(law, kind, tmp_path):
+    """Step by step the same overlap, force and velocity to the round-off of positions."""
+    other = {"kind": kind, "target": {"material": "brass", "radius": "4 mm"}} if kind == "sphere-sphere" else {}
+    p, _ = prepared(law=law, speeds=["0.05 m/s", "3 m/s", "150 m/s"], **other)
+    compare(p, impacts(p, tmp_path), 1e-8)
+
+
+@pytest.mark.parametrize("law", ["jkr", "thornton_ning"])
+def test_impacts_with_adhesion_take_the_steps_of_the_embedded_engine(law, tmp_path):
+    """From sticking to rebound; the contact stands across a gap and ends where the law says."""
+    p, _ = prepared("adhesion_thornton_1998", law, speeds=["0.05 m/s", "3 m/s", "30 m/s"])
+    compare(p, impacts(p, tmp_path), 1e-6)
+
+
+def compare(p, found, limit):
+    embedded = engine("embedded").run(p, Path("unused"))
+    for quantity in ("overlap", "force", "velocity"):
+        a, b = getattr(found, quantity), getattr(embedded, quantity)
+        both = np.isfinite(b)
+        share = np.abs(np.where(both, a - b, 0.0)).max(axis=1) / np.where(both, np.abs(b), 0.0).max(axis=1)
+        assert share.max() <= limit, (quantity, share)
+
+
+def test_restitution_with_adhesion_agrees_with_theory(tmp_path):
+    p, prediction = prepared("adhesion_thornton_1998", steps=400)
+    found = measure(p, impacts(p, tmp_path))
+    assert np.abs(found.e_n - p.each(prediction.e_n)).max() <= 1e-4
+
+
+def test_dashpot_gives_the_restitution_of_the_damped_law(tmp_path):
+    p, prediction = prepared("viscous_steel", steps=400)
+    found = measure(p, impacts(p, tmp_path))
+    assert np.abs(found.e_n / p.each(prediction.e_n) - 1).max() <= 5e-4
+
+
+def test_partial_slip_gives_the_rebound_of_maw_barber_and_fawcett(tmp_path):
+    p, prediction = prepared("oblique_steel")
+    found = measure(p, impacts(p, tmp_path, partialSlip=3)).rebound
+    assert found is not None and prediction.rebound is not None
+    assert np.nanmax(np.abs(found.psi_2 - p.each(prediction.rebound.psi_2))) <= 0.05
+
+
+SPRING = """
+R, mu, v_n, dt = 0.01, 0.3, 1.0, 2e-8
+steel = EpMat(young=208e9, poisson=0.3, density=7850, frictionAngle=np.arctan(mu))
+O.materials.append(steel)
+O.bodies.append(wall(0, axis=2, material=steel))
+tangents = [0.0, 0.2, 0.5, 1.0, 3.0]
+for k, t in enumerate(tangents):
+    O.bodies.append(sphere((0.1 * k, 0, R), R, material=steel))
+    O.bodies[-1].state.vel = (v_n * t, 0, -v_n)
+O.engines = [ForceResetter(), InsertionSortCollider([Bo1_Sphere_Aabb(), Bo1_Wall_Aabb()]),
+    InteractionLoop([Ig2_Wall_Sphere_ScGeom()], [Ip2_EpMat_EpMat_EpPhys()], [Law2_ScGeom_EpPhys_Hertz()]),
+    NewtonIntegrator(damping=0)]
+O.dt = dt
+for _ in range(5000):
+    O.step()
+s = [O.bodies[k + 1].state for k in range(len(tangents))]
+json.dump({"v": [x.vel[0] for x in s], "w": [x.angVel[1] for x in s], "n": O.interactions.countReal()},
+          open("result.json", "w"))
+"""
+
+
+def test_friction_is_one_spring_up_to_coulombs_limit(tmp_path):
+    """Against the law of Cundall and Strack, integrated here: stretch of the spring, arm of the torque R - delta/2."""
+    found = result(SPRING, tmp_path)
+    R, mu, dt, E, nu = 0.01, 0.3, 2e-8, 208e9, 0.3
+    E_star, G_star = E / (1 - nu**2) / 2, E / (2 * (1 + nu)) / (2 - nu) / 2
+    mass = 7850 * 4 / 3 * math.pi * R**3
+    assert found["n"] == 0
+    for tangent, v_end, w_end in zip([0.0, 0.2, 0.5, 1.0, 3.0], found["v"], found["w"], strict=True):
+        z, v, u, w, s = R, -1.0, tangent, 0.0, 0.0
+        while True:
+            delta = R - z
+            if delta < 0:
+                break
+            a = math.sqrt(R * delta)
+            F, k_t, arm = 4 / 3 * E_star * a * delta, 8 * G_star * a, R - delta / 2
+            s += (u - arm * w) * dt
+            T = min(max(k_t * s, -mu * F), mu * F)
+            s = T / k_t if k_t > 0 else 0.0
+            v, u, w = v + F / mass * dt, u - T / mass * dt, w + T * arm / (0.4 * mass * R * R) * dt
+            z += v * dt
+        assert v_end == pytest.approx(u, abs=1e-9)
+        assert w_end == pytest.approx(w, abs=1e-7)
+
+
+SCENE = """
+def scene(law, seed=1, n=60, **options):
+    import random
+    draw = random.Random(seed)
+    steel = EpMat(young=208e9, poisson=0.3, density=7850, frictionAngle=0.3, yieldPressure=2.8e9, yieldStress=1e9,
+                  rollingFriction=0.05)
+    soft = EpMat(young=100e9, poisson=0.35, density=8500, frictionAngle=0.3, yieldPressure=0.8e9, yieldStress=3e8,
+                 rollingFriction=0.05)
+    O.materials.append([steel, soft])
+    O.bodies.append(wall(-0.00976, axis=0, material=steel))
+    O.bodies.append(facet([(-1, -1, -0.00976), (1, -1, -0.00976), (0, 2, -0.00976)], material=steel))
+    O.bodies.append(box((0, 0.0585 + 0.00976 + 0.005, 0.05), (0.1, 0.005, 0.1), fixed=True, material=soft))
+    for k in range(n):
+        place = [0.0195 * (k // 4**axis % 4) for axis in range(3)]
+        b = sphere(place, 0.0097 + 5e-5 * draw.random(), material=draw.choice([steel, soft]))
+        b.state.vel = [10 * (draw.random() - 0.5) for _ in "xyz"]
+        b.state.angVel = [100 * (draw.random() - 0.5) for _ in "xyz"]
+        O.bodies.append(b)
+    bounds = [Bo1_Sphere_Aabb(), Bo1_Wall_Aabb(), Bo1_Facet_Aabb(), Bo1_Box_Aabb()]
+    geometries = [Ig2_Sphere_Sphere_ScGeom(), Ig2_Wall_Sphere_ScGeom(), Ig2_Facet_Sphere_ScGeom(),
+                  Ig2_Box_Sphere_ScGeom()]
+    O.engines = [ForceResetter(), InsertionSortCollider(bounds, verletDist=1e-3),
+        InteractionLoop(geometries,
+                        [Ip2_EpMat_EpMat_EpPhys(en=0.9, es=0.9)], [globals()["Law2_ScGeom_EpPhys_" + law](**options)],
+                        label="loop"),
+        NewtonIntegrator(damping=0, gravity=(0, 0, -9.81))]
+    O.dt = 1e-7
+
+def state():
+    return [[*b.state.pos, *b.state.vel, *b.state.angVel] for b in O.bodies]
+"""
+
+SAVE = (
+    SCENE
+    + """
+law, options = {law!r}, {options!r}
+scene(law, **options)
+O.trackEnergy = True
+for _ in range(400):
+    O.step()
+kept = [(i.phys.deltaMax, i.phys.contactRadius) for i in O.interactions if i.isReal]
+assert len(kept) > 3, len(kept)
+O.save("now.yade")
+for _ in range(300):
+    O.step()
+straight = state()
+O.load("now.yade")
+again = [(i.phys.deltaMax, i.phys.contactRadius) for i in O.interactions if i.isReal]
+O.dynDt = False
+for _ in range(300):
+    O.step()
+json.dump({{"kept": kept, "again": again, "straight": straight, "loaded": state()}}, open("result.json", "w"))
+"""
+)
+
+
+@pytest.mark.parametrize(
+    ("law", "options"),
+    [("Thornton", {}), ("Cavity", {"partialSlip": 3, "rolling": "epsd2"}), ("ThorntonNing", {"rolling": "cdt"})],
+)
+def test_a_simulation_loaded_in_mid_contact_continues(law, options, tmp_path):
+    """History to the last bit. YADE may add a body's forces in another order afterwards: the motion to round-off."""
+    found = result(SAVE.format(law=law, options=options), tmp_path)
+    assert sorted(found["kept"]) == sorted(found["again"])
+    straight, loaded = np.array(found["straight"]), np.array(found["loaded"])
+    assert np.abs(loaded - straight).max() <= 1e-9 * np.abs(straight).max()
+
+
+PAIR = """
+steel = EpMat(young=208e9, poisson=0.3, density=7850, frictionAngle=0.3, yieldPressure=2.8e9)
+O.materials.append(steel)
+O.bodies.append([wall(0, axis=2, material=steel), sphere((0, 0, 0.01), 0.01, material=steel)])
+O.bodies[1].state.vel = (3, 1, -10)
+O.engines = [ForceResetter(), InsertionSortCollider([Bo1_Sphere_Aabb(), Bo1_Wall_Aabb()]),
+    InteractionLoop([Ig2_Wall_Sphere_ScGeom()], [Ip2_EpMat_EpMat_EpPhys()],
+                    [Law2_ScGeom_EpPhys_Thornton(partialSlip=3)]),
+    NewtonIntegrator(damping=0)]
+O.dt = 1e-7
+for _ in range(150):
+    O.step()
+"""
+
+
+def test_one_contact_continues_to_the_bit_in_another_process(tmp_path):
+    more = """
+import pathlib
+for _ in range(400):
+    O.step()
+s = O.bodies[1].state
+json.dump({"end": [float(x).hex() for x in (*s.pos, *s.vel, *s.angVel)]}, open("result.json", "w"))
+"""
+    straight = result(PAIR + "assert O.interactions.countReal() == 1\nO.save('now.yade')\n" + more, tmp_path)
+    assert result("O.load('now.yade')\n" + more, tmp_path) == straight
+
+
+BAD = [
+    ("EpMat(poisson=30)", r"EpMat\.poisson = 30, must lie in \(-1, 0\.5\]"),
+    ("EpMat(young=-1)", r"EpMat\.young = -1, must be > 0 Pa"),
+    ("EpMat(yieldPressure=0)", r"EpMat\.yieldPressure = 0, must be > 0 Pa"),
+    ("EpMat().yieldStress = float('nan')", r"EpMat\.yieldStress = nan, must be > 0 Pa"),
+    ("EpMat(frictionAngle=2)", r"EpMat\.frictionAngle = 2, must lie in \[0, 1\.570"),
+    ("Law2_ScGeom_EpPhys_Hertz(partialSlip=1)", r"partialSlip = 1, must be 0, 2 or 3"),
+    ("Law2_ScGeom_EpPhys_Hertz(rolling='x')", r"rolling = 'x', must be one of off, cdt, epsd2"),
+]
+
+
+def test_bad_values_raise_with_attribute_value_and_limit(tmp_path):
+    text = "import re\n"
+    for line, pattern in BAD:
+        text += f"try:\n    {line}\n    assert False, {line!r}\nexcept (ValueError, RuntimeError) as error:\n"
+        text += f"    assert re.search({pattern!r}, str(error)), str(error)\n    assert '\\n' not in str(error)\n"
+    done = yade(text, tmp_path)
+    assert done.returncode == 0, done.stderr
+
+
+@pytest.mark.parametrize(
+    ("before", "after", "sentence"),
+    [
+        (
+            ", yieldPressure=2.8e9",
+            "",
+            "Law2_ScGeom_EpPhys_Thornton: yieldPressure of bodies 0 and 1 = nan, must be > 0 Pa; "
+            "give yieldPressure to the EpMat of both",
+        ),
+        (
+            "Ip2_EpMat_EpMat_EpPhys()",
+            "Ip2_EpMat_EpMat_EpPhys(en=0.1)",
+            "Ip2_EpMat_EpMat_EpPhys: en of bodies 0 and 1 = 0.1, must lie in [0.14, 1]",
+        ),
+    ],
+)
+def test_a_contact_without_its_parameters_ends_with_one_sentence(before, after, sentence, tmp_path):
+    done = yade(PAIR.replace(before, after), tmp_path)
+    assert done.returncode == 1
+    assert done.stderr.strip().splitlines()[-1] == f"epdem_yade: {sentence}"
+    assert "Traceback" not in done.stderr
+
+
+@pytest.mark.parametrize(
+    ("change", "words"),
+    [
+        ("config.version = '1.0'", "is built for YADE 2"),
+        ("config.highPrecisionBits = 80", "this YADE has 80"),
+        ("config.features = config.features[1:] + ['SPH']", "this YADE has .*SPH"),
+    ],
+)
+def test_a_module_for_another_yade_refuses_at_import(change, words, tmp_path):
+    done = yade("", tmp_path, head="import sys\nfrom yade import config\n" + change + HEAD)
+    lines = done.stderr.strip().splitlines()
+    assert done.returncode == 1 and lines[-1].startswith("ImportError: epdem_yade ") and "make yade" in lines[-1]
+    assert __import__("re").search(words, lines[-1]), lines[-1]
+
+
+THREADS = (
+    SCENE
+    + """
+scene("Thornton", partialSlip=3, rolling="epsd2")
+O.trackEnergy = True
+for _ in range(600):
+    O.step()
+O.engines[-1].dead = True
+O.step()
+json.dump({"f": [[*O.forces.f(b.id), *O.forces.t(b.id)] for b in O.bodies], "energy": dict(O.energy.items()),
+           "n": O.interactions.countReal()}, open("result.json", "w"))
+"""
+)
+
+
+def test_two_threads_give_the_forces_of_one(tmp_path):
+    one, two = (result(THREADS, tmp_path / str(k), threads=k) for k in (1, 2))
+    assert one["n"] == two["n"] > 3
+    f1, f2 = np.array(one["f"]), np.array(two["f"])
+    assert np.abs(f2 - f1).max() <= 1e-9 * np.abs(f1).max()
+    for name, value in one["energy"].items():
+        assert two["energy"][name] == pytest.approx(value, rel=1e-9, abs=1e-12)
+
+
+ENERGY = """
+O.trackEnergy = True
+R = 0.01
+steel = EpMat(young=208e9, poisson=0.3, density=7850, frictionAngle=0.3, yieldPressure=2.8e9, yieldStress=1e9)
+O.materials.append(steel)
+O.bodies.append([wall(0, axis=2, material=steel), sphere((0, 0, R), R, material=steel)])
+ball = O.bodies[1].state
+ball.vel = (0, 0, -10)
+O.engines = [ForceResetter(), InsertionSortCollider([Bo1_Sphere_Aabb(), Bo1_Wall_Aabb()]),
+    InteractionLoop([Ig2_Wall_Sphere_ScGeom()], [Ip2_EpMat_EpMat_EpPhys()], [Law2_ScGeom_EpPhys_{law}()]),
+    NewtonIntegrator(damping=0)]
+O.dt = 1e-8
+before = 0.5 * ball.mass * ball.vel.squaredNorm()
+middle, of_contact = [], 0.0
+for k in range(20000):
+    O.step()
+    if O.interactions.countReal():
+        of_contact = O.interactions[0, 1].phys.plasticWork
+        if k == 1500:
+            middle = [O.energy["contactElastic"] + O.energy["plasticWork"], O.interactions[0, 1].phys.elasticEnergy,
+                      0.5 * ball.mass * ball.vel.squaredNorm()]
+    elif k > 10:
+        break
+json.dump({{"before": before, "after": 0.5 * ball.mass * ball.vel.squaredNorm(), "plastic": O.energy["plasticWork"],
+           "contact": of_contact, "middle": middle}}, open("result.json", "w"))
+"""
+
+
+@pytest.mark.parametrize("law", ["Thornton", "Johnson", "Cavity"])
+def test_plastic_work_is_in_the_energies_of_yade_and_of_the_contact(law, tmp_path):
+    found = result(ENERGY.format(law=law), tmp_path)
+    lost = found["before"] - found["after"]
+    assert found["plastic"] == pytest.approx(lost, rel=1e-4) == pytest.approx(found["contact"], rel=1e-4)
+    stored, elastic, kinetic = found["middle"]
+    assert stored == pytest.approx(found["before"] - kinetic, rel=2e-2) and elastic > 0
+
+
+CELL = """
+def pair(periodic, shear=0.0):
+    R = 0.01
+    O.reset()
+    steel = EpMat(young=208e9, poisson=0.3, density=7850, frictionAngle=0.3, yieldPressure=2.8e9)
+    O.materials.append(steel)
+    first, second, v1, v2 = (0, 0, 0), (0.6 * R, 0, 1.9 * R), (0.0, 1.0, 5.0), (0.0, 0.0, -5.0)
+    if periodic:  # the second is reached across a face, which moves
+        O.periodic = True
+        O.cell.setBox(0.1, 0.1, 0.1)
+        O.cell.velGrad = Matrix3(0, 0, shear, 0, 0, 0, 0, 0, 0)
+        O.cell.homoDeform = 0  # velocities as they are, the image moves all the same
+        second, v2 = (second[0], 0, second[2] - 0.1), (v2[0] - 0.1 * shear, 0, v2[2])
+    O.bodies.append([sphere(first, R, material=steel), sphere(second, R, material=steel)])
+    for b, v in zip(O.bodies, (v1, v2)):
+        b.state.vel, b.state.angVel = v, (0, 10, 0)
+    O.engines = [ForceResetter(), InsertionSortCollider([Bo1_Sphere_Aabb()], verletDist=1e-4),
+        InteractionLoop([Ig2_Sphere_Sphere_ScGeom()], [Ip2_EpMat_EpMat_EpPhys(en=0.8, es=0.8)],
+                        [Law2_ScGeom_EpPhys_Thornton(partialSlip=3)]), NewtonIntegrator(damping=0)]
+    O.dt = 1e-7
+    seen = 0
+    for _ in range(1500):
+        O.step()
+        seen = max(seen, O.interactions.countReal())
+    return [[*b.state.vel, *b.state.angVel] for b in O.bodies], seen, O.cell.hSize[0, 2] if periodic else 0.0
+
+json.dump([pair(False), pair(True), pair(True, 30.0)], open("result.json", "w"))
+"""
+
+
+def test_a_contact_across_a_periodic_face_is_that_of_free_bodies(tmp_path):
+    """Also across a face of a sheared cell, whose image moves with the cell."""
+    free, cell, sheared = result(CELL, tmp_path)
+    assert free[1] == cell[1] == sheared[1] == 1 and sheared[2] > 0
+    free, cell = np.array(free[0]), np.array(cell[0])
+    assert free[0, 2] < 0 < abs(free[0, 4] - 10), "the bodies have rebounded"
+    assert np.abs(cell - free).max() <= 1e-9 * np.abs(free).max()
+    moved = np.array(sheared[0])
+    assert np.abs(moved[0] - free[0]).max() <= 3e-3 * np.abs(free).max()  # the cell moves by one step more
+
+
+MINDLIN = (
+    SCENE
+    + """
+law = {law!r}
+scene("Hertz")
+if law == "Mindlin":
+    both = [FrictMat(young=m.young, poisson=m.poisson, density=m.density, frictionAngle=0.3) for m in O.materials]
+    for b in O.bodies:
+        b.mat = both[b.mat.id]
+    loop.geomDispatcher.functors = [f for f in loop.geomDispatcher.functors if "Sphere_Sphere" in str(f)]
+    loop.physDispatcher.functors = [Ip2_FrictMat_FrictMat_MindlinPhys(frictAngle=0)]
+    loop.lawDispatcher.functors = [Law2_ScGeom_MindlinPhys_Mindlin()]
+else:
+    loop.geomDispatcher.functors = [f for f in loop.geomDispatcher.functors if "Sphere_Sphere" in str(f)]
+    loop.physDispatcher.functors = [Ip2_EpMat_EpMat_EpPhys(frictAngle=0)]
+for _ in range(600):
+    O.step()
+forces = {{"%d-%d" % (i.id1, i.id2): list(i.phys.normalForce) for i in O.interactions if i.isReal}}
+json.dump({{"n": forces, "v": state()}}, open("result.json", "w"))
+"""
+)
+
+
+def test_hertz_agrees_with_the_law_of_yade_after_an_exchange_of_three_names(tmp_path):
+    """Every force of a scene of spheres in which nothing yields, without friction: its torque has another arm there."""
+    ours, yades = (result(MINDLIN.format(law=law), tmp_path / law) for law in ("Hertz", "Mindlin"))
+    assert ours["n"].keys() == yades["n"].keys() and len(ours["n"]) > 3
+    force = np.array([np.hypot.reduce(f) for f in ours["n"].values()])
+    difference = np.array([np.hypot.reduce(np.subtract(f, yades["n"][k])) for k, f in ours["n"].items()])
+    assert difference.max() <= 1e-9 * force.max()
+
+
+CLUMP = """
+steel = EpMat(young=208e9, poisson=0.3, density=7850, frictionAngle=0.3, yieldPressure=2.8e9)
+O.materials.append(steel)
+R = 0.01
+O.bodies.append(wall(0, axis=2, material=steel))
+clump, members = O.bodies.appendClumped([sphere((0, 0, R), R, material=steel), sphere((R, 0, R), R, material=steel)])
+O.bodies[clump].state.vel = (0, 0, -1)
+O.engines = [ForceResetter(), InsertionSortCollider([Bo1_Sphere_Aabb(), Bo1_Wall_Aabb()]),
+    InteractionLoop([Ig2_Wall_Sphere_ScGeom()], [Ip2_EpMat_EpMat_EpPhys(en=0.8)], [Law2_ScGeom_EpPhys_Thornton()]),
+    NewtonIntegrator(damping=0)]
+O.dt = 1e-7
+for _ in range(100):
+    O.step()
+json.dump({"n": O.interactions.countReal(), "mass": O.bodies[clump].state.mass,
+           "m_star": [i.phys.effectiveMass for i in O.interactions if i.isReal],
+           "force": O.forces.f(clump)[2], "members": [O.interactions[0, m].phys.normalForce[2] for m in members]},
+          open("result.json", "w"))
+"""
+
+
+def test_a_member_of_a_clump_has_the_mass_of_the_clump(tmp_path):
+    found = result(CLUMP, tmp_path)
+    assert found["n"] == 2 and found["m_star"] == [found["mass"]] * 2
+    assert all(f > 0 for f in found["members"])
+
+
+MATCH = (
+    PAIR.replace(
+        "Ip2_EpMat_EpMat_EpPhys()",
+        "Ip2_EpMat_EpMat_EpPhys(frictAngle=MatchMaker(matches=((0, 1, 0.5),)), en=0.7, es=0.6, rollingFriction=0.1, "
+        "workOfAdhesion=0.2)",
+    )
+    + """
+p = O.interactions[0, 1].phys
+json.dump([p.tangensOfFrictionAngle, p.en, p.es, p.rollingFriction, p.workOfAdhesion, p.yieldPressure, p.wall,
+           p.effectiveModulus, p.dict()["deltaMax"] == p.deltaMax > 0, EpMat.__doc__ is not None,
+           "p_y of thornton" in EpMat.yieldPressure.__doc__], open("result.json", "w"))
+"""
+)
+
+
+def test_values_of_pairs_come_from_matchmakers_and_all_attributes_are_readable(tmp_path):
+    found = result(MATCH, tmp_path)
+    assert found[0] == pytest.approx(math.tan(0.5)) and found[1:7] == [0.7, 0.6, 0.1, 0.2, 2.8e9, 1]
+    assert found[7] == pytest.approx(208e9 / (1 - 0.09) / 2) and found[8:] == [True, True, True]
+
+
+def test_the_script_of_the_page_settles(tmp_path):
+    text = (Path(__file__).parents[2] / "docs/yade.md").read_text()
+    script = text.split("```python epdem_yade\n")[1].split("```")[0].replace("300000", "3000")
+    script = "\n".join(line for line in script.splitlines() if not line.startswith("print"))
+    found = result(script + "\njson.dump([O.iter, len(O.energy.keys())], open('result.json', 'w'))\n", tmp_path)
+    assert found[0] == 3000
