@@ -176,7 +176,7 @@ def half_a_dump(work: Path, out: Path) -> str:
 
 
 def half_a_log(work: Path, out: Path) -> str:
-    """`--resume` goes on from a restart file that the log names, or refuses if there is none"""
+    """`--resume` continues from a restart file that the log names, or refuses if there is none"""
     got = _damaged(work, out, SCENE, "out.liggghts", [*SCENE, "--resume"], 0)
     return "" if "no restart file" in got else got
 

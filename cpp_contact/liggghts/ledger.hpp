@@ -11,7 +11,7 @@
 namespace epdem::liggghts {
 
 /// Per-atom properties: plasticWork [J] sums up every growth of plastic work since the start, elasticEnergy [J] is what
-/// the contacts of this step can give back (with adhesion less their surface energy), bearingContacts counts those of
+/// the contacts of this step can give back (with adhesion less their surface energy), loadedContacts counts those of
 /// them that bear a force: a contact whose bodies overlap by less than the depth of its dent bears none. With adhesion
 /// adhesiveWork [J] sums up what the forces lost in their jumps at touch and parting. With partial slip frictionWork
 /// [J] sums up what friction took, and frictionEnergy [J] is what its springs can give back. Half of a pair's energy
@@ -26,7 +26,7 @@ class Ledger {
 
   /// For the pair style, whose settings come first: creates the properties.
   void create(LAMMPS_NS::LAMMPS* lmp, bool books_friction, bool adheres) {
-    for (const char* name : {work_name, energy_name, bearing_name, friction_name, springs_name, adhesive_name}) {
+    for (const char* name : {work_name, energy_name, loaded_name, friction_name, springs_name, adhesive_name}) {
       if (!books_friction && (name == friction_name || name == springs_name)) continue;
       if (!adheres && name == adhesive_name) continue;
       const char* words[] = {name, "all", "property/atom", name, "scalar", "yes", "no", "no", "0.0"};
@@ -41,8 +41,8 @@ class Ledger {
     friction_ = find(lmp, friction_name, model.c_str());
     springs_ = find(lmp, springs_name, model.c_str());
     adhesive_ = find(lmp, adhesive_name, model.c_str());
-    bearing_ = find(lmp, bearing_name, model.c_str());
-    if (work_ && energy_ && bearing_ && (friction_ || !books_friction) && (adhesive_ || !adheres)) return;
+    loaded_ = find(lmp, loaded_name, model.c_str());
+    if (work_ && energy_ && loaded_ && (friction_ || !books_friction) && (adhesive_ || !adheres)) return;
     const std::string text = "model " + model +
                              ": computePlasticWork on of a wall needs it for the pair style as well" +
                              (books_friction ? ", with the same tangential model"
@@ -54,7 +54,7 @@ class Ledger {
   /// At the start of a kept pass over all pairs: what the contacts hold is counted anew.
   void open(int nlocal) {
     std::fill_n(energy_->vector_atom, nlocal, 0.0);
-    std::fill_n(bearing_->vector_atom, nlocal, 0.0);
+    std::fill_n(loaded_->vector_atom, nlocal, 0.0);
     if (springs_) std::fill_n(springs_->vector_atom, nlocal, 0.0);
   }
 
@@ -83,19 +83,19 @@ class Ledger {
   void credit(int body, double grown, double stored, bool bears) {
     if (grown > 0.0) work_->vector_atom[body] += grown;  // few contacts grow
     energy_->vector_atom[body] += stored;
-    bearing_->vector_atom[body] += bears;
+    loaded_->vector_atom[body] += bears;
   }
 
   /// One number per body, for a loop that books by itself as `book` does.
   double* work() { return work_->vector_atom; }
   double* energy() { return energy_->vector_atom; }
-  double* bearing() { return bearing_->vector_atom; }
+  double* loaded() { return loaded_->vector_atom; }
   double* adhesive() { return adhesive_ ? adhesive_->vector_atom : nullptr; }
 
  private:
   static constexpr const char* work_name = "plasticWork";
   static constexpr const char* energy_name = "elasticEnergy";
-  static constexpr const char* bearing_name = "bearingContacts";
+  static constexpr const char* loaded_name = "loadedContacts";
   static constexpr const char* friction_name = "frictionWork";
   static constexpr const char* springs_name = "frictionEnergy";
   static constexpr const char* adhesive_name = "adhesiveWork";
@@ -112,7 +112,7 @@ class Ledger {
 
   LAMMPS_NS::FixPropertyAtom* work_ = nullptr;
   LAMMPS_NS::FixPropertyAtom* energy_ = nullptr;
-  LAMMPS_NS::FixPropertyAtom* bearing_ = nullptr;
+  LAMMPS_NS::FixPropertyAtom* loaded_ = nullptr;
   LAMMPS_NS::FixPropertyAtom* friction_ = nullptr;
   LAMMPS_NS::FixPropertyAtom* springs_ = nullptr;
   LAMMPS_NS::FixPropertyAtom* adhesive_ = nullptr;

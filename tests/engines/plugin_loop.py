@@ -81,7 +81,7 @@ def deck(scene, *, steps=60, every=1, before="", end="", restart=None):
     models = (
         f"model ep/{scene.law} tangential {scene.tangential} cohesion {scene.cohesion} rolling_friction {scene.rolling}"
     )
-    work = " f_plasticWork f_elasticEnergy f_bearingContacts" if "computePlasticWork on" in scene.settings else ""
+    work = " f_plasticWork f_elasticEnergy f_loadedContacts" if "computePlasticWork on" in scene.settings else ""
     work += " f_adhesiveWork" if work and scene.law in ADHESIVE else ""
     work += " f_frictionWork f_frictionEnergy" if work and "partial_slip" in scene.tangential else ""
     work += "".join(f" f_force_{w}[{k}]" for w in ("floor", "lid") for k in (1, 2, 3)) if scene.walls else ""

@@ -79,13 +79,13 @@ def test_a_wall_alone_is_refused_as_the_pair_style_keeps_the_books(tmp_path):
     assert result.code == 1 and "computePlasticWork" in result.error and "pair style" in result.error
 
 
-def test_bearing_contacts_are_those_with_a_force(tmp_path):
+def test_loaded_contacts_are_those_with_a_force(tmp_path):
     """Counted again from LIGGGHTS's own list of contacts, away from the walls, which that list leaves out."""
     output = (
         "compute c all pair/gran/local id force\n"
         "dump l all local 50 local.* c_c[1] c_c[2] c_c[4] c_c[5] c_c[6]\n"
         "dump_modify l format '%.17g %.17g %.17g %.17g %.17g'\n"
-        "dump a all custom 50 atoms.* id x y z radius f_bearingContacts\nrun"
+        "dump a all custom 50 atoms.* id x y z radius f_loadedContacts\nrun"
     )
     good(tmp_path, deck("thornton", steps=3000, every=1000).replace("run", output), files={"box.data": gas().data(BOX)})
     bearing = resting = 0

@@ -217,15 +217,15 @@ void PairLoop::scatter(int n, Ledger* ledger) {
   const Block& b = *block_;
   double *const f = atom->f[0], *const t = atom->torque[0];
   double *const work = books ? ledger->work() : nullptr, *const energy = books ? ledger->energy() : nullptr;
-  double *const bearing = books ? ledger->bearing() : nullptr, *const parted = books ? ledger->adhesive() : nullptr;
+  double *const loaded = books ? ledger->loaded() : nullptr, *const parted = books ? ledger->adhesive() : nullptr;
   const int nlocal = atom->nlocal;
   double others[10] = {};  // what a ghost gets is computed by its owner
   for (int k = 0; k < n;) {
     const int i = b.i[k];
     double *const fi = f + 3 * i, *const ti = t + 3 * i;
     double fx = fi[0], fy = fi[1], fz = fi[2], tx = ti[0], ty = ti[1], tz = ti[2];
-    double work_i{}, energy_i{}, bearing_i{};
-    if constexpr (books) work_i = work[i], energy_i = energy[i], bearing_i = bearing[i];
+    double work_i{}, energy_i{}, loaded_i{};
+    if constexpr (books) work_i = work[i], energy_i = energy[i], loaded_i = loaded[i];
     do {
       const int j = b.j[k];
       const bool ours = j < nlocal;
@@ -252,10 +252,10 @@ void PairLoop::scatter(int n, Ledger* ledger) {
         const bool bears = adheres ? b.contact_radius.a[k] > 0.0 : stored > 0.0;
         work_i += grown;
         energy_i += stored;
-        bearing_i += bears;
+        loaded_i += bears;
         *(ours ? work + j : others + 6) += grown;
         *(ours ? energy + j : others + 7) += stored;
-        *(ours ? bearing + j : others + 8) += bears;
+        *(ours ? loaded + j : others + 8) += bears;
         if constexpr (adheres) {
           parted[i] += 0.5 * b.adhesion_loss.a[k];
           *(ours ? parted + j : others + 9) += 0.5 * b.adhesion_loss.a[k];
@@ -271,7 +271,7 @@ void PairLoop::scatter(int n, Ledger* ledger) {
       ti[1] = ty;
       ti[2] = tz;
     }
-    if constexpr (books) work[i] = work_i, energy[i] = energy_i, bearing[i] = bearing_i;
+    if constexpr (books) work[i] = work_i, energy[i] = energy_i, loaded[i] = loaded_i;
   }
 }
 
