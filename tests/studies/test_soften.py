@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """A softened twin keeps e_n at every speed; a measured e_n or a hardness gives back the strength it came from."""
 
-import json
 import math
 import re
 import tomllib
@@ -19,8 +18,10 @@ from epdem.errors import CaseError
 from epdem.impacts.experiment import experiment
 from epdem.impacts.prediction import predict
 from epdem.laws.library import laws
+from epdem.report.page import write
 from epdem.scenes.pairs import strengths
 from epdem.studies.calibrate import from_hardness, from_restitution, pressure_of_hardness
+from epdem.studies.pages import impacts as pages
 from epdem.studies.soften import soften
 from epdem.theory.adhesion import sticking_speed, yield_speed
 
@@ -312,13 +313,15 @@ def test_a_brinell_indentation_has_a_diameter():
     assert "--dent-ratio 0, must lie in (0, 1]" in str(done.exception)
 
 
-def test_the_page_of_a_strength_shows_the_curve_through_the_measured_point(tmp_path):
+def test_the_page_of_a_strength_shows_the_curve_through_the_measured_point(tmp_path, monkeypatch):
+    drawn = []
+    monkeypatch.setattr(pages, "write", lambda path, page: drawn.append(page()) or write(path, page))
     words = ["calibrate", str(STEEL), "--e-n", "0.6", "--speed", "5 m/s", "--out", str(tmp_path / "page")]
     assert "page/report.html" in CliRunner().invoke(app, words).stdout
     text = (tmp_path / "page/report.html").read_text()
-    line, point = json.loads(re.search(r"const charts = (\[.*\]), palette", text)[1])[0]["panels"][0]["series"]
-    assert (point["x"], point["y"]) == ([5.0], [0.6]) and max(line["y"]) > 0.9 > 0.3 > min(line["y"])
-    assert np.interp(5.0, line["x"], line["y"]) == pytest.approx(0.6, abs=1e-3)
+    line, point = drawn[0].parts[0].panels[0].series
+    assert (point.x, point.y) == pytest.approx((5.0, 0.6)) and max(line.y) > 0.9 > 0.3 > min(line.y)
+    assert np.interp(5.0, line.x, line.y) == pytest.approx(0.6, abs=1e-3)
     assert "C. Thornton, J. Appl. Mech. 64 (1997) 383" in text and "Y = 1e+09" not in text
     foreign = tmp_path / "mine"
     foreign.mkdir()
