@@ -28,7 +28,8 @@ plastic work. The last column is the ratio to LIGGGHTS's own elastic `hertz` (`{
 (medians of interleaved runs and half the distance of the quartiles). `order` is the order of the rms error between
 neighbouring rows. Steps are shares of the smallest stability limit of these laws at 300 m/s. Elastic spheres separate
 and collide with others, while yielding spheres stay together; the ratio therefore compares the scenes, not the models
-alone.
+alone. Hertz contacts dissipate
+no energy.
 
 {table}
 """
