@@ -9,7 +9,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
-from typing import Any, Unpack, overload
+from typing import Any, TypedDict, Unpack, overload
 
 import pandas as pd
 
@@ -123,44 +123,28 @@ def _case(given: object) -> Case | Scene:
     return Scene.from_toml(path) if is_scene(read_toml(path)) else Case.from_toml(path)
 
 
-@overload
-def run(
-    case: Case,
-    *,
-    engines: str | Sequence[str] = ...,
-    laws: str | Sequence[str] = ...,
-    out: Path | str | None = ...,
-    ranks: int = ...,
-    fresh: bool = ...,
-    force: bool = ...,
-) -> Run: ...
+class SceneOptions(TypedDict, total=False):
+    """How `run` runs a scene."""
+
+    engines: str | Sequence[str]
+    out: Path | str | None
+    ranks: int
+    fresh: bool
+    force: bool
+
+
+class Options(SceneOptions, total=False):
+    """How `run` runs impacts."""
+
+    laws: str | Sequence[str]
 
 
 @overload
-def run(
-    case: Scene,
-    *,
-    engines: str | Sequence[str] = ...,
-    out: Path | str | None = ...,
-    ranks: int = ...,
-    fresh: bool = ...,
-    force: bool = ...,
-) -> SceneRun: ...
-
-
+def run(case: Case, **options: Unpack[Options]) -> Run: ...
 @overload
-def run(
-    case: Path | str,
-    *,
-    engines: str | Sequence[str] = ...,
-    laws: str | Sequence[str] = ...,
-    out: Path | str | None = ...,
-    ranks: int = ...,
-    fresh: bool = ...,
-    force: bool = ...,
-) -> Run | SceneRun: ...
-
-
+def run(case: Scene, **options: Unpack[SceneOptions]) -> SceneRun: ...
+@overload
+def run(case: Path | str, **options: Unpack[Options]) -> Run | SceneRun: ...
 def run(
     case: Case | Scene | Path | str,
     *,

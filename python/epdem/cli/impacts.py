@@ -2,9 +2,8 @@
 """Commands for cases of impacts: functions of a few lines that call the library."""
 
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
-from ..base.settings import DEFAULT_ENGINE
 from ..base.terminal import bar, console
 from ..errors import CaseError
 from .options import say_files, warn
@@ -14,37 +13,23 @@ if TYPE_CHECKING:  # slow to import
 
 
 def run_impacts(
-    case: Path,
-    *,
-    engines: list[str] | None,
-    laws: list[str] | None,
-    out: Path | None,
-    ranks: int,
-    steps: int | None,
-    fresh: bool,
-    formats: tuple[str, ...],
-    force: bool,
+    case: Path, *, engines: list[str], laws: list[str], formats: tuple[str, ...], **options: Any
 ) -> "Outcome":
-    """Run a case with a progress bar; draw its figure and write its page."""
+    """Run a case with a progress bar; draw its figure and write its page. options: as of `impacts.run.run`."""
     from ..engines import engine as find
     from ..impacts import report
     from ..impacts.run import run
     from ..studies.pages.impacts import of_impacts
 
-    names = engines or [DEFAULT_ENGINE]
-    stages = len(set(names)) * max(len(set(laws or [])), 1) + 1  # and the figure
+    stages = len(set(engines)) * max(len(set(laws)), 1) + 1  # and the figure
     with bar() as progress:
         task = progress.add_task("", total=stages)
         outcome = run(
             case,
-            engines=[find(name) for name in names],
-            laws=laws or [],
-            out=out,
-            ranks=ranks,
-            steps=steps,
-            fresh=fresh,
-            force=force,
+            engines=[find(name) for name in engines],
+            laws=laws,
             progress=lambda text: progress.update(task, advance=1, description=text),
+            **options,
         )
         progress.update(task, advance=1, description="figure")
         report.figure(outcome, formats)

@@ -87,23 +87,21 @@ def run(
 
     Its page report.html is beside the results.
     """
-    kinds = formats(pictures)
+    kinds, engines = formats(pictures), engine or [DEFAULT_ENGINE]
+    options: dict[str, Any] = {"out": out, "ranks": ranks, "fresh": fresh, "force": force}
     if full and as_json:
         raise CaseError("--full: --json holds all rows; leave it out")
     if cli_scene.is_scene(case):
         refuse(case, "a scene has its own law and time step", law=law, steps=steps)
         refuse(case, "it is for impacts; a scene prints all its checks", full=full)
-        if len(set(engine or [])) > 1:
+        if len(set(engines)) > 1:
             raise CaseError(f"{case}: --engine: a scene runs on one engine; give it once")
         if fresh and resume:
             raise CaseError(f"{case}: --resume continues a run and --fresh begins it again; leave one out")
-        chosen = engine[0] if engine else DEFAULT_ENGINE
-        how: dict[str, Any] = {"out": out, "ranks": ranks, "fresh": fresh, "resume": resume, "force": force}
-        raise typer.Exit(cli_scene.run_scene(case, engine=chosen, formats=kinds, as_json=as_json, **how))
+        code = cli_scene.run_scene(case, engine=engines[0], formats=kinds, as_json=as_json, resume=resume, **options)
+        raise typer.Exit(code)
     refuse(case, "it continues bulk scenes; a run of impacts takes finished stages from its store", resume=resume)
-    outcome = cli_impacts.run_impacts(
-        case, engines=engine, laws=law, out=out, ranks=ranks, steps=steps, fresh=fresh, formats=kinds, force=force
-    )
+    outcome = cli_impacts.run_impacts(case, engines=engines, laws=law or [], steps=steps, formats=kinds, **options)
     cli_impacts.show_run(outcome, full, as_json)
     raise typer.Exit(0 if outcome.passed else 1)
 
