@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """A stored result is taken only while every one of its inputs is the same: each is changed in turn."""
 
-import subprocess
-import sys
 from pathlib import Path
 
 import pytest
@@ -96,20 +94,3 @@ def test_a_change_of_product_engine_deck_or_steps_runs_again(change, tmp_path, m
     else:
         setattr(tool, change, "another\n")
     assert reruns(tmp_path, tool, **options)
-
-
-def test_a_prediction_needs_no_compiled_library():
-    code = """
-import sys
-from pathlib import Path
-from epdem.base import paths
-paths.native = lambda name: None
-from epdem.case.impact import load
-from epdem.impacts.experiment import experiment
-from epdem.impacts.prediction import predict
-print(predict(experiment(load(Path(sys.argv[1])))).e_n.min())
-"""
-    done = subprocess.run(
-        [sys.executable, "-c", code, str(CASES / "steel_wall.toml")], capture_output=True, text=True, check=True
-    )
-    assert float(done.stdout) == pytest.approx(0.292715, abs=1e-5)  # at 150 m/s, as the README's figure shows it

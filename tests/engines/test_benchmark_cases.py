@@ -74,7 +74,7 @@ def test_scenes_of_the_benchmark_have_its_numbers(about, pairs):
     p = plan(load(CASES / f"{name}.toml"))
     deck = scene_deck.deck(p)
     assert (p.count, p.time_step) == (spheres, step)
-    assert deck.settings == ("viscous on",)  # with the tangential dashpot
+    assert deck.settings == ("viscous on", "computeContactStrain on")  # with the tangential dashpot
     restitution, friction = (matrix(deck, f"coefficient{key}") for key in ("Restitution", "Friction"))
     for (a, b), expected in pairs.items():
         assert (restitution[a, b], friction[a, b]) == (restitution[b, a], friction[b, a]) == expected
