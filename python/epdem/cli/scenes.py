@@ -118,7 +118,7 @@ def tune(
     write: Annotated[bool, typer.Option("--write", help="put the choices into the case file")] = False,
     as_json: AsJson = False,
 ) -> None:
-    """Find the neighbour skin, and with --ranks the cut of the room, with which a scene runs fastest in LIGGGHTS."""
+    """Find the fastest neighbour skin of a scene in LIGGGHTS and, with --ranks, the fastest processor grid."""
     from ..base.terminal import status
     from ..engines.liggghts import tune as t
 

@@ -40,7 +40,7 @@ def sweep(
     force: Force = False,
     as_json: AsJson = False,
 ) -> None:
-    """A case or scene at many points; the same command again does only what is missing or has changed."""
+    """Run a case or scene at many points; the same command again runs only missing and changed points."""
     from ..studies.pages.sweep import of_sweep
     from ..studies.sweep import executors as study
     from ..studies.sweep.points import settings
@@ -89,7 +89,7 @@ def status(
     table: Annotated[bool, typer.Option("--table", help="write sweep.csv and sweep.h5 of what is there")] = False,
     as_json: AsJson = False,
 ) -> None:
-    """How far a sweep is: points waiting, running, done and failed, with times and reasons."""
+    """Print the progress of a sweep: points waiting, running, done and failed, with times and reasons."""
     from ..impacts.report import plain
     from ..studies.sweep import folder as store
     from ..studies.sweep.status import status as ask
