@@ -51,7 +51,7 @@ class PhaseParticle:
 
 @dataclass(frozen=True)
 class DeckPlane:
-    """A plane of LIGGGHTS's kind `axis` ("zplane"); `force`: LIGGGHTS stores that of each sphere on it."""
+    """A plane of LIGGGHTS's kind `axis` ("zplane"); `force`: LIGGGHTS stores the force of each sphere on it."""
 
     id: str
     type: int
@@ -99,7 +99,7 @@ class DeckPhase:
     stop: StopCondition | None
 
     def after(self, steps: int, every: int) -> "DeckPhase":
-        """What is left of the phase after so many of its steps."""
+        """Remaining phase after `steps` of its steps have run."""
         stop = self.stop
         if stop is not None:
             looked = max(0, steps - stop.first) // every

@@ -103,7 +103,7 @@ class Deck:
 
 
 def refuse(p: ScenePlan) -> None:
-    """Raises CaseError for what a scene in YADE cannot have, beside what its abilities name."""
+    """Raise CaseError for parts of a scene that YADE does not have."""
     m, out, s = p.model, p.output, p.case.scene
     if isinstance(s, Parts):
         refuse_parts(p, s)
@@ -123,7 +123,7 @@ def refuse(p: ScenePlan) -> None:
 
 
 def notes(p: ScenePlan) -> list[str]:
-    """The parts of a case that a YADE scene leaves out, in words."""
+    """Sentences on the parts of a case that a YADE scene leaves out."""
     found = [NO_DASHPOT] if p.model.tangential_restitution is not None else []
     found += [NO_RANKS] if p.case.numerics.processors else []
     return [*found, EDGES] if _parts(p) and p.scene.meshes else found
