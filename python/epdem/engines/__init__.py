@@ -8,10 +8,11 @@ from ..errors import CaseError
 from ..impacts.engine import Feature, ImpactEngine, Trajectory
 from ..scenes.engine import SceneEngine
 from .embedded import Embedded
+from .lammps.engine import Lammps
 from .liggghts.engine import Liggghts
 from .yade.engine import Yade
 
-ENGINES: dict[str, type[ImpactEngine]] = {tool.name: tool for tool in (Embedded, Liggghts, Yade)}
+ENGINES: dict[str, type[ImpactEngine]] = {tool.name: tool for tool in (Embedded, Liggghts, Yade, Lammps)}
 # Engines of bulk scenes.
 SCENES: dict[str, type[SceneEngine]] = {tool.name: tool for tool in (Liggghts, Yade)}
 

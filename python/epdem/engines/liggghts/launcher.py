@@ -50,7 +50,8 @@ def command(deck: str, *, ranks: int = 1, log: str = "none") -> list[str]:
         nodes = min(ranks, int(os.environ.get("SLURM_JOB_NUM_NODES", "1")))
         return ["srun", "--overlap", "--mpi=pmix", "-N", str(nodes), "-n", str(ranks), *liggghts]
     root = ["--allow-run-as-root"] if os.geteuid() == 0 else []
-    return ["mpirun", "-np", str(ranks), "--oversubscribe", *root, *liggghts]
+    mpirun = shutil.which("mpirun.openmpi") or "mpirun"  # PyPI's MPICH may stand before OpenMPI on PATH
+    return [mpirun, "-np", str(ranks), "--oversubscribe", *root, *liggghts]
 
 
 def environment(ranks: int = 1) -> dict[str, str]:

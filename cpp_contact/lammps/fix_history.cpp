@@ -1,0 +1,210 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include "fix_history.hpp"
+
+#include <algorithm>
+
+#include "atom.h"
+#include "comm.h"
+#include "error.h"
+#include "memory.h"
+#include "neigh_list.h"
+
+namespace epdem::lammps {
+
+using namespace LAMMPS_NS;
+
+FixHistory::FixHistory(LAMMPS* lmp, int count, char** word) : Fix(lmp, count, word) {
+  create_attribute = 1;
+  restart_global = 1;
+  restart_peratom = 1;
+  maxexchange_dynamic = 1;
+  maxexchange = 1 + columns;
+  peratom_flag = count > 3;
+  size_peratom_cols = columns;
+  peratom_freq = 1;
+  FixHistory::grow_arrays(atom->nmax);
+  atom->add_callback(Atom::GROW);
+  atom->add_callback(Atom::RESTART);
+}
+
+FixHistory::~FixHistory() {
+  atom->delete_callback(id, Atom::GROW);
+  atom->delete_callback(id, Atom::RESTART);
+  memory->destroy(array_atom);
+}
+
+void FixHistory::prepare(NeighList* const* list, const Layout& layout, const Models& models) {
+  list_ = list;
+  const std::vector<double> identity{double(models.law->place), double(models.friction), double(models.rolling),
+                                     double(layout.values)};
+  if (!identity_.empty() && identity_ != identity) {
+    if (comm->me == 0)
+      error->warning(FLERR, "pair_style ep: law or models changed; all contacts begin without a history");
+    for (auto& held : held_) held.clear();
+    page_.clear();
+  }
+  identity_ = identity;
+  layout_ = layout;
+}
+
+int FixHistory::setmask() { return FixConst::PRE_EXCHANGE | FixConst::POST_NEIGHBOR; }
+
+void FixHistory::open_energies(int atoms) {
+  for (int i = 0; i < atoms; ++i)
+    array_atom[i][elastic_energy] = array_atom[i][loaded_contacts] = array_atom[i][friction_energy] = 0.0;
+}
+
+void FixHistory::book(const kernels::Block& b, int k, int i, double share, const Models& models) {
+  double* const row = array_atom[i];
+  const bool adheres = models.law->root >= 0;
+  const double stored = b.stored_energy.a[k];
+  row[plastic_work] += share * std::max(0.0, b.plastic_work_step.a[k]);
+  row[elastic_energy] += share * stored;
+  row[loaded_contacts] += adheres ? b.contact_radius.a[k] > 0.0 : stored > 0.0;
+  if (adheres) row[adhesive_work] += share * b.adhesion_loss.a[k];
+  if (!models.books_friction) return;
+  row[friction_work] += share * b.friction_work.a[k];
+  row[friction_energy] += share * b.spring_energy.a[k];
+}
+
+void FixHistory::remember(int i, tagint partner, const double* values, bool mirrored) {
+  std::vector<double>& held = held_[i];
+  held.push_back(ubuf(partner).d);
+  for (int k = 0; k < layout_.values; ++k) held.push_back(mirrored ? layout_.mirror[k] * values[k] : values[k]);
+}
+
+size_t FixHistory::longest() const {
+  size_t most = 0;
+  for (const auto& held : held_) most = std::max(most, held.size());
+  return most;
+}
+
+/// From the list to the atoms: the contacts of the last evaluation.
+void FixHistory::collect() {
+  if (!page_holds_ || layout_.values == 0) return;
+  const NeighList& list = **list_;
+  const int nlocal = atom->nlocal;
+  const tagint* const tag = atom->tag;
+  for (auto& held : held_) held.clear();
+  for (int ii = 0; ii < list.inum; ++ii) {
+    const int i = list.ilist[ii];
+    for (int jj = 0; jj < list.numneigh[i]; ++jj) {
+      const double* const history = at(i, jj);
+      if (history[layout_.last_step] != evaluations_) continue;
+      const int j = list.firstneigh[i][jj] & NEIGHMASK;
+      remember(i, tag[j], history, false);
+      if (j < nlocal) remember(j, tag[i], history, true);
+    }
+  }
+  maxexchange = static_cast<int>(longest()) + 1 + columns;
+}
+
+/// Commands between two runs may add, remove and sort atoms.
+void FixHistory::post_run() {
+  collect();
+  page_holds_ = false;
+}
+
+/// From the atoms to a new list.
+void FixHistory::distribute() {
+  page_holds_ = layout_.values > 0;
+  if (!page_holds_) return;
+  const NeighList& list = **list_;
+  first_.resize(atom->nmax);
+  long total = 0;
+  for (int ii = 0; ii < list.inum; ++ii) {
+    const int i = list.ilist[ii];
+    first_[i] = total;
+    total += long(layout_.values) * list.numneigh[i];
+  }
+  page_.assign(total, 0.0);
+  const tagint* const tag = atom->tag;
+  for (int ii = 0; ii < list.inum; ++ii) {
+    const int i = list.ilist[ii];
+    const std::vector<double>& held = held_[i];
+    if (held.empty()) continue;
+    for (int jj = 0; jj < list.numneigh[i]; ++jj) {
+      const tagint partner = tag[list.firstneigh[i][jj] & NEIGHMASK];
+      for (size_t k = 0; k < held.size(); k += stride())
+        if (static_cast<tagint>(ubuf(held[k]).i) == partner) {
+          std::copy_n(held.data() + k + 1, layout_.values, at(i, jj));
+          break;
+        }
+    }
+  }
+}
+
+void FixHistory::grow_arrays(int atoms) {
+  held_.resize(atoms);
+  memory->grow(array_atom, atoms, columns, "ep:energies");
+  for (int i = rows_; i < atoms; ++i) std::fill_n(array_atom[i], int(columns), 0.0);
+  rows_ = atoms;
+}
+
+void FixHistory::copy_arrays(int from, int to, int) {
+  held_[to] = held_[from];
+  std::copy_n(array_atom[from], int(columns), array_atom[to]);
+}
+
+void FixHistory::set_arrays(int i) {
+  held_[i].clear();
+  std::fill_n(array_atom[i], int(columns), 0.0);
+}
+
+int FixHistory::pack_exchange(int i, double* buffer) {
+  double* const end = std::copy_n(array_atom[i], int(columns), buffer);
+  *end = ubuf(bigint(held_[i].size())).d;
+  return static_cast<int>(std::copy(held_[i].begin(), held_[i].end(), end + 1) - buffer);
+}
+
+int FixHistory::unpack_exchange(int i, double* buffer) {
+  std::copy_n(buffer, int(columns), array_atom[i]);
+  const auto size = ubuf(buffer[columns]).i;
+  const double* const values = buffer + columns + 1;
+  held_[i].assign(values, values + size);
+  return static_cast<int>(columns + 1 + size);
+}
+
+void FixHistory::write_restart(FILE* file) {
+  collect();
+  if (comm->me != 0) return;
+  std::vector<double> stored = identity_;
+  stored.push_back(evaluations_);
+  const int bytes = static_cast<int>(stored.size() * sizeof(double));
+  fwrite(&bytes, sizeof bytes, 1, file);
+  fwrite(stored.data(), 1, bytes, file);
+}
+
+void FixHistory::restart(char* stored) {
+  const double* const values = reinterpret_cast<const double*>(stored);
+  identity_.assign(values, values + 4);
+  layout_.values = static_cast<int>(values[3]);
+  evaluations_ = values[4];
+}
+
+int FixHistory::size_restart(int i) { return static_cast<int>(held_[i].size()) + 1 + columns; }
+
+int FixHistory::maxsize_restart() { return static_cast<int>(longest()) + 1 + columns; }
+
+int FixHistory::pack_restart(int i, double* buffer) {
+  const int size = size_restart(i);
+  buffer[0] = size;
+  std::copy(held_[i].begin(), held_[i].end(), std::copy_n(array_atom[i], int(columns), buffer + 1));
+  return size;
+}
+
+void FixHistory::unpack_restart(int i, int nth) {
+  const double* values = atom->extra[i];
+  for (int k = 0; k < nth; ++k) values += static_cast<int>(values[0]);
+  const int size = static_cast<int>(values[0]);
+  std::copy_n(values + 1, int(columns), array_atom[i]);
+  held_[i].assign(values + 1 + columns, values + size);
+}
+
+double FixHistory::memory_usage() {
+  size_t numbers = page_.capacity() + columns * held_.size();
+  for (const auto& held : held_) numbers += held.capacity();
+  return static_cast<double>(numbers * sizeof(double));
+}
+
+}  // namespace epdem::lammps

@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// The history of the contacts of a pair style, through new lists, exchange of atoms and restart files; and the energies
+// that contacts give to their atoms.
+#pragma once
+
+#include <vector>
+
+#include "fix.h"
+#include "words.hpp"
+
+namespace epdem::lammps {
+
+/// Between two lists, the histories lie beside the list (`at`); while a list is made, with their atoms, by the tag of
+/// the partner. A pair that spans two ranks is on both lists and has two equal histories.
+class FixHistory : public LAMMPS_NS::Fix {
+ public:
+  static constexpr const char* style_name = "EP_HISTORY";
+
+  /// fix ID all EP_HISTORY [energies]; the pair style creates it.
+  FixHistory(LAMMPS_NS::LAMMPS* lmp, int count, char** word);
+  ~FixHistory() override;
+
+  /// Before each run. `models` as numbers that a restart file keeps.
+  void prepare(LAMMPS_NS::NeighList* const* list, const Layout& layout, const Models& models);
+
+  double* at(int i, int slot) { return page_.data() + first_[i] + long(layout_.values) * slot; }
+
+  /// The list is in use, also that of the run before.
+  void resume() { page_holds_ = layout_.values > 0; }
+
+  /// The number of the evaluation that follows; `advance` says that it counts.
+  double now() const { return evaluations_ + 1.0; }
+  void advance() { evaluations_ += 1.0; }
+
+  /// Histories of before an evaluation that does not count.
+  std::vector<double>& page() { return page_; }
+
+  /// Energies are requested: columns plastic work, elastic energy, loaded contacts, work lost by friction, elastic
+  /// energy of friction, work lost by adhesion in its jumps.
+  enum Column { plastic_work, elastic_energy, loaded_contacts, friction_work, friction_energy, adhesive_work, columns };
+  /// Adds `share` of the energies of contact k of a block to atom i.
+  void book(const kernels::Block& b, int k, int i, double share, const Models& models);
+  /// At the start of an evaluation that counts.
+  void open_energies(int atoms);
+
+  int setmask() override;
+  void setup_post_neighbor() override { distribute(); }
+  void post_neighbor() override { distribute(); }
+  void pre_exchange() override { collect(); }
+  void post_run() override;
+
+  void grow_arrays(int atoms) override;
+  void copy_arrays(int from, int to, int) override;
+  void set_arrays(int i) override;
+  int pack_exchange(int i, double* buffer) override;
+  int unpack_exchange(int i, double* buffer) override;
+  void write_restart(FILE* file) override;
+  void restart(char* stored) override;
+  int pack_restart(int i, double* buffer) override;
+  void unpack_restart(int i, int nth) override;
+  int size_restart(int i) override;
+  int maxsize_restart() override;
+  double memory_usage() override;
+
+ private:
+  void collect();
+  void distribute();
+  int stride() const { return layout_.values + 1; }
+  void remember(int i, LAMMPS_NS::tagint partner, const double* values, bool mirrored);
+  size_t longest() const;
+
+  LAMMPS_NS::NeighList* const* list_ = nullptr;
+  Layout layout_;
+  std::vector<double> identity_;  // of the models whose histories these are
+  double evaluations_ = 0.0;
+  bool page_holds_ = false;                // else the atoms hold the histories
+  int rows_ = 0;                           // of array_atom
+  std::vector<double> page_;               // by slot of the list
+  std::vector<long> first_;                // of an atom in the page
+  std::vector<std::vector<double>> held_;  // by atom: tag of the partner, values
+};
+
+}  // namespace epdem::lammps

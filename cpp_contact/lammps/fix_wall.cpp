@@ -1,0 +1,288 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include "fix_wall.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdlib>
+#include <cstring>
+
+#include "atom.h"
+#include "domain.h"
+#include "error.h"
+#include "force.h"
+#include "modify.h"
+#include "update.h"
+#include "utils.h"
+
+namespace epdem::lammps {
+
+using namespace LAMMPS_NS;
+using kernels::block_size, kernels::most_constants;
+
+namespace {
+
+std::string place_of(int count, char** word) {
+  std::string text = "fix";
+  for (int k = 0; k < std::min(count, 4); ++k)
+    if (k != 1) text += std::string(" ") + word[k];
+  return text;
+}
+
+}  // namespace
+
+FixWall::FixWall(LAMMPS* lmp, int count, char** word)
+    : Fix(lmp, count, word), place_(place_of(count, word)), block_(std::make_unique<kernels::Block>()) {
+  create_attribute = 1;
+  restart_peratom = 1;
+  vector_flag = 1;
+  size_vector = 3;
+  extvector = 1;
+  global_freq = 1;
+}
+
+void FixWall::read(int first, int count, char** word, int most) {
+  words_ = read_words(lmp, place_, count - first, word + first);
+  layout_ = layout_of(words_.models, true);
+  kernel_ = kernel_of(lmp, place_, words_.models, true);
+  most_ = most;
+  stride_ = 1 + layout_.values;
+  maxexchange = 1 + most_ * stride_;
+  scratch_.resize(long(most_) * stride_);
+  FixWall::grow_arrays(atom->nmax);
+  atom->add_callback(Atom::GROW);
+  atom->add_callback(Atom::RESTART);
+}
+
+FixWall::~FixWall() {
+  if (stride_ == 0) return;  // its words were wrong
+  atom->delete_callback(id, Atom::GROW);
+  atom->delete_callback(id, Atom::RESTART);
+}
+
+int FixWall::setmask() { return FixConst::POST_FORCE; }
+
+void FixWall::init() {
+  check_settings(lmp, place_);
+  pair_ = nullptr;
+  for (int sub = 0; sub < 10 && !pair_; ++sub) {
+    auto* const found = dynamic_cast<PairEp*>(force->pair_match(PairEp::style_name, 1, sub));
+    if (found && found->models().law == words_.models.law) pair_ = found;
+  }
+  if (!pair_)
+    error->all(FLERR, "{}: the material of the spheres comes from a pair_style ep of law {}, and there is none", place_,
+               words_.models.law->name);
+  constants_.assign(most_constants * (atom->ntypes + 1), 0.0);
+  for (int type = 1; type <= atom->ntypes; ++type)
+    put_constants(*words_.models.law, pair_->words_of(type, place_).material, words_.material, words_.coefficients,
+                  constants_.data() + most_constants * type);
+  pass_ = {};
+  pass_.damped = pass_.viscous = words_.coefficients.restitution > 0.0;
+  pass_.rolling = words_.models.rolling;
+  pass_.cohesion = words_.models.cohesion;
+  if (pass_.damped)
+    for (Fix* fix : modify->get_fix_list())
+      if (fix->rigid_flag)
+        error->all(FLERR,
+                   "{}: restitution needs the mass of the body of fix {} {}, which the wall does not know; "
+                   "remove restitution",
+                   place_, fix->style, fix->id);
+}
+
+/// As before the first step of a run, when LAMMPS computes forces once more: this changes no history.
+void FixWall::post_force(int) {
+  const bool counts = !update->setupflag;
+  std::vector<double> before;
+  std::vector<int> count_before;
+  if (!counts) before = held_, count_before = count_;
+  pass_.dt = update->dt;
+  pass_.work = counts && pair_->energies();
+  const double* rows[] = {atom->v[0], atom->omega[0]};
+  if (atom->nlocal >= atom->nmax)
+    for (int k = 0; k < 2; ++k) {
+      copies_[k].assign(rows[k], rows[k] + 3L * atom->nlocal);
+      copies_[k].push_back(0.0);
+      rows[k] = copies_[k].data();
+    }
+  pass_.v = rows[0];
+  pass_.omega = rows[1];
+  std::fill_n(sum_, 3, 0.0);
+  begin();
+
+  kernels::Block& b = *block_;
+  std::vector<Contact> found;
+  int n = 0;
+  for (int i = 0; i < atom->nlocal; ++i) {
+    if (!(atom->mask[i] & groupbit)) continue;
+    found.clear();
+    find(i, found);
+    if (static_cast<int>(found.size()) > most_)
+      error->one(FLERR, "{}: atom {} has more than {} contacts with the wall", place_, atom->tag[i], most_);
+    keep_records(i, found);
+    for (size_t k = 0; k < found.size(); ++k) {
+      const Contact& c = found[k];
+      b.i[n] = i;
+      b.history[n] = record(i, static_cast<int>(k)) + 1;
+      b.material[n] = constants_.data() + most_constants * atom->type[i];
+      b.radius_i.a[n] = atom->radius[i];
+      b.mass_i.a[n] = atom->rmass[i];
+      b.overlap.a[n] = atom->radius[i] - c.distance;
+      for (int axis = 0; axis < 3; ++axis) {
+        b.from_wall[axis].a[n] = c.from_wall[axis];
+        b.wall_v[axis].a[n] = c.velocity[axis];
+      }
+      if (++n == block_size) {
+        finish(n);
+        n = 0;
+      }
+    }
+  }
+  finish(n);
+  summed_ = -1;
+  if (counts) return;
+  held_.swap(before);
+  count_.swap(count_before);
+}
+
+/// The records of a sphere in the order of its contacts; a contact that is new begins with zeros.
+void FixWall::keep_records(int i, const std::vector<Contact>& found) {
+  const int known = count_[i];
+  count_[i] = static_cast<int>(found.size());
+  if (found.empty()) return;
+  std::copy_n(record(i, 0), long(known) * stride_, scratch_.data());
+  for (size_t k = 0; k < found.size(); ++k) {
+    double* const to = record(i, static_cast<int>(k));
+    std::fill_n(to, stride_, 0.0);
+    for (int old = 0; old < known; ++old)
+      if (scratch_[long(old) * stride_] == found[k].part) std::copy_n(&scratch_[long(old) * stride_], stride_, to);
+    to[0] = found[k].part;
+  }
+}
+
+void FixWall::finish(int n) {
+  if (n == 0) return;
+  kernels::Block& b = *block_;
+  pass_.several = std::any_of(b.material, b.material + n, [&](const double* m) { return m != b.material[0]; });
+  kernels::pad(b, n);
+  kernel_(b, n, pass_);
+  for (int k = 0; k < n; ++k) {
+    const int i = b.i[k];
+    for (int axis = 0; axis < 3; ++axis) {
+      atom->f[i][axis] += b.force[axis].a[k];
+      atom->torque[i][axis] += b.torque_i[axis].a[k];
+      sum_[axis] += b.force[axis].a[k];
+    }
+    if (pass_.work) pair_->history()->book(b, k, i, 1.0, words_.models);
+  }
+}
+
+double FixWall::compute_vector(int axis) {
+  if (summed_ != update->ntimestep) {
+    MPI_Allreduce(sum_, total_, 3, MPI_DOUBLE, MPI_SUM, world);
+    summed_ = update->ntimestep;
+  }
+  return total_[axis];
+}
+
+void FixWall::grow_arrays(int atoms) {
+  held_.resize(long(atoms) * most_ * stride_);
+  count_.resize(atoms);
+}
+
+void FixWall::copy_arrays(int from, int to, int) {
+  count_[to] = count_[from];
+  std::copy_n(record(from, 0), long(count_[from]) * stride_, record(to, 0));
+}
+
+void FixWall::set_arrays(int i) { count_[i] = 0; }
+
+int FixWall::pack_exchange(int i, double* buffer) {
+  buffer[0] = count_[i];
+  return static_cast<int>(std::copy_n(record(i, 0), long(count_[i]) * stride_, buffer + 1) - buffer);
+}
+
+int FixWall::unpack_exchange(int i, double* buffer) {
+  count_[i] = static_cast<int>(buffer[0]);
+  std::copy_n(buffer + 1, long(count_[i]) * stride_, record(i, 0));
+  return 1 + count_[i] * stride_;
+}
+
+int FixWall::size_restart(int i) { return 2 + count_[i] * stride_; }
+
+int FixWall::pack_restart(int i, double* buffer) {
+  buffer[0] = size_restart(i);
+  pack_exchange(i, buffer + 1);
+  return size_restart(i);
+}
+
+void FixWall::unpack_restart(int i, int nth) {
+  double* values = atom->extra[i];
+  for (int k = 0; k < nth; ++k) values += static_cast<int>(values[0]);
+  const int held = static_cast<int>(values[1]);
+  if (held > most_ || 2 + held * stride_ != static_cast<int>(values[0]))
+    error->one(FLERR, "{}: the restart file holds contacts of other models; take its law and models, or another ID",
+               place_);
+  unpack_exchange(i, values + 1);
+}
+
+FixWallPlanes::FixWallPlanes(LAMMPS* lmp, int count, char** word) : FixWall(lmp, count, word) {
+  static const char* const names[] = {"xplane", "yplane", "zplane"};
+  if (count < 6) error->all(FLERR, "{}: the words are ID group wall/ep xplane|yplane|zplane lo hi LAW ...", place_);
+  axis_ = static_cast<int>(std::find(names, names + 3, std::string(word[3])) - names);
+  if (axis_ == 3) error->all(FLERR, "{}: must be xplane, yplane or zplane; other walls are wall/ep/region", place_);
+  const auto position = [&](const char* text, double none) {
+    if (std::strcmp(text, "NULL") == 0) return none;
+    if (!utils::is_double(text)) error->all(FLERR, "{}: position {} must be a number or NULL", place_, text);
+    return std::atof(text);
+  };
+  low_ = position(word[4], -HUGE_VAL);
+  high_ = position(word[5], HUGE_VAL);
+  if (!(low_ < high_)) error->all(FLERR, "{}: lo = {} must lie below hi = {}", place_, word[4], word[5]);
+  read(6, count, word, 2);
+}
+
+void FixWallPlanes::find(int i, std::vector<Contact>& found) {
+  const double x = atom->x[i][axis_], radius = atom->radius[i];
+  const auto note = [&](int part, double from_wall) {
+    if (!(std::fabs(from_wall) < radius)) return;
+    Contact c{part, std::fabs(from_wall), {}, {}};
+    c.from_wall[axis_] = from_wall;
+    found.push_back(c);
+  };
+  if (x > low_) note(0, x - low_);
+  if (x < high_) note(1, x - high_);
+}
+
+FixWallRegion::FixWallRegion(LAMMPS* lmp, int count, char** word)
+    : FixWall(lmp, count, word), name_(count > 3 ? word[3] : "") {
+  if (count < 5) error->all(FLERR, "{}: the words are ID group wall/ep/region REGION LAW ...", place_);
+  region_ = domain->get_region_by_id(name_);
+  if (!region_) error->all(FLERR, "{}: there is no region {}", place_, name_);
+  read(4, count, word, region_->tmax);
+}
+
+void FixWallRegion::init() {
+  region_ = domain->get_region_by_id(name_);
+  if (!region_) error->all(FLERR, "{}: region {} is gone", place_, name_);
+  moves_ = region_->dynamic_check() != 0;
+  FixWall::init();
+}
+
+void FixWallRegion::begin() {
+  if (!moves_) return;
+  region_->prematch();
+  region_->set_velocity();
+}
+
+void FixWallRegion::find(int i, std::vector<Contact>& found) {
+  double* const x = atom->x[i];
+  if (!region_->match(x[0], x[1], x[2])) return;
+  const int count = region_->surface(x[0], x[1], x[2], atom->radius[i]);
+  for (int k = 0; k < count; ++k) {
+    const Region::Contact& at = region_->contact[k];
+    Contact c{at.iwall, at.r, {at.delx, at.dely, at.delz}, {}};
+    if (moves_) region_->velocity_contact(c.velocity, x, k);
+    found.push_back(c);
+  }
+}
+
+}  // namespace epdem::lammps

@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// Walls: planes, and every region of LAMMPS.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "fix.h"
+#include "pair_ep.hpp"
+#include "region.h"
+#include "words.hpp"
+
+namespace epdem::lammps {
+
+/// Contacts of spheres with a wall, whose material and coefficients the words name; the material of the spheres is that
+/// of pair_style ep.
+class FixWall : public LAMMPS_NS::Fix {
+ public:
+  ~FixWall() override;
+
+  int setmask() override;
+  void init() override;
+  void setup(int vflag) override { post_force(vflag); }
+  void post_force(int vflag) override;
+  /// Force of the wall on all spheres.
+  double compute_vector(int axis) override;
+
+  void grow_arrays(int atoms) override;
+  void copy_arrays(int from, int to, int) override;
+  void set_arrays(int i) override;
+  int pack_exchange(int i, double* buffer) override;
+  int unpack_exchange(int i, double* buffer) override;
+  int pack_restart(int i, double* buffer) override;
+  void unpack_restart(int i, int nth) override;
+  int size_restart(int i) override;
+  int maxsize_restart() override { return 2 + most_ * stride_; }
+  double memory_usage() override { return static_cast<double>(held_.capacity() * sizeof(double)); }
+
+ protected:
+  /// A contact with the part of the wall of this number; at most `most` of a sphere.
+  struct Contact {
+    int part;
+    double distance;
+    double from_wall[3], velocity[3];
+  };
+
+  /// Reads all words behind the first `first` ones.
+  FixWall(LAMMPS_NS::LAMMPS* lmp, int count, char** word);
+  void read(int first, int count, char** word, int most);
+
+  /// Before the spheres of a step.
+  virtual void begin() {}
+  /// The contacts of a sphere, at most `most`.
+  virtual void find(int i, std::vector<Contact>& found) = 0;
+
+  const std::string place_;
+
+ private:
+  double* record(int i, int k) { return held_.data() + (long(i) * most_ + k) * stride_; }
+  void keep_records(int i, const std::vector<Contact>& found);
+  void finish(int n);
+
+  Words words_;
+  Layout layout_;
+  int most_ = 0, stride_ = 0;
+  std::vector<double> held_;  // by atom: `most` records of a part and the values of its contact
+  std::vector<int> count_;    // of records that hold
+  PairEp* pair_ = nullptr;
+  std::vector<double> constants_;  // by type
+  kernels::Kernel kernel_ = nullptr;
+  kernels::Pass pass_{};
+  std::unique_ptr<kernels::Block> block_;
+  std::vector<double> copies_[2], scratch_;
+  double sum_[3] = {}, total_[3] = {};
+  LAMMPS_NS::bigint summed_ = -1;
+};
+
+/// fix ID group wall/ep xplane|yplane|zplane lo|NULL hi|NULL LAW ...
+class FixWallPlanes : public FixWall {
+ public:
+  static constexpr const char* style_name = "wall/ep";
+  FixWallPlanes(LAMMPS_NS::LAMMPS* lmp, int count, char** word);
+
+ protected:
+  void find(int i, std::vector<Contact>& found) override;
+
+ private:
+  int axis_ = 0;
+  double low_, high_;
+};
+
+/// fix ID group wall/ep/region REGION LAW ...
+class FixWallRegion : public FixWall {
+ public:
+  static constexpr const char* style_name = "wall/ep/region";
+  FixWallRegion(LAMMPS_NS::LAMMPS* lmp, int count, char** word);
+  void init() override;
+
+ protected:
+  void begin() override;
+  void find(int i, std::vector<Contact>& found) override;
+
+ private:
+  const std::string name_;
+  LAMMPS_NS::Region* region_ = nullptr;
+  bool moves_ = false;
+};
+
+}  // namespace epdem::lammps

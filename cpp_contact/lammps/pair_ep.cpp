@@ -1,0 +1,373 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include "pair_ep.hpp"
+
+#include <algorithm>
+
+#include "atom.h"
+#include "comm.h"
+#include "domain.h"
+#include "error.h"
+#include "force.h"
+#include "memory.h"
+#include "modify.h"
+#include "neigh_list.h"
+#include "neighbor.h"
+#include "update.h"
+#include "utils.h"
+
+namespace epdem::lammps {
+
+using namespace LAMMPS_NS;
+using kernels::block_size, kernels::most_constants;
+
+namespace {
+
+constexpr const char* placeholder = "_PLACE";
+
+/// The first ID EP_HISTORY + number that no fix has.
+std::string free_id(const Modify& modify) {
+  for (int k = 0;; ++k) {
+    const std::string id = FixHistory::style_name + std::to_string(k);
+    if (!modify.get_fix_by_id(id) && !modify.get_fix_by_id(id + placeholder)) return id;
+  }
+}
+
+std::vector<char*> words_of_text(std::vector<std::string>& words) {
+  std::vector<char*> pointers;
+  for (std::string& word : words) pointers.push_back(word.data());
+  return pointers;
+}
+
+}  // namespace
+
+/// A fix in place of the history's keeps the history before the fixes of the deck: those may add atoms.
+PairEp::PairEp(LAMMPS* lmp) : Pair(lmp), block_(std::make_unique<kernels::Block>()) {
+  single_enable = 0;
+  no_virial_fdotr_compute = 1;
+  centroidstressflag = CENTROID_NOTAVAIL;
+  finitecutflag = 1;
+  if (domain->box_exist == 0) error->all(FLERR, "pair_style ep: there is no simulation box; create it before");
+  fix_id_ = free_id(*modify);
+  modify->add_fix(fix_id_ + placeholder + " all DUMMY");
+}
+
+PairEp::~PairEp() {
+  for (const std::string& fix : {fix_id_, fix_id_ + placeholder})
+    if (modify->get_fix_by_id(fix)) modify->delete_fix(fix);
+  if (!allocated) return;
+  memory->destroy(setflag);
+  memory->destroy(cutsq);
+}
+
+void PairEp::settings(int count, char** word) {
+  if (count > 1 || (count == 1 && std::string(word[0]) != "energies"))
+    error->all(FLERR, "pair_style ep: {} is no setting of the style; it has one, energies", word[count > 1 ? 1 : 0]);
+  energies_ = count == 1;
+  create_history();  // computes of the deck may name the fix
+}
+
+/// Not before the fixes of a restart file are known.
+void PairEp::create_history() {
+  Fix* fix = modify->get_fix_by_id(fix_id_);
+  const std::string command = fix_id_ + " all " + FixHistory::style_name + (energies_ ? " energies" : "");
+  if (!fix && modify->get_fix_by_id(fix_id_ + placeholder)) fix = modify->replace_fix(fix_id_ + placeholder, command);
+  if (!fix) fix = modify->add_fix(command);
+  history_ = static_cast<FixHistory*>(fix);
+}
+
+void PairEp::allocate() {
+  allocated = 1;
+  width_ = atom->ntypes + 1;
+  memory->create(setflag, width_, width_, "pair:setflag");
+  memory->create(cutsq, width_, width_, "pair:cutsq");
+  std::fill_n(setflag[0], width_ * width_, 0);
+  types_.assign(width_ * width_, {});
+}
+
+void PairEp::coeff(int count, char** word) {
+  if (count < 3) error->all(FLERR, "pair_coeff: the words are I J LAW E nu PARAMETERS [options]");
+  if (!allocated) allocate();
+  int i_low, i_high, j_low, j_high;
+  utils::bounds_typelabel(FLERR, word[0], 1, atom->ntypes, i_low, i_high, lmp, Atom::ATOM);
+  utils::bounds_typelabel(FLERR, word[1], 1, atom->ntypes, j_low, j_high, lmp, Atom::ATOM);
+  std::string text;
+  for (int k = 2; k < count; ++k) text += std::string(k > 2 ? " " : "") + word[k];
+  for (int i = i_low; i <= i_high; ++i)
+    for (int j = std::max(i, j_low); j <= j_high; ++j) set_words(i, j, text);
+  if (std::max(i_low, j_low) > j_high && i_low > j_high)
+    error->all(FLERR, "pair_coeff {} {}: the first type is above the second; exchange them", word[0], word[1]);
+}
+
+void PairEp::set_words(int i, int j, const std::string& text) {
+  std::vector<std::string> words = utils::split_words(text);
+  std::vector<char*> pointers = words_of_text(words);
+  const std::string place = "pair_coeff " + std::to_string(i) + " " + std::to_string(j);
+  types(i, j) = {text, read_words(lmp, place, static_cast<int>(pointers.size()), pointers.data())};
+  setflag[i][j] = 1;
+}
+
+const Words& PairEp::words_of(int type, const std::string& place) const {
+  const PairOfTypes& like = types_.at(type * width_ + type);
+  if (like.text.empty())
+    lmp->error->all(FLERR, "{}: spheres of type {} have no material; add pair_coeff {} {}", place, type, type, type);
+  return like.words;
+}
+
+void PairEp::init_style() {
+  check_settings(lmp, "pair_style ep");
+  if (!comm->ghost_velocity)
+    error->all(FLERR, "pair_style ep: contacts need the velocities of ghost atoms; add comm_modify vel yes");
+  models_ = {};
+  for (int i = 1; i < width_; ++i)
+    for (int j = i; j < width_; ++j)
+      if (!types(i, j).text.empty())
+        models_ = common_models(lmp, "pair_coeff " + std::to_string(i) + " " + std::to_string(j), models_,
+                                types(i, j).words.models);
+  kernel_ = kernel_of(lmp, "pair_style ep", models_, false);
+  layout_ = layout_of(models_, false);
+  neighbor->add_request(this, NeighConst::REQ_SIZE | NeighConst::REQ_NEWTON_OFF);
+
+  create_history();
+  history_->prepare(&list, layout_, models_);
+
+  const auto freezes = modify->get_fix_by_style("^freeze");
+  frozen_ = freezes.empty() ? 0 : freezes[0]->groupbit;
+  measure_radii();
+  constants_.assign(width_ * width_ * most_constants, 0.0);
+  pass_ = {};
+}
+
+/// The largest radius of each type, also of those that fixes will add.
+void PairEp::measure_radii() {
+  std::vector<double> mine(width_, 0.0);
+  for (int i = 0; i < atom->nlocal; ++i) mine[atom->type[i]] = std::max(mine[atom->type[i]], atom->radius[i]);
+  for (const char* style : {"^pour", "^deposit"})
+    for (Fix* fix : modify->get_fix_by_style(style))
+      for (int type = 1; type < width_; ++type) {
+        int itype = type;
+        if (void* radius = fix->extract("radius", itype))
+          mine[type] = std::max(mine[type], *static_cast<double*>(radius));
+      }
+  largest_.assign(width_, 0.0);
+  MPI_Allreduce(mine.data(), largest_.data(), width_, MPI_DOUBLE, MPI_MAX, world);
+}
+
+double PairEp::init_one(int i, int j) {
+  const std::string place = "pair_coeff " + std::to_string(i) + " " + std::to_string(j);
+  Material a, b;
+  Coefficients common;
+  if (!types(i, j).text.empty()) {
+    const Words& words = types(i, j).words;
+    a = b = words.material;
+    common = words.coefficients;
+  } else {
+    const Words &like_i = words_of(i, place), &like_j = words_of(j, place);
+    a = like_i.material;
+    b = like_j.material;
+    common = mixed(like_i.coefficients, like_j.coefficients);
+  }
+  double* const constants = constants_.data() + most_constants * (i * width_ + j);
+  put_constants(*models_.law, a, b, common, constants);
+  std::copy_n(constants, most_constants, constants_.data() + most_constants * (j * width_ + i));
+  pass_.damped |= constants[kernels::damping] > 0.0;
+  pass_.viscous |= constants[kernels::dashpot] > 0.0;
+  if (pass_.damped)
+    for (Fix* fix : modify->get_fix_list())
+      if (fix->rigid_flag)
+        error->all(FLERR,
+                   "{}: restitution needs the mass of the body of fix {} {}, which the pair style does not know; "
+                   "remove restitution",
+                   place, fix->style, fix->id);
+  const double R_star = 0.5 * std::max(largest_[i], largest_[j]);
+  const double gap = models_.law->largest_gap(constants + kernels::law_data, R_star);
+  if (gap > neighbor->skin)
+    error->all(
+        FLERR,
+        "{}: law {} pulls across gaps up to {:.4g}, above the skin {:.4g}; increase the skin of command neighbor",
+        place, models_.law->name, gap, neighbor->skin);
+  return largest_[i] + largest_[j];
+}
+
+void PairEp::set_pass() {
+  const int atoms = atom->nlocal + atom->nghost;
+  const double* rows[] = {atom->x[0], atom->v[0], atom->omega[0]};
+  if (atoms >= atom->nmax)
+    for (int k = 0; k < 3; ++k) {
+      copies_[k].assign(rows[k], rows[k] + 3L * atoms);
+      copies_[k].push_back(0.0);
+      rows[k] = copies_[k].data();
+    }
+  pass_.x = rows[0];
+  pass_.v = rows[1];
+  pass_.omega = rows[2];
+  pass_.dt = update->dt;
+  pass_.rolling = models_.rolling;
+  pass_.cohesion = models_.cohesion;
+  pass_.now = history_->now();
+  pass_.freeze = frozen_ != 0;
+}
+
+/// LAMMPS computes forces once more before the first step of a run; this evaluation changes no history.
+void PairEp::compute(int eflag, int vflag) {
+  ev_init(eflag, vflag);
+  history_->resume();
+  const bool counts = !update->setupflag;
+  pass_.work = energies_ && counts;
+  if (pass_.work) history_->open_energies(atom->nlocal);
+  if (list->inum > 0) {
+    std::vector<double> before;
+    if (!counts) before = history_->page();
+    set_pass();
+    models_.law->root < 0 ? gather<false>() : gather<true>();
+    if (!counts) history_->page().swap(before);
+  }
+  if (counts) history_->advance();
+}
+
+/// Notes every neighbor, and those stay that overlap; with adhesion also those that are attached across a gap.
+template <bool adheres>
+void PairEp::gather() {
+  kernels::Block& b = *block_;
+  const double *const x = atom->x[0], *const radius = atom->radius;
+  const bool excludes = atom->molecular != Atom::ATOMIC;
+  int n = 0;
+  for (int ii = 0; ii < list->inum; ++ii) {
+    const int i = list->ilist[ii], count = list->numneigh[i];
+    const int* const neighbors = list->firstneigh[i];
+    const double xi = x[3 * i], yi = x[3 * i + 1], zi = x[3 * i + 2], ri = radius[i];
+    for (int first = 0; first < count; first += block_size) {  // nearly always one turn
+      const int last = std::min(count, first + block_size);
+      if (n + last - first > block_size) {
+        finish(n);
+        n = 0;
+      }
+      for (int jj = first; jj < last; ++jj) {
+        const long j = neighbors[jj] & NEIGHMASK;
+        const double dx = xi - x[3 * j], dy = yi - x[3 * j + 1], dz = zi - x[3 * j + 2], sum = ri + radius[j];
+        bool contact = dx * dx + dy * dy + dz * dz < sum * sum;
+        if constexpr (adheres) {
+          const double* const history = history_->at(i, jj);
+          contact |= (history[layout_.root] > 0.0) & (pass_.now - history[layout_.last_step] <= 1.0);
+        }
+        if (excludes) contact &= force->special_lj[sbmask(neighbors[jj])] != 0.0;
+        b.i[n] = i;
+        b.j[n] = static_cast<int>(j);
+        slot_[n] = jj;
+        n += contact;
+      }
+    }
+  }
+  finish(n);
+}
+
+void PairEp::finish(int n) {
+  if (n == 0) return;
+  kernels::Block& b = *block_;
+  const double *const v = pass_.v, *const w = pass_.omega, *const f = atom->f[0], *const t = atom->torque[0];
+  const double *const radius = atom->radius, *const mass = atom->rmass;
+  for (int k = 0; k < n; ++k) {
+    const long i = b.i[k], j = b.j[k];
+    if (layout_.values > 0) {
+      double* const history = history_->at(b.i[k], slot_[k]);
+      for (int line = 0; line < layout_.values; line += 8) __builtin_prefetch(history + line, 1);
+      b.history[k] = history;
+    }
+    __builtin_prefetch(v + 3 * j);
+    __builtin_prefetch(w + 3 * j);
+    __builtin_prefetch(f + 3 * j, 1);
+    __builtin_prefetch(t + 3 * j, 1);
+    b.radius_i.a[k] = radius[i];
+    b.radius_j.a[k] = radius[j];
+    b.mass_i.a[k] = mass[i];
+    b.mass_j.a[k] = mass[j];
+  }
+  const int *const type = atom->type, *const mask = atom->mask;
+  const auto constants = [=](int i, int j) {
+    return constants_.data() + most_constants * (type[i] * width_ + type[j]);
+  };
+  b.material[0] = constants(b.i[0], b.j[0]);
+  pass_.several = false;
+  for (int k = 0; k < n && width_ > 2; ++k) {  // more than one type
+    b.material[k] = constants(b.i[k], b.j[k]);
+    pass_.several |= b.material[k] != b.material[0];
+  }
+  for (int k = 0; k < n && frozen_; ++k) {
+    b.frozen_i.a[k] = (mask[b.i[k]] & frozen_) != 0;
+    b.frozen_j.a[k] = (mask[b.j[k]] & frozen_) != 0;
+  }
+  kernels::pad(b, n);
+  kernel_(b, n, pass_);
+  pass_.work ? scatter<true>(n) : scatter<false>(n);
+  if (evflag) tally(n);
+}
+
+/// Forces and torques in the order of the list; the owner of a ghost computes what the ghost gets. Each atom of a
+/// contact has half of its energies.
+template <bool energies>
+void PairEp::scatter(int n) {
+  const kernels::Block& b = *block_;
+  double *const f = atom->f[0], *const t = atom->torque[0];
+  const int nlocal = atom->nlocal;
+  double others[6];
+  for (int k = 0; k < n; ++k) {
+    const int i = b.i[k], j = b.j[k];
+    const bool own = j < nlocal;
+    double *const fi = f + 3L * i, *const ti = t + 3L * i;
+    double *const fj = own ? f + 3L * j : others, *const tj = own ? t + 3L * j : others + 3;
+    for (int axis = 0; axis < 3; ++axis) {
+      fi[axis] += b.force[axis].a[k];
+      fj[axis] -= b.force[axis].a[k];
+      ti[axis] += b.torque_i[axis].a[k];
+      tj[axis] += b.torque_j[axis].a[k];
+    }
+    if constexpr (energies) {
+      history_->book(b, k, i, 0.5, models_);
+      if (own) history_->book(b, k, j, 0.5, models_);
+    }
+  }
+}
+
+void PairEp::tally(int n) {
+  const kernels::Block& b = *block_;
+  double** const x = atom->x;
+  for (int k = 0; k < n; ++k) {
+    const double *const xi = x[b.i[k]], *const xj = x[b.j[k]];
+    ev_tally_xyz(b.i[k], b.j[k], atom->nlocal, 0, 0.0, 0.0, b.force[0].a[k], b.force[1].a[k], b.force[2].a[k],
+                 xi[0] - xj[0], xi[1] - xj[1], xi[2] - xj[2]);
+  }
+}
+
+void PairEp::write_restart(FILE* file) {
+  if (comm->me != 0) return;
+  const int energies = energies_;
+  fwrite(&energies, sizeof energies, 1, file);
+  for (int i = 1; i < width_; ++i)
+    for (int j = i; j < width_; ++j) {
+      const std::string& text = types(i, j).text;
+      const int size = static_cast<int>(text.size());
+      fwrite(&size, sizeof size, 1, file);
+      fwrite(text.data(), 1, size, file);
+    }
+}
+
+void PairEp::read_restart(FILE* file) {
+  allocate();
+  const auto read = [&](void* to, int bytes) {
+    if (comm->me == 0) utils::sfread(FLERR, to, 1, bytes, file, nullptr, error);
+    MPI_Bcast(to, bytes, MPI_CHAR, 0, world);
+  };
+  int energies;
+  read(&energies, sizeof energies);
+  energies_ = energies != 0;
+  for (int i = 1; i < width_; ++i)
+    for (int j = i; j < width_; ++j) {
+      int size;
+      read(&size, sizeof size);
+      std::string text(size, ' ');
+      if (size == 0) continue;
+      read(text.data(), size);
+      set_words(i, j, text);
+    }
+}
+
+}  // namespace epdem::lammps

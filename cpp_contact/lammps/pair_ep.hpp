@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// pair_style ep: gathers the contacts of LAMMPS's neighbor list, has them computed as lanes, scatters forces.
+#pragma once
+
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "fix_history.hpp"
+#include "pair.h"
+#include "words.hpp"
+
+namespace epdem::lammps {
+
+class PairEp : public LAMMPS_NS::Pair {
+ public:
+  static constexpr const char* style_name = "ep";
+
+  explicit PairEp(LAMMPS_NS::LAMMPS* lmp);
+  ~PairEp() override;
+
+  void settings(int count, char** word) override;
+  void coeff(int count, char** word) override;
+  void init_style() override;
+  double init_one(int i, int j) override;
+  void compute(int eflag, int vflag) override;
+  void write_restart(FILE* file) override;
+  void read_restart(FILE* file) override;
+
+  /// What a wall reads: models of all contacts, the material of a type, energies.
+  const Models& models() const { return models_; }
+  const Words& words_of(int type, const std::string& place) const;
+  FixHistory* history() const { return history_; }
+  bool energies() const { return energies_; }
+
+ private:
+  struct PairOfTypes {
+    std::string text;  // words of pair_coeff; empty: not given
+    Words words;
+  };
+
+  void allocate();
+  PairOfTypes& types(int i, int j) { return types_[i * width_ + j]; }
+  void set_words(int i, int j, const std::string& text);
+  void create_history();
+  void measure_radii();
+  void set_pass();
+  template <bool adheres>
+  void gather();
+  void finish(int n);
+  template <bool energies>
+  void scatter(int n);
+  void tally(int n);
+
+  int width_ = 0;  // number of types + 1
+  std::vector<PairOfTypes> types_;
+  std::vector<double> constants_;  // of i * width + j
+  std::vector<double> largest_;    // radius by type [length]
+  Models models_;
+  bool energies_ = false;
+  Layout layout_;
+  std::string fix_id_;
+  FixHistory* history_ = nullptr;
+
+  kernels::Kernel kernel_ = nullptr;
+  kernels::Pass pass_{};
+  std::unique_ptr<kernels::Block> block_;
+  int slot_[kernels::block_size + kernels::most_lanes];
+  std::vector<double> copies_[3];  // of x, v, omega, if no number can be read behind the last atom
+  int frozen_ = 0;                 // group bit
+};
+
+}  // namespace epdem::lammps

@@ -1,0 +1,50 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// What LAMMPS calls when it loads the library: `plugin load epdemplugin.so`, or by itself from LAMMPS_PLUGIN_PATH.
+#include <string>
+
+#include "error.h"
+#include "fix_wall.hpp"
+#include "pair_ep.hpp"
+
+namespace {
+
+/// LAMMPS's declaration of a style, which its installed headers lack.
+struct Style {
+  const char *version, *style, *name, *info, *author;
+  void* create;
+  void* handle;
+};
+using Register = void (*)(Style*, void*);
+
+template <class Pair>
+void* create_pair(void* lmp) {
+  return new Pair(static_cast<LAMMPS_NS::LAMMPS*>(lmp));
+}
+
+template <class Fix>
+void* create_fix(void* lmp, int count, char** word) {
+  return new Fix(static_cast<LAMMPS_NS::LAMMPS*>(lmp), count, word);
+}
+
+}  // namespace
+
+extern "C" [[gnu::visibility("default")]] void lammpsplugin_init(void* pointer, void* handle, void* add) {
+  auto* const lmp = static_cast<LAMMPS_NS::LAMMPS*>(pointer);
+  if (lmp->num_ver != EPDEM_LAMMPS_VERSION)
+    lmp->error->all(FLERR, "epdemplugin.so is built for LAMMPS " + std::to_string(EPDEM_LAMMPS_VERSION) +
+                               " and this is LAMMPS " + std::to_string(lmp->num_ver) +
+                               "; build it for this one: make lammps LAMMPS_DIR=/its/build/folder");
+  const auto style = [&](const char* kind, const char* name, const char* info, void* create) {
+    Style s{lmp->version, kind, name, info, "the epdem developers", create, handle};
+    reinterpret_cast<Register>(add)(&s, pointer);
+  };
+  using namespace epdem::lammps;
+  style("pair", PairEp::style_name, "elastic-plastic contacts (epdem " EPDEM_VERSION ")",
+        reinterpret_cast<void*>(&create_pair<PairEp>));
+  style("fix", FixHistory::style_name, "history of elastic-plastic contacts",
+        reinterpret_cast<void*>(&create_fix<FixHistory>));
+  style("fix", FixWallPlanes::style_name, "elastic-plastic contacts with planes",
+        reinterpret_cast<void*>(&create_fix<FixWallPlanes>));
+  style("fix", FixWallRegion::style_name, "elastic-plastic contacts with a region",
+        reinterpret_cast<void*>(&create_fix<FixWallRegion>));
+}

@@ -1,0 +1,325 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+#include "words.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <cstdio>
+#include <cstdlib>
+#include <cstring>
+
+#include "atom.h"
+#include "epdem/contact.hpp"
+#include "epdem/laws.hpp"
+#include "error.h"
+#include "fix.h"
+#include "force.h"
+#include "modify.h"
+#include "update.h"
+#include "utils.h"
+
+namespace epdem::lammps {
+
+using LAMMPS_NS::LAMMPS;
+
+namespace {
+
+template <class Class>
+int root_of() {
+  if constexpr (adheres<Class>)
+    for (int k = 0; k < history_size<Class>; ++k)
+      if (std::strcmp(State<Class>::slots[k], "root") == 0) return k;
+  return -1;
+}
+
+template <class Class>
+Law law_of() {
+  static_assert(sizeof(Class) <= (kernels::most_constants - kernels::law_data) * sizeof(double));
+  return {Class::name,
+          Class::parameters,
+          Class::n_parameters,
+          Class::strength,
+          &Class::valid,
+          Class::condition,
+          detail::place<Class>(),
+          history_size<Class>,
+          root_of<Class>(),
+          [](double E_star, const double* parameters, double* numbers) {
+            const Class law(E_star, parameters);
+            std::memcpy(static_cast<void*>(numbers), &law, sizeof law);
+          },
+          [](const double* numbers, double R_star) {
+            if constexpr (adheres<Class>) {
+              Class law;
+              std::memcpy(static_cast<void*>(&law), numbers, sizeof law);
+              return adhesive::largest_gap(law.c, R_star);
+            }
+            (void)numbers;
+            (void)R_star;
+            return 0.0;
+          }};
+}
+
+std::string number(double x) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%g", x);
+  return text;
+}
+
+[[noreturn]] void fail(LAMMPS* lmp, const std::string& text) { lmp->error->all(FLERR, text); }
+
+std::string symbols(const Law& law) {
+  std::string text;
+  for (int k = 0; k < law.parameter_count; ++k) {
+    const Parameter& p = law.parameters[k];
+    const bool optional = !std::isnan(p.fallback);
+    text += std::string(optional ? " [" : " ") + p.symbol + (optional ? "]" : "");
+  }
+  return text;
+}
+
+/// Names of a list of models as words of LAMMPS: `none` for the first, the others without the prefix ep/.
+template <class Models>
+std::vector<std::string> names() {
+  std::vector<std::string> all;
+  Models::each([&](auto model, int place) {
+    const std::string name = decltype(model)::name;
+    all.push_back(place == 0 ? "none" : name.rfind("ep/", 0) == 0 ? name.substr(3) : name);
+  });
+  return all;
+}
+
+std::string joined(const std::vector<std::string>& names) {
+  std::string text;
+  for (size_t k = 0; k < names.size(); ++k) text += (k == 0 ? "" : k + 1 == names.size() ? " or " : ", ") + names[k];
+  return text;
+}
+
+struct Range {
+  double low, high;
+  bool low_allowed, high_allowed;
+
+  bool holds(double x) const {
+    return std::isfinite(x) && (x > low || (low_allowed && x == low)) && (x < high || (high_allowed && x == high));
+  }
+  std::string text() const {
+    if (std::isinf(high)) return low_allowed ? ">= " + number(low) : "> " + number(low);
+    return std::string("in ") + (low_allowed ? "[" : "(") + number(low) + ", " + number(high) +
+           (high_allowed ? "]" : ")");
+  }
+};
+
+constexpr double unlimited = HUGE_VAL;
+
+/// Takes one word after the other.
+class WordReader {
+ public:
+  WordReader(LAMMPS* lmp, const std::string& place, int count, char** word)
+      : lmp_(lmp), place_(place), count_(count), word_(word) {}
+
+  bool at_end() const { return at_ == count_; }
+  bool at_number() const { return !at_end() && LAMMPS_NS::utils::is_double(word_[at_]); }
+
+  std::string next(const std::string& what) {
+    if (at_end()) wrong("ends before " + what);
+    return word_[at_++];
+  }
+
+  double next_number(const std::string& what, const Range& range) {
+    const std::string text = next(what);
+    if (!LAMMPS_NS::utils::is_double(text)) wrong(what + " = " + text + ", must be a number");
+    const double x = std::atof(text.c_str());
+    if (!range.holds(x)) wrong(what + " = " + text + ", must be " + range.text());
+    return x;
+  }
+
+  /// Place of the next word in a list of names.
+  int next_of(const std::string& what, const std::vector<std::string>& names) {
+    const std::string text = next(what + " (" + joined(names) + ")");
+    const auto found = std::find(names.begin(), names.end(), text);
+    if (found == names.end()) wrong(what + " = " + text + ", must be " + joined(names));
+    return static_cast<int>(found - names.begin());
+  }
+
+  [[noreturn]] void wrong(const std::string& text) const { fail(lmp_, place_ + ": " + text); }
+
+ private:
+  LAMMPS* const lmp_;
+  const std::string& place_;
+  const int count_;
+  char** const word_;
+  int at_ = 0;
+};
+
+void read_parameters(WordReader& reader, const Law& law, std::vector<double>& values) {
+  for (int k = 0; k < law.parameter_count; ++k) {
+    const Parameter& p = law.parameters[k];
+    if (!std::isnan(p.fallback) && !reader.at_number()) {
+      values.push_back(p.fallback);
+      continue;
+    }
+    const std::string what = std::string(p.symbol) + " [" + p.unit + "] of " + law.name + " E nu" + symbols(law);
+    values.push_back(reader.next_number(what, {0.0, unlimited, p.may_vanish, false}));
+  }
+  if (!law.valid(values.data()))
+    reader.wrong("the parameters of " + std::string(law.name) +
+                 " do not go together; they must fulfil: " + law.condition);
+}
+
+void read_options(WordReader& reader, Words& words) {
+  constexpr Range not_negative{0.0, unlimited, true, false};
+  const std::vector<std::string> options{"tangential", "restitution", "rolling", "cohesion"};
+  std::vector<bool> seen(options.size());
+  while (!reader.at_end()) {
+    const int option = reader.next_of("option", options);
+    if (seen[option]) reader.wrong("option " + options[option] + " stands twice; keep one");
+    seen[option] = true;
+    if (option == 0) {
+      words.models.friction = reader.next_of("tangential", names<Frictions>());
+      Frictions::each([&](auto model, int place) {
+        if (place == words.models.friction) words.models.books_friction = decltype(model)::books_work;
+      });
+      if (words.models.friction) words.coefficients.friction = reader.next_number("friction mu", not_negative);
+    } else if (option == 1) {
+      words.coefficients.restitution = reader.next_number("restitution e", {viscous_restitution_min, 1.0, true, true});
+    } else if (option == 2) {
+      words.models.rolling = reader.next_of("rolling", names<Rollings>());
+      if (words.models.rolling) words.coefficients.rolling = reader.next_number("rolling friction mu_r", not_negative);
+    } else {
+      words.models.cohesion = reader.next_of("cohesion", names<Cohesions>());
+      if (words.models.cohesion)
+        words.coefficients.cohesion = reader.next_number("cohesion energy density", not_negative);
+    }
+  }
+}
+
+int common_place(LAMMPS* lmp, const std::string& place, const char* what, const std::vector<std::string>& names, int a,
+                 int b) {
+  if (a && b && a != b)
+    fail(lmp, place + ": " + what + " " + names[b] + " beside " + what + " " + names[a] +
+                  "; all contacts of a pair style have one model, others take a pair style of their own (hybrid)");
+  return a ? a : b;
+}
+
+double geometric(double a, double b) { return std::sqrt(a * b); }
+
+}  // namespace
+
+const std::vector<Law>& all_laws() {
+#define EPDEM_LAW_OF(Class) law_of<Class<double>>(),
+  static const std::vector<Law> laws{EPDEM_LAWS(EPDEM_LAW_OF)};
+#undef EPDEM_LAW_OF
+  return laws;
+}
+
+Words read_words(LAMMPS* lmp, const std::string& place, int count, char** word) {
+  WordReader reader(lmp, place, count, word);
+  std::vector<std::string> laws;
+  for (const Law& law : all_laws()) laws.emplace_back(law.name);
+  Words words;
+  words.models.law = &all_laws()[reader.next_of("law", laws)];
+  words.material.elastic.young_modulus = reader.next_number("Young's modulus E", {0.0, unlimited, false, false});
+  words.material.elastic.poisson_ratio = reader.next_number("Poisson's ratio nu", {-1.0, 0.5, false, true});
+  read_parameters(reader, *words.models.law, words.material.parameters);
+  read_options(reader, words);
+  if (words.models.law->root >= 0 && words.models.cohesion)
+    reader.wrong("cohesion " + names<Cohesions>()[words.models.cohesion] + " beside " + words.models.law->name +
+                 ", which attracts by itself; remove one");
+  return words;
+}
+
+Models common_models(LAMMPS* lmp, const std::string& place, const Models& a, const Models& b) {
+  if (!a.law) return b;
+  if (a.law != b.law)
+    fail(lmp, place + ": law " + b.law->name + " beside law " + a.law->name +
+                  "; all contacts of a pair style and its walls have one law, others take a pair style of their own "
+                  "(hybrid)");
+  Models common{a.law};
+  common.friction = common_place(lmp, place, "tangential", names<Frictions>(), a.friction, b.friction);
+  common.books_friction = a.books_friction || b.books_friction;
+  common.rolling = common_place(lmp, place, "rolling", names<Rollings>(), a.rolling, b.rolling);
+  common.cohesion = common_place(lmp, place, "cohesion", names<Cohesions>(), a.cohesion, b.cohesion);
+  return common;
+}
+
+Coefficients mixed(const Coefficients& a, const Coefficients& b) {
+  return {geometric(a.friction, b.friction), geometric(a.restitution, b.restitution), geometric(a.rolling, b.rolling),
+          geometric(a.cohesion, b.cohesion)};
+}
+
+void put_constants(const Law& law, const Material& i, const Material& j, const Coefficients& common,
+                   double* constants) {
+  const bool i_is_softer = law.strength < 0 || i.parameters[law.strength] <= j.parameters[law.strength];
+  std::vector<double> parameters = (i_is_softer ? i : j).parameters;
+  for (int k = 0; k < law.parameter_count; ++k)
+    if (law.parameters[k].of_pair)
+      parameters[k] = adhesive::work_of_adhesion(0.5 * i.parameters[k], 0.5 * j.parameters[k]);
+  std::fill_n(constants, kernels::most_constants, 0.0);
+  constants[kernels::shear_modulus] = effective_shear_modulus(i.elastic, j.elastic);
+  if (common.restitution > 0.0) {
+    constants[kernels::damping] = damping_number(common.restitution);
+    constants[kernels::dashpot] = viscous_number(common.restitution);
+  }
+  constants[kernels::friction] = common.friction;
+  constants[kernels::rolling_friction] = common.rolling;
+  constants[kernels::cohesion_density] = common.cohesion;
+  law.put(effective_modulus(i.elastic, j.elastic), parameters.data(), constants + kernels::law_data);
+}
+
+void check_settings(LAMMPS* lmp, const std::string& place) {
+  const LAMMPS_NS::Atom& atom = *lmp->atom;
+  if (!atom.radius_flag || !atom.rmass_flag || !atom.omega_flag || !atom.torque_flag)
+    fail(lmp, place + ": the atom style has no radius, mass, spin and torque per atom; take atom_style sphere");
+  if (atom.ellipsoid_flag || atom.line_flag || atom.tri_flag || atom.body_flag)
+    fail(lmp, place + ": the atom style holds other bodies than spheres; take atom_style sphere");
+  if (!atom.tag_enable) fail(lmp, place + ": contacts need atom IDs; remove atom_modify id no");
+  if (lmp->force->ftm2v != 1.0 || lmp->force->nktv2p != 1.0)
+    fail(lmp, place + ": units " + lmp->update->unit_style +
+                  " measure pressure by other units than force and length; take units si, cgs, micro, nano or lj");
+  if (lmp->update->whichflag == 2)
+    fail(lmp, place + ": minimization has no steps in time, which the history of contacts needs; take run");
+  if (std::strncmp(lmp->update->integrate_style, "respa", 5) == 0)
+    fail(lmp, place + ": run_style respa has steps of several lengths; take run_style verlet");
+}
+
+kernels::Kernel kernel_of(LAMMPS* lmp, const std::string& place, const Models& models, bool wall) {
+  const char* const wanted = std::getenv("EPDEM_SIMD");
+  const kernels::Kernels* const set = kernels::kernels_of(wanted ? wanted : "");
+  if (!set)
+    fail(lmp, "EPDEM_SIMD = " + std::string(wanted) +
+                  ": this processor has no such instructions; leave it unset, or take sse2, avx2 or avx512");
+  bool rolls = false;
+  Rollings::each([&](auto model, int at) { rolls |= at == models.rolling && decltype(model)::has_history; });
+  const kernels::Kernel kernel = set->of[models.law->place][models.friction][rolls][wall];
+  if (kernel) return kernel;
+  if (wall)
+    fail(lmp, place + ": law " + models.law->name + " acts between spheres only; walls need a law without adhesion");
+  fail(lmp, place + ": tangential " + names<Frictions>()[models.friction] + " does not exist beside law " +
+                models.law->name + "; take tangential history");
+}
+
+Layout layout_of(const Models& models, bool wall) {
+  int friction = 0, even = 0, rolling = 0;
+  Frictions::each([&](auto model, int at) {
+    if (at != models.friction) return;
+    friction = values_of<decltype(model), double>;
+    even = decltype(model)::even_values;
+  });
+  Rollings::each(
+      [&](auto model, int at) { rolling = at == models.rolling && decltype(model)::has_history ? 3 : rolling; });
+  const int law = models.law->history_size;
+  Layout layout;
+  if (law + friction + rolling == 0) return layout;
+  layout.root = models.law->root;
+  layout.mirror.assign(law, 1.0);
+  if (!wall) {
+    layout.last_step = law;
+    layout.mirror.push_back(1.0);
+  }
+  layout.mirror.insert(layout.mirror.end(), friction - even, -1.0);
+  layout.mirror.insert(layout.mirror.end(), even, 1.0);
+  layout.mirror.insert(layout.mirror.end(), rolling, -1.0);
+  layout.values = static_cast<int>(layout.mirror.size());
+  return layout;
+}
+
+}  // namespace epdem::lammps

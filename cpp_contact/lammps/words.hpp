@@ -1,0 +1,85 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// The words LAW E nu PARAMETERS [options] of pair_coeff and of walls, and the constants of a contact that follow.
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "epdem/backbone.hpp"
+#include "kernels/block.hpp"
+#include "pointers.h"
+
+namespace epdem::lammps {
+
+/// A law as its class declares it; laws.hpp lists the classes.
+struct Law {
+  const char* name;
+  const Parameter* parameters;
+  int parameter_count;
+  int strength;  // index of the parameter, -1: none
+  bool (*valid)(const double*);
+  const char* condition;  // what `valid` asks, in words
+  int place;              // in the kernels
+  int history_size;
+  int root;  // index in the history of what says that the bodies are attached, -1: no adhesion
+  /// Writes the numbers of a law object of E* and these parameters.
+  void (*put)(double E_star, const double* parameters, double* numbers);
+  /// Largest gap [length] across which a law object of these numbers pulls; 0 without adhesion.
+  double (*largest_gap)(const double* numbers, double R_star);
+};
+
+const std::vector<Law>& all_laws();
+
+/// A body of a contact.
+struct Material {
+  Elastic elastic;
+  std::vector<double> parameters;  // of the law
+};
+
+/// Law and models beside it, by their places in their lists; 0: no such model.
+struct Models {
+  const Law* law = nullptr;
+  int friction = 0, rolling = 0, cohesion = 0;
+  bool books_friction = false;  // friction computes its work
+};
+
+/// What two bodies have in common; 0: no such force. restitution = 0: no dashpot.
+struct Coefficients {
+  double friction = 0.0, restitution = 0.0, rolling = 0.0, cohesion = 0.0;
+};
+
+struct Words {
+  Material material;
+  Models models;
+  Coefficients coefficients;
+};
+
+/// Reads the words behind `place`, e.g. "pair_coeff 1 2"; ends the run with a sentence about the first wrong one.
+Words read_words(LAMMPS_NS::LAMMPS* lmp, const std::string& place, int count, char** word);
+
+/// The models of both; ends the run if they exclude each other.
+Models common_models(LAMMPS_NS::LAMMPS* lmp, const std::string& place, const Models& a, const Models& b);
+
+/// Coefficients of unlike types: geometric means.
+Coefficients mixed(const Coefficients& a, const Coefficients& b);
+
+/// kernels::most_constants numbers of a contact. A parameter of a body is that of the body with the lower strength; a
+/// parameter of a pair of surfaces is the geometric mean.
+void put_constants(const Law& law, const Material& i, const Material& j, const Coefficients& common, double* constants);
+
+/// Ends the run if LAMMPS's settings exclude contacts of spheres by these models: atom style, units, minimization.
+void check_settings(LAMMPS_NS::LAMMPS* lmp, const std::string& place);
+
+/// The kernel of these models; ends the run if there is none.
+kernels::Kernel kernel_of(LAMMPS_NS::LAMMPS* lmp, const std::string& place, const Models& models, bool wall);
+
+/// What the history of a contact holds.
+struct Layout {
+  int values = 0;                 // numbers of a contact
+  int root = -1, last_step = -1;  // places; last_step: of pairs with a history
+  std::vector<double> mirror;     // 1, or -1 of a number that changes its sign when j takes the place of i
+};
+
+Layout layout_of(const Models& models, bool wall);
+
+}  // namespace epdem::lammps

@@ -1,0 +1,292 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""pair_style ep and its walls in LAMMPS: ranks, restart, settings of LAMMPS, energies, and wrong words."""
+
+import math
+import re
+
+import numpy as np
+import pytest
+from lammps_decks import DUMP, THORNTON, bed, column, lammps, needs_lammps, run
+
+pytestmark = needs_lammps
+
+DAMPED = "restitution 0.3 rolling epsd2 0.1"
+TWO_TYPES = (
+    f"1 1 thornton 1e8 0.3 4e5 tangential partial_slip 0.3 {DAMPED}",
+    f"2 2 thornton 2e8 0.25 2e5 tangential partial_slip 0.5 {DAMPED}",
+)
+WALLS = (
+    f"fix floor all wall/ep zplane 0 0.02 {THORNTON} tangential history 0.4\nfix fall all gravity 9.81 vector 0 0 -1"
+)
+
+
+def relative(a, b):
+    return np.abs(a / b - 1).max()
+
+
+def test_two_ranks_give_the_energy_of_one_through_exchange_of_atoms_and_new_lists(tmp_path):
+    """The order of sums differs; collisions amplify this, 1e-10 after 3,000 steps."""
+    text = bed(TWO_TYPES, types=2) + "run 3000\n"
+    one, _ = run(text, tmp_path / "one")
+    two, _ = run(text, tmp_path / "two", ranks=2)
+    assert int(re.search(r"Neighbor list builds = (\d+)", one)[1]) >= 5
+    energy = column(one, "KinEng")
+    assert energy[-1] < 0.7 * energy[0]
+    assert relative(energy, column(two, "KinEng")) <= 1e-9
+    assert relative(column(one, "Press"), column(two, "Press")) <= 1e-7
+
+
+def test_newton_on_changes_no_bit(tmp_path):
+    deck = {newton: bed(TWO_TYPES, types=2, newton=newton) + "run 500\n" + DUMP for newton in ("on", "off")}
+    on, off = (run(deck[newton], tmp_path / newton)[1] for newton in ("on", "off"))
+    assert np.array_equal(on, off)
+
+
+@pytest.mark.parametrize("style", ["ep", "ep energies"])
+def test_a_restart_file_continues_to_the_bit(style, tmp_path):
+    """Materials, histories of pairs and walls, and energies are in the file; the deck gives the walls again."""
+    deck = bed(TWO_TYPES, types=2, style=style, boundary="p p f", more=WALLS)
+    whole, end = run(deck + "run 1000\nwrite_restart half\nrun 1000\n" + DUMP, tmp_path)
+    head = "comm_modify vel yes\nread_restart half\nneighbor 0.0004 bin\nneigh_modify delay 0\n"
+    rest = deck[deck.index("fix floor") :]
+    again, continued = run(head + rest + "run 1000\n" + DUMP, tmp_path)
+    assert np.array_equal(end, continued)
+    assert column(whole, "KinEng")[-1] == column(again, "KinEng")[-1]
+
+
+def test_histories_stay_where_a_run_is_split_and_atoms_of_another_place_are_deleted(tmp_path):
+    """A plastic contact keeps its dent: the pair at the left meets again after the atoms at the right are gone."""
+    deck = f"""units si
+atom_style sphere
+atom_modify map array
+comm_modify vel yes
+boundary f f f
+region box block -0.1 0.1 -0.1 0.1 -0.1 0.1
+create_box 1 box
+create_atoms 1 single 0.05 0 0
+create_atoms 1 single 0.05 0.0195 0
+create_atoms 1 single -0.05 0 0
+create_atoms 1 single -0.05 0.0195 0
+set group all diameter 0.02 density 7850
+pair_style ep energies
+pair_coeff * * {THORNTON}
+neighbor 0.002 bin
+region right block 0 0.1 -0.1 0.1 -0.1 0.1
+group left id 3 4
+velocity left set 0 0 0
+fix hold all setforce 0 0 0
+fix motion all nve/sphere
+timestep 1e-6
+thermo_style custom step fmax
+run 10
+displace_atoms left move 0 0 0
+"""
+    force = 'variable f equal fy[4]\nrun 1\nprint "force ${f}"\n'
+    shift = "group upper id 4\ndisplace_atoms upper move 0 2e-4 0\n"
+    held = re.findall(r"^force (\S+)", run(deck + shift + force, tmp_path / "a")[0], re.MULTILINE)
+    text = deck + "delete_atoms region right compress no\n" + shift + force
+    kept = re.findall(r"^force (\S+)", run(text, tmp_path / "b")[0], re.MULTILINE)
+    assert held == kept
+
+
+def test_units_cgs_give_the_same_motion(tmp_path):
+    """Without displace_atoms, whose random numbers follow from coordinates."""
+    words = "1 1 thornton 1e9 0.3 4e6 tangential history 0.3"
+    decks = (bed(), bed((words,), units="cgs", scale=100.0))
+    si, cgs = (run(re.sub("displace_atoms.*", "", deck) + "run 300\n", tmp_path / deck[6:9])[0] for deck in decks)
+    assert relative(1e7 * column(si, "KinEng"), column(cgs, "KinEng")) <= 1e-9
+
+
+def test_hybrid_overlay_adds_another_style(tmp_path):
+    plain, _ = run(bed() + "run 200\n", tmp_path / "plain")
+    pairs = (f"1 1 ep {THORNTON} tangential history 0.3", "1 1 lj/cut 1e-30 1e-3 1e-6")
+    both, _ = run(bed(pairs, style="hybrid/overlay ep lj/cut 1e-6") + "run 200\n", tmp_path / "both")
+    assert relative(column(plain, "KinEng"), column(both, "KinEng")) <= 1e-12
+
+
+def test_a_region_is_the_plane(tmp_path):
+    region = "region walls block INF INF INF INF 0 0.02 units box\n"
+    other = WALLS.replace("wall/ep zplane 0 0.02", "wall/ep/region walls")
+    assert other != WALLS
+    planes, a = run(bed(boundary="p p f", more=WALLS) + "run 500\n" + DUMP, tmp_path / "planes")
+    regions, b = run(bed(boundary="p p f", more=region + other) + "run 500\n" + DUMP, tmp_path / "regions")
+    assert np.abs(a - b).max() <= 1e-9 * np.abs(a).max()
+
+
+def test_a_region_that_moves_takes_a_sphere_along(tmp_path):
+    """A plane that rises at 1 m/s hits a sphere at rest: elastic, so the sphere leaves at 2 m/s."""
+    deck = """units si
+atom_style sphere
+atom_modify map array
+comm_modify vel yes
+boundary f f f
+region box block -0.1 0.1 -0.1 0.1 -0.1 0.1
+create_box 1 box
+create_atoms 1 single 0 0 0.01001
+set group all diameter 0.02 density 7850
+pair_style ep
+pair_coeff * * hertz 1e9 0.3
+variable rise equal ramp(0,1e-3)
+region plate plane 0 0 0 0 0 1 move NULL NULL v_rise
+fix plate all wall/ep/region plate hertz 1e9 0.3
+fix motion all nve/sphere
+timestep 1e-7
+run 10000
+variable v equal vz[1]
+print "speed $v"
+"""
+    out, _ = run(deck, tmp_path)
+    assert float(re.search(r"^speed (\S+)", out, re.MULTILINE)[1]) == pytest.approx(2.0, rel=1e-4)
+
+
+def test_energies_of_atoms_close_the_balance(tmp_path):
+    """What loose spheres lose of their kinetic energy is plastic, elastic, or lost and stored by friction."""
+    words = f"{THORNTON} tangential partial_slip 0.3"
+    more = f"""fix walls all wall/ep zplane 0 0.02 {words}
+compute spin all erotate/sphere
+compute sums all reduce sum f_EP_HISTORY0[1] f_EP_HISTORY0[2] f_EP_HISTORY0[3] f_EP_HISTORY0[4] f_EP_HISTORY0[5]"""
+    deck = bed((f"1 1 {words}",), style="ep energies", boundary="p p f", more=more).replace("0.00192", "0.0022")
+    deck = deck.replace("timestep 2e-6", "timestep 1e-6").replace("step atoms ke press", "step ke c_spin c_sums[*]")
+    out, _ = run(deck + "run 20000\n", tmp_path)
+    names = ("KinEng", "c_spin", *(f"c_sums[{k}]" for k in range(1, 6)))
+    ke, rotation, plastic, elastic, contacts, lost, stored = (column(out, name) for name in names)
+    total = ke + rotation + plastic + elastic + lost + stored
+    assert plastic[-1] > 0.05 * ke[0] and lost[-1] > 0.02 * ke[0] and contacts.max() > 100
+    assert np.abs(total / total[0] - 1).max() < 1e-3
+
+
+def test_a_frozen_group_is_a_heavy_body(tmp_path):
+    """fix freeze: the sphere bounces from a frozen one as the theory of a fixed target says, for restitution 0.5."""
+    deck = """units si
+atom_style sphere
+atom_modify map array
+comm_modify vel yes
+boundary f f f
+region box block -0.1 0.1 -0.1 0.1 -0.1 0.1
+create_box 1 box
+create_atoms 1 single 0 0 0
+create_atoms 1 single 0 0 0.020001
+set group all diameter 0.02 density 7850
+pair_style ep
+pair_coeff * * hertz 1e9 0.3 restitution 0.5
+neighbor 0.002 bin
+group bottom id 1
+group top id 2
+velocity top set 0 0 -0.1
+fix ice bottom freeze
+fix motion top nve/sphere
+timestep 2e-7
+run 5000
+variable v equal vz[2]
+print "speed $v"
+"""
+    out, _ = run(deck, tmp_path)
+    assert float(re.search(r"^speed (\S+)", out, re.MULTILINE)[1]) == pytest.approx(0.05, rel=2e-3)
+
+
+def test_virial_is_that_of_the_forces(tmp_path):
+    """Two spheres pressed together along x: p_xx V = F times the distance."""
+    deck = f"""units si
+atom_style sphere
+atom_modify map array
+comm_modify vel yes
+boundary f f f
+region box block -0.05 0.05 -0.05 0.05 -0.05 0.05
+create_box 1 box
+create_atoms 1 single 0 0 0
+create_atoms 1 single 0.0198 0 0
+set group all diameter 0.02 density 7850
+pair_style ep
+pair_coeff * * {THORNTON}
+neighbor 0.002 bin
+fix motion all nve/sphere
+compute stress all stress/atom NULL
+compute total all reduce sum c_stress[1]
+thermo_style custom step pxx c_total
+variable f equal fx[2]
+run 0
+print "force ${{f}} $(pxx) $(c_total)"
+"""
+    out, _ = run(deck, tmp_path)
+    force, pressure, stress = map(float, re.search(r"^force (.*)", out, re.MULTILINE)[1].split())
+    E_star, R_star, alpha = 1e8 / (2 * 0.91), 0.005, 2e-4
+    alpha_y = (math.pi * 4e5 / (2 * E_star)) ** 2 * R_star
+    yielded = 2 / 3 * math.pi * 4e5 * R_star * alpha_y + math.pi * 4e5 * R_star * (alpha - alpha_y)
+    assert force == pytest.approx(yielded, rel=1e-9)
+    assert pressure * 1e-3 == pytest.approx(force * 0.0198, rel=1e-9)
+    assert -stress == pytest.approx(force * 0.0198, rel=1e-9)
+
+
+WRONG = {
+    "ep fast": ("pair_style ep", "pair_style ep fast", "pair_style ep: fast is no setting of the style"),
+    "law": ("thornton", "tornton", "pair_coeff 1 1: law = tornton, must be hertz, thornton"),
+    "modulus": ("1e8", "-1e8", "Young's modulus E = -1e8, must be > 0"),
+    "modulus as a word": ("1e8", "steel", "Young's modulus E = steel, must be a number"),
+    "Poisson": ("1e8 0.3", "1e8 30", "Poisson's ratio nu = 30, must be in (-1, 0.5]"),
+    "no strength": ("4e5 tangential", "tangential", "p_y [Pa] of thornton E nu p_y = tangential, must be a number"),
+    "strength": ("4e5", "0", "p_y [Pa] of thornton E nu p_y = 0, must be > 0"),
+    "too short": ("1e8 0.3 4e5 tangential history 0.3", "1e8", "ends before Poisson's ratio nu"),
+    "tangential": ("history", "mindlin", "tangential = mindlin, must be none, no_history, history"),
+    "no friction": ("history 0.3", "history", "ends before friction mu"),
+    "friction": ("history 0.3", "history -0.3", "friction mu = -0.3, must be >= 0"),
+    "option": ("history 0.3", "history 0.3 damping tsuji", "option = damping, must be tangential, restitution"),
+    "twice": ("history 0.3", "history 0.3 tangential none", "option tangential stands twice"),
+    "restitution": ("history 0.3", "history 0.3 restitution 0.1", "restitution e = 0.1, must be in [0.14, 1]"),
+    "rolling": ("history 0.3", "history 0.3 rolling sds 0.1", "rolling = sds, must be none, cdt or epsd2"),
+    "cohesion": ("history 0.3", "history 0.3 cohesion jkr 1", "cohesion = jkr, must be none, sjkr or sjkr2"),
+    "both attract": (
+        f"{THORNTON} tangential history 0.3",
+        "jkr 1e8 0.3 0.1 cohesion sjkr 1e3",
+        "cohesion sjkr beside jkr, which attracts by itself",
+    ),
+    "adhesion and partial slip": (
+        f"{THORNTON} tangential history 0.3",
+        "jkr 1e8 0.3 0.1 tangential partial_slip 0.3",
+        "tangential partial_slip does not exist beside law jkr",
+    ),
+    "gap": (f"{THORNTON} tangential history 0.3", "jkr 1e4 0.3 10", "pulls across gaps up to"),
+    "cavity": (THORNTON, "cavity 1e8 0.3 1e5 3 1", "the parameters of cavity do not go together"),
+    "no ghost velocity": ("comm_modify vel yes", "", "add comm_modify vel yes"),
+    "units": ("units si", "units real", "units real measure pressure by other units"),
+    "atom style": ("atom_style sphere", "atom_style atomic", "ERROR"),
+    "respa": ("run 1", "run_style respa 2 2\nrun 1", "run_style respa has steps of several lengths"),
+    "minimize": ("run 1", "minimize 0 0 10 10", "minimization has no steps in time"),
+    "no pair_coeff": ("pair_coeff", "#", "All pair coeffs are not set"),
+    "wall of another law": (
+        "run 1",
+        "fix w all wall/ep zplane 0 NULL hertz 1e8 0.3\nrun 1",
+        "fix w wall/ep zplane: the material of the spheres comes from a pair_style ep of law hertz",
+    ),
+    "wall upside down": ("run 1", f"fix w all wall/ep zplane 1 0 {THORNTON}", "lo = 1 must lie below hi = 0"),
+    "wall without place": ("run 1", f"fix w all wall/ep zcylinder 1 0 {THORNTON}", "must be xplane, yplane or zplane"),
+    "wall with adhesion": ("run 1", "fix w all wall/ep zplane 0 NULL jkr 1e8 0.3 0.1", "walls need a law without"),
+    "no region": ("run 1", f"fix w all wall/ep/region bin {THORNTON}", "there is no region bin"),
+    "rigid bodies": (
+        "run 1",
+        "pair_coeff 1 1 thornton 1e8 0.3 4e5 restitution 0.5\nunfix motion\nfix r all rigid/small bond\nrun 1",
+        "ERROR",
+    ),
+}
+
+
+@pytest.mark.parametrize("what", WRONG)
+def test_wrong_words_end_with_one_sentence(what, tmp_path):
+    old, new, sentence = WRONG[what]
+    text = bed() + "run 1\n"
+    assert old in text
+    code, out = lammps(text.replace(old, new), tmp_path)
+    errors = [line for line in out.splitlines() if line.startswith("ERROR")]
+    assert code != 0 and len(errors) == 1 and sentence in errors[0], out[-2000:]
+    assert len(errors[0]) < 330 and "Segmentation" not in out
+
+
+def test_unlike_types_have_the_lower_strength_and_the_mean_of_the_coefficients(tmp_path):
+    """Given by hand, the same numbers of the pair give the same bits."""
+    alike = bed(TWO_TYPES, types=2)
+    E = 2 / ((1 - 0.09) / 1e8 + (1 - 0.0625) / 2e8)  # the modulus of two equal bodies without lateral strain
+    out, a = run(alike + "run 300\n" + DUMP, tmp_path / "mixed")
+    frictionless = tuple(re.sub(" tangential .*", "", words) for words in TWO_TYPES)
+    _, b = run(bed(frictionless, types=2) + "run 300\n" + DUMP, tmp_path / "frictionless")
+    _, c = run(bed((*frictionless, f"1 2 thornton {E!r} 0 2e5"), types=2) + "run 300\n" + DUMP, tmp_path / "given")
+    assert np.abs(b - c).max() <= 1e-9 * np.abs(b).max()
+    assert np.abs(a - b).max() > 1e-3 * np.abs(b).max()
