@@ -1,7 +1,9 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """What a contact costs in YADE per step: our laws against YADE's own Hertz-Mindlin law. Takes half a minute.
 
-    .venv/bin/python bench/yade_speed.py [rounds]
+    .venv/bin/python bench/yade_speed.py [rounds] [folder of epdem_yade.so]
+
+With a folder the classes of epdem_yade are measured beside the decks' laws.
 
 A cubic lattice of spheres, every sphere in contact with its neighbours: at rest before any yield; in uniform
 compression, where every contact yields in every step; and at rest after it. One YADE process per law and round, laws
@@ -16,6 +18,7 @@ import tempfile
 from pathlib import Path
 
 ROOT = Path(__file__).resolve().parents[1]
+CLASSES = tuple(f"C++ {law}" for law in ("Hertz", "Thornton", "Johnson", "Cavity"))
 LAWS = ("native", "hertz", "thornton", "thornton 1e-6", "johnson", "cavity")  # 1e-6: tolerance, else 0
 SIDE = 14  # spheres along an edge
 STATES = ("rest", "yielding", "rest after yield")
@@ -34,6 +37,14 @@ if law == "native":
     O.materials.append(steel)
     loop = [InteractionLoop([Ig2_Sphere_Sphere_ScGeom()], [Ip2_FrictMat_FrictMat_MindlinPhys()],
                             [Law2_ScGeom_MindlinPhys_Mindlin()])]
+elif law.startswith("C++"):
+    sys.path.insert(0, {module!r})
+    import epdem_yade
+    steel = epdem_yade.EpMat(young=208e9, poisson=0.3, density=7850, frictionAngle=0.3, yieldPressure=2.8e9,
+                             yieldStress=1e9)
+    O.materials.append(steel)
+    loop = [InteractionLoop([Ig2_Sphere_Sphere_ScGeom()], [epdem_yade.Ip2_EpMat_EpMat_EpPhys()],
+                            [getattr(epdem_yade, "Law2_ScGeom_EpPhys_" + law.split()[1])()])]
 else:
     from epdem.yade.deck_modules.contacts import Contacts
     law, *tolerance = law.split()
@@ -79,10 +90,10 @@ print("RESULT " + json.dumps([rest, loading, steps(20)]), n)
 """
 
 
-def once(law: str, folder: Path) -> tuple[list[float], int]:
+def once(law: str, folder: Path, module: str) -> tuple[list[float], int]:
     """Microseconds per contact and step of one law in each of STATES, and the number of contacts."""
     path = folder / f"{law.replace(' ', '_')}.py"
-    path.write_text(SCRIPT.format(python=str(ROOT / "python"), law=law, side=SIDE))
+    path.write_text(SCRIPT.format(python=str(ROOT / "python"), module=module, law=law, side=SIDE))
     done = subprocess.run(
         ["yade", "-n", "-x", path.name],
         cwd=folder,
@@ -99,20 +110,20 @@ def once(law: str, folder: Path) -> tuple[list[float], int]:
     return json.loads(values), int(n)
 
 
-def measure(rounds: int = 3) -> tuple[dict[str, list[float]], int]:
+def measure(rounds: int = 3, module: str | None = None) -> tuple[dict[str, list[float]], int]:
     """Best times of every law, laws interleaved."""
     best: dict[str, list[float]] = {}
     with tempfile.TemporaryDirectory() as folder:
         for _ in range(rounds):
-            for law in LAWS:
-                times, n = once(law, Path(folder))
+            for law in (*LAWS, *CLASSES) if module else LAWS:
+                times, n = once(law, Path(folder), module or "")
                 best[law] = [min(a, b) for a, b in zip(times, best.get(law, times), strict=True)]
     return best, n
 
 
 def main() -> int:
     """Print the table; 1 if a contact at rest costs more than LIMIT times that of YADE's own law."""
-    best, n = measure(int(sys.argv[1]) if len(sys.argv) > 1 else 3)
+    best, n = measure(int(sys.argv[1]) if len(sys.argv) > 1 else 3, sys.argv[2] if len(sys.argv) > 2 else None)
     print(f"{n} contacts, microseconds per contact and step (and over YADE's own Hertz-Mindlin)")
     print(f"{'law':14}" + "".join(f"{s:>24}" for s in STATES))
     for law, times in best.items():

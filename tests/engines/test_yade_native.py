@@ -2,11 +2,13 @@
 """The laws as C++ classes in YADE: impacts against theory, saving, errors, threads, friction, dashpots, energies."""
 
 import math
+import os
+import subprocess
 from pathlib import Path
 
 import numpy as np
 import pytest
-from yade_native import HEAD, impacts, needs_source, result, yade
+from yade_native import HEAD, ROOT, impacts, needs_source, result, yade
 
 from epdem.case.impact import Numerics, parse
 from epdem.case.toml import read_toml
@@ -18,7 +20,7 @@ from epdem.impacts.prediction import predict
 
 pytestmark = [pytest.mark.yade, needs_source]
 
-CASES = Path(__file__).parents[2] / "cases"
+CASES = ROOT / "cases"
 WITHOUT_ADHESION = ("hertz", "thornton", "johnson", "cavity")
 BRASS = {"young_modulus": "100 GPa", "poisson_ratio": 0.35, "density": "8500 kg/m^3", "yield_stress": "0.3 GPa"}
 
@@ -296,6 +298,21 @@ def test_a_module_for_another_yade_refuses_at_import(change, words, tmp_path):
     assert __import__("re").search(words, lines[-1]), lines[-1]
 
 
+@pytest.mark.parametrize(
+    ("source", "sentence"),
+    [
+        ("/nowhere", "YADE_SOURCE = /nowhere has no core/Scene.hpp; name the source folder of YADE 2"),
+        ("", "copy a checkout of this tag to this machine and name its folder by YADE_SOURCE"),
+    ],
+)
+def test_a_build_without_source_says_what_to_do(source, sentence, tmp_path):
+    """Also without network: git is sent to an address that does not exist."""
+    nowhere = {"GIT_CONFIG_COUNT": "1", "GIT_CONFIG_KEY_0": "url./nowhere/.insteadOf", "GIT_CONFIG_VALUE_0": "https://"}
+    command = ["cmake", "-S", str(ROOT / "cpp_contact/yade"), "-B", str(tmp_path), f"-DYADE_SOURCE={source}"]
+    done = subprocess.run(command, env=os.environ | nowhere, capture_output=True, text=True, check=False)
+    assert done.returncode != 0 and sentence in " ".join(done.stderr.split())
+
+
 THREADS = (
     SCENE
     + """
@@ -478,7 +495,7 @@ def test_values_of_pairs_come_from_matchmakers_and_all_attributes_are_readable(t
 
 
 def test_the_script_of_the_page_settles(tmp_path):
-    text = (Path(__file__).parents[2] / "docs/yade.md").read_text()
+    text = (ROOT / "docs/yade.md").read_text()
     script = text.split("```python epdem_yade\n")[1].split("```")[0].replace("300000", "3000")
     script = "\n".join(line for line in script.splitlines() if not line.startswith("print"))
     found = result(script + "\njson.dump([O.iter, len(O.energy.keys())], open('result.json', 'w'))\n", tmp_path)
