@@ -62,6 +62,7 @@ DOCUMENTS = {  # words, and what the document must hold
     "status": (["swept"], lambda d: (d["points"], d["done"], d["waiting"]) == (2, 0, 2)),
     "cite": (["steel.toml"], lambda d: "Thornton" in d["law thornton, Thornton 1997"] and "Kloss" in d["liggghts"]),
     "export liggghts": (["-o", "."], lambda d: d["files"][0] == "normal_model_ep.cpp" and not d["lacks"]),
+    "export lammps": (["-o", "plugin"], lambda d: "plugin/cpp_contact/kernels/block.hpp" in d["files"]),
     "export yade": (["-o", "module"], lambda d: "module/epdem/laws.hpp" in d["files"]),
     "verify data": (
         ["-s", "leeb_G", "-e", "embedded", "-l", "hertz"],
@@ -86,6 +87,7 @@ MISTAKES = {  # words, and what the sentence must hold
     "tune": (["steel.toml"], "steel.toml is a case of impacts"),
     "cite": (["steel.toml", "-e", "abaqus"], "'abaqus' does not exist; there are embedded"),
     "export liggghts": (["--check", "."], "contact_models.h is not there; name the folder src"),
+    "export lammps": (["-o", "."], "--out .: it has files; name a new folder"),
     "export yade": (["-o", "."], "--out .: it has files; name a new folder"),
     "sweep": (["steel.toml", "--set", "impact.body.radios=1 mm"], "the nearest: impact.body.radius"),
     "verify rerun": (["steel.toml"], "steel.toml: not a results file of epdem, or damaged"),

@@ -94,6 +94,7 @@ KINDS = {  # words of a call without the option, and the value of every option
     "cite for impacts": (("cite", "steel.toml"), {"engine": "yade", "law": "hertz", "bibtex": None}),
     "cite for a scene": (("cite", "scene.toml"), {"engine": "yade", "law": "hertz", "bibtex": None}),
     "export": (("export liggghts", "-o", "."), {"out": "there", "check": "tree"}),
+    "export lammps": (("export lammps", "-o", "plugin"), {"out": "there"}),
     "export yade": (("export yade", "-o", "module"), {"out": "there"}),
     "sweep of impacts": (("sweep", "steel.toml", "--set", "impact.body.radius=1 mm..2 mm:2"), SWEEP),
     "sweep of a scene": (("sweep", "scene.toml", "--set", "scene.gravity=9.81 m/s^2,1.62 m/s^2"), SWEEP),

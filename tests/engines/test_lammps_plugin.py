@@ -290,3 +290,45 @@ def test_unlike_types_have_the_lower_strength_and_the_mean_of_the_coefficients(t
     _, c = run(bed((*frictionless, f"1 2 thornton {E!r} 0 2e5"), types=2) + "run 300\n" + DUMP, tmp_path / "given")
     assert np.abs(b - c).max() <= 1e-9 * np.abs(b).max()
     assert np.abs(a - b).max() > 1e-3 * np.abs(b).max()
+
+
+POUR = """units si
+atom_style sphere
+newton off
+comm_modify vel yes
+boundary f f f
+region box block -0.05 0.05 -0.05 0.05 -0.01 0.15 units box
+create_box 2 box
+PAIR
+neighbor 0.001 bin
+neigh_modify delay 0
+region funnel cone z 0 0 0.01 0.03 0 0.03 open 1 units box
+region tube cylinder z 0 0 0.03 0.03 0.15 open 1 open 2 units box
+region bin union 2 funnel tube
+WALL
+region source cylinder z 0 0 0.02 0.08 0.13 units box
+fix ins all pour 150 1 4711 region source diam range 0.003 0.005 dens 2500 2500 vol 0.15 500
+fix weight all gravity 9.81 vector 0 0 -1
+fix motion all nve/sphere
+timestep 2e-6
+thermo 5000
+compute energy all ke
+thermo_style custom step atoms c_energy
+run 40000
+"""
+
+
+def test_two_lines_of_a_deck_for_granular_change_and_spheres_pour_into_a_funnel(tmp_path):
+    """fix pour adds spheres while histories are on their way; all stay in the funnel."""
+    words = f"{THORNTON} tangential history 0.5 restitution 0.4"
+    deck = POUR.replace("PAIR", f"pair_style ep\npair_coeff * * {words}")
+    deck = deck.replace("WALL", f"fix wall all wall/ep/region bin {words}")
+    out, _ = run(deck, tmp_path)
+    granular = "hertz/material 1e8 0.4 0.3 tangential mindlin NULL 1.0 0.5 damping tsuji"
+    before = POUR.replace("PAIR", f"pair_style granular\npair_coeff * * {granular}")
+    before = before.replace("WALL", f"fix wall all wall/gran/region granular {granular} region bin")
+    theirs, _ = run(before, tmp_path / "granular")
+    assert column(out, "Atoms")[-1] == column(theirs, "Atoms")[-1] > 60
+    energy, other = column(out, "c_energy"), column(theirs, "c_energy")
+    assert np.abs(energy[1:5] / other[1:5] - 1).max() <= 1e-6  # they fall
+    assert 0.8 * other[-1] < energy[-1] < other[-1]  # and dissipate more, because they yield

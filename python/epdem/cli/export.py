@@ -45,3 +45,15 @@ def yade(
 
     written = [str(f) for f in sources.write(out)]
     print(json.dumps({"files": written}) if as_json else "\n".join([*written, "", *sources.commands(out)]))
+
+
+@app.command()
+def lammps(
+    out: Annotated[Path, typer.Option("--out", "-o", help="new folder for the sources")],
+    as_json: AsJson = False,
+) -> None:
+    """Write the sources of epdemplugin.so, which gives LAMMPS the contact laws as a pair style and walls."""
+    from ..engines.lammps import sources
+
+    written = [str(f) for f in sources.write(out)]
+    print(json.dumps({"files": written}) if as_json else "\n".join([*written, "", *sources.commands(out)]))
