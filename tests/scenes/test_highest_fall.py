@@ -51,3 +51,13 @@ def test_the_highest_speed_is_that_of_the_highest_fall(case):
 def test_a_hopper_narrows():
     with pytest.raises(CaseError, match=r"outlet \(0.1 m\) must be below bin_diameter \(0.1 m\)"):
         hopper(outlet="100 mm")
+
+
+@given(st.floats(0, 20), st.floats(1, 60), st.integers(1, 5000))
+def test_the_last_shot_of_a_stream_hits_with_the_energy_of_its_fall(gravity, speed, count):
+    """v^2 = v_0^2 + 2 g h; the stream is as high as its shot goes in count/rate."""
+    keys = {"kind": "peening", "width": "10 mm", "speed": f"{speed!r} m/s", "rate": "1 kHz", "count": count}
+    case = scene(keys | {"gravity": f"{gravity!r} m/s^2"})
+    height = parts(case.scene).random_fills[0].region.limits[5]
+    assert height >= speed * count / 1000
+    assert highest_speed(case) == pytest.approx(math.sqrt(speed**2 + 2 * gravity * height), rel=1e-9)

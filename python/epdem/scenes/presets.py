@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Scenes of each kind as a scene of parts: one function for each kind, from its keys to room, walls, fills, phases."""
 
+import math
 from collections.abc import Callable, Sequence
 from typing import Any
 
@@ -182,7 +183,7 @@ def _peening(s: Peening) -> Preset:
         phases,
         periodic=True,
         open_boundary=True,
-        bounds=(0.0, s.speed),
+        bounds=(0.0, math.hypot(s.speed, math.sqrt(2.0 * s.gravity * top))),  # the last shot falls from the top
     )
 
 
