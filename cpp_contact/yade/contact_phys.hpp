@@ -79,7 +79,7 @@ class EpPhys : public FrictPhys {
     "Contact of two :yref:`EpMat`: constants of the pair and history.",
     ((Real, effectiveModulus, NaN, Attr::readonly, "E* [Pa]"))
     ((Real, effectiveShearModulus, NaN, Attr::readonly, "G* [Pa]"))
-    ((Real, effectiveMass, NaN, Attr::readonly, "m* [kg]; clumps count as a whole, bodies that are not dynamic as walls"))
+    ((Real, effectiveMass, NaN, Attr::readonly, "m* [kg]; clumps count as a whole, bodies that are not dynamic as walls; 0: neither is dynamic"))
     ((Real, en, 1., Attr::readonly, "restitution of the normal dashpot in slow impacts without yield; 1: none"))
     ((Real, es, 1., Attr::readonly, "restitution of the dashpot beside friction; 1: none"))
     ((Real, rollingFriction, 0., Attr::readonly, "coefficient of rolling friction"))

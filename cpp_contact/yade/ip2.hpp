@@ -71,7 +71,12 @@ class Ip2_EpMat_EpMat_EpPhys : public IPhysFunctor {
     phys->effectiveModulus = epdem::effective_modulus(e1, e2);
     phys->effectiveShearModulus = epdem::effective_shear_modulus(e1, e2);
     const double mass1 = mass_of(i.getId1()), mass2 = mass_of(i.getId2());
-    phys->effectiveMass = std::isinf(mass1) ? mass2 : std::isinf(mass2) ? mass1 : epdem::reduced_finite(mass1, mass2);
+    if (std::isinf(mass1) || std::isinf(mass2)) {
+      const double mass = std::min(mass1, mass2);
+      phys->effectiveMass = std::isinf(mass) ? 0.0 : mass;  // of two bodies that do not move: no dashpot
+    } else {
+      phys->effectiveMass = epdem::reduced_finite(mass1, mass2);
+    }
     const double angle =
         of_pair(frictAngle, i, m1.frictionAngle, m2.frictionAngle, std::min(m1.frictionAngle, m2.frictionAngle));
     phys->tangensOfFrictionAngle = std::tan(checked("frictAngle", angle, {0.0, std::atan(iy::unlimited), true}, i));

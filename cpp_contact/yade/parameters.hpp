@@ -3,6 +3,7 @@
 #pragma once
 
 #include <cctype>
+#include <cstdio>
 
 #include "epdem/contact.hpp"
 #include "epdem/laws.hpp"
@@ -132,7 +133,7 @@ inline Range range_of_body(const Parameter& p) { return {0.0, unlimited, p.may_v
 
 /// Ends the program with one sentence. YADE calls functors in a parallel region, which no exception can leave.
 [[noreturn]] inline void refuse(const std::string& sentence) {
-  std::cout.flush();
+  std::fflush(nullptr);
   std::cerr << "epdem_yade: " << sentence << std::endl;
   _exit(1);
 }
