@@ -36,6 +36,13 @@ def test_two_ranks_give_the_energy_of_one_through_exchange_of_atoms_and_new_list
     assert relative(column(one, "Press"), column(two, "Press")) <= 1e-7
 
 
+def test_moving_borders_of_ranks_and_sorted_atoms_change_no_energy(tmp_path):
+    one, _ = run(bed(TWO_TYPES, types=2) + "atom_modify sort 0 0\nrun 1500\n", tmp_path / "one")
+    more = "comm_style tiled\nfix borders all balance 50 0.9 rcb\natom_modify sort 50 0.002"
+    two, _ = run(bed(TWO_TYPES, types=2, more=more) + "balance 0.9 rcb\nrun 1500\n", tmp_path / "two", ranks=2)
+    assert relative(column(one, "KinEng"), column(two, "KinEng")) <= 1e-9
+
+
 def test_newton_on_changes_no_bit(tmp_path):
     deck = {newton: bed(TWO_TYPES, types=2, newton=newton) + "run 500\n" + DUMP for newton in ("on", "off")}
     on, off = (run(deck[newton], tmp_path / newton)[1] for newton in ("on", "off"))
@@ -262,9 +269,9 @@ WRONG = {
     "wall with adhesion": ("run 1", "fix w all wall/ep zplane 0 NULL jkr 1e8 0.3 0.1", "walls need a law without"),
     "no region": ("run 1", f"fix w all wall/ep/region bin {THORNTON}", "there is no region bin"),
     "rigid bodies": (
-        "run 1",
-        "pair_coeff 1 1 thornton 1e8 0.3 4e5 restitution 0.5\nunfix motion\nfix r all rigid/small bond\nrun 1",
-        "ERROR",
+        "history 0.3",
+        "history 0.3 restitution 0.5\nfix body all rigid single",
+        "restitution needs the mass of the body of fix rigid body",
     ),
 }
 
