@@ -98,7 +98,7 @@ def column(out, name):
     for line in out.splitlines():
         words = line.split()
         if words[:1] == ["Step"]:
-            at = words.index(name)
+            at = words.index(name) if name in words else None
         elif line.startswith("Loop time"):
             at = None
         elif at is not None and words:

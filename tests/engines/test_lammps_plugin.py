@@ -61,9 +61,7 @@ def test_a_restart_file_continues_to_the_bit(style, tmp_path):
     assert column(whole, "KinEng")[-1] == column(again, "KinEng")[-1]
 
 
-def test_histories_stay_where_a_run_is_split_and_atoms_of_another_place_are_deleted(tmp_path):
-    """A plastic contact keeps its dent: the pair at the left meets again after the atoms at the right are gone."""
-    deck = f"""units si
+DENTED = f"""units si
 atom_style sphere
 atom_modify map array
 comm_modify vel yes
@@ -75,25 +73,35 @@ create_atoms 1 single 0.05 0.0195 0
 create_atoms 1 single -0.05 0 0
 create_atoms 1 single -0.05 0.0195 0
 set group all diameter 0.02 density 7850
-pair_style ep energies
+pair_style ep
 pair_coeff * * {THORNTON}
 neighbor 0.002 bin
-region right block 0 0.1 -0.1 0.1 -0.1 0.1
-group left id 3 4
-velocity left set 0 0 0
 fix hold all setforce 0 0 0
 fix motion all nve/sphere
-timestep 1e-6
-thermo_style custom step fmax
 run 10
-displace_atoms left move 0 0 0
 """
-    force = 'variable f equal fy[4]\nrun 1\nprint "force ${f}"\n'
-    shift = "group upper id 4\ndisplace_atoms upper move 0 2e-4 0\n"
-    held = re.findall(r"^force (\S+)", run(deck + shift + force, tmp_path / "a")[0], re.MULTILINE)
-    text = deck + "delete_atoms region right compress no\n" + shift + force
-    kept = re.findall(r"^force (\S+)", run(text, tmp_path / "b")[0], re.MULTILINE)
-    assert held == kept
+BETWEEN = {
+    "two runs": "",
+    "deleted atoms": "region right block 0 0.1 -0.1 0.1 -0.1 0.1\ndelete_atoms region right compress no\n",
+    "restart": "write_restart here\nclear\ncomm_modify vel yes\nread_restart here\nneighbor 0.002 bin\n"
+    "fix hold all setforce 0 0 0\nfix motion all nve/sphere\nrun 0\n",
+}
+
+
+@pytest.mark.parametrize("what", BETWEEN)
+def test_a_dent_stays_between_two_runs(what, tmp_path):
+    """Pressed to 0.5 mm, back to 0.49 mm: F = F_max x^1.5, a = a_max x^0.5, x = 1 - (0.01 mm) 4 E* a_max/(3 F_max)."""
+    back = "group upper id 4\ndisplace_atoms upper move 0 1e-5 0 units box\ncompute p all stress/atom NULL pair\n"
+    back += "compute s all reduce sum c_p[2]\nthermo_style custom step c_s\nrun 1\n"
+    out, _ = run(DENTED + BETWEEN[what] + back, tmp_path)
+    E_star, R_star, alpha = 1e8 / (2 * 0.91), 0.005, 5e-4
+    alpha_y = (math.pi * 4e5 / (2 * E_star)) ** 2 * R_star
+    most = 2 / 3 * math.pi * 4e5 * R_star * alpha_y + math.pi * 4e5 * R_star * (alpha - alpha_y)
+    x = 1 - 1e-5 * 4 * E_star * math.sqrt(R_star * alpha) / (3 * most)
+    unloaded = most * x**1.5 * 0.01951
+    other = 0.0 if what == "deleted atoms" else most * 0.0195
+    assert 0.1 < x < 0.9
+    assert -column(out, "c_s")[-1] == pytest.approx(unloaded + other, rel=1e-5)
 
 
 def test_units_cgs_give_the_same_motion(tmp_path):
