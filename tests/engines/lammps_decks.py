@@ -59,6 +59,23 @@ thermo 500
 """
 
 
+def spheres(*places, pair, diameter=0.02, density=7850):
+    """Equal spheres at rest at places [m] in a room of 0.2 m; `pair`: words of pair_coeff * *."""
+    atoms = "".join(f"create_atoms 1 single {x!r} {y!r} {z!r}\n" for x, y, z in places)
+    return f"""units si
+atom_style sphere
+atom_modify map array
+comm_modify vel yes
+boundary f f f
+region box block -0.1 0.1 -0.1 0.1 -0.1 0.1
+create_box 1 box
+{atoms}set group all diameter {diameter} density {density}
+pair_style ep
+pair_coeff * * {pair}
+neighbor 0.002 bin
+"""
+
+
 DUMP = "write_dump all custom end.txt id type x y z vx vy vz omegax omegay omegaz modify sort id format float %.17g\n"
 
 

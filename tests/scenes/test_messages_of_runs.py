@@ -14,6 +14,8 @@ from epdem.base import folders, paths, processes, settings
 from epdem.case import impact
 from epdem.case.toml import read_toml
 from epdem.engines import engine
+from epdem.engines.lammps import launcher
+from epdem.engines.lammps.engine import Lammps
 from epdem.engines.liggghts import dump, own_template, scene_tables, session, tune
 from epdem.engines.liggghts import engine as liggghts
 from epdem.engines.yade import scene_tables as yade_tables
@@ -26,7 +28,6 @@ from epdem.impacts.prediction import predict
 from epdem.scenes import columns, contacts, run, stl_files
 from epdem.studies import one_impact
 from epdem.studies.sweep import slurm
-from epdem.verification.models import lammps
 from epdem.verification.stability import variants
 from epdem.verification.stability.edits import Edit
 from epdem.verification.theory.criteria import principal
@@ -72,10 +73,9 @@ def test_dumps_of_impacts(tmp_path, monkeypatch):
     monkeypatch.setattr(dump, "series", lambda path: np.zeros((3, 2, 3)))
     with says(r"the run left an incomplete dump \(3 frames of 2 bodies, expected .*see log.liggghts beside it"):
         liggghts.trajectory(p, path, {})
-    monkeypatch.setattr(lammps, "call", lambda *words, **named: 1.0)
-    monkeypatch.setattr(lammps, "program", lambda: "lmp")
+    monkeypatch.setattr(launcher, "run", lambda *words, **named: 1.0)
     with says("path.txt: the run left an incomplete dump .*; see log.lammps beside it"):
-        lammps.LammpsMdr().run(p, tmp_path)
+        Lammps().run(p, tmp_path)
 
 
 def test_frames_and_rows_of_scenes(tmp_path):

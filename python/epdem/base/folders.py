@@ -219,3 +219,11 @@ def refuse_existing(path: Path, *, force: bool, option: str = "--out") -> None:
     parent = next(p for p in path.absolute().parents if p.exists())
     if not (parent.is_dir() and os.access(parent, os.W_OK | os.X_OK)):
         raise CaseError(f"{path}: {parent} is not a folder that can be written to; name another file by {option}")
+
+
+def write_project(folder: Path, files: dict[Path, Path]) -> list[Path]:
+    """Copy text files to their places in a new folder. Raises CaseError if the folder has files."""
+    if folder.exists() and (not folder.is_dir() or any(folder.iterdir())):
+        raise CaseError(f"--out {folder}: it has files; name a new folder")
+    folder.mkdir(parents=True, exist_ok=True)
+    return write_texts(folder, {str(name): files[name].read_text(encoding="utf-8") for name in sorted(files)})

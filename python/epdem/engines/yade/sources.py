@@ -4,19 +4,13 @@
 from pathlib import Path
 
 from ...base import paths
-from ...base.files import write_texts
-from ...errors import CaseError
 
 
-def write(folder: Path) -> list[Path]:
-    """Write the CMake project into a folder, which is made. Raises CaseError if the folder has files."""
-    if folder.exists() and (not folder.is_dir() or any(folder.iterdir())):
-        raise CaseError(f"--out {folder}: it has files; name a new folder")
+def sources() -> dict[Path, Path]:
+    """The files of the CMake project, by their places in its folder."""
     adapter, laws = paths.cpp_sources("yade")
     found = {f.relative_to(adapter): f for f in adapter.iterdir() if f.suffix in (".hpp", ".cpp", ".py", ".txt")}
-    found |= {f.relative_to(laws): f for f in (laws / "epdem").rglob("*.hpp")}
-    folder.mkdir(parents=True, exist_ok=True)
-    return write_texts(folder, {str(name): found[name].read_text(encoding="utf-8") for name in sorted(found)})
+    return found | {f.relative_to(laws): f for f in (laws / "epdem").rglob("*.hpp")}
 
 
 def commands(folder: Path) -> list[str]:
