@@ -27,7 +27,8 @@ class Trajectory:
 
     overlap [m] is negative while apart, force [N] is never negative, velocity [m/s] is positive on approach.
     NaN after the end of an impact. `seconds` is the engine's own account of its time. tangential: velocity [m/s] of the
-    centres against each other after oblique impacts, spin: of the body then [rad/s], shape (n,).
+    centres against each other after oblique impacts, spin: of the body then [rad/s], shape (n,). end_power: of
+    another law than the plan's, the power of the force that falls linearly with the overlap at the end.
     """
 
     time_step: float
@@ -37,6 +38,7 @@ class Trajectory:
     seconds: dict[str, float] = field(default_factory=dict)
     tangential: np.ndarray | None = None
     spin: np.ndarray | None = None
+    end_power: float | None = None
 
 
 class Feature(StrEnum):

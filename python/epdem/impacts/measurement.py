@@ -41,11 +41,8 @@ def _last(valid: np.ndarray) -> np.ndarray:
     return np.asarray(valid.shape[1] - 1 - np.argmax(valid[:, ::-1], axis=1))
 
 
-def measure(plan: Plan, path: Trajectory, *, end_power: float | None = None) -> Measured:
-    """The impacts of a trajectory. Raises EngineError if a contact never began or never ended.
-
-    end_power: for another law than the plan's: the power of its force that falls linearly with the overlap at the end.
-    """
+def measure(plan: Plan, path: Trajectory) -> Measured:
+    """The impacts of a trajectory. Raises EngineError if a contact never began or never ended."""
     law = plan.experiment.theory()
     if isinstance(law, JKR):
         return _with_adhesion(plan, path, law)
@@ -61,8 +58,8 @@ def measure(plan: Plan, path: Trajectory, *, end_power: float | None = None) -> 
 
     # Contact ends where F, not the overlap, reaches 0. Near the end F^(2/3) falls linearly with overlap and time;
     # with a dashpot, which cuts the force off early, F itself does.
-    own = end_power is None and plan.experiment.viscous_number == 0
-    power = end_power or (2 / 3 if own else 1.0)
+    own = path.end_power is None and plan.experiment.viscous_number == 0
+    power = path.end_power or (2 / 3 if own else 1.0)
     before = np.maximum(last - 1, 0)
     root_last, root_before = (np.abs(force[row, k]) ** power for k in (last, before))
     share = np.divide(root_last, root_before - root_last, out=np.full(plan.n, 0.5), where=root_before > root_last)

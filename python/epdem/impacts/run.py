@@ -60,17 +60,16 @@ class Stage:
     paths: pd.DataFrame
 
 
-def run_plan(p: Plan, tool: ImpactEngine, folder: Path, *, ranks: int = 1, end_power: float | None = None) -> Stage:
+def run_plan(p: Plan, tool: ImpactEngine, folder: Path, *, ranks: int = 1) -> Stage:
     """Write a plan's deck into `folder`, run it and measure it.
 
-    `end_power` as in `measure`, for an engine with its own law. Raises EngineError, and CaseError for what the
-    engine cannot do.
+    Raises EngineError, and CaseError for what the engine cannot do.
     """
     start = time.perf_counter()
     folder.mkdir(parents=True, exist_ok=True)
     files = tool.write(p, folder)
     path = tool.run(p, folder, ranks=ranks)
-    table = impacts_table(p, measure(p, path, end_power=end_power))
+    table = impacts_table(p, measure(p, path))
     seconds = {f"seconds_{k}": v for k, v in path.seconds.items()} | {"seconds": time.perf_counter() - start}
     decks = {f.name: f.read_text(encoding="utf-8") for f in files if is_text(f) and f.suffix != ".data"}
     return Stage(table, seconds, decks, chosen(p, path))
@@ -84,13 +83,12 @@ def run_and_compare(
     *,
     law: str | None = None,
     ranks: int = 1,
-    end_power: float | None = None,
 ) -> tuple[pd.DataFrame, Stage]:
     """`run_plan`, and its impacts compared with their prediction: one row per speed.
 
     `law` is the name in the rows (None: the plan's law).
     """
-    stage, x = run_plan(p, tool, folder, ranks=ranks, end_power=end_power), p.experiment
+    stage, x = run_plan(p, tool, folder, ranks=ranks), p.experiment
     return compare(tool.name, law or x.law.name, stage.impacts, prediction, x.check), stage
 
 

@@ -40,8 +40,6 @@ IMPACT_OUTPUT = np.dtype(
 __all__ = ["IMPACT_INPUT", "IMPACT_OUTPUT", "Array", "StepResult", "laws", "library", "library_path", "viscous_number"]
 
 _SIGNATURES = {
-    "epdem_impacts_long_double": (c_int, [c_int, c_double, _D, c_size_t, ctypes.c_void_p, ctypes.c_void_p]),
-    "epdem_bounces": (c_int, [c_int, c_double, _D, ctypes.c_void_p, ctypes.c_int64, ctypes.c_void_p, _D]),
     "epdem_oblique": (
         c_int,
         [c_int, c_double, _D, c_double, c_double, c_int, c_size_t, ctypes.c_void_p, _D, _D],
@@ -51,8 +49,6 @@ _SIGNATURES = {
     "epdem_size_of": (c_size_t, [c_char_p]),
     "epdem_viscous_number": (c_double, [c_double]),
     "epdem_step": (c_int, [c_int, c_double, _D, c_size_t, _D, _D, _D, POINTER(StepResult)]),
-    "epdem_motion": (c_int, [c_int, c_double, _D, c_double, c_double, c_double, c_int, c_size_t, _D, _D]),
-    "epdem_yield": (c_int, [c_int, c_double, _D, c_size_t, _D, _D, _D, _D]),
     "epdem_backbone": (c_int, [c_int, c_double, _D, c_size_t, _D, _D, _D, _D, _D, _D]),
     "epdem_impacts": (c_int, [c_int, c_double, _D, c_size_t, ctypes.c_void_p, ctypes.c_void_p, c_size_t, _D, _D, _D]),
 }

@@ -23,7 +23,8 @@ def _columns(*values: npt.ArrayLike) -> list[Array]:
     return [_array(x) for x in np.broadcast_arrays(*map(_array, values))]
 
 
-def _pointer(x: Array | None) -> Any:
+def pointer(x: Array | None) -> Any:
+    """`x` as the C interface takes an array; None stays None."""
     return None if x is None else x.ctypes.data_as(_D)
 
 
@@ -40,6 +41,16 @@ class ImpactNumbers(TypedDict):
     time_step: npt.ArrayLike
     gap: NotRequired[npt.ArrayLike]
     viscous: NotRequired[float]
+
+
+def cases(*, steps: int, **numbers: Unpack[ImpactNumbers]) -> Array:
+    """IMPACT_INPUT of impacts of at most `steps` steps, shape (n,)."""
+    values: dict[str, Any] = {"gap": 0.0, "viscous": 0.0, **numbers}
+    found = np.zeros(np.broadcast_shapes((1,), *map(np.shape, values.values())), IMPACT_INPUT)
+    for name, value in values.items():
+        found[name] = value
+    found["steps"] = steps
+    return found
 
 
 class Law:
@@ -65,8 +76,9 @@ class Law:
         self.name, self.E_star = name, float(E_star)
         self._parameters = (c_double * max(len(values), 1))(*values)
 
-    def _call(self, function: str, *arguments: object) -> None:
-        status = getattr(library(), function)(self.info.index, self.E_star, self._parameters, *arguments)
+    def call(self, function: str, *arguments: object) -> None:
+        """Call a function of the C interface with this law and its numbers before `arguments`. Raises CaseError."""
+        status = getattr(library(), function)(self.info.index, c_double(self.E_star), self._parameters, *arguments)
         if status:
             condition = f" ({self.info.condition})" if self.info.condition else ""
             raise CaseError(f"law {self.name}: {library().epdem_message(status).decode()}{condition}")
@@ -81,7 +93,7 @@ class Law:
         contacts = _columns(R_star, delta_max, delta)
         n = contacts[0].size
         out = np.empty((n, 3))
-        self._call("epdem_step", n, *map(_pointer, contacts), out.ctypes.data_as(POINTER(StepResult)))
+        self.call("epdem_step", n, *map(pointer, contacts), out.ctypes.data_as(POINTER(StepResult)))
         return out[:, 0], out[:, 1], out[:, 2]
 
     def backbone(self, *, R_star: npt.ArrayLike, delta: npt.ArrayLike) -> tuple[Array, Array, Array, Array]:
@@ -89,44 +101,27 @@ class Law:
         contacts = _columns(R_star, delta)
         n = contacts[0].size
         force, radius, work, plastic = (np.empty(n) for _ in range(4))
-        self._call("epdem_backbone", n, *map(_pointer, (*contacts, force, radius, work, plastic)))
+        self.call("epdem_backbone", n, *map(pointer, (*contacts, force, radius, work, plastic)))
         return force, radius, work, plastic
-
-    @staticmethod
-    def _cases(
-        steps: int,
-        R_star: npt.ArrayLike,
-        m_star: npt.ArrayLike,
-        speed: npt.ArrayLike,
-        time_step: npt.ArrayLike,
-        gap: npt.ArrayLike = 0.0,
-        viscous: float = 0.0,
-    ) -> Array:
-        columns = np.broadcast_arrays(*map(_array, (R_star, m_star, speed, time_step, gap)))
-        cases = np.empty(columns[0].shape, IMPACT_INPUT)
-        for name, column in zip(("R_star", "m_star", "speed", "time_step", "gap"), columns, strict=True):
-            cases[name] = column
-        cases["steps"], cases["viscous"] = steps, viscous
-        return cases
-
-    def _impacts(self, cases: Array, steps: int, *samples: Array | None) -> Array:
-        out = np.empty(cases.shape, IMPACT_OUTPUT)
-        places = (cases.size, cases.ctypes.data, out.ctypes.data)
-        self._call("epdem_impacts", *places, steps + 1, *map(_pointer, samples))
-        return out
 
     def impacts(self, *, steps: int, **numbers: Unpack[ImpactNumbers]) -> Array:
         """Two-body impacts by velocity Verlet, at most `steps` steps each: IMPACT_OUTPUT of shape (n,)."""
-        return self._impacts(self._cases(steps, **numbers), steps, None, None, None)
+        return self._impacts(cases(steps=steps, **numbers), steps)
 
     def impact_paths(self, *, steps: int, **numbers: Unpack[ImpactNumbers]) -> tuple[Array, Array, Array, Array]:
         """`impacts` with their paths: overlap [m], force [N] and approach velocity [m/s] of shape (n, steps + 1).
 
         They are NaN after the end of an impact.
         """
-        cases = self._cases(steps, **numbers)
-        overlap, force, velocity = (np.full((cases.size, steps + 1), np.nan) for _ in range(3))
-        return self._impacts(cases, steps, overlap, force, velocity), overlap, force, velocity
+        given = cases(steps=steps, **numbers)
+        overlap, force, velocity = (np.full((given.size, steps + 1), np.nan) for _ in range(3))
+        return self._impacts(given, steps, overlap, force, velocity), overlap, force, velocity
+
+    def _impacts(self, given: Array, steps: int, *samples: Array) -> Array:
+        out = np.empty(given.shape, IMPACT_OUTPUT)
+        samples_or_none = map(pointer, samples or (None, None, None))
+        self.call("epdem_impacts", given.size, given.ctypes.data, out.ctypes.data, steps + 1, *samples_or_none)
+        return out
 
     def oblique(
         self,
@@ -142,39 +137,8 @@ class Law:
 
         G_star [Pa] of the pair; nodes: 2 or 3 of partial slip, 0 for one spring.
         """
-        cases = self._cases(steps, **numbers)
-        before = _array(np.broadcast_to(slip, cases.shape))
-        after = np.empty(cases.shape)
-        places = (cases.size, cases.ctypes.data, _pointer(before), _pointer(after))
-        self._call("epdem_oblique", c_double(G_star), c_double(mu), nodes, *places)
+        given = cases(steps=steps, **numbers)
+        before, after = _array(np.broadcast_to(slip, given.shape)), np.empty(given.shape)
+        places = (given.size, given.ctypes.data, pointer(before), pointer(after))
+        self.call("epdem_oblique", c_double(G_star), c_double(mu), nodes, *places)
         return after
-
-    def motion(self, steps: npt.ArrayLike, *, R_star: float, G_star: float, mu: float, nodes: int) -> Array:
-        """Normal force and friction (3) [N] of one contact, (n, 4), in a prescribed motion, (n, 9).
-
-        A step is overlap, closing speed times time step [m], unit normal (3), slip in the step (3) [m], rotation about
-        the normal in it, mean of both bodies [rad]. The normal points to the body that the forces act on. nodes as in
-        `oblique`.
-        """
-        motion = np.ascontiguousarray(steps, dtype=np.float64)
-        out = np.empty((len(motion), 4))
-        numbers = (c_double(R_star), c_double(G_star), c_double(mu), nodes)
-        self._call("epdem_motion", *numbers, len(motion), _pointer(motion), _pointer(out))
-        return out
-
-    def impacts_long_double(self, *, steps: int, **numbers: Unpack[ImpactNumbers]) -> Array:
-        """The same impacts computed in long double, IMPACT_OUTPUT rounded at the end: a reference for round-off."""
-        cases = self._cases(steps, **numbers)
-        out = np.empty(cases.shape, IMPACT_OUTPUT)
-        self._call("epdem_impacts_long_double", cases.size, cases.ctypes.data, out.ctypes.data)
-        return out
-
-    def bounces(self, count: int, *, steps: int, **numbers: Unpack[ImpactNumbers]) -> tuple[np.void, Array]:
-        """`count` impacts of one contact, each at the rebound speed of the one before, at most `steps` steps each.
-
-        Returns the last impact (IMPACT_OUTPUT, its `steps` those of all impacts) and the rebound speeds [m/s].
-        """
-        first = self._cases(steps, **numbers)
-        out, speeds = np.empty(1, IMPACT_OUTPUT), np.full(count, np.nan)
-        self._call("epdem_bounces", first.ctypes.data, count, out.ctypes.data, _pointer(speeds))
-        return out[0], speeds

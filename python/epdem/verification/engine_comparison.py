@@ -81,7 +81,7 @@ def _own_theory(tool: OwnTheory, x: Experiment, folder: Path) -> tuple[pd.DataFr
     """An engine with a law of its own against its own theory: (one row per speed, seconds)."""
     prediction = tool.predict(x)
     p = plan(x, prediction)
-    rows, stage = run_and_compare(p, prediction, tool, folder, law=tool.name, end_power=tool.end_power)
+    rows, stage = run_and_compare(p, prediction, tool, folder, law=tool.name)
     return rows, stage.seconds["seconds"]
 
 

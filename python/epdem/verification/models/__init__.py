@@ -15,8 +15,6 @@ from .yade import YadeLuding
 class OwnTheory(ImpactEngine, Protocol):
     """A model with a law of another code, and the theory of that law."""
 
-    end_power: float  # the power of the force that falls linearly with the overlap at the end of an impact
-
     def predict(self, x: Experiment) -> Prediction:
         """The prediction of the model's own theory. Raises CaseError if the model cannot represent the case."""
 

@@ -1,10 +1,14 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """LAMMPS's `mdr` on the same plans, for comparison."""
 
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
 from ...base import rendering as decks
 from ...engines.lammps import launcher
 from ...engines.lammps.engine import END, PATH, Deck, Lammps
-from ...impacts.engine import Feature, check_features
+from ...impacts.engine import Feature, Report, check_features, silent
 from ...impacts.experiment import Experiment
 from ...impacts.plan import Plan
 from ...impacts.prediction import Prediction
@@ -19,7 +23,6 @@ class LammpsMdr(Lammps):
     name = "lammps-mdr"
     template = "verification/lammps/impact.in.j2"
     features = frozenset({Feature.DECK, Feature.POSITIONS})
-    end_power = 2 / 3
 
     def missing(self) -> str | None:
         return launcher.missing_program()
@@ -52,3 +55,6 @@ class LammpsMdr(Lammps):
             end=END,
             steps=plan.steps,
         )
+
+    def run(self, job: Any, folder: Path, *, ranks: int = 1, report: Report = silent) -> Any:
+        return replace(super().run(job, folder, ranks=ranks, report=report), end_power=2 / 3)

@@ -3,11 +3,13 @@
 
 import math
 from dataclasses import replace
+from pathlib import Path
+from typing import Any
 
 from ...engines.liggghts.deck import Deck
 from ...engines.liggghts.engine import Liggghts
 from ...engines.liggghts.properties import Property, of_friction, of_impacts, per_pair, per_type, scalar
-from ...impacts.engine import Feature
+from ...impacts.engine import Feature, Report, silent
 from ...impacts.experiment import Experiment
 from ...impacts.plan import Plan
 from ...impacts.prediction import Prediction
@@ -73,7 +75,10 @@ class _OwnTheory(Liggghts):
     """A model whose numbers and theory are in `predictions`."""
 
     features = WITHOUT_OURS
-    end_power = 1.0  # the force falls linearly with the overlap
+
+    def run(self, job: Any, folder: Path, *, ranks: int = 1, report: Report = silent) -> Any:
+        path = super().run(job, folder, ranks=ranks, report=report)
+        return replace(path, end_power=1.0)  # the force falls linearly with the overlap
 
     def deck(self, plan: Plan) -> Deck:
         return replace(super().deck(plan), has_history=True)

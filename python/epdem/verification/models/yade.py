@@ -3,10 +3,12 @@
 
 import math
 from dataclasses import replace
+from pathlib import Path
+from typing import Any
 
 from ...engines.yade.deck import Anvil, Deck, Material
 from ...engines.yade.engine import Yade
-from ...impacts.engine import Feature
+from ...impacts.engine import Feature, Report, silent
 from ...impacts.experiment import Body, Experiment
 from ...impacts.plan import Plan
 from ...impacts.prediction import Prediction
@@ -23,7 +25,10 @@ class YadeLuding(Yade):
     name = "yade-luding"
     laws: tuple[str, ...] | None = None
     features = Yade.features - {Feature.FRICTION}
-    end_power = 1.0  # the force falls linearly with the overlap
+
+    def run(self, job: Any, folder: Path, *, ranks: int = 1, report: Report = silent) -> Any:
+        path = super().run(job, folder, ranks=ranks, report=report)
+        return replace(path, end_power=1.0)  # the force falls linearly with the overlap
 
     def predict(self, x: Experiment) -> Prediction:
         return predictions.predict_luding(x)

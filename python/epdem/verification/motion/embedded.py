@@ -6,6 +6,7 @@ from pathlib import Path
 import numpy as np
 
 from ...engines.embedded import Embedded
+from .. import native
 from .prescribed import Loads, Motion, Touch, unit_normals
 
 
@@ -30,7 +31,8 @@ class EmbeddedMotions:
         opening = (v * normal).sum(axis=1)[:, None]
         slip = dt * (v - opening * normal + np.cross(normal, (arm[:, :, None] * motion.spin).sum(axis=1)))
         turn = 0.5 * dt * (motion.spin.sum(axis=1) * normal).sum(axis=1)[:, None]
-        out = x.native_law().motion(
+        out = native.motion(
+            x.native_law(),
             np.hstack([overlap, -dt * opening, normal, slip, turn]),
             R_star=x.R_star,
             G_star=x.G_star,

@@ -5,6 +5,7 @@ import numpy as np
 from scipy.integrate import trapezoid
 
 from ...laws.native import ImpactNumbers
+from .. import native
 from .cases import Extreme
 from .running import Setting, Verdict, judged
 from .sampling import PositionSampler, Sampler
@@ -21,9 +22,9 @@ def bounces(v: Verdict, s: Setting, total: int) -> None:
     dt = BOUNCE_SHARE * s.limit
     law, steps = s.x.native_law(), int(1.5 * s.contact_time / dt) + 20
     one = ImpactNumbers(R_star=s.x.R_star, m_star=s.x.m_star, speed=float(s.x.speed[0]), time_step=dt)
-    trial, _ = law.bounces(200, steps=steps, **one)
+    trial, _ = native.bounces(law, 200, steps=steps, **one)
     count = int(np.ceil(1.01 * 200 * total / trial["steps"]))
-    out, speeds = law.bounces(count, steps=steps, **one)
+    out, speeds = native.bounces(law, count, steps=steps, **one)
     # the first bounce yields for good; what comes after it should be elastic
     v.steps, v.e_n_error = int(out["steps"]), float(np.abs(speeds / speeds[0] - 1).max())
     v.created = float(speeds.max() ** 2 / speeds[0] ** 2 - 1)

@@ -8,6 +8,7 @@ import pandas as pd
 
 from ...errors import EpdemError
 from ...impacts.timestep import starting_phases
+from .. import native
 from .cases import build
 from .running import Setting, position_floor, setting
 from .sampling import Sampler
@@ -32,8 +33,8 @@ def with_positions(s: Setting, time_step: float, gap: np.ndarray, steps: int) ->
 def in_long_double(s: Setting, time_step: float, gap: np.ndarray, steps: int) -> np.ndarray:
     """e_n of the embedded engine in long double, shape of gap."""
     x = s.x
-    out = x.native_law().impacts_long_double(
-        R_star=x.R_star, m_star=x.m_star, speed=x.speed[0], time_step=time_step, gap=gap, steps=steps
+    out = native.impacts_long_double(
+        x.native_law(), R_star=x.R_star, m_star=x.m_star, speed=x.speed[0], time_step=time_step, gap=gap, steps=steps
     )
     return np.asarray(out["rebound_speed"] / x.speed[0])
 
