@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Templates to text: undefined names are errors, numbers keep every digit, templates compute nothing."""
+"""Decks and templates to text: undefined names are errors, numbers keep every digit, templates compute nothing."""
 
 from functools import cache
 from pathlib import Path
+from types import SimpleNamespace
 from typing import Any, TypeVar
 
 import jinja2
@@ -16,6 +17,22 @@ from . import paths
 def number(x: float | int) -> str:
     """The shortest text that reads back as the same number."""
     return repr(int(x)) if isinstance(x, int | np.integer) else repr(float(x))
+
+
+class Deck(SimpleNamespace):
+    """What a template reads: the words and numbers of an engine, and what the `plan` has by other names."""
+
+    def __init__(self, plan: object, **values: object):
+        super().__init__(plan=plan, **values)
+
+    def __getattr__(self, name: str) -> Any:
+        if name == "plan" or name.startswith("__"):
+            raise AttributeError(name)
+        return getattr(self.plan, name)
+
+    def but(self, **values: object) -> "Deck":
+        """The same deck with other values."""
+        return Deck(**(vars(self) | values))
 
 
 REASON = "\x1f"  # between a line and its reason

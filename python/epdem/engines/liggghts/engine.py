@@ -22,7 +22,6 @@ from ...scenes.engine import Resumed, Tables, check_scene
 from ...scenes.plan import ScenePlan
 from ...theory.sources import Source
 from . import data_file, dump, executable, launcher, scene_deck, scenes
-from .deck import Deck
 from .log import loop_seconds
 from .properties import HARD, SOFT, Property, atom_types, finite, of_law, tangential
 from .session import Session
@@ -69,7 +68,7 @@ class Liggghts:
         """The material properties of the deck, for this model."""
         return of_law(plan)
 
-    def deck(self, plan: Plan) -> Deck:
+    def deck(self, plan: Plan) -> decks.Deck:
         """The deck of a plan. Raises CaseError for what LIGGGHTS cannot do."""
         x, types = plan.experiment, atom_types(plan)
         check_features(self, x)
@@ -80,7 +79,8 @@ class Liggghts:
                     "only; use --engine embedded"
                 )
         moduli = [finite(b.young_modulus) for b, _ in types]
-        return Deck(
+        return decks.Deck(
+            plan,
             title=x.title,
             source=x.source,
             summary=f"{plan.summary}, law {x.law.name}",
@@ -96,9 +96,7 @@ class Liggghts:
             settings=("viscous on",) if x.viscous_restitution is not None else (),
             oblique=x.oblique is not None,
             wall_type=len(types) if math.isinf(x.target.radius) else None,
-            time_step=plan.time_step,
             path=PATH,
-            steps=plan.steps,
         )
 
     def files(self, plan: ScenePlan) -> dict[str, str]:

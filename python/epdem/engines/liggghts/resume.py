@@ -16,7 +16,7 @@ from . import log
 from . import scene_tables as tables
 from .insertions import Insertion
 from .launcher import OUT
-from .scene_deck import Deck, deck
+from .scene_deck import deck
 
 
 def _restarts(folder: Path) -> list[tuple[int, Path]]:
@@ -56,7 +56,7 @@ def choose(p: ScenePlan, folder: Path) -> tuple[int, list[int]]:
     return step, [s for s in lost if s < step]
 
 
-def _going_on(d: Deck, phase: int, inserted: dict[str, int]) -> Iterator[Insertion]:
+def _going_on(d: decks.Deck, phase: int, inserted: dict[str, int]) -> Iterator[Insertion]:
     """The insertions of a run that goes on in a phase, without streams that have ended: LIGGGHTS refuses these. A
     stream of an earlier phase goes on in this one."""
     names = [part.name for part in d.phases]
@@ -78,9 +78,9 @@ def write_resume(p: ScenePlan, folder: Path, step: int) -> Path:
         part = d.phases[phase]
         comes = step == begin and bool(part.particles or [f for f in d.insertions if f.once and f.phase == part.name])
         rest = part.after(step - begin, d.every)
-        d = replace(d, phases=(*d.phases[:phase], rest, *d.phases[phase + 1 :]))
-    d = replace(d, insertions=tuple(_going_on(d, phase, log.inserted(folder / OUT, step))))
+        d = d.but(phases=(*d.phases[:phase], rest, *d.phases[phase + 1 :]))
     path = folder / "in.resume"
-    continued = replace(d, from_restart=f"restart.{step}.bin", resumed_phase=phase, comes=comes)
+    going_on = tuple(_going_on(d, phase, log.inserted(folder / OUT, step)))
+    continued = d.but(insertions=going_on, from_restart=f"restart.{step}.bin", resumed_phase=phase, comes=comes)
     path.write_text(decks.render("liggghts/scene_resume.in.j2", deck=continued), encoding="utf-8")
     return path

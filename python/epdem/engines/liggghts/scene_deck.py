@@ -2,77 +2,20 @@
 """The LIGGGHTS deck of a scene: all numbers of the templates."""
 
 import math
-from dataclasses import dataclass
-from typing import Any
 
 from ...base import rendering as decks
-from ...case.parts import Sphere
 from ...errors import CaseError
 from ...laws.library import laws
 from ...scenes.model import Model
 from ...scenes.plan import ScenePlan
 from . import stl, wall_stress
-from .insertions import Insertion, insertions
+from .insertions import insertions
 from .properties import HARD, SOFT, Property, elastic, per_pair, ratios, strength, tangential, work_of_adhesion
-from .scene_parts import DeckMesh, DeckPhase, DeckPlane, load_words, parts, planes, surfaces, table
+from .scene_parts import load_words, parts, planes, surfaces, table
 from .wall_power import wall_id
 
 MOST_CELLS = 2**31 - 1  # that LIGGGHTS counts, each half as wide as its longest reach
 SKIN = 0.5  # of the smallest radius: rebuilds cost less than idle neighbours
-
-
-@dataclass(frozen=True)
-class Deck:
-    """The data of the templates; `row_words`: thermo keywords beside step, atoms and kinetic energy."""
-
-    plan: ScenePlan
-    title: str
-    source: str
-    kind: str
-    hard: bool
-    soft: bool
-    boundary: str
-    n_types: int
-    skin: float
-    own_skin: bool
-    processors: str | None
-    properties: tuple[Property, ...]
-    model: str
-    tangential: str
-    cohesion: str | None
-    rolling_friction: str | None
-    settings: tuple[str, ...]
-    wall_type: int
-    planes: tuple[DeckPlane, ...]
-    meshes: tuple[DeckMesh, ...]
-    loads_of: tuple[tuple[int, str, bool], ...]
-    table: tuple[Sphere, ...]
-    frozen: tuple[int, ...]
-    gravity: float
-    insertions: tuple[Insertion, ...]
-    phases: tuple[DeckPhase, ...]
-    open: bool
-    samples: int
-    stress_walls: tuple[tuple[str, str, bool], ...]
-    energy: bool
-    loads: bool
-    spins: bool
-    has_history: bool
-    yields: bool
-    adheres: bool
-    history_columns: tuple[str, ...]
-    contact_columns: tuple[int, ...]
-    wall_contact_columns: tuple[int, ...]
-    row_words: tuple[str, ...]
-    from_restart: str | None = None
-    resumed_phase: int = 0
-    comes: bool = False  # whether the spheres that come with that phase are still to come
-
-    def __getattr__(self, name: str) -> Any:
-        """A number that the plan has by the same name: time_step, every, frames and more."""
-        if name == "plan" or name.startswith("__"):
-            raise AttributeError(name)
-        return getattr(self.plan, name)
 
 
 def _properties(p: ScenePlan) -> tuple[Property, ...]:
@@ -154,7 +97,7 @@ def _refuse_room(p: ScenePlan) -> None:
         )
 
 
-def deck(p: ScenePlan) -> Deck:
+def deck(p: ScenePlan) -> decks.Deck:
     """The deck of a scene. Raises CaseError for what LIGGGHTS cannot do."""
     _refuse_room(p)
     m, s, out = p.model, p.case.scene, p.output
@@ -162,8 +105,8 @@ def deck(p: ScenePlan) -> Deck:
     cut = p.case.numerics.processors
     row_words = {"c_ratio[1]": True, "c_ratio[2]": True, "f_load": p.floor_load, "f_press_z": p.plates}
     row_words |= {"f_torque": p.torque, "f_power": p.writes_wall_power}
-    return Deck(
-        plan=p,
+    return decks.Deck(
+        p,
         title=p.case.case.title,
         source=p.case.case.source,
         kind=s.kind,
@@ -184,7 +127,7 @@ def deck(p: ScenePlan) -> Deck:
         planes=planes(p),
         meshes=surfaces(p),
         loads_of=tuple((n, wall_id(p, name), name in p.scene.meshes) for n, name in enumerate(p.loads, 1)),
-        table=tuple(p.scene.table),
+        table=p.scene.table,
         frozen=tuple(n for n, sphere in enumerate(p.scene.table, 1) if sphere.frozen),
         gravity=s.gravity,
         insertions=insertions(p),
@@ -195,15 +138,16 @@ def deck(p: ScenePlan) -> Deck:
             (name, wall_id(p, name), bool(p.scene.meshes[name].wear)) for name in wall_stress.stress_walls(p)
         ),
         energy=out.energy,
-        loads=out.loads,
         spins=m.spins,
         has_history=m.yields or m.spins or m.adheres or m.cohesion is not None,  # sjkr keeps one, too
-        yields=m.yields,
         adheres=m.adheres,
         history_columns=history_columns(m),
         contact_columns=contact_columns(len(history_columns(m)), memory(m)),
         wall_contact_columns=contact_columns(len(history_columns(m)), memory(m, wall=True)),
         row_words=(*(word for word, asked in row_words.items() if asked), *load_words(p)),
+        from_restart=None,
+        resumed_phase=0,
+        comes=False,  # whether the spheres that come with that phase are still to come
     )
 
 

@@ -8,8 +8,7 @@ import time
 from pathlib import Path
 
 from ...base.files import write_texts
-from ...scenes.plan import ScenePlan
-from . import launcher, log, scene_deck
+from . import launcher, log
 
 Loops = list[tuple[float, int]]  # (seconds, steps) of pieces of a run
 _RUN = re.compile(r"^run (\d+) upto.*$", re.MULTILINE)
@@ -17,11 +16,6 @@ _RUN = re.compile(r"^run (\d+) upto.*$", re.MULTILINE)
 
 class _Enough(Exception):
     """The time of a trial is over."""
-
-
-def skin(p: ScenePlan) -> float:
-    """The neighbour skin of a scene [m]."""
-    return scene_deck.deck(p).skin
 
 
 def pieces(texts: dict[str, str], skins: list[float], steps: int, length: int) -> tuple[dict[str, str], list[float]]:

@@ -20,7 +20,7 @@ from ...case.toml import named, text_of
 from ...errors import CaseError, EngineError
 from ...scenes.engine import check_run
 from ...scenes.plan import ScenePlan, plan
-from . import trials
+from . import scene_deck, trials
 from .engine import Liggghts
 from .trials import Loops
 
@@ -135,7 +135,7 @@ def tune(path: Path, *, ranks: int = 1, seconds: float = 60.0, progress: Progres
         tool.check(p)
         texts = tool.files(p)
     check_run(tool, ranks=ranks)
-    present = trials.skin(p)
+    present = float(scene_deck.deck(p).skin)
     others = sorted({float(f"{share * p.smallest:.2e}") for share in SHARES} - {present})
     skins = [present, *others]
     length = max(SHORTEST, min(LONGEST, p.steps // (TURNS * len(skins))))

@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Pairs of spheres for LIGGGHTS in variants of the set-up with the same physics."""
 
-from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
@@ -10,7 +9,6 @@ import numpy as np
 from ...base import rendering as decks
 from ...base.files import write_texts
 from ...engines.liggghts import data_file, dump, launcher
-from ...engines.liggghts.deck import Deck
 from ...engines.liggghts.engine import Liggghts
 from .pairs import Pairs
 
@@ -23,7 +21,7 @@ def _box(pairs: Pairs) -> list[tuple[float, float]]:
     return [(-s, s), (-s, float(y.max()) + s), (-s, s)]
 
 
-def _data(pairs: Pairs, deck: Deck, swap: bool) -> str:
+def _data(pairs: Pairs, deck: decks.Deck, swap: bool) -> str:
     groups = [
         data_file.Spheres(1 + deck.types.index(g.body.material), 2 * g.body.radius, g.body.density, g.place, g.velocity)
         for g in pairs.ordered(swap)
@@ -31,7 +29,7 @@ def _data(pairs: Pairs, deck: Deck, swap: bool) -> str:
     return data_file.text("pairs", len(deck.types), _box(pairs), groups)
 
 
-def scripts(deck: Deck, pairs: Pairs, variant: str) -> list[str]:
+def scripts(deck: decks.Deck, pairs: Pairs, variant: str) -> list[str]:
     """The decks of a variant in the order in which they run."""
     steps = pairs.plan.steps
     context: dict[str, Any] = {
@@ -58,7 +56,7 @@ def _ranks(variant: str) -> int:
 
 def velocities(tool: Liggghts, pairs: Pairs, variant: str, folder: Path) -> np.ndarray:
     """After the impacts, shape (2, n, 3), the body first. Raises EngineError; ValueError if bodies are lost."""
-    deck = replace(tool.deck(pairs.plan), path="out.bin")
+    deck = tool.deck(pairs.plan).but(path="out.bin")
     texts = {f"in.{k}": text for k, text in enumerate(scripts(deck, pairs, variant))}
     write_texts(folder, texts | {deck.data: _data(pairs, deck, variant == "swap")})
     for k in range(len(texts)):

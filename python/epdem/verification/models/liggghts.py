@@ -6,7 +6,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from ...engines.liggghts.deck import Deck
+from ...base.rendering import Deck
 from ...engines.liggghts.engine import Liggghts
 from ...engines.liggghts.properties import Property, of_friction, of_impacts, per_pair, per_type, scalar
 from ...impacts.engine import Feature, Report, silent
@@ -81,7 +81,7 @@ class _OwnTheory(Liggghts):
         return replace(path, end_power=1.0)  # the force falls linearly with the overlap
 
     def deck(self, plan: Plan) -> Deck:
-        return replace(super().deck(plan), has_history=True)
+        return super().deck(plan).but(has_history=True)
 
 
 class BuiltinLuding(_OwnTheory):

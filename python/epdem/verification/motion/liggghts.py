@@ -2,7 +2,6 @@
 """Prescribed motions of two spheres in LIGGGHTS: every step sets both, then runs once."""
 
 from collections.abc import Iterator
-from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -10,7 +9,6 @@ import numpy as np
 from ...base import rendering as decks
 from ...base.files import write_texts
 from ...engines.liggghts import data_file, dump, launcher
-from ...engines.liggghts.deck import Deck
 from ...engines.liggghts.engine import Liggghts
 from ...engines.liggghts.properties import per_pair, tangential
 from ...errors import EngineError
@@ -45,11 +43,10 @@ class LiggghtsMotions:
         return Loads(found[:, :, 0], found[:, :, 1])
 
 
-def deck(touch: Touch, motion: Motion) -> Deck:
+def deck(touch: Touch, motion: Motion) -> decks.Deck:
     """The deck of a motion. Raises CaseError for what LIGGGHTS cannot do."""
     plain = Liggghts().deck(touch.plan(motion))
-    return replace(
-        plain,
+    return plain.but(
         summary=summary(touch, motion),
         has_history=True,
         data=DATA,
