@@ -13,6 +13,7 @@ from epdem.case.scene import parse
 from epdem.case.toml import read_toml
 from epdem.errors import CaseError
 from epdem.scenes.plan import plan
+from epdem.scenes.warnings import planned_warnings
 
 BEYOND = {  # case, table, key, value, what the sentence must hold
     "steps": ("settle_glass", "scene", "duration", "1e9 s", r"1e\+14 steps of 1e-05 s, at most 2e\+09"),
@@ -106,6 +107,13 @@ def test_a_plate_is_not_pressed_below_the_height_without_void(kind, share):
     else:
         with pytest.raises(CaseError, match=rf"are {1e-3 * SOLID[kind]:.4g} m high .* give a larger height"):
             plan(case)
+
+
+@pytest.mark.parametrize("kind", SOLID)
+def test_a_bed_pressed_beyond_a_relative_density_of_nine_tenths_is_warned_of(kind):
+    for density, said in ((0.89, []), (0.92, ["the relative density reaches 0.92"])):
+        warnings = planned_warnings(plan(parse(pressed(SOLID[kind] / density, kind))))
+        assert [w for w in warnings if "relative density" in w and said[0] in w] if said else not warnings
 
 
 def test_spheres_may_pass_beside_a_plate_that_does_not_cover_the_room():

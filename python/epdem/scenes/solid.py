@@ -1,7 +1,9 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Presses whose end leaves the spheres no void, refused before anything starts."""
+"""Relative densities that presses reach: refused without void, named by a warning above DENSE."""
 
 import math
+from collections.abc import Iterator
+from dataclasses import dataclass
 
 from ..case.motions import LinearMove
 from ..case.parts import Parts
@@ -10,19 +12,59 @@ from ..case.walls import CylinderWall, PlateWall
 from ..errors import CaseError
 from .filling import Insertion, mean_volume
 
+DENSE = 0.9  # relative density above which overlaps of spheres no longer describe the contacts
+
+
+@dataclass(frozen=True)
+class PressedBed:
+    """A bed at the end of a motion of a plate. key: place in the case; volume [m^3] of the spheres, area [m^2]."""
+
+    key: str
+    height: float
+    volume: float
+    area: float
+
+    @property
+    def solid_height(self) -> float:
+        """Height of the spheres without any void [m]."""
+        return self.volume / self.area
+
 
 def refuse_below_solid(case: SceneCase, scene: Parts, insertions: tuple[Insertion, ...]) -> None:
-    """Raise CaseError for a plate that moves to a height where the spheres would have no void left.
+    """Raise CaseError for a plate that moves to a height where the spheres would have no void left."""
+    for bed in _pressed_beds(case, scene, insertions):
+        if bed.height <= bed.solid_height:
+            raise CaseError(
+                f"{bed.key} = {bed.height:.4g} m: the spheres alone, without any void, are {bed.solid_height:.4g} m "
+                f"high (sum of their volumes over {bed.area:.4g} m^2); give a larger height, or fewer spheres"
+            )
 
-    It covers the room or a tube; only spheres count that begin between the plate and the plane that it moves to.
+
+def dense_beds(case: SceneCase, scene: Parts, insertions: tuple[Insertion, ...]) -> list[str]:
+    """A sentence for the largest relative density above DENSE that a plate presses a bed to."""
+    beds = sorted(_pressed_beds(case, scene, insertions), key=lambda bed: bed.solid_height / bed.height)
+    return [
+        f"{bed.key} = {bed.height:.4g} m: the relative density reaches {bed.solid_height / bed.height:.3g}, and above "
+        f"{DENSE} no contact law of spheres gives the pressure (docs/choose.md, Pressing); give a larger height"
+        for bed in beds[-1:]
+        if bed.solid_height > DENSE * bed.height
+    ]
+
+
+def _pressed_beds(case: SceneCase, scene: Parts, insertions: tuple[Insertion, ...]) -> Iterator[PressedBed]:
+    """The bed at the end of each motion of each plate that covers the room or a tube.
+
+    Only spheres count that begin between the plate and the plane that it moves to.
     """
     for wall in scene.wall:
         if isinstance(wall, PlateWall) and not scene.open_boundary:
-            _refuse_plate(case, scene, insertions, wall)
+            yield from _pressed_by(case, scene, insertions, wall)
 
 
-def _refuse_plate(case: SceneCase, scene: Parts, insertions: tuple[Insertion, ...], wall: PlateWall) -> None:
-    """The same of one plate at the end of each of its motions, up to a phase whose end is not known."""
+def _pressed_by(
+    case: SceneCase, scene: Parts, insertions: tuple[Insertion, ...], wall: PlateWall
+) -> Iterator[PressedBed]:
+    """The same of one plate, up to a phase whose end is not known."""
     axis = "xyz".index(wall.axis)
     begin = place = wall.center[axis]
     for n, phase in enumerate(scene.phase):
@@ -41,14 +83,11 @@ def _refuse_plate(case: SceneCase, scene: Parts, insertions: tuple[Insertion, ..
         fills = [f for f in fills if low <= f.region.limits[2 * axis] and f.region.limits[2 * axis + 1] <= high]
         volume = sum(mean_volume(case, f) * f.count for f in fills)
         volume += sum(4.0 / 3.0 * math.pi * s.radius**3 for s in scene.table if low <= s.place[axis] <= high)
-        area, height = _covered(scene, wall, (low, high), fills), sign * (stop - place)
-        if area and height <= volume / area:
+        area = _covered(scene, wall, (low, high), fills)
+        if area:
             compaction = case.scene.kind == "compaction"
             key = "scene.height" if compaction else f"scene.phase.{phase.name}.move: wall {wall.name} ends at a height"
-            raise CaseError(
-                f"{key} = {height:.4g} m: the spheres alone, without any void, are {volume / area:.4g} m high (sum of "
-                f"their volumes over {area:.4g} m^2); give a larger height, or fewer spheres"
-            )
+            yield PressedBed(key, sign * (stop - place), volume, area)
 
 
 def _covered(scene: Parts, wall: PlateWall, span: tuple[float, float], fills: list[Insertion]) -> float:

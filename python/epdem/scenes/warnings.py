@@ -11,6 +11,7 @@ from .boundary_crossings import crosses, depths
 from .columns import STRAINS
 from .plan import NOT_REACHED, ScenePlan
 from .presets import Preset
+from .solid import dense_beds
 from .start import overlaps
 from .timestep import stable_step
 from .walls import sheet
@@ -22,7 +23,8 @@ OVERLAP = 0.05  # of the smaller radius; a bed of an earlier run has less
 
 def planned_warnings(p: ScenePlan) -> list[str]:
     """A sentence for each. Raises CaseError for a sphere whose centre lies in a wall."""
-    return shares.warnings(p.case, p.insertions) + _time_steps(p) + _phases(p) + _overlaps(p) + _walls(p)
+    dense = dense_beds(p.case, p.scene, p.insertions)
+    return shares.warnings(p.case, p.insertions) + dense + _time_steps(p) + _phases(p) + _overlaps(p) + _walls(p)
 
 
 def measured_warnings(tables: dict[str, pd.DataFrame]) -> list[str]:
