@@ -3,6 +3,7 @@
 
 import math
 
+import numpy as np
 import pandas as pd
 import pytest
 
@@ -14,7 +15,14 @@ from epdem.impacts.experiment import experiment
 from epdem.verification import measured_data as validate
 
 E_STAR = 1.0 / ((1 - 0.22**2) / 600e9 + (1 - 0.3**2) / 208e9)
-P_Y = 955 * 9.80665e6 * 2 / 1.8544  # of Vickers' hardness 955: load over the projection of the indentation
+P_M = 955 * 9.80665e6 * 2 / 1.8544  # of Vickers' hardness 955: load over the projection of the indentation
+
+
+def contact_pressure():
+    """p_y with which thornton has P_M at a/R* = tan 19.7 degrees in steel: p_m = p_y (1 - a_y^2/(3 a^2))."""
+    a_y = math.pi * (1 - 0.3**2) / (2 * 208e9) / math.tan(math.radians(19.7))  # over p_y and a
+    roots = np.roots([-(a_y**2) / 3, 0, 1, -P_M])
+    return min(r.real for r in roots if abs(r.imag) < 1 and r.real > 0)
 
 
 def thornton(ratio):
@@ -29,8 +37,10 @@ def test_the_error_of_a_set_is_that_of_the_closed_form(tool, tmp_path):
     found = validate.validate(sets=["leeb_D"], engines=[tool], chosen=["thornton"], out=tmp_path / "out").points
     point = found[found["quantity"] == "e_n"].iloc[0]
     radius, mass = 1.5e-3, 5.5e-3
-    v_y = (math.pi / (2 * E_STAR)) ** 2 * math.sqrt(8 * math.pi * radius**3 * P_Y**5 / (15 * mass))
-    assert point["error"] == pytest.approx(thornton(v_y / 2.0) / 0.890 - 1, abs=1e-4)
+    v_y = (math.pi / (2 * E_STAR)) ** 2 * math.sqrt(8 * math.pi * radius**3 * contact_pressure() ** 5 / (15 * mass))
+    error = thornton(v_y / 2.0) / 0.890 - 1
+    assert point["error"] == pytest.approx(error, abs=1e-4)
+    assert point["in_uncertainties"] == pytest.approx(error * 0.890 / 0.015, rel=0.01)
 
 
 def test_a_dent_without_plasticity_is_hertzs_circle(tmp_path):
@@ -38,16 +48,33 @@ def test_a_dent_without_plasticity_is_hertzs_circle(tmp_path):
     radius, energy = 1.5e-3, 0.5 * 3.0e-3 * 1.342**2
     overlap = (energy * 15 / (8 * E_STAR * math.sqrt(radius))) ** 0.4  # W = 8/15 E* sqrt(R) alpha^(5/2)
     assert found["found"].to_numpy() == pytest.approx(2 * math.sqrt(radius * overlap), rel=1e-4)
-    assert found["measured"].tolist() == [0.38e-3, 0.32e-3]
+    assert found["measured"].tolist() == [0.38e-3, 0.32e-3, 0.29e-3]
+
+
+def test_every_printed_row_is_listed_and_rows_that_are_left_out_contradict_their_energy():
+    """Table 3 of the manuals: widths [mm] and depths [um] at 300, 600 and 800 HV."""
+    table = {"D": [(0.54, 24), (0.54, 17), (0.35, 10)], "C": [(0.38, 12), (0.32, 8), (0.35, 7)]}
+    table |= {"G": [(1.03, 53), (0.90, 41)]}
+    contradictions = []
+    for device, dents in table.items():
+        radius = 2.5e-3 if device == "G" else 1.5e-3
+        found = validate.read(f"leeb_{device}")
+        listed = set(found.points["value"]) | set(found.left_out["value"])
+        assert all(round(width * 1e-3, 9) in listed for width, _ in dents) and (found.left_out["left out"] != "").all()
+        contradictions += [width * 1e-3 / math.sqrt(8 * radius * depth * 1e-6) - 1 for width, depth in dents]
+    rms = math.sqrt(sum(c**2 for c in contradictions) / len(contradictions))
+    dents = pd.concat(validate.read(f"leeb_{d}").points for d in table).query("quantity == 'dent_width'")
+    assert (dents["uncertainty"] / dents["value"]).round(2).eq(round(rms, 2)).all() and round(rms, 2) == 0.10
 
 
 def test_the_summary_has_the_median_and_the_signed_largest_error():
     errors = pd.DataFrame(
         {"set": "s", "law": "l", "engine": "e", "quantity": ["a", "b", "c"], "error": [0.1, -0.4, 0.2]}
-    )
+    ).assign(in_uncertainties=[1.0, -2.0, 2.0])
     (row,) = validate.summary(errors).to_dict("records")
     assert (row["points"], row["median"], row["largest"], row["signed"], row["where"]) == (3, 0.2, 0.4, -0.4, "b")
-    assert validate.shown(pd.DataFrame([row]))["largest error"][0] == "-40.0% (b)"
+    shown = validate.shown(pd.DataFrame([row]))
+    assert shown["largest error"][0] == "-40.0% (b)" and shown["rms in uncertainties"][0] == "1.7"
 
 
 def test_laws_that_lack_their_numbers_are_named_and_the_others_run(tmp_path):

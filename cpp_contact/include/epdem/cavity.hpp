@@ -11,7 +11,8 @@ inline constexpr double no_finite_strain = 1e6;  // of Cavity's finite_strain: s
 /// fully plastic with p_m = c_P Y (eq. 8.80) and a^2 = 2 R* alpha (eq. 8.85). This project's own composition:
 ///   s = alpha/alpha_Y;  1 < s < s_P:  a = a_Y s^((1+beta)/2),  p_m = Y [2 c_Y/3 + (1+beta)/3 ln s],
 ///   tau = ln s/ln s_P. Nothing is fitted.
-/// Option finite_strain: p_m falls by 1 - exp(-c (a/R*)^-0.7), c = 0.82 (Jackson and Green 2005, J. Tribol. 127, 343).
+/// Option finite_strain: p_m times f(a/R*)/f(a_Y/R*), f(s) = 1 - exp(-c s^-0.7), c = 0.82 (Jackson and Green 2005,
+/// J. Tribol. 127, 343); the division keeps the force continuous at first yield.
 template <class T>
 struct Cavity {
   using number = T;
@@ -67,11 +68,12 @@ struct Cavity {
 
   Point<T> load(T R_star, T delta) const noexcept {
     Point<T> p = small_strain(R_star, delta);
-    if (any(c_strain < no_finite_strain)) p.force = p.force * (1.0 - fallen(p.radius / R_star));
+    if (any(c_strain < no_finite_strain))
+      p.force = p.force * ((1.0 - fallen(p.radius / R_star)) / (1.0 - fallen(a_ratio)));
     return p;
   }
 
-  /// Share of the mean pressure that is gone at a/R*.
+  /// 1 - f(a/R*) of finite strain.
   T fallen(T strain) const noexcept { return exp(-c_strain * exp(-0.7 * log(strain))); }
 
   Point<T> small_strain(T R_star, T delta) const noexcept {
@@ -102,7 +104,8 @@ struct Cavity {
       if (any(c_strain < no_finite_strain)) {
         const T reached = only(beyond, delta), middle = min(reached, delta_P);
         const T lost = fallen_work(R_star, delta_Y, middle) + fallen_work(R_star, delta_P, max(reached, delta_P));
-        W = select(beyond, W - lost, W);
+        const T W_Y = hertz_work(E_star, R_star, delta_Y);
+        W = select(beyond, W_Y + (W - W_Y - lost) / (1.0 - fallen(a_ratio)), W);
       }
     }
     return W;

@@ -121,7 +121,11 @@ class Impact(Frozen):
 
 
 class Rate(Frozen):
-    """Strength that grows with the strain rate: times 1 + sensitivity ln(rate/reference)."""
+    """Strength that grows with the strain rate: times 1 + sensitivity ln(rate/reference).
+
+    `reference` [1/s] is the rate of the test that gave the strength: 1e-3 for tensile and hardness tests, 1 for
+    constants of Johnson and Cook.
+    """
 
     sensitivity: Annotated[float, Quantity("1", ge=0.0, le=0.1, hint="about 0.012 for steel")]
     reference: Annotated[float, Quantity("1/s", above=0.0)] = 1e-3

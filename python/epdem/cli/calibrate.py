@@ -88,6 +88,7 @@ def _of_impact(
 ) -> None:
     from ..case.units import read_number
     from ..studies import calibrate as c
+    from ..studies.hardness import hardness_test
     from ..studies.pages.impacts import of_calibration
 
     if (e_n is None) == (hv is None and hb is None):
@@ -100,8 +101,8 @@ def _of_impact(
         result = c.from_restitution(case, e_n, read_number("--speed", speed, "m/s"))
     else:
         refuse(case, "it belongs to --e-n", speed=speed)
-        pressure = c.pressure_of_hardness(vickers=hv, brinell=hb, dent_ratio=dent_ratio)
-        result = c.from_hardness(case, pressure, f"HV {hv:g}" if hv is not None else f"HB {hb:g}")
+        test = hardness_test(vickers=hv, brinell=hb, dent_ratio=dent_ratio)
+        result = c.from_hardness(case, test, f"HV {hv:g}" if hv is not None else f"HB {hb:g}")
     page = of_calibration(case, result, out, force=force) if out else None
     if as_json:
         print(json.dumps(vars(result), indent=1))

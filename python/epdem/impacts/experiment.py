@@ -19,6 +19,7 @@ from ..laws.native import Law
 from ..laws.strengths import LawNumbers, LawSpec, Surface, default_numbers, law_named
 from ..theory import pair
 from ..theory.backbones import ADHESIVE, JKR, Backbone
+from ..theory.checks import Real
 
 
 @dataclass(frozen=True)
@@ -85,6 +86,7 @@ class Experiment:
     name: str = "impact"
     title: str = "Impact"
     source: str = "made by a program"
+    rated: bool = False  # the strengths are those at a strain rate
 
     def __post_init__(self) -> None:
         if self.body.rigid and self.target.rigid:
@@ -154,10 +156,18 @@ def pair_of(numbers: LawNumbers, body: Body, target: Body) -> LawSpec:
     return replace(spec, common=numbers.absolute is not None)
 
 
-def rated(spec: LawSpec, rate: Rate, body: Body, target: Body, speed: float) -> LawSpec:
-    """The law with its strengths at the strain rate of an impact at `speed` [m/s], 0.2 v/a at its largest a.
+def strain_rate(speed: Real, a: Real) -> Real:
+    """Mean strain rate [1/s] of an impact at `speed` [m/s] with the largest contact radius a [m].
 
-    (Johnson 1985, section 11.5: strains are 0.2 a/R.) One strength serves all speeds of a case: the rate belongs to the
+    Strains are 0.2 a/R (Johnson 1985, section 11.5).
+    """
+    return 0.2 * speed / a
+
+
+def rated(spec: LawSpec, rate: Rate, body: Body, target: Body, speed: float) -> LawSpec:
+    """The law with its strengths at the strain rate of an impact at `speed` [m/s], `strain_rate` at its largest a.
+
+    One strength serves all speeds of a case: the rate belongs to the
     median speed, and a tenfold speed changes the factor by 3 % at a sensitivity of 0.012.
     """
     if law_named(spec.name).strength is None:
@@ -172,7 +182,7 @@ def rated(spec: LawSpec, rate: Rate, body: Body, target: Body, speed: float) -> 
             a = float(theory.radius_of_work(work))
         else:
             a = float(theory.radius(theory.overlap_of_work(work)))
-        factor = 1.0 + rate.sensitivity * math.log(max(0.2 * speed / a / rate.reference, 1.0))
+        factor = 1.0 + rate.sensitivity * math.log(max(float(strain_rate(speed, a)) / rate.reference, 1.0))
     return found
 
 
@@ -212,4 +222,5 @@ def experiment(case: Case, law: str | None = None) -> Experiment:
         name=case.name,
         title=case.case.title,
         source=case.case.source,
+        rated=case.rate is not None,
     )

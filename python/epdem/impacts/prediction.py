@@ -12,7 +12,9 @@ from ..theory import adhesion, restitution, validity, viscous
 from ..theory.backbones import JKR
 from ..theory.yielding import first_yield_speed
 from . import oblique
-from .experiment import Experiment
+from .experiment import Experiment, strain_rate
+
+FASTEST = 1e4  # strain rate [1/s] up to which the strength of metals grows with its logarithm
 
 
 @dataclass(frozen=True)
@@ -79,7 +81,7 @@ def predict(experiment: Experiment) -> Prediction:
         for b in {b.material: b for b in pair}.values()
         if b.yield_stress is not None and not b.rigid
     }
-    caveats = tuple(validity.caveats(law, m_star=m_star, speed=speed))
+    caveats = (*validity.caveats(law, m_star=m_star, speed=speed), *_too_fast(experiment, columns["strain_ratio"]))
     strained = tuple(validity.finite_strain_of_impacts(columns["strain_ratio"], speed))
     rebound = oblique.predict(experiment, columns["e_n"]) if experiment.oblique else None
     return Prediction(
@@ -91,6 +93,17 @@ def predict(experiment: Experiment) -> Prediction:
         finite_strain=strained,
         **columns,
     )
+
+
+def _too_fast(x: Experiment, strain_ratio: np.ndarray) -> list[str]:
+    """A sentence on impacts of a case with [rate] beyond the strain rates for which its formula holds."""
+    rate = np.asarray(strain_rate(x.speed, strain_ratio * x.R_star))
+    if not x.rated or rate.max() <= FASTEST:
+        return []
+    return [
+        f"the strain rate reaches {rate.max():.2g} per s, above {FASTEST:g} per s from "
+        f"{x.speed[rate > FASTEST].min():.3g} m/s on: [rate] is an extrapolation there"
+    ]
 
 
 def _softer(x: Experiment) -> tuple[str, ...]:
@@ -113,7 +126,7 @@ def _with_adhesion(x: Experiment, law: JKR) -> Prediction:
         speed=x.speed,
         yields=_softer(x) if impact.radius_max.max() > first else (),
         yield_speeds={},
-        caveats=tuple(validity.caveats(law, m_star=x.m_star, speed=x.speed)),
+        caveats=(*validity.caveats(law, m_star=x.m_star, speed=x.speed), *_too_fast(x, columns["strain_ratio"])),
         finite_strain=tuple(validity.finite_strain_of_impacts(columns["strain_ratio"], x.speed)),
         observation_time=1.5 * float(adhesion.contact_time(law, m_star=x.m_star, speed=barely))
         if barely > 0

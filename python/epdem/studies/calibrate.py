@@ -13,17 +13,12 @@ from ..case.toml import named
 from ..errors import CaseError
 from ..impacts.experiment import Experiment, bodies, pair_of, rated
 from ..impacts.prediction import predict
-from ..laws.strengths import LawNumbers, law_named, yields_by_stress
+from ..laws.strengths import LawNumbers, law_named
 from ..theory import adhesion
-from ..theory.backbones import JKR, LAWS
+from ..theory.backbones import JKR
+from ..theory.indentation import Indentation
 from ..theory.numerics import bisect
-
-KGF_PER_MM2 = 9.80665e6  # Pa
-VICKERS_FACETS = 2 / 1.8544  # area of the facets of a Vickers indentation over its projected area, 1/sin(136 deg/2)
-# mean pressure of full plasticity over the yield stress (Tabor 1951)
-TABOR = LAWS["thornton"].declaration().default_ratio
-LEAST_STRENGTH = 1e-8  # of E*; the largest is E* itself
-BRINELL_DENT = 0.375  # dent over ball diameter in a usual Brinell test (0.24 to 0.6)
+from .hardness import LEAST_STRENGTH, specimen, strength
 
 
 @dataclass(frozen=True)
@@ -38,30 +33,6 @@ class Calibration:
     e_n: float | None
     speed: float | None
     source: str
-
-
-def pressure_of_hardness(
-    *, vickers: float | None = None, brinell: float | None = None, dent_ratio: float | None = None
-) -> float:
-    """Mean pressure [Pa] of full plasticity from HV or HB (kgf/mm^2).
-
-    Both hardnesses are the load over the area of the surface that the indenter leaves; the mean pressure (Meyer's
-    hardness) is the load over its projection. For the pyramid of Vickers p_m = 1.0785 HV. For the cap of Brinell
-    p_m = HB 2/(1 + sqrt(1 - x^2)) with x = `dent_ratio` in (0, 1], diameter of the indentation over that of the
-    ball (None: BRINELL_DENT). Raises CaseError unless one hardness > 0 is given.
-    """
-    values = [value for value in (vickers, brinell) if value is not None]
-    if len(values) != 1:
-        raise CaseError("give one hardness, --hv or --hb")
-    hardness = values[0]
-    if not (math.isfinite(hardness) and hardness > 0):
-        raise CaseError(f"hardness {hardness:g}, must be > 0")
-    if vickers is not None:
-        return hardness * KGF_PER_MM2 * VICKERS_FACETS
-    x = BRINELL_DENT if dent_ratio is None else dent_ratio
-    if not 0.0 < x <= 1.0:
-        raise CaseError(f"--dent-ratio {x:g}, must lie in (0, 1]")
-    return hardness * KGF_PER_MM2 * 2.0 / (1.0 + math.sqrt(1.0 - x**2))
 
 
 @dataclass(frozen=True)
@@ -79,7 +50,7 @@ class _Unknown:
         if self.case.rate:
             spec = rated(spec, self.case.rate, body, target, speed)
         viscous = self.case.viscous.restitution if self.case.viscous else None
-        return Experiment(spec, body, target, np.array([speed]), viscous)
+        return Experiment(spec, body, target, np.array([speed]), viscous, rated=self.case.rate is not None)
 
     def result(self, strength: float, speed: float | None, source: str) -> Calibration:
         """The calibration that found this strength [Pa]."""
@@ -132,15 +103,7 @@ def from_restitution(path: Path, e_n: float, speed: float) -> Calibration:
     return unknown.result(strength, speed, f"e_n = {e_n:g} at {speed:g} m/s")
 
 
-def from_hardness(path: Path, pressure: float, source: str) -> Calibration:
-    """The strength from the mean pressure [Pa] of full plasticity. Raises CaseError."""
+def from_hardness(path: Path, test: Indentation, source: str) -> Calibration:
+    """The strength from a hardness test of the softer body of the case. Raises CaseError."""
     unknown = _unknown(path)
-    ratio = unknown.law.ratios.get("plastic_ratio", TABOR)  # the law's own pressure of full plasticity over its stress
-    value = pressure / ratio if yields_by_stress(unknown.law.name) else pressure
-    modulus = unknown.experiment(value, 1.0).E_star
-    if not LEAST_STRENGTH <= pressure / modulus <= 1.0:
-        raise CaseError(
-            f"{source}: its mean pressure {pressure:.3g} Pa must lie between {LEAST_STRENGTH:g} and 1 of E* = "
-            f"{modulus:.3g} Pa; a hardness is in kgf/mm^2, for steel 100 to 1000"
-        )
-    return unknown.result(value, None, source)
+    return unknown.result(strength(unknown.law, test, specimen(*bodies(unknown.case)), source), None, source)

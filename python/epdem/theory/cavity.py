@@ -11,16 +11,16 @@ from .backbone import Backbone
 from .checks import Array, Real
 from .numerics import gauss
 
-FINITE_STRAIN = 0.82  # Jackson and Green 2005: p_m falls by 1 - exp(-0.82 (a/R*)^-0.7)
+FINITE_STRAIN = 0.82  # c of f(a/R*) = 1 - exp(-c (a/R*)^-0.7) (Jackson and Green 2005)
 STRAIN_EXPONENT = 0.7
 
 
 class Cavity(Backbone):
     """s = alpha/alpha_Y; 1 < s < s_P: a = a_Y s^((1+beta)/2), p_m = Y [2 c_Y/3 + (1+beta)/3 ln s], tau = ln s/ln s_P.
 
-    Y [Pa] > 0; c_Y = 1.60 (first yield) and c_P = 2.8 (fully plastic) by default; p_m times 1 - exp(-c (a/R*)^-0.7)
-    with c_strain = c, by default so large that nothing changes. ValueError where the law would create
-    energy at yield: 2 (1+beta)(1 + 1/(2 c_Y)) - (1+beta)/2 - 0.125/ln s_P must not exceed 2.5.
+    Y [Pa] > 0; c_Y = 1.60 (first yield) and c_P = 2.8 (fully plastic) by default; p_m times f(a/R*)/f(a_Y/R*) with
+    f(s) = 1 - exp(-c s^-0.7), c_strain = c, by default so large that nothing changes. ValueError where the law would
+    create energy at yield: 2 (1+beta)(1 + 1/(2 c_Y)) - (1+beta)/2 - 0.125/ln s_P must not exceed 2.5.
     """
 
     name = "cavity"
@@ -53,6 +53,7 @@ class Cavity(Backbone):
                 "2.5; raise first_yield_ratio (c_Y) or plastic_ratio (c_P)"
             )
         self.plastic_overlap = self.yield_overlap * np.exp(self.ln_s_P)
+        self._left_at_yield = 1 - self._fallen(self.yield_overlap)
 
     def kinks(self) -> list[Real]:
         return [self.yield_overlap, self.plastic_overlap]
@@ -74,10 +75,10 @@ class Cavity(Backbone):
         F = self._small_strain_force(alpha)
         if not self.softens:
             return F
-        return np.where(alpha <= self.yield_overlap, F, F * (1 - self._fallen(alpha)))
+        return np.where(alpha <= self.yield_overlap, F, F * (1 - self._fallen(alpha)) / self._left_at_yield)
 
     def _fallen(self, alpha: Real) -> Array:
-        """Share of the mean pressure that is gone at finite strain."""
+        """1 - f(a/R*) of finite strain."""
         strain = np.maximum(self.radius(alpha) / self.R_star, 1e-9)
         return np.asarray(np.exp(-self.c_strain * strain**-STRAIN_EXPONENT))
 
@@ -100,7 +101,8 @@ class Cavity(Backbone):
         P = self.plastic_overlap
         x = np.maximum(alpha - P, 0.0)
         plastic: Real = np.pi * self.R_star * self.c_P * self.Y * x * (2 * P + x)
-        return elastic + self._middle_work(self._ln_s(alpha))[0] + plastic - self._fallen_work(alpha)
+        beyond = self._middle_work(self._ln_s(alpha))[0] + plastic - self._fallen_work(alpha)
+        return elastic + (beyond / self._left_at_yield if self.softens else beyond)
 
     def _fallen_work(self, alpha: Real) -> Array:
         """What the fall of the pressure takes off the work, by quadrature in each phase."""

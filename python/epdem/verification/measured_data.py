@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Measured impacts against every law on engines: sets of data/restitution, nothing fitted, misses included."""
 
+import csv
 import re
 import tempfile
 from collections.abc import Callable, Sequence
@@ -19,29 +20,36 @@ from ..engines import DEFAULT_ENGINE, ImpactEngine
 from ..engines.embedded import Embedded
 from ..errors import CaseError
 from ..impacts.engine import require
-from ..impacts.experiment import Experiment, experiment
+from ..impacts.experiment import Experiment, bodies, experiment
 from ..impacts.plan import plan
 from ..impacts.prediction import predict
 from ..impacts.run import run_and_compare
 from ..laws.library import laws
-from ..studies.calibrate import TABOR, pressure_of_hardness
+from ..laws.strengths import default_numbers, law_named
+from ..studies.hardness import hardness_test, specimen, strength
 from ..theory.backbones import JKR
 from .models import engine
 
 ENGINES = (Embedded.name, DEFAULT_ENGINE)  # of a study that names none
 QUANTITIES = ("e_n", "dent_width")
-HEAD = ("title", "case", "source", "material", "read")
-COLUMNS = ("quantity", "value", "speed", "strength of")
+HEAD = ("title", "case", "source", "material", "read", "uncertainty")
+COLUMNS = ("quantity", "value", "uncertainty", "speed", "strength of", "left out")
 STRENGTHS = ("hardness", "yield_stress")
 
 
 @dataclass(frozen=True)
 class Measured:
-    """One measured set: its head in words, and its points (quantity, value, speed [m/s], material, Y [Pa])."""
+    """One measured set: its head in words, and its points.
+
+    A point has quantity, value and uncertainty in one unit, speed [m/s], the material whose `hardness` [HV] or
+    `yield_stress` [Pa] is known. `left_out` are printed rows that are no points, each with its reason.
+    """
 
     name: str
     head: dict[str, str]
     points: pd.DataFrame
+    left_out: pd.DataFrame
+    given: str  # which of STRENGTHS the set has
 
 
 @dataclass(frozen=True)
@@ -69,24 +77,29 @@ def read(name: str) -> Measured:
     head = dict(line.removeprefix("# ").split(": ", 1) for line in lines if line.startswith("#"))
     if missing := [key for key in HEAD if key not in head]:
         raise CaseError(f"{path}: the head lacks {', '.join(missing)}; say where the numbers are from")
-    titles, *rows = [line.split(",") for line in lines if line and not line.startswith("#")]
+    titles, *rows = csv.reader(line for line in lines if line and not line.startswith("#"))
     columns = [re.sub(r" \[.*\]$", "", title) for title in titles]
     table = pd.DataFrame([dict(zip(columns, row, strict=True)) for row in rows])
-    if tuple(columns[:4]) != COLUMNS or columns[4] not in STRENGTHS or not set(table["quantity"]) <= {*QUANTITIES}:
+    given = [name for name in STRENGTHS if name in columns]
+    if {*columns} != {*COLUMNS, *given} or len(given) != 1 or not {*table["quantity"]} <= {*QUANTITIES}:
         raise CaseError(f"{path}: unknown column or quantity; there are {', '.join(COLUMNS)} and {STRENGTHS[0]}")
-    table[["value", "speed"]] = table[["value", "speed"]].astype(float)
-    strength = table.pop(columns[4]).astype(float)
-    if columns[4] == "hardness":
-        strength = strength.map(lambda hv: pressure_of_hardness(vickers=hv) / TABOR)
-    return Measured(name, head, table.assign(yield_stress=strength))
+    numbers = ["value", "uncertainty", "speed", *given]
+    table[numbers] = table[numbers].astype(float)
+    used = table["left out"] == ""
+    return Measured(name, head, table[used].drop(columns="left out"), table[~used], given[0])
 
 
-def case_of(measured: Measured, material: str, yield_stress: float, speeds: Sequence[float]) -> Case:
-    """The case of a set with one strength [Pa] and its speeds [m/s]."""
+def case_of(measured: Measured, material: str, value: float, speeds: Sequence[float], law: str) -> Case:
+    """The case of a set for a law, with one hardness [HV] or yield stress [Pa] of `material` and its speeds [m/s]."""
     path = paths.cases() / measured.head["case"]
     data = read_toml(path)
-    data["materials"][material]["yield_stress"] = f"{yield_stress!r} Pa"
     data["impact"]["speeds"] = [f"{v!r} m/s" for v in speeds]
+    if measured.given == "hardness" and law_named(law).strength:
+        numbers = default_numbers(law)
+        body = specimen(*bodies(parse(data, path)))
+        value = strength(numbers, hardness_test(vickers=value), body, f"HV {value:g}") / numbers.ratio
+    if measured.given == "yield_stress" or law_named(law).strength:
+        data["materials"][material]["yield_stress"] = f"{value!r} Pa"
     return parse(data, path)
 
 
@@ -103,9 +116,9 @@ def _simulated(x: Experiment, row: pd.Series, quantity: str) -> float:
 def _of_law(measured: Measured, law: str, tools: list[ImpactEngine], scratch: Path) -> list[dict[str, object]]:
     """One row for each point and engine. Raises CaseError if the law does not have its numbers in the set's case."""
     rows: list[dict[str, object]] = []
-    for (material, strength), points in measured.points.groupby(["strength of", "yield_stress"]):
+    for (material, given), points in measured.points.groupby(["strength of", measured.given]):
         speeds = np.unique(points["speed"])
-        x = experiment(case_of(measured, str(material), float(strength), speeds.tolist()), law)
+        x = experiment(case_of(measured, str(material), float(given), speeds.tolist(), law), law)
         prediction = predict(x)
         for tool in tools:
             run, _ = run_and_compare(plan(x, prediction), prediction, tool, scratch)
@@ -113,17 +126,23 @@ def _of_law(measured: Measured, law: str, tools: list[ImpactEngine], scratch: Pa
                 row = run.iloc[int(np.flatnonzero(speeds == point.speed)[0])]
                 found = _simulated(x, row, str(point.quantity))
                 about = {"set": measured.name, "law": law, "engine": tool.name, "quantity": point.quantity}
-                numbers = {"speed": point.speed, "yield_stress": strength, "measured": point.value, "found": found}
-                rows.append(about | numbers | {"error": found / float(point.value) - 1.0})
+                numbers = {"speed": point.speed, measured.given: given, "measured": point.value, "found": found}
+                off = {
+                    "error": found / point.value - 1.0,
+                    "in_uncertainties": (found - point.value) / point.uncertainty,
+                }
+                rows.append(about | numbers | {"uncertainty": point.uncertainty} | off)
     return rows
 
 
 def summary(points: pd.DataFrame) -> pd.DataFrame:
-    """Median and largest absolute error, and the signed largest, per set, law and engine."""
+    """Median and largest absolute error, the signed largest, and the rms error in uncertainties, per set, law and
+    engine."""
     groups = points.assign(size=points["error"].abs()).groupby(["set", "law", "engine"], sort=False)
     table = groups["size"].agg(points="count", median="median", largest="max").reset_index()
     worst = points.loc[groups["error"].apply(lambda e: e.abs().idxmax()).to_numpy()]
-    return table.assign(signed=worst["error"].to_numpy(), where=worst["quantity"].to_numpy())
+    rms = groups["in_uncertainties"].agg(lambda e: float(np.sqrt((e**2).mean()))).to_numpy()
+    return table.assign(signed=worst["error"].to_numpy(), where=worst["quantity"].to_numpy(), rms_in_uncertainties=rms)
 
 
 def shown(table: pd.DataFrame) -> pd.DataFrame:
@@ -136,6 +155,7 @@ def shown(table: pd.DataFrame) -> pd.DataFrame:
             "points": str(row.points),
             "median error": f"{row.median:.1%}",
             "largest error": f"{row.signed:+.1%} ({row.where})",
+            "rms in uncertainties": f"{row.rms_in_uncertainties:.1f}",
         }
         for row in table.itertuples()
     ]
@@ -173,7 +193,7 @@ def validate(
                         raise
                     absent[law] = str(error)
         points = pd.DataFrame(rows)
-        same = points.groupby(["set", "quantity", "yield_stress", "speed"], sort=False)
+        same = points.groupby(["set", "quantity", "measured", "speed"], sort=False)
         points.insert(0, "number", same.ngroup() + 1)
         write_csv(folder / "validate.csv", points)
     return Validation(measured, points, summary(points), absent, folder)
