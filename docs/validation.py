@@ -26,6 +26,9 @@ HEAD = """# Claims and their tests
 `.venv/bin/python docs/validation.py` runs the commands of `docs/claims.toml` and writes this page. An error is the
 maximum over all speeds and 8 starting phases. A test runs the commands again.
 
+The rows compare an engine with the theory of the same law: they verify the numerics, not that a metal obeys the law.
+Measured impacts are ten numbers from two kinds of sources ([benchmarks.md](benchmarks.md#measured-restitution)).
+
 | claim | value | tolerance | compared with | command | test |
 |---|---|---|---|---|---|
 """

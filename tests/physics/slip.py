@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The C++ law of partial slip for tests: arrays of contacts, oblique impacts, and the table of docs/partial_slip.md.
+"""The C++ law of partial slip for tests: arrays of contacts, oblique impacts, and the tables of docs/partial_slip.md.
 
 .venv/bin/python tests/physics/slip.py
 """
@@ -150,8 +150,61 @@ def error(name, speed, *, nodes, steps, psi_1=None):
     return np.abs(found - reference(LAWS[name], psi_1, speed)[:, None]).max()
 
 
+def unit_slip(alpha):
+    """Slip [m] at which all of a Hertz contact slides (Cattaneo): 3 mu F/(16 G* a)."""
+    law = LAWS["hertz"]
+    return 3 * MU * float(law.force(alpha)) / (16 * G_STAR * float(law.radius(alpha)))
+
+
+def cycle_losses(shear, legs, *, nodes, cycles, steps=100):
+    """Work lost in each of `cycles`, shape (cycles,), over the energy 4 G* a shear^2 of a spring at the first overlap.
+
+    A cycle is a list of legs (overlap at start, at end, slip) of a Hertz contact, all in m; nodes = 0: 400 springs.
+    """
+    law = LAWS["hertz"]
+    alpha = np.concatenate([np.linspace(low, high, steps + 1)[1:] for low, high, _ in legs] * cycles)
+    slips = np.repeat([slip / steps for *_, slip in legs] * cycles, steps)
+    one = Contacts(1, nodes=nodes or 2)
+    line = partial_slip.Springs(G_star=G_STAR, mu=MU, a_max=float(law.radius(alpha.max())), shape=(1,))
+    force = [0.0]
+    for F, a, slip in zip(law.force(alpha).tolist(), law.radius(alpha).tolist(), slips, strict=True):
+        if nodes:
+            force.append(-one.move([[slip, 0, 0]], load=F, a=a)[0, 0])
+        else:
+            force.append(float(line.move([slip], force=F, a=a, a_peak=a, flatness=0.0)[0]))
+    work = 0.5 * (np.array(force[1:]) + force[:-1]) * slips
+    return work.reshape(cycles, -1).sum(axis=1) / (4 * G_STAR * float(law.radius(legs[0][0])) * shear**2)
+
+
+def shaken(share, *, nodes):
+    """Loss of a cycle of shear between +-share of the sliding shear at constant load."""
+    d, shear = 1e-6, share * unit_slip(1e-6)
+    legs = [(d, d, shear), (d, d, -2 * shear), (d, d, shear)]
+    return cycle_losses(shear, legs, nodes=nodes, cycles=2)[1]
+
+
+def sheared_back_under_load(share, *, nodes, cycles):
+    """Losses of cycles: shear at 1 um, load to 1.6 um, shear back, unload."""
+    d, top, shear = 1e-6, 1.6e-6, share * unit_slip(1e-6)
+    legs = [(d, d, shear), (d, top, 0.0), (top, top, -shear), (top, d, 0.0)]
+    return cycle_losses(shear, legs, nodes=nodes, cycles=cycles)
+
+
 def main():
-    """The table of docs/partial_slip.md."""
+    """The tables of docs/partial_slip.md."""
+    print("| e_t at psi_1 | " + " | ".join(f"`{n}` {v:.3g} m/s" for n, v in IMPACTS[:2]) + " |")
+    for psi_1 in (0.01, 0.05, 0.1, 0.125):
+        cells = []
+        for name, speed in IMPACTS[:2]:
+            psi_2 = [rebound(LAWS[name], [psi_1], speed, steps=300, nodes=k)[0].mean() for k in (2, 3)]
+            psi_2.append(float(reference(LAWS[name], [psi_1], speed)[0]))
+            cells.append(", ".join(f"{1 - (1 - x / psi_1) / 3.5:.3f}" for x in psi_2))
+        print(f"| {psi_1:g} | {' | '.join(cells)} |")
+    for share in (0.1, 0.2, 0.3, 0.4, 0.5, 0.7):
+        print(f"| {share} | " + " | ".join(f"{shaken(share, nodes=k):.3f}" for k in (2, 3, 0)) + " |")
+    for share in (0.05, 0.1, 0.3, 0.6):
+        losses = [sheared_back_under_load(share, nodes=k, cycles=20)[[0, 1, 4, 19]] for k in (2, 3, 0)]
+        print(f"| {share} | " + " | ".join(", ".join(f"{x:.2f}" for x in row) for row in losses) + " |")
     print("| friction | steps in contact | " + " | ".join(f"`{n}` {v:.3g} m/s" for n, v in IMPACTS) + " |")
     print("|" + "---|" * (2 + len(IMPACTS)))
     for label, nodes in (("one spring, `history`", 0), ("2 nodes", 2), ("3 nodes", 3)):

@@ -7,7 +7,7 @@ import mpmath as mp
 import numpy as np
 import pytest
 import slip
-from slip import G_STAR, LAWS, MU, Contacts
+from slip import G_STAR, LAWS, MU, Contacts, unit_slip
 
 from epdem.theory import partial_slip
 from epdem.theory.partial_slip import Springs
@@ -20,11 +20,6 @@ TINY = 1e-12  # of forces: a few roundings
 def pressed(alpha):
     """Load, radius and what belongs to the peak of a Hertz contact at overlaps alpha [m]."""
     return {"load": HERTZ.force(alpha), "a": HERTZ.radius(alpha)}
-
-
-def unit_slip(alpha):
-    """Slip [m] at which all of a Hertz contact slides (Cattaneo): 3 mu F/(16 G* a)."""
-    return 3 * MU * float(HERTZ.force(alpha)) / (16 * G_STAR * float(HERTZ.radius(alpha)))
 
 
 @NODES
@@ -186,6 +181,27 @@ def test_a_closed_cycle_of_shear_and_load_loses_energy(nodes, share):
     law, exact = 0.5 * (force[1:] + force[:-1]).T @ slips / (4 * G_STAR * float(HERTZ.radius(d)) * shear**2)
     assert 0.26 < exact < 0.42 and law > 0.05
     assert share < 0.5 or law == pytest.approx(exact, abs=0.07)
+
+
+@pytest.mark.parametrize(("nodes", "sticks", "slips"), [(2, 0.4, 0.43), (3, 0.23, 0.26)])
+def test_a_small_cycle_of_shear_at_constant_load_loses_nothing(nodes, sticks, slips):
+    """Up to 0.41 (2 nodes) and 0.24 (3 nodes) of the sliding shear no inner node slips; springs lose 0.14 at 0.2.
+
+    Masing's loop of Cattaneo's curve, with u in u_s and T in mu F: the loss over 3/4 u^2.
+    """
+    assert slip.shaken(sticks, nodes=nodes) == pytest.approx(0.0, abs=1e-9)
+    assert slip.shaken(slips, nodes=nodes) > 0.05
+    with mp.workdps(20):
+        curve = lambda u: 1 - (1 - u) ** mp.mpf(1.5)  # noqa: E731
+        area = 2 * mp.quad(lambda d: 2 * curve(d / 2) - curve(0.2) * d / 0.2, [0, 0.4])
+    assert slip.shaken(0.2, nodes=0) == pytest.approx(float(area) / (0.75 * 0.2**2), abs=0.005)
+
+
+@pytest.mark.parametrize(("nodes", "first", "twentieth"), [(2, 0.06, 2.09), (3, 0.125, 2.25), (0, 0.275, 0.267)])
+def test_repeated_small_cycles_that_shear_back_under_load_lose_more_with_few_nodes(nodes, first, twentieth):
+    """As docs/partial_slip.md states: nodes ratchet, springs lose the same share in each cycle."""
+    losses = slip.sheared_back_under_load(0.05, nodes=nodes, cycles=20)
+    assert losses[[0, 19]] == pytest.approx([first, twentieth], abs=0.006)
 
 
 @NODES

@@ -97,6 +97,14 @@ def test_a_pair_that_turns_rigidly_takes_its_forces_along_but_with_one_spring(ta
     assert low < motions.objectivity(loads) < high
 
 
+def test_the_error_of_a_rigid_rotation_is_of_first_order_in_the_step(monkeypatch):
+    errors = []
+    for steps in (500, 1000, 2000):
+        monkeypatch.setattr(motions, "TURN", steps)
+        errors.append(motions.objectivity(embedded(touch(tangential="partial_slip"), "rigid_rotation")[1]))
+    assert [errors[0] / errors[1], errors[1] / errors[2]] == pytest.approx([2, 2], abs=0.05)
+
+
 def test_the_engines_agree_on_every_law(tmp_path):
     laws = ("hertz", "thornton", "johnson", "cavity")
     outcome = compare(CASES / "oblique_steel.toml", laws=laws, out=tmp_path)
