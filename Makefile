@@ -1,11 +1,21 @@
 # Each target is one line that calls a script or a tool.
-.PHONY: setup demo lammps yade test guide browser walltime bench bench-community docs tidy sanitize versions fuzz valgrind reliability tutorials wheel deb trees clean
+.PHONY: setup demo trixie container lammps yade test guide browser walltime bench bench-community docs tidy sanitize versions fuzz valgrind reliability tutorials wheel deb trees clean
 
 setup:
 	@scripts/setup
 
 demo: setup
 	.venv/bin/epdem run cases/steel_wall.toml --engine embedded --engine liggghts
+
+# the two commands of the README in Debian 13, which debootstrap puts into ROOT; as root
+ROOT = $(or $(XDG_CACHE_HOME),$(HOME)/.cache)/epdem
+trixie:
+	@mkdir -p $(ROOT)
+	scripts/root trixie $(ROOT)/trixie make demo test
+
+# the steps of Containerfile in ROOT without a container engine, and the demo there; as root
+container:
+	scripts/container $(ROOT)/container
 
 # the module epdem_yade for the YADE on PATH; YADE_SOURCE=DIR: source of the same version, else its tag is cloned
 yade:

@@ -68,13 +68,21 @@ def test_without_sudo_the_command_for_root_is_told(machine):
     assert "liggghts not installed, and there is no sudo; as root: apt-get install liggghts" in done.stderr
 
 
-@pytest.mark.parametrize(("version", "shown"), [("13.1", "13.1"), ("13ubuntu10", "13ubuntu10"), ("", "unknown")])
+@pytest.mark.parametrize(("version", "shown"), [("14.1", "14.1"), ("13ubuntu10", "13ubuntu10"), ("", "unknown")])
 def test_another_release_is_named_before_anything_is_installed(version, shown, machine):
     machine.tool("dpkg-query", DEBIAN.replace("12.4+deb12u12", version))
     done = machine.setup()
-    assert done.returncode == 1 and f"not Debian 12 (base-files {shown})" in done.stderr
+    assert done.returncode == 1 and f"neither Debian 12 nor 13 (base-files {shown})" in done.stderr
     assert done.stderr.count("\n") == 1 and "'epdem export liggghts' (docs/trees.md)" in done.stderr
     assert not (machine.bin / "apt-get.called").exists()
+
+
+@pytest.mark.parametrize("version", ["12", "12.4+deb12u12", "13", "13.8+deb13u1"])
+def test_two_releases_of_debian_are_served(version, machine):
+    machine.tool("dpkg-query", DEBIAN.replace("12.4+deb12u12", version))
+    machine.tool("sudo", 'exec "$@"')
+    machine.setup()
+    assert "install" in (machine.bin / "apt-get.called").read_text()
 
 
 def test_without_dpkg_it_says_that_this_is_not_debian(machine):

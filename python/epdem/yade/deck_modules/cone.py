@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """YADE's conical-damage law as a basis of our laws: its formula and its four free numbers.
 
-`Law2_ScGeom_MindlinPhysCDM_HertzMindlinCDM` (YADE 2023.02a) computes, at overlap u,
+`Law2_ScGeom_MindlinPhysCDM_HertzMindlinCDM` (YADE 2023.02a and 2025.2) computes, at overlap u,
 
     uN = u + (radius - R) alphaFac      F = 4/3 E sqrt(R uN) uN      a = sqrt(R uN)      k_t = 8 G a
 

@@ -3,7 +3,7 @@
 
 All history lives in attributes of YADE's `phys` that its conical-damage law does not use, so that O.save keeps it:
 
-    initD          R* [m]; 0: the contact is new
+    betan          R* [m]; 0: the contact is new
     maxBendPl      the pair's strength [Pa]
     adhesionForce  delta_max [m] once yielded, else 0
     kr, ktw        overlap [m] at the last visit, and where the branch touches the law's (cavity only)

@@ -261,13 +261,13 @@ class Contacts:
             self._low, self._high = np.append(self._low, bounds[0]), np.append(self._high, bounds[1])
 
     def _meet(self, interaction: Any) -> None:
-        phys, new = interaction.phys, not interaction.phys.initD > 0.0
+        phys, new = interaction.phys, not interaction.phys.betan > 0.0
         if new:
             trigger = min(trigger_pressure(O.bodies[k].material) for k in (interaction.id1, interaction.id2))
-            phys.initD = effective_radius(interaction)
+            phys.betan = effective_radius(interaction)
             phys.maxBendPl = trigger / self.factor if trigger < inf else FAR
         yields = phys.maxBendPl < FAR
-        contact = Contact(interaction, self._law(phys.E, phys.maxBendPl if yields else inf), phys.initD)
+        contact = Contact(interaction, self._law(phys.E, phys.maxBendPl if yields else inf), phys.betan)
         if new:
             self._start(contact)
         self._contacts.append(contact)
