@@ -4,7 +4,7 @@
 import importlib
 from typing import Any
 
-__version__ = "0.1.0"
+__version__ = "0.2.0"
 __all__ = ["Case", "Fit", "Run", "Scene", "SceneRun", "calibrate", "cite", "deck", "predict", "run", "sweep", "theory"]
 
 

@@ -81,14 +81,19 @@ def unit_of(column: str, units: Mapping[str, str]) -> str:
     return units.get(column.removesuffix("_theory"), "")
 
 
+def write_array(group: h5py.Group, name: str, data: np.ndarray, *, checksum: bool = True) -> h5py.Dataset:
+    """Store an array as the dataset `name`; a large one compressed."""
+    large = {"compression": "gzip", "compression_opts": 1, "shuffle": True} if data.size > LARGE else {}
+    return group.create_dataset(name, data=data, fletcher32=(checksum and data.size > 0) or None, **large)
+
+
 def write_table(group: h5py.Group, table: pd.DataFrame, units: dict[str, str]) -> None:
     """Store `table` in `group`, its columns with their `units` (see `unit_of`)."""
     for name in table.columns:
         column = table[name].to_numpy()
         if column.dtype == object or column.dtype.kind in "US":
             column = np.array([str(v).encode() for v in column])
-        large = {"compression": "gzip", "compression_opts": 1, "shuffle": True} if column.size > LARGE else {}
-        dataset = group.create_dataset(name, data=column, fletcher32=True if column.size else None, **large)
+        dataset = write_array(group, name, column)
         if unit := unit_of(name, units):
             write_attributes(dataset, {"unit": unit})
     group.attrs["columns"] = np.array([name.encode() for name in table.columns], dtype="S")

@@ -11,7 +11,6 @@ import numpy as np
 import pandas as pd
 
 from ..base.files import atomic
-from ..case.motions import Move
 from ..case.walls import Room
 from ..errors import CaseError
 from . import placement
@@ -142,20 +141,13 @@ def bed(p: ScenePlan, spheres: pd.DataFrame, path: Path) -> None:
     x, radius, field = last[["x", "y", "z"]].to_numpy(), last["radius"].to_numpy(), p.output.color
     around = np.concatenate([x - radius[:, None], x + radius[:, None]])
     fig, axis = _frame(p.case.case.title, around, beside=BAR)
-    walls = at_end(_until(p, int(last["step"].iloc[0])), p.triangles)
+    walls = at_end(p.motions_until(int(last["step"].iloc[0])), p.triangles)
     _draw_walls(axis, p, walls, p.phases[-1], front=False)
     discs = _draw_spheres(axis, x, radius, array=colour(last, field), cmap="viridis")
     _draw_walls(axis, p, walls, p.phases[-1], front=True)
     unit = unit_of(last, field)
     fig.colorbar(discs, label=f"{field} [{unit}]" if unit else field, shrink=0.8)
     _save(fig, path)
-
-
-def _until(p: ScenePlan, step: int) -> list[tuple[dict[str, Move], float]]:
-    """The motions of each phase and how long [s] the phase has lasted at a step."""
-    table, now = p.phase_table, float(p.time_at(np.array([step]))[0])
-    lasted = (np.minimum(table["end_time"], now) - table["begin_time"]).clip(lower=0.0)
-    return [(phase.moves, float(seconds)) for phase, seconds in zip(p.phases, lasted, strict=True)]
 
 
 def before(p: ScenePlan, path: Path) -> int:

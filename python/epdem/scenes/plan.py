@@ -133,6 +133,12 @@ class ScenePlan:
         lengths = np.diff(ends) * [phase.case.time_step or self.time_step for phase in self.phases]
         return np.asarray(np.interp(steps, ends, np.concatenate([[0.0], np.cumsum(lengths)])))
 
+    def motions_until(self, step: int) -> list[tuple[dict[str, Move], float]]:
+        """The motions of each phase and how long [s] the phase has lasted at a step."""
+        table, now = self.phase_table, float(self.time_at(np.array([step]))[0])
+        lasted = (np.minimum(table["end_time"], now) - table["begin_time"]).clip(lower=0.0)
+        return [(phase.moves, float(seconds)) for phase, seconds in zip(self.phases, lasted, strict=True)]
+
     @property
     def output(self) -> Output:
         """The output that the case requests."""

@@ -8,7 +8,9 @@ import numpy as np
 import pandas as pd
 
 from ..base import tables as h5
+from . import vtkhdf
 from .columns import units
+from .plan import ScenePlan
 
 FILES = "files"  # group of the files that the case names
 
@@ -33,14 +35,15 @@ class SceneResults:
         raise AttributeError(f"no table {name!r}; there are {', '.join(tables)}")
 
 
-def write(path: Path, results: SceneResults) -> None:
-    """Store `results` in the HDF5 file `path`, its rows as CSV beside it."""
+def write(path: Path, p: ScenePlan, results: SceneResults) -> None:
+    """Store `results` in the HDF5 file `path`, which ParaView shows, and its rows as CSV beside it."""
     stored = h5.Hdf5()
     file = stored.file
     h5.write_attributes(file, {"kind": "scene", **results.attributes})
     h5.write_text(file, "case", results.case_text)
     for name, table in results.tables.items():
         h5.write_table(file.create_group(name), table, units(table))
+    vtkhdf.write(file, p, results.tables)
     for name, text in results.decks.items():
         h5.write_text(file, f"decks/{name}", text)
     group = file.create_group(FILES)

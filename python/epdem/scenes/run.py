@@ -220,7 +220,7 @@ def _finish(
     }
     decks = {name: text for name, text in work.files.items() if "/" not in name}  # without the modules of a deck
     kept = results.SceneResults(work.text, attributes, tables, decks, work.named)
-    results.write(folder / "results.h5", kept)
+    results.write(folder / "results.h5", p, kept)
     return SceneOutcome(
         p,
         folder,

@@ -1,0 +1,134 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""results.h5 of a scene read by VTK's own reader, against the files that LIGGGHTS wrote."""
+
+import h5py
+import numpy as np
+import pandas as pd
+import pytest
+import vtk
+from parts_cases import BED, FLOOR, parts
+from scene_runs import run, write_case
+from vtk.util.numpy_support import vtk_to_numpy
+
+from epdem.case.scene import parse
+from epdem.engines.liggghts import dump
+from epdem.scenes import results, vtkhdf
+from epdem.scenes.plan import plan
+
+BOX = {"name": "box", "kind": "box", "x": ["-9 mm", "9 mm"], "y": ["-9 mm", "9 mm"], "z": ["0 mm", "40 mm"]}
+BOX |= {"material": "steel", "stress": True}
+LID = {"name": "lid", "kind": "plate", "axis": "z", "center": ["0 mm", "0 mm", "18 mm"], "size": ["17 mm", "17 mm"]}
+LID |= {"material": "steel", "stress": True}
+GATE = {"name": "gate", "kind": "plane", "axis": "z", "at": "20 mm", "material": "steel", "phases": ["fall"]}
+FALL = {"name": "fall", "duration": "40 ms"}
+DOWN = {"kind": "linear", "wall": "lid", "velocity": ["0 m/s", "0 m/s", "-0.2 m/s"]}
+PUSH = {"name": "push", "duration": "40 ms", "move": [DOWN]}
+LATE = {"name": "late", "material": "steel", "radius": "1 mm", "phase": "push"}
+LATE |= {"position": ["0 mm", "0 mm", "38 mm"], "velocity": ["0 m/s", "0 m/s", "0 m/s"]}
+
+
+def case():
+    fill = BED | {"count": 20, "region": BED["region"] | {"z": ["1 mm", "16 mm"]}}
+    data = parts(wall=[FLOOR | {"at": "-1 mm"}, BOX, LID, GATE], fill=[fill], body=[LATE], phase=[FALL, PUSH])
+    data["output"] |= {"particles": 6}
+    return data
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory):
+    """The folder of a scene whose number of spheres, moving wall and gate change from frame to frame."""
+    place = tmp_path_factory.mktemp("vtkhdf")
+    run(write_case(case(), place), out=place / "out")
+    return place / "out"
+
+
+def frames(path):
+    """(time, blocks by name) of each frame, as VTK's reader gives them."""
+    reader = vtk.vtkHDFReader()
+    reader.SetFileName(str(path))
+    reader.UpdateInformation()
+    for k in range(reader.GetNumberOfSteps()):
+        reader.SetStep(k)
+        reader.Update()
+        found = reader.GetOutputDataObject(0)
+        names = [
+            found.GetMetaData(i).Get(vtk.vtkCompositeDataSet.NAME())
+            for i in range(found.GetNumberOfPartitionedDataSets())
+        ]
+        yield reader.GetTimeValue(), {name: found.GetPartition(i, 0) for i, name in enumerate(names)}
+
+
+def array(data, name):
+    return vtk_to_numpy(data.GetArray(name))
+
+
+def points(block):
+    return vtk_to_numpy(block.GetPoints().GetData())
+
+
+def steps_of(folder, pattern):
+    return sorted(int(path.name.split(".")[1]) for path in folder.glob(pattern))
+
+
+@pytest.mark.liggghts
+def test_vtk_reads_every_sphere_of_every_frame(folder):
+    steps, counts = steps_of(folder, "particles.*.bin"), []
+    read = list(frames(folder / "results.h5"))
+    assert [time for time, _ in read] == pytest.approx([2e-5 * step for step in steps]) and len(steps) == 7
+    for step, (_, blocks) in zip(steps, read, strict=True):
+        ((_, rows),) = dump.frames(folder / f"particles.{step}.bin")  # id type radius mass x y z vx vy vz omega...
+        spheres = blocks["spheres"]
+        data, counts = spheres.GetPointData(), [*counts, len(rows)]
+        assert np.array_equal(points(spheres), rows[:, 4:7]) and spheres.GetNumberOfVerts() == len(rows)
+        assert np.array_equal(array(data, "velocity"), rows[:, 7:10])
+        for name, column in {"body_id": 0, "material_id": 1, "radius": 2, "mass": 3}.items():
+            assert np.array_equal(array(data, name), rows[:, column])
+        assert array(data, "plastic_work").shape == (len(rows),)
+    assert counts == [0, 20, 20, 20, 21, 21, 21] and array(data, "plastic_work").max() > 0
+
+
+@pytest.mark.liggghts
+def test_vtk_reads_walls_where_liggghts_has_them_with_their_stress(folder):
+    loaded, end = 0, results.read(folder / "results.h5").phases["end"][0]
+    for step, (_, blocks) in zip(steps_of(folder, "stress_lid.*.vtk"), frames(folder / "results.h5"), strict=True):
+        for name in ("lid", "box"):
+            legacy = vtk.vtkPolyDataReader()
+            legacy.SetFileName(str(folder / f"stress_{name}.{step}.vtk"))
+            legacy.Update()
+            theirs, wall = legacy.GetOutput(), blocks[f"wall_{name}"]
+            order = np.argsort(array(theirs.GetCellData(), "meshid").reshape(-1))
+            assert wall.GetNumberOfPolys() == len(order)
+            for ours, other in enumerate(order):
+                for k in range(3):
+                    place = theirs.GetPoint(theirs.GetCell(other).GetPointId(k))
+                    assert wall.GetPoint(wall.GetCell(ours).GetPointId(k)) == pytest.approx(place, abs=1e-7)
+            stress = array(theirs.GetCellData(), "normal_stress_average").reshape(-1)[order]
+            assert np.array_equal(array(wall.GetCellData(), "normal_stress"), stress)
+            loaded += bool(stress.any())
+        assert blocks["wall_gate"].GetNumberOfPolys() == (2 if step <= end else 0)
+        assert blocks["wall_floor"].GetNumberOfPolys() == 2 and blocks["wall_floor"].GetBounds()[4] == pytest.approx(
+            -1e-3
+        )
+    assert loaded
+
+
+@pytest.mark.liggghts
+def test_the_group_stores_no_value_twice(folder):
+    with h5py.File(folder / "results.h5") as file:
+        data = file["VTKHDF/spheres/PointData"]
+        assert data["radius"] == file["particles/radius"] and data["velocity"].is_virtual
+        assert file["VTKHDF/wall_lid/CellData/normal_stress"] == file["walls/normal_stress"]
+        floor, lid = (len(file[f"VTKHDF/wall_{name}/Points"]) for name in ("floor", "lid"))
+    assert floor == 4 and lid == 4 * 4  # a wall at rest has one position, the lid one more in each frame that it moves
+
+
+def test_a_results_file_is_at_most_a_tenth_larger(tmp_path, monkeypatch):
+    """500 spheres in 20 frames, numbers that gzip cannot shorten."""
+    frames, spheres, rng = 20, 500, np.random.default_rng(1)
+    table = pd.DataFrame({"step": np.repeat(np.arange(frames), spheres), "id": np.tile(np.arange(spheres), frames)})
+    table[["type", *"xyz", "vx", "vy", "vz", "radius"]] = rng.random((len(table), 8))
+    tables = {"particles": table, "rows": pd.DataFrame({"step": [0]})}
+    results.write(tmp_path / "with.h5", plan(parse(case())), results.SceneResults(tables=tables))
+    monkeypatch.setattr(vtkhdf, "write", lambda *_: None)
+    results.write(tmp_path / "without.h5", plan(parse(case())), results.SceneResults(tables=tables))
+    assert 1.0 < (tmp_path / "with.h5").stat().st_size / (tmp_path / "without.h5").stat().st_size < 1.1
