@@ -15,6 +15,8 @@ CPP = [str(p) for room in ("cpp_contact", "tests", "bench") for p in sorted((ROO
 CPP = [path for path in CPP if path.endswith((".hpp", ".h", ".cpp"))]
 # clang-tidy reads one source that includes every header of the laws; `make tidy` reads all of C++, in minutes
 LAWS = ["cpp_contact/capi/epdem.cpp", "--", "-std=c++17", "-Icpp_contact/include", '-DEPDEM_VERSION=""']
+SCHEMA = ["check-jsonschema", "--builtin-schema"]
+GITHUB = ROOT / ".github"
 TOOLS = {
     "ruff check": ["ruff", "check", "--output-format", "concise", *PYTHON],
     "ruff format": ["ruff", "format", "--check", *PYTHON],
@@ -22,6 +24,8 @@ TOOLS = {
     "lint-imports": ["lint-imports", "--no-cache"],
     "clang-format": ["clang-format", "--dry-run", "--Werror", *CPP],
     "clang-tidy": ["clang-tidy", "--quiet", *LAWS],
+    "workflows": [*SCHEMA, "vendor.github-workflows", *map(str, sorted(GITHUB.glob("workflows/*.yml")))],
+    "issue forms": [*SCHEMA, "vendor.github-issue-forms", *map(str, sorted(GITHUB.glob("ISSUE_TEMPLATE/[!c]*.yml")))],
 }
 
 
@@ -50,6 +54,12 @@ def test_links_between_documents_lead_to_files():
     for page in [*ROOT.glob("*.md"), *ROOT.glob("docs/*.md")]:
         for target in re.findall(r"\]\(([^)#:]+)(?:#[^)]*)?\)", page.read_text()):
             assert (page.parent / target).exists(), f"{page.name} -> {target}"
+
+
+def test_both_recipes_of_the_image_have_the_same_steps():
+    recipes = [(ROOT / name).read_text() for name in ("Containerfile", "epdem.def")]
+    steps = [re.findall(r"^(?:RUN |    )((?:scripts/setup|apt-get) .+)", text, re.MULTILINE) for text in recipes]
+    assert len(steps[0]) == 2 and steps[0] == steps[1]
 
 
 def test_all_files_state_one_version():
