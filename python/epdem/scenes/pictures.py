@@ -26,6 +26,18 @@ MOST_PLACED = 4000  # spheres that are placed for the picture of a scene before 
 WIDE = 6.0  # inches
 LABELS = 0.7, 0.8  # room of labels and title beside and above the axes [inch]
 BAR = 1.0  # room of a colour bar [inch]
+# discs of a sphere from its rim to the highlight: share of the radius, shift to the upper left over the radius, light
+# (1: its colour, 2: white)
+SHADES = [
+    (1.0, 0.0, 0.35),
+    (0.94, 0.0, 0.70),
+    (0.84, 0.04, 0.86),
+    (0.72, 0.08, 1.0),
+    (0.26, 0.34, 1.25),
+    (0.14, 0.37, 1.6),
+]
+MOST_SHADED = 20_000  # spheres with all discs
+HAZE = 0.45  # share of white in the colour of the farthest sphere
 
 
 def _axes() -> tuple[FloatArray, FloatArray]:
@@ -92,18 +104,26 @@ def _draw_walls(axis: Any, p: ScenePlan, walls: dict[str, FloatArray], phase: Ph
             axis.add_collection(PolyCollection([outline], facecolor=(0.5, 0.5, 0.5, 0.12), edgecolor="0.5", lw=0.6))
 
 
-def _draw_spheres(axis: Any, x: FloatArray, radius: FloatArray, **style: Any) -> Any:
-    """Spheres as discs, the nearest on top; returns the collection."""
+def _draw_spheres(axis: Any, x: FloatArray, radius: FloatArray, color: FloatArray) -> None:
+    """Spheres as shaded discs, the nearest on top; color: red, green, blue from 0 to 1 of each, shape (n, 3)."""
     from matplotlib.collections import EllipseCollection
 
     plane, towards = _axes()
-    order = np.argsort(x @ towards)
-    style |= {name: np.asarray(style[name])[order] for name in ("array", "facecolor") if name in style}
-    size = 2 * radius[order]
-    look = {"units": "xy", "offset_transform": axis.transData, "edgecolor": (0, 0, 0, 0.55), "linewidth": 0.25}
-    discs = EllipseCollection(size, size, np.zeros(len(x)), offsets=(x @ plane.T)[order], **look, **style)
-    axis.add_collection(discs)
-    return discs
+    depth = x @ towards
+    order = np.argsort(depth)
+    haze = HAZE * (depth.max() - depth[order]) / max(float(np.ptp(depth)), float(radius.max()))
+    color = color[order] + haze[:, None] * (1.0 - color[order])
+    share, shift, light = np.array(SHADES if len(x) <= MOST_SHADED else SHADES[:2]).T
+    size = np.outer(2 * radius[order], share)
+    places = (x @ plane.T)[order][:, None] + (radius[order, None] * shift)[:, :, None] * np.array([-1.0, 1.0])
+    shaded = np.where(
+        light[:, None] <= 1.0, color[:, None] * light[:, None], 1.0 - (1.0 - color[:, None]) * (2.0 - light[:, None])
+    )
+    look = {"units": "xy", "offset_transform": axis.transData, "linewidth": 0.0}
+    angles, faces = np.zeros(size.size), shaded.reshape(-1, 3)
+    axis.add_collection(
+        EllipseCollection(size.ravel(), size.ravel(), angles, offsets=places.reshape(-1, 2), facecolor=faces, **look)
+    )
 
 
 def _frame(title: str, corners: FloatArray, *, beside: float = 0.0) -> tuple[Any, Any]:
@@ -137,16 +157,19 @@ def bed(p: ScenePlan, spheres: pd.DataFrame, path: Path) -> None:
 
     A wall that a force drives is left out: no table holds its position.
     """
+    from matplotlib.cm import ScalarMappable
+
     last = last_frame(spheres)
     x, radius, field = last[["x", "y", "z"]].to_numpy(), last["radius"].to_numpy(), p.output.color
     around = np.concatenate([x - radius[:, None], x + radius[:, None]])
     fig, axis = _frame(p.case.case.title, around, beside=BAR)
     walls = at_end(p.motions_until(int(last["step"].iloc[0])), p.triangles)
     _draw_walls(axis, p, walls, p.phases[-1], front=False)
-    discs = _draw_spheres(axis, x, radius, array=colour(last, field), cmap="viridis")
+    shown = ScalarMappable(cmap="viridis")
+    _draw_spheres(axis, x, radius, shown.to_rgba(colour(last, field).to_numpy())[:, :3])
     _draw_walls(axis, p, walls, p.phases[-1], front=True)
     unit = unit_of(last, field)
-    fig.colorbar(discs, label=f"{field} [{unit}]" if unit else field, shrink=0.8)
+    fig.colorbar(shown, ax=axis, label=f"{field} [{unit}]" if unit else field, shrink=0.8)
     _save(fig, path)
 
 
@@ -156,6 +179,8 @@ def before(p: ScenePlan, path: Path) -> int:
     Returns the number of drawn spheres; spheres of regions are drawn only if few enough to be placed at once. Raises
     CaseError for an ending that no picture has.
     """
+    from matplotlib.colors import to_rgba_array
+
     fig, axis = _frame(p.case.case.title, _corners(p.box))
     if path.suffix[1:].lower() not in fig.canvas.get_supported_filetypes():
         raise CaseError(f"--out {path}: no picture has this ending; name it {path.stem}.png")
@@ -164,7 +189,9 @@ def before(p: ScenePlan, path: Path) -> int:
         _draw_region(axis, fill.region)
     table = _first(p)
     if len(table):
-        _draw_spheres(axis, table[:, :3], table[:, 3], facecolor=[f"C{int(kind) - 1}" for kind in table[:, 4]])
+        _draw_spheres(
+            axis, table[:, :3], table[:, 3], to_rgba_array([f"C{int(kind) - 1}" for kind in table[:, 4]])[:, :3]
+        )
     _save(fig, path)
     return len(table)
 
