@@ -5,6 +5,7 @@
 #pragma once
 
 #include "epdem/settings.hpp"
+#include "kernels/spheres.hpp"
 
 namespace epdem::kernels {
 
@@ -51,6 +52,7 @@ using Kernel = void (*)(Block&, int n, const Pass&);
 struct Kernels {
   static constexpr int most_laws = 16, most_frictions = 16;
   Kernel of[most_laws][most_frictions][2][2];
+  SphereKernels spheres;
 };
 
 extern const Kernels kernels_sse2, kernels_avx2, kernels_avx512;

@@ -5,6 +5,7 @@
 #include "epdem/contact.hpp"
 #include "epdem/laws.hpp"
 #include "kernels/block.hpp"
+#include "kernels/sphere_lanes.hpp"
 
 namespace epdem::kernels {
 namespace {
@@ -223,6 +224,7 @@ constexpr Kernels all() noexcept {
 #define EPDEM_FILL(Class) fill<Class<Lanes>>(kernels, Frictions{});
   EPDEM_LAWS(EPDEM_FILL)
 #undef EPDEM_FILL
+  kernels.spheres = {half_step, near_sphere, near_triangle};
   return kernels;
 }
 

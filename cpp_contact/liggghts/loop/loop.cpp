@@ -25,6 +25,11 @@ const Kernels& chosen_kernels(LAMMPS_NS::LAMMPS* lmp) {
   return *found;
 }
 
+const SphereKernels& sphere_kernels(LAMMPS_NS::LAMMPS* lmp) {
+  static const SphereKernels& found = chosen_kernels(lmp).spheres;
+  return found;
+}
+
 bool generic_loop() {
   static const char* const loop = std::getenv("EPDEM_LOOP");
   return loop && std::strcmp(loop, "generic") == 0;

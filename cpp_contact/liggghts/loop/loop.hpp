@@ -19,6 +19,9 @@ using namespace epdem::kernels;
 /// is none of them or the processor lacks it.
 const Kernels& chosen_kernels(LAMMPS_NS::LAMMPS* lmp);
 
+/// Those for spheres beside their contacts, of the same instruction set.
+const SphereKernels& sphere_kernels(LAMMPS_NS::LAMMPS* lmp);
+
 /// What the settings and properties of a run say, the same for all its steps.
 struct Plan {
   int friction = 0;  // place in Frictions

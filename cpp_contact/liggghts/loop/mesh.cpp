@@ -4,11 +4,6 @@
 // On meshes LIGGGHTS evaluates each sphere near a triangle, and resets the marks of all contacts that the neighbour
 // lists allow, in every step. Here its loop sees the spheres that can touch, and the marks of spheres with contacts;
 // geometry and marks are computed by LIGGGHTS's own functions, so that not one bit differs.
-//
-// LIGGGHTS takes the addresses of these functions through the dynamic linker, which finds ours first; ours find
-// LIGGGHTS's as the next of the same name. In a source tree, where all is one program, LIGGGHTS's loop remains.
-#include <dlfcn.h>
-
 #include <algorithm>
 #include <cmath>
 #include <unordered_map>
@@ -16,6 +11,8 @@
 
 #include "fix_contact_history_mesh.h"
 #include "fix_neighlist_mesh.h"
+#include "replaced.hpp"
+#include "triangles.hpp"
 #include "wall.hpp"
 
 #ifdef EPDEM_BUILT_FOR
@@ -29,45 +26,8 @@ using LAMMPS_NS::FixNeighlistMesh;
 using LAMMPS_NS::FixWallGran;
 using LAMMPS_NS::TriMesh;
 
-template <class... Words>
-using Function = void (*)(Words...);
-
-template <class... Words>
-Function<Words...> next(const char* name) {
-  return reinterpret_cast<Function<Words...>>(dlsym(RTLD_NEXT, name));
-}
-
 struct Lists : FixNeighlistMesh {
   static std::vector<LAMMPS_NS::TriangleNeighlist>& of(FixNeighlistMesh& mesh) { return mesh.*(&Lists::triangles); }
-};
-
-/// A plane through `point` with the unit normal `normal`.
-struct Plane {
-  double point[3], normal[3];
-
-  double height(const double* x) const {
-    return normal[0] * (x[0] - point[0]) + normal[1] * (x[1] - point[1]) + normal[2] * (x[2] - point[2]);
-  }
-};
-
-/// What a mesh knows of its triangles.
-struct Triangles : TriMesh {
-  static Plane plane(TriMesh& mesh, int triangle) {
-    double* (LAMMPS_NS::SurfaceMesh<3, 5>::* const normal)(int) = &Triangles::surfaceNorm;
-    return through(mesh, triangle, 0, (mesh.*normal)(triangle));
-  }
-  /// Through an edge, normal to the triangle's plane, outward.
-  static Plane side(TriMesh& mesh, int triangle, int edge) {
-    return through(mesh, triangle, edge, (mesh.*(&Triangles::edgeNorm))(triangle)[edge]);
-  }
-
- private:
-  static Plane through(TriMesh& mesh, int triangle, int corner, const double* normal) {
-    Plane found;
-    mesh.node(triangle, corner, found.point);
-    std::copy_n(normal, 3, found.normal);
-    return found;
-  }
 };
 
 /// The neighbour lists of meshes, reduced to spheres that may touch for as long as this object lives.
@@ -77,36 +37,19 @@ class ReducedNeighborLists {
     for (const auto& [list, kept] : swapped_) list->swap(spare()[kept]);
   }
 
-  void reduce(TriMesh& mesh, FixNeighlistMesh& lists, const LAMMPS_NS::Atom& atom) {
+  void reduce(TriMesh& mesh, FixNeighlistMesh& lists, const LAMMPS_NS::Atom& atom, const SphereKernels& kernels) {
     std::vector<LAMMPS_NS::TriangleNeighlist>& triangles = Lists::of(lists);
     const int count = std::min(mesh.sizeLocal() + mesh.sizeGhost(), static_cast<int>(triangles.size()));
     if (atom.nlocal == 0) return;
-    const double *const x = atom.x[0], *const radius = atom.radius;
-    const int nlocal = atom.nlocal;
+    const NearTest test{atom.x[0], atom.radius, 1.0 + 1e-6, 0.0};  // far above round-off
     for (int t = 0; t < count; ++t) {
       std::vector<int>& all = triangles[t].contacts;
       if (all.empty()) continue;
       if (used_ == spare().size()) spare().emplace_back();
       std::vector<int>& near = spare()[used_];
-      near.resize(all.size());
-      const auto reach = [radius](int i) { return radius[i] * (1.0 + 1e-6); };  // far above round-off
-      const Plane plane = Triangles::plane(mesh, t);
-      int found = 0;
-      for (const int i : all) {  // no branch: every sphere is noted, and stays if it may touch
-        near[found] = i;
-        found += (i < nlocal) & (std::fabs(plane.height(x + 3 * i)) <= reach(i));
-      }
-      for (int edge = 0; edge < 3 && found; ++edge) {
-        const Plane side = Triangles::side(mesh, t, edge);
-        const int some = found;
-        found = 0;
-        for (int k = 0; k < some; ++k) {
-          const int i = near[k];
-          near[found] = i;
-          found += side.height(x + 3 * i) <= reach(i);
-        }
-      }
-      near.resize(found);
+      near.resize(all.size() + most_lanes);
+      const int n = static_cast<int>(all.size());
+      near.resize(kernels.near_triangle(test, Triangles::planes(mesh, t), all.data(), n, near.data()));
       all.swap(near);
       swapped_.push_back({&all, used_++});
     }
@@ -171,12 +114,13 @@ namespace loop = epdem::liggghts::loop;
   static const auto original = loop::next<FixWallGran*, int>("_ZN9LAMMPS_NS11FixWallGran15post_force_meshEi");
   const loop::ScopedWall work(impl, *this);
   if (!loop::active_wall || loop::generic_loop() || neighbor->contactDistanceFactor != 1.0 || !atom->sphere_flag ||
-      atom->shapetype_flag)
+      atom->shapetype_flag || atom->nlocal + atom->nghost >= atom->nmax)
     return original(this, vflag);
   loop::ReducedNeighborLists near;
   for (int m = 0; m < n_FixMesh_; ++m) {
     TriMesh& mesh = *FixMesh_list_[m]->triMesh();
-    if (!mesh.isDeforming() && !mesh.isScaling()) near.reduce(mesh, *FixMesh_list_[m]->meshNeighlist(), *atom);
+    if (!mesh.isDeforming() && !mesh.isScaling())
+      near.reduce(mesh, *FixMesh_list_[m]->meshNeighlist(), *atom, loop::sphere_kernels(lmp));
   }
   loop::ours = true;
   original(this, vflag);

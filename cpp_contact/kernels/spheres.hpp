@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// What a step does with spheres beside their contacts, as lanes: half a step of their motion, and which of them are
+// near a sphere or a triangle. Each number has the bits of a loop over single spheres.
+#pragma once
+
+namespace epdem::kernels {
+
+/// Half a step of the motion of n spheres; x, v, omega, force and torque are rows of three.
+struct HalfStep {
+  int n;
+  double *x, *v, *omega;  // x may be null: positions stay
+  const double *force, *torque, *mass, *radius;
+  double dt, dt_force, dt_torque;  // of positions; half; half over the factor of the moment of inertia
+  double mass_factor;              // of added mass
+};
+
+/// What is nearer to a sphere than radius * factor + skin is near; of two spheres, with the sum of their radii.
+struct NearTest {
+  const double *x, *radius;  // rows of three; one number behind the last row can be read
+  double factor, skin;
+};
+
+/// The plane of a triangle and those through its edges, normal to it and outward: a point and the unit normal of each.
+struct TrianglePlanes {
+  const double *point[4], *normal[4];
+};
+
+struct SphereKernels {
+  /// v += dt_force F / (mass_factor m) and omega += dt_torque T / (R^2 m), then x += dt v.
+  void (*half_step)(const HalfStep&);
+  /// Writes those of n candidates that are near, in their order, and returns their number: candidates above sphere
+  /// `of`, or those near a triangle as its planes tell. `found` may be the candidates themselves.
+  int (*near_sphere)(const NearTest&, int of, const int* candidates, int n, int* found);
+  int (*near_triangle)(const NearTest&, const TrianglePlanes&, const int* candidates, int n, int* found);
+};
+
+}  // namespace epdem::kernels

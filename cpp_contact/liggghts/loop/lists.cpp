@@ -1,0 +1,189 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// In place of LIGGGHTS's search for neighbours: bins side by side in memory, and candidates tested as lanes. The same
+// pairs in the same order, with the same histories.
+#include <algorithm>
+#include <cstring>
+#include <vector>
+
+#include "fix_contact_history.h"
+#include "fix_neighlist_mesh.h"
+#include "loop.hpp"
+#include "neigh_list.h"
+#include "replaced.hpp"
+#include "triangles.hpp"
+
+#ifdef EPDEM_BUILT_FOR
+
+namespace epdem::liggghts::loop {
+namespace {
+
+/// The spheres of LIGGGHTS's bins side by side in memory, in the order of its linked lists.
+struct Bins {
+  std::vector<int> start;    // of each bin in `members`, and the end
+  std::vector<int> members;  // eight more can be read
+  std::vector<int> bin_of;   // of each sphere
+
+  void fill(const int* head, const int* next, int count, int spheres);
+};
+
+Bins bins;  // as LIGGGHTS filled its bins last
+
+void Bins::fill(const int* head, const int* next, int count, int spheres) {
+  start.resize(count + 1);
+  members.resize(spheres + 8);
+  bin_of.resize(spheres);
+  int n = 0;
+  static constexpr int empty[8] = {-1, -1, -1, -1, -1, -1, -1, -1};
+  for (int b = 0; b < count; ++b) {
+    while (b + 8 <= count && std::memcmp(head + b, empty, sizeof empty) == 0) {  // most bins are empty
+      std::fill_n(start.data() + b, 8, n);
+      b += 8;
+    }
+    if (b == count) break;
+    start[b] = n;
+    for (int i = head[b]; i >= 0; i = next[i]) {
+      bin_of[i] = b;
+      members[n++] = i;
+    }
+  }
+  start[count] = n;
+}
+
+/// Bins that follow one another in memory, relative to that of a sphere.
+struct Row {
+  int first, last;
+};
+
+std::vector<Row> rows_of(const LAMMPS_NS::NeighList& list) {
+  std::vector<Row> rows;
+  for (int k = 0; k < list.nstencil; ++k) {
+    const int bin = list.stencil[k];
+    if (!rows.empty() && rows.back().last + 1 == bin)
+      rows.back().last = bin;
+    else
+      rows.push_back({bin, bin});
+  }
+  return rows;
+}
+
+/// Whether LIGGGHTS's own functions search: they are chosen, or no number can be read behind the last sphere.
+bool searches_itself(const LAMMPS_NS::Atom& atom) {
+  return generic_loop() || atom.nlocal == 0 || atom.nlocal + atom.nghost >= atom.nmax || !atom.radius;
+}
+
+/// Room for all spheres in bins.
+int* scratch() {
+  static std::vector<int> room;
+  if (room.size() < bins.members.size()) room.resize(bins.members.size());
+  return room.data();
+}
+
+/// Appends the spheres of bins first to last.
+void append(int first, int last, int* spheres, int& n) {
+  const int begin = bins.start[first], count = bins.start[last + 1] - begin;
+  for (int k = 0; k < count; k += 8)  // nearly always one turn
+    std::memcpy(spheres + n + k, bins.members.data() + begin + k, 8 * sizeof(int));
+  n += count;
+}
+
+}  // namespace
+}  // namespace epdem::liggghts::loop
+
+namespace LAMMPS_NS {
+
+namespace loop = epdem::liggghts::loop;
+
+[[gnu::visibility("default")]] void Neighbor::bin_atoms() {
+  static const auto original = loop::next<Neighbor*>("_ZN9LAMMPS_NS8Neighbor9bin_atomsEv");
+  original(this);
+  if (!loop::generic_loop()) loop::bins.fill(binhead, bins, mbins, atom->nlocal + atom->nghost);
+}
+
+[[gnu::visibility("default")]] void Neighbor::granular_bin_no_newton(NeighList* list) {
+  static const auto original =
+      loop::next<Neighbor*, NeighList*>("_ZN9LAMMPS_NS8Neighbor22granular_bin_no_newtonEPNS_9NeighListE");
+  if (exclude || loop::searches_itself(*atom)) return original(this, list);
+  bin_atoms();
+  const std::vector<loop::Row> rows = loop::rows_of(*list);
+  const loop::NearTest test{atom->x[0], atom->radius, contactDistanceFactor, skin};
+  const auto near = loop::sphere_kernels(lmp).near_sphere;
+  int* const found = loop::scratch();
+
+  FixContactHistory* const history = list->fix_history;
+  NeighList* const contacts = history ? list->listgranhistory : nullptr;
+  list->ipage->reset();
+  if (contacts) {
+    contacts->ipage->reset();
+    contacts->dpage->reset();
+  }
+  double** const x = atom->x;
+  const double* const radius = atom->radius;
+  const int count = includegroup ? atom->nfirst : atom->nlocal, values = contacts ? contacts->dnum : 0;
+  for (int i = 0; i < count; ++i) {
+    int n = 0;
+    const int bin = loop::bins.bin_of[i];
+    for (const loop::Row& row : rows) loop::append(bin + row.first, bin + row.last, found, n);
+    n = near(test, i, found, n, found);
+    int* const neighbours = list->ipage->vget();
+    if (!neighbours || n > oneatom) error->one(FLERR, "Neighbor list overflow, boost neigh_modify one");
+    std::copy_n(found, n, neighbours);
+    list->ilist[i] = i;
+    list->firstneigh[i] = neighbours;
+    list->numneigh[i] = n;
+    list->ipage->vgot(n);
+    if (!contacts) continue;
+    int* const touched = contacts->ipage->vget();
+    double* const kept = contacts->dpage->vget();
+    if (!touched || !kept) error->one(FLERR, "Neighbor list overflow, boost neigh_modify one");
+    std::fill_n(touched, n, 0);
+    std::fill_n(kept, n * values, 0.0);
+    for (int k = 0; k < n && history->npartner_[i] > 0; ++k) {
+      const int j = neighbours[k];
+      const double dx = x[i][0] - x[j][0], dy = x[i][1] - x[j][1], dz = x[i][2] - x[j][2];
+      const double sum = (radius[i] + radius[j]) * contactDistanceFactor;
+      if (!(dx * dx + dy * dy + dz * dz < sum * sum)) continue;
+      const int *const partners = history->partner_[i], *const end = partners + history->npartner_[i];
+      const int* const partner = std::find(partners, end, atom->tag[j]);
+      if (partner == end) continue;
+      touched[k] = 1;
+      std::copy_n(history->contacthistory_[i] + (partner - partners) * values, values, kept + k * values);
+    }
+    contacts->firstneigh[i] = touched;
+    contacts->firstdouble[i] = kept;
+    contacts->ipage->vgot(n);
+    contacts->dpage->vgot(n * values);
+  }
+  list->inum = count;
+}
+
+[[gnu::visibility("default")]] void FixNeighlistMesh::handleTriangle(int triangle) {
+  static const auto original = loop::next<FixNeighlistMesh*, int>("_ZN9LAMMPS_NS16FixNeighlistMesh14handleTriangleEi");
+  if (atom->ellipsoid || loop::searches_itself(*atom)) return original(this, triangle);
+  int* const found = loop::scratch();
+  int n = 0;
+  if (changingMesh || changingDomain) {
+    int low[3], high[3];
+    getBinBoundariesForTriangle(triangle, low[0], high[0], low[1], high[1], low[2], high[2]);
+    for (int ix = low[0]; ix <= high[0]; ++ix)
+      for (int iy = low[1]; iy <= high[1]; ++iy)
+        for (int iz = low[2]; iz <= high[2]; ++iz) {
+          const int bin = iz * mbiny * mbinx + iy * mbinx + ix;
+          if (bin >= 0 && bin < maxhead) loop::append(bin, bin, found, n);
+        }
+  } else {
+    for (const int bin : triangles[triangle].bins) loop::append(bin, bin, found, n);
+  }
+  const loop::NearTest test{x[0], r, neighbor->contactDistanceFactor, skin};
+  n = loop::sphere_kernels(lmp).near_triangle(test, loop::Triangles::planes(*mesh_, triangle), found, n, found);
+  std::vector<int>& contacts = triangles[triangle].contacts;
+  contacts.clear();
+  for (int k = 0; k < n; ++k) {
+    const int i = found[k];
+    if ((i > atom->nlocal && !domain->is_periodic_ghost(i)) || !(atom->mask[i] & groupbit_wall_mesh)) continue;
+    contacts.push_back(i);
+    fix_nneighs_->set_vector_atom_int(i, fix_nneighs_->get_vector_atom_int(i) + 1);
+  }
+}
+
+}  // namespace LAMMPS_NS
+#endif
