@@ -146,7 +146,7 @@ def _middle(triangles: FloatArray) -> list[float]:
 
 def surfaces(p: ScenePlan) -> tuple[DeckMesh, ...]:
     """The walls of triangles."""
-    force = p.plates or p.output.loads or p.output.energy
+    force = p.plates or p.torque or p.writes_wall_power
     found = []
     for name, mesh in p.scene.meshes.items():
         rotation, words = surface_rotation(mesh), ""
