@@ -97,6 +97,18 @@ def test_the_case_file_gets_the_choices_and_keeps_its_comments(tmp_path):
     assert path.read_text() == text
 
 
+def test_all_trials_share_the_time(tmp_path, monkeypatch):
+    limits = []
+
+    def run(texts, ranks, seconds):
+        limits.append(seconds)
+        return [(1.0, 200)] * 20
+
+    monkeypatch.setattr(trials, "run", run)
+    tune.tune(small(tmp_path), ranks=2, seconds=50.0)
+    assert limits == [10.0] * 5  # skins, and four processor grids
+
+
 def test_a_trial_that_is_too_short_says_so(tmp_path, monkeypatch):
     monkeypatch.setattr(trials, "run", lambda *words: [(1.0, 200)] * 7)  # seven pieces of five skins
     with pytest.raises(EngineError, match="ended before each skin had two turns; give it more time"):

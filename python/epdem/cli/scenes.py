@@ -114,7 +114,7 @@ def view(
 def tune(
     case: CasePath,
     ranks: Annotated[int, typer.Option(min=1, max=1024, help="MPI ranks of LIGGGHTS")] = 1,
-    seconds: Annotated[float, typer.Option(min=1.0, max=1e6, help="longest time of one trial")] = 60.0,
+    seconds: Annotated[float, typer.Option(min=1.0, max=1e6, help="longest time of all trials")] = 60.0,
     write: Annotated[bool, typer.Option("--write", help="put the choices into the case file")] = False,
     as_json: AsJson = False,
 ) -> None:

@@ -127,7 +127,7 @@ def _cuts(ranks: int) -> list[str]:
 
 
 def tune(path: Path, *, ranks: int = 1, seconds: float = 60.0, progress: Progress = lambda text: None) -> Tuned:
-    """Trials of the scene in `path`, each of at most `seconds`. Raises CaseError, EngineError."""
+    """Trials of the scene in `path` of at most `seconds` in all. Raises CaseError, EngineError."""
     tool = Liggghts()
     with named(path):
         case = load(path)
@@ -146,17 +146,19 @@ def tune(path: Path, *, ranks: int = 1, seconds: float = 60.0, progress: Progres
         raise CaseError(
             f"{path}: the scene has {p.steps} steps, two turns through its skins {least}; it is short as it is"
         )
-    of_skins, steps = _of_skins(order, trials.run(deck, ranks, seconds), skins)
+    cuts = list(dict.fromkeys([case.numerics.processors or "", *_cuts(ranks)])) if ranks > 1 else []
+    share = seconds / (1 + len(cuts))
+    of_skins, steps = _of_skins(order, trials.run(deck, ranks, share), skins)
     result = Tuned(tuple(of_skins), (), steps, p.steps, ranks)
-    if ranks == 1:
+    if not cuts:
         return result
     best = float((_better(result.skins) or of_skins[0]).value)
     runs: dict[str, Loops] = {}
-    for cut in dict.fromkeys([case.numerics.processors or "", *_cuts(ranks)]):
+    for cut in cuts:
         progress(_axes(cut))
         numerics = case.numerics.model_copy(update={"processors": cut or None})
         texts = tool.files(_silent(case.model_copy(update={"numerics": numerics})))
-        runs[cut] = trials.run(trials.pieces(texts, [best], steps * len(skins), length)[0], ranks, seconds)
+        runs[cut] = trials.run(trials.pieces(texts, [best], steps * len(skins), length)[0], ranks, share)
     return replace(result, cuts=tuple(_of_cuts(runs)))
 
 
