@@ -111,7 +111,7 @@ def stopwatch():
 
 def start(folder, name, text, more=None, **options):
     """A run of the model `name`, MODEL or MODEL@LOOP."""
-    loop = name.partition("@")[2]
+    loop = name.partition("@")[2] or ("" if "ep/" in name else "generic")  # LIGGGHTS's models with all that is its own
     env = {"EPDEM_LOOP": loop} if loop == "generic" else {"EPDEM_SIMD": loop} if loop else {}
     return good(folder, text, env=env | (more or {}), **options).text
 

@@ -11,12 +11,14 @@ copies as many bytes as a step must read and write.
 
 import argparse
 import json
+import os
 import re
 import tempfile
 import threading
 import time
 from concurrent.futures import ProcessPoolExecutor
 from pathlib import Path
+from unittest.mock import patch
 
 import numpy as np
 
@@ -116,7 +118,8 @@ def measure(model: str, ranks: int, cells: int, steps: int, folder: Path) -> dic
     thread = threading.Thread(target=watch, daemon=True)
     thread.start()
     try:
-        wall = launcher.run("in.million", folder, ranks=ranks)
+        with patch.dict(os.environ, {} if model.startswith("ep/") else {"EPDEM_LOOP": "generic"}):
+            wall = launcher.run("in.million", folder, ranks=ranks)
     finally:
         done.set()
         thread.join()

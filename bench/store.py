@@ -35,10 +35,10 @@ def report(script: str, rows: list[tuple[str, float, float | None]]) -> None:
     (FOLDER / f"table_{script}.json").write_text(json.dumps(rows))
 
 
-def table() -> str:
-    """All rows that scripts have reported."""
+def table(script: str = "*") -> str:
+    """The rows that scripts, or one of them, have reported."""
     lines = ["| measured by | what, over LIGGGHTS's hertz | ratio | limit |", "|---|---|---|---|"]
-    for path in sorted(FOLDER.glob("table_*.json")):
+    for path in sorted(FOLDER.glob(f"table_{script}.json")):
         for what, ratio, limit in json.loads(path.read_text()):
             verdict = "" if limit is None else f"{limit:g}: {'kept' if ratio <= limit else 'missed'}"
             lines.append(f"| {path.stem.removeprefix('table_')}.py | {what} | {ratio:.3f} | {verdict} |")
