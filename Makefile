@@ -1,5 +1,5 @@
 # Each target is one line that calls a script or a tool.
-.PHONY: setup demo trixie container lammps yade test guide browser walltime bench bench-community docs tidy sanitize versions fuzz valgrind reliability tutorials wheel deb trees clean
+.PHONY: setup demo trixie container lammps yade test guide browser walltime bench bench-community docs tidy sanitize versions fuzz valgrind reliability tutorials wheel deb release trees clean
 
 setup:
 	@scripts/setup
@@ -95,6 +95,10 @@ wheel: setup
 
 deb: setup
 	@scripts/deb
+
+# every file of a release in dist/, with checksums
+release: setup
+	@scripts/release
 
 # TREES="/path/to/folder /path/to/lmp_auto ...": checkouts of LIGGGHTS, executables that were built after `epdem export liggghts`
 trees: setup

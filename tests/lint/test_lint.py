@@ -10,7 +10,7 @@ import pytest
 ROOT = Path(__file__).parents[2]
 # ruff finds scripts without a suffix only by name
 SCRIPTS = [str(p) for p in sorted((ROOT / "scripts").iterdir()) if p.read_text().startswith("#!/usr/bin/env python3")]
-PYTHON = ["python", "tests", "bench", "docs", *SCRIPTS]
+PYTHON = ["python", "tests", "bench", "docs", "packaging", *SCRIPTS]
 CPP = [str(p) for room in ("cpp_contact", "tests", "bench") for p in sorted((ROOT / room).rglob("*.[hc]*"))]
 CPP = [path for path in CPP if path.endswith((".hpp", ".h", ".cpp"))]
 # clang-tidy reads one source that includes every header of the laws; `make tidy` reads all of C++, in minutes
@@ -50,6 +50,18 @@ def test_adapters_leave_powers_and_roots_to_the_laws():
         assert not re.search(r"\b(sqrt|pow|exp|log|cbrt)\s*\(", path.read_text()), path
 
 
+def test_a_recipe_of_easybuild_is_python_with_its_keys():
+    for path in (ROOT / "packaging/easybuild").glob("*.eb"):
+        given: dict[str, object] = {}
+        exec(compile(path.read_text(), str(path), "exec"), given)
+        assert path.name == f"{given['name']}-{given['version']}-{'-'.join(given['toolchain'].values())}.eb"
+
+
+def test_the_paper_cites_what_its_bibliography_has():
+    entries = re.findall(r"^@\w+\{(\w+),", (ROOT / "paper/paper.bib").read_text(), re.MULTILINE)
+    assert {*entries} == {*re.findall(r"@(\w+)", (ROOT / "paper/paper.md").read_text())}
+
+
 def test_links_between_documents_lead_to_files():
     for page in [*ROOT.glob("*.md"), *ROOT.glob("docs/*.md")]:
         for target in re.findall(r"\]\(([^)#:]+)(?:#[^)]*)?\)", page.read_text()):
@@ -68,6 +80,8 @@ def test_all_files_state_one_version():
         "CMakeLists.txt": r"^project\(epdem VERSION (\S+)",
         "python/epdem/__init__.py": r'^__version__ = "(.+)"',
         "CITATION.cff": r"^version: (.+)",
+        "packaging/spack/package.py": r'^    version\("(.+)"\)',
+        "packaging/easybuild/epdem-0.2.0-foss-2024a.eb": r'^version = "(.+)"',
     }
     found = {re.search(pattern, (ROOT / name).read_text(), re.MULTILINE)[1] for name, pattern in places.items()}
     assert len(found) == 1, found
