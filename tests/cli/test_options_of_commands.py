@@ -111,7 +111,7 @@ OTHERS = [
     "settle_glass.png",
     "runs/figures/figure_8_16.png",
     "runs/steel_wall/cost/cost.csv",
-    "runs/validate/validate.csv",
+    "runs/validate/measured.csv",
 ]
 IMPACTS_ONLY = ("predict", "verify cost", "verify crosscheck", "verify motion", "calibrate")
 

@@ -13,6 +13,7 @@ from epdem.case.toml import read_toml
 from epdem.errors import CaseError
 from epdem.impacts.experiment import experiment
 from epdem.verification import measured_data as validate
+from epdem.verification.pages import of_validation
 
 E_STAR = 1.0 / ((1 - 0.22**2) / 600e9 + (1 - 0.3**2) / 208e9)
 P_M = 955 * 9.80665e6 * 2 / 1.8544  # of Vickers' hardness 955: load over the projection of the indentation
@@ -41,6 +42,13 @@ def test_the_error_of_a_set_is_that_of_the_closed_form(tool, tmp_path):
     error = thornton(v_y / 2.0) / 0.890 - 1
     assert point["error"] == pytest.approx(error, abs=1e-4)
     assert point["in_uncertainties"] == pytest.approx(error * 0.890 / 0.015, rel=0.01)
+
+
+def test_the_folder_has_the_points_and_the_page_beside_them(tmp_path):
+    found = validate.validate(sets=["leeb_C"], engines=["embedded"], chosen=["hertz"], out=tmp_path / "out")
+    of_validation(found)
+    table = pd.read_csv(tmp_path / "out/measured.csv", comment="#")
+    assert table["in_uncertainties"].to_numpy() == pytest.approx(found.points["in_uncertainties"].to_numpy())
 
 
 def test_a_dent_without_plasticity_is_hertzs_circle(tmp_path):

@@ -171,7 +171,7 @@ def validate(
     force: bool = False,
     progress: Callable[[str], None] = lambda text: None,
 ) -> Validation:
-    """Run every law (or those `chosen`) against every set on every engine; validate.csv is in the folder.
+    """Run every law (or those `chosen`) against every set on every engine; measured.csv in the folder has the points.
 
     A law that needs numbers which a set's case does not have is left out. Raises CaseError, EngineError.
     """
@@ -181,7 +181,7 @@ def validate(
     absent: dict[str, str] = {}
     rows: list[dict[str, object]] = []
     folder = results_folder(out, "validate")
-    with claim(folder, force=force, files=["validate.csv"]), tempfile.TemporaryDirectory() as scratch:
+    with claim(folder, force=force, files=["measured.csv"]), tempfile.TemporaryDirectory() as scratch:
         for law in dict.fromkeys(chosen) or laws():
             for one in measured:
                 progress(f"{one.name}, {law}")
@@ -195,5 +195,5 @@ def validate(
         points = pd.DataFrame(rows)
         same = points.groupby(["set", "quantity", "measured", "speed"], sort=False)
         points.insert(0, "number", same.ngroup() + 1)
-        write_csv(folder / "validate.csv", points)
+        write_csv(folder / "measured.csv", points)
     return Validation(measured, points, summary(points), absent, folder)
