@@ -72,6 +72,17 @@ def test_a_picture_shows_the_nearest_sphere_and_its_field(tmp_path):
         assert image.shape[1] == 1200 and yellow > 20 * violet
 
 
+def test_a_sphere_has_a_dark_rim_and_a_highlight_and_fades_with_its_distance():
+    _, towards = pictures._axes()
+    red = np.array([0.8, 0.2, 0.1])
+    axis = plt.figure().subplots()
+    pictures._draw_spheres(axis, np.array([towards, -towards]), np.full(2, 0.1), np.array([red, red]))
+    far, near = axis.collections[0].get_facecolor()[:, :3].reshape(2, -1, 3)
+    assert np.abs(near - red).max(axis=1).min() < 1e-12  # its colour, which the colour bar explains
+    assert (near[0] < 0.5 * red).all() and (near[-1] > red).all() and (np.diff(near.sum(axis=1)) > 0).all()
+    assert (far.sum(axis=1) > near.sum(axis=1)).all()
+
+
 def test_a_picture_before_the_run_has_the_spheres_that_can_be_placed(tmp_path):
     ball = {
         "name": "ball",
