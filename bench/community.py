@@ -24,12 +24,14 @@ import numpy as np
 import pandas as pd
 from community_models import MODELS, RAIN_FRICTION, SHORT, SPEED, START, YADE, curve, engine, loop
 
+from epdem.case.files import Read
 from epdem.case.scene import SceneCase, parse
 from epdem.engines.liggghts import resume
 from epdem.engines.liggghts.engine import Liggghts
 from epdem.errors import CaseError
 from epdem.scenes.columns import last_frame
-from epdem.scenes.run import SceneOutcome, run_case
+from epdem.scenes.run import SceneOutcome
+from epdem.scenes.run import run as run_scene
 
 ROOT = Path(__file__).resolve().parents[1]
 CASES, RUNS = ROOT / "cases/benchmarks", ROOT / "runs/community"
@@ -133,11 +135,11 @@ def run(case: SceneCase, what: Liggghts, folder: Path, until: float | None = Non
     goes_on = not (folder / "results.h5").exists() and bool(resume.whole_restarts(folder))
     try:
         try:
-            return run_case(case, text, what, place=folder, out=folder, resume=goes_on, report=report)
+            return run_scene(Read(case, text, folder), what, out=folder, resume=goes_on, report=report)
         except CaseError:
             if not goes_on:
                 raise
-            return run_case(case, text, what, place=folder, out=folder, report=report)  # of another version
+            return run_scene(Read(case, text, folder), what, out=folder, report=report)  # of another version
     except Enough:
         return None
 

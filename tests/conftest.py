@@ -10,6 +10,25 @@ from hypothesis import HealthCheck, settings
 settings.register_profile("epdem", derandomize=True, deadline=None, suppress_health_check=list(HealthCheck))
 settings.load_profile("epdem")
 
+
+def blank(chart, *, title=True):
+    """The figure of a chart with empty axes, which is saved at once."""
+    from matplotlib.figure import Figure
+
+    figure = Figure(figsize=(1.0, 1.0))
+    for _ in chart.panels:
+        figure.add_axes((0.0, 0.0, 1.0, 1.0)).set_axis_off()
+    return figure
+
+
+@pytest.fixture(autouse=True)
+def figures(request, monkeypatch):
+    """Figures are empty but in tests with the mark `figures`: the drawing of a curve takes half a second."""
+    if not request.node.get_closest_marker("figures"):
+        monkeypatch.setattr("epdem.report.drawing.draw", blank)
+        monkeypatch.setattr("epdem.scenes.pictures.DPI", 10)
+
+
 ENGINES = {"liggghts": "apt-get install liggghts libliggghts-dev libopenmpi-dev", "yade": "apt-get install yade"}
 
 

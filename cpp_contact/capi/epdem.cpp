@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// The C interface: selects the law, checks the arguments, loops over contacts. It has no arithmetic of its own.
+// The C interface: selects the law, checks the arguments, loops over contacts. It has no arithmetic.
 #include "epdem.h"
 
 #include <algorithm>
@@ -62,7 +62,7 @@ bool sane_friction(double G_star, double mu, int nodes) {
   return positive(G_star) && std::isfinite(mu) && mu >= 0.0 && (nodes == 0 || nodes == 2 || nodes == 3);
 }
 
-/// Calls `body` with the model of friction: partial slip with so many nodes, or one spring.
+/// Calls `body` with the model of friction: partial slip with `nodes` nodes, or one spring.
 template <class Body>
 void with_friction(int nodes, const Body& body) {
   if (nodes == 2)

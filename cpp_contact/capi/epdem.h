@@ -31,7 +31,7 @@ typedef struct {
   double speed;     /* approach speed [m/s] */
   double time_step; /* [s] */
   double gap;       /* before first touch [m]; negative: overlap at the start */
-  int64_t steps;    /* at most so many */
+  int64_t steps;    /* largest number of steps */
   double viscous;   /* epdem_viscous_number of the pair, 0: no dashpot */
 } epdem_impact_input;
 
@@ -99,7 +99,7 @@ int epdem_impacts_long_double(int law, double E_star, const double* parameters, 
                               epdem_impact_output* out);
 
 /* `count` impacts of one contact that keeps its memory, each at the rebound speed of the one before; speeds may be
- * NULL or takes `count` rebound speeds [m/s]; out is the last impact, its steps those of all. */
+ * NULL or takes `count` rebound speeds [m/s]; out is the last impact, with the steps of all impacts. */
 int epdem_bounces(int law, double E_star, const double* parameters, const epdem_impact_input* first, int64_t count,
                   epdem_impact_output* out, double* speeds);
 

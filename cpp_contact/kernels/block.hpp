@@ -38,7 +38,7 @@ struct Block {
 struct Pass : ContactSettings {
   const double *x, *v, *omega;  // rows of three; one number behind the last row can be read
   double now;                   // step
-  bool several;                 // pairs of materials in this block; else that of its first contact
+  bool several;                 // pairs of materials in this block; else the pair of its first contact
   bool freeze;                  // whether a group of atoms is frozen
   bool work;                    // energies are requested
   bool strain;                  // the largest contact radius and overlap over R* are requested

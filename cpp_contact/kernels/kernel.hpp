@@ -137,7 +137,7 @@ template <class Law, class Friction, bool rolls, bool wall>
   Lanes of_all[constants], of_each[constants];
   const Lanes* constant_of = of_all;
   for (int c = 0; c < constants; ++c) of_all[c] = constant<Lanes>(b.material[0][c]);
-  // Behind the history of this block lies that of the next: what is long is on its way while this one is computed.
+  // The history of the next block lies behind the history of this block: fetch a long history during the computation.
   const char* ahead = reinterpret_cast<const char*>(b.history[n - 1]);
   const long span =
       friction_values > 3 ? ahead - reinterpret_cast<const char*>(b.history[0]) : 0;  // apart: of two pages

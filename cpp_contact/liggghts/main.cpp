@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// epdem-liggghts: LIGGGHTS with epdem's models, nothing to preload. Arguments and exit codes are those of liggghts.
+// epdem-liggghts: LIGGGHTS with epdem's models, nothing to preload. Arguments and exit codes are the same as in
+// liggghts.
 #include <mpi.h>
 
 #include <csignal>

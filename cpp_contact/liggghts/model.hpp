@@ -64,7 +64,7 @@ std::shared_ptr<CohesionModelBase> cohesion_model(const Site& site);
 std::shared_ptr<TangentialModelBase> tangential_model(const Site& site);
 std::shared_ptr<RollingModelBase> rolling_model(const Site& site);
 
-/// The normal model of one of our laws; others_have_history: a model beside it keeps values of its own.
+/// The normal model of a law; others_have_history: a model beside the normal model has a history.
 std::unique_ptr<NormalModel> normal_model(LAMMPS_NS::LAMMPS* lmp, LIGGGHTS::IContactHistorySetup* setup, bool wall,
                                           int law, bool others_have_history);
 
@@ -84,7 +84,7 @@ inline bool books_friction(const Ids& ids) {
 }
 
 /// What LIGGGHTS's pair and wall loops call, with all models behind virtual calls: the loops for throughput are in
-/// loop/. The order of the parts is that of LIGGGHTS's own models.
+/// loop/. The parts have the order of LIGGGHTS's own models.
 class Model : public ContactModelBase {
  public:
   Model(LAMMPS_NS::LAMMPS* lmp, LIGGGHTS::IContactHistorySetup* setup, bool is_wall, const int64_t hash)
@@ -229,7 +229,7 @@ class Model : public ContactModelBase {
     return ids_.tangential == TANGENTIAL_NO_HISTORY ? Dashpot::required : Dashpot::optional;
   }
 
-  /// Area on which cohesion pulls over that of the overlap's lens.
+  /// Area on which cohesion pulls, over the area of the overlap's lens.
   double cohesive() const {
     double ratio = 0.0;
     Cohesions::each([&](auto m, int) {

@@ -57,7 +57,7 @@ class NormalModel : protected LAMMPS_NS::Pointers {
     if (contact_strain_ && !wall_) LargestStrain::create(lmp);
   }
 
-  /// cohesive: area on which cohesion pulls over that of the overlap's lens, 0 without cohesion.
+  /// cohesive: area on which cohesion pulls, over the area of the overlap's lens; 0 without cohesion.
   void connectToProperties(PropertyRegistry& registry, Dashpot dashpot, double cohesive) {
     if (!only_spheres(lmp))
       fail("it is for spheres; give other particles a model of LIGGGHTS with surface superquadric");

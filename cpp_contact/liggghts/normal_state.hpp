@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// What passes from a law's adapter to a tangential model of ours beside it.
+// What passes from a law's adapter to epdem's tangential model beside it.
 #pragma once
 
 #include "epdem/friction/sliding.hpp"

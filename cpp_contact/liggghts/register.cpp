@@ -51,7 +51,7 @@ constexpr int unknown_law = 63;  // normal id of what is refused: by its name, o
 /// Why, as the tangential id of a refusal.
 enum Refusal { unknown_normal, unknown_tangential, foreign_normal };
 
-/// Ids of LIGGGHTS's models and of those of ours that it does not have.
+/// Ids of LIGGGHTS's models and of epdem's models that LIGGGHTS lacks.
 template <class Ours, int n>
 std::vector<int> with_ours(const int (&theirs)[n], Ours) {
   std::vector<int> ids(theirs, theirs + n);
@@ -61,7 +61,7 @@ std::vector<int> with_ours(const int (&theirs)[n], Ours) {
   return ids;
 }
 
-/// The names of models of ours, those that LIGGGHTS does not have if only_new, with a separator between them.
+/// The names of epdem's models with a separator between them; only_new: of the models that LIGGGHTS lacks.
 template <class Ours>
 std::string names_of(Ours, const char* separator, bool only_new = false) {
   std::string names;
@@ -191,7 +191,7 @@ void add_refusal(const Ids& ids) {
   add(ids, &refuse<PairStyles::IGranularPairStyle, PairGran>, &refuse<Walls::IGranularWall, FixWallGran>);
 }
 
-/// Partial slip and cohesion are not measured with adhesion, which brings an attraction of its own.
+/// Partial slip and cohesion are not measured with adhesion, which has its own attraction.
 bool offered(const Ids& ids) {
   return available(ids) && !(with_adhesion(ids) && (ids.cohesion != COHESION_OFF || ids.surface != SURFACE_DEFAULT ||
                                                     ids.tangential > TANGENTIAL_HISTORY));

@@ -14,6 +14,8 @@ from epdem.case import library
 from epdem.cli.main import app
 from epdem.engines.citations import of_laws
 
+pytestmark = pytest.mark.figures
+
 CASES = Path(__file__).parents[2] / "cases"
 FILE = tomllib.loads(Path(library.__file__).with_name("materials.toml").read_text())
 

@@ -150,6 +150,7 @@ def test_run_json_prints_one_document_with_the_promised_keys(tmp_path):
     assert keys <= document["rows"][0].keys()
 
 
+@pytest.mark.figures
 def test_results_open_as_data_frames_and_a_second_run_takes_them_from_the_store(tmp_path):
     words = ("run", str(CASES / "steel_wall.toml"), "-e", "embedded", "-o", "out")
     assert epdem(*words, cwd=tmp_path).returncode == 0

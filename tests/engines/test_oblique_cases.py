@@ -12,6 +12,7 @@ import pytest
 
 from epdem.base.terminal import console
 from epdem.case import impact as cases
+from epdem.case.files import Read
 from epdem.case.toml import read_toml
 from epdem.cli.main import app
 from epdem.engines import engine
@@ -19,7 +20,7 @@ from epdem.errors import CaseError
 from epdem.impacts import report
 from epdem.impacts.experiment import experiment
 from epdem.impacts.prediction import predict
-from epdem.impacts.run import run_case
+from epdem.impacts.run import run
 from epdem.verification.theory import oblique
 
 CASE = Path(__file__).parents[2] / "cases" / "oblique_steel.toml"
@@ -39,9 +40,7 @@ def data(**changes):
 
 
 def outcome(folder, engines, **changes):
-    return run_case(
-        cases.parse(data(**changes)), "text", place="case", engines=[engine(e) for e in engines], out=folder
-    )
+    return run(Read(cases.parse(data(**changes)), "text", "case"), engines=[engine(e) for e in engines], out=folder)
 
 
 WRONG = {

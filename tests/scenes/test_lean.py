@@ -39,9 +39,9 @@ SMALL = {
         "bin_height": "20 mm",
         "bin_diameter": "20 mm",
         "outlet": "12 mm",
-        "fill_time": "0.06 s",
+        "fill_time": "0.03 s",
         "outlet_height": "5 mm",
-        "duration": "0.1 s",
+        "duration": "0.05 s",
     },
     "drum": {"count": 60, "diameter": "30 mm", "length": "5 mm", "duration": "0.12 s"},
     "peening": {"count": 20, "width": "4 mm", "duration": "0.5 ms"},
@@ -56,7 +56,8 @@ def small(data: dict) -> dict:
     if "settle_time" in scene:  # finer spheres, which the plate of a wide box would not meet
         scene |= {"settle_time": "1 ms", "box": ["0.12 mm", "0.12 mm", "0.8 mm"], "count": 40, "height": "0.3 mm"}
     if "phase" in scene:
-        scene |= {"phase": [phase | {"duration": "0.03 s"} for phase in scene["phase"]]}
+        duration = f"{0.03 / len(scene['phase'])} s"
+        scene |= {"phase": [phase | {"duration": duration} for phase in scene["phase"]]}
         few["numerics"] = {"time_step": "1.5e-5 s"}  # the search of a step takes seconds with a dashpot
     return data | {"scene": scene} | few
 

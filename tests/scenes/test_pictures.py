@@ -19,6 +19,8 @@ from epdem.scenes.charts import bed
 from epdem.scenes.energy_balance import kinetic, rotation
 from epdem.scenes.plan import plan
 
+pytestmark = pytest.mark.figures
+
 
 def drawn(name: str):
     """(plan, tables, panels of the key figure) of a stored run."""

@@ -14,6 +14,8 @@ from test_parts_motions import PLATE
 from epdem.scenes.charts import charts
 from epdem.studies.pages.scenes import of_scene
 
+pytestmark = pytest.mark.figures
+
 TUBE = {"name": "tube", "kind": "cylinder", "diameter": "18 mm", "from": "0 mm", "to": "30 mm", "material": "steel"}
 
 

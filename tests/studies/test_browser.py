@@ -44,7 +44,10 @@ document.body.append(Object.assign(document.createElement("pre"), {id: "seen", t
   wide: document.documentElement.scrollWidth - window.innerWidth,
 })}));
 </script>"""
-pytestmark = pytest.mark.skipif(CHROMIUM is None, reason="Chromium is not installed; 'make browser' installs it")
+pytestmark = [
+    pytest.mark.figures,
+    pytest.mark.skipif(CHROMIUM is None, reason="Chromium is not installed; 'make browser' installs it"),
+]
 
 
 @pytest.fixture(scope="module")

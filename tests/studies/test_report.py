@@ -19,6 +19,8 @@ from epdem import api
 from epdem.report import chart, drawing, page
 from epdem.studies.pages.impacts import figures as of_page
 
+pytestmark = pytest.mark.figures
+
 CASE = Path(__file__).parents[2] / "cases/steel_wall.toml"
 TITLE = "Steel sphere on a steel wall"
 MEASURED = """

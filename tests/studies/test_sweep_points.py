@@ -15,7 +15,7 @@ from epdem.errors import CaseError
 from epdem.studies.sweep import points
 from epdem.studies.sweep.folder import Sweep
 from epdem.studies.sweep.keys import assign, keys_of
-from epdem.studies.sweep.run import plan_text
+from epdem.studies.sweep.run import plan
 
 CASES = Path(__file__).parents[2] / "cases"
 STEEL = CASES / "steel_wall.toml"
@@ -216,4 +216,4 @@ def test_the_case_file_of_a_point_is_that_with_its_values_set_one_by_one(file, p
 def test_a_sweep_has_at_least_one_rank():
     text = (CASES / "steel_wall.toml").read_text()
     with pytest.raises(CaseError, match="ranks = 0: must be at least 1"):
-        plan_text(text, {"impact.body.radius": ["1 mm"]}, engines=["embedded"], ranks=0)
+        plan(text, {"impact.body.radius": ["1 mm"]}, engines=["embedded"], ranks=0)

@@ -82,7 +82,7 @@ inline T energy_at_fold(T E_star, T c, T R) noexcept {
   return energy(E_star, c, R, fold_share * refreshed(T{}, c * R));
 }
 
-/// Largest gap [m] across which bodies still pull: that of the elastic fold, also for a contact with a dent.
+/// Largest gap [m] across which bodies still pull: the gap of the elastic fold, also for a contact with a dent.
 template <class T>
 inline T largest_gap(T c, T R_star) noexcept {
   const T y_f = fold_share * refreshed(T{}, c * R_star);

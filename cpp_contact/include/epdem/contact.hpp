@@ -126,7 +126,7 @@ EPDEM_INLINE Sliding<Number<Law>> sliding_of(const ContactConstants<Law>& pair, 
           true};
 }
 
-/// What a contact keeps from step to step: the values of the law, then those of the models beside it.
+/// The history of a contact: the values of the law, then the values of the models beside the law.
 template <class Law, class Friction>
 struct ContactHistory {
   State<Law> law{};
@@ -153,7 +153,8 @@ EPDEM_INLINE void keep_where(M mask, History& history) noexcept {
 
 }  // namespace detail
 
-/// One contact. rolls: the rolling model has a history. The history is that of before, then that of after.
+/// One contact. rolls: the rolling model has a history. `history` holds the values before the step, then the values
+/// after the step.
 template <class Friction, bool rolls, bool wall, class Law, class Mass, class Observer>
 inline ContactLoads<Number<Law>> contact(const ContactConstants<Law>& pair, const ContactSettings& settings,
                                          const Kinematics<Number<Law>>& c, ContactHistory<Law, Friction>& history,

@@ -17,7 +17,7 @@ struct ImpactInput {
   T time_step;         // [s]
   T gap;               // distance before first touch [m]; the phase of the impact is gap/(speed time_step);
                        // negative: they overlap already
-  std::int64_t steps;  // at most so many steps are taken
+  std::int64_t steps;  // largest number of steps
   T viscous;           // viscous_number of the pair, 0: no dashpot
 };
 
@@ -39,8 +39,8 @@ struct Path {
 };
 
 /// Integrates until the bodies have parted (no force for two steps after contact) or `steps` is reached;
-/// `state` is the history, before and after; the dashpot of `pair` is that of `in`. observer.step(normal contact) is
-/// called in every step.
+/// `state` is the history, before and after; the dashpot of `pair` is the dashpot of `in`. observer.step(normal
+/// contact) is called in every step.
 template <class Law, class Observer = NoObserver>
 inline ImpactOutput<Number<Law>> impact(ContactConstants<Law> pair, const ImpactInput<Number<Law>>& in,
                                         const Path<Number<Law>>& path, State<Law>& state,
@@ -103,7 +103,7 @@ inline Number<Law> reforming_overlap(const Law& law, Number<Law> R_star, const S
 
 /// `count` impacts of one contact that keeps its memory, each at the rebound speed of the one before: as between two
 /// walls without loss. Phases follow the golden ratio. `speeds` may be null, or takes the `count` rebound speeds.
-/// Returns the last impact, `steps` being those of all; it ends early if a contact does not end.
+/// Returns the last impact, whose `steps` count the steps of all impacts; the run ends early if a contact does not end.
 template <class Law>
 inline ImpactOutput<Number<Law>> bounces(const Law& law, const ImpactInput<Number<Law>>& first, std::int64_t count,
                                          Number<Law>* speeds) noexcept {

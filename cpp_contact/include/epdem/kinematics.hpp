@@ -34,7 +34,7 @@ EPDEM_INLINE Vec<T> slip_velocity(const Kinematics<T>& c, const Vec<T>& d, const
 
 }  // namespace detail
 
-/// Two spheres; d and v: centre and velocity of i less those of j.
+/// Two spheres; d and v: centre and velocity of i minus centre and velocity of j.
 template <class T>
 EPDEM_INLINE Kinematics<T> between_spheres(T radius_i, T radius_j, const Vec<T>& d, const Vec<T>& v,
                                            const Vec<T>& spin_i, const Vec<T>& spin_j) noexcept {
@@ -55,7 +55,7 @@ EPDEM_INLINE Kinematics<T> between_spheres(T radius_i, T radius_j, const Vec<T>&
   return c;
 }
 
-/// A sphere at a wall whose overlap is known; d: from the wall to the centre, v: velocity less that of the wall.
+/// A sphere at a wall whose overlap is known; d: from the wall to the centre, v: velocity minus velocity of the wall.
 template <class T>
 EPDEM_INLINE Kinematics<T> at_wall(T radius, T overlap, const Vec<T>& d, const Vec<T>& v, const Vec<T>& spin) noexcept {
   Kinematics<T> c;

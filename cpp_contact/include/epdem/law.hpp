@@ -10,7 +10,7 @@
 
 namespace epdem {
 
-/// The memory of a contact whose largest overlap is known; with adhesion that of one that has stood since then.
+/// The history of a contact with a known largest overlap; with adhesion, of a contact that has rested since then.
 template <class Law>
 inline State<Law> remember(const Law& law, Number<Law> R_star, Number<Law> delta_max) noexcept {
   if constexpr (adheres<Law>) {

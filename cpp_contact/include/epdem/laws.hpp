@@ -27,13 +27,13 @@ inline constexpr int law_ids[] = {EPDEM_LAWS(EPDEM_ID)};
 
 constexpr bool ids_fit() noexcept {
   for (const int& id : law_ids) {
-    if (id < 1 || id > 62) return false;  // six bits of LIGGGHTS's hash code; 63 marks a name that is none of ours
+    if (id < 1 || id > 62) return false;  // six bits of LIGGGHTS's hash code; 63 marks a name that is not epdem's
     for (const int* other = law_ids; other != &id; ++other)
       if (*other == id) return false;
   }
   return true;
 }
-static_assert(ids_fit(), "every law needs an id of its own from 1 to 62");
+static_assert(ids_fit(), "every law needs its own id from 1 to 62");
 
 /// A law's place in the register.
 template <class Law>

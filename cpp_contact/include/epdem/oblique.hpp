@@ -26,7 +26,8 @@ struct ObliqueSlip {
   void step(const NormalContact<Law>& now) const noexcept {
     const auto sliding = sliding_of<Law>(pair, now, {T{}, T{}, T{} + 1.0}, {slip, T{}, T{}}, T{}, time_step, false);
     const T F = Friction::template force<Law::flattens>(sliding, history, NoObserver{}).x;
-    // the whole kick of this step's friction, half before and half after it is known: the slip is that of half a step
+    // the whole kick of this step's friction, half before and half after it is known: the slip is the slip at half a
+    // step
     slip += 3.5 * time_step / m_star * F;
   }
 };

@@ -73,8 +73,8 @@ EPDEM_INLINE Vec<T> slip_force(const SlipState<N, T>& state, const T& stiffness)
   return (stiffness * state.radius) * sum;
 }
 
-/// Work [J] lost in a step: that of the slip less the gain of elastic energy. The mean of both ends' forces does the
-/// work, as in velocity Verlet; that of the dashpot is known at this end only.
+/// Work [J] lost in a step: work of the slip minus gain of elastic energy. The mean of both ends' forces does the
+/// work, as in velocity Verlet; the force of the dashpot is known at this end only.
 template <int N, class T>
 EPDEM_INLINE T slip_loss(const SlipState<N, T>& before, const SlipStep<N, T>& now, const Vec<T>& slip,
                          const T& stiffness) noexcept {
@@ -167,7 +167,8 @@ EPDEM_INLINE SlipStep<N, T> partial_slip(const SlipState<N, T>& before, const Pr
   SlipStep<N, T> out;
   out.after.radius = radius;
   for (int i = 0; i < N; ++i) {
-    // the stretch stays where the material is: at the node it is that of ratio xi in the old circle, 0 beyond its rim
+    // the stretch stays where the material is: the node takes the stretch at ratio xi of the old circle, 0 beyond its
+    // rim
     const T z = min(square * (Rule::node[i] * Rule::node[i]), one);
     Vec<T> s = c[N - 1];
     for (int k = N - 2; k >= 0; --k) s = z * s + c[k];

@@ -9,7 +9,7 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
-from typing import Any, TypedDict, Unpack, overload
+from typing import Any, overload
 
 import pandas as pd
 
@@ -25,14 +25,13 @@ from ..impacts.comparison import UNITS
 from ..impacts.experiment import experiment
 from ..impacts.prediction import predict as predict_experiment
 from ..impacts.run import Outcome, write_deck
-from ..impacts.run import run_case as run_impacts
+from ..impacts.run import run as run_impacts
 from ..scenes.columns import units as scene_units
 from ..scenes.engine import write_deck as write_scene_deck
 from ..scenes.plan import plan as plan_scene
 from ..scenes.run import SceneOutcome
-from ..scenes.run import run_case as run_scene
-from ..studies.fit import Fit, Targets, fit_text
-from ..studies.fit import Options as FitOptions
+from ..scenes.run import run as run_scene
+from ..studies.fit import Fit, Targets, fit
 from ..studies.sweep import run as study
 from ..studies.sweep.points import MOST
 from ..studies.sweep.run import SweepOutcome
@@ -123,29 +122,13 @@ def _case(given: object) -> Case | Scene:
     return Scene.from_toml(path) if is_scene(read_toml(path)) else Case.from_toml(path)
 
 
-class SceneOptions(TypedDict, total=False):
-    """How `run` runs a scene."""
-
-    engines: str | Sequence[str]
-    out: Path | str | None
-    ranks: int
-    fresh: bool
-    force: bool
-
-
-class Options(SceneOptions, total=False):
-    """How `run` runs impacts."""
-
-    laws: str | Sequence[str]
-
-
 @overload
-def run(case: Case, **options: Unpack[Options]) -> Run: ...
+def run(case: Case, **options: Any) -> Run: ...
 @overload
-def run(case: Scene, **options: Unpack[SceneOptions]) -> SceneRun: ...
+def run(case: Scene, **options: Any) -> SceneRun: ...
 @overload
-def run(case: Path | str, **options: Unpack[Options]) -> Run | SceneRun: ...
-def run(
+def run(case: Path | str, **options: Any) -> Run | SceneRun: ...
+def run(  # type: ignore[misc]
     case: Case | Scene | Path | str,
     *,
     engines: str | Sequence[str] = (DEFAULT_ENGINE,),
@@ -169,12 +152,9 @@ def run(
         if len(engines) != 1 or laws:
             raise CaseError("a scene has its own law and runs on one engine")
         tool, report = scene_engine(engines[0]), partial(log.info, f"{case.name}: step %d of %d")
-        return SceneRun(run_scene(case.model, case.text, tool, place=case.name, report=report, **options))
+        return SceneRun(run_scene(case.read, tool, report=report, **options))
     tools = [engine_named(name) for name in engines]
-    impacts = run_impacts(
-        case.model, case.text, place=case.name, engines=tools, laws=laws, progress=log.info, **options
-    )
-    return Run(impacts)
+    return Run(run_impacts(case.read, engines=tools, laws=laws, progress=log.info, **options))
 
 
 def predict(case: Case | Path | str, law: str | None = None) -> pd.DataFrame:
@@ -241,7 +221,7 @@ def sweep(
     value. What is finished in `out` (default: runs/<name>_sweep) does not run again. Raises CaseError, EngineError,
     OSError.
     """
-    planned = study.plan_text(
+    planned = study.plan(
         _case(case).text,
         arguments.mapping("settings", settings, '{"impact.body.radius": [0.001, 0.002]}'),
         engines=arguments.names("engines", engines),
@@ -257,19 +237,18 @@ def sweep(
     return study.run(planned, folder, jobs=processes, retry_failed=retry_failed, report=_report)
 
 
-def calibrate(
-    scene: Scene | Path | str, targets: Targets, free: Mapping[str, str], **options: Unpack[FitOptions]
-) -> Fit:
-    """Find one to three keys of a scene with which numbers of its results have the values `targets`; see `fit_text`.
+def calibrate(scene: Scene | Path | str, targets: Targets, free: Mapping[str, str], **options: Any) -> Fit:
+    """Find one to three keys of a scene with which numbers of its results have the values `targets`; see `fit`.
 
-    `scene.replace(found.values)` is the scene that was found. Raises CaseError, EngineError.
+    options: out, engine, ranks, tolerance, jobs, force. `scene.replace(found.values)` is the scene that was found.
+    Raises CaseError, EngineError.
     """
     found = _case(scene)
     if not isinstance(found, Scene):
         raise arguments.wrong("scene", found, "a Scene; `epdem calibrate` finds the strength of a law from impacts")
     goals = arguments.mapping("targets", targets, '{"plate_force_max": "12 N"}')
     ranges = arguments.mapping("free", free, '{"contact.friction": "0.1..0.5"}')
-    return fit_text(found.text, goals, ranges, place=found.name, **({"report": _report} | options))
+    return fit(found.read, goals, ranges, **({"report": _report} | options))
 
 
 def _report(done: int, total: int) -> None:

@@ -13,7 +13,7 @@ import tomlkit
 from ..base.files import atomic
 from ..case import impact as impact_case
 from ..case import scene as scene_case
-from ..case.files import text_for_anywhere
+from ..case.files import Read, text_for_anywhere
 from ..studies.sweep import keys
 from ..studies.sweep.points import plain, with_units
 from . import arguments
@@ -88,6 +88,11 @@ class _File:
     def name(self) -> str:
         """The name of the case."""
         return str(self.model.name)
+
+    @property
+    def read(self) -> Read:
+        """The case as runs and studies take it."""
+        return Read(self.model, self.text, self.name)
 
     @property
     def title(self) -> str:

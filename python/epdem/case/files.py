@@ -4,12 +4,20 @@
 import re
 from collections.abc import Mapping
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 from ..errors import CaseError
 from .toml import tables, text_of
 
 KEYS = ("file", "sieve")
+
+
+class Read(NamedTuple):
+    """A case that a program has read: the Case or SceneCase, its text, and its name in messages."""
+
+    model: Any
+    text: str
+    place: object
 
 
 def names_in(data: object) -> set[str]:

@@ -4,15 +4,12 @@
 import json
 import sys
 from pathlib import Path
-from typing import TYPE_CHECKING, Annotated, Unpack
+from typing import Annotated, Any
 
 import typer
 
 from ..base.terminal import bar, console
 from .options import AsJson, CasePath, Replace, refuse, say_files, warn
-
-if TYPE_CHECKING:  # slow to import
-    from ..scenes.run import Options
 
 
 def is_scene(path: Path) -> bool:
@@ -23,7 +20,7 @@ def is_scene(path: Path) -> bool:
     return holds_scene(read_toml(path))
 
 
-def run_scene(case: Path, *, engine: str, formats: tuple[str, ...], as_json: bool, **options: Unpack["Options"]) -> int:
+def run_scene(case: Path, *, engine: str, formats: tuple[str, ...], as_json: bool, **options: Any) -> int:
     """Run a scene with a progress bar; print its checks. Exit code: 0, or 1 if a check failed."""
     from rich.progress import TextColumn, TimeRemainingColumn
 

@@ -9,13 +9,13 @@ import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
-from typing import Required, TypedDict, Unpack
 
 import pandas as pd
 
 from .. import __version__
 from ..base.folders import claim, results_folder
 from ..base.stages import inputs_hash
+from ..case.files import Read
 from ..case.impact import Case, parse
 from ..case.toml import named, read_toml, text_of
 from ..case.warnings import case_warnings
@@ -169,35 +169,21 @@ def _prepare(case: Case, place: object, tools: Sequence[ImpactEngine], laws: Seq
     return _Work(case, tools, {tool.name: tool.version() for tool in tools}, predictions, plans, how)
 
 
-class Options(TypedDict, total=False):
-    """What `run_case` takes beside the case."""
-
-    engines: Required[Sequence[ImpactEngine]]
-    laws: Sequence[str]
-    out: Path | None
-    ranks: int
-    fresh: bool
-    force: bool
-    progress: Callable[[str], None]
-
-
-def run(case_path: Path | str, *, steps: int | None = None, **options: Unpack[Options]) -> Outcome:
-    """`run_case` of the case in a file; `steps` replaces the case's steps in contact."""
-    data = read_toml(case_path)
+def _read(path: Path | str, steps: int | None) -> Read:
+    """The case in a file; `steps` replaces its steps in contact."""
+    data = read_toml(path)
     if steps is not None:
         data["numerics"] = data.get("numerics", {}) | {"steps_in_contact": steps}
         data["numerics"].pop("error", None)
-    text = text_of(case_path)
-    return run_case(parse(data, case_path), text, place=case_path, **options)
+    return Read(parse(data, path), text_of(path), path)
 
 
-def run_case(
-    case: Case,
-    text: str,
+def run(
+    case: Path | str | Read,
     *,
-    place: object,
     engines: Sequence[ImpactEngine],
     laws: Sequence[str] = (),
+    steps: int | None = None,
     out: Path | None = None,
     ranks: int = 1,
     fresh: bool = False,
@@ -206,12 +192,13 @@ def run_case(
 ) -> Outcome:
     """Run a case on every engine with every law (none given: the case's own). Raises CaseError or EngineError.
 
-    `text` is stored with the results, `place` names the case in messages. `fresh` ignores stored results; `force`
-    allows a folder in which there are other files. All input is checked and every engine looked for before anything
-    is written or started.
+    `steps` replaces the steps in contact of a case in a file. `fresh` ignores stored results; `force` allows a folder
+    in which there are other files. All input is checked and every engine looked for before anything is written or
+    started.
     """
-    work = _prepare(case, place, engines, laws, ranks)
-    folder = results_folder(out, case.name)
+    model, text, place = case if isinstance(case, Read) else _read(case, steps)
+    work = _prepare(model, place, engines, laws, ranks)
+    folder = results_folder(out, model.name)
     with claim(folder, force=force):
         return _run(text, work, folder, ranks, fresh, progress)
 

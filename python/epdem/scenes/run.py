@@ -6,7 +6,6 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from functools import cached_property
 from pathlib import Path
-from typing import TypedDict, Unpack
 
 import pandas as pd
 
@@ -14,7 +13,7 @@ from .. import __version__
 from ..base.folders import Results, claim, results_folder
 from ..base.settings import DEFAULT_ENGINE
 from ..base.stages import inputs_hash, library_hash
-from ..case.files import names_in
+from ..case.files import Read, names_in
 from ..case.scene import SceneCase, load
 from ..case.toml import named, text_of
 from ..case.toml import tables as toml_tables
@@ -97,29 +96,10 @@ def run_plan(
     return engine.run(p, folder, ranks=ranks, report=report)
 
 
-class Options(TypedDict, total=False):
-    """What `run_case` takes beside case and engine."""
-
-    out: Path | None
-    ranks: int
-    fresh: bool
-    resume: bool
-    force: bool
-    report: Progress
-
-
-def run(path: Path | str, engine: SceneEngine, **options: Unpack[Options]) -> SceneOutcome:
-    """`run_case` of the scene in a case file."""
-    case = load(path)
-    return run_case(case, text_of(path), engine, place=path, **options)
-
-
-def run_case(
-    case: SceneCase,
-    text: str,
+def run(
+    case: Path | str | Read,
     engine: SceneEngine,
     *,
-    place: object,
     out: Path | None = None,
     ranks: int = 1,
     fresh: bool = False,
@@ -129,12 +109,12 @@ def run_case(
 ) -> SceneOutcome:
     """Run a scene, or continue it from its last restart file. Raises CaseError, EngineError.
 
-    `text` is stored with the results, `place` names the case in messages. `fresh` ignores stored results; `force`
-    allows a folder in which there are other files. All input is checked and the engine looked for before anything is
-    written or started.
+    `fresh` ignores stored results; `force` allows a folder in which there are other files. All input is checked and
+    the engine looked for before anything is written or started.
     """
+    model, text, place = case if isinstance(case, Read) else Read(load(case), text_of(case), case)
     with named(place):
-        p = plan(case)
+        p = plan(model)
         measures.refuse_measures(p)
         pictures.refuse_color(p)
         notes = [*engine.check(p), *planned_warnings(p), *_warnings(p.case)]

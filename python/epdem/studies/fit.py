@@ -12,13 +12,13 @@ import tomllib
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 from pathlib import Path
-from typing import Any, TypedDict, Unpack
+from typing import Any
 
 import numpy as np
 
 from ..base.folders import results_folder
 from ..base.settings import DEFAULT_ENGINE
-from ..case.files import text_for_anywhere
+from ..case.files import Read, text_for_anywhere
 from ..case.scene import is_scene
 from ..case.units import to_si
 from ..errors import CaseError, EngineError
@@ -124,29 +124,11 @@ class _Search:
         return value / self.targets[name] - 1.0
 
 
-class Options(TypedDict, total=False):
-    """How `fit_text` runs its scenes, and when it ends."""
-
-    out: Path | str | None
-    engine: str
-    ranks: int
-    tolerance: float
-    jobs: int | None
-    force: bool
-    report: study.Report
-
-
-def fit(path: Path, targets: Targets, free: Mapping[str, str], **options: Unpack[Options]) -> Fit:
-    """`fit_text` of the scene in a file."""
-    return fit_text(text_for_anywhere(path), targets, free, place=path, **options)
-
-
-def fit_text(
-    text: str,
+def fit(
+    scene: Path | Read,
     targets: Targets,
     free: Mapping[str, str],
     *,
-    place: object,
     out: Path | str | None = None,
     engine: str = DEFAULT_ENGINE,
     ranks: int = 1,
@@ -157,11 +139,12 @@ def fit_text(
 ) -> Fit:
     """Find values of the keys `free` (ranges, "0.1..0.5" or "log:1 MPa..1 GPa") that give the targets of a scene.
 
-    `text` is the scene's TOML, `place` names it in messages. `targets`: numbers of its results by name (see
+    `targets`: numbers of its results by name (see
     `numbers_of`), as text with a unit or in SI; `tolerance` is their largest relative error; the points are in `out`
     (default: runs/<name>_fit). Raises CaseError for unknown names, a key that changes nothing and targets out of reach,
     EngineError for a scene that fails.
     """
+    text, place = (scene.text, scene.place) if isinstance(scene, Read) else (text_for_anywhere(scene), scene)
     data = tomllib.loads(text)
     if not is_scene(data):
         raise CaseError(f"{place}: --target is a number of a scene's results; for impacts give --e-n, --hv or --hb")
@@ -171,7 +154,7 @@ def fit_text(
         raise CaseError(f"a fit needs a --target NAME=VALUE, and one to {MOST} keys --free KEY=LOW..HIGH")
     ranges = _ranges(free, axes(free, keys_of(data), "--free"))
     middle = np.full(len(ranges), 0.5)
-    base = study.plan_text(text, {name: [axis.at(0.5)] for name, axis in ranges.items()}, engines=[engine], ranks=ranks)
+    base = study.plan(text, {name: [axis.at(0.5)] for name, axis in ranges.items()}, engines=[engine], ranks=ranks)
     folder = results_folder(Path(out) if out else None, f"{base.name}_fit")
     search = _Search(base, folder, ranges, targets, jobs=jobs, force=force, report=report)
     search([middle])  # its results show whether the targets exist

@@ -2,7 +2,7 @@
 // A cohesion model is a header beside this one and a line in sub_models.hpp:
 //   name, id        of LIGGGHTS's cohesion; restart files keep the id
 //   of_liggghts     LIGGGHTS has a class of the same model
-//   area_ratio      area on which it pulls two spheres over that of the overlap's lens
+//   area_ratio      area on which it pulls two spheres, over the area of the overlap's lens
 //   force<wall>(kinematics, density)   force along the normal [N], negative: attraction; density [Pa]
 #pragma once
 

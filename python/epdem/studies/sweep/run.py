@@ -6,7 +6,6 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
-from typing import TypedDict, Unpack
 
 import pandas as pd
 
@@ -50,27 +49,10 @@ class SweepOutcome:
         return str(self.table.to_html(max_rows=20))
 
 
-class Options(TypedDict, total=False):
-    """How `plan_text` makes its points, and what runs them."""
-
-    engines: Sequence[str]
-    laws: Sequence[str]
-    ranks: int
-    table: Path | None
-    latin_hypercube: int | None
-    seed: int
-
-
-def plan(case: Path, settings: Settings, **options: Unpack[Options]) -> Sweep:
-    """`plan_text` of the case in a file."""
-    return plan_text(text_for_anywhere(case), settings, folder=case.parent, **options)
-
-
-def plan_text(
-    text: str,
+def plan(
+    case: Path | str,
     settings: Settings,
     *,
-    folder: Path = Path(),
     engines: Sequence[str] = (),
     laws: Sequence[str] = (),
     ranks: int = 1,
@@ -78,10 +60,11 @@ def plan_text(
     latin_hypercube: int | None = None,
     seed: int = 1,
 ) -> Sweep:
-    """A sweep of a case (TOML text) with all its points, not yet checked. Raises CaseError, EngineError.
+    """A sweep of a case (path of a file, or TOML text) with all its points, not yet checked.
 
-    Names of files among the values count from `folder`.
+    Raises CaseError, EngineError. Names of files among the values count from the folder of the file.
     """
+    text, folder = (text_for_anywhere(case), case.parent) if isinstance(case, Path) else (case, Path())
     data = tomllib.loads(text)
     keys, scene = keys_of(data), is_scene(data)
     if ranks < 1:
