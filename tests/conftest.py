@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Shared by all tests: repeatable hypothesis, and skips of engines that are not here."""
 
+import fcntl
 import os
 import shutil
 
@@ -30,6 +31,25 @@ def figures(request, monkeypatch):
 
 
 ENGINES = {"liggghts": "apt-get install liggghts libliggghts-dev libopenmpi-dev", "yade": "apt-get install yade"}
+
+
+@pytest.fixture(scope="session")
+def shared(tmp_path_factory):
+    """once(name, make): the folder `name`, which `make` fills once for the processes of all workers."""
+    base = tmp_path_factory.getbasetemp()
+    common = base.parent if "PYTEST_XDIST_WORKER" in os.environ else base
+
+    def once(name, make):
+        folder, ready = common / name, common / f"{name}.ready"
+        with (common / f"{name}.lock").open("w") as lock:
+            fcntl.flock(lock, fcntl.LOCK_EX)
+            if not ready.exists():
+                folder.mkdir()
+                make(folder)
+                ready.touch()
+        return folder
+
+    return once
 
 
 def pytest_collection_modifyitems(items):

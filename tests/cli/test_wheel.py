@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """The wheel: what is in it, and that it works without compiler, LIGGGHTS and this checkout (see also `make wheel`)."""
 
+import functools
 import os
 import re
 import subprocess
@@ -33,29 +34,26 @@ except ImportError:
 
 
 @pytest.fixture(scope="module")
-def wheel(tmp_path_factory):
-    folder = tmp_path_factory.mktemp("wheel")
-    words = [sys.executable, "-m", "pip", "wheel", "-q", "--no-deps", "--no-build-isolation", "-w", folder, ROOT]
-    words += [
-        "--config-settings",
-        "cmake.define.EPDEM_PLUGIN=OFF",
-        "--config-settings",
-        f"build-dir={folder / 'build'}",
-    ]
-    subprocess.run(words, check=True, capture_output=True)
-    return next(folder.glob("*.whl"))
+def wheel(shared):
+    def build(folder):
+        words = [sys.executable, "-m", "pip", "wheel", "-q", "--no-deps", "--no-build-isolation", "-w", folder, ROOT]
+        for setting in ("cmake.define.EPDEM_PLUGIN=OFF", f"build-dir={folder / 'build'}"):
+            words += ["--config-settings", setting]
+        subprocess.run(words, check=True, capture_output=True)
+
+    return next(shared("wheel", build).glob("*.whl"))
 
 
 @pytest.fixture(scope="module")
-def python(wheel):
+def python(wheel, tmp_path_factory):
     """Runs words after `python` with the wheel's content in place of this checkout, and nothing else on the path."""
-    installed = wheel.parent / "installed"
+    installed = tmp_path_factory.mktemp("installed")
     with zipfile.ZipFile(wheel) as archive:
         archive.extractall(installed)
     folders = os.pathsep.join([str(installed), sysconfig.get_path("purelib")])
     env = {"PYTHONPATH": folders, "PATH": "/nowhere", "HOME": os.environ["HOME"]}
 
-    def run(*words, cwd=wheel.parent):  # -S: without what site-packages adds to the path, this checkout
+    def run(*words, cwd=installed):  # -S: without what site-packages adds to the path, this checkout
         done = subprocess.run([sys.executable, "-S", *words], cwd=cwd, env=env, capture_output=True, text=True)
         assert done.returncode == 0, done.stderr
         return done.stdout
@@ -84,8 +82,9 @@ def test_the_wheel_holds_library_templates_cases_and_sources_for_trees(wheel):
     assert not [n for n in names if "liggghts.so" in n or n.endswith(("epdem-liggghts", ".o", ".pyc"))]
 
 
-def test_the_commands_that_need_no_engine_run_from_the_wheel(python, wheel):
-    case = wheel.parent / "installed" / "epdem" / "cases" / "steel_wall.toml"
+def test_the_commands_that_need_no_engine_run_from_the_wheel(python, tmp_path):
+    case = ROOT / "cases" / "steel_wall.toml"
+    python = functools.partial(python, cwd=tmp_path)
     command = ("-m", "epdem.cli")
     assert "johnson" in python(*command, "predict")
     assert "steel" in python(*command, "predict", case)
@@ -94,7 +93,7 @@ def test_the_commands_that_need_no_engine_run_from_the_wheel(python, wheel):
     assert "normal_model_ep.cpp" in python(*command, "export", "liggghts", "--out", ".")
     assert re.fullmatch(r"epdem \d+\.\d+\.\d+\n", python(*command, "--version"))
     for name, text in header.files().items():  # the installed sources are those of this checkout
-        assert (wheel.parent / name).read_text() == text
+        assert (tmp_path / name).read_text() == text
 
 
 def test_theory_needs_numpy_alone(python):

@@ -52,16 +52,17 @@ def sources(tmp_path_factory):
 
 
 @pytest.fixture(scope="module")
-def built(sources):
+def built(shared):
     """LIGGGHTS with our files in it; without optimisation, which is quick and changes no bit."""
-    for name in header.files():
-        text = (sources / name).read_text()
-        (sources / f"quick_{name}").write_text(re.sub("#pragma GCC optimize.*", "", text))
-    objects = [sources / "main.cpp", *sorted(sources.glob("quick_*.cpp"))]
-    (sources / "main.cpp").write_text((SOURCES / "main.cpp").read_text())
-    line = compiler("-O0", "-w", *objects, "-o", sources / "lmp_tree", "-lliggghts", *mpi("link"))
-    subprocess.run(line, check=True)
-    return sources / "lmp_tree"
+
+    def build(folder):
+        for name, text in header.files().items():
+            (folder / name).write_text(re.sub("#pragma GCC optimize.*", "", text))
+        (folder / "main.cpp").write_text((SOURCES / "main.cpp").read_text())
+        line = compiler("-O0", "-w", *folder.glob("*.cpp"), "-o", folder / "lmp_tree", "-lliggghts", *mpi("link"))
+        subprocess.run(line, check=True)
+
+    return shared("tree", build) / "lmp_tree"
 
 
 @pytest.fixture(params=["Debian's library", *TREES], ids=str)

@@ -12,13 +12,13 @@ pytestmark = pytest.mark.liggghts
 
 
 @pytest.fixture(scope="module")
-def sieved(tmp_path_factory):
+def sieved(shared):
     """The case of the sieve table, short: what is weighed is there from the first step."""
-    folder = tmp_path_factory.mktemp("sieved")
     data = own("sieve_cylinder")
     data["scene"]["fill"][0]["particles"][0]["radius"]["sieve"] = str(CASES / "parts/sieve.csv")
     data["numerics"] = {"time_step": "2e-5 s"}
-    return run(write_case(data, folder), out=folder / "out")
+    folder = shared("sieved", lambda folder: run(write_case(data, folder), out=folder / "out"))
+    return run(folder / "case.toml", out=folder / "out")
 
 
 def test_the_spheres_have_the_masses_that_the_sieve_table_gives(sieved):

@@ -3,6 +3,7 @@
 
 import json
 import math
+import re
 import subprocess
 import sys
 from dataclasses import replace
@@ -14,6 +15,7 @@ import pytest
 
 from epdem.case.impact import load, parse
 from epdem.case.toml import read_toml
+from epdem.engines.lammps.engine import Lammps
 from epdem.errors import CaseError
 from epdem.impacts.experiment import experiment
 from epdem.impacts.measurement import measure
@@ -143,11 +145,17 @@ def test_run_refuses_a_law_that_is_not_the_case_s():
         engine("liggghts-luding")
 
 
+def with_speeds(case, count):
+    """The text of a case with fewer speeds in the same range."""
+    return re.sub(r"(speeds = .*count = )\d+", rf"\g<1>{count}", case.read_text())
+
+
 @in_liggghts
 @in_yade
 def test_crosscheck_tells_our_second_order_from_a_wrong_limit(tmp_path):
+    (tmp_path / "steel.toml").write_text(with_speeds(STEEL, 8))
     done = subprocess.run(
-        [sys.executable, "-m", "epdem.cli", "verify", "crosscheck", str(STEEL), "--json"],
+        [sys.executable, "-m", "epdem.cli", "verify", "crosscheck", "steel.toml", "--json"],
         cwd=tmp_path,
         capture_output=True,
         text=True,
@@ -172,12 +180,14 @@ def test_crosscheck_tells_our_second_order_from_a_wrong_limit(tmp_path):
 
 @in_liggghts
 def test_engines_that_cannot_run_the_case_are_left_out_with_their_reason(tmp_path):
-    """A dashpot is known to embedded and our plugin only."""
-    words = [sys.executable, "-m", "epdem.cli", "verify", "crosscheck", str(CASES / "viscous_steel.toml"), "--json"]
+    """A dashpot is known to the embedded engine and to the plugins of LIGGGHTS and LAMMPS only."""
+    (tmp_path / "steel.toml").write_text(with_speeds(CASES / "viscous_steel.toml", 3))
+    words = [sys.executable, "-m", "epdem.cli", "verify", "crosscheck", "steel.toml", "--json"]
     done = subprocess.run(words, cwd=tmp_path, capture_output=True, text=True)
     assert done.returncode == 0, done.stderr
     document = json.loads(done.stdout)
-    assert [row["model"] for row in document["rows"]] == ["theory", "embedded", "liggghts"]
+    plugins = ["liggghts", *(["lammps"] if Lammps().missing() is None else [])]
+    assert [row["model"] for row in document["rows"]] == ["theory", "embedded", *plugins]
     assert "dashpot" in document["absent"]["yade"]
 
 

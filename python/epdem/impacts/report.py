@@ -16,7 +16,6 @@ from rich.table import Table
 
 from ..base.folders import claim
 from ..base.terminal import show_table, table
-from . import oblique_report
 from .comparison import CHECKED
 from .prediction import Prediction, predict
 from .run import Outcome
@@ -24,6 +23,38 @@ from .run import Outcome
 # columns that are left out on a narrow terminal, of normal and oblique impacts
 SPARE: tuple[str, ...] = ("steps", "overlap [um]", "F_max [N]", "t_c [us]", "law", "spin", "rebound", "f/mu")
 SPARE += ("spin [rad/s]", "regime", "e_t", "theory", "engine")
+# heads of the table of a run, and the text of each cell
+NORMAL = [
+    ("v [m/s]", "{speed:.4g}"),
+    ("engine", "{engine}"),
+    ("law", "{law}"),
+    ("e_n", "{e_n:.6f}"),
+    ("theory", "{e_n_theory:.6f}"),
+    ("error", "{e_n_error:.1e}"),
+    ("t_c [us]", "{t_c:.4g}"),
+    ("F_max [N]", "{force_max:.5g}"),
+    ("overlap [um]", "{overlap:.4g}"),
+    ("steps", "{steps_in_contact}"),
+    ("pass", "{ok}"),
+]
+OBLIQUE = [
+    ("v_n [m/s]", "{speed:.4g}"),
+    ("angle", "{degrees:.4g}"),
+    ("spin [rad/s]", "{spin_before:.4g}"),
+    ("engine", "{engine}"),
+    ("e_n", "{e_n:.4f}"),
+    ("e_t", "{e_t:.4f}"),
+    ("theory", "{e_t_theory:.4f}"),
+    ("psi_1", "{psi_1:.3f}"),
+    ("psi_2", "{psi_2:.4f}"),
+    ("theory", "{psi_2_theory:.4f}"),
+    ("error", "{psi_2_error:.1e}"),
+    ("f/mu", "{ratio:.4f}"),
+    ("regime", "{regime}"),
+    ("rebound", "{rebound:.2f}"),
+    ("spin", "{spin:.4g}"),
+    ("pass", "{ok}"),
+]
 FEW = 10  # impacts of each engine and law in the short table
 ROW_KEYS = (
     "engine",
@@ -90,30 +121,32 @@ def chosen(outcome: Outcome, full: bool) -> pd.DataFrame:
 def run_table(outcome: Outcome, *, full: bool = False) -> Table:
     """One row per speed and engine, and per angle and spin of oblique impacts; FEW of them unless `full`."""
     rows = chosen(outcome, full)
+    rows = rows.assign(ok=np.where(rows["passed"], "yes", "NO"))
+    title, order = outcome.case.case.title, ["law", "speed", "engine"]
     if outcome.case.impact.oblique:
-        return oblique_report.run_table(outcome, rows)
-    yields = "; ".join(f"{law}: {yielding(p)}" for law, p in outcome.predictions.items())
-    laws = rows["law"].nunique() > 1
-    heads = ["v [m/s]", "engine", *(["law"] if laws else []), "e_n", "theory", "error", "t_c [us]", "F_max [N]"]
-    heads += ["overlap [um]", "steps", "pass"]
-    shown = table(f"{outcome.case.case.title} ({yields})", heads, left=("engine", "law"))
-    ordered = rows.sort_values(["law", "speed", "engine"], kind="stable")
-    for row in ordered.to_dict("records"):
-        cells = [
-            f"{row['speed']:.4g}",
-            row["engine"],
-            *([row["law"]] if laws else []),
-            f"{row['e_n']:.6f}",
-            f"{row['e_n_theory']:.6f}",
-            f"{row['e_n_error']:.1e}",
-            f"{row['contact_time'] * 1e6:.4g}",
-            f"{row['force_max']:.5g}",
-            f"{row['overlap_max'] * 1e6:.4g}",
-            str(row["steps_in_contact"]),
-            "yes" if row["passed"] else "NO",
-        ]
-        shown.add_row(*cells, style=None if row["passed"] else "red")
+        columns, order = OBLIQUE, ["law", "speed", "angle", "spin_before", "engine"]
+        rows = _with_regimes(outcome, rows)
+    else:
+        columns = [column for column in NORMAL if column[0] != "law" or rows["law"].nunique() > 1]
+        title += f" ({'; '.join(f'{law}: {yielding(p)}' for law, p in outcome.predictions.items())})"
+        rows = rows.assign(t_c=1e6 * rows["contact_time"], overlap=1e6 * rows["overlap_max"])
+    shown = table(title, [head for head, _ in columns], left=("engine", "law", "regime"))
+    for row in rows.sort_values(order, kind="stable").to_dict("records"):
+        shown.add_row(*(text.format(**row) for _, text in columns), style=None if row["passed"] else "red")
     return shown
+
+
+def _with_regimes(outcome: Outcome, rows: pd.DataFrame) -> pd.DataFrame:
+    """Rows of oblique impacts with their regimes, which theory predicts, the ratio f/mu and angles in degrees."""
+    friction = outcome.case.contact.friction if outcome.case.contact else 0.0
+    regimes = {law: p.rebound.regimes(friction) for law, p in outcome.predictions.items() if p.rebound}
+    place = outcome.results.comparison.groupby(["law", "engine"]).cumcount()[rows.index]
+    return rows.assign(
+        regime=[regimes[law][k] for law, k in zip(rows["law"], place, strict=True)],
+        ratio=rows["impulse_ratio"] / friction,
+        degrees=np.degrees(rows["angle"]),
+        rebound=np.degrees(rows["rebound_angle"]),
+    )
 
 
 def worst(outcome: Outcome) -> list[str]:
