@@ -75,7 +75,7 @@ class _File:
             except (TypeError, ValueError, LookupError):  # a name below a value, or beyond the end of a list
                 keys.known(name, keys.keys_of(before), "replace")
                 raise
-        names = keys.keys_of(data)  # those of a law or kind that the changes choose, too
+        names = keys.keys_of(data)  # with the keys of a law or kind that the changes choose
         for name, value in changes.items():
             if not any(key.startswith(f"{name}.") for key in names):
                 keys.known(name, names, "replace")

@@ -37,7 +37,7 @@ class Parameter:
 class Declaration:
     """A law as its C++ struct declares it.
 
-    `index` is its place in the C interface, `id` that of the LIGGGHTS model "ep/" + name, kept in restart files;
+    `index` is its place in the C interface, `id` the number of the LIGGGHTS model "ep/" + name in restart files;
     `sources` are short names of publications; `condition` is what the parameters must fulfil together; `strength` the
     parameter at which a body yields [Pa], None for a law without yield; `default_ratio` its value over the yield stress
     Y of the softer body, 1 without; `memory` the number of doubles that a contact keeps from step to step; `flattens`

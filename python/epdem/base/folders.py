@@ -114,7 +114,7 @@ def claim(folder: Path, *, force: bool = False, files: Collection[str] = ()) -> 
             raise OSError(error.errno, error.strerror, str(folder)) from None
         raise
     finally:
-        for path in made:  # those of a run that has come to nothing are empty
+        for path in made:  # a run that has written nothing leaves none
             with contextlib.suppress(OSError):
                 path.rmdir()
 

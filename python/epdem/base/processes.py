@@ -84,7 +84,7 @@ def call(
 def started(
     command: list[str], folder: Path, *, stdin: int, stdout: int | IO[bytes], env: dict[str, str] | None
 ) -> subprocess.Popen[bytes]:
-    """A program in a session of its own, which ends with this process; both its streams go to `stdout`.
+    """A program in its own session, which ends with this process; both its streams go to `stdout`.
 
     Raises EngineError if it cannot be started.
     """
@@ -150,7 +150,7 @@ def end_with_parent() -> None:
 
 
 def kill(process: subprocess.Popen[bytes]) -> None:
-    """Stop a process and all of its session: mpirun gives each rank a process group of its own."""
+    """Stop a process and all of its session: mpirun gives each rank its own process group."""
     for sign in (signal.SIGTERM, signal.SIGKILL):
         end = time.monotonic() + PATIENCE
         for member in session(process.pid):

@@ -77,7 +77,7 @@ def opened(path: Path | str, what: str) -> Iterator[h5py.File]:
 
 
 def unit_of(column: str, units: Mapping[str, str]) -> str:
-    """The unit of a column by its name ("x_theory" has that of "x"); "" without."""
+    """The unit of a column by its name ("x_theory" has the unit of "x"); "" without."""
     return units.get(column.removesuffix("_theory"), "")
 
 

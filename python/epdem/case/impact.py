@@ -33,7 +33,7 @@ from .toml import read_toml
 RIGID = "rigid"
 MAX_IMPACTS = 4096
 MOST_STEPS = 100_000  # in contact
-# Largest relative errors of a case without tolerances of its own (maximum over the phases, 400 steps in contact).
+# Largest relative errors of a case without tolerances (maximum over the phases, 400 steps in contact).
 DEFAULT_CHECKS = {"e_n": 1e-4, "contact_time": 5e-3, "force_max": 1e-3, "overlap_max": 1e-3, "residual_overlap": 1e-3}
 
 Angle = Annotated[float, Quantity("rad", ge=0.0, le=1.5, hint="from the normal")]

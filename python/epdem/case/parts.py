@@ -187,7 +187,7 @@ class Parts(Frozen):
 
     @cached_property
     def table(self) -> list[Sphere]:
-        """The spheres with places of their own that are there from the start: of files, then single ones."""
+        """The spheres with given places that are there from the start: spheres of files, then single spheres."""
         first = self.phase[0].name
         of_files = [s for f in self.fill if isinstance(f, FileFill) for s in f.spheres]
         return [*of_files, *(b.sphere for b in self.body if b.phase in (None, first))]

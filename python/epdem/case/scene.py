@@ -138,7 +138,7 @@ class SceneCase(Frozen):
         if self.viscous and tangential not in (None, self.viscous.restitution):
             raise ValueError(
                 f"contact.tangential_restitution = {tangential:g}: LIGGGHTS has one restitution for both dashpots; "
-                f"give that of viscous ({self.viscous.restitution:g}), or remove it (then no tangential dashpot)"
+                f"give {self.viscous.restitution:g} as in viscous, or remove it (then no tangential dashpot)"
             )
         for pair in self.contact.pairs:
             for name in pair.between:

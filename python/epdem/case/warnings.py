@@ -10,7 +10,7 @@ from .scene import SceneCase
 MODULI = (1e5, 1.3e12)  # [Pa] from rubber foam to diamond
 DENSITIES = (100.0, 25_000.0)  # [kg/m^3] from foam to osmium
 LARGEST_RADIUS = 1.0  # [m]
-LARGEST_STRAIN = 0.1  # Y/E, above that of any bulk solid
+LARGEST_STRAIN = 0.1  # Y/E; any bulk solid has less
 LARGEST_FRICTION = 5.0  # of clean metals in vacuum; above it stands a percentage
 
 

@@ -19,7 +19,7 @@ def calibrate(
     hb: Annotated[float | None, typer.Option(help="Brinell hardness [kgf/mm^2] instead of an impact")] = None,
     dent_ratio: Annotated[
         float | None,
-        typer.Option(help="Brinell test: diameter of the indentation over that of the ball (default: 0.375)"),
+        typer.Option(help="Brinell test: diameter of the indentation over diameter of the ball (default: 0.375)"),
     ] = None,
     target: Annotated[
         list[str] | None,

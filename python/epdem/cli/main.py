@@ -7,17 +7,18 @@ import os
 import shutil
 import signal
 import sys
+from importlib import import_module
 from pathlib import Path
 from typing import Annotated, Any
 
 import typer
+from typer.core import TyperGroup
 
 from .. import __version__
 from ..base import stopping
 from ..base.settings import DEFAULT_ENGINE
 from ..base.terminal import console, status
 from ..errors import CaseError, EpdemError, Stopped
-from ..verification.cli import app as verify
 from . import calibrate as cli_calibrate
 from . import cite as cli_cite
 from . import impacts as cli_impacts
@@ -47,6 +48,20 @@ app = typer.Typer(
     help=ABOUT,
     context_settings={"help_option_names": ["-h", "--help"]},
 )
+
+
+class Verify(TyperGroup):
+    """The commands of `epdem verify`, imported when they are requested: a run imports nothing of the proof."""
+
+    @property  # type: ignore[override]
+    def commands(self) -> dict[str, Any]:
+        """Every command by name."""
+        group: Any = typer.main.get_command(import_module("epdem.verification.cli").app)
+        return dict(group.commands)
+
+    @commands.setter
+    def commands(self, given: dict[str, Any]) -> None:
+        assert not given  # typer's own list
 
 
 def _say_version(wanted: bool) -> None:
@@ -183,6 +198,10 @@ for command in (
     app.command()(command)
 app.command("points", hidden=True)(cli_sweep.points)  # what batch scripts call
 app.add_typer(export, name="export")
+verify = typer.Typer(
+    cls=Verify, help="Verify laws and engines against theory, measurements, each other and other codes."
+)
+verify.callback(no_args_is_help=True)(lambda: None)
 app.add_typer(verify, name="verify")
 
 

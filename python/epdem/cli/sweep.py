@@ -21,7 +21,7 @@ def sweep(
         ),
     ] = None,
     points: Annotated[Path | None, typer.Option("--points", help="CSV file, a column per key")] = None,
-    latin_hypercube: Annotated[int | None, typer.Option(help="so many points within the ranges")] = None,
+    latin_hypercube: Annotated[int | None, typer.Option(help="number of points within the ranges")] = None,
     seed: Annotated[int | None, typer.Option(min=0, help="of the latin hypercube (default: 1)")] = None,
     engine: Engines = None,
     law: Laws = None,

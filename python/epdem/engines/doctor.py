@@ -44,7 +44,7 @@ def _mpi() -> Finding:
 
 
 def _models() -> Finding:
-    """Ask the LIGGGHTS in use for what it has, and let it create every model of ours."""
+    """Ask the LIGGGHTS in use for what it has, and let it create each of epdem's models."""
     if reason := launcher.missing():
         return Finding("models in LIGGGHTS", False, "not here", reason)
     path, laws = paths.launcher(), tuple(claw.laws())
@@ -54,7 +54,7 @@ def _models() -> Finding:
     except EngineError as error:
         return Finding("models in LIGGGHTS", False, str(error), "run 'make setup', or name another one")
     lacks = tuple(law for law in laws if law not in found.models)
-    names = ", ".join(f"ep/{law}" for law in found.models) or "none of ours"
+    names = ", ".join(f"ep/{law}" for law in found.models) or "none of epdem's"
     advice = executable.advice(lacks, found.version)
     return Finding("models in LIGGGHTS", not lacks, f"{names}: {path} ({found})", advice, needed=not found.models)
 

@@ -43,7 +43,7 @@ def own_ratios(name: str, parameters: Mapping[str, float]) -> dict[str, float]:
 class LawSpec:
     """A law and its parameters for one pair of bodies.
 
-    `parameters` are those of the pair, by the law's own names; `strengths` is the law's strength [Pa] of body and
+    `parameters` belong to the pair, by the names of the law; `strengths` is the law's strength [Pa] of body and
     target (inf: never yields), of which the smaller one is the pair's: the softer body yields first. `common`: both
     strengths are the one that the law gives for all bodies.
     """

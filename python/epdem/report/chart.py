@@ -11,7 +11,7 @@ from typing import ClassVar, Literal
 import numpy as np
 
 Dash = Literal["solid", "dash", "dot", "dashdot"]
-INK, GREY = -1, -2  # colours beside those of the palette
+INK, GREY = -1, -2  # colours beside the palette
 # Okabe and Ito's palette, which colour-blind readers can tell apart
 PALETTE = ("#0072B2", "#D55E00", "#009E73", "#CC79A7", "#E69F00", "#56B4E9", "#8C564B")
 Numbers = Sequence[float] | np.ndarray | float
@@ -73,7 +73,7 @@ class Chart:
     panels: list[Panel] = field(default_factory=list)
     beside: bool = False
     columns: int = 1
-    heading: str = ""  # on a page, which has a title of its own; empty: the title
+    heading: str = ""  # on a page; empty: the title
     kind: ClassVar[str] = "chart"
 
     def csv(self) -> str:

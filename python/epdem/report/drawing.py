@@ -166,7 +166,7 @@ def _scale(axes: "Axes", panel: Panel, *, labels_x: bool, labels_y: bool) -> Non
 
 
 def _limits(axis: Axis, values: Sequence[float]) -> tuple[float | None, float | None] | None:
-    """The limits that an axis asks for; room about a single value, which has no range of its own."""
+    """The limits that an axis requests; room about a single value, which has no range."""
     if axis.low is not None or axis.high is not None:
         return axis.low, axis.high
     finite = [float(v) for v in values if math.isfinite(v) and (v > 0 or not axis.log)]

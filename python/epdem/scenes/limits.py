@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Scenes that no engine runs as they are meant, refused before anything starts."""
+"""Limits of a scene: a scene beyond them is refused before anything starts."""
 
 import math
 

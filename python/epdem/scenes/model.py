@@ -16,7 +16,7 @@ WALL = "wall"
 
 @dataclass(frozen=True)
 class Type:
-    """A material, or walls where they have values of their own; `strength` [Pa] is inf if it never yields."""
+    """A material, or walls where they have their own values; `strength` [Pa] is inf if it never yields."""
 
     name: str
     material: str

@@ -119,7 +119,7 @@ def insertions(case: SceneCase, scene: Parts) -> tuple[Insertion, ...]:
 
 def _fills(case: SceneCase, fills: Iterable[Insertion]) -> Iterator[tuple[str, list[Size], float]]:
     """(key of the particles, their sizes, requested mass [kg]) of each fill; a number of spheres requests no mass, so
-    that the mass is that of the placed spheres."""
+    that the mass is the mass of the placed spheres."""
     of_case = {f"scene.fill.{f.name}": f for f in case.scene.random_fills} if isinstance(case.scene, Parts) else {}
     for key, group in groupby(fills, key=lambda fill: fill.key):
         first = next(group)

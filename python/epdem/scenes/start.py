@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Spheres with positions of their own at the start: on the limit of the room, in each other."""
+"""Spheres with given positions at the start: on the limit of the room, inside each other."""
 
 from collections.abc import Sequence
 
@@ -52,7 +52,7 @@ def overlaps(spheres: Sequence[Sphere]) -> tuple[IntArray, IntArray, FloatArray]
 
 
 def _by_phase(s: Parts) -> list[Named]:
-    """The spheres with positions of their own, in the order of `Parts.table`, by the phase with which they come."""
+    """The spheres with given positions, in the order of `Parts.table`, by the phase with which they come."""
     first = s.phase[0].name
     files = [f for f in s.fill if isinstance(f, FileFill)]
     groups = {first: [(f"scene.fill.{f.name}, sphere {n}", x) for f in files for n, x in enumerate(f.spheres, 1)]}

@@ -140,7 +140,7 @@ def _loads(data: dict[str, Any], path: Path, factor: float) -> list[str]:
     if scenes.is_scene(data) and scenes.parse(data, path).scene.gravity:
         found.append(
             f"weight is kept, and the force of a contact at a speed falls by a factor of {fall:.3g} "
-            f"(k^{FORCE_POWER:g}): overlaps and dents under static loads grow by more than those of impacts; "
+            f"(k^{FORCE_POWER:g}): overlaps and dents grow by more under static loads than in impacts; "
             "take a small --factor where they matter"
         )
     return found

@@ -30,7 +30,7 @@ PATH, END = "path.bin", "end.bin"
 
 
 class Liggghts:
-    """LIGGGHTS with a model of ours; `model` and more can be replaced to run LIGGGHTS's own models."""
+    """LIGGGHTS with a model of epdem; `model` and more can be replaced to run LIGGGHTS's own models."""
 
     name = "liggghts"
     source: Source | None = Source(

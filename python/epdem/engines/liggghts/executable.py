@@ -17,7 +17,7 @@ _VTK = "custom/vtk"  # the dump style of output.vtk
 
 @dataclass(frozen=True)
 class Executable:
-    """`version` is "" for a program that does not say it; `models` are those of ours that it has."""
+    """`version` is "" for a program that does not say it; `models` are the models of epdem that it has."""
 
     path: Path
     version: str

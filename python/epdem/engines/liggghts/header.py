@@ -141,7 +141,7 @@ def _together(sources: list[Path], roots: tuple[Path, ...], options: str = "") -
 
 
 def _lines(file: Path, roots: tuple[Path, ...], seen: set[Path]) -> list[str]:
-    """The lines of a file with our headers in place of their inclusion; those of LIGGGHTS stay included."""
+    """The lines of a file with our headers in place of their inclusion; headers of LIGGGHTS stay included."""
     seen.add(file)
     found = ["", f"// {next(file.relative_to(r) for r in roots if file.is_relative_to(r))}"]
     for line in file.read_text(encoding="utf-8").splitlines():

@@ -129,7 +129,7 @@ def of_friction(plan: Plan, types: int) -> tuple[Property, ...]:
 
 
 def of_law(plan: Plan) -> tuple[Property, ...]:
-    """What a law of ours needs of a plan."""
+    """The properties that a law of epdem needs."""
     x, types = plan.experiment, atom_types(plan)
     properties = [*of_impacts(plan), *strength(x.law.name, [finite(s) for _, s in types])]
     properties += ratios(x.law.name, x.law.ratios())

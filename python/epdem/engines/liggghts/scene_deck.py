@@ -60,7 +60,7 @@ def _settings(p: ScenePlan) -> tuple[str, ...]:
 
 
 def memory(m: Model, *, wall: bool = False) -> int:
-    """History values of one contact in LIGGGHTS, the law's first: those of the law, step, friction, rolling."""
+    """History values of one contact in LIGGGHTS, in this order: law, step, friction, rolling."""
     law = laws()[m.law].memory
     friction = 3 * m.nodes + 1 if m.nodes else 3 * m.sliding
     others = friction + 3 * (m.rolling is not None and m.rolling.model in ("epsd", "epsd2"))

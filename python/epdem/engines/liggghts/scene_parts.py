@@ -76,7 +76,7 @@ class DeckMesh:
 
 @dataclass(frozen=True)
 class DeckPhase:
-    """A phase with the commands at its start and end, and those of a run that continues in it.
+    """A phase: commands at its start and end, and commands of a run that continues in it.
 
     gates: planes that come with the phase. upto: whether the step at its end is known before the run. particles:
     spheres that come with it. vibrations: walls whose power needs the step at which their vibration begins.

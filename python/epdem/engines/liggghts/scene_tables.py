@@ -15,7 +15,7 @@ from ...scenes.plan import ScenePlan
 from . import dump, log
 from .launcher import OUT
 
-# thermo words of the deck and their columns; those of the loads of walls beside them, see `_column`
+# thermo words of the deck and their columns; for the loads of walls see `_column`
 ROWS = {
     "Atoms": "particles",
     "KinEng": "kinetic_energy",
@@ -108,7 +108,7 @@ def _particle_names(p: ScenePlan) -> list[str]:
 
 
 def _slots(p: ScenePlan) -> list[str]:
-    """The columns of `scene_deck.remembered`."""
+    """The columns of `scene_deck.history_columns`."""
     return ["delta_max"] * p.model.yields + ["attached"] * p.model.adheres
 
 
@@ -120,7 +120,7 @@ def _steps(p: ScenePlan, kind: str, folder: Path, without: Collection[int]) -> l
 
 
 def particles(p: ScenePlan, folder: Path, *, without: Collection[int] = ()) -> pd.DataFrame:
-    """Every particle of every frame but those of the steps `without`, sorted by step and id.
+    """Every particle of every frame, without the steps `without`, sorted by step and id.
 
     Raises EngineError for a frame that is not whole.
     """

@@ -15,7 +15,7 @@ from ...errors import EngineError
 from . import launcher
 
 END = "epdem: end of the deck"
-# What stands unchanged as one word of a deck; other folders get a process of their own.
+# What stands unchanged as one word of a deck; another folder gets its own process.
 PLAIN = re.compile(r"[\w./+=-]+")
 
 

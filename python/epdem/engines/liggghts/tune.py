@@ -27,7 +27,7 @@ from .trials import Loops
 SHARES = (0.25, 0.5, 0.75, 1.0, 1.5)  # of the smallest radius: skins that are tried
 TURNS, SHORTEST, LONGEST = 10, 200, 2000  # turns through all skins in a scene, and steps with one of them
 WORTH = 0.02  # of the time: nobody changes a case for less
-CERTAIN = 3.0  # a saving counts if it exceeds so many times its standard error
+CERTAIN = 3.0  # standard errors that a saving must exceed
 Progress = Callable[[str], None]
 
 
@@ -121,7 +121,7 @@ def _axes(cut: str) -> str:
 
 
 def _cuts(ranks: int) -> list[str]:
-    """The ways to cut a room for so many ranks that are worth a trial."""
+    """The ways to cut a room for a number of ranks that are worth a trial."""
     several = any(ranks % d == 0 for d in range(2, math.isqrt(ranks) + 1))
     return ["x", "y", "z", *(["xy", "xz", "yz"] if several else []), *(["xyz"] if several and ranks >= 8 else [])]
 

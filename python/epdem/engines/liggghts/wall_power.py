@@ -13,7 +13,7 @@ GAIN = 1.0  # of a wall that a force drives: its speed over the highest is the r
 
 
 def wall_id(p: ScenePlan, name: str) -> str:
-    """The id of a wall's fix: names that a user gave to parts cannot be those of other fixes."""
+    """The id of a wall's fix: a name that a user gives to a part must not be the id of another fix."""
     return f"wall_{name}" if isinstance(p.case.scene, Parts) else name
 
 

@@ -36,7 +36,7 @@ def properties(p: ScenePlan) -> tuple[Property, ...]:
             if wear != mesh.wear:
                 raise CaseError(
                     f"scene.wall.{name}.wear = {mesh.wear:g} m^2/N: wall {other} has {wear:g} m^2/N, and LIGGGHTS has "
-                    "one value for each pair of materials; give both walls one value, or a material of their own"
+                    "one value for each pair of materials; give both walls one value, or each its own material"
                 )
     if not of_pair:
         return ()
@@ -63,7 +63,7 @@ def _fields(path: Path) -> dict[str, np.ndarray]:
 
 
 def table(p: ScenePlan, folder: Path, *, without: Collection[int] = ()) -> pd.DataFrame:
-    """step, wall, triangle, area, normal_stress, shear_stress, wear (0 where none is asked for) in every frame.
+    """step, wall, triangle, area, normal_stress, shear_stress, wear (0 where not requested) in every frame.
 
     Raises EngineError for a file that is not whole.
     """

@@ -18,7 +18,7 @@ from ...scenes.run import SceneOutcome
 
 
 def command() -> str:
-    """The command line of this process, if it is one of ours."""
+    """The command line of this process, if it is a command of epdem."""
     name = Path(sys.argv[0]).name
     return shlex.join(["epdem", *sys.argv[1:]]) if name == "epdem" else ""
 

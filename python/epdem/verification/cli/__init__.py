@@ -11,8 +11,6 @@ from .motion import motion
 from .rerun import rerun
 from .stability import stability
 
-app = typer.Typer(
-    no_args_is_help=True, help="Verify laws and engines against theory, measurements, each other and other codes."
-)
+app = typer.Typer()
 for command in (crosscheck, cost, stability, motion, data, figures, rerun):
     app.command()(command)
