@@ -29,7 +29,8 @@ BODY = {"name": "ball", "material": "steel", "radius": "2 mm", "position": ["0 m
 
 
 def fills(data: dict, place: Path | str = "case") -> dict[tuple[str, float], int]:
-    """Number of spheres by material and radius."""
+    """Number of spheres by material and radius; of a given time step, for the search of one takes seconds."""
+    data = data | {"numerics": {"time_step": "1e-6 s"}}
     found = [(f.particles[0], f.count) for f in plan(parse(data, place)).insertions]
     return {(part.material, round(part.radius, 9)): count for part, count in found}
 
