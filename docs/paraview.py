@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The picture of docs/results.md: the last frame of a results.h5 by VTK's own reader, without a screen.
+"""The picture of docs/results.md: a frame of a results.h5 by VTK's own reader, without a screen.
 
-Run: .venv/bin/epdem run cases/impactor_bowl.toml && .venv/bin/python docs/paraview.py runs/impactor_bowl/results.h5
+Run: .venv/bin/epdem run cases/settle_glass.toml && .venv/bin/python docs/paraview.py runs/settle_glass/results.h5 3
 """
 
 import sys
@@ -50,12 +50,12 @@ def wall(block: vtk.vtkPolyData) -> vtk.vtkActor:
     return actor
 
 
-def main(path: str) -> None:
-    """Draw the last frame."""
+def main(path: str, frame: str) -> None:
+    """Draw a frame, counted from 0."""
     reader, scene, window = vtk.vtkHDFReader(), vtk.vtkRenderer(), vtk.vtkRenderWindow()
     reader.SetFileName(path)
     reader.UpdateInformation()
-    reader.SetStep(reader.GetNumberOfSteps() - 1)
+    reader.SetStep(int(frame))
     reader.Update()
     blocks = reader.GetOutputDataObject(0)
     for k in range(blocks.GetNumberOfPartitionedDataSets()):
@@ -65,9 +65,9 @@ def main(path: str) -> None:
     camera.SetPosition(1.0, -1.8, 0.9)
     camera.SetViewUp(0.0, 0.0, 1.0)
     scene.ResetCamera()
-    camera.Zoom(1.4)
+    camera.Zoom(1.0)
     window.SetOffScreenRendering(1)
-    window.SetSize(900, 700)
+    window.SetSize(700, 800)
     window.AddRenderer(scene)
     window.SetMultiSamples(8)
     window.Render()
@@ -78,4 +78,4 @@ def main(path: str) -> None:
     writer.Write()
 
 
-main(sys.argv[1])
+main(*sys.argv[1:])
