@@ -1,5 +1,5 @@
 # Each target is one line that calls a script or a tool.
-.PHONY: setup demo trixie container lammps yade test guide browser walltime bench bench-community docs tidy sanitize versions fuzz valgrind reliability tutorials wheel deb release trees clean
+.PHONY: setup demo trixie container lammps yade test guide browser walltime bench bench-community docs tidy sanitize sanitize-yade versions fuzz valgrind reliability tutorials wheel deb release trees clean
 
 setup:
 	@scripts/setup
@@ -65,6 +65,10 @@ tidy: setup
 	  cpp_contact/*/*.cpp cpp_contact/*/*/*.cpp tests/*/*.cpp)) -- -std=c++17 -Icpp_contact/include -Icpp_contact -Icpp_contact/capi -Icpp_contact/liggghts \
 	  -Icpp_contact/liggghts/styles -isystem /usr/include/liggghts $(subst -I,-isystem ,$(shell mpicxx --showme:compile)) \
 	  -DOMPI_SKIP_MPICXX -DEPDEM_VERSION='""' -DEPDEM_BUILT_FOR='""'
+
+# the module epdem_yade with the same checks in YADE
+sanitize-yade:
+	@scripts/sanitize_yade $(YADE_SOURCE)
 
 sanitize: setup
 	.venv/bin/python scripts/sanitize

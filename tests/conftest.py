@@ -60,3 +60,9 @@ def pytest_collection_modifyitems(items):
         for name, command in ENGINES.items():
             if item.get_closest_marker(name) and not shutil.which(name) and not os.environ.get("CI"):
                 item.add_marker(pytest.mark.skip(reason=f"{name} is not installed ({command})"))
+
+
+@pytest.fixture(autouse=True)
+def decks_of_yade_call_the_c_library(monkeypatch):
+    """Whether epdem_yade is built here or not; tests of the module set its path again."""
+    monkeypatch.setattr("epdem.engines.yade.launcher.module", lambda: None)

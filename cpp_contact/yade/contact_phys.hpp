@@ -70,6 +70,7 @@ class EpPhys : public FrictPhys {
     return all;
   }
 
+  // What each step reads comes first, so that it shares lines of the cache.
   // the constants of the law `constantsOf`, 0: none; they follow from the attributes
   epdem::in_yade::Constants constants{};
   int constantsOf = 0;
@@ -77,21 +78,22 @@ class EpPhys : public FrictPhys {
   // clang-format off
   YADE_CLASS_BASE_DOC_ATTRS_CTOR_PY(EpPhys, FrictPhys,
     "Contact of two :yref:`EpMat`: constants of the pair and history.",
+    ((int, wall, 0, Attr::readonly, "which body is no sphere, 1 or 2; 0: both are spheres"))
+    ((int, lawId, 0, Attr::hidden, "number of the law whose history is kept"))
+    ((int, frictionId, 0, Attr::hidden, "number of the friction model whose history is kept"))
+    ((Real, contactRadius, 0., Attr::readonly, "contact radius a [m]"))
+    ((EpHistory, history, EpHistory(), Attr::hidden, "history of law, friction and rolling friction"))
+    ((Real, effectiveMass, NaN, Attr::readonly, "m* [kg]; clumps count as a whole, bodies that are not dynamic as walls; 0: neither is dynamic"))
     ((Real, effectiveModulus, NaN, Attr::readonly, "E* [Pa]"))
     ((Real, effectiveShearModulus, NaN, Attr::readonly, "G* [Pa]"))
-    ((Real, effectiveMass, NaN, Attr::readonly, "m* [kg]; clumps count as a whole, bodies that are not dynamic as walls; 0: neither is dynamic"))
     ((Real, en, 1., Attr::readonly, "restitution of the normal dashpot in slow impacts without yield; 1: none"))
     ((Real, es, 1., Attr::readonly, "restitution of the dashpot beside friction; 1: none"))
     ((Real, rollingFriction, 0., Attr::readonly, "coefficient of rolling friction"))
-    ((int, wall, 0, Attr::readonly, "which body is no sphere, 1 or 2; 0: both are spheres"))
-    ((Real, contactRadius, 0., Attr::readonly, "contact radius a [m]"))
     ((Real, plasticWork, 0., Attr::readonly, "plastic work of this contact so far [J], with O.trackEnergy"))
     ((Real, elasticEnergy, 0., Attr::readonly, "elastic energy [J] of the normal force, with O.trackEnergy; with adhesion less the surface energy"))
     ((Real, adhesionLoss, 0., Attr::readonly, "energy that adhesion lost in touch and parting [J], with O.trackEnergy"))
-    ((int, lawId, 0, Attr::hidden, "number of the law whose history is kept"))
-    ((int, frictionId, 0, Attr::hidden, "number of the friction model whose history is kept"))
-    ((LawValues, lawValues, epdem::in_yade::fallbacks(), Attr::hidden, "parameters of the pair"))
-    ((EpHistory, history, EpHistory(), Attr::hidden, "history of law, friction and rolling friction")),
+    ((Real, frictionEnergy, 0., Attr::readonly, "elastic energy of friction [J], with O.trackEnergy and partial slip"))
+    ((LawValues, lawValues, epdem::in_yade::fallbacks(), Attr::hidden, "parameters of the pair")),
     createIndex();,
     .def(Properties()));
   // clang-format on

@@ -19,6 +19,7 @@
 #include <core/Interaction.hpp>
 #include <core/Omega.hpp>
 #include <core/Scene.hpp>
+#include <core/State.hpp>
 #include <lib/factory/ClassFactory.hpp>
 #include <pkg/common/ElastMat.hpp>
 #include <pkg/common/MatchMaker.hpp>

@@ -38,9 +38,10 @@ class Ip2_EpMat_EpMat_EpPhys : public IPhysFunctor {
     return value;
   }
 
-  /// The value of a matchmaker, or its default.
-  static double of_pair(const shared_ptr<MatchMaker>& match, const Interaction& i, double v1, double v2, double other) {
-    return match ? (*match)(i.getId1(), i.getId2(), v1, v2) : other;
+  /// The value of a matchmaker, which knows the numbers of materials, or its default.
+  static double of_pair(const shared_ptr<MatchMaker>& match, const EpMat& m1, const EpMat& m2, double v1, double v2,
+                        double other) {
+    return match ? (*match)(m1.id, m2.id, v1, v2) : other;
   }
 
   /// 1 or 2: this body is a wall; 0: both are spheres.
@@ -78,18 +79,18 @@ class Ip2_EpMat_EpMat_EpPhys : public IPhysFunctor {
       phys->effectiveMass = epdem::reduced_finite(mass1, mass2);
     }
     const double angle =
-        of_pair(frictAngle, i, m1.frictionAngle, m2.frictionAngle, std::min(m1.frictionAngle, m2.frictionAngle));
+        of_pair(frictAngle, m1, m2, m1.frictionAngle, m2.frictionAngle, std::min(m1.frictionAngle, m2.frictionAngle));
     phys->tangensOfFrictionAngle = std::tan(checked("frictAngle", angle, {0.0, std::atan(iy::unlimited), true}, i));
-    phys->en = checked("en", of_pair(en, i, NaN, NaN, 1.0), {epdem::viscous_restitution_min, 1.0, true, true}, i);
-    phys->es = checked("es", of_pair(es, i, NaN, NaN, 1.0), {0.0, 1.0, false, true}, i);
-    const double rolling = of_pair(rollingFriction, i, m1.rollingFriction, m2.rollingFriction,
+    phys->en = checked("en", of_pair(en, m1, m2, NaN, NaN, 1.0), {epdem::viscous_restitution_min, 1.0, true, true}, i);
+    phys->es = checked("es", of_pair(es, m1, m2, NaN, NaN, 1.0), {0.0, 1.0, false, true}, i);
+    const double rolling = of_pair(rollingFriction, m1, m2, m1.rollingFriction, m2.rollingFriction,
                                    std::min(m1.rollingFriction, m2.rollingFriction));
     phys->rollingFriction = checked("rollingFriction", rolling, {0.0, iy::unlimited, true}, i);
     for (int k = 0; k < iy::parameter_count; ++k) {
       if (!iy::is_first(k)) continue;
       const iy::LawParameter& p = iy::parameters[k];
       phys->lawValues[k] = p.declared->of_pair
-                               ? of_pair(workOfAdhesion, i, NaN, NaN,
+                               ? of_pair(workOfAdhesion, m1, m2, NaN, NaN,
                                          epdem::adhesive::work_of_adhesion(m1.surfaceEnergy, m2.surfaceEnergy))
                                : softer(p, m1, m2).lawValues[k];
     }

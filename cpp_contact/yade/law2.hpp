@@ -27,7 +27,10 @@ class Law2_ScGeom_EpPhys : public LawFunctor {
     "What the contact laws of :yref:`EpPhys` have in common; a simulation has one of the laws derived from this class. With O.trackEnergy the laws book plasticWork, contactElastic, adhesionLoss and, with partial slip, frictionWork and frictionElastic in O.energy.",
     ((int, partialSlip, 0, Attr::triggerPostLoad, "friction: 0 one spring of stiffness 8 G* a up to Coulomb's limit (Cundall and Strack 1979), 2 or 3 partial slip of the contact circle by that many nodes"))
     ((string, rolling, "off", Attr::triggerPostLoad, "rolling friction: off, cdt (constant torque) or epsd2 (spring)"))
-    ((bool, torsion, false, , "whether rolling friction also resists torsion")));
+    ((bool, torsion, false, , "whether rolling friction also resists torsion"))
+    ((bool, recordStrain, false, , "whether largestRadiusRatio and largestOverlapRatio are recorded"))
+    ((Real, largestRadiusRatio, 0., Attr::readonly, "largest contact radius over R* of all contacts so far"))
+    ((Real, largestOverlapRatio, 0., Attr::readonly, "largest overlap over R* of all contacts so far")));
   // clang-format on
 
  protected:
@@ -66,12 +69,14 @@ class Law2_ScGeom_EpPhys : public LawFunctor {
   struct Observer {
     Law2_ScGeom_EpPhys& functor;
     EpPhys& phys;
+    const Interaction& contact;
     bool books;
 
     template <class Law, class State, class Step>
     void normal(const Law& law, double R_star, const State& before, const Step& now, double overlap) const {
       phys.contactRadius = now.radius;
       phys.kn = epdem::normal_stiffness(law.E_star, now.radius);
+      if (functor.recordStrain) functor.record_strain(now.radius / R_star, overlap / R_star);
       if (!books) return;
       const auto e = epdem::energies(law, R_star, before, now, overlap);
       phys.plasticWork += e.plastic_work_step;
@@ -80,11 +85,15 @@ class Law2_ScGeom_EpPhys : public LawFunctor {
       functor.book(plastic, e.plastic_work_step);
       functor.book(elastic, e.stored);
       functor.book(adhesion, e.adhesion_loss);
+      functor.share(phys, contact, &EpState::plasticWork, e.plastic_work_step);
+      functor.share(phys, contact, &EpState::adhesionLoss, e.adhesion_loss);
     }
     template <class Work>
     void friction(const Work& work) const {
       if (!books) return;
       const auto w = work();
+      phys.frictionEnergy = w.stored;
+      functor.share(phys, contact, &EpState::frictionWork, w.lost);
       functor.book(Energy::friction, w.lost);
       functor.book(friction_elastic, w.stored);
     }
@@ -115,7 +124,7 @@ class Law2_ScGeom_EpPhys : public LawFunctor {
     pair.dashpot = epdem::viscous_number(phys.en);
     pair.damping = epdem::damping_number(phys.es);
     pair.rolling_friction = phys.rollingFriction;
-    std::memcpy(phys.constants.data(), &pair, sizeof pair);
+    new (phys.constants.bytes) epdem::ContactConstants<Law>(pair);
     if (phys.lawId != Law::id) phys.history = {};
     phys.lawId = phys.constantsOf = Law::id;
   }
@@ -165,8 +174,7 @@ class Law2_ScGeom_EpPhys : public LawFunctor {
                                  vec(s1.vel - s2.vel - drift), vec(s1.angVel), vec(s2.angVel));
     }
 
-    epdem::ContactConstants<Law> pair;
-    std::memcpy(static_cast<void*>(&pair), phys.constants.data(), sizeof pair);
+    auto& pair = phys.constants.of<Law>();
     pair.friction = phys.tangensOfFrictionAngle;
     ContactHistory<Law, Friction> history;
     load(phys, 0, history.law);
@@ -183,7 +191,7 @@ class Law2_ScGeom_EpPhys : public LawFunctor {
                                           pair.dashpot > 0.0, torsion,       false};
     const auto loads = epdem::contact<Friction, rolls, wall>(
         pair, settings, c, history, [&] { return phys.effectiveMass; },
-        Observer{*this, phys, bool(scene->trackEnergy)});
+        Observer{*this, phys, contact, bool(scene->trackEnergy)});
     store(phys, 0, history.law);
     store(phys, friction_at, history.friction);
     if constexpr (rolls) store(phys, rolling_at, history.rolling);
@@ -222,6 +230,34 @@ class Law2_ScGeom_EpPhys : public LawFunctor {
       }
     }
     scene->energy->add(value, names[which], energyId_[which], momentary[which]);
+  }
+
+  /// Adds the work of a contact to that of its spheres.
+  void share(const EpPhys& phys, const Interaction& contact, Real EpState::* work, double value) const {
+    if (value == 0.0) return;
+    for (const int k : {1, 2}) {
+      if (phys.wall == k) continue;
+      const Body::id_t id = k == 1 ? contact.getId1() : contact.getId2();
+      auto* const state = dynamic_cast<EpState*>((*scene->bodies)[id]->state.get());
+      if (!state) continue;  // a body that got its material later
+      Real& sum = state->*work;
+#ifdef YADE_OPENMP
+#pragma omp atomic
+#endif
+      sum += phys.wall ? value : 0.5 * value;
+    }
+  }
+
+  /// Notes how far a contact leaves small strain.
+  void record_strain(double radius_ratio, double overlap_ratio) {
+    if (radius_ratio <= largestRadiusRatio && overlap_ratio <= largestOverlapRatio) return;
+#ifdef YADE_OPENMP
+#pragma omp critical(epdem_strain)
+#endif
+    {
+      largestRadiusRatio = std::max<Real>(largestRadiusRatio, radius_ratio);
+      largestOverlapRatio = std::max<Real>(largestOverlapRatio, overlap_ratio);
+    }
   }
 
   int rollingModel_ = 0;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// EpMat: YADE's FrictMat with the parameters of all laws.
+// EpMat: YADE's FrictMat with the parameters of all laws; EpState: the work of a body's contacts.
 #pragma once
 
 #include <functional>
@@ -10,6 +10,22 @@
 namespace yade {
 
 using epdem::in_yade::LawValues;
+
+class EpState : public State {
+ public:
+  virtual ~EpState() = default;
+
+  // clang-format off
+  YADE_CLASS_BASE_DOC_ATTRS_CTOR(EpState, State,
+    "State of a body of :yref:`EpMat`: with O.trackEnergy the work of its contacts so far, half of each with another sphere and all of it at a wall.",
+    ((Real, plasticWork, 0., , "plastic work [J]"))
+    ((Real, adhesionLoss, 0., , "energy that adhesion lost [J]"))
+    ((Real, frictionWork, 0., , "work of friction [J], with partial slip")),
+    createIndex(););
+  // clang-format on
+  REGISTER_CLASS_INDEX(EpState, State);
+};
+REGISTER_SERIALIZABLE(EpState);
 
 class EpMat : public FrictMat {
  public:
@@ -37,6 +53,8 @@ class EpMat : public FrictMat {
   };
 
   virtual ~EpMat() = default;
+
+  shared_ptr<State> newAssocState() const override { return boost::make_shared<EpState>(); }
 
   static const std::vector<Attribute>& attributes() {
     static const std::vector<Attribute> all = declared();

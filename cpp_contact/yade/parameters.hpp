@@ -3,7 +3,9 @@
 #pragma once
 
 #include <cctype>
+#include <cstddef>
 #include <cstdio>
+#include <new>
 
 #include "epdem/contact.hpp"
 #include "epdem/laws.hpp"
@@ -88,9 +90,16 @@ inline constexpr int law_history = most({EPDEM_LAWS(EPDEM_SIZE)});
 inline constexpr int friction_history = numbers_of<SlipState<3, double>>, rolling_history = 3;
 using History = std::array<double, law_history + friction_history + rolling_history>;
 
-// Constants of a contact; they follow from its parameters and are not saved.
+/// Room for the constants of a contact; they follow from its parameters and are not saved.
 #define EPDEM_SIZE(Class) numbers_of<ContactConstants<Class<double>>>,
-using Constants = std::array<double, most({EPDEM_LAWS(EPDEM_SIZE)})>;
+struct Constants {
+  alignas(double) std::byte bytes[sizeof(double) * most({EPDEM_LAWS(EPDEM_SIZE)})];
+
+  template <class Law>
+  ContactConstants<Law>& of() {
+    return *std::launder(reinterpret_cast<ContactConstants<Law>*>(bytes));
+  }
+};
 #undef EPDEM_SIZE
 
 /// delta_max -> deltaMax

@@ -136,7 +136,7 @@ def test_the_modules_of_a_deck_import_nothing_but_the_standard_library():
 
 def test_the_copy_of_a_deck_stands_alone(tmp_path):
     """Another Python, without epdem, without any package, in a folder that was moved."""
-    write_deck_modules(tmp_path / "deck")
+    write_deck_modules(tmp_path / "deck", classes=False)
     shutil.move(tmp_path / "deck", tmp_path / "elsewhere")
     script = "from epdem.yade.deck_modules import law as n; "
     script += "print(n.library_path(), n.Law('thornton', 1e11, 1e9).step(0.01, 0.0, 1e-5)[0])"
@@ -148,7 +148,7 @@ def test_the_copy_of_a_deck_stands_alone(tmp_path):
 
 
 def test_without_the_library_the_place_is_named(tmp_path):
-    write_deck_modules(tmp_path)
+    write_deck_modules(tmp_path, classes=False)
     (tmp_path / "epdem/yade/deck_modules" / numbers.LIBRARY).unlink()
     words = [sys.executable, "-S", "-s", "-c", "from epdem.yade.deck_modules import law; law.library_path()"]
     done = subprocess.run(words, cwd=tmp_path, capture_output=True, text=True, env={})

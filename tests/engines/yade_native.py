@@ -4,7 +4,9 @@
 import fcntl
 import json
 import os
+import shutil
 import subprocess
+import tempfile
 from functools import cache
 from math import isfinite, isinf
 from pathlib import Path
@@ -12,6 +14,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from epdem.cli.main import app
+from epdem.engines.yade import sources
 from epdem.engines.yade.engine import tables, trajectory
 from epdem.engines.yade.launcher import environment
 from epdem.impacts.engine import Trajectory
@@ -19,11 +23,17 @@ from epdem.impacts.plan import Plan
 from epdem.laws.library import laws
 
 ROOT = Path(__file__).resolve().parents[2]
-BUILD = ROOT / "build/yade"
+EXPORTED = ROOT / "build/yade_exported"
 
 needs_source = pytest.mark.skipif(
     not os.environ.get("YADE_SOURCE"), reason="YADE_SOURCE names no source of YADE; its headers are needed"
 )
+
+
+@pytest.fixture
+def classes(monkeypatch):
+    """Decks of YADE import the module."""
+    monkeypatch.setattr("epdem.engines.yade.launcher.module", lambda: module_folder() / "epdem_yade.so")
 
 
 def title(law: str) -> str:
@@ -33,17 +43,25 @@ def title(law: str) -> str:
 
 @cache
 def module_folder() -> Path:
-    """The folder of epdem_yade.so; the first test builds it, others wait."""
+    """The folder of epdem_yade.so, built as `epdem export yade` says; the first test builds it, others wait."""
     if named := os.environ.get("EPDEM_YADE_MODULE"):
         return Path(named)
-    BUILD.mkdir(parents=True, exist_ok=True)
-    with (BUILD / ".lock").open("w") as lock:
+    EXPORTED.mkdir(parents=True, exist_ok=True)
+    with (EXPORTED / ".lock").open("w") as lock:
         fcntl.flock(lock, fcntl.LOCK_EX)
-        source = ["cmake", "-S", str(ROOT / "cpp_contact/yade"), "-B", str(BUILD)]
-        for command in ([*source, f"-DYADE_SOURCE={os.environ['YADE_SOURCE']}"], ["cmake", "--build", str(BUILD)]):
-            done = subprocess.run(command, capture_output=True, text=True, check=False)
+        with tempfile.TemporaryDirectory() as scratch:
+            new = Path(scratch) / "new"
+            app(["export", "yade", "--out", str(new)], standalone_mode=False)
+            for file in (f for f in new.rglob("*") if f.is_file()):
+                place = EXPORTED / file.relative_to(new)
+                if not place.exists() or place.read_bytes() != file.read_bytes():  # else nothing is built again
+                    place.parent.mkdir(parents=True, exist_ok=True)
+                    shutil.copyfile(file, place)
+        for command in sources.commands(EXPORTED)[:2]:
+            text = command.replace("/path/to/yade", os.environ["YADE_SOURCE"])
+            done = subprocess.run(["bash", "-c", text], capture_output=True, text=True, check=False)
             assert done.returncode == 0, done.stdout[-3000:] + done.stderr[-3000:]
-    return BUILD
+    return EXPORTED / "build"
 
 
 HEAD = """
@@ -65,7 +83,7 @@ def yade(text: str, folder: Path, threads: int = 1, head: str = HEAD) -> subproc
     return subprocess.run(
         ["yade", "-n", f"-j{threads}", "-x", script.name],
         cwd=folder,
-        env=environment() | {"OMP_NUM_THREADS": str(threads)},
+        env=environment() | {"OMP_NUM_THREADS": str(threads), "LD_PRELOAD": os.environ.get("EPDEM_YADE_PRELOAD", "")},
         stdin=subprocess.DEVNULL,
         capture_output=True,
         text=True,

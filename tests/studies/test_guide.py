@@ -120,7 +120,7 @@ def test_no_page_has_blocks_that_no_test_runs():
 @pytest.mark.yade
 def test_the_script_for_yade_runs(tmp_path):
     ((_, _, text),) = [b for b in of("python") if b[1] == ["yade"]]
-    write_deck_modules(tmp_path)
+    write_deck_modules(tmp_path, classes=False)
     (tmp_path / "beds.py").write_text(text.replace("/path/to/deck", str(tmp_path)).replace("100000", "500"))
     done = subprocess.run(["yade", "-n", "-x", "beds.py"], cwd=tmp_path, capture_output=True, text=True, timeout=120)
     assert done.returncode == 0 and "Traceback" not in done.stderr, done.stderr

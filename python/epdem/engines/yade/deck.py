@@ -8,14 +8,7 @@ from ...errors import CaseError
 from ...laws.strengths import law_named
 from ...yade.deck_modules import cone
 from ...yade.deck_modules.law import trigger_factor
-
-
-@dataclass(frozen=True)
-class Material:
-    """Keywords of Contacts.material, or of a material of YADE's own, SI."""
-
-    name: str
-    values: dict[str, float]
+from .classes import Functors, Material
 
 
 def strength_values(
@@ -62,6 +55,7 @@ class Deck:
     rigid: bool
     law: str
     native: bool  # YADE's own law
+    functors: Functors | None  # of epdem_yade; None: another law
     ratios: dict[str, float]
     materials: tuple[Material, ...]
     wall_material: str | None
@@ -72,3 +66,4 @@ class Deck:
     time_step: float
     samples: int
     path: str
+    remembers: bool = False  # contacts that ended

@@ -1,5 +1,8 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""YADE with our laws: impacts side by side in one Python deck with a copy of the C library, and bulk scenes."""
+"""YADE with our laws: impacts side by side in one Python deck, and bulk scenes.
+
+Where the module epdem_yade is built, a deck has a copy of it, else a copy of the C library and modules that call it.
+"""
 
 import re
 import shutil
@@ -11,6 +14,7 @@ from typing import overload
 import numpy as np
 
 from ...base import rendering as decks
+from ...base.declarations import declarations
 from ...base.files import write_texts
 from ...base.folders import held
 from ...base.processes import ask, call
@@ -22,15 +26,16 @@ from ...impacts.plan import Plan
 from ...scenes.engine import Resumed, Tables, check_scene
 from ...scenes.plan import ScenePlan
 from ...theory.sources import Source
-from . import scene_deck, scenes
-from .deck import Deck, Group, Material, strength_values
-from .launcher import command, environment, write_deck_modules
+from . import classes, launcher, scene_deck, scenes
+from .classes import Functors, Material, PairValue
+from .deck import Deck, Group, strength_values
+from .launcher import command, environment, module_version, write_deck_modules
 
 INSTALL = "apt-get install yade"
 
 
 class Yade:
-    """YADE with a copy of the C library in the deck; a run has one core."""
+    """YADE with the classes of epdem_yade or the C library in the deck; a run has one core."""
 
     name = "yade"
     source: Source | None = Source(
@@ -44,7 +49,12 @@ class Yade:
     laws: tuple[str, ...] | None = None
     ranks = 1
     features = frozenset({Feature.FRICTION, Feature.DECK, Feature.POSITIONS})
+    of_classes = frozenset({Feature.ADHESION, Feature.DASHPOT, Feature.SPHERE_FRICTION})  # with epdem_yade only
     template = "yade/impact.py.j2"
+
+    def __init__(self) -> None:
+        self.classes = launcher.module() is not None
+        self.features = type(self).features | (self.of_classes if self.classes else set())
 
     def missing(self) -> str | None:
         if shutil.which(command()) is None:
@@ -53,18 +63,39 @@ class Yade:
 
     def version(self) -> str:
         match = re.search(r"version: (\S+)", ask([command(), "--version"], environment()))
-        return f"YADE {match.group(1) if match else '(version unknown)'}"
+        laws = (
+            module_version() if self.classes else "laws of the C library in the deck ('make yade' builds C++ classes)"
+        )
+        return f"YADE {match.group(1) if match else '(version unknown)'}, {laws}"
 
     def material(self, x: Experiment, body: Body, strength: float) -> Material:
-        """The material of one body. Raises CaseError for a strength beyond YADE's law."""
+        """The material of one body. Raises CaseError for a strength beyond the law of a deck without epdem_yade."""
         values = {
             "young_modulus": body.young_modulus,
             "poisson_ratio": body.poisson_ratio,
             "density": body.density if isfinite(body.density) else 1.0,  # of a rigid wall: not used
         }
+        if self.classes:
+            friction = x.oblique.friction if x.oblique else 0.0
+            law = x.law
+            return classes.material(
+                body.material, law.name, law.parameters, strength=strength, friction=friction, **values
+            )
         own = strength_values(x.law.name, x.law.ratios(), strength, values["young_modulus"], body.material)
-        friction = {"friction": x.oblique.friction} if x.oblique else {}
-        return Material(body.material, values | own | friction)
+        rubs = {"friction": x.oblique.friction} if x.oblique else {}
+        return Material(body.material, values | own | rubs)
+
+    def functors(self, x: Experiment) -> Functors | None:
+        """What the functors of epdem_yade are given; None without the module."""
+        if not self.classes:
+            return None
+        declared = declarations()[x.law.name].parameters
+        given = {p.property: x.law.parameters[p.name] for p in declared if p.of_pair}
+        given |= {"en": x.viscous_restitution} if x.viscous_restitution is not None else {}
+        tangential = x.oblique.tangential if x.oblique else None
+        pairs = tuple(PairValue(name, value) for name, value in given.items())
+        shape = "Wall" if isinf(x.target.radius) else "Sphere"
+        return Functors(classes.title(x.law.name), (shape,), pairs, classes.settings(tangential))
 
     def ratios(self, x: Experiment) -> dict[str, float]:
         """The law's dimensionless parameters in the deck."""
@@ -88,6 +119,7 @@ class Yade:
             rigid=x.target.rigid,
             law=x.law.name,
             native=False,
+            functors=self.functors(x),
             anvil=None,
             ratios=self.ratios(x),
             materials=tuple(materials.values()),
@@ -103,17 +135,19 @@ class Yade:
     def check(self, job: Plan | ScenePlan) -> list[str]:
         if isinstance(job, ScenePlan):
             check_scene(self, job, scenes.KINDS)
-            scene_deck.deck(job)
-            return scene_deck.notes(job)
+            scene_deck.deck(job, classes=self.classes)
+            return scene_deck.notes(job, classes=self.classes)
         self.deck(job)
-        return ["friction by its own one spring; theory is that of partial slip"] if job.experiment.oblique else []
+        own_spring = job.experiment.oblique and not self.classes
+        return ["friction by its own one spring; theory is that of partial slip"] if own_spring else []
 
     def write(self, job: Plan | ScenePlan, folder: Path) -> list[Path]:
         if isinstance(job, ScenePlan):
-            return write_texts(folder, scene_deck.files(job)) + write_deck_modules(folder)
+            files = write_texts(folder, scene_deck.files(job, classes=self.classes))
+            return files + write_deck_modules(folder, classes=self.classes, scene=True)
         deck = self.deck(job)
         folder.mkdir(parents=True, exist_ok=True)
-        modules = [] if deck.native else write_deck_modules(folder)
+        modules = [] if deck.native else write_deck_modules(folder, classes=self.classes)
         script = folder / "impact.py"
         script.write_text(decks.render(self.template, deck=deck), encoding="utf-8")
         files = [folder / b.data for b in deck.bodies]
@@ -167,8 +201,10 @@ def tables(plan: Plan) -> list[np.ndarray]:
     groups = side_by_side(plan)
     if plan.experiment.oblique is None:
         return [np.column_stack([g.place, g.velocity[:, 2]]) for g in groups]
+    spins = [np.zeros(plan.n) if g.spin is None else g.spin for g in groups]
     return [
-        np.column_stack([g.place, g.velocity[:, 2], g.velocity[:, 0], g.spin]) for g in groups if g.spin is not None
+        np.column_stack([g.place, g.velocity[:, 2], g.velocity[:, 0], spin])
+        for g, spin in zip(groups, spins, strict=True)
     ]
 
 
@@ -187,6 +223,8 @@ def trajectory(plan: Plan, path: Path, seconds: dict[str, float]) -> Trajectory:
     except (OSError, ValueError) as error:
         raise EngineError(f"{path}: the run left no complete result ({error}); see out.yade beside it") from None
     overlap, velocity = approach(plan, samples[:-1, 0], 0.5 * (samples[:-1, 1] + samples[1:, 1]))
+    if tangential is not None and spin is not None:
+        tangential, spin = tangential[:n] - (tangential[n:] if len(tangential) > n else 0.0), spin[:n]
     return Trajectory(plan.time_step, overlap, samples[:-1, 2, :n].T, velocity, seconds, tangential, spin)
 
 

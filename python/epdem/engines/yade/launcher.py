@@ -1,14 +1,18 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Starting YADE, and the modules in a deck."""
 
+import hashlib
 import os
 import shutil
+from functools import cache
 from pathlib import Path
 
+from ...base import paths
 from ...base.declarations import library_path
 from ...base.files import atomic, write_texts
 from ...yade.deck_modules.law import LIBRARY
 
+MODULE = "epdem_yade.so"
 MODULES = Path(__file__).parents[2] / "yade/deck_modules"
 
 
@@ -17,21 +21,39 @@ def command() -> str:
     return os.environ.get("EPDEM_YADE", "yade")
 
 
-def deck_modules() -> dict[str, str]:
-    """The modules that a deck with a law of ours imports, by path beside the deck."""
+def module() -> Path | None:
+    """The module epdem_yade, which `make yade` builds; None: decks call the C library."""
+    return paths.native(MODULE)
+
+
+@cache
+def module_version() -> str:
+    """Name and hash of the module."""
+    path = module()
+    return f"epdem_yade {hashlib.sha256(path.read_bytes()).hexdigest()[:12]}" if path else "no epdem_yade"
+
+
+def deck_modules(names: str = "*") -> dict[str, str]:
+    """The Python modules of a deck by path beside the deck; names: a pattern."""
     note = '"""The part of epdem that YADE needs; it came with the deck."""\n'
-    files = {"epdem/__init__.py": note, "epdem/yade/__init__.py": note}
+    files = {"epdem/__init__.py": note, "epdem/yade/__init__.py": note, "epdem/yade/deck_modules/__init__.py": note}
     return files | {
-        f"epdem/yade/deck_modules/{p.name}": p.read_text(encoding="utf-8") for p in sorted(MODULES.glob("*.py"))
+        f"epdem/yade/deck_modules/{p.name}": p.read_text(encoding="utf-8") for p in sorted(MODULES.glob(f"{names}.py"))
     }
 
 
-def write_deck_modules(folder: Path) -> list[Path]:
-    """Write `deck_modules` and a copy of the C library beside them into a deck's folder. Raises EngineError."""
-    written = write_texts(folder, deck_modules())
-    copy = folder / "epdem/yade/deck_modules" / LIBRARY
+def write_deck_modules(folder: Path, *, classes: bool, scene: bool = False) -> list[Path]:
+    """Write what a deck imports into its folder. Raises EngineError.
+
+    classes: a copy of epdem_yade, else Python modules and a copy of the C library. scene: the modules of a scene, too.
+    """
+    path = module() if classes else library_path()
+    assert path is not None  # `classes` says so
+    copy = folder / (MODULE if classes else f"epdem/yade/deck_modules/{LIBRARY}")
+    written = write_texts(folder, deck_modules("recorder" if classes else "*")) if scene or not classes else []
+    copy.parent.mkdir(parents=True, exist_ok=True)
     with atomic(copy, sync=False) as temporary:
-        shutil.copyfile(library_path(), temporary)
+        shutil.copyfile(path, temporary)
     return [*written, copy]
 
 

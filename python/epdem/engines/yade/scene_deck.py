@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Scenes in YADE: one plain Python deck, the table of the spheres, modules and a copy of the C library."""
+"""Scenes in YADE: one plain Python deck, the table of the spheres, and modules with a copy of the compiled laws."""
 
 from dataclasses import dataclass
 from itertools import combinations_with_replacement
@@ -12,7 +12,9 @@ from ...errors import CaseError
 from ...scenes import placement
 from ...scenes.plan import ScenePlan
 from ...yade.deck_modules import cone
-from .deck import Material, strength_values
+from . import classes as words
+from .classes import Functors, Material, PairValue, of_pairs
+from .deck import strength_values
 from .scene_parts import EDGES, Facets, Load, Motion, facets, loads, motions, spheres
 from .scene_parts import files as facet_files
 from .scene_parts import refuse as refuse_parts
@@ -20,7 +22,9 @@ from .scene_parts import refuse as refuse_parts
 Square = tuple[tuple[float, ...], ...]
 SCRIPT, SPHERES = "scene.py", "spheres.txt"
 SKIN = 0.25  # of the smallest radius: few sortings and few idle neighbours
-NO_DASHPOT = "contact.tangential_restitution: YADE's law has no dashpot, it was left out"
+NO_DASHPOT = (
+    "contact.tangential_restitution: YADE's law has no dashpot, it was left out; make yade builds a law with it"
+)
 NO_RANKS = "numerics.processors: a scene in YADE has one rank, it was left out"
 
 
@@ -57,6 +61,8 @@ class Deck:
     title: str
     source: str
     law: str
+    native: bool
+    functors: Functors | None  # of epdem_yade; None: contacts of the C library
     ratios: dict[str, float]
     materials: tuple[Material, ...]
     frictions: tuple[tuple[int, int, float], ...]
@@ -82,6 +88,16 @@ class Deck:
         return getattr(self.plan, name)
 
     @property
+    def remembers(self) -> bool:
+        """Whether the deck itself keeps contacts that have ended, of which the plastic work follows."""
+        return bool(self.plan.writes_plastic_work) and self.functors is None
+
+    @property
+    def works(self) -> list[str]:
+        """Attributes of EpState in the frames."""
+        return list(works(self.plan)) if self.functors else []
+
+    @property
     def moving(self) -> bool:
         """Whether walls move by other motions than a constant velocity."""
         return any(m.axis or m.amplitude for phase in self.phases for m in phase.motions)
@@ -102,29 +118,54 @@ class Deck:
         return {"floor": -1, "plate": 1}[self.load]
 
 
-def refuse(p: ScenePlan) -> None:
-    """Raise CaseError for parts of a scene that YADE does not have."""
+def works(p: ScenePlan) -> dict[str, list[str]]:
+    """Attributes of EpState in the frames, and the columns of each."""
+    wanted = {
+        "plasticWork": p.writes_plastic_work,
+        "adhesionLoss": p.writes_adhesive_work,
+        "frictionWork": p.writes_friction_work,
+    }
+    columns = {
+        "plasticWork": ["plastic_work"],
+        "adhesionLoss": ["adhesive_work"],
+        "frictionWork": ["friction_work", "friction_energy"],
+    }
+    return {name: columns[name] for name, there in wanted.items() if there}
+
+
+def refuse(p: ScenePlan, *, classes: bool) -> None:
+    """Raise CaseError for parts of a scene that YADE does not have; classes: whether epdem_yade is built."""
     m, out, s = p.model, p.output, p.case.scene
     if isinstance(s, Parts):
         refuse_parts(p, s)
+    rolling = m.rolling and m.rolling.model
     unknown: dict[str, tuple[object, str]] = {
         "scene.rate": (next((f.rate for f in p.insertions if f.rate), None), "all spheres are there from the start"),
-        "viscous.restitution": (p.case.viscous and p.case.viscous.restitution, "YADE's law has no dashpot"),
-        "contact.tangential": (m.nodes and m.tangential, "YADE's law has one spring"),
-        "contact.rolling": (m.rolling and m.rolling.model, "YADE's law has no rolling resistance"),
+        "contact.rolling": (rolling == "epsd" and rolling, "YADE's laws have cdt and epsd2"),
         "contact.cohesion": (m.cohesion, "YADE's law has no cohesion"),
         "output.restarts": (out.restarts, "a YADE scene is not continued"),
         "output.vtk": (out.vtk, "there is no VTK output; output.particles holds the same"),
         "output.pictures": (out.pictures, "YADE draws none without a display"),
     }
+    of_classes: dict[str, object] = {
+        "viscous.restitution": p.case.viscous and p.case.viscous.restitution,
+        "contact.tangential": m.nodes and m.tangential,
+        "contact.rolling": rolling,
+    }
     for place, (value, reason) in unknown.items():
         if value:
             raise CaseError(f"{place} = {value!r}: {reason}; remove it or use --engine liggghts")
+    for place, value in of_classes.items():
+        if value and not classes:
+            raise CaseError(
+                f"{place} = {value!r}: YADE has it with the module epdem_yade, which is not built; run 'make yade', "
+                "remove it or use --engine liggghts"
+            )
 
 
-def notes(p: ScenePlan) -> list[str]:
+def notes(p: ScenePlan, *, classes: bool) -> list[str]:
     """Sentences on the parts of a case that a YADE scene leaves out."""
-    found = [NO_DASHPOT] if p.model.tangential_restitution is not None else []
+    found = [NO_DASHPOT] if p.model.tangential_restitution is not None and not classes else []
     found += [NO_RANKS] if p.case.numerics.processors else []
     return [*found, EDGES] if _parts(p) and p.scene.meshes else found
 
@@ -133,9 +174,9 @@ def _parts(p: ScenePlan) -> bool:
     return isinstance(p.case.scene, Parts)
 
 
-def _materials(p: ScenePlan, friction: Square) -> tuple[Material, ...]:
-    materials = []
-    for i, t in enumerate(p.model.types):
+def _materials(p: ScenePlan, friction: Square, *, classes: bool) -> tuple[Material, ...]:
+    materials, m = [], p.model
+    for i, t in enumerate(m.types):
         x = p.case.materials[t.material]
         values = {
             "young_modulus": x.young_modulus,
@@ -143,19 +184,36 @@ def _materials(p: ScenePlan, friction: Square) -> tuple[Material, ...]:
             "density": x.density,
             "friction": friction[i][i],
         }
+        if classes:
+            materials.append(words.material(t.name, m.law, m.parameters, strength=t.strength, **values))
+            continue
         own = strength_values(p.model.law, p.model.ratios(), t.strength, x.young_modulus, t.material)
         materials.append(Material(t.name, values | own))
     return tuple(materials)
 
 
 def _pairs(friction: Square) -> tuple[tuple[int, int, float], ...]:
-    """(type, type, friction angle [rad]) of the pairs, from 0, where YADE's own rule, the smaller one, is not meant."""
-    pairs = combinations_with_replacement(range(len(friction)), 2)
-    return tuple(
-        (a, b, cone.friction_angle(friction[a][b]))
-        for a, b in pairs
-        if friction[a][b] != min(friction[a][a], friction[b][b])
-    )
+    """(type, type, friction angle [rad]) of all pairs, from 0, unless each has YADE's own value, the smaller one."""
+    pairs = list(combinations_with_replacement(range(len(friction)), 2))
+    if all(friction[a][b] == min(friction[a][a], friction[b][b]) for a, b in pairs):
+        return ()
+    return tuple((a, b, cone.friction_angle(friction[a][b])) for a, b in pairs)
+
+
+def _functors(p: ScenePlan, friction: Square) -> Functors:
+    """Values of pairs as in LIGGGHTS: with [viscous] its restitution is that of both dashpots."""
+    m = p.model
+    pairs = [PairValue("frictAngle", None, pairs) for pairs in [_pairs(friction)] if pairs]
+    pairs += [of_pairs("en", m.viscous)] if m.viscous else []
+    if m.tangential_restitution is not None:
+        pairs.append(of_pairs("es", m.viscous) if m.viscous else PairValue("es", m.tangential_restitution))
+    pairs += [PairValue("rollingFriction", m.rolling.coefficient)] if m.rolling else []
+    pairs += [of_pairs("workOfAdhesion", m.adhesion)] if m.adheres else []
+    rolling = {"rolling": repr(m.rolling.model)} if m.rolling else {}
+    more = words.settings(m.tangential if m.sliding else None, **rolling, recordStrain=True)
+    walls = {"Facet"} if p.scene.periodic or (_parts(p) and p.scene.meshes) else set()
+    walls |= {"Wall"} if not p.scene.periodic and _walls(p) else set()
+    return Functors(words.title(m.law), ("Sphere", *sorted(walls)), tuple(pairs), more)
 
 
 def _walls(p: ScenePlan) -> tuple[Wall, ...]:
@@ -172,9 +230,9 @@ def _walls(p: ScenePlan) -> tuple[Wall, ...]:
     return tuple(Wall(name, axis, at, corners(at), p.wall_types[name] - 1) for name, axis, at in planes)
 
 
-def deck(p: ScenePlan) -> Deck:
+def deck(p: ScenePlan, *, classes: bool) -> Deck:
     """The YADE deck of a scene. Raises CaseError for what YADE cannot do."""
-    refuse(p)
+    refuse(p, classes=classes)
     m, friction, ends = p.model, p.model.friction, [0, *(phase.end for phase in p.phases)]
     xlo, xhi, ylo, yhi, zlo, zhi = p.box
     sides = () if p.scene.periodic else ((xlo, xhi), (ylo, yhi))
@@ -183,8 +241,10 @@ def deck(p: ScenePlan) -> Deck:
         title=p.case.case.title,
         source=p.case.case.source,
         law=m.law,
+        native=False,
+        functors=_functors(p, friction) if classes else None,
         ratios=m.ratios(),
-        materials=_materials(p, friction),
+        materials=_materials(p, friction, classes=classes),
         frictions=_pairs(friction),
         periodic=p.scene.periodic,
         cell=(xhi - xlo, yhi - ylo, 2.0 * _filled(p)[5] if p.scene.periodic else 0.0),
@@ -212,9 +272,9 @@ def deck(p: ScenePlan) -> Deck:
     )
 
 
-def files(p: ScenePlan) -> dict[str, str]:
+def files(p: ScenePlan, *, classes: bool) -> dict[str, str]:
     """All files of a YADE scene by name; they run by hand in one folder. Raises CaseError."""
-    deck_files = {SCRIPT: decks.render("yade/scene.py.j2", deck=deck(p)), SPHERES: _table(p)}
+    deck_files = {SCRIPT: decks.render("yade/scene.py.j2", deck=deck(p, classes=classes)), SPHERES: _table(p)}
     return deck_files | (facet_files(p) if _parts(p) else {})
 
 

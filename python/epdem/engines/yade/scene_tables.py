@@ -10,20 +10,25 @@ from ...case.parts import Parts
 from ...errors import EngineError
 from ...scenes import columns, contacts
 from ...scenes.plan import ScenePlan
+from .scene_deck import works
 
-# of a contact: number of the sphere and of the other body (from 0; walls after the spheres), overlaps [m]
-CONTACT = ["i", "j", "overlap", "delta_max"]
+# of a contact: number of the sphere and of the other body (from 0; walls after the spheres), overlaps [m]; of the
+# classes also whether the bodies are attached
+CONTACT = ["i", "j", "overlap", "delta_max", "attached"]
 
 
-def _frames(p: ScenePlan, folder: Path, kind: str, every: int, names: list[str]) -> pd.DataFrame:
+def _frames(p: ScenePlan, folder: Path, kind: str, every: int, names: list[str], of_classes: list[str]) -> pd.DataFrame:
     """The frames of a kind that a run of this plan writes, one below the other; other files of such names are the
-    user's. Raises EngineError for a frame that is missing or not whole.
+    user's. Those of a deck with epdem_yade have the columns `of_classes`, too. Raises EngineError for a frame that is
+    missing or not whole.
     """
     frames = []
     for step in range(0, p.steps + 1, every):
         path = folder / f"{kind}.{step}.npy"
         try:
-            table = pd.DataFrame(np.load(path), columns=names)
+            values = np.load(path)
+            more = of_classes if values.shape[1] > len(names) else []
+            table = pd.DataFrame(values, columns=[*names, *more])
         except Exception as error:  # of a damaged head numpy says almost anything
             reason = " ".join(str(error).split()) or type(error).__name__
             raise EngineError(f"{path}: incomplete ({reason}); run the case again") from None
@@ -50,7 +55,9 @@ def rows(p: ScenePlan, log: Path) -> pd.DataFrame:
 
 def particles(p: ScenePlan, folder: Path) -> pd.DataFrame:
     """Every sphere of every frame, SI. Raises EngineError for an incomplete frame."""
-    table = _frames(p, folder, "particles", p.frames, [*columns.PARTICLES, *(columns.SPINS if p.model.spins else [])])
+    names = [*columns.PARTICLES, *(columns.SPINS if p.model.spins else [])]
+    more = [column for found in works(p).values() for column in found]
+    table = _frames(p, folder, "particles", p.frames, names, more)
     if p.scene.periodic:  # YADE does not put back what leaves its periodic cell
         for axis, low, high in zip("xy", p.box[0:4:2], p.box[1:4:2], strict=True):
             table[axis] = (table[axis] - low) % (high - low) + low
@@ -66,16 +73,18 @@ def read(p: ScenePlan, folder: Path, log: Path) -> dict[str, pd.DataFrame]:
         tables["particles"] = particles(p, folder)
     if p.contacts:
         every = _contacts(p, folder, tables["particles"])
-        if p.writes_plastic_work:
+        if p.writes_plastic_work and "plastic_work" not in tables["particles"]:
             tables["particles"]["plastic_work"] = _plastic_work(every, tables["particles"])
-        tables["contacts"] = every[every["overlap"] > 0].reset_index(drop=True)
+        tables["contacts"] = every[(every["overlap"] > 0) | (every["force"] != 0)].reset_index(drop=True)
     return tables
 
 
 def _contacts(p: ScenePlan, folder: Path, spheres: pd.DataFrame) -> pd.DataFrame:
     """Every contact of every frame; with overlap 0 those that ended since the frame before."""
-    raw = _frames(p, folder, "contacts", p.contacts, CONTACT)
-    raw = raw[raw["overlap"] >= 0].reset_index(drop=True)  # what is only near is no contact yet
+    raw = _frames(p, folder, "contacts", p.contacts, CONTACT[:4], CONTACT[4:])
+    raw["delta_max"] = raw["delta_max"].fillna(raw["overlap"])  # of a law without history
+    attached = raw["attached"] > 0 if p.model.adheres else False
+    raw = raw[(raw["overlap"] >= 0) | attached].reset_index(drop=True)  # what is only near is no contact yet
     triangles = [name for name, triangles in p.triangles.items() for _ in triangles]
     of_meshes = triangles if isinstance(p.case.scene, Parts) else [*p.scene.meshes]
     walls = np.array(["", *(w.name for w in p.scene.planes), *of_meshes])

@@ -48,7 +48,7 @@ def velocities(tool: Yade, pairs: Pairs, variant: str, folder: Path) -> np.ndarr
     deck = tool.deck(pairs.plan)
     folder.mkdir(parents=True, exist_ok=True)
     if not deck.native:
-        write_deck_modules(folder)
+        write_deck_modules(folder, classes=tool.classes)
     for name, side in _sides(pairs, variant).items():
         lines = [" ".join(map(decks.number, row)) for row in np.hstack([side.place, side.velocity])]
         (folder / name).write_text("\n".join(["# x y z v_x v_y v_z, SI", *lines, ""]), encoding="utf-8")

@@ -6,7 +6,8 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from ...engines.yade.deck import Anvil, Deck, Material
+from ...engines.yade.classes import Material
+from ...engines.yade.deck import Anvil, Deck
 from ...engines.yade.engine import Yade
 from ...impacts.engine import Feature, Report, silent
 from ...impacts.experiment import Body, Experiment
@@ -24,7 +25,7 @@ class YadeLuding(Yade):
 
     name = "yade-luding"
     laws: tuple[str, ...] | None = None
-    features = Yade.features - {Feature.FRICTION}
+    features, of_classes = Yade.features - {Feature.FRICTION}, frozenset()
 
     def run(self, job: Any, folder: Path, *, ranks: int = 1, report: Report = silent) -> Any:
         path = super().run(job, folder, ranks=ranks, report=report)
@@ -59,4 +60,4 @@ class YadeLuding(Yade):
         anvil = None
         if deck.wall_material:
             anvil = Anvil(x.body.radius, x.target.material, -x.body.radius)
-        return replace(deck, law="Luding", native=True, rigid=False, wall_material=None, anvil=anvil)
+        return replace(deck, law="Luding", native=True, functors=None, rigid=False, wall_material=None, anvil=anvil)

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Prescribed motions of two spheres in YADE: no integrator, every step sets both."""
 
+import math
 from dataclasses import replace
 from pathlib import Path
 
@@ -9,7 +10,8 @@ import numpy as np
 from ...base import rendering as decks
 from ...base.files import write_texts
 from ...base.processes import call
-from ...engines.yade.deck import Deck, Material
+from ...engines.yade.classes import Material, settings
+from ...engines.yade.deck import Deck
 from ...engines.yade.engine import Yade
 from ...engines.yade.launcher import command, environment, write_deck_modules
 from ...errors import EngineError
@@ -19,19 +21,20 @@ SCRIPT, STEPS = "motion.py", "motion.txt"
 
 
 class YadeMotions:
-    """YADE with our laws and its own friction: one spring whose kinematics are YADE's."""
+    """YADE with our laws; without epdem_yade its own friction, one spring whose kinematics are YADE's."""
 
     name = Yade.name
     laws: tuple[str, ...] | None = None
-    features = Yade.features
-    own_spring = True
+
+    def __init__(self) -> None:
+        self.features, self.own_spring = Yade().features, not Yade().classes
 
     def missing(self) -> str | None:
         return Yade().missing()
 
     def loads(self, touch: Touch, motion: Motion, folder: Path) -> Loads:
         write_texts(folder, files(touch, motion))
-        write_deck_modules(folder)
+        write_deck_modules(folder, classes=Yade().classes)
         path = folder / "path.npy"
         path.unlink(missing_ok=True)
         call([command(), "-n", "-x", SCRIPT], folder, log="out.yade", seconds=300, env=environment())
@@ -46,10 +49,15 @@ class YadeMotions:
 def deck(touch: Touch, motion: Motion) -> Deck:
     """The deck of a motion. Raises CaseError for what YADE cannot do."""
     plain = Yade().deck(touch.plan(motion))
+    friction, functors = {"friction": touch.friction}, plain.functors
+    if functors:
+        friction = {"frictionAngle": math.atan(touch.friction)}
+        functors = replace(functors, settings=settings(touch.tangential))
     return replace(
         plain,
         summary=summary(touch, motion),
-        materials=tuple(Material(m.name, m.values | {"friction": touch.friction}) for m in plain.materials),
+        materials=tuple(Material(m.name, {**m.values, **friction}) for m in plain.materials),
+        functors=functors,
         path="path.npy",
     )
 

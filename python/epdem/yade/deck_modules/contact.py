@@ -9,11 +9,11 @@ All history lives in attributes of YADE's `phys` that its conical-damage law doe
     kr, ktw        overlap [m] at the last visit, and where the branch touches the law's (cavity only)
 """
 
-from math import inf, pi
+from math import inf
 from typing import Any
 
 from yade import O
-from yade.wrapper import Facet, FrictMatCDM, Sphere, Wall
+from yade.wrapper import Facet, Sphere, Wall
 
 from . import cone
 from .law import Law
@@ -37,20 +37,6 @@ def effective_radius(interaction: Any) -> float:
 def trigger_pressure(material: Any) -> float:
     """Hertz pressure at which a material yields first [Pa]; inf: never."""
     return inf if material.sigmaMax >= cone.STRONGEST * material.young else material.sigmaMax
-
-
-def survey() -> tuple[float, float]:
-    """(shortest yield overlap that two bodies of the scene can have [m], speed of the fastest [m/s])."""
-    R_min, speed, kinds = inf, 0.0, set()
-    for body in O.bodies:
-        speed = max(speed, body.state.vel.squaredNorm())
-        material = body.material
-        if isinstance(material, FrictMatCDM) and not body.isClump:
-            kinds.add((material.young / (1.0 - material.poisson**2), trigger_pressure(material)))
-            if isinstance(body.shape, Sphere):
-                R_min = min(R_min, body.shape.radius)
-    ratios = [(0.5 * pi * min(s, t) * (1.0 / E + 1.0 / F)) ** 2 for E, s in kinds for F, t in kinds]
-    return 0.5 * R_min * min(ratios, default=inf), speed**0.5
 
 
 class Contact:
@@ -96,15 +82,6 @@ class Contact:
         """What YADE has just applied at overlap u; its loop may have grown R."""
         return cone.force(self.E, self.phys.R, self.radius, self.growth, u)
 
-    def reached(self) -> float:
-        """Largest overlap so far in YADE's own history, 0 before yield."""
-        phys = self.phys
-        if self.radius >= phys.R:
-            return 0.0
-        h = (0.5 * pi * phys.sigmaMax / self.E) ** 2
-        reached: float = (h + self.growth) * phys.R - self.radius * self.growth
-        return reached
-
     def _steer(self, R: float, dent: float, limit: float, step: float = 0.0, rise: float = 0.0) -> None:
         """Follow the branch (R, dent) up to overlap `limit`; beyond, F rises by the share `rise` over `step`."""
         phys = self.phys
@@ -137,13 +114,6 @@ class Contact:
         if self.law.flattens:
             self.phys.kr = self.phys.ktw = u
         return force
-
-    def remember(self, delta_max: float) -> None:
-        """Take over a maximum that passed without us; the branch is that of the law from here."""
-        self.delta_max = self.phys.adhesionForce = delta_max
-        force, self.a_max = self.law.load(self.R_star, delta_max)
-        self._steer(*cone.hertz_branch(self.E, force, self.a_max, delta_max), delta_max)
-        self.phys.kr = self.phys.ktw = delta_max
 
     def unload(self, u: float) -> float:
         """The law's force at u <= delta_max; for a flattened contact also the branch that touches the law's where the

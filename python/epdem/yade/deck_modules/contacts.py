@@ -19,7 +19,6 @@ can be imported. As everywhere in YADE the history of a contact ends when the bo
 """
 
 import builtins
-import warnings
 from itertools import compress
 from math import asin, inf, isfinite, pi
 from operator import attrgetter
@@ -40,10 +39,9 @@ from yade.wrapper import (
 )
 
 from . import cone
-from .contact import FAR, Contact, effective_radius, survey, trigger_pressure
+from .contact import FAR, Contact, effective_radius, trigger_pressure
 from .law import Law, trigger_factor
 
-PATIENCE = 100  # most steps between two looks at the speeds
 LABEL = "epdem_visit"  # of our PyRunner: YADE binds it anew whenever a scene is loaded
 RIGID = 1e30  # modulus [Pa] of a rigid body; YADE cannot take infinity
 
@@ -55,34 +53,25 @@ def visit(*key: Any) -> None:
     """What our PyRunner calls every step; `key` is enough to go on with a loaded scene."""
     manager = _managers.get(key)
     if manager is None:
-        law, interval, tolerance, *ratios = key
-        manager = Contacts(law, interval, tolerance, **dict(ratios))
+        law, *ratios = key
+        manager = Contacts(law, **dict(ratios))
         _managers[key] = manager
     manager.visit()
 
 
 class Contacts:
-    """All contacts of a scene under one law.
+    """All contacts of a scene under one law without adhesion; ratios: its dimensionless parameters."""
 
-    law        one without adhesion; `ratios` are its dimensionless parameters (first_yield_ratio, ...)
-    interval   largest number of steps between two complete searches for new contacts (a change of the number of
-               contacts starts one at once). None: it follows from the fastest body. If a given interval lets a body
-               pass half the smallest yield overlap, there is a warning, and a search in every step while this lasts
-    tolerance  share of the law's force below which a difference is left as it is; 0: the law's force to round-off
-    """
+    columns = 4  # of the table
 
-    def __init__(self, law: str, interval: int | None = None, tolerance: float = 0.0, **ratios: float):
+    def __init__(self, law: str, **ratios: float):
         self.law = law
         self.strength_name = Law(law, 1.0, **ratios).strength_name
         self.factor = trigger_factor(law, **ratios)  # refuses ratios that do not fit together
-        if interval is not None and interval < 1:
-            raise ValueError(f"interval = {interval!r} steps, must be >= 1")
-        self.ratios, self.interval, self.tolerance = ratios, interval, tolerance
-        self.key = (law, interval, tolerance, *sorted(ratios.items()))
+        self.ratios, self.key = ratios, (law, *sorted(ratios.items()))
         self.visits = 0  # of contacts, by Python
-        self.strain: list[float] | None = None  # largest contact radius and overlap over R* so far; None: not recorded
+        self._strain: list[float] | None = None  # see `strain`
         self._laws: dict[tuple[float, float], Law] = {}
-        self._age, self._every, self._lasts = 0, 1, 1
         self._runner: object = None
 
     def material(
@@ -144,22 +133,30 @@ class Contacts:
             PyRunner(command=command, iterPeriod=1, initRun=True, label=LABEL),
         ]
 
+    def strain(self) -> tuple[float, float]:
+        """Largest contact radius and overlap over R* of all contacts since the first call."""
+        self._strain = self._strain or [0.0, 0.0]
+        return self._strain[0], self._strain[1]
+
+    def table(self) -> list[tuple[float, ...]]:
+        """Sphere, other body (from 0), overlap, largest overlap [m] (0: never yielded) of every contact."""
+        return [
+            (*sorted((i.id1, i.id2)), i.geom.penetrationDepth, i.phys.adhesionForce) for i in O.interactions if i.isReal
+        ]
+
     def visit(self) -> None:
         """Between forces and motion of one step: make the forces the law's."""
         runner = builtins.__dict__.get(LABEL)
         if runner is not self._runner:
             self._begin(runner)
-        self._age += 1
-        if self._age >= self._lasts:
-            self._age, (self._every, self._lasts) = 0, self._pace()
-        self._search(self._age % self._every == 0)
+        self._search()
         for contact in list(compress(self._watched, map(_yielding, self._phys))):
             if contact.place < 0 and contact.alive:  # a contact that ended keeps its last flag
                 self._move(contact, contact.geom.penetrationDepth)
         if self._flat:
             self._follow()
-        if self.strain and self._contacts:
-            self._record(self.strain)
+        if self._strain and self._contacts:
+            self._record(self._strain)
 
     def _record(self, strain: list[float]) -> None:
         """Keep the largest contact radius and overlap over R*, after the contacts that yield in this step have moved.
@@ -172,41 +169,20 @@ class Contacts:
 
     def _begin(self, runner: object) -> None:
         """Another scene than in the last visit: only what YADE saves counts."""
-        self._runner, self._age, self._lasts = runner, 0, 1
+        self._runner = runner
         self._collider = next((e for e in O.engines if isinstance(e, InsertionSortCollider)), None)
         self._state: object = None
         self._contacts: list[Contact] = []
         self._apart: list[Any] = []  # pairs of the collider that do not touch
         self._sort()
 
-    def _pace(self) -> tuple[int, int]:
-        """(steps between thorough searches, steps until this is looked at again)."""
-        if self.interval == 1:
-            return 1, PATIENCE
-        shortest, speed = survey()
-        allowed = 0.25 * shortest / (speed * O.dt) if speed > 0.0 else inf  # half of it, at twice the speed
-        if self.interval is None:
-            every = int(min(max(allowed, 1), PATIENCE))
-        elif self.interval <= allowed:
-            every = self.interval
-        else:
-            every = 1
-            warnings.warn(
-                f"epdem: interval = {self.interval} steps is too long: at {speed:.4g} m/s bodies approach by "
-                f"{2.0 * speed * self.interval * O.dt:.4g} m in it, the shortest yield overlap is {shortest:.4g} m. "
-                f"New contacts are searched every step; take interval = {max(1, int(allowed))} or None",
-                RuntimeWarning,
-                stacklevel=2,
-            )
-        return every, max(every, 20)
-
-    def _search(self, thorough: bool) -> None:
+    def _search(self) -> None:
         """Meet new contacts and drop old ones. While the collider rests the pairs are the same: then there is something
         new only if the number of contacts is not that of the known ones, or one of these has ended."""
         state = self._collider and (self._collider.numAction, len(O.interactions))
         renewed = state is None or state != self._state
         same = not renewed and O.interactions.countReal() == len(self._contacts)
-        if same and not (thorough and sum(map(_birth, self._interactions)) != self._births):
+        if same and sum(map(_birth, self._interactions)) == self._births:
             return
         if renewed:
             pairs = O.interactions.all()
@@ -280,28 +256,16 @@ class Contacts:
     def _start(self, contact: Contact) -> None:
         """The first visit: the force of this step, and the course from here."""
         u = contact.geom.penetrationDepth
-        computed, limit, reached = contact.computed(u), contact.yield_overlap, contact.reached()
-        if contact.born < O.iter and max(u, reached) > limit:
-            warnings.warn(
-                f"epdem: a contact had yielded (overlap {u:.4g} m) before it was found and had YADE's own "
-                "force until now; take interval = 1",
-                RuntimeWarning,
-                stacklevel=2,
-            )
-        if reached > max(u, limit) * (1.0 + 1e-9):
-            contact.remember(reached)
-            force = contact.unload(u)
-        else:
-            force = contact.load(u) if u > limit else contact.virgin(u)
+        computed = contact.computed(u)
+        force = contact.load(u) if u > contact.yield_overlap else contact.virgin(u)
         self._correct(contact, force, computed)
 
     def _correct(self, contact: Contact, force: float, computed: float) -> None:
         self.visits += 1
-        if self.strain and contact.delta_max > 0.0:
-            self.strain[0] = max(self.strain[0], contact.a_max / contact.R_star)
-            self.strain[1] = max(self.strain[1], contact.delta_max / contact.R_star)
-        if abs(force - computed) > self.tolerance * force:
-            contact.correct(force, force - computed)
+        if self._strain and contact.delta_max > 0.0:
+            self._strain[0] = max(self._strain[0], contact.a_max / contact.R_star)
+            self._strain[1] = max(self._strain[1], contact.delta_max / contact.R_star)
+        contact.correct(force, force - computed)
 
     def _move(self, contact: Contact, u: float) -> None:
         """A contact that has yielded in this step, or a flattened one that has left its branch."""
@@ -328,3 +292,24 @@ class Contacts:
                 self._move(contact, float(u[k]))
             else:  # its numbers stay as they were until the next search
                 self._low[k], self._high[k] = -inf, inf
+
+
+class Remembering(Contacts):
+    """Keeps every contact that has yielded until its end is written: YADE deletes it when the bodies separate."""
+
+    def __init__(self, law: str, **ratios: float):
+        super().__init__(law, **ratios)
+        self.dented: dict[Contact, bool] = {}  # in the order in which they yielded
+
+    def _correct(self, contact: Contact, force: float, computed: float) -> None:
+        super()._correct(contact, force, computed)
+        if contact.delta_max > 0.0:
+            self.dented[contact] = True
+
+    def table(self) -> list[tuple[float, ...]]:
+        """As above, with overlap 0 of bodies that have separated since the last table."""
+        rows = super().table()
+        for contact in [c for c in self.dented if not c.alive]:
+            rows.append((*sorted(contact.bodies), 0.0, contact.delta_max))
+            del self.dented[contact]
+        return rows

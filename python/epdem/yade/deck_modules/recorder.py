@@ -3,29 +3,46 @@
 
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Any
+from typing import Any, Protocol
 
 import numpy as np
 from yade import O
-
-from .contact import Contact
-from .contacts import Contacts
 
 KINDS = ("force", "torque")  # of loads
 STRAINS = ("largest_radius_ratio", "largest_overlap_ratio")  # contact radius and overlap over R*, so far
 
 
-class Remembering(Contacts):
-    """Keeps every contact that has yielded until its end is written: YADE deletes it when the bodies separate."""
+class Contacts(Protocol):
+    """The contacts of a scene under one law; columns: of the table."""
 
-    def __init__(self, law: str, interval: int | None = None, tolerance: float = 0.0, **ratios: float):
-        super().__init__(law, interval, tolerance, **ratios)
-        self.dented: dict[Contact, bool] = {}  # in the order in which they yielded
+    columns: int
 
-    def _correct(self, contact: Contact, force: float, computed: float) -> None:
-        super()._correct(contact, force, computed)
-        if contact.delta_max > 0.0:
-            self.dented[contact] = True
+    def strain(self) -> tuple[float, float]:
+        """Largest contact radius and overlap over R* so far."""
+
+    def table(self) -> list[tuple[float, ...]]:
+        """Sphere, other body (from 0), overlap and largest overlap [m] of each contact; more columns may follow."""
+
+
+class Classes:
+    """The contacts of epdem_yade; law: its functor, with recordStrain."""
+
+    columns = 5
+
+    def __init__(self, law: Any):
+        self.law = law
+
+    def strain(self) -> tuple[float, float]:
+        """Largest contact radius and overlap over R* so far."""
+        return self.law.largestRadiusRatio, self.law.largestOverlapRatio
+
+    def table(self) -> list[tuple[float, ...]]:
+        """As above, and 1 if the bodies are attached."""
+        return [
+            (*sorted((i.id1, i.id2)), i.geom.penetrationDepth, i.phys.deltaMax, float(i.phys.contactRadius > 0.0))
+            for i in O.interactions
+            if i.isReal
+        ]
 
 
 class Recorder:
@@ -41,6 +58,7 @@ class Recorder:
     load      (column, body, sign): the mean of sign times the body's force along z since the last row; None: none
     loads     (wall, its bodies, origin) of walls: means of their force and, where an origin [m] is given, torque
     moving    bodies of walls that move: the mean of the power that they give, wall_power; none: no such column
+    works     attributes of EpState in the frames; after frictionWork stands the elastic energy of friction
     """
 
     def __init__(
@@ -59,6 +77,7 @@ class Recorder:
         load: tuple[str, int, float] | None = None,
         loads: Sequence[tuple[str, Sequence[int], Sequence[float] | None]] = (),
         moving: Sequence[int] = (),
+        works: Sequence[str] = (),
     ):
         self.folder, self.spheres, self.contacts, self.low, self.high = folder, spheres, contacts, low, high
         self.every, self.frames, self.spins, self.tables, self.load = every, frames, spins, tables, load
@@ -66,12 +85,14 @@ class Recorder:
         self.mass = np.array([s.mass for s in self.states])
         self.free = np.array([[not s.blockedDOFs] for s in self.states])
         self.gravity = np.array([0.0, 0.0, fall])
-        self.loads, self.moving = loads, moving
+        self.loads, self.moving, self.works = loads, moving, works
+        if works:
+            O.trackEnergy = True
         kinds = [f"{name}_{kind}" for name, _, origin in loads for kind in KINDS[: 1 if origin is None else 2]]
         self.names = ["wall_power"] * bool(moving) + [f"{kind}_{axis}" for kind in kinds for axis in "xyz"]
         self._sums = np.zeros(len(self.names))
         self._sum, self._samples = 0.0, 0
-        self.strain = contacts.strain = [0.0, 0.0]
+        contacts.strain()  # from now on
         names = [*STRAINS, *([load[0]] if load else []), *self.names]
         print("Step particles kinetic_energy" + "".join(f" {name}" for name in names))
 
@@ -119,7 +140,7 @@ class Recorder:
         x, v = self.positions()[:, 3 - len(self.low) :], self.velocities()
         inside = int(((x > self.low) & (x < self.high)).all(axis=1).sum())
         energy = float(0.5 * self.mass @ (v * v).sum(axis=1))
-        line = f" {O.iter} {inside} {energy:.10g} {self.strain[0]:.10g} {self.strain[1]:.10g}"
+        line = f" {O.iter} {inside} {energy:.10g}" + "".join(f" {x:.10g}" for x in self.contacts.strain())
         if self.load:
             line += f" {self._sum / self._samples:.10g}"
         line += "".join(f" {x / self._samples:.10g}" for x in self._sums)
@@ -135,18 +156,21 @@ class Recorder:
             torque = np.array([tuple(O.forces.t(k)) for k in range(len(self.states))])
             spin = np.array([tuple(s.angVel) for s in self.states])
             columns += [*(spin + self.free * (0.5 * O.dt * torque / inertia[:, None])).T]
+        columns += [np.array([getattr(s, name) for s in self.states]) for name in self.works]
+        if "frictionWork" in self.works:
+            columns.append(self.friction_energy())
         np.save(self.folder / f"particles.{O.iter}.npy", np.column_stack(columns))
 
-    def contact_table(self) -> None:
-        """Write every contact: sphere, other body (from 0), overlap, largest overlap [m] (0: never yielded).
+    def friction_energy(self) -> Any:
+        """Elastic energy of friction of each sphere [J]: half of a contact with another one, all of it at a wall."""
+        energy = np.zeros(len(self.states))
+        for i in O.interactions:
+            if i.isReal:
+                spheres = [k for k in (i.id1, i.id2) if k < len(energy)]
+                energy[spheres] += i.phys.frictionEnergy / len(spheres)
+        return energy
 
-        Overlap 0: the bodies have separated since the last table.
-        """
-        rows = [
-            (*sorted((i.id1, i.id2)), i.geom.penetrationDepth, i.phys.adhesionForce) for i in O.interactions if i.isReal
-        ]
-        if isinstance(self.contacts, Remembering):
-            for contact in [c for c in self.contacts.dented if not c.alive]:
-                rows.append((*sorted(contact.bodies), 0.0, contact.delta_max))
-                del self.contacts.dented[contact]
-        np.save(self.folder / f"contacts.{O.iter}.npy", np.array(rows, float).reshape(-1, 4))
+    def contact_table(self) -> None:
+        """Write every contact. Overlap 0: the bodies have separated since the last table."""
+        rows = self.contacts.table()
+        np.save(self.folder / f"contacts.{O.iter}.npy", np.array(rows, float).reshape(-1, self.contacts.columns))

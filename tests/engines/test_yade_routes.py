@@ -1,0 +1,164 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Engine `yade` with the classes of epdem_yade: the numbers of the C library in a deck, of theory and of LIGGGHTS."""
+
+import json
+
+import numpy as np
+import pytest
+from test_yade_native import CASES, prepared
+from yade_native import classes, module_folder, needs_source
+
+from epdem.base.declarations import declarations
+from epdem.case.scene import parse
+from epdem.engines import doctor, engine
+from epdem.engines.yade import launcher, scene_deck
+from epdem.errors import CaseError
+from epdem.impacts.measurement import measure
+from epdem.impacts.run import run as run_impacts
+from epdem.scenes.plan import plan
+from epdem.verification.motion.compare import compare
+from scenes.parts_cases import FLOOR, parts
+from scenes.scene_runs import run as run_scene
+from scenes.scene_runs import write_case
+
+pytestmark = [pytest.mark.yade, needs_source]
+
+__all__ = ["classes"]
+LAWS = [name for name, law in declarations().items() if not law.adheres]
+MEASURED = ("e_n", "contact_time", "force_max", "overlap_max", "residual_overlap")
+HERE = launcher.module
+
+
+@pytest.fixture
+def both(monkeypatch, tmp_path):
+    """Runs a job by the C library and by the classes: what each gives."""
+
+    def run(job):
+        found = []
+        for name, module in (("library", lambda: None), ("classes", lambda: module_folder() / launcher.MODULE)):
+            monkeypatch.setattr(launcher, "module", module)
+            found.append(job(tmp_path / name))
+            assert len([*(tmp_path / name).rglob(launcher.MODULE)]) == (name == "classes")
+        return found
+
+    return run
+
+
+def impacts(p, folder):
+    tool = engine("yade")
+    tool.write(p, folder)
+    return tool.run(p, folder)
+
+
+@pytest.mark.parametrize(("law", "kind"), [*((law, "sphere-sphere") for law in LAWS), ("cavity", "sphere-wall")])
+def test_impacts_are_those_of_the_c_library_in_a_deck(law, kind, both):
+    other = {"kind": kind, "target": {"material": "brass", "radius": "4 mm"}} if kind == "sphere-sphere" else {}
+    p, _ = prepared(law=law, speeds=["0.05 m/s", "3 m/s", "50 m/s"], **other)
+    library, ours = (measure(p, found) for found in both(lambda folder: impacts(p, folder)))
+    for name in MEASURED:
+        one, two = getattr(library, name), getattr(ours, name)
+        scale = library.overlap_max if name == "residual_overlap" else one
+        assert np.abs((two - one) / scale).max() <= 1e-9, name
+
+
+def test_spheres_in_a_box_are_those_of_the_c_library_in_a_deck(both, tmp_path):
+    """Without friction, of which the C library in a deck has none; plastic work and strain by two ways."""
+    data = parts()
+    data["scene"]["phase"][0]["duration"] = "40 ms"
+    path = write_case(data, tmp_path)
+    library, ours = (o.results for o in both(lambda folder: run_scene(path, "yade", out=folder)))
+    one, two = library.energy_balance, ours.energy_balance
+    assert [*one] == [*two] and one["plastic"].iloc[-1] > 0.1 * one["kinetic"].max()
+    scale = one["kinetic"].max()
+    for name in set(one) - {"step", "time"}:
+        assert np.abs(two[name] - one[name]).max() <= 1e-9 * scale, name
+    assert len(ours.contacts) == len(library.contacts)
+    assert ours.rows["largest_radius_ratio"].to_numpy() == pytest.approx(library.rows["largest_radius_ratio"], rel=1e-9)
+
+
+def test_prescribed_motions_with_friction_have_the_forces_of_the_embedded_engine(classes, tmp_path):
+    outcome = compare(CASES / "oblique_steel.toml", engines=["embedded", "yade"], laws=["cavity"], out=tmp_path)
+    rows = outcome.rows[outcome.rows["engine"] == "yade"]
+    assert outcome.passed and set(rows["friction"]) == {"partial_slip"}
+    assert rows[["normal", "force", "torque"]].to_numpy().max() < 1e-9
+
+
+def error_of_psi_2(p, prediction, found):
+    rebound = measure(p, found).rebound
+    return np.nanmax(np.abs(rebound.psi_2 - p.each(prediction.rebound.psi_2)))
+
+
+@pytest.mark.liggghts
+def test_the_rebound_of_maw_barber_and_fawcett_is_at_least_as_good_as_that_of_liggghts(classes, tmp_path):
+    p, prediction = prepared("oblique_steel")
+    errors = {}
+    for name in ("yade", "liggghts"):
+        tool = engine(name)
+        tool.write(p, tmp_path / name)
+        errors[name] = error_of_psi_2(p, prediction, tool.run(p, tmp_path / name))
+    assert errors["yade"] <= 1.01 * errors["liggghts"] < 0.03, errors
+
+
+def test_oblique_impacts_of_two_spheres_have_the_rebound_of_theory(classes, tmp_path):
+    """At low speed, where the normal does not turn during the contact."""
+    impact = {"kind": "sphere-sphere", "target": {"material": "steel", "radius": "6 mm"}, "speeds": ["0.1 m/s"]}
+    p, prediction = prepared("oblique_steel", **impact, angles=["10 deg", "30 deg", "50 deg", "65 deg"])
+    assert error_of_psi_2(p, prediction, impacts(p, tmp_path)) < 0.02
+
+
+@pytest.mark.parametrize("case", ["viscous_steel", "adhesion_thornton_1998"])
+def test_a_case_that_needs_the_classes_passes_its_checks(case, classes, tmp_path):
+    outcome = run_impacts(CASES / f"{case}.toml", engines=[engine("yade")], out=tmp_path)
+    assert outcome.passed
+
+
+def test_doctor_and_results_say_which_laws_yade_runs(classes, tmp_path, monkeypatch):
+    (found,) = (f for f in doctor.examine() if f.part == "engine yade")
+    assert "epdem_yade " in found.detail
+    monkeypatch.setattr(launcher, "module", lambda: None)
+    (found,) = (f for f in doctor.examine() if f.part == "engine yade")
+    assert "C library" in found.detail and "make yade" in found.detail
+
+
+def test_the_rolling_model_that_the_classes_lack_is_refused():
+    data = parts() | {"contact": {"friction": 0.4, "rolling": {"model": "epsd", "coefficient": 0.1, "damping": 0.3}}}
+    with pytest.raises(CaseError, match=r"contact\.rolling = 'epsd': YADE's laws have cdt and epsd2; remove it or use"):
+        scene_deck.deck(plan(parse(data)), classes=True)
+
+
+GRANULAR = {
+    "friction": ({"friction": 0.4, "tangential": "partial_slip"}, None, "thornton"),
+    "dashpot and rolling": ({"friction": 0.4, "rolling": {"coefficient": 0.1}}, {"restitution": 0.7}, "thornton"),
+    "adhesion": ({"friction": 0.4}, None, "thornton_ning"),
+}
+
+
+@pytest.mark.liggghts
+@pytest.mark.parametrize("name", GRANULAR)
+def test_spheres_that_fall_from_the_same_places_have_the_energies_of_liggghts(name, classes, tmp_path):
+    contact, viscous, law = GRANULAR[name]
+    draw = np.random.default_rng(1)
+    places = [(4.2 * i, 4.2 * j, 2.2 + 4.2 * k) for i in (-1, 0, 1) for j in (-1, 0, 1) for k in range(3)]
+    lines = [
+        ",".join(f"{1e-3 * (x + 0.2 * draw.random())!r}" for x in place)
+        + f",{1.5e-3 + 4e-4 * draw.random()!r},0,0,-0.5"
+        for place in places
+    ]
+    (tmp_path / "spheres.csv").write_text("\n".join(["x,y,z,radius,vx,vy,vz", *lines, ""]))
+    sides = (("left", "x", -6.5), ("right", "x", 6.5), ("front", "y", -6.5), ("back", "y", 6.5))
+    walls = [{"name": n, "kind": "plane", "axis": a, "at": f"{x} mm", "material": "steel"} for n, a, x in sides]
+    table = {"name": "table", "file": str(tmp_path / "spheres.csv"), "material": "glass"}
+    data = parts(wall=[FLOOR, *walls], fill=[table], phase=[{"name": "fall", "duration": "40 ms"}])
+    data |= {"contact": contact, "law": {"name": law}} | ({"viscous": viscous} if viscous else {})
+    for material in data["materials"].values():
+        material |= {"surface_energy": "0.1 J/m^2"} if law == "thornton_ning" else {}
+    data["numerics"] = {"time_step": "1e-5 s"}
+    found = {}
+    for tool in ("yade", "liggghts"):
+        found[tool] = run_scene(write_case(data, tmp_path), tool, out=tmp_path / tool).results.energy_balance
+    yade, liggghts = found["yade"], found["liggghts"]
+    assert [*yade] == [*liggghts] and ("plastic" in yade) and (name != "friction" or "springs" in yade)
+    scale = liggghts["kinetic"].max() + np.ptp(liggghts["gravity"])
+    for column in set(yade) - {"step", "time"}:
+        off = np.abs(yade[column] - liggghts[column]).max()
+        assert off <= 0.01 * scale, (column, json.dumps([off, scale]))
