@@ -86,7 +86,6 @@ class _File:
 
     @property
     def name(self) -> str:
-        """The name of the case."""
         return str(self.model.name)
 
     @property
@@ -96,7 +95,6 @@ class _File:
 
     @property
     def title(self) -> str:
-        """The title of the case."""
         return str(self.model.case.title)
 
     def __eq__(self, other: object) -> bool:

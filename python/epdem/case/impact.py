@@ -220,7 +220,6 @@ class Case(Frozen):
 
     @property
     def name(self) -> str:
-        """The name of the case."""
         return self.case.name
 
 

@@ -53,7 +53,6 @@ class RotateMove(_Move):
 
     @property
     def unit_axis(self) -> Vector3:
-        """The axis with the length 1."""
         return unit(self.axis)
 
 
@@ -86,7 +85,6 @@ class PressMove(_Move):
 
     @property
     def unit_direction(self) -> Vector3:
-        """The direction with the length 1."""
         return unit(self.direction)
 
 
@@ -146,7 +144,6 @@ class Phase(Frozen):
 
     @property
     def moves(self) -> dict[str, Move]:
-        """The motion of each wall that moves."""
         return {m.wall: m for m in self.move}
 
     @property

@@ -231,7 +231,6 @@ class Parts(Frozen):
 
     @property
     def leading(self) -> Particles:
-        """The spheres whose impacts on a wall stand for the scene."""
         return self.filled[0]
 
     @property
@@ -262,12 +261,10 @@ class Parts(Frozen):
 
     @property
     def wall_materials(self) -> list[str]:
-        """Every material of a wall, once."""
         return list(dict.fromkeys(w.material for w in self.wall))
 
     @property
     def named_materials(self) -> list[tuple[str, str]]:
-        """(place, material) of every name of a material."""
         found = [(f"scene.wall.{w.name}.material", w.material) for w in self.wall]
         found += [(f"scene.fill.{f.name}", p.material) for f in self.random_fills for p in f.particles]
         files = (f for f in self.fill if isinstance(f, FileFill))

@@ -150,7 +150,6 @@ class SceneCase(Frozen):
 
     @property
     def name(self) -> str:
-        """The name of the case."""
         return self.case.name
 
 

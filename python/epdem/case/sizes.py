@@ -124,7 +124,6 @@ class Normal(_Spread):
     deviation: Length
 
     def share_below(self, radius: float) -> float:
-        """See `_Spread`."""
         return NormalDist(self.mean, self.deviation).cdf(radius)
 
 
@@ -135,7 +134,6 @@ class LogNormal(_Spread):
     ratio: Annotated[float, Quantity("1", above=1.0)]  # geometric standard deviation
 
     def share_below(self, radius: float) -> float:
-        """See `_Spread`."""
         return NormalDist().cdf(math.log(radius / self.median) / math.log(self.ratio))
 
 

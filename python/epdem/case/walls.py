@@ -49,7 +49,6 @@ class Room(Frozen):
 
     @property
     def volume(self) -> float:
-        """[m^3]."""
         xlo, xhi, ylo, yhi, zlo, zhi = self.limits
         return (xhi - xlo) * (yhi - ylo) * (zhi - zlo)
 
@@ -68,7 +67,6 @@ class Upright(Frozen):
 
     @property
     def radius(self) -> float:
-        """[m]."""
         return self.diameter / 2
 
     @property
@@ -79,7 +77,6 @@ class Upright(Frozen):
 
     @property
     def volume(self) -> float:
-        """[m^3]."""
         return math.pi * self.radius**2 * (self.z[1] - self.z[0])
 
 
@@ -182,7 +179,6 @@ class CylinderWall(_Round):
     diameter: Length
 
     def diameters_of_ends(self) -> tuple[float, float]:
-        """At `from` and at `to` [m]."""
         return self.diameter, self.diameter
 
 
@@ -193,7 +189,6 @@ class ConeWall(_Round):
     diameters: Annotated[list[Length], Field(min_length=2, max_length=2)]
 
     def diameters_of_ends(self) -> tuple[float, float]:
-        """At `from` and at `to` [m]."""
         return self.diameters[0], self.diameters[1]
 
 

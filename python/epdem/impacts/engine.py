@@ -108,37 +108,31 @@ def is_text(file: Path) -> bool:
     return file.suffix != ".so"
 
 
-class Installable(Protocol):
-    """What may be missing here: an engine of any kind."""
+class Tool(Protocol):
+    """An engine of any kind: its laws, its features, and whether it can run here."""
 
     name: str
+    laws: tuple[str, ...] | None
+    features: frozenset[Feature]
 
     def missing(self) -> str | None:
         """None if it can run here, else a sentence with the command that installs it."""
 
 
-def require(*tools: Installable) -> None:
+def require(*tools: Tool) -> None:
     """Raise EngineError for the first of `tools` that cannot run here."""
     for tool in tools:
         if reason := tool.missing():
             raise EngineError(f"engine {tool.name}: {reason}")
 
 
-class HasLaws(Protocol):
-    """An engine of any kind, with its laws."""
-
-    name: str
-    laws: tuple[str, ...] | None
-    features: frozenset[Feature]
-
-
-def has_law(tool: HasLaws, law: str) -> bool:
+def has_law(tool: Tool, law: str) -> bool:
     """Whether an engine has a law of epdem."""
     named = tool.laws is None or law in tool.laws
     return named and (Feature.ADHESION in tool.features or not law_named(law).adheres)
 
 
-def check_law(tool: HasLaws, law: str) -> None:
+def check_law(tool: Tool, law: str) -> None:
     """Raise CaseError for a law that an engine does not have."""
     if not has_law(tool, law):
         known = "no law with adhesion" if tool.laws is None else f"{', '.join(tool.laws)} only"

@@ -35,7 +35,6 @@ class Plan:
 
     @property
     def n(self) -> int:
-        """How many impacts."""
         return self.speed.size
 
     @property

@@ -46,12 +46,10 @@ class Phase:
 
     @property
     def name(self) -> str:
-        """The name of the phase."""
         return self.case.name
 
     @property
     def moves(self) -> dict[str, Move]:
-        """The motion of each wall that moves."""
         return self.case.moves
 
     @property
@@ -89,7 +87,6 @@ class ScenePlan:
 
     @property
     def steps(self) -> int:
-        """All steps of the run."""
         return self.phases[-1].end
 
     @property
@@ -141,7 +138,6 @@ class ScenePlan:
 
     @property
     def output(self) -> Output:
-        """The output that the case requests."""
         return self.case.output
 
     @property

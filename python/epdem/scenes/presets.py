@@ -26,12 +26,10 @@ class Preset(Parts):
 
     @property
     def fall_height(self) -> float:
-        """The height of the highest free fall [m]."""
         return self.bounds[0]
 
     @property
     def drive(self) -> float:
-        """The speed that stream, plate or drum add to free fall [m/s]."""
         return self.bounds[1]
 
 

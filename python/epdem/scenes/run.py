@@ -45,7 +45,6 @@ class SceneOutcome:
 
     @property
     def case(self) -> SceneCase:
-        """The case that was run."""
         return self.plan.case
 
     @property

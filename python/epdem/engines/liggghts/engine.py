@@ -148,7 +148,6 @@ class Liggghts:
         return self.read(job, folder, without=resumed.lost), resumed
 
     def read(self, plan: ScenePlan, folder: Path, *, without: Collection[int] = ()) -> Tables:
-        """The tables of a scene; see `scenes.read`."""
         return scenes.read(plan, folder, without=without)
 
 

@@ -49,12 +49,10 @@ class Sweep:
 
     @cached_property
     def tables(self) -> dict[str, Any]:
-        """The TOML tables of the case."""
         return tomlkit.parse(self.case).unwrap()
 
     @property
     def scene(self) -> bool:
-        """Whether the points are bulk scenes."""
         return is_scene(self.tables)
 
     @cached_property
@@ -65,7 +63,6 @@ class Sweep:
 
     @property
     def default_folder(self) -> Path:
-        """The default folder of its points."""
         return results_folder(None, f"{self.name}_sweep")
 
     @cached_property

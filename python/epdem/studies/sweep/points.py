@@ -47,7 +47,6 @@ class Range:
         return f"{text} {self.unit}" if self.unit else float(text)
 
     def values(self) -> list[Value]:
-        """All values of a grid."""
         assert self.count is not None
         return list(dict.fromkeys(self.at(k / (self.count - 1)) for k in range(self.count)))
 
@@ -63,7 +62,6 @@ class Listed:
         return self.all[min(int(share * len(self.all)), len(self.all) - 1)]
 
     def values(self) -> list[Value]:
-        """All values."""
         return list(self.all)
 
 

@@ -81,13 +81,10 @@ def _data(a: Assembly) -> str:
 
 
 class LiggghtsAssemblies:
-    """LIGGGHTS with our models, or with one of its own."""
+    """LIGGGHTS with epdem's models, or with a model of LIGGGHTS."""
 
     name = Liggghts.name
     own_elastic = "hertz"  # its own elastic model
-
-    def missing(self) -> str | None:
-        return launcher.missing()
 
     def write(self, plan: AssemblyPlan, folder: Path, *, model: str | None = None) -> None:
         """Everything that `run` needs. `model`: one of the engine's own, elastic ones instead of the law's."""
@@ -125,6 +122,5 @@ class LiggghtsAssemblies:
 
 def assembly_engine() -> LiggghtsAssemblies:
     """The engine of assemblies. Raises EngineError if it cannot run here."""
-    tool = LiggghtsAssemblies()
-    require(tool)
-    return tool
+    require(Liggghts())
+    return LiggghtsAssemblies()
