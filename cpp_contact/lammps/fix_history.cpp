@@ -22,6 +22,10 @@ FixHistory::FixHistory(LAMMPS* lmp, int count, char** word) : Fix(lmp, count, wo
   peratom_flag = count > 3;
   size_peratom_cols = columns;
   peratom_freq = 1;
+  vector_flag = 1;
+  size_vector = 2;
+  extvector = 0;
+  global_freq = 1;
   FixHistory::grow_arrays(atom->nmax);
   atom->add_callback(Atom::GROW);
   atom->add_callback(Atom::RESTART);
@@ -65,6 +69,17 @@ void FixHistory::book(const kernels::Block& b, int k, int i, double share, const
   if (!models.books_friction) return;
   row[friction_work] += share * b.friction_work.a[k];
   row[friction_energy] += share * b.spring_energy.a[k];
+}
+
+void FixHistory::note_strain(const kernels::Block& b) {
+  strain_[0] = std::max(strain_[0], *std::max_element(b.radius_ratio, b.radius_ratio + kernels::most_lanes));
+  strain_[1] = std::max(strain_[1], *std::max_element(b.overlap_ratio, b.overlap_ratio + kernels::most_lanes));
+}
+
+double FixHistory::compute_vector(int which) {
+  double most;
+  MPI_Allreduce(&strain_[which], &most, 1, MPI_DOUBLE, MPI_MAX, world);
+  return most;
 }
 
 void FixHistory::remember(int i, tagint partner, const double* values, bool mirrored) {

@@ -25,6 +25,9 @@ class FixHistory : public LAMMPS_NS::Fix {
 
   double* at(int i, int slot) { return page_.data() + first_[i] + long(layout_.values) * slot; }
 
+  /// Whether the list, not the atoms, holds the histories.
+  bool at_list() const { return page_holds_; }
+
   /// The list is in use, also that of the run before.
   void resume() { page_holds_ = layout_.values > 0; }
 
@@ -40,6 +43,10 @@ class FixHistory : public LAMMPS_NS::Fix {
   enum Column { plastic_work, elastic_energy, loaded_contacts, friction_work, friction_energy, adhesive_work, columns };
   /// Adds `share` of the energies of contact k of a block to atom i.
   void book(const kernels::Block& b, int k, int i, double share, const Models& models);
+  /// Notes the largest contact radius and overlap over R* of a block.
+  void note_strain(const kernels::Block& b);
+  /// Both, of all contacts of the run and those before.
+  double compute_vector(int which) override;
   /// At the start of an evaluation that counts.
   void open_energies(int atoms);
 
@@ -73,6 +80,7 @@ class FixHistory : public LAMMPS_NS::Fix {
   Layout layout_;
   std::vector<double> identity_;  // of the models whose histories these are
   double evaluations_ = 0.0;
+  double strain_[2] = {};
   bool page_holds_ = false;                // else the atoms hold the histories
   int rows_ = 0;                           // of array_atom
   std::vector<double> page_;               // by slot of the list

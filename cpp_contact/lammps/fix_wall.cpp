@@ -35,9 +35,12 @@ FixWall::FixWall(LAMMPS* lmp, int count, char** word)
   create_attribute = 1;
   restart_peratom = 1;
   vector_flag = 1;
-  size_vector = 3;
+  size_vector = sums;
   extvector = 1;
   global_freq = 1;
+  local_flag = 1;
+  size_local_cols = local_columns;
+  local_freq = 1;
 }
 
 void FixWall::read(int first, int count, char** word, int most) {
@@ -76,10 +79,11 @@ void FixWall::init() {
     put_constants(*words_.models.law, pair_->words_of(type, place_).material, words_.material, words_.coefficients,
                   constants_.data() + most_constants * type);
   pass_ = {};
-  pass_.damped = pass_.viscous = words_.coefficients.restitution > 0.0;
+  pass_.damped = words_.coefficients.tangential_restitution > 0.0;
+  pass_.viscous = words_.coefficients.normal_restitution > 0.0;
   pass_.rolling = words_.models.rolling;
   pass_.cohesion = words_.models.cohesion;
-  if (pass_.damped)
+  if (pass_.damped || pass_.viscous)
     for (Fix* fix : modify->get_fix_list())
       if (fix->rigid_flag)
         error->all(FLERR,
@@ -96,6 +100,7 @@ void FixWall::post_force(int) {
   if (!counts) before = held_, count_before = count_;
   pass_.dt = update->dt;
   pass_.work = counts && pair_->energies();
+  pass_.strain = pair_->strain();
   const double* rows[] = {atom->v[0], atom->omega[0]};
   if (atom->nlocal >= atom->nmax)
     for (int k = 0; k < 2; ++k) {
@@ -105,7 +110,8 @@ void FixWall::post_force(int) {
     }
   pass_.v = rows[0];
   pass_.omega = rows[1];
-  std::fill_n(sum_, 3, 0.0);
+  std::fill_n(sum_, sums, 0.0);
+  local_.clear();
   begin();
 
   kernels::Block& b = *block_;
@@ -125,6 +131,7 @@ void FixWall::post_force(int) {
       b.material[n] = constants_.data() + most_constants * atom->type[i];
       b.radius_i.a[n] = atom->radius[i];
       b.mass_i.a[n] = atom->rmass[i];
+      b.j[n] = c.part;
       b.overlap.a[n] = atom->radius[i] - c.distance;
       for (int axis = 0; axis < 3; ++axis) {
         b.from_wall[axis].a[n] = c.from_wall[axis];
@@ -138,6 +145,10 @@ void FixWall::post_force(int) {
   }
   finish(n);
   summed_ = -1;
+  size_local_rows = static_cast<int>(local_.size()) / local_columns;
+  local_row_.resize(size_local_rows);
+  for (int k = 0; k < size_local_rows; ++k) local_row_[k] = local_.data() + local_columns * k;
+  array_local = local_row_.data();
   if (counts) return;
   held_.swap(before);
   count_.swap(count_before);
@@ -166,18 +177,35 @@ void FixWall::finish(int n) {
   kernel_(b, n, pass_);
   for (int k = 0; k < n; ++k) {
     const int i = b.i[k];
+    const auto point = [&](int axis) { return atom->x[i][axis] - b.from_wall[axis].a[k]; };
     for (int axis = 0; axis < 3; ++axis) {
       atom->f[i][axis] += b.force[axis].a[k];
       atom->torque[i][axis] += b.torque_i[axis].a[k];
       sum_[axis] += b.force[axis].a[k];
+      const int second = (axis + 1) % 3, third = (axis + 2) % 3;
+      sum_[3 + axis] += point(second) * b.force[third].a[k] - point(third) * b.force[second].a[k];
+      sum_[6] += b.force[axis].a[k] * b.wall_v[axis].a[k];
     }
     if (pass_.work) pair_->history()->book(b, k, i, 1.0, words_.models);
+  }
+  if (pass_.strain) pair_->history()->note_strain(b);
+  if (pair_->energies()) note(n);
+}
+
+/// The rows of a `dump local`.
+void FixWall::note(int n) {
+  const kernels::Block& b = *block_;
+  const int most = words_.models.law->most;
+  for (int k = 0; k < n; ++k) {
+    const double overlap = b.overlap.a[k];
+    local_.insert(local_.end(), {double(atom->tag[b.i[k]]), double(b.j[k]), overlap,
+                                 most < 0 ? overlap : std::max(overlap, b.history[k][most])});
   }
 }
 
 double FixWall::compute_vector(int axis) {
   if (summed_ != update->ntimestep) {
-    MPI_Allreduce(sum_, total_, 3, MPI_DOUBLE, MPI_SUM, world);
+    MPI_Allreduce(sum_, total_, sums, MPI_DOUBLE, MPI_SUM, world);
     summed_ = update->ntimestep;
   }
   return total_[axis];
@@ -236,7 +264,7 @@ FixWallPlanes::FixWallPlanes(LAMMPS* lmp, int count, char** word) : FixWall(lmp,
   };
   low_ = position(word[4], -HUGE_VAL);
   high_ = position(word[5], HUGE_VAL);
-  if (!(low_ < high_)) error->all(FLERR, "{}: lo = {} must lie below hi = {}", place_, word[4], word[5]);
+  if (!(low_ <= high_)) error->all(FLERR, "{}: lo = {} must lie below hi = {}", place_, word[4], word[5]);
   read(6, count, word, 2);
 }
 

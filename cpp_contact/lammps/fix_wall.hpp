@@ -23,7 +23,7 @@ class FixWall : public LAMMPS_NS::Fix {
   void init() override;
   void setup(int vflag) override { post_force(vflag); }
   void post_force(int vflag) override;
-  /// Force of the wall on all spheres.
+  /// Force of the wall on all spheres, torque about the origin of these forces at the surface, power of the wall.
   double compute_vector(int axis) override;
 
   void grow_arrays(int atoms) override;
@@ -60,6 +60,7 @@ class FixWall : public LAMMPS_NS::Fix {
   double* record(int i, int k) { return held_.data() + (long(i) * most_ + k) * stride_; }
   void keep_records(int i, const std::vector<Contact>& found);
   void finish(int n);
+  void note(int n);
 
   Words words_;
   Layout layout_;
@@ -72,7 +73,10 @@ class FixWall : public LAMMPS_NS::Fix {
   kernels::Pass pass_{};
   std::unique_ptr<kernels::Block> block_;
   std::vector<double> copies_[2], scratch_;
-  double sum_[3] = {}, total_[3] = {};
+  static constexpr int sums = 7, local_columns = 4;
+  double sum_[sums] = {}, total_[sums] = {};
+  std::vector<double> local_;  // id, part of the wall, overlap, largest overlap of the contacts of this step
+  std::vector<double*> local_row_;
   LAMMPS_NS::bigint summed_ = -1;
 };
 

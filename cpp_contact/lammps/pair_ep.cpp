@@ -2,6 +2,8 @@
 #include "pair_ep.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <utility>
 
 #include "atom.h"
 #include "comm.h"
@@ -42,7 +44,8 @@ std::vector<char*> words_of_text(std::vector<std::string>& words) {
 
 /// A fix in place of the history's keeps the history before the fixes of the deck: those may add atoms.
 PairEp::PairEp(LAMMPS* lmp) : Pair(lmp), block_(std::make_unique<kernels::Block>()) {
-  single_enable = 0;
+  single_extra = 4;
+  svector = single_;
   no_virial_fdotr_compute = 1;
   centroidstressflag = CENTROID_NOTAVAIL;
   finitecutflag = 1;
@@ -60,9 +63,13 @@ PairEp::~PairEp() {
 }
 
 void PairEp::settings(int count, char** word) {
-  if (count > 1 || (count == 1 && std::string(word[0]) != "energies"))
-    error->all(FLERR, "pair_style ep: {} is no setting of the style; it has one, energies", word[count > 1 ? 1 : 0]);
-  energies_ = count == 1;
+  energies_ = strain_ = false;
+  for (int k = 0; k < count; ++k) {
+    const std::string setting = word[k];
+    if (setting != "energies" && setting != "strain")
+      error->all(FLERR, "pair_style ep: {} is no setting of the style; there are energies and strain", setting);
+    (setting == "strain" ? strain_ : energies_) = true;
+  }
   create_history();  // computes of the deck may name the fix
 }
 
@@ -102,6 +109,8 @@ void PairEp::set_words(int i, int j, const std::string& text) {
   std::vector<std::string> words = utils::split_words(text);
   std::vector<char*> pointers = words_of_text(words);
   const std::string place = "pair_coeff " + std::to_string(i) + " " + std::to_string(j);
+  if (i == j && words.front() == "mixed")
+    error->all(FLERR, "{}: mixed takes the materials of two types, and this is one; give LAW E nu PARAMETERS", place);
   types(i, j) = {text, read_words(lmp, place, static_cast<int>(pointers.size()), pointers.data())};
   setflag[i][j] = 1;
 }
@@ -123,6 +132,7 @@ void PairEp::init_style() {
       if (!types(i, j).text.empty())
         models_ = common_models(lmp, "pair_coeff " + std::to_string(i) + " " + std::to_string(j), models_,
                                 types(i, j).words.models);
+  if (!models_.law) error->all(FLERR, "pair_style ep: no pair_coeff names a law; give pair_coeff 1 1 LAW E nu ...");
   kernel_ = kernel_of(lmp, "pair_style ep", models_, false);
   layout_ = layout_of(models_, false);
   neighbor->add_request(this, NeighConst::REQ_SIZE | NeighConst::REQ_NEWTON_OFF);
@@ -156,22 +166,23 @@ double PairEp::init_one(int i, int j) {
   const std::string place = "pair_coeff " + std::to_string(i) + " " + std::to_string(j);
   Material a, b;
   Coefficients common;
-  if (!types(i, j).text.empty()) {
-    const Words& words = types(i, j).words;
-    a = b = words.material;
-    common = words.coefficients;
-  } else {
+  const PairOfTypes& given = types(i, j);
+  const bool is_mixed = given.text.empty() || given.text.rfind("mixed", 0) == 0;
+  if (is_mixed) {
     const Words &like_i = words_of(i, place), &like_j = words_of(j, place);
     a = like_i.material;
     b = like_j.material;
     common = mixed(like_i.coefficients, like_j.coefficients);
+  } else {
+    a = b = given.words.material;
   }
+  if (!given.text.empty()) common = given.words.coefficients;
   double* const constants = constants_.data() + most_constants * (i * width_ + j);
   put_constants(*models_.law, a, b, common, constants);
   std::copy_n(constants, most_constants, constants_.data() + most_constants * (j * width_ + i));
   pass_.damped |= constants[kernels::damping] > 0.0;
   pass_.viscous |= constants[kernels::dashpot] > 0.0;
-  if (pass_.damped)
+  if (pass_.damped || pass_.viscous)
     for (Fix* fix : modify->get_fix_list())
       if (fix->rigid_flag)
         error->all(FLERR,
@@ -185,7 +196,7 @@ double PairEp::init_one(int i, int j) {
         FLERR,
         "{}: law {} pulls across gaps up to {:.4g}, above the skin {:.4g}; increase the skin of command neighbor",
         place, models_.law->name, gap, neighbor->skin);
-  return largest_[i] + largest_[j];
+  return largest_[i] + largest_[j] + gap;
 }
 
 void PairEp::set_pass() {
@@ -205,6 +216,7 @@ void PairEp::set_pass() {
   pass_.cohesion = models_.cohesion;
   pass_.now = history_->now();
   pass_.freeze = frozen_ != 0;
+  pass_.strain = strain_;
 }
 
 /// LAMMPS computes forces once more before the first step of a run; this evaluation changes no history.
@@ -297,6 +309,7 @@ void PairEp::finish(int n) {
   }
   kernels::pad(b, n);
   kernel_(b, n, pass_);
+  if (strain_) history_->note_strain(b);
   pass_.work ? scatter<true>(n) : scatter<false>(n);
   if (evflag) tally(n);
 }
@@ -337,10 +350,59 @@ void PairEp::tally(int n) {
   }
 }
 
+/// The history of a contact at the list; null: none.
+double* PairEp::history_of(int i, int j) const {
+  for (const auto& [one, other] : {std::pair{i, j}, std::pair{j, i}}) {
+    if (one >= atom->nlocal) continue;
+    const int* const neighbors = list->firstneigh[one];
+    for (int jj = 0; jj < list->numneigh[one]; ++jj)
+      if ((neighbors[jj] & NEIGHMASK) == other) return history_->at(one, jj);
+  }
+  return nullptr;
+}
+
+double PairEp::single(int i, int j, int, int, double rsq, double, double, double& fforce) {
+  fforce = 0.0;
+  std::fill_n(single_, 4, 0.0);
+  const double sum = atom->radius[i] + atom->radius[j], r = std::sqrt(rsq), overlap = sum - r;
+  const double* const known = layout_.values > 0 && history_->at_list() ? history_of(i, j) : nullptr;
+  const bool attached =
+      known && layout_.root >= 0 && known[layout_.root] > 0.0 && history_->now() - known[layout_.last_step] <= 1.0;
+  if (overlap <= 0.0 && !attached) return 0.0;
+  std::vector<double> history(std::max(1, layout_.values), 0.0);
+  if (known) std::copy_n(known, layout_.values, history.data());
+
+  set_pass();
+  pass_.work = pass_.strain = true;
+  pass_.several = false;
+  kernels::Block& b = *block_;
+  std::fill_n(b.radius_ratio, kernels::most_lanes, 0.0);
+  b.i[0] = i;
+  b.j[0] = j;
+  b.history[0] = history.data();
+  b.material[0] = constants_.data() + most_constants * (atom->type[i] * width_ + atom->type[j]);
+  b.radius_i.a[0] = atom->radius[i];
+  b.radius_j.a[0] = atom->radius[j];
+  b.mass_i.a[0] = atom->rmass[i];
+  b.mass_j.a[0] = atom->rmass[j];
+  b.frozen_i.a[0] = (atom->mask[i] & frozen_) != 0;
+  b.frozen_j.a[0] = (atom->mask[j] & frozen_) != 0;
+  kernels::pad(b, 1);
+  kernel_(b, 1, pass_);
+  const double *const xi = atom->x[i], *const xj = atom->x[j];
+  for (int axis = 0; axis < 3; ++axis) fforce += b.force[axis].a[0] * (xi[axis] - xj[axis]) / rsq;
+  single_[0] = overlap;
+  single_[1] = models_.law->most < 0 ? overlap : std::max(overlap, history[models_.law->most]);
+  single_[2] = b.radius_ratio[0] * atom->radius[i] * atom->radius[j] / sum;
+  single_[3] = models_.law->root < 0 || history[layout_.root] > 0.0;
+  std::fill_n(b.radius_ratio, kernels::most_lanes, 0.0);
+  return b.stored_energy.a[0];
+}
+
 void PairEp::write_restart(FILE* file) {
   if (comm->me != 0) return;
-  const int energies = energies_;
-  fwrite(&energies, sizeof energies, 1, file);
+  const int settings = energies_ + 2 * strain_;
+  fwrite(&settings, sizeof settings, 1, file);
   for (int i = 1; i < width_; ++i)
     for (int j = i; j < width_; ++j) {
       const std::string& text = types(i, j).text;
@@ -356,9 +418,10 @@ void PairEp::read_restart(FILE* file) {
     if (comm->me == 0) utils::sfread(FLERR, to, 1, bytes, file, nullptr, error);
     MPI_Bcast(to, bytes, MPI_CHAR, 0, world);
   };
-  int energies;
-  read(&energies, sizeof energies);
-  energies_ = energies != 0;
+  int settings;
+  read(&settings, sizeof settings);
+  energies_ = (settings & 1) != 0;
+  strain_ = (settings & 2) != 0;
   for (int i = 1; i < width_; ++i)
     for (int j = i; j < width_; ++j) {
       int size;

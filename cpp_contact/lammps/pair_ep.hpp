@@ -24,6 +24,9 @@ class PairEp : public LAMMPS_NS::Pair {
   void init_style() override;
   double init_one(int i, int j) override;
   void compute(int eflag, int vflag) override;
+  /// Elastic energy of a contact, normal force over distance; svector: overlap, largest overlap, contact radius,
+  /// whether the bodies touch or are attached.
+  double single(int i, int j, int itype, int jtype, double rsq, double, double, double& fforce) override;
   void write_restart(FILE* file) override;
   void read_restart(FILE* file) override;
 
@@ -32,6 +35,7 @@ class PairEp : public LAMMPS_NS::Pair {
   const Words& words_of(int type, const std::string& place) const;
   FixHistory* history() const { return history_; }
   bool energies() const { return energies_; }
+  bool strain() const { return strain_; }
 
  private:
   struct PairOfTypes {
@@ -51,13 +55,14 @@ class PairEp : public LAMMPS_NS::Pair {
   template <bool energies>
   void scatter(int n);
   void tally(int n);
+  double* history_of(int i, int j) const;
 
   int width_ = 0;  // number of types + 1
   std::vector<PairOfTypes> types_;
   std::vector<double> constants_;  // of i * width + j
   std::vector<double> largest_;    // radius by type [length]
   Models models_;
-  bool energies_ = false;
+  bool energies_ = false, strain_ = false;
   Layout layout_;
   std::string fix_id_;
   FixHistory* history_ = nullptr;
@@ -68,6 +73,7 @@ class PairEp : public LAMMPS_NS::Pair {
   int slot_[kernels::block_size + kernels::most_lanes];
   std::vector<double> copies_[3];  // of x, v, omega, if no number can be read behind the last atom
   int frozen_ = 0;                 // group bit
+  double single_[4];               // svector
 };
 
 }  // namespace epdem::lammps

@@ -23,11 +23,11 @@ using LAMMPS_NS::LAMMPS;
 
 namespace {
 
+/// Index of a value in the history of a law, -1: none.
 template <class Class>
-int root_of() {
-  if constexpr (adheres<Class>)
-    for (int k = 0; k < history_size<Class>; ++k)
-      if (std::strcmp(State<Class>::slots[k], "root") == 0) return k;
+int place_of(const char* value) {
+  for (int k = 0; k < history_size<Class>; ++k)
+    if (std::strcmp(State<Class>::slots[k], value) == 0) return k;
   return -1;
 }
 
@@ -42,7 +42,8 @@ Law law_of() {
           Class::condition,
           detail::place<Class>(),
           history_size<Class>,
-          root_of<Class>(),
+          place_of<Class>("root"),
+          place_of<Class>("delta_max"),
           [](double E_star, const double* parameters, double* numbers) {
             const Class law(E_star, parameters);
             std::memcpy(static_cast<void*>(numbers), &law, sizeof law);
@@ -167,7 +168,9 @@ void read_parameters(WordReader& reader, const Law& law, std::vector<double>& va
 
 void read_options(WordReader& reader, Words& words) {
   constexpr Range not_negative{0.0, unlimited, true, false};
-  const std::vector<std::string> options{"tangential", "restitution", "rolling", "cohesion"};
+  constexpr Range restitution{viscous_restitution_min, 1.0, true, true};
+  const std::vector<std::string> options{"tangential", "restitution",        "rolling",
+                                         "cohesion",   "normal_restitution", "tangential_restitution"};
   std::vector<bool> seen(options.size());
   while (!reader.at_end()) {
     const int option = reader.next_of("option", options);
@@ -180,10 +183,15 @@ void read_options(WordReader& reader, Words& words) {
       });
       if (words.models.friction) words.coefficients.friction = reader.next_number("friction mu", not_negative);
     } else if (option == 1) {
-      words.coefficients.restitution = reader.next_number("restitution e", {viscous_restitution_min, 1.0, true, true});
+      words.coefficients.normal_restitution = words.coefficients.tangential_restitution =
+          reader.next_number("restitution e", restitution);
     } else if (option == 2) {
       words.models.rolling = reader.next_of("rolling", names<Rollings>());
       if (words.models.rolling) words.coefficients.rolling = reader.next_number("rolling friction mu_r", not_negative);
+    } else if (option == 4) {
+      words.coefficients.normal_restitution = reader.next_number("normal_restitution e", restitution);
+    } else if (option == 5) {
+      words.coefficients.tangential_restitution = reader.next_number("tangential_restitution e", restitution);
     } else {
       words.models.cohesion = reader.next_of("cohesion", names<Cohesions>());
       if (words.models.cohesion)
@@ -213,27 +221,28 @@ const std::vector<Law>& all_laws() {
 
 Words read_words(LAMMPS* lmp, const std::string& place, int count, char** word) {
   WordReader reader(lmp, place, count, word);
+  Words words;
+  if (count > 0 && std::strcmp(word[0], "mixed") == 0) {
+    reader.next("mixed");
+    read_options(reader, words);
+    return words;
+  }
   std::vector<std::string> laws;
   for (const Law& law : all_laws()) laws.emplace_back(law.name);
-  Words words;
   words.models.law = &all_laws()[reader.next_of("law", laws)];
   words.material.elastic.young_modulus = reader.next_number("Young's modulus E", {0.0, unlimited, false, false});
   words.material.elastic.poisson_ratio = reader.next_number("Poisson's ratio nu", {-1.0, 0.5, false, true});
   read_parameters(reader, *words.models.law, words.material.parameters);
   read_options(reader, words);
-  if (words.models.law->root >= 0 && words.models.cohesion)
-    reader.wrong("cohesion " + names<Cohesions>()[words.models.cohesion] + " beside " + words.models.law->name +
-                 ", which attracts by itself; remove one");
   return words;
 }
 
 Models common_models(LAMMPS* lmp, const std::string& place, const Models& a, const Models& b) {
-  if (!a.law) return b;
-  if (a.law != b.law)
+  if (a.law && b.law && a.law != b.law)
     fail(lmp, place + ": law " + b.law->name + " beside law " + a.law->name +
                   "; all contacts of a pair style and its walls have one law, others take a pair style of their own "
                   "(hybrid)");
-  Models common{a.law};
+  Models common{a.law ? a.law : b.law};
   common.friction = common_place(lmp, place, "tangential", names<Frictions>(), a.friction, b.friction);
   common.books_friction = a.books_friction || b.books_friction;
   common.rolling = common_place(lmp, place, "rolling", names<Rollings>(), a.rolling, b.rolling);
@@ -242,7 +251,8 @@ Models common_models(LAMMPS* lmp, const std::string& place, const Models& a, con
 }
 
 Coefficients mixed(const Coefficients& a, const Coefficients& b) {
-  return {geometric(a.friction, b.friction), geometric(a.restitution, b.restitution), geometric(a.rolling, b.rolling),
+  return {geometric(a.friction, b.friction), geometric(a.normal_restitution, b.normal_restitution),
+          geometric(a.tangential_restitution, b.tangential_restitution), geometric(a.rolling, b.rolling),
           geometric(a.cohesion, b.cohesion)};
 }
 
@@ -255,10 +265,8 @@ void put_constants(const Law& law, const Material& i, const Material& j, const C
       parameters[k] = adhesive::work_of_adhesion(0.5 * i.parameters[k], 0.5 * j.parameters[k]);
   std::fill_n(constants, kernels::most_constants, 0.0);
   constants[kernels::shear_modulus] = effective_shear_modulus(i.elastic, j.elastic);
-  if (common.restitution > 0.0) {
-    constants[kernels::damping] = damping_number(common.restitution);
-    constants[kernels::dashpot] = viscous_number(common.restitution);
-  }
+  if (common.tangential_restitution > 0.0) constants[kernels::damping] = damping_number(common.tangential_restitution);
+  if (common.normal_restitution > 0.0) constants[kernels::dashpot] = viscous_number(common.normal_restitution);
   constants[kernels::friction] = common.friction;
   constants[kernels::rolling_friction] = common.rolling;
   constants[kernels::cohesion_density] = common.cohesion;
@@ -282,6 +290,9 @@ void check_settings(LAMMPS* lmp, const std::string& place) {
 }
 
 kernels::Kernel kernel_of(LAMMPS* lmp, const std::string& place, const Models& models, bool wall) {
+  if (models.law->root >= 0 && models.cohesion)
+    fail(lmp, place + ": cohesion " + names<Cohesions>()[models.cohesion] + " beside " + models.law->name +
+                  ", which attracts by itself; remove one");
   const char* const wanted = std::getenv("EPDEM_SIMD");
   const kernels::Kernels* const set = kernels::kernels_of(wanted ? wanted : "");
   if (!set)

@@ -22,6 +22,7 @@ struct Law {
   int place;              // in the kernels
   int history_size;
   int root;  // index in the history of what says that the bodies are attached, -1: no adhesion
+  int most;  // index in the history of the largest overlap, -1: none
   /// Writes the numbers of a law object of E* and these parameters.
   void (*put)(double E_star, const double* parameters, double* numbers);
   /// Largest gap [length] across which a law object of these numbers pulls; 0 without adhesion.
@@ -43,13 +44,13 @@ struct Models {
   bool books_friction = false;  // friction computes its work
 };
 
-/// What two bodies have in common; 0: no such force. restitution = 0: no dashpot.
+/// What two bodies have in common; 0: no such force. Restitution of 0: no dashpot along the normal, or beside friction.
 struct Coefficients {
-  double friction = 0.0, restitution = 0.0, rolling = 0.0, cohesion = 0.0;
+  double friction = 0.0, normal_restitution = 0.0, tangential_restitution = 0.0, rolling = 0.0, cohesion = 0.0;
 };
 
 struct Words {
-  Material material;
+  Material material;  // without parameters of `mixed`, which leaves the material to the like types
   Models models;
   Coefficients coefficients;
 };
@@ -57,7 +58,7 @@ struct Words {
 /// Reads the words behind `place`, e.g. "pair_coeff 1 2"; ends the run with a sentence about the first wrong one.
 Words read_words(LAMMPS_NS::LAMMPS* lmp, const std::string& place, int count, char** word);
 
-/// The models of both; ends the run if they exclude each other.
+/// The models of both, whose law may be null; ends the run if they exclude each other.
 Models common_models(LAMMPS_NS::LAMMPS* lmp, const std::string& place, const Models& a, const Models& b);
 
 /// Coefficients of unlike types: geometric means.

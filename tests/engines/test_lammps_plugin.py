@@ -172,10 +172,13 @@ def test_virial_is_that_of_the_forces(tmp_path):
 fix motion all nve/sphere
 compute stress all stress/atom NULL
 compute total all reduce sum c_stress[1]
-thermo_style custom step pxx c_total
+compute pairs all pair/local force eng p1 p2 p3 p4
+compute values all reduce sum c_pairs[*] inputs local
+thermo_style custom step pxx c_total c_values[1]
 variable f equal fx[2]
 run 0
 print "force ${f} $(pxx) $(c_total)"
+print "pair $(c_values[1]) $(c_values[2]) $(c_values[3]) $(c_values[4]) $(c_values[5]) $(c_values[6])"
 """
     out, _ = run(spheres((0, 0, 0), (0.0198, 0, 0), pair=THORNTON) + deck, tmp_path)
     force, pressure, stress = map(float, re.search(r"^force (.*)", out, re.MULTILINE)[1].split())
@@ -185,6 +188,11 @@ print "force ${f} $(pxx) $(c_total)"
     assert force == pytest.approx(yielded, rel=1e-9)
     assert pressure * 8e-3 == pytest.approx(force * 0.0198, rel=1e-9)
     assert -stress == pytest.approx(force * 0.0198, rel=1e-9)
+    # unloading with the radius R_p = 4 E* a^3/(3 F): the force is that of Hertz for it
+    a = math.sqrt(R_star * alpha)
+    elastic = 2 / 5 * force * (3 * force / (4 * E_star * a))
+    pair = [float(x) for x in re.search(r"^pair (.*)", out, re.MULTILINE)[1].split()]
+    assert pair == pytest.approx([force, elastic, alpha, alpha, a, 1.0], rel=1e-6)
 
 
 WRONG = {
