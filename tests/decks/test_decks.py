@@ -14,6 +14,7 @@ from epdem.case.scene import is_scene
 from epdem.case.scene import load as load_scene
 from epdem.case.scene import parse as parse_scene
 from epdem.case.toml import read_toml
+from epdem.engines.lammps import scene_deck as lammps_scene
 from epdem.engines.liggghts import scene_deck
 from epdem.engines.liggghts.engine import Liggghts
 from epdem.engines.yade import scene_deck as yade_scene
@@ -60,6 +61,11 @@ def test_the_deck_of_a_scene_in_yade_is_as_stored(name, classes):
 def test_the_deck_of_a_scene_is_as_stored(path):
     texts = scene_deck.files(scene_plan(load_scene(path)))
     compare(HERE, path.stem, texts["in.scene"] + texts["setup.in"])
+
+
+@pytest.mark.parametrize("name", ["drum_beads", "hopper_beads", "compaction_powder"])
+def test_the_deck_of_a_scene_in_lammps_is_as_stored(name):
+    compare(HERE, f"lammps_{name}", lammps_scene.files(scene_plan(load_scene(CASES / f"{name}.toml")))["in.scene"])
 
 
 @pytest.mark.parametrize("classes", [True, False])

@@ -196,7 +196,7 @@ def test_scenes(case, changes, says, tmp_path):
                     FALL | {"name": "b", "move": [TURN | {"origin": ["1 mm", "0 mm", "0 mm"]}]},
                 ],
             },
-            "it rotates about several origins, LIGGGHTS has torques",
+            "it rotates about several origins, torques are about one",
         ),
         (
             {

@@ -15,6 +15,7 @@ import pytest
 
 from epdem.case.impact import load, parse
 from epdem.case.toml import read_toml
+from epdem.engines.lammps import launcher
 from epdem.engines.lammps.engine import Lammps
 from epdem.errors import CaseError
 from epdem.impacts.experiment import experiment
@@ -31,13 +32,14 @@ STEEL = CASES / "steel_wall.toml"
 LAWS = ("hertz", "thornton", "johnson", "cavity")
 CLOSED = [name for name in OWN_LAW if name != "lammps-mdr"]
 in_liggghts, in_yade = pytest.mark.liggghts, pytest.mark.yade
+in_lammps = pytest.mark.skipif(launcher.missing() is not None, reason=str(launcher.missing()))
 
 
-@in_liggghts
+@pytest.mark.parametrize("host", [pytest.param("liggghts", marks=in_liggghts), pytest.param("lammps", marks=in_lammps)])
 @pytest.mark.parametrize("law", LAWS)
-def test_restitution_and_momentum_do_not_depend_on_the_variant_of_the_set_up(law, tmp_path):
+def test_restitution_and_momentum_do_not_depend_on_the_variant_of_the_set_up(law, host, tmp_path):
     """Swap, sort, migration and restart repeat every bit of e_n; momentum is kept to round-off of drifting bodies."""
-    found = examine(engine("liggghts"), experiment(load(STEEL), law), tmp_path)
+    found = examine(engine(host), experiment(load(STEEL), law), tmp_path)
     for variant in VARIANTS:
         assert found.e_n[variant] == 0, variant
         assert found.momentum[variant] < 1e-11, variant

@@ -14,7 +14,7 @@ from .yade.engine import Yade
 
 ENGINES: dict[str, type[ImpactEngine]] = {tool.name: tool for tool in (Embedded, Liggghts, Yade, Lammps)}
 # Engines of bulk scenes.
-SCENES: dict[str, type[SceneEngine]] = {tool.name: tool for tool in (Liggghts, Yade)}
+SCENES: dict[str, type[SceneEngine]] = {tool.name: tool for tool in (Liggghts, Yade, Lammps)}
 
 
 def engine(name: str, *, stay: bool = False) -> ImpactEngine:

@@ -3,6 +3,7 @@
 
 import math
 import random
+from collections.abc import Iterator
 from itertools import product
 
 import numpy as np
@@ -35,12 +36,14 @@ def _somewhere(region: Region, radius: float, rng: random.Random) -> tuple[float
     return place
 
 
-def spheres(p: ScenePlan) -> FloatArray:
-    """(n, 5) x, y, z, radius [m], type of all spheres of the first phase: spheres of the table, then of each fill.
+def spheres(p: ScenePlan, phase: str = "") -> FloatArray:
+    """(n, 5) x, y, z, radius [m], type of all spheres that come with a phase: the table, then each fill.
 
-    Random sequential placement, every sphere wholly in the region of its fill. The same case has the same places
-    everywhere. Raises CaseError when full.
+    phase: its name, "": the first one, with which the table comes; bodies of later phases are not in here. Random
+    sequential placement, every sphere wholly in the region of its fill. The same case has the same places everywhere.
+    Raises CaseError when full.
     """
+    first = p.phases[0].name
     rng = random.Random(p.case.numerics.seed)
     placed: list[tuple[float, ...]] = []
     cells: dict[tuple[int, ...], list[int]] = {}
@@ -59,9 +62,9 @@ def spheres(p: ScenePlan) -> FloatArray:
         )
         return all(math.dist(place, placed[k][:3]) > radius + placed[k][3] for k in near)
 
-    for s in p.scene.table:
+    for s in p.scene.table if phase in ("", first) else ():
         put(s.place, s.radius, p.model.type_of(s.material))
-    for fill in (f for f in p.insertions if f.phase == p.phases[0].name):
+    for fill in (f for f in p.insertions if f.phase == (phase or first)):
         for radius, kind in sizes(p.case, p.model, fill, rng):
             for _ in range(ATTEMPTS):
                 place = _somewhere(fill.region, radius, rng)
@@ -73,4 +76,17 @@ def spheres(p: ScenePlan) -> FloatArray:
                     f"{fill.key} = {fill.count}: no room is left for sphere {len(placed) + 1} without overlap "
                     f"after {ATTEMPTS} attempts; enlarge the box"
                 )
-    return np.array(placed)
+    return np.array(placed).reshape(-1, 5)
+
+
+def moving_spheres(p: ScenePlan, phase: str = "") -> Iterator[tuple[float, ...]]:
+    """x y z radius [m], type, velocity [m/s], spin [rad/s], 1 if frozen, of each of `spheres`."""
+    table = p.scene.table if phase in ("", p.phases[0].name) else []
+    fills = [f for f in p.insertions if f.phase == (phase or p.phases[0].name) for _ in range(f.count)]
+    still = (0.0, 0.0, 0.0)
+    for n, row in enumerate(spheres(p, phase).tolist()):
+        if n < len(table):
+            s = table[n]
+            yield (*row, *s.velocity, *s.spin, float(s.frozen))
+        else:
+            yield (*row, *fills[n - len(table)].velocity, *still, 0.0)

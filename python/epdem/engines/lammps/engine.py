@@ -1,45 +1,30 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""LAMMPS with our plugin: impacts side by side in one deck, whose dump is a trajectory."""
+"""LAMMPS with our plugin: impacts side by side in one deck, whose dump is a trajectory, and bulk scenes."""
 
 import math
-from dataclasses import dataclass
 from pathlib import Path
+from typing import overload
 
 import numpy as np
 
 from ...base import rendering as decks
-from ...base.declarations import declarations
 from ...base.files import write_texts
+from ...base.folders import held
+from ...case.kinds import KINDS
 from ...errors import CaseError, EngineError
 from ...impacts.engine import Feature, Report, Trajectory, check_features, silent
 from ...impacts.experiment import Body
 from ...impacts.placement import approach
 from ...impacts.plan import Plan
+from ...scenes.engine import Resumed, Tables, check_scene
+from ...scenes.plan import ScenePlan
 from ...theory.sources import Source
 from ..liggghts.engine import data_text
-from ..liggghts.properties import atom_types, finite
-from . import launcher
+from ..liggghts.launcher import most_ranks
+from ..liggghts.properties import atom_types
+from . import launcher, scene_deck, scene_tables, words
 
 PATH, END, LOG = "path.txt", "end.txt", "log.lammps"
-
-
-@dataclass(frozen=True)
-class Deck:
-    """Everything the template writes; `pairs` and `wall` are the words of the contacts."""
-
-    title: str
-    source: str
-    summary: str
-    data: str
-    skin: float
-    types: tuple[str, ...]
-    pairs: tuple[str, ...]
-    wall: str | None
-    oblique: bool
-    time_step: float
-    path: str
-    end: str
-    steps: int
 
 
 class Lammps:
@@ -57,7 +42,8 @@ class Lammps:
     )
     template = "lammps/impact.in.j2"
     laws: tuple[str, ...] | None = None
-    ranks = 1
+    ranks = most_ranks()
+    leftovers: tuple[str, ...] = scene_tables.LEFTOVERS
     features = frozenset(
         {Feature.ADHESION, Feature.DASHPOT, Feature.FRICTION, Feature.SPHERE_FRICTION, Feature.DECK, Feature.POSITIONS}
     )
@@ -68,7 +54,7 @@ class Lammps:
     def version(self) -> str:
         return launcher.version()
 
-    def deck(self, plan: Plan) -> Deck:
+    def deck(self, plan: Plan) -> decks.Deck:
         """The deck of a plan. Raises CaseError for what the plugin cannot do."""
         x, types = plan.experiment, atom_types(plan)
         check_features(self, x)
@@ -78,7 +64,8 @@ class Lammps:
                 f"law.name = {x.law.name!r}: engine lammps has adhesion between spheres only; use --engine embedded "
                 "or liggghts for walls"
             )
-        return Deck(
+        return decks.Deck(
+            plan,
             title=x.title,
             source=x.source,
             summary=f"{plan.summary}, law {x.law.name}",
@@ -88,48 +75,68 @@ class Lammps:
             pairs=tuple(contact(plan, body, strength) for body, strength in types),
             wall=contact(plan, *types[-1]) if wall else None,
             oblique=x.oblique is not None,
-            time_step=plan.time_step,
             path=PATH,
             end=END,
-            steps=plan.steps,
         )
 
-    def check(self, job: Plan) -> list[str]:
+    def check(self, job: Plan | ScenePlan) -> list[str]:
+        if isinstance(job, ScenePlan):
+            check_scene(self, job, KINDS)
+            scene_deck.deck(job)
+            return []
         self.deck(job)
         return []
 
-    def write(self, job: Plan, folder: Path) -> list[Path]:
+    def write(self, job: Plan | ScenePlan, folder: Path) -> list[Path]:
+        if isinstance(job, ScenePlan):
+            return write_texts(folder, scene_deck.files(job))
         deck = self.deck(job)
         texts = {"in.impact": decks.render(self.template, deck=deck), deck.data: data_text(job, len(deck.types))}
         return write_texts(folder, texts)
 
-    def run(self, job: Plan, folder: Path, *, ranks: int = 1, report: Report = silent) -> Trajectory:
+    @overload
+    def run(self, job: Plan, folder: Path, *, ranks: int = 1, report: Report = silent) -> Trajectory: ...
+
+    @overload
+    def run(self, job: ScenePlan, folder: Path, *, ranks: int = 1, report: Report = silent) -> Tables: ...
+
+    def run(
+        self, job: Plan | ScenePlan, folder: Path, *, ranks: int = 1, report: Report = silent
+    ) -> Trajectory | Tables:
+        if isinstance(job, ScenePlan):
+            held(folder).remove(*self.leftovers)
+            launcher.run("in.scene", folder, ranks=ranks, log=LOG, report=report)
+            return self.read(job, folder)
         for name in (PATH, END):
             (folder / name).unlink(missing_ok=True)
-        wall = launcher.run("in.impact", folder, log=LOG, seconds=120 + 1e-5 * job.n * job.steps)
+        wall = launcher.run("in.impact", folder, ranks=ranks, log=LOG, seconds=120 + 1e-5 * job.n * job.steps)
         bodies = job.n if math.isinf(job.experiment.target.radius) else 2 * job.n
-        z, vz, fz = np.moveaxis(_frames(folder / PATH, job.steps + 1, bodies), 2, 0)
-        end = _frames(folder / END, 2, bodies)[-1].T if job.experiment.oblique else (None, None)
+        z, vz, fz = np.moveaxis(frames(folder / PATH, job.steps + 1, bodies), 2, 0)
+        end = frames(folder / END, 2, bodies)[-1].T if job.experiment.oblique else (None, None)
         (folder / PATH).unlink()  # large
         overlap, velocity = approach(job, z, vz)
         return Trajectory(job.time_step, overlap, fz[:, : job.n].T, velocity, {"total": wall}, *end)
+
+    def resume(self, job: ScenePlan, folder: Path, *, ranks: int, report: Report) -> tuple[Tables, Resumed]:
+        raise CaseError(f"{folder}: a scene in LAMMPS runs from its start; run it anew")
+
+    def read(self, plan: ScenePlan, folder: Path) -> Tables:
+        """The tables of a scene."""
+        return scene_tables.read(plan, folder, folder / launcher.OUT)
 
 
 def contact(plan: Plan, body: Body, strength: float) -> str:
     """LAW E nu PARAMETERS [options]: the material of a body and the coefficients of its contacts."""
     x = plan.experiment
-    law = declarations()[x.law.name]
-    given = x.law.parameters | ({law.strength: finite(strength)} if law.strength else {})
-    numbers = [finite(body.young_modulus), body.poisson_ratio, *(given[p.name] for p in law.parameters)]
-    words = [law.name, *map(decks.number, numbers)]
+    found = words.material(x.law.name, body.young_modulus, body.poisson_ratio, strength, x.law.parameters)
     if x.oblique:
-        words += ["tangential", x.oblique.tangential, decks.number(x.oblique.friction)]
+        found += f" tangential {x.oblique.tangential} {decks.number(x.oblique.friction)}"
     if x.viscous_restitution is not None:
-        words += ["restitution", decks.number(x.viscous_restitution)]
-    return " ".join(words)
+        found += f" restitution {decks.number(x.viscous_restitution)}"
+    return found
 
 
-def _frames(path: Path, frames: int, bodies: int) -> np.ndarray:
+def frames(path: Path, frames: int, bodies: int) -> np.ndarray:
     """A dump without headers and ids, shape (frames, bodies, columns - 1). Raises EngineError if it is incomplete."""
     try:
         return np.array(path.read_text(encoding="utf-8").split(), float).reshape(frames, bodies, -1)[:, :, 1:]

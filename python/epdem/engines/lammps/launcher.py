@@ -9,6 +9,8 @@ from pathlib import Path
 from ...base import paths
 from ...base.processes import call
 from ...errors import EngineError
+from ...impacts.engine import Report, refuse_ranks
+from ..liggghts.launcher import most_ranks
 
 OUT = "out.lammps"  # both streams
 INSTALL = "run 'make lammps' (docs/lammps.md)"
@@ -71,8 +73,29 @@ def version() -> str:
     return f"LAMMPS {named or metadata.version('lammps')}, epdem {metadata.version('epdem')}"
 
 
-def run(deck: str, folder: Path, *, log: str, seconds: float | None = None) -> float:
-    """Run a deck in its folder; seconds taken. Raises EngineError with the end of the log."""
+def command(deck: str, *, ranks: int = 1, log: str = "none") -> list[str]:
+    """The command that runs a deck in its folder. Raises EngineError if LAMMPS is not there; see refuse_ranks."""
     if reason := missing_program():
         raise EngineError(f"engine lammps: {reason}")
-    return call([str(program()), "-in", deck, "-log", log], folder, log=OUT, seconds=seconds, env=environment())
+    refuse_ranks("lammps", most_ranks(), ranks)
+    lammps = [str(program()), "-in", deck, "-log", log]
+    if ranks == 1:
+        return lammps
+    mpi = mpi_folder()  # the wheel runs under no other MPI; EPDEM_LAMMPS under that of PATH
+    own = "EPDEM_LAMMPS" not in os.environ and mpi is not None
+    return [str(mpi.parent / "bin" / "mpiexec") if own and mpi else "mpiexec", "-n", str(ranks), *lammps]
+
+
+def run(
+    deck: str,
+    folder: Path,
+    *,
+    ranks: int = 1,
+    log: str = "none",
+    out: str = OUT,
+    seconds: float | None = None,
+    report: Report | None = None,
+) -> float:
+    """Run a deck in its folder; seconds taken. Raises EngineError with the end of the log."""
+    arguments = command(deck, ranks=ranks, log=log)
+    return call(arguments, folder, log=out, seconds=seconds, env=environment(), report=report)

@@ -122,11 +122,11 @@ def planes(p: ScenePlan) -> tuple[DeckPlane, ...]:
     return tuple(plane(p, w, force=w.name in stored) for w in p.scene.planes)
 
 
-def _origin(p: ScenePlan, name: str) -> Sequence[float]:
+def torque_origin(p: ScenePlan, name: str) -> Sequence[float]:
     """The place that torques on a mesh refer to [m]: on the axis of its rotation."""
     origins = {tuple(rotation.origin) for rotation in p.rotations(name)}
     if len(origins) > 1:
-        raise CaseError(f"scene.wall.{name}: it rotates about several origins, LIGGGHTS has torques about one")
+        raise CaseError(f"scene.wall.{name}: it rotates about several origins, torques are about one; rotate about one")
     return next(iter(origins), (0.0, 0.0, 0.0))
 
 
@@ -151,7 +151,7 @@ def surfaces(p: ScenePlan) -> tuple[DeckMesh, ...]:
     for name, mesh in p.scene.meshes.items():
         rotation, words = surface_rotation(mesh), ""
         style = "/stress" if force or name in p.loads or mesh.stress or mesh.wear else ""
-        origin = _origin(p, name)
+        origin = torque_origin(p, name)
         if rotation is not None:  # LIGGGHTS takes the words in this order only
             axis, omega = " ".join(f"{x:g}" for x in rotation.axis), decks.number(rotation.rate)
             words = f" surface_ang_vel origin {_words(rotation.origin)} axis {axis} omega {omega}"
@@ -188,7 +188,8 @@ def _motion(p: ScenePlan, name: str, move: Move) -> WallMotion:
     return WallMotion(wall, f"fix {fix} all move/mesh mesh {wall} {words}", f"unfix {fix}")
 
 
-def _stop_condition(p: ScenePlan, phase: Phase, steps: int) -> StopCondition | None:
+def stop_condition(p: ScenePlan, phase: Phase, steps: int) -> StopCondition | None:
+    """How a phase ends early, in words of LIGGGHTS and LAMMPS; None: it does not."""
     until = phase.case.condition
     if until is None:
         return None
@@ -242,7 +243,7 @@ def parts(p: ScenePlan) -> tuple[DeckPhase, ...]:
             vibrations=tuple(
                 name for name in new if p.writes_wall_power and isinstance(phase.moves[name], VibrateMove)
             ),
-            stop=_stop_condition(p, phase, phase.end - begin),
+            stop=stop_condition(p, phase, phase.end - begin),
         )
         found.append(part)
         begin, before = phase.end, phase

@@ -67,7 +67,8 @@ def read(plan: ScenePlan, folder: Path, *, without: Collection[int] = ()) -> Tab
 
     Raises EngineError for any other frame that is missing or not whole.
     """
-    plan = plan.ended(tables.ends(folder), tables.not_reached(folder)) if plan.ends_early else plan
+    out = folder / launcher.OUT
+    plan = plan.ended(tables.ends(out), tables.not_reached(out)) if plan.ends_early else plan
     found = {"rows": tables.rows(plan, folder / launcher.OUT)}
     if isinstance(plan.case.scene, Parts):
         found["phases"] = plan.phase_table

@@ -15,7 +15,7 @@ from ...yade.deck_modules import cone
 from . import classes as words
 from .classes import Functors, Material, PairValue, of_pairs
 from .deck import strength_values
-from .scene_parts import EDGES, Facets, Load, Motion, facets, loads, motions, spheres
+from .scene_parts import EDGES, Facets, Load, Motion, facets, loads, motions
 from .scene_parts import files as facet_files
 from .scene_parts import refuse as refuse_parts
 
@@ -287,7 +287,7 @@ def _filled(p: ScenePlan) -> Limits:
 def _table(p: ScenePlan) -> str:
     if _parts(p):
         head = "# x y z radius [m], type, velocity [m/s], spin [rad/s], 1: frozen"
-        rows = [" ".join(map(decks.number, row)) for row in spheres(p)]
+        rows = [" ".join(map(decks.number, row)) for row in placement.moving_spheres(p)]
     else:
         head = "# x y z radius [m], type; random places without overlap"
         rows = [" ".join([*map(decks.number, place), str(int(kind))]) for *place, kind in placement.spheres(p)]

@@ -1,14 +1,13 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """What scenes of parts have in YADE: facets, motions of walls, spheres of a table; and what they cannot have."""
 
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 from ...base import rendering as decks
 from ...case.motions import LinearMove, Move, PressMove, RotateMove, VibrateMove
 from ...case.parts import Parts
 from ...errors import CaseError
-from ...scenes import placement
 from ...scenes.plan import Phase, ScenePlan
 from ...scenes.walls import surface_rotation
 
@@ -111,15 +110,3 @@ def files(p: ScenePlan) -> dict[str, str]:
         lines = [" ".join(map(decks.number, row)) for row in triangles.reshape(-1, 9).tolist()]
         texts[f"{name}.txt"] = "\n".join(["# corners of a triangle, x y z of each [m]", *lines, ""])
     return texts
-
-
-def spheres(p: ScenePlan) -> Iterator[tuple[float, ...]]:
-    """x y z radius [m], type, velocity [m/s], spin [rad/s], 1 if frozen, of each sphere: the table, then the fills."""
-    fills = [f for f in p.insertions for _ in range(f.count)]
-    still = (0.0, 0.0, 0.0)
-    for n, row in enumerate(placement.spheres(p).tolist()):
-        if n < len(p.scene.table):
-            s = p.scene.table[n]
-            yield (*row, *s.velocity, *s.spin, float(s.frozen))
-        else:
-            yield (*row, *fills[n - len(p.scene.table)].velocity, *still, 0.0)

@@ -12,13 +12,14 @@ from typing import Any, Protocol
 import numpy as np
 
 from ...engines import ImpactEngine
+from ...engines.lammps.engine import Lammps
 from ...engines.liggghts.engine import Liggghts
 from ...engines.yade.engine import Yade
 from ...errors import EngineError
 from ...impacts.experiment import Experiment
 from ...impacts.plan import plan
 from ..models.predictions import prediction as predict
-from . import liggghts, yade
+from . import lammps, liggghts, yade
 from .pairs import AXIS, Pairs, pairs, unequal_spheres
 
 VARIANTS = ("swap", "sort", "migration", "restart")
@@ -50,9 +51,10 @@ class _Host(Protocol):
 
 
 def _host(tool: ImpactEngine) -> _Host | None:
-    if isinstance(tool, Liggghts):
-        return liggghts
-    return yade if isinstance(tool, Yade) else None
+    if tool.name == "lammps-mdr":  # walls only
+        return None
+    hosts: dict[type, _Host] = {Liggghts: liggghts, Lammps: lammps, Yade: yade}
+    return next((host for kind, host in hosts.items() if isinstance(tool, kind)), None)
 
 
 def examine(tool: ImpactEngine, x: Experiment, folder: Path) -> Invariance | None:

@@ -21,7 +21,8 @@ def _box(pairs: Pairs) -> list[tuple[float, float]]:
     return [(-s, s), (-s, float(y.max()) + s), (-s, s)]
 
 
-def _data(pairs: Pairs, deck: decks.Deck, swap: bool) -> str:
+def data(pairs: Pairs, deck: decks.Deck, swap: bool) -> str:
+    """The data file of the pairs; `swap`: the targets have the lower ids."""
     groups = [
         data_file.Spheres(1 + deck.types.index(g.body.material), 2 * g.body.radius, g.body.density, g.place, g.velocity)
         for g in pairs.ordered(swap)
@@ -29,13 +30,13 @@ def _data(pairs: Pairs, deck: decks.Deck, swap: bool) -> str:
     return data_file.text("pairs", len(deck.types), _box(pairs), groups)
 
 
-def scripts(deck: decks.Deck, pairs: Pairs, variant: str) -> list[str]:
+def scripts(deck: decks.Deck, pairs: Pairs, variant: str, engine: str = "liggghts") -> list[str]:
     """The decks of a variant in the order in which they run."""
     steps = pairs.plan.steps
     context: dict[str, Any] = {
         "deck": deck,
         "variant": variant,
-        "ranks": _ranks(variant),
+        "ranks": ranks_of(variant),
         "restart": None,
         "stop": None,
         "steps": steps,
@@ -47,10 +48,11 @@ def scripts(deck: decks.Deck, pairs: Pairs, variant: str) -> list[str]:
             context | {"steps": pairs.stop, "stop": "middle.restart"},
             context | {"steps": steps - pairs.stop, "restart": "middle.restart"},
         ]
-    return [decks.render("verification/liggghts/invariance.in.j2", **part) for part in parts]
+    return [decks.render(f"verification/{engine}/invariance.in.j2", **part) for part in parts]
 
 
-def _ranks(variant: str) -> int:
+def ranks_of(variant: str) -> int:
+    """The number of ranks of a variant."""
     return 2 if variant == "migration" else 1
 
 
@@ -58,9 +60,9 @@ def velocities(tool: Liggghts, pairs: Pairs, variant: str, folder: Path) -> np.n
     """After the impacts, shape (2, n, 3), the body first. Raises EngineError; ValueError if bodies are lost."""
     deck = tool.deck(pairs.plan).but(path="out.bin")
     texts = {f"in.{k}": text for k, text in enumerate(scripts(deck, pairs, variant))}
-    write_texts(folder, texts | {deck.data: _data(pairs, deck, variant == "swap")})
+    write_texts(folder, texts | {deck.data: data(pairs, deck, variant == "swap")})
     for k in range(len(texts)):
         (folder / deck.path).unlink(missing_ok=True)
-        launcher.run(f"in.{k}", folder, ranks=_ranks(variant), log=f"log.{k}", out=f"out.{k}", seconds=120)
+        launcher.run(f"in.{k}", folder, ranks=ranks_of(variant), log=f"log.{k}", out=f"out.{k}", seconds=120)
     v = dump.series(folder / deck.path)[-1].reshape(2, pairs.plan.n, 3)
     return np.flip(v, axis=0) if variant == "swap" else v

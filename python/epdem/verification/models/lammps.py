@@ -7,7 +7,7 @@ from typing import Any
 
 from ...base import rendering as decks
 from ...engines.lammps import launcher
-from ...engines.lammps.engine import END, PATH, Deck, Lammps
+from ...engines.lammps.engine import END, PATH, Lammps
 from ...impacts.engine import Feature, Report, check_features, silent
 from ...impacts.experiment import Experiment
 from ...impacts.plan import Plan
@@ -22,6 +22,7 @@ class LammpsMdr(Lammps):
 
     name = "lammps-mdr"
     template = "verification/lammps/impact.in.j2"
+    ranks = 1
     features = frozenset({Feature.DECK, Feature.POSITIONS})
 
     def missing(self) -> str | None:
@@ -33,14 +34,15 @@ class LammpsMdr(Lammps):
     def note(self, x: Experiment) -> str:
         return predictions.mdr_note(x)
 
-    def deck(self, plan: Plan) -> Deck:
+    def deck(self, plan: Plan) -> decks.Deck:
         """The deck of a plan. Raises CaseError for cases outside mdr."""
         x = plan.experiment
         check_features(self, x)
         law = predictions.mdr(x)
         numbers = (law.young_modulus, law.poisson_ratio, law.yield_stress, 0.0, BULK, 0.0)
         contact = f"mdr {' '.join(map(decks.number, numbers))} tangential linear_history 0.0 0.0 0.0 damping mdr 1"
-        return Deck(
+        return decks.Deck(
+            plan,
             title=x.title,
             source=x.source,
             summary=f"{plan.summary}, LAMMPS's mdr",
@@ -50,10 +52,8 @@ class LammpsMdr(Lammps):
             pairs=(contact,),
             wall=contact,
             oblique=False,
-            time_step=plan.time_step,
             path=PATH,
             end=END,
-            steps=plan.steps,
         )
 
     def run(self, job: Any, folder: Path, *, ranks: int = 1, report: Report = silent) -> Any:

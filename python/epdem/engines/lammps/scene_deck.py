@@ -1,0 +1,139 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""The LAMMPS deck of a scene: one input file, and a data file for the spheres that come with a phase."""
+
+from itertools import combinations
+
+from ...base import rendering as decks
+from ...case.parts import Parts
+from ...errors import CaseError
+from ...scenes import placement
+from ...scenes.plan import ScenePlan
+from ..liggghts.scene_deck import default_skin
+from ..liggghts.scene_parts import load_words, stop_condition
+from ..liggghts.wall_power import wall_id
+from . import words
+from .scene_walls import LIGGGHTS, meshes, motions, plane, refuse
+
+ROLLING = ("cdt", "epsd2")
+
+
+def check(p: ScenePlan) -> None:
+    """Raise CaseError for what a scene in LAMMPS does not have."""
+    m, out, s = p.model, p.output, p.case.scene
+    first = p.phases[0].name
+    refuse("law.name", m.adheres and s.wall_materials and m.law, "adhesion is between spheres only, not at walls")
+    rolling = m.rolling.model if m.rolling else None
+    refuse("contact.rolling.model", rolling not in (None, *ROLLING) and rolling, "pair ep in LAMMPS has cdt and epsd2")
+    refuse("output.restarts", out.restarts, "a LAMMPS scene is not continued")
+    refuse("output.vtk", out.vtk, "there is no VTK output; output.particles holds the same")
+    refuse("output.pictures", out.pictures, "there are none")
+    for fill in p.insertions:
+        refuse(f"{fill.key} with a rate", fill.rate, "all spheres come at the begin of a phase")
+        if isinstance(s, Parts):
+            refuse(f"{fill.key} with a phase", fill.phase != first and fill.phase, "only the first phase is filled")
+    refuse("scene.phase.record", any(not phase.case.record for phase in p.phases), "every phase has frames")
+    if not len(placement.spheres(p)):
+        raise CaseError(f"scene: no sphere is there at the start, LAMMPS needs one; {LIGGGHTS}")
+
+
+def deck(p: ScenePlan) -> decks.Deck:
+    """The deck of a scene. Raises CaseError for what LAMMPS cannot do."""
+    check(p)
+    types = range(1, len(p.model.types) + 1)
+    gates = {w.name: plane(p, w) for w in p.scene.gates}
+    cut = p.case.numerics.processors
+    own_steps = any(phase.case.time_step for phase in p.phases)
+    walls = (*(plane(p, w) for w in p.scene.planes), *meshes(p))
+    row_words = {"f_load": p.floor_load, "f_press_z": p.plates, "f_torque": p.torque, "f_power": p.writes_wall_power}
+    phases, before, begin = [], None, 0
+    for phase, after in zip(p.phases, [*p.phases[1:], None], strict=True):
+        phases.append(
+            decks.Deck(
+                phase,
+                steps=phase.end - begin,
+                time_step=phase.case.time_step or p.time_step if own_steps else None,
+                data=_data_file(p, phase.name),
+                gates=[gates[name] for name in phase.gates if before is None or name not in before.gates],
+                commands=motions(p, before, phase) if before else [],
+                ends=[wall_id(p, name) for name in phase.gates if after and name not in after.gates],
+                stop=stop_condition(p, phase, phase.end - begin),
+            )
+        )
+        before, begin = phase, phase.end
+    return decks.Deck(
+        p,
+        title=p.case.case.title,
+        source=p.case.case.source,
+        boundary="p p f" if p.scene.periodic else "f f f",
+        processors=" ".join("*" if axis in cut else "1" for axis in "xyz") if cut else None,
+        skin=p.case.numerics.skin or default_skin(p),
+        settings=" energies" * (p.output.energy or p.contacts > 0) + " strain",
+        materials=[(i, words.of_type(p, i), words.options(p, i, i)) for i in types],
+        pairs=[(i, j, words.options(p, i, j)) for i, j in combinations(types, 2) if _is_special(p, i, j)],
+        motions=motions(p, None, p.phases[0]),
+        walls=walls,
+        loads_of=tuple((n, wall_id(p, name), name in p.scene.meshes) for n, name in enumerate(p.loads, 1)),
+        frozen=[n for n, s in enumerate(p.scene.table, 1) if s.frozen],
+        gravity=p.case.scene.gravity,
+        phases=phases,
+        mesh_ids=[wall_id(p, name) for name in p.scene.meshes],
+        contact_walls=[wall_id(p, w) for w in contact_walls(p)],
+        row_words=["f_ratio[1]", "f_ratio[2]", *(word for word, there in row_words.items() if there), *load_words(p)],
+        columns=columns_of_dump(p),
+        samples=p.every // p.sampling,
+        restarts=0,
+    )
+
+
+def _is_special(p: ScenePlan, i: int, j: int) -> bool:
+    """Whether two types have other coefficients than the mean of the like pairs."""
+    own = words.options(p, i, j)
+    return own != words.options(p, i, i) or own != words.options(p, j, j)
+
+
+def contact_walls(p: ScenePlan) -> list[str]:
+    """The walls whose contacts are in the tables: those that are always there."""
+    return [w.name for w in p.scene.planes] + [*p.scene.meshes]
+
+
+def columns_of_dump(p: ScenePlan) -> dict[str, str]:
+    """LAMMPS's word of each column of a frame."""
+    named = ["id", "type", "radius", "mass", "x", "y", "z", "vx", "vy", "vz"]
+    found = dict(zip(named, named, strict=True))
+    if p.model.spins:
+        found |= {f"omega_{axis}": f"omega{axis}" for axis in "xyz"}
+    work = {"plastic_work": (p.writes_plastic_work, 1), "adhesive_work": (p.writes_adhesive_work, 6)}
+    work |= {"friction_work": (p.writes_friction_work, 4), "friction_energy": (p.writes_friction_work, 5)}
+    return found | {name: f"f_EP_HISTORY0[{k}]" for name, (there, k) in work.items() if there}
+
+
+def _data_file(p: ScenePlan, phase: str) -> str | None:
+    """The data file of the spheres that come with a phase but the first; None: none do."""
+    later = any(f.phase == phase for f in p.insertions) or any(b.phase == phase for b in p.scene.later)
+    return f"{phase}.data" if later and phase != p.phases[0].name else None
+
+
+def _data(p: ScenePlan, phase: str) -> str:
+    """The data file of the spheres that come with a phase."""
+    rows = list(placement.moving_spheres(p, phase))
+    for b in p.scene.later:
+        if b.phase == phase:
+            kind = float(p.model.type_of(b.material))
+            rows.append((*b.position, b.radius, kind, *b.velocity, *b.spin, 0.0))
+    density = [0.0, *(p.case.materials[t.material].density for t in p.model.types)]
+    atoms, velocities = [], []
+    for n, (x, y, z, radius, kind, *motion, _) in enumerate(rows, 1):
+        numbers = " ".join(map(decks.number, (2 * radius, density[int(kind)], x, y, z)))
+        atoms.append(f"{n} {int(kind)} {numbers}")
+        velocities.append(f"{n} {' '.join(map(decks.number, motion))}")
+    limits = zip("xyz", p.box[::2], p.box[1::2], strict=True)
+    sides = [f"{decks.number(low)} {decks.number(high)} {a}lo {a}hi" for a, low, high in limits]
+    head = [f"spheres of {decks.line(p.case.case.title)}", "", f"{len(rows)} atoms", f"{len(density) - 1} atom types"]
+    return "\n".join([*head, *sides, "", "Atoms # sphere", "", *atoms, "", "Velocities", "", *velocities, ""])
+
+
+def files(p: ScenePlan) -> dict[str, str]:
+    """The text of every file of a scene's deck by its name. Raises CaseError."""
+    data = deck(p)
+    texts = {"in.scene": decks.render("lammps/scene.in.j2", deck=data), "spheres.data": _data(p, p.phases[0].name)}
+    return texts | {phase.data: _data(p, phase.name) for phase in data.phases if phase.data}

@@ -1,0 +1,74 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""The tables of a scene from LAMMPS's files. Only this module reads their formats."""
+
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+
+from ...case.parts import Parts
+from ...errors import EngineError
+from ...scenes import columns, contacts
+from ...scenes.plan import ScenePlan
+from ..liggghts import scene_tables as liggghts
+from ..liggghts.scene_parts import torque_origin
+from ..liggghts.wall_power import wall_id
+from .scene_deck import columns_of_dump, contact_walls
+
+LEFTOVERS: tuple[str, ...] = ("particles.*.txt", "contacts.*.txt", "contacts_*.txt")  # files of an earlier run
+
+
+def rows(p: ScenePlan, out: Path) -> pd.DataFrame:
+    """The thermo rows. LAMMPS's fixes have the force on the spheres, and torques about the origin of coordinates."""
+    found = liggghts.rows(p, out, on_spheres=p.loads)
+    opposite = [name for name in ("plate_force", "stress", "torque") if name in found]
+    found[opposite] = -found[opposite]
+    for name in (n for n in p.loads if n in p.scene.meshes):
+        force = found[[f"{name}_{load}" for load in columns.LOADS[:3]]].to_numpy()
+        found[[f"{name}_{load}" for load in columns.LOADS[3:]]] -= np.cross(torque_origin(p, name), force)
+    return found
+
+
+def _frames(p: ScenePlan, folder: Path, kind: str, every: int, names: list[str]) -> pd.DataFrame:
+    """The frames of a kind, one below the other. Raises EngineError for a frame that is missing or not whole."""
+    frames = []
+    for step in p.frame_steps(every):
+        path = folder / f"{kind}.{step}.txt"
+        try:
+            lines = path.read_text(encoding="utf-8").split("\n")
+            values = np.array(" ".join(lines).split(), float).reshape(-1, len(names))
+            if len(lines) != len(values) + 1:
+                raise ValueError(f"{len(lines) - 1} lines of {len(values)}")
+        except (OSError, ValueError) as error:
+            raise EngineError(f"{path}: incomplete ({error}); run the case again") from None
+        table = pd.DataFrame(values, columns=names)
+        table.insert(0, "step", step)
+        frames.append(table)
+    return pd.concat(frames, ignore_index=True)
+
+
+def _contacts(p: ScenePlan, folder: Path, spheres: pd.DataFrame) -> pd.DataFrame:
+    """Every contact of every frame."""
+    pairs = _frames(p, folder, "contacts", p.contacts, ["one", "two", "overlap", "delta_max", "attached"])
+    pairs = pairs.assign(wall="", i=pairs[["one", "two"]].min(axis=1), j=pairs[["one", "two"]].max(axis=1))
+    found = [pairs[(pairs["overlap"] > 0) | (p.model.adheres & (pairs["attached"] > 0))]]
+    for name in contact_walls(p):
+        table = _frames(p, folder, f"contacts_{wall_id(p, name)}", p.contacts, ["i", "overlap", "delta_max"])
+        found.append(table.assign(wall=name, j=0, attached=1.0))
+    raw = pd.concat([part for part in found if len(part)] or found[:1], ignore_index=True)
+    raw = raw.assign(attached=raw["attached"] > 0) if p.model.adheres else raw.drop(columns="attached")
+    return contacts.complete(p, raw, spheres, folder)
+
+
+def read(p: ScenePlan, folder: Path, out: Path) -> dict[str, pd.DataFrame]:
+    """The tables of a run, SI. Raises EngineError for a frame that is missing or not whole."""
+    p = p.ended(liggghts.ends(out), liggghts.not_reached(out)) if p.ends_early else p
+    tables = {"rows": rows(p, out)}
+    if isinstance(p.case.scene, Parts):
+        tables["phases"] = p.phase_table
+    if p.frames:
+        found = _frames(p, folder, "particles", p.frames, [*columns_of_dump(p)])
+        tables["particles"] = columns.whole(p, found, folder)
+    if p.contacts:
+        tables["contacts"] = _contacts(p, folder, tables["particles"])
+    return tables

@@ -1,0 +1,196 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Walls of a scene as fixes over planes and regions of LAMMPS, and the variables that move the regions."""
+
+import itertools
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass
+
+from ...base.rendering import number
+from ...case.motions import LinearMove, Move, PressMove, RotateMove, VibrateMove
+from ...case.walls import BoxWall, ConeWall, CylinderWall, MeshWall, PlaneWall, PlateWall, RevolvedWall
+from ...errors import CaseError
+from ...scenes import placement
+from ...scenes.plan import Phase, ScenePlan
+from ...scenes.walls import surface_rotation
+from ..liggghts.wall_power import wall_id
+from . import words
+
+LIGGGHTS = "use --engine liggghts"
+
+
+@dataclass(frozen=True)
+class DeckWall:
+    """A wall. regions: commands before its fix. where: what the fix acts on. contact: material and options."""
+
+    id: str
+    regions: tuple[str, ...]
+    where: str
+    contact: str
+
+
+def contact(p: ScenePlan, name: str) -> str:
+    """Material and options of the contacts with a wall. Raises CaseError if they differ between types of spheres."""
+    wall = p.wall_types[name]
+    spheres = [i for i, t in enumerate(p.model.types, 1) if not t.wall]
+    found = {words.options(p, i, wall) for i in spheres}
+    if len(found) > 1:
+        raise CaseError(
+            f"contact.pairs: a wall in LAMMPS has one contact with all spheres, wall {name} has {len(found)}; give the "
+            f"wall the same friction and restitution with all materials, or {LIGGGHTS}"
+        )
+    return f"{words.of_type(p, wall)} {found.pop()}".rstrip()
+
+
+def plane(p: ScenePlan, w: PlaneWall) -> DeckWall:
+    """A plane, which acts on both sides."""
+    at = number(w.at)
+    return DeckWall(wall_id(p, w.name), (), f"wall/ep {w.axis}plane {at} {at}", contact(p, w.name))
+
+
+def meshes(p: ScenePlan) -> tuple[DeckWall, ...]:
+    """The walls that are no planes, as regions. Raises CaseError for what no region of LAMMPS is."""
+    found = []
+    for name, mesh in p.scene.meshes.items():
+        id, motion = wall_id(p, name), _motion_words(p, name)
+        shapes = list(_shapes(p, mesh))
+        ends = " ".join(filter(None, [motion, "units box"]))
+        if len(shapes) == 1:
+            regions = [f"region {id} {shapes[0]} {ends}"]
+        else:
+            regions = [f"region {id}_{k} {shape} units box" for k, shape in enumerate(shapes, 1)]
+            parts = " ".join(f"{id}_{k}" for k in range(1, len(shapes) + 1))
+            regions.append(f"region {id} union {len(shapes)} {parts} {ends}")
+        found.append(DeckWall(id, tuple(regions), f"wall/ep/region {id}", contact(p, name)))
+    return tuple(found)
+
+
+def _shapes(p: ScenePlan, w: MeshWall) -> Iterator[str]:
+    """Style and numbers of the regions of a wall."""
+    refuse(f"scene.wall.{w.name}.stress", w.stress, "regions have no triangles")
+    refuse(f"scene.wall.{w.name}.wear", w.wear, "regions have no triangles")
+    match w:
+        case PlateWall():
+            yield f"block {' '.join(_plate(p, w))} side out"
+        case BoxWall():
+            faces = ["-x", "+x", "-y", "+y", "-z", "+z"]
+            limits = _numbers((*w.x, *w.y, *w.z))
+            yield f"block {limits}{_open(1 + faces.index(side) for side in w.open) or _side(p, w)}"
+        case CylinderWall() | ConeWall():
+            style = "cylinder" if isinstance(w, CylinderWall) else "cone"
+            radii = sorted({d / 2 for d in w.diameters_of_ends()}) if style == "cylinder" else _halves(w)
+            numbers = _numbers((*w.center, *radii, w.start, w.to))
+            opened = _open(k for k, end in enumerate(("from", "to"), 1) if end not in w.ends)
+            yield f"{style} {w.axis} {numbers}{opened or _side(p, w)}"
+        case RevolvedWall():
+            for one, two in itertools.pairwise(w.profile):
+                (low_radius, low), (high_radius, high) = sorted((one, two), key=lambda point: point[1])
+                refuse(f"scene.wall.{w.name}.profile", low == high, "a flat ring is no region of LAMMPS")
+                round_ = (low_radius,) if low_radius == high_radius else (low_radius, high_radius)
+                style = "cylinder" if len(round_) == 1 else "cone"
+                yield f"{style} z {_numbers((*w.center, *round_, low, high))}{_open((1, 2))}"
+        case _:
+            refuse(f"scene.wall.{w.name}.kind", "stl", "LAMMPS's regions hold no triangles of a file")
+
+
+def _halves(w: CylinderWall | ConeWall) -> tuple[float, ...]:
+    return tuple(d / 2 for d in w.diameters_of_ends())
+
+
+def _plate(p: ScenePlan, w: PlateWall) -> Iterator[str]:
+    """The limits of a flat block; where the room repeats and the plate is as wide, it has no edges."""
+    sizes = iter(w.size)
+    for axis, center, low, high in zip("xyz", w.center, p.box[::2], p.box[1::2], strict=True):
+        half = 0.0 if axis == w.axis else next(sizes) / 2
+        endless = p.scene.periodic and axis in "xy" and axis != w.axis and 2 * half >= (high - low) * (1 - 1e-9)
+        yield "INF INF" if endless else _numbers((center - half, center + half))
+
+
+def _open(faces: Iterable[int]) -> str:
+    return "".join(f" open {face}" for face in faces)
+
+
+def _side(p: ScenePlan, w: BoxWall | CylinderWall | ConeWall) -> str:
+    """Which side of a closed wall the spheres are on, for a region without openings has one."""
+    inside = {_holds(w, row[:3]) for phase in p.phases for row in placement.spheres(p, phase.name).tolist()}
+    inside |= {_holds(w, list(b.position)) for b in p.scene.later}
+    if len(inside) > 1:
+        raise CaseError(
+            f"scene.wall.{w.name}: a closed wall in LAMMPS has spheres on one side, and this one on both; {LIGGGHTS}"
+        )
+    return " side in" if inside == {True} else " side out"
+
+
+def _holds(w: BoxWall | CylinderWall | ConeWall, place: Sequence[float]) -> bool:
+    """Whether a place is inside of a closed wall."""
+    if isinstance(w, BoxWall):
+        return all(low < x < high for x, (low, high) in zip(place, (w.x, w.y, w.z), strict=True))
+    along = "xyz".index(w.axis)
+    share = (place[along] - w.start) / (w.to - w.start)
+    first, last = _halves(w)
+    off = [x - c for k, (x, c) in enumerate(zip(place, w.axis_point, strict=True)) if k != along]
+    return 0 < share < 1 and off[0] ** 2 + off[1] ** 2 < (first + share * (last - first)) ** 2
+
+
+def _numbers(values: Iterable[float]) -> str:
+    return " ".join(map(number, values))
+
+
+def refuse(place: str, value: object, reason: str) -> None:
+    """Raise CaseError if a case gives what LAMMPS does not hold."""
+    if value:
+        shown = "" if value is True else f" = {value!r}"
+        raise CaseError(f"{place}{shown}: {reason}; remove it or {LIGGGHTS}")
+
+
+def _rates(p: ScenePlan, name: str, phase: Phase) -> dict[str, str]:
+    """What changes in a phase: component of the way [m] or turn [rad], and its formula of the time t of the motion."""
+    found: dict[str, str] = {}
+    move: Move | None = phase.moves.get(name)
+    turn = surface_rotation(p.scene.meshes[name])
+    rate = turn.rate if turn else 0.0
+    match move:
+        case LinearMove():
+            found = {axis: f"{number(v)}*T" for axis, v in zip("xyz", move.velocity, strict=True) if v}
+        case VibrateMove():
+            wave = f"sin({number(move.omega)}*T)"
+            found = {axis: f"{number(a)}*{wave}" for axis, a in zip("xyz", move.amplitude, strict=True) if a}
+        case RotateMove():
+            rate += move.rate
+        case PressMove():
+            refuse(f"scene.phase.{phase.name}.move of {name}", "press", "LAMMPS has no region that a force drives")
+    return found | ({"turn": f"{number(rate)}*T"} if rate else {})
+
+
+def _changing(p: ScenePlan, name: str) -> list[str]:
+    every = set().union(*(_rates(p, name, phase) for phase in p.phases))
+    return [key for key in ("x", "y", "z", "turn") if key in every]
+
+
+def _motion_words(p: ScenePlan, name: str) -> str:
+    """move and rotate of a region."""
+    keys, id, found = _changing(p, name), wall_id(p, name), []
+    if {*keys} & {*"xyz"}:
+        found.append("move " + " ".join(f"v_{id}_{axis}" if axis in keys else "NULL" for axis in "xyz"))
+    if "turn" in keys:
+        axes = {(tuple(r.unit_axis), tuple(r.origin)) for r in p.rotations(name)}
+        refuse(f"scene.wall.{name}", len(axes) > 1 and "several axes", "a region of LAMMPS turns about one")
+        axis, origin = axes.pop()
+        found.append(f"rotate v_{id}_turn {_numbers(origin)} {_numbers(axis)}")
+    return " ".join(found)
+
+
+def motions(p: ScenePlan, before: Phase | None, phase: Phase) -> list[str]:
+    """Commands that set the walls of triangles in motion at the begin of a phase, or stop them."""
+    found = []
+    for name in p.scene.meshes:
+        keys, id, rates = _changing(p, name), wall_id(p, name), _rates(p, name, phase)
+        if not keys or (before and _rates(p, name, before) == rates):
+            continue
+        found.append(f"variable {id}_begin equal $(time:%.17g)")
+        for key in keys:
+            if before:
+                found.append(f"variable {id}_{key}0 equal $(v_{id}_{key}:%.17g)")
+            formula = rates[key].replace("T", f"(time-v_{id}_begin)") if key in rates else ""
+            terms = [f"v_{id}_{key}0"] * (before is not None) + [formula] * bool(formula)
+            found.append(f"variable {id}_{key} equal {'+'.join(terms) or '0.0'}")
+    return found

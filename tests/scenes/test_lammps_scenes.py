@@ -1,0 +1,135 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Bulk scenes in LAMMPS: the way of the spheres in LIGGGHTS, the energy that moving walls bring, what is refused."""
+
+import numpy as np
+import pytest
+from parts_cases import BED, CASES, FLOOR, own, parts
+from scene_runs import run, write_case
+from test_parts_motions import PLATE, assert_the_lid_shakes_on, moved
+
+from engines.lammps_decks import needs_lammps
+from epdem.case.scene import load, parse
+from epdem.engines import scene_engine
+from epdem.errors import CaseError
+from epdem.scenes.columns import last_frame
+from epdem.scenes.plan import plan
+
+
+def plane(name, axis, at):
+    return {"name": name, "kind": "plane", "axis": axis, "at": at, "material": "steel"}
+
+
+SIDES = [plane(f"{axis}{at[:2]}", axis, at) for axis in "xy" for at in ("-9 mm", "9 mm")]
+SIDES = [side | {"name": name} for side, name in zip(SIDES, ("left", "right", "front", "back"), strict=True)]
+BEAMS = [  # pairs of spheres that meet, hit walls and the plate, at different speeds
+    f"{x},{y},{z},{r},{m},{vx},{vy},{vz}"
+    for x, y, z, r, m, vx, vy, vz in (
+        (-4e-3, 0, 2.0e-3, 1.4e-3, "glass", 0.9, 0.1, -0.7),
+        (2e-3, 0.5e-3, 3.0e-3, 1.0e-3, "steel", -0.8, 0.0, -0.3),
+        (7e-3, -2e-3, 5.0e-3, 1.2e-3, "glass", 0.7, 0.2, 0.5),
+        (-6e-3, 5e-3, 8.0e-3, 1.5e-3, "steel", -0.4, 0.9, 0.6),
+        (0.0, -6e-3, 6.0e-3, 1.1e-3, "glass", 0.1, -1.0, 0.2),
+    )
+]
+
+
+def beams(tmp_path, **contact):
+    """Five spheres of two materials between planes and a plate that comes down and goes up."""
+    (tmp_path / "spheres.csv").write_text("\n".join(["x,y,z,radius,material,vx,vy,vz", *BEAMS, ""]))
+    down, up = ({"wall": "lid", "kind": "linear", "velocity": ["0 m/s", "0 m/s", v]} for v in ("-0.3 m/s", "0.2 m/s"))
+    lid = PLATE | {"center": ["0 mm", "0 mm", "12 mm"]}
+    data = parts(
+        wall=[FLOOR, *SIDES, lid],
+        fill=[{"name": "table", "file": "spheres.csv"}],
+        phase=[
+            {"name": "down", "duration": "8 ms", "move": [down]},
+            {"name": "up", "duration": "6 ms", "move": [up], "time_step": "1e-6 s"},
+        ],
+    )
+    data["numerics"] = {"time_step": "2e-6 s"}
+    pairs = [{"between": ["glass", "steel"], "friction": 0.4}]
+    data["contact"] = {"friction": 0.3, "wall_friction": 0.2, "pairs": pairs, **contact}
+    return data
+
+
+@needs_lammps
+@pytest.mark.liggghts
+@pytest.mark.parametrize(
+    "contact",
+    [
+        {"tangential_restitution": 0.5},
+        {"tangential": "partial_slip"},
+        {"rolling": {"model": "epsd2", "coefficient": 0.1}},
+    ],
+    ids=["dashpot", "partial slip", "rolling"],
+)
+def test_spheres_take_the_way_of_liggghts_between_planes_and_a_plate_that_moves(contact, tmp_path):
+    """From the same table: energies, forces on walls and contacts of all frames."""
+    path = write_case(beams(tmp_path, **contact), tmp_path)
+    ours, theirs = (run(path, engine=name, out=tmp_path / name).results for name in ("lammps", "liggghts"))
+    assert {*ours.rows} == {*theirs.rows}
+    for name in (n for n in theirs.rows if "torque" not in n):  # about a point that LIGGGHTS moves with the plate
+        largest = np.abs(theirs.rows[name]).max()
+        assert np.abs(ours.rows[name] - theirs.rows[name]).max() <= 1e-6 * largest, name
+    assert np.abs(theirs.rows["lid_force_z"]).max() > 0 and np.abs(theirs.rows["left_force_x"]).max() > 0
+    table = theirs.particles
+    assert {*ours.particles} <= {*table} and len(ours.particles) == len(table)
+    for name in ("x", "z", "vy", "omega_x", "plastic_work"):
+        assert np.abs(ours.particles[name] - table[name]).max() <= 1e-6 * np.abs(table[name]).max(), name
+    last = table[table["step"] == table["step"].max()]
+    assert (last["plastic_work"] > 0).all() and np.abs(last["omega_x"]).max() > 1
+    keys = ["step", "wall", "i", "j"]
+    assert ours.contacts[keys].equals(theirs.contacts[keys])
+
+
+@needs_lammps
+@pytest.mark.parametrize("kind", ["vibrate", "rotate", "linear"])
+def test_energy_closes_with_the_work_of_regions_that_move(kind, tmp_path):
+    outcome = run(write_case(moved(kind), tmp_path), engine="lammps", out=tmp_path / "out")
+    balance = outcome.results.energy_balance
+    assert outcome.passed, outcome.results.checks
+    if kind == "vibrate":
+        assert_the_lid_shakes_on(outcome.results)
+    assert abs(balance["work"]).max() > 0.1 * balance["kinetic"].max() > 0
+
+
+@needs_lammps
+@pytest.mark.liggghts
+@pytest.mark.parametrize("kind", ["drum", "hopper"])
+def test_round_walls_hold_and_drive_a_bed_as_in_liggghts(kind, tmp_path):
+    """Drum: torque of the bed. Hopper: spheres that flow out in 0.15 s."""
+    data = own(f"{kind}_beads")
+    keys = {"drum": {"duration": "0.4 s"}, "hopper": {"duration": "0.15 s", "fill_time": "0.12 s"}}[kind]
+    data["scene"] |= keys | {"count": {"drum": 300, "hopper": 500}[kind]}
+    path = write_case(data, tmp_path)
+    ours, theirs = (run(path, engine=name, out=tmp_path / name).results for name in ("lammps", "liggghts"))
+    if kind == "drum":
+        a, b = (found.rows["torque"][len(found.rows) // 2 :].mean() for found in (ours, theirs))
+    else:
+        a, b = ((last_frame(found.particles)["z"] < -0.01).sum() for found in (ours, theirs))
+    assert a == pytest.approx(b, rel=0.1) and abs(b) > 0
+    assert (ours.rows["particles"] == theirs.rows["particles"].max()).all()
+
+
+@pytest.mark.parametrize(
+    ("change", "sentence"),
+    [
+        ({"fill": [BED | {"rate": "10 kHz"}]}, "all spheres come at the begin of a phase; remove it or use"),
+        ({"wall": [FLOOR, PLATE | {"wear": "1e-12 m^2/N"}]}, "scene.wall.lid.wear = 1e-12: regions have no triangles"),
+    ],
+)
+def test_what_regions_do_not_hold_is_refused_with_one_sentence(change, sentence):
+    with pytest.raises(CaseError, match=sentence):
+        scene_engine("lammps").check(plan(parse(parts(**change))))
+
+
+@pytest.mark.parametrize(
+    ("case", "sentence"),
+    [
+        ("impactor_bowl", "scene.wall.bowl.kind = 'stl': LAMMPS's regions hold no triangles of a file; remove it or"),
+        ("adhesive_powder", "law.name = 'thornton_ning': adhesion is between spheres only, not at walls; remove it or"),
+    ],
+)
+def test_cases_that_lammps_does_not_hold_are_refused(case, sentence):
+    with pytest.raises(CaseError, match=sentence):
+        scene_engine("lammps").check(plan(load(CASES / f"{case}.toml")))
