@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The data of the template of an impact deck."""
+"""Strengths and bodies of the decks of YADE."""
 
 from dataclasses import dataclass
 from math import inf
@@ -8,7 +8,6 @@ from ...errors import CaseError
 from ...laws.strengths import law_named
 from ...yade.deck_modules import cone
 from ...yade.deck_modules.law import trigger_factor
-from .classes import Functors, Material
 
 
 def strength_values(
@@ -34,36 +33,3 @@ class Group:
     data: str
     radius: float
     material: str
-
-
-@dataclass(frozen=True)
-class Anvil:
-    """A fixed sphere under each body, its centre at z [m]."""
-
-    radius: float
-    material: str
-    z: float
-
-
-@dataclass(frozen=True)
-class Deck:
-    """Everything the template writes; every number was decided here."""
-
-    title: str
-    source: str
-    summary: str
-    rigid: bool
-    law: str
-    native: bool  # YADE's own law
-    functors: Functors | None  # of epdem_yade; None: another law
-    ratios: dict[str, float]
-    materials: tuple[Material, ...]
-    wall_material: str | None
-    anvil: Anvil | None  # fixed spheres that replace the wall where YADE's law has spheres only
-    bodies: tuple[Group, ...]
-    oblique: bool
-    skin: float
-    time_step: float
-    samples: int
-    path: str
-    remembers: bool = False  # contacts that ended

@@ -28,7 +28,7 @@ from ...scenes.plan import ScenePlan
 from ...theory.sources import Source
 from . import classes, launcher, scene_deck, scenes
 from .classes import Functors, Material, PairValue
-from .deck import Deck, Group, strength_values
+from .deck import Group, strength_values
 from .launcher import command, environment, module_version, write_deck_modules
 
 INSTALL = "apt-get install yade"
@@ -101,7 +101,7 @@ class Yade:
         """The law's dimensionless parameters in the deck."""
         return x.law.ratios()
 
-    def deck(self, plan: Plan) -> Deck:
+    def deck(self, plan: Plan) -> decks.Deck:
         """The deck of a plan. Raises CaseError for what YADE cannot do."""
         x, wall = plan.experiment, isinf(plan.experiment.target.radius)
         check_features(self, x)
@@ -112,7 +112,8 @@ class Yade:
         bodies = [Group("body.data", x.body.radius, x.body.material)]
         if not wall:
             bodies.append(Group("target.data", x.target.radius, x.target.material))
-        return Deck(
+        return decks.Deck(
+            plan,
             title=x.title,
             source=x.source,
             summary=f"{plan.summary}, law {x.law.name}",
@@ -127,9 +128,9 @@ class Yade:
             bodies=tuple(bodies),
             oblique=x.oblique is not None,
             skin=0.1 * min(x.body.radius, x.target.radius),
-            time_step=plan.time_step,
             samples=plan.steps + 2,  # one more than the plan has: a velocity is the mean of those half a step away
             path="path.bin",
+            remembers=False,  # contacts that ended
         )
 
     def check(self, job: Plan | ScenePlan) -> list[str]:

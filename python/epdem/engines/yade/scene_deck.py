@@ -3,7 +3,6 @@
 
 from dataclasses import dataclass
 from itertools import combinations_with_replacement
-from typing import Any
 
 from ...base import rendering as decks
 from ...case.parts import Parts
@@ -15,7 +14,7 @@ from ...yade.deck_modules import cone
 from . import classes as words
 from .classes import Functors, Material, PairValue, of_pairs
 from .deck import strength_values
-from .scene_parts import EDGES, Facets, Load, Motion, facets, loads, motions
+from .scene_parts import EDGES, Motion, facets, loads, motions
 from .scene_parts import files as facet_files
 from .scene_parts import refuse as refuse_parts
 
@@ -51,71 +50,6 @@ class Phase:
     plate: float
     time_step: float | None
     motions: tuple[Motion, ...]
-
-
-@dataclass(frozen=True)
-class Deck:
-    """Everything that the template writes; every number was decided here."""
-
-    plan: ScenePlan
-    title: str
-    source: str
-    law: str
-    native: bool
-    functors: Functors | None  # of epdem_yade; None: contacts of the C library
-    ratios: dict[str, float]
-    materials: tuple[Material, ...]
-    frictions: tuple[tuple[int, int, float], ...]
-    periodic: bool
-    cell: tuple[float, float, float]
-    walls: tuple[Wall, ...]
-    low: tuple[float, ...]
-    high: tuple[float, ...]
-    fall: float
-    skin: float
-    phases: tuple[Phase, ...]
-    sampling: int
-    spins: bool
-    load: str
-    parts: bool
-    facets: tuple[Facets, ...]
-    loads: tuple[Load, ...]
-
-    def __getattr__(self, name: str) -> Any:
-        """A number that the plan has by the same name: time_step, every, frames and more."""
-        if name == "plan" or name.startswith("__"):
-            raise AttributeError(name)
-        return getattr(self.plan, name)
-
-    @property
-    def remembers(self) -> bool:
-        """Whether the deck itself keeps contacts that have ended, of which the plastic work follows."""
-        return bool(self.plan.writes_plastic_work) and self.functors is None
-
-    @property
-    def works(self) -> list[str]:
-        """Attributes of EpState in the frames."""
-        return list(works(self.plan)) if self.functors else []
-
-    @property
-    def moving(self) -> bool:
-        """Whether walls move by other motions than a constant velocity."""
-        return any(m.axis or m.amplitude for phase in self.phases for m in phase.motions)
-
-    @property
-    def wall(self) -> str:
-        """YADE's shape of the walls: its infinite one does not work in a periodic cell."""
-        return "facet" if self.periodic else "wall"
-
-    @property
-    def load_column(self) -> str:
-        """The column of the force on `load`."""
-        return {"floor": "floor_load", "plate": "plate_force"}[self.load]
-
-    @property
-    def load_sign(self) -> int:
-        """The floor is pressed down, the plate up."""
-        return {"floor": -1, "plate": 1}[self.load]
 
 
 def works(p: ScenePlan) -> dict[str, list[str]]:
@@ -230,14 +164,18 @@ def _walls(p: ScenePlan) -> tuple[Wall, ...]:
     return tuple(Wall(name, axis, at, corners(at), p.wall_types[name] - 1) for name, axis, at in planes)
 
 
-def deck(p: ScenePlan, *, classes: bool) -> Deck:
+def deck(p: ScenePlan, *, classes: bool) -> decks.Deck:
     """The YADE deck of a scene. Raises CaseError for what YADE cannot do."""
     refuse(p, classes=classes)
     m, friction, ends = p.model, p.model.friction, [0, *(phase.end for phase in p.phases)]
     xlo, xhi, ylo, yhi, zlo, zhi = p.box
     sides = () if p.scene.periodic else ((xlo, xhi), (ylo, yhi))
-    return Deck(
-        plan=p,
+    moves = [motions(p, phase) if _parts(p) else () for phase in p.phases]
+    load, column, sign = ("floor", "floor_load", -1) if p.floor_load else ("", "", 0)  # pressed down, the plate up
+    if p.plates:
+        load, column, sign = "plate", "plate_force", 1
+    return decks.Deck(
+        p,
         title=p.case.case.title,
         source=p.case.case.source,
         law=m.law,
@@ -259,13 +197,19 @@ def deck(p: ScenePlan, *, classes: bool) -> Deck:
                 end - begin,
                 0.0 if _parts(p) else phase.plate,
                 (phase.case.time_step or p.time_step) if any(x.case.time_step for x in p.phases) else None,
-                motions(p, phase) if _parts(p) else (),
+                moved,
             )
-            for phase, begin, end in zip(p.phases, ends[:-1], ends[1:], strict=True)
+            for phase, begin, end, moved in zip(p.phases, ends[:-1], ends[1:], moves, strict=True)
         ),
         sampling=1 if p.plates or p.writes_wall_power else p.sampling if p.output.loads else p.every,
         spins=m.spins,
-        load="plate" if p.plates else "floor" if p.floor_load else "",
+        load=load,
+        load_column=column,
+        load_sign=sign,
+        remembers=p.writes_plastic_work and not classes,  # contacts that have ended, of which the plastic work follows
+        works=[*works(p)] if classes else [],  # attributes of EpState in the frames
+        moving=any(m.axis or m.amplitude for moved in moves for m in moved),
+        wall="facet" if p.scene.periodic else "wall",  # YADE's infinite one does not work in a periodic cell
         parts=_parts(p),
         facets=facets(p) if _parts(p) else (),
         loads=loads(p),

@@ -8,7 +8,7 @@ import numpy as np
 
 from ...base import rendering as decks
 from ...base.processes import call
-from ...engines.yade.deck import Deck
+from ...base.rendering import Deck
 from ...engines.yade.engine import Yade
 from ...engines.yade.launcher import command, environment, write_deck_modules
 from ...errors import EngineError

@@ -2,18 +2,27 @@
 """YADE's own Luding law on the same plans, for comparison."""
 
 import math
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
+from ...base.rendering import Deck
 from ...engines.yade.classes import Material
-from ...engines.yade.deck import Anvil, Deck
 from ...engines.yade.engine import Yade
 from ...impacts.engine import Feature, Report, silent
 from ...impacts.experiment import Body, Experiment
 from ...impacts.plan import Plan
 from ...impacts.prediction import Prediction
 from . import predictions
+
+
+@dataclass(frozen=True)
+class Anvil:
+    """A fixed sphere under each body, its centre at z [m]: it replaces the wall, for YADE's law has spheres only."""
+
+    radius: float
+    material: str
+    z: float
 
 
 class YadeLuding(Yade):
@@ -60,4 +69,4 @@ class YadeLuding(Yade):
         anvil = None
         if deck.wall_material:
             anvil = Anvil(x.body.radius, x.target.material, -x.body.radius)
-        return replace(deck, law="Luding", native=True, functors=None, rigid=False, wall_material=None, anvil=anvil)
+        return deck.but(law="Luding", native=True, functors=None, rigid=False, wall_material=None, anvil=anvil)

@@ -10,8 +10,8 @@ import numpy as np
 from ...base import rendering as decks
 from ...base.files import write_texts
 from ...base.processes import call
+from ...base.rendering import Deck
 from ...engines.yade.classes import Material, settings
-from ...engines.yade.deck import Deck
 from ...engines.yade.engine import Yade
 from ...engines.yade.launcher import command, environment, write_deck_modules
 from ...errors import EngineError
@@ -53,8 +53,7 @@ def deck(touch: Touch, motion: Motion) -> Deck:
     if functors:
         friction = {"frictionAngle": math.atan(touch.friction)}
         functors = replace(functors, settings=settings(touch.tangential))
-    return replace(
-        plain,
+    return plain.but(
         summary=summary(touch, motion),
         materials=tuple(Material(m.name, {**m.values, **friction}) for m in plain.materials),
         functors=functors,
