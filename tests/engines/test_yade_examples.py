@@ -66,7 +66,7 @@ def test_two_spheres_of_mindlin_py_have_the_forces_of_yades_law(tmp_path):
 
 SHOTS = """
 shots = []
-for _ in range(4):
+for _ in range(3):
     O.run(1000, wait=True)
     spheres = [b for b in O.bodies if b and isinstance(b.shape, Sphere)]
     energy = sum(0.5 * b.state.mass * b.state.vel.squaredNorm() for b in spheres)
@@ -80,6 +80,3 @@ def test_the_shots_of_spheresfactory_py_rebound_as_with_yades_law(tmp_path):
     yade, ours = (run("spheresFactory.py", law, tmp_path / str(law), SHOTS) for law in (None, "Hertz"))
     assert yade[-1, 0] > 500 and ours[:, 1] == pytest.approx(yade[:, 1], rel=0.05)
     assert ours[-1, 2] == pytest.approx(yade[-1, 2], abs=0.03 * 100)
-    soft = [(f"label='{name}'", f"yieldPressure=3e9, label='{name}'") for name in ("shots", "steel")]
-    dented = run("spheresFactory.py", "Thornton", tmp_path / "Thornton", SHOTS, *soft)
-    assert dented[-1, 1] < 0.9 * yade[-1, 1]

@@ -8,12 +8,14 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from yade_native import HEAD, ROOT, impacts, needs_source, result, title, yade
+from yade_native import HEAD, ROOT, impacts, module_folder, needs_source, result, title, yade
 
 from epdem.base.declarations import declarations
 from epdem.case.impact import Numerics, parse
 from epdem.case.toml import read_toml
 from epdem.engines import engine
+from epdem.engines.yade import sources
+from epdem.engines.yade.launcher import environment
 from epdem.impacts.experiment import experiment
 from epdem.impacts.measurement import measure
 from epdem.impacts.plan import plan
@@ -317,6 +319,16 @@ def test_a_build_without_source_says_what_to_do(source, sentence, tmp_path):
     command = ["cmake", "-S", str(ROOT / "cpp_contact/yade"), "-B", str(tmp_path), f"-DYADE_SOURCE={source}"]
     done = subprocess.run(command, env=os.environ | nowhere, capture_output=True, text=True, check=False)
     assert done.returncode != 0 and sentence in " ".join(done.stderr.split())
+
+
+@pytest.mark.skipif("EPDEM_YADE_MODULE" in os.environ, reason="EPDEM_YADE_MODULE names another build")
+def test_the_three_commands_of_an_exported_project_give_yade_the_module(tmp_path):
+    """The first two have built the module of all tests here; the third one lets a script find it."""
+    built = module_folder()
+    (tmp_path / "script.py").write_text("import epdem_yade\nprint('FOUND', epdem_yade.__file__)\n")
+    text = sources.commands(built.parent)[2] + "\nyade -n -x script.py\n"
+    done = subprocess.run(["bash", "-c", text], cwd=tmp_path, env=environment(), capture_output=True, text=True)
+    assert f"FOUND {built}/epdem_yade.so" in done.stdout, done.stdout + done.stderr
 
 
 THREADS = (

@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Scenes of parts in YADE: facets, motions, spheres of a table beside LIGGGHTS; what is refused."""
 
+import math
+
 import numpy as np
 import pytest
 from parts_cases import BED, FLOOR, parts
@@ -9,6 +11,7 @@ from test_parts_motions import BEATER, BOX, FALL, PLATE, assert_the_lid_shakes_o
 
 from epdem.case.scene import parse
 from epdem.engines import scene_engine
+from epdem.engines.yade import scene_deck
 from epdem.errors import CaseError
 from epdem.scenes.engine import files
 from epdem.scenes.plan import plan
@@ -95,6 +98,16 @@ def test_what_yade_does_not_have_is_refused_in_a_sentence(change, words):
     with pytest.raises(CaseError) as error:
         files(scene_engine("yade"), plan(parse(parts(**change))))
     assert str(error.value) == f"{words}: a scene in YADE does not have it; remove it or use --engine liggghts"
+
+
+@pytest.mark.parametrize("classes", [True, False])
+def test_every_pair_has_its_friction_if_one_is_not_the_smaller_of_two(classes):
+    """Of a pair that its MatchMaker does not name YADE takes the mean of two angles."""
+    data = parts() | {"contact": {"friction": 0.3, "wall_friction": 0.6}}
+    found = scene_deck.deck(plan(parse(data)), classes=classes)
+    angles = dict.fromkeys([(0, 0)], math.atan(0.3)) | dict.fromkeys([(0, 1), (1, 1)], math.atan(0.6))
+    assert found.frictions == tuple((*pair, pytest.approx(angle)) for pair, angle in angles.items())
+    assert not classes or next(v for v in found.functors.pairs if v.name == "frictAngle").matches == found.frictions
 
 
 def test_a_wall_whose_surface_turns_has_no_other_motion_in_yade():
