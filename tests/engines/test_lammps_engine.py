@@ -3,6 +3,8 @@
 
 import os
 import shutil
+import subprocess
+import sys
 from pathlib import Path
 
 import numpy as np
@@ -138,3 +140,21 @@ def test_ranks_of_liggghts_are_of_openmpi_although_mpich_comes_first(tmp_path, m
     if not (shutil.which("mpirun.openmpi") and paths.launcher()):
         pytest.skip("neither OpenMPI nor LIGGGHTS is installed")
     assert liggghts.command("in.deck", ranks=2)[0].endswith("mpirun.openmpi")
+
+
+@pytest.mark.parametrize(
+    ("cache", "sentence"),
+    [
+        (None, "is neither a build folder of LAMMPS nor an installed LAMMPS with headers"),
+        ("CMAKE_BUILD_TYPE:STRING=Release\n", "is no build folder of LAMMPS"),
+        ("lammps_SOURCE_DIR:STATIC=/l/cmake\nPKG_PLUGIN:BOOL=OFF\n", "build it with -DPKG_PLUGIN=on"),
+    ],
+)
+def test_a_folder_that_lammps_cannot_be_built_for_is_refused(cache, sentence, tmp_path):
+    """LAMMPS_DIR of `make lammps`."""
+    if cache:
+        (tmp_path / "CMakeCache.txt").write_text(cache)
+    script = Path(__file__).parents[2] / "scripts" / "lammps"
+    env = os.environ | {"LAMMPS_DIR": str(tmp_path)}
+    done = subprocess.run([sys.executable, script], env=env, capture_output=True, text=True, check=False)
+    assert done.returncode == 1 and sentence in done.stderr and done.stderr.count("\n") == 1, done.stderr
