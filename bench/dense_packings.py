@@ -27,7 +27,7 @@ fix m2 all property/global poissonsRatio peratomtype {nu}
 {restitution}{friction}fix p1 all property/global yieldPressure peratomtype {p_y}
 fix p2 all property/global yieldStress peratomtype {Y}
 fix p3 all property/global coefficientYieldRatio peratomtype {ratio}
-{surface}pair_style gran model {model} tangential {tangential} {words}
+{hardening}{surface}pair_style gran model {model} tangential {tangential} {words}
 pair_coeff * *
 {bed}timestep {dt}
 fix move all nve/sphere
@@ -106,6 +106,7 @@ def deck(
         p_y=per_type(1e6),
         Y=per_type(3.6e5),
         ratio=" ".join(["0.01"] * types),
+        hardening="fix p4 all property/global hardeningExponent scalar 0.3\n" if model == "ep/meyer" else "",
         runs=f"run {steps}\n",
         dt=dt,
         skin=skin,

@@ -120,11 +120,11 @@ def laws() -> str:
         condition = f" Condition: {law.condition}." if law.condition else ""
         texts.append(f"- `{law.name}`: {law.title} ({'; '.join(law.sources)}).{condition}")
         for p in law.parameters:
-            low, unit = "[0" if p.may_vanish else "(0", "" if p.unit == "1" else f" {p.unit}"
+            unit = "" if p.unit == "1" else f" {p.unit}"
             times = "" if law.default_ratio == 1.0 else f"{law.default_ratio:g} times "
             ratio = f"{times}the yield stress" if p.name == law.strength else "required"
             default = ratio if p.default is None else f"{p.default:g}"
-            row = (law.name, f"`law.{p.name}`", p.symbol, f"{low}, inf){unit}", default, f"`{p.property}`")
+            row = (law.name, f"`law.{p.name}`", p.symbol, f"{p.limits()}{unit}", default, f"`{p.property}`")
             rows.append(f"| {' | '.join(row)} |")
     return "\n".join(["## Laws\n", *texts, "", head, *rows, ""])
 

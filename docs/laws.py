@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""docs/figures/laws.png: every law against equations 8.83, 8.86 and 8.88 of Seville and Wu 2016.
+"""docs/figures/laws.png: four laws against equations 8.83, 8.86 and 8.88 of Seville and Wu 2016; meyer.png: exponents.
 
 Lines are theory, points are LIGGGHTS runs.
 
@@ -34,6 +34,7 @@ ROOT = Path(__file__).parents[1]
 YIELD_STRESS = 50e6  # [Pa]
 SPEEDS = np.geomspace(0.3, 1e4, 30)  # of v_y0
 LAWS = ("hertz", "thornton", "johnson", "cavity")
+EXPONENTS = (0.0, 0.1, 0.2, 0.3, 0.5, 0.7)
 
 
 def steel(law: str, speed: np.ndarray) -> Experiment:
@@ -93,10 +94,41 @@ def figure() -> Chart:
     )
 
 
+def hardening() -> Chart:
+    """e_n of meyer over v/v_y for exponents from 0 to 0.7, with 8.83 and Hertz; prints errors."""
+    pair = steel("meyer", SPEEDS)
+    p_y = pair.law.parameters["yield_pressure"]
+    v_y = float(yield_speed(p_y=p_y, E_star=pair.E_star, R_star=pair.R_star, m_star=pair.m_star))
+    ratio, fine, series = np.geomspace(0.3, 1000, 20), np.geomspace(0.3, 1000, 400), []
+    for k, exponent in enumerate(EXPONENTS):
+        law = replace(pair.law, parameters=pair.law.parameters | {"hardening_exponent": exponent})
+        points, error = liggghts(replace(pair, law=law, speed=ratio * v_y))
+        print(f"x = {exponent:<7g} largest error of e_n in LIGGGHTS: {error:.1e}")
+        line = predict(replace(pair, law=law, speed=fine * v_y)).e_n
+        series += [Series(f"x = {exponent:g}", fine, line, k), Series("", ratio, points, k, None, k)]
+    series.append(Series("8.83 Thornton 1997", fine, printed.thornton(fine, v_y=1.0), INK, "dot"))
+    series.append(Series("Hertz, x = 1", [fine[0], fine[-1]], [1.0, 1.0], INK, "dash"))
+    ticks = {level: f"{level:g}" for level in (0.2, 0.3, 0.5, 0.7, 1.0)}
+    return Chart(
+        "meyer",
+        "Law meyer: restitution for exponents of hardening",
+        "Coefficient of restitution of law meyer against impact speed over yield speed for several exponents, theory "
+        "as lines and LIGGGHTS as points, between equation 8.83 and Hertz.",
+        [
+            Panel(
+                Axis("impact speed over yield speed $v/v_y$", log=True),
+                Axis("coefficient of restitution $e_n$", log=True, low=0.18, high=1.1, ticks=ticks),
+                series,
+            )
+        ],
+    )
+
+
 def main() -> None:
-    """Draw the figure."""
-    (path,) = save(figure(), ROOT / "docs/figures", data=False)
-    print(f"wrote {path.relative_to(ROOT)}")
+    """Draw both figures."""
+    for chart in (figure(), hardening()):
+        (path,) = save(chart, ROOT / "docs/figures", data=False)
+        print(f"wrote {path.relative_to(ROOT)}")
 
 
 if __name__ == "__main__":

@@ -17,7 +17,7 @@ std::string json(int number) { return std::to_string(number); }
 std::string json(double number) {
   char text[32];
   std::snprintf(text, sizeof text, "%.17e", number);  // always a number with a fraction
-  return std::isnan(number) ? "null" : text;
+  return std::isfinite(number) ? text : "null";
 }
 
 template <class T>
@@ -28,7 +28,7 @@ std::string field(const char* name, const T& value) {
 std::string parameter(const Parameter& p) {
   return "{" + field("name", p.name) + ", " + field("property", p.property) + ", " + field("symbol", p.symbol) + ", " +
          field("unit", p.unit) + ", " + field("default", p.fallback) + ", " + field("may_vanish", p.may_vanish) + ", " +
-         field("of_pair", p.of_pair) + "}";
+         field("of_pair", p.of_pair) + ", " + field("below", p.below) + "}";
 }
 
 template <class Law>

@@ -23,11 +23,13 @@ using namespace epdem;
 
 bool positive(double x) { return std::isfinite(x) && x > 0.0; }
 
+bool in_range(const Parameter& p, double x) { return x < p.below && (positive(x) || (p.may_vanish && x == 0.0)); }
+
 /// Whether the numbers are in the range of a law, each alone and together.
 template <class Law>
 bool in_range(double E_star, const double* parameters) {
   for (int k = 0; k < Law::n_parameters; ++k)
-    if (!positive(parameters[k]) && !(Law::parameters[k].may_vanish && parameters[k] == 0.0)) return false;
+    if (!in_range(Law::parameters[k], parameters[k])) return false;
   return positive(E_star) && Law::valid(parameters);
 }
 

@@ -14,7 +14,7 @@
 extern "C" {
 #endif
 
-#define EPDEM_ABI 8
+#define EPDEM_ABI 9
 #define EPDEM_MAX_PARAMETERS 8
 
 typedef enum { EPDEM_OK = 0, EPDEM_UNKNOWN_LAW = 1, EPDEM_BAD_PARAMETER = 2, EPDEM_BAD_INPUT = 3 } epdem_status;
@@ -57,7 +57,7 @@ size_t epdem_size_of(const char* struct_name); /* 0 if there is no such struct *
  * keeps from step to step), yields, flattens (unloading is not Hertz's), adheres (bodies attract each other, the step
  * takes the closing speed), without_adhesion (the law for work 0, or null). Of a parameter: name, property (LIGGGHTS
  * property/global), symbol, unit, default (or null), may_vanish (0 is a value), of_pair (of two surfaces, not of a
- * body). */
+ * body), below (where its range ends, or null). */
 const char* epdem_declarations(void);
 
 /* n steps, each from its own R_star, delta_max and delta (with adhesion: of a contact that has stood since it reached

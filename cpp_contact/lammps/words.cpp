@@ -159,7 +159,7 @@ void read_parameters(WordReader& reader, const Law& law, std::vector<double>& va
       continue;
     }
     const std::string what = std::string(p.symbol) + " [" + p.unit + "] of " + law.name + " E nu" + symbols(law);
-    values.push_back(reader.next_number(what, {0.0, unlimited, p.may_vanish, false}));
+    values.push_back(reader.next_number(what, {0.0, p.below, p.may_vanish, false}));
   }
   if (!law.valid(values.data()))
     reader.wrong("the parameters of " + std::string(law.name) +

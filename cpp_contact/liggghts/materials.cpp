@@ -20,15 +20,15 @@ namespace {
 /// first parameter yields, and its other parameters go with it.
 class ParameterTable {
  public:
-  ParameterTable(const Reader& reader, const Parameter& p, const Adhesion* adhesion) : reader_(reader), p_(p) {
+  ParameterTable(const Reader& reader, const Parameter& p, const Adhesion* adhesion)
+      : reader_(reader), p_(p), range_{0.0, p.below, p.may_vanish, false} {
     if (p.property == std::string(adhesion_name)) {
       adhesion_ = adhesion;
       return;
     }
-    const Range range{0.0, unlimited, false};
     if (!std::isnan(p.fallback)) {
       if (FixPropertyGlobal* scalar = reader.find(p.property, "scalar")) {
-        common_ = reader.checked(p.property, p.unit, "all types", scalar->compute_scalar(), range);
+        common_ = reader.checked(p.property, p.unit, "all types", scalar->compute_scalar(), range_);
         return;
       }
     }
@@ -38,7 +38,7 @@ class ParameterTable {
       common_ = p.fallback;
       return;
     }
-    values_ = reader.per_type(p.property, p.unit, range);
+    values_ = reader.per_type(p.property, p.unit, range_);
   }
 
   bool per_type() const { return !values_.empty(); }
@@ -47,12 +47,13 @@ class ParameterTable {
   double at(int i, int j) const {
     if (adhesion_) return adhesion_->at(i, j);
     if (!pairs_) return common_;
-    return reader_.of_pair(pairs_, p_.property, p_.unit, i, j, {0.0, unlimited, false});
+    return reader_.of_pair(pairs_, p_.property, p_.unit, i, j, range_);
   }
 
  private:
   const Reader& reader_;
   const Parameter& p_;
+  const Range range_;
   const Adhesion* adhesion_ = nullptr;
   FixPropertyGlobal* pairs_ = nullptr;
   std::vector<double> values_;

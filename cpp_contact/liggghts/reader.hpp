@@ -29,15 +29,18 @@ inline std::string number(double x) {
 
 inline std::string both(int i, int j) { return "types " + std::to_string(i) + " and " + std::to_string(j); }
 
-/// A half-open range (low, high] or [low, high] of a property.
+/// A range of a property between low and high.
 struct Range {
   double low, high;
-  bool low_included;
+  bool low_included, high_included = true;
 
-  bool holds(double x) const { return std::isfinite(x) && (x > low || (low_included && x == low)) && x <= high; }
+  bool holds(double x) const {
+    return std::isfinite(x) && (x > low || (low_included && x == low)) && (x < high || (high_included && x == high));
+  }
   std::string text() const {
     if (high == unlimited) return "must be finite and > " + number(low);
-    return std::string("must lie in ") + (low_included ? "[" : "(") + number(low) + ", " + number(high) + "]";
+    return std::string("must lie in ") + (low_included ? "[" : "(") + number(low) + ", " + number(high) +
+           (high_included ? "]" : ")");
   }
 };
 

@@ -136,9 +136,9 @@ struct Range {
 };
 inline constexpr double unlimited = std::numeric_limits<double>::infinity();
 
-inline Range range_of(const Parameter& p) { return {0.0, unlimited, p.may_vanish}; }
+inline Range range_of(const Parameter& p) { return {0.0, p.below, p.may_vanish}; }
 /// The same for one body, whose strength may be infinite.
-inline Range range_of_body(const Parameter& p) { return {0.0, unlimited, p.may_vanish, true}; }
+inline Range range_of_body(const Parameter& p) { return {0.0, p.below, p.may_vanish, std::isinf(p.below)}; }
 
 /// Ends the program with one sentence. YADE calls functors in a parallel region, which no exception can leave.
 [[noreturn]] inline void refuse(const std::string& sentence) {

@@ -14,6 +14,7 @@ from epdem.theory import backbones
 
 NAMES = tuple(name for name, info in claw.laws().items() if not info.adheres)
 YIELDING = tuple(n for n in NAMES if claw.laws()[n].parameters)
+OTHERS = {"meyer": {"hardening_exponent": 0.3}}  # numbers beside the strength: without hardening meyer is thornton
 
 
 # Routes to a law's numbers that take prescribed overlaps; for engines see test_embedded and test_liggghts_paths.
@@ -70,21 +71,30 @@ class Contact:
 
 def yield_overlap(name: str, E_star: float, R_star: float, strength: float) -> float:
     """End of the elastic branch [m], from the laws' definitions, not from the code; a new law's theory is believed."""
-    pressure = {"thornton": strength, "johnson": 3 * strength, "cavity": 1.6 * strength}.get(name)
+    ratio = {"thornton": 1.0, "johnson": 3.0, "cavity": 1.6, "meyer": 1.0}.get(name)
     if name == "hertz":
         return 1e-3 * R_star
-    if pressure is None:
-        (keyword,) = backbones.LAWS[name].declaration().symbols.values()
-        return backbones.LAWS[name](E_star=E_star, R_star=R_star, **{keyword: strength}).yield_overlap
-    return R_star * (math.pi * pressure / (2 * E_star)) ** 2
+    if ratio is None:
+        return backbones.LAWS[name](E_star=E_star, R_star=R_star, **symbols(name, strength)).yield_overlap
+    return R_star * (math.pi * ratio * strength / (2 * E_star)) ** 2
+
+
+def numbers(name: str, strength: float) -> dict[str, float]:
+    """The parameters of a law by name."""
+    parameters = claw.laws()[name].parameters
+    return {parameters[0].name: strength} | OTHERS.get(name, {}) if parameters else {}
+
+
+def symbols(name: str, strength: float) -> dict[str, float]:
+    """The same by the symbols of the theory."""
+    return {claw.laws()[name].symbols[key]: value for key, value in numbers(name, strength).items()}
 
 
 def contact(name: str, E_star: float, R_star: float, ratio: float, route: str = "c++") -> Contact:
     """A contact with strength = ratio E*."""
-    parameters = claw.laws()[name].parameters
     strength = ratio * E_star
     make = {"c++": Law, "theory": TheoryLaw}[route]
-    law = make(name, E_star=E_star, **({parameters[0].name: strength} if parameters else {}))
+    law = make(name, E_star=E_star, **numbers(name, strength))
     return Contact(name, law, E_star, R_star, strength, yield_overlap(name, E_star, R_star, strength))
 
 

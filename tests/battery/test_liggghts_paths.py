@@ -5,7 +5,7 @@ import subprocess
 
 import numpy as np
 import pytest
-from laws import NAMES, YIELDING, yield_overlap
+from laws import NAMES, YIELDING, numbers, yield_overlap
 
 from epdem.base import paths
 from epdem.engines.liggghts import dump
@@ -52,8 +52,9 @@ def carried(law: str, folder, restitution: float | None = None, speed: str = "0"
     box = f"-0.03 {place * side!r} xlo xhi\n-0.03 {place * side!r} ylo yhi\n-0.02 0.05 zlo zhi"
     data = f"paths\n\n{N} atoms\n1 atom types\n{box}\n\nAtoms\n\n" + "\n".join(atoms) + "\n"
     (folder / "path.data").write_text(data)
-    info = claw.laws()[law].parameters
-    strength = f"fix m3 all property/global {info[0].property} peratomtype {STRENGTH[law]!r}" if info else ""
+    given = numbers(law, STRENGTH.get(law, 0.0))
+    properties = {p.property: given[p.name] for p in claw.laws()[law].parameters if p.name in given}
+    strength = "\n".join(f"fix p_{k} all property/global {k} peratomtype {v!r}" for k, v in properties.items())
     settings = ""
     if restitution is not None:
         settings = " viscous on"
@@ -70,7 +71,7 @@ def carried(law: str, folder, restitution: float | None = None, speed: str = "0"
 def test_liggghts_has_the_laws_force_on_256_paths(name, tmp_path):
     """To 1e-15 of the largest force where nothing cancels, times four roundings; alpha_max - alpha adds its own."""
     overlap, force, _ = carried(name, tmp_path)
-    parameters = {claw.laws()[name].parameters[0].name: STRENGTH[name]} if name in STRENGTH else {}
+    parameters = numbers(name, STRENGTH.get(name, 0.0))
     law = Law(name, E_star=float(pair.E_star(E, NU, E, NU)), **parameters)
     state = np.zeros(N)
     reloads = 0
@@ -105,7 +106,7 @@ def test_hertz_equals_liggghts_own_without_damping(tmp_path):
 def test_liggghts_has_the_dashpots_force_on_256_paths(name, tmp_path):
     """Below the backbone max(0, F + 2 sqrt(5/6) zeta sqrt(2 E* a m*) v), on it F alone, at speeds of either sign."""
     overlap, force, v = carried(name, tmp_path, 0.7, "2*cos(0.013*id+0.7*v_t)")
-    parameters = {claw.laws()[name].parameters[0].name: STRENGTH[name]} if name in STRENGTH else {}
+    parameters = numbers(name, STRENGTH.get(name, 0.0))
     E_star, mass = float(pair.E_star(E, NU, E, NU)), float(pair.sphere_mass(radius=R, density=7850.0))
     law, number = Law(name, E_star=E_star, **parameters), 2 * np.sqrt(5 / 6) * float(viscous.damping_ratio(0.7))
     delta_y = yield_overlap(name, E_star, R, STRENGTH[name]) if name in STRENGTH else np.inf

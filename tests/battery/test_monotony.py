@@ -3,18 +3,15 @@
 
 import numpy as np
 from hypothesis import given
-from laws import contacts
+from laws import contacts, symbols
 
-from epdem.laws.library import laws
 from epdem.theory import backbones, restitution
 
 
 @given(contacts())
 def test_restitution_of_any_contact_falls_with_speed_from_one(c):
     """v/v_y from 1e-2 to 1e4; 1e-12 is the accuracy that the closed forms promise."""
-    declared = laws()[c.name]
-    words = {declared.parameters[0].symbol: c.strength} if declared.parameters else {}
-    law = backbones.LAWS[c.name](E_star=c.E_star, R_star=c.R_star, **words)
+    law = backbones.LAWS[c.name](E_star=c.E_star, R_star=c.R_star, **symbols(c.name, c.strength))
     m = 1e4 * c.R_star**3
     v_y = np.sqrt(2 * law.work(c.delta_y) / m)
     e_n = restitution.e_n(law, m_star=m, speed=v_y * np.geomspace(1e-2, 1e4, 200))

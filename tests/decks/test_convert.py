@@ -91,7 +91,7 @@ def test_all_other_lines_of_any_deck_stay_bit_by_bit(first, second, third):
         (("model hertz &", "model hooke/stiffness &"), "thornton", {"yieldPressure": "1e8"}, "line 6: model hooke"),
         (("fix  m1", "#fix  m1"), "thornton", {"yieldPressure": "1e8"}, "youngsModulus peratomtype"),
         (("", ""), "thornton", {}, "add --set yieldPressure=VALUE"),
-        (("", ""), "thornton", {"yieldPressure": "-1"}, "must be a number > 0"),
+        (("", ""), "thornton", {"yieldPressure": "-1"}, "must lie in (0, inf)"),
         (("", ""), "thornton", {"yieldStress": "1e8"}, "ep/thornton has no such property; it has yieldPressure"),
         (("", ""), "hertz", {"yieldPressure": "1e8"}, "it has none"),
         (("", ""), "nonsense", {}, "there are hertz"),

@@ -9,8 +9,8 @@ from pathlib import Path
 
 import numpy as np
 
-LAWS = ("hertz", "thornton", "johnson", "cavity")
-YIELDING = ("thornton", "johnson", "cavity")
+LAWS = ("hertz", "thornton", "johnson", "cavity", "meyer")
+YIELDING = LAWS[1:]
 ADHESIVE = ("jkr", "thornton_ning")
 
 # Three types of body: aluminium, steel, polymer (SI).
@@ -19,10 +19,12 @@ NU = np.array([0.33, 0.30, 0.40])
 RHO = np.array([2700.0, 7850.0, 1200.0])
 Y = np.array([0.2e9, 1.0e9, 0.06e9])
 P_Y = 2.8 * Y
+X = np.array([0.1, 0.3, 0.5])  # hardening
 
 OWN = f"""
 fix p1 all property/global yieldPressure peratomtype {" ".join(map(repr, P_Y.tolist()))}
 fix p2 all property/global yieldStress peratomtype {" ".join(map(repr, Y.tolist()))}
+fix p3 all property/global hardeningExponent peratomtype {" ".join(map(repr, X.tolist()))}
 """
 
 

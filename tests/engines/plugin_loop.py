@@ -124,7 +124,7 @@ def outcome(folder, scene, *, loop="", simd="", text=None, command=None, **optio
 
 
 DIMENSIONS = {
-    "law": ("hertz", "thornton", "johnson", "cavity"),
+    "law": ("hertz", "thornton", "johnson", "cavity", "meyer"),
     "tangential": ("history", "no_history", "off", "ep/partial_slip", "ep/partial_slip_2"),
     "rolling": ("off", "cdt", "epsd2"),
     "cohesion": ("off", "sjkr", "sjkr2"),

@@ -29,7 +29,7 @@ pytestmark = pytest.mark.liggghts
 
 ROOT = Path(__file__).resolve().parents[2]
 SOURCES = ROOT / "cpp_contact" / "liggghts"
-LAWS = ("hertz", "thornton", "johnson", "cavity")
+LAWS = ("hertz", "thornton", "johnson", "cavity", "meyer")
 TREES = [Path(p) for p in os.environ.get("EPDEM_TREES", "").split(":") if p]
 SUPERQUADRICS = ("-DSUPERQUADRIC_ACTIVE_FLAG", "-DNONSPHERICAL_ACTIVE_FLAG")
 

@@ -26,6 +26,8 @@ ENGINES = ["embedded", pytest.param("liggghts", marks=pytest.mark.liggghts)]
 def rows(name, law, steps, speed, folder, yield_stress="1.0 GPa", restitution=None):
     data = read_toml(STEEL)
     data["materials"]["steel"]["yield_stress"] = yield_stress
+    if law == "meyer":
+        data["law"] = {"name": law, "hardening_exponent": 0.3}
     case = parse(data, STEEL).model_copy(update={"numerics": Numerics(steps_in_contact=steps, phases=8)})
     x = replace(experiment(case, law), speed=speed, viscous_restitution=restitution)
     prediction = predict(x)

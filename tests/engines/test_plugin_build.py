@@ -76,6 +76,7 @@ def test_library_and_launcher_stay_small():
 
 # Fixed for ever, because restart files keep them: a law's id, its history values of a pair and of a wall.
 STORED = {"hertz": (40, 1, 0), "thornton": (41, 2, 1), "johnson": (42, 2, 1), "cavity": (43, 5, 4)}
+STORED["meyer"] = (46, 3, 2)
 TAKEN = {0, 1, 2, 3, 4, 8, 9, 10, 11, 12}  # LIGGGHTS's own normal models; 9 is none
 TANGENTIAL_HISTORY, STRETCH = 2, 3  # LIGGGHTS's id of that model, and its history: the vector of tangential stretch
 STEPS = 30

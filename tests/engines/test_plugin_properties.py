@@ -21,6 +21,7 @@ RANGES = {
     "youngsModulus": ("m1", {"0": "0", "-5e9": "-5e+09", "1e400": "inf"}, "> 0"),
     "poissonsRatio": ("m2", {"-0.1": "-0.1", "0.6": "0.6", "1e400": "inf"}, "[0, 0.5]"),
     "yieldPressure": ("p1", {"0": "0", "-3e9": "-3e+09", "1e400": "inf"}, "> 0"),
+    "hardeningExponent": ("p3", {"-0.1": "-0.1", "1": "1", "1e400": "inf"}, "[0, 1)"),
 }
 
 
@@ -30,8 +31,8 @@ def test_an_absurd_property_is_refused_with_model_property_value_and_range(tmp_p
     fix, values, limits = RANGES[name]
     for value, said in values.items():
         text = re.sub(rf"(fix {fix} .* peratomtype \S+) \S+", rf"\1 {value}", materials("ep/any"))
-        error = refusal(tmp_path / value, deck(properties=text))
-        assert "model ep/thornton" in error and f"{name} = {said}" in error and limits in error and "type 2" in error
+        error = refusal(tmp_path / value, deck("ep/meyer", properties=text))
+        assert "model ep/meyer" in error and f"{name} = {said}" in error and limits in error and "type 2" in error
 
 
 @pytest.mark.parametrize(

@@ -6,7 +6,7 @@ from itertools import product
 
 import numpy as np
 import pytest
-from plugin_decks import LAWS, NU, P_Y, RHO, Bodies, E, Y, contact, good, head, materials, plate, run
+from plugin_decks import LAWS, NU, P_Y, RHO, Bodies, E, X, Y, contact, good, head, materials, plate, run
 from plugin_loop import ADHESIVE, SPACING, Scene, bodies, covering, deck, outcome
 
 from epdem.theory import backbones, restitution
@@ -44,8 +44,9 @@ def files(speed=10.0):
 
 def expected(law, speed=10.0, radius=5e-3):
     """(largest a/R*, largest overlap/R*) of the impact, by the equations; aluminium is the softer body."""
-    strength = {"hertz": {}, "thornton": {"p_y": P_Y[0]}, "johnson": {"p_m": P_Y[0]}, "cavity": {"Y": Y[0]}}[law]
-    theory = backbones.LAWS[law](E_star=1 / ((1 - NU[:2] ** 2) / E[:2]).sum(), R_star=radius, **strength)
+    strength = {"hertz": {}, "thornton": {"p_y": P_Y[0]}, "johnson": {"p_m": P_Y[0]}, "cavity": {"Y": Y[0]}}
+    strength["meyer"] = {"p_y": P_Y[0], "x": X[0]}
+    theory = backbones.LAWS[law](E_star=1 / ((1 - NU[:2] ** 2) / E[:2]).sum(), R_star=radius, **strength[law])
     hit = restitution.impact(theory, m_star=RHO[0] * 4 / 3 * np.pi * radius**3, speed=speed)
     return float(hit.strain_ratio), float(hit.overlap_max) / radius
 

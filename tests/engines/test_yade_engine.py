@@ -26,7 +26,7 @@ from epdem.impacts.prediction import predict
 
 CASES = Path(__file__).parents[2] / "cases"
 BRASS = {"young_modulus": "100 GPa", "poisson_ratio": 0.35, "density": "8500 kg/m^3", "yield_stress": "0.3 GPa"}
-LAWS = ("hertz", "thornton", "johnson", "cavity")
+LAWS = ("hertz", "thornton", "johnson", "cavity", "meyer")
 
 
 def prepared(kind="sphere-wall", law=None, steps=100, speeds=None):

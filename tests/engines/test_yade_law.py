@@ -47,10 +47,12 @@ def test_a_deck_has_every_law_without_adhesion():
     reached=st.floats(-3.0, 4.0),
     soft=st.floats(-5.0, -1.0),
     ratios=st.sampled_from([{}, {"first_yield_ratio": 1.5, "plastic_ratio": 3.0}, {"finite_strain": 0.82}]),
+    exponent=st.floats(0.0, 0.99),
 )
-def test_force_radius_memory_and_dent_are_those_of_the_theory(name, R_star, share, reached, soft, ratios):
+def test_force_radius_memory_and_dent_are_those_of_the_theory(name, R_star, share, reached, soft, ratios, exponent):
     """Overlaps from 1e-3 to 1e4 of first yield, on the backbone and below; relative to the largest force and radius."""
-    law = law_of(name, STRENGTH / 10.0**soft, **(ratios if name == "cavity" else {}))
+    own = {"cavity": ratios, "meyer": {"hardening_exponent": exponent}}.get(name, {})
+    law = law_of(name, STRENGTH / 10.0**soft, **own)
     route, scale = theory(law, R_star), law.yield_ratio if math.isfinite(law.yield_ratio) else 1e-3
     delta_max = 10.0**reached * scale * R_star
     if abs(delta_max / (scale * R_star) - 1.0) < 1e-9:
@@ -108,6 +110,8 @@ def test_beyond_its_end_a_branch_rises_as_the_law_to_second_order():
     [
         ("thornton", {"strength": 0.0}),
         ("johnson", {"strength": -1.0}),
+        ("meyer", {"strength": 1e9, "hardening_exponent": 1.0}),
+        ("meyer", {"strength": 1e9, "hardening_exponent": -0.1}),
         ("cavity", {"strength": math.nan}),
         ("cavity", {"strength": 1e9, "plastic_ratio": 1.5}),
         ("cavity", {"strength": 1e9, "first_yield_ratio": 1.2}),

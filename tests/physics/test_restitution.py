@@ -8,7 +8,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from epdem.theory import pair, restitution, yielding
-from epdem.theory.backbones import LAWS, Cavity, Hertz, Thornton
+from epdem.theory.backbones import LAWS, Cavity, Hertz, Meyer, Thornton
 from epdem.theory.johnson import Johnson
 from epdem.verification.theory import printed
 
@@ -32,15 +32,17 @@ def steel(name):
         "thornton": lambda: Thornton(**STEEL, p_y=2.8e9),
         "johnson": lambda: Johnson(**STEEL, p_m=3e9),
         "cavity": lambda: Cavity(**STEEL, Y=1e9),
+        "meyer": lambda: Meyer(**STEEL, p_y=2.8e9, x=0.3),
     }[name]()
 
 
 class Exact:
     """A law with 30 digits, written from its definition; force, radius and flatness only: the rest is quadrature."""
 
-    def __init__(self, name, E, R, strength):
+    def __init__(self, name, E, R, strength, x=0.3):
+        self.x = mp.mpf(x)
         self.name, self.E, self.R, self.Y = name, mp.mpf(E), mp.mpf(R), mp.mpf(strength)
-        ratio = {"hertz": mp.mpf(10) ** 6, "thornton": 1, "johnson": 3, "cavity": mp.mpf(1.6)}[name]
+        ratio = {"hertz": mp.mpf(10) ** 6, "thornton": 1, "johnson": 3, "cavity": mp.mpf(1.6), "meyer": 1}[name]
         self.a_y = mp.pi * self.R * ratio * self.Y / (2 * self.E)
         self.y = self.a_y**2 / self.R
         self.ln_s_P = 3 * (mp.mpf(2.8) - 2 * mp.mpf(1.6) / 3) - mp.log(2)
@@ -53,6 +55,10 @@ class Exact:
         if self.name == "thornton":
             F_y = mp.mpf(4) / 3 * self.E * mp.sqrt(self.R) * self.y ** mp.mpf(1.5)
             return F_y + mp.pi * self.Y * self.R * (alpha - self.y), mp.sqrt(self.R * alpha), mp.mpf(0)
+        if self.name == "meyer":  # dF = 2 pi a p_y (a/a_y)^x da
+            a, n = mp.sqrt(self.R * alpha), 2 + self.x
+            flow = 2 * mp.pi * self.Y / n * (a**n - self.a_y**n) / self.a_y**self.x
+            return self.point(self.y)[0] + flow, a, mp.mpf(0)
         if self.name == "johnson":
             return 2 * mp.pi * self.R * self.Y * alpha, mp.sqrt(2 * self.R * alpha), mp.mpf(0)
         s = mp.log(alpha / self.y)
@@ -109,22 +115,23 @@ def test_thornton_law_and_equation_8_83_are_the_same_number():
 
 @settings(max_examples=25)
 @given(
-    st.sampled_from(["thornton", "johnson", "cavity"]),
+    st.sampled_from(["thornton", "johnson", "cavity", "meyer"]),
+    st.floats(0, 0.99),
     st.floats(3, 12),
     st.floats(-6, 1),
     st.floats(-5, -1.5),
     st.floats(-6, 6),
 )
-def test_restitution_is_the_quadrature_of_the_law(name, log_E, log_R, log_ratio, log_speed):
+def test_restitution_is_the_quadrature_of_the_law(name, x, log_E, log_R, log_ratio, log_speed):
     """E 1 kPa to 1 TPa, R 1 um to 10 m, strength 1e-5 to 0.03 of E*, v/v_y 1e-6 to 1e6: 1e-12 relative."""
     E, R, strength = 10.0**log_E, 10.0**log_R, 10.0 ** (log_E + log_ratio)
-    key = {"thornton": "p_y", "johnson": "p_m", "cavity": "Y"}[name]
-    law = LAWS[name](E_star=E, R_star=R, **{key: strength})
+    key = {"thornton": "p_y", "johnson": "p_m", "cavity": "Y", "meyer": "p_y"}[name]
+    law = LAWS[name](E_star=E, R_star=R, **{key: strength}, **({"x": x} if name == "meyer" else {}))
     m = 4 / 3 * np.pi * R**3 * 2500
     v_y = np.sqrt(2 * law.work(law.yield_overlap) / m)
     found = restitution.impact(law, m_star=m, speed=v_y * 10.0**log_speed)
     with mp.workdps(30):
-        exact, top = Exact(name, E, R, strength), mp.mpf(float(found.overlap_max))
+        exact, top = Exact(name, E, R, strength, x), mp.mpf(float(found.overlap_max))
         work, back = exact.work(top), exact.given_back(top)
         assert float(found.work_in) == pytest.approx(float(work), rel=1e-12, abs=0)
         if abs(float(top / exact.y) - 1) > 1e-9:
@@ -133,12 +140,12 @@ def test_restitution_is_the_quadrature_of_the_law(name, log_E, log_R, log_ratio,
             assert float(found.e_n) == pytest.approx(e_n, rel=1e-12, abs=0)
 
 
-@pytest.mark.parametrize("name", ["hertz", "thornton", "johnson", "cavity"])
+@pytest.mark.parametrize("name", ["hertz", "thornton", "johnson", "cavity", "meyer"])
 @pytest.mark.parametrize("speed", [0.01, 0.3, 3.0, 30.0])
 def test_contact_time_is_the_time_integral_of_the_motion(name, speed):
     """t = integral of d alpha/v on both ways, with alpha = alpha_max - u^2, which is regular at the turning point."""
     found = restitution.impact(steel(name), m_star=M, speed=speed)
-    strength = {"hertz": 1e9, "thornton": 2.8e9, "johnson": 3e9, "cavity": 1e9}[name]
+    strength = {"hertz": 1e9, "thornton": 2.8e9, "johnson": 3e9, "cavity": 1e9, "meyer": 2.8e9}[name]
     with mp.workdps(18):
         exact, top = Exact(name, *STEEL.values(), strength), mp.mpf(float(found.overlap_max))
 
@@ -169,11 +176,13 @@ def test_contact_time_is_the_time_integral_of_the_motion(name, speed):
     assert float(found.contact_time) == pytest.approx(float(total), rel=1e-9, abs=0)
 
 
-@pytest.mark.parametrize(("name", "kink"), [("thornton", 0), ("johnson", 0), ("cavity", 0), ("cavity", 1)])
+@pytest.mark.parametrize(
+    ("name", "kink"), [("thornton", 0), ("johnson", 0), ("cavity", 0), ("cavity", 1), ("meyer", 0)]
+)
 @pytest.mark.parametrize("beyond", [1e-6, 3e-4])
 def test_loading_time_keeps_its_digits_where_the_law_has_just_changed_its_formula(name, kink, beyond):
     """The kink of the force lies next to the turning point. 1e-10: what is asked of contact times."""
-    strength = {"thornton": 2.8e9, "johnson": 3e9, "cavity": 1e9}[name]
+    strength = {"thornton": 2.8e9, "johnson": 3e9, "cavity": 1e9, "meyer": 2.8e9}[name]
     law = steel(name)
     top = float(law.kinks()[kink]) * (1 + beyond)
     found = restitution.impact(law, m_star=M, speed=np.sqrt(2 * law.work(top) / M))

@@ -42,6 +42,7 @@ LAWS = {
     "thornton": {"name": "thornton"},
     "cavity": {"name": "cavity"},
     "johnson, one strength": {"name": "johnson", "yield_pressure": "0.2 MPa"},
+    "meyer": {"name": "meyer", "hardening_exponent": 0.3},
     "jkr": {"name": "jkr", "work_of_adhesion": "0.02 J/m^2"},
 }
 PAIRS = [{"between": ["glass", "wall"], "friction": 0.7}, {"between": ["glass", "steel"], "friction": 0.1}]

@@ -21,15 +21,16 @@ EPDEM_INLINE Point<T> select(M mask, const Point<T>& a, const Point<T>& b) noexc
   return {select(mask, a.force, b.force), select(mask, a.radius, b.radius), select(mask, a.flatness, b.flatness)};
 }
 
-/// A material parameter of a law, as hosts, theory and pages name and check it. Its range is (0, inf).
+/// A material parameter of a law, as hosts, theory and pages name and check it. Its range is (0, below).
 struct Parameter {
   const char* name;      // in case files
   const char* property;  // LIGGGHTS property/global
   const char* symbol;    // in formulas, and of the theory's constructor
   const char* unit;
   double fallback;          // NaN: the host must give it
-  bool may_vanish = false;  // the range is [0, inf)
+  bool may_vanish = false;  // the range is [0, below)
   bool of_pair = false;     // a value of two surfaces, not of a body
+  double below = std::numeric_limits<double>::infinity();
 };
 
 inline constexpr double not_given = std::numeric_limits<double>::quiet_NaN();
@@ -47,6 +48,14 @@ struct Peak {
   static constexpr const char* slots[] = {"delta_max", "force_max", "radius_max", "flatness_max"};
   T delta_max{};
   Point<T> point{};
+};
+
+/// The same for a law of Thornton's radius, a^2 = R* alpha: the force alone is expensive.
+template <class T>
+struct PeakForce {
+  static constexpr const char* slots[] = {"delta_max", "force_max"};
+  T delta_max{};
+  T force{};
 };
 
 template <class Law>

@@ -10,14 +10,41 @@
 
 namespace epdem {
 
+namespace detail {
+
+/// The backbone at delta_max as a contact stores it, and how it does.
+template <class T>
+EPDEM_INLINE Point<T> stored_peak(const Peak<T>& state, const T&) noexcept {
+  return state.point;
+}
+template <class T>
+EPDEM_INLINE Point<T> stored_peak(const PeakForce<T>& state, const T& R_star) noexcept {
+  return {state.force, sqrt(R_star * state.delta_max), T{}};
+}
+template <class M, class T>
+EPDEM_INLINE void store_peak(Peak<T>& state, M where, const Point<T>& peak) noexcept {
+  state.point = select(where, peak, state.point);
+}
+template <class M, class T>
+EPDEM_INLINE void store_peak(PeakForce<T>& state, M where, const Point<T>& peak) noexcept {
+  state.force = select(where, peak.force, state.force);
+}
+
+}  // namespace detail
+
+/// Whether contacts store values of the backbone at their largest overlap.
+template <class Law>
+inline constexpr bool stores_peak = !std::is_same_v<State<Law>, Maximum<Number<Law>>> && !adheres<Law>;
+
 /// The history of a contact with a known largest overlap; with adhesion, of a contact that has rested since then.
 template <class Law>
 inline State<Law> remember(const Law& law, Number<Law> R_star, Number<Law> delta_max) noexcept {
   if constexpr (adheres<Law>) {
     return step(law, R_star, {}, delta_max, Number<Law>{}).after;
-  } else if constexpr (Law::flattens) {
-    if (!(delta_max > law.elastic_overlap(R_star))) return {delta_max, {}};
-    return {delta_max, law.load(R_star, delta_max)};
+  } else if constexpr (stores_peak<Law>) {
+    State<Law> state{delta_max, {}};
+    if (delta_max > law.elastic_overlap(R_star)) detail::store_peak(state, true, law.load(R_star, delta_max));
+    return state;
   } else {
     (void)law;
     (void)R_star;
@@ -56,11 +83,11 @@ inline Step<Law> step(const Law& law, Number<Law> R_star, const State<Law>& befo
     if (any(elastic)) now = hertz_point(law.E_star, R_star, delta);
     if (any(!elastic)) {
       Point<T> peak;
-      if constexpr (Law::flattens) {
-        const auto unknown = !(elastic | (falls & plausible(before.point)));
-        peak = before.point;
+      if constexpr (stores_peak<Law>) {
+        peak = detail::stored_peak(before, R_star);
+        const auto unknown = !(elastic | (falls & plausible(peak)));
         if (any(unknown)) peak = select(unknown, law.load(R_star, only(unknown, delta_max)), peak);
-        after.point = select(touches & unknown, peak, before.point);
+        detail::store_peak(after, touches & unknown, peak);
       } else {
         peak = law.load(R_star, delta_max);
       }

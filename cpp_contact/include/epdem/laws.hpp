@@ -8,6 +8,7 @@
 #include "jkr.hpp"
 #include "johnson.hpp"
 #include "law.hpp"
+#include "meyer.hpp"
 #include "thornton.hpp"
 #include "thornton_ning.hpp"
 
@@ -17,7 +18,8 @@
   X(Johnson)          \
   X(Cavity)           \
   X(Jkr)              \
-  X(ThorntonNing)
+  X(ThorntonNing)     \
+  X(Meyer)
 
 namespace epdem::detail {
 

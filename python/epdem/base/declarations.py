@@ -6,6 +6,7 @@ The declarations are one text in the C library; no number comes from a computati
 
 import ctypes
 import json
+import math
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
@@ -13,12 +14,12 @@ from pathlib import Path
 from ..errors import EngineError
 from . import paths
 
-ABI = 8
+ABI = 9
 
 
 @dataclass(frozen=True)
 class Parameter:
-    """A material parameter of a law, in (0, inf), or [0, inf) if it `may_vanish`; `default` None: it must be given.
+    """A material parameter of a law, in (0, below), or [0, below) if it `may_vanish`; `default` None: no default.
 
     `property` is its LIGGGHTS property/global, `symbol` its name in formulas and in the theory's constructor; a value
     `of_pair` belongs to two surfaces, not to a body.
@@ -31,6 +32,15 @@ class Parameter:
     default: float | None
     may_vanish: bool
     of_pair: bool
+    below: float
+
+    def holds(self, value: float) -> bool:
+        """Whether the value is finite and in the range."""
+        return math.isfinite(value) and (0 < value < self.below or (value == 0 and self.may_vanish))
+
+    def limits(self) -> str:
+        """The range, as in (0, inf)."""
+        return f"{'[' if self.may_vanish else '('}0, {self.below:g})"
 
 
 @dataclass(frozen=True)
@@ -95,6 +105,8 @@ def declarations() -> dict[str, Declaration]:
     text.restype = ctypes.c_char_p
     laws = {}
     for index, law in enumerate(json.loads(text())):
+        for p in law["parameters"]:
+            p["below"] = math.inf if p["below"] is None else p["below"]
         law["parameters"] = tuple(Parameter(**p) for p in law["parameters"])
         law["sources"] = tuple(law["sources"].split("; "))
         law["default_ratio"] = 1.0 if law["default_ratio"] is None else law["default_ratio"]

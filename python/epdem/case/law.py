@@ -31,7 +31,7 @@ def law_numbers(name: str, given: dict[str, Any]) -> LawNumbers:
     return LawNumbers(
         name,
         {
-            p.name: read_number(f"law.{p.name}", given.get(p.name, p.default), p.unit)
+            p.name: read_number(f"law.{p.name}", given.get(p.name, p.default), p.unit, zero=p.may_vanish, below=p.below)
             for p in law.parameters
             if p.name not in (strength, ADHESION)
         },

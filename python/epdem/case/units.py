@@ -91,12 +91,16 @@ def within_limits(x: float, si: str) -> float:
     return x
 
 
-def read_number(place: str, value: object, unit: str, *, zero: bool = False) -> float:
-    """`value` as written at `place` in a file or a command, in SI and > 0, or >= 0 (`zero`). Raises CaseError."""
+def read_number(place: str, value: object, unit: str, *, zero: bool = False, below: float = math.inf) -> float:
+    """`value` as written at `place` in a file or a command, in SI, in (0, below), or [0, below) with `zero`.
+
+    Raises CaseError.
+    """
     try:
         x = within_limits(to_si(value, unit), unit)
     except ValueError as error:
         raise CaseError(f"{place} = {value!r}, {error}") from None
-    if not (x > 0 or (zero and x == 0)):
-        raise CaseError(f"{place} = {value!r}, must be {'>=' if zero else '>'} 0; correct it")
+    if not (0 < x < below or (zero and x == 0)):
+        limits = f"be {'>=' if zero else '>'} 0" if below == math.inf else f"lie in {'[' if zero else '('}0, {below:g})"
+        raise CaseError(f"{place} = {value!r}, must {limits}; correct it")
     return x

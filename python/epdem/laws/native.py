@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """One C++ law with its numbers: steps, backbone, impacts. SI in, SI out; arrays are numpy, float64."""
 
-import math
 from ctypes import POINTER, c_double
 from typing import Any, NotRequired, TypedDict, Unpack
 
@@ -70,8 +69,8 @@ class Law:
         values = []
         for p in self.info.parameters:
             value = parameters.get(p.name, p.default)
-            if value is None or not (math.isfinite(value) and (value > 0 or (value == 0 and p.may_vanish))):
-                raise CaseError(f"law {name}: {p.name} = {value}, must be a finite number > 0 [{p.unit}]")
+            if value is None or not p.holds(value):
+                raise CaseError(f"law {name}: {p.name} = {value}, must be a finite number in {p.limits()} [{p.unit}]")
             values.append(value)
         self.name, self.E_star = name, float(E_star)
         self._parameters = (c_double * max(len(values), 1))(*values)

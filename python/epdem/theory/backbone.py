@@ -22,8 +22,13 @@ class Declared:
     def given(self, **values: Real | None) -> tuple[Real, ...]:
         """Parameters by their symbols, each its default if it is None. ValueError outside of their ranges."""
         known = {p.symbol: p for p in self.declaration().parameters}
-        chosen = {s: known[s].default if x is None else x for s, x in values.items()}
-        return tuple(number(s, np.nan if x is None else x, low_ok=known[s].may_vanish) for s, x in chosen.items())
+        numbers = []
+        for symbol, value in values.items():
+            p = known[symbol]
+            x = p.default if value is None else value
+            x = np.nan if x is None else x
+            numbers.append(number(symbol, x, high=p.below, low_ok=p.may_vanish, high_ok=p.below == np.inf))
+        return tuple(numbers)
 
 
 class Backbone(Declared):
@@ -62,6 +67,10 @@ class Backbone(Declared):
     def flatness(self, alpha: Real) -> Real:
         """tau of the contact pressure on the backbone: 0 Hertz's half-ellipse, 1 uniform."""
         return np.zeros(np.shape(alpha))
+
+    def pressure_max(self, alpha: Real) -> Real:
+        """Largest contact pressure [Pa] on the backbone: 1.5 - 0.5 tau of the mean one, if the law does not say it."""
+        return (1.5 - 0.5 * self.flatness(alpha)) * self.force(alpha) / (np.pi * self.radius(alpha) ** 2)
 
     def kinks(self) -> list[Real]:
         """Overlaps [m] at which the backbone changes its formula."""

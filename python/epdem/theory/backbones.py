@@ -11,6 +11,7 @@ from .cavity import Cavity
 from .hertz import Hertz
 from .jkr import JKR
 from .johnson import Johnson
+from .meyer import Meyer
 from .thornton import Thornton
 from .thornton_ning import ThorntonNing
 
@@ -41,4 +42,4 @@ LAWS = _Laws(Backbone, adheres=False)
 # The contact radius is the natural variable, and the theory of impacts is in `adhesion`.
 ADHESIVE = _Laws(JKR, adheres=True)
 
-__all__ = ["ADHESIVE", "JKR", "LAWS", "Backbone", "Cavity", "Hertz", "Johnson", "Thornton", "ThorntonNing"]
+__all__ = ["ADHESIVE", "JKR", "LAWS", "Backbone", "Cavity", "Hertz", "Johnson", "Meyer", "Thornton", "ThorntonNing"]

@@ -11,17 +11,26 @@ Real: TypeAlias = float | Array  # one number or many, which broadcast
 
 
 def number(
-    name: str, value: ArrayLike, *, low: float = 0.0, high: float = np.inf, low_ok: bool = False, infinite: bool = False
+    name: str,
+    value: ArrayLike,
+    *,
+    low: float = 0.0,
+    high: float = np.inf,
+    low_ok: bool = False,
+    high_ok: bool = True,
+    infinite: bool = False,
 ) -> Real:
-    """`value` as a float array in (low, high] or [low, high]; infinite=True lets +inf pass.
+    """`value` as a float array between low and high, each in the range or not; infinite=True lets +inf pass.
 
     Raises ValueError that names the argument, the first bad value and the range.
     """
     x = np.asarray(value, dtype=float)
-    good = (x >= low if low_ok else x > low) & (x <= high) & (np.isfinite(x) | (infinite & (x == np.inf)))
+    good = (x >= low if low_ok else x > low) & (x <= high if high_ok else x < high)
+    good &= np.isfinite(x) | (infinite & (x == np.inf))
     if not np.all(good):
         worst = x[~good].flat[0] if x.ndim else x
-        left, right = "[" if low_ok else "(", "inf)" if np.isinf(high) and not infinite else f"{high:g}]"
+        open_ended = (np.isinf(high) and not infinite) or not high_ok
+        left, right = "[" if low_ok else "(", f"{high:g}{')' if open_ended else ']'}"
         raise ValueError(f"{name} = {worst:g}, must lie in {left}{low:g}, {right}")
     return x if x.ndim else float(x)
 

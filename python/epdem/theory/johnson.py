@@ -30,6 +30,9 @@ class Johnson(Backbone):
     def radius(self, alpha: Real) -> Real:
         return np.where(alpha <= self.yield_overlap, 1.0, np.sqrt(2.0)) * np.sqrt(self.R_star * alpha)
 
+    def pressure_max(self, alpha: Real) -> Real:
+        return np.where(alpha <= self.yield_overlap, super().pressure_max(alpha), self.p_m)
+
     def work(self, alpha: Real) -> Real:
         y = self.yield_overlap
         x = np.maximum(alpha - y, 0.0)

@@ -28,6 +28,9 @@ class Thornton(Backbone):
     def radius(self, alpha: Real) -> Real:
         return np.sqrt(self.R_star * alpha)
 
+    def pressure_max(self, alpha: Real) -> Real:
+        return np.where(alpha <= self.yield_overlap, super().pressure_max(alpha), self.p_y)
+
     def work(self, alpha: Real) -> Real:
         y, slope = self.yield_overlap, np.pi * self.p_y * self.R_star
         x = np.maximum(alpha - y, 0.0)

@@ -47,14 +47,13 @@ def first_yield_speed(law: Backbone, Y: Real, *, m_star: Real, ratio: Real = FIR
     """
     wanted = number("ratio", ratio) * number("Y", Y, infinite=True)
     far = 1e20 * law.R_star  # there the elastic start counts no more
-    limit = law.force(far) / (np.pi * law.radius(far) ** 2)
+    limit = law.pressure_max(far)
     p = np.minimum(wanted, limit)
     low = law.R_star * (np.pi * p / (2 * law.E_star)) ** 2  # Hertz's overlap at p; a law that yields needs more
-    high = np.where(low <= law.yield_overlap, low, np.maximum(low, law.kinks()[-1]))
+    high = np.where(low <= law.yield_overlap, low, far)
 
     def below(log: Array) -> Any:
-        alpha = low * np.exp(log)
-        return (1.5 - 0.5 * law.flatness(alpha)) * law.force(alpha) < p * np.pi * law.radius(alpha) ** 2
+        return law.pressure_max(low * np.exp(log)) < p
 
     alpha = low * np.exp(bisect(below, 0.0, np.log(high / low))[1])
     return np.where(wanted <= limit, np.sqrt(2 * law.work(alpha) / number("m_star", m_star)), np.inf)

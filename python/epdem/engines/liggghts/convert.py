@@ -108,8 +108,8 @@ def _property_lines(law: Declaration, given: dict[str, str], present: set[str], 
             number = float(given[name])
         except ValueError:
             number = math.nan
-        if not (math.isfinite(number) and (number > 0 or (number == 0 and p.may_vanish))):
-            raise CaseError(f"--set {name}={given[name]}: must be a number > 0 in the units of the deck [{p.unit}]")
+        if not p.holds(number):
+            raise CaseError(f"--set {name}={given[name]}: must lie in {p.limits()} in the units of the deck [{p.unit}]")
         head, count = (f"peratomtypepair {types}", types * types) if p.of_pair else ("peratomtype", types)
         values = " ".join([given[name]] * count)
         lines.append(f"fix epdem_{name} all property/global {name} {head} {values}\n")

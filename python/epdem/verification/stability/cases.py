@@ -17,6 +17,7 @@ from ...theory.yielding import yield_speed
 
 MODULUS, RATIO, RADIUS, DENSITY, POISSON = 2e11, 100.0, 0.01, 7800.0, 0.3  # base: E [Pa], E*/p_y, R [m], rho [kg/m^3]
 TIMES_YIELD = 30.0  # base speed over the yield speed
+HARDENING, EXPONENTS = "hardening_exponent", (0.05, 0.6)  # of meyer, which is thornton without hardening
 
 
 @dataclass(frozen=True)
@@ -24,7 +25,8 @@ class Extreme:
     """An extreme case at `speed` [m/s]. `start` is the overlap at t = 0 over the theoretical alpha_max of the impact.
 
     kind: impact; bounces and reloads (one contact again and again); two_walls (a sphere that overlaps two walls).
-    adhesion: work of adhesion [J/m^2] of a case for the laws that have one; None: a case for the others.
+    adhesion: work of adhesion [J/m^2] of a case for the laws that have one; None: a case for the others. exponent: of
+    the laws that harden.
     """
 
     name: str
@@ -35,14 +37,24 @@ class Extreme:
     start: float | None = None
     kind: str = "impact"
     adhesion: float | None = None
+    exponent: float = EXPONENTS[-1]
 
     def suits(self, law: str) -> bool:
         """Whether the case is one for this law."""
         return (law in ADHESIVE) == (self.adhesion is not None)
 
+    def variants(self, law: str) -> list["Extreme"]:
+        """The case, or for a law that hardens one for each exponent."""
+        if HARDENING not in default_numbers(law).ratios:
+            return [self]
+        return [replace(self, name=f"{self.name}, x = {x:g}", exponent=x) for x in EXPONENTS]
+
     def experiment(self, law: str) -> Experiment:
-        """The case with a law at its default parameters."""
-        spec = pair_of(replace(default_numbers(law), adhesion=self.adhesion), self.body, self.target)
+        """The case with a law at its default parameters, but for the exponent."""
+        numbers = replace(default_numbers(law), adhesion=self.adhesion)
+        if HARDENING in numbers.ratios:
+            numbers = replace(numbers, ratios=numbers.ratios | {HARDENING: self.exponent})
+        spec = pair_of(numbers, self.body, self.target)
         return Experiment(spec, self.body, self.target, np.array([self.speed]), name=self.name)
 
 

@@ -126,7 +126,7 @@ def _work(tool: ImpactEngine, laws: list[str], chosen: list[Extreme]) -> list[tu
     known = [law for law in laws if has_law(tool, law)]
     if isinstance(tool, Yade):  # seconds for a plan
         known, chosen = [LAW_OF_SLOW] if LAW_OF_SLOW in known else known, ends(chosen)
-    return [(law, extreme) for law in known for extreme in chosen if extreme.suits(law)]
+    return [(law, x) for law in known for extreme in chosen if extreme.suits(law) for x in extreme.variants(law)]
 
 
 def ends(chosen: list[Extreme]) -> list[Extreme]:
