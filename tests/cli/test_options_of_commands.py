@@ -35,7 +35,7 @@ FAST = STEEL[: STEEL.index("speeds =")] + 'speeds = ["1 m/s"]' + STEEL[STEEL.ind
 TEMPLATE = "{{ deck.time_step }} {{ a | default(0) }}\n"
 HARDNESS = {"e_n": "0.6", "speed": "3 m/s", "hv": "200", "hb": "200", "dent_ratio": "0.5"}
 HARDNESS |= {"target": "floor_load_mean=1 N", "free": "contact.friction=0.1..0.9", "tolerance": "0.1", "engine": "yade"}
-HARDNESS |= {"ranks": "2", "jobs": "1", "out": "there", "force": None}
+HARDNESS |= {"measured": None, "uncertainty": "0.01", "ranks": "2", "jobs": "1", "out": "there", "force": None}
 TARGET = ("--target", "floor_load_max=1 N", "--free", "contact.friction=0.1..0.5")
 RUN = {"engine": "yade", "law": "cavity", "ranks": "2", "steps": "100", "out": "there", "fresh": None, "resume": None}
 RUN |= {"full": None, "pictures": "svg", "force": None}

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """A measured e_n or a hardness gives back the strength it came from."""
 
+import json
 import math
 import re
 from dataclasses import replace
@@ -16,7 +17,7 @@ from epdem.impacts.experiment import experiment
 from epdem.impacts.prediction import predict
 from epdem.laws.library import laws
 from epdem.report.page import write
-from epdem.studies.calibrate import from_hardness, from_restitution
+from epdem.studies.calibrate import from_hardness, from_restitution, from_restitutions
 from epdem.studies.hardness import hardness_test
 from epdem.studies.pages import impacts as pages
 from epdem.theory.adhesion import yield_speed
@@ -150,3 +151,117 @@ def test_impossible_measurements_are_refused(tmp_path):
         from_restitution(with_law(tmp_path, "hertz"), 0.6, 1.0)
     with pytest.raises(CaseError, match="give one hardness, --hv or --hb"):
         hardness_test()
+
+
+E_STAR, MASS = 208e9 / (2 * (1 - 0.3**2)), 4 / 3 * math.pi * 0.01**3 * 7850.0  # of the steel case
+
+
+def hardening_metal(p_y, x, *sizes):
+    """(speed [m/s], e_n) of `meyer` at q = a/a_y: e_n^2 = (F/F_y)^2/(q W/W_y), (v/v_y)^2 = W/W_y."""
+    v_y = (math.pi / (2 * E_STAR)) ** 2 * math.sqrt(8 * math.pi * 0.01**3 * p_y**5 / (15 * MASS))
+    points = []
+    for q in sizes:
+        F = 1 + 3 / (2 + x) * (q ** (2 + x) - 1)
+        W = 1 + 2.5 * ((1 - 3 / (2 + x)) * (q**2 - 1) + 6 / ((2 + x) * (4 + x)) * (q ** (4 + x) - 1))
+        points.append((v_y * math.sqrt(W), F / math.sqrt(q * W)))
+    return points
+
+
+@pytest.mark.parametrize(("p_y", "x"), [(1.2e9, 0.25), (3e8, 0.05), (2e9, 0.6)])
+@pytest.mark.parametrize("sizes", [(3, 12), (2, 4, 8, 16)])
+def test_strength_and_hardening_exponent_are_found_from_several_restitutions(p_y, x, sizes, tmp_path):
+    measured = hardening_metal(p_y, x, *sizes)
+    found = from_restitutions(with_law(tmp_path, "meyer"), measured, 0.003)
+    assert (found.value, found.hardening_exponent) == pytest.approx((p_y, x), rel=1e-5)
+    assert found.largest_residual < 1e-3 and found.measured == tuple(measured)
+
+
+def test_standard_errors_are_those_of_fits_to_shifted_measurements(tmp_path):
+    path, measured, sigma = with_law(tmp_path, "meyer"), hardening_metal(1.2e9, 0.25, 2, 5, 16), 0.01
+    found = from_restitutions(path, measured, sigma)
+    shifts = []
+    for k in range(3):
+        both = []
+        for sign in (1, -1):
+            moved = [(v, e + sign * 0.01 * sigma * (j == k)) for j, (v, e) in enumerate(measured)]
+            other = from_restitutions(path, moved, sigma)
+            both.append([math.log(other.value), other.hardening_exponent])
+        shifts.append(np.subtract(*both) / 0.02)
+    covariance = np.transpose(shifts) @ shifts
+    errors = np.sqrt(np.diag(covariance))
+    assert found.standard_errors == pytest.approx([errors[0] * found.value, errors[1]], rel=1e-2)
+    assert found.correlation == pytest.approx(covariance[0, 1] / errors.prod(), abs=1e-3)
+
+
+def test_the_scatter_of_three_or_more_restitutions_gives_their_uncertainty(tmp_path):
+    path, exact = with_law(tmp_path, "meyer"), hardening_metal(1.2e9, 0.25, 2, 4, 8, 16)
+    noisy = [(v, e + d) for (v, e), d in zip(exact, (0.01, -0.012, -0.008, 0.009), strict=True)]
+    free = from_restitutions(path, noisy)
+    p_y, x = free.value, free.hardening_exponent
+    q = np.geomspace(1, 100, 20_001)
+    curve = np.array(hardening_metal(p_y, x, *q))
+    residuals = [e - np.interp(v, *curve.T) for v, e in noisy]
+    scatter = math.sqrt(sum(r**2 for r in residuals) / 2)  # four values, two unknowns
+    assert free.largest_residual == pytest.approx(max(map(abs, residuals)) / scatter, rel=1e-3)
+    given = from_restitutions(path, noisy, scatter)
+    assert free.standard_errors == pytest.approx(given.standard_errors, rel=1e-3) and free.value == pytest.approx(
+        given.value
+    )
+
+
+def test_restitutions_that_determine_nothing_are_refused(tmp_path):
+    path, (slow, fast) = with_law(tmp_path, "meyer"), hardening_metal(1.2e9, 0.25, 3, 12)
+    with pytest.raises(CaseError, match="these e_n do not tell yield_pressure and hardening_exponent apart"):
+        from_restitutions(path, [fast, (1.1 * fast[0], 0.99 * fast[1])], 0.01)
+    with pytest.raises(CaseError, match="these e_n do not tell"):
+        from_restitutions(path, [fast, fast, fast], 0.01)
+    with pytest.raises(CaseError, match="give --uncertainty"):
+        from_restitutions(path, [slow, fast])
+    with pytest.raises(CaseError, match=r"--uncertainty 2, must lie in \(0, 1\)"):
+        from_restitutions(path, [slow, fast], 2.0)
+    with pytest.raises(CaseError, match=r"law thornton has one strength; give one e_n, or law.name = 'meyer'"):
+        from_restitutions(STEEL, [slow, fast], 0.01)
+
+
+def test_the_command_takes_several_restitutions_or_those_of_the_case(tmp_path):
+    measured = hardening_metal(1.2e9, 0.25, 3, 6, 12)
+    path = with_law(tmp_path, "meyer")
+    options = [word for v, e in measured for word in ("--speed", f"{v!r} m/s", "--e-n", repr(e))]
+    many = CliRunner().invoke(app, ["calibrate", str(path), *options, "--uncertainty", "0.01", "--json"])
+    speeds, e_n = [f"{v!r} m/s" for v, _ in measured], [e for _, e in measured]
+    path.write_text(path.read_text() + f'\n[measured]\nsource = "me"\nspeeds = {speeds}\ne_n = {e_n}\n')
+    words = ["calibrate", str(path), "--measured", "--uncertainty", "0.01", "--out", str(tmp_path / "page")]
+    curve = CliRunner().invoke(app, words)
+    found = json.loads(many.stdout)
+    assert found["value"] == pytest.approx(1.2e9) and found["hardening_exponent"] == pytest.approx(0.25)
+    said = f"yield_pressure = 1200 MPa +- {found['standard_errors'][0] / 1e6:.2g} MPa, hardening_exponent = 0.25 +- "
+    assert said in " ".join(curve.stdout.split()) and said in (tmp_path / "page/report.html").read_text()
+
+
+def test_a_law_that_hardens_has_the_measured_mean_pressure_in_the_hardness_test(tmp_path):
+    """p_m = 2/3 p_y [1 + 3/(2+x) (q^(2+x) - 1)]/q^2 at q = (a/R) 2E*/(pi p_y), E* of a rigid indenter."""
+    test = hardness_test(brinell=200, dent_ratio=0.4)
+    for x in (0.1, 0.4):
+        path = with_law(tmp_path, "meyer")
+        path.write_text(path.read_text().replace('name = "meyer"\n', f'name = "meyer"\nhardening_exponent = {x}\n'))
+        p_y = from_hardness(path, test, "HB 200").value
+        q = 0.4 * 2 * 208e9 / (1 - 0.3**2) / (math.pi * p_y)
+        assert 2 / 3 * p_y * (1 + 3 / (2 + x) * (q ** (2 + x) - 1)) / q**2 == pytest.approx(test.pressure, rel=1e-9)
+        index = path.read_text().replace(f"hardening_exponent = {x}", f"meyer_index = {2 + x}")
+        path.write_text(index)
+        assert from_hardness(path, test, "HB 200").value == pytest.approx(p_y, rel=1e-12)
+
+
+@pytest.mark.parametrize(
+    ("line", "said"),
+    [
+        ("meyer_index = 1.9", r"law.meyer_index = 1.9, must lie in \[2, 3\)"),
+        ("meyer_index = 3.0", "law.meyer_index = 3.0, must lie in"),
+        ("meyer_index = 2.1\nhardening_exponent = 0.1", "both hardening_exponent and meyer_index are given"),
+    ],
+)
+def test_a_wrong_meyer_index_is_refused(line, said, tmp_path):
+    path = with_law(tmp_path, "meyer")
+    path.write_text(path.read_text().replace('name = "meyer"\n', f'name = "meyer"\n{line}\n'))
+    with pytest.raises(CaseError, match=said):
+        experiment(load(path))

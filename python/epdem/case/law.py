@@ -14,12 +14,14 @@ def law_numbers(name: str, given: dict[str, Any]) -> LawNumbers:
 
     A strength X [Pa] is given as `X = "2.8 GPa"` for all bodies or as `X_ratio = 2.8` of each body's yield stress, the
     work of adhesion as `work_of_adhesion = "0.1 J/m^2"` for all pairs or by the surface energies of the materials;
-    finite_strain = true or false stands for its number.
+    finite_strain = true or false stands for its number, meyer_index = 2 + x for hardening_exponent = x.
     """
     law = law_named(name)
     none = next((p.default for p in law.parameters if p.name == "finite_strain"), None)
     if none is not None and isinstance(given.get("finite_strain"), bool):
         given = given | {"finite_strain": FINITE_STRAIN if given["finite_strain"] else none}
+    if "meyer_index" in given and any(p.name == "hardening_exponent" for p in law.parameters):
+        given = _without_index(given)
     strength, ratio = law.strength, f"{law.strength}_ratio"
     known = [key for p in law.parameters for key in ((p.name, ratio) if p.name == strength else (p.name,))]
     for key in given:
@@ -39,3 +41,13 @@ def law_numbers(name: str, given: dict[str, Any]) -> LawNumbers:
         read_number(f"law.{ratio}", given[ratio], "1") if ratio in given else law.default_ratio,
         read_number(f"law.{ADHESION}", given[ADHESION], "J/m^2", zero=True) if ADHESION in given else None,
     )
+
+
+def _without_index(given: dict[str, Any]) -> dict[str, Any]:
+    """The numbers of a law with hardening_exponent = meyer_index - 2 in place of meyer_index."""
+    if "hardening_exponent" in given:
+        raise CaseError("law: both hardening_exponent and meyer_index are given; keep one")
+    index = read_number("law.meyer_index", given["meyer_index"], "1", below=3.0)
+    if index < 2.0:
+        raise CaseError(f"law.meyer_index = {index:g}, must lie in [2, 3); 2 is a metal that does not harden")
+    return {k: v for k, v in given.items() if k != "meyer_index"} | {"hardening_exponent": index - 2.0}

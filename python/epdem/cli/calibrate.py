@@ -3,18 +3,26 @@
 
 import json
 from pathlib import Path
-from typing import Annotated, Any
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
 from ..errors import CaseError
 from .options import AsJson, CasePath, Force, Out, refuse
 
+if TYPE_CHECKING:
+    from ..studies.calibrate import Calibration
+
 
 def calibrate(
     case: CasePath,
-    e_n: Annotated[float | None, typer.Option("--e-n", help="measured coefficient of restitution")] = None,
-    speed: Annotated[str | None, typer.Option(help='speed of that impact, as "2 m/s"')] = None,
+    e_n: Annotated[
+        list[float] | None,
+        typer.Option("--e-n", help="measured coefficient of restitution; repeat with --speed for a law that hardens"),
+    ] = None,
+    speed: Annotated[list[str] | None, typer.Option(help='speed of that impact, as "2 m/s"')] = None,
+    measured: Annotated[bool, typer.Option("--measured", help="take speeds and e_n of [measured] of the case")] = False,
+    uncertainty: Annotated[float | None, typer.Option(help="standard error of each of several e_n")] = None,
     hv: Annotated[float | None, typer.Option(help="Vickers hardness [kgf/mm^2] instead of an impact")] = None,
     hb: Annotated[float | None, typer.Option(help="Brinell hardness [kgf/mm^2] instead of an impact")] = None,
     dent_ratio: Annotated[
@@ -37,22 +45,23 @@ def calibrate(
     force: Force = False,
     as_json: AsJson = False,
 ) -> None:
-    """Compute the strength of a law from one e_n or a hardness, or keys of a scene from numbers of its results.
+    """Compute the strength of a law from e_n or a hardness, or keys of a scene from numbers of its results.
 
     A fit of a scene leaves report.html in its folder; for a strength, --out says where.
     """
+    impacts = {"e_n": e_n, "speed": speed, "measured": measured, "uncertainty": uncertainty}
+    hardness = {"hv": hv, "hb": hb, "dent_ratio": dent_ratio}
     of_scene = {"tolerance": tolerance, "engine": engine, "ranks": ranks, "jobs": jobs}
     if target or free:
-        refuse(
-            case, "it does not go with --target and --free", e_n=e_n, speed=speed, hv=hv, hb=hb, dent_ratio=dent_ratio
-        )
+        refuse(case, "it does not go with --target and --free", **impacts, **hardness)
         given = {k: v for k, v in (of_scene | {"out": out, "force": force}).items() if v is not None}
         _of_scene(case, target or [], free or [], given, as_json)
         return
     refuse(case, "it goes with --target and --free", **of_scene)
     if out is None:
         refuse(case, "it belongs to --out", force=force)
-    _of_impact(case, e_n, speed, hv, hb, dent_ratio, as_json, out, force)
+    found = _from_impacts(case, e_n or [], speed or [], measured, uncertainty, hardness)
+    _of_impact(case, found, as_json, out, force)
 
 
 def _of_scene(case: Path, target: list[str], free: list[str], options: dict[str, Any], as_json: bool) -> None:
@@ -75,41 +84,45 @@ def _of_scene(case: Path, target: list[str], free: list[str], options: dict[str,
     print(f"{found.points} scenes, {found.ran} of them just now; the case with these values: {found.case}; see {page}")
 
 
-def _of_impact(
+def _from_impacts(
     case: Path,
-    e_n: float | None,
-    speed: str | None,
-    hv: float | None,
-    hb: float | None,
-    dent_ratio: float | None,
-    as_json: bool,
-    out: Path | None,
-    force: bool,
-) -> None:
+    e_n: list[float],
+    speed: list[str],
+    measured: bool,
+    uncertainty: float | None,
+    hardness: dict[str, float | None],
+) -> "Calibration":
     from ..case.units import read_number
     from ..studies import calibrate as c
     from ..studies.hardness import hardness_test
-    from ..studies.pages.impacts import of_calibration
 
-    if (e_n is None) == (hv is None and hb is None):
-        raise CaseError("give one measurement: --e-n with --speed, or --hv, or --hb")
+    hv, hb, dent_ratio = hardness.values()
+    if (bool(e_n) + measured + (hv is not None or hb is not None)) != 1:
+        raise CaseError("give one kind of measurement: --e-n with --speed, --measured, --hv, or --hb")
     if hb is None:
         refuse(case, "it belongs to --hb", dent_ratio=dent_ratio)
-    if e_n is not None:
-        if speed is None:
-            raise CaseError("--e-n belongs to one impact; add its speed, as --speed '2 m/s'")
-        result = c.from_restitution(case, e_n, read_number("--speed", speed, "m/s"))
-    else:
+    if not e_n:
         refuse(case, "it belongs to --e-n", speed=speed)
+    if not (measured or e_n):
+        refuse(case, "it belongs to --e-n", uncertainty=uncertainty)
         test = hardness_test(vickers=hv, brinell=hb, dent_ratio=dent_ratio)
-        result = c.from_hardness(case, test, f"HV {hv:g}" if hv is not None else f"HB {hb:g}")
+        return c.from_hardness(case, test, f"HV {hv:g}" if hv is not None else f"HB {hb:g}")
+    if len(e_n) != len(speed):
+        raise CaseError("--e-n belongs to one impact; add its speed, as --speed '2 m/s'")
+    points = [(read_number("--speed", v, "m/s"), e) for v, e in zip(speed, e_n, strict=True)]
+    if measured:
+        points = c.of_case(case)
+    if len(points) == 1:
+        refuse(case, "it belongs to several e_n", uncertainty=uncertainty)
+        return c.from_restitution(case, points[0][1], points[0][0])
+    return c.from_restitutions(case, points, uncertainty)
+
+
+def _of_impact(case: Path, result: "Calibration", as_json: bool, out: Path | None, force: bool) -> None:
+    from ..studies.pages.impacts import of_calibration, sentences_of_calibration
+
     page = of_calibration(case, result, out, force=force) if out else None
     if as_json:
         print(json.dumps(vars(result), indent=1))
         return
-    print(
-        f"law {result.law}, {result.source}: {result.parameter} = {result.value / 1e6:.6g} MPa, "
-        f"that is yield_stress = {result.yield_stress / 1e6:.6g} MPa, yield speed {result.yield_speed:.4g} m/s\n"
-        f'in the case file, under [law]: {result.parameter} = "{result.value / 1e6:.6g} MPa"'
-        + (f"\nsee {page}" if page else "")
-    )
+    print("\n".join(sentences_of_calibration(result)) + (f"\nsee {page}" if page else ""))

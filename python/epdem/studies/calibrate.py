@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The strength of a law from one measurement: a restitution at a speed, or a hardness."""
+"""The strength of a law from one e_n or a hardness; strength and hardening exponent from several e_n."""
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
 
@@ -20,6 +21,10 @@ from ..theory.indentation import Indentation
 from ..theory.numerics import bisect
 from .hardness import LEAST_STRENGTH, specimen, strength
 
+EXPONENT = "hardening_exponent"
+LARGEST_EXPONENT = 0.999
+UNKNOWN = 0.5  # standard error of the exponent, whose range is [0, 1), above which measurements do not determine it
+
 
 @dataclass(frozen=True)
 class Calibration:
@@ -33,6 +38,11 @@ class Calibration:
     e_n: float | None
     speed: float | None
     source: str
+    hardening_exponent: float | None = None  # where it was found, too
+    standard_errors: tuple[float, float] | None = None  # of value [Pa] and hardening_exponent
+    correlation: float | None = None  # of the errors of ln(value) and hardening_exponent
+    measured: tuple[tuple[float, float], ...] = ()  # speeds [m/s] and e_n
+    largest_residual: float | None = None  # of e_n, in units of its uncertainty
 
 
 @dataclass(frozen=True)
@@ -43,14 +53,18 @@ class _Unknown:
     law: LawNumbers
     parameter: str
 
-    def experiment(self, strength: float, speed: float) -> Experiment:
-        """One impact at `speed` [m/s] of bodies that all have this strength [Pa], with [rate] at its reference."""
+    def experiment(self, strength: float, *speeds: float) -> Experiment:
+        """Impacts at `speeds` [m/s] of bodies that all have this strength [Pa], with [rate] at its reference."""
         body, target = bodies(self.case)
         spec = pair_of(replace(self.law, absolute=strength), body, target)
         if self.case.rate:
-            spec = rated(spec, self.case.rate, body, target, speed)
+            spec = rated(spec, self.case.rate, body, target, sorted(speeds)[len(speeds) // 2])
         viscous = self.case.viscous.restitution if self.case.viscous else None
-        return Experiment(spec, body, target, np.array([speed]), viscous, rated=self.case.rate is not None)
+        return Experiment(spec, body, target, np.array(speeds), viscous, rated=self.case.rate is not None)
+
+    def hardening(self, exponent: float) -> "_Unknown":
+        """The same with this hardening exponent."""
+        return replace(self, law=replace(self.law, ratios=self.law.ratios | {EXPONENT: exponent}))
 
     def result(self, strength: float, speed: float | None, source: str) -> Calibration:
         """The calibration that found this strength [Pa]."""
@@ -78,7 +92,17 @@ def _unknown(path: Path) -> _Unknown:
 
 def experiment(path: Path, found: Calibration) -> Experiment:
     """The impact of the case with the strength that was found, at the measured speed or at the speed of first yield."""
-    return _unknown(path).experiment(found.value, found.speed or found.yield_speed)
+    unknown = _unknown(path)
+    if found.hardening_exponent is not None:
+        unknown = unknown.hardening(found.hardening_exponent)
+    return unknown.experiment(found.value, found.speed or found.yield_speed)
+
+
+def _check(e_n: float, speed: float) -> None:
+    if not 0.0 < e_n < 1.0:
+        raise CaseError(f"--e-n {e_n:g}, must lie in (0, 1)")
+    if not (math.isfinite(speed) and speed > 0):
+        raise CaseError(f"--speed {speed:g} m/s, must be > 0")
 
 
 def from_restitution(path: Path, e_n: float, speed: float) -> Calibration:
@@ -86,10 +110,7 @@ def from_restitution(path: Path, e_n: float, speed: float) -> Calibration:
 
     The case gives bodies, elastic constants and law; its own strength and speeds play no part.
     """
-    if not 0.0 < e_n < 1.0:
-        raise CaseError(f"--e-n {e_n:g}, must lie in (0, 1)")
-    if not (math.isfinite(speed) and speed > 0):
-        raise CaseError(f"--speed {speed:g} m/s, must be > 0")
+    _check(e_n, speed)
     unknown = _unknown(path)
 
     def restitution(log_strength: float) -> float:
@@ -107,3 +128,66 @@ def from_hardness(path: Path, test: Indentation, source: str) -> Calibration:
     """The strength from a hardness test of the softer body of the case. Raises CaseError."""
     unknown = _unknown(path)
     return unknown.result(strength(unknown.law, test, specimen(*bodies(unknown.case)), source), None, source)
+
+
+def from_restitutions(
+    path: Path, measured: Sequence[tuple[float, float]], uncertainty: float | None = None
+) -> Calibration:
+    """Strength and hardening exponent by least squares of e_n: (speed [m/s], e_n) of two or more impacts of the case.
+
+    `uncertainty` is the standard error of each e_n; None: the scatter about the fit, of three or more. Raises CaseError
+    for laws without hardening, and for measurements that do not determine both numbers.
+    """
+    from scipy.optimize import least_squares
+
+    unknown = _unknown(path)
+    name = unknown.law.name
+    if EXPONENT not in unknown.law.ratios:
+        raise CaseError(f"{path}: law {name} has one strength; give one e_n, or law.name = 'meyer' for several")
+    for speed, e_n in measured:
+        _check(e_n, speed)
+    if uncertainty is not None and not 0.0 < uncertainty < 1.0:
+        raise CaseError(f"--uncertainty {uncertainty:g}, must lie in (0, 1); it is that of e_n")
+    if uncertainty is None and len(measured) < 3:
+        raise CaseError("two e_n say nothing of their scatter; give --uncertainty, the standard error of each e_n")
+    speeds, e_n = np.array(measured).T
+    modulus = unknown.experiment(1e9, 1.0).E_star
+    unit = uncertainty or 1.0
+
+    def off(logarithm_and_exponent: np.ndarray) -> np.ndarray:
+        logarithm, exponent = logarithm_and_exponent.tolist()
+        found = predict(unknown.hardening(exponent).experiment(math.exp(logarithm), *speeds)).e_n
+        return np.asarray((found - e_n) / unit)
+
+    low, high = (math.log(LEAST_STRENGTH * modulus), 0.0), (math.log(modulus), LARGEST_EXPONENT)
+    starts = [(math.log(strength * modulus), x) for strength in (1e-4, 1e-3, 1e-2) for x in (0.1, 0.5)]
+    start = min(starts, key=lambda point: float(np.sum(off(np.array(point)) ** 2)))
+    fit = least_squares(off, start, bounds=(low, high), x_scale=(1.0, 0.3), xtol=1e-12, ftol=1e-12, gtol=1e-12)
+    logarithm, exponent = fit.x.tolist()
+    spread = unit if uncertainty else math.sqrt(2.0 * fit.cost / (len(e_n) - 2))
+    information = fit.jac.T @ fit.jac / (1.0 if uncertainty else max(spread, 1e-12) ** 2)
+    apart = np.linalg.cond(information) < 1e12
+    covariance = np.linalg.inv(information) if apart else np.full((2, 2), math.inf)
+    error = np.sqrt(np.diag(covariance))
+    if not error[1] < UNKNOWN:
+        raise CaseError(
+            f"these e_n do not tell {unknown.parameter} and {EXPONENT} apart: the standard error of {EXPONENT} is "
+            f"{error[1]:.2g}; measure at speeds further apart, or give law.{EXPONENT} and one e_n"
+        )
+    found = unknown.hardening(exponent).result(math.exp(logarithm), None, f"{len(e_n)} values of e_n")
+    return replace(
+        found,
+        hardening_exponent=exponent,
+        standard_errors=(float(found.value * error[0]), float(error[1])),
+        correlation=float(covariance[0, 1] / (error[0] * error[1])),
+        measured=tuple(zip(speeds.tolist(), e_n.tolist(), strict=True)),
+        largest_residual=float(np.abs(fit.fun).max() * (1.0 if uncertainty else 1.0 / max(spread, 1e-12))),
+    )
+
+
+def of_case(path: Path) -> list[tuple[float, float]]:
+    """The (speed [m/s], e_n) of [measured] of a case. Raises CaseError."""
+    curve = load(path).measured
+    if curve is None:
+        raise CaseError(f"{path}: it has no [measured] speeds and e_n; add them, or give --e-n with --speed")
+    return list(zip(curve.speeds, curve.e_n, strict=True))

@@ -73,4 +73,4 @@ def strength(law: LawNumbers, test: Indentation, body: Body, source: str) -> flo
         assert not isinstance(theory, JKR)
         return mean_pressure(theory, test.slope) < test.pressure
 
-    return float(bisect(too_soft, 0.5 * test.pressure, 2.0 * test.pressure)[1])
+    return float(bisect(too_soft, LEAST_STRENGTH * plane, 2.0 * test.pressure, steps=80)[1])

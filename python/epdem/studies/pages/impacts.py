@@ -40,23 +40,40 @@ def of_calibration(case: Path, found: Calibration, folder: Path, *, force: bool 
     Raises CaseError for a folder with a page of another kind, without `force`.
     """
     x = experiment(case, found)
-    line = replace(x, speed=np.geomspace(0.1, 100.0, 200) * (found.speed or found.yield_speed))
+    middle = found.speed or np.median([speed for speed, _ in found.measured] or [found.yield_speed])
+    line = replace(x, speed=np.geomspace(0.1, 100.0, 200) * middle)
     series = [Series("theory", line.speed, predict(line).e_n)]
-    if found.e_n is not None and found.speed is not None:
-        series.append(Series("measured", found.speed, found.e_n, 1, None, charts.MEASURED))
+    points = found.measured or (((found.speed, found.e_n),) if found.speed and found.e_n else ())
+    if points:
+        speeds, values = np.array(points).T
+        series.append(Series("measured", speeds, values, 1, None, charts.MEASURED))
     alt = f"Coefficient of restitution of law {found.law} with {found.parameter} = {found.value:.4g} Pa against speed."
     chart = Chart("e_n", "Restitution with this strength", alt, [Panel(charts.SPEED, Axis("e_n"), series)])
-    said = [
-        f"From {found.source}: {found.parameter} = {found.value / 1e6:.6g} MPa, that is a yield stress of "
-        f"{found.yield_stress / 1e6:.6g} MPa and a yield speed of {found.yield_speed:.4g} m/s.",
-        f'In the case file, under [law]: {found.parameter} = "{found.value / 1e6:.6g} MPa".',
-    ]
     bare = [replace(b, yield_stress=None) for b in (x.body, x.target)]  # whose own strength plays no part
     facts = Facts("Bodies and law", _facts(replace(x, body=bare[0], target=bare[1], source=found.source)))
     parts: list[Part] = [chart, facts, common.origin({}, {}), common.cited(load(case), [found.law], [])]
+    said = sentences_of_calibration(found)
     made = Page(f"Strength of law {found.law} from {found.source}", said, parts, command=common.command())
     with claim(folder, force=force, files=[NAME]):
         return write(folder / NAME, lambda: made)
+
+
+def sentences_of_calibration(c: Calibration) -> list[str]:
+    """What was found, with its standard errors, and the lines of the case file."""
+    lines = [f'{c.parameter} = "{c.value / 1e6:.6g} MPa"']
+    errors, more = "", ""
+    if c.hardening_exponent is not None and c.standard_errors is not None:
+        lines.append(f"hardening_exponent = {c.hardening_exponent:.4g}")
+        errors = f" +- {c.standard_errors[0] / 1e6:.2g} MPa"
+        more = (
+            f", hardening_exponent = {c.hardening_exponent:.4g} +- {c.standard_errors[1]:.2g} (standard errors, "
+            f"correlation {c.correlation:.3f}; largest residual of e_n {c.largest_residual:.2g} standard errors)"
+        )
+    return [
+        f"law {c.law}, {c.source}: {c.parameter} = {c.value / 1e6:.6g} MPa{errors}{more}, "
+        f"that is yield_stress = {c.yield_stress / 1e6:.6g} MPa, yield speed {c.yield_speed:.4g} m/s",
+        f"in the case file, under [law]: {'; '.join(lines)}",
+    ]
 
 
 def page(outcome: Outcome, command: str = "") -> Page:
