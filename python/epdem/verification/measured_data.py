@@ -26,6 +26,7 @@ from ..impacts.prediction import predict
 from ..impacts.run import run_and_compare
 from ..laws.library import laws
 from ..laws.strengths import default_numbers, law_named
+from ..studies.calibrate import EXPONENT
 from ..studies.hardness import hardness_test, specimen, strength
 from ..theory.backbones import JKR
 from .models import engine
@@ -115,6 +116,8 @@ def _simulated(x: Experiment, row: pd.Series, quantity: str) -> float:
 
 def _of_law(measured: Measured, law: str, tools: list[ImpactEngine], scratch: Path) -> list[dict[str, object]]:
     """One row for each point and engine. Raises CaseError if the law does not have its numbers in the set's case."""
+    if EXPONENT in default_numbers(law).ratios:
+        raise CaseError(f"law {law}: no set has a {EXPONENT}, without which the law is thornton")
     rows: list[dict[str, object]] = []
     for (material, given), points in measured.points.groupby(["strength of", measured.given]):
         speeds = np.unique(points["speed"])
