@@ -18,15 +18,6 @@ from .wall_power import GAIN, power, wall_id
 
 
 @dataclass(frozen=True)
-class WallMotion:
-    """What moves a mesh: `begin` and `end` are commands."""
-
-    wall: str
-    begin: str
-    end: str
-
-
-@dataclass(frozen=True)
 class StopCondition:
     """How a phase ends early: after `first` steps at most `rows` times `every`, until the condition holds."""
 
@@ -169,7 +160,8 @@ def surfaces(p: ScenePlan) -> tuple[DeckMesh, ...]:
     return tuple(found)
 
 
-def _motion(p: ScenePlan, name: str, move: Move) -> WallMotion:
+def _motion(p: ScenePlan, name: str, move: Move) -> tuple[str, str]:
+    """The commands at the begin and at the end of the motion of a mesh."""
     wall = wall_id(p, name)
     fix = "press" if name == "plate" else f"move_{name}"
     match move:
@@ -182,10 +174,8 @@ def _motion(p: ScenePlan, name: str, move: Move) -> WallMotion:
         case VibrateMove():
             words = f"wiggle amplitude {_words(move.amplitude)} period {decks.number(2 * math.pi / move.omega)}"
         case PressMove():
-            return WallMotion(
-                wall, f"fix_modify {wall} servo/integrate start", f"fix_modify {wall} servo/integrate stop"
-            )
-    return WallMotion(wall, f"fix {fix} all move/mesh mesh {wall} {words}", f"unfix {fix}")
+            return f"fix_modify {wall} servo/integrate start", f"fix_modify {wall} servo/integrate stop"
+    return f"fix {fix} all move/mesh mesh {wall} {words}", f"unfix {fix}"
 
 
 def stop_condition(p: ScenePlan, phase: Phase, steps: int) -> StopCondition | None:
@@ -232,11 +222,14 @@ def parts(p: ScenePlan) -> tuple[DeckPhase, ...]:
             phase.end - begin,
             upto=upto,
             time_step=phase.case.time_step or p.time_step if own_steps else None,
-            start_commands=tuple(motions[name].begin for name in new),
+            start_commands=tuple(motions[name][0] for name in new),
             gates=tuple(gates[name] for name in phase.gates if before is None or name not in before.gates),
             resume_gates=tuple(gates[name] for name in phase.gates),
-            resume_commands=tuple(m.begin for m in motions.values()),
-            end_commands=(*ends, *(m.end for name, m in motions.items() if after and not _goes_on(name, phase, after))),
+            resume_commands=tuple(begin for begin, _ in motions.values()),
+            end_commands=(
+                *ends,
+                *(end for name, (_, end) in motions.items() if after and not _goes_on(name, phase, after)),
+            ),
             record=phase.case.record,
             particles=tuple(_phase_particle(p, b) for b in p.scene.later if b.phase == phase.name),
             power=power(p, phase) if p.writes_wall_power else "",
