@@ -190,7 +190,6 @@ def test_spheres_begin_without_overlap_inside_the_box_and_with_their_shares_of_t
 @pytest.mark.parametrize(
     ("name", "place", "value", "words"),
     [
-        ("hopper_beads", "output", {}, r"scene.kind = 'hopper'"),
         ("drum_beads", "output", {}, r"scene.kind = 'drum'"),
         ("peening_steel", "output", {}, r"scene.kind = 'peening'"),
         ("adhesive_powder", "output", {}, r"law.name = 'thornton_ning': engine yade has no law with adhesion"),

@@ -5,7 +5,7 @@ import math
 
 import numpy as np
 import pytest
-from parts_cases import BED, FLOOR, parts
+from parts_cases import BED, FLOOR, own, parts
 from scene_runs import run, write_case
 from test_parts_motions import BEATER, BOX, FALL, PLATE, assert_the_lid_shakes_on, moved
 
@@ -28,6 +28,34 @@ def test_energy_closes_with_the_work_of_walls_that_move_in_yade(kind, tmp_path):
     assert abs(balance["work"]).max() > 0.1 * balance["kinetic"].max() > 0  # so that it counts
     assert {"floor", "box", "beater", "lid"} >= {*outcome.results.contacts["wall"]} - {""}
     assert any("once for each triangle" in text for text in outcome.warnings)
+
+
+@pytest.mark.yade
+def test_beads_leave_a_hopper_when_its_shutter_is_gone_in_yade(tmp_path):
+    data = own("hopper_beads")
+    data["scene"] |= {"bin_diameter": "20 mm", "bin_height": "30 mm", "outlet": "10 mm", "outlet_height": "10 mm"}
+    data["scene"] |= {"count": 30, "fill_time": "0.12 s", "duration": "0.08 s"}
+    data |= {"output": {"rows": 6, "particles": 10, "energy": True}, "numerics": {"time_step": "5e-5 s"}}
+    outcome = run(write_case(data, tmp_path), engine="yade", out=tmp_path / "out")
+    spheres, contacts, (fill, _) = outcome.results.particles, outcome.results.contacts, outcome.plan.phases
+    outlet = next(w.at for w in outcome.plan.scene.gates)
+    before, after = spheres[spheres["step"] <= fill.end], spheres[spheres["step"] == outcome.plan.steps]
+    assert outcome.passed and len(after) == 30
+    assert before["z"].min() > outlet, "held"
+    assert (after["z"] < outlet).mean() > 0.9, "through, but for some on the cone"
+    resting = contacts["step"] <= fill.end
+    assert {"hopper", "shutter"} <= {*contacts[resting]["wall"]} and "shutter" not in {*contacts[~resting]["wall"]}
+
+
+@pytest.mark.yade
+def test_phases_without_record_have_no_frames_in_yade(tmp_path):
+    phases = [FALL | {"name": name, "duration": "2 ms", "record": name in "ad"} for name in "abcd"]
+    data = parts(phase=phases) | {"output": {"rows": 16, "particles": 16}, "numerics": {"time_step": "2e-5 s"}}
+    outcome = run(write_case(data, tmp_path), engine="yade", out=tmp_path / "out")
+    assert outcome.plan.steps == 400 and {*outcome.results.particles["step"]} == {
+        *range(0, 101, 25),
+        *range(300, 401, 25),
+    }
 
 
 BODIES = """x,y,z,radius,vx,vy,vz
@@ -88,7 +116,7 @@ TWO = [FALL, FALL | {"name": "on"}]
         ({"fill": [BED | {"rate": "3 kHz"}]}, "scene.fill.bed.rate = 3000.0"),
         ({"fill": [BED, BED | {"name": "more", "phase": "on"}], "phase": TWO}, "scene.fill.more.phase = 'on'"),
         ({"body": [BALL], "phase": TWO}, "scene.body.ball.phase = 'on'"),
-        ({"wall": [FLOOR | {"phases": ["fall"]}]}, "scene.wall.floor.phases"),
+        ({"wall": [FLOOR | {"phases": ["on"]}], "phase": TWO}, "scene.wall.floor.phases = ['on']"),
         ({"phase": [FALL | {"until": {"count": 3}}]}, "scene.phase.fall.until"),
         ({"wall": [BOX, PLATE], "phase": [FALL | {"move": [SHAKE]}]}, "scene.phase.fall.move of lid = 'press'"),
         ({"wall": [BEATER | {"stress": True}]}, "scene.wall.beater.stress"),

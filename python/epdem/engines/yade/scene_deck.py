@@ -5,7 +5,7 @@ from dataclasses import dataclass
 from itertools import combinations_with_replacement
 
 from ...base import rendering as decks
-from ...case.parts import Parts
+from ...case.kinds import Compaction, Settle
 from ...case.walls import Limits
 from ...errors import CaseError
 from ...scenes import placement
@@ -14,7 +14,7 @@ from ...yade.deck_modules import cone
 from . import classes as words
 from .classes import Functors, Material, PairValue, of_pairs
 from .deck import strength_values
-from .scene_parts import EDGES, Motion, facets, loads, motions
+from .scene_parts import EDGES, Motion, facets, loads, motions, removed, unrecorded
 from .scene_parts import files as facet_files
 from .scene_parts import refuse as refuse_parts
 
@@ -42,7 +42,7 @@ class Wall:
 class Phase:
     """A part of the run; `plate` is the velocity of the moving wall along z [m/s], 0 where none begins to move.
 
-    time_step: its own [s]. motions: of walls of triangles in it.
+    time_step: its own [s]. motions: of walls of triangles in it. removed: walls that disappear at its begin.
     """
 
     name: str
@@ -50,6 +50,7 @@ class Phase:
     plate: float
     time_step: float | None
     motions: tuple[Motion, ...]
+    removed: list[str]
 
 
 def works(p: ScenePlan) -> dict[str, list[str]]:
@@ -69,9 +70,9 @@ def works(p: ScenePlan) -> dict[str, list[str]]:
 
 def refuse(p: ScenePlan, *, classes: bool) -> None:
     """Raise CaseError for parts of a scene that YADE does not have; classes: whether epdem_yade is built."""
-    m, out, s = p.model, p.output, p.case.scene
-    if isinstance(s, Parts):
-        refuse_parts(p, s)
+    m, out = p.model, p.output
+    if _parts(p):
+        refuse_parts(p, p.scene)
     rolling = m.rolling and m.rolling.model
     unknown: dict[str, tuple[object, str]] = {
         "scene.rate": (next((f.rate for f in p.insertions if f.rate), None), "all spheres are there from the start"),
@@ -105,7 +106,7 @@ def notes(p: ScenePlan, *, classes: bool) -> list[str]:
 
 
 def _parts(p: ScenePlan) -> bool:
-    return isinstance(p.case.scene, Parts)
+    return not isinstance(p.case.scene, Settle | Compaction)
 
 
 def _materials(p: ScenePlan, friction: Square, *, classes: bool) -> tuple[Material, ...]:
@@ -153,7 +154,7 @@ def _functors(p: ScenePlan, friction: Square) -> Functors:
 def _walls(p: ScenePlan) -> tuple[Wall, ...]:
     xlo, xhi, ylo, yhi, *_ = p.box
     lx, ly = xhi - xlo, yhi - ylo
-    planes = [(w.name, "xyz".index(w.axis), w.at) for w in p.scene.planes]
+    planes = [(w.name, "xyz".index(w.axis), w.at) for w in (*p.scene.planes, *p.scene.gates)]
     if not _parts(p):
         planes += [(name, 2, float(triangles[0, 0, 2])) for name, triangles in p.triangles.items()]
 
@@ -198,8 +199,9 @@ def deck(p: ScenePlan, *, classes: bool) -> decks.Deck:
                 0.0 if _parts(p) else phase.plate,
                 (phase.case.time_step or p.time_step) if any(x.case.time_step for x in p.phases) else None,
                 moved,
+                gone,
             )
-            for phase, begin, end, moved in zip(p.phases, ends[:-1], ends[1:], moves, strict=True)
+            for phase, begin, end, moved, gone in zip(p.phases, ends[:-1], ends[1:], moves, removed(p), strict=True)
         ),
         sampling=1 if p.plates or p.writes_wall_power else p.sampling if p.output.loads else p.every,
         spins=m.spins,
@@ -210,6 +212,7 @@ def deck(p: ScenePlan, *, classes: bool) -> decks.Deck:
         works=[*works(p)] if classes else [],  # attributes of EpState in the frames
         moving=any(m.axis or m.amplitude for moved in moves for m in moved),
         wall="facet" if p.scene.periodic else "wall",  # YADE's infinite one does not work in a periodic cell
+        unrecorded=unrecorded(p),
         parts=_parts(p),
         facets=facets(p) if _parts(p) else (),
         loads=loads(p),

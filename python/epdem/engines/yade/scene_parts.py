@@ -3,6 +3,7 @@
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 
 from ...base import rendering as decks
 from ...case.motions import LinearMove, Move, PressMove, RotateMove, VibrateMove
@@ -56,9 +57,8 @@ def refuse(p: ScenePlan, s: Parts) -> None:
         **{f"{f.key}.rate": f.rate for f in p.insertions},
         **{f"{f.key}.phase": f.phase != first and f.phase for f in p.insertions},
         **{f"scene.body.{b.name}.phase": b.phase for b in p.scene.later},
-        **{f"scene.wall.{w.name}.phases": True for w in p.scene.gates},
+        **{f"scene.wall.{w.name}.phases": _comes(p, w.name) and w.phases for w in p.scene.gates},
         **{f"scene.phase.{phase.name}.until": phase.case.condition is not None for phase in p.phases},
-        **{f"scene.phase.{phase.name}.record": not phase.case.record for phase in p.phases},
         **{f"scene.wall.{name}.stress": mesh.stress for name, mesh in p.scene.meshes.items()},
         **{f"scene.wall.{name}.wear": mesh.wear for name, mesh in p.scene.meshes.items()},
     }
@@ -73,6 +73,27 @@ def refuse(p: ScenePlan, s: Parts) -> None:
         if value:
             shown = "" if value is True else f" = {value!r}"
             raise CaseError(f"{place}{shown}: a scene in YADE does not have it; remove it or use --engine liggghts")
+
+
+def _comes(p: ScenePlan, gate: str) -> bool:
+    """Whether a wall that is present in some phases is absent before one of them."""
+    present = [gate in phase.gates for phase in p.phases]
+    return present != sorted(present, reverse=True)
+
+
+def removed(p: ScenePlan) -> list[list[str]]:
+    """The walls that disappear at the begin of each phase."""
+    gates = [(), *(phase.gates for phase in p.phases)]
+    return [[name for name in old if name not in new] for old, new in pairwise(gates)]
+
+
+def unrecorded(p: ScenePlan) -> list[tuple[int, int]]:
+    """(step, step) between which no frames are written."""
+    found: list[tuple[int, int]] = []
+    for begin, phase in zip([0, *(phase.end for phase in p.phases)], p.phases, strict=False):
+        if not phase.case.record:
+            found.append((found.pop()[0] if found and found[-1][1] == begin else begin, phase.end))
+    return found
 
 
 def facets(p: ScenePlan) -> tuple[Facets, ...]:

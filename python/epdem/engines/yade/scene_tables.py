@@ -23,7 +23,7 @@ def _frames(p: ScenePlan, folder: Path, kind: str, every: int, names: list[str],
     missing or not whole.
     """
     frames = []
-    for step in range(0, p.steps + 1, every):
+    for step in p.frame_steps(every):
         path = folder / f"{kind}.{step}.npy"
         try:
             values = np.load(path)
@@ -86,8 +86,8 @@ def _contacts(p: ScenePlan, folder: Path, spheres: pd.DataFrame) -> pd.DataFrame
     attached = raw["attached"] > 0 if p.model.adheres else False
     raw = raw[(raw["overlap"] >= 0) | attached].reset_index(drop=True)  # what is only near is no contact yet
     triangles = [name for name, triangles in p.triangles.items() for _ in triangles]
-    of_meshes = triangles if isinstance(p.case.scene, Parts) else [*p.scene.meshes]
-    walls = np.array(["", *(w.name for w in p.scene.planes), *of_meshes])
+    of_meshes = [*p.scene.meshes] if p.plates else triangles
+    walls = np.array(["", *(w.name for w in (*p.scene.planes, *p.scene.gates)), *of_meshes])
     last = p.count + len(walls) - 2
     bodies = raw[["i", "j"]].to_numpy(float)
     if not ((bodies >= 0) & (bodies <= last) & (bodies == np.floor(bodies))).all():

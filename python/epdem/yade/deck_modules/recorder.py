@@ -58,6 +58,7 @@ class Recorder:
     load      (column, body, sign): the mean of sign times the body's force along z since the last row; None: none
     loads     (wall, its bodies, origin) of walls: means of their force and, where an origin [m] is given, torque
     moving    bodies of walls that move: the mean of the power that they give, wall_power; none: no such column
+    unrecorded  (step, step) between which there are no frames and tables
     works     attributes of EpState in the frames; after frictionWork stands the elastic energy of friction
     """
 
@@ -78,6 +79,7 @@ class Recorder:
         loads: Sequence[tuple[str, Sequence[int], Sequence[float] | None]] = (),
         moving: Sequence[int] = (),
         works: Sequence[str] = (),
+        unrecorded: Sequence[tuple[int, int]] = (),
     ):
         self.folder, self.spheres, self.contacts, self.low, self.high = folder, spheres, contacts, low, high
         self.every, self.frames, self.spins, self.tables, self.load = every, frames, spins, tables, load
@@ -85,7 +87,7 @@ class Recorder:
         self.mass = np.array([s.mass for s in self.states])
         self.free = np.array([[not s.blockedDOFs] for s in self.states])
         self.gravity = np.array([0.0, 0.0, fall])
-        self.loads, self.moving, self.works = loads, moving, works
+        self.loads, self.moving, self.works, self.unrecorded = loads, moving, works, unrecorded
         if works:
             O.trackEnergy = True
         kinds = [f"{name}_{kind}" for name, _, origin in loads for kind in KINDS[: 1 if origin is None else 2]]
@@ -105,6 +107,8 @@ class Recorder:
             self._sums, self._samples = self._sums + self.on_walls(), self._samples + (not self.load)
         if O.iter % self.every == 0:
             self.row()
+        if any(begin < O.iter < end for begin, end in self.unrecorded):
+            return
         if self.frames and O.iter % self.frames == 0:
             self.frame()
         if self.tables and O.iter % self.tables == 0:
