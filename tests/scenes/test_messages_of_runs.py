@@ -18,6 +18,7 @@ from epdem.engines.lammps import launcher
 from epdem.engines.lammps.engine import Lammps
 from epdem.engines.liggghts import dump, own_template, scene_tables, session, tune
 from epdem.engines.liggghts import engine as liggghts
+from epdem.engines.liggghts.launcher import OUT
 from epdem.engines.yade import scene_tables as yade_tables
 from epdem.errors import CaseError, EngineError
 from epdem.impacts.engine import Trajectory
@@ -80,7 +81,7 @@ def test_dumps_of_impacts(tmp_path, monkeypatch):
 
 def test_frames_and_rows_of_scenes(tmp_path):
     p, q = planned("settle"), planned("yade_settle")
-    out = tmp_path / scene_tables.OUT
+    out = tmp_path / OUT
     out.write_text("")
     with says("no thermo rows; the run ended before its first step"):
         scene_tables.rows(p, out)

@@ -9,6 +9,7 @@ import numpy as np
 import pytest
 
 from epdem.case.toml import read_toml
+from epdem.engines.lammps import launcher
 from epdem.errors import CaseError
 from epdem.verification.motion import paths as motions
 from epdem.verification.motion.compare import ENGINES, compare, touch_of
@@ -105,9 +106,11 @@ def test_the_error_of_a_rigid_rotation_is_of_first_order_in_the_step(monkeypatch
     assert [errors[0] / errors[1], errors[1] / errors[2]] == pytest.approx([2, 2], abs=0.05)
 
 
+LAWS = ("hertz", "thornton", "johnson", "cavity")
+
+
 def test_the_engines_agree_on_every_law(tmp_path):
-    laws = ("hertz", "thornton", "johnson", "cavity")
-    outcome = compare(CASES / "oblique_steel.toml", laws=laws, out=tmp_path)
+    outcome = compare(CASES / "oblique_steel.toml", laws=LAWS, out=tmp_path)
     assert outcome.passed and len(outcome.rows) == 2 * 6 * 4
     found = outcome.rows[outcome.rows["engine"] == "liggghts"]
     assert found[["normal", "force", "torque"]].to_numpy().max() < 1e-11
@@ -126,6 +129,14 @@ def test_the_engines_agree_on_adhesion(law, tmp_path):
     assert outcome.passed
     loads = json.loads((tmp_path / f"out/{law}/liggghts/normal_loading/motion.json").read_text())
     assert (np.array(loads["F_i"]) @ motions.NORMAL).min() < -1.0  # it pulls
+
+
+@pytest.mark.skipif(launcher.missing() is not None, reason=str(launcher.missing()))
+def test_lammps_agrees_on_two_laws(tmp_path):
+    outcome = compare(CASES / "oblique_steel.toml", laws=LAWS[1:3], engines=["embedded", "lammps"], out=tmp_path)
+    assert outcome.passed and len(outcome.rows) == 2 * 6 * 2
+    found = outcome.rows[outcome.rows["engine"] == "lammps"]
+    assert found[["normal", "force", "torque"]].to_numpy().max() < 1e-11
 
 
 @pytest.mark.yade

@@ -20,12 +20,14 @@ from ...impacts.engine import check_law, require
 from ...impacts.experiment import experiment
 from ...theory.pair import sphere_mass
 from .embedded import EmbeddedMotions
+from .lammps import LammpsMotions
 from .liggghts import LiggghtsMotions
 from .paths import MOTIONS, objectivity, rigid_rotation
 from .prescribed import Loads, Motion, MotionEngine, Touch, read, refuse, text, unit_normals
 from .yade import YadeMotions
 
-ENGINES: dict[str, type[MotionEngine]] = {tool.name: tool for tool in (EmbeddedMotions, LiggghtsMotions, YadeMotions)}
+_TOOLS = (EmbeddedMotions, LiggghtsMotions, YadeMotions, LammpsMotions)
+ENGINES: dict[str, type[MotionEngine]] = {tool.name: tool for tool in _TOOLS}
 DEFAULT = (next(iter(ENGINES)), DEFAULT_ENGINE)
 TABLE = "motions.csv"
 FRICTION = 0.3  # of a case that has none

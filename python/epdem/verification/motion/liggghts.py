@@ -58,19 +58,24 @@ def deck(touch: Touch, motion: Motion) -> decks.Deck:
 
 def files(touch: Touch, motion: Motion) -> dict[str, str]:
     """Deck, start and steps of a motion by name; they run by hand in one folder. Raises CaseError."""
-    d, x = deck(touch, motion), touch.experiment
+    d = deck(touch, motion)
+    return {
+        DECK: decks.render("verification/liggghts/motion.in.j2", deck=d, steps=STEPS),
+        STEPS: "".join(_steps(motion)),
+        DATA: data(touch, motion, len(d.types)),
+    }
+
+
+def data(touch: Touch, motion: Motion, types: int) -> str:
+    """The data file of both spheres at the start; the target is of the last type."""
+    x = touch.experiment
     reach = 4 * max(touch.radii)
     box = [(float(a.min()) - reach, float(a.max()) + reach) for a in motion.place.reshape(-1, 3).T]
     spheres = [
         data_file.Spheres(n, 2 * b.radius, b.density, motion.place[:1, k], motion.velocity[:1, k])
-        for k, (b, n) in enumerate(((x.body, 1), (x.target, len(d.types))))
+        for k, (b, n) in enumerate(((x.body, 1), (x.target, types)))
     ]
-    text = data_file.text(motion.name, len(d.types), box, spheres)
-    return {
-        DECK: decks.render("verification/liggghts/motion.in.j2", deck=d, steps=STEPS),
-        STEPS: "".join(_steps(motion)),
-        DATA: text,
-    }
+    return data_file.text(motion.name, types, box, spheres)
 
 
 def _steps(motion: Motion) -> Iterator[str]:
