@@ -98,7 +98,7 @@ def _from_impacts(
 
     hv, hb, dent_ratio = hardness.values()
     if (bool(e_n) + measured + (hv is not None or hb is not None)) != 1:
-        raise CaseError("give one kind of measurement: --e-n with --speed, --measured, --hv, or --hb")
+        raise CaseError("give one measurement: --e-n with --speed, --measured, --hv, or --hb")
     if hb is None:
         refuse(case, "it belongs to --hb", dent_ratio=dent_ratio)
     if not e_n:
