@@ -94,17 +94,18 @@ class Spring:
         return -(stiffness * self.stretch)[:, None]
 
 
-def rebound(law, psi_1, speed, *, steps, nodes=3, phases=8, damping=0.0):
+def rebound(law, psi_1, speed, *, steps, nodes=3, phases=8, damping=0.0, loading_flatness=None):
     """psi_2, shape (len(psi_1), phases), of spheres on a plane by velocity Verlet; work lost [J]; largest T/(mu F).
 
     As an engine integrates: the slip of a step is that of the speed half a step before its end. damping: gamma_t over
-    sqrt(k_t m), k_t = 8 G* a. nodes = 0: one spring.
+    sqrt(k_t m), k_t = 8 G* a. nodes = 0: one spring. loading_flatness: that of a contact that grows to an overlap, in
+    place of the law's; 0 below.
     """
     psi_1, phase = np.broadcast_arrays(np.array(psi_1, float)[:, None], (np.arange(phases) + 0.5) / phases)
     dt = float(restitution.impact(law, m_star=M, speed=speed).contact_time) / steps
     alpha, v, slip = -phase.ravel() * speed * dt, np.full(phase.size, speed), MU / KAPPA * speed * psi_1.ravel()
     contacts = (
-        Contacts(phase.size, nodes=nodes, flattens=law.name == "cavity", damped=damping > 0)
+        Contacts(phase.size, nodes=nodes, flattens=law.name == "cavity" or bool(loading_flatness), damped=damping > 0)
         if nodes
         else (Spring(phase.size))
     )
@@ -120,9 +121,10 @@ def rebound(law, psi_1, speed, *, steps, nodes=3, phases=8, damping=0.0):
         move = np.zeros((phase.size, 3))
         move[:, 0] = dt * slip
         gamma = damping * np.sqrt(8 * G_STAR * a * M)
-        T = contacts.move(move, load=F, a=a, a_peak=law.radius(safe), flatness=law.flatness(safe), damping=gamma / dt)[
-            :, 0
-        ]
+        a_peak, tau = law.radius(safe), law.flatness(safe)
+        if loading_flatness:
+            a_peak, tau = a, np.where(alpha >= top, loading_flatness(safe), 0.0)
+        T = contacts.move(move, load=F, a=a, a_peak=a_peak, flatness=tau, damping=gamma / dt)[:, 0]
         lost += contacts.dissipated
         most = max(most, np.abs(T / (MU * np.where(F > 0, F, 1))).max())
         v, slip = v - dt / 2 * F / M, slip + dt / 2 * 3.5 / M * T
