@@ -19,7 +19,6 @@ import resource
 import sys
 import tempfile
 import time
-from dataclasses import fields, replace
 from pathlib import Path
 from unittest.mock import patch
 
@@ -30,7 +29,7 @@ from epdem.base.files import write_texts
 from epdem.case.scene import load
 from epdem.engines.liggghts import launcher, scene_deck, stl
 from epdem.engines.liggghts.properties import per_pair
-from epdem.scenes.plan import ScenePlan, plan
+from epdem.scenes.plan import plan
 
 # processor time over that of hertz, over that with AVX2, and over that of the launcher before
 LIMITS = {
@@ -42,28 +41,30 @@ LIMITS = {
 ENVIRONMENT = {"hertz": {"EPDEM_LOOP": "generic"}, "ep": {}, "ep, AVX2": {"EPDEM_SIMD": "avx2"}}
 
 
-class WithoutWork(ScenePlan):
-    """The plan of a scene whose contacts have no energies."""
-
-    writes_plastic_work = writes_friction_work = writes_adhesive_work = False
-
-
 def files(case: Path, model: str) -> dict[str, str]:
     """The deck of a case with its own law, or with LIGGGHTS's hertz."""
     p = plan(load(case))
     if model != "hertz":
         return scene_deck.files(p)
-    d = scene_deck.deck(WithoutWork(**{field.name: getattr(p, field.name) for field in fields(p)}))
+    d = scene_deck.deck(p)
     properties = d.properties
     if not any(x.name == "coefficientRestitution" for x in properties):
         properties = (*properties, per_pair("coefficientRestitution", d.n_types, 0.5, "-"))
-    settings = tuple(s for s in d.settings if not s.startswith("computeContactStrain"))
     columns = scene_deck.contact_columns(0, 0)
-    columns_of = dict(contact_columns=columns, wall_contact_columns=columns, history_columns=())
-    words = tuple(word for word in d.row_words if not word.startswith("c_ratio"))
-    d = replace(d, model="hertz", properties=properties, settings=settings, yields=False, row_words=words, **columns_of)
+    of_hertz = d.but(
+        model="hertz",
+        properties=properties,
+        settings=tuple(s for s in d.settings if not re.match("computePlasticWork|computeContactStrain", s)),
+        row_words=tuple(word for word in d.row_words if not word.startswith("c_ratio")),
+        contact_columns=columns,
+        wall_contact_columns=columns,
+        history_columns=(),
+        yields=False,
+        writes_plastic_work=False,
+        writes_friction_work=False,
+    )
     names = {"in.scene": "liggghts/scene.in.j2", "setup.in": "liggghts/scene_setup.in.j2"}
-    texts = {name: rendering.render(template, deck=d) for name, template in names.items()}
+    texts = {name: rendering.render(template, deck=of_hertz) for name, template in names.items()}
     texts["setup.in"] = re.sub(r"^compute ratio .*\n", "", texts["setup.in"], flags=re.MULTILINE)
     return texts | {f"{name}.stl": stl.text(name, triangles) for name, triangles in p.triangles.items()}
 
