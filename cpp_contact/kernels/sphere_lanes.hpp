@@ -37,27 +37,31 @@ void half_step(const HalfStep& s) {
   }
 }
 
-/// The next candidates, in the lanes behind the last of them that one again.
+/// The next of n candidates; the lanes behind the last repeat it and are not valid.
 struct Candidates {
-  int index[lane_count];
-  Vec<Lanes> x;
-  Lanes radius;
+  int repeated[lane_count];
+  const int* index;
+  Columns at;  // positions and radii
+  Mask valid;
 
-  EPDEM_INLINE Candidates(const NearTest& t, const int* candidates, int n) {
-    for (int l = 0; l < lane_count; ++l) {
-      index[l] = candidates[l < n ? l : n - 1];
-      radius[l] = t.radius[index[l]];
+  EPDEM_INLINE Candidates(const NearTest& t, const int* candidates, int n) : index(candidates) {
+    static constexpr double lanes[] = {0, 1, 2, 3, 4, 5, 6, 7};
+    if (n < lane_count) {
+      for (int l = 0; l < lane_count; ++l) repeated[l] = candidates[l < n ? l : n - 1];
+      index = repeated;
     }
-    const Columns c =
-        columns([&](int l) __attribute__((always_inline)) { return load<Row>(t.x + 3 * long(index[l])); });
-    x = {c.a, c.b, c.c};
+    valid = load<Lanes>(lanes) < constant<Lanes>(n);
+    at = columns([&](int l)
+                     __attribute__((always_inline)) { return load<Row>(t.spheres + 4 * static_cast<long>(index[l])); });
   }
 
-  /// Writes those of the mask, at most n; their number.
-  EPDEM_INLINE int keep(Mask mask, int n, int* found) const {
-    int count = 0;
-    for (int l = 0; l < lane_count && l < n; ++l) {
-      found[count] = index[l];
+  /// Writes those of the mask; their number.
+  EPDEM_INLINE int keep(Mask mask, int* found) const {
+    mask &= valid;
+    int count = 0, of[lane_count];
+    for (int l = 0; l < lane_count; ++l) of[l] = index[l];  // `found` may be the candidates
+    for (int l = 0; l < lane_count; ++l) {
+      found[count] = of[l];
       count -= static_cast<int>(mask[l]);
     }
     return count;
@@ -65,29 +69,30 @@ struct Candidates {
 };
 
 int near_sphere(const NearTest& t, int of, const int* candidates, int n, int* found) {
-  const double* const at = t.x + 3 * long(of);
-  const Vec<Lanes> x{constant<Lanes>(at[0]), constant<Lanes>(at[1]), constant<Lanes>(at[2])};
+  const double* const s = t.spheres + 4 * static_cast<long>(of);
   int count = 0;
   for (int k = 0; k < n; k += lane_count) {
     const Candidates c(t, candidates + k, n - k);
-    const Lanes reach = (t.radius[of] + c.radius) * t.factor + t.skin;
-    Lanes index;
-    for (int l = 0; l < lane_count; ++l) index[l] = c.index[l];
-    const Lanes dx = x.x - c.x.x, dy = x.y - c.x.y, dz = x.z - c.x.z;
-    const Mask near = dx * dx + dy * dy + dz * dz <= reach * reach;
-    count += c.keep(near & (index > constant<Lanes>(of)), n - k, found + count);
+    const Lanes dx = s[0] - c.at.a, dy = s[1] - c.at.b, dz = s[2] - c.at.c;
+    const Lanes reach = (s[3] + c.at.d) * t.factor + t.skin;
+    count += c.keep(dx * dx + dy * dy + dz * dz <= reach * reach, found + count);
   }
-  return count;
+  int above = 0;
+  for (int k = 0; k < count; ++k) {
+    found[above] = found[k];
+    above += found[k] > of;
+  }
+  return above;
 }
 
 int near_triangle(const NearTest& t, const TrianglePlanes& planes, const int* candidates, int n, int* found) {
   int count = 0;
   for (int k = 0; k < n; k += lane_count) {
     const Candidates c(t, candidates + k, n - k);
-    const Lanes reach = c.radius * t.factor + t.skin;
+    const Lanes reach = c.at.d * t.factor + t.skin;
     const auto height = [&](int plane) __attribute__((always_inline)) {
       const double *const p = planes.point[plane], *const normal = planes.normal[plane];
-      return normal[0] * (c.x.x - p[0]) + normal[1] * (c.x.y - p[1]) + normal[2] * (c.x.z - p[2]);
+      return normal[0] * (c.at.a - p[0]) + normal[1] * (c.at.b - p[1]) + normal[2] * (c.at.c - p[2]);
     };
     Mask near = fabs(height(0)) <= reach;
     if (!any(near)) continue;
@@ -95,7 +100,7 @@ int near_triangle(const NearTest& t, const TrianglePlanes& planes, const int* ca
       const Lanes beyond = height(edge);
       near &= (beyond <= 0.0) | (beyond * beyond <= reach * reach);
     }
-    count += c.keep(near, n - k, found + count);
+    count += c.keep(near, found + count);
   }
   return count;
 }

@@ -16,7 +16,7 @@ struct HalfStep {
 
 /// What is nearer to a sphere than radius * factor + skin is near; of two spheres, with the sum of their radii.
 struct NearTest {
-  const double *x, *radius;  // rows of three; one number behind the last row can be read
+  const double* spheres;  // rows of position and radius
   double factor, skin;
 };
 
@@ -29,7 +29,7 @@ struct SphereKernels {
   /// v += dt_force F / (mass_factor m) and omega += dt_torque T / (R^2 m), then x += dt v.
   void (*half_step)(const HalfStep&);
   /// Writes those of n candidates that are near, in their order, and returns their number: candidates above sphere
-  /// `of`, or those near a triangle as its planes tell. `found` may be the candidates themselves.
+  /// `of`, or those near a triangle as its planes tell. `found` may be the candidates and has room for one more.
   int (*near_sphere)(const NearTest&, int of, const int* candidates, int n, int* found);
   int (*near_triangle)(const NearTest&, const TrianglePlanes&, const int* candidates, int n, int* found);
 };

@@ -8,9 +8,9 @@
 #include "fix_contact_history.h"
 #include "fix_neighlist_mesh.h"
 #include "loop.hpp"
+#include "near.hpp"
 #include "neigh_list.h"
 #include "replaced.hpp"
-#include "triangles.hpp"
 
 #ifdef EPDEM_BUILT_FOR
 
@@ -66,27 +66,45 @@ std::vector<Row> rows_of(const LAMMPS_NS::NeighList& list) {
   return rows;
 }
 
-/// Whether LIGGGHTS's own functions search: they are chosen, or no number can be read behind the last sphere.
-bool searches_itself(const LAMMPS_NS::Atom& atom) {
-  return generic_loop() || atom.nlocal == 0 || atom.nlocal + atom.nghost >= atom.nmax || !atom.radius;
-}
+/// Whether LIGGGHTS's own functions search.
+bool searches_itself(const LAMMPS_NS::Atom& atom) { return generic_loop() || atom.nlocal == 0 || !atom.radius; }
 
-/// Room for all spheres in bins.
-int* scratch() {
-  static std::vector<int> room;
-  if (room.size() < bins.members.size()) room.resize(bins.members.size());
-  return room.data();
-}
+/// The spheres of some bins, one bin after the other.
+struct Candidates {
+  const int *const start = bins.start.data(), *const members = bins.members.data();
+  int* const spheres = room();  // eight more can be read
+  int n = 0;
 
-/// Appends the spheres of bins first to last.
-void append(int first, int last, int* spheres, int& n) {
-  const int begin = bins.start[first], count = bins.start[last + 1] - begin;
-  for (int k = 0; k < count; k += 8)  // nearly always one turn
-    std::memcpy(spheres + n + k, bins.members.data() + begin + k, 8 * sizeof(int));
-  n += count;
-}
+  void add(int first, int last) {
+    const int begin = start[first], count = start[last + 1] - begin;
+    for (int k = 0; k < count; k += 8)  // nearly always one turn
+      std::memcpy(spheres + n + k, members + begin + k, 8 * sizeof(int));
+    n += count;
+  }
+
+ private:
+  static int* room() {
+    static std::vector<int> all;
+    if (all.size() < bins.members.size()) all.resize(bins.members.size());
+    return all.data();
+  }
+};
 
 }  // namespace
+
+NearTest near_test(const LAMMPS_NS::Atom& atom, double factor, double skin) {
+  static std::vector<double> spheres;
+  const int n = atom.nlocal + atom.nghost;
+  spheres.resize(4 * static_cast<std::size_t>(n));
+  const double *const x = atom.x[0], *const radius = atom.radius;
+  double* row = spheres.data();
+  for (int i = 0; i < n; ++i, row += 4) {
+    for (int k = 0; k < 3; ++k) row[k] = x[3 * i + k];
+    row[3] = radius[i];
+  }
+  return {spheres.data(), factor, skin};
+}
+
 }  // namespace epdem::liggghts::loop
 
 namespace LAMMPS_NS {
@@ -105,9 +123,9 @@ namespace loop = epdem::liggghts::loop;
   if (exclude || loop::searches_itself(*atom)) return original(this, list);
   bin_atoms();
   const std::vector<loop::Row> rows = loop::rows_of(*list);
-  const loop::NearTest test{atom->x[0], atom->radius, contactDistanceFactor, skin};
+  const loop::NearTest test = loop::near_test(*atom, contactDistanceFactor, skin);
   const auto near = loop::sphere_kernels(lmp).near_sphere;
-  int* const found = loop::scratch();
+  loop::Candidates found;
 
   FixContactHistory* const history = list->fix_history;
   NeighList* const contacts = history ? list->listgranhistory : nullptr;
@@ -120,13 +138,13 @@ namespace loop = epdem::liggghts::loop;
   const double* const radius = atom->radius;
   const int count = includegroup ? atom->nfirst : atom->nlocal, values = contacts ? contacts->dnum : 0;
   for (int i = 0; i < count; ++i) {
-    int n = 0;
     const int bin = loop::bins.bin_of[i];
-    for (const loop::Row& row : rows) loop::append(bin + row.first, bin + row.last, found, n);
-    n = near(test, i, found, n, found);
+    found.n = 0;
+    for (const loop::Row& row : rows) found.add(bin + row.first, bin + row.last);
+    const int n = near(test, i, found.spheres, found.n, found.spheres);
     int* const neighbours = list->ipage->vget();
     if (!neighbours || n > oneatom) error->one(FLERR, "Neighbor list overflow, boost neigh_modify one");
-    std::copy_n(found, n, neighbours);
+    std::copy_n(found.spheres, n, neighbours);
     list->ilist[i] = i;
     list->firstneigh[i] = neighbours;
     list->numneigh[i] = n;
@@ -159,8 +177,7 @@ namespace loop = epdem::liggghts::loop;
 [[gnu::visibility("default")]] void FixNeighlistMesh::handleTriangle(int triangle) {
   static const auto original = loop::next<FixNeighlistMesh*, int>("_ZN9LAMMPS_NS16FixNeighlistMesh14handleTriangleEi");
   if (atom->ellipsoid || loop::searches_itself(*atom)) return original(this, triangle);
-  int* const found = loop::scratch();
-  int n = 0;
+  loop::Candidates found;
   if (changingMesh || changingDomain) {
     int low[3], high[3];
     getBinBoundariesForTriangle(triangle, low[0], high[0], low[1], high[1], low[2], high[2]);
@@ -168,17 +185,19 @@ namespace loop = epdem::liggghts::loop;
       for (int iy = low[1]; iy <= high[1]; ++iy)
         for (int iz = low[2]; iz <= high[2]; ++iz) {
           const int bin = iz * mbiny * mbinx + iy * mbinx + ix;
-          if (bin >= 0 && bin < maxhead) loop::append(bin, bin, found, n);
+          if (bin >= 0 && bin < maxhead) found.add(bin, bin);
         }
   } else {
-    for (const int bin : triangles[triangle].bins) loop::append(bin, bin, found, n);
+    for (const int bin : triangles[triangle].bins) found.add(bin, bin);
   }
-  const loop::NearTest test{x[0], r, neighbor->contactDistanceFactor, skin};
-  n = loop::sphere_kernels(lmp).near_triangle(test, loop::Triangles::planes(*mesh_, triangle), found, n, found);
+  static loop::NearTest test;  // of all triangles
+  if (triangle == 0) test = loop::near_test(*atom, neighbor->contactDistanceFactor, skin);
+  const loop::TrianglePlanes planes = loop::Triangles::planes(*mesh_, triangle);
+  const int n = loop::sphere_kernels(lmp).near_triangle(test, planes, found.spheres, found.n, found.spheres);
   std::vector<int>& contacts = triangles[triangle].contacts;
   contacts.clear();
   for (int k = 0; k < n; ++k) {
-    const int i = found[k];
+    const int i = found.spheres[k];
     if ((i > atom->nlocal && !domain->is_periodic_ghost(i)) || !(atom->mask[i] & groupbit_wall_mesh)) continue;
     contacts.push_back(i);
     fix_nneighs_->set_vector_atom_int(i, fix_nneighs_->get_vector_atom_int(i) + 1);

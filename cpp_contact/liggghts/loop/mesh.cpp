@@ -11,8 +11,8 @@
 
 #include "fix_contact_history_mesh.h"
 #include "fix_neighlist_mesh.h"
+#include "near.hpp"
 #include "replaced.hpp"
-#include "triangles.hpp"
 #include "wall.hpp"
 
 #ifdef EPDEM_BUILT_FOR
@@ -41,7 +41,7 @@ class ReducedNeighborLists {
     std::vector<LAMMPS_NS::TriangleNeighlist>& triangles = Lists::of(lists);
     const int count = std::min(mesh.sizeLocal() + mesh.sizeGhost(), static_cast<int>(triangles.size()));
     if (atom.nlocal == 0) return;
-    const NearTest test{atom.x[0], atom.radius, 1.0 + 1e-6, 0.0};  // far above round-off
+    const NearTest test = near_test(atom, 1.0 + 1e-6, 0.0);  // far above round-off
     for (int t = 0; t < count; ++t) {
       std::vector<int>& all = triangles[t].contacts;
       if (all.empty()) continue;
@@ -114,7 +114,7 @@ namespace loop = epdem::liggghts::loop;
   static const auto original = loop::next<FixWallGran*, int>("_ZN9LAMMPS_NS11FixWallGran15post_force_meshEi");
   const loop::ScopedWall work(impl, *this);
   if (!loop::active_wall || loop::generic_loop() || neighbor->contactDistanceFactor != 1.0 || !atom->sphere_flag ||
-      atom->shapetype_flag || atom->nlocal + atom->nghost >= atom->nmax)
+      atom->shapetype_flag)
     return original(this, vflag);
   loop::ReducedNeighborLists near;
   for (int m = 0; m < n_FixMesh_; ++m) {
