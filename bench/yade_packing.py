@@ -54,7 +54,7 @@ def scene(folder: Path, count: int) -> Scene:
             "room": {"x": span, "y": span, "z": ["0 m", f"{top} m"]},
             "wall": walls,
             "fill": [{"name": "table", "file": str(folder / "spheres.csv"), "material": "glass"}],
-            "phase": [{"name": "fall", "duration": "150 ms"}],
+            "phase": [{"name": "fall", "duration": "60 ms"}],
         },
         "output": {"rows": 30, "particles": 6, "energy": True},
         "numerics": {"time_step": "1e-5 s"},
