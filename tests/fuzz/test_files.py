@@ -52,8 +52,9 @@ def whole(tmp_path_factory):
     """results.h5 of impacts and of a scene, as bytes, with what reads each."""
     folder = tmp_path_factory.mktemp("whole")
     run(CASES / "two_materials.toml", engines=[engine("embedded")], out=folder / "impacts")
-    tables = scene_engine("liggghts").read(stored_plan("settle"), STORED / "settle")
-    scene_store.write(folder / "scene.h5", SceneResults("x", {"case": "x"}, tables, {"in.scene": "run 1"}))
+    p = stored_plan("settle")
+    tables = scene_engine("liggghts").read(p, STORED / "settle")
+    scene_store.write(folder / "scene.h5", p, SceneResults("x", {"case": "x"}, tables, {"in.scene": "run 1"}))
     return {
         "impacts": ((folder / "impacts/results.h5").read_bytes(), store.read),
         "scene": ((folder / "scene.h5").read_bytes(), scene_store.read),

@@ -82,7 +82,7 @@ def test_programs_files_and_commands_of_blocks_that_run_elsewhere_exist():
             }
             known[".venv/bin/python"] = lambda r: all((ROOT / w).exists() for w in r if w.endswith(".py"))
             known["python"] = known[".venv/bin/python"]
-            others = ("epdem-liggghts", "mpirun", "liggghts", "pip", "apt-get", "cmake", "yade")
+            others = ("epdem-liggghts", "mpirun", "liggghts", "pip", "apt-get", "cmake", "yade", "podman", "apptainer")
             known |= dict.fromkeys(others, lambda r: True)
             assert known[program](rest), line
             seen += 1
