@@ -124,3 +124,17 @@ def test_a_stored_force_is_that_of_the_backbone_wherever_the_contact_turned():
     found = law.step(R_star=R_star, delta_max=peak, delta=here)
     assert found[0] == pytest.approx(4 / 3 * E_star * np.sqrt(R_p) * (here - dent) ** 1.5, rel=1e-10)
     assert found[1] == pytest.approx(np.sqrt(R_p * (here - dent)), rel=1e-10)
+
+
+def test_the_power_of_the_force_keeps_its_digits_over_twelve_decades():
+    """F = F_y [1 + 3/(2+x) (q^(2+x) - 1)] with 30 digits; the power loses a rounding for each factor e of q."""
+    E_star, R_star, p_y = 1.1e11, 0.01, 2.8e9
+    for x in (0.05, 0.3, 0.6, 0.99):
+        law = Law("meyer", E_star=E_star, yield_pressure=p_y, hardening_exponent=x)
+        delta = R_star * (np.pi * p_y / (2 * E_star)) ** 2 * np.geomspace(1 + 1e-9, 1e12, 200)
+        with mp.workdps(30):
+            a_y, n = mp.pi * R_star * p_y / (2 * mp.mpf(E_star)), 2 + mp.mpf(x)
+            q = [mp.sqrt(R_star * mp.mpf(d)) / a_y for d in delta.tolist()]
+            exact = np.array([float(2 * mp.pi / 3 * p_y * a_y**2 * (1 + 3 / n * (s**n - 1))) for s in q])
+        found = law.step(R_star=R_star, delta_max=0.0, delta=delta)[0]
+        assert np.all(np.abs(found / exact - 1) <= 1e-15 * (2 + np.log(delta / delta[0])))

@@ -2,6 +2,7 @@
 #pragma once
 
 #include "backbone.hpp"
+#include "power.hpp"
 
 namespace epdem {
 
@@ -50,7 +51,7 @@ struct Meyer {
 
   Point<T> load(T R_star, T delta) const noexcept {
     T reached = delta;  // alpha q^x
-    if (any(half_x > 0.0)) reached = delta * exp(half_x * log(delta / (yield_ratio * R_star)));
+    if (any(half_x > 0.0)) reached = delta * power(delta / (yield_ratio * R_star), half_x);
     return {(slope_ratio * reached - offset_ratio * R_star) * R_star, sqrt(R_star * delta), T{}};
   }
 
