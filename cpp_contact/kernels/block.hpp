@@ -32,6 +32,7 @@ struct Block {
   Line adhesion_loss, contact_radius;                          // with adhesion: lost in jumps in this step [J], [m]
   double radius_ratio[most_lanes], overlap_ratio[most_lanes];  // largest of all contacts so far, over R*
   Line overlap, from_wall[3], wall_v[3];                       // of a wall: as the host found them
+  Line growth_i, growth_j, depth_i, depth_j;                   // with compaction: growths and dents over R
 };
 
 /// What all contacts of a pass have in common.
@@ -53,6 +54,7 @@ struct Kernels {
   static constexpr int most_laws = 16, most_frictions = 16;
   Kernel of[most_laws][most_frictions][2][2];
   SphereKernels spheres;
+  Kernel grown[most_laws][most_frictions][2];  // pairs with compaction: law, friction, whether rolling has a history
 };
 
 extern const Kernels kernels_sse2, kernels_avx2, kernels_avx512;

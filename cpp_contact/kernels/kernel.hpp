@@ -2,6 +2,7 @@
 // The contacts of a block, computed as lanes. Compiled once per instruction set, which EPDEM_KERNELS names: everything
 // is in unnamed namespaces or depends on the width of Lanes, so that no function compiled for a newer processor can
 // stand in for one of the same name compiled for an older one.
+#include "epdem/compaction.hpp"
 #include "epdem/contact.hpp"
 #include "epdem/laws.hpp"
 #include "kernels/block.hpp"
@@ -86,6 +87,14 @@ template <class Law>
   store(b.contact_radius.a + k, now.radius);
 }
 
+/// The same for growth.
+template <class Law>
+[[gnu::noinline]] void book_growth(Block& b, int k, const Law& law, Lanes R_star, Lanes delta_max, Lanes overlap,
+                                   Lanes now, Lanes last) {
+  const Lanes loss = growth_loss(law, R_star, delta_max, overlap, now, last);
+  store(b.plastic_work_step.a + k, grown_work(at(b.plastic_work_step, k), loss));
+}
+
 /// Writes energies and the largest strain of contacts k, k + 1, ... of n into their block.
 struct Recorder {
   Block& b;
@@ -125,12 +134,13 @@ EPDEM_INLINE void copy(const From* from, To* to) {
 }
 
 /// History of a contact: the values of the law, of pairs the step of the last evaluation (hosts end the contacts of
-/// walls), friction, rolling friction.
-template <class Law, class Friction, bool rolls, bool wall>
+/// walls), friction, rolling friction, with compaction the overlap that growth added.
+template <class Law, class Friction, bool rolls, bool wall, bool grows = false>
 [[gnu::flatten]] void contacts(Block& b, int n, const Pass& pass) {
   constexpr int law_values = history_size<Law>, friction_values = values_of<Friction, Lanes>;
   constexpr int last_step = law_values, sliding = last_step + !wall, rolling = sliding + friction_values;
-  constexpr int values = law_values || friction_values || rolls ? rolling + 3 * rolls : 0;
+  constexpr int added = rolling + 3 * rolls;
+  constexpr int values = law_values || friction_values || rolls ? added + grows : 0;
   using Pair = ContactConstants<Law>;
   constexpr int constants = (sizeof(Pair) / sizeof(Lanes) + 3) / 4 * 4;
   static_assert(constants <= most_constants && offsetof(Pair, law) == law_data * sizeof(Lanes));
@@ -179,12 +189,31 @@ template <class Law, class Friction, bool rolls, bool wall>
       if constexpr (rolls) history.rolling = {value[rolling], value[rolling + 1], value[rolling + 2]};
     }
 
+    [[maybe_unused]] const Lanes overlap = c.overlap;
+    [[maybe_unused]] Lanes last{}, growing{};
+    [[maybe_unused]] Grown<Lanes> grown{};
+    if constexpr (grows) {
+      last = value[added];
+      growing =
+          added_overlap<wall>(c.radius_i, c.radius_j, history.law.delta_max, at(b.growth_i, k), at(b.growth_j, k));
+      grown = grow<Law>(history.law, overlap, growing, last);
+      c.overlap = overlap + grown.added;
+    }
+
     const auto mass = [&]() __attribute__((always_inline)) {
       return wall ? at(b.mass_i, k) : effective_mass(b, k, pass.freeze);
     };
     ContactLoads<Lanes> loads;  // assigned below: GCC leaves in memory what it initialises with the result
     loads = contact<Friction, rolls, wall>(pair, pass, c, history, mass, Recorder{b, k, n, pass});
 
+    if constexpr (grows) {
+      history.law.delta_max = largest_overlap(grown, overlap);
+      value[added] = growing;
+      const auto depths = depths_of<wall>(c.radius_i, c.radius_j, history.law.delta_max);
+      store(b.depth_i.a + k, depths.i);
+      store(b.depth_j.a + k, depths.j);
+      if (pass.work) book_growth(b, k, pair.law, c.R_star, history.law.delta_max, overlap, growing, last);
+    }
     if constexpr (values > 0) {
       copy<law_values>(&history.law, value);
       copy<friction_values>(&history.friction, value + sliding);
@@ -212,6 +241,15 @@ constexpr Kernel offered() noexcept {
 template <class Law, class... Models>
 constexpr void fill(Kernels& kernels, List<Models...>) noexcept {
   int k = 0;
+  const auto pairs_of = [&](int friction, auto model) {
+    using Model = decltype(model);
+    if constexpr (compacts<Law>) {
+      kernels.grown[detail::place<Law>()][friction][0] = &contacts<Law, Model, false, false, true>;
+      kernels.grown[detail::place<Law>()][friction][1] = &contacts<Law, Model, true, false, true>;
+    }
+  };
+  (pairs_of(k++, Models{}), ...);
+  k = 0;
   (([&](Kernel(&of)[2][2]) {
      of[0][0] = offered<Law, Models, false, false>(), of[0][1] = offered<Law, Models, false, true>();
      of[1][0] = offered<Law, Models, true, false>(), of[1][1] = offered<Law, Models, true, true>();

@@ -5,6 +5,7 @@
 #include <cstring>
 #include <memory>
 
+#include "epdem/compaction.hpp"
 #include "epdem/contact.hpp"
 #include "epdem/laws.hpp"
 #include "kernels/block.hpp"
@@ -37,7 +38,7 @@ class LawModel : public NormalModel {
     if (s.contact_flags) *s.contact_flags |= CONTACT_NORMAL_MODEL;
     const ContactConstants<Law>& pair = table_[s.itype * width_ + s.jtype];
     const double R_star = wall_ ? s.radi : reduced_finite(s.radi, s.radj);
-    const double delta = wall_ ? s.deltan : s.radsum - s.r;
+    double delta = wall_ ? s.deltan : s.radsum - s.r;
     const bool keep = s.computeflag && s.shearupdate;
 
     State<Law> before{};
@@ -50,14 +51,38 @@ class LawModel : public NormalModel {
     if constexpr (adheres<Law>)
       if (others_have_history_ && keep && !(before.root > 0.0)) forget_others(history);
 
+    const double overlap = delta;
+    Grown<double> grown{};
+    double now_added = 0.0, last_added = 0.0;
+    if constexpr (compacts<Law>)
+      if (compaction_) {
+        last_added = has_step() && state_.is_new ? 0.0 : history[growth_slot_];
+        now_added = keep ? added_overlap_of(s, before.delta_max) : last_added;
+        grown = grow<Law>(before, overlap, now_added, last_added);
+        delta += grown.added;
+        s.deltan = delta;  // for the models beside the law
+      }
+
     // a step that is not kept repeats the last one that was
     const NormalContact<Law> contact = normal_contact(
         pair, R_star, before, delta, keep ? -s.vn * update->dt : 0.0, -s.vn, pair.damping > 0.0, pair.dashpot > 0.0,
         [&] { return s.meff; }, !keep);
-    const Step<Law>& now = contact.step;
+    Step<Law> now = contact.step;
 
     if (keep) {
-      if (plastic_work_) ledger_.book(wall_, pair.law, R_star, before, now, delta, {s.i, s.j, atom->nlocal});
+      double loss = 0.0;
+      if constexpr (compacts<Law>)
+        if (compaction_) {
+          const double reached = largest_overlap(grown, overlap);
+          if (plastic_work_) loss = growth_loss(pair.law, R_star, reached, overlap, now_added, last_added);
+          history[growth_slot_] = now_added;
+          const auto depths = wall_ ? depths_of<true>(s.radi, 0.0, reached) : depths_of<false>(s.radi, s.radj, reached);
+          growth_.add(s.i, depths.i);
+          if (!wall_ && s.j < atom->nlocal) growth_.add(s.j, depths.j);
+        }
+      if (plastic_work_) ledger_.book(wall_, pair.law, R_star, before, now, delta, loss, {s.i, s.j, atom->nlocal});
+      if constexpr (compacts<Law>)
+        if (compaction_) now.after.delta_max = largest_overlap(grown, overlap);
       if (contact_strain_) strain_.note(s.i, now.radius / R_star, delta / R_star);
       if constexpr (size > 0) std::memcpy(history + offset_, &now.after, sizeof now.after);
       if (has_step()) history[step_slot_] = now_;
@@ -79,7 +104,9 @@ class LawModel : public NormalModel {
   }
 
   bool attracts(const SurfacesCloseData& s) const override {
-    if constexpr (!adheres<Law>) {
+    if constexpr (compacts<Law>) {
+      return compaction_ && stands(s);
+    } else if constexpr (!adheres<Law>) {
       return false;
     } else {
       if (!s.contact_history) return false;
@@ -121,9 +148,23 @@ class LawModel : public NormalModel {
   }
 
  private:
+  double added_overlap_of(const SurfacesCloseData& s, double delta_max) const {
+    return wall_ ? added_overlap<true>(s.radi, 0.0, delta_max, growth_.of(s.i), 0.0)
+                 : added_overlap<false>(s.radi, s.radj, delta_max, growth_.of(s.i), growth_.of(s.j));
+  }
+
+  /// Whether grown bodies that do not overlap are in contact.
+  bool stands(const SurfacesCloseData& s) const {
+    const bool keep = s.computeflag && s.shearupdate;
+    const bool known = !has_step() || now_ - s.contact_history[step_slot_] <= 1.0;
+    const double overlap = s.radsum - std::sqrt(s.rsq);
+    if (!keep) return known && overlap + s.contact_history[growth_slot_] > 0.0;
+    return overlap + added_overlap_of(s, known ? s.contact_history[offset_] : 0.0) > 0.0;
+  }
+
   static Declaration declaration() {
-    return {model_name<Law>(), Law::parameters,    Law::n_parameters,      &Law::valid,
-            Law::strength,     Law::default_ratio, Law::strength_by_ratio, adheres<Law>};
+    return {model_name<Law>(),  Law::parameters,        Law::n_parameters, &Law::valid,  Law::strength,
+            Law::default_ratio, Law::strength_by_ratio, adheres<Law>,      compacts<Law>};
   }
 
   std::vector<ContactConstants<Law>> table_;  // by types

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <string>
 
+#include "epdem/compaction.hpp"
 #include "epdem/contact.hpp"
 #include "host.hpp"
 
@@ -34,8 +35,10 @@ class Ledger {
     }
   }
 
-  /// Before each run, for pairs and walls.
-  void connect(LAMMPS_NS::LAMMPS* lmp, const std::string& model, bool books_friction, bool adheres) {
+  /// Before each run, for pairs and walls. gives_back: with compaction the work of one contact can be negative.
+  void connect(LAMMPS_NS::LAMMPS* lmp, const std::string& model, bool books_friction, bool adheres,
+               bool gives_back = false) {
+    gives_back_ = gives_back;
     work_ = find(lmp, work_name, model.c_str());
     energy_ = find(lmp, energy_name, model.c_str());
     friction_ = find(lmp, friction_name, model.c_str());
@@ -58,11 +61,13 @@ class Ledger {
     if (springs_) std::fill_n(springs_->vector_atom, nlocal, 0.0);
   }
 
+  /// growth: elastic energy that growth took from the contact in this step, of either sign.
   template <class Law>
   void book(bool wall, const Law& law, double R_star, const State<Law>& before, const Step<Law>& now, double delta,
-            const Bodies& bodies) {
+            double growth, const Bodies& bodies) {
     const double part = wall ? 1.0 : 0.5;
-    const NormalEnergies<double> e = energies(law, R_star, before, now, delta);
+    NormalEnergies<double> e = energies(law, R_star, before, now, delta);
+    if constexpr (compacts<Law>) e.plastic_work_step = grown_work(e.plastic_work_step, growth);
     if constexpr (adheres<Law>) {
       adhesive_->vector_atom[bodies.i] += part * e.adhesion_loss;
       if (!wall && bodies.j < bodies.nlocal) adhesive_->vector_atom[bodies.j] += part * e.adhesion_loss;
@@ -81,18 +86,20 @@ class Ledger {
 
   /// What one contact adds to one body [J].
   void credit(int body, double grown, double stored, bool bears) {
-    if (grown > 0.0) work_->vector_atom[body] += grown;  // few contacts grow
+    if (grown > 0.0 || gives_back_) work_->vector_atom[body] += grown;  // few contacts grow
     energy_->vector_atom[body] += stored;
     loaded_->vector_atom[body] += bears;
   }
 
   /// One number per body, for a loop that books by itself as `book` does.
+  bool gives_back() const { return gives_back_; }
   double* work() { return work_->vector_atom; }
   double* energy() { return energy_->vector_atom; }
   double* loaded() { return loaded_->vector_atom; }
   double* adhesive() { return adhesive_ ? adhesive_->vector_atom : nullptr; }
 
  private:
+  bool gives_back_ = false;
   static constexpr const char* work_name = "plasticWork";
   static constexpr const char* energy_name = "elasticEnergy";
   static constexpr const char* loaded_name = "loadedContacts";

@@ -31,6 +31,7 @@ struct Declaration {
   double default_ratio;    // strength over yield stress
   bool strength_by_ratio;  // yieldStress and yieldPressureRatio may stand in for it
   bool adheres;            // else a work of adhesion is refused
+  bool compacts;           // it has the setting compaction
 };
 
 /// One pair of atom types.

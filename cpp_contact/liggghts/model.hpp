@@ -136,7 +136,7 @@ class Model : public ContactModelBase {
 
   void postSettings(LIGGGHTS::IContactHistorySetup* setup) {
     surface_.postSettings(setup, this);
-    normal_->postSettings(books_friction(ids_));
+    normal_->postSettings(setup, books_friction(ids_), ids_.cohesion != COHESION_OFF);
     cohesion_.postSettings(setup, this);
     tangential_.postSettings(setup, this);
     rolling_.postSettings(setup, this);

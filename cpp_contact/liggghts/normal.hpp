@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "growth.hpp"
 #include "host.hpp"
 #include "ledger.hpp"
 #include "materials.hpp"
@@ -32,6 +33,7 @@ class NormalModel : protected LAMMPS_NS::Pointers {
   void registerSettings(::Settings& settings) {
     settings.registerOnOff("computePlasticWork", plastic_work_, false);
     settings.registerOnOff("computeContactStrain", contact_strain_, false);
+    settings.registerOnOff("compaction", compaction_, false);
     settings.registerOnOff("tangential_damping", tangential_damping_, true);
     settings.registerOnOff("viscous", viscous_, false);
     settings.registerOnOff("limitForce", limit_force_, false);
@@ -43,7 +45,7 @@ class NormalModel : protected LAMMPS_NS::Pointers {
   }
 
   /// books_friction: the tangential model beside it computes its work.
-  void postSettings(bool books_friction) {
+  void postSettings(LIGGGHTS::IContactHistorySetup* setup, bool books_friction, bool cohesion) {
     books_friction_ = books_friction;
     // limitForce and heating_tracking change nothing: the force is never negative, the law makes no viscous heat
     if (law_.adheres && limit_force_) refuse("limitForce", "it would take the attraction away");
@@ -55,6 +57,12 @@ class NormalModel : protected LAMMPS_NS::Pointers {
     if (disable_when_bonded_) refuse("disableNormalWhenBonded", "bonds are not part of the public LIGGGHTS");
     if (plastic_work_ && !wall_) ledger_.create(lmp, books_friction_, law_.adheres);
     if (contact_strain_ && !wall_) LargestStrain::create(lmp);
+    if (!compaction_) return;
+    if (!law_.compacts) refuse("compaction", "only ep/cavity has it");
+    if (!setup) refuse("compaction", "the loops of LIGGGHTS-PFM do not have it");
+    if (cohesion) refuse("compaction", "it is for contacts without cohesion");
+    if (!wall_) Growth::create(lmp);
+    growth_slot_ = setup->add_history_value("growth", "0");
   }
 
   /// cohesive: area on which cohesion pulls, over the area of the overlap's lens; 0 without cohesion.
@@ -67,10 +75,13 @@ class NormalModel : protected LAMMPS_NS::Pointers {
     width_ = m.width;
     set_materials(m);
     if (cohesive > 0.0) compare_cohesion(lmp, law_.model, width_, resistances(cohesive));
-    if (plastic_work_) ledger_.connect(lmp, law_.model, books_friction_, law_.adheres);
+    if (plastic_work_) ledger_.connect(lmp, law_.model, books_friction_, law_.adheres, compaction_);
     if (contact_strain_) strain_.connect(lmp, law_.model);
     state_.ledger = ledger();
     if (law_.adheres) reach();
+    if (!compaction_) return;
+    growth_.connect(lmp, law_.model);
+    neighbor->register_contact_dist_factor(1.0 + growth_reach);
   }
 
   double stressStrainExponent() const { return 1.5; }
@@ -80,12 +91,14 @@ class NormalModel : protected LAMMPS_NS::Pointers {
   int history_size() const { return history_size_; }
   Ledger* ledger() { return plastic_work_ ? &ledger_ : nullptr; }
   LargestStrain* strain() { return contact_strain_ ? &strain_ : nullptr; }
+  Growth* growth() { return compaction_ ? &growth_ : nullptr; }
   const NormalContactState& state() const { return state_; }
 
   /// LIGGGHTS calls it before the loop over all pairs, never for walls.
   void beginPass(const SurfacesIntersectData& s) {
     const bool keep = s.computeflag && s.shearupdate;
     if (plastic_work_ && keep) ledger_.open(atom->nlocal);
+    if (compaction_ && keep) growth_.close(*atom);
     if (!has_step()) return;
     const bigint expected = clock_ + (keep ? 1 : 0);
     if (update->ntimestep != expected) move_clock(update->ntimestep - expected);
@@ -114,7 +127,9 @@ class NormalModel : protected LAMMPS_NS::Pointers {
 
   void surfacesClose(SurfacesCloseData& s) {
     if (s.contact_flags) *s.contact_flags &= ~CONTACT_NORMAL_MODEL;
-    if (s.contact_history) std::fill_n(s.contact_history + offset_, history_size_, 0.0);
+    if (!s.contact_history) return;
+    std::fill_n(s.contact_history + offset_, history_size_, 0.0);
+    if (compaction_) s.contact_history[growth_slot_] = 0.0;
   }
 
   virtual void surfacesIntersect(SurfacesIntersectData& s, ForceData& fi, ForceData& fj) = 0;
@@ -173,11 +188,12 @@ class NormalModel : protected LAMMPS_NS::Pointers {
 
   const bool wall_, others_have_history_;
   const int history_size_;
-  int width_ = 0, offset_ = 0, step_slot_ = -1;
+  int width_ = 0, offset_ = 0, step_slot_ = -1, growth_slot_ = -1;
   double now_ = 0.0;
-  bool plastic_work_ = false, contact_strain_ = false;
+  bool plastic_work_ = false, contact_strain_ = false, compaction_ = false;
   Ledger ledger_;
   LargestStrain strain_;
+  Growth growth_;
   NormalContactState state_;
 
  private:

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 #include "loop.hpp"
 
+#include <cmath>
 #include <cstdlib>
 #include <cstring>
 #include <string>
@@ -77,7 +78,7 @@ const char* PairLoop::obstacle(PairGran* pair, const Plan& plan, int vflag, int 
   if (force->newton_pair) return "newton on";
   if (atom->molecular) return "bonded particles";
   if (pair->storeSumDelta()) return "surface multicontact";
-  if (neighbor->contactDistanceFactor != 1.0 && plan.root < 0) return "contacts at a distance";
+  if (neighbor->contactDistanceFactor != 1.0 && plan.root < 0 && !plan.growth) return "contacts at a distance";
   if (modify->n_fixes_style("insert/stream/predefined") > 0) return "fix insert/stream/predefined";
   if (vflag) return "steps that ask for the virial";
   if (addflag) return "steps of compute pair/gran/local";
@@ -92,27 +93,32 @@ void PairLoop::run(PairGran* pair, const Plan& plan, double now) {
   pass_.freeze = pair->freeze_group_bit() != 0;
   flags_ = CONTACT_NORMAL_MODEL | (plan.friction ? CONTACT_TANGENTIAL_MODEL : 0) |
            (plan.settings.cohesion ? CONTACT_COHESION_MODEL : 0) | (plan.rolls ? CONTACT_ROLLING_MODEL : 0);
-  plan.root < 0 ? gather<false>(plan) : gather<true>(plan);
+  plan.growth     ? gather<Reach::grown>(plan)
+  : plan.root < 0 ? gather<Reach::touching>(plan)
+                  : gather<Reach::attached>(plan);
 }
 
 /// Notes every neighbour, and those stay that overlap; with adhesion also those that were in contact and are near.
-template <bool adheres>
+template <Reach reach>
 void PairLoop::gather(const Plan& plan) {
   Block& b = *block_;
   const LAMMPS_NS::NeighList& list = *pair_->list;
   const double *const x = atom->x[0], *const radius = atom->radius;
   const double near = neighbor->contactDistanceFactor * neighbor->contactDistanceFactor;
+  const double* const grown = reach == Reach::grown ? plan.growth->reach() : nullptr;
+  bool gaps = false;  // whether grown spheres meet that do not overlap
   long n = 0;
   for (int ii = 0; ii < list.inum; ++ii) {
     const int i = list.ilist[ii], count = list.numneigh[i];
     const int* const neighbours = list.firstneigh[i];
-    const int* const flags = adheres ? pair_->listgranhistory->firstneigh[i] : nullptr;
+    const int* const flags = reach == Reach::attached ? pair_->listgranhistory->firstneigh[i] : nullptr;
     const double xi = x[3 * i], yi = x[3 * i + 1], zi = x[3 * i + 2], ri = radius[i];
     for (int first = 0; first < count; first += block_size) {  // nearly always one turn
       const int last = std::min(count, first + block_size);
       if (n + last - first > block_size) {
-        finish<adheres>(plan, n);
+        finish<reach>(plan, n, gaps);
         n = 0;
+        gaps = false;
       }
       for (int jj = first; jj < last; ++jj) {
         const long j = neighbours[jj] & NEIGHMASK;
@@ -122,25 +128,33 @@ void PairLoop::gather(const Plan& plan) {
         b.i[n] = i;
         b.j[n] = static_cast<int>(j);
         slot_[n] = jj;
-        if constexpr (adheres) {
+        if constexpr (reach == Reach::attached) {
           overlaps_[n] = overlaps;
           n += overlaps | ((flags[jj] != 0) & (rsq < near * sum * sum));
+        } else if constexpr (reach == Reach::grown) {
+          const double all = grown[i] + grown[j];
+          const bool meets = overlaps | ((rsq < all * all) & (rsq < near * sum * sum));
+          overlaps_[n] = overlaps;
+          gaps |= meets & !overlaps;
+          n += meets;
         } else {
           n += overlaps;
         }
       }
     }
   }
-  finish<adheres>(plan, n);
+  finish<reach>(plan, n, gaps);
 }
 
-template <bool adheres>
-void PairLoop::finish(const Plan& plan, int n) {
+template <Reach reach>
+void PairLoop::finish(const Plan& plan, int n, bool gaps) {
+  constexpr bool adheres = reach == Reach::attached, grown = reach == Reach::grown;
   if constexpr (adheres) n = without_parted(plan, n);
+  if (grown && gaps) n = without_gaps(plan, n);
   if (n == 0) return;
   fetch(plan, n);
   pad(*block_, n);
-  kernel_(*block_, n, pass_);
+  (grown ? plan.grown : kernel_)(*block_, n, pass_);
   if (plan.strain) note_strain(*plan.strain, *block_);
   const bool turns = plan.friction || plan.settings.rolling;
   if (plan.ledger)
@@ -148,6 +162,7 @@ void PairLoop::finish(const Plan& plan, int n) {
   else
     turns ? scatter<true, false, adheres>(n, nullptr) : scatter<false, false, adheres>(n, nullptr);
   if (plan.ledger && plan.books_friction) book_friction(*plan.ledger, n);
+  if (grown) book_dents(plan, n);
 }
 
 /// Of n contacts those that overlap or are attached across a gap; a pair that is not loses its mark.
@@ -169,6 +184,48 @@ int PairLoop::without_parted(const Plan& plan, int n) {
     slot_[kept++] = slot;
   }
   return kept;
+}
+
+/// Of n pairs of grown spheres those in contact; a pair that is not loses its mark and its memory.
+int PairLoop::without_gaps(const Plan& plan, int n) {
+  Block& b = *block_;
+  const int size = pair_->dnum();
+  const double *const x = atom->x[0], *const radius = atom->radius;
+  int kept = 0;
+  for (int k = 0; k < n; ++k) {
+    const int i = b.i[k], j = b.j[k], slot = slot_[k];
+    if (!overlaps_[k]) {
+      const double dx = x[3 * i] - x[3 * j], dy = x[3 * i + 1] - x[3 * j + 1], dz = x[3 * i + 2] - x[3 * j + 2];
+      const double* const h = pair_->listgranhistory->firstdouble[i] + size * slot;
+      const double delta_max = pass_.now - h[plan.last_step] > 1.0 ? 0.0 : h[0];
+      const double added =
+          added_overlap<false>(radius[i], radius[j], delta_max, plan.growth->of(i), plan.growth->of(j));
+      if (!(radius[i] + radius[j] - std::sqrt(dx * dx + dy * dy + dz * dz) + added > 0.0)) {
+        pair_->listgranhistory->firstneigh[i][slot] &= ~flags_;
+        continue;
+      }
+    }
+    b.i[kept] = i;
+    b.j[kept] = j;
+    slot_[kept++] = slot;
+  }
+  return kept;
+}
+
+/// The depths of the dents of a step, in the order of the list.
+void PairLoop::book_dents(const Plan& plan, int n) {
+  const Block& b = *block_;
+  double* const sums = plan.growth->sums();
+  const int nlocal = atom->nlocal;
+  for (int k = 0; k < n; ++k) {
+    const long i = b.i[k], j = b.j[k];
+    const double x = b.depth_i.a[k], y = b.depth_j.a[k];
+    sums[2 * i] += x;
+    sums[2 * i + 1] += x * x;
+    if (j >= nlocal) continue;
+    sums[2 * j] += y;
+    sums[2 * j + 1] += y * y;
+  }
 }
 
 /// What lies apart in memory is prefetched, and contacts are marked as such.
@@ -199,6 +256,10 @@ void PairLoop::fetch(const Plan& plan, int n) {
     b.mass_i.a[k] = mass[i];
     b.mass_j.a[k] = mass[j];
   }
+  for (int k = 0; k < n && plan.growth; ++k) {
+    b.growth_i.a[k] = plan.growth->of(b.i[k]);
+    b.growth_j.a[k] = plan.growth->of(b.j[k]);
+  }
   const int width = plan.width, *const type = atom->type, *const mask = atom->mask;
   const double* const constants = plan.constants.data();
   const auto material = [=](int i, int j) { return constants + most_constants * (type[i] * width + type[j]); };
@@ -223,6 +284,7 @@ void PairLoop::scatter(int n, Ledger* ledger) {
   double *const f = atom->f[0], *const t = atom->torque[0];
   double *const work = books ? ledger->work() : nullptr, *const energy = books ? ledger->energy() : nullptr;
   double *const loaded = books ? ledger->loaded() : nullptr, *const parted = books ? ledger->adhesive() : nullptr;
+  const bool gives_back = books && ledger->gives_back();
   const int nlocal = atom->nlocal;
   double others[10] = {};  // what a ghost gets is computed by its owner
   for (int k = 0; k < n;) {
@@ -252,7 +314,7 @@ void PairLoop::scatter(int n, Ledger* ledger) {
         tj[2] += b.torque_j[2].a[k];
       }
       if constexpr (books) {
-        const double grown = b.plastic_work_step.a[k] > 0.0 ? 0.5 * b.plastic_work_step.a[k] : 0.0,
+        const double grown = b.plastic_work_step.a[k] > 0.0 || gives_back ? 0.5 * b.plastic_work_step.a[k] : 0.0,
                      stored = 0.5 * b.stored_energy.a[k];
         const bool bears = adheres ? b.contact_radius.a[k] > 0.0 : stored > 0.0;
         work_i += grown;

@@ -6,6 +6,7 @@
 #include <memory>
 #include <vector>
 
+#include "growth.hpp"
 #include "host.hpp"
 #include "kernels/block.hpp"
 #include "ledger.hpp"
@@ -30,6 +31,8 @@ struct Plan {
   bool books_friction = false;      // friction computes its work
   Ledger* ledger = nullptr;         // where plastic work is booked, if it is requested
   LargestStrain* strain = nullptr;  // where the largest strain is noted, if it is requested
+  Growth* growth = nullptr;         // of the spheres, with compaction
+  Kernel grown = nullptr;           // and the kernel for it
   int root = -1, last_step = -1;    // with adhesion: where a history says that the bodies are attached, and when last
   int width = 0;                    // number of types + 1
   std::vector<double> constants;    // most_constants for each type of i * width + type of j; see Constant
@@ -53,6 +56,9 @@ Pass pass_of(const LAMMPS_NS::Atom& atom, const Plan& plan, double dt);
 /// Notes the largest strain of the contacts of a block.
 void note_strain(LargestStrain& strain, const Block& block);
 
+/// Which bodies can be in contact: those that overlap, those that adhere across a gap, those whose growth closes a gap.
+enum class Reach { touching, attached, grown };
+
 class PairLoop : protected LAMMPS_NS::Pointers {
  public:
   PairLoop(LAMMPS_NS::LAMMPS* lmp, Kernel kernel) : Pointers(lmp), kernel_(kernel), block_(std::make_unique<Block>()) {}
@@ -64,11 +70,13 @@ class PairLoop : protected LAMMPS_NS::Pointers {
   void run(LAMMPS_NS::PairGran* pair, const Plan& plan, double now);
 
  private:
-  template <bool adheres>
+  template <Reach reach>
   void gather(const Plan& plan);
-  template <bool adheres>
-  void finish(const Plan& plan, int n);
+  template <Reach reach>
+  void finish(const Plan& plan, int n, bool gaps);
   int without_parted(const Plan& plan, int n);
+  int without_gaps(const Plan& plan, int n);
+  void book_dents(const Plan& plan, int n);
   void fetch(const Plan& plan, int n);
   template <bool torques, bool books, bool adheres>
   void scatter(int n, Ledger* ledger);
@@ -77,7 +85,7 @@ class PairLoop : protected LAMMPS_NS::Pointers {
   const Kernel kernel_;
   const std::unique_ptr<Block> block_;
   int slot_[block_size + most_lanes];       // place in the neighbour list of i
-  bool overlaps_[block_size + most_lanes];  // with adhesion only
+  bool overlaps_[block_size + most_lanes];  // with adhesion or growth only
   Pass pass_{};
   LAMMPS_NS::PairGran* pair_ = nullptr;
   int flags_ = 0;

@@ -40,6 +40,8 @@ class Planned {
     plan_.settings.cohesion_slides = model_.loop_settings().cohesion_slides;
     plan_.ledger = normal.ledger();
     plan_.strain = normal.strain();
+    plan_.growth = normal.growth();
+    plan_.grown = chosen_kernels(lmp_).grown[normal.place()][plan_.friction][plan_.rolls];
     plan_.width = normal.width();
     double** const mu = plan_.friction ? property("coeffFrict", &MODEL_PARAMS::createCoeffFrict) : nullptr;
     double** const rolling =

@@ -67,6 +67,7 @@ class Wall : public LIGGGHTS::Walls::Granular<Model>, public OurWall, private Pl
 
   void open(LAMMPS_NS::FixWallGran& wall) override {
     const char* why = missing();
+    if (!why && plan_.growth) why = "compaction on";
     if (!why) why = loop_.obstacle(wall);
     if (why)
       say(why);

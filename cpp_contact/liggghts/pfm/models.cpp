@@ -105,7 +105,7 @@ class Model {
   }
 
   void connectToProperties(PropertyRegistry& registry) {
-    normal_.postSettings(false);
+    normal_.postSettings(nullptr, false, false);
     surface_.connectToProperties(registry);
     normal_.connectToProperties(registry, dashpot, 0.0);
     tangential_.connectToProperties(registry);

@@ -8,6 +8,8 @@ from ..laws.strengths import ADHESION, LawNumbers, law_named
 from ..theory.cavity import FINITE_STRAIN
 from .units import read_number
 
+COMPACTS = ("cavity",)  # the laws that have compaction
+
 
 def law_numbers(name: str, given: dict[str, Any]) -> LawNumbers:
     """The law `name` with the numbers of a case; all others have the defaults of the law. Raises CaseError.
@@ -15,8 +17,15 @@ def law_numbers(name: str, given: dict[str, Any]) -> LawNumbers:
     A strength X [Pa] is given as `X = "2.8 GPa"` for all bodies or as `X_ratio = 2.8` of each body's yield stress, the
     work of adhesion as `work_of_adhesion = "0.1 J/m^2"` for all pairs or by the surface energies of the materials;
     finite_strain = true or false stands for its number, meyer_index = 2 + x for hardening_exponent = x.
+    compaction = true or false belongs to the laws of COMPACTS.
     """
     law = law_named(name)
+    compaction = given.get("compaction", False)
+    if not isinstance(compaction, bool):
+        raise CaseError(f"law.compaction = {compaction!r}: it is true or false")
+    if compaction and name not in COMPACTS:
+        raise CaseError(f"law.compaction: law {name} has none; take law.name = {COMPACTS[0]!r}")
+    given = {key: value for key, value in given.items() if key != "compaction"}
     none = next((p.default for p in law.parameters if p.name == "finite_strain"), None)
     if none is not None and isinstance(given.get("finite_strain"), bool):
         given = given | {"finite_strain": FINITE_STRAIN if given["finite_strain"] else none}
@@ -40,6 +49,7 @@ def law_numbers(name: str, given: dict[str, Any]) -> LawNumbers:
         read_number(f"law.{strength}", given[strength], "Pa") if strength in given else None,
         read_number(f"law.{ratio}", given[ratio], "1") if ratio in given else law.default_ratio,
         read_number(f"law.{ADHESION}", given[ADHESION], "J/m^2", zero=True) if ADHESION in given else None,
+        compaction,
     )
 
 

@@ -83,7 +83,8 @@ class LawNumbers:
     """A law before its bodies: its dimensionless parameters, and the rules of its strength and its adhesion.
 
     The strength of a body is `absolute` [Pa], or `ratio` times the body's yield stress. The work of adhesion of a pair
-    is `adhesion` [J/m^2], or 2 sqrt(gamma_i gamma_j) of the surface energies.
+    is `adhesion` [J/m^2], or 2 sqrt(gamma_i gamma_j) of the surface energies. compaction: spheres grow at each contact
+    by the dents of their other contacts.
     """
 
     name: str
@@ -91,6 +92,7 @@ class LawNumbers:
     absolute: float | None
     ratio: float
     adhesion: float | None = None
+    compaction: bool = False
 
     def strength(self, material: str, yield_stress: float | None, own: float | None = None) -> float:
         """Strength [Pa] of a body of `material`: its `own`, else by the law's rule; inf for a law without one.

@@ -42,6 +42,7 @@ COLUMNS = {
     "i": Quantity("", "id of the first sphere"),
     "j": Quantity("", "id of the second sphere, 0 for a wall"),
     "overlap": Quantity("m", "overlap"),
+    "added_overlap": Quantity("m", "overlap that the growth of both spheres adds (compaction)"),
     "force": Quantity("N", "normal force"),
     "delta_max": Quantity("m", "largest overlap so far"),
     "residual_overlap": Quantity("m", "overlap at which the unloaded contact has no force"),

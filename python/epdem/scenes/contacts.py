@@ -20,19 +20,24 @@ from .plan import ScenePlan
 Array = npt.NDArray[np.float64]
 
 BY_LAW = ["force", "residual_overlap", "dent_radius", "plastic_work", "elastic_energy"]
-COLUMNS = ["step", "wall", "i", "j", "overlap", "delta_max", *BY_LAW]
 _NODES, _WEIGHTS = gauss(16)  # on [0, 1]
+
+
+def columns(p: ScenePlan) -> list[str]:
+    """The columns of the table of contacts."""
+    return ["step", "wall", "i", "j", "overlap", "delta_max", *["added_overlap"] * p.model.compaction, *BY_LAW]
 
 
 def complete(p: ScenePlan, raw: pd.DataFrame, spheres: pd.DataFrame, folder: Path) -> pd.DataFrame:
     """One row per contact and frame, with all that follows by the law, sorted; SI.
 
     raw: step, wall, i, j, overlap, delta_max; i < j are ids of spheres, or j = 0 and `wall` the name of a wall; with
-    adhesion also whether the bodies are attached, for they may overlap in a dent without a contact.
+    adhesion also whether the bodies are attached, for they may overlap in a dent without a contact; with compaction
+    added_overlap, with which the law's overlaps are larger than those of the spheres.
     spheres: the particles' table. Raises EngineError, which names `folder`, for a contact of spheres that it lacks.
     """
     if raw.empty:
-        return pd.DataFrame(columns=COLUMNS)
+        return pd.DataFrame(columns=columns(p))
     known = spheres.set_index(["step", "id"])[["radius", "type"]]
     first = known.reindex(pd.MultiIndex.from_frame(raw[["step", "i"]].astype("int64")))
     second = known.reindex(pd.MultiIndex.from_frame(raw[["step", "j"]].astype("int64")))
@@ -46,10 +51,12 @@ def complete(p: ScenePlan, raw: pd.DataFrame, spheres: pd.DataFrame, folder: Pat
     radius_i, type_i = first["radius"].to_numpy(), first["type"].to_numpy(int)
     R_star = 1.0 / (1.0 / radius_i + 1.0 / radius_j)
     attached = raw["attached"].to_numpy(bool) if "attached" in raw else np.ones(len(raw), bool)
-    law = energies(p, type_i, type_j, R_star, raw["overlap"].to_numpy(), raw["delta_max"].to_numpy(), attached)
-    table = raw[["step", "wall", "i", "j", "overlap", "delta_max"]].reset_index(drop=True).join(law)
+    added = raw["added_overlap"].to_numpy() if p.model.compaction else 0.0
+    overlap, largest = raw["overlap"].to_numpy() + added, raw["delta_max"].to_numpy() + added
+    law = energies(p, type_i, type_j, R_star, overlap, largest, attached)
+    table = raw[columns(p)[: -len(BY_LAW)]].reset_index(drop=True).join(law)
     table = table.astype({"step": "int64", "i": "int64", "j": "int64"})
-    return table[COLUMNS].sort_values(["step", "wall", "i", "j"], kind="stable").reset_index(drop=True)
+    return table.sort_values(["step", "wall", "i", "j"], kind="stable").reset_index(drop=True)
 
 
 def energies(

@@ -32,6 +32,7 @@ class Model:
     the material of the scene's walls. friction: of each pair of types, by the model `tangential`. viscous: restitution
     of elastic impacts of each pair; tangential_restitution: of the dashpot beside the tangential spring. cohesion:
     energy density [J/m^3]. adhesion: work of adhesion of each pair of types [J/m^2], of laws with adhesion.
+    compaction: spheres grow at each contact by the dents of their other contacts.
     """
 
     law: str
@@ -45,6 +46,7 @@ class Model:
     rolling: Rolling | None
     cohesion: float | None
     adhesion: tuple[tuple[float, ...], ...] = ()
+    compaction: bool = False
 
     def type_of(self, name: str) -> int:
         """The number of a type."""
@@ -111,7 +113,10 @@ def model(case: SceneCase) -> Model:
         rolling=contact.rolling,
         cohesion=contact.cohesion,
         adhesion=_adhesion(case, types),
+        compaction=numbers(case).compaction,
     )
+    if result.compaction and contact.cohesion is not None:
+        raise CaseError("contact.cohesion: contacts with law.compaction have no cohesion; remove one of them")
     if result.adheres and contact.cohesion is not None:
         raise CaseError(f"contact.cohesion: law {result.law} has its attraction already; remove one of them")
     if result.adheres and NODES[contact.tangential]:

@@ -2,6 +2,7 @@
 """The LIGGGHTS deck of a scene: all numbers of the templates."""
 
 import math
+from collections.abc import Sequence
 
 from ...base import rendering as decks
 from ...errors import CaseError
@@ -55,34 +56,41 @@ def _settings(p: ScenePlan) -> tuple[str, ...]:
         "tangential_damping off": m.viscous is not None and m.sliding and m.tangential_restitution is None,
         "computePlasticWork on": p.writes_plastic_work or p.writes_friction_work or p.writes_adhesive_work,
         "computeContactStrain on": True,
+        "compaction on": m.compaction,
     }
     return tuple(setting for setting, asked in wanted.items() if asked)
 
 
 def memory(m: Model, *, wall: bool = False) -> int:
-    """History values of one contact in LIGGGHTS, in this order: law, step, friction, rolling."""
+    """History values of one contact in LIGGGHTS, in this order: law, step, friction, rolling, compaction."""
     law = laws()[m.law].memory
     friction = 3 * m.nodes + 1 if m.nodes else 3 * m.sliding
     others = friction + 3 * (m.rolling is not None and m.rolling.model in ("epsd", "epsd2"))
     stamp = 0 if wall else int(law + others > 0)
-    return law + stamp + others
+    return law + stamp + others + m.compaction
 
 
 def history_columns(m: Model) -> tuple[str, ...]:
     """What a table of contacts takes of the law's memory, which begins with it: the largest overlap of a law that
-    yields, whether bodies that adhere are attached (its root is above 0)."""
-    return ("largest overlap",) * m.yields + ("root of the attached",) * m.adheres
+    yields, whether bodies that adhere are attached (its root is above 0); last the added overlap of compaction."""
+    return ("largest overlap",) * m.yields + ("root of the attached",) * m.adheres + ("added overlap",) * m.compaction
 
 
-def contact_columns(slots: int, values: int) -> tuple[int, ...]:
-    """Where a local compute has the first `slots` numbers of the history and the overlap: behind three ids and
-    `values` of history."""
-    return (*range(4, 4 + slots), 4 + values) if slots else (4,)
+def history_slots(m: Model, *, wall: bool = False) -> tuple[int, ...]:
+    """Where the history of a contact has these columns, from 1."""
+    first = (*range(1, 1 + m.yields + m.adheres),)
+    return (*first, memory(m, wall=wall)) if m.compaction else first
+
+
+def contact_columns(slots: Sequence[int], values: int) -> tuple[int, ...]:
+    """Where a local compute has these numbers of the history and the overlap: behind three ids and `values` of
+    history."""
+    return (*(3 + slot for slot in slots), 4 + values) if slots else (4,)
 
 
 def default_skin(p: ScenePlan) -> float:
     """The skin of a case that gives none [m]."""
-    return float(f"{SKIN * p.smallest:.1e}")
+    return float(f"{SKIN * p.smallest * (0.5 if p.model.compaction else 1.0):.1e}")  # compaction sees across gaps
 
 
 def _refuse_room(p: ScenePlan) -> None:
@@ -142,8 +150,9 @@ def deck(p: ScenePlan) -> decks.Deck:
         has_history=m.yields or m.spins or m.adheres or m.cohesion is not None,  # sjkr keeps one, too
         adheres=m.adheres,
         history_columns=history_columns(m),
-        contact_columns=contact_columns(len(history_columns(m)), memory(m)),
-        wall_contact_columns=contact_columns(len(history_columns(m)), memory(m, wall=True)),
+        wall_history_slots=history_slots(m, wall=True),
+        contact_columns=contact_columns(history_slots(m), memory(m)),
+        wall_contact_columns=contact_columns(history_slots(m, wall=True), memory(m, wall=True)),
         row_words=(*(word for word, asked in row_words.items() if asked), *load_words(p)),
         from_restart=None,
         resumed_phase=0,

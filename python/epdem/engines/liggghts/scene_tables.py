@@ -109,7 +109,7 @@ def _particle_names(p: ScenePlan) -> list[str]:
 
 def _slots(p: ScenePlan) -> list[str]:
     """The columns of `scene_deck.history_columns`."""
-    return ["delta_max"] * p.model.yields + ["attached"] * p.model.adheres
+    return ["delta_max"] * p.model.yields + ["attached"] * p.model.adheres + ["added_overlap"] * p.model.compaction
 
 
 def _steps(p: ScenePlan, kind: str, folder: Path, without: Collection[int]) -> list[tuple[int, Path]]:
@@ -152,9 +152,9 @@ def _local(p: ScenePlan, kind: str, folder: Path, ids: list[str], without: Colle
 
 
 def _in_contact(table: pd.DataFrame) -> pd.DataFrame:
-    """The rows of bodies that overlap or are attached; with adhesion `attached` becomes a truth."""
+    """The rows of bodies that overlap, as grown as they are, or are attached; `attached` becomes a truth."""
     if "attached" not in table:
-        return table[table["overlap"] > 0]
+        return table[table["overlap"] + table.get("added_overlap", 0.0) > 0]
     table = table.assign(attached=table["attached"] > 0)
     return table[(table["overlap"] > 0) | table["attached"]]
 
@@ -172,8 +172,8 @@ def _planes(p: ScenePlan, spheres: pd.DataFrame) -> list[pd.DataFrame]:
         overlap = spheres["radius"] - (spheres[w.axis] - w.at).abs()
         largest = np.maximum(spheres[f"delta_max_{w.name}"], overlap) if p.model.yields else overlap
         columns = {"step": spheres["step"], "wall": w.name, "i": spheres["id"], "j": 0, "overlap": overlap}
-        attached = {"attached": spheres[f"attached_{w.name}"]} if p.model.adheres else {}
-        planes.append(_in_contact(pd.DataFrame(columns | {"delta_max": largest} | attached)))
+        others = {slot: spheres[f"{slot}_{w.name}"] for slot in _slots(p) if slot != "delta_max"}
+        planes.append(_in_contact(pd.DataFrame(columns | {"delta_max": largest} | others)))
     return planes
 
 

@@ -77,6 +77,7 @@ def refuse(p: ScenePlan, *, classes: bool) -> None:
     unknown: dict[str, tuple[object, str]] = {
         "scene.rate": (next((f.rate for f in p.insertions if f.rate), None), "all spheres are there from the start"),
         "contact.rolling": (rolling == "epsd" and rolling, "YADE's laws have cdt and epsd2"),
+        "law.compaction": (m.compaction, "YADE's laws have no compaction"),
         "contact.cohesion": (m.cohesion, "YADE's law has no cohesion"),
         "output.restarts": (out.restarts, "a YADE scene is not continued"),
         "output.vtk": (out.vtk, "there is no VTK output; output.particles holds the same"),

@@ -42,8 +42,10 @@ def _deck(plan: AssemblyPlan, model: str | None) -> decks.Deck:
         tangential="off",
         settings=("computePlasticWork on",) if memory and plan.frames else (),
         yields=memory > 0,
-        contact_columns=contact_columns(min(memory, 1), memory + (memory > 0)),  # with the stamp of the step
-        wall_contact_columns=contact_columns(min(memory, 1), memory),
+        contact_columns=contact_columns(
+            range(1, 1 + min(memory, 1)), memory + (memory > 0)
+        ),  # with the stamp of the step
+        wall_contact_columns=contact_columns(range(1, 1 + min(memory, 1)), memory),
     )
 
 

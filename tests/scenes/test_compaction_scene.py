@@ -1,0 +1,88 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Scenes with [law] compaction: energy, contacts by growth, restart; what does not go with it."""
+
+import re
+
+import numpy as np
+import pytest
+from scene_runs import run, write_case, write_deck
+from stored_runs import CASES
+
+from epdem.case.scene import parse
+from epdem.case.toml import read_toml
+from epdem.engines import scene_engine
+from epdem.engines.liggghts import launcher, resume
+from epdem.engines.liggghts import scene_tables as tables
+from epdem.errors import CaseError
+from epdem.scenes.plan import plan
+
+COMPACT = {"name": "cavity", "finite_strain": True, "compaction": True}
+
+
+def pressed(law, **tables):
+    """Eighty spheres without friction, pressed to a relative density of 0.80 and released."""
+    data = read_toml(CASES / "compaction_powder.toml")
+    del data["contact"]
+    scene = {"box": ["0.5 mm", "0.5 mm", "0.8 mm"], "count": 80, "height": "0.21 mm", "speed": "4 m/s"}
+    scene |= {"unload_stroke": "0.03 mm"}
+    output = {"rows": 100, "particles": 20, "energy": True}
+    return data | {"law": law, "scene": data["scene"] | scene, "output": output} | tables
+
+
+@pytest.mark.liggghts
+def test_energies_of_a_press_leave_nothing_over_and_growth_raises_its_force(tmp_path):
+    """Plastic work and elastic energy come by two routes: what LIGGGHTS books, and the law at the stored overlaps."""
+    force = []
+    for name, law in (("on", COMPACT), ("off", COMPACT | {"compaction": False})):
+        found = run(write_case(pressed(law), tmp_path / name), out=tmp_path / name / "out").results
+        balance = found.energy_balance
+        moved = balance[["kinetic", "plastic", "elastic"]].abs().max().sum()
+        assert balance["balance"].abs().max() < 0.02 * moved
+        force.append(found.rows["plate_force"].max())
+        grown = found.contacts.get("added_overlap", 0.0) * np.ones(len(found.contacts))
+        assert (grown.max() > 1e-6) == (name == "on")
+        assert ((found.contacts["overlap"] < 0) & (found.contacts["force"] > 0)).any() == (name == "on")
+    assert 1.1 * force[1] < force[0] < 1.6 * force[1]
+
+
+@pytest.mark.liggghts
+def test_a_continued_press_ends_bitwise_where_the_uninterrupted_one_does(tmp_path):
+    p = write_deck(parse(pressed(COMPACT, output={"rows": 20, "particles": 10, "restarts": 10})), tmp_path)
+    launcher.run("in.scene", tmp_path)
+
+    def last():
+        table = tables.particles(p, tmp_path, without=range(p.steps))
+        return table[table["step"] == p.steps].to_numpy()
+
+    whole = last()
+    step = sorted(int(re.search(r"\d+", path.name).group()) for path in tmp_path.glob("restart.*.bin"))[-4]
+    for frame in tmp_path.glob("particles.*.bin"):
+        frame.unlink()
+    resume.write_resume(p, tmp_path, step)
+    launcher.run("in.resume", tmp_path)
+    assert np.array_equal(last(), whole)
+
+
+REFUSED = {
+    "law": ({"law": {"name": "thornton", "compaction": True}}, "law.compaction: law thornton has none"),
+    "word": ({"law": COMPACT | {"compaction": 1}}, "law.compaction = 1: it is true or false"),
+    "cohesion": ({"contact": {"cohesion": "1e3 J/m^3"}}, "contact.cohesion: .* law.compaction have no cohesion"),
+}
+
+
+@pytest.mark.parametrize("what", REFUSED)
+def test_a_case_that_cannot_have_compaction_is_refused(what):
+    tables, said = REFUSED[what]
+    with pytest.raises(CaseError, match=said):
+        plan(parse(pressed(COMPACT) | tables))
+
+
+@pytest.mark.parametrize("engine", ["yade", "lammps"])
+def test_other_engines_refuse_compaction(engine):
+    with pytest.raises(CaseError, match=r"law.compaction( = True)?: .* none|law.compaction = True: .* no compaction"):
+        scene_engine(engine).check(plan(parse(pressed(COMPACT))))
+
+
+def test_a_deck_without_compaction_names_it_nowhere():
+    texts = scene_engine("liggghts").files(plan(parse(pressed(COMPACT | {"compaction": False}))))
+    assert "compaction on" not in "".join(texts.values())
