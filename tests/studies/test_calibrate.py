@@ -176,6 +176,22 @@ def test_strength_and_hardening_exponent_are_found_from_several_restitutions(p_y
     assert found.largest_residual < 1e-3 and found.measured == tuple(measured)
 
 
+@pytest.mark.parametrize(
+    ("measured", "said"),
+    [
+        ([(1.0, 0.69), (10.0, 0.75)], "e_n hardly falls with speed; check speeds and e_n"),
+        ([(1.0, 0.9), (2.0, 0.9)], "e_n hardly falls with speed; check speeds and e_n"),
+        ([(1.0, 0.5), (10.0, 0.9)], "e_n hardly falls with speed; check speeds and e_n"),
+        ([(1.0, 0.69), (10.0, 0.30)], "e_n falls faster than law meyer allows"),
+    ],
+)
+def test_restitutions_that_fit_only_at_a_limit_of_the_law_are_refused(measured, said, tmp_path):
+    """Far above yield e_n falls as v^(-(1-x)/(4+x)): as v^(-1/4) at most, from 0.69 at 1 m/s to 0.39 at 10 m/s."""
+    path = with_law(tmp_path, "meyer")
+    with pytest.raises(CaseError, match=f"{path}: {said}"):
+        from_restitutions(path, measured, 0.01)
+
+
 def test_standard_errors_are_those_of_fits_to_shifted_measurements(tmp_path):
     path, measured, sigma = with_law(tmp_path, "meyer"), hardening_metal(1.2e9, 0.25, 2, 5, 16), 0.01
     found = from_restitutions(path, measured, sigma)
@@ -203,7 +219,9 @@ def test_the_scatter_of_three_or_more_restitutions_gives_their_uncertainty(tmp_p
     residuals = [e - np.interp(v, *curve.T) for v, e in noisy]
     scatter = math.sqrt(sum(r**2 for r in residuals) / 2)  # four values, two unknowns
     assert free.largest_residual == pytest.approx(max(map(abs, residuals)) / scatter, rel=1e-3)
+    assert f"scatter of e_n about the fit {scatter:.2g}, to be compared" in pages.sentences_of_calibration(free)[0]
     given = from_restitutions(path, noisy, scatter)
+    assert "scatter" not in pages.sentences_of_calibration(given)[0]
     assert free.standard_errors == pytest.approx(given.standard_errors, rel=1e-3) and free.value == pytest.approx(
         given.value
     )
@@ -238,6 +256,30 @@ def test_the_command_takes_several_restitutions_or_those_of_the_case(tmp_path):
     assert said in " ".join(curve.stdout.split()) and said in (tmp_path / "page/report.html").read_text()
 
 
+def test_a_measured_impact_below_first_yield_is_refused_with_file_and_speed(tmp_path):
+    path = with_law(tmp_path, "meyer")
+    text = '\n[measured]\nsource = "me"\nspeeds = ["0.01 m/s", "1 m/s"]\ne_n = [1.0, 0.7]\n'
+    path.write_text(path.read_text() + text)
+    error = CliRunner().invoke(app, ["calibrate", str(path), "--measured", "--uncertainty", "0.01"]).exception
+    assert str(error) == (
+        f"{path}: measured.e_n = 1 at 0.01 m/s, must lie in (0, 1); leave out impacts below first yield"
+    )
+
+
+def test_an_uncertainty_belongs_to_an_impact():
+    error = CliRunner().invoke(app, ["calibrate", str(STEEL), "--hv", "200", "--uncertainty", "0.01"]).exception
+    assert "--uncertainty: it belongs to --e-n and --measured" in str(error)
+
+
+def test_a_hardness_that_no_strength_gives_is_refused(tmp_path):
+    """x = 0.9: p_m ~ p_y^0.1, so that 1e-8 E* still gives 6.2 times the 1.06 GPa of HV 100."""
+    path = with_law(tmp_path, "meyer")
+    path.write_text(path.read_text().replace('name = "meyer"\n', 'name = "meyer"\nhardening_exponent = 0.9\n'))
+    said = r"HV 100: no yield_pressure above 1e-08 of E\* = 2.29e\+11 Pa gives 1.06e\+09 Pa .* lower law.hardening_exp"
+    with pytest.raises(CaseError, match=said):
+        from_hardness(path, hardness_test(vickers=100), "HV 100")
+
+
 def test_a_law_that_hardens_has_the_measured_mean_pressure_in_the_hardness_test(tmp_path):
     """p_m = 2/3 p_y [1 + 3/(2+x) (q^(2+x) - 1)]/q^2 at q = (a/R) 2E*/(pi p_y), E* of a rigid indenter."""
     test = hardness_test(brinell=200, dent_ratio=0.4)
@@ -256,7 +298,8 @@ def test_a_law_that_hardens_has_the_measured_mean_pressure_in_the_hardness_test(
     ("line", "said"),
     [
         ("meyer_index = 1.9", r"law.meyer_index = 1.9, must lie in \[2, 3\)"),
-        ("meyer_index = 3.0", "law.meyer_index = 3.0, must lie in"),
+        ("meyer_index = 3.0", r"law.meyer_index = 3, must lie in \[2, 3\)"),
+        ("meyer_index = 3.5", r"law.meyer_index = 3.5, must lie in \[2, 3\)"),
         ("meyer_index = 2.1\nhardening_exponent = 0.1", "both hardening_exponent and meyer_index are given"),
     ],
 )

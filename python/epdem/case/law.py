@@ -57,7 +57,7 @@ def _without_index(given: dict[str, Any]) -> dict[str, Any]:
     """The numbers of a law with hardening_exponent = meyer_index - 2 in place of meyer_index."""
     if "hardening_exponent" in given:
         raise CaseError("law: both hardening_exponent and meyer_index are given; keep one")
-    index = read_number("law.meyer_index", given["meyer_index"], "1", below=3.0)
-    if index < 2.0:
+    index = read_number("law.meyer_index", given["meyer_index"], "1")
+    if not 2.0 <= index < 3.0:
         raise CaseError(f"law.meyer_index = {index:g}, must lie in [2, 3); 2 is a metal that does not harden")
     return {k: v for k, v in given.items() if k != "meyer_index"} | {"hardening_exponent": index - 2.0}

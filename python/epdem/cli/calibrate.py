@@ -104,7 +104,7 @@ def _from_impacts(
     if not e_n:
         refuse(case, "it belongs to --e-n", speed=speed)
     if not (measured or e_n):
-        refuse(case, "it belongs to --e-n", uncertainty=uncertainty)
+        refuse(case, "it belongs to --e-n and --measured", uncertainty=uncertainty)
         test = hardness_test(vickers=hv, brinell=hb, dent_ratio=dent_ratio)
         return c.from_hardness(case, test, f"HV {hv:g}" if hv is not None else f"HB {hb:g}")
     if len(e_n) != len(speed):

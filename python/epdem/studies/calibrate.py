@@ -42,7 +42,8 @@ class Calibration:
     standard_errors: tuple[float, float] | None = None  # of value [Pa] and hardening_exponent
     correlation: float | None = None  # of the errors of ln(value) and hardening_exponent
     measured: tuple[tuple[float, float], ...] = ()  # speeds [m/s] and e_n
-    largest_residual: float | None = None  # of e_n, in units of its uncertainty
+    largest_residual: float | None = None  # of e_n, in units of its uncertainty, or else of the scatter
+    scatter: float | None = None  # of e_n about the fit, where no uncertainty was given
 
 
 @dataclass(frozen=True)
@@ -100,7 +101,7 @@ def experiment(path: Path, found: Calibration) -> Experiment:
 
 def _check(e_n: float, speed: float) -> None:
     if not 0.0 < e_n < 1.0:
-        raise CaseError(f"--e-n {e_n:g}, must lie in (0, 1)")
+        raise CaseError(f"--e-n {e_n:g}, must lie in (0, 1); leave out impacts below first yield")
     if not (math.isfinite(speed) and speed > 0):
         raise CaseError(f"--speed {speed:g} m/s, must be > 0")
 
@@ -174,6 +175,16 @@ def from_restitutions(
             f"these e_n do not tell {unknown.parameter} and {EXPONENT} apart: the standard error of {EXPONENT} is "
             f"{error[1]:.2g}; measure at speeds further apart, or give law.{EXPONENT} and one e_n"
         )
+    if exponent < 1e-6:
+        raise CaseError(
+            f"{path}: e_n falls faster than law {name} allows; {EXPONENT} = 0, which is law thornton, is the closest: "
+            "check speeds and e_n, or give one e_n"
+        )
+    if logarithm < low[0] + 1e-3 or exponent > 0.99:
+        raise CaseError(
+            f"{path}: e_n hardly falls with speed; check speeds and e_n: no {unknown.parameter} above "
+            f"{LEAST_STRENGTH:g} E* with {EXPONENT} < 1 gives them"
+        )
     found = unknown.hardening(exponent).result(math.exp(logarithm), None, f"{len(e_n)} values of e_n")
     return replace(
         found,
@@ -182,12 +193,20 @@ def from_restitutions(
         correlation=float(covariance[0, 1] / (error[0] * error[1])),
         measured=tuple(zip(speeds.tolist(), e_n.tolist(), strict=True)),
         largest_residual=float(np.abs(fit.fun).max() * (1.0 if uncertainty else 1.0 / max(spread, 1e-12))),
+        scatter=None if uncertainty else spread,
     )
 
 
 def of_case(path: Path) -> list[tuple[float, float]]:
-    """The (speed [m/s], e_n) of [measured] of a case. Raises CaseError."""
+    """The (speed [m/s], e_n) of [measured] of a case, all e_n in (0, 1). Raises CaseError."""
     curve = load(path).measured
     if curve is None:
         raise CaseError(f"{path}: it has no [measured] speeds and e_n; add them, or give --e-n with --speed")
-    return list(zip(curve.speeds, curve.e_n, strict=True))
+    points = list(zip(curve.speeds, curve.e_n, strict=True))
+    for speed, e_n in points:
+        if not 0.0 < e_n < 1.0:
+            raise CaseError(
+                f"{path}: measured.e_n = {e_n:g} at {speed:g} m/s, must lie in (0, 1); leave out impacts below first "
+                "yield"
+            )
+    return points

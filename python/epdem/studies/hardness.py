@@ -73,4 +73,9 @@ def strength(law: LawNumbers, test: Indentation, body: Body, source: str) -> flo
         assert not isinstance(theory, JKR)
         return mean_pressure(theory, test.slope) < test.pressure
 
+    if not too_soft(LEAST_STRENGTH * plane):
+        raise CaseError(
+            f"{source}: no {law_named(law.name).strength} above {LEAST_STRENGTH:g} of E* = {plane:.3g} Pa gives "
+            f"{test.pressure:.3g} Pa with these parameters of {law.name}; lower law.hardening_exponent"
+        )
     return float(bisect(too_soft, LEAST_STRENGTH * plane, 2.0 * test.pressure, steps=80)[1])

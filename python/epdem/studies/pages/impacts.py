@@ -65,9 +65,12 @@ def sentences_of_calibration(c: Calibration) -> list[str]:
     if c.hardening_exponent is not None and c.standard_errors is not None:
         lines.append(f"hardening_exponent = {c.hardening_exponent:.4g}")
         errors = f" +- {c.standard_errors[0] / 1e6:.2g} MPa"
+        fits = f"largest residual of e_n {c.largest_residual:.2g} standard errors"
+        if c.scatter is not None:
+            fits = f"scatter of e_n about the fit {c.scatter:.2g}, to be compared with the error of the measurement"
         more = (
             f", hardening_exponent = {c.hardening_exponent:.4g} +- {c.standard_errors[1]:.2g} (standard errors, "
-            f"correlation {c.correlation:.3f}; largest residual of e_n {c.largest_residual:.2g} standard errors)"
+            f"correlation {c.correlation:.3f}; {fits})"
         )
     return [
         f"law {c.law}, {c.source}: {c.parameter} = {c.value / 1e6:.6g} MPa{errors}{more}, "
