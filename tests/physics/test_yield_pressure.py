@@ -40,7 +40,7 @@ def test_the_flatness_is_1_less_the_exponent_far_above_yield():
     assert flatness(LAWS["johnson"])(10 * LAWS["johnson"].yield_overlap) == 1.0
 
 
-def test_psi_2_moves_by_up_to_0_08_and_no_energy_appears():
+def test_psi_2_of_thornton_moves_by_up_to_0_076_and_no_energy_appears():
     law = LAWS["thornton"]
     shift = [
         np.abs(np.subtract(*(springs(law, PSI_1, n * V_Y, own=own, steps=400, count=200) for own in (True, False))))
