@@ -17,7 +17,7 @@ trixie:
 container:
 	scripts/container $(ROOT)/container
 
-# the module epdem_yade for the YADE on PATH; YADE_SOURCE=DIR: source of the same version, else its tag is cloned
+# the module epdem_yade for EPDEM_YADE, else the YADE on PATH; YADE_SOURCE=DIR: source of the same version, else its tag is cloned
 yade:
 	@scripts/yade $(YADE_SOURCE)
 

@@ -1,5 +1,8 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""scripts/setup on machines that lack something: one sentence each. Its tools are stand-ins on a path of their own."""
+"""scripts/setup on machines that lack something: one sentence each. Its tools are stand-ins on a path of their own.
+
+The build of YADE's module with a source of another version.
+"""
 
 import os
 import re
@@ -129,6 +132,71 @@ def test_a_virtual_environment_that_is_not_whole_or_was_moved_is_made_anew(state
     assert (place / "mark").exists() == (state == "whole")
     assert ("comes from another folder; it is made anew" in done.stdout) == (state != "whole")
     assert (place / "bin/python").exists()
+
+
+@pytest.mark.parametrize("changed", ["cpp_contact/pair.cpp", "templates/in.j2"])
+def test_changed_sources_in_cpp_remove_the_plugin_of_lammps_and_the_module_of_yade(changed, machine):
+    machine.complete()
+    (machine.bin / "find").unlink()
+    (machine.bin / "find").symlink_to(shutil.which("find"))
+    for name in (
+        "pyproject.toml",
+        "CMakeLists.txt",
+        "scripts/constraints.txt",
+        "python/a.py",
+        changed,
+        "cpp_contact/b",
+    ):
+        (machine.clone / name).parent.mkdir(exist_ok=True)
+        (machine.clone / name).touch()
+    (machine.clone / "templates").mkdir(exist_ok=True)
+    place = machine.clone / ".venv"
+    (place / "bin").mkdir(parents=True)
+    (place / "bin/python").write_text("#!/bin/bash\nexit 0\n")
+    (place / "bin/python").chmod(0o755)
+    (place / "bin/pip").write_text(f"#!{place}/bin/python\n")
+    assert machine.setup().returncode == 0
+    native = place / "lib/python3.11/site-packages/epdem/native"
+    built = [native / "lammps/epdemplugin.so", native / "epdem_yade.so"]
+    built[0].parent.mkdir(parents=True)
+    for file in built:
+        file.touch()
+    (machine.clone / changed).write_text("other")
+    done = machine.setup()
+    assert done.returncode == 0 and "setup: building" in done.stdout, done.stderr
+    removed = changed.startswith("cpp_contact")
+    assert [file.exists() for file in built] == [not removed] * 2
+    assert [f"again: make {name}\n" in done.stdout for name in ("lammps", "yade")] == [removed] * 2
+
+
+@pytest.mark.parametrize(
+    ("file", "text"),
+    [("debian/changelog", "yade (1:{}-3+deb12u1) unstable; urgency=low\n"), ("RELEASE", "{}\n"), (".git", "")],
+)
+def test_a_source_of_yade_of_another_version_is_refused(file, text, tmp_path):
+    """The YADE is a stand-in without Python headers, where a build with the source of its version stops."""
+    program = tmp_path / "yade"
+    facts = {"version": "2023.02a", "bits": 64, "digits": 15, "features": "OPENMP", "python": "/nowhere"}
+    program.write_text("#!/bin/sh\n" + "".join(f"echo epdem {key} {value}\n" for key, value in facts.items()))
+    program.chmod(0o755)
+    source = tmp_path / "source"
+    (source / "core").mkdir(parents=True)
+    (source / "core/Scene.hpp").touch()
+    room = ["cmake", "-S", ROOT / "cpp_contact/yade", "-B", tmp_path / "build"]
+    for version in ("2019.01a", "2023.02a"):
+        if file == ".git":
+            git = ["git", "-C", source, "-c", "user.name=a", "-c", "user.email=a@b"]
+            for words in (["init", "-q"], ["commit", "-q", "--allow-empty", "-m", version], ["tag", version]):
+                subprocess.run([*git, *words], check=True)
+        else:
+            (source / file).parent.mkdir(exist_ok=True)
+            (source / file).write_text(text.format(version))
+        done = subprocess.run(
+            [*room, f"-DYADE={program}", f"-DYADE_SOURCE={source}"], capture_output=True, text=True, check=False
+        )
+        said = " ".join(done.stderr.split())
+        assert (f"is the source of YADE {version} and {program} is YADE 2023.02a;" in said) == (version == "2019.01a")
+        assert ("/nowhere/Python.h was not found" in said or "headers of" in said) == (version == "2023.02a"), said
 
 
 def test_every_dependency_has_one_version_in_the_lock_file():
