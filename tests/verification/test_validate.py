@@ -100,8 +100,27 @@ def test_a_set_without_its_source_is_refused(tmp_path, monkeypatch):
     monkeypatch.setattr(paths, "data", lambda: tmp_path)
     with pytest.raises(CaseError, match=r"bare\.csv: the head lacks source"):
         validate.read("bare")
-    (tmp_path / "restitution/odd.csv").write_text(text.replace("e_n,0.890", "e_t,0.890"))
-    with pytest.raises(CaseError, match=r"odd\.csv: unknown column or quantity"):
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "said"),
+    [
+        ("e_n,0.890", "e_t,0.890", r"quantity 'e_t', must be e_n or dent_width"),
+        ("hardness [HV]", "depth [m]", r"columns .*, depth, left out; must be .*, hardness or yield_stress"),
+        ("e_n,0.890,", "e_n,", r"row 'e_n,.*' has 6 values for 7 columns"),
+        ("e_n,0.890,", "e_n,,", "value '' is no number"),
+        ("e_n,0.890,", "e_n,0.89 0,", "value '0.89 0' is no number"),
+    ],
+)
+def test_a_wrong_row_or_column_of_a_set_is_named(old, new, said, tmp_path, monkeypatch):
+    text = (paths.data() / "restitution/leeb_D.csv").read_text()
+    (tmp_path / "restitution").mkdir()
+    monkeypatch.setattr(paths, "data", lambda: tmp_path)
+    (tmp_path / "restitution/odd.csv").write_text(text + "  \n")
+    assert validate.read("odd").points["value"].tolist()[-1] == 0.89
+    assert text.count(old) == 1
+    (tmp_path / "restitution/odd.csv").write_text(text.replace(old, new))
+    with pytest.raises(CaseError, match=rf"odd\.csv: {said}"):
         validate.read("odd")
 
 

@@ -74,18 +74,25 @@ def read(name: str) -> Measured:
     if name not in names():
         raise CaseError(f"--set {name!r} does not exist; there are {', '.join(names())}")
     path = paths.data() / "restitution" / f"{name}.csv"
-    lines = path.read_text(encoding="utf-8").splitlines()
+    lines = [line for line in path.read_text(encoding="utf-8").splitlines() if line.strip()]
     head = dict(line.removeprefix("# ").split(": ", 1) for line in lines if line.startswith("#"))
     if missing := [key for key in HEAD if key not in head]:
         raise CaseError(f"{path}: the head lacks {', '.join(missing)}; say where the numbers are from")
-    titles, *rows = csv.reader(line for line in lines if line and not line.startswith("#"))
+    titles, *rows = csv.reader(line for line in lines if not line.startswith("#"))
     columns = [re.sub(r" \[.*\]$", "", title) for title in titles]
-    table = pd.DataFrame([dict(zip(columns, row, strict=True)) for row in rows])
+    if odd := [row for row in rows if len(row) != len(columns)]:
+        raise CaseError(f"{path}: row {','.join(odd[0])!r} has {len(odd[0])} values for {len(columns)} columns")
+    table = pd.DataFrame(rows, columns=columns)
     given = [name for name in STRENGTHS if name in columns]
-    if {*columns} != {*COLUMNS, *given} or len(given) != 1 or not {*table["quantity"]} <= {*QUANTITIES}:
-        raise CaseError(f"{path}: unknown column or quantity; there are {', '.join(COLUMNS)} and {STRENGTHS[0]}")
-    numbers = ["value", "uncertainty", "speed", *given]
-    table[numbers] = table[numbers].astype(float)
+    if sorted(columns) != sorted([*COLUMNS, *given]) or len(given) != 1:
+        raise CaseError(f"{path}: columns {', '.join(columns)}; must be {', '.join(COLUMNS)}, {' or '.join(STRENGTHS)}")
+    if odd := [quantity for quantity in table["quantity"] if quantity not in QUANTITIES]:
+        raise CaseError(f"{path}: quantity {odd[0]!r}, must be {' or '.join(QUANTITIES)}")
+    for column in ("value", "uncertainty", "speed", *given):
+        values = pd.to_numeric(table[column], errors="coerce")
+        if values.isna().any():
+            raise CaseError(f"{path}: {column} {table[column][values.isna()].iloc[0]!r} is no number; correct it")
+        table[column] = values.astype(float)
     used = table["left out"] == ""
     return Measured(name, head, table[used].drop(columns="left out"), table[~used], given[0])
 
