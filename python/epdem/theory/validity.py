@@ -12,9 +12,9 @@ from .checks import Array, Real, number
 from .jkr import JKR
 
 SMALL_DEFORMATION = 0.3  # a_max/R* above which results are flagged everywhere
-# a/R* from which finite-element impacts leave the -1/4 law, whatever Y is, and by how much e_n of theory exceeds theirs
-# there (finite-strain branch of Wu et al. 2003)
-FINITE_STRAIN = {0.2: "0 to 6 %", SMALL_DEFORMATION: "13 to 23 %"}
+# a/R* from which finite-element impacts leave the -1/4 law, and by how many percent e_n of cavity exceeds theirs there:
+# 0.62 [(v/v_y0)/(E*/Y)]^(-1/2), the finite-strain branch of Wu et al. 2003; the ratio does not depend on Y
+FINITE_STRAIN = {0.2: 0, SMALL_DEFORMATION: 23}
 
 
 def caveats(law: Backbone | JKR, *, m_star: float, speed: Real) -> list[str]:
@@ -34,8 +34,8 @@ def finite_strain(largest: float, where: str = "") -> list[str]:
     if limit is None:
         return []
     return [
-        f"a/R* reaches {largest:.2f}, above {limit}{where}: finite strain; at {limit} e_n of theory is "
-        f"{FINITE_STRAIN[limit]} too high (Wu et al. 2003), beyond it more"
+        f"a/R* reaches {largest:.2f}, above {limit}{where}: finite strain; small-strain theory overestimates e_n, by "
+        f"{FINITE_STRAIN[SMALL_DEFORMATION]} % at {SMALL_DEFORMATION} (cavity against Wu et al. 2003), more beyond"
     ]
 
 
