@@ -6,6 +6,9 @@
 #include "fix_wall.hpp"
 #include "pair_ep.hpp"
 
+// library.h of LAMMPS; weak, because a LAMMPS that is linked statically may lack it
+extern "C" [[gnu::weak]] int lammps_extract_setting(void* lmp, const char* keyword);
+
 namespace {
 
 /// LAMMPS's declaration of a style, which its installed headers lack.
@@ -34,6 +37,11 @@ extern "C" [[gnu::visibility("default")]] void lammpsplugin_init(void* pointer, 
     lmp->error->all(FLERR, "epdemplugin.so is built for LAMMPS " + std::to_string(EPDEM_LAMMPS_VERSION) +
                                " and this is LAMMPS " + std::to_string(lmp->num_ver) +
                                "; build it for this one: make lammps LAMMPS_DIR=/its/build/folder");
+  if (lammps_extract_setting && (lammps_extract_setting(pointer, "tagint") != int(sizeof(LAMMPS_NS::tagint)) ||
+                                 lammps_extract_setting(pointer, "bigint") != int(sizeof(LAMMPS_NS::bigint))))
+    lmp->error->all(FLERR,
+                    "epdemplugin.so is built for other sizes of integers than this LAMMPS has (LAMMPS_SIZES); "
+                    "build it for this one: make lammps LAMMPS_DIR=/its/build/folder");
   const auto style = [&](const char* kind, const char* name, const char* info, void* create) {
     Style s{lmp->version, kind, name, info, "the epdem developers", create, handle};
     reinterpret_cast<Register>(add)(&s, pointer);

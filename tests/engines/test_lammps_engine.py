@@ -150,12 +150,15 @@ def test_ranks_of_liggghts_are_of_openmpi_although_mpich_comes_first(tmp_path, m
         (None, "is neither a build folder of LAMMPS nor an installed LAMMPS with headers"),
         ("CMAKE_BUILD_TYPE:STRING=Release\n", "is no build folder of LAMMPS"),
         ("lammps_SOURCE_DIR:STATIC=/l/cmake\nPKG_PLUGIN:BOOL=OFF\n", "build it with -DPKG_PLUGIN=on"),
+        ("lammps_SOURCE_DIR:STATIC={}/cmake\nPKG_PLUGIN:BOOL=ON\n", "version.h does not name LAMMPS's version"),
     ],
 )
 def test_a_folder_that_lammps_cannot_be_built_for_is_refused(cache, sentence, tmp_path):
     """LAMMPS_DIR of `make lammps`."""
     if cache:
-        (tmp_path / "CMakeCache.txt").write_text(cache)
+        (tmp_path / "CMakeCache.txt").write_text(cache.format(tmp_path))
+        (tmp_path / "src").mkdir()
+        (tmp_path / "src/version.h").write_text("#define LAMMPS_VERSION unknown\n")
     script = Path(__file__).parents[2] / "scripts" / "lammps"
     env = os.environ | {"LAMMPS_DIR": str(tmp_path)}
     done = subprocess.run([sys.executable, script], env=env, capture_output=True, text=True, check=False)
