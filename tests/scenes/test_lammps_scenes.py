@@ -10,6 +10,7 @@ from test_parts_motions import PLATE, assert_the_lid_shakes_on, moved
 from engines.lammps_decks import needs_lammps
 from epdem.case.scene import load, parse
 from epdem.engines import scene_engine
+from epdem.engines.lammps import scene_deck as lammps_scene
 from epdem.errors import CaseError
 from epdem.scenes.columns import last_frame
 from epdem.scenes.plan import plan
@@ -134,3 +135,38 @@ def test_what_regions_do_not_hold_is_refused_with_one_sentence(change, sentence)
 def test_cases_that_lammps_does_not_hold_are_refused(case, sentence):
     with pytest.raises(CaseError, match=sentence):
         scene_engine("lammps").check(plan(load(CASES / f"{case}.toml")))
+
+
+BALL = {"material": "glass", "radius": "1.5 mm"}
+HELD = BALL | {"name": "held", "position": ["0 mm", "0 mm", "1 mm"], "frozen": True}
+LOST = BALL | {"name": "lost", "position": ["8 mm", "0 mm", "9 mm"], "velocity": ["5 m/s", "0 m/s", "0 m/s"]}
+LATE = BALL | {"name": "late", "position": ["0 mm", "5 mm", "9 mm"], "phase": "spheres"}
+GATE = plane("gate", "z", "0 mm") | {"phases": ["spheres"]}
+
+
+def late(**scene):
+    """A frozen sphere that a gate overlaps, one that leaves the room, and one that comes in the second phase."""
+    phases = [{"name": name, "duration": "4 ms"} for name in ("first", "spheres")]
+    return parts(wall=[GATE, PLATE], fill=[], body=[HELD, LOST, LATE], phase=phases, **scene)
+
+
+def test_spheres_of_a_phase_have_a_file_of_their_own():
+    files = lammps_scene.files(plan(parse(late())))
+    assert [files[name].splitlines()[2] for name in ("spheres.data", "phase_spheres.data")] == ["2 atoms", "1 atoms"]
+
+
+@needs_lammps
+def test_gates_leave_frozen_spheres_where_they_are_and_ids_are_not_given_twice(tmp_path):
+    table = run(write_case(late(), tmp_path), engine="lammps", out=tmp_path / "out").results.particles
+    held = table[table["id"] == 1]
+    assert held["step"].nunique() > 2 and (held["z"] == 1e-3).all() and (held["vz"] == 0).all()
+    assert {*last_frame(table)["id"]} == {1, 3}
+
+
+def test_regions_of_a_profile_are_not_named_as_a_wall():
+    """A wall `a` of two cones, and a wall `a_1`."""
+    profile = [["5 mm", "0 mm"], ["8 mm", "10 mm"], ["9 mm", "20 mm"]]
+    cup = {"name": "a", "kind": "revolved", "profile": profile, "material": "steel"}
+    deck = lammps_scene.files(plan(parse(parts(wall=[FLOOR, cup, PLATE | {"name": "a_1"}]))))["in.scene"]
+    regions = [line.split()[1] for line in deck.splitlines() if line.startswith("region ")]
+    assert len(regions) == len({*regions}) == 4

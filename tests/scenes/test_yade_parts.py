@@ -146,3 +146,10 @@ def test_a_wall_whose_surface_turns_has_no_other_motion_in_yade():
         CaseError, match=r"scene\.wall\.tube\.angular_velocity: YADE turns the wall itself, which moves otherwise"
     ):
         files(scene_engine("yade"), plan(parse(data)))
+
+
+@pytest.mark.parametrize("classes", [True, False])
+def test_a_wall_of_any_name_leaves_the_table_of_the_spheres(classes):
+    texts = scene_deck.files(plan(parse(parts(wall=[FLOOR, PLATE | {"name": "spheres"}]))), classes=classes)
+    assert len(texts["spheres.txt"].splitlines()) == 1 + BED["count"]
+    assert len(texts["wall_spheres.txt"].splitlines()) == 1 + 2  # triangles of a plate

@@ -47,6 +47,7 @@ def deck(p: ScenePlan) -> decks.Deck:
     walls = (*(plane(p, w) for w in p.scene.planes), *meshes(p))
     row_words = {"f_load": p.floor_load, "f_press_z": p.plates, "f_torque": p.torque, "f_power": p.writes_wall_power}
     phases, before, begin = [], None, 0
+    placed = len(p.scene.table) + sum(f.count for f in p.insertions)  # in the first phase
     for phase, after in zip(p.phases, [*p.phases[1:], None], strict=True):
         phases.append(
             decks.Deck(
@@ -54,6 +55,7 @@ def deck(p: ScenePlan) -> decks.Deck:
                 steps=phase.end - begin,
                 time_step=phase.case.time_step or p.time_step if own_steps else None,
                 data=_data_file(p, phase.name),
+                placed=placed,
                 gates=[gates[name] for name in phase.gates if before is None or name not in before.gates],
                 commands=motions(p, before, phase) if before else [],
                 ends=[wall_id(p, name) for name in phase.gates if after and name not in after.gates],
@@ -61,6 +63,7 @@ def deck(p: ScenePlan) -> decks.Deck:
             )
         )
         before, begin = phase, phase.end
+        placed += sum(b.phase == phase.name for b in p.scene.later)
     return decks.Deck(
         p,
         title=p.case.case.title,
@@ -110,8 +113,7 @@ def columns_of_dump(p: ScenePlan) -> dict[str, str]:
 
 def _data_file(p: ScenePlan, phase: str) -> str | None:
     """The data file of the spheres that come with a phase but the first; None: none do."""
-    later = any(f.phase == phase for f in p.insertions) or any(b.phase == phase for b in p.scene.later)
-    return f"{phase}.data" if later and phase != p.phases[0].name else None
+    return f"phase_{phase}.data" if any(b.phase == phase for b in p.scene.later) else None
 
 
 def _data(p: ScenePlan, phase: str) -> str:

@@ -57,9 +57,9 @@ def meshes(p: ScenePlan) -> tuple[DeckWall, ...]:
         if len(shapes) == 1:
             regions = [f"region {id} {shapes[0]} {ends}"]
         else:
-            regions = [f"region {id}_{k} {shape} units box" for k, shape in enumerate(shapes, 1)]
-            parts = " ".join(f"{id}_{k}" for k in range(1, len(shapes) + 1))
-            regions.append(f"region {id} union {len(shapes)} {parts} {ends}")
+            names = [f"part{k}_{id}" for k in range(1, len(shapes) + 1)]  # the id of no wall begins with part
+            regions = [f"region {part} {shape} units box" for part, shape in zip(names, shapes, strict=True)]
+            regions.append(f"region {id} union {len(shapes)} {' '.join(names)} {ends}")
         found.append(DeckWall(id, tuple(regions), f"wall/ep/region {id}", contact(p, name)))
     return tuple(found)
 
@@ -110,7 +110,7 @@ def _open(faces: Iterable[int]) -> str:
 
 
 def _side(p: ScenePlan, w: BoxWall | CylinderWall | ConeWall) -> str:
-    """Which side of a closed wall the spheres are on, for a region without openings has one."""
+    """Which side of a closed wall the spheres are on, because a region without openings acts on one side."""
     inside = {_holds(w, row[:3]) for phase in p.phases for row in placement.spheres(p, phase.name).tolist()}
     inside |= {_holds(w, list(b.position)) for b in p.scene.later}
     if len(inside) > 1:

@@ -20,7 +20,7 @@ EDGES = (
 
 @dataclass(frozen=True)
 class Facets:
-    """A wall of triangles: `file` holds their corners; material: its number; turn: of its surface."""
+    """A wall of triangles: `file` holds their corners; material: its number."""
 
     name: str
     file: str
@@ -96,9 +96,13 @@ def unrecorded(p: ScenePlan) -> list[tuple[int, int]]:
     return found
 
 
+def _file(name: str) -> str:
+    return f"wall_{name}.txt"
+
+
 def facets(p: ScenePlan) -> tuple[Facets, ...]:
     """The walls of triangles."""
-    return tuple(Facets(name, f"{name}.txt", p.wall_types[name] - 1) for name in p.scene.meshes)
+    return tuple(Facets(name, _file(name), p.wall_types[name] - 1) for name in p.scene.meshes)
 
 
 def _motion(name: str, move: Move) -> Motion:
@@ -129,5 +133,5 @@ def files(p: ScenePlan) -> dict[str, str]:
     texts = {}
     for name, triangles in p.triangles.items():
         lines = [" ".join(map(decks.number, row)) for row in triangles.reshape(-1, 9).tolist()]
-        texts[f"{name}.txt"] = "\n".join(["# corners of a triangle, x y z of each [m]", *lines, ""])
+        texts[_file(name)] = "\n".join(["# corners of a triangle, x y z of each [m]", *lines, ""])
     return texts
