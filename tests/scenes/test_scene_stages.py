@@ -22,7 +22,7 @@ from epdem.scenes.run import run
 class Stored(Liggghts):
     """LIGGGHTS whose runs are copies of stored ones."""
 
-    ranks = 4
+    ranks, mpirun = 4, "true"
 
     def __init__(self, name: str = "drum"):
         self.stored, self.runs, self.says, self.here = STORED / name, 0, "LIGGGHTS 3.8.0", True

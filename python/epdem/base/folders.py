@@ -35,6 +35,7 @@ OUTPUTS = (
     "out.*",
     "particles.*",
     "contacts.*",
+    "contacts_*",
     "wall_contacts*",
     "restart.*",
     "scene*",
@@ -44,6 +45,8 @@ OUTPUTS = (
     "*.data",
     "*.stl",
     "spheres.txt",
+    "wall_*.txt",
+    "end.txt",
     "impact.py",
 )
 

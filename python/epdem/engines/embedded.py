@@ -19,7 +19,7 @@ class Embedded:
     name = "embedded"
     source: Source | None = None
     laws: tuple[str, ...] | None = None
-    ranks = 1
+    ranks, mpirun = 1, ""
     features = frozenset({Feature.ADHESION, Feature.DASHPOT, Feature.FRICTION, Feature.SPHERE_FRICTION})
 
     def missing(self) -> str | None:

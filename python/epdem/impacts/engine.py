@@ -73,6 +73,10 @@ class Engine(Protocol[Job, Result]):
     ranks: int  # the largest number on this machine
     features: frozenset[Feature]
 
+    @property
+    def mpirun(self) -> str:
+        """The program that starts several ranks."""
+
     def missing(self) -> str | None:
         """None if the engine can run here, else a sentence with the command that installs it."""
 
@@ -144,12 +148,14 @@ def check_features(tool: ImpactEngine, x: Experiment) -> None:
     check_law(tool, x.law.name)
     if x.oblique and Feature.FRICTION not in tool.features:
         raise CaseError(
-            f"impact.angles: engine {tool.name} runs normal impacts only; use --engine embedded or liggghts"
+            f"impact.angles: engine {tool.name} runs normal impacts only; use --engine embedded, liggghts or lammps"
         )
     if x.oblique and np.isfinite(x.target.radius) and Feature.SPHERE_FRICTION not in tool.features:
         raise CaseError(f"impact.angles: engine {tool.name} runs oblique impacts on walls only; use --engine embedded")
     if x.viscous_restitution is not None and Feature.DASHPOT not in tool.features:
-        raise CaseError(f"viscous: engine {tool.name} does not have this dashpot; use --engine liggghts or embedded")
+        raise CaseError(
+            f"viscous: engine {tool.name} does not have this dashpot; use --engine embedded, liggghts or lammps"
+        )
 
 
 def refuse(tool: ImpactEngine, plan: Plan, prediction: Prediction, *, ranks: int = 1) -> None:
@@ -157,22 +163,22 @@ def refuse(tool: ImpactEngine, plan: Plan, prediction: Prediction, *, ranks: int
 
     `prediction` belongs to the plan's experiment.
     """
-    refuse_ranks(tool.name, tool.ranks, ranks)
+    refuse_ranks(tool.name, tool.ranks, ranks, tool.mpirun)
     tool.check(plan)
     for speed, overlap in zip(prediction.speed, prediction.overlap_max, strict=True):
         if Feature.POSITIONS in tool.features and (why := not_representable(plan.experiment, float(overlap))):
             raise CaseError(f"{speed:.4g} m/s is not representable by positions ({why}); use --engine embedded for it")
 
 
-def refuse_ranks(engine: str, most: int, ranks: int) -> None:
-    """Raise CaseError for a number of ranks outside 1 to `most`, EngineError if there is no mpirun for them."""
+def refuse_ranks(engine: str, most: int, ranks: int, mpirun: str) -> None:
+    """Raise CaseError for a number of ranks outside 1 to `most`, EngineError if the program `mpirun` is not there."""
     if ranks < 1:
         raise CaseError(f"--ranks {ranks}: must be at least 1; leave it out for one rank")
     if ranks > most:
         limit = "one rank; leave it out" if most == 1 else f"at most {most} ranks here; ask for no more"
         raise CaseError(f"--ranks {ranks}: engine {engine} runs on {limit}")
-    if ranks > 1 and shutil.which("mpirun") is None:
-        raise EngineError("--ranks needs mpirun, which was not found; apt-get install openmpi-bin")
+    if ranks > 1 and shutil.which(mpirun) is None:
+        raise EngineError(f"--ranks needs {mpirun}, which was not found; apt-get install openmpi-bin")
 
 
 def not_representable(x: Experiment, overlap_max: float) -> str | None:

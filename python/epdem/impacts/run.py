@@ -95,7 +95,7 @@ def run_and_compare(
 def write_deck(x: Experiment, tool: ImpactEngine, folder: Path, *, force: bool = False) -> list[Path]:
     """Write the deck of an experiment into `folder`, where `force` allows other files; its files. Raises CaseError."""
     if Feature.DECK not in tool.features:
-        raise CaseError(f"engine {tool.name}: it reads no deck; use liggghts or yade")
+        raise CaseError(f"engine {tool.name}: it reads no deck; use liggghts, lammps or yade")
     p = plan(x, predict(x))
     with claim(folder, force=force):
         return tool.write(p, folder)

@@ -48,6 +48,10 @@ class Lammps:
         {Feature.ADHESION, Feature.DASHPOT, Feature.FRICTION, Feature.SPHERE_FRICTION, Feature.DECK, Feature.POSITIONS}
     )
 
+    @property
+    def mpirun(self) -> str:
+        return launcher.mpirun()
+
     def missing(self) -> str | None:
         return launcher.missing()
 
@@ -107,8 +111,7 @@ class Lammps:
             held(folder).remove(*self.leftovers)
             launcher.run("in.scene", folder, ranks=ranks, log=LOG, report=report)
             return self.read(job, folder)
-        for name in (PATH, END):
-            (folder / name).unlink(missing_ok=True)
+        held(folder).remove(PATH, END)
         wall = launcher.run("in.impact", folder, ranks=ranks, log=LOG, seconds=120 + 1e-5 * job.n * job.steps)
         bodies = job.n if math.isinf(job.experiment.target.radius) else 2 * job.n
         z, vz, fz = np.moveaxis(frames(folder / PATH, job.steps + 1, bodies), 2, 0)

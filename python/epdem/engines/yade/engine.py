@@ -47,7 +47,7 @@ class Yade:
         note="doi:10.5281/zenodo.5705394",
     )
     laws: tuple[str, ...] | None = None
-    ranks = 1
+    ranks, mpirun = 1, ""
     features = frozenset({Feature.FRICTION, Feature.DECK, Feature.POSITIONS})
     of_classes = frozenset({Feature.ADHESION, Feature.DASHPOT, Feature.SPHERE_FRICTION})  # with epdem_yade only
     template = "yade/impact.py.j2"
