@@ -10,7 +10,7 @@
 
 namespace epdem::liggghts {
 
-/// Per-atom properties: growth, over the radius, from the dents of the step before, and dentSums, to which the contacts
+/// Per-atom properties: the growth over the radius from the dents of the step before, and sums, to which the contacts
 /// of this step add the depths of their dents over the radius and the squares of these. Walls come after the pairs, so
 /// that the sums close at the begin of the next pass over the pairs.
 class Growth {
@@ -24,6 +24,9 @@ class Growth {
     if (!find(lmp, sums_name, "vector", 2, sums_name))
       lmp->modify->add_fix_property_atom(10, const_cast<char**>(sums), sums_name);
   }
+
+  /// Whether the pair style has compaction.
+  static bool exists(LAMMPS_NS::LAMMPS* lmp) { return find(lmp, growth_name, "scalar", 0, growth_name) != nullptr; }
 
   /// Before each run, for pairs and walls.
   void connect(LAMMPS_NS::LAMMPS* lmp, const std::string& model) {
@@ -62,8 +65,8 @@ class Growth {
   }
 
  private:
-  static constexpr const char* growth_name = "growth";
-  static constexpr const char* sums_name = "dentSums";
+  static constexpr const char* growth_name = "compactionGrowth";
+  static constexpr const char* sums_name = "compactionSums";
 
   static LAMMPS_NS::FixPropertyAtom* find(LAMMPS_NS::LAMMPS* lmp, const char* name, const char* style, int values,
                                           const char* caller) {

@@ -32,28 +32,43 @@ constexpr bool superquadrics = false;
 
 /// The library carries no symbol versions: compare its version, where it says that two members lie, and whether it has
 /// superquadrics, with which a contact has 392 bytes and without 368.
-void check_library(LAMMPS_NS::LAMMPS* lmp) {
+bool has_superquadrics() { return dlsym(RTLD_DEFAULT, "_ZTVN9LAMMPS_NS19AtomVecSuperquadricE") != nullptr; }
+
+bool compare_library(LAMMPS_NS::LAMMPS* lmp) {
   const auto found_at = [lmp](const char* name, const void* here) {
     return lammps_extract_global(lmp, const_cast<char*>(name)) == here;
   };
-  const bool theirs = dlsym(RTLD_DEFAULT, "_ZTVN9LAMMPS_NS19AtomVecSuperquadricE") != nullptr;
-  if (strcasestr(lmp->universe->version, built_for) && found_at("dt", &lmp->update->dt) &&
-      found_at("boxxlo", &lmp->domain->boxlo[0]) && theirs == superquadrics)
-    return;
+  return strcasestr(lmp->universe->version, built_for) && found_at("dt", &lmp->update->dt) &&
+         found_at("boxxlo", &lmp->domain->boxlo[0]) && has_superquadrics() == superquadrics;
+}
+
+void check_library(LAMMPS_NS::LAMMPS* lmp) {
+  if (library_matches(lmp)) return;
   const std::string text = std::string("epdem was built for ") + built_for +
                            (superquadrics ? " with superquadrics" : "") + ", but the library in use says \"" +
-                           lmp->universe->version + "\"" + (theirs ? " and has superquadrics" : "") +
+                           lmp->universe->version + "\"" + (has_superquadrics() ? " and has superquadrics" : "") +
                            " or has another memory layout; build epdem on this machine";
   lmp->error->all(FLERR, text.c_str());
 }
 
 #else
 
+bool compare_library(LAMMPS_NS::LAMMPS*) { return true; }
 void check_library(LAMMPS_NS::LAMMPS*) {}
 
 #endif
 
 }  // namespace
+
+bool library_matches(LAMMPS_NS::LAMMPS* lmp) {
+  static LAMMPS_NS::LAMMPS* known = nullptr;
+  static bool matches = false;
+  if (known != lmp) {
+    matches = compare_library(lmp);
+    known = lmp;
+  }
+  return matches;
+}
 
 void check_host(LAMMPS_NS::LAMMPS* lmp) {
   static LAMMPS_NS::LAMMPS* known = nullptr;

@@ -43,7 +43,10 @@ inline void say(const LAMMPS_NS::LAMMPS* lmp, const std::string& line) {
     if (out) std::fputs((line + "\n").c_str(), out);
 }
 
-/// Ends the run if the library in use is not the one that the headers describe; names the models once.
+/// Whether the library in use is the one that the headers describe: its members may be read.
+bool library_matches(LAMMPS_NS::LAMMPS* lmp);
+
+/// Ends the run if the library in use is another one; names the models once.
 void check_host(LAMMPS_NS::LAMMPS* lmp);
 
 }  // namespace epdem::liggghts

@@ -63,7 +63,7 @@ class LawModel : public NormalModel {
         s.deltan = delta;  // for the models beside the law
       }
 
-    // a step that is not kept repeats the last one that was
+    // a step that is not kept repeats the last one that was, in compaction without the extrapolation of the growth
     const NormalContact<Law> contact = normal_contact(
         pair, R_star, before, delta, keep ? -s.vn * update->dt : 0.0, -s.vn, pair.damping > 0.0, pair.dashpot > 0.0,
         [&] { return s.meff; }, !keep);
@@ -157,9 +157,8 @@ class LawModel : public NormalModel {
   bool stands(const SurfacesCloseData& s) const {
     const bool keep = s.computeflag && s.shearupdate;
     const bool known = !has_step() || now_ - s.contact_history[step_slot_] <= 1.0;
-    const double overlap = s.radsum - std::sqrt(s.rsq);
-    if (!keep) return known && overlap + s.contact_history[growth_slot_] > 0.0;
-    return overlap + added_overlap_of(s, known ? s.contact_history[offset_] : 0.0) > 0.0;
+    if (!keep) return known && closes_gap(s.radsum, s.rsq, s.contact_history[growth_slot_]);
+    return closes_gap(s.radsum, s.rsq, added_overlap_of(s, known ? s.contact_history[offset_] : 0.0));
   }
 
   static Declaration declaration() {

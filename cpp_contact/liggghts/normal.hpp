@@ -79,6 +79,8 @@ class NormalModel : protected LAMMPS_NS::Pointers {
     if (contact_strain_) strain_.connect(lmp, law_.model);
     state_.ledger = ledger();
     if (law_.adheres) reach();
+    if (wall_ && law_.compacts && !compaction_ && Growth::exists(lmp))
+      fail("the pair style has compaction on, and this wall needs it, too");
     if (!compaction_) return;
     growth_.connect(lmp, law_.model);
     neighbor->register_contact_dist_factor(1.0 + growth_reach);

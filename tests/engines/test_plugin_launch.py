@@ -15,7 +15,7 @@ from plugin_decks import LAWS, Bodies, contact, good, head, launcher, materials,
 pytestmark = pytest.mark.liggghts
 
 BOX = ((-0.05, 0.05), (-0.05, 0.05), (-0.01, 0.1))
-NAMES = "ep/hertz ep/thornton ep/johnson ep/cavity ep/jkr ep/thornton_ning"
+NAMES = "ep/hertz ep/thornton ep/johnson ep/cavity ep/jkr ep/thornton_ning ep/meyer"
 
 
 def library():

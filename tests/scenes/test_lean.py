@@ -118,7 +118,7 @@ def test_every_line_of_a_deck_has_a_reason(path, tmp_path):
 def test_every_line_of_a_deck_with_any_law_has_a_reason(law):
     """Walls of another material and parameters of the law that are not its defaults."""
     data = read_toml(CASES[0].parent / "steel_wall.toml")
-    parameters = {p.name: 1.1 * p.default for p in laws()[law].parameters if p.default}
+    parameters = {p.name: 1.1 * p.default or 0.1 for p in laws()[law].parameters if p.default is not None}
     parameters |= {"work_of_adhesion": "0.5 J/m^2"} if laws()[law].adheres else {}
     x = experiment(impacts.parse(data | {"law": {"name": law} | parameters}))
     found = explain.explain(explain.IMPACT, Liggghts().deck(plan(x, predict(x))))

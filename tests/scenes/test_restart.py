@@ -225,7 +225,7 @@ def test_a_damaged_frame_is_written_again_where_it_can_be_or_named_and_left_out(
     shutil.copytree(folder, tmp_path, dirs_exist_ok=True)
     p, newest = plan(load(path)), resume.whole_restarts(out)[-1]
     lost = max(step for step in steps_of(out, "particles.*.bin") if step < newest)
-    older = lost - p.every
+    older = lost - p.frames
     for step in steps_of(out, "restart.*.bin"):
         if step != newest:
             (out / f"restart.{step}.bin").unlink()

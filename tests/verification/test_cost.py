@@ -44,6 +44,7 @@ def test_order_is_that_of_a_known_power_and_none_where_nothing_converges():
     assert np.isnan(cost.order(steps, 0.08 + 1e-4 / steps))
 
 
+@pytest.mark.figures
 def test_table_figure_and_data_are_written_and_the_page_names_its_command(embedded, tmp_path):
     data, figure = cost_report.write(embedded, tmp_path)
     assert len(pd.read_csv(data)) == len(embedded.rows) == 8 and figure.stat().st_size > 10_000

@@ -5,7 +5,8 @@
 
 namespace epdem {
 
-inline constexpr double no_finite_strain = 1e6;  // of Cavity's finite_strain: so large a number changes nothing
+// Of Cavity's finite_strain: so large a number changes nothing; below the other the pressure loses its digits.
+inline constexpr double no_finite_strain = 1e6, least_finite_strain = 1e-3;
 
 /// Three phases: elastic to p_0 = c_Y Y (eq. 8.78), expanding cavity (slope 2/3 of p_m/Y against ln a, eq. 8.81),
 /// fully plastic with p_m = c_P Y (eq. 8.80) and a^2 = 2 R* alpha (eq. 8.85). This project's own composition:
@@ -20,7 +21,8 @@ struct Cavity {
   static constexpr int id = 43;
   static constexpr const char* title = "elastic, expanding cavity, fully plastic";
   static constexpr const char* sources = "Johnson 1985; Jackson and Green 2005; Mesarovic and Johnson 2000";
-  static constexpr const char* condition = "plastic_ratio > first_yield_ratio, ln s_P > 0, no energy created at yield";
+  static constexpr const char* condition =
+      "plastic_ratio > first_yield_ratio, ln s_P > 0, no energy created at yield, finite_strain >= 1e-3";
   using State = Peak<T>;
   static constexpr bool yields = true;
   static constexpr bool flattens = true;
@@ -42,7 +44,8 @@ struct Cavity {
   /// Whether positive, finite parameters also make sense together.
   static bool valid(const T* parameter) noexcept {
     const T c_Y = parameter[1], c_P = parameter[2];
-    return c_P > c_Y && log_plastic(c_Y, c_P) > 0.0 && yield_excess(c_Y, c_P) <= 2.5;
+    return c_P > c_Y && log_plastic(c_Y, c_P) > 0.0 && yield_excess(c_Y, c_P) <= 2.5 &&
+           parameter[3] >= least_finite_strain;
   }
 
   Cavity() = default;

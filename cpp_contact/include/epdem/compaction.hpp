@@ -55,6 +55,12 @@ EPDEM_INLINE T added_overlap(T radius_i, T radius_j, T delta_max, T growth_i, T 
   return u_i + radius_j * max(T{}, growth_j - growth(x.j, x.j * x.j));
 }
 
+/// Whether growth closes the gap between bodies whose centres are sqrt(rsq) apart.
+template <class T>
+EPDEM_INLINE bool closes_gap(T radii, T rsq, T added) noexcept {
+  return radii - sqrt(rsq) + added > 0.0;
+}
+
 /// A contact of grown bodies in one step. `reached`: largest overlap before, without growth; added: u of this step.
 template <class T>
 struct Grown {

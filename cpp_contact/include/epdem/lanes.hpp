@@ -26,6 +26,7 @@ constexpr int lane_count = 2;
 
 typedef double Lanes __attribute__((vector_size(8 * lane_count)));
 using Mask = decltype(Lanes{} < Lanes{});
+typedef unsigned long long Words __attribute__((vector_size(8 * lane_count)));
 
 using std::cbrt;
 using std::exp;

@@ -55,14 +55,14 @@ struct Meyer {
     return {(slope_ratio * reached - offset_ratio * R_star) * R_star, sqrt(R_star * delta), T{}};
   }
 
-  /// Of x = 0, its factors changed, and a term with q^x - 1.
+  /// Thornton's work with other factors, and share slope R* alpha^2 (q^x - 1).
   T work(T R_star, T delta) const noexcept {
-    const T delta_y = elastic_overlap(R_star), x = delta - delta_y, share = 1.0 / (2.0 + half_x);
-    const auto elastic = x < 0.0;
+    const T delta_y = elastic_overlap(R_star), past = delta - delta_y, share = 1.0 / (2.0 + half_x);
+    const auto elastic = past < 0.0;
     const T third = slope_ratio * (1.0 - 2.0 * half_x) / 3.0;
     const T F_y = (slope_ratio - third) * delta_y * R_star;
     const T line = (2.0 * share * slope_ratio - third) * delta_y * R_star;
-    T W = 0.4 * F_y * delta_y + (line + share * slope_ratio * R_star * x) * x;
+    T W = 0.4 * F_y * delta_y + (line + share * slope_ratio * R_star * past) * past;
     if (any(half_x > 0.0)) {
       const T hardened = expm1(half_x * log(only(!elastic, delta / delta_y)));
       W = W + share * slope_ratio * R_star * (delta * delta * hardened);

@@ -9,7 +9,7 @@ namespace epdem {
 namespace detail {
 
 template <class T>
-using Bits = std::conditional_t<is_vector<T>, Mask, unsigned long long>;
+using Bits = std::conditional_t<is_vector<T>, Words, unsigned long long>;
 template <class To, class From>
 EPDEM_INLINE To bits_as(const From& x) noexcept {
   To y;
@@ -21,7 +21,8 @@ inline constexpr double ln2_high = 0x1.62e42fefap-1, ln2_low = 0x1.cf79abc9e3b3a
 
 }  // namespace detail
 
-/// base^h for 1 <= base and 0 <= h <= 1/2; relative error below 1e-15 (1 + ln base). h = 0 gives 1 exactly.
+/// base^h for 1 <= base and 0 <= h <= 1/2; relative error below 1e-15 (1 + ln base). h = 0 gives 1
+/// exactly. Any other base gives a number without meaning and does not trap.
 template <class T>
 EPDEM_INLINE T power(const T& base, const T& h) noexcept {
   if constexpr (std::is_same_v<T, long double>) {
@@ -29,8 +30,8 @@ EPDEM_INLINE T power(const T& base, const T& h) noexcept {
   } else {
     using namespace detail;
     // base = 2^e m, m in [1/sqrt 2, sqrt 2): the exponent's bits below the mantissa of 2^52 are the number e + 1023
-    constexpr long long mantissa = 0xfffffffffffff, one = 0x3ff0000000000000, big = 0x4330000000000000;
-    constexpr long long root = 0x3fe6a09e667f3bcd;  // of 1/2
+    constexpr unsigned long long mantissa = 0xfffffffffffff, one = 0x3ff0000000000000, big = 0x4330000000000000;
+    constexpr unsigned long long root = 0x3fe6a09e667f3bcd;  // of 1/2
     const Bits<T> x = bits_as<Bits<T>>(base) + (one - root);
     const T e = bits_as<T>((x >> 52) | big) - (4503599627370496.0 + 1023.0);
     const T m = bits_as<T>((x & mantissa) + root);

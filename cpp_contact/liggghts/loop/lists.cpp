@@ -67,7 +67,9 @@ std::vector<Row> rows_of(const LAMMPS_NS::NeighList& list) {
 }
 
 /// Whether LIGGGHTS's own functions search.
-bool searches_itself(const LAMMPS_NS::Atom& atom) { return generic_loop() || atom.nlocal == 0 || !atom.radius; }
+bool searches_itself(LAMMPS_NS::LAMMPS* lmp) {
+  return generic_loop() || !library_matches(lmp) || lmp->atom->nlocal == 0 || !lmp->atom->radius;
+}
 
 /// The spheres of some bins, one bin after the other.
 struct Candidates {
@@ -114,13 +116,14 @@ namespace loop = epdem::liggghts::loop;
 [[gnu::visibility("default")]] void Neighbor::bin_atoms() {
   static const auto original = loop::next<Neighbor*>("_ZN9LAMMPS_NS8Neighbor9bin_atomsEv");
   original(this);
-  if (!loop::generic_loop()) loop::bins.fill(binhead, bins, mbins, atom->nlocal + atom->nghost);
+  if (!loop::generic_loop() && epdem::liggghts::library_matches(lmp))
+    loop::bins.fill(binhead, bins, mbins, atom->nlocal + atom->nghost);
 }
 
 [[gnu::visibility("default")]] void Neighbor::granular_bin_no_newton(NeighList* list) {
   static const auto original =
       loop::next<Neighbor*, NeighList*>("_ZN9LAMMPS_NS8Neighbor22granular_bin_no_newtonEPNS_9NeighListE");
-  if (exclude || loop::searches_itself(*atom)) return original(this, list);
+  if (loop::searches_itself(lmp) || exclude) return original(this, list);
   bin_atoms();
   const std::vector<loop::Row> rows = loop::rows_of(*list);
   const loop::NearTest test = loop::near_test(*atom, contactDistanceFactor, skin);
@@ -176,8 +179,13 @@ namespace loop = epdem::liggghts::loop;
 
 [[gnu::visibility("default")]] void FixNeighlistMesh::handleTriangle(int triangle) {
   static const auto original = loop::next<FixNeighlistMesh*, int>("_ZN9LAMMPS_NS16FixNeighlistMesh14handleTriangleEi");
-  if (atom->ellipsoid || loop::searches_itself(*atom)) return original(this, triangle);
+  if (loop::searches_itself(lmp) || atom->ellipsoid) return original(this, triangle);
   loop::Candidates found;
+  // LIGGGHTS does not clip a triangle's box in a 2-D simulation, and keeps boxes while the grid gets coarser
+  const int bins = static_cast<int>(loop::bins.start.size()) - 1;
+  const auto add = [&](int bin) {
+    if (bin >= 0 && bin < bins) found.add(bin, bin);
+  };
   if (changingMesh || changingDomain) {
     int low[3], high[3];
     getBinBoundariesForTriangle(triangle, low[0], high[0], low[1], high[1], low[2], high[2]);
@@ -185,10 +193,10 @@ namespace loop = epdem::liggghts::loop;
       for (int iy = low[1]; iy <= high[1]; ++iy)
         for (int iz = low[2]; iz <= high[2]; ++iz) {
           const int bin = iz * mbiny * mbinx + iy * mbinx + ix;
-          if (bin >= 0 && bin < maxhead) found.add(bin, bin);
+          add(bin);
         }
   } else {
-    for (const int bin : triangles[triangle].bins) found.add(bin, bin);
+    for (const int bin : triangles[triangle].bins) add(bin);
   }
   static loop::NearTest test;  // of all triangles
   if (triangle == 0) test = loop::near_test(*atom, neighbor->contactDistanceFactor, skin);

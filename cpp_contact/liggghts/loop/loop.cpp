@@ -200,7 +200,7 @@ int PairLoop::without_gaps(const Plan& plan, int n) {
       const double delta_max = pass_.now - h[plan.last_step] > 1.0 ? 0.0 : h[0];
       const double added =
           added_overlap<false>(radius[i], radius[j], delta_max, plan.growth->of(i), plan.growth->of(j));
-      if (!(radius[i] + radius[j] - std::sqrt(dx * dx + dy * dy + dz * dz) + added > 0.0)) {
+      if (!closes_gap(radius[i] + radius[j], dx * dx + dy * dy + dz * dz, added)) {
         pair_->listgranhistory->firstneigh[i][slot] &= ~flags_;
         continue;
       }

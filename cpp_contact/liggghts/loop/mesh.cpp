@@ -37,11 +37,9 @@ class ReducedNeighborLists {
     for (const auto& [list, kept] : swapped_) list->swap(spare()[kept]);
   }
 
-  void reduce(TriMesh& mesh, FixNeighlistMesh& lists, const LAMMPS_NS::Atom& atom, const SphereKernels& kernels) {
+  void reduce(TriMesh& mesh, FixNeighlistMesh& lists, const NearTest& test, const SphereKernels& kernels) {
     std::vector<LAMMPS_NS::TriangleNeighlist>& triangles = Lists::of(lists);
     const int count = std::min(mesh.sizeLocal() + mesh.sizeGhost(), static_cast<int>(triangles.size()));
-    if (atom.nlocal == 0) return;
-    const NearTest test = near_test(atom, 1.0 + 1e-6, 0.0);  // far above round-off
     for (int t = 0; t < count; ++t) {
       std::vector<int>& all = triangles[t].contacts;
       if (all.empty()) continue;
@@ -114,13 +112,14 @@ namespace loop = epdem::liggghts::loop;
   static const auto original = loop::next<FixWallGran*, int>("_ZN9LAMMPS_NS11FixWallGran15post_force_meshEi");
   const loop::ScopedWall work(impl, *this);
   if (!loop::active_wall || loop::generic_loop() || neighbor->contactDistanceFactor != 1.0 || !atom->sphere_flag ||
-      atom->shapetype_flag)
+      atom->shapetype_flag || atom->nlocal == 0)
     return original(this, vflag);
   loop::ReducedNeighborLists near;
+  const loop::NearTest test = loop::near_test(*atom, 1.0 + 1e-6, 0.0);  // far above round-off
   for (int m = 0; m < n_FixMesh_; ++m) {
     TriMesh& mesh = *FixMesh_list_[m]->triMesh();
     if (!mesh.isDeforming() && !mesh.isScaling())
-      near.reduce(mesh, *FixMesh_list_[m]->meshNeighlist(), *atom, loop::sphere_kernels(lmp));
+      near.reduce(mesh, *FixMesh_list_[m]->meshNeighlist(), test, loop::sphere_kernels(lmp));
   }
   loop::ours = true;
   original(this, vflag);

@@ -13,11 +13,13 @@
 namespace epdem::liggghts::loop {
 namespace {
 
-/// Whether all of the first n spheres are in the group of a fix.
-bool has_all(const LAMMPS_NS::Atom& atom, int group, int n) {
+/// Whether ours take over: all of the first n spheres are in the group of a fix.
+bool has_all(LAMMPS_NS::LAMMPS* lmp, int group, int n) {
+  if (generic_loop() || !library_matches(lmp)) return false;
+  const LAMMPS_NS::Atom& atom = *lmp->atom;
   int common = group;
   for (int i = 0; i < n; ++i) common &= atom.mask[i];
-  return n > 0 && common == group && !generic_loop();
+  return n > 0 && common == group;
 }
 
 /// Half a step of the first n spheres, whose positions stay.
@@ -37,7 +39,7 @@ namespace loop = epdem::liggghts::loop;
 [[gnu::visibility("default")]] void FixNVESphere::initial_integrate(int vflag) {
   static const auto original = loop::next<FixNVESphere*, int>("_ZN9LAMMPS_NS12FixNVESphere17initial_integrateEi");
   const int n = igroup == atom->firstgroup ? atom->nfirst : atom->nlocal;
-  if (extra || !loop::has_all(*atom, groupbit, n)) return original(this, vflag);
+  if (extra || !loop::has_all(lmp, groupbit, n)) return original(this, vflag);
   loop::HalfStep step = loop::half_step(*atom, n, domain->dimension, dtf, onePlusCAddRhoFluid_);
   step.x = atom->x[0];
   step.dt = dtv;
@@ -47,7 +49,7 @@ namespace loop = epdem::liggghts::loop;
 [[gnu::visibility("default")]] void FixNVESphere::final_integrate() {
   static const auto original = loop::next<FixNVESphere*>("_ZN9LAMMPS_NS12FixNVESphere15final_integrateEv");
   const int n = igroup == atom->firstgroup ? atom->nfirst : atom->nlocal;
-  if (extra || !loop::has_all(*atom, groupbit, n)) return original(this);
+  if (extra || !loop::has_all(lmp, groupbit, n)) return original(this);
   loop::sphere_kernels(lmp).half_step(loop::half_step(*atom, n, domain->dimension, dtf, onePlusCAddRhoFluid_));
 }
 
@@ -55,7 +57,7 @@ namespace loop = epdem::liggghts::loop;
   static const auto original = loop::next<FixGravity*, int>("_ZN9LAMMPS_NS10FixGravity10post_forceEi");
   const int n = atom->nlocal;
   constexpr int constant = 0;  // in LIGGGHTS's source alone
-  if (varflag != constant || fm || fix_relax || !atom->rmass || !loop::has_all(*atom, groupbit, n))
+  if (varflag != constant || fm || fix_relax || !atom->rmass || !loop::has_all(lmp, groupbit, n))
     return original(this, vflag);
   const double *const x = atom->x[0], *const mass = atom->rmass, g[3] = {xacc, yacc, zacc};
   double *const f = atom->f[0], energy = 0.0;

@@ -52,6 +52,8 @@ class Cavity(Backbone):
                 f"energy would be created at yield: the law's condition is {np.max(excess):.3g}, over "
                 "2.5; raise first_yield_ratio (c_Y) or plastic_ratio (c_P)"
             )
+        if np.any(self.c_strain < 1e-3):
+            raise ValueError(f"finite_strain (c_strain) = {np.min(self.c_strain):g}, must be at least 1e-3")
         self.plastic_overlap = self.yield_overlap * np.exp(self.ln_s_P)
         self._left_at_yield = 1 - self._fallen(self.yield_overlap)
 

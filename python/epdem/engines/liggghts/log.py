@@ -54,7 +54,11 @@ def inserted(log: Path, step: int) -> dict[str, int]:
 
 def loops(log: Path) -> list[tuple[float, int]]:
     """(seconds, steps) of every run in a log, by the engine's own clock."""
-    text = log.read_text(errors="replace") if log.exists() else ""
+    return loops_in(log.read_text(errors="replace") if log.exists() else "")
+
+
+def loops_in(text: str) -> list[tuple[float, int]]:
+    """(seconds, steps) of every run in a piece of a log."""
     return [(float(seconds), int(steps)) for seconds, steps in _LOOP.findall(text)]
 
 

@@ -11,6 +11,7 @@ from ...base.files import write_texts
 from . import launcher, log
 
 Loops = list[tuple[float, int]]  # (seconds, steps) of pieces of a run
+_MARK = "epdem: a piece begins"  # runs without it end a phase by a condition
 _RUN = re.compile(r"^run (\d+) upto.*$", re.MULTILINE)
 
 
@@ -31,7 +32,7 @@ def pieces(texts: dict[str, str], skins: list[float], steps: int, length: int) -
             turn, place = divmod(len(order), len(skins))
             order.append(skins[place] if turn % 2 == 0 else skins[-1 - place])
             begin = min(end, begin + length)
-            lines += [f"neighbor {order[-1]!r} bin", f"run {begin} upto"]
+            lines += [f"neighbor {order[-1]!r} bin", f'print "{_MARK}"', f"run {begin} upto"]
         return "\n".join(lines)
 
     return texts | {"in.scene": _RUN.sub(cut, texts["in.scene"])}, order
@@ -50,4 +51,5 @@ def run(texts: dict[str, str], ranks: int, seconds: float) -> Loops:
         write_texts(folder, texts)
         with contextlib.suppress(_Enough):
             launcher.run("in.scene", folder, ranks=ranks, report=watch)
-        return log.loops(folder / launcher.OUT)
+        text = (folder / launcher.OUT).read_text(errors="replace")
+        return [loop for piece in text.split(_MARK)[1:] for loop in log.loops_in(piece)[:1]]
