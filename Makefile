@@ -7,11 +7,14 @@ setup:
 demo: setup
 	.venv/bin/epdem run cases/steel_wall.toml --engine embedded --engine liggghts
 
-# the two commands of the README in Debian 13, which debootstrap puts into ROOT; as root
+# the two commands of the README in Debian 13, which debootstrap puts into ROOT; as root. The demo has the bits of this
+# Debian. YADE_SOURCE=DIR as in `make test`: a folder in that Debian
 ROOT = $(or $(XDG_CACHE_HOME),$(HOME)/.cache)/epdem
-trixie:
+trixie: demo
 	@mkdir -p $(ROOT)
-	scripts/root trixie $(ROOT)/trixie make demo test
+	scripts/root trixie $(ROOT)/trixie make demo
+	cmp runs/steel_wall/results.csv $(ROOT)/trixie/epdem/runs/steel_wall/results.csv
+	scripts/root trixie $(ROOT)/trixie make test
 
 # the steps of Containerfile in ROOT without a container engine, and the demo there; as root
 container:

@@ -8,8 +8,9 @@ from pathlib import Path
 import pytest
 
 ROOT = Path(__file__).parents[2]
-# ruff finds scripts without a suffix only by name
+# ruff and shellcheck find scripts without a suffix only by name
 SCRIPTS = [str(p) for p in sorted((ROOT / "scripts").iterdir()) if p.read_text().startswith("#!/usr/bin/env python3")]
+SHELL = [str(p) for p in sorted((ROOT / "scripts").iterdir()) if p.read_text().startswith("#!/usr/bin/env bash")]
 PYTHON = ["python", "tests", "bench", "docs", "packaging", *SCRIPTS]
 CPP = [str(p) for room in ("cpp_contact", "tests", "bench") for p in sorted((ROOT / room).rglob("*.[hc]*"))]
 CPP = [path for path in CPP if path.endswith((".hpp", ".h", ".cpp"))]
@@ -24,6 +25,8 @@ TOOLS = {
     "lint-imports": ["lint-imports", "--no-cache"],
     "clang-format": ["clang-format", "--dry-run", "--Werror", *CPP],
     "clang-tidy": ["clang-tidy", "--quiet", *LAWS],
+    # single quotes keep $ for another shell or for dpkg-query (SC2016)
+    "shellcheck": ["shellcheck", "--exclude=SC2016", *SHELL],
     "workflows": [*SCHEMA, "vendor.github-workflows", *map(str, sorted(GITHUB.glob("workflows/*.yml")))],
     "issue forms": [*SCHEMA, "vendor.github-issue-forms", *map(str, sorted(GITHUB.glob("ISSUE_TEMPLATE/[!c]*.yml")))],
 }
