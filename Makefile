@@ -4,7 +4,8 @@
 setup:
 	@scripts/setup
 
-demo: setup
+demo:
+	@EXTRA= scripts/setup
 	.venv/bin/epdem run cases/steel_wall.toml --engine embedded --engine liggghts
 
 # the two commands of the README in Debian 13, which debootstrap puts into ROOT; as root. The demo has the bits of this

@@ -5,7 +5,7 @@ from pathlib import Path
 
 import numpy as np
 
-from epdem.engines.liggghts import log
+from epdem.engines import log
 from epdem.engines.liggghts.engine import Liggghts
 from epdem.engines.liggghts.launcher import OUT
 from epdem.scenes.plan import ScenePlan

@@ -15,7 +15,8 @@ from test_stopping import alive, until
 
 from epdem.base import paths
 from epdem.base.processes import call, session
-from epdem.engines.liggghts import dump, launcher, log, scenes, stl
+from epdem.engines import log
+from epdem.engines.liggghts import dump, launcher, scenes, stl
 from epdem.errors import CaseError, EngineError
 
 CASE = Path(__file__).parents[2] / "cases/steel_wall.toml"

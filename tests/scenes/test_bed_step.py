@@ -10,7 +10,8 @@ import pytest
 
 from epdem.case.scene import parse
 from epdem.case.toml import read_toml
-from epdem.engines.liggghts import launcher, log
+from epdem.engines import log
+from epdem.engines.liggghts import launcher
 from epdem.scenes.pairs import sphere_impact
 from epdem.scenes.timestep import bed_share, time_step
 

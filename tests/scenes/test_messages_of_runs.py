@@ -13,7 +13,7 @@ from stored_runs import STORED, planned
 from epdem.base import folders, paths, processes, settings
 from epdem.case import impact
 from epdem.case.toml import read_toml
-from epdem.engines import engine
+from epdem.engines import engine, log
 from epdem.engines.lammps import launcher
 from epdem.engines.lammps.engine import Lammps
 from epdem.engines.liggghts import dump, own_template, scene_tables, session, tune
@@ -84,7 +84,7 @@ def test_frames_and_rows_of_scenes(tmp_path):
     out = tmp_path / OUT
     out.write_text("")
     with says("no thermo rows; the run ended before its first step"):
-        scene_tables.rows(p, out)
+        log.scene_rows(p, out)
     with says("no rows; the run ended before its first step"):
         yade_tables.rows(q, out)
     out.write_text("Step a\n7 x\n")

@@ -9,6 +9,7 @@ from parts_cases import BED, FLOOR, parts
 from scene_runs import run, write_case, write_deck
 
 from epdem.case.scene import parse
+from epdem.engines import log
 from epdem.engines.liggghts import launcher, resume
 from epdem.engines.liggghts import scene_tables as tables
 from epdem.engines.liggghts.scene_deck import files as deck_of
@@ -188,13 +189,13 @@ def test_a_run_that_ends_by_a_condition_goes_on_bitwise(tmp_path):
     data |= {"viscous": {"restitution": 0.4}, "output": {"rows": 100, "particles": 100, "restarts": 100}}
     p = write_deck(parse(data), tmp_path)
     launcher.run("in.scene", tmp_path)
-    ends = tables.ends(tmp_path / launcher.OUT)
+    ends = log.ends(tmp_path / launcher.OUT)
     whole = tables.particles(p.ended(ends), tmp_path)
     files = sorted(int(path.name.split(".")[1]) for path in tmp_path.glob("restart.*.bin"))
     for step in files:
         resume.write_resume(p, tmp_path, step)
         launcher.run("in.resume", tmp_path, append=True)
-        assert tables.ends(tmp_path / launcher.OUT) == ends
+        assert log.ends(tmp_path / launcher.OUT) == ends
         assert tables.particles(p.ended(ends), tmp_path).equals(whole)
     assert {ends["settle"], ends["more"]} <= {*files}
 

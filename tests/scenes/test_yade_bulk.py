@@ -12,8 +12,8 @@ from scene_runs import run, write_deck
 from epdem.case.scene import parse
 from epdem.case.toml import read_toml
 from epdem.cli import main as cli
-from epdem.engines import scene_engine
-from epdem.engines.liggghts import launcher, scene_tables
+from epdem.engines import log, scene_engine
+from epdem.engines.liggghts import launcher
 from epdem.engines.yade import scene_deck as yade
 from epdem.engines.yade import scene_tables as yade_tables
 from epdem.engines.yade.launcher import environment
@@ -98,7 +98,7 @@ def pressed(path: Path, folder: Path):
     outcome = run(path, engine="yade", out=folder / "yade")
     liggghts_with_places_of(np.loadtxt(folder / "yade" / "spheres.txt"), outcome.case, folder / "liggghts")
     launcher.run("in.scene", folder / "liggghts")
-    return outcome, scene_tables.rows(outcome.plan, folder / "liggghts" / launcher.OUT)
+    return outcome, log.scene_rows(outcome.plan, folder / "liggghts" / launcher.OUT)
 
 
 @pytest.mark.yade

@@ -173,3 +173,12 @@ def session(leader: int) -> list[int]:
                 if int(its_session) == leader and state != "Z":
                     pids.append(int(entry.name))
     return pids
+
+
+def most_ranks() -> int:
+    """As many ranks as there are cores, and two anywhere: more only wait for one another, or hang.
+
+    In a job of Slurm the cores of all its nodes count: "4(x2),3" is three nodes.
+    """
+    of_job = re.findall(r"(\d+)(?:\(x(\d+)\))?", os.environ.get("SLURM_JOB_CPUS_PER_NODE", ""))
+    return max(2, len(os.sched_getaffinity(0)), sum(int(cores) * int(nodes or 1) for cores, nodes in of_job))

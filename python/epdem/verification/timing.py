@@ -9,7 +9,7 @@ from ..engines import ImpactEngine
 from ..engines.embedded import Embedded, numbers
 from ..engines.liggghts import launcher
 from ..engines.liggghts.engine import Liggghts
-from ..engines.liggghts.log import loop_seconds
+from ..engines.log import loop_seconds
 from ..impacts.plan import Plan
 
 

@@ -3,34 +3,32 @@
 
 import math
 from pathlib import Path
-from typing import overload
 
 import numpy as np
 
 from ...base import rendering as decks
-from ...base.files import write_texts
 from ...base.folders import held
+from ...base.processes import most_ranks
 from ...case.kinds import KINDS
 from ...errors import CaseError, EngineError
-from ...impacts.engine import Feature, Report, Trajectory, check_features, silent
+from ...impacts.engine import Feature, Report, Trajectory, check_features
 from ...impacts.experiment import Body
 from ...impacts.placement import approach
 from ...impacts.plan import Plan
-from ...scenes.engine import Resumed, Tables, check_scene
+from ...scenes.engine import Tables, check_scene
 from ...scenes.plan import ScenePlan
 from ...theory.sources import Source
-from ..liggghts.engine import data_text
-from ..liggghts.launcher import most_ranks
-from ..liggghts.properties import atom_types
+from ..host import Host
+from ..input_script import atom_types
 from . import launcher, scene_deck, scene_tables, words
 
 PATH, END, LOG = "path.txt", "end.txt", "log.lammps"
 
 
-class Lammps:
+class Lammps(Host):
     """LAMMPS with pair_style ep and fix wall/ep."""
 
-    name = "lammps"
+    name, title = "lammps", "LAMMPS"
     source: Source | None = Source(
         "A. P. Thompson et al.",
         "LAMMPS - a flexible simulation tool for particle-based materials modeling at the atomic, meso, and continuum "
@@ -41,7 +39,6 @@ class Lammps:
         2022,
     )
     template = "lammps/impact.in.j2"
-    laws: tuple[str, ...] | None = None
     ranks = most_ranks()
     leftovers: tuple[str, ...] = scene_tables.LEFTOVERS
     features = frozenset(
@@ -91,37 +88,22 @@ class Lammps:
         self.deck(job)
         return []
 
-    def write(self, job: Plan | ScenePlan, folder: Path) -> list[Path]:
-        if isinstance(job, ScenePlan):
-            return write_texts(folder, scene_deck.files(job))
-        deck = self.deck(job)
-        texts = {"in.impact": decks.render(self.template, deck=deck), deck.data: data_text(job, len(deck.types))}
-        return write_texts(folder, texts)
+    def files(self, plan: ScenePlan) -> dict[str, str]:
+        """The text of every file of the deck of a scene by its name. Raises CaseError."""
+        return scene_deck.files(plan)
 
-    @overload
-    def run(self, job: Plan, folder: Path, *, ranks: int = 1, report: Report = silent) -> Trajectory: ...
-
-    @overload
-    def run(self, job: ScenePlan, folder: Path, *, ranks: int = 1, report: Report = silent) -> Tables: ...
-
-    def run(
-        self, job: Plan | ScenePlan, folder: Path, *, ranks: int = 1, report: Report = silent
-    ) -> Trajectory | Tables:
-        if isinstance(job, ScenePlan):
-            held(folder).remove(*self.leftovers)
-            launcher.run("in.scene", folder, ranks=ranks, log=LOG, report=report)
-            return self.read(job, folder)
+    def run_impacts(self, plan: Plan, folder: Path, ranks: int) -> Trajectory:
         held(folder).remove(PATH, END)
-        wall = launcher.run("in.impact", folder, ranks=ranks, log=LOG, seconds=120 + 1e-5 * job.n * job.steps)
-        bodies = job.n if math.isinf(job.experiment.target.radius) else 2 * job.n
-        z, vz, fz = np.moveaxis(frames(folder / PATH, job.steps + 1, bodies), 2, 0)
-        end = frames(folder / END, 2, bodies)[-1].T if job.experiment.oblique else (None, None)
+        wall = launcher.run("in.impact", folder, ranks=ranks, log=LOG, seconds=120 + 1e-5 * plan.n * plan.steps)
+        bodies = plan.n if math.isinf(plan.experiment.target.radius) else 2 * plan.n
+        z, vz, fz = np.moveaxis(frames(folder / PATH, plan.steps + 1, bodies), 2, 0)
+        end = frames(folder / END, 2, bodies)[-1].T if plan.experiment.oblique else (None, None)
         (folder / PATH).unlink()  # large
-        overlap, velocity = approach(job, z, vz)
-        return Trajectory(job.time_step, overlap, fz[:, : job.n].T, velocity, {"total": wall}, *end)
+        overlap, velocity = approach(plan, z, vz)
+        return Trajectory(plan.time_step, overlap, fz[:, : plan.n].T, velocity, {"total": wall}, *end)
 
-    def resume(self, job: ScenePlan, folder: Path, *, ranks: int, report: Report) -> tuple[Tables, Resumed]:
-        raise CaseError(f"{folder}: a scene in LAMMPS runs from its start; run it anew")
+    def run_scene(self, plan: ScenePlan, folder: Path, ranks: int, report: Report) -> None:
+        launcher.run("in.scene", folder, ranks=ranks, log=LOG, report=report)
 
     def read(self, plan: ScenePlan, folder: Path) -> Tables:
         """The tables of a scene."""

@@ -9,10 +9,9 @@ from importlib import metadata, util
 from pathlib import Path
 
 from ...base import paths
-from ...base.processes import ask, call
+from ...base.processes import ask, call, most_ranks
 from ...errors import EngineError
 from ...impacts.engine import Report, refuse_ranks
-from ..liggghts.launcher import most_ranks
 
 OUT = "out.lammps"  # both streams
 INSTALL = "run 'make lammps' (docs/lammps.md)"

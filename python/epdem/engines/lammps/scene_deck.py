@@ -8,11 +8,10 @@ from ...case.parts import Parts
 from ...errors import CaseError
 from ...scenes import placement
 from ...scenes.plan import ScenePlan
-from ..liggghts.scene_deck import default_skin
-from ..liggghts.scene_parts import load_words, stop_condition
-from ..liggghts.wall_power import wall_id
+from ..host import LIGGGHTS, refuse
+from ..input_script import default_skin, load_words, stop_condition, wall_id
 from . import words
-from .scene_walls import LIGGGHTS, meshes, motions, plane, refuse
+from .scene_walls import meshes, motions, plane
 
 ROLLING = ("cdt", "epsd2")
 

@@ -10,9 +10,9 @@ from ...case.parts import Parts
 from ...errors import EngineError
 from ...scenes import columns, contacts
 from ...scenes.plan import ScenePlan
-from ..liggghts import scene_tables as liggghts
-from ..liggghts.scene_parts import torque_origin
-from ..liggghts.wall_power import wall_id
+from .. import log
+from ..host import frames
+from ..input_script import torque_origin, wall_id
 from .scene_deck import columns_of_dump, contact_walls
 
 LEFTOVERS: tuple[str, ...] = ("particles.*.txt", "contacts.*.txt", "contacts_*.txt")  # files of an earlier run
@@ -20,7 +20,7 @@ LEFTOVERS: tuple[str, ...] = ("particles.*.txt", "contacts.*.txt", "contacts_*.t
 
 def rows(p: ScenePlan, out: Path) -> pd.DataFrame:
     """The thermo rows. LAMMPS's fixes have the force on the spheres, and torques about the origin of coordinates."""
-    found = liggghts.rows(p, out, on_spheres=p.loads)
+    found = log.scene_rows(p, out, on_spheres=p.loads)
     opposite = [name for name in ("plate_force", "stress", "torque") if name in found]
     found[opposite] = -found[opposite]
     for name in (n for n in p.loads if n in p.scene.meshes):
@@ -30,10 +30,9 @@ def rows(p: ScenePlan, out: Path) -> pd.DataFrame:
 
 
 def _frames(p: ScenePlan, folder: Path, kind: str, every: int, names: list[str]) -> pd.DataFrame:
-    """The frames of a kind, one below the other. Raises EngineError for a frame that is missing or not whole."""
-    frames = []
-    for step in p.frame_steps(every):
-        path = folder / f"{kind}.{step}.txt"
+    """The frames of a kind. Raises EngineError for a frame that is missing or not whole."""
+
+    def read(path: Path) -> pd.DataFrame:
         try:
             lines = path.read_text(encoding="utf-8").split("\n")
             values = np.array(" ".join(lines).split(), float).reshape(-1, len(names))
@@ -41,10 +40,9 @@ def _frames(p: ScenePlan, folder: Path, kind: str, every: int, names: list[str])
                 raise ValueError(f"{len(lines) - 1} lines of {len(values)}")
         except (OSError, ValueError) as error:
             raise EngineError(f"{path}: incomplete ({error}); run the case again") from None
-        table = pd.DataFrame(values, columns=names)
-        table.insert(0, "step", step)
-        frames.append(table)
-    return pd.concat(frames, ignore_index=True)
+        return pd.DataFrame(values, columns=names)
+
+    return frames(p, folder, f"{kind}.{{}}.txt", every, read)
 
 
 def _contacts(p: ScenePlan, folder: Path, spheres: pd.DataFrame) -> pd.DataFrame:
@@ -62,7 +60,7 @@ def _contacts(p: ScenePlan, folder: Path, spheres: pd.DataFrame) -> pd.DataFrame
 
 def read(p: ScenePlan, folder: Path, out: Path) -> dict[str, pd.DataFrame]:
     """The tables of a run, SI. Raises EngineError for a frame that is missing or not whole."""
-    p = p.ended(liggghts.ends(out), liggghts.not_reached(out)) if p.ends_early else p
+    p = p.ended(log.ends(out), log.not_reached(out)) if p.ends_early else p
     tables = {"rows": rows(p, out)}
     if isinstance(p.case.scene, Parts):
         tables["phases"] = p.phase_table

@@ -12,10 +12,9 @@ from ...errors import CaseError
 from ...scenes import placement
 from ...scenes.plan import Phase, ScenePlan
 from ...scenes.walls import surface_rotation
-from ..liggghts.wall_power import wall_id
+from ..host import LIGGGHTS, refuse
+from ..input_script import wall_id
 from . import words
-
-LIGGGHTS = "use --engine liggghts"
 
 
 @dataclass(frozen=True)
@@ -133,13 +132,6 @@ def _holds(w: BoxWall | CylinderWall | ConeWall, place: Sequence[float]) -> bool
 
 def _numbers(values: Iterable[float]) -> str:
     return " ".join(map(number, values))
-
-
-def refuse(place: str, value: object, reason: str) -> None:
-    """Raise CaseError if a case gives what LAMMPS does not hold."""
-    if value:
-        shown = "" if value is True else f" = {value!r}"
-        raise CaseError(f"{place}{shown}: {reason}; remove it or {LIGGGHTS}")
 
 
 def _rates(p: ScenePlan, name: str, phase: Phase) -> dict[str, str]:

@@ -7,7 +7,7 @@ from ...base.declarations import declarations
 from ...base.rendering import number
 from ...laws.strengths import ADHESION
 from ...scenes.plan import ScenePlan
-from ..liggghts.properties import finite
+from ..input_script import finite
 
 
 def material(law: str, E: float, nu: float, strength: float, given: Mapping[str, float]) -> str:

@@ -4,35 +4,35 @@
 import math
 from collections.abc import Collection
 from pathlib import Path
-from typing import overload
 
 import numpy as np
 
 from ...base import paths
 from ...base import rendering as decks
-from ...base.files import write_texts
-from ...base.folders import held
+from ...base.processes import most_ranks
 from ...case.kinds import KINDS
 from ...errors import CaseError, EngineError
-from ...impacts.engine import Feature, Report, Trajectory, check_features, silent
-from ...impacts.placement import approach, room, side_by_side
+from ...impacts.engine import Feature, Report, Trajectory, check_features
+from ...impacts.placement import approach
 from ...impacts.plan import Plan
 from ...laws.library import laws
 from ...scenes.engine import Resumed, Tables, check_scene
 from ...scenes.plan import ScenePlan
 from ...theory.sources import Source
-from . import data_file, dump, executable, launcher, scene_deck, scenes
-from .log import loop_seconds
-from .properties import HARD, SOFT, Property, atom_types, finite, of_law, tangential
+from ..host import Host
+from ..input_script import atom_types, finite
+from ..log import loop_seconds
+from . import dump, executable, launcher, scene_deck, scenes
+from .properties import HARD, SOFT, Property, of_law, tangential
 from .session import Session
 
 PATH, END = "path.bin", "end.bin"
 
 
-class Liggghts:
+class Liggghts(Host):
     """LIGGGHTS with a model of epdem; `model` and more can be replaced to run LIGGGHTS's own models."""
 
-    name = "liggghts"
+    name, title = "liggghts", "LIGGGHTS"
     source: Source | None = Source(
         "C. Kloss, C. Goniva, A. Hager, S. Amberger, S. Pirker",
         "Models, algorithms and validation for opensource DEM and CFD-DEM",
@@ -42,8 +42,7 @@ class Liggghts:
         2012,
     )
     template = "liggghts/impact.in.j2"
-    laws: tuple[str, ...] | None = None
-    ranks = launcher.most_ranks()
+    ranks = most_ranks()
     mpirun = launcher.MPIRUN
     features = frozenset(Feature) - {Feature.SPHERE_FRICTION}
     leftovers: tuple[str, ...] = scenes.LEFTOVERS
@@ -112,37 +111,21 @@ class Liggghts:
             self.deck(job)
         return []
 
-    def write(self, job: Plan | ScenePlan, folder: Path) -> list[Path]:
-        if isinstance(job, ScenePlan):
-            return write_texts(folder, self.files(job))
-        deck = self.deck(job)
-        texts = {"in.impact": decks.render(self.template, deck=deck), deck.data: data_text(job, len(deck.types))}
-        return write_texts(folder, texts)
-
-    @overload
-    def run(self, job: Plan, folder: Path, *, ranks: int = 1, report: Report = silent) -> Trajectory: ...
-
-    @overload
-    def run(self, job: ScenePlan, folder: Path, *, ranks: int = 1, report: Report = silent) -> Tables: ...
-
-    def run(
-        self, job: Plan | ScenePlan, folder: Path, *, ranks: int = 1, report: Report = silent
-    ) -> Trajectory | Tables:
-        if isinstance(job, ScenePlan):
-            held(folder).remove(*self.leftovers)
-            scenes.run(job, folder, ranks=ranks, report=report)
-            return self.read(job, folder)
+    def run_impacts(self, plan: Plan, folder: Path, ranks: int) -> Trajectory:
         path = folder / PATH
         path.unlink(missing_ok=True)
         (folder / END).unlink(missing_ok=True)
-        allowed = 120 + 2e-6 * job.n * job.steps
+        allowed = 120 + 2e-6 * plan.n * plan.steps
         if self.session and ranks == 1:
             wall = self.session.run("in.impact", folder, log=launcher.LOG, seconds=allowed)
         else:
             wall = launcher.run("in.impact", folder, ranks=ranks, log=launcher.LOG, seconds=allowed)
-        result = trajectory(job, path, {"total": wall, "stepping": loop_seconds(folder / launcher.LOG)})
+        result = trajectory(plan, path, {"total": wall, "stepping": loop_seconds(folder / launcher.LOG)})
         path.unlink()  # large
         return result
+
+    def run_scene(self, plan: ScenePlan, folder: Path, ranks: int, report: Report) -> None:
+        scenes.run(plan, folder, ranks=ranks, report=report)
 
     def resume(self, job: ScenePlan, folder: Path, *, ranks: int, report: Report) -> tuple[Tables, Resumed]:
         resumed = scenes.resume(job, folder, ranks=ranks, report=report)
@@ -150,16 +133,6 @@ class Liggghts:
 
     def read(self, plan: ScenePlan, folder: Path, *, without: Collection[int] = ()) -> Tables:
         return scenes.read(plan, folder, without=without)
-
-
-def data_text(plan: Plan, types: int) -> str:
-    """Positions and velocities of all bodies as a data file; a target that moves is of the last type."""
-    kinds = (1, types)
-    groups = [
-        data_file.Spheres(k, 2 * g.body.radius, g.body.density, g.place, g.velocity, g.spin)
-        for k, g in zip(kinds, side_by_side(plan), strict=False)
-    ]
-    return data_file.text(plan.experiment.name, types, room(plan), groups)
 
 
 def _incomplete(path: Path, error: Exception) -> EngineError:

@@ -2,13 +2,12 @@
 """Starting LIGGGHTS with our models: command, ranks, environment."""
 
 import os
-import re
 import shutil
 from collections.abc import Callable
 from pathlib import Path
 
 from ...base import paths
-from ...base.processes import call
+from ...base.processes import call, most_ranks
 from ...base.settings import config_file
 from ...errors import EngineError
 from ...impacts.engine import refuse_ranks
@@ -27,15 +26,6 @@ def missing() -> str | None:
     if launcher is None:
         return f"LIGGGHTS with our models was not found; {INSTALL}"
     return None
-
-
-def most_ranks() -> int:
-    """As many ranks as there are cores, and two anywhere: more only wait for one another, or hang.
-
-    In a job of Slurm the cores of all its nodes count: "4(x2),3" is three nodes.
-    """
-    of_job = re.findall(r"(\d+)(?:\(x(\d+)\))?", os.environ.get("SLURM_JOB_CPUS_PER_NODE", ""))
-    return max(2, len(os.sched_getaffinity(0)), sum(int(cores) * int(nodes or 1) for cores, nodes in of_job))
 
 
 def command(deck: str, *, ranks: int = 1, log: str = "none") -> list[str]:

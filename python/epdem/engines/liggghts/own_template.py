@@ -19,9 +19,10 @@ from ...impacts.experiment import experiment
 from ...impacts.plan import plan
 from ...impacts.prediction import predict
 from ...scenes.plan import plan as scene_plan
+from ..input_script import data_text
 from . import stl
 from .deck_commands import refuse_programs
-from .engine import Liggghts, data_text
+from .engine import Liggghts
 from .scene_deck import deck as scene_deck
 
 

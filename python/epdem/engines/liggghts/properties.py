@@ -1,17 +1,15 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Material properties of LIGGGHTS's decks: `fix property/global`, named after the property."""
 
-import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 
 from ...case.fields import NODES
-from ...impacts.experiment import Body
 from ...impacts.plan import Plan
 from ...laws import library as claw
 from ...laws.strengths import ADHESION
+from ..input_script import atom_types, finite
 
-RIGID = 1e30  # modulus [Pa] of a rigid type: 1e15 would change E* of steel by 2e-4
 HARD, SOFT = 1e9, 5e6  # LIGGGHTS refuses moduli [Pa] outside these without a keyword
 
 
@@ -53,20 +51,6 @@ class Property:
         if self.name not in _REASONS and any(p.property == self.name for law in laws for p in law.parameters):
             return "a parameter of the law that differs from its default"
         return "; ".join(filter(None, [_REASONS.get(self.name, ""), self.note]))
-
-
-def finite(value: float) -> float:
-    """A modulus or strength [Pa] for LIGGGHTS, which has no infinity."""
-    return RIGID if math.isinf(value) else value
-
-
-def atom_types(plan: Plan) -> list[tuple[Body, float]]:
-    """The distinct (body, strength) of the plan: LIGGGHTS's atom types, the moving body first."""
-    x = plan.experiment
-    types = [(x.body, x.law.strengths[0])]
-    if x.target.material != x.body.material:
-        types.append((x.target, x.law.strengths[1]))
-    return types
 
 
 def per_type(name: str, values: Sequence[float], unit: str, note: str = "") -> Property:

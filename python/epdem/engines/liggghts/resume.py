@@ -12,7 +12,7 @@ from ...base.folders import held
 from ...base.processes import ROW
 from ...errors import CaseError
 from ...scenes.plan import ScenePlan
-from . import log
+from .. import log
 from . import scene_tables as tables
 from .insertions import Insertion
 from .launcher import OUT
@@ -70,7 +70,7 @@ def _going_on(d: decks.Deck, phase: int, inserted: dict[str, int]) -> Iterator[I
 def write_resume(p: ScenePlan, folder: Path, step: int) -> Path:
     """in.resume, which continues from the restart file of `step`."""
     d = deck(p)
-    ends = tables.ends(folder / OUT, step) if p.ends_early else {part.name: part.end for part in d.phases}
+    ends = log.ends(folder / OUT, step) if p.ends_early else {part.name: part.end for part in d.phases}
     phase = next((i for i, part in enumerate(d.phases) if ends.get(part.name, step + 1) > step), len(d.phases))
     begin = max([0, *(ends[part.name] for part in d.phases[:phase])])
     comes = False  # spheres that come with this phase and are not in the restart file

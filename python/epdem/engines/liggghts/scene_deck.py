@@ -9,14 +9,13 @@ from ...errors import CaseError
 from ...laws.library import laws
 from ...scenes.model import Model
 from ...scenes.plan import ScenePlan
+from ..input_script import SKIN, default_skin, load_words, wall_id
 from . import stl, wall_stress
 from .insertions import insertions
 from .properties import HARD, SOFT, Property, elastic, per_pair, ratios, strength, tangential, work_of_adhesion
-from .scene_parts import load_words, parts, planes, surfaces, table
-from .wall_power import wall_id
+from .scene_parts import parts, planes, surfaces, table
 
 MOST_CELLS = 2**31 - 1  # that LIGGGHTS counts, each half as wide as its longest reach
-SKIN = 0.5  # of the smallest radius: rebuilds cost less than idle neighbours
 
 
 def _properties(p: ScenePlan) -> tuple[Property, ...]:
@@ -86,11 +85,6 @@ def contact_columns(slots: Sequence[int], values: int) -> tuple[int, ...]:
     """Where a local compute has these numbers of the history and the overlap: behind three ids and `values` of
     history."""
     return (*(3 + slot for slot in slots), 4 + values) if slots else (4,)
-
-
-def default_skin(p: ScenePlan) -> float:
-    """The skin of a case that gives none [m]."""
-    return float(f"{SKIN * p.smallest * (0.5 if p.model.compaction else 1.0):.1e}")  # compaction sees across gaps
 
 
 def _refuse_room(p: ScenePlan) -> None:

@@ -2,7 +2,7 @@
 """Walls, phases and the table of spheres of a scene in LIGGGHTS's words."""
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from itertools import zip_longest
 
@@ -14,17 +14,8 @@ from ...errors import CaseError
 from ...scenes.meshes import FloatArray
 from ...scenes.plan import Phase, ScenePlan
 from ...scenes.walls import surface_rotation
-from .wall_power import GAIN, power, wall_id
-
-
-@dataclass(frozen=True)
-class StopCondition:
-    """How a phase ends early: after `first` steps at most `rows` times `every`, until the condition holds."""
-
-    first: int
-    rows: int
-    formula: str
-    condition: str
+from ..input_script import StopCondition, stop_condition, torque_origin, wall_id
+from .wall_power import GAIN, power
 
 
 @dataclass(frozen=True)
@@ -113,14 +104,6 @@ def planes(p: ScenePlan) -> tuple[DeckPlane, ...]:
     return tuple(plane(p, w, force=w.name in stored) for w in p.scene.planes)
 
 
-def torque_origin(p: ScenePlan, name: str) -> Sequence[float]:
-    """The place that torques on a mesh refer to [m]: on the axis of its rotation."""
-    origins = {tuple(rotation.origin) for rotation in p.rotations(name)}
-    if len(origins) > 1:
-        raise CaseError(f"scene.wall.{name}: it rotates about several origins, torques are about one; rotate about one")
-    return next(iter(origins), (0.0, 0.0, 0.0))
-
-
 def _press(p: ScenePlan, name: str) -> PressMove | None:
     """The force that drives a mesh in some phases."""
     moves = [phase.moves[name] for phase in p.phases if name in phase.moves]
@@ -176,23 +159,6 @@ def _motion(p: ScenePlan, name: str, move: Move) -> tuple[str, str]:
         case PressMove():
             return f"fix_modify {wall} servo/integrate start", f"fix_modify {wall} servo/integrate stop"
     return f"fix {fix} all move/mesh mesh {wall} {words}", f"unfix {fix}"
-
-
-def stop_condition(p: ScenePlan, phase: Phase, steps: int) -> StopCondition | None:
-    """How a phase ends early, in words of LIGGGHTS and LAMMPS; None: it does not."""
-    until = phase.case.condition
-    if until is None:
-        return None
-    step = phase.case.time_step or p.time_step
-    first = min(steps, p.every * max(1, math.ceil(phase.case.condition_from / step / p.every)))
-    if until.kinetic_energy is not None:
-        formula, sign = "ke/atoms", "<"
-    elif until.count is not None:
-        formula, sign = "atoms", "<="
-    else:
-        load = f"f_load{1 + p.loads.index(until.wall or '')}"
-        formula, sign = "sqrt(" + "+".join(f"{load}[{k}]*{load}[{k}]" for k in (1, 2, 3)) + ")", ">="
-    return StopCondition(first, (steps - first) // p.every, formula, f"{sign} {decks.number(until.limit)}")
 
 
 def _phase_particle(p: ScenePlan, b: Body) -> PhaseParticle:
@@ -259,12 +225,6 @@ def _goes_on(name: str, phase: Phase, after: Phase) -> bool:
     """Whether a wall needs no command at the end of a phase: the motion goes on, or another `move/mesh` replaces it."""
     one, next_one = phase.moves[name], after.moves.get(name)
     return next_one is not None and isinstance(one, PressMove) == isinstance(next_one, PressMove)
-
-
-def load_words(p: ScenePlan) -> Iterator[str]:
-    """What the rows hold of the forces on walls: three components, of meshes six."""
-    for n, name in enumerate(p.loads, 1):
-        yield from (f"f_load{n}[{k}]" for k in range(1, 7 if name in p.scene.meshes else 4))
 
 
 def table(p: ScenePlan) -> list[tuple[str, str]]:

@@ -1,8 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """The tables of a scene from LIGGGHTS's files. Only this module reads its file formats."""
 
-import math
-import re
 from collections.abc import Collection
 from pathlib import Path
 
@@ -12,65 +10,9 @@ import pandas as pd
 from ...errors import EngineError
 from ...scenes import columns, contacts
 from ...scenes.plan import ScenePlan
-from . import dump, log
+from . import dump
 
-# thermo words of the deck and their columns; for the loads of walls see `_column`
-ROWS = {
-    "Atoms": "particles",
-    "KinEng": "kinetic_energy",
-    "load": "floor_load",
-    "press_z": "plate_force",
-    "torque": "torque",
-    "power": "wall_power",
-    "ratio[1]": columns.STRAINS[0],
-    "ratio[2]": columns.STRAINS[1],
-}
-_LOAD = re.compile(r"load(\d+)\[(\d)\]")
 PARTICLES, PAIRS, MESHES = "particles.{}.bin", "contacts.{}.txt", "wall_contacts.{}.txt"
-
-
-def _column(p: ScenePlan, word: str) -> str | None:
-    """The column of a thermo word, with LAMMPS's f_ or without; None: one that is not ours."""
-    word = word.removeprefix("f_")
-    if load := _LOAD.fullmatch(word):
-        return f"{p.loads[int(load[1]) - 1]}_{columns.LOADS[int(load[2]) - 1]}"
-    return ROWS.get(word)
-
-
-def rows(p: ScenePlan, out: Path, on_spheres: Collection[str] | None = None) -> pd.DataFrame:
-    """The thermo rows: one per step. Raises EngineError.
-
-    on_spheres: walls whose forces in the log act on the spheres; None: LIGGGHTS's planes.
-
-    A run that continues another one begins again at the step of its restart file: what the earlier run wrote beyond
-    that step is replaced, but not the row of that step itself, whose means over an interval only the earlier run has.
-    """
-    every = log.rows(out)
-    if every.empty:
-        raise EngineError(f"{out}: no thermo rows; the run ended before its first step")
-    table: dict[int, list[float]] = {}
-    words = {name: column for name in every if (column := _column(p, name))}  # and LIGGGHTS's own default
-    for _, part in every.groupby("run"):
-        steps, values = part["Step"].astype(int).to_list(), part[[*words]].to_numpy().tolist()
-        known = {step: row for step, row in table.items() if step <= steps[0]}
-        table = known | {step: row for step, row in zip(steps, values, strict=True) if step not in known}
-    found = columns.rows(p, table, [*words.values()])
-    on_spheres = {w.name for w in p.scene.planes} & {*p.loads} if on_spheres is None else on_spheres
-    opposite = [name for wall in on_spheres for load in columns.LOADS if (name := f"{wall}_{load}") in found]
-    found[opposite] = -found[opposite]
-    return found
-
-
-def ends(out: Path, upto: float = math.inf) -> dict[str, int]:
-    """The step at the end of each phase, of a scene in which one may end early, up to a step."""
-    text = out.read_text(encoding="utf-8", errors="replace") if out.exists() else ""
-    found = re.findall(r"^phase (\w+) ended at step (\d+)", text, re.M)
-    return {name: int(step) for name, step in found if int(step) <= upto}
-
-
-def not_reached(out: Path) -> set[str]:
-    """The phases whose condition did not hold in any row."""
-    return set(re.findall(r"^phase (\w+) was not ended by its condition", out.read_text(errors="replace"), re.M))
 
 
 def _frame(path: Path, count: int) -> np.ndarray:

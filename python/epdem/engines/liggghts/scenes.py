@@ -12,7 +12,8 @@ from ...errors import CaseError, EngineError
 from ...impacts.engine import Report
 from ...scenes.engine import Resumed, Tables
 from ...scenes.plan import ScenePlan
-from . import executable, launcher, log, wall_stress
+from .. import log
+from . import executable, launcher, wall_stress
 from . import resume as restarts
 from . import scene_tables as tables
 
@@ -68,8 +69,8 @@ def read(plan: ScenePlan, folder: Path, *, without: Collection[int] = ()) -> Tab
     Raises EngineError for any other frame that is missing or not whole.
     """
     out = folder / launcher.OUT
-    plan = plan.ended(tables.ends(out), tables.not_reached(out)) if plan.ends_early else plan
-    found = {"rows": tables.rows(plan, folder / launcher.OUT)}
+    plan = plan.ended(log.ends(out), log.not_reached(out)) if plan.ends_early else plan
+    found = {"rows": log.scene_rows(plan, folder / launcher.OUT)}
     if isinstance(plan.case.scene, Parts):
         found["phases"] = plan.phase_table
     if plan.frames:

@@ -8,7 +8,8 @@ import time
 from pathlib import Path
 
 from ...base.files import write_texts
-from . import launcher, log
+from .. import log
+from . import launcher
 
 Loops = list[tuple[float, int]]  # (seconds, steps) of pieces of a run
 _MARK = "epdem: a piece begins"  # runs without it end a phase by a condition

@@ -1,20 +1,15 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The power of walls that move, as LIGGGHTS's formula; names of their fixes."""
+"""The power of walls that move, as LIGGGHTS's formula."""
 
 from collections.abc import Sequence
 
 from ...base import rendering as decks
 from ...case.motions import LinearMove, PressMove, RotateMove, VibrateMove
-from ...case.parts import Parts
 from ...scenes.plan import Phase, ScenePlan
 from ...scenes.walls import surface_rotation
+from ..input_script import wall_id
 
 GAIN = 1.0  # of a wall that a force drives: its speed over the highest is the relative error of the force
-
-
-def wall_id(p: ScenePlan, name: str) -> str:
-    """The id of a wall's fix: a name that a user gives to a part must not be the id of another fix."""
-    return f"wall_{name}" if isinstance(p.case.scene, Parts) else name
 
 
 def _times(name: str, first: int, values: Sequence[float]) -> list[str]:

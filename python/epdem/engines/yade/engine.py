@@ -9,23 +9,21 @@ import shutil
 import time
 from math import isfinite, isinf
 from pathlib import Path
-from typing import overload
 
 import numpy as np
 
 from ...base import rendering as decks
 from ...base.declarations import declarations
-from ...base.files import write_texts
-from ...base.folders import held
 from ...base.processes import ask, call
-from ...errors import CaseError, EngineError
-from ...impacts.engine import Feature, Report, Trajectory, check_features, silent
+from ...errors import EngineError
+from ...impacts.engine import Feature, Report, Trajectory, check_features
 from ...impacts.experiment import Body, Experiment
 from ...impacts.placement import approach, side_by_side
 from ...impacts.plan import Plan
-from ...scenes.engine import Resumed, Tables, check_scene
+from ...scenes.engine import Tables, check_scene
 from ...scenes.plan import ScenePlan
 from ...theory.sources import Source
+from ..host import Host
 from . import classes, launcher, scene_deck, scenes
 from .classes import Functors, Material, PairValue
 from .deck import Group, strength_values
@@ -34,10 +32,10 @@ from .launcher import command, environment, module_version, write_deck_modules
 INSTALL = "apt-get install yade"
 
 
-class Yade:
+class Yade(Host):
     """YADE with the classes of epdem_yade or the C library in the deck; a run has one core."""
 
-    name = "yade"
+    name, title = "yade", "YADE"
     source: Source | None = Source(
         "V. Smilauer et al.",
         "Yade Documentation, 3rd ed.",
@@ -46,11 +44,11 @@ class Yade:
         kind="manual",
         note="doi:10.5281/zenodo.5705394",
     )
-    laws: tuple[str, ...] | None = None
     ranks, mpirun = 1, ""
     features = frozenset({Feature.FRICTION, Feature.DECK, Feature.POSITIONS})
     of_classes = frozenset({Feature.ADHESION, Feature.DASHPOT, Feature.SPHERE_FRICTION})  # with epdem_yade only
     template = "yade/impact.py.j2"
+    leftovers = scenes.LEFTOVERS
 
     def __init__(self) -> None:
         self.classes = launcher.module() is not None
@@ -142,10 +140,13 @@ class Yade:
         own_spring = job.experiment.oblique and not self.classes
         return ["friction by its own one spring; theory is that of partial slip"] if own_spring else []
 
+    def files(self, plan: ScenePlan) -> dict[str, str]:
+        """The text of every file of the deck of a scene by its name. Raises CaseError."""
+        return scene_deck.files(plan, classes=self.classes)
+
     def write(self, job: Plan | ScenePlan, folder: Path) -> list[Path]:
         if isinstance(job, ScenePlan):
-            files = write_texts(folder, scene_deck.files(job, classes=self.classes))
-            return files + write_deck_modules(folder, classes=self.classes, scene=True)
+            return super().write(job, folder) + write_deck_modules(folder, classes=self.classes, scene=True)
         deck = self.deck(job)
         folder.mkdir(parents=True, exist_ok=True)
         modules = [] if deck.native else write_deck_modules(folder, classes=self.classes)
@@ -161,19 +162,7 @@ class Yade:
             path.write_text("\n".join(lines), encoding="utf-8")
         return [script, *files, *modules]
 
-    @overload
-    def run(self, job: Plan, folder: Path, *, ranks: int = 1, report: Report = silent) -> Trajectory: ...
-
-    @overload
-    def run(self, job: ScenePlan, folder: Path, *, ranks: int = 1, report: Report = silent) -> Tables: ...
-
-    def run(
-        self, job: Plan | ScenePlan, folder: Path, *, ranks: int = 1, report: Report = silent
-    ) -> Trajectory | Tables:
-        if isinstance(job, ScenePlan):
-            held(folder).remove(*scenes.LEFTOVERS)
-            scenes.run(folder, report=report)
-            return self.read(job, folder)
+    def run_impacts(self, plan: Plan, folder: Path, ranks: int) -> Trajectory:
         path, log = folder / "path.bin", folder / "out.yade"
         path.unlink(missing_ok=True)
         start = time.perf_counter()
@@ -181,16 +170,16 @@ class Yade:
             [command(), "-n", "-x", "impact.py"],
             folder,
             log=log.name,
-            seconds=120 + 2e-5 * job.n * job.steps,
+            seconds=120 + 2e-5 * plan.n * plan.steps,
             env=environment(),
         )
         wall = time.perf_counter() - start
-        result = trajectory(job, path, {"total": wall, "stepping": stepping_seconds(log)})
+        result = trajectory(plan, path, {"total": wall, "stepping": stepping_seconds(log)})
         path.unlink()  # large
         return result
 
-    def resume(self, job: ScenePlan, folder: Path, *, ranks: int, report: Report) -> tuple[Tables, Resumed]:
-        raise CaseError(f"{folder}: a scene in YADE runs from its start; run it anew")
+    def run_scene(self, plan: ScenePlan, folder: Path, ranks: int, report: Report) -> None:
+        scenes.run(folder, report=report)
 
     def read(self, plan: ScenePlan, folder: Path) -> Tables:
         """The tables of a scene; see `scenes.read`."""

@@ -11,6 +11,7 @@ from ...errors import CaseError
 from ...scenes import placement
 from ...scenes.plan import ScenePlan
 from ...yade.deck_modules import cone
+from ..host import refuse as refuse_value
 from . import classes as words
 from .classes import Functors, Material, PairValue, of_pairs
 from .deck import strength_values
@@ -89,8 +90,7 @@ def refuse(p: ScenePlan, *, classes: bool) -> None:
         "contact.rolling": rolling,
     }
     for place, (value, reason) in unknown.items():
-        if value:
-            raise CaseError(f"{place} = {value!r}: {reason}; remove it or use --engine liggghts")
+        refuse_value(place, value, reason)
     for place, value in of_classes.items():
         if value and not classes:
             raise CaseError(

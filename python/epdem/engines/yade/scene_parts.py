@@ -11,6 +11,7 @@ from ...case.parts import Parts
 from ...errors import CaseError
 from ...scenes.plan import Phase, ScenePlan
 from ...scenes.walls import surface_rotation
+from ..host import refuse as refuse_value
 
 EDGES = (
     "walls of triangles: YADE counts a sphere that touches an edge once for each triangle there, so that its force is "
@@ -70,9 +71,7 @@ def refuse(p: ScenePlan, s: Parts) -> None:
                     f"scene.wall.{name}.angular_velocity: YADE turns the wall itself, which moves otherwise; remove one"
                 )
     for place, value in unknown.items():
-        if value:
-            shown = "" if value is True else f" = {value!r}"
-            raise CaseError(f"{place}{shown}: a scene in YADE does not have it; remove it or use --engine liggghts")
+        refuse_value(place, value, "a scene in YADE does not have it")
 
 
 def _comes(p: ScenePlan, gate: str) -> bool:

@@ -10,6 +10,7 @@ from ...case.parts import Parts
 from ...errors import EngineError
 from ...scenes import columns, contacts
 from ...scenes.plan import ScenePlan
+from ..host import frames
 from .scene_deck import works
 
 # of a contact: number of the sphere and of the other body (from 0; walls after the spheres), overlaps [m]; of the
@@ -18,23 +19,21 @@ CONTACT = ["i", "j", "overlap", "delta_max", "attached"]
 
 
 def _frames(p: ScenePlan, folder: Path, kind: str, every: int, names: list[str], of_classes: list[str]) -> pd.DataFrame:
-    """The frames of a kind that a run of this plan writes, one below the other; other files of such names are the
-    user's. Those of a deck with epdem_yade have the columns `of_classes`, too. Raises EngineError for a frame that is
-    missing or not whole.
+    """The frames of a kind. A deck with epdem_yade writes the columns `of_classes`, too.
+
+    Raises EngineError for a frame that is missing or not whole.
     """
-    frames = []
-    for step in p.frame_steps(every):
-        path = folder / f"{kind}.{step}.npy"
+
+    def read(path: Path) -> pd.DataFrame:
         try:
             values = np.load(path)
             more = of_classes if values.shape[1] > len(names) else []
-            table = pd.DataFrame(values, columns=[*names, *more])
+            return pd.DataFrame(values, columns=[*names, *more])
         except Exception as error:  # of a damaged head numpy says almost anything
             reason = " ".join(str(error).split()) or type(error).__name__
             raise EngineError(f"{path}: incomplete ({reason}); run the case again") from None
-        table.insert(0, "step", step)
-        frames.append(table)
-    return pd.concat(frames, ignore_index=True)
+
+    return frames(p, folder, f"{kind}.{{}}.npy", every, read)
 
 
 def rows(p: ScenePlan, log: Path) -> pd.DataFrame:

@@ -8,7 +8,8 @@ import numpy as np
 
 from ...base import rendering as decks
 from ...base.files import write_texts
-from ...engines.liggghts import data_file, dump, launcher
+from ...engines.input_script import Spheres, text
+from ...engines.liggghts import dump, launcher
 from ...engines.liggghts.engine import Liggghts
 from .pairs import Pairs
 
@@ -24,10 +25,10 @@ def _box(pairs: Pairs) -> list[tuple[float, float]]:
 def data(pairs: Pairs, deck: decks.Deck, swap: bool) -> str:
     """The data file of the pairs; `swap`: the targets have the lower ids."""
     groups = [
-        data_file.Spheres(1 + deck.types.index(g.body.material), 2 * g.body.radius, g.body.density, g.place, g.velocity)
+        Spheres(1 + deck.types.index(g.body.material), 2 * g.body.radius, g.body.density, g.place, g.velocity)
         for g in pairs.ordered(swap)
     ]
-    return data_file.text("pairs", len(deck.types), _box(pairs), groups)
+    return text("pairs", len(deck.types), _box(pairs), groups)
 
 
 def scripts(deck: decks.Deck, pairs: Pairs, variant: str, engine: str = "liggghts") -> list[str]:

@@ -8,7 +8,8 @@ import numpy as np
 
 from ...base import rendering as decks
 from ...base.files import write_texts
-from ...engines.liggghts import data_file, dump, launcher
+from ...engines import input_script
+from ...engines.liggghts import dump, launcher
 from ...engines.liggghts.engine import Liggghts
 from ...engines.liggghts.properties import per_pair, tangential
 from ...errors import EngineError
@@ -72,10 +73,10 @@ def data(touch: Touch, motion: Motion, types: int) -> str:
     reach = 4 * max(touch.radii)
     box = [(float(a.min()) - reach, float(a.max()) + reach) for a in motion.place.reshape(-1, 3).T]
     spheres = [
-        data_file.Spheres(n, 2 * b.radius, b.density, motion.place[:1, k], motion.velocity[:1, k])
+        input_script.Spheres(n, 2 * b.radius, b.density, motion.place[:1, k], motion.velocity[:1, k])
         for k, (b, n) in enumerate(((x.body, 1), (x.target, types)))
     ]
-    return data_file.text(motion.name, types, box, spheres)
+    return input_script.text(motion.name, types, box, spheres)
 
 
 def _steps(motion: Motion) -> Iterator[str]:

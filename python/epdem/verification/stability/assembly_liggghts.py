@@ -7,7 +7,8 @@ import numpy as np
 
 from ...base import rendering as decks
 from ...base.files import write_texts
-from ...engines.liggghts import data_file, dump, launcher, log, stl
+from ...engines import input_script, log
+from ...engines.liggghts import dump, launcher, stl
 from ...engines.liggghts.engine import Liggghts
 from ...engines.liggghts.properties import SOFT, elastic, per_pair, strength
 from ...engines.liggghts.scene_deck import contact_columns
@@ -53,10 +54,10 @@ def _data(a: Assembly) -> str:
     margin = 0.5 * a.radius if a.plate_speed else 0.0  # the box is wider than the gap between the plates
     lx, ly, lz = map(float, a.box)
     spheres = [
-        data_file.Spheres(int(kind), 2 * a.radius, a.density, place[None], velocity[None])
+        input_script.Spheres(int(kind), 2 * a.radius, a.density, place[None], velocity[None])
         for kind, place, velocity in zip(a.kind, a.position, a.velocity, strict=True)
     ]
-    return data_file.text(a.title, len(a.materials), [(0.0, lx), (0.0, ly), (-margin, lz + margin)], spheres)
+    return input_script.text(a.title, len(a.materials), [(0.0, lx), (0.0, ly), (-margin, lz + margin)], spheres)
 
 
 class LiggghtsAssemblies:

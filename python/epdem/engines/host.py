@@ -1,0 +1,98 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""What LIGGGHTS, YADE and LAMMPS have in common as engines: a deck in a folder, of impacts or of a scene."""
+
+from abc import ABC, abstractmethod
+from collections.abc import Callable
+from pathlib import Path
+from typing import overload
+
+import pandas as pd
+
+from ..base import rendering as decks
+from ..base.files import write_texts
+from ..base.folders import held
+from ..errors import CaseError
+from ..impacts.engine import Report, Trajectory, silent
+from ..impacts.plan import Plan
+from ..scenes.engine import Resumed, Tables
+from ..scenes.plan import ScenePlan
+from ..theory.sources import Source
+from . import input_script
+
+LIGGGHTS = "use --engine liggghts"  # the engine of every scene
+
+
+class Host(ABC):
+    """An engine whose decks run without epdem."""
+
+    name: str
+    source: Source | None
+    title: str  # the program's name
+    template: str  # of impacts
+    laws: tuple[str, ...] | None = None
+    leftovers: tuple[str, ...]  # patterns of files that an earlier run of a scene may have left in the folder
+
+    @abstractmethod
+    def deck(self, plan: Plan) -> decks.Deck:
+        """The deck of a plan. Raises CaseError for what the program cannot do."""
+
+    @abstractmethod
+    def files(self, plan: ScenePlan) -> dict[str, str]:
+        """The text of every file of the deck of a scene by its name. Raises CaseError."""
+
+    @abstractmethod
+    def run_impacts(self, plan: Plan, folder: Path, ranks: int) -> Trajectory:
+        """Run the deck of a plan, which is in `folder`. Raises EngineError."""
+
+    @abstractmethod
+    def run_scene(self, plan: ScenePlan, folder: Path, ranks: int, report: Report) -> None:
+        """Run the deck of a scene, which is in `folder`. Raises CaseError, EngineError."""
+
+    @abstractmethod
+    def read(self, plan: ScenePlan, folder: Path) -> Tables:
+        """The tables of a run. Raises EngineError for a frame that is missing or not whole."""
+
+    def write(self, job: Plan | ScenePlan, folder: Path) -> list[Path]:
+        if isinstance(job, ScenePlan):
+            return write_texts(folder, self.files(job))
+        deck = self.deck(job)
+        data = input_script.data_text(job, len(deck.types))
+        return write_texts(folder, {"in.impact": decks.render(self.template, deck=deck), deck.data: data})
+
+    @overload
+    def run(self, job: Plan, folder: Path, *, ranks: int = 1, report: Report = silent) -> Trajectory: ...
+
+    @overload
+    def run(self, job: ScenePlan, folder: Path, *, ranks: int = 1, report: Report = silent) -> Tables: ...
+
+    def run(
+        self, job: Plan | ScenePlan, folder: Path, *, ranks: int = 1, report: Report = silent
+    ) -> Trajectory | Tables:
+        if not isinstance(job, ScenePlan):
+            return self.run_impacts(job, folder, ranks)
+        held(folder).remove(*self.leftovers)
+        self.run_scene(job, folder, ranks, report)
+        return self.read(job, folder)
+
+    def resume(self, job: ScenePlan, folder: Path, *, ranks: int, report: Report) -> tuple[Tables, Resumed]:
+        raise CaseError(f"{folder}: a scene in {self.title} runs from its start; run it anew")
+
+
+def refuse(place: str, value: object, reason: str) -> None:
+    """Raise CaseError if a case gives what the engine does not have. True as a value is not shown."""
+    if value:
+        shown = "" if value is True else f" = {value!r}"
+        raise CaseError(f"{place}{shown}: {reason}; remove it or {LIGGGHTS}")
+
+
+def frames(p: ScenePlan, folder: Path, pattern: str, every: int, read: Callable[[Path], pd.DataFrame]) -> pd.DataFrame:
+    """The frames that a run of this plan writes, one below the other; other files of such names are the user's.
+
+    pattern: name of the file of a step; read: the table of one file.
+    """
+    tables = []
+    for step in p.frame_steps(every):
+        table = read(folder / pattern.format(step))
+        table.insert(0, "step", step)
+        tables.append(table)
+    return pd.concat(tables, ignore_index=True)

@@ -1,0 +1,126 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""What the input scripts of LIGGGHTS and LAMMPS have in common: atom types, data files, ids, skin, loads, stops."""
+
+import math
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from ..base.rendering import number
+from ..case.parts import Parts
+from ..errors import CaseError
+from ..impacts.experiment import Body
+from ..impacts.placement import room, side_by_side
+from ..impacts.plan import Plan
+from ..scenes.plan import Phase, ScenePlan
+
+RIGID = 1e30  # modulus [Pa] of a rigid type: 1e15 would change E* of steel by 2e-4
+SKIN = 0.5  # of the smallest radius: rebuilds cost less than idle neighbours
+
+
+@dataclass(frozen=True)
+class Spheres:
+    """Equal spheres: atom type (from 1), diameter [m], density [kg/m^3], places [m] and velocities [m/s], (n, 3).
+
+    `spin` about y [rad/s], shape (n,); None: none.
+    """
+
+    type: int
+    diameter: float
+    density: float
+    place: np.ndarray
+    velocity: np.ndarray
+    spin: np.ndarray | None = None
+
+
+def text(title: str, types: int, box: Iterable[tuple[float, float]], groups: Iterable[Spheres]) -> str:
+    """A data file of `types` atom types in a `box` of three (low, high) [m]; ids from 1 in the order of the groups."""
+    atoms: list[str] = []
+    velocities: list[str] = []
+    for group in groups:
+        body = f"{group.type} {number(group.diameter)} {number(group.density)}"
+        spins = ["0"] * len(group.place) if group.spin is None else [number(w) for w in group.spin.tolist()]
+        for place, velocity, spin in zip(group.place.tolist(), group.velocity.tolist(), spins, strict=True):
+            id = len(atoms) + 1
+            atoms.append(f"{id} {body} {' '.join(map(number, place))}")
+            velocities.append(f"{id} {' '.join(map(number, velocity))} 0 {spin} 0")
+    sides = [f"{number(low)} {number(high)} {a}lo {a}hi" for a, (low, high) in zip("xyz", box, strict=True)]
+    head = [f"{' '.join(title.split())}: id type diameter density x y z", "", f"{len(atoms)} atoms"]
+    head += [f"{types} atom types", *sides, ""]
+    return "\n".join([*head, "Atoms", "", *atoms, "", "Velocities", "", *velocities, ""])
+
+
+def data_text(plan: Plan, types: int) -> str:
+    """Positions and velocities of all bodies as a data file; a target that moves is of the last type."""
+    kinds = (1, types)
+    groups = [
+        Spheres(k, 2 * g.body.radius, g.body.density, g.place, g.velocity, g.spin)
+        for k, g in zip(kinds, side_by_side(plan), strict=False)
+    ]
+    return text(plan.experiment.name, types, room(plan), groups)
+
+
+def finite(value: float) -> float:
+    """A modulus or strength [Pa] for LIGGGHTS, which has no infinity."""
+    return RIGID if math.isinf(value) else value
+
+
+def atom_types(plan: Plan) -> list[tuple[Body, float]]:
+    """The distinct (body, strength) of the plan: LIGGGHTS's atom types, the moving body first."""
+    x = plan.experiment
+    types = [(x.body, x.law.strengths[0])]
+    if x.target.material != x.body.material:
+        types.append((x.target, x.law.strengths[1]))
+    return types
+
+
+@dataclass(frozen=True)
+class StopCondition:
+    """How a phase ends early: after `first` steps at most `rows` times `every`, until the condition holds."""
+
+    first: int
+    rows: int
+    formula: str
+    condition: str
+
+
+def default_skin(p: ScenePlan) -> float:
+    """The skin of a case that gives none [m]."""
+    return float(f"{SKIN * p.smallest * (0.5 if p.model.compaction else 1.0):.1e}")  # compaction sees across gaps
+
+
+def wall_id(p: ScenePlan, name: str) -> str:
+    """The id of a wall's fix: a name that a user gives to a part must not be the id of another fix."""
+    return f"wall_{name}" if isinstance(p.case.scene, Parts) else name
+
+
+def torque_origin(p: ScenePlan, name: str) -> Sequence[float]:
+    """The place that torques on a mesh refer to [m]: on the axis of its rotation."""
+    origins = {tuple(rotation.origin) for rotation in p.rotations(name)}
+    if len(origins) > 1:
+        raise CaseError(f"scene.wall.{name}: it rotates about several origins, torques are about one; rotate about one")
+    return next(iter(origins), (0.0, 0.0, 0.0))
+
+
+def load_words(p: ScenePlan) -> Iterator[str]:
+    """What the rows hold of the forces on walls: three components, of meshes six."""
+    for n, name in enumerate(p.loads, 1):
+        yield from (f"f_load{n}[{k}]" for k in range(1, 7 if name in p.scene.meshes else 4))
+
+
+def stop_condition(p: ScenePlan, phase: Phase, steps: int) -> StopCondition | None:
+    """How a phase ends early, in words of LIGGGHTS and LAMMPS; None: it does not."""
+    until = phase.case.condition
+    if until is None:
+        return None
+    step = phase.case.time_step or p.time_step
+    first = min(steps, p.every * max(1, math.ceil(phase.case.condition_from / step / p.every)))
+    if until.kinetic_energy is not None:
+        formula, sign = "ke/atoms", "<"
+    elif until.count is not None:
+        formula, sign = "atoms", "<="
+    else:
+        load = f"f_load{1 + p.loads.index(until.wall or '')}"
+        formula, sign = "sqrt(" + "+".join(f"{load}[{k}]*{load}[{k}]" for k in (1, 2, 3)) + ")", ">="
+    return StopCondition(first, (steps - first) // p.every, formula, f"{sign} {number(until.limit)}")

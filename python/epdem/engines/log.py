@@ -1,0 +1,129 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""The log of LIGGGHTS and LAMMPS: thermo rows, ends of phases, and the time of the loop."""
+
+import math
+import re
+from collections.abc import Collection
+from pathlib import Path
+
+import pandas as pd
+
+from ..errors import EngineError
+from ..scenes import columns
+from ..scenes.plan import ScenePlan
+
+_LOOP = re.compile(r"Loop time of (\S+) on \d+ procs for (\d+) steps")
+_INSERTED = re.compile(r"INFO: Particle insertion (\w+): inserted .* at step (\d+)$")
+# thermo words of the deck and their columns; for the loads of walls see `_column`
+ROWS = {
+    "Atoms": "particles",
+    "KinEng": "kinetic_energy",
+    "load": "floor_load",
+    "press_z": "plate_force",
+    "torque": "torque",
+    "power": "wall_power",
+    "ratio[1]": columns.STRAINS[0],
+    "ratio[2]": columns.STRAINS[1],
+}
+_LOAD = re.compile(r"load(\d+)\[(\d)\]")
+_TOTAL = re.compile(r" - a total of (\d+) particle templates ")
+
+
+def rows(log: Path) -> pd.DataFrame:
+    """All thermo rows in the order of the log; empty if there are none.
+
+    Columns: "run", which counts the tables from 0, "Step", and the rest by the engine's names (NaN in tables without).
+    A step stands twice where one run ends and the next one begins.
+    """
+    names: list[str] = []
+    table: list[dict[str, float]] = []
+    run = -1
+    for line in log.read_text(errors="replace").splitlines() if log.exists() else []:
+        fields = line.split()
+        if fields[:1] == ["Step"]:
+            names, run = fields, run + 1
+        elif names and len(fields) == len(names) and fields[0].isdigit():
+            try:
+                values = map(float, fields[1:])
+                table.append({"run": run, "Step": int(fields[0])} | dict(zip(names[1:], values, strict=True)))
+            except ValueError:
+                names = []  # the rows of this run are over
+    return pd.DataFrame(table)
+
+
+def _column(p: ScenePlan, word: str) -> str | None:
+    """The column of a thermo word, with LAMMPS's f_ or without; None: one that is not ours."""
+    word = word.removeprefix("f_")
+    if load := _LOAD.fullmatch(word):
+        return f"{p.loads[int(load[1]) - 1]}_{columns.LOADS[int(load[2]) - 1]}"
+    return ROWS.get(word)
+
+
+def scene_rows(p: ScenePlan, out: Path, on_spheres: Collection[str] | None = None) -> pd.DataFrame:
+    """The thermo rows: one per step. Raises EngineError.
+
+    on_spheres: walls whose forces in the log act on the spheres; None: LIGGGHTS's planes.
+
+    A run that continues another one begins again at the step of its restart file: what the earlier run wrote beyond
+    that step is replaced, but not the row of that step itself, whose means over an interval only the earlier run has.
+    """
+    every = rows(out)
+    if every.empty:
+        raise EngineError(f"{out}: no thermo rows; the run ended before its first step")
+    table: dict[int, list[float]] = {}
+    words = {name: column for name in every if (column := _column(p, name))}  # and LIGGGHTS's own default
+    for _, part in every.groupby("run"):
+        steps, values = part["Step"].astype(int).to_list(), part[[*words]].to_numpy().tolist()
+        known = {step: row for step, row in table.items() if step <= steps[0]}
+        table = known | {step: row for step, row in zip(steps, values, strict=True) if step not in known}
+    found = columns.rows(p, table, [*words.values()])
+    on_spheres = {w.name for w in p.scene.planes} & {*p.loads} if on_spheres is None else on_spheres
+    opposite = [name for wall in on_spheres for load in columns.LOADS if (name := f"{wall}_{load}") in found]
+    found[opposite] = -found[opposite]
+    return found
+
+
+def ends(out: Path, upto: float = math.inf) -> dict[str, int]:
+    """The step at the end of each phase, of a scene in which one may end early, up to a step."""
+    text = out.read_text(encoding="utf-8", errors="replace") if out.exists() else ""
+    found = re.findall(r"^phase (\w+) ended at step (\d+)", text, re.M)
+    return {name: int(step) for name, step in found if int(step) <= upto}
+
+
+def not_reached(out: Path) -> set[str]:
+    """The phases whose condition did not hold in any row."""
+    return set(re.findall(r"^phase (\w+) was not ended by its condition", out.read_text(errors="replace"), re.M))
+
+
+def inserted(log: Path, step: int) -> dict[str, int]:
+    """The spheres that each insertion has put in up to a step; what a run did beyond the step from which another one
+    went on is not counted."""
+    found: list[tuple[int, str, int]] = []
+    name, at, begins = "", 0, False
+    for line in log.read_text(errors="replace").splitlines() if log.exists() else []:
+        fields = line.split()
+        if match := _INSERTED.match(line):
+            name, at = match[1], int(match[2])
+        elif match := _TOTAL.match(line):
+            found.append((at, name, int(match[1])))
+        elif fields[:1] == ["Step"]:
+            begins = True
+        elif begins and fields and fields[0].isdigit():
+            found, begins = [x for x in found if x[0] <= int(fields[0])], False
+    return {name: total for at, name, total in found if at <= step}
+
+
+def loops(log: Path) -> list[tuple[float, int]]:
+    """(seconds, steps) of every run in a log, by the engine's own clock."""
+    return loops_in(log.read_text(errors="replace") if log.exists() else "")
+
+
+def loops_in(text: str) -> list[tuple[float, int]]:
+    """(seconds, steps) of every run in a piece of a log."""
+    return [(float(seconds), int(steps)) for seconds, steps in _LOOP.findall(text)]
+
+
+def loop_seconds(log: Path) -> float:
+    """The engine's own time for the steps of its last run [s]; NaN if the log does not contain it."""
+    times = loops(log)
+    return times[-1][0] if times else math.nan
