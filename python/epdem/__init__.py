@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Elastic-plastic particle contact for LIGGGHTS and YADE, checked against theory."""
+"""Elastic-plastic particle contact for LIGGGHTS, YADE and LAMMPS, checked against theory."""
 
 import importlib
 from typing import Any

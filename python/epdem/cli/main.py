@@ -28,7 +28,7 @@ from . import sweep as cli_sweep
 from .export import app as export
 from .options import AsJson, CasePath, Engines, Force, Formats, Laws, Out, formats, refuse
 
-ABOUT = """Elastic-plastic particle contact for LIGGGHTS and YADE, checked against theory.
+ABOUT = """Elastic-plastic particle contact for LIGGGHTS, YADE and LAMMPS, checked against theory.
 
 Begin with: epdem run cases/steel_wall.toml -e embedded -e liggghts
 
