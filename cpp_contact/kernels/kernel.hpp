@@ -229,10 +229,10 @@ template <class Law, class Friction, bool rolls, bool wall, bool grows = false>
   }
 }
 
-/// No kernel for what no host offers: contacts with adhesion that have partial slip or are at walls.
+/// No kernel for what no host offers: contacts with adhesion that have partial slip.
 template <class Law, class Friction, bool rolls, bool wall>
 constexpr Kernel offered() noexcept {
-  if constexpr (adheres<Law> && (wall || !Friction::of_liggghts))
+  if constexpr (adheres<Law> && !Friction::of_liggghts)
     return nullptr;
   else
     return &contacts<Law, Friction, rolls, wall>;

@@ -10,7 +10,7 @@
 #include "domain.h"
 #include "error.h"
 #include "force.h"
-#include "modify.h"
+#include "neighbor.h"
 #include "update.h"
 #include "utils.h"
 
@@ -83,13 +83,12 @@ void FixWall::init() {
   pass_.viscous = words_.coefficients.normal_restitution > 0.0;
   pass_.rolling = words_.models.rolling;
   pass_.cohesion = words_.models.cohesion;
-  if (pass_.damped || pass_.viscous)
-    for (Fix* fix : modify->get_fix_list())
-      if (fix->rigid_flag)
-        error->all(FLERR,
-                   "{}: restitution needs the mass of the body of fix {} {}, which the wall does not know; "
-                   "remove restitution",
-                   place_, fix->style, fix->id);
+  if (words_.coefficients.damped()) refuse_rigid_bodies(lmp, place_);
+  if (layout_.root < 0) return;
+  reach_ = neighbor->skin;
+  for (int type = 1; type <= atom->ntypes; ++type)
+    checked_gap(lmp, place_, *words_.models.law, constants_.data() + most_constants * type,
+                pair_->largest_radius(type));
 }
 
 /// As before the first step of a run, when LAMMPS computes forces once more: this changes no history.
@@ -98,7 +97,8 @@ void FixWall::post_force(int) {
   std::vector<double> before;
   std::vector<int> count_before;
   if (!counts) before = held_, count_before = count_;
-  pass_.dt = update->dt;
+  pass_.dt = counts ? update->dt : no_time;
+  pass_.repeats = !counts;
   pass_.work = counts && pair_->energies();
   pass_.strain = pair_->strain();
   const double* rows[] = {atom->v[0], atom->omega[0]};
@@ -121,6 +121,7 @@ void FixWall::post_force(int) {
     if (!(atom->mask[i] & groupbit)) continue;
     found.clear();
     find(i, found);
+    if (layout_.root >= 0) drop_parted(i, found);
     if (static_cast<int>(found.size()) > most_)
       error->one(FLERR, "{}: atom {} has more than {} contacts with the wall", place_, atom->tag[i], most_);
     keep_records(i, found);
@@ -152,6 +153,20 @@ void FixWall::post_force(int) {
   if (counts) return;
   held_.swap(before);
   count_.swap(count_before);
+}
+
+/// Across a gap, only attached spheres are in contact.
+void FixWall::drop_parted(int i, std::vector<Contact>& found) {
+  const auto parted = [&](const Contact& c) {
+    if (c.distance < atom->radius[i]) return false;
+    for (int k = 0; k < count_[i]; ++k)
+      if (record(i, k)[0] == c.part) {
+        const double* const history = record(i, k) + 1;
+        return !(history[layout_.root] > 0.0) && !(pass_.repeats && history[layout_.jump] != 0.0);
+      }
+    return true;
+  };
+  found.erase(std::remove_if(found.begin(), found.end(), parted), found.end());
 }
 
 /// The records of a sphere in the order of its contacts; a contact that is new begins with zeros.
@@ -195,11 +210,12 @@ void FixWall::finish(int n) {
 /// The rows of a `dump local`.
 void FixWall::note(int n) {
   const kernels::Block& b = *block_;
-  const int most = words_.models.law->most;
+  const int most = words_.models.law->most, root = layout_.root;
   for (int k = 0; k < n; ++k) {
     const double overlap = b.overlap.a[k];
     local_.insert(local_.end(), {double(atom->tag[b.i[k]]), double(b.j[k]), overlap,
-                                 most < 0 ? overlap : std::max(overlap, b.history[k][most])});
+                                 most < 0 ? overlap : std::max(overlap, b.history[k][most]),
+                                 double(root < 0 || b.history[k][root] > 0.0)});
   }
 }
 
@@ -269,9 +285,9 @@ FixWallPlanes::FixWallPlanes(LAMMPS* lmp, int count, char** word) : FixWall(lmp,
 }
 
 void FixWallPlanes::find(int i, std::vector<Contact>& found) {
-  const double x = atom->x[i][axis_], radius = atom->radius[i];
+  const double x = atom->x[i][axis_], reach = reach_of(i);
   const auto note = [&](int part, double from_wall) {
-    if (!(std::fabs(from_wall) < radius)) return;
+    if (!(std::fabs(from_wall) < reach)) return;
     Contact c{part, std::fabs(from_wall), {}, {}};
     c.from_wall[axis_] = from_wall;
     found.push_back(c);
@@ -304,7 +320,7 @@ void FixWallRegion::begin() {
 void FixWallRegion::find(int i, std::vector<Contact>& found) {
   double* const x = atom->x[i];
   if (!region_->match(x[0], x[1], x[2])) return;
-  const int count = region_->surface(x[0], x[1], x[2], atom->radius[i]);
+  const int count = region_->surface(x[0], x[1], x[2], reach_of(i));
   for (int k = 0; k < count; ++k) {
     const Region::Contact& at = region_->contact[k];
     Contact c{at.iwall, at.r, {at.delx, at.dely, at.delz}, {}};

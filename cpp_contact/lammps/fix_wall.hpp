@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "atom.h"
 #include "fix.h"
 #include "pair_ep.hpp"
 #include "region.h"
@@ -51,6 +52,8 @@ class FixWall : public LAMMPS_NS::Fix {
 
   /// Before the spheres of a step.
   virtual void begin() {}
+  /// Distance [length] up to which `find` looks for parts of the wall: with adhesion across gaps, too.
+  double reach_of(int i) const { return atom->radius[i] + reach_; }
   /// The contacts of a sphere, at most `most`.
   virtual void find(int i, std::vector<Contact>& found) = 0;
 
@@ -58,6 +61,7 @@ class FixWall : public LAMMPS_NS::Fix {
 
  private:
   double* record(int i, int k) { return held_.data() + (long(i) * most_ + k) * stride_; }
+  void drop_parted(int i, std::vector<Contact>& found);
   void keep_records(int i, const std::vector<Contact>& found);
   void finish(int n);
   void note(int n);
@@ -65,6 +69,7 @@ class FixWall : public LAMMPS_NS::Fix {
   Words words_;
   Layout layout_;
   int most_ = 0, stride_ = 0;
+  double reach_ = 0.0;        // beyond the radius [length]
   std::vector<double> held_;  // by atom: `most` records of a part and the values of its contact
   std::vector<int> count_;    // of records that hold
   PairEp* pair_ = nullptr;
@@ -73,9 +78,9 @@ class FixWall : public LAMMPS_NS::Fix {
   kernels::Pass pass_{};
   std::unique_ptr<kernels::Block> block_;
   std::vector<double> copies_[2], scratch_;
-  static constexpr int sums = 7, local_columns = 4;
+  static constexpr int sums = 7, local_columns = 5;
   double sum_[sums] = {}, total_[sums] = {};
-  std::vector<double> local_;  // id, part of the wall, overlap, largest overlap of the contacts of this step
+  std::vector<double> local_;  // of each contact: id, part of the wall, overlap, largest overlap, attached
   std::vector<double*> local_row_;
   LAMMPS_NS::bigint summed_ = -1;
 };

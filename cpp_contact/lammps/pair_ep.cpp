@@ -127,11 +127,16 @@ void PairEp::init_style() {
   if (!comm->ghost_velocity)
     error->all(FLERR, "pair_style ep: contacts need the velocities of ghost atoms; add comm_modify vel yes");
   models_ = {};
+  bool damped = false;
   for (int i = 1; i < width_; ++i)
     for (int j = i; j < width_; ++j)
-      if (!types(i, j).text.empty())
-        models_ = common_models(lmp, "pair_coeff " + std::to_string(i) + " " + std::to_string(j), models_,
-                                types(i, j).words.models);
+      if (!types(i, j).text.empty()) {
+        const Words& words = types(i, j).words;
+        models_ =
+            common_models(lmp, "pair_coeff " + std::to_string(i) + " " + std::to_string(j), models_, words.models);
+        damped |= words.coefficients.damped();
+      }
+  if (damped) refuse_rigid_bodies(lmp, "pair_style ep");
   if (!models_.law) error->all(FLERR, "pair_style ep: no pair_coeff names a law; give pair_coeff 1 1 LAW E nu ...");
   kernel_ = kernel_of(lmp, "pair_style ep", models_, false);
   layout_ = layout_of(models_, false);
@@ -182,24 +187,11 @@ double PairEp::init_one(int i, int j) {
   std::copy_n(constants, most_constants, constants_.data() + most_constants * (j * width_ + i));
   pass_.damped |= constants[kernels::damping] > 0.0;
   pass_.viscous |= constants[kernels::dashpot] > 0.0;
-  if (pass_.damped || pass_.viscous)
-    for (Fix* fix : modify->get_fix_list())
-      if (fix->rigid_flag)
-        error->all(FLERR,
-                   "{}: restitution needs the mass of the body of fix {} {}, which the pair style does not know; "
-                   "remove restitution",
-                   place, fix->style, fix->id);
   const double R_star = 0.5 * std::max(largest_[i], largest_[j]);
-  const double gap = models_.law->largest_gap(constants + kernels::law_data, R_star);
-  if (gap > neighbor->skin)
-    error->all(
-        FLERR,
-        "{}: law {} pulls across gaps up to {:.4g}, above the skin {:.4g}; increase the skin of command neighbor",
-        place, models_.law->name, gap, neighbor->skin);
-  return largest_[i] + largest_[j] + gap;
+  return largest_[i] + largest_[j] + checked_gap(lmp, place, *models_.law, constants, R_star);
 }
 
-void PairEp::set_pass() {
+void PairEp::set_pass(bool counts) {
   const int atoms = atom->nlocal + atom->nghost;
   const double* rows[] = {atom->x[0], atom->v[0], atom->omega[0]};
   if (atoms >= atom->nmax)
@@ -211,7 +203,8 @@ void PairEp::set_pass() {
   pass_.x = rows[0];
   pass_.v = rows[1];
   pass_.omega = rows[2];
-  pass_.dt = update->dt;
+  pass_.dt = counts ? update->dt : no_time;
+  pass_.repeats = !counts;
   pass_.rolling = models_.rolling;
   pass_.cohesion = models_.cohesion;
   pass_.now = history_->now();
@@ -219,7 +212,8 @@ void PairEp::set_pass() {
   pass_.strain = strain_;
 }
 
-/// LAMMPS computes forces once more before the first step of a run; this evaluation changes no history.
+/// LAMMPS computes forces once more before the first step of a run; this evaluation changes no history and moves no
+/// spring.
 void PairEp::compute(int eflag, int vflag) {
   ev_init(eflag, vflag);
   history_->resume();
@@ -229,7 +223,7 @@ void PairEp::compute(int eflag, int vflag) {
   if (list->inum > 0) {
     std::vector<double> before;
     if (!counts) before = history_->page();
-    set_pass();
+    set_pass(counts);
     models_.law->root < 0 ? gather<false>() : gather<true>();
     if (!counts) history_->page().swap(before);
   }
@@ -259,7 +253,8 @@ void PairEp::gather() {
         bool contact = dx * dx + dy * dy + dz * dz < sum * sum;
         if constexpr (adheres) {
           const double* const history = history_->at(i, jj);
-          contact |= (history[layout_.root] > 0.0) & (pass_.now - history[layout_.last_step] <= 1.0);
+          const bool stands = (history[layout_.root] > 0.0) | (pass_.repeats & (history[layout_.jump] != 0.0));
+          contact |= stands & (pass_.now - history[layout_.last_step] <= 1.0);
         }
         if (excludes) contact &= force->special_lj[sbmask(neighbors[jj])] != 0.0;
         b.i[n] = i;
@@ -372,7 +367,7 @@ double PairEp::single(int i, int j, int, int, double rsq, double, double, double
   std::vector<double> history(std::max(1, layout_.values), 0.0);
   if (known) std::copy_n(known, layout_.values, history.data());
 
-  set_pass();
+  set_pass(false);
   pass_.work = pass_.strain = true;
   pass_.several = false;
   kernels::Block& b = *block_;

@@ -36,6 +36,7 @@ class PairEp : public LAMMPS_NS::Pair {
   FixHistory* history() const { return history_; }
   bool energies() const { return energies_; }
   bool strain() const { return strain_; }
+  double largest_radius(int type) const { return largest_[type]; }
 
  private:
   struct PairOfTypes {
@@ -48,7 +49,7 @@ class PairEp : public LAMMPS_NS::Pair {
   void set_words(int i, int j, const std::string& text);
   void create_history();
   void measure_radii();
-  void set_pass();
+  void set_pass(bool counts);
   template <bool adheres>
   void gather();
   void finish(int n);

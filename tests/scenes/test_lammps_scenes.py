@@ -11,7 +11,7 @@ from engines.lammps_decks import needs_lammps
 from epdem.case.scene import load, parse
 from epdem.engines import scene_engine
 from epdem.engines.lammps import scene_deck as lammps_scene
-from epdem.errors import CaseError
+from epdem.errors import CaseError, EngineError
 from epdem.scenes.columns import last_frame
 from epdem.scenes.plan import plan
 
@@ -34,7 +34,7 @@ BEAMS = [  # pairs of spheres that meet, hit walls and the plate, at different s
 ]
 
 
-def beams(tmp_path, **contact):
+def beams(tmp_path, surface_energy=None, **contact):
     """Five spheres of two materials between planes and a plate that comes down and goes up."""
     (tmp_path / "spheres.csv").write_text("\n".join(["x,y,z,radius,material,vx,vy,vz", *BEAMS, ""]))
     down, up = ({"wall": "lid", "kind": "linear", "velocity": ["0 m/s", "0 m/s", v]} for v in ("-0.3 m/s", "0.2 m/s"))
@@ -50,6 +50,9 @@ def beams(tmp_path, **contact):
     data["numerics"] = {"time_step": "2e-6 s"}
     pairs = [{"between": ["glass", "steel"], "friction": 0.4}]
     data["contact"] = {"friction": 0.3, "wall_friction": 0.2, "pairs": pairs, **contact}
+    if surface_energy:
+        data["law"]["name"] = "thornton_ning"
+        data["materials"] = {name: x | {"surface_energy": surface_energy} for name, x in data["materials"].items()}
     return data
 
 
@@ -61,8 +64,9 @@ def beams(tmp_path, **contact):
         {"tangential_restitution": 0.5},
         {"tangential": "partial_slip"},
         {"rolling": {"model": "epsd2", "coefficient": 0.1}},
+        {"surface_energy": "2 J/m^2"},
     ],
-    ids=["dashpot", "partial slip", "rolling"],
+    ids=["dashpot", "partial slip", "rolling", "adhesion"],
 )
 def test_spheres_take_the_way_of_liggghts_between_planes_and_a_plate_that_moves(contact, tmp_path):
     """From the same table: energies, forces on walls and contacts of all frames; one case on two ranks."""
@@ -74,6 +78,7 @@ def test_spheres_take_the_way_of_liggghts_between_planes_and_a_plate_that_moves(
         largest = np.abs(theirs.rows[name]).max()
         assert np.abs(ours.rows[name] - theirs.rows[name]).max() <= 1e-6 * largest, name
     assert np.abs(theirs.rows["lid_force_z"]).max() > 0 and np.abs(theirs.rows["left_force_x"]).max() > 0
+    assert (theirs.rows["floor_force_z"].max() > 0.01) == ("surface_energy" in contact)  # adhesion pulls the floor
     table = theirs.particles
     assert {*ours.particles} <= {*table} and len(ours.particles) == len(table)
     for name in ("x", "z", "vy", "omega_x", "plastic_work"):
@@ -85,7 +90,30 @@ def test_spheres_take_the_way_of_liggghts_between_planes_and_a_plate_that_moves(
 
 
 @needs_lammps
-@pytest.mark.parametrize("kind", ["vibrate", "rotate", "linear"])
+@pytest.mark.liggghts
+def test_a_settled_bed_has_the_porosity_of_liggghts(tmp_path):
+    """From the same places; collisions amplify the rounding, so that the two packings differ."""
+    shift = np.random.default_rng(5).uniform(-0.18e-3, 0.18e-3, (250, 3))
+    axis = np.linspace(-7e-3, 7e-3, 5)
+    grid = np.array([(x, y, 2e-3 + 3.5e-3 * k) for k in range(10) for x in axis for y in axis])
+    rows = (f"{x!r},{y!r},{z!r},1.5e-3,glass" for x, y, z in (grid + shift).tolist())
+    (tmp_path / "spheres.csv").write_text("\n".join(["x,y,z,radius,material", *rows, ""]))
+    region = {"x": ["-9 mm", "9 mm"], "y": ["-9 mm", "9 mm"], "z": ["2 mm", "14 mm"]}
+    data = parts(
+        wall=[FLOOR, *SIDES],
+        fill=[{"name": "table", "file": "spheres.csv"}],
+        phase=[{"name": "fall", "duration": "0.25 s"}],
+        measure=[{"name": "void", "kind": "porosity", "region": region}],
+    )
+    data |= {"contact": {"friction": 0.3}, "viscous": {"restitution": 0.4}}
+    path = write_case(data, tmp_path)
+    ours, theirs = (run(path, engine=name, out=tmp_path / name).results for name in ("lammps", "liggghts"))
+    a, b = (found.measures["void"].iloc[-1] for found in (ours, theirs))
+    assert a == pytest.approx(b, rel=0.01) and 0.35 < b < 0.5
+
+
+@needs_lammps
+@pytest.mark.parametrize("kind", ["vibrate", "rotate", "linear", "press"])
 def test_energy_closes_with_the_work_of_regions_that_move(kind, tmp_path):
     outcome = run(write_case(moved(kind), tmp_path), engine="lammps", out=tmp_path / "out")
     balance = outcome.results.energy_balance
@@ -129,7 +157,7 @@ def test_what_regions_do_not_hold_is_refused_with_one_sentence(change, sentence)
     ("case", "sentence"),
     [
         ("impactor_bowl", "scene.wall.bowl.kind = 'stl': LAMMPS's regions hold no triangles of a file; remove it or"),
-        ("adhesive_powder", "law.name = 'thornton_ning': adhesion is between spheres only, not at walls; remove it or"),
+        ("adhesive_powder", "output.restarts = 1: a LAMMPS scene is not continued; remove it or"),
     ],
 )
 def test_cases_that_lammps_does_not_hold_are_refused(case, sentence):
@@ -161,6 +189,29 @@ def test_gates_leave_frozen_spheres_where_they_are_and_ids_are_not_given_twice(t
     held = table[table["id"] == 1]
     assert held["step"].nunique() > 2 and (held["z"] == 1e-3).all() and (held["vz"] == 0).all()
     assert {*last_frame(table)["id"]} == {1, 3}
+
+
+def layers(low):
+    """Two layers of spheres; the second falls on the first from a region that begins at `low`."""
+    regions = [BED["region"] | {"z": z} for z in (["0 mm", "14 mm"], [low, "38 mm"])]
+    fills = [BED | {"name": name, "region": z} for name, z in zip(("one", "two"), regions, strict=True)]
+    fills[1]["phase"] = "second"
+    drop = BALL | {"name": "drop", "position": ["0 mm", "0 mm", "30 mm"], "phase": "second"}
+    phases = [{"name": name, "duration": "60 ms"} for name in ("first", "second")]
+    return parts(wall=[FLOOR, *SIDES], fill=fills, body=[drop], phase=phases)
+
+
+@needs_lammps
+def test_a_later_phase_fills_a_region_without_spheres(tmp_path):
+    outcome = run(write_case(layers("20 mm"), tmp_path), engine="lammps", out=tmp_path / "out")
+    assert outcome.passed, outcome.results.checks
+    table, rows = outcome.results.particles, outcome.results.rows
+    second = outcome.results.phases.set_index("phase").loc["first", "end"]
+    assert (rows["particles"] == np.where(rows["step"] <= second, 40, 81)).all()
+    assert sorted(last_frame(table)["id"]) == [*range(1, 82)]
+    assert outcome.results.contacts["overlap"].max() < 0.2e-3  # none came inside of another
+    with pytest.raises(EngineError, match=r"phase second has \d+ spheres in the region, and LAMMPS fills an empty"):
+        run(write_case(layers("3 mm"), tmp_path), engine="lammps", out=tmp_path / "full")
 
 
 def test_regions_of_a_profile_are_not_named_as_a_wall():

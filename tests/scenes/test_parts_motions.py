@@ -8,6 +8,7 @@ import pytest
 from parts_cases import BED, FLOOR, parts
 from scene_runs import run, write_case, write_deck
 
+from engines.lammps_decks import needs_lammps
 from epdem.case.scene import parse
 from epdem.engines import log
 from epdem.engines.liggghts import launcher, resume
@@ -108,8 +109,10 @@ def test_a_wall_that_moves_last_goes_no_farther_than_it_should_and_other_lengths
     assert not planned_warnings(p)
 
 
-@pytest.mark.liggghts
-def test_phases_end_by_force_and_by_energy_and_a_servo_holds_its_force(tmp_path):
+@pytest.mark.parametrize(
+    "engine", [pytest.param("liggghts", marks=pytest.mark.liggghts), pytest.param("lammps", marks=needs_lammps)]
+)
+def test_phases_end_by_force_and_by_energy_and_a_servo_holds_its_force(engine, tmp_path):
     hold = {
         "wall": "lid",
         "kind": "press",
@@ -131,7 +134,7 @@ def test_phases_end_by_force_and_by_energy_and_a_servo_holds_its_force(tmp_path)
     ]
     data = parts(wall=[BOX, lid], fill=[bed], phase=phases) | {"viscous": {"restitution": 0.4}}
     data["output"] = {"rows": 800, "particles": 2, "loads": True, "restarts": 0}
-    outcome = run(write_case(data, tmp_path), out=tmp_path / "out")
+    outcome = run(write_case(data, tmp_path), engine=engine, out=tmp_path / "out")
     rows, phase = outcome.results.rows, outcome.results.phases.set_index("phase")
     force = np.linalg.norm(rows[["lid_force_x", "lid_force_y", "lid_force_z"]], axis=1)
     at = {name: int(np.flatnonzero(rows["step"] == phase.loc[name, "end"])[0]) for name in phase.index}

@@ -167,7 +167,7 @@ inline ContactLoads<Number<Law>> contact(const ContactConstants<Law>& pair, cons
   }
   NormalContact<Law> now =
       normal_contact(pair, c.R_star, history.law, c.overlap, T(-c.normal_velocity * settings.dt), -c.normal_velocity,
-                     settings.damped, settings.viscous, m_star, false, observer);
+                     settings.damped, settings.viscous, m_star, settings.repeats, observer);
   history.law = now.step.after;
 
   ContactLoads<T> loads{now.force * c.normal, {}, {}};

@@ -39,9 +39,9 @@ def _somewhere(region: Region, radius: float, rng: random.Random) -> tuple[float
 def spheres(p: ScenePlan, phase: str = "") -> FloatArray:
     """(n, 5) x, y, z, radius [m], type of all spheres that come with a phase: the table, then each fill.
 
-    phase: its name, "": the first one, with which the table comes; bodies of later phases are not in here. Random
-    sequential placement, every sphere wholly in the region of its fill. The same case has the same places everywhere.
-    Raises CaseError when full.
+    phase: its name, "": the first one, with which the table comes; bodies of later phases are not in here, but their
+    places are free. Random sequential placement, every sphere wholly in the region of its fill. The same case has the
+    same places everywhere. Raises CaseError when full.
     """
     first = p.phases[0].name
     rng = random.Random(p.case.numerics.seed)
@@ -62,6 +62,9 @@ def spheres(p: ScenePlan, phase: str = "") -> FloatArray:
         )
         return all(math.dist(place, placed[k][:3]) > radius + placed[k][3] for k in near)
 
+    bodies = [b.sphere for b in p.scene.later if b.phase == phase]
+    for s in bodies:
+        put(s.place, s.radius, 0)
     for s in p.scene.table if phase in ("", first) else ():
         put(s.place, s.radius, p.model.type_of(s.material))
     for fill in (f for f in p.insertions if f.phase == (phase or first)):
@@ -73,10 +76,10 @@ def spheres(p: ScenePlan, phase: str = "") -> FloatArray:
                     break
             else:
                 raise CaseError(
-                    f"{fill.key} = {fill.count}: no room is left for sphere {len(placed) + 1} without overlap "
-                    f"after {ATTEMPTS} attempts; enlarge the box"
+                    f"{fill.key} = {fill.count}: no room is left for sphere {len(placed) - len(bodies) + 1} "
+                    f"without overlap after {ATTEMPTS} attempts; enlarge the box"
                 )
-    return np.array(placed).reshape(-1, 5)
+    return np.array(placed[len(bodies) :]).reshape(-1, 5)
 
 
 def moving_spheres(p: ScenePlan, phase: str = "") -> Iterator[tuple[float, ...]]:

@@ -10,7 +10,7 @@ from ...base import rendering as decks
 from ...base.folders import held
 from ...base.processes import most_ranks
 from ...case.kinds import KINDS
-from ...errors import CaseError, EngineError
+from ...errors import EngineError
 from ...impacts.engine import Feature, Report, Trajectory, check_features
 from ...impacts.experiment import Body
 from ...impacts.placement import approach
@@ -60,11 +60,6 @@ class Lammps(Host):
         x, types = plan.experiment, atom_types(plan)
         check_features(self, x)
         wall = math.isinf(x.target.radius)
-        if x.law.adheres and wall:
-            raise CaseError(
-                f"law.name = {x.law.name!r}: engine lammps has adhesion between spheres only; use --engine embedded "
-                "or liggghts for walls"
-            )
         return decks.Deck(
             plan,
             title=x.title,

@@ -3,8 +3,9 @@
 
 from itertools import combinations
 
+import numpy as np
+
 from ...base import rendering as decks
-from ...case.parts import Parts
 from ...errors import CaseError
 from ...scenes import placement
 from ...scenes.plan import ScenePlan
@@ -18,9 +19,7 @@ ROLLING = ("cdt", "epsd2")
 
 def check(p: ScenePlan) -> None:
     """Raise CaseError for what a scene in LAMMPS does not have."""
-    m, out, s = p.model, p.output, p.case.scene
-    first = p.phases[0].name
-    refuse("law.name", m.adheres and s.wall_materials and m.law, "adhesion is between spheres only, not at walls")
+    m, out = p.model, p.output
     rolling = m.rolling.model if m.rolling else None
     refuse("contact.rolling.model", rolling not in (None, *ROLLING) and rolling, "pair ep in LAMMPS has cdt and epsd2")
     refuse("law.compaction", m.compaction, "pair ep in LAMMPS has none")
@@ -29,8 +28,6 @@ def check(p: ScenePlan) -> None:
     refuse("output.pictures", out.pictures, "there are none")
     for fill in p.insertions:
         refuse(f"{fill.key} with a rate", fill.rate, "all spheres come at the begin of a phase")
-        if isinstance(s, Parts):
-            refuse(f"{fill.key} with a phase", fill.phase != first and fill.phase, "only the first phase is filled")
     refuse("scene.phase.record", any(not phase.case.record for phase in p.phases), "every phase has frames")
     if not len(placement.spheres(p)):
         raise CaseError(f"scene: no sphere is there at the start, LAMMPS needs one; {LIGGGHTS}")
@@ -46,7 +43,8 @@ def deck(p: ScenePlan) -> decks.Deck:
     walls = (*(plane(p, w) for w in p.scene.planes), *meshes(p))
     row_words = {"f_load": p.floor_load, "f_press_z": p.plates, "f_torque": p.torque, "f_power": p.writes_wall_power}
     phases, before, begin = [], None, 0
-    placed = len(p.scene.table) + sum(f.count for f in p.insertions)  # in the first phase
+    first = p.phases[0].name
+    placed = len(p.scene.table) + sum(f.count for f in p.insertions if f.phase == first)
     for phase, after in zip(p.phases, [*p.phases[1:], None], strict=True):
         phases.append(
             decks.Deck(
@@ -55,6 +53,7 @@ def deck(p: ScenePlan) -> decks.Deck:
                 time_step=phase.case.time_step or p.time_step if own_steps else None,
                 data=_data_file(p, phase.name),
                 placed=placed,
+                fills=_fills(p, phase.name),
                 gates=[gates[name] for name in phase.gates if before is None or name not in before.gates],
                 commands=motions(p, before, phase) if before else [],
                 ends=[wall_id(p, name) for name in phase.gates if after and name not in after.gates],
@@ -63,6 +62,7 @@ def deck(p: ScenePlan) -> decks.Deck:
         )
         before, begin = phase, phase.end
         placed += sum(b.phase == phase.name for b in p.scene.later)
+        placed += sum(f.count for f in p.insertions if f.phase == phase.name != first)
     return decks.Deck(
         p,
         title=p.case.case.title,
@@ -112,7 +112,15 @@ def columns_of_dump(p: ScenePlan) -> dict[str, str]:
 
 def _data_file(p: ScenePlan, phase: str) -> str | None:
     """The data file of the spheres that come with a phase but the first; None: none do."""
-    return f"phase_{phase}.data" if any(b.phase == phase for b in p.scene.later) else None
+    come = _fills(p, phase) or any(b.phase == phase for b in p.scene.later)
+    return f"phase_{phase}.data" if come else None
+
+
+def _fills(p: ScenePlan, phase: str) -> list[tuple[str, str, str]]:
+    """Of each fill of a phase but the first: key, id, limits of a block that holds the centres of what it may touch."""
+    fills = [(n, f) for n, f in enumerate(p.insertions, 1) if f.phase == phase != p.phases[0].name]
+    wider = np.tile([-p.largest, p.largest], 3)
+    return [(f.key, f"fill{n}", " ".join(map(decks.number, f.region.limits + wider))) for n, f in fills]
 
 
 def _data(p: ScenePlan, phase: str) -> str:

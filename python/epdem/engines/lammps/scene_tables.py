@@ -51,8 +51,10 @@ def _contacts(p: ScenePlan, folder: Path, spheres: pd.DataFrame) -> pd.DataFrame
     pairs = pairs.assign(wall="", i=pairs[["one", "two"]].min(axis=1), j=pairs[["one", "two"]].max(axis=1))
     found = [pairs[(pairs["overlap"] > 0) | (p.model.adheres & (pairs["attached"] > 0))]]
     for name in contact_walls(p):
-        table = _frames(p, folder, f"contacts_{wall_id(p, name)}", p.contacts, ["i", "overlap", "delta_max"])
-        found.append(table.assign(wall=name, j=0, attached=1.0))
+        table = _frames(
+            p, folder, f"contacts_{wall_id(p, name)}", p.contacts, ["i", "overlap", "delta_max", "attached"]
+        )
+        found.append(table.assign(wall=name, j=0))
     raw = pd.concat([part for part in found if len(part)] or found[:1], ignore_index=True)
     raw = raw.assign(attached=raw["attached"] > 0) if p.model.adheres else raw.drop(columns="attached")
     return contacts.complete(p, raw, spheres, folder)

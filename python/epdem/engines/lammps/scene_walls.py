@@ -135,7 +135,10 @@ def _numbers(values: Iterable[float]) -> str:
 
 
 def _rates(p: ScenePlan, name: str, phase: Phase) -> dict[str, str]:
-    """What changes in a phase: component of the way [m] or turn [rad], and its formula of the time t of the motion."""
+    """What changes in a phase: component of the way [m] or turn [rad], and its formula of T.
+
+    T is the time of the motion [s], of a wall that a force drives its way [m].
+    """
     found: dict[str, str] = {}
     move: Move | None = phase.moves.get(name)
     turn = surface_rotation(p.scene.meshes[name])
@@ -149,7 +152,7 @@ def _rates(p: ScenePlan, name: str, phase: Phase) -> dict[str, str]:
         case RotateMove():
             rate += move.rate
         case PressMove():
-            refuse(f"scene.phase.{phase.name}.move of {name}", "press", "LAMMPS has no region that a force drives")
+            found = {axis: f"{number(u)}*T" for axis, u in zip("xyz", move.unit_direction, strict=True) if u}
     return found | ({"turn": f"{number(rate)}*T"} if rate else {})
 
 
@@ -176,13 +179,30 @@ def motions(p: ScenePlan, before: Phase | None, phase: Phase) -> list[str]:
     found = []
     for name in p.scene.meshes:
         keys, id, rates = _changing(p, name), wall_id(p, name), _rates(p, name, phase)
-        if not keys or (before and _rates(p, name, before) == rates):
+        move, last = phase.moves.get(name), before.moves.get(name) if before else None
+        if not keys or (before and move == last):
             continue
+        T = f"v_{id}_way" if isinstance(move, PressMove) else f"(time-v_{id}_begin)"
+        if isinstance(last, PressMove):
+            found.append(f"unfix press_{id}")
         found.append(f"variable {id}_begin equal $(time:%.17g)")
         for key in keys:
             if before:
                 found.append(f"variable {id}_{key}0 equal $(v_{id}_{key}:%.17g)")
-            formula = rates[key].replace("T", f"(time-v_{id}_begin)") if key in rates else ""
+            formula = rates[key].replace("T", T) if key in rates else ""
             terms = [f"v_{id}_{key}0"] * (before is not None) + [formula] * bool(formula)
             found.append(f"variable {id}_{key} equal {'+'.join(terms) or '0.0'}")
+        if isinstance(move, PressMove):
+            found += _servo(id, move)
     return found
+
+
+def _servo(id: str, move: PressMove) -> Iterator[str]:
+    """Commands that move a wall: its speed over the highest speed is the relative error of its force, at most 1."""
+    force = "+".join(f"f_{id}[{k}]*{number(u)}" for k, u in enumerate(move.unit_direction, 1) if u)
+    error = f"v_{id}_error"
+    yield f"variable {id}_way internal 0.0"
+    yield f"variable {id}_error equal 1-({force})/{number(move.force)}"
+    speed = f"({error}*(abs({error})<=1)+({error}>1)-({error}<-1))*{number(move.highest_speed)}"
+    yield f"variable {id}_speed equal {speed}"
+    yield f"fix press_{id} all controller 1 1 -1 0 0 v_{id}_speed 0 {id}_way"

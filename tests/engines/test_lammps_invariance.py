@@ -1,0 +1,171 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Oblique impacts in LAMMPS that a change of the set-up must not change.
+
+Six pairs of unequal spheres of two materials and three spheres on a wall, which drift across the border of two ranks
+during contact; `epdem verify crosscheck` examines e_n of each law by swap, sort, migration and restart.
+"""
+
+import numpy as np
+import pytest
+from lammps_decks import DUMP, THORNTON, column, needs_lammps, run, spheres
+
+pytestmark = needs_lammps
+
+OPTIONS = "tangential partial_slip 0.3 rolling epsd2 0.1"
+WORDS = (f"thornton 1e8 0.3 4e5 {OPTIONS}", f"thornton 2e8 0.25 2e5 {OPTIONS}")
+WALL = f"fix floor all wall/ep zplane -0.01 NULL {WORDS[1]}\n"
+HALF, STEPS = 0.02, 600  # [m] of the box
+
+
+def scene():
+    """Rows of type, diameter, density, place, velocity, spin; the bodies of a pair follow each other."""
+    rng = np.random.default_rng(7)
+    radius, rows = np.array([1e-3, 0.7e-3]), []
+    drift = np.array([0.3, 0.1, 0.0])
+    for k in range(6):
+        y, axis = -0.018 + 5e-3 * k, np.array([0.02 * (k - 3), 1.0, 0.3]) + 0.1 * rng.normal(size=3)
+        axis /= np.linalg.norm(axis)
+        for side, r in ((1.0, radius[0]), (-1.0, radius[1])):
+            place = np.array([-2e-5 - 4e-6 * k, y, 0.0]) + side * (r + 3e-6) * axis
+            velocity = drift - side * 0.5 * axis + side * 0.2 * rng.normal(size=3)
+            rows.append((1 + (side < 0), 2 * r, 2500.0, *place, *velocity, *(50 * rng.normal(size=3))))
+    for k in range(3):
+        place = (-3e-5, 0.012 + 2.5e-3 * k, -0.01 + radius[0] + 3e-6)
+        rows.append((1, 2 * radius[0], 2500.0, *place, *(drift - (0.0, 0.3, 0.5 + 0.1 * k)), 0.0, 60.0, 0.0))
+    return np.array(rows)
+
+
+def deck(rows, folder, *, head="", more="", steps=f"run {STEPS}"):
+    """The deck of a scene, whose data file is in the folder."""
+    folder.mkdir(parents=True, exist_ok=True)
+    limits = [f"{-HALF} {HALF} {a}lo {a}hi" for a in "xyz"]
+    atoms = [f"{n} {int(row[0])} " + " ".join(map(repr, row[1:6].tolist())) for n, row in enumerate(rows, 1)]
+    motion = [f"{n} " + " ".join(map(repr, row[6:].tolist())) for n, row in enumerate(rows, 1)]
+    text = ["impacts", "", f"{len(rows)} atoms", "2 atom types", *limits, "", "Atoms # sphere", "", *atoms]
+    (folder / "bodies.data").write_text("\n".join([*text, "", "Velocities", "", *motion, ""]))
+    return f"""units si
+atom_style sphere
+atom_modify map array sort 0 0
+boundary p p f
+comm_modify vel yes
+{head}
+read_data bodies.data
+pair_style ep
+pair_coeff 1 1 {WORDS[0]}
+pair_coeff 2 2 {WORDS[1]}
+neighbor 2e-4 bin
+neigh_modify delay 0
+timestep 5e-7
+{more}
+{WALL}fix motion all nve/sphere
+{steps}
+{DUMP}"""
+
+
+@pytest.fixture(scope="module")
+def plain(tmp_path_factory):
+    """Velocity and spin of all bodies after the impacts, shape (n, 6)."""
+    folder = tmp_path_factory.mktemp("plain")
+    end = run(deck(scene(), folder), folder)[1][:, 4:]
+    change = np.linalg.norm(end[:, :3] - scene()[:, 6:9], axis=1)
+    assert (change > 0.1).all()  # all have met
+    return end
+
+
+def deviation(a, b):
+    """Largest difference of velocity or spin, over the largest one."""
+    return max(np.abs(a[:, part] - b[:, part]).max() / np.abs(b[:, part]).max() for part in (slice(3), slice(3, 6)))
+
+
+EACH_STEP = "neigh_modify every 1 delay 0 check no"
+BITS = {
+    "lists made each step": ({"more": EACH_STEP}, 1),
+    "atoms sorted each step": ({"more": f"{EACH_STEP}\natom_modify sort 1 0.002"}, 1),
+    "two ranks": ({"head": "processors 2 1 1", "more": EACH_STEP}, 2),
+    "newton off": ({"head": "newton off"}, 1),
+    "newton off on two ranks": ({"head": "newton off\nprocessors 2 1 1", "more": EACH_STEP}, 2),
+}
+
+
+@pytest.mark.parametrize("what", BITS)
+def test_lists_order_ranks_and_newton_change_no_bit(what, plain, tmp_path):
+    words, ranks = BITS[what]
+    assert np.array_equal(run(deck(scene(), tmp_path, **words), tmp_path, ranks=ranks)[1][:, 4:], plain)
+
+
+def test_the_order_of_the_bodies_changes_no_bit(plain, tmp_path):
+    assert np.array_equal(run(deck(scene()[::-1], tmp_path), tmp_path)[1][::-1, 4:], plain)
+
+
+RESTART = f"""run 250
+write_restart here
+clear
+atom_modify map array
+comm_modify vel yes
+read_restart here
+neighbor 2e-4 bin
+neigh_modify delay 0
+timestep 5e-7
+{WALL}fix motion all nve/sphere
+run {STEPS - 250}"""
+
+
+@pytest.mark.parametrize(
+    "steps",
+    [f"run 250\nrun {STEPS - 250}", f"run 250\nreset_timestep 7\nrun {STEPS - 250}", RESTART],
+    ids=["two runs", "reset_timestep", "restart"],
+)
+def test_a_stop_in_mid_contact_changes_nothing_but_rounding(steps, plain, tmp_path):
+    assert deviation(run(deck(scene(), tmp_path, steps=steps), tmp_path)[1][:, 4:], plain) <= 1e-11
+
+
+SAME, MIRROR = np.eye(3), np.diag([-1.0, 1.0, 1.0])
+TURN = np.array([[0.0, -1.0, 0.0], [1.0, 0.0, 0.0], [0.0, 0.0, 1.0]])
+CHANGES = {  # of places and velocities, of spins, shift, velocity; bodies that are compared
+    "mirror": (MIRROR, -MIRROR, 0.0, 0.0, 15),
+    "quarter turn": (TURN, TURN, 0.0, 0.0, 15),
+    "periodic face": (SAME, SAME, (HALF, 0.0, 0.0), 0.0, 15),
+    "moving frame": (SAME, SAME, 0.0, (-3.0, 2.0, 0.0), 12),  # the wall stays behind
+}
+
+
+@pytest.mark.parametrize("what", CHANGES)
+def test_reflection_rotation_and_frame_change_nothing_but_rounding(what, plain, tmp_path):
+    of_vectors, of_spins, shift, drift, compared = CHANGES[what]
+    rows = scene()
+    rows[:, 3:6] = rows[:, 3:6] @ of_vectors.T + shift
+    rows[:, 6:9] = rows[:, 6:9] @ of_vectors.T + drift
+    rows[:, 9:] = rows[:, 9:] @ of_spins.T
+    end = run(deck(rows, tmp_path), tmp_path)[1][:, 4:]
+    back = np.hstack([(end[:, :3] - drift) @ of_vectors, end[:, 3:] @ of_spins])
+    assert deviation(back[:compared], plain[:compared]) <= 1e-9
+
+
+def test_momentum_of_each_pair_stays(plain):
+    rows = scene()[:12]
+    mass = (np.pi / 6 * rows[:, 1] ** 3 * rows[:, 2])[:, None]
+    change = (mass * (plain[:12, :3] - rows[:, 6:9])).reshape(6, 2, 3)
+    assert np.abs(change.sum(axis=1)).max() <= 1e-12 * np.abs(change).max()
+
+
+def test_a_contact_that_ends_begins_anew_in_the_same_list(tmp_path):
+    """A sphere bounces on a frozen one; with a list made each step, a contact that has ended has no history."""
+    bounces = """group bottom id 1
+fix ice bottom freeze
+group top id 2
+fix fall top gravity 9.81 vector 0 0 -1
+fix motion top nve/sphere
+timestep 2e-5
+variable v equal vz[2]
+thermo 1
+thermo_style custom step v_v
+thermo_modify format float %.17g
+MORE
+run 1500
+"""
+    text = spheres((0, 0, 0), (0, 0, 0.02002), pair=THORNTON) + bounces
+    one, each = (run(text.replace("MORE", more), tmp_path / more[:3])[0] for more in ("", EACH_STEP))
+    speed = column(one, "v_v")
+    rises = np.flatnonzero((speed[1:] > 0) & (speed[:-1] <= 0))
+    assert len(rises) >= 3 and "Neighbor list builds = 0" in one
+    assert np.array_equal(speed, column(each, "v_v"))
