@@ -5,11 +5,11 @@
 
 Both decks have the same output; that of `hertz` has neither plastic work nor the largest strain, and a coefficient of
 restitution of 0.5 where the case has none. `hertz` runs with LIGGGHTS's own lists, walls and integration
-(EPDEM_LOOP=generic). Beside the widest instruction set of the processor the case runs with AVX2, and with `--before`
-by another epdem-liggghts, such as that of an earlier commit: its rows give the ratio to that one. Times are those of
-the whole process on one core: processor time, which other loads of the machine disturb least, and wall time. The
-models take turns, the shortest counts; runs are kept in runs/bench: a bench goes on. `--quick` measures once, in five
-minutes.
+(EPDEM_LOOP=generic). Beside the widest instruction set of the processor the case runs with AVX2, in LAMMPS if LAMMPS is
+there, and with `--before` by another epdem-liggghts, such as that of an earlier commit: its rows give the ratio to that
+one. Times are those of the whole process on one core: processor time, which other loads of the machine disturb least,
+and wall time. The models take turns, the shortest counts; runs are kept in runs/bench: a bench goes on. `--quick`
+measures once, in five minutes.
 """
 
 import argparse
@@ -27,6 +27,8 @@ import store
 from epdem.base import rendering
 from epdem.base.files import write_texts
 from epdem.case.scene import load
+from epdem.engines.lammps import launcher as lammps_launcher
+from epdem.engines.lammps import scene_deck as lammps_deck
 from epdem.engines.liggghts import launcher, scene_deck, stl
 from epdem.engines.liggghts.properties import per_pair
 from epdem.scenes.plan import plan
@@ -38,12 +40,15 @@ LIMITS = {
     "hopper_beads": (0.50, 0.55, 0.75),
     "drum_beads": (0.36, 0.48, 0.92),
 }
+LAMMPS = "LAMMPS"
 ENVIRONMENT = {"hertz": {"EPDEM_LOOP": "generic"}, "ep": {}, "ep, AVX2": {"EPDEM_SIMD": "avx2"}}
 
 
 def files(case: Path, model: str) -> dict[str, str]:
-    """The deck of a case with its own law, or with LIGGGHTS's hertz."""
+    """The deck of a case with its own law, for LIGGGHTS or LAMMPS, or with LIGGGHTS's hertz."""
     p = plan(load(case))
+    if model == LAMMPS:
+        return lammps_deck.files(p)
     if model != "hertz":
         return scene_deck.files(p)
     d = scene_deck.deck(p)
@@ -69,19 +74,20 @@ def files(case: Path, model: str) -> dict[str, str]:
     return texts | {f"{name}.stl": stl.text(name, triangles) for name, triangles in p.triangles.items()}
 
 
-def measure(texts: dict[str, str], environment: dict[str, str]) -> dict[str, float]:
-    """Seconds of one run, and its share of pairs and lists by LIGGGHTS's own clock."""
+def measure(texts: dict[str, str], model: str, environment: dict[str, str]) -> dict[str, float]:
+    """Seconds of one run, and its share of pairs and lists by the engine's own clock."""
+    engine = lammps_launcher if model == LAMMPS else launcher
     with patch.dict(os.environ, environment), tempfile.TemporaryDirectory(prefix="epdem_scenes_") as name:
         folder = Path(name)
         write_texts(folder, texts)
         before, start = resource.getrusage(resource.RUSAGE_CHILDREN), time.monotonic()
-        launcher.run("in.scene", folder)
+        engine.run("in.scene", folder)
         after, wall = resource.getrusage(resource.RUSAGE_CHILDREN), time.monotonic() - start
-        text = (folder / launcher.OUT).read_text(errors="replace")
+        text = (folder / engine.OUT).read_text(errors="replace")
     found = {"wall": wall, "processor": after.ru_utime + after.ru_stime - before.ru_utime - before.ru_stime}
     loop = sum(float(x) for x in re.findall(r"^Loop time of (\S+)", text, re.MULTILINE))
-    for part in ("Pair", "Neigh", "Comm", "Outpt", "Other"):
-        seconds = sum(float(x) for x in re.findall(rf"^{part} *time \(%\) = (\S+)", text, re.MULTILINE))
+    for part in ("Pair", "Neigh"):
+        seconds = sum(float(x) for x in re.findall(rf"^{part} *(?:time \(%\) =|\|) *(\S+)", text, re.MULTILINE))
         found[part] = seconds / loop
     return found
 
@@ -95,6 +101,8 @@ def main() -> int:
     ask.add_argument("--cases", default=",".join(LIMITS))
     options = ask.parse_args()
     models = dict(ENVIRONMENT)
+    if lammps_launcher.missing() is None:
+        models[LAMMPS] = {}
     if options.before:
         models["before"] = {"EPDEM_LIGGGHTS": str(options.before.resolve())}
     best: dict[tuple[str, str], dict[str, float]] = {}
@@ -103,7 +111,7 @@ def main() -> int:
             for model, environment in models.items():
                 texts = files(store.ROOT / "cases" / f"{case}.toml", model)
                 key = re.sub(r"\W+", "_", f"scene {case} {model} {repeat}")
-                now = store.once(key, (texts, environment), lambda t=texts, e=environment: measure(t, e))
+                now = store.once(key, (texts, environment), lambda t=texts, m=model, e=environment: measure(t, m, e))
                 old = best.get((case, model), now)
                 best[case, model] = {k: min(old[k], now[k]) if k in ("wall", "processor") else now[k] for k in now}
                 print(f"{case} {model} {repeat}: {now['processor']:.2f} s ({now['wall']:.2f} s wall)", flush=True)

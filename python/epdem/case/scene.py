@@ -105,8 +105,8 @@ class SceneNumerics(Frozen):
     """`error`: limit of the error of e_n at speeds up to `highest_speed` (default: the highest of the scene).
 
     skin: by how much neighbour lists reach farther than contacts [m]. processors: axes along which ranks divide the
-    room.
-    Neither changes results beyond round-off; `epdem tune` measures which are fastest.
+    room. sort_interval: steps after which the next search sorts the spheres in memory by their positions.
+    None of them changes results beyond round-off; `epdem tune` measures which are fastest.
     """
 
     error: Annotated[float, Field(ge=1e-9, le=0.1)] = 1e-3
@@ -114,6 +114,7 @@ class SceneNumerics(Frozen):
     time_step: Time | None = None
     skin: Length | None = None
     processors: Literal["x", "y", "z", "xy", "xz", "yz", "xyz"] | None = None
+    sort_interval: Annotated[int, Field(ge=1)] | None = None
     seed: Annotated[int, Field(ge=1, le=1000)] = 1
 
 

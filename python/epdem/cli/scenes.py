@@ -115,7 +115,7 @@ def tune(
     write: Annotated[bool, typer.Option("--write", help="put the choices into the case file")] = False,
     as_json: AsJson = False,
 ) -> None:
-    """Find the fastest neighbour skin of a scene in LIGGGHTS and, with --ranks, the fastest processor grid."""
+    """Find the fastest neighbour skin and sorting of a scene in LIGGGHTS and, with --ranks, the processor grid."""
     from ..base.terminal import status
     from ..engines.liggghts import tune as t
 
@@ -123,17 +123,18 @@ def tune(
         tuned = t.tune(case, ranks=ranks, seconds=seconds, progress=lambda text: line(f"{case.stem}: {text}"))
     if write:
         t.write(case, tuned)
-    rows = [(x, *x.saves(trials[0])) for trials in (tuned.skins, tuned.cuts) for x in trials]
+    rows = [(str(x.choice), x.seconds, *x.saves(tuned.trials[0])) for x in tuned.trials]
+    stages = {stage: str(fastest) if fastest else None for stage, fastest in tuned.stages.items()}
     if as_json:
         named = ("trial", "seconds_per_step", "saves", "error")
-        trials = [dict(zip(named, (x.name, x.seconds, saved, error), strict=True)) for x, saved, error in rows]
-        head = {"steps_per_skin": tuned.steps, "steps_of_the_scene": tuned.scene_steps, "ranks": tuned.ranks}
-        print(json.dumps(head | {"trials": trials, "numerics": tuned.lines, "written": write and bool(tuned.lines)}))
+        trials = [dict(zip(named, row, strict=True)) for row in rows]
+        said = {"trials": trials, "stages": stages, "ranks": tuned.ranks, "numerics": tuned.lines}
+        print(json.dumps(said | {"written": write and bool(tuned.lines)}))
         return
-    for x, saved, error in rows:
-        print(f"{x.name}: {x.seconds * 1e6:.4g} us per step, saves {saved:.1%} +- {error:.1%}")
-    share = tuned.steps * len(tuned.skins) / tuned.scene_steps
-    print(f"{tuned.steps} steps with each skin, in turns over {share:.0%} of the scene")
+    for name, per_step, saved, error in rows:
+        print(f"{name}: {per_step * 1e6:.4g} us per step, saves {saved:.1%} +- {error:.1%}")
+    for stage, fastest in stages.items():
+        print(f"stage {stage}: {f'fastest with {fastest}' if fastest else 'not reached, not counted'}")
     if not tuned.lines:
         print(f"nothing saves more than {t.WORTH:.0%} for certain: the case stays as it is")
         return

@@ -5,6 +5,7 @@ import contextlib
 import re
 import tempfile
 import time
+from dataclasses import dataclass
 from pathlib import Path
 
 from ...base.files import write_texts
@@ -13,27 +14,36 @@ from . import launcher
 
 Loops = list[tuple[float, int]]  # (seconds, steps) of pieces of a run
 _MARK = "epdem: a piece begins"  # runs without it end a phase by a condition
-_RUN = re.compile(r"^run (\d+) upto.*$", re.MULTILINE)
+_RUN = re.compile(r"^run (\d+) upto(?:  # (.*))?$", re.MULTILINE)
+
+
+@dataclass(frozen=True)
+class Piece:
+    """Steps of a stage of a scene with one skin [m], and the number of the turn through all skins."""
+
+    stage: str
+    steps: int
+    turn: int
+    skin: float
 
 
 class _Enough(Exception):
     """The time of a trial is over."""
 
 
-def pieces(texts: dict[str, str], skins: list[float], steps: int, length: int) -> tuple[dict[str, str], list[float]]:
-    """The deck up to `steps` with its runs cut into pieces of `length` steps and one skin each, and the skins in that
-    order: forth and back through `skins`."""
-    order: list[float] = []
-    begin = 0
+def pieces(texts: dict[str, str], skins: list[float], length: int) -> tuple[dict[str, str], list[Piece]]:
+    """The deck with its runs cut into pieces of `length` steps and one skin each, and the pieces in order: in each run
+    forth and back through `skins`."""
+    order: list[Piece] = []
 
     def cut(match: re.Match[str]) -> str:
-        nonlocal begin
-        end, lines = min(int(match[1]), steps), []
-        while begin < end:
-            turn, place = divmod(len(order), len(skins))
-            order.append(skins[place] if turn % 2 == 0 else skins[-1 - place])
-            begin = min(end, begin + length)
-            lines += [f"neighbor {order[-1]!r} bin", f'print "{_MARK}"', f"run {begin} upto"]
+        begin, end, lines = sum(piece.steps for piece in order), int(match[1]), []
+        first = order[-1].turn + 1 if order else 0
+        for n, at in enumerate(range(begin, end, length)):
+            turn, place = divmod(n, len(skins))
+            skin = skins[place] if turn % 2 == 0 else skins[-1 - place]
+            order.append(Piece(match[2] or f"up to step {end}", min(length, end - at), first + turn, skin))
+            lines += [f"neighbor {skin!r} bin", f'print "{_MARK}"', f"run {at + order[-1].steps} upto"]
         return "\n".join(lines)
 
     return texts | {"in.scene": _RUN.sub(cut, texts["in.scene"])}, order

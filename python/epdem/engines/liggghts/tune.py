@@ -1,12 +1,15 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Which neighbour skin and which cut of the room among ranks a scene is fastest with: trials, and lines for its case.
+"""Which neighbour skin, sorting of spheres and cut of the room among ranks a scene is fastest with: trials, and lines
+for its case.
 
-A trial runs the scene and changes the skin every few hundred steps, forth and back through the candidates: each of them
-sees every part of the scene, and what else the machine does hits all of them. The seconds are LIGGGHTS's own of its
-loop, without output and set-up.
+A trial runs the scene with one cut and one interval of sorting, and changes the skin every few hundred steps, forth and
+back through the candidates: each of them sees every part of the scene, and what else the machine does hits all of them.
+The stages of a scene count by their steps in the scene. The seconds are LIGGGHTS's own of its loop, without output and
+set-up.
 """
 
 import math
+from collections import Counter
 from collections.abc import Callable
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -22,71 +25,105 @@ from ...scenes.engine import check_run
 from ...scenes.plan import ScenePlan, plan
 from . import scene_deck, trials
 from .engine import Liggghts
-from .trials import Loops
+from .trials import Loops, Piece
 
 SHARES = (0.25, 0.5, 0.75, 1.0, 1.5)  # of the smallest radius: skins that are tried
+SORTS = (200, 5000)  # steps between sortings that are tried beside the present ones
 TURNS, SHORTEST, LONGEST = 10, 200, 2000  # turns through all skins in a scene, and steps with one of them
 WORTH = 0.02  # of the time: nobody changes a case for less
 CERTAIN = 3.0  # standard errors that a saving must exceed
 Progress = Callable[[str], None]
+Turns = dict[str, tuple[float, ...]]  # stage -> a number per turn
+
+
+@dataclass(frozen=True)
+class Choice:
+    """What a trial sets: neighbour skin [m], axes along which ranks divide the room, steps between sortings of spheres;
+    None: as LIGGGHTS chooses."""
+
+    skin: float
+    processors: str | None = None
+    sort_interval: int | None = None
+
+    @property
+    def keys(self) -> dict[str, str | int | None]:
+        """Keys of [numerics] and their values."""
+        skin = f"{self.skin * 1e3:.4g} mm"
+        return {"skin": skin, "processors": self.processors, "sort_interval": self.sort_interval}
+
+    def __str__(self) -> str:
+        words = [f"skin {self.skin * 1e3:.3g} mm"]
+        words += [f"ranks along {self.processors}"] if self.processors else []
+        words += [f"sorted every {self.sort_interval} steps"] if self.sort_interval else []
+        return ", ".join(words)
 
 
 @dataclass(frozen=True)
 class Trial:
-    """A choice, and the seconds per step that it took in each turn; value: a skin [m] or the axes of a cut."""
+    """A choice, the seconds per step that it took in each turn of a stage, and the steps of the stages in the scene."""
 
-    name: str
-    value: float | str
-    turns: tuple[float, ...]
+    choice: Choice
+    turns: Turns
+    steps: dict[str, int]
+
+    def _mean(self, turns: Turns) -> tuple[float, float]:
+        """(mean over the scene, its standard error) of a number per turn."""
+        share = {stage: self.steps[stage] / sum(self.steps[s] for s in turns) for stage in turns}
+        mean = sum(share[s] * float(np.mean(x)) for s, x in turns.items())
+        return mean, math.sqrt(sum(share[s] ** 2 * float(np.var(x, ddof=1)) / len(x) for s, x in turns.items()))
 
     @property
     def seconds(self) -> float:
-        """Seconds per step, the mean over all turns."""
-        return float(np.mean(self.turns))
+        """Seconds per step, the mean over the stages that were reached."""
+        return self._mean(self.turns)[0]
 
     def saves(self, before: "Trial") -> tuple[float, float]:
         """(share of the time that it saves over another choice, standard error), turn by turn."""
-        saved = np.subtract(before.turns, self.turns) / before.seconds
-        return float(saved.mean()), float(saved.std(ddof=1) / math.sqrt(len(saved)))
+        saved = {s: tuple(np.subtract(before.turns[s], x) / before.seconds) for s, x in self.turns.items()}
+        return self._mean(saved)
 
 
 @dataclass(frozen=True)
 class Tuned:
-    """All trials, the present choice first; steps: those that each skin took, of scene_steps in all."""
+    """All trials, the present choice first."""
 
-    skins: tuple[Trial, ...]
-    cuts: tuple[Trial, ...]
-    steps: int
-    scene_steps: int
+    trials: tuple[Trial, ...]
     ranks: int
 
     @property
-    def choices(self) -> dict[str, tuple[str, str]]:
-        """Key of [numerics] -> (value, reason) of what saves time for certain."""
-        choices = {}
-        if best := _better(self.skins):
-            choices["skin"] = f"{float(best.value) * 1e3:.4g} mm", self._reason(best, self.skins[0])
-        if best := _better(self.cuts):
-            choices["processors"] = str(best.value), self._reason(best, self.cuts[0])
-        return choices
+    def best(self) -> Trial:
+        """The fastest, if it saves more than WORTH over the first, and more than chance; else the first."""
+        first = self.trials[0]
+        best = min(self.trials, key=lambda t: t.seconds)
+        saved, error = best.saves(first)
+        return best if saved > max(WORTH, CERTAIN * error) else first
+
+    @property
+    def stages(self) -> dict[str, Choice | None]:
+        """The fastest choice in each stage; None: the trials did not reach it."""
+        reached = self.trials[0].turns
+        return {
+            stage: min(self.trials, key=lambda t: np.mean(t.turns[stage])).choice if stage in reached else None
+            for stage in self.trials[0].steps
+        }
+
+    @property
+    def changes(self) -> dict[str, str | int]:
+        """Keys of [numerics] that save time for certain."""
+        now = self.trials[0].choice.keys
+        return {key: value for key, value in self.best.choice.keys.items() if value is not None and value != now[key]}
+
+    @property
+    def reason(self) -> str:
+        """Why the changes are made, a comment of the case."""
+        saved, _ = self.best.saves(self.trials[0])
+        ranks = "1 rank" if self.ranks == 1 else f"{self.ranks} ranks"
+        return f"epdem tune: {saved:.0%} less time than {self.trials[0].choice}, {ranks}"
 
     @property
     def lines(self) -> list[str]:
-        """The choices as lines of a case file, each with its reason."""
-        return [f'{key} = "{value}" # {reason}' for key, (value, reason) in self.choices.items()]
-
-    def _reason(self, best: Trial, before: Trial) -> str:
-        ranks = "1 rank" if self.ranks == 1 else f"{self.ranks} ranks"
-        return f"epdem tune: {best.saves(before)[0]:.0%} less time than {before.name}, {self.steps} steps, {ranks}"
-
-
-def _better(trials: tuple[Trial, ...]) -> Trial | None:
-    """The fastest, if it saves more than WORTH over the first, and more than chance."""
-    best = min(trials, key=lambda t: t.seconds, default=None)
-    if best is None or best is trials[0]:
-        return None
-    saved, error = best.saves(trials[0])
-    return best if saved > max(WORTH, CERTAIN * error) else None
+        """The changes as lines of a case file, each with its reason."""
+        return [f"{key} = {tomlkit.item(value).as_string()} # {self.reason}" for key, value in self.changes.items()]
 
 
 def _silent(case: SceneCase) -> ScenePlan:
@@ -97,27 +134,25 @@ def _silent(case: SceneCase) -> ScenePlan:
     return plan(case.model_copy(update={"output": silent}))
 
 
-def _of_skins(order: list[float], loops: Loops, skins: list[float]) -> tuple[list[Trial], int]:
-    """A trial of each skin over whole turns, and the steps that each skin took."""
-    turns = min(len(loops), len(order)) // len(skins)
-    if turns < 2:
-        raise EngineError("the trial ended before each skin had two turns; give it more time (--seconds)")
-    taken: dict[float, list[tuple[float, int]]] = {skin: [] for skin in skins}
-    for skin, piece in list(zip(order, loops, strict=False))[: turns * len(skins)]:
-        taken[skin].append(piece)
-    trials = [Trial(f"skin {skin * 1e3:.3g} mm", skin, tuple(t / n for t, n in its)) for skin, its in taken.items()]
-    return trials, sum(n for _, n in taken[skins[0]])
-
-
-def _of_cuts(runs: dict[str, Loops]) -> list[Trial]:
-    """A trial of each cut over the pieces that all of them have."""
-    if (pieces := min(map(len, runs.values()))) < 2:
-        raise EngineError("a trial ended before its second piece; give it more time (--seconds)")
-    return [Trial(_axes(cut), cut, tuple(t / n for t, n in loops[:pieces])) for cut, loops in runs.items()]
-
-
-def _axes(cut: str) -> str:
-    return f"ranks along {cut or 'axes that LIGGGHTS chooses'}"
+def _trials(order: list[Piece], runs: dict[Choice, Loops], skins: list[float]) -> list[Trial]:
+    """A trial of each skin in each run, over the turns that all runs have whole, of stages with two of them."""
+    reached = order[: min(map(len, runs.values()))]
+    whole = {turn for turn, n in Counter(piece.turn for piece in reached).items() if n == len(skins)}
+    two = {s for s, n in Counter(p.stage for p in reached if p.turn in whole).items() if n >= 2 * len(skins)}
+    if not two:
+        raise EngineError("the trials ended before each skin had two turns; give them more time (--seconds)")
+    steps = Counter[str]()
+    for piece in order:
+        steps[piece.stage] += piece.steps
+    found = []
+    for choice, loops in runs.items():
+        for skin in skins:
+            turns: dict[str, list[float]] = {}
+            for piece, (seconds, n) in zip(reached, loops, strict=False):
+                if piece.skin == skin and piece.turn in whole and piece.stage in two:
+                    turns.setdefault(piece.stage, []).append(seconds / n)
+            found.append(Trial(replace(choice, skin=skin), {s: tuple(x) for s, x in turns.items()}, dict(steps)))
+    return found
 
 
 def _cuts(ranks: int) -> list[str]:
@@ -133,42 +168,34 @@ def tune(path: Path, *, ranks: int = 1, seconds: float = 60.0, progress: Progres
         case = load(path)
         p = _silent(case)
         tool.check(p)
-        texts = tool.files(p)
     check_run(tool, ranks=ranks)
-    present = float(scene_deck.deck(p).skin)
-    others = sorted({float(f"{share * p.smallest:.2e}") for share in SHARES} - {present})
-    skins = [present, *others]
+    now = Choice(float(scene_deck.deck(p).skin), case.numerics.processors, case.numerics.sort_interval)
+    skins = [now.skin, *sorted({float(f"{share * p.smallest:.2e}") for share in SHARES} - {now.skin})]
     length = max(SHORTEST, min(LONGEST, p.steps // (TURNS * len(skins))))
-    progress(f"{len(skins)} skins")
-    deck, order = trials.pieces(texts, skins, p.steps, length)
-    if len(order) < 2 * len(skins):
-        least = 2 * length * len(skins)
+    if p.steps < 2 * length * len(skins):
         raise CaseError(
-            f"{path}: the scene has {p.steps} steps, two turns through its skins {least}; it is short as it is"
+            f"{path}: the scene has {p.steps} steps, two turns through its skins {2 * length * len(skins)}; it is "
+            "short as it is"
         )
-    cuts = list(dict.fromkeys([case.numerics.processors or "", *_cuts(ranks)])) if ranks > 1 else []
-    share = seconds / (1 + len(cuts))
-    of_skins, steps = _of_skins(order, trials.run(deck, ranks, share), skins)
-    result = Tuned(tuple(of_skins), (), steps, p.steps, ranks)
-    if not cuts:
-        return result
-    best = float((_better(result.skins) or of_skins[0]).value)
-    runs: dict[str, Loops] = {}
-    for cut in cuts:
-        progress(_axes(cut))
-        numerics = case.numerics.model_copy(update={"processors": cut or None})
-        texts = tool.files(_silent(case.model_copy(update={"numerics": numerics})))
-        runs[cut] = trials.run(trials.pieces(texts, [best], steps * len(skins), length)[0], ranks, share)
-    return replace(result, cuts=tuple(_of_cuts(runs)))
+    cuts = [replace(now, processors=cut) for cut in _cuts(ranks)] if ranks > 1 else []
+    choices = list(dict.fromkeys([now, *cuts, *(replace(now, sort_interval=n) for n in SORTS)]))
+    runs: dict[Choice, Loops] = {}
+    for n, choice in enumerate(choices, 1):
+        progress(f"trial {n} of {len(choices)}")
+        change = {"processors": choice.processors, "sort_interval": choice.sort_interval}
+        texts = tool.files(_silent(case.model_copy(update={"numerics": case.numerics.model_copy(update=change)})))
+        deck, order = trials.pieces(texts, skins, length)
+        runs[choice] = trials.run(deck, ranks, seconds / len(choices))
+    return Tuned(tuple(_trials(order, runs, skins)), ranks)
 
 
 def write(path: Path, result: Tuned) -> None:
-    """Put the choices into [numerics] of the case file; its other comments and its order stay."""
-    if not result.choices:
+    """Put the changes into [numerics] of the case file; its other comments and its order stay."""
+    if not result.changes:
         return
     document = tomlkit.parse(text_of(path))
     numerics = document.setdefault("numerics", tomlkit.table())
-    for key, (value, reason) in result.choices.items():
-        numerics[key] = tomlkit.item(value).comment(reason)
+    for key, value in result.changes.items():
+        numerics[key] = tomlkit.item(value).comment(result.reason)
     with atomic(path.resolve()) as temporary:  # the path may be a link
         temporary.write_text(document.as_string(), encoding="utf-8")

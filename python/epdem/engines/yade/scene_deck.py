@@ -26,6 +26,7 @@ NO_DASHPOT = (
     "contact.tangential_restitution: YADE's law has no dashpot, it was left out; make yade builds a law with it"
 )
 NO_RANKS = "numerics.processors: a scene in YADE has one rank, it was left out"
+NO_SORTING = "numerics.sort_interval: YADE does not sort the spheres in memory, it was left out"
 
 
 @dataclass(frozen=True)
@@ -103,6 +104,7 @@ def notes(p: ScenePlan, *, classes: bool) -> list[str]:
     """Sentences on the parts of a case that a YADE scene leaves out."""
     found = [NO_DASHPOT] if p.model.tangential_restitution is not None and not classes else []
     found += [NO_RANKS] if p.case.numerics.processors else []
+    found += [NO_SORTING] if p.case.numerics.sort_interval else []
     return [*found, EDGES] if _parts(p) and p.scene.meshes else found
 
 
