@@ -11,9 +11,11 @@ from lammps_decks import DUMP, THORNTON, column, needs_lammps, run, spheres
 
 pytestmark = needs_lammps
 
-OPTIONS = "tangential partial_slip 0.3 rolling epsd2 0.1"
-WORDS = (f"thornton 1e8 0.3 4e5 {OPTIONS}", f"thornton 2e8 0.25 2e5 {OPTIONS}")
-WALL = f"fix floor all wall/ep zplane -0.01 NULL {WORDS[1]}\n"
+LAWS = {  # of the two materials
+    "thornton": ("1e8 0.3 4e5 {}", "2e8 0.25 2e5 {}", "tangential partial_slip 0.3 rolling epsd2 0.1"),
+    "thornton_ning": ("1e8 0.3 0.5 4e5 {}", "2e8 0.25 0.3 2e5 {}", "tangential history 0.3 rolling epsd2 0.1"),
+}
+WALL = "fix floor all wall/ep zplane -0.01 NULL WORDS_2\n"
 HALF, STEPS = 0.02, 600  # [m] of the box
 
 
@@ -35,15 +37,16 @@ def scene():
     return np.array(rows)
 
 
-def deck(rows, folder, *, head="", more="", steps=f"run {STEPS}"):
-    """The deck of a scene, whose data file is in the folder."""
+def end_of(law, folder, rows=None, *, head="", more="", steps=f"run {STEPS}", ranks=1):
+    """Velocity and spin of all bodies after the impacts, shape (n, 6)."""
+    rows = scene() if rows is None else rows
     folder.mkdir(parents=True, exist_ok=True)
     limits = [f"{-HALF} {HALF} {a}lo {a}hi" for a in "xyz"]
     atoms = [f"{n} {int(row[0])} " + " ".join(map(repr, row[1:6].tolist())) for n, row in enumerate(rows, 1)]
     motion = [f"{n} " + " ".join(map(repr, row[6:].tolist())) for n, row in enumerate(rows, 1)]
     text = ["impacts", "", f"{len(rows)} atoms", "2 atom types", *limits, "", "Atoms # sphere", "", *atoms]
     (folder / "bodies.data").write_text("\n".join([*text, "", "Velocities", "", *motion, ""]))
-    return f"""units si
+    text = f"""units si
 atom_style sphere
 atom_modify map array sort 0 0
 boundary p p f
@@ -51,8 +54,8 @@ comm_modify vel yes
 {head}
 read_data bodies.data
 pair_style ep
-pair_coeff 1 1 {WORDS[0]}
-pair_coeff 2 2 {WORDS[1]}
+pair_coeff 1 1 WORDS_1
+pair_coeff 2 2 WORDS_2
 neighbor 2e-4 bin
 neigh_modify delay 0
 timestep 5e-7
@@ -60,13 +63,19 @@ timestep 5e-7
 {WALL}fix motion all nve/sphere
 {steps}
 {DUMP}"""
+    for k, words in enumerate(LAWS[law][:2], 1):
+        text = text.replace(f"WORDS_{k}", f"{law} {words.format(LAWS[law][2])}")
+    return run(text, folder, ranks=ranks)[1][:, 4:]
+
+
+@pytest.fixture(scope="module", params=LAWS)
+def law(request):
+    return request.param
 
 
 @pytest.fixture(scope="module")
-def plain(tmp_path_factory):
-    """Velocity and spin of all bodies after the impacts, shape (n, 6)."""
-    folder = tmp_path_factory.mktemp("plain")
-    end = run(deck(scene(), folder), folder)[1][:, 4:]
+def plain(law, tmp_path_factory):
+    end = end_of(law, tmp_path_factory.mktemp("plain"))
     change = np.linalg.norm(end[:, :3] - scene()[:, 6:9], axis=1)
     assert (change > 0.1).all()  # all have met
     return end
@@ -79,22 +88,21 @@ def deviation(a, b):
 
 EACH_STEP = "neigh_modify every 1 delay 0 check no"
 BITS = {
-    "lists made each step": ({"more": EACH_STEP}, 1),
-    "atoms sorted each step": ({"more": f"{EACH_STEP}\natom_modify sort 1 0.002"}, 1),
-    "two ranks": ({"head": "processors 2 1 1", "more": EACH_STEP}, 2),
-    "newton off": ({"head": "newton off"}, 1),
-    "newton off on two ranks": ({"head": "newton off\nprocessors 2 1 1", "more": EACH_STEP}, 2),
+    "lists made each step": {"more": EACH_STEP},
+    "atoms sorted each step": {"more": f"{EACH_STEP}\natom_modify sort 1 0.002"},
+    "two ranks": {"head": "processors 2 1 1", "more": EACH_STEP, "ranks": 2},
+    "newton off": {"head": "newton off"},
+    "newton off on two ranks": {"head": "newton off\nprocessors 2 1 1", "more": EACH_STEP, "ranks": 2},
 }
 
 
 @pytest.mark.parametrize("what", BITS)
-def test_lists_order_ranks_and_newton_change_no_bit(what, plain, tmp_path):
-    words, ranks = BITS[what]
-    assert np.array_equal(run(deck(scene(), tmp_path, **words), tmp_path, ranks=ranks)[1][:, 4:], plain)
+def test_lists_order_ranks_and_newton_change_no_bit(what, law, plain, tmp_path):
+    assert np.array_equal(end_of(law, tmp_path, **BITS[what]), plain)
 
 
-def test_the_order_of_the_bodies_changes_no_bit(plain, tmp_path):
-    assert np.array_equal(run(deck(scene()[::-1], tmp_path), tmp_path)[1][::-1, 4:], plain)
+def test_the_order_of_the_bodies_changes_no_bit(law, plain, tmp_path):
+    assert np.array_equal(end_of(law, tmp_path, scene()[::-1])[::-1], plain)
 
 
 RESTART = f"""run 250
@@ -115,8 +123,8 @@ run {STEPS - 250}"""
     [f"run 250\nrun {STEPS - 250}", f"run 250\nreset_timestep 7\nrun {STEPS - 250}", RESTART],
     ids=["two runs", "reset_timestep", "restart"],
 )
-def test_a_stop_in_mid_contact_changes_nothing_but_rounding(steps, plain, tmp_path):
-    assert deviation(run(deck(scene(), tmp_path, steps=steps), tmp_path)[1][:, 4:], plain) <= 1e-11
+def test_a_stop_in_mid_contact_changes_nothing_but_rounding(steps, law, plain, tmp_path):
+    assert deviation(end_of(law, tmp_path, steps=steps), plain) <= 1e-11
 
 
 SAME, MIRROR = np.eye(3), np.diag([-1.0, 1.0, 1.0])
@@ -130,13 +138,13 @@ CHANGES = {  # of places and velocities, of spins, shift, velocity; bodies that 
 
 
 @pytest.mark.parametrize("what", CHANGES)
-def test_reflection_rotation_and_frame_change_nothing_but_rounding(what, plain, tmp_path):
+def test_reflection_rotation_and_frame_change_nothing_but_rounding(what, law, plain, tmp_path):
     of_vectors, of_spins, shift, drift, compared = CHANGES[what]
     rows = scene()
     rows[:, 3:6] = rows[:, 3:6] @ of_vectors.T + shift
     rows[:, 6:9] = rows[:, 6:9] @ of_vectors.T + drift
     rows[:, 9:] = rows[:, 9:] @ of_spins.T
-    end = run(deck(rows, tmp_path), tmp_path)[1][:, 4:]
+    end = end_of(law, tmp_path, rows)
     back = np.hstack([(end[:, :3] - drift) @ of_vectors, end[:, 3:] @ of_spins])
     assert deviation(back[:compared], plain[:compared]) <= 1e-9
 
