@@ -4,7 +4,7 @@
 from functools import cache
 from pathlib import Path
 from types import SimpleNamespace
-from typing import Any, TypeVar
+from typing import Any
 
 import jinja2
 import numpy as np
@@ -36,14 +36,6 @@ class Deck(SimpleNamespace):
 
 
 REASON = "\x1f"  # between a line and its reason
-OPTIONS: dict[str, Any] = {
-    "undefined": jinja2.StrictUndefined,
-    "trim_blocks": True,
-    "lstrip_blocks": True,
-    "keep_trailing_newline": True,
-    "autoescape": False,  # decks are no HTML
-}
-Prepared = TypeVar("Prepared", bound=jinja2.Environment)
 
 
 def line(text: object) -> str:
@@ -51,12 +43,21 @@ def line(text: object) -> str:
     return " ".join(str(text).split()).rstrip("& ")
 
 
-def prepared(env: Prepared, *, reasons: bool = False) -> Prepared:
-    """An environment with our filters and names.
+@cache  # with its templates, which take far longer to read than to fill
+def environment(*folders: Path, reasons: bool = False) -> jinja2.Environment:
+    """The template environment: our templates, and `folders` before them.
 
     `why("...")` in a template is the reason of its line: with `reasons` it follows the line after REASON, else it is
     nothing.
     """
+    env = jinja2.Environment(
+        loader=jinja2.FileSystemLoader([*folders, paths.templates()]),
+        undefined=jinja2.StrictUndefined,
+        trim_blocks=True,
+        lstrip_blocks=True,
+        keep_trailing_newline=True,
+        autoescape=False,  # decks are no HTML
+    )
     env.globals["version"] = __version__
     env.globals["why"] = (lambda reason: REASON + reason) if reasons else (lambda reason: "")
     env.filters["line"] = line
@@ -65,29 +66,12 @@ def prepared(env: Prepared, *, reasons: bool = False) -> Prepared:
     return env
 
 
-def environment(*folders: Path, reasons: bool = False) -> jinja2.Environment:
-    """The template environment: our templates, and `folders` before them; `reasons` as in `prepared`."""
-    return _environment((*folders, paths.templates()), reasons)
+def render(template: str, /, *, reasons: bool = False, **context: object) -> str:
+    """The text of a template; `reasons` as of `environment`.
 
-
-@cache  # with its templates, which take far longer to read than to fill
-def _environment(folders: tuple[Path, ...], reasons: bool) -> jinja2.Environment:
-    loader = jinja2.FileSystemLoader(folders)
-    return prepared(jinja2.Environment(loader=loader, **OPTIONS), reasons=reasons)
-
-
-def render(template: str, /, **context: object) -> str:
-    """The text of a template. Raises CaseError that names the template and the undefined name."""
-    return _text(environment(), template, context)
-
-
-def render_with_reasons(template: str, /, **context: object) -> str:
-    """The same, with REASON and the reason behind every line that has one."""
-    return _text(environment(reasons=True), template, context)
-
-
-def _text(env: jinja2.Environment, template: str, context: dict[str, object]) -> str:
+    Raises CaseError that names the template and the undefined name.
+    """
     try:
-        return env.get_template(template).render(context)
+        return environment(reasons=reasons).get_template(template).render(context)
     except jinja2.TemplateError as error:
         raise CaseError(f"template {template}: {error}") from None

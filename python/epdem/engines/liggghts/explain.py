@@ -19,7 +19,7 @@ def explain(templates: dict[str, str], deck: object) -> list[tuple[str, str, str
     """
     explained = []
     for file, template in templates.items():
-        for text in rendering.render_with_reasons(template, deck=deck).split("\n"):
+        for text in rendering.render(template, reasons=True, deck=deck).split("\n"):
             line, _, reason = text.partition(rendering.REASON)
             if line.strip() and not line.startswith("#"):
                 explained.append((file, line.rstrip(), reason or line.partition("  # ")[2]))
