@@ -27,7 +27,6 @@ from epdem.impacts.measurement import measure
 from epdem.impacts.plan import plan
 from epdem.impacts.prediction import predict
 from epdem.scenes import columns, contacts, run, stl_files
-from epdem.studies import one_impact
 from epdem.studies.sweep import slurm
 from epdem.verification.stability import variants
 from epdem.verification.stability.edits import Edit
@@ -148,7 +147,7 @@ def test_scenes_that_cannot_go_on(tmp_path):
         run._finish(work, tmp_path, 0.0, empty)
 
 
-def test_decks_and_studies(tmp_path, monkeypatch):
+def test_decks_and_studies(tmp_path):
     deck = tmp_path / "deck"
     deck.write_text("run 1\nrun 2\n")
     with says("2 lines start with 'run', expected 1"):
@@ -161,11 +160,6 @@ def test_decks_and_studies(tmp_path, monkeypatch):
         principal([1.0, 2.0, 3.0])
     with says("law cavity: .*no energy created at yield", ValueError):
         Law("cavity", 1e9, 1e6, first_yield_ratio=1.0, plastic_ratio=9.0)
-    steel, source = one_impact.sourced("steel")
-    soft = steel.model_copy(update={"yield_stress": None}), source
-    monkeypatch.setattr(one_impact, "sourced", lambda name: soft)
-    with says("has no yield stress in the materials file; choose another", CaseError):
-        one_impact.one_impact("steel", radius=1.0, speed=1.0)
 
 
 def test_folders_and_files_of_a_user(tmp_path, monkeypatch):

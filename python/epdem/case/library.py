@@ -7,7 +7,6 @@ from pathlib import Path
 from typing import Any
 
 from ..errors import CaseError
-from .fields import Material
 
 
 @cache
@@ -36,11 +35,3 @@ def _filled(name: str, material: Any, path: object) -> Any:
         raise CaseError(f"{path}: materials.{name}.from = {origin!r} is not in the materials file; there are {have}")
     known = {key: value for key, value in entries()[origin].items() if key != "source"}
     return known | {key: value for key, value in material.items() if key != "from"}
-
-
-def sourced(name: str) -> tuple[Material, str]:
-    """(material in SI, source of its numbers) of the materials file. Raises CaseError that lists the existing names."""
-    if name not in entries():
-        raise CaseError(f"--material {name!r} is not in the materials file; there are {', '.join(entries())}")
-    entry = entries()[name]
-    return Material.model_validate({key: value for key, value in entry.items() if key != "source"}), entry["source"]

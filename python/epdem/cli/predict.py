@@ -3,13 +3,15 @@
 
 import json
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 import typer
 
-from ..base.terminal import console, show_table, status
-from ..base.terminal import table as empty_table
+from ..base.terminal import console, status
 from .options import AsJson, Laws, laws_or_own, refuse
+
+if TYPE_CHECKING:  # slow to import
+    from ..impacts.experiment import Experiment
 
 
 def predict(
@@ -37,7 +39,9 @@ def predict(
     """
     if case is None:
         refuse("epdem predict", "it belongs to a case", law=law, error=error)
-        _one_impact(material or "steel", radius or "10 mm", speed or "5 m/s", adhesion, as_json)
+        from ..impacts.experiment import one_impact
+
+        _show(one_impact(material or "steel", radius or "10 mm", speed or "5 m/s", adhesion), [], as_json)
         return
     own = "the case has its own numbers"
     refuse(case, own, material=material, radius=radius, speed=speed, work_of_adhesion=adhesion)
@@ -53,13 +57,18 @@ def _case(case: Path, law: list[str] | None, as_json: bool) -> None:
     from ..case.toml import named
     from ..case.warnings import case_warnings
     from ..impacts.experiment import experiment
-    from ..impacts.prediction import predict as predict_experiment
-    from . import show
 
     with named(case):
         read = load(case)
         experiments = [experiment(read, name) for name in laws_or_own(law)]
-    show.predictions([(x, predict_experiment(x)) for x in experiments], case_warnings(read), as_json, console())
+    _show(experiments, case_warnings(read), as_json)
+
+
+def _show(experiments: "list[Experiment]", warnings: list[str], as_json: bool) -> None:
+    from ..impacts.prediction import predict as predict_experiment
+    from . import show
+
+    show.predictions([(x, predict_experiment(x)) for x in experiments], warnings, as_json, console())
 
 
 def _time_step(case: Path, law: list[str] | None, error: float, as_json: bool) -> None:
@@ -101,33 +110,3 @@ def _time_step(case: Path, law: list[str] | None, error: float, as_json: bool) -
             f"  {share['stability']:.2%} of the stability limit, {share['rayleigh']:.2%} of the Rayleigh time, "
             f"{share['hertz']:.2%} of the elastic contact time"
         )
-
-
-def _one_impact(material: str, radius: str, speed: str, adhesion: str | None, as_json: bool) -> None:
-    """One impact on a wall of the same material for every law."""
-    from ..case.units import read_number
-    from ..impacts.report import plain
-    from ..studies.one_impact import one_impact
-
-    x = one_impact(
-        material,
-        radius=read_number("--radius", radius, "m"),
-        speed=read_number("--speed", speed, "m/s"),
-        adhesion=None if adhesion is None else read_number("--work-of-adhesion", adhesion, "J/m^2"),
-    )
-    if as_json:
-        rows = {name: {k: plain(v) for k, v in row.items()} for name, row in x["laws"].items()}
-        print(json.dumps({k: v for k, v in x.items() if k not in ("first", "plastic")} | {"laws": rows}))
-        return
-    title = f"{material} sphere, R = {x['radius']:g} m, on {material} at {x['speed']:g} m/s (SI units)"
-    table = empty_table(title, ("law", *x["laws"]["hertz"]), left=("law",))
-    for name, row in x["laws"].items():
-        table.add_row(name, *(f"{value:.6g}" for value in row.values()))
-    show_table(console(), table)
-    console().print(
-        f"E* = {x['E_star']:.5g} Pa, m* = {x['m_star']:.5g} kg; first yield at p_0 = "
-        f"{x['first_yield_p0_over_Y']:.4f} Y, depth {x['first_yield_depth_over_a']:.3f} a; "
-        f"v_y0 = {x['v_y0']:.4g} m/s ({x['first']:.2f} Y), v_y = {x['v_y']:.4g} m/s ({x['plastic']:g} Y)",
-        soft_wrap=True,
-    )
-    console().print(f"source: {x['source']}", soft_wrap=True)

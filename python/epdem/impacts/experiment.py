@@ -11,14 +11,14 @@ from functools import cached_property
 import numpy as np
 
 from ..case.fields import Material, Tangential
-from ..case.impact import RIGID, Case, Check, Numerics, Rate
+from ..case.impact import RIGID, Case, Check, Numerics, Rate, parse
 from ..case.law import law_numbers
 from ..errors import CaseError
 from ..laws import library
 from ..laws.native import Law
 from ..laws.strengths import LawNumbers, LawSpec, Surface, default_numbers, law_named
 from ..theory import pair
-from ..theory.backbones import ADHESIVE, JKR, Backbone
+from ..theory.backbones import ADHESIVE, JKR, LAWS, Backbone
 from ..theory.checks import Real
 
 
@@ -224,3 +224,23 @@ def experiment(case: Case, law: str | None = None) -> Experiment:
         source=case.case.source,
         rated=case.rate is not None,
     )
+
+
+def one_impact(material: str, radius: str, speed: str, adhesion: str | None) -> list[Experiment]:
+    """One impact of a sphere on a wall of the same material of the materials file, by every law.
+
+    The numbers are texts with units; with a work of `adhesion` the laws with adhesion come, too. Raises CaseError.
+    """
+    data = {
+        "case": {"name": "one_impact", "title": f"{material} on {material}", "source": "materials file"},
+        "materials": {material: {"from": material}},
+        "impact": {
+            "kind": "sphere-wall",
+            "body": {"radius": radius, "material": material},
+            "target": {"material": material},
+            "speeds": [speed],
+        },
+        "law": {"name": "jkr", "work_of_adhesion": adhesion} if adhesion else {"name": "hertz"},
+    }
+    case = parse(data, "epdem predict")
+    return [experiment(case, name) for name in [*LAWS, *(ADHESIVE if adhesion else [])]]
