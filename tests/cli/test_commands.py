@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Every command, once for its JSON document and once for a mistake; text of the user is shown as it is."""
 
-import io
 import json
 import os
 import shutil
@@ -13,7 +12,6 @@ from types import SimpleNamespace
 import pandas as pd
 import pytest
 from calls import CASES, COMMANDS, call, make_sweep, quick_figures
-from rich.console import Console
 
 from epdem.base import paths, terminal
 from epdem.engines import ENGINES
@@ -194,17 +192,6 @@ def test_title_and_folder_of_a_scene_are_shown_as_they_are(capsys):
     )
     out = capsys.readouterr().out
     assert TITLE in out and "[y]" in out and "warning: [/y]" in out and "see [b]/" in out
-
-
-def test_a_narrow_terminal_shows_whole_cells_and_names_the_columns_left_out():
-    for width, absent in ((80, []), (30, ["c"]), (18, ["c", "b"])):
-        screen = Console(width=width, file=io.StringIO(), force_terminal=True, color_system=None)
-        shown = terminal.table("t", ("a", "b", "c"))
-        shown.add_row(*(letter * 8 for letter in "123"))
-        terminal.show_table(screen, shown, ("c", "b"))
-        said = screen.file.getvalue()
-        assert "\u2026" not in said and ("33333333" in said) == (absent == [])
-        assert not absent or f"narrow: {', '.join(absent)}" in " ".join(said.split())
 
 
 def test_progress_shows_any_text_and_leaves_none_behind(capsys):

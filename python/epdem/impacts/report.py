@@ -20,9 +20,6 @@ from .comparison import CHECKED
 from .prediction import Prediction, predict
 from .run import Outcome
 
-# columns that are left out on a narrow terminal, of normal and oblique impacts
-SPARE: tuple[str, ...] = ("steps", "overlap [um]", "F_max [N]", "t_c [us]", "law", "spin", "rebound", "f/mu")
-SPARE += ("spin [rad/s]", "regime", "e_t", "theory", "engine")
 # heads of the table of a run, and the text of each cell
 NORMAL = [
     ("v [m/s]", "{speed:.4g}"),
@@ -197,7 +194,7 @@ def against_measured(outcome: Outcome) -> list[str]:
 def show(outcome: Outcome, console: Console, *, full: bool = False) -> None:
     """Print table, warnings and summary."""
     shown, rows = chosen(outcome, full), outcome.results.comparison
-    show_table(console, run_table(outcome, full=full), SPARE)
+    show_table(console, run_table(outcome, full=full))
     if len(shown) < len(rows):
         console.print(f"{len(shown)} of {len(rows)} rows; --full prints all")
     for line in [*worst(outcome), *against_measured(outcome)]:

@@ -62,7 +62,7 @@ def show(outcome: SceneOutcome, console: Console) -> None:
             "yes" if row["passed"] else "NO",
             style=None if row["passed"] else "red",
         )
-    show_table(console, shown, ("tolerance", "error", "expected"))
+    show_table(console, shown)
     _show_measures(outcome, console)
     for warning in outcome.warnings:
         console.print(f"warning: {warning}", style="yellow")

@@ -9,10 +9,11 @@ import pandas as pd
 from rich.console import Console
 
 from ..base.tables import write_csv
-from ..base.terminal import frame_table, show_table
+from ..base.terminal import show_table
 from ..report.chart import GREY, INK, PALETTE, Axis, Chart, Panel, Series
 from ..report.drawing import save
 from .cost import TARGETS, Outcome
+from .tables import frame_table
 
 
 def write(outcome: Outcome, folder: Path, formats: Sequence[str] = ("png",)) -> list[Path]:

@@ -6,8 +6,9 @@ from typing import Annotated
 
 import typer
 
-from ...base.terminal import console, frame_table, show_table, status
+from ...base.terminal import console, show_table, status
 from ...cli.options import AsJson, Engines, Force, Laws, Out
+from ..tables import frame_table
 
 
 def data(

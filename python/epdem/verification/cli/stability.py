@@ -7,9 +7,10 @@ from typing import Annotated
 
 import typer
 
-from ...base.terminal import console, frame_table, show_table, status
+from ...base.terminal import console, show_table, status
 from ...cli.options import AsJson, Engines, Laws, Replace, refuse
 from ...errors import CaseError
+from ..tables import frame_table
 
 
 def stability(
