@@ -80,7 +80,7 @@ KINDS = {  # words of a call without the option, and the value of every option
     "tune a scene": (("tune", "scene.toml"), {"ranks": "2", "seconds": "5", "write": None}),
     "explain impacts": (("explain", "steel.toml"), {}),
     "explain a scene": (("explain", "scene.toml"), {}),
-    "view a scene": (("view", "scene.toml"), {"out": "there.png", "window": None, "force": None}),
+    "view a scene": (("view", "scene.toml"), {"out": "there.png", "force": None}),
     "soften impacts": (("soften", "steel.toml", "-k", "10"), {"factor": "3", "out": "there.toml", "force": None}),
     "soften a scene": (("soften", "scene.toml", "-k", "10"), {"factor": "3", "out": "there.toml", "force": None}),
     "calibrate from e_n": (("calibrate", "steel.toml", "--e-n", "0.7", "--speed", "2 m/s"), HARDNESS),

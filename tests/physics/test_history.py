@@ -4,8 +4,8 @@
 import numpy as np
 import pytest
 
-from epdem.theory import restitution
 from epdem.theory.backbones import Cavity, Hertz, Johnson, Thornton
+from epdem.verification.theory import energy
 
 PAIR = {"E_star": 1.1428571428571429e11, "R_star": 0.01}
 M = 0.032882003107573169
@@ -68,7 +68,7 @@ SPEEDS = {
 def test_overlap_against_time_is_that_of_the_equation_of_motion(name, speed):
     """1e-7 of the largest, as `history` promises: 4001 points in its angle; 1000 Runge-Kutta steps are off by 2e-8."""
     law = LAWS[name]
-    t, alpha, force = restitution.history(law, m_star=M, speed=speed, samples=1001)
+    t, alpha, force = energy.history(law, m_star=M, speed=speed, samples=1001)
     overlaps, forces, top = motion(law, speed, t)
     assert np.abs(alpha - overlaps).max() < 1e-7 * top
     # the steepest of the force is the start of the unloading: 3/2 F_max over the recovered overlap (2 E* a)

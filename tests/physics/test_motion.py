@@ -37,7 +37,7 @@ def test_elastic_impact_radiates_1_11_v_over_c_to_the_0_6():
 def test_radiated_energy_of_a_sampled_force_agrees_with_the_closed_share():
     """Hertz's impact by theory's own overlap against time, in 4000 samples."""
     v, law = 0.1, Hertz(E_star=E / (2 * (1 - 0.25**2)), R_star=0.01)
-    t, alpha, force = restitution.history(law, m_star=M, speed=v, samples=4000)
+    t, alpha, force = energy.history(law, m_star=M, speed=v, samples=4000)
     radiated = energy.radiated(force, t, E=E, nu=0.25, density=7850)
     share = energy.elastic_wave_fraction(v, E=E, nu=0.25, density=7850)
     assert radiated / (0.5 * M * v**2) == pytest.approx(share, rel=1e-3, abs=0)
@@ -52,7 +52,7 @@ def test_steel_near_70_metres_a_second_loses_about_3_percent_to_waves():
 @pytest.mark.parametrize("law", [Thornton(E_star=E_STAR, R_star=0.01, p_y=2.8e9), Hertz(E_star=E_STAR, R_star=0.01)])
 def test_force_and_overlap_against_time_obey_the_equation_of_motion(law):
     """m* alpha'' = -F by differences of 201 samples, (pi/200)^2/12 off in a phase; impulse m* v (1 + e_n)."""
-    t, alpha, force = restitution.history(law, m_star=M, speed=3.0, samples=201)
+    t, alpha, force = energy.history(law, m_star=M, speed=3.0, samples=201)
     x = restitution.impact(law, m_star=M, speed=3.0)
     h = t[1] - t[0]
     off = np.abs(M * np.diff(alpha, 2) / h**2 + force[1:-1]) / force.max()

@@ -69,7 +69,7 @@ def law_rows(name):
         return restitution.e_n(law(name, **numbers), m_star=m_star, speed=speed)
 
     def history(m_star, speed, **numbers):
-        return [x[300] for x in restitution.history(law(name, **numbers), m_star=m_star, speed=speed, samples=601)]
+        return [x[300] for x in energy.history(law(name, **numbers), m_star=m_star, speed=speed, samples=601)]
 
     def backbone(alpha, **numbers):
         one = law(name, **numbers)
@@ -200,7 +200,7 @@ OTHERWISE = {
     "oblique.impact",
     "restitution.impact",
     "restitution.e_n",
-    "restitution.history",
+    "energy.history",
     "criteria.equivalent",
     "yielding.first_yield_speed",
     "partial_slip.rebound",

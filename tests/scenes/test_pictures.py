@@ -99,11 +99,7 @@ def test_a_picture_before_the_run_has_the_spheres_that_can_be_placed(tmp_path):
     assert plt.imread(tmp_path / "a.png").shape[1] == 1200
 
 
-def test_a_window_without_pyvista_and_an_unknown_field_are_refused(monkeypatch):
-    monkeypatch.setitem(__import__("sys").modules, "pyvista", None)
-    p = plan(parse(parts()))
-    with pytest.raises(CaseError, match="there is no pyvista; pip install pyvista"):
-        pictures.window(p)
+def test_an_unknown_field_is_refused():
     data = parts()
     data["output"]["color"] = "omega_x"
     with pytest.raises(CaseError, match=r"output.color = 'omega_x': spheres of this scene have speed, energy, id"):
@@ -115,21 +111,6 @@ def test_translation_and_spin_are_counted_apart():
     assert kinetic(table).item() == 25.0 and rotation(table).item() == 0.0
     spinning = table.assign(omega_x=0.0, omega_y=2.0, omega_z=0.0)
     assert kinetic(spinning).item() == 25.0 and rotation(spinning).item() == pytest.approx(0.4)
-
-
-def test_the_window_of_pyvista_shows_walls_and_spheres(monkeypatch):
-    """Off the screen; only where pyvista is installed."""
-    pyvista = pytest.importorskip("pyvista")
-    shown = []
-    monkeypatch.setattr(pyvista, "OFF_SCREEN", True)
-    monkeypatch.setattr(pyvista.Plotter, "show", lambda plotter: shown.append(plotter.meshes))
-    tube = {"name": "tube", "kind": "cylinder", "diameter": "18 mm", "from": "0 mm", "to": "30 mm", "material": "steel"}
-    p = plan(parse(parts(wall=[tube])))
-    pictures.window(p)
-    wall, spheres, room = shown[0]
-    assert wall.n_cells == len(p.triangles["tube"]) and room.bounds == pytest.approx(p.box)
-    assert spheres.n_cells % p.count == 0 and spheres.n_cells > 100 * p.count
-    assert spheres.volume == pytest.approx(p.count * 14.137e-9, rel=0.06)
 
 
 def test_the_time_of_the_bed_counts_the_steps_of_each_phase(tmp_path):

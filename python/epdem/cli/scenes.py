@@ -9,7 +9,7 @@ from typing import Annotated, Any
 import typer
 
 from ..base.terminal import bar, console
-from .options import AsJson, CasePath, Replace, refuse, say_files, warn
+from .options import AsJson, CasePath, Replace, say_files, warn
 
 
 def is_scene(path: Path) -> bool:
@@ -81,7 +81,6 @@ def explain(case: CasePath, as_json: AsJson = False) -> None:
 def view(
     case: CasePath,
     out: Annotated[Path | None, typer.Option("--out", "-o", help="PNG file (default: NAME.png here)")] = None,
-    window: Annotated[bool, typer.Option("--window", help="show it in a window (needs pyvista)")] = False,
     force: Replace = False,
     as_json: AsJson = False,
 ) -> None:
@@ -95,10 +94,6 @@ def view(
 
     with named(case):
         p = plan(load(case))
-        if window:
-            refuse(case, "--window shows the scene and writes nothing", out=out, force=force)
-            pictures.window(p)
-            return
         path = out or Path(f"{p.case.name}.png")
         refuse_existing(path, force=force)
         with status() as line:

@@ -2,7 +2,6 @@
 """Pictures of a scene, fit for a paper: its walls and spheres before a run, its bed after one."""
 
 from collections.abc import Sequence
-from importlib import import_module
 from itertools import product
 from pathlib import Path
 from typing import Any
@@ -214,23 +213,3 @@ def _draw_region(axis: Any, region: Any) -> None:
         faces = faces + np.array([*region.center, 0.0])
     plane, _ = _axes()
     axis.add_collection(PolyCollection([*(faces @ plane.T)], facecolor=(0.9, 0.6, 0.1, 0.02), edgecolor="none"))
-
-
-def window(p: ScenePlan) -> None:
-    """Show walls and first spheres in a window of pyvista. Raises CaseError if it is not installed."""
-    try:
-        pv = import_module("pyvista")
-    except ImportError:
-        raise CaseError("--window: there is no pyvista; pip install pyvista, or leave --window out") from None
-    shown = pv.Plotter()
-    for triangles in p.triangles.values():
-        faces = np.column_stack([np.full(len(triangles), 3), np.arange(3 * len(triangles)).reshape(-1, 3)])
-        shown.add_mesh(pv.PolyData(triangles.reshape(-1, 3), faces), opacity=0.3, show_edges=True)
-    table = _first(p)
-    if len(table):
-        spheres = pv.PolyData(table[:, :3])
-        spheres["radius"] = table[:, 3]
-        ball = pv.Sphere(radius=1.0, theta_resolution=16, phi_resolution=16)
-        shown.add_mesh(spheres.glyph(geom=ball, scale="radius", orient=False), color="tan")
-    shown.add_mesh(pv.Box(p.box), style="wireframe", color="gray")
-    shown.show()

@@ -129,41 +129,6 @@ def impact(law: Backbone, *, m_star: Real, speed: Real) -> Impact:
     )
 
 
-def history(law: Backbone, *, m_star: float, speed: float, samples: int = 1001) -> tuple[Array, Array, Array]:
-    """Time [s], overlap [m] and force [N] of one impact, arrays of shape (samples,), from first touch to no force.
-
-    The motion follows from the energy: t(alpha) on both branches by quadrature, then inverted by interpolation in the
-    variable in which it is smooth. m_star [kg] and speed [m/s] are scalars > 0. Overlaps to 1e-7 of the largest.
-    """
-    x = impact(law, m_star=m_star, speed=speed)
-    top, dent = float(x.overlap_max), float(x.residual_overlap)
-    theta = np.linspace(0, np.pi / 2, 4001)
-    h = theta[1] - theta[0]
-    middle = 0.5 * (theta[1:] + theta[:-1])
-    # alpha = low + (top - low) sin^2 theta on each branch; time grows smoothly with theta
-    there = law.force(top * np.sin(middle) ** 2)
-    back = dent + (top - dent) * np.sin(middle) ** 2
-    here = law.unloading_force(back, top) if dent > 0 else law.force(back)
-    branches = []
-    for low, force, energy in ((0.0, there, float(x.work_in)), (dent, here, float(x.work_out))):
-        piece = force * 2 * (top - low) * np.sin(middle) * np.cos(middle) * h
-        left = np.append(np.cumsum(piece[::-1])[::-1], 0.0)  # work between theta and the top
-        left *= energy / left[0]
-        kinetic = (0.5 * (np.sqrt(left[1:]) + np.sqrt(left[:-1]))) ** 2  # it goes as the square of pi/2 - theta
-        rate = 2 * (top - low) * np.sin(middle) * np.cos(middle) / np.sqrt(2 * kinetic / m_star)
-        branches.append(np.concatenate([[0.0], np.cumsum(rate * h)]))
-    t_top = branches[0][-1]
-    times = np.concatenate([branches[0], t_top + branches[1][-1] - branches[1][-2::-1]])
-    times *= float(x.contact_time) / times[-1]
-    t = np.linspace(0, times[-1], samples)
-    angle = np.interp(t, times, np.concatenate([theta, np.pi - theta[-2::-1]]))
-    rising = angle <= np.pi / 2
-    start = np.where(rising, 0.0, dent)
-    alpha = start + (top - start) * np.sin(angle) ** 2
-    slope = law.unloading_force(alpha, top) if dent > 0 else law.force(alpha)
-    return t, alpha, np.where(rising, law.force(alpha), slope)
-
-
 def wu(speed: Real, *, v_y0: Real) -> Array:
     """Finite-element fit. NaN below v/v_y0 = 100.
 
