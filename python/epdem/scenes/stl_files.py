@@ -43,17 +43,6 @@ def _at(point: FloatArray) -> str:
     return "(" + ", ".join(f"{x:.4g}" for x in point) + ") m"
 
 
-def _sharpest(triangles: FloatArray) -> FloatArray:
-    """The smallest angle [rad] of each triangle, 0 if two corners are one."""
-    sides = np.linalg.norm(triangles - np.roll(triangles, -1, axis=1), axis=2)
-    a, b, c = np.sort(sides, axis=1).T
-    with np.errstate(all="ignore"):
-        cosine = (b**2 + c**2 - a**2) / (2 * b * c)
-        angle = np.arccos(np.clip(cosine, -1.0, 1.0))
-    flat = ~(a > 0) | (a + b <= c * (1 + 1e-12))
-    return np.where(flat, 0.0, angle)
-
-
 def _edges(triangles: FloatArray) -> tuple[np.ndarray, np.ndarray]:
     """(numbers of the two corners of each directed edge, shape (3 n, 2); places of the corners)."""
     size = float(np.ptp(triangles.reshape(-1, 3), axis=0).max())
@@ -66,7 +55,10 @@ def _edges(triangles: FloatArray) -> tuple[np.ndarray, np.ndarray]:
 
 def _refuse_faults(w: StlWall, triangles: FloatArray, place: str) -> None:
     """Raise CaseError for triangles that no engine takes, with their number and the place of the first."""
-    sharp = np.flatnonzero(_sharpest(triangles) < SMALLEST_ANGLE)
+    from trimesh.triangles import angles  # 0 where two corners are one
+
+    sharpest = angles(triangles).min(axis=1)  # type: ignore[no-untyped-call]
+    sharp = np.flatnonzero(sharpest < SMALLEST_ANGLE)
     if sharp.size:
         where = _at(triangles[sharp[0]].mean(axis=0))
         raise CaseError(
@@ -103,10 +95,10 @@ def placed(w: StlWall, room: tuple[float, ...], largest: float) -> FloatArray:
     place = f"scene.wall.{w.name}.file"
     points: FloatArray = w.scale * _read(w.file, place)
     if w.rotate is not None:
-        axis = np.array(w.rotate.axis) / np.linalg.norm(w.rotate.axis)
-        s, c = math.sin(w.rotate.angle), math.cos(w.rotate.angle)
-        cross = np.cross(axis, np.eye(3))
-        points = points @ (c * np.eye(3) + s * cross + (1 - c) * np.outer(axis, axis))
+        from trimesh.transformations import rotation_matrix
+
+        turn: FloatArray = rotation_matrix(w.rotate.angle, w.rotate.axis)  # type: ignore[no-untyped-call]
+        points = points @ turn[:3, :3].T
     points = points + np.array(w.position)
     low, high = points.reshape(-1, 3).min(axis=0), points.reshape(-1, 3).max(axis=0)
     extent = " x ".join(f"{x:.4g}" for x in high - low)
