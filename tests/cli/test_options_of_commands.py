@@ -23,7 +23,7 @@ from epdem.scenes import run as scenes_run
 from epdem.studies import fit
 from epdem.studies.pages import impacts as impacts_page
 from epdem.studies.pages import scenes as scenes_page
-from epdem.studies.sweep import executors
+from epdem.studies.sweep import slurm
 from epdem.verification import cost, figures, stability
 from epdem.verification import engine_comparison as crosscheck
 from epdem.verification import measured_data as validate
@@ -173,7 +173,7 @@ def library(tmp_path, monkeypatch, outcomes):
     record(stability, "run", outcomes["stability"])
     record(tune, "tune", outcomes["tuned"])
     record(figures, "draw_all", [Path("drawn.png")])
-    record(executors, "execute")
+    record(slurm, "execute")
     record(fit, "fit")
     record(validate, "validate")
     return reached

@@ -11,8 +11,7 @@ from epdem.base import rendering
 from epdem.case import impact as impacts
 from epdem.case.scene import is_scene, parse
 from epdem.case.toml import read_toml
-from epdem.engines import engine
-from epdem.engines.liggghts import explain
+from epdem.engines import engine, reasons
 from epdem.engines.liggghts.engine import Liggghts
 from epdem.engines.liggghts.scene_deck import deck
 from epdem.impacts.experiment import experiment
@@ -98,9 +97,9 @@ def explained(path: Path) -> list[tuple[str, str, str]]:
     """What `explain` says of the deck that `decks_of` writes."""
     data = read_toml(path)
     if is_scene(data):
-        return explain.explain(explain.SCENE, deck(scene_plan(parse(small(data), path))))
+        return reasons.explain(reasons.SCENE, deck(scene_plan(parse(small(data), path))))
     x = experiment(impacts.parse(data | {"numerics": {"steps_in_contact": 40, "phases": 2}}))
-    return explain.explain(explain.IMPACT, Liggghts().deck(plan(x, predict(x))))
+    return reasons.explain(reasons.IMPACT, Liggghts().deck(plan(x, predict(x))))
 
 
 @pytest.mark.parametrize("path", CASES, ids=lambda p: p.stem)
@@ -121,7 +120,7 @@ def test_every_line_of_a_deck_with_any_law_has_a_reason(law):
     parameters = {p.name: 1.1 * p.default or 0.1 for p in laws()[law].parameters if p.default is not None}
     parameters |= {"work_of_adhesion": "0.5 J/m^2"} if laws()[law].adheres else {}
     x = experiment(impacts.parse(data | {"law": {"name": law} | parameters}))
-    found = explain.explain(explain.IMPACT, Liggghts().deck(plan(x, predict(x))))
+    found = reasons.explain(reasons.IMPACT, Liggghts().deck(plan(x, predict(x))))
     assert sum("property/global" in line for _, line, _ in found) == 2 + len(laws()[law].parameters)
     assert [line for _, line, reason in found if not reason] == []
 
@@ -130,7 +129,7 @@ def test_a_line_without_a_reason_is_found(tmp_path, monkeypatch):
     (tmp_path / "bad.j2").write_text('units si  # guard: said\nfix a all nve{{ why("moves") }}\nrun 3\n# words\n')
     plain = rendering.environment
     monkeypatch.setattr(rendering, "environment", lambda **words: plain(tmp_path, **words))
-    assert explain.explain({"in.bad": "bad.j2"}, None) == [
+    assert reasons.explain({"in.bad": "bad.j2"}, None) == [
         ("in.bad", "units si  # guard: said", "guard: said"),
         ("in.bad", "fix a all nve", "moves"),
         ("in.bad", "run 3", ""),

@@ -21,7 +21,7 @@ from scene_runs import run, write_case
 from epdem.case.scene import parse
 from epdem.engines import scene_engine
 from epdem.errors import CaseError
-from epdem.scenes import measures, shares
+from epdem.scenes import filling, measures
 from epdem.scenes.engine import files as deck_files
 from epdem.scenes.plan import plan
 from epdem.studies.soften import soften
@@ -119,7 +119,7 @@ def test_the_plan_and_the_deck_have_what_the_case_requests(chosen, folder):
         assert sum(f.count for f in p.insertions) == 60
         mass = sum(got.values())
     off = [m for m, share in parts.items() if abs(got[m] - share * mass) > 0.0101 * mass]
-    assert bool(off) == any("whole spheres of" in said for said in shares.warnings(p.case, p.insertions))
+    assert bool(off) == any("whole spheres of" in said for said in filling.warnings(p.case, p.insertions))
     text = decks["in.scene"] + decks["setup.in"]
     inserted = re.findall(r"nparticles (\d+)|particles_in_region (\d+)", text)
     alone = len(p.scene.table) + len(p.scene.later)

@@ -25,7 +25,7 @@ from epdem.scenes.results import read
 from epdem.studies.fit import fit
 from epdem.studies.pages.scenes import of_scene
 from epdem.studies.sweep import run as study
-from epdem.studies.sweep.numbers import numbers_of
+from epdem.studies.sweep.table import numbers_of
 
 ROOM = {"x": ["-2 mm", "2 mm"], "y": ["-2 mm", "2 mm"], "z": ["0 mm", "8 mm"]}
 

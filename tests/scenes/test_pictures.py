@@ -14,7 +14,7 @@ from test_start_and_paths import PLATE
 from epdem.case.scene import parse
 from epdem.engines import scene_engine
 from epdem.errors import CaseError
-from epdem.scenes import checks, key_figures, pictures
+from epdem.scenes import charts, checks, pictures
 from epdem.scenes.charts import bed
 from epdem.scenes.energy_balance import kinetic, rotation
 from epdem.scenes.plan import plan
@@ -26,7 +26,7 @@ def drawn(name: str):
     """(plan, tables, panels of the key figure) of a stored run."""
     p = planned(name)
     tables = scene_engine("liggghts").read(p, STORED / name)
-    (chart,) = key_figures.key(p, tables)
+    (chart,) = charts.key(p, tables)
     return p, tables, chart.panels
 
 

@@ -16,7 +16,7 @@ from epdem.case.scene import parse
 from epdem.scenes import checks, energy_balance
 from epdem.scenes.columns import rows as table_of_rows
 from epdem.scenes.plan import ScenePlan, plan
-from epdem.studies.sweep.numbers import numbers_of, unit
+from epdem.studies.sweep.table import numbers_of, unit
 
 BOX = {"name": "box", "kind": "box", "x": ["-9 mm", "9 mm"], "y": ["-9 mm", "9 mm"], "z": ["0 mm", "40 mm"]}
 BOX |= {"material": "steel"}

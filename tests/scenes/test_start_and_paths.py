@@ -15,8 +15,8 @@ from epdem.case.motions import LinearMove, RotateMove, VibrateMove
 from epdem.case.parts import Sphere
 from epdem.case.scene import parse
 from epdem.errors import CaseError, EngineError
+from epdem.scenes.limits import overlaps
 from epdem.scenes.plan import plan
-from epdem.scenes.start import overlaps
 from epdem.scenes.wall_paths import at_end, path
 from epdem.scenes.warnings import planned_warnings
 

@@ -16,7 +16,7 @@ from test_sweep_scenes import BED
 
 from epdem.errors import CaseError
 from epdem.studies.sweep import folder, run, slurm
-from epdem.studies.sweep.executors import execute, write_script
+from epdem.studies.sweep.slurm import execute, write_script
 from epdem.studies.sweep.status import status
 
 ROOT = Path(__file__).parents[2]

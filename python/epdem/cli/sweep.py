@@ -42,7 +42,7 @@ def sweep(
 ) -> None:
     """Run a case or scene at many points; the same command again runs only missing and changed points."""
     from ..studies.pages.sweep import of_sweep
-    from ..studies.sweep import executors as study
+    from ..studies.sweep import slurm as study
     from ..studies.sweep.points import settings
     from ..studies.sweep.run import check_points, plan
     from . import sweep_view

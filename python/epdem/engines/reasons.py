@@ -3,6 +3,7 @@
 
 from pathlib import Path
 
+from ..base import rendering
 from ..base.settings import DEFAULT_ENGINE
 from ..case import impact, scene
 from ..case.toml import named, read_toml
@@ -11,15 +12,36 @@ from ..impacts.plan import Plan, plan
 from ..impacts.prediction import predict
 from ..scenes.plan import ScenePlan
 from ..scenes.plan import plan as scene_plan
+from .liggghts import scene_deck
 from .liggghts.engine import Liggghts
-from .liggghts.explain import reasons as liggghts_reasons
 
 Lines = list[tuple[str, str, str]]  # file, line, reason
+IMPACT = {"in.impact": "liggghts/impact.in.j2"}
+SCENE = {"in.scene": "liggghts/scene.in.j2", "setup.in": "liggghts/scene_setup.in.j2"}
+
+
+def explain(templates: dict[str, str], deck: object) -> Lines:
+    """(file, line, reason) of every line that does something, of the templates by the names of their files.
+
+    The reason is that in the template, else the comment behind the line in the deck; '' if there
+    is none (a defect, which a test looks for).
+    """
+    explained = []
+    for file, template in templates.items():
+        for text in rendering.render(template, reasons=True, deck=deck).split("\n"):
+            line, _, reason = text.partition(rendering.REASON)
+            if line.strip() and not line.startswith("#"):
+                explained.append((file, line.rstrip(), reason or line.partition("  # ")[2]))
+    return explained
 
 
 def reasons(engine: str, job: Plan | ScenePlan) -> Lines:
     """Every line of the deck of a job that does something; empty if the templates of the engine state no reasons."""
-    return liggghts_reasons(job) if engine == Liggghts.name else []
+    if engine != Liggghts.name:
+        return []
+    if isinstance(job, ScenePlan):
+        return explain(SCENE, scene_deck.deck(job))
+    return explain(IMPACT, Liggghts().deck(job))
 
 
 def explain_case(path: Path) -> Lines:

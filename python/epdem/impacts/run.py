@@ -24,8 +24,7 @@ from . import store
 from .comparison import compare, impacts_table
 from .engine import Feature, ImpactEngine, is_text, refuse, require
 from .experiment import Experiment, experiment
-from .measurement import measure
-from .paths import chosen
+from .measurement import chosen, measure
 from .plan import Plan, plan
 from .prediction import Prediction, predict
 

@@ -1,18 +1,25 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Filling a scene: the number of spheres of each size, and whether they fit into their region."""
+"""Filling a scene: number of spheres of each size, whether they fit into their region, and what whole numbers miss."""
 
 import math
-from collections.abc import Iterable
-from dataclasses import dataclass
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass, replace
 from itertools import groupby
+from typing import NamedTuple
 
 import numpy as np
 
 from ..case.measures import Region
 from ..case.motions import Vector3
+from ..case.parts import Fill, Parts
 from ..case.scene import SceneCase
 from ..case.sizes import Particles
 from ..errors import CaseError
+from .presets import DrawnFill
+
+MOST_FILLED = 0.26  # volume share that random sequential placement reaches in reasonable time
+PARTICLES = {"scene.count": "scene.particles", "scene.bed_count": "scene.bed"}  # by the key of the number
+LARGEST_ERROR = 0.01  # of the mass of a component, as a share of the mass of its fill
 
 
 @dataclass(frozen=True)
@@ -31,9 +38,6 @@ class Insertion:
     rate: float | None = None
     period: float = 0.0
     exact: bool = False
-
-
-MOST_FILLED = 0.26  # volume share that random sequential placement reaches in reasonable time
 
 
 def drawn(case: SceneCase, parts: list[Particles]) -> list[tuple[str, float, float]]:
@@ -77,3 +81,157 @@ def refuse_too_many(case: SceneCase, fills: Iterable[Insertion]) -> None:
             f"{key} = {count}: the spheres would fill {share:.0%} of the room that they are poured into, "
             f"at most {MOST_FILLED:.0%} ({most} spheres); enlarge the room"
         )
+
+
+class Size(NamedTuple):
+    """Spheres of one size: number of the component, radius [m], mass of a sphere [kg], requested and placed number.
+
+    placed: None where the engine draws each sphere at random.
+    """
+
+    component: int
+    material: str
+    radius: float
+    mass: float
+    requested: float
+    placed: int | None = None
+
+    @property
+    def missing(self) -> bool:
+        """Whether the fill has no sphere of this size; of random draws, whether the mean number is below one half."""
+        return self.requested < 0.5 if self.placed is None else self.placed == 0
+
+
+def _wholes(exact: list[float]) -> list[int]:
+    """Whole numbers with the sum of the exact ones, rounded: the largest remainders go up, of equal ones the first."""
+    exact = [round(x, 9) for x in exact]  # round-off, as of other units, decides nothing
+    result = [math.floor(x) for x in exact]
+    order = sorted(range(len(exact)), key=lambda k: round(result[k] - exact[k], 9))
+    for k in order[: round(sum(exact)) - sum(result)]:
+        result[k] += 1
+    return result
+
+
+def _classes(case: SceneCase, particles: list[Particles]) -> list[tuple[int, str, float, float, float]]:
+    """(component, material, radius [m], mass of a sphere [kg], share of the mass of the fill) of each size."""
+    return [
+        (n, p.material, r, case.materials[p.material].density * 4.0 / 3.0 * math.pi * r**3, share)
+        for n, p in enumerate(particles)
+        for r, share in p.sizes()
+    ]
+
+
+def counted(case: SceneCase, f: Fill) -> list[Size]:
+    """The sizes of a fill by count, mass or fraction, in whole numbers."""
+    classes = _classes(case, f.particles)
+    if f.count is not None:
+        total = f.count / sum(share / mass for *_, mass, share in classes)
+    elif f.mass is not None:
+        total = f.mass
+    else:
+        assert f.fraction is not None
+        total = f.fraction * f.region.volume / sum(share / case.materials[m].density for _, m, *_, share in classes)
+    requested = [total * share / mass for *_, mass, share in classes]
+    return [Size(*c[:4], x, n) for c, x, n in zip(classes, requested, _wholes(requested), strict=True)]
+
+
+def _random(case: SceneCase, fill: Insertion) -> list[Size]:
+    """The sizes of a fill whose spheres are drawn at random, with the mean number of each."""
+    weights = [weight for *_, weight in drawn(case, fill.particles)]
+    classes = _classes(case, fill.particles)
+    return [Size(*c[:4], fill.count * w / sum(weights)) for c, w in zip(classes, weights, strict=True)]
+
+
+def _insertion(case: SceneCase, scene: Parts, f: Fill, key: str, count: int) -> Insertion:
+    """The spheres of a fill, drawn at random from all its sizes."""
+    vx, vy, vz = f.velocity
+    phase = next(p for p in scene.phase if f.phase in (None, p.name))
+    if f.rate is None:
+        return Insertion(f.particles, count, f.region, key, phase.name, (vx, vy, vz))
+    down, depth = -vz, f.region.z[1] - f.region.z[0]
+    if not (down > 0 or scene.gravity):
+        raise CaseError(f"{key}.rate: nothing falls out of the region; give gravity, or a velocity along -z")
+    period = 2 * depth / (down + math.sqrt(down**2 + 2 * scene.gravity * depth))
+    if count / f.rate > phase.duration:
+        raise CaseError(f"{key}.rate = {f.rate:g} Hz: {count} spheres take longer than phase {phase.name}; pour faster")
+    return Insertion(f.particles, count, f.region, key, phase.name, (vx, vy, vz), f.rate, period)
+
+
+def insertions(case: SceneCase, scene: Parts) -> tuple[Insertion, ...]:
+    """The insertions of a scene's fills: one for each size of a fill at once, the largest first; one of a stream.
+
+    Raises CaseError for a fill without a sphere, and for a stream that does not flow or takes too long.
+    """
+    found: list[Insertion] = []
+    for f in scene.random_fills:
+        if isinstance(f, DrawnFill):
+            found.append(_insertion(case, scene, f, f.key, f.count or 0))
+            continue
+        key = f"scene.fill.{f.name}"
+        sizes = sorted((size for size in counted(case, f) if size.placed), key=lambda size: -size.radius)
+        if not sizes:
+            raise CaseError(f"{key}: not one sphere; give more, or smaller ones")
+        all_sizes = _insertion(case, scene, f, key, sum(size.placed or 0 for size in sizes))
+        if f.rate is not None:
+            found.append(all_sizes)
+            continue
+        found += [
+            replace(all_sizes, particles=[Particles.of(x.material, x.radius)], count=x.placed or 0, exact=True)
+            for x in sizes
+        ]
+    return tuple(found)
+
+
+def _fills(case: SceneCase, fills: Iterable[Insertion]) -> Iterator[tuple[str, list[Size], float]]:
+    """(key of the particles, their sizes, requested mass [kg]) of each fill; a number of spheres requests no mass, so
+    that the mass is the mass of the placed spheres."""
+    of_case = {f"scene.fill.{f.name}": f for f in case.scene.random_fills} if isinstance(case.scene, Parts) else {}
+    for key, group in groupby(fills, key=lambda fill: fill.key):
+        first = next(group)
+        if first.exact:
+            f = of_case[key]
+            sizes = counted(case, f)
+            mass = sum(x.mass * ((x.placed or 0) if f.count else x.requested) for x in sizes)
+            yield f"{key}.particles", sizes, mass
+        else:
+            yield PARTICLES.get(key, f"{key}.particles"), _random(case, first), 0.0
+
+
+def _by_component(sizes: list[Size]) -> Iterator[tuple[int, list[Size]]]:
+    return ((n, list(group)) for n, group in groupby(sizes, key=lambda size: size.component))
+
+
+def refuse_missing(case: SceneCase, fills: Iterable[Insertion]) -> None:
+    """Raise CaseError for a component without a sphere."""
+    for place, sizes, _ in _fills(case, fills):
+        for n, own in _by_component(sizes):
+            if all(size.missing for size in own):
+                total = sum(size.requested for size in own)
+                raise CaseError(
+                    f"{place}.{n}: its share of the mass is {total:.2g} of one sphere of {own[0].material}, "
+                    "so that the fill has none; give more or smaller spheres, or remove the component"
+                )
+
+
+def warnings(case: SceneCase, fills: Iterable[Insertion]) -> list[str]:
+    """A sentence for each size without spheres, and for each component whose mass differs from the requested one."""
+    found = []
+    for place, sizes, whole in _fills(case, fills):
+        ideal = sum(size.mass * size.requested for size in sizes)
+        for n, own in _by_component(sizes):
+            found += [
+                f"{place}.{n}: 0 spheres with radius {size.radius:g} m, for its share of the mass is "
+                f"{size.requested:.2g} of one sphere; give more spheres, or other sizes"
+                for size in own
+                if size.missing
+            ]
+            if own[0].placed is None:
+                continue
+            requested = whole / ideal * sum(size.mass * size.requested for size in own)
+            mass = sum(size.mass * (size.placed or 0) for size in own)
+            if abs(mass - requested) > LARGEST_ERROR * whole:
+                found.append(
+                    f"{place}.{n}: whole spheres of {own[0].material} have {mass:.4g} kg, requested are "
+                    f"{requested:.4g} kg; give more or smaller spheres"
+                )
+    return found

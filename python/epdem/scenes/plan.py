@@ -16,14 +16,12 @@ from ..case.parts import Parts
 from ..case.scene import Output, SceneCase
 from ..case.walls import Limits
 from . import walls
-from .filling import Insertion, refuse_too_many
-from .limits import refuse_combinations, refuse_faster_than_sound, refuse_outside, refuse_steps
+from .filling import Insertion, insertions, refuse_missing, refuse_too_many
+from .limits import refuse_combinations, refuse_faster_than_sound, refuse_outside, refuse_positions, refuse_steps
 from .meshes import FloatArray
 from .model import Model, model
 from .presets import Preset, parts
-from .shares import insertions, refuse_missing
 from .solid import refuse_below_solid
-from .start import refuse_positions
 from .timestep import time_step
 from .wall_paths import refuse_leaving
 

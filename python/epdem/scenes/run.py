@@ -23,10 +23,9 @@ from ..impacts.engine import Report, silent, texts
 from ..impacts.prediction import predict
 from . import checks, energy_balance, measures, pictures, results
 from .engine import Resumed, SceneEngine, check_run
-from .lost import lost_spheres
 from .plan import NOT_REACHED, ScenePlan, plan
 from .timestep import leading_impact
-from .warnings import measured_warnings, planned_warnings
+from .warnings import lost_spheres, measured_warnings, planned_warnings
 
 Progress = Callable[[int, int], None]  # (step, steps of the run)
 

@@ -1,21 +1,28 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""What a scene probably does not mean, before its run and after it: sentences for warnings."""
+"""What a scene probably does not mean, before its run and after it, and what it has lost: sentences for warnings."""
+
+import math
 
 import numpy as np
 import pandas as pd
 
+from ..case.measures import Region
+from ..case.walls import Room
 from ..errors import CaseError
 from ..theory import validity
-from . import shares
-from .boundary_crossings import crosses, depths
+from . import filling
 from .columns import STRAINS
+from .limits import overlaps
+from .meshes import FloatArray
 from .plan import NOT_REACHED, ScenePlan
 from .presets import Preset
 from .solid import dense_beds
-from .start import overlaps
 from .timestep import stable_step
 from .walls import sheet
 
+SIDES = 24  # of the prism that stands for a round region
+NAMED = 3  # spheres that are named one by one
+ADVICE = "close the walls, enlarge scene.room, or give scene.open_boundary = true"
 MOVED, LONGER = 0.02, 0.2  # by which share a phase may miss its duration: one in which walls move, another one
 IN_WALL = 0.999  # of the radius: an engine divides by the distance to the wall
 OVERLAP = 0.05  # of the smaller radius; a bed of an earlier run has less
@@ -24,7 +31,7 @@ OVERLAP = 0.05  # of the smaller radius; a bed of an earlier run has less
 def planned_warnings(p: ScenePlan) -> list[str]:
     """A sentence for each. Raises CaseError for a sphere whose centre lies in a wall."""
     dense = dense_beds(p.case, p.scene, p.insertions)
-    return shares.warnings(p.case, p.insertions) + dense + _time_steps(p) + _phases(p) + _overlaps(p) + _walls(p)
+    return filling.warnings(p.case, p.insertions) + dense + _time_steps(p) + _phases(p) + _overlaps(p) + _walls(p)
 
 
 def measured_warnings(tables: dict[str, pd.DataFrame]) -> list[str]:
@@ -134,3 +141,86 @@ def _walls(p: ScenePlan) -> list[str]:
                 place = spheres[int(share.argmax())][0]
                 found["", name] = f"{place} lies in wall {name} by {share.max():.0%} of its radius; move it"
     return list(found.values())
+
+
+def _faces(region: Region, free: float) -> tuple[FloatArray, FloatArray]:
+    """(normals, shape (n, 3); distances [m] from the origin, shape (n,)) of the faces of a region, `free` inside it."""
+    both = np.array([[-1.0], [1.0]])
+    if isinstance(region, Room):
+        normals: FloatArray = np.kron(np.eye(3), both)
+        return normals, np.array(region.limits) * normals.sum(axis=1) - free
+    angle = 2 * math.pi * np.arange(SIDES) / SIDES
+    sides = np.column_stack([np.cos(angle), np.sin(angle), np.zeros(SIDES)])
+    apothem = region.radius * math.cos(math.pi / SIDES)
+    around = apothem + sides[:, :2] @ np.array(region.center)
+    return np.concatenate([both * [0.0, 0.0, 1.0], sides]), np.array([-region.z[0], region.z[1], *around]) - free
+
+
+def _remains(triangle: FloatArray, normals: FloatArray, distances: FloatArray) -> bool:
+    """Whether a part of a triangle lies below all faces; each face in turn cuts off the part beyond it."""
+    polygon = triangle
+    for normal, distance in zip(normals, distances, strict=True):
+        height = polygon @ normal - distance
+        corners = []
+        for a, b, x, y in zip(polygon, np.roll(polygon, -1, axis=0), height, np.roll(height, -1), strict=True):
+            if x < 0.0:
+                corners.append(a)
+            if x * y < 0.0:
+                corners.append(a + (b - a) * x / (x - y))
+        if not corners:
+            return False
+        polygon = np.array(corners)
+    return True
+
+
+def crosses(region: Region, triangles: FloatArray, free: float) -> bool:
+    """Whether one of the triangles, shape (n, 3 corners, 3), has a part more than `free` [m] inside a region."""
+    normals, distances = _faces(region, free)
+    beyond = np.any(np.all(triangles @ normals.T >= distances, axis=1), axis=1)
+    return any(_remains(t, normals, distances) for t in triangles[~beyond])
+
+
+def depths(triangles: FloatArray, places: FloatArray, radii: FloatArray) -> FloatArray:
+    """How far [m] the nearest of the triangles, shape (n, 3 corners, 3), lies in each sphere; below 0: it does not.
+
+    places: centres, shape (m, 3), radii: shape (m,).
+    """
+    found = np.full(len(radii), -np.inf)
+    low, high = places - radii[:, None], places + radii[:, None]
+    beside = (triangles.min(axis=1) > high.max(axis=0)) | (triangles.max(axis=1) < low.min(axis=0))
+    for triangle in triangles[~beside.any(axis=1)]:
+        near = np.flatnonzero(((triangle.min(axis=0) <= high) & (triangle.max(axis=0) >= low)).all(axis=1))
+        if near.size:
+            import trimesh  # a second: only where a wall is near
+
+            same = np.tile(triangle, (near.size, 1, 1))
+            closest = trimesh.triangles.closest_point(same, places[near])  # type: ignore[no-untyped-call]
+            found[near] = np.maximum(found[near], radii[near] - np.linalg.norm(closest - places[near], axis=1))
+    return found
+
+
+def lost_spheres(p: ScenePlan, tables: dict[str, pd.DataFrame]) -> list[str]:
+    """A sentence for a run that has lost spheres, from the frames or, where they hold none of them, from the rows."""
+    rows = tables["rows"]
+    if p.scene.open_boundary or rows["particles"].iloc[-1] >= rows["particles"].max():
+        return []
+    frames = tables.get("particles")
+    gone = None
+    if frames is not None and len(frames):
+        last = frames.drop_duplicates("id", keep="last")
+        gone = last[last["step"] < p.frame_steps(p.frames)[-1]]
+    if gone is None or gone.empty:
+        before = int(np.flatnonzero(np.diff(rows["particles"]) < 0)[0])
+        one, other = rows.iloc[before], rows.iloc[before + 1]
+        return [
+            f"scene: the first of {int(rows['particles'].max() - rows['particles'].iloc[-1])} lost spheres left the "
+            f"room between {one['time']:.4g} s and {other['time']:.4g} s; {ADVICE}"
+        ]
+    times = p.time_at(gone["step"].to_numpy())
+    named = [
+        f"sphere {x.id} (last at ({x.x:.4g}, {x.y:.4g}, {x.z:.4g}) m with ({x.vx:.3g}, {x.vy:.3g}, {x.vz:.3g}) m/s at "
+        f"{time:.4g} s, step {x.step})"
+        for x, time in zip(gone.head(NAMED).itertuples(), times, strict=False)
+    ]
+    more = f" and {len(gone) - NAMED} more" if len(gone) > NAMED else ""
+    return [f"scene: {len(gone)} spheres have left the room, {', '.join(named)}{more}; {ADVICE}"]

@@ -26,8 +26,8 @@ from .sweep import folder as store
 from .sweep import run as study
 from .sweep.folder import Sweep
 from .sweep.keys import keys_of
-from .sweep.numbers import unit
 from .sweep.points import Point, Range, axes
+from .sweep.table import unit
 
 Targets = Mapping[str, str | float]
 MOST = 3  # keys that a fit frees

@@ -22,7 +22,7 @@ from ...impacts.run import run_and_compare
 from ...scenes.run import run as run_scene
 from . import folder as store
 from .folder import Sweep
-from .numbers import numbers_of
+from .table import numbers_of
 
 FULL = 1 << 16  # bytes; with less free space on the disk, a failure is a full disk
 

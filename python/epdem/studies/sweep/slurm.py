@@ -18,13 +18,14 @@ from pathlib import Path
 from typing import Any
 
 from ...base.files import atomic
-from ...base.folders import claim
+from ...base.folders import claim, refuse_existing
 from ...errors import CaseError, EngineError, Stopped
 from . import folder as store
 from . import local, table
 from .evaluate import evaluate
 from .folder import Sweep
 from .run import Report, SweepOutcome, check_points, record_death
+from .run import run as run_here
 
 TASKS = 1000  # of an array; a cluster takes 1001 if it does not say otherwise
 POLL = 1.0  # [s] between two looks at the queue
@@ -253,3 +254,37 @@ def script(sweep: Sweep, folder: Path, given: Parameters) -> str:
             "",
         ]
     )
+
+
+def execute(
+    sweep: Sweep,
+    folder: Path,
+    executor: str,
+    given: Sequence[str] = (),
+    *,
+    jobs: int | None = None,
+    retry_failed: bool = False,
+    force: bool = False,
+    report: Report = lambda done, total: None,
+) -> SweepOutcome:
+    """Run a sweep by the executor "local" or "slurm"; `given` are the parameters of the latter. Raises CaseError."""
+    if executor == "slurm":
+        if jobs is not None:
+            raise CaseError("--jobs is for --executor local; give the jobs of a cluster by --slurm array_parallelism=N")
+        return run(sweep, folder, parameters(given), retry_failed=retry_failed, force=force, report=report)
+    if executor != "local":
+        raise CaseError(f"--executor {executor!r} does not exist; there are local, slurm")
+    if given:
+        raise CaseError("--slurm goes with --executor slurm or --write-script")
+    return run_here(sweep, folder, jobs=jobs, retry_failed=retry_failed, force=force, report=report)
+
+
+def write_script(sweep: Sweep, folder: Path, given: Sequence[str], path: Path, *, force: bool = False) -> None:
+    """Store the sweep in `folder` and write the batch script that runs it to `path`. Raises CaseError."""
+    refuse_existing(path, force=force, option="--write-script")
+    text = script(sweep, folder, parameters(given))
+    check_points(sweep, range(1, len(sweep.points) + 1))
+    with claim(folder, force=force):
+        store.write(sweep, folder)
+    with atomic(path) as temporary:
+        temporary.write_text(text, encoding="utf-8")

@@ -1,17 +1,21 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """All points of a sweep in one table: sweep.csv and sweep.h5, and how they are read."""
 
+from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
 import pandas as pd
 
 from ...base.tables import Hdf5, opened, read_table, write_attributes, write_csv, write_table, write_text
+from ...case.measures import KINDS
 from ...case.units import to_si
 from ...errors import CaseError
 from ...impacts.comparison import UNITS
+from ...scenes.checks import CHECKS
+from ...scenes.columns import COLUMNS, unit_of_load
+from ...scenes.results import SceneResults
 from . import folder as store
-from . import numbers
 from .folder import Sweep
 
 TABLE = "sweep.h5"
@@ -45,7 +49,7 @@ def collect(sweep: Sweep, folder: Path) -> pd.DataFrame:
     table = table.infer_objects()
     units = {name: unit for name, unit in sweep.units.items() if unit and unit != "1"}
     for name in table.columns:
-        if of_column := numbers.unit(name, sweep.tables) if sweep.scene else UNITS.get(name):
+        if of_column := unit(name, sweep.tables) if sweep.scene else UNITS.get(name):
             units[name] = of_column
     theory = {f"{name}_theory": u for name, u in units.items() if f"{name}_theory" in table}
     table.attrs["units"] = units | theory
@@ -83,3 +87,31 @@ def read_sweep(folder: Path | str) -> pd.DataFrame:
         raise CaseError(f"{path}: no table of a sweep; 'epdem sweep CASE --out {folder}' writes it")
     with opened(path, "a table of a sweep") as file:
         return read_table(file["sweep"])
+
+
+def numbers_of(results: SceneResults) -> dict[str, float]:
+    """COLUMN_last, _min, _max and _mean (over the last fifth) of every column of rows and measures, and each check.
+
+    Forces and torques that a case measures are columns of the rows. The name of a check is its key (scenes/checks.py).
+    """
+    numbers = {}
+    for curves in (results.tables["rows"], results.tables.get("measures")):
+        if curves is None:
+            continue
+        tail = curves[curves["step"] > 0.8 * curves["step"].max()]
+        for name in curves.columns.drop(["step", "time"]):
+            numbers[f"{name}_last"] = float(curves[name].iloc[-1])
+            numbers[f"{name}_min"] = float(curves[name].min())
+            numbers[f"{name}_max"] = float(curves[name].max())
+            numbers[f"{name}_mean"] = float(tail[name].mean())
+    return numbers | {row["key"]: float(row["value"]) for row in results.tables["checks"].to_dict("records")}
+
+
+def unit(name: str, case: Mapping[str, Any]) -> str | None:
+    """The SI unit of a number of `numbers_of` of a scene with these TOML tables; None for a plain number."""
+    if name in CHECKS:
+        return CHECKS[name].unit or None
+    column = name.rpartition("_")[0]
+    kinds = {m["name"]: KINDS[m["kind"]] for m in case.get("scene", {}).get("measure", [])}
+    known = kinds.get(column) or COLUMNS.get(column)
+    return known.unit or None if known else unit_of_load(column)
