@@ -5,7 +5,7 @@ Tables have the SI units of their columns in `attrs["units"]`. Progress goes to 
 """
 
 import logging
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
 from pathlib import Path
@@ -16,7 +16,8 @@ import pandas as pd
 from .. import theory
 from ..base.tables import unit_of
 from ..case.scene import is_scene
-from ..case.toml import read_toml
+from ..case.toml import named, read_toml
+from ..case.warnings import case_warnings
 from ..engines import DEFAULT_ENGINE, scene_engine
 from ..engines import engine as engine_named
 from ..engines.citations import Citations, citations
@@ -31,6 +32,7 @@ from ..scenes.engine import write_deck as write_scene_deck
 from ..scenes.plan import plan as plan_scene
 from ..scenes.run import SceneOutcome
 from ..scenes.run import run as run_scene
+from ..scenes.warnings import planned_warnings
 from ..studies.fit import Fit, Targets, fit
 from ..studies.sweep import run as study
 from ..studies.sweep.points import MOST
@@ -173,16 +175,23 @@ def deck(
     engine: str = DEFAULT_ENGINE,
     law: str | None = None,
     force: bool = False,
+    warn: Callable[[str], None] = log.warning,
 ) -> list[Path]:
     """Write the deck of a case or scene into `out`, where `force` allows other files. Raises CaseError."""
     case, folder = _case(case), arguments.path("out", out)
     engine = arguments.text("engine", engine)
     law = None if law is None else arguments.text("law", law)
-    if isinstance(case, Scene):
-        if law is not None:
-            raise CaseError(f"law = {law!r}: a scene has its own law; leave it out")
-        return write_scene_deck(scene_engine(engine), plan_scene(case.model), folder, force=force)
-    return write_deck(experiment(case.model, law), engine_named(engine), folder, force=force)
+    if isinstance(case, Scene) and law is not None:
+        raise CaseError(f"law = {law!r}: a scene has its own law; leave it out")
+    with named(case.place):
+        for sentence in case_warnings(case.model):
+            warn(sentence)
+        if isinstance(case, Case):
+            return write_deck(experiment(case.model, law), engine_named(engine), folder, force=force)
+        p = plan_scene(case.model)
+        for sentence in planned_warnings(p):
+            warn(sentence)
+        return write_scene_deck(scene_engine(engine), p, folder, force=force)
 
 
 def cite(
@@ -199,7 +208,8 @@ def cite(
     if isinstance(case, Scene) and laws:
         raise CaseError(f"laws = {laws!r}: a scene has its own law; leave it out")
     tools = [engine_named(name).name for name in arguments.names("engines", engines)]
-    return citations(case.model, laws or [case.model.law.name], tools)
+    with named(case.place):
+        return citations(case.model, laws or [case.model.law.name], tools)
 
 
 def sweep(

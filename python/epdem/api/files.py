@@ -36,7 +36,7 @@ class _File:
         self._read(tomlkit.dumps(with_units(data, keys.keys_of(data))), name)
 
     def _read(self, text: str, path: object) -> None:
-        self.text = text
+        self.text, self.place = text, path
         self.model = self._parse(tomllib.loads(text), path)
 
     @staticmethod
@@ -91,7 +91,7 @@ class _File:
     @property
     def read(self) -> Read:
         """The case as runs and studies take it."""
-        return Read(self.model, self.text, self.name)
+        return Read(self.model, self.text, self.place)
 
     @property
     def title(self) -> str:

@@ -8,6 +8,7 @@ import typer
 
 from ..base.settings import DEFAULT_ENGINE
 from .options import AsJson, CasePath, Engines, Laws, refuse
+from .scenes import is_scene
 
 
 def cite(
@@ -18,22 +19,12 @@ def cite(
     as_json: AsJson = False,
 ) -> None:
     """Print what to cite for the law of a case and for the engines that run the case."""
-    from ..case import scene
-    from ..case.impact import load
-    from ..case.toml import named, read_toml
-    from ..engines import engine as find
-    from ..engines.citations import citations
+    from ..api import cite as cited
 
     refuse(case, "--bibtex prints BibTeX", json=as_json and bibtex)
-    tools = [find(name).name for name in engine or [DEFAULT_ENGINE]]
-    with named(case):
-        if scene.is_scene(read_toml(case)):
-            refuse(case, "a scene has its own law", law=law)
-            bulk = scene.load(case)
-            found = citations(bulk, [bulk.law.name], tools)
-        else:
-            impacts = load(case)
-            found = citations(impacts, law or [impacts.law.name], tools)
+    if is_scene(case):
+        refuse(case, "a scene has its own law", law=law)
+    found = cited(case, engines=engine or [DEFAULT_ENGINE], laws=law or [])
     if bibtex:
         print(found.bibtex(), end="")
     else:

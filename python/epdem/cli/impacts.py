@@ -5,8 +5,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from ..base.terminal import bar, console
-from ..errors import CaseError
-from .options import say_files, warn
 
 if TYPE_CHECKING:  # slow to import
     from ..impacts.run import Outcome
@@ -45,22 +43,3 @@ def show_run(outcome: "Outcome", full: bool, as_json: bool) -> None:
         print(report.run_json(outcome))
     else:
         report.show(outcome, console(), full=full)
-
-
-def deck_impacts(case: Path, out: Path, *, engine: str, laws: list[str] | None, force: bool, as_json: bool) -> None:
-    """Write the deck of a case."""
-    from ..case.impact import load
-    from ..case.toml import named
-    from ..case.warnings import case_warnings
-    from ..engines import engine as find
-    from ..impacts.experiment import experiment
-    from ..impacts.run import write_deck
-
-    if len(laws or []) > 1:
-        raise CaseError("--law: a deck has one law; write one deck for each")
-    with named(case):
-        read = load(case)
-        warn(case_warnings(read))
-        x = experiment(read, laws[0] if laws else None)
-        files = write_deck(x, find(engine), out, force=force)
-    say_files(files, as_json)

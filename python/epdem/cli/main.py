@@ -26,7 +26,7 @@ from . import predict as cli_predict
 from . import scenes as cli_scene
 from . import sweep as cli_sweep
 from .export import app as export
-from .options import AsJson, CasePath, Engines, Force, Formats, Laws, Out, formats, refuse
+from .options import AsJson, CasePath, Engines, Force, Formats, Laws, Out, formats, refuse, say_files, warn
 
 ABOUT = """Elastic-plastic particle contact for LIGGGHTS, YADE and LAMMPS, checked against theory.
 
@@ -153,9 +153,11 @@ def deck(
         raise CaseError(f"{file}: templates are not filled; copy the lines of the deck that 'epdem deck CASE' writes")
     if cli_scene.is_scene(file):
         refuse(file, "a scene has its own law", law=law)
-        cli_scene.deck_scene(file, out, engine=engine, force=force, as_json=as_json)
-        return
-    cli_impacts.deck_impacts(file, out, engine=engine, laws=law, force=force, as_json=as_json)
+    if len(law or []) > 1:
+        raise CaseError("--law: a deck has one law; write one deck for each")
+    from ..api import deck as write
+
+    say_files(write(file, out, engine=engine, law=law[0] if law else None, force=force, warn=warn), as_json)
 
 
 @app.command()

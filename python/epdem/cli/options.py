@@ -61,7 +61,6 @@ def say_files(paths: Iterable[Path], as_json: bool) -> None:
     print(json.dumps({"files": names}) if as_json else "\n".join(names))
 
 
-def warn(sentences: list[str]) -> None:
-    """Print warnings on standard error, for commands whose output is a list of files."""
-    for text in sentences:
-        print(f"warning: {text}", file=sys.stderr)
+def warn(sentence: str) -> None:
+    """Print a warning on standard error, for commands whose output is a list of files."""
+    print(f"warning: {sentence}", file=sys.stderr)

@@ -9,7 +9,7 @@ from typing import Annotated, Any
 import typer
 
 from ..base.terminal import bar, console
-from .options import AsJson, CasePath, Replace, say_files, warn
+from .options import AsJson, CasePath, Replace, say_files
 
 
 def is_scene(path: Path) -> bool:
@@ -41,25 +41,6 @@ def run_scene(case: Path, *, engine: str, formats: tuple[str, ...], as_json: boo
     else:
         report.show(outcome, console())
     return 0 if outcome.passed else 1
-
-
-def deck_scene(case: Path, out: Path, *, engine: str, force: bool, as_json: bool) -> None:
-    """Write the deck of a scene."""
-    from ..case.scene import load
-    from ..case.toml import named
-    from ..case.warnings import case_warnings
-    from ..engines import scene_engine
-    from ..scenes.engine import write_deck
-    from ..scenes.plan import plan
-    from ..scenes.warnings import planned_warnings
-
-    with named(case):
-        read = load(case)
-        warn(case_warnings(read))
-        p = plan(read)
-        warn(planned_warnings(p))
-        files = write_deck(scene_engine(engine), p, out, force=force)
-    say_files(files, as_json)
 
 
 def explain(case: CasePath, as_json: AsJson = False) -> None:

@@ -3,7 +3,7 @@
 
 import math
 from collections.abc import Iterator
-from dataclasses import dataclass
+from typing import NamedTuple
 
 from ..case.motions import LinearMove
 from ..case.parts import Parts
@@ -15,19 +15,16 @@ from .filling import Insertion, mean_volume
 DENSE = 0.9  # relative density above which overlaps of spheres no longer describe the contacts
 
 
-@dataclass(frozen=True)
-class PressedBed:
-    """A bed at the end of a motion of a plate. key: place in the case; volume [m^3] of the spheres, area [m^2]."""
+class PressedBed(NamedTuple):
+    """A bed at the end of a motion of a plate: its height, that of its spheres without any void [m], its area [m^2].
+
+    key: place in the case.
+    """
 
     key: str
     height: float
-    volume: float
+    solid_height: float
     area: float
-
-    @property
-    def solid_height(self) -> float:
-        """Height of the spheres without any void [m]."""
-        return self.volume / self.area
 
 
 def refuse_below_solid(case: SceneCase, scene: Parts, insertions: tuple[Insertion, ...]) -> None:
@@ -87,7 +84,7 @@ def _pressed_by(
         if area:
             compaction = case.scene.kind == "compaction"
             key = "scene.height" if compaction else f"scene.phase.{phase.name}.move: wall {wall.name} ends at a height"
-            yield PressedBed(key, sign * (stop - place), volume, area)
+            yield PressedBed(key, sign * (stop - place), volume / area, area)
 
 
 def _covered(scene: Parts, wall: PlateWall, span: tuple[float, float], fills: list[Insertion]) -> float:
