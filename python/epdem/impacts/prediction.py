@@ -63,34 +63,44 @@ COLUMNS = tuple(f.name for f in fields(Prediction) if f.type is np.ndarray)
 
 
 def predict(experiment: Experiment) -> Prediction:
-    """The prediction of `experiment` from theory alone; the C++ laws are not called."""
-    law = experiment.theory()
+    """The prediction of `experiment` from theory alone; the C++ laws are not called.
+
+    With adhesion residual_overlap is that at which the contact ends, 3/4 d below the dent; what adhesion takes is
+    neither in work_out nor in plastic_work.
+    """
+    x, law = experiment, experiment.theory()
+    pair: dict[str, Any] = {"m_star": x.m_star, "speed": x.speed}
+    columns: dict[str, Any] = {}
+    speeds: dict[str, float] = {}
+    observed = np.nan
+    impact: restitution.Impact
     if isinstance(law, JKR):
-        return _with_adhesion(experiment, law)
-    m_star, speed = experiment.m_star, experiment.speed
-    if experiment.viscous_restitution is None:
-        impact = restitution.impact(law, m_star=m_star, speed=speed)
+        impact = adhesion.impact(law, **pair)
+        columns["residual_overlap"] = impact.parting_overlap
+        yielded = impact.radius_max.max() > max(float(law.touch_radius), float(law.yield_radius))
+        barely = 1.001 * float(adhesion.sticking_speed(law, m_star=x.m_star))
+        if barely > 0:
+            observed = 1.5 * float(adhesion.contact_time(law, m_star=x.m_star, speed=barely))
     else:
-        impact = viscous.impact(law, m_star=m_star, speed=speed, restitution=experiment.viscous_restitution)
-    names = COLUMNS[1:]
-    columns: dict[str, Any] = {n: np.asarray(getattr(impact, n), float) for n in names}
-    pair = (experiment.body, experiment.target)
-    yields = _softer(experiment) if columns["overlap_max"].max() > law.yield_overlap else ()
-    speeds = {
-        b.material: float(first_yield_speed(law, b.yield_stress, m_star=experiment.m_star))
-        for b in {b.material: b for b in pair}.values()
-        if b.yield_stress is not None and not b.rigid
-    }
-    caveats = (*validity.caveats(law, m_star=m_star, speed=speed), *_too_fast(experiment, columns["strain_ratio"]))
-    strained = tuple(validity.finite_strain_of_impacts(columns["strain_ratio"], speed))
-    rebound = oblique.predict(experiment, columns["e_n"]) if experiment.oblique else None
+        if x.viscous_restitution is None:
+            impact = restitution.impact(law, **pair)
+        else:
+            impact = viscous.impact(law, restitution=x.viscous_restitution, **pair)
+        yielded = impact.overlap_max.max() > law.yield_overlap
+        speeds = {
+            b.material: float(first_yield_speed(law, b.yield_stress, m_star=x.m_star))
+            for b in (x.body, x.target)
+            if b.yield_stress is not None and not b.rigid
+        }
+    columns = {n: np.asarray(getattr(impact, n), float) for n in COLUMNS[1:]} | columns
     return Prediction(
-        speed=speed,
-        yields=yields,
+        speed=x.speed,
+        yields=_softer(x) if yielded else (),
         yield_speeds=speeds,
-        rebound=rebound,
-        caveats=caveats,
-        finite_strain=strained,
+        rebound=oblique.predict(x, columns["e_n"]) if x.oblique else None,
+        caveats=(*validity.caveats(law, **pair), *_too_fast(x, columns["strain_ratio"])),
+        finite_strain=tuple(validity.finite_strain_of_impacts(columns["strain_ratio"], x.speed)),
+        observation_time=observed,
         **columns,
     )
 
@@ -112,24 +122,3 @@ def _softer(x: Experiment) -> tuple[str, ...]:
         return (f"law.{law_named(x.law.name).strength}",)
     bodies = zip((x.body, x.target), x.law.strengths, strict=True)
     return tuple(dict.fromkeys(b.material for b, strength in bodies if strength == min(x.law.strengths)))
-
-
-def _with_adhesion(x: Experiment, law: JKR) -> Prediction:
-    """residual_overlap is that at which the contact ends, 3/4 d below the dent; what adhesion takes is neither in
-    work_out nor in plastic_work."""
-    impact = adhesion.impact(law, m_star=x.m_star, speed=x.speed)
-    columns: dict[str, Any] = {n: np.asarray(getattr(impact, n), float) for n in COLUMNS[1:]}
-    columns["residual_overlap"] = impact.parting_overlap
-    first = max(float(law.touch_radius), float(law.yield_radius))
-    barely = 1.001 * float(adhesion.sticking_speed(law, m_star=x.m_star))
-    return Prediction(
-        speed=x.speed,
-        yields=_softer(x) if impact.radius_max.max() > first else (),
-        yield_speeds={},
-        caveats=(*validity.caveats(law, m_star=x.m_star, speed=x.speed), *_too_fast(x, columns["strain_ratio"])),
-        finite_strain=tuple(validity.finite_strain_of_impacts(columns["strain_ratio"], x.speed)),
-        observation_time=1.5 * float(adhesion.contact_time(law, m_star=x.m_star, speed=barely))
-        if barely > 0
-        else np.nan,
-        **columns,
-    )
