@@ -37,7 +37,7 @@ def product(tmp_path, monkeypatch):
     monkeypatch.setattr(stages, "__file__", str(tmp_path / "package/base/stages.py"))
     monkeypatch.setattr(paths, "native", lambda name: tmp_path / name)
     monkeypatch.setattr(paths, "launcher", lambda: tmp_path / "launcher")
-    monkeypatch.setattr(paths, "templates", lambda: tmp_path / "templates")
+    monkeypatch.setattr(paths, "beside", lambda name: tmp_path / name)
     yield tmp_path, names
     for function in (stages.library_hash, stages.product_hash):
         function.cache_clear()

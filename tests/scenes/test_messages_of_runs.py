@@ -113,7 +113,7 @@ def test_programs_that_are_not_there(tmp_path, monkeypatch):
         session.Session()._started(tmp_path)
     monkeypatch.setattr(paths, "_first", lambda *candidates: None)
     with says("templates not found beside the package; install epdem again"):
-        paths.templates.__wrapped__()
+        paths.beside.__wrapped__("templates")
     with says(r"C\+\+ sources not found beside the package; install epdem again"):
         paths.cpp_sources.__wrapped__()
 

@@ -94,7 +94,7 @@ def test_laws_that_lack_their_numbers_are_named_and_the_others_run(tmp_path):
 
 
 def test_a_set_without_its_source_is_refused(tmp_path, monkeypatch):
-    text = (paths.data() / "restitution/leeb_D.csv").read_text()
+    text = (paths.beside("data") / "restitution/leeb_D.csv").read_text()
     (tmp_path / "restitution").mkdir()
     (tmp_path / "restitution/bare.csv").write_text("".join(x for x in text.splitlines(True) if "# source" not in x))
     monkeypatch.setattr(paths, "data", lambda: tmp_path)
@@ -113,7 +113,7 @@ def test_a_set_without_its_source_is_refused(tmp_path, monkeypatch):
     ],
 )
 def test_a_wrong_row_or_column_of_a_set_is_named(old, new, said, tmp_path, monkeypatch):
-    text = (paths.data() / "restitution/leeb_D.csv").read_text()
+    text = (paths.beside("data") / "restitution/leeb_D.csv").read_text()
     (tmp_path / "restitution").mkdir()
     monkeypatch.setattr(paths, "data", lambda: tmp_path)
     (tmp_path / "restitution/odd.csv").write_text(text + "  \n")
@@ -125,6 +125,6 @@ def test_a_wrong_row_or_column_of_a_set_is_named(old, new, said, tmp_path, monke
 
 
 def test_the_width_of_a_dent_is_asked_of_laws_without_adhesion():
-    data = read_toml(paths.cases() / "adhesion_thornton_1998.toml")
+    data = read_toml(paths.beside("cases") / "adhesion_thornton_1998.toml")
     with pytest.raises(CaseError, match="the width of a dent under adhesion is not computed"):
         validate._simulated(experiment(parse(data)), pd.Series({"overlap_max": 1e-9}), "dent")

@@ -24,30 +24,13 @@ def native(name: str) -> Path | None:
     return _first(_PACKAGE / "native" / name, Path(sysconfig.get_path("platlib")) / "epdem" / "native" / name)
 
 
-def _beside(name: str) -> Path:
-    """A folder that comes with the package: the checkout's own where there is one, else the installed copy."""
+@cache
+def beside(name: str) -> Path:
+    """A folder that comes with the package (templates, cases, data): the checkout's own, else the installed copy."""
     folder = _first(_PACKAGE.parents[1] / name, _PACKAGE / name)
     if folder is None:
         raise EngineError(f"{name} not found beside the package; install epdem again: pip install .")
     return folder
-
-
-@cache
-def templates() -> Path:
-    """The folder of the deck templates."""
-    return _beside("templates")
-
-
-@cache
-def cases() -> Path:
-    """The folder of the cases that come with the package."""
-    return _beside("cases")
-
-
-@cache
-def data() -> Path:
-    """The folder of published numbers."""
-    return _beside("data")
 
 
 @cache

@@ -51,7 +51,7 @@ def environment(*folders: Path, reasons: bool = False) -> jinja2.Environment:
     nothing.
     """
     env = jinja2.Environment(
-        loader=jinja2.FileSystemLoader([*folders, paths.templates()]),
+        loader=jinja2.FileSystemLoader([*folders, paths.beside("templates")]),
         undefined=jinja2.StrictUndefined,
         trim_blocks=True,
         lstrip_blocks=True,

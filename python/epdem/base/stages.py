@@ -21,7 +21,7 @@ def library_hash() -> str:
 def product_hash() -> str:
     """Hash of this product as installed: what is compiled, templates, Python sources and the materials file."""
     package = Path(__file__).parents[1]
-    ours = [*paths.templates().rglob("*.j2"), *package.rglob("*.py"), *package.rglob("*.toml")]
+    ours = [*paths.beside("templates").rglob("*.j2"), *package.rglob("*.py"), *package.rglob("*.toml")]
     return _hash(library_hash(), sorted(ours))
 
 

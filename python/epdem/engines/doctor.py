@@ -31,16 +31,12 @@ def _library() -> Finding:
         return Finding("C library", False, str(error), "run 'make setup' or 'pip install .'")
 
 
-def _first_line(command: list[str]) -> str | None:
-    if shutil.which(command[0]) is None:
-        return None
-    return next((t.strip() for t in ask(command).splitlines() if t.strip()), "")
-
-
 def _mpi() -> Finding:
-    line = _first_line(["mpirun", "--version"])
-    advice = "" if line else "apt-get install openmpi-bin (only --ranks above 1 needs it)"
-    return Finding("MPI", line is not None, line or "mpirun not found", advice, needed=False)
+    if shutil.which("mpirun") is None:
+        advice = "apt-get install openmpi-bin (only --ranks above 1 needs it)"
+        return Finding("MPI", False, "mpirun not found", advice, needed=False)
+    said = ask(["mpirun", "--version"])
+    return Finding("MPI", True, next((t.strip() for t in said.splitlines() if t.strip()), ""), needed=False)
 
 
 def _models() -> Finding:

@@ -6,7 +6,6 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 import numpy as np
-import pandas as pd
 
 from ..report.chart import GREY, INK, PALETTE, Axis, Chart, Panel, Series
 from ..theory.backbones import JKR
@@ -124,7 +123,8 @@ def loops(outcome: Outcome) -> list[Chart]:
     if not found:
         return []
     law = next(iter(found)).split("/")[0]
-    prediction = predict(replace(outcome.plans[law].experiment, speed=_speeds(found), oblique=None))
+    speeds = np.unique(next(iter(found.values()))["speed"])
+    prediction = predict(replace(outcome.plans[law].experiment, speed=speeds, oblique=None))
     by_overlap, by_time = _theory_loops(outcome.plans[law].experiment, prediction), []
     for k, (key, table) in enumerate(found.items()):
         for i, (speed, part) in enumerate(table.groupby("speed")):
@@ -136,13 +136,13 @@ def loops(outcome: Outcome) -> list[Chart]:
             by_overlap.append(Series(once, part["overlap"][thin] / top, force[thin], i, None, k))
             named = f"{name}, {speed:.3g} m/s" if k == 0 else once
             by_time.append(Series(named, part["time"] / observation_time, force, i, "solid" if k == 0 else "dot"))
-    speeds = ", ".join(f"{v:.3g}" for v in prediction.speed)
+    said = ", ".join(f"{v:.3g}" for v in speeds)
     force_axis = Axis("force / force_max")
     return [
         Chart(
             "loops",
             "Force against overlap",
-            f"Loading and unloading at {speeds} m/s: theory as lines, engines as points, over the largest of "
+            f"Loading and unloading at {said} m/s: theory as lines, engines as points, over the largest of "
             "theory. The energy between the two "
             "branches is lost.",
             [Panel(Axis("overlap / overlap_max"), force_axis, by_overlap)],
@@ -150,15 +150,11 @@ def loops(outcome: Outcome) -> list[Chart]:
         Chart(
             "force",
             "Force against time",
-            f"Contact force from first touch to the end of the contact at {speeds} m/s, as the engines compute it, "
+            f"Contact force from first touch to the end of the contact at {said} m/s, as the engines compute it, "
             "over the peak and the contact time of theory.",
             [Panel(Axis("time / contact_time"), force_axis, by_time)],
         ),
     ]
-
-
-def _speeds(paths: dict[str, pd.DataFrame]) -> np.ndarray:
-    return np.unique(next(iter(paths.values()))["speed"])
 
 
 def _theory_loops(x: Experiment, prediction: Prediction) -> list[Series]:

@@ -130,7 +130,7 @@ def _templates() -> "jinja2.Environment":
     import jinja2
 
     return jinja2.Environment(
-        loader=jinja2.FileSystemLoader(paths.templates() / "report"),
+        loader=jinja2.FileSystemLoader(paths.beside("templates") / "report"),
         autoescape=True,
         undefined=jinja2.StrictUndefined,
         trim_blocks=True,

@@ -66,16 +66,13 @@ def rows(outcome: SceneOutcome) -> list[Chart]:
             curves.setdefault(name[:-2] if name.endswith(LOADS) else name, []).append(name)
     panels = []
     for label, names in curves.items():
-        series = [_curve(table, name, label) for name in names]
+        series = []
+        for name in names:
+            component = name.removeprefix(label).removeprefix("_")  # of a load: its axis is name and colour
+            colour = "xyz".index(component) if component else 0
+            series.append(Series(component, table["time"].to_numpy(), table[name].to_numpy(float), colour))
         panels.append(Panel(TIME, Axis(label, known.get(names[0], "")), series))
     return _against_time(outcome.plan, "scene", "Rows against time", panels, constant)
-
-
-def _curve(table: pd.DataFrame, name: str, label: str) -> Series:
-    """A column against time; a component of a load has the name and colour of its axis."""
-    component = name.removeprefix(label).removeprefix("_")
-    colour = "xyz".index(component) if component else 0
-    return Series(component, table["time"].to_numpy(), table[name].to_numpy(float), colour)
 
 
 def histograms(outcome: SceneOutcome) -> list[Chart]:

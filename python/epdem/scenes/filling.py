@@ -55,21 +55,17 @@ def mean_volume(case: SceneCase, fill: Insertion) -> float:
     return float(np.average([4.0 / 3.0 * math.pi * r**3 for _, r, _ in sizes], weights=[w for _, _, w in sizes]))
 
 
-def _volume(case: SceneCase, fill: Insertion) -> float:
-    """Volume of the spheres that are inserted at once [m^3]: all spheres, or one interval of a stream."""
-    return mean_volume(case, fill) * (fill.count if fill.rate is None else min(fill.rate * fill.period, fill.count))
-
-
 def refuse_too_many(case: SceneCase, fills: Iterable[Insertion]) -> None:
-    """Raise CaseError for fills with more spheres at once than their region takes."""
+    """Raise CaseError for fills with more spheres at once than their region takes: all, or an interval of a stream."""
     for key, group in groupby(fills, key=lambda fill: fill.key):
         together = list(group)
         first, count = together[0], sum(fill.count for fill in together)
-        share = sum(_volume(case, fill) for fill in together) / first.region.volume
+        at_once = count if first.rate is None else min(first.rate * first.period, count)
+        mean = sum(mean_volume(case, fill) * fill.count for fill in together) / count
+        share = at_once * mean / first.region.volume
         if share <= MOST_FILLED:
             continue
         if first.rate is not None:
-            at_once = min(first.rate * first.period, first.count)
             raise CaseError(
                 f"{key.removesuffix('.count')}.rate = {first.rate:g} Hz: the {at_once:.0f} spheres of "
                 f"{first.period:.3g} s would fill {share:.0%} of the layer that they are poured into, "

@@ -240,17 +240,6 @@ def _phases(scene: Parts, rows: int, every: int, dt: float) -> tuple[Phase, ...]
     return (*phases, replace(last, end=end))
 
 
-def _divisor(n: int, parts: int) -> int:
-    """The largest divisor d of n with n/d >= `parts`; 1 if no such divisor exists."""
-    return next(d for d in range(max(1, n // parts), 0, -1) if n % d == 0)
-
-
-def _may_shrink(case: SceneCase, scene: Parts) -> bool:
-    """Whether the step becomes a little smaller, so that the last phase is not longer than a motion in it should be."""
-    given = case.numerics.time_step or any(phase.time_step for phase in scene.phase)
-    return not isinstance(scene, Preset) and bool(scene.phase[-1].move) and not given
-
-
 def _loads(case: SceneCase, scene: Parts) -> tuple[str, ...]:
     """The walls whose forces a scene of parts requests: for its output, for a condition, for a measure."""
     if isinstance(scene, Preset):
@@ -281,8 +270,9 @@ def plan(case: SceneCase) -> ScenePlan:
     if any(phase.time_step for phase in scene.phase):
         steps = sum(phase.seconds / (phase.time_step or dt) for phase in scene.phase)
     rows, every = _intervals(out, steps)
-    if _may_shrink(case, scene):
-        dt = duration / (rows * every)
+    given = case.numerics.time_step or any(phase.time_step for phase in scene.phase)
+    if not given and not isinstance(scene, Preset) and scene.phase[-1].move:
+        dt = duration / (rows * every)  # a little smaller, so that no motion lasts longer than requested
     refuse_steps(case, rows, duration, duration / steps)
 
     def interval(count: int) -> int:
@@ -298,7 +288,7 @@ def plan(case: SceneCase) -> ScenePlan:
         time_step=dt,
         phases=_phases(scene, rows, every, dt),
         every=every,
-        sampling=_divisor(every, SAMPLES),
+        sampling=next(d for d in range(max(1, every // SAMPLES), 0, -1) if every % d == 0),
         frames=interval(out.particles),
         contacts=interval(out.contacts or (out.particles if out.energy else 0)),
         vtk=interval(out.vtk),

@@ -18,7 +18,12 @@ from .run import SceneOutcome
 
 
 def as_json(outcome: SceneOutcome) -> str:
-    """The document of `epdem run --json` for a scene."""
+    """The document of `epdem run --json` for a scene: of the measures the last frame, or row of a force or torque."""
+    tables, measured = outcome.results.tables, list[dict[str, object]]()
+    if outcome.case.scene.measure:
+        row = records(tables["measures"].tail(1)) or records(tables["rows"][["step", "time"]].tail(1))
+        loads = [m for m in outcome.case.scene.measure if isinstance(m, Load)]
+        measured = [row[0] | {m.name: float(curve(m, tables)[1][-1]) for m in loads}]
     return json.dumps(
         {
             "case": outcome.case.name,
@@ -30,21 +35,13 @@ def as_json(outcome: SceneOutcome) -> str:
             "reused": outcome.reused,
             "resumed_from": outcome.resumed_from,
             "warnings": outcome.warnings,
-            "checks": records(outcome.results.tables["checks"]),
-            "measures": _final(outcome) if outcome.case.scene.measure else [],
-            "last_row": records(outcome.results.tables["rows"].tail(1))[0],
-            "units": units(outcome.results.tables["rows"]),
+            "checks": records(tables["checks"]),
+            "measures": measured,
+            "last_row": records(tables["rows"].tail(1))[0],
+            "units": units(tables["rows"]),
         },
         indent=1,
     )
-
-
-def _final(outcome: SceneOutcome) -> list[dict[str, object]]:
-    """The last frame of the measures, with the forces and torques of the last row."""
-    tables = outcome.results.tables
-    row = records(tables["measures"].tail(1)) or records(tables["rows"][["step", "time"]].tail(1))
-    loads = [m for m in outcome.case.scene.measure if isinstance(m, Load)]
-    return [row[0] | {m.name: float(curve(m, tables)[1][-1]) for m in loads}]
 
 
 def show(outcome: SceneOutcome, console: Console) -> None:

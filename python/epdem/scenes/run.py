@@ -115,7 +115,8 @@ def run(
         p = plan(model)
         measures.refuse_measures(p)
         pictures.refuse_color(p)
-        notes = [*engine.check(p), *planned_warnings(p), *_warnings(p.case)]
+        domain = predict(leading_impact(model)).caveats  # of the law, at the highest speed of the scene
+        notes = [*engine.check(p), *planned_warnings(p), *case_warnings(model), *domain]
         files = texts(engine, p)
     check_run(engine, ranks=ranks, resume=resume)
     beside = Path(str(place)).parent
@@ -197,6 +198,11 @@ def _finish(
         "seconds": seconds,
     }
     decks = {name: text for name, text in work.files.items() if "/" not in name}  # without the modules of a deck
+    left_out = []
+    if went_on and went_on.lost:
+        steps = ("step " if len(went_on.lost) == 1 else "steps ") + ", ".join(map(str, went_on.lost))
+        advice = "are missing or not whole, and left out; --fresh runs the scene anew"
+        left_out = [f"{folder}: the frames of {steps} {advice}"]
     kept = results.SceneResults(work.text, attributes, tables, decks, work.named)
     results.write(folder / "results.h5", p, kept)
     return SceneOutcome(
@@ -209,18 +215,6 @@ def _finish(
             *work.notes,
             *measured_warnings(tables),
             *lost_spheres(p, tables),
-            *_left_out(folder, went_on.lost if went_on else []),
+            *left_out,
         ],
     )
-
-
-def _left_out(folder: Path, lost: list[int]) -> list[str]:
-    if not lost:
-        return []
-    steps = f"step {lost[0]}" if len(lost) == 1 else f"steps {', '.join(map(str, lost))}"
-    return [f"{folder}: the frames of {steps} are missing or not whole, and left out; --fresh runs the scene anew"]
-
-
-def _warnings(case: SceneCase) -> list[str]:
-    """Doubtful values, and where the law leaves its own domain: impacts on the walls at the highest speed."""
-    return [*case_warnings(case), *predict(leading_impact(case)).caveats]

@@ -4,8 +4,6 @@
 import math
 from collections.abc import Iterator
 
-import numpy as np
-
 from ..case.scene import SceneCase
 from ..errors import CaseError
 from ..impacts.experiment import Experiment
@@ -87,10 +85,5 @@ def time_step(case: SceneCase) -> float:
         except CaseError as error:
             raise CaseError(f"numerics.{error}, or numerics.time_step") from None
         best = min(best, step, bed_share(x, sticking=sticking) * stable)
-    return _round_down(best)
-
-
-def _round_down(x: float) -> float:
-    """Two significant digits, so that the deck is readable."""
-    power = 10.0 ** (math.floor(math.log10(x)) - 1)
-    return float(np.float64(f"{math.floor(x / power) * power:.1e}"))
+    power = 10.0 ** (math.floor(math.log10(best)) - 1)
+    return float(f"{math.floor(best / power) * power:.1e}")  # two digits, rounded down: the deck is readable

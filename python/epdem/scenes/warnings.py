@@ -36,15 +36,16 @@ def planned_warnings(p: ScenePlan) -> list[str]:
 
 def measured_warnings(tables: dict[str, pd.DataFrame]) -> list[str]:
     """A sentence for contacts beyond small strain, and for each phase whose `until` was not reached."""
-    return _finite_strain(tables) + _not_reached(tables)
-
-
-def _finite_strain(tables: dict[str, pd.DataFrame]) -> list[str]:
-    """By the largest a/R* of the rows; with the share of the contacts above the limit where a frame has any."""
     largest = float(tables["rows"][STRAINS[0]].iloc[-1])
     limit = max((limit for limit in validity.FINITE_STRAIN if largest > limit), default=0.0)
     share = _share_above(tables, limit) if limit and "contacts" in tables else 0.0
-    return validity.finite_strain(largest, f" in up to {share:.3g} % of the contacts of a frame" if share else "")
+    where = f" in up to {share:.3g} % of the contacts of a frame" if share else ""
+    phases = tables.get("phases", pd.DataFrame(columns=["until"]))
+    return validity.finite_strain(largest, where) + [
+        f"scene.phase.{phase['phase']}.until was not reached: the phase ended by its duration, at "
+        f"{phase['end_time']:.4g} s; give a longer duration, or another condition"
+        for phase in phases[phases["until"] == NOT_REACHED].to_dict("records")
+    ]
 
 
 def _share_above(tables: dict[str, pd.DataFrame], limit: float) -> float:
@@ -58,16 +59,6 @@ def _share_above(tables: dict[str, pd.DataFrame], limit: float) -> float:
     elastic = np.sqrt(R_star * contacts["delta_max"].clip(lower=0.0))  # Hertz, where there is no dent
     strain = np.maximum(contacts["dent_radius"], elastic) / R_star
     return float(100.0 * (strain > limit).groupby(contacts["step"]).mean().max())
-
-
-def _not_reached(tables: dict[str, pd.DataFrame]) -> list[str]:
-    """Phases that ended by their duration although a condition should end them."""
-    phases = tables.get("phases", pd.DataFrame(columns=["until"]))
-    return [
-        f"scene.phase.{phase['phase']}.until was not reached: the phase ended by its duration, at "
-        f"{phase['end_time']:.4g} s; give a longer duration, or another condition"
-        for phase in phases[phases["until"] == NOT_REACHED].to_dict("records")
-    ]
 
 
 def _time_steps(p: ScenePlan) -> list[str]:

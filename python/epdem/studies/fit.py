@@ -152,7 +152,11 @@ def fit(
         raise CaseError(f"--tolerance {tolerance:g}, must lie in (0, 1)")
     if not targets or not 1 <= len(free) <= MOST:
         raise CaseError(f"a fit needs a --target NAME=VALUE, and one to {MOST} keys --free KEY=LOW..HIGH")
-    ranges = _ranges(free, axes(free, keys_of(data), "--free"))
+    ranges: dict[str, Range] = {}
+    for name, axis in axes(free, keys_of(data), "--free").items():
+        if not isinstance(axis, Range) or axis.count is not None:
+            raise CaseError(f"--free {name} = {free[name]!r}: write its range as LOW..HIGH or log:LOW..HIGH")
+        ranges[name] = axis
     middle = np.full(len(ranges), 0.5)
     base = study.plan(text, {name: [axis.at(0.5)] for name, axis in ranges.items()}, engines=[engine], ranks=ranks)
     folder = results_folder(Path(out) if out else None, f"{base.name}_fit")
@@ -169,13 +173,6 @@ def fit(
     case = store.of(search.sweep, folder, best + 1) / store.CASE
     units = {name: unit(name, base.tables) or "" for name in numbers}
     return Fit(values, numbers, search.targets, units, case, search.ran, len(search.shares))
-
-
-def _ranges(free: Mapping[str, str], found: Mapping[str, Any]) -> dict[str, Range]:
-    for name, axis in found.items():
-        if not isinstance(axis, Range) or axis.count is not None:
-            raise CaseError(f"--free {name} = {free[name]!r}: write its range as LOW..HIGH or log:LOW..HIGH")
-    return dict(found)
 
 
 def _refuse_insensitive(search: _Search, middle: np.ndarray, tolerance: float) -> None:

@@ -66,14 +66,14 @@ class Validation:
 
 def names() -> list[str]:
     """The sets that come with the package."""
-    return sorted(path.stem for path in (paths.data() / "restitution").glob("*.csv"))
+    return sorted(path.stem for path in (paths.beside("data") / "restitution").glob("*.csv"))
 
 
 def read(name: str) -> Measured:
     """A measured set by its name. Raises CaseError."""
     if name not in names():
         raise CaseError(f"--set {name!r} does not exist; there are {', '.join(names())}")
-    path = paths.data() / "restitution" / f"{name}.csv"
+    path = paths.beside("data") / "restitution" / f"{name}.csv"
     lines = [line for line in path.read_text(encoding="utf-8").splitlines() if line.strip()]
     head = dict(line.removeprefix("# ").split(": ", 1) for line in lines if line.startswith("#"))
     if missing := [key for key in HEAD if key not in head]:
@@ -99,7 +99,7 @@ def read(name: str) -> Measured:
 
 def case_of(measured: Measured, material: str, value: float, speeds: Sequence[float], law: str) -> Case:
     """The case of a set for a law, with one hardness [HV] or yield stress [Pa] of `material` and its speeds [m/s]."""
-    path = paths.cases() / measured.head["case"]
+    path = paths.beside("cases") / measured.head["case"]
     data = read_toml(path)
     data["impact"]["speeds"] = [f"{v!r} m/s" for v in speeds]
     if measured.given == "hardness" and law_named(law).strength:

@@ -11,7 +11,6 @@ from ...case.motions import LinearMove, Move, PressMove, RotateMove, VibrateMove
 from ...case.parts import Body
 from ...case.walls import PlaneWall
 from ...errors import CaseError
-from ...scenes.meshes import FloatArray
 from ...scenes.plan import Phase, ScenePlan
 from ...scenes.walls import surface_rotation
 from ..input_script import StopCondition, stop_condition, torque_origin, wall_id
@@ -113,11 +112,6 @@ def _press(p: ScenePlan, name: str) -> PressMove | None:
     return next(iter(presses), None)
 
 
-def _middle(triangles: FloatArray) -> list[float]:
-    corners = triangles.reshape(-1, 3)
-    return [float(v) for v in 0.5 * (corners.min(axis=0) + corners.max(axis=0))]
-
-
 def surfaces(p: ScenePlan) -> tuple[DeckMesh, ...]:
     """The walls of triangles."""
     force = p.plates or p.torque or p.writes_wall_power
@@ -136,7 +130,9 @@ def surfaces(p: ScenePlan) -> tuple[DeckMesh, ...]:
         press = _press(p, name)
         if press is not None:
             style = "/stress/servo"
-            words += f" com {_words(_middle(p.triangles[name]))} ctrlPV force axis {_words(press.unit_direction)}"
+            corners = p.triangles[name].reshape(-1, 3)
+            middle = 0.5 * (corners.min(axis=0) + corners.max(axis=0))
+            words += f" com {_words(middle.tolist())} ctrlPV force axis {_words(press.unit_direction)}"
             words += f" target_val {decks.number(press.force)} vel_max {decks.number(press.highest_speed)} kp {GAIN}"
         waits = press is not None and name not in p.phases[0].moves
         found.append(DeckMesh(wall_id(p, name), f"{name}.stl", p.wall_types[name], style, words, waits))

@@ -176,24 +176,19 @@ def begin(sweep: Sweep, folder: Path, number: int) -> dict[str, Any]:
     (place / FINISHED).unlink(missing_ok=True)
     with atomic(place / CASE, sync=False) as temporary:
         temporary.write_text(sweep.text(number), encoding="utf-8")
+    array, task = os.environ.get("SLURM_ARRAY_JOB_ID"), os.environ.get("SLURM_ARRAY_TASK_ID")
     about = {
         "state": RUNNING,
         "reason": "",
         "inputs": sweep.inputs(number),
         "host": socket.gethostname(),
         "pid": os.getpid(),
-        "job": _job(),
+        "job": f"{array}_{task}" if array else os.environ.get("SLURM_JOB_ID", ""),  # of Slurm, as squeue names it
         "started": time.strftime("%Y-%m-%d %H:%M:%S"),
         "begin": time.time(),
     }
     (place / STARTED).write_text(json.dumps(about), encoding="utf-8")
     return about
-
-
-def _job() -> str:
-    """The job of Slurm that this process belongs to, as squeue names it; "" without."""
-    array, task = os.environ.get("SLURM_ARRAY_JOB_ID"), os.environ.get("SLURM_ARRAY_TASK_ID")
-    return f"{array}_{task}" if array else os.environ.get("SLURM_JOB_ID", "")
 
 
 def end(

@@ -81,6 +81,8 @@ def plan(
     chosen = tuple(dict.fromkeys(engines)) or (DEFAULT_ENGINE,)
     if scene and (len(chosen) > 1 or laws):
         raise CaseError("a scene has its own law and runs on one engine; leave out --law, or sweep law.name")
+    tools = [scene_engine(name) if scene else engine(name) for name in chosen]
+    require(*tools)
     return Sweep(
         name=str(data.get("case", {}).get("name", "case")),
         case=text,
@@ -90,14 +92,8 @@ def plan(
         engines=chosen,
         laws=tuple(dict.fromkeys(laws)),
         ranks=ranks,
-        versions=_versions(chosen, scene=scene),
+        versions={tool.name: tool.version() for tool in tools},
     )
-
-
-def _versions(engines: Sequence[str], *, scene: bool) -> dict[str, str]:
-    tools = [scene_engine(name) if scene else engine(name) for name in engines]
-    require(*tools)
-    return {tool.name: tool.version() for tool in tools}
 
 
 def check_points(sweep: Sweep, numbers: Iterable[int], jobs: int | None = None) -> None:
