@@ -2,6 +2,7 @@
 """The command `epdem predict`: what theory says of a case, of its time step, or of one impact for every law."""
 
 import json
+from dataclasses import asdict
 from pathlib import Path
 from typing import TYPE_CHECKING, Annotated
 
@@ -86,20 +87,7 @@ def _time_step(case: Path, law: list[str] | None, error: float, as_json: bool) -
             progress(f"{x.name}, {x.law.name}")
             searches.append((x, search(x, predict_experiment(x), error)))
     if as_json:
-        documents = [
-            {
-                "case": x.name,
-                "law": x.law.name,
-                "target": f.target,
-                "time_step": f.time_step,
-                "error": f.error,
-                "rms": f.rms,
-                "steps_in_contact": f.steps_in_contact,
-                "reference": vars(f.reference),
-                "share": f.shares(),
-            }
-            for x, f in searches
-        ]
+        documents = [{"case": x.name, "law": x.law.name, **asdict(f), "share": f.shares()} for x, f in searches]
         print(json.dumps(documents[0] if len(documents) == 1 else documents, indent=1))
         return
     for x, f in searches:

@@ -3,6 +3,7 @@
 
 import json
 import sys
+from dataclasses import asdict
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -140,18 +141,8 @@ def soften(
     with atomic(target) as temporary:
         temporary.write_text(twin.text, encoding="utf-8")
     if as_json:
-        print(
-            json.dumps(
-                {
-                    "file": str(target),
-                    "changes": [vars(c) for c in twin.changes],
-                    "warnings": twin.warnings,
-                    "strain_ratio": twin.strain_ratio,
-                    "time_step_factor": twin.time_step_factor,
-                },
-                indent=1,
-            )
-        )
+        about = {name: value for name, value in asdict(twin).items() if name != "text"}
+        print(json.dumps({"file": str(target)} | about, indent=1))
         return
     for c in twin.changes:
         print(f"{c.place}: {c.before} -> {c.after}")

@@ -3,8 +3,8 @@
 
 import math
 import re
-from collections.abc import Iterator
 from dataclasses import dataclass, field
+from itertools import takewhile
 from pathlib import Path
 
 from ...base.declarations import Declaration
@@ -35,41 +35,9 @@ class Conversion:
     notes: list[str] = field(default_factory=list)
 
 
-@dataclass(frozen=True)
-class _Word:
-    text: str
-    start: int
-    end: int
-
-
-def _commands(text: str) -> Iterator[tuple[int, str]]:
-    """(offset, text) of each command with its continuation lines."""
-    at = 0
-    while at < len(text):
-        found = _COMMAND.match(text, at)
-        assert found is not None and found.end() > at
-        yield at, found.group()
-        at = found.end()
-
-
-def _words(command: str) -> list[_Word]:
-    """The words before the comment, which reaches over continuation lines as in LIGGGHTS."""
-    words = []
-    for found in _WORD.finditer(command):
-        if found.group().startswith("#"):
-            break
-        words.append(_Word(found.group(), found.start(), found.end()))
-    return words
-
-
-def _contact_line(texts: list[str]) -> bool:
-    """Whether a command chooses the contact model of pairs or of a wall."""
-    return (texts[:1] == ["pair_style"] and "gran" in texts) or (texts[:1] == ["fix"] and texts[3:4] == ["wall/gran"])
-
-
-def _converted(command: str, words: list[_Word], law: Declaration, place: str) -> tuple[str, list[str]]:
+def _converted(command: str, words: list[re.Match[str]], law: Declaration, place: str) -> tuple[str, list[str]]:
     """The command with the law's model and without settings that the model does not have; what was dropped."""
-    texts = [w.text for w in words]
+    texts = [word.group() for word in words]
     at = texts.index("model") + 1 if "model" in texts[:-1] else 0
     if not at:
         raise CaseError(f"{place}: {' '.join(texts[:4])} names no model; write 'model hertz' after gran")
@@ -78,10 +46,10 @@ def _converted(command: str, words: list[_Word], law: Declaration, place: str) -
             f"{place}: model {texts[at]} has parameters that no law replaces; only {' and '.join(REPLACED)} are "
             "converted, choose one of these first"
         )
-    cuts, notes = [(words[at].start, words[at].end, f"ep/{law.name}")], []
+    cuts, notes = [(words[at].start(), words[at].end(), f"ep/{law.name}")], []
     for k, name in enumerate(texts[:-1]):
         if k > at and name in SETTINGS:
-            cuts.append((words[k].start, words[k + 1].end, ""))
+            cuts.append((words[k].start(), words[k + 1].end(), ""))
             notes.append(f"{place}: setting '{name} {texts[k + 1]}' of model {texts[at]} is dropped")
     for start, end, new in sorted(cuts, reverse=True):
         command = command[:start] + new + command[end:]
@@ -129,11 +97,13 @@ def convert(text: str, law_name: str, given: dict[str, str], place: Path) -> Con
     notes: list[str] = []
     present: set[str] = set()
     models = moduli = types = 0
-    for offset, command in _commands(text):
-        where = f"{place}, line {text.count(chr(10), 0, offset) + 1}"
-        words = _words(command)
-        texts = [w.text for w in words]
-        if _contact_line(texts):
+    for found in _COMMAND.finditer(text):
+        command, where = found.group(), f"{place}, line {text.count(chr(10), 0, found.start()) + 1}"
+        # before the comment, which reaches over continuation lines as in LIGGGHTS
+        words = [*takewhile(lambda word: not word.group().startswith("#"), _WORD.finditer(command))]
+        texts = [word.group() for word in words]
+        pairs = texts[:1] == ["pair_style"] and "gran" in texts
+        if pairs or (texts[:1] == ["fix"] and texts[3:4] == ["wall/gran"]):
             command, dropped = _converted(command, words, law, where)
             models, notes = models + 1, notes + dropped
         elif texts[:1] == ["fix"] and texts[3:4] == ["property/global"]:

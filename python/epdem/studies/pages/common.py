@@ -9,11 +9,12 @@ from pathlib import Path
 from ... import __version__
 from ...base.folders import claim
 from ...base.stages import library_hash, product_hash
-from ...case.impact import Case
-from ...case.scene import SceneCase
 from ...engines.citations import citations
+from ...engines.reasons import reasons
+from ...impacts.plan import Plan
 from ...impacts.run import Outcome
 from ...report.page import NAME, Facts, Lines, Page, Part, write
+from ...scenes.plan import ScenePlan
 from ...scenes.run import SceneOutcome
 
 
@@ -28,15 +29,18 @@ def case_lines(text: str) -> Lines:
     return Lines("Case file", [(line, "") for line in text.splitlines()])
 
 
-def deck_lines(title: str, text: str) -> Lines:
-    """A deck, its comments as reasons."""
-    split = [line.partition("  # ") for line in text.splitlines()]
-    return Lines(title, [(line.rstrip(), reason) for line, _, reason in split])
+def decks(engine: str, job: Plan | ScenePlan | None, stored: Mapping[str, str], of: str = "") -> list[Lines]:
+    """The files of a deck with the reasons of the engine's templates (a comment that is the reason stands once).
 
-
-def reasoned(title: str, lines: Sequence[tuple[str, str]]) -> Lines:
-    """Lines with their reasons; a comment that is the reason stands once."""
-    return Lines(title, [(line.removesuffix(why).rstrip(" #") if why else line, why) for line, why in lines])
+    Without these the `stored` texts by name, their comments as reasons. of: end of the titles.
+    """
+    lines: dict[str, list[tuple[str, str]]] = {}
+    for name, line, why in reasons(engine, job) if job else []:
+        lines.setdefault(name, []).append((line.removesuffix(why).rstrip(" #") if why else line, why))
+    for name, text in {} if lines else stored.items():
+        split = [line.partition("  # ") for line in text.splitlines()]
+        lines[name] = [(line.rstrip(), reason) for line, _, reason in split]
+    return [Lines(f"Deck {name}{of}", found) for name, found in lines.items()]
 
 
 def origin(about: Mapping[str, object], hashes: Mapping[str, object]) -> Facts:
@@ -44,11 +48,6 @@ def origin(about: Mapping[str, object], hashes: Mapping[str, object]) -> Facts:
     versions = {k.removeprefix("version_"): str(v) for k, v in about.items() if k.startswith("version_")}
     ours = {"epdem": f"{__version__}, sources {product_hash()[:16]}, compiled parts {library_hash()[:16]}"}
     return Facts("Versions and hashes", ours | versions | {f"inputs of {k}": str(v) for k, v in hashes.items()})
-
-
-def cited(case: Case | SceneCase, laws: Sequence[str], engines: Sequence[str]) -> Facts:
-    """What to cite."""
-    return Facts("What to cite", citations(case, laws, engines))
 
 
 def page_of(
@@ -68,7 +67,7 @@ def page_of(
         [
             *parts,
             origin(outcome.results.attributes, hashes),
-            cited(outcome.case, laws, engines),
+            Facts("What to cite", citations(outcome.case, laws, engines)),
         ],
         passed=outcome.passed,
         command=command or f"epdem verify rerun {outcome.folder}/results.h5",

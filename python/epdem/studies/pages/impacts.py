@@ -9,7 +9,7 @@ import numpy as np
 from ...base.folders import claim
 from ...base.tables import unit_of
 from ...case.impact import load
-from ...engines.reasons import reasons
+from ...engines.citations import citations
 from ...impacts import charts
 from ...impacts.comparison import CHECKED, UNITS
 from ...impacts.experiment import Body, Experiment
@@ -51,7 +51,12 @@ def of_calibration(case: Path, found: Calibration, folder: Path, *, force: bool 
     chart = Chart("e_n", "Restitution with this strength", alt, [Panel(charts.SPEED, Axis("e_n"), series)])
     bare = [replace(b, yield_stress=None) for b in (x.body, x.target)]  # whose own strength plays no part
     facts = Facts("Bodies and law", _facts(replace(x, body=bare[0], target=bare[1], source=found.source)))
-    parts: list[Part] = [chart, facts, common.origin({}, {}), common.cited(load(case), [found.law], [])]
+    parts: list[Part] = [
+        chart,
+        facts,
+        common.origin({}, {}),
+        Facts("What to cite", citations(load(case), [found.law], [])),
+    ]
     said = sentences_of_calibration(found)
     made = Page(f"Strength of law {found.law} from {found.source}", said, parts, command=common.command())
     with claim(folder, force=force, files=[NAME]):
@@ -161,13 +166,13 @@ def tolerances(outcome: Outcome) -> Facts:
 
 
 def decks(outcome: Outcome) -> list[Lines]:
-    """Every deck that ran, line by line; with the reasons that the templates of the engine state."""
-    shown = []
+    """Every deck that ran, line by line, with the reasons that the templates of the engine state."""
+    stored: dict[tuple[str, str], dict[str, str]] = {}
     for key, text in outcome.results.decks.items():
         law, engine, name = key.split("/", 2)
-        title = f"Deck {name} of {engine}, law {law}"
-        if law in outcome.plans and (lines := reasons(engine, outcome.plans[law])):
-            shown.append(common.reasoned(title, [(line, reason) for _, line, reason in lines]))
-        else:
-            shown.append(common.deck_lines(title, text))
-    return shown
+        stored.setdefault((law, engine), {})[name] = text
+    return [
+        lines
+        for (law, engine), texts in stored.items()
+        for lines in common.decks(engine, outcome.plans.get(law), texts, f" of {engine}, law {law}")
+    ]

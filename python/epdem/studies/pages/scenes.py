@@ -4,8 +4,7 @@
 from pathlib import Path
 
 from ...base.folders import claim
-from ...engines.reasons import reasons
-from ...report.page import NAME, Facts, Lines, Page, Part, Picture, Rows, write
+from ...report.page import NAME, Facts, Page, Part, Picture, Rows, write
 from ...scenes.charts import bed, charts
 from ...scenes.columns import STRAINS, units
 from ...scenes.run import SceneOutcome
@@ -43,7 +42,8 @@ def page(outcome: SceneOutcome, command: str = "") -> Page:
         table = tables.get(name)
         if table is not None and not table.drop(columns=["step", "time"], errors="ignore").empty:
             parts.append(Rows(title, table, units(table), note))
-    parts += [_facts(outcome), common.case_lines(outcome.results.case_text), *_decks(outcome)]
+    decks = common.decks(engine, outcome.plan, outcome.results.decks)
+    parts += [_facts(outcome), common.case_lines(outcome.results.case_text), *decks]
     return common.page_of(
         outcome,
         sentences(outcome),
@@ -82,14 +82,3 @@ def _facts(outcome: SceneOutcome) -> Facts:
     facts |= {"steps": str(p.steps), "smallest radius": f"{p.smallest:.4g} m", "materials": ", ".join(p.types)}
     phases = [f"{x.name} up to step {x.end}" + f" (until {x.reached})" * bool(x.reached) for x in p.phases]
     return Facts("The scene", facts | {"phases": ", ".join(phases)})
-
-
-def _decks(outcome: SceneOutcome) -> list[Lines]:
-    """The files of the deck, with the reasons that the templates of the engine state."""
-    if lines := reasons(str(outcome.results.attributes["engine"]), outcome.plan):
-        files = dict.fromkeys(file for file, _, _ in lines)
-        return [
-            common.reasoned(f"Deck {name}", [(line, why) for file, line, why in lines if file == name])
-            for name in files
-        ]
-    return [common.deck_lines(f"Deck {name}", text) for name, text in outcome.results.decks.items()]
