@@ -79,11 +79,11 @@ def test_a_contact_forms_at_zero_overlap_pulls_at_a_distance_and_ends_at_the_fol
     F, a, _ = c.path([0.5 * fold, -1e-15, 0.0, 1e-15, -1e-15, 0.5 * fold])
     assert np.all(F[:3] == 0)
     assert np.all(a[:3] == 0)  # nothing before touch
-    assert F[3:5] == pytest.approx(float(c.theory.touch_force), rel=1e-4)
+    assert F[3:5] == pytest.approx(float(c.theory.force(c.theory.touch_radius)), rel=1e-4)
     touch = c.theory.branch(c.theory.radius(1e-15))
     ends = touch[1] + touch[0].fold_overlap
     F, a, _ = c.path([1e-15, ends * (1 - 1e-9), ends * (1 + 1e-9), 0.5 * ends, 1e-15])
-    assert F[1] == pytest.approx(float(touch[0].fold_force), rel=1e-3)
+    assert F[1] == pytest.approx(-5 / 9 * float(touch[0].pull_off_force), rel=1e-3)
     assert np.all(F[2:4] == 0)  # ended, and again apart until it touches
     assert np.all(a[2:4] == 0)
     assert F[4] < 0

@@ -75,12 +75,11 @@ def test_extremes_of_the_curve_are_the_touch_the_pull_off_and_the_fold(numbers):
     fold, pull = np.argmin(al), np.argmin(F)
     assert al[fold] == pytest.approx(law.fold_overlap, rel=1e-11)  # of the square of the spacing
     assert a[fold] == pytest.approx(law.fold_radius, rel=2e-6)
-    assert F[fold] == pytest.approx(law.fold_force, rel=2e-6)
+    assert F[fold] == pytest.approx(-5 / 9 * law.pull_off_force, rel=2e-6)
     assert F[pull] == pytest.approx(-law.pull_off_force, rel=1e-11)
     assert law.pull_off_force == pytest.approx(1.5 * np.pi * law.Gamma * law.R_star, rel=1e-15)
     assert law.overlap(law.touch_radius) == pytest.approx(0, abs=1e-15 * law.touch_radius)
-    assert law.touch_force == pytest.approx(-8 / 9 * law.pull_off_force, rel=1e-14)
-    assert law.fold_force == pytest.approx(-5 / 9 * law.pull_off_force, rel=1e-14)
+    assert law.force(law.touch_radius) == pytest.approx(-8 / 9 * law.pull_off_force, rel=1e-14)
     assert law.fold_overlap == pytest.approx(-1.6087720 * np.cbrt(law.Gamma**2 * law.R_star / law.E_star**2), rel=1e-7)
 
 

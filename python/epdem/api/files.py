@@ -23,6 +23,7 @@ class _File:
     """A case or scene: the text of its file, checked. Its `model` has every value in SI; both are never changed."""
 
     kind: ClassVar[str]
+    parse: ClassVar[Any]  # from tables and place to the model
 
     def __init__(self, **tables: Any):
         """From the tables of a case file, `Case(case={"name": "ball"}, materials={...}, impact={...}, law={...})`.
@@ -37,11 +38,7 @@ class _File:
 
     def _read(self, text: str, path: object) -> None:
         self.text, self.place = text, path
-        self.model = self._parse(tomllib.loads(text), path)
-
-    @staticmethod
-    def _parse(data: dict[str, Any], path: object) -> Any:
-        raise AttributeError("a case is a Case or a Scene")
+        self.model = self.parse(tomllib.loads(text), path)
 
     @classmethod
     def from_toml(cls, path: Path | str) -> Self:
@@ -113,17 +110,11 @@ class Case(_File):
     """Impacts of one body on one target over a range of speeds."""
 
     kind = "impact"
-
-    @staticmethod
-    def _parse(data: dict[str, Any], path: object) -> Any:
-        return impact_case.parse(data, path)
+    parse = staticmethod(impact_case.parse)
 
 
 class Scene(_File):
     """A bulk scene."""
 
     kind = "scene"
-
-    @staticmethod
-    def _parse(data: dict[str, Any], path: object) -> Any:
-        return scene_case.parse(data, path)
+    parse = staticmethod(scene_case.parse)

@@ -180,11 +180,6 @@ class Parts(Frozen):
         found += [(f"wall.{w.name}.phases", p) for w in self.wall if isinstance(w, PlaneWall) for p in w.phases]
         return found
 
-    @property
-    def duration(self) -> float:
-        """Of all phases [s]."""
-        return sum(p.duration for p in self.phase)
-
     @cached_property
     def table(self) -> list[Sphere]:
         """The spheres with given places that are there from the start: spheres of files, then single spheres."""

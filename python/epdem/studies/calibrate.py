@@ -99,9 +99,10 @@ def experiment(path: Path, found: Calibration) -> Experiment:
     return unknown.experiment(found.value, found.speed or found.yield_speed)
 
 
-def _check(e_n: float, speed: float) -> None:
+def _check(path: Path, e_n: float, speed: float) -> None:
     if not 0.0 < e_n < 1.0:
-        raise CaseError(f"--e-n {e_n:g}, must lie in (0, 1); leave out impacts below first yield")
+        text = f"{path}: e_n = {e_n:g} at {speed:g} m/s, must lie in (0, 1); leave out impacts below first yield"
+        raise CaseError(text)
     if not (math.isfinite(speed) and speed > 0):
         raise CaseError(f"--speed {speed:g} m/s, must be > 0")
 
@@ -111,7 +112,7 @@ def from_restitution(path: Path, e_n: float, speed: float) -> Calibration:
 
     The case gives bodies, elastic constants and law; its own strength and speeds play no part.
     """
-    _check(e_n, speed)
+    _check(path, e_n, speed)
     unknown = _unknown(path)
 
     def restitution(log_strength: float) -> float:
@@ -146,7 +147,7 @@ def from_restitutions(
     if EXPONENT not in unknown.law.ratios:
         raise CaseError(f"{path}: law {name} has one strength; give one e_n, or law.name = 'meyer' for several")
     for speed, e_n in measured:
-        _check(e_n, speed)
+        _check(path, e_n, speed)
     if uncertainty is not None and not 0.0 < uncertainty < 1.0:
         raise CaseError(f"--uncertainty {uncertainty:g}, must lie in (0, 1); it is that of e_n")
     if uncertainty is None and len(measured) < 3:
@@ -198,15 +199,8 @@ def from_restitutions(
 
 
 def of_case(path: Path) -> list[tuple[float, float]]:
-    """The (speed [m/s], e_n) of [measured] of a case, all e_n in (0, 1). Raises CaseError."""
+    """The (speed [m/s], e_n) of [measured] of a case. Raises CaseError."""
     curve = load(path).measured
     if curve is None:
         raise CaseError(f"{path}: it has no [measured] speeds and e_n; add them, or give --e-n with --speed")
-    points = list(zip(curve.speeds, curve.e_n, strict=True))
-    for speed, e_n in points:
-        if not 0.0 < e_n < 1.0:
-            raise CaseError(
-                f"{path}: measured.e_n = {e_n:g} at {speed:g} m/s, must lie in (0, 1); leave out impacts below first "
-                "yield"
-            )
-    return points
+    return list(zip(curve.speeds, curve.e_n, strict=True))

@@ -88,11 +88,6 @@ class JKR(Declared):
         return np.cbrt(self.c * self.R_star) ** 2
 
     @property
-    def touch_force(self) -> Numbers:
-        """Force [N] of a contact that has just formed: -8/9 of the pull-off force if it does not yield at once."""
-        return self.force(self.touch_radius)
-
-    @property
     def pull_off_force(self) -> Numbers:
         """Largest pull [N] that the elastic contact stands: 3/2 pi Gamma R*."""
         return 1.5 * np.pi * self.Gamma * self.R_star
@@ -106,11 +101,6 @@ class JKR(Declared):
     def fold_overlap(self) -> Numbers:
         """Overlap [m] at which the contact ends: -3/4 d(a_f)."""
         return -0.75 * self.c * np.sqrt(self.fold_radius)
-
-    @property
-    def fold_force(self) -> Numbers:
-        """Force [N] at which the contact ends: -5/9 of the pull-off force."""
-        return -5 / 6 * np.pi * self.Gamma * self.R_star
 
     # --- work and its inverse
 
