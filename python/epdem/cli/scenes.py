@@ -157,8 +157,9 @@ def soften(
 def deck_converted(deck: Path, law: str, sets: list[str], out: Path, *, force: bool, as_json: bool) -> None:
     """Write a LIGGGHTS deck of the user with one of the laws, and print the changes on standard error."""
     from ..engines.liggghts.convert import convert_file
+    from ..studies.sweep.points import settings
 
-    files, notes = convert_file(deck, law, sets, out, force=force)
+    files, notes = convert_file(deck, law, settings(sets, example="yieldPressure=1e8"), out, force=force)
     for note in notes:
         print(note, file=sys.stderr)
     say_files(files, as_json)

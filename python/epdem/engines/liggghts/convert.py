@@ -9,6 +9,7 @@ from pathlib import Path
 
 from ...base.declarations import Declaration
 from ...base.folders import write_own
+from ...case.toml import text_of
 from ...errors import CaseError
 from ...laws.library import laws
 
@@ -139,30 +140,14 @@ def convert(text: str, law_name: str, given: dict[str, str], place: Path) -> Con
 
 
 def convert_file(
-    deck: Path, law: str, sets: list[str], out: Path, *, force: bool = False
+    deck: Path, law: str, given: dict[str, str], out: Path, *, force: bool = False
 ) -> tuple[list[Path], list[str]]:
     """Write `deck` with the model ep/`law` under its own name into the folder `out`: the file, and `Conversion.notes`.
 
     Raises CaseError, also if the file would replace the deck itself.
     """
-    try:
-        text = deck.read_text(encoding="utf-8")
-    except UnicodeDecodeError as error:
-        raise CaseError(f"{deck}: not UTF-8 at byte {error.start}; save the file as UTF-8") from None
-    except OSError as error:
-        raise CaseError(f"{deck}: {error.strerror}; name a LIGGGHTS deck") from None
+    text = text_of(deck)
     if (out / deck.name).resolve() == deck.resolve():
         raise CaseError(f"--out {out}: the deck itself is there; name another folder")
-    done = convert(text, law, values(sets), deck)
+    done = convert(text, law, given, deck)
     return write_own(out, {deck.name: done.text}, force=force), done.notes
-
-
-def values(pairs: list[str]) -> dict[str, str]:
-    """The properties of `--set NAME=VALUE`. Raises CaseError."""
-    found: dict[str, str] = {}
-    for pair in pairs:
-        name, equals, value = pair.partition("=")
-        if not equals or name in found:
-            raise CaseError(f"--set {pair}: must be NAME=VALUE, each name once")
-        found[name] = value
-    return found
