@@ -24,8 +24,8 @@ import numpy as np
 import pandas as pd
 from community_models import MODELS, RAIN_FRICTION, SHORT, SPEED, START, YADE, curve, engine, loop
 
-from epdem.case.files import Read
 from epdem.case.scene import SceneCase, parse
+from epdem.case.toml import Read
 from epdem.engines.liggghts import resume
 from epdem.engines.liggghts.engine import Liggghts
 from epdem.errors import CaseError

@@ -12,8 +12,7 @@ import pytest
 
 from epdem.base.terminal import console
 from epdem.case import impact as cases
-from epdem.case.files import Read
-from epdem.case.toml import read_toml
+from epdem.case.toml import Read, read_toml
 from epdem.cli.main import app
 from epdem.engines import engine
 from epdem.errors import CaseError

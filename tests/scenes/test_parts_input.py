@@ -14,7 +14,7 @@ from parts_cases import BED, CASES, FLOOR, own, parts, tetrahedron, write_stl
 from scipy import stats
 
 from epdem import Scene
-from epdem.case import files
+from epdem.case import toml
 from epdem.case.scene import load, parse
 from epdem.case.toml import named
 from epdem.engines.liggghts import scene_deck
@@ -254,7 +254,7 @@ def deck_lines(data: dict) -> set[str]:
 
 def test_points_of_a_sweep_find_the_files_that_their_case_names(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
-    data = tomllib.loads(files.text_for_anywhere(CASES / "sieve_cylinder.toml"))
+    data = tomllib.loads(toml.text_for_anywhere(CASES / "sieve_cylinder.toml"))
     assert fills(data, tmp_path / "case.toml") == fills(own("sieve_cylinder"), CASES / "sieve_cylinder.toml")
     assert str(CASES.parent) not in (CASES / "sieve_cylinder.toml").read_text()
 

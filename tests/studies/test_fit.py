@@ -14,7 +14,7 @@ from test_sweep_scenes import BED
 from epdem import Scene, calibrate
 from epdem.errors import CaseError, EngineError, Stopped
 from epdem.studies import fit as study
-from epdem.studies.pages import fit as pages
+from epdem.studies.pages import sweep as pages
 
 pytestmark = pytest.mark.liggghts
 EPDEM = str(Path(sys.executable).parent / "epdem")

@@ -13,7 +13,7 @@ import tomlkit
 from ..base.files import atomic
 from ..case import impact as impact_case
 from ..case import scene as scene_case
-from ..case.files import Read, text_for_anywhere
+from ..case.toml import Read, text_for_anywhere
 from ..studies.sweep import keys
 from ..studies.sweep.points import plain, with_units
 from . import arguments

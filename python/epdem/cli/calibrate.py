@@ -66,7 +66,7 @@ def calibrate(
 
 def _of_scene(case: Path, target: list[str], free: list[str], options: dict[str, Any], as_json: bool) -> None:
     from ..studies.fit import fit
-    from ..studies.pages.fit import of_fit
+    from ..studies.pages.sweep import of_fit
     from ..studies.sweep.points import settings
     from . import sweep_view
 

@@ -15,9 +15,8 @@ import pandas as pd
 from .. import __version__
 from ..base.folders import claim, results_folder
 from ..base.stages import inputs_hash
-from ..case.files import Read
 from ..case.impact import Case, parse
-from ..case.toml import named, read_toml, text_of
+from ..case.toml import Read, named, read_toml, text_of
 from ..case.warnings import case_warnings
 from ..errors import CaseError
 from . import store

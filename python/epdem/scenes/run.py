@@ -13,9 +13,8 @@ from .. import __version__
 from ..base.folders import Results, claim, results_folder
 from ..base.settings import DEFAULT_ENGINE
 from ..base.stages import inputs_hash, library_hash
-from ..case.files import Read, names_in
 from ..case.scene import SceneCase, load
-from ..case.toml import named, text_of
+from ..case.toml import Read, named, names_in, text_of
 from ..case.toml import tables as toml_tables
 from ..case.warnings import case_warnings
 from ..errors import CaseError, EngineError

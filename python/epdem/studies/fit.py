@@ -18,8 +18,8 @@ import numpy as np
 
 from ..base.folders import results_folder
 from ..base.settings import DEFAULT_ENGINE
-from ..case.files import Read, text_for_anywhere
 from ..case.scene import is_scene
+from ..case.toml import Read, text_for_anywhere
 from ..case.units import to_si
 from ..errors import CaseError, EngineError
 from .sweep import folder as store

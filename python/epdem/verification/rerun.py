@@ -10,7 +10,7 @@ from pathlib import Path
 import pandas as pd
 
 from ..base.tables import attributes, opened
-from ..case.files import names_in, renamed
+from ..case.toml import names_in, renamed
 from ..engines import scene_engine
 from ..errors import CaseError
 from ..impacts import run as impacts

@@ -23,9 +23,9 @@ import tomlkit
 from ...base.files import atomic
 from ...base.folders import MARKER, results_folder
 from ...base.stages import inputs_hash
-from ...case.files import names_in
 from ...case.messages import shorten
 from ...case.scene import is_scene
+from ...case.toml import names_in
 from ...errors import CaseError
 from .keys import assign, keys_of
 from .points import Point

@@ -10,8 +10,8 @@ from pathlib import Path
 import pandas as pd
 
 from ...base.folders import claim
-from ...case.files import located, text_for_anywhere
 from ...case.scene import is_scene
+from ...case.toml import located, text_for_anywhere
 from ...engines import DEFAULT_ENGINE, engine, scene_engine
 from ...errors import CaseError
 from ...impacts.engine import require
