@@ -3,6 +3,7 @@
 
 import errno
 import io
+import json
 import os
 import shutil
 import signal
@@ -17,11 +18,9 @@ from typer.core import TyperGroup
 from .. import __version__
 from ..base import stopping
 from ..base.settings import DEFAULT_ENGINE
-from ..base.terminal import console, status
+from ..base.terminal import bar, console, status
 from ..errors import CaseError, EpdemError, Stopped
 from . import calibrate as cli_calibrate
-from . import cite as cli_cite
-from . import impacts as cli_impacts
 from . import predict as cli_predict
 from . import scenes as cli_scene
 from . import sweep as cli_sweep
@@ -116,9 +115,32 @@ def run(
         code = cli_scene.run_scene(case, engine=engines[0], formats=kinds, as_json=as_json, resume=resume, **options)
         raise typer.Exit(code)
     refuse(case, "it continues bulk scenes; a run of impacts takes finished stages from its store", resume=resume)
-    outcome = cli_impacts.run_impacts(case, engines=engines, laws=law or [], steps=steps, formats=kinds, **options)
-    cli_impacts.show_run(outcome, full, as_json)
-    raise typer.Exit(0 if outcome.passed else 1)
+    options |= {"steps": steps, "laws": law or []}
+    raise typer.Exit(_run_impacts(case, engines=engines, formats=kinds, full=full, as_json=as_json, **options))
+
+
+def _run_impacts(
+    case: Path, *, engines: list[str], formats: tuple[str, ...], full: bool, as_json: bool, **options: Any
+) -> int:
+    """Run a case with a progress bar; draw its figure, write its page, print its table. Exit code: 0, or 1."""
+    from ..engines import engine as find
+    from ..impacts import report
+    from ..impacts.run import run
+    from ..studies.pages.impacts import of_impacts
+
+    stages = len(set(engines)) * max(len(set(options["laws"])), 1) + 1  # and the figure
+    with bar() as progress:
+        task = progress.add_task("", total=stages)
+        options["progress"] = lambda text: progress.update(task, advance=1, description=text)
+        outcome = run(case, engines=[find(name) for name in engines], **options)
+        progress.update(task, advance=1, description="figure")
+        report.figure(outcome, formats)
+        of_impacts(outcome)
+    if as_json:
+        print(report.run_json(outcome))
+    else:
+        report.show(outcome, console(), full=full)
+    return 0 if outcome.passed else 1
 
 
 @app.command()
@@ -161,6 +183,27 @@ def deck(
 
 
 @app.command()
+def cite(
+    case: CasePath,
+    engine: Engines = None,
+    law: Laws = None,
+    bibtex: Annotated[bool, typer.Option("--bibtex", help="print entries of BibTeX")] = False,
+    as_json: AsJson = False,
+) -> None:
+    """Print what to cite for the law of a case and for the engines that run the case."""
+    from ..api import cite as cited
+
+    refuse(case, "--bibtex prints BibTeX", json=as_json and bibtex)
+    if cli_scene.is_scene(case):
+        refuse(case, "a scene has its own law", law=law)
+    found = cited(case, engines=engine or [DEFAULT_ENGINE], laws=law or [])
+    if bibtex:
+        print(found.bibtex(), end="")
+    else:
+        print(json.dumps(found) if as_json else "\n".join(f"{what}: {text}" for what, text in found.items()))
+
+
+@app.command()
 def doctor(as_json: AsJson = False) -> None:
     """List the engines and their versions, test which models LIGGGHTS has, and name what to install."""
     from ..engines.doctor import examine
@@ -175,7 +218,6 @@ def doctor(as_json: AsJson = False) -> None:
 
 for command in (
     cli_predict.predict,
-    cli_cite.cite,
     cli_scene.explain,
     cli_scene.tune,
     cli_scene.view,
