@@ -206,13 +206,12 @@ def cite(
 @app.command()
 def doctor(as_json: AsJson = False) -> None:
     """List the engines and their versions, test which models LIGGGHTS has, and name what to install."""
-    from ..engines.doctor import examine
-    from . import show
+    from ..engines.doctor import examine, show
 
     with status() as line:
         line("engines")
         findings = examine()
-    show.findings(findings, as_json, console())
+    show(findings, as_json, console())
     raise typer.Exit(0 if all(f.ok for f in findings if f.needed) else 3)
 
 

@@ -67,9 +67,9 @@ def _case(case: Path, law: list[str] | None, as_json: bool) -> None:
 
 def _show(experiments: "list[Experiment]", warnings: list[str], as_json: bool) -> None:
     from ..impacts.prediction import predict as predict_experiment
-    from . import show
+    from ..impacts.report import predictions
 
-    show.predictions([(x, predict_experiment(x)) for x in experiments], warnings, as_json, console())
+    predictions([(x, predict_experiment(x)) for x in experiments], warnings, as_json, console())
 
 
 def _time_step(case: Path, law: list[str] | None, error: float, as_json: bool) -> None:

@@ -1,8 +1,12 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """`epdem doctor`: which engines are installed, which models LIGGGHTS has, and what to install."""
 
+import json
 import shutil
-from dataclasses import dataclass
+from dataclasses import asdict, dataclass
+
+from rich.console import Console
+from rich.text import Text
 
 from ..base import paths
 from ..base.processes import ask
@@ -66,3 +70,15 @@ def examine() -> list[Finding]:
             Finding(f"engine {name}", reason is None, detail, advice, needed=Feature.DECK not in kind.features)
         )  # the embedded one
     return [*findings, _models(), _mpi()]
+
+
+def show(findings: list[Finding], as_json: bool, console: Console) -> None:
+    """Print the findings."""
+    if as_json:
+        print(json.dumps([asdict(f) for f in findings], indent=1))
+        return
+    for f in findings:
+        state, colour = ("ok", "green") if f.ok else ("missing", "red") if f.needed else ("absent", "yellow")
+        console.print(Text.assemble((state, colour), f" {f.part}: {f.detail}"), soft_wrap=True)
+        if f.advice:
+            console.print(f"   -> {f.advice}", soft_wrap=True)
