@@ -86,9 +86,12 @@ def sentences_of_calibration(c: Calibration) -> list[str]:
 
 def page(outcome: Outcome, command: str = "") -> Page:
     """The page of a run."""
-    parts: list[Part] = [*figures(outcome), table(outcome), *bodies(outcome), tolerances(outcome)]
-    results = outcome.results
-    parts += [common.case_lines(results.case_text), *decks(outcome)]
+    results, several = outcome.results, len(outcome.plans) > 1
+    parts: list[Part] = [*figures(outcome), table(outcome)]
+    for law, p in outcome.plans.items():
+        parts.append(Facts("Bodies and law" + f" {law}" * several, _facts(p.experiment)))
+    allowed = {name: f"{value:g}" for name, value in outcome.case.check.model_dump().items()}
+    parts += [Facts("Tolerances of the case", allowed), common.case_lines(results.case_text), *decks(outcome)]
     return common.page_of(
         outcome,
         sentences(outcome),
@@ -133,14 +136,6 @@ def table(outcome: Outcome) -> Rows:
     return Rows("Measured and predicted", rows[columns], units, note)
 
 
-def bodies(outcome: Outcome) -> list[Facts]:
-    """What meets, by law."""
-    return [
-        Facts(f"Bodies and law {law}" if len(outcome.plans) > 1 else "Bodies and law", _facts(p.experiment))
-        for law, p in outcome.plans.items()
-    ]
-
-
 def _facts(x: Experiment) -> dict[str, str]:
     facts = {"body": _body(x.body), "target": _body(x.target), "law": x.law.name}
     units = {p.name: p.unit for p in law_named(x.law.name).parameters if p.unit != "1"}
@@ -157,12 +152,6 @@ def _body(b: Body) -> str:
         return f"{shape}, rigid"
     strength = "" if b.yield_stress is None else f", Y = {b.yield_stress:.4g} Pa"
     return f"{shape}, {b.material}: E = {b.young_modulus:.4g} Pa, nu = {b.poisson_ratio:g}{strength}"
-
-
-def tolerances(outcome: Outcome) -> Facts:
-    """What the case allows."""
-    check = outcome.case.check.model_dump()
-    return Facts("Tolerances of the case", {name: f"{value:g}" for name, value in check.items()})
 
 
 def decks(outcome: Outcome) -> list[Lines]:
