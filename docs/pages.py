@@ -3,7 +3,7 @@
 
 import pandas as pd
 
-from epdem.base.terminal import cell
+from epdem.verification.tables import cell
 
 
 def markdown(frame: pd.DataFrame) -> str:

@@ -11,7 +11,6 @@ from pathlib import Path
 import pandas as pd
 from pages import markdown
 
-from epdem.base.terminal import cell
 from epdem.theory.backbones import ADHESIVE, LAWS
 from epdem.verification import stability
 from epdem.verification.stability.cases import extremes
@@ -19,6 +18,7 @@ from epdem.verification.stability.repeats import BOUNCE_SHARE, DRIFT, FORCE
 from epdem.verification.stability.roundoff import FORMULA
 from epdem.verification.stability.running import BROKEN, COARSE, CREATED, ERROR, FINE, FINEST, LEAST_ORDER, WRONG
 from epdem.verification.stability.suite import POSITION_COARSE, Outcome, summary
+from epdem.verification.tables import cell
 
 
 def limits(verdicts: pd.DataFrame) -> pd.DataFrame:
