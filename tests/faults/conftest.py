@@ -1,6 +1,8 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 import pytest
-from workshop import Runner, copy_of_project
+from planting import faults, with_switches
+from sub_models import add_models
+from workshop import Runner, build_plugin, copy_of_project
 
 
 @pytest.fixture(scope="module")
@@ -19,5 +21,17 @@ def tests_of_copy(copy):
 
 @pytest.fixture
 def spoilt(tmp_path_factory):
-    """A copy of the project for all faults of a compiled part."""
+    """A copy of the project for all faults of the library."""
     return copy_of_project(tmp_path_factory.mktemp("spoilt"))
+
+
+@pytest.fixture(scope="session")
+def plugin(shared):
+    """A copy of the project whose plugin has the new sub-models, and all faults of the plugin behind switches."""
+
+    def build(folder):
+        copy_of_project(folder)
+        add_models(folder)
+        build_plugin(folder, with_switches(folder, faults("plugin")))
+
+    return shared("plugin", build)

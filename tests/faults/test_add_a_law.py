@@ -3,6 +3,7 @@
 
 import re
 
+import pytest
 from workshop import LAWS, PYTHON, ROOT, build_library
 
 from epdem.base.declarations import declarations
@@ -176,6 +177,7 @@ def test_the_manual_says_what_this_test_does():
     assert len(section.strip().splitlines()) <= 16
 
 
+@pytest.mark.slow
 def test_a_new_law_passes_the_battery_and_lands_on_its_theory(copy, tests_of_copy):
     (copy / LAWS / "toy.hpp").write_text(HEADER)
     register = copy / LAWS / "laws.hpp"

@@ -6,44 +6,16 @@ and tested. Text that is not there any more fails the test. Nothing in the produ
 """
 
 import shutil
-import tomllib
-from dataclasses import dataclass
 from pathlib import Path
 
 import pytest
-from workshop import PYTHON, ROOT, Runner, build_library, build_plugin
-
-
-@dataclass(frozen=True)
-class Fault:
-    """In `file`, `old` becomes `new`; `test`, a pytest node below tests/, must then fail."""
-
-    name: str
-    file: str
-    old: str
-    new: str
-    test: str
-
-
-def faults(*names: str) -> list[Fault]:
-    """The faults of files in `planted`."""
-    found = []
-    for name in names:
-        tables = tomllib.loads((Path(__file__).parent / "planted" / f"{name}.toml").read_text())
-        found += [Fault(title, **table) for title, table in tables.items()]
-    return found
-
+from planting import Fault, faults, planted, with_switches
+from workshop import PYTHON, ROOT, Runner, build_library, program
 
 SWITCHED = ("library", "plugin")  # all faults in one build
 ROOMS = [path.stem for path in sorted((Path(__file__).parent / "planted").glob("*.toml")) if path.stem not in SWITCHED]
 FAULTS, OF_LIBRARY, OF_PLUGIN = faults(*ROOMS), faults("library"), faults("plugin")
 HALVES = [sorted({fault.test for fault in FAULTS})[half::2] for half in (0, 1)]
-
-
-def planted(fault: Fault, good: str, new: str | None = None) -> str:
-    """The text of a file with the fault in it."""
-    assert fault.old in good, f"{fault.file} does not contain {fault.old!r} any more; update the fault {fault.name!r}"
-    return good.replace(fault.old, fault.new if new is None else new)
 
 
 def needs_an_engine(test: str) -> bool:
@@ -82,29 +54,6 @@ def test_every_named_test_is_green_without_a_fault(tests, tests_of_copy):
     assert done.returncode == 0, done.stdout[-3000:]
 
 
-# One build of the library or the plugin has all its faults, each of which an environment variable switches on.
-SWITCH = """#pragma once
-#include <cstdlib>
-template <int n>
-inline bool planted() {
-  static const bool on = [] {
-    const char* chosen = std::getenv("PLANTED");
-    return chosen && std::atoi(chosen) == n;
-  }();
-  return on;
-}
-"""
-
-
-def with_switches(folder: Path, found: list[Fault]) -> str:
-    """Plant all faults, whose `old` and `new` are expressions; the compiler's flags."""
-    for n, fault in enumerate(found, 1):
-        path = folder / fault.file
-        path.write_text(planted(fault, path.read_text(), f"(planted<{n}>() ? ({fault.new}) : ({fault.old}))"))
-    (folder / "planted.hpp").write_text(SWITCH)
-    return f"-O0 -include {folder}/planted.hpp"
-
-
 def all_turn_red(tests: Runner, found: list[Fault]) -> None:
     """Every named test is green while no fault is switched on, and red with its own."""
     done = tests.run(*sorted({f"tests/{fault.test}" for fault in found}))
@@ -117,12 +66,13 @@ def all_turn_red(tests: Runner, found: list[Fault]) -> None:
     assert reds == dict.fromkeys(reds, 1), "a test did not fail"
 
 
+@pytest.mark.slow
 def test_planted_faults_of_the_library_turn_their_tests_red(spoilt):
     build_library(spoilt, with_switches(spoilt, OF_LIBRARY))
     all_turn_red(Runner(spoilt), OF_LIBRARY)
 
 
 @pytest.mark.liggghts
-def test_planted_faults_of_the_plugin_turn_their_tests_red(spoilt):
-    launcher = build_plugin(spoilt, with_switches(spoilt, OF_PLUGIN))
-    all_turn_red(Runner(spoilt, {"EPDEM_LIGGGHTS": str(launcher)}), OF_PLUGIN)
+@pytest.mark.slow
+def test_planted_faults_of_the_plugin_turn_their_tests_red(plugin):
+    all_turn_red(Runner(plugin, {"EPDEM_LIGGGHTS": str(program(plugin))}), OF_PLUGIN)

@@ -29,9 +29,14 @@ def build_library(folder: Path, flags: str = "-O0") -> None:
     shutil.copy(_build(folder, "epdem_capi", flags).with_name("libepdem.so"), native)
 
 
-def build_plugin(folder: Path, flags: str) -> Path:
-    """Compile the LIGGGHTS parts of a copy with the compiler's `flags`; the launcher."""
-    return _build(folder, "epdem-liggghts", flags)
+def build_plugin(folder: Path, flags: str) -> None:
+    """Compile the LIGGGHTS parts of a copy with the compiler's `flags`."""
+    _build(folder, "epdem-liggghts", flags)
+
+
+def program(folder: Path) -> Path:
+    """The LIGGGHTS of a copy."""
+    return next((folder / "build").rglob("epdem-liggghts/**/epdem-liggghts"))
 
 
 PRODUCTS = {"epdem_capi": "libepdem.so", "epdem-liggghts": "epdem-liggghts"}
@@ -50,10 +55,16 @@ def _build(folder: Path, target: str, flags: str) -> Path:
 
 # Read when Python starts: the installed package, which is found by a hook of its build tool, hides behind the copy.
 SITE = "import sys\nsys.meta_path[:] = [f for f in sys.meta_path if 'Scikit' not in type(f).__name__]\n"
-# Imports what is not ours once; every line of input is a run of pytest in a child that has all this already.
+# Imports what is not ours once; every line of input is a run of pytest in a child that has all this already. A red test
+# need not look for its simplest example.
 SERVER = """
-import json, os, signal, sys
+import gc, json, os, signal, sys
 import h5py, hypothesis, jinja2, numpy, pandas, pint, pydantic, pytest, rich, scipy.optimize, tomlkit, typer
+from hypothesis import Phase, settings
+settings.register_profile("red", derandomize=True, deadline=None, suppress_health_check=list(hypothesis.HealthCheck),
+                          phases=[Phase.explicit, Phase.generate], report_multiple_bugs=False)
+gc.collect()
+gc.freeze()
 for line in sys.stdin:
     words, env, out = json.loads(line)
     if not (child := os.fork()):
@@ -103,7 +114,7 @@ class Runner:
     def run(self, *words: str, only: str = "", env: dict[str, str] | None = None) -> Done:
         """Run pytest with `words`, up to a failure, and with `env` in the environment."""
         out = self.folder / "out.pytest"
-        words = ("-q", "-x", "-p", "no:cacheprovider", "-p", "no:xdist", *words, "-k", only)
+        words = ("-q", "-x", "-p", "no:cacheprovider", "-p", "no:xdist", "--hypothesis-profile=red", *words, "-k", only)
         print(json.dumps([words, env or {}, str(out)]), file=self.server.stdin, flush=True)
         code = int(self.server.stdout.readline())
         return Done(code, out.read_text(errors="replace"))
