@@ -8,6 +8,7 @@ touch. Each way of telling it (swapped ids, sorted atoms, two ranks, a periodic 
 
 import re
 from dataclasses import replace
+from functools import cache, cached_property, partial
 
 import numpy as np
 from plugin_decks import DUMP, Bodies, contact, good, head, materials, plate
@@ -82,11 +83,14 @@ def deck(
 
 
 class Suite:
-    """All ways to tell the scene with one model, each a run; `deviations()` compares them with the plain one."""
+    """All ways to tell the scene with one model, each a run; `rows` compare them with the plain one."""
 
     def __init__(self, model, folder, tangential="history"):
         self.model, self.folder, self.bodies, self.tangential = model, folder, scene(), tangential
-        self.plain = self.outcome("plain", self.deck())
+
+    @cached_property
+    def plain(self):
+        return self.outcome("plain", self.deck())
 
     def deck(self, **options):
         return deck(self.model, tangential=self.tangential, **options)
@@ -214,17 +218,29 @@ class Suite:
         )
         return self.outcome(name, go_on, ranks=ranks)
 
-    def deviations(self):
-        """name -> largest deviation of (pairs, wall impacts), relative to the largest velocity or spin."""
-        scale = np.repeat([np.abs(self.plain[:, :3]).max(), np.abs(self.plain[:, 3:]).max()], 3)
-        rows = {"momentum of a pair": (self.momentum(self.plain), None)}
-        for name, run_variant in self.variants().items():
-            outcome = run_variant()
-            off = np.abs(outcome - self.plain) / scale
-            rows[name] = (off[: 2 * N].max(), off[2 * N :].max())
+    @cached_property
+    def rows(self):
+        """name -> function that computes once the largest deviation of (pairs, wall impacts).
+
+        The deviation is relative to the largest velocity or spin; for other rows the first number is described there.
+        """
+        runs = {name: cache(run) for name, run in self.variants().items()}
+        rows = {"momentum of a pair": lambda: (self.momentum(self.plain), None)}
+        for name, run in runs.items():
+            rows[name] = partial(self.deviation, run)
             if name == "migration between 2 ranks":
-                rows["momentum of a pair on 2 ranks"] = (self.momentum(outcome), None)
-        rows["rigid rotation, one revolution"] = (self.revolution(), None)
-        rows["second impact in one list"] = (self.second_impact(fast=False), None)
-        rows["second impact, fast parting"] = (self.second_impact(fast=True), None)
-        return rows
+                rows["momentum of a pair on 2 ranks"] = lambda run=run: (self.momentum(run()), None)
+        rows["rigid rotation, one revolution"] = lambda: (self.revolution(), None)
+        rows["second impact in one list"] = lambda: (self.second_impact(fast=False), None)
+        rows["second impact, fast parting"] = lambda: (self.second_impact(fast=True), None)
+        return {name: cache(row) for name, row in rows.items()}
+
+    def deviation(self, run):
+        """Largest deviation of (pairs, wall impacts) of a run from the plain one."""
+        scale = np.repeat([np.abs(self.plain[:, :3]).max(), np.abs(self.plain[:, 3:]).max()], 3)
+        off = np.abs(run() - self.plain) / scale
+        return off[: 2 * N].max(), off[2 * N :].max()
+
+    def deviations(self):
+        """name -> numbers of all rows."""
+        return {name: row() for name, row in self.rows.items()}
