@@ -53,13 +53,33 @@ def shared(tmp_path_factory):
 
 
 def pytest_collection_modifyitems(items):
-    """An engine test is skipped, with its reason, only where the engine is not installed; never in CI. Tests that wait
-    come first, so that a process waits while the others compute."""
-    items.sort(key=lambda item: item.get_closest_marker("waits") is None)
+    """An engine test is skipped, with its reason, only where the engine is not installed; never in CI."""
+    items[:] = in_shares(items, int(os.environ.get("PYTEST_XDIST_WORKER_COUNT", 1)))
     for item in items:
         for name, command in ENGINES.items():
             if item.get_closest_marker(name) and not shutil.which(name) and not os.environ.get("CI"):
                 item.add_marker(pytest.mark.skip(reason=f"{name} is not installed ({command})"))
+
+
+def in_shares(items, processes):
+    """The tests in an order of which each process takes an equal part.
+
+    Tests that wait lead the part of the first process, so that it waits while the others compute. Slow tests lead the
+    parts of the others, lest one of them be the last.
+    """
+    early, rest = {}, []
+    for item in items:
+        mark = next((mark for mark in ("waits", "slow") if item.get_closest_marker(mark)), None)
+        (early.setdefault((mark != "waits", item.path), []) if mark else rest).append(item)
+    shares = [[] for _ in range(processes)]
+    for k, (computes, file) in enumerate(sorted(early)):  # by files: the tests of one share what it prepares
+        shares[-1 - k % max(1, processes - 1) if computes else 0] += early[computes, file]
+    size = -(-len(items) // processes)
+    for share in shares:
+        n = max(0, size - len(share))
+        share += rest[:n]
+        del rest[:n]
+    return [item for share in shares for item in share]
 
 
 @pytest.fixture(autouse=True)

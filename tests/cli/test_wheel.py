@@ -15,6 +15,7 @@ import pytest
 from epdem.engines.liggghts import header
 
 ROOT = Path(__file__).resolve().parents[2]
+pytestmark = pytest.mark.slow
 BLOCKED = """
 import importlib, pkgutil, sys
 class Blocked:

@@ -130,6 +130,7 @@ def base_of_inl(folder):
     return base
 
 
+@pytest.mark.slow
 def test_with_superquadrics_and_the_base_of_inl_the_files_compile_without_a_warning(sources):
     """The structure of a contact then has 392 bytes; a user's tree has them on by default."""
     base = base_of_inl(sources)
@@ -145,6 +146,7 @@ def test_an_older_standard_is_refused_with_a_sentence(sources):
     assert done.returncode == 1 and "epdem needs C++17: add -std=c++17" in done.stderr
 
 
+@pytest.mark.slow
 def test_vectors_are_as_wide_as_the_names_of_the_files_say(built):
     """GCC 12 takes the pragma that names the instructions but defines no macro of theirs."""
     text = subprocess.run(["objdump", "-d", "--no-show-raw-insn", built], capture_output=True, text=True, check=True)

@@ -323,6 +323,7 @@ def test_a_build_without_source_says_what_to_do(source, sentence, tmp_path):
     assert done.returncode != 0 and sentence in " ".join(done.stderr.split())
 
 
+@pytest.mark.slow  # builds the module
 @pytest.mark.skipif("EPDEM_YADE_MODULE" in os.environ, reason="EPDEM_YADE_MODULE names another build")
 def test_the_three_commands_of_an_exported_project_give_yade_the_module(tmp_path):
     """The first two have built the module of all tests here; the third one lets a script find it."""
