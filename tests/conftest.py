@@ -8,6 +8,8 @@ import shutil
 import pytest
 from hypothesis import HealthCheck, settings
 
+import warm_yade
+
 settings.register_profile("epdem", derandomize=True, deadline=None, suppress_health_check=list(HealthCheck))
 settings.load_profile("epdem")
 
@@ -50,6 +52,20 @@ def shared(tmp_path_factory):
         return folder
 
     return once
+
+
+@pytest.fixture(scope="session")
+def started_yade(tmp_path_factory):
+    with warm_yade.warm_yade(tmp_path_factory.mktemp("yade")) as folder:
+        yield folder
+
+
+@pytest.fixture(autouse=True)
+def one_yade(request, monkeypatch):
+    """Scripts of YADE run in children of one YADE, but in tests with the mark `yade("alone")`."""
+    mark = request.node.get_closest_marker("yade")
+    if mark and "alone" not in mark.args:
+        monkeypatch.setenv("PATH", f"{request.getfixturevalue('started_yade')}:{os.environ['PATH']}")
 
 
 def pytest_collection_modifyitems(items):

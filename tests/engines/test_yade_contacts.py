@@ -232,7 +232,7 @@ answer(later=later)
 """
 
 
-@pytest.mark.yade
+@pytest.mark.yade("alone")
 @pytest.mark.parametrize("law", LAWS)
 def test_a_saved_scene_goes_on_to_the_last_bit_here_and_in_another_process(law, tmp_path):
     """Saved while contacts load and unload; the other process knows nothing but the file. (Where a body has several

@@ -93,7 +93,7 @@ def test_yade_takes_the_steps_of_the_embedded_engine(law, kind, tmp_path):
     assert np.abs(measure(p, yade).e_n / np.repeat(prediction.e_n, 8) - 1).max() <= 1e-3
 
 
-@pytest.mark.yade
+@pytest.mark.yade("alone")
 def test_the_deck_is_plain_travels_with_its_law_and_runs_by_hand(tmp_path):
     p, _ = prepared("sphere-sphere", "cavity", steps=30, speeds=["3 m/s"])
     files = engine("yade").write(p, tmp_path / "a")
@@ -184,7 +184,7 @@ def test_a_run_that_hangs_is_stopped_with_all_its_children(fake, tmp_path, monke
     assert until(lambda: not alive(child), 20.0)  # the system may need a moment to take a killed process away
 
 
-@pytest.mark.yade
+@pytest.mark.yade("alone")
 def test_a_deck_that_raises_in_the_middle_leaves_no_result(tmp_path):
     p, _ = prepared(steps=20, speeds=["1 m/s"])
     tool = engine("yade")
@@ -197,7 +197,7 @@ def test_a_deck_that_raises_in_the_middle_leaves_no_result(tmp_path):
     assert not (tmp_path / "path.bin").exists()
 
 
-@pytest.mark.yade
+@pytest.mark.yade("alone")
 def test_an_error_inside_a_step_is_an_error_of_the_run(tmp_path):
     """YADE runs `record` from a PyRunner: what it raises must not be swallowed."""
     p, _ = prepared(steps=20, speeds=["1 m/s"])
@@ -229,7 +229,7 @@ def test_yade_missing_is_said_with_the_install_command_before_anything_starts(tm
     assert "apt-get install yade" in done.stdout + done.stderr
 
 
-@pytest.mark.yade
+@pytest.mark.yade("alone")
 def test_a_failed_run_exits_with_3_and_keeps_what_other_engines_found(tmp_path, fake):
     fake("[ \"$1\" = --version ] && exec yade --version; echo 'RuntimeError: planted'; exit 1")
     words = [sys.executable, "-m", "epdem.cli", "run", str(CASES / "steel_wall.toml"), "-e", "embedded", "-e", "yade"]

@@ -238,6 +238,7 @@ for _ in range(150):
 """
 
 
+@pytest.mark.yade("alone")
 def test_one_contact_continues_to_the_bit_in_another_process(tmp_path):
     more = """
 import pathlib

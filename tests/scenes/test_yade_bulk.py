@@ -147,7 +147,7 @@ def test_walls_rougher_than_the_spheres_make_them_spin_in_yade(tmp_path):
     assert np.abs(last[["omega_x", "omega_y"]]).to_numpy().max() > 1.0
 
 
-@pytest.mark.yade
+@pytest.mark.yade("alone")
 def test_the_folder_of_a_yade_scene_runs_by_hand_and_repeats_itself(tmp_path):
     path = small("settle_glass", tmp_path, FALL | {"error": "1e-2", "duration": '"0.02 s"'})
     assert (
