@@ -262,7 +262,7 @@ constexpr Kernels all() noexcept {
 #define EPDEM_FILL(Class) fill<Class<Lanes>>(kernels, Frictions{});
   EPDEM_LAWS(EPDEM_FILL)
 #undef EPDEM_FILL
-  kernels.spheres = {half_step, near_sphere, near_triangle};
+  kernels.spheres = {half_step, any_moved, near_sphere, near_triangle<true>, near_triangle<false>};
   return kernels;
 }
 

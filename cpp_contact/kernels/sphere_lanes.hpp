@@ -37,6 +37,24 @@ void half_step(const HalfStep& s) {
   }
 }
 
+bool any_moved(const double* now, const double* before, int n, double square) {
+  Mask moved{};
+  int k = 0;
+  for (; k + lane_count < n; k += lane_count) {  // a row of four numbers begins at a position
+    const Columns way = columns([&](int l) __attribute__((always_inline)) {
+      return load<Row>(now + 3 * (k + l)) - load<Row>(before + 3 * (k + l));
+    });
+    moved |= way.a * way.a + way.b * way.b + way.c * way.c > square;
+  }
+  bool found = any(moved);
+  for (; k < n; ++k) {
+    const double *const x = now + 3 * k, *const y = before + 3 * k;
+    const double dx = x[0] - y[0], dy = x[1] - y[1], dz = x[2] - y[2];
+    found |= dx * dx + dy * dy + dz * dz > square;
+  }
+  return found;
+}
+
 /// The next of n candidates; the lanes behind the last repeat it and are not valid.
 struct Candidates {
   int repeated[lane_count];
@@ -85,6 +103,7 @@ int near_sphere(const NearTest& t, int of, const int* candidates, int n, int* fo
   return above;
 }
 
+template <bool as_listed>
 int near_triangle(const NearTest& t, const TrianglePlanes& planes, const int* candidates, int n, int* found) {
   int count = 0;
   for (int k = 0; k < n; k += lane_count) {
@@ -94,11 +113,12 @@ int near_triangle(const NearTest& t, const TrianglePlanes& planes, const int* ca
       const double *const p = planes.point[plane], *const normal = planes.normal[plane];
       return normal[0] * (c.at.a - p[0]) + normal[1] * (c.at.b - p[1]) + normal[2] * (c.at.c - p[2]);
     };
-    Mask near = fabs(height(0)) <= reach;
+    const Lanes above = height(0), room = reach * reach - (as_listed ? Lanes{} : above * above);
+    Mask near = fabs(above) <= reach;
     if (!any(near)) continue;
     for (int edge = 1; edge < 4; ++edge) {
       const Lanes beyond = height(edge);
-      near &= (beyond <= 0.0) | (beyond * beyond <= reach * reach);
+      near &= (beyond <= (as_listed ? 0.0 : planes.precision)) | (beyond * beyond <= room);
     }
     count += c.keep(near, found + count);
   }

@@ -21,16 +21,22 @@ struct NearTest {
 };
 
 /// The plane of a triangle and those through its edges, normal to it and outward: a point and the unit normal of each.
+/// A point beyond an edge by at most `precision` can count as inside.
 struct TrianglePlanes {
   const double *point[4], *normal[4];
+  double precision;
 };
 
 struct SphereKernels {
   /// v += dt_force F / (mass_factor m) and omega += dt_torque T / (R^2 m), then x += dt v.
   void (*half_step)(const HalfStep&);
+  /// Whether one of n positions is farther than the root of `square` from where it was.
+  bool (*any_moved)(const double* now, const double* before, int n, double square);
   /// Writes those of n candidates that are near, in their order, and returns their number: candidates above sphere
-  /// `of`, or those near a triangle as its planes tell. `found` may be the candidates and has room for one more.
+  /// `of`; those that LIGGGHTS lists at a triangle, each plane tested alone; those near a triangle by their distance,
+  /// and few more at its corners. `found` may be the candidates and has room for one more.
   int (*near_sphere)(const NearTest&, int of, const int* candidates, int n, int* found);
+  int (*listed_at_triangle)(const NearTest&, const TrianglePlanes&, const int* candidates, int n, int* found);
   int (*near_triangle)(const NearTest&, const TrianglePlanes&, const int* candidates, int n, int* found);
 };
 

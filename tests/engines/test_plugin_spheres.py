@@ -5,69 +5,107 @@ import re
 
 import numpy as np
 import pytest
+from hypothesis import Phase, given, settings
+from hypothesis import strategies as st
 from plugin_decks import Bodies, contact, good, head, materials, per_pair
 from test_plugin_mesh import COLUMNS, HALF, ROOM, box
 
 pytestmark = pytest.mark.liggghts
 
-ALL = "fix move all nve/sphere\nfix g all gravity 9810 vector 0.3 0.1 -1\n"
-SCENES = {
-    "all spheres": (ALL, 1),
-    "two ranks, a moving mesh": (ALL + "fix turn all move/mesh mesh plate linear 1 0 2\n", 2),
-    "some spheres": (
-        "group some id <= 60\ngroup others subtract all some\nfix still others freeze\n"
-        "fix move some nve/sphere\nfix g some gravity 9810 vector 0 0 -1\n",
-        1,
-    ),
-    "gravity that varies": (
-        "variable g equal 9810*(1+step/1000)\nfix g all gravity v_g vector 0 0 -1\nfix move all nve/sphere\n",
-        1,
-    ),
-    "pairs left out": (ALL + "neigh_modify exclude type 1 2\n", 1),
-    "lists of contacts at a distance": (ALL + "neigh_modify contact_distance_factor 1.1\n", 1),
-    "shrink-wrapped, all on one side": (ALL, 1),
+PITCH, SIDE = 3.9e-3, 7  # of the grid on which spheres begin [m]; their number along an edge
+PERIOD = ((-SIDE / 2 * PITCH, SIDE / 2 * PITCH),) * 3
+FEATURES = {
+    "boundary": ("f f f", "s s s", "p p p", "p f f"),
+    "dimension": (3, 2),
+    "moving": ("all", "some"),
+    "gravity": ("constant", "varies"),
+    "lists": ("", "exclude type 1 2", "contact_distance_factor 1.1", "include some"),
+    "then": ("", "neighbor 9e-4 bin", "neighbor 2e-4 bin", "delete_atoms group few", "set group few diameter 3.5e-3"),
+    "mesh": ("at rest", "moves"),
 }
+PLAIN = {name: options[0] for name, options in FEATURES.items()} | {"ranks": 1}
+SCENES = [{}, {"mesh": "moves", "ranks": 2}, *({k: v} for k, options in FEATURES.items() for v in options[1:])]
 
 
-def bodies():
-    """343 spheres of three types in a corner of the box, in contact with each other and with its walls."""
+def bodies(scene):
+    """Spheres of three types in contact with each other: in a corner of the box of triangles, or, where the room is
+    periodic, all around the box, which is smaller."""
     rng = np.random.default_rng(3)
-    grid = np.stack(np.meshgrid(*[np.arange(7)] * 3, indexing="ij"), -1).reshape(-1, 3)
-    x = 1.95e-3 - HALF + 3.9e-3 * grid + rng.uniform(-1e-4, 1e-4, grid.shape)
+    flat, periodic = scene["dimension"] == 2, scene["boundary"].startswith("p")
+    sides = [range(SIDE), range(SIDE), [SIDE // 2] if flat else range(SIDE)]
+    grid = np.stack(np.meshgrid(*sides, indexing="ij"), -1).reshape(-1, 3)
+    x = (grid - SIDE // 2) * PITCH if periodic else 1.95e-3 - HALF + PITCH * grid
+    x = x + rng.uniform(-1e-4, 1e-4, x.shape)
     v, spin = rng.uniform(-10, 10, x.shape), rng.uniform(-500, 500, x.shape)
-    return Bodies(rng.integers(1, 4, len(x)), rng.uniform(1.6e-3, 2.0e-3, len(x)), x, v, spin)
+    if flat:
+        x[:, 2] = v[:, 2] = spin[:, 0] = spin[:, 1] = 0.0
+    found = Bodies(rng.integers(1, 4, len(x)), rng.uniform(1.6e-3, 2.0e-3, len(x)), x, v, spin)
+    far = np.abs(x).max(axis=1) > 0.9 * PITCH
+    return Bodies(*(values[far] for values in (found.type, found.radius, x, v, spin))) if periodic else found
 
 
-def deck(words, ranks, boundary):
+def deck(scene):
+    f = PLAIN | scene
+    flat = f["dimension"] == 2
+    plate = contact("ep/thornton", wall="mesh", tangential="history")
+    if f["boundary"].startswith("p"):
+        plate = plate.replace("plate.stl type 2", "plate.stl type 2 scale 0.07")
+    words = {
+        "all": "fix move all nve/sphere\n",
+        "some": "group others subtract all some\nfix still others freeze\nfix move some nve/sphere\n",
+        "constant": "fix g all gravity 9810 vector 0.3 0.1 -1\n",
+        "varies": "variable g equal 9810*(1+step/1000)\nfix g all gravity v_g vector 0.3 0.1 -1\n",
+        "at rest": "",
+        "moves": "fix turn all move/mesh mesh plate linear 1 0 2\n",
+    }
     return (
-        head(boundary=boundary, ranks=(ranks, 1, 1))
-        + "read_data box.data\nneighbor 5e-4 bin\n"
+        ("dimension 2\n" if flat else "")
+        + head(boundary=f["boundary"][:-1] + ("p" if flat else f["boundary"][-1]), ranks=(f["ranks"], 1, 1))
+        + "read_data box.data\nneighbor 5e-4 bin\ngroup some id <= 60\ngroup few id 3:30\n"
+        + ("atom_modify first some\n" if "include" in f["lists"] else "")
         + materials("ep/any")
         + per_pair("coefficientRestitution", 0.7)
-        + contact("ep/thornton", wall="mesh", tangential="history")
+        + plate
         + "timestep 2e-7\n"
-        + words
-        + "thermo_style custom step atoms ke f_g\nthermo 50\nthermo_modify lost error norm no format float %.17g\n"
-        + f"dump d all custom 50 out.bin {COLUMNS}\nrun 1500\n"
+        + "".join(words[f[name]] for name in ("moving", "gravity", "mesh"))
+        + ("fix flat all enforce2d\n" if flat else "")
+        + (f"neigh_modify {f['lists']}\n" if f["lists"] else "")
+        + "thermo_style custom step atoms ke f_g\nthermo 50\nthermo_modify lost ignore norm no format float %.17g\n"
+        + f"dump d all custom 50 out.bin {COLUMNS}\nrun 500\n{f['then']}\nrun 500\n"
     )
 
 
-def outcome(folder, text, ranks, **env):
+def outcome(folder, text, scene, **env):
     """(frames, rows of thermo with the potential energy, lists made and pairs in them)."""
-    done = good(folder, text, ranks=ranks, files={"box.data": bodies().data(ROOM), "plate.stl": box()}, env=env)
-    rows = re.findall(r"^ *\d+ +343 +\S+ +\S+ *$", done.text, re.MULTILINE)
+    f = PLAIN | scene
+    room = [PERIOD[k] if side == "p" else ROOM[k] for k, side in enumerate(f["boundary"].split())]
+    files = {"box.data": bodies(f).data(room), "plate.stl": box()}
+    done = good(folder, text, ranks=f["ranks"], files=files, env=env)
+    rows = re.findall(r"^ *\d+ +\d+ +\S+ +\S+ *$", done.text, re.MULTILINE)
     lists = re.findall(r"Total # of neighbors = \d+|Neighbor list builds = \d+", done.text)
     return done.frames()[1], rows, lists
 
 
-@pytest.mark.parametrize("scene", SCENES)
+def compare(folder, scene, *instructions):
+    """Runs with LIGGGHTS's own loops and with ours, for each instruction set; the former's frames, rows and lists."""
+    text = deck(scene)
+    theirs, rows, lists = outcome(folder / "generic", text, scene, EPDEM_LOOP="generic")
+    for simd in instructions:
+        ours, our_rows, our_lists = outcome(folder / f"ours{simd}", text, scene, EPDEM_SIMD=simd)
+        assert our_rows == rows and our_lists == lists
+        assert len(ours) == len(theirs) and all(map(np.array_equal, ours, theirs))
+    return theirs, rows, lists
+
+
+@pytest.mark.parametrize("scene", SCENES, ids=lambda scene: ", ".join(map(str, scene.values())) or "plain")
 def test_lists_and_motion_of_both_loops_give_the_same_bits(tmp_path, scene):
-    words, ranks = SCENES[scene]
-    text = deck(words, ranks, "s s s" if scene.startswith("shrink") else "f f f")
-    theirs, rows, lists = outcome(tmp_path / "generic", text, ranks, EPDEM_LOOP="generic")
-    assert len(theirs) == len(rows) == 31 and len(set(rows)) == 31
-    assert int(lists[-1].rpartition(" ")[2]) > 5 and int(lists[0].rpartition(" ")[2]) > 300
-    assert np.abs(theirs[-1][:, 7:10]).max() > 0
-    for simd in ("", "sse2"):
-        ours, our_rows, our_lists = outcome(tmp_path / f"ours{simd}", text, ranks, EPDEM_SIMD=simd)
-        assert np.array_equal(ours, theirs) and our_rows == rows and our_lists == lists
+    frames, rows, lists = compare(tmp_path, scene, "", *([] if scene else ["sse2"]))
+    assert len(frames) == 21 and len(rows) == 22 and len(set(rows)) >= 21
+    assert int(lists[-1].rpartition(" ")[2]) > 1 and int(lists[0].rpartition(" ")[2]) > 20
+    assert np.abs(frames[-1][:, 7:10]).max() > 0
+
+
+@settings(max_examples=10, phases=[Phase.explicit, Phase.generate])
+@given(scene=st.fixed_dictionaries({name: st.sampled_from(options) for name, options in FEATURES.items()}))
+def test_any_features_together_give_the_same_bits(tmp_path_factory, scene):
+    compare(tmp_path_factory.mktemp("scene"), scene, "")

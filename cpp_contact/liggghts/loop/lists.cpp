@@ -34,16 +34,16 @@ void Bins::fill(const int* head, const int* next, int count, int spheres) {
   bin_of.resize(spheres);
   int n = 0;
   static constexpr int empty[8] = {-1, -1, -1, -1, -1, -1, -1, -1};
-  for (int b = 0; b < count; ++b) {
-    while (b + 8 <= count && std::memcmp(head + b, empty, sizeof empty) == 0) {  // most bins are empty
-      std::fill_n(start.data() + b, 8, n);
-      b += 8;
-    }
-    if (b == count) break;
-    start[b] = n;
-    for (int i = head[b]; i >= 0; i = next[i]) {
-      bin_of[i] = b;
-      members[n++] = i;
+  for (int b = 0; b < count;) {
+    const int first = b;
+    while (b + 8 <= count && std::memcmp(head + b, empty, sizeof empty) == 0) b += 8;  // most bins are empty
+    std::fill(start.data() + first, start.data() + b, n);
+    for (const int end = std::min(b + 8, count); b < end; ++b) {
+      start[b] = n;
+      for (int i = head[b]; i >= 0; i = next[i]) {
+        bin_of[i] = b;
+        members[n++] = i;
+      }
     }
   }
   start[count] = n;
@@ -79,6 +79,7 @@ struct Candidates {
 
   void add(int first, int last) {
     const int begin = start[first], count = start[last + 1] - begin;
+    if (count == 0) return;
     for (int k = 0; k < count; k += 8)  // nearly always one turn
       std::memcpy(spheres + n + k, members + begin + k, 8 * sizeof(int));
     n += count;
@@ -93,6 +94,8 @@ struct Candidates {
 };
 
 }  // namespace
+
+long mesh_searches = 0;
 
 NearTest near_test(const LAMMPS_NS::Atom& atom, double factor, double skin) {
   static std::vector<double> spheres;
@@ -118,6 +121,18 @@ namespace loop = epdem::liggghts::loop;
   original(this);
   if (!loop::generic_loop() && epdem::liggghts::library_matches(lmp))
     loop::bins.fill(binhead, bins, mbins, atom->nlocal + atom->nghost);
+}
+
+[[gnu::visibility("default")]] int Neighbor::check_distance() {
+  static const auto original =
+      reinterpret_cast<int (*)(Neighbor*)>(dlsym(RTLD_NEXT, "_ZN9LAMMPS_NS8Neighbor14check_distanceEv"));
+  if (loop::searches_itself(lmp) || boxcheck || atom->radvary_flag) return original(this);
+  const int n = includegroup ? atom->nfirst : atom->nlocal;
+  const int here = loop::sphere_kernels(lmp).any_moved(atom->x[0], xhold[0], n, triggersq);
+  int anywhere = here;
+  MPI_Allreduce(&here, &anywhere, 1, MPI_INT, MPI_MAX, world);  // as the other ranks do, by whichever function
+  if (anywhere && ago == std::max(every, delay)) ++ndanger;
+  return anywhere;
 }
 
 [[gnu::visibility("default")]] void Neighbor::granular_bin_no_newton(NeighList* list) {
@@ -179,12 +194,13 @@ namespace loop = epdem::liggghts::loop;
 
 [[gnu::visibility("default")]] void FixNeighlistMesh::handleTriangle(int triangle) {
   static const auto original = loop::next<FixNeighlistMesh*, int>("_ZN9LAMMPS_NS16FixNeighlistMesh14handleTriangleEi");
+  if (triangle == 0) ++loop::mesh_searches;
   if (loop::searches_itself(lmp) || atom->ellipsoid) return original(this, triangle);
   loop::Candidates found;
   // LIGGGHTS does not clip a triangle's box in a 2-D simulation, and keeps boxes while the grid gets coarser
-  const int bins = static_cast<int>(loop::bins.start.size()) - 1;
+  const auto bins = static_cast<unsigned>(loop::bins.start.size() - 1);
   const auto add = [&](int bin) {
-    if (bin >= 0 && bin < bins) found.add(bin, bin);
+    if (static_cast<unsigned>(bin) < bins) found.add(bin, bin);
   };
   if (changingMesh || changingDomain) {
     int low[3], high[3];
@@ -201,7 +217,7 @@ namespace loop = epdem::liggghts::loop;
   static loop::NearTest test;  // of all triangles
   if (triangle == 0) test = loop::near_test(*atom, neighbor->contactDistanceFactor, skin);
   const loop::TrianglePlanes planes = loop::Triangles::planes(*mesh_, triangle);
-  const int n = loop::sphere_kernels(lmp).near_triangle(test, planes, found.spheres, found.n, found.spheres);
+  const int n = loop::sphere_kernels(lmp).listed_at_triangle(test, planes, found.spheres, found.n, found.spheres);
   std::vector<int>& contacts = triangles[triangle].contacts;
   contacts.clear();
   for (int k = 0; k < n; ++k) {

@@ -2,10 +2,12 @@
 // Around LIGGGHTS's loops over the walls of our models: contacts that they found are computed by ours (wall.hpp).
 //
 // On meshes LIGGGHTS evaluates each sphere near a triangle, and resets the marks of all contacts that the neighbour
-// lists allow, in every step. Here its loop sees the spheres that can touch, and the marks of spheres with contacts;
-// geometry and marks are computed by LIGGGHTS's own functions, so that not one bit differs.
+// lists allow, in every step. Here a loop in the order of LIGGGHTS's sees the spheres that can touch, and the marks of
+// spheres with contacts; LIGGGHTS's own functions compute the geometry of a contact and find its history, so that not
+// one bit differs.
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <unordered_map>
 #include <vector>
 
@@ -30,47 +32,135 @@ struct Lists : FixNeighlistMesh {
   static std::vector<LAMMPS_NS::TriangleNeighlist>& of(FixNeighlistMesh& mesh) { return mesh.*(&Lists::triangles); }
 };
 
-/// The neighbour lists of meshes, reduced to spheres that may touch for as long as this object lives.
-class ReducedNeighborLists {
+/// The spheres in the neighbour lists of a mesh, and shorter lists: those that can touch a triangle before a sphere or
+/// the mesh has moved by a part of the skin.
+class NearSpheres {
  public:
-  ~ReducedNeighborLists() {
-    for (const auto& [list, kept] : swapped_) list->swap(spare()[kept]);
+  /// For a step.
+  void update(TriMesh& mesh, FixNeighlistMesh& lists, const LAMMPS_NS::Atom& atom, const SphereKernels& kernels,
+              double slack) {
+    const bool searched = search_ != mesh_searches;
+    if (searched) take(mesh, Lists::of(lists), atom.nlocal);
+    if (spheres_.empty()) return;
+    double moved = std::sqrt(moved_spheres(atom));
+    if (!searched && mesh.isMoving()) moved += std::sqrt(moved_corners(mesh));
+    if (searched || !(moved <= slack)) shorten(mesh, kernels, slack);
   }
 
-  void reduce(TriMesh& mesh, FixNeighlistMesh& lists, const NearTest& test, const SphereKernels& kernels) {
-    std::vector<LAMMPS_NS::TriangleNeighlist>& triangles = Lists::of(lists);
-    const int count = std::min(mesh.sizeLocal() + mesh.sizeGhost(), static_cast<int>(triangles.size()));
-    for (int t = 0; t < count; ++t) {
-      std::vector<int>& all = triangles[t].contacts;
-      if (all.empty()) continue;
-      if (used_ == spare().size()) spare().emplace_back();
-      std::vector<int>& near = spare()[used_];
-      near.resize(all.size() + most_lanes);
-      const int n = static_cast<int>(all.size());
-      near.resize(kernels.near_triangle(test, Triangles::planes(mesh, t), all.data(), n, near.data()));
-      all.swap(near);
-      swapped_.push_back({&all, used_++});
+  /// contact(triangle, sphere) for all that can touch now, in the order of LIGGGHTS's lists.
+  template <class F>
+  void each(const SphereKernels& kernels, F contact) {
+    const NearTest test{now_.data(), reach, 0.0};
+    const int* candidates = near_.data();
+    for (const Near& near : triangles_) {
+      const int n = kernels.near_triangle(test, near.planes, candidates, near.count, found_.data());
+      for (int k = 0; k < n; ++k) contact(near.triangle, spheres_[found_[k]]);
+      candidates += near.count;
     }
   }
 
  private:
-  struct Swapped {
-    std::vector<int>* list;
-    std::size_t kept;
+  static inline const double reach = 1.0 + 1e-6;  // far above round-off
+
+  struct Near {
+    int triangle, count;
+    TrianglePlanes planes;
   };
 
-  static std::vector<std::vector<int>>& spare() {
-    static std::vector<std::vector<int>> lists;
-    return lists;
+  void take(TriMesh& mesh, const std::vector<LAMMPS_NS::TriangleNeighlist>& lists, int owned) {
+    search_ = mesh_searches;
+    static std::vector<int> place;  // of a sphere in spheres_
+    place.assign(owned, -1);
+    spheres_.clear();
+    listed_.clear();
+    all_.clear();
+    triangles_.clear();
+    const int count = std::min(mesh.sizeLocal() + mesh.sizeGhost(), static_cast<int>(lists.size()));
+    for (int t = 0; t < count; ++t) {
+      const std::size_t before = all_.size();
+      for (const int i : lists[t].contacts) {
+        if (i >= owned) continue;
+        if (place[i] < 0) {
+          place[i] = static_cast<int>(spheres_.size());
+          spheres_.push_back(i);
+        }
+        all_.push_back(place[i]);
+      }
+      if (all_.size() > before)
+        listed_.push_back({t, static_cast<int>(all_.size() - before), Triangles::planes(mesh, t)});
+    }
+    near_.resize(all_.size() + most_lanes);
+    found_.resize(all_.size() + most_lanes);
+    now_.resize(4 * spheres_.size());
+    before_.assign(now_.size(), 0.0);
   }
 
-  std::vector<Swapped> swapped_;
-  std::size_t used_ = 0;
+  void shorten(TriMesh& mesh, const SphereKernels& kernels, double slack) {
+    before_ = now_;
+    if (mesh.isMoving()) {
+      const double* const corners = Triangles::corners(mesh);
+      corners_.assign(corners, corners + 9 * (mesh.sizeLocal() + mesh.sizeGhost()));
+    }
+    triangles_.clear();
+    const NearTest test{now_.data(), reach, slack};
+    int *candidates = all_.data(), *near = near_.data();
+    for (const Near& listed : listed_) {
+      const int n = kernels.near_triangle(test, listed.planes, candidates, listed.count, near);
+      if (n > 0) triangles_.push_back({listed.triangle, n, listed.planes});
+      candidates += listed.count;
+      near += n;
+    }
+  }
+
+  /// The largest square of a way since the lists were made; infinite if a radius has changed.
+  double moved_spheres(const LAMMPS_NS::Atom& atom) {
+    double most = 0.0;
+    double* now = now_.data();
+    const double* before = before_.data();
+    for (const int i : spheres_) {
+      for (int k = 0; k < 3; ++k) now[k] = atom.x[i][k];
+      now[3] = atom.radius[i];
+      most = std::max(most, square_of_way(now, before));
+      if (now[3] != before[3]) most = std::numeric_limits<double>::infinity();
+      now += 4;
+      before += 4;
+    }
+    return most;
+  }
+
+  double moved_corners(TriMesh& mesh) const {
+    double most = 0.0;
+    const double* const now = Triangles::corners(mesh);
+    for (std::size_t k = 0; k < corners_.size(); k += 3)
+      most = std::max(most, square_of_way(now + k, corners_.data() + k));
+    return most;
+  }
+
+  static double square_of_way(const double* a, const double* b) {
+    const double dx = a[0] - b[0], dy = a[1] - b[1], dz = a[2] - b[2];
+    return dx * dx + dy * dy + dz * dz;
+  }
+
+  long search_ = -1;                  // of which the lists are
+  std::vector<int> spheres_;          // each once
+  std::vector<double> now_, before_;  // rows of position and radius: in this step, and when the short lists were made
+  std::vector<double> corners_;       // then, of a mesh that moves
+  std::vector<Near> listed_, triangles_;
+  std::vector<int> all_, near_;  // places in spheres_: all lists one after the other, and the short ones
+  std::vector<int> found_;
 };
 
-OurWall* active_wall = nullptr;                                   // the wall of our models over which a loop runs
-bool ours = false;                                                // whether it is a mesh wall whose lists are reduced
-std::unordered_map<const FixContactHistoryMesh*, bigint> marked;  // the last step of a mesh in which one was
+std::unordered_map<const TriMesh*, NearSpheres> near_spheres;
+
+/// The spheres in contact with a mesh, once per contact: in the last step of our loop, and in the step before.
+struct Touching {
+  bigint step = -1;
+  std::vector<int> spheres, before;
+};
+
+std::unordered_map<const FixContactHistoryMesh*, Touching> touching;
+OurWall* active_wall = nullptr;  // the wall of our models over which a loop runs
+bool ours = false;               // whether it is a mesh wall, and the loop ours
 
 /// While LIGGGHTS's loop over a wall runs.
 class ScopedWall {
@@ -87,12 +177,9 @@ class ScopedWall {
   }
 };
 
-/// Whether all contacts but those of spheres with contacts are unmarked: they were in the step before, and no list was
-/// made since.
-bool settled(const FixContactHistoryMesh* contacts, const LAMMPS_NS::Update& update, const LAMMPS_NS::Neighbor& lists) {
-  if (!ours) return false;
-  const auto found = marked.find(contacts);
-  return found != marked.end() && found->second == update.ntimestep - 1 && lists.lastcall != update.ntimestep;
+/// Whether only the contacts of the step before are marked: that was a step of our loop, and no list was made since.
+bool settled(const Touching& contacts, const LAMMPS_NS::Update& update, const LAMMPS_NS::Neighbor& lists) {
+  return contacts.step == update.ntimestep - 1 && lists.lastcall != update.ntimestep;
 }
 
 }  // namespace
@@ -111,39 +198,85 @@ namespace loop = epdem::liggghts::loop;
 [[gnu::visibility("default")]] void FixWallGran::post_force_mesh(int vflag) {
   static const auto original = loop::next<FixWallGran*, int>("_ZN9LAMMPS_NS11FixWallGran15post_force_meshEi");
   const loop::ScopedWall work(impl, *this);
-  if (!loop::active_wall || loop::generic_loop() || neighbor->contactDistanceFactor != 1.0 || !atom->sphere_flag ||
-      atom->shapetype_flag || atom->nlocal == 0)
-    return original(this, vflag);
-  loop::ReducedNeighborLists near;
-  const loop::NearTest test = loop::near_test(*atom, 1.0 + 1e-6, 0.0);  // far above round-off
+  loop::ours = loop::active_wall && !loop::generic_loop() && epdem::liggghts::library_matches(lmp) &&
+               neighbor->contactDistanceFactor == 1.0 && atom->sphere_flag && !atom->shapetype_flag && atom->nlocal > 0;
   for (int m = 0; m < n_FixMesh_; ++m) {
     TriMesh& mesh = *FixMesh_list_[m]->triMesh();
-    if (!mesh.isDeforming() && !mesh.isScaling())
-      near.reduce(mesh, *FixMesh_list_[m]->meshNeighlist(), test, loop::sphere_kernels(lmp));
+    loop::ours &= !mesh.isDeforming() && !mesh.isScaling() && !FixMesh_list_[m]->meshMulticontactData();
   }
-  loop::ours = true;
-  original(this, vflag);
+  if (!loop::ours) return original(this, vflag);
+  const loop::SphereKernels& kernels = loop::sphere_kernels(lmp);
+  LIGGGHTS::ContactModels::SurfacesIntersectData contact;
+  contact.is_wall = true;
+  for (int m = 0; m < n_FixMesh_; ++m) {
+    FixMeshSurface& fix = *FixMesh_list_[m];
+    TriMesh& mesh = *fix.triMesh();
+    FixContactHistoryMesh* const history = fix.contactHistory();
+    if (history) history->markAllContacts();
+    if (store_force_contact_) fix_wallforce_contact_ = fix.meshforceContact();
+    if (store_force_contact_stress_) fix_wallforce_contact_stress_ = fix.meshforceContactStress();
+    atom_type_wall_ = fix.atomTypeWall();
+    const auto velocities = mesh.prop().getElementProperty<MultiVectorContainer<double, 3, 3>>("v");
+    double*** const v = velocities ? velocities->begin() : nullptr;
+    double v_wall[3] = {}, delta[3], weight[3];
+    contact.mesh = &mesh;
+    contact.fix_mesh = &fix;
+    loop::NearSpheres& near = loop::near_spheres[&mesh];
+    loop::Touching& touching = loop::touching[history];
+    near.update(mesh, *fix.meshNeighlist(), *atom, kernels, neighbor->skin / 4.0);
+    near.each(kernels, [&](int triangle, int i) {
+      int side;
+      contact.i = i;
+      contact.radi = atom->radius[i];
+      const double gap = mesh.resolveTriSphereContactBary(i, triangle, contact.radi, atom->x[i], delta, weight, side);
+      constexpr int face = 7;  // of LIGGGHTS's sides
+      if (!(gap <= 0.0)) return;
+      if (history) {
+        if (!history->handleContact(i, mesh.id(triangle), contact.contact_history, true, side == face)) return;
+        touching.spheres.push_back(i);
+      }
+      for (int x = 0; x < 3; ++x) {
+        if (v)
+          v_wall[x] = weight[0] * v[triangle][0][x] + weight[1] * v[triangle][1][x] + weight[2] * v[triangle][2][x];
+        contact.delta[x] = -delta[x];
+      }
+      contact.deltan = -gap;
+      impl->compute_force(this, contact, true, v_wall, &fix, m, &mesh, triangle);
+    });
+    if (history) history->cleanUpContacts();
+  }
   loop::ours = false;
 }
 
 [[gnu::visibility("default")]] void FixContactHistoryMesh::markAllContacts() {
   static const auto original =
       loop::next<FixContactHistoryMesh*>("_ZN9LAMMPS_NS21FixContactHistoryMesh15markAllContactsEv");
-  if (!loop::settled(this, *update, *neighbor)) return original(this);
-  for (int i = 0; i < atom->nlocal; ++i)
-    if (npartner_[i] > 0) std::fill_n(keepflag_[i], nneighs(i), false);
+  if (!loop::ours) return original(this);
+  loop::Touching& contacts = loop::touching[this];
+  contacts.before.swap(contacts.spheres);
+  contacts.spheres.clear();
+  if (!loop::settled(contacts, *update, *neighbor)) return original(this);
+  for (const int i : contacts.before) std::fill_n(keepflag_[i], nneighs(i), false);
 }
 
 [[gnu::visibility("default")]] void FixContactHistoryMesh::cleanUpContacts() {
   static const auto original =
       loop::next<FixContactHistoryMesh*>("_ZN9LAMMPS_NS21FixContactHistoryMesh15cleanUpContactsEv");
-  if (!loop::settled(this, *update, *neighbor)) {
+  if (!loop::ours) return original(this);
+  loop::Touching& contacts = loop::touching[this];
+  if (!loop::settled(contacts, *update, *neighbor)) {
     original(this);
   } else {
-    for (int i = 0; i < atom->nlocal; ++i)
-      if (npartner_[i] > 0) cleanUpContacts(i, i + 1);
+    for (const int i : contacts.before)
+      for (int k = nneighs(i) - 1; k >= 0; --k) {
+        if (keepflag_[i][k] || partner_[i][k] < 0) continue;
+        --npartner_[i];
+        partner_[i][k] = -1;
+        intersectflag_[i][k] = false;
+        std::fill_n(contacthistory_[i] + k * dnum_, dnum_, 0.0);
+      }
   }
-  if (loop::ours) loop::marked[this] = update->ntimestep;
+  contacts.step = update->ntimestep;
 }
 
 }  // namespace LAMMPS_NS

@@ -10,6 +10,9 @@ namespace epdem::liggghts::loop {
 /// A test of all spheres, owned and ghosts, where they are now; valid until the next one is made.
 kernels::NearTest near_test(const LAMMPS_NS::Atom& atom, double factor, double skin);
 
+/// How many times this rank has searched the neighbours of a mesh.
+extern long mesh_searches;
+
 /// What a mesh keeps to its family.
 struct Triangles : LAMMPS_NS::TriMesh {
   static kernels::TrianglePlanes planes(LAMMPS_NS::TriMesh& mesh, int triangle) {
@@ -17,8 +20,12 @@ struct Triangles : LAMMPS_NS::TriMesh {
     double** const sides = (mesh.*(&Triangles::edgeNorm))(triangle);
     double* (LAMMPS_NS::SurfaceMesh<3, 5>::* const face)(int) = &Triangles::surfaceNorm;
     return {{(mesh.*(&Triangles::center_))(triangle), nodes[0], nodes[1], nodes[2]},
-            {(mesh.*face)(triangle), sides[0], sides[1], sides[2]}};
+            {(mesh.*face)(triangle), sides[0], sides[1], sides[2]},
+            (mesh.*(&Triangles::precision))()};
   }
+
+  /// The corners of all triangles, nine numbers each, owned and ghosts.
+  static const double* corners(LAMMPS_NS::TriMesh& mesh) { return (mesh.*(&Triangles::node_))(0)[0]; }
 };
 
 }  // namespace epdem::liggghts::loop
