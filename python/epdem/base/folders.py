@@ -44,10 +44,12 @@ OUTPUTS = (
     "path.*",
     "*.data",
     "*.stl",
-    "spheres.txt",
+    "spheres*.txt",
+    "fill[1-9]*.txt",
     "wall_*.txt",
     "end.txt",
     "impact.py",
+    "*.so",
 )
 
 
