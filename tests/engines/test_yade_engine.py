@@ -16,6 +16,7 @@ from epdem.case.impact import Numerics, parse
 from epdem.case.toml import read_toml
 from epdem.engines import engine
 from epdem.engines.yade import engine as module
+from epdem.engines.yade import launcher
 from epdem.errors import CaseError, EngineError
 from epdem.impacts import store
 from epdem.impacts.engine import refuse
@@ -26,6 +27,7 @@ from epdem.impacts.prediction import predict
 
 CASES = Path(__file__).parents[2] / "cases"
 BRASS = {"young_modulus": "100 GPa", "poisson_ratio": 0.35, "density": "8500 kg/m^3", "yield_stress": "0.3 GPa"}
+NATIVE = launcher.module
 LAWS = ("hertz", "thornton", "johnson", "cavity", "meyer")
 
 
@@ -164,6 +166,24 @@ def fake(tmp_path, monkeypatch):
         monkeypatch.setenv("EPDEM_YADE", str(program))
 
     return install
+
+
+@pytest.mark.yade
+@pytest.mark.parametrize("built_for", ["the program", "another one"])
+def test_the_module_is_for_the_program_that_make_yade_was_called_with(built_for, fake, tmp_path, monkeypatch):
+    """For another one decks call the C library, and the version in results and doctor says so."""
+    fake('exec yade "$@"')
+    own = tmp_path / "own-yade"
+    own.symlink_to(tmp_path / "fake-yade")
+    monkeypatch.setenv("EPDEM_YADE", str(own))
+    program = tmp_path / "fake-yade" if built_for == "the program" else "/usr/bin/yade"
+    (tmp_path / launcher.PROGRAM).write_text(f"{program}\n")
+    (tmp_path / launcher.MODULE).write_text("")
+    monkeypatch.setattr(launcher.paths, "native", lambda name: tmp_path / name)
+    monkeypatch.setattr(launcher, "module", NATIVE)
+    tool = engine("yade")
+    assert tool.classes == (built_for == "the program")
+    assert ("epdem_yade" if tool.classes else "C library") in tool.version()
 
 
 @pytest.mark.parametrize("way", FAKE)

@@ -220,9 +220,36 @@ def value_of(data, key):
 @example(chosen=PLAIN | {"output": "rows alone", "measure": "force", "phases": "own step"})
 @given(chosen=CHOICES)
 def test_liggghts_runs_what_is_drawn(chosen, folder):
-    """Its frames have the planned spheres of each material, its rows finite numbers and the measured curve."""
     assume(not sentences_against(chosen))
-    outcome = run(write_case(case_of(chosen), folder, "run.toml"), out=folder / "out", fresh=True)
+    assert_runs("liggghts", chosen, folder)
+
+
+# What YADE has without the module epdem_yade.
+LACKS = {
+    "walls": {"plates of two worn materials", "plate with stress"},
+    "law": {"jkr"},
+    "contact": {"partial slip", "rolling", "cohesion"},
+    "dashpot": {"dashpot"},
+    "output": {"restarts"},
+}
+OF_YADE = st.fixed_dictionaries(
+    {slot: st.sampled_from([x for x in options if x not in LACKS.get(slot, ())]) for slot, options in SLOTS.items()}
+)
+
+
+@pytest.mark.yade
+@settings(max_examples=4, phases=[Phase.explicit, Phase.generate])
+@example(chosen=PLAIN | {"walls": "cone that turns", "amount": "poured", "bodies": "late body", "phases": "until rest"})
+@example(chosen=PLAIN | {"walls": "gate", "output": "loads", "phases": "wall presses", "measure": "torque"})
+@given(chosen=OF_YADE)
+def test_yade_runs_what_is_drawn(chosen, folder):
+    assume(not sentences_against(chosen))
+    assert_runs("yade", chosen, folder)
+
+
+def assert_runs(tool, chosen, folder):
+    """The frames have the planned spheres of each material, the rows finite numbers and the measured curve."""
+    outcome = run(write_case(case_of(chosen), folder, "run.toml"), tool, out=folder / f"out_{tool}", fresh=True)
     p, tables = outcome.plan, outcome.results.tables
     assert outcome.passed, tables["checks"]
     assert tables["rows"]["particles"].max() == p.count

@@ -36,8 +36,13 @@ def _somewhere(region: Region, radius: float, rng: random.Random) -> tuple[float
     return place
 
 
+def _at_once(p: ScenePlan, phase: str) -> list[Insertion]:
+    return [f for f in p.insertions if f.phase == phase and f.rate is None]
+
+
 def spheres(p: ScenePlan, phase: str = "") -> FloatArray:
-    """(n, 5) x, y, z, radius [m], type of all spheres that come with a phase: the table, then each fill.
+    """(n, 5) x, y, z, radius [m], type of all spheres that come at the begin of a phase: the table, then each fill
+    but streams.
 
     phase: its name, "": the first one, with which the table comes; bodies of later phases are not in here, but their
     places are free. Random sequential placement, every sphere wholly in the region of its fill. The same case has the
@@ -67,7 +72,7 @@ def spheres(p: ScenePlan, phase: str = "") -> FloatArray:
         put(s.place, s.radius, 0)
     for s in p.scene.table if phase in ("", first) else ():
         put(s.place, s.radius, p.model.type_of(s.material))
-    for fill in (f for f in p.insertions if f.phase == (phase or first)):
+    for fill in _at_once(p, phase or first):
         for radius, kind in sizes(p.case, p.model, fill, rng):
             for _ in range(ATTEMPTS):
                 place = _somewhere(fill.region, radius, rng)
@@ -85,7 +90,7 @@ def spheres(p: ScenePlan, phase: str = "") -> FloatArray:
 def moving_spheres(p: ScenePlan, phase: str = "") -> Iterator[tuple[float, ...]]:
     """x y z radius [m], type, velocity [m/s], spin [rad/s], 1 if frozen, of each of `spheres`."""
     table = p.scene.table if phase in ("", p.phases[0].name) else []
-    fills = [f for f in p.insertions if f.phase == (phase or p.phases[0].name) for _ in range(f.count)]
+    fills = [f for f in _at_once(p, phase or p.phases[0].name) for _ in range(f.count)]
     still = (0.0, 0.0, 0.0)
     for n, row in enumerate(spheres(p, phase).tolist()):
         if n < len(table):

@@ -4,6 +4,7 @@
 import hashlib
 import os
 import shutil
+from collections.abc import Sequence
 from functools import cache
 from pathlib import Path
 
@@ -12,7 +13,7 @@ from ...base.declarations import library_path
 from ...base.files import atomic, write_texts
 from ...yade.deck_modules.law import LIBRARY
 
-MODULE = "epdem_yade.so"
+MODULE, PROGRAM = "epdem_yade.so", "epdem_yade.program"  # the module, and the path of the program that it is built for
 MODULES = Path(__file__).parents[2] / "yade/deck_modules"
 
 
@@ -22,8 +23,12 @@ def command() -> str:
 
 
 def module() -> Path | None:
-    """The module epdem_yade, which `make yade` builds; None: decks call the C library."""
-    return paths.native(MODULE)
+    """The module epdem_yade, if `make yade` has built it for the program in use; None: decks call the C library."""
+    built, program = paths.native(MODULE), paths.native(PROGRAM)
+    found = shutil.which(command())
+    if program and found and Path(found).resolve() != Path(program.read_text(encoding="utf-8").strip()):
+        return None
+    return built
 
 
 @cache
@@ -33,12 +38,14 @@ def module_version() -> str:
     return f"epdem_yade {hashlib.sha256(path.read_bytes()).hexdigest()[:12]}" if path else "no epdem_yade"
 
 
-def deck_modules(names: str = "*") -> dict[str, str]:
-    """The Python modules of a deck by path beside the deck; names: a pattern."""
+def deck_modules(names: Sequence[str] | None = None) -> dict[str, str]:
+    """The Python modules of a deck by path beside the deck; names: of these modules only."""
     note = '"""The part of epdem that YADE needs; it came with the deck."""\n'
     files = {"epdem/__init__.py": note, "epdem/yade/__init__.py": note, "epdem/yade/deck_modules/__init__.py": note}
     return files | {
-        f"epdem/yade/deck_modules/{p.name}": p.read_text(encoding="utf-8") for p in sorted(MODULES.glob(f"{names}.py"))
+        f"epdem/yade/deck_modules/{p.name}": p.read_text(encoding="utf-8")
+        for p in sorted(MODULES.glob("*.py"))
+        if names is None or p.stem in names
     }
 
 
@@ -50,7 +57,9 @@ def write_deck_modules(folder: Path, *, classes: bool, scene: bool = False) -> l
     path = module() if classes else library_path()
     assert path is not None  # `classes` says so
     copy = folder / (MODULE if classes else f"epdem/yade/deck_modules/{LIBRARY}")
-    written = write_texts(folder, deck_modules("recorder" if classes else "*")) if scene or not classes else []
+    written = (
+        write_texts(folder, deck_modules(("recorder", "spheres") if classes else None)) if scene or not classes else []
+    )
     copy.parent.mkdir(parents=True, exist_ok=True)
     with atomic(copy, sync=False) as temporary:
         shutil.copyfile(path, temporary)

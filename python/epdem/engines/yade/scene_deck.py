@@ -1,12 +1,10 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Scenes in YADE: one plain Python deck, the table of the spheres, and modules with a copy of the compiled laws."""
+"""Scenes in YADE: one Python deck, tables of spheres and triangles, and modules with a copy of the compiled laws."""
 
 from dataclasses import dataclass
 from itertools import combinations_with_replacement
 
 from ...base import rendering as decks
-from ...case.kinds import Compaction, Settle
-from ...case.walls import Limits
 from ...errors import CaseError
 from ...scenes import placement
 from ...scenes.plan import ScenePlan
@@ -15,8 +13,22 @@ from ..host import refuse as refuse_value
 from . import classes as words
 from .classes import Functors, Material, PairValue, of_pairs
 from .deck import strength_values
-from .scene_parts import EDGES, Motion, facets, loads, motions, removed, unrecorded
-from .scene_parts import files as facet_files
+from .scene_parts import (
+    EDGES,
+    HEAD,
+    Fill,
+    Motion,
+    Stop,
+    bodies_file,
+    fills,
+    is_endless,
+    loads,
+    motions,
+    stop,
+    table_text,
+    walls,
+)
+from .scene_parts import files as files_of_parts
 from .scene_parts import refuse as refuse_parts
 
 Square = tuple[tuple[float, ...], ...]
@@ -30,29 +42,19 @@ NO_SORTING = "numerics.sort_interval: YADE does not sort the spheres in memory, 
 
 
 @dataclass(frozen=True)
-class Wall:
-    """A flat wall: axis and place [m]; in a periodic cell the corners of one triangle that covers it."""
-
-    name: str
-    axis: int
-    place: float
-    corners: tuple[tuple[str, ...], ...]
-    material: int
-
-
-@dataclass(frozen=True)
 class Phase:
-    """A part of the run; `plate` is the velocity of the moving wall along z [m/s], 0 where none begins to move.
-
-    time_step: its own [s]. motions: of walls of triangles in it. removed: walls that disappear at its begin.
-    """
+    """A phase. time_step: its own [s]; added, removed: walls; bodies: table of the spheres that come at its begin."""
 
     name: str
     steps: int
-    plate: float
     time_step: float | None
     motions: tuple[Motion, ...]
+    added: list[str]
     removed: list[str]
+    record: bool
+    bodies: str
+    fills: tuple[Fill, ...]
+    stop: Stop | None
 
 
 def works(p: ScenePlan) -> dict[str, list[str]]:
@@ -73,11 +75,9 @@ def works(p: ScenePlan) -> dict[str, list[str]]:
 def refuse(p: ScenePlan, *, classes: bool) -> None:
     """Raise CaseError for parts of a scene that YADE does not have; classes: whether epdem_yade is built."""
     m, out = p.model, p.output
-    if _parts(p):
-        refuse_parts(p, p.scene)
+    refuse_parts(p)
     rolling = m.rolling and m.rolling.model
     unknown: dict[str, tuple[object, str]] = {
-        "scene.rate": (next((f.rate for f in p.insertions if f.rate), None), "all spheres are there from the start"),
         "contact.rolling": (rolling == "epsd" and rolling, "YADE's laws have cdt and epsd2"),
         "law.compaction": (m.compaction, "YADE's laws have no compaction"),
         "contact.cohesion": (m.cohesion, "YADE's law has no cohesion"),
@@ -105,11 +105,7 @@ def notes(p: ScenePlan, *, classes: bool) -> list[str]:
     found = [NO_DASHPOT] if p.model.tangential_restitution is not None and not classes else []
     found += [NO_RANKS] if p.case.numerics.processors else []
     found += [NO_SORTING] if p.case.numerics.sort_interval else []
-    return [*found, EDGES] if _parts(p) and p.scene.meshes else found
-
-
-def _parts(p: ScenePlan) -> bool:
-    return not isinstance(p.case.scene, Settle | Compaction)
+    return [*found, EDGES] if any(not is_endless(p, name) for name in p.scene.meshes) else found
 
 
 def _materials(p: ScenePlan, friction: Square, *, classes: bool) -> tuple[Material, ...]:
@@ -149,35 +145,46 @@ def _functors(p: ScenePlan, friction: Square) -> Functors:
     pairs += [of_pairs("workOfAdhesion", m.adhesion)] if m.adheres else []
     rolling = {"rolling": repr(m.rolling.model)} if m.rolling else {}
     more = words.settings(m.tangential if m.sliding else None, **rolling, recordStrain=True)
-    walls = {"Facet"} if p.scene.periodic or (_parts(p) and p.scene.meshes) else set()
-    walls |= {"Wall"} if not p.scene.periodic and _walls(p) else set()
-    return Functors(words.title(m.law), ("Sphere", *sorted(walls)), tuple(pairs), more)
+    shapes = {"Facet" if w.file else "Wall" for w in walls(p).values()}
+    return Functors(words.title(m.law), ("Sphere", *sorted(shapes)), tuple(pairs), more)
 
 
-def _walls(p: ScenePlan) -> tuple[Wall, ...]:
-    xlo, xhi, ylo, yhi, *_ = p.box
-    lx, ly = xhi - xlo, yhi - ylo
-    planes = [(w.name, "xyz".index(w.axis), w.at) for w in (*p.scene.planes, *p.scene.gates)]
-    if not _parts(p):
-        planes += [(name, 2, float(triangles[0, 0, 2])) for name, triangles in p.triangles.items()]
+def _phases(p: ScenePlan) -> tuple[Phase, ...]:
+    own_steps = any(phase.case.time_step for phase in p.phases)
+    found, begin, gates = [], 0, p.phases[0].gates
+    for phase in p.phases:
+        found.append(
+            Phase(
+                phase.name,
+                phase.end - begin,
+                (phase.case.time_step or p.time_step) if own_steps else None,
+                motions(p, phase),
+                [name for name in phase.gates if name not in gates],
+                [name for name in gates if name not in phase.gates],
+                phase.case.record,
+                bodies_file(p, phase),
+                fills(p, phase),
+                stop(p, phase, phase.end - begin),
+            )
+        )
+        begin, gates = phase.end, phase.gates
+    return tuple(found)
 
-    def corners(z: float) -> tuple[tuple[str, ...], ...]:
-        places = ((-lx, -ly, z), (5 * lx, -ly, z), (-lx, 5 * ly, z)) if p.scene.periodic else ()
-        return tuple(tuple(decks.number(x) for x in place) for place in places)
 
-    return tuple(Wall(name, axis, at, corners(at), p.wall_types[name] - 1) for name, axis, at in planes)
+def _placed(p: ScenePlan) -> bool:
+    """Whether there are spheres at the start."""
+    first = p.phases[0].name
+    return bool(p.scene.table) or any(f.phase == first and f.rate is None for f in p.insertions)
 
 
 def deck(p: ScenePlan, *, classes: bool) -> decks.Deck:
     """The YADE deck of a scene. Raises CaseError for what YADE cannot do."""
     refuse(p, classes=classes)
-    m, friction, ends = p.model, p.model.friction, [0, *(phase.end for phase in p.phases)]
+    m, friction, phases, every_wall = p.model, p.model.friction, _phases(p), walls(p)
     xlo, xhi, ylo, yhi, zlo, zhi = p.box
     sides = () if p.scene.periodic else ((xlo, xhi), (ylo, yhi))
-    moves = [motions(p, phase) if _parts(p) else () for phase in p.phases]
-    load, column, sign = ("floor", "floor_load", -1) if p.floor_load else ("", "", 0)  # pressed down, the plate up
-    if p.plates:
-        load, column, sign = "plate", "plate_force", 1
+    there = {*p.scene.meshes, *(w.name for w in p.scene.planes), *p.phases[0].gates}
+    every_step = p.plates or p.torque or p.writes_wall_power
     return decks.Deck(
         p,
         title=p.case.case.title,
@@ -189,56 +196,30 @@ def deck(p: ScenePlan, *, classes: bool) -> decks.Deck:
         materials=_materials(p, friction, classes=classes),
         frictions=_pairs(friction),
         periodic=p.scene.periodic,
-        cell=(xhi - xlo, yhi - ylo, 2.0 * _filled(p)[5] if p.scene.periodic else 0.0),
-        walls=_walls(p),
+        cell=(xhi - xlo, yhi - ylo, 2.0 * (zhi - zlo)),
+        walls=[every_wall[name] for name in every_wall if name in there],
+        late=[every_wall[name] for name in every_wall if name not in there],
+        facets=any(wall.file for wall in every_wall.values()),
+        planes=any(not wall.file for wall in every_wall.values()),
+        placed=_placed(p),
         low=(*(low for low, _ in sides), zlo),
         high=(*(high for _, high in sides), zhi),
         fall=-p.case.scene.gravity if p.case.scene.gravity else 0.0,
         skin=p.case.numerics.skin or float(f"{SKIN * p.smallest:.1e}"),
-        phases=tuple(
-            Phase(
-                phase.name,
-                end - begin,
-                0.0 if _parts(p) else phase.plate,
-                (phase.case.time_step or p.time_step) if any(x.case.time_step for x in p.phases) else None,
-                moved,
-                gone,
-            )
-            for phase, begin, end, moved, gone in zip(p.phases, ends[:-1], ends[1:], moves, removed(p), strict=True)
-        ),
-        sampling=1 if p.plates or p.writes_wall_power else p.sampling if p.output.loads else p.every,
+        phases=phases,
+        fills=any(phase.fills for phase in phases),
+        motions=[motion for phase in phases for motion in phase.motions],
+        sampling=1 if every_step else p.sampling if p.output.loads or p.loads else p.every,
         spins=m.spins,
-        load=load,
-        load_column=column,
-        load_sign=sign,
         remembers=p.writes_plastic_work and not classes,  # contacts that have ended, of which the plastic work follows
         works=[*works(p)] if classes else [],  # attributes of EpState in the frames
-        moving=any(m.axis or m.amplitude for moved in moves for m in moved),
-        wall="facet" if p.scene.periodic else "wall",  # YADE's infinite one does not work in a periodic cell
-        unrecorded=unrecorded(p),
-        parts=_parts(p),
-        facets=facets(p) if _parts(p) else (),
         loads=loads(p),
     )
 
 
 def files(p: ScenePlan, *, classes: bool) -> dict[str, str]:
     """All files of a YADE scene by name; they run by hand in one folder. Raises CaseError."""
-    deck_files = {SCRIPT: decks.render("yade/scene.py.j2", deck=deck(p, classes=classes)), SPHERES: _table(p)}
-    return deck_files | (facet_files(p) if _parts(p) else {})
-
-
-def _filled(p: ScenePlan) -> Limits:
-    """The box of the one filling that a YADE scene has."""
-    (fill,) = p.insertions
-    return fill.region.limits
-
-
-def _table(p: ScenePlan) -> str:
-    if _parts(p):
-        head = "# x y z radius [m], type, velocity [m/s], spin [rad/s], 1: frozen"
-        rows = [" ".join(map(decks.number, row)) for row in placement.moving_spheres(p)]
-    else:
-        head = "# x y z radius [m], type; random places without overlap"
-        rows = [" ".join([*map(decks.number, place), str(int(kind))]) for *place, kind in placement.spheres(p)]
-    return "\n".join([head, *rows, ""])
+    deck_files = {SCRIPT: decks.render("yade/scene.py.j2", deck=deck(p, classes=classes))}
+    if _placed(p):
+        deck_files[SPHERES] = table_text(HEAD, [*placement.moving_spheres(p)])
+    return deck_files | files_of_parts(p)

@@ -1,17 +1,21 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""What scenes of parts have in YADE: facets, motions of walls, spheres of a table; and what they cannot have."""
+"""The parts of a scene in YADE: walls, their motions, spheres that come during the run, and what YADE cannot have."""
 
-from collections.abc import Sequence
+import math
+import random
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
-from itertools import pairwise
 
 from ...base import rendering as decks
 from ...case.motions import LinearMove, Move, PressMove, RotateMove, VibrateMove
-from ...case.parts import Parts
+from ...case.walls import PlateWall, Upright
 from ...errors import CaseError
+from ...scenes import placement
+from ...scenes.filling import Insertion
 from ...scenes.plan import Phase, ScenePlan
 from ...scenes.walls import surface_rotation
 from ..host import refuse as refuse_value
+from ..input_script import stop_condition, torque_origin
 
 EDGES = (
     "walls of triangles: YADE counts a sphere that touches an edge once for each triangle there, so that its force is "
@@ -19,18 +23,27 @@ EDGES = (
 )
 
 
+HEAD = "# x y z radius [m], type, velocity [m/s], spin [rad/s], 1: frozen"  # of a table of spheres
+
+
 @dataclass(frozen=True)
-class Facets:
-    """A wall of triangles: `file` holds their corners; material: its number."""
+class Wall:
+    """A wall: an infinite plane across `axis` at `place` [m], or triangles whose corners are in `file`.
+
+    material: its number; number: of the wall in contact tables.
+    """
 
     name: str
-    file: str
+    number: int
     material: int
+    axis: int = 0
+    place: float = 0.0
+    file: str = ""
 
 
 @dataclass(frozen=True)
 class Motion:
-    """What moves a wall in a phase: a velocity [m/s], an amplitude [m] with omega [rad/s], or a turn."""
+    """What moves a wall in a phase: a velocity [m/s]; an amplitude [m] with omega [rad/s]; a turn; a force [N]."""
 
     wall: str
     velocity: Sequence[float] | None = None
@@ -39,69 +52,100 @@ class Motion:
     axis: Sequence[float] | None = None
     origin: Sequence[float] | None = None
     rate: float = 0.0
+    direction: Sequence[float] | None = None
+    force: float = 0.0
+    highest_speed: float = 0.0
 
 
 @dataclass(frozen=True)
 class Load:
-    """A wall whose mean force is in the rows; of facets the torque about `origin` [m], too."""
+    """A wall whose mean force is in the rows; where `origin` [m] is given the torque about it, too."""
 
     name: str
     origin: Sequence[float] | None
 
 
-def refuse(p: ScenePlan, s: Parts) -> None:
-    """Raise CaseError for what a scene of parts has in LIGGGHTS only."""
-    first = p.phases[0].name
-    unknown: dict[str, object] = {
-        "scene.periodic": s.periodic,
-        "scene.open_boundary": s.open_boundary,
-        **{f"{f.key}.rate": f.rate for f in p.insertions},
-        **{f"{f.key}.phase": f.phase != first and f.phase for f in p.insertions},
-        **{f"scene.body.{b.name}.phase": b.phase for b in p.scene.later},
-        **{f"scene.wall.{w.name}.phases": _comes(p, w.name) and w.phases for w in p.scene.gates},
-        **{f"scene.phase.{phase.name}.until": phase.case.condition is not None for phase in p.phases},
-        **{f"scene.wall.{name}.stress": mesh.stress for name, mesh in p.scene.meshes.items()},
-        **{f"scene.wall.{name}.wear": mesh.wear for name, mesh in p.scene.meshes.items()},
-    }
-    for phase in p.phases:
-        for name, move in phase.moves.items():
-            unknown[f"scene.phase.{phase.name}.move of {name}"] = "press" if isinstance(move, PressMove) else None
-            if surface_rotation(p.scene.meshes[name]):
-                raise CaseError(
-                    f"scene.wall.{name}.angular_velocity: YADE turns the wall itself, which moves otherwise; remove one"
-                )
-    for place, value in unknown.items():
-        refuse_value(place, value, "a scene in YADE does not have it")
+@dataclass(frozen=True)
+class Fill:
+    """Spheres that come during a phase, `batch` of them every `every` steps, or all at its begin; file: their sizes."""
+
+    key: str
+    file: str
+    low: Sequence[float]
+    high: Sequence[float]
+    circle: Sequence[float] | None
+    velocity: Sequence[float]
+    seed: int
+    batch: float
+    every: int
 
 
-def _comes(p: ScenePlan, gate: str) -> bool:
-    """Whether a wall that is present in some phases is absent before one of them."""
-    present = [gate in phase.gates for phase in p.phases]
-    return present != sorted(present, reverse=True)
+@dataclass(frozen=True)
+class Stop:
+    """How a phase ends early: by a condition on a row, looked at in rows more than `after` steps from its begin."""
+
+    condition: str
+    after: int
 
 
-def removed(p: ScenePlan) -> list[list[str]]:
-    """The walls that disappear at the begin of each phase."""
-    gates = [(), *(phase.gates for phase in p.phases)]
-    return [[name for name in old if name not in new] for old, new in pairwise(gates)]
+def refuse(p: ScenePlan) -> None:
+    """Raise CaseError for walls that YADE does not have."""
+    unknown: dict[str, tuple[object, str]] = {}
+    for name, mesh in p.scene.meshes.items():
+        unknown[f"scene.wall.{name}.stress"] = mesh.stress, "a scene in YADE writes no stress of triangles"
+        unknown[f"scene.wall.{name}.wear"] = mesh.wear, "a scene in YADE has no wear"
+        if surface_rotation(mesh) and any(name in phase.moves for phase in p.phases):
+            raise CaseError(
+                f"scene.wall.{name}.angular_velocity: YADE turns the wall itself, which moves otherwise; remove one"
+            )
+    for w in (*p.scene.planes, *p.scene.gates):
+        across = p.scene.periodic and w.axis != "z" and w.axis
+        unknown[f"scene.wall.{w.name}.axis"] = across, "YADE's periodic cell holds planes across z only"
+    for place, (value, reason) in unknown.items():
+        refuse_value(place, value, reason)
 
 
-def unrecorded(p: ScenePlan) -> list[tuple[int, int]]:
-    """(step, step) between which no frames are written."""
-    found: list[tuple[int, int]] = []
-    for begin, phase in zip([0, *(phase.end for phase in p.phases)], p.phases, strict=False):
-        if not phase.case.record:
-            found.append((found.pop()[0] if found and found[-1][1] == begin else begin, phase.end))
+def is_endless(p: ScenePlan, name: str) -> bool:
+    """Whether a wall of triangles is a plane without edges: a plate as wide as the periodic cell that moves along z."""
+    mesh, moves = p.scene.meshes[name], [phase.moves[name] for phase in p.phases if name in phase.moves]
+    if not (p.scene.periodic and isinstance(mesh, PlateWall) and mesh.axis == "z"):
+        return False
+    xlo, xhi, ylo, yhi, *_ = p.box
+    wide = all(size >= cell * (1 - 1e-9) for size, cell in zip(mesh.size, (xhi - xlo, yhi - ylo), strict=True))
+    return wide and all(_is_along_z(move) for move in moves)
+
+
+def _is_along_z(move: Move) -> bool:
+    match move:
+        case LinearMove():
+            return not any(move.velocity[:2])
+        case VibrateMove():
+            return not any(move.amplitude[:2])
+        case PressMove():
+            return not any(move.direction[:2])
+    return False
+
+
+def walls(p: ScenePlan) -> dict[str, Wall]:
+    """All walls by name. YADE's infinite walls do not work in a periodic cell: there they are triangles."""
+    found = {}
+    for number, name in enumerate(wall_names(p), p.count):
+        planes = {w.name: w for w in (*p.scene.planes, *p.scene.gates)}
+        material = p.wall_types[name] - 1
+        if name in planes and not p.scene.periodic:
+            found[name] = Wall(name, number, material, "xyz".index(planes[name].axis), planes[name].at)
+        else:
+            found[name] = Wall(name, number, material, file=_file(name))
     return found
+
+
+def wall_names(p: ScenePlan) -> list[str]:
+    """The walls in the order of their numbers in contact tables."""
+    return [w.name for w in (*p.scene.planes, *p.scene.gates)] + [*p.scene.meshes]
 
 
 def _file(name: str) -> str:
     return f"wall_{name}.txt"
-
-
-def facets(p: ScenePlan) -> tuple[Facets, ...]:
-    """The walls of triangles."""
-    return tuple(Facets(name, _file(name), p.wall_types[name] - 1) for name in p.scene.meshes)
 
 
 def _motion(name: str, move: Move) -> Motion:
@@ -112,7 +156,9 @@ def _motion(name: str, move: Move) -> Motion:
             return Motion(name, amplitude=move.amplitude, omega=move.omega)
         case RotateMove():
             return Motion(name, axis=move.unit_axis, origin=move.origin, rate=move.rate)
-    raise AssertionError(move)  # a press is refused
+        case PressMove():
+            direction, force, highest = move.unit_direction, move.force, move.highest_speed
+            return Motion(name, direction=direction, force=force, highest_speed=highest)
 
 
 def motions(p: ScenePlan, phase: Phase) -> tuple[Motion, ...]:
@@ -123,14 +169,100 @@ def motions(p: ScenePlan, phase: Phase) -> tuple[Motion, ...]:
 
 def loads(p: ScenePlan) -> tuple[Load, ...]:
     """The walls whose forces are in the rows; torques are about the axis of a wall's turn, else about 0."""
-    origins = {name: [rotation.origin for rotation in p.rotations(name)] for name in p.scene.meshes}
-    return tuple(Load(name, [*origins[name], (0.0, 0.0, 0.0)][0] if name in origins else None) for name in p.loads)
+    of_kind = ["floor"] * p.floor_load + ["plate"] * p.plates
+    found = [Load(name, torque_origin(p, name) if name in p.scene.meshes else None) for name in p.loads]
+    found += [Load("drum", torque_origin(p, "drum"))] if p.torque else []
+    return (*found, *(Load(name, None) for name in of_kind))
+
+
+def fills(p: ScenePlan, phase: Phase) -> tuple[Fill, ...]:
+    """The spheres that come during a phase at places that the run finds."""
+    step, found = phase.case.time_step or p.time_step, []
+    for n, f in _late(p):
+        if f.phase != phase.name:
+            continue
+        region, every = f.region, max(1, math.ceil(f.period / step)) if f.rate else 1
+        found.append(
+            Fill(
+                f.key,
+                f"fill{n}.txt",
+                region.limits[0::2],
+                region.limits[1::2],
+                (*region.center, region.radius) if isinstance(region, Upright) else None,
+                f.velocity,
+                p.case.numerics.seed + n,
+                f.rate * every * step if f.rate else 0.0,
+                every,
+            )
+        )
+    return tuple(found)
+
+
+def _late(p: ScenePlan) -> Iterator[tuple[int, Insertion]]:
+    """The fills that are not there from the start, with their numbers."""
+    first = p.phases[0].name
+    return ((n, f) for n, f in enumerate(p.insertions, 1) if f.rate is not None or f.phase != first)
+
+
+def bodies_file(p: ScenePlan, phase: Phase) -> str:
+    """The table of the single spheres that come with a phase but the first; "": none do."""
+    return f"spheres_{phase.name}.txt" if any(b.phase == phase.name for b in p.scene.later) else ""
+
+
+def stop(p: ScenePlan, phase: Phase, steps: int) -> Stop | None:
+    """The condition that may end a phase early."""
+    until, words = phase.case.condition, stop_condition(p, phase, steps)
+    if until is None or words is None:
+        return None
+    limit = decks.number(until.limit)
+    if until.kinetic_energy is not None:
+        condition = f'row["kinetic_energy"] < {limit} * row["particles"]'
+    elif until.count is not None:
+        condition = f'row["particles"] <= {limit}'
+    else:
+        condition = f'np.hypot.reduce([row["{until.wall}_force_" + axis] for axis in "xyz"]) >= {limit}'
+    return Stop(condition, words.first)
 
 
 def files(p: ScenePlan) -> dict[str, str]:
-    """The corners of each wall's triangles by file."""
+    """The corners of each wall's triangles, the spheres of later phases and the sizes of fills, by file."""
     texts = {}
-    for name, triangles in p.triangles.items():
-        lines = [" ".join(map(decks.number, row)) for row in triangles.reshape(-1, 9).tolist()]
-        texts[_file(name)] = "\n".join(["# corners of a triangle, x y z of each [m]", *lines, ""])
+    head = "# corners of a triangle, x y z of each [m]"
+    for wall in (w for w in walls(p).values() if w.file):
+        if wall.name in p.triangles and not is_endless(p, wall.name):
+            rows = p.triangles[wall.name].reshape(-1, 9).tolist()
+        else:
+            rows = [_large_triangle(p, _height(p, wall.name))]
+        texts[wall.file] = table_text(head, rows)
+    for phase in p.phases:
+        if name := bodies_file(p, phase):
+            later = [b.sphere for b in p.scene.later if b.phase == phase.name]
+            types = [float(p.model.type_of(s.material)) for s in later]
+            texts[name] = table_text(
+                HEAD,
+                [(*s.place, s.radius, t, *s.velocity, *s.spin, 0.0) for s, t in zip(later, types, strict=True)],
+            )
+    for n, f in _late(p):
+        rng = random.Random(p.case.numerics.seed + n)
+        sizes = placement.sizes(p.case, p.model, f, rng)
+        if f.rate is not None:
+            rng.shuffle(sizes)
+        texts[f"fill{n}.txt"] = table_text("# radius [m], type of each sphere", sizes)
     return texts
+
+
+def table_text(head: str, rows: Sequence[Sequence[float]]) -> str:
+    """A table of numbers below a comment."""
+    return "\n".join([head, *(" ".join(map(decks.number, row)) for row in rows), ""])
+
+
+def _height(p: ScenePlan, name: str) -> float:
+    planes = {w.name: w.at for w in (*p.scene.planes, *p.scene.gates)}
+    return planes[name] if name in planes else float(p.triangles[name][0, 0, 2])
+
+
+def _large_triangle(p: ScenePlan, z: float) -> list[float]:
+    """Corners of a triangle that is larger than the periodic cell, so that no sphere meets its edges."""
+    xlo, xhi, ylo, yhi, *_ = p.box
+    x, y, lx, ly = 0.5 * (xlo + xhi), 0.5 * (ylo + yhi), xhi - xlo, yhi - ylo
+    return [x - lx, y - ly, z, x + 5 * lx, y - ly, z, x - lx, y + 5 * ly, z]

@@ -10,9 +10,13 @@ from ...case.parts import Parts
 from ...errors import EngineError
 from ...scenes import columns, contacts
 from ...scenes.plan import ScenePlan
+from ...scenes.presets import Preset
 from ..host import frames
+from ..log import ends, not_reached
 from .scene_deck import works
+from .scene_parts import wall_names
 
+PRESETS = {"floor_force_z": "floor_load", "plate_force_z": "plate_force", "drum_torque_y": "torque"}  # columns of kinds
 # of a contact: number of the sphere and of the other body (from 0; walls after the spheres), overlaps [m]; of the
 # classes also whether the bodies are attached
 CONTACT = ["i", "j", "overlap", "delta_max", "attached"]
@@ -49,7 +53,10 @@ def rows(p: ScenePlan, log: Path) -> pd.DataFrame:
                 raise EngineError(f"{log}: the row of step {fields[0]} is damaged; run the case again") from None
     if not table:
         raise EngineError(f"{log}: no rows; the run ended before its first step")
-    return columns.rows(p, table, heads)
+    found = columns.rows(p, table, [PRESETS.get(name, name) if isinstance(p.scene, Preset) else name for name in heads])
+    if "floor_load" in found:
+        found["floor_load"] *= -1.0  # pressed down
+    return found[[name for name in found if name in columns.columns_of_rows(p)]]
 
 
 def particles(p: ScenePlan, folder: Path) -> pd.DataFrame:
@@ -65,6 +72,7 @@ def particles(p: ScenePlan, folder: Path) -> pd.DataFrame:
 
 def read(p: ScenePlan, folder: Path, log: Path) -> dict[str, pd.DataFrame]:
     """The tables rows, particles and contacts of a run, SI. Raises EngineError for an incomplete frame."""
+    p = p.ended(ends(log), not_reached(log)) if p.ends_early else p
     tables = {"rows": rows(p, log)}
     if isinstance(p.case.scene, Parts):
         tables["phases"] = p.phase_table
@@ -84,9 +92,7 @@ def _contacts(p: ScenePlan, folder: Path, spheres: pd.DataFrame) -> pd.DataFrame
     raw["delta_max"] = raw["delta_max"].fillna(raw["overlap"])  # of a law without history
     attached = raw["attached"] > 0 if p.model.adheres else False
     raw = raw[(raw["overlap"] >= 0) | attached].reset_index(drop=True)  # what is only near is no contact yet
-    triangles = [name for name, triangles in p.triangles.items() for _ in triangles]
-    of_meshes = [*p.scene.meshes] if p.plates else triangles
-    walls = np.array(["", *(w.name for w in (*p.scene.planes, *p.scene.gates)), *of_meshes])
+    walls = np.array(["", *wall_names(p)])
     last = p.count + len(walls) - 2
     bodies = raw[["i", "j"]].to_numpy(float)
     if not ((bodies >= 0) & (bodies <= last) & (bodies == np.floor(bodies))).all():

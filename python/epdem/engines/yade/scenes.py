@@ -11,7 +11,6 @@ from . import scene_deck
 from . import scene_tables as tables
 from .launcher import command, environment
 
-KINDS = ("settle", "compaction", "hopper", "parts")
 OUT = "out.yade"
 LEFTOVERS = ("particles.*.npy", "contacts.*.npy")  # patterns of files that an earlier run may have left in the folder
 
