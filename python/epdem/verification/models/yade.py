@@ -9,7 +9,7 @@ from typing import Any
 from ...base.rendering import Deck
 from ...engines.yade.classes import Material
 from ...engines.yade.engine import Yade
-from ...impacts.engine import Feature, Report, silent
+from ...impacts.engine import Report, silent
 from ...impacts.experiment import Body, Experiment
 from ...impacts.plan import Plan
 from ...impacts.prediction import Prediction
@@ -34,7 +34,7 @@ class YadeLuding(Yade):
 
     name = "yade-luding"
     laws: tuple[str, ...] | None = None
-    features, of_classes = Yade.features - {Feature.FRICTION}, frozenset()
+    of_classes = frozenset()
 
     def run(self, job: Any, folder: Path, *, ranks: int = 1, report: Report = silent) -> Any:
         path = super().run(job, folder, ranks=ranks, report=report)
