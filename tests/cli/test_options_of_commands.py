@@ -139,7 +139,11 @@ def outcomes(tmp_path_factory):
         "cost": cost.run(path, engines=["embedded"], laws=[], steps=(30, 100), repetitions=1),
         "bulk": pd.DataFrame([{"model": "x", "spheres": 8, "seconds_spread": 1e-3, "ratio_spread": 0.1} | numbers]),
         "tuned": tune.Tuned(
-            (tune.Trial("skin 1 mm", 1e-3, (2.0, 2.0)), tune.Trial("skin 2 mm", 2e-3, (1.0, 1.0))), (), 100, 500, 1
+            tuple(
+                tune.Trial(tune.Choice(skin), {"fill": (seconds, seconds)}, {"fill": 500})
+                for skin, seconds in ((1e-3, 2.0), (2e-3, 1.0))
+            ),
+            1,
         ),
         "stability": stability.run(["embedded"], ["hertz"], groups=["poisson"]),
     }

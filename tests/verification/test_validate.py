@@ -97,7 +97,8 @@ def test_a_set_without_its_source_is_refused(tmp_path, monkeypatch):
     text = (paths.beside("data") / "restitution/leeb_D.csv").read_text()
     (tmp_path / "restitution").mkdir()
     (tmp_path / "restitution/bare.csv").write_text("".join(x for x in text.splitlines(True) if "# source" not in x))
-    monkeypatch.setattr(paths, "data", lambda: tmp_path)
+    beside = paths.beside
+    monkeypatch.setattr(paths, "beside", lambda name: tmp_path if name == "data" else beside(name))
     with pytest.raises(CaseError, match=r"bare\.csv: the head lacks source"):
         validate.read("bare")
 
@@ -115,7 +116,8 @@ def test_a_set_without_its_source_is_refused(tmp_path, monkeypatch):
 def test_a_wrong_row_or_column_of_a_set_is_named(old, new, said, tmp_path, monkeypatch):
     text = (paths.beside("data") / "restitution/leeb_D.csv").read_text()
     (tmp_path / "restitution").mkdir()
-    monkeypatch.setattr(paths, "data", lambda: tmp_path)
+    beside = paths.beside
+    monkeypatch.setattr(paths, "beside", lambda name: tmp_path if name == "data" else beside(name))
     (tmp_path / "restitution/odd.csv").write_text(text + "  \n")
     assert validate.read("odd").points["value"].tolist()[-1] == 0.89
     assert text.count(old) == 1
