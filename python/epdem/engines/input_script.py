@@ -77,12 +77,17 @@ def atom_types(plan: Plan) -> list[tuple[Body, float]]:
 
 @dataclass(frozen=True)
 class StopCondition:
-    """How a phase ends early: after `first` steps at most `rows` times `every`, until the condition holds."""
+    """How a phase ends early: after `first` steps at most `rows` times `every`, until the condition holds.
+
+    formula: "" without a condition. void: formula of the height of the void in a pressed bed, which ends the run at 0;
+    "": no bed is pressed.
+    """
 
     first: int
     rows: int
     formula: str
     condition: str
+    void: str = ""
 
 
 def default_skin(p: ScenePlan) -> float:

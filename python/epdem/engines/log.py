@@ -10,7 +10,7 @@ import pandas as pd
 
 from ..errors import EngineError
 from ..scenes import columns
-from ..scenes.plan import ScenePlan
+from ..scenes.plan import NO_VOID, NOT_REACHED, ScenePlan
 
 _LOOP = re.compile(r"Loop time of (\S+) on \d+ procs for (\d+) steps")
 _INSERTED = re.compile(r"INFO: Particle insertion (\w+): inserted .* at step (\d+)$")
@@ -90,9 +90,11 @@ def ends(out: Path, upto: float = math.inf) -> dict[str, int]:
     return {name: int(step) for name, step in found if int(step) <= upto}
 
 
-def not_reached(out: Path) -> set[str]:
-    """The phases whose condition did not hold in any row."""
-    return set(re.findall(r"^phase (\w+) was not ended by its condition", out.read_text(errors="replace"), re.M))
+def not_reached(out: Path) -> dict[str, str]:
+    """NOT_REACHED of the phases whose condition did not hold in any row; NO_VOID of a phase that left no void."""
+    said = {"was not ended by its condition": NOT_REACHED, "left no void": NO_VOID}
+    found = re.findall(rf"^phase (\w+) ({'|'.join(said)})", out.read_text(errors="replace"), re.M)
+    return {name: said[words] for name, words in found}
 
 
 def inserted(log: Path, step: int) -> dict[str, int]:

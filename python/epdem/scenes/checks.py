@@ -27,6 +27,7 @@ CHECKS = {  # the unit of value and expected; what passes
     "loading_stiffness": Quantity("N/m", "loading is at most as stiff as unloading"),
     "recovered_work": Quantity("J", "the plate recovers at most the work that it did"),
     "force_on_all_walls": Quantity("N", "the force on all walls is the weight of the spheres"),
+    "void": Quantity("", "number of pressed beds that lost all void, which ended the run"),
     "energy_residual": Quantity("", "the energy balance closes: no term is a remainder"),
 }
 COLUMNS = ("key", "check", "value", "expected", "error", "tolerance", "unit", "passed")
@@ -196,7 +197,9 @@ def _of_parts(p: ScenePlan, tables: dict[str, pd.DataFrame]) -> list[Row]:
 def checks(p: ScenePlan, tables: dict[str, pd.DataFrame]) -> pd.DataFrame:
     """One row per check: key, sentence, value, expected, relative error, tolerance, unit, passed."""
     rows, many = [], p.output.particles >= MANY
-    if not p.scene.open_boundary:
+    if p.solid:
+        rows.append(_row("void", 1.0, 0.0, 0.0))
+    elif not p.scene.open_boundary:
         rows.append(_row("spheres_in_room", float(tables["rows"]["particles"].iloc[-1]), float(p.count), 0.0))
     match p.case.scene:
         case Settle() as s:

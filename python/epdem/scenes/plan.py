@@ -2,8 +2,9 @@
 """A scene for any engine: bodies, motions, times of output. All SI, without names of engines."""
 
 import math
-from collections.abc import Collection, Mapping
+from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from types import MappingProxyType
 
 import numpy as np
 import pandas as pd
@@ -21,11 +22,12 @@ from .limits import refuse_combinations, refuse_faster_than_sound, refuse_outsid
 from .meshes import FloatArray
 from .model import Model, model
 from .presets import Preset, parts
-from .solid import refuse_below_solid
+from .solid import PressedBed, pressed_beds_of_run, refuse_below_solid
 from .timestep import time_step
 from .wall_paths import refuse_leaving
 
 REACHED, NOT_REACHED = "reached", "not reached"  # of a phase with `until`
+NO_VOID = "no void"  # of a phase at whose end a pressed bed was solid, which ends the run
 SAMPLES = 50  # of a force, at least, in the mean that a row holds
 
 
@@ -34,7 +36,7 @@ class Phase:
     """A phase of the case. end: its last step, or an earlier one if its condition is met.
 
     gates: walls that are present in some phases, this one among them. reached: whether `until` ended the phase, REACHED
-    or NOT_REACHED; "" without `until`, or before a run.
+    or NOT_REACHED; "" without `until`, or before a run; NO_VOID: a solid bed ended the run.
     """
 
     case: motions.Phase
@@ -63,6 +65,7 @@ class ScenePlan:
 
     scene: the parts, of which a scene of each kind consists. triangles: of each wall that is not a plane, at the start,
     shape (n, 3 corners, 3 coordinates) [m]. loads: walls whose force, and if they are meshes torque, is in the rows.
+    pressed: beds whose relative density the run has to look at, which ends if it is 1.
     every: steps of a row, and so of the mean forces in it, which are sampled every `sampling` steps; frames, contacts,
     vtk, pictures, restarts: steps between two of them, 0: none.
     """
@@ -73,6 +76,7 @@ class ScenePlan:
     triangles: dict[str, FloatArray]
     insertions: tuple[Insertion, ...]
     loads: tuple[str, ...]
+    pressed: tuple[PressedBed, ...]
     time_step: float
     phases: tuple[Phase, ...]
     every: int
@@ -90,26 +94,36 @@ class ScenePlan:
     @property
     def ends_early(self) -> bool:
         """Whether a phase may end before its duration, so that the steps of a run are known only after it."""
-        return any(phase.case.condition for phase in self.phases)
+        return bool(self.pressed) or any(phase.case.condition for phase in self.phases)
 
-    def ended(self, ends: Mapping[str, int], not_reached: Collection[str] = ()) -> "ScenePlan":
+    @property
+    def solid(self) -> PressedBed | None:
+        """The bed without void that has ended the run."""
+        ended = [phase.name for phase in self.phases if phase.reached == NO_VOID]
+        return next((bed for bed in self.pressed if bed.phase in ended), None)
+
+    def ended(self, ends: Mapping[str, int], reached: Mapping[str, str] = MappingProxyType({})) -> "ScenePlan":
         """The plan of a run whose phases ended at these steps; those behind a phase that ended early move with it.
 
-        not_reached: names of the phases that ended by their duration although they have a condition.
+        reached: NOT_REACHED of the phases that ended by their duration although they have a condition; NO_VOID of a
+        phase that ended the run, so that the phases behind it have no step.
         """
-        phases, shift = [], 0
+        phases: list[Phase] = []
+        shift = 0
         for phase in self.phases:
-            end = ends.get(phase.name, phase.end + shift)
+            solid = bool(phases) and phases[-1].reached == NO_VOID
+            end = phases[-1].end if solid else ends.get(phase.name, phase.end + shift)
             shift = end - phase.end
-            reached = NOT_REACHED if phase.name in not_reached else REACHED if phase.case.condition else phase.reached
-            phases.append(replace(phase, end=end, reached=reached))
+            word = NO_VOID if solid else reached.get(phase.name, REACHED if phase.case.condition else phase.reached)
+            phases.append(replace(phase, end=end, reached=word))
         return replace(self, phases=tuple(phases))
 
     def frame_steps(self, every: int) -> list[int]:
         """The steps of frames written every `every` steps, in recorded phases only."""
         begins = [0, *(phase.end for phase in self.phases)]
         recorded = [(begin, phase.end) for begin, phase in zip(begins, self.phases, strict=False) if phase.case.record]
-        return [n for n in range(0, self.steps + 1, every) if any(low <= n <= high for low, high in recorded)]
+        steps = [*range(0, self.steps + 1, every), *([self.steps] if self.solid else [])]
+        return sorted({n for n in steps if any(low <= n <= high for low, high in recorded)})
 
     @property
     def phase_table(self) -> pd.DataFrame:
@@ -285,6 +299,7 @@ def plan(case: SceneCase) -> ScenePlan:
         triangles=triangles,
         insertions=filled,
         loads=_loads(case, scene),
+        pressed=pressed_beds_of_run(case, scene, filled),
         time_step=dt,
         phases=_phases(scene, rows, every, dt),
         every=every,

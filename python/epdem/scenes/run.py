@@ -22,7 +22,7 @@ from ..impacts.engine import Report, silent, texts
 from ..impacts.prediction import predict
 from . import checks, energy_balance, measures, pictures, results
 from .engine import Resumed, SceneEngine, check_run
-from .plan import NOT_REACHED, ScenePlan, plan
+from .plan import ScenePlan, plan
 from .timestep import leading_impact
 from .warnings import lost_spheres, measured_warnings, planned_warnings
 
@@ -143,8 +143,8 @@ def _as_run(p: ScenePlan, tables: dict[str, pd.DataFrame]) -> ScenePlan:
     if not p.ends_early:
         return p
     phases = tables["phases"]
-    not_reached = phases["phase"][phases["until"] == NOT_REACHED]
-    return p.ended(dict(zip(phases["phase"], phases["end"].astype(int), strict=True)), {*not_reached})
+    ends = dict(zip(phases["phase"], phases["end"].astype(int), strict=True))
+    return p.ended(ends, dict(zip(phases["phase"], phases["until"], strict=True)))
 
 
 def _anew(work: _Work, place: Results) -> SceneOutcome:

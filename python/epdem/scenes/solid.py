@@ -1,11 +1,11 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Relative densities that presses reach: refused without void, named by a warning above DENSE."""
+"""Relative densities that presses reach: refused without void, named by a warning above DENSE, found during the run."""
 
 import math
 from collections.abc import Iterator
 from typing import NamedTuple
 
-from ..case.motions import LinearMove
+from ..case.motions import LinearMove, PressMove, RotateMove
 from ..case.parts import Parts
 from ..case.scene import SceneCase
 from ..case.walls import CylinderWall, PlateWall
@@ -16,12 +16,19 @@ DENSE = 0.9  # relative density above which overlaps of spheres no longer descri
 
 
 class PressedBed(NamedTuple):
-    """A bed at the end of a motion of a plate: its height, that of its spheres without any void [m], its area [m^2].
+    """A bed at the end of the motion of a plate in a phase: its height, that of its spheres without any void [m], its
+    area [m^2].
 
-    key: place in the case.
+    key: place in the case. axis, sign: the motion; stop: place [m] of the plane that the plate moves to. height: NaN if
+    only the run tells it.
     """
 
     key: str
+    phase: str
+    wall: str
+    axis: int
+    sign: float
+    stop: float
     height: float
     solid_height: float
     area: float
@@ -39,13 +46,19 @@ def refuse_below_solid(case: SceneCase, scene: Parts, insertions: tuple[Insertio
 
 def dense_beds(case: SceneCase, scene: Parts, insertions: tuple[Insertion, ...]) -> list[str]:
     """A sentence for the largest relative density above DENSE that a plate presses a bed to."""
-    beds = sorted(_pressed_beds(case, scene, insertions), key=lambda bed: bed.solid_height / bed.height)
+    beds = [bed for bed in _pressed_beds(case, scene, insertions) if not math.isnan(bed.height)]
+    beds.sort(key=lambda bed: bed.solid_height / bed.height)
     return [
         f"{bed.key} = {bed.height:.4g} m: the relative density reaches {bed.solid_height / bed.height:.3g}, and above "
         f"{DENSE} no contact law of spheres gives the pressure (docs/choose.md, Pressing); give a larger height"
         for bed in beds[-1:]
         if bed.solid_height > DENSE * bed.height
     ]
+
+
+def pressed_beds_of_run(case: SceneCase, scene: Parts, insertions: tuple[Insertion, ...]) -> tuple[PressedBed, ...]:
+    """The beds whose height only the run tells."""
+    return tuple(bed for bed in _pressed_beds(case, scene, insertions) if math.isnan(bed.height))
 
 
 def _pressed_beds(case: SceneCase, scene: Parts, insertions: tuple[Insertion, ...]) -> Iterator[PressedBed]:
@@ -61,30 +74,37 @@ def _pressed_beds(case: SceneCase, scene: Parts, insertions: tuple[Insertion, ..
 def _pressed_by(
     case: SceneCase, scene: Parts, insertions: tuple[Insertion, ...], wall: PlateWall
 ) -> Iterator[PressedBed]:
-    """The same of one plate, up to a phase whose end is not known."""
+    """The same of one plate, up to a phase in which the plate turns."""
     axis = "xyz".index(wall.axis)
     begin = place = wall.center[axis]
     for n, phase in enumerate(scene.phase):
         move = phase.moves.get(wall.name)
-        if phase.condition or (move is not None and not isinstance(move, LinearMove)):
+        if isinstance(move, RotateMove):
             return
-        if move is None or not move.velocity[axis]:
+        speed = move.velocity[axis] if isinstance(move, LinearMove) else 0.0
+        if move is not None:
+            known = isinstance(move, LinearMove) and not phase.condition
+            place += phase.seconds * speed if known else math.nan
+        way = move.direction[axis] if isinstance(move, PressMove) else speed
+        if not way:
             continue
-        place += phase.seconds * move.velocity[axis]
-        sign = math.copysign(1.0, move.velocity[axis])
+        sign = math.copysign(1.0, way)
         stops = [w.at for w in scene.planes if w.axis == wall.axis and sign * (w.at - begin) > 0]
         stop = min([*stops, scene.room.limits[2 * axis + (sign > 0)]], key=lambda x: sign * x)
         low, high = min(begin, stop), max(begin, stop)
         coming = {later.name for later in scene.phase[n + 1 :]}
         fills = [f for f in insertions if f.phase not in coming]
         fills = [f for f in fills if low <= f.region.limits[2 * axis] and f.region.limits[2 * axis + 1] <= high]
+        if math.isnan(place):  # a stream of this phase has not come yet
+            fills = [f for f in fills if not (f.rate and f.phase == phase.name)]
         volume = sum(mean_volume(case, f) * f.count for f in fills)
         volume += sum(4.0 / 3.0 * math.pi * s.radius**3 for s in scene.table if low <= s.place[axis] <= high)
         area = _covered(scene, wall, (low, high), fills)
         if area:
             compaction = case.scene.kind == "compaction"
             key = "scene.height" if compaction else f"scene.phase.{phase.name}.move: wall {wall.name} ends at a height"
-            yield PressedBed(key, sign * (stop - place), volume / area, area)
+            height = sign * (stop - place)
+            yield PressedBed(key, phase.name, wall.name, axis, sign, stop, height, volume / area, area)
 
 
 def _covered(scene: Parts, wall: PlateWall, span: tuple[float, float], fills: list[Insertion]) -> float:

@@ -14,7 +14,7 @@ from . import filling
 from .columns import STRAINS
 from .limits import overlaps
 from .meshes import FloatArray
-from .plan import NOT_REACHED, ScenePlan
+from .plan import NO_VOID, NOT_REACHED, ScenePlan
 from .presets import Preset
 from .solid import dense_beds
 from .timestep import stable_step
@@ -35,13 +35,19 @@ def planned_warnings(p: ScenePlan) -> list[str]:
 
 
 def measured_warnings(tables: dict[str, pd.DataFrame]) -> list[str]:
-    """A sentence for contacts beyond small strain, and for each phase whose `until` was not reached."""
+    """A sentence for contacts beyond small strain, for a bed without void, and for each phase whose `until` was not
+    reached."""
     largest = float(tables["rows"][STRAINS[0]].iloc[-1])
     limit = max((limit for limit in validity.FINITE_STRAIN if largest > limit), default=0.0)
     share = _share_above(tables, limit) if limit and "contacts" in tables else 0.0
     where = f" in up to {share:.3g} % of the contacts of a frame" if share else ""
     phases = tables.get("phases", pd.DataFrame(columns=["until"]))
-    return validity.finite_strain(largest, where) + [
+    no_void = [
+        f"scene.phase.{phase['phase']}: the run ended after step {phase['end']}, because the pressed bed has no void "
+        "left (relative density 1), and the tables end there; reduce the force, or the duration of the phase"
+        for phase in phases[phases["until"] == NO_VOID].head(1).to_dict("records")
+    ]
+    return [*validity.finite_strain(largest, where), *no_void] + [
         f"scene.phase.{phase['phase']}.until was not reached: the phase ended by its duration, at "
         f"{phase['end_time']:.4g} s; give a longer duration, or another condition"
         for phase in phases[phases["until"] == NOT_REACHED].to_dict("records")

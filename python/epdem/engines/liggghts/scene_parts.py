@@ -115,10 +115,11 @@ def _press(p: ScenePlan, name: str) -> PressMove | None:
 def surfaces(p: ScenePlan) -> tuple[DeckMesh, ...]:
     """The walls of triangles."""
     force = p.plates or p.torque or p.writes_wall_power
+    pressed = {bed.wall for bed in p.pressed}
     found = []
     for name, mesh in p.scene.meshes.items():
         rotation, words = surface_rotation(mesh), ""
-        style = "/stress" if force or name in p.loads or mesh.stress or mesh.wear else ""
+        style = "/stress" if force or name in p.loads or name in pressed or mesh.stress or mesh.wear else ""
         origin = torque_origin(p, name)
         if rotation is not None:  # LIGGGHTS takes the words in this order only
             axis, omega = " ".join(f"{x:g}" for x in rotation.axis), decks.number(rotation.rate)
@@ -155,6 +156,22 @@ def _motion(p: ScenePlan, name: str, move: Move) -> tuple[str, str]:
         case PressMove():
             return f"fix_modify {wall} servo/integrate start", f"fix_modify {wall} servo/integrate stop"
     return f"fix {fix} all move/mesh mesh {wall} {words}", f"unfix {fix}"
+
+
+def _pressing(p: ScenePlan, phase: Phase, steps: int) -> StopCondition | None:
+    """How a phase ends early in LIGGGHTS: also by a bed without void."""
+    stop = stop_condition(p, phase, steps)
+    for bed in p.pressed:
+        if bed.phase == phase.name:
+            k, begin = bed.axis, p.triangles[bed.wall][0, 0, bed.axis]
+            reference = (
+                begin if _press(p, bed.wall) else torque_origin(p, bed.wall)[k]
+            )  # LIGGGHTS moves it with the wall
+            place = f"(f_{wall_id(p, bed.wall)}[{7 + k}]+{decks.number(begin - reference)})"
+            height = f"({decks.number(bed.stop)}-{place})" if bed.sign > 0 else f"({place}-{decks.number(bed.stop)})"
+            void = f"{height}-{decks.number(bed.solid_height)}"
+            return replace(stop or StopCondition(0, steps // p.every, "", ""), void=void)
+    return stop
 
 
 def _phase_particle(p: ScenePlan, b: Body) -> PhaseParticle:
@@ -198,7 +215,7 @@ def parts(p: ScenePlan) -> tuple[DeckPhase, ...]:
             vibrations=tuple(
                 name for name in new if p.writes_wall_power and isinstance(phase.moves[name], VibrateMove)
             ),
-            stop=stop_condition(p, phase, phase.end - begin),
+            stop=_pressing(p, phase, phase.end - begin),
         )
         found.append(part)
         begin, before = phase.end, phase

@@ -1,0 +1,86 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Presses whose height only the run tells: the run ends with a frame in the row in which the bed has no void left."""
+
+import numpy as np
+import pytest
+from parts_cases import BED, FLOOR, parts
+from scene_runs import run, write_case, write_deck
+
+from epdem.case.scene import parse
+from epdem.engines import log
+from epdem.engines.liggghts import launcher, resume
+from epdem.scenes.plan import plan
+
+SIDES = {"name": "sides", "kind": "box", "x": ["-10 mm", "10 mm"], "y": ["-10 mm", "10 mm"], "z": ["0 mm", "20 mm"]}
+SIDES |= {"open": ["+z", "-z"], "material": "steel"}
+LID = {"name": "lid", "kind": "plate", "axis": "z", "center": ["0 mm", "0 mm", "12 mm"], "size": ["20 mm"] * 2}
+LID |= {"material": "steel"}
+SOLID = 40 * 4 / 3 * np.pi * 1.5e-3**3 / 0.02**2  # height without void [m]
+MOVES = {
+    "linear": {"kind": "linear", "velocity": ["0 m/s", "0 m/s", "-2 m/s"]},
+    "press": {"kind": "press", "direction": [0.0, 0.0, -1.0], "force": "1 GN", "highest_speed": "2 m/s"},
+}
+HOLD = {"name": "hold", "duration": "1 ms"}
+
+
+def pressed(kind, until=None, **output):
+    """Forty spheres under a lid that moves at 2 m/s, which it does under a force that no bed reaches, too."""
+    press = {"name": "press", "duration": "10 ms", "move": [{"wall": "lid"} | MOVES[kind]]}
+    if until:
+        press["until"] = until
+    bed = BED | {"region": BED["region"] | {"z": ["0 mm", "11 mm"]}}
+    data = parts(wall=[FLOOR, SIDES, LID], fill=[bed], phase=[press, HOLD])
+    return data | {"output": {"rows": 50, "particles": 4, "loads": True} | output}
+
+
+FORCE = {"wall": "lid", "force": "0.9 GN", "after": "1 ms"}
+
+
+def expected_end(p):
+    """The first row in which the lid, whose way is known, is as low as the spheres without void."""
+    steps = np.arange(p.every, p.steps, p.every)
+    return int(steps[0.012 - 2.0 * p.time_step * steps <= SOLID][0])
+
+
+@pytest.mark.liggghts
+@pytest.mark.parametrize(("kind", "until"), [("linear", FORCE), ("press", FORCE), ("press", None)])
+def test_a_run_ends_with_a_frame_where_a_pressed_bed_has_no_void(tmp_path, kind, until):
+    path = write_case(pressed(kind, until), tmp_path)
+    for _ in range(2):  # and as it is read again
+        outcome = run(path, out=tmp_path / "out")
+        r, end = outcome.results, expected_end(plan(parse(pressed(kind, until))))
+        assert r.phases["until"].to_list() == ["no void", "no void"] and r.phases["end"].to_list() == [end, end]
+        assert r.rows["step"].iloc[-1] == r.particles["step"].iloc[-1] == end
+        checks = r.tables["checks"].set_index("key")
+        assert not outcome.passed and not checks.loc["void", "passed"]
+        (said,) = [x for x in outcome.warnings if "no void" in x]
+        assert said.startswith(
+            f"scene.phase.press: the run ended after step {end}, because the pressed bed has no void"
+        )
+    assert outcome.reused
+
+
+@pytest.mark.liggghts
+def test_a_continued_press_ends_in_the_same_row(tmp_path):
+    p = write_deck(parse(pressed("linear", FORCE, restarts=50, particles=50)), tmp_path)
+    launcher.run("in.scene", tmp_path)
+    ends = log.ends(tmp_path / launcher.OUT)
+    assert ends == {"press": expected_end(p)}
+    for step in sorted(int(path.name.split(".")[1]) for path in tmp_path.glob("restart.*.bin"))[-3:]:
+        resume.write_resume(p, tmp_path, step)
+        launcher.run("in.resume", tmp_path, append=True)
+        assert log.ends(tmp_path / launcher.OUT) == ends
+
+
+def test_a_bed_is_looked_at_only_where_the_run_tells_its_height():
+    """Not where the way of the lid is known, as with `travel`, and not where spheres pass beside the lid."""
+    travel = {"wall": "lid", "travel": "1 mm"}
+    for kind, until, looked in (("linear", None, 0), ("linear", travel, 0), ("linear", FORCE, 1), ("press", None, 1)):
+        data = pressed(kind, until)
+        data["scene"]["phase"][0]["duration"] = "1 ms" if kind == "linear" else "10 ms"
+        if until:
+            data["scene"]["phase"][0]["until"] = until | ({"after": "0.1 ms"} if "force" in until else {})
+        assert len(plan(parse(data)).pressed) == looked, (kind, until)
+    small = pressed("press")
+    small["scene"]["wall"] = [FLOOR, SIDES, LID | {"size": ["18 mm"] * 2}]
+    assert not plan(parse(small)).pressed
