@@ -1,10 +1,12 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Pressure of random packings under compaction: ep/cavity in LIGGGHTS beside LAMMPS's mdr with psi_b = 0.
 
-.venv/bin/python bench/compaction.py [seed ...]
-.venv/bin/python bench/compaction.py --lattices    # the table of docs/choose.md, from theory and data/compaction
+.venv/bin/python bench/compaction.py [seed ...]            # E/Y = 120, nu = 0.34; with --soft 30 and 0.2
+.venv/bin/python bench/compaction.py --numpy [seed ...]  # beside numpy, with the sums of the same step
+.venv/bin/python bench/compaction.py --lattices          # the table of docs/choose.md, from theory and data/compaction
+.venv/bin/python bench/compaction.py --walks             # energy that 100 random walks create
 
-150 spheres of radii +-20 % without friction, E/Y = 120, nu = 0.34, are pressed from a relative density of 0.40 by six
+150 spheres of radii +-20 % without friction are pressed from a relative density of 0.40 by six
 walls (isostatic) or by two (die). Both codes start with the same positions.
 """
 
@@ -18,9 +20,10 @@ import numpy as np
 sys.path.insert(0, str(Path(__file__).resolve().parent.parent / "tests" / "engines"))
 sys.path.insert(0, str(Path(__file__).resolve().parent.parent / "tests" / "verification"))
 
-from plugin_compaction import HEAD, NU, E, Y, data
+from plugin_compaction import E_STAR, GROWTH, HEAD, NU, E, Y, data, side_depths
 from plugin_decks import good
 from test_compaction import CAVITY, finite_elements
+from test_plugin_compaction import falls, walks
 
 from epdem.engines.lammps import launcher
 from epdem.theory.cavity import Cavity
@@ -77,12 +80,14 @@ def _density(start, die, way):
     return len(radius) * 4 * np.pi / 3 / (now * edge**2 if die else now**3)
 
 
-def press(folder, start, settings, *, die, softens=True, dt=0.02):
+def press(folder, start, settings, *, die, softens=True, elastic=(E / Y, NU), dt=0.02):
     """(relative density, pressure over Y) in LIGGGHTS: mean force on the moving plates over their area."""
     x, radius, edge = start
     _, axes, seconds = _course(start, die)
     half, steps = edge / 2, int(seconds / dt)
     text = HEAD % {"settings": settings, "head": "", "atoms": "read_data spheres.data"}
+    text = text.replace(f"youngsModulus peratomtype {E!r}", f"youngsModulus peratomtype {elastic[0] * Y!r}")
+    text = text.replace(f"poissonsRatio peratomtype {NU!r}", f"poissonsRatio peratomtype {elastic[1]!r}")
     if not softens:
         text = text.replace("fix p2 all property/global finiteStrain peratomtype 0.82\n", "")
     files = {"spheres.data": data(x, radius, np.zeros_like(x), Y, half=edge)}
@@ -124,12 +129,12 @@ def _plate(axis, place, half):
     return "\n".join([*lines, "endsolid plate", ""])
 
 
-def press_mdr(folder, start, *, die, dt=0.01):
+def press_mdr(folder, start, *, die, elastic=(E / Y, NU), dt=0.01):
     """The same of LAMMPS's mdr with psi_b = 0: pressure (die: axial stress) from the stresses of the spheres."""
     x, radius, edge = start
     _, axes, seconds = _course(start, die)
     folder.mkdir(parents=True, exist_ok=True)
-    law = f"mdr {E / Y!r} {NU!r} 1.0 0 0.0 0 tangential linear_history 0.0 0.0 0.0 damping mdr 1"
+    law = f"mdr {elastic[0]!r} {elastic[1]!r} 1.0 0 0.0 0 tangential linear_history 0.0 0.0 0.0 damping mdr 1"
     rows = [
         f"{k + 1} 1 {2 * float(r)!r} 1.0 {' '.join(map(repr, map(float, p)))}"
         for k, (r, p) in enumerate(zip(radius, x, strict=True))
@@ -171,6 +176,65 @@ def press_mdr(folder, start, *, die, dt=0.01):
     return density[1:], -total[1:] / (3 * volume / density[1:])
 
 
+def press_numpy(start, *, die, dt=0.02):
+    """The same of the law in numpy, with the sums of the step itself; units: Y, mean radius, mass of density Y."""
+    x, radius, edge = start
+    _, axes, seconds = _course(start, die)
+    moves = np.array([axis in axes for axis in "xyz"])
+    mass = 4 / 3 * np.pi * radius[:, None] ** 3
+    x, v, a = x.copy(), np.zeros_like(x), np.zeros_like(x)
+    i, j = np.triu_indices(len(x), 1)
+    most, most_wall = np.full(len(i), -np.inf), np.full((len(x), 6), -np.inf)
+    found, load = [], np.zeros(6)
+    for step in range(1, int(seconds / dt) + 1):
+        v += 0.5 * dt * a
+        x += dt * v
+        half = edge / 2 - SPEED[die] * dt * step * moves
+        if step % 20 == 1:
+            near = np.flatnonzero(np.linalg.norm(x[i] - x[j], axis=1) < 1.3 * (radius[i] + radius[j]))
+        p, q = i[near], j[near]
+        d = x[p] - x[q]
+        r = np.linalg.norm(d, axis=1)
+        overlap, at_wall = radius[p] + radius[q] - r, radius[:, None] - np.hstack([half + x, half - x])
+        most[near], most_wall = np.maximum(most[near], overlap), np.maximum(most_wall, at_wall)
+        depth_p, depth_q = side_depths(radius[p], radius[q], np.maximum(most[near], 0.0))
+        depth_wall = np.maximum(most_wall, 0.0) / radius[:, None]
+        sums = [
+            np.bincount(p, depth_p**k, len(x)) + np.bincount(q, depth_q**k, len(x)) + (depth_wall**k).sum(axis=1)
+            for k in (1, 2)
+        ]
+        growth = sums[1] / (4 - 2 * np.minimum(sums[0], GROWTH))
+        u = radius[p] * np.maximum(growth[p] - depth_p**2 / (4 - 2 * depth_p), 0.0)
+        u += radius[q] * np.maximum(growth[q] - depth_q**2 / (4 - 2 * depth_q), 0.0)
+        u_wall = radius[:, None] * np.maximum(growth[:, None] - depth_wall**2 / (4 - 2 * depth_wall), 0.0)
+        R_star = radius[p] * radius[q] / (radius[p] + radius[q])
+        F = _force(R_star, overlap + u, most[near] + u)
+        F_wall = _force(radius[:, None] + 0 * at_wall, at_wall + u_wall, most_wall + u_wall)
+        most[near] = np.where(overlap + u > 0, most[near], -np.inf)  # what parts forgets
+        most_wall[at_wall + u_wall <= 0] = -np.inf
+        on_pair = d * (F / r)[:, None]
+        a = F_wall[:, :3] - F_wall[:, 3:] - DRAG * mass.mean() * v
+        for k in range(3):
+            a[:, k] += np.bincount(p, on_pair[:, k], len(x)) - np.bincount(q, on_pair[:, k], len(x))
+        a /= mass
+        v += 0.5 * dt * a
+        load += F_wall.sum(axis=0)
+        if step % 40 == 0:
+            way = SPEED[die] * dt * (step - 20)
+            side = edge if die else edge - 2 * way
+            found.append((_density(start, die, way), load.reshape(2, 3)[:, moves].mean() / 40 / side**2))
+            load[:] = 0.0
+    return np.array(found).T
+
+
+def _force(R_star, overlap, most):
+    """The force of cavity with finite_strain at overlaps below their largest values, 0 of those that do not touch."""
+    F, on = np.zeros_like(overlap), overlap > 0
+    law = Cavity(E_star=E_STAR / Y, R_star=R_star[on], Y=1.0, c_strain=0.82)
+    F[on] = np.nan_to_num(law.unloading_force(np.minimum(overlap[on], most[on]), most[on]))
+    return F
+
+
 LATTICES = {"fcc": (FCC, (0.80, 0.90, 0.96)), "bcc": (BCC, (0.75, 0.90, 0.965)), "sc": (SC, (0.60, 0.80, 0.95))}
 UNIT = {"E_star": CAVITY.E_star, "R_star": 1.0}
 LAWS = {
@@ -191,23 +255,52 @@ def lattices() -> None:
         print(f"| {name} |", " | ".join(f"{100 * e:+.0f} %" for e in errors), "|")
 
 
-def main() -> None:
+def energies() -> None:
+    """Print the largest fall of the dissipation over the largest work of 100 random walks."""
+    for steps in (3000, 6000):
+        with tempfile.TemporaryDirectory() as folder:
+            work, elastic, _ = walks(Path(folder), steps, count=100, seed=11)
+        print(f"{steps} steps: {falls(work, elastic):.2e}", flush=True)
+
+
+def beside_mdr(start, die, elastic) -> None:
     """Print deviations from mdr in per cent."""
-    if sys.argv[1:] == ["--lattices"]:
+    with tempfile.TemporaryDirectory() as folder:
+        density, pressure = press_mdr(Path(folder) / "mdr", start, die=die, elastic=elastic)
+        reference = np.interp(DENSITIES, density, pressure)
+        print("mdr P/Y".ljust(38), *(f"{p:6.3f}" for p in reference))
+        for name, (settings, softens) in SETTINGS.items():
+            density, pressure = press(Path(folder) / name, start, settings, die=die, softens=softens, elastic=elastic)
+            error = 100 * (np.interp(DENSITIES, density, pressure) / reference - 1)
+            print(f"  {name:36}", " ".join(f"{e:+6.1f}" for e in error), "%", flush=True)
+
+
+def beside_numpy(start, die) -> None:
+    """Print deviations of LIGGGHTS from numpy in per cent."""
+    density, pressure = press_numpy(start, die=die)
+    reference = np.interp(DENSITIES, density, pressure)
+    print("numpy P/Y".ljust(38), *(f"{p:6.3f}" for p in reference))
+    with tempfile.TemporaryDirectory() as folder:
+        density, pressure = press(Path(folder), start, "compaction on", die=die)
+    error = 100 * (np.interp(DENSITIES, density, pressure) / reference - 1)
+    print("  LIGGGHTS".ljust(38), " ".join(f"{e:+6.2f}" for e in error), "%", flush=True)
+
+
+def main() -> None:
+    """Print the requested comparison."""
+    options, seeds = [x for x in sys.argv[1:] if x.startswith("-")], [int(x) for x in sys.argv[1:] if x.isdigit()]
+    if options == ["--lattices"]:
         return lattices()
-    seeds = [int(seed) for seed in sys.argv[1:]] or [101, 102]
-    print("relative density", " ".join(f"{d:6.3f}" for d in DENSITIES))
-    for seed in seeds:
+    if options == ["--walks"]:
+        return energies()
+    print("relative density".ljust(38), " ".join(f"{d:6.3f}" for d in DENSITIES))
+    for seed in seeds or [101, 102]:
         for die in (False, True):
-            start = packing(seed)
-            with tempfile.TemporaryDirectory() as folder:
-                density, pressure = press_mdr(Path(folder) / "mdr", start, die=die)
-                reference = np.interp(DENSITIES, density, pressure)
-                print(f"seed {seed}, {'die' if die else 'isostatic'}: mdr P/Y", *(f"{p:6.3f}" for p in reference))
-                for name, (settings, softens) in SETTINGS.items():
-                    density, pressure = press(Path(folder) / name, start, settings, die=die, softens=softens)
-                    error = 100 * (np.interp(DENSITIES, density, pressure) / reference - 1)
-                    print(f"  {name:36}", " ".join(f"{e:+6.1f}" for e in error), "%", flush=True)
+            print(f"seed {seed}, {'die' if die else 'isostatic'}")
+            if options == ["--numpy"]:
+                beside_numpy(packing(seed), die)
+            else:
+                beside_mdr(packing(seed), die, (30.0, 0.2) if options == ["--soft"] else (E / Y, NU))
 
 
 if __name__ == "__main__":

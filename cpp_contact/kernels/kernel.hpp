@@ -134,13 +134,14 @@ EPDEM_INLINE void copy(const From* from, To* to) {
 }
 
 /// History of a contact: the values of the law, of pairs the step of the last evaluation (hosts end the contacts of
-/// walls), friction, rolling friction, with compaction the overlap that growth added.
+/// walls), friction, rolling friction, with compaction u of the sums of the step before and the overlap that growth
+/// added.
 template <class Law, class Friction, bool rolls, bool wall, bool grows = false>
 [[gnu::flatten]] void contacts(Block& b, int n, const Pass& pass) {
   constexpr int law_values = history_size<Law>, friction_values = values_of<Friction, Lanes>;
   constexpr int last_step = law_values, sliding = last_step + !wall, rolling = sliding + friction_values;
   constexpr int added = rolling + 3 * rolls;
-  constexpr int values = law_values || friction_values || rolls ? added + grows : 0;
+  constexpr int values = law_values || friction_values || rolls ? added + 2 * grows : 0;
   using Pair = ContactConstants<Law>;
   constexpr int constants = (sizeof(Pair) / sizeof(Lanes) + 3) / 4 * 4;
   static_assert(constants <= most_constants && offsetof(Pair, law) == law_data * sizeof(Lanes));
@@ -209,6 +210,7 @@ template <class Law, class Friction, bool rolls, bool wall, bool grows = false>
     if constexpr (grows) {
       history.law.delta_max = largest_overlap(grown, overlap);
       value[added] = growing;
+      value[added + 1] = grown.added;
       const auto depths = depths_of<wall>(c.radius_i, c.radius_j, history.law.delta_max);
       store(b.depth_i.a + k, depths.i);
       store(b.depth_j.a + k, depths.j);

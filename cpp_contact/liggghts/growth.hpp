@@ -51,6 +51,7 @@ class Growth {
   }
 
   double of(int body) const { return growth_->vector_atom[body]; }
+  const double* of_all() const { return growth_->vector_atom; }
 
   /// Radii of the grown spheres: no contact is beyond them.
   const double* reach() const { return reach_.data(); }

@@ -56,14 +56,14 @@ class LawModel : public NormalModel {
     double now_added = 0.0, last_added = 0.0;
     if constexpr (compacts<Law>)
       if (compaction_) {
-        last_added = has_step() && state_.is_new ? 0.0 : history[growth_slot_];
+        last_added = has_step() && state_.is_new ? 0.0 : history[growth_slot_ + !keep];
         now_added = keep ? added_overlap_of(s, before.delta_max) : last_added;
         grown = grow<Law>(before, overlap, now_added, last_added);
         delta += grown.added;
         s.deltan = delta;  // for the models beside the law
       }
 
-    // a step that is not kept repeats the last one that was, in compaction without the extrapolation of the growth
+    // a step that is not kept repeats the last one that was
     const NormalContact<Law> contact = normal_contact(
         pair, R_star, before, delta, keep ? -s.vn * update->dt : 0.0, -s.vn, pair.damping > 0.0, pair.dashpot > 0.0,
         [&] { return s.meff; }, !keep);
@@ -76,6 +76,7 @@ class LawModel : public NormalModel {
           const double reached = largest_overlap(grown, overlap);
           if (plastic_work_) loss = growth_loss(pair.law, R_star, reached, overlap, now_added, last_added);
           history[growth_slot_] = now_added;
+          history[growth_slot_ + 1] = grown.added;
           const auto depths = wall_ ? depths_of<true>(s.radi, 0.0, reached) : depths_of<false>(s.radi, s.radj, reached);
           growth_.add(s.i, depths.i);
           if (!wall_ && s.j < atom->nlocal) growth_.add(s.j, depths.j);
@@ -156,7 +157,7 @@ class LawModel : public NormalModel {
   /// Whether grown bodies that do not overlap are in contact.
   bool stands(const SurfacesCloseData& s) const {
     const bool keep = s.computeflag && s.shearupdate;
-    const bool known = !has_step() || now_ - s.contact_history[step_slot_] <= 1.0;
+    const bool known = !has_step() || now_ - s.contact_history[step_slot_] <= keep;
     if (!keep) return known && closes_gap(s.radsum, s.rsq, s.contact_history[growth_slot_]);
     return closes_gap(s.radsum, s.rsq, added_overlap_of(s, known ? s.contact_history[offset_] : 0.0));
   }

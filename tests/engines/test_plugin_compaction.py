@@ -141,12 +141,12 @@ def test_a_restart_in_mid_compaction_continues_bit_by_bit(tmp_path):
     assert np.array_equal(whole[-150:], rest[-150:]) and np.abs(rest[-1][:, 1:]).max() > 0
 
 
-def rebound(folder, steps, phase):
+def rebound(folder, steps, phase, every=""):
     """Velocities after four free spheres have pressed a fifth one and left; phase: of the first touch in a step."""
     speed = np.array([0.0, 1.0, 0.8, 0.9, 0.7])[:, None]
     way = np.array([[0.0, 0, 0], [1, 0, 0], [0, 0, 1], [-1, 0, 0], [0, 0, -1]])
     x = way * (2.0 + (0.001 + phase * 0.6 / steps) * speed)
-    text = deck("compaction on", runs=f"run {steps}\n", dt=0.6 / steps, columns="vx vy vz", every=steps)
+    text = deck("compaction on", runs=f"run {steps}{every}\n", dt=0.6 / steps, columns="vx vy vz", every=steps)
     return run(folder, text, data(x, np.ones(5), -speed * way, 1000.0))[-1][:, 1:]
 
 
@@ -160,6 +160,12 @@ def test_rebound_speeds_of_free_spheres_converge_with_second_order(tmp_path):
     ]
     order = -np.polyfit(np.log(numbers), np.log(errors), 1)[0]
     assert order > 1.9 and errors[-1] < 1e-6, (order, errors)
+
+
+def test_a_run_that_begins_anew_at_each_step_keeps_every_bit(tmp_path):
+    """At the begin of a run LIGGGHTS computes the forces of the last step again, and moves the spheres by these."""
+    once = rebound(tmp_path / "once", 500, 0.45)
+    assert np.array_equal(once, rebound(tmp_path / "anew", 500, 0.45, every=" every 1 NULL"))
 
 
 def walks(folder, steps, *, count, seed=7):

@@ -36,10 +36,10 @@ struct Cavity {
   static constexpr bool strength_by_ratio = false;
 
   T E_star{}, Y{}, c_Y{}, c_P{}, c_strain{};
-  T yield_ratio{};    // alpha_Y/R*
   T plastic_ratio{};  // alpha_P/R*
   T log_s_P{}, beta{};
-  T a_ratio{};  // a_Y/R*
+  T a_ratio{};       // a_Y/R*, the root of alpha_Y/R*
+  T yield_factor{};  // f(a_Y/R*) of finite strain
 
   /// Whether positive, finite parameters also make sense together.
   static bool valid(const T* parameter) noexcept {
@@ -52,10 +52,10 @@ struct Cavity {
   Cavity(T E_star_, const T* parameter) noexcept
       : E_star(E_star_), Y(parameter[0]), c_Y(parameter[1]), c_P(parameter[2]), c_strain(parameter[3]) {
     a_ratio = pi * c_Y * Y / (2.0 * E_star);
-    yield_ratio = a_ratio * a_ratio;
     log_s_P = log_plastic(c_Y, c_P);
-    plastic_ratio = yield_ratio * exp(log_s_P);
+    plastic_ratio = yield_ratio() * exp(log_s_P);
     beta = log(T(2.0)) / log_s_P;
+    yield_factor = 1.0 - fallen(a_ratio);
   }
 
   /// ln s_P; a value <= 0 puts full plasticity before first yield.
@@ -67,12 +67,13 @@ struct Cavity {
     return 2.0 * (1.0 + b) * (1.0 + 1.0 / (2.0 * c_Y)) - 0.5 * (1.0 + b) - 0.125 / log_s;
   }
 
-  T elastic_overlap(T R_star) const noexcept { return yield_ratio * R_star; }
+  T yield_ratio() const noexcept { return a_ratio * a_ratio; }  // alpha_Y/R*
+
+  T elastic_overlap(T R_star) const noexcept { return yield_ratio() * R_star; }
 
   Point<T> load(T R_star, T delta) const noexcept {
     Point<T> p = small_strain(R_star, delta);
-    if (any(c_strain < no_finite_strain))
-      p.force = p.force * ((1.0 - fallen(p.radius / R_star)) / (1.0 - fallen(a_ratio)));
+    if (any(c_strain < no_finite_strain)) p.force = p.force * ((1.0 - fallen(p.radius / R_star)) / yield_factor);
     return p;
   }
 
@@ -84,7 +85,7 @@ struct Cavity {
     Point<T> p{};
     if (any(plastic)) p = {2.0 * pi * R_star * c_P * Y * delta, sqrt(2.0 * R_star * delta), constant<T>(1.0)};
     if (any(!plastic)) {
-      const T log_s = log(only(!plastic, delta / (yield_ratio * R_star)));
+      const T log_s = log(only(!plastic, delta / (yield_ratio() * R_star)));
       const T a = a_ratio * R_star * exp(0.5 * (1.0 + beta) * log_s);
       const T p_m = Y * (2.0 / 3.0 * c_Y + (1.0 + beta) / 3.0 * log_s);
       p = select(plastic, p, Point<T>{pi * a * a * p_m, a, log_s / log_s_P});
@@ -108,7 +109,7 @@ struct Cavity {
         const T reached = only(beyond, delta), middle = min(reached, delta_P);
         const T lost = fallen_work(R_star, delta_Y, middle) + fallen_work(R_star, delta_P, max(reached, delta_P));
         const T W_Y = hertz_work(E_star, R_star, delta_Y);
-        W = select(beyond, W_Y + (W - W_Y - lost) / (1.0 - fallen(a_ratio)), W);
+        W = select(beyond, W_Y + (W - W_Y - lost) / yield_factor, W);
       }
     }
     return W;

@@ -106,19 +106,18 @@ void PairLoop::gather(const Plan& plan) {
   const double *const x = atom->x[0], *const radius = atom->radius;
   const double near = neighbor->contactDistanceFactor * neighbor->contactDistanceFactor;
   const double* const grown = reach == Reach::grown ? plan.growth->reach() : nullptr;
-  bool gaps = false;  // whether grown spheres meet that do not overlap
-  long n = 0;
+  long n = 0, touching = 0;  // of the n pairs of grown spheres that meet those that overlap
   for (int ii = 0; ii < list.inum; ++ii) {
     const int i = list.ilist[ii], count = list.numneigh[i];
     const int* const neighbours = list.firstneigh[i];
     const int* const flags = reach == Reach::attached ? pair_->listgranhistory->firstneigh[i] : nullptr;
     const double xi = x[3 * i], yi = x[3 * i + 1], zi = x[3 * i + 2], ri = radius[i];
+    const double grown_i = reach == Reach::grown ? grown[i] : 0.0;
     for (int first = 0; first < count; first += block_size) {  // nearly always one turn
       const int last = std::min(count, first + block_size);
       if (n + last - first > block_size) {
-        finish<reach>(plan, n, gaps);
-        n = 0;
-        gaps = false;
+        finish<reach>(plan, n, touching < n);
+        n = touching = 0;
       }
       for (int jj = first; jj < last; ++jj) {
         const long j = neighbours[jj] & NEIGHMASK;
@@ -132,18 +131,17 @@ void PairLoop::gather(const Plan& plan) {
           overlaps_[n] = overlaps;
           n += overlaps | ((flags[jj] != 0) & (rsq < near * sum * sum));
         } else if constexpr (reach == Reach::grown) {
-          const double all = grown[i] + grown[j];
-          const bool meets = overlaps | ((rsq < all * all) & (rsq < near * sum * sum));
+          const double all = grown_i + grown[j];  // at least sum
           overlaps_[n] = overlaps;
-          gaps |= meets & !overlaps;
-          n += meets;
+          touching += overlaps;
+          n += rsq < all * all;
         } else {
           n += overlaps;
         }
       }
     }
   }
-  finish<reach>(plan, n, gaps);
+  finish<reach>(plan, n, touching < n);
 }
 
 template <Reach reach>
@@ -158,11 +156,10 @@ void PairLoop::finish(const Plan& plan, int n, bool gaps) {
   if (plan.strain) note_strain(*plan.strain, *block_);
   const bool turns = plan.friction || plan.settings.rolling;
   if (plan.ledger)
-    turns ? scatter<true, true, adheres>(n, plan.ledger) : scatter<false, true, adheres>(n, plan.ledger);
+    turns ? scatter<true, true, reach>(plan, n) : scatter<false, true, reach>(plan, n);
   else
-    turns ? scatter<true, false, adheres>(n, nullptr) : scatter<false, false, adheres>(n, nullptr);
+    turns ? scatter<true, false, reach>(plan, n) : scatter<false, false, reach>(plan, n);
   if (plan.ledger && plan.books_friction) book_friction(*plan.ledger, n);
-  if (grown) book_dents(plan, n);
 }
 
 /// Of n contacts those that overlap or are attached across a gap; a pair that is not loses its mark.
@@ -191,16 +188,19 @@ int PairLoop::without_gaps(const Plan& plan, int n) {
   Block& b = *block_;
   const int size = pair_->dnum();
   const double *const x = atom->x[0], *const radius = atom->radius;
+  const double near = neighbor->contactDistanceFactor * neighbor->contactDistanceFactor;
   int kept = 0;
   for (int k = 0; k < n; ++k) {
     const int i = b.i[k], j = b.j[k], slot = slot_[k];
     if (!overlaps_[k]) {
       const double dx = x[3 * i] - x[3 * j], dy = x[3 * i + 1] - x[3 * j + 1], dz = x[3 * i + 2] - x[3 * j + 2];
+      const double sum = radius[i] + radius[j], rsq = dx * dx + dy * dy + dz * dz;
+      if (!(rsq < near * sum * sum)) continue;
       const double* const h = pair_->listgranhistory->firstdouble[i] + size * slot;
       const double delta_max = pass_.now - h[plan.last_step] > 1.0 ? 0.0 : h[0];
       const double added =
           added_overlap<false>(radius[i], radius[j], delta_max, plan.growth->of(i), plan.growth->of(j));
-      if (!closes_gap(radius[i] + radius[j], dx * dx + dy * dy + dz * dz, added)) {
+      if (!closes_gap(sum, rsq, added)) {
         pair_->listgranhistory->firstneigh[i][slot] &= ~flags_;
         continue;
       }
@@ -210,22 +210,6 @@ int PairLoop::without_gaps(const Plan& plan, int n) {
     slot_[kept++] = slot;
   }
   return kept;
-}
-
-/// The depths of the dents of a step, in the order of the list.
-void PairLoop::book_dents(const Plan& plan, int n) {
-  const Block& b = *block_;
-  double* const sums = plan.growth->sums();
-  const int nlocal = atom->nlocal;
-  for (int k = 0; k < n; ++k) {
-    const long i = b.i[k], j = b.j[k];
-    const double x = b.depth_i.a[k], y = b.depth_j.a[k];
-    sums[2 * i] += x;
-    sums[2 * i + 1] += x * x;
-    if (j >= nlocal) continue;
-    sums[2 * j] += y;
-    sums[2 * j + 1] += y * y;
-  }
 }
 
 /// What lies apart in memory is prefetched, and contacts are marked as such.
@@ -256,9 +240,10 @@ void PairLoop::fetch(const Plan& plan, int n) {
     b.mass_i.a[k] = mass[i];
     b.mass_j.a[k] = mass[j];
   }
-  for (int k = 0; k < n && plan.growth; ++k) {
-    b.growth_i.a[k] = plan.growth->of(b.i[k]);
-    b.growth_j.a[k] = plan.growth->of(b.j[k]);
+  const double* const growth = plan.growth ? plan.growth->of_all() : nullptr;
+  for (int k = 0; k < n && growth; ++k) {
+    b.growth_i.a[k] = growth[b.i[k]];
+    b.growth_j.a[k] = growth[b.j[k]];
   }
   const int width = plan.width, *const type = atom->type, *const mask = atom->mask;
   const double* const constants = plan.constants.data();
@@ -277,22 +262,27 @@ void PairLoop::fetch(const Plan& plan, int n) {
 }
 
 /// Forces and torques in the order of the list, those of a body at hand while its pairs follow each other; with them
-/// the halves of the energies of each pair, and that both bodies have a contact that bears.
-template <bool torques, bool books, bool adheres>
-void PairLoop::scatter(int n, Ledger* ledger) {
+/// the halves of the energies of each pair, and that both bodies have a contact that bears; of grown spheres the depths
+/// of their dents.
+template <bool torques, bool books, Reach reach>
+void PairLoop::scatter(const Plan& plan, int n) {
+  constexpr bool adheres = reach == Reach::attached, grown = reach == Reach::grown;
   const Block& b = *block_;
+  Ledger* const ledger = plan.ledger;
+  double* const dents = grown ? plan.growth->sums() : nullptr;
   double *const f = atom->f[0], *const t = atom->torque[0];
   double *const work = books ? ledger->work() : nullptr, *const energy = books ? ledger->energy() : nullptr;
   double *const loaded = books ? ledger->loaded() : nullptr, *const parted = books ? ledger->adhesive() : nullptr;
   const bool gives_back = books && ledger->gives_back();
   const int nlocal = atom->nlocal;
-  double others[10] = {};  // what a ghost gets is computed by its owner
+  double others[12] = {};  // what a ghost gets is computed by its owner
   for (int k = 0; k < n;) {
     const int i = b.i[k];
     double *const fi = f + 3 * i, *const ti = t + 3 * i;
     double fx = fi[0], fy = fi[1], fz = fi[2], tx = ti[0], ty = ti[1], tz = ti[2];
-    double work_i{}, energy_i{}, loaded_i{};
+    double work_i{}, energy_i{}, loaded_i{}, depths_i{}, squares_i{};
     if constexpr (books) work_i = work[i], energy_i = energy[i], loaded_i = loaded[i];
+    if constexpr (grown) depths_i = dents[2 * i], squares_i = dents[2 * i + 1];
     do {
       const int j = b.j[k];
       const bool ours = j < nlocal;
@@ -328,6 +318,14 @@ void PairLoop::scatter(int n, Ledger* ledger) {
           *(ours ? parted + j : others + 9) += 0.5 * b.adhesion_loss.a[k];
         }
       }
+      if constexpr (grown) {
+        const double depth_i = b.depth_i.a[k], depth_j = b.depth_j.a[k];
+        depths_i += depth_i;
+        squares_i += depth_i * depth_i;
+        double* const dents_j = ours ? dents + 2 * j : others + 10;
+        dents_j[0] += depth_j;
+        dents_j[1] += depth_j * depth_j;
+      }
       ++k;
     } while (k < n && b.i[k] == i);
     fi[0] = fx;
@@ -339,6 +337,7 @@ void PairLoop::scatter(int n, Ledger* ledger) {
       ti[2] = tz;
     }
     if constexpr (books) work[i] = work_i, energy[i] = energy_i, loaded[i] = loaded_i;
+    if constexpr (grown) dents[2 * i] = depths_i, dents[2 * i + 1] = squares_i;
   }
 }
 

@@ -76,10 +76,9 @@ class PairLoop : protected LAMMPS_NS::Pointers {
   void finish(const Plan& plan, int n, bool gaps);
   int without_parted(const Plan& plan, int n);
   int without_gaps(const Plan& plan, int n);
-  void book_dents(const Plan& plan, int n);
   void fetch(const Plan& plan, int n);
-  template <bool torques, bool books, bool adheres>
-  void scatter(int n, Ledger* ledger);
+  template <bool torques, bool books, Reach reach>
+  void scatter(const Plan& plan, int n);
   void book_friction(Ledger& ledger, int n);
 
   const Kernel kernel_;

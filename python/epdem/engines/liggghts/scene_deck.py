@@ -61,12 +61,12 @@ def _settings(p: ScenePlan) -> tuple[str, ...]:
 
 
 def memory(m: Model, *, wall: bool = False) -> int:
-    """History values of one contact in LIGGGHTS, in this order: law, step, friction, rolling, compaction."""
+    """History values of one contact in LIGGGHTS, in this order: law, step, friction, rolling, two of compaction."""
     law = laws()[m.law].memory
     friction = 3 * m.nodes + 1 if m.nodes else 3 * m.sliding
     others = friction + 3 * (m.rolling is not None and m.rolling.model in ("epsd", "epsd2"))
     stamp = 0 if wall else int(law + others > 0)
-    return law + stamp + others + m.compaction
+    return law + stamp + others + 2 * m.compaction
 
 
 def history_columns(m: Model) -> tuple[str, ...]:
