@@ -83,6 +83,10 @@ class Cluster:
         conf.write_text(CONF.format(host=host, place=place, socket=socket, port=port, port1=port + 1, port2=port + 2))
         self.place, self.env = place, os.environ | {"SLURM_CONF": str(conf)}
         self.env["PATH"] += ":/usr/sbin"
+        # slurmd of Debian 13 initializes control groups even where no plugin uses them, and a chroot has none; slurmd
+        # of Debian 12 does neither and knows no "disabled"
+        if int(self.ask("slurmd", "-V").split()[1].split(".")[0]) > 22:
+            (place / "cgroup.conf").write_text("CgroupPlugin=disabled\n")
         self.daemons: dict[str, subprocess.Popen[bytes]] = {}
 
     def start(self, name: str) -> None:

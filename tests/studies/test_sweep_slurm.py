@@ -112,7 +112,8 @@ def test_a_scene_that_is_preempted_is_queued_again_and_goes_on_from_its_restart_
     assert sent and found.table[["status", "reason"]].fillna("").to_numpy().tolist() == [["done", ""]]
     assert (folder.of(planned, out, 1) / "in.resume").exists()
     (job,) = jobs(out)
-    assert "Restarts=1 " in here.ask("scontrol", "show", "job", "-o", job)
+    restarts = re.search(r"Restarts=(\d+)", here.ask("scontrol", "show", "job", "-o", job))[1]
+    assert restarts in ("1", "2")  # Slurm 24.11 queues a job that it displaced once more when the job ends
 
 
 @needs_slurm
@@ -127,7 +128,8 @@ def test_a_scene_longer_than_its_walltime_is_queued_again_in_time(here, tmp_path
 
 
 @needs_slurm
-def test_ranks_of_a_point_lie_on_two_nodes(case, here, tmp_path):
+def test_ranks_of_a_point_lie_on_two_nodes(case, here, tmp_path, monkeypatch):
+    monkeypatch.setenv("OMPI_MCA_btl_tcp_if_include", "lo")  # both nodes are this machine; Open MPI 5 leaves it out
     out, spread = tmp_path / "out", {"partition": "wide", "nodes": "2", "ntasks-per-node": "1"}
     found = slurm.run(run.plan(case, {"impact.body.radius": "1 mm"}, ranks=2), out, spread).table
     assert found["status"].tolist() == ["done"], found["reason"][0]

@@ -39,7 +39,8 @@ def command(deck: str, *, ranks: int = 1, log: str = "none") -> list[str]:
         return liggghts
     if "SLURM_JOB_ID" in os.environ and shutil.which("srun"):  # the cluster's own way, which keeps account of it
         nodes = min(ranks, int(os.environ.get("SLURM_JOB_NUM_NODES", "1")))
-        return ["srun", "--overlap", "--mpi=pmix", "-N", str(nodes), "-n", str(ranks), *liggghts]
+        # without -c, Slurm 24.11 reserves all processors of the job's task (SLURM_CPUS_PER_TASK) for each rank
+        return ["srun", "--overlap", "--mpi=pmix", "-N", str(nodes), "-n", str(ranks), "-c", "1", *liggghts]
     root = ["--allow-run-as-root"] if os.geteuid() == 0 else []
     mpirun = shutil.which("mpirun.openmpi") or MPIRUN  # PyPI's MPICH may stand before OpenMPI on PATH
     return [mpirun, "-np", str(ranks), "--oversubscribe", *root, *liggghts]
