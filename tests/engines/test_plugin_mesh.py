@@ -66,6 +66,7 @@ def deck(law, tangential, move, *, ranks=1, steps=3000, stress=False, restart=No
         + f"run {steps}\n{end}"
     )
     text = text.replace("plate.stl type 2", "plate.stl type 2 precision 5e-4") if move == "coarse" else text
+    text = text.replace("fix move all nve/sphere\n", "") if move == "growing" else text  # growth alone makes contacts
     return text.replace("mesh/surface file", "mesh/surface/stress file") if stress else text
 
 

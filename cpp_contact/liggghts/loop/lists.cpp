@@ -28,15 +28,23 @@ struct Bins {
 
 Bins bins;  // as LIGGGHTS filled its bins last
 
+/// Whether n bins that begin with these spheres are empty: no loop that ends early, so that it becomes vectors.
+template <int n>
+bool empty(const int* head) {
+  int all = -1;
+  for (int b = 0; b < n; ++b) all &= head[b];
+  return all == -1;
+}
+
 void Bins::fill(const int* head, const int* next, int count, int spheres) {
   start.resize(count + 1);
   members.resize(spheres + 8);
   bin_of.resize(spheres);
   int n = 0;
-  static constexpr int empty[8] = {-1, -1, -1, -1, -1, -1, -1, -1};
   for (int b = 0; b < count;) {
     const int first = b;
-    while (b + 8 <= count && std::memcmp(head + b, empty, sizeof empty) == 0) b += 8;  // most bins are empty
+    while (b + 32 <= count && empty<32>(head + b)) b += 32;  // most bins are empty
+    while (b + 8 <= count && empty<8>(head + b)) b += 8;
     std::fill(start.data() + first, start.data() + b, n);
     for (const int end = std::min(b + 8, count); b < end; ++b) {
       start[b] = n;

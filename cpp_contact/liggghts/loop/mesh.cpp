@@ -256,7 +256,12 @@ namespace loop = epdem::liggghts::loop;
   contacts.before.swap(contacts.spheres);
   contacts.spheres.clear();
   if (!loop::settled(contacts, *update, *neighbor)) return original(this);
-  for (const int i : contacts.before) std::fill_n(keepflag_[i], nneighs(i), false);
+  for (const int i : contacts.before)
+    for (int k = 0, left = npartner_[i]; left > 0; ++k) {
+      if (partner_[i][k] < 0) continue;
+      keepflag_[i][k] = false;
+      --left;
+    }
 }
 
 [[gnu::visibility("default")]] void FixContactHistoryMesh::cleanUpContacts() {
@@ -268,8 +273,10 @@ namespace loop = epdem::liggghts::loop;
     original(this);
   } else {
     for (const int i : contacts.before)
-      for (int k = nneighs(i) - 1; k >= 0; --k) {
-        if (keepflag_[i][k] || partner_[i][k] < 0) continue;
+      for (int k = 0, left = npartner_[i]; left > 0; ++k) {
+        if (partner_[i][k] < 0) continue;
+        --left;
+        if (keepflag_[i][k]) continue;
         --npartner_[i];
         partner_[i][k] = -1;
         intersectflag_[i][k] = false;
