@@ -16,6 +16,7 @@ WRITERS = {  # words of a command that writes, and a file of the user's in its w
     "deck of impacts": (["deck", "steel.toml", "-o", "d"], "d/in.impact"),
     "deck of a scene": (["deck", "scene.toml", "-o", "d"], "d/setup.in"),
     "deck for YADE": (["deck", "scene.toml", "-o", "d", "-e", "yade"], "d/scene.py"),
+    "own template": (["deck", "mill.j2", "--case", "steel.toml", "-o", "d"], "d/mill"),
     "figures": (["verify", "figures", "-o", "d"], "d/figure_8_17.png"),
     "cost": (["verify", "cost", "steel.toml", "-e", "embedded", "--repetitions", "1", "-o", "d"], "d/cost.png"),
     "motion": (["verify", "motion", "steel.toml", "-e", "embedded", "-o", "d"], "d/motions.csv"),
@@ -42,6 +43,7 @@ def test_a_file_of_the_user_is_kept_until_force_is_given(kind, tmp_path, capsys,
     words, name = WRITERS[kind]
     steel = (CASES / "steel_wall.toml").read_text()
     (tmp_path / "steel.toml").write_text(re.sub("speeds = .*", 'speeds = ["5 m/s"]', steel))
+    (tmp_path / "mill.j2").write_text("{{ deck.time_step }}\n")
     shutil.copy(CASES / "settle_glass.toml", tmp_path / "scene.toml")
     (tmp_path / name).parent.mkdir()
     (tmp_path / name).write_text("of the user")
@@ -53,11 +55,12 @@ def test_a_file_of_the_user_is_kept_until_force_is_given(kind, tmp_path, capsys,
     assert (tmp_path / name).read_text(errors="replace") != "of the user"
 
 
-@pytest.mark.parametrize("kind", ["deck of a scene", "figures"])
+@pytest.mark.parametrize("kind", ["deck of a scene", "own template", "figures"])
 def test_what_a_command_wrote_it_replaces_without_force(kind, tmp_path, capsys, monkeypatch):
     monkeypatch.chdir(tmp_path)
     shutil.copy(CASES / "settle_glass.toml", tmp_path / "scene.toml")
     shutil.copy(CASES / "steel_wall.toml", tmp_path / "steel.toml")
+    (tmp_path / "mill.j2").write_text("{{ deck.time_step }}\n")
     words, name = WRITERS[kind]
     for _ in range(2):
         assert call(words, capsys, monkeypatch).code == 0

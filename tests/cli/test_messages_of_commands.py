@@ -6,6 +6,7 @@ from pathlib import Path
 import pytest
 from calls import CASES, call
 
+CASE = ("--case", "steel.toml", "-o", "d")
 SET = ("--set", "impact.body.radius=1 mm,2 mm")
 SENTENCES = {
     ("run", "scene.toml", "--resume", "--fresh"): "--resume continues a run and --fresh begins it again; leave one out",
@@ -21,8 +22,10 @@ SENTENCES = {
     ("theory",): "'epdem theory' is now 'epdem predict'",
     ("predict", "--speed", "3"): "'3' has no unit; write \"3 m/s\" if that is what is meant",
     ("export liggghts",): "epdem export liggghts: name a folder by --out or --check",
-    ("deck", "own.j2", "-o", "d"): "own.j2: templates are not filled; copy the lines of the deck",
-    ("deck", "steel.toml", "-o", "d", "--set", "a=1"): "steel.toml: --set: it goes with --convert; leave it out",
+    ("deck", "own.j2", *CASE, "--set", "1=2"): "must be key=value with a key of letters",
+    ("deck", "own.j2", *CASE, "--set", "deck=2"): "this name holds the case's values",
+    ("deck", "own.j2", *CASE, "--set", "a=1", "--set", "a=2"): "is given twice; keep",
+    ("deck", "own.j2", *CASE, "--set", "b=1"): "own.j2 does not use it; check the",
     ("sweep", "steel.toml", "--set", "impact.body.radius"): "--set 'impact.body.radius': write it as --set impact",
     ("sweep", "steel.toml", *SET, *SET): "--set impact.body.radius: given twice; write all its values behind one",
     ("sweep", "steel.toml", *SET, "--points", "points.csv"): "impact.body.radius: the key is in points.csv too; keep",
@@ -49,6 +52,7 @@ def test_a_command_says_it_in_one_sentence(words, tmp_path, capsys, monkeypatch)
     Path("hertz.toml").write_text(steel.replace('name = "thornton"', 'name = "hertz"'))
     Path("scene.toml").write_text((CASES / "settle_glass.toml").read_text())
     Path("points.csv").write_text("impact.body.radius\n3 mm\n")
+    Path("own.j2").write_text("{{ a | default(0) }}\n")
     Path("mine").mkdir()
     Path("mine/a.txt").write_text("of the user")
     done = call(words, capsys, monkeypatch)

@@ -32,13 +32,15 @@ from epdem.verification.stability import bulk_cost
 
 STEEL = (CASES / "steel_wall.toml").read_text()
 FAST = STEEL[: STEEL.index("speeds =")] + 'speeds = ["1 m/s"]' + STEEL[STEEL.index("\n", STEEL.index("speeds =")) :]
+TEMPLATE = "{{ deck.time_step }} {{ a | default(0) }}\n"
 HARDNESS = {"e_n": "0.6", "speed": "3 m/s", "hv": "200", "hb": "200", "dent_ratio": "0.5"}
 HARDNESS |= {"target": "floor_load_mean=1 N", "free": "contact.friction=0.1..0.9", "tolerance": "0.1", "engine": "yade"}
 HARDNESS |= {"measured": None, "uncertainty": "0.01", "ranks": "2", "jobs": "1", "out": "there", "force": None}
 TARGET = ("--target", "floor_load_max=1 N", "--free", "contact.friction=0.1..0.5")
 RUN = {"engine": "yade", "law": "cavity", "ranks": "2", "steps": "100", "out": "there", "fresh": None, "resume": None}
 RUN |= {"full": None, "pictures": "svg", "force": None}
-DECK = {"out": "there", "engine": "yade", "law": "cavity", "given": "a=1", "force": None, "convert": None}
+DECK = {"out": "there", "engine": "yade", "law": "cavity", "case": "other.toml", "given": "a=1", "force": None}
+DECK |= {"convert": None}
 MY_DECK = """fix m all property/global youngsModulus peratomtype 1e7
 pair_style gran model hertz
 """
@@ -56,6 +58,7 @@ KINDS = {  # words of a call without the option, and the value of every option
         ("deck", "my.in", "--convert", "--set", "yieldPressure=1", "-o", "d"),
         DECK | {"law": "johnson"},
     ),
+    "deck of an own template": (("deck", "own.j2", "-o", "d", "--case", "steel.toml"), DECK),
     "predict impacts": (("predict", "steel.toml"), {"law": "cavity", "error": "1e-2"} | ONE_IMPACT),
     "crosscheck impacts": (
         ("verify crosscheck", "steel.toml"),
@@ -190,6 +193,7 @@ def evidence(words, folder, library, capsys, monkeypatch, in_the_way=()):
     monkeypatch.chdir(folder)
     (folder / "steel.toml").write_text(FAST)
     (folder / "other.toml").write_text(FAST.replace("10 mm", "20 mm"))
+    (folder / "own.j2").write_text(TEMPLATE)
     (folder / "my.in").write_text(MY_DECK)
     (folder / "points.csv").write_text("impact.body.radius\n3 mm\n")
     if words[0] == "status":

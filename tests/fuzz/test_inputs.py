@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Whatever a case file or an option holds: it is done, or one sentence says what is wrong; no traceback."""
+"""Whatever a case file, an option or a template holds: it is done, or one sentence says what is wrong; no traceback."""
 
 import contextlib
 import io
@@ -21,6 +21,7 @@ from epdem.case.toml import read_toml
 from epdem.case.warnings import case_warnings
 from epdem.cli import main as cli
 from epdem.engines import scene_engine
+from epdem.engines.liggghts.own_template import write
 from epdem.errors import CaseError
 from epdem.impacts.experiment import experiment
 from epdem.impacts.plan import plan
@@ -117,7 +118,7 @@ COMMANDS = [
     "run",
     "nothing",
 ]
-OPTIONS = ["-o", "--out", "-e", "--law", "-l", "--json", "--set", "-k", "--hv", "--e-n", "--speed", "--force"]
+OPTIONS = ["-o", "--out", "-e", "--law", "-l", "--json", "--set", "-k", "--hv", "--e-n", "--speed", "--case", "--force"]
 OPTIONS += [
     "--points",
     "--seed",
@@ -134,6 +135,7 @@ OPTIONS += [
 THINGS = [
     "steel.toml",
     "scene.toml",
+    "own.j2",
     "nowhere",
     "out",
     "embedded",
@@ -161,7 +163,7 @@ def called(argv: list[str]) -> tuple[int, str]:
     return ended.value.code or 0, error.getvalue()
 
 
-@given(st.sampled_from(COMMANDS), st.sampled_from(["steel.toml", "scene.toml", ""]), arguments)
+@given(st.sampled_from(COMMANDS), st.sampled_from(["steel.toml", "scene.toml", "own.j2", ""]), arguments)
 def test_any_command_line_is_carried_out_or_refused_by_one_sentence(command, file, more):
     more = ["-e", "embedded", *more] if command == "run" else more
     more = ["--dry-run", *more] if command == "sweep" else more
@@ -169,6 +171,7 @@ def test_any_command_line_is_carried_out_or_refused_by_one_sentence(command, fil
         steel = (CASES / "steel_wall.toml").read_text()
         Path("steel.toml").write_text(re.sub("speeds = .*", 'speeds = ["5 m/s"]', steel))
         Path("scene.toml").write_bytes((CASES / "settle_glass.toml").read_bytes())
+        Path("own.j2").write_text("{{ deck.time_step }}\n")
         before = sorted(map(str, Path().iterdir()))
         code, said = called([w for w in [command, file, *more] if "\0" not in w])
         assert code in (0, 1, 2, 3), code
@@ -177,6 +180,39 @@ def test_any_command_line_is_carried_out_or_refused_by_one_sentence(command, fil
         elif code == 2:
             one_sentence(said)
             assert sorted(map(str, Path().iterdir())) == before
+
+
+PIECES = ["{{ deck.time_step }}", "{% for i in range(9) %}", "{% endfor %}", "{{ a }}", "{{ 1/0 }}", "{% if a %}", "{#"]
+PIECES += [
+    "{{",
+    "}}",
+    "{% include 'own.j2' %}",
+    "{% endif %}",
+    "{{ deck.__class__ }}",
+    "{{ ''.join(case) }}",
+    "run 1\n",
+]
+PIECES += ["{% macro m() %}{{ m() }}{% endmacro %}{{ m() }}", "{% set x = deck %}", "{{ x.y.z }}"]
+PIECES += [
+    "{% import 'liggghts/macros.j2' as m %}",
+    "{{ case.materials | length }}",
+    "{{ deck.title | upper }}",
+    "{% raw %}",
+]
+
+
+@given(
+    st.lists(st.one_of(st.sampled_from(PIECES), words), max_size=6).map("".join), st.dictionaries(words, st.integers())
+)
+def test_any_template_is_filled_or_refused_by_one_sentence(text, sets):
+    with tempfile.TemporaryDirectory() as folder:
+        template, out = Path(folder) / "own.j2", Path(folder) / "out"
+        template.write_text(text, encoding="utf-8")
+        try:
+            write(template, CASES / "steel_wall.toml", dict(sets), out)
+        except CaseError as error:
+            one_sentence(str(error))
+            assert not out.exists()
 
 
 @given(values)

@@ -16,7 +16,7 @@ from epdem.case.toml import read_toml
 from epdem.engines import engine, log
 from epdem.engines.lammps import launcher
 from epdem.engines.lammps.engine import Lammps
-from epdem.engines.liggghts import dump, scene_tables, session, tune
+from epdem.engines.liggghts import dump, own_template, scene_tables, session, tune
 from epdem.engines.liggghts import engine as liggghts
 from epdem.engines.liggghts.launcher import OUT
 from epdem.engines.yade import scene_tables as yade_tables
@@ -152,10 +152,12 @@ def test_decks_and_studies(tmp_path):
     deck.write_text("run 1\nrun 2\n")
     with says("2 lines start with 'run', expected 1"):
         variants.edit(deck, Edit("run", ()))
-    with says("a trial ended before its second piece; give it more time"):
-        tune._of_cuts({"x": [(1.0, 1)]})
+    with says("the trials ended before each skin had two turns; give them more time"):
+        tune._trials([], {"x": []}, [1e-3])
     with says("deck cannot be made into another set-up"):
         variants.edits(variants.PositionSampler(engine("embedded"), tmp_path))
+    with says(r"a template's name ends in \.j2; the deck is written without it", CaseError):
+        own_template.write(Path(".j2"), CASES / "steel_wall.toml", {}, tmp_path)
     with says(r"stress has shape \(3,\), must end in \(3, 3\)", ValueError):
         principal([1.0, 2.0, 3.0])
     with says("law cavity: .*no energy created at yield", ValueError):

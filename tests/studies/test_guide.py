@@ -105,6 +105,8 @@ def test_every_block_of_the_tour_runs(tmp_path):
 @pytest.mark.parametrize("page", ["laws", "adhesion", "partial_slip", "yade", "scenes"])
 def test_every_block_of_a_page_runs_with_small_cases(page, tmp_path):
     small(tmp_path)
+    for _, _, text in of("jinja", f"{page}.md"):
+        (tmp_path / "my.in.j2").write_text(text)
     play(blocks(page), tmp_path, cases=False)
     assert list(tmp_path.glob("runs/*/report.html"))
 

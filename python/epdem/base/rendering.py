@@ -4,7 +4,7 @@
 from functools import cache
 from pathlib import Path
 from types import SimpleNamespace
-from typing import Any
+from typing import Any, TypeVar
 
 import jinja2
 import numpy as np
@@ -36,6 +36,14 @@ class Deck(SimpleNamespace):
 
 
 REASON = "\x1f"  # between a line and its reason
+OPTIONS: dict[str, Any] = {
+    "undefined": jinja2.StrictUndefined,
+    "trim_blocks": True,
+    "lstrip_blocks": True,
+    "keep_trailing_newline": True,
+    "autoescape": False,  # decks are no HTML
+}
+Prepared = TypeVar("Prepared", bound=jinja2.Environment)
 
 
 def line(text: object) -> str:
@@ -43,27 +51,25 @@ def line(text: object) -> str:
     return " ".join(str(text).split()).rstrip("& ")
 
 
-@cache  # with its templates, which take far longer to read than to fill
-def environment(*folders: Path, reasons: bool = False) -> jinja2.Environment:
-    """The template environment: our templates, and `folders` before them.
+def prepared(env: Prepared, *, reasons: bool = False) -> Prepared:
+    """An environment with our filters and names.
 
     `why("...")` in a template is the reason of its line: with `reasons` it follows the line after REASON, else it is
     nothing.
     """
-    env = jinja2.Environment(
-        loader=jinja2.FileSystemLoader([*folders, paths.beside("templates")]),
-        undefined=jinja2.StrictUndefined,
-        trim_blocks=True,
-        lstrip_blocks=True,
-        keep_trailing_newline=True,
-        autoescape=False,  # decks are no HTML
-    )
     env.globals["version"] = __version__
     env.globals["why"] = (lambda reason: REASON + reason) if reasons else (lambda reason: "")
     env.filters["line"] = line
     env.filters["number"] = number
     env.filters["numbers"] = lambda values: " ".join(number(v) for v in values)
     return env
+
+
+@cache  # with its templates, which take far longer to read than to fill
+def environment(*folders: Path, reasons: bool = False) -> jinja2.Environment:
+    """The template environment: our templates, and `folders` before them; `reasons` as in `prepared`."""
+    loader = jinja2.FileSystemLoader([*folders, paths.beside("templates")])
+    return prepared(jinja2.Environment(loader=loader, **OPTIONS), reasons=reasons)
 
 
 def render(template: str, /, *, reasons: bool = False, **context: object) -> str:

@@ -145,13 +145,19 @@ def _run_impacts(
 
 @app.command()
 def deck(
-    file: Annotated[Path, typer.Argument(metavar="CASE|DECK", help="case file (TOML), or a deck to convert")],
+    file: Annotated[
+        Path,
+        typer.Argument(
+            metavar="CASE|TEMPLATE|DECK", help="case file (TOML), a template of your own (.j2), a deck to convert"
+        ),
+    ],
     out: Annotated[Path, typer.Option("--out", "-o", help="folder for the deck")],
     engine: Annotated[str, typer.Option("--engine", "-e", help="liggghts or yade")] = DEFAULT_ENGINE,
     law: Laws = None,
+    case: Annotated[Path | None, typer.Option("--case", help="the case that fills the template")] = None,
     given: Annotated[
         list[str] | None,
-        typer.Option("--set", metavar="NAME=VALUE", help="a property of the law for the converted deck; repeat"),
+        typer.Option("--set", metavar="KEY=VALUE", help="a value for the template or the deck; repeat for more"),
     ] = None,
     convert: Annotated[
         bool, typer.Option("--convert", help="change the model of a LIGGGHTS deck to --law (default: thornton)")
@@ -159,20 +165,27 @@ def deck(
     force: Force = False,
     as_json: AsJson = False,
 ) -> None:
-    """Write the deck of a case, or convert a LIGGGHTS deck.
+    """Write the deck of a case, fill a template of your own with the values of a case, or convert a LIGGGHTS deck.
 
     Example: epdem deck --convert my.in --set yieldPressure=1e8 -o converted
     """
     if convert:
+        refuse(file, "--convert takes nothing but a LIGGGHTS deck", case=case)
         if engine != DEFAULT_ENGINE or len(law or []) > 1:
             raise CaseError(
                 f"{file}: --convert writes one LIGGGHTS deck with one law; leave out --engine, name one --law"
             )
         cli_scene.deck_converted(file, (law or ["thornton"])[0], given or [], out, force=force, as_json=as_json)
         return
-    refuse(file, "it goes with --convert", set=given)
     if file.suffix == ".j2":
-        raise CaseError(f"{file}: templates are not filled; copy the lines of the deck that 'epdem deck CASE' writes")
+        if case is None:
+            raise CaseError(f"{file}: an own template needs the values of a case; add --case CASE")
+        refuse(file, "the deck of an own template has the law of its case", law=law)
+        if engine != DEFAULT_ENGINE:
+            raise CaseError(f"{file}: --engine {engine}: own templates are for {DEFAULT_ENGINE}; leave it out")
+        cli_scene.deck_template(file, case, given or [], out, force=force, as_json=as_json)
+        return
+    refuse(file, "it goes with an own template (.j2)", case=case, set=given)
     if cli_scene.is_scene(file):
         refuse(file, "a scene has its own law", law=law)
     if len(law or []) > 1:
