@@ -43,10 +43,7 @@ def title(law: str) -> str:
 
 @cache
 def module_folder() -> Path:
-    """The folder of epdem_yade.so, built as `epdem export yade` says; the first test builds it, others wait.
-
-    Without optimisation, which is quick and changes no bit.
-    """
+    """The folder of epdem_yade.so, built as `epdem export yade` says; the first test builds it, others wait."""
     if named := os.environ.get("EPDEM_YADE_MODULE"):
         return Path(named)
     EXPORTED.mkdir(parents=True, exist_ok=True)
@@ -61,9 +58,7 @@ def module_folder() -> Path:
                     place.parent.mkdir(parents=True, exist_ok=True)
                     shutil.copyfile(file, place)
         for command in sources.commands(EXPORTED)[:2]:
-            text = command.replace(
-                "/path/to/yade", f"{os.environ['YADE_SOURCE']} '-DCMAKE_CXX_FLAGS_RELEASE=-O0 -DNDEBUG'"
-            )
+            text = command.replace("/path/to/yade", os.environ["YADE_SOURCE"])
             done = subprocess.run(["bash", "-c", text], capture_output=True, text=True, check=False)
             assert done.returncode == 0, done.stdout[-3000:] + done.stderr[-3000:]
     return EXPORTED / "build"
