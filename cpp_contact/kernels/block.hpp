@@ -48,13 +48,13 @@ struct Pass : ContactSettings {
 /// Computes n contacts; the lanes behind them have valid indices and a history that nobody reads (`pad`).
 using Kernel = void (*)(Block&, int n, const Pass&);
 
-/// The kernels of one instruction set: law and friction by their places in their lists, whether rolling has a history,
-/// whether the contacts are at walls; null: no such model.
+/// The kernels of one instruction set: law and friction by their places in their lists, whether the contacts are at
+/// walls; null: no such model.
 struct Kernels {
   static constexpr int most_laws = 16, most_frictions = 16;
-  Kernel of[most_laws][most_frictions][2][2];
+  Kernel of[most_laws][most_frictions][2];
   SphereKernels spheres;
-  Kernel grown[most_laws][most_frictions][2];  // pairs with compaction: law, friction, whether rolling has a history
+  Kernel grown[most_laws][most_frictions];  // pairs with compaction
 };
 
 extern const Kernels kernels_sse2, kernels_avx2, kernels_avx512;

@@ -11,29 +11,30 @@
 namespace epdem::kernels {
 namespace {
 
-/// The first `count` numbers of each lane's history.
+/// `count` numbers of each lane's history, from number `from` on.
 template <int count>
-EPDEM_INLINE void read(double* const* history, Lanes* value) {
+EPDEM_INLINE void read(double* const* history, Lanes* value, int from = 0) {
   for (int at = count - 4; at > -4; at -= 4) {
     const int first = at < 0 ? 0 : at;  // 3 are left: the fourth is read a second time
     if (at < -1 || count < 4) break;
-    const Columns c = columns([=](int l) __attribute__((always_inline)) { return load<Row>(history[l] + first); });
+    const Columns c =
+        columns([=](int l) __attribute__((always_inline)) { return load<Row>(history[l] + from + first); });
     value[first] = c.a, value[first + 1] = c.b, value[first + 2] = c.c, value[first + 3] = c.d;
   }
   for (int k = 0; k < (count < 4 ? count : count % 4 == 3 ? 0 : count % 4); ++k)
-    for (int l = 0; l < lane_count; ++l) value[k][l] = history[l][k];
+    for (int l = 0; l < lane_count; ++l) value[k][l] = history[l][from + k];
 }
 
 template <int count>
-EPDEM_INLINE void write(double* const* history, const Lanes* value) {
+EPDEM_INLINE void write(double* const* history, const Lanes* value, int from = 0) {
   for (int at = count - 4; at > -4; at -= 4) {
     const int first = at < 0 ? 0 : at;
     if (at < -1 || count < 4) break;
     rows({value[first], value[first + 1], value[first + 2], value[first + 3]},
-         [=](int l, const Row& row) __attribute__((always_inline)) { store(history[l] + first, row); });
+         [=](int l, const Row& row) __attribute__((always_inline)) { store(history[l] + from + first, row); });
   }
   for (int k = 0; k < (count < 4 ? count : count % 4 == 3 ? 0 : count % 4); ++k)
-    for (int l = 0; l < lane_count; ++l) history[l][k] = value[k][l];
+    for (int l = 0; l < lane_count; ++l) history[l][from + k] = value[k][l];
 }
 
 EPDEM_INLINE Lanes at(const Line& line, int k) { return load<Lanes>(line.a + k); }
@@ -125,6 +126,9 @@ struct Recorder {
   }
 };
 
+/// Whether a pair parted since its last evaluation.
+EPDEM_INLINE Mask parted(double now, Lanes last_step) { return now - last_step > 1.0; }
+
 /// The values of a history one by one: a copy as a whole would go through memory.
 template <int count, class From, class To>
 EPDEM_INLINE void copy(const From* from, To* to) {
@@ -133,15 +137,39 @@ EPDEM_INLINE void copy(const From* from, To* to) {
   for (int k = 0; k < count; ++k) target[k] = source[k];
 }
 
+/// History of rolling friction behind `first` values of other models. Rows of four are faster than three numbers: the
+/// kernel writes the value before them later, and where no other model has a history, it is the step.
+template <int first, int last_step>
+struct RollingHistory {
+  double* const* history = nullptr;
+  double now = 0.0;  // step
+
+  EPDEM_INLINE operator Vec<Lanes>() const {
+    Lanes value[4], last;
+    read<3 + row>(history, value, first - row);
+    const Vec<Lanes> all{value[row], value[row + 1], value[row + 2]};
+    if constexpr (last_step < 0) return all;
+    read<1>(history, &last, last_step);
+    return select(parted(now, last), Vec<Lanes>{}, all);
+  }
+  EPDEM_INLINE void operator=(const Vec<Lanes>& v) const {
+    const Lanes step = constant<Lanes>(now), value[4] = {row ? step : v.x, row ? v.x : v.y, row ? v.y : v.z, v.z};
+    write<3 + row>(history, value, first - row);
+  }
+
+ private:
+  static constexpr int row = first > 0;
+};
+
 /// History of a contact: the values of the law, of pairs the step of the last evaluation (hosts end the contacts of
 /// walls), friction, rolling friction, with compaction u of the sums of the step before and the overlap that growth
 /// added.
-template <class Law, class Friction, bool rolls, bool wall, bool grows = false>
+template <class Law, class Friction, bool wall, bool grows = false>
 [[gnu::flatten]] void contacts(Block& b, int n, const Pass& pass) {
   constexpr int law_values = history_size<Law>, friction_values = values_of<Friction, Lanes>;
-  constexpr int last_step = law_values, sliding = last_step + !wall, rolling = sliding + friction_values;
-  constexpr int added = rolling + 3 * rolls;
-  constexpr int values = law_values || friction_values || rolls ? added + 2 * grows : 0;
+  constexpr int last_step = wall ? -1 : law_values, sliding = law_values + !wall, rolling = sliding + friction_values;
+  constexpr int values = law_values || friction_values ? rolling : 0;
+  [[maybe_unused]] const int added = rolling + (grows && has_history(Rollings{}, pass.rolling) ? 3 : 0);
   using Pair = ContactConstants<Law>;
   constexpr int constants = (sizeof(Pair) / sizeof(Lanes) + 3) / 4 * 4;
   static_assert(constants <= most_constants && offsetof(Pair, law) == law_data * sizeof(Lanes));
@@ -177,24 +205,25 @@ template <class Law, class Friction, bool rolls, bool wall, bool grows = false>
       c = between_spheres(at(b.radius_i, k), at(b.radius_j, k), d, v, spin_i, spin_j);
     }
 
-    Lanes value[values ? values : 1] = {};
-    ContactHistory<Law, Friction> history;
+    Lanes value[values + 2 * grows ? values + 2 * grows : 1] = {};
+    ContactHistory<Law, Friction, RollingHistory<rolling, last_step>> history;
+    history.rolling = {b.history + k, pass.now};
     if constexpr (values > 0) {
       read<values>(b.history + k, value);
+      if constexpr (grows) read<2>(b.history + k, value + values, added);
       if constexpr (!wall) {
-        const auto is_new = pass.now - value[last_step] > 1.0;  // the pair parted since the last evaluation
-        for (int s = 0; s < values; ++s) value[s] = select(is_new, Lanes{}, value[s]);
+        const auto is_new = parted(pass.now, value[last_step]);
+        for (int s = 0; s < values + 2 * grows; ++s) value[s] = select(is_new, Lanes{}, value[s]);
       }
       copy<law_values>(value, &history.law);
       copy<friction_values>(value + sliding, &history.friction);
-      if constexpr (rolls) history.rolling = {value[rolling], value[rolling + 1], value[rolling + 2]};
     }
 
     [[maybe_unused]] const Lanes overlap = c.overlap;
     [[maybe_unused]] Lanes last{}, growing{};
     [[maybe_unused]] Grown<Lanes> grown{};
     if constexpr (grows) {
-      last = value[added];
+      last = value[values];
       growing =
           added_overlap<wall>(c.radius_i, c.radius_j, history.law.delta_max, at(b.growth_i, k), at(b.growth_j, k));
       grown = grow<Law>(history.law, overlap, growing, last);
@@ -205,12 +234,12 @@ template <class Law, class Friction, bool rolls, bool wall, bool grows = false>
       return wall ? at(b.mass_i, k) : effective_mass(b, k, pass.freeze);
     };
     ContactLoads<Lanes> loads;  // assigned below: GCC leaves in memory what it initialises with the result
-    loads = contact<Friction, rolls, wall>(pair, pass, c, history, mass, Recorder{b, k, n, pass});
+    loads = contact<Friction, wall>(pair, pass, c, history, mass, Recorder{b, k, n, pass});
 
     if constexpr (grows) {
       history.law.delta_max = largest_overlap(grown, overlap);
-      value[added] = growing;
-      value[added + 1] = grown.added;
+      const Lanes growth[] = {growing, grown.added};
+      write<2>(b.history + k, growth, added);
       const auto depths = depths_of<wall>(c.radius_i, c.radius_j, history.law.delta_max);
       store(b.depth_i.a + k, depths.i);
       store(b.depth_j.a + k, depths.j);
@@ -219,9 +248,6 @@ template <class Law, class Friction, bool rolls, bool wall, bool grows = false>
     if constexpr (values > 0) {
       copy<law_values>(&history.law, value);
       copy<friction_values>(&history.friction, value + sliding);
-      if constexpr (rolls)
-        value[rolling] = history.rolling.x, value[rolling + 1] = history.rolling.y,
-        value[rolling + 2] = history.rolling.z;
       if constexpr (!wall) value[last_step] = constant<Lanes>(pass.now);
       write<values>(b.history + k, value);
     }
@@ -232,36 +258,28 @@ template <class Law, class Friction, bool rolls, bool wall, bool grows = false>
 }
 
 /// No kernel for what no host offers: contacts with adhesion that have partial slip.
-template <class Law, class Friction, bool rolls, bool wall>
+template <class Law, class Friction, bool wall>
 constexpr Kernel offered() noexcept {
   if constexpr (adheres<Law> && !Friction::of_liggghts)
     return nullptr;
   else
-    return &contacts<Law, Friction, rolls, wall>;
+    return &contacts<Law, Friction, wall>;
 }
 
-template <class Law, class... Models>
-constexpr void fill(Kernels& kernels, List<Models...>) noexcept {
-  int k = 0;
-  const auto pairs_of = [&](int friction, auto model) {
-    using Model = decltype(model);
-    if constexpr (compacts<Law>) {
-      kernels.grown[detail::place<Law>()][friction][0] = &contacts<Law, Model, false, false, true>;
-      kernels.grown[detail::place<Law>()][friction][1] = &contacts<Law, Model, true, false, true>;
-    }
-  };
-  (pairs_of(k++, Models{}), ...);
-  k = 0;
-  (([&](Kernel(&of)[2][2]) {
-     of[0][0] = offered<Law, Models, false, false>(), of[0][1] = offered<Law, Models, false, true>();
-     of[1][0] = offered<Law, Models, true, false>(), of[1][1] = offered<Law, Models, true, true>();
-   }(kernels.of[detail::place<Law>()][k++])),
-   ...);
+template <class Law>
+constexpr void fill(Kernels& kernels) noexcept {
+  constexpr int law = detail::place<Law>();
+  Frictions::each([&](auto model, int friction) {
+    using Friction = decltype(model);
+    kernels.of[law][friction][0] = offered<Law, Friction, false>();
+    kernels.of[law][friction][1] = offered<Law, Friction, true>();
+    if constexpr (compacts<Law>) kernels.grown[law][friction] = &contacts<Law, Friction, false, true>;
+  });
 }
 
 constexpr Kernels all() noexcept {
   Kernels kernels{};
-#define EPDEM_FILL(Class) fill<Class<Lanes>>(kernels, Frictions{});
+#define EPDEM_FILL(Class) fill<Class<Lanes>>(kernels);
   EPDEM_LAWS(EPDEM_FILL)
 #undef EPDEM_FILL
   kernels.spheres = {half_step, any_moved, near_sphere, near_triangle<true>, near_triangle<false>};

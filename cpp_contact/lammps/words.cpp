@@ -315,24 +315,20 @@ kernels::Kernel kernel_of(LAMMPS* lmp, const std::string& place, const Models& m
   if (!set)
     fail(lmp, "EPDEM_SIMD = " + std::string(wanted) +
                   ": this processor has no such instructions; leave it unset, or take sse2, avx2 or avx512");
-  bool rolls = false;
-  Rollings::each([&](auto model, int at) { rolls |= at == models.rolling && decltype(model)::has_history; });
-  const kernels::Kernel kernel = set->of[models.law->place][models.friction][rolls][wall];
+  const kernels::Kernel kernel = set->of[models.law->place][models.friction][wall];
   if (kernel) return kernel;
   fail(lmp, place + ": tangential " + names<Frictions>()[models.friction] + " does not exist beside law " +
                 models.law->name + "; take tangential history");
 }
 
 Layout layout_of(const Models& models, bool wall) {
-  int friction = 0, even = 0, rolling = 0;
+  int friction = 0, even = 0;
   Frictions::each([&](auto model, int at) {
     if (at != models.friction) return;
     friction = values_of<decltype(model), double>;
     even = decltype(model)::even_values;
   });
-  Rollings::each(
-      [&](auto model, int at) { rolling = at == models.rolling && decltype(model)::has_history ? 3 : rolling; });
-  const int law = models.law->history_size;
+  const int law = models.law->history_size, rolling = has_history(Rollings{}, models.rolling) ? 3 : 0;
   Layout layout;
   if (law + friction + rolling == 0) return layout;
   layout.root = models.law->root;

@@ -131,24 +131,10 @@ class Law2_ScGeom_EpPhys : public LawFunctor {
 
   template <class Friction, class Law>
   bool act(const ScGeom& geom, EpPhys& phys, const Interaction& contact) {
-    const bool rolls = rolls_with_history();
-    if (phys.wall)
-      return rolls ? act<Friction, true, true, Law>(geom, phys, contact)
-                   : act<Friction, false, true, Law>(geom, phys, contact);
-    return rolls ? act<Friction, true, false, Law>(geom, phys, contact)
-                 : act<Friction, false, false, Law>(geom, phys, contact);
+    return phys.wall ? act<Friction, true, Law>(geom, phys, contact) : act<Friction, false, Law>(geom, phys, contact);
   }
 
-  /// Whether the rolling model has a history.
-  bool rolls_with_history() const {
-    bool rolls = false;
-    epdem::Rollings::each([&](auto model, int place) {
-      if (place == rollingModel_) rolls = model.has_history;
-    });
-    return rolls;
-  }
-
-  template <class Friction, bool rolls, bool wall, class Law>
+  template <class Friction, bool wall, class Law>
   bool act(const ScGeom& geom, EpPhys& phys, const Interaction& contact) {
     const auto& bodies = *scene->bodies;
     const Body::id_t id1 = contact.getId1(), id2 = contact.getId2();
@@ -189,12 +175,12 @@ class Law2_ScGeom_EpPhys : public LawFunctor {
 
     const epdem::ContactSettings settings{scene->dt,          rollingModel_, 0,    pair.damping > 0.0,
                                           pair.dashpot > 0.0, torsion,       false};
-    const auto loads = epdem::contact<Friction, rolls, wall>(
+    const auto loads = epdem::contact<Friction, wall>(
         pair, settings, c, history, [&] { return phys.effectiveMass; },
         Observer{*this, phys, contact, bool(scene->trackEnergy)});
     store(phys, 0, history.law);
     store(phys, friction_at, history.friction);
-    if constexpr (rolls) store(phys, rolling_at, history.rolling);
+    store(phys, rolling_at, history.rolling);
 
     const Vector3r force = swapped ? Vector3r(-eigen(loads.force)) : eigen(loads.force);  // on body 1
     phys.ks = epdem::tangential_stiffness(pair.shear_modulus, phys.contactRadius);

@@ -126,12 +126,14 @@ EPDEM_INLINE Sliding<Number<Law>> sliding_of(const ContactConstants<Law>& pair, 
           true};
 }
 
-/// The history of a contact: the values of the law, then the values of the models beside the law.
-template <class Law, class Friction>
+/// The history of a contact: the values of the law, then the values of the models beside the law. RollingHistory
+/// converts to a vector and takes one; rolling friction with a history reads and writes it, other models leave it
+/// alone.
+template <class Law, class Friction, class RollingHistory = Vec<Number<Law>>>
 struct ContactHistory {
   State<Law> law{};
   typename Friction::template History<Number<Law>> friction{};
-  Vec<Number<Law>> rolling{};
+  RollingHistory rolling{};
 };
 
 /// Forces and torques of a contact [N], [N m]; the force on j is the negative of that on i.
@@ -141,6 +143,15 @@ struct ContactLoads {
 };
 
 namespace detail {
+
+/// Where the bodies are attached; everywhere without adhesion.
+template <class Law>
+EPDEM_INLINE auto attached(const State<Law>& before) noexcept {
+  if constexpr (adheres<Law>)
+    return before.root > 0.0;
+  else
+    return true;
+}
 
 /// All values of a history where the mask says so, else 0.
 template <class T, class M, class History>
@@ -153,18 +164,16 @@ EPDEM_INLINE void keep_where(M mask, History& history) noexcept {
 
 }  // namespace detail
 
-/// One contact. rolls: the rolling model has a history. `history` holds the values before the step, then the values
-/// after the step.
-template <class Friction, bool rolls, bool wall, class Law, class Mass, class Observer>
+/// One contact. `history` holds the values before the step, then the values after the step.
+template <class Friction, bool wall, class Law, class RollingHistory, class Mass, class Observer>
 inline ContactLoads<Number<Law>> contact(const ContactConstants<Law>& pair, const ContactSettings& settings,
-                                         const Kinematics<Number<Law>>& c, ContactHistory<Law, Friction>& history,
-                                         Mass m_star, Observer&& observer) noexcept {
+                                         const Kinematics<Number<Law>>& c,
+                                         ContactHistory<Law, Friction, RollingHistory>& history, Mass m_star,
+                                         Observer&& observer) noexcept {
   using T = Number<Law>;
-  if constexpr (adheres<Law>) {  // bodies that touch without being attached begin anew in all other models
-    const auto attached = history.law.root > 0.0;
-    detail::keep_where<T>(attached, history.friction);
-    if constexpr (rolls) detail::keep_where<T>(attached, history.rolling);
-  }
+  // bodies that touch without being attached begin anew in the models beside the law
+  [[maybe_unused]] const auto attached = detail::attached<Law>(history.law);
+  if constexpr (adheres<Law>) detail::keep_where<T>(attached, history.friction);
   NormalContact<Law> now =
       normal_contact(pair, c.R_star, history.law, c.overlap, T(-c.normal_velocity * settings.dt), -c.normal_velocity,
                      settings.damped, settings.viscous, m_star, settings.repeats, observer);
@@ -191,15 +200,19 @@ inline ContactLoads<Number<Law>> contact(const ContactConstants<Law>& pair, cons
     if constexpr (!wall) loads.torque_j = -c.arm_j * lever;
   }
 
-  if (rolls || settings.rolling != 0) {
+  if (settings.rolling != 0) {
     const epdem::Rolling<T> rolling{c.normal,    c.rolling,       c.R_star, c.overlap,
                                     now.load,    now.k_n,         now.k_t,  pair.rolling_friction,
                                     settings.dt, settings.torsion};
     Rollings::each([&](auto model, int place) __attribute__((always_inline)) {
       using Model = decltype(model);
-      if constexpr (Model::has_history == rolls && !std::is_same_v<Model, NoRolling>)
+      if constexpr (!std::is_same_v<Model, NoRolling>)
         if (place == settings.rolling) {
-          const Vec<T> torque = Model::template torque<wall>(rolling, history.rolling);
+          Vec<T> kept{};
+          if constexpr (Model::has_history) kept = history.rolling;
+          if constexpr (Model::has_history && adheres<Law>) detail::keep_where<T>(attached, kept);
+          const Vec<T> torque = Model::template torque<wall>(rolling, kept);
+          if constexpr (Model::has_history) history.rolling = kept;
           loads.torque_i = loads.torque_i - torque;
           loads.torque_j = loads.torque_j + torque;
         }

@@ -18,7 +18,7 @@ struct List {
 
   /// Calls f(model, place) for all of them.
   template <class F>
-  EPDEM_INLINE static void each(F f) {
+  EPDEM_INLINE static constexpr void each(F f) {
     int place = 0;
     (f(Models{}, place++), ...);
   }
@@ -49,5 +49,13 @@ using Cohesions = List<
     Sjkr,
     Sjkr2>;
 // clang-format on
+
+/// Whether the model at this place of its list has a history.
+template <class... Models>
+constexpr bool has_history(List<Models...> list, int place) noexcept {
+  bool found = false;
+  list.each([&](auto model, int at) { found |= at == place && model.has_history; });
+  return found;
+}
 
 }  // namespace epdem

@@ -21,13 +21,13 @@ class Planned {
     plan_.settings.rolling = std::max(0, Rollings::place(ids_.rolling));
     plan_.settings.cohesion = std::max(0, Cohesions::place(ids_.cohesion));
     plan_.books_friction = books_friction(ids_);
-    Rollings::each([&](auto m, int place) { plan_.rolls |= place == plan_.settings.rolling && m.has_history; });
+    plan_.rolls = has_history(Rollings{}, plan_.settings.rolling);
     plan_.root = model_.normal().root_slot();
     plan_.last_step = model_.normal().history_size();
     if (wall && plan_.root >= 0 && !missing_) missing_ = "contacts with adhesion";
   }
 
-  Kernel kernel() const { return chosen_kernels(lmp_).of[model_.normal().place()][plan_.friction][plan_.rolls][wall_]; }
+  Kernel kernel() const { return chosen_kernels(lmp_).of[model_.normal().place()][plan_.friction][wall_]; }
 
   /// What our loop does not include, by models and settings; nullptr: nothing.
   const char* missing() const { return missing_ ? missing_ : model_.loop_settings().missing(); }
@@ -41,7 +41,7 @@ class Planned {
     plan_.ledger = normal.ledger();
     plan_.strain = normal.strain();
     plan_.growth = normal.growth();
-    plan_.grown = chosen_kernels(lmp_).grown[normal.place()][plan_.friction][plan_.rolls];
+    plan_.grown = chosen_kernels(lmp_).grown[normal.place()][plan_.friction];
     plan_.width = normal.width();
     double** const mu = plan_.friction ? property("coeffFrict", &MODEL_PARAMS::createCoeffFrict) : nullptr;
     double** const rolling =
