@@ -10,6 +10,7 @@
 #include "domain.h"
 #include "error.h"
 #include "force.h"
+#include "kernels/gather.hpp"
 #include "memory.h"
 #include "modify.h"
 #include "neigh_list.h"
@@ -267,42 +268,26 @@ void PairEp::gather() {
   finish(n);
 }
 
+/// Fills the block with n > 0 pairs; history_at(i, k) is the history of pair k.
+template <class HistoryAt>
+void PairEp::fetch(int n, HistoryAt history_at) {
+  kernels::Block& b = *block_;
+  const int values = layout_.values;
+  const auto history = [&](long i, int k) {
+    if (values == 0) return;
+    b.history[k] = history_at(static_cast<int>(i), k);
+    for (int line = 0; line < values; line += 8) __builtin_prefetch(b.history[k] + line, 1);
+  };
+  const kernels::Spheres spheres{atom->f[0], atom->torque[0], atom->radius, atom->rmass,
+                                 atom->type, atom->mask,      frozen_};
+  kernels::gather_pairs(b, pass_, n, spheres, {constants_.data(), width_}, history);
+  kernels::pad(b, n);
+}
+
 void PairEp::finish(int n) {
   if (n == 0) return;
   kernels::Block& b = *block_;
-  const double *const v = pass_.v, *const w = pass_.omega, *const f = atom->f[0], *const t = atom->torque[0];
-  const double *const radius = atom->radius, *const mass = atom->rmass;
-  for (int k = 0; k < n; ++k) {
-    const long i = b.i[k], j = b.j[k];
-    if (layout_.values > 0) {
-      double* const history = history_->at(b.i[k], slot_[k]);
-      for (int line = 0; line < layout_.values; line += 8) __builtin_prefetch(history + line, 1);
-      b.history[k] = history;
-    }
-    __builtin_prefetch(v + 3 * j);
-    __builtin_prefetch(w + 3 * j);
-    __builtin_prefetch(f + 3 * j, 1);
-    __builtin_prefetch(t + 3 * j, 1);
-    b.radius_i.a[k] = radius[i];
-    b.radius_j.a[k] = radius[j];
-    b.mass_i.a[k] = mass[i];
-    b.mass_j.a[k] = mass[j];
-  }
-  const int *const type = atom->type, *const mask = atom->mask;
-  const auto constants = [=](int i, int j) {
-    return constants_.data() + most_constants * (type[i] * width_ + type[j]);
-  };
-  b.material[0] = constants(b.i[0], b.j[0]);
-  pass_.several = false;
-  for (int k = 0; k < n && width_ > 2; ++k) {  // more than one type
-    b.material[k] = constants(b.i[k], b.j[k]);
-    pass_.several |= b.material[k] != b.material[0];
-  }
-  for (int k = 0; k < n && frozen_; ++k) {
-    b.frozen_i.a[k] = (mask[b.i[k]] & frozen_) != 0;
-    b.frozen_j.a[k] = (mask[b.j[k]] & frozen_) != 0;
-  }
-  kernels::pad(b, n);
+  fetch(n, [&](int i, int k) { return history_->at(i, slot_[k]); });
   kernel_(b, n, pass_);
   if (strain_) history_->note_strain(b);
   pass_.work ? scatter<true>(n) : scatter<false>(n);
@@ -369,20 +354,11 @@ double PairEp::single(int i, int j, int, int, double rsq, double, double, double
 
   set_pass(false);
   pass_.work = pass_.strain = true;
-  pass_.several = false;
   kernels::Block& b = *block_;
   std::fill_n(b.radius_ratio, kernels::most_lanes, 0.0);
   b.i[0] = i;
   b.j[0] = j;
-  b.history[0] = history.data();
-  b.material[0] = constants_.data() + most_constants * (atom->type[i] * width_ + atom->type[j]);
-  b.radius_i.a[0] = atom->radius[i];
-  b.radius_j.a[0] = atom->radius[j];
-  b.mass_i.a[0] = atom->rmass[i];
-  b.mass_j.a[0] = atom->rmass[j];
-  b.frozen_i.a[0] = (atom->mask[i] & frozen_) != 0;
-  b.frozen_j.a[0] = (atom->mask[j] & frozen_) != 0;
-  kernels::pad(b, 1);
+  fetch(1, [&](int, int) { return history.data(); });
   kernel_(b, 1, pass_);
   const double *const xi = atom->x[i], *const xj = atom->x[j];
   for (int axis = 0; axis < 3; ++axis) fforce += b.force[axis].a[0] * (xi[axis] - xj[axis]) / rsq;

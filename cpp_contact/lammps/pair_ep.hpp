@@ -52,6 +52,8 @@ class PairEp : public LAMMPS_NS::Pair {
   void set_pass(bool counts);
   template <bool adheres>
   void gather();
+  template <class HistoryAt>
+  void fetch(int n, HistoryAt history_at);
   void finish(int n);
   template <bool energies>
   void scatter(int n);

@@ -42,8 +42,7 @@ bool compare_library(LAMMPS_NS::LAMMPS* lmp) {
          found_at("boxxlo", &lmp->domain->boxlo[0]) && has_superquadrics() == superquadrics;
 }
 
-void check_library(LAMMPS_NS::LAMMPS* lmp) {
-  if (library_matches(lmp)) return;
+void refuse_library(LAMMPS_NS::LAMMPS* lmp) {
   const std::string text = std::string("epdem was built for ") + built_for +
                            (superquadrics ? " with superquadrics" : "") + ", but the library in use says \"" +
                            lmp->universe->version + "\"" + (has_superquadrics() ? " and has superquadrics" : "") +
@@ -54,29 +53,33 @@ void check_library(LAMMPS_NS::LAMMPS* lmp) {
 #else
 
 bool compare_library(LAMMPS_NS::LAMMPS*) { return true; }
-void check_library(LAMMPS_NS::LAMMPS*) {}
+void refuse_library(LAMMPS_NS::LAMMPS*) {}
 
 #endif
 
-}  // namespace
+/// The simulation of the last call.
+struct Simulation {
+  LAMMPS_NS::LAMMPS* lmp = nullptr;
+  bool matches = false, models_named = false;
+};
 
-bool library_matches(LAMMPS_NS::LAMMPS* lmp) {
-  static LAMMPS_NS::LAMMPS* known = nullptr;
-  static bool matches = false;
-  if (known != lmp) {
-    matches = compare_library(lmp);
-    known = lmp;
-  }
-  return matches;
+Simulation& simulation(LAMMPS_NS::LAMMPS* lmp) {
+  static Simulation last;
+  if (last.lmp != lmp) last = {lmp, compare_library(lmp), false};
+  return last;
 }
 
+}  // namespace
+
+bool library_matches(LAMMPS_NS::LAMMPS* lmp) { return simulation(lmp).matches; }
+
 void check_host(LAMMPS_NS::LAMMPS* lmp) {
-  static LAMMPS_NS::LAMMPS* known = nullptr;
-  if (known == lmp) return;
-  known = lmp;
+  Simulation& now = simulation(lmp);
+  if (now.models_named) return;
+  now.models_named = true;
   // error->one ends in MPI_Abort without flushing: on a pipe or in a file the message would be lost
   std::setvbuf(stdout, nullptr, _IOLBF, 0);
-  check_library(lmp);
+  if (!now.matches) refuse_library(lmp);
   say(lmp, "epdem " EPDEM_VERSION ":" + model_names());
 }
 

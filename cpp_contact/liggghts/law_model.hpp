@@ -67,14 +67,16 @@ class LawModel : public NormalModel {
     const NormalContact<Law> contact = normal_contact(
         pair, R_star, before, delta, keep ? -s.vn * update->dt : 0.0, -s.vn, pair.damping > 0.0, pair.dashpot > 0.0,
         [&] { return s.meff; }, !keep);
-    Step<Law> now = contact.step;
+    const Step<Law>& now = contact.step;
 
     if (keep) {
       double loss = 0.0;
+      State<Law> after = now.after;
       if constexpr (compacts<Law>)
         if (compaction_) {
           const double reached = largest_overlap(grown, overlap);
           if (plastic_work_) loss = growth_loss(pair.law, R_star, reached, overlap, now_added, last_added);
+          after.delta_max = reached;
           history[growth_slot_] = now_added;
           history[growth_slot_ + 1] = grown.added;
           const auto depths = wall_ ? depths_of<true>(s.radi, 0.0, reached) : depths_of<false>(s.radi, s.radj, reached);
@@ -82,10 +84,8 @@ class LawModel : public NormalModel {
           if (!wall_ && s.j < atom->nlocal) growth_.add(s.j, depths.j);
         }
       if (plastic_work_) ledger_.book(wall_, pair.law, R_star, before, now, delta, loss, {s.i, s.j, atom->nlocal});
-      if constexpr (compacts<Law>)
-        if (compaction_) now.after.delta_max = largest_overlap(grown, overlap);
       if (contact_strain_) strain_.note(s.i, now.radius / R_star, delta / R_star);
-      if constexpr (size > 0) std::memcpy(history + offset_, &now.after, sizeof now.after);
+      if constexpr (size > 0) std::memcpy(history + offset_, &after, sizeof after);
       if (has_step()) history[step_slot_] = now_;
     }
 

@@ -7,6 +7,7 @@
 #include <string>
 
 #include "force.h"
+#include "kernels/gather.hpp"
 #include "modify.h"
 
 namespace epdem::liggghts::loop {
@@ -212,52 +213,29 @@ int PairLoop::without_gaps(const Plan& plan, int n) {
   return kept;
 }
 
-/// What lies apart in memory is prefetched, and contacts are marked as such.
+/// Contacts are marked as such.
 void PairLoop::fetch(const Plan& plan, int n) {
   Block& b = *block_;
-  const double *const v = atom->v[0], *const w = atom->omega[0], *const f = atom->f[0], *const t = atom->torque[0];
-  const double *const radius = atom->radius, *const mass = atom->rmass;
-  const int frozen = pair_->freeze_group_bit(), size = pair_->dnum(), marked = flags_;
+  const int size = pair_->dnum(), marked = flags_, *const slot = slot_;
   int** const flags = pair_->listgranhistory ? pair_->listgranhistory->firstneigh : nullptr;
   double** const histories = pair_->listgranhistory ? pair_->listgranhistory->firstdouble : nullptr;
-  for (int k = 0; k < n; ++k) {
-    const long i = b.i[k], j = b.j[k];
-    if (histories) {
-      double* const h = histories[i] + size * slot_[k];
-      __builtin_prefetch(h, 1);
-      for (int line = 8; line < size - 8; line += 8) __builtin_prefetch(h + line, 1);
-      __builtin_prefetch(h + size - 1, 1);
-      b.history[k] = h;
-      int& flag = flags[i][slot_[k]];
-      if (flag != marked) flag |= marked;
-    }
-    __builtin_prefetch(v + 3 * j);
-    __builtin_prefetch(w + 3 * j);
-    __builtin_prefetch(f + 3 * j, 1);
-    __builtin_prefetch(t + 3 * j, 1);
-    b.radius_i.a[k] = radius[i];
-    b.radius_j.a[k] = radius[j];
-    b.mass_i.a[k] = mass[i];
-    b.mass_j.a[k] = mass[j];
-  }
+  const auto history = [=, &b](long i, int k) {
+    if (!histories) return;
+    double* const h = histories[i] + size * slot[k];
+    __builtin_prefetch(h, 1);
+    for (int line = 8; line < size - 8; line += 8) __builtin_prefetch(h + line, 1);
+    __builtin_prefetch(h + size - 1, 1);
+    b.history[k] = h;
+    int& flag = flags[i][slot[k]];
+    if (flag != marked) flag |= marked;
+  };
+  const Spheres spheres{atom->f[0], atom->torque[0],          atom->radius, atom->rmass, atom->type,
+                        atom->mask, pair_->freeze_group_bit()};
+  gather_pairs(b, pass_, n, spheres, {plan.constants.data(), plan.width}, history);
   const double* const growth = plan.growth ? plan.growth->of_all() : nullptr;
   for (int k = 0; k < n && growth; ++k) {
     b.growth_i.a[k] = growth[b.i[k]];
     b.growth_j.a[k] = growth[b.j[k]];
-  }
-  const int width = plan.width, *const type = atom->type, *const mask = atom->mask;
-  const double* const constants = plan.constants.data();
-  const auto material = [=](int i, int j) { return constants + most_constants * (type[i] * width + type[j]); };
-  b.material[0] = material(b.i[0], b.j[0]);
-  bool several = false;
-  for (int k = 0; k < n && width > 2; ++k) {  // more than one type
-    b.material[k] = material(b.i[k], b.j[k]);
-    several |= b.material[k] != b.material[0];
-  }
-  pass_.several = several;
-  for (int k = 0; k < n && frozen; ++k) {
-    b.frozen_i.a[k] = (mask[b.i[k]] & frozen) != 0;
-    b.frozen_j.a[k] = (mask[b.j[k]] & frozen) != 0;
   }
 }
 
