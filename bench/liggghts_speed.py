@@ -1,19 +1,19 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""What epdem's models cost in LIGGGHTS, as ratios to its own `hertz` with the same tangential model.
+"""Cost of epdem's models in LIGGGHTS, as ratios to LIGGGHTS's `hertz` with the same tangential model.
 
 Run: .venv/bin/python bench/liggghts_speed.py [--quick]
 
-A model name may carry a loop: ep/thornton@avx2, @sse2 (instruction sets of our pair loop) or @generic (LIGGGHTS's loop
-with our model), and before it another tangential model than history: ep/thornton+ep/partial_slip. Every model sees the
-same deck and starts from the same positions; the models take turns, and each keeps its shortest step in processor time
-(step_times.cpp), because on a shared machine the noise only adds. The moving packings are dense, so that they keep
-their contacts whatever a model dissipates: their number stands in the table. From the frozen and the moving packing,
-two equations: what a pair that touches costs, and one that does not; they are drawn in docs/figures/contact_cost.png.
-Instruction counts (callgrind) repeat exactly, but know nothing of divisions and roots that wait for each other. Every
-run is kept in runs/bench, so that an interrupted bench goes on.
+A model name can end in a loop: ep/thornton@avx2 and @sse2 name the instruction set of epdem's pair loop, @generic
+takes LIGGGHTS's loop. A name can hold a tangential model other than history: ep/thornton+ep/partial_slip. All models
+run the same deck from the same positions, in turn. The shortest step of each model in processor time counts
+(step_times.cpp), because other work on the machine only adds time. The moving packings are dense: their number of
+contacts, a column of the table, hardly depends on the dissipation of the model. The frozen and the moving packing give
+two equations for the cost of a touching pair and of a pair apart; docs/figures/contact_cost.png shows both costs.
+Instruction counts (callgrind) are exactly reproducible, and they ignore the latency of divisions and roots. Every run
+is stored in runs/bench, and an interrupted bench continues.
 
-The exit code is 1 if the pairs of one of our models take longer than those of `hertz`, or if `ep/meyer` exceeds
-HARDENING.
+The exit code is 1 if the pair loop of one of epdem's models takes longer than the pair loop of `hertz`, or if
+`ep/meyer` exceeds HARDENING.
 """
 
 import argparse
@@ -56,7 +56,7 @@ MODELS = (
     "thornton_ning",
     *(lammps_packings.MODELS if lammps_packings.available() else ()),
 )
-# pair time over that of hertz
+# largest pair time over the pair time of hertz
 LIMITS = {
     "ep/hertz": 0.45,
     "ep/thornton": 0.45,
@@ -67,7 +67,7 @@ LIMITS = {
 }
 LIMITS |= {"ep/thornton@avx2": 0.45, "ep/thornton@sse2": 0.75}
 HARDENING = {"below their largest overlap": 1.15, "all at their largest overlap": 1.4}  # ep/meyer over ep/thornton
-WHOLE_STEP = 0.5  # the same of whole steps of ep/thornton
+WHOLE_STEP = 0.5  # largest time of a whole step of ep/thornton over a whole step of hertz
 CLOCK = (ROOT / "bench" / "step_times.cpp").read_text() + (ROOT / "bench" / "lammps_packings.py").read_text()
 BESIDE = (
     "rolling_friction cdt",
@@ -120,7 +120,7 @@ def start(folder, name, text, more=None, **options):
 
 
 def data_of(scene):
-    """The data file of a scene; that of the settled bed is the end of a run."""
+    """The data file of a scene; the data file of the settled bed is the end of a run."""
     if SCENES[scene]["data"]:
         return packing(*SCENES[scene]["data"])
 
@@ -173,7 +173,7 @@ def timed(folder, scene, models, repeats, beside=""):
 def instructions(folder, model, grow=False):
     """Instructions in the pair loop for one step of a frozen packing of 2048 spheres, by callgrind.
 
-    Its contacts are below their largest overlap, or all at it, where they `grow`.
+    grow: all contacts are at their largest overlap; else all contacts are below it.
     """
     files, counts = {"packing.data": packing(8, 1.01, 0.03)}, []
     command = shutil.which("valgrind")
@@ -219,7 +219,7 @@ def table_of_scenes(folder, scenes, models, repeats):
 
 
 def table_of_pairs(costs):
-    """ns of a pair that touches and of one that does not, from the two packings of one type on one rank."""
+    """ns of a touching pair and of a pair apart, from the two packings of one type on one rank."""
     print("\n| model | ns per touching pair | ns per pair that does not touch | x hertz, touching |\n|---|---|---|---|")
     times = {}
     for name in costs["frozen"]:
@@ -251,7 +251,7 @@ def figure(times):
 
 
 def table_beside(folder, repeats):
-    """Pair time of ep/thornton with other models beside it, over hertz with the same and over itself without; rows."""
+    """Pair time of ep/thornton with other models, over hertz with these models and over ep/thornton alone; rows."""
     print("\n| moving, with | hertz pair ms/step | ep/thornton pair ms/step | x hertz | x ep/thornton alone |")
     print("|---|---|---|---|---|")
     alone, rows = None, []

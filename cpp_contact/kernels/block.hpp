@@ -59,8 +59,8 @@ struct Kernels {
 
 extern const Kernels kernels_sse2, kernels_avx2, kernels_avx512;
 
-/// The kernels of sse2, avx2 or avx512, or of the widest of them if the name is empty; nullptr: this processor lacks
-/// them, or the name is none of these.
+/// The kernels of the instruction set `name` (sse2, avx2 or avx512); an empty name means the widest set of this
+/// processor. nullptr: the processor lacks the set, or there is no set of this name.
 const Kernels* kernels_of(const char* name);
 
 /// Gives the lanes behind the last of n contacts something harmless.

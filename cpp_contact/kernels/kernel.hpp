@@ -77,7 +77,7 @@ EPDEM_INLINE void largest(Block& b, int k, int n, Lanes radius, Lanes overlap, L
   keep(b.overlap_ratio, overlap);
 }
 
-/// What adhesion books; outside of the kernels, where it would stand six times.
+/// Books the energies of a contact with adhesion; a function of its own, because six kernels call it.
 template <class Law>
 [[gnu::noinline]] void book_adhesive(Block& b, int k, const Law& law, Lanes R_star, const State<Law>& before,
                                      const Step<Law>& now, Lanes overlap) {
@@ -88,7 +88,7 @@ template <class Law>
   store(b.contact_radius.a + k, now.radius);
 }
 
-/// The same for growth.
+/// Books the plastic work of a step with growth.
 template <class Law>
 [[gnu::noinline]] void book_growth(Block& b, int k, const Law& law, Lanes R_star, Lanes delta_max, Lanes overlap,
                                    Lanes now, Lanes last) {

@@ -73,7 +73,7 @@ struct Candidates {
                      __attribute__((always_inline)) { return load<Row>(t.spheres + 4 * static_cast<long>(index[l])); });
   }
 
-  /// Writes those of the mask; their number.
+  /// Writes the candidates in the mask and returns their number.
   EPDEM_INLINE int keep(Mask mask, int* found) const {
     mask &= valid;
     int count = 0, of[lane_count];

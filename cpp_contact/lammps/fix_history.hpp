@@ -28,7 +28,7 @@ class FixHistory : public LAMMPS_NS::Fix {
   /// Whether the list, not the atoms, holds the histories.
   bool at_list() const { return page_holds_; }
 
-  /// The list is in use, also that of the run before.
+  /// The neighbor list of the run before is in use again.
   void resume() { page_holds_ = layout_.values > 0; }
 
   /// The number of the evaluation that follows; `advance` says that it counts.
@@ -45,7 +45,7 @@ class FixHistory : public LAMMPS_NS::Fix {
   void book(const kernels::Block& b, int k, int i, double share, const Models& models);
   /// Notes the largest contact radius and overlap over R* of a block.
   void note_strain(const kernels::Block& b);
-  /// Both, of all contacts of the run and those before.
+  /// Largest contact radius (0) or overlap (1) over R* of all contacts since the start.
   double compute_vector(int which) override;
   /// At the start of an evaluation that counts.
   void open_energies(int atoms);

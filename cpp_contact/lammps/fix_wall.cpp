@@ -91,7 +91,7 @@ void FixWall::init() {
                 pair_->largest_radius(type));
 }
 
-/// As before the first step of a run, when LAMMPS computes forces once more: this changes no history.
+/// LAMMPS also computes forces before the first step of a run; that evaluation changes no history.
 void FixWall::post_force(int) {
   const bool counts = !update->setupflag;
   std::vector<double> before;
@@ -169,7 +169,7 @@ void FixWall::drop_parted(int i, std::vector<Contact>& found) {
   found.erase(std::remove_if(found.begin(), found.end(), parted), found.end());
 }
 
-/// The records of a sphere in the order of its contacts; a contact that is new begins with zeros.
+/// Puts the records of a sphere in the order of its contacts; the history of a new contact begins with zeros.
 void FixWall::keep_records(int i, const std::vector<Contact>& found) {
   const int known = count_[i];
   count_[i] = static_cast<int>(found.size());
@@ -207,7 +207,7 @@ void FixWall::finish(int n) {
   if (pair_->energies()) note(n);
 }
 
-/// The rows of a `dump local`.
+/// Writes the rows of a `dump local`.
 void FixWall::note(int n) {
   const kernels::Block& b = *block_;
   const int most = words_.models.law->most, root = layout_.root;

@@ -14,8 +14,8 @@
 
 namespace epdem::lammps {
 
-/// Contacts of spheres with a wall, whose material and coefficients the words name; the material of the spheres is that
-/// of pair_style ep.
+/// Contacts of spheres with a wall. The words of the fix give the material of the wall and the coefficients; pair_style
+/// ep gives the material of the spheres.
 class FixWall : public LAMMPS_NS::Fix {
  public:
   ~FixWall() override;
@@ -39,22 +39,22 @@ class FixWall : public LAMMPS_NS::Fix {
   double memory_usage() override { return static_cast<double>(held_.capacity() * sizeof(double)); }
 
  protected:
-  /// A contact with the part of the wall of this number; at most `most` of a sphere.
+  /// A contact of a sphere with one part of the wall.
   struct Contact {
     int part;
     double distance;
     double from_wall[3], velocity[3];
   };
 
-  /// Reads all words behind the first `first` ones.
   FixWall(LAMMPS_NS::LAMMPS* lmp, int count, char** word);
+  /// Reads the words from number `first` on; a sphere has at most `most` contacts with the wall.
   void read(int first, int count, char** word, int most);
 
-  /// Before the spheres of a step.
+  /// Called before the first sphere of a step.
   virtual void begin() {}
   /// Distance [length] up to which `find` looks for parts of the wall: with adhesion across gaps, too.
   double reach_of(int i) const { return atom->radius[i] + reach_; }
-  /// The contacts of a sphere, at most `most`.
+  /// Finds the contacts of sphere i, at most `most`.
   virtual void find(int i, std::vector<Contact>& found) = 0;
 
   const std::string place_;
@@ -70,8 +70,8 @@ class FixWall : public LAMMPS_NS::Fix {
   Layout layout_;
   int most_ = 0, stride_ = 0;
   double reach_ = 0.0;        // beyond the radius [length]
-  std::vector<double> held_;  // by atom: `most` records of a part and the values of its contact
-  std::vector<int> count_;    // of records that hold
+  std::vector<double> held_;  // `most` records for each atom: number of the part, history of the contact
+  std::vector<int> count_;    // of records in use, for each atom
   PairEp* pair_ = nullptr;
   std::vector<double> constants_;  // by type
   kernels::Kernel kernel_ = nullptr;

@@ -113,7 +113,7 @@ struct Range {
 
 constexpr double unlimited = HUGE_VAL;
 
-/// Takes one word after the other.
+/// Reads one word after the other.
 class WordReader {
  public:
   WordReader(LAMMPS* lmp, const std::string& place, int count, char** word)

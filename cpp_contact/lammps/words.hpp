@@ -18,12 +18,12 @@ struct Law {
   int parameter_count;
   int strength;  // index of the parameter, -1: none
   bool (*valid)(const double*);
-  const char* condition;  // what `valid` asks, in words
+  const char* condition;  // the condition of `valid` in words
   int place;              // in the kernels
   int history_size;
-  int root;  // index in the history of what says that the bodies are attached, -1: no adhesion
-  int jump;  // of the force that a crossing of touch or fold adds, -1: no adhesion
-  int most;  // of the largest overlap, -1: none
+  int root;  // index in the history of a value > 0 while the bodies are attached, -1: no adhesion
+  int jump;  // index of the force that a crossing of touch or fold adds, -1: no adhesion
+  int most;  // index of the largest overlap, -1: none
   /// Writes the numbers of a law object of E* and these parameters.
   void (*put)(double E_star, const double* parameters, double* numbers);
   /// Largest gap [length] across which a law object of these numbers pulls; 0 without adhesion.
@@ -45,7 +45,7 @@ struct Models {
   bool books_friction = false;  // friction computes its work
 };
 
-/// What two bodies have in common; 0: no such force. Restitution of 0: no dashpot along the normal, or beside friction.
+/// Coefficients of a pair of bodies; 0: no such force. A restitution of 0 means no dashpot.
 struct Coefficients {
   double friction = 0.0, normal_restitution = 0.0, tangential_restitution = 0.0, rolling = 0.0, cohesion = 0.0;
 
@@ -61,14 +61,14 @@ struct Words {
 /// Reads the words behind `place`, e.g. "pair_coeff 1 2"; ends the run with a sentence about the first wrong one.
 Words read_words(LAMMPS_NS::LAMMPS* lmp, const std::string& place, int count, char** word);
 
-/// The models of both, whose law may be null; ends the run if they exclude each other.
+/// The models of a pair style that has models `a` and `b`, whose law may be null; ends the run if a and b differ.
 Models common_models(LAMMPS_NS::LAMMPS* lmp, const std::string& place, const Models& a, const Models& b);
 
 /// Coefficients of unlike types: geometric means.
 Coefficients mixed(const Coefficients& a, const Coefficients& b);
 
-/// kernels::most_constants numbers of a contact. A parameter of a body is that of the body with the lower strength; a
-/// parameter of a pair of surfaces is the geometric mean.
+/// Writes the kernels::most_constants constants of a contact. The body with the lower strength gives the parameters of
+/// the law; a parameter of a pair of surfaces is the geometric mean of both bodies.
 void put_constants(const Law& law, const Material& i, const Material& j, const Coefficients& common, double* constants);
 
 /// Ends the run if LAMMPS's settings exclude contacts of spheres by these models: atom style, units, minimization.
@@ -81,10 +81,10 @@ void refuse_rigid_bodies(LAMMPS_NS::LAMMPS* lmp, const std::string& place);
 double checked_gap(LAMMPS_NS::LAMMPS* lmp, const std::string& place, const Law& law, const double* constants,
                    double R_star);
 
-/// The kernel of these models; ends the run if there is none.
+/// The kernel of these models; ends the run if the models have no kernel.
 kernels::Kernel kernel_of(LAMMPS_NS::LAMMPS* lmp, const std::string& place, const Models& models, bool wall);
 
-/// What the history of a contact holds.
+/// Values in the history of a contact.
 struct Layout {
   int values = 0;                            // numbers of a contact
   int root = -1, jump = -1, last_step = -1;  // places; last_step: of pairs with a history

@@ -40,7 +40,7 @@ class Adhesion {
   std::vector<double> surface_;
 };
 
-/// The models with adhesion for a law without: that for the same bodies, else all of them.
+/// Advice for a law without adhesion: the model with adhesion for the same bodies, else all models with adhesion.
 inline std::string models_with_adhesion(const std::string& model) {
   std::string all, own;
 #define EPDEM_ADHESIVE(Class)                                                        \

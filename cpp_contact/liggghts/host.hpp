@@ -27,7 +27,7 @@ std::string model_name() {
   return std::string("ep/") + Law::name;
 }
 
-/// All of them, each after a blank.
+/// The names of all models, each after a blank.
 std::string model_names();
 
 /// Whether the particles of the simulation are spheres.

@@ -169,8 +169,8 @@ class Model : public ContactModelBase {
   void tally_pp(double x, int i, int j, int k) override { surface_.tally_pp(x, i, j, k); }
   void tally_pw(double x, int i, int j, int k) override { surface_.tally_pw(x, i, j, k); }
 
-  /// The first that LIGGGHTS asks of a pair: its history, and that of the pairs that follow, can be on its way from
-  /// memory while the distance is still being computed.
+  /// LIGGGHTS calls this function first for a pair: the prefetch of this history and of the next one overlaps with the
+  /// computation of the distance.
   bool checkSurfaceIntersect(SurfacesIntersectData& s) {
     __builtin_prefetch(s.contact_history, 1);
     __builtin_prefetch(s.contact_history + 24, 1);

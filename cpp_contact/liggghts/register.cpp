@@ -172,7 +172,7 @@ Interface* refuse(LAMMPS* lmp, Parent*, int64_t hash) {
                              "off, cdt, epsd, epsd2, epsd3; surface default; nothing else"
       : ids.normal != unknown_law ? combinations()
       : ids.tangential == unknown_tangential
-          ? "unknown tangential model: those of epdem are " + names_of(Frictions{}, " ", true)
+          ? "unknown tangential model: the models of epdem are " + names_of(Frictions{}, " ", true)
       : ids.tangential == foreign_normal
           ? "tangential ep/partial_slip goes with the normal models of epdem only: "
             "LIGGGHTS's own do not pass the contact radius on (its hertz is ep/hertz, with viscous on for its dashpot)"

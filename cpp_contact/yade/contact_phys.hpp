@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// EpPhys: what a contact keeps from step to step, and what scripts read of it.
+// EpPhys: history and constants of a contact, and their names in scripts.
 #pragma once
 
 #include <set>

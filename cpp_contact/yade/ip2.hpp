@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
-// Ip2_EpMat_EpMat_EpPhys: what two materials have in common.
+// Ip2_EpMat_EpMat_EpPhys: the contact of two materials.
 #pragma once
 
 #include "contact_phys.hpp"
@@ -23,10 +23,10 @@ class Ip2_EpMat_EpMat_EpPhys : public IPhysFunctor {
   YADE_CLASS_BASE_DOC_ATTRS(Ip2_EpMat_EpMat_EpPhys, IPhysFunctor,
     "Makes the :yref:`EpPhys` of two :yref:`EpMat`. Values of pairs are given by :yref:`MatchMaker` or as one number.",
     ((shared_ptr<MatchMaker>, frictAngle, , , "angle of friction [rad]; default: the smaller of both"))
-    ((shared_ptr<MatchMaker>, en, , , "restitution of the normal dashpot, which acts where nothing yields, in [0.14, 1]; default: no dashpot"))
+    ((shared_ptr<MatchMaker>, en, , , "restitution of impacts without yield, in [0.14, 1]: a normal dashpot; default: no dashpot"))
     ((shared_ptr<MatchMaker>, es, , , "restitution of the dashpot beside friction, in (0, 1]; default: no dashpot"))
     ((shared_ptr<MatchMaker>, rollingFriction, , , "coefficient of rolling friction; default: the smaller of both"))
-    ((shared_ptr<MatchMaker>, workOfAdhesion, , , "work of adhesion [J/m^2]; default: by both surface energies")));
+    ((shared_ptr<MatchMaker>, workOfAdhesion, , , "work of adhesion [J/m^2]; default: twice the geometric mean of both surface energies")));
   // clang-format on
 
  private:
@@ -97,7 +97,7 @@ class Ip2_EpMat_EpMat_EpPhys : public IPhysFunctor {
     return phys;
   }
 
-  /// The body with the lower strength; of equal ones that of the first material, and one without strength.
+  /// The body with the lower strength; at equal strength, or without strength, the body of the first material.
   static const EpMat& softer(const epdem::in_yade::LawParameter& p, const EpMat& m1, const EpMat& m2) {
     if (!p.strength) return m1;
     const int at = epdem::in_yade::place_of(p.strength);

@@ -24,7 +24,7 @@ class Law2_ScGeom_EpPhys : public LawFunctor {
 
   // clang-format off
   YADE_CLASS_BASE_DOC_ATTRS(Law2_ScGeom_EpPhys, LawFunctor,
-    "What the contact laws of :yref:`EpPhys` have in common; a simulation has one of the laws derived from this class. With O.trackEnergy the laws book plasticWork, contactElastic, adhesionLoss and, with partial slip, frictionWork and frictionElastic in O.energy.",
+    "Attributes of all contact laws of :yref:`EpPhys`; a simulation uses one law, a class derived from this class. With O.trackEnergy a law books plasticWork, contactElastic, adhesionLoss and, with partial slip, frictionWork and frictionElastic in O.energy.",
     ((int, partialSlip, 0, Attr::triggerPostLoad, "friction: 0 one spring of stiffness 8 G* a up to Coulomb's limit (Cundall and Strack 1979), 2 or 3 partial slip of the contact circle by that many nodes"))
     ((string, rolling, "off", Attr::triggerPostLoad, "rolling friction: off, cdt (constant torque) or epsd2 (spring)"))
     ((bool, torsion, false, , "whether rolling friction also resists torsion"))
@@ -53,7 +53,7 @@ class Law2_ScGeom_EpPhys : public LawFunctor {
   static Vec vec(const Vector3r& v) { return {v[0], v[1], v[2]}; }
   static Vector3r eigen(const Vec& v) { return Vector3r(v.x, v.y, v.z); }
 
-  /// Copies what stands in the history of a contact to `part`, or back.
+  /// Copy values of a contact's history to `part`, and back.
   template <class Part>
   static void load(const EpPhys& phys, int at, Part& part) {
     if constexpr (!std::is_empty_v<Part>) std::memcpy(static_cast<void*>(&part), phys.history.data() + at, sizeof part);
@@ -65,7 +65,7 @@ class Law2_ScGeom_EpPhys : public LawFunctor {
   static constexpr int friction_at = epdem::in_yade::law_history,
                        rolling_at = friction_at + epdem::in_yade::friction_history;
 
-  /// What a step says of itself, for scripts and O.energy.
+  /// Writes radius, stiffness, strain and energies of a step for scripts and O.energy.
   struct Observer {
     Law2_ScGeom_EpPhys& functor;
     EpPhys& phys;
@@ -201,7 +201,7 @@ class Law2_ScGeom_EpPhys : public LawFunctor {
     return true;
   }
 
-  /// Adds to an energy of O.energy. All names are there before the first of them is used by any thread.
+  /// Adds to an energy of O.energy. One thread creates all names before any thread adds.
   void book(Energy which, double value) {
     static constexpr const char* names[energies] = {"plasticWork", "contactElastic", "adhesionLoss", "frictionWork",
                                                     "frictionElastic"};
@@ -218,7 +218,7 @@ class Law2_ScGeom_EpPhys : public LawFunctor {
     scene->energy->add(value, names[which], energyId_[which], momentary[which]);
   }
 
-  /// Adds the work of a contact to that of its spheres.
+  /// Adds the work of a contact to the work of its spheres.
   void share(const EpPhys& phys, const Interaction& contact, Real EpState::* work, double value) const {
     if (value == 0.0) return;
     for (const int k : {1, 2}) {
@@ -256,7 +256,7 @@ REGISTER_SERIALIZABLE(Law2_ScGeom_EpPhys);
 template <class Law>
 const char* law_text() {
   static const std::string text = std::string("Contact law `") + Law::name + "` (" + Law::title + "; " + Law::sources +
-                                  ") of :yref:`EpPhys`; its attributes are those of :yref:`Law2_ScGeom_EpPhys`.";
+                                  ") of :yref:`EpPhys`; its attributes belong to the base class :yref:`Law2_ScGeom_EpPhys`.";
   return text.c_str();
 }
 

@@ -17,7 +17,7 @@ class EpState : public State {
 
   // clang-format off
   YADE_CLASS_BASE_DOC_ATTRS_CTOR(EpState, State,
-    "State of a body of :yref:`EpMat`: with O.trackEnergy the work of its contacts so far, half of each with another sphere and all of it at a wall.",
+    "State of a body of :yref:`EpMat`. With O.trackEnergy it sums up the work of the body's contacts: half of the work of a contact with a sphere, the whole work of a contact with a wall.",
     ((Real, plasticWork, 0., , "plastic work [J]"))
     ((Real, adhesionLoss, 0., , "energy that adhesion lost [J]"))
     ((Real, frictionWork, 0., , "work of friction [J], with partial slip")),
@@ -87,7 +87,7 @@ class EpMat : public FrictMat {
 
   // clang-format off
   YADE_CLASS_BASE_DOC_ATTRS_CTOR_PY(EpMat, FrictMat,
-    "Elastic-plastic material: the parameters of all contact laws of :yref:`Law2_ScGeom_EpPhys`. A law reads only its own; the softer of two bodies, the one with the lower strength, yields.",
+    "Elastic-plastic material: the parameters of all contact laws of :yref:`Law2_ScGeom_EpPhys`. A law reads its own parameters; the body with the lower strength yields.",
     ((Real, surfaceEnergy, 0., , "surface energy gamma; the work of adhesion of two bodies is twice the geometric mean of both"))
     ((Real, rollingFriction, 0., , "coefficient of rolling friction"))
     ((LawValues, lawValues, epdem::in_yade::fallbacks(), Attr::hidden, "parameters of the laws")),

@@ -136,8 +136,9 @@ struct Range {
 };
 inline constexpr double unlimited = std::numeric_limits<double>::infinity();
 
+/// Values of a parameter of a pair.
 inline Range range_of(const Parameter& p) { return {0.0, p.below, p.may_vanish}; }
-/// The same for one body, whose strength may be infinite.
+/// Values of a parameter of one body; a strength may be infinite.
 inline Range range_of_body(const Parameter& p) { return {0.0, p.below, p.may_vanish, std::isinf(p.below)}; }
 
 /// Ends the program with one sentence. YADE calls functors in a parallel region, which no exception can leave.

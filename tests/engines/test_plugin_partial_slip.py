@@ -190,7 +190,7 @@ def test_the_energy_balance_of_a_rubbing_gas_closes(tmp_path, law):
 
 WRONG = {
     "tangential ep/partial_slip goes with the normal models of epdem only": ("hertz", SLIP),
-    "unknown tangential model: those of epdem are ep/partial_slip ep/partial_slip_2": ("ep/hertz", "ep/slip"),
+    "unknown tangential model: the models of epdem are ep/partial_slip ep/partial_slip_2": ("ep/hertz", "ep/slip"),
     "unknown normal model": ("ep/hurtz", SLIP),
 }
 

@@ -57,7 +57,7 @@ void Bins::fill(const int* head, const int* next, int count, int spheres) {
   start[count] = n;
 }
 
-/// Bins that follow one another in memory, relative to that of a sphere.
+/// Bins that follow one another in memory, as distances from the bin of a sphere.
 struct Row {
   int first, last;
 };

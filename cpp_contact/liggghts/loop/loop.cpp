@@ -99,7 +99,8 @@ void PairLoop::run(PairGran* pair, const Plan& plan, double now) {
                   : gather<Reach::attached>(plan);
 }
 
-/// Notes every neighbour, and those stay that overlap; with adhesion also those that were in contact and are near.
+/// Writes every neighbour into the block and keeps the neighbours that overlap; with adhesion also near neighbours that
+/// were in contact.
 template <Reach reach>
 void PairLoop::gather(const Plan& plan) {
   Block& b = *block_;
@@ -163,7 +164,7 @@ void PairLoop::finish(const Plan& plan, int n, bool gaps) {
   if (plan.ledger && plan.books_friction) book_friction(*plan.ledger, n);
 }
 
-/// Of n contacts those that overlap or are attached across a gap; a pair that is not loses its mark.
+/// Keeps the contacts that overlap or are attached across a gap and returns their number; other pairs lose their mark.
 int PairLoop::without_parted(const Plan& plan, int n) {
   Block& b = *block_;
   const int size = pair_->dnum();
@@ -184,7 +185,7 @@ int PairLoop::without_parted(const Plan& plan, int n) {
   return kept;
 }
 
-/// Of n pairs of grown spheres those in contact; a pair that is not loses its mark and its memory.
+/// Keeps the pairs of grown spheres in contact and returns their number; other pairs lose their mark.
 int PairLoop::without_gaps(const Plan& plan, int n) {
   Block& b = *block_;
   const int size = pair_->dnum();
@@ -213,7 +214,7 @@ int PairLoop::without_gaps(const Plan& plan, int n) {
   return kept;
 }
 
-/// Contacts are marked as such.
+/// Gathers n contacts and marks them in LIGGGHTS's list.
 void PairLoop::fetch(const Plan& plan, int n) {
   Block& b = *block_;
   const int size = pair_->dnum(), marked = flags_, *const slot = slot_;
@@ -239,9 +240,9 @@ void PairLoop::fetch(const Plan& plan, int n) {
   }
 }
 
-/// Forces and torques in the order of the list, those of a body at hand while its pairs follow each other; with them
-/// the halves of the energies of each pair, and that both bodies have a contact that bears; of grown spheres the depths
-/// of their dents.
+/// Adds forces and torques in the order of the list; the sums of body i stay in registers while its pairs follow each
+/// other. books: each body of a pair gets half of the energies, and one loaded contact. Grown spheres also get the
+/// depths of their dents.
 template <bool torques, bool books, Reach reach>
 void PairLoop::scatter(const Plan& plan, int n) {
   constexpr bool adheres = reach == Reach::attached, grown = reach == Reach::grown;

@@ -20,10 +20,10 @@ using namespace epdem::kernels;
 /// is none of them or the processor lacks it.
 const Kernels& chosen_kernels(LAMMPS_NS::LAMMPS* lmp);
 
-/// Those for spheres beside their contacts, of the same instruction set.
+/// The kernels for motion and search of spheres of the same instruction set.
 const SphereKernels& sphere_kernels(LAMMPS_NS::LAMMPS* lmp);
 
-/// What the settings and properties of a run say, the same for all its steps.
+/// Settings and properties of a run.
 struct Plan {
   int friction = 0;  // place in Frictions
   ContactSettings settings{};
@@ -33,7 +33,7 @@ struct Plan {
   LargestStrain* strain = nullptr;  // where the largest strain is noted, if it is requested
   Growth* growth = nullptr;         // of the spheres, with compaction
   Kernel grown = nullptr;           // and the kernel for it
-  int root = -1, last_step = -1;    // with adhesion: where a history says that the bodies are attached, and when last
+  int root = -1, last_step = -1;    // with adhesion, places in a history: root > 0 while attached, last evaluation
   int width = 0;                    // number of types + 1
   std::vector<double> constants;    // most_constants for each type of i * width + type of j; see Constant
 };
@@ -50,13 +50,13 @@ const char* obstacle_of_both(const LAMMPS_NS::Atom& atom, bool rigid, bool store
 /// Whether a step changes no history, or no number can be read behind the last atom: rare, and no reason is given.
 bool beside_the_steps(const LAMMPS_NS::Atom& atom, bool computes, bool shears);
 
-/// What contacts of pairs and walls have in common in a step of length dt.
+/// The pass of a step of length dt, without the values of pairs.
 Pass pass_of(const LAMMPS_NS::Atom& atom, const Plan& plan, double dt);
 
 /// Notes the largest strain of the contacts of a block.
 void note_strain(LargestStrain& strain, const Block& block);
 
-/// Which bodies can be in contact: those that overlap, those that adhere across a gap, those whose growth closes a gap.
+/// Bodies in contact: bodies that overlap; also bodies that adhere across a gap; also bodies whose growth closes a gap.
 enum class Reach { touching, attached, grown };
 
 class PairLoop : protected LAMMPS_NS::Pointers {

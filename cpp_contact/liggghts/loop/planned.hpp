@@ -11,7 +11,7 @@
 
 namespace epdem::liggghts::loop {
 
-/// LIGGGHTS's styles keep their model to themselves; the model built last is that of the style under construction.
+/// LIGGGHTS's styles hide their model; the model built last belongs to the style under construction.
 class Planned {
  protected:
   Planned(LAMMPS_NS::LAMMPS* lmp, int64_t hash, bool wall)
@@ -61,7 +61,7 @@ class Planned {
       }
   }
 
-  /// That LIGGGHTS's loop runs: once for each reason, on the first rank.
+  /// Prints why LIGGGHTS's loop runs: once for each reason, on the first rank.
   void say(const char* why) {
     if (!*why || !said_.insert(why).second) return;
     liggghts::say(lmp_, std::string("epdem: ") + (wall_ ? "wall" : "pair") + " loop of LIGGGHTS for " + why);

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // What a friction model reads of a contact. A model is a header beside this one and a line in sub_models.hpp:
 //   name, id          of LIGGGHTS's tangential_model; restart files keep the id
-//   of_liggghts       LIGGGHTS has a class of the same model
+//   of_liggghts       LIGGGHTS has a class of the model
 //   books_work        `force` gives the work of friction to the observer
-//   History<T>        the values that a contact keeps, all of type T; they change their sign with the order of the
-//   bodies even_values       as many of the last of them keep their sign force<flattens>(sliding, history, observer)
-//   friction on i [N]; history before and after
+//   History<T>        values of a contact, all of type T; they change their sign when the bodies change places
+//   even_values       the number of values at the end of History that keep their sign
+//   force<flattens>(sliding, history, observer)
+//                     friction on i [N]; history before and after
 #pragma once
 
 #include <type_traits>
@@ -14,13 +15,13 @@
 
 namespace epdem {
 
-/// What the normal law says of the contact in this step.
+/// Results of the normal law in this step.
 template <class T>
 struct Pressed {
   T load;        // [N] friction is at most mu times it: F; F + 2 P_po for a law with pull-off force P_po
   T radius;      // contact radius a [m]
-  T radius_max;  // the same at the largest overlap [m]; read by laws that flatten only
-  T flatness;    // tau there
+  T radius_max;  // contact radius at the largest overlap [m]; laws that flatten read it
+  T flatness;    // tau at the largest overlap
 };
 
 template <class T>
@@ -28,7 +29,7 @@ struct Sliding {
   Pressed<T> pressed;
   Vec<T> normal;
   Vec<T> velocity;     // of the surfaces against each other [m/s]
-  Vec<T> slip;         // the same times the time step [m]
+  Vec<T> slip;         // velocity times the time step [m]
   T turn;              // rotation about the normal, mean of both bodies [rad]
   T mu;                // coefficient of friction
   T stiffness;         // 8 G* [Pa]
@@ -36,7 +37,7 @@ struct Sliding {
   T damping;           // of the dashpot [N s/m]
   T damping_per_step;  // over the time step [N/m]
   bool damped;         // whether there may be a dashpot
-  bool keeps;          // else the step is looked at and its history is not stored
+  bool keeps;          // the host stores the history of this step
 };
 
 /// Work that friction took in a step and elastic energy of its springs [J].
