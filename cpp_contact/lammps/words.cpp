@@ -84,10 +84,7 @@ std::string symbols(const Law& law) {
 template <class Models>
 std::vector<std::string> names() {
   std::vector<std::string> all;
-  Models::each([&](auto model, int place) {
-    const std::string name = decltype(model)::name;
-    all.push_back(place == 0 ? "none" : name.rfind("ep/", 0) == 0 ? name.substr(3) : name);
-  });
+  Models::each([&](auto model, int place) { all.push_back(place == 0 ? "none" : plain_name(decltype(model)::name)); });
   return all;
 }
 

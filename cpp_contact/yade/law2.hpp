@@ -9,23 +9,14 @@ namespace yade {
 class Law2_ScGeom_EpPhys : public LawFunctor {
  public:
   void postLoad(Law2_ScGeom_EpPhys&) {
-    if (partialSlip != 0 && partialSlip != 2 && partialSlip != 3)
-      throw std::invalid_argument(getClassName() + ".partialSlip = " + std::to_string(partialSlip) +
-                                  ", must be 0, 2 or 3");
-    string names;
-    rollingModel_ = -1;
-    epdem::Rollings::each([&](auto model, int place) {
-      names += (place ? ", " : "") + string(model.name);
-      if (rolling == model.name) rollingModel_ = place;
-    });
-    if (rollingModel_ < 0)
-      throw std::invalid_argument(getClassName() + ".rolling = '" + rolling + "', must be one of " + names);
+    frictionModel_ = place_of(epdem::Frictions{}, "tangential", tangential);
+    rollingModel_ = place_of(epdem::Rollings{}, "rolling", rolling);
   }
 
   // clang-format off
   YADE_CLASS_BASE_DOC_ATTRS(Law2_ScGeom_EpPhys, LawFunctor,
     "Attributes of all contact laws of :yref:`EpPhys`; a simulation uses one law, a class derived from this class. With O.trackEnergy a law books plasticWork, contactElastic, adhesionLoss and, with partial slip, frictionWork and frictionElastic in O.energy.",
-    ((int, partialSlip, 0, Attr::triggerPostLoad, "friction: 0 one spring of stiffness 8 G* a up to Coulomb's limit (Cundall and Strack 1979), 2 or 3 partial slip of the contact circle by that many nodes"))
+    ((string, tangential, "history", Attr::triggerPostLoad, "friction: off, no_history (dashpot of restitution es), history (one spring of stiffness 8 G* a up to Coulomb's limit, Cundall and Strack 1979), partial_slip or partial_slip_2 (partial slip of the contact circle by 3 or 2 nodes)"))
     ((string, rolling, "off", Attr::triggerPostLoad, "rolling friction: off, cdt (constant torque) or epsd2 (spring)"))
     ((bool, torsion, false, , "whether rolling friction also resists torsion"))
     ((bool, recordStrain, false, , "whether largestRadiusRatio and largestOverlapRatio are recorded"))
@@ -38,9 +29,11 @@ class Law2_ScGeom_EpPhys : public LawFunctor {
   template <class Law>
   bool act(const ScGeom& geom, EpPhys& phys, const Interaction& contact) {
     if (phys.constantsOf != Law::id) prepare<Law>(phys, contact);
-    if (partialSlip == 3) return act<epdem::PartialSlip<3>, Law>(geom, phys, contact);
-    if (partialSlip == 2) return act<epdem::PartialSlip<2>, Law>(geom, phys, contact);
-    return act<epdem::SlidingSpring, Law>(geom, phys, contact);
+    bool goes_on = false;
+    epdem::Frictions::each([&](auto model, int place) {
+      if (place == frictionModel_) goes_on = act<decltype(model), Law>(geom, phys, contact);
+    });
+    return goes_on;
   }
 
  private:
@@ -49,6 +42,21 @@ class Law2_ScGeom_EpPhys : public LawFunctor {
 
   template <class Law, class Friction>
   using ContactHistory = epdem::ContactHistory<Law, Friction>;
+
+  /// Place of the model with this name in its list.
+  template <class Models>
+  int place_of(Models, const char* attribute, const string& wanted) const {
+    string names;
+    int found = -1;
+    Models::each([&](auto model, int place) {
+      const string name = epdem::plain_name(model.name);
+      names += (place ? ", " : "") + name;
+      if (wanted == name) found = place;
+    });
+    if (found < 0)
+      throw std::invalid_argument(getClassName() + "." + attribute + " = '" + wanted + "', must be one of " + names);
+    return found;
+  }
 
   static Vec vec(const Vector3r& v) { return {v[0], v[1], v[2]}; }
   static Vector3r eigen(const Vec& v) { return Vector3r(v.x, v.y, v.z); }
@@ -246,7 +254,7 @@ class Law2_ScGeom_EpPhys : public LawFunctor {
     }
   }
 
-  int rollingModel_ = 0;
+  int frictionModel_ = epdem::Frictions::place(epdem::SlidingSpring::id), rollingModel_ = 0;
   std::atomic<bool> booked_{false};
   int energyId_[energies] = {-1, -1, -1, -1, -1};
 };
@@ -255,8 +263,9 @@ REGISTER_SERIALIZABLE(Law2_ScGeom_EpPhys);
 /// The text that YADE's help shows of a law.
 template <class Law>
 const char* law_text() {
-  static const std::string text = std::string("Contact law `") + Law::name + "` (" + Law::title + "; " + Law::sources +
-                                  ") of :yref:`EpPhys`; its attributes belong to the base class :yref:`Law2_ScGeom_EpPhys`.";
+  static const std::string text =
+      std::string("Contact law `") + Law::name + "` (" + Law::title + "; " + Law::sources +
+      ") of :yref:`EpPhys`; its attributes belong to the base class :yref:`Law2_ScGeom_EpPhys`.";
   return text.c_str();
 }
 

@@ -83,11 +83,16 @@ constexpr int most(std::initializer_list<int> sizes) {
   return largest;
 }
 
-// The numbers that a contact keeps: of its law, of friction, of rolling friction.
+template <class... Models>
+constexpr int largest_history(List<Models...>) {
+  return most({values_of<Models, double>...});
+}
+
+// Numbers in the history of a contact: of its law, of friction, of rolling friction.
 #define EPDEM_SIZE(Class) numbers_of<Class<double>::State>,
 inline constexpr int law_history = most({EPDEM_LAWS(EPDEM_SIZE)});
 #undef EPDEM_SIZE
-inline constexpr int friction_history = numbers_of<SlipState<3, double>>, rolling_history = 3;
+inline constexpr int friction_history = largest_history(Frictions{}), rolling_history = 3;
 using History = std::array<double, law_history + friction_history + rolling_history>;
 
 /// Room for the constants of a contact; they follow from its parameters and are not saved.

@@ -105,7 +105,7 @@ def test_dashpot_gives_the_restitution_of_the_damped_law(tmp_path):
 
 def test_partial_slip_gives_the_rebound_of_maw_barber_and_fawcett(tmp_path):
     p, prediction = prepared("oblique_steel")
-    found = measure(p, impacts(p, tmp_path, partialSlip=3)).rebound
+    found = measure(p, impacts(p, tmp_path, tangential="partial_slip")).rebound
     assert found is not None and prediction.rebound is not None
     assert np.nanmax(np.abs(found.psi_2 - p.each(prediction.rebound.psi_2))) <= 0.02
 
@@ -213,7 +213,11 @@ json.dump({{"kept": kept, "again": again, "straight": straight, "loaded": state(
 
 @pytest.mark.parametrize(
     ("law", "options"),
-    [("Thornton", {}), ("Cavity", {"partialSlip": 3, "rolling": "epsd2"}), ("ThorntonNing", {"rolling": "cdt"})],
+    [
+        ("Thornton", {}),
+        ("Cavity", {"tangential": "partial_slip", "rolling": "epsd2"}),
+        ("ThorntonNing", {"rolling": "cdt"}),
+    ],
 )
 def test_a_simulation_loaded_in_mid_contact_continues(law, options, tmp_path):
     """History to the last bit. YADE may add a body's forces in another order afterwards: the motion to round-off."""
@@ -230,7 +234,7 @@ O.bodies.append([wall(0, axis=2, material=steel), sphere((0, 0, 0.01), 0.01, mat
 O.bodies[1].state.vel = (3, 1, -10)
 O.engines = [ForceResetter(), InsertionSortCollider([Bo1_Sphere_Aabb(), Bo1_Wall_Aabb()]),
     InteractionLoop([Ig2_Wall_Sphere_ScGeom()], [Ip2_EpMat_EpMat_EpPhys()],
-                    [Law2_ScGeom_EpPhys_Thornton(partialSlip=3)]),
+                    [Law2_ScGeom_EpPhys_Thornton(tangential="partial_slip")]),
     NewtonIntegrator(damping=0)]
 O.dt = 1e-7
 for _ in range(150):
@@ -257,7 +261,10 @@ BAD = [
     ("EpMat(yieldPressure=0)", r"EpMat\.yieldPressure = 0, must be > 0 Pa"),
     ("EpMat().yieldStress = float('nan')", r"EpMat\.yieldStress = nan, must be > 0 Pa"),
     ("EpMat(frictionAngle=2)", r"EpMat\.frictionAngle = 2, must lie in \[0, 1\.570"),
-    ("Law2_ScGeom_EpPhys_Hertz(partialSlip=1)", r"partialSlip = 1, must be 0, 2 or 3"),
+    (
+        "Law2_ScGeom_EpPhys_Hertz(tangential='x')",
+        r"tangential = 'x', must be one of off, no_history, history, partial_slip, partial_slip_2",
+    ),
     ("Law2_ScGeom_EpPhys_Hertz(rolling='x')", r"rolling = 'x', must be one of off, cdt, epsd2"),
 ]
 
@@ -338,7 +345,7 @@ def test_the_three_commands_of_an_exported_project_give_yade_the_module(tmp_path
 THREADS = (
     SCENE
     + """
-scene("Thornton", partialSlip=3, rolling="epsd2")
+scene("Thornton", tangential="partial_slip", rolling="epsd2")
 O.trackEnergy = True
 for _ in range(600):
     O.step()
@@ -443,7 +450,7 @@ def pair(periodic, shear=0.0):
         b.state.vel, b.state.angVel = v, (0, 10, 0)
     O.engines = [ForceResetter(), InsertionSortCollider([Bo1_Sphere_Aabb()], verletDist=1e-4),
         InteractionLoop([Ig2_Sphere_Sphere_ScGeom()], [Ip2_EpMat_EpMat_EpPhys(en=0.8, es=0.8)],
-                        [Law2_ScGeom_EpPhys_Thornton(partialSlip=3)]), NewtonIntegrator(damping=0)]
+                        [Law2_ScGeom_EpPhys_Thornton(tangential="partial_slip")]), NewtonIntegrator(damping=0)]
     O.dt = 1e-7
     seen = 0
     for _ in range(1500):

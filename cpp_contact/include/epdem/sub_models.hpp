@@ -50,6 +50,11 @@ using Cohesions = List<
     Sjkr2>;
 // clang-format on
 
+/// The name of a model without the prefix ep/, which LIGGGHTS needs for models that it lacks.
+constexpr const char* plain_name(const char* name) noexcept {
+  return name[0] == 'e' && name[1] == 'p' && name[2] == '/' ? name + 3 : name;
+}
+
 /// Whether the model at this place of its list has a history.
 template <class... Models>
 constexpr bool has_history(List<Models...> list, int place) noexcept {

@@ -69,8 +69,7 @@ def title(law: str) -> str:
 
 def settings(tangential: Tangential | None, **more: object) -> dict[str, object]:
     """Settings of the law's functor; tangential: None without friction."""
-    nodes = NODES[tangential] if tangential else 0
-    return ({"partialSlip": nodes} if nodes else {}) | more
+    return ({"tangential": tangential} if tangential and NODES[tangential] else {}) | more
 
 
 def of_pairs(name: str, rows: Iterable[Iterable[float]]) -> PairValue:
