@@ -10,6 +10,7 @@
 #include "epdem/laws.hpp"
 #include "epdem/motion.hpp"
 #include "epdem/oblique.hpp"
+#include "epdem/range.hpp"
 
 #define EPDEM_EXPORT extern "C" __attribute__((visibility("default")))
 
@@ -23,13 +24,11 @@ using namespace epdem;
 
 bool positive(double x) { return std::isfinite(x) && x > 0.0; }
 
-bool in_range(const Parameter& p, double x) { return x < p.below && (positive(x) || (p.may_vanish && x == 0.0)); }
-
 /// Whether the numbers are in the range of a law, each alone and together.
 template <class Law>
 bool in_range(double E_star, const double* parameters) {
   for (int k = 0; k < Law::n_parameters; ++k)
-    if (!in_range(Law::parameters[k], parameters[k])) return false;
+    if (!range_of(Law::parameters[k]).holds(parameters[k])) return false;
   return positive(E_star) && Law::valid(parameters);
 }
 

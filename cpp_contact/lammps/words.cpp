@@ -3,13 +3,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdio>
 #include <cstdlib>
 #include <cstring>
 
 #include "atom.h"
 #include "epdem/contact.hpp"
 #include "epdem/laws.hpp"
+#include "epdem/range.hpp"
 #include "error.h"
 #include "fix.h"
 #include "force.h"
@@ -62,12 +62,6 @@ Law law_of() {
           }};
 }
 
-std::string number(double x) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%g", x);
-  return text;
-}
-
 [[noreturn]] void fail(LAMMPS* lmp, const std::string& text) { lmp->error->all(FLERR, text); }
 
 std::string symbols(const Law& law) {
@@ -94,22 +88,6 @@ std::string joined(const std::vector<std::string>& names) {
   return text;
 }
 
-struct Range {
-  double low, high;
-  bool low_allowed, high_allowed;
-
-  bool holds(double x) const {
-    return std::isfinite(x) && (x > low || (low_allowed && x == low)) && (x < high || (high_allowed && x == high));
-  }
-  std::string text() const {
-    if (std::isinf(high)) return low_allowed ? ">= " + number(low) : "> " + number(low);
-    return std::string("in ") + (low_allowed ? "[" : "(") + number(low) + ", " + number(high) +
-           (high_allowed ? "]" : ")");
-  }
-};
-
-constexpr double unlimited = HUGE_VAL;
-
 /// Reads one word after the other.
 class WordReader {
  public:
@@ -128,7 +106,7 @@ class WordReader {
     const std::string text = next(what);
     if (!LAMMPS_NS::utils::is_double(text)) wrong(what + " = " + text + ", must be a number");
     const double x = std::atof(text.c_str());
-    if (!range.holds(x)) wrong(what + " = " + text + ", must be " + range.text());
+    if (!range.holds(x)) wrong(what + " = " + text + ", " + range.text());
     return x;
   }
 
@@ -158,7 +136,7 @@ void read_parameters(WordReader& reader, const Law& law, std::vector<double>& va
       continue;
     }
     const std::string what = std::string(p.symbol) + " [" + p.unit + "] of " + law.name + " E nu" + symbols(law);
-    values.push_back(reader.next_number(what, {0.0, p.below, p.may_vanish, false}));
+    values.push_back(reader.next_number(what, range_of(p)));
   }
   if (!law.valid(values.data()))
     reader.wrong("the parameters of " + std::string(law.name) +
@@ -166,7 +144,7 @@ void read_parameters(WordReader& reader, const Law& law, std::vector<double>& va
 }
 
 void read_options(WordReader& reader, Words& words) {
-  constexpr Range not_negative{0.0, unlimited, true, false};
+  constexpr Range not_negative{0.0, unlimited, true};
   constexpr Range restitution{viscous_restitution_min, 1.0, true, true};
   const std::vector<std::string> options{"tangential", "restitution",        "rolling",
                                          "cohesion",   "normal_restitution", "tangential_restitution"};
@@ -229,7 +207,7 @@ Words read_words(LAMMPS* lmp, const std::string& place, int count, char** word) 
   std::vector<std::string> laws;
   for (const Law& law : all_laws()) laws.emplace_back(law.name);
   words.models.law = &all_laws()[reader.next_of("law", laws)];
-  words.material.elastic.young_modulus = reader.next_number("Young's modulus E", {0.0, unlimited, false, false});
+  words.material.elastic.young_modulus = reader.next_number("Young's modulus E", {0.0, unlimited});
   words.material.elastic.poisson_ratio = reader.next_number("Poisson's ratio nu", {-1.0, 0.5, false, true});
   read_parameters(reader, *words.models.law, words.material.parameters);
   read_options(reader, words);

@@ -21,7 +21,7 @@ namespace {
 class ParameterTable {
  public:
   ParameterTable(const Reader& reader, const Parameter& p, const Adhesion* adhesion)
-      : reader_(reader), p_(p), range_{0.0, p.below, p.may_vanish, false} {
+      : reader_(reader), p_(p), range_(range_of(p)) {
     if (p.property == std::string(adhesion_name)) {
       adhesion_ = adhesion;
       return;
@@ -146,7 +146,7 @@ std::vector<double> of_restitution(const Reader& reader, double (*number_of)(dou
 }
 
 std::vector<double> damping_numbers(const Reader& reader, Dashpot dashpot) {
-  return of_restitution(reader, damping_number, {0.0, 1.0, false},
+  return of_restitution(reader, damping_number, {0.0, 1.0, false, true},
                         dashpot == Dashpot::required
                             ? "tangential no_history needs coefficientRestitution (peratomtypepair): its only force is "
                               "the dashpot that follows from it; the normal force does not use it"
@@ -154,7 +154,7 @@ std::vector<double> damping_numbers(const Reader& reader, Dashpot dashpot) {
 }
 
 std::vector<double> viscous_numbers(const Reader& reader) {
-  return of_restitution(reader, viscous_number, {viscous_restitution_min, 1.0, true},
+  return of_restitution(reader, viscous_number, {viscous_restitution_min, 1.0, true, true},
                         "viscous on needs coefficientRestitution (peratomtypepair), the restitution of slow impacts "
                         "that do not yield");
 }
@@ -194,8 +194,8 @@ Materials read_materials(LAMMPS_NS::LAMMPS* lmp, PropertyRegistry& registry, con
                          bool viscous) {
   const Reader reader(lmp, registry, law);
   const int n = reader.types(), width = n + 1;
-  const std::vector<double> E = reader.per_type("youngsModulus", "Pa", {0.0, unlimited, false});
-  const std::vector<double> nu = reader.per_type("poissonsRatio", "1", {0.0, 0.5, true});
+  const std::vector<double> E = reader.per_type("youngsModulus", "Pa", {0.0, unlimited});
+  const std::vector<double> nu = reader.per_type("poissonsRatio", "1", {0.0, 0.5, true, true});
   // LIGGGHTS's own limits on the modulus (soft_particles, hard_particles) hold for every model of a simulation
   registry.registerProperty("youngsModulus", &MODEL_PARAMS::createYoungsModulus, law.model.c_str());
   registry.getVectorProperty("youngsModulus", law.model.c_str());

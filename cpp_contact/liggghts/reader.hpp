@@ -2,13 +2,11 @@
 // The properties of a deck by name, each value checked against its range.
 #pragma once
 
-#include <cmath>
-#include <cstdio>
 #include <cstdlib>
-#include <limits>
 #include <string>
 #include <vector>
 
+#include "epdem/range.hpp"
 #include "error.h"
 #include "fix_property_global.h"
 #include "lammps.h"
@@ -19,30 +17,7 @@
 
 namespace epdem::liggghts {
 
-inline constexpr double unlimited = std::numeric_limits<double>::infinity();
-
-inline std::string number(double x) {
-  char text[32];
-  std::snprintf(text, sizeof text, "%.9g", x);
-  return text;
-}
-
 inline std::string both(int i, int j) { return "types " + std::to_string(i) + " and " + std::to_string(j); }
-
-/// A range of a property between low and high.
-struct Range {
-  double low, high;
-  bool low_included, high_included = true;
-
-  bool holds(double x) const {
-    return std::isfinite(x) && (x > low || (low_included && x == low)) && (x < high || (high_included && x == high));
-  }
-  std::string text() const {
-    if (high == unlimited) return "must be finite and > " + number(low);
-    return std::string("must lie in ") + (low_included ? "[" : "(") + number(low) + ", " + number(high) +
-           (high_included ? "]" : ")");
-  }
-};
 
 class Reader {
  public:

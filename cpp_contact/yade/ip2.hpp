@@ -30,11 +30,10 @@ class Ip2_EpMat_EpMat_EpPhys : public IPhysFunctor {
   // clang-format on
 
  private:
-  static double checked(const char* name, double value, const epdem::in_yade::Range& range, const Interaction& i) {
+  static double checked(const char* name, double value, const epdem::Range& range, const Interaction& i) {
     if (!range.holds(value))
       throw std::invalid_argument(std::string(name) + " of bodies " + std::to_string(i.getId1()) + " and " +
-                                  std::to_string(i.getId2()) + " = " + epdem::in_yade::text_of(value) + ", " +
-                                  range.text());
+                                  std::to_string(i.getId2()) + " = " + epdem::number(value) + ", " + range.text());
     return value;
   }
 
@@ -61,7 +60,7 @@ class Ip2_EpMat_EpMat_EpPhys : public IPhysFunctor {
   double mass_of(Body::id_t id) const {
     const Body* body = Body::byId(id, scene).get();
     if (body->isClumpMember()) body = Body::byId(body->clumpId, scene).get();
-    return body->isDynamic() ? body->state->mass : epdem::in_yade::unlimited;
+    return body->isDynamic() ? body->state->mass : epdem::unlimited;
   }
 
   shared_ptr<EpPhys> pair(const EpMat& m1, const EpMat& m2, const Interaction& i) const {
@@ -80,12 +79,12 @@ class Ip2_EpMat_EpMat_EpPhys : public IPhysFunctor {
     }
     const double angle =
         of_pair(frictAngle, m1, m2, m1.frictionAngle, m2.frictionAngle, std::min(m1.frictionAngle, m2.frictionAngle));
-    phys->tangensOfFrictionAngle = std::tan(checked("frictAngle", angle, {0.0, std::atan(iy::unlimited), true}, i));
+    phys->tangensOfFrictionAngle = std::tan(checked("frictAngle", angle, {0.0, std::atan(epdem::unlimited), true}, i));
     phys->en = checked("en", of_pair(en, m1, m2, NaN, NaN, 1.0), {epdem::viscous_restitution_min, 1.0, true, true}, i);
     phys->es = checked("es", of_pair(es, m1, m2, NaN, NaN, 1.0), {0.0, 1.0, false, true}, i);
     const double rolling = of_pair(rollingFriction, m1, m2, m1.rollingFriction, m2.rollingFriction,
                                    std::min(m1.rollingFriction, m2.rollingFriction));
-    phys->rollingFriction = checked("rollingFriction", rolling, {0.0, iy::unlimited, true}, i);
+    phys->rollingFriction = checked("rollingFriction", rolling, {0.0, epdem::unlimited, true}, i);
     for (int k = 0; k < iy::parameter_count; ++k) {
       if (!iy::is_first(k)) continue;
       const iy::LawParameter& p = iy::parameters[k];

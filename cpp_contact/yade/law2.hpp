@@ -118,9 +118,9 @@ class Law2_ScGeom_EpPhys : public LawFunctor {
     for (int k = 0; k < Law::n_parameters; ++k) {
       const epdem::Parameter& p = Law::parameters[k];
       values[k] = phys.lawValues[iy::place_of(p.property)];
-      const iy::Range range = iy::range_of(p);
+      const epdem::Range range = epdem::range_of(p);
       if (!range.holds(values[k]))
-        iy::refuse(getClassName() + ": " + p.property + " of " + bodies + " = " + iy::text_of(values[k]) + ", " +
+        iy::refuse(getClassName() + ": " + p.property + " of " + bodies + " = " + epdem::number(values[k]) + ", " +
                    range.text() + " " + p.unit + "; give " + p.property + " to the EpMat of both");
     }
     if (!Law::valid(values))

@@ -32,7 +32,7 @@ class EpMat : public FrictMat {
   /// An attribute whose value is checked when Python sets it.
   struct Attribute {
     std::string name, unit, meaning;
-    epdem::in_yade::Range range;
+    epdem::Range range;
     std::function<Real&(EpMat&)> value;
   };
 
@@ -63,7 +63,7 @@ class EpMat : public FrictMat {
 
   void set(const Attribute& attribute, double value) {
     if (!attribute.range.holds(value))
-      throw std::invalid_argument("EpMat." + attribute.name + " = " + epdem::in_yade::text_of(value) + ", " +
+      throw std::invalid_argument("EpMat." + attribute.name + " = " + epdem::number(value) + ", " +
                                   attribute.range.text() + (attribute.unit == "1" ? "" : " " + attribute.unit));
     attribute.value(*this) = value;
   }
@@ -99,15 +99,15 @@ class EpMat : public FrictMat {
  private:
   static std::vector<Attribute> declared() {
     namespace iy = epdem::in_yade;
-    const double right_angle = std::atan(iy::unlimited);
+    const double right_angle = std::atan(epdem::unlimited);
     std::vector<Attribute> all = {
         {"young",
          "Pa",
          "Young's modulus; inf: rigid",
-         {0.0, iy::unlimited, false, true},
+         {0.0, epdem::unlimited, false, true},
          [](EpMat& m) -> Real& { return m.young; }},
         {"poisson", "1", "Poisson's ratio", {-1.0, 0.5, false, true}, [](EpMat& m) -> Real& { return m.poisson; }},
-        {"density", "kg/m^3", "density", {0.0, iy::unlimited}, [](EpMat& m) -> Real& { return m.density; }},
+        {"density", "kg/m^3", "density", {0.0, epdem::unlimited}, [](EpMat& m) -> Real& { return m.density; }},
         {"frictionAngle",
          "rad",
          "angle of friction",
@@ -116,11 +116,13 @@ class EpMat : public FrictMat {
         {"surfaceEnergy",
          "J/m^2",
          "surface energy gamma; the work of adhesion of two bodies is twice the geometric mean of both",
-         {0.0, iy::unlimited, true},
+         {0.0, epdem::unlimited, true},
          [](EpMat& m) -> Real& { return m.surfaceEnergy; }},
-        {"rollingFriction", "1", "coefficient of rolling friction", {0.0, iy::unlimited, true}, [](EpMat& m) -> Real& {
-           return m.rollingFriction;
-         }}};
+        {"rollingFriction",
+         "1",
+         "coefficient of rolling friction",
+         {0.0, epdem::unlimited, true},
+         [](EpMat& m) -> Real& { return m.rollingFriction; }}};
     for (int k = 0; k < iy::parameter_count; ++k) {
       const epdem::Parameter& p = *iy::parameters[k].declared;
       if (iy::is_first(k) && !p.of_pair)

@@ -4,11 +4,11 @@
 
 #include <cctype>
 #include <cstddef>
-#include <cstdio>
 #include <new>
 
 #include "epdem/contact.hpp"
 #include "epdem/laws.hpp"
+#include "epdem/range.hpp"
 #include "host.hpp"
 
 namespace epdem::in_yade {
@@ -119,30 +119,6 @@ inline std::string camel(const std::string& name) {
   return text;
 }
 
-/// A number with as many digits as tell it apart, at most 15.
-inline std::string text_of(double value) {
-  std::ostringstream text;
-  text.precision(15);
-  text << value;
-  return text.str();
-}
-
-/// Values that an attribute may have.
-struct Range {
-  double low, high;
-  bool with_low = false, with_high = false;
-
-  bool holds(double x) const { return (with_low ? x >= low : x > low) && (with_high ? x <= high : x < high); }
-  std::string text() const {
-    if (std::isinf(high)) return (with_low ? "must be >= " : "must be > ") + text_of(low);
-    return std::string("must lie in ") + (with_low ? "[" : "(") + text_of(low) + ", " + text_of(high) +
-           (with_high ? "]" : ")");
-  }
-};
-inline constexpr double unlimited = std::numeric_limits<double>::infinity();
-
-/// Values of a parameter of a pair.
-inline Range range_of(const Parameter& p) { return {0.0, p.below, p.may_vanish}; }
 /// Values of a parameter of one body; a strength may be infinite.
 inline Range range_of_body(const Parameter& p) { return {0.0, p.below, p.may_vanish, std::isinf(p.below)}; }
 

@@ -257,7 +257,7 @@ WRONG = {
     "law": ("thornton", "tornton", "pair_coeff 1 1: law = tornton, must be hertz, thornton"),
     "modulus": ("1e8", "-1e8", "Young's modulus E = -1e8, must be > 0"),
     "modulus as a word": ("1e8", "steel", "Young's modulus E = steel, must be a number"),
-    "Poisson": ("1e8 0.3", "1e8 30", "Poisson's ratio nu = 30, must be in (-1, 0.5]"),
+    "Poisson": ("1e8 0.3", "1e8 30", "Poisson's ratio nu = 30, must lie in (-1, 0.5]"),
     "no strength": ("4e5 tangential", "tangential", "p_y [Pa] of thornton E nu p_y = tangential, must be a number"),
     "strength": ("4e5", "0", "p_y [Pa] of thornton E nu p_y = 0, must be > 0"),
     "too short": ("1e8 0.3 4e5 tangential history 0.3", "1e8", "ends before Poisson's ratio nu"),
@@ -266,7 +266,7 @@ WRONG = {
     "friction": ("history 0.3", "history -0.3", "friction mu = -0.3, must be >= 0"),
     "option": ("history 0.3", "history 0.3 damping tsuji", "option = damping, must be tangential, restitution"),
     "twice": ("history 0.3", "history 0.3 tangential none", "option tangential stands twice"),
-    "restitution": ("history 0.3", "history 0.3 restitution 0.1", "restitution e = 0.1, must be in [0.14, 1]"),
+    "restitution": ("history 0.3", "history 0.3 restitution 0.1", "restitution e = 0.1, must lie in [0.14, 1]"),
     "rolling": ("history 0.3", "history 0.3 rolling sds 0.1", "rolling = sds, must be none, cdt or epsd2"),
     "cohesion": ("history 0.3", "history 0.3 cohesion jkr 1", "cohesion = jkr, must be none, sjkr or sjkr2"),
     "both attract": (
