@@ -104,8 +104,8 @@ struct Recorder {
 
   template <class Law>
   void normal(const Law& law, Lanes R_star, const State<Law>& before, const Step<Law>& now, Lanes overlap) const {
-    if (pass.strain) largest(b, k, n, now.radius, overlap, R_star);
-    if (!pass.work) return;
+    if (rarely(pass.strain)) largest(b, k, n, now.radius, overlap, R_star);
+    if (!rarely(pass.work)) return;
     if constexpr (adheres<Law>) {
       const State<Law> from = before;  // copies: what is passed by its address stays in memory
       const Step<Law> to = now;
@@ -119,7 +119,7 @@ struct Recorder {
 
   template <class Work>
   void friction(const Work& work) const {
-    if (!pass.work) return;
+    if (!rarely(pass.work)) return;
     const FrictionWork<Lanes> w = work();
     store(b.friction_work.a + k, w.lost);
     store(b.spring_energy.a + k, w.stored);
@@ -137,24 +137,31 @@ EPDEM_INLINE void copy(const From* from, To* to) {
   for (int k = 0; k < count; ++k) target[k] = source[k];
 }
 
-/// History of rolling friction behind `first` values of other models. Rows of four are faster than three numbers: the
-/// kernel writes the value before them later, and where no other model has a history, it is the step.
-template <int first, int last_step>
+/// History of rolling friction behind `first` values of other models, read and written only where a model needs it.
+/// Rows of four are faster than three numbers. with_step: no other model of a pair has a history, and the value before
+/// is the step of the last evaluation; else the kernel writes the value before later.
+template <int first, bool with_step>
 struct RollingHistory {
-  double* const* history = nullptr;
-  double now = 0.0;  // step
+  const Block* block = nullptr;
+  const Pass* pass = nullptr;
+  int k = 0;  // of the first lane
 
   EPDEM_INLINE operator Vec<Lanes>() const {
-    Lanes value[4], last;
-    read<3 + row>(history, value, first - row);
+    Lanes value[4];
+    read<3 + row>(block->history + k, value, first - row);
     const Vec<Lanes> all{value[row], value[row + 1], value[row + 2]};
-    if constexpr (last_step < 0) return all;
-    read<1>(history, &last, last_step);
-    return select(parted(now, last), Vec<Lanes>{}, all);
+    if constexpr (with_step) return select(parted(pass->now, value[0]), Vec<Lanes>{}, all);
+    return all;
   }
   EPDEM_INLINE void operator=(const Vec<Lanes>& v) const {
-    const Lanes step = constant<Lanes>(now), value[4] = {row ? step : v.x, row ? v.x : v.y, row ? v.y : v.z, v.z};
-    write<3 + row>(history, value, first - row);
+    const Lanes step = constant<Lanes>(pass->now);
+    const Lanes value[4] = {row ? step : v.x, row ? v.x : v.y, row ? v.y : v.z, v.z};
+    write<3 + row>(block->history + k, value, first - row);
+  }
+  void clear(Mask lanes) const {
+    for (int l = 0; l < lane_count; ++l)
+      for (int x = 0; x < 3; ++x)
+        if (lanes[l]) block->history[k + l][first + x] = 0.0;
   }
 
  private:
@@ -167,7 +174,7 @@ struct RollingHistory {
 template <class Law, class Friction, bool wall, bool grows = false>
 [[gnu::flatten]] void contacts(Block& b, int n, const Pass& pass) {
   constexpr int law_values = history_size<Law>, friction_values = values_of<Friction, Lanes>;
-  constexpr int last_step = wall ? -1 : law_values, sliding = law_values + !wall, rolling = sliding + friction_values;
+  constexpr int last_step = law_values, sliding = law_values + !wall, rolling = sliding + friction_values;
   constexpr int values = law_values || friction_values ? rolling : 0;
   [[maybe_unused]] const int added = rolling + (grows && has_history(Rollings{}, pass.rolling) ? 3 : 0);
   using Pair = ContactConstants<Law>;
@@ -206,14 +213,17 @@ template <class Law, class Friction, bool wall, bool grows = false>
     }
 
     Lanes value[values + 2 * grows ? values + 2 * grows : 1] = {};
-    ContactHistory<Law, Friction, RollingHistory<rolling, last_step>> history;
-    history.rolling = {b.history + k, pass.now};
+    ContactHistory<Law, Friction, RollingHistory<rolling, !wall && values == 0>> history;
+    history.rolling = {&b, &pass, k};
     if constexpr (values > 0) {
       read<values>(b.history + k, value);
       if constexpr (grows) read<2>(b.history + k, value + values, added);
       if constexpr (!wall) {
-        const auto is_new = parted(pass.now, value[last_step]);
-        for (int s = 0; s < values + 2 * grows; ++s) value[s] = select(is_new, Lanes{}, value[s]);
+        const Mask is_new = parted(pass.now, value[last_step]);
+        if (rarely(any(is_new))) {
+          for (int s = 0; s < values + 2 * grows; ++s) value[s] = select(is_new, Lanes{}, value[s]);
+          if (has_history(Rollings{}, pass.rolling)) history.rolling.clear(is_new);
+        }
       }
       copy<law_values>(value, &history.law);
       copy<friction_values>(value + sliding, &history.friction);

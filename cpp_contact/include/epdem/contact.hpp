@@ -200,7 +200,7 @@ inline ContactLoads<Number<Law>> contact(const ContactConstants<Law>& pair, cons
     if constexpr (!wall) loads.torque_j = -c.arm_j * lever;
   }
 
-  if (settings.rolling != 0) {
+  if (rarely(settings.rolling != 0)) {
     const epdem::Rolling<T> rolling{c.normal,    c.rolling,       c.R_star, c.overlap,
                                     now.load,    now.k_n,         now.k_t,  pair.rolling_friction,
                                     settings.dt, settings.torsion};

@@ -67,6 +67,9 @@ EPDEM_INLINE T select(bool m, T a, T b) noexcept {
 }
 EPDEM_INLINE Lanes select(Mask m, Lanes a, Lanes b) noexcept { return m ? a : b; }
 
+/// A condition that rarely holds: the compiler keeps the registers for the other branch.
+EPDEM_INLINE bool rarely(bool x) noexcept { return __builtin_expect(x, false); }
+
 /// As std::min and std::max.
 template <class T>
 EPDEM_INLINE T min(T a, T b) noexcept {

@@ -57,9 +57,9 @@ constexpr const char* plain_name(const char* name) noexcept {
 
 /// Whether the model at this place of its list has a history.
 template <class... Models>
-constexpr bool has_history(List<Models...> list, int place) noexcept {
+EPDEM_INLINE constexpr bool has_history(List<Models...> list, int place) noexcept {
   bool found = false;
-  list.each([&](auto model, int at) { found |= at == place && model.has_history; });
+  list.each([&](auto model, int at) __attribute__((always_inline)) { found |= at == place && model.has_history; });
   return found;
 }
 
