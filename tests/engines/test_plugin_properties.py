@@ -58,9 +58,7 @@ def test_an_absurd_yield_stress_or_ratio_is_refused(tmp_path):
     negative = refusal(tmp_path / "a", deck(properties=without("yieldPressure") + RATIO.format(-2)))
     assert "yieldPressureRatio = -2 of all types, must be > 0" in negative
     no_stress = re.sub(r"(fix p2 .* peratomtype \S+) \S+", r"\1 0", without("yieldPressure"))
-    assert "yieldStress = 0 [Pa] of type 2, must be > 0" in refusal(
-        tmp_path / "b", deck(properties=no_stress)
-    )
+    assert "yieldStress = 0 [Pa] of type 2, must be > 0" in refusal(tmp_path / "b", deck(properties=no_stress))
     open_question = without("yieldPressure", "yieldStress") + (
         "fix y all property/global yieldStress peratomtypepair 3" + " 1e9" * 9 + "\n"
         "fix q all property/global yieldPressureRatio peratomtype 2.8 3 2.8\n"
