@@ -1,7 +1,6 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """The interface of an engine of bulk scenes: a plan goes in, tables come out."""
 
-from collections.abc import Collection
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Protocol
@@ -10,7 +9,7 @@ import pandas as pd
 
 from ..base.folders import claim
 from ..errors import CaseError, EngineError
-from ..impacts.engine import Engine, Feature, Report, check_law, refuse_ranks, texts
+from ..impacts.engine import Engine, Feature, Report, refuse_ranks, texts
 from .plan import ScenePlan
 
 Tables = dict[str, pd.DataFrame]  # rows, particles and contacts, as far as the plan has them; SI
@@ -29,13 +28,6 @@ class SceneEngine(Engine[ScenePlan, Tables], Protocol):
 
     def resume(self, job: ScenePlan, folder: Path, *, ranks: int, report: Report) -> tuple[Tables, Resumed]:
         """Continue a run from its newest restart file. Raises CaseError if there is none, EngineError."""
-
-
-def check_scene(engine: SceneEngine, p: ScenePlan, kinds: Collection[str]) -> None:
-    """Raise CaseError for a scene whose kind is not among the `kinds` of an engine, or whose law the engine lacks."""
-    if (kind := p.case.scene.kind) not in kinds:
-        raise CaseError(f"scene.kind = {kind!r}: engine {engine.name} runs {', '.join(kinds)}; use another --engine")
-    check_law(engine, p.model.law)
 
 
 def files(engine: SceneEngine, p: ScenePlan) -> dict[str, str]:

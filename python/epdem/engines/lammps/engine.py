@@ -9,13 +9,12 @@ import numpy as np
 from ...base import rendering as decks
 from ...base.folders import held
 from ...base.processes import most_ranks
-from ...case.kinds import KINDS
 from ...errors import EngineError
-from ...impacts.engine import Feature, Report, Trajectory, check_features
+from ...impacts.engine import Feature, Report, Trajectory, check_features, check_law
 from ...impacts.experiment import Body
 from ...impacts.placement import approach
 from ...impacts.plan import Plan
-from ...scenes.engine import Tables, check_scene
+from ...scenes.engine import Tables
 from ...scenes.plan import ScenePlan
 from ...theory.sources import Source
 from ..host import Host
@@ -77,7 +76,7 @@ class Lammps(Host):
 
     def check(self, job: Plan | ScenePlan) -> list[str]:
         if isinstance(job, ScenePlan):
-            check_scene(self, job, KINDS)
+            check_law(self, job.model.law)
             scene_deck.deck(job)
             return []
         self.deck(job)

@@ -10,13 +10,12 @@ import numpy as np
 from ...base import paths
 from ...base import rendering as decks
 from ...base.processes import most_ranks
-from ...case.kinds import KINDS
 from ...errors import CaseError, EngineError
-from ...impacts.engine import Feature, Report, Trajectory, check_features
+from ...impacts.engine import Feature, Report, Trajectory, check_features, check_law
 from ...impacts.placement import approach
 from ...impacts.plan import Plan
 from ...laws.library import laws
-from ...scenes.engine import Resumed, Tables, check_scene
+from ...scenes.engine import Resumed, Tables
 from ...scenes.plan import ScenePlan
 from ...theory.sources import Source
 from ..host import Host
@@ -105,7 +104,7 @@ class Liggghts(Host):
 
     def check(self, job: Plan | ScenePlan) -> list[str]:
         if isinstance(job, ScenePlan):
-            check_scene(self, job, KINDS)
+            check_law(self, job.model.law)
             scene_deck.deck(job)
         else:
             self.deck(job)
