@@ -56,7 +56,7 @@ DOCUMENTS = {  # words, and what the document must hold
     ),
     "verify rerun": (["stored/results.h5"], lambda d: d["same"] and len(d["differences"]) == 1),
     "view": (["beads.toml"], lambda d: d == {"file": "settle_glass.png", "spheres": 30, "drawn": 30}),
-    "tune": (["beads.toml"], lambda d: d["ranks"] == 1 and len(d["trials"]) == 5 and not d["written"]),
+    "tune": (["beads.toml"], lambda d: d["ranks"] == 1 and len(d["trials"]) == 15 and not d["written"]),
     "status": (["swept"], lambda d: (d["points"], d["done"], d["waiting"]) == (2, 0, 2)),
     "cite": (["steel.toml"], lambda d: "Thornton" in d["law thornton, Thornton 1997"] and "Kloss" in d["liggghts"]),
     "export liggghts": (["-o", "."], lambda d: d["files"][0] == "normal_model_ep.cpp" and not d["lacks"]),

@@ -67,7 +67,7 @@ def test_the_plugin_exports_only_the_functions_that_it_takes_over():
         *["FixNVESphere"] * 2,
         "FixNeighlistMesh",
         *["FixContactHistoryMesh"] * 2,
-        *["Neighbor"] * 2,
+        *["Neighbor"] * 3,
     ]
 
 

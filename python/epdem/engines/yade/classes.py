@@ -69,7 +69,7 @@ def title(law: str) -> str:
 
 def settings(tangential: Tangential | None, **more: object) -> dict[str, object]:
     """Settings of the law's functor; tangential: None without friction."""
-    return ({"tangential": tangential} if tangential and NODES[tangential] else {}) | more
+    return ({"tangential": repr(tangential)} if tangential and NODES[tangential] else {}) | more
 
 
 def of_pairs(name: str, rows: Iterable[Iterable[float]]) -> PairValue:
