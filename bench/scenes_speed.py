@@ -24,7 +24,7 @@ from unittest.mock import patch
 
 import store
 
-from epdem.base import rendering
+from epdem.base import paths, rendering
 from epdem.base.files import write_texts
 from epdem.case.scene import load
 from epdem.engines.lammps import launcher as lammps_launcher
@@ -80,6 +80,7 @@ def measure(texts: dict[str, str], model: str, environment: dict[str, str]) -> d
     with patch.dict(os.environ, environment), tempfile.TemporaryDirectory(prefix="epdem_scenes_") as name:
         folder = Path(name)
         write_texts(folder, texts)
+        paths.launcher.cache_clear()  # EPDEM_LIGGGHTS differs between the models
         before, start = resource.getrusage(resource.RUSAGE_CHILDREN), time.monotonic()
         engine.run("in.scene", folder)
         after, wall = resource.getrusage(resource.RUSAGE_CHILDREN), time.monotonic() - start

@@ -21,7 +21,6 @@ from epdem.base.declarations import declarations
 from epdem.engines.yade import launcher
 from epdem.engines.yade.classes import title
 
-ROOT = Path(__file__).resolve().parents[1]
 NATIVE = "YADE's Hertz-Mindlin"
 CLASSES = tuple(f"C++ {title(law)}" for law in declarations())
 LAWS = tuple(name for name, law in declarations().items() if not law.adheres)
@@ -104,7 +103,7 @@ print("RESULT " + json.dumps([rest, loading, steps(20)]), n)
 def once(law: str, folder: Path, module: str) -> tuple[list[float], int]:
     """Microseconds per contact and step of one law in each of STATES, and the number of contacts."""
     path = folder / f"{law.replace(' ', '_')}.py"
-    path.write_text(SCRIPT.format(python=str(ROOT / "python"), module=module, law=law, side=SIDE, strengths=STRENGTHS))
+    path.write_text(SCRIPT.format(python=str(folder), module=module, law=law, side=SIDE, strengths=STRENGTHS))
     done = subprocess.run(
         ["yade", "-n", "-x", path.name],
         cwd=folder,
@@ -125,6 +124,7 @@ def measure(rounds: int, module: Path | None) -> tuple[dict[str, list[float]], i
     """Best times of every law, laws interleaved."""
     best: dict[str, list[float]] = {}
     with tempfile.TemporaryDirectory() as folder:
+        launcher.write_deck_modules(Path(folder), classes=False)
         for _ in range(rounds):
             for law in (NATIVE, *(CLASSES if module else ()), *LAWS):
                 times, n = once(law, Path(folder), str(module))
