@@ -7,7 +7,7 @@ Both decks have the same output; that of `hertz` has neither plastic work nor th
 restitution of 0.5 where the case has none. `hertz` runs with LIGGGHTS's own lists, walls and integration
 (EPDEM_LOOP=generic). Beside the widest instruction set of the processor the case runs with AVX2, in LAMMPS if LAMMPS is
 there, and with `--before` by another epdem-liggghts, such as that of an earlier commit: its rows give the ratio to that
-one. Times are those of the whole process on one core: processor time, which other loads of the machine disturb least,
+one. Times are of the whole process on one core: processor time, which other loads of the machine disturb least,
 and wall time. The models take turns, the shortest counts; runs are kept in runs/bench: a bench goes on. `--quick`
 measures once, in five minutes.
 """

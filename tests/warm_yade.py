@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """A program `yade` whose scripts run in children of one YADE that has started; a start takes a second of a processor.
 
-Other calls (another option, more threads, a preloaded library, another path of Python) are those of YADE itself.
+YADE itself runs other calls (another option, more threads, a preloaded library, another path of Python).
 """
 
 import os

@@ -77,7 +77,7 @@ EPDEM_INLINE void largest(Block& b, int k, int n, Lanes radius, Lanes overlap, L
   keep(b.overlap_ratio, overlap);
 }
 
-/// Books the energies of a contact with adhesion; a function of its own, because six kernels call it.
+/// Books the energies of a contact with adhesion. Six kernels call this function.
 template <class Law>
 [[gnu::noinline]] void book_adhesive(Block& b, int k, const Law& law, Lanes R_star, const State<Law>& before,
                                      const Step<Law>& now, Lanes overlap) {

@@ -180,7 +180,7 @@ PIECES = {
 
 @pytest.mark.parametrize("what", PIECES)
 def test_a_run_in_pieces_is_the_whole_run(what, tmp_path):
-    """Forces before the first step of a run are those of the last step, also where a contact forms or ends."""
+    """Forces before the first step of a run equal the forces of the last step, also where a contact forms or ends."""
     deck, steps, piece = PIECES[what]
     _, whole = run(deck + f"run {steps}\n" + DUMP, tmp_path / "whole")
     pieces = f"variable k loop {steps // piece}\nlabel again\nrun {piece}\nnext k\njump SELF again\n"

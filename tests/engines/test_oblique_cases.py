@@ -127,7 +127,7 @@ def test_liggghts_takes_walls_only(tmp_path):
 
 @pytest.mark.yade
 def test_yade_without_its_module_refuses_friction_and_says_how_to_build_it(tmp_path):
-    """YADE's own spring is not that of the module: psi_2 would be off by 0.5."""
+    """YADE's own spring differs from the spring of the module: psi_2 would be off by 0.5."""
     with pytest.raises(CaseError, match="epdem_yade, which is not built; run 'make yade', or use --engine embedded"):
         outcome(tmp_path, ["yade"], angles=["20 deg", "70 deg"], speeds=["0.1 m/s"])
 

@@ -114,13 +114,18 @@ def load_words(p: ScenePlan) -> Iterator[str]:
         yield from (f"f_load{n}[{k}]" for k in range(1, 7 if name in p.scene.meshes else 4))
 
 
+def first_look(p: ScenePlan, phase: Phase, steps: int) -> int:
+    """The steps of a phase before its condition is looked at."""
+    step = phase.case.time_step or p.time_step
+    return min(steps, p.every * max(1, math.ceil(phase.case.condition_from / step / p.every)))
+
+
 def stop_condition(p: ScenePlan, phase: Phase, steps: int) -> StopCondition | None:
     """How a phase ends early, in words of LIGGGHTS and LAMMPS; None: it does not."""
     until = phase.case.condition
     if until is None:
         return None
-    step = phase.case.time_step or p.time_step
-    first = min(steps, p.every * max(1, math.ceil(phase.case.condition_from / step / p.every)))
+    first = first_look(p, phase, steps)
     if until.kinetic_energy is not None:
         formula, sign = "ke/atoms", "<"
     elif until.count is not None:

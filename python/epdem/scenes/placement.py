@@ -87,6 +87,12 @@ def spheres(p: ScenePlan, phase: str = "") -> FloatArray:
     return np.array(placed[len(bodies) :]).reshape(-1, 5)
 
 
+def later_bodies(p: ScenePlan, phase: str) -> Iterator[tuple[float, ...]]:
+    """The single spheres that come with a phase but the first, in the form of `moving_spheres`."""
+    for s in (b.sphere for b in p.scene.later if b.phase == phase):
+        yield (*s.place, s.radius, float(p.model.type_of(s.material)), *s.velocity, *s.spin, 0.0)
+
+
 def moving_spheres(p: ScenePlan, phase: str = "") -> Iterator[tuple[float, ...]]:
     """x y z radius [m], type, velocity [m/s], spin [rad/s], 1 if frozen, of each of `spheres`."""
     table = p.scene.table if phase in ("", p.phases[0].name) else []

@@ -56,6 +56,12 @@ def sheet(plane: PlaneWall, room: Limits) -> FloatArray:
     return meshes.rectangle(axis, center, (size[0], size[1]))
 
 
+def spans(w: PlateWall, axis: str, box: Limits) -> bool:
+    """Whether a plate is as wide as a box along an axis in its plane."""
+    k = "xyz".index(axis)
+    return dict(zip("xyz".replace(w.axis, ""), w.size, strict=True))[axis] >= (box[2 * k + 1] - box[2 * k]) * (1 - 1e-9)
+
+
 def surface_rotation(w: MeshWall) -> RotateMove | None:
     """The rotation of the surface of a round wall, whose triangles stay where they are."""
     if not isinstance(w, CylinderWall | ConeWall) or not w.angular_velocity:

@@ -125,11 +125,7 @@ def _fills(p: ScenePlan, phase: str) -> list[tuple[str, str, str]]:
 
 def _data(p: ScenePlan, phase: str) -> str:
     """The data file of the spheres that come with a phase."""
-    rows = list(placement.moving_spheres(p, phase))
-    for b in p.scene.later:
-        if b.phase == phase:
-            kind = float(p.model.type_of(b.material))
-            rows.append((*b.position, b.radius, kind, *b.velocity, *b.spin, 0.0))
+    rows = [*placement.moving_spheres(p, phase), *placement.later_bodies(p, phase)]
     density = [0.0, *(p.case.materials[t.material].density for t in p.model.types)]
     atoms, velocities = [], []
     for n, (x, y, z, radius, kind, *motion, _) in enumerate(rows, 1):

@@ -11,7 +11,7 @@ from ...case.walls import BoxWall, ConeWall, CylinderWall, MeshWall, PlaneWall, 
 from ...errors import CaseError
 from ...scenes import placement
 from ...scenes.plan import Phase, ScenePlan
-from ...scenes.walls import surface_rotation
+from ...scenes.walls import spans, surface_rotation
 from ..host import LIGGGHTS, refuse
 from ..input_script import wall_id
 from . import words
@@ -98,9 +98,9 @@ def _halves(w: CylinderWall | ConeWall) -> tuple[float, ...]:
 def _plate(p: ScenePlan, w: PlateWall) -> Iterator[str]:
     """The limits of a flat block; where the room repeats and the plate is as wide, it has no edges."""
     sizes = iter(w.size)
-    for axis, center, low, high in zip("xyz", w.center, p.box[::2], p.box[1::2], strict=True):
+    for axis, center in zip("xyz", w.center, strict=True):
         half = 0.0 if axis == w.axis else next(sizes) / 2
-        endless = p.scene.periodic and axis in "xy" and axis != w.axis and 2 * half >= (high - low) * (1 - 1e-9)
+        endless = p.scene.periodic and axis in "xy" and axis != w.axis and spans(w, axis, p.box)
         yield "INF INF" if endless else _numbers((center - half, center + half))
 
 

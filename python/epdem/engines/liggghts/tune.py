@@ -128,9 +128,8 @@ class Tuned:
 
 def _silent(case: SceneCase) -> ScenePlan:
     """The plan of a scene without output but rows, which report its progress."""
-    silent = Output(rows=100, particles=0).model_copy(
-        update={"energy": case.output.energy}
-    )  # of contacts without frames
+    energy = {"energy": case.output.energy}  # of contacts without frames
+    silent = Output(rows=100, particles=0).model_copy(update=energy)
     return plan(case.model_copy(update={"output": silent}))
 
 

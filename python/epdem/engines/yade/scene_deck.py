@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from itertools import combinations_with_replacement
 
 from ...base import rendering as decks
+from ...case.motions import Move
 from ...errors import CaseError
 from ...scenes import placement
 from ...scenes.plan import ScenePlan
@@ -17,7 +18,6 @@ from .scene_parts import (
     EDGES,
     HEAD,
     Fill,
-    Motion,
     Stop,
     bodies_file,
     fills,
@@ -48,7 +48,7 @@ class Phase:
     name: str
     steps: int
     time_step: float | None
-    motions: tuple[Motion, ...]
+    motions: tuple[Move, ...]
     added: list[str]
     removed: list[str]
     record: bool

@@ -7,15 +7,15 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 from ...base import rendering as decks
-from ...case.motions import LinearMove, Move, PressMove, RotateMove, VibrateMove
-from ...case.walls import PlateWall, Upright
+from ...case.motions import LinearMove, Move, PressMove, VibrateMove
+from ...case.walls import PlaneWall, PlateWall, Upright
 from ...errors import CaseError
 from ...scenes import placement
 from ...scenes.filling import Insertion
 from ...scenes.plan import Phase, ScenePlan
-from ...scenes.walls import surface_rotation
+from ...scenes.walls import spans, surface_rotation
 from ..host import refuse as refuse_value
-from ..input_script import stop_condition, torque_origin
+from ..input_script import first_look, torque_origin
 
 EDGES = (
     "walls of triangles: YADE counts a sphere that touches an edge once for each triangle there, so that its force is "
@@ -39,22 +39,6 @@ class Wall:
     axis: int = 0
     place: float = 0.0
     file: str = ""
-
-
-@dataclass(frozen=True)
-class Motion:
-    """What moves a wall in a phase: a velocity [m/s]; an amplitude [m] with omega [rad/s]; a turn; a force [N]."""
-
-    wall: str
-    velocity: Sequence[float] | None = None
-    amplitude: Sequence[float] | None = None
-    omega: float = 0.0
-    axis: Sequence[float] | None = None
-    origin: Sequence[float] | None = None
-    rate: float = 0.0
-    direction: Sequence[float] | None = None
-    force: float = 0.0
-    highest_speed: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -98,7 +82,7 @@ def refuse(p: ScenePlan) -> None:
             raise CaseError(
                 f"scene.wall.{name}.angular_velocity: YADE turns the wall itself, which moves otherwise; remove one"
             )
-    for w in (*p.scene.planes, *p.scene.gates):
+    for w in _planes(p).values():
         across = p.scene.periodic and w.axis != "z" and w.axis
         unknown[f"scene.wall.{w.name}.axis"] = across, "YADE's periodic cell holds planes across z only"
     for place, (value, reason) in unknown.items():
@@ -107,12 +91,11 @@ def refuse(p: ScenePlan) -> None:
 
 def is_endless(p: ScenePlan, name: str) -> bool:
     """Whether a wall of triangles is a plane without edges: a plate as wide as the periodic cell that moves along z."""
-    mesh, moves = p.scene.meshes[name], [phase.moves[name] for phase in p.phases if name in phase.moves]
+    mesh = p.scene.meshes[name]
     if not (p.scene.periodic and isinstance(mesh, PlateWall) and mesh.axis == "z"):
         return False
-    xlo, xhi, ylo, yhi, *_ = p.box
-    wide = all(size >= cell * (1 - 1e-9) for size, cell in zip(mesh.size, (xhi - xlo, yhi - ylo), strict=True))
-    return wide and all(_is_along_z(move) for move in moves)
+    wide = all(spans(mesh, axis, p.box) for axis in "xy")
+    return wide and all(_is_along_z(phase.moves[name]) for phase in p.phases if name in phase.moves)
 
 
 def _is_along_z(move: Move) -> bool:
@@ -128,9 +111,8 @@ def _is_along_z(move: Move) -> bool:
 
 def walls(p: ScenePlan) -> dict[str, Wall]:
     """All walls by name. YADE's infinite walls do not work in a periodic cell: there they are triangles."""
-    found = {}
+    found, planes = {}, _planes(p)
     for number, name in enumerate(wall_names(p), p.count):
-        planes = {w.name: w for w in (*p.scene.planes, *p.scene.gates)}
         material = p.wall_types[name] - 1
         if name in planes and not p.scene.periodic:
             found[name] = Wall(name, number, material, "xyz".index(planes[name].axis), planes[name].at)
@@ -141,30 +123,21 @@ def walls(p: ScenePlan) -> dict[str, Wall]:
 
 def wall_names(p: ScenePlan) -> list[str]:
     """The walls in the order of their numbers in contact tables."""
-    return [w.name for w in (*p.scene.planes, *p.scene.gates)] + [*p.scene.meshes]
+    return [*_planes(p), *p.scene.meshes]
+
+
+def _planes(p: ScenePlan) -> dict[str, PlaneWall]:
+    return {w.name: w for w in (*p.scene.planes, *p.scene.gates)}
 
 
 def _file(name: str) -> str:
     return f"wall_{name}.txt"
 
 
-def _motion(name: str, move: Move) -> Motion:
-    match move:
-        case LinearMove():
-            return Motion(name, velocity=move.velocity)
-        case VibrateMove():
-            return Motion(name, amplitude=move.amplitude, omega=move.omega)
-        case RotateMove():
-            return Motion(name, axis=move.unit_axis, origin=move.origin, rate=move.rate)
-        case PressMove():
-            direction, force, highest = move.unit_direction, move.force, move.highest_speed
-            return Motion(name, direction=direction, force=force, highest_speed=highest)
-
-
-def motions(p: ScenePlan, phase: Phase) -> tuple[Motion, ...]:
+def motions(p: ScenePlan, phase: Phase) -> tuple[Move, ...]:
     """What moves in a phase. A surface that turns is a wall of revolution that turns."""
     found = {name: rotation for name, mesh in p.scene.meshes.items() if (rotation := surface_rotation(mesh))}
-    return tuple(_motion(name, move) for name, move in (found | phase.moves).items())
+    return tuple((found | phase.moves).values())
 
 
 def loads(p: ScenePlan) -> tuple[Load, ...]:
@@ -211,8 +184,8 @@ def bodies_file(p: ScenePlan, phase: Phase) -> str:
 
 def stop(p: ScenePlan, phase: Phase, steps: int) -> Stop | None:
     """The condition that may end a phase early."""
-    until, words = phase.case.condition, stop_condition(p, phase, steps)
-    if until is None or words is None:
+    until = phase.case.condition
+    if until is None:
         return None
     limit = decks.number(until.limit)
     if until.kinetic_energy is not None:
@@ -221,7 +194,7 @@ def stop(p: ScenePlan, phase: Phase, steps: int) -> Stop | None:
         condition = f'row["particles"] <= {limit}'
     else:
         condition = f'np.hypot.reduce([row["{until.wall}_force_" + axis] for axis in "xyz"]) >= {limit}'
-    return Stop(condition, words.first)
+    return Stop(condition, first_look(p, phase, steps))
 
 
 def files(p: ScenePlan) -> dict[str, str]:
@@ -236,12 +209,7 @@ def files(p: ScenePlan) -> dict[str, str]:
         texts[wall.file] = table_text(head, rows)
     for phase in p.phases:
         if name := bodies_file(p, phase):
-            later = [b.sphere for b in p.scene.later if b.phase == phase.name]
-            types = [float(p.model.type_of(s.material)) for s in later]
-            texts[name] = table_text(
-                HEAD,
-                [(*s.place, s.radius, t, *s.velocity, *s.spin, 0.0) for s, t in zip(later, types, strict=True)],
-            )
+            texts[name] = table_text(HEAD, [*placement.later_bodies(p, phase.name)])
     for n, f in _late(p):
         rng = random.Random(p.case.numerics.seed + n)
         sizes = placement.sizes(p.case, p.model, f, rng)
@@ -257,8 +225,8 @@ def table_text(head: str, rows: Sequence[Sequence[float]]) -> str:
 
 
 def _height(p: ScenePlan, name: str) -> float:
-    planes = {w.name: w.at for w in (*p.scene.planes, *p.scene.gates)}
-    return planes[name] if name in planes else float(p.triangles[name][0, 0, 2])
+    planes = _planes(p)
+    return planes[name].at if name in planes else float(p.triangles[name][0, 0, 2])
 
 
 def _large_triangle(p: ScenePlan, z: float) -> list[float]:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The spheres of a scene in YADE: those of a table, those that come during the run, those that leave the room."""
+"""The spheres of a scene in YADE: spheres of a table, spheres that come during the run, spheres that leave the room."""
 
 import math
 import random
@@ -56,7 +56,7 @@ class Spheres:
         self.table = np.vstack([self.table, np.array(new).reshape(-1, 5)])
 
     def add_wall(self, number: int, bodies: Sequence[Any]) -> list[int]:
-        """Add the bodies of a wall; their ids. number: of the wall in contact tables, after those of all spheres."""
+        """Add the bodies of a wall and return their ids. number: of the wall in contact tables, above all spheres."""
         ids: list[int] = O.bodies.append(bodies)
         self.number |= dict.fromkeys(ids, number)
         return ids
@@ -115,7 +115,7 @@ class Fill:
         self._came = self._batches = 0
 
     def pour(self, step: int) -> None:
-        """Add the spheres that are due in a step of the phase; those of a stream without a free place come later."""
+        """Add the spheres that are due in a step of the phase. A sphere without a free place comes later."""
         batches = step // self.every + 1
         if batches == self._batches or self._came == len(self.sizes):
             return
