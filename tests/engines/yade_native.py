@@ -15,7 +15,7 @@ import numpy as np
 import pytest
 
 from epdem.cli.main import app
-from epdem.engines.yade import sources
+from epdem.engines import sources
 from epdem.engines.yade.engine import tables, trajectory
 from epdem.engines.yade.launcher import environment
 from epdem.impacts.engine import Trajectory
@@ -57,7 +57,7 @@ def module_folder() -> Path:
                 if not place.exists() or place.read_bytes() != file.read_bytes():  # else nothing is built again
                     place.parent.mkdir(parents=True, exist_ok=True)
                     shutil.copyfile(file, place)
-        for command in sources.commands(EXPORTED)[:2]:
+        for command in sources.yade_commands(EXPORTED)[:2]:
             text = command.replace("/path/to/yade", os.environ["YADE_SOURCE"])
             done = subprocess.run(["bash", "-c", text], capture_output=True, text=True, check=False)
             assert done.returncode == 0, done.stdout[-3000:] + done.stderr[-3000:]

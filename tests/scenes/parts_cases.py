@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from epdem.case.toml import read_toml
-from epdem.engines.liggghts import stl
+from epdem.engines.liggghts.scene_parts import stl_text
 
 CASES = Path(__file__).parents[2] / "cases"
 GLASS = {
@@ -61,4 +61,4 @@ def tetrahedron(size: float) -> np.ndarray:
 def write_stl(path: Path, triangles: np.ndarray) -> None:
     """An STL file."""
     with np.errstate(invalid="ignore"):  # a degenerate one has no normal
-        path.write_text(stl.text("wall", triangles))
+        path.write_text(stl_text("wall", triangles))

@@ -16,8 +16,8 @@ from epdem.engines import log, scene_engine
 from epdem.engines.liggghts import launcher
 from epdem.engines.yade import scene_deck as yade
 from epdem.engines.yade import scene_tables as yade_tables
+from epdem.engines.yade.engine import Yade
 from epdem.engines.yade.launcher import environment
-from epdem.engines.yade.scenes import OUT
 from epdem.errors import CaseError, EngineError
 from epdem.scenes import placement
 from epdem.scenes.engine import files
@@ -165,9 +165,9 @@ def test_the_folder_of_a_yade_scene_runs_by_hand_and_repeats_itself(tmp_path):
         check=True,
     )
     assert "YADE leaves a folder: False" in done.stderr
-    (tmp_path / "deck" / OUT).write_text(done.stdout)
+    (tmp_path / "deck" / Yade.out).write_text(done.stdout)
     outcome = run(path, engine="yade", out=tmp_path / "out")
-    rows = yade_tables.rows(outcome.plan, tmp_path / "deck" / OUT)
+    rows = yade_tables.rows(outcome.plan, tmp_path / "deck" / Yade.out)
     assert rows.equals(outcome.results.rows)
 
 

@@ -10,7 +10,7 @@ import pytest
 
 from epdem.case.scene import load
 from epdem.engines.lammps import scene_deck as lammps_deck
-from epdem.engines.liggghts import launcher, scene_deck, trials, tune
+from epdem.engines.liggghts import launcher, scene_deck, tune
 from epdem.engines.liggghts.tune import Choice, Trial, Tuned
 from epdem.errors import CaseError, EngineError
 from epdem.scenes.plan import plan
@@ -65,9 +65,7 @@ def test_trials_take_the_steps_of_the_scene_in_turns(tmp_path, monkeypatch):
 
 
 def test_each_stage_begins_with_the_first_skin_and_counts_with_its_steps():
-    texts, order = trials.pieces(
-        {"in.scene": "run 1000 upto  # fill\nunfix x\nrun 9500 upto  # flow\n"}, [1.0, 2.0], 400
-    )
+    texts, order = tune.pieces({"in.scene": "run 1000 upto  # fill\nunfix x\nrun 9500 upto  # flow\n"}, [1.0, 2.0], 400)
     assert [(p.stage, p.steps, p.turn, p.skin) for p in order[:4]] == [
         ("fill", 400, 0, 1.0),
         ("fill", 400, 0, 2.0),
@@ -140,13 +138,13 @@ def test_all_trials_share_the_time(tmp_path, monkeypatch):
         limits.append(seconds)
         return [(1.0, 200)] * 20
 
-    monkeypatch.setattr(trials, "run", run)
+    monkeypatch.setattr(tune, "run", run)
     tune.tune(small(tmp_path), ranks=2, seconds=60.0)
     assert limits == [10.0] * 6  # four processor grids, two intervals of sorting
 
 
 def test_trials_that_are_too_short_say_so(tmp_path, monkeypatch):
-    monkeypatch.setattr(trials, "run", lambda *words: [(1.0, 200)] * 7)  # seven pieces of five skins
+    monkeypatch.setattr(tune, "run", lambda *words: [(1.0, 200)] * 7)  # seven pieces of five skins
     with pytest.raises(EngineError, match="ended before each skin had two turns; give them more time"):
         tune.tune(small(tmp_path))
     path = small(tmp_path)

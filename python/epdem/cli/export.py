@@ -42,9 +42,9 @@ def yade(
     as_json: AsJson = False,
 ) -> None:
     """Write the sources of the module epdem_yade, which gives YADE the contact laws as C++ classes."""
-    from ..engines.yade import sources
+    from ..engines import sources
 
-    _write(out, sources.sources(), sources.commands(out), as_json=as_json)
+    _write(out, sources.yade(), sources.yade_commands(out), as_json=as_json)
 
 
 @app.command()
@@ -53,9 +53,9 @@ def lammps(
     as_json: AsJson = False,
 ) -> None:
     """Write the sources of epdemplugin.so, which gives LAMMPS the contact laws as a pair style and walls."""
-    from ..engines.lammps import sources
+    from ..engines import sources
 
-    _write(out, sources.sources(), sources.commands(out), as_json=as_json)
+    _write(out, sources.lammps(), sources.lammps_commands(out), as_json=as_json)
 
 
 def _write(out: Path, sources: dict[Path, Path], commands: list[str], *, as_json: bool) -> None:

@@ -2,7 +2,7 @@
 """What LIGGGHTS, YADE and LAMMPS have in common as engines: a deck in a folder, of impacts or of a scene."""
 
 from abc import ABC, abstractmethod
-from collections.abc import Callable
+from collections.abc import Callable, Collection, Iterator
 from pathlib import Path
 from typing import overload
 
@@ -11,13 +11,14 @@ import pandas as pd
 from ..base import rendering as decks
 from ..base.files import write_texts
 from ..base.folders import held
+from ..case.parts import Parts
 from ..errors import CaseError
-from ..impacts.engine import Report, Trajectory, silent
+from ..impacts.engine import Feature, Report, Trajectory, check_law, silent
 from ..impacts.plan import Plan
 from ..scenes.engine import Resumed, Tables
 from ..scenes.plan import ScenePlan
 from ..theory.sources import Source
-from . import input_script
+from . import input_script, log
 
 LIGGGHTS = "use --engine liggghts"  # the engine of every scene
 
@@ -30,11 +31,21 @@ class Host(ABC):
     title: str  # the program's name
     template: str  # of impacts
     laws: tuple[str, ...] | None = None
+    features: frozenset[Feature]
+    out: str  # file of both streams of a scene
     leftovers: tuple[str, ...]  # patterns of files that an earlier run of a scene may have left in the folder
+
+    @abstractmethod
+    def missing(self) -> str | None:
+        """None if the program can run here, else a sentence with the command that installs it."""
 
     @abstractmethod
     def deck(self, plan: Plan) -> decks.Deck:
         """The deck of a plan. Raises CaseError for what the program cannot do."""
+
+    @abstractmethod
+    def check_scene(self, plan: ScenePlan) -> list[str]:
+        """Sentences on what a scene leaves out. Raises CaseError for what the program cannot do."""
 
     @abstractmethod
     def files(self, plan: ScenePlan) -> dict[str, str]:
@@ -49,8 +60,22 @@ class Host(ABC):
         """Run the deck of a scene, which is in `folder`. Raises CaseError, EngineError."""
 
     @abstractmethod
-    def read(self, plan: ScenePlan, folder: Path) -> Tables:
-        """The tables of a run. Raises EngineError for a frame that is missing or not whole."""
+    def tables(self, plan: ScenePlan, folder: Path, without: Collection[int]) -> Iterator[tuple[str, pd.DataFrame]]:
+        """The tables of a run by name, without the frames of the steps `without`. Raises EngineError."""
+
+    def read(self, plan: ScenePlan, folder: Path, *, without: Collection[int] = ()) -> Tables:
+        """The tables of a run, SI. Raises EngineError for a frame that is missing or not whole."""
+        out = folder / self.out
+        plan = plan.ended(log.ends(out), log.not_reached(out)) if plan.ends_early else plan
+        phases = {"phases": plan.phase_table} if isinstance(plan.case.scene, Parts) else {}
+        return dict(self.tables(plan, folder, without)) | phases
+
+    def check(self, job: Plan | ScenePlan) -> list[str]:
+        if isinstance(job, ScenePlan):
+            check_law(self, job.model.law)
+            return self.check_scene(job)
+        self.deck(job)
+        return []
 
     def write(self, job: Plan | ScenePlan, folder: Path) -> list[Path]:
         if isinstance(job, ScenePlan):

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ..base.rendering import number
+from ..base.rendering import Deck, number
 from ..case.parts import Parts
 from ..errors import CaseError
 from ..impacts.experiment import Body
@@ -114,18 +114,40 @@ def load_words(p: ScenePlan) -> Iterator[str]:
         yield from (f"f_load{n}[{k}]" for k in range(1, 7 if name in p.scene.meshes else 4))
 
 
-def first_look(p: ScenePlan, phase: Phase, steps: int) -> int:
+def phases(p: ScenePlan) -> Iterator[tuple[Phase | None, Deck, Phase | None]]:
+    """Each phase between its neighbours, with what every deck states of it.
+
+    steps: of the phase. time_step: None where one step serves all phases. added, removed: walls that come with the
+    phase, and that go at its end.
+    """
+    own_steps = any(phase.case.time_step for phase in p.phases)
+    for before, phase, after in zip((None, *p.phases[:-1]), p.phases, (*p.phases[1:], None), strict=True):
+        yield (
+            before,
+            Deck(
+                phase,
+                steps=phase.end - (before.end if before else 0),
+                time_step=phase.case.time_step or p.time_step if own_steps else None,
+                record=phase.case.record,
+                added=[name for name in phase.gates if before is None or name not in before.gates],
+                removed=[name for name in phase.gates if after and name not in after.gates],
+            ),
+            after,
+        )
+
+
+def first_look(p: ScenePlan, phase: Deck) -> int:
     """The steps of a phase before its condition is looked at."""
     step = phase.case.time_step or p.time_step
-    return min(steps, p.every * max(1, math.ceil(phase.case.condition_from / step / p.every)))
+    return int(min(phase.steps, p.every * max(1, math.ceil(phase.case.condition_from / step / p.every))))
 
 
-def stop_condition(p: ScenePlan, phase: Phase, steps: int) -> StopCondition | None:
+def stop_condition(p: ScenePlan, phase: Deck) -> StopCondition | None:
     """How a phase ends early, in words of LIGGGHTS and LAMMPS; None: it does not."""
     until = phase.case.condition
     if until is None:
         return None
-    first = first_look(p, phase, steps)
+    first = first_look(p, phase)
     if until.kinetic_energy is not None:
         formula, sign = "ke/atoms", "<"
     elif until.count is not None:
@@ -133,4 +155,4 @@ def stop_condition(p: ScenePlan, phase: Phase, steps: int) -> StopCondition | No
     else:
         load = f"f_load{1 + p.loads.index(until.wall or '')}"
         formula, sign = "sqrt(" + "+".join(f"{load}[{k}]*{load}[{k}]" for k in (1, 2, 3)) + ")", ">="
-    return StopCondition(first, (steps - first) // p.every, formula, f"{sign} {number(until.limit)}")
+    return StopCondition(first, (phase.steps - first) // p.every, formula, f"{sign} {number(until.limit)}")

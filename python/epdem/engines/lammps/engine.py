@@ -2,19 +2,20 @@
 """LAMMPS with our plugin: impacts side by side in one deck, whose dump is a trajectory, and bulk scenes."""
 
 import math
+from collections.abc import Collection, Iterator
 from pathlib import Path
 
 import numpy as np
+import pandas as pd
 
 from ...base import rendering as decks
 from ...base.folders import held
 from ...base.processes import most_ranks
 from ...errors import EngineError
-from ...impacts.engine import Feature, Report, Trajectory, check_features, check_law
+from ...impacts.engine import Feature, Report, Trajectory, check_features
 from ...impacts.experiment import Body
 from ...impacts.placement import approach
 from ...impacts.plan import Plan
-from ...scenes.engine import Tables
 from ...scenes.plan import ScenePlan
 from ...theory.sources import Source
 from ..host import Host
@@ -39,7 +40,8 @@ class Lammps(Host):
     )
     template = "lammps/impact.in.j2"
     ranks = most_ranks()
-    leftovers: tuple[str, ...] = scene_tables.LEFTOVERS
+    out = launcher.OUT
+    leftovers: tuple[str, ...] = ("particles.*.txt", "contacts.*.txt", "contacts_*.txt")
     features = frozenset(
         {Feature.ADHESION, Feature.DASHPOT, Feature.FRICTION, Feature.SPHERE_FRICTION, Feature.DECK, Feature.POSITIONS}
     )
@@ -74,16 +76,11 @@ class Lammps(Host):
             end=END,
         )
 
-    def check(self, job: Plan | ScenePlan) -> list[str]:
-        if isinstance(job, ScenePlan):
-            check_law(self, job.model.law)
-            scene_deck.deck(job)
-            return []
-        self.deck(job)
+    def check_scene(self, plan: ScenePlan) -> list[str]:
+        scene_deck.deck(plan)
         return []
 
     def files(self, plan: ScenePlan) -> dict[str, str]:
-        """The text of every file of the deck of a scene by its name. Raises CaseError."""
         return scene_deck.files(plan)
 
     def run_impacts(self, plan: Plan, folder: Path, ranks: int) -> Trajectory:
@@ -99,9 +96,12 @@ class Lammps(Host):
     def run_scene(self, plan: ScenePlan, folder: Path, ranks: int, report: Report) -> None:
         launcher.run("in.scene", folder, ranks=ranks, log=LOG, report=report)
 
-    def read(self, plan: ScenePlan, folder: Path) -> Tables:
-        """The tables of a scene."""
-        return scene_tables.read(plan, folder, folder / launcher.OUT)
+    def tables(self, plan: ScenePlan, folder: Path, without: Collection[int]) -> Iterator[tuple[str, pd.DataFrame]]:
+        yield "rows", scene_tables.rows(plan, folder / self.out)
+        if plan.frames:
+            yield "particles", (spheres := scene_tables.particles(plan, folder))
+        if plan.contacts:
+            yield "contacts", scene_tables.contact_table(plan, folder, spheres)
 
 
 def contact(plan: Plan, body: Body, strength: float) -> str:

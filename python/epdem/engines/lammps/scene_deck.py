@@ -10,7 +10,7 @@ from ...errors import CaseError
 from ...scenes import placement
 from ...scenes.plan import ScenePlan
 from ..host import LIGGGHTS, refuse
-from ..input_script import default_skin, load_words, stop_condition, wall_id
+from ..input_script import default_skin, load_words, phases, stop_condition, wall_id
 from . import words
 from .scene_walls import meshes, motions, plane
 
@@ -39,28 +39,23 @@ def deck(p: ScenePlan) -> decks.Deck:
     types = range(1, len(p.model.types) + 1)
     gates = {w.name: plane(p, w) for w in p.scene.gates}
     cut = p.case.numerics.processors
-    own_steps = any(phase.case.time_step for phase in p.phases)
     walls = (*(plane(p, w) for w in p.scene.planes), *meshes(p))
     row_words = {"f_load": p.floor_load, "f_press_z": p.plates, "f_torque": p.torque, "f_power": p.writes_wall_power}
-    phases, before, begin = [], None, 0
+    scene_phases = []
     first = p.phases[0].name
     placed = len(p.scene.table) + sum(f.count for f in p.insertions if f.phase == first)
-    for phase, after in zip(p.phases, [*p.phases[1:], None], strict=True):
-        phases.append(
-            decks.Deck(
-                phase,
-                steps=phase.end - begin,
-                time_step=phase.case.time_step or p.time_step if own_steps else None,
+    for before, phase, _ in phases(p):
+        scene_phases.append(
+            phase.but(
                 data=_data_file(p, phase.name),
                 placed=placed,
                 fills=_fills(p, phase.name),
-                gates=[gates[name] for name in phase.gates if before is None or name not in before.gates],
+                gates=[gates[name] for name in phase.added],
                 commands=motions(p, before, phase) if before else [],
-                ends=[wall_id(p, name) for name in phase.gates if after and name not in after.gates],
-                stop=stop_condition(p, phase, phase.end - begin),
+                ends=[wall_id(p, name) for name in phase.removed],
+                stop=stop_condition(p, phase),
             )
         )
-        before, begin = phase, phase.end
         placed += sum(b.phase == phase.name for b in p.scene.later)
         placed += sum(f.count for f in p.insertions if f.phase == phase.name != first)
     return decks.Deck(
@@ -78,7 +73,7 @@ def deck(p: ScenePlan) -> decks.Deck:
         loads_of=tuple((n, wall_id(p, name), name in p.scene.meshes) for n, name in enumerate(p.loads, 1)),
         frozen=[n for n, s in enumerate(p.scene.table, 1) if s.frozen],
         gravity=p.case.scene.gravity,
-        phases=phases,
+        phases=scene_phases,
         mesh_ids=[wall_id(p, name) for name in p.scene.meshes],
         contact_walls=[wall_id(p, w) for w in contact_walls(p)],
         row_words=["f_ratio[1]", "f_ratio[2]", *(word for word, there in row_words.items() if there), *load_words(p)],

@@ -6,7 +6,6 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
-from ...case.parts import Parts
 from ...errors import EngineError
 from ...scenes import columns, contacts
 from ...scenes.plan import ScenePlan
@@ -14,8 +13,6 @@ from .. import log
 from ..host import frames
 from ..input_script import torque_origin, wall_id
 from .scene_deck import columns_of_dump, contact_walls
-
-LEFTOVERS: tuple[str, ...] = ("particles.*.txt", "contacts.*.txt", "contacts_*.txt")  # files of an earlier run
 
 
 def rows(p: ScenePlan, out: Path) -> pd.DataFrame:
@@ -45,7 +42,12 @@ def _frames(p: ScenePlan, folder: Path, kind: str, every: int, names: list[str])
     return frames(p, folder, f"{kind}.{{}}.txt", every, read)
 
 
-def _contacts(p: ScenePlan, folder: Path, spheres: pd.DataFrame) -> pd.DataFrame:
+def particles(p: ScenePlan, folder: Path) -> pd.DataFrame:
+    """Every sphere of every frame."""
+    return columns.whole(p, _frames(p, folder, "particles", p.frames, [*columns_of_dump(p)]), folder)
+
+
+def contact_table(p: ScenePlan, folder: Path, spheres: pd.DataFrame) -> pd.DataFrame:
     """Every contact of every frame."""
     pairs = _frames(p, folder, "contacts", p.contacts, ["one", "two", "overlap", "delta_max", "attached"])
     pairs = pairs.assign(wall="", i=pairs[["one", "two"]].min(axis=1), j=pairs[["one", "two"]].max(axis=1))
@@ -58,17 +60,3 @@ def _contacts(p: ScenePlan, folder: Path, spheres: pd.DataFrame) -> pd.DataFrame
     raw = pd.concat([part for part in found if len(part)] or found[:1], ignore_index=True)
     raw = raw.assign(attached=raw["attached"] > 0) if p.model.adheres else raw.drop(columns="attached")
     return contacts.complete(p, raw, spheres, folder)
-
-
-def read(p: ScenePlan, folder: Path, out: Path) -> dict[str, pd.DataFrame]:
-    """The tables of a run, SI. Raises EngineError for a frame that is missing or not whole."""
-    p = p.ended(log.ends(out), log.not_reached(out)) if p.ends_early else p
-    tables = {"rows": rows(p, out)}
-    if isinstance(p.case.scene, Parts):
-        tables["phases"] = p.phase_table
-    if p.frames:
-        found = _frames(p, folder, "particles", p.frames, [*columns_of_dump(p)])
-        tables["particles"] = columns.whole(p, found, folder)
-    if p.contacts:
-        tables["contacts"] = _contacts(p, folder, tables["particles"])
-    return tables

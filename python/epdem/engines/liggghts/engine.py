@@ -2,26 +2,27 @@
 """LIGGGHTS with our plugin: impacts side by side in one deck, whose dump is a trajectory, and bulk scenes."""
 
 import math
-from collections.abc import Collection
+from collections.abc import Collection, Iterator
 from pathlib import Path
 
 import numpy as np
+import pandas as pd
 
 from ...base import paths
 from ...base import rendering as decks
 from ...base.processes import most_ranks
 from ...errors import CaseError, EngineError
-from ...impacts.engine import Feature, Report, Trajectory, check_features, check_law
+from ...impacts.engine import Feature, Report, Trajectory, check_features
 from ...impacts.placement import approach
 from ...impacts.plan import Plan
 from ...laws.library import laws
 from ...scenes.engine import Resumed, Tables
 from ...scenes.plan import ScenePlan
 from ...theory.sources import Source
+from .. import log
 from ..host import Host
 from ..input_script import atom_types, finite
-from ..log import loop_seconds
-from . import dump, executable, launcher, scene_deck, scenes
+from . import dump, executable, launcher, resume, scene_deck, scene_tables, wall_stress
 from .properties import HARD, SOFT, Property, of_law, tangential
 from .session import Session
 
@@ -44,7 +45,17 @@ class Liggghts(Host):
     ranks = most_ranks()
     mpirun = launcher.MPIRUN
     features = frozenset(Feature) - {Feature.SPHERE_FRICTION}
-    leftovers: tuple[str, ...] = scenes.LEFTOVERS
+    out = launcher.OUT
+    leftovers: tuple[str, ...] = (
+        "particles.*.bin",
+        "contacts.*.txt",
+        "wall_contacts.*.txt",
+        "restart.*.bin",
+        "scene_*.vtk",
+        "stress_*.vtk",
+        "picture.*.ppm",
+        "in.resume",
+    )
 
     def __init__(self, *, stay: bool = False):
         self.session = Session() if stay else None
@@ -98,17 +109,12 @@ class Liggghts(Host):
             path=PATH,
         )
 
-    def files(self, plan: ScenePlan) -> dict[str, str]:
-        """The text of every file of the deck of a scene by its name. Raises CaseError."""
-        return scene_deck.files(plan)
-
-    def check(self, job: Plan | ScenePlan) -> list[str]:
-        if isinstance(job, ScenePlan):
-            check_law(self, job.model.law)
-            scene_deck.deck(job)
-        else:
-            self.deck(job)
+    def check_scene(self, plan: ScenePlan) -> list[str]:
+        scene_deck.deck(plan)
         return []
+
+    def files(self, plan: ScenePlan) -> dict[str, str]:
+        return scene_deck.files(plan)
 
     def run_impacts(self, plan: Plan, folder: Path, ranks: int) -> Trajectory:
         path = folder / PATH
@@ -119,19 +125,25 @@ class Liggghts(Host):
             wall = self.session.run("in.impact", folder, log=launcher.LOG, seconds=allowed)
         else:
             wall = launcher.run("in.impact", folder, ranks=ranks, log=launcher.LOG, seconds=allowed)
-        result = trajectory(plan, path, {"total": wall, "stepping": loop_seconds(folder / launcher.LOG)})
+        result = trajectory(plan, path, {"total": wall, "stepping": log.loop_seconds(folder / launcher.LOG)})
         path.unlink()  # large
         return result
 
     def run_scene(self, plan: ScenePlan, folder: Path, ranks: int, report: Report) -> None:
-        scenes.run(plan, folder, ranks=ranks, report=report)
+        resume.run(plan, folder, ranks=ranks, report=report)
 
     def resume(self, job: ScenePlan, folder: Path, *, ranks: int, report: Report) -> tuple[Tables, Resumed]:
-        resumed = scenes.resume(job, folder, ranks=ranks, report=report)
+        resumed = resume.resume(job, folder, ranks=ranks, report=report)
         return self.read(job, folder, without=resumed.lost), resumed
 
-    def read(self, plan: ScenePlan, folder: Path, *, without: Collection[int] = ()) -> Tables:
-        return scenes.read(plan, folder, without=without)
+    def tables(self, plan: ScenePlan, folder: Path, without: Collection[int]) -> Iterator[tuple[str, pd.DataFrame]]:
+        yield "rows", log.scene_rows(plan, folder / self.out)
+        if plan.frames:
+            yield "particles", (spheres := scene_tables.particles(plan, folder, without=without))
+        if plan.contacts:
+            yield "contacts", scene_tables.contact_table(plan, folder, spheres, without=without)
+        if wall_stress.stress_walls(plan):
+            yield "walls", wall_stress.table(plan, folder, without=without)
 
 
 def _incomplete(path: Path, error: Exception) -> EngineError:

@@ -4,49 +4,14 @@
 import itertools
 import math
 from collections.abc import Iterator
-from dataclasses import dataclass
 
-from ...case.motions import Vector3
+from ...base.rendering import Deck
 from ...case.walls import Room
 from ...scenes import filling
 from ...scenes.plan import ScenePlan
 
 # Volumes [m^3] of a template and of a region below which LIGGGHTS refuses them without a keyword for a smaller limit.
 SMALL, SMALL_ROOM, MEANT = 1e-12, 1e-10, 1e-20
-
-
-@dataclass(frozen=True)
-class Template:
-    """A particle template; `limit`: the words for a tiny volume, if it has one."""
-
-    id: str
-    seed: int
-    type: int
-    density: float
-    radius: float
-    share: float
-    limit: str
-
-
-@dataclass(frozen=True)
-class Insertion:
-    """One `fix insert`: a distribution of templates, filled into a region at once or as a stream.
-
-    `once`: in one step, so that a continued run has it behind it.
-    """
-
-    id: str
-    seed: int
-    distribution: str
-    distribution_seed: int
-    templates: tuple[Template, ...]
-    region: str
-    count: int
-    rate: float | None
-    every: int | None
-    velocity: Vector3
-    phase: str
-    once: bool
 
 
 def primes() -> Iterator[int]:
@@ -77,26 +42,31 @@ def _region(fill: filling.Insertion) -> str:
     return style + _limit(centres, SMALL_ROOM)
 
 
-def _templates(p: ScenePlan, fill: filling.Insertion, first: int, seeds: Iterator[int]) -> tuple[Template, ...]:
-    sizes = [(part.material, radius, share) for part in fill.particles for radius, share in part.sizes()]
-    return tuple(
-        Template(
-            f"template{i}",
-            next(seeds),
-            p.model.type_of(material),
-            p.case.materials[material].density,
-            radius,
-            share,
-            _limit(4.0 / 3.0 * math.pi * radius**3, SMALL),
+def _templates(p: ScenePlan, fill: filling.Insertion, first: int, seeds: Iterator[int]) -> list[Deck]:
+    """A template of each size of a fill. limit: the words for a tiny volume, if the template has one."""
+    sizes = [(part, radius, share) for part in fill.particles for radius, share in part.sizes()]
+    return [
+        Deck(
+            part,
+            id=f"template{i}",
+            seed=next(seeds),
+            type=p.model.type_of(part.material),
+            density=p.case.materials[part.material].density,
+            radius=radius,
+            share=share,
+            limit=_limit(4.0 / 3.0 * math.pi * radius**3, SMALL),
         )
-        for i, (material, radius, share) in enumerate(sizes, first)
-    )
+        for i, (part, radius, share) in enumerate(sizes, first)
+    ]
 
 
-def insertions(p: ScenePlan) -> tuple[Insertion, ...]:
-    """The insertions of a scene's fills."""
+def insertions(p: ScenePlan) -> tuple[Deck, ...]:
+    """One `fix insert` for each fill of a scene: a distribution of templates, at once or as a stream.
+
+    once: in one step, so that a continued run has it behind it.
+    """
     seeds = itertools.islice(primes(), 100 * (p.case.numerics.seed - 1), None)
-    result: list[Insertion] = []
+    result: list[Deck] = []
     first = 1
     steps = {phase.name: phase.case.time_step or p.time_step for phase in p.phases}
     for i, fill in enumerate(p.insertions, 1):
@@ -104,19 +74,17 @@ def insertions(p: ScenePlan) -> tuple[Insertion, ...]:
         first += len(templates)
         step = steps[fill.phase]
         result.append(
-            Insertion(
+            Deck(
+                fill,
                 id=f"fill{i}",
                 seed=next(seeds),
                 distribution=f"mix{i}",
                 distribution_seed=next(seeds),
                 templates=templates,
                 region=_region(fill),
-                count=fill.count,
                 # insert/pack counts what is in the region before it; a stream faster than a step does not
                 rate=float(f"{2 * fill.count / step:.2g}") if fill.exact else fill.rate,
                 every=None if fill.rate is None and not fill.exact else max(1, math.ceil(fill.period / step)),
-                velocity=fill.velocity,
-                phase=fill.phase,
                 once=fill.rate is None,
             )
         )

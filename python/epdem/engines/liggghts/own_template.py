@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """A user's own deck template, with the values of a case and the macros of epdem's decks."""
 
+import re
 import traceback
-from collections.abc import Mapping
+from collections.abc import Iterator, Mapping
 from pathlib import Path
 
 import jinja2
@@ -20,10 +21,11 @@ from ...impacts.plan import plan
 from ...impacts.prediction import predict
 from ...scenes.plan import plan as scene_plan
 from ..input_script import data_text
-from . import stl
-from .deck_commands import refuse_programs
 from .engine import Liggghts
 from .scene_deck import deck as scene_deck
+from .scene_parts import stl_text
+
+_ARGUMENT = re.compile(r"\"[^\"]*\"|'[^']*'|\S+")
 
 
 class _Sandbox(ImmutableSandboxedEnvironment):
@@ -80,7 +82,7 @@ def write(
     if scenes.is_scene(read_toml(case_path)):
         scene = scene_plan(scenes.load(case_path))
         values |= {"deck": scene_deck(scene), "case": scene.case}
-        beside |= {f"{n}.stl": stl.text(n, triangles) for n, triangles in scene.triangles.items()}
+        beside |= {f"{n}.stl": stl_text(n, triangles) for n, triangles in scene.triangles.items()}
     else:
         case = load_impact(case_path)
         x = experiment(case)
@@ -126,3 +128,39 @@ def _sentence(template: Path, error: Exception) -> str:
     if isinstance(error, jinja2.TemplateNotFound):
         what = f"{error} is not in {folder}, nor a template of epdem"
     return f"{place}{f':{line}' if line else ''}: {' '.join(what.split())}"
+
+
+def _commands(line: str) -> Iterator[list[str]]:
+    """The words of a command, and of each command that `if`, `run ... every` and `partition` take as an argument."""
+    words = [word.strip("\"'") for word in _ARGUMENT.findall(line)]
+    if not words:
+        return
+    yield words
+    inner: list[str] = []
+    if words[0] == "if":
+        rest = re.split(r"\s(?:then|else)\s|\selif\s+(?:\"[^\"]*\"|'[^']*'|\S+)", line)[1:]
+        inner = [word.strip("\"'") for part in rest for word in _ARGUMENT.findall(part)]
+    elif words[0] == "run":
+        inner = words[words.index("every") + 2 :] if "every" in words else []
+    elif words[0] == "partition":
+        inner = [line.split(maxsplit=3)[-1]]
+    for command in inner:
+        yield from _commands(command)
+
+
+def refuse_programs(text: str, template: Path) -> None:
+    """Raise CaseError for a deck of `template` with `shell` or `python`, or with `include` or `jump` to another folder.
+
+    A command whose name or file is made of variables is refused, too.
+    """
+    for line in re.sub(r"&[ \t]*\n", "", text).splitlines():
+        before, _, _ = line.partition("#")
+        for name, *words in _commands(line if "'" in before or '"' in before else before):
+            file = words[0] if name in ("include", "jump") and words else ""
+            outside = Path(file).is_absolute() or ".." in Path(file).parts
+            if name in ("shell", "python") or "$" in name + file or outside:
+                command = " ".join([name, *words])[:80]
+                raise CaseError(
+                    f"{template}: the deck has {command!r}; a deck of a template starts no program and "
+                    "reads no file of another folder: remove the command, or write this deck by hand"
+                )

@@ -1,22 +1,76 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Restart files of a scene: the one from which an interrupted run continues, and its deck."""
+"""Bulk scenes in LIGGGHTS: a run, and one that continues from a restart file."""
 
+import contextlib
 import re
 from collections.abc import Iterator
 from dataclasses import replace
 from itertools import pairwise
 from pathlib import Path
 
+from ...base import paths
 from ...base import rendering as decks
 from ...base.folders import held
 from ...base.processes import ROW
-from ...errors import CaseError
+from ...errors import CaseError, EngineError
+from ...impacts.engine import Report
+from ...scenes.engine import Resumed
 from ...scenes.plan import ScenePlan
 from .. import log
+from . import executable, launcher
 from . import scene_tables as tables
-from .insertions import Insertion
-from .launcher import OUT
 from .scene_deck import deck
+
+
+def run(plan: ScenePlan, folder: Path, *, ranks: int, report: Report) -> None:
+    """Run the deck of a scene, which is in `folder`. Raises CaseError, EngineError."""
+    _refuse_vtk(plan)
+    with _lost_walls_named(folder):
+        launcher.run("in.scene", folder, ranks=ranks, report=_pruning(folder, report))
+
+
+@contextlib.contextmanager
+def _lost_walls_named(folder: Path) -> Iterator[None]:
+    """An error of LIGGGHTS about a mesh that has left the domain names the wall and the step."""
+    try:
+        yield
+    except EngineError as error:
+        lost = re.search(r"Mesh \(id (?:wall_)?(\w+)\): Mesh elements have been lost", str(error))
+        if lost is None:
+            raise
+        step = int(log.rows(folder / launcher.OUT)["Step"].iloc[-1])
+        raise EngineError(
+            f"scene.wall.{lost[1]}: the wall has left scene.room after step {step}; enlarge the room, or stop the wall "
+            f"before by the duration or the 'until' of its phase ({folder / launcher.OUT})"
+        ) from None
+
+
+def resume(plan: ScenePlan, folder: Path, *, ranks: int, report: Report) -> Resumed:
+    """Continue a run from its newest restart file. Raises CaseError, EngineError."""
+    _refuse_vtk(plan)
+    step, lost = choose(plan, folder)
+    script = write_resume(plan, folder, step)
+    with _lost_walls_named(folder):
+        launcher.run(script.name, folder, ranks=ranks, append=True, report=_pruning(folder, report))
+    return Resumed(step, lost)
+
+
+def _refuse_vtk(plan: ScenePlan) -> None:
+    """Raise CaseError for VTK files of a LIGGGHTS without VTK."""
+    path = paths.launcher()
+    if plan.vtk and path and not executable.writes_vtk(path):
+        raise CaseError(
+            f"output.vtk: {path} was built without VTK; leave output.vtk out (output.particles holds the same), or "
+            "take a LIGGGHTS with VTK"
+        )
+
+
+def _pruning(folder: Path, report: Report) -> Report:
+    def row(step: int) -> None:
+        prune(folder, step)
+        report(step)
+
+    return row
 
 
 def _restarts(folder: Path) -> list[tuple[int, Path]]:
@@ -27,7 +81,7 @@ def _restarts(folder: Path) -> list[tuple[int, Path]]:
 
 def whole_restarts(folder: Path) -> list[int]:
     """Steps of the whole restart files: LIGGGHTS went on after them, so their rows stand twice in succession."""
-    out = folder / OUT
+    out = folder / launcher.OUT
     if not out.exists():
         return []
     rows = [int(m.group(1)) for line in out.read_bytes().splitlines() if (m := ROW.match(line))]
@@ -56,7 +110,7 @@ def choose(p: ScenePlan, folder: Path) -> tuple[int, list[int]]:
     return step, [s for s in lost if s < step]
 
 
-def _going_on(d: decks.Deck, phase: int, inserted: dict[str, int]) -> Iterator[Insertion]:
+def _going_on(d: decks.Deck, phase: int, inserted: dict[str, int]) -> Iterator[decks.Deck]:
     """The insertions of a run that goes on in a phase, without streams that have ended: LIGGGHTS refuses these. A
     stream of an earlier phase goes on in this one."""
     names = [part.name for part in d.phases]
@@ -64,23 +118,32 @@ def _going_on(d: decks.Deck, phase: int, inserted: dict[str, int]) -> Iterator[I
         if f.once:
             yield f
         elif inserted.get(f.id, 0) < f.count:
-            yield replace(f, phase=names[min(max(names.index(f.phase), phase), len(names) - 1)])
+            yield f.but(phase=names[min(max(names.index(f.phase), phase), len(names) - 1)])
+
+
+def _after(part: decks.Deck, steps: int, every: int) -> decks.Deck:
+    """Remaining phase after `steps` of its steps have run."""
+    stop = part.stop
+    if stop is not None:
+        looked = max(0, steps - stop.first) // every
+        stop = replace(stop, first=max(0, stop.first - steps), rows=stop.rows - looked)
+    return part.but(steps=part.steps - steps, stop=stop)
 
 
 def write_resume(p: ScenePlan, folder: Path, step: int) -> Path:
     """in.resume, which continues from the restart file of `step`."""
     d = deck(p)
-    ends = log.ends(folder / OUT, step) if p.ends_early else {part.name: part.end for part in d.phases}
+    ends = log.ends(folder / launcher.OUT, step) if p.ends_early else {part.name: part.end for part in d.phases}
     phase = next((i for i, part in enumerate(d.phases) if ends.get(part.name, step + 1) > step), len(d.phases))
     begin = max([0, *(ends[part.name] for part in d.phases[:phase])])
     comes = False  # spheres that come with this phase and are not in the restart file
     if phase < len(d.phases):
         part = d.phases[phase]
         comes = step == begin and bool(part.particles or [f for f in d.insertions if f.once and f.phase == part.name])
-        rest = part.after(step - begin, d.every)
+        rest = _after(part, step - begin, d.every)
         d = d.but(phases=(*d.phases[:phase], rest, *d.phases[phase + 1 :]))
     path = folder / "in.resume"
-    going_on = tuple(_going_on(d, phase, log.inserted(folder / OUT, step)))
+    going_on = tuple(_going_on(d, phase, log.inserted(folder / launcher.OUT, step)))
     continued = d.but(insertions=going_on, from_restart=f"restart.{step}.bin", resumed_phase=phase, comes=comes)
     path.write_text(decks.render("liggghts/scene_resume.in.j2", deck=continued), encoding="utf-8")
     return path

@@ -10,10 +10,10 @@ from ...laws.library import laws
 from ...scenes.model import Model
 from ...scenes.plan import ScenePlan
 from ..input_script import SKIN, default_skin, load_words, wall_id
-from . import stl, wall_stress
+from . import wall_stress
 from .insertions import insertions
 from .properties import HARD, SOFT, Property, elastic, per_pair, ratios, strength, tangential, work_of_adhesion
-from .scene_parts import parts, planes, surfaces, table
+from .scene_parts import parts, planes, stl_text, surfaces, table
 
 MOST_CELLS = 2**31 - 1  # that LIGGGHTS counts, each half as wide as its longest reach
 
@@ -104,7 +104,7 @@ def deck(p: ScenePlan) -> decks.Deck:
     _refuse_room(p)
     m, s, out = p.model, p.case.scene, p.output
     moduli = [p.case.materials[t.material].young_modulus for t in m.types]
-    cut = p.case.numerics.processors
+    cut, phases = p.case.numerics.processors, parts(p)
     row_words = {"c_ratio[1]": True, "c_ratio[2]": True, "f_load": p.floor_load, "f_press_z": p.plates}
     row_words |= {"f_torque": p.torque, "f_power": p.writes_wall_power}
     return decks.Deck(
@@ -133,8 +133,8 @@ def deck(p: ScenePlan) -> decks.Deck:
         frozen=tuple(n for n, sphere in enumerate(p.scene.table, 1) if sphere.frozen),
         gravity=s.gravity,
         insertions=insertions(p),
-        phases=parts(p),
-        open=p.ends_early or any(phase.vibrations for phase in parts(p)),
+        phases=phases,
+        open=p.ends_early or any(phase.vibrations for phase in phases),
         samples=p.every // p.sampling,
         stress_walls=tuple(
             (name, wall_id(p, name), bool(p.scene.meshes[name].wear)) for name in wall_stress.stress_walls(p)
@@ -163,4 +163,4 @@ def files(p: ScenePlan) -> dict[str, str]:
     }
     if data.table:
         texts["spheres.data"] = decks.render("liggghts/spheres.data.j2", deck=data, rows=table(p))
-    return texts | {f"{name}.stl": stl.text(name, triangles) for name, triangles in p.triangles.items()}
+    return texts | {f"{name}.stl": stl_text(name, triangles) for name, triangles in p.triangles.items()}

@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Walls, phases and the table of spheres of a scene in LIGGGHTS's words."""
+"""Walls with their files, their power, phases and the table of spheres of a scene in LIGGGHTS's words."""
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
-from itertools import zip_longest
+from dataclasses import replace
+
+import numpy as np
 
 from ...base import rendering as decks
 from ...case.motions import LinearMove, Move, PressMove, RotateMove, VibrateMove
@@ -13,91 +14,21 @@ from ...case.walls import PlaneWall
 from ...errors import CaseError
 from ...scenes.plan import Phase, ScenePlan
 from ...scenes.walls import surface_rotation
-from ..input_script import StopCondition, stop_condition, torque_origin, wall_id
-from .wall_power import GAIN, power
+from ..input_script import StopCondition, phases, stop_condition, torque_origin, wall_id
 
-
-@dataclass(frozen=True)
-class PhaseParticle:
-    """A sphere that comes with a phase; place and velocity in words; no other centre is as `near` to its place [m]."""
-
-    name: str
-    type: int
-    diameter: float
-    density: float
-    place: str
-    near: float
-    velocity: str
-
-
-@dataclass(frozen=True)
-class DeckPlane:
-    """A plane of LIGGGHTS's kind `axis` ("zplane"); `force`: LIGGGHTS stores the force of each sphere on it."""
-
-    id: str
-    type: int
-    axis: str
-    place: float
-    force: bool
-
-
-@dataclass(frozen=True)
-class DeckMesh:
-    """A wall of triangles of a file; `style`: with sums of forces, driven by one; `keywords`: what its surface does.
-
-    pressed_later: the force that drives it acts in later phases only."""
-
-    id: str
-    file: str
-    type: int
-    style: str
-    keywords: str
-    pressed_later: bool
-
-
-@dataclass(frozen=True)
-class DeckPhase:
-    """A phase: commands at its start and end, and commands of a run that continues in it.
-
-    gates: planes that come with the phase. upto: whether the step at its end is known before the run. particles:
-    spheres that come with it. vibrations: walls whose power needs the step at which their vibration begins.
-    """
-
-    name: str
-    end: int
-    steps: int
-    upto: bool
-    time_step: float | None
-    start_commands: tuple[str, ...]
-    gates: tuple[DeckPlane, ...]
-    resume_gates: tuple[DeckPlane, ...]
-    resume_commands: tuple[str, ...]
-    end_commands: tuple[str, ...]
-    particles: tuple[PhaseParticle, ...]
-    record: bool
-    power: str
-    vibrations: tuple[str, ...]
-    stop: StopCondition | None
-
-    def after(self, steps: int, every: int) -> "DeckPhase":
-        """Remaining phase after `steps` of its steps have run."""
-        stop = self.stop
-        if stop is not None:
-            looked = max(0, steps - stop.first) // every
-            stop = replace(stop, first=max(0, stop.first - steps), rows=stop.rows - looked)
-        return replace(self, steps=self.steps - steps, stop=stop)
+GAIN = 1.0  # of a wall that a force drives: its speed over the highest is the relative error of the force
 
 
 def _words(*vectors: Sequence[float]) -> str:
     return " ".join(decks.number(x) if x else "0" for vector in vectors for x in vector)
 
 
-def plane(p: ScenePlan, w: PlaneWall, *, force: bool = False) -> DeckPlane:
-    """A plane of the scene."""
-    return DeckPlane(wall_id(p, w.name), p.wall_types[w.name], f"{w.axis}plane", w.at, force)
+def plane(p: ScenePlan, w: PlaneWall, *, force: bool = False) -> decks.Deck:
+    """A plane of the scene. force: LIGGGHTS stores the force of each sphere on it."""
+    return decks.Deck(w, id=wall_id(p, w.name), type=p.wall_types[w.name], force=force)
 
 
-def planes(p: ScenePlan) -> tuple[DeckPlane, ...]:
+def planes(p: ScenePlan) -> tuple[decks.Deck, ...]:
     """The planes that are always there."""
     stored = {"floor"} if p.floor_load else {*p.loads}
     return tuple(plane(p, w, force=w.name in stored) for w in p.scene.planes)
@@ -112,8 +43,12 @@ def _press(p: ScenePlan, name: str) -> PressMove | None:
     return next(iter(presses), None)
 
 
-def surfaces(p: ScenePlan) -> tuple[DeckMesh, ...]:
-    """The walls of triangles."""
+def surfaces(p: ScenePlan) -> tuple[decks.Deck, ...]:
+    """The walls of triangles.
+
+    style: with sums of forces, driven by one. keywords: what the surface does. pressed_later: the force that drives the
+    wall acts in later phases only.
+    """
     force = p.plates or p.torque or p.writes_wall_power
     pressed = {bed.wall for bed in p.pressed}
     found = []
@@ -136,7 +71,8 @@ def surfaces(p: ScenePlan) -> tuple[DeckMesh, ...]:
             words += f" com {_words(middle.tolist())} ctrlPV force axis {_words(press.unit_direction)}"
             words += f" target_val {decks.number(press.force)} vel_max {decks.number(press.highest_speed)} kp {GAIN}"
         waits = press is not None and name not in p.phases[0].moves
-        found.append(DeckMesh(wall_id(p, name), f"{name}.stl", p.wall_types[name], style, words, waits))
+        values = {"id": wall_id(p, name), "file": f"{name}.stl", "type": p.wall_types[name]}
+        found.append(decks.Deck(mesh, **values, style=style, keywords=words, pressed_later=waits))
     return tuple(found)
 
 
@@ -158,9 +94,9 @@ def _motion(p: ScenePlan, name: str, move: Move) -> tuple[str, str]:
     return f"fix {fix} all move/mesh mesh {wall} {words}", f"unfix {fix}"
 
 
-def _pressing(p: ScenePlan, phase: Phase, steps: int) -> StopCondition | None:
+def _pressing(p: ScenePlan, phase: decks.Deck) -> StopCondition | None:
     """How a phase ends early in LIGGGHTS: also by a bed without void."""
-    stop = stop_condition(p, phase, steps)
+    stop = stop_condition(p, phase)
     for bed in p.pressed:
         if bed.phase == phase.name:
             k, begin = bed.axis, p.triangles[bed.wall][0, 0, bed.axis]
@@ -170,59 +106,58 @@ def _pressing(p: ScenePlan, phase: Phase, steps: int) -> StopCondition | None:
             place = f"(f_{wall_id(p, bed.wall)}[{7 + k}]+{decks.number(begin - reference)})"
             height = f"({decks.number(bed.stop)}-{place})" if bed.sign > 0 else f"({place}-{decks.number(bed.stop)})"
             void = f"{height}-{decks.number(bed.solid_height)}"
-            return replace(stop or StopCondition(0, steps // p.every, "", ""), void=void)
+            return replace(stop or StopCondition(0, phase.steps // p.every, "", ""), void=void)
     return stop
 
 
-def _phase_particle(p: ScenePlan, b: Body) -> PhaseParticle:
-    s = b.sphere
-    density, velocity = p.case.materials[s.material].density, _words(s.velocity) if any(s.velocity) else ""
-    return PhaseParticle(
-        f"body_{b.name}", p.model.type_of(s.material), 2 * s.radius, density, _words(s.place), 1e-3 * s.radius, velocity
+def _phase_particle(p: ScenePlan, b: Body) -> decks.Deck:
+    """A sphere that comes with a phase; no other centre is as `near` to its place [m]."""
+    return decks.Deck(
+        b,
+        name=f"body_{b.name}",
+        type=p.model.type_of(b.material),
+        diameter=2 * b.radius,
+        density=p.case.materials[b.material].density,
+        place=_words(b.position),
+        near=1e-3 * b.radius,
+        velocity=_words(b.velocity) if any(b.velocity) else "",
     )
 
 
-def parts(p: ScenePlan) -> tuple[DeckPhase, ...]:
-    """The phases of a scene."""
+def parts(p: ScenePlan) -> tuple[decks.Deck, ...]:
+    """The phases: commands at the start and the end of each, and commands of a run that continues in it.
+
+    gates: planes that come with the phase. upto: whether the step at its end is known before the run. particles:
+    spheres that come with it. vibrations: walls whose power needs the step at which their vibration begins.
+    """
     gates = {w.name: plane(p, w) for w in p.scene.gates}
-    own_steps = any(phase.case.time_step for phase in p.phases)
-    found: list[DeckPhase] = []
-    begin, upto = 0, True
-    before: Phase | None = None
-    for phase, after in zip_longest(p.phases, p.phases[1:]):
+    found: list[decks.Deck] = []
+    upto = True
+    for before, phase, after in phases(p):
         motions = {name: _motion(p, name, move) for name, move in phase.moves.items()}
         new = [name for name, move in phase.moves.items() if before is None or before.moves.get(name) != move]
         _refuse_other_step(p, before, phase)
-        ends = [f"unfix {wall_id(p, name)}" for name in phase.gates if after and name not in after.gates]
         upto = upto and phase.case.condition is None
-        part = DeckPhase(
-            phase.name,
-            phase.end,
-            phase.end - begin,
+        part = phase.but(
             upto=upto,
-            time_step=phase.case.time_step or p.time_step if own_steps else None,
-            start_commands=tuple(motions[name][0] for name in new),
-            gates=tuple(gates[name] for name in phase.gates if before is None or name not in before.gates),
-            resume_gates=tuple(gates[name] for name in phase.gates),
-            resume_commands=tuple(begin for begin, _ in motions.values()),
-            end_commands=(
-                *ends,
+            start_commands=[motions[name][0] for name in new],
+            gates=[gates[name] for name in phase.added],
+            resume_gates=[gates[name] for name in phase.gates],
+            resume_commands=[begin for begin, _ in motions.values()],
+            end_commands=[
+                *(f"unfix {wall_id(p, name)}" for name in phase.removed),
                 *(end for name, (_, end) in motions.items() if after and not _goes_on(name, phase, after)),
-            ),
-            record=phase.case.record,
-            particles=tuple(_phase_particle(p, b) for b in p.scene.later if b.phase == phase.name),
+            ],
+            particles=[_phase_particle(p, b) for b in p.scene.later if b.phase == phase.name],
             power=power(p, phase) if p.writes_wall_power else "",
-            vibrations=tuple(
-                name for name in new if p.writes_wall_power and isinstance(phase.moves[name], VibrateMove)
-            ),
-            stop=_pressing(p, phase, phase.end - begin),
+            vibrations=[name for name in new if p.writes_wall_power and isinstance(phase.moves[name], VibrateMove)],
+            stop=_pressing(p, phase),
         )
         found.append(part)
-        begin, before = phase.end, phase
     return tuple(found)
 
 
-def _refuse_other_step(p: ScenePlan, before: Phase | None, phase: Phase) -> None:
+def _refuse_other_step(p: ScenePlan, before: Phase | None, phase: decks.Deck) -> None:
     """Raise CaseError for a vibration that goes on with another time step: its power is counted in steps."""
     if before is None or not p.writes_wall_power or before.case.time_step == phase.case.time_step:
         return
@@ -234,7 +169,7 @@ def _refuse_other_step(p: ScenePlan, before: Phase | None, phase: Phase) -> None
             )
 
 
-def _goes_on(name: str, phase: Phase, after: Phase) -> bool:
+def _goes_on(name: str, phase: decks.Deck, after: Phase) -> bool:
     """Whether a wall needs no command at the end of a phase: the motion goes on, or another `move/mesh` replaces it."""
     one, next_one = phase.moves[name], after.moves.get(name)
     return next_one is not None and isinstance(one, PressMove) == isinstance(next_one, PressMove)
@@ -248,3 +183,51 @@ def table(p: ScenePlan) -> list[tuple[str, str]]:
         body = f"{n} {p.model.type_of(s.material)} {_words((2 * s.radius, density), s.place)}"
         rows.append((body, f"{n} {_words(s.velocity, s.spin)}"))
     return rows
+
+
+def _times(name: str, first: int, values: Sequence[float]) -> list[str]:
+    """Products of components of a fix, from number `first` on, and values."""
+    return [f"f_{name}[{first + k}]*{decks.number(v)}" for k, v in enumerate(values) if v]
+
+
+def _of_servo(id: str, press: PressMove) -> str:
+    """The force on a wall that a force drives, along its direction, times its speed: see GAIN; at most the highest."""
+    force = f"({'+'.join(_times(id, 1, press.unit_direction))})"
+    error = f"(1+{force}/{decks.number(press.force)})"
+    share = f"({error}*({error}<=1)*({error}>=-1)+({error}>1)-({error}<-1))"
+    return f"{force}*{share}*{decks.number(press.highest_speed)}"
+
+
+def power(p: ScenePlan, phase: decks.Deck) -> str:
+    """The power of all that moves in a phase, as LIGGGHTS's formula: force and torque are those on the walls."""
+    terms = []
+    for name, mesh in p.scene.meshes.items():
+        id, move = wall_id(p, name), phase.moves.get(name)
+        for rotation in (surface_rotation(mesh), move):
+            if isinstance(rotation, RotateMove):
+                terms += _times(id, 4, [rotation.rate * x for x in rotation.unit_axis])
+        if isinstance(move, LinearMove):
+            terms += _times(id, 1, move.velocity)
+        if isinstance(move, PressMove):
+            terms.append(_of_servo(id, move))
+        if isinstance(move, VibrateMove):
+            omega = decks.number(move.omega * (phase.case.time_step or p.time_step))
+            force_times_speed = "+".join(_times(id, 1, [move.omega * a for a in move.amplitude]))
+            terms.append(f"({force_times_speed})*cos((step-${{begin_{name}}})*{omega})")
+    return f"-({'+'.join(terms)})" if terms else "0.0"
+
+
+def stl_text(name: str, triangles: np.ndarray) -> str:
+    """An STL solid of triangles, shape (n, 3 corners, 3 coordinates) [m].
+
+    Corners keep 13 digits, the same ones wherever a corner is repeated: neighbours share them exactly.
+    """
+    lines = [f"solid {name}"]
+    for corners in triangles:
+        normal = np.cross(corners[1] - corners[0], corners[2] - corners[0])
+        normal = normal / np.linalg.norm(normal)
+        lines.append("facet normal " + " ".join(f"{x:.9e}" for x in normal))
+        lines.append(" outer loop")
+        lines += ["  vertex " + " ".join(f"{x:.12e}" for x in corner) for corner in corners]
+        lines += [" endloop", "endfacet"]
+    return "\n".join([*lines, f"endsolid {name}", ""])

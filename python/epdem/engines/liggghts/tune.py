@@ -8,7 +8,11 @@ The stages of a scene count by their steps in the scene. The seconds are LIGGGHT
 set-up.
 """
 
+import contextlib
 import math
+import re
+import tempfile
+import time
 from collections import Counter
 from collections.abc import Callable
 from dataclasses import dataclass, replace
@@ -17,15 +21,15 @@ from pathlib import Path
 import numpy as np
 import tomlkit
 
-from ...base.files import atomic
+from ...base.files import atomic, write_texts
 from ...case.scene import Output, SceneCase, load
 from ...case.toml import named, text_of
 from ...errors import CaseError, EngineError
 from ...scenes.engine import check_run
 from ...scenes.plan import ScenePlan, plan
-from . import scene_deck, trials
+from .. import log
+from . import launcher, scene_deck
 from .engine import Liggghts
-from .trials import Loops, Piece
 
 SHARES = (0.25, 0.5, 0.75, 1.0, 1.5)  # of the smallest radius: skins that are tried
 SORTS = (200, 5000)  # steps between sortings that are tried beside the present ones
@@ -33,7 +37,20 @@ TURNS, SHORTEST, LONGEST = 10, 200, 2000  # turns through all skins in a scene, 
 WORTH = 0.02  # of the time: nobody changes a case for less
 CERTAIN = 3.0  # standard errors that a saving must exceed
 Progress = Callable[[str], None]
+Loops = list[tuple[float, int]]  # (seconds, steps) of pieces of a run
+_MARK = "epdem: a piece begins"  # runs without it end a phase by a condition
+_RUN = re.compile(r"^run (\d+) upto(?:  # (.*))?$", re.MULTILINE)
 Turns = dict[str, tuple[float, ...]]  # stage -> a number per turn
+
+
+@dataclass(frozen=True)
+class Piece:
+    """Steps of a stage of a scene with one skin [m], and the number of the turn through all skins."""
+
+    stage: str
+    steps: int
+    turn: int
+    skin: float
 
 
 @dataclass(frozen=True)
@@ -126,6 +143,45 @@ class Tuned:
         return [f"{key} = {tomlkit.item(value).as_string()} # {self.reason}" for key, value in self.changes.items()]
 
 
+class _Enough(Exception):
+    """The time of a trial is over."""
+
+
+def pieces(texts: dict[str, str], skins: list[float], length: int) -> tuple[dict[str, str], list[Piece]]:
+    """The deck with its runs cut into pieces of `length` steps and one skin each, and the pieces in order: in each run
+    forth and back through `skins`."""
+    order: list[Piece] = []
+
+    def cut(match: re.Match[str]) -> str:
+        begin, end, lines = sum(piece.steps for piece in order), int(match[1]), []
+        first = order[-1].turn + 1 if order else 0
+        for n, at in enumerate(range(begin, end, length)):
+            turn, place = divmod(n, len(skins))
+            skin = skins[place] if turn % 2 == 0 else skins[-1 - place]
+            order.append(Piece(match[2] or f"up to step {end}", min(length, end - at), first + turn, skin))
+            lines += [f"neighbor {skin!r} bin", f'print "{_MARK}"', f"run {at + order[-1].steps} upto"]
+        return "\n".join(lines)
+
+    return texts | {"in.scene": _RUN.sub(cut, texts["in.scene"])}, order
+
+
+def run(texts: dict[str, str], ranks: int, seconds: float) -> Loops:
+    """The pieces that ended within `seconds`."""
+    end = time.monotonic() + seconds
+
+    def watch(step: int) -> None:
+        if time.monotonic() > end:
+            raise _Enough
+
+    with tempfile.TemporaryDirectory(prefix="epdem_tune_") as name:
+        folder = Path(name)
+        write_texts(folder, texts)
+        with contextlib.suppress(_Enough):
+            launcher.run("in.scene", folder, ranks=ranks, report=watch)
+        text = (folder / launcher.OUT).read_text(errors="replace")
+        return [loop for piece in text.split(_MARK)[1:] for loop in log.loops_in(piece)[:1]]
+
+
 def _silent(case: SceneCase) -> ScenePlan:
     """The plan of a scene without output but rows, which report its progress."""
     energy = {"energy": case.output.energy}  # of contacts without frames
@@ -183,8 +239,8 @@ def tune(path: Path, *, ranks: int = 1, seconds: float = 60.0, progress: Progres
         progress(f"trial {n} of {len(choices)}")
         change = {"processors": choice.processors, "sort_interval": choice.sort_interval}
         texts = tool.files(_silent(case.model_copy(update={"numerics": case.numerics.model_copy(update=change)})))
-        deck, order = trials.pieces(texts, skins, length)
-        runs[choice] = trials.run(deck, ranks, seconds / len(choices))
+        deck, order = pieces(texts, skins, length)
+        runs[choice] = run(deck, ranks, seconds / len(choices))
     return Tuned(tuple(_trials(order, runs, skins)), ranks)
 
 

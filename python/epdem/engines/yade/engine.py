@@ -7,26 +7,26 @@ Where the module epdem_yade is built, a deck has a copy of it, else a copy of th
 import re
 import shutil
 import time
+from collections.abc import Collection, Iterator
 from math import isfinite, isinf
 from pathlib import Path
 
 import numpy as np
+import pandas as pd
 
 from ...base import rendering as decks
 from ...base.declarations import declarations
 from ...base.processes import ask, call
 from ...errors import CaseError, EngineError
-from ...impacts.engine import Feature, Report, Trajectory, check_features, check_law
+from ...impacts.engine import Feature, Report, Trajectory, check_features
 from ...impacts.experiment import Body, Experiment
 from ...impacts.placement import approach, side_by_side
 from ...impacts.plan import Plan
-from ...scenes.engine import Tables
 from ...scenes.plan import ScenePlan
 from ...theory.sources import Source
 from ..host import Host
-from . import classes, launcher, scene_deck, scenes
-from .classes import Functors, Material, PairValue
-from .deck import Group, strength_values
+from . import classes, launcher, scene_deck, scene_tables
+from .classes import Functors, Group, Material, PairValue, strength_values
 from .launcher import command, environment, module_version, write_deck_modules
 
 INSTALL = "apt-get install yade"
@@ -50,7 +50,8 @@ class Yade(Host):
         {Feature.ADHESION, Feature.DASHPOT, Feature.FRICTION, Feature.SPHERE_FRICTION}
     )
     template = "yade/impact.py.j2"
-    leftovers = scenes.LEFTOVERS
+    out = "out.yade"
+    leftovers = ("particles.*.npy", "contacts.*.npy")
 
     def __init__(self) -> None:
         self.classes = launcher.module() is not None
@@ -137,16 +138,11 @@ class Yade(Host):
             remembers=False,  # contacts that ended
         )
 
-    def check(self, job: Plan | ScenePlan) -> list[str]:
-        if isinstance(job, ScenePlan):
-            check_law(self, job.model.law)
-            scene_deck.deck(job, classes=self.classes)
-            return scene_deck.notes(job, classes=self.classes)
-        self.deck(job)
-        return []
+    def check_scene(self, plan: ScenePlan) -> list[str]:
+        scene_deck.deck(plan, classes=self.classes)
+        return scene_deck.notes(plan, classes=self.classes)
 
     def files(self, plan: ScenePlan) -> dict[str, str]:
-        """The text of every file of the deck of a scene by its name. Raises CaseError."""
         return scene_deck.files(plan, classes=self.classes)
 
     def write(self, job: Plan | ScenePlan, folder: Path) -> list[Path]:
@@ -168,7 +164,7 @@ class Yade(Host):
         return [script, *files, *modules]
 
     def run_impacts(self, plan: Plan, folder: Path, ranks: int) -> Trajectory:
-        path, log = folder / "path.bin", folder / "out.yade"
+        path, log = folder / "path.bin", folder / self.out
         path.unlink(missing_ok=True)
         start = time.perf_counter()
         call(
@@ -184,11 +180,14 @@ class Yade(Host):
         return result
 
     def run_scene(self, plan: ScenePlan, folder: Path, ranks: int, report: Report) -> None:
-        scenes.run(folder, report=report)
+        call([command(), "-n", "-x", scene_deck.SCRIPT], folder, log=self.out, env=environment(), report=report)
 
-    def read(self, plan: ScenePlan, folder: Path) -> Tables:
-        """The tables of a scene; see `scenes.read`."""
-        return scenes.read(plan, folder)
+    def tables(self, plan: ScenePlan, folder: Path, without: Collection[int]) -> Iterator[tuple[str, pd.DataFrame]]:
+        yield "rows", scene_tables.rows(plan, folder / self.out)
+        if plan.frames:
+            yield "particles", (spheres := scene_tables.particles(plan, folder))
+        if plan.contacts:
+            yield "contacts", scene_tables.contact_table(plan, folder, spheres)
 
 
 def tables(plan: Plan) -> list[np.ndarray]:

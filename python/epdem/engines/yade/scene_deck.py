@@ -1,24 +1,20 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Scenes in YADE: one Python deck, tables of spheres and triangles, and modules with a copy of the compiled laws."""
 
-from dataclasses import dataclass
 from itertools import combinations_with_replacement
 
 from ...base import rendering as decks
-from ...case.motions import Move
 from ...errors import CaseError
 from ...scenes import placement
 from ...scenes.plan import ScenePlan
 from ...yade.deck_modules import cone
 from ..host import refuse as refuse_value
+from ..input_script import phases
 from . import classes as words
-from .classes import Functors, Material, PairValue, of_pairs
-from .deck import strength_values
+from .classes import Functors, Material, PairValue, of_pairs, strength_values
 from .scene_parts import (
     EDGES,
     HEAD,
-    Fill,
-    Stop,
     bodies_file,
     fills,
     is_endless,
@@ -39,22 +35,6 @@ NO_DASHPOT = (
 )
 NO_RANKS = "numerics.processors: a scene in YADE has one rank, it was left out"
 NO_SORTING = "numerics.sort_interval: YADE does not sort the spheres in memory, it was left out"
-
-
-@dataclass(frozen=True)
-class Phase:
-    """A phase. time_step: its own [s]; added, removed: walls; bodies: table of the spheres that come at its begin."""
-
-    name: str
-    steps: int
-    time_step: float | None
-    motions: tuple[Move, ...]
-    added: list[str]
-    removed: list[str]
-    record: bool
-    bodies: str
-    fills: tuple[Fill, ...]
-    stop: Stop | None
 
 
 def works(p: ScenePlan) -> dict[str, list[str]]:
@@ -149,26 +129,14 @@ def _functors(p: ScenePlan, friction: Square) -> Functors:
     return Functors(words.title(m.law), ("Sphere", *sorted(shapes)), tuple(pairs), more)
 
 
-def _phases(p: ScenePlan) -> tuple[Phase, ...]:
-    own_steps = any(phase.case.time_step for phase in p.phases)
-    found, begin, gates = [], 0, p.phases[0].gates
-    for phase in p.phases:
-        found.append(
-            Phase(
-                phase.name,
-                phase.end - begin,
-                (phase.case.time_step or p.time_step) if own_steps else None,
-                motions(p, phase),
-                [name for name in phase.gates if name not in gates],
-                [name for name in gates if name not in phase.gates],
-                phase.case.record,
-                bodies_file(p, phase),
-                fills(p, phase),
-                stop(p, phase, phase.end - begin),
-            )
+def _phases(p: ScenePlan) -> list[decks.Deck]:
+    """The phases. added, removed: names of walls; bodies: table of the spheres that come at the begin of a phase."""
+    return [
+        phase.but(
+            motions=motions(p, phase), bodies=bodies_file(p, phase.name), fills=fills(p, phase), stop=stop(p, phase)
         )
-        begin, gates = phase.end, phase.gates
-    return tuple(found)
+        for _, phase, _ in phases(p)
+    ]
 
 
 def _placed(p: ScenePlan) -> bool:
@@ -180,7 +148,7 @@ def _placed(p: ScenePlan) -> bool:
 def deck(p: ScenePlan, *, classes: bool) -> decks.Deck:
     """The YADE deck of a scene. Raises CaseError for what YADE cannot do."""
     refuse(p, classes=classes)
-    m, friction, phases, every_wall = p.model, p.model.friction, _phases(p), walls(p)
+    m, friction, every_phase, every_wall = p.model, p.model.friction, _phases(p), walls(p)
     xlo, xhi, ylo, yhi, zlo, zhi = p.box
     sides = () if p.scene.periodic else ((xlo, xhi), (ylo, yhi))
     there = {*p.scene.meshes, *(w.name for w in p.scene.planes), *p.phases[0].gates}
@@ -206,9 +174,9 @@ def deck(p: ScenePlan, *, classes: bool) -> decks.Deck:
         high=(*(high for _, high in sides), zhi),
         fall=-p.case.scene.gravity if p.case.scene.gravity else 0.0,
         skin=p.case.numerics.skin or float(f"{SKIN * p.smallest:.1e}"),
-        phases=phases,
-        fills=any(phase.fills for phase in phases),
-        motions=[motion for phase in phases for motion in phase.motions],
+        phases=every_phase,
+        fills=any(phase.fills for phase in every_phase),
+        motions=[motion for phase in every_phase for motion in phase.motions],
         sampling=1 if every_step else p.sampling if p.output.loads or p.loads else p.every,
         spins=m.spins,
         remembers=p.writes_plastic_work and not classes,  # contacts that have ended, of which the plastic work follows

@@ -12,7 +12,7 @@ from ...case.walls import PlaneWall, PlateWall, Upright
 from ...errors import CaseError
 from ...scenes import placement
 from ...scenes.filling import Insertion
-from ...scenes.plan import Phase, ScenePlan
+from ...scenes.plan import ScenePlan
 from ...scenes.walls import spans, surface_rotation
 from ..host import refuse as refuse_value
 from ..input_script import first_look, torque_origin
@@ -39,37 +39,6 @@ class Wall:
     axis: int = 0
     place: float = 0.0
     file: str = ""
-
-
-@dataclass(frozen=True)
-class Load:
-    """A wall whose mean force is in the rows; where `origin` [m] is given the torque about it, too."""
-
-    name: str
-    origin: Sequence[float] | None
-
-
-@dataclass(frozen=True)
-class Fill:
-    """Spheres that come during a phase, `batch` of them every `every` steps, or all at its begin; file: their sizes."""
-
-    key: str
-    file: str
-    low: Sequence[float]
-    high: Sequence[float]
-    circle: Sequence[float] | None
-    velocity: Sequence[float]
-    seed: int
-    batch: float
-    every: int
-
-
-@dataclass(frozen=True)
-class Stop:
-    """How a phase ends early: by a condition on a row, looked at in rows more than `after` steps from its begin."""
-
-    condition: str
-    after: int
 
 
 def refuse(p: ScenePlan) -> None:
@@ -134,41 +103,35 @@ def _file(name: str) -> str:
     return f"wall_{name}.txt"
 
 
-def motions(p: ScenePlan, phase: Phase) -> tuple[Move, ...]:
+def motions(p: ScenePlan, phase: decks.Deck) -> tuple[Move, ...]:
     """What moves in a phase. A surface that turns is a wall of revolution that turns."""
     found = {name: rotation for name, mesh in p.scene.meshes.items() if (rotation := surface_rotation(mesh))}
     return tuple((found | phase.moves).values())
 
 
-def loads(p: ScenePlan) -> tuple[Load, ...]:
-    """The walls whose forces are in the rows; torques are about the axis of a wall's turn, else about 0."""
+def loads(p: ScenePlan) -> list[tuple[str, Sequence[float] | None]]:
+    """The walls whose forces are in the rows; where a place [m] is given the torque about it, too: on the axis of a
+    wall's turn, else 0."""
     of_kind = ["floor"] * p.floor_load + ["plate"] * p.plates
-    found = [Load(name, torque_origin(p, name) if name in p.scene.meshes else None) for name in p.loads]
-    found += [Load("drum", torque_origin(p, "drum"))] if p.torque else []
-    return (*found, *(Load(name, None) for name in of_kind))
+    found = [(name, torque_origin(p, name) if name in p.scene.meshes else None) for name in p.loads]
+    found += [("drum", torque_origin(p, "drum"))] if p.torque else []
+    return [*found, *((name, None) for name in of_kind)]
 
 
-def fills(p: ScenePlan, phase: Phase) -> tuple[Fill, ...]:
-    """The spheres that come during a phase at places that the run finds."""
+def fills(p: ScenePlan, phase: decks.Deck) -> list[decks.Deck]:
+    """The spheres that come during a phase at places that the run finds.
+
+    batch: of the spheres that come every `every` steps; 0: all come at the begin. file: their sizes.
+    """
     step, found = phase.case.time_step or p.time_step, []
     for n, f in _late(p):
-        if f.phase != phase.name:
-            continue
-        region, every = f.region, max(1, math.ceil(f.period / step)) if f.rate else 1
-        found.append(
-            Fill(
-                f.key,
-                f"fill{n}.txt",
-                region.limits[0::2],
-                region.limits[1::2],
-                (*region.center, region.radius) if isinstance(region, Upright) else None,
-                f.velocity,
-                p.case.numerics.seed + n,
-                f.rate * every * step if f.rate else 0.0,
-                every,
-            )
-        )
-    return tuple(found)
+        if f.phase == phase.name:
+            every = max(1, math.ceil(f.period / step)) if f.rate else 1
+            values = {"file": f"fill{n}.txt", "seed": p.case.numerics.seed + n, "every": every}
+            values |= {"low": f.region.limits[0::2], "high": f.region.limits[1::2]}
+            values["circle"] = (*f.region.center, f.region.radius) if isinstance(f.region, Upright) else None
+            found.append(decks.Deck(f, batch=f.rate * every * step if f.rate else 0.0, **values))
+    return found
 
 
 def _late(p: ScenePlan) -> Iterator[tuple[int, Insertion]]:
@@ -177,13 +140,13 @@ def _late(p: ScenePlan) -> Iterator[tuple[int, Insertion]]:
     return ((n, f) for n, f in enumerate(p.insertions, 1) if f.rate is not None or f.phase != first)
 
 
-def bodies_file(p: ScenePlan, phase: Phase) -> str:
+def bodies_file(p: ScenePlan, phase: str) -> str:
     """The table of the single spheres that come with a phase but the first; "": none do."""
-    return f"spheres_{phase.name}.txt" if any(b.phase == phase.name for b in p.scene.later) else ""
+    return f"spheres_{phase}.txt" if any(b.phase == phase for b in p.scene.later) else ""
 
 
-def stop(p: ScenePlan, phase: Phase, steps: int) -> Stop | None:
-    """The condition that may end a phase early."""
+def stop(p: ScenePlan, phase: decks.Deck) -> tuple[str, int] | None:
+    """The condition on a row that may end a phase early, looked at in rows more than so many steps from its begin."""
     until = phase.case.condition
     if until is None:
         return None
@@ -194,7 +157,7 @@ def stop(p: ScenePlan, phase: Phase, steps: int) -> Stop | None:
         condition = f'row["particles"] <= {limit}'
     else:
         condition = f'np.hypot.reduce([row["{until.wall}_force_" + axis] for axis in "xyz"]) >= {limit}'
-    return Stop(condition, first_look(p, phase, steps))
+    return condition, first_look(p, phase)
 
 
 def files(p: ScenePlan) -> dict[str, str]:
@@ -208,7 +171,7 @@ def files(p: ScenePlan) -> dict[str, str]:
             rows = [_large_triangle(p, _height(p, wall.name))]
         texts[wall.file] = table_text(head, rows)
     for phase in p.phases:
-        if name := bodies_file(p, phase):
+        if name := bodies_file(p, phase.name):
             texts[name] = table_text(HEAD, [*placement.later_bodies(p, phase.name)])
     for n, f in _late(p):
         rng = random.Random(p.case.numerics.seed + n)

@@ -6,13 +6,11 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
-from ...case.parts import Parts
 from ...errors import EngineError
 from ...scenes import columns, contacts
 from ...scenes.plan import ScenePlan
 from ...scenes.presets import Preset
 from ..host import frames
-from ..log import ends, not_reached
 from .scene_deck import works
 from .scene_parts import wall_names
 
@@ -70,20 +68,12 @@ def particles(p: ScenePlan, folder: Path) -> pd.DataFrame:
     return columns.whole(p, table, folder)
 
 
-def read(p: ScenePlan, folder: Path, log: Path) -> dict[str, pd.DataFrame]:
-    """The tables rows, particles and contacts of a run, SI. Raises EngineError for an incomplete frame."""
-    p = p.ended(ends(log), not_reached(log)) if p.ends_early else p
-    tables = {"rows": rows(p, log)}
-    if isinstance(p.case.scene, Parts):
-        tables["phases"] = p.phase_table
-    if p.frames:
-        tables["particles"] = particles(p, folder)
-    if p.contacts:
-        every = _contacts(p, folder, tables["particles"])
-        if p.writes_plastic_work and "plastic_work" not in tables["particles"]:
-            tables["particles"]["plastic_work"] = _plastic_work(every, tables["particles"])
-        tables["contacts"] = every[(every["overlap"] > 0) | (every["force"] != 0)].reset_index(drop=True)
-    return tables
+def contact_table(p: ScenePlan, folder: Path, spheres: pd.DataFrame) -> pd.DataFrame:
+    """Every contact of every frame. Where no frame has the plastic work, `spheres` gets it from the contacts."""
+    every = _contacts(p, folder, spheres)
+    if p.writes_plastic_work and "plastic_work" not in spheres:
+        spheres["plastic_work"] = _plastic_work(every, spheres)
+    return every[(every["overlap"] > 0) | (every["force"] != 0)].reset_index(drop=True)
 
 
 def _contacts(p: ScenePlan, folder: Path, spheres: pd.DataFrame) -> pd.DataFrame:

@@ -8,10 +8,11 @@ import numpy as np
 from ...base import rendering as decks
 from ...base.files import write_texts
 from ...engines import input_script, log
-from ...engines.liggghts import dump, launcher, stl
+from ...engines.liggghts import dump, launcher
 from ...engines.liggghts.engine import Liggghts
 from ...engines.liggghts.properties import SOFT, elastic, per_pair, strength
 from ...engines.liggghts.scene_deck import contact_columns
+from ...engines.liggghts.scene_parts import stl_text
 from ...impacts.engine import require
 from ...laws.library import laws
 from ...scenes.meshes import rectangle
@@ -73,7 +74,7 @@ class LiggghtsAssemblies:
         if a.plate_speed:
             lx, ly, lz = map(float, a.box)
             for name, z in (("floor", 0.0), ("plate", lz)):
-                files[f"{name}.stl"] = stl.text(name, rectangle(2, (lx / 2, ly / 2, z), (lx, ly)))
+                files[f"{name}.stl"] = stl_text(name, rectangle(2, (lx / 2, ly / 2, z), (lx, ly)))
         write_texts(folder, files)
 
     def run(self, folder: Path, *, ranks: int = 1) -> float:

@@ -1,0 +1,43 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""The contact models as a CMake project for a machine without epdem: the files by their places in its folder."""
+
+from pathlib import Path
+
+from ..base import paths
+
+CODE = (".hpp", ".cpp", ".txt")
+
+
+def yade() -> dict[Path, Path]:
+    """The module epdem_yade: adapter, laws."""
+    adapter, laws = paths.cpp_sources("yade")
+    found = {f.relative_to(adapter): f for f in adapter.iterdir() if f.suffix in (*CODE, ".py")}
+    return found | {f.relative_to(laws): f for f in (laws / "epdem").rglob("*.hpp")}
+
+
+def yade_commands(folder: Path) -> list[str]:
+    """What builds the module, and where YADE finds it."""
+    return [
+        f"cmake -S {folder} -B {folder}/build -DYADE_SOURCE=/path/to/yade  # without YADE_SOURCE the tag is cloned",
+        f"cmake --build {folder}/build",
+        f"export PYTHONPATH={folder}/build  # then in a script of YADE: from epdem_yade import *",
+    ]
+
+
+def lammps() -> dict[Path, Path]:
+    """The plugin epdemplugin.so: plugin, kernels, laws."""
+    plugin, laws = paths.cpp_sources("lammps")
+    found = {Path("CMakeLists.txt"): plugin / "export" / "CMakeLists.txt"}
+    for source in (plugin, plugin.parent / "kernels"):
+        here = Path("cpp_contact") / source.name
+        found |= {here / f.name: f for f in source.iterdir() if f.suffix in CODE}
+    return found | {Path("cpp_contact/include") / f.relative_to(laws): f for f in (laws / "epdem").rglob("*.hpp")}
+
+
+def lammps_commands(folder: Path) -> list[str]:
+    """What builds the plugin, and where LAMMPS finds it."""
+    return [
+        f"cmake -S {folder} -B {folder}/build -DLAMMPS_SOURCE_DIR=/path/to/lammps/src",
+        f"cmake --build {folder}/build",
+        f"export LAMMPS_PLUGIN_PATH={folder}/build/cpp_contact/lammps",
+    ]
