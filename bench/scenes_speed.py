@@ -66,8 +66,7 @@ def files(case: Path, model: str) -> dict[str, str]:
         wall_contact_columns=columns,
         history_columns=(),
         yields=False,
-        writes_plastic_work=False,
-        writes_friction_work=False,
+        work_words=[],
     )
     names = {"in.scene": "liggghts/scene.in.j2", "setup.in": "liggghts/scene_setup.in.j2"}
     texts = {name: rendering.render(template, deck=of_hertz) for name, template in names.items()}

@@ -90,7 +90,7 @@ def test_the_contacts_with_flat_walls_and_the_plate_are_where_these_are(stored):
 
 def plate_ends(p, tables):
     """Height of the plate at the end of each row's interval, by its two strokes."""
-    if not p.plates:
+    if "plate_force" not in p.row_columns:
         return []
     s, turn = p.case.scene, p.phases[0].end * p.time_step
     rows = tables["rows"][["step", "time"]].copy()

@@ -14,6 +14,7 @@ from ..impacts.experiment import Body
 from ..impacts.placement import room, side_by_side
 from ..impacts.plan import Plan
 from ..scenes.plan import Phase, ScenePlan
+from . import log
 
 RIGID = 1e30  # modulus [Pa] of a rigid type: 1e15 would change E* of steel by 2e-4
 SKIN = 0.5  # of the smallest radius: rebuilds cost less than idle neighbours
@@ -108,8 +109,9 @@ def torque_origin(p: ScenePlan, name: str) -> Sequence[float]:
     return next(iter(origins), (0.0, 0.0, 0.0))
 
 
-def load_words(p: ScenePlan) -> Iterator[str]:
-    """What the rows hold of the forces on walls: three components, of meshes six."""
+def row_words(p: ScenePlan) -> Iterator[str]:
+    """What the rows hold beside the strain: columns of kinds; of walls three components of the force, of meshes six."""
+    yield from (f"f_{word}" for word, column in log.ROWS.items() if column in p.row_columns)
     for n, name in enumerate(p.loads, 1):
         yield from (f"f_load{n}[{k}]" for k in range(1, 7 if name in p.scene.meshes else 4))
 

@@ -104,11 +104,14 @@ def units(table: pd.DataFrame) -> dict[str, str]:
 
 def columns_of_rows(p: ScenePlan) -> set[str]:
     """The names of the columns that the rows of a scene have."""
-    some = {"floor_load": p.floor_load, "torque": p.torque, "wall_power": p.writes_wall_power}
-    some |= dict.fromkeys(("plate_force", "plate_z", "stress"), p.plates)
+    plate = ("plate_z", "stress") if "plate_force" in p.row_columns else ()
     loads = {f"{name}_{load}" for name in p.loads for load in LOADS}
-    always = {"step", "time", "particles", "kinetic_energy", *STRAINS}
-    return always | {name for name, there in some.items() if there} | loads
+    return {"step", "time", "particles", "kinetic_energy", *STRAINS, *p.row_columns, *plate, *loads}
+
+
+def columns_of_frames(p: ScenePlan) -> list[str]:
+    """The names of the columns that the frames of a scene have beside the step."""
+    return [*PARTICLES, *(SPINS if p.model.spins else []), *p.works]
 
 
 def whole(p: ScenePlan, table: pd.DataFrame, folder: Path) -> pd.DataFrame:

@@ -27,12 +27,12 @@ def work_of_walls(p: ScenePlan, rows: pd.DataFrame) -> np.ndarray:
     The torque of a drum counts normal forces on its flat facets too, which do no work: noise of 0.1 % of the energies.
     """
     dt = np.diff(p.time_at(rows["step"].to_numpy()), prepend=0.0)
-    if p.plates:
+    if "plate_force" in p.row_columns:
         return np.cumsum(rows["plate_force"].to_numpy() * -plate_velocity(p, rows) * dt)
-    if p.torque:
+    if "torque" in p.row_columns:
         (rotation_of_drum,) = p.rotations("drum")
         return np.cumsum(-rows["torque"].to_numpy() * rotation_of_drum.rate * dt)
-    if p.writes_wall_power:
+    if "wall_power" in p.row_columns:
         return np.cumsum(rows["wall_power"].to_numpy() * dt)
     return np.zeros(len(rows))
 
@@ -84,7 +84,7 @@ def energy_balance(p: ScenePlan, tables: dict[str, pd.DataFrame]) -> pd.DataFram
             table[name] = spheres.groupby("step")[column].sum().reindex(steps).to_numpy()
         elif name == "plastic":
             table[name] = 0.0
-    if p.writes_friction_work:
+    if "friction_work" in p.works:
         both = spheres.groupby("step")[["friction_work", "friction_energy"]].sum().reindex(steps)
         table["friction"], table["springs"] = both["friction_work"].to_numpy(), both["friction_energy"].to_numpy()
     rows = tables["rows"]
@@ -92,12 +92,12 @@ def energy_balance(p: ScenePlan, tables: dict[str, pd.DataFrame]) -> pd.DataFram
     table["left"] = _left(spheres, steps) if p.scene.open_boundary else 0.0
     present = spheres.groupby("step")["id"].count().reindex(steps).to_numpy()
     start = int(np.argmax(present == present.max()))
-    rubbed = ["friction", "springs"] if p.writes_friction_work else []
+    rubbed = ["friction", "springs"] if "friction_work" in p.works else []
     kinds = ["kinetic", "rotation", "gravity", "elastic", "plastic", "adhesion", "left", *rubbed]
     total = table.reindex(columns=kinds, fill_value=0.0).sum(axis=1) - table["work"]
     table["balance"] = total - total.iloc[start]
     table = table.iloc[start:].reset_index(drop=True)
-    if p.model.loses_energy and not p.writes_friction_work:
+    if p.model.loses_energy and "friction_work" not in p.works:
         table["friction"] = -table["balance"]
     return table
 

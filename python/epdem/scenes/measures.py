@@ -40,7 +40,7 @@ def refuse_measures(p: ScenePlan) -> None:
         material = getattr(m, "material", None)
         if material is not None and material not in {t.material for t in p.model.types if not t.wall}:
             raise CaseError(f"{place}.material = {material!r}: no sphere is of it")
-        if isinstance(m, Histogram) and m.kind == "plastic_work" and not p.writes_plastic_work:
+        if isinstance(m, Histogram) and m.kind == "plastic_work" and "plastic_work" not in p.works:
             raise CaseError(f"{place}: the plastic work is known with output.energy and a law that yields; give them")
         if isinstance(m, Histogram) and m.kind == "impact_speed" and (p.model.adheres or not p.contacts):
             raise CaseError(f"{place}: impact speeds follow from contacts without adhesion; give output.contacts")

@@ -13,7 +13,7 @@ from ..base.files import atomic
 from ..case.walls import Room
 from ..errors import CaseError
 from . import placement
-from .columns import PARTICLES, SPINS, last_frame, units
+from .columns import columns_of_frames, last_frame, units
 from .energy_balance import kinetic
 from .meshes import FloatArray, box, tube
 from .plan import Phase, ScenePlan
@@ -65,13 +65,7 @@ def unit_of(spheres: pd.DataFrame, field: str) -> str:
 
 def refuse_color(p: ScenePlan) -> None:
     """Raise CaseError for a field of output.color that the frames do not hold."""
-    known = [
-        "speed",
-        "energy",
-        *PARTICLES,
-        *(SPINS if p.model.spins else []),
-        *(["plastic_work"] if p.writes_plastic_work else []),
-    ]
+    known = ["speed", "energy", *columns_of_frames(p)]
     if p.output.color not in known:
         raise CaseError(f"output.color = {p.output.color!r}: spheres of this scene have {', '.join(known)}")
 

@@ -183,42 +183,25 @@ class ScenePlan:
         return sum(i.count for i in self.insertions) + len(self.scene.table) + len(self.scene.later)
 
     @property
-    def plates(self) -> bool:
-        """Whether there is a plate whose force is measured."""
-        return isinstance(self.case.scene, Compaction)
+    def row_columns(self) -> tuple[str, ...]:
+        """The loads of walls of a kind, and the power of moving walls whose work no other column tells, in the rows."""
+        moving = any(map(walls.surface_rotation, self.scene.meshes.values())) or any(p.moves for p in self.phases)
+        plate = isinstance(self.case.scene, Compaction)
+        torque = isinstance(self.case.scene, Drum) and (self.output.loads or self.output.energy)
+        there = {
+            "floor_load": self.output.loads and not self.loads and any(w.name == "floor" for w in self.scene.planes),
+            "plate_force": plate,
+            "torque": torque,
+            "wall_power": moving and self.output.energy and not (plate or torque),
+        }
+        return tuple(name for name, present in there.items() if present)
 
     @property
-    def floor_load(self) -> bool:
-        """Whether the mean force on the floor is in the rows."""
-        floor = any(w.name == "floor" for w in self.scene.planes)
-        return floor and self.output.loads and not self.loads
-
-    @property
-    def torque(self) -> bool:
-        """Whether the mean torque on a drum is in the rows."""
-        return isinstance(self.case.scene, Drum) and (self.output.loads or self.output.energy)
-
-    @property
-    def writes_wall_power(self) -> bool:
-        """Whether the mean power of moving walls is in the rows: of walls whose work no other column tells."""
-        meshes = self.scene.meshes
-        moving = any(map(walls.surface_rotation, meshes.values())) or any(phase.moves for phase in self.phases)
-        return moving and self.output.energy and not (self.plates or self.torque)
-
-    @property
-    def writes_plastic_work(self) -> bool:
-        """Whether the plastic work of each sphere is in the frames."""
-        return self.output.energy and self.model.yields
-
-    @property
-    def writes_adhesive_work(self) -> bool:
-        """Whether the work that adhesion took of each sphere is in the frames."""
-        return self.output.energy and self.model.adheres
-
-    @property
-    def writes_friction_work(self) -> bool:
-        """Whether the work of friction of each sphere is in the frames."""
-        return self.output.energy and self.model.nodes > 0
+    def works(self) -> tuple[str, ...]:
+        """The works and energies of each sphere in the frames."""
+        yields, adheres, slips = self.model.yields, self.model.adheres, self.model.nodes > 0
+        there = {"plastic_work": yields, "adhesive_work": adheres, "friction_work": slips, "friction_energy": slips}
+        return tuple(name for name, present in there.items() if present and self.output.energy)
 
     def rotations(self, wall: str) -> list[RotateMove]:
         """The rotations of a wall of triangles: of its surface, and in each phase."""

@@ -8,13 +8,15 @@ import numpy as np
 from ...base import rendering as decks
 from ...errors import CaseError
 from ...scenes import placement
+from ...scenes.columns import columns_of_frames
 from ...scenes.plan import ScenePlan
 from ..host import LIGGGHTS, refuse
-from ..input_script import default_skin, load_words, phases, stop_condition, wall_id
+from ..input_script import default_skin, phases, row_words, stop_condition, wall_id
 from . import words
 from .scene_walls import meshes, motions, plane
 
 ROLLING = ("cdt", "epsd2")
+WORKS = {"plastic_work": 1, "friction_work": 4, "friction_energy": 5, "adhesive_work": 6}  # columns of fix EP_HISTORY0
 
 
 def check(p: ScenePlan) -> None:
@@ -40,7 +42,6 @@ def deck(p: ScenePlan) -> decks.Deck:
     gates = {w.name: plane(p, w) for w in p.scene.gates}
     cut = p.case.numerics.processors
     walls = (*(plane(p, w) for w in p.scene.planes), *meshes(p))
-    row_words = {"f_load": p.floor_load, "f_press_z": p.plates, "f_torque": p.torque, "f_power": p.writes_wall_power}
     scene_phases = []
     first = p.phases[0].name
     placed = len(p.scene.table) + sum(f.count for f in p.insertions if f.phase == first)
@@ -76,7 +77,7 @@ def deck(p: ScenePlan) -> decks.Deck:
         phases=scene_phases,
         mesh_ids=[wall_id(p, name) for name in p.scene.meshes],
         contact_walls=[wall_id(p, w) for w in contact_walls(p)],
-        row_words=["f_ratio[1]", "f_ratio[2]", *(word for word, there in row_words.items() if there), *load_words(p)],
+        row_words=["f_ratio[1]", "f_ratio[2]", *row_words(p)],
         columns=columns_of_dump(p),
         samples=p.every // p.sampling,
         restarts=0,
@@ -94,15 +95,11 @@ def contact_walls(p: ScenePlan) -> list[str]:
     return [w.name for w in p.scene.planes] + [*p.scene.meshes]
 
 
-def columns_of_dump(p: ScenePlan) -> dict[str, str]:
+def columns_of_dump(p: ScenePlan) -> list[str]:
     """LAMMPS's word of each column of a frame."""
-    named = ["id", "type", "radius", "mass", "x", "y", "z", "vx", "vy", "vz"]
-    found = dict(zip(named, named, strict=True))
-    if p.model.spins:
-        found |= {f"omega_{axis}": f"omega{axis}" for axis in "xyz"}
-    work = {"plastic_work": (p.writes_plastic_work, 1), "adhesive_work": (p.writes_adhesive_work, 6)}
-    work |= {"friction_work": (p.writes_friction_work, 4), "friction_energy": (p.writes_friction_work, 5)}
-    return found | {name: f"f_EP_HISTORY0[{k}]" for name, (there, k) in work.items() if there}
+    return [
+        f"f_EP_HISTORY0[{WORKS[name]}]" if name in WORKS else name.replace("_", "") for name in columns_of_frames(p)
+    ]
 
 
 def _data_file(p: ScenePlan, phase: str) -> str | None:

@@ -12,7 +12,7 @@ from ...scenes.plan import ScenePlan
 from .. import log
 from ..host import frames
 from ..input_script import torque_origin, wall_id
-from .scene_deck import columns_of_dump, contact_walls
+from .scene_deck import contact_walls
 
 
 def rows(p: ScenePlan, out: Path) -> pd.DataFrame:
@@ -44,7 +44,7 @@ def _frames(p: ScenePlan, folder: Path, kind: str, every: int, names: list[str])
 
 def particles(p: ScenePlan, folder: Path) -> pd.DataFrame:
     """Every sphere of every frame."""
-    return columns.whole(p, _frames(p, folder, "particles", p.frames, [*columns_of_dump(p)]), folder)
+    return columns.whole(p, _frames(p, folder, "particles", p.frames, columns.columns_of_frames(p)), folder)
 
 
 def contact_table(p: ScenePlan, folder: Path, spheres: pd.DataFrame) -> pd.DataFrame:

@@ -9,12 +9,18 @@ from ...errors import CaseError
 from ...laws.library import laws
 from ...scenes.model import Model
 from ...scenes.plan import ScenePlan
-from ..input_script import SKIN, default_skin, load_words, wall_id
+from ..input_script import SKIN, default_skin, row_words, wall_id
 from . import wall_stress
 from .insertions import insertions
 from .properties import HARD, SOFT, Property, elastic, per_pair, ratios, strength, tangential, work_of_adhesion
 from .scene_parts import parts, planes, stl_text, surfaces, table
 
+WORKS = {  # what dumps call the works and energies of a sphere
+    "plastic_work": "f_plasticWork",
+    "adhesive_work": "f_adhesiveWork",
+    "friction_work": "f_frictionWork",
+    "friction_energy": "f_frictionEnergy",
+}
 MOST_CELLS = 2**31 - 1  # that LIGGGHTS counts, each half as wide as its longest reach
 
 
@@ -53,7 +59,7 @@ def _settings(p: ScenePlan) -> tuple[str, ...]:
     wanted = {
         "viscous on": m.viscous is not None,
         "tangential_damping off": m.viscous is not None and m.sliding and m.tangential_restitution is None,
-        "computePlasticWork on": p.writes_plastic_work or p.writes_friction_work or p.writes_adhesive_work,
+        "computePlasticWork on": bool(p.works),
         "computeContactStrain on": True,
         "compaction on": m.compaction,
     }
@@ -102,11 +108,9 @@ def _refuse_room(p: ScenePlan) -> None:
 def deck(p: ScenePlan) -> decks.Deck:
     """The deck of a scene. Raises CaseError for what LIGGGHTS cannot do."""
     _refuse_room(p)
-    m, s, out = p.model, p.case.scene, p.output
+    m, s = p.model, p.case.scene
     moduli = [p.case.materials[t.material].young_modulus for t in m.types]
     cut, phases = p.case.numerics.processors, parts(p)
-    row_words = {"c_ratio[1]": True, "c_ratio[2]": True, "f_load": p.floor_load, "f_press_z": p.plates}
-    row_words |= {"f_torque": p.torque, "f_power": p.writes_wall_power}
     return decks.Deck(
         p,
         title=p.case.case.title,
@@ -139,15 +143,14 @@ def deck(p: ScenePlan) -> decks.Deck:
         stress_walls=tuple(
             (name, wall_id(p, name), bool(p.scene.meshes[name].wear)) for name in wall_stress.stress_walls(p)
         ),
-        energy=out.energy,
         spins=m.spins,
         has_history=m.yields or m.spins or m.adheres or m.cohesion is not None,  # sjkr keeps one, too
-        adheres=m.adheres,
+        work_words=[WORKS[name] for name in p.works],
         history_columns=history_columns(m),
         wall_history_slots=history_slots(m, wall=True),
         contact_columns=contact_columns(history_slots(m), memory(m)),
         wall_contact_columns=contact_columns(history_slots(m, wall=True), memory(m, wall=True)),
-        row_words=(*(word for word, asked in row_words.items() if asked), *load_words(p)),
+        row_words=["c_ratio[1]", "c_ratio[2]", *row_words(p)],
         from_restart=None,
         resumed_phase=0,
         comes=False,  # whether the spheres that come with that phase are still to come

@@ -30,7 +30,7 @@ def plane(p: ScenePlan, w: PlaneWall, *, force: bool = False) -> decks.Deck:
 
 def planes(p: ScenePlan) -> tuple[decks.Deck, ...]:
     """The planes that are always there."""
-    stored = {"floor"} if p.floor_load else {*p.loads}
+    stored = {"floor"} if "floor_load" in p.row_columns else {*p.loads}
     return tuple(plane(p, w, force=w.name in stored) for w in p.scene.planes)
 
 
@@ -49,7 +49,7 @@ def surfaces(p: ScenePlan) -> tuple[decks.Deck, ...]:
     style: with sums of forces, driven by one. keywords: what the surface does. pressed_later: the force that drives the
     wall acts in later phases only.
     """
-    force = p.plates or p.torque or p.writes_wall_power
+    force = {*p.row_columns} - {"floor_load"}
     pressed = {bed.wall for bed in p.pressed}
     found = []
     for name, mesh in p.scene.meshes.items():
@@ -132,7 +132,7 @@ def parts(p: ScenePlan) -> tuple[decks.Deck, ...]:
     """
     gates = {w.name: plane(p, w) for w in p.scene.gates}
     found: list[decks.Deck] = []
-    upto = True
+    upto, with_power = True, "wall_power" in p.row_columns
     for before, phase, after in phases(p):
         motions = {name: _motion(p, name, move) for name, move in phase.moves.items()}
         new = [name for name, move in phase.moves.items() if before is None or before.moves.get(name) != move]
@@ -149,8 +149,8 @@ def parts(p: ScenePlan) -> tuple[decks.Deck, ...]:
                 *(end for name, (_, end) in motions.items() if after and not _goes_on(name, phase, after)),
             ],
             particles=[_phase_particle(p, b) for b in p.scene.later if b.phase == phase.name],
-            power=power(p, phase) if p.writes_wall_power else "",
-            vibrations=[name for name in new if p.writes_wall_power and isinstance(phase.moves[name], VibrateMove)],
+            power=power(p, phase) if with_power else "",
+            vibrations=[name for name in new if with_power and isinstance(phase.moves[name], VibrateMove)],
             stop=_pressing(p, phase),
         )
         found.append(part)
@@ -159,7 +159,7 @@ def parts(p: ScenePlan) -> tuple[decks.Deck, ...]:
 
 def _refuse_other_step(p: ScenePlan, before: Phase | None, phase: decks.Deck) -> None:
     """Raise CaseError for a vibration that goes on with another time step: its power is counted in steps."""
-    if before is None or not p.writes_wall_power or before.case.time_step == phase.case.time_step:
+    if before is None or "wall_power" not in p.row_columns or before.case.time_step == phase.case.time_step:
         return
     for name, move in phase.moves.items():
         if isinstance(move, VibrateMove) and before.moves.get(name) == move:

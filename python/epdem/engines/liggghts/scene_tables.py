@@ -45,8 +45,7 @@ def damaged(p: ScenePlan, folder: Path, upto: int) -> list[int]:
 def _particle_names(p: ScenePlan) -> list[str]:
     names = [*columns.PARTICLES, *(columns.SPINS if p.model.spins else [])]
     names += [f"{slot}_{w.name}" for w in p.scene.planes for slot in _slots(p)] if p.contacts else []
-    names += ["plastic_work"] * p.writes_plastic_work + ["adhesive_work"] * p.writes_adhesive_work
-    return [*names, *(["friction_work", "friction_energy"] if p.writes_friction_work else [])]
+    return [*names, *p.works]
 
 
 def _slots(p: ScenePlan) -> list[str]:

@@ -29,27 +29,13 @@ from .scene_parts import refuse as refuse_parts
 
 Square = tuple[tuple[float, ...], ...]
 SCRIPT, SPHERES = "scene.py", "spheres.txt"
+WORKS = {"plastic_work": "plasticWork", "adhesive_work": "adhesionLoss", "friction_work": "frictionWork"}  # of EpState
 SKIN = 0.25  # of the smallest radius: few sortings and few idle neighbours
 NO_DASHPOT = (
     "contact.tangential_restitution: YADE's law has no dashpot, it was left out; make yade builds a law with it"
 )
 NO_RANKS = "numerics.processors: a scene in YADE has one rank, it was left out"
 NO_SORTING = "numerics.sort_interval: YADE does not sort the spheres in memory, it was left out"
-
-
-def works(p: ScenePlan) -> dict[str, list[str]]:
-    """Attributes of EpState in the frames, and the columns of each."""
-    wanted = {
-        "plasticWork": p.writes_plastic_work,
-        "adhesionLoss": p.writes_adhesive_work,
-        "frictionWork": p.writes_friction_work,
-    }
-    columns = {
-        "plasticWork": ["plastic_work"],
-        "adhesionLoss": ["adhesive_work"],
-        "frictionWork": ["friction_work", "friction_energy"],
-    }
-    return {name: columns[name] for name, there in wanted.items() if there}
 
 
 def refuse(p: ScenePlan, *, classes: bool) -> None:
@@ -152,7 +138,7 @@ def deck(p: ScenePlan, *, classes: bool) -> decks.Deck:
     xlo, xhi, ylo, yhi, zlo, zhi = p.box
     sides = () if p.scene.periodic else ((xlo, xhi), (ylo, yhi))
     there = {*p.scene.meshes, *(w.name for w in p.scene.planes), *p.phases[0].gates}
-    every_step = p.plates or p.torque or p.writes_wall_power
+    every_step = {*p.row_columns} - {"floor_load"}
     return decks.Deck(
         p,
         title=p.case.case.title,
@@ -179,8 +165,11 @@ def deck(p: ScenePlan, *, classes: bool) -> decks.Deck:
         motions=[motion for phase in every_phase for motion in phase.motions],
         sampling=1 if every_step else p.sampling if p.output.loads or p.loads else p.every,
         spins=m.spins,
-        remembers=p.writes_plastic_work and not classes,  # contacts that have ended, of which the plastic work follows
-        works=[*works(p)] if classes else [],  # attributes of EpState in the frames
+        remembers="plastic_work" in p.works
+        and not classes,  # contacts that have ended, of which the plastic work follows
+        works=[WORKS[name] for name in p.works if name in WORKS]
+        if classes
+        else [],  # attributes of EpState in the frames
         loads=loads(p),
     )
 

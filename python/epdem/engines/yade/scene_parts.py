@@ -23,6 +23,7 @@ EDGES = (
 )
 
 
+OF_KINDS = {"floor": "floor_load", "plate": "plate_force"}  # column of the force on a wall of a kind
 HEAD = "# x y z radius [m], type, velocity [m/s], spin [rad/s], 1: frozen"  # of a table of spheres
 
 
@@ -112,9 +113,9 @@ def motions(p: ScenePlan, phase: decks.Deck) -> tuple[Move, ...]:
 def loads(p: ScenePlan) -> list[tuple[str, Sequence[float] | None]]:
     """The walls whose forces are in the rows; where a place [m] is given the torque about it, too: on the axis of a
     wall's turn, else 0."""
-    of_kind = ["floor"] * p.floor_load + ["plate"] * p.plates
+    of_kind = [wall for wall, column in OF_KINDS.items() if column in p.row_columns]
     found = [(name, torque_origin(p, name) if name in p.scene.meshes else None) for name in p.loads]
-    found += [("drum", torque_origin(p, "drum"))] if p.torque else []
+    found += [("drum", torque_origin(p, "drum"))] if "torque" in p.row_columns else []
     return [*found, *((name, None) for name in of_kind)]
 
 

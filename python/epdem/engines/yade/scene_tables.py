@@ -11,7 +11,6 @@ from ...scenes import columns, contacts
 from ...scenes.plan import ScenePlan
 from ...scenes.presets import Preset
 from ..host import frames
-from .scene_deck import works
 from .scene_parts import wall_names
 
 PRESETS = {"floor_force_z": "floor_load", "plate_force_z": "plate_force", "drum_torque_y": "torque"}  # columns of kinds
@@ -59,9 +58,8 @@ def rows(p: ScenePlan, log: Path) -> pd.DataFrame:
 
 def particles(p: ScenePlan, folder: Path) -> pd.DataFrame:
     """Every sphere of every frame, SI. Raises EngineError for an incomplete frame."""
-    names = [*columns.PARTICLES, *(columns.SPINS if p.model.spins else [])]
-    more = [column for found in works(p).values() for column in found]
-    table = _frames(p, folder, "particles", p.frames, names, more)
+    names = columns.columns_of_frames(p)
+    table = _frames(p, folder, "particles", p.frames, names[: len(names) - len(p.works)], [*p.works])
     if p.scene.periodic:  # YADE does not put back what leaves its periodic cell
         for axis, low, high in zip("xy", p.box[0:4:2], p.box[1:4:2], strict=True):
             table[axis] = (table[axis] - low) % (high - low) + low
@@ -71,7 +69,7 @@ def particles(p: ScenePlan, folder: Path) -> pd.DataFrame:
 def contact_table(p: ScenePlan, folder: Path, spheres: pd.DataFrame) -> pd.DataFrame:
     """Every contact of every frame. Where no frame has the plastic work, `spheres` gets it from the contacts."""
     every = _contacts(p, folder, spheres)
-    if p.writes_plastic_work and "plastic_work" not in spheres:
+    if "plastic_work" in p.works and "plastic_work" not in spheres:
         spheres["plastic_work"] = _plastic_work(every, spheres)
     return every[(every["overlap"] > 0) | (every["force"] != 0)].reset_index(drop=True)
 
