@@ -10,14 +10,14 @@ import numpy as np
 import pytest
 from typer.testing import CliRunner
 
-from epdem.case import library
+from epdem.case import toml
 from epdem.cli.main import app
 from epdem.engines.citations import of_laws
 
 pytestmark = pytest.mark.figures
 
 CASES = Path(__file__).parents[2] / "cases"
-FILE = tomllib.loads(Path(library.__file__).with_name("materials.toml").read_text())
+FILE = tomllib.loads(Path(toml.__file__).with_name("materials.toml").read_text())
 
 
 def run(*words):
@@ -69,6 +69,6 @@ def test_laws_with_adhesion_are_cited():
 @pytest.mark.parametrize("name", FILE)
 def test_every_material_says_where_its_numbers_come_from(name):
     """Its source begins with a short name that the head of the file gives in full."""
-    text = Path(library.__file__).with_name("materials.toml").read_text()
+    text = Path(toml.__file__).with_name("materials.toml").read_text()
     known = [line.split()[1] for line in text.splitlines() if line.startswith("#") and " = " in line]
     assert FILE[name]["source"].partition(":")[0] in known and "yield_stress" in FILE[name]

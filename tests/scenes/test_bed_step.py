@@ -12,8 +12,7 @@ from epdem.case.scene import parse
 from epdem.case.toml import read_toml
 from epdem.engines import log
 from epdem.engines.liggghts import launcher
-from epdem.scenes.pairs import sphere_impact
-from epdem.scenes.timestep import bed_share, time_step
+from epdem.scenes.timestep import bed_share, sphere_impact, time_step
 
 CASES = Path(__file__).parents[2] / "cases"
 R, E, NU, DENSITY = 1e-3, 1e8, 0.3, 2500.0

@@ -10,7 +10,7 @@ import pytest
 from epdem.case import scene
 from epdem.case.toml import read_toml
 from epdem.scenes import contacts
-from epdem.scenes.pairs import pair_law
+from epdem.scenes.model import pair_law
 from epdem.scenes.plan import plan
 
 CASES = Path(__file__).parents[2] / "cases"

@@ -14,7 +14,7 @@ from epdem.engines.liggghts.engine import Liggghts
 from epdem.errors import CaseError, EngineError
 from epdem.impacts.engine import Feature
 from epdem.scenes import results
-from epdem.scenes.pairs import pair_law
+from epdem.scenes.model import pair_law
 from epdem.scenes.plan import plan
 from epdem.scenes.run import run
 

@@ -17,8 +17,7 @@ from epdem.impacts.experiment import experiment
 from epdem.impacts.prediction import predict
 from epdem.laws.library import laws
 from epdem.report.page import write
-from epdem.studies.calibrate import from_hardness, from_restitution, from_restitutions
-from epdem.studies.hardness import hardness_test
+from epdem.studies.calibrate import from_hardness, from_restitution, from_restitutions, hardness_test
 from epdem.studies.pages import impacts as pages
 from epdem.theory.adhesion import yield_speed
 from epdem.theory.indentation import Indentation

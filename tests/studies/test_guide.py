@@ -19,7 +19,7 @@ from test_pages import ROOT, blocks, play
 
 import epdem
 from epdem import Scene
-from epdem.base import settings
+from epdem.base import paths
 from epdem.case.impact import parse
 from epdem.case.toml import read_toml
 from epdem.engines.yade.launcher import write_deck_modules
@@ -138,7 +138,7 @@ def test_every_block_of_toml_is_a_case_a_part_of_one_or_a_setting(tmp_path, monk
             (tmp_path / "epdem").mkdir()
             (tmp_path / "epdem/config.toml").write_text(text)
             monkeypatch.setenv("XDG_CONFIG_HOME", str(tmp_path))
-            assert settings.setting("engine", "liggghts")
+            assert paths.setting("engine", "liggghts")
         elif words:
             data = merged(read_toml(ROOT / f"cases/{words[0]}.toml"), tomllib.loads(text))
             assert parse(data, name)

@@ -18,7 +18,7 @@ from epdem.errors import CaseError
 from epdem.impacts.experiment import experiment
 from epdem.impacts.prediction import predict
 from epdem.laws.library import laws
-from epdem.scenes.pairs import strengths
+from epdem.scenes.model import strengths
 from epdem.studies.soften import soften
 from epdem.theory.adhesion import sticking_speed
 

@@ -26,9 +26,8 @@ from .fields import (
     Tangential,
     Viscous,
 )
-from .library import with_library
 from .messages import explain
-from .toml import read_toml
+from .toml import read_toml, with_library
 
 RIGID = "rigid"
 MAX_IMPACTS = 4096

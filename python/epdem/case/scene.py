@@ -22,11 +22,10 @@ from .fields import (
     Viscous,
 )
 from .kinds import Kinds
-from .library import with_library
 from .messages import explain
 from .motions import Time
 from .sizes import Share, context
-from .toml import named, read_toml
+from .toml import named, read_toml, with_library
 from .walls import PartName
 
 

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""TOML files: their raw tables, the files that they name, and errors that name the file."""
+"""TOML files: raw tables, the files that they name, errors that name the file; the materials file."""
 
 import contextlib
 import re
@@ -7,6 +7,7 @@ import stat
 import sys
 import tomllib
 from collections.abc import Iterator, Mapping
+from functools import cache
 from pathlib import Path
 from typing import Any, NamedTuple
 
@@ -129,3 +130,31 @@ def text_for_anywhere(path: Path | str) -> str:
     """
     text, folder = text_of(path), Path(path).parent
     return renamed(text, {name: (folder / name).resolve() for name in names_in(tables(text, path))})
+
+
+@cache
+def entries() -> dict[str, dict[str, Any]]:
+    """Every material of the file as it is written there, by name."""
+    return tomllib.loads(Path(__file__).with_name("materials.toml").read_text(encoding="utf-8"))
+
+
+def with_library(data: dict[str, Any], path: object) -> dict[str, Any]:
+    """The tables of a case in which `from = "steel"` of a material has become the numbers of the materials file.
+
+    Keys beside `from` replace the keys of the file. Raises CaseError for a name that is not there.
+    """
+    materials = data.get("materials")
+    if not isinstance(materials, dict) or not any(isinstance(m, dict) and "from" in m for m in materials.values()):
+        return data
+    return data | {"materials": {name: _filled(name, m, path) for name, m in materials.items()}}
+
+
+def _filled(name: str, material: Any, path: object) -> Any:
+    if not isinstance(material, dict) or "from" not in material:
+        return material
+    origin = material["from"]
+    if not isinstance(origin, str) or origin not in entries():
+        have = ", ".join(entries())
+        raise CaseError(f"{path}: materials.{name}.from = {origin!r} is not in the materials file; there are {have}")
+    known = {key: value for key, value in entries()[origin].items() if key != "source"}
+    return known | {key: value for key, value in material.items() if key != "from"}

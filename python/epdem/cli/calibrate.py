@@ -94,7 +94,6 @@ def _from_impacts(
 ) -> "Calibration":
     from ..case.units import read_number
     from ..studies import calibrate as c
-    from ..studies.hardness import hardness_test
 
     hv, hb, dent_ratio = hardness.values()
     if (bool(e_n) + measured + (hv is not None or hb is not None)) != 1:
@@ -105,7 +104,7 @@ def _from_impacts(
         refuse(case, "it belongs to --e-n", speed=speed)
     if not (measured or e_n):
         refuse(case, "it belongs to --e-n and --measured", uncertainty=uncertainty)
-        test = hardness_test(vickers=hv, brinell=hb, dent_ratio=dent_ratio)
+        test = c.hardness_test(vickers=hv, brinell=hb, dent_ratio=dent_ratio)
         return c.from_hardness(case, test, f"HV {hv:g}" if hv is not None else f"HB {hb:g}")
     if len(e_n) != len(speed):
         raise CaseError("--e-n belongs to one impact; add its speed, as --speed '2 m/s'")

@@ -17,7 +17,7 @@ from typer.core import TyperGroup
 
 from .. import __version__
 from ..base import stopping
-from ..base.settings import DEFAULT_ENGINE
+from ..base.paths import DEFAULT_ENGINE
 from ..base.terminal import bar, console, status
 from ..errors import CaseError, EpdemError, Stopped
 from . import calibrate as cli_calibrate

@@ -3,7 +3,7 @@
 
 from collections.abc import Callable
 
-from ..base.settings import DEFAULT_ENGINE
+from ..base.paths import DEFAULT_ENGINE
 from ..errors import CaseError
 from ..impacts.engine import Feature, ImpactEngine, Trajectory
 from ..scenes.engine import SceneEngine

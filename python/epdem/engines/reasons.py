@@ -4,7 +4,7 @@
 from pathlib import Path
 
 from ..base import rendering
-from ..base.settings import DEFAULT_ENGINE
+from ..base.paths import DEFAULT_ENGINE
 from ..case import impact, scene
 from ..case.toml import named, read_toml
 from ..impacts.experiment import experiment

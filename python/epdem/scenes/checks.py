@@ -14,8 +14,8 @@ from ..case.scene import SceneCase
 from ..impacts.prediction import predict
 from .columns import last_frame
 from .energy_balance import closure, kinetic, plate_velocity, rotation
-from .pairs import wall_impact
 from .plan import ScenePlan
+from .timestep import wall_impact
 
 Row = dict[str, object]
 CHECKS = {  # the unit of value and expected; what passes

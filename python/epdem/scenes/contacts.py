@@ -14,7 +14,7 @@ from ..laws.native import Law
 from ..theory.adhesion import plastic_work
 from ..theory.backbones import JKR
 from ..theory.numerics import gauss
-from .pairs import pair_law
+from .model import pair_law
 from .plan import ScenePlan
 
 Array = npt.NDArray[np.float64]

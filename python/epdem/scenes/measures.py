@@ -12,7 +12,7 @@ from ..errors import CaseError
 from ..theory.backbones import JKR
 from .columns import columns_of_rows, last_frame
 from .meshes import FloatArray
-from .pairs import pair_law
+from .model import pair_law
 from .plan import ScenePlan
 
 LINES = 2**16  # through a region whose porosity is measured

@@ -1,15 +1,17 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""What the contacts of a scene consist of, neutral of engines: types of spheres and walls, friction, sub-models."""
+"""What the contacts of a scene consist of, neutral of engines: the law of each pair, types, friction, sub-models."""
 
 import math
 from dataclasses import dataclass
 
 from ..case.fields import NODES, Tangential
+from ..case.law import law_numbers
 from ..case.scene import Rolling, SceneCase
+from ..case.units import read_number
 from ..errors import CaseError
 from ..laws.library import laws
-from ..laws.strengths import own_ratios
-from .pairs import numbers, strengths, work_of_adhesion
+from ..laws.strengths import LawNumbers, LawSpec, Surface, law_named, own_ratios
+from ..theory.pair import E_star
 
 WALL = "wall"
 
@@ -166,3 +168,40 @@ def _own(case: SceneCase, a: Type, b: Type, value: str) -> float | None:
         if both and getattr(pair, value) is not None:
             return float(getattr(pair, value))
     return None
+
+
+def numbers(case: SceneCase) -> LawNumbers:
+    """The scene's law before its bodies. Raises CaseError."""
+    return law_numbers(case.law.name, case.law.parameters())
+
+
+def strengths(case: SceneCase) -> dict[str, float]:
+    """The law's strength [Pa] of every material, inf for a law that never yields. Raises CaseError.
+
+    The key of the material, else the value of the law for all.
+    """
+    law = numbers(case)
+    strength = law_named(law.name).strength
+    strengths = {}
+    for name, material in case.materials.items():
+        extra = dict(material.model_extra or {})
+        own = None
+        if strength in extra:
+            own = read_number(f"materials.{name}.{strength}", extra.pop(strength), "Pa")
+        for key in extra:
+            raise CaseError(f"materials.{name}.{key}: unknown key; remove it or correct its spelling")
+        strengths[name] = law.strength(name, material.yield_stress, own)
+    return strengths
+
+
+def work_of_adhesion(case: SceneCase, a: str, b: str) -> float | None:
+    """Gamma of two materials [J/m^2]; None for a law without adhesion. Raises CaseError."""
+    surfaces = [Surface(name, case.materials[name].surface_energy) for name in (a, b)]
+    return numbers(case).work_of_adhesion(*surfaces)
+
+
+def pair_law(case: SceneCase, a: str, b: str) -> tuple[LawSpec, float]:
+    """(the law of a contact between two materials, its E* [Pa])."""
+    strong, first, second = strengths(case), case.materials[a], case.materials[b]
+    elastic = (first.young_modulus, first.poisson_ratio, second.young_modulus, second.poisson_ratio)
+    return numbers(case).pair(strong[a], strong[b], work_of_adhesion(case, a, b)), float(E_star(*elastic))

@@ -17,7 +17,7 @@ from .columns import columns_of_frames, last_frame, units
 from .energy_balance import kinetic
 from .meshes import FloatArray, box, tube
 from .plan import Phase, ScenePlan
-from .wall_paths import at_end
+from .walls import at_end
 
 AZIMUTH, ELEVATION = np.deg2rad(-60.0), np.deg2rad(18.0)  # from where a picture is seen
 DPI = 200

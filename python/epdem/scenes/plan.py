@@ -24,7 +24,6 @@ from .model import Model, model
 from .presets import Preset, parts
 from .solid import PressedBed, pressed_beds_of_run, refuse_below_solid
 from .timestep import time_step
-from .wall_paths import refuse_leaving
 
 REACHED, NOT_REACHED = "reached", "not reached"  # of a phase with `until`
 NO_VOID = "no void"  # of a phase at whose end a pressed bed was solid, which ends the run
@@ -256,7 +255,7 @@ def plan(case: SceneCase) -> ScenePlan:
     if not isinstance(scene, Preset):
         refuse_positions(scene)
         refuse_outside(scene, triangles)
-        refuse_leaving(scene, triangles)
+        walls.refuse_leaving(scene, triangles)
         refuse_combinations(case, scene)
     filled = insertions(case, scene)
     refuse_too_many(case, filled)

@@ -11,7 +11,7 @@ import pandas as pd
 
 from .. import __version__
 from ..base.folders import Results, claim, results_folder
-from ..base.settings import DEFAULT_ENGINE
+from ..base.paths import DEFAULT_ENGINE
 from ..base.stages import inputs_hash, library_hash
 from ..case.scene import SceneCase, load
 from ..case.toml import Read, named, names_in, text_of

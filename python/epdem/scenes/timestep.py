@@ -1,17 +1,21 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The time step of a scene, from its highest speed."""
+"""The time step of a scene, from its highest speed, and the impacts that stand for its contacts. SI."""
 
 import math
 from collections.abc import Iterator
+from dataclasses import replace
+
+import numpy as np
 
 from ..case.scene import SceneCase
 from ..errors import CaseError
-from ..impacts.experiment import Experiment
+from ..impacts.experiment import Body, Experiment, plane, sphere
 from ..impacts.prediction import Prediction, predict
 from ..impacts.timestep import search, stability_limit
+from ..theory import adhesion
+from ..theory.backbones import JKR
 from ..theory.timestep import DENSE_PACKING, sticking_packing
-from .model import model
-from .pairs import sphere_impact, wall_impact
+from .model import model, pair_law
 from .presets import parts
 
 MARGIN = 0.8  # of the stable step of a bed: contacts there are a little stiffer than in the impact that stands for them
@@ -87,3 +91,32 @@ def time_step(case: SceneCase) -> float:
         best = min(best, step, bed_share(x, sticking=sticking) * stable)
     power = 10.0 ** (math.floor(math.log10(best)) - 1)
     return float(f"{math.floor(best / power) * power:.1e}")  # two digits, rounded down: the deck is readable
+
+
+def _impact(case: SceneCase, body: Body, target: Body, v: float) -> Experiment:
+    law = pair_law(case, body.material, target.material)[0]
+    viscous = case.viscous.restitution if case.viscous and not law.adheres else None  # no theory has both
+    x = Experiment(law, body, target, np.geomspace(v / 100, v, 5), viscous_restitution=viscous, name=case.name)
+    return replace(x, speed=_far_from_sticking(x))
+
+
+def _far_from_sticking(x: Experiment) -> np.ndarray:
+    """The speeds at which the error of e_n says something: near the sticking speed e_n falls to 0 as a root."""
+    law, v = x.theory(), x.speed
+    if not isinstance(law, JKR):
+        return v
+    share = v / max(float(adhesion.sticking_speed(law, m_star=x.m_star)), 1e-300)
+    far = v[(share < 0.5) | (share > 2.0)]
+    return far if far.size else v[-1:] * 2.0 / share[-1]
+
+
+def sphere_impact(case: SceneCase, material: str, radius: float, other: str, v: float) -> Experiment:
+    """The impact of a sphere on one of `other` of the same radius [m] at speeds up to v [m/s]: a scene's shortest."""
+    body, target = (sphere(case.materials[name], radius=radius, name=name) for name in (material, other))
+    return _impact(case, body, target, v)
+
+
+def wall_impact(case: SceneCase, material: str, radius: float, other: str, v: float) -> Experiment:
+    """The impact of a sphere of `radius` [m] on a flat wall of `other`, at speeds up to v [m/s]."""
+    body = sphere(case.materials[material], radius=radius, name=material)
+    return _impact(case, body, plane(case.materials[other], name=other), v)

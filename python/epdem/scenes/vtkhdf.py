@@ -19,7 +19,7 @@ from . import walls
 from .columns import SPINS
 from .meshes import FloatArray
 from .plan import ScenePlan
-from .wall_paths import at_end
+from .walls import at_end
 
 CELLS = ("Vertices", "Lines", "Polygons", "Strips")  # VTK's order in CellOffsets
 NAMES = {"id": "body_id", "type": "material_id"}

@@ -17,7 +17,7 @@ from typing import Any
 import numpy as np
 
 from ..base.folders import results_folder
-from ..base.settings import DEFAULT_ENGINE
+from ..base.paths import DEFAULT_ENGINE
 from ..case.scene import is_scene
 from ..case.toml import Read, text_for_anywhere
 from ..case.units import to_si

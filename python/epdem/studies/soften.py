@@ -22,8 +22,7 @@ from typing import Any
 import tomlkit
 
 from ..case.impact import Rate
-from ..case.library import with_library
-from ..case.toml import named, read_toml, text_for_anywhere, text_of
+from ..case.toml import named, read_toml, text_for_anywhere, text_of, with_library
 from ..errors import CaseError
 from ..laws.strengths import ADHESION, law_named
 from ..theory.cavity import FINITE_STRAIN, STRAIN_EXPONENT

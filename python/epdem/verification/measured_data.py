@@ -26,8 +26,7 @@ from ..impacts.prediction import predict
 from ..impacts.run import run_and_compare
 from ..laws.library import laws
 from ..laws.strengths import default_numbers, law_named
-from ..studies.calibrate import EXPONENT
-from ..studies.hardness import hardness_test, specimen, strength
+from ..studies.calibrate import EXPONENT, hardness_test, specimen, strength
 from ..theory.backbones import JKR
 from .models import engine
 

@@ -7,8 +7,8 @@ from collections.abc import Callable
 from pathlib import Path
 
 from ...base import paths
+from ...base.paths import config_file
 from ...base.processes import call, most_ranks
-from ...base.settings import config_file
 from ...errors import EngineError
 from ...impacts.engine import refuse_ranks
 

@@ -165,11 +165,8 @@ def deck(p: ScenePlan, *, classes: bool) -> decks.Deck:
         motions=[motion for phase in every_phase for motion in phase.motions],
         sampling=1 if every_step else p.sampling if p.output.loads or p.loads else p.every,
         spins=m.spins,
-        remembers="plastic_work" in p.works
-        and not classes,  # contacts that have ended, of which the plastic work follows
-        works=[WORKS[name] for name in p.works if name in WORKS]
-        if classes
-        else [],  # attributes of EpState in the frames
+        remembers="plastic_work" in p.works and not classes,  # contacts that ended, of which the plastic work follows
+        works=[WORKS[name] for name in p.works if name in WORKS] if classes else [],
         loads=loads(p),
     )
 

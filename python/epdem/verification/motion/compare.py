@@ -11,7 +11,7 @@ import pandas as pd
 
 from ...base.files import write_texts
 from ...base.folders import claim, results_folder
-from ...base.settings import DEFAULT_ENGINE
+from ...base.paths import DEFAULT_ENGINE
 from ...base.tables import write_csv
 from ...case.impact import load
 from ...case.toml import named
