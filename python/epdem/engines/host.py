@@ -11,12 +11,17 @@ import pandas as pd
 from ..base import rendering as decks
 from ..base.files import write_texts
 from ..base.folders import held
+from ..case import impact, scene
 from ..case.parts import Parts
+from ..case.toml import named, read_toml
 from ..errors import CaseError
 from ..impacts.engine import Feature, Report, Trajectory, check_law, silent
-from ..impacts.plan import Plan
+from ..impacts.experiment import experiment
+from ..impacts.plan import Plan, plan
+from ..impacts.prediction import predict
 from ..scenes.engine import Resumed, Tables
 from ..scenes.plan import ScenePlan
+from ..scenes.plan import plan as plan_scene
 from ..theory.sources import Source
 from . import input_script, log
 
@@ -78,11 +83,13 @@ class Host(ABC):
         return []
 
     def write(self, job: Plan | ScenePlan, folder: Path) -> list[Path]:
-        if isinstance(job, ScenePlan):
-            return write_texts(folder, self.files(job))
-        deck = self.deck(job)
-        data = input_script.data_text(job, len(deck.types))
-        return write_texts(folder, {"in.impact": decks.render(self.template, deck=deck), deck.data: data})
+        return write_texts(folder, self.files(job) if isinstance(job, ScenePlan) else self.impact_files(job))
+
+    def impact_files(self, plan: Plan) -> dict[str, str]:
+        """The text of every file of the deck of impacts by its name. Raises CaseError."""
+        deck = self.deck(plan)
+        data = input_script.data_text(plan, len(deck.types))
+        return {"in.impact": decks.render(self.template, deck=deck), deck.data: data}
 
     @overload
     def run(self, job: Plan, folder: Path, *, ranks: int = 1, report: Report = silent) -> Trajectory: ...
@@ -101,6 +108,16 @@ class Host(ABC):
 
     def resume(self, job: ScenePlan, folder: Path, *, ranks: int, report: Report) -> tuple[Tables, Resumed]:
         raise CaseError(f"{folder}: a scene in {self.title} runs from its start; run it anew")
+
+
+def job_of(path: Path) -> Plan | ScenePlan:
+    """The plan of the case or scene in a file. Raises CaseError."""
+    data = read_toml(path)
+    with named(path):
+        if scene.is_scene(data):
+            return plan_scene(scene.parse(data, path))
+        x = experiment(impact.parse(data, path))
+        return plan(x, predict(x))
 
 
 def refuse(place: str, value: object, reason: str) -> None:

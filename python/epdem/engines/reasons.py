@@ -5,13 +5,9 @@ from pathlib import Path
 
 from ..base import rendering
 from ..base.paths import DEFAULT_ENGINE
-from ..case import impact, scene
-from ..case.toml import named, read_toml
-from ..impacts.experiment import experiment
-from ..impacts.plan import Plan, plan
-from ..impacts.prediction import predict
+from ..impacts.plan import Plan
 from ..scenes.plan import ScenePlan
-from ..scenes.plan import plan as scene_plan
+from .host import job_of
 from .liggghts import scene_deck
 from .liggghts.engine import Liggghts
 
@@ -46,9 +42,4 @@ def reasons(engine: str, job: Plan | ScenePlan) -> Lines:
 
 def explain_case(path: Path) -> Lines:
     """`reasons` of the case or scene in a file, on the default engine. Raises CaseError."""
-    data = read_toml(path)
-    with named(path):
-        if scene.is_scene(data):
-            return reasons(DEFAULT_ENGINE, scene_plan(scene.parse(data, path)))
-        x = experiment(impact.parse(data, path))
-        return reasons(DEFAULT_ENGINE, plan(x, predict(x)))
+    return reasons(DEFAULT_ENGINE, job_of(path))

@@ -12,14 +12,10 @@ from jinja2.sandbox import ImmutableSandboxedEnvironment
 
 from ...base import paths, rendering
 from ...base.folders import write_own
-from ...case import scene as scenes
 from ...case.impact import load as load_impact
-from ...case.toml import read_toml
 from ...errors import CaseError
-from ...impacts.experiment import experiment
-from ...impacts.plan import plan
-from ...impacts.prediction import predict
-from ...scenes.plan import plan as scene_plan
+from ...scenes.plan import ScenePlan
+from ..host import job_of
 from ..input_script import data_text
 from .engine import Liggghts
 from .scene_deck import deck as scene_deck
@@ -77,19 +73,14 @@ def write(
     name = template.name.removesuffix(".j2")
     if not name or name == template.name:
         raise CaseError(f"{template}: a template's name ends in .j2; the deck is written without it")
-    values: dict[str, object] = {}
-    beside: dict[str, str] = {}
-    if scenes.is_scene(read_toml(case_path)):
-        scene = scene_plan(scenes.load(case_path))
-        values |= {"deck": scene_deck(scene), "case": scene.case}
-        beside |= {f"{n}.stl": stl_text(n, triangles) for n, triangles in scene.triangles.items()}
+    job = job_of(case_path)
+    if isinstance(job, ScenePlan):
+        values: dict[str, object] = {"deck": scene_deck(job), "case": job.case}
+        beside = {f"{n}.stl": stl_text(n, triangles) for n, triangles in job.triangles.items()}
     else:
-        case = load_impact(case_path)
-        x = experiment(case)
-        p = plan(x, predict(x))
-        deck = Liggghts().deck(p)
-        values |= {"deck": deck, "case": case}
-        beside[deck.data] = data_text(p, len(deck.types))
+        deck = Liggghts().deck(job)
+        values = {"deck": deck, "case": load_impact(case_path)}
+        beside = {deck.data: data_text(job, len(deck.types))}
     text, unused = _render(template, values | sets)
     refuse_programs(text, template)
     if wrong := unused & set(sets):

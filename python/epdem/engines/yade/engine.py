@@ -28,6 +28,7 @@ from ..host import Host
 from . import classes, launcher, scene_deck, scene_tables
 from .classes import Functors, Group, Material, PairValue, strength_values
 from .launcher import command, environment, module_version, write_deck_modules
+from .scene_parts import table_text
 
 INSTALL = "apt-get install yade"
 
@@ -49,6 +50,7 @@ class Yade(Host):
     of_classes = frozenset(  # with epdem_yade only
         {Feature.ADHESION, Feature.DASHPOT, Feature.FRICTION, Feature.SPHERE_FRICTION}
     )
+    own_law = False  # a law of YADE, which needs no module
     template = "yade/impact.py.j2"
     out = "out.yade"
     leftovers = ("particles.*.npy", "contacts.*.npy")
@@ -124,7 +126,7 @@ class Yade(Host):
             summary=f"{plan.summary}, law {x.law.name}",
             rigid=x.target.rigid,
             law=x.law.name,
-            native=False,
+            native=self.own_law,
             functors=self.functors(x),
             anvil=None,
             ratios=self.ratios(x),
@@ -145,23 +147,18 @@ class Yade(Host):
     def files(self, plan: ScenePlan) -> dict[str, str]:
         return scene_deck.files(plan, classes=self.classes)
 
+    def impact_files(self, plan: Plan) -> dict[str, str]:
+        deck = self.deck(plan)
+        head = "# x y z v_z v_x omega_y, SI" if deck.oblique else "# x y z v_z, SI"
+        data = {
+            b.data: table_text(head, table.tolist()) for b, table in zip(deck.bodies, body_tables(plan), strict=True)
+        }
+        return {"impact.py": decks.render(self.template, deck=deck)} | data
+
     def write(self, job: Plan | ScenePlan, folder: Path) -> list[Path]:
-        if isinstance(job, ScenePlan):
-            return super().write(job, folder) + write_deck_modules(folder, classes=self.classes, scene=True)
-        deck = self.deck(job)
-        folder.mkdir(parents=True, exist_ok=True)
-        modules = [] if deck.native else write_deck_modules(folder, classes=self.classes)
-        script = folder / "impact.py"
-        script.write_text(decks.render(self.template, deck=deck), encoding="utf-8")
-        files = [folder / b.data for b in deck.bodies]
-        for path, table in zip(files, tables(job), strict=True):
-            lines = [
-                "# x y z v_z v_x omega_y, SI" if deck.oblique else "# x y z v_z, SI",
-                *(" ".join(map(decks.number, row)) for row in table),
-                "",
-            ]
-            path.write_text("\n".join(lines), encoding="utf-8")
-        return [script, *files, *modules]
+        scene = isinstance(job, ScenePlan)
+        files = super().write(job, folder)
+        return files if self.own_law else files + write_deck_modules(folder, classes=self.classes, scene=scene)
 
     def run_impacts(self, plan: Plan, folder: Path, ranks: int) -> Trajectory:
         path, log = folder / "path.bin", folder / self.out
@@ -190,7 +187,7 @@ class Yade(Host):
             yield "contacts", scene_tables.contact_table(plan, folder, spheres)
 
 
-def tables(plan: Plan) -> list[np.ndarray]:
+def body_tables(plan: Plan) -> list[np.ndarray]:
     """x, y, z [m] and v_z [m/s] of the bodies, and of targets that move; v_x and omega_y too if they are oblique."""
     groups = side_by_side(plan)
     if plan.experiment.oblique is None:

@@ -35,6 +35,7 @@ class YadeLuding(Yade):
     name = "yade-luding"
     laws: tuple[str, ...] | None = None
     of_classes = frozenset()
+    own_law = True
 
     def run(self, job: Any, folder: Path, *, ranks: int = 1, report: Report = silent) -> Any:
         path = super().run(job, folder, ranks=ranks, report=report)
@@ -69,4 +70,4 @@ class YadeLuding(Yade):
         anvil = None
         if deck.wall_material:
             anvil = Anvil(x.body.radius, x.target.material, -x.body.radius)
-        return deck.but(law="Luding", native=True, functors=None, rigid=False, wall_material=None, anvil=anvil)
+        return deck.but(law="Luding", functors=None, rigid=False, wall_material=None, anvil=anvil)
