@@ -16,7 +16,7 @@ import pytest
 
 from epdem.cli.main import app
 from epdem.engines import sources
-from epdem.engines.yade.engine import tables, trajectory
+from epdem.engines.yade.engine import body_tables, trajectory
 from epdem.engines.yade.launcher import environment
 from epdem.impacts.engine import Trajectory
 from epdem.impacts.plan import Plan
@@ -149,7 +149,7 @@ def impacts(plan: Plan, folder: Path, **options: object) -> Trajectory:
     """The impacts of a plan with the native classes; options of the law's functor."""
     folder.mkdir(parents=True, exist_ok=True)
     x = plan.experiment
-    groups = tables(plan)
+    groups = body_tables(plan)
     for k, table in enumerate(groups):
         np.save(folder / f"{k}.npy", table)
     declared = {p.name: p for p in laws()[x.law.name].parameters}

@@ -8,9 +8,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 from parts_cases import CASE
 
+from epdem.case.presets import parts
 from epdem.case.scene import parse
 from epdem.errors import CaseError
-from epdem.scenes.presets import parts
 from epdem.scenes.timestep import highest_speed
 
 COMMON = {"particles": [{"material": "glass", "radius": "1 mm"}], "count": 10, "walls": "steel", "duration": "1 s"}

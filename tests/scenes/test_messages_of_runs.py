@@ -10,7 +10,7 @@ import pandas as pd
 import pytest
 from stored_runs import STORED, planned
 
-from epdem.base import folders, paths, processes, settings
+from epdem.base import folders, paths, processes
 from epdem.case import impact
 from epdem.case.toml import read_toml
 from epdem.engines import engine, log
@@ -172,13 +172,13 @@ def test_folders_and_files_of_a_user(tmp_path, monkeypatch):
     config.write_text("a = ")
     monkeypatch.setenv("XDG_CONFIG_HOME", str(tmp_path))
     with says("config.toml: .*; mend or remove it", CaseError):
-        settings.setting("liggghts", "command")
+        paths.setting("liggghts", "command")
     config.write_text("[engines]\n")
     with says(r"config.toml: engines: is not known; there is \[", CaseError):
-        settings.setting("engine", "liggghts")
+        paths.setting("engine", "liggghts")
     config.write_text("[engine]\nlammps = 'lmp'\n")
     with says("config.toml: engine.lammps: is not known; there is liggghts", CaseError):
-        settings.setting("engine", "liggghts")
+        paths.setting("engine", "liggghts")
     (tmp_path / "x.stl").write_bytes(b"\0" * 84)
     with says("no triangles, or corners that are not numbers; export it anew", CaseError):
         meshes._read(tmp_path / "x.stl", "scene.wall.x.file")

@@ -28,24 +28,9 @@ class Common(Frozen):
         return self
 
     @property
-    def filled(self) -> list[Particles]:
-        """Everything that is filled in, in the order in which it comes."""
-        return self.particles
-
-    @property
-    def leading(self) -> Particles:
-        """The spheres whose impacts on a wall stand for the scene."""
-        return self.particles[0]
-
-    @property
-    def wall_materials(self) -> list[str]:
-        """Every material of a wall, once."""
-        return [self.walls]
-
-    @property
     def named_materials(self) -> list[tuple[str, str]]:
         """(place, material) of every name of a material."""
-        return [("scene.walls", self.walls), *(("scene.particles.material", p.material) for p in self.filled)]
+        return [("scene.walls", self.walls), *(("scene.particles.material", p.material) for p in self.particles)]
 
 
 class Settle(Common):
@@ -139,9 +124,8 @@ class Peening(Common):
     bed_settle_time: Time | None = None
 
     @property
-    def filled(self) -> list[Particles]:
-        """The bed comes first: as long as it alone is there, the types in use begin at 1, which LIGGGHTS needs."""
-        return [*self.bed, *self.particles]
+    def named_materials(self) -> list[tuple[str, str]]:
+        return [*super().named_materials, *(("scene.bed.material", p.material) for p in self.bed)]
 
     @model_validator(mode="after")
     def _bed(self) -> Self:

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """A case file with [scene]: units in, frozen SI values out. Every mistake is a CaseError that names its place."""
 
+from functools import cached_property
 from pathlib import Path
 from typing import Annotated, Any, Literal, Self
 
@@ -24,6 +25,8 @@ from .fields import (
 from .kinds import Kinds
 from .messages import explain
 from .motions import Time
+from .parts import Parts
+from .presets import parts
 from .sizes import Share, context
 from .toml import named, read_toml, with_library
 from .walls import PartName
@@ -151,6 +154,11 @@ class SceneCase(Frozen):
     @property
     def name(self) -> str:
         return self.case.name
+
+    @cached_property
+    def parts(self) -> Parts:
+        """The scene as a scene of parts. Raises CaseError for lengths that do not fit together."""
+        return parts(self.scene)
 
 
 def is_scene(data: dict[str, Any]) -> bool:

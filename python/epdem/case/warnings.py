@@ -31,7 +31,7 @@ def _radii(case: Case | SceneCase) -> Iterator[tuple[str, float]]:
         if case.impact.target.radius is not None:
             yield "impact.target.radius", case.impact.target.radius
         return
-    for n, part in enumerate(case.scene.filled):
+    for n, part in enumerate(case.parts.filled):
         yield f"scene.particles.{n}.radius", part.radii()[1]
 
 

@@ -70,9 +70,9 @@ def bed_rebound(case: SceneCase, spheres: pd.DataFrame) -> tuple[float, float]:
     total = whole["mass"].sum() / sums.ngroups
     place = sums["height"].sum().to_numpy() / total
     fall = place[0] + sums["kinetic"].sum().iloc[0] / (total * case.scene.gravity) - place.min()
-    names = {p.material for p in case.scene.filled}
-    v, radius = float(np.sqrt(2 * case.scene.gravity * fall)), case.scene.leading.radii()[0]
-    pairs = [(a, b) for a in names for b in names | {*case.scene.wall_materials}]
+    names = {p.material for p in case.parts.filled}
+    v, radius = float(np.sqrt(2 * case.scene.gravity * fall)), case.parts.leading.radii()[0]
+    pairs = [(a, b) for a in names for b in names | {*case.parts.wall_materials}]
     e_n = max(float(predict(wall_impact(case, a, radius, b, v)).e_n[-1]) for a, b in pairs)
     return float((place - np.minimum.accumulate(place)).max()), e_n**2 * fall
 

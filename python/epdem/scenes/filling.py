@@ -12,10 +12,10 @@ import numpy as np
 from ..case.measures import Region
 from ..case.motions import Vector3
 from ..case.parts import Fill, Parts
+from ..case.presets import DrawnFill
 from ..case.scene import SceneCase
 from ..case.sizes import Particles
 from ..errors import CaseError
-from .presets import DrawnFill
 
 MOST_FILLED = 0.26  # volume share that random sequential placement reaches in reasonable time
 PARTICLES = {"scene.count": "scene.particles", "scene.bed_count": "scene.bed"}  # by the key of the number

@@ -23,7 +23,7 @@ MOST_STEPS = 2_000_000_000  # engines count steps in 32 bits
 def refuse_faster_than_sound(case: SceneCase) -> None:
     """Raise CaseError for speeds above sqrt(E/rho) of a material: overlaps would exceed the radii."""
     v = highest_speed(case)
-    names = {p.material for p in case.scene.filled}
+    names = {p.material for p in case.parts.filled}
     sounds = {name: math.sqrt(case.materials[name].young_modulus / case.materials[name].density) for name in names}
     name = min(sounds, key=lambda n: (sounds[n], n))
     if v > sounds[name]:

@@ -95,7 +95,7 @@ def model(case: SceneCase) -> Model:
     types = [Type(m, m, strong[m]) for m in used]
     pairs_with_wall = any(WALL in p.between for p in contact.pairs)
     own_friction = contact.wall_friction is not None and contact.wall_friction != contact.friction
-    walls = case.scene.wall_materials
+    walls = case.parts.wall_materials
     wall_types = {}
     for material in walls:
         wall_types[material] = 1 + used.index(material) if material in used else 0
@@ -136,7 +136,7 @@ def _adhesion(case: SceneCase, types: list[Type]) -> tuple[tuple[float, ...], ..
 
 
 def _materials_used(case: SceneCase) -> list[str]:
-    return list(dict.fromkeys(p.material for p in case.scene.filled))
+    return list(dict.fromkeys(p.material for p in case.parts.filled))
 
 
 def _viscous(case: SceneCase, types: list[Type]) -> tuple[tuple[float, ...], ...] | None:

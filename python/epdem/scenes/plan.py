@@ -14,6 +14,7 @@ from ..case.kinds import Compaction, Drum
 from ..case.measures import Load
 from ..case.motions import LinearMove, Move, RotateMove
 from ..case.parts import Parts
+from ..case.presets import Preset
 from ..case.scene import Output, SceneCase
 from ..case.walls import Limits
 from . import walls
@@ -21,7 +22,6 @@ from .filling import Insertion, insertions, refuse_missing, refuse_too_many
 from .limits import refuse_combinations, refuse_faster_than_sound, refuse_outside, refuse_positions, refuse_steps
 from .meshes import FloatArray
 from .model import Model, model
-from .presets import Preset, parts
 from .solid import PressedBed, pressed_beds_of_run, refuse_below_solid
 from .timestep import time_step
 
@@ -62,15 +62,14 @@ class Phase:
 class ScenePlan:
     """The job of an engine, from which its tables are made as well.
 
-    scene: the parts, of which a scene of each kind consists. triangles: of each wall that is not a plane, at the start,
-    shape (n, 3 corners, 3 coordinates) [m]. loads: walls whose force, and if they are meshes torque, is in the rows.
-    pressed: beds whose relative density the run has to look at, which ends if it is 1.
+    triangles: of each wall that is not a plane, at the start, shape (n, 3 corners, 3 coordinates) [m]. loads: walls
+    whose force, and if they are meshes torque, is in the rows. pressed: beds whose relative density the run has to look
+    at, which ends if it is 1.
     every: steps of a row, and so of the mean forces in it, which are sampled every `sampling` steps; frames, contacts,
     vtk, pictures, restarts: steps between two of them, 0: none.
     """
 
     case: SceneCase
-    scene: Parts
     model: Model
     triangles: dict[str, FloatArray]
     insertions: tuple[Insertion, ...]
@@ -85,6 +84,11 @@ class ScenePlan:
     vtk: int
     pictures: int
     restarts: int
+
+    @property
+    def scene(self) -> Parts:
+        """The parts, of which a scene of each kind consists."""
+        return self.case.parts
 
     @property
     def steps(self) -> int:
@@ -154,12 +158,12 @@ class ScenePlan:
     @property
     def smallest(self) -> float:
         """Smallest radius [m]."""
-        return min(p.radii()[0] for p in self.case.scene.filled)
+        return min(p.radii()[0] for p in self.scene.filled)
 
     @property
     def largest(self) -> float:
         """Largest radius [m]."""
-        return max(p.radii()[1] for p in self.case.scene.filled)
+        return max(p.radii()[1] for p in self.scene.filled)
 
     @property
     def types(self) -> tuple[str, ...]:
@@ -250,7 +254,7 @@ def _loads(case: SceneCase, scene: Parts) -> tuple[str, ...]:
 def plan(case: SceneCase) -> ScenePlan:
     """The plan of a scene. Raises CaseError for what does not fit."""
     refuse_faster_than_sound(case)
-    contact_model, dt, scene, out = model(case), time_step(case), parts(case.scene), case.output
+    contact_model, dt, scene, out = model(case), time_step(case), case.parts, case.output
     triangles = walls.triangles(scene)
     if not isinstance(scene, Preset):
         refuse_positions(scene)
@@ -276,7 +280,6 @@ def plan(case: SceneCase) -> ScenePlan:
 
     return ScenePlan(
         case=case,
-        scene=scene,
         model=contact_model,
         triangles=triangles,
         insertions=filled,

@@ -16,7 +16,6 @@ from ..theory import adhesion
 from ..theory.backbones import JKR
 from ..theory.timestep import DENSE_PACKING, sticking_packing
 from .model import model, pair_law
-from .presets import parts
 
 MARGIN = 0.8  # of the stable step of a bed: contacts there are a little stiffer than in the impact that stands for them
 
@@ -40,7 +39,7 @@ def highest_speed(case: SceneCase) -> float:
     """
     if case.numerics.highest_speed is not None:
         return case.numerics.highest_speed
-    scene = parts(case.scene)
+    scene = case.parts
     v = math.sqrt(2.0 * scene.gravity * scene.fall_height) + scene.drive
     if v == 0.0:
         raise CaseError(
@@ -52,12 +51,12 @@ def highest_speed(case: SceneCase) -> float:
 
 def leading_impact(case: SceneCase) -> Experiment:
     """The impact that stands for a scene: of its leading spheres on a wall, else on one, at its highest speed."""
-    first = case.scene.leading
+    first = case.parts.leading
     return wall_impact(
         case,
         first.material,
         first.radii()[0],
-        (*case.scene.wall_materials, first.material)[0],
+        (*case.parts.wall_materials, first.material)[0],
         highest_speed(case),
     )
 
@@ -65,9 +64,9 @@ def leading_impact(case: SceneCase) -> Experiment:
 def _impacts(case: SceneCase) -> Iterator[tuple[Experiment, Prediction, float]]:
     """The impacts of the spheres of a scene on each material at its highest speed, and their stable steps [s]."""
     v = highest_speed(case)
-    bodies = {(p.material, p.radii()[0]) for p in case.scene.filled}
+    bodies = {(p.material, p.radii()[0]) for p in case.parts.filled}
     for material, radius in sorted(bodies):
-        for other in sorted({m for m, _ in bodies} | {*case.scene.wall_materials}):
+        for other in sorted({m for m, _ in bodies} | {*case.parts.wall_materials}):
             x = sphere_impact(case, material, radius, other, v)
             prediction = predict(x)
             yield x, prediction, stability_limit(x, float(prediction.overlap_max.max()))

@@ -7,6 +7,7 @@ import numpy as np
 import pandas as pd
 
 from ..case.measures import Region
+from ..case.presets import Preset
 from ..case.walls import Room
 from ..errors import CaseError
 from ..theory import validity
@@ -15,7 +16,6 @@ from .columns import STRAINS
 from .limits import overlaps
 from .meshes import FloatArray
 from .plan import NO_VOID, NOT_REACHED, ScenePlan
-from .presets import Preset
 from .solid import dense_beds
 from .timestep import stable_step
 from .walls import sheet

@@ -26,7 +26,7 @@ def properties(p: ScenePlan) -> tuple[Property, ...]:
 
     Raises CaseError for two values of one pair.
     """
-    spheres = {p.model.type_of(particles.material) for particles in p.case.scene.filled}
+    spheres = {p.model.type_of(particles.material) for particles in p.scene.filled}
     of_pair = dict[frozenset[int], tuple[str, float]]()  # the wall that gives the value, the value
     for name, mesh in p.scene.meshes.items():
         if not mesh.wear:

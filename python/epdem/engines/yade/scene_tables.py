@@ -6,10 +6,10 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
+from ...case.presets import Preset
 from ...errors import EngineError
 from ...scenes import columns, contacts
 from ...scenes.plan import ScenePlan
-from ...scenes.presets import Preset
 from ..host import frames
 from .scene_parts import wall_names
 

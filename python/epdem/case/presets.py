@@ -5,12 +5,12 @@ import math
 from collections.abc import Callable, Sequence
 from typing import Any
 
-from ..case.kinds import Compaction, Drum, Hopper, Kinds, Peening, Settle
-from ..case.motions import LinearMove, Phase
-from ..case.parts import Fill, Parts
-from ..case.sizes import Particles
-from ..case.walls import AnyWall, CylinderWall, PlaneWall, PlateWall, RevolvedWall, Room, Upright
 from ..errors import CaseError
+from .kinds import Compaction, Drum, Hopper, Kinds, Peening, Settle
+from .motions import LinearMove, Phase
+from .parts import Fill, Parts
+from .sizes import Particles
+from .walls import AnyWall, CylinderWall, PlaneWall, PlateWall, RevolvedWall, Room, Upright
 
 
 class DrawnFill(Fill):
