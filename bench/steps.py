@@ -15,8 +15,8 @@ from pathlib import Path
 
 import numpy as np
 
-from epdem.laws import library as claw
-from epdem.laws.native import Law
+from epdem.base.declarations import declarations
+from epdem.laws.library import Law
 
 ROOT = Path(__file__).resolve().parent.parent
 E_STAR, R_STAR, MASS = 1.14e11, 0.01, 0.033
@@ -25,7 +25,7 @@ STRENGTH = {"yield_pressure": 2.8e9, "yield_stress": 1e9}
 
 def batch(name: str, passes: int = 12) -> float:
     """ns per step of 256 impacts in one call of the C interface, no samples kept."""
-    strength = claw.laws()[name].strength
+    strength = declarations()[name].strength
     law = Law(name, E_star=E_STAR, **({strength.name: STRENGTH[strength.name]} if strength else {}))
     numbers = {"R_star": R_STAR, "m_star": MASS, "speed": np.geomspace(0.1, 100, 256), "time_step": 2e-7, "gap": 1e-9}
     best = np.inf

@@ -8,12 +8,12 @@ import numpy as np
 import pytest
 from hypothesis import strategies as st
 
-from epdem.laws import library as claw
-from epdem.laws.native import Law
+from epdem.base.declarations import declarations
+from epdem.laws.library import Law
 from epdem.theory import backbones
 
-NAMES = tuple(name for name, info in claw.laws().items() if not info.adheres)
-YIELDING = tuple(n for n in NAMES if claw.laws()[n].parameters)
+NAMES = tuple(name for name, info in declarations().items() if not info.adheres)
+YIELDING = tuple(n for n in NAMES if declarations()[n].parameters)
 OTHERS = {"meyer": {"hardening_exponent": 0.3}}  # numbers beside the strength: without hardening meyer is thornton
 
 
@@ -81,13 +81,13 @@ def yield_overlap(name: str, E_star: float, R_star: float, strength: float) -> f
 
 def numbers(name: str, strength: float) -> dict[str, float]:
     """The parameters of a law by name."""
-    parameters = claw.laws()[name].parameters
+    parameters = declarations()[name].parameters
     return {parameters[0].name: strength} | OTHERS.get(name, {}) if parameters else {}
 
 
 def symbols(name: str, strength: float) -> dict[str, float]:
     """The same by the symbols of the theory."""
-    return {claw.laws()[name].symbols[key]: value for key, value in numbers(name, strength).items()}
+    return {declarations()[name].symbols[key]: value for key, value in numbers(name, strength).items()}
 
 
 def contact(name: str, E_star: float, R_star: float, ratio: float, route: str = "c++") -> Contact:

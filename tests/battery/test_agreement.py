@@ -7,7 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from laws import NAMES, YIELDING, contacts, symbols
 
-from epdem.laws import library as claw
+from epdem.base.declarations import declarations
 from epdem.theory import backbones
 from epdem.theory.sources import SOURCES
 
@@ -21,7 +21,7 @@ def theory(c):
 
 def test_both_know_the_same_laws():
     assert set(backbones.LAWS) == set(NAMES)
-    assert {*backbones.LAWS, *backbones.ADHESIVE} == set(claw.laws())
+    assert {*backbones.LAWS, *backbones.ADHESIVE} == set(declarations())
 
 
 def test_declarations_are_those_of_the_literature():
@@ -30,13 +30,13 @@ def test_declarations_are_those_of_the_literature():
     tabor |= {"hertz": (None, 1.0), "jkr": (None, 1.0), "thornton_ning": ("yield_pressure", 2.8)}
     tabor["meyer"] = tabor["thornton"]
     memory = {"hertz": 0, "thornton": 1, "johnson": 1, "cavity": 4, "jkr": 2, "thornton_ning": 5, "meyer": 2}
-    for name, law in claw.laws().items():
+    for name, law in declarations().items():
         if name in tabor:
             assert (law.strength, law.default_ratio) == tabor[name] and law.memory == memory[name]
         assert set(law.sources) <= set(SOURCES) and law.title and len(set(law.symbols.values())) == len(law.parameters)
-    defaults = {p.symbol: p.default for p in claw.laws()["cavity"].parameters}
+    defaults = {p.symbol: p.default for p in declarations()["cavity"].parameters}
     assert defaults == {"Y": None, "c_Y": 1.6, "c_P": 2.8, "c_strain": 1e6}
-    assert {n: law.without_adhesion for n, law in claw.laws().items() if law.adheres} == {
+    assert {n: law.without_adhesion for n, law in declarations().items() if law.adheres} == {
         "jkr": "hertz",
         "thornton_ning": "thornton",
     }
@@ -45,12 +45,12 @@ def test_declarations_are_those_of_the_literature():
 @pytest.mark.parametrize("name", NAMES)
 def test_a_law_flattens_where_its_theory_has_a_flatness(name):
     cls = backbones.LAWS[name]
-    assert claw.laws()[name].flattens == (cls.flatness is not backbones.Backbone.flatness)
+    assert declarations()[name].flattens == (cls.flatness is not backbones.Backbone.flatness)
 
 
 def test_ids_are_those_that_restart_files_keep():
     stored = {"hertz": 40, "thornton": 41, "johnson": 42, "cavity": 43, "jkr": 44, "thornton_ning": 45, "meyer": 46}
-    ids = {name: info.id for name, info in claw.laws().items()}
+    ids = {name: info.id for name, info in declarations().items()}
     assert stored.items() <= ids.items() and len(set(ids.values())) == len(ids)
 
 

@@ -6,7 +6,7 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from epdem.errors import CaseError
-from epdem.laws.native import Law
+from epdem.laws.library import Law
 from epdem.theory.cavity import Cavity
 
 

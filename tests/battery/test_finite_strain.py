@@ -17,7 +17,7 @@ from epdem.impacts.experiment import experiment
 from epdem.impacts.measurement import measure
 from epdem.impacts.plan import plan
 from epdem.impacts.prediction import predict
-from epdem.laws.native import Law
+from epdem.laws.library import Law
 from epdem.theory import pair, restitution
 from epdem.theory.backbones import Cavity
 

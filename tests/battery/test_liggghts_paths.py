@@ -8,9 +8,9 @@ import pytest
 from laws import NAMES, YIELDING, numbers, yield_overlap
 
 from epdem.base import paths
+from epdem.base.declarations import declarations
 from epdem.engines.liggghts import dump
-from epdem.laws import library as claw
-from epdem.laws.native import Law
+from epdem.laws.library import Law
 from epdem.theory import pair, viscous
 
 pytestmark = pytest.mark.liggghts
@@ -53,7 +53,7 @@ def carried(law: str, folder, restitution: float | None = None, speed: str = "0"
     data = f"paths\n\n{N} atoms\n1 atom types\n{box}\n\nAtoms\n\n" + "\n".join(atoms) + "\n"
     (folder / "path.data").write_text(data)
     given = numbers(law, STRENGTH.get(law, 0.0))
-    properties = {p.property: given[p.name] for p in claw.laws()[law].parameters if p.name in given}
+    properties = {p.property: given[p.name] for p in declarations()[law].parameters if p.name in given}
     strength = "\n".join(f"fix p_{k} all property/global {k} peratomtype {v!r}" for k, v in properties.items())
     settings = ""
     if restitution is not None:

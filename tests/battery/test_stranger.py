@@ -6,8 +6,8 @@ import subprocess
 
 import pytest
 
-from epdem.laws.library import library_path
-from epdem.laws.native import Law
+from epdem.base.declarations import library_path
+from epdem.laws.library import Law
 
 PROJECT = """cmake_minimum_required(VERSION 3.20)
 project(stranger LANGUAGES C CXX)

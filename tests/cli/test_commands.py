@@ -14,9 +14,9 @@ import pytest
 from calls import CASES, COMMANDS, call, make_sweep, quick_figures
 
 from epdem.base import paths, terminal
+from epdem.base.declarations import declarations
 from epdem.engines import ENGINES
-from epdem.engines.citations import of_laws
-from epdem.laws.library import laws
+from epdem.engines.reasons import of_laws
 from epdem.scenes import report
 from epdem.verification import engine_comparison as crosscheck
 
@@ -216,7 +216,7 @@ def test_the_message_for_a_name_that_begins_with_a_dash_says_how_to_write_it(fol
 
 
 def test_every_law_has_a_source_to_cite():
-    for law in laws():
+    for law in declarations():
         assert any(what.startswith(f"law {law}, ") for what in of_laws([law]))
 
 

@@ -5,6 +5,7 @@ from pathlib import Path
 
 import pytest
 
+from epdem.base.declarations import declarations
 from epdem.case.impact import parse
 from epdem.case.toml import read_toml
 from epdem.engines import ENGINES
@@ -13,7 +14,6 @@ from epdem.impacts.engine import Feature, refuse
 from epdem.impacts.experiment import experiment
 from epdem.impacts.plan import plan
 from epdem.impacts.prediction import predict
-from epdem.laws.library import laws
 from epdem.verification.models import OWN_LAW, SAME_LAW
 
 ROOT = Path(__file__).parents[2]
@@ -31,7 +31,7 @@ def planned(changes=None, law=None):
 
 def test_what_an_engine_names_exists():
     for tool in (kind() for kind in ALL.values()):
-        assert set(tool.laws or ()) <= set(laws()), tool.name
+        assert set(tool.laws or ()) <= set(declarations()), tool.name
         assert tool.ranks >= 1 and tool.features <= set(Feature)
 
 

@@ -15,7 +15,7 @@ from epdem.impacts import timestep
 from epdem.impacts.experiment import experiment
 from epdem.impacts.plan import plan as plan_impacts
 from epdem.impacts.prediction import predict
-from epdem.laws.native import Law
+from epdem.laws.library import Law
 from epdem.scenes import placement
 from epdem.scenes.engine import files
 from epdem.scenes.measures import refuse_measures

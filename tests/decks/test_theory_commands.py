@@ -12,7 +12,7 @@ from typer.testing import CliRunner
 
 from epdem.case import toml
 from epdem.cli.main import app
-from epdem.engines.citations import of_laws
+from epdem.engines.reasons import of_laws
 
 pytestmark = pytest.mark.figures
 

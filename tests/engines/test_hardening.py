@@ -18,7 +18,7 @@ from epdem.impacts.experiment import experiment
 from epdem.impacts.measurement import measure
 from epdem.impacts.plan import plan
 from epdem.impacts.prediction import predict
-from epdem.laws.native import Law
+from epdem.laws.library import Law
 
 STEEL = Path(__file__).parents[2] / "cases" / "steel_wall.toml"
 V_Y = 0.559430455498519  # [m/s] p_y = 2.8 GPa, table of the chapter

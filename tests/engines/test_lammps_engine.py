@@ -13,6 +13,7 @@ import pytest
 from lammps_decks import needs_lammps
 
 from epdem.base import paths
+from epdem.base.declarations import declarations
 from epdem.base.files import write_texts
 from epdem.case.impact import Numerics, parse
 from epdem.case.toml import read_toml
@@ -24,13 +25,12 @@ from epdem.impacts.experiment import experiment
 from epdem.impacts.measurement import measure
 from epdem.impacts.plan import plan
 from epdem.impacts.prediction import predict
-from epdem.laws.library import laws
 
 CASES = Path(__file__).parents[2] / "cases"
 SOFT = {"young_modulus": "100 GPa", "poisson_ratio": 0.35, "density": "8500 kg/m^3", "yield_stress": "0.3 GPa"}
 SPEEDS = ["0.05 m/s", "0.7 m/s", "3 m/s", "12 m/s", "50 m/s", "150 m/s"]
-WITHOUT_ADHESION = [name for name, law in laws().items() if not law.adheres]
-ADHESIVE = [name for name, law in laws().items() if law.adheres]
+WITHOUT_ADHESION = [name for name, law in declarations().items() if not law.adheres]
+ADHESIVE = [name for name, law in declarations().items() if law.adheres]
 
 
 def prepared(case="steel_wall", *, law=None, steps=100, target=None, speeds=None, tangential=None):

@@ -14,13 +14,13 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from epdem.base.declarations import declarations
 from epdem.cli.main import app
 from epdem.engines import sources
 from epdem.engines.yade.engine import body_tables, trajectory
 from epdem.engines.yade.launcher import environment
 from epdem.impacts.engine import Trajectory
 from epdem.impacts.plan import Plan
-from epdem.laws.library import laws
 
 ROOT = Path(__file__).resolve().parents[2]
 EXPORTED = ROOT / "build/yade_exported"
@@ -152,7 +152,7 @@ def impacts(plan: Plan, folder: Path, **options: object) -> Trajectory:
     groups = body_tables(plan)
     for k, table in enumerate(groups):
         np.save(folder / f"{k}.npy", table)
-    declared = {p.name: p for p in laws()[x.law.name].parameters}
+    declared = {p.name: p for p in declarations()[x.law.name].parameters}
     values = {declared[name]: value for name, value in x.law.parameters.items()}
     pair = {p.property: v for p, v in values.items() if p.of_pair}
     if x.viscous_restitution is not None:

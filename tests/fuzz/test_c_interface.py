@@ -7,7 +7,8 @@ import numpy as np
 from hypothesis import given
 from hypothesis import strategies as st
 
-from epdem.laws.library import IMPACT_INPUT, IMPACT_OUTPUT, StepResult, laws, library
+from epdem.base.declarations import declarations
+from epdem.laws.library import IMPACT_INPUT, IMPACT_OUTPUT, StepResult, library
 
 doubles = st.one_of(
     st.floats(allow_nan=True, allow_infinity=True),
@@ -32,7 +33,7 @@ def test_steps_and_backbones_have_a_status_or_are_finite(law, E_star, parameters
     out[n].force = 7.0
     status = library().epdem_step(law, E_star, pointer(numbers), n, *map(pointer, (radii, largest, delta)), out)
     assert status in (0, 1, 2, 3) and out[n].force == 7.0
-    assert status != (1 if law in range(len(laws())) else 0)
+    assert status != (1 if law in range(len(declarations())) else 0)
     usual = 1e-9 <= E_star <= 1e30 and 1e-12 <= R_star <= 1e6 and ((numbers >= 1e-9) & (numbers <= 1e30)).all()
     usual = usual and ((largest >= 0) & (largest <= R_star)).all() and (np.abs(delta) <= R_star).all()
     if status == 0 and usual:

@@ -7,9 +7,9 @@ from typing import get_args
 import pint
 import pytest
 
+from epdem.base.declarations import declarations
 from epdem.case import impact, scene, units
 from epdem.case.fields import Frozen, Quantity
-from epdem.laws.library import laws
 
 MODELS = (impact.Case, scene.SceneCase)  # their import makes every model of a case file
 
@@ -29,7 +29,7 @@ def si_units():
     fields = [field for model in models() for field in model.model_fields.values()]
     found = {m.si for field in fields for m in field.metadata if isinstance(m, Quantity)}
     found |= set().union(*(quantities(field.annotation) for field in fields))
-    return sorted((found | {p.unit for law in laws().values() for p in law.parameters}) - {"1"})
+    return sorted((found | {p.unit for law in declarations().values() for p in law.parameters}) - {"1"})
 
 
 def test_every_unit_with_every_prefix_has_the_value_of_pint():

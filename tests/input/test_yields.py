@@ -6,15 +6,15 @@ from pathlib import Path
 from hypothesis import given
 from hypothesis import strategies as st
 
+from epdem.base.declarations import declarations
 from epdem.case.impact import parse
 from epdem.case.toml import read_toml
 from epdem.impacts.experiment import experiment
 from epdem.impacts.prediction import predict
 from epdem.impacts.report import yielding
-from epdem.laws.library import laws
 
 STEEL = Path(__file__).parents[2] / "cases/steel_wall.toml"
-STRENGTHS = {name: law.strength for name, law in laws().items() if law.strength and not law.adheres}
+STRENGTHS = {name: law.strength for name, law in declarations().items() if law.strength and not law.adheres}
 
 
 def said(law, stresses, absolute=None, **tables):

@@ -13,8 +13,8 @@ import numpy as np
 import pytest
 from scipy.integrate import trapezoid
 
-from epdem.laws.library import laws
-from epdem.laws.native import Law
+from epdem.base.declarations import declarations
+from epdem.laws.library import Law
 
 PAGE = Path(__file__).parents[2] / "docs/equations.md"
 spec = importlib.util.spec_from_file_location("equations", PAGE.with_suffix(".py"))
@@ -50,7 +50,7 @@ def pressure(law, delta):
 
 
 def default(law, name):
-    return next(p.default for p in laws()[law].parameters if p.name == name)
+    return next(p.default for p in declarations()[law].parameters if p.name == name)
 
 
 def uniform_pressure_below_its_radius(delta_max, share):
@@ -93,8 +93,8 @@ CHECKS = {
     ("8.80", "cavity.hpp"): lambda: (
         2.8 <= default("cavity", "plastic_ratio") <= 3.0 and pressure(CAVITY, LAST)[0] == pytest.approx(2.8 * Y)
     ),
-    ("8.80", "johnson.hpp"): lambda: laws()["johnson"].default_ratio == 3.0,
-    ("8.80", "thornton.hpp"): lambda: laws()["thornton"].default_ratio == 2.8,
+    ("8.80", "johnson.hpp"): lambda: declarations()["johnson"].default_ratio == 3.0,
+    ("8.80", "thornton.hpp"): lambda: declarations()["thornton"].default_ratio == 2.8,
     ("8.81", "cavity.hpp"): of_8_81,
     ("8.82", "unloading.hpp"): of_8_82,
     ("8.85", "cavity.hpp"): lambda: of_8_85(CAVITY, 2.8 * Y),

@@ -8,6 +8,7 @@ from removals import removals
 from scene_runs import write_deck
 
 from epdem.base import rendering
+from epdem.base.declarations import declarations
 from epdem.case import impact as impacts
 from epdem.case.scene import is_scene, parse
 from epdem.case.toml import read_toml
@@ -17,7 +18,6 @@ from epdem.engines.liggghts.scene_deck import deck
 from epdem.impacts.experiment import experiment
 from epdem.impacts.plan import plan
 from epdem.impacts.prediction import predict
-from epdem.laws.library import laws
 from epdem.scenes.plan import plan as scene_plan
 
 CASES = sorted((Path(__file__).parents[2] / "cases").glob("*.toml"))
@@ -113,15 +113,15 @@ def test_every_line_of_a_deck_has_a_reason(path, tmp_path):
     assert len(lines) > 8
 
 
-@pytest.mark.parametrize("law", laws())
+@pytest.mark.parametrize("law", declarations())
 def test_every_line_of_a_deck_with_any_law_has_a_reason(law):
     """Walls of another material and parameters of the law that are not its defaults."""
     data = read_toml(CASES[0].parent / "steel_wall.toml")
-    parameters = {p.name: 1.1 * p.default or 0.1 for p in laws()[law].parameters if p.default is not None}
-    parameters |= {"work_of_adhesion": "0.5 J/m^2"} if laws()[law].adheres else {}
+    parameters = {p.name: 1.1 * p.default or 0.1 for p in declarations()[law].parameters if p.default is not None}
+    parameters |= {"work_of_adhesion": "0.5 J/m^2"} if declarations()[law].adheres else {}
     x = experiment(impacts.parse(data | {"law": {"name": law} | parameters}))
     found = reasons.explain(reasons.IMPACT, Liggghts().deck(plan(x, predict(x))))
-    assert sum("property/global" in line for _, line, _ in found) == 2 + len(laws()[law].parameters)
+    assert sum("property/global" in line for _, line, _ in found) == 2 + len(declarations()[law].parameters)
     assert [line for _, line, reason in found if not reason] == []
 
 

@@ -10,12 +10,12 @@ import numpy as np
 import pytest
 from typer.testing import CliRunner
 
+from epdem.base.declarations import declarations
 from epdem.case.impact import load
 from epdem.cli.main import app
 from epdem.errors import CaseError
 from epdem.impacts.experiment import experiment
 from epdem.impacts.prediction import predict
-from epdem.laws.library import laws
 from epdem.report.page import write
 from epdem.studies.calibrate import from_hardness, from_restitution, from_restitutions, hardness_test
 from epdem.studies.pages import impacts as pages
@@ -24,7 +24,7 @@ from epdem.theory.indentation import Indentation
 from studies.test_soften import CASES, RATE, STEEL, with_law
 
 
-@pytest.mark.parametrize("law", sorted(n for n, info in laws().items() if info.parameters and not info.adheres))
+@pytest.mark.parametrize("law", sorted(n for n, info in declarations().items() if info.parameters and not info.adheres))
 @pytest.mark.parametrize("times", [2.0, 10.0, 100.0])
 def test_the_strength_found_from_e_n_is_the_one_that_made_it(law, times, tmp_path):
     x = experiment(load(with_law(tmp_path, law)))

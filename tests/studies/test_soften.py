@@ -11,13 +11,13 @@ import numpy as np
 import pytest
 from typer.testing import CliRunner
 
+from epdem.base.declarations import declarations
 from epdem.case import scene as scenes
 from epdem.case.impact import load
 from epdem.cli.main import app
 from epdem.errors import CaseError
 from epdem.impacts.experiment import experiment
 from epdem.impacts.prediction import predict
-from epdem.laws.library import laws
 from epdem.scenes.model import strengths
 from epdem.studies.soften import soften
 from epdem.theory.adhesion import sticking_speed
@@ -28,14 +28,14 @@ STEEL = CASES / "steel_wall.toml"
 
 def with_law(tmp_path: Path, law: str, text: str | None = None) -> Path:
     """The steel case with another law at its default parameters."""
-    gamma = 'work_of_adhesion = "3e3 J/m^2"\n' if laws()[law].adheres else ""  # the sphere sticks up to 0.1 m/s
+    gamma = 'work_of_adhesion = "3e3 J/m^2"\n' if declarations()[law].adheres else ""  # the sphere sticks up to 0.1 m/s
     text = re.sub(r"\[law\]\n(?:.+\n)+", f'[law]\nname = "{law}"\n{gamma}', text or STEEL.read_text())
     path = tmp_path / f"{law}.toml"
     path.write_text(text)
     return path
 
 
-@pytest.mark.parametrize("law", sorted(laws()))
+@pytest.mark.parametrize("law", sorted(declarations()))
 @pytest.mark.parametrize("factor", [100.0, 1000.0])
 def test_the_twin_keeps_e_n_of_every_speed_while_contacts_last_longer(law, factor, tmp_path):
     path = with_law(tmp_path, law)
@@ -45,7 +45,7 @@ def test_the_twin_keeps_e_n_of_every_speed_while_contacts_last_longer(law, facto
     hard, now = predict(experiment(load(path))), predict(experiment(load(soft)))
     # scaling is exact; what is left is rounding in the quadratures of theory
     loose = hard.e_n > 0
-    assert np.array_equal(now.e_n > 0, loose) and loose.all() == (not laws()[law].adheres)
+    assert np.array_equal(now.e_n > 0, loose) and loose.all() == (not declarations()[law].adheres)
     assert np.abs(now.e_n[loose] / hard.e_n[loose] - 1).max() < 1e-10
     assert np.allclose(now.contact_time[loose] / hard.contact_time[loose], factor**0.4, rtol=1e-9)
     assert np.allclose(now.strain_ratio / hard.strain_ratio, factor**0.2, rtol=1e-9)

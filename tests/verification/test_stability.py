@@ -10,7 +10,7 @@ from typer.testing import CliRunner
 
 from epdem.cli.main import app
 from epdem.errors import CaseError
-from epdem.laws.native import Law
+from epdem.laws.library import Law
 from epdem.verification import native, stability
 from epdem.verification.models import engine
 from epdem.verification.stability import bulk, bulk_checks, precisions, precisions_yade, repeats, roundoff

@@ -9,6 +9,7 @@ from rich.console import Console
 from rich.text import Text
 
 from ..base import paths
+from ..base.declarations import declarations, library_path
 from ..base.processes import ask
 from ..errors import EngineError, EpdemError
 from ..impacts.engine import Feature
@@ -30,7 +31,7 @@ class Finding:
 
 def _library() -> Finding:
     try:
-        return Finding("C library", True, f"{claw.version()}, laws {', '.join(claw.laws())}: {claw.library_path()}")
+        return Finding("C library", True, f"{claw.version()}, laws {', '.join(declarations())}: {library_path()}")
     except (EpdemError, OSError) as error:
         return Finding("C library", False, str(error), "run 'make setup' or 'pip install .'")
 
@@ -47,7 +48,7 @@ def _models() -> Finding:
     """Ask the LIGGGHTS in use for what it has, and let it create each of epdem's models."""
     if reason := launcher.missing():
         return Finding("models in LIGGGHTS", False, "not here", reason)
-    path, laws = paths.launcher(), tuple(claw.laws())
+    path, laws = paths.launcher(), tuple(declarations())
     assert path is not None  # launcher.missing() says so
     try:
         found = executable.examine(path, laws)

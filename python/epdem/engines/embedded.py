@@ -9,7 +9,7 @@ from ..impacts import oblique
 from ..impacts.engine import Feature, Report, Trajectory, check_features, silent
 from ..impacts.plan import Plan
 from ..laws import library as claw
-from ..laws.native import ImpactNumbers
+from ..laws.library import ImpactNumbers
 from ..theory.sources import Source
 
 

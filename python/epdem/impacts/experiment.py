@@ -15,11 +15,11 @@ from ..case.impact import RIGID, Case, Check, Numerics, Rate, parse
 from ..case.law import law_numbers
 from ..errors import CaseError
 from ..laws import library
-from ..laws.native import Law
+from ..laws.library import Law
 from ..laws.strengths import LawNumbers, LawSpec, Surface, default_numbers, law_named
 from ..theory import pair
 from ..theory.backbones import ADHESIVE, JKR, LAWS, Backbone
-from ..theory.checks import Real
+from ..theory.numerics import Real
 
 
 @dataclass(frozen=True)

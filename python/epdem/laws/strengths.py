@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 from ..base.declarations import Declaration, declarations
 from ..errors import CaseError
 from ..theory.backbones import ADHESIVE, JKR, LAWS, Backbone
-from ..theory.checks import Real
+from ..theory.numerics import Real
 
 ADHESION = "work_of_adhesion"  # the parameter of laws with adhesion [J/m^2]
 

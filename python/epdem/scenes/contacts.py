@@ -10,7 +10,7 @@ import pandas as pd
 
 from ..case.scene import SceneCase
 from ..errors import EngineError
-from ..laws.native import Law
+from ..laws.library import Law
 from ..theory.adhesion import plastic_work
 from ..theory.backbones import JKR
 from ..theory.numerics import gauss

@@ -4,12 +4,12 @@
 import math
 from dataclasses import dataclass
 
+from ..base.declarations import declarations
 from ..case.fields import NODES, Tangential
 from ..case.law import law_numbers
 from ..case.scene import Rolling, SceneCase
 from ..case.units import read_number
 from ..errors import CaseError
-from ..laws.library import laws
 from ..laws.strengths import LawNumbers, LawSpec, Surface, law_named, own_ratios
 from ..theory.pair import E_star
 
@@ -66,7 +66,7 @@ class Model:
     @property
     def adheres(self) -> bool:
         """Whether bodies attract each other by the law."""
-        return laws()[self.law].adheres
+        return declarations()[self.law].adheres
 
     @property
     def sliding(self) -> bool:

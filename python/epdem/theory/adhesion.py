@@ -11,9 +11,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from . import restitution as plain
-from .checks import number
 from .jkr import JKR, Numbers, Path
-from .numerics import bisect, gauss
+from .numerics import bisect, gauss, number
 from .thornton_ning import ThorntonNing
 
 # Energy at the fold and at touch in E* (c R*)^(10/3)/R*^2: 4^(-4/3)/5 and -3/10. Their difference is W_s.

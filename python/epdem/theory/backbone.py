@@ -6,7 +6,7 @@ from typing import ClassVar
 import numpy as np
 
 from ..base.declarations import Declaration, declarations
-from .checks import Array, Real, number
+from .numerics import Array, Real, number
 
 
 class Declared:

@@ -8,8 +8,7 @@ Mesarovic and Johnson 2000. No parameter is fitted.
 import numpy as np
 
 from .backbone import Backbone
-from .checks import Array, Real
-from .numerics import gauss
+from .numerics import Array, Real, gauss
 
 FINITE_STRAIN = 0.82  # c of f(a/R*) = 1 - exp(-c (a/R*)^-0.7) (Jackson and Green 2005)
 STRAIN_EXPONENT = 0.7

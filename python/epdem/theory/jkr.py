@@ -11,7 +11,7 @@ from typing import Any, ClassVar
 import numpy as np
 
 from .backbone import Declared
-from .checks import number
+from .numerics import number
 
 Numbers = Any  # a float or an array of floats; they broadcast
 Path = tuple[Callable[[Numbers], Numbers], Callable[[Numbers], Numbers]]

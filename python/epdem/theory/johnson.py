@@ -4,7 +4,7 @@
 import numpy as np
 
 from .backbone import Backbone
-from .checks import Array, Real
+from .numerics import Array, Real
 
 
 class Johnson(Backbone):

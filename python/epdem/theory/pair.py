@@ -3,7 +3,7 @@
 
 import numpy as np
 
-from .checks import Real, number, poisson_ratio
+from .numerics import Real, number, poisson_ratio
 
 
 def _one_finite(name: str, a: Real, b: Real, otherwise: str) -> tuple[Real, Real]:

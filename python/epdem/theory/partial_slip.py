@@ -9,8 +9,7 @@ of dimensionality reduction, Popov and Hess 2015), and the reference of the C++ 
 import numpy as np
 
 from .backbone import Backbone
-from .checks import Array, Real, number
-from .numerics import segment
+from .numerics import Array, Real, number, segment
 from .restitution import impact as normal_impact
 
 

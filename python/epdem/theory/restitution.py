@@ -9,8 +9,7 @@ from typing import Any
 import numpy as np
 
 from .backbone import Backbone
-from .checks import Array, Real, number
-from .numerics import gauss
+from .numerics import Array, Real, gauss, number
 
 _X, _W = gauss(48)
 UNLOADING_TIME = 1.4716375921623523  # (2/5) B(2/5, 1/2): t_unload e_n v/delta_e for tau = 0

@@ -4,7 +4,7 @@
 import numpy as np
 
 from .backbone import Backbone
-from .checks import Real
+from .numerics import Real
 
 
 class Thornton(Backbone):

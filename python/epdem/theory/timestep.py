@@ -3,7 +3,7 @@
 
 import numpy as np
 
-from .checks import Real, number, poisson_ratio
+from .numerics import Real, number, poisson_ratio
 from .restitution import UNLOADING_TIME
 
 # Share of the limit of one normal contact that stays stable in a dense frictionless packing (face-centred cubic,

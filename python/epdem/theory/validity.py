@@ -8,8 +8,8 @@ import numpy as np
 
 from . import adhesion
 from .backbone import Backbone
-from .checks import Array, Real, number
 from .jkr import JKR
+from .numerics import Array, Real, number
 
 SMALL_DEFORMATION = 0.3  # a_max/R* above which results are flagged everywhere
 # a/R* from which finite-element impacts leave the -1/4 law, and by how many percent e_n of cavity exceeds theirs there:

@@ -17,8 +17,7 @@ import numpy as np
 
 from . import restitution as undamped
 from .backbone import Backbone
-from .checks import Array, Real, number
-from .numerics import bisect, gauss
+from .numerics import Array, Real, bisect, gauss, number
 
 RESTITUTION_MIN = 0.14  # the formula's limit for zeta -> 1 is exp(-2) = 0.135
 Rate: TypeAlias = Callable[[Array], Array]  # of states (k, n): one number or their change for each

@@ -6,8 +6,7 @@ from typing import Any
 import numpy as np
 
 from .backbone import Backbone
-from .checks import Array, Real, number, poisson_ratio
-from .numerics import bisect
+from .numerics import Array, Real, bisect, number, poisson_ratio
 
 FIRST_YIELD_ROUNDED = 1.60  # p_0/Y at first yield, nu = 0.3; eq. 8.78
 

@@ -12,6 +12,7 @@ import numpy as np
 import pandas as pd
 
 from ..base import paths
+from ..base.declarations import declarations
 from ..base.folders import claim, results_folder
 from ..base.tables import write_csv
 from ..case.impact import Case, parse
@@ -24,7 +25,6 @@ from ..impacts.experiment import Experiment, bodies, experiment
 from ..impacts.plan import plan
 from ..impacts.prediction import predict
 from ..impacts.run import run_and_compare
-from ..laws.library import laws
 from ..laws.strengths import default_numbers, law_named
 from ..studies.calibrate import EXPONENT, hardness_test, specimen, strength
 from ..theory.backbones import JKR
@@ -191,7 +191,7 @@ def validate(
     rows: list[dict[str, object]] = []
     folder = results_folder(out, "validate")
     with claim(folder, force=force, files=["measured.csv"]), tempfile.TemporaryDirectory() as scratch:
-        for law in dict.fromkeys(chosen) or laws():
+        for law in dict.fromkeys(chosen) or declarations():
             for one in measured:
                 progress(f"{one.name}, {law}")
                 try:

@@ -7,8 +7,7 @@ from typing import Unpack
 import numpy as np
 import numpy.typing as npt
 
-from ..laws.library import IMPACT_OUTPUT, Array
-from ..laws.native import ImpactNumbers, Law, cases, pointer
+from ..laws.library import IMPACT_OUTPUT, Array, ImpactNumbers, Law, cases, pointer
 
 
 def impacts_long_double(law: Law, *, steps: int, **numbers: Unpack[ImpactNumbers]) -> Array:

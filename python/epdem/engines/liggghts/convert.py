@@ -7,11 +7,10 @@ from dataclasses import dataclass, field
 from itertools import takewhile
 from pathlib import Path
 
-from ...base.declarations import Declaration
+from ...base.declarations import Declaration, declarations
 from ...base.folders import write_own
 from ...case.toml import text_of
 from ...errors import CaseError
-from ...laws.library import laws
 
 REPLACED = ("hertz", "hooke")  # normal models with the elastic constants of a law
 SETTINGS = (  # of these models, refused or unknown beside a law
@@ -91,9 +90,9 @@ def convert(text: str, law_name: str, given: dict[str, str], place: Path) -> Con
     Comments, continuation lines and variables stay as they are. Raises CaseError, which names `place` and the line, for
     a deck without a contact model that a law can replace, or a property without a value.
     """
-    law = laws().get(law_name)
+    law = declarations().get(law_name)
     if law is None:
-        raise CaseError(f"--law {law_name}: does not exist; there are {', '.join(laws())}")
+        raise CaseError(f"--law {law_name}: does not exist; there are {', '.join(declarations())}")
     parts: list[str] = []
     notes: list[str] = []
     present: set[str] = set()

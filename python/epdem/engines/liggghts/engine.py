@@ -10,12 +10,12 @@ import pandas as pd
 
 from ...base import paths
 from ...base import rendering as decks
+from ...base.declarations import declarations
 from ...base.processes import most_ranks
 from ...errors import CaseError, EngineError
 from ...impacts.engine import Feature, Report, Trajectory, check_features
 from ...impacts.placement import approach
 from ...impacts.plan import Plan
-from ...laws.library import laws
 from ...scenes.engine import Resumed, Tables
 from ...scenes.plan import ScenePlan
 from ...theory.sources import Source
@@ -94,7 +94,7 @@ class Liggghts(Host):
             title=x.title,
             source=x.source,
             summary=f"{plan.summary}, law {x.law.name}",
-            has_history=laws()[x.law.name].memory > 0 or x.oblique is not None,
+            has_history=declarations()[x.law.name].memory > 0 or x.oblique is not None,
             hard=max(moduli) > HARD,
             soft=min(moduli) < SOFT,
             data="impact.data",

@@ -4,9 +4,9 @@
 from collections.abc import Sequence
 from dataclasses import dataclass
 
+from ...base.declarations import declarations
 from ...case.fields import NODES
 from ...impacts.plan import Plan
-from ...laws import library as claw
 from ...laws.strengths import ADHESION
 from ..input_script import atom_types, finite
 
@@ -45,7 +45,7 @@ class Property:
     @property
     def reason(self) -> str:
         """Why the property stands in a deck; '' if there is none."""
-        laws = claw.laws().values()
+        laws = declarations().values()
         if any(p.property == self.name for law in laws for p in law.parameters if p.name == law.strength):
             return "the law yields at this strength; the softer body's counts"
         if self.name not in _REASONS and any(p.property == self.name for law in laws for p in law.parameters):
@@ -76,7 +76,7 @@ def elastic(moduli: Sequence[float], ratios: Sequence[float]) -> tuple[Property,
 
 def strength(law: str, values: Sequence[float]) -> tuple[Property, ...]:
     """The law's strength [Pa] of the atom types; nothing for a law that has none."""
-    declared = claw.laws()[law]
+    declared = declarations()[law]
     if declared.strength is None:
         return ()
     parameter = declared.parameter(declared.strength)
@@ -97,7 +97,7 @@ def tangential(name: str | None) -> str:
 
 def ratios(law: str, values: dict[str, float]) -> tuple[Property, ...]:
     """Dimensionless parameters of a law."""
-    return tuple(scalar(p.property, values[p.name], "-") for p in claw.laws()[law].parameters if p.name in values)
+    return tuple(scalar(p.property, values[p.name], "-") for p in declarations()[law].parameters if p.name in values)
 
 
 def of_impacts(plan: Plan) -> tuple[Property, ...]:

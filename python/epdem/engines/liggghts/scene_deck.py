@@ -5,8 +5,8 @@ import math
 from collections.abc import Sequence
 
 from ...base import rendering as decks
+from ...base.declarations import declarations
 from ...errors import CaseError
-from ...laws.library import laws
 from ...scenes.model import Model
 from ...scenes.plan import ScenePlan
 from ..input_script import SKIN, default_skin, row_words, wall_id
@@ -68,7 +68,7 @@ def _settings(p: ScenePlan) -> tuple[str, ...]:
 
 def memory(m: Model, *, wall: bool = False) -> int:
     """History values of one contact in LIGGGHTS, in this order: law, step, friction, rolling, two of compaction."""
-    law = laws()[m.law].memory
+    law = declarations()[m.law].memory
     friction = 3 * m.nodes + 1 if m.nodes else 3 * m.sliding
     others = friction + 3 * (m.rolling is not None and m.rolling.model in ("epsd", "epsd2"))
     stamp = 0 if wall else int(law + others > 0)

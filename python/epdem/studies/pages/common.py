@@ -9,8 +9,7 @@ from pathlib import Path
 from ... import __version__
 from ...base.folders import claim
 from ...base.stages import library_hash, product_hash
-from ...engines.citations import citations
-from ...engines.reasons import reasons
+from ...engines.reasons import citations, reasons
 from ...impacts.plan import Plan
 from ...impacts.run import Outcome
 from ...report.page import NAME, Facts, Lines, Page, Part, write

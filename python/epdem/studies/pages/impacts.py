@@ -9,7 +9,7 @@ import numpy as np
 from ...base.folders import claim
 from ...base.tables import unit_of
 from ...case.impact import load
-from ...engines.citations import citations
+from ...engines.reasons import citations
 from ...impacts import charts
 from ...impacts.comparison import CHECKED, UNITS
 from ...impacts.experiment import Body, Experiment

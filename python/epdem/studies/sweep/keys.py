@@ -10,12 +10,11 @@ from typing import Annotated, Any, Literal, Union, get_args, get_origin
 import tomlkit
 from pydantic import BaseModel
 
-from ...base.declarations import Declaration
+from ...base.declarations import Declaration, declarations
 from ...case.fields import LawChoice, Material, Quantity
 from ...case.impact import Case
 from ...case.scene import SceneCase, SceneMaterial, is_scene
 from ...errors import CaseError
-from ...laws.library import laws
 from ...laws.strengths import ADHESION
 
 
@@ -85,7 +84,7 @@ def _fields(
 def _law(data: dict[str, Any]) -> Declaration | None:
     """The law that a case names; None if there is no such law."""
     table = data.get("law")
-    return laws().get(str(table.get("name"))) if isinstance(table, dict) else None
+    return declarations().get(str(table.get("name"))) if isinstance(table, dict) else None
 
 
 def _of_law(case: dict[str, Any], *, ratio: bool) -> Iterator[tuple[str, Key]]:

@@ -9,8 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ...theory.checks import Array, Real, number
-from ...theory.numerics import gauss
+from ...theory.numerics import Array, Real, gauss, number
 
 _X, _W = gauss(32)
 

@@ -9,8 +9,7 @@ how the free surface around the contact moves. It yields when the mean pressure 
 
 import numpy as np
 
-from ...theory.checks import Array, Real, number, poisson_ratio
-from ...theory.numerics import bisect, gauss
+from ...theory.numerics import Array, Real, bisect, gauss, number, poisson_ratio
 from .hysteresis import Impact
 
 GIVEN_BACK = 4 / (3 * np.pi)  # integral of (2/pi)(acos y - y sqrt(1-y^2)) over y in [0, 1]

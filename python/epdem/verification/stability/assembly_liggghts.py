@@ -6,6 +6,7 @@ from pathlib import Path
 import numpy as np
 
 from ...base import rendering as decks
+from ...base.declarations import declarations
 from ...base.files import write_texts
 from ...engines import input_script, log
 from ...engines.liggghts import dump, launcher
@@ -14,7 +15,6 @@ from ...engines.liggghts.properties import SOFT, elastic, per_pair, strength
 from ...engines.liggghts.scene_deck import contact_columns
 from ...engines.liggghts.scene_parts import stl_text
 from ...impacts.engine import require
-from ...laws.library import laws
 from ...scenes.meshes import rectangle
 from .assembly import Assembly, AssemblyPlan, ContactFrame
 
@@ -23,7 +23,7 @@ LIMIT = 120.0  # seconds a run may take
 
 
 def _deck(plan: AssemblyPlan, model: str | None) -> decks.Deck:
-    a, memory = plan.assembly, laws()[plan.assembly.law].memory
+    a, memory = plan.assembly, declarations()[plan.assembly.law].memory
     moduli = [E for E, _ in a.materials]
     properties = [*elastic(moduli, [a.poisson_ratio] * len(moduli))]
     properties += strength(a.law, [a.strength(p_y) for _, p_y in a.materials])

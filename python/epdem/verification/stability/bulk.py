@@ -6,7 +6,7 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
-from ...laws.library import laws
+from ...base.declarations import declarations
 from .assembly import Assembly, AssemblyPlan, ContactFrame
 from .assembly_liggghts import LiggghtsAssemblies
 from .two_walls import stored
@@ -32,7 +32,7 @@ def energy_balance(plan: AssemblyPlan, tool: LiggghtsAssemblies, folder: Path) -
     the engine has booked), brought in by the plate; no term is the remainder. `total` is their sum.
     """
     scene, moved = plan.assembly, plan.assembly.plate_speed > 0
-    memory = laws()[scene.law].memory
+    memory = declarations()[scene.law].memory
     rows, brought = [], 0.0
     push = tool.pushes(folder) if moved else {}
     for k, frame in enumerate(tool.frames(folder)):

@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
-from ...laws.library import laws as declared
+from ...base.declarations import declarations as declared
 from ..cost import over_reference, spread
 from ..models import REFERENCE
 from .assembly import SHARE, Assembly, AssemblyPlan

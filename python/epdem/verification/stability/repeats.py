@@ -4,7 +4,7 @@
 import numpy as np
 from scipy.integrate import trapezoid
 
-from ...laws.native import ImpactNumbers
+from ...laws.library import ImpactNumbers
 from .. import native
 from .cases import Extreme
 from .running import Setting, Verdict, judged

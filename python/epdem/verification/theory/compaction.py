@@ -10,7 +10,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from ...theory.checks import Array
+from ...theory.numerics import Array
 
 Force = Callable[[Array], Array]  # force of a sphere on a rigid plane [N] at an overlap [m] > 0
 

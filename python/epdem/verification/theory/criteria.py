@@ -4,7 +4,7 @@
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ...theory.checks import Array, Real, number
+from ...theory.numerics import Array, Real, number
 from ...theory.yielding import first_yield
 
 FIRST_YIELD_MEAN_ROUNDED = 1.10  # p_m/Y at first yield; eq. 8.79

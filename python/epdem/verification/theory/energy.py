@@ -9,8 +9,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ...theory.backbone import Backbone
-from ...theory.checks import Array, Real, number, poisson_ratio
-from ...theory.numerics import bisect, gauss
+from ...theory.numerics import Array, Real, bisect, gauss, number, poisson_ratio
 from ...theory.restitution import impact
 
 

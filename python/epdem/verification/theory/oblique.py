@@ -9,8 +9,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from ...theory.backbone import Backbone
-from ...theory.checks import Array, Real, number, poisson_ratio
 from ...theory.hertz import Hertz
+from ...theory.numerics import Array, Real, number, poisson_ratio
 from ...theory.partial_slip import rebound
 from ...theory.restitution import e_n as normal_restitution
 

@@ -4,8 +4,7 @@
 import numpy as np
 from numpy.typing import NDArray
 
-from ...theory.checks import Array, Real, number
-from ...theory.numerics import segment
+from ...theory.numerics import Array, Real, number, segment
 
 
 def hertz(r: Real, *, p_0: Real, a: Real) -> Real:

@@ -3,7 +3,7 @@
 
 import numpy as np
 
-from ...theory.checks import Array, Real, number
+from ...theory.numerics import Array, Real, number
 
 
 def thornton(speed: Real, *, v_y: Real) -> Array:

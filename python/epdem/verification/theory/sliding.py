@@ -15,8 +15,7 @@ from typing import Any, TypeAlias
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ...theory.checks import Array, Real, number, poisson_ratio
-from ...theory.numerics import gauss
+from ...theory.numerics import Array, Real, gauss, number, poisson_ratio
 from ...theory.yielding import first_yield
 from .criteria import equivalent
 
