@@ -24,7 +24,6 @@ void pad(Block& b, int n) {
     b.j[k] = b.j[0];
     b.history[k] = dummy_history;
     b.material[k] = b.material[0];
-    b.growth_i.a[k] = b.growth_j.a[k] = 0.0;
     b.radius_i.a[k] = b.radius_j.a[k] = b.mass_i.a[k] = b.mass_j.a[k] = 1.0;
   }
 }

@@ -32,12 +32,13 @@ struct Block {
   Line adhesion_loss, contact_radius;                          // with adhesion: lost in jumps in this step [J], [m]
   double radius_ratio[most_lanes], overlap_ratio[most_lanes];  // largest of all contacts so far, over R*
   Line overlap, from_wall[3], wall_v[3];                       // of a wall: as the host found them
-  Line growth_i, growth_j, depth_i, depth_j;                   // with compaction: growths and dents over R
+  Line depth_i, depth_j;                                       // with compaction: dents over R
 };
 
 /// What all contacts of a pass have in common.
 struct Pass : ContactSettings {
   const double *x, *v, *omega;  // rows of three; one number behind the last row can be read
+  const double* growth;         // of all spheres, with compaction
   double now;                   // step
   bool several;                 // pairs of materials in this block; else the pair of its first contact
   bool freeze;                  // whether a group of atoms is frozen

@@ -40,7 +40,12 @@ EPDEM_INLINE void write(double* const* history, const Lanes* value, int from = 0
 EPDEM_INLINE Lanes at(const Line& line, int k) { return load<Lanes>(line.a + k); }
 EPDEM_INLINE Vec<Lanes> at(const Line* lines, int k) { return {at(lines[0], k), at(lines[1], k), at(lines[2], k)}; }
 
-/// Rows of the atoms of lanes k, k + 1, ...
+/// Numbers, then rows of the atoms of lanes k, k + 1, ...
+EPDEM_INLINE Lanes each(const double* base, const int* index) {
+  Lanes x;
+  for (int l = 0; l < lane_count; ++l) x[l] = base[index[l]];
+  return x;
+}
 EPDEM_INLINE Vec<Lanes> of(const double* base, const int* index) {
   const Columns c = columns([=](int l) __attribute__((always_inline)) { return load<Row>(base + 3 * long(index[l])); });
   return {c.a, c.b, c.c};
@@ -201,6 +206,8 @@ template <class Law, class Friction, bool wall, bool grows = false>
     }
     const Pair& pair = *reinterpret_cast<const Pair*>(constant_of);
 
+    [[maybe_unused]] Lanes growth_i{}, growth_j{};
+    if constexpr (grows) growth_i = each(pass.growth, b.i + k), growth_j = each(pass.growth, b.j + k);
     Kinematics<Lanes> c;
     const Vec<Lanes> spin_i = of(pass.omega, b.i + k);
     if constexpr (wall) {
@@ -234,8 +241,7 @@ template <class Law, class Friction, bool wall, bool grows = false>
     [[maybe_unused]] Grown<Lanes> grown{};
     if constexpr (grows) {
       last = value[values];
-      growing =
-          added_overlap<wall>(c.radius_i, c.radius_j, history.law.delta_max, at(b.growth_i, k), at(b.growth_j, k));
+      growing = added_overlap<wall>(c.radius_i, c.radius_j, history.law.delta_max, growth_i, growth_j);
       grown = grow<Law>(history.law, overlap, growing, last);
       c.overlap = overlap + grown.added;
     }

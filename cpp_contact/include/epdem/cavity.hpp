@@ -2,6 +2,7 @@
 #pragma once
 
 #include "backbone.hpp"
+#include "power.hpp"
 
 namespace epdem {
 
@@ -35,7 +36,8 @@ struct Cavity {
   static constexpr double default_ratio = 1.0;
   static constexpr bool strength_by_ratio = false;
 
-  T E_star{}, Y{}, c_Y{}, c_P{}, c_strain{};
+  T E_star{}, Y{}, c_Y{}, c_P{};
+  T c_yield{};        // c (a_Y/R*)^-0.7 of finite strain; infinite without
   T plastic_ratio{};  // alpha_P/R*
   T log_s_P{}, beta{};
   T a_ratio{};       // a_Y/R*, the root of alpha_Y/R*
@@ -50,12 +52,14 @@ struct Cavity {
 
   Cavity() = default;
   Cavity(T E_star_, const T* parameter) noexcept
-      : E_star(E_star_), Y(parameter[0]), c_Y(parameter[1]), c_P(parameter[2]), c_strain(parameter[3]) {
+      : E_star(E_star_), Y(parameter[0]), c_Y(parameter[1]), c_P(parameter[2]) {
     a_ratio = pi * c_Y * Y / (2.0 * E_star);
     log_s_P = log_plastic(c_Y, c_P);
     plastic_ratio = yield_ratio() * exp(log_s_P);
     beta = log(T(2.0)) / log_s_P;
-    yield_factor = 1.0 - fallen(a_ratio);
+    c_yield = parameter[3] < no_finite_strain ? parameter[3] * exponential<T>(-0.7 * logarithm(a_ratio))
+                                              : std::numeric_limits<T>::infinity();
+    yield_factor = 1.0 - fallen(T{});
   }
 
   /// ln s_P; a value <= 0 puts full plasticity before first yield.
@@ -71,26 +75,38 @@ struct Cavity {
 
   T elastic_overlap(T R_star) const noexcept { return yield_ratio() * R_star; }
 
+  auto softens() const noexcept { return c_yield < std::numeric_limits<double>::infinity(); }
+
   Point<T> load(T R_star, T delta) const noexcept {
-    Point<T> p = small_strain(R_star, delta);
-    if (any(c_strain < no_finite_strain)) p.force = p.force * ((1.0 - fallen(p.radius / R_star)) / yield_factor);
+    auto [p, log_a] = small_strain(R_star, delta);
+    if (any(softens())) p.force = p.force * ((1.0 - fallen(log_a)) / yield_factor);
     return p;
   }
 
-  /// 1 - f(a/R*) of finite strain.
-  T fallen(T strain) const noexcept { return exp(-c_strain * exp(-0.7 * log(strain))); }
+  /// 1 - f(a/R*) of finite strain, from ln a/a_Y.
+  T fallen(T log_a) const noexcept {
+    return exponential<T>(max(constant<T>(-700.0), -c_yield * exponential<T>(-0.7 * log_a)));
+  }
 
-  Point<T> small_strain(T R_star, T delta) const noexcept {
-    const auto plastic = delta >= plastic_ratio * R_star;
-    Point<T> p{};
-    if (any(plastic)) p = {2.0 * pi * R_star * c_P * Y * delta, sqrt(2.0 * R_star * delta), constant<T>(1.0)};
-    if (any(!plastic)) {
-      const T log_s = log(only(!plastic, delta / (yield_ratio() * R_star)));
-      const T a = a_ratio * R_star * exp(0.5 * (1.0 + beta) * log_s);
+  /// The backbone without finite strain, and ln a/a_Y where it is needed.
+  struct SmallStrain {
+    Point<T> point;
+    T log_a;
+  };
+
+  SmallStrain small_strain(T R_star, T delta) const noexcept {
+    const auto middle = delta < plastic_ratio * R_star;
+    SmallStrain now{{2.0 * pi * R_star * c_P * Y * delta, sqrt(2.0 * R_star * delta), constant<T>(1.0)}, T{}};
+    if (!any(middle) && !any(softens())) return now;
+    const T log_s = logarithm(delta / (yield_ratio() * R_star));
+    now.log_a = 0.5 * (log_s + 0.6931471805599453);
+    if (any(middle)) {
+      now.log_a = select(middle, 0.5 * (1.0 + beta) * log_s, now.log_a);
+      const T a = a_ratio * R_star * exponential(now.log_a);
       const T p_m = Y * (2.0 / 3.0 * c_Y + (1.0 + beta) / 3.0 * log_s);
-      p = select(plastic, p, Point<T>{pi * a * a * p_m, a, log_s / log_s_P});
+      now.point = select(middle, Point<T>{pi * a * a * p_m, a, log_s / log_s_P}, now.point);
     }
-    return p;
+    return now;
   }
 
   T work(T R_star, T delta) const noexcept {
@@ -99,13 +115,13 @@ struct Cavity {
     T W = hertz_work(E_star, R_star, min(delta, delta_Y));
     if (any(beyond)) {
       const T a_Y = a_ratio * R_star, A = 2.0 / 3.0 * c_Y, B = (1.0 + beta) / 3.0, n = 2.0 + beta;
-      const T log_s = min(log(only(beyond, delta / delta_Y)), log_s_P);
+      const T log_s = min(logarithm(only(beyond, delta / delta_Y)), log_s_P);
       // (s^n - 1)/n and (s^n ln s)/n - (s^n - 1)/n^2, the first by expm1 to stay exact near yield
       const T grow = expm1(n * log_s), I0 = grow / n;
       const T I1 = ((grow + 1.0) * log_s - I0) / n;
       const T more = W + pi * a_Y * a_Y * delta_Y * Y * (A * I0 + B * I1), x = max(T{}, delta - delta_P);
       W = select(beyond, more + pi * R_star * c_P * Y * x * (delta + delta_P), W);
-      if (any(c_strain < no_finite_strain)) {
+      if (any(softens())) {
         const T reached = only(beyond, delta), middle = min(reached, delta_P);
         const T lost = fallen_work(R_star, delta_Y, middle) + fallen_work(R_star, delta_P, max(reached, delta_P));
         const T W_Y = hertz_work(E_star, R_star, delta_Y);
@@ -126,12 +142,12 @@ struct Cavity {
         0.07479799440828835,  0.08457825969750132,  0.09130170752246182,  0.09472530522753432,
         0.09472530522753432,  0.09130170752246182,  0.08457825969750132,  0.07479799440828835,
         0.062314485627767036, 0.0475792558412463,   0.031126761969323728, 0.013576229705877088};
-    const T range = log(high / low);
+    const T range = logarithm(high / low);
     T sum{};
     for (int k = 0; k < 16; ++k) {
-      const T delta = low * exp(node[k] * range);
-      const Point<T> p = small_strain(R_star, delta);
-      sum = sum + weight[k] * (p.force * fallen(p.radius / R_star) * delta);
+      const T delta = low * exponential<T>(node[k] * range);
+      const SmallStrain now = small_strain(R_star, delta);
+      sum = sum + weight[k] * (now.point.force * fallen(now.log_a) * delta);
     }
     return range * sum;
   }

@@ -106,9 +106,7 @@ EPDEM_INLINE Lanes sqrt(Lanes x) noexcept {
     return x;                                          \
   }
 EPDEM_LANE_BY_LANE(cbrt)
-EPDEM_LANE_BY_LANE(exp)
 EPDEM_LANE_BY_LANE(expm1)
-EPDEM_LANE_BY_LANE(log)
 #undef EPDEM_LANE_BY_LANE
 
 /// `x` in the lanes of the mask, NaN in the others: for an argument of a library function that only they need.

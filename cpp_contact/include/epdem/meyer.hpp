@@ -64,7 +64,7 @@ struct Meyer {
     const T line = (2.0 * share * slope_ratio - third) * delta_y * R_star;
     T W = 0.4 * F_y * delta_y + (line + share * slope_ratio * R_star * past) * past;
     if (any(half_x > 0.0)) {
-      const T hardened = expm1(half_x * log(only(!elastic, delta / delta_y)));
+      const T hardened = expm1(half_x * logarithm(only(!elastic, delta / delta_y)));
       W = W + share * slope_ratio * R_star * (delta * delta * hardened);
     }
     return any(elastic) ? select(elastic, hertz_work(E_star, R_star, delta), W) : W;

@@ -92,6 +92,7 @@ void PairLoop::run(PairGran* pair, const Plan& plan, double now) {
   pass_ = pass_of(*atom, plan, update->dt);
   pass_.now = now;
   pass_.freeze = pair->freeze_group_bit() != 0;
+  pass_.growth = plan.growth ? plan.growth->of_all() : nullptr;
   flags_ = CONTACT_NORMAL_MODEL | (plan.friction ? CONTACT_TANGENTIAL_MODEL : 0) |
            (plan.settings.cohesion ? CONTACT_COHESION_MODEL : 0) | (plan.rolls ? CONTACT_ROLLING_MODEL : 0);
   plan.growth     ? gather<Reach::grown>(plan)
@@ -233,11 +234,6 @@ void PairLoop::fetch(const Plan& plan, int n) {
   const Spheres spheres{atom->f[0], atom->torque[0],          atom->radius, atom->rmass, atom->type,
                         atom->mask, pair_->freeze_group_bit()};
   gather_pairs(b, pass_, n, spheres, {plan.constants.data(), plan.width}, history);
-  const double* const growth = plan.growth ? plan.growth->of_all() : nullptr;
-  for (int k = 0; k < n && growth; ++k) {
-    b.growth_i.a[k] = growth[b.i[k]];
-    b.growth_j.a[k] = growth[b.j[k]];
-  }
 }
 
 /// Adds forces and torques in the order of the list; the sums of body i stay in registers while its pairs follow each
