@@ -1,11 +1,12 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Presses whose height only the run tells: the run ends with a frame in the row in which the bed has no void left."""
+"""Presses whose height only the run tells: the run ends with a frame in the row in which the bed has no void."""
 
 import numpy as np
 import pytest
 from parts_cases import BED, FLOOR, parts
 from scene_runs import run, write_case, write_deck
 
+from engines.lammps_decks import needs_lammps
 from epdem.case.scene import parse
 from epdem.engines import log
 from epdem.engines.liggghts import launcher, resume
@@ -42,15 +43,21 @@ def expected_end(p):
     return int(steps[0.012 - 2.0 * p.time_step * steps <= SOLID][0])
 
 
-@pytest.mark.liggghts
-@pytest.mark.parametrize(("kind", "until"), [("linear", FORCE), ("press", FORCE), ("press", None)])
-def test_a_run_ends_with_a_frame_where_a_pressed_bed_has_no_void(tmp_path, kind, until):
-    path = write_case(pressed(kind, until), tmp_path)
+ENGINES = {"liggghts": pytest.mark.liggghts, "lammps": needs_lammps, "yade": pytest.mark.yade}
+PRESSES = [("liggghts", "linear", FORCE), ("liggghts", "press", FORCE), ("liggghts", "press", None)]
+PRESSES += [
+    (engine, kind, until) for engine in ("lammps", "yade") for kind, until in (("linear", FORCE), ("press", None))
+]
+
+
+@pytest.mark.parametrize(("engine", "kind", "until"), [pytest.param(*x, marks=ENGINES[x[0]]) for x in PRESSES])
+def test_a_run_ends_with_a_frame_where_a_pressed_bed_has_no_void(tmp_path, engine, kind, until):
+    path = write_case(pressed(kind, until, contacts=2), tmp_path)
     for _ in range(2):  # and as it is read again
-        outcome = run(path, out=tmp_path / "out")
+        outcome = run(path, engine=engine, out=tmp_path / "out")
         r, end = outcome.results, expected_end(plan(parse(pressed(kind, until))))
         assert r.phases["until"].to_list() == ["no void", "no void"] and r.phases["end"].to_list() == [end, end]
-        assert r.rows["step"].iloc[-1] == r.particles["step"].iloc[-1] == end
+        assert r.rows["step"].iloc[-1] == r.particles["step"].iloc[-1] == r.contacts["step"].iloc[-1] == end
         checks = r.tables["checks"].set_index("key")
         assert not outcome.passed and not checks.loc["void", "passed"]
         (said,) = [x for x in outcome.warnings if "no void" in x]

@@ -2,7 +2,7 @@
 """What the input scripts of LIGGGHTS and LAMMPS have in common: atom types, data files, ids, skin, loads, stops."""
 
 import math
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -14,6 +14,7 @@ from ..impacts.experiment import Body
 from ..impacts.placement import room, side_by_side
 from ..impacts.plan import Plan
 from ..scenes.plan import Phase, ScenePlan
+from ..scenes.solid import PressedBed
 from . import log
 
 RIGID = 1e30  # modulus [Pa] of a rigid type: 1e15 would change E* of steel by 2e-4
@@ -144,11 +145,15 @@ def first_look(p: ScenePlan, phase: Deck) -> int:
     return int(min(phase.steps, p.every * max(1, math.ceil(phase.case.condition_from / step / p.every))))
 
 
-def stop_condition(p: ScenePlan, phase: Deck) -> StopCondition | None:
-    """How a phase ends early, in words of LIGGGHTS and LAMMPS; None: it does not."""
+def stop_condition(p: ScenePlan, phase: Deck, place: Callable[[PressedBed], str]) -> StopCondition | None:
+    """How a phase ends early, in words of LIGGGHTS and LAMMPS: by its condition, or by a bed without void.
+
+    None: it does not. place: formula of the place of the plate that presses a bed.
+    """
+    void = next((void_height(bed, place(bed)) for bed in p.pressed if bed.phase == phase.name), "")
     until = phase.case.condition
     if until is None:
-        return None
+        return StopCondition(0, phase.steps // p.every, "", "", void) if void else None
     first = first_look(p, phase)
     if until.kinetic_energy is not None:
         formula, sign = "ke/atoms", "<"
@@ -157,4 +162,10 @@ def stop_condition(p: ScenePlan, phase: Deck) -> StopCondition | None:
     else:
         load = f"f_load{1 + p.loads.index(until.wall or '')}"
         formula, sign = "sqrt(" + "+".join(f"{load}[{k}]*{load}[{k}]" for k in (1, 2, 3)) + ")", ">="
-    return StopCondition(first, (phase.steps - first) // p.every, formula, f"{sign} {number(until.limit)}")
+    return StopCondition(first, (phase.steps - first) // p.every, formula, f"{sign} {number(until.limit)}", void)
+
+
+def void_height(bed: PressedBed, place: str) -> str:
+    """Formula of the height of the void in a bed under a plate at a place."""
+    height = f"({number(bed.stop)}-{place})" if bed.sign > 0 else f"({place}-{number(bed.stop)})"
+    return f"{height}-{number(bed.solid_height)}"

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """The LAMMPS deck of a scene: one input file, and a data file for the spheres that come with a phase."""
 
+from functools import partial
 from itertools import combinations
 
 import numpy as np
@@ -13,7 +14,7 @@ from ...scenes.plan import ScenePlan
 from ..host import LIGGGHTS, refuse
 from ..input_script import default_skin, phases, row_words, stop_condition, wall_id
 from . import words
-from .scene_walls import meshes, motions, plane
+from .scene_walls import meshes, motions, plane, plate_place
 
 ROLLING = ("cdt", "epsd2")
 WORKS = {"plastic_work": 1, "friction_work": 4, "friction_energy": 5, "adhesive_work": 6}  # columns of fix EP_HISTORY0
@@ -54,7 +55,7 @@ def deck(p: ScenePlan) -> decks.Deck:
                 gates=[gates[name] for name in phase.added],
                 commands=motions(p, before, phase) if before else [],
                 ends=[wall_id(p, name) for name in phase.removed],
-                stop=stop_condition(p, phase),
+                stop=stop_condition(p, phase, partial(plate_place, p)),
             )
         )
         placed += sum(b.phase == phase.name for b in p.scene.later)

@@ -11,6 +11,7 @@ from ...case.walls import BoxWall, ConeWall, CylinderWall, MeshWall, PlaneWall, 
 from ...errors import CaseError
 from ...scenes import placement
 from ...scenes.plan import Phase, ScenePlan
+from ...scenes.solid import PressedBed
 from ...scenes.walls import spans, surface_rotation
 from ..host import LIGGGHTS, refuse
 from ..input_script import wall_id
@@ -195,6 +196,12 @@ def motions(p: ScenePlan, before: Phase | None, phase: Phase | Deck) -> list[str
         if isinstance(move, PressMove):
             found += _servo(id, move)
     return found
+
+
+def plate_place(p: ScenePlan, bed: PressedBed) -> str:
+    """Formula of the place of a plate that presses a bed."""
+    (begin,) = {w.center[bed.axis] for w in p.scene.wall if isinstance(w, PlateWall) and w.name == bed.wall}
+    return f"(v_{wall_id(p, bed.wall)}_{'xyz'[bed.axis]}+{number(begin)})"
 
 
 def _servo(id: str, move: PressMove) -> Iterator[str]:

@@ -3,7 +3,7 @@
 
 import math
 from collections.abc import Sequence
-from dataclasses import replace
+from functools import partial
 
 import numpy as np
 
@@ -13,8 +13,9 @@ from ...case.parts import Body
 from ...case.walls import PlaneWall
 from ...errors import CaseError
 from ...scenes.plan import Phase, ScenePlan
+from ...scenes.solid import PressedBed
 from ...scenes.walls import surface_rotation
-from ..input_script import StopCondition, phases, stop_condition, torque_origin, wall_id
+from ..input_script import phases, stop_condition, torque_origin, wall_id
 
 GAIN = 1.0  # of a wall that a force drives: its speed over the highest is the relative error of the force
 
@@ -94,20 +95,11 @@ def _motion(p: ScenePlan, name: str, move: Move) -> tuple[str, str]:
     return f"fix {fix} all move/mesh mesh {wall} {words}", f"unfix {fix}"
 
 
-def _pressing(p: ScenePlan, phase: decks.Deck) -> StopCondition | None:
-    """How a phase ends early in LIGGGHTS: also by a bed without void."""
-    stop = stop_condition(p, phase)
-    for bed in p.pressed:
-        if bed.phase == phase.name:
-            k, begin = bed.axis, p.triangles[bed.wall][0, 0, bed.axis]
-            reference = (
-                begin if _press(p, bed.wall) else torque_origin(p, bed.wall)[k]
-            )  # LIGGGHTS moves it with the wall
-            place = f"(f_{wall_id(p, bed.wall)}[{7 + k}]+{decks.number(begin - reference)})"
-            height = f"({decks.number(bed.stop)}-{place})" if bed.sign > 0 else f"({place}-{decks.number(bed.stop)})"
-            void = f"{height}-{decks.number(bed.solid_height)}"
-            return replace(stop or StopCondition(0, phase.steps // p.every, "", ""), void=void)
-    return stop
+def _place(p: ScenePlan, bed: PressedBed) -> str:
+    """Formula of the place of a plate that presses a bed."""
+    k, begin = bed.axis, p.triangles[bed.wall][0, 0, bed.axis]
+    reference = begin if _press(p, bed.wall) else torque_origin(p, bed.wall)[k]  # LIGGGHTS moves it with the wall
+    return f"(f_{wall_id(p, bed.wall)}[{7 + k}]+{decks.number(begin - reference)})"
 
 
 def _phase_particle(p: ScenePlan, b: Body) -> decks.Deck:
@@ -151,7 +143,7 @@ def parts(p: ScenePlan) -> tuple[decks.Deck, ...]:
             particles=[_phase_particle(p, b) for b in p.scene.later if b.phase == phase.name],
             power=power(p, phase) if with_power else "",
             vibrations=[name for name in new if with_power and isinstance(phase.moves[name], VibrateMove)],
-            stop=_pressing(p, phase),
+            stop=stop_condition(p, phase, partial(_place, p)),
         )
         found.append(part)
     return tuple(found)

@@ -22,6 +22,7 @@ from .scene_parts import (
     motions,
     stop,
     table_text,
+    void,
     walls,
 )
 from .scene_parts import files as files_of_parts
@@ -119,7 +120,11 @@ def _phases(p: ScenePlan) -> list[decks.Deck]:
     """The phases. added, removed: names of walls; bodies: table of the spheres that come at the begin of a phase."""
     return [
         phase.but(
-            motions=motions(p, phase), bodies=bodies_file(p, phase.name), fills=fills(p, phase), stop=stop(p, phase)
+            motions=motions(p, phase),
+            bodies=bodies_file(p, phase.name),
+            fills=fills(p, phase),
+            stop=stop(p, phase),
+            void=void(p, phase),
         )
         for _, phase, _ in phases(p)
     ]

@@ -15,7 +15,7 @@ from ...scenes.filling import Insertion
 from ...scenes.plan import ScenePlan
 from ...scenes.walls import spans, surface_rotation
 from ..host import refuse as refuse_value
-from ..input_script import first_look, torque_origin
+from ..input_script import first_look, torque_origin, void_height
 
 EDGES = (
     "walls of triangles: YADE counts a sphere that touches an edge once for each triangle there, so that its force is "
@@ -159,6 +159,12 @@ def stop(p: ScenePlan, phase: decks.Deck) -> tuple[str, int] | None:
     else:
         condition = f'np.hypot.reduce([row["{until.wall}_force_" + axis] for axis in "xyz"]) >= {limit}'
     return condition, first_look(p, phase)
+
+
+def void(p: ScenePlan, phase: decks.Deck) -> str:
+    """Formula of the height of the void in the bed that is pressed in a phase; "": none is."""
+    beds = [bed for bed in p.pressed if bed.phase == phase.name]
+    return next((void_height(bed, f'O.bodies[walls["{bed.wall}"][0]].state.pos[{bed.axis}]') for bed in beds), "")
 
 
 def files(p: ScenePlan) -> dict[str, str]:

@@ -93,6 +93,8 @@ class Recorder:
         self.names = ["particles", "kinetic_energy", *STRAINS, *self.means]
         self.values: dict[str, float] = {}  # of the last row
         self._begin, self._end, self._records, self._recorded = 0, 0, True, True
+        self._void: Callable[[], float] | None = None  # of this phase
+        self._solid = False  # whether the bed has lost its void
         print("Step", *self.names)
 
     def run(
@@ -104,15 +106,17 @@ class Recorder:
         fills: Sequence[Fill] = (),
         until: Callable[[dict[str, float]], bool] | None = None,
         after: int = 0,
+        void: Callable[[], float] | None = None,
     ) -> None:
         """A phase. record: whether it has frames and tables; until: whether a row ends the phase, looked at in the rows
-        more than `after` steps from its begin.
+        more than `after` steps from its begin; void: height of the void in a pressed bed [m], whose loss ends the run
+        with a frame and a table.
 
         The row of a step is known in the step itself, so that walls go on as in this phase for that one step.
         """
         self._records, self._recorded = record, self._records
-        self._begin, self._end = self._end, self._end + steps
-        if until is None:
+        self._begin, self._end, self._void = self._end, self._end + steps, void
+        if until is None and void is None:
             while O.iter < self._end:
                 self._step(fills)
             return
@@ -120,9 +124,12 @@ class Recorder:
         while O.iter <= self._end and not reached:
             self._step(fills)
             step = O.iter - 1
-            reached = step > looked and step % self.every == 0 and until(self.values)
+            if self._solid:
+                print(f"phase {name} left no void\nphase {name} ended at step {step}", flush=True)
+                raise SystemExit
+            reached = until is not None and step > looked and step % self.every == 0 and until(self.values)
         self._end = O.iter - 1
-        if not reached:
+        if until and not reached:
             print(f"phase {name} was not ended by its condition")
         print(f"phase {name} ended at step {self._end}", flush=True)
 
@@ -143,11 +150,12 @@ class Recorder:
         if O.iter % self.every == 0:
             self.spheres.remove_outside(self.low, self.high)
             self.row()
+            self._solid = O.iter > self._begin and self._void is not None and self._void() <= 0.0
         if not (self._records or (self._recorded and O.iter == self._begin)):
             return
-        if self.frames and O.iter % self.frames == 0:
+        if self.frames and (self._solid or O.iter % self.frames == 0):
             self.frame()
-        if self.tables and O.iter % self.tables == 0:
+        if self.tables and (self._solid or O.iter % self.tables == 0):
             self.contact_table()
 
     def on_walls(self) -> Any:
