@@ -77,6 +77,16 @@ def test_a_case_that_cannot_have_compaction_is_refused(what):
         plan(parse(pressed(COMPACT) | tables))
 
 
+def test_a_skin_that_growth_exceeds_is_refused():
+    """A sphere touches a plane by growth of a tenth of its radius; lists are made anew after half a skin."""
+    liggghts = scene_engine("liggghts")
+    radius = plan(parse(pressed(COMPACT))).largest
+    for share, law in ((0.21, COMPACT), (0.19, COMPACT | {"compaction": False})):
+        liggghts.check(plan(parse(pressed(law, numerics={"skin": f"{share * radius!r} m"}))))
+    with pytest.raises(CaseError, match=r"numerics.skin = .* give at least 0.2 of the largest radius"):
+        liggghts.check(plan(parse(pressed(COMPACT, numerics={"skin": f"{0.19 * radius!r} m"}))))
+
+
 @pytest.mark.parametrize("engine", ["yade", "lammps"])
 def test_other_engines_refuse_compaction(engine):
     with pytest.raises(CaseError, match=rf"(?i)law.compaction: .*{engine}.* (none|no compaction); remove it"):

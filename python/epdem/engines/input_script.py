@@ -18,6 +18,7 @@ from ..scenes.solid import PressedBed
 from . import log
 
 RIGID = 1e30  # modulus [Pa] of a rigid type: 1e15 would change E* of steel by 2e-4
+SKIN_OF_GROWTH = 0.2  # of the largest radius, with compaction: lists, made anew after half of it, hold 0.1 of growth
 SKIN = 0.5  # of the smallest radius: rebuilds cost less than idle neighbours
 
 
@@ -94,7 +95,9 @@ class StopCondition:
 
 def default_skin(p: ScenePlan) -> float:
     """The skin of a case that gives none [m]."""
-    return float(f"{SKIN * p.smallest * (0.5 if p.model.compaction else 1.0):.1e}")  # compaction sees across gaps
+    if p.model.compaction:  # lists hold pairs across gaps
+        return float(f"{max(0.5 * SKIN * p.smallest, 1.05 * SKIN_OF_GROWTH * p.largest):.1e}")
+    return float(f"{SKIN * p.smallest:.1e}")
 
 
 def wall_id(p: ScenePlan, name: str) -> str:

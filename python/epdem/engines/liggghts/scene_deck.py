@@ -9,7 +9,7 @@ from ...base.declarations import declarations
 from ...errors import CaseError
 from ...scenes.model import Model
 from ...scenes.plan import ScenePlan
-from ..input_script import SKIN, default_skin, row_words, wall_id
+from ..input_script import SKIN, SKIN_OF_GROWTH, default_skin, row_words, wall_id
 from . import wall_stress
 from .insertions import insertions
 from .properties import HARD, SOFT, Property, elastic, per_pair, ratios, strength, tangential, work_of_adhesion
@@ -105,9 +105,20 @@ def _refuse_room(p: ScenePlan) -> None:
         )
 
 
+def _refuse_skin(p: ScenePlan) -> None:
+    """Raise CaseError for a skin with which planes find spheres late that touch them by growth alone."""
+    skin, least = p.case.numerics.skin, SKIN_OF_GROWTH * p.largest
+    if p.model.compaction and skin is not None and skin < least:
+        raise CaseError(
+            f"numerics.skin = {skin:g} m: with law.compaction spheres grow by up to a tenth of their radius, and lists "
+            f"are made anew after half a skin; give at least {SKIN_OF_GROWTH:g} of the largest radius, {least:g} m"
+        )
+
+
 def deck(p: ScenePlan) -> decks.Deck:
     """The deck of a scene. Raises CaseError for what LIGGGHTS cannot do."""
     _refuse_room(p)
+    _refuse_skin(p)
     m, s = p.model, p.case.scene
     moduli = [p.case.materials[t.material].young_modulus for t in m.types]
     cut, phases = p.case.numerics.processors, parts(p)
