@@ -13,7 +13,7 @@ def main() -> int:
     """Run the command, which prints its tables; its exit code."""
     laws = [word for law in LAWS for word in ("--law", law)]
     words = ["verify", "cost", "cases/steel_wall.toml", *laws, "--repetitions", "3", "--bulk"]
-    return subprocess.run([sys.executable, "-m", "epdem.cli", *words], cwd=ROOT, check=False).returncode
+    return subprocess.run([sys.executable, "-m", "epdem", *words], cwd=ROOT, check=False).returncode
 
 
 if __name__ == "__main__":

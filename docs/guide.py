@@ -27,7 +27,7 @@ from epdem.base.declarations import declarations
 from epdem.case.fields import Quantity
 from epdem.case.impact import Case
 from epdem.case.scene import SceneCase
-from epdem.cli.main import app
+from epdem.verification.cli import app
 
 ROOT = Path(__file__).parents[1]
 PAGES = ROOT / "runs/guide/pages"

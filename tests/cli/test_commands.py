@@ -151,7 +151,7 @@ def test_titles_and_paths_that_look_like_markup_are_shown_as_they_are(command, f
 
 def test_a_terminal_without_utf8_shows_any_title(folder):
     (folder / "steel.toml").write_text(ONE_SPEED.replace("Steel sphere on a steel wall", "\u00d8 \u2192 \u4e2d"))
-    words = [sys.executable, "-m", "epdem.cli", "predict", "steel.toml"]
+    words = [sys.executable, "-m", "epdem", "predict", "steel.toml"]
     done = subprocess.run(words, capture_output=True, env=os.environ | {"PYTHONIOENCODING": "latin-1"})
     assert done.returncode == 0, done.stderr
     assert "\u00d8 \\u2192 \\u4e2d" in done.stdout.decode("latin-1")

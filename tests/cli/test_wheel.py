@@ -86,7 +86,7 @@ def test_the_wheel_holds_library_templates_cases_and_sources_for_trees(wheel):
 def test_the_commands_that_need_no_engine_run_from_the_wheel(python, tmp_path):
     case = ROOT / "cases" / "steel_wall.toml"
     python = functools.partial(python, cwd=tmp_path)
-    command = ("-m", "epdem.cli")
+    command = ("-m", "epdem")
     assert "johnson" in python(*command, "predict")
     assert "steel" in python(*command, "predict", case)
     assert "in.impact" in python(*command, "deck", case, "--out", "deck")

@@ -226,7 +226,7 @@ def test_bad_input_exits_with_2_one_line_and_writes_nothing(tmp_path):
     bad = tmp_path / "bad.toml"
     bad.write_text((CASES / "steel_wall.toml").read_text().replace("0.3", "30"))
     done = subprocess.run(
-        [sys.executable, "-m", "epdem.cli", "run", str(bad)], cwd=tmp_path, capture_output=True, text=True
+        [sys.executable, "-m", "epdem", "run", str(bad)], cwd=tmp_path, capture_output=True, text=True
     )
     assert done.returncode == 2
     assert done.stderr.startswith("epdem: ") and done.stderr.count("\n") == 1 and "poisson_ratio = 30" in done.stderr
@@ -251,7 +251,7 @@ def test_a_mistake_on_the_command_line_exits_with_2_and_one_sentence(mistake, tm
     case = tmp_path / "case.toml"
     case.write_text((CASES / "steel_wall.toml").read_text().replace("count = 32", "count = 512"))
     done = subprocess.run(
-        [sys.executable, "-m", "epdem.cli", command, str(case), *options], cwd=tmp_path, capture_output=True, text=True
+        [sys.executable, "-m", "epdem", command, str(case), *options], cwd=tmp_path, capture_output=True, text=True
     )
     assert done.returncode == 2 and says in done.stderr, done.stderr
     assert done.stderr.startswith("epdem: ") and done.stderr.count("\n") == 1

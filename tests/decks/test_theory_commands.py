@@ -11,8 +11,8 @@ import pytest
 from typer.testing import CliRunner
 
 from epdem.case import toml
-from epdem.cli.main import app
 from epdem.engines.reasons import of_laws
+from epdem.verification.cli import app
 
 pytestmark = pytest.mark.figures
 

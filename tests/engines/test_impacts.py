@@ -133,9 +133,7 @@ def test_a_wrong_modulus_is_seen_although_restitution_may_be_right(tmp_path):
 
 
 def epdem(*words, cwd):
-    return subprocess.run(
-        [sys.executable, "-m", "epdem.cli", *words], cwd=cwd, capture_output=True, text=True, timeout=300
-    )
+    return subprocess.run([sys.executable, "-m", "epdem", *words], cwd=cwd, capture_output=True, text=True, timeout=300)
 
 
 def test_run_json_prints_one_document_with_the_promised_keys(tmp_path):

@@ -83,7 +83,7 @@ def test_normals_of_a_mesh_follow_the_right_hand():
 
 def test_more_ranks_than_cores_are_refused_before_anything_is_written(tmp_path):
     done = subprocess.run(
-        [sys.executable, "-m", "epdem.cli", "run", str(CASE), "-e", "liggghts", "--ranks", "999", "--out", "out"],
+        [sys.executable, "-m", "epdem", "run", str(CASE), "-e", "liggghts", "--ranks", "999", "--out", "out"],
         cwd=tmp_path,
         capture_output=True,
         text=True,
@@ -174,7 +174,7 @@ def test_nothing_is_written_outside_the_output_folder(tmp_path):
     (here / "log.liggghts").write_text("the user's own")
     short = ["--engine", "liggghts", "--law", "hertz", "--steps", "20", "--out", str(tmp_path / "out")]
     for words in (["doctor"], ["run", str(CASE), *short], ["deck", str(CASE), "--out", str(tmp_path / "deck")]):
-        done = subprocess.run([sys.executable, "-m", "epdem.cli", *words], cwd=here, capture_output=True, text=True)
+        done = subprocess.run([sys.executable, "-m", "epdem", *words], cwd=here, capture_output=True, text=True)
         assert done.returncode in (0, 1), done.stderr
     assert [p.name for p in here.iterdir()] == ["log.liggghts"]
     assert (here / "log.liggghts").read_text() == "the user's own"

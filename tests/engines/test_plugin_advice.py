@@ -80,7 +80,7 @@ def test_a_converted_tutorial_runs_and_yields(name, tmp_path):
     unpacked(name, tmp_path / "deck")
     path = tmp_path / "deck" / name.split("/")[1]
     words = ["deck", "--convert", path, "--set", "yieldPressure=1e5", "-o", tmp_path / "new"]
-    done = subprocess.run([sys.executable, "-m", "epdem.cli", *words], capture_output=True, text=True)
+    done = subprocess.run([sys.executable, "-m", "epdem", *words], capture_output=True, text=True)
     assert done.returncode == 0 and "contact models are ep/thornton now" in done.stderr, done.stderr
     new = (tmp_path / "new" / path.name).read_text()
     assert "model hertz" not in re.sub("#.*", "", new)

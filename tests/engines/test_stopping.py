@@ -98,7 +98,7 @@ def test_a_stopped_run_says_so_and_leaves_no_engine_behind(how, tmp_path, monkey
     monkeypatch.setenv("EPDEM_LIGGGHTS", str(launcher))
     monkeypatch.setenv("EPDEM_TEST_PID", str(mark))
     run = subprocess.Popen(
-        [sys.executable, "-m", "epdem.cli", "run", str(CASE), "-e", "liggghts"],
+        [sys.executable, "-m", "epdem", "run", str(CASE), "-e", "liggghts"],
         cwd=tmp_path,
         stdout=subprocess.DEVNULL,
         stderr=subprocess.PIPE,

@@ -232,7 +232,7 @@ def test_an_error_inside_a_step_is_an_error_of_the_run(tmp_path):
 
 def test_yade_missing_is_said_with_the_install_command_before_anything_starts(tmp_path):
     """Nothing of the other engine is run either."""
-    words = [sys.executable, "-m", "epdem.cli", "run", str(CASES / "steel_wall.toml"), "-e", "embedded", "-e", "yade"]
+    words = [sys.executable, "-m", "epdem", "run", str(CASES / "steel_wall.toml"), "-e", "embedded", "-e", "yade"]
     done = subprocess.run(
         words, cwd=tmp_path, capture_output=True, text=True, timeout=60, env=os.environ | {"EPDEM_YADE": "no-such-yade"}
     )
@@ -252,7 +252,7 @@ def test_yade_missing_is_said_with_the_install_command_before_anything_starts(tm
 @pytest.mark.yade("alone")
 def test_a_failed_run_exits_with_3_and_keeps_what_other_engines_found(tmp_path, fake):
     fake("[ \"$1\" = --version ] && exec yade --version; echo 'RuntimeError: planted'; exit 1")
-    words = [sys.executable, "-m", "epdem.cli", "run", str(CASES / "steel_wall.toml"), "-e", "embedded", "-e", "yade"]
+    words = [sys.executable, "-m", "epdem", "run", str(CASES / "steel_wall.toml"), "-e", "embedded", "-e", "yade"]
     done = subprocess.run(words, cwd=tmp_path, capture_output=True, text=True, timeout=60)
     assert done.returncode == 3 and "RuntimeError: planted" in done.stderr
     assert set(store.read(tmp_path / "runs/steel_wall/results.h5").impacts) == {"thornton/embedded"}

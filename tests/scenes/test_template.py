@@ -147,7 +147,7 @@ def test_a_template_may_take_in_its_neighbours_and_a_mistake_there_names_them(tm
 def test_the_command_ends_with_2_and_the_sentence(tmp_path):
     own = tmp_path / "own.in.j2"
     own.write_text("{{ deck.title.nothing }}")
-    words = [sys.executable, "-m", "epdem.cli", "deck", "own.in.j2", "--case", str(STEEL), "--out", "out"]
+    words = [sys.executable, "-m", "epdem", "deck", "own.in.j2", "--case", str(STEEL), "--out", "out"]
     done = subprocess.run(words, cwd=tmp_path, capture_output=True, text=True)
     assert done.returncode == 2 and done.stderr.startswith("epdem: own.in.j2:1: "), done.stderr
     assert done.stderr.count("\n") == 1

@@ -10,7 +10,7 @@ import pytest
 SLOW = ("numpy", "pandas", "pydantic", "pint", "h5py", "jinja2", "matplotlib", "tomlkit", "submitit")
 
 
-@pytest.mark.parametrize("module", ["epdem", "epdem.cli.main"])
+@pytest.mark.parametrize("module", ["epdem", "epdem.verification.cli"])
 def test_nothing_slow_is_imported_before_a_command_needs_it(module):
     code = f"import sys, {module}; print(*sys.modules)"
     loaded = subprocess.check_output([sys.executable, "-c", code], text=True).split()

@@ -157,7 +157,7 @@ def with_speeds(case, count):
 def test_crosscheck_tells_our_second_order_from_a_wrong_limit(tmp_path):
     (tmp_path / "steel.toml").write_text(with_speeds(STEEL, 8))
     done = subprocess.run(
-        [sys.executable, "-m", "epdem.cli", "verify", "crosscheck", "steel.toml", "--json"],
+        [sys.executable, "-m", "epdem", "verify", "crosscheck", "steel.toml", "--json"],
         cwd=tmp_path,
         capture_output=True,
         text=True,
@@ -185,7 +185,7 @@ def test_crosscheck_tells_our_second_order_from_a_wrong_limit(tmp_path):
 def test_engines_that_cannot_run_the_case_are_left_out_with_their_reason(tmp_path):
     """Models of other codes do not have our dashpot."""
     (tmp_path / "steel.toml").write_text(with_speeds(CASES / "viscous_steel.toml", 3))
-    words = [sys.executable, "-m", "epdem.cli", "verify", "crosscheck", "steel.toml", "--json"]
+    words = [sys.executable, "-m", "epdem", "verify", "crosscheck", "steel.toml", "--json"]
     done = subprocess.run(words, cwd=tmp_path, capture_output=True, text=True)
     assert done.returncode == 0, done.stderr
     document = json.loads(done.stdout)
@@ -203,7 +203,7 @@ def test_the_exit_code_and_the_verdict_are_about_our_engines_alone(tolerance, co
     assert text.count("e_n = 1e-4") == 1
     (tmp_path / "steel.toml").write_text(text.replace("e_n = 1e-4", f"e_n = {tolerance}"))
     words = ["verify", "crosscheck", "steel.toml", "-e", "embedded", "-e", "liggghts-thornton_ning", "-o", "out"]
-    done = subprocess.run([sys.executable, "-m", "epdem.cli", *words], cwd=tmp_path, capture_output=True, text=True)
+    done = subprocess.run([sys.executable, "-m", "epdem", *words], cwd=tmp_path, capture_output=True, text=True)
     assert done.returncode == code, done.stderr
     checks = pd.read_csv(tmp_path / "out/crosscheck.csv").set_index("model")["check"]
     assert checks["liggghts-thornton_ning"] == "other code: outside" and checks["embedded"] == ("pass", "fail")[code]

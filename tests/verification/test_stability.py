@@ -8,10 +8,10 @@ import numpy as np
 import pytest
 from typer.testing import CliRunner
 
-from epdem.cli.main import app
 from epdem.errors import CaseError
 from epdem.laws.library import Law
 from epdem.verification import native, stability
+from epdem.verification.cli import app
 from epdem.verification.models import engine
 from epdem.verification.stability import bulk, bulk_checks, precisions, precisions_yade, repeats, roundoff
 from epdem.verification.stability.assembly import AssemblyPlan

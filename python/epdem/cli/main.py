@@ -8,12 +8,10 @@ import os
 import shutil
 import signal
 import sys
-from importlib import import_module
 from pathlib import Path
 from typing import Annotated, Any
 
 import typer
-from typer.core import TyperGroup
 
 from .. import __version__
 from ..base import stopping
@@ -47,20 +45,6 @@ app = typer.Typer(
     help=ABOUT,
     context_settings={"help_option_names": ["-h", "--help"]},
 )
-
-
-class Verify(TyperGroup):
-    """The commands of `epdem verify`, imported when they are requested: a run imports nothing of the proof."""
-
-    @property  # type: ignore[override]
-    def commands(self) -> dict[str, Any]:
-        """Every command by name."""
-        group: Any = typer.main.get_command(import_module("epdem.verification.cli").app)
-        return dict(group.commands)
-
-    @commands.setter
-    def commands(self, given: dict[str, Any]) -> None:
-        assert not given  # typer's own list
 
 
 def _say_version(wanted: bool) -> None:
@@ -241,11 +225,6 @@ for command in (
     app.command()(command)
 app.command("points", hidden=True)(cli_sweep.points)  # what batch scripts call
 app.add_typer(export, name="export")
-verify = typer.Typer(
-    cls=Verify, help="Verify laws and engines against theory, measurements, each other and other codes."
-)
-verify.callback(no_args_is_help=True)(lambda: None)
-app.add_typer(verify, name="verify")
 
 
 def _usage(error: Any) -> int:
@@ -262,14 +241,14 @@ def _usage(error: Any) -> int:
     return 2
 
 
-def main() -> None:
-    """Entry point: errors that a user can correct become one sentence and an exit code."""
+def main(commands: typer.Typer = app) -> None:
+    """Run a command: errors that a user can correct become one sentence and an exit code."""
     os.environ.pop("MPLBACKEND", None)  # figures are only saved, and an unknown backend ends matplotlib's import
     stopping.listen()  # whatever stops us, no engine stays behind
     if isinstance(sys.stdout, io.TextIOWrapper):
         sys.stdout.reconfigure(errors="backslashreplace")  # a title may hold what the terminal's encoding does not
     try:
-        sys.exit(app(prog_name="epdem", standalone_mode=False))
+        sys.exit(commands(prog_name="epdem", standalone_mode=False))
     except UsageError as error:
         sys.exit(_usage(error))
     except EpdemError as error:

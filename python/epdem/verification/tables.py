@@ -2,11 +2,14 @@
 """DataFrames as tables on the console."""
 
 import math
+from typing import TYPE_CHECKING
 
-import pandas as pd
 from rich.table import Table
 
 from ..base.terminal import table
+
+if TYPE_CHECKING:  # slow to import
+    import pandas as pd
 
 
 def cell(value: object) -> str:
@@ -16,7 +19,7 @@ def cell(value: object) -> str:
     return str(value)
 
 
-def frame_table(title: str, frame: pd.DataFrame) -> Table:
+def frame_table(title: str, frame: "pd.DataFrame") -> Table:
     """A DataFrame as a table."""
     shown = table(title, map(str, frame.columns))
     for row in frame.itertuples(index=False):

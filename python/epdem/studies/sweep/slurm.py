@@ -243,7 +243,7 @@ def script(sweep: Sweep, folder: Path, given: Parameters) -> str:
             "#!/bin/bash",
             *lines,
             "# Each task runs its share of the points; what is finished does not run again.",
-            f"{python} -m epdem.cli points {place} --task $SLURM_ARRAY_TASK_ID --tasks {tasks} &",
+            f"{python} -m epdem points {place} --task $SLURM_ARRAY_TASK_ID --tasks {tasks} &",
             "# Shortly before its walltime ends, a task is queued again and goes on with what is missing.",
             "trap 'scontrol requeue ${SLURM_ARRAY_JOB_ID}_$SLURM_ARRAY_TASK_ID' USR2",
             "trap : TERM",

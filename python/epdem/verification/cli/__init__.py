@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The commands `epdem verify ...`; the command line mounts `app`."""
+"""The commands `epdem verify ...`; `app` has them beside the commands of the product."""
 
 import typer
 
+from ...cli.main import app
 from .cost import cost
 from .crosscheck import crosscheck
 from .data import data
@@ -11,6 +12,11 @@ from .motion import motion
 from .rerun import rerun
 from .stability import stability
 
-app = typer.Typer()
+__all__ = ["app"]
+
+verify = typer.Typer(
+    no_args_is_help=True, help="Verify laws and engines against theory, measurements, each other and other codes."
+)
 for command in (crosscheck, cost, stability, motion, data, figures, rerun):
-    app.command()(command)
+    verify.command()(command)
+app.add_typer(verify, name="verify")
