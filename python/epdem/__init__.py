@@ -4,7 +4,8 @@
 import importlib
 from typing import Any
 
-__version__ = "0.2.0"
+from .base import __version__ as __version__
+
 __all__ = ["Case", "Fit", "Run", "Scene", "SceneRun", "calibrate", "cite", "deck", "predict", "run", "sweep", "theory"]
 
 

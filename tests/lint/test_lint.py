@@ -82,7 +82,7 @@ def test_all_files_state_one_version():
         "pyproject.toml": r'^version = "(.+)"',
         "CMakeLists.txt": r"^project\(epdem VERSION (\S+)",
         "cpp_contact/lammps/export/CMakeLists.txt": r"^project\(epdem VERSION (\S+)",
-        "python/epdem/__init__.py": r'^__version__ = "(.+)"',
+        "python/epdem/base/__init__.py": r'^__version__ = "(.+)"',
         "CITATION.cff": r"^version: (.+)",
         "packaging/spack/package.py": r'^    version\("(.+)"\)',
         "packaging/easybuild/epdem-0.2.0-foss-2024a.eb": r'^version = "(.+)"',

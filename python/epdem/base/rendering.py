@@ -9,9 +9,8 @@ from typing import Any, TypeVar
 import jinja2
 import numpy as np
 
-from .. import __version__
 from ..errors import CaseError
-from . import paths
+from . import __version__, paths
 
 
 def number(x: float | int) -> str:

@@ -6,8 +6,7 @@ from collections.abc import Iterable
 from functools import cache
 from pathlib import Path
 
-from .. import __version__
-from . import paths
+from . import __version__, paths
 
 
 @cache

@@ -13,8 +13,7 @@ from typing import Annotated, Any
 
 import typer
 
-from .. import __version__
-from ..base import stopping
+from ..base import __version__, stopping
 from ..base.paths import DEFAULT_ENGINE
 from ..base.terminal import bar, console, status
 from ..errors import CaseError, EpdemError, Stopped

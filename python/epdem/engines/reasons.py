@@ -4,8 +4,7 @@
 from collections.abc import Sequence
 from pathlib import Path
 
-from .. import __version__
-from ..base import rendering
+from ..base import __version__, rendering
 from ..base.paths import DEFAULT_ENGINE
 from ..case.impact import Case
 from ..case.scene import SceneCase

@@ -12,7 +12,7 @@ from pathlib import Path
 
 import pandas as pd
 
-from .. import __version__
+from ..base import __version__
 from ..base.folders import claim, results_folder
 from ..base.stages import inputs_hash
 from ..case.impact import Case, parse

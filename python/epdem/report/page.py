@@ -12,8 +12,7 @@ from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, ClassVar
 
-from .. import __version__
-from ..base import paths
+from ..base import __version__, paths
 from ..base.files import atomic
 from .chart import Chart
 from .drawing import svg

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pandas as pd
 
-from .. import __version__
+from ..base import __version__
 from ..base.folders import Results, claim, results_folder
 from ..base.paths import DEFAULT_ENGINE
 from ..base.stages import inputs_hash, library_hash

@@ -4,8 +4,7 @@
 import re
 from pathlib import Path
 
-from ... import __version__
-from ...base import paths
+from ...base import __version__, paths
 from ...base.files import write_texts
 from ...errors import CaseError
 

@@ -6,7 +6,7 @@ import sys
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 
-from ... import __version__
+from ...base import __version__
 from ...base.folders import claim
 from ...base.stages import library_hash, product_hash
 from ...engines.reasons import citations, reasons
