@@ -85,7 +85,12 @@ class Law2_ScGeom_EpPhys : public LawFunctor {
       phys.contactRadius = now.radius;
       phys.kn = epdem::normal_stiffness(law.E_star, now.radius);
       if (functor.recordStrain) functor.record_strain(now.radius / R_star, overlap / R_star);
-      if (!books) return;
+      if (books) book(law, R_star, before, now, overlap);
+    }
+    // a call, so that a contact without energies keeps the registers
+    template <class Law, class State, class Step>
+    [[gnu::noinline]] void book(const Law& law, double R_star, const State& before, const Step& now,
+                                double overlap) const {
       const auto e = epdem::energies(law, R_star, before, now, overlap);
       phys.plasticWork += e.plastic_work_step;
       phys.elasticEnergy = e.stored;
@@ -142,30 +147,30 @@ class Law2_ScGeom_EpPhys : public LawFunctor {
     return phys.wall ? act<Friction, true, Law>(geom, phys, contact) : act<Friction, false, Law>(geom, phys, contact);
   }
 
+  // flatten: without it GCC copies constants, motion and history between the functions of a contact
   template <class Friction, bool wall, class Law>
-  bool act(const ScGeom& geom, EpPhys& phys, const Interaction& contact) {
+  [[gnu::flatten]] bool act(const ScGeom& geom, EpPhys& phys, const Interaction& contact) {
     const auto& bodies = *scene->bodies;
     const Body::id_t id1 = contact.getId1(), id2 = contact.getId2();
     const State &s1 = *bodies[id1]->state, &s2 = *bodies[id2]->state;
     const bool periodic = scene->isPeriodic;
-    const Vector3r shift = periodic ? scene->cell->intrShiftPos(contact.cellDist) : Vector3r(Vector3r::Zero());
-    const Vector3r drift = periodic ? scene->cell->intrShiftVel(contact.cellDist) : Vector3r(Vector3r::Zero());
+    const Vec shift = periodic ? vec(scene->cell->intrShiftPos(contact.cellDist)) : Vec{};
+    const Vec drift = periodic ? vec(scene->cell->intrShiftVel(contact.cellDist)) : Vec{};
 
     // i is the first sphere; of a wall and a sphere the sphere
     const bool swapped = wall && phys.wall == 1;
     epdem::Kinematics<double> c;
     if constexpr (wall) {
       const State &sphere = swapped ? s2 : s1, &plane = swapped ? s1 : s2;
-      const Vector3r apart = swapped || !periodic ? Vector3r(geom.contactPoint - plane.pos)
-                                                  : Vector3r(geom.contactPoint - plane.pos - shift);
+      const Vec apart = vec(geom.contactPoint) - vec(plane.pos) - (swapped ? Vec{} : shift);
       const double radius = swapped ? geom.radius2 : geom.radius1, side = swapped ? 1.0 : -1.0;
-      const Vector3r at_contact = plane.vel + plane.angVel.cross(apart);
-      const Vector3r velocity = sphere.vel - at_contact + side * drift;
+      const Vec at_contact = vec(plane.vel) + cross(vec(plane.angVel), apart);
       c = epdem::at_wall(radius, double(geom.penetrationDepth),
-                         vec(side * (radius - geom.penetrationDepth) * geom.normal), vec(velocity), vec(sphere.angVel));
+                         side * (radius - geom.penetrationDepth) * vec(geom.normal),
+                         vec(sphere.vel) - at_contact + side * drift, vec(sphere.angVel));
     } else {
-      c = epdem::between_spheres(double(geom.radius1), double(geom.radius2), vec(s1.pos - s2.pos - shift),
-                                 vec(s1.vel - s2.vel - drift), vec(s1.angVel), vec(s2.angVel));
+      c = epdem::between_spheres(double(geom.radius1), double(geom.radius2), vec(s1.pos) - vec(s2.pos) - shift,
+                                 vec(s1.vel) - vec(s2.vel) - drift, vec(s1.angVel), vec(s2.angVel));
     }
 
     auto& pair = phys.constants.of<Law>();
@@ -179,7 +184,7 @@ class Law2_ScGeom_EpPhys : public LawFunctor {
     }
     if (phys.frictionId == Friction::id) load(phys, friction_at, history.friction);
     phys.frictionId = Friction::id;
-    load(phys, rolling_at, history.rolling);
+    if (rollingModel_ != 0) load(phys, rolling_at, history.rolling);
 
     const epdem::ContactSettings settings{scene->dt,          rollingModel_, 0,    pair.damping > 0.0,
                                           pair.dashpot > 0.0, torsion,       false};
@@ -188,19 +193,20 @@ class Law2_ScGeom_EpPhys : public LawFunctor {
         Observer{*this, phys, contact, bool(scene->trackEnergy)});
     store(phys, 0, history.law);
     store(phys, friction_at, history.friction);
-    store(phys, rolling_at, history.rolling);
+    if (rollingModel_ != 0) store(phys, rolling_at, history.rolling);
 
-    const Vector3r force = swapped ? Vector3r(-eigen(loads.force)) : eigen(loads.force);  // on body 1
+    const Vec on_1 = swapped ? -loads.force : loads.force, normal = vec(geom.normal);
+    const Vec normal_force = -dot(on_1, normal) * normal;
+    const Vector3r force = eigen(on_1), reaction = eigen(-on_1);
     phys.ks = epdem::tangential_stiffness(pair.shear_modulus, phys.contactRadius);
-    phys.normalForce = -force.dot(geom.normal) * geom.normal;
-    phys.shearForce = -force - phys.normalForce;
+    phys.normalForce = eigen(normal_force);
+    phys.shearForce = eigen(-on_1 - normal_force);
     scene->forces.addForce(id1, force);
-    scene->forces.addForce(id2, -force);
+    scene->forces.addForce(id2, reaction);
     if constexpr (wall) {
-      const Vector3r arm = geom.contactPoint - (swapped ? s1.pos : Vector3r(s2.pos + shift));
+      const Vec arm = vec(geom.contactPoint) - (swapped ? vec(s1.pos) : vec(s2.pos) + shift);
       scene->forces.addTorque(swapped ? id2 : id1, eigen(loads.torque_i));
-      scene->forces.addTorque(swapped ? id1 : id2,
-                              arm.cross(swapped ? force : Vector3r(-force)) + eigen(loads.torque_j));
+      scene->forces.addTorque(swapped ? id1 : id2, eigen(cross(arm, -loads.force) + loads.torque_j));
     } else {
       scene->forces.addTorque(id1, eigen(loads.torque_i));
       scene->forces.addTorque(id2, eigen(loads.torque_j));
@@ -210,7 +216,7 @@ class Law2_ScGeom_EpPhys : public LawFunctor {
   }
 
   /// Adds to an energy of O.energy. One thread creates all names before any thread adds.
-  void book(Energy which, double value) {
+  [[gnu::noinline]] void book(Energy which, double value) {
     static constexpr const char* names[energies] = {"plasticWork", "contactElastic", "adhesionLoss", "frictionWork",
                                                     "frictionElastic"};
     static constexpr bool momentary[energies] = {false, true, false, false, true};
@@ -227,7 +233,8 @@ class Law2_ScGeom_EpPhys : public LawFunctor {
   }
 
   /// Adds the work of a contact to the work of its spheres.
-  void share(const EpPhys& phys, const Interaction& contact, Real EpState::* work, double value) const {
+  [[gnu::noinline]] void share(const EpPhys& phys, const Interaction& contact, Real EpState::* work,
+                               double value) const {
     if (value == 0.0) return;
     for (const int k : {1, 2}) {
       if (phys.wall == k) continue;
@@ -243,7 +250,7 @@ class Law2_ScGeom_EpPhys : public LawFunctor {
   }
 
   /// Notes how far a contact leaves small strain.
-  void record_strain(double radius_ratio, double overlap_ratio) {
+  [[gnu::noinline]] void record_strain(double radius_ratio, double overlap_ratio) {
     if (radius_ratio <= largestRadiusRatio && overlap_ratio <= largestOverlapRatio) return;
 #ifdef YADE_OPENMP
 #pragma omp critical(epdem_strain)

@@ -67,7 +67,7 @@ struct ThorntonNing {
   /// R_p [m] of the curve on which a contact opens that has yielded up to y.
   T opening(T R_star, T y) const noexcept {
     const T cube = y * y * y;
-    return 4.0 / 3.0 * E_star * cube / (load(R_star, y) / cube + 2.0 * E_star * c);
+    return 4.0 / 3.0 * E_star * cube * cube / (load(R_star, y) + 2.0 * E_star * c * cube);
   }
 
   /// y = sqrt(a) at which the contact yields: the root of y (y^2 - p_y soft) = B soft, by Newton's method from above.
@@ -108,15 +108,17 @@ struct ThorntonNing {
 template <class T>
 inline constexpr bool adheres<ThorntonNing<T>> = true;
 
-/// y = sqrt(a) of a growing contact at `delta` > 0: the largest root of y^4 - c R* y = R* delta, which is not smaller
-/// than `y_max` >= (c R*)^(1/3) and lies between max(y_max, (R* delta)^(1/4)) and 1.23 times that. Newton's method.
+/// y = sqrt(a) of a growing contact at `delta` > 0: the largest root of y^4 - c R* y = R* delta. It lies between
+/// b = max((c R*)^(1/3), (R* delta)^(1/4)) and 1.23 b. `root` is (c R)^(1/3) of the curve on which the contact opens,
+/// from which one step of Halley's method gives (c R*)^(1/3) to 1 % wherever it is larger than (R* delta)^(1/4). From
+/// there three steps of Halley's method (of third order) lead to round-off.
 template <class T>
-inline T grown(const ThorntonNing<T>& law, T R_star, T y_max, T delta) noexcept {
+inline T grown(const ThorntonNing<T>& law, T R_star, T R, T root, T delta) noexcept {
   const T X = R_star * delta, cube = law.c * R_star;
-  T y = 1.1 * max(y_max, sqrt(sqrt(X)));
-  for (int k = 0; k < 5; ++k) {
-    const T y3 = y * y * y;
-    y = (3.0 * y3 * y + X) / (4.0 * y3 - cube);
+  T y = 1.1 * max(root * ((R + 2.0 * R_star) / (2.0 * R + R_star)), sqrt(sqrt(X)));
+  for (int k = 0; k < 3; ++k) {
+    const T y2 = y * y, y3 = y2 * y, f = y * (y3 - cube) - X, slope = 4.0 * y3 - cube;
+    y = y - f * slope / (slope * slope - 6.0 * y2 * f);
   }
   return y;
 }
@@ -139,23 +141,26 @@ inline Step<ThorntonNing<T>> step(const ThorntonNing<T>& law, T R_star, const ty
   const auto ends = stood & (X < fold), stands = (stood & (X >= fold)) | forms;
   const auto grows = stands & (delta > before.delta_max);
 
-  T y = curve(y_f, X), at_touch = -4.0 / 3.0 * law.pull * R;
-  if (any(grows)) {
-    T up = y;
-    if (any(grows & dented)) {
-      const T y_max = curve(y_f, R * (before.delta_max - dent));
-      up = select(dented, grown(law, R_star, y_max, delta), y);
-    }
-    const auto flows = grows & law.yields_at(R_star, up);
-    if (any(flows)) {
-      const auto at_once = forms & (dent <= 0.0) & law.yields_at(R_star, root);
-      if (any(at_once)) at_touch = select(at_once, law.load(R_star, root), at_touch);
-      R = select(flows, law.opening(R_star, up), R);
-      dent = select(flows, up * up * up * up * (1.0 / R_star - 1.0 / R), dent);
-      own = delta - dent;
-      root = refreshed(root, law.c * R);
-      y = curve(fold_share * root, R * own);
-    }
+  T y{}, up{}, at_touch = -4.0 / 3.0 * law.pull * R;
+  auto flows = grows & dented;
+  if (any(flows)) {
+    up = grown(law, R_star, R, root, delta);
+    flows = flows & law.yields_at(R_star, up);
+  }
+  if (any(!flows)) {
+    y = curve(y_f, X);
+    const auto first = grows & !dented & law.yields_at(R_star, y);
+    up = select(first, y, up);
+    flows = flows | first;
+  }
+  if (any(flows)) {
+    const auto at_once = forms & (dent <= 0.0) & law.yields_at(R_star, root);
+    if (any(at_once)) at_touch = select(at_once, law.load(R_star, root), at_touch);
+    R = select(flows, law.opening(R_star, up), R);
+    dent = select(flows, up * up * up * up * ((R - R_star) / (R * R_star)), dent);
+    own = delta - dent;
+    root = refreshed(root, law.c * R);
+    y = curve(fold_share * root, R * own);
   }
   T jump{};
   if (any(forms)) jump = select(forms, on_touch(at_touch, delta - before.dent, closing), zero);
