@@ -17,8 +17,16 @@ struct Spheres {
 /// Constants of the pairs of types: most_constants for each i * width + j.
 struct PairConstants {
   const double* all;
-  int width;  // number of types + 1
+  int width;   // number of types + 1
+  bool mixed;  // whether the spheres can have several types
 };
+
+/// Whether n spheres have several types: a type of walls alone, such as that of a floor, is none of them.
+inline bool several_types(const int* type, int n) {
+  int others = 0;
+  for (int i = 0; i < n; ++i) others |= type[i] ^ type[0];
+  return others != 0;
+}
 
 /// Fills a block whose n > 0 pairs (i, j) are known and prefetches what lies apart in memory. history(i, k) fetches the
 /// history of pair k, if it has one.
@@ -44,7 +52,7 @@ inline void gather_pairs(Block& b, Pass& pass, int n, const Spheres& spheres, co
   const auto material = [=](int i, int j) { return all + most_constants * (type[i] * width + type[j]); };
   b.material[0] = material(b.i[0], b.j[0]);
   bool several = false;
-  for (int k = 0; k < n && width > 2; ++k) {  // more than one type
+  for (int k = 0; k < n && constants.mixed; ++k) {
     b.material[k] = material(b.i[k], b.j[k]);
     several |= b.material[k] != b.material[0];
   }

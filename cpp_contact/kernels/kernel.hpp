@@ -298,7 +298,7 @@ constexpr Kernels all() noexcept {
 #define EPDEM_FILL(Class) fill<Class<Lanes>>(kernels);
   EPDEM_LAWS(EPDEM_FILL)
 #undef EPDEM_FILL
-  kernels.spheres = {half_step, any_moved, near_sphere, near_triangle<true>, near_triangle<false>};
+  kernels.spheres = {half_step, any_moved, near_sphere, near_triangle<true>, near_triangle<false>, next_pairs};
   return kernels;
 }
 

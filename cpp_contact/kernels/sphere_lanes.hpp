@@ -55,6 +55,40 @@ bool any_moved(const double* now, const double* before, int n, double square) {
   return found;
 }
 
+/// Arrays of whole numbers that are kept or dropped together.
+template <class T, int count>
+struct Arrays {
+  T* of[count];
+};
+
+/// Writes the numbers of the lanes in the mask one after the other and returns how many these are; lane_count numbers
+/// can be written. An array may be written onto itself.
+template <int count>
+EPDEM_INLINE int kept(Mask mask, const Arrays<const int, count>& from, const Arrays<int, count>& to) {
+#if defined __AVX512VL__
+  const __mmask8 bits = _mm512_movepi64_mask(reinterpret_cast<__m512i>(mask));
+  for (int c = 0; c < count; ++c) {
+    const __m256i all = _mm256_loadu_si256(reinterpret_cast<const __m256i*>(from.of[c]));
+    _mm256_storeu_si256(reinterpret_cast<__m256i*>(to.of[c]), _mm256_maskz_compress_epi32(bits, all));
+  }
+  return __builtin_popcount(bits);
+#else
+  int n = 0, all[count][lane_count];
+  for (int c = 0; c < count; ++c) __builtin_memcpy(all[c], from.of[c], sizeof all[c]);
+  for (int l = 0; l < lane_count; ++l) {
+    for (int c = 0; c < count; ++c) to.of[c][n] = all[c][l];
+    n -= static_cast<int>(mask[l]);
+  }
+  return n;
+#endif
+}
+
+/// Which of the next lanes are among n.
+EPDEM_INLINE Mask among(int n) {
+  static constexpr double lanes[] = {0, 1, 2, 3, 4, 5, 6, 7};
+  return load<Lanes>(lanes) < constant<Lanes>(n);
+}
+
 /// The next of n candidates; the lanes behind the last repeat it and are not valid.
 struct Candidates {
   int repeated[lane_count];
@@ -63,27 +97,17 @@ struct Candidates {
   Mask valid;
 
   EPDEM_INLINE Candidates(const NearTest& t, const int* candidates, int n) : index(candidates) {
-    static constexpr double lanes[] = {0, 1, 2, 3, 4, 5, 6, 7};
     if (n < lane_count) {
       for (int l = 0; l < lane_count; ++l) repeated[l] = candidates[l < n ? l : n - 1];
       index = repeated;
     }
-    valid = load<Lanes>(lanes) < constant<Lanes>(n);
+    valid = among(n);
     at = columns([&](int l)
                      __attribute__((always_inline)) { return load<Row>(t.spheres + 4 * static_cast<long>(index[l])); });
   }
 
   /// Writes the candidates in the mask and returns their number.
-  EPDEM_INLINE int keep(Mask mask, int* found) const {
-    mask &= valid;
-    int count = 0, of[lane_count];
-    for (int l = 0; l < lane_count; ++l) of[l] = index[l];  // `found` may be the candidates
-    for (int l = 0; l < lane_count; ++l) {
-      found[count] = of[l];
-      count -= static_cast<int>(mask[l]);
-    }
-    return count;
-  }
+  EPDEM_INLINE int keep(Mask mask, int* found) const { return kept<1>(mask & valid, {{index}}, {{found}}); }
 };
 
 int near_sphere(const NearTest& t, int of, const int* candidates, int n, int* found) {
@@ -123,6 +147,34 @@ int near_triangle(const NearTest& t, const TrianglePlanes& planes, const int* ca
     count += c.keep(near, found + count);
   }
   return count;
+}
+
+int next_pairs(PairSearch& s, int* i, int* j, int* place) {
+  const int last = s.count - s.tested < pairs_at_once ? s.count : s.tested + pairs_at_once;
+  int found = 0;
+  // places as one vector: the parts of an array of whole numbers would be stored one by one
+  typedef int Places __attribute__((vector_size(4 * lane_count)));
+  static constexpr int first[] = {0, 1, 2, 3, 4, 5, 6, 7};
+  Places next;
+  __builtin_memcpy(&next, first, sizeof next);
+  next += s.tested;
+  for (int k = s.tested; k < last; k += lane_count) {
+    const int *const of = s.i + k, *const with = s.j + k;
+    const Columns d = columns([=](int l) __attribute__((always_inline)) {
+      return load<Row>(s.x + 3 * long(of[l])) - load<Row>(s.x + 3 * long(with[l]));
+    });
+    Lanes radius_i, radius_j;
+    int places[lane_count];
+    for (int l = 0; l < lane_count; ++l) radius_i[l] = s.radius[of[l]];
+    for (int l = 0; l < lane_count; ++l) radius_j[l] = s.radius[with[l]];
+    __builtin_memcpy(places, &next, sizeof places);
+    next += lane_count;
+    const Lanes sum = radius_i + radius_j;
+    const Mask meet = d.a * d.a + d.b * d.b + d.c * d.c < s.factor * sum * sum;
+    found += kept<3>(meet & among(last - k), {{of, with, places}}, {{i + found, j + found, place + found}});
+  }
+  s.tested = last;
+  return found;
 }
 
 }  // namespace

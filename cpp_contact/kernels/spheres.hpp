@@ -31,6 +31,16 @@ struct TrianglePlanes {
   double precision;
 };
 
+constexpr int pairs_at_once = 64;
+
+/// Pairs of neighbours, and the number of them that are tested.
+struct PairSearch {
+  const double *x, *radius;  // rows of three; one number behind the last row can be read
+  double factor;             // a pair meets at a distance below the root of `factor` times the sum of its radii
+  const int *i, *j;          // spheres; 8 more can be read
+  int count, tested = 0;
+};
+
 struct SphereKernels {
   /// v += dt_force F / (mass_factor m) and omega += dt_torque T / (R^2 m), then x += dt v.
   void (*half_step)(const HalfStep&);
@@ -43,6 +53,9 @@ struct SphereKernels {
   int (*near_sphere)(const NearTest&, int of, const int* candidates, int n, int* found);
   int (*listed_at_triangle)(const NearTest&, const TrianglePlanes&, const int* candidates, int n, int* found);
   int (*near_triangle)(const NearTest&, const TrianglePlanes&, const int* candidates, int n, int* found);
+  /// Tests the next pairs_at_once pairs, writes those that meet, with their place among all pairs, and returns their
+  /// number. The arrays have room for 8 more.
+  int (*next_pairs)(PairSearch&, int* i, int* j, int* place);
 };
 
 }  // namespace epdem::kernels

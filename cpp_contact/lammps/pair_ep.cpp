@@ -280,7 +280,7 @@ void PairEp::fetch(int n, HistoryAt history_at) {
   };
   const kernels::Spheres spheres{atom->f[0], atom->torque[0], atom->radius, atom->rmass,
                                  atom->type, atom->mask,      frozen_};
-  kernels::gather_pairs(b, pass_, n, spheres, {constants_.data(), width_}, history);
+  kernels::gather_pairs(b, pass_, n, spheres, {constants_.data(), width_, width_ > 2}, history);
   kernels::pad(b, n);
 }
 

@@ -93,6 +93,7 @@ void PairLoop::run(PairGran* pair, const Plan& plan, double now) {
   pass_.now = now;
   pass_.freeze = pair->freeze_group_bit() != 0;
   pass_.growth = plan.growth ? plan.growth->of_all() : nullptr;
+  mixed_ = plan.width > 2 && several_types(atom->type, atom->nlocal + atom->nghost);
   flags_ = CONTACT_NORMAL_MODEL | (plan.friction ? CONTACT_TANGENTIAL_MODEL : 0) |
            (plan.settings.cohesion ? CONTACT_COHESION_MODEL : 0) | (plan.rolls ? CONTACT_ROLLING_MODEL : 0);
   plan.growth     ? gather<Reach::grown>(plan)
@@ -100,58 +101,50 @@ void PairLoop::run(PairGran* pair, const Plan& plan, double now) {
                   : gather<Reach::attached>(plan);
 }
 
-/// Writes every neighbour into the block and keeps the neighbours that overlap; with adhesion also near neighbours that
-/// were in contact.
-template <Reach reach>
-void PairLoop::gather(const Plan& plan) {
-  Block& b = *block_;
+/// The pairs of LIGGGHTS's lists side by side in memory.
+void PairLoop::read_lists() {
+  if (listed_ == neighbor->lastcall) return;
+  listed_ = neighbor->lastcall;
   const LAMMPS_NS::NeighList& list = *pair_->list;
-  const double *const x = atom->x[0], *const radius = atom->radius;
-  const double near = neighbor->contactDistanceFactor * neighbor->contactDistanceFactor;
-  const double* const grown = reach == Reach::grown ? plan.growth->reach() : nullptr;
-  long n = 0, touching = 0;  // of the n pairs of grown spheres that meet those that overlap
+  i_.clear();
+  j_.clear();
+  first_.resize(atom->nlocal);
   for (int ii = 0; ii < list.inum; ++ii) {
     const int i = list.ilist[ii], count = list.numneigh[i];
-    const int* const neighbours = list.firstneigh[i];
-    const int* const flags = reach == Reach::attached ? pair_->listgranhistory->firstneigh[i] : nullptr;
-    const double xi = x[3 * i], yi = x[3 * i + 1], zi = x[3 * i + 2], ri = radius[i];
-    const double grown_i = reach == Reach::grown ? grown[i] : 0.0;
-    for (int first = 0; first < count; first += block_size) {  // nearly always one turn
-      const int last = std::min(count, first + block_size);
-      if (n + last - first > block_size) {
-        finish<reach>(plan, n, touching < n);
-        n = touching = 0;
-      }
-      for (int jj = first; jj < last; ++jj) {
-        const long j = neighbours[jj] & NEIGHMASK;
-        const double dx = xi - x[3 * j], dy = yi - x[3 * j + 1], dz = zi - x[3 * j + 2], sum = ri + radius[j];
-        const double rsq = dx * dx + dy * dy + dz * dz;
-        const bool overlaps = rsq < sum * sum;
-        b.i[n] = i;
-        b.j[n] = static_cast<int>(j);
-        slot_[n] = jj;
-        if constexpr (reach == Reach::attached) {
-          overlaps_[n] = overlaps;
-          n += overlaps | ((flags[jj] != 0) & (rsq < near * sum * sum));
-        } else if constexpr (reach == Reach::grown) {
-          const double all = grown_i + grown[j];  // at least sum
-          overlaps_[n] = overlaps;
-          touching += overlaps;
-          n += rsq < all * all;
-        } else {
-          n += overlaps;
-        }
-      }
-    }
+    first_[i] = static_cast<int>(j_.size());
+    i_.insert(i_.end(), count, i);
+    for (int jj = 0; jj < count; ++jj) j_.push_back(list.firstneigh[i][jj] & NEIGHMASK);
   }
-  finish<reach>(plan, n, touching < n);
+  for (std::vector<int>* spheres : {&i_, &j_}) spheres->insert(spheres->end(), most_lanes, 0);
+}
+
+/// Writes into the block the pairs that overlap, with adhesion the pairs that are near, with growth the pairs whose
+/// grown spheres overlap.
+template <Reach reach>
+void PairLoop::gather(const Plan& plan) {
+  static_assert(2 * pairs_at_once <= block_size);
+  read_lists();
+  Block& b = *block_;
+  PairSearch search{pass_.x, atom->radius, 1.0, i_.data(), j_.data(), static_cast<int>(j_.size()) - most_lanes};
+  if (reach == Reach::attached) search.factor = neighbor->contactDistanceFactor * neighbor->contactDistanceFactor;
+  if (reach == Reach::grown) search.radius = plan.growth->reach();
+  const auto next_pairs = sphere_kernels(lmp).next_pairs;
+  int n = 0;
+  while (search.tested < search.count) {
+    const int found = next_pairs(search, b.i + n, b.j + n, slot_ + n);
+    for (const int last = n + found; n < last; ++n) slot_[n] -= first_[b.i[n]];
+    if (n <= block_size - pairs_at_once) continue;
+    finish<reach>(plan, n);
+    n = 0;
+  }
+  finish<reach>(plan, n);
 }
 
 template <Reach reach>
-void PairLoop::finish(const Plan& plan, int n, bool gaps) {
+void PairLoop::finish(const Plan& plan, int n) {
   constexpr bool adheres = reach == Reach::attached, grown = reach == Reach::grown;
   if constexpr (adheres) n = without_parted(plan, n);
-  if (grown && gaps) n = without_gaps(plan, n);
+  if constexpr (grown) n = without_gaps(plan, n);
   if (n == 0) return;
   fetch(plan, n);
   pad(*block_, n);
@@ -169,10 +162,14 @@ void PairLoop::finish(const Plan& plan, int n, bool gaps) {
 int PairLoop::without_parted(const Plan& plan, int n) {
   Block& b = *block_;
   const int size = pair_->dnum();
+  const double *const x = atom->x[0], *const radius = atom->radius;
   int kept = 0;
   for (int k = 0; k < n; ++k) {
-    const int i = b.i[k], slot = slot_[k];
-    if (!overlaps_[k]) {
+    const int i = b.i[k], j = b.j[k], slot = slot_[k];
+    const double dx = x[3 * i] - x[3 * j], dy = x[3 * i + 1] - x[3 * j + 1], dz = x[3 * i + 2] - x[3 * j + 2];
+    const double sum = radius[i] + radius[j];
+    if (!(dx * dx + dy * dy + dz * dz < sum * sum)) {
+      if (pair_->listgranhistory->firstneigh[i][slot] == 0) continue;
       const double* const h = pair_->listgranhistory->firstdouble[i] + size * slot;
       if (!(h[plan.root] > 0.0) || pass_.now - h[plan.last_step] > 1.0) {
         pair_->listgranhistory->firstneigh[i][slot] &= ~flags_;
@@ -180,7 +177,7 @@ int PairLoop::without_parted(const Plan& plan, int n) {
       }
     }
     b.i[kept] = i;
-    b.j[kept] = b.j[k];
+    b.j[kept] = j;
     slot_[kept++] = slot;
   }
   return kept;
@@ -195,9 +192,9 @@ int PairLoop::without_gaps(const Plan& plan, int n) {
   int kept = 0;
   for (int k = 0; k < n; ++k) {
     const int i = b.i[k], j = b.j[k], slot = slot_[k];
-    if (!overlaps_[k]) {
-      const double dx = x[3 * i] - x[3 * j], dy = x[3 * i + 1] - x[3 * j + 1], dz = x[3 * i + 2] - x[3 * j + 2];
-      const double sum = radius[i] + radius[j], rsq = dx * dx + dy * dy + dz * dz;
+    const double dx = x[3 * i] - x[3 * j], dy = x[3 * i + 1] - x[3 * j + 1], dz = x[3 * i + 2] - x[3 * j + 2];
+    const double sum = radius[i] + radius[j], rsq = dx * dx + dy * dy + dz * dz;
+    if (!(rsq < sum * sum)) {
       if (!(rsq < near * sum * sum)) continue;
       const double* const h = pair_->listgranhistory->firstdouble[i] + size * slot;
       const double delta_max = pass_.now - h[plan.last_step] > 1.0 ? 0.0 : h[0];
@@ -233,7 +230,7 @@ void PairLoop::fetch(const Plan& plan, int n) {
   };
   const Spheres spheres{atom->f[0], atom->torque[0],          atom->radius, atom->rmass, atom->type,
                         atom->mask, pair_->freeze_group_bit()};
-  gather_pairs(b, pass_, n, spheres, {plan.constants.data(), plan.width}, history);
+  gather_pairs(b, pass_, n, spheres, {plan.constants.data(), plan.width, mixed_}, history);
 }
 
 /// Adds forces and torques in the order of the list; the sums of body i stay in registers while its pairs follow each

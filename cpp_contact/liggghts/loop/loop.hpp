@@ -66,14 +66,18 @@ class PairLoop : protected LAMMPS_NS::Pointers {
   /// Why this step cannot take this loop; nullptr: it can.
   const char* obstacle(LAMMPS_NS::PairGran* pair, const Plan& plan, int vflag, int addflag) const;
 
+  /// At the start of each run: LIGGGHTS makes new lists.
+  void forget_lists() { listed_ = -1; }
+
   /// All forces between pairs; `now` is the step.
   void run(LAMMPS_NS::PairGran* pair, const Plan& plan, double now);
 
  private:
+  void read_lists();
   template <Reach reach>
   void gather(const Plan& plan);
   template <Reach reach>
-  void finish(const Plan& plan, int n, bool gaps);
+  void finish(const Plan& plan, int n);
   int without_parted(const Plan& plan, int n);
   int without_gaps(const Plan& plan, int n);
   void fetch(const Plan& plan, int n);
@@ -83,11 +87,13 @@ class PairLoop : protected LAMMPS_NS::Pointers {
 
   const Kernel kernel_;
   const std::unique_ptr<Block> block_;
-  int slot_[block_size + most_lanes];       // place in the neighbour list of i
-  bool overlaps_[block_size + most_lanes];  // with adhesion or growth only
+  int slot_[block_size + most_lanes];  // place in the neighbour list of i
+  std::vector<int> i_, j_, first_;     // pairs of all neighbour lists, and where the list of each sphere begins
+  LAMMPS_NS::bigint listed_ = -1;      // step in which LIGGGHTS made the lists
   Pass pass_{};
   LAMMPS_NS::PairGran* pair_ = nullptr;
   int flags_ = 0;
+  bool mixed_ = false;  // spheres of several types
 };
 
 }  // namespace epdem::liggghts::loop

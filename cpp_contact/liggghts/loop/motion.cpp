@@ -1,12 +1,17 @@
 // SPDX-License-Identifier: GPL-2.0-or-later
 // In place of LIGGGHTS's integration of spheres and its gravity: the same operations over rows of numbers, so that not
-// one bit differs. Groups of some spheres, dipoles and forces of gravity that vary remain with LIGGGHTS's own.
+// one bit differs. Groups of some spheres, dipoles and forces of gravity that vary remain with LIGGGHTS's own. Ghosts
+// take their motion from their owners in the same way.
+#include "atom_vec_sphere.h"
 #include "fix_gravity.h"
 #include "fix_nve_sphere.h"
 #include "loop.hpp"
 #include "replaced.hpp"
 
 #ifdef EPDEM_BUILT_FOR
+
+#include <cmath>
+#include <limits>
 
 #include "domain.h"
 
@@ -27,6 +32,13 @@ HalfStep half_step(LAMMPS_NS::Atom& atom, int n, int dimension, double dt, doubl
   const double inertia = dimension == 2 ? 0.5 : 0.4;
   return {n,           nullptr, atom.v[0], atom.omega[0], atom.f[0],  atom.torque[0], atom.rmass,
           atom.radius, 0.0,     dt,        dt / inertia,  mass_factor};
+}
+
+/// Whether ghosts take positions and velocities alone from their owners, moved by whole edges of the room.
+bool sends_motion_alone(LAMMPS_NS::LAMMPS* lmp) {
+  const LAMMPS_NS::Domain& d = *lmp->domain;
+  return !generic_loop() && library_matches(lmp) && !lmp->atom->radvary_flag && !d.triclinic && !d.deform_vremap &&
+         !d.is_wedge;
 }
 
 }  // namespace
@@ -59,14 +71,56 @@ namespace loop = epdem::liggghts::loop;
   constexpr int constant = 0;  // in LIGGGHTS's source alone
   if (varflag != constant || fm || fix_relax || !atom->rmass || !loop::has_all(lmp, groupbit, n))
     return original(this, vflag);
-  const double *const x = atom->x[0], *const mass = atom->rmass, g[3] = {xacc, yacc, zacc};
-  double *const f = atom->f[0], energy = 0.0;
-  for (int i = 0; i < n; ++i) {
+  const double *const mass = atom->rmass, g[3] = {xacc, yacc, zacc};
+  double* const f = atom->f[0];
+  for (int i = 0; i < n; ++i)
     for (int c = 0; c < 3; ++c) f[3 * i + c] += mass[i] * g[c];
-    energy -= mass[i] * (g[0] * x[3 * i] + g[1] * x[3 * i + 1] + g[2] * x[3 * i + 2]);
-  }
   eflag = 0;
-  egrav = energy;
+  egrav = std::numeric_limits<double>::quiet_NaN();  // compute_scalar sums it where a command reads it
+}
+
+[[gnu::visibility("default")]] double FixGravity::compute_scalar() {
+  static const auto original =
+      reinterpret_cast<double (*)(FixGravity*)>(dlsym(RTLD_NEXT, "_ZN9LAMMPS_NS10FixGravity14compute_scalarEv"));
+  if (eflag == 0 && std::isnan(egrav)) {
+    const double *const x = atom->x[0], *const mass = atom->rmass;
+    egrav = 0.0;
+    for (int i = 0; i < atom->nlocal; ++i)
+      egrav -= mass[i] * (xacc * x[3 * i] + yacc * x[3 * i + 1] + zacc * x[3 * i + 2]);
+  }
+  return original(this);
+}
+
+[[gnu::visibility("default")]] int AtomVecSphere::pack_comm_vel(int n, int* list, double* buf, int shifted, int* pbc) {
+  static const auto original = reinterpret_cast<int (*)(AtomVecSphere*, int, int*, double*, int, int*)>(
+      dlsym(RTLD_NEXT, "_ZN9LAMMPS_NS13AtomVecSphere13pack_comm_velEiPiPdiS1_"));
+  if (n == 0 || !loop::sends_motion_alone(lmp)) return original(this, n, list, buf, shifted, pbc);
+  const double shift[3] = {pbc[0] * domain->xprd, pbc[1] * domain->yprd, pbc[2] * domain->zprd};
+  const double *const x = atom->x[0], *const v = atom->v[0], *const w = atom->omega[0];
+  double* __restrict row = buf;
+  for (int k = 0; k < n; ++k, row += 9) {
+    const long i = 3L * list[k];
+    for (int c = 0; c < 3; ++c) {
+      row[c] = shifted ? x[i + c] + shift[c] : x[i + c];
+      row[3 + c] = v[i + c];
+      row[6 + c] = w[i + c];
+    }
+  }
+  return 9 * n;
+}
+
+[[gnu::visibility("default")]] void AtomVecSphere::unpack_comm_vel(int n, int first, double* buf) {
+  static const auto original =
+      loop::next<AtomVecSphere*, int, int, double*>("_ZN9LAMMPS_NS13AtomVecSphere15unpack_comm_velEiiPd");
+  if (n == 0 || !loop::sends_motion_alone(lmp)) return original(this, n, first, buf);
+  double *const x = atom->x[0], *const v = atom->v[0], *const w = atom->omega[0];
+  const double* __restrict row = buf;
+  for (long i = 3L * first; i < 3L * (first + n); i += 3, row += 9)
+    for (int c = 0; c < 3; ++c) {
+      x[i + c] = row[c];
+      v[i + c] = row[3 + c];
+      w[i + c] = row[6 + c];
+    }
 }
 
 }  // namespace LAMMPS_NS

@@ -22,6 +22,7 @@ class Pair : public LIGGGHTS::PairStyles::Granular<Model>, private Planned {
   void init_granular() override {
     Base::init_granular();
     if (!missing()) prepare();
+    loop_.forget_lists();
   }
 
 #if __has_include("iloopcallbackcallable.h")  // LIGGGHTS-INL: a compute asks for its steps in place of a flag
