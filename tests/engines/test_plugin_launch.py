@@ -206,12 +206,3 @@ def test_nothing_follows_the_error_of_a_deck(tmp_path):
         env = os.environ | {"LD_PRELOAD": str(tmp_path / "clock.so")}
         done = subprocess.run(words, cwd=tmp_path, env=env, capture_output=True, check=False)
         assert done.stdout.splitlines()[-1].startswith(b"ERROR: Unknown command: nonsense"), done.stdout
-
-
-def test_large_pages_are_asked_for_unless_the_user_sets_glibc(monkeypatch):
-    from epdem.engines.liggghts.launcher import environment
-
-    monkeypatch.delenv("GLIBC_TUNABLES", raising=False)
-    assert environment()["GLIBC_TUNABLES"] == "glibc.malloc.hugetlb=1"
-    monkeypatch.setenv("GLIBC_TUNABLES", "glibc.malloc.hugetlb=0")
-    assert environment()["GLIBC_TUNABLES"] == "glibc.malloc.hugetlb=0"

@@ -49,12 +49,9 @@ def command(deck: str, *, ranks: int = 1, log: str = "none") -> list[str]:
 def environment(ranks: int = 1) -> dict[str, str]:
     """This process's, with one thread per rank; waiting ranks yield the processor to those that compute.
 
-    Large arrays lie in large pages of memory, where Linux offers them on request (glibc 2.35 and newer).
-
     A single rank inside a job of Slurm gets no variables of Slurm: MPI would look for an srun that did not start it.
     """
     ours = {k: v for k, v in os.environ.items() if ranks > 1 or not k.startswith(("SLURM_", "PMI"))}
-    ours.setdefault("GLIBC_TUNABLES", "glibc.malloc.hugetlb=1")
     return ours | {"OMP_NUM_THREADS": "1", "OMPI_MCA_mpi_yield_when_idle": "1"}
 
 
