@@ -22,13 +22,13 @@ sys.path.insert(0, str(Path(__file__).resolve().parent.parent / "tests" / "verif
 
 from plugin_compaction import E_STAR, GROWTH, HEAD, NU, E, Y, data, side_depths
 from plugin_decks import good
-from test_compaction import CAVITY, finite_elements
+from test_compaction import CAVITY, SOFT, finite_elements
 from test_plugin_compaction import falls, walks
 
 from epdem.engines.lammps import launcher
-from epdem.theory.cavity import Cavity
+from epdem.theory.cavity import FINITE_STRAIN, Cavity
 from epdem.theory.thornton import Thornton
-from epdem.verification.theory.compaction import BCC, FCC, SC, isotropic_pressure
+from epdem.verification.theory.compaction import BCC, FCC, HEXAGONAL, SC, isotropic_pressure
 
 DENSITIES = np.array([0.75, 0.80, 0.85, 0.90, 0.93, 0.95, 0.965])
 SETTINGS = {
@@ -235,24 +235,29 @@ def _force(R_star, overlap, most):
     return F
 
 
-LATTICES = {"fcc": (FCC, (0.80, 0.90, 0.96)), "bcc": (BCC, (0.75, 0.90, 0.965)), "sc": (SC, (0.60, 0.80, 0.95))}
-UNIT = {"E_star": CAVITY.E_star, "R_star": 1.0}
-LAWS = {
-    "`thornton`": (Thornton(**UNIT, p_y=2.8), False),
-    "`cavity`": (Cavity(**UNIT, Y=1.0), False),
-    "`cavity`, `finite_strain`": (CAVITY, False),
-    "`cavity`, `finite_strain`, `compaction`": (CAVITY, True),
+LATTICES = {
+    "fcc": (FCC, (0.80, 0.90, 0.96)),
+    "bcc": (BCC, (0.75, 0.90, 0.965)),
+    "sc": (SC, (0.60, 0.80, 0.95)),
+    "hex": (HEXAGONAL, (0.70, 0.85, 0.95)),
+}
+LAWS = {  # class, parameters, whether spheres grow
+    "`thornton`": (Thornton, {"p_y": 2.8}, False),
+    "`cavity`": (Cavity, {"Y": 1.0}, False),
+    "`cavity`, `finite_strain`": (Cavity, {"Y": 1.0, "c_strain": FINITE_STRAIN}, False),
+    "`cavity`, `finite_strain`, `compaction`": (Cavity, {"Y": 1.0, "c_strain": FINITE_STRAIN}, True),
 }
 
 
 def lattices() -> None:
     """Print deviations of the pressure of lattices from finite elements."""
-    for name, (law, grows) in LAWS.items():
-        errors = []
-        for key, (lattice, densities) in LATTICES.items():
-            distance, pressure = finite_elements(key, np.array(densities))
-            errors += (isotropic_pressure(lattice, law.force, distance, 1.0, grows=grows) / pressure - 1).tolist()
-        print(f"| {name} |", " | ".join(f"{100 * e:+.0f} %" for e in errors), "|")
+    for ratio, table, law_of in ((120, "", CAVITY), (30, "_soft", SOFT)):
+        for name, (law, parameters, grows) in LAWS.items():
+            force, errors = law(E_star=law_of.E_star, R_star=1.0, **parameters).force, []
+            for key, (lattice, densities) in LATTICES.items():
+                distance, pressure = finite_elements(key + table, np.array(densities))
+                errors += (isotropic_pressure(lattice, force, distance, 1.0, grows=grows) / pressure - 1).tolist()
+            print(f"| {name} | {ratio} |", " | ".join(f"{100 * e:+.0f} %" for e in errors), "|")
 
 
 def energies() -> None:

@@ -29,6 +29,7 @@ class Lattice:
 
 SC = Lattice((6,), (1.0,), 8.0)
 FCC = Lattice((12,), (1.0,), 2.0**2.5)
+HEXAGONAL = Lattice((8,), (1.0,), 48.0**0.5)  # simple hexagonal
 BCC = Lattice((8, 6), (1.0, 2.0 / 3.0**0.5), 32.0 / 27.0**0.5)
 
 
