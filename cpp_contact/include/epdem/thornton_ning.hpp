@@ -124,8 +124,8 @@ inline T grown(const ThorntonNing<T>& law, T R_star, T R, T root, T delta) noexc
 }
 
 /// As the step of `Jkr`. Growth moves the opening curve, and the force is always the force of the opening curve, so
-/// that the same step taken twice gives the same bits. A contact that broke inside its dent forms again where that
-/// curve begins; one that is apart at delta <= 0 forgets.
+/// that the same step taken twice gives the same force to round-off. A contact that broke inside its dent forms again
+/// where that curve begins; one that is apart at delta <= 0 forgets.
 template <class T>
 inline Step<ThorntonNing<T>> step(const ThorntonNing<T>& law, T R_star, const typename ThorntonNing<T>::State& before,
                                   T delta, T closing) noexcept {
