@@ -153,11 +153,13 @@ void segment_choice(const char* name, const F& f) {
 }  // namespace
 
 int main() {
-  const double pressure[] = {2.8e9}, cavity[] = {1e9, 1.6, 2.8}, none[] = {0.0};
+  const double pressure[] = {2.8e9}, cavity[] = {1e9, 1.6, 2.8, no_finite_strain}, meyer[] = {2.8e9, 0.25},
+               none[] = {0.0};
   measure<Hertz<double>>("hertz", none);
   measure<Thornton<double>>("thornton", pressure);
   measure<Johnson<double>>("johnson", pressure);
   measure<Cavity<double>>("cavity", cavity);
+  measure<Meyer<double>>("meyer", meyer);
   choices(cavity);
   segment_choice("polynomial", [](double u) { return u * std::sqrt(u) * detail::segment(u); });
   segment_choice("quotient", [](double u) { return u * std::sqrt(u) * quotient(u); });

@@ -21,12 +21,13 @@ from epdem.laws.library import Law
 ROOT = Path(__file__).resolve().parent.parent
 E_STAR, R_STAR, MASS = 1.14e11, 0.01, 0.033
 STRENGTH = {"yield_pressure": 2.8e9, "yield_stress": 1e9}
+HARDENING = {"meyer": {"hardening_exponent": 0.25}}
 
 
 def batch(name: str, passes: int = 12) -> float:
     """ns per step of 256 impacts in one call of the C interface, no samples kept."""
     strength = declarations()[name].strength
-    law = Law(name, E_star=E_STAR, **({strength.name: STRENGTH[strength.name]} if strength else {}))
+    law = Law(name, E_star=E_STAR, **({strength: STRENGTH[strength]} if strength else {}), **HARDENING.get(name, {}))
     numbers = {"R_star": R_STAR, "m_star": MASS, "speed": np.geomspace(0.1, 100, 256), "time_step": 2e-7, "gap": 1e-9}
     best = np.inf
     for _ in range(passes):

@@ -20,17 +20,20 @@ from ..engines import DEFAULT_ENGINE, ImpactEngine
 from ..engines.embedded import Embedded
 from ..errors import EngineError
 from ..impacts.engine import require
-from ..impacts.experiment import experiment
+from ..impacts.experiment import experiment, pair_of
 from ..impacts.plan import Plan, plan
 from ..impacts.prediction import Prediction, predict
 from ..impacts.run import run_and_compare
+from ..laws.strengths import default_numbers
 from .models import REFERENCE, SAME_LAW, engine, only_law
+from .stability.cases import HARDENING
 from .timing import seconds
 
 STEPS = (10, 17, 30, 55, 100, 170, 300, 550, 1000, 1700, 3000)
 QUANTITIES = ("e_n", "contact_time", "force_max")
 TARGETS = (1e-2, 1e-3, 1e-4)
 LEAST_PHASES = 8
+EXPONENT = 0.25  # of a law that hardens, where the case has another law
 ENGINES = (Embedded.name, DEFAULT_ENGINE)  # of a study that names none
 
 
@@ -70,6 +73,9 @@ def models(case: Case, engines: list[str], laws: list[str], steps: tuple[int, ..
         for law in [only] if (only := only_law(tool)) else laws or [case.law.name]:
             # the case's own law keeps the case's parameters
             x = replace(experiment(case, None if law == case.law.name else law), numerics=numerics)
+            if law != case.law.name and HARDENING in (defaults := default_numbers(law)).ratios:
+                hardens = replace(defaults, ratios=defaults.ratios | {HARDENING: EXPONENT})
+                x = replace(x, law=pair_of(hardens, x.body, x.target))
             prediction = predict(x)
             shortest = float(prediction.duration.min())
             plans = {n: plan(x, prediction, time_step=shortest / n) for n in steps}
