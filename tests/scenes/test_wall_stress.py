@@ -10,11 +10,13 @@ from hypothesis import strategies as st
 from parts_cases import BED, STEEL, parts
 from scene_runs import run, write_case
 
+from engines.yade_native import classes, needs_source
 from epdem.case.scene import parse
 from epdem.engines.liggghts import scene_deck
 from epdem.errors import CaseError
 from epdem.scenes.plan import plan
 
+__all__ = ["classes"]
 BOX = {"name": "box", "kind": "box", "x": ["-9 mm", "9 mm"], "y": ["-9 mm", "9 mm"], "z": ["0 mm", "40 mm"]}
 BOX |= {"material": "steel"}
 
@@ -87,6 +89,47 @@ def test_walls_of_two_materials_wear_by_their_own_constants(tmp_path):
     walls = run(write_case(sliding_on_two_plates(), tmp_path), out=tmp_path / "out").results.walls
     wear = walls.groupby("wall")["wear"].max()
     assert wear["right"] == pytest.approx(3 * wear["left"], rel=1e-6) and wear["left"] > 0
+
+
+@pytest.mark.yade
+@pytest.mark.liggghts
+@needs_source
+def test_stress_and_wear_in_yade_are_those_in_liggghts(classes, tmp_path):
+    """Spheres strike a plate at rest steeply and a moving plate at a small angle, beside the edge of the triangles."""
+    data = sliding_on_two_plates()
+    data["contact"] = {"friction": 0.3}
+    for body, x, speed in zip(data["scene"]["body"], (-3, 7), (0.3, 0.02), strict=True):
+        body |= {"position": [f"{x} mm", "-4 mm", "1 mm"], "velocity": ["0.05 m/s", "0.1 m/s", f"-{speed} m/s"]}
+    slide = {"wall": "right", "kind": "linear", "velocity": ["0 m/s", "-0.2 m/s", "0 m/s"]}
+    data["scene"]["phase"] = [{"name": "strike", "duration": "6 ms", "move": [slide]}]
+    data["output"] = {"rows": 75, "particles": 75}
+    data["numerics"] = {"time_step": "4e-6 s"}
+    path = write_case(data, tmp_path)
+    ours, theirs = (run(path, engine=tool, out=tmp_path / tool).results.walls for tool in ("yade", "liggghts"))
+    assert ours[["step", "wall", "triangle"]].equals(theirs[["step", "wall", "triangle"]])
+    for column in ("area", "normal_stress", "shear_stress", "wear"):
+        for wall in ("left", "right"):
+            one, two = (x.loc[x["wall"] == wall, column].to_numpy() for x in (ours, theirs))
+            assert np.abs(one - two).max() <= 0.01 * two.max() > 0, (column, wall)
+
+
+@pytest.mark.yade
+def test_spheres_at_rest_press_a_periodic_plate_in_yade_with_their_weight(tmp_path):
+    """At the overlap at which Hertz's force is the weight; YADE has the plate as one triangle."""
+    plate = {"name": "plate", "kind": "plate", "axis": "z", "center": ["0 mm"] * 3, "size": ["20 mm", "20 mm"]}
+    weight, young = 2500 * 4 / 3 * math.pi * 1.5e-3**3 * 9.81, 1 / ((1 - 0.25**2) / 10e6 + (1 - 0.3**2) / 100e6)
+    z = 1e3 * (1.5e-3 - (0.75 * weight / young / math.sqrt(1.5e-3)) ** (2 / 3))
+    spheres = [
+        {"name": f"ball{n}", "material": "glass", "radius": "1.5 mm", "position": [f"{x} mm", "1 mm", f"{z!r} mm"]}
+        for n, x in enumerate((-9, 0, 4))
+    ]
+    data = parts(wall=[plate | {"material": "steel", "stress": True}], fill=[], body=spheres, periodic=True)
+    data |= {"law": {"name": "hertz"}, "output": {"rows": 4, "particles": 4}}
+    data["scene"]["phase"] = [{"name": "rest", "duration": "1 ms"}]
+    walls = run(write_case(data, tmp_path), engine="yade", out=tmp_path / "out").results.walls
+    assert walls["area"].to_numpy() == pytest.approx(2e-4) and len(walls) == 2 * 5
+    assert walls["normal_stress"].to_numpy() == pytest.approx(3 * weight / 4e-4, rel=1e-6)
+    assert not walls["shear_stress"].any() and not walls["wear"].any()
 
 
 @given(

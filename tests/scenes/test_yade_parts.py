@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 from parts_cases import BED, FLOOR, own, parts
 from scene_runs import run, write_case
-from test_parts_motions import BEATER, FALL, PLATE, assert_the_lid_shakes_on, moved
+from test_parts_motions import FALL, PLATE, assert_the_lid_shakes_on, moved
 
 from epdem.case.scene import parse
 from epdem.engines import scene_engine
@@ -107,11 +107,6 @@ def test_the_same_bodies_do_the_same_in_both_engines(tmp_path):
 @pytest.mark.parametrize(
     ("change", "sentence"),
     [
-        (
-            {"wall": [BEATER | {"stress": True}]},
-            "scene.wall.beater.stress: a scene in YADE writes no stress of triangles",
-        ),
-        ({"wall": [BEATER | {"wear": "1e-12 m^2/N"}]}, "scene.wall.beater.wear = 1e-12: a scene in YADE has no wear"),
         (
             {"wall": [FLOOR | {"name": "left", "axis": "x"}], "periodic": True},
             "scene.wall.left.axis = 'x': YADE's periodic cell holds planes across z only",

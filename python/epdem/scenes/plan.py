@@ -200,6 +200,11 @@ class ScenePlan:
         return tuple(name for name, present in there.items() if present)
 
     @property
+    def stress_walls(self) -> tuple[str, ...]:
+        """The walls whose triangles are in the table of walls."""
+        return tuple(name for name, mesh in self.scene.meshes.items() if mesh.stress or mesh.wear)
+
+    @property
     def works(self) -> tuple[str, ...]:
         """The works and energies of each sphere in the frames."""
         yields, adheres, slips = self.model.yields, self.model.adheres, self.model.nodes > 0

@@ -142,7 +142,7 @@ class Liggghts(Host):
             yield "particles", (spheres := scene_tables.particles(plan, folder, without=without))
         if plan.contacts:
             yield "contacts", scene_tables.contact_table(plan, folder, spheres, without=without)
-        if wall_stress.stress_walls(plan):
+        if plan.stress_walls:
             yield "walls", wall_stress.table(plan, folder, without=without)
 
 

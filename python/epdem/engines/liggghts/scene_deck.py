@@ -151,9 +151,7 @@ def deck(p: ScenePlan) -> decks.Deck:
         phases=phases,
         open=p.ends_early or any(phase.vibrations for phase in phases),
         samples=p.every // p.sampling,
-        stress_walls=tuple(
-            (name, wall_id(p, name), bool(p.scene.meshes[name].wear)) for name in wall_stress.stress_walls(p)
-        ),
+        stress_walls=tuple((name, wall_id(p, name), bool(p.scene.meshes[name].wear)) for name in p.stress_walls),
         spins=m.spins,
         has_history=m.yields or m.spins or m.adheres or m.cohesion is not None,  # sjkr keeps one, too
         work_words=[WORKS[name] for name in p.works],

@@ -16,11 +16,6 @@ COLUMNS = {"meshid": "triangle", "area": "area", "normal_stress_average": "norma
 COLUMNS |= {"shear_stress_average": "shear_stress", "wear": "wear"}
 
 
-def stress_walls(p: ScenePlan) -> tuple[str, ...]:
-    """The walls whose triangles are in the table."""
-    return tuple(name for name, mesh in p.scene.meshes.items() if mesh.stress or mesh.wear)
-
-
 def properties(p: ScenePlan) -> tuple[Property, ...]:
     """Finnie's constant [m^2/N] of each pair of a sphere's type and a wall's, the same in both orders.
 
@@ -68,7 +63,7 @@ def table(p: ScenePlan, folder: Path, *, without: Collection[int] = ()) -> pd.Da
     Raises EngineError for a file that is not whole.
     """
     frames = []
-    for name in stress_walls(p):
+    for name in p.stress_walls:
         for step in (s for s in p.frame_steps(p.frames) if s not in without):
             path = folder / FILES.format(name, step)
             try:

@@ -53,7 +53,7 @@ class Yade(Host):
     own_law = False  # a law of YADE, which needs no module
     template = "yade/impact.py.j2"
     out = "out.yade"
-    leftovers = ("particles.*.npy", "contacts.*.npy")
+    leftovers = ("particles.*.npy", "contacts.*.npy", "triangles.*.npy")
 
     def __init__(self) -> None:
         self.classes = launcher.module() is not None
@@ -185,6 +185,8 @@ class Yade(Host):
             yield "particles", (spheres := scene_tables.particles(plan, folder))
         if plan.contacts:
             yield "contacts", scene_tables.contact_table(plan, folder, spheres)
+        if plan.stress_walls:
+            yield "walls", scene_tables.wall_table(plan, folder)
 
 
 def body_tables(plan: Plan) -> list[np.ndarray]:

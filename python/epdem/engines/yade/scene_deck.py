@@ -143,7 +143,7 @@ def deck(p: ScenePlan, *, classes: bool) -> decks.Deck:
     xlo, xhi, ylo, yhi, zlo, zhi = p.box
     sides = () if p.scene.periodic else ((xlo, xhi), (ylo, yhi))
     there = {*p.scene.meshes, *(w.name for w in p.scene.planes), *p.phases[0].gates}
-    every_step = {*p.row_columns} - {"floor_load"}
+    every_step = {*p.row_columns} - {"floor_load"} or any(mesh.wear for mesh in p.scene.meshes.values())
     return decks.Deck(
         p,
         title=p.case.case.title,

@@ -46,8 +46,6 @@ def refuse(p: ScenePlan) -> None:
     """Raise CaseError for walls that YADE does not have."""
     unknown: dict[str, tuple[object, str]] = {}
     for name, mesh in p.scene.meshes.items():
-        unknown[f"scene.wall.{name}.stress"] = mesh.stress, "a scene in YADE writes no stress of triangles"
-        unknown[f"scene.wall.{name}.wear"] = mesh.wear, "a scene in YADE has no wear"
         if surface_rotation(mesh) and any(name in phase.moves for phase in p.phases):
             raise CaseError(
                 f"scene.wall.{name}.angular_velocity: YADE turns the wall itself, which moves otherwise; remove one"

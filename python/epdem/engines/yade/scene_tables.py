@@ -11,7 +11,7 @@ from ...errors import EngineError
 from ...scenes import columns, contacts
 from ...scenes.plan import ScenePlan
 from ..host import frames
-from .scene_parts import wall_names
+from .scene_parts import is_endless, wall_names
 
 PRESETS = {"floor_force_z": "floor_load", "plate_force_z": "plate_force", "drum_torque_y": "torque"}  # columns of kinds
 # of a contact: number of the sphere and of the other body (from 0; walls after the spheres), overlaps [m]; of the
@@ -90,6 +90,26 @@ def _contacts(p: ScenePlan, folder: Path, spheres: pd.DataFrame) -> pd.DataFrame
     raw["wall"] = walls[beyond.clip(lower=0)]
     raw["i"], raw["j"] = raw["i"] + 1, np.where(beyond > 0, 0, raw["j"] + 1)
     return contacts.complete(p, raw, spheres, folder)
+
+
+def wall_table(p: ScenePlan, folder: Path) -> pd.DataFrame:
+    """Stresses and wear of the triangles of walls in every frame, as in LIGGGHTS.
+
+    A plate without edges is one triangle in YADE; each of its own triangles has the mean of the plate.
+    """
+    raw = _frames(p, folder, "triangles", p.frames, ["normal_stress", "shear_stress", "wear"], [])
+    steps = raw["step"].unique()
+    values, begin, tables = raw.iloc[:, 1:].to_numpy().reshape(len(steps), -1, 3), 0, []
+    for name in p.stress_walls:
+        a, b, c = p.triangles[name].transpose(1, 0, 2)
+        area = 0.5 * np.linalg.norm(np.cross(b - a, c - a), axis=1)
+        whole, number = is_endless(p, name), np.arange(len(area))
+        found = values[:, begin + number * (not whole)] / (area.sum() if whole else area[:, None])
+        begin += 1 if whole else len(area)
+        each = {"triangle": np.tile(number, len(steps)), "area": np.tile(area, len(steps))}
+        columns = dict(zip(raw.columns[1:], found.reshape(-1, 3).T, strict=True))
+        tables.append(pd.DataFrame({"step": np.repeat(steps, len(area)), "wall": name} | each | columns))
+    return pd.concat(tables, ignore_index=True)
 
 
 def _plastic_work(every: pd.DataFrame, spheres: pd.DataFrame) -> np.ndarray:

@@ -13,6 +13,7 @@ from .spheres import Fill, Spheres
 
 KINDS = ("force", "torque")  # of loads
 AXES = ((1, 0, 0), (0, 1, 0), (0, 0, 1))
+SLOW = 1e-7  # [m/s], a sphere that rests, as in LIGGGHTS
 STRAINS = ("largest_radius_ratio", "largest_overlap_ratio")  # contact radius and overlap over R*, so far
 
 
@@ -49,6 +50,45 @@ class Classes:
         ]
 
 
+class Triangles:
+    """Forces on the triangles of walls and their wear; walls: facets and Finnie's constant [m^2/N] of each, 0: none."""
+
+    def __init__(self, walls: Sequence[tuple[Sequence[int], float]]):
+        self.worn = {k: constant for facets, constant in walls if constant for k in facets}
+        self.volume = dict.fromkeys((k for facets, _ in walls for k in facets), 0.0)  # worn so far [m^3]
+
+    def wear(self) -> None:
+        """Add what the spheres that approach a triangle wear in this step (Finnie 1960, Wear 3, 87)."""
+        for k, constant in self.worn.items():
+            if not any(O.forces.f(k)):
+                continue
+            wall, normal = O.bodies[k].state, self.normal(k)
+            for i in (i for i in O.bodies[k].intrs() if i.isReal):
+                sphere, away = (i.id2, 1.0) if i.id1 == k else (i.id1, -1.0)
+                arm = i.geom.contactPoint - wall.pos
+                v = O.bodies[sphere].state.vel - wall.vel - wall.angVel.cross(arm)
+                speed = v.norm()
+                if speed < SLOW or away * v.dot(i.geom.normal) > 0.0:
+                    continue
+                sine, cosine = abs(v.dot(normal)) / speed, v.cross(normal).norm() / speed
+                steep = 3.0 * sine > cosine
+                share = cosine**2 / 3.0 if steep else 2.0 * sine * cosine - 3.0 * sine**2
+                force = (i.phys.normalForce + i.phys.shearForce).norm()
+                self.volume[k] += 2.0 * constant * share * force * speed * O.dt
+
+    def normal(self, k: int) -> Any:
+        """Unit normal of a facet."""
+        return O.bodies[k].state.ori * O.bodies[k].shape.normal
+
+    def table(self) -> Any:
+        """Normal force [N], tangential force [N], worn volume [m^3] of each triangle, shape (n, 3)."""
+        force = np.array([tuple(O.forces.f(k)) for k in self.volume])
+        normal = np.array([tuple(self.normal(k)) for k in self.volume])
+        pressed = (force * normal).sum(axis=1)
+        tangential = np.linalg.norm(force - pressed[:, None] * normal, axis=1)
+        return np.column_stack([np.abs(pressed), tangential, [*self.volume.values()]])
+
+
 class Recorder:
     """Rows, frames and contact tables; all of one row are of one step. SI.
 
@@ -61,6 +101,7 @@ class Recorder:
     loads     (wall, its bodies, origin) of walls: means of their force and, where an origin [m] is given, torque
     moving    bodies of walls that move: the mean of the power that they give, wall_power; none: no such column
     works     attributes of EpState in the frames; after frictionWork stands the elastic energy of friction
+    triangles of walls, in files triangles.STEP.npy beside the frames; none: no such files
     """
 
     def __init__(
@@ -79,11 +120,12 @@ class Recorder:
         loads: Sequence[tuple[str, Sequence[int], Sequence[float] | None]] = (),
         moving: Sequence[int] = (),
         works: Sequence[str] = (),
+        triangles: Sequence[tuple[Sequence[int], float]] = (),
     ):
         self.folder, self.spheres, self.contacts, self.low, self.high = folder, spheres, contacts, low, high
         self.every, self.frames, self.spins, self.tables = every, frames, spins, tables
         self.gravity = np.array([0.0, 0.0, fall])
-        self.loads, self.moving, self.works = loads, moving, works
+        self.loads, self.moving, self.works, self.triangles = loads, moving, works, Triangles(triangles)
         if works:
             O.trackEnergy = True
         kinds = [f"{name}_{kind}" for name, _, origin in loads for kind in KINDS[: 1 if origin is None else 2]]
@@ -147,6 +189,8 @@ class Recorder:
         """Between forces and motion: all that is due at this step."""
         if self.means:
             self._sums, self._samples = self._sums + self.on_walls(), self._samples + 1
+        if O.iter > 0:
+            self.triangles.wear()
         if O.iter % self.every == 0:
             self.spheres.remove_outside(self.low, self.high)
             self.row()
@@ -200,6 +244,8 @@ class Recorder:
         if "frictionWork" in self.works:
             columns.append(self.friction_energy())
         np.save(self.folder / f"particles.{O.iter}.npy", np.column_stack(columns))
+        if self.triangles.volume:
+            np.save(self.folder / f"triangles.{O.iter}.npy", self.triangles.table())
 
     def friction_energy(self) -> Any:
         """Elastic energy of friction of each sphere [J]: half of a contact with another one, all of it at a wall."""
