@@ -55,7 +55,7 @@ struct Kernels {
   static constexpr int most_laws = 16, most_frictions = 16;
   Kernel of[most_laws][most_frictions][2];
   SphereKernels spheres;
-  Kernel grown[most_laws][most_frictions];  // pairs with compaction
+  Kernel grown[most_laws][most_frictions][2];  // with compaction
 };
 
 extern const Kernels kernels_sse2, kernels_avx2, kernels_avx512;

@@ -206,8 +206,6 @@ template <class Law, class Friction, bool wall, bool grows = false>
     }
     const Pair& pair = *reinterpret_cast<const Pair*>(constant_of);
 
-    [[maybe_unused]] Lanes growth_i{}, growth_j{};
-    if constexpr (grows) growth_i = each(pass.growth, b.i + k), growth_j = each(pass.growth, b.j + k);
     Kinematics<Lanes> c;
     const Vec<Lanes> spin_i = of(pass.omega, b.i + k);
     if constexpr (wall) {
@@ -240,8 +238,12 @@ template <class Law, class Friction, bool wall, bool grows = false>
     [[maybe_unused]] Lanes last{}, growing{};
     [[maybe_unused]] Grown<Lanes> grown{};
     if constexpr (grows) {
-      last = value[values];
-      growing = added_overlap<wall>(c.radius_i, c.radius_j, history.law.delta_max, growth_i, growth_j);
+      last = value[values + pass.repeats];  // a step that is evaluated once more has the overlap that growth added then
+      growing = last;
+      if (!pass.repeats) {
+        const Lanes growth_i = each(pass.growth, b.i + k), growth_j = wall ? Lanes{} : each(pass.growth, b.j + k);
+        growing = added_overlap<wall>(c.radius_i, c.radius_j, history.law.delta_max, growth_i, growth_j);
+      }
       grown = grow<Law>(history.law, overlap, growing, last);
       c.overlap = overlap + grown.added;
     }
@@ -289,7 +291,10 @@ constexpr void fill(Kernels& kernels) noexcept {
     using Friction = decltype(model);
     kernels.of[law][friction][0] = offered<Law, Friction, false>();
     kernels.of[law][friction][1] = offered<Law, Friction, true>();
-    if constexpr (compacts<Law>) kernels.grown[law][friction] = &contacts<Law, Friction, false, true>;
+    if constexpr (compacts<Law>) {
+      kernels.grown[law][friction][0] = &contacts<Law, Friction, false, true>;
+      kernels.grown[law][friction][1] = &contacts<Law, Friction, true, true>;
+    }
   });
 }
 

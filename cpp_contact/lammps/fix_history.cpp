@@ -5,6 +5,7 @@
 
 #include "atom.h"
 #include "comm.h"
+#include "epdem/compaction.hpp"
 #include "error.h"
 #include "memory.h"
 #include "neigh_list.h"
@@ -13,12 +14,19 @@ namespace epdem::lammps {
 
 using namespace LAMMPS_NS;
 
+namespace {
+
+constexpr int most_beside = 1 + FixHistory::columns + 2;  // of an atom that is sent, beside its contacts
+
+}  // namespace
+
 FixHistory::FixHistory(LAMMPS* lmp, int count, char** word) : Fix(lmp, count, word) {
   create_attribute = 1;
   restart_global = 1;
   restart_peratom = 1;
   maxexchange_dynamic = 1;
-  maxexchange = 1 + columns;
+  maxexchange = most_beside;
+  comm_forward = 1;
   peratom_flag = count > 3;
   size_peratom_cols = columns;
   peratom_freq = 1;
@@ -49,6 +57,7 @@ void FixHistory::prepare(NeighList* const* list, const Layout& layout, const Mod
   }
   identity_ = identity;
   layout_ = layout;
+  dents_.resize(models.compaction ? 2L * rows_ : 0);
 }
 
 int FixHistory::setmask() { return FixConst::PRE_EXCHANGE | FixConst::POST_NEIGHBOR; }
@@ -62,7 +71,8 @@ void FixHistory::book(const kernels::Block& b, int k, int i, double share, const
   double* const row = array_atom[i];
   const bool adheres = models.law->root >= 0;
   const double stored = b.stored_energy.a[k];
-  row[plastic_work] += share * std::max(0.0, b.plastic_work_step.a[k]);
+  const double work = b.plastic_work_step.a[k];
+  row[plastic_work] += share * (models.compaction ? work : std::max(0.0, work));  // growth can give work back
   row[elastic_energy] += share * stored;
   row[loaded_contacts] += adheres ? b.contact_radius.a[k] > 0.0 : stored > 0.0;
   if (adheres) row[adhesive_work] += share * b.adhesion_loss.a[k];
@@ -70,6 +80,37 @@ void FixHistory::book(const kernels::Block& b, int k, int i, double share, const
   row[friction_work] += share * b.friction_work.a[k];
   row[friction_energy] += share * b.spring_energy.a[k];
 }
+
+void FixHistory::close_growth(bool counts) {
+  if (counts) {
+    growth_.resize(rows_);
+    for (int i = 0; i < atom->nlocal; ++i) growth_[i] = epdem::growth(dents_[2L * i], dents_[2L * i + 1]);
+    comm->forward_comm(this);
+  }
+  std::fill_n(dents_.begin(), 2L * atom->nlocal, 0.0);
+  const int all = atom->nlocal + atom->nghost;
+  reach_.resize(rows_);
+  for (int i = 0; i < all; ++i)
+    reach_[i] = atom->radius[i] * (1.0 + (counts ? std::min(growth_reach, growth_[i]) : growth_reach));
+}
+
+void FixHistory::note_dents(const kernels::Block& b, int n, bool wall) {
+  const auto add = [this](int i, double depth) {
+    dents_[2L * i] += depth;
+    dents_[2L * i + 1] += depth * depth;
+  };
+  for (int k = 0; k < n; ++k) {
+    add(b.i[k], b.depth_i.a[k]);
+    if (!wall && b.j[k] < atom->nlocal) add(b.j[k], b.depth_j.a[k]);
+  }
+}
+
+int FixHistory::pack_forward_comm(int n, int* atoms, double* buffer, int, int*) {
+  for (int k = 0; k < n; ++k) buffer[k] = growth_[atoms[k]];
+  return n;
+}
+
+void FixHistory::unpack_forward_comm(int n, int first, double* buffer) { std::copy_n(buffer, n, &growth_[first]); }
 
 void FixHistory::note_strain(const kernels::Block& b) {
   strain_[0] = std::max(strain_[0], *std::max_element(b.radius_ratio, b.radius_ratio + kernels::most_lanes));
@@ -111,7 +152,7 @@ void FixHistory::collect() {
       if (j < nlocal) remember(j, tag[i], history, true);
     }
   }
-  maxexchange = static_cast<int>(longest()) + 1 + columns;
+  maxexchange = static_cast<int>(longest()) + most_beside;
 }
 
 /// Commands between two runs may add, remove and sort atoms.
@@ -151,6 +192,7 @@ void FixHistory::distribute() {
 
 void FixHistory::grow_arrays(int atoms) {
   held_.resize(atoms);
+  if (!dents_.empty()) dents_.resize(2L * atoms);
   memory->grow(array_atom, atoms, columns, "ep:energies");
   for (int i = rows_; i < atoms; ++i) std::fill_n(array_atom[i], int(columns), 0.0);
   rows_ = atoms;
@@ -158,26 +200,33 @@ void FixHistory::grow_arrays(int atoms) {
 
 void FixHistory::copy_arrays(int from, int to, int) {
   held_[to] = held_[from];
+  if (!dents_.empty()) std::copy_n(&dents_[2L * from], 2, &dents_[2L * to]);
   std::copy_n(array_atom[from], int(columns), array_atom[to]);
 }
 
 void FixHistory::set_arrays(int i) {
   held_[i].clear();
+  if (!dents_.empty()) std::fill_n(&dents_[2L * i], 2, 0.0);
   std::fill_n(array_atom[i], int(columns), 0.0);
 }
 
 int FixHistory::pack_exchange(int i, double* buffer) {
-  double* const end = std::copy_n(array_atom[i], int(columns), buffer);
+  double* end = std::copy_n(array_atom[i], int(columns), buffer);
+  if (!dents_.empty()) end = std::copy_n(&dents_[2L * i], 2, end);
   *end = ubuf(bigint(held_[i].size())).d;
   return static_cast<int>(std::copy(held_[i].begin(), held_[i].end(), end + 1) - buffer);
 }
 
 int FixHistory::unpack_exchange(int i, double* buffer) {
+  const double* values = buffer + columns;
   std::copy_n(buffer, int(columns), array_atom[i]);
-  const auto size = ubuf(buffer[columns]).i;
-  const double* const values = buffer + columns + 1;
+  if (!dents_.empty()) {
+    std::copy_n(values, 2, &dents_[2L * i]);
+    values += 2;
+  }
+  const auto size = ubuf(*values++).i;
   held_[i].assign(values, values + size);
-  return static_cast<int>(columns + 1 + size);
+  return static_cast<int>(values + size - buffer);
 }
 
 void FixHistory::write_restart(FILE* file) {
@@ -217,7 +266,8 @@ void FixHistory::unpack_restart(int i, int nth) {
 }
 
 double FixHistory::memory_usage() {
-  size_t numbers = page_.capacity() + columns * held_.size();
+  size_t numbers =
+      page_.capacity() + columns * held_.size() + dents_.capacity() + growth_.capacity() + reach_.capacity();
   for (const auto& held : held_) numbers += held.capacity();
   return static_cast<double>(numbers * sizeof(double));
 }

@@ -50,6 +50,18 @@ class FixHistory : public LAMMPS_NS::Fix {
   /// At the start of an evaluation that counts.
   void open_energies(int atoms);
 
+  /// Compaction: growth of each atom over its radius by the dents of the evaluation before. Walls come after the pairs,
+  /// so that the sums close at the start of the next evaluation. An evaluation that does not count sums up the same
+  /// dents once more, so that a restart file needs no sums. Collective.
+  void close_growth(bool counts);
+  const double* growth() const { return growth_.data(); }
+  /// Radii of the grown spheres: no contact of a pair is beyond them.
+  const double* reach() const { return reach_.data(); }
+  /// Adds the depths of the dents of a block to the sums of its own atoms.
+  void note_dents(const kernels::Block& b, int n, bool wall);
+
+  int pack_forward_comm(int n, int* atoms, double* buffer, int, int*) override;
+  void unpack_forward_comm(int n, int first, double* buffer) override;
   int setmask() override;
   void setup_post_neighbor() override { distribute(); }
   void post_neighbor() override { distribute(); }
@@ -81,10 +93,12 @@ class FixHistory : public LAMMPS_NS::Fix {
   std::vector<double> identity_;  // of the models whose histories these are
   double evaluations_ = 0.0;
   double strain_[2] = {};
-  bool page_holds_ = false;                // else the atoms hold the histories
-  int rows_ = 0;                           // of array_atom
-  std::vector<double> page_;               // by slot of the list
-  std::vector<long> first_;                // of an atom in the page
+  std::vector<double> dents_;           // with compaction, by atom: sums of depths over the radius and of their squares
+  std::vector<double> growth_, reach_;  // also of ghosts
+  bool page_holds_ = false;             // else the atoms hold the histories
+  int rows_ = 0;                        // of array_atom
+  std::vector<double> page_;            // by slot of the list
+  std::vector<long> first_;             // of an atom in the page
   std::vector<std::vector<double>> held_;  // by atom: tag of the partner, values
 };
 

@@ -8,6 +8,7 @@
 
 #include "atom.h"
 #include "domain.h"
+#include "epdem/compaction.hpp"
 #include "error.h"
 #include "force.h"
 #include "neighbor.h"
@@ -74,6 +75,9 @@ void FixWall::init() {
   if (!pair_)
     error->all(FLERR, "{}: the material of the spheres comes from a pair_style ep of law {}, and there is none", place_,
                words_.models.law->name);
+  if (words_.models.compaction != pair_->models().compaction)
+    error->all(FLERR, "{}: compaction is {} here and {} in pair_coeff; give `compaction on` to both or to none", place_,
+               words_.models.compaction ? "on" : "off", words_.models.compaction ? "off" : "on");
   constants_.assign(most_constants * (atom->ntypes + 1), 0.0);
   for (int type = 1; type <= atom->ntypes; ++type)
     put_constants(*words_.models.law, pair_->words_of(type, place_).material, words_.material, words_.coefficients,
@@ -84,6 +88,7 @@ void FixWall::init() {
   pass_.rolling = words_.models.rolling;
   pass_.cohesion = words_.models.cohesion;
   if (words_.coefficients.damped()) refuse_rigid_bodies(lmp, place_);
+  if (words_.models.compaction) reach_factor_ = 1.0 + growth_reach;
   if (layout_.root < 0) return;
   reach_ = neighbor->skin;
   for (int type = 1; type <= atom->ntypes; ++type)
@@ -101,6 +106,7 @@ void FixWall::post_force(int) {
   pass_.repeats = !counts;
   pass_.work = counts && pair_->energies();
   pass_.strain = pair_->strain();
+  pass_.growth = pair_->history()->growth();
   const double* rows[] = {atom->v[0], atom->omega[0]};
   if (atom->nlocal >= atom->nmax)
     for (int k = 0; k < 2; ++k) {
@@ -121,7 +127,7 @@ void FixWall::post_force(int) {
     if (!(atom->mask[i] & groupbit)) continue;
     found.clear();
     find(i, found);
-    if (layout_.root >= 0) drop_parted(i, found);
+    if (layout_.root >= 0 || layout_.growth >= 0) drop_parted(i, found);
     if (static_cast<int>(found.size()) > most_)
       error->one(FLERR, "{}: atom {} has more than {} contacts with the wall", place_, atom->tag[i], most_);
     keep_records(i, found);
@@ -155,18 +161,22 @@ void FixWall::post_force(int) {
   count_.swap(count_before);
 }
 
-/// Across a gap, only attached spheres are in contact.
+/// Across a gap, only spheres are in contact that are attached, or whose growth closes the gap.
 void FixWall::drop_parted(int i, std::vector<Contact>& found) {
-  const auto parted = [&](const Contact& c) {
-    if (c.distance < atom->radius[i]) return false;
-    for (int k = 0; k < count_[i]; ++k)
-      if (record(i, k)[0] == c.part) {
-        const double* const history = record(i, k) + 1;
-        return !(history[layout_.root] > 0.0) && !(pass_.repeats && history[layout_.jump] != 0.0);
-      }
-    return true;
-  };
+  const auto parted = [&](const Contact& c) { return !(c.distance < atom->radius[i]) && !stands(i, c); };
   found.erase(std::remove_if(found.begin(), found.end(), parted), found.end());
+}
+
+bool FixWall::stands(int i, const Contact& c) {
+  const double* history = nullptr;
+  for (int k = 0; k < count_[i]; ++k)
+    if (record(i, k)[0] == c.part) history = record(i, k) + 1;
+  if (layout_.growth < 0)
+    return history && (history[layout_.root] > 0.0 || (pass_.repeats && history[layout_.jump] != 0.0));
+  const double radius = atom->radius[i], rsq = c.distance * c.distance;
+  if (pass_.repeats) return history && closes_gap(radius, rsq, history[layout_.growth]);
+  const double delta_max = history ? history[words_.models.law->most] : 0.0;
+  return closes_gap(radius, rsq, added_overlap<true>(radius, 0.0, delta_max, pass_.growth[i], 0.0));
 }
 
 /// Puts the records of a sphere in the order of its contacts; the history of a new contact begins with zeros.
@@ -203,6 +213,7 @@ void FixWall::finish(int n) {
     }
     if (pass_.work) pair_->history()->book(b, k, i, 1.0, words_.models);
   }
+  if (words_.models.compaction) pair_->history()->note_dents(b, n, true);
   if (pass_.strain) pair_->history()->note_strain(b);
   if (pair_->energies()) note(n);
 }
@@ -213,9 +224,10 @@ void FixWall::note(int n) {
   const int most = words_.models.law->most, root = layout_.root;
   for (int k = 0; k < n; ++k) {
     const double overlap = b.overlap.a[k];
-    local_.insert(local_.end(), {double(atom->tag[b.i[k]]), double(b.j[k]), overlap,
-                                 most < 0 ? overlap : std::max(overlap, b.history[k][most]),
-                                 double(root < 0 || b.history[k][root] > 0.0)});
+    local_.insert(
+        local_.end(),
+        {double(atom->tag[b.i[k]]), double(b.j[k]), overlap, most < 0 ? overlap : std::max(overlap, b.history[k][most]),
+         double(root < 0 || b.history[k][root] > 0.0), layout_.growth < 0 ? 0.0 : b.history[k][layout_.growth + 1]});
   }
 }
 

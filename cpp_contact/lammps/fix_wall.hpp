@@ -53,7 +53,7 @@ class FixWall : public LAMMPS_NS::Fix {
   /// Called before the first sphere of a step.
   virtual void begin() {}
   /// Distance [length] up to which `find` looks for parts of the wall: with adhesion across gaps, too.
-  double reach_of(int i) const { return atom->radius[i] + reach_; }
+  double reach_of(int i) const { return atom->radius[i] * reach_factor_ + reach_; }
   /// Finds the contacts of sphere i, at most `most`.
   virtual void find(int i, std::vector<Contact>& found) = 0;
 
@@ -62,6 +62,7 @@ class FixWall : public LAMMPS_NS::Fix {
  private:
   double* record(int i, int k) { return held_.data() + (long(i) * most_ + k) * stride_; }
   void drop_parted(int i, std::vector<Contact>& found);
+  bool stands(int i, const Contact& c);
   void keep_records(int i, const std::vector<Contact>& found);
   void finish(int n);
   void note(int n);
@@ -69,7 +70,8 @@ class FixWall : public LAMMPS_NS::Fix {
   Words words_;
   Layout layout_;
   int most_ = 0, stride_ = 0;
-  double reach_ = 0.0;        // beyond the radius [length]
+  double reach_ = 0.0;  // beyond the radius [length]
+  double reach_factor_ = 1.0;
   std::vector<double> held_;  // `most` records for each atom: number of the part, history of the contact
   std::vector<int> count_;    // of records in use, for each atom
   PairEp* pair_ = nullptr;
@@ -78,9 +80,9 @@ class FixWall : public LAMMPS_NS::Fix {
   kernels::Pass pass_{};
   std::unique_ptr<kernels::Block> block_;
   std::vector<double> copies_[2], scratch_;
-  static constexpr int sums = 7, local_columns = 5;
+  static constexpr int sums = 7, local_columns = 6;
   double sum_[sums] = {}, total_[sums] = {};
-  std::vector<double> local_;  // of each contact: id, part of the wall, overlap, largest overlap, attached
+  std::vector<double> local_;  // of each contact: id, part, overlap, largest overlap, attached, added overlap
   std::vector<double*> local_row_;
   LAMMPS_NS::bigint summed_ = -1;
 };

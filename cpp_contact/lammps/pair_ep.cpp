@@ -8,6 +8,7 @@
 #include "atom.h"
 #include "comm.h"
 #include "domain.h"
+#include "epdem/compaction.hpp"
 #include "error.h"
 #include "force.h"
 #include "kernels/gather.hpp"
@@ -45,7 +46,7 @@ std::vector<char*> words_of_text(std::vector<std::string>& words) {
 
 /// A fix in place of the history's keeps the history before the fixes of the deck: those may add atoms.
 PairEp::PairEp(LAMMPS* lmp) : Pair(lmp), block_(std::make_unique<kernels::Block>()) {
-  single_extra = 4;
+  single_extra = 5;
   svector = single_;
   no_virial_fdotr_compute = 1;
   centroidstressflag = CENTROID_NOTAVAIL;
@@ -141,7 +142,9 @@ void PairEp::init_style() {
   if (!models_.law) error->all(FLERR, "pair_style ep: no pair_coeff names a law; give pair_coeff 1 1 LAW E nu ...");
   kernel_ = kernel_of(lmp, "pair_style ep", models_, false);
   layout_ = layout_of(models_, false);
-  neighbor->add_request(this, NeighConst::REQ_SIZE | NeighConst::REQ_NEWTON_OFF);
+  // lists by radius end at the skin, lists by type at the cutoff of init_one
+  const int by_radius = models_.compaction ? NeighConst::REQ_DEFAULT : NeighConst::REQ_SIZE;
+  neighbor->add_request(this, by_radius | NeighConst::REQ_NEWTON_OFF);
 
   create_history();
   history_->prepare(&list, layout_, models_);
@@ -189,6 +192,7 @@ double PairEp::init_one(int i, int j) {
   pass_.damped |= constants[kernels::damping] > 0.0;
   pass_.viscous |= constants[kernels::dashpot] > 0.0;
   const double R_star = 0.5 * std::max(largest_[i], largest_[j]);
+  if (models_.compaction) return (1.0 + growth_reach) * (largest_[i] + largest_[j]);
   return largest_[i] + largest_[j] + checked_gap(lmp, place, *models_.law, constants, R_star);
 }
 
@@ -209,6 +213,7 @@ void PairEp::set_pass(bool counts) {
   pass_.rolling = models_.rolling;
   pass_.cohesion = models_.cohesion;
   pass_.now = history_->now();
+  pass_.growth = history_->growth();
   pass_.freeze = frozen_ != 0;
   pass_.strain = strain_;
 }
@@ -221,21 +226,25 @@ void PairEp::compute(int eflag, int vflag) {
   const bool counts = !update->setupflag;
   pass_.work = energies_ && counts;
   if (pass_.work) history_->open_energies(atom->nlocal);
+  if (models_.compaction) history_->close_growth(counts);
   if (list->inum > 0) {
     std::vector<double> before;
     if (!counts) before = history_->page();
     set_pass(counts);
-    models_.law->root < 0 ? gather<false>() : gather<true>();
+    models_.compaction       ? gather<Reach::grown>()
+    : models_.law->root >= 0 ? gather<Reach::attached>()
+                             : gather<Reach::touching>();
     if (!counts) history_->page().swap(before);
   }
   if (counts) history_->advance();
 }
 
-/// Notes every neighbor, and those stay that overlap; with adhesion also those that are attached across a gap.
-template <bool adheres>
+/// Notes every neighbor, and those stay that overlap; with adhesion also those that are attached across a gap, with
+/// compaction those whose growth closes a gap.
+template <PairEp::Reach reach>
 void PairEp::gather() {
   kernels::Block& b = *block_;
-  const double *const x = atom->x[0], *const radius = atom->radius;
+  const double *const x = atom->x[0], *const radius = reach == Reach::grown ? history_->reach() : atom->radius;
   const bool excludes = atom->molecular != Atom::ATOMIC;
   int n = 0;
   for (int ii = 0; ii < list->inum; ++ii) {
@@ -251,8 +260,10 @@ void PairEp::gather() {
       for (int jj = first; jj < last; ++jj) {
         const long j = neighbors[jj] & NEIGHMASK;
         const double dx = xi - x[3 * j], dy = yi - x[3 * j + 1], dz = zi - x[3 * j + 2], sum = ri + radius[j];
-        bool contact = dx * dx + dy * dy + dz * dz < sum * sum;
-        if constexpr (adheres) {
+        const double rsq = dx * dx + dy * dy + dz * dz;
+        bool contact = rsq < sum * sum;
+        if constexpr (reach == Reach::grown) contact = contact && grown_touch(i, static_cast<int>(j), jj, rsq);
+        if constexpr (reach == Reach::attached) {
           const double* const history = history_->at(i, jj);
           const bool stands = (history[layout_.root] > 0.0) | (pass_.repeats & (history[layout_.jump] != 0.0));
           contact |= stands & (pass_.now - history[layout_.last_step] <= 1.0);
@@ -266,6 +277,17 @@ void PairEp::gather() {
     }
   }
   finish(n);
+}
+
+/// Whether near spheres overlap or growth closes their gap; a step that is evaluated once more has the growth it had.
+bool PairEp::grown_touch(int i, int j, int slot, double rsq) const {
+  const double ri = atom->radius[i], rj = atom->radius[j], sum = ri + rj;
+  if (rsq < sum * sum) return true;
+  const double* const history = history_->at(i, slot);
+  const bool known = pass_.now - history[layout_.last_step] <= 1.0;
+  if (pass_.repeats) return known && closes_gap(sum, rsq, history[layout_.growth]);
+  const double delta_max = known ? history[models_.law->most] : 0.0;
+  return closes_gap(sum, rsq, added_overlap<false>(ri, rj, delta_max, pass_.growth[i], pass_.growth[j]));
 }
 
 /// Fills the block with n > 0 pairs; history_at(i, k) is the history of pair k.
@@ -290,6 +312,7 @@ void PairEp::finish(int n) {
   fetch(n, [&](int i, int k) { return history_->at(i, slot_[k]); });
   kernel_(b, n, pass_);
   if (strain_) history_->note_strain(b);
+  if (models_.compaction) history_->note_dents(b, n, false);
   pass_.work ? scatter<true>(n) : scatter<false>(n);
   if (evflag) tally(n);
 }
@@ -343,11 +366,12 @@ double* PairEp::history_of(int i, int j) const {
 
 double PairEp::single(int i, int j, int, int, double rsq, double, double, double& fforce) {
   fforce = 0.0;
-  std::fill_n(single_, 4, 0.0);
+  std::fill_n(single_, 5, 0.0);
   const double sum = atom->radius[i] + atom->radius[j], r = std::sqrt(rsq), overlap = sum - r;
   const double* const known = layout_.values > 0 && history_->at_list() ? history_of(i, j) : nullptr;
-  const bool attached =
-      known && layout_.root >= 0 && known[layout_.root] > 0.0 && history_->now() - known[layout_.last_step] <= 1.0;
+  const bool recent = known && history_->now() - known[layout_.last_step] <= 1.0;
+  const bool attached = recent && ((layout_.root >= 0 && known[layout_.root] > 0.0) ||
+                                   (layout_.growth >= 0 && closes_gap(sum, rsq, known[layout_.growth])));
   if (overlap <= 0.0 && !attached) return 0.0;
   std::vector<double> history(std::max(1, layout_.values), 0.0);
   if (known) std::copy_n(known, layout_.values, history.data());
@@ -366,6 +390,7 @@ double PairEp::single(int i, int j, int, int, double rsq, double, double, double
   single_[1] = models_.law->most < 0 ? overlap : std::max(overlap, history[models_.law->most]);
   single_[2] = b.radius_ratio[0] * atom->radius[i] * atom->radius[j] / sum;
   single_[3] = models_.law->root < 0 || history[layout_.root] > 0.0;
+  if (layout_.growth >= 0) single_[4] = history[layout_.growth + 1];
   std::fill_n(b.radius_ratio, kernels::most_lanes, 0.0);
   return b.stored_energy.a[0];
 }

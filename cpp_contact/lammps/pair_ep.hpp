@@ -25,7 +25,8 @@ class PairEp : public LAMMPS_NS::Pair {
   double init_one(int i, int j) override;
   void compute(int eflag, int vflag) override;
   /// Elastic energy of a contact, normal force over distance; svector: overlap, largest overlap, contact radius,
-  /// whether the bodies touch or are attached.
+  /// whether the bodies touch or are attached,
+  /// overlap that growth adds.
   double single(int i, int j, int itype, int jtype, double rsq, double, double, double& fforce) override;
   void write_restart(FILE* file) override;
   void read_restart(FILE* file) override;
@@ -39,6 +40,10 @@ class PairEp : public LAMMPS_NS::Pair {
   double largest_radius(int type) const { return largest_[type]; }
 
  private:
+  /// Bodies in contact: bodies that overlap; also bodies that adhere across a gap; also bodies whose growth closes a
+  /// gap.
+  enum class Reach { touching, attached, grown };
+
   struct PairOfTypes {
     std::string text;  // words of pair_coeff; empty: not given
     Words words;
@@ -50,8 +55,9 @@ class PairEp : public LAMMPS_NS::Pair {
   void create_history();
   void measure_radii();
   void set_pass(bool counts);
-  template <bool adheres>
+  template <Reach reach>
   void gather();
+  bool grown_touch(int i, int j, int slot, double rsq) const;
   template <class HistoryAt>
   void fetch(int n, HistoryAt history_at);
   void finish(int n);
@@ -76,7 +82,7 @@ class PairEp : public LAMMPS_NS::Pair {
   int slot_[kernels::block_size + kernels::most_lanes];
   std::vector<double> copies_[3];  // of x, v, omega, if no number can be read behind the last atom
   int frozen_ = 0;                 // group bit
-  double single_[4];               // svector
+  double single_[5];               // svector
 };
 
 }  // namespace epdem::lammps

@@ -146,8 +146,8 @@ void read_parameters(WordReader& reader, const Law& law, std::vector<double>& va
 void read_options(WordReader& reader, Words& words) {
   constexpr Range not_negative{0.0, unlimited, true};
   constexpr Range restitution{viscous_restitution_min, 1.0, true, true};
-  const std::vector<std::string> options{"tangential", "restitution",        "rolling",
-                                         "cohesion",   "normal_restitution", "tangential_restitution"};
+  const std::vector<std::string> options{
+      "tangential", "restitution", "rolling", "cohesion", "normal_restitution", "tangential_restitution", "compaction"};
   std::vector<bool> seen(options.size());
   while (!reader.at_end()) {
     const int option = reader.next_of("option", options);
@@ -169,6 +169,8 @@ void read_options(WordReader& reader, Words& words) {
       words.coefficients.normal_restitution = reader.next_number("normal_restitution e", restitution);
     } else if (option == 5) {
       words.coefficients.tangential_restitution = reader.next_number("tangential_restitution e", restitution);
+    } else if (option == 6) {
+      words.models.compaction = reader.next_of("compaction", {"off", "on"});
     } else {
       words.models.cohesion = reader.next_of("cohesion", names<Cohesions>());
       if (words.models.cohesion)
@@ -222,6 +224,7 @@ Models common_models(LAMMPS* lmp, const std::string& place, const Models& a, con
   Models common{a.law ? a.law : b.law};
   common.friction = common_place(lmp, place, "tangential", names<Frictions>(), a.friction, b.friction);
   common.books_friction = a.books_friction || b.books_friction;
+  common.compaction = a.compaction || b.compaction;
   common.rolling = common_place(lmp, place, "rolling", names<Rollings>(), a.rolling, b.rolling);
   common.cohesion = common_place(lmp, place, "cohesion", names<Cohesions>(), a.cohesion, b.cohesion);
   return common;
@@ -290,8 +293,11 @@ kernels::Kernel kernel_of(LAMMPS* lmp, const std::string& place, const Models& m
   if (!set)
     fail(lmp, "EPDEM_SIMD = " + std::string(wanted) +
                   ": this processor has no such instructions; leave it unset, or take sse2, avx2 or avx512");
-  const kernels::Kernel kernel = set->of[models.law->place][models.friction][wall];
+  if (models.compaction && models.cohesion)
+    fail(lmp, place + ": compaction beside cohesion " + names<Cohesions>()[models.cohesion] + "; remove one");
+  const kernels::Kernel kernel = (models.compaction ? set->grown : set->of)[models.law->place][models.friction][wall];
   if (kernel) return kernel;
+  if (models.compaction) fail(lmp, place + ": law " + models.law->name + " has no compaction; take law cavity");
   fail(lmp, place + ": tangential " + names<Frictions>()[models.friction] + " does not exist beside law " +
                 models.law->name + "; take tangential history");
 }
@@ -316,6 +322,10 @@ Layout layout_of(const Models& models, bool wall) {
   layout.mirror.insert(layout.mirror.end(), friction - even, -1.0);
   layout.mirror.insert(layout.mirror.end(), even, 1.0);
   layout.mirror.insert(layout.mirror.end(), rolling, -1.0);
+  if (models.compaction) {
+    layout.growth = static_cast<int>(layout.mirror.size());
+    layout.mirror.insert(layout.mirror.end(), 2, 1.0);
+  }
   layout.values = static_cast<int>(layout.mirror.size());
   return layout;
 }

@@ -43,6 +43,7 @@ struct Models {
   const Law* law = nullptr;
   int friction = 0, rolling = 0, cohesion = 0;
   bool books_friction = false;  // friction computes its work
+  bool compaction = false;
 };
 
 /// Coefficients of a pair of bodies; 0: no such force. A restitution of 0 means no dashpot.
@@ -88,7 +89,8 @@ kernels::Kernel kernel_of(LAMMPS_NS::LAMMPS* lmp, const std::string& place, cons
 struct Layout {
   int values = 0;                            // numbers of a contact
   int root = -1, jump = -1, last_step = -1;  // places; last_step: of pairs with a history
-  std::vector<double> mirror;                // 1, or -1 of a number that changes its sign when j takes the place of i
+  int growth = -1;  // place of the overlap that growth adds by the last sums, before the added overlap of the step
+  std::vector<double> mirror;  // 1, or -1 of a number that changes its sign when j takes the place of i
 };
 
 Layout layout_of(const Models& models, bool wall);

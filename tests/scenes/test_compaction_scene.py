@@ -5,9 +5,11 @@ import re
 
 import numpy as np
 import pytest
+from parts_cases import FLOOR, parts
 from scene_runs import run, write_case, write_deck
 from stored_runs import CASES
 
+from engines.lammps_decks import needs_lammps
 from epdem.case.scene import parse
 from epdem.case.toml import read_toml
 from epdem.engines import scene_engine
@@ -63,6 +65,56 @@ def test_a_continued_press_ends_bitwise_where_the_uninterrupted_one_does(tmp_pat
     assert np.array_equal(last(), whole)
 
 
+def lattice(folder):
+    """64 spheres in a grid between planes, which a plate presses within 3 ms and releases."""
+    rng = np.random.default_rng(3)
+    axis = 3.05e-3 * (np.arange(4) - 1.5)
+    x = np.stack(np.meshgrid(axis, axis, axis + 6.125e-3, indexing="ij"), -1).reshape(-1, 3)
+    x += rng.uniform(-2e-5, 2e-5, x.shape)
+    rows = np.column_stack([x, rng.uniform(1.4e-3, 1.48e-3, 64)]).tolist()
+    folder.mkdir(parents=True, exist_ok=True)
+    (folder / "spheres.csv").write_text(
+        "\n".join(["x,y,z,radius,material", *(f"{','.join(map(repr, row))},glass" for row in rows), ""])
+    )
+    sides = [("left", "x", -6.1), ("right", "x", 6.1), ("front", "y", -6.1), ("back", "y", 6.1)]
+    walls = [FLOOR | {"name": name, "axis": a, "at": f"{at} mm"} for name, a, at in sides]
+    lid = {"name": "lid", "kind": "plate", "axis": "z", "center": ["0 mm", "0 mm", "12.3 mm"], "material": "steel"}
+    down, up = ({"wall": "lid", "kind": "linear", "velocity": ["0 m/s", "0 m/s", v]} for v in ("-1 m/s", "1 m/s"))
+    data = parts(
+        wall=[FLOOR, *walls, lid | {"size": ["17.9 mm", "17.9 mm"]}],
+        fill=[{"name": "table", "file": "spheres.csv"}],
+        phase=[
+            {"name": "press", "duration": "3 ms", "move": [down]},
+            {"name": "release", "duration": "0.6 ms", "move": [up]},
+        ],
+    )
+    for material in data["materials"].values():
+        material |= {"young_modulus": "12 MPa", "yield_stress": "0.1 MPa"}
+    return write_case(data | {"law": COMPACT, "numerics": {"time_step": "4e-6 s"}}, folder)
+
+
+@needs_lammps
+@pytest.mark.liggghts
+def test_a_press_in_lammps_is_that_of_liggghts(tmp_path):
+    """Forces, growth and energies of all contacts while the plate presses; the balance of LAMMPS up to the end."""
+    path = lattice(tmp_path)
+    ours, theirs = (run(path, engine=name, out=tmp_path / name).results for name in ("lammps", "liggghts"))
+    press = theirs.rows["time"] < 3e-3
+    for name in ("kinetic_energy", "largest_overlap_ratio", "lid_force_z", "floor_force_z", "left_force_x"):
+        largest = np.abs(theirs.rows[name]).max()
+        assert np.abs(ours.rows[name] - theirs.rows[name])[press].max() <= 1e-6 * largest > 0, (
+            name
+        )  # LIGGGHTS writes 8 digits
+    a, b = (found.contacts[found.contacts["step"] < 765] for found in (ours, theirs))
+    keys = ["step", "wall", "i", "j"]
+    assert a[keys].equals(b[keys])
+    for name in ("overlap", "delta_max", "added_overlap", "force", "elastic_energy", "plastic_work"):
+        assert np.abs(a[name] - b[name]).max() <= 1e-8 * b[name].max(), name
+    assert ((a["overlap"] < 0) & (a["force"] > 0)).any() and (a["added_overlap"][a["j"] == 0] > 0).any()
+    balance = ours.energy_balance
+    assert balance["balance"].abs().max() < 0.01 * balance["work"].max()
+
+
 REFUSED = {
     "law": ({"law": {"name": "thornton", "compaction": True}}, "law.compaction: law thornton has none"),
     "word": ({"law": COMPACT | {"compaction": 1}}, "law.compaction = 1: it is true or false"),
@@ -87,7 +139,7 @@ def test_a_skin_that_growth_exceeds_is_refused():
         liggghts.check(plan(parse(pressed(COMPACT, numerics={"skin": f"{0.19 * radius!r} m"}))))
 
 
-@pytest.mark.parametrize("engine", ["yade", "lammps"])
+@pytest.mark.parametrize("engine", ["yade"])
 def test_other_engines_refuse_compaction(engine):
     with pytest.raises(CaseError, match=rf"(?i)law.compaction: .*{engine}.* (none|no compaction); remove it"):
         scene_engine(engine).check(plan(parse(pressed(COMPACT))))

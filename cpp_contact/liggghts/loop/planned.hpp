@@ -41,7 +41,7 @@ class Planned {
     plan_.ledger = normal.ledger();
     plan_.strain = normal.strain();
     plan_.growth = normal.growth();
-    plan_.grown = chosen_kernels(lmp_).grown[normal.place()][plan_.friction];
+    plan_.grown = chosen_kernels(lmp_).grown[normal.place()][plan_.friction][wall_];
     plan_.width = normal.width();
     double** const mu = plan_.friction ? property("coeffFrict", &MODEL_PARAMS::createCoeffFrict) : nullptr;
     double** const rolling =

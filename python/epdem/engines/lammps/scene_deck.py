@@ -25,7 +25,6 @@ def check(p: ScenePlan) -> None:
     m, out = p.model, p.output
     rolling = m.rolling.model if m.rolling else None
     refuse("contact.rolling.model", rolling not in (None, *ROLLING) and rolling, "pair ep in LAMMPS has cdt and epsd2")
-    refuse("law.compaction", m.compaction, "pair ep in LAMMPS has none")
     refuse("output.restarts", out.restarts, "a LAMMPS scene is not continued")
     refuse("output.vtk", out.vtk, "there is no VTK output; output.particles holds the same")
     refuse("output.pictures", out.pictures, "there are none")

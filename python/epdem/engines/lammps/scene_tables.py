@@ -49,13 +49,13 @@ def particles(p: ScenePlan, folder: Path) -> pd.DataFrame:
 
 def contact_table(p: ScenePlan, folder: Path, spheres: pd.DataFrame) -> pd.DataFrame:
     """Every contact of every frame."""
-    pairs = _frames(p, folder, "contacts", p.contacts, ["one", "two", "overlap", "delta_max", "attached"])
+    values = ["overlap", "delta_max", "attached", *["added_overlap"] * p.model.compaction]
+    pairs = _frames(p, folder, "contacts", p.contacts, ["one", "two", *values])
     pairs = pairs.assign(wall="", i=pairs[["one", "two"]].min(axis=1), j=pairs[["one", "two"]].max(axis=1))
-    found = [pairs[(pairs["overlap"] > 0) | (p.model.adheres & (pairs["attached"] > 0))]]
+    across = pairs["added_overlap"] if p.model.compaction else 0.0
+    found = [pairs[(pairs["overlap"] + across > 0) | (p.model.adheres & (pairs["attached"] > 0))]]
     for name in contact_walls(p):
-        table = _frames(
-            p, folder, f"contacts_{wall_id(p, name)}", p.contacts, ["i", "overlap", "delta_max", "attached"]
-        )
+        table = _frames(p, folder, f"contacts_{wall_id(p, name)}", p.contacts, ["i", *values])
         found.append(table.assign(wall=name, j=0))
     raw = pd.concat([part for part in found if len(part)] or found[:1], ignore_index=True)
     raw = raw.assign(attached=raw["attached"] > 0) if p.model.adheres else raw.drop(columns="attached")

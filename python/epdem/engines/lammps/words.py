@@ -40,4 +40,6 @@ def options(p: ScenePlan, i: int, j: int) -> str:
         words += ["rolling", m.rolling.model, number(m.rolling.coefficient)]
     if m.cohesion:
         words += ["cohesion", "sjkr", number(m.cohesion)]
+    if m.compaction:
+        words += ["compaction", "on"]
     return " ".join(words)

@@ -1,0 +1,184 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Option compaction of cavity in LAMMPS: forces, order, lattices, contacts alone, ranks, restart, refusals."""
+
+import numpy as np
+import pytest
+from lammps_decks import column, lammps, needs_lammps, run
+from plugin_compaction import NU, E, Y, data
+from test_plugin_compaction import BACK, CLUSTER, FLOOR, HEAVY, RADII, SPEEDS, WAYS, exact
+
+from epdem.theory.cavity import FINITE_STRAIN, Cavity
+from epdem.verification.theory.compaction import FCC, SC, isotropic_pressure
+
+pytestmark = needs_lammps
+
+LAW = f"cavity {E!r} {NU!r} {Y!r} 1.6 2.8 {FINITE_STRAIN}"
+ON = f"{LAW} compaction on"
+
+
+def deck(law, runs, dt, *, floor=None, head="", skin=0.05, columns="fx fy fz", every=1):
+    """Spheres of spheres.data, a floor at a height [m], and frames of all steps."""
+    wall = f"fix floor all wall/ep zplane {floor!r} NULL {law}\n" if floor is not None else ""
+    return f"""units si
+atom_style sphere
+atom_modify map array sort 0 0
+boundary f f f
+comm_modify vel yes
+{head}
+read_data spheres.data
+pair_style ep energies
+pair_coeff * * {law}
+neighbor {skin} bin
+neigh_modify delay 0
+{wall}fix move all nve/sphere
+timestep {dt!r}
+dump d all custom {every} frames.txt id {columns}
+dump_modify d sort id header no format float %.17g
+{runs}"""
+
+
+def frames(folder, text, spheres, *, ranks=1):
+    """Frames of a run without the ids, shape (frames, spheres, columns)."""
+    folder.mkdir(parents=True, exist_ok=True)
+    (folder / "spheres.data").write_text(spheres)
+    run(text, folder, ranks=ranks)
+    table = np.loadtxt(folder / "frames.txt")
+    return table[:, 1:].reshape(-1, int(table[:, 0].max()), table.shape[1] - 1)
+
+
+def cluster(folder, steps, *, law=ON, runs=None, head="", ranks=1):
+    """Forces of a sphere, five neighbors and a floor at `steps` loading and `steps` unloading steps; see `exact`.
+
+    The skin is smaller than the gaps that growth closes.
+    """
+    spheres = data(CLUSTER, RADII, -SPEEDS[:, None] * WAYS, HEAVY)
+    text = deck(law, runs or f"run {steps}\n{BACK}run {steps}\n", 1.0 / steps, floor=FLOOR, head=head, skin=1e-3)
+    return frames(folder, text, spheres, ranks=ranks)
+
+
+def test_forces_are_those_of_grown_spheres_with_an_error_of_second_order(tmp_path):
+    """Within 1e-3 in all steps; the order where no contact begins and no velocity jumps, of which no step knows."""
+    errors = []
+    for steps in (400, 800, 1600):
+        F, largest = exact(steps)
+        found = cluster(tmp_path / str(steps), steps)
+        difference = np.abs(found - F).max(axis=(1, 2)) / largest
+        assert difference[3:].max() < 1e-3
+        assert difference[steps + 3 :].max() < 1e-6
+        errors.append(difference[steps * 4 // 5 : steps - 2].max())
+    assert errors[-1] < 1e-5
+    assert np.log2(errors[0] / errors[2]) / 2 > 1.9, errors
+    assert found[1600, 5, 2] > 0 == cluster(tmp_path / "off", 400, law=LAW)[400, 5, 2]  # growth alone reaches the last
+
+
+@pytest.mark.parametrize(("name", "lattice", "density"), [("sc", SC, 0.85), ("fcc", FCC, 0.92)])
+def test_the_pressure_of_a_lattice_is_that_of_equal_contacts(name, lattice, density, tmp_path):
+    """n equal contacts, g = n x^2/(4 - 2 n x): spheres of radius 1 in a periodic box that shrinks."""
+    cells, edge, steps = (4, 2.0, 400) if name == "sc" else (3, 8**0.5, 400)  # edge of a cell at first touch
+    ratio = (4 * np.pi / 3 / lattice.cell / density) ** (1 / 3)
+    text = f"""units si
+atom_style sphere
+atom_modify map array
+comm_modify vel yes
+lattice {name} {edge!r}
+region box block 0 {cells} 0 {cells} 0 {cells}
+create_box 1 box
+create_atoms 1 box
+set group all diameter 2 density 1e15
+pair_style ep
+pair_coeff * * {ON}
+neighbor 0.1 bin
+fix squeeze all deform 1 {" ".join(f"{a} scale {ratio!r}" for a in "xyz")} remap x
+fix move all nve/sphere
+timestep 1e-3
+thermo_style custom step lx press
+thermo_modify format float %.17g
+thermo 40
+run {steps}
+"""
+    out, _ = run(text, tmp_path)
+    d = column(out, "Lx")[1:] / column(out, "Lx")[0]
+    before = d + (1 - ratio) / steps  # LAMMPS shrinks the box after the forces of a step
+    law = Cavity(E_star=E / (1 - NU**2) / 2, R_star=0.5, Y=Y, c_strain=FINITE_STRAIN)
+
+    def force(overlap):  # of a sphere with the symmetry plane
+        return law.force(2 * overlap)
+
+    assert d[-1] == pytest.approx(ratio)
+    by_hand = isotropic_pressure(lattice, force, before, 1.0) * (before / d) ** 3
+    error = np.abs(column(out, "Press")[1:] / by_hand - 1)
+    assert error[1:].max() < 2e-4
+    assert isotropic_pressure(lattice, force, before[-1:], 1.0, grows=False) < 0.9 * by_hand[-1]
+
+
+@pytest.mark.parametrize("ranks", [1, 2])
+def test_contacts_alone_keep_every_bit(ranks, tmp_path):
+    """Pairs and spheres at a wall, elastic to fully plastic, with a second impact on the wall after the first."""
+    rng = np.random.default_rng(5)
+    n = 12
+    a = np.column_stack([np.linspace(-60, 60, n), np.zeros(n), np.full(n, 4.0)])
+    radius = rng.uniform(0.7, 1.3, 3 * n)
+    b = a + np.column_stack([np.zeros(n), radius[:n] + radius[n : 2 * n] + 1e-3, rng.uniform(-0.3, 0.3, n)])
+    c = a - np.column_stack([np.zeros(n), np.full(n, 30.0), 5.0 - radius[2 * n :] - 1e-3])
+    speed = np.geomspace(0.05, 20, n)
+    v = np.zeros((3 * n, 3))
+    v[n : 2 * n, 1], v[2 * n :, 2] = -speed, -speed
+    spheres = data(np.concatenate([a, b, c]), radius, v, 2000.0, half=64.0)
+    turn = f"run 1000\nset group all vz {-0.2!r}\nrun 1000\n"
+    head = "processors 2 1 1" if ranks == 2 else ""
+    ends = [
+        frames(
+            tmp_path / law.split()[-1],
+            deck(law, turn, 2e-4, floor=-1.0, head=head, columns="x y z vx vy vz f_EP_HISTORY0[1]", every=100),
+            spheres,
+            ranks=ranks,
+        )
+        for law in (LAW, ON)
+    ]
+    assert np.array_equal(*ends)
+    assert (ends[0][-1][1::2, 6] > 0).any() and (ends[0][-1][2 * n :, 6] > 0).any()  # some yielded
+
+
+RESTART = f"""run 150
+write_restart x.restart
+clear
+atom_modify map array sort 0 0
+comm_modify vel yes
+read_restart x.restart
+neighbor 1e-3 bin
+neigh_modify delay 0
+fix floor all wall/ep zplane {FLOOR!r} NULL {ON}
+fix move all nve/sphere
+timestep {1 / 300!r}
+dump d all custom 1 frames.txt id fx fy fz
+dump_modify d sort id header no format float %.17g append yes
+run 150
+"""
+
+
+def test_two_runs_a_restart_and_two_ranks_give_the_forces_of_one_run(tmp_path):
+    """After a restart frame 151 is the evaluation before the first step of the run."""
+    once = cluster(tmp_path / "once", 300, runs="run 300\n")
+    two = cluster(tmp_path / "two", 300, runs="run 150\nrun 150\n")
+    again = cluster(tmp_path / "restart", 300, runs=RESTART)
+    ranks = cluster(tmp_path / "ranks", 300, runs="run 300\n", head="processors 2 1 1", ranks=2)
+    largest = np.abs(once).max()
+    assert np.array_equal(again[150], again[151])
+    assert np.array_equal(np.delete(again, 151, axis=0), two)
+    assert np.abs(two - once).max() < 1e-12 * largest
+    assert np.abs(ranks - once).max() < 1e-12 * largest
+
+
+REFUSED = {
+    "law": ("thornton 1e8 0.3 4e5 compaction on", "", "law thornton has no compaction; take law cavity"),
+    "cohesion": (f"{ON} cohesion sjkr 1e3", "", "compaction beside cohesion sjkr; remove one"),
+    "wall": (ON, f"fix floor all wall/ep zplane -1 NULL {LAW}", "compaction is off here and on in pair_coeff"),
+}
+
+
+@pytest.mark.parametrize("what", REFUSED)
+def test_what_has_no_compaction_is_refused(what, tmp_path):
+    law, wall, said = REFUSED[what]
+    (tmp_path / "spheres.data").write_text(data(CLUSTER, RADII, 0 * CLUSTER, 1000.0))
+    code, out = lammps(deck(law, f"{wall}\nrun 0\n", 1e-3), tmp_path)
+    assert code != 0 and said in out
