@@ -89,6 +89,7 @@ class EpPhys : public FrictPhys {
     ((Real, en, 1., Attr::readonly, "restitution of the normal dashpot in slow impacts without yield; 1: none"))
     ((Real, es, 1., Attr::readonly, "restitution of the dashpot beside friction; 1: none"))
     ((Real, rollingFriction, 0., Attr::readonly, "coefficient of rolling friction"))
+    ((Real, cohesionEnergyDensity, 0., Attr::readonly, "energy density of cohesion [J/m^3]"))
     ((Real, plasticWork, 0., Attr::readonly, "plastic work of this contact so far [J], with O.trackEnergy"))
     ((Real, elasticEnergy, 0., Attr::readonly, "elastic energy [J] of the normal force, with O.trackEnergy; with adhesion less the surface energy"))
     ((Real, adhesionLoss, 0., Attr::readonly, "energy that adhesion lost in touch and parting [J], with O.trackEnergy"))

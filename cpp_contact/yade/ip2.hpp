@@ -26,6 +26,7 @@ class Ip2_EpMat_EpMat_EpPhys : public IPhysFunctor {
     ((shared_ptr<MatchMaker>, en, , , "restitution of impacts without yield, in [0.14, 1]: a normal dashpot; default: no dashpot"))
     ((shared_ptr<MatchMaker>, es, , , "restitution of the dashpot beside friction, in (0, 1]; default: no dashpot"))
     ((shared_ptr<MatchMaker>, rollingFriction, , , "coefficient of rolling friction; default: the smaller of both"))
+    ((shared_ptr<MatchMaker>, cohesionEnergyDensity, , , "energy density of the law's cohesion [J/m^3]; default: 0"))
     ((shared_ptr<MatchMaker>, workOfAdhesion, , , "work of adhesion [J/m^2]; default: twice the geometric mean of both surface energies")));
   // clang-format on
 
@@ -85,6 +86,9 @@ class Ip2_EpMat_EpMat_EpPhys : public IPhysFunctor {
     const double rolling = of_pair(rollingFriction, m1, m2, m1.rollingFriction, m2.rollingFriction,
                                    std::min(m1.rollingFriction, m2.rollingFriction));
     phys->rollingFriction = checked("rollingFriction", rolling, {0.0, epdem::unlimited, true}, i);
+    phys->cohesionEnergyDensity =
+        checked("cohesionEnergyDensity", of_pair(cohesionEnergyDensity, m1, m2, NaN, NaN, 0.0),
+                {0.0, epdem::unlimited, true}, i);
     for (int k = 0; k < iy::parameter_count; ++k) {
       if (!iy::is_first(k)) continue;
       const iy::LawParameter& p = iy::parameters[k];

@@ -11,6 +11,7 @@ class Law2_ScGeom_EpPhys : public LawFunctor {
   void postLoad(Law2_ScGeom_EpPhys&) {
     frictionModel_ = place_of(epdem::Frictions{}, "tangential", tangential);
     rollingModel_ = place_of(epdem::Rollings{}, "rolling", rolling);
+    cohesionModel_ = place_of(epdem::Cohesions{}, "cohesion", cohesion);
   }
 
   // clang-format off
@@ -19,6 +20,7 @@ class Law2_ScGeom_EpPhys : public LawFunctor {
     ((string, tangential, "history", Attr::triggerPostLoad, "friction: off, no_history (dashpot of restitution es), history (one spring of stiffness 8 G* a up to Coulomb's limit, Cundall and Strack 1979), partial_slip or partial_slip_2 (partial slip of the contact circle by 3 or 2 nodes)"))
     ((string, rolling, "off", Attr::triggerPostLoad, "rolling friction: off, cdt (constant torque) or epsd2 (spring)"))
     ((bool, torsion, false, , "whether rolling friction also resists torsion"))
+    ((string, cohesion, "off", Attr::triggerPostLoad, "cohesion beside a law without adhesion: off, sjkr (cohesionEnergyDensity times the area of the overlap's lens) or sjkr2"))
     ((bool, recordStrain, false, , "whether largestRadiusRatio and largestOverlapRatio are recorded"))
     ((Real, largestRadiusRatio, 0., Attr::readonly, "largest contact radius over R* of all contacts so far"))
     ((Real, largestOverlapRatio, 0., Attr::readonly, "largest overlap over R* of all contacts so far")));
@@ -118,6 +120,8 @@ class Law2_ScGeom_EpPhys : public LawFunctor {
   template <class Law>
   void prepare(EpPhys& phys, const Interaction& contact) const {
     namespace iy = epdem::in_yade;
+    if (epdem::adheres<Law> && cohesionModel_ != 0)
+      iy::refuse(getClassName() + ".cohesion = '" + cohesion + "': the law has its adhesion already, must be off");
     double values[Law::n_parameters + 1];
     const string bodies = "bodies " + std::to_string(contact.getId1()) + " and " + std::to_string(contact.getId2());
     for (int k = 0; k < Law::n_parameters; ++k) {
@@ -137,6 +141,7 @@ class Law2_ScGeom_EpPhys : public LawFunctor {
     pair.dashpot = epdem::viscous_number(phys.en);
     pair.damping = epdem::damping_number(phys.es);
     pair.rolling_friction = phys.rollingFriction;
+    pair.cohesion_density = phys.cohesionEnergyDensity;
     new (phys.constants.bytes) epdem::ContactConstants<Law>(pair);
     if (phys.lawId != Law::id) phys.history = {};
     phys.lawId = phys.constantsOf = Law::id;
@@ -186,7 +191,7 @@ class Law2_ScGeom_EpPhys : public LawFunctor {
     phys.frictionId = Friction::id;
     if (rollingModel_ != 0) load(phys, rolling_at, history.rolling);
 
-    const epdem::ContactSettings settings{scene->dt,          rollingModel_, 0,    pair.damping > 0.0,
+    const epdem::ContactSettings settings{scene->dt,          rollingModel_, cohesionModel_, pair.damping > 0.0,
                                           pair.dashpot > 0.0, torsion,       false};
     const auto loads = epdem::contact<Friction, wall>(
         pair, settings, c, history, [&] { return phys.effectiveMass; },
@@ -261,7 +266,7 @@ class Law2_ScGeom_EpPhys : public LawFunctor {
     }
   }
 
-  int frictionModel_ = epdem::Frictions::place(epdem::SlidingSpring::id), rollingModel_ = 0;
+  int frictionModel_ = epdem::Frictions::place(epdem::SlidingSpring::id), rollingModel_ = 0, cohesionModel_ = 0;
   std::atomic<bool> booked_{false};
   int energyId_[energies] = {-1, -1, -1, -1, -1};
 };

@@ -265,6 +265,7 @@ BAD = [
         r"tangential = 'x', must be one of off, no_history, history, partial_slip, partial_slip_2",
     ),
     ("Law2_ScGeom_EpPhys_Hertz(rolling='x')", r"rolling = 'x', must be one of off, cdt, epsd2"),
+    ("Law2_ScGeom_EpPhys_Hertz(cohesion='x')", r"cohesion = 'x', must be one of off, sjkr, sjkr2"),
 ]
 
 
@@ -290,6 +291,11 @@ def test_bad_values_raise_with_attribute_value_and_limit(tmp_path):
             "Ip2_EpMat_EpMat_EpPhys()",
             "Ip2_EpMat_EpMat_EpPhys(en=0.1)",
             "Ip2_EpMat_EpMat_EpPhys: en of bodies 0 and 1 = 0.1, must lie in [0.14, 1]",
+        ),
+        (
+            'Thornton(tangential="partial_slip")',
+            "Jkr(cohesion='sjkr')",
+            "Law2_ScGeom_EpPhys_Jkr.cohesion = 'sjkr': the law has its adhesion already, must be off",
         ),
     ],
 )
@@ -543,6 +549,37 @@ json.dump([p.tangensOfFrictionAngle, p.en, p.es, p.rollingFriction, p.workOfAdhe
            "p_y of thornton" in EpMat.yieldPressure.__doc__], open("result.json", "w"))
 """
 )
+
+
+COHESION = """
+def forces(cohesion, density):
+    steel = EpMat(young=1e9, poisson=0.3, density=7850)
+    O.reset()
+    O.materials.append(steel)
+    O.bodies.append([wall(0, axis=2, material=steel), sphere((0, 0, 0.0098), 0.01, material=steel),
+                     sphere((0, 0, 0.0256), 0.006, material=steel)])
+    O.engines = [ForceResetter(), InsertionSortCollider([Bo1_Sphere_Aabb(), Bo1_Wall_Aabb()]),
+        InteractionLoop([Ig2_Sphere_Sphere_ScGeom(), Ig2_Wall_Sphere_ScGeom()],
+                        [Ip2_EpMat_EpMat_EpPhys(cohesionEnergyDensity=density)],
+                        [Law2_ScGeom_EpPhys_Hertz(cohesion=cohesion)]), NewtonIntegrator(damping=0)]
+    O.dt = 1e-12
+    O.step()
+    return [[O.forces.f(k)[2] for k in range(3)], O.interactions[1, 2].phys.normalForce[2]]
+
+json.dump([forces("off", 1e6), forces("sjkr", 1e6), forces("sjkr2", 1e6)], open("result.json", "w"))
+"""
+
+
+def test_cohesion_pulls_by_its_energy_density_over_the_area_of_the_overlap(tmp_path):
+    """Overlaps of 0.2 mm. sjkr: the area of the circle in which the surfaces meet; sjkr2: 4 pi R* overlap."""
+    (off, at_rest), (sjkr, pressed), (sjkr2, _) = result(COHESION, tmp_path)
+    toward = (0.01**2 - 0.006**2 + 0.0158**2) / (2 * 0.0158)  # from the centre of the sphere of 10 mm to the circle
+    circles = [math.pi * (0.01**2 - 0.0098**2), math.pi * (0.01**2 - toward**2)]
+    rings = [2 * math.pi * 0.01 * 2e-4, 4 * math.pi * 0.00375 * 2e-4]  # of a wall LIGGGHTS takes half
+    for found, (at_wall, between) in ((sjkr, circles), (sjkr2, rings)):
+        pull = [1e6 * at_wall, 1e6 * (between - at_wall), -1e6 * between]
+        assert np.subtract(found, off) == pytest.approx(pull, rel=1e-9)
+    assert abs(at_rest) - abs(pressed) == pytest.approx(1e6 * circles[1], rel=1e-9)
 
 
 def test_values_of_pairs_come_from_matchmakers_and_all_attributes_are_readable(tmp_path):

@@ -128,7 +128,11 @@ def test_the_rolling_model_that_the_classes_lack_is_refused():
 
 GRANULAR = {
     "friction": ({"friction": 0.4, "tangential": "partial_slip"}, None, "thornton"),
-    "dashpot and rolling": ({"friction": 0.4, "rolling": {"coefficient": 0.1}}, {"restitution": 0.7}, "thornton"),
+    "dashpot, rolling, cohesion": (
+        {"friction": 0.4, "rolling": {"coefficient": 0.1}, "cohesion": "2e4 J/m^3"},
+        {"restitution": 0.7},
+        "thornton",
+    ),
     "adhesion": ({"friction": 0.4}, None, "thornton_ning"),
 }
 

@@ -226,7 +226,6 @@ def test_liggghts_runs_what_is_drawn(chosen, folder):
 
 # What YADE has without the module epdem_yade.
 LACKS = {
-    "walls": {"plates of two worn materials", "plate with stress"},
     "law": {"jkr"},
     "contact": {"partial slip", "rolling", "cohesion"},
     "dashpot": {"dashpot"},

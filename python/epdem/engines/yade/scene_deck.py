@@ -47,7 +47,6 @@ def refuse(p: ScenePlan, *, classes: bool) -> None:
     unknown: dict[str, tuple[object, str]] = {
         "contact.rolling": (rolling == "epsd" and rolling, "YADE's laws have cdt and epsd2"),
         "law.compaction": (m.compaction, "YADE's laws have no compaction"),
-        "contact.cohesion": (m.cohesion, "YADE's law has no cohesion"),
         "output.restarts": (out.restarts, "a YADE scene is not continued"),
         "output.vtk": (out.vtk, "there is no VTK output; output.particles holds the same"),
         "output.pictures": (out.pictures, "YADE draws none without a display"),
@@ -56,6 +55,7 @@ def refuse(p: ScenePlan, *, classes: bool) -> None:
         "viscous.restitution": p.case.viscous and p.case.viscous.restitution,
         "contact.tangential": m.nodes and m.tangential,
         "contact.rolling": rolling,
+        "contact.cohesion": m.cohesion,
     }
     for place, (value, reason) in unknown.items():
         refuse_value(place, value, reason)
@@ -109,9 +109,11 @@ def _functors(p: ScenePlan, friction: Square) -> Functors:
     if m.tangential_restitution is not None:
         pairs.append(of_pairs("es", m.viscous) if m.viscous else PairValue("es", m.tangential_restitution))
     pairs += [PairValue("rollingFriction", m.rolling.coefficient)] if m.rolling else []
+    pairs += [PairValue("cohesionEnergyDensity", m.cohesion)] if m.cohesion else []
     pairs += [of_pairs("workOfAdhesion", m.adhesion)] if m.adheres else []
-    rolling = {"rolling": repr(m.rolling.model)} if m.rolling else {}
-    more = words.settings(m.tangential if m.sliding else None, **rolling, recordStrain=True)
+    models = {"rolling": repr(m.rolling.model)} if m.rolling else {}
+    models |= {"cohesion": repr("sjkr")} if m.cohesion else {}
+    more = words.settings(m.tangential if m.sliding else None, **models, recordStrain=True)
     shapes = {"Facet" if w.file else "Wall" for w in walls(p).values()}
     return Functors(words.title(m.law), ("Sphere", *sorted(shapes)), tuple(pairs), more)
 
