@@ -6,6 +6,7 @@ section on the laws with adhesion alone, whose cases are others, is made anew)
 """
 
 import argparse
+import textwrap
 from pathlib import Path
 
 import pandas as pd
@@ -22,14 +23,16 @@ from epdem.verification.tables import cell
 
 
 def limits(verdicts: pd.DataFrame) -> pd.DataFrame:
-    """One row per case; per engine and law 'error above 10 % at / unstable at', or why it did not run."""
+    """One row per case; per engine, law and exponent 'error above 10 % at / unstable at', or why it did not run."""
     rows = []
-    for name, part in verdicts.groupby("case", sort=False):
+    for name, part in verdicts.groupby(verdicts["case"].str.partition(",")[0], sort=False):
         flag = "large" if part["large_deformation"].any() else ""
         row = {"case": name, "a_max/R*": part["strain_ratio"].max(), "flag": flag}
         for v in part.itertuples():
             text = {"not representable": "n.r.", "embedded only": "n.a.", "failed": "FAILED"}.get(v.status)
-            row[f"{v.engine} {v.law}"] = text or f"{cell(v.useless_at)} / {cell(v.breaks_at)}"
+            row[f"{v.engine} {v.law}{v.case.removeprefix(name)}"] = (
+                text or f"{cell(v.useless_at)} / {cell(v.breaks_at)}"
+            )
         rows.append(row)
     return pd.DataFrame(rows).fillna("")
 
@@ -71,7 +74,7 @@ try {tried} (engines with positions: {fewer}).
 - `n.a.`: not run, because 1e9 steps of bounces take hours in an engine with positions.
 - Empty: not run. YADE needs ten seconds per case and runs the first and the last case of each group, with one law.
 
-**Practice.** {practice}
+{practice}
 
 {limits}
 
@@ -119,9 +122,9 @@ integration of the position.
 WITH_ADHESION = """
 ## With adhesion
 
-Written by `{command}`. {count} cases for the laws with adhesion have a work of adhesion from 1e-6 to 10 J/m2, R from
-1 um to 10 mm, 3 to 1000 times the sticking speed of the elastic contact, E*/p_y from 10 to 1000, E from 10 MPa to
-1 TPa, unequal spheres. The rules are the same.
+Written by `{command}`. {count} cases for the laws with adhesion have a work of adhesion
+from 1e-6 to 10 J/m2, R from 1 um to 10 mm, 3 to 1000 times the sticking speed of the elastic
+contact, E*/p_y from 10 to 1000, E from 10 MPa to 1 TPa, unequal spheres. The rules are the same.
 
 {summary}
 
@@ -156,12 +159,14 @@ relative difference of the kinetic energy. Both grow from round-off, because the
 def practice(verdicts: pd.DataFrame) -> str:
     """The sentence a user needs."""
     ran = verdicts[verdicts["useless_at"].notna()]
-    return (
-        f"Up to 1 % of the limit the error of e_n is at most {ran['e_n_error'].max():.1g} in every case. From "
+    text = (
+        "**Practice.** Up to 1 % of the limit the error of e_n is at most "
+        f"{ran['e_n_error'].max():.1g} in every case. From "
         f"{ran['useless_at'].min():g} of the limit on the error can exceed 10 %. From {ran['breaks_at'].min():g} on an "
         "impact can create more than 1 % of the energy. `epdem predict CASE --error E` finds the step for a target "
         "error."
     )
+    return textwrap.fill(text, 120)
 
 
 def bulk(verdicts: pd.DataFrame) -> str:
