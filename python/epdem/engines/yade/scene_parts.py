@@ -14,7 +14,6 @@ from ...scenes import placement
 from ...scenes.filling import Insertion
 from ...scenes.plan import ScenePlan
 from ...scenes.walls import spans, surface_rotation
-from ..host import refuse as refuse_value
 from ..input_script import first_look, torque_origin, void_height
 
 EDGES = (
@@ -24,6 +23,7 @@ EDGES = (
 
 
 OF_KINDS = {"floor": "floor_load", "plate": "plate_force"}  # column of the force on a wall of a kind
+LEGS = (6.0, 6.0, 1.9)  # of a triangle across the room, in its sizes
 HEAD = "# x y z radius [m], type, velocity [m/s], spin [rad/s], 1: frozen"  # of a table of spheres
 
 
@@ -44,17 +44,11 @@ class Wall:
 
 def refuse(p: ScenePlan) -> None:
     """Raise CaseError for walls that YADE does not have."""
-    unknown: dict[str, tuple[object, str]] = {}
     for name, mesh in p.scene.meshes.items():
         if surface_rotation(mesh) and any(name in phase.moves for phase in p.phases):
             raise CaseError(
                 f"scene.wall.{name}.angular_velocity: YADE turns the wall itself, which moves otherwise; remove one"
             )
-    for w in _planes(p).values():
-        across = p.scene.periodic and w.axis != "z" and w.axis
-        unknown[f"scene.wall.{w.name}.axis"] = across, "YADE's periodic cell holds planes across z only"
-    for place, (value, reason) in unknown.items():
-        refuse_value(place, value, reason)
 
 
 def is_endless(p: ScenePlan, name: str) -> bool:
@@ -173,7 +167,7 @@ def files(p: ScenePlan) -> dict[str, str]:
         if wall.name in p.triangles and not is_endless(p, wall.name):
             rows = p.triangles[wall.name].reshape(-1, 9).tolist()
         else:
-            rows = [_large_triangle(p, _height(p, wall.name))]
+            rows = [_large_triangle(p, wall.name)]
         texts[wall.file] = table_text(head, rows)
     for phase in p.phases:
         if name := bodies_file(p, phase.name):
@@ -192,13 +186,19 @@ def table_text(head: str, rows: Sequence[Sequence[float]]) -> str:
     return "\n".join([head, *(" ".join(map(decks.number, row)) for row in rows), ""])
 
 
-def _height(p: ScenePlan, name: str) -> float:
+def _large_triangle(p: ScenePlan, name: str) -> list[float]:
+    """Corners of a triangle whose edges no sphere meets: along x and y larger than the periodic cell, along z larger
+    than the room."""
     planes = _planes(p)
-    return planes[name].at if name in planes else float(p.triangles[name][0, 0, 2])
+    axis, at = (planes[name].axis, planes[name].at) if name in planes else ("z", float(p.triangles[name][0, 0, 2]))
+    corners = [[p.box[2 * k] - share * _size(p, k) for k, share in enumerate((0.5, 0.5, 0.2))] for _ in range(3)]
+    first, second = (k for k in range(3) if "xyz"[k] != axis)
+    corners[1][first] += LEGS[first] * _size(p, first)
+    corners[2][second] += LEGS[second] * _size(p, second)
+    for corner in corners:
+        corner["xyz".index(axis)] = at
+    return [x for corner in corners for x in corner]
 
 
-def _large_triangle(p: ScenePlan, z: float) -> list[float]:
-    """Corners of a triangle that is larger than the periodic cell, so that no sphere meets its edges."""
-    xlo, xhi, ylo, yhi, *_ = p.box
-    x, y, lx, ly = 0.5 * (xlo + xhi), 0.5 * (ylo + yhi), xhi - xlo, yhi - ylo
-    return [x - lx, y - ly, z, x + 5 * lx, y - ly, z, x - lx, y + 5 * ly, z]
+def _size(p: ScenePlan, k: int) -> float:
+    return p.box[2 * k + 1] - p.box[2 * k]
