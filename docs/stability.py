@@ -70,6 +70,7 @@ try {tried} (engines with positions: {fewer}).
 
 - A dash: no such share up to 1.5 times the limit.
 - `large`: a_max/R* > 0.3, outside the theory of small deformation.
+- `x`: hardening exponent of `meyer`.
 - `n.r.`: not representable (below).
 - `n.a.`: not run, because 1e9 steps of bounces take hours in an engine with positions.
 - Empty: not run. YADE needs ten seconds per case and runs the first and the last case of each group, with one law.
