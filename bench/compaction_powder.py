@@ -12,8 +12,7 @@ from pathlib import Path
 import numpy as np
 
 from epdem import Scene, run
-from epdem.report.chart import Axis, Chart, Panel, Series
-from epdem.report.drawing import save
+from epdem.report.chart import Axis, Chart, Panel, Series, save
 
 HERE = Path(__file__).resolve().parent.parent
 LAWS = {

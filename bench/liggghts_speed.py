@@ -235,8 +235,7 @@ def table_of_pairs(costs):
 
 def figure(times):
     """docs/figures/contact_cost.png: both costs of each model as points, ours in colour."""
-    from epdem.report.chart import GREY, Axis, Chart, Panel, Series
-    from epdem.report.drawing import save
+    from epdem.report.chart import GREY, Axis, Chart, Panel, Series, save
 
     names = [name for name in times if "@" not in name]
     series = []

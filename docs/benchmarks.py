@@ -14,8 +14,7 @@ import pandas as pd
 from pages import markdown
 
 from epdem.errors import CaseError
-from epdem.report.chart import GREY, Axis, Chart, Panel, Series
-from epdem.report.drawing import save
+from epdem.report.chart import GREY, Axis, Chart, Panel, Series, save
 from epdem.scenes import results
 from epdem.verification.measured_data import shown, validate
 from epdem.verification.pages import validation_chart

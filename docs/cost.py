@@ -9,7 +9,7 @@ from pathlib import Path
 import pandas as pd
 from pages import markdown
 
-from epdem.report.drawing import save
+from epdem.report.chart import save
 from epdem.verification import cost
 from epdem.verification.cost import EXPONENT, REFERENCE, Outcome
 from epdem.verification.cost_report import bulk_table, chart, cheapest_table, error_table

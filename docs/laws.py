@@ -23,8 +23,7 @@ from epdem.impacts.plan import plan
 from epdem.impacts.prediction import predict
 from epdem.impacts.run import run_plan
 from epdem.laws.strengths import default_numbers
-from epdem.report.chart import GREY, INK, Axis, Chart, Panel, Series
-from epdem.report.drawing import save
+from epdem.report.chart import GREY, INK, Axis, Chart, Panel, Series, save
 from epdem.theory.backbones import LAWS as BACKBONES
 from epdem.theory.restitution import wu
 from epdem.theory.yielding import FIRST_YIELD_ROUNDED, yield_speed

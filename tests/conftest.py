@@ -28,7 +28,7 @@ def blank(chart, *, title=True):
 def figures(request, monkeypatch):
     """Figures are empty but in tests with the mark `figures`: the drawing of a curve takes half a second."""
     if not request.node.get_closest_marker("figures"):
-        monkeypatch.setattr("epdem.report.drawing.draw", blank)
+        monkeypatch.setattr("epdem.report.chart.draw", blank)
         monkeypatch.setattr("epdem.scenes.pictures.DPI", 10)
 
 

@@ -83,7 +83,7 @@ def test_contacts_across_a_gap_are_in_the_table(beds):
 
 def test_the_ledger_of_a_smooth_bed_closes_within_one_percent(tmp_path):
     """Kinetic, gravity, elastic and surface, plastic energy, what adhesion took, and the plate's work."""
-    from epdem.scenes.energy_balance import closure, energy_balance
+    from epdem.scenes.checks import closure, energy_balance
 
     smooth = {
         "friction = 0.5\ntangential_restitution = 0.5": "friction = 0.0",

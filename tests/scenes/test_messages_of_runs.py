@@ -26,7 +26,7 @@ from epdem.impacts.experiment import experiment
 from epdem.impacts.measurement import measure
 from epdem.impacts.plan import plan
 from epdem.impacts.prediction import predict
-from epdem.scenes import columns, contacts, meshes, run
+from epdem.scenes import columns, contacts, run, walls
 from epdem.studies.sweep import slurm
 from epdem.verification.stability import variants
 from epdem.verification.stability.edits import Edit
@@ -181,4 +181,4 @@ def test_folders_and_files_of_a_user(tmp_path, monkeypatch):
         paths.setting("engine", "liggghts")
     (tmp_path / "x.stl").write_bytes(b"\0" * 84)
     with says("no triangles, or corners that are not numbers; export it anew", CaseError):
-        meshes._read(tmp_path / "x.stl", "scene.wall.x.file")
+        walls._read(tmp_path / "x.stl", "scene.wall.x.file")

@@ -17,10 +17,10 @@ from scene_runs import run, write_case
 from epdem.case.scene import parse
 from epdem.errors import CaseError
 from epdem.scenes import measures, report
-from epdem.scenes.charts import charts
-from epdem.scenes.charts import measures as curves_of
 from epdem.scenes.columns import units
 from epdem.scenes.plan import plan
+from epdem.scenes.report import charts
+from epdem.scenes.report import measures as curves_of
 from epdem.scenes.results import read
 from epdem.studies.fit import fit
 from epdem.studies.pages.scenes import of_scene

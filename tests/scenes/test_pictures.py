@@ -14,10 +14,10 @@ from test_start_and_paths import PLATE
 from epdem.case.scene import parse
 from epdem.engines import scene_engine
 from epdem.errors import CaseError
-from epdem.scenes import charts, checks, pictures
-from epdem.scenes.charts import bed
-from epdem.scenes.energy_balance import kinetic, rotation
+from epdem.scenes import checks, pictures, report
+from epdem.scenes.checks import kinetic, rotation
 from epdem.scenes.plan import plan
+from epdem.scenes.report import bed
 
 pytestmark = pytest.mark.figures
 
@@ -26,7 +26,7 @@ def drawn(name: str):
     """(plan, tables, panels of the key figure) of a stored run."""
     p = planned(name)
     tables = scene_engine("liggghts").read(p, STORED / name)
-    (chart,) = charts.key(p, tables)
+    (chart,) = report.key(p, tables)
     return p, tables, chart.panels
 
 

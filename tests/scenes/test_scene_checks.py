@@ -13,7 +13,7 @@ from parts_cases import FLOOR, parts
 from stored_runs import data_of
 
 from epdem.case.scene import parse
-from epdem.scenes import checks, energy_balance
+from epdem.scenes import checks
 from epdem.scenes.columns import rows as table_of_rows
 from epdem.scenes.plan import ScenePlan, plan
 from epdem.studies.sweep.table import numbers_of, unit
@@ -176,9 +176,7 @@ def test_what_shot_takes_along_when_it_leaves_the_room_stays_in_the_ledger():
     gone = table["step"].unique()[7]
     table = table[(table["id"] == 2) | (table["step"] <= gone)]
     no_contacts = pd.DataFrame(columns=["step", "elastic_energy"])
-    found = energy_balance.energy_balance(p, {"rows": rows(p), "particles": table, "contacts": no_contacts}).set_index(
-        "step"
-    )
+    found = checks.energy_balance(p, {"rows": rows(p), "particles": table, "contacts": no_contacts}).set_index("step")
     first, second = 0.5 * 1e-5 * 30.0**2, 0.5 * 1e-5 * 20.0**2
     assert found["left"].to_numpy() == pytest.approx(np.where(found.index > gone, first + 2e-3, 0.0))
     assert found["kinetic"].to_numpy() == pytest.approx(second + np.where(found.index > gone, 0.0, first))

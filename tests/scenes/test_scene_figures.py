@@ -11,7 +11,7 @@ from parts_cases import BED, parts
 from scene_runs import run, write_case
 from test_parts_motions import PLATE
 
-from epdem.scenes.charts import charts
+from epdem.scenes.report import charts
 from epdem.studies.pages.scenes import of_scene
 
 pytestmark = pytest.mark.figures

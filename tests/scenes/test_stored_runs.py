@@ -14,7 +14,7 @@ from epdem.case.scene import parse
 from epdem.engines import log, scene_engine
 from epdem.engines.liggghts import scene_tables
 from epdem.errors import EngineError
-from epdem.scenes import checks, energy_balance
+from epdem.scenes import checks
 from epdem.scenes.columns import COLUMNS, STRAINS
 
 
@@ -134,23 +134,23 @@ def test_forces_on_the_backbone_are_those_of_hertz_and_of_thornton_s_line():
 
 def test_the_energy_balance_adds_up(stored):
     p, tables = stored
-    table, spheres = energy_balance.energy_balance(p, tables), tables["particles"]
+    table, spheres = checks.energy_balance(p, tables), tables["particles"]
     first = spheres[spheres["step"] == table["step"].iloc[0]]
     lift = p.case.scene.gravity * (first["mass"] * first["z"]).sum()
     assert table["gravity"].iloc[0] == pytest.approx(lift, rel=1e-12, abs=1e-300)
     assert "friction" not in table, "nothing rubs"
     # the work of plate and drum is the sum of means over a row; eight rows are few
-    assert energy_balance.closure(table) < 0.02
+    assert checks.closure(table) < 0.02
     assert (np.diff(table["plastic"]) >= -1e-12 * table["plastic"].max()).all()
     verdicts = checks.checks(p, tables | {"energy_balance": table}).set_index("key")["passed"]
-    assert verdicts["energy_residual"] == (energy_balance.closure(table) <= 0.01)
+    assert verdicts["energy_residual"] == (checks.closure(table) <= 0.01)
     if not p.scene.open_boundary:
         assert verdicts["spheres_in_room"]
 
 
 def test_every_column_has_a_sentence_and_a_unit_unless_it_is_a_name_or_a_count(stored):
     p, tables = stored
-    found = {c for table in [*tables.values(), energy_balance.energy_balance(p, tables)] for c in table}
+    found = {c for table in [*tables.values(), checks.energy_balance(p, tables)] for c in table}
     assert found - set(COLUMNS) == {
         f"delta_max_{w.name}" for w in p.scene.planes if f"delta_max_{w.name}" in tables["particles"]
     }

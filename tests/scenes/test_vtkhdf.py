@@ -10,7 +10,7 @@ from scene_runs import run, write_case
 
 from epdem.case.scene import parse
 from epdem.engines.liggghts import dump
-from epdem.scenes import results, vtkhdf
+from epdem.scenes import results
 from epdem.scenes.plan import plan
 
 vtk = pytest.importorskip("vtk", reason="VTK is not installed; make test installs it")
@@ -130,6 +130,6 @@ def test_a_results_file_is_at_most_a_tenth_larger(tmp_path, monkeypatch):
     table[["type", *"xyz", "vx", "vy", "vz", "radius"]] = rng.random((len(table), 8))
     tables = {"particles": table, "rows": pd.DataFrame({"step": [0]})}
     results.write(tmp_path / "with.h5", plan(parse(case())), results.SceneResults(tables=tables))
-    monkeypatch.setattr(vtkhdf, "write", lambda *_: None)
+    monkeypatch.setattr(results, "write_vtkhdf", lambda *_: None)
     results.write(tmp_path / "without.h5", plan(parse(case())), results.SceneResults(tables=tables))
     assert 1.0 < (tmp_path / "with.h5").stat().st_size / (tmp_path / "without.h5").stat().st_size < 1.1

@@ -16,7 +16,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from epdem import api
-from epdem.report import chart, drawing, page
+from epdem.report import chart, page
 from epdem.studies.pages.impacts import figures as of_page
 
 pytestmark = pytest.mark.figures
@@ -147,7 +147,7 @@ def test_figures_come_in_the_formats_that_were_asked_for_with_their_data(folder)
 def test_one_point_has_an_axis_with_room_on_both_sides():
     one = chart.Series("one", [2.0], [0.5], 0, None, 0)
     axes = [chart.Axis("$v$", "m/s", log=True), chart.Axis("$e_n$")]
-    figure = drawing.draw(chart.Chart("x", "x", "x", [chart.Panel(*axes, [one])]))
+    figure = chart.draw(chart.Chart("x", "x", "x", [chart.Panel(*axes, [one])]))
     (low, high), (bottom, top) = figure.axes[0].get_xlim(), figure.axes[0].get_ylim()
     assert (low, high) == (1.0, 4.0) and bottom < 0.3 and top > 0.7
 
@@ -162,7 +162,7 @@ def test_a_drawing_of_a_page_has_its_numbers_its_axes_and_no_markup_of_a_label()
     x = np.linspace(1.0, 3.0, 7)
     line = [chart.Series("<script>a & b</script>", x, np.array([3, 1, 4, 1, 5, 9, 2.0]), 0)]
     axes = chart.Axis("speed", "m/s", log=True, low=1.0, high=10.0), chart.Axis("a <b>", "N", low=0.0, high=10.0)
-    text = drawing.svg(chart.Chart("x", "title", "x", [chart.Panel(*axes, line), chart.Panel(*axes, line)]))
+    text = chart.svg(chart.Chart("x", "title", "x", [chart.Panel(*axes, line), chart.Panel(*axes, line)]))
     root = ElementTree.fromstring(text)
     panels = json.loads(root.attrib["data-axes"])
     assert [panel["x"] for panel in panels] == [{"label": "speed", "unit": "m/s", "log": True, "limits": [1, 10]}] * 2
@@ -193,7 +193,7 @@ def test_labels_of_panels_do_not_overlap(labels, columns):
     """Of any number of panels with any names: each text of an axis is apart from all others and inside the figure."""
     series = chart.Series("last", [0.0, 0.0026], [1e-4, -2e5], 0, None, 0)
     panels = [chart.Panel(chart.Axis("scene.body.0.velocity", "m/s"), chart.Axis(*label), [series]) for label in labels]
-    figure = drawing.draw(chart.Chart("x", "x", "x", panels, columns=columns))
+    figure = chart.draw(chart.Chart("x", "x", "x", panels, columns=columns))
     figure.draw_without_rendering()
     texts = [text for a in figure.axes for text in (a.xaxis.label, a.yaxis.label, a._left_title) if text.get_text()]
     boxes = [text.get_window_extent() for text in texts]

@@ -13,8 +13,8 @@ from ..errors import CaseError
 from ..impacts.experiment import Body
 from ..impacts.placement import room, side_by_side
 from ..impacts.plan import Plan
+from ..scenes.limits import PressedBed
 from ..scenes.plan import Phase, ScenePlan
-from ..scenes.solid import PressedBed
 from . import log
 
 RIGID = 1e30  # modulus [Pa] of a rigid type: 1e15 would change E* of steel by 2e-4

@@ -222,7 +222,7 @@ def figure(outcome: Outcome, formats: Sequence[str] = ("png",)) -> Path:
     paths = [outcome.folder / f"{name}.{kind}" for kind in formats]
     if all(p.exists() and p.suffix == ".png" and digest.encode() in p.read_bytes() for p in paths):
         return paths[0]
-    from ..report.drawing import save
+    from ..report.chart import save
     from .charts import main_chart
 
     with claim(outcome.folder, force=True):

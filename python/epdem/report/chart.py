@@ -1,14 +1,27 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""A figure as data: panels of lines and points with their axes; `drawing` draws the figure for papers and pages."""
+"""A figure as data (panels of lines and points with their axes), and its drawing for papers and pages in one style.
+
+A drawing is a PNG, SVG or PDF file with the data as CSV beside it, or an SVG element of a page.
+"""
 
 import csv
+import html
 import io
+import json
+import math
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass, field
-from typing import ClassVar, Literal
+from pathlib import Path
+from typing import TYPE_CHECKING, Any, ClassVar, Literal
 
 import numpy as np
+
+from ..base.files import atomic, write_texts
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
 
 Dash = Literal["solid", "dash", "dot", "dashdot"]
 INK, GREY = -1, -2  # colours beside the palette
@@ -92,3 +105,160 @@ class Chart:
 def plain(text: str) -> str:
     """A label as plain text: $e_n$ becomes e_n."""
     return re.sub(r"\\mathrm|[$\\{}]", "", text)
+
+
+STYLE: dict[str, Any] = {
+    "font.size": 10.0,
+    "font.sans-serif": ["DejaVu Sans"],
+    "axes.grid": True,
+    "grid.alpha": 0.3,
+    "legend.fontsize": 8.0,
+    "lines.markersize": 5.0,
+    "svg.hashsalt": "epdem",  # the same figure gives the same file
+}
+DASHES = {"solid": "-", "dash": "--", "dot": ":", "dashdot": "-."}
+MARKERS = "ox+^sDv"
+WIDTH, HEIGHT = 7.0, 4.2  # of one panel [inch]
+SMALL = 3.3, 2.1  # of one panel among columns [inch]
+LEGEND_ROW = 0.22  # [inch]
+VARIABLES = {"#000000": "ink", "#0072b2": "blue", "#8c564b": "brown"}  # of a page: a dark page has lighter colours
+BARE_DATE = {"png": {}, "svg": {"Date": None}, "pdf": {"CreationDate": None}}
+
+
+def save(
+    chart: Chart, folder: Path, formats: Sequence[str] = ("png",), *, data: bool = True, comment: str = ""
+) -> list[Path]:
+    """Draw a chart into `folder`, a file of each of `formats`, and write its `data` as CSV; their paths.
+
+    `comment` is stored in a PNG file. The caller keeps the folder (`claim`).
+    """
+    from matplotlib import rc_context
+
+    with rc_context(STYLE):  # type: ignore[arg-type]
+        figure = draw(chart)
+        paths = []
+        for kind in formats:
+            path = folder / f"{chart.name}.{kind}"
+            about = BARE_DATE[kind] | ({"Comment": comment} if comment and kind == "png" else {})
+            with atomic(path) as temporary:
+                figure.savefig(temporary, dpi=130, format=kind, metadata=about)
+            paths.append(path)
+    return paths + (write_texts(folder, {f"{chart.name}.csv": chart.csv()}) if data else [])
+
+
+def svg(chart: Chart) -> str:
+    """A chart without its title as an element `svg` of a page.
+
+    Black and PALETTE's dark colours are CSS variables of the page; `data-axes` holds for each panel its place in the
+    drawing, as fractions from the lower left corner, and its axes: label, limits, whether logarithmic.
+    """
+    from matplotlib import rc_context
+
+    text = io.StringIO()
+    with rc_context(STYLE | {"svg.fonttype": "none"}):  # type: ignore[arg-type]
+        figure = draw(chart, title=False)
+        figure.savefig(text, format="svg", transparent=True, metadata={"Date": None})
+        panels = [_place(axes, panel) for axes, panel in zip(figure.axes, chart.panels, strict=False)]
+    drawn = text.getvalue()
+    drawn = re.sub(
+        r"<metadata>.*?</metadata>|<style.*?</style>|<!--.*?-->", "", drawn[drawn.index("<svg") :], flags=re.S
+    )
+    drawn = re.sub(r'<g id="[^"]*">', "<g>", drawn)  # one page has several drawings
+    for colour, variable in VARIABLES.items():
+        drawn = drawn.replace(colour, f"var(--{variable})")
+    return drawn.replace("<svg", f"<svg data-axes='{html.escape(json.dumps(panels))}'", 1)
+
+
+def _place(axes: "Axes", panel: Panel) -> dict[str, object]:
+    box = axes.get_position()
+    sides = ((panel.x, axes.get_xlim()), (panel.y, axes.get_ylim()))
+    return {
+        "box": [round(float(v), 5) for v in (box.x0, box.y0, box.x1, box.y1)],
+        **{
+            k: {"label": plain(axis.label), "unit": axis.unit, "log": axis.log, "limits": list(map(float, limits))}
+            for k, (axis, limits) in zip("xy", sides, strict=True)
+        },
+    }
+
+
+def draw(chart: Chart, *, title: bool = True) -> "Figure":
+    """A chart as a figure of matplotlib."""
+    figure, grid = _grid(chart)
+    n, columns = len(chart.panels), grid.shape[1]
+    for k, (axes, panel) in enumerate(zip(grid.flat, chart.panels, strict=False)):
+        for series in panel.series:
+            axes.plot(series.x, series.y, **_style(series))
+        alone = chart.columns > 1
+        _scale(
+            axes, panel, labels_x=chart.beside or k + columns >= n, labels_y=not alone and (k == 0 or not chart.beside)
+        )
+        if alone:
+            axes.set_title(str(panel.y), loc="left", fontsize="medium")
+            for name, axis in (("x", panel.x), ("y", panel.y)):
+                if not axis.log:
+                    axes.locator_params(axis=name, nbins=4)
+    for axes in grid.flat[n:]:
+        axes.remove()
+    known = {
+        label: handle for axes in grid.flat for handle, label in zip(*axes.get_legend_handles_labels(), strict=True)
+    }
+    if known:  # below the axes, where it covers no data
+        columns = min(len(known), 3)
+        figure.set_figheight(figure.get_figheight() + LEGEND_ROW * math.ceil(len(known) / columns))
+        figure.legend(list(known.values()), list(known), loc="outside lower center", ncols=columns, frameon=False)
+    if title:
+        figure.suptitle(chart.title, fontsize=11, parse_math=False)
+    return figure
+
+
+def _grid(chart: Chart) -> tuple["Figure", np.ndarray]:
+    """A figure and its axes, shape (rows, columns)."""
+    from matplotlib.figure import Figure
+
+    n, shares = len(chart.panels), [panel.share for panel in chart.panels]
+    if chart.beside:
+        figure = Figure(figsize=(5 * n, 4.5), layout="constrained")
+        return figure, figure.subplots(1, n, sharey=True, squeeze=False)
+    if chart.columns > 1:
+        rows = math.ceil(n / chart.columns)
+        figure = Figure(figsize=(SMALL[0] * chart.columns, SMALL[1] * rows), layout="constrained")
+        grid = figure.subplots(rows, chart.columns, sharex=True, squeeze=False)
+        for axes in grid.flat[n - chart.columns : n]:  # the last one of each column
+            axes.tick_params(labelbottom=True)
+        return figure, grid
+    figure = Figure(figsize=(WIDTH, max(HEIGHT, HEIGHT * sum(shares) / max(shares))), layout="constrained")
+    return figure, figure.subplots(n, 1, sharex=True, height_ratios=shares, squeeze=False)
+
+
+def _style(series: Series) -> dict[str, Any]:
+    style: dict[str, Any] = {"color": {INK: "k", GREY: "0.6"}.get(series.colour) or PALETTE[series.colour]}
+    style |= {"ls": DASHES[series.dash] if series.dash else "none", "lw": series.width}
+    if series.marker is not None:
+        style |= {"marker": MARKERS[series.marker % len(MARKERS)], "mfc": "none"}
+    return style | ({"label": series.name} if series.name else {})
+
+
+def _scale(axes: "Axes", panel: Panel, *, labels_x: bool, labels_y: bool) -> None:
+    from matplotlib.ticker import NullFormatter
+
+    for name, axis, labelled in (("x", panel.x, labels_x), ("y", panel.y, labels_y)):
+        setting: dict[str, Any] = {f"{name}scale": "log" if axis.log else "linear"}
+        if labelled:
+            setting[f"{name}label"] = str(axis)
+        if limits := _limits(axis, [v for s in panel.series for v in np.atleast_1d(getattr(s, name))]):
+            setting[f"{name}lim"] = limits
+        axes.set(**setting)
+        if axis.ticks:
+            getattr(axes, f"set_{name}ticks")(list(axis.ticks), list(axis.ticks.values()))
+            getattr(axes, f"{name}axis").set_minor_formatter(NullFormatter())
+
+
+def _limits(axis: Axis, values: Sequence[float]) -> tuple[float | None, float | None] | None:
+    """The limits that an axis requests; room about a single value, which has no range."""
+    if axis.low is not None or axis.high is not None:
+        return axis.low, axis.high
+    finite = [float(v) for v in values if math.isfinite(v) and (v > 0 or not axis.log)]
+    if not finite or min(finite) != max(finite):
+        return None
+    only = finite[0]
+    return (only / 2, only * 2) if axis.log else (only - (abs(only) / 2 or 1.0), only + (abs(only) / 2 or 1.0))

@@ -14,8 +14,7 @@ from typing import TYPE_CHECKING, Any, ClassVar
 
 from ..base import __version__, paths
 from ..base.files import atomic
-from .chart import Chart
-from .drawing import svg
+from .chart import Chart, svg
 
 if TYPE_CHECKING:  # slow to import
     import jinja2

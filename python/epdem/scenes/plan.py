@@ -19,11 +19,19 @@ from ..case.scene import Output, SceneCase
 from ..case.walls import Limits
 from . import walls
 from .filling import Insertion, insertions, refuse_missing, refuse_too_many
-from .limits import refuse_combinations, refuse_faster_than_sound, refuse_outside, refuse_positions, refuse_steps
-from .meshes import FloatArray
+from .limits import (
+    PressedBed,
+    pressed_beds_of_run,
+    refuse_below_solid,
+    refuse_combinations,
+    refuse_faster_than_sound,
+    refuse_outside,
+    refuse_positions,
+    refuse_steps,
+)
 from .model import Model, model
-from .solid import PressedBed, pressed_beds_of_run, refuse_below_solid
 from .timestep import time_step
+from .walls import FloatArray
 
 REACHED, NOT_REACHED = "reached", "not reached"  # of a phase with `until`
 NO_VOID = "no void"  # of a phase at whose end a pressed bed was solid, which ends the run

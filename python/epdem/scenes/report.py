@@ -1,20 +1,225 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The output of a scene: checks, summary, JSON, figures."""
+"""The output of a scene: its charts as data, the picture of its bed, checks, summary, JSON."""
 
 import json
 import math
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 import numpy as np
+import pandas as pd
 from rich.console import Console
 
 from ..base.folders import claim
 from ..base.terminal import show_table, table
+from ..case.kinds import Compaction, Drum, Hopper, Peening, Settle
 from ..case.measures import KINDS, Histogram, Load
 from ..impacts.report import records
-from .columns import units
+from ..report.chart import GREY, INK, PALETTE, Axis, Chart, Panel, Series, plain
+from ..report.page import Picture
+from . import checks, pictures
+from .columns import LOADS, last_frame, units
 from .measures import curve, values_of
+from .plan import ScenePlan
 from .run import SceneOutcome
+
+Tables = dict[str, pd.DataFrame]
+TIME = Axis("time", "s")
+BINS = 30
+COLOURS = {"kinetic": 0, "rotation": INK, "elastic": 2, "plastic": 1, "friction": 4, "springs": 3, "left": 6}
+COLOURS["adhesion"] = 5
+COLUMNS = 3  # of small panels
+
+
+def charts(outcome: SceneOutcome) -> list[Chart]:
+    """The key figure, measures, rows against time and energy balance: each if the results have data for it."""
+    tables = outcome.results.tables
+    energy = [energy_balance(outcome)] if "energy_balance" in tables else []
+    return [*key(outcome.plan, tables), *measures(outcome.plan, tables), *histograms(outcome), *rows(outcome), *energy]
+
+
+def measures(p: ScenePlan, tables: Tables) -> list[Chart]:
+    """The measures against time."""
+    found = [m for m in p.case.scene.measure if not isinstance(m, Histogram)]
+    curves = {m.name: curve(m, tables) for m in found}
+    constant = {name: y[0] for name, (_, y) in curves.items() if np.unique(y).size == 1}
+    shown = [m for m in found if m.name not in constant]
+    panels = [Panel(TIME, Axis(m.name, KINDS[m.kind].unit), [Series("", *curves[m.name], 0)]) for m in shown]
+    return _against_time(p, "scene_measures", "Measures against time", panels, constant)
+
+
+def _against_time(
+    p: ScenePlan, name: str, heading: str, panels: list[Panel], constant: dict[str, float]
+) -> list[Chart]:
+    """A chart of curves against time; constant ones are numbers in its text. None without a curve that changes."""
+    if not panels:
+        return []
+    alt = f"Against time: {', '.join(panel.y.label for panel in panels)}."
+    if constant:
+        alt += f" Constant: {', '.join(f'{label} = {value:.5g}' for label, value in constant.items())}."
+    columns = min(COLUMNS, len(panels))
+    return [Chart(name, p.case.case.title, alt, panels, columns=columns, heading=heading)]
+
+
+def rows(outcome: SceneOutcome) -> list[Chart]:
+    """Every column of the rows against time; measured loads, which the key figure has, and constant columns not."""
+    table, known = outcome.results.tables["rows"], units(outcome.results.tables["rows"])
+    measured = {m.name for m in outcome.case.scene.measure}
+    shown = [str(name) for name in table if name not in {"step", "time"} | measured]
+    constant = {name: table[name].iloc[0] for name in shown if table[name].nunique() < 2}
+    curves: dict[str, list[str]] = {}  # by the label of their panel: the three components of a load share one
+    for name in shown:
+        if name not in constant:
+            curves.setdefault(name[:-2] if name.endswith(LOADS) else name, []).append(name)
+    panels = []
+    for label, names in curves.items():
+        series = []
+        for name in names:
+            component = name.removeprefix(label).removeprefix("_")  # of a load: its axis is name and colour
+            colour = "xyz".index(component) if component else 0
+            series.append(Series(component, table["time"].to_numpy(), table[name].to_numpy(float), colour))
+        panels.append(Panel(TIME, Axis(label, known.get(names[0], "")), series))
+    return _against_time(outcome.plan, "scene", "Rows against time", panels, constant)
+
+
+def histograms(outcome: SceneOutcome) -> list[Chart]:
+    """One chart for each histogram that the scene measures."""
+    title, drawn = outcome.case.case.title, []
+    for k, m in enumerate(m for m in outcome.case.scene.measure if isinstance(m, Histogram)):
+        bins = outcome.results.tables["histograms"]
+        part = bins[bins["measure"] == m.name]
+        edges = np.repeat(np.append(part["low"], part["high"].iloc[-1]), 2)
+        heights = np.concatenate([[0], np.repeat(part["number"], 2), [0]])
+        panel = Panel(Axis(m.kind, KINDS[m.kind].unit), Axis("number"), [Series("", edges, heights, k % len(PALETTE))])
+        alt = f"Histogram of {m.kind}: {int(part['number'].sum())} values."
+        drawn.append(Chart(f"scene_{m.name}", f"{title}: {m.name}", alt, [panel], heading=f"Histogram {m.name}"))
+    return drawn
+
+
+def energy_balance(outcome: SceneOutcome) -> Chart:
+    """Every term of the energy balance against time."""
+    table = outcome.results.tables["energy_balance"]
+    time, series = table["time"].to_numpy(), []
+    gravity = table["gravity"] - table["gravity"].min()
+    if gravity.max() > 0:
+        series.append(Series("gravity", time, gravity.to_numpy(), INK, "dashdot"))
+    for name, shade in COLOURS.items():
+        if name in table and table[name].abs().max() > 0:
+            series.append(Series(name, time, table[name].to_numpy(), shade))
+    if table["work"].abs().max() > 0:
+        series.append(Series("work", time, table["work"].to_numpy(), INK, "dash"))
+    if "friction" not in table or "springs" in table:
+        series.append(Series("balance", time, table["balance"].to_numpy(), GREY))
+    alt = "Terms of the energy balance against time; gravity is above its lowest value, work is done by the walls."
+    if "friction" in table and "springs" not in table:
+        alt += " Friction is the remainder of the balance."
+    return Chart(
+        "energy",
+        f"{outcome.case.case.title}: energy",
+        alt,
+        [Panel(TIME, Axis("energy", "J"), series)],
+        heading="Energy balance against time",
+    )
+
+
+def bed(outcome: SceneOutcome) -> list[Picture]:
+    """The picture of walls and spheres in the last frame, drawn into the folder of the run; none without frames."""
+    table = outcome.results.tables.get("particles")
+    if table is None or table.empty:
+        return []
+    path, field = outcome.folder / "bed.png", outcome.plan.output.color
+    pictures.bed(outcome.plan, table, path)
+    frame = last_frame(table)
+    time = float(outcome.plan.time_at(frame["step"].to_numpy()[:1])[0])
+    values, of = pictures.colour(frame, field), pictures.unit_of(frame, field)
+    label = f"{field} [{of}]" if of else field
+    alt = f"Spheres and walls at {time:.3g} s; the colour is {label}, from {values.min():.3g} to {values.max():.3g}."
+    return [Picture("The bed", alt, file=path)]
+
+
+def _hopper(p: ScenePlan, s: Hopper, tables: Tables) -> list[Panel]:
+    """Mass below the outlet against time, and the line of Beverloo from where a fifth has come out."""
+    spheres = tables["particles"]
+    steps = np.sort(spheres["step"].unique())
+    below = spheres[spheres["z"] < p.scene.gates[0].at].groupby("step")["mass"].sum().reindex(steps, fill_value=0.0)
+    time, out = p.time_at(steps), below.to_numpy()
+    rate = checks.beverloo(checks.discharge(p, s, spheres), s.outlet, s.gravity)
+    total = float(spheres[spheres["step"] == steps[-1]]["mass"].sum())
+    begin = int(np.argmax(out > 0.2 * total))
+    ends = time[begin] + np.array([0.0, 0.4 * total / rate])
+    line = Series(f"Beverloo, {rate:.3g} kg/s", ends, out[begin] + rate * (ends - ends[0]), INK, "dash")
+    return [Panel(TIME, Axis("mass below the outlet", "kg"), [Series("scene", time, out, 0), line])]
+
+
+def _compaction(p: ScenePlan, s: Compaction, tables: Tables) -> list[Panel]:
+    """Force on the plate against its displacement, loading and unloading."""
+    rows = tables["rows"]
+    way, force = (s.box[2] - rows["plate_z"]).to_numpy(), rows["plate_force"].to_numpy()
+    loading = (rows["step"] <= p.phases[-2].end).to_numpy()
+    series = [
+        Series("loading", way[loading], force[loading], 0),
+        Series("unloading", way[~loading], force[~loading], 1),
+    ]
+    return [Panel(Axis("displacement of the plate", "m"), Axis("plate_force", "N"), series)]
+
+
+def _drum(p: ScenePlan, s: Drum, tables: Tables) -> list[Panel]:
+    """Torque on the drum against time; without it the bed's centre of mass, which its turn carries up the wall."""
+    rows = tables["rows"]
+    if "torque" in rows:
+        return [Panel(TIME, Axis("torque", "N m"), [Series("", rows["time"].to_numpy(), rows["torque"].to_numpy(), 0)])]
+    sums = tables["particles"].eval("mx = mass * x").groupby("step")[["mx", "mass"]].sum()
+    place = (sums["mx"] / sums["mass"]).to_numpy()
+    return [Panel(TIME, Axis("x of the centre of mass", "m"), [Series("", p.time_at(sums.index.to_numpy()), place, 0)])]
+
+
+def _peening(p: ScenePlan, s: Peening, tables: Tables) -> list[Panel]:
+    """Speeds of the shot upwards after its impact, and e_n v of theory for one impact on the target."""
+    spheres = tables["particles"]
+    up = spheres[spheres["vz"] > 1e-3 * s.speed].groupby("id")["vz"].max().to_numpy()
+    number, edges = np.histogram(up, BINS)
+    expected = checks.single_rebound(p.case, s)
+    series = [
+        Series(f"{len(up)} spheres", np.repeat(edges, 2)[1:-1], np.repeat(number, 2), 0),
+        Series("one impact, theory", [expected] * 2, [0.0, float(max(number.max(), 1))], INK, "dash"),
+    ]
+    return [Panel(Axis("rebound speed", "m/s"), Axis("number"), series)]
+
+
+def _settle(p: ScenePlan, s: Settle, tables: Tables) -> list[Panel]:
+    """Height below which 95 % of the spheres lie, and kinetic energy, against time."""
+    rows, heights = tables["rows"], tables["particles"].groupby("step")["z"].quantile(0.95)
+    moving = rows[rows["kinetic_energy"] > 0]
+    energy = Series("", moving["time"].to_numpy(), moving["kinetic_energy"].to_numpy(), 1)
+    return [
+        Panel(
+            TIME, Axis("height of 95 %", "m"), [Series("", p.time_at(heights.index.to_numpy()), heights.to_numpy(), 0)]
+        ),
+        Panel(TIME, Axis("kinetic_energy", "J", log=True), [energy]),
+    ]
+
+
+PANELS: dict[type, Callable[..., list[Panel]]] = {
+    Hopper: _hopper,
+    Compaction: _compaction,
+    Drum: _drum,
+    Peening: _peening,
+    Settle: _settle,
+}
+
+
+def panels(p: ScenePlan, tables: Tables) -> list[Panel]:
+    """The panels of the key figure; none of a scene of parts, and none where the tables lack the data."""
+    s = p.case.scene
+    frames = "particles" in tables and tables["particles"]["step"].nunique() > 1
+    drawn = frames or isinstance(s, Compaction) or "torque" in tables["rows"]
+    return PANELS[type(s)](p, s, tables) if drawn and type(s) in PANELS else []
+
+
+def key(p: ScenePlan, tables: Tables) -> list[Chart]:
+    """The key figure of a scene, if there is one."""
+    found = panels(p, tables)
+    said = plain(" and ".join(f"{panel.y.label} against {panel.x.label}" for panel in found))
+    return [Chart("key", p.case.case.title, f"{said}.", found, heading=f"Key figure: {said}")] if found else []
 
 
 def as_json(outcome: SceneOutcome) -> str:
@@ -97,8 +302,7 @@ def _show_measures(outcome: SceneOutcome, console: Console) -> None:
 
 def figures(outcome: SceneOutcome, formats: Sequence[str] = ("png",)) -> None:
     """Draw the charts of a scene into the folder of a run, which may write there."""
-    from ..report.drawing import save
-    from .charts import charts
+    from ..report.chart import save
 
     with claim(outcome.folder, force=True):
         for chart in charts(outcome):

@@ -1,16 +1,26 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""results.h5 of a scene: tables, complete or absent, read as pandas DataFrames."""
+"""results.h5 of a scene: tables, complete or absent, read as pandas DataFrames; the group /VTKHDF shows in ParaView.
 
+Offsets and positions of walls alone are stored in /VTKHDF: values of spheres and triangles are links to the columns of
+the tables. VTKHDF 2.2: https://docs.vtk.org/en/latest/vtk_file_formats/vtkhdf_file_format. Names of arrays are those of
+ON-DEM's schema where the schema has one: https://github.com/ON-DEM/ON-DEM-WG3-FileFormat."""
+
+from collections.abc import Iterator
 from dataclasses import dataclass, field
+from itertools import chain
 from pathlib import Path
+from typing import Any
 
+import h5py
 import numpy as np
 import pandas as pd
 
 from ..base import tables as h5
-from . import vtkhdf
-from .columns import units
+from ..base.tables import write_array, write_attributes
+from . import walls
+from .columns import SPINS, units
 from .plan import ScenePlan
+from .walls import FloatArray, at_end
 
 FILES = "files"  # group of the files that the case names
 
@@ -43,7 +53,7 @@ def write(path: Path, p: ScenePlan, results: SceneResults) -> None:
     h5.write_text(file, "case", results.case_text)
     for name, table in results.tables.items():
         h5.write_table(file.create_group(name), table, units(table))
-    vtkhdf.write(file, p, results.tables)
+    write_vtkhdf(file, p, results.tables)
     for name, text in results.decks.items():
         h5.write_text(file, f"decks/{name}", text)
     group = file.create_group(FILES)
@@ -67,3 +77,141 @@ def read(path: Path | str) -> SceneResults:
         stored = file[FILES].values() if FILES in file else None
         results.files = None if stored is None else {h5.attributes(x)["name"]: x[()].tobytes() for x in stored}
         return results
+
+
+CELLS = ("Vertices", "Lines", "Polygons", "Strips")  # VTK's order in CellOffsets
+NAMES = {"id": "body_id", "type": "material_id"}
+VECTORS = {"velocity": ["vx", "vy", "vz"], "angular_velocity": SPINS}
+OTHERS = {"step", "x", "y", "z", "wall", "triangle"}  # columns that the geometry states
+
+
+def write_vtkhdf(file: h5py.File, p: ScenePlan, tables: dict[str, pd.DataFrame]) -> None:
+    """Add the group to a file that holds the tables; nothing if no frame holds a sphere."""
+    spheres = tables.get("particles", pd.DataFrame())
+    if spheres.empty:
+        return
+    stress = tables.get("walls", pd.DataFrame({"wall": [], "step": []}))
+    steps = np.union1d(spheres["step"], stress["step"]).astype(int)
+    root = _group(file, "VTKHDF", "PartitionedDataSetCollection")
+    _group(root, "Assembly")
+    blocks = _Blocks(root, p.time_at(steps))
+
+    count = spheres.groupby("step").size().reindex(steps, fill_value=0).to_numpy()
+    first = np.cumsum(count) - count
+    every = np.arange(count.max())
+    block = blocks.add("spheres", first, count, "Vertices", every[:, None], count)
+    _vector(block, "Points", file["particles"], ["x", "y", "z"])
+    data = block.create_group("PointData")
+    vectors = {name: columns for name, columns in VECTORS.items() if columns[0] in spheres}
+    for name, columns in vectors.items():
+        _vector(data, name, file["particles"], columns)
+    for name in [c for c in spheres if c not in OTHERS | {*chain(*vectors.values())}]:
+        data[NAMES.get(name, name)] = file["particles"][name]
+    blocks.offsets(block, "PointData", first)
+
+    for name, points, triangles, shown in _walls(p, steps):
+        places, start = _distinct(points)
+        block = blocks.add(f"wall_{name}", start, np.full(len(steps), len(points[0])), "Polygons", triangles, shown)
+        write_array(block, "Points", places)
+        rows = np.flatnonzero(stress["wall"] == name)
+        if rows.size:
+            data = block.create_group("CellData")
+            for column in [c for c in stress if c not in OTHERS]:
+                data[column] = file["walls"][column]
+            blocks.offsets(block, "CellData", pd.Series(rows).groupby(stress["step"].to_numpy()[rows]).min()[steps])
+
+
+def _group(parent: h5py.Group, name: str, kind: str = "") -> h5py.Group:
+    group = parent.create_group(name, track_order=True)
+    if kind:
+        write_attributes(group, {"Version": np.array([2, 2]), "Type": kind})
+    return group
+
+
+def _vector(group: h5py.Group, name: str, table: h5py.Group, columns: list[str]) -> None:
+    """Three columns of a table as one array (n, 3) that stores nothing."""
+    layout = h5py.VirtualLayout((len(table[columns[0]]), 3), dtype="f8")
+    for k, column in enumerate(columns):
+        source = table[column]
+        layout[:, k] = h5py.VirtualSource(".", source.name, shape=source.shape)
+    group.create_virtual_dataset(name, layout)
+
+
+class _Blocks:
+    """Blocks of temporal PolyData in one file, with one list of times; equal arrays are one dataset."""
+
+    def __init__(self, root: h5py.Group, times: FloatArray) -> None:
+        self.root, self.frames = root, len(times)
+        self.stored: dict[tuple[object, ...], h5py.Dataset] = {}
+        self.times = {"Values": times, "PartOffsets": np.arange(len(times)), "NumberOfParts": np.ones(len(times), int)}
+        self.no_cells: h5py.Group | None = None
+
+    def _put(self, group: h5py.Group, arrays: dict[str, Any]) -> None:
+        for name, data in arrays.items():
+            array = np.asarray(data)
+            key = (array.tobytes(), array.shape, array.dtype.str)
+            if key not in self.stored:
+                self.stored[key] = write_array(group, name, array, checksum=False)
+            else:
+                group[name] = self.stored[key]
+
+    def _cells(self, block: h5py.Group, kind: str, cells: np.ndarray, shown: np.ndarray) -> h5py.Group:
+        group, corners = block.create_group(kind), cells.shape[1]
+        self._put(group, {"NumberOfCells": shown, "NumberOfConnectivityIds": shown * corners})
+        self._put(group, {"Offsets": np.arange(len(cells) + 1) * corners, "Connectivity": cells.reshape(-1)})
+        return group
+
+    def add(
+        self, name: str, first: np.ndarray, points: np.ndarray, kind: str, cells: np.ndarray, shown: np.ndarray
+    ) -> h5py.Group:
+        """A block. first, points: place in Points and number of the points of each frame, shape (frames,).
+
+        cells: points of each cell of the kind, shape (n, corners); a frame has the first `shown` cells of them.
+        """
+        place = _group(self.root["Assembly"], name)
+        block = _group(self.root, name, "PolyData")
+        write_attributes(block, {"Index": len(self.root["Assembly"]) - 1})
+        place[name] = h5py.SoftLink(block.name)
+        self._put(block, {"NumberOfPoints": points})
+        self._cells(block, kind, cells, shown)
+        for other in (k for k in CELLS if k != kind):
+            if self.no_cells is None:
+                self.no_cells = self._cells(block, other, np.empty((0, 1), int), np.zeros(self.frames, int))
+            else:
+                block[other] = self.no_cells
+        steps, none = block.create_group("Steps"), np.zeros((self.frames, len(CELLS)), int)
+        write_attributes(steps, {"NSteps": self.frames})
+        self._put(steps, self.times | {"PointOffsets": first, "CellOffsets": none, "ConnectivityIdOffsets": none})
+        return block
+
+    def offsets(self, block: h5py.Group, kind: str, first: Any) -> None:
+        """The place of each frame in every array of PointData or CellData."""
+        self._put(block["Steps"].create_group(f"{kind}Offsets"), dict.fromkeys(block[kind], first))
+
+
+def _walls(p: ScenePlan, steps: np.ndarray) -> Iterator[tuple[str, list[np.ndarray], np.ndarray, np.ndarray]]:
+    """(name, points of each frame, triangles by their points, number of triangles in each frame) of each wall.
+
+    A wall that a force drives is left out: no table has its position.
+    """
+    gates = {w.name for w in p.scene.gates}
+    sheets = {w.name: walls.sheet(w, p.box) for w in (*p.scene.planes, *p.scene.gates)}
+    corners = sheets | p.triangles
+    places = [at_end(p.motions_until(int(step)), corners) for step in steps]
+    phases = [p.phases[k] for k in np.searchsorted([phase.end for phase in p.phases[:-1]], steps)]
+    for name in places[0]:
+        _, index, cells = np.unique(corners[name].reshape(-1, 3), axis=0, return_index=True, return_inverse=True)
+        triangles = cells.reshape(-1, 3)
+        points = [frame[name].reshape(-1, 3)[index].astype(np.float32) for frame in places]
+        there = [name not in gates or name in phase.gates for phase in phases]
+        yield name, points, triangles, len(triangles) * np.array(there, int)
+
+
+def _distinct(frames: list[np.ndarray]) -> tuple[np.ndarray, np.ndarray]:
+    """(points of frames without repetitions, place of each frame in them): a wall at rest is stored once."""
+    kept, first = [frames[0]], [0]
+    for frame in frames[1:]:
+        if not np.array_equal(frame, kept[-1]):
+            kept.append(frame)
+        first.append((len(kept) - 1) * len(frame))
+    return np.concatenate(kept), np.array(first)

@@ -20,7 +20,7 @@ from ..case.warnings import case_warnings
 from ..errors import CaseError, EngineError
 from ..impacts.engine import Report, silent, texts
 from ..impacts.prediction import predict
-from . import checks, energy_balance, measures, pictures, results
+from . import checks, measures, pictures, results
 from .engine import Resumed, SceneEngine, check_run
 from .plan import ScenePlan, plan
 from .timestep import leading_impact
@@ -179,7 +179,7 @@ def _finish(
             raise EngineError(
                 f"{folder}: no frame holds a sphere; all have left the room, see the engine's output there"
             )
-        tables["energy_balance"] = energy_balance.energy_balance(p, tables)
+        tables["energy_balance"] = checks.energy_balance(p, tables)
     tables["checks"] = checks.checks(p, tables)
     if p.case.scene.measure:
         tables["rows"] = measures.with_loads(p, tables["rows"])

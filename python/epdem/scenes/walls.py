@@ -1,52 +1,214 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Walls of a scene: their triangles at the start, how far they move, where they are at the end, and whether they leave.
+"""Walls of a scene: their triangles, STL files (refused if they are invalid), motions, and whether they leave the room.
 
-Arrays of triangles have the shape (n, 3 corners, 3 coordinates), metres.
-"""
+Arrays of triangles have the shape (n, 3 corners, 3 coordinates), metres."""
 
+import io
 import math
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from itertools import takewhile
+from pathlib import Path
 
 import numpy as np
+import numpy.typing as npt
 
 from ..case.motions import LinearMove, Move, PressMove, RotateMove, VibrateMove
 from ..case.parts import Parts
-from ..case.walls import (
-    BoxWall,
-    ConeWall,
-    CylinderWall,
-    Limits,
-    MeshWall,
-    PlaneWall,
-    PlateWall,
-    RevolvedWall,
-    StlWall,
-)
+from ..case.walls import BoxWall, ConeWall, CylinderWall, Limits, MeshWall, PlaneWall, PlateWall, RevolvedWall, StlWall
 from ..errors import CaseError
-from . import meshes
-from .meshes import FloatArray
+
+FloatArray = npt.NDArray[np.float64]
+FACETS = 48  # around a circle: the wall is at most 0.2 % of the radius off it
+
+
+def _ring(radius: float, z: float, facets: int = FACETS) -> FloatArray:
+    angle = 2 * np.pi * np.arange(facets) / facets
+    return np.column_stack([radius * np.cos(angle), radius * np.sin(angle), np.full(facets, z)])
+
+
+def _band(lower: FloatArray, upper: FloatArray) -> FloatArray:
+    """Two triangles per facet between two rings of equally many points."""
+    a, b = np.roll(lower, -1, axis=0), np.roll(upper, -1, axis=0)
+    return np.concatenate([np.stack([lower, a, upper], axis=1), np.stack([a, b, upper], axis=1)])
+
+
+def revolved(profile: Sequence[tuple[float, float]]) -> FloatArray:
+    """Surface of revolution about z through (radius, z) points, split so that no triangle is a needle."""
+    bands = []
+    for (r0, z0), (r1, z1) in zip(profile[:-1], profile[1:], strict=True):
+        edge = 2 * math.pi * max(r0, r1) / FACETS
+        n = max(1, round(math.hypot(r1 - r0, z1 - z0) / (3 * edge)))
+        for k in range(n):
+            s, t = k / n, (k + 1) / n
+            bands.append(
+                _band(_ring(r0 + s * (r1 - r0), z0 + s * (z1 - z0)), _ring(r0 + t * (r1 - r0), z0 + t * (z1 - z0)))
+            )
+    return np.concatenate(bands)
+
+
+def along(axis: int, points: FloatArray) -> FloatArray:
+    """Triangles about the z axis, about axis 0, 1 or 2 instead."""
+    return points[:, :, {0: [2, 1, 0], 1: [0, 2, 1], 2: [0, 1, 2]}[axis]]
+
+
+def _disc(radius: float, z: float) -> FloatArray:
+    ring = _ring(radius, z)
+    middle = np.broadcast_to([0.0, 0.0, z], ring.shape)
+    return np.stack([middle, ring, np.roll(ring, -1, axis=0)], axis=1)
+
+
+def tube(diameters: tuple[float, float], low: float, high: float, *, closed: tuple[bool, bool]) -> FloatArray:
+    """A round tube about z between two heights, with the diameters there; `closed`: by discs at low, at high."""
+    r0, r1 = diameters[0] / 2, diameters[1] / 2
+    ends = [_disc(r, z) for r, z, shut in ((r0, low, closed[0]), (r1, high, closed[1])) if shut]
+    return np.concatenate([revolved([(r0, low), (r1, high)]), *ends])
+
+
+def rectangle(axis: int, center: npt.ArrayLike, size: tuple[float, float]) -> FloatArray:
+    """Two triangles across an axis; `size` along the two other axes, in the order x, y, z."""
+    first, second = (k for k in range(3) if k != axis)
+    corner = np.tile(np.asarray(center, float), (4, 1))
+    corner[:, first] += np.array([-1, 1, 1, -1]) * size[0] / 2
+    corner[:, second] += np.array([-1, -1, 1, 1]) * size[1] / 2
+    return np.stack([corner[[0, 1, 2]], corner[[0, 2, 3]]])
+
+
+def box(limits: tuple[float, ...], faces: set[str]) -> FloatArray:
+    """The faces ("-x", "+z") of a room xlo xhi ylo yhi zlo zhi [m]."""
+    low, high = np.array(limits[0::2]), np.array(limits[1::2])
+    parts = []
+    for face in sorted(faces):
+        axis = "xyz".index(face[1])
+        center = 0.5 * (low + high)
+        center[axis] = (low if face[0] == "-" else high)[axis]
+        others = [k for k in range(3) if k != axis]
+        parts.append(rectangle(axis, center, (float((high - low)[others[0]]), float((high - low)[others[1]]))))
+    return np.concatenate(parts)
+
+
+SMALLEST_ANGLE = math.radians(0.52)  # of a triangle: LIGGGHTS refuses sharper ones
+MERGED = 1e-9  # of the size of a mesh: corners closer than this are one
+
+
+def _read(path: Path, place: str) -> FloatArray:
+    """The triangles of a file, shape (n, 3, 3), in its unit. Raises CaseError."""
+    import trimesh
+
+    raw = path.read_bytes()
+    count = int.from_bytes(raw[80:84], "little")
+    if len(raw) != 84 + 50 * count:  # not a binary file, so it must be a text
+        if b"facet" not in raw:
+            raise CaseError(
+                f"{place} = '{path}': not an STL file ({len(raw)} bytes; the {count} triangles of its header have "
+                f"{84 + 50 * count}, and a text has the word 'facet'); export it anew"
+            )
+        raw = raw.decode("utf-8", errors="replace").encode()
+    try:
+        mesh = trimesh.load_mesh(io.BytesIO(raw), file_type="stl", process=False)
+        triangles: FloatArray = np.asarray(mesh.triangles, dtype=np.float64)
+    except Exception as error:  # of a damaged file trimesh says almost anything
+        reason = " ".join(str(error).split())[:80] or type(error).__name__
+        raise CaseError(f"{place} = '{path}': not an STL file ({reason}); export it anew") from None
+    if not len(triangles) or not np.isfinite(triangles).all():
+        raise CaseError(f"{place} = '{path}': no triangles, or corners that are not numbers; export it anew")
+    return triangles
+
+
+def _at(point: FloatArray) -> str:
+    return "(" + ", ".join(f"{x:.4g}" for x in point) + ") m"
+
+
+def _edges(triangles: FloatArray) -> tuple[np.ndarray, np.ndarray]:
+    """(numbers of the two corners of each directed edge, shape (3 n, 2); places of the corners)."""
+    size = float(np.ptp(triangles.reshape(-1, 3), axis=0).max())
+    keys = np.round(triangles.reshape(-1, 3) / (MERGED * size)).astype(np.int64)
+    _, first, numbers = np.unique(keys, axis=0, return_index=True, return_inverse=True)
+    faces = numbers.reshape(-1, 3)
+    edges = np.concatenate([faces[:, [0, 1]], faces[:, [1, 2]], faces[:, [2, 0]]])
+    return edges, triangles.reshape(-1, 3)[first]
+
+
+def _refuse_faults(w: StlWall, triangles: FloatArray, place: str) -> None:
+    """Raise CaseError for triangles that no engine takes, with their number and the place of the first."""
+    from trimesh.triangles import angles  # 0 where two corners are one
+
+    sharpest = angles(triangles).min(axis=1)  # type: ignore[no-untyped-call]
+    sharp = np.flatnonzero(sharpest < SMALLEST_ANGLE)
+    if sharp.size:
+        where = _at(triangles[sharp[0]].mean(axis=0))
+        raise CaseError(
+            f"{place}: {sharp.size} degenerate triangles (an angle below {math.degrees(SMALLEST_ANGLE):.2f} deg), the "
+            f"first is number {sharp[0] + 1} at {where}; repair the mesh"
+        )
+    edges, corners = _edges(triangles)
+    undirected, counts = np.unique(np.sort(edges, axis=1), axis=0, return_counts=True)
+    _, repeated = np.unique(edges, axis=0, return_counts=True)
+
+    def middle(edge: np.ndarray) -> str:
+        return _at(corners[edge].mean(axis=0))
+
+    if (counts > 2).any():
+        n, edge = int((counts > 2).sum()), undirected[counts > 2][0]
+        raise CaseError(f"{place}: {n} edges belong to more than two triangles, one at {middle(edge)}; repair the mesh")
+    if (repeated > 1).any():
+        n = int((repeated > 1).sum())
+        edge = np.unique(edges, axis=0)[repeated > 1][0]
+        raise CaseError(
+            f"{place}: neighbouring triangles are flipped against each other at {n} edges, one at {middle(edge)}; make "
+            "their normals consistent"
+        )
+    if w.closed and (counts == 1).any():
+        n, edge = int((counts == 1).sum()), undirected[counts == 1][0]
+        raise CaseError(f"{place}: open along {n} edges, one at {middle(edge)}; close the mesh, or remove 'closed'")
+
+
+def placed(w: StlWall, room: tuple[float, ...], largest: float) -> FloatArray:
+    """The triangles of an STL wall in the room xlo xhi ylo yhi zlo zhi [m], shape (n, 3, 3).
+
+    largest: of the radii [m], against which the size is checked. Raises CaseError for a file that is no good wall.
+    """
+    place = f"scene.wall.{w.name}.file"
+    points: FloatArray = w.scale * _read(w.file, place)
+    if w.rotate is not None:
+        from trimesh.transformations import rotation_matrix
+
+        turn: FloatArray = rotation_matrix(w.rotate.angle, w.rotate.axis)  # type: ignore[no-untyped-call]
+        points = points @ turn[:3, :3].T
+    points = points + np.array(w.position)
+    low, high = points.reshape(-1, 3).min(axis=0), points.reshape(-1, 3).max(axis=0)
+    extent = " x ".join(f"{x:.4g}" for x in high - low)
+    if (high - low).max() < 2 * largest:
+        raise CaseError(
+            f"{place}: the wall of {extent} m is smaller than a sphere; check its unit, scale = {w.scale:g}"
+        )
+    if (low < room[0::2]).any() or (high > room[1::2]).any():
+        raise CaseError(
+            f"{place}: the wall reaches from {_at(low)} to {_at(high)}, beyond scene.room; check its unit (scale = "
+            f"{w.scale:g}; 0.001 if the file is in mm), its place, or enlarge the room"
+        )
+    _refuse_faults(w, points, place)
+    return points
 
 
 def _triangles(w: MeshWall, room: Limits, largest: float) -> FloatArray:
     match w:
         case PlateWall():
             first, second = w.size
-            return meshes.rectangle("xyz".index(w.axis), np.array(w.center), (first, second))
+            return rectangle("xyz".index(w.axis), np.array(w.center), (first, second))
         case BoxWall():
             faces = {sign + axis for sign in "-+" for axis in "xyz"} - set(w.open)
-            return meshes.box((*w.x, *w.y, *w.z), faces)
+            return box((*w.x, *w.y, *w.z), faces)
         case CylinderWall() | ConeWall():
             closed = ("from" in w.ends, "to" in w.ends)
-            tube = meshes.tube(w.diameters_of_ends(), w.start, w.to, closed=closed)
-            turned: FloatArray = meshes.along("xyz".index(w.axis), tube) + np.array(w.axis_point)
+            upright = tube(w.diameters_of_ends(), w.start, w.to, closed=closed)
+            turned: FloatArray = along("xyz".index(w.axis), upright) + np.array(w.axis_point)
             return turned
         case RevolvedWall():
-            surface: FloatArray = meshes.revolved(w.profile) + np.array([*w.center, 0.0])
+            surface: FloatArray = revolved(w.profile) + np.array([*w.center, 0.0])
             return surface
         case StlWall():
-            return meshes.placed(w, room, largest)
+            return placed(w, room, largest)
     raise AssertionError(w)
 
 
@@ -62,7 +224,7 @@ def sheet(plane: PlaneWall, room: Limits) -> FloatArray:
     low, high, axis = np.array(room[0::2]), np.array(room[1::2]), "xyz".index(plane.axis)
     center, size = (low + high) / 2, np.delete(high - low, axis)
     center[axis] = plane.at
-    return meshes.rectangle(axis, center, (size[0], size[1]))
+    return rectangle(axis, center, (size[0], size[1]))
 
 
 def spans(w: PlateWall, axis: str, box: Limits) -> bool:
@@ -82,7 +244,7 @@ def surface_rotation(w: MeshWall) -> RotateMove | None:
 
 
 @dataclass(frozen=True)
-class Path:
+class WallPath:
     """Points that move for some time: their least and largest coordinates on the way, and where they are at its end."""
 
     low: FloatArray
@@ -90,16 +252,16 @@ class Path:
     end: FloatArray
 
 
-def path(move: LinearMove | RotateMove | VibrateMove, points: FloatArray, seconds: float) -> Path:
+def path(move: LinearMove | RotateMove | VibrateMove, points: FloatArray, seconds: float) -> WallPath:
     """The path of `points`, shape (n, 3), from the begin of a motion on [m]."""
     if isinstance(move, LinearMove):
         end = points + seconds * np.array(move.velocity)
-        return Path(np.minimum(points, end), np.maximum(points, end), end)
+        return WallPath(np.minimum(points, end), np.maximum(points, end), end)
     if isinstance(move, VibrateMove):
         angle, amplitude = move.omega * seconds, np.array(move.amplitude)
         sines = [0.0, math.sin(angle)] + [1.0] * (angle >= math.pi / 2) + [-1.0] * (angle >= 3 * math.pi / 2)
         places = np.stack([points + sine * amplitude for sine in sines])
-        return Path(places.min(axis=0), places.max(axis=0), places[1])
+        return WallPath(places.min(axis=0), places.max(axis=0), places[1])
     axis, angle = np.array(move.unit_axis) * math.copysign(1.0, move.rate), abs(move.rate) * seconds
     arm = points - np.array(move.origin)
     center = np.array(move.origin) + (arm @ axis)[:, None] * axis
@@ -111,12 +273,12 @@ def path(move: LinearMove | RotateMove | VibrateMove, points: FloatArray, second
     for extreme in (first, first + math.pi):
         there = center + arm * np.cos(extreme) + side * np.sin(extreme)
         extremes.append(np.where(extreme <= angle, there, points))
-    return Path(np.min(extremes, axis=0), np.max(extremes, axis=0), turned)
+    return WallPath(np.min(extremes, axis=0), np.max(extremes, axis=0), turned)
 
 
 def paths(
     phases: Iterable[tuple[Mapping[str, Move], float]], points: Mapping[str, FloatArray]
-) -> Iterator[tuple[int, str, Path]]:
+) -> Iterator[tuple[int, str, WallPath]]:
     """(number of the phase, wall, path) of every wall that moves in `phases`, each with its motions and duration [s].
 
     A wall that a force drives is left out from then on. points: of each wall at the start, shape (n, 3) [m].

@@ -13,12 +13,10 @@ from ..errors import CaseError
 from ..theory import validity
 from . import filling
 from .columns import STRAINS
-from .limits import overlaps
-from .meshes import FloatArray
+from .limits import dense_beds, overlaps
 from .plan import NO_VOID, NOT_REACHED, ScenePlan
-from .solid import dense_beds
 from .timestep import stable_step
-from .walls import sheet
+from .walls import FloatArray, sheet
 
 SIDES = 24  # of the prism that stands for a round region
 NAMED = 3  # spheres that are named one by one

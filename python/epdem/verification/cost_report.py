@@ -10,8 +10,7 @@ from rich.console import Console
 
 from ..base.tables import write_csv
 from ..base.terminal import show_table
-from ..report.chart import GREY, INK, PALETTE, Axis, Chart, Panel, Series
-from ..report.drawing import save
+from ..report.chart import GREY, INK, PALETTE, Axis, Chart, Panel, Series, save
 from .cost import TARGETS, Outcome
 from .tables import frame_table
 

@@ -16,8 +16,7 @@ from ..impacts.plan import plan
 from ..impacts.prediction import predict
 from ..impacts.run import run_plan
 from ..laws.strengths import ADHESION, LawSpec
-from ..report.chart import GREY, INK, Axis, Chart, Panel, Series
-from ..report.drawing import save
+from ..report.chart import GREY, INK, Axis, Chart, Panel, Series, save
 from ..theory import pair
 from ..theory.backbones import LAWS
 from ..theory.cavity import Cavity

@@ -8,8 +8,7 @@ import pandas as pd
 
 from ..base.folders import claim
 from ..impacts.comparison import UNITS
-from ..report.chart import GREY, Axis, Chart, Panel, Series
-from ..report.drawing import save
+from ..report.chart import GREY, Axis, Chart, Panel, Series, save
 from ..report.page import Facts, Page, Part, Rows, write
 from ..studies.pages import common, impacts
 from . import cost_report

@@ -10,8 +10,8 @@ from ...case.motions import LinearMove, Move, PressMove, RotateMove, VibrateMove
 from ...case.walls import BoxWall, ConeWall, CylinderWall, MeshWall, PlaneWall, PlateWall, RevolvedWall
 from ...errors import CaseError
 from ...scenes import placement
+from ...scenes.limits import PressedBed
 from ...scenes.plan import Phase, ScenePlan
-from ...scenes.solid import PressedBed
 from ...scenes.walls import spans, surface_rotation
 from ..host import LIGGGHTS, refuse
 from ..input_script import wall_id

@@ -12,8 +12,8 @@ from ...case.motions import LinearMove, Move, PressMove, RotateMove, VibrateMove
 from ...case.parts import Body
 from ...case.walls import PlaneWall
 from ...errors import CaseError
+from ...scenes.limits import PressedBed
 from ...scenes.plan import Phase, ScenePlan
-from ...scenes.solid import PressedBed
 from ...scenes.walls import surface_rotation
 from ..input_script import phases, stop_condition, torque_origin, wall_id
 

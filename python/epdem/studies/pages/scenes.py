@@ -5,8 +5,8 @@ from pathlib import Path
 
 from ...base.folders import claim
 from ...report.page import NAME, Facts, Page, Part, Picture, Rows, write
-from ...scenes.charts import bed, charts
 from ...scenes.columns import STRAINS, units
+from ...scenes.report import bed, charts
 from ...scenes.run import SceneOutcome
 from ...theory.validity import SMALL_DEFORMATION
 from . import common

@@ -15,7 +15,7 @@ from ...engines.liggghts.properties import SOFT, elastic, per_pair, strength
 from ...engines.liggghts.scene_deck import contact_columns
 from ...engines.liggghts.scene_parts import stl_text
 from ...impacts.engine import require
-from ...scenes.meshes import rectangle
+from ...scenes.walls import rectangle
 from .assembly import Assembly, AssemblyPlan, ContactFrame
 
 SCRIPT, DATA, ATOMS = "in.assembly", "assembly.data", "atoms.bin"
