@@ -16,10 +16,9 @@ from epdem.impacts.comparison import compare, impacts_table
 from epdem.impacts.engine import check_features
 from epdem.impacts.experiment import experiment
 from epdem.impacts.measurement import measure
-from epdem.impacts.plan import plan
+from epdem.impacts.plan import plan, search
 from epdem.impacts.prediction import predict
 from epdem.impacts.run import run
-from epdem.impacts.timestep import search
 
 CASE = Path(__file__).parents[2] / "cases" / "adhesion_thornton_1998.toml"
 # e_n by an integration of the motion for p_y = 1 GPa, R 10 um, Gamma 0.2 J/m^2

@@ -12,9 +12,8 @@ from pathlib import Path
 
 import pytest
 
-from epdem.base import folders
-from epdem.base.files import TEMPORARY, atomic
-from epdem.base.folders import LOCK, MARKER, claim
+from epdem.base import files
+from epdem.base.files import LOCK, MARKER, TEMPORARY, atomic, claim
 from epdem.errors import CaseError
 
 HOLD = """
@@ -154,7 +153,7 @@ def test_a_full_disk_is_named_and_leaves_no_folder(broken, tmp_path, monkeypatch
         if broken == "mkdir":
             disk.setattr(Path, "mkdir", full)
         if broken == "lock":
-            disk.setattr(folders.os, "write", full)
+            disk.setattr(files.os, "write", full)
         with claim(folder):
             full()
     assert Path(found.value.filename).is_relative_to(folder) and not (tmp_path / "a").exists()

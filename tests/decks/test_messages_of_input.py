@@ -11,7 +11,7 @@ from epdem.case import impact, scene, sizes
 from epdem.case.toml import read_toml
 from epdem.engines import scene_engine
 from epdem.errors import CaseError
-from epdem.impacts import timestep
+from epdem.impacts import plan as impacts_plan
 from epdem.impacts.experiment import experiment
 from epdem.impacts.plan import plan as plan_impacts
 from epdem.impacts.prediction import predict
@@ -266,7 +266,7 @@ def test_limits_of_size_place_and_steps(tmp_path, monkeypatch):
             "without overlap after 1 attempts",
             tmp_path,
         )
-    monkeypatch.setattr(timestep, "MOST_STEPS", 10)
+    monkeypatch.setattr(impacts_plan, "MOST_STEPS", 10)
     refused("settle_glass", {}, "give a larger one, or numerics.time_step", tmp_path)
 
 

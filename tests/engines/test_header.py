@@ -17,7 +17,8 @@ from plugin_loop import SAID, Scene, outcome
 
 from epdem.base import paths
 from epdem.case.impact import load
-from epdem.engines.liggghts import executable, header
+from epdem.engines.liggghts import header
+from epdem.engines.liggghts import launcher as liggghts
 from epdem.engines.liggghts.engine import Liggghts
 from epdem.errors import CaseError
 from epdem.impacts.experiment import experiment
@@ -188,7 +189,7 @@ def test_a_restart_file_of_one_is_read_by_the_other(tree, tmp_path, law):
     name, _, tangential = law.partition(" ")
     scene = Scene(law=name, tangential=tangential or "history", types=3, rolling="epsd2", loose=True)
     more = {"before": per_pair("workOfAdhesion", 0.5)} if name in ADHESIVE else {}
-    if executable.version(tree).startswith(("LIGGGHTS-PFM", "LIGGGHTS-INL")):
+    if liggghts.version(tree).startswith(("LIGGGHTS-PFM", "LIGGGHTS-INL")):
         pytest.skip("the restart files of LIGGGHTS-PFM have other ids, those of LIGGGHTS-INL another header")
     programs, ends = {"plugin": launcher(), "tree": str(tree)}, {}
     for writer, first in programs.items():
@@ -206,12 +207,12 @@ def test_doctor_says_which_models_an_executable_has(built, monkeypatch):
     for program, has in ((built, LAWS), ("/usr/bin/liggghts", ())):
         monkeypatch.setenv("EPDEM_LIGGGHTS", str(program))
         paths.launcher.cache_clear()
-        found = executable.examine(Path(program), LAWS)
+        found = liggghts.examine(Path(program), LAWS)
         assert found.models == has and found.mpi and found.version == "LIGGGHTS-PUBLIC 3.8.0"
         assert not found.superquadrics  # Debian's library has none
     paths.launcher.cache_clear()
-    assert executable.advice(()) == "" and "epdem export liggghts --out" in executable.advice(("hertz",))
-    assert "take LIGGGHTS-PUBLIC" in executable.advice(("jkr",), "LIGGGHTS-PFM 24.01")
+    assert liggghts.advice(()) == "" and "epdem export liggghts --out" in liggghts.advice(("hertz",))
+    assert "take LIGGGHTS-PUBLIC" in liggghts.advice(("jkr",), "LIGGGHTS-PFM 24.01")
 
 
 SUPERQUADRIC = """atom_style superquadric
@@ -236,7 +237,7 @@ run 0
 def test_superquadrics_are_refused_with_a_sentence(tree, tmp_path):
     """LIGGGHTS's surface default would take them for spheres."""
     done = run(tmp_path, SUPERQUADRIC, command=str(tree))
-    expected = "model ep/thornton: it is for spheres" if executable.examine(tree, ()).superquadrics else "atom style"
+    expected = "model ep/thornton: it is for spheres" if liggghts.examine(tree, ()).superquadrics else "atom style"
     listed = "surface default, multicontact; nothing else"  # LIGGGHTS-INL takes surface superquadric by itself
     assert done.code == 1 and (expected in done.error or listed in done.error)
 

@@ -10,7 +10,7 @@ from epdem.base.processes import session
 from epdem.case.impact import load
 from epdem.engines import engine
 from epdem.engines.liggghts.engine import Liggghts
-from epdem.engines.liggghts.session import Session
+from epdem.engines.liggghts.launcher import Session
 from epdem.errors import EngineError, Stopped
 from epdem.impacts.experiment import experiment
 from epdem.impacts.plan import plan

@@ -8,7 +8,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 from parts_cases import CASE
 
-from epdem.case.presets import parts
+from epdem.case.kinds import parts
 from epdem.case.scene import parse
 from epdem.errors import CaseError
 from epdem.scenes.timestep import highest_speed

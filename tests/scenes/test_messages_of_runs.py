@@ -10,13 +10,13 @@ import pandas as pd
 import pytest
 from stored_runs import STORED, planned
 
-from epdem.base import folders, paths, processes
+from epdem.base import files, paths, processes
 from epdem.case import impact
 from epdem.case.toml import read_toml
 from epdem.engines import engine, log
-from epdem.engines.lammps import launcher
+from epdem.engines.lammps import launcher as lammps_launcher
 from epdem.engines.lammps.engine import Lammps
-from epdem.engines.liggghts import dump, own_template, scene_tables, session, tune
+from epdem.engines.liggghts import dump, launcher, own_template, scene_tables, tune
 from epdem.engines.liggghts import engine as liggghts
 from epdem.engines.liggghts.launcher import OUT
 from epdem.engines.yade import scene_tables as yade_tables
@@ -73,7 +73,7 @@ def test_dumps_of_impacts(tmp_path, monkeypatch):
     monkeypatch.setattr(dump, "series", lambda path: np.zeros((3, 2, 3)))
     with says(r"the run left an incomplete dump \(3 frames of 2 bodies, expected .*see log.liggghts beside it"):
         liggghts.trajectory(p, path, {})
-    monkeypatch.setattr(launcher, "run", lambda *words, **named: 1.0)
+    monkeypatch.setattr(lammps_launcher, "run", lambda *words, **named: 1.0)
     with says("path.txt: the run left an incomplete dump .*; see log.lammps beside it"):
         Lammps().run(p, tmp_path)
 
@@ -108,9 +108,9 @@ def test_frames_and_rows_of_scenes(tmp_path):
 def test_programs_that_are_not_there(tmp_path, monkeypatch):
     with says("/no/program: cannot be started"):
         processes.call(["/no/program"], tmp_path, log="out", seconds=9)
-    monkeypatch.setattr(session.launcher, "command", lambda *words: ["/no/program"])
+    monkeypatch.setattr(launcher, "command", lambda *words: ["/no/program"])
     with says("/no/program: cannot be started"):
-        session.Session()._started(tmp_path)
+        launcher.Session()._started(tmp_path)
     monkeypatch.setattr(paths, "_first", lambda *candidates: None)
     with says("templates not found beside the package; install epdem again"):
         paths.beside.__wrapped__("templates")
@@ -166,7 +166,7 @@ def test_decks_and_studies(tmp_path):
 
 def test_folders_and_files_of_a_user(tmp_path, monkeypatch):
     with (tmp_path / "lock").open("w+") as lock, says("another run has just ended here; run the command", CaseError):
-        folders._lock(tmp_path, lock)
+        files._lock(tmp_path, lock)
     config = tmp_path / "epdem/config.toml"
     config.parent.mkdir()
     config.write_text("a = ")

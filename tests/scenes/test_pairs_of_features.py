@@ -26,7 +26,7 @@ from epdem.scenes.engine import files as deck_files
 from epdem.scenes.plan import plan
 from epdem.studies.soften import soften
 from epdem.studies.sweep.folder import Sweep
-from epdem.studies.sweep.keys import keys_of
+from epdem.studies.sweep.points import keys_of
 
 ADHESIVE, FRAMELESS = {"law": {"jkr"}}, {"output": {"rows alone"}}
 NOT_LINEAR = {"phases": {"wall vibrates", "wall presses"}}

@@ -16,7 +16,7 @@ import pytest
 from scene_runs import run, write_case, write_deck
 from test_lean import CASES, small
 
-from epdem.base.folders import MARKER
+from epdem.base.files import MARKER
 from epdem.case.scene import is_scene, load, parse
 from epdem.case.toml import read_toml
 from epdem.engines.liggghts import launcher, resume

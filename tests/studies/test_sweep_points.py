@@ -14,7 +14,7 @@ from epdem.case.toml import read_toml
 from epdem.errors import CaseError
 from epdem.studies.sweep import points
 from epdem.studies.sweep.folder import Sweep
-from epdem.studies.sweep.keys import assign, keys_of
+from epdem.studies.sweep.points import assign, keys_of
 from epdem.studies.sweep.run import plan
 
 CASES = Path(__file__).parents[2] / "cases"

@@ -17,7 +17,7 @@ from epdem.case.impact import load
 from epdem.engines import engine
 from epdem.errors import CaseError, Stopped
 from epdem.impacts.run import run as run_case
-from epdem.studies.sweep import evaluate, folder, local, run, status, table
+from epdem.studies.sweep import folder, local, run, status, table
 
 ROOT = Path(__file__).parents[2]
 EPDEM = str(Path(sys.executable).parent / "epdem")
@@ -183,7 +183,7 @@ def test_a_failure_for_want_of_space_is_no_result(case, tmp_path, monkeypatch):
     from epdem.engines.embedded import Embedded
 
     monkeypatch.setattr(Embedded, "run", lambda *a, **k: 1 / 0)
-    monkeypatch.setattr(evaluate, "FULL", 1 << 60)  # all disks are full
+    monkeypatch.setattr(run, "FULL", 1 << 60)  # all disks are full
     with pytest.raises(OSError, match="no space left"):
         sweep(case, tmp_path / "out")
     assert not finished(tmp_path / "out")

@@ -14,7 +14,7 @@ from ..base.files import atomic
 from ..case import impact as impact_case
 from ..case import scene as scene_case
 from ..case.toml import Read, text_for_anywhere
-from ..studies.sweep import keys
+from ..studies.sweep import points
 from ..studies.sweep.points import plain, with_units
 from . import arguments
 
@@ -34,7 +34,7 @@ class _File:
         name = given.get("name", self.kind) if isinstance(given, dict) else self.kind
         header = {"name": name, "title": name, "source": "made in Python"}
         data = plain({"case": header | given if isinstance(given, dict) else given} | tables)
-        self._read(tomlkit.dumps(with_units(data, keys.keys_of(data))), name)
+        self._read(tomlkit.dumps(with_units(data, points.keys_of(data))), name)
 
     def _read(self, text: str, path: object) -> None:
         self.text, self.place = text, path
@@ -68,15 +68,15 @@ class _File:
         data = copy.deepcopy(before)
         for name, value in changes.items():
             try:
-                keys.assign(data, name, plain(value))
+                points.assign(data, name, plain(value))
             except (TypeError, ValueError, LookupError):  # a name below a value, or beyond the end of a list
-                keys.known(name, keys.keys_of(before), "replace")
+                points.known(name, points.keys_of(before), "replace")
                 raise
-        names = keys.keys_of(data)  # with the keys of a law or kind that the changes choose
+        names = points.keys_of(data)  # with the keys of a law or kind that the changes choose
         for name, value in changes.items():
             if not any(key.startswith(f"{name}.") for key in names):
-                keys.known(name, names, "replace")
-            keys.assign(document, name, with_units(value, names, name))
+                points.known(name, names, "replace")
+            points.assign(document, name, with_units(value, names, name))
         case = type(self).__new__(type(self))
         case._read(document.as_string(), self.name)
         return case

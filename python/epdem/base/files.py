@@ -1,13 +1,24 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Files that are either complete or absent."""
+"""Files that are complete or absent, and folders of results.
+
+One run writes a folder at a time, and no file of the user in it is changed. The marker `.epdem.json` says that the folder
+belongs to epdem, and lists the files of the user from before. After a run a file that is newer than the marker is the
+user's, too; after a crash all files that the marker does not list are those of the run."""
 
 import contextlib
 import fcntl
+import json
 import os
 import secrets
 import stat
-from collections.abc import Iterator
+import time
+from collections.abc import Collection, Iterator
+from dataclasses import dataclass, field
+from fnmatch import fnmatch
 from pathlib import Path
+from typing import Any, TextIO
+
+from ..errors import CaseError
 
 TEMPORARY = ".epdem-tmp-"  # how the names of files begin that are not yet complete
 
@@ -53,3 +64,217 @@ def write_texts(folder: Path, texts: dict[str, str]) -> list[Path]:
         with atomic(folder / name, sync=False) as temporary:
             temporary.write_text(text, encoding="utf-8")
     return [folder / name for name in texts]
+
+
+LOCK, MARKER = ".epdem.lock", ".epdem.json"
+# Names that a run may write, in the folder or below it.
+OUTPUTS = (
+    "in.*",
+    "*.in",
+    "results.*",
+    "*.png",
+    "*.svg",
+    "*.pdf",
+    "report.html",
+    *(f"{name}.csv" for name in ("e_n", "psi", "energy", "figure_8_*", "thornton_ning_1998")),
+    "log.*",
+    "out.*",
+    "particles.*",
+    "contacts.*",
+    "contacts_*",
+    "wall_contacts*",
+    "restart.*",
+    "scene*",
+    "stress_*",
+    "picture.*",
+    "path.*",
+    "*.data",
+    "*.stl",
+    "spheres*.txt",
+    "fill[1-9]*.txt",
+    "wall_*.txt",
+    "end.txt",
+    "impact.py",
+    "*.so",
+)
+
+
+def results_folder(out: Path | None, *names: str) -> Path:
+    """Where results go: to `out`, without one to runs/<names>."""
+    return out or Path("runs", *names)
+
+
+@dataclass(frozen=True)
+class Results:
+    """A folder that this process may write to; `foreign` are the files in it that are the user's.
+
+    versions: of the programs that made its files, by name; none where no run has noted them.
+    """
+
+    folder: Path
+    foreign: frozenset[str] = field(default_factory=frozenset)
+    versions: dict[str, str] = field(default_factory=dict)
+
+    def note(self, versions: dict[str, str]) -> None:
+        """Keep the versions of the programs that are about to write, through a crash too."""
+        self.versions.clear()
+        self.versions.update(versions)
+        self.mark(ended=False)
+
+    def mark(self, *, ended: bool) -> None:
+        """Write the marker of the folder."""
+        content = {"foreign": sorted(self.foreign), "versions": self.versions, "ended": ended}
+        with atomic(self.folder / MARKER) as temporary:
+            temporary.write_text(json.dumps(content, indent=1), encoding="utf-8")
+
+    def remove(self, *patterns: str) -> None:
+        """Remove the files of earlier runs whose path in the folder matches a pattern, and only these."""
+        for name in _names(self.folder) - self.foreign:
+            if any(fnmatch(name, pattern) for pattern in patterns):
+                (self.folder / name).unlink()
+
+
+Known = dict[str, Any]  # content of the marker
+_held: dict[Path, Results] = {}  # folders that this process keeps now
+
+
+def held(folder: Path) -> Results:
+    """The folder as this process keeps it; without a claim nothing in it is foreign."""
+    return _held.get(folder.resolve(), Results(folder))
+
+
+@contextlib.contextmanager
+def claim(folder: Path, *, force: bool = False, files: Collection[str] = ()) -> Iterator[Results]:
+    """Keep `folder` (made where it is missing) for one run, until the block ends; blocks of one process may nest.
+
+    Raises CaseError if another process is at work in it, or if it holds files of the user's where a run would write,
+    `files` among them; with `force` these may be overwritten, never removed.
+    """
+    place = folder.resolve()
+    if place in _held:
+        yield _held[place]
+        return
+    made = [p for p in (folder, *folder.parents) if not p.exists()]
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        with (folder / LOCK).open("a+") as lock:
+            _lock(folder, lock)
+            yield from _claimed(folder, place, force, files)
+    except OSError as error:
+        if error.errno and not error.filename:  # a full disk, while a file was written that was open
+            raise OSError(error.errno, error.strerror, str(folder)) from None
+        raise
+    finally:
+        for path in made:  # a run that has written nothing leaves none
+            with contextlib.suppress(OSError):
+                path.rmdir()
+
+
+def _claimed(folder: Path, place: Path, force: bool, files: Collection[str]) -> Iterator[Results]:
+    """The block of `claim`, with the lock."""
+    try:
+        for path in _folders(folder):
+            remove_stale(path)
+        known = _known(folder)
+        foreign = _foreign(folder, known)
+        if not force:
+            _refuse(folder, foreign, files, known is not None)
+        results = Results(folder, frozenset(foreign), (known or {}).get("versions", {}))
+        results.note(dict(results.versions))
+        _held[place] = results
+        yield results
+    finally:
+        try:
+            if _held.pop(place, None):
+                if known is None and not _names(folder) - foreign:  # the run has written nothing
+                    (folder / MARKER).unlink()
+                else:
+                    results.mark(ended=True)
+        finally:
+            (folder / LOCK).unlink(missing_ok=True)
+
+
+def _lock(folder: Path, lock: TextIO) -> None:
+    try:
+        fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except OSError:
+        lock.seek(0)
+        owner = lock.read().strip() or "another process"
+        raise CaseError(f"{folder}: in use by {owner}; wait for its end, or choose another folder by --out") from None
+    if not (folder / LOCK).exists() or (folder / LOCK).stat().st_ino != os.fstat(lock.fileno()).st_ino:
+        raise CaseError(f"{folder}: another run has just ended here; run the command again")
+    try:
+        os.truncate(lock.fileno(), 0)
+        os.write(lock.fileno(), f"process {os.getpid()} since {time.strftime('%Y-%m-%d %H:%M:%S')}\n".encode())
+    except OSError as error:
+        (folder / LOCK).unlink()
+        raise OSError(error.errno, error.strerror, str(folder / LOCK)) from None
+
+
+def _folders(folder: Path) -> Iterator[Path]:
+    """A folder and those below it; no hidden ones, and none that have a marker."""
+    yield folder
+    for path in folder.iterdir():
+        hidden = path.name.startswith(".") or path.is_symlink()
+        if path.is_dir() and not hidden and not (path / MARKER).exists():
+            yield from _folders(path)
+
+
+def _names(folder: Path) -> set[str]:
+    """All files in `_folders` by their path in the folder, without hidden ones."""
+    paths = (path for place in _folders(folder) for path in place.iterdir() if not path.name.startswith("."))
+    return {str(path.relative_to(folder)) for path in paths if path.is_symlink() or not path.is_dir()}
+
+
+def _known(folder: Path) -> Known | None:
+    """The content of the marker, or None if the folder has no marker that can be read."""
+    try:
+        marker = json.loads((folder / MARKER).read_text(encoding="utf-8"))
+    except (OSError, ValueError):
+        return None
+    return marker if isinstance(marker, dict) else None
+
+
+def _foreign(folder: Path, known: Known | None) -> set[str]:
+    """The user's files in a folder."""
+    names = _names(folder)
+    if known is None:
+        return names
+    foreign = names & set(known.get("foreign", []))
+    if known.get("ended"):
+        end = (folder / MARKER).stat().st_mtime_ns
+        foreign |= {name for name in names if (folder / name).lstat().st_mtime_ns > end}
+    return foreign
+
+
+def _refuse(folder: Path, foreign: set[str], files: Collection[str], ours: bool) -> None:
+    in_the_way = {n for n in foreign if not ours or n in files or any(fnmatch(Path(n).name, p) for p in OUTPUTS)}
+    if in_the_way:
+        what = "was not written by epdem, or has changed since" if ours else "was there before; the folder is not ours"
+        raise CaseError(f"{folder}: {min(in_the_way)} {what}; choose another folder by --out, or add --force")
+
+
+def write_own(folder: Path, texts: dict[str, str], *, force: bool = False) -> list[Path]:
+    """Write text files by their path below `folder`, which is claimed for it; their paths. Raises CaseError."""
+    with claim(folder, force=force, files=texts):
+        return write_texts(folder, texts)
+
+
+def refuse_existing(path: Path, *, force: bool, option: str = "--out") -> None:
+    """Raise CaseError if a file that a user has named by `option` is there, unless `force` allows to replace it.
+
+    Also if its folder can neither be made nor written to, which is so known before the work that it is for.
+    """
+    if path.exists() and not force:
+        raise CaseError(f"{path} exists; name another file by {option}, or replace it by --force")
+    parent = next(p for p in path.absolute().parents if p.exists())
+    if not (parent.is_dir() and os.access(parent, os.W_OK | os.X_OK)):
+        raise CaseError(f"{path}: {parent} is not a folder that can be written to; name another file by {option}")
+
+
+def write_project(folder: Path, files: dict[Path, Path]) -> list[Path]:
+    """Copy text files to their places in a new folder. Raises CaseError if the folder has files."""
+    if folder.exists() and (not folder.is_dir() or any(folder.iterdir())):
+        raise CaseError(f"--out {folder}: it has files; name a new folder")
+    folder.mkdir(parents=True, exist_ok=True)
+    return write_texts(folder, {str(name): files[name].read_text(encoding="utf-8") for name in sorted(files)})

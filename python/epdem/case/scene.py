@@ -22,11 +22,10 @@ from .fields import (
     Tangential,
     Viscous,
 )
-from .kinds import Kinds
+from .kinds import Kinds, parts
 from .messages import explain
 from .motions import Time
 from .parts import Parts
-from .presets import parts
 from .sizes import Share, context
 from .toml import named, read_toml, with_library
 from .walls import PartName

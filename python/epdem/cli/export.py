@@ -7,7 +7,7 @@ from typing import Annotated
 
 import typer
 
-from ..base.folders import write_project
+from ..base.files import write_project
 from ..errors import CaseError
 from .options import AsJson
 

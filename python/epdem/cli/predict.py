@@ -77,8 +77,8 @@ def _time_step(case: Path, law: list[str] | None, error: float, as_json: bool) -
     from ..case.impact import load
     from ..case.toml import named
     from ..impacts.experiment import experiment
+    from ..impacts.plan import search
     from ..impacts.prediction import predict as predict_experiment
-    from ..impacts.timestep import search
 
     searches = []
     with status() as progress, named(case):

@@ -67,7 +67,7 @@ def view(
     as_json: AsJson = False,
 ) -> None:
     """Draw a scene before it runs: walls, regions, first spheres."""
-    from ..base.folders import refuse_existing
+    from ..base.files import refuse_existing
     from ..base.terminal import status
     from ..case.scene import load
     from ..case.toml import named
@@ -131,8 +131,7 @@ def soften(
     as_json: AsJson = False,
 ) -> None:
     """Write a softened copy of a case with the same e_n at every speed and larger time steps."""
-    from ..base.files import atomic
-    from ..base.folders import refuse_existing
+    from ..base.files import atomic, refuse_existing
     from ..studies.soften import soften as twin_of
 
     target = out or case.parent / f"{case.stem}_soft{factor:g}.toml"

@@ -15,7 +15,7 @@ from ..errors import EngineError, EpdemError
 from ..impacts.engine import Feature
 from ..laws import library as claw
 from . import ENGINES
-from .liggghts import executable, launcher
+from .liggghts import launcher
 
 
 @dataclass(frozen=True)
@@ -51,12 +51,12 @@ def _models() -> Finding:
     path, laws = paths.launcher(), tuple(declarations())
     assert path is not None  # launcher.missing() says so
     try:
-        found = executable.examine(path, laws)
+        found = launcher.examine(path, laws)
     except EngineError as error:
         return Finding("models in LIGGGHTS", False, str(error), "run 'make setup', or name another one")
     lacks = tuple(law for law in laws if law not in found.models)
     names = ", ".join(f"ep/{law}" for law in found.models) or "none of epdem's"
-    advice = executable.advice(lacks, found.version)
+    advice = launcher.advice(lacks, found.version)
     return Finding("models in LIGGGHTS", not lacks, f"{names}: {path} ({found})", advice, needed=not found.models)
 
 

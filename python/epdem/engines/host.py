@@ -9,8 +9,7 @@ from typing import overload
 import pandas as pd
 
 from ..base import rendering as decks
-from ..base.files import write_texts
-from ..base.folders import held
+from ..base.files import held, write_texts
 from ..case import impact, scene
 from ..case.parts import Parts
 from ..case.toml import named, read_toml

@@ -11,8 +11,7 @@ from ..base.rendering import Deck, number
 from ..case.parts import Parts
 from ..errors import CaseError
 from ..impacts.experiment import Body
-from ..impacts.placement import room, side_by_side
-from ..impacts.plan import Plan
+from ..impacts.plan import Plan, room, side_by_side
 from ..scenes.limits import PressedBed
 from ..scenes.plan import Phase, ScenePlan
 from . import log

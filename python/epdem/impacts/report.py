@@ -14,7 +14,7 @@ import pandas as pd
 from rich.console import Console
 from rich.table import Table
 
-from ..base.folders import claim
+from ..base.files import claim
 from ..base.terminal import show_table, table
 from ..theory.yielding import FIRST_YIELD_ROUNDED
 from .comparison import CHECKED

@@ -13,7 +13,7 @@ from pathlib import Path
 import pandas as pd
 
 from ..base import __version__
-from ..base.folders import claim, results_folder
+from ..base.files import claim, results_folder
 from ..base.stages import inputs_hash
 from ..case.impact import Case, parse
 from ..case.toml import Read, named, read_toml, text_of

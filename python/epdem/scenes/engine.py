@@ -7,7 +7,7 @@ from typing import Protocol
 
 import pandas as pd
 
-from ..base.folders import claim
+from ..base.files import claim
 from ..errors import CaseError, EngineError
 from ..impacts.engine import Engine, Feature, Report, refuse_ranks, texts
 from .plan import ScenePlan

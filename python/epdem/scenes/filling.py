@@ -9,10 +9,10 @@ from typing import NamedTuple
 
 import numpy as np
 
+from ..case.kinds import DrawnFill
 from ..case.measures import Region
 from ..case.motions import Vector3
 from ..case.parts import Fill, Parts
-from ..case.presets import DrawnFill
 from ..case.scene import SceneCase
 from ..case.sizes import Particles
 from ..errors import CaseError

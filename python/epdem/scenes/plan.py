@@ -10,11 +10,10 @@ import numpy as np
 import pandas as pd
 
 from ..case import motions
-from ..case.kinds import Compaction, Drum
+from ..case.kinds import Compaction, Drum, Preset
 from ..case.measures import Load
 from ..case.motions import LinearMove, Move, RotateMove
 from ..case.parts import Parts
-from ..case.presets import Preset
 from ..case.scene import Output, SceneCase
 from ..case.walls import Limits
 from . import walls

@@ -9,7 +9,7 @@ import numpy as np
 import pandas as pd
 from rich.console import Console
 
-from ..base.folders import claim
+from ..base.files import claim
 from ..base.terminal import show_table, table
 from ..case.kinds import Compaction, Drum, Hopper, Peening, Settle
 from ..case.measures import KINDS, Histogram, Load

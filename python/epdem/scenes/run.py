@@ -10,7 +10,7 @@ from pathlib import Path
 import pandas as pd
 
 from ..base import __version__
-from ..base.folders import Results, claim, results_folder
+from ..base.files import Results, claim, results_folder
 from ..base.paths import DEFAULT_ENGINE
 from ..base.stages import inputs_hash, library_hash
 from ..case.scene import SceneCase, load

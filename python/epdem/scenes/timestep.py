@@ -10,8 +10,8 @@ import numpy as np
 from ..case.scene import SceneCase
 from ..errors import CaseError
 from ..impacts.experiment import Body, Experiment, plane, sphere
+from ..impacts.plan import search, stability_limit
 from ..impacts.prediction import Prediction, predict
-from ..impacts.timestep import search, stability_limit
 from ..theory import adhesion
 from ..theory.backbones import JKR
 from ..theory.timestep import DENSE_PACKING, sticking_packing

@@ -6,8 +6,8 @@ import math
 import numpy as np
 import pandas as pd
 
+from ..case.kinds import Preset
 from ..case.measures import Region
-from ..case.presets import Preset
 from ..case.walls import Room
 from ..errors import CaseError
 from ..theory import validity

@@ -16,7 +16,7 @@ from typing import Any
 
 import numpy as np
 
-from ..base.folders import results_folder
+from ..base.files import results_folder
 from ..base.paths import DEFAULT_ENGINE
 from ..case.scene import is_scene
 from ..case.toml import Read, text_for_anywhere
@@ -25,8 +25,7 @@ from ..errors import CaseError, EngineError
 from .sweep import folder as store
 from .sweep import run as study
 from .sweep.folder import Sweep
-from .sweep.keys import keys_of
-from .sweep.points import Point, Range, axes
+from .sweep.points import Point, Range, axes, keys_of
 from .sweep.table import unit
 
 Targets = Mapping[str, str | float]

@@ -9,7 +9,7 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
-from ..base.folders import claim, results_folder
+from ..base.files import claim, results_folder
 from ..base.tables import write_csv
 from ..case.impact import Check, load
 from ..case.toml import named

@@ -13,7 +13,7 @@ import pandas as pd
 
 from ..base import paths
 from ..base.declarations import declarations
-from ..base.folders import claim, results_folder
+from ..base.files import claim, results_folder
 from ..base.tables import write_csv
 from ..case.impact import Case, parse
 from ..case.toml import named, read_toml

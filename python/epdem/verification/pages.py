@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pandas as pd
 
-from ..base.folders import claim
+from ..base.files import claim
 from ..impacts.comparison import UNITS
 from ..report.chart import GREY, Axis, Chart, Panel, Series, save
 from ..report.page import Facts, Page, Part, Rows, write

@@ -9,13 +9,12 @@ import numpy as np
 import pandas as pd
 
 from ...base import rendering as decks
-from ...base.folders import held
+from ...base.files import held
 from ...base.processes import most_ranks
 from ...errors import EngineError
 from ...impacts.engine import Feature, Report, Trajectory, check_features
 from ...impacts.experiment import Body
-from ...impacts.placement import approach
-from ...impacts.plan import Plan
+from ...impacts.plan import Plan, approach
 from ...scenes.plan import ScenePlan
 from ...theory.sources import Source
 from ..host import Host

@@ -8,7 +8,7 @@ from itertools import takewhile
 from pathlib import Path
 
 from ...base.declarations import Declaration, declarations
-from ...base.folders import write_own
+from ...base.files import write_own
 from ...case.toml import text_of
 from ...errors import CaseError
 

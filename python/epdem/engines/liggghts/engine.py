@@ -14,17 +14,16 @@ from ...base.declarations import declarations
 from ...base.processes import most_ranks
 from ...errors import CaseError, EngineError
 from ...impacts.engine import Feature, Report, Trajectory, check_features
-from ...impacts.placement import approach
-from ...impacts.plan import Plan
+from ...impacts.plan import Plan, approach
 from ...scenes.engine import Resumed, Tables
 from ...scenes.plan import ScenePlan
 from ...theory.sources import Source
 from .. import log
 from ..host import Host
 from ..input_script import atom_types, finite
-from . import dump, executable, launcher, resume, scene_deck, scene_tables, wall_stress
+from . import dump, launcher, resume, scene_deck, scene_tables, wall_stress
+from .launcher import Session
 from .properties import HARD, SOFT, Property, of_law, tangential
-from .session import Session
 
 PATH, END = "path.bin", "end.bin"
 
@@ -65,7 +64,7 @@ class Liggghts(Host):
 
     def version(self) -> str:
         path = paths.launcher()
-        return (executable.version(path) if path else "") or "LIGGGHTS (version unknown)"
+        return (launcher.version(path) if path else "") or "LIGGGHTS (version unknown)"
 
     def model(self, plan: Plan) -> str:
         return f"ep/{plan.experiment.law.name}"

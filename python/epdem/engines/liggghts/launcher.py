@@ -1,14 +1,22 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Starting LIGGGHTS with our models: command, ranks, environment."""
+"""Starting LIGGGHTS with our models: what the executable has, command, environment, and a process that stays."""
 
 import os
+import pty
+import re
+import select
 import shutil
+import subprocess
+import tempfile
+import time
+import tty
 from collections.abc import Callable
+from dataclasses import dataclass
 from pathlib import Path
 
-from ...base import paths
+from ...base import paths, processes, stopping
 from ...base.paths import config_file
-from ...base.processes import call, most_ranks
+from ...base.processes import ask, call, most_ranks
 from ...errors import EngineError
 from ...impacts.engine import refuse_ranks
 
@@ -69,3 +77,179 @@ def run(
     """Run a deck in its folder to its end; seconds taken. `log` is LIGGGHTS's own; the rest as in processes.call."""
     arguments = command(deck, ranks=ranks, log=log)
     return call(arguments, folder, log=out, seconds=seconds, env=environment(ranks), append=append, report=report)
+
+
+_VTK = "custom/vtk"  # the dump style of output.vtk
+
+
+@dataclass(frozen=True)
+class Executable:
+    """`version` is "" for a program that does not say it; `models` are the models of epdem that it has."""
+
+    path: Path
+    version: str
+    superquadrics: bool
+    vtk: bool
+    mpi: bool
+    models: tuple[str, ...]
+
+    def __str__(self) -> str:
+        parts = {"superquadrics": self.superquadrics, "VTK": self.vtk, "MPI": self.mpi}
+        built = [f"{'with' if has else 'without'} {part}" for part, has in parts.items()]
+        return ", ".join([self.version or "version unknown", *built])
+
+
+def version(path: Path) -> str:
+    """What LIGGGHTS says that it is, as "LIGGGHTS-PUBLIC 3.8.0"; "" if it says nothing. Raises EngineError."""
+    return _version(_help(path))
+
+
+def writes_vtk(path: Path) -> bool:
+    """Whether it was built with VTK. Raises EngineError."""
+    return _VTK in _styles(_help(path), "Dump styles")
+
+
+def examine(path: Path, laws: tuple[str, ...]) -> Executable:
+    """What a LIGGGHTS has, found by one short run for each of `laws`. Raises EngineError if it does not start."""
+    text = _help(path)
+    return Executable(
+        path,
+        _version(text),
+        superquadrics="superquadric" in _styles(text, "Atom styles"),
+        vtk=_VTK in _styles(text, "Dump styles"),
+        mpi="libmpi" in ask(["ldd", str(path)]) if shutil.which("ldd") else False,
+        models=tuple(law for law in laws if _has(law)),
+    )
+
+
+def _help(path: Path) -> str:
+    return ask([str(path), "-log", "none", "-h"], environment())
+
+
+def _version(text: str) -> str:
+    found = re.search(r"\bVersion (LIGGGHTS[-\w]*) ([\d.]+)", text)
+    return f"{found[1]} {found[2]}" if found else ""
+
+
+def _styles(text: str, heading: str) -> list[str]:
+    """The names under a heading of LIGGGHTS's help."""
+    _, _, rest = text.partition(f"* {heading}")
+    return rest.partition("\n* ")[0].split()
+
+
+def _has(law: str) -> bool:
+    """Whether the LIGGGHTS in use creates the model of a law."""
+    with tempfile.TemporaryDirectory() as folder:
+        deck = Path(folder) / "in.doctor"
+        deck.write_text(
+            "atom_style granular\nnewton off\ncommunicate single vel yes\nregion box block 0 1 0 1 0 1\n"
+            f"create_box 1 box\npair_style gran model ep/{law} tangential off\n",
+            encoding="utf-8",
+        )
+        try:
+            run(deck.name, Path(folder), seconds=60)
+        except EngineError:
+            return False
+    return True
+
+
+def advice(laws: tuple[str, ...], version: str = "") -> str:
+    """How an executable without these models, of a LIGGGHTS that says this version, gets them; "" for none."""
+    if not laws:
+        return ""
+    get = f"to get {', '.join('ep/' + law for law in laws)}: "
+    if version.startswith("LIGGGHTS-PFM"):
+        return (
+            f"{get}'epdem export liggghts --out SRC' has the laws without adhesion for LIGGGHTS-PFM; for the others "
+            "take LIGGGHTS-PUBLIC or LIGGGHTS-INL"
+        )
+    plugin = paths.native("libepdem_liggghts.so")
+    preload = f"LD_PRELOAD={plugin} with Debian's liggghts, " if plugin else ""
+    own = "'epdem export liggghts --out SRC' for a tree that you build yourself"
+    return f"{get}{preload}epdem-liggghts in place of it, or {own}"
+
+
+END = "epdem: end of the deck"
+# What stands unchanged as one word of a deck; another folder gets its own process.
+PLAIN = re.compile(r"[\w./+=-]+")
+
+
+class Session:
+    """A process of LIGGGHTS on one rank, which reads decks from us; `clear` behind each leaves nothing to the next.
+
+    If it dies, the deck that it ran has failed, and the next one starts another process. It ends with our process.
+    """
+
+    def __init__(self) -> None:
+        self._process: subprocess.Popen[bytes] | None = None
+        self._screen = -1
+        self._folder = Path()
+
+    def run(self, deck: str, folder: Path, *, log: str, seconds: float, out: str = OUT) -> float:
+        """Run a deck in its folder to its end; seconds taken. Raises EngineError as `processes.call` does."""
+        start = time.monotonic()
+        said = bytearray()
+        command = command("none")[0]
+        try:
+            process = self._at(folder)
+            assert process.stdin
+            process.stdin.write(f'log {log}\ninclude {deck}\nclear\nlog none\nprint "{END}"\n'.encode())
+            process.stdin.flush()
+            while not said.endswith(f"{END}\n".encode()):
+                left = start + seconds - time.monotonic()
+                if left <= 0.0:
+                    raise EngineError(f"{command} did not end within {seconds:g} s and was stopped; see {folder / log}")
+                if select.select([self._screen], [], [], left)[0]:
+                    said += self._read()
+        except (BrokenPipeError, EOFError):
+            (folder / out).write_bytes(said)
+            status = self._process.wait() if self._process else 1
+            self.stop()
+            raise EngineError(processes.failure(command, status, folder / out)) from None
+        except BaseException:  # a time-out, Ctrl-C: the process is stopped too
+            self.stop()
+            raise
+        (folder / out).write_bytes(said.removesuffix(f"{END}\n".encode()))
+        return time.monotonic() - start
+
+    def _at(self, folder: Path) -> "subprocess.Popen[bytes]":
+        """The process, in `folder`."""
+        place = folder.resolve()
+        way = os.path.relpath(place, self._folder) if self._process else ""
+        if self._process and PLAIN.fullmatch(way):
+            assert self._process.stdin
+            self._process.stdin.write(f"shell cd {way}\n".encode())
+        else:
+            self.stop()
+            with stopping.uninterrupted():
+                self._process = self._started(place)
+        self._folder = place
+        return self._process
+
+    def _started(self, folder: Path) -> "subprocess.Popen[bytes]":
+        command = [command("none")[0], "-log", "none"]
+        self._screen, theirs = pty.openpty()  # in a pipe its output would stay in a buffer
+        tty.setraw(theirs)
+        try:
+            return processes.started(command, folder, stdin=subprocess.PIPE, stdout=theirs, env=environment())
+        finally:
+            os.close(theirs)
+
+    def _read(self) -> bytes:
+        try:
+            piece = os.read(self._screen, 1 << 16)
+        except OSError:  # of a terminal whose other side is closed
+            piece = b""
+        if not piece:
+            raise EOFError
+        return piece
+
+    def stop(self) -> None:
+        """End the process, if there is one."""
+        if self._screen >= 0:
+            os.close(self._screen)
+        if self._process:
+            assert self._process.stdin
+            self._process.stdin.close()
+            processes.kill(self._process)
+        self._process, self._screen = None, -1

@@ -11,7 +11,7 @@ from jinja2 import meta
 from jinja2.sandbox import ImmutableSandboxedEnvironment
 
 from ...base import paths, rendering
-from ...base.folders import write_own
+from ...base.files import write_own
 from ...case.impact import load as load_impact
 from ...errors import CaseError
 from ...scenes.plan import ScenePlan

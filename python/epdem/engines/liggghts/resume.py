@@ -10,14 +10,14 @@ from pathlib import Path
 
 from ...base import paths
 from ...base import rendering as decks
-from ...base.folders import held
+from ...base.files import held
 from ...base.processes import ROW
 from ...errors import CaseError, EngineError
 from ...impacts.engine import Report
 from ...scenes.engine import Resumed
 from ...scenes.plan import ScenePlan
 from .. import log
-from . import executable, launcher
+from . import launcher
 from . import scene_tables as tables
 from .scene_deck import deck
 
@@ -58,7 +58,7 @@ def resume(plan: ScenePlan, folder: Path, *, ranks: int, report: Report) -> Resu
 def _refuse_vtk(plan: ScenePlan) -> None:
     """Raise CaseError for VTK files of a LIGGGHTS without VTK."""
     path = paths.launcher()
-    if plan.vtk and path and not executable.writes_vtk(path):
+    if plan.vtk and path and not launcher.writes_vtk(path):
         raise CaseError(
             f"output.vtk: {path} was built without VTK; leave output.vtk out (output.particles holds the same), or "
             "take a LIGGGHTS with VTK"

@@ -11,9 +11,8 @@ from ...scenes.model import Model
 from ...scenes.plan import ScenePlan
 from ..input_script import SKIN, SKIN_OF_GROWTH, default_skin, row_words, wall_id
 from . import wall_stress
-from .insertions import insertions
 from .properties import HARD, SOFT, Property, elastic, per_pair, ratios, strength, tangential, work_of_adhesion
-from .scene_parts import parts, planes, stl_text, surfaces, table
+from .scene_parts import insertions, parts, planes, stl_text, surfaces, table
 
 WORKS = {  # what dumps call the works and energies of a sphere
     "plastic_work": "f_plasticWork",

@@ -20,8 +20,7 @@ from ...base.processes import ask, call
 from ...errors import CaseError, EngineError
 from ...impacts.engine import Feature, Report, Trajectory, check_features
 from ...impacts.experiment import Body, Experiment
-from ...impacts.placement import approach, side_by_side
-from ...impacts.plan import Plan
+from ...impacts.plan import Plan, approach, side_by_side
 from ...scenes.plan import ScenePlan
 from ...theory.sources import Source
 from ..host import Host

@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 
 from ...base import __version__
-from ...base.folders import claim
+from ...base.files import claim
 from ...base.stages import library_hash, product_hash
 from ...engines.reasons import citations, reasons
 from ...impacts.plan import Plan

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 
-from ...base.folders import claim
+from ...base.files import claim
 from ...base.tables import unit_of
 from ...case.impact import load
 from ...engines.reasons import citations

@@ -3,7 +3,7 @@
 
 from pathlib import Path
 
-from ...base.folders import claim
+from ...base.files import claim
 from ...report.page import NAME, Facts, Page, Part, Picture, Rows, write
 from ...scenes.columns import STRAINS, units
 from ...scenes.report import bed, charts

@@ -20,15 +20,13 @@ from typing import Any
 
 import tomlkit
 
-from ...base.files import atomic
-from ...base.folders import MARKER, results_folder
+from ...base.files import MARKER, atomic, results_folder
 from ...base.stages import inputs_hash
 from ...case.messages import shorten
 from ...case.scene import is_scene
 from ...case.toml import names_in
 from ...errors import CaseError
-from .keys import assign, keys_of
-from .points import Point
+from .points import Point, assign, keys_of
 
 DEFINITION, CASE, POINTS, FINISHED, STARTED = "sweep.json", "case.toml", "points", "point.json", "running.json"
 WAITING, RUNNING, DONE, FAILED = "waiting", "running", "done", "failed"

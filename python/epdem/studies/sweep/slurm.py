@@ -17,14 +17,12 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
-from ...base.files import atomic
-from ...base.folders import claim, refuse_existing
+from ...base.files import atomic, claim, refuse_existing
 from ...errors import CaseError, EngineError, Stopped
 from . import folder as store
 from . import local, table
-from .evaluate import evaluate
 from .folder import Sweep
-from .run import Report, SweepOutcome, check_points, record_death
+from .run import Report, SweepOutcome, check_points, evaluate, record_death
 from .run import run as run_here
 
 TASKS = 1000  # of an array; a cluster takes 1001 if it does not say otherwise

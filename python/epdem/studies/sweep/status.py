@@ -5,7 +5,7 @@ import fcntl
 from pathlib import Path
 from typing import Any
 
-from ...base.folders import LOCK
+from ...base.files import LOCK
 from . import folder as store
 from . import slurm
 

@@ -22,7 +22,7 @@ def cost(
     as_json: AsJson = False,
 ) -> None:
     """Measure error against run time at 10 to 3000 steps in contact (default engines: embedded and liggghts)."""
-    from ...base.folders import claim, results_folder
+    from ...base.files import claim, results_folder
     from ...case.impact import load
     from ...impacts.report import records
     from .. import cost as study

@@ -17,7 +17,7 @@ def figures(
     as_json: AsJson = False,
 ) -> None:
     """Draw figures 8.16, 8.17 and 8.19 of Seville and Wu (2016) and figure 10 of Thornton and Ning (1998)."""
-    from ...base.folders import claim
+    from ...base.files import claim
     from ..figures import draw_all
 
     kinds = formats(pictures)

@@ -30,7 +30,7 @@ def stability(
     as_json: AsJson = False,
 ) -> None:
     """Test stiff and extreme cases, and find the time step at which each fails (default engine: embedded)."""
-    from ...base.folders import refuse_existing
+    from ...base.files import refuse_existing
     from ...base.tables import write_csv
     from ...impacts.report import records
     from .. import stability as suite

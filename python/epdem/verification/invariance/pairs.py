@@ -10,8 +10,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ...impacts.experiment import Body, Experiment
-from ...impacts.placement import Group
-from ...impacts.plan import Plan
+from ...impacts.plan import Group, Plan
 from ...theory.pair import sphere_mass
 
 # From target to body. Bins are sorted by z first, then y: with this tilt the lower body in z is the upper one in y, and

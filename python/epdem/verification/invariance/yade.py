@@ -12,7 +12,7 @@ from ...base.rendering import Deck
 from ...engines.yade.engine import Yade
 from ...engines.yade.launcher import command, environment, write_deck_modules
 from ...errors import EngineError
-from ...impacts.placement import Group
+from ...impacts.plan import Group
 from .pairs import Pairs
 
 # a serial YADE keeps bodies where they are in memory and has no ranks: sorting and migration do not exist

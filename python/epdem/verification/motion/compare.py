@@ -9,8 +9,7 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
-from ...base.files import write_texts
-from ...base.folders import claim, results_folder
+from ...base.files import claim, results_folder, write_texts
 from ...base.paths import DEFAULT_ENGINE
 from ...base.tables import write_csv
 from ...case.impact import load

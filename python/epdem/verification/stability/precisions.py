@@ -8,7 +8,7 @@ from pathlib import Path
 import numpy as np
 import pandas as pd
 
-from ...impacts.timestep import starting_phases
+from ...impacts.plan import starting_phases
 from .cases import build
 from .precisions_yade import PROGRAMS, rebounds
 from .running import position_floor, setting

@@ -7,7 +7,7 @@ import numpy as np
 import pandas as pd
 
 from ...errors import EpdemError
-from ...impacts.timestep import starting_phases
+from ...impacts.plan import starting_phases
 from .. import native
 from .cases import build
 from .running import Setting, position_floor, setting

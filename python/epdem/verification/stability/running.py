@@ -12,8 +12,8 @@ import numpy as np
 from ...errors import EngineError, EpdemError
 from ...impacts.engine import EPS, not_representable
 from ...impacts.experiment import Experiment
+from ...impacts.plan import stability_limit, starting_phases
 from ...impacts.prediction import Prediction, predict
-from ...impacts.timestep import stability_limit, starting_phases
 from ...theory import adhesion
 from ...theory.backbones import JKR
 from ...theory.validity import SMALL_DEFORMATION
