@@ -19,7 +19,7 @@ from epdem.errors import CaseError
 HOLD = """
 import sys, time
 from pathlib import Path
-from epdem.base.folders import claim
+from epdem.base.files import claim
 with claim(Path(sys.argv[1])):
     (Path(sys.argv[1]) / "restart.1.bin").write_text("x")
     print("in", flush=True)

@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Files that are complete or absent, and folders of results.
 
-One run writes a folder at a time, and no file of the user in it is changed. The marker `.epdem.json` says that the folder
-belongs to epdem, and lists the files of the user from before. After a run a file that is newer than the marker is the
-user's, too; after a crash all files that the marker does not list are those of the run."""
+One run writes a folder at a time, and no file of the user in it is changed. The marker `.epdem.json` says that the
+folder belongs to epdem, and lists the files of the user from before. After a run a file that is newer than the marker
+is the user's, too; after a crash all files that the marker does not list are those of the run.
+"""
 
 import contextlib
 import fcntl
@@ -171,7 +172,6 @@ def claim(folder: Path, *, force: bool = False, files: Collection[str] = ()) -> 
 
 
 def _claimed(folder: Path, place: Path, force: bool, files: Collection[str]) -> Iterator[Results]:
-    """The block of `claim`, with the lock."""
     try:
         for path in _folders(folder):
             remove_stale(path)
@@ -236,7 +236,6 @@ def _known(folder: Path) -> Known | None:
 
 
 def _foreign(folder: Path, known: Known | None) -> set[str]:
-    """The user's files in a folder."""
     names = _names(folder)
     if known is None:
         return names

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The kinds of scenes: their keys, and one function for each kind from these keys to room, walls, fills and phases. SI."""
+"""The kinds of scenes: keys, and a function for each kind from its keys to room, walls, fills and phases. SI."""
 
 import math
 from collections.abc import Callable, Sequence

@@ -15,8 +15,6 @@ Bins = Annotated[int, Field(ge=2, le=1000)]
 
 
 class _Measure(Frozen):
-    """What every measure has: the name of its column."""
-
     name: PartName
 
 

@@ -25,8 +25,6 @@ def unit(direction: list[float]) -> Vector3:
 
 
 class _Move(Frozen):
-    """A motion of the wall `wall`."""
-
     wall: PartName
 
 

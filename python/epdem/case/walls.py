@@ -91,8 +91,6 @@ def has(key: str) -> Discriminator:
 
 
 class _Wall(Frozen):
-    """What every wall has."""
-
     name: PartName
     material: Name
 

@@ -59,6 +59,5 @@ def lammps(
 
 
 def _write(out: Path, sources: dict[Path, Path], commands: list[str], *, as_json: bool) -> None:
-    """Write a CMake project and print its files and the commands that build it."""
     written = [str(f) for f in write_project(out, sources)]
     print(json.dumps({"files": written}) if as_json else "\n".join([*written, "", *commands]))

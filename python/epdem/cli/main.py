@@ -227,7 +227,6 @@ app.add_typer(export, name="export")
 
 
 def _usage(error: Any) -> int:
-    """Print the error of a command line as one sentence; without arguments, print the help."""
     if not (text := error.format_message()):
         error.show()
         return 2

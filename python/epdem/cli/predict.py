@@ -53,7 +53,6 @@ def predict(
 
 
 def _case(case: Path, law: list[str] | None, as_json: bool) -> None:
-    """The impacts of a case."""
     from ..case.impact import load
     from ..case.toml import named
     from ..case.warnings import case_warnings

@@ -30,7 +30,6 @@ def main_chart(outcome: Outcome) -> Chart:
 
 
 def _fine(x: Experiment, others: Sequence[float] = ()) -> Experiment:
-    """The experiment at the speeds of a line: over its own and `others`."""
     low, high = float(min([*x.speed, *others])), float(max([*x.speed, *others]))
     margin = 1.0 if high > low else 2.0  # one speed alone is drawn with its surroundings
     return replace(x, speed=np.geomspace(low / margin, high * margin, FINE))

@@ -41,7 +41,6 @@ COLUMNS = tuple(f.name for f in fields(Measured) if f.type is np.ndarray)
 
 
 def _last(valid: np.ndarray) -> np.ndarray:
-    """Index of the last True in each row."""
     return np.asarray(valid.shape[1] - 1 - np.argmax(valid[:, ::-1], axis=1))
 
 

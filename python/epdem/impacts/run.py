@@ -111,7 +111,6 @@ def _inputs(p: Plan, tool: ImpactEngine, version: str, ranks: int) -> str:
 
 
 def _stored(path: Path) -> store.Results:
-    """The results of an earlier run, or none; a file of another version is written anew."""
     try:
         return store.read(path)
     except CaseError:
@@ -119,7 +118,6 @@ def _stored(path: Path) -> store.Results:
 
 
 def _beside_earlier(results: store.Results, old: store.Results) -> store.Results:
-    """These results, with results of other engines and laws from earlier runs of the same case."""
     if old.case_text != results.case_text:
         return results
     keep = [key for key in old.runs if key not in results.runs]
@@ -168,7 +166,6 @@ def _prepare(case: Case, place: object, tools: Sequence[ImpactEngine], laws: Seq
 
 
 def _read(path: Path | str, steps: int | None) -> Read:
-    """The case in a file; `steps` replaces its steps in contact."""
     data = read_toml(path)
     if steps is not None:
         data["numerics"] = data.get("numerics", {}) | {"steps_in_contact": steps}

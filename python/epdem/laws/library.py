@@ -89,7 +89,6 @@ def _array(x: npt.ArrayLike) -> Array:
 
 
 def _columns(*values: npt.ArrayLike) -> list[Array]:
-    """The values broadcast to one shape (n,)."""
     return [_array(x) for x in np.broadcast_arrays(*map(_array, values))]
 
 

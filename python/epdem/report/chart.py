@@ -212,7 +212,6 @@ def draw(chart: Chart, *, title: bool = True) -> "Figure":
 
 
 def _grid(chart: Chart) -> tuple["Figure", np.ndarray]:
-    """A figure and its axes, shape (rows, columns)."""
     from matplotlib.figure import Figure
 
     n, shares = len(chart.panels), [panel.share for panel in chart.panels]

@@ -110,7 +110,6 @@ def _one_kind(
 
 
 def _with_adhesion(law: JKR, overlap: np.ndarray, largest: np.ndarray, attached: np.ndarray) -> dict[str, np.ndarray]:
-    """Contacts of one kind of a law with adhesion."""
     top = np.maximum(law.radius(largest), law.touch_radius)
     branch, dent = law.branch(top)
     dented = dent > 0

@@ -139,7 +139,6 @@ def _random(case: SceneCase, fill: Insertion) -> list[Size]:
 
 
 def _insertion(case: SceneCase, scene: Parts, f: Fill, key: str, count: int) -> Insertion:
-    """The spheres of a fill, drawn at random from all its sizes."""
     vx, vy, vz = f.velocity
     phase = next(p for p in scene.phase if f.phase in (None, p.name))
     if f.rate is None:

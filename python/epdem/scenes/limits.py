@@ -290,6 +290,5 @@ def _covered(scene: Parts, wall: PlateWall, span: tuple[float, float], fills: li
 
 
 def _within(inner: tuple[float, ...], outer: tuple[float, ...]) -> bool:
-    """Whether an interval lies in another one, but for round-off."""
     slack = 1e-9 * (outer[1] - outer[0])
     return outer[0] - slack <= inner[0] and inner[1] <= outer[1] + slack

@@ -74,7 +74,6 @@ def _refuse_beyond(p: ScenePlan, m: Measure, place: str) -> None:
 
 
 def _chosen(p: ScenePlan, m: Amount | Height | Repose | CenterOfMass | Flow, frame: pd.DataFrame) -> pd.DataFrame:
-    """The spheres of a frame that a measure is about."""
     if m.material is not None:
         kinds = [n for n, t in enumerate(p.model.types, 1) if t.material == m.material]
         frame = frame[frame["type"].isin(kinds)]
@@ -195,7 +194,6 @@ def curves(p: ScenePlan, tables: dict[str, pd.DataFrame]) -> pd.DataFrame:
 
 
 def _impact_speeds(p: ScenePlan, tables: dict[str, pd.DataFrame]) -> FloatArray:
-    """Of every contact of any frame the speed [m/s] of the head-on impact that gives its largest overlap."""
     contacts = tables["contacts"]
     largest = contacts.groupby(["wall", "i", "j"], as_index=False)["delta_max"].max()
     spheres = tables["particles"].groupby("id")[["radius", "mass", "type"]].first()

@@ -28,7 +28,6 @@ def sizes(case: SceneCase, m: Model, fill: Insertion, rng: random.Random) -> lis
 
 
 def _somewhere(region: Region, radius: float, rng: random.Random) -> tuple[float, ...] | None:
-    """A random place of a sphere wholly in a region [m]; None if it was not met."""
     low, high = region.limits[0::2], region.limits[1::2]
     place = tuple(rng.uniform(a + radius, b - radius) for a, b in zip(low, high, strict=True))
     if isinstance(region, Upright) and math.dist(place[:2], region.center) > region.radius - radius:

@@ -151,7 +151,6 @@ def _hopper(p: ScenePlan, s: Hopper, tables: Tables) -> list[Panel]:
 
 
 def _compaction(p: ScenePlan, s: Compaction, tables: Tables) -> list[Panel]:
-    """Force on the plate against its displacement, loading and unloading."""
     rows = tables["rows"]
     way, force = (s.box[2] - rows["plate_z"]).to_numpy(), rows["plate_force"].to_numpy()
     loading = (rows["step"] <= p.phases[-2].end).to_numpy()
@@ -186,7 +185,6 @@ def _peening(p: ScenePlan, s: Peening, tables: Tables) -> list[Panel]:
 
 
 def _settle(p: ScenePlan, s: Settle, tables: Tables) -> list[Panel]:
-    """Height below which 95 % of the spheres lie, and kinetic energy, against time."""
     rows, heights = tables["rows"], tables["particles"].groupby("step")["z"].quantile(0.95)
     moving = rows[rows["kinetic_energy"] > 0]
     energy = Series("", moving["time"].to_numpy(), moving["kinetic_energy"].to_numpy(), 1)
@@ -280,7 +278,6 @@ def show(outcome: SceneOutcome, console: Console) -> None:
 
 
 def _show_measures(outcome: SceneOutcome, console: Console) -> None:
-    """Print the last value of each curve or the mean of the values of a histogram, the smallest and the largest."""
     tables = outcome.results.tables
     if not outcome.case.scene.measure:
         return

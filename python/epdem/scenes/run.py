@@ -129,7 +129,6 @@ def run(
 
 
 def _reused(work: _Work, folder: Path, fresh: bool) -> SceneOutcome | None:
-    """What an earlier run of the same inputs has stored."""
     old = None if fresh else _stored(folder / "results.h5")
     if old is None or old.attributes.get("inputs") != work.inputs:
         return None
@@ -139,7 +138,6 @@ def _reused(work: _Work, folder: Path, fresh: bool) -> SceneOutcome | None:
 
 
 def _as_run(p: ScenePlan, tables: dict[str, pd.DataFrame]) -> ScenePlan:
-    """The plan with the ends of phases as they came."""
     if not p.ends_early:
         return p
     phases = tables["phases"]
@@ -172,7 +170,6 @@ def _resumed(work: _Work, place: Results) -> SceneOutcome:
 def _finish(
     work: _Work, folder: Path, start: float, tables: dict[str, pd.DataFrame], went_on: Resumed | None = None
 ) -> SceneOutcome:
-    """Complete the tables of a run by energy balance and checks, and write results.h5."""
     p = _as_run(work.plan, tables)
     if p.output.energy:
         if tables["particles"].empty:

@@ -28,7 +28,6 @@ def _ring(radius: float, z: float, facets: int = FACETS) -> FloatArray:
 
 
 def _band(lower: FloatArray, upper: FloatArray) -> FloatArray:
-    """Two triangles per facet between two rings of equally many points."""
     a, b = np.roll(lower, -1, axis=0), np.roll(upper, -1, axis=0)
     return np.concatenate([np.stack([lower, a, upper], axis=1), np.stack([a, b, upper], axis=1)])
 
@@ -92,7 +91,6 @@ MERGED = 1e-9  # of the size of a mesh: corners closer than this are one
 
 
 def _read(path: Path, place: str) -> FloatArray:
-    """The triangles of a file, shape (n, 3, 3), in its unit. Raises CaseError."""
     import trimesh
 
     raw = path.read_bytes()

@@ -53,7 +53,6 @@ class Fit:
     points: int
 
     def _repr_html_(self) -> str:
-        """The found values as a table, for a notebook."""
         cells = [*self.values.items()]
         cells += [(name, f"{value:.6g} {self.units[name]}") for name, value in self.numbers.items()]
         rows = "".join(f"<tr><th>{html.escape(name)}</th><td>{html.escape(str(v))}</td></tr>" for name, v in cells)
@@ -228,7 +227,6 @@ def _changes_sign(search: _Search, low: float, high: float) -> bool:
 
 
 def _missed(search: _Search, values: Point, numbers: dict[str, float]) -> str:
-    """The targets, the numbers that were reached, and the nearest point."""
     said = []
     for name, target in search.targets.items():
         reached = [found[name] for found in search.found]

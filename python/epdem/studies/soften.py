@@ -72,7 +72,6 @@ def _forces(data: dict[str, Any]) -> Iterator[tuple[Key, str]]:
 
 
 def _replacements(data: dict[str, Any], factor: float) -> dict[Key, str | float]:
-    """The new value of every key that changes."""
     law = data["law"]
     strength = law_named(law["name"]).strength
     texts: dict[Key, str | float] = {}
@@ -125,7 +124,6 @@ def strain_ratio(data: dict[str, Any], path: Path) -> float:
 
 
 def _loads(data: dict[str, Any], path: Path, factor: float) -> list[str]:
-    """Warnings of forces that do not scale as impact forces."""
     from ..case import scene as scenes
 
     scene, fall = data.get("scene", {}), factor**FORCE_POWER

@@ -116,7 +116,6 @@ def _fills(p: ScenePlan, phase: str) -> list[tuple[str, str, str]]:
 
 
 def _data(p: ScenePlan, phase: str) -> str:
-    """The data file of the spheres that come with a phase."""
     rows = [*placement.moving_spheres(p, phase), *placement.later_bodies(p, phase)]
     density = [0.0, *(p.case.materials[t.material].density for t in p.model.types)]
     atoms, velocities = [], []

@@ -27,7 +27,6 @@ def rows(p: ScenePlan, out: Path) -> pd.DataFrame:
 
 
 def _frames(p: ScenePlan, folder: Path, kind: str, every: int, names: list[str]) -> pd.DataFrame:
-    """The frames of a kind. Raises EngineError for a frame that is missing or not whole."""
 
     def read(path: Path) -> pd.DataFrame:
         try:

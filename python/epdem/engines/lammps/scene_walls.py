@@ -121,7 +121,6 @@ def _side(p: ScenePlan, w: BoxWall | CylinderWall | ConeWall) -> str:
 
 
 def _holds(w: BoxWall | CylinderWall | ConeWall, place: Sequence[float]) -> bool:
-    """Whether a place is inside of a closed wall."""
     if isinstance(w, BoxWall):
         return all(low < x < high for x, (low, high) in zip(place, (w.x, w.y, w.z), strict=True))
     along = "xyz".index(w.axis)
@@ -163,7 +162,6 @@ def _changing(p: ScenePlan, name: str) -> list[str]:
 
 
 def _motion_words(p: ScenePlan, name: str) -> str:
-    """move and rotate of a region."""
     keys, id, found = _changing(p, name), wall_id(p, name), []
     if {*keys} & {*"xyz"}:
         found.append("move " + " ".join(f"v_{id}_{axis}" if axis in keys else "NULL" for axis in "xyz"))

@@ -57,7 +57,6 @@ def _converted(command: str, words: list[re.Match[str]], law: Declaration, place
 
 
 def _property_lines(law: Declaration, given: dict[str, str], present: set[str], types: int, place: Path) -> list[str]:
-    """The `property/global` lines of the law's parameters. Raises CaseError for a missing or wrong value."""
     own = {p.property: p for p in law.parameters}
     for name in given:
         if name not in own:

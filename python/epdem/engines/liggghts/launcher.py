@@ -132,13 +132,11 @@ def _version(text: str) -> str:
 
 
 def _styles(text: str, heading: str) -> list[str]:
-    """The names under a heading of LIGGGHTS's help."""
     _, _, rest = text.partition(f"* {heading}")
     return rest.partition("\n* ")[0].split()
 
 
 def _has(law: str) -> bool:
-    """Whether the LIGGGHTS in use creates the model of a law."""
     with tempfile.TemporaryDirectory() as folder:
         deck = Path(folder) / "in.doctor"
         deck.write_text(
@@ -189,7 +187,7 @@ class Session:
         """Run a deck in its folder to its end; seconds taken. Raises EngineError as `processes.call` does."""
         start = time.monotonic()
         said = bytearray()
-        command = command("none")[0]
+        program = command("none")[0]
         try:
             process = self._at(folder)
             assert process.stdin
@@ -198,14 +196,14 @@ class Session:
             while not said.endswith(f"{END}\n".encode()):
                 left = start + seconds - time.monotonic()
                 if left <= 0.0:
-                    raise EngineError(f"{command} did not end within {seconds:g} s and was stopped; see {folder / log}")
+                    raise EngineError(f"{program} did not end within {seconds:g} s and was stopped; see {folder / log}")
                 if select.select([self._screen], [], [], left)[0]:
                     said += self._read()
         except (BrokenPipeError, EOFError):
             (folder / out).write_bytes(said)
             status = self._process.wait() if self._process else 1
             self.stop()
-            raise EngineError(processes.failure(command, status, folder / out)) from None
+            raise EngineError(processes.failure(program, status, folder / out)) from None
         except BaseException:  # a time-out, Ctrl-C: the process is stopped too
             self.stop()
             raise
@@ -213,7 +211,6 @@ class Session:
         return time.monotonic() - start
 
     def _at(self, folder: Path) -> "subprocess.Popen[bytes]":
-        """The process, in `folder`."""
         place = folder.resolve()
         way = os.path.relpath(place, self._folder) if self._process else ""
         if self._process and PLAIN.fullmatch(way):
@@ -227,11 +224,11 @@ class Session:
         return self._process
 
     def _started(self, folder: Path) -> "subprocess.Popen[bytes]":
-        command = [command("none")[0], "-log", "none"]
+        program = [command("none")[0], "-log", "none"]
         self._screen, theirs = pty.openpty()  # in a pipe its output would stay in a buffer
         tty.setraw(theirs)
         try:
-            return processes.started(command, folder, stdin=subprocess.PIPE, stdout=theirs, env=environment())
+            return processes.started(program, folder, stdin=subprocess.PIPE, stdout=theirs, env=environment())
         finally:
             os.close(theirs)
 

@@ -56,7 +56,6 @@ def resume(plan: ScenePlan, folder: Path, *, ranks: int, report: Report) -> Resu
 
 
 def _refuse_vtk(plan: ScenePlan) -> None:
-    """Raise CaseError for VTK files of a LIGGGHTS without VTK."""
     path = paths.launcher()
     if plan.vtk and path and not launcher.writes_vtk(path):
         raise CaseError(

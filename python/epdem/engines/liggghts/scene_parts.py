@@ -120,7 +120,6 @@ def planes(p: ScenePlan) -> tuple[decks.Deck, ...]:
 
 
 def _press(p: ScenePlan, name: str) -> PressMove | None:
-    """The force that drives a mesh in some phases."""
     moves = [phase.moves[name] for phase in p.phases if name in phase.moves]
     presses = [move for move in moves if isinstance(move, PressMove)]
     if any(press != presses[0] for press in presses):
@@ -162,7 +161,6 @@ def surfaces(p: ScenePlan) -> tuple[decks.Deck, ...]:
 
 
 def _motion(p: ScenePlan, name: str, move: Move) -> tuple[str, str]:
-    """The commands at the begin and at the end of the motion of a mesh."""
     wall = wall_id(p, name)
     fix = "press" if name == "plate" else f"move_{name}"
     match move:
@@ -180,7 +178,6 @@ def _motion(p: ScenePlan, name: str, move: Move) -> tuple[str, str]:
 
 
 def _place(p: ScenePlan, bed: PressedBed) -> str:
-    """Formula of the place of a plate that presses a bed."""
     k, begin = bed.axis, p.triangles[bed.wall][0, 0, bed.axis]
     reference = begin if _press(p, bed.wall) else torque_origin(p, bed.wall)[k]  # LIGGGHTS moves it with the wall
     return f"(f_{wall_id(p, bed.wall)}[{7 + k}]+{decks.number(begin - reference)})"

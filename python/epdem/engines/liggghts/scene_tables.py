@@ -54,7 +54,6 @@ def _slots(p: ScenePlan) -> list[str]:
 
 
 def _steps(p: ScenePlan, kind: str, folder: Path, without: Collection[int]) -> list[tuple[int, Path]]:
-    """(step, file) of the frames of a kind, by step."""
     every = _written(p).get(kind, 0)
     steps = p.frame_steps(every) if every else []
     return [(step, folder / kind.format(step)) for step in steps if step not in without]

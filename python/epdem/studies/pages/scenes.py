@@ -76,7 +76,6 @@ def sentences(outcome: SceneOutcome) -> list[str]:
 
 
 def _facts(outcome: SceneOutcome) -> Facts:
-    """The numbers of the plan."""
     p = outcome.plan
     facts = {"kind": outcome.case.scene.kind, "law": p.model.law, "time step": f"{p.time_step:.6g} s"}
     facts |= {"steps": str(p.steps), "smallest radius": f"{p.smallest:.4g} m", "materials": ", ".join(p.types)}

@@ -41,7 +41,6 @@ def _evenly(values: np.ndarray) -> np.ndarray:
 
 
 def _by_speed(result: SweepOutcome) -> Chart:
-    """e_n of chosen points against speed, theory as lines."""
     table, series = result.table[result.table["status"] == DONE], []
     for k, number in enumerate(_evenly(table["point"].unique())):
         part = table[table["point"] == number]
@@ -97,7 +96,6 @@ def _axis(column: str, kinds: list[str], units: dict[str, str]) -> Axis:
 
 
 def _series(table: pd.DataFrame, key: str, column: str, kinds: list[str]) -> list[Series]:
-    """The numbers of a column against a key, as points."""
     x, series = table[key].to_numpy(float), []
     for kind in kinds:
         k = KINDS.index(kind) if kind else 0

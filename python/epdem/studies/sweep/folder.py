@@ -107,13 +107,11 @@ class Sweep:
 
     @cached_property
     def _hashes(self) -> dict[str, str]:
-        """Hash of each file that the case or a point names."""
         names = names_in(self.tables).union(*map(self._files, self.points))
         return {name: hashlib.sha256(Path(name).read_bytes()).hexdigest() for name in names if Path(name).is_file()}
 
     @staticmethod
     def _files(point: Point) -> set[str]:
-        """The files that the values of a point name."""
         return names_in([{key.rpartition(".")[2]: value} for key, value in point.items()])
 
     def inputs(self, number: int) -> str:

@@ -93,13 +93,11 @@ def _fields(
 
 
 def _law(data: dict[str, Any]) -> Declaration | None:
-    """The law that a case names; None if there is no such law."""
     table = data.get("law")
     return declarations().get(str(table.get("name"))) if isinstance(table, dict) else None
 
 
 def _of_law(case: dict[str, Any], *, ratio: bool) -> Iterator[tuple[str, Key]]:
-    """Parameters of the case's law, and the ratio that can stand for its strength."""
     law = _law(case)
     if law is None:
         return
@@ -293,7 +291,6 @@ def axes(given: Mapping[str, Any], keys: dict[str, Key], option: str = "--set") 
 
 
 def _listed(values: Any) -> list[Any]:
-    """The values of a sequence; one value, a table among them, as a list of it."""
     if isinstance(values, Mapping):
         return [values]
     try:

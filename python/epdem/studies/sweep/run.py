@@ -80,7 +80,6 @@ def _tools(names: tuple[str, ...]) -> tuple[ImpactEngine, ...]:
 
 
 def _impacts(sweep: Sweep, number: int, place: Path) -> dict[str, list[Any]]:
-    """The comparison with theory, a row for every speed, engine and law."""
     case, tables = impact.parse(sweep.data(number), store.CASE), []
     for law in sweep.laws or (None,):
         x = experiment(case, law)
@@ -133,7 +132,6 @@ class SweepOutcome:
         return bool((self.table["status"] == store.DONE).all() and self.table["passed"].all())
 
     def _repr_html_(self) -> str:
-        """In a notebook it shows its table."""
         return str(self.table.to_html(max_rows=20))
 
 

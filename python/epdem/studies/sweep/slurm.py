@@ -194,7 +194,6 @@ def run(
 
 
 def _living(folder: Path) -> dict[str, list[int]]:
-    """Jobs of an earlier call that still wait or run."""
     try:
         known: dict[str, list[int]] = json.loads((folder / JOBS).read_text(encoding="utf-8"))
     except (OSError, ValueError):

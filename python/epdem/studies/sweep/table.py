@@ -57,7 +57,6 @@ def collect(sweep: Sweep, folder: Path) -> pd.DataFrame:
 
 
 def _keys(sweep: Sweep, number: int) -> dict[str, Any]:
-    """The keys that a point sets: quantities in SI, numbers as they are, all else as text."""
     keys: dict[str, Any] = {}
     for name, value in sweep.points[number - 1].items():
         unit = sweep.units[name]

@@ -137,7 +137,6 @@ class Fill:
             self._came += 1
 
     def _place(self, radius: float, positions: Any) -> Any:
-        """A free place of a sphere wholly in the region [m]; None: none was met."""
         for _ in range(ATTEMPTS):
             place = [self._random.uniform(a + radius, b - radius) for a, b in zip(self.low, self.high, strict=True)]
             if self.circle and math.dist(place[:2], self.circle[:2]) > self.circle[2] - radius:
