@@ -25,13 +25,13 @@ _PR_SET_PDEATHSIG = 1
 _libc = ctypes.CDLL(None)
 
 
-def last_words(log: Path, lines: int = 3) -> str:
+def last_words(log: Path) -> str:
     """The last ERROR line of a log, or else its last lines; '' if there are none."""
     if not log.exists():
         return ""
     text = [t for t in log.read_text(errors="replace").splitlines() if t.strip()]
     errors = [t for t in text if t.startswith("ERROR") or "Error:" in t]
-    return errors[-1] if errors else " | ".join(text[-lines:])
+    return errors[-1] if errors else " | ".join(text[-3:])
 
 
 def call(

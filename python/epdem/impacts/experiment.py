@@ -47,15 +47,13 @@ RIGID_PLANE = Body(math.inf, math.inf, math.inf, math.inf, 0.0, math.inf, RIGID)
 def sphere(material: Material, *, radius: float, name: str) -> Body:
     """A sphere of `radius` [m]; `name` is the material's."""
     mass = float(pair.sphere_mass(radius=radius, density=material.density))
-    m = material
-    return Body(radius, mass, m.density, m.young_modulus, m.poisson_ratio, m.yield_stress, name, m.surface_energy)
+    numbers = material.model_dump(include=set(Material.model_fields))
+    return Body(radius=radius, mass=mass, material=name, **numbers)
 
 
 def plane(material: Material, *, name: str) -> Body:
     """A half-space that does not move; `name` is the material's."""
-    m = material
-    infinite = math.inf
-    return Body(infinite, infinite, m.density, m.young_modulus, m.poisson_ratio, m.yield_stress, name, m.surface_energy)
+    return replace(sphere(material, radius=1.0, name=name), radius=math.inf, mass=math.inf)
 
 
 @dataclass(frozen=True)

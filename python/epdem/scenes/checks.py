@@ -236,12 +236,12 @@ def discharge(p: ScenePlan, s: Hopper, spheres: pd.DataFrame, part: tuple[float,
     return Discharge(float(rate), float(bulk), diameter, int(count[-1] - count[0]))
 
 
-def beverloo(discharge: Discharge, outlet: float, gravity: float, *, constant: float = 0.58, k: float = 1.4) -> float:
-    """W = C rho_b sqrt(g) (D - k d)^2.5 [kg/s] through an outlet D [m].
+def beverloo(discharge: Discharge, outlet: float, gravity: float) -> float:
+    """W = 0.58 rho_b sqrt(g) (D - 1.4 d)^2.5 [kg/s] through an outlet D [m].
 
-    Beverloo, Leniger and van de Velde 1961, Chem. Eng. Sci. 15, 260: C about 0.58, k from 1.2 to 1.6.
+    Beverloo, Leniger and van de Velde 1961, Chem. Eng. Sci. 15, 260; 1.4 stands for 1.2 to 1.6.
     """
-    return float(constant * discharge.bulk * np.sqrt(gravity) * (outlet - k * discharge.diameter) ** 2.5)
+    return float(0.58 * discharge.bulk * np.sqrt(gravity) * (outlet - 1.4 * discharge.diameter) ** 2.5)
 
 
 def single_rebound(case: SceneCase, s: Peening) -> float:

@@ -22,9 +22,9 @@ FloatArray = npt.NDArray[np.float64]
 FACETS = 48  # around a circle: the wall is at most 0.2 % of the radius off it
 
 
-def _ring(radius: float, z: float, facets: int = FACETS) -> FloatArray:
-    angle = 2 * np.pi * np.arange(facets) / facets
-    return np.column_stack([radius * np.cos(angle), radius * np.sin(angle), np.full(facets, z)])
+def _ring(radius: float, z: float) -> FloatArray:
+    angle = 2 * np.pi * np.arange(FACETS) / FACETS
+    return np.column_stack([radius * np.cos(angle), radius * np.sin(angle), np.full(FACETS, z)])
 
 
 def _band(lower: FloatArray, upper: FloatArray) -> FloatArray:

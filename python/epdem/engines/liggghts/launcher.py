@@ -10,9 +10,9 @@ import subprocess
 import tempfile
 import time
 import tty
-from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 from ...base import paths, processes, stopping
 from ...base.paths import config_file
@@ -63,20 +63,9 @@ def environment(ranks: int = 1) -> dict[str, str]:
     return ours | {"OMP_NUM_THREADS": "1", "OMPI_MCA_mpi_yield_when_idle": "1"}
 
 
-def run(
-    deck: str,
-    folder: Path,
-    *,
-    ranks: int = 1,
-    log: str = "none",
-    out: str = OUT,
-    seconds: float | None = None,
-    append: bool = False,
-    report: Callable[[int], None] | None = None,
-) -> float:
+def run(deck: str, folder: Path, *, ranks: int = 1, log: str = "none", out: str = OUT, **how: Any) -> float:
     """Run a deck in its folder to its end; seconds taken. `log` is LIGGGHTS's own; the rest as in processes.call."""
-    arguments = command(deck, ranks=ranks, log=log)
-    return call(arguments, folder, log=out, seconds=seconds, env=environment(ranks), append=append, report=report)
+    return call(command(deck, ranks=ranks, log=log), folder, log=out, env=environment(ranks), **how)
 
 
 _VTK = "custom/vtk"  # the dump style of output.vtk

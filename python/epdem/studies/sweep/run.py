@@ -50,7 +50,7 @@ def check(sweep: Sweep, number: int) -> CaseError | None:
     return None
 
 
-def evaluate(sweep: Sweep, folder: Path, number: int, *, resume: bool = True) -> str:
+def evaluate(sweep: Sweep, folder: Path, number: int) -> str:
     """Run a point and store its results; returns the reason of a failure, or "".
 
     Raises OSError if results cannot be stored, and whatever stops the process; the point is then as if it had not run,
@@ -59,7 +59,7 @@ def evaluate(sweep: Sweep, folder: Path, number: int, *, resume: bool = True) ->
     about = store.begin(sweep, folder, number)
     place = store.of(sweep, folder, number)
     try:
-        rows = _scene(sweep, place, resume=resume) if sweep.scene else _impacts(sweep, number, place)
+        rows = _scene(sweep, place) if sweep.scene else _impacts(sweep, number, place)
     except OSError:
         raise
     except Exception as error:  # of any kind: the other points run
@@ -93,7 +93,7 @@ def _impacts(sweep: Sweep, number: int, place: Path) -> dict[str, list[Any]]:
     return {str(name): table[name].tolist() for name in table.columns}
 
 
-def _scene(sweep: Sweep, place: Path, *, resume: bool) -> dict[str, list[Any]]:
+def _scene(sweep: Sweep, place: Path) -> dict[str, list[Any]]:
     """The named numbers of a scene, in one row; a scene that was interrupted goes on from its last restart file."""
     tool = scene_engine(sweep.engines[0])
 
@@ -103,7 +103,7 @@ def _scene(sweep: Sweep, place: Path, *, resume: bool) -> dict[str, list[Any]]:
         return {name: [value] for name, value in row.items()}
 
     interrupted = any(place.glob("restart.*.bin")) and not (place / "results.h5").exists()
-    if resume and interrupted and Feature.RESTART in tool.features:
+    if interrupted and Feature.RESTART in tool.features:
         with contextlib.suppress(CaseError, EngineError):  # no whole restart file, or one of another deck
             return once(True)
     return once(False)
