@@ -5,7 +5,7 @@ from pathlib import Path
 
 import pytest
 
-from epdem.base import paths, stages
+from epdem.base import paths
 from epdem.engines.embedded import Embedded
 from epdem.impacts.run import run
 
@@ -34,12 +34,12 @@ def product(tmp_path, monkeypatch):
     for name in names:
         (tmp_path / name).parent.mkdir(parents=True, exist_ok=True)
         (tmp_path / name).write_text("first")
-    monkeypatch.setattr(stages, "__file__", str(tmp_path / "package/base/stages.py"))
+    monkeypatch.setattr(paths, "__file__", str(tmp_path / "package/base/paths.py"))
     monkeypatch.setattr(paths, "native", lambda name: tmp_path / name)
     monkeypatch.setattr(paths, "launcher", lambda: tmp_path / "launcher")
     monkeypatch.setattr(paths, "beside", lambda name: tmp_path / name)
     yield tmp_path, names
-    for function in (stages.library_hash, stages.product_hash):
+    for function in (paths.library_hash, paths.product_hash):
         function.cache_clear()
 
 
@@ -48,9 +48,9 @@ def test_a_change_of_the_product_is_a_new_hash(product, changed):
     folder, names = product
 
     def hashed():
-        for function in (stages.library_hash, stages.product_hash):
+        for function in (paths.library_hash, paths.product_hash):
             function.cache_clear()
-        return stages.product_hash()
+        return paths.product_hash()
 
     first = hashed()
     assert hashed() == first
@@ -76,7 +76,7 @@ def reruns(tmp_path, tool, text=CASE, **options):
     ],
 )
 def test_a_change_of_the_case_runs_again(old, new, tmp_path, monkeypatch):
-    monkeypatch.setattr(stages, "product_hash", lambda: "product")
+    monkeypatch.setattr(paths, "product_hash", lambda: "product")
     assert old in CASE
     assert reruns(tmp_path, Recorded()) and not reruns(tmp_path, Recorded())
     assert reruns(tmp_path, Recorded(), CASE.replace(old, new))
@@ -84,11 +84,11 @@ def test_a_change_of_the_case_runs_again(old, new, tmp_path, monkeypatch):
 
 @pytest.mark.parametrize("change", ["product", "release", "deck", "steps"])
 def test_a_change_of_product_engine_deck_or_steps_runs_again(change, tmp_path, monkeypatch):
-    monkeypatch.setattr(stages, "product_hash", lambda: "product")
+    monkeypatch.setattr(paths, "product_hash", lambda: "product")
     tool, options = Recorded(), {}
     assert reruns(tmp_path, tool) and not reruns(tmp_path, tool)
     if change == "product":
-        monkeypatch.setattr(stages, "product_hash", lambda: "another")
+        monkeypatch.setattr(paths, "product_hash", lambda: "another")
     elif change == "steps":
         options["steps"] = 401
     else:

@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pytest
 
-from epdem.base import stopping
+from epdem.base import processes
 from epdem.errors import Stopped
 
 CASE = Path(__file__).parents[2] / "cases/steel_wall.toml"
@@ -85,7 +85,7 @@ def test_a_second_ctrl_c_does_not_interrupt_the_end_of_a_run(monkeypatch):
     handlers = {}
     monkeypatch.setattr("signal.signal", handlers.__setitem__)
     with pytest.raises(Stopped):
-        stopping._stop(signal.SIGINT, None)
+        processes._stop(signal.SIGINT, None)
     assert handlers == dict.fromkeys((signal.SIGINT, signal.SIGTERM, signal.SIGHUP), signal.SIG_IGN)
 
 

@@ -26,7 +26,7 @@ from epdem.impacts.experiment import experiment
 from epdem.impacts.measurement import measure
 from epdem.impacts.plan import plan
 from epdem.impacts.prediction import predict
-from epdem.scenes import columns, contacts, run, walls
+from epdem.scenes import columns, run, walls
 from epdem.studies.sweep import slurm
 from epdem.verification.stability import variants
 from epdem.verification.stability.edits import Edit
@@ -97,7 +97,7 @@ def test_frames_and_rows_of_scenes(tmp_path):
         columns.whole(p, whole.assign(radius=-1.0), tmp_path)
     raw = pd.DataFrame([{"step": 1260, "wall": "", "i": 99, "j": 98, "overlap": 1e-6, "delta_max": 1e-6}])
     with says("the contacts of step 1260 are damaged: no such spheres; run the case again"):
-        contacts.complete(p, raw, whole, tmp_path)
+        columns.complete(p, raw, whole, tmp_path)
     shutil.copy(STORED / "hopper/particles.2800.bin", tmp_path / "two.bin")
     with (tmp_path / "two.bin").open("ab") as stream:
         stream.write((STORED / "hopper/particles.2800.bin").read_bytes())

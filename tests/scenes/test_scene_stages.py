@@ -8,7 +8,7 @@ import pytest
 from scene_runs import write_case
 from stored_runs import STORED, data_of
 
-from epdem.base import stages
+from epdem.base import paths
 from epdem.case.scene import parse
 from epdem.engines.liggghts.engine import Liggghts
 from epdem.errors import CaseError, EngineError
@@ -75,7 +75,7 @@ def change_version(case, engine, monkeypatch):
 
 
 def change_product(case, engine, monkeypatch):
-    monkeypatch.setattr(stages, "product_hash", lambda: "another library, template or source")
+    monkeypatch.setattr(paths, "product_hash", lambda: "another library, template or source")
 
 
 def change_file(case, engine, monkeypatch):

@@ -11,9 +11,9 @@ from hypothesis import strategies as st
 from parts_cases import BED, FLOOR, parts
 from scene_runs import run, write_case
 
-from epdem.case.motions import LinearMove, RotateMove, VibrateMove
 from epdem.case.parts import Sphere
 from epdem.case.scene import parse
+from epdem.case.walls import LinearMove, RotateMove, VibrateMove
 from epdem.errors import CaseError, EngineError
 from epdem.scenes.limits import overlaps
 from epdem.scenes.plan import plan

@@ -1,15 +1,20 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Where the installed parts are, and what a user sets once: compiled libraries, templates, the LIGGGHTS launcher."""
+"""Where the installed parts are, and what a user sets once; hashes of the product and of the inputs of a stage.
 
+A result is stored with the hash of all its inputs, and a rerun with the same hash uses it."""
+
+import hashlib
 import os
 import shutil
 import sys
 import sysconfig
 import tomllib
+from collections.abc import Iterable
 from functools import cache
 from pathlib import Path
 
 from ..errors import CaseError, EngineError
+from . import __version__
 
 DEFAULT_ENGINE = "liggghts"  # of every command and function that is given none
 KNOWN = {"engine": ("liggghts",)}
@@ -88,3 +93,37 @@ def launcher() -> Path | None:
         return beside
     path = shutil.which("epdem-liggghts")
     return Path(path) if path else None
+
+
+@cache
+def library_hash() -> str:
+    """Hash of what is compiled: both libraries and the launcher, as far as they are there."""
+    compiled = [native("libepdem.so"), native("libepdem_liggghts.so"), launcher()]
+    return _hash(__version__, [path for path in compiled if path and path.is_file()])
+
+
+@cache
+def product_hash() -> str:
+    """Hash of this product as installed: what is compiled, templates, Python sources and the materials file."""
+    package = Path(__file__).parents[1]
+    ours = [*beside("templates").rglob("*.j2"), *package.rglob("*.py"), *package.rglob("*.toml")]
+    return _hash(library_hash(), sorted(ours))
+
+
+def _hash(first: str, files: Iterable[Path]) -> str:
+    sha = hashlib.sha256(first.encode())
+    for path in files:
+        sha.update(path.name.encode() + path.read_bytes())
+    return sha.hexdigest()
+
+
+def inputs_hash(files: Iterable[Path], *facts: object) -> str:
+    """Hash of a stage's inputs: this product, the files written for an engine, and `facts` (plan, engine, version).
+
+    `facts` count by their repr, which must hold every digit and no address.
+    """
+    sha = hashlib.sha256(product_hash().encode())
+    for path in sorted(files):
+        sha.update(path.name.encode() + b"\0" + path.read_bytes())
+    sha.update(repr(facts).encode())
+    return sha.hexdigest()

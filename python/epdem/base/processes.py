@@ -1,5 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Other programs: started, watched and stopped; errors quote the end of their logs; none outlives this process."""
+"""Other programs: started, watched and stopped; errors quote the end of their logs; none outlives this process.
+
+Signals that stop a run (Ctrl-C, SIGTERM, a closed terminal) raise Stopped, but not where it would be lost."""
 
 import contextlib
 import ctypes
@@ -8,14 +10,72 @@ import os
 import re
 import signal
 import subprocess
+import sys
 import tempfile
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from pathlib import Path
-from typing import IO
+from types import FrameType
+from typing import IO, Any
 
-from ..errors import EngineError
-from . import stopping
+from ..errors import EngineError, Stopped
+
+SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
+AGAIN = 0.01  # [s] after which a Stopped that Python has dropped is raised once more
+_blocks = 0  # of `uninterrupted` that have begun
+_came = False  # a signal, during these
+
+
+def listen(*numbers: signal.Signals) -> None:
+    """From now on these signals (default: SIGNALS) stop this process, a forked one with the state of its parent too."""
+    global _blocks, _came
+    _blocks, _came = 0, False
+    for number in numbers or SIGNALS:
+        signal.signal(number, _stop)
+    signal.signal(signal.SIGALRM, _stop)
+    sys.unraisablehook = _dropped
+
+
+@contextlib.contextmanager
+def uninterrupted() -> Iterator[None]:
+    """A signal that comes in this block stops us at its end.
+
+    For the start of processes: Python drops what is raised in callbacks of fork, and a process that is not yet known
+    would stay behind.
+    """
+    global _blocks, _came
+    _blocks += 1
+    try:
+        yield
+    finally:
+        _blocks -= 1
+        if _came and not _blocks:
+            _came = False
+            _raise()
+
+
+def _stop(number: int, frame: FrameType | None) -> None:
+    global _came
+    if _blocks:
+        _came = True
+    else:
+        _raise()
+
+
+def _raise() -> None:
+    """The first signal ends the run; further ones must not interrupt that end, or an engine writes on."""
+    for number in SIGNALS:
+        signal.signal(number, signal.SIG_IGN)
+    raise Stopped
+
+
+def _dropped(what: Any) -> None:
+    """An exception that Python has dropped, because it was raised in a callback (a destructor, a weak reference)."""
+    if what.exc_type is Stopped:
+        signal.setitimer(signal.ITIMER_REAL, AGAIN)
+    else:
+        sys.__unraisablehook__(what)
+
 
 # A row of a table of numbers that begins with the number of a step: the progress of an engine.
 ROW = re.compile(rb"^ +(\d+)( +[-+.\deainf]+)+ *$")
@@ -57,7 +117,7 @@ def call(
         begin = reader.seek(0, os.SEEK_END)
         rows, process = _Rows(report), None
         try:
-            with stopping.uninterrupted():
+            with uninterrupted():
                 process = started(command, folder, stdin=subprocess.DEVNULL, stdout=stream, env=env)
             while process.poll() is None:
                 left = end - time.monotonic()

@@ -9,11 +9,21 @@ from pydantic import Field, model_validator
 
 from ..errors import CaseError
 from .fields import Frozen, Gravity, Length, Name, Quantity, Speed
-from .measures import Measure
-from .motions import LinearMove, Phase, Rate, Time
-from .parts import Fill, Parts
+from .parts import Fill, Measure, Parts
 from .sizes import Count, Mixture, Particles, refuse_shares
-from .walls import AnyWall, CylinderWall, PlaneWall, PlateWall, RevolvedWall, Room, Upright
+from .walls import (
+    AnyWall,
+    CylinderWall,
+    LinearMove,
+    Phase,
+    PlaneWall,
+    PlateWall,
+    Rate,
+    RevolvedWall,
+    Room,
+    Time,
+    Upright,
+)
 
 
 class Common(Frozen):

@@ -24,11 +24,10 @@ from .fields import (
 )
 from .kinds import Kinds, parts
 from .messages import explain
-from .motions import Time
 from .parts import Parts
 from .sizes import Share, context
 from .toml import named, read_toml, with_library
-from .walls import PartName
+from .walls import PartName, Time
 
 
 class SceneMaterial(Material):

@@ -13,7 +13,7 @@ from typing import Annotated, Any
 
 import typer
 
-from ..base import __version__, stopping
+from ..base import __version__, processes
 from ..base.paths import DEFAULT_ENGINE
 from ..base.terminal import bar, console, status
 from ..errors import CaseError, EpdemError, Stopped
@@ -242,7 +242,7 @@ def _usage(error: Any) -> int:
 def main(commands: typer.Typer = app) -> None:
     """Run a command: errors that a user can correct become one sentence and an exit code."""
     os.environ.pop("MPLBACKEND", None)  # figures are only saved, and an unknown backend ends matplotlib's import
-    stopping.listen()  # whatever stops us, no engine stays behind
+    processes.listen()  # whatever stops us, no engine stays behind
     if isinstance(sys.stdout, io.TextIOWrapper):
         sys.stdout.reconfigure(errors="backslashreplace")  # a title may hold what the terminal's encoding does not
     try:
@@ -265,5 +265,5 @@ def main(commands: typer.Typer = app) -> None:
         print(f"epdem: {place}: {reason}; choose another folder by --out, or make it writable", file=sys.stderr)
         sys.exit(2)
     finally:
-        for name in stopping.SIGNALS:  # all is stored: what comes now must not meet Python's own end
+        for name in processes.SIGNALS:  # all is stored: what comes now must not meet Python's own end
             signal.signal(name, signal.SIG_DFL)

@@ -14,7 +14,7 @@ import pandas as pd
 
 from ..base import __version__
 from ..base.files import claim, results_folder
-from ..base.stages import inputs_hash
+from ..base.paths import inputs_hash
 from ..case.impact import Case, parse
 from ..case.toml import Read, named, read_toml, text_of
 from ..case.warnings import case_warnings

@@ -10,11 +10,10 @@ from typing import NamedTuple
 import numpy as np
 
 from ..case.kinds import DrawnFill
-from ..case.measures import Region
-from ..case.motions import Vector3
-from ..case.parts import Fill, Parts
+from ..case.parts import Fill, Parts, Region
 from ..case.scene import SceneCase
 from ..case.sizes import Particles
+from ..case.walls import Vector3
 from ..errors import CaseError
 
 MOST_FILLED = 0.26  # volume share that random sequential placement reaches in reasonable time

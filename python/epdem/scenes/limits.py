@@ -8,10 +8,9 @@ from typing import NamedTuple
 import numpy as np
 import numpy.typing as npt
 
-from ..case.motions import LinearMove, PressMove, RotateMove
 from ..case.parts import FileFill, Parts, Sphere
 from ..case.scene import SceneCase
-from ..case.walls import ConeWall, CylinderWall, MeshWall, PlateWall
+from ..case.walls import ConeWall, CylinderWall, LinearMove, MeshWall, PlateWall, PressMove, RotateMove
 from ..errors import CaseError
 from .filling import Insertion, mean_volume
 from .timestep import highest_speed

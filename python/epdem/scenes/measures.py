@@ -6,7 +6,7 @@ import math
 import numpy as np
 import pandas as pd
 
-from ..case.measures import KINDS, Amount, CenterOfMass, Flow, Height, Histogram, Load, Measure, Porosity, Repose
+from ..case.parts import MEASURES, Amount, CenterOfMass, Flow, Height, Histogram, Load, Measure, Porosity, Repose
 from ..case.walls import Room, Upright
 from ..errors import CaseError
 from ..theory.backbones import JKR
@@ -155,7 +155,7 @@ def with_loads(p: ScenePlan, rows: pd.DataFrame) -> pd.DataFrame:
         parts = [f"{m.wall}_{m.kind}_{axis}" for axis in "xyz" if m.component in (axis, "magnitude")]
         values = rows[[part for part in parts if part in rows]].to_numpy()
         found[m.name] = values[:, 0] if m.component != "magnitude" else np.linalg.norm(values, axis=1)
-    found.attrs["units"] = {m.name: KINDS[m.kind].unit for m in loads}
+    found.attrs["units"] = {m.name: MEASURES[m.kind].unit for m in loads}
     return found
 
 
@@ -189,7 +189,7 @@ def curves(p: ScenePlan, tables: dict[str, pd.DataFrame]) -> pd.DataFrame:
                 table[m.name] = [_porosity(m, frames[step]) for step in steps]
             case Load() | Histogram():
                 pass
-    table.attrs["units"] = {m.name: KINDS[m.kind].unit for m in p.case.scene.measure if m.name in table}
+    table.attrs["units"] = {m.name: MEASURES[m.kind].unit for m in p.case.scene.measure if m.name in table}
     return table
 
 

@@ -8,7 +8,7 @@ from itertools import product
 
 import numpy as np
 
-from ..case.measures import Region
+from ..case.parts import Region
 from ..case.scene import SceneCase
 from ..case.walls import Upright
 from ..errors import CaseError

@@ -9,13 +9,11 @@ from types import MappingProxyType
 import numpy as np
 import pandas as pd
 
-from ..case import motions
+from ..case import walls as case_walls
 from ..case.kinds import Compaction, Drum, Preset
-from ..case.measures import Load
-from ..case.motions import LinearMove, Move, RotateMove
-from ..case.parts import Parts
+from ..case.parts import Load, Parts
 from ..case.scene import Output, SceneCase
-from ..case.walls import Limits
+from ..case.walls import Limits, LinearMove, Move, RotateMove
 from . import walls
 from .filling import Insertion, insertions, refuse_missing, refuse_too_many
 from .limits import (
@@ -45,7 +43,7 @@ class Phase:
     or NOT_REACHED; "" without `until`, or before a run; NO_VOID: a solid bed ended the run.
     """
 
-    case: motions.Phase
+    case: case_walls.Phase
     end: int
     gates: tuple[str, ...] = ()
     reached: str = ""

@@ -12,7 +12,7 @@ from rich.console import Console
 from ..base.files import claim
 from ..base.terminal import show_table, table
 from ..case.kinds import Compaction, Drum, Hopper, Peening, Settle
-from ..case.measures import KINDS, Histogram, Load
+from ..case.parts import MEASURES, Histogram, Load
 from ..impacts.report import records
 from ..report.chart import GREY, INK, PALETTE, Axis, Chart, Panel, Series, plain
 from ..report.page import Picture
@@ -43,7 +43,7 @@ def measures(p: ScenePlan, tables: Tables) -> list[Chart]:
     curves = {m.name: curve(m, tables) for m in found}
     constant = {name: y[0] for name, (_, y) in curves.items() if np.unique(y).size == 1}
     shown = [m for m in found if m.name not in constant]
-    panels = [Panel(TIME, Axis(m.name, KINDS[m.kind].unit), [Series("", *curves[m.name], 0)]) for m in shown]
+    panels = [Panel(TIME, Axis(m.name, MEASURES[m.kind].unit), [Series("", *curves[m.name], 0)]) for m in shown]
     return _against_time(p, "scene_measures", "Measures against time", panels, constant)
 
 
@@ -89,7 +89,9 @@ def histograms(outcome: SceneOutcome) -> list[Chart]:
         part = bins[bins["measure"] == m.name]
         edges = np.repeat(np.append(part["low"], part["high"].iloc[-1]), 2)
         heights = np.concatenate([[0], np.repeat(part["number"], 2), [0]])
-        panel = Panel(Axis(m.kind, KINDS[m.kind].unit), Axis("number"), [Series("", edges, heights, k % len(PALETTE))])
+        panel = Panel(
+            Axis(m.kind, MEASURES[m.kind].unit), Axis("number"), [Series("", edges, heights, k % len(PALETTE))]
+        )
         alt = f"Histogram of {m.kind}: {int(part['number'].sum())} values."
         drawn.append(Chart(f"scene_{m.name}", f"{title}: {m.name}", alt, [panel], heading=f"Histogram {m.name}"))
     return drawn
@@ -293,7 +295,7 @@ def _show_measures(outcome: SceneOutcome, console: Console) -> None:
             kind, value, time = m.kind, float(values[-1]), times[-1]
         known = values[np.isfinite(values)]
         limits = (f"{known.min():.5g}", f"{known.max():.5g}") if known.size else ("nan", "nan")
-        shown.add_row(m.name, kind, f"{time:.4g}", f"{value:.5g}", *limits, KINDS[m.kind].unit)
+        shown.add_row(m.name, kind, f"{time:.4g}", f"{value:.5g}", *limits, MEASURES[m.kind].unit)
     show_table(console, shown)
 
 

@@ -11,8 +11,7 @@ import pandas as pd
 
 from ..base import __version__
 from ..base.files import Results, claim, results_folder
-from ..base.paths import DEFAULT_ENGINE
-from ..base.stages import inputs_hash, library_hash
+from ..base.paths import DEFAULT_ENGINE, inputs_hash, library_hash
 from ..case.scene import SceneCase, load
 from ..case.toml import Read, named, names_in, text_of
 from ..case.toml import tables as toml_tables

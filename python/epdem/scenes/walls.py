@@ -13,9 +13,23 @@ from pathlib import Path
 import numpy as np
 import numpy.typing as npt
 
-from ..case.motions import LinearMove, Move, PressMove, RotateMove, VibrateMove
 from ..case.parts import Parts
-from ..case.walls import BoxWall, ConeWall, CylinderWall, Limits, MeshWall, PlaneWall, PlateWall, RevolvedWall, StlWall
+from ..case.walls import (
+    BoxWall,
+    ConeWall,
+    CylinderWall,
+    Limits,
+    LinearMove,
+    MeshWall,
+    Move,
+    PlaneWall,
+    PlateWall,
+    PressMove,
+    RevolvedWall,
+    RotateMove,
+    StlWall,
+    VibrateMove,
+)
 from ..errors import CaseError
 
 FloatArray = npt.NDArray[np.float64]

@@ -7,7 +7,7 @@ import numpy as np
 import pandas as pd
 
 from ..case.kinds import Preset
-from ..case.measures import Region
+from ..case.parts import Region
 from ..case.walls import Room
 from ..errors import CaseError
 from ..theory import validity

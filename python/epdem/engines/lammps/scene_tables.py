@@ -7,7 +7,7 @@ import numpy as np
 import pandas as pd
 
 from ...errors import EngineError
-from ...scenes import columns, contacts
+from ...scenes import columns
 from ...scenes.plan import ScenePlan
 from .. import log
 from ..host import frames
@@ -58,4 +58,4 @@ def contact_table(p: ScenePlan, folder: Path, spheres: pd.DataFrame) -> pd.DataF
         found.append(table.assign(wall=name, j=0))
     raw = pd.concat([part for part in found if len(part)] or found[:1], ignore_index=True)
     raw = raw.assign(attached=raw["attached"] > 0) if p.model.adheres else raw.drop(columns="attached")
-    return contacts.complete(p, raw, spheres, folder)
+    return columns.complete(p, raw, spheres, folder)

@@ -6,8 +6,20 @@ from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass
 
 from ...base.rendering import Deck, number
-from ...case.motions import LinearMove, Move, PressMove, RotateMove, VibrateMove
-from ...case.walls import BoxWall, ConeWall, CylinderWall, MeshWall, PlaneWall, PlateWall, RevolvedWall
+from ...case.walls import (
+    BoxWall,
+    ConeWall,
+    CylinderWall,
+    LinearMove,
+    MeshWall,
+    Move,
+    PlaneWall,
+    PlateWall,
+    PressMove,
+    RevolvedWall,
+    RotateMove,
+    VibrateMove,
+)
 from ...errors import CaseError
 from ...scenes import placement
 from ...scenes.limits import PressedBed

@@ -14,7 +14,7 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from ...base import paths, processes, stopping
+from ...base import paths, processes
 from ...base.paths import config_file
 from ...base.processes import ask, call, most_ranks
 from ...errors import EngineError
@@ -207,7 +207,7 @@ class Session:
             self._process.stdin.write(f"shell cd {way}\n".encode())
         else:
             self.stop()
-            with stopping.uninterrupted():
+            with processes.uninterrupted():
                 self._process = self._started(place)
         self._folder = place
         return self._process

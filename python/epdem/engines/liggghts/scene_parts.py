@@ -10,9 +10,8 @@ import numpy as np
 
 from ...base import rendering as decks
 from ...base.rendering import Deck
-from ...case.motions import LinearMove, Move, PressMove, RotateMove, VibrateMove
 from ...case.parts import Body
-from ...case.walls import PlaneWall, Room
+from ...case.walls import LinearMove, Move, PlaneWall, PressMove, Room, RotateMove, VibrateMove
 from ...errors import CaseError
 from ...scenes import filling
 from ...scenes.limits import PressedBed

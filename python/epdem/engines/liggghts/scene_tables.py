@@ -8,7 +8,7 @@ import numpy as np
 import pandas as pd
 
 from ...errors import EngineError
-from ...scenes import columns, contacts
+from ...scenes import columns
 from ...scenes.plan import ScenePlan
 from . import dump
 
@@ -126,4 +126,4 @@ def contact_table(p: ScenePlan, folder: Path, spheres: pd.DataFrame, *, without:
         wall = [names[int(k)] for k in touched["mesh"]] if len(names) > 1 else names[0]
         parts.append(touched.assign(j=0, wall=wall))
     raw = pd.concat([part for part in parts if len(part)] or parts[:1], ignore_index=True)
-    return contacts.complete(p, raw, spheres, folder)
+    return columns.complete(p, raw, spheres, folder)

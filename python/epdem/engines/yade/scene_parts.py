@@ -7,8 +7,7 @@ from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 
 from ...base import rendering as decks
-from ...case.motions import LinearMove, Move, PressMove, VibrateMove
-from ...case.walls import PlaneWall, PlateWall, Upright
+from ...case.walls import LinearMove, Move, PlaneWall, PlateWall, PressMove, Upright, VibrateMove
 from ...errors import CaseError
 from ...scenes import placement
 from ...scenes.filling import Insertion

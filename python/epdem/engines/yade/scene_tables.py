@@ -8,7 +8,7 @@ import pandas as pd
 
 from ...case.kinds import Preset
 from ...errors import EngineError
-from ...scenes import columns, contacts
+from ...scenes import columns
 from ...scenes.plan import ScenePlan
 from ..host import frames
 from .scene_parts import is_endless, wall_names
@@ -89,7 +89,7 @@ def _contacts(p: ScenePlan, folder: Path, spheres: pd.DataFrame) -> pd.DataFrame
     beyond = raw["j"] - p.count + 1
     raw["wall"] = walls[beyond.clip(lower=0)]
     raw["i"], raw["j"] = raw["i"] + 1, np.where(beyond > 0, 0, raw["j"] + 1)
-    return contacts.complete(p, raw, spheres, folder)
+    return columns.complete(p, raw, spheres, folder)
 
 
 def wall_table(p: ScenePlan, folder: Path) -> pd.DataFrame:

@@ -8,7 +8,7 @@ from pathlib import Path
 
 from ...base import __version__
 from ...base.files import claim
-from ...base.stages import library_hash, product_hash
+from ...base.paths import library_hash, product_hash
 from ...engines.reasons import citations, reasons
 from ...impacts.plan import Plan
 from ...impacts.run import Outcome

@@ -21,7 +21,7 @@ from typing import Any
 import tomlkit
 
 from ...base.files import MARKER, atomic, results_folder
-from ...base.stages import inputs_hash
+from ...base.paths import inputs_hash
 from ...case.messages import shorten
 from ...case.scene import is_scene
 from ...case.toml import names_in

@@ -11,7 +11,7 @@ from multiprocessing.connection import Connection, wait
 from multiprocessing.process import BaseProcess
 from typing import Any
 
-from ...base import stopping
+from ...base import processes
 from ...base.processes import end_with_parent
 from ...errors import Stopped
 
@@ -85,7 +85,7 @@ def _how(code: int | None) -> str:
 def _start(function: Callable[[Any], Any], item: Any, team: dict[Connection, tuple[BaseProcess, Any]]) -> None:
     ours, theirs = _FORK.Pipe()
     process = _FORK.Process(target=_work, args=(function, theirs, [*team, ours], os.getpid()))
-    with stopping.uninterrupted():
+    with processes.uninterrupted():
         process.start()
         team[ours] = process, item
     theirs.close()
@@ -112,7 +112,7 @@ def _work(function: Callable[[Any], Any], pipe: Connection, others: list[Connect
     """In a process of the pool: item after item, until the parent sends None or has ended."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C reaches all: our parent stops us in good order
     signal.signal(signal.SIGUSR2, signal.SIG_IGN)  # Slurm warns every process of a job; our parent queues it again
-    stopping.listen(signal.SIGTERM)
+    processes.listen(signal.SIGTERM)
     end_with_parent()  # a parent that is killed cannot
     _keep_memory()
     for other in others:  # an open end of a pipe here would hide that the process has ended

@@ -8,7 +8,7 @@ from typing import Any
 import pandas as pd
 
 from ...base.tables import Hdf5, opened, read_table, write_attributes, write_csv, write_table, write_text
-from ...case.measures import KINDS
+from ...case.parts import MEASURES
 from ...case.units import to_si
 from ...errors import CaseError
 from ...impacts.comparison import UNITS
@@ -111,6 +111,6 @@ def unit(name: str, case: Mapping[str, Any]) -> str | None:
     if name in CHECKS:
         return CHECKS[name].unit or None
     column = name.rpartition("_")[0]
-    kinds = {m["name"]: KINDS[m["kind"]] for m in case.get("scene", {}).get("measure", [])}
+    kinds = {m["name"]: MEASURES[m["kind"]] for m in case.get("scene", {}).get("measure", [])}
     known = kinds.get(column) or COLUMNS.get(column)
     return known.unit or None if known else unit_of_load(column)
