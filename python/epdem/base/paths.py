@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Where the installed parts are, and what a user sets once; hashes of the product and of the inputs of a stage.
 
-A result is stored with the hash of all its inputs, and a rerun with the same hash uses it."""
+A result is stored with the hash of all its inputs, and a rerun with the same hash uses it.
+"""
 
 import hashlib
 import os

@@ -1,7 +1,8 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Other programs: started, watched and stopped; errors quote the end of their logs; none outlives this process.
 
-Signals that stop a run (Ctrl-C, SIGTERM, a closed terminal) raise Stopped, but not where it would be lost."""
+Signals that stop a run (Ctrl-C, SIGTERM, a closed terminal) raise Stopped, but not where it would be lost.
+"""
 
 import contextlib
 import ctypes
