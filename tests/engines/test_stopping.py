@@ -59,7 +59,7 @@ time.sleep(60.0)
 }
 SCRIPT = """import atexit, os, signal, subprocess, time
 from pathlib import Path
-from epdem.base import processes, stopping
+from epdem.base import processes
 from epdem.studies.sweep import local
 def signalled():
     os.kill(os.getpid(), signal.SIGTERM)
@@ -67,7 +67,7 @@ def at_end():
     children = Path(f"/proc/self/task/{os.getpid()}/children").read_text().split()
     print("children:", [c for c in children if ") Z " not in Path(f"/proc/{c}/stat").read_text()])
 atexit.register(at_end)
-stopping.listen()
+processes.listen()
 """
 
 

@@ -2,8 +2,9 @@
 """What LIGGGHTS, YADE and LAMMPS have in common as engines: a deck in a folder, of impacts or of a scene."""
 
 from abc import ABC, abstractmethod
-from collections.abc import Callable, Collection, Iterator
+from collections.abc import Callable, Collection
 from pathlib import Path
+from types import ModuleType
 from typing import overload
 
 import pandas as pd
@@ -13,7 +14,7 @@ from ..base.files import held, write_texts
 from ..case import impact, scene
 from ..case.parts import Parts
 from ..case.toml import named, read_toml
-from ..errors import CaseError
+from ..errors import CaseError, EngineError
 from ..impacts.engine import Feature, Report, Trajectory, check_law, silent
 from ..impacts.experiment import experiment
 from ..impacts.plan import Plan, plan
@@ -38,6 +39,8 @@ class Host(ABC):
     features: frozenset[Feature]
     out: str  # file of both streams of a scene
     leftovers: tuple[str, ...]  # patterns of files that an earlier run of a scene may have left in the folder
+    scene_deck: ModuleType  # deck and files of a scene
+    scene_tables: ModuleType  # rows, particles, contact_table and wall_table of a scene from its files
 
     @abstractmethod
     def missing(self) -> str | None:
@@ -47,13 +50,15 @@ class Host(ABC):
     def deck(self, plan: Plan) -> decks.Deck:
         """The deck of a plan. Raises CaseError for what the program cannot do."""
 
-    @abstractmethod
     def check_scene(self, plan: ScenePlan) -> list[str]:
         """Sentences on what a scene leaves out. Raises CaseError for what the program cannot do."""
+        self.scene_deck.deck(plan)
+        return []
 
-    @abstractmethod
     def files(self, plan: ScenePlan) -> dict[str, str]:
         """The text of every file of the deck of a scene by its name. Raises CaseError."""
+        texts: dict[str, str] = self.scene_deck.files(plan)
+        return texts
 
     @abstractmethod
     def run_impacts(self, plan: Plan, folder: Path, ranks: int) -> Trajectory:
@@ -63,16 +68,21 @@ class Host(ABC):
     def run_scene(self, plan: ScenePlan, folder: Path, ranks: int, report: Report) -> None:
         """Run the deck of a scene, which is in `folder`. Raises CaseError, EngineError."""
 
-    @abstractmethod
-    def tables(self, plan: ScenePlan, folder: Path, without: Collection[int]) -> Iterator[tuple[str, pd.DataFrame]]:
-        """The tables of a run by name, without the frames of the steps `without`. Raises EngineError."""
-
     def read(self, plan: ScenePlan, folder: Path, *, without: Collection[int] = ()) -> Tables:
-        """The tables of a run, SI. Raises EngineError for a frame that is missing or not whole."""
-        out = folder / self.out
+        """The tables of a run, SI, without the frames of the steps `without`.
+
+        Raises EngineError for a frame that is missing or not whole.
+        """
+        out, own = folder / self.out, self.scene_tables
         plan = plan.ended(log.ends(out), log.not_reached(out)) if plan.ends_early else plan
-        phases = {"phases": plan.phase_table} if isinstance(plan.case.scene, Parts) else {}
-        return dict(self.tables(plan, folder, without)) | phases
+        found: Tables = {"rows": own.rows(plan, out)}
+        if plan.frames:
+            found["particles"] = own.particles(plan, folder, without)
+        if plan.contacts:
+            found["contacts"] = own.contact_table(plan, folder, found["particles"], without)
+        if plan.stress_walls:
+            found["walls"] = own.wall_table(plan, folder, without)
+        return found | ({"phases": plan.phase_table} if isinstance(plan.case.scene, Parts) else {})
 
     def check(self, job: Plan | ScenePlan) -> list[str]:
         if isinstance(job, ScenePlan):
@@ -126,14 +136,29 @@ def refuse(place: str, value: object, reason: str) -> None:
         raise CaseError(f"{place}{shown}: {reason}; remove it or {LIGGGHTS}")
 
 
-def frames(p: ScenePlan, folder: Path, pattern: str, every: int, read: Callable[[Path], pd.DataFrame]) -> pd.DataFrame:
+def frames(
+    p: ScenePlan,
+    folder: Path,
+    pattern: str,
+    every: int,
+    read: Callable[[Path], pd.DataFrame],
+    without: Collection[int] = (),
+) -> pd.DataFrame:
     """The frames that a run of this plan writes, one below the other; other files of such names are the user's.
 
-    pattern: name of the file of a step; read: the table of one file.
+    pattern: name of the file of a step; read: the table of one file; without: steps that are left out. Raises
+    EngineError for a frame that is missing or not whole.
     """
     tables = []
     for step in p.frame_steps(every):
-        table = read(folder / pattern.format(step))
-        table.insert(0, "step", step)
-        tables.append(table)
+        path = folder / pattern.format(step)
+        try:
+            if step not in without:
+                tables.append(read(path))
+                tables[-1].insert(0, "step", step)
+        except EngineError:
+            raise
+        except Exception as error:  # of a damaged head numpy says almost anything
+            reason = " ".join(str(error).split()) or type(error).__name__
+            raise EngineError(f"{path}: incomplete ({reason}); run the case again") from None
     return pd.concat(tables, ignore_index=True)

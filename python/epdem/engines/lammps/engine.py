@@ -2,11 +2,9 @@
 """LAMMPS with our plugin: impacts side by side in one deck, whose dump is a trajectory, and bulk scenes."""
 
 import math
-from collections.abc import Collection, Iterator
 from pathlib import Path
 
 import numpy as np
-import pandas as pd
 
 from ...base import rendering as decks
 from ...base.files import held
@@ -40,6 +38,7 @@ class Lammps(Host):
     template = "lammps/impact.in.j2"
     ranks = most_ranks()
     out = launcher.OUT
+    scene_deck, scene_tables = scene_deck, scene_tables
     leftovers: tuple[str, ...] = ("particles.*.txt", "contacts.*.txt", "contacts_*.txt")
     features = frozenset(
         {Feature.ADHESION, Feature.DASHPOT, Feature.FRICTION, Feature.SPHERE_FRICTION, Feature.DECK, Feature.POSITIONS}
@@ -75,13 +74,6 @@ class Lammps(Host):
             end=END,
         )
 
-    def check_scene(self, plan: ScenePlan) -> list[str]:
-        scene_deck.deck(plan)
-        return []
-
-    def files(self, plan: ScenePlan) -> dict[str, str]:
-        return scene_deck.files(plan)
-
     def run_impacts(self, plan: Plan, folder: Path, ranks: int) -> Trajectory:
         held(folder).remove(PATH, END)
         wall = launcher.run("in.impact", folder, ranks=ranks, log=LOG, seconds=120 + 1e-5 * plan.n * plan.steps)
@@ -94,13 +86,6 @@ class Lammps(Host):
 
     def run_scene(self, plan: ScenePlan, folder: Path, ranks: int, report: Report) -> None:
         launcher.run("in.scene", folder, ranks=ranks, log=LOG, report=report)
-
-    def tables(self, plan: ScenePlan, folder: Path, without: Collection[int]) -> Iterator[tuple[str, pd.DataFrame]]:
-        yield "rows", scene_tables.rows(plan, folder / self.out)
-        if plan.frames:
-            yield "particles", (spheres := scene_tables.particles(plan, folder))
-        if plan.contacts:
-            yield "contacts", scene_tables.contact_table(plan, folder, spheres)
 
 
 def contact(plan: Plan, body: Body, strength: float) -> str:

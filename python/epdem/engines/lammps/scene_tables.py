@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """The tables of a scene from LAMMPS's files. Only this module reads their formats."""
 
+from collections.abc import Collection
 from pathlib import Path
 
 import numpy as np
 import pandas as pd
 
-from ...errors import EngineError
 from ...scenes import columns
 from ...scenes.plan import ScenePlan
 from .. import log
@@ -26,35 +26,34 @@ def rows(p: ScenePlan, out: Path) -> pd.DataFrame:
     return found
 
 
-def _frames(p: ScenePlan, folder: Path, kind: str, every: int, names: list[str]) -> pd.DataFrame:
-
+def _frames(
+    p: ScenePlan, folder: Path, kind: str, every: int, names: list[str], without: Collection[int]
+) -> pd.DataFrame:
     def read(path: Path) -> pd.DataFrame:
-        try:
-            lines = path.read_text(encoding="utf-8").split("\n")
-            values = np.array(" ".join(lines).split(), float).reshape(-1, len(names))
-            if len(lines) != len(values) + 1:
-                raise ValueError(f"{len(lines) - 1} lines of {len(values)}")
-        except (OSError, ValueError) as error:
-            raise EngineError(f"{path}: incomplete ({error}); run the case again") from None
+        lines = path.read_text(encoding="utf-8").split("\n")
+        values = np.array(" ".join(lines).split(), float).reshape(-1, len(names))
+        if len(lines) != len(values) + 1:
+            raise ValueError(f"{len(lines) - 1} lines of {len(values)}")
         return pd.DataFrame(values, columns=names)
 
-    return frames(p, folder, f"{kind}.{{}}.txt", every, read)
+    return frames(p, folder, f"{kind}.{{}}.txt", every, read, without)
 
 
-def particles(p: ScenePlan, folder: Path) -> pd.DataFrame:
+def particles(p: ScenePlan, folder: Path, without: Collection[int] = ()) -> pd.DataFrame:
     """Every sphere of every frame."""
-    return columns.whole(p, _frames(p, folder, "particles", p.frames, columns.columns_of_frames(p)), folder)
+    names = columns.columns_of_frames(p)
+    return columns.whole(p, _frames(p, folder, "particles", p.frames, names, without), folder)
 
 
-def contact_table(p: ScenePlan, folder: Path, spheres: pd.DataFrame) -> pd.DataFrame:
+def contact_table(p: ScenePlan, folder: Path, spheres: pd.DataFrame, without: Collection[int] = ()) -> pd.DataFrame:
     """Every contact of every frame."""
     values = ["overlap", "delta_max", "attached", *["added_overlap"] * p.model.compaction]
-    pairs = _frames(p, folder, "contacts", p.contacts, ["one", "two", *values])
+    pairs = _frames(p, folder, "contacts", p.contacts, ["one", "two", *values], without)
     pairs = pairs.assign(wall="", i=pairs[["one", "two"]].min(axis=1), j=pairs[["one", "two"]].max(axis=1))
     across = pairs["added_overlap"] if p.model.compaction else 0.0
     found = [pairs[(pairs["overlap"] + across > 0) | (p.model.adheres & (pairs["attached"] > 0))]]
     for name in contact_walls(p):
-        table = _frames(p, folder, f"contacts_{wall_id(p, name)}", p.contacts, ["i", *values])
+        table = _frames(p, folder, f"contacts_{wall_id(p, name)}", p.contacts, ["i", *values], without)
         found.append(table.assign(wall=name, j=0))
     raw = pd.concat([part for part in found if len(part)] or found[:1], ignore_index=True)
     raw = raw.assign(attached=raw["attached"] > 0) if p.model.adheres else raw.drop(columns="attached")

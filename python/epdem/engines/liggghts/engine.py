@@ -2,11 +2,9 @@
 """LIGGGHTS with our plugin: impacts side by side in one deck, whose dump is a trajectory, and bulk scenes."""
 
 import math
-from collections.abc import Collection, Iterator
 from pathlib import Path
 
 import numpy as np
-import pandas as pd
 
 from ...base import paths
 from ...base import rendering as decks
@@ -21,7 +19,7 @@ from ...theory.sources import Source
 from .. import log
 from ..host import Host
 from ..input_script import atom_types, finite
-from . import dump, launcher, resume, scene_deck, scene_tables, wall_stress
+from . import dump, launcher, resume, scene_deck, scene_tables
 from .launcher import Session
 from .properties import HARD, SOFT, Property, of_law, tangential
 
@@ -45,6 +43,7 @@ class Liggghts(Host):
     mpirun = launcher.MPIRUN
     features = frozenset(Feature) - {Feature.SPHERE_FRICTION}
     out = launcher.OUT
+    scene_deck, scene_tables = scene_deck, scene_tables
     leftovers: tuple[str, ...] = (
         "particles.*.bin",
         "contacts.*.txt",
@@ -108,13 +107,6 @@ class Liggghts(Host):
             path=PATH,
         )
 
-    def check_scene(self, plan: ScenePlan) -> list[str]:
-        scene_deck.deck(plan)
-        return []
-
-    def files(self, plan: ScenePlan) -> dict[str, str]:
-        return scene_deck.files(plan)
-
     def run_impacts(self, plan: Plan, folder: Path, ranks: int) -> Trajectory:
         path = folder / PATH
         path.unlink(missing_ok=True)
@@ -134,15 +126,6 @@ class Liggghts(Host):
     def resume(self, job: ScenePlan, folder: Path, *, ranks: int, report: Report) -> tuple[Tables, Resumed]:
         resumed = resume.resume(job, folder, ranks=ranks, report=report)
         return self.read(job, folder, without=resumed.lost), resumed
-
-    def tables(self, plan: ScenePlan, folder: Path, without: Collection[int]) -> Iterator[tuple[str, pd.DataFrame]]:
-        yield "rows", log.scene_rows(plan, folder / self.out)
-        if plan.frames:
-            yield "particles", (spheres := scene_tables.particles(plan, folder, without=without))
-        if plan.contacts:
-            yield "contacts", scene_tables.contact_table(plan, folder, spheres, without=without)
-        if plan.stress_walls:
-            yield "walls", wall_stress.table(plan, folder, without=without)
 
 
 def _incomplete(path: Path, error: Exception) -> EngineError:

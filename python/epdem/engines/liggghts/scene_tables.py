@@ -10,30 +10,30 @@ import pandas as pd
 from ...errors import EngineError
 from ...scenes import columns
 from ...scenes.plan import ScenePlan
+from .. import log
+from ..host import frames
 from . import dump
+from .wall_stress import wall_table
+
+__all__ = ["contact_table", "damaged", "particles", "rows", "wall_table"]
+rows = log.scene_rows
 
 PARTICLES, PAIRS, MESHES = "particles.{}.bin", "contacts.{}.txt", "wall_contacts.{}.txt"
 
 
 def _frame(path: Path, count: int) -> np.ndarray:
     """(n, count) of a binary dump of one frame, sorted by id. Raises EngineError if it is not whole."""
-    frames = dump.frames(path)
-    if len(frames) != 1 or frames[0][1].shape[1] != count:
+    found = dump.frames(path)
+    if len(found) != 1 or found[0][1].shape[1] != count:
         raise EngineError(f"{path}: not one frame of {count} columns; run the case again")
-    return frames[0][1]
-
-
-def _written(p: ScenePlan) -> dict[str, int]:
-    """The kinds of frames that a run writes, each with the steps between two of them."""
-    kinds = {PARTICLES: p.frames, PAIRS: p.contacts, MESHES: p.contacts if p.scene.meshes else 0}
-    return {kind: every for kind, every in kinds.items() if every}
+    return found[0][1]
 
 
 def damaged(p: ScenePlan, folder: Path, upto: int) -> list[int]:
     """Steps up to `upto` of which a frame is missing or not whole."""
-    steps = set()
-    for kind, every in _written(p).items():
-        for step in (n for n in p.frame_steps(every) if n <= upto):
+    steps, kinds = set(), {PARTICLES: p.frames, PAIRS: p.contacts, MESHES: p.contacts if p.scene.meshes else 0}
+    for kind, every in kinds.items():
+        for step in (n for n in (p.frame_steps(every) if every else []) if n <= upto):
             path = folder / kind.format(step)
             try:
                 _frame(path, len(_particle_names(p))) if kind == PARTICLES else dump.local(path)
@@ -53,42 +53,31 @@ def _slots(p: ScenePlan) -> list[str]:
     return ["delta_max"] * p.model.yields + ["attached"] * p.model.adheres + ["added_overlap"] * p.model.compaction
 
 
-def _steps(p: ScenePlan, kind: str, folder: Path, without: Collection[int]) -> list[tuple[int, Path]]:
-    every = _written(p).get(kind, 0)
-    steps = p.frame_steps(every) if every else []
-    return [(step, folder / kind.format(step)) for step in steps if step not in without]
-
-
-def particles(p: ScenePlan, folder: Path, *, without: Collection[int] = ()) -> pd.DataFrame:
+def particles(p: ScenePlan, folder: Path, without: Collection[int] = ()) -> pd.DataFrame:
     """Every particle of every frame, without the steps `without`, sorted by step and id.
 
     Raises EngineError for a frame that is not whole.
     """
-    names, frames = _particle_names(p), []
-    for step, path in _steps(p, PARTICLES, folder, without):
-        table = pd.DataFrame(_frame(path, len(names)), columns=names)
-        table.insert(0, "step", step)
-        frames.append(table)
-    if not frames:
-        return pd.DataFrame(columns=["step", *names])
-    return columns.whole(p, pd.concat(frames, ignore_index=True), folder)
+    names = _particle_names(p)
+
+    def read(path: Path) -> pd.DataFrame:
+        return pd.DataFrame(_frame(path, len(names)), columns=names)
+
+    return columns.whole(p, frames(p, folder, PARTICLES, p.frames, read, without), folder)
 
 
 def _local(p: ScenePlan, kind: str, folder: Path, ids: list[str], without: Collection[int]) -> pd.DataFrame:
     """The rows of a `dump local`, by step: `ids`, delta_max and overlap [m]; what only comes near is left out."""
-    names, frames = ["step", *ids, *_slots(p), "overlap"], []
-    for step, path in _steps(p, kind, folder, without):
-        table = pd.DataFrame(dump.local(path))
-        if len(table):
-            if table.shape[1] != len(names) - 1:
-                raise EngineError(f"{path}: {table.shape[1]} columns, expected {len(names) - 1}")
-            table.insert(0, "step", step)
-            table.columns = pd.Index(names)
-            frames.append(table)
-    table = pd.concat(frames, ignore_index=True) if frames else pd.DataFrame(columns=names)
-    if not p.model.yields:
-        table["delta_max"] = table["overlap"]
-    return _in_contact(table)
+    names = [*ids, *_slots(p), "overlap"]
+
+    def read(path: Path) -> pd.DataFrame:
+        values = dump.local(path)
+        if len(values) and values.shape[1] != len(names):
+            raise EngineError(f"{path}: {values.shape[1]} columns, expected {len(names)}")
+        return pd.DataFrame(values.reshape(-1, len(names)), columns=names)
+
+    table = frames(p, folder, kind, p.contacts, read, without)
+    return _in_contact(table if p.model.yields else table.assign(delta_max=table["overlap"]))
 
 
 def _in_contact(table: pd.DataFrame) -> pd.DataFrame:
@@ -117,7 +106,7 @@ def _planes(p: ScenePlan, spheres: pd.DataFrame) -> list[pd.DataFrame]:
     return planes
 
 
-def contact_table(p: ScenePlan, folder: Path, spheres: pd.DataFrame, *, without: Collection[int] = ()) -> pd.DataFrame:
+def contact_table(p: ScenePlan, folder: Path, spheres: pd.DataFrame, without: Collection[int] = ()) -> pd.DataFrame:
     """Every contact of every frame; `spheres` is the particles' table. Raises EngineError as `particles` does."""
     parts = [_pairs(p, folder, without), *_planes(p, spheres)]
     if p.scene.meshes:

@@ -2,6 +2,7 @@
 """Pressure and wear of walls of triangles: LIGGGHTS's words, and the table from its files."""
 
 from collections.abc import Collection
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -9,6 +10,7 @@ import pandas as pd
 
 from ...errors import CaseError, EngineError
 from ...scenes.plan import ScenePlan
+from ..host import frames
 from .properties import Property, per_pair
 
 FILES = "stress_{}.{}.vtk"  # wall, step
@@ -57,21 +59,19 @@ def _fields(path: Path) -> dict[str, np.ndarray]:
     return {name: values[order, 0] for name, values in found.items()}
 
 
-def table(p: ScenePlan, folder: Path, *, without: Collection[int] = ()) -> pd.DataFrame:
+def wall_table(p: ScenePlan, folder: Path, without: Collection[int] = ()) -> pd.DataFrame:
     """step, wall, triangle, area, normal_stress, shear_stress, wear (0 where not requested) in every frame.
 
     Raises EngineError for a file that is not whole.
     """
-    frames = []
-    for name in p.stress_walls:
-        for step in (s for s in p.frame_steps(p.frames) if s not in without):
-            path = folder / FILES.format(name, step)
-            try:
-                fields = _fields(path)
-                columns = {ours: fields.get(theirs, np.zeros(len(fields["area"]))) for theirs, ours in COLUMNS.items()}
-            except (OSError, ValueError, IndexError, KeyError) as error:
-                raise EngineError(f"{path}: incomplete ({error}); the run was stopped there") from None
-            if len(columns["area"]) != len(p.triangles[name]):
-                raise EngineError(f"{path}: {len(columns['area'])} triangles, expected {len(p.triangles[name])}")
-            frames.append(pd.DataFrame({"step": step, "wall": name} | columns))
-    return pd.concat(frames, ignore_index=True).astype({"triangle": int})
+
+    def read(name: str, path: Path) -> pd.DataFrame:
+        fields = _fields(path)
+        columns = {ours: fields.get(theirs, np.zeros(len(fields["area"]))) for theirs, ours in COLUMNS.items()}
+        if len(columns["area"]) != len(p.triangles[name]):
+            raise EngineError(f"{path}: {len(columns['area'])} triangles, expected {len(p.triangles[name])}")
+        return pd.DataFrame({"wall": name} | columns)
+
+    files = {name: FILES.format(name, "{}") for name in p.stress_walls}
+    walls = [frames(p, folder, file, p.frames, partial(read, name), without) for name, file in files.items()]
+    return pd.concat(walls, ignore_index=True).astype({"triangle": int})

@@ -7,12 +7,10 @@ Where the module epdem_yade is built, a deck has a copy of it, else a copy of th
 import re
 import shutil
 import time
-from collections.abc import Collection, Iterator
 from math import isfinite, isinf
 from pathlib import Path
 
 import numpy as np
-import pandas as pd
 
 from ...base import rendering as decks
 from ...base.declarations import declarations
@@ -52,6 +50,7 @@ class Yade(Host):
     own_law = False  # a law of YADE, which needs no module
     template = "yade/impact.py.j2"
     out = "out.yade"
+    scene_tables = scene_tables
     leftovers = ("particles.*.npy", "contacts.*.npy", "triangles.*.npy")
 
     def __init__(self) -> None:
@@ -177,15 +176,6 @@ class Yade(Host):
 
     def run_scene(self, plan: ScenePlan, folder: Path, ranks: int, report: Report) -> None:
         call([command(), "-n", "-x", scene_deck.SCRIPT], folder, log=self.out, env=environment(), report=report)
-
-    def tables(self, plan: ScenePlan, folder: Path, without: Collection[int]) -> Iterator[tuple[str, pd.DataFrame]]:
-        yield "rows", scene_tables.rows(plan, folder / self.out)
-        if plan.frames:
-            yield "particles", (spheres := scene_tables.particles(plan, folder))
-        if plan.contacts:
-            yield "contacts", scene_tables.contact_table(plan, folder, spheres)
-        if plan.stress_walls:
-            yield "walls", scene_tables.wall_table(plan, folder)
 
 
 def body_tables(plan: Plan) -> list[np.ndarray]:

@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """The tables of a scene from YADE's files. Only this module reads its file formats."""
 
+from collections.abc import Collection
 from pathlib import Path
 
 import numpy as np
@@ -19,22 +20,16 @@ PRESETS = {"floor_force_z": "floor_load", "plate_force_z": "plate_force", "drum_
 CONTACT = ["i", "j", "overlap", "delta_max", "attached"]
 
 
-def _frames(p: ScenePlan, folder: Path, kind: str, every: int, names: list[str], of_classes: list[str]) -> pd.DataFrame:
-    """The frames of a kind. A deck with epdem_yade writes the columns `of_classes`, too.
-
-    Raises EngineError for a frame that is missing or not whole.
-    """
+def _frames(
+    p: ScenePlan, folder: Path, kind: str, every: int, names: list[str], of_classes: list[str], without: Collection[int]
+) -> pd.DataFrame:
+    """The frames of a kind. A deck with epdem_yade writes the columns `of_classes`, too."""
 
     def read(path: Path) -> pd.DataFrame:
-        try:
-            values = np.load(path)
-            more = of_classes if values.shape[1] > len(names) else []
-            return pd.DataFrame(values, columns=[*names, *more])
-        except Exception as error:  # of a damaged head numpy says almost anything
-            reason = " ".join(str(error).split()) or type(error).__name__
-            raise EngineError(f"{path}: incomplete ({reason}); run the case again") from None
+        values = np.load(path)
+        return pd.DataFrame(values, columns=[*names, *(of_classes if values.shape[1] > len(names) else [])])
 
-    return frames(p, folder, f"{kind}.{{}}.npy", every, read)
+    return frames(p, folder, f"{kind}.{{}}.npy", every, read, without)
 
 
 def rows(p: ScenePlan, log: Path) -> pd.DataFrame:
@@ -56,27 +51,27 @@ def rows(p: ScenePlan, log: Path) -> pd.DataFrame:
     return found[[name for name in found if name in columns.columns_of_rows(p)]]
 
 
-def particles(p: ScenePlan, folder: Path) -> pd.DataFrame:
+def particles(p: ScenePlan, folder: Path, without: Collection[int] = ()) -> pd.DataFrame:
     """Every sphere of every frame, SI. Raises EngineError for an incomplete frame."""
     names = columns.columns_of_frames(p)
-    table = _frames(p, folder, "particles", p.frames, names[: len(names) - len(p.works)], [*p.works])
+    table = _frames(p, folder, "particles", p.frames, names[: len(names) - len(p.works)], [*p.works], without)
     if p.scene.periodic:  # YADE does not put back what leaves its periodic cell
         for axis, low, high in zip("xy", p.box[0:4:2], p.box[1:4:2], strict=True):
             table[axis] = (table[axis] - low) % (high - low) + low
     return columns.whole(p, table, folder)
 
 
-def contact_table(p: ScenePlan, folder: Path, spheres: pd.DataFrame) -> pd.DataFrame:
+def contact_table(p: ScenePlan, folder: Path, spheres: pd.DataFrame, without: Collection[int] = ()) -> pd.DataFrame:
     """Every contact of every frame. Where no frame has the plastic work, `spheres` gets it from the contacts."""
-    every = _contacts(p, folder, spheres)
+    every = _contacts(p, folder, spheres, without)
     if "plastic_work" in p.works and "plastic_work" not in spheres:
         spheres["plastic_work"] = _plastic_work(every, spheres)
     return every[(every["overlap"] > 0) | (every["force"] != 0)].reset_index(drop=True)
 
 
-def _contacts(p: ScenePlan, folder: Path, spheres: pd.DataFrame) -> pd.DataFrame:
+def _contacts(p: ScenePlan, folder: Path, spheres: pd.DataFrame, without: Collection[int]) -> pd.DataFrame:
     """Every contact of every frame; with overlap 0 those that ended since the frame before."""
-    raw = _frames(p, folder, "contacts", p.contacts, CONTACT[:4], CONTACT[4:])
+    raw = _frames(p, folder, "contacts", p.contacts, CONTACT[:4], CONTACT[4:], without)
     raw["delta_max"] = raw["delta_max"].fillna(raw["overlap"])  # of a law without history
     attached = raw["attached"] > 0 if p.model.adheres else False
     raw = raw[(raw["overlap"] >= 0) | attached].reset_index(drop=True)  # what is only near is no contact yet
@@ -92,12 +87,12 @@ def _contacts(p: ScenePlan, folder: Path, spheres: pd.DataFrame) -> pd.DataFrame
     return columns.complete(p, raw, spheres, folder)
 
 
-def wall_table(p: ScenePlan, folder: Path) -> pd.DataFrame:
+def wall_table(p: ScenePlan, folder: Path, without: Collection[int] = ()) -> pd.DataFrame:
     """Stresses and wear of the triangles of walls in every frame, as in LIGGGHTS.
 
     A plate without edges is one triangle in YADE; each of its own triangles has the mean of the plate.
     """
-    raw = _frames(p, folder, "triangles", p.frames, ["normal_stress", "shear_stress", "wear"], [])
+    raw = _frames(p, folder, "triangles", p.frames, ["normal_stress", "shear_stress", "wear"], [], without)
     steps = raw["step"].unique()
     values, begin, tables = raw.iloc[:, 1:].to_numpy().reshape(len(steps), -1, 3), 0, []
     for name in p.stress_walls:
