@@ -20,9 +20,7 @@ from epdem.impacts import report as impacts_report
 from epdem.impacts import run as impacts_run
 from epdem.scenes import report as scenes_report
 from epdem.scenes import run as scenes_run
-from epdem.studies import fit
-from epdem.studies.pages import impacts as impacts_page
-from epdem.studies.pages import scenes as scenes_page
+from epdem.studies import fit, pages
 from epdem.studies.sweep import slurm
 from epdem.verification import cost, figures, stability
 from epdem.verification import engine_comparison as crosscheck
@@ -168,11 +166,11 @@ def library(tmp_path, monkeypatch, outcomes):
 
     record(impacts_run, "run", outcomes["run"])
     record(impacts_report, "figure", Path("drawn.png"))
-    record(impacts_page, "of_impacts", Path("page.html"))
+    record(pages, "of_impacts", Path("page.html"))
     record(scenes_run, "run", SimpleNamespace(passed=True))
     record(scenes_report, "figures", ())
     record(scenes_report, "show", ())
-    record(scenes_page, "of_scene", Path("page.html"))
+    record(pages, "of_scene", Path("page.html"))
     record(crosscheck, "crosscheck")
     record(motions, "compare")
     record(cost, "run", outcomes["cost"])

@@ -23,7 +23,7 @@ from epdem.scenes.report import charts
 from epdem.scenes.report import measures as curves_of
 from epdem.scenes.results import read
 from epdem.studies.fit import fit
-from epdem.studies.pages.scenes import of_scene
+from epdem.studies.pages import of_scene
 from epdem.studies.sweep import run as study
 from epdem.studies.sweep.table import numbers_of
 

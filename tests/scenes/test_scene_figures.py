@@ -12,7 +12,7 @@ from scene_runs import run, write_case
 from test_parts_motions import PLATE
 
 from epdem.scenes.report import charts
-from epdem.studies.pages.scenes import of_scene
+from epdem.studies.pages import of_scene
 
 pytestmark = pytest.mark.figures
 

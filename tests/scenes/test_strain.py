@@ -10,7 +10,7 @@ from epdem.case.toml import read_toml
 from epdem.impacts.prediction import predict
 from epdem.scenes.columns import STRAINS
 from epdem.scenes.timestep import wall_impact
-from epdem.studies.pages.scenes import sentences
+from epdem.studies.pages import scene_sentences as sentences
 
 ENGINES = [pytest.param(name, marks=getattr(pytest.mark, name)) for name in ("liggghts", "yade")]
 

@@ -19,7 +19,7 @@ import pytest
 from epdem.engines import engine
 from epdem.impacts.run import run
 from epdem.studies.calibrate import from_restitution
-from epdem.studies.pages.impacts import of_calibration, of_impacts
+from epdem.studies.pages import of_calibration, of_impacts
 
 ROOT = Path(__file__).parents[2]
 CHROMIUM = shutil.which("chromium")

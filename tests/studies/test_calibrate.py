@@ -17,8 +17,8 @@ from epdem.errors import CaseError
 from epdem.impacts.experiment import experiment
 from epdem.impacts.prediction import predict
 from epdem.report.page import write
+from epdem.studies import pages
 from epdem.studies.calibrate import from_hardness, from_restitution, from_restitutions, hardness_test
-from epdem.studies.pages import impacts as pages
 from epdem.theory.adhesion import yield_speed
 from epdem.theory.indentation import Indentation
 from studies.test_soften import CASES, RATE, STEEL, with_law

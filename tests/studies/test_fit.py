@@ -14,7 +14,7 @@ from test_sweep_scenes import BED
 from epdem import Scene, calibrate
 from epdem.errors import CaseError, EngineError, Stopped
 from epdem.studies import fit as study
-from epdem.studies.pages import sweep as pages
+from epdem.studies import pages
 
 pytestmark = pytest.mark.liggghts
 EPDEM = str(Path(sys.executable).parent / "epdem")
@@ -144,7 +144,7 @@ def test_the_command_prints_what_the_function_finds(place, monkeypatch):
     page = (place / "points/report.html").read_text()
     assert "epdem calibrate bed.toml" in page
     drawn = []
-    monkeypatch.setattr(pages.common, "written", lambda page, folder: drawn.append(page))
+    monkeypatch.setattr(pages, "written", lambda page, folder: drawn.append(page))
     pages.of_fit(found)
     points, target = drawn[0].parts[0].panels[0].series
     assert target.y == pytest.approx([weight(20, 1700.0)] * 2) and min(target.x) == 1000.0

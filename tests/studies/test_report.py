@@ -17,7 +17,7 @@ from hypothesis import strategies as st
 
 from epdem import api
 from epdem.report import chart, page
-from epdem.studies.pages.impacts import figures as of_page
+from epdem.studies.pages import impacts_figures as of_page
 
 pytestmark = pytest.mark.figures
 

@@ -14,7 +14,7 @@ import pytest
 from epdem import Scene
 from epdem import run as api_run
 from epdem.scenes import results
-from epdem.studies.pages.sweep import _by_key, of_sweep
+from epdem.studies.pages import _by_key, of_sweep
 from epdem.studies.sweep import folder, run, status, table
 
 pytestmark = pytest.mark.liggghts

@@ -87,7 +87,7 @@ class Run(_HasRun):
 
     def report(self) -> Path:
         """Write report.html, one page with figures, tables and decks, into the folder; its path."""
-        from ..studies.pages.impacts import of_impacts
+        from ..studies.pages import of_impacts
 
         return of_impacts(self.outcome)
 
@@ -108,7 +108,7 @@ class SceneRun(_HasRun):
 
     def report(self) -> Path:
         """Write report.html, one page with figures, tables and decks, into the folder; its path."""
-        from ..studies.pages.scenes import of_scene
+        from ..studies.pages import of_scene
 
         return of_scene(self.outcome)
 

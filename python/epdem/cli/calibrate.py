@@ -66,7 +66,7 @@ def calibrate(
 
 def _of_scene(case: Path, target: list[str], free: list[str], options: dict[str, Any], as_json: bool) -> None:
     from ..studies.fit import fit
-    from ..studies.pages.sweep import of_fit
+    from ..studies.pages import of_fit
     from ..studies.sweep.points import settings
     from . import sweep_view
 
@@ -118,7 +118,7 @@ def _from_impacts(
 
 
 def _of_impact(case: Path, result: "Calibration", as_json: bool, out: Path | None, force: bool) -> None:
-    from ..studies.pages.impacts import of_calibration, sentences_of_calibration
+    from ..studies.pages import of_calibration, sentences_of_calibration
 
     page = of_calibration(case, result, out, force=force) if out else None
     if as_json:

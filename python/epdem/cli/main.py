@@ -109,7 +109,7 @@ def _run_impacts(
     from ..engines import engine as find
     from ..impacts import report
     from ..impacts.run import run
-    from ..studies.pages.impacts import of_impacts
+    from ..studies.pages import of_impacts
 
     stages = len(set(engines)) * max(len(set(options["laws"])), 1) + 1  # and the figure
     with bar() as progress:

@@ -28,7 +28,7 @@ def run_scene(case: Path, *, engine: str, formats: tuple[str, ...], as_json: boo
     from ..engines import scene_engine
     from ..scenes import report
     from ..scenes.run import run
-    from ..studies.pages.scenes import of_scene
+    from ..studies.pages import of_scene
 
     tool = scene_engine(engine)
     with bar(TextColumn("{task.completed}/{task.total} steps"), TimeRemainingColumn()) as progress:

@@ -41,7 +41,7 @@ def sweep(
     as_json: AsJson = False,
 ) -> None:
     """Run a case or scene at many points; the same command again runs only missing and changed points."""
-    from ..studies.pages.sweep import of_sweep
+    from ..studies.pages import of_sweep
     from ..studies.sweep import slurm as study
     from ..studies.sweep.points import settings
     from ..studies.sweep.run import check_points, plan

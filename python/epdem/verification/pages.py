@@ -10,7 +10,7 @@ from ..base.files import claim
 from ..impacts.comparison import UNITS
 from ..report.chart import GREY, Axis, Chart, Panel, Series, save
 from ..report.page import Facts, Page, Part, Rows, write
-from ..studies.pages import common, impacts
+from ..studies import pages as common
 from . import cost_report
 from .cost import Outcome as Cost
 from .engine_comparison import Crosscheck
@@ -23,7 +23,7 @@ LABELS = {"e_n": "e_n", "dent_width": "width of the dent [m]"}
 
 def of_crosscheck(check: Crosscheck) -> Path:
     """Write the page of a run on all engines with the table of models in front."""
-    base = impacts.page(check.outcome, common.command())
+    base = common.impacts_page(check.outcome, common.command())
     models = len(check.table) - 1
     said = [f"{models} models ran the case; their values are those at {check.table['speed'].iloc[0]:.4g} m/s."]
     if check.others_outside:

@@ -1,0 +1,437 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Pages of runs, scenes, sweeps, fits and calibrations, and the parts that several pages have."""
+
+import shlex
+import sys
+from collections.abc import Mapping, Sequence
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pandas as pd
+
+from ..base import __version__
+from ..base.files import claim
+from ..base.paths import library_hash, product_hash
+from ..base.tables import unit_of
+from ..case.impact import load
+from ..engines.reasons import citations, reasons
+from ..impacts import charts
+from ..impacts.charts import SPEED
+from ..impacts.comparison import CHECKED, UNITS
+from ..impacts.experiment import Body, Experiment
+from ..impacts.plan import Plan
+from ..impacts.prediction import predict
+from ..impacts.report import against_measured, mark, worst, yielding
+from ..impacts.run import Outcome
+from ..laws.strengths import law_named
+from ..report.chart import INK, PALETTE, Axis, Chart, Panel, Series
+from ..report.page import NAME, Facts, Lines, Page, Part, Picture, Rows, write
+from ..scenes.columns import STRAINS, units
+from ..scenes.plan import ScenePlan
+from ..scenes.report import bed
+from ..scenes.report import charts as charts_of_scene
+from ..scenes.run import SceneOutcome
+from ..theory.validity import SMALL_DEFORMATION
+from .calibrate import Calibration, experiment
+from .fit import Fit
+from .sweep.folder import DONE, FAILED
+from .sweep.run import SweepOutcome
+from .sweep.table import read_sweep
+
+
+def command() -> str:
+    """The command line of this process, if it is a command of epdem."""
+    name = Path(sys.argv[0]).name
+    return shlex.join(["epdem", *sys.argv[1:]]) if name == "epdem" else ""
+
+
+def case_lines(text: str) -> Lines:
+    """The case file."""
+    return Lines("Case file", [(line, "") for line in text.splitlines()])
+
+
+def decks(engine: str, job: Plan | ScenePlan | None, stored: Mapping[str, str], of: str = "") -> list[Lines]:
+    """The files of a deck with the reasons of the engine's templates (a comment that is the reason stands once).
+
+    Without these the `stored` texts by name, their comments as reasons. of: end of the titles.
+    """
+    lines: dict[str, list[tuple[str, str]]] = {}
+    for name, line, why in reasons(engine, job) if job else []:
+        lines.setdefault(name, []).append((line.removesuffix(why).rstrip(" #") if why else line, why))
+    for name, text in {} if lines else stored.items():
+        split = [line.partition("  # ") for line in text.splitlines()]
+        lines[name] = [(line.rstrip(), reason) for line, _, reason in split]
+    return [Lines(f"Deck {name}{of}", found) for name, found in lines.items()]
+
+
+def origin(about: Mapping[str, object], hashes: Mapping[str, object]) -> Facts:
+    """Versions and hashes of what made the numbers: the engines' versions are in the attributes of a results file."""
+    versions = {k.removeprefix("version_"): str(v) for k, v in about.items() if k.startswith("version_")}
+    ours = {"epdem": f"{__version__}, sources {product_hash()[:16]}, compiled parts {library_hash()[:16]}"}
+    return Facts("Versions and hashes", ours | versions | {f"inputs of {k}": str(v) for k, v in hashes.items()})
+
+
+def page_of(
+    outcome: Outcome | SceneOutcome,
+    sentences: list[str],
+    parts: Sequence[Part],
+    *,
+    hashes: Mapping[str, object],
+    laws: Sequence[str],
+    engines: Sequence[str],
+    command: str,
+) -> Page:
+    """The page of a case: these parts, then versions, `hashes` of the inputs by run, and what to cite."""
+    return Page(
+        outcome.case.case.title,
+        sentences,
+        [
+            *parts,
+            origin(outcome.results.attributes, hashes),
+            Facts("What to cite", citations(outcome.case, laws, engines)),
+        ],
+        passed=outcome.passed,
+        command=command or f"epdem verify rerun {outcome.folder}/results.h5",
+        warnings=outcome.warnings,
+    )
+
+
+def written(page: Page, folder: Path) -> Path:
+    """Write a page into the folder of its study; its path."""
+    with claim(folder, force=True):
+        return write(folder / NAME, lambda: page)
+
+
+COMPARED = ("engine", "law", "speed", *(f"{n}{k}" for n in CHECKED for k in ("", "_theory", "_error")))
+OBLIQUE = ("angle", "spin_before", "e_t", "e_t_theory", "psi_1", "psi_2", "psi_2_theory", "psi_2_error", "spin")
+
+
+def of_impacts(outcome: Outcome) -> Path:
+    """Write report.html into the folder of a run; its path."""
+    said = command()
+    with claim(outcome.folder, force=True):
+        digest = mark(outcome, said, NAME)
+        return write(outcome.folder / NAME, lambda: impacts_page(outcome, said), mark=digest)
+
+
+def of_calibration(case: Path, found: Calibration, folder: Path, *, force: bool = False) -> Path:
+    """Write the page of a strength that was found for a case into `folder`: the curve e_n(v) that it gives.
+
+    Raises CaseError for a folder with a page of another kind, without `force`.
+    """
+    x = experiment(case, found)
+    middle = found.speed or np.median([speed for speed, _ in found.measured] or [found.yield_speed])
+    line = replace(x, speed=np.geomspace(0.1, 100.0, 200) * middle)
+    series = [Series("theory", line.speed, predict(line).e_n)]
+    points = found.measured or (((found.speed, found.e_n),) if found.speed and found.e_n else ())
+    if points:
+        speeds, values = np.array(points).T
+        series.append(Series("measured", speeds, values, 1, None, charts.MEASURED))
+    alt = f"Coefficient of restitution of law {found.law} with {found.parameter} = {found.value:.4g} Pa against speed."
+    chart = Chart("e_n", "Restitution with this strength", alt, [Panel(charts.SPEED, Axis("e_n"), series)])
+    bare = [replace(b, yield_stress=None) for b in (x.body, x.target)]  # whose own strength plays no part
+    facts = Facts("Bodies and law", _impact_facts(replace(x, body=bare[0], target=bare[1], source=found.source)))
+    parts: list[Part] = [
+        chart,
+        facts,
+        origin({}, {}),
+        Facts("What to cite", citations(load(case), [found.law], [])),
+    ]
+    said = sentences_of_calibration(found)
+    made = Page(f"Strength of law {found.law} from {found.source}", said, parts, command=command())
+    with claim(folder, force=force, files=[NAME]):
+        return write(folder / NAME, lambda: made)
+
+
+def sentences_of_calibration(c: Calibration) -> list[str]:
+    """What was found, with its standard errors, and the lines of the case file."""
+    lines = [f'{c.parameter} = "{c.value / 1e6:.6g} MPa"']
+    errors, more = "", ""
+    if c.hardening_exponent is not None and c.standard_errors is not None:
+        lines.append(f"hardening_exponent = {c.hardening_exponent:.4g}")
+        errors = f" +- {c.standard_errors[0] / 1e6:.2g} MPa"
+        fits = f"largest residual of e_n {c.largest_residual:.2g} standard errors"
+        if c.scatter is not None:
+            fits = f"scatter of e_n about the fit {c.scatter:.2g}, to be compared with the error of the measurement"
+        more = (
+            f", hardening_exponent = {c.hardening_exponent:.4g} +- {c.standard_errors[1]:.2g} (standard errors, "
+            f"correlation {c.correlation:.3f}; {fits})"
+        )
+    return [
+        f"law {c.law}, {c.source}: {c.parameter} = {c.value / 1e6:.6g} MPa{errors}{more}, "
+        f"that is yield_stress = {c.yield_stress / 1e6:.6g} MPa, yield speed {c.yield_speed:.4g} m/s",
+        f"in the case file, under [law]: {'; '.join(lines)}",
+    ]
+
+
+def impacts_page(outcome: Outcome, command: str = "") -> Page:
+    """The page of a run."""
+    results, several = outcome.results, len(outcome.plans) > 1
+    parts: list[Part] = [*impacts_figures(outcome), impacts_table(outcome)]
+    for law, p in outcome.plans.items():
+        parts.append(Facts("Bodies and law" + f" {law}" * several, _impact_facts(p.experiment)))
+    allowed = {name: f"{value:g}" for name, value in outcome.case.check.model_dump().items()}
+    parts += [Facts("Tolerances of the case", allowed), case_lines(results.case_text), *impacts_decks(outcome)]
+    return page_of(
+        outcome,
+        impacts_sentences(outcome),
+        parts,
+        hashes={key: run["inputs"] for key, run in results.runs.items()},
+        laws=list(outcome.plans),
+        engines=list(dict.fromkeys(results.comparison["engine"])),
+        command=command,
+    )
+
+
+def impacts_sentences(outcome: Outcome) -> list[str]:
+    """What ran and came out, in words."""
+    rows, said = outcome.results.comparison, []
+    for law, p in outcome.plans.items():
+        speed, prediction = p.experiment.speed, outcome.predictions[law]
+        span = f"{speed.min():.4g} to {speed.max():.4g} m/s" if speed.size > 1 else f"{speed[0]:.4g} m/s"
+        said.append(
+            f"Law {law}: {speed.size} impacts at {span}, each from {p.phases} starting phases within a step of "
+            f"{p.time_step:.4g} s; {yielding(prediction)}. e_n of theory goes from {prediction.e_n.max():.4f} to "
+            f"{prediction.e_n.min():.4f}."
+        )
+    said += [f"Engine {line}." for line in worst(outcome)]
+    said += [line[0].upper() + line[1:] + "." for line in against_measured(outcome)]
+    residual = rows["energy_residual"].abs().max()
+    if residual == residual:
+        said.append(f"The energy balance of an impact closes within {residual:.1e} of its kinetic energy.")
+    return said
+
+
+def impacts_figures(outcome: Outcome) -> list[Chart]:
+    """The figures of the page."""
+    return [charts.main_chart(outcome), charts.errors(outcome), *charts.loops(outcome)]
+
+
+def impacts_table(outcome: Outcome) -> Rows:
+    """All rows of the comparison."""
+    rows = outcome.results.comparison
+    columns = [*COMPARED[:3], *(k for k in OBLIQUE if k in rows), *COMPARED[3:], "steps_in_contact", "passed"]
+    note = "Means over the phases; errors are the largest over the phases. A click on a heading sorts."
+    units = {name: unit_of(name, UNITS) for name in columns}
+    return Rows("Measured and predicted", rows[columns], units, note)
+
+
+def _impact_facts(x: Experiment) -> dict[str, str]:
+    facts = {"body": _body(x.body), "target": _body(x.target), "law": x.law.name}
+    units = {p.name: p.unit for p in law_named(x.law.name).parameters if p.unit != "1"}
+    facts |= {name: f"{value:.6g} {units.get(name, '')}".rstrip() for name, value in x.law.parameters.items()}
+    facts |= {"E*": f"{x.E_star:.6g} Pa", "R*": f"{x.R_star:.6g} m", "m*": f"{x.m_star:.6g} kg"}
+    v_y0 = charts.first_yield(x)
+    facts |= {"speed of first yield (8.84, 1.60 Y)": f"{v_y0:.4g} m/s"} if v_y0 == v_y0 else {}
+    return facts | {"source": x.source}
+
+
+def _body(b: Body) -> str:
+    shape = f"sphere, R = {b.radius:.6g} m" if b.radius < float("inf") else "wall"
+    if b.rigid:
+        return f"{shape}, rigid"
+    strength = "" if b.yield_stress is None else f", Y = {b.yield_stress:.4g} Pa"
+    return f"{shape}, {b.material}: E = {b.young_modulus:.4g} Pa, nu = {b.poisson_ratio:g}{strength}"
+
+
+def impacts_decks(outcome: Outcome) -> list[Lines]:
+    """Every deck that ran, line by line, with the reasons that the templates of the engine state."""
+    stored: dict[tuple[str, str], dict[str, str]] = {}
+    for key, text in outcome.results.decks.items():
+        law, engine, name = key.split("/", 2)
+        stored.setdefault((law, engine), {})[name] = text
+    return [
+        lines
+        for (law, engine), texts in stored.items()
+        for lines in decks(engine, outcome.plans.get(law), texts, f" of {engine}, law {law}")
+    ]
+
+
+DRAWN = {"bed", "key", "scene", "energy"}  # pictures of a folder that are charts of the page
+TABLES = [
+    ("checks", "Checks", "Each number against its expected value."),
+    ("energy_balance", "Energy balance", "One row for each frame."),
+    ("measures", "Measures", "One row for each frame."),
+    ("histograms", "Histograms", ""),
+    ("rows", "Rows", ""),
+]
+
+
+def of_scene(outcome: SceneOutcome) -> Path:
+    """Write report.html into the folder of a scene; its path."""
+    with claim(outcome.folder, force=True):
+        return write(outcome.folder / NAME, lambda: scene_page(outcome, command()))
+
+
+def scene_page(outcome: SceneOutcome, command: str = "") -> Page:
+    """The page of a scene."""
+    tables, about = outcome.results.tables, outcome.results.attributes
+    shown = charts_of_scene(outcome)
+    pictures = [
+        Picture(path.stem.replace("_", " "), f"{path.name}, as the run left it", file=path)
+        for path in sorted(outcome.folder.glob("*.png"))
+        if path.stem not in DRAWN and not path.stem.startswith("scene_")
+    ]
+    engine = str(about["engine"])
+    parts: list[Part] = [*shown[:1], *bed(outcome), *shown[1:], *pictures]
+    for name, title, note in TABLES:
+        table = tables.get(name)
+        if table is not None and not table.drop(columns=["step", "time"], errors="ignore").empty:
+            parts.append(Rows(title, table, units(table), note))
+    listings = decks(engine, outcome.plan, outcome.results.decks)
+    parts += [_scene_facts(outcome), case_lines(outcome.results.case_text), *listings]
+    return page_of(
+        outcome,
+        scene_sentences(outcome),
+        parts,
+        hashes={engine: about["inputs"]},
+        laws=[outcome.plan.model.law],
+        engines=[engine],
+        command=command,
+    )
+
+
+def scene_sentences(outcome: SceneOutcome) -> list[str]:
+    """What ran and came out, in words."""
+    p, tables = outcome.plan, outcome.results.tables
+    last, checks = tables["rows"].iloc[-1], tables["checks"]
+    failed = ", ".join(checks["check"][~checks["passed"].astype(bool)])
+    about = outcome.results.attributes
+    said = [
+        f"A scene of kind {outcome.case.scene.kind} with law {p.model.law} in {about['engine']} (MPI ranks: "
+        f"{about['ranks']}): {p.steps} steps of {p.time_step:.4g} s took {float(str(about['seconds'])):.3g} s.",
+        f"At the end, at {last['time']:.4g} s, {int(last['particles'])} spheres are in the room and their kinetic "
+        f"energy is {last['kinetic_energy']:.4g} J.",
+    ]
+    radius, overlap = (last[name] for name in STRAINS)
+    said.append(
+        f"The contacts reach a contact radius of {radius:.3g} R* and an overlap of {overlap:.3g} R*; small strain "
+        f"ends at a contact radius of {SMALL_DEFORMATION} R*."
+    )
+    return [*said, f"These checks fail: {failed}." if failed else f"All {len(checks)} checks hold."]
+
+
+def _scene_facts(outcome: SceneOutcome) -> Facts:
+    p = outcome.plan
+    facts = {"kind": outcome.case.scene.kind, "law": p.model.law, "time step": f"{p.time_step:.6g} s"}
+    facts |= {"steps": str(p.steps), "smallest radius": f"{p.smallest:.4g} m", "materials": ", ".join(p.types)}
+    phases = [f"{x.name} up to step {x.end}" + f" (until {x.reached})" * bool(x.reached) for x in p.phases]
+    return Facts("The scene", facts | {"phases": ", ".join(phases)})
+
+
+KINDS = ("last", "min", "max", "mean")  # numbers of one column of a scene
+PANEL_COLUMNS, MOST_PANELS = 3, 30  # of a chart
+
+
+def of_sweep(result: SweepOutcome) -> Path:
+    """Write the page of a sweep into its folder."""
+    table, sweep = result.table, result.sweep
+    units = table.attrs.get("units", {})
+    failed = table[table["status"] == FAILED][["point", "folder", "reason"]]
+    said = f"{len(sweep.points)} points on {', '.join(sweep.engines)}: {result.count(DONE)} done, {len(failed)} failed."
+    parts: list[Part] = [*(_by_key(result, units) if sweep.scene else [_by_speed(result)])]
+    parts += [Rows("Failed points", failed)] if len(failed) else []
+    rows = table.drop(columns=["folder", "reason"])
+    parts += [Rows("All points", rows, units, "sweep.csv beside this page has all rows and columns.")]
+    parts += [case_lines(sweep.case), origin({f"version_{k}": v for k, v in sweep.versions.items()}, {})]
+    page = Page(f"Sweep of {sweep.name}", [said], parts, passed=result.passed, command=command())
+    return written(page, result.folder)
+
+
+def _evenly(values: np.ndarray) -> np.ndarray:
+    """As many of the values as there are colours, the first and the last among them."""
+    places = np.linspace(0, len(values) - 1, min(len(PALETTE), len(values))).round().astype(int)
+    return values[np.unique(places)] if len(values) else values
+
+
+def _by_speed(result: SweepOutcome) -> Chart:
+    table, series = result.table[result.table["status"] == DONE], []
+    for k, number in enumerate(_evenly(table["point"].unique())):
+        part = table[table["point"] == number]
+        keys = ", ".join(f"{name.rsplit('.', 1)[-1]} = {v}" for name, v in result.sweep.points[number - 1].items())
+        for i, ((engine, law), rows) in enumerate(part.groupby(["engine", "law"], sort=False)):
+            speed, label = rows["speed"].to_numpy(float), f"{engine}, {law}: {keys}"
+            series.append(Series("", speed, rows["e_n_theory"].to_numpy(float), k))
+            series.append(Series(label, speed, rows["e_n"].to_numpy(float), k, None, i))
+    alt = "Coefficient of restitution of chosen points against speed: theory as lines, engines as points."
+    return Chart("sweep", "Restitution of chosen points", alt, [Panel(SPEED, Axis("e_n"), series)])
+
+
+def _by_key(result: SweepOutcome, units: dict[str, str]) -> list[Chart]:
+    """For each key with several values, the numbers of the scenes that change, measures of the case first."""
+    table = result.table[result.table["status"] == DONE]
+    keys = [name for name in result.sweep.points[0] if name in table]
+    numeric = [name for name in keys if table[name].dtype.kind in "fi" and table[name].nunique() > 1] or ["point"]
+    changing = _changing(table.drop(columns=["point", *keys]))
+    measured = [m["name"] for m in result.sweep.tables.get("scene", {}).get("measure", [])]
+    columns = sorted(changing, key=lambda column: column not in measured)  # stable: else as in the table
+    shown, left = columns[:MOST_PANELS], columns[MOST_PANELS:]
+    charts = []
+    for key in numeric:
+        panels = [
+            Panel(
+                Axis(key, units.get(key, "")),
+                _axis(column, changing[column], units),
+                _series(table, key, column, changing[column]),
+            )
+            for column in shown
+        ]
+        alt = f"Against {key}: {', '.join(shown)}." + (f" {len(left)} columns are in the table alone." if left else "")
+        name = "sweep" if key == numeric[0] else f"sweep_{key}"
+        if panels:
+            charts.append(Chart(name, f"Results against {key}", alt, panels, columns=min(PANEL_COLUMNS, len(panels))))
+    return charts
+
+
+def _changing(table: pd.DataFrame) -> dict[str, list[str]]:
+    """The columns of a scene whose numbers change over the points, each with the kinds of its numbers; "": a check."""
+    found: dict[str, list[str]] = {}
+    for name in table.select_dtypes("number"):
+        if table[name].nunique() > 1:
+            column, _, kind = str(name).rpartition("_")
+            plain = kind not in KINDS
+            found.setdefault(str(name) if plain else column, []).append("" if plain else kind)
+    return found
+
+
+def _axis(column: str, kinds: list[str], units: dict[str, str]) -> Axis:
+    return Axis(column, units.get("_".join(filter(None, (column, kinds[0]))), ""))
+
+
+def _series(table: pd.DataFrame, key: str, column: str, kinds: list[str]) -> list[Series]:
+    x, series = table[key].to_numpy(float), []
+    for kind in kinds:
+        k = KINDS.index(kind) if kind else 0
+        y = table[f"{column}_{kind}" if kind else column].to_numpy(float)
+        series.append(Series(kind or "check", x, y, k, None, k))
+    return series
+
+
+def of_fit(found: Fit) -> Path:
+    """Write the page of a fit of a scene into the folder of its points."""
+    folder = found.case.parents[2]
+    table = read_sweep(folder).dropna(subset=list(found.targets))
+    units = table.attrs.get("units", {}) | found.units
+    panels = []
+    for name, target in found.targets.items():
+        for k, key in enumerate(found.values):
+            x, y = table[key].to_numpy(float), table[name].to_numpy(float)
+            shown = [
+                Series("points", x, y, k, None, 0),
+                Series("target", [x.min(), x.max()], [target] * 2, INK, "dash"),
+            ]
+            panels.append(Panel(Axis(key, units.get(key, "")), Axis(name, units.get(name, "")), shown))
+    names = ", ".join(found.targets)
+    said = [
+        f"{', '.join(f'{key} = {value}' for key, value in found.values.items())} gives "
+        + ", ".join(f"{n} = {v:.6g} {found.units[n]} (target {found.targets[n]:.6g})" for n, v in found.numbers.items())
+        + ".",
+        f"{found.points} scenes, {found.ran} of them just now; the case with these values is {found.case}.",
+    ]
+    alt = f"{names} of every scene of the fit against the keys that it frees; the target as a dashed line."
+    charts = [Chart(f"fit{n}", "Target against key", alt, [panel]) for n, panel in enumerate(panels)]
+    rows = Rows("All scenes", table[["point", *found.values, *found.targets]], units)
+    case = case_lines(found.case.read_text(encoding="utf-8"))
+    page = Page(f"Fit of {names}", said, [*charts, rows, case, origin({}, {})], command=command())
+    return written(page, folder)
