@@ -2,7 +2,6 @@
 """Decks and templates to text: undefined names are errors, numbers keep every digit, templates compute nothing."""
 
 from functools import cache
-from pathlib import Path
 from types import SimpleNamespace
 from typing import Any, TypeVar
 
@@ -65,9 +64,9 @@ def prepared(env: Prepared, *, reasons: bool = False) -> Prepared:
 
 
 @cache  # with its templates, which take far longer to read than to fill
-def environment(*folders: Path, reasons: bool = False) -> jinja2.Environment:
-    """The template environment: our templates, and `folders` before them; `reasons` as in `prepared`."""
-    loader = jinja2.FileSystemLoader([*folders, paths.beside("templates")])
+def environment(*, reasons: bool = False) -> jinja2.Environment:
+    """The environment of our templates; `reasons` as in `prepared`."""
+    loader = jinja2.FileSystemLoader(paths.beside("templates"))
     return prepared(jinja2.Environment(loader=loader, **OPTIONS), reasons=reasons)
 
 

@@ -166,7 +166,10 @@ def deck(
         refuse(file, "the deck of an own template has the law of its case", law=law)
         if engine != DEFAULT_ENGINE:
             raise CaseError(f"{file}: --engine {engine}: own templates are for {DEFAULT_ENGINE}; leave it out")
-        cli_scene.deck_template(file, case, given or [], out, force=force, as_json=as_json)
+        from ..engines.liggghts.own_template import settings
+        from ..engines.liggghts.own_template import write as fill
+
+        say_files(fill(file, case, settings(given or []), out, force=force), as_json)
         return
     refuse(file, "it goes with an own template (.j2)", case=case, set=given)
     if cli_scene.is_scene(file):

@@ -153,13 +153,6 @@ def soften(
         print(f"warning: {warning}")
 
 
-def deck_template(template: Path, case: Path, sets: list[str], out: Path, *, force: bool, as_json: bool) -> None:
-    """Write a deck from a template of the user's own and the values of a case."""
-    from ..engines.liggghts.own_template import settings, write
-
-    say_files(write(template, case, settings(sets), out, force=force), as_json)
-
-
 def deck_converted(deck: Path, law: str, sets: list[str], out: Path, *, force: bool, as_json: bool) -> None:
     """Write a LIGGGHTS deck of the user with one of the laws, and print the changes on standard error."""
     from ..engines.liggghts.convert import convert_file

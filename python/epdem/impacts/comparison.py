@@ -5,13 +5,13 @@ import numpy as np
 import pandas as pd
 
 from ..base.tables import Quantity
-from ..case.impact import DEFAULT_CHECKS, Check
+from ..case.impact import Check
 from .measurement import COLUMNS as MEASURED
 from .measurement import Measured
 from .plan import Plan
 from .prediction import Prediction
 
-CHECKED = tuple(DEFAULT_CHECKS)
+CHECKED = ("e_n", "contact_time", "force_max", "overlap_max", "residual_overlap")
 OBLIQUE = ("psi_2", "e_t", "impulse_ratio", "rebound_angle", "spin")
 COLUMNS = {
     "engine": Quantity("", "engine that ran the impact"),

@@ -2,7 +2,7 @@
 """Limits of a scene: a scene beyond them is refused before anything starts; beds that a press makes solid."""
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from typing import NamedTuple
 
 import numpy as np
@@ -189,9 +189,9 @@ class PressedBed(NamedTuple):
     area: float
 
 
-def refuse_below_solid(case: SceneCase, scene: Parts, insertions: tuple[Insertion, ...]) -> None:
+def refuse_below_solid(beds: Iterable[PressedBed]) -> None:
     """Raise CaseError for a plate that moves to a height where the spheres would have no void left."""
-    for bed in _pressed_beds(case, scene, insertions):
+    for bed in beds:
         if bed.height <= bed.solid_height:
             raise CaseError(
                 f"{bed.key} = {bed.height:.4g} m: the spheres alone, without any void, are {bed.solid_height:.4g} m "
@@ -199,67 +199,52 @@ def refuse_below_solid(case: SceneCase, scene: Parts, insertions: tuple[Insertio
             )
 
 
-def dense_beds(case: SceneCase, scene: Parts, insertions: tuple[Insertion, ...]) -> list[str]:
+def dense_beds(beds: Iterable[PressedBed]) -> list[str]:
     """A sentence for the largest relative density above DENSE that a plate presses a bed to."""
-    beds = [bed for bed in _pressed_beds(case, scene, insertions) if not math.isnan(bed.height)]
-    beds.sort(key=lambda bed: bed.solid_height / bed.height)
+    known = [bed for bed in beds if bed.solid_height > DENSE * bed.height]
     return [
         f"{bed.key} = {bed.height:.4g} m: the relative density reaches {bed.solid_height / bed.height:.3g}, and above "
         f"{DENSE} no contact law of spheres gives the pressure (docs/choose.md, Pressing); give a larger height"
-        for bed in beds[-1:]
-        if bed.solid_height > DENSE * bed.height
+        for bed in sorted(known, key=lambda bed: bed.solid_height / bed.height)[-1:]
     ]
 
 
-def pressed_beds_of_run(case: SceneCase, scene: Parts, insertions: tuple[Insertion, ...]) -> tuple[PressedBed, ...]:
-    """The beds whose height only the run tells."""
-    return tuple(bed for bed in _pressed_beds(case, scene, insertions) if math.isnan(bed.height))
-
-
-def _pressed_beds(case: SceneCase, scene: Parts, insertions: tuple[Insertion, ...]) -> Iterator[PressedBed]:
-    """The bed at the end of each motion of each plate that covers the room or a tube.
+def pressed_beds(case: SceneCase, scene: Parts, insertions: tuple[Insertion, ...]) -> Iterator[PressedBed]:
+    """The bed at the end of each motion of each plate that covers the room or a tube, up to a turn of the plate.
 
     Only spheres count that begin between the plate and the plane that it moves to.
     """
-    for wall in scene.wall:
-        if isinstance(wall, PlateWall) and not scene.open_boundary:
-            yield from _pressed_by(case, scene, insertions, wall)
-
-
-def _pressed_by(
-    case: SceneCase, scene: Parts, insertions: tuple[Insertion, ...], wall: PlateWall
-) -> Iterator[PressedBed]:
-    """The same of one plate, up to a phase in which the plate turns."""
-    axis = "xyz".index(wall.axis)
-    begin = place = wall.center[axis]
-    for n, phase in enumerate(scene.phase):
-        move = phase.moves.get(wall.name)
-        if isinstance(move, RotateMove):
-            return
-        speed = move.velocity[axis] if isinstance(move, LinearMove) else 0.0
-        if move is not None:
-            known = isinstance(move, LinearMove) and not phase.condition
-            place += phase.seconds * speed if known else math.nan
-        way = move.direction[axis] if isinstance(move, PressMove) else speed
-        if not way:
-            continue
-        sign = math.copysign(1.0, way)
-        stops = [w.at for w in scene.planes if w.axis == wall.axis and sign * (w.at - begin) > 0]
-        stop = min([*stops, scene.room.limits[2 * axis + (sign > 0)]], key=lambda x: sign * x)
-        low, high = min(begin, stop), max(begin, stop)
-        coming = {later.name for later in scene.phase[n + 1 :]}
-        fills = [f for f in insertions if f.phase not in coming]
-        fills = [f for f in fills if low <= f.region.limits[2 * axis] and f.region.limits[2 * axis + 1] <= high]
-        if math.isnan(place):  # a stream of this phase has not come yet
-            fills = [f for f in fills if not (f.rate and f.phase == phase.name)]
-        volume = sum(mean_volume(case, f) * f.count for f in fills)
-        volume += sum(4.0 / 3.0 * math.pi * s.radius**3 for s in scene.table if low <= s.place[axis] <= high)
-        area = _covered(scene, wall, (low, high), fills)
-        if area:
-            compaction = case.scene.kind == "compaction"
-            key = "scene.height" if compaction else f"scene.phase.{phase.name}.move: wall {wall.name} ends at a height"
-            height = sign * (stop - place)
-            yield PressedBed(key, phase.name, wall.name, axis, sign, stop, height, volume / area, area)
+    plates = [w for w in scene.wall if isinstance(w, PlateWall) and not scene.open_boundary]
+    for wall in plates:
+        axis = "xyz".index(wall.axis)
+        begin = place = wall.center[axis]
+        for n, phase in enumerate(scene.phase):
+            move = phase.moves.get(wall.name)
+            if isinstance(move, RotateMove):
+                break
+            speed = move.velocity[axis] if isinstance(move, LinearMove) else 0.0
+            if move is not None:
+                known = isinstance(move, LinearMove) and not phase.condition
+                place += phase.seconds * speed if known else math.nan
+            way = move.direction[axis] if isinstance(move, PressMove) else speed
+            if not way:
+                continue
+            sign = math.copysign(1.0, way)
+            stops = [w.at for w in scene.planes if w.axis == wall.axis and sign * (w.at - begin) > 0]
+            stop = min([*stops, scene.room.limits[2 * axis + (sign > 0)]], key=lambda x: sign * x)
+            low, high = min(begin, stop), max(begin, stop)
+            coming = {later.name for later in scene.phase[n + 1 :]}
+            fills = [f for f in insertions if f.phase not in coming]
+            fills = [f for f in fills if low <= f.region.limits[2 * axis] and f.region.limits[2 * axis + 1] <= high]
+            if math.isnan(place):  # a stream of this phase has not come yet
+                fills = [f for f in fills if not (f.rate and f.phase == phase.name)]
+            volume = sum(mean_volume(case, f) * f.count for f in fills)
+            volume += sum(4.0 / 3.0 * math.pi * s.radius**3 for s in scene.table if low <= s.place[axis] <= high)
+            if area := _covered(scene, wall, (low, high), fills):
+                key = f"scene.phase.{phase.name}.move: wall {wall.name} ends at a height"
+                key = "scene.height" if case.scene.kind == "compaction" else key
+                height = sign * (stop - place)
+                yield PressedBed(key, phase.name, wall.name, axis, sign, stop, height, volume / area, area)
 
 
 def _covered(scene: Parts, wall: PlateWall, span: tuple[float, float], fills: list[Insertion]) -> float:

@@ -18,7 +18,7 @@ from . import walls
 from .filling import Insertion, insertions, refuse_missing, refuse_too_many
 from .limits import (
     PressedBed,
-    pressed_beds_of_run,
+    pressed_beds,
     refuse_below_solid,
     refuse_combinations,
     refuse_faster_than_sound,
@@ -68,8 +68,7 @@ class ScenePlan:
     """The job of an engine, from which its tables are made as well.
 
     triangles: of each wall that is not a plane, at the start, shape (n, 3 corners, 3 coordinates) [m]. loads: walls
-    whose force, and if they are meshes torque, is in the rows. pressed: beds whose relative density the run has to look
-    at, which ends if it is 1.
+    whose force, and if they are meshes torque, is in the rows. beds: that plates press.
     every: steps of a row, and so of the mean forces in it, which are sampled every `sampling` steps; frames, contacts,
     vtk, pictures, restarts: steps between two of them, 0: none.
     """
@@ -79,7 +78,7 @@ class ScenePlan:
     triangles: dict[str, FloatArray]
     insertions: tuple[Insertion, ...]
     loads: tuple[str, ...]
-    pressed: tuple[PressedBed, ...]
+    beds: tuple[PressedBed, ...]
     time_step: float
     phases: tuple[Phase, ...]
     every: int
@@ -94,6 +93,11 @@ class ScenePlan:
     def scene(self) -> Parts:
         """The parts, of which a scene of each kind consists."""
         return self.case.parts
+
+    @property
+    def pressed(self) -> tuple[PressedBed, ...]:
+        """Beds whose relative density the run has to look at, which ends if it is 1."""
+        return tuple(bed for bed in self.beds if math.isnan(bed.height))
 
     @property
     def steps(self) -> int:
@@ -274,7 +278,8 @@ def plan(case: SceneCase) -> ScenePlan:
     filled = insertions(case, scene)
     refuse_too_many(case, filled)
     refuse_missing(case, filled)
-    refuse_below_solid(case, scene, filled)
+    beds = tuple(pressed_beds(case, scene, filled))
+    refuse_below_solid(beds)
     duration = sum(phase.seconds for phase in scene.phase)
     steps = duration / dt
     if any(phase.time_step for phase in scene.phase):
@@ -294,7 +299,7 @@ def plan(case: SceneCase) -> ScenePlan:
         triangles=triangles,
         insertions=filled,
         loads=_loads(case, scene),
-        pressed=pressed_beds_of_run(case, scene, filled),
+        beds=beds,
         time_step=dt,
         phases=_phases(scene, rows, every, dt),
         every=every,

@@ -28,8 +28,14 @@ OVERLAP = 0.05  # of the smaller radius; a bed of an earlier run has less
 
 def planned_warnings(p: ScenePlan) -> list[str]:
     """A sentence for each. Raises CaseError for a sphere whose centre lies in a wall."""
-    dense = dense_beds(p.case, p.scene, p.insertions)
-    return filling.warnings(p.case, p.insertions) + dense + _time_steps(p) + _phases(p) + _overlaps(p) + _walls(p)
+    return (
+        filling.warnings(p.case, p.insertions)
+        + dense_beds(p.beds)
+        + _time_steps(p)
+        + _phases(p)
+        + _overlaps(p)
+        + _walls(p)
+    )
 
 
 def measured_warnings(tables: dict[str, pd.DataFrame]) -> list[str]:

@@ -202,11 +202,6 @@ def end(
     (place / STARTED).unlink(missing_ok=True)
 
 
-def forget(sweep: Sweep, folder: Path, number: int) -> None:
-    """Remove the stored result of a point."""
-    (of(sweep, folder, number) / FINISHED).unlink(missing_ok=True)
-
-
 def to_do(sweep: Sweep, folder: Path, *, retry_failed: bool) -> list[int]:
     """The numbers of the points to run: all unfinished points, once where points are equal."""
     done = (DONE,) if retry_failed else (DONE, FAILED)

@@ -210,17 +210,12 @@ def run(
         store.write(sweep, folder)
         numbers = store.to_do(sweep, folder, retry_failed=retry_failed)
         report(0, len(numbers))
-        work = partial(evaluate, sweep, folder)
-        for done, (number, result) in enumerate(local.each(work, numbers, jobs or default_jobs(sweep)), start=1):
+        work, most = partial(evaluate, sweep, folder), max(1, local.cores() // sweep.ranks)
+        for done, (number, result) in enumerate(local.each(work, numbers, jobs or most), start=1):
             if isinstance(result, local.Died):
                 record_death(sweep, folder, number, str(result))
             report(done, len(numbers))
         return SweepOutcome(sweep, folder, table.write(sweep, folder), len(numbers))
-
-
-def default_jobs(sweep: Sweep) -> int:
-    """As many processes as there are cores for their ranks."""
-    return max(1, local.cores() // sweep.ranks)
 
 
 def record_death(sweep: Sweep, folder: Path, number: int, how: str) -> None:

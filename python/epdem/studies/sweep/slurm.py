@@ -184,7 +184,7 @@ def run(
         numbers = store.to_do(sweep, folder, retry_failed=retry_failed)
         new = [n for n in numbers if sweep.identities[n - 1] not in under_way]
         for n in new:
-            store.forget(sweep, folder, n)
+            (store.of(sweep, folder, n) / store.FINISHED).unlink(missing_ok=True)
         if new:
             jobs |= _submit(sweep, folder, new, given)
             with atomic(folder / JOBS) as temporary:

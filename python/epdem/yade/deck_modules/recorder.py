@@ -3,7 +3,7 @@
 
 from collections.abc import Callable, Sequence
 from pathlib import Path
-from typing import Any, Protocol
+from typing import Any
 
 import numpy as np
 from yade import O
@@ -15,18 +15,6 @@ KINDS = ("force", "torque")  # of loads
 AXES = ((1, 0, 0), (0, 1, 0), (0, 0, 1))
 SLOW = 1e-7  # [m/s], a sphere that rests, as in LIGGGHTS
 STRAINS = ("largest_radius_ratio", "largest_overlap_ratio")  # contact radius and overlap over R*, so far
-
-
-class Contacts(Protocol):
-    """The contacts of a scene under one law; columns: of the table."""
-
-    columns: int
-
-    def strain(self) -> tuple[float, float]:
-        """Largest contact radius and overlap over R* so far."""
-
-    def table(self) -> list[tuple[Any, ...]]:
-        """Both bodies, overlap and largest overlap [m] of each contact; more columns may follow."""
 
 
 class Classes:
@@ -92,6 +80,7 @@ class Triangles:
 class Recorder:
     """Rows, frames and contact tables; all of one row are of one step. SI.
 
+    contacts  strain(): largest contact radius and overlap over R*; table(): rows of `columns` numbers, see `Classes`
     low, high the room that a sphere must not leave [m], along the last axes if there are fewer than three
     fall      acceleration along z [m/s^2]
     every     steps between two rows
@@ -108,7 +97,7 @@ class Recorder:
         self,
         folder: Path,
         spheres: Spheres,
-        contacts: Contacts,
+        contacts: Any,
         *,
         low: Sequence[float],
         high: Sequence[float],
