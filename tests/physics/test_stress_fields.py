@@ -26,10 +26,10 @@ ABOVE = {
 
 
 def test_first_yield_under_a_sphere_for_any_poisson_ratio():
-    p_0, depth = yielding.first_yield(np.array(NU))
+    p_0, depth = criteria.first_yield(np.array(NU))
     assert p_0 == pytest.approx(P_Y0, abs=6e-6)  # 5 printed decimals
     assert depth == pytest.approx(DEPTH, abs=6e-5)
-    assert round(float(yielding.first_yield(0.3)[0]), 1) == 1.6 == yielding.FIRST_YIELD_ROUNDED
+    assert round(float(criteria.first_yield(0.3)[0]), 1) == 1.6 == yielding.FIRST_YIELD_ROUNDED
     assert criteria.first_yield_mean(0.3) == pytest.approx(criteria.FIRST_YIELD_MEAN_ROUNDED, abs=0.03)  # 8.79 rounds
 
 
@@ -37,7 +37,7 @@ def test_first_yield_is_the_maximum_of_the_axial_stress_for_any_poisson_ratio():
     """30 digits: s_r - s_z of Hertz's half-ellipse (Johnson 1985, 3.45), its maximum by the root of a derivative taken
     numerically; 1e-12 leaves room for the 1e-16 of nu + 1 at nu = -0.99."""
     nu = np.array([-0.99, -0.97, -0.95, -0.9, -0.6, -0.2, 0.0, 0.3, 0.5])
-    found = np.array(yielding.first_yield(nu)).T
+    found = np.array(criteria.first_yield(nu)).T
     for n, (p_0, depth) in zip(nu, found, strict=True):
         with mp.workdps(30):
 
@@ -187,7 +187,7 @@ def test_on_the_axis_the_field_is_hertz():
     z = np.array([0.1, 0.48, 1.0, 3.0])
     s = sliding.subsurface(0.0, 0.0, z, mu=0.0, nu=0.3)
     assert s[:, 2, 2] == pytest.approx(-1 / (1 + z * z), rel=1e-12, abs=0)
-    assert s[:, 0, 0] - s[:, 2, 2] == pytest.approx(yielding.axis_difference(z, 0.3), rel=1e-12, abs=0)
+    assert s[:, 0, 0] - s[:, 2, 2] == pytest.approx(criteria.axis_difference(z, 0.3), rel=1e-12, abs=0)
 
 
 @pytest.mark.parametrize("share", [0.2, 0.7, 1.0])

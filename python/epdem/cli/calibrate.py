@@ -68,10 +68,10 @@ def _of_scene(case: Path, target: list[str], free: list[str], options: dict[str,
     from ..studies.fit import fit
     from ..studies.pages import of_fit
     from ..studies.sweep.points import settings
-    from . import sweep_view
+    from .sweep import progress
 
     targets = settings(target, "--target", "plate_force_max='12 N'")
-    with sweep_view.progress() as report:
+    with progress() as report:
         found = fit(case, targets, settings(free, "--free", "contact.friction=0.1..0.9"), report=report, **options)
     page = of_fit(found)
     if as_json:

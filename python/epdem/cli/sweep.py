@@ -1,15 +1,25 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """The commands `epdem sweep` and `epdem status`."""
 
+import contextlib
 import json
+from collections.abc import Iterator
 from pathlib import Path
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated, Any
 
 import typer
 
-from ..base.terminal import console
+from ..base.terminal import bar, console, show_table, table
 from ..errors import CaseError
 from .options import AsJson, CasePath, Engines, Force, Laws, Out, refuse
+
+if TYPE_CHECKING:  # slow to import
+    from rich.console import Console
+
+    from ..studies.sweep.folder import Sweep
+    from ..studies.sweep.run import Report, SweepOutcome
+
+SHOWN = 20  # failed points
 
 
 def sweep(
@@ -45,7 +55,6 @@ def sweep(
     from ..studies.sweep import slurm as study
     from ..studies.sweep.points import settings
     from ..studies.sweep.run import check_points, plan
-    from . import sweep_view
 
     if seed is not None and latin_hypercube is None:
         raise CaseError("--seed goes with --latin-hypercube; leave it out")
@@ -68,25 +77,25 @@ def sweep(
         )
     if dry_run:
         check_points(planned, range(1, len(planned.points) + 1), jobs)
-        sweep_view.points(planned, as_json, console())
+        _show_points(planned, as_json, console())
         return
     folder = out or planned.default_folder
     if write_script:
         study.write_script(planned, folder, slurm or [], write_script, force=force)
         print(f"sbatch {write_script}")
         return
-    with sweep_view.progress() as report:
+    with progress() as report:
         outcome = study.execute(
             planned, folder, executor, slurm or [], jobs=jobs, retry_failed=retry_failed, force=force, report=report
         )
     of_sweep(outcome)
-    sweep_view.outcome(outcome, as_json, console())
+    _show_outcome(outcome, as_json, console())
     raise typer.Exit(0 if outcome.passed else 1)
 
 
 def status(
     folder: Annotated[Path, typer.Argument(metavar="DIR", help="folder of a sweep")],
-    table: Annotated[bool, typer.Option("--table", help="write sweep.csv and sweep.h5 of what is there")] = False,
+    write_table: Annotated[bool, typer.Option("--table", help="write sweep.csv and sweep.h5 of what is there")] = False,
     as_json: AsJson = False,
 ) -> None:
     """Print the progress of a sweep: points waiting, running, done and failed, with times and reasons."""
@@ -94,15 +103,14 @@ def status(
     from ..studies.sweep import folder as store
     from ..studies.sweep.status import status as ask
     from ..studies.sweep.table import write
-    from . import sweep_view
 
     state = ask(folder)
-    if table:
+    if write_table:
         write(store.read(folder), folder)
     if as_json:
         print(json.dumps({name: plain(value) for name, value in state.items()}, indent=1))
     else:
-        sweep_view.status(state, console())
+        _show_status(state, console())
 
 
 def points(
@@ -115,3 +123,60 @@ def points(
     from ..studies.sweep.slurm import share, work
 
     work(folder, share(range(1, len(store.read(folder).points) + 1), task, tasks))
+
+
+def _show_points(sweep: "Sweep", as_json: bool, screen: "Console") -> None:
+    """Print every point."""
+    if as_json:
+        print(json.dumps({"case": sweep.name, "points": sweep.points}, indent=1))
+        return
+    title = f"{sweep.name}: {len(sweep.points)} points on {', '.join(sweep.engines)}"
+    shown = table(title, ("point", *sweep.points[0]))
+    for n, point in enumerate(sweep.points, start=1):
+        shown.add_row(str(n), *map(str, point.values()))
+    show_table(screen, shown)
+
+
+@contextlib.contextmanager
+def progress() -> "Iterator[Report]":
+    """A bar with the time left, on a terminal."""
+    from rich.progress import MofNCompleteColumn, TimeRemainingColumn
+
+    with bar(MofNCompleteColumn(), TimeRemainingColumn()) as shown:
+        task = shown.add_task("points", total=None)
+        yield lambda done, total: shown.update(task, completed=done, total=total)
+
+
+def _show_outcome(result: "SweepOutcome", as_json: bool, screen: "Console") -> None:
+    """Print the failed points and a summary."""
+    from ..studies.sweep.folder import DONE, FAILED
+
+    counts = {state: result.count(state) for state in (DONE, FAILED)}
+    failed = result.table[result.table["status"] == FAILED]
+    if as_json:
+        failures = failed[["point", "folder", "reason"]].to_dict("records")
+        about = {"case": result.sweep.name, "passed": result.passed, "folder": str(result.folder), "ran": result.ran}
+        print(json.dumps(about | counts | {"failures": failures}, indent=1))
+        return
+    for row in failed.head(SHOWN).to_dict("records"):
+        screen.print(f"point {row['point']} failed: {row['reason']}", style="red", soft_wrap=True)
+    if len(failed) > SHOWN:
+        screen.print(f"... and {len(failed) - SHOWN} more", style="red")
+    outside = result.table[(result.table["status"] == DONE) & ~result.table["passed"]]["point"].nunique()
+    text = f"{counts[DONE]} of {len(result.sweep.points)} points done, {result.ran} of them just now"
+    text += f"; {counts[FAILED]} failed (--retry-failed runs them again)" if counts[FAILED] else ""
+    text += f"; {outside} outside tolerance" if outside else ""
+    screen.print(f"{result.sweep.name}: {text}; see {result.folder}/sweep.csv and report.html", soft_wrap=True)
+
+
+def _show_status(summary: dict[str, Any], screen: "Console") -> None:
+    """Print the status of a sweep."""
+    states = ", ".join(f"{summary[state]} {state}" for state in ("waiting", "running", "done", "failed"))
+    screen.print(f"{summary['case']}: {summary['points']} points: {states}", soft_wrap=True)
+    if summary["done"] + summary["failed"]:
+        left = f"; about {summary['work_left']:.3g} s of work left" if summary["work_left"] else ""
+        screen.print(f"{summary['seconds']:.3g} s of work, longest point {summary['longest']:.3g} s{left}")
+    for row in summary["failures"][:SHOWN]:
+        screen.print(f"point {row['point']} failed: {row['reason']}; {row['folder']}", soft_wrap=True)
+    if len(summary["failures"]) > SHOWN:
+        screen.print(f"... and {len(summary['failures']) - SHOWN} more")

@@ -157,28 +157,19 @@ def _faces(region: Region, free: float) -> tuple[FloatArray, FloatArray]:
     return np.concatenate([both * [0.0, 0.0, 1.0], sides]), np.array([-region.z[0], region.z[1], *around]) - free
 
 
-def _remains(triangle: FloatArray, normals: FloatArray, distances: FloatArray) -> bool:
-    """Whether a part of a triangle lies below all faces; each face in turn cuts off the part beyond it."""
-    polygon = triangle
-    for normal, distance in zip(normals, distances, strict=True):
-        height = polygon @ normal - distance
-        corners = []
-        for a, b, x, y in zip(polygon, np.roll(polygon, -1, axis=0), height, np.roll(height, -1), strict=True):
-            if x < 0.0:
-                corners.append(a)
-            if x * y < 0.0:
-                corners.append(a + (b - a) * x / (x - y))
-        if not corners:
-            return False
-        polygon = np.array(corners)
-    return True
-
-
 def crosses(region: Region, triangles: FloatArray, free: float) -> bool:
     """Whether one of the triangles, shape (n, 3 corners, 3), has a part more than `free` [m] inside a region."""
     normals, distances = _faces(region, free)
     beyond = np.any(np.all(triangles @ normals.T >= distances, axis=1), axis=1)
-    return any(_remains(t, normals, distances) for t in triangles[~beyond])
+    corners = triangles[~beyond].reshape(-1, 3)
+    faces = np.arange(len(corners)).reshape(-1, 3)
+    for normal, distance in zip(normals, distances, strict=True):
+        if not len(faces):
+            return False
+        from trimesh.intersections import slice_faces_plane  # a second: only where a wall is near
+
+        corners, faces, _ = slice_faces_plane(corners, faces, -normal, normal * distance)  # type: ignore[no-untyped-call]
+    return len(faces) > 0
 
 
 def depths(triangles: FloatArray, places: FloatArray, radii: FloatArray) -> FloatArray:

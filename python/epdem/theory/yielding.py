@@ -1,40 +1,14 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""First yield under a sphere: pressure, depth, impact speed."""
+"""Impact speeds of first yield under a sphere."""
 
 from typing import Any
 
 import numpy as np
 
 from .backbone import Backbone
-from .numerics import Array, Real, bisect, number, poisson_ratio
+from .numerics import Array, Real, bisect, number
 
 FIRST_YIELD_ROUNDED = 1.60  # p_0/Y at first yield, nu = 0.3; eq. 8.78
-
-
-def axis_difference(z: Real, nu: Real) -> Array:
-    """s_z - s_r on the axis of a Hertz contact at depth z (in a), in units of -p_0: the stress of both criteria."""
-    z, nu = np.asarray(z, float), poisson_ratio("nu", nu)
-    deep = np.maximum(z, 1e-300)
-    s_r = -(1 + nu) * (1 - deep * np.arctan(1 / deep)) + 1 / (2 * (1 + z * z))
-    return s_r + 1 / (1 + z * z)
-
-
-def first_yield(nu: Real) -> tuple[Array, Array]:
-    """(p_0/Y, depth z/a) of first yield on the axis under a sphere, exactly. nu in (-1, 0.5], of any shape.
-
-    Eq. 8.78 [Johnson 1985]: p_0 = Y/max(s_r - s_z), 1.60 Y at nu = 0.3
-
-    Both criteria coincide on the axis (section 6.1). The edge of the contact yields before it for nu below -0.34 (von
-    Mises) or -0.13 (Tresca), where p_0/Y = sqrt(3)/(1-2 nu) or 1.5/(1-2 nu).
-    """
-    nu = poisson_ratio("nu", nu)
-    low, high = 0.3 * (1 + nu), np.zeros(np.shape(nu)) + 1.5  # z goes to pi/6 (1 + nu) as nu goes to -1
-
-    def slope(z: Array) -> Array:  # of axis_difference by z, in closed form
-        return (1 + nu) * (np.arctan(1 / z) - z / (1 + z * z)) - 3 * z / (1 + z * z) ** 2
-
-    z, _ = bisect(lambda z: slope(z) > 0, low, high)
-    return 1 / axis_difference(z, nu), z
 
 
 def first_yield_speed(law: Backbone, Y: Real, *, m_star: Real, ratio: Real = FIRST_YIELD_ROUNDED) -> Array:

@@ -4,11 +4,36 @@
 import numpy as np
 from numpy.typing import ArrayLike
 
-from ...theory.numerics import Array, Real, number
-from ...theory.yielding import first_yield
+from ...theory.numerics import Array, Real, bisect, number, poisson_ratio
 
 FIRST_YIELD_MEAN_ROUNDED = 1.10  # p_m/Y at first yield; eq. 8.79
 FULLY_PLASTIC = (2.8, 3.0)  # p_m/Y; see fully_plastic_mean
+
+
+def axis_difference(z: Real, nu: Real) -> Array:
+    """s_z - s_r on the axis of a Hertz contact at depth z (in a), in units of -p_0: the stress of both criteria."""
+    z, nu = np.asarray(z, float), poisson_ratio("nu", nu)
+    deep = np.maximum(z, 1e-300)
+    s_r = -(1 + nu) * (1 - deep * np.arctan(1 / deep)) + 1 / (2 * (1 + z * z))
+    return s_r + 1 / (1 + z * z)
+
+
+def first_yield(nu: Real) -> tuple[Array, Array]:
+    """(p_0/Y, depth z/a) of first yield on the axis under a sphere, exactly. nu in (-1, 0.5], of any shape.
+
+    Eq. 8.78 [Johnson 1985]: p_0 = Y/max(s_r - s_z), 1.60 Y at nu = 0.3
+
+    Both criteria coincide on the axis (section 6.1). The edge of the contact yields before it for nu below -0.34 (von
+    Mises) or -0.13 (Tresca), where p_0/Y = sqrt(3)/(1-2 nu) or 1.5/(1-2 nu).
+    """
+    nu = poisson_ratio("nu", nu)
+    low, high = 0.3 * (1 + nu), np.zeros(np.shape(nu)) + 1.5  # z goes to pi/6 (1 + nu) as nu goes to -1
+
+    def slope(z: Array) -> Array:  # of axis_difference by z, in closed form
+        return (1 + nu) * (np.arctan(1 / z) - z / (1 + z * z)) - 3 * z / (1 + z * z) ** 2
+
+    z, _ = bisect(lambda z: slope(z) > 0, low, high)
+    return 1 / axis_difference(z, nu), z
 
 
 def principal(stress: ArrayLike) -> Array:

@@ -16,8 +16,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from ...theory.numerics import Array, Real, gauss, number, poisson_ratio
-from ...theory.yielding import first_yield
-from .criteria import equivalent
+from .criteria import equivalent, first_yield
 
 # All singularities lie at t = i z +- r: from t = -i to 1 below them. The nodes crowd towards t = 1, where the edge of
 # the contact comes near; the other half of the way, from -1 to -i, gives the complex conjugate.
