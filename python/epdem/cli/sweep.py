@@ -95,7 +95,7 @@ def sweep(
 
 def status(
     folder: Annotated[Path, typer.Argument(metavar="DIR", help="folder of a sweep")],
-    write_table: Annotated[bool, typer.Option("--table", help="write sweep.csv and sweep.h5 of what is there")] = False,
+    table: Annotated[bool, typer.Option("--table", help="write sweep.csv and sweep.h5 of what is there")] = False,
     as_json: AsJson = False,
 ) -> None:
     """Print the progress of a sweep: points waiting, running, done and failed, with times and reasons."""
@@ -105,7 +105,7 @@ def status(
     from ..studies.sweep.table import write
 
     state = ask(folder)
-    if write_table:
+    if table:
         write(store.read(folder), folder)
     if as_json:
         print(json.dumps({name: plain(value) for name, value in state.items()}, indent=1))
