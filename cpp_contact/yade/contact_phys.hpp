@@ -20,6 +20,8 @@ class EpPhys : public FrictPhys {
       for (const std::string& slot : slots())
         add(python, iy::camel(slot), slot + " of the law's history; nan: the law has none",
             [slot](EpPhys& p) { return p.kept(slot); });
+      add(python, "addedOverlap", "overlap [m] that the growth of the bodies adds, with compaction",
+          [](EpPhys& p) { return p.addedOverlap(); });
       for (int k = 0; k < iy::parameter_count; ++k)
         if (iy::is_first(k)) {
           const epdem::Parameter& p = *iy::parameters[k].declared;
@@ -60,6 +62,18 @@ class EpPhys : public FrictPhys {
 #undef EPDEM_KEPT
     return value;
   }
+
+  /// Where the history has two numbers of growth; -1: the law has no compaction.
+  int growthAt() const {
+    int at = -1;
+#define EPDEM_GROWTH_AT(Class)                                                    \
+  if (epdem::compacts<epdem::Class<double>> && lawId == epdem::Class<double>::id) \
+    at = epdem::in_yade::growth_at<epdem::Class<double>>;
+    EPDEM_LAWS(EPDEM_GROWTH_AT)
+#undef EPDEM_GROWTH_AT
+    return at;
+  }
+  double addedOverlap() const { return growthAt() < 0 ? 0.0 : history[growthAt() + 1]; }
 
   boost::python::dict pyDictCustom() const override {
     namespace iy = epdem::in_yade;

@@ -2,7 +2,7 @@
 // Law2_ScGeom_EpPhys_<Law>: one contact in one step. Motion of the bodies and history in, forces and history out.
 #pragma once
 
-#include "contact_phys.hpp"
+#include "growth.hpp"
 
 namespace yade {
 
@@ -12,6 +12,10 @@ class Law2_ScGeom_EpPhys : public LawFunctor {
     frictionModel_ = place_of(epdem::Frictions{}, "tangential", tangential);
     rollingModel_ = place_of(epdem::Rollings{}, "rolling", rolling);
     cohesionModel_ = place_of(epdem::Cohesions{}, "cohesion", cohesion);
+    if (compaction && !compacts()) {
+      compaction = false;
+      throw std::invalid_argument(getClassName() + ".compaction = True: only Law2_ScGeom_EpPhys_Cavity has it");
+    }
   }
 
   // clang-format off
@@ -21,12 +25,16 @@ class Law2_ScGeom_EpPhys : public LawFunctor {
     ((string, rolling, "off", Attr::triggerPostLoad, "rolling friction: off, cdt (constant torque) or epsd2 (spring)"))
     ((bool, torsion, false, , "whether rolling friction also resists torsion"))
     ((string, cohesion, "off", Attr::triggerPostLoad, "cohesion beside a law without adhesion: off, sjkr (cohesionEnergyDensity times the area of the overlap's lens) or sjkr2"))
+    ((bool, compaction, false, Attr::triggerPostLoad, "whether spheres grow at each contact by the dents of their other contacts, of cavity; takes :yref:`EpGrowth`, Bo1_Sphere_Aabb(aabbEnlargeFactor=1.25) and Ig2_..._ScGeomGrown in place of Ig2_..._ScGeom"))
     ((bool, recordStrain, false, , "whether largestRadiusRatio and largestOverlapRatio are recorded"))
     ((Real, largestRadiusRatio, 0., Attr::readonly, "largest contact radius over R* of all contacts so far"))
     ((Real, largestOverlapRatio, 0., Attr::readonly, "largest overlap over R* of all contacts so far")));
   // clang-format on
 
  protected:
+  /// Whether the law has compaction.
+  virtual bool compacts() const { return false; }
+
   /// One contact; false: it has ended.
   template <class Law>
   bool act(const ScGeom& geom, EpPhys& phys, const Interaction& contact) {
@@ -94,13 +102,11 @@ class Law2_ScGeom_EpPhys : public LawFunctor {
     [[gnu::noinline]] void book(const Law& law, double R_star, const State& before, const Step& now,
                                 double overlap) const {
       const auto e = epdem::energies(law, R_star, before, now, overlap);
-      phys.plasticWork += e.plastic_work_step;
       phys.elasticEnergy = e.stored;
       phys.adhesionLoss += e.adhesion_loss;
-      functor.book(plastic, e.plastic_work_step);
+      functor.book_plastic(phys, contact, e.plastic_work_step);
       functor.book(elastic, e.stored);
       functor.book(adhesion, e.adhesion_loss);
-      functor.share(phys, contact, &EpState::plasticWork, e.plastic_work_step);
       functor.share(phys, contact, &EpState::adhesionLoss, e.adhesion_loss);
     }
     template <class Work>
@@ -122,6 +128,9 @@ class Law2_ScGeom_EpPhys : public LawFunctor {
     namespace iy = epdem::in_yade;
     if (epdem::adheres<Law> && cohesionModel_ != 0)
       iy::refuse(getClassName() + ".cohesion = '" + cohesion + "': the law has its adhesion already, must be off");
+    if (compaction && cohesionModel_ != 0)
+      iy::refuse(getClassName() + ".cohesion = '" + cohesion + "': contacts with compaction have none, must be off");
+    if (compaction) EpFindsGrown::require(*scene, getClassName());
     double values[Law::n_parameters + 1];
     const string bodies = "bodies " + std::to_string(contact.getId1()) + " and " + std::to_string(contact.getId2());
     for (int k = 0; k < Law::n_parameters; ++k) {
@@ -149,11 +158,15 @@ class Law2_ScGeom_EpPhys : public LawFunctor {
 
   template <class Friction, class Law>
   bool act(const ScGeom& geom, EpPhys& phys, const Interaction& contact) {
+    if constexpr (epdem::compacts<Law>)
+      if (epdem::rarely(compaction))
+        return phys.wall ? act<Friction, true, Law, true>(geom, phys, contact)
+                         : act<Friction, false, Law, true>(geom, phys, contact);
     return phys.wall ? act<Friction, true, Law>(geom, phys, contact) : act<Friction, false, Law>(geom, phys, contact);
   }
 
   // flatten: without it GCC copies constants, motion and history between the functions of a contact
-  template <class Friction, bool wall, class Law>
+  template <class Friction, bool wall, class Law, bool grows = false>
   [[gnu::flatten]] bool act(const ScGeom& geom, EpPhys& phys, const Interaction& contact) {
     const auto& bodies = *scene->bodies;
     const Body::id_t id1 = contact.getId1(), id2 = contact.getId2();
@@ -182,7 +195,20 @@ class Law2_ScGeom_EpPhys : public LawFunctor {
     pair.friction = phys.tangensOfFrictionAngle;
     ContactHistory<Law, Friction> history;
     load(phys, 0, history.law);
-    if constexpr (epdem::adheres<Law>) {
+    // One pass with the sums of the step before, whose u is extrapolated as in LIGGGHTS: the second pass of a step
+    // would need the geometry of all contacts before the first force.
+    [[maybe_unused]] const double overlap = c.overlap;
+    [[maybe_unused]] double last = 0.0, growing = 0.0;
+    [[maybe_unused]] epdem::Grown<double> grown{};
+    if constexpr (grows) {
+      const auto growth_of = [](const State& state) { return static_cast<const EpState&>(state).growth; };
+      const double growth_i = growth_of(swapped ? s2 : s1), growth_j = wall ? 0.0 : growth_of(s2);
+      last = phys.history[epdem::in_yade::growth_at<Law>];
+      growing = epdem::added_overlap<wall>(c.radius_i, c.radius_j, history.law.delta_max, growth_i, growth_j);
+      if (!(overlap + growing > 0.0)) return false;
+      grown = epdem::grow<Law>(history.law, overlap, growing, last);
+      c.overlap = overlap + grown.added;
+    } else if constexpr (epdem::adheres<Law>) {
       if (!(c.overlap > 0.0 || history.law.root > 0.0)) return false;
     } else {
       if (!(c.overlap > 0.0)) return false;
@@ -196,6 +222,14 @@ class Law2_ScGeom_EpPhys : public LawFunctor {
     const auto loads = epdem::contact<Friction, wall>(
         pair, settings, c, history, [&] { return phys.effectiveMass; },
         Observer{*this, phys, contact, bool(scene->trackEnergy)});
+    if constexpr (grows) {
+      history.law.delta_max = epdem::largest_overlap(grown, overlap);
+      phys.history[epdem::in_yade::growth_at<Law>] = growing;
+      phys.history[epdem::in_yade::growth_at<Law> + 1] = grown.added;
+      if (scene->trackEnergy)
+        book_plastic(phys, contact,
+                     epdem::growth_loss(pair.law, c.R_star, history.law.delta_max, overlap, growing, last));
+    }
     store(phys, 0, history.law);
     store(phys, friction_at, history.friction);
     if (rollingModel_ != 0) store(phys, rolling_at, history.rolling);
@@ -218,6 +252,13 @@ class Law2_ScGeom_EpPhys : public LawFunctor {
     }
     if constexpr (epdem::adheres<Law>) return c.overlap > 0.0 || history.law.root > 0.0;
     return true;
+  }
+
+  /// Adds plastic work of a step [J].
+  [[gnu::noinline]] void book_plastic(EpPhys& phys, const Interaction& contact, double work) {
+    phys.plasticWork += work;
+    book(plastic, work);
+    share(phys, contact, &EpState::plasticWork, work);
   }
 
   /// Adds to an energy of O.energy. One thread creates all names before any thread adds.
@@ -287,6 +328,7 @@ const char* law_text() {
     bool go(shared_ptr<IGeom>& geom, shared_ptr<IPhys>& phys, Interaction* contact) override {              \
       return act<epdem::Class<double>>(static_cast<ScGeom&>(*geom), static_cast<EpPhys&>(*phys), *contact); \
     }                                                                                                       \
+    bool compacts() const override { return epdem::compacts<epdem::Class<double>>; }                        \
     FUNCTOR2D(ScGeom, EpPhys);                                                                              \
     YADE_CLASS_BASE_DOC(Law2_ScGeom_EpPhys_##Class, Law2_ScGeom_EpPhys, law_text<epdem::Class<double>>());  \
   };                                                                                                        \

@@ -20,7 +20,8 @@ class EpState : public State {
     "State of a body of :yref:`EpMat`. With O.trackEnergy it sums up the work of the body's contacts: half of the work of a contact with a sphere, the whole work of a contact with a wall.",
     ((Real, plasticWork, 0., , "plastic work [J]"))
     ((Real, adhesionLoss, 0., , "energy that adhesion lost [J]"))
-    ((Real, frictionWork, 0., , "work of friction [J], with partial slip")),
+    ((Real, frictionWork, 0., , "work of friction [J], with partial slip"))
+    ((Real, growth, 0., Attr::readonly, "growth of the sphere over its radius by the dents of its contacts, with compaction")),
     createIndex(););
   // clang-format on
   REGISTER_CLASS_INDEX(EpState, State);

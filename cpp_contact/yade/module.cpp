@@ -6,7 +6,11 @@
 static_assert(std::is_same_v<yade::Real, double>, "epdem_yade is built for a YADE of double precision");
 
 #define EPDEM_CLASS(Class) (Law2_ScGeom_EpPhys_##Class)
-#define EPDEM_CLASSES (EpState)(EpMat)(EpPhys)(Ip2_EpMat_EpMat_EpPhys)(Law2_ScGeom_EpPhys)EPDEM_LAWS(EPDEM_CLASS)
+#define EPDEM_GROWTH                         \
+  (EpGrowth)(Ig2_Sphere_Sphere_ScGeomGrown)( \
+      Ig2_Wall_Sphere_ScGeomGrown)(Ig2_Facet_Sphere_ScGeomGrown)(Ig2_Box_Sphere_ScGeomGrown)
+#define EPDEM_CLASSES \
+  (EpState)(EpMat)(EpPhys)(Ip2_EpMat_EpMat_EpPhys)EPDEM_GROWTH(Law2_ScGeom_EpPhys) EPDEM_LAWS(EPDEM_CLASS)
 
 namespace yade {
 YADE_PLUGIN(EPDEM_CLASSES);

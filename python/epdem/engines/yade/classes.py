@@ -39,6 +39,11 @@ class Functors:
     pairs: tuple[PairValue, ...]
     settings: Mapping[str, object]
 
+    @property
+    def grows(self) -> bool:
+        """Whether the law has compaction, for which the functors of the geometry are those of grown spheres."""
+        return "compaction" in self.settings
+
 
 @dataclass(frozen=True)
 class Group:

@@ -46,7 +46,6 @@ def refuse(p: ScenePlan, *, classes: bool) -> None:
     rolling = m.rolling and m.rolling.model
     unknown: dict[str, tuple[object, str]] = {
         "contact.rolling": (rolling == "epsd" and rolling, "YADE's laws have cdt and epsd2"),
-        "law.compaction": (m.compaction, "YADE's laws have no compaction"),
         "output.restarts": (out.restarts, "a YADE scene is not continued"),
         "output.vtk": (out.vtk, "there is no VTK output; output.particles holds the same"),
         "output.pictures": (out.pictures, "YADE draws none without a display"),
@@ -56,6 +55,7 @@ def refuse(p: ScenePlan, *, classes: bool) -> None:
         "contact.tangential": m.nodes and m.tangential,
         "contact.rolling": rolling,
         "contact.cohesion": m.cohesion,
+        "law.compaction": m.compaction,
     }
     for place, (value, reason) in unknown.items():
         refuse_value(place, value, reason)
@@ -113,6 +113,7 @@ def _functors(p: ScenePlan, friction: Square) -> Functors:
     pairs += [of_pairs("workOfAdhesion", m.adhesion)] if m.adheres else []
     models = {"rolling": repr(m.rolling.model)} if m.rolling else {}
     models |= {"cohesion": repr("sjkr")} if m.cohesion else {}
+    models |= {"compaction": "True"} if m.compaction else {}
     more = words.settings(m.tangential if m.sliding else None, **models, recordStrain=True)
     shapes = {"Facet" if w.file else "Wall" for w in walls(p).values()}
     return Functors(words.title(m.law), ("Sphere", *sorted(shapes)), tuple(pairs), more)

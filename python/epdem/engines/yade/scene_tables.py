@@ -16,8 +16,8 @@ from .scene_parts import is_endless, wall_names
 
 PRESETS = {"floor_force_z": "floor_load", "plate_force_z": "plate_force", "drum_torque_y": "torque"}  # columns of kinds
 # of a contact: number of the sphere and of the other body (from 0; walls after the spheres), overlaps [m]; of the
-# classes also whether the bodies are attached
-CONTACT = ["i", "j", "overlap", "delta_max", "attached"]
+# classes also whether the bodies are attached, and with compaction the overlap that growth adds [m]
+CONTACT = ["i", "j", "overlap", "delta_max", "attached", "added_overlap"]
 
 
 def _frames(
@@ -71,10 +71,12 @@ def contact_table(p: ScenePlan, folder: Path, spheres: pd.DataFrame, without: Co
 
 def _contacts(p: ScenePlan, folder: Path, spheres: pd.DataFrame, without: Collection[int]) -> pd.DataFrame:
     """Every contact of every frame; with overlap 0 those that ended since the frame before."""
-    raw = _frames(p, folder, "contacts", p.contacts, CONTACT[:4], CONTACT[4:], without)
+    of_classes = CONTACT[4 : 5 + p.model.compaction]
+    raw = _frames(p, folder, "contacts", p.contacts, CONTACT[:4], of_classes, without)
     raw["delta_max"] = raw["delta_max"].fillna(raw["overlap"])  # of a law without history
     attached = raw["attached"] > 0 if p.model.adheres else False
-    raw = raw[(raw["overlap"] >= 0) | attached].reset_index(drop=True)  # what is only near is no contact yet
+    overlap = raw["overlap"] + raw.get("added_overlap", 0.0)
+    raw = raw[(overlap >= 0) | attached].reset_index(drop=True)  # what is only near is no contact yet
     walls = np.array(["", *wall_names(p)])
     last = p.count + len(walls) - 2
     bodies = raw[["i", "j"]].to_numpy(float)

@@ -20,22 +20,22 @@ STRAINS = ("largest_radius_ratio", "largest_overlap_ratio")  # contact radius an
 class Classes:
     """The contacts of epdem_yade; law: its functor, with recordStrain."""
 
-    columns = 5
-
     def __init__(self, law: Any):
         self.law = law
+        self.columns = 5 + law.compaction
 
     def strain(self) -> tuple[float, float]:
         """Largest contact radius and overlap over R* so far."""
         return self.law.largestRadiusRatio, self.law.largestOverlapRatio
 
     def table(self) -> list[tuple[float, ...]]:
-        """As above, and 1 if the bodies are attached."""
-        return [
-            (i.id1, i.id2, i.geom.penetrationDepth, i.phys.deltaMax, float(i.phys.contactRadius > 0.0))
+        """As above, and 1 if the bodies are attached; with compaction the overlap that growth adds [m]."""
+        rows = [
+            (i.id1, i.id2, i.geom.penetrationDepth, i.phys.deltaMax, i.phys.contactRadius > 0.0, i.phys.addedOverlap)
             for i in O.interactions
             if i.isReal
         ]
+        return [row[: self.columns] for row in rows]
 
 
 class Triangles:

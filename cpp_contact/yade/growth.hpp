@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: GPL-2.0-or-later
+// Compaction: growth of the spheres by the dents of their contacts, and Ig2 functors that find contacts of grown
+// spheres.
+#pragma once
+
+#include <core/GlobalEngine.hpp>
+#include <core/InteractionLoop.hpp>
+#include <pkg/common/Bo1_Aabb.hpp>
+#include <pkg/common/Collider.hpp>
+#include <pkg/dem/Ig2_Box_Sphere_ScGeom.hpp>
+#include <pkg/dem/Ig2_Facet_Sphere_ScGeom.hpp>
+#include <pkg/dem/Ig2_Sphere_Sphere_ScGeom.hpp>
+
+#include "contact_phys.hpp"
+
+namespace yade {
+
+class EpGrowth : public GlobalEngine {
+ public:
+  /// A thread writes its own spheres, and each sum has the order of the neighbours' numbers: neither threads nor O.load
+  /// change a bit of it.
+  void action() override {
+    const auto& bodies = *scene->bodies;
+    const Body::id_t n = bodies.size();
+#ifdef YADE_OPENMP
+#pragma omp parallel for schedule(guided)
+#endif
+    for (Body::id_t id = 0; id < n; ++id) {
+      const Body* const body = bodies[id].get();
+      if (!body || !body->shape || body->shape->getClassIndex() != Sphere::getClassIndexStatic()) continue;
+      auto* const state = dynamic_cast<EpState*>(body->state.get());
+      if (!state)
+        epdem::in_yade::refuse("EpGrowth: body " + std::to_string(id) +
+                               " has no EpState; give the sphere its EpMat when it is made");
+      double depths = 0.0, squares = 0.0;
+      for (const auto& [other, contact] : body->intrs) {
+        const double depth = contact->isReal() ? depth_of(*contact, id) : 0.0;
+        depths += depth;
+        squares += depth * depth;
+      }
+      state->growth = epdem::growth(depths, squares);
+    }
+  }
+
+  // clang-format off
+  YADE_CLASS_BASE_DOC(EpGrowth, GlobalEngine,
+    "Computes the :yref:`growth<EpState.growth>` of each sphere from the dents of its contacts, for laws with compaction; stands before :yref:`InteractionLoop`.");
+  // clang-format on
+
+ private:
+  /// Depth of the dent of a contact in a sphere over its radius.
+  static double depth_of(const Interaction& contact, Body::id_t id) {
+    const auto* const phys = dynamic_cast<const EpPhys*>(contact.phys.get());
+    if (!phys || phys->growthAt() < 0) return 0.0;
+    const auto& geom = static_cast<const ScGeom&>(*contact.geom);
+    const double delta_max = phys->history[0], radius_1 = geom.radius1, radius_2 = geom.radius2;
+    if (phys->wall) return epdem::depths_of<true>(phys->wall == 1 ? radius_2 : radius_1, 0.0, delta_max).i;
+    const auto depths = epdem::depths_of<false>(radius_1, radius_2, delta_max);
+    return contact.getId1() == id ? depths.i : depths.j;
+  }
+};
+REGISTER_SERIALIZABLE(EpGrowth);
+
+/// An Ig2 functor that finds contacts of grown spheres.
+class EpFindsGrown {
+ public:
+  virtual ~EpFindsGrown() = default;
+
+  /// Ends the program unless the engines compute growth and find each contact that growth brings about.
+  static void require(const Scene& scene, const string& law) {
+    using epdem::in_yade::refuse;
+    bool grows = false;
+    for (const auto& engine : scene.engines) {
+      grows |= !engine->dead && dynamic_cast<const EpGrowth*>(engine.get());
+      if (const auto* const loop = dynamic_cast<const InteractionLoop*>(engine.get())) {
+        if (!grows) refuse(law + ": compaction needs the engine EpGrowth() before InteractionLoop; add it");
+        for (const auto& functor : loop->geomDispatcher->functors) {
+          const string name = functor->getClassName();
+          if (!dynamic_cast<const EpFindsGrown*>(functor.get()))
+            refuse(law + ": compaction misses contacts across gaps with " + name + "; take " + name + "Grown");
+        }
+      }
+      if (const auto* const collider = dynamic_cast<const Collider*>(engine.get()))
+        for (const auto& functor : collider->boundDispatcher->functors) {
+          const auto* const bound = dynamic_cast<const Bo1_Sphere_Aabb*>(functor.get());
+          if (bound && bound->aabbEnlargeFactor < 1.0 + epdem::growth_reach)
+            refuse(law + ": Bo1_Sphere_Aabb.aabbEnlargeFactor = " + epdem::number(bound->aabbEnlargeFactor) +
+                   ", compaction closes gaps of up to a quarter of the radii; give at least " +
+                   epdem::number(1.0 + epdem::growth_reach));
+        }
+    }
+  }
+};
+
+/// YADE's functor for a sphere and a body of the shape First.
+template <class Ig2, class First>
+class EpGrownIg2 : public Ig2, public EpFindsGrown {
+  static constexpr bool spheres = std::is_same_v<First, Sphere>;
+
+ public:
+  bool go(const shared_ptr<Shape>& shape1, const shared_ptr<Shape>& shape2, const State& state1, const State& state2,
+          const Vector3r& shift2, const bool& force, const shared_ptr<Interaction>& contact) override {
+    const auto finds = [&](const shared_ptr<Shape>& first, const shared_ptr<Shape>& second) {
+      return Ig2::go(first, second, state1, state2, shift2, force, contact);
+    };
+    const double growth1 = spheres ? growth_of(state1) : 0.0, growth2 = growth_of(state2);
+    if (contact->isReal() || !(growth1 + growth2 > 0.0)) return finds(shape1, shape2);
+    Sphere grown1, grown2;
+    if (!finds(spheres ? grow(shape1, growth1, grown1) : shape1, grow(shape2, growth2, grown2))) return false;
+    // once more with the spheres themselves: YADE computes the geometry of a real contact at any distance
+    contact->phys = boost::make_shared<IPhys>();
+    finds(shape1, shape2);
+    contact->phys.reset();
+    return true;
+  }
+
+ private:
+  static double growth_of(const State& state) {
+    const auto* const of_material = dynamic_cast<const EpState*>(&state);
+    return of_material ? of_material->growth : 0.0;
+  }
+
+  static shared_ptr<Shape> grow(const shared_ptr<Shape>& sphere, double growth, Sphere& grown) {
+    grown.radius = static_cast<const Sphere&>(*sphere).radius * (1.0 + growth);
+    return shared_ptr<Shape>(shared_ptr<Shape>(), &grown);
+  }
+};
+
+#define EPDEM_IG2(First)                                                                                              \
+  class Ig2_##First##_Sphere_ScGeomGrown : public EpGrownIg2<Ig2_##First##_Sphere_ScGeom, First> {                    \
+   public:                                                                                                            \
+    YADE_CLASS_BASE_DOC(Ig2_##First##_Sphere_ScGeomGrown, Ig2_##First##_Sphere_ScGeom,                                \
+                        "The same for laws with compaction: finds contacts of grown spheres across a gap, as far as " \
+                        ":yref:`Bo1_Sphere_Aabb::aabbEnlargeFactor` reaches.");                                       \
+  };                                                                                                                  \
+  REGISTER_SERIALIZABLE(Ig2_##First##_Sphere_ScGeomGrown);
+EPDEM_IG2(Sphere)
+EPDEM_IG2(Wall)
+EPDEM_IG2(Facet)
+EPDEM_IG2(Box)
+#undef EPDEM_IG2
+
+}  // namespace yade
