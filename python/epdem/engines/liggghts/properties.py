@@ -6,8 +6,10 @@ from dataclasses import dataclass
 
 from ...base.declarations import declarations
 from ...case.fields import NODES
+from ...errors import CaseError
 from ...impacts.plan import Plan
 from ...laws.strengths import ADHESION
+from ...scenes.plan import ScenePlan
 from ..input_script import atom_types, finite
 
 HARD, SOFT = 1e9, 5e6  # LIGGGHTS refuses moduli [Pa] outside these without a keyword
@@ -124,3 +126,27 @@ def of_law(plan: Plan) -> tuple[Property, ...]:
         note = "of impacts that do not yield"
         properties.append(per_pair("coefficientRestitution", len(types), x.viscous_restitution, "-", note))
     return tuple(properties)
+
+
+def wear(p: ScenePlan) -> tuple[Property, ...]:
+    """Finnie's constant [m^2/N] of each pair of a sphere's type and a wall's, the same in both orders.
+
+    Raises CaseError for two values of one pair.
+    """
+    spheres = {p.model.type_of(particles.material) for particles in p.scene.filled}
+    of_pair = dict[frozenset[int], tuple[str, float]]()  # the wall that gives the value, the value
+    for name, mesh in p.scene.meshes.items():
+        if not mesh.wear:
+            continue
+        for sphere in spheres:
+            other, wear = of_pair.setdefault(frozenset((sphere, p.wall_types[name])), (name, mesh.wear))
+            if wear != mesh.wear:
+                raise CaseError(
+                    f"scene.wall.{name}.wear = {mesh.wear:g} m^2/N: wall {other} has {wear:g} m^2/N, and LIGGGHTS has "
+                    "one value for each pair of materials; give both walls one value, or each its own material"
+                )
+    if not of_pair:
+        return ()
+    types = range(1, len(p.model.types) + 1)
+    values = [of_pair.get(frozenset((a, b)), ("", 0.0))[1] for a in types for b in types]
+    return (per_pair("k_finnie", len(types), values, "m^2/N"),)

@@ -10,8 +10,7 @@ from ...errors import CaseError
 from ...scenes.model import Model
 from ...scenes.plan import ScenePlan
 from ..input_script import SKIN, SKIN_OF_GROWTH, default_skin, row_words, wall_id
-from . import wall_stress
-from .properties import HARD, SOFT, Property, elastic, per_pair, ratios, strength, tangential, work_of_adhesion
+from .properties import HARD, SOFT, Property, elastic, per_pair, ratios, strength, tangential, wear, work_of_adhesion
 from .scene_parts import insertions, parts, planes, stl_text, surfaces, table
 
 WORKS = {  # what dumps call the works and energies of a sphere
@@ -49,7 +48,7 @@ def _properties(p: ScenePlan) -> tuple[Property, ...]:
         properties.append(work_of_adhesion(n, [x for row in m.adhesion for x in row]))
     if m.cohesion:
         properties.append(per_pair("cohesionEnergyDensity", n, m.cohesion, "J/m^3"))
-    return (*properties, *wall_stress.properties(p))
+    return (*properties, *wear(p))
 
 
 def _settings(p: ScenePlan) -> tuple[str, ...]:

@@ -2,6 +2,7 @@
 """The tables of a scene from LIGGGHTS's files. Only this module reads its file formats."""
 
 from collections.abc import Collection
+from functools import partial
 from pathlib import Path
 
 import numpy as np
@@ -13,12 +14,13 @@ from ...scenes.plan import ScenePlan
 from .. import log
 from ..host import frames
 from . import dump
-from .wall_stress import wall_table
 
-__all__ = ["contact_table", "damaged", "particles", "rows", "wall_table"]
 rows = log.scene_rows
 
 PARTICLES, PAIRS, MESHES = "particles.{}.bin", "contacts.{}.txt", "wall_contacts.{}.txt"
+FILES = "stress_{}.{}.vtk"  # wall, step
+COLUMNS = {"meshid": "triangle", "area": "area", "normal_stress_average": "normal_stress"}
+COLUMNS |= {"shear_stress_average": "shear_stress", "wear": "wear"}
 
 
 def _frame(path: Path, count: int) -> np.ndarray:
@@ -116,3 +118,38 @@ def contact_table(p: ScenePlan, folder: Path, spheres: pd.DataFrame, without: Co
         parts.append(touched.assign(j=0, wall=wall))
     raw = pd.concat([part for part in parts if len(part)] or parts[:1], ignore_index=True)
     return columns.complete(p, raw, spheres, folder)
+
+
+def _fields(path: Path) -> dict[str, np.ndarray]:
+    """The numbers of each triangle in a file of LIGGGHTS's `dump mesh/vtk`, sorted by their ids."""
+    lines = path.read_text(encoding="ascii").partition("FieldData")[2].splitlines()[1:]
+    words: dict[str, list[str]] = {}
+    name = ""
+    for line in lines:
+        if line[:1].isalpha():
+            name = line.split()[0]
+            words[name] = []
+        else:
+            words[name] += line.split()
+    count = len(words["area"])
+    found = {name: np.array(values, float).reshape(count, -1) for name, values in words.items()}
+    order = np.argsort(found["meshid"][:, 0])
+    return {name: values[order, 0] for name, values in found.items()}
+
+
+def wall_table(p: ScenePlan, folder: Path, without: Collection[int] = ()) -> pd.DataFrame:
+    """step, wall, triangle, area, normal_stress, shear_stress, wear (0 where not requested) in every frame.
+
+    Raises EngineError for a file that is not whole.
+    """
+
+    def read(name: str, path: Path) -> pd.DataFrame:
+        fields = _fields(path)
+        columns = {ours: fields.get(theirs, np.zeros(len(fields["area"]))) for theirs, ours in COLUMNS.items()}
+        if len(columns["area"]) != len(p.triangles[name]):
+            raise EngineError(f"{path}: {len(columns['area'])} triangles, expected {len(p.triangles[name])}")
+        return pd.DataFrame({"wall": name} | columns)
+
+    files = {name: FILES.format(name, "{}") for name in p.stress_walls}
+    walls = [frames(p, folder, file, p.frames, partial(read, name), without) for name, file in files.items()]
+    return pd.concat(walls, ignore_index=True).astype({"triangle": int})
