@@ -17,7 +17,7 @@ from epdem.case.impact import load
 from epdem.engines import engine
 from epdem.errors import CaseError, Stopped
 from epdem.impacts.run import run as run_case
-from epdem.studies.sweep import folder, local, run, status, table
+from epdem.studies.sweep import folder, local, run, slurm, table
 
 ROOT = Path(__file__).parents[2]
 EPDEM = str(Path(sys.executable).parent / "epdem")
@@ -126,7 +126,7 @@ def test_a_point_that_fails_is_a_row_with_its_reason_and_runs_again_when_asked(c
     assert row["reason"].tolist() == ["log: out of steel"] and row["passed"].tolist() == [False]
     assert row[["e_n", "speed"]].isna().all(axis=None)
     pd.testing.assert_frame_equal(table.read_sweep(out), found.table)
-    assert status.status(out)["failures"][0]["reason"] == "log: out of steel"
+    assert slurm.status(out)["failures"][0]["reason"] == "log: out of steel"
     assert sweep(case, out).ran == 0  # it failed: once is enough
     monkeypatch.setattr(Embedded, "run", real)
     found = sweep(case, out, retry_failed=True)
@@ -210,13 +210,13 @@ def test_200_points_killed_five_times_give_the_same_table_and_no_finished_point_
         process.send_signal(signal.SIGKILL if kill % 2 == 0 else signal.SIGINT)
         process.wait()
         end = time.monotonic() + 30
-        while status.running(out) and time.monotonic() < end:  # its processes end after it
+        while slurm.running(out) and time.monotonic() < end:  # its processes end after it
             time.sleep(0.01)
-        assert not status.running(out)
+        assert not slurm.running(out)
         now = finished(out)
         assert {k: v for k, v in now.items() if k in before} == before and len(now) > len(before)
         before = now
-        assert status.status(out)["waiting"] == 200 - len(now)
+        assert slurm.status(out)["waiting"] == 200 - len(now)
     done = json.loads(subprocess.check_output(command(case, out, "--json")))
     assert done["ran"] == 200 - len(before) and done["done"] == 200
     assert {k: v for k, v in finished(out).items() if k in before} == before

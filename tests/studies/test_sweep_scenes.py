@@ -15,7 +15,7 @@ from epdem import Scene
 from epdem import run as api_run
 from epdem.scenes import results
 from epdem.studies.pages import _by_key, of_sweep
-from epdem.studies.sweep import folder, run, status, table
+from epdem.studies.sweep import folder, run, slurm, table
 
 pytestmark = pytest.mark.liggghts
 EPDEM = str(Path(sys.executable).parent / "epdem")
@@ -126,7 +126,7 @@ def test_a_killed_scene_goes_on_from_its_restart_file(bed, tmp_path):
         time.sleep(0.01)
     process.send_signal(signal.SIGKILL)
     process.wait()
-    while status.running(out) and time.monotonic() < end:
+    while slurm.running(out) and time.monotonic() < end:
         time.sleep(0.01)
     assert json.loads(subprocess.check_output([EPDEM, "status", str(out), "--json"]))["waiting"] == 1
     subprocess.check_call(command, stdout=subprocess.DEVNULL)

@@ -16,8 +16,7 @@ from test_sweep_scenes import BED
 
 from epdem.errors import CaseError
 from epdem.studies.sweep import folder, run, slurm
-from epdem.studies.sweep.slurm import execute, write_script
-from epdem.studies.sweep.status import status
+from epdem.studies.sweep.slurm import execute, status, write_script
 
 ROOT = Path(__file__).parents[2]
 EPDEM = str(Path(sys.executable).parent / "epdem")

@@ -4,7 +4,8 @@
 import contextlib
 import copy
 import sys
-from collections.abc import Callable, Collection, Iterable, Iterator
+from collections.abc import Callable, Collection, Iterable, Iterator, Sequence
+from typing import Any
 
 from rich.cells import cell_len
 from rich.console import Console
@@ -24,6 +25,16 @@ def table(title: str, heads: Iterable[str], *, left: Collection[str] = ()) -> Ta
     shown = Table(title=Text(title))
     for head in heads:
         shown.add_column(Text(head), justify="left" if head in left else "right", no_wrap=True)
+    return shown
+
+
+def filled(
+    title: str, columns: Sequence[tuple[str, str]], rows: Iterable[dict[Any, Any]], *, left: Collection[str] = ()
+) -> Table:
+    """A table of columns (head, form of a cell, with a row's values by name); a row that has not passed is red."""
+    shown = table(title, [head for head, _ in columns], left=left)
+    for row in rows:
+        shown.add_row(*(form.format(**row) for _, form in columns), style=None if row["passed"] else "red")
     return shown
 
 

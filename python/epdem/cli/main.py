@@ -158,7 +158,13 @@ def deck(
             raise CaseError(
                 f"{file}: --convert writes one LIGGGHTS deck with one law; leave out --engine, name one --law"
             )
-        cli_scene.deck_converted(file, (law or ["thornton"])[0], given or [], out, force=force, as_json=as_json)
+        from ..engines.liggghts.convert import convert_file
+        from ..studies.sweep.points import settings as values_of
+
+        values = values_of(given or [], example="yieldPressure=1e8")
+        files, notes = convert_file(file, (law or ["thornton"])[0], values, out, force=force)
+        print("\n".join(notes), file=sys.stderr)
+        say_files(files, as_json)
         return
     if file.suffix == ".j2":
         if case is None:

@@ -2,7 +2,6 @@
 """Commands for bulk scenes: functions of a few lines that call the library."""
 
 import json
-import sys
 from dataclasses import asdict
 from pathlib import Path
 from typing import Annotated, Any
@@ -10,7 +9,7 @@ from typing import Annotated, Any
 import typer
 
 from ..base.terminal import bar, console
-from .options import AsJson, CasePath, Replace, say_files
+from .options import AsJson, CasePath, Replace
 
 
 def is_scene(path: Path) -> bool:
@@ -151,14 +150,3 @@ def soften(
     )
     for warning in twin.warnings:
         print(f"warning: {warning}")
-
-
-def deck_converted(deck: Path, law: str, sets: list[str], out: Path, *, force: bool, as_json: bool) -> None:
-    """Write a LIGGGHTS deck of the user with one of the laws, and print the changes on standard error."""
-    from ..engines.liggghts.convert import convert_file
-    from ..studies.sweep.points import settings
-
-    files, notes = convert_file(deck, law, settings(sets, example="yieldPressure=1e8"), out, force=force)
-    for note in notes:
-        print(note, file=sys.stderr)
-    say_files(files, as_json)

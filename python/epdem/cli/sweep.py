@@ -101,7 +101,7 @@ def status(
     """Print the progress of a sweep: points waiting, running, done and failed, with times and reasons."""
     from ..impacts.report import plain
     from ..studies.sweep import folder as store
-    from ..studies.sweep.status import status as ask
+    from ..studies.sweep.slurm import status as ask
     from ..studies.sweep.table import write
 
     state = ask(folder)

@@ -15,7 +15,7 @@ from rich.console import Console
 from rich.table import Table
 
 from ..base.files import claim
-from ..base.terminal import show_table, table
+from ..base.terminal import filled, show_table, table
 from ..theory.yielding import FIRST_YIELD_ROUNDED
 from .comparison import CHECKED
 from .experiment import Experiment
@@ -129,10 +129,8 @@ def run_table(outcome: Outcome, *, full: bool = False) -> Table:
         columns = [column for column in NORMAL if column[0] != "law" or rows["law"].nunique() > 1]
         title += f" ({'; '.join(f'{law}: {yielding(p)}' for law, p in outcome.predictions.items())})"
         rows = rows.assign(t_c=1e6 * rows["contact_time"], overlap=1e6 * rows["overlap_max"])
-    shown = table(title, [head for head, _ in columns], left=("engine", "law", "regime"))
-    for row in rows.sort_values(order, kind="stable").to_dict("records"):
-        shown.add_row(*(text.format(**row) for _, text in columns), style=None if row["passed"] else "red")
-    return shown
+    ordered = rows.sort_values(order, kind="stable").to_dict("records")
+    return filled(title, columns, ordered, left=("engine", "law", "regime"))
 
 
 def _with_regimes(outcome: Outcome, rows: pd.DataFrame) -> pd.DataFrame:

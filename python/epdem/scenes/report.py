@@ -10,7 +10,7 @@ import pandas as pd
 from rich.console import Console
 
 from ..base.files import claim
-from ..base.terminal import show_table, table
+from ..base.terminal import filled, show_table, table
 from ..case.kinds import Compaction, Drum, Hopper, Peening, Settle
 from ..case.parts import MEASURES, Histogram, Load
 from ..impacts.report import records
@@ -28,6 +28,8 @@ BINS = 30
 COLOURS = {"kinetic": 0, "rotation": INK, "elastic": 2, "plastic": 1, "friction": 4, "springs": 3, "left": 6}
 COLOURS["adhesion"] = 5
 COLUMNS = 3  # of small panels
+CHECKED = [("check", "{check}"), ("value", "{value:.5g}"), ("expected", "{expected:.5g}"), ("unit", "{unit}")]
+CHECKED += [("error", "{error:.1e}"), ("tolerance", "{tolerance:.1e}"), ("pass", "{ok}")]
 
 
 def charts(outcome: SceneOutcome) -> list[Chart]:
@@ -251,20 +253,9 @@ def as_json(outcome: SceneOutcome) -> str:
 
 def show(outcome: SceneOutcome, console: Console) -> None:
     """Print checks and a summary line."""
-    heads = ("check", "value", "expected", "unit", "error", "tolerance", "pass")
-    shown = table(outcome.case.case.title, heads, left=("check", "unit"))
-    for row in outcome.results.tables["checks"].to_dict("records"):
-        shown.add_row(
-            row["check"],
-            f"{row['value']:.5g}",
-            f"{row['expected']:.5g}",
-            row["unit"],
-            f"{row['error']:.1e}",
-            f"{row['tolerance']:.1e}",
-            "yes" if row["passed"] else "NO",
-            style=None if row["passed"] else "red",
-        )
-    show_table(console, shown)
+    checks = outcome.results.tables["checks"]
+    rows = checks.assign(ok=np.where(checks["passed"], "yes", "NO")).to_dict("records")
+    show_table(console, filled(outcome.case.case.title, CHECKED, rows, left=("check", "unit")))
     _show_measures(outcome, console)
     for warning in outcome.warnings:
         console.print(f"warning: {warning}", style="yellow")

@@ -1,10 +1,11 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""A sweep on a cluster: an array of Slurm's whose tasks each run a share of the points; submitit submits and requeues.
+"""A sweep on a cluster: an array of Slurm's whose tasks each run a share of the points; how far a sweep is.
 
-What is finished is known from the folders of the points alone: a job that is stopped by its walltime or preempted is
-queued again and goes on, and so does a sweep whose command is given again.
+submitit submits and requeues. What is finished is known from the folders of the points alone: a job that is stopped by
+its walltime or preempted is queued again and goes on, and so does a sweep whose command is given again.
 """
 
+import fcntl
 import json
 import re
 import shlex
@@ -17,7 +18,7 @@ from functools import partial
 from pathlib import Path
 from typing import Any
 
-from ...base.files import atomic, claim, refuse_existing
+from ...base.files import LOCK, atomic, claim, refuse_existing
 from ...errors import CaseError, EngineError, Stopped
 from . import folder as store
 from . import local, table
@@ -260,20 +261,19 @@ def execute(
     given: Sequence[str] = (),
     *,
     jobs: int | None = None,
-    retry_failed: bool = False,
-    force: bool = False,
-    report: Report = lambda done, total: None,
+    **how: Any,
 ) -> SweepOutcome:
-    """Run a sweep by the executor "local" or "slurm"; `given` are the parameters of the latter. Raises CaseError."""
+    """Run a sweep by the executor "local" or "slurm"; `given` are the parameters of the latter, `how` the options of
+    `run`. Raises CaseError."""
     if executor == "slurm":
         if jobs is not None:
             raise CaseError("--jobs is for --executor local; give the jobs of a cluster by --slurm array_parallelism=N")
-        return run(sweep, folder, parameters(given), retry_failed=retry_failed, force=force, report=report)
+        return run(sweep, folder, parameters(given), **how)
     if executor != "local":
         raise CaseError(f"--executor {executor!r} does not exist; there are local, slurm")
     if given:
         raise CaseError("--slurm goes with --executor slurm or --write-script")
-    return run_here(sweep, folder, jobs=jobs, retry_failed=retry_failed, force=force, report=report)
+    return run_here(sweep, folder, jobs=jobs, **how)
 
 
 def write_script(sweep: Sweep, folder: Path, given: Sequence[str], path: Path, *, force: bool = False) -> None:
@@ -285,3 +285,48 @@ def write_script(sweep: Sweep, folder: Path, given: Sequence[str], path: Path, *
         store.write(sweep, folder)
     with atomic(path) as temporary:
         temporary.write_text(text, encoding="utf-8")
+
+
+def status(folder: Path) -> dict[str, Any]:
+    """How far a sweep is: counts by state, times [s], reasons of failed points, and whether it is running now."""
+    sweep = store.read(folder)
+    records = store.records(sweep, folder)
+    here = running(folder)
+    jobs = {about["job"] for about in records if about.get("job") and about["state"] == store.RUNNING}
+    there = (alive(list(jobs)) or set()) if jobs else set()
+
+    def state(about: dict[str, Any]) -> str:
+        gone = about["state"] == store.RUNNING and not (about["job"] in there if about["job"] else here)
+        return store.WAITING if gone else str(about["state"])
+
+    states = [state(about) for about in records]
+    seconds = [a["seconds"] for a in records if "seconds" in a]
+    counts = {state: states.count(state) for state in store.STATES}
+    failed = [
+        {"point": n, "folder": str(store.of(sweep, folder, n)), "reason": a["reason"]}
+        for n, a in enumerate(records, start=1)
+        if a["state"] == store.FAILED
+    ]
+    left = counts[store.WAITING] + counts[store.RUNNING]
+    mean = sum(seconds) / len(seconds) if seconds else float("nan")
+    return {
+        "case": sweep.name,
+        "points": len(records),
+        **counts,
+        "seconds": sum(seconds),
+        "longest": max(seconds, default=float("nan")),
+        "work_left": left * mean if left else 0.0,
+        "failures": failed,
+    }
+
+
+def running(folder: Path) -> bool:
+    """Whether a process on this machine is at work in the folder of a sweep now."""
+    try:
+        with (folder / LOCK).open() as lock:
+            fcntl.flock(lock, fcntl.LOCK_SH | fcntl.LOCK_NB)
+    except FileNotFoundError:
+        return False
+    except OSError:
+        return True
+    return False
