@@ -7,7 +7,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from epdem.engines.liggghts.convert import convert
+from epdem.engines.liggghts.own_decks import convert
 from epdem.errors import CaseError
 
 DECK = """# model hertz in a comment, don't touch

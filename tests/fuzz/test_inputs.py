@@ -21,7 +21,7 @@ from epdem.case.toml import read_toml
 from epdem.case.warnings import case_warnings
 from epdem.cli import main as cli
 from epdem.engines import scene_engine
-from epdem.engines.liggghts.own_template import write
+from epdem.engines.liggghts.own_decks import write
 from epdem.errors import CaseError
 from epdem.impacts.experiment import experiment
 from epdem.impacts.plan import plan

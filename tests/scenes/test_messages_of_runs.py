@@ -16,7 +16,7 @@ from epdem.case.toml import read_toml
 from epdem.engines import engine, log
 from epdem.engines.lammps import launcher as lammps_launcher
 from epdem.engines.lammps.engine import Lammps
-from epdem.engines.liggghts import dump, launcher, own_template, scene_tables, tune
+from epdem.engines.liggghts import dump, launcher, own_decks, scene_tables, tune
 from epdem.engines.liggghts import engine as liggghts
 from epdem.engines.liggghts.launcher import OUT
 from epdem.engines.yade import scene_tables as yade_tables
@@ -157,7 +157,7 @@ def test_decks_and_studies(tmp_path):
     with says("deck cannot be made into another set-up"):
         variants.edits(variants.PositionSampler(engine("embedded"), tmp_path))
     with says(r"a template's name ends in \.j2; the deck is written without it", CaseError):
-        own_template.write(Path(".j2"), CASES / "steel_wall.toml", {}, tmp_path)
+        own_decks.write(Path(".j2"), CASES / "steel_wall.toml", {}, tmp_path)
     with says(r"stress has shape \(3,\), must end in \(3, 3\)", ValueError):
         principal([1.0, 2.0, 3.0])
     with says("law cavity: .*no energy created at yield", ValueError):
@@ -172,13 +172,13 @@ def test_folders_and_files_of_a_user(tmp_path, monkeypatch):
     config.write_text("a = ")
     monkeypatch.setenv("XDG_CONFIG_HOME", str(tmp_path))
     with says("config.toml: .*; mend or remove it", CaseError):
-        paths.setting("liggghts", "command")
+        paths.setting()
     config.write_text("[engines]\n")
     with says(r"config.toml: engines: is not known; there is \[", CaseError):
-        paths.setting("engine", "liggghts")
+        paths.setting()
     config.write_text("[engine]\nlammps = 'lmp'\n")
     with says("config.toml: engine.lammps: is not known; there is liggghts", CaseError):
-        paths.setting("engine", "liggghts")
+        paths.setting()
     (tmp_path / "x.stl").write_bytes(b"\0" * 84)
     with says("no triangles, or corners that are not numbers; export it anew", CaseError):
         walls._read(tmp_path / "x.stl", "scene.wall.x.file")

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from epdem.base import paths
-from epdem.engines.liggghts.own_template import settings, write
+from epdem.engines.liggghts.own_decks import settings, write
 from epdem.errors import CaseError
 
 ROOT = Path(__file__).parents[2]

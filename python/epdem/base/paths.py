@@ -18,7 +18,6 @@ from ..errors import CaseError, EngineError
 from . import __version__
 
 DEFAULT_ENGINE = "liggghts"  # of every command and function that is given none
-KNOWN = {"engine": ("liggghts",)}
 
 
 def config_file() -> Path:
@@ -26,8 +25,8 @@ def config_file() -> Path:
     return Path(os.environ.get("XDG_CONFIG_HOME") or Path.home() / ".config") / "epdem" / "config.toml"
 
 
-def setting(table: str, key: str) -> str | None:
-    """The text of `key` in [table]; None without it or without the file. Raises CaseError for a file that is wrong."""
+def setting() -> str | None:
+    """`liggghts` in [engine]; None without it or without the file. Raises CaseError for a file that is wrong."""
     path = config_file()
     try:
         values = tomllib.loads(path.read_text(encoding="utf-8"))
@@ -36,15 +35,14 @@ def setting(table: str, key: str) -> str | None:
     except (OSError, ValueError, RecursionError) as error:
         raise CaseError(f"{path}: {error}; mend or remove it") from None
     for name, keys in values.items():
-        if name not in KNOWN or not isinstance(keys, dict):
-            raise CaseError(f"{path}: {name}: is not known; there is [{'], ['.join(KNOWN)}]")
+        if name != "engine" or not isinstance(keys, dict):
+            raise CaseError(f"{path}: {name}: is not known; there is [engine]")
         for word, value in keys.items():
-            if word not in KNOWN[name]:
-                raise CaseError(f"{path}: {name}.{word}: is not known; there is {', '.join(KNOWN[name])}")
+            if word != "liggghts":
+                raise CaseError(f"{path}: engine.{word}: is not known; there is liggghts")
             if not isinstance(value, str) or not value:
-                raise CaseError(f"{path}: {name}.{word} = {value!r}, must be a text; write it in quotes")
-    found: str | None = values.get(table, {}).get(key)
-    return found
+                raise CaseError(f"{path}: engine.{word} = {value!r}, must be a text; write it in quotes")
+    return values["engine"].get("liggghts") if "engine" in values else None
 
 
 _PACKAGE = Path(__file__).resolve().parents[1]
@@ -86,7 +84,7 @@ def launcher() -> Path | None:
     EPDEM_LIGGGHTS names it, or [engine] liggghts in the user's configuration file; else it is our own
     `epdem-liggghts` beside this Python or on PATH. Raises CaseError for a configuration file that is wrong.
     """
-    named = os.environ.get("EPDEM_LIGGGHTS") or setting("engine", "liggghts")
+    named = os.environ.get("EPDEM_LIGGGHTS") or setting()
     if named:
         return Path(named).expanduser().absolute()
     beside = Path(sys.executable).parent / "epdem-liggghts"

@@ -158,7 +158,7 @@ def deck(
             raise CaseError(
                 f"{file}: --convert writes one LIGGGHTS deck with one law; leave out --engine, name one --law"
             )
-        from ..engines.liggghts.convert import convert_file
+        from ..engines.liggghts.own_decks import convert_file
         from ..studies.sweep.points import settings as values_of
 
         values = values_of(given or [], example="yieldPressure=1e8")
@@ -172,8 +172,8 @@ def deck(
         refuse(file, "the deck of an own template has the law of its case", law=law)
         if engine != DEFAULT_ENGINE:
             raise CaseError(f"{file}: --engine {engine}: own templates are for {DEFAULT_ENGINE}; leave it out")
-        from ..engines.liggghts.own_template import settings
-        from ..engines.liggghts.own_template import write as fill
+        from ..engines.liggghts.own_decks import settings
+        from ..engines.liggghts.own_decks import write as fill
 
         say_files(fill(file, case, settings(given or []), out, force=force), as_json)
         return

@@ -17,7 +17,12 @@ from . import words
 from .scene_walls import meshes, motions, plane, plate_place
 
 ROLLING = ("cdt", "epsd2")
-WORKS = {"plastic_work": 1, "friction_work": 4, "friction_energy": 5, "adhesive_work": 6}  # columns of fix EP_HISTORY0
+WORKS = {  # what dumps call the works and energies of a sphere
+    "plastic_work": "f_EP_HISTORY0[1]",
+    "adhesive_work": "f_EP_HISTORY0[6]",
+    "friction_work": "f_EP_HISTORY0[4]",
+    "friction_energy": "f_EP_HISTORY0[5]",
+}
 
 
 def check(p: ScenePlan) -> None:
@@ -78,7 +83,7 @@ def deck(p: ScenePlan) -> decks.Deck:
         mesh_ids=[wall_id(p, name) for name in p.scene.meshes],
         contact_walls=[wall_id(p, w) for w in contact_walls(p)],
         row_words=["f_ratio[1]", "f_ratio[2]", *row_words(p)],
-        columns=columns_of_dump(p),
+        columns=[WORKS.get(name, name.replace("_", "")) for name in columns_of_frames(p)],
         samples=p.every // p.sampling,
         restarts=0,
     )
@@ -93,13 +98,6 @@ def _is_special(p: ScenePlan, i: int, j: int) -> bool:
 def contact_walls(p: ScenePlan) -> list[str]:
     """The walls whose contacts are in the tables: those that are always there."""
     return [w.name for w in p.scene.planes] + [*p.scene.meshes]
-
-
-def columns_of_dump(p: ScenePlan) -> list[str]:
-    """LAMMPS's word of each column of a frame."""
-    return [
-        f"f_EP_HISTORY0[{WORKS[name]}]" if name in WORKS else name.replace("_", "") for name in columns_of_frames(p)
-    ]
 
 
 def _data_file(p: ScenePlan, phase: str) -> str | None:

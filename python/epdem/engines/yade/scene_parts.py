@@ -78,7 +78,7 @@ def walls(p: ScenePlan) -> dict[str, Wall]:
         if name in planes and not p.scene.periodic:
             found[name] = Wall(name, number, material, "xyz".index(planes[name].axis), planes[name].at)
         else:
-            found[name] = Wall(name, number, material, file=_file(name))
+            found[name] = Wall(name, number, material, file=f"wall_{name}.txt")
     return found
 
 
@@ -89,10 +89,6 @@ def wall_names(p: ScenePlan) -> list[str]:
 
 def _planes(p: ScenePlan) -> dict[str, PlaneWall]:
     return {w.name: w for w in (*p.scene.planes, *p.scene.gates)}
-
-
-def _file(name: str) -> str:
-    return f"wall_{name}.txt"
 
 
 def motions(p: ScenePlan, phase: decks.Deck) -> tuple[Move, ...]:
