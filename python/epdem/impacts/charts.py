@@ -90,10 +90,7 @@ def restitution(outcome: Outcome) -> Chart:
         outcome.case.case.title,
         f"Coefficient of restitution against impact speed: theory as lines, {said} as points. Below, the largest error "
         f"over the starting phases; the largest of all is {rows['e_n_error'].max():.1e}.",
-        [
-            Panel(SPEED, Axis("coefficient of restitution e_n"), above, 3.0),
-            Panel(SPEED, _error("e_n"), below, 1.4),
-        ],
+        [Panel(SPEED, Axis("coefficient of restitution e_n"), above, 3.0), Panel(SPEED, _error("e_n"), below, 1.4)],
         heading="Restitution against impact speed",
     )
 
@@ -210,9 +207,6 @@ def slip(outcome: Outcome) -> Chart:
         outcome.case.case.title,
         "Slip of the surfaces after oblique impacts against that before: theory with partial slip as lines, engines as "
         f"points. Below, the largest error over the starting phases, {rows['psi_2_error'].max():.1e} at most.",
-        [
-            Panel(before, Axis("psi_2: slip after the impact"), above, 3.0),
-            Panel(before, _error("psi_2"), below, 1.4),
-        ],
+        [Panel(before, Axis("psi_2: slip after the impact"), above, 3.0), Panel(before, _error("psi_2"), below, 1.4)],
         heading="Slip after against slip before",
     )

@@ -141,14 +141,7 @@ def chosen(plan: Plan, path: Trajectory) -> pd.DataFrame:
         loaded = np.flatnonzero(np.isfinite(force) & (force != 0))
         begin, end = max(loaded[0] - 1, 0), min(loaded[-1] + 2, np.isfinite(force).sum())
         kept = np.arange(begin, end)[:: max(1, (end - begin) // SAMPLES)]
-        tables.append(
-            pd.DataFrame(
-                {
-                    "speed": plan.speed[row],
-                    "time": kept * path.time_step - plan.gap[row] / plan.speed[row],
-                    "overlap": path.overlap[row, kept],
-                    "force": force[kept],
-                }
-            )
-        )
+        time = kept * path.time_step - plan.gap[row] / plan.speed[row]
+        columns = {"speed": plan.speed[row], "time": time, "overlap": path.overlap[row, kept], "force": force[kept]}
+        tables.append(pd.DataFrame(columns))
     return pd.concat(tables, ignore_index=True)

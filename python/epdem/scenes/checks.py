@@ -187,14 +187,10 @@ def stiffness(p: ScenePlan, rows: pd.DataFrame) -> tuple[float, float]:
     way_down, down = unload["plate_z"].to_numpy(), unload["plate_force"].to_numpy()
     bottom, top = way_up[0], up[0]
     below = int(np.argmax(up < 0.5 * top)), int(np.argmax(down < 0.5 * top))
-    return (
-        _secant(top - up[below[0]], way_up[below[0]] - bottom),
-        _secant(top - down[below[1]], way_down[below[1]] - bottom),
-    )
-
-
-def _secant(force: float, way: float) -> float:
-    return float(force / way) if way > 0 else np.inf  # the force is gone within the row of the turn
+    forces = top - up[below[0]], top - down[below[1]]
+    ways = way_up[below[0]] - bottom, way_down[below[1]] - bottom  # 0: the force is gone within the row of the turn
+    load, unload = (float(force / way) if way > 0 else np.inf for force, way in zip(forces, ways, strict=True))
+    return load, unload
 
 
 def recovered(p: ScenePlan, rows: pd.DataFrame) -> tuple[float, float]:

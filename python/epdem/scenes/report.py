@@ -116,13 +116,8 @@ def energy_balance(outcome: SceneOutcome) -> Chart:
     alt = "Terms of the energy balance against time; gravity is above its lowest value, work is done by the walls."
     if "friction" in table and "springs" not in table:
         alt += " Friction is the remainder of the balance."
-    return Chart(
-        "energy",
-        f"{outcome.case.case.title}: energy",
-        alt,
-        [Panel(TIME, Axis("energy", "J"), series)],
-        heading="Energy balance against time",
-    )
+    panels = [Panel(TIME, Axis("energy", "J"), series)]
+    return Chart("energy", f"{outcome.case.case.title}: energy", alt, panels, heading="Energy balance against time")
 
 
 def bed(outcome: SceneOutcome) -> list[Picture]:
@@ -158,10 +153,8 @@ def _compaction(p: ScenePlan, s: Compaction, tables: Tables) -> list[Panel]:
     rows = tables["rows"]
     way, force = (s.box[2] - rows["plate_z"]).to_numpy(), rows["plate_force"].to_numpy()
     loading = (rows["step"] <= p.phases[-2].end).to_numpy()
-    series = [
-        Series("loading", way[loading], force[loading], 0),
-        Series("unloading", way[~loading], force[~loading], 1),
-    ]
+    parts = (("loading", loading), ("unloading", ~loading))
+    series = [Series(name, way[part], force[part], colour) for colour, (name, part) in enumerate(parts)]
     return [Panel(Axis("displacement of the plate", "m"), Axis("plate_force", "N"), series)]
 
 
@@ -192,10 +185,9 @@ def _settle(p: ScenePlan, s: Settle, tables: Tables) -> list[Panel]:
     rows, heights = tables["rows"], tables["particles"].groupby("step")["z"].quantile(0.95)
     moving = rows[rows["kinetic_energy"] > 0]
     energy = Series("", moving["time"].to_numpy(), moving["kinetic_energy"].to_numpy(), 1)
+    height = Series("", p.time_at(heights.index.to_numpy()), heights.to_numpy(), 0)
     return [
-        Panel(
-            TIME, Axis("height of 95 %", "m"), [Series("", p.time_at(heights.index.to_numpy()), heights.to_numpy(), 0)]
-        ),
+        Panel(TIME, Axis("height of 95 %", "m"), [height]),
         Panel(TIME, Axis("kinetic_energy", "J", log=True), [energy]),
     ]
 

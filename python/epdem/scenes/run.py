@@ -200,16 +200,6 @@ def _finish(
         left_out = [f"{folder}: the frames of {steps} {advice}"]
     kept = results.SceneResults(work.text, attributes, tables, decks, work.named)
     results.write(folder / "results.h5", p, kept)
-    return SceneOutcome(
-        p,
-        folder,
-        kept,
-        seconds,
-        resumed_from=went_on.step if went_on else None,
-        warnings=[
-            *work.notes,
-            *measured_warnings(tables),
-            *lost_spheres(p, tables),
-            *left_out,
-        ],
-    )
+    warnings = [*work.notes, *measured_warnings(tables), *lost_spheres(p, tables), *left_out]
+    begin = went_on.step if went_on else None
+    return SceneOutcome(p, folder, kept, seconds, resumed_from=begin, warnings=warnings)

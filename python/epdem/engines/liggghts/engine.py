@@ -128,21 +128,6 @@ class Liggghts(Host):
         return self.read(job, folder, without=resumed.lost), resumed
 
 
-def _incomplete(path: Path, error: Exception) -> EngineError:
-    return EngineError(f"{path}: the run left an incomplete dump ({error}); see {launcher.LOG} beside it")
-
-
-def _end(plan: Plan, path: Path) -> tuple[np.ndarray, np.ndarray] | tuple[None, None]:
-    """v_x [m/s] and omega_y [rad/s] of the bodies at the end of oblique impacts; None for normal ones."""
-    if plan.experiment.oblique is None:
-        return None, None
-    try:
-        vx, spin = dump.series(path)[-1].T
-    except (ValueError, IndexError) as error:
-        raise _incomplete(path, error) from None
-    return vx, spin
-
-
 def trajectory(plan: Plan, path: Path, seconds: dict[str, float]) -> Trajectory:
     """Overlap, force and approach velocity from z, vz, fz of every body. Raises EngineError if samples are missing."""
     n = plan.n
@@ -151,7 +136,8 @@ def trajectory(plan: Plan, path: Path, seconds: dict[str, float]) -> Trajectory:
         bodies = n if math.isinf(plan.experiment.target.radius) else 2 * n
         if z.shape != (plan.steps + 1, bodies):
             raise ValueError(f"{z.shape[0]} frames of {z.shape[1]} bodies, expected {plan.steps + 1} of {bodies}")
-    except ValueError as error:
-        raise _incomplete(path, error) from None
+        vx, spin = dump.series(path.with_name(END))[-1].T if plan.experiment.oblique else (None, None)
+    except (ValueError, IndexError) as error:
+        raise EngineError(f"{path}: the run left an incomplete dump ({error}); see {launcher.LOG} beside it") from None
     overlap, velocity = approach(plan, z, vz)
-    return Trajectory(plan.time_step, overlap, fz[:, :n].T, velocity, seconds, *_end(plan, path.with_name(END)))
+    return Trajectory(plan.time_step, overlap, fz[:, :n].T, velocity, seconds, vx, spin)

@@ -180,14 +180,12 @@ class Yade(Host):
 
 def body_tables(plan: Plan) -> list[np.ndarray]:
     """x, y, z [m] and v_z [m/s] of the bodies, and of targets that move; v_x and omega_y too if they are oblique."""
-    groups = side_by_side(plan)
-    if plan.experiment.oblique is None:
-        return [np.column_stack([g.place, g.velocity[:, 2]]) for g in groups]
-    spins = [np.zeros(plan.n) if g.spin is None else g.spin for g in groups]
-    return [
-        np.column_stack([g.place, g.velocity[:, 2], g.velocity[:, 0], spin])
-        for g, spin in zip(groups, spins, strict=True)
-    ]
+    tables = []
+    for g in side_by_side(plan):
+        spin = np.zeros(plan.n) if g.spin is None else g.spin
+        more = [g.velocity[:, 0], spin] if plan.experiment.oblique else []
+        tables.append(np.column_stack([g.place, g.velocity[:, 2], *more]))
+    return tables
 
 
 def trajectory(plan: Plan, path: Path, seconds: dict[str, float]) -> Trajectory:
