@@ -10,6 +10,7 @@ import contextlib
 import fcntl
 import json
 import os
+import re
 import secrets
 import stat
 import time
@@ -69,34 +70,11 @@ def write_texts(folder: Path, texts: dict[str, str]) -> list[Path]:
 
 LOCK, MARKER = ".epdem.lock", ".epdem.json"
 # Names that a run may write, in the folder or below it.
-OUTPUTS = (
-    "in.*",
-    "*.in",
-    "results.*",
-    "*.png",
-    "*.svg",
-    "*.pdf",
-    "report.html",
-    *(f"{name}.csv" for name in ("e_n", "psi", "energy", "figure_8_*", "thornton_ning_1998")),
-    "log.*",
-    "out.*",
-    "particles.*",
-    "contacts.*",
-    "contacts_*",
-    "wall_contacts*",
-    "restart.*",
-    "scene*",
-    "stress_*",
-    "picture.*",
-    "path.*",
-    "*.data",
-    "*.stl",
-    "spheres*.txt",
-    "fill[1-9]*.txt",
-    "wall_*.txt",
-    "end.txt",
-    "impact.py",
-    "*.so",
+OUTPUTS = re.compile(
+    r"(in|results|log|out|particles|contacts|triangles|restart|picture|path)\..*|(contacts_|wall_contacts|scene|stress_).*"
+    r"|.*\.(in|png|svg|pdf|data|stl|so)|(spheres.*|fill[1-9].*|wall_.*|end)\.txt|report\.html|impact\.py"
+    r"|(e_n|psi|energy|figure_8_.*|thornton_ning_1998)\.csv",
+    re.DOTALL,
 )
 
 
@@ -247,7 +225,7 @@ def _foreign(folder: Path, known: Known | None) -> set[str]:
 
 
 def _refuse(folder: Path, foreign: set[str], files: Collection[str], ours: bool) -> None:
-    in_the_way = {n for n in foreign if not ours or n in files or any(fnmatch(Path(n).name, p) for p in OUTPUTS)}
+    in_the_way = {n for n in foreign if not ours or n in files or OUTPUTS.fullmatch(Path(n).name)}
     if in_the_way:
         what = "was not written by epdem, or has changed since" if ours else "was there before; the folder is not ours"
         raise CaseError(f"{folder}: {min(in_the_way)} {what}; choose another folder by --out, or add --force")
