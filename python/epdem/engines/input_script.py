@@ -127,18 +127,15 @@ def phases(p: ScenePlan) -> Iterator[tuple[Phase | None, Deck, Phase | None]]:
     """
     own_steps = any(phase.case.time_step for phase in p.phases)
     for before, phase, after in zip((None, *p.phases[:-1]), p.phases, (*p.phases[1:], None), strict=True):
-        yield (
-            before,
-            Deck(
-                phase,
-                steps=phase.end - (before.end if before else 0),
-                time_step=phase.case.time_step or p.time_step if own_steps else None,
-                record=phase.case.record,
-                added=[name for name in phase.gates if before is None or name not in before.gates],
-                removed=[name for name in phase.gates if after and name not in after.gates],
-            ),
-            after,
+        stated = Deck(
+            phase,
+            steps=phase.end - (before.end if before else 0),
+            time_step=phase.case.time_step or p.time_step if own_steps else None,
+            record=phase.case.record,
+            added=[name for name in phase.gates if before is None or name not in before.gates],
+            removed=[name for name in phase.gates if after and name not in after.gates],
         )
+        yield before, stated, after
 
 
 def first_look(p: ScenePlan, phase: Deck) -> int:

@@ -164,11 +164,8 @@ def summary(outcome: Outcome) -> str:
     rows = outcome.results.comparison
     failed = int((~rows["passed"]).sum())
     times = ", ".join(f"{k} {v:.2f} s" for k, v in outcome.seconds.items())
-    stored = (
-        f" ({len(outcome.reused)} of {len(outcome.results.runs)} from {outcome.folder}/results.h5)"
-        if outcome.reused
-        else ""
-    )
+    many = f"{len(outcome.reused)} of {len(outcome.results.runs)}"
+    stored = f" ({many} from {outcome.folder}/results.h5)" if outcome.reused else ""
     verdict = "all within tolerance" if not failed else f"{failed} of {len(rows)} rows outside tolerance"
     worst = f"largest e_n error {rows['e_n_error'].max():.1e}"
     worst += f", of psi_2 {rows['psi_2_error'].max():.1e}" if "psi_2_error" in rows else ""

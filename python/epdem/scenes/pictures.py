@@ -108,14 +108,11 @@ def _draw_spheres(axis: Any, x: FloatArray, radius: FloatArray, color: FloatArra
     share, shift, light = np.array(SHADES if len(x) <= MOST_SHADED else SHADES[:2]).T
     size = np.outer(2 * radius[order], share)
     places = (x @ plane.T)[order][:, None] + (radius[order, None] * shift)[:, :, None] * np.array([-1.0, 1.0])
-    shaded = np.where(
-        light[:, None] <= 1.0, color[:, None] * light[:, None], 1.0 - (1.0 - color[:, None]) * (2.0 - light[:, None])
-    )
-    look = {"units": "xy", "offset_transform": axis.transData, "linewidth": 0.0}
-    angles, faces = np.zeros(size.size), shaded.reshape(-1, 3)
-    axis.add_collection(
-        EllipseCollection(size.ravel(), size.ravel(), angles, offsets=places.reshape(-1, 2), facecolor=faces, **look)
-    )
+    base, light = color[:, None], light[:, None]
+    shaded = np.where(light <= 1.0, base * light, 1.0 - (1.0 - base) * (2.0 - light))
+    look = {"units": "xy", "offset_transform": axis.transData, "linewidth": 0.0, "facecolor": shaded.reshape(-1, 3)}
+    angles, offsets = np.zeros(size.size), places.reshape(-1, 2)
+    axis.add_collection(EllipseCollection(size.ravel(), size.ravel(), angles, offsets=offsets, **look))
 
 
 def _frame(title: str, corners: FloatArray, *, beside: float = 0.0) -> tuple[Any, Any]:
@@ -181,9 +178,8 @@ def before(p: ScenePlan, path: Path) -> int:
         _draw_region(axis, fill.region)
     table = _first(p)
     if len(table):
-        _draw_spheres(
-            axis, table[:, :3], table[:, 3], to_rgba_array([f"C{int(kind) - 1}" for kind in table[:, 4]])[:, :3]
-        )
+        colors = to_rgba_array([f"C{int(kind) - 1}" for kind in table[:, 4]])[:, :3]
+        _draw_spheres(axis, table[:, :3], table[:, 3], colors)
     _save(fig, path)
     return len(table)
 

@@ -52,13 +52,8 @@ def highest_speed(case: SceneCase) -> float:
 def leading_impact(case: SceneCase) -> Experiment:
     """The impact that stands for a scene: of its leading spheres on a wall, else on one, at its highest speed."""
     first = case.parts.leading
-    return wall_impact(
-        case,
-        first.material,
-        first.radii()[0],
-        (*case.parts.wall_materials, first.material)[0],
-        highest_speed(case),
-    )
+    other = (*case.parts.wall_materials, first.material)[0]
+    return wall_impact(case, first.material, first.radii()[0], other, highest_speed(case))
 
 
 def _impacts(case: SceneCase) -> Iterator[tuple[Experiment, Prediction, float]]:

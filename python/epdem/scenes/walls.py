@@ -54,9 +54,8 @@ def revolved(profile: Sequence[tuple[float, float]]) -> FloatArray:
         n = max(1, round(math.hypot(r1 - r0, z1 - z0) / (3 * edge)))
         for k in range(n):
             s, t = k / n, (k + 1) / n
-            bands.append(
-                _band(_ring(r0 + s * (r1 - r0), z0 + s * (z1 - z0)), _ring(r0 + t * (r1 - r0), z0 + t * (z1 - z0)))
-            )
+            low, high = (_ring(r0 + way * (r1 - r0), z0 + way * (z1 - z0)) for way in (s, t))
+            bands.append(_band(low, high))
     return np.concatenate(bands)
 
 

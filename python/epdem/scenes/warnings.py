@@ -28,14 +28,8 @@ OVERLAP = 0.05  # of the smaller radius; a bed of an earlier run has less
 
 def planned_warnings(p: ScenePlan) -> list[str]:
     """A sentence for each. Raises CaseError for a sphere whose centre lies in a wall."""
-    return (
-        filling.warnings(p.case, p.insertions)
-        + dense_beds(p.beds)
-        + _time_steps(p)
-        + _phases(p)
-        + _overlaps(p)
-        + _walls(p)
-    )
+    found = filling.warnings(p.case, p.insertions) + dense_beds(p.beds)
+    return found + _time_steps(p) + _phases(p) + _overlaps(p) + _walls(p)
 
 
 def measured_warnings(tables: dict[str, pd.DataFrame]) -> list[str]:

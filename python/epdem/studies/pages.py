@@ -83,18 +83,11 @@ def page_of(
     command: str,
 ) -> Page:
     """The page of a case: these parts, then versions, `hashes` of the inputs by run, and what to cite."""
-    return Page(
-        outcome.case.case.title,
-        sentences,
-        [
-            *parts,
-            origin(outcome.results.attributes, hashes),
-            Facts("What to cite", citations(outcome.case, laws, engines)),
-        ],
-        passed=outcome.passed,
-        command=command or f"epdem verify rerun {outcome.folder}/results.h5",
-        warnings=outcome.warnings,
-    )
+    cited = Facts("What to cite", citations(outcome.case, laws, engines))
+    every = [*parts, origin(outcome.results.attributes, hashes), cited]
+    said = command or f"epdem verify rerun {outcome.folder}/results.h5"
+    title = outcome.case.case.title
+    return Page(title, sentences, every, passed=outcome.passed, command=said, warnings=outcome.warnings)
 
 
 def written(page: Page, folder: Path) -> Path:
@@ -132,12 +125,8 @@ def of_calibration(case: Path, found: Calibration, folder: Path, *, force: bool 
     chart = Chart("e_n", "Restitution with this strength", alt, [Panel(charts.SPEED, Axis("e_n"), series)])
     bare = [replace(b, yield_stress=None) for b in (x.body, x.target)]  # whose own strength plays no part
     facts = Facts("Bodies and law", _impact_facts(replace(x, body=bare[0], target=bare[1], source=found.source)))
-    parts: list[Part] = [
-        chart,
-        facts,
-        origin({}, {}),
-        Facts("What to cite", citations(load(case), [found.law], [])),
-    ]
+    cited = Facts("What to cite", citations(load(case), [found.law], []))
+    parts: list[Part] = [chart, facts, origin({}, {}), cited]
     said = sentences_of_calibration(found)
     made = Page(f"Strength of law {found.law} from {found.source}", said, parts, command=command())
     with claim(folder, force=force, files=[NAME]):
@@ -369,14 +358,8 @@ def _by_key(result: SweepOutcome, units: dict[str, str]) -> list[Chart]:
     shown, left = columns[:MOST_PANELS], columns[MOST_PANELS:]
     charts = []
     for key in numeric:
-        panels = [
-            Panel(
-                Axis(key, units.get(key, "")),
-                _axis(column, changing[column], units),
-                _series(table, key, column, changing[column]),
-            )
-            for column in shown
-        ]
+        x = Axis(key, units.get(key, ""))
+        panels = [Panel(x, _axis(y, changing[y], units), _series(table, key, y, changing[y])) for y in shown]
         alt = f"Against {key}: {', '.join(shown)}." + (f" {len(left)} columns are in the table alone." if left else "")
         name = "sweep" if key == numeric[0] else f"sweep_{key}"
         if panels:

@@ -162,13 +162,8 @@ class Yade(Host):
         path, log = folder / "path.bin", folder / self.out
         path.unlink(missing_ok=True)
         start = time.perf_counter()
-        call(
-            [command(), "-n", "-x", "impact.py"],
-            folder,
-            log=log.name,
-            seconds=120 + 2e-5 * plan.n * plan.steps,
-            env=environment(),
-        )
+        allowed = 120 + 2e-5 * plan.n * plan.steps
+        call([command(), "-n", "-x", "impact.py"], folder, log=log.name, seconds=allowed, env=environment())
         wall = time.perf_counter() - start
         result = trajectory(plan, path, {"total": wall, "stepping": stepping_seconds(log)})
         path.unlink()  # large

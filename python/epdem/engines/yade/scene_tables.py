@@ -115,12 +115,8 @@ def _plastic_work(every: pd.DataFrame, spheres: pd.DataFrame) -> np.ndarray:
     Contacts that are there count as they are, those that have ended with their last value from then on.
     """
     at_wall = every["wall"] != ""
-    sides = pd.concat(
-        [
-            every.assign(id=every["i"], share=np.where(at_wall, 1.0, 0.5)),
-            every[~at_wall].assign(id=every["j"], share=0.5),
-        ]
-    )
+    first = every.assign(id=every["i"], share=np.where(at_wall, 1.0, 0.5))
+    sides = pd.concat([first, every[~at_wall].assign(id=every["j"], share=0.5)])
     work = (sides["share"] * sides["plastic_work"]).groupby([sides["overlap"] > 0, sides["step"], sides["id"]]).sum()
     frames = spheres.pivot_table(index="step", columns="id", values="mass") * 0.0
 
