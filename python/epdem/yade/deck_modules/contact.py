@@ -42,24 +42,6 @@ def trigger_pressure(material: Any) -> float:
 class Contact:
     """A contact that can yield. Overlaps u in m, forces in N."""
 
-    __slots__ = (
-        "E",
-        "R_star",
-        "a_max",
-        "bodies",
-        "born",
-        "delta_max",
-        "geom",
-        "growth",
-        "interaction",
-        "law",
-        "levers",
-        "phys",
-        "place",
-        "radius",
-        "yield_overlap",
-    )
-
     def __init__(self, interaction: Any, law: Law, R_star: float):
         phys = interaction.phys
         self.interaction, self.geom, self.phys = interaction, interaction.geom, phys
