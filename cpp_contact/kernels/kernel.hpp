@@ -187,6 +187,7 @@ template <class Law, class Friction, bool wall, bool grows = false>
   static_assert(constants <= most_constants && offsetof(Pair, law) == law_data * sizeof(Lanes));
   Lanes of_all[constants], of_each[constants];
   const Lanes* constant_of = of_all;
+  [[maybe_unused]] const Mask repeats = constant<Lanes>(pass.repeats) > 0.0;
   for (int c = 0; c < constants; ++c) of_all[c] = constant<Lanes>(b.material[0][c]);
   // The history of the next block lies behind the history of this block: fetch a long history during the computation.
   const char* ahead = reinterpret_cast<const char*>(b.history[n - 1]);
@@ -206,6 +207,9 @@ template <class Law, class Friction, bool wall, bool grows = false>
     }
     const Pair& pair = *reinterpret_cast<const Pair*>(constant_of);
 
+    [[maybe_unused]] Lanes growth_i{}, growth_j{};
+    if constexpr (grows) growth_i = each(pass.growth, b.i + k);
+    if constexpr (grows && !wall) growth_j = each(pass.growth, b.j + k);
     Kinematics<Lanes> c;
     const Vec<Lanes> spin_i = of(pass.omega, b.i + k);
     if constexpr (wall) {
@@ -238,12 +242,10 @@ template <class Law, class Friction, bool wall, bool grows = false>
     [[maybe_unused]] Lanes last{}, growing{};
     [[maybe_unused]] Grown<Lanes> grown{};
     if constexpr (grows) {
-      last = value[values + pass.repeats];  // a step that is evaluated once more has the overlap that growth added then
-      growing = last;
-      if (!pass.repeats) {
-        const Lanes growth_i = each(pass.growth, b.i + k), growth_j = wall ? Lanes{} : each(pass.growth, b.j + k);
-        growing = added_overlap<wall>(c.radius_i, c.radius_j, history.law.delta_max, growth_i, growth_j);
-      }
+      // a step that is evaluated once more has the overlap that growth added then
+      last = select(repeats, value[values + 1], value[values]);
+      growing = added_overlap<wall>(c.radius_i, c.radius_j, history.law.delta_max, growth_i, growth_j);
+      growing = select(repeats, last, growing);
       grown = grow<Law>(history.law, overlap, growing, last);
       c.overlap = overlap + grown.added;
     }
@@ -303,7 +305,8 @@ constexpr Kernels all() noexcept {
 #define EPDEM_FILL(Class) fill<Class<Lanes>>(kernels);
   EPDEM_LAWS(EPDEM_FILL)
 #undef EPDEM_FILL
-  kernels.spheres = {half_step, any_moved, near_sphere, near_triangle<true>, near_triangle<false>, next_pairs};
+  kernels.spheres = {half_step,         any_moved,       near_sphere, near_triangle<true>, near_triangle<false>,
+                     next_pairs<false>, next_pairs<true>};
   return kernels;
 }
 

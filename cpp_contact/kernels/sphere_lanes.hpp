@@ -149,6 +149,7 @@ int near_triangle(const NearTest& t, const TrianglePlanes& planes, const int* ca
   return count;
 }
 
+template <bool marks_gaps>
 int next_pairs(PairSearch& s, int* i, int* j, int* place) {
   const int last = s.count - s.tested < pairs_at_once ? s.count : s.tested + pairs_at_once;
   int found = 0;
@@ -167,10 +168,12 @@ int next_pairs(PairSearch& s, int* i, int* j, int* place) {
     int places[lane_count];
     for (int l = 0; l < lane_count; ++l) radius_i[l] = s.radius[of[l]];
     for (int l = 0; l < lane_count; ++l) radius_j[l] = s.radius[with[l]];
-    __builtin_memcpy(places, &next, sizeof places);
+    const Lanes sum = radius_i + radius_j, rsq = d.a * d.a + d.b * d.b + d.c * d.c;
+    const Mask meet = rsq < s.factor * sum * sum;
+    Places place_of = next;
+    if constexpr (marks_gaps) place_of ^= __builtin_convertvector(!(rsq < sum * sum), Places);
+    __builtin_memcpy(places, &place_of, sizeof places);
     next += lane_count;
-    const Lanes sum = radius_i + radius_j;
-    const Mask meet = d.a * d.a + d.b * d.b + d.c * d.c < s.factor * sum * sum;
     found += kept<3>(meet & among(last - k), {{of, with, places}}, {{i + found, j + found, place + found}});
   }
   s.tested = last;

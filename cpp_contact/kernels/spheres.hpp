@@ -56,6 +56,8 @@ struct SphereKernels {
   /// Tests the next pairs_at_once pairs, writes those that meet, with their place among all pairs, and returns their
   /// number. The arrays have room for 8 more.
   int (*next_pairs)(PairSearch&, int* i, int* j, int* place);
+  /// The same; pairs that do not overlap, but meet by the factor, have the complement of their place.
+  int (*next_near_pairs)(PairSearch&, int* i, int* j, int* place);
 };
 
 }  // namespace epdem::kernels

@@ -82,16 +82,16 @@ void FixHistory::book(const kernels::Block& b, int k, int i, double share, const
 }
 
 void FixHistory::close_growth(bool counts) {
+  growth_.resize(rows_);
+  largest_ = growth_reach;
   if (counts) {
-    growth_.resize(rows_);
     for (int i = 0; i < atom->nlocal; ++i) growth_[i] = epdem::growth(dents_[2L * i], dents_[2L * i + 1]);
     comm->forward_comm(this);
+    largest_ = 0.0;
+    for (int i = 0; i < atom->nlocal + atom->nghost; ++i)
+      largest_ = std::max(largest_, std::min(growth_reach, growth_[i]));
   }
   std::fill_n(dents_.begin(), 2L * atom->nlocal, 0.0);
-  const int all = atom->nlocal + atom->nghost;
-  reach_.resize(rows_);
-  for (int i = 0; i < all; ++i)
-    reach_[i] = atom->radius[i] * (1.0 + (counts ? std::min(growth_reach, growth_[i]) : growth_reach));
 }
 
 void FixHistory::note_dents(const kernels::Block& b, int n, bool wall) {
@@ -266,8 +266,7 @@ void FixHistory::unpack_restart(int i, int nth) {
 }
 
 double FixHistory::memory_usage() {
-  size_t numbers =
-      page_.capacity() + columns * held_.size() + dents_.capacity() + growth_.capacity() + reach_.capacity();
+  size_t numbers = page_.capacity() + columns * held_.size() + dents_.capacity() + growth_.capacity();
   for (const auto& held : held_) numbers += held.capacity();
   return static_cast<double>(numbers * sizeof(double));
 }

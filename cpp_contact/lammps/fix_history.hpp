@@ -55,8 +55,8 @@ class FixHistory : public LAMMPS_NS::Fix {
   /// dents once more, so that a restart file needs no sums. Collective.
   void close_growth(bool counts);
   const double* growth() const { return growth_.data(); }
-  /// Radii of the grown spheres: no contact of a pair is beyond them.
-  const double* reach() const { return reach_.data(); }
+  /// No grown spheres touch whose squared distance is above this factor times the squared sum of their radii.
+  double factor() const { return (1.0 + largest_) * (1.0 + largest_); }
   /// Adds the depths of the dents of a block to the sums of its own atoms.
   void note_dents(const kernels::Block& b, int n, bool wall);
 
@@ -93,12 +93,13 @@ class FixHistory : public LAMMPS_NS::Fix {
   std::vector<double> identity_;  // of the models whose histories these are
   double evaluations_ = 0.0;
   double strain_[2] = {};
-  std::vector<double> dents_;           // with compaction, by atom: sums of depths over the radius and of their squares
-  std::vector<double> growth_, reach_;  // also of ghosts
-  bool page_holds_ = false;             // else the atoms hold the histories
-  int rows_ = 0;                        // of array_atom
-  std::vector<double> page_;            // by slot of the list
-  std::vector<long> first_;             // of an atom in the page
+  std::vector<double> dents_;   // with compaction, by atom: sums of depths over the radius and of their squares
+  std::vector<double> growth_;  // also of ghosts
+  double largest_ = 0.0;        // growth
+  bool page_holds_ = false;     // else the atoms hold the histories
+  int rows_ = 0;                // of array_atom
+  std::vector<double> page_;    // by slot of the list
+  std::vector<long> first_;     // of an atom in the page
   std::vector<std::vector<double>> held_;  // by atom: tag of the partner, values
 };
 

@@ -244,7 +244,8 @@ void PairEp::compute(int eflag, int vflag) {
 template <PairEp::Reach reach>
 void PairEp::gather() {
   kernels::Block& b = *block_;
-  const double *const x = atom->x[0], *const radius = reach == Reach::grown ? history_->reach() : atom->radius;
+  const double *const x = atom->x[0], *const radius = atom->radius;
+  [[maybe_unused]] const double factor = reach == Reach::grown ? history_->factor() : 1.0;
   const bool excludes = atom->molecular != Atom::ATOMIC;
   int n = 0;
   for (int ii = 0; ii < list->inum; ++ii) {
@@ -262,7 +263,8 @@ void PairEp::gather() {
         const double dx = xi - x[3 * j], dy = yi - x[3 * j + 1], dz = zi - x[3 * j + 2], sum = ri + radius[j];
         const double rsq = dx * dx + dy * dy + dz * dz;
         bool contact = rsq < sum * sum;
-        if constexpr (reach == Reach::grown) contact = contact && grown_touch(i, static_cast<int>(j), jj, rsq);
+        if constexpr (reach == Reach::grown)
+          contact = contact || (rsq < factor * sum * sum && growth_closes(i, static_cast<int>(j), jj, rsq));
         if constexpr (reach == Reach::attached) {
           const double* const history = history_->at(i, jj);
           const bool stands = (history[layout_.root] > 0.0) | (pass_.repeats & (history[layout_.jump] != 0.0));
@@ -279,10 +281,9 @@ void PairEp::gather() {
   finish(n);
 }
 
-/// Whether near spheres overlap or growth closes their gap; a step that is evaluated once more has the growth it had.
-bool PairEp::grown_touch(int i, int j, int slot, double rsq) const {
+/// Whether growth closes the gap between two spheres; a step that is evaluated once more has the growth it had.
+bool PairEp::growth_closes(int i, int j, int slot, double rsq) const {
   const double ri = atom->radius[i], rj = atom->radius[j], sum = ri + rj;
-  if (rsq < sum * sum) return true;
   const double* const history = history_->at(i, slot);
   const bool known = pass_.now - history[layout_.last_step] <= 1.0;
   if (pass_.repeats) return known && closes_gap(sum, rsq, history[layout_.growth]);

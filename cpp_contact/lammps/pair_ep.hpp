@@ -57,7 +57,7 @@ class PairEp : public LAMMPS_NS::Pair {
   void set_pass(bool counts);
   template <Reach reach>
   void gather();
-  bool grown_touch(int i, int j, int slot, double rsq) const;
+  bool growth_closes(int i, int j, int slot, double rsq) const;
   template <class HistoryAt>
   void fetch(int n, HistoryAt history_at);
   void finish(int n);

@@ -2,8 +2,9 @@
 // Setting compaction: the growth of each sphere by the dents of all its contacts, from step to step.
 #pragma once
 
+#include <algorithm>
+#include <cmath>
 #include <string>
-#include <vector>
 
 #include "epdem/compaction.hpp"
 #include "host.hpp"
@@ -39,22 +40,22 @@ class Growth {
 
   /// At the start of a kept pass over all pairs: the sums of the step before give the growth. Collective.
   void close(const LAMMPS_NS::Atom& atom) {
-    const int nlocal = atom.nlocal, all = nlocal + atom.nghost;
+    const int nlocal = atom.nlocal;
     for (int i = 0; i < nlocal; ++i) {
       double* const sums = sums_->array_atom[i];
       growth_->vector_atom[i] = growth(sums[0], sums[1]);
       sums[0] = sums[1] = 0.0;
     }
     growth_->do_forward_comm();
-    reach_.resize(all);
-    for (int i = 0; i < all; ++i) reach_[i] = atom.radius[i] * (1.0 + growth_->vector_atom[i]);
+    largest_ = 0.0;
+    for (int i = 0; i < nlocal + atom.nghost; ++i) largest_ = std::max(largest_, growth_->vector_atom[i]);
   }
 
   double of(int body) const { return growth_->vector_atom[body]; }
   const double* of_all() const { return growth_->vector_atom; }
 
-  /// Radii of the grown spheres: no contact is beyond them.
-  const double* reach() const { return reach_.data(); }
+  /// No grown spheres touch whose squared distance is above this factor times the squared sum of their radii.
+  double factor() const { return std::pow(1.0 + std::min(largest_, growth_reach), 2); }
 
   /// Two numbers per sphere, for a loop that books by itself as `add` does.
   double* sums() { return sums_->array_atom[0]; }
@@ -77,7 +78,7 @@ class Growth {
 
   LAMMPS_NS::FixPropertyAtom* growth_ = nullptr;
   LAMMPS_NS::FixPropertyAtom* sums_ = nullptr;
-  std::vector<double> reach_;
+  double largest_ = 0.0;
 };
 
 }  // namespace epdem::liggghts

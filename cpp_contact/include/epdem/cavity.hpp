@@ -131,6 +131,20 @@ struct Cavity {
     return W;
   }
 
+  /// Work between two overlaps [J]. A step moves the overlap by little, and Gauss's rule of two nodes has a relative
+  /// error below 1e-10 where the overlap grows by less than 2 % within a phase; the closed form takes 64 nodes.
+  T work(T R_star, T from, T to) const noexcept {
+    const T delta_P = plastic_ratio * R_star;
+    const auto near = (to < 1.02 * from) & ((from >= delta_P) | ((from >= elastic_overlap(R_star)) & (to <= delta_P)));
+    T W{};
+    if (any(near)) {
+      const T middle = 0.5 * (from + to), half = 0.5 * (to - from), node = 0.57735026918962576 * half;
+      W = half * (load(R_star, middle - node).force + load(R_star, middle + node).force);
+    }
+    if (any(!near)) W = select(near, W, work(R_star, to) - work(R_star, from));
+    return W;
+  }
+
   /// What the fall of the pressure takes off the work between two overlaps of one phase; Gauss's rule in ln alpha.
   T fallen_work(T R_star, T low, T high) const noexcept {
     constexpr double node[] = {0.005299532504175031, 0.0277124884633837, 0.06718439880608412, 0.1222977958224985,

@@ -6,6 +6,8 @@
 // type: the same text, and the same bits, for one contact and for lanes of contacts.
 #pragma once
 
+#include <utility>
+
 #include "unloading.hpp"
 
 namespace epdem {
@@ -177,6 +179,17 @@ inline Number<Law> elastic_energy(const Law& law, Number<Law> R_star, const Step
   return energy;
 }
 
+namespace detail {
+
+/// Whether a law has its own work between two overlaps, because its work from zero on takes long.
+template <class Law, class = void>
+inline constexpr bool has_work_between = false;
+template <class Law>
+inline constexpr bool has_work_between<
+    Law, std::void_t<decltype(std::declval<Law>().work(Number<Law>{}, Number<Law>{}, Number<Law>{}))>> = true;
+
+}  // namespace detail
+
 /// What a step, whose elastic energy is `stored`, added to the plastic work of a contact [J].
 template <class Law>
 inline Number<Law> plastic_growth(const Law& law, Number<Law> R_star, const State<Law>& before, const Step<Law>& now,
@@ -185,6 +198,14 @@ inline Number<Law> plastic_growth(const Law& law, Number<Law> R_star, const Stat
   const auto grows = now.after.delta_max > before.delta_max;
   const auto yields = grows & (now.after.delta_max > law.elastic_overlap(R_star));
   if (!any(yields)) return T{};
+  if constexpr (detail::has_work_between<Law>) {
+    const T yield = law.elastic_overlap(R_star);  // for lanes that do not yield
+    const T from = select(yields, max(T{}, before.delta_max), yield), to = select(yields, now.after.delta_max, yield);
+    const auto yielded = from > yield;
+    T held = hertz_work(law.E_star, R_star, from);  // before the step
+    if (any(yielded)) held = select(yielded, recovered_work(law.E_star, law.load(R_star, max(from, yield))), held);
+    return select(yields, law.work(R_star, from, to) + held - stored, T{});
+  }
   const T work = law.work(R_star, only(yields, now.after.delta_max)) - stored;  // it is on the backbone
   return select(yields, work - plastic_work(law, R_star, only(yields, before.delta_max)), T{});
 }

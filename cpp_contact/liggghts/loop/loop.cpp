@@ -118,8 +118,8 @@ void PairLoop::read_lists() {
   for (std::vector<int>* spheres : {&i_, &j_}) spheres->insert(spheres->end(), most_lanes, 0);
 }
 
-/// Writes into the block the pairs that overlap, with adhesion the pairs that are near, with growth the pairs whose
-/// grown spheres overlap.
+/// Writes into the block the pairs that overlap, with adhesion the pairs that are near, with growth also the pairs whose
+/// gap it closes.
 template <Reach reach>
 void PairLoop::gather(const Plan& plan) {
   static_assert(2 * pairs_at_once <= block_size);
@@ -127,12 +127,16 @@ void PairLoop::gather(const Plan& plan) {
   Block& b = *block_;
   PairSearch search{pass_.x, atom->radius, 1.0, i_.data(), j_.data(), static_cast<int>(j_.size()) - most_lanes};
   if (reach == Reach::attached) search.factor = neighbor->contactDistanceFactor * neighbor->contactDistanceFactor;
-  if (reach == Reach::grown) search.radius = plan.growth->reach();
-  const auto next_pairs = sphere_kernels(lmp).next_pairs;
+  if (reach == Reach::grown) search.factor = plan.growth->factor();
+  const SphereKernels& kernels = sphere_kernels(lmp);
+  const auto next_pairs = reach == Reach::grown ? kernels.next_near_pairs : kernels.next_pairs;
   int n = 0;
   while (search.tested < search.count) {
     const int found = next_pairs(search, b.i + n, b.j + n, slot_ + n);
-    for (const int last = n + found; n < last; ++n) slot_[n] -= first_[b.i[n]];
+    if constexpr (reach == Reach::grown)
+      n += without_gaps(plan, n, found);
+    else
+      for (const int last = n + found; n < last; ++n) slot_[n] -= first_[b.i[n]];
     if (n <= block_size - pairs_at_once) continue;
     finish<reach>(plan, n);
     n = 0;
@@ -144,7 +148,6 @@ template <Reach reach>
 void PairLoop::finish(const Plan& plan, int n) {
   constexpr bool adheres = reach == Reach::attached, grown = reach == Reach::grown;
   if constexpr (adheres) n = without_parted(plan, n);
-  if constexpr (grown) n = without_gaps(plan, n);
   if (n == 0) return;
   fetch(plan, n);
   pad(*block_, n);
@@ -183,33 +186,33 @@ int PairLoop::without_parted(const Plan& plan, int n) {
   return kept;
 }
 
-/// Keeps the pairs of grown spheres in contact and returns their number; other pairs lose their mark.
-int PairLoop::without_gaps(const Plan& plan, int n) {
+/// Keeps those of the next `found` pairs, behind the first n, that overlap or whose growth closes a gap, and returns
+/// their number; other pairs lose their mark.
+int PairLoop::without_gaps(const Plan& plan, int n, int found) {
   Block& b = *block_;
-  const int size = pair_->dnum();
-  const double *const x = atom->x[0], *const radius = atom->radius;
-  const double near = neighbor->contactDistanceFactor * neighbor->contactDistanceFactor;
-  int kept = 0;
-  for (int k = 0; k < n; ++k) {
-    const int i = b.i[k], j = b.j[k], slot = slot_[k];
-    const double dx = x[3 * i] - x[3 * j], dy = x[3 * i + 1] - x[3 * j + 1], dz = x[3 * i + 2] - x[3 * j + 2];
-    const double sum = radius[i] + radius[j], rsq = dx * dx + dy * dy + dz * dz;
-    if (!(rsq < sum * sum)) {
-      if (!(rsq < near * sum * sum)) continue;
-      const double* const h = pair_->listgranhistory->firstdouble[i] + size * slot;
-      const double delta_max = pass_.now - h[plan.last_step] > 1.0 ? 0.0 : h[0];
-      const double added =
-          added_overlap<false>(radius[i], radius[j], delta_max, plan.growth->of(i), plan.growth->of(j));
-      if (!closes_gap(sum, rsq, added)) {
-        pair_->listgranhistory->firstneigh[i][slot] &= ~flags_;
-        continue;
-      }
-    }
+  int kept = n;
+  for (int k = n; k < n + found; ++k) {
+    const int i = b.i[k], j = b.j[k], place = slot_[k], slot = (place < 0 ? ~place : place) - first_[i];
+    if (place < 0 && !closes_gap(plan, i, j, slot)) continue;
     b.i[kept] = i;
     b.j[kept] = j;
     slot_[kept++] = slot;
   }
-  return kept;
+  return kept - n;
+}
+
+/// Whether growth closes the gap of a pair; else the pair loses its mark.
+bool PairLoop::closes_gap(const Plan& plan, int i, int j, int slot) {
+  const double *const x = atom->x[0], *const radius = atom->radius;
+  const double dx = x[3 * i] - x[3 * j], dy = x[3 * i + 1] - x[3 * j + 1], dz = x[3 * i + 2] - x[3 * j + 2];
+  const double sum = radius[i] + radius[j], rsq = dx * dx + dy * dy + dz * dz;
+  const double* const h = pair_->listgranhistory->firstdouble[i] + pair_->dnum() * slot;
+  const double delta_max = pass_.now - h[plan.last_step] > 1.0 ? 0.0 : h[0];
+  const Growth& growth = *plan.growth;
+  if (epdem::closes_gap(sum, rsq, added_overlap<false>(radius[i], radius[j], delta_max, growth.of(i), growth.of(j))))
+    return true;
+  pair_->listgranhistory->firstneigh[i][slot] &= ~flags_;
+  return false;
 }
 
 /// Gathers n contacts and marks them in LIGGGHTS's list.

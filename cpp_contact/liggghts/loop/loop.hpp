@@ -79,7 +79,8 @@ class PairLoop : protected LAMMPS_NS::Pointers {
   template <Reach reach>
   void finish(const Plan& plan, int n);
   int without_parted(const Plan& plan, int n);
-  int without_gaps(const Plan& plan, int n);
+  int without_gaps(const Plan& plan, int n, int found);
+  bool closes_gap(const Plan& plan, int i, int j, int slot);
   void fetch(const Plan& plan, int n);
   template <bool torques, bool books, Reach reach>
   void scatter(const Plan& plan, int n);
