@@ -108,14 +108,22 @@ struct ThorntonNing {
 template <class T>
 inline constexpr bool adheres<ThorntonNing<T>> = true;
 
+/// Whether (R* delta)^(1/4) is larger than (c R*)^(1/3).
+template <class T>
+inline auto is_wide(const ThorntonNing<T>& law, T R_star, T delta) noexcept {
+  const T X = R_star * delta, cube = law.c * R_star;
+  return X * X * X > (cube * cube) * (cube * cube);
+}
+
 /// y = sqrt(a) of a growing contact at `delta` > 0: the largest root of y^4 - c R* y = R* delta. It lies between
 /// b = max((c R*)^(1/3), (R* delta)^(1/4)) and 1.23 b. `root` is (c R)^(1/3) of the curve on which the contact opens,
 /// from which one step of Halley's method gives (c R*)^(1/3) to 1 % wherever it is larger than (R* delta)^(1/4). From
-/// there three steps of Halley's method (of third order) lead to round-off.
-template <class T>
-inline T grown(const ThorntonNing<T>& law, T R_star, T R, T root, T delta) noexcept {
-  const T X = R_star * delta, cube = law.c * R_star;
-  T y = 1.1 * max(root * ((R + 2.0 * R_star) / (2.0 * R + R_star)), sqrt(sqrt(X)));
+/// there three steps of Halley's method (of third order) lead to round-off. The bits of a wide contact do not depend
+/// on R and root.
+template <class T, class M>
+inline T grown(const ThorntonNing<T>& law, T R_star, T R, T root, T delta, M wide) noexcept {
+  const T X = R_star * delta, cube = law.c * R_star, s = sqrt(sqrt(X));
+  T y = 1.1 * select(wide, s, max(root * ((R + 2.0 * R_star) / (2.0 * R + R_star)), s));
   for (int k = 0; k < 3; ++k) {
     const T y2 = y * y, y3 = y2 * y, f = y * (y3 - cube) - X, slope = 4.0 * y3 - cube;
     y = y - f * slope / (slope * slope - 6.0 * y2 * f);
@@ -123,9 +131,10 @@ inline T grown(const ThorntonNing<T>& law, T R_star, T R, T root, T delta) noexc
   return y;
 }
 
-/// As the step of `Jkr`. Growth moves the opening curve, and the force is always the force of the opening curve, so
-/// that the same step taken twice gives the same force to round-off. A contact that broke inside its dent forms again
-/// where that curve begins; one that is apart at delta <= 0 forgets.
+/// As the step of `Jkr`. Growth moves the opening curve, and the force is always the force of the opening curve. Where
+/// this curve begins, y is the y of growth: a wide contact takes it from there, which saves the curve, in the step of
+/// growth and in the same step taken again, so that both give the same bits. A contact that broke inside its dent forms
+/// again where that curve begins; one that is apart at delta <= 0 forgets.
 template <class T>
 inline Step<ThorntonNing<T>> step(const ThorntonNing<T>& law, T R_star, const typename ThorntonNing<T>::State& before,
                                   T delta, T closing) noexcept {
@@ -142,15 +151,17 @@ inline Step<ThorntonNing<T>> step(const ThorntonNing<T>& law, T R_star, const ty
   const auto grows = stands & (delta > before.delta_max);
 
   T y{}, up{}, at_touch = -4.0 / 3.0 * law.pull * R;
-  auto flows = grows & dented;
-  if (any(flows)) {
-    up = grown(law, R_star, R, root, delta);
-    flows = flows & law.yields_at(R_star, up);
+  const auto wide = is_wide(law, R_star, delta);
+  auto peak = stands & dented & (delta >= before.delta_max);
+  if (any(peak)) {
+    up = grown(law, R_star, R, root, delta, wide);
+    peak = peak & law.yields_at(R_star, up);
   }
-  if (any(!flows)) {
+  auto flows = peak & grows;
+  if (any(!(peak & wide))) {
     y = curve(y_f, X);
     const auto first = grows & !dented & law.yields_at(R_star, y);
-    up = select(first, y, up);
+    if (any(first)) up = select(first, select(wide, grown(law, R_star, R, root, delta, wide), y), up);
     flows = flows | first;
   }
   if (any(flows)) {
@@ -160,8 +171,9 @@ inline Step<ThorntonNing<T>> step(const ThorntonNing<T>& law, T R_star, const ty
     dent = select(flows, up * up * up * up * ((R - R_star) / (R * R_star)), dent);
     own = delta - dent;
     root = refreshed(root, law.c * R);
-    y = curve(fold_share * root, R * own);
+    if (any(flows & !wide)) y = select(flows, curve(fold_share * root, R * own), y);
   }
+  y = select((peak | flows) & wide, up, y);
   T jump{};
   if (any(forms)) jump = select(forms, on_touch(at_touch, delta - before.dent, closing), zero);
   if (any(ends)) jump = select(ends, on_parting(law.E_star, law.pull, R, y_f, (fold - X) / R, closing), jump);
