@@ -15,6 +15,13 @@
 
 namespace yade {
 
+/// An object as its class, if it is of this class and not of another: cheaper than a dynamic_cast.
+template <class Class, class Base>
+auto* exactly(Base* object) {
+  using Found = std::conditional_t<std::is_const_v<Base>, const Class, Class>;
+  return object && object->getClassIndex() == Class::getClassIndexStatic() ? static_cast<Found*>(object) : nullptr;
+}
+
 class EpGrowth : public GlobalEngine {
  public:
   /// A thread writes its own spheres, and each sum has the order of the neighbours' numbers: neither threads nor O.load
@@ -27,8 +34,8 @@ class EpGrowth : public GlobalEngine {
 #endif
     for (Body::id_t id = 0; id < n; ++id) {
       const Body* const body = bodies[id].get();
-      if (!body || !body->shape || body->shape->getClassIndex() != Sphere::getClassIndexStatic()) continue;
-      auto* const state = dynamic_cast<EpState*>(body->state.get());
+      if (!body || !exactly<Sphere>(body->shape.get())) continue;
+      auto* const state = exactly<EpState>(body->state.get());
       if (!state)
         epdem::in_yade::refuse("EpGrowth: body " + std::to_string(id) +
                                " has no EpState; give the sphere its EpMat when it is made");
@@ -50,7 +57,7 @@ class EpGrowth : public GlobalEngine {
  private:
   /// Depth of the dent of a contact in a sphere over its radius.
   static double depth_of(const Interaction& contact, Body::id_t id) {
-    const auto* const phys = dynamic_cast<const EpPhys*>(contact.phys.get());
+    const auto* const phys = exactly<EpPhys>(contact.phys.get());
     if (!phys || phys->growthAt() < 0) return 0.0;
     const auto& geom = static_cast<const ScGeom&>(*contact.geom);
     const double delta_max = phys->history[0], radius_1 = geom.radius1, radius_2 = geom.radius2;
@@ -103,8 +110,13 @@ class EpGrownIg2 : public Ig2, public EpFindsGrown {
     const auto finds = [&](const shared_ptr<Shape>& first, const shared_ptr<Shape>& second) {
       return Ig2::go(first, second, state1, state2, shift2, force, contact);
     };
+    if (contact->isReal()) return finds(shape1, shape2);
     const double growth1 = spheres ? growth_of(state1) : 0.0, growth2 = growth_of(state2);
-    if (contact->isReal() || !(growth1 + growth2 > 0.0)) return finds(shape1, shape2);
+    if (!(growth1 + growth2 > 0.0)) return finds(shape1, shape2);
+    if constexpr (spheres) {  // most pairs within the bounds are apart
+      const double reach = radius_of(shape1) * (1.0 + growth1) + radius_of(shape2) * (1.0 + growth2);
+      if ((state2.pos + shift2 - state1.pos).squaredNorm() > reach * reach) return false;
+    }
     Sphere grown1, grown2;
     if (!finds(spheres ? grow(shape1, growth1, grown1) : shape1, grow(shape2, growth2, grown2))) return false;
     // once more with the spheres themselves: YADE computes the geometry of a real contact at any distance
@@ -116,12 +128,14 @@ class EpGrownIg2 : public Ig2, public EpFindsGrown {
 
  private:
   static double growth_of(const State& state) {
-    const auto* const of_material = dynamic_cast<const EpState*>(&state);
+    const auto* const of_material = exactly<EpState>(&state);
     return of_material ? of_material->growth : 0.0;
   }
 
+  static double radius_of(const shared_ptr<Shape>& sphere) { return static_cast<const Sphere&>(*sphere).radius; }
+
   static shared_ptr<Shape> grow(const shared_ptr<Shape>& sphere, double growth, Sphere& grown) {
-    grown.radius = static_cast<const Sphere&>(*sphere).radius * (1.0 + growth);
+    grown.radius = radius_of(sphere) * (1.0 + growth);
     return shared_ptr<Shape>(shared_ptr<Shape>(), &grown);
   }
 };

@@ -16,6 +16,7 @@ class Law2_ScGeom_EpPhys : public LawFunctor {
       compaction = false;
       throw std::invalid_argument(getClassName() + ".compaction = True: only Law2_ScGeom_EpPhys_Cavity has it");
     }
+    if (compaction) frictionModel_ = grown(frictionModel_);
   }
 
   // clang-format off
@@ -42,6 +43,8 @@ class Law2_ScGeom_EpPhys : public LawFunctor {
     bool goes_on = false;
     epdem::Frictions::each([&](auto model, int place) {
       if (place == frictionModel_) goes_on = act<decltype(model), Law>(geom, phys, contact);
+      if constexpr (epdem::compacts<Law>)
+        if (grown(place) == frictionModel_) goes_on = act<decltype(model), Law, true>(geom, phys, contact);
     });
     return goes_on;
   }
@@ -156,17 +159,14 @@ class Law2_ScGeom_EpPhys : public LawFunctor {
     phys.lawId = phys.constantsOf = Law::id;
   }
 
-  template <class Friction, class Law>
+  template <class Friction, class Law, bool grows = false>
   bool act(const ScGeom& geom, EpPhys& phys, const Interaction& contact) {
-    if constexpr (epdem::compacts<Law>)
-      if (epdem::rarely(compaction))
-        return phys.wall ? act<Friction, true, Law, true>(geom, phys, contact)
-                         : act<Friction, false, Law, true>(geom, phys, contact);
-    return phys.wall ? act<Friction, true, Law>(geom, phys, contact) : act<Friction, false, Law>(geom, phys, contact);
+    return phys.wall ? act<Friction, true, Law, grows>(geom, phys, contact)
+                     : act<Friction, false, Law, grows>(geom, phys, contact);
   }
 
   // flatten: without it GCC copies constants, motion and history between the functions of a contact
-  template <class Friction, bool wall, class Law, bool grows = false>
+  template <class Friction, bool wall, class Law, bool grows>
   [[gnu::flatten]] bool act(const ScGeom& geom, EpPhys& phys, const Interaction& contact) {
     const auto& bodies = *scene->bodies;
     const Body::id_t id1 = contact.getId1(), id2 = contact.getId2();
@@ -306,6 +306,9 @@ class Law2_ScGeom_EpPhys : public LawFunctor {
       largestOverlapRatio = std::max<Real>(largestOverlapRatio, overlap_ratio);
     }
   }
+
+  /// A model beside a law with compaction: a contact without compaction tests nothing more.
+  static constexpr int grown(int place) { return -1 - place; }
 
   int frictionModel_ = epdem::Frictions::place(epdem::SlidingSpring::id), rollingModel_ = 0, cohesionModel_ = 0;
   std::atomic<bool> booked_{false};
