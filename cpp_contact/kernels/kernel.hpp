@@ -242,8 +242,7 @@ template <class Law, class Friction, bool wall, bool grows = false>
     [[maybe_unused]] Lanes last{}, growing{};
     [[maybe_unused]] Grown<Lanes> grown{};
     if constexpr (grows) {
-      // a step that is evaluated once more has the overlap that growth added then
-      last = select(repeats, value[values + 1], value[values]);
+      last = value[values];  // of a step that is evaluated once more hosts put the added overlap here
       growing = added_overlap<wall>(c.radius_i, c.radius_j, history.law.delta_max, growth_i, growth_j);
       growing = select(repeats, last, growing);
       grown = grow<Law>(history.law, overlap, growing, last);

@@ -134,7 +134,8 @@ void FixWall::post_force(int) {
     for (size_t k = 0; k < found.size(); ++k) {
       const Contact& c = found[k];
       b.i[n] = i;
-      b.history[n] = record(i, static_cast<int>(k)) + 1;
+      double* const h = b.history[n] = record(i, static_cast<int>(k)) + 1;
+      if (layout_.growth >= 0 && pass_.repeats) h[layout_.growth] = h[layout_.growth + 1];
       b.material[n] = constants_.data() + most_constants * atom->type[i];
       b.radius_i.a[n] = atom->radius[i];
       b.mass_i.a[n] = atom->rmass[i];

@@ -298,7 +298,8 @@ void PairEp::fetch(int n, HistoryAt history_at) {
   const int values = layout_.values;
   const auto history = [&](long i, int k) {
     if (values == 0) return;
-    b.history[k] = history_at(static_cast<int>(i), k);
+    double* const h = b.history[k] = history_at(static_cast<int>(i), k);
+    if (layout_.growth >= 0 && pass_.repeats) h[layout_.growth] = h[layout_.growth + 1];
     for (int line = 0; line < values; line += 8) __builtin_prefetch(b.history[k] + line, 1);
   };
   const kernels::Spheres spheres{atom->f[0], atom->torque[0], atom->radius, atom->rmass,
