@@ -307,7 +307,7 @@ class Law2_ScGeom_EpPhys : public LawFunctor {
     }
   }
 
-  /// A model beside a law with compaction: a contact without compaction tests nothing more.
+  /// The friction model at this place with compaction, so that one choice of a contact takes both.
   static constexpr int grown(int place) { return -1 - place; }
 
   int frictionModel_ = epdem::Frictions::place(epdem::SlidingSpring::id), rollingModel_ = 0, cohesionModel_ = 0;
