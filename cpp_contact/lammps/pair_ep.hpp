@@ -25,8 +25,7 @@ class PairEp : public LAMMPS_NS::Pair {
   double init_one(int i, int j) override;
   void compute(int eflag, int vflag) override;
   /// Elastic energy of a contact, normal force over distance; svector: overlap, largest overlap, contact radius,
-  /// whether the bodies touch or are attached,
-  /// overlap that growth adds.
+  /// whether the bodies touch or are attached, overlap that growth adds.
   double single(int i, int j, int itype, int jtype, double rsq, double, double, double& fforce) override;
   void write_restart(FILE* file) override;
   void read_restart(FILE* file) override;
