@@ -196,10 +196,10 @@ def motions(p: ScenePlan, before: Phase | None, phase: Phase | Deck) -> list[str
         T = f"v_{id}_way" if isinstance(move, PressMove) else f"(time-v_{id}_begin)"
         if isinstance(last, PressMove):
             found.append(f"unfix press_{id}")
+        if before:  # the place so far, before the time of the motion begins anew
+            found += [f"variable {id}_{key}0 equal $(v_{id}_{key}:%.17g)" for key in keys]
         found.append(f"variable {id}_begin equal $(time:%.17g)")
         for key in keys:
-            if before:
-                found.append(f"variable {id}_{key}0 equal $(v_{id}_{key}:%.17g)")
             formula = rates[key].replace("T", T) if key in rates else ""
             terms = [f"v_{id}_{key}0"] * (before is not None) + [formula] * bool(formula)
             found.append(f"variable {id}_{key} equal {'+'.join(terms) or '0.0'}")
