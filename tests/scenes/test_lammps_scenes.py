@@ -141,11 +141,26 @@ def test_round_walls_hold_and_drive_a_bed_as_in_liggghts(kind, tmp_path):
     assert (ours.rows["particles"] == theirs.rows["particles"].max()).all()
 
 
+def turned(axis):
+    """Phases of the lid: shifted along x, then turned about `axis`."""
+    shift = {"wall": "lid", "kind": "linear", "velocity": ["1 m/s", "0 m/s", "0 m/s"]}
+    turn = {"wall": "lid", "kind": "rotate", "axis": [float(axis == name) for name in "xyz"], "rate": "1 rad/s"}
+    return [{"name": name, "duration": "1 ms", "move": [move]} for name, move in (("shift", shift), ("turn", turn))]
+
+
+def test_a_wall_that_was_shifted_along_an_axis_turns_about_the_axis():
+    scene_engine("lammps").check(plan(parse(parts(wall=[FLOOR, PLATE], phase=turned("x")))))
+
+
 @pytest.mark.parametrize(
     ("change", "sentence"),
     [
         ({"fill": [BED | {"rate": "10 kHz"}]}, "all spheres come at the begin of a phase; remove it or use"),
         ({"wall": [FLOOR, PLATE | {"wear": "1e-12 m^2/N"}]}, "scene.wall.lid.wear = 1e-12: regions have no triangles"),
+        (
+            {"wall": [FLOOR, PLATE], "phase": turned("z")},
+            "phase.turn.move = 'rotate': a region of LAMMPS takes the axis",
+        ),
     ],
 )
 def test_what_regions_do_not_hold_is_refused_with_one_sentence(change, sentence):

@@ -181,6 +181,13 @@ def _motion_words(p: ScenePlan, name: str) -> str:
         axes = {(tuple(r.unit_axis), tuple(r.origin)) for r in p.rotations(name)}
         refuse(f"scene.wall.{name}", len(axes) > 1 and "several axes", "a region of LAMMPS turns about one")
         axis, origin = axes.pop()
+        shifted = False  # across the axis
+        for phase in p.phases:
+            turns = isinstance(phase.moves.get(name), RotateMove)
+            reason = "a region of LAMMPS takes the axis along, and a motion before shifts the wall across it"
+            refuse(f"scene.phase.{phase.name}.move", shifted and turns and "rotate", reason)
+            rates = _rates(p, name, phase)
+            shifted |= any(key in rates and abs(share) < 1 for key, share in zip("xyz", axis, strict=True))
         found.append(f"rotate v_{id}_turn {_numbers(origin)} {_numbers(axis)}")
     return " ".join(found)
 
