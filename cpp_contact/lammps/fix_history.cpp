@@ -5,7 +5,6 @@
 
 #include "atom.h"
 #include "comm.h"
-#include "epdem/compaction.hpp"
 #include "error.h"
 #include "memory.h"
 #include "neigh_list.h"
@@ -88,8 +87,7 @@ void FixHistory::close_growth(bool counts) {
     for (int i = 0; i < atom->nlocal; ++i) growth_[i] = epdem::growth(dents_[2L * i], dents_[2L * i + 1]);
     comm->forward_comm(this);
     largest_ = 0.0;
-    for (int i = 0; i < atom->nlocal + atom->nghost; ++i)
-      largest_ = std::max(largest_, std::min(growth_reach, growth_[i]));
+    for (int i = 0; i < atom->nlocal + atom->nghost; ++i) largest_ = std::max(largest_, growth_[i]);
   }
   std::fill_n(dents_.begin(), 2L * atom->nlocal, 0.0);
 }

@@ -5,6 +5,7 @@
 
 #include <vector>
 
+#include "epdem/compaction.hpp"
 #include "fix.h"
 #include "words.hpp"
 
@@ -56,7 +57,7 @@ class FixHistory : public LAMMPS_NS::Fix {
   void close_growth(bool counts);
   const double* growth() const { return growth_.data(); }
   /// No grown spheres touch whose squared distance is above this factor times the squared sum of their radii.
-  double factor() const { return (1.0 + largest_) * (1.0 + largest_); }
+  double factor() const { return touch_factor(largest_); }
   /// Adds the depths of the dents of a block to the sums of its own atoms.
   void note_dents(const kernels::Block& b, int n, bool wall);
 

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <algorithm>
-#include <cmath>
 #include <string>
 
 #include "epdem/compaction.hpp"
@@ -55,7 +54,7 @@ class Growth {
   const double* of_all() const { return growth_->vector_atom; }
 
   /// No grown spheres touch whose squared distance is above this factor times the squared sum of their radii.
-  double factor() const { return std::pow(1.0 + std::min(largest_, growth_reach), 2); }
+  double factor() const { return touch_factor(largest_); }
 
   /// Two numbers per sphere, for a loop that books by itself as `add` does.
   double* sums() { return sums_->array_atom[0]; }

@@ -3,6 +3,7 @@
 
 from pathlib import Path
 
+import jinja2
 import pytest
 from removals import removals
 from scene_runs import write_deck
@@ -127,8 +128,8 @@ def test_every_line_of_a_deck_with_any_law_has_a_reason(law):
 
 def test_a_line_without_a_reason_is_found(tmp_path, monkeypatch):
     (tmp_path / "bad.j2").write_text('units si  # guard: said\nfix a all nve{{ why("moves") }}\nrun 3\n# words\n')
-    plain = rendering.environment
-    monkeypatch.setattr(rendering, "environment", lambda **words: plain(tmp_path, **words))
+    own = jinja2.Environment(loader=jinja2.FileSystemLoader(tmp_path), **rendering.OPTIONS)
+    monkeypatch.setattr(rendering, "environment", lambda **words: rendering.prepared(own, **words))
     assert reasons.explain({"in.bad": "bad.j2"}, None) == [
         ("in.bad", "units si  # guard: said", "guard: said"),
         ("in.bad", "fix a all nve", "moves"),

@@ -138,7 +138,7 @@ def test_every_block_of_toml_is_a_case_a_part_of_one_or_a_setting(tmp_path, monk
             (tmp_path / "epdem").mkdir()
             (tmp_path / "epdem/config.toml").write_text(text)
             monkeypatch.setenv("XDG_CONFIG_HOME", str(tmp_path))
-            assert paths.setting("engine", "liggghts")
+            assert paths.setting()
         elif words:
             data = merged(read_toml(ROOT / f"cases/{words[0]}.toml"), tomllib.loads(text))
             assert parse(data, name)

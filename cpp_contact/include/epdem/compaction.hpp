@@ -55,6 +55,12 @@ EPDEM_INLINE T added_overlap(T radius_i, T radius_j, T delta_max, T growth_i, T 
   return u_i + radius_j * max(T{}, growth_j - growth(x.j, x.j * x.j));
 }
 
+/// Spheres that grow by at most `largest` touch below this factor of the squared sum of their radii.
+inline double touch_factor(double largest) noexcept {
+  const double reach = 1.0 + (largest < growth_reach ? largest : growth_reach);
+  return reach * reach;
+}
+
 /// Whether growth closes the gap between bodies whose centres are sqrt(rsq) apart.
 template <class T>
 EPDEM_INLINE bool closes_gap(T radii, T rsq, T added) noexcept {

@@ -118,8 +118,8 @@ void PairLoop::read_lists() {
   for (std::vector<int>* spheres : {&i_, &j_}) spheres->insert(spheres->end(), most_lanes, 0);
 }
 
-/// Writes into the block the pairs that overlap, with adhesion the pairs that are near, with growth also the pairs whose
-/// gap it closes.
+/// Writes into the block the pairs that overlap, with adhesion the pairs that are near, with growth also the pairs
+/// whose gap it closes.
 template <Reach reach>
 void PairLoop::gather(const Plan& plan) {
   static_assert(2 * pairs_at_once <= block_size);
