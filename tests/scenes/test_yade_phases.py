@@ -7,6 +7,7 @@ from parts_cases import BED, FLOOR, own, parts
 from scene_runs import run, write_case
 from test_parts_motions import BOX, FALL, PLATE
 
+from engines.lammps_decks import needs_lammps
 from engines.yade_native import classes, needs_source
 from epdem.errors import EngineError
 from epdem.scenes.columns import last_frame
@@ -159,6 +160,36 @@ def test_a_condition_that_is_not_reached_is_named_in_yade(tmp_path):
     assert 1e-3 < table["end_time"].iloc[0] < 3e-3, "looked at from a tenth of the duration"
     assert outcome.results.rows["step"].iloc[-1] == outcome.plan.steps == table["end"].iloc[-1]
     assert any(said.startswith("scene.phase.b.until was not reached") for said in outcome.warnings)
+
+
+@needs_lammps
+@needs_source
+@pytest.mark.liggghts
+def test_a_plate_that_changes_its_motion_rubs_spheres_in_all_hosts_alike(classes, tmp_path):
+    """Pressed, at rest and drawn back: the slip of each step is that of its own motion."""
+    body = [
+        BALL | {"name": f"b{k}", "position": [f"{x} mm", f"{y} mm", "1.5 mm"]}
+        for k, (x, y) in enumerate([(1.1, -0.4), (-2.2, -0.7), (0.2, 3.1)])
+    ]
+    moves = [
+        [{"wall": "lid", "kind": "linear", "velocity": [f"{x} m/s", "0 m/s", f"{z} m/s"]}]
+        for x, z in ((0.05, -0.2), (-0.04, 0.1))
+    ]
+    phases = [
+        FALL | {"name": name, "duration": "0.4 ms", "move": move}
+        for name, move in (("press", moves[0]), ("hold", []), ("draw", moves[1]))
+    ]
+    lid = PLATE | {"center": ["0 mm", "0 mm", "3.01 mm"], "size": ["14 mm", "14 mm"]}
+    data = parts(wall=[FLOOR, lid], fill=[], body=body, phase=phases, gravity="0 m/s^2")
+    data |= {"contact": {"friction": 0.3}, "numerics": {"time_step": "4e-6 s"}}
+    data["output"] = {"rows": 100, "particles": 2, "loads": True}
+    path = write_case(data, tmp_path)
+    theirs = run(path, engine="liggghts", out=tmp_path / "liggghts").results.rows
+    for name in ("lammps", "yade"):
+        ours = run(path, engine=name, out=tmp_path / name).results.rows
+        for column in ("lid_force_x", "lid_force_z", "floor_force_z", "kinetic_energy"):
+            off, largest = np.abs(ours[column] - theirs[column]).max(), np.abs(theirs[column]).max()
+            assert off <= 1e-6 * largest > 0, (name, column)
 
 
 @pytest.mark.liggghts
