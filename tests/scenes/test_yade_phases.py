@@ -9,8 +9,11 @@ from test_parts_motions import BOX, FALL, PLATE
 
 from engines.lammps_decks import needs_lammps
 from engines.yade_native import classes, needs_source
+from epdem.case.scene import parse
+from epdem.engines import scene_engine
 from epdem.errors import EngineError
 from epdem.scenes.columns import last_frame
+from epdem.scenes.plan import plan
 
 pytestmark = pytest.mark.yade
 __all__ = ["classes"]
@@ -160,6 +163,15 @@ def test_a_condition_that_is_not_reached_is_named_in_yade(tmp_path):
     assert 1e-3 < table["end_time"].iloc[0] < 3e-3, "looked at from a tenth of the duration"
     assert outcome.results.rows["step"].iloc[-1] == outcome.plan.steps == table["end"].iloc[-1]
     assert any(said.startswith("scene.phase.b.until was not reached") for said in outcome.warnings)
+
+
+def test_motions_that_phases_name_in_another_order_go_on():
+    lids = [PLATE | {"name": name, "center": ["0 mm", "0 mm", f"{z} mm"]} for name, z in (("lid", 6), ("roof", 9))]
+    both = [UP, UP | {"wall": "roof"}]
+    phases = [FALL | {"name": name, "move": move} for name, move in (("one", both), ("two", both[::-1]))]
+    text = scene_engine("yade").files(plan(parse(parts(wall=[FLOOR, *lids], phase=phases))))["scene.py"]
+    compile(text, "scene.py", "exec")
+    assert text.count("def motions()") == 1
 
 
 @needs_lammps
