@@ -113,3 +113,18 @@ def forces(x, radius, planes):
 def run(folder, text, spheres, **options):
     """The frames of a run."""
     return good(folder, text, files={"spheres.data": spheres}, **options).frames()[1]
+
+
+def alone(n, aside=30.0):
+    """Places, radii and velocities of n pairs of spheres, then of n spheres that fall on a floor at z = -1.
+
+    The impacts are elastic to fully plastic.
+    """
+    rng = np.random.default_rng(5)
+    a = np.column_stack([np.linspace(-60, 60, n), np.zeros(n), np.full(n, 4.0)])
+    radius = rng.uniform(0.7, 1.3, 3 * n)
+    b = a + np.column_stack([np.zeros(n), radius[:n] + radius[n : 2 * n] + 1e-3, rng.uniform(-0.3, 0.3, n)])
+    c = a - np.column_stack([np.zeros(n), np.full(n, aside), 5.0 - radius[2 * n :] - 1e-3])
+    v = np.zeros((3 * n, 3))
+    v[n : 2 * n, 1] = v[2 * n :, 2] = -np.geomspace(0.05, 20, n)
+    return np.concatenate([a, b, c]), radius, v

@@ -4,7 +4,7 @@
 import numpy as np
 import pytest
 from lammps_decks import column, lammps, needs_lammps, run
-from plugin_compaction import NU, E, Y, data
+from plugin_compaction import NU, E, Y, alone, data
 from test_plugin_compaction import BACK, CLUSTER, FLOOR, HEAVY, RADII, SPEEDS, WAYS, exact
 
 from epdem.theory.cavity import FINITE_STRAIN, Cavity
@@ -114,16 +114,7 @@ run {steps}
 @pytest.mark.parametrize("ranks", [1, 2])
 def test_contacts_alone_keep_every_bit(ranks, tmp_path):
     """Pairs and spheres at a wall, elastic to fully plastic, with a second impact on the wall after the first."""
-    rng = np.random.default_rng(5)
-    n = 12
-    a = np.column_stack([np.linspace(-60, 60, n), np.zeros(n), np.full(n, 4.0)])
-    radius = rng.uniform(0.7, 1.3, 3 * n)
-    b = a + np.column_stack([np.zeros(n), radius[:n] + radius[n : 2 * n] + 1e-3, rng.uniform(-0.3, 0.3, n)])
-    c = a - np.column_stack([np.zeros(n), np.full(n, 30.0), 5.0 - radius[2 * n :] - 1e-3])
-    speed = np.geomspace(0.05, 20, n)
-    v = np.zeros((3 * n, 3))
-    v[n : 2 * n, 1], v[2 * n :, 2] = -speed, -speed
-    spheres = data(np.concatenate([a, b, c]), radius, v, 2000.0, half=64.0)
+    spheres = data(*alone(12), 2000.0, half=64.0)
     turn = f"run 1000\nset group all vz {-0.2!r}\nrun 1000\n"
     head = "processors 2 1 1" if ranks == 2 else ""
     ends = [
@@ -136,7 +127,7 @@ def test_contacts_alone_keep_every_bit(ranks, tmp_path):
         for law in (LAW, ON)
     ]
     assert np.array_equal(*ends)
-    assert (ends[0][-1][1::2, 6] > 0).any() and (ends[0][-1][2 * n :, 6] > 0).any()  # some yielded
+    assert (ends[0][-1][1::2, 6] > 0).any() and (ends[0][-1][24:, 6] > 0).any()  # some yielded
 
 
 @pytest.mark.parametrize("steps", [7, 200])

@@ -3,7 +3,7 @@
 
 import numpy as np
 import pytest
-from plugin_compaction import NU, E, Y
+from plugin_compaction import NU, E, Y, alone
 from test_plugin_compaction import CLUSTER, FLOOR, RADII, SPEEDS, WAYS, exact
 from yade_native import ROOT, classes, needs_source, yade
 
@@ -149,25 +149,13 @@ REFUSED = (
 )
 
 
-def impacts():
-    """Places, radii and velocities of pairs of spheres and of spheres that fall on a floor at z = -1."""
-    rng = np.random.default_rng(5)
-    n = 12
-    a = np.column_stack([np.linspace(-60, 60, n), np.zeros(n), np.full(n, 4.0)])
-    radius = rng.uniform(0.7, 1.3, 3 * n)
-    b = a + np.column_stack([np.zeros(n), radius[:n] + radius[n : 2 * n] + 1e-3, rng.uniform(-0.3, 0.3, n)])
-    c = a - np.column_stack([np.zeros(n), np.full(n, 20.0), 5.0 - radius[2 * n :] - 1e-3])
-    v = np.zeros((3 * n, 3))
-    v[n : 2 * n, 1] = v[2 * n :, 2] = -np.geomspace(0.05, 20, n)
-    return {"alone": np.concatenate([a, b, c]), "radii_alone": radius, "way_alone": v}
-
-
 def scene(folder, text, threads=1):
     """What a script writes about its scenes, arrays by name, and its last words."""
     folder.mkdir(parents=True, exist_ok=True)
     page = (ROOT / "docs/yade.md").read_text().split("```python in engines/test_yade_compaction.py\n")[1]
     (folder / "page.py").write_text(page.split("```")[0])
-    np.savez(folder / "job.npz", x=CLUSTER, radius=RADII, way=WAY, floor=FLOOR, **impacts())
+    impacts = dict(zip(("alone", "radii_alone", "way_alone"), alone(12, aside=20.0), strict=True))
+    np.savez(folder / "job.npz", x=CLUSTER, radius=RADII, way=WAY, floor=FLOOR, **impacts)
     done = yade(SCENES + text, folder, threads)
     assert done.returncode == 0, done.stdout[-2000:] + done.stderr[-3000:]
     return dict(np.load(folder / "found.npz")), done.stderr
@@ -225,7 +213,7 @@ def test_plastic_work_and_elastic_energy_are_the_work_of_the_spheres(found):
 def test_contacts_alone_keep_every_bit(kind, found):
     on, off = found[0][f"{kind}True"], found[0][f"{kind}False"]
     assert np.array_equal(on, off)
-    hit = np.linalg.norm(on[:, 3:] - impacts()["way_alone"], axis=1)
+    hit = np.linalg.norm(on[:, 3:] - alone(12)[2], axis=1)
     assert (hit > 1e-3).sum() == 36
 
 
