@@ -5,7 +5,7 @@ import numpy as np
 import pytest
 from lammps_decks import column, lammps, needs_lammps, run
 from plugin_compaction import NU, E, Y, alone, data
-from test_plugin_compaction import BACK, CLUSTER, FLOOR, HEAVY, RADII, SPEEDS, WAYS, exact
+from test_plugin_compaction import BACK, CLUSTER, FLOOR, HEAVY, RADII, SPEEDS, WAYS, assert_second_order
 
 from epdem.theory.cavity import FINITE_STRAIN, Cavity
 from epdem.verification.theory.compaction import FCC, SC, isotropic_pressure
@@ -57,18 +57,11 @@ def cluster(folder, steps, *, law=ON, runs=None, head="", ranks=1):
 
 
 def test_forces_are_those_of_grown_spheres_with_an_error_of_second_order(tmp_path):
-    """Within 1e-3 in all steps; the order where no contact begins and no velocity jumps, of which no step knows."""
-    errors = []
-    for steps in (400, 800, 1600):
-        F, largest = exact(steps)
-        found = cluster(tmp_path / str(steps), steps)
-        difference = np.abs(found - F).max(axis=(1, 2)) / largest
-        assert difference[3:].max() < 1e-3
-        assert difference[steps + 3 :].max() < 1e-6
-        errors.append(difference[steps * 4 // 5 : steps - 2].max())
-    assert errors[-1] < 1e-5
-    assert np.log2(errors[0] / errors[2]) / 2 > 1.9, errors
-    assert found[1600, 5, 2] > 0 == cluster(tmp_path / "off", 400, law=LAW)[400, 5, 2]  # growth alone reaches the last
+    found = {steps: cluster(tmp_path / str(steps), steps) for steps in (400, 800, 1600)}
+    assert_second_order(found)
+    assert (
+        found[1600][1600, 5, 2] > 0 == cluster(tmp_path / "off", 400, law=LAW)[400, 5, 2]
+    )
 
 
 @pytest.mark.parametrize(("name", "lattice", "density"), [("sc", SC, 0.85), ("fcc", FCC, 0.92)])

@@ -4,7 +4,7 @@
 import numpy as np
 import pytest
 from plugin_compaction import NU, E, Y, alone
-from test_plugin_compaction import CLUSTER, FLOOR, RADII, SPEEDS, WAYS, exact
+from test_plugin_compaction import CLUSTER, FLOOR, RADII, SPEEDS, WAYS, assert_second_order
 from yade_native import ROOT, classes, needs_source, yade
 
 from scenes.parts_cases import parts
@@ -167,16 +167,7 @@ def found(tmp_path_factory):
 
 
 def test_forces_are_those_of_grown_spheres_with_an_error_of_second_order(found):
-    """Of all steps within 1e-3; the order where no contact begins and no velocity jumps, of which no step knows."""
-    errors = []
-    for steps in (400, 1600):
-        F, largest = exact(steps)
-        difference = np.abs(found[0][f"n{steps}"] - F).max(axis=(1, 2)) / largest
-        assert difference[3:].max() < 1e-3
-        assert difference[steps + 3 :].max() < 1e-6
-        errors.append(difference[steps * 4 // 5 : steps - 2].max())
-    assert errors[-1] < 1e-5
-    assert np.log2(errors[0] / errors[1]) / 2 > 1.9, errors
+    assert_second_order({steps: found[0][f"n{steps}"] for steps in (400, 1600)})
 
 
 def test_facets_and_boxes_press_as_walls_do(found):
