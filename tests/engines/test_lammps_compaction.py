@@ -59,9 +59,7 @@ def cluster(folder, steps, *, law=ON, runs=None, head="", ranks=1):
 def test_forces_are_those_of_grown_spheres_with_an_error_of_second_order(tmp_path):
     found = {steps: cluster(tmp_path / str(steps), steps) for steps in (400, 800, 1600)}
     assert_second_order(found)
-    assert (
-        found[1600][1600, 5, 2] > 0 == cluster(tmp_path / "off", 400, law=LAW)[400, 5, 2]
-    )
+    assert found[1600][1600, 5, 2] > 0 == cluster(tmp_path / "off", 400, law=LAW)[400, 5, 2]
 
 
 @pytest.mark.parametrize(("name", "lattice", "density"), [("sc", SC, 0.85), ("fcc", FCC, 0.92)])
