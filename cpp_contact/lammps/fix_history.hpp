@@ -58,7 +58,7 @@ class FixHistory : public LAMMPS_NS::Fix {
   const double* growth() const { return growth_.data(); }
   /// No grown spheres touch whose squared distance is above this factor times the squared sum of their radii.
   double factor() const { return touch_factor(largest_); }
-  /// Adds the depths of the dents of a block to the sums of its own atoms.
+  /// Adds the depths of the dents of a block to the sums of the atoms of this rank.
   void note_dents(const kernels::Block& b, int n, bool wall);
 
   int pack_forward_comm(int n, int* atoms, double* buffer, int, int*) override;

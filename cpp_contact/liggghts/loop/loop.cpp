@@ -186,8 +186,8 @@ int PairLoop::without_parted(const Plan& plan, int n) {
   return kept;
 }
 
-/// Keeps those of the next `found` pairs, behind the first n, that overlap or whose growth closes a gap, and returns
-/// their number; other pairs lose their mark.
+/// Of the `found` pairs behind the first n, keeps the pairs that overlap or whose growth closes a gap, and returns the
+/// number of kept pairs; other pairs lose their mark.
 int PairLoop::without_gaps(const Plan& plan, int n, int found) {
   Block& b = *block_;
   int kept = n;

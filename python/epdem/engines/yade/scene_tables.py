@@ -92,7 +92,7 @@ def _contacts(p: ScenePlan, folder: Path, spheres: pd.DataFrame, without: Collec
 def wall_table(p: ScenePlan, folder: Path, without: Collection[int] = ()) -> pd.DataFrame:
     """Stresses and wear of the triangles of walls in every frame, as in LIGGGHTS.
 
-    A plate without edges is one triangle in YADE; each of its own triangles has the mean of the plate.
+    A plate without edges is one triangle in YADE; each triangle of the plate's mesh has the mean of the plate.
     """
     raw = _frames(p, folder, "triangles", p.frames, ["normal_stress", "shear_stress", "wear"], [], without)
     steps = raw["step"].unique()
