@@ -9,6 +9,7 @@ from ..base.declarations import Declaration, declarations
 from ..errors import CaseError
 from ..theory.backbones import ADHESIVE, JKR, LAWS, Backbone
 from ..theory.numerics import Real
+from ..theory.pair import HARDENING, strain_share
 
 ADHESION = "work_of_adhesion"  # the parameter of laws with adhesion [J/m^2]
 
@@ -67,6 +68,14 @@ class LawSpec:
         strength = law_named(self.name).strength
         own = {} if strength is None else {strength: min(body, target)}
         return replace(self, parameters=self.parameters | own, strengths=(body, target))
+
+    @property
+    def share(self) -> float:
+        """Share in the strain of the body that has more of it: 1/2 of bodies of equal strength to 1."""
+        ratios = [self.parameters.get(name) for name in ("plastic_ratio", "first_yield_ratio")]
+        hardening = ratios[0] / ratios[1] if ratios[0] and ratios[1] else HARDENING
+        one = float(strain_share(*self.strengths, hardening=hardening))
+        return max(one, 1.0 - one)
 
     @property
     def adheres(self) -> bool:

@@ -3,7 +3,9 @@
 
 import numpy as np
 
-from .numerics import Real, number, poisson_ratio
+from .numerics import Array, Real, number, poisson_ratio
+
+HARDENING = 1.75  # contact pressure of full plasticity over that of first yield: 2.8 Y over 1.60 Y
 
 
 def _one_finite(name: str, a: Real, b: Real, otherwise: str) -> tuple[Real, Real]:
@@ -43,6 +45,21 @@ def R_star(R1: Real, R2: Real) -> Real:
 def m_star(m1: Real, m2: Real) -> Real:
     """Effective mass [kg]: 1/m* = 1/m1 + 1/m2; m1, m2 [kg] > 0, infinite for a fixed body, not both."""
     return _reduced(*_one_finite("m", m1, m2, "both bodies are fixed"))
+
+
+def strain_share(strength1: Real, strength2: Real, *, hardening: Real = HARDENING) -> Array:
+    """Share w of body 1 in the strain of a contact; body 2 has 1 - w.
+
+    The weaker body has (1 + t)/2, t = (S2/S1 - 1)/(hardening - 1) from 0 to 1, for strengths S1 <= S2: bodies of equal
+    strength have 1/2 each, and a body that cannot yield, because the pressure of the other one stays below the pressure
+    of its own first yield, has 0. strength1, strength2 [Pa] > 0, infinite: never yields; hardening > 1. ValueError
+    outside.
+    """
+    one, other = number("strength1", strength1, infinite=True), number("strength2", strength2, infinite=True)
+    low, high = np.minimum(one, other), np.maximum(one, other)
+    ratio = np.divide(high, low, out=np.ones(np.broadcast(one, other).shape), where=np.isfinite(low))
+    t = np.minimum((ratio - 1) / (number("hardening", hardening, low=1.0) - 1), 1.0)
+    return np.where(one <= other, (1 + t) / 2, (1 - t) / 2)
 
 
 def sphere_mass(*, radius: Real, density: Real) -> Real:

@@ -1,0 +1,56 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""The share of a body in the strain of a contact: 1/2 of equal strengths, 1 of a body whose partner cannot yield."""
+
+import math
+
+import numpy as np
+import pytest
+
+from epdem.case.fields import Material
+from epdem.impacts.experiment import RIGID_PLANE, pair_of, plane, sphere
+from epdem.laws.strengths import default_numbers
+from epdem.theory.backbones import Cavity
+from epdem.theory.pair import strain_share
+
+
+def body(make, Y, **size):
+    numbers = {"young_modulus": "200 GPa", "poisson_ratio": 0.3, "density": "7850 kg/m^3"}
+    return make(Material(yield_stress=f"{Y} Pa", **numbers), name="steel", **size)
+
+
+def test_the_share_rises_in_a_straight_line_from_one_half_to_one_at_equal_pressures():
+    """2.8 Y_1 = 1.6 Y_2 at Y_2/Y_1 = 1.75; at 1.1 and 1.4 by hand (1 + 0.1/0.75)/2 and (1 + 0.4/0.75)/2."""
+    ratio = np.array([1.0, 1.1, 1.4, 1.75, 3.0, 1e9, math.inf])
+    expected = [0.5, 17 / 30, 23 / 30, 1.0, 1.0, 1.0, 1.0]
+    assert strain_share(7e7, 7e7 * ratio) == pytest.approx(expected, rel=1e-12)
+    assert strain_share(7e7 * ratio, 7e7) == pytest.approx(1 - np.array(expected), abs=1e-12)
+    assert float(strain_share(math.inf, math.inf)) == 0.5
+
+
+@pytest.mark.parametrize("c_P", [2.0, 2.8])
+def test_a_body_without_a_share_is_one_that_the_pressure_of_the_other_never_brings_to_yield(c_P):
+    """The peak pressure of the weaker body, at any overlap, beside 1.6 Y of the stronger one."""
+    peak = Cavity(E_star=1e11, R_star=1.0, Y=1e8, c_P=c_P).pressure_max(np.geomspace(1e-9, 1.0, 2001)).max()
+    for Y, yields in ((0.99 * peak / 1.6, True), (1.01 * peak / 1.6, False)):
+        assert (strain_share(Y, 1e8, hardening=c_P / 1.6) > 0) == yields
+
+
+def test_the_share_of_a_pair_follows_from_its_strengths_and_the_parameters_of_the_law():
+    """Steel on steel, on harder steel, on a wall that never yields; hertz has no strengths."""
+    ball = body(sphere, 1e9, radius=0.01)
+    walls = [body(plane, Y) for Y in (1e9, 1.1e9, 1.4e9, 5e9)]
+    for name in ("thornton", "johnson", "cavity"):
+        numbers = default_numbers(name)
+        found = [pair_of(numbers, ball, wall).share for wall in (*walls, RIGID_PLANE)]
+        assert found == pytest.approx([0.5, 17 / 30, 23 / 30, 1.0, 1.0])
+        assert pair_of(numbers, walls[1], ball).share == pytest.approx(17 / 30)
+    narrow = default_numbers("cavity")
+    narrow.ratios["plastic_ratio"] = 2.0  # 2.0/1.6 = 1.25
+    assert pair_of(narrow, ball, walls[1]).share == pytest.approx(0.7)
+    assert pair_of(default_numbers("hertz"), ball, RIGID_PLANE).share == 0.5
+
+
+@pytest.mark.parametrize("numbers", [(-1.0, 1.0, 1.75), (1.0, 0.0, 1.75), (1.0, math.nan, 1.75), (1.0, 2.0, 1.0)])
+def test_strengths_below_zero_and_a_metal_that_softens_are_refused(numbers):
+    with pytest.raises(ValueError, match="must lie in"):
+        strain_share(*numbers[:2], hardening=numbers[2])
