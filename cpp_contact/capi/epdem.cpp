@@ -29,17 +29,18 @@ template <class Law>
 bool in_range(double E_star, const double* parameters) {
   for (int k = 0; k < Law::n_parameters; ++k)
     if (!range_of(Law::parameters[k]).holds(parameters[k])) return false;
-  return positive(E_star) && Law::valid(parameters);
+  const double share = parameters[Law::n_parameters];
+  return positive(E_star) && share >= 0.5 && share <= 1.0 && Law::valid(parameters);
 }
 
 /// Calls `body(law object)` for the law of that index; only here an index becomes a type.
 template <class Body>
 int with_law(int index, double E_star, const double* parameters, const Body& body) {
   int i = 0;
-#define EPDEM_CASE(Class)                                                         \
-  if (index == i++) {                                                             \
-    if (!in_range<Class<double>>(E_star, parameters)) return EPDEM_BAD_PARAMETER; \
-    return body(Class<double>(E_star, parameters));                               \
+#define EPDEM_CASE(Class)                                                                            \
+  if (index == i++) {                                                                                \
+    if (!in_range<Class<double>>(E_star, parameters)) return EPDEM_BAD_PARAMETER;                    \
+    return body(law_of<Class<double>>(E_star, parameters, parameters[Class<double>::n_parameters])); \
   }
   EPDEM_LAWS(EPDEM_CASE)
 #undef EPDEM_CASE
@@ -98,7 +99,9 @@ EPDEM_EXPORT const char* epdem_message(int status) {
   switch (status) {
     case EPDEM_OK: return "ok";
     case EPDEM_UNKNOWN_LAW: return "no law of that index";
-    case EPDEM_BAD_PARAMETER: return "E_star and every law parameter must be finite, > 0 and in the law's range";
+    case EPDEM_BAD_PARAMETER:
+      return "E_star and every law parameter must be finite, > 0 and in the law's range, the share of strain in [0.5, "
+             "1]";
     case EPDEM_BAD_INPUT: return "R_star, m_star, speed and time_step must be finite and > 0, gap finite, steps >= 0";
     default: return "unknown status";
   }

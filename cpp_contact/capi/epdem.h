@@ -14,7 +14,7 @@
 extern "C" {
 #endif
 
-#define EPDEM_ABI 9
+#define EPDEM_ABI 10
 #define EPDEM_MAX_PARAMETERS 8
 
 typedef enum { EPDEM_OK = 0, EPDEM_UNKNOWN_LAW = 1, EPDEM_BAD_PARAMETER = 2, EPDEM_BAD_INPUT = 3 } epdem_status;
@@ -61,7 +61,8 @@ size_t epdem_size_of(const char* struct_name); /* 0 if there is no such struct *
 const char* epdem_declarations(void);
 
 /* n steps, each from its own R_star, delta_max and delta (with adhesion: of a contact that has stood since it reached
- * delta_max, at rest); `parameters` in the order of the declaration. */
+ * delta_max, at rest); `parameters` in the order of the declaration, then one more number: the larger share of both
+ * bodies in the strain, from 1/2 (bodies of equal strength) to 1 (one of the bodies never yields). */
 int epdem_step(int law, double E_star, const double* parameters, size_t n, const double* R_star,
                const double* delta_max, const double* delta, epdem_step_result* out);
 

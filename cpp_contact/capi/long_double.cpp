@@ -14,7 +14,7 @@ bool batch(double E_star, const double* parameters, size_t n, const epdem_impact
   static_assert(Law::n_parameters <= EPDEM_MAX_PARAMETERS, "raise EPDEM_MAX_PARAMETERS in epdem.h");
   long double exact[EPDEM_MAX_PARAMETERS] = {};
   for (int k = 0; k < Law::n_parameters; ++k) exact[k] = parameters[k];
-  const Law law(E_star, exact);
+  const Law law = epdem::law_of<Law>(E_star, exact, parameters[Law::n_parameters]);
   for (size_t i = 0; i < n; ++i) {
     const epdem_impact_input& c = in[i];
     const auto o = epdem::impact(law, {c.R_star, c.m_star, c.speed, c.time_step, c.gap, c.steps, c.viscous}, {});

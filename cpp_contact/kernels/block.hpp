@@ -11,9 +11,9 @@ namespace epdem::kernels {
 
 constexpr int block_size = 128, most_lanes = 8;
 
-/// A pair of materials as numbers: ContactConstants, the data of its law from `law_data` on.
+/// A pair of materials as numbers: ContactConstants, the data of its law from `law_data` on, then its BodyShares.
 enum Constant { shear_modulus, damping, dashpot, friction, rolling_friction, cohesion_density, law_data };
-constexpr int most_constants = 16;
+constexpr int most_constants = 24;
 
 /// One number per contact; whole vectors of lanes may be read and written behind the last.
 struct alignas(64) Line {
@@ -27,18 +27,19 @@ struct Block {
   Line radius_i, radius_j, mass_i, mass_j;
   Line frozen_i, frozen_j;                                     // 1 or 0
   Line force[3], torque_i[3], torque_j[3];                     // on i; the force on j is its negative
-  Line plastic_work_step, stored_energy;                       // [J]
+  Line plastic_work_step, stored_energy, contact_radius;       // [J], [J], [m]
   Line friction_work, spring_energy;                           // of friction in this step, elastic at its end [J]
-  Line adhesion_loss, contact_radius;                          // with adhesion: lost in jumps in this step [J], [m]
-  double radius_ratio[most_lanes], overlap_ratio[most_lanes];  // largest of all contacts so far, over R*
+  Line adhesion_loss;                                          // with adhesion: lost in jumps in this step [J]
+  double radius_ratio[most_lanes], overlap_ratio[most_lanes];  // largest so far, over R*, times the larger share
   Line overlap, from_wall[3], wall_v[3];                       // of a wall: as the host found them
-  Line depth_i, depth_j;                                       // with compaction: dents over R
+  Line cover_i, cover_j, volume_i, volume_j, dented_area;      // with compaction: Dents
+  double unused_history[64];                                   // of the lanes behind the last contact
 };
 
 /// What all contacts of a pass have in common.
 struct Pass : ContactSettings {
   const double *x, *v, *omega;  // rows of three; one number behind the last row can be read
-  const double* growth;         // of all spheres, with compaction
+  const double* sums;           // BodySums of all spheres side by side, with compaction
   double now;                   // step
   bool several;                 // pairs of materials in this block; else the pair of its first contact
   bool freeze;                  // whether a group of atoms is frozen
@@ -63,6 +64,19 @@ extern const Kernels kernels_sse2, kernels_avx2, kernels_avx512;
 /// The kernels of the instruction set `name` (sse2, avx2 or avx512); an empty name means the widest set of this
 /// processor. nullptr: the processor lacks the set, or there is no set of this name.
 const Kernels* kernels_of(const char* name);
+
+/// A sphere and its partner across a gap, with compaction.
+struct Gap {
+  const double* constants;         // of the pair of materials
+  const double *history, *growth;  // of the contact: values of the law and of GrowthState; null: a new contact
+  double radius_i, radius_j;
+  const double *sums_i, *sums_j;  // BodySums; sums_j is null at a wall
+  double overlap;                 // negative [m]
+  bool repeats;                   // as ContactSettings
+};
+
+/// Whether growth closes a gap; `law`: place in the list of laws.
+bool closes_gap(int law, const Gap& gap);
 
 /// Gives the lanes behind the last of n contacts something harmless.
 void pad(Block& block, int n);

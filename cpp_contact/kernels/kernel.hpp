@@ -2,7 +2,8 @@
 // The contacts of a block, computed as lanes. Compiled once per instruction set, which EPDEM_KERNELS names: everything
 // is in unnamed namespaces or depends on the width of Lanes, so that no function compiled for a newer processor can
 // stand in for one of the same name compiled for an older one.
-#include "epdem/compaction.hpp"
+#include <cstdint>
+
 #include "epdem/contact.hpp"
 #include "epdem/laws.hpp"
 #include "kernels/block.hpp"
@@ -40,12 +41,7 @@ EPDEM_INLINE void write(double* const* history, const Lanes* value, int from = 0
 EPDEM_INLINE Lanes at(const Line& line, int k) { return load<Lanes>(line.a + k); }
 EPDEM_INLINE Vec<Lanes> at(const Line* lines, int k) { return {at(lines[0], k), at(lines[1], k), at(lines[2], k)}; }
 
-/// Numbers, then rows of the atoms of lanes k, k + 1, ...
-EPDEM_INLINE Lanes each(const double* base, const int* index) {
-  Lanes x;
-  for (int l = 0; l < lane_count; ++l) x[l] = base[index[l]];
-  return x;
-}
+/// Rows of the atoms of lanes k, k + 1, ...
 EPDEM_INLINE Vec<Lanes> of(const double* base, const int* index) {
   const Columns c = columns([=](int l) __attribute__((always_inline)) { return load<Row>(base + 3 * long(index[l])); });
   return {c.a, c.b, c.c};
@@ -55,6 +51,16 @@ EPDEM_INLINE Vec<Lanes> difference(const double* base, const int* i, const int* 
     return load<Row>(base + 3 * long(i[l])) - load<Row>(base + 3 * long(j[l]));
   });
   return {c.a, c.b, c.c};
+}
+
+/// Growth and area of the spheres of lanes k, k + 1, ..., which lie side by side.
+EPDEM_INLINE BodySums<Lanes> sums_of(const double* base, const int* index) {
+  BodySums<Lanes> sums;
+  for (int l = 0; l < lane_count; ++l) {
+    sums.growth[l] = base[2 * long(index[l])];
+    sums.area[l] = base[2 * long(index[l]) + 1];
+  }
+  return sums;
 }
 
 EPDEM_INLINE void put(Line* lines, int k, Vec<Lanes> t) {
@@ -69,36 +75,17 @@ EPDEM_INLINE Lanes effective_mass(const Block& b, int k, bool freeze) {
   return select(at(b.frozen_j, k) > 0.0, mi, select(at(b.frozen_i, k) > 0.0, mj, m));
 }
 
-/// The largest contact radius and overlap over R*, of contacts k, k + 1, ... below n: no contact is in the lanes
-/// behind.
-EPDEM_INLINE void largest(Block& b, int k, int n, Lanes radius, Lanes overlap, Lanes R_star) {
+/// The largest contact radius and overlap, each times `factor`, of contacts k, k + 1, ... below n: no contact is in the
+/// lanes behind.
+EPDEM_INLINE void largest(Block& b, int k, int n, Lanes radius, Lanes overlap, Lanes factor) {
   Lanes lane;
   for (int l = 0; l < lane_count; ++l) lane[l] = l;
   const Mask contact = lane < constant<Lanes>(n - k);
   const auto keep = [=](double* most, Lanes value) __attribute__((always_inline)) {
-    store(most, max(load<Lanes>(most), select(contact, value / R_star, Lanes{})));
+    store(most, max(load<Lanes>(most), select(contact, factor * value, Lanes{})));
   };
   keep(b.radius_ratio, radius);
   keep(b.overlap_ratio, overlap);
-}
-
-/// Books the energies of a contact with adhesion. Six kernels call this function.
-template <class Law>
-[[gnu::noinline]] void book_adhesive(Block& b, int k, const Law& law, Lanes R_star, const State<Law>& before,
-                                     const Step<Law>& now, Lanes overlap) {
-  const auto e = energies(law, R_star, before, now, overlap);
-  store(b.plastic_work_step.a + k, e.plastic_work_step);
-  store(b.adhesion_loss.a + k, e.adhesion_loss);
-  store(b.stored_energy.a + k, e.stored);
-  store(b.contact_radius.a + k, now.radius);
-}
-
-/// Books the plastic work of a step with growth.
-template <class Law>
-[[gnu::noinline]] void book_growth(Block& b, int k, const Law& law, Lanes R_star, Lanes delta_max, Lanes overlap,
-                                   Lanes now, Lanes last) {
-  const Lanes loss = growth_loss(law, R_star, delta_max, overlap, now, last);
-  store(b.plastic_work_step.a + k, grown_work(at(b.plastic_work_step, k), loss));
 }
 
 /// Writes energies and the largest strain of contacts k, k + 1, ... of n into their block.
@@ -107,19 +94,16 @@ struct Recorder {
   const int k, n;
   const Pass& pass;
 
-  template <class Law>
-  void normal(const Law& law, Lanes R_star, const State<Law>& before, const Step<Law>& now, Lanes overlap) const {
-    if (rarely(pass.strain)) largest(b, k, n, now.radius, overlap, R_star);
+  template <class Law, class Energies>
+  void normal(const ContactConstants<Law>& pair, Lanes R_star, const Step<Law>& now, Lanes overlap,
+              const Energies& energies) const {
+    if (rarely(pass.strain)) largest(b, k, n, now.radius, overlap, larger_share(pair.bodies) / R_star);
     if (!rarely(pass.work)) return;
-    if constexpr (adheres<Law>) {
-      const State<Law> from = before;  // copies: what is passed by its address stays in memory
-      const Step<Law> to = now;
-      book_adhesive(b, k, law, R_star, from, to, overlap);
-    } else {
-      const auto e = energies(law, R_star, before, now, overlap);
-      store(b.stored_energy.a + k, e.stored);
-      store(b.plastic_work_step.a + k, e.plastic_work_step);
-    }
+    const NormalEnergies<Lanes> e = energies();
+    store(b.stored_energy.a + k, e.stored);
+    store(b.plastic_work_step.a + k, e.plastic_work_step);
+    store(b.contact_radius.a + k, now.radius);
+    if constexpr (adheres<Law>) store(b.adhesion_loss.a + k, e.adhesion_loss);
   }
 
   template <class Work>
@@ -174,42 +158,40 @@ struct RollingHistory {
 };
 
 /// History of a contact: the values of the law, of pairs the step of the last evaluation (hosts end the contacts of
-/// walls), friction, rolling friction, with compaction u of the sums of the step before and the overlap that growth
-/// added.
+/// walls), friction, rolling friction, with compaction the values of GrowthState.
 template <class Law, class Friction, bool wall, bool grows = false>
 [[gnu::flatten]] void contacts(Block& b, int n, const Pass& pass) {
   constexpr int law_values = history_size<Law>, friction_values = values_of<Friction, Lanes>;
   constexpr int last_step = law_values, sliding = law_values + !wall, rolling = sliding + friction_values;
-  constexpr int values = law_values || friction_values ? rolling : 0;
-  [[maybe_unused]] const int added = rolling + (grows && has_history(Rollings{}, pass.rolling) ? 3 : 0);
+  constexpr int values = law_values || friction_values ? rolling : 0, grown_values = grows ? growth_values : 0;
+  [[maybe_unused]] const int growth_at = rolling + (grows && has_history(Rollings{}, pass.rolling) ? 3 : 0);
   using Pair = ContactConstants<Law>;
-  constexpr int constants = (sizeof(Pair) / sizeof(Lanes) + 3) / 4 * 4;
-  static_assert(constants <= most_constants && offsetof(Pair, law) == law_data * sizeof(Lanes));
-  Lanes of_all[constants], of_each[constants];
-  const Lanes* constant_of = of_all;
-  [[maybe_unused]] const Mask repeats = constant<Lanes>(pass.repeats) > 0.0;
-  for (int c = 0; c < constants; ++c) of_all[c] = constant<Lanes>(b.material[0][c]);
+  constexpr int bodies_at = offsetof(Pair, bodies) / sizeof(Lanes), constants = (bodies_at + 3) / 4 * 4;
+  static_assert(sizeof(Pair) <= most_constants * sizeof(Lanes) && offsetof(Pair, law) == law_data * sizeof(Lanes));
+  static_assert(sizeof(BodyShares<Lanes>) == 4 * sizeof(Lanes));
+  Lanes numbers[most_constants];
+  for (int c = 0; c < most_constants; ++c) numbers[c] = constant<Lanes>(b.material[0][c]);
   // The history of the next block lies behind the history of this block: fetch a long history during the computation.
-  const char* ahead = reinterpret_cast<const char*>(b.history[n - 1]);
-  const long span =
-      friction_values > 3 ? ahead - reinterpret_cast<const char*>(b.history[0]) : 0;  // apart: of two pages
-  const long stride = span > 0 && span < 65536 ? span * lane_count / n : 0;
+  const auto ahead = reinterpret_cast<std::uintptr_t>(b.history[n - 1]);
+  const auto behind = reinterpret_cast<std::uintptr_t>(b.history[0]);
+  // histories of two pages lie apart
+  const std::uintptr_t span = friction_values > 3 && ahead - behind < 65536 ? ahead - behind : 0;
+  const std::uintptr_t stride = span * lane_count / n;
   for (int k = 0; k < n; k += lane_count) {
-    for (long line = 0; line < stride; line += 64) __builtin_prefetch(ahead + line, 1, 2);
-    ahead += stride;
+    for (std::uintptr_t line = 0; line < stride; line += 64)
+      __builtin_prefetch(reinterpret_cast<const void*>(ahead + k / lane_count * stride + line), 1, 2);
     if (pass.several) {
-      for (int c = 0; c < constants; c += 4) {
+      const auto read_four = [&](int c) __attribute__((always_inline)) {
         const Columns four =
             columns([&](int l) __attribute__((always_inline)) { return load<Row>(b.material[k + l] + c); });
-        of_each[c] = four.a, of_each[c + 1] = four.b, of_each[c + 2] = four.c, of_each[c + 3] = four.d;
-      }
-      constant_of = of_each;
+        numbers[c] = four.a, numbers[c + 1] = four.b, numbers[c + 2] = four.c, numbers[c + 3] = four.d;
+      };
+      for (int c = 0; c < constants; c += 4) read_four(c);
+      if (grows || pass.strain) read_four(bodies_at);
     }
-    const Pair& pair = *reinterpret_cast<const Pair*>(constant_of);
+    Pair pair;
+    __builtin_memcpy(static_cast<void*>(&pair), numbers, sizeof pair);
 
-    [[maybe_unused]] Lanes growth_i{}, growth_j{};
-    if constexpr (grows) growth_i = each(pass.growth, b.i + k);
-    if constexpr (grows && !wall) growth_j = each(pass.growth, b.j + k);
     Kinematics<Lanes> c;
     const Vec<Lanes> spin_i = of(pass.omega, b.i + k);
     if constexpr (wall) {
@@ -221,32 +203,29 @@ template <class Law, class Friction, bool wall, bool grows = false>
       c = between_spheres(at(b.radius_i, k), at(b.radius_j, k), d, v, spin_i, spin_j);
     }
 
-    Lanes value[values + 2 * grows ? values + 2 * grows : 1] = {};
-    ContactHistory<Law, Friction, RollingHistory<rolling, !wall && values == 0>> history;
+    Lanes value[values + grown_values ? values + grown_values : 1] = {};
+    using Growth = std::conditional_t<grows, Growing<wall, Lanes>, NoGrowth>;
+    ContactHistory<Law, Friction, RollingHistory<rolling, !wall && values == 0>, Growth> history;
     history.rolling = {&b, &pass, k};
     if constexpr (values > 0) {
       read<values>(b.history + k, value);
-      if constexpr (grows) read<2>(b.history + k, value + values, added);
+      if constexpr (grows) read<grown_values>(b.history + k, value + values, growth_at);
       if constexpr (!wall) {
         const Mask is_new = parted(pass.now, value[last_step]);
         if (rarely(any(is_new))) {
-          for (int s = 0; s < values + 2 * grows; ++s) value[s] = select(is_new, Lanes{}, value[s]);
+          for (Lanes& one : value) one = select(is_new, Lanes{}, one);
           if (has_history(Rollings{}, pass.rolling)) history.rolling.clear(is_new);
         }
       }
       copy<law_values>(value, &history.law);
       copy<friction_values>(value + sliding, &history.friction);
     }
-
-    [[maybe_unused]] const Lanes overlap = c.overlap;
-    [[maybe_unused]] Lanes last{}, growing{};
-    [[maybe_unused]] Grown<Lanes> grown{};
     if constexpr (grows) {
-      last = value[values];  // of a step that is evaluated once more hosts put the added overlap here
-      growing = added_overlap<wall>(c.radius_i, c.radius_j, history.law.delta_max, growth_i, growth_j);
-      growing = select(repeats, last, growing);
-      grown = grow<Law>(history.law, overlap, growing, last);
-      c.overlap = overlap + grown.added;
+      history.growth.radius_i = c.radius_i;
+      history.growth.radius_j = c.radius_j;
+      history.growth.i = sums_of(pass.sums, b.i + k);
+      if constexpr (!wall) history.growth.j = sums_of(pass.sums, b.j + k);
+      copy<grown_values>(value + values, &history.growth.state);
     }
 
     const auto mass = [&]() __attribute__((always_inline)) {
@@ -255,20 +234,23 @@ template <class Law, class Friction, bool wall, bool grows = false>
     ContactLoads<Lanes> loads;  // assigned below: GCC leaves in memory what it initialises with the result
     loads = contact<Friction, wall>(pair, pass, c, history, mass, Recorder{b, k, n, pass});
 
-    if constexpr (grows) {
-      history.law.delta_max = largest_overlap(grown, overlap);
-      const Lanes growth[] = {growing, grown.added};
-      write<2>(b.history + k, growth, added);
-      const auto depths = depths_of<wall>(c.radius_i, c.radius_j, history.law.delta_max);
-      store(b.depth_i.a + k, depths.i);
-      store(b.depth_j.a + k, depths.j);
-      if (pass.work) book_growth(b, k, pair.law, c.R_star, history.law.delta_max, overlap, growing, last);
-    }
     if constexpr (values > 0) {
       copy<law_values>(&history.law, value);
       copy<friction_values>(&history.friction, value + sliding);
       if constexpr (!wall) value[last_step] = constant<Lanes>(pass.now);
       write<values>(b.history + k, value);
+    }
+    if constexpr (grows) {
+      copy<grown_values>(&history.growth.state, value + values);
+      write<grown_values>(b.history + k, value + values, growth_at);
+      const Dents<Lanes>& d = history.growth.dents;
+      store(b.cover_i.a + k, d.cover_i);
+      store(b.volume_i.a + k, d.volume_i);
+      store(b.dented_area.a + k, d.area);
+      if constexpr (!wall) {
+        store(b.cover_j.a + k, d.cover_j);
+        store(b.volume_j.a + k, d.volume_j);
+      }
     }
     put(b.force, k, loads.force);
     put(b.torque_i, k, loads.torque_i);

@@ -15,7 +15,7 @@ using namespace LAMMPS_NS;
 
 namespace {
 
-constexpr int most_beside = 1 + FixHistory::columns + 2;  // of an atom that is sent, beside its contacts
+constexpr int most_beside = 1 + FixHistory::columns + 3;  // of an atom that is sent, beside its contacts
 
 }  // namespace
 
@@ -25,7 +25,7 @@ FixHistory::FixHistory(LAMMPS* lmp, int count, char** word) : Fix(lmp, count, wo
   restart_peratom = 1;
   maxexchange_dynamic = 1;
   maxexchange = most_beside;
-  comm_forward = 1;
+  comm_forward = 2;
   peratom_flag = count > 3;
   size_peratom_cols = columns;
   peratom_freq = 1;
@@ -56,7 +56,7 @@ void FixHistory::prepare(NeighList* const* list, const Layout& layout, const Mod
   }
   identity_ = identity;
   layout_ = layout;
-  dents_.resize(models.compaction ? 2L * rows_ : 0);
+  dents_.resize(models.compaction ? dent_sums * long(rows_) : 0);
 }
 
 int FixHistory::setmask() { return FixConst::PRE_EXCHANGE | FixConst::POST_NEIGHBOR; }
@@ -81,34 +81,42 @@ void FixHistory::book(const kernels::Block& b, int k, int i, double share, const
 }
 
 void FixHistory::close_growth(bool counts) {
-  growth_.resize(rows_);
+  bodies_.resize(2L * rows_);
   largest_ = growth_reach;
   if (counts) {
-    for (int i = 0; i < atom->nlocal; ++i) growth_[i] = epdem::growth(dents_[2L * i], dents_[2L * i + 1]);
+    for (int i = 0; i < atom->nlocal; ++i) {
+      const double* const dents = &dents_[dent_sums * long(i)];
+      bodies_[2L * i] = epdem::growth(dents[0], dents[1]);
+      bodies_[2L * i + 1] = dents[2];
+    }
     comm->forward_comm(this);
     largest_ = 0.0;
-    for (int i = 0; i < atom->nlocal + atom->nghost; ++i) largest_ = std::max(largest_, growth_[i]);
+    for (int i = 0; i < atom->nlocal + atom->nghost; ++i) largest_ = std::max(largest_, bodies_[2L * i]);
   }
-  std::fill_n(dents_.begin(), 2L * atom->nlocal, 0.0);
+  std::fill_n(dents_.begin(), dent_sums * long(atom->nlocal), 0.0);
 }
 
 void FixHistory::note_dents(const kernels::Block& b, int n, bool wall) {
-  const auto add = [this](int i, double depth) {
-    dents_[2L * i] += depth;
-    dents_[2L * i + 1] += depth * depth;
+  const auto add = [this](int i, double cover, double volume, double area) {
+    double* const dents = &dents_[dent_sums * long(i)];
+    dents[0] += cover;
+    dents[1] += volume;
+    dents[2] += area;
   };
   for (int k = 0; k < n; ++k) {
-    add(b.i[k], b.depth_i.a[k]);
-    if (!wall && b.j[k] < atom->nlocal) add(b.j[k], b.depth_j.a[k]);
+    add(b.i[k], b.cover_i.a[k], b.volume_i.a[k], b.dented_area.a[k]);
+    if (!wall && b.j[k] < atom->nlocal) add(b.j[k], b.cover_j.a[k], b.volume_j.a[k], b.dented_area.a[k]);
   }
 }
 
 int FixHistory::pack_forward_comm(int n, int* atoms, double* buffer, int, int*) {
-  for (int k = 0; k < n; ++k) buffer[k] = growth_[atoms[k]];
-  return n;
+  for (int k = 0; k < n; ++k) std::copy_n(&bodies_[2L * atoms[k]], 2, buffer + 2L * k);
+  return 2 * n;
 }
 
-void FixHistory::unpack_forward_comm(int n, int first, double* buffer) { std::copy_n(buffer, n, &growth_[first]); }
+void FixHistory::unpack_forward_comm(int n, int first, double* buffer) {
+  std::copy_n(buffer, 2L * n, &bodies_[2L * first]);
+}
 
 void FixHistory::note_strain(const kernels::Block& b) {
   strain_[0] = std::max(strain_[0], *std::max_element(b.radius_ratio, b.radius_ratio + kernels::most_lanes));
@@ -190,7 +198,7 @@ void FixHistory::distribute() {
 
 void FixHistory::grow_arrays(int atoms) {
   held_.resize(atoms);
-  if (!dents_.empty()) dents_.resize(2L * atoms);
+  if (!dents_.empty()) dents_.resize(dent_sums * long(atoms));
   memory->grow(array_atom, atoms, columns, "ep:energies");
   for (int i = rows_; i < atoms; ++i) std::fill_n(array_atom[i], int(columns), 0.0);
   rows_ = atoms;
@@ -198,19 +206,19 @@ void FixHistory::grow_arrays(int atoms) {
 
 void FixHistory::copy_arrays(int from, int to, int) {
   held_[to] = held_[from];
-  if (!dents_.empty()) std::copy_n(&dents_[2L * from], 2, &dents_[2L * to]);
+  if (!dents_.empty()) std::copy_n(&dents_[dent_sums * long(from)], dent_sums, &dents_[dent_sums * long(to)]);
   std::copy_n(array_atom[from], int(columns), array_atom[to]);
 }
 
 void FixHistory::set_arrays(int i) {
   held_[i].clear();
-  if (!dents_.empty()) std::fill_n(&dents_[2L * i], 2, 0.0);
+  if (!dents_.empty()) std::fill_n(&dents_[dent_sums * long(i)], dent_sums, 0.0);
   std::fill_n(array_atom[i], int(columns), 0.0);
 }
 
 int FixHistory::pack_exchange(int i, double* buffer) {
   double* end = std::copy_n(array_atom[i], int(columns), buffer);
-  if (!dents_.empty()) end = std::copy_n(&dents_[2L * i], 2, end);
+  if (!dents_.empty()) end = std::copy_n(&dents_[dent_sums * long(i)], dent_sums, end);
   *end = ubuf(bigint(held_[i].size())).d;
   return static_cast<int>(std::copy(held_[i].begin(), held_[i].end(), end + 1) - buffer);
 }
@@ -219,8 +227,8 @@ int FixHistory::unpack_exchange(int i, double* buffer) {
   const double* values = buffer + columns;
   std::copy_n(buffer, int(columns), array_atom[i]);
   if (!dents_.empty()) {
-    std::copy_n(values, 2, &dents_[2L * i]);
-    values += 2;
+    std::copy_n(values, dent_sums, &dents_[dent_sums * long(i)]);
+    values += dent_sums;
   }
   const auto size = ubuf(*values++).i;
   held_[i].assign(values, values + size);
@@ -264,7 +272,7 @@ void FixHistory::unpack_restart(int i, int nth) {
 }
 
 double FixHistory::memory_usage() {
-  size_t numbers = page_.capacity() + columns * held_.size() + dents_.capacity() + growth_.capacity();
+  size_t numbers = page_.capacity() + columns * held_.size() + dents_.capacity() + bodies_.capacity();
   for (const auto& held : held_) numbers += held.capacity();
   return static_cast<double>(numbers * sizeof(double));
 }

@@ -51,14 +51,14 @@ class FixHistory : public LAMMPS_NS::Fix {
   /// At the start of an evaluation that counts.
   void open_energies(int atoms);
 
-  /// Compaction: growth of each atom over its radius by the dents of the evaluation before. Walls come after the pairs,
-  /// so that the sums close at the start of the next evaluation. An evaluation that does not count sums up the same
-  /// dents once more, so that a restart file needs no sums. Collective.
+  /// Compaction: growth of each atom over its radius and area of its contacts, by the dents of the evaluation before.
+  /// Walls come after the pairs, so that the sums close at the start of the next evaluation. An evaluation that does
+  /// not count sums up the same dents once more, so that a restart file needs no sums. Collective.
   void close_growth(bool counts);
-  const double* growth() const { return growth_.data(); }
+  const double* bodies() const { return bodies_.data(); }
   /// No grown spheres touch whose squared distance is above this factor times the squared sum of their radii.
   double factor() const { return touch_factor(largest_); }
-  /// Adds the depths of the dents of a block to the sums of the atoms of this rank.
+  /// Adds the dents of a block to the sums of the atoms of this rank.
   void note_dents(const kernels::Block& b, int n, bool wall);
 
   int pack_forward_comm(int n, int* atoms, double* buffer, int, int*) override;
@@ -94,13 +94,14 @@ class FixHistory : public LAMMPS_NS::Fix {
   std::vector<double> identity_;  // of the models whose histories these are
   double evaluations_ = 0.0;
   double strain_[2] = {};
-  std::vector<double> dents_;   // with compaction, by atom: sums of depths over the radius and of their squares
-  std::vector<double> growth_;  // also of ghosts
-  double largest_ = 0.0;        // growth
-  bool page_holds_ = false;     // else the atoms hold the histories
-  int rows_ = 0;                // of array_atom
-  std::vector<double> page_;    // by slot of the list
-  std::vector<long> first_;     // of an atom in the page
+  static constexpr int dent_sums = 3;
+  std::vector<double> dents_;              // with compaction, by atom: sums of cover, volume and area of the dents
+  std::vector<double> bodies_;             // BodySums, also of ghosts
+  double largest_ = 0.0;                   // growth
+  bool page_holds_ = false;                // else the atoms hold the histories
+  int rows_ = 0;                           // of array_atom
+  std::vector<double> page_;               // by slot of the list
+  std::vector<long> first_;                // of an atom in the page
   std::vector<std::vector<double>> held_;  // by atom: tag of the partner, values
 };
 

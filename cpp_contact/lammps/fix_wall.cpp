@@ -106,7 +106,7 @@ void FixWall::post_force(int) {
   pass_.repeats = !counts;
   pass_.work = counts && pair_->energies();
   pass_.strain = pair_->strain();
-  pass_.growth = pair_->history()->growth();
+  pass_.sums = pair_->history()->bodies();
   const double* rows[] = {atom->v[0], atom->omega[0]};
   if (atom->nlocal >= atom->nmax)
     for (int k = 0; k < 2; ++k) {
@@ -134,8 +134,7 @@ void FixWall::post_force(int) {
     for (size_t k = 0; k < found.size(); ++k) {
       const Contact& c = found[k];
       b.i[n] = i;
-      double* const h = b.history[n] = record(i, static_cast<int>(k)) + 1;
-      if (layout_.growth >= 0 && pass_.repeats) h[layout_.growth] = h[layout_.growth + 1];
+      b.history[n] = record(i, static_cast<int>(k)) + 1;
       b.material[n] = constants_.data() + most_constants * atom->type[i];
       b.radius_i.a[n] = atom->radius[i];
       b.mass_i.a[n] = atom->rmass[i];
@@ -174,10 +173,17 @@ bool FixWall::stands(int i, const Contact& c) {
     if (record(i, k)[0] == c.part) history = record(i, k) + 1;
   if (layout_.growth < 0)
     return history && (history[layout_.root] > 0.0 || (pass_.repeats && history[layout_.jump] != 0.0));
-  const double radius = atom->radius[i], rsq = c.distance * c.distance;
-  if (pass_.repeats) return history && closes_gap(radius, rsq, history[layout_.growth]);
-  const double delta_max = history ? history[words_.models.law->most] : 0.0;
-  return closes_gap(radius, rsq, added_overlap<true>(radius, 0.0, delta_max, pass_.growth[i], 0.0));
+  if (pass_.repeats && !history) return false;
+  const kernels::Gap gap{constants_.data() + most_constants * atom->type[i],
+                         history,
+                         history ? history + layout_.growth : nullptr,
+                         atom->radius[i],
+                         0.0,
+                         pass_.sums + 2L * i,
+                         nullptr,
+                         atom->radius[i] - c.distance,
+                         pass_.repeats};
+  return kernels::closes_gap(words_.models.law->place, gap);
 }
 
 /// Puts the records of a sphere in the order of its contacts; the history of a new contact begins with zeros.
@@ -225,10 +231,10 @@ void FixWall::note(int n) {
   const int most = words_.models.law->most, root = layout_.root;
   for (int k = 0; k < n; ++k) {
     const double overlap = b.overlap.a[k];
-    local_.insert(
-        local_.end(),
-        {double(atom->tag[b.i[k]]), double(b.j[k]), overlap, most < 0 ? overlap : std::max(overlap, b.history[k][most]),
-         double(root < 0 || b.history[k][root] > 0.0), layout_.growth < 0 ? 0.0 : b.history[k][layout_.growth + 1]});
+    local_.insert(local_.end(), {double(atom->tag[b.i[k]]), double(b.j[k]), overlap,
+                                 most < 0 ? overlap : std::max(overlap, b.history[k][most]),
+                                 double(root < 0 || b.history[k][root] > 0.0),
+                                 layout_.growth < 0 ? 0.0 : added_overlap_of(b.history[k] + layout_.growth)});
   }
 }
 

@@ -187,8 +187,8 @@ double PairEp::init_one(int i, int j) {
   }
   if (!given.text.empty()) common = given.words.coefficients;
   double* const constants = constants_.data() + most_constants * (i * width_ + j);
-  put_constants(*models_.law, a, b, common, constants);
-  std::copy_n(constants, most_constants, constants_.data() + most_constants * (j * width_ + i));
+  double* const constants_ji = constants_.data() + most_constants * (j * width_ + i);
+  put_constants(*models_.law, a, b, common, constants, i == j ? nullptr : constants_ji);
   pass_.damped |= constants[kernels::damping] > 0.0;
   pass_.viscous |= constants[kernels::dashpot] > 0.0;
   const double R_star = 0.5 * std::max(largest_[i], largest_[j]);
@@ -213,7 +213,7 @@ void PairEp::set_pass(bool counts) {
   pass_.rolling = models_.rolling;
   pass_.cohesion = models_.cohesion;
   pass_.now = history_->now();
-  pass_.growth = history_->growth();
+  pass_.sums = history_->bodies();
   pass_.freeze = frozen_ != 0;
   pass_.strain = strain_;
 }
@@ -264,7 +264,8 @@ void PairEp::gather() {
         const double rsq = dx * dx + dy * dy + dz * dz;
         bool contact = rsq < sum * sum;
         if constexpr (reach == Reach::grown)
-          contact = contact || (rsq < factor * sum * sum && growth_closes(i, static_cast<int>(j), jj, rsq));
+          contact =
+              contact || (rsq < factor * sum * sum && growth_closes(i, static_cast<int>(j), history_->at(i, jj), rsq));
         if constexpr (reach == Reach::attached) {
           const double* const history = history_->at(i, jj);
           const bool stands = (history[layout_.root] > 0.0) | (pass_.repeats & (history[layout_.jump] != 0.0));
@@ -282,13 +283,20 @@ void PairEp::gather() {
 }
 
 /// Whether growth closes the gap between two spheres; a step that is evaluated once more has the growth it had.
-bool PairEp::growth_closes(int i, int j, int slot, double rsq) const {
-  const double ri = atom->radius[i], rj = atom->radius[j], sum = ri + rj;
-  const double* const history = history_->at(i, slot);
-  const bool known = pass_.now - history[layout_.last_step] <= 1.0;
-  if (pass_.repeats) return known && closes_gap(sum, rsq, history[layout_.growth]);
-  const double delta_max = known ? history[models_.law->most] : 0.0;
-  return closes_gap(sum, rsq, added_overlap<false>(ri, rj, delta_max, pass_.growth[i], pass_.growth[j]));
+bool PairEp::growth_closes(int i, int j, const double* history, double rsq) const {
+  const bool known = history && pass_.now - history[layout_.last_step] <= 1.0;
+  if (pass_.repeats && !known) return false;
+  const double ri = atom->radius[i], rj = atom->radius[j];
+  const kernels::Gap gap{constants_.data() + most_constants * (atom->type[i] * width_ + atom->type[j]),
+                         known ? history : nullptr,
+                         history + layout_.growth,
+                         ri,
+                         rj,
+                         pass_.sums + 2L * i,
+                         pass_.sums + 2L * j,
+                         ri + rj - std::sqrt(rsq),
+                         pass_.repeats};
+  return kernels::closes_gap(models_.law->place, gap);
 }
 
 /// Fills the block with n > 0 pairs; history_at(i, k) is the history of pair k.
@@ -299,7 +307,6 @@ void PairEp::fetch(int n, HistoryAt history_at) {
   const auto history = [&](long i, int k) {
     if (values == 0) return;
     double* const h = b.history[k] = history_at(static_cast<int>(i), k);
-    if (layout_.growth >= 0 && pass_.repeats) h[layout_.growth] = h[layout_.growth + 1];
     for (int line = 0; line < values; line += 8) __builtin_prefetch(b.history[k] + line, 1);
   };
   const kernels::Spheres spheres{atom->f[0], atom->torque[0], atom->radius, atom->rmass,
@@ -372,16 +379,16 @@ double PairEp::single(int i, int j, int, int, double rsq, double, double, double
   const double sum = atom->radius[i] + atom->radius[j], r = std::sqrt(rsq), overlap = sum - r;
   const double* const known = layout_.values > 0 && history_->at_list() ? history_of(i, j) : nullptr;
   const bool recent = known && history_->now() - known[layout_.last_step] <= 1.0;
+  set_pass(false);
   const bool attached = recent && ((layout_.root >= 0 && known[layout_.root] > 0.0) ||
-                                   (layout_.growth >= 0 && closes_gap(sum, rsq, known[layout_.growth])));
+                                   (layout_.growth >= 0 && growth_closes(i, j, known, rsq)));
   if (overlap <= 0.0 && !attached) return 0.0;
   std::vector<double> history(std::max(1, layout_.values), 0.0);
   if (known) std::copy_n(known, layout_.values, history.data());
 
-  set_pass(false);
-  pass_.work = pass_.strain = true;
+  pass_.work = true;
+  pass_.strain = false;
   kernels::Block& b = *block_;
-  std::fill_n(b.radius_ratio, kernels::most_lanes, 0.0);
   b.i[0] = i;
   b.j[0] = j;
   fetch(1, [&](int, int) { return history.data(); });
@@ -390,10 +397,9 @@ double PairEp::single(int i, int j, int, int, double rsq, double, double, double
   for (int axis = 0; axis < 3; ++axis) fforce += b.force[axis].a[0] * (xi[axis] - xj[axis]) / rsq;
   single_[0] = overlap;
   single_[1] = models_.law->most < 0 ? overlap : std::max(overlap, history[models_.law->most]);
-  single_[2] = b.radius_ratio[0] * atom->radius[i] * atom->radius[j] / sum;
+  single_[2] = b.contact_radius.a[0];
   single_[3] = models_.law->root < 0 || history[layout_.root] > 0.0;
-  if (layout_.growth >= 0) single_[4] = history[layout_.growth + 1];
-  std::fill_n(b.radius_ratio, kernels::most_lanes, 0.0);
+  if (layout_.growth >= 0) single_[4] = added_overlap_of(history.data() + layout_.growth);
   return b.stored_energy.a[0];
 }
 

@@ -56,7 +56,7 @@ class PairEp : public LAMMPS_NS::Pair {
   void set_pass(bool counts);
   template <Reach reach>
   void gather();
-  bool growth_closes(int i, int j, int slot, double rsq) const;
+  bool growth_closes(int i, int j, const double* history, double rsq) const;
   template <class HistoryAt>
   void fetch(int n, HistoryAt history_at);
   void finish(int n);

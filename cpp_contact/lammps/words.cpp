@@ -34,21 +34,25 @@ int place_of(const char* value) {
 
 template <class Class>
 Law law_of() {
-  static_assert(sizeof(Class) <= (kernels::most_constants - kernels::law_data) * sizeof(double));
+  static_assert(sizeof(ContactConstants<Class>) <= kernels::most_constants * sizeof(double));
   return {Class::name,
           Class::parameters,
           Class::n_parameters,
           Class::strength,
           &Class::valid,
+          &hardening<Class>,
           Class::condition,
           detail::place<Class>(),
           history_size<Class>,
           place_of<Class>("root"),
           place_of<Class>("jump"),
           place_of<Class>("delta_max"),
-          [](double E_star, const double* parameters, double* numbers) {
-            const Class law(E_star, parameters);
-            std::memcpy(static_cast<void*>(numbers), &law, sizeof law);
+          [](double E_star, const double* parameters, const BodyShares<double>& bodies, double* constants) {
+            ContactConstants<Class> pair;
+            std::memcpy(static_cast<void*>(&pair), constants, sizeof pair);
+            pair.law = epdem::law_of<Class>(E_star, parameters, larger_share(bodies));
+            pair.bodies = bodies;
+            std::memcpy(static_cast<void*>(constants), &pair, sizeof pair);
           },
           [](const double* numbers, double R_star) {
             if constexpr (adheres<Class>) {
@@ -236,8 +240,8 @@ Coefficients mixed(const Coefficients& a, const Coefficients& b) {
           geometric(a.cohesion, b.cohesion)};
 }
 
-void put_constants(const Law& law, const Material& i, const Material& j, const Coefficients& common,
-                   double* constants) {
+void put_constants(const Law& law, const Material& i, const Material& j, const Coefficients& common, double* constants,
+                   double* constants_ji) {
   const bool i_is_softer = law.strength < 0 || i.parameters[law.strength] <= j.parameters[law.strength];
   std::vector<double> parameters = (i_is_softer ? i : j).parameters;
   for (int k = 0; k < law.parameter_count; ++k)
@@ -250,7 +254,16 @@ void put_constants(const Law& law, const Material& i, const Material& j, const C
   constants[kernels::friction] = common.friction;
   constants[kernels::rolling_friction] = common.rolling;
   constants[kernels::cohesion_density] = common.cohesion;
-  law.put(effective_modulus(i.elastic, j.elastic), parameters.data(), constants + kernels::law_data);
+  const double share = law.strength < 0 ? 0.5
+                                        : strain_share(i.parameters[law.strength], j.parameters[law.strength],
+                                                       law.hardening(parameters.data()));
+  const BodyShares<double> bodies = body_shares(i.elastic, j.elastic, share);
+  const double E_star = effective_modulus(i.elastic, j.elastic);
+  if (constants_ji) {
+    std::copy_n(constants, kernels::most_constants, constants_ji);
+    law.put(E_star, parameters.data(), mirrored(bodies), constants_ji);
+  }
+  law.put(E_star, parameters.data(), bodies, constants);
 }
 
 void check_settings(LAMMPS* lmp, const std::string& place) {
@@ -324,7 +337,7 @@ Layout layout_of(const Models& models, bool wall) {
   layout.mirror.insert(layout.mirror.end(), rolling, -1.0);
   if (models.compaction) {
     layout.growth = static_cast<int>(layout.mirror.size());
-    layout.mirror.insert(layout.mirror.end(), 2, 1.0);
+    layout.mirror.insert(layout.mirror.end(), growth_values, 1.0);
   }
   layout.values = static_cast<int>(layout.mirror.size());
   return layout;

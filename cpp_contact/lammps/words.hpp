@@ -18,14 +18,15 @@ struct Law {
   int parameter_count;
   int strength;  // index of the parameter, -1: none
   bool (*valid)(const double*);
-  const char* condition;  // the condition of `valid` in words
-  int place;              // in the kernels
+  double (*hardening)(const double*);  // pressure of full plasticity over pressure of first yield
+  const char* condition;               // the condition of `valid` in words
+  int place;                           // in the kernels
   int history_size;
   int root;  // index in the history of a value > 0 while the bodies are attached, -1: no adhesion
   int jump;  // index of the force that a crossing of touch or fold adds, -1: no adhesion
   int most;  // index of the largest overlap, -1: none
-  /// Writes the numbers of a law object of E* and these parameters.
-  void (*put)(double E_star, const double* parameters, double* numbers);
+  /// Writes the law of E* and these parameters, and the shares of the bodies, to the constants of a contact.
+  void (*put)(double E_star, const double* parameters, const BodyShares<double>& bodies, double* constants);
   /// Largest gap [length] across which a law object of these numbers pulls; 0 without adhesion.
   double (*largest_gap)(const double* numbers, double R_star);
 };
@@ -68,9 +69,10 @@ Models common_models(LAMMPS_NS::LAMMPS* lmp, const std::string& place, const Mod
 /// Coefficients of unlike types: geometric means.
 Coefficients mixed(const Coefficients& a, const Coefficients& b);
 
-/// Writes the kernels::most_constants constants of a contact. The body with the lower strength gives the parameters of
-/// the law; a parameter of a pair of surfaces is the geometric mean of both bodies.
-void put_constants(const Law& law, const Material& i, const Material& j, const Coefficients& common, double* constants);
+/// Writes the kernels::most_constants constants of a contact, and those of j and i unless null. The body with the lower
+/// strength gives the parameters of the law; a parameter of a pair of surfaces is the geometric mean of both bodies.
+void put_constants(const Law& law, const Material& i, const Material& j, const Coefficients& common, double* constants,
+                   double* constants_ji = nullptr);
 
 /// Ends the run if LAMMPS's settings exclude contacts of spheres by these models: atom style, units, minimization.
 void check_settings(LAMMPS_NS::LAMMPS* lmp, const std::string& place);
@@ -89,8 +91,8 @@ kernels::Kernel kernel_of(LAMMPS_NS::LAMMPS* lmp, const std::string& place, cons
 struct Layout {
   int values = 0;                            // numbers of a contact
   int root = -1, jump = -1, last_step = -1;  // places; last_step: of pairs with a history
-  int growth = -1;  // place of the overlap that growth adds by the last sums, before the added overlap of the step
-  std::vector<double> mirror;  // 1, or -1 of a number that changes its sign when j takes the place of i
+  int growth = -1;                           // place of GrowthState, with compaction
+  std::vector<double> mirror;                // 1, or -1 of a number that changes its sign when j takes the place of i
 };
 
 Layout layout_of(const Models& models, bool wall);

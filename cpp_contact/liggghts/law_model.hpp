@@ -5,7 +5,6 @@
 #include <cstring>
 #include <memory>
 
-#include "epdem/compaction.hpp"
 #include "epdem/contact.hpp"
 #include "epdem/laws.hpp"
 #include "kernels/block.hpp"
@@ -38,7 +37,7 @@ class LawModel : public NormalModel {
     if (s.contact_flags) *s.contact_flags |= CONTACT_NORMAL_MODEL;
     const ContactConstants<Law>& pair = table_[s.itype * width_ + s.jtype];
     const double R_star = wall_ ? s.radi : reduced_finite(s.radi, s.radj);
-    double delta = wall_ ? s.deltan : s.radsum - s.r;
+    const double delta = wall_ ? s.deltan : s.radsum - s.r;
     const bool keep = s.computeflag && s.shearupdate;
 
     State<Law> before{};
@@ -51,41 +50,34 @@ class LawModel : public NormalModel {
     if constexpr (adheres<Law>)
       if (others_have_history_ && keep && !(before.root > 0.0)) forget_others(history);
 
-    const double overlap = delta;
-    Grown<double> grown{};
-    double now_added = 0.0, last_added = 0.0;
-    if constexpr (compacts<Law>)
-      if (compaction_) {
-        last_added = has_step() && state_.is_new ? 0.0 : history[growth_slot_ + !keep];
-        now_added = keep ? added_overlap_of(s, before.delta_max) : last_added;
-        grown = grow<Law>(before, overlap, now_added, last_added);
-        delta += grown.added;
-        s.deltan = delta;  // for the models beside the law
-      }
-
     // a step that is not kept repeats the last one that was
-    const NormalContact<Law> contact = normal_contact(
-        pair, R_star, before, delta, keep ? -s.vn * update->dt : 0.0, -s.vn, pair.damping > 0.0, pair.dashpot > 0.0,
-        [&] { return s.meff; }, !keep);
+    NormalEnergies<double> energies{};
+    const Observer observer{keep && plastic_work_ ? &energies : nullptr};
+    const auto normal = [&](auto&& growth) {
+      return normal_contact(
+          pair, R_star, before, delta, keep ? -s.vn * update->dt : 0.0, -s.vn, pair.damping > 0.0, pair.dashpot > 0.0,
+          [&] { return s.meff; }, !keep, observer, growth);
+    };
+    NormalContact<Law> contact;
+    if constexpr (compacts<Law>) {
+      if (compaction_)
+        contact = wall_ ? grown<true>(s, keep, normal) : grown<false>(s, keep, normal);
+      else
+        contact = normal(NoGrowth{});
+      s.deltan = contact.overlap;  // for the models beside the law
+    } else {
+      contact = normal(NoGrowth{});
+    }
     const Step<Law>& now = contact.step;
 
     if (keep) {
-      double loss = 0.0;
-      State<Law> after = now.after;
-      if constexpr (compacts<Law>)
-        if (compaction_) {
-          const double reached = largest_overlap(grown, overlap);
-          if (plastic_work_) loss = growth_loss(pair.law, R_star, reached, overlap, now_added, last_added);
-          after.delta_max = reached;
-          history[growth_slot_] = now_added;
-          history[growth_slot_ + 1] = grown.added;
-          const auto depths = wall_ ? depths_of<true>(s.radi, 0.0, reached) : depths_of<false>(s.radi, s.radj, reached);
-          growth_.add(s.i, depths.i);
-          if (!wall_ && s.j < atom->nlocal) growth_.add(s.j, depths.j);
-        }
-      if (plastic_work_) ledger_.book(wall_, pair.law, R_star, before, now, delta, loss, {s.i, s.j, atom->nlocal});
-      if (contact_strain_) strain_.note(s.i, now.radius / R_star, delta / R_star);
-      if constexpr (size > 0) std::memcpy(history + offset_, &after, sizeof after);
+      const bool bears = adheres<Law> ? now.radius > 0.0 : energies.stored > 0.0;
+      if (plastic_work_) ledger_.book(wall_, energies, bears, {s.i, s.j, atom->nlocal});
+      if (contact_strain_) {
+        const double share = larger_share(pair.bodies) / R_star;
+        strain_.note(s.i, share * now.radius, share * contact.overlap);
+      }
+      if constexpr (size > 0) std::memcpy(history + offset_, &now.after, sizeof now.after);
       if (has_step()) history[step_slot_] = now_;
     }
 
@@ -126,7 +118,8 @@ class LawModel : public NormalModel {
       for (int j = 1; j < width_; ++j) {
         const PairOfTypes& p = m.pairs[i * width_ + j];
         ContactConstants<Law>& pair = table_[i * width_ + j];
-        pair.law = Law(effective_modulus(p.i, p.j), p.parameters.data());
+        pair.bodies = body_shares(p.i, p.j, p.strain_share);
+        pair.law = law_of<Law>(effective_modulus(p.i, p.j), p.parameters.data(), larger_share(pair.bodies));
         pair.shear_modulus = effective_shear_modulus(p.i, p.j);
         pair.damping = p.damping_number;
         pair.dashpot = p.viscous_number;
@@ -149,22 +142,56 @@ class LawModel : public NormalModel {
   }
 
  private:
-  double added_overlap_of(const SurfacesCloseData& s, double delta_max) const {
-    return wall_ ? added_overlap<true>(s.radi, 0.0, delta_max, growth_.of(s.i), 0.0)
-                 : added_overlap<false>(s.radi, s.radj, delta_max, growth_.of(s.i), growth_.of(s.j));
+  /// Gets the energies of a step, if they are requested.
+  struct Observer : NoObserver {
+    NormalEnergies<double>* energies;
+
+    explicit Observer(NormalEnergies<double>* energies) : energies(energies) {}
+    template <class Energies>
+    void normal(const ContactConstants<Law>&, double, const Step<Law>&, double, const Energies& of_step) const {
+      if (energies) *energies = of_step();
+    }
+  };
+
+  /// The growth of a contact whose state lies in its history; a contact that is new has none.
+  template <bool wall>
+  Growing<wall, double> growing(const SurfacesCloseData& s, bool is_new) const {
+    Growing<wall, double> growth{s.radi, wall ? 0.0 : s.radj, growth_.of(s.i), {}, {}, {}};
+    if constexpr (!wall) growth.j = growth_.of(s.j);
+    if (!is_new) std::memcpy(static_cast<void*>(&growth.state), s.contact_history + growth_slot_, sizeof growth.state);
+    return growth;
+  }
+
+  /// The normal contact with growth; a step that is kept stores the state and adds the dents to the bodies.
+  template <bool wall, class Normal>
+  NormalContact<Law> grown(SurfacesIntersectData& s, bool keep, const Normal& normal) {
+    Growing<wall, double> growth = growing<wall>(s, has_step() && state_.is_new);
+    const NormalContact<Law> contact = normal(growth);
+    if (!keep) return contact;
+    std::memcpy(s.contact_history + growth_slot_, &growth.state, sizeof growth.state);
+    const Dents<double>& d = growth.dents;
+    growth_.add(s.i, d.cover_i, d.volume_i, d.area);
+    if (!wall && s.j < atom->nlocal) growth_.add(s.j, d.cover_j, d.volume_j, d.area);
+    return contact;
   }
 
   /// Whether grown bodies that do not overlap are in contact.
   bool stands(const SurfacesCloseData& s) const {
     const bool keep = s.computeflag && s.shearupdate;
     const bool known = !has_step() || now_ - s.contact_history[step_slot_] <= keep;
-    if (!keep) return known && closes_gap(s.radsum, s.rsq, s.contact_history[growth_slot_]);
-    return closes_gap(s.radsum, s.rsq, added_overlap_of(s, known ? s.contact_history[offset_] : 0.0));
+    if (!keep && !known) return false;
+    const ContactConstants<Law>& pair = table_[s.itype * width_ + s.jtype];
+    State<Law> before{};
+    if (known) std::memcpy(static_cast<void*>(&before), s.contact_history + offset_, sizeof before);
+    const double overlap = s.radsum - std::sqrt(s.rsq);
+    if (wall_) return closes_gap(pair.law, pair.bodies, s.radi, before, growing<true>(s, !known), overlap, !keep);
+    const double R_star = reduced_finite(s.radi, s.radj);
+    return closes_gap(pair.law, pair.bodies, R_star, before, growing<false>(s, !known), overlap, !keep);
   }
 
   static Declaration declaration() {
-    return {model_name<Law>(),  Law::parameters,        Law::n_parameters, &Law::valid,  Law::strength,
-            Law::default_ratio, Law::strength_by_ratio, adheres<Law>,      compacts<Law>};
+    return {model_name<Law>(), Law::parameters,    Law::n_parameters,      &Law::valid,  &hardening<Law>,
+            Law::strength,     Law::default_ratio, Law::strength_by_ratio, adheres<Law>, compacts<Law>};
   }
 
   std::vector<ContactConstants<Law>> table_;  // by types

@@ -61,20 +61,16 @@ class Ledger {
     if (springs_) std::fill_n(springs_->vector_atom, nlocal, 0.0);
   }
 
-  /// growth: elastic energy that growth took from the contact in this step, of either sign.
-  template <class Law>
-  void book(bool wall, const Law& law, double R_star, const State<Law>& before, const Step<Law>& now, double delta,
-            double growth, const Bodies& bodies) {
+  /// bears: whether the contact has a force, with adhesion whether its bodies are attached.
+  void book(bool wall, const NormalEnergies<double>& e, bool bears, const Bodies& bodies) {
     const double part = wall ? 1.0 : 0.5;
-    NormalEnergies<double> e = energies(law, R_star, before, now, delta);
-    if constexpr (compacts<Law>) e.plastic_work_step = grown_work(e.plastic_work_step, growth);
-    if constexpr (adheres<Law>) {
+    const bool both = !wall && bodies.j < bodies.nlocal;
+    if (adhesive_) {
       adhesive_->vector_atom[bodies.i] += part * e.adhesion_loss;
-      if (!wall && bodies.j < bodies.nlocal) adhesive_->vector_atom[bodies.j] += part * e.adhesion_loss;
+      if (both) adhesive_->vector_atom[bodies.j] += part * e.adhesion_loss;
     }
-    const bool bears = adheres<Law> ? now.radius > 0.0 : e.stored > 0.0;
     credit(bodies.i, part * e.plastic_work_step, part * e.stored, bears);
-    if (!wall && bodies.j < bodies.nlocal) credit(bodies.j, part * e.plastic_work_step, part * e.stored, bears);
+    if (both) credit(bodies.j, part * e.plastic_work_step, part * e.stored, bears);
   }
 
   /// The same for friction: work that it took in this step, elastic energy of its springs [J].

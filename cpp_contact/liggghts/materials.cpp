@@ -130,6 +130,14 @@ std::vector<double> parameters_of(const Reader& reader, const Declaration& law, 
   reader.fail(text + " of " + both(i, j) + " do not go together: the law would create energy at yield");
 }
 
+/// The strain share of body i of a pair; a strength that is given per pair or for all is the strength of both.
+double strain_share_of(const Declaration& law, const std::vector<ParameterTable>& tables,
+                       const std::vector<double>& parameters, int i, int j) {
+  if (law.strength < 0 || !tables[law.strength].per_type()) return 0.5;
+  const ParameterTable& strength = tables[law.strength];
+  return strain_share(strength.of_type(i), strength.of_type(j), law.hardening(parameters.data()));
+}
+
 /// A number that follows from the restitution of each pair of types; 0 where none is given, if `needed` does not say
 /// why one must be.
 std::vector<double> of_restitution(const Reader& reader, double (*number_of)(double), Range range,
@@ -213,12 +221,12 @@ Materials read_materials(LAMMPS_NS::LAMMPS* lmp, PropertyRegistry& registry, con
   const double pascal = 1.0 / lmp->force->nktv2p;  // pressure unit of the deck in force/length^2
   Materials materials{width, std::vector<PairOfTypes>(width * width)};
   for (int i = 1; i <= n; ++i)
-    for (int j = 1; j <= n; ++j)
-      materials.pairs[i * width + j] = {{E[i] * pascal, nu[i]},
-                                        {E[j] * pascal, nu[j]},
-                                        parameters_of(reader, law, required, tables, pascal, i, j),
-                                        beta[i * width + j],
-                                        dashpots[i * width + j]};
+    for (int j = 1; j <= n; ++j) {
+      const std::vector<double> parameters = parameters_of(reader, law, required, tables, pascal, i, j);
+      materials.pairs[i * width + j] = {
+          {E[i] * pascal, nu[i]}, {E[j] * pascal, nu[j]}, parameters, strain_share_of(law, tables, parameters, i, j),
+          beta[i * width + j],    dashpots[i * width + j]};
+    }
   compare_strength(lmp, law, materials);
   if (!viscous) explain_restitution(lmp, reader, law, dashpot);
   return materials;

@@ -27,6 +27,7 @@ struct Declaration {
   const Parameter* parameters;
   int count;
   bool (*valid)(const double*);
+  double (*hardening)(const double*);
   int strength;            // index of the parameter that is the strength, -1: none
   double default_ratio;    // strength over yield stress
   bool strength_by_ratio;  // yieldStress and yieldPressureRatio may stand in for it
@@ -38,6 +39,7 @@ struct Declaration {
 struct PairOfTypes {
   Elastic i, j;
   std::vector<double> parameters;
+  double strain_share;  // of i
   double damping_number;
   double viscous_number;
 };

@@ -23,7 +23,7 @@ using namespace LIGGGHTS::ContactModels;
 /// History: the values that a law keeps (doubles), and for pairs the step of the last evaluation that was kept.
 /// LIGGGHTS does not report that a pair parted, so a contact whose last evaluation is older than one step is a new one,
 /// for the law and for all models with a history beside it. Walls need no step: their end is reported. With compaction
-/// the last two values are u of the sums of the step before and the overlap that growth added, which extrapolates u.
+/// the last values are those of GrowthState.
 ///
 /// A contact with adhesion stands across a gap as well: LIGGGHTS then calls surfacesClose, and the model takes it as a
 /// contact like any other (Model::surfacesClose).
@@ -63,8 +63,10 @@ class NormalModel : protected LAMMPS_NS::Pointers {
     if (!setup) refuse("compaction", "the loops of LIGGGHTS-PFM do not have it");
     if (cohesion) refuse("compaction", "it is for contacts without cohesion");
     if (!wall_) Growth::create(lmp);
-    growth_slot_ = setup->add_history_value("growth", "0");
-    setup->add_history_value("added_overlap", "0");
+    for (const char* slot : GrowthState<double>::slots) {
+      const int at = setup->add_history_value(slot, "0");
+      if (growth_slot_ < 0) growth_slot_ = at;
+    }
   }
 
   /// cohesive: area on which cohesion pulls, over the area of the overlap's lens; 0 without cohesion.
@@ -133,7 +135,7 @@ class NormalModel : protected LAMMPS_NS::Pointers {
     if (s.contact_flags) *s.contact_flags &= ~CONTACT_NORMAL_MODEL;
     if (!s.contact_history) return;
     std::fill_n(s.contact_history + offset_, history_size_, 0.0);
-    if (compaction_) std::fill_n(s.contact_history + growth_slot_, 2, 0.0);
+    if (compaction_) std::fill_n(s.contact_history + growth_slot_, growth_values, 0.0);
   }
 
   virtual void surfacesIntersect(SurfacesIntersectData& s, ForceData& fi, ForceData& fj) = 0;

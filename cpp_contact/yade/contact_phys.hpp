@@ -63,7 +63,7 @@ class EpPhys : public FrictPhys {
     return value;
   }
 
-  /// Where the history has two numbers of growth; -1: the law has no compaction.
+  /// Where the history has the values of growth; -1: the law has no compaction.
   int growthAt() const {
     int at = -1;
 #define EPDEM_GROWTH_AT(Class)                                                    \
@@ -73,7 +73,7 @@ class EpPhys : public FrictPhys {
 #undef EPDEM_GROWTH_AT
     return at;
   }
-  double addedOverlap() const { return growthAt() < 0 ? 0.0 : history[growthAt() + 1]; }
+  double addedOverlap() const { return growthAt() < 0 ? 0.0 : epdem::added_overlap_of(&history[growthAt()]); }
 
   boost::python::dict pyDictCustom() const override {
     namespace iy = epdem::in_yade;

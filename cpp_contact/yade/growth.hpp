@@ -39,13 +39,21 @@ class EpGrowth : public GlobalEngine {
       if (!state)
         epdem::in_yade::refuse("EpGrowth: body " + std::to_string(id) +
                                " has no EpState; give the sphere its EpMat when it is made");
-      double depths = 0.0, squares = 0.0;
+      double cover = 0.0, volume = 0.0, area = 0.0;
       for (const auto& [other, contact] : body->intrs) {
-        const double depth = contact->isReal() ? depth_of(*contact, id) : 0.0;
-        depths += depth;
-        squares += depth * depth;
+        if (!contact->isReal()) continue;
+        const auto* const phys = exactly<EpPhys>(contact->phys.get());
+        if (!phys || phys->growthAt() < 0) continue;
+        epdem::Dents<double> dents;
+        std::memcpy(&dents, &phys->history[phys->growthAt() + epdem::growth_values], sizeof dents);
+        // i is the first sphere
+        const bool first = phys->wall != 0 || contact->getId1() == id;
+        cover += first ? dents.cover_i : dents.cover_j;
+        volume += first ? dents.volume_i : dents.volume_j;
+        area += dents.area;
       }
-      state->growth = epdem::growth(depths, squares);
+      state->growth = epdem::growth(cover, volume);
+      state->dentedArea = area;
     }
   }
 
@@ -53,18 +61,6 @@ class EpGrowth : public GlobalEngine {
   YADE_CLASS_BASE_DOC(EpGrowth, GlobalEngine,
     "Computes the :yref:`growth<EpState.growth>` of each sphere from the dents of its contacts, for laws with compaction; stands before :yref:`InteractionLoop`.");
   // clang-format on
-
- private:
-  /// Depth of the dent of a contact in a sphere over its radius.
-  static double depth_of(const Interaction& contact, Body::id_t id) {
-    const auto* const phys = exactly<EpPhys>(contact.phys.get());
-    if (!phys || phys->growthAt() < 0) return 0.0;
-    const auto& geom = static_cast<const ScGeom&>(*contact.geom);
-    const double delta_max = phys->history[0], radius_1 = geom.radius1, radius_2 = geom.radius2;
-    if (phys->wall) return epdem::depths_of<true>(phys->wall == 1 ? radius_2 : radius_1, 0.0, delta_max).i;
-    const auto depths = epdem::depths_of<false>(radius_1, radius_2, delta_max);
-    return contact.getId1() == id ? depths.i : depths.j;
-  }
 };
 REGISTER_SERIALIZABLE(EpGrowth);
 

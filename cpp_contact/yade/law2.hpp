@@ -53,9 +53,6 @@ class Law2_ScGeom_EpPhys : public LawFunctor {
   using Vec = epdem::Vec<double>;
   enum Energy { plastic, elastic, adhesion, friction, friction_elastic, energies };
 
-  template <class Law, class Friction>
-  using ContactHistory = epdem::ContactHistory<Law, Friction>;
-
   /// Place of the model with this name in its list.
   template <class Models>
   int place_of(Models, const char* attribute, const string& wanted) const {
@@ -93,18 +90,17 @@ class Law2_ScGeom_EpPhys : public LawFunctor {
     const Interaction& contact;
     bool books;
 
-    template <class Law, class State, class Step>
-    void normal(const Law& law, double R_star, const State& before, const Step& now, double overlap) const {
+    template <class Law, class Energies>
+    void normal(const epdem::ContactConstants<Law>& pair, double R_star, const epdem::Step<Law>& now, double overlap,
+                const Energies& energies) const {
       phys.contactRadius = now.radius;
-      phys.kn = epdem::normal_stiffness(law.E_star, now.radius);
-      if (functor.recordStrain) functor.record_strain(now.radius / R_star, overlap / R_star);
-      if (books) book(law, R_star, before, now, overlap);
+      phys.kn = epdem::normal_stiffness(pair.law.E_star, now.radius);
+      const double share = epdem::larger_share(pair.bodies) / R_star;
+      if (functor.recordStrain) functor.record_strain(share * now.radius, share * overlap);
+      if (books) book(energies());
     }
     // a call, so that a contact without energies keeps the registers
-    template <class Law, class State, class Step>
-    [[gnu::noinline]] void book(const Law& law, double R_star, const State& before, const Step& now,
-                                double overlap) const {
-      const auto e = epdem::energies(law, R_star, before, now, overlap);
+    [[gnu::noinline]] void book(const epdem::NormalEnergies<double>& e) const {
       phys.elasticEnergy = e.stored;
       phys.adhesionLoss += e.adhesion_loss;
       functor.book_plastic(phys, contact, e.plastic_work_step);
@@ -148,7 +144,8 @@ class Law2_ScGeom_EpPhys : public LawFunctor {
       iy::refuse(getClassName() + ": the parameters of " + bodies +
                  " do not go together: " + (Law::condition ? Law::condition : ""));
     epdem::ContactConstants<Law> pair;
-    pair.law = Law(phys.effectiveModulus, values);
+    pair.bodies = bodies_of<Law>(phys, contact, epdem::hardening<Law>(values));
+    pair.law = epdem::law_of<Law>(phys.effectiveModulus, values, larger_share(pair.bodies));
     pair.shear_modulus = phys.effectiveShearModulus;
     pair.dashpot = epdem::viscous_number(phys.en);
     pair.damping = epdem::damping_number(phys.es);
@@ -157,6 +154,22 @@ class Law2_ScGeom_EpPhys : public LawFunctor {
     new (phys.constants.bytes) epdem::ContactConstants<Law>(pair);
     if (phys.lawId != Law::id) phys.history = {};
     phys.lawId = phys.constantsOf = Law::id;
+  }
+
+  /// Shares of the bodies; i is the first sphere.
+  template <class Law>
+  epdem::BodyShares<double> bodies_of(const EpPhys& phys, const Interaction& contact, double hardening) const {
+    const auto material_of = [this](Body::id_t id) -> const EpMat& {
+      return static_cast<const EpMat&>(*(*scene->bodies)[id]->material);
+    };
+    const EpMat *i = &material_of(contact.getId1()), *j = &material_of(contact.getId2());
+    if (phys.wall == 1) std::swap(i, j);
+    double share = 0.5;
+    if constexpr (Law::strength >= 0) {
+      const int at = epdem::in_yade::place_of(Law::parameters[Law::strength].property);
+      share = epdem::strain_share(i->lawValues[at], j->lawValues[at], hardening);
+    }
+    return epdem::body_shares({i->young, i->poisson}, {j->young, j->poisson}, share);
   }
 
   template <class Friction, class Law, bool grows = false>
@@ -193,21 +206,22 @@ class Law2_ScGeom_EpPhys : public LawFunctor {
 
     auto& pair = phys.constants.of<Law>();
     pair.friction = phys.tangensOfFrictionAngle;
-    ContactHistory<Law, Friction> history;
+    using Growth = std::conditional_t<grows, epdem::Growing<wall, double>, epdem::NoGrowth>;
+    epdem::ContactHistory<Law, Friction, Vec, Growth> history;
     load(phys, 0, history.law);
-    // One pass with the sums of the step before, whose u is extrapolated as in LIGGGHTS: the second pass of a step
-    // would need the geometry of all contacts before the first force.
-    [[maybe_unused]] const double overlap = c.overlap;
-    [[maybe_unused]] double last = 0.0, growing = 0.0;
-    [[maybe_unused]] epdem::Grown<double> grown{};
+    // One pass with the sums of the step before, as in LIGGGHTS: a second pass of a step would need the geometry of all
+    // contacts before the first force.
     if constexpr (grows) {
-      const auto growth_of = [](const State& state) { return static_cast<const EpState&>(state).growth; };
-      const double growth_i = growth_of(swapped ? s2 : s1), growth_j = wall ? 0.0 : growth_of(s2);
-      last = phys.history[epdem::in_yade::growth_at<Law>];
-      growing = epdem::added_overlap<wall>(c.radius_i, c.radius_j, history.law.delta_max, growth_i, growth_j);
-      if (!(overlap + growing > 0.0)) return false;
-      grown = epdem::grow<Law>(history.law, overlap, growing, last);
-      c.overlap = overlap + grown.added;
+      const auto sums_of = [](const State& state) {
+        const auto& body = static_cast<const EpState&>(state);
+        return epdem::BodySums<double>{body.growth, body.dentedArea};
+      };
+      history.growth = {c.radius_i, c.radius_j, sums_of(swapped ? s2 : s1), {}, {}, {}};
+      if constexpr (!wall) history.growth.j = sums_of(s2);
+      load(phys, epdem::in_yade::growth_at<Law>, history.growth.state);
+      if (!(c.overlap > 0.0) &&
+          !closes_gap(pair.law, pair.bodies, c.R_star, history.law, history.growth, c.overlap, false))
+        return false;
     } else if constexpr (epdem::adheres<Law>) {
       if (!(c.overlap > 0.0 || history.law.root > 0.0)) return false;
     } else {
@@ -223,12 +237,8 @@ class Law2_ScGeom_EpPhys : public LawFunctor {
         pair, settings, c, history, [&] { return phys.effectiveMass; },
         Observer{*this, phys, contact, bool(scene->trackEnergy)});
     if constexpr (grows) {
-      history.law.delta_max = epdem::largest_overlap(grown, overlap);
-      phys.history[epdem::in_yade::growth_at<Law>] = growing;
-      phys.history[epdem::in_yade::growth_at<Law> + 1] = grown.added;
-      if (scene->trackEnergy)
-        book_plastic(phys, contact,
-                     epdem::growth_loss(pair.law, c.R_star, history.law.delta_max, overlap, growing, last));
+      store(phys, epdem::in_yade::growth_at<Law>, history.growth.state);
+      store(phys, epdem::in_yade::growth_at<Law> + epdem::growth_values, history.growth.dents);
     }
     store(phys, 0, history.law);
     store(phys, friction_at, history.friction);

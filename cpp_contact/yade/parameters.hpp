@@ -6,7 +6,6 @@
 #include <cstddef>
 #include <new>
 
-#include "epdem/compaction.hpp"
 #include "epdem/contact.hpp"
 #include "epdem/laws.hpp"
 #include "epdem/range.hpp"
@@ -89,13 +88,13 @@ constexpr int largest_history(List<Models...>) {
   return most({values_of<Models, double>...});
 }
 
-/// Of a law with compaction: where the history of a contact has u of the sums of the step before, and behind u the
-/// overlap that growth added, which extrapolates u.
+/// Of a law with compaction: where the history of a contact has its GrowthState, and behind that its Dents.
 template <class Law>
 inline constexpr int growth_at = numbers_of<State<Law>>;
 
 // Numbers in the history of a contact: of its law, of friction, of rolling friction.
-#define EPDEM_SIZE(Class) growth_at<Class<double>> + 2 * compacts<Class<double>>,
+inline constexpr int dent_values = sizeof(Dents<double>) / sizeof(double);
+#define EPDEM_SIZE(Class) growth_at<Class<double>> + (growth_values + dent_values) * compacts<Class<double>>,
 inline constexpr int law_history = most({EPDEM_LAWS(EPDEM_SIZE)});
 #undef EPDEM_SIZE
 inline constexpr int friction_history = largest_history(Frictions{}), rolling_history = 3;

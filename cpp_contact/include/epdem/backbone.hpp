@@ -3,6 +3,8 @@
 #pragma once
 
 #include <iterator>
+#include <type_traits>
+#include <utility>
 
 #include "pair.hpp"
 
@@ -71,6 +73,34 @@ inline constexpr bool adheres = false;
 /// How many values a host must keep from step to step.
 template <class Law>
 inline constexpr int history_size = Law::yields || adheres<Law> ? static_cast<int>(std::size(State<Law>::slots)) : 0;
+
+namespace detail {
+
+template <class Law, class = void>
+inline constexpr bool declares_hardening = false;
+template <class Law>
+inline constexpr bool declares_hardening<Law, std::void_t<decltype(Law::hardening(std::declval<const double*>()))>> =
+    true;
+
+}  // namespace detail
+
+/// Pressure of full plasticity over pressure of first yield: of metals, unless the law says otherwise.
+template <class Law>
+double hardening(const double* parameter) noexcept {
+  (void)parameter;
+  if constexpr (detail::declares_hardening<Law>) return Law::hardening(parameter);
+  return 1.75;
+}
+
+/// The law of a pair of bodies; share: larger_share of both, which laws of finite strain take.
+template <class Law>
+Law law_of(Number<Law> E_star, const Number<Law>* parameters, Number<Law> share) noexcept {
+  (void)share;
+  if constexpr (std::is_constructible_v<Law, Number<Law>, const Number<Law>*, Number<Law>>)
+    return Law(E_star, parameters, share);
+  else
+    return Law(E_star, parameters);
+}
 
 /// What a step of a law returns.
 template <class Law>

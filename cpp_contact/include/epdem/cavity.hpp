@@ -13,8 +13,9 @@ inline constexpr double no_finite_strain = 1e6, least_finite_strain = 1e-3;
 /// fully plastic with p_m = c_P Y (eq. 8.80) and a^2 = 2 R* alpha (eq. 8.85). This project's own composition:
 ///   s = alpha/alpha_Y;  1 < s < s_P:  a = a_Y s^((1+beta)/2),  p_m = Y [2 c_Y/3 + (1+beta)/3 ln s],
 ///   tau = ln s/ln s_P. Nothing is fitted.
-/// Option finite_strain: p_m times f(a/R*)/f(a_Y/R*), f(s) = 1 - exp(-c s^-0.7), c = 0.82 (Jackson and Green 2005,
-/// J. Tribol. 127, 343); the division keeps the force continuous at first yield.
+/// Option finite_strain: p_m times f(s)/f(s_Y), s = w a/R*, f(s) = 1 - exp(-c s^-0.7), c = 0.82 (Jackson and Green
+/// 2005, J. Tribol. 127, 343), w: larger_share of both bodies; and on the area that a plane cuts from a sphere: a^2
+/// times k = 1 - w^2 (alpha - alpha_Y)/(2 R*). The division keeps the force continuous at first yield.
 template <class T>
 struct Cavity {
   using number = T;
@@ -37,11 +38,14 @@ struct Cavity {
   static constexpr bool strength_by_ratio = false;
 
   T E_star{}, Y{}, c_Y{}, c_P{};
-  T c_yield{};        // c (a_Y/R*)^-0.7 of finite strain; infinite without
+  T c_yield{};        // c (w a_Y/R*)^-0.7 of finite strain; infinite without
   T plastic_ratio{};  // alpha_P/R*
   T log_s_P{}, beta{};
   T a_ratio{};       // a_Y/R*, the root of alpha_Y/R*
-  T yield_factor{};  // f(a_Y/R*) of finite strain
+  T yield_factor{};  // f(w a_Y/R*) of finite strain
+  T cut{};           // w^2/2 of finite strain; 0 without
+
+  static double hardening(const double* parameter) noexcept { return parameter[2] / parameter[1]; }
 
   /// Whether positive, finite parameters also make sense together.
   static bool valid(const T* parameter) noexcept {
@@ -51,14 +55,16 @@ struct Cavity {
   }
 
   Cavity() = default;
-  Cavity(T E_star_, const T* parameter) noexcept
+  Cavity(T E_star_, const T* parameter, T share) noexcept
       : E_star(E_star_), Y(parameter[0]), c_Y(parameter[1]), c_P(parameter[2]) {
     a_ratio = pi * c_Y * Y / (2.0 * E_star);
     log_s_P = log_plastic(c_Y, c_P);
     plastic_ratio = yield_ratio() * exp(log_s_P);
     beta = log(T(2.0)) / log_s_P;
-    c_yield = parameter[3] < no_finite_strain ? parameter[3] * exponential<T>(-0.7 * logarithm(a_ratio))
-                                              : std::numeric_limits<T>::infinity();
+    const bool finite = parameter[3] < no_finite_strain;
+    c_yield =
+        finite ? parameter[3] * exponential<T>(-0.7 * logarithm(share * a_ratio)) : std::numeric_limits<T>::infinity();
+    cut = finite ? 0.5 * share * share : T{};
     yield_factor = 1.0 - fallen(T{});
   }
 
@@ -79,11 +85,20 @@ struct Cavity {
 
   Point<T> load(T R_star, T delta) const noexcept {
     auto [p, log_a] = small_strain(R_star, delta);
-    if (any(softens())) p.force = p.force * ((1.0 - fallen(log_a)) / yield_factor);
+    if (any(softens())) {
+      const T left = area_left(R_star, delta);
+      p.force = p.force * (left * (1.0 - fallen(log_a)) / yield_factor);
+      p.radius = p.radius * sqrt(left);
+    }
     return p;
   }
 
-  /// 1 - f(a/R*) of finite strain, from ln a/a_Y.
+  /// Area that a plane cuts from a sphere over the area of small strain, k; not below 0.3, far beyond all bodies.
+  T area_left(T R_star, T delta) const noexcept {
+    return max(constant<T>(0.3), 1.0 - cut * max(T{}, delta / R_star - yield_ratio()));
+  }
+
+  /// 1 - f(s) of finite strain, from ln a/a_Y.
   T fallen(T log_a) const noexcept {
     return exponential<T>(max(constant<T>(-700.0), -c_yield * exponential<T>(-0.7 * log_a)));
   }
@@ -145,7 +160,8 @@ struct Cavity {
     return W;
   }
 
-  /// What the fall of the pressure takes off the work between two overlaps of one phase; Gauss's rule in ln alpha.
+  /// What the fall of the pressure and of the area takes off the work between two overlaps of one phase; Gauss's rule
+  /// in ln alpha.
   T fallen_work(T R_star, T low, T high) const noexcept {
     constexpr double node[] = {0.005299532504175031, 0.0277124884633837, 0.06718439880608412, 0.1222977958224985,
                                0.19106187779867811,  0.2709916111713863, 0.35919822461037054, 0.4524937450811813,
@@ -161,7 +177,8 @@ struct Cavity {
     for (int k = 0; k < 16; ++k) {
       const T delta = low * exponential<T>(node[k] * range);
       const SmallStrain now = small_strain(R_star, delta);
-      sum = sum + weight[k] * (now.point.force * fallen(now.log_a) * delta);
+      const T left = area_left(R_star, delta) * (1.0 - fallen(now.log_a));
+      sum = sum + weight[k] * (now.point.force * (1.0 - left) * delta);
     }
     return range * sum;
   }

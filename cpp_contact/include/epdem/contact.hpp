@@ -6,6 +6,7 @@
 #include <cstddef>
 
 #include "adhesive.hpp"
+#include "compaction.hpp"
 #include "settings.hpp"
 #include "sub_models.hpp"
 #include "tangential.hpp"
@@ -23,6 +24,7 @@ struct ContactConstants {
   Number<Law> rolling_friction{};
   Number<Law> cohesion_density{};  // [Pa]
   Law law{};
+  BodyShares<Number<Law>> bodies{};
 };
 
 /// A pair with a law alone.
@@ -43,10 +45,31 @@ struct NoObserver {
   void step(const Contact&) const noexcept {}
 };
 
+/// A contact without compaction.
+struct NoGrowth {};
+
+/// Energies of a step of a law without adhesion.
+template <class Law>
+inline NormalEnergies<Number<Law>> energies(const Law& law, Number<Law> R_star, const State<Law>& before,
+                                            const Step<Law>& now, Number<Law> overlap) noexcept {
+  const Number<Law> stored = elastic_energy(law, R_star, now, overlap);
+  return {plastic_growth(law, R_star, before, now, stored), stored, Number<Law>{}};
+}
+
+/// The same of a law with adhesion. Many kernels call this function.
+template <class Law>
+[[gnu::noinline]] NormalEnergies<Number<Law>> adhesive_energies(const Law& law, Number<Law> R_star,
+                                                                const State<Law>& before, const Step<Law>& now,
+                                                                Number<Law> overlap) noexcept {
+  const auto lost = losses(law, R_star, before, now.after);
+  return {lost.plastic, stored_energy(law, R_star, now.after, overlap), lost.adhesive};
+}
+
 /// Normal force of a contact and what the models beside it read.
 template <class Law>
 struct NormalContact {
   Step<Law> step;
+  Number<Law> overlap;  // of the law, with growth [m]
   Number<Law> force;    // [N] with the dashpot
   Number<Law> load;     // [N] friction is at most mu times it
   Number<Law> k_n;      // [N/m] of rolling friction, F/alpha of Hertz; none across a gap
@@ -56,48 +79,58 @@ struct NormalContact {
 
 /// A step of the law with its dashpots; closing: closing speed at the half step times the time step [m];
 /// approach_speed [m/s]; m_star() is evaluated where there is a dashpot. repeats: `before` is the history after a step
-/// that is evaluated once more, with closing = 0.
-template <class Law, class Mass, class Observer = NoObserver>
+/// that is evaluated once more, with closing = 0. growth: a Growing with compaction. The observer gets the step, its
+/// overlap and a function that returns the energies of the step.
+template <class Law, class Mass, class Observer = NoObserver, class Growth = NoGrowth>
 inline NormalContact<Law> normal_contact(const ContactConstants<Law>& pair, Number<Law> R_star,
                                          const State<Law>& before, Number<Law> overlap, Number<Law> closing,
                                          Number<Law> approach_speed, bool damped, bool viscous, Mass m_star,
-                                         bool repeats = false, Observer&& observer = {}) noexcept {
+                                         bool repeats = false, Observer&& observer = {},
+                                         Growth&& growth = {}) noexcept {
   using T = Number<Law>;
   const Law& law = pair.law;
-  NormalContact<Law> now{step(law, R_star, before, overlap, closing), T{}, T{}, T{}, T{}, T{}};
-  observer.normal(law, R_star, before, now.step, overlap);
+  NormalContact<Law> now;
+  now.overlap = overlap;
+  State<Law> from = before;
+  [[maybe_unused]] T delta_max{};
+  if constexpr (std::is_same_v<std::decay_t<Growth>, NoGrowth>) {
+    (void)growth;
+    now.step = step(law, R_star, before, overlap, closing);
+    observer.normal(pair, R_star, now.step, overlap, [&]() __attribute__((always_inline)) {
+      if constexpr (adheres<Law>) {
+        const State<Law> first = before;  // copies: what is passed by its address stays in memory
+        const Step<Law> last = now.step;
+        return adhesive_energies(law, R_star, first, last, overlap);
+      } else {
+        return energies(law, R_star, before, now.step, overlap);
+      }
+    });
+  } else {
+    const GrownStep<Law> grown = grown_step(law, pair.bodies, R_star, before, overlap, growth, repeats);
+    now.step = grown.step;
+    now.overlap = grown.overlap;
+    from = grown.before;
+    delta_max = grown.delta_max;
+    observer.normal(pair, R_star, now.step, now.overlap, [&]() __attribute__((always_inline)) {
+      const GrownStep<Law> copy = grown;
+      return grown_energies(law, R_star, copy, overlap, closing);
+    });
+  }
   if constexpr (adheres<Law>)
     if (repeats) now.step.force = now.step.force + before.jump;
   now.force = now.step.force;
   now.k_n = 4.0 / 3.0 * law.E_star * now.step.radius;
   now.k_t = tangential_stiffness(pair.shear_modulus, now.step.radius);
+  now.damping = T{};
   if (damped || viscous) {
     const T mass = m_star();
-    if (viscous) now.force = damped_force(law, R_star, before, now.step, pair.dashpot, mass, approach_speed);
+    if (viscous) now.force = damped_force(law, R_star, from, now.step, pair.dashpot, mass, approach_speed);
     now.damping = tangential_damping(pair.damping, now.k_t, mass);
   }
   now.load = sliding_load(law, R_star, now.step, now.force);
   if constexpr (adheres<Law>) now.k_n = select(overlap > 0.0, now.k_n, T{});
+  if constexpr (!std::is_same_v<std::decay_t<Growth>, NoGrowth>) now.step.after.delta_max = delta_max;
   return now;
-}
-
-/// Energies of a step of a law [J]: plastic work of this step, elastic energy at its end (with adhesion less the
-/// surface energy), and what adhesion lost in its jumps.
-template <class T>
-struct NormalEnergies {
-  T plastic_work_step, stored, adhesion_loss;
-};
-
-template <class Law>
-inline NormalEnergies<Number<Law>> energies(const Law& law, Number<Law> R_star, const State<Law>& before,
-                                            const Step<Law>& now, Number<Law> overlap) noexcept {
-  if constexpr (adheres<Law>) {
-    const auto lost = losses(law, R_star, before, now.after);
-    return {lost.plastic, stored_energy(law, R_star, now.after, overlap), lost.adhesive};
-  } else {
-    const Number<Law> stored = elastic_energy(law, R_star, now, overlap);
-    return {plastic_growth(law, R_star, before, now, stored), stored, Number<Law>{}};
-  }
 }
 
 /// What friction reads of a step of a law; `load` is the force that limits it.
@@ -128,12 +161,13 @@ EPDEM_INLINE Sliding<Number<Law>> sliding_of(const ContactConstants<Law>& pair, 
 
 /// The history of a contact: the values of the law, then the values of the models beside the law. RollingHistory
 /// converts to a vector and takes one; rolling friction with a history reads and writes it, other models leave it
-/// alone.
-template <class Law, class Friction, class RollingHistory = Vec<Number<Law>>>
+/// alone. Growth: a Growing with compaction.
+template <class Law, class Friction, class RollingHistory = Vec<Number<Law>>, class Growth = NoGrowth>
 struct ContactHistory {
   State<Law> law{};
   typename Friction::template History<Number<Law>> friction{};
   RollingHistory rolling{};
+  Growth growth{};
 };
 
 /// Forces and torques of a contact [N], [N m]; the force on j is the negative of that on i.
@@ -165,10 +199,10 @@ EPDEM_INLINE void keep_where(M mask, History& history) noexcept {
 }  // namespace detail
 
 /// One contact. `history` holds the values before the step, then the values after the step.
-template <class Friction, bool wall, class Law, class RollingHistory, class Mass, class Observer>
+template <class Friction, bool wall, class Law, class RollingHistory, class Growth, class Mass, class Observer>
 inline ContactLoads<Number<Law>> contact(const ContactConstants<Law>& pair, const ContactSettings& settings,
                                          const Kinematics<Number<Law>>& c,
-                                         ContactHistory<Law, Friction, RollingHistory>& history, Mass m_star,
+                                         ContactHistory<Law, Friction, RollingHistory, Growth>& history, Mass m_star,
                                          Observer&& observer) noexcept {
   using T = Number<Law>;
   // bodies that touch without being attached begin anew in the models beside the law
@@ -176,7 +210,7 @@ inline ContactLoads<Number<Law>> contact(const ContactConstants<Law>& pair, cons
   if constexpr (adheres<Law>) detail::keep_where<T>(attached, history.friction);
   NormalContact<Law> now =
       normal_contact(pair, c.R_star, history.law, c.overlap, T(-c.normal_velocity * settings.dt), -c.normal_velocity,
-                     settings.damped, settings.viscous, m_star, settings.repeats, observer);
+                     settings.damped, settings.viscous, m_star, settings.repeats, observer, history.growth);
   history.law = now.step.after;
 
   ContactLoads<T> loads{now.force * c.normal, {}, {}};
@@ -201,7 +235,7 @@ inline ContactLoads<Number<Law>> contact(const ContactConstants<Law>& pair, cons
   }
 
   if (rarely(settings.rolling != 0)) {
-    const epdem::Rolling<T> rolling{c.normal,    c.rolling,       c.R_star, c.overlap,
+    const epdem::Rolling<T> rolling{c.normal,    c.rolling,       c.R_star, now.overlap,
                                     now.load,    now.k_n,         now.k_t,  pair.rolling_friction,
                                     settings.dt, settings.torsion};
     Rollings::each([&](auto model, int place) __attribute__((always_inline)) {

@@ -210,4 +210,11 @@ inline Number<Law> plastic_growth(const Law& law, Number<Law> R_star, const Stat
   return select(yields, work - plastic_work(law, R_star, only(yields, before.delta_max)), T{});
 }
 
+/// Energies of a step of a law [J]: plastic work of this step, elastic energy at its end (with adhesion less the
+/// surface energy), and what adhesion lost in its jumps.
+template <class T>
+struct NormalEnergies {
+  T plastic_work_step, stored, adhesion_loss;
+};
+
 }  // namespace epdem

@@ -32,6 +32,45 @@ inline double effective_shear_modulus(Elastic i, Elastic j) noexcept {
   return 1.0 / (compliance(i) + compliance(j));
 }
 
+/// Share of the strain of a contact that body i takes, from the strengths of both bodies [Pa]: 1/2 if they are equal, 1
+/// if the strength of j is at least `hardening` times that of i, so that j never yields; both shares have the sum 1.
+/// hardening: pressure of full plasticity over pressure of first yield, above 1.
+inline double strain_share(double strength_i, double strength_j, double hardening) noexcept {
+  const double low = strength_i < strength_j ? strength_i : strength_j;
+  const double high = strength_i < strength_j ? strength_j : strength_i;
+  const double t = high > low ? std::fmin(1.0, (high / low - 1.0) / (hardening - 1.0)) : 0.0;
+  const double softer = 0.5 * (1.0 + t);
+  return strength_i <= strength_j ? softer : 1.0 - softer;
+}
+
+/// What a contact knows of its two bodies apart.
+template <class T>
+struct BodyShares {
+  T strain_i{};          // strain_share of i
+  T compliance_i{};      // of i in the elastic compliance: E* (1-nu_i^2)/E_i; j has the rest
+  T bulk_i{}, bulk_j{};  // compliance share times (1-2 nu)/(2 pi (1-nu^2))
+};
+
+inline BodyShares<double> body_shares(Elastic i, Elastic j, double strain_share_i) noexcept {
+  const auto compliance = [](Elastic b) { return (1.0 - b.poisson_ratio * b.poisson_ratio) / b.young_modulus; };
+  const auto bulk = [](Elastic b) {
+    return (1.0 - 2.0 * b.poisson_ratio) / (2.0 * pi * (1.0 - b.poisson_ratio * b.poisson_ratio));
+  };
+  const double share = compliance(i) / (compliance(i) + compliance(j));
+  return {strain_share_i, share, share * bulk(i), (1.0 - share) * bulk(j)};
+}
+
+/// The same when the bodies change places.
+inline BodyShares<double> mirrored(const BodyShares<double>& b) noexcept {
+  return {1.0 - b.strain_i, 1.0 - b.compliance_i, b.bulk_j, b.bulk_i};
+}
+
+/// Share of the body that takes more of the strain: 1/2 to 1.
+template <class T>
+EPDEM_INLINE T larger_share(const BodyShares<T>& bodies) noexcept {
+  return max(bodies.strain_i, 1.0 - bodies.strain_i);
+}
+
 /// 1/x = 1/a + 1/b of two finite radii or masses, as a b/(a + b).
 template <class T>
 EPDEM_INLINE T reduced_finite(T a, T b) noexcept {

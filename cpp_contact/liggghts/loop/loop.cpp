@@ -92,7 +92,7 @@ void PairLoop::run(PairGran* pair, const Plan& plan, double now) {
   pass_ = pass_of(*atom, plan, update->dt);
   pass_.now = now;
   pass_.freeze = pair->freeze_group_bit() != 0;
-  pass_.growth = plan.growth ? plan.growth->of_all() : nullptr;
+  pass_.sums = plan.growth ? plan.growth->of_all() : nullptr;
   mixed_ = plan.width > 2 && several_types(atom->type, atom->nlocal + atom->nghost);
   flags_ = CONTACT_NORMAL_MODEL | (plan.friction ? CONTACT_TANGENTIAL_MODEL : 0) |
            (plan.settings.cohesion ? CONTACT_COHESION_MODEL : 0) | (plan.rolls ? CONTACT_ROLLING_MODEL : 0);
@@ -207,10 +207,17 @@ bool PairLoop::closes_gap(const Plan& plan, int i, int j, int slot) {
   const double dx = x[3 * i] - x[3 * j], dy = x[3 * i + 1] - x[3 * j + 1], dz = x[3 * i + 2] - x[3 * j + 2];
   const double sum = radius[i] + radius[j], rsq = dx * dx + dy * dy + dz * dz;
   const double* const h = pair_->listgranhistory->firstdouble[i] + pair_->dnum() * slot;
-  const double delta_max = pass_.now - h[plan.last_step] > 1.0 ? 0.0 : h[0];
-  const Growth& growth = *plan.growth;
-  if (epdem::closes_gap(sum, rsq, added_overlap<false>(radius[i], radius[j], delta_max, growth.of(i), growth.of(j))))
-    return true;
+  const bool is_new = pass_.now - h[plan.last_step] > 1.0;
+  const Gap gap{plan.constants.data() + most_constants * (atom->type[i] * plan.width + atom->type[j]),
+                is_new ? nullptr : h,
+                h + pair_->dnum() - growth_values,
+                radius[i],
+                radius[j],
+                pass_.sums + 2L * i,
+                pass_.sums + 2L * j,
+                sum - std::sqrt(rsq),
+                false};
+  if (epdem::kernels::closes_gap(plan.law, gap)) return true;
   pair_->listgranhistory->firstneigh[i][slot] &= ~flags_;
   return false;
 }
@@ -250,14 +257,14 @@ void PairLoop::scatter(const Plan& plan, int n) {
   double *const loaded = books ? ledger->loaded() : nullptr, *const parted = books ? ledger->adhesive() : nullptr;
   const bool gives_back = books && ledger->gives_back();
   const int nlocal = atom->nlocal;
-  double others[12] = {};  // what a ghost gets is computed by its owner
+  double others[13] = {};  // what a ghost gets is computed by its owner
   for (int k = 0; k < n;) {
     const int i = b.i[k];
     double *const fi = f + 3 * i, *const ti = t + 3 * i;
     double fx = fi[0], fy = fi[1], fz = fi[2], tx = ti[0], ty = ti[1], tz = ti[2];
-    double work_i{}, energy_i{}, loaded_i{}, depths_i{}, squares_i{};
+    double work_i{}, energy_i{}, loaded_i{}, cover_i{}, volume_i{}, area_i{};
     if constexpr (books) work_i = work[i], energy_i = energy[i], loaded_i = loaded[i];
-    if constexpr (grown) depths_i = dents[2 * i], squares_i = dents[2 * i + 1];
+    if constexpr (grown) cover_i = dents[3 * i], volume_i = dents[3 * i + 1], area_i = dents[3 * i + 2];
     do {
       const int j = b.j[k];
       const bool ours = j < nlocal;
@@ -294,12 +301,13 @@ void PairLoop::scatter(const Plan& plan, int n) {
         }
       }
       if constexpr (grown) {
-        const double depth_i = b.depth_i.a[k], depth_j = b.depth_j.a[k];
-        depths_i += depth_i;
-        squares_i += depth_i * depth_i;
-        double* const dents_j = ours ? dents + 2 * j : others + 10;
-        dents_j[0] += depth_j;
-        dents_j[1] += depth_j * depth_j;
+        cover_i += b.cover_i.a[k];
+        volume_i += b.volume_i.a[k];
+        area_i += b.dented_area.a[k];
+        double* const dents_j = ours ? dents + 3 * j : others + 10;
+        dents_j[0] += b.cover_j.a[k];
+        dents_j[1] += b.volume_j.a[k];
+        dents_j[2] += b.dented_area.a[k];
       }
       ++k;
     } while (k < n && b.i[k] == i);
@@ -312,7 +320,7 @@ void PairLoop::scatter(const Plan& plan, int n) {
       ti[2] = tz;
     }
     if constexpr (books) work[i] = work_i, energy[i] = energy_i, loaded[i] = loaded_i;
-    if constexpr (grown) dents[2 * i] = depths_i, dents[2 * i + 1] = squares_i;
+    if constexpr (grown) dents[3 * i] = cover_i, dents[3 * i + 1] = volume_i, dents[3 * i + 2] = area_i;
   }
 }
 

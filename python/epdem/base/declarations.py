@@ -14,7 +14,7 @@ from pathlib import Path
 from ..errors import EngineError
 from . import paths
 
-ABI = 9
+ABI = 10
 
 
 @dataclass(frozen=True)

@@ -125,10 +125,11 @@ def cases(*, steps: int, **numbers: Unpack[ImpactNumbers]) -> Array:
 class Law:
     """One law with its constants: E_star [Pa] and the law's parameters by name, SI.
 
+    share: the larger share of both bodies in the strain, from 1/2 (bodies of equal strength) to 1 (one never yields).
     Raises CaseError for an unknown law or parameter, or values outside the law's range.
     """
 
-    def __init__(self, name: str, *, E_star: float, **parameters: float):
+    def __init__(self, name: str, *, E_star: float, share: float = 1.0, **parameters: float):
         if name not in declarations():
             raise CaseError(f"law {name!r} does not exist; there are {', '.join(declarations())}")
         self.info = declarations()[name]
@@ -143,7 +144,7 @@ class Law:
                 raise CaseError(f"law {name}: {p.name} = {value}, must be a finite number in {p.limits()} [{p.unit}]")
             values.append(value)
         self.name, self.E_star = name, float(E_star)
-        self._parameters = (c_double * max(len(values), 1))(*values)
+        self._parameters = (c_double * (len(values) + 1))(*values, share)
 
     def call(self, function: str, *arguments: object) -> None:
         """Call a function of the C interface with this law and its numbers before `arguments`. Raises CaseError."""
