@@ -281,7 +281,8 @@ template <class Law, class T = Number<Law>>
       F0 = select(was_dented, safe.force, F0);
       U0 = select(was_dented, recovered_work(law.E_star, safe), U0);
     }
-    const T work = law.work(R_star, from, to) + U0 - recovered_work(law.E_star, select(yields, peak, s.peak_before));
+    const T U = stored_work(law.E_star, select(yields, peak, s.peak_before), to, to);
+    const T work = law.work(R_star, from, to) + U0 - U;
     const T paid = 0.5 * (F0 + peak.force) * (s.added - v0);
     lost = select(yields, work - paid + (s.now.unstored - s.old.unstored), lost);
   }
