@@ -27,7 +27,7 @@ def limits(verdicts: pd.DataFrame) -> pd.DataFrame:
     rows = []
     for name, part in verdicts.groupby(verdicts["case"].str.partition(",")[0], sort=False):
         flag = "large" if part["large_deformation"].any() else ""
-        row = {"case": name, "a_max/R*": part["strain_ratio"].max(), "flag": flag}
+        row = {"case": name, "w a_max/R*": part["strain"].max(), "flag": flag}
         for v in part.itertuples():
             text = {"not representable": "n.r.", "embedded only": "n.a.", "failed": "FAILED"}.get(v.status)
             row[f"{v.engine} {v.law}{v.case.removeprefix(name)}"] = (
@@ -69,7 +69,7 @@ smallest share that is unstable, which creates more than {broken:.0%} of the ene
 try {tried} (engines with positions: {fewer}).
 
 - A dash: no such share up to 1.5 times the limit.
-- `large`: a_max/R* > 0.3, outside the theory of small deformation.
+- `large`: w a_max/R* > 0.3 (w: share of the weaker body in the strain), outside the theory of small deformation.
 - `x`: hardening exponent of `meyer`.
 - `n.r.`: not representable (below).
 - `n.a.`: not run, because 1e9 steps of bounces take hours in an engine with positions.

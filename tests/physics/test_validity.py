@@ -72,7 +72,7 @@ def test_finite_strain_is_named_once_by_the_largest_limit(strain, expected):
     speed = np.sqrt(2 * law.work(top) / M)
     speeds = np.array([0.1, speed])
     hits = restitution.impact(law, m_star=M, speed=speeds)
-    found = validity.finite_strain_of_impacts(hits.strain_ratio, speeds)
+    found = validity.finite_strain_of_impacts(hits.radius_max / 0.01, speeds)
     assert [re.search(r"above ([\d.]+) from", text)[1] for text in found] == expected
     assert all(f"{strain:.2f}" in text and f"{speed:.3g} m/s" in text for text in found)
 

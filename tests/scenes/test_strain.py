@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The largest contact radius and overlap over R* of the contacts of a scene: in rows, warnings and on the page."""
+"""The largest strain of the contacts of a scene, w a/R* and w overlap/R*: in rows, warnings and on the page."""
 
 import pytest
 from parts_cases import CASES, FLOOR, parts
@@ -30,11 +30,11 @@ def test_an_impact_between_two_rows_has_the_largest_strain_of_theory(tmp_path, e
     outcome = run(write_case(data, tmp_path), engine, out=tmp_path / "out")
     hit = predict(wall_impact(parse(data), "glass", 2e-3, "steel", float(speed)))
     rows = outcome.results.rows
-    assert rows[STRAINS[0]].to_list() == pytest.approx([0.0, hit.strain_ratio[-1]], rel=2e-3)
-    assert rows[STRAINS[1]].to_list() == pytest.approx([0.0, hit.overlap_max[-1] / 2e-3], rel=4e-3)
-    said = [warning for warning in outcome.warnings if "a/R* reaches" in warning]
-    assert len(said) == (hit.strain_ratio[-1] > 0.2)
-    assert f"a contact radius of {rows[STRAINS[0]].iloc[-1]:.3g} R*" in " ".join(sentences(outcome))
+    assert rows[STRAINS[0]].to_list() == pytest.approx([0.0, hit.strain[-1]], rel=2e-3)
+    assert rows[STRAINS[1]].to_list() == pytest.approx([0.0, hit.overlap_max[-1] / 2e-3], rel=4e-3)  # steel: w = 1
+    said = [warning for warning in outcome.warnings if "the strain w a/R*" in warning]
+    assert len(said) == (hit.strain[-1] > 0.2)
+    assert f"a strain w a/R* of {rows[STRAINS[0]].iloc[-1]:.3g}" in " ".join(sentences(outcome))
 
 
 @pytest.mark.liggghts
@@ -43,10 +43,10 @@ def test_a_press_that_goes_beyond_small_strain_says_so_however_slow_it_is(tmp_pa
     data["scene"] |= {"box": ["0.5 mm", "0.5 mm", "0.8 mm"], "count": 80, "height": "0.21 mm", "speed": "1 m/s"}
     data["output"] |= {"rows": 20, "particles": 10}
     outcome = run(write_case(data, tmp_path), out=tmp_path / "out")
-    (said,) = [warning for warning in outcome.warnings if "finite strain" in warning]
+    (said,) = [warning for warning in outcome.warnings if "the strain w a/R*" in warning]
     largest = outcome.results.rows[STRAINS[0]].iloc[-1]
-    assert largest > 0.3 and f"a/R* reaches {largest:.2f}, above 0.3 in up to " in said
+    assert largest > 0.3 and f" reaches {largest:.2f}, above 0.3 in up to " in said
     contacts, spheres = outcome.results.contacts, outcome.results.particles
     R_star = spheres["radius"].iloc[0] / (1.0 + (contacts["wall"] == ""))
-    assert (contacts["dent_radius"] / R_star).max() <= largest * (1 + 1e-9)
-    assert (contacts["delta_max"] / R_star).max() <= outcome.results.rows[STRAINS[1]].iloc[-1] * (1 + 1e-9)
+    assert (0.5 * contacts["dent_radius"] / R_star).max() <= largest * (1 + 1e-9)  # one material: w = 1/2
+    assert (0.5 * contacts["delta_max"] / R_star).max() <= outcome.results.rows[STRAINS[1]].iloc[-1] * (1 + 1e-9)

@@ -144,9 +144,10 @@ def soften(
         return
     for c in twin.changes:
         print(f"{c.place}: {c.before} -> {c.after}")
+    kept = f"changes by up to {100 * twin.e_n_change:.2g} %" if twin.e_n_change else "of every speed stays"
     print(
-        f"time step {twin.time_step_factor:.3g} times larger; a_max/R* {twin.strain_ratio[0]:.3f} -> "
-        f"{twin.strain_ratio[1]:.3f}; e_n of every speed stays; written to {target}"
+        f"time step {twin.time_step_factor:.3g} times larger; w a_max/R* {twin.strain[0]:.3f} -> "
+        f"{twin.strain[1]:.3f}; e_n {kept}; written to {target}"
     )
     for warning in twin.warnings:
         print(f"warning: {warning}")

@@ -138,7 +138,7 @@ class Experiment:
 
     def native_law(self) -> Law:
         """The same law in C++."""
-        return Law(self.law.name, E_star=self.E_star, **self.law.parameters)
+        return Law(self.law.name, E_star=self.E_star, share=self.law.share, **self.law.parameters)
 
     @property
     def viscous_number(self) -> float:

@@ -26,11 +26,12 @@ class Prediction:
     contact_time: np.ndarray
     force_max: np.ndarray
     overlap_max: np.ndarray
+    radius_max: np.ndarray
     residual_overlap: np.ndarray
     work_in: np.ndarray
     work_out: np.ndarray
     plastic_work: np.ndarray
-    strain_ratio: np.ndarray  # a_max/R*
+    strain: np.ndarray  # w a_max/R*, w: share of the weaker body
     yields: tuple[str, ...]  # materials that flow somewhere in the range of speeds; law.STRENGTH if it is one for all
     yield_speeds: dict[str, float]  # from which each material yields beneath its surface [m/s], eq. 8.78; inf: never
     rebound: oblique.Rebound | None = None  # of oblique impacts
@@ -92,22 +93,23 @@ def predict(experiment: Experiment) -> Prediction:
             for b in (x.body, x.target)
             if b.yield_stress is not None and not b.rigid
         }
-    columns = {n: np.asarray(getattr(impact, n), float) for n in COLUMNS[1:]} | columns
+    columns = {n: np.asarray(getattr(impact, n), float) for n in COLUMNS[1:] if n != "strain"} | columns
+    columns["strain"] = x.law.share * columns["radius_max"] / x.R_star
     return Prediction(
         speed=x.speed,
         yields=_softer(x) if yielded else (),
         yield_speeds=speeds,
         rebound=oblique.predict(x, columns["e_n"]) if x.oblique else None,
-        caveats=(*validity.caveats(law, **pair), *_too_fast(x, columns["strain_ratio"])),
-        finite_strain=tuple(validity.finite_strain_of_impacts(columns["strain_ratio"], x.speed)),
+        caveats=(*validity.caveats(law, **pair), *_too_fast(x, columns["radius_max"])),
+        finite_strain=tuple(validity.finite_strain_of_impacts(columns["strain"], x.speed)),
         observation_time=observed,
         **columns,
     )
 
 
-def _too_fast(x: Experiment, strain_ratio: np.ndarray) -> list[str]:
+def _too_fast(x: Experiment, radius: np.ndarray) -> list[str]:
     """A sentence on impacts of a case with [rate] beyond the strain rates for which its formula holds."""
-    rate = np.asarray(strain_rate(x.speed, strain_ratio * x.R_star))
+    rate = np.asarray(strain_rate(x.speed, radius))
     if not x.rated or rate.max() <= FASTEST:
         return []
     return [

@@ -61,7 +61,8 @@ class LawSpec:
         """
         symbols = law_named(self.name).symbols
         classes: dict[str, type[Backbone] | type[JKR]] = {**LAWS, **ADHESIVE}
-        return classes[self.name](E_star=E_star, R_star=R_star, **{symbols[n]: x for n, x in self.parameters.items()})
+        law, numbers = classes[self.name], {symbols[n]: x for n, x in self.parameters.items()}
+        return law(E_star=E_star, R_star=R_star, **numbers, **({"share": self.share} if law.uses_share else {}))
 
     def of(self, body: float, target: float) -> "LawSpec":
         """The same law for two bodies of these strengths [Pa]."""
@@ -71,7 +72,7 @@ class LawSpec:
 
     @property
     def share(self) -> float:
-        """Share in the strain of the body that has more of it: 1/2 of bodies of equal strength to 1."""
+        """Share of the weaker body in the strain: 1/2 of bodies of equal strength, 1 if the other one never yields."""
         ratios = [self.parameters.get(name) for name in ("plastic_ratio", "first_yield_ratio")]
         hardening = ratios[0] / ratios[1] if ratios[0] and ratios[1] else HARDENING
         one = float(strain_share(*self.strengths, hardening=hardening))

@@ -28,8 +28,10 @@ COLUMNS = {
     # rows
     "particles": Quantity("", "number of spheres in the room"),
     "kinetic_energy": Quantity("J", "translational kinetic energy of the spheres"),
-    "largest_radius_ratio": Quantity("", "largest contact radius over R*, of all contacts since the start"),
-    "largest_overlap_ratio": Quantity("", "largest overlap over R*, of all contacts since the start"),
+    "largest_radius_ratio": Quantity(
+        "", "largest strain w a/R* of all contacts since the start; a: contact radius, w: share of the weaker body"
+    ),
+    "largest_overlap_ratio": Quantity("", "largest w delta/R* of all contacts since the start; delta: overlap"),
     "floor_load": Quantity("N", "force of the spheres on the floor, mean over a row"),
     "torque": Quantity("N m", "torque of the spheres on the drum, mean over a row"),
     "wall_power": Quantity("W", "power of all moving walls, mean over a row"),
@@ -87,7 +89,7 @@ COLUMNS = {
 }
 LOADS = ("force_x", "force_y", "force_z", "torque_x", "torque_y", "torque_z")  # of a wall NAME: NAME_force_x, ...
 SMALLEST = 1e-12  # radius [m]
-STRAINS = ("largest_radius_ratio", "largest_overlap_ratio")  # a/R* and overlap/R*, of all contacts since the start
+STRAINS = ("largest_radius_ratio", "largest_overlap_ratio")  # w a/R* and w delta/R*, of all contacts since the start
 PARTICLES = ["id", "type", "radius", "mass", "x", "y", "z", "vx", "vy", "vz"]
 SPINS = ["omega_x", "omega_y", "omega_z"]
 
@@ -243,7 +245,7 @@ def _one_kind(
     theory = spec.theory(E_star=E_star, R_star=R)
     if isinstance(theory, JKR):
         return _with_adhesion(theory, overlap, np.maximum(largest, overlap), attached)
-    law = Law(spec.name, E_star=E_star, **spec.parameters)
+    law = Law(spec.name, E_star=E_star, share=spec.share, **spec.parameters)
     largest = np.maximum(largest, overlap)
     force, _, _ = law.step(R_star=R, delta_max=largest, delta=overlap)
     _, dent, _, plastic = law.backbone(R_star=R, delta=largest)

@@ -58,6 +58,11 @@ class Model:
         """The law's parameters that differ from its defaults."""
         return own_ratios(self.law, self.parameters)
 
+    def shares(self) -> list[list[float]]:
+        """Share of the weaker body in the strain of contacts of each pair of types."""
+        law = LawSpec(self.law, self.parameters, (math.inf, math.inf))
+        return [[law.of(a.strength, b.strength).share for b in self.types] for a in self.types]
+
     @property
     def yields(self) -> bool:
         """Whether the law has a strength."""

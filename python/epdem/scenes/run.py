@@ -132,7 +132,7 @@ def _reused(work: _Work, folder: Path, fresh: bool) -> SceneOutcome | None:
     if old is None or old.attributes.get("inputs") != work.inputs:
         return None
     p = _as_run(work.plan, old.tables)
-    warnings = [*work.notes, *measured_warnings(old.tables), *lost_spheres(p, old.tables)]
+    warnings = [*work.notes, *measured_warnings(p, old.tables), *lost_spheres(p, old.tables)]
     return SceneOutcome(p, folder, old, 0.0, reused=True, warnings=warnings)
 
 
@@ -200,6 +200,6 @@ def _finish(
         left_out = [f"{folder}: the frames of {steps} {advice}"]
     kept = results.SceneResults(work.text, attributes, tables, decks, work.named)
     results.write(folder / "results.h5", p, kept)
-    warnings = [*work.notes, *measured_warnings(tables), *lost_spheres(p, tables), *left_out]
+    warnings = [*work.notes, *measured_warnings(p, tables), *lost_spheres(p, tables), *left_out]
     begin = went_on.step if went_on else None
     return SceneOutcome(p, folder, kept, seconds, resumed_from=begin, warnings=warnings)

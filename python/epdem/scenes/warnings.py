@@ -32,12 +32,12 @@ def planned_warnings(p: ScenePlan) -> list[str]:
     return found + _time_steps(p) + _phases(p) + _overlaps(p) + _walls(p)
 
 
-def measured_warnings(tables: dict[str, pd.DataFrame]) -> list[str]:
+def measured_warnings(p: ScenePlan, tables: dict[str, pd.DataFrame]) -> list[str]:
     """A sentence for contacts beyond small strain, for a bed without void, and for each phase whose `until` was not
     reached."""
     largest = float(tables["rows"][STRAINS[0]].iloc[-1])
     limit = max((limit for limit in validity.FINITE_STRAIN if largest > limit), default=0.0)
-    share = _share_above(tables, limit) if limit and "contacts" in tables else 0.0
+    share = _share_above(p, tables, limit) if limit and "contacts" in tables else 0.0
     where = f" in up to {share:.3g} % of the contacts of a frame" if share else ""
     phases = tables.get("phases", pd.DataFrame(columns=["until"]))
     no_void = [
@@ -52,16 +52,18 @@ def measured_warnings(tables: dict[str, pd.DataFrame]) -> list[str]:
     ]
 
 
-def _share_above(tables: dict[str, pd.DataFrame], limit: float) -> float:
-    """Largest share of the contacts of a frame whose largest a/R* is above the limit [%]."""
+def _share_above(p: ScenePlan, tables: dict[str, pd.DataFrame], limit: float) -> float:
+    """Largest share of the contacts of a frame whose largest strain w a/R* is above the limit [%]."""
     contacts = tables["contacts"]
     if contacts.empty:
         return 0.0
-    radius = tables["particles"].groupby("id")["radius"].first()
-    first, second = radius.reindex(contacts["i"]).to_numpy(), radius.reindex(contacts["j"]).fillna(np.inf).to_numpy()
-    R_star = 1.0 / (1.0 / first + 1.0 / second)
+    spheres = tables["particles"].groupby("id")[["radius", "type"]].first()
+    first, second = spheres.reindex(contacts["i"]), spheres.reindex(contacts["j"])
+    R_star = 1.0 / (1.0 / first["radius"].to_numpy() + 1.0 / second["radius"].fillna(np.inf).to_numpy())
+    type_j = np.where(contacts["j"] == 0, contacts["wall"].map(p.wall_types), second["type"]).astype(int)
+    weaker = np.array(p.model.shares())[first["type"].to_numpy(int) - 1, type_j - 1]
     elastic = np.sqrt(R_star * contacts["delta_max"].clip(lower=0.0))  # Hertz, where there is no dent
-    strain = np.maximum(contacts["dent_radius"], elastic) / R_star
+    strain = weaker * np.maximum(contacts["dent_radius"], elastic) / R_star
     return float(100.0 * (strain > limit).groupby(contacts["step"]).mean().max())
 
 

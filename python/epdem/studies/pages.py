@@ -295,8 +295,8 @@ def scene_sentences(outcome: SceneOutcome) -> list[str]:
     ]
     radius, overlap = (last[name] for name in STRAINS)
     said.append(
-        f"The contacts reach a contact radius of {radius:.3g} R* and an overlap of {overlap:.3g} R*; small strain "
-        f"ends at a contact radius of {SMALL_DEFORMATION} R*."
+        f"With w, the share of the weaker body, the contacts reach a strain w a/R* of {radius:.3g} and w delta/R* of "
+        f"{overlap:.3g}; small strain ends at w a/R* = {SMALL_DEFORMATION}."
     )
     return [*said, f"These checks fail: {failed}." if failed else f"All {len(checks)} checks hold."]
 

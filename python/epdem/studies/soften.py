@@ -10,15 +10,17 @@ overlaps and sqrt(2 Gamma E*/(pi a)) falls as p_y: all lengths and pressures of 
 The force of a contact at a speed, its yield force and its pull-off force fall as k^0.4. Forces that a scene prescribes
 fall with them, weight does not.
 
-What depends on a/R itself follows it: finite strain takes c k^0.14 in exp(-c (a/R*)^-0.7), and the reference of a
-strength that grows with the rate 0.2 v/a falls as the rate.
+What depends on a/R itself follows it: finite strain takes c k^0.14 in exp(-c (w a/R*)^-0.7), and the reference of a
+strength that grows with the rate 0.2 v/a falls as the rate. The area that finite strain takes off goes with overlap/R*,
+which no parameter scales: there e_n changes.
 """
 
 from collections.abc import Iterator
 from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
+import numpy as np
 import tomlkit
 
 from ..case.impact import Rate
@@ -27,6 +29,9 @@ from ..errors import CaseError
 from ..laws.strengths import ADHESION, law_named
 from ..theory.cavity import FINITE_STRAIN, STRAIN_EXPONENT
 from ..theory.validity import SMALL_DEFORMATION
+
+if TYPE_CHECKING:
+    from ..impacts.prediction import Prediction
 
 STRENGTH_POWER, ADHESION_POWER, FORCE_POWER, STEP_POWER, STRAIN_POWER = 0.8, 0.4, 0.4, 0.4, 0.2
 Key = tuple[str | int, ...]  # names of tables and numbers of entries
@@ -43,12 +48,15 @@ class Change:
 
 @dataclass(frozen=True)
 class Twin:
-    """The softened case file, its changes, and the largest a_max/R* before and after."""
+    """The softened case file, its changes, the largest strain w a_max/R* before and after, and by how much of itself
+    e_n changes at most.
+    """
 
     text: str
     changes: tuple[Change, ...]
-    strain_ratio: tuple[float, float]
+    strain: tuple[float, float]
     time_step_factor: float
+    e_n_change: float
     warnings: tuple[str, ...]
 
 
@@ -107,8 +115,8 @@ def _change(document: tomlkit.TOMLDocument, data: Any, keys: Key, after: str | f
     return Change(".".join(map(str, keys)), str(data.get(keys[-1], "the default")), str(after))
 
 
-def strain_ratio(data: dict[str, Any], path: Path) -> float:
-    """Largest a_max/R* that theory expects of a case or scene."""
+def _prediction(data: dict[str, Any], path: Path) -> "Prediction":
+    """What theory expects of a case, or of the impact that stands for a scene."""
     from ..case import impact as impacts
     from ..case import scene as scenes
     from ..impacts.experiment import experiment
@@ -116,11 +124,11 @@ def strain_ratio(data: dict[str, Any], path: Path) -> float:
     from ..scenes.timestep import leading_impact
 
     if not scenes.is_scene(data):
-        return float(predict(experiment(impacts.parse(data, path))).strain_ratio.max())
+        return predict(experiment(impacts.parse(data, path)))
     case = scenes.parse(data, path)
     with named(path):
         law_named(case.law.name)
-    return float(predict(leading_impact(case)).strain_ratio.max())
+    return predict(leading_impact(case))
 
 
 def _loads(data: dict[str, Any], path: Path, factor: float) -> list[str]:
@@ -147,19 +155,24 @@ def soften(path: Path, factor: float, *, folder: Path | None = None) -> Twin:
     if not 0.0 < factor < 1e12:
         raise CaseError(f"--factor {factor:g}, must lie in (0, 1e12); 100 makes the time step 6.3 times larger")
     data = with_library(read_toml(path), path)
-    before = strain_ratio(data, path)
-    after = before * factor**STRAIN_POWER
+    hard = _prediction(data, path)
+    before = float(hard.strain.max())
+    after, change = before * factor**STRAIN_POWER, 0.0
     moved = folder is not None and folder.resolve() != path.parent.resolve()
     document = tomlkit.parse(text_for_anywhere(path) if moved else text_of(path))
-    changes = [_change(document, data, keys, text) for keys, text in _replacements(data, factor).items()]
+    replacements = _replacements(data, factor)
+    changes = [_change(document, data, keys, text) for keys, text in replacements.items()]
+    if ("law", "finite_strain") in replacements:
+        soft = _prediction(with_library(document.unwrap(), path), path)
+        after, change = float(soft.strain.max()), float(np.abs(soft.e_n / hard.e_n - 1.0).max())
     warnings = []
     if before > SMALL_DEFORMATION:
-        warnings.append(f"a_max/R* was {before:.2f} already, above {SMALL_DEFORMATION}; it becomes {after:.2f}")
+        warnings.append(f"w a_max/R* was {before:.2f} already, above {SMALL_DEFORMATION}; it becomes {after:.2f}")
     elif after > SMALL_DEFORMATION:
         most = (SMALL_DEFORMATION / before) ** (1.0 / STRAIN_POWER)
         warnings.append(
-            f"a_max/R* reaches {after:.2f} (> {SMALL_DEFORMATION}): contacts of one sphere begin to touch each other; "
-            f"up to factor {most:.3g} it stays below"
+            f"w a_max/R* reaches {after:.2f} (> {SMALL_DEFORMATION}): contacts of one sphere begin to touch each "
+            f"other; up to factor {most:.3g} it stays below"
         )
     if data.get("contact", {}).get("cohesion"):
         warnings.append("contact.cohesion is kept: its share of the contact force grows with the contact area")
@@ -167,4 +180,4 @@ def soften(path: Path, factor: float, *, folder: Path | None = None) -> Twin:
     steps = [data.get("numerics", {}), *data.get("scene", {}).get("phase", [])]
     if any("time_step" in table for table in steps):
         warnings.append(f"every time_step is kept as given; it can be {factor**STEP_POWER:.3g} times larger")
-    return Twin(document.as_string(), tuple(changes), (before, after), factor**STEP_POWER, tuple(warnings))
+    return Twin(document.as_string(), tuple(changes), (before, after), factor**STEP_POWER, change, tuple(warnings))

@@ -176,7 +176,6 @@ def impact(law: JKR, *, m_star: Numbers, speed: Numbers) -> Impact:
         "work_in": W,
         "work_out": out,
         "plastic_work": plastic,
-        "strain_ratio": top / law.R_star,
         "parting_overlap": dent + branch.fold_overlap,
         "pull_max": branch.pull_off_force,
         "adhesive_work": adhesive,

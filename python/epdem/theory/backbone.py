@@ -13,6 +13,7 @@ class Declared:
     """A law whose declaration stands in C++: names, defaults and ranges of its parameters are read from there."""
 
     name: ClassVar[str]
+    uses_share: ClassVar[bool] = False  # whether it takes the share of the weaker body in the strain
 
     @classmethod
     def declaration(cls) -> Declaration:

@@ -8,21 +8,25 @@ Mesarovic and Johnson 2000. No parameter is fitted.
 import numpy as np
 
 from .backbone import Backbone
-from .numerics import Array, Real, gauss
+from .numerics import Array, Real, gauss, number
 
-FINITE_STRAIN = 0.82  # c of f(a/R*) = 1 - exp(-c (a/R*)^-0.7) (Jackson and Green 2005)
+FINITE_STRAIN = 0.82  # c of f(s) = 1 - exp(-c s^-0.7) (Jackson and Green 2005)
 STRAIN_EXPONENT = 0.7
+LEAST_AREA = 0.3  # of the area of small strain
 
 
 class Cavity(Backbone):
     """s = alpha/alpha_Y; 1 < s < s_P: a = a_Y s^((1+beta)/2), p_m = Y [2 c_Y/3 + (1+beta)/3 ln s], tau = ln s/ln s_P.
 
-    Y [Pa] > 0; c_Y = 1.60 (first yield) and c_P = 2.8 (fully plastic) by default; p_m times f(a/R*)/f(a_Y/R*) with
-    f(s) = 1 - exp(-c s^-0.7), c_strain = c, by default so large that nothing changes. ValueError where the law would
-    create energy at yield: 2 (1+beta)(1 + 1/(2 c_Y)) - (1+beta)/2 - 0.125/ln s_P must not exceed 2.5.
+    Y [Pa] > 0; c_Y = 1.60 (first yield) and c_P = 2.8 (fully plastic) by default. Finite strain with a of small strain:
+    p_m times f(w a/R*)/f(w a_Y/R*), f(x) = 1 - exp(-c x^-0.7), and the area that a plane cuts, a^2 times k = max(0.3,
+    1 - w^2 (alpha - alpha_Y)/(2 R*)). c_strain = c, by default so large that nothing changes; share = w, 1/2 to 1, that
+    of the weaker body (`pair.strain_share`). ValueError where the law would create energy at yield:
+    2 (1+beta)(1 + 1/(2 c_Y)) - (1+beta)/2 - 0.125/ln s_P must not exceed 2.5.
     """
 
     name = "cavity"
+    uses_share = True
     narrowest, latest = 1.3, 1.88  # c_P/c_Y and c_Y beyond which the three phases are no picture of a metal
 
     def __init__(
@@ -34,11 +38,14 @@ class Cavity(Backbone):
         c_Y: Real | None = None,
         c_P: Real | None = None,
         c_strain: Real | None = None,
+        share: Real = 1.0,
     ):
         super().__init__(E_star, R_star)
         (none,) = self.given(c_strain=None)  # so large a number that nothing changes
         self.Y, self.c_Y, self.c_P, self.c_strain = self.given(Y=Y, c_Y=c_Y, c_P=c_P, c_strain=c_strain)
+        self.share = number("share", share, low=0.5, high=1.0, low_ok=True)
         self.softens = bool(np.any(self.c_strain < none))
+        self.cut = np.where(self.c_strain < none, self.share**2 / 2, 0.0)
         self.a_Y = np.pi * self.R_star * self.c_Y * self.Y / (2 * self.E_star)
         self.yield_overlap = self.a_Y**2 / self.R_star
         self.ln_s_P = 3 * (self.c_P - 2 * self.c_Y / 3) - np.log(2)
@@ -54,10 +61,14 @@ class Cavity(Backbone):
         if np.any(self.c_strain < 1e-3):
             raise ValueError(f"finite_strain (c_strain) = {np.min(self.c_strain):g}, must be at least 1e-3")
         self.plastic_overlap = self.yield_overlap * np.exp(self.ln_s_P)
-        self._left_at_yield = 1 - self._fallen(self.yield_overlap)
+        self.least_overlap = self.yield_overlap + 2 * (1 - LEAST_AREA) * self.R_star / self.share**2
+        self._kept_at_yield = self._kept_pressure(self.yield_overlap)
 
     def kinks(self) -> list[Real]:
-        return [self.yield_overlap, self.plastic_overlap]
+        if not self.softens:
+            return [self.yield_overlap, self.plastic_overlap]
+        ends = self.plastic_overlap, self.least_overlap
+        return [self.yield_overlap, np.minimum(*ends), np.maximum(*ends)]
 
     def _ln_s(self, alpha: Real) -> Real:
         """ln(alpha/alpha_Y), held between 0 and ln s_P; near 1 without cancellation."""
@@ -68,6 +79,10 @@ class Cavity(Backbone):
         return np.asarray(self._ln_s(alpha) / self.ln_s_P)
 
     def radius(self, alpha: Real) -> Real:
+        a = self._small_strain_radius(alpha)
+        return a * np.sqrt(self._kept_area(alpha)) if self.softens else a
+
+    def _small_strain_radius(self, alpha: Real) -> Real:
         middle = self.a_Y * np.exp((1 + self.beta) / 2 * self._ln_s(alpha))
         ends = np.where(alpha < self.plastic_overlap, 1.0, np.sqrt(2.0)) * np.sqrt(self.R_star * alpha)
         return np.where((alpha > self.yield_overlap) & (alpha < self.plastic_overlap), middle, ends)
@@ -76,17 +91,23 @@ class Cavity(Backbone):
         F = self._small_strain_force(alpha)
         if not self.softens:
             return F
-        return np.where(alpha <= self.yield_overlap, F, F * (1 - self._fallen(alpha)) / self._left_at_yield)
+        kept = self._kept_area(alpha) * self._kept_pressure(alpha) / self._kept_at_yield
+        return np.where(alpha <= self.yield_overlap, F, kept * F)
 
-    def _fallen(self, alpha: Real) -> Array:
-        """1 - f(a/R*) of finite strain."""
-        strain = np.maximum(self.radius(alpha) / self.R_star, 1e-9)
-        return np.asarray(np.exp(-self.c_strain * strain**-STRAIN_EXPONENT))
+    def _kept_pressure(self, alpha: Real) -> Array:
+        """f of finite strain."""
+        strain = np.maximum(self.share * self._small_strain_radius(alpha) / self.R_star, 1e-9)
+        return np.asarray(-np.expm1(-self.c_strain * strain**-STRAIN_EXPONENT))
+
+    def _kept_area(self, alpha: Real) -> Array:
+        """k of finite strain."""
+        beyond = np.maximum(alpha - self.yield_overlap, 0.0)
+        return np.maximum(1 - self.cut * beyond / self.R_star, LEAST_AREA)
 
     def _small_strain_force(self, alpha: Real) -> Real:
         p_m = self.Y * (2 / 3 * self.c_Y + (1 + self.beta) / 3 * self._ln_s(alpha))
         elastic = self._hertz_force(np.minimum(alpha, self.yield_overlap))
-        return np.where(alpha <= self.yield_overlap, elastic, np.pi * self.radius(alpha) ** 2 * p_m)
+        return np.where(alpha <= self.yield_overlap, elastic, np.pi * self._small_strain_radius(alpha) ** 2 * p_m)
 
     def _middle_work(self, ln_s: Real) -> tuple[Real, Real]:
         """Work of phase 2 [J] from yield to ln s, and its derivative by ln s."""
@@ -99,24 +120,22 @@ class Cavity(Backbone):
 
     def work(self, alpha: Real) -> Real:
         elastic = self._hertz_work(np.minimum(alpha, self.yield_overlap))
+        if self.softens:
+            return elastic + self._plastic_work_by_quadrature(alpha)
         P = self.plastic_overlap
         x = np.maximum(alpha - P, 0.0)
         plastic: Real = np.pi * self.R_star * self.c_P * self.Y * x * (2 * P + x)
-        beyond = self._middle_work(self._ln_s(alpha))[0] + plastic - self._fallen_work(alpha)
-        return elastic + (beyond / self._left_at_yield if self.softens else beyond)
+        return elastic + self._middle_work(self._ln_s(alpha))[0] + plastic
 
-    def _fallen_work(self, alpha: Real) -> Array:
-        """What the fall of the pressure takes off the work, by quadrature in each phase."""
-        alpha = np.asarray(alpha, float)
-        if not self.softens:
-            return np.zeros(alpha.shape)
+    def _plastic_work_by_quadrature(self, alpha: Real) -> Array:
+        """Work [J] beyond yield, by quadrature in ln alpha between the kinks."""
         x, w = gauss(40)
-        Y, P = self.yield_overlap, self.plastic_overlap
-        lost = np.zeros(alpha.shape)
-        for low, high in ((Y, np.clip(alpha, Y, P)), (P, np.maximum(alpha, P))):
-            at = low + np.multiply.outer(x, high - low)
-            lost = lost + (high - low) * np.tensordot(w, self._small_strain_force(at) * self._fallen(at), 1)
-        return lost
+        total = np.zeros(np.shape(alpha))
+        for low, high in zip(self.kinks(), [*self.kinks()[1:], np.inf], strict=True):
+            log = np.log1p((np.clip(alpha, low, high) - low) / low)
+            at = low * np.exp(np.multiply.outer(x, log))
+            total = total + log * np.tensordot(w, self.force(at) * at, 1)
+        return total
 
     def overlap_of_work(self, W: Real) -> Real:
         W = np.asarray(W, float)

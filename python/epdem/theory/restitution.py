@@ -28,7 +28,6 @@ class Impact:
     work_in: Array  # [J]
     work_out: Array  # [J]
     plastic_work: Array  # [J]
-    strain_ratio: Array  # a_max/R*; small-deformation theory up to about 0.3
 
 
 def e_n(law: Backbone, *, m_star: Real, speed: Real) -> Array:
@@ -113,18 +112,16 @@ def impact(law: Backbone, *, m_star: Real, speed: Real) -> Impact:
     out = np.where(elastic, W, np.minimum(law.recovered_work(top), W))
     time = _loading_time(law, m, top)
     back = np.where(elastic, time, _unloading_time(law, m, top, out))
-    radius = np.asarray(law.radius(top))
     return Impact(
         e_n=np.where(elastic, 1.0, np.sqrt(out / W)),
         contact_time=time + back,
         force_max=np.asarray(law.force(top)),
         overlap_max=top,
-        radius_max=radius,
+        radius_max=np.asarray(law.radius(top)),
         residual_overlap=np.asarray(law.residual_overlap(top)),
         work_in=W,
         work_out=out,
         plastic_work=np.asarray(law.plastic_work(top)),
-        strain_ratio=np.asarray(radius / law.R_star),
     )
 
 

@@ -11,9 +11,10 @@ from .backbone import Backbone
 from .jkr import JKR
 from .numerics import Array, Real, number
 
-SMALL_DEFORMATION = 0.3  # a_max/R* above which results are flagged everywhere
-# a/R* from which finite-element impacts leave the -1/4 law, and by how many percent e_n of cavity exceeds theirs there:
-# 0.62 [(v/v_y0)/(E*/Y)]^(-1/2), the finite-strain branch of Wu et al. 2003; the ratio does not depend on Y
+SMALL_DEFORMATION = 0.3  # strain w a_max/R* above which results are flagged everywhere
+# w a/R* from which finite-element impacts leave the -1/4 law, and by how many percent e_n of cavity exceeds theirs
+# there: 0.62 [(v/v_y0)/(E*/Y)]^(-1/2), the finite-strain branch of Wu et al. 2003, a sphere and a rigid plane (w = 1);
+# the ratio does not depend on Y
 FINITE_STRAIN = {0.2: 0, SMALL_DEFORMATION: 23}
 
 
@@ -26,20 +27,21 @@ def caveats(law: Backbone | JKR, *, m_star: float, speed: Real) -> list[str]:
 
 
 def finite_strain(largest: float, where: str = "") -> list[str]:
-    """A sentence for the highest limit that the largest a/R* of contacts exceeds; none below all limits.
+    """A sentence for the highest limit that the largest strain w a/R* of contacts exceeds; none below all limits.
 
-    `where`: which part of the results is above the limit, in words.
+    w: share of the weaker body (`pair.strain_share`). `where`: which part of the results is above the limit, in words.
     """
     limit = max((limit for limit in FINITE_STRAIN if largest > limit), default=None)
     if limit is None:
         return []
     return [
-        f"a/R* reaches {largest:.2f}, above {limit}{where}: finite strain; small-strain theory overestimates e_n, by "
+        f"the strain w a/R* (w: share of the weaker body, 1/2 of like bodies, 1 beside a rigid one) reaches "
+        f"{largest:.2f}, above {limit}{where}: small-strain theory overestimates e_n, by "
         f"{FINITE_STRAIN[SMALL_DEFORMATION]} % at {SMALL_DEFORMATION} (cavity against Wu et al. 2003), more beyond"
     ]
 
 
 def finite_strain_of_impacts(strain: Array, speed: Array) -> list[str]:
-    """The same for impacts with the largest ratios `strain` = a_max/R* at `speed` [m/s], arrays of one shape."""
+    """The same for impacts with the largest strains w a_max/R* at `speed` [m/s], arrays of one shape."""
     limit = max((limit for limit in FINITE_STRAIN if strain.max() > limit), default=np.inf)
     return finite_strain(strain.max(), f" from {speed[strain > limit].min():.3g} m/s on") if limit < np.inf else []

@@ -173,18 +173,17 @@ def impact(law: Backbone, *, m_star: Real, speed: Real, restitution: float) -> I
         top[yielded], back[yielded], parting[yielded] = summit, -V * out[1], summit - recovery * (1 - out[0] ** 4)
         force_max[yielded] = np.maximum(force_max[yielded], law.force(summit))
         W_plastic[yielded] = law.plastic_work(summit)
-    work_out, radius = 0.5 * m * back * back, law.radius(top)
+    work_out = 0.5 * m * back * back
     columns = {
         "e_n": back / v,
         "contact_time": time,
         "force_max": force_max,
         "overlap_max": top,
-        "radius_max": radius,
+        "radius_max": law.radius(top),
         "residual_overlap": parting,
         "work_in": W,
         "work_out": work_out,
         "plastic_work": W_plastic,
-        "strain_ratio": radius / law.R_star,
         "viscous_work": W - work_out - W_plastic,
     }
     return Impact(**{name: np.reshape(column, shape) for name, column in columns.items()})

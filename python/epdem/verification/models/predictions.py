@@ -123,7 +123,8 @@ def _prediction(x: Experiment, impact: hysteresis.Impact) -> Prediction:
         speed=x.speed,
         **columns,
         plastic_work=columns["work_in"] - columns["work_out"],
-        strain_ratio=np.sqrt(columns["overlap_max"] / x.R_star),
+        radius_max=(radius := np.sqrt(columns["overlap_max"] * x.R_star)),
+        strain=x.law.share * radius / x.R_star,
         yields=(),
         yield_speeds={},
     )

@@ -40,7 +40,7 @@ class Verdict:
     status: str = "passed"  # passed, failed, not representable, embedded only
     reason: str = ""
     large_deformation: bool = False
-    strain_ratio: float = np.nan  # a_max/R*
+    strain: float = np.nan  # w a_max/R*, w: share of the weaker body
     e_n_theory: float = np.nan
     e_n_error: float = np.nan  # largest over the phases at the finest share of the ladder
     created: float = np.nan  # energy from nothing over the energy at the start, the same
@@ -69,7 +69,7 @@ class Setting:
     e_n: float
     limit: float
     contact_time: float
-    strain_ratio: float
+    strain: float
     lost: Callable[[np.ndarray], Any]  # work [J] that a contact loses which reaches an overlap [m]
 
 
@@ -96,7 +96,7 @@ def setting(extreme: Extreme, law: str) -> Setting:
         float(np.sqrt(out / kinetic)),
         float(stability_limit(x, top)),
         float(prediction.contact_time[0]),
-        float(theory.radius(top) / x.R_star),
+        float(x.law.share * theory.radius(top) / x.R_star),
         theory.plastic_work,
     )
 
@@ -111,7 +111,7 @@ def _with_adhesion(x: Experiment, p: Prediction, law: JKR) -> Setting:
         float(p.e_n[0]),
         float(stability_limit(x, float(p.overlap_max[0]))),
         float(p.contact_time[0]),
-        float(p.strain_ratio[0]),
+        float(p.strain[0]),
         lambda peak: adhesion.lost_work(law, peak),
     )
 
@@ -204,8 +204,8 @@ def judged(
     v, begin = Verdict(extreme.name, extreme.group, sampler.name, law), time.perf_counter()
     try:
         s = setting(extreme, law)
-        v.e_n_theory, v.strain_ratio = s.e_n, s.strain_ratio
-        v.large_deformation = s.strain_ratio > SMALL_DEFORMATION
+        v.e_n_theory, v.strain = s.e_n, s.strain
+        v.large_deformation = s.strain > SMALL_DEFORMATION
         if sampler.positions and (why := not_representable(s.x, reach * s.overlap_max)):
             v.status, v.reason = "not representable", why
         else:

@@ -40,7 +40,7 @@ from yade.wrapper import (
 
 from . import cone
 from .contact import FAR, Contact, effective_radius, trigger_pressure
-from .law import Law, trigger_factor
+from .law import Law, larger_share, trigger_factor
 
 LABEL = "epdem_visit"  # of our PyRunner: YADE binds it anew whenever a scene is loaded
 RIGID = 1e30  # modulus [Pa] of a rigid body; YADE cannot take infinity
@@ -71,7 +71,7 @@ class Contacts:
         self.ratios, self.key = ratios, (law, *sorted(ratios.items()))
         self.visits = 0  # of contacts, by Python
         self._strain: list[float] | None = None  # see `strain`
-        self._laws: dict[tuple[float, float], Law] = {}
+        self._laws: dict[tuple[float, float, float], Law] = {}
         self._runner: object = None
 
     def material(
@@ -101,7 +101,7 @@ class Contacts:
                 raise ValueError(f"{label}: {name} = {value!r} Pa, YADE's law needs less than {limit:.4g} Pa")
             # tangent at first yield, so that a contact that yields before its first visit starts on course
             h = (0.5 * pi * trigger / like) ** 2
-            law = self._law(like, value)
+            law = self._law(like, value, 0.5)
             rise = law.load(1.0, h * (1.0 + cone.SMALL))[0] / cone.force(like, 1.0, 1.0, 0.0, h) - 1.0
             alpha = asin(1.0 / (1.0 + cone.growth_by_secant(1.0, h, cone.SMALL * h, rise)))
         material = FrictMatCDM(
@@ -134,7 +134,7 @@ class Contacts:
         ]
 
     def strain(self) -> tuple[float, float]:
-        """Largest contact radius and overlap over R* of all contacts since the first call."""
+        """Largest contact radius and overlap over R*, times the share of the weaker body, since the first call."""
         self._strain = self._strain or [0.0, 0.0]
         return self._strain[0], self._strain[1]
 
@@ -159,13 +159,13 @@ class Contacts:
             self._record(self._strain)
 
     def _record(self, strain: list[float]) -> None:
-        """Keep the largest contact radius and overlap over R*, after the contacts that yield in this step have moved.
+        """Keep the largest strains after the contacts that yield in this step have moved.
 
         An elastic contact has the radius of Hertz; one that has yielded has a larger one at the same overlap.
         """
         u = np.fromiter(map(_depth, self._geometries), float, len(self._contacts)) / self._R_star
-        strain[1] = max(strain[1], float(u.max()))
-        strain[0] = max(strain[0], strain[1] ** 0.5)
+        strain[0] = max(strain[0], float((self._share * np.sqrt(np.maximum(u, 0.0))).max()))
+        strain[1] = max(strain[1], float((self._share * u).max()))
 
     def _begin(self, runner: object) -> None:
         """Another scene than in the last visit: only what YADE saves counts."""
@@ -205,6 +205,7 @@ class Contacts:
         self._births = sum(c.born for c in self._contacts)  # YADE sets it to -1 where a contact ends
         self._geometries = [c.geom for c in self._contacts]
         self._R_star = np.array([c.R_star for c in self._contacts])
+        self._share = np.array([c.law.share for c in self._contacts])
 
     def _sort(self) -> None:
         """The contacts by the way they are looked at: by YADE's flag, or (flattened ones) by their overlap."""
@@ -214,10 +215,11 @@ class Contacts:
         bounds = [b for c in self._contacts if (b := self._enter(c))]
         self._low, self._high = np.array(bounds).reshape(-1, 2).T.copy()
 
-    def _law(self, E_star: float, strength: float) -> Law:
-        if (E_star, strength) not in self._laws:
-            self._laws[E_star, strength] = Law(self.law, E_star, strength, **self.ratios)
-        return self._laws[E_star, strength]
+    def _law(self, E_star: float, strength: float, share: float) -> Law:
+        key = E_star, strength, share
+        if key not in self._laws:
+            self._laws[key] = Law(self.law, *key, **self.ratios)
+        return self._laws[key]
 
     def _enter(self, contact: Contact) -> tuple[float, float] | None:
         """Put a contact where it is looked at; of a flattened one the bounds of its branch."""
@@ -238,18 +240,21 @@ class Contacts:
 
     def _meet(self, interaction: Any) -> None:
         phys, new = interaction.phys, not interaction.phys.betan > 0.0
+        triggers = [trigger_pressure(O.bodies[k].material) for k in (interaction.id1, interaction.id2)]
         if new:
-            trigger = min(trigger_pressure(O.bodies[k].material) for k in (interaction.id1, interaction.id2))
+            trigger = min(triggers)
             phys.betan = effective_radius(interaction)
             phys.maxBendPl = trigger / self.factor if trigger < inf else FAR
-        yields = phys.maxBendPl < FAR
-        contact = Contact(interaction, self._law(phys.E, phys.maxBendPl if yields else inf), phys.betan)
+        strength = phys.maxBendPl if phys.maxBendPl < FAR else inf
+        share = larger_share(self.law, *triggers, **self.ratios)
+        contact = Contact(interaction, self._law(phys.E, strength, share), phys.betan)
         if new:
             self._start(contact)
         self._contacts.append(contact)
         self._interactions.append(interaction)
         self._geometries.append(contact.geom)
         self._R_star = np.append(self._R_star, contact.R_star)
+        self._share = np.append(self._share, contact.law.share)
         self._births += contact.born
         self._add(contact)
 
@@ -263,8 +268,9 @@ class Contacts:
     def _correct(self, contact: Contact, force: float, computed: float) -> None:
         self.visits += 1
         if self._strain and contact.delta_max > 0.0:
-            self._strain[0] = max(self._strain[0], contact.a_max / contact.R_star)
-            self._strain[1] = max(self._strain[1], contact.delta_max / contact.R_star)
+            share = contact.law.share
+            self._strain[0] = max(self._strain[0], share * contact.a_max / contact.R_star)
+            self._strain[1] = max(self._strain[1], share * contact.delta_max / contact.R_star)
         contact.correct(force, force - computed)
 
     def _move(self, contact: Contact, u: float) -> None:

@@ -15,6 +15,7 @@ from pathlib import Path
 from typing import Any
 
 LIBRARY = "libepdem.so"
+HARDENING = 1.75  # contact pressure of full plasticity over that of first yield, of laws that do not say it
 
 
 class _Result(ctypes.Structure):
@@ -45,17 +46,26 @@ def declarations() -> dict[str, dict[str, Any]]:
     return {law["name"]: law for law in laws if not law["adheres"]}
 
 
+def larger_share(name: str, strength: float, other: float, **ratios: float) -> float:
+    """Share in the strain of the weaker of two bodies of these strengths [Pa] (inf: never yields), 1/2 to 1."""
+    given = {p["name"]: p["default"] for p in declarations()[name]["parameters"]} | ratios
+    hardening = given["plastic_ratio"] / given["first_yield_ratio"] if "plastic_ratio" in given else HARDENING
+    low, high = min(strength, other), max(strength, other)
+    return 0.5 + 0.5 * min((high / low - 1.0) / (hardening - 1.0), 1.0) if low < inf else 0.5
+
+
 class Law:
     """A law with the constants of a pair: E_star [Pa], its strength [Pa] (inf: never yields), its other parameters.
 
-    Raises ValueError for a law that does not exist or numbers out of its range.
+    share: of the weaker body in the strain (`larger_share`), 1 of a sphere on a rigid wall. Raises ValueError for a law
+    that does not exist or numbers out of its range.
     """
 
-    def __init__(self, name: str, E_star: float, strength: float = inf, **ratios: float):
+    def __init__(self, name: str, E_star: float, strength: float = inf, share: float = 1.0, **ratios: float):
         if name not in declarations():
             raise ValueError(f"law {name!r} does not exist; there are {', '.join(declarations())}")
         self.declared = declared = declarations()[name]
-        self.name, self.E_star, self.flattens = name, E_star, bool(declared["flattens"])
+        self.name, self.E_star, self.share, self.flattens = name, E_star, share, bool(declared["flattens"])
         self.strength_name: str | None = declared["strength"]
         self.ratios = tuple(p["name"] for p in declared["parameters"] if p["name"] != self.strength_name)
         for key in ratios:
@@ -66,7 +76,7 @@ class Law:
             return
         given = {self.strength_name: strength, **ratios}
         values = [given.get(p["name"], p["default"]) for p in declared["parameters"]]
-        self._parameters = (ctypes.c_double * max(len(values), 1))(*values)
+        self._parameters = (ctypes.c_double * (len(values) + 1))(*values, share)
         self._R, self._before, self._now, self._first, self._dent = (ctypes.c_double() for _ in range(5))
         self._result = _Result()
         # arguments are converted once, for a call is shorter than their conversion

@@ -14,7 +14,7 @@ from .spheres import Fill, Spheres
 KINDS = ("force", "torque")  # of loads
 AXES = ((1, 0, 0), (0, 1, 0), (0, 0, 1))
 SLOW = 1e-7  # [m/s], a sphere that rests, as in LIGGGHTS
-STRAINS = ("largest_radius_ratio", "largest_overlap_ratio")  # contact radius and overlap over R*, so far
+STRAINS = ("largest_radius_ratio", "largest_overlap_ratio")  # contact radius and overlap over R*, times w, so far
 
 
 class Classes:
@@ -25,7 +25,7 @@ class Classes:
         self.columns = 5 + law.compaction
 
     def strain(self) -> tuple[float, float]:
-        """Largest contact radius and overlap over R* so far."""
+        """Largest contact radius and overlap over R*, times the share of the weaker body in the strain, so far."""
         return self.law.largestRadiusRatio, self.law.largestOverlapRatio
 
     def table(self) -> list[tuple[float, ...]]:
@@ -80,7 +80,7 @@ class Triangles:
 class Recorder:
     """Rows, frames and contact tables; all of one row are of one step. SI.
 
-    contacts  strain(): largest contact radius and overlap over R*; table(): rows of `columns` numbers, see `Classes`
+    contacts  strain(), and table(): rows of `columns` numbers; see `Classes`
     low, high the room that a sphere must not leave [m], along the last axes if there are fewer than three
     fall      acceleration along z [m/s^2]
     every     steps between two rows
