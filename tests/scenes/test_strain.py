@@ -29,9 +29,9 @@ def test_an_impact_between_two_rows_has_the_largest_strain_of_theory(tmp_path, e
     data = one_impact(law, speed)
     outcome = run(write_case(data, tmp_path), engine, out=tmp_path / "out")
     hit = predict(wall_impact(parse(data), "glass", 2e-3, "steel", float(speed)))
-    rows = outcome.results.rows
+    rows, share = outcome.results.rows, 0.5 if law == "hertz" else 1.0  # the floor is 20 times as strong
     assert rows[STRAINS[0]].to_list() == pytest.approx([0.0, hit.strain[-1]], rel=2e-3)
-    assert rows[STRAINS[1]].to_list() == pytest.approx([0.0, hit.overlap_max[-1] / 2e-3], rel=4e-3)  # steel: w = 1
+    assert rows[STRAINS[1]].to_list() == pytest.approx([0.0, share * hit.overlap_max[-1] / 2e-3], rel=4e-3)
     said = [warning for warning in outcome.warnings if "the strain w a/R*" in warning]
     assert len(said) == (hit.strain[-1] > 0.2)
     assert f"a strain w a/R* of {rows[STRAINS[0]].iloc[-1]:.3g}" in " ".join(sentences(outcome))

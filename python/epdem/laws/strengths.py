@@ -73,8 +73,8 @@ class LawSpec:
     @property
     def share(self) -> float:
         """Share of the weaker body in the strain: 1/2 of bodies of equal strength, 1 if the other one never yields."""
-        ratios = [self.parameters.get(name) for name in ("plastic_ratio", "first_yield_ratio")]
-        hardening = ratios[0] / ratios[1] if ratios[0] and ratios[1] else HARDENING
+        plastic, first = (self.parameters.get(name, 0.0) for name in ("plastic_ratio", "first_yield_ratio"))
+        hardening = plastic / first if plastic > first else HARDENING  # the law refuses others
         one = float(strain_share(*self.strengths, hardening=hardening))
         return max(one, 1.0 - one)
 
