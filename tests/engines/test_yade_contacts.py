@@ -37,7 +37,8 @@ def material(label, friction=0.0):
 def pair(a, b):
     (E, m, _, X), (F, n, _, Z) = DATA[a], DATA[b]
     strength = STRENGTH * min(X, Z) if STRENGTH else math.inf
-    return numbers.Law(name, 1 / ((1 - m * m) / E + (1 - n * n) / F), strength, **options)
+    share = 0.5 if a == b else 1.0  # brass is too weak to make steel yield
+    return numbers.Law(name, 1 / ((1 - m * m) / E + (1 - n * n) / F), strength, share, **options)
 
 def engines(*more, skin=1e-3):
     bounds = [Bo1_Sphere_Aabb(), Bo1_Wall_Aabb(), Bo1_Facet_Aabb()]
