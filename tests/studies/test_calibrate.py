@@ -18,7 +18,7 @@ from epdem.impacts.experiment import experiment
 from epdem.impacts.prediction import predict
 from epdem.report.page import write
 from epdem.studies import pages
-from epdem.studies.calibrate import from_hardness, from_restitution, from_restitutions, hardness_test
+from epdem.studies.calibrate import from_hardness, from_restitution, from_restitutions, hardness_test, of_case
 from epdem.theory.adhesion import yield_speed
 from epdem.theory.indentation import Indentation
 from studies.test_soften import CASES, RATE, STEEL, with_law
@@ -251,16 +251,74 @@ def test_the_command_takes_several_restitutions_or_those_of_the_case(tmp_path):
     curve = CliRunner().invoke(app, words)
     found = json.loads(many.stdout)
     assert found["value"] == pytest.approx(1.2e9) and found["hardening_exponent"] == pytest.approx(0.25)
-    said = f"yield_pressure = 1200 MPa +- {found['standard_errors'][0] / 1e6:.2g} MPa, hardening_exponent = 0.25 +- "
+    (low, high), (least, most) = found["intervals"]
+    said = (
+        f"1200 MPa ({low / 1e6:.4g} to {high / 1e6:.4g} MPa), hardening_exponent = 0.25 ({least:.3g} to {most:.3g}); "
+    )
     assert said in " ".join(curve.stdout.split()) and said in (tmp_path / "page/report.html").read_text()
 
 
-def test_a_measured_impact_below_first_yield_is_refused_with_file_and_speed(tmp_path):
-    path = with_law(tmp_path, "meyer")
-    text = '\n[measured]\nsource = "me"\nspeeds = ["0.01 m/s", "1 m/s"]\ne_n = [1.0, 0.7]\n'
-    path.write_text(path.read_text() + text)
-    error = CliRunner().invoke(app, ["calibrate", str(path), "--measured", "--uncertainty", "0.01"]).exception
-    assert str(error) == (f"{path}: e_n = 1 at 0.01 m/s, must lie in (0, 1); leave out impacts below first yield")
+def test_intervals_hold_the_true_numbers_in_95_of_100_calibrations(tmp_path):
+    """Three e_n leave one degree of freedom for their scatter: one or two standard errors hold 50 and 70 %."""
+    path, exact = with_law(tmp_path, "meyer"), hardening_metal(1.2e9, 0.25, 2, 5, 16)
+    draws = np.random.default_rng(1).normal(0.0, 0.01, (80, 3))
+    held = np.zeros(2)
+    for draw in draws:
+        found = from_restitutions(path, [(v, e + d) for (v, e), d in zip(exact, draw, strict=True)])
+        (low, high), (least, most) = found.intervals
+        assert low < found.value < high and least <= found.hardening_exponent <= most
+        held += [low < 1.2e9 < high, least < 0.25 < most]
+    assert (np.abs(held - 0.95 * 80) < 6).all()  # three standard deviations of the binomial distribution
+
+
+def test_intervals_of_a_known_uncertainty_are_those_of_a_normal_distribution(tmp_path):
+    path, exact = with_law(tmp_path, "meyer"), hardening_metal(1.2e9, 0.25, 2, 5, 16)
+    noisy = [(v, e + d) for (v, e), d in zip(exact, (0.01, -0.012, 0.002), strict=True)]
+    for uncertainty, k, said in (
+        (0.001, 1.959964, "normal distribution"),
+        (None, math.tan(0.475 * math.pi), "Student's t, 1 degree of freedom"),  # the quantile of Cauchy's distribution
+    ):
+        found = from_restitutions(path, noisy, uncertainty)
+        (low, high), (_, most) = found.intervals
+        error = found.standard_errors[0] / found.value
+        assert (math.log(high / found.value), math.log(found.value / low)) == pytest.approx((k * error, k * error))
+        expected = min(found.hardening_exponent + k * found.standard_errors[1], 1.0)
+        assert most == pytest.approx(expected, abs=2e-3)
+        sentence = pages.sentences_of_calibration(found)[0]
+        assert (
+            f"95 % confidence intervals, {said}" in sentence and f"{low / 1e6:.4g} to {high / 1e6:.4g} MPa" in sentence
+        )
+
+
+def test_restitutions_above_1_by_noise_are_data(tmp_path):
+    """Noise of both signs near yield: the mean of the two calibrations is the true one."""
+    path, (slow, *fast) = with_law(tmp_path, "meyer"), hardening_metal(1.2e9, 0.25, 1.1, 5, 16)
+    noise = 1.004 - slow[1]
+    up, down = (from_restitutions(path, [(slow[0], slow[1] + d), *fast], 0.01) for d in (noise, -noise))
+    assert down.hardening_exponent - up.hardening_exponent > 0.04
+    assert (up.hardening_exponent + down.hardening_exponent) / 2 == pytest.approx(0.25, abs=5e-4)
+    assert math.sqrt(up.value * down.value) == pytest.approx(1.2e9, rel=3e-3)
+
+
+def test_an_elastic_impact_of_the_case_takes_part_and_a_percentage_does_not(tmp_path):
+    """Below first yield e_n of theory is 1 whatever the strength: a residual of 0.01, and nothing else."""
+    path, fast = with_law(tmp_path, "meyer"), hardening_metal(1.2e9, 0.25, 3, 12)
+    case = path.read_text()
+    speeds = [f"{v!r} m/s" for v in (1e-3, *(v for v, _ in fast))]
+    for slow in (0.99, 1.01):
+        curve = f'[measured]\nsource = "me"\nspeeds = {speeds}\ne_n = {[slow, *(e for _, e in fast)]}\n'
+        path.write_text(f"{case}\n{curve}")
+        found = from_restitutions(path, of_case(path), 0.01)
+        assert (found.value, found.hardening_exponent) == pytest.approx((1.2e9, 0.25), rel=1e-5)
+        assert found.largest_residual == pytest.approx(1.0, rel=1e-6)
+    path.write_text(path.read_text().replace("e_n = [1.01", "e_n = [1.3"))
+    with pytest.raises(CaseError, match=r"measured.e_n.0 = 1.3, must lie in \[0, 1.2\]; percent\?"):
+        of_case(path)
+    path.write_text(case)
+    with pytest.raises(CaseError, match=r"e_n = 69 at 1 m/s, must lie in \(0, 1.2\]"):
+        from_restitutions(path, [(1.0, 69.0), (10.0, 0.5)], 0.01)
+    with pytest.raises(CaseError, match=r"e_n = 1.01 at 1 m/s, must lie in \(0, 1\); .* take a faster impact"):
+        from_restitution(path, 1.01, 1.0)
 
 
 def test_an_uncertainty_belongs_to_an_impact():

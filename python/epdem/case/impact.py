@@ -32,6 +32,7 @@ from .toml import read_toml, with_library
 RIGID = "rigid"
 MAX_IMPACTS = 4096
 MOST_STEPS = 100_000  # in contact
+HIGHEST_E_N = 1.2  # of a measurement: 1 and its noise
 
 Angle = Annotated[float, Quantity("rad", ge=0.0, le=1.5, hint="from the normal")]
 Tolerance = Annotated[float, Quantity("1", above=0.0)]
@@ -158,7 +159,7 @@ class Measured(Frozen):
 
     source: Line
     speeds: Annotated[list[Speed], Field(min_length=1, max_length=1000)]
-    e_n: list[Annotated[float, Quantity("1", ge=0.0, le=1.0, hint="percent?")]]
+    e_n: list[Annotated[float, Quantity("1", ge=0.0, le=HIGHEST_E_N, hint="percent?")]]
 
     @model_validator(mode="after")
     def _pairs(self) -> Self:

@@ -8,7 +8,7 @@ from pathlib import Path
 
 import numpy as np
 
-from ..case.impact import Case, load
+from ..case.impact import HIGHEST_E_N, Case, load
 from ..case.law import law_numbers
 from ..case.toml import named
 from ..errors import CaseError
@@ -91,6 +91,7 @@ def strength(law: LawNumbers, test: Indentation, body: Body, source: str) -> flo
 
 EXPONENT = "hardening_exponent"
 LARGEST_EXPONENT = 0.999
+CONFIDENCE = 0.95  # of intervals
 UNKNOWN = 0.5  # standard error of the exponent, whose range is [0, 1), above which measurements do not determine it
 
 
@@ -108,6 +109,8 @@ class Calibration:
     source: str
     hardening_exponent: float | None = None  # where it was found, too
     standard_errors: tuple[float, float] | None = None  # of value [Pa] and hardening_exponent
+    intervals: tuple[tuple[float, float], tuple[float, float]] | None = None  # of both, which hold the true numbers
+    # with the probability CONFIDENCE: Student's t if the scatter gives the uncertainty, else a normal distribution
     correlation: float | None = None  # of the errors of ln(value) and hardening_exponent
     measured: tuple[tuple[float, float], ...] = ()  # speeds [m/s] and e_n
     largest_residual: float | None = None  # of e_n, in units of its uncertainty, or else of the scatter
@@ -168,9 +171,8 @@ def experiment(path: Path, found: Calibration) -> Experiment:
 
 
 def _check(path: Path, e_n: float, speed: float) -> None:
-    if not 0.0 < e_n < 1.0:
-        text = f"{path}: e_n = {e_n:g} at {speed:g} m/s, must lie in (0, 1); leave out impacts below first yield"
-        raise CaseError(text)
+    if not 0.0 < e_n <= HIGHEST_E_N:
+        raise CaseError(f"{path}: e_n = {e_n:g} at {speed:g} m/s, must lie in (0, {HIGHEST_E_N:g}]; percent?")
     if not (math.isfinite(speed) and speed > 0):
         raise CaseError(f"--speed {speed:g} m/s, must be > 0")
 
@@ -181,6 +183,11 @@ def from_restitution(path: Path, e_n: float, speed: float) -> Calibration:
     The case gives bodies, elastic constants and law; its own strength and speeds play no part.
     """
     _check(path, e_n, speed)
+    if e_n >= 1.0:
+        raise CaseError(
+            f"{path}: e_n = {e_n:g} at {speed:g} m/s, must lie in (0, 1); one impact without loss gives a lower limit "
+            "of the strength alone: take a faster impact"
+        )
     unknown = _unknown(path)
 
     def restitution(log_strength: float) -> float:
@@ -205,10 +212,12 @@ def from_restitutions(
 ) -> Calibration:
     """Strength and hardening exponent by least squares of e_n: (speed [m/s], e_n) of two or more impacts of the case.
 
-    `uncertainty` is the standard error of each e_n; None: the scatter about the fit, of three or more. Raises CaseError
-    for laws without hardening, and for measurements that do not determine both numbers.
+    `uncertainty` is the standard error of each e_n; None: the scatter about the fit, of three or more. An e_n above 1
+    by noise takes part: without it the others would be too low. Raises CaseError for laws without hardening, and for
+    measurements that do not determine both numbers.
     """
     from scipy.optimize import least_squares
+    from scipy.special import stdtrit
 
     unknown = _unknown(path)
     name = unknown.law.name
@@ -254,11 +263,16 @@ def from_restitutions(
             f"{path}: e_n hardly falls with speed; check speeds and e_n: no {unknown.parameter} above "
             f"{LEAST_STRENGTH:g} E* with {EXPONENT} < 1 gives them"
         )
+    reach = stdtrit(math.inf if uncertainty else len(e_n) - 2, 0.5 + CONFIDENCE / 2) * error
     found = unknown.hardening(exponent).result(math.exp(logarithm), None, f"{len(e_n)} values of e_n")
     return replace(
         found,
         hardening_exponent=exponent,
         standard_errors=(float(found.value * error[0]), float(error[1])),
+        intervals=(
+            (found.value * math.exp(-reach[0]), found.value * math.exp(reach[0])),
+            (max(exponent - reach[1], 0.0), min(exponent + reach[1], LARGEST_EXPONENT)),
+        ),
         correlation=float(covariance[0, 1] / (error[0] * error[1])),
         measured=tuple(zip(speeds.tolist(), e_n.tolist(), strict=True)),
         largest_residual=float(np.abs(fit.fun).max() * (1.0 if uncertainty else 1.0 / max(spread, 1e-12))),

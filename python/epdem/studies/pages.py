@@ -33,7 +33,7 @@ from ..scenes.report import bed
 from ..scenes.report import charts as charts_of_scene
 from ..scenes.run import SceneOutcome
 from ..theory.validity import SMALL_DEFORMATION
-from .calibrate import Calibration, experiment
+from .calibrate import CONFIDENCE, Calibration, experiment
 from .fit import Fit
 from .sweep.folder import DONE, FAILED
 from .sweep.run import SweepOutcome
@@ -134,21 +134,24 @@ def of_calibration(case: Path, found: Calibration, folder: Path, *, force: bool 
 
 
 def sentences_of_calibration(c: Calibration) -> list[str]:
-    """What was found, with its standard errors, and the lines of the case file."""
+    """The strength with its interval, and the lines of the case file."""
     lines = [f'{c.parameter} = "{c.value / 1e6:.6g} MPa"']
-    errors, more = "", ""
-    if c.hardening_exponent is not None and c.standard_errors is not None:
+    interval, more = "", ""
+    if c.hardening_exponent is not None and c.intervals is not None:
         lines.append(f"hardening_exponent = {c.hardening_exponent:.4g}")
-        errors = f" +- {c.standard_errors[0] / 1e6:.2g} MPa"
-        fits = f"largest residual of e_n {c.largest_residual:.2g} standard errors"
+        (low, high), (least, most) = c.intervals
+        interval = f" ({low / 1e6:.4g} to {high / 1e6:.4g} MPa)"
+        distribution, fits = "normal distribution", f"largest residual of e_n {c.largest_residual:.2g} standard errors"
         if c.scatter is not None:
+            freedom = len(c.measured) - 2
+            distribution = f"Student's t, {freedom} degree{'s' if freedom > 1 else ''} of freedom"
             fits = f"scatter of e_n about the fit {c.scatter:.2g}, to be compared with the error of the measurement"
         more = (
-            f", hardening_exponent = {c.hardening_exponent:.4g} +- {c.standard_errors[1]:.2g} (standard errors, "
-            f"correlation {c.correlation:.3f}; {fits})"
+            f", hardening_exponent = {c.hardening_exponent:.4g} ({least:.3g} to {most:.3g}); {CONFIDENCE * 100:g} % "
+            f"confidence intervals, {distribution}; correlation {c.correlation:.3f}; {fits}"
         )
     return [
-        f"law {c.law}, {c.source}: {c.parameter} = {c.value / 1e6:.6g} MPa{errors}{more}, "
+        f"law {c.law}, {c.source}: {c.parameter} = {c.value / 1e6:.6g} MPa{interval}{more}; "
         f"that is yield_stress = {c.yield_stress / 1e6:.6g} MPa, yield speed {c.yield_speed:.4g} m/s",
         f"in the case file, under [law]: {'; '.join(lines)}",
     ]
