@@ -110,8 +110,8 @@ def test_pint_never_sees_powers_that_it_would_compute_for_hours(text, monkeypatc
         ("materials.steel.young_modulus", "208 kg", "wrong dimension"),
         (
             "measured",
-            {"source": "x", "speeds": ["1 m/s"], "e_n": [1.2]},
-            "measured.e_n.0 = 1.2, must lie in [0, 1]; percent",
+            {"source": "x", "speeds": ["1 m/s"], "e_n": [1.3]},
+            "measured.e_n.0 = 1.3, must lie in [0, 1.2]; percent",
         ),
         (
             "measured",

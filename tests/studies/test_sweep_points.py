@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Points of a sweep: what a person writes, what is refused, and how they fill the space."""
 
+import contextlib
 import math
 import re
 from itertools import product
@@ -10,8 +11,12 @@ import numpy as np
 import pytest
 import tomlkit
 
+from epdem.base.declarations import declarations
+from epdem.case.impact import parse
+from epdem.case.law import law_numbers
 from epdem.case.toml import read_toml
 from epdem.errors import CaseError
+from epdem.impacts.experiment import experiment
 from epdem.studies.sweep import points
 from epdem.studies.sweep.folder import Sweep
 from epdem.studies.sweep.points import assign, keys_of
@@ -117,6 +122,39 @@ def test_every_key_of_the_cases_of_the_project_can_be_set():
             first = value[0] if isinstance(value, list) else value
             text = isinstance(first, str) and bool(re.fullmatch(r"[-\d.e]+ \S+", first))
             assert (keys[key].unit not in (None, "1")) == text, f"{path.stem}: {key}"
+
+
+def law_with(name: str, **parameters) -> dict:
+    """The steel case with another law."""
+    return read_toml(STEEL) | {"law": {"name": name, **parameters}}
+
+
+@pytest.mark.parametrize("law", sorted(declarations()))
+def test_the_keys_of_a_law_are_those_that_a_case_may_give(law):
+    candidates = {p.name: p for one in declarations().values() for p in one.parameters}
+    values = {name: 0.5 if p.unit == "1" else f"1 {p.unit}" for name, p in candidates.items()}
+    values |= {f"{one.strength}_ratio": 2.0 for one in declarations().values() if one.strength}
+    values |= {"compaction": True, "meyer_index": 2.5, "first_yield_ratio": 1.6, "plastic_ratio": 2.8}
+    taken = set()
+    for key, value in values.items():
+        with contextlib.suppress(CaseError):
+            law_numbers(law, {key: value})
+            taken.add(f"law.{key}")
+    keys = keys_of(law_with(law))
+    assert {key for key in keys if key.startswith("law.")} == taken | {"law.name"}
+    assert "law.meyer_index" not in keys or keys["law.meyer_index"].unit == "1"
+
+
+def test_a_point_has_the_exponent_or_the_index_that_it_sets():
+    for given, key, values in (
+        ({"hardening_exponent": 0.1}, "law.meyer_index", "2.2..2.4:2"),
+        ({"meyer_index": 2.1}, "law.hardening_exponent", "0.2,0.4"),
+        ({}, "law.meyer_index", "2.2,2.4"),
+    ):
+        sweep = plan(tomlkit.dumps(law_with("meyer", **given)), {key: values}, engines=["embedded"])
+        cases = [parse(sweep.data(n), "x") for n in (1, 2)]
+        assert [experiment(c).law.parameters["hardening_exponent"] for c in cases] == pytest.approx([0.2, 0.4])
+        assert [parse(tomlkit.parse(sweep.text(n)).unwrap(), "x") for n in (1, 2)] == cases
 
 
 def test_a_grid_is_every_combination_in_order():

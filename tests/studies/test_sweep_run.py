@@ -4,6 +4,7 @@
 import json
 import os
 import random
+import re
 import signal
 import subprocess
 import sys
@@ -105,6 +106,33 @@ def test_what_is_wrong_is_refused_before_anything_is_written(settings, words, ca
     with pytest.raises(CaseError, match=words):
         sweep(case, tmp_path / "out", settings)
     assert not (tmp_path / "out").exists()
+
+
+@pytest.mark.liggghts
+def test_a_dry_run_refuses_the_points_that_cannot_run(case, tmp_path):
+    def dry(case, *settings, engine="embedded"):
+        sets = [word for setting in settings for word in ("--set", setting)]
+        done = subprocess.run([EPDEM, "sweep", case, "-e", engine, *sets, "--dry-run"], capture_output=True, text=True)
+        assert done.returncode == 2 and "case.toml" not in done.stderr
+        return done.stderr
+
+    slow = dry(case, "impact.body.radius=1 mm,100 m", 'impact.speeds=["1e-12 m/s"]', engine="liggghts")
+    assert "point 1 (impact.body.radius = 1 mm, impact.speeds" in slow and "not representable by positions" in slow
+    press = tmp_path / "press.toml"
+    text = (ROOT / "cases/compaction_powder.toml").read_text()
+    law = '[law]\nname = "cavity"\ncompaction = true\n'
+    press.write_text(re.sub(r"\[law\]\n(?:.+\n)+", law, text))
+    said = dry(press, "law.name=cavity,meyer", engine="liggghts")
+    assert "point 2 (law.name = meyer): law.compaction: law meyer has none; take law.name = 'cavity'" in said
+    height = dry(press, "scene.height=1 mm,0.1 um", engine="liggghts")
+    assert height.startswith("epdem: point 2 (scene.height = 0.1 um): ")
+
+
+@pytest.mark.liggghts
+def test_the_reason_of_a_failed_scene_names_no_file_that_the_user_did_not_write(tmp_path):
+    press = ROOT / "cases/compaction_powder.toml"
+    found = sweep(press, tmp_path / "out", {"scene.height": "0.1 um"}, engines=["liggghts"])
+    assert found.table["reason"].item().startswith("scene.height = ")
 
 
 def test_a_point_that_fails_is_a_row_with_its_reason_and_runs_again_when_asked(case, tmp_path, monkeypatch):

@@ -19,6 +19,12 @@ from ..studies.sweep.points import plain, with_units
 from . import arguments
 
 
+def _hashable(value: Any) -> Any:
+    if isinstance(value, dict):
+        return frozenset((key, _hashable(one)) for key, one in value.items())
+    return tuple(map(_hashable, value)) if isinstance(value, list | tuple) else value
+
+
 class _File:
     """A case or scene: the text of its file, checked. Its `model` has every value in SI; both are never changed."""
 
@@ -97,7 +103,8 @@ class _File:
     def __eq__(self, other: object) -> bool:
         return type(self) is type(other) and isinstance(other, _File) and self.model == other.model
 
-    __hash__ = None  # type: ignore[assignment]
+    def __hash__(self) -> int:
+        return hash((type(self), _hashable(self.model.model_dump())))
 
     def __repr__(self) -> str:
         return f"{type(self).__name__}({self.name!r}: {self.title})"

@@ -26,6 +26,7 @@ from .fields import (
     Tangential,
     Viscous,
 )
+from .law import check_law
 from .messages import explain
 from .toml import read_toml, with_library
 
@@ -225,9 +226,11 @@ def parse(data: dict[str, Any], path: object = "case") -> Case:
     """A Case from TOML data; `path` names the place in messages. Raises CaseError."""
     data = with_library(data, path)
     try:
-        return Case.model_validate(data)
+        case = Case.model_validate(data)
     except ValidationError as error:
         raise CaseError(explain(path, data, error, "impact")) from None
+    check_law(case.law, path)
+    return case
 
 
 def load(path: Path | str) -> Case:

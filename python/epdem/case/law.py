@@ -3,12 +3,31 @@
 
 from typing import Any
 
+from ..base.declarations import Declaration
 from ..errors import CaseError
 from ..laws.strengths import ADHESION, LawNumbers, law_named
 from ..theory.cavity import FINITE_STRAIN
+from .fields import LawChoice
+from .messages import cut_quotes
 from .units import read_number
 
 COMPACTS = ("cavity",)  # the laws that have compaction
+EXPONENT, INDEX = "hardening_exponent", "meyer_index"
+
+
+def law_keys(law: Declaration) -> dict[str, str | None]:
+    """The SI unit of each key that [law] can have beside its name; None for true or false."""
+    keys: dict[str, str | None] = {}
+    for p in law.parameters:
+        keys |= dict.fromkeys(alternatives(law, p.name), "1") | {p.name: p.unit}
+    return keys | ({"compaction": None} if law.name in COMPACTS else {})
+
+
+def alternatives(law: Declaration, key: str) -> tuple[str, ...]:
+    """The keys of which only one may be given, if `key` is one of them."""
+    pairs = [(EXPONENT, INDEX)] if any(p.name == EXPONENT for p in law.parameters) else []
+    pairs += [(law.strength, f"{law.strength}_ratio")] if law.strength else []
+    return next((pair for pair in pairs if key in pair), ())
 
 
 def law_numbers(name: str, given: dict[str, Any]) -> LawNumbers:
@@ -29,16 +48,16 @@ def law_numbers(name: str, given: dict[str, Any]) -> LawNumbers:
     none = next((p.default for p in law.parameters if p.name == "finite_strain"), None)
     if none is not None and isinstance(given.get("finite_strain"), bool):
         given = given | {"finite_strain": FINITE_STRAIN if given["finite_strain"] else none}
-    if "meyer_index" in given and any(p.name == "hardening_exponent" for p in law.parameters):
-        given = _without_index(given)
-    strength, ratio = law.strength, f"{law.strength}_ratio"
-    known = [key for p in law.parameters for key in ((p.name, ratio) if p.name == strength else (p.name,))]
+    known = law_keys(law)
     for key in given:
         if key not in known:
             has = ", ".join(known) or "none"
             raise CaseError(f"law.{key}: law {name} has no such parameter; it has {has}")
-    if strength in given and ratio in given:
-        raise CaseError(f"law: both {strength} and {ratio} are given; keep one")
+        if (both := alternatives(law, key)) and all(other in given for other in both):
+            raise CaseError(f"law: both {' and '.join(both)} are given; keep one")
+    if INDEX in given:
+        given = _without_index(given)
+    strength, ratio = law.strength, f"{law.strength}_ratio"
     return LawNumbers(
         name,
         {
@@ -53,11 +72,17 @@ def law_numbers(name: str, given: dict[str, Any]) -> LawNumbers:
     )
 
 
+def check_law(law: LawChoice, place: object) -> None:
+    """Raise CaseError, which begins with `place`, for keys and values that the law does not have."""
+    try:
+        law_numbers(law.name, law.parameters())
+    except CaseError as error:
+        raise CaseError(f"{place}: {cut_quotes(str(error))}") from None
+
+
 def _without_index(given: dict[str, Any]) -> dict[str, Any]:
     """The numbers of a law with hardening_exponent = meyer_index - 2 in place of meyer_index."""
-    if "hardening_exponent" in given:
-        raise CaseError("law: both hardening_exponent and meyer_index are given; keep one")
-    index = read_number("law.meyer_index", given["meyer_index"], "1")
+    index = read_number(f"law.{INDEX}", given[INDEX], "1")
     if not 2.0 <= index < 3.0:
-        raise CaseError(f"law.meyer_index = {index:g}, must lie in [2, 3); 2 is a metal that does not harden")
-    return {k: v for k, v in given.items() if k != "meyer_index"} | {"hardening_exponent": index - 2.0}
+        raise CaseError(f"law.{INDEX} = {index:g}, must lie in [2, 3); 2 is a metal that does not harden")
+    return {k: v for k, v in given.items() if k != INDEX} | {EXPONENT: index - 2.0}

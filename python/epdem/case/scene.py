@@ -23,6 +23,7 @@ from .fields import (
     Viscous,
 )
 from .kinds import Kinds, parts
+from .law import check_law
 from .messages import explain
 from .parts import Parts
 from .sizes import Share, context
@@ -168,9 +169,11 @@ def parse(data: dict[str, Any], path: object = "case") -> SceneCase:
     """A scene from TOML data; `path` names the place in messages. Raises CaseError."""
     data = with_library(data, path)
     try:
-        return SceneCase.model_validate(data, context=context(path))
+        case = SceneCase.model_validate(data, context=context(path))
     except ValidationError as error:
         raise CaseError(explain(path, data, error, "scene")) from None
+    check_law(case.law, path)
+    return case
 
 
 def load(path: Path | str) -> SceneCase:

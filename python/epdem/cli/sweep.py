@@ -76,7 +76,7 @@ def sweep(
             case, reason, json=as_json and write_script, slurm=None if write_script else slurm, force=force and dry_run
         )
     if dry_run:
-        check_points(planned, range(1, len(planned.points) + 1), jobs)
+        check_points(planned, range(1, len(planned.points) + 1), jobs, plans=True)
         _show_points(planned, as_json, console())
         return
     folder = out or planned.default_folder

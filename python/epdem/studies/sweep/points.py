@@ -21,6 +21,7 @@ from pydantic import BaseModel
 from ...base.declarations import Declaration, declarations
 from ...case.fields import LawChoice, Material, Quantity
 from ...case.impact import Case
+from ...case.law import alternatives, law_keys
 from ...case.scene import SceneCase, SceneMaterial, is_scene
 from ...case.sizes import LARGEST_FILE
 from ...case.toml import text_of
@@ -88,25 +89,17 @@ def _fields(
     if issubclass(model, Material):
         yield (*place, "from"), Key()
     if issubclass(model, LawChoice | SceneMaterial):
-        for parameter, entry in _of_law(case, ratio=issubclass(model, LawChoice)):
-            yield (*place, parameter), entry
+        law = _law(case)
+        keys = law_keys(law) if law else {}
+        if law and not issubclass(model, LawChoice):  # of a material: its own numbers; adhesion belongs to pairs
+            keys = {p.name: p.unit for p in law.parameters if p.name != ADHESION}
+        for parameter, unit in keys.items():
+            yield (*place, parameter), Key(unit=unit)
 
 
 def _law(data: dict[str, Any]) -> Declaration | None:
     table = data.get("law")
     return declarations().get(str(table.get("name"))) if isinstance(table, dict) else None
-
-
-def _of_law(case: dict[str, Any], *, ratio: bool) -> Iterator[tuple[str, Key]]:
-    law = _law(case)
-    if law is None:
-        return
-    for p in law.parameters:
-        if not ratio and p.name == ADHESION:
-            continue  # of pairs; a material has a surface energy
-        yield p.name, Key(unit=p.unit)
-        if ratio and p.name == law.strength:
-            yield f"{p.name}_ratio", Key(unit="1")
 
 
 def known(key: str, keys: dict[str, Key], place: str) -> Key:
@@ -125,10 +118,8 @@ def _rivals(key: str, data: dict[str, Any]) -> tuple[str, ...]:
         return ("numerics.steps_in_contact",)
     if key == "numerics.steps_in_contact":
         return ("numerics.error",)
-    law = _law(data)
-    if law and law.strength and key in (f"law.{law.strength}", f"law.{law.strength}_ratio"):
-        return (f"law.{law.strength}", f"law.{law.strength}_ratio")
-    return ()
+    law, (table, _, name) = _law(data), key.partition(".")
+    return tuple(f"law.{other}" for other in alternatives(law, name)) if law and table == "law" else ()
 
 
 def assign(document: Any, key: str, value: Any) -> None:

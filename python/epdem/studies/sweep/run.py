@@ -6,7 +6,7 @@ import errno
 import shutil
 import tomllib
 from collections.abc import Callable, Iterable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cache, partial
 from pathlib import Path
 from typing import Any
@@ -20,10 +20,11 @@ from ...case.toml import located, named, text_for_anywhere
 from ...engines import DEFAULT_ENGINE, engine, scene_engine
 from ...errors import CaseError, EngineError, EpdemError
 from ...impacts.engine import Feature, ImpactEngine, refuse, require
-from ...impacts.experiment import experiment
+from ...impacts.experiment import Experiment, experiment
 from ...impacts.plan import plan as plan_impacts
 from ...impacts.prediction import predict
 from ...impacts.run import run_and_compare
+from ...scenes.plan import plan as plan_scene
 from ...scenes.run import run as run_scene
 from . import folder as store
 from . import local, points, table
@@ -34,20 +35,32 @@ from .table import numbers_of
 FULL = 1 << 16  # bytes; with less free space on the disk, a failure is a full disk
 
 
-def check(sweep: Sweep, number: int) -> CaseError | None:
-    """What is wrong with the case of a point, if anything; nothing runs."""
+def check(sweep: Sweep, number: int, *, plans: bool = False) -> CaseError | None:
+    """What is wrong with the case of a point, if anything; `plans`: also what its engines refuse. Nothing runs."""
     data, place = sweep.data(number), sweep.place(number)
     try:
         if sweep.scene:
-            scene.parse(data, place)
+            parsed = scene.parse(data, place)
+            with named(place):
+                if plans:
+                    scene_engine(sweep.engines[0]).check(plan_scene(parsed))
             return None
         case = impact.parse(data, place)
         with named(place):
             for law in sweep.laws or (None,):
-                experiment(case, law)
+                x = experiment(case, law)
+                if plans:
+                    _check_engines(sweep, replace(x, numerics=x.numerics.model_copy(update={"error": None})))
     except CaseError as error:
         return error
     return None
+
+
+def _check_engines(sweep: Sweep, x: Experiment) -> None:
+    prediction = predict(x)
+    p = plan_impacts(x, prediction)
+    for name in sweep.engines:
+        refuse(engine(name), p, prediction, ranks=sweep.ranks)
 
 
 def evaluate(sweep: Sweep, folder: Path, number: int) -> str:
@@ -66,7 +79,7 @@ def evaluate(sweep: Sweep, folder: Path, number: int) -> str:
         if shutil.disk_usage(place).free < FULL:
             raise OSError(errno.ENOSPC, "no space left on the disk", str(place)) from None
         reason = str(error) if isinstance(error, EpdemError) else f"{type(error).__name__}: {error}"
-        reason = " ".join(reason.replace(f"{place}/", "").split())
+        reason = " ".join(reason.removeprefix(f"{place / store.CASE}: ").replace(f"{place}/", "").split())
         store.end(sweep, folder, number, about, rows=None, reason=reason)
         return reason
     store.end(sweep, folder, number, about, rows=rows)
@@ -80,7 +93,7 @@ def _tools(names: tuple[str, ...]) -> tuple[ImpactEngine, ...]:
 
 
 def _impacts(sweep: Sweep, number: int, place: Path) -> dict[str, list[Any]]:
-    case, tables = impact.parse(sweep.data(number), store.CASE), []
+    case, tables = impact.parse(sweep.data(number), sweep.place(number)), []
     for law in sweep.laws or (None,):
         x = experiment(case, law)
         prediction = predict(x)
@@ -182,9 +195,9 @@ def plan(
     )
 
 
-def check_points(sweep: Sweep, numbers: Iterable[int], jobs: int | None = None) -> None:
-    """Raise CaseError for the first point whose case is wrong; nothing runs."""
-    wrong = {n: e for n, e in local.each(partial(check, sweep), numbers, jobs or local.cores()) if e}
+def check_points(sweep: Sweep, numbers: Iterable[int], jobs: int | None = None, *, plans: bool = False) -> None:
+    """Raise CaseError for the first point that `check` finds wrong; nothing runs."""
+    wrong = {n: e for n, e in local.each(partial(check, sweep, plans=plans), numbers, jobs or local.cores()) if e}
     if wrong:
         first = wrong[min(wrong)]
         raise first if isinstance(first, CaseError) else CaseError(f"{sweep.place(min(wrong))}: {first}")
