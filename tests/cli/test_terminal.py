@@ -12,10 +12,11 @@ import termios
 from pathlib import Path
 
 import pytest
-from calls import CASES, COMMANDS
+from calls import CASES, COMMANDS, call
 from rich.console import Console
 
 from epdem.base import terminal
+from epdem.engines import ENGINES, SCENES
 
 EPDEM = str(Path(sys.executable).parent / "epdem")
 RUN = ["run", str(CASES / "steel_wall.toml"), "-e", "embedded", "--steps", "50", "-o", "out", "--fresh"]
@@ -89,3 +90,21 @@ def test_a_table_that_is_too_wide_comes_in_parts_with_the_first_column(capsys):
     one.add_row("text")
     terminal.show_table(screen, one)
     assert "text" in capsys.readouterr().out
+
+
+@pytest.mark.parametrize("command", COMMANDS)
+def test_the_help_of_a_command_has_every_word_of_its_options(command, tmp_path, capsys, monkeypatch):
+    """Rich takes words in square brackets for markup."""
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setattr("typer.rich_utils.MAX_WIDTH", 500)
+    shown = " ".join(call([command, "--help"], capsys, monkeypatch).out.split())
+    for text in [COMMANDS[command].help, *(p.help for p in COMMANDS[command].params if p.help)]:
+        assert " ".join(text.split()) in shown, text
+
+
+def test_help_names_the_engines_that_have_ranks_and_decks():
+    helps = {(c, p.name): p.help for c in ("run", "deck") for p in COMMANDS[c].params}
+    assert {n for n, e in ENGINES.items() if n in helps["run", "ranks"].lower()} == {
+        n for n, e in ENGINES.items() if e.ranks > 1
+    }
+    assert {n for n in ENGINES if n in helps["deck", "engine"]} == set(SCENES)

@@ -21,10 +21,12 @@ def calibrate(
         typer.Option("--e-n", help="measured coefficient of restitution; repeat with --speed for a law that hardens"),
     ] = None,
     speed: Annotated[list[str] | None, typer.Option(help='speed of that impact, as "2 m/s"')] = None,
-    measured: Annotated[bool, typer.Option("--measured", help="take speeds and e_n of [measured] of the case")] = False,
+    measured: Annotated[
+        bool, typer.Option("--measured", help="take speeds and e_n from the table 'measured' of the case")
+    ] = False,
     uncertainty: Annotated[float | None, typer.Option(help="standard error of each of several e_n")] = None,
-    hv: Annotated[float | None, typer.Option(help="Vickers hardness [kgf/mm^2] instead of an impact")] = None,
-    hb: Annotated[float | None, typer.Option(help="Brinell hardness [kgf/mm^2] instead of an impact")] = None,
+    hv: Annotated[float | None, typer.Option(help="Vickers hardness in kgf/mm^2 instead of an impact")] = None,
+    hb: Annotated[float | None, typer.Option(help="Brinell hardness in kgf/mm^2 instead of an impact")] = None,
     dent_ratio: Annotated[
         float | None,
         typer.Option(help="Brinell test: diameter of the indentation over diameter of the ball (default: 0.375)"),

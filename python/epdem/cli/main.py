@@ -66,7 +66,7 @@ def run(
     case: CasePath,
     engine: Engines = None,
     law: Laws = None,
-    ranks: Annotated[int, typer.Option(min=1, max=1024, help="MPI ranks of LIGGGHTS")] = 1,
+    ranks: Annotated[int, typer.Option(min=1, max=1024, help="MPI ranks of LIGGGHTS or LAMMPS")] = 1,
     steps: Annotated[
         int | None, typer.Option(min=5, max=100_000, help="steps in contact instead of the case's")
     ] = None,
@@ -135,7 +135,7 @@ def deck(
         ),
     ],
     out: Annotated[Path, typer.Option("--out", "-o", help="folder for the deck")],
-    engine: Annotated[str, typer.Option("--engine", "-e", help="liggghts or yade")] = DEFAULT_ENGINE,
+    engine: Annotated[str, typer.Option("--engine", "-e", help="liggghts, yade or lammps")] = DEFAULT_ENGINE,
     law: Laws = None,
     case: Annotated[Path | None, typer.Option("--case", help="the case that fills the template")] = None,
     given: Annotated[

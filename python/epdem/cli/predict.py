@@ -25,10 +25,11 @@ def predict(
         typer.Option(min=1e-9, max=0.1, help="find the time step of the case for this largest relative error of e_n"),
     ] = None,
     material: Annotated[
-        str | None, typer.Option(help="one impact: material of sphere and wall, from the materials file [steel]")
+        str | None,
+        typer.Option(help="one impact: material of sphere and wall, from the materials file (default: steel)"),
     ] = None,
-    radius: Annotated[str | None, typer.Option(help='one impact: radius of the sphere ["10 mm"]')] = None,
-    speed: Annotated[str | None, typer.Option(help='one impact: its speed ["5 m/s"]')] = None,
+    radius: Annotated[str | None, typer.Option(help='one impact: radius of the sphere (default: "10 mm")')] = None,
+    speed: Annotated[str | None, typer.Option(help='one impact: its speed (default: "5 m/s")')] = None,
     adhesion: Annotated[
         str | None, typer.Option("--work-of-adhesion", help='one impact: as "0.1 J/m^2", the laws with adhesion, too')
     ] = None,
