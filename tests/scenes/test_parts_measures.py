@@ -16,6 +16,7 @@ from scene_runs import run, write_case
 
 from epdem.case.scene import parse
 from epdem.errors import CaseError
+from epdem.laws.strengths import LawSpec
 from epdem.scenes import measures, report
 from epdem.scenes.columns import units
 from epdem.scenes.plan import plan
@@ -136,6 +137,31 @@ def test_the_speed_of_an_impact_is_read_from_its_largest_overlap():
     v = math.sqrt(2 * 8 / 15 * E_star * math.sqrt(radius) * overlap**2.5 / mass)
     assert found["number"].sum() == 1
     assert 0.5 * (found["low"].iloc[0] + found["high"].iloc[-1]) == pytest.approx(v, rel=1e-9)
+
+
+@pytest.mark.parametrize("law", ["hertz", "thornton"])
+def test_a_bed_of_many_radii_makes_one_law_for_each_pair_of_materials(law, monkeypatch):
+    """Hertz as above; thornton beyond first yield at alpha_y: W = W_y + pi p_y R [(alpha^2 - alpha_y^2)/2 - alpha_y/3
+    (alpha - alpha_y)], W_y = 8/15 E* sqrt(R) alpha_y^(5/2)."""
+    data = parts(measure=[{"name": "speed", "kind": "impact_speed", "bins": 2}], body=[])
+    data["law"] = {"name": "hertz"} if law == "hertz" else {"name": "thornton", "yield_pressure": "0.2 MPa"}
+    p = plan(parse(data))
+    rng, n, mass = np.random.default_rng(3), 1000, 3e-5
+    radius, overlap = rng.uniform(1e-3, 2e-3, n), rng.uniform(1e-5, 3e-5, n)
+    tables = {
+        "particles": pd.DataFrame({"id": np.arange(1, n + 1), "radius": radius, "mass": mass, "type": 1}),
+        "contacts": pd.DataFrame({"wall": "floor", "i": np.arange(1, n + 1), "j": 0, "delta_max": overlap}),
+    }
+    made, real = [], LawSpec.theory
+    monkeypatch.setattr(LawSpec, "theory", lambda self, **given: made.append(given) or real(self, **given))
+    found = measures.values_of(p, p.case.scene.measure[0], tables)
+    E_star = 1 / ((1 - 0.25**2) / 10e6 + (1 - 0.3**2) / 100e6)
+    first = overlap if law == "hertz" else (math.pi * 0.2e6 / (2 * E_star)) ** 2 * radius
+    assert (overlap >= first).all()
+    work = 8 / 15 * E_star * np.sqrt(radius) * first**2.5
+    flow = (overlap**2 - first**2) / 2 - first / 3 * (overlap - first)
+    expected = np.sqrt(2 * (work + math.pi * 0.2e6 * radius * flow) / mass)
+    assert found == pytest.approx(expected, rel=1e-9) and len(made) == 1
 
 
 @pytest.mark.parametrize(

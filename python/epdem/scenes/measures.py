@@ -201,11 +201,11 @@ def _impact_speeds(p: ScenePlan, tables: dict[str, pd.DataFrame]) -> FloatArray:
     other = np.where(largest["j"] == 0, largest["wall"].map(p.wall_types), second["type"]).astype(int)
     R_star = 1.0 / (1.0 / first["radius"].to_numpy() + 1.0 / second["radius"].fillna(math.inf).to_numpy())
     m_star = 1.0 / (1.0 / first["mass"].to_numpy() + 1.0 / second["mass"].fillna(math.inf).to_numpy())
-    keys = pd.DataFrame({"a": first["type"].to_numpy(int), "b": other, "R": R_star})
-    speeds = np.zeros(len(keys))
-    for (a, b, R), at in keys.groupby(["a", "b", "R"]).indices.items():
+    types = pd.DataFrame({"a": first["type"].to_numpy(int), "b": other})
+    speeds = np.zeros(len(types))
+    for (a, b), at in types.groupby(["a", "b"]).indices.items():
         spec, E_star = pair_law(p.case, *(p.model.types[int(k) - 1].material for k in (a, b)))
-        law = spec.theory(E_star=E_star, R_star=float(R))
+        law = spec.theory(E_star=E_star, R_star=R_star[at])
         assert not isinstance(law, JKR)  # refused before the run
         work = np.asarray(law.work(largest["delta_max"].to_numpy()[at]), float)
         speeds[at] = np.sqrt(2.0 * work / m_star[at])
