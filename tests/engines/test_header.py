@@ -72,12 +72,6 @@ def tree(request):
     return request.getfixturevalue("built") if request.param == "Debian's library" else request.param
 
 
-def test_trees_of_others_are_here():
-    if not TREES:
-        pytest.skip("EPDEM_TREES names no executable of another tree; see 'make trees'")
-    assert all(os.access(path, os.X_OK) for path in TREES)
-
-
 def code(text):
     """Lines of C++ without comments, blank lines and what belongs to single files."""
     lines = [line.rstrip() for line in text.splitlines()]
@@ -198,7 +192,7 @@ def test_a_restart_file_of_one_is_read_by_the_other(tree, tmp_path, law):
         for reader, second in programs.items():
             where = tmp_path / f"{writer}-{reader}"
             frames, text = outcome(where, scene, steps=30, restart=folder / "x.restart", command=second, **more)
-            assert SAID not in text or more  # our own pair loop
+            assert SAID not in text  # our own pair loop
             ends[writer, reader] = frames
     assert all(np.array_equal(e, ends["plugin", "plugin"]) for e in ends.values())
 
