@@ -104,7 +104,7 @@ def _beside_fit(fit: float, lines: list[tuple[Experiment, Prediction]]) -> str:
     """Sentences on the deviation of each law from the finite-element fit at the last speed of its line."""
     said = " The fit is that of Wu et al. 2003 from 100 times the speed of first yield on."
     for x, line in lines:
-        top, radius = float(line.overlap_max[-1]), float(line.strain_ratio[-1]) * x.R_star
+        top, radius = float(line.overlap_max[-1]), float(line.radius_max[-1])
         deviation = float(line.e_n[-1]) / fit - 1.0
         said += (
             f" At {line.speed[-1]:.4g} m/s e_n of {x.law.name} is {100 * abs(deviation):.0f} % "

@@ -154,12 +154,13 @@ def pair_of(numbers: LawNumbers, body: Body, target: Body) -> LawSpec:
     return replace(spec, common=numbers.absolute is not None)
 
 
-def strain_rate(speed: Real, a: Real) -> Real:
-    """Mean strain rate [1/s] of an impact at `speed` [m/s] with the largest contact radius a [m].
+def strain_rate(speed: Real, a: Real, *, share: float) -> Real:
+    """Mean strain rate [1/s] of the weaker body, whose `share` of the strain is w: 0.2 w speed/a.
 
-    Strains are 0.2 a/R (Johnson 1985, section 11.5).
+    speed [m/s] of the impact, a [m] its largest contact radius. The strain is 0.2 w a/R* (Johnson 1985, section 11.5,
+    for w = 1), the time a^2/(R* speed).
     """
-    return 0.2 * speed / a
+    return 0.2 * share * speed / a
 
 
 def rated(spec: LawSpec, rate: Rate, body: Body, target: Body, speed: float) -> LawSpec:
@@ -180,7 +181,9 @@ def rated(spec: LawSpec, rate: Rate, body: Body, target: Body, speed: float) -> 
             a = float(theory.radius_of_work(work))
         else:
             a = float(theory.radius(theory.overlap_of_work(work)))
-        factor = 1.0 + rate.sensitivity * math.log(max(float(strain_rate(speed, a)) / rate.reference, 1.0))
+        factor = 1.0 + rate.sensitivity * math.log(
+            max(float(strain_rate(speed, a, share=found.share)) / rate.reference, 1.0)
+        )
     return found
 
 

@@ -109,7 +109,7 @@ def predict(experiment: Experiment) -> Prediction:
 
 def _too_fast(x: Experiment, radius: np.ndarray) -> list[str]:
     """A sentence on impacts of a case with [rate] beyond the strain rates for which its formula holds."""
-    rate = np.asarray(strain_rate(x.speed, radius))
+    rate = np.asarray(strain_rate(x.speed, radius, share=x.law.share))
     if not x.rated or rate.max() <= FASTEST:
         return []
     return [

@@ -11,8 +11,8 @@ The force of a contact at a speed, its yield force and its pull-off force fall a
 fall with them, weight does not.
 
 What depends on a/R itself follows it: finite strain takes c k^0.14 in exp(-c (w a/R*)^-0.7), and the reference of a
-strength that grows with the rate 0.2 v/a falls as the rate. The area that finite strain takes off goes with overlap/R*,
-which no parameter scales: there e_n changes.
+strength that grows with the rate 0.2 w v/a falls as the rate. The area that finite strain takes off goes with
+overlap/R*, which no parameter scales: there e_n changes.
 """
 
 from collections.abc import Iterator
