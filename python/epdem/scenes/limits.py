@@ -168,6 +168,7 @@ def refuse_positions(s: Parts) -> None:
 
 
 DENSE = 0.9  # relative density above which overlaps of spheres no longer describe the contacts
+DENSEST = 0.98  # that a press by a force is taken to reach
 
 
 class PressedBed(NamedTuple):
@@ -207,6 +208,14 @@ def dense_beds(beds: Iterable[PressedBed]) -> list[str]:
         f"{DENSE} no contact law of spheres gives the pressure (docs/choose.md, Pressing); give a larger height"
         for bed in sorted(known, key=lambda bed: bed.solid_height / bed.height)[-1:]
     ]
+
+
+def largest_density(scene: Parts, beds: Iterable[PressedBed]) -> float:
+    """Largest relative density that plates press a bed to: DENSEST if only the run tells it, 0 if nothing presses."""
+    moves = (move for phase in scene.phase for move in phase.moves.values())
+    found = [min(bed.solid_height / bed.height, 1.0) if bed.height > 0.0 else DENSEST for bed in beds]
+    presses = any(isinstance(move, LinearMove | PressMove) for move in moves)
+    return max(found, default=DENSEST if presses else 0.0)
 
 
 def pressed_beds(case: SceneCase, scene: Parts, insertions: tuple[Insertion, ...]) -> Iterator[PressedBed]:

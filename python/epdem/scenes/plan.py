@@ -18,6 +18,7 @@ from . import walls
 from .filling import Insertion, insertions, refuse_missing, refuse_too_many
 from .limits import (
     PressedBed,
+    largest_density,
     pressed_beds,
     refuse_below_solid,
     refuse_combinations,
@@ -268,7 +269,7 @@ def _loads(case: SceneCase, scene: Parts) -> tuple[str, ...]:
 def plan(case: SceneCase) -> ScenePlan:
     """The plan of a scene. Raises CaseError for what does not fit."""
     refuse_faster_than_sound(case)
-    contact_model, dt, scene, out = model(case), time_step(case), case.parts, case.output
+    contact_model, scene, out = model(case), case.parts, case.output
     triangles = walls.triangles(scene)
     if not isinstance(scene, Preset):
         refuse_positions(scene)
@@ -280,6 +281,7 @@ def plan(case: SceneCase) -> ScenePlan:
     refuse_missing(case, filled)
     beds = tuple(pressed_beds(case, scene, filled))
     refuse_below_solid(beds)
+    dt = time_step(case, largest_density(scene, beds))
     duration = sum(phase.seconds for phase in scene.phase)
     steps = duration / dt
     if any(phase.time_step for phase in scene.phase):

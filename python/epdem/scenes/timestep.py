@@ -13,22 +13,22 @@ from ..impacts.experiment import Body, Experiment, plane, sphere
 from ..impacts.plan import search, stability_limit
 from ..impacts.prediction import Prediction, predict
 from ..theory import adhesion
+from ..theory import timestep as times
 from ..theory.backbones import JKR
-from ..theory.timestep import DENSE_PACKING, sticking_packing
-from .model import model, pair_law
+from .model import model, numbers, pair_law
 
 MARGIN = 0.8  # of the stable step of a bed: contacts there are a little stiffer than in the impact that stands for them
 
 
-def bed_share(x: Experiment, *, sticking: bool) -> float:
+def bed_share(x: Experiment, *, sticking: bool, screening: float = 1.0) -> float:
     """Share of the stable step of the contact `x` alone that a step in a bed of such contacts may have.
 
     Velocity Verlet is stable up to a half of it in a dense packing of central springs; where contacts stick, up to
-    `sticking_packing` (0.246 at nu = 0.3).
+    `sticking_packing` (0.246 at nu = 0.3). `screening` divides the normal stiffness alone.
     """
-    stable = DENSE_PACKING
+    stable = times.DENSE_PACKING
     if sticking:
-        stable = min(stable, float(sticking_packing(4.0 * x.G_star / x.E_star)))
+        stable = min(stable, float(times.sticking_packing(screening * 4.0 * x.G_star / x.E_star)))
     return MARGIN * stable
 
 
@@ -56,33 +56,47 @@ def leading_impact(case: SceneCase) -> Experiment:
     return wall_impact(case, first.material, first.radii()[0], other, highest_speed(case))
 
 
-def _impacts(case: SceneCase) -> Iterator[tuple[Experiment, Prediction, float]]:
-    """The impacts of the spheres of a scene on each material at its highest speed, and their stable steps [s]."""
+def _impacts(case: SceneCase, density: float) -> Iterator[tuple[Experiment, Prediction, float, float]]:
+    """The impacts of the spheres of a scene on each material at its highest speed, stable steps [s] and screening.
+
+    With law.compaction contacts are as wide as in a bed of this relative density, and screened.
+    """
     v = highest_speed(case)
     bodies = {(p.material, p.radii()[0]) for p in case.parts.filled}
     for material, radius in sorted(bodies):
         for other in sorted({m for m, _ in bodies} | {*case.parts.wall_materials}):
             x = sphere_impact(case, material, radius, other, v)
             prediction = predict(x)
-            yield x, prediction, stability_limit(x, float(prediction.overlap_max.max()))
+            if not numbers(case).compaction:
+                yield x, prediction, stability_limit(x, float(prediction.overlap_max.max())), 1.0
+                continue
+            a = max(float(prediction.radius_max.max()), float(times.pressed_radius(max(density, times.LOOSE))) * radius)
+            screening = float(times.screening(a / radius, poisson_ratio_=x.body.poisson_ratio))
+            stable = float(times.stability_limit(E_star=x.E_star, m_star=x.m_star, radius=a / screening))
+            yield x, prediction, stable, screening
 
 
-def stable_step(case: SceneCase) -> float:
-    """The largest step [s] with which each contact of the scene alone is stable at its highest speed."""
-    return min(stable for *_, stable in _impacts(case))
+def stable_step(case: SceneCase, density: float) -> float:
+    """The largest step [s] with which each contact of the scene alone is stable, at its highest speed and relative
+    density.
+    """
+    return min(stable for *_, stable, _ in _impacts(case, density))
 
 
-def time_step(case: SceneCase) -> float:
-    """The step [s] of a scene: the target error of e_n at its speeds, below the stable step of a bed."""
+def time_step(case: SceneCase, density: float) -> float:
+    """The step [s] of a scene: the target error of e_n at its speeds, below the stable step of a bed.
+
+    density: the largest relative density that it is pressed to (`limits.largest_density`).
+    """
     if case.numerics.time_step is not None:
         return case.numerics.time_step
     best, sticking = math.inf, model(case).sliding
-    for x, prediction, stable in _impacts(case):
+    for x, prediction, stable, screening in _impacts(case, density):
         try:
             step = search(x, prediction, case.numerics.error).time_step
         except CaseError as error:
             raise CaseError(f"numerics.{error}, or numerics.time_step") from None
-        best = min(best, step, bed_share(x, sticking=sticking) * stable)
+        best = min(best, step, bed_share(x, sticking=sticking, screening=screening) * stable)
     power = 10.0 ** (math.floor(math.log10(best)) - 1)
     return float(f"{math.floor(best / power) * power:.1e}")  # two digits, rounded down: the deck is readable
 

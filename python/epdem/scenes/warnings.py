@@ -11,9 +11,10 @@ from ..case.parts import Region
 from ..case.walls import Room
 from ..errors import CaseError
 from ..theory import validity
+from ..theory.timestep import LOOSE
 from . import filling
 from .columns import STRAINS
-from .limits import dense_beds, overlaps
+from .limits import dense_beds, largest_density, overlaps
 from .plan import NO_VOID, NOT_REACHED, ScenePlan
 from .timestep import stable_step
 from .walls import FloatArray, sheet
@@ -73,13 +74,17 @@ def _time_steps(p: ScenePlan) -> list[str]:
     given |= {f"scene.phase.{phase.name}.time_step": phase.time_step for phase in p.scene.phase}
     if not (given := {place: step for place, step in given.items() if step}):
         return []
+    density = largest_density(p.scene, p.beds)
     try:
-        stable = stable_step(p.case)
+        stable = stable_step(p.case, density)
     except CaseError:  # no speed follows from the case
         return []
+    contact = "an impact at the scene's highest speed"
+    if p.model.compaction and density > LOOSE:
+        contact = f"a contact of a bed at a relative density of {density:.2g}, with law.compaction,"
     return [
-        f"{place} = {step:g} s: an impact at the scene's highest speed is stable up to {stable:.2g} s, a bed of "
-        "spheres up to a quarter or a half of it; give less, or leave it out"
+        f"{place} = {step:g} s: {contact} is stable up to {stable:.2g} s, a bed of spheres up to a quarter or a half "
+        "of it; give less, or leave it out"
         for place, step in given.items()
         if step > stable
     ]

@@ -9,6 +9,8 @@ from .restitution import UNLOADING_TIME
 # Share of the limit of one normal contact that stays stable in a dense frictionless packing (face-centred cubic,
 # central springs). With friction see `sticking_packing`.
 DENSE_PACKING = 0.5
+LOOSE = 0.64  # relative density of a random close packing, from which a pressed bed of spheres has contacts
+LEAST_SCREENING = 0.05
 HERTZ_TIME = 2 * UNLOADING_TIME * (15 / 16) ** 0.4  # 2.8682657: contact time of Hertz in (m*^2/(R* E*^2 v))^(1/5)
 
 
@@ -27,6 +29,30 @@ def stability_limit(*, E_star: Real, m_star: Real, radius: Real) -> Real:
     """Largest stable step of one normal contact [s]: T/pi = 2 sqrt(m*/k_n), k_n = 2 E* a at its largest a [m]."""
     k_n = 2 * number("E_star", E_star) * number("radius", radius)
     return 2 * np.sqrt(number("m_star", m_star) / k_n)
+
+
+def pressed_radius(relative_density: Real) -> Real:
+    """Contact radius over radius in a bed of equal spheres pressed to a relative density D in (0, 1].
+
+    a^2 = 2 R x, x = 1 - (0.64/D)^(1/3): spheres of a random close packing that come nearer, and fully plastic contacts,
+    the widest ones. 0 below the density of that packing.
+    """
+    approach = 1 - np.cbrt(LOOSE / number("relative_density", relative_density, high=1.0))
+    radius: Real = np.sqrt(2 * np.maximum(approach, 0.0))
+    return radius
+
+
+def screening(radius: Real, *, poisson_ratio_: Real, contacts: Real = 12) -> Real:
+    """gamma: recovery of a contact that unloads beside others of its size, over that of the contact alone.
+
+    gamma = (1 - e)^1.5 + A/(a R) (1 - 2 nu)/(2 pi (1 - nu^2)), e = sqrt(A)/(2 R), A = (z - 1) a^2, from 0.05 to 1; its
+    stiffness is 2 E* a/gamma (law.compaction). radius: a/R >= 0 of each of z `contacts`. 0.39 at a/R = 0.49, nu = 0.34.
+    """
+    a, nu = number("radius", radius, low_ok=True), poisson_ratio("poisson_ratio_", poisson_ratio_)
+    others = number("contacts", contacts, low=1.0, low_ok=True) - 1
+    tube = np.maximum(1 - np.sqrt(others) * a / 2, 0.0) ** 1.5
+    gamma: Real = np.clip(tube + others * a * (1 - 2 * nu) / (2 * np.pi * (1 - nu**2)), LEAST_SCREENING, 1.0)
+    return gamma
 
 
 def rayleigh_time(*, radius: Real, density: Real, young_modulus: Real, poisson_ratio_: Real) -> Real:
