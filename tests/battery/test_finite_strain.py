@@ -156,6 +156,25 @@ def test_hutchings_impact_of_a_hard_sphere_on_mild_steel():
     assert by_hand(**numbers, m_star=mass, speed=70.0, share=1.0)[0] == pytest.approx(0.367, abs=5e-4)
 
 
+# strain, deviations [%] of e_n from finite elements with small and with finite strain, E/Y = 120 and 300
+ELEMENTS = [(0.2, -2, -9, 0, -7), (0.3, 25, 8, 23, 6), (0.4, 42, 15, 42, 15), (0.5, 59, 20, 58, 20)]
+
+
+@pytest.mark.parametrize(("strain", "small", "finite", "stiff_small", "stiff_finite"), ELEMENTS)
+def test_finite_strain_comes_nearer_to_finite_elements(strain, small, finite, stiff_small, stiff_finite):
+    """0.62 [(v/v_y0)/(E*/Y)]^(-1/2), the branch of large strain of Wu et al. 2003; a sphere on a rigid plane."""
+    for stiffness, expected in ((120, (small, finite)), (300, (stiff_small, stiff_finite))):
+        E_star = stiffness / (1 - 0.3**2)
+        first = (math.pi / (2 * E_star)) ** 2 * math.sqrt(8 * math.pi * 1.6**5 / 15)  # v_y0, eq. 8.84
+        numbers = {"E_star": E_star, "R_star": 1.0, "Y": 1.0, "m_star": 1.0, "share": 1.0}
+        for c, percent in zip((1e6, 0.82), expected, strict=True):
+            law = Cavity(E_star=E_star, R_star=1.0, Y=1.0, c_strain=c)
+            overlap = np.interp(strain, law.radius(grid := np.linspace(0.01, 0.3, 20001)), grid)
+            speed = math.sqrt(2 * law.work(overlap))
+            e_n = by_hand(**numbers, speed=speed)[0] if c < 1 else restitution.e_n(law, m_star=1.0, speed=speed)
+            assert round(100 * (float(e_n) / (0.62 * (speed / first / E_star) ** -0.5) - 1)) == percent
+
+
 @pytest.mark.parametrize("share", [1.0, 0.8, 0.5])
 def test_an_impact_with_finite_strain_is_that_of_a_sum(share):
     numbers = {"E_star": PAIR["E_star"], "R_star": 0.01, "Y": 1e9, "share": share}
