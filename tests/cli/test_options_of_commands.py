@@ -166,11 +166,11 @@ def library(tmp_path, monkeypatch, outcomes):
 
     record(impacts_run, "run", outcomes["run"])
     record(impacts_report, "figure", Path("drawn.png"))
-    record(pages, "of_impacts", Path("page.html"))
+    record(pages, "write_impacts_page", Path("page.html"))
     record(scenes_run, "run", SimpleNamespace(passed=True))
     record(scenes_report, "figures", ())
     record(scenes_report, "show", ())
-    record(pages, "of_scene", Path("page.html"))
+    record(pages, "write_scene_page", Path("page.html"))
     record(crosscheck, "crosscheck")
     record(motions, "compare")
     record(cost, "run", outcomes["cost"])

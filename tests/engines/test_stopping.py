@@ -67,7 +67,7 @@ def at_end():
     children = Path(f"/proc/self/task/{os.getpid()}/children").read_text().split()
     print("children:", [c for c in children if ") Z " not in Path(f"/proc/{c}/stat").read_text()])
 atexit.register(at_end)
-processes.listen()
+processes.install_signal_handlers()
 """
 
 

@@ -24,7 +24,7 @@ from epdem.scenes.report import charts
 from epdem.scenes.report import measures as curves_of
 from epdem.scenes.results import read
 from epdem.studies.fit import fit
-from epdem.studies.pages import of_scene
+from epdem.studies.pages import write_scene_page
 from epdem.studies.sweep import run as study
 from epdem.studies.sweep.table import numbers_of
 
@@ -213,7 +213,7 @@ def test_measures_stand_in_the_results_and_are_numbers_for_studies(tmp_path, cap
     assert set(drawn) >= {"scene", "scene_measures", "scene_dents", "scene_speeds"}
     (bins,) = drawn["scene_dents"].panels[0].series
     assert bins.y[1::2].sum() == 40 and bins.x[-1] == spheres_then.query("step == step.max()")["plastic_work"].max()
-    assert "Histograms" in of_scene(outcome).read_text()
+    assert "Histograms" in write_scene_page(outcome).read_text()
     report.show(outcome, Console(width=120))
     said = capsys.readouterr().out
     dents = spheres_then.query("step == step.max()")["plastic_work"]
@@ -273,7 +273,7 @@ def test_a_force_needs_no_frames_and_is_a_target(frames, tmp_path, capsys):
     assert f"{-peak:.5g}" in capsys.readouterr().out
     document = json.loads(report.as_json(outcome))
     assert document["measures"][0]["lift"] == outcome.results.rows["lift"].iloc[-1]
-    of_scene(outcome)
+    write_scene_page(outcome)
     if frames:  # a sweep and a fit of frames: test_a_measure_is_a_target_with_its_unit
         return
     swept = study.run(study.plan(path, {"materials.glass.density": ["2500 kg/m^3"]}), tmp_path / "sweep", jobs=1)

@@ -12,7 +12,7 @@ from scene_runs import run, write_case
 from test_parts_motions import PLATE
 
 from epdem.scenes.report import charts
-from epdem.studies.pages import of_scene
+from epdem.studies.pages import write_scene_page
 
 pytestmark = pytest.mark.figures
 
@@ -32,7 +32,7 @@ def outcome(tmp_path_factory):
 
 @pytest.fixture(scope="module")
 def page(outcome):
-    return of_scene(outcome).read_text()
+    return write_scene_page(outcome).read_text()
 
 
 @pytest.mark.liggghts

@@ -19,7 +19,7 @@ import pytest
 from epdem.engines import engine
 from epdem.impacts.run import run
 from epdem.studies.calibrate import from_restitution
-from epdem.studies.pages import of_calibration, of_impacts
+from epdem.studies.pages import write_calibration_page, write_impacts_page
 
 ROOT = Path(__file__).parents[2]
 CHROMIUM = shutil.which("chromium")
@@ -55,7 +55,7 @@ def page(tmp_path_factory):
     """A page with the script that looks at it."""
     place = tmp_path_factory.mktemp("browser")
     outcome = run(ROOT / "cases/steel_wall.toml", engines=[engine("embedded")], out=place / "out")
-    path = of_impacts(outcome)
+    path = write_impacts_page(outcome)
     path.write_text(path.read_text().replace("</body>", f"{SEEN}</body>"))
     return path
 
@@ -76,7 +76,7 @@ def look(page: Path, *more: str) -> subprocess.CompletedProcess[str]:
 
 def test_the_page_of_a_strength_is_drawn_and_silent(tmp_path):
     case = ROOT / "cases/cavity_wall.toml"
-    path = of_calibration(case, from_restitution(case, 0.6, 5.0), tmp_path / "page")
+    path = write_calibration_page(case, from_restitution(case, 0.6, 5.0), tmp_path / "page")
     look_for = """const seen = document.body.appendChild(document.createElement("pre"));
     seen.id = "seen";
     seen.textContent = JSON.stringify({

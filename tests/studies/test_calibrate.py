@@ -18,7 +18,13 @@ from epdem.impacts.experiment import experiment
 from epdem.impacts.prediction import predict
 from epdem.report.page import write
 from epdem.studies import pages
-from epdem.studies.calibrate import from_hardness, from_restitution, from_restitutions, hardness_test, of_case
+from epdem.studies.calibrate import (
+    from_hardness,
+    from_restitution,
+    from_restitutions,
+    hardness_test,
+    measured_restitutions,
+)
 from epdem.theory.adhesion import yield_speed
 from epdem.theory.indentation import Indentation
 from studies.test_soften import CASES, RATE, STEEL, with_law
@@ -308,12 +314,12 @@ def test_an_elastic_impact_of_the_case_takes_part_and_a_percentage_does_not(tmp_
     for slow in (0.99, 1.01):
         curve = f'[measured]\nsource = "me"\nspeeds = {speeds}\ne_n = {[slow, *(e for _, e in fast)]}\n'
         path.write_text(f"{case}\n{curve}")
-        found = from_restitutions(path, of_case(path), 0.01)
+        found = from_restitutions(path, measured_restitutions(path), 0.01)
         assert (found.value, found.hardening_exponent) == pytest.approx((1.2e9, 0.25), rel=1e-5)
         assert found.largest_residual == pytest.approx(1.0, rel=1e-6)
     path.write_text(path.read_text().replace("e_n = [1.01", "e_n = [1.3"))
     with pytest.raises(CaseError, match=r"measured.e_n.0 = 1.3, must lie in \[0, 1.2\]; percent\?"):
-        of_case(path)
+        measured_restitutions(path)
     path.write_text(case)
     with pytest.raises(CaseError, match=r"e_n = 69 at 1 m/s, must lie in \(0, 1.2\]"):
         from_restitutions(path, [(1.0, 69.0), (10.0, 0.5)], 0.01)

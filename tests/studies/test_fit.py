@@ -144,8 +144,8 @@ def test_the_command_prints_what_the_function_finds(place, monkeypatch):
     page = (place / "points/report.html").read_text()
     assert "epdem calibrate bed.toml" in page
     drawn = []
-    monkeypatch.setattr(pages, "written", lambda page, folder: drawn.append(page))
-    pages.of_fit(found)
+    monkeypatch.setattr(pages, "write_study_page", lambda page, folder: drawn.append(page))
+    pages.write_fit_page(found)
     points, target = drawn[0].parts[0].panels[0].series
     assert target.y == pytest.approx([weight(20, 1700.0)] * 2) and min(target.x) == 1000.0
     assert len(points.x) == found.points

@@ -14,7 +14,7 @@ import pytest
 from epdem import Scene
 from epdem import run as api_run
 from epdem.scenes import results
-from epdem.studies.pages import _by_key, of_sweep
+from epdem.studies.pages import _by_key, write_sweep_page
 from epdem.studies.sweep import folder, run, slurm, table
 
 pytestmark = pytest.mark.liggghts
@@ -90,7 +90,7 @@ def test_the_page_shows_the_measures_of_the_case_first_and_every_number_that_cha
     bed.write_text(BED.replace("particles = 1\n", "particles = 4\n").replace("0.3 s", "0.02 s") + MEASURES)
     planned = run.plan(bed, {"scene.count": "10,20", "materials.glass.density": "2000 kg/m^3,3000 kg/m^3"})
     found = run.run(planned, tmp_path / "out")
-    page = of_sweep(found).read_text()
+    page = write_sweep_page(found).read_text()
     drawn = _by_key(found, found.table.attrs["units"])
     assert re.findall(r'data-chart="([^"]+)"', page) == [chart.name for chart in drawn]
     assert [chart.panels[0].x.label for chart in drawn] == ["scene.count", "materials.glass.density"]
@@ -130,7 +130,7 @@ def test_a_killed_scene_goes_on_from_its_restart_file(bed, tmp_path):
         time.sleep(0.01)
     assert json.loads(subprocess.check_output([EPDEM, "status", str(out), "--json"]))["waiting"] == 1
     subprocess.check_call(command, stdout=subprocess.DEVNULL)
-    place = folder.of(folder.read(out), out, 1)
+    place = folder.point_folder(folder.read(out), out, 1)
     assert (place / "in.resume").exists()
     whole = run.run(run.plan(bed, {"scene.count": "120"}), tmp_path / "whole")
     last = [

@@ -71,7 +71,7 @@ def test_50_points_one_fails_one_job_is_cancelled_and_the_controller_restarts(ca
     before = {p: p.read_bytes() for p in out.glob("points/*/point.json")}
     again = slurm.run(planned, out, {}, retry_failed=True)
     assert again.ran == 6 and again.table["status"].tolist() == ["failed"] + ["done"] * 49
-    redone = [folder.of(planned, out, n) / "point.json" for n in (1, *lost)]
+    redone = [folder.point_folder(planned, out, n) / "point.json" for n in (1, *lost)]
     assert all(p.read_bytes() == text for p, text in before.items() if p not in redone)
     local = run.run(planned, tmp_path / "local", jobs=1).table
     pd.testing.assert_frame_equal(again.table, local)
@@ -109,7 +109,7 @@ def test_a_scene_that_is_preempted_is_queued_again_and_goes_on_from_its_restart_
 
     found = slurm.run(planned, out, {"time": "10"}, report=report)
     assert sent and found.table[["status", "reason"]].fillna("").to_numpy().tolist() == [["done", ""]]
-    assert (folder.of(planned, out, 1) / "in.resume").exists()
+    assert (folder.point_folder(planned, out, 1) / "in.resume").exists()
     (job,) = jobs(out)
     restarts = re.search(r"Restarts=(\d+)", here.ask("scontrol", "show", "job", "-o", job))[1]
     assert restarts in ("1", "2")  # Slurm 24.11 queues a job that it displaced once more when the job ends
@@ -123,7 +123,7 @@ def test_a_scene_longer_than_its_walltime_is_queued_again_in_time(here, tmp_path
     assert found.table[["status", "reason"]].fillna("").to_numpy().tolist() == [["done", ""]]
     (job,) = jobs(out)
     restarts = int(re.search(r"Restarts=(\d+)", here.ask("scontrol", "show", "job", "-o", job))[1])
-    assert restarts >= 1 and (folder.of(planned, out, 1) / "in.resume").exists()
+    assert restarts >= 1 and (folder.point_folder(planned, out, 1) / "in.resume").exists()
 
 
 @needs_slurm
@@ -191,7 +191,7 @@ def test_a_batch_script_that_is_warned_queues_its_scene_again(here, tmp_path):
     until(lambda: len(list(out.glob("points/*/restart.*.bin"))) >= 2, "two restart files", seconds=200)
     here.ask("scancel", "-b", "-s", "USR2", f"{job}_1")
     until(lambda: status(out)["done"] + status(out)["failed"] == 1, "the end of the scene", seconds=200)
-    assert status(out)["done"] == 1 and (folder.of(planned, out, 1) / "in.resume").exists()
+    assert status(out)["done"] == 1 and (folder.point_folder(planned, out, 1) / "in.resume").exists()
     assert "Restarts=1 " in here.ask("scontrol", "show", "job", "-o", f"{job}_1")
 
 

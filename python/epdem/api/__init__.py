@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The Python interface: what the commands do, with cases made of plain values and results as DataFrames.
+"""The Python interface: the commands as functions of cases with plain values; results are DataFrames.
 
 Tables have the SI units of their columns in `attrs["units"]`. Progress goes to the logger "epdem".
 """
@@ -52,14 +52,14 @@ def _units(table: pd.DataFrame, units: Mapping[str, str]) -> pd.DataFrame:
     return marked
 
 
-class _HasRun:
-    """What impacts and scenes that have run have in common: whether they passed, and where their files are."""
+class _Finished:
+    """Verdict and folder of impacts or a scene that have run."""
 
     outcome: Outcome | SceneOutcome
 
     @property
     def passed(self) -> bool:
-        """Whether all numbers are within the tolerances of the case, or all checks of the scene hold."""
+        """Whether all numbers are within the tolerances of the case, or all checks of the scene pass."""
         return self.outcome.passed
 
     @property
@@ -69,8 +69,8 @@ class _HasRun:
 
 
 @dataclass(frozen=True)
-class Run(_HasRun):
-    """Impacts that have run: `outcome` has everything; in a notebook it shows its table."""
+class Run(_Finished):
+    """Results of impacts; a notebook shows the table. `outcome` also has plans, predictions and warnings."""
 
     outcome: Outcome
 
@@ -87,17 +87,17 @@ class Run(_HasRun):
 
     def report(self) -> Path:
         """Write report.html, one page with figures, tables and decks, into the folder; its path."""
-        from ..studies.pages import of_impacts
+        from ..studies.pages import write_impacts_page
 
-        return of_impacts(self.outcome)
+        return write_impacts_page(self.outcome)
 
     def _repr_html_(self) -> str:
         return str(self.table.to_html(max_rows=20))
 
 
 @dataclass(frozen=True)
-class SceneRun(_HasRun):
-    """A scene that has run: `outcome` has everything; in a notebook it shows its checks."""
+class SceneRun(_Finished):
+    """Results of a scene; a notebook shows the checks. `outcome` also has the plan and warnings."""
 
     outcome: SceneOutcome
 
@@ -108,9 +108,9 @@ class SceneRun(_HasRun):
 
     def report(self) -> Path:
         """Write report.html, one page with figures, tables and decks, into the folder; its path."""
-        from ..studies.pages import of_scene
+        from ..studies.pages import write_scene_page
 
-        return of_scene(self.outcome)
+        return write_scene_page(self.outcome)
 
     def _repr_html_(self) -> str:
         return str(self.tables["checks"].to_html())
@@ -148,7 +148,7 @@ def run(  # type: ignore[misc]
     case = _case(case)
     engines, laws = arguments.names("engines", engines), arguments.names("laws", laws)
     place = None if out is None else arguments.path("out", out)
-    ranks = arguments.whole("ranks", ranks, 1, MOST_RANKS)
+    ranks = arguments.integer("ranks", ranks, 1, MOST_RANKS)
     options: dict[str, Any] = {"out": place, "ranks": ranks, "fresh": fresh, "force": force}
     if isinstance(case, Scene):
         if len(engines) != 1 or laws:
@@ -163,7 +163,7 @@ def predict(case: Case | Path | str, law: str | None = None) -> pd.DataFrame:
     """The prediction of theory for a case, one row for each speed; no engine runs. Raises CaseError."""
     found = _case(case)
     if not isinstance(found, Case):
-        raise arguments.wrong("case", found, "a Case, which theory predicts; a scene has no prediction")
+        raise arguments.type_error("case", found, "a Case, which theory predicts; a scene has no prediction")
     prediction = predict_experiment(experiment(found.model, None if law is None else arguments.text("law", law)))
     return _units(prediction.table(), UNITS)
 
@@ -200,7 +200,7 @@ def cite(
     engines: str | Sequence[str] = (DEFAULT_ENGINE,),
     laws: str | Sequence[str] = (),
 ) -> Citations:
-    """What to cite for a case and the engines that run the case: text by what it is cited for.
+    """Citations of a case and its engines: text by cited subject.
 
     `cite(case).bibtex()` gives entries of BibTeX. Raises CaseError.
     """
@@ -236,14 +236,14 @@ def sweep(
         arguments.mapping("settings", settings, '{"impact.body.radius": [0.001, 0.002]}'),
         engines=arguments.names("engines", engines),
         laws=arguments.names("laws", laws),
-        ranks=arguments.whole("ranks", ranks, 1, MOST_RANKS),
+        ranks=arguments.integer("ranks", ranks, 1, MOST_RANKS),
         latin_hypercube=None
         if latin_hypercube is None
-        else arguments.whole("latin_hypercube", latin_hypercube, 1, MOST),
-        seed=arguments.whole("seed", seed, 0, 2**63),
+        else arguments.integer("latin_hypercube", latin_hypercube, 1, MOST),
+        seed=arguments.integer("seed", seed, 0, 2**63),
     )
     folder = planned.default_folder if out is None else arguments.path("out", out)
-    processes = None if jobs is None else arguments.whole("jobs", jobs, 1, MOST)
+    processes = None if jobs is None else arguments.integer("jobs", jobs, 1, MOST)
     return study.run(planned, folder, jobs=processes, retry_failed=retry_failed, report=_report)
 
 
@@ -255,7 +255,9 @@ def calibrate(scene: Scene | Path | str, targets: Targets, free: Mapping[str, st
     """
     found = _case(scene)
     if not isinstance(found, Scene):
-        raise arguments.wrong("scene", found, "a Scene; `epdem calibrate` finds the strength of a law from impacts")
+        raise arguments.type_error(
+            "scene", found, "a Scene; `epdem calibrate` finds the strength of a law from impacts"
+        )
     goals = arguments.mapping("targets", targets, '{"plate_force_max": "12 N"}')
     ranges = arguments.mapping("free", free, '{"contact.friction": "0.1..0.5"}')
     return fit(found.read, goals, ranges, **({"report": _report} | options))

@@ -15,7 +15,7 @@ from ..case import impact as impact_case
 from ..case import scene as scene_case
 from ..case.toml import Read, text_for_anywhere
 from ..studies.sweep import points
-from ..studies.sweep.points import plain, with_units
+from ..studies.sweep.points import as_lists, with_units
 from . import arguments
 
 
@@ -39,7 +39,7 @@ class _File:
         given = tables.pop("case", {})
         name = given.get("name", self.kind) if isinstance(given, dict) else self.kind
         header = {"name": name, "title": name, "source": "made in Python"}
-        data = plain({"case": header | given if isinstance(given, dict) else given} | tables)
+        data = as_lists({"case": header | given if isinstance(given, dict) else given} | tables)
         self._read(tomlkit.dumps(with_units(data, points.keys_of(data))), name)
 
     def _read(self, text: str, path: object) -> None:
@@ -74,14 +74,14 @@ class _File:
         data = copy.deepcopy(before)
         for name, value in changes.items():
             try:
-                points.assign(data, name, plain(value))
+                points.assign(data, name, as_lists(value))
             except (TypeError, ValueError, LookupError):  # a name below a value, or beyond the end of a list
-                points.known(name, points.keys_of(before), "replace")
+                points.require_key(name, points.keys_of(before), "replace")
                 raise
         names = points.keys_of(data)  # with the keys of a law or kind that the changes choose
         for name, value in changes.items():
             if not any(key.startswith(f"{name}.") for key in names):
-                points.known(name, names, "replace")
+                points.require_key(name, names, "replace")
             points.assign(document, name, with_units(value, names, name))
         case = type(self).__new__(type(self))
         case._read(document.as_string(), self.name)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""What each law declares of itself in C++: names, units, ranges and defaults, for theory, input, engines and pages.
+"""Declarations of the laws in C++: names, units, ranges and defaults, for theory, input, engines and pages.
 
 The declarations are one text in the C library; no number comes from a computation of a law.
 """

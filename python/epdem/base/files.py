@@ -46,7 +46,7 @@ def atomic(path: Path, *, sync: bool = True) -> Iterator[Path]:
                 with temporary.open("rb") as written:
                     os.fsync(written.fileno())
             temporary.replace(path)
-    except OSError as error:  # names a file that the user has never heard of
+    except OSError as error:  # names the temporary file, which the user does not know
         raise OSError(error.errno, error.strerror, str(path)) from None
     finally:
         temporary.unlink(missing_ok=True)
@@ -79,7 +79,7 @@ OUTPUTS = re.compile(
 
 
 def results_folder(out: Path | None, *names: str) -> Path:
-    """Where results go: to `out`, without one to runs/<names>."""
+    """Folder of results: `out`, else runs/<names>."""
     return out or Path("runs", *names)
 
 
@@ -117,8 +117,8 @@ Known = dict[str, Any]  # content of the marker
 _held: dict[Path, Results] = {}  # folders that this process keeps now
 
 
-def held(folder: Path) -> Results:
-    """The folder as this process keeps it; without a claim nothing in it is foreign."""
+def stored_results(folder: Path) -> Results:
+    """The claimed folder of this process; without a claim no file in it is foreign."""
     return _held.get(folder.resolve(), Results(folder))
 
 

@@ -27,14 +27,14 @@ _blocks = 0  # of `uninterrupted` that have begun
 _came = False  # a signal, during these
 
 
-def listen(*numbers: signal.Signals) -> None:
-    """From now on these signals (default: SIGNALS) stop this process, a forked one with the state of its parent too."""
+def install_signal_handlers(*numbers: signal.Signals) -> None:
+    """Let these signals (default: SIGNALS) raise Stopped in this process; forked processes call it again."""
     global _blocks, _came
     _blocks, _came = 0, False
     for number in numbers or SIGNALS:
         signal.signal(number, _stop)
     signal.signal(signal.SIGALRM, _stop)
-    sys.unraisablehook = _dropped
+    sys.unraisablehook = _raise_stopped
 
 
 @contextlib.contextmanager
@@ -70,8 +70,8 @@ def _raise() -> None:
     raise Stopped
 
 
-def _dropped(what: Any) -> None:
-    """An exception that Python has dropped, because it was raised in a callback (a destructor, a weak reference)."""
+def _raise_stopped(what: Any) -> None:
+    """Raise a Stopped again that Python dropped in a callback (a destructor, a weak reference)."""
     if what.exc_type is Stopped:
         signal.setitimer(signal.ITIMER_REAL, AGAIN)
     else:
@@ -119,7 +119,7 @@ def call(
         rows, process = _Rows(report), None
         try:
             with uninterrupted():
-                process = started(command, folder, stdin=subprocess.DEVNULL, stdout=stream, env=env)
+                process = start_program(command, folder, stdin=subprocess.DEVNULL, stdout=stream, env=env)
             while process.poll() is None:
                 left = end - time.monotonic()
                 if left <= 0.0:
@@ -142,7 +142,7 @@ def call(
     return time.monotonic() - start
 
 
-def started(
+def start_program(
     command: list[str], folder: Path, *, stdin: int, stdout: int | IO[bytes], env: dict[str, str] | None
 ) -> subprocess.Popen[bytes]:
     """A program in its own session, which ends with this process; both its streams go to `stdout`.
@@ -165,7 +165,7 @@ def started(
 
 
 def failure(program: str, status: int, log: Path) -> str:
-    """How a program ended, from its exit status, and the end of its log."""
+    """Sentence on the end of a program: exit status and last lines of its log."""
     how = f"signal {-status}" if status < 0 else f"exit code {status}"
     return f"{program} failed ({how}); {log}: {last_words(log)}"
 
@@ -183,7 +183,7 @@ class _Rows:
                 self.report(int(match.group(1)))
 
 
-def ask(command: list[str], env: dict[str, str] | None = None) -> str:
+def captured_output(command: list[str], env: dict[str, str] | None = None) -> str:
     """The output of a program on both streams; files that it writes into its folder are deleted.
 
     Raises EngineError if it cannot be started or does not end.

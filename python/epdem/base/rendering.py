@@ -18,7 +18,7 @@ def number(x: float | int) -> str:
 
 
 class Deck(SimpleNamespace):
-    """What a template reads: the words and numbers of an engine, and what the `plan` has by other names."""
+    """Values of a template: words and numbers of an engine; other names are attributes of `plan`."""
 
     def __init__(self, plan: object, **values: object):
         super().__init__(plan=plan, **values)

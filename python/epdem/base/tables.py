@@ -64,7 +64,7 @@ def read_text(dataset: h5py.Dataset) -> str:
 
 
 @contextlib.contextmanager
-def opened(path: Path | str, what: str) -> Iterator[h5py.File]:
+def open_results(path: Path | str, what: str) -> Iterator[h5py.File]:
     """An HDF5 file to read. Raises CaseError if it is not there, or if it or what is read of it is damaged."""
     try:
         with h5py.File(path) as file:

@@ -15,7 +15,7 @@ from rich.text import Text
 
 
 def console() -> Console:
-    """As wide as the terminal, or wide enough for our tables in a pipe."""
+    """A console as wide as the terminal; in a pipe 170 columns, enough for every table."""
     screen = Console(markup=False, emoji=False, highlight=False)
     return screen if screen.is_terminal else Console(width=170, markup=False, emoji=False, highlight=False)
 
@@ -28,7 +28,7 @@ def table(title: str, heads: Iterable[str], *, left: Collection[str] = ()) -> Ta
     return shown
 
 
-def filled(
+def make_table(
     title: str, columns: Sequence[tuple[str, str]], rows: Iterable[dict[Any, Any]], *, left: Collection[str] = ()
 ) -> Table:
     """A table of columns (head, form of a cell, with a row's values by name); a row that has not passed is red."""

@@ -68,14 +68,14 @@ def calibrate(
 
 def _of_scene(case: Path, target: list[str], free: list[str], options: dict[str, Any], as_json: bool) -> None:
     from ..studies.fit import fit
-    from ..studies.pages import of_fit
+    from ..studies.pages import write_fit_page
     from ..studies.sweep.points import settings
     from .sweep import progress
 
     targets = settings(target, "--target", "plate_force_max='12 N'")
     with progress() as report:
         found = fit(case, targets, settings(free, "--free", "contact.friction=0.1..0.9"), report=report, **options)
-    page = of_fit(found)
+    page = write_fit_page(found)
     if as_json:
         print(json.dumps(vars(found) | {"case": str(found.case)}, indent=1))
         return
@@ -112,7 +112,7 @@ def _from_impacts(
         raise CaseError("--e-n belongs to one impact; add its speed, as --speed '2 m/s'")
     points = [(read_number("--speed", v, "m/s"), e) for v, e in zip(speed, e_n, strict=True)]
     if measured:
-        points = c.of_case(case)
+        points = c.measured_restitutions(case)
     if len(points) == 1:
         refuse(case, "it belongs to several e_n", uncertainty=uncertainty)
         return c.from_restitution(case, points[0][1], points[0][0])
@@ -120,9 +120,9 @@ def _from_impacts(
 
 
 def _of_impact(case: Path, result: "Calibration", as_json: bool, out: Path | None, force: bool) -> None:
-    from ..studies.pages import of_calibration, sentences_of_calibration
+    from ..studies.pages import sentences_of_calibration, write_calibration_page
 
-    page = of_calibration(case, result, out, force=force) if out else None
+    page = write_calibration_page(case, result, out, force=force) if out else None
     if as_json:
         print(json.dumps(vars(result), indent=1))
         return

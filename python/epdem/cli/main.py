@@ -22,7 +22,7 @@ from . import predict as cli_predict
 from . import scenes as cli_scene
 from . import sweep as cli_sweep
 from .export import app as export
-from .options import AsJson, CasePath, Engines, Force, Formats, Laws, Out, formats, refuse, say_files, warn
+from .options import AsJson, CasePath, Engines, Force, Formats, Laws, Out, formats, print_files, refuse, warn
 
 ABOUT = """Elastic-plastic particle contact for LIGGGHTS, YADE and LAMMPS, checked against theory.
 
@@ -46,7 +46,7 @@ app = typer.Typer(
 )
 
 
-def _say_version(wanted: bool) -> None:
+def _print_version(wanted: bool) -> None:
     if wanted:
         print(f"epdem {__version__}")
         raise typer.Exit
@@ -55,7 +55,7 @@ def _say_version(wanted: bool) -> None:
 @app.callback()
 def _options(
     version: Annotated[
-        bool, typer.Option("--version", callback=_say_version, is_eager=True, help="print the version and end")
+        bool, typer.Option("--version", callback=_print_version, is_eager=True, help="print the version and end")
     ] = False,
 ) -> None:
     pass
@@ -109,7 +109,7 @@ def _run_impacts(
     from ..engines import engine as find
     from ..impacts import report
     from ..impacts.run import run
-    from ..studies.pages import of_impacts
+    from ..studies.pages import write_impacts_page
 
     stages = len(set(engines)) * max(len(set(options["laws"])), 1) + 1  # and the figure
     with bar() as progress:
@@ -118,7 +118,7 @@ def _run_impacts(
         outcome = run(case, engines=[find(name) for name in engines], **options)
         progress.update(task, advance=1, description="figure")
         report.figure(outcome, formats)
-        of_impacts(outcome)
+        write_impacts_page(outcome)
     if as_json:
         print(report.run_json(outcome))
     else:
@@ -164,7 +164,7 @@ def deck(
         values = values_of(given or [], example="yieldPressure=1e8")
         files, notes = convert_file(file, (law or ["thornton"])[0], values, out, force=force)
         print("\n".join(notes), file=sys.stderr)
-        say_files(files, as_json)
+        print_files(files, as_json)
         return
     if file.suffix == ".j2":
         if case is None:
@@ -175,7 +175,7 @@ def deck(
         from ..engines.liggghts.own_decks import settings
         from ..engines.liggghts.own_decks import write as fill
 
-        say_files(fill(file, case, settings(given or []), out, force=force), as_json)
+        print_files(fill(file, case, settings(given or []), out, force=force), as_json)
         return
     refuse(file, "it goes with an own template (.j2)", case=case, set=given)
     if cli_scene.is_scene(file):
@@ -184,7 +184,7 @@ def deck(
         raise CaseError("--law: a deck has one law; write one deck for each")
     from ..api import deck as write
 
-    say_files(write(file, out, engine=engine, law=law[0] if law else None, force=force, warn=warn), as_json)
+    print_files(write(file, out, engine=engine, law=law[0] if law else None, force=force, warn=warn), as_json)
 
 
 @app.command()
@@ -251,7 +251,7 @@ def _usage(error: Any) -> int:
 def main(commands: typer.Typer = app) -> None:
     """Run a command: errors that a user can correct become one sentence and an exit code."""
     os.environ.pop("MPLBACKEND", None)  # figures are only saved, and an unknown backend ends matplotlib's import
-    processes.listen()  # whatever stops us, no engine stays behind
+    processes.install_signal_handlers()  # whatever stops us, no engine stays behind
     if isinstance(sys.stdout, io.TextIOWrapper):
         sys.stdout.reconfigure(errors="backslashreplace")  # a title may hold what the terminal's encoding does not
     try:

@@ -55,7 +55,7 @@ def refuse(place: object, reason: str, **given: object) -> None:
             raise CaseError(f"{place}: --{name.replace('_', '-')}: {reason}; leave it out")
 
 
-def say_files(paths: Iterable[Path], as_json: bool) -> None:
+def print_files(paths: Iterable[Path], as_json: bool) -> None:
     """Print the files that a command has written."""
     names = list(map(str, paths))
     print(json.dumps({"files": names}) if as_json else "\n".join(names))

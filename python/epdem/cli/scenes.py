@@ -27,7 +27,7 @@ def run_scene(case: Path, *, engine: str, formats: tuple[str, ...], as_json: boo
     from ..engines import scene_engine
     from ..scenes import report
     from ..scenes.run import run
-    from ..studies.pages import of_scene
+    from ..studies.pages import write_scene_page
 
     tool = scene_engine(engine)
     with bar(TextColumn("{task.completed}/{task.total} steps"), TimeRemainingColumn()) as progress:
@@ -35,7 +35,7 @@ def run_scene(case: Path, *, engine: str, formats: tuple[str, ...], as_json: boo
         options["report"] = lambda step, steps: progress.update(task, completed=step, total=steps)
         outcome = run(case, tool, **options)
     report.figures(outcome, formats)
-    of_scene(outcome)
+    write_scene_page(outcome)
     if as_json:
         print(report.as_json(outcome))
     else:

@@ -51,7 +51,7 @@ def sweep(
     as_json: AsJson = False,
 ) -> None:
     """Run a case or scene at many points; the same command again runs only missing and changed points."""
-    from ..studies.pages import of_sweep
+    from ..studies.pages import write_sweep_page
     from ..studies.sweep import slurm as study
     from ..studies.sweep.points import settings
     from ..studies.sweep.run import check_points, plan
@@ -88,7 +88,7 @@ def sweep(
         outcome = study.execute(
             planned, folder, executor, slurm or [], jobs=jobs, retry_failed=retry_failed, force=force, report=report
         )
-    of_sweep(outcome)
+    write_sweep_page(outcome)
     _show_outcome(outcome, as_json, console())
     raise typer.Exit(0 if outcome.passed else 1)
 

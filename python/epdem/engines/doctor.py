@@ -10,7 +10,7 @@ from rich.text import Text
 
 from ..base import paths
 from ..base.declarations import declarations, library_path
-from ..base.processes import ask
+from ..base.processes import captured_output
 from ..errors import EngineError, EpdemError
 from ..impacts.engine import Feature
 from ..laws import library as claw
@@ -40,7 +40,7 @@ def _mpi() -> Finding:
     if shutil.which("mpirun") is None:
         advice = "apt-get install openmpi-bin (only --ranks above 1 needs it)"
         return Finding("MPI", False, "mpirun not found", advice, needed=False)
-    said = ask(["mpirun", "--version"])
+    said = captured_output(["mpirun", "--version"])
     return Finding("MPI", True, next((t.strip() for t in said.splitlines() if t.strip()), ""), needed=False)
 
 

@@ -10,7 +10,7 @@ from typing import overload
 import pandas as pd
 
 from ..base import rendering as decks
-from ..base.files import held, write_texts
+from ..base.files import stored_results, write_texts
 from ..case import impact, scene
 from ..case.parts import Parts
 from ..case.toml import named, read_toml
@@ -111,7 +111,7 @@ class Host(ABC):
     ) -> Trajectory | Tables:
         if not isinstance(job, ScenePlan):
             return self.run_impacts(job, folder, ranks)
-        held(folder).remove(*self.leftovers)
+        stored_results(folder).remove(*self.leftovers)
         self.run_scene(job, folder, ranks, report)
         return self.read(job, folder)
 

@@ -15,7 +15,7 @@ from rich.console import Console
 from rich.table import Table
 
 from ..base.files import claim
-from ..base.terminal import filled, show_table, table
+from ..base.terminal import make_table, show_table, table
 from ..theory.yielding import FIRST_YIELD_ROUNDED
 from .comparison import CHECKED
 from .experiment import Experiment
@@ -130,7 +130,7 @@ def run_table(outcome: Outcome, *, full: bool = False) -> Table:
         title += f" ({'; '.join(f'{law}: {yielding(p)}' for law, p in outcome.predictions.items())})"
         rows = rows.assign(t_c=1e6 * rows["contact_time"], overlap=1e6 * rows["overlap_max"])
     ordered = rows.sort_values(order, kind="stable").to_dict("records")
-    return filled(title, columns, ordered, left=("engine", "law", "regime"))
+    return make_table(title, columns, ordered, left=("engine", "law", "regime"))
 
 
 def _with_regimes(outcome: Outcome, rows: pd.DataFrame) -> pd.DataFrame:

@@ -47,7 +47,7 @@ def write(path: Path, results: Results) -> None:
 
 def read(path: Path | str) -> Results:
     """The results in an HDF5 file that `write` made. Raises CaseError."""
-    with h5.opened(path, "a results file of epdem") as file:
+    with h5.open_results(path, "a results file of epdem") as file:
         results = Results(h5.read_text(file["case"]), h5.attributes(file), h5.read_table(file["comparison"]))
         for law, group in file.get("predictions", {}).items():
             results.predictions[law] = h5.read_table(group)

@@ -27,7 +27,7 @@ HEAD = 4096  # bytes in which the mark of a page stands
 
 @dataclass(frozen=True)
 class Facts:
-    """What is known, by its name."""
+    """Facts by name."""
 
     title: str
     facts: dict[str, str]
@@ -55,7 +55,7 @@ class Rows:
 
     @property
     def fitting(self) -> int:
-        """How many rows a page can hold."""
+        """Largest number of rows of the page."""
         return int(max(1, MOST_CELLS // max(1, self.frame.shape[1])))
 
     @property

@@ -10,7 +10,7 @@ import pandas as pd
 from rich.console import Console
 
 from ..base.files import claim
-from ..base.terminal import filled, show_table, table
+from ..base.terminal import make_table, show_table, table
 from ..case.kinds import Compaction, Drum, Hopper, Peening, Settle
 from ..case.parts import MEASURES, Histogram, Load
 from ..impacts.report import records
@@ -247,7 +247,7 @@ def show(outcome: SceneOutcome, console: Console) -> None:
     """Print checks and a summary line."""
     checks = outcome.results.tables["checks"]
     rows = checks.assign(ok=np.where(checks["passed"], "yes", "NO")).to_dict("records")
-    show_table(console, filled(outcome.case.case.title, CHECKED, rows, left=("check", "unit")))
+    show_table(console, make_table(outcome.case.case.title, CHECKED, rows, left=("check", "unit")))
     _show_measures(outcome, console)
     for warning in outcome.warnings:
         console.print(f"warning: {warning}", style="yellow")

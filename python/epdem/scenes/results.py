@@ -68,7 +68,7 @@ def write(path: Path, p: ScenePlan, results: SceneResults) -> None:
 
 def read(path: Path | str) -> SceneResults:
     """The results in a file that `write` made. Raises CaseError."""
-    with h5.opened(path, "a results file of a scene") as file:
+    with h5.open_results(path, "a results file of a scene") as file:
         results = SceneResults(h5.read_text(file["case"]), h5.attributes(file))
         for name, group in file.items():
             if "columns" in getattr(group, "attrs", {}):

@@ -51,7 +51,7 @@ def hardness_test(
 
 
 def specimen(body: Body, target: Body) -> Body:
-    """The body whose hardness counts: of the lower yield stress, else of the lower modulus."""
+    """The body that the hardness belongs to: the lower yield stress, else the lower modulus."""
     return min((b for b in (body, target) if not b.rigid), key=lambda b: (b.yield_stress or math.inf, b.young_modulus))
 
 
@@ -107,7 +107,7 @@ class Calibration:
     e_n: float | None
     speed: float | None
     source: str
-    hardening_exponent: float | None = None  # where it was found, too
+    hardening_exponent: float | None = None  # of several e_n
     standard_errors: tuple[float, float] | None = None  # of value [Pa] and hardening_exponent
     intervals: tuple[tuple[float, float], tuple[float, float]] | None = None  # of both, which hold the true numbers
     # with the probability CONFIDENCE: Student's t if the scatter gives the uncertainty, else a normal distribution
@@ -118,7 +118,7 @@ class Calibration:
 
 
 @dataclass(frozen=True)
-class _Unknown:
+class _Uncalibrated:
     """A case whose law has no strength yet; `parameter` is the strength's name."""
 
     case: Case
@@ -134,12 +134,12 @@ class _Unknown:
         viscous = self.case.viscous.restitution if self.case.viscous else None
         return Experiment(spec, body, target, np.array(speeds), viscous, rated=self.case.rate is not None)
 
-    def hardening(self, exponent: float) -> "_Unknown":
+    def hardening(self, exponent: float) -> "_Uncalibrated":
         """The same with this hardening exponent."""
         return replace(self, law=replace(self.law, ratios=self.law.ratios | {EXPONENT: exponent}))
 
     def result(self, strength: float, speed: float | None, source: str) -> Calibration:
-        """The calibration that found this strength [Pa]."""
+        """The calibration with this strength [Pa]."""
         x = self.experiment(strength, speed or 1.0)
         theory = x.theory()
         e_n = float(predict(x).e_n[0]) if speed else None
@@ -151,7 +151,7 @@ class _Unknown:
         return Calibration(self.law.name, self.parameter, strength, stress, yield_speed, e_n, speed, source)
 
 
-def _unknown(path: Path) -> _Unknown:
+def _uncalibrated(path: Path) -> _Uncalibrated:
     case = load(path)
     with named(path):
         parameter = law_named(case.law.name).strength
@@ -159,15 +159,15 @@ def _unknown(path: Path) -> _Unknown:
         raise CaseError(f"{path}: law {case.law.name} never yields; it has nothing to calibrate")
     given = {k: v for k, v in case.law.parameters().items() if k not in (parameter, f"{parameter}_ratio")}
     with named(path):
-        return _Unknown(case, law_numbers(case.law.name, given), parameter)
+        return _Uncalibrated(case, law_numbers(case.law.name, given), parameter)
 
 
 def experiment(path: Path, found: Calibration) -> Experiment:
-    """The impact of the case with the strength that was found, at the measured speed or at the speed of first yield."""
-    unknown = _unknown(path)
+    """The impact of the case with the calibrated strength, at the measured speed or at the speed of first yield."""
+    uncalibrated = _uncalibrated(path)
     if found.hardening_exponent is not None:
-        unknown = unknown.hardening(found.hardening_exponent)
-    return unknown.experiment(found.value, found.speed or found.yield_speed)
+        uncalibrated = uncalibrated.hardening(found.hardening_exponent)
+    return uncalibrated.experiment(found.value, found.speed or found.yield_speed)
 
 
 def _check(path: Path, e_n: float, speed: float) -> None:
@@ -188,23 +188,25 @@ def from_restitution(path: Path, e_n: float, speed: float) -> Calibration:
             f"{path}: e_n = {e_n:g} at {speed:g} m/s, must lie in (0, 1); one impact without loss gives a lower limit "
             "of the strength alone: take a faster impact"
         )
-    unknown = _unknown(path)
+    uncalibrated = _uncalibrated(path)
 
     def restitution(log_strength: float) -> float:
-        return float(predict(unknown.experiment(math.exp(log_strength), speed)).e_n[0])
+        return float(predict(uncalibrated.experiment(math.exp(log_strength), speed)).e_n[0])
 
-    modulus = unknown.experiment(1e9, speed).E_star
+    modulus = uncalibrated.experiment(1e9, speed).E_star
     low, high = math.log(LEAST_STRENGTH * modulus), math.log(modulus)
     if not restitution(low) < e_n < restitution(high):
         raise CaseError(f"e_n = {e_n:g} at {speed:g} m/s: no strength between {LEAST_STRENGTH:g} and 1 of E* gives it")
     strength = math.exp(bisect(lambda middle: restitution(middle) < e_n, low, high)[0])
-    return unknown.result(strength, speed, f"e_n = {e_n:g} at {speed:g} m/s")
+    return uncalibrated.result(strength, speed, f"e_n = {e_n:g} at {speed:g} m/s")
 
 
 def from_hardness(path: Path, test: Indentation, source: str) -> Calibration:
     """The strength from a hardness test of the softer body of the case. Raises CaseError."""
-    unknown = _unknown(path)
-    return unknown.result(strength(unknown.law, test, specimen(*bodies(unknown.case)), source), None, source)
+    uncalibrated = _uncalibrated(path)
+    return uncalibrated.result(
+        strength(uncalibrated.law, test, specimen(*bodies(uncalibrated.case)), source), None, source
+    )
 
 
 def from_restitutions(
@@ -219,9 +221,9 @@ def from_restitutions(
     from scipy.optimize import least_squares
     from scipy.special import stdtrit
 
-    unknown = _unknown(path)
-    name = unknown.law.name
-    if EXPONENT not in unknown.law.ratios:
+    uncalibrated = _uncalibrated(path)
+    name = uncalibrated.law.name
+    if EXPONENT not in uncalibrated.law.ratios:
         raise CaseError(f"{path}: law {name} has one strength; give one e_n, or law.name = 'meyer' for several")
     for speed, e_n in measured:
         _check(path, e_n, speed)
@@ -230,18 +232,18 @@ def from_restitutions(
     if uncertainty is None and len(measured) < 3:
         raise CaseError("two e_n say nothing of their scatter; give --uncertainty, the standard error of each e_n")
     speeds, e_n = np.array(measured).T
-    modulus = unknown.experiment(1e9, 1.0).E_star
+    modulus = uncalibrated.experiment(1e9, 1.0).E_star
     unit = uncertainty or 1.0
 
-    def off(logarithm_and_exponent: np.ndarray) -> np.ndarray:
+    def residuals(logarithm_and_exponent: np.ndarray) -> np.ndarray:
         logarithm, exponent = logarithm_and_exponent.tolist()
-        found = predict(unknown.hardening(exponent).experiment(math.exp(logarithm), *speeds)).e_n
+        found = predict(uncalibrated.hardening(exponent).experiment(math.exp(logarithm), *speeds)).e_n
         return np.asarray((found - e_n) / unit)
 
     low, high = (math.log(LEAST_STRENGTH * modulus), 0.0), (math.log(modulus), LARGEST_EXPONENT)
     starts = [(math.log(strength * modulus), x) for strength in (1e-4, 1e-3, 1e-2) for x in (0.1, 0.5)]
-    start = min(starts, key=lambda point: float(np.sum(off(np.array(point)) ** 2)))
-    fit = least_squares(off, start, bounds=(low, high), x_scale=(1.0, 0.3), xtol=1e-12, ftol=1e-12, gtol=1e-12)
+    start = min(starts, key=lambda point: float(np.sum(residuals(np.array(point)) ** 2)))
+    fit = least_squares(residuals, start, bounds=(low, high), x_scale=(1.0, 0.3), xtol=1e-12, ftol=1e-12, gtol=1e-12)
     logarithm, exponent = fit.x.tolist()
     spread = unit if uncertainty else math.sqrt(2.0 * fit.cost / (len(e_n) - 2))
     information = fit.jac.T @ fit.jac / (1.0 if uncertainty else max(spread, 1e-12) ** 2)
@@ -250,7 +252,7 @@ def from_restitutions(
     error = np.sqrt(np.diag(covariance))
     if not error[1] < UNKNOWN:
         raise CaseError(
-            f"these e_n do not tell {unknown.parameter} and {EXPONENT} apart: the standard error of {EXPONENT} is "
+            f"these e_n do not tell {uncalibrated.parameter} and {EXPONENT} apart: the standard error of {EXPONENT} is "
             f"{error[1]:.2g}; measure at speeds further apart, or give law.{EXPONENT} and one e_n"
         )
     if exponent < 1e-6:
@@ -260,11 +262,11 @@ def from_restitutions(
         )
     if logarithm < low[0] + 1e-3 or exponent > 0.99:
         raise CaseError(
-            f"{path}: e_n hardly falls with speed; check speeds and e_n: no {unknown.parameter} above "
+            f"{path}: e_n hardly falls with speed; check speeds and e_n: no {uncalibrated.parameter} above "
             f"{LEAST_STRENGTH:g} E* with {EXPONENT} < 1 gives them"
         )
     reach = stdtrit(math.inf if uncertainty else len(e_n) - 2, 0.5 + CONFIDENCE / 2) * error
-    found = unknown.hardening(exponent).result(math.exp(logarithm), None, f"{len(e_n)} values of e_n")
+    found = uncalibrated.hardening(exponent).result(math.exp(logarithm), None, f"{len(e_n)} values of e_n")
     return replace(
         found,
         hardening_exponent=exponent,
@@ -280,7 +282,7 @@ def from_restitutions(
     )
 
 
-def of_case(path: Path) -> list[tuple[float, float]]:
+def measured_restitutions(path: Path) -> list[tuple[float, float]]:
     """The (speed [m/s], e_n) of [measured] of a case. Raises CaseError."""
     curve = load(path).measured
     if curve is None:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Keys of a scene for which numbers of its results have wanted values: floor load, plate force, rate of discharge.
+"""Fit of keys of a scene to target values of its results: floor load, plate force, rate of discharge.
 
 Every evaluation is a point of a sweep, in its folder: interrupted or repeated, a fit runs no stored point again.
 """
@@ -59,12 +59,12 @@ class Fit:
         return f"<table>{rows}</table>"
 
 
-class _Reached(Exception):
+class _TargetsMet(Exception):
     """All targets are within tolerance."""
 
 
 class _Search:
-    """The points of a fit so far, and the numbers of each."""
+    """The evaluated points of a fit and their numbers."""
 
     def __init__(self, base: Sweep, folder: Path, free: dict[str, Range], given: Targets, **options: Any):
         self.base, self.folder, self.free, self.given, self.options = base, folder, free, given, options
@@ -96,7 +96,9 @@ class _Search:
     def _numbers(self, sweep: Sweep, number: int) -> dict[str, float]:
         about = store.record(sweep, self.folder, number)
         if about["state"] != store.DONE:
-            raise EngineError(f"{sweep.place(number)}: {about['reason']}; see {store.of(sweep, self.folder, number)}")
+            raise EngineError(
+                f"{sweep.place(number)}: {about['reason']}; see {store.point_folder(sweep, self.folder, number)}"
+            )
         return {name: row[0] for name, row in about["rows"].items() if isinstance(row[0], float)}
 
     def _target(self, name: str, text: str | float) -> float:
@@ -137,10 +139,9 @@ def fit(
 ) -> Fit:
     """Find values of the keys `free` (ranges, "0.1..0.5" or "log:1 MPa..1 GPa") that give the targets of a scene.
 
-    `targets`: numbers of its results by name (see
-    `numbers_of`), as text with a unit or in SI; `tolerance` is their largest relative error; the points are in `out`
-    (default: runs/<name>_fit). Raises CaseError for unknown names, a key that changes nothing and targets out of reach,
-    EngineError for a scene that fails.
+    `targets`: numbers of its results by name (see `numbers_of`), as text with a unit or in SI; `tolerance` is their
+    largest relative error; the points are in `out` (default: runs/<name>_fit). Raises CaseError for unknown names, a
+    key that changes nothing and targets out of reach, EngineError for a scene that fails.
     """
     text, place = (scene.text, scene.place) if isinstance(scene, Read) else (text_for_anywhere(scene), scene)
     data = tomllib.loads(text)
@@ -167,8 +168,8 @@ def fit(
     values = search.point(search.shares[best])
     numbers = {name: search.found[best][name] for name in search.targets}
     if errors[best] > tolerance:
-        raise CaseError(f"{place}: {_missed(search, values, numbers)}")
-    case = store.of(search.sweep, folder, best + 1) / store.CASE
+        raise CaseError(f"{place}: {_failure_message(search, values, numbers)}")
+    case = store.point_folder(search.sweep, folder, best + 1) / store.CASE
     units = {name: unit(name, base.tables) or "" for name in numbers}
     return Fit(values, numbers, search.targets, units, case, search.ran, len(search.shares))
 
@@ -199,7 +200,7 @@ def _solve(search: _Search, tolerance: float) -> None:
     def residuals(shares: np.ndarray) -> np.ndarray:
         (errors,) = search([shares])
         if np.abs(errors).max() <= tolerance:
-            raise _Reached
+            raise _TargetsMet
         return np.asarray(errors)
 
     def jacobian(shares: np.ndarray) -> np.ndarray:
@@ -210,7 +211,7 @@ def _solve(search: _Search, tolerance: float) -> None:
     known = search([np.array(s) for s in search.shares])
     start = np.array(search.shares[int((known**2).sum(axis=1).argmin())])
     options: dict[str, Any] = {"bounds": (0.0, 1.0), "method": "dogbox", "xtol": SMALLEST, "ftol": 1e-4, "gtol": None}
-    with contextlib.suppress(_Reached):
+    with contextlib.suppress(_TargetsMet):
         residuals(start)
         between = [(a, b) for a, b in ((0.0, 0.5), (0.5, 1.0)) if _changes_sign(search, a, b)]
         if between:
@@ -226,7 +227,7 @@ def _changes_sign(search: _Search, low: float, high: float) -> bool:
     return bool(below * above < 0)
 
 
-def _missed(search: _Search, values: Point, numbers: dict[str, float]) -> str:
+def _failure_message(search: _Search, values: Point, numbers: dict[str, float]) -> str:
     said = []
     for name, target in search.targets.items():
         reached = [found[name] for found in search.found]

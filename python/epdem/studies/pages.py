@@ -52,7 +52,7 @@ def case_lines(text: str) -> Lines:
 
 
 def decks(engine: str, job: Plan | ScenePlan | None, stored: Mapping[str, str], of: str = "") -> list[Lines]:
-    """The files of a deck with the reasons of the engine's templates (a comment that is the reason stands once).
+    """The files of a deck with the reasons of the engine's templates; a comment that equals the reason is left out.
 
     Without these the `stored` texts by name, their comments as reasons. of: end of the titles.
     """
@@ -66,7 +66,7 @@ def decks(engine: str, job: Plan | ScenePlan | None, stored: Mapping[str, str], 
 
 
 def origin(about: Mapping[str, object], hashes: Mapping[str, object]) -> Facts:
-    """Versions and hashes of what made the numbers: the engines' versions are in the attributes of a results file."""
+    """Versions of epdem and the engines, and hashes of the inputs; `about`: attributes of a results file."""
     versions = {k.removeprefix("version_"): str(v) for k, v in about.items() if k.startswith("version_")}
     ours = {"epdem": f"{__version__}, sources {product_hash()[:16]}, compiled parts {library_hash()[:16]}"}
     return Facts("Versions and hashes", ours | versions | {f"inputs of {k}": str(v) for k, v in hashes.items()})
@@ -90,7 +90,7 @@ def page_of(
     return Page(title, sentences, every, passed=outcome.passed, command=said, warnings=outcome.warnings)
 
 
-def written(page: Page, folder: Path) -> Path:
+def write_study_page(page: Page, folder: Path) -> Path:
     """Write a page into the folder of its study; its path."""
     with claim(folder, force=True):
         return write(folder / NAME, lambda: page)
@@ -100,7 +100,7 @@ COMPARED = ("engine", "law", "speed", *(f"{n}{k}" for n in CHECKED for k in ("",
 OBLIQUE = ("angle", "spin_before", "e_t", "e_t_theory", "psi_1", "psi_2", "psi_2_theory", "psi_2_error", "spin")
 
 
-def of_impacts(outcome: Outcome) -> Path:
+def write_impacts_page(outcome: Outcome) -> Path:
     """Write report.html into the folder of a run; its path."""
     said = command()
     with claim(outcome.folder, force=True):
@@ -108,7 +108,7 @@ def of_impacts(outcome: Outcome) -> Path:
         return write(outcome.folder / NAME, lambda: impacts_page(outcome, said), mark=digest)
 
 
-def of_calibration(case: Path, found: Calibration, folder: Path, *, force: bool = False) -> Path:
+def write_calibration_page(case: Path, found: Calibration, folder: Path, *, force: bool = False) -> Path:
     """Write the page of a strength that was found for a case into `folder`: the curve e_n(v) that it gives.
 
     Raises CaseError for a folder with a page of another kind, without `force`.
@@ -177,7 +177,7 @@ def impacts_page(outcome: Outcome, command: str = "") -> Page:
 
 
 def impacts_sentences(outcome: Outcome) -> list[str]:
-    """What ran and came out, in words."""
+    """Summary sentences."""
     rows, said = outcome.results.comparison, []
     for law, p in outcome.plans.items():
         speed, prediction = p.experiment.speed, outcome.predictions[law]
@@ -250,7 +250,7 @@ TABLES = [
 ]
 
 
-def of_scene(outcome: SceneOutcome) -> Path:
+def write_scene_page(outcome: SceneOutcome) -> Path:
     """Write report.html into the folder of a scene; its path."""
     with claim(outcome.folder, force=True):
         return write(outcome.folder / NAME, lambda: scene_page(outcome, command()))
@@ -285,7 +285,7 @@ def scene_page(outcome: SceneOutcome, command: str = "") -> Page:
 
 
 def scene_sentences(outcome: SceneOutcome) -> list[str]:
-    """What ran and came out, in words."""
+    """Summary sentences."""
     p, tables = outcome.plan, outcome.results.tables
     last, checks = tables["rows"].iloc[-1], tables["checks"]
     failed = ", ".join(checks["check"][~checks["passed"].astype(bool)])
@@ -316,7 +316,7 @@ KINDS = ("last", "min", "max", "mean")  # numbers of one column of a scene
 PANEL_COLUMNS, MOST_PANELS = 3, 30  # of a chart
 
 
-def of_sweep(result: SweepOutcome) -> Path:
+def write_sweep_page(result: SweepOutcome) -> Path:
     """Write the page of a sweep into its folder."""
     table, sweep = result.table, result.sweep
     units = table.attrs.get("units", {})
@@ -328,7 +328,7 @@ def of_sweep(result: SweepOutcome) -> Path:
     parts += [Rows("All points", rows, units, "sweep.csv beside this page has all rows and columns.")]
     parts += [case_lines(sweep.case), origin({f"version_{k}": v for k, v in sweep.versions.items()}, {})]
     page = Page(f"Sweep of {sweep.name}", [said], parts, passed=result.passed, command=command())
-    return written(page, result.folder)
+    return write_study_page(page, result.folder)
 
 
 def _evenly(values: np.ndarray) -> np.ndarray:
@@ -394,7 +394,7 @@ def _series(table: pd.DataFrame, key: str, column: str, kinds: list[str]) -> lis
     return series
 
 
-def of_fit(found: Fit) -> Path:
+def write_fit_page(found: Fit) -> Path:
     """Write the page of a fit of a scene into the folder of its points."""
     folder = found.case.parents[2]
     table = read_sweep(folder).dropna(subset=list(found.targets))
@@ -420,4 +420,4 @@ def of_fit(found: Fit) -> Path:
     rows = Rows("All scenes", table[["point", *found.values, *found.targets]], units)
     case = case_lines(found.case.read_text(encoding="utf-8"))
     page = Page(f"Fit of {names}", said, [*charts, rows, case, origin({}, {})], command=command())
-    return written(page, folder)
+    return write_study_page(page, folder)

@@ -116,7 +116,7 @@ def _change(document: tomlkit.TOMLDocument, data: Any, keys: Key, after: str | f
 
 
 def _prediction(data: dict[str, Any], path: Path) -> "Prediction":
-    """What theory expects of a case, or of the impact that stands for a scene."""
+    """Prediction for a case, or for the impact that represents a scene."""
     from ..case import impact as impacts
     from ..case import scene as scenes
     from ..impacts.experiment import experiment

@@ -36,7 +36,7 @@ def of_crosscheck(check: Crosscheck) -> Path:
     parts += [Facts("Laws and theories of their own", check.notes)] if check.notes else []
     parts += [Facts("Left out", check.absent)] if check.absent else []
     page = replace(base, sentences=[*said, *base.sentences], parts=parts + base.parts, passed=check.passed)
-    return common.written(page, check.outcome.folder)
+    return common.write_study_page(page, check.outcome.folder)
 
 
 def of_cost(outcome: Cost, bulk: pd.DataFrame | None, folder: Path) -> Path:
@@ -54,7 +54,7 @@ def of_cost(outcome: Cost, bulk: pd.DataFrame | None, folder: Path) -> Path:
     )
     parts.append(common.origin({}, {}))
     page = Page(f"{outcome.case.case.title}: error against run time", [said], parts, command=common.command())
-    return common.written(page, folder)
+    return common.write_study_page(page, folder)
 
 
 def of_stability(outcome: Stability, path: Path) -> Path:
@@ -96,4 +96,4 @@ def of_validation(v: Validation) -> Path:
     page = Page("Laws against measured impacts", [said], parts, command=common.command())
     with claim(v.folder, force=True):
         save(chart, v.folder)
-        return common.written(page, v.folder)
+        return common.write_study_page(page, v.folder)

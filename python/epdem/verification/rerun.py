@@ -9,7 +9,7 @@ from pathlib import Path
 
 import pandas as pd
 
-from ..base.tables import attributes, opened
+from ..base.tables import attributes, open_results
 from ..case.toml import names_in, renamed
 from ..engines import scene_engine
 from ..errors import CaseError
@@ -41,7 +41,7 @@ def rerun(path: Path, progress: Progress = lambda text: None) -> Rerun:
 
     Raises CaseError for a file that is none, EngineError.
     """
-    with opened(path, "a results file of epdem") as file:
+    with open_results(path, "a results file of epdem") as file:
         scene = attributes(file).get("kind") == "scene"
     with tempfile.TemporaryDirectory(prefix="epdem-rerun-") as scratch:
         return (_scene if scene else _impacts)(path, Path(scratch), progress)

@@ -7,7 +7,7 @@ from pathlib import Path
 import numpy as np
 
 from ...base import rendering as decks
-from ...base.files import held
+from ...base.files import stored_results
 from ...base.processes import most_ranks
 from ...errors import EngineError
 from ...impacts.engine import Feature, Report, Trajectory, check_features
@@ -75,7 +75,7 @@ class Lammps(Host):
         )
 
     def run_impacts(self, plan: Plan, folder: Path, ranks: int) -> Trajectory:
-        held(folder).remove(PATH, END)
+        stored_results(folder).remove(PATH, END)
         wall = launcher.run("in.impact", folder, ranks=ranks, log=LOG, seconds=120 + 1e-5 * plan.n * plan.steps)
         bodies = plan.n if math.isinf(plan.experiment.target.radius) else 2 * plan.n
         z, vz, fz = np.moveaxis(frames(folder / PATH, plan.steps + 1, bodies), 2, 0)

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from ...base import paths
-from ...base.processes import ask, call, most_ranks
+from ...base.processes import call, captured_output, most_ranks
 from ...errors import EngineError
 from ...impacts.engine import refuse_ranks
 
@@ -71,7 +71,7 @@ def environment() -> dict[str, str]:
 
 def version() -> str:
     """One line: LAMMPS's version, and the hash of our plugin, which may be older than this package."""
-    match = re.search(r"Massively Parallel Simulator - (.+)", ask([str(program()), "-h"], environment()))
+    match = re.search(r"Massively Parallel Simulator - (.+)", captured_output([str(program()), "-h"], environment()))
     plugin = paths.native("lammps/epdemplugin.so")
     ours = f"epdemplugin {hashlib.sha256(plugin.read_bytes()).hexdigest()[:12]}" if plugin else "no epdemplugin"
     return f"LAMMPS {match[1] if match else '(version unknown)'}, {ours}"

@@ -16,7 +16,7 @@ from typing import Any
 
 from ...base import paths, processes
 from ...base.paths import config_file
-from ...base.processes import ask, call, most_ranks
+from ...base.processes import call, captured_output, most_ranks
 from ...errors import EngineError
 from ...impacts.engine import refuse_ranks
 
@@ -106,13 +106,13 @@ def examine(path: Path, laws: tuple[str, ...]) -> Executable:
         _version(text),
         superquadrics="superquadric" in _styles(text, "Atom styles"),
         vtk=_VTK in _styles(text, "Dump styles"),
-        mpi="libmpi" in ask(["ldd", str(path)]) if shutil.which("ldd") else False,
+        mpi="libmpi" in captured_output(["ldd", str(path)]) if shutil.which("ldd") else False,
         models=tuple(law for law in laws if _has(law)),
     )
 
 
 def _help(path: Path) -> str:
-    return ask([str(path), "-log", "none", "-h"], environment())
+    return captured_output([str(path), "-log", "none", "-h"], environment())
 
 
 def _version(text: str) -> str:
@@ -217,7 +217,7 @@ class Session:
         self._screen, theirs = pty.openpty()  # in a pipe its output would stay in a buffer
         tty.setraw(theirs)
         try:
-            return processes.started(program, folder, stdin=subprocess.PIPE, stdout=theirs, env=environment())
+            return processes.start_program(program, folder, stdin=subprocess.PIPE, stdout=theirs, env=environment())
         finally:
             os.close(theirs)
 

@@ -10,7 +10,7 @@ from pathlib import Path
 
 from ...base import paths
 from ...base import rendering as decks
-from ...base.files import held
+from ...base.files import stored_results
 from ...base.processes import ROW
 from ...errors import CaseError, EngineError
 from ...impacts.engine import Report
@@ -73,7 +73,7 @@ def _pruning(folder: Path, report: Report) -> Report:
 
 
 def _restarts(folder: Path) -> list[tuple[int, Path]]:
-    ours = [p for p in folder.glob("restart.*.bin") if p.name not in held(folder).foreign]
+    ours = [p for p in folder.glob("restart.*.bin") if p.name not in stored_results(folder).foreign]
     names = [(re.fullmatch(r"restart\.(\d+)\.bin", p.name), p) for p in ours]
     return sorted((int(m[1]), p) for m, p in names if m)
 

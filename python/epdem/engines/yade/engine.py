@@ -14,7 +14,7 @@ import numpy as np
 
 from ...base import rendering as decks
 from ...base.declarations import declarations
-from ...base.processes import ask, call
+from ...base.processes import call, captured_output
 from ...errors import CaseError, EngineError
 from ...impacts.engine import Feature, Report, Trajectory, check_features
 from ...impacts.experiment import Body, Experiment
@@ -63,7 +63,7 @@ class Yade(Host):
         return None
 
     def version(self) -> str:
-        match = re.search(r"version: (\S+)", ask([command(), "--version"], environment()))
+        match = re.search(r"version: (\S+)", captured_output([command(), "--version"], environment()))
         laws = (
             module_version() if self.classes else "laws of the C library in the deck ('make yade' builds C++ classes)"
         )

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""A sweep on disk: its definition, one folder a point, and in each what became of the point.
+"""A sweep on disk: its definition, and for each point a folder with its record.
 
 A folder has the hash of the case and of what runs it as its name, so that a sweep that has grown or changed finds
 again what is finished. `point.json` is written whole or not at all: state and results never disagree. While a point
@@ -35,7 +35,7 @@ STATES = (WAITING, RUNNING, DONE, FAILED)
 
 @dataclass(frozen=True)
 class Sweep:
-    """What is to be done: a case (TOML text), the points, and what runs them; points are numbered from 1."""
+    """Definition of a sweep: case (TOML text), points and engines; points are numbered from 1."""
 
     name: str
     case: str
@@ -115,7 +115,7 @@ class Sweep:
         return names_in([{key.rpartition(".")[2]: value} for key, value in point.items()])
 
     def inputs(self, number: int) -> str:
-        """Hash of all that the result of a point depends on."""
+        """Hash of all inputs of the result of a point."""
         names = names_in(self.data(number)) if self._files(self.points[number - 1]) else names_in(self.tables)
         contents = [self._hashes[name] for name in sorted(names) if name in self._hashes]
         return inputs_hash([], self.identities[number - 1], sorted(self.versions.items()), *contents)
@@ -138,14 +138,14 @@ def read(folder: Path) -> Sweep:
         raise CaseError(f"{folder}: not a folder of a sweep; 'epdem sweep CASE --out {folder}' makes one") from None
 
 
-def of(sweep: Sweep, folder: Path, number: int) -> Path:
+def point_folder(sweep: Sweep, folder: Path, number: int) -> Path:
     """The folder of a point."""
     return folder / POINTS / sweep.identities[number - 1]
 
 
 def record(sweep: Sweep, folder: Path, number: int) -> dict[str, Any]:
-    """What is stored of a point; {"state": "waiting"} if that is nothing, or if its inputs have changed."""
-    place = of(sweep, folder, number)
+    """Stored record of a point; {"state": "waiting"} without one, or if its inputs have changed."""
+    place = point_folder(sweep, folder, number)
     for name in (FINISHED, STARTED):
         try:
             content = json.loads((place / name).read_text(encoding="utf-8"))
@@ -167,7 +167,7 @@ def records(sweep: Sweep, folder: Path) -> list[dict[str, Any]]:
 
 def begin(sweep: Sweep, folder: Path, number: int) -> dict[str, Any]:
     """Make a point's folder, write its case, and mark it as running; returns the record that `end` takes."""
-    place = of(sweep, folder, number)
+    place = point_folder(sweep, folder, number)
     place.mkdir(parents=True, exist_ok=True)
     (place / FINISHED).unlink(missing_ok=True)
     with atomic(place / CASE, sync=False) as temporary:
@@ -191,7 +191,7 @@ def end(
     sweep: Sweep, folder: Path, number: int, about: dict[str, Any], *, rows: dict[str, Any] | None, reason: str = ""
 ) -> None:
     """Store a point's results (columns of rows), or the reason why there are none."""
-    place = of(sweep, folder, number)
+    place = point_folder(sweep, folder, number)
     state = {
         "state": FAILED if rows is None else DONE,
         "reason": reason,

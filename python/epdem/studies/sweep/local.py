@@ -20,16 +20,16 @@ STOPPED = 143  # exit code of a process that received SIGTERM
 
 
 class Died(Exception):
-    """The process that worked at an item is gone; says how."""
+    """The process of an item ended before its result; the text says how."""
 
 
 def cores() -> int:
-    """How many processes can work here at once."""
+    """Number of processors that this process may use."""
     return len(os.sched_getaffinity(0))
 
 
 def each(function: Callable[[Any], Any], items: Iterable[Any], jobs: int) -> Iterator[tuple[Any, Any]]:
-    """(item, function(item)) as they come, by `jobs` processes; the result of an item whose process died is a Died.
+    """(item, function(item)) in the order of completion, by `jobs` processes; Died for an item whose process died.
 
     Raises what `function` raises, and Stopped if a process received SIGTERM from another one. On any exception, Ctrl-C
     too, all processes are stopped.
@@ -38,7 +38,7 @@ def each(function: Callable[[Any], Any], items: Iterable[Any], jobs: int) -> Ite
     team: dict[Connection, tuple[BaseProcess, Any]] = {}
     try:
         for item in waiting:
-            _start(function, item, team)
+            _start_worker(function, item, team)
             if len(team) >= jobs:
                 break
         while team:
@@ -53,16 +53,16 @@ def each(function: Callable[[Any], Any], items: Iterable[Any], jobs: int) -> Ite
                     ready.close()
                     if process.exitcode == STOPPED:
                         raise Stopped from None
-                    good, result = True, Died(_how(process.exitcode))
+                    good, result = True, Died(_exit_reason(process.exitcode))
                 if not good:
                     raise result
                 following = next(waiting, None)
                 if isinstance(result, Died):
                     if following is not None:
-                        _start(function, following, team)
+                        _start_worker(function, following, team)
                 elif following is None:
                     del team[ready]
-                    _dismiss(process, ready)
+                    _end_worker(process, ready)
                 else:
                     ready.send(following)
                     team[ready] = process, following
@@ -76,13 +76,13 @@ def each(function: Callable[[Any], Any], items: Iterable[Any], jobs: int) -> Ite
             process.join()
 
 
-def _how(code: int | None) -> str:
+def _exit_reason(code: int | None) -> str:
     if code is not None and code < 0:
         return f"its process was ended by signal {-code}{' (out of memory?)' if code == -9 else ''}"
     return f"its process ended with exit code {code}"
 
 
-def _start(function: Callable[[Any], Any], item: Any, team: dict[Connection, tuple[BaseProcess, Any]]) -> None:
+def _start_worker(function: Callable[[Any], Any], item: Any, team: dict[Connection, tuple[BaseProcess, Any]]) -> None:
     ours, theirs = _FORK.Pipe()
     process = _FORK.Process(target=_work, args=(function, theirs, [*team, ours], os.getpid()))
     with processes.uninterrupted():
@@ -92,7 +92,7 @@ def _start(function: Callable[[Any], Any], item: Any, team: dict[Connection, tup
     ours.send(item)
 
 
-def _dismiss(process: BaseProcess, pipe: Connection) -> None:
+def _end_worker(process: BaseProcess, pipe: Connection) -> None:
     with contextlib.suppress(OSError):
         pipe.send(None)
     process.join()
@@ -100,7 +100,7 @@ def _dismiss(process: BaseProcess, pipe: Connection) -> None:
 
 
 def _keep_memory() -> None:
-    """Keep what is freed for the next item: given back, each point's 13 MB came page by page, a third of its time."""
+    """Keep freed memory for the next item: to get 13 MB from the kernel again took a third of a point's time."""
     trim_threshold, mmap_threshold = -1, -3  # of malloc.h
     with contextlib.suppress(AttributeError):  # a C library without it
         mallopt = ctypes.CDLL(None).mallopt
@@ -109,10 +109,10 @@ def _keep_memory() -> None:
 
 
 def _work(function: Callable[[Any], Any], pipe: Connection, others: list[Connection], parent: int) -> None:
-    """In a process of the pool: item after item, until the parent sends None or has ended."""
+    """Loop of a process of the pool: items, until the parent sends None or has ended."""
     signal.signal(signal.SIGINT, signal.SIG_IGN)  # Ctrl-C reaches all: our parent stops us in good order
     signal.signal(signal.SIGUSR2, signal.SIG_IGN)  # Slurm warns every process of a job; our parent queues it again
-    processes.listen(signal.SIGTERM)
+    processes.install_signal_handlers(signal.SIGTERM)
     end_with_parent()  # a parent that is killed cannot
     _keep_memory()
     for other in others:  # an open end of a pipe here would hide that the process has ended
@@ -125,7 +125,7 @@ def _work(function: Callable[[Any], Any], pipe: Connection, others: list[Connect
                 answer = False, error
             pipe.send(answer)
     except Stopped:
-        os._exit(STOPPED)  # nothing of our parent's is to be flushed or removed by us
+        os._exit(STOPPED)  # without flushing or removing files of the parent
     except (EOFError, OSError):
         os._exit(1)
     os._exit(0)

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Points of a sweep: keys by dotted names, ranges, lists and tables of their values; grids and latin hypercubes."""
+"""Points of a sweep: keys by dotted names; ranges, lists and tables of values; grids and Latin hypercubes."""
 
 import csv
 import difflib
@@ -32,7 +32,7 @@ from ...laws.strengths import ADHESION
 
 @dataclass(frozen=True)
 class Key:
-    """What a key takes: a quantity of the unit `unit` or a list of such, a whole number, or anything else."""
+    """Kind of a key's value: quantity of `unit` or a list of quantities, whole number, or any other value."""
 
     unit: str | None = None
     whole: bool = False
@@ -102,8 +102,8 @@ def _law(data: dict[str, Any]) -> Declaration | None:
     return declarations().get(str(table.get("name"))) if isinstance(table, dict) else None
 
 
-def known(key: str, keys: dict[str, Key], place: str) -> Key:
-    """The key of that name. Raises CaseError that names the nearest ones."""
+def require_key(key: str, keys: dict[str, Key], place: str) -> Key:
+    """The key of that name. Raises CaseError with the nearest names."""
     if key in keys:
         return keys[key]
     last = [name for name in keys if name.split(".")[-1] == key.split(".")[-1]]
@@ -112,8 +112,8 @@ def known(key: str, keys: dict[str, Key], place: str) -> Key:
     raise CaseError(f"{place}: the case has no key {key!r}; the nearest: {nearest}")
 
 
-def _rivals(key: str, data: dict[str, Any]) -> tuple[str, ...]:
-    """Keys that say the same as `key` in another way, so that only one of them may stand in a case."""
+def _exclusive_keys(key: str, data: dict[str, Any]) -> tuple[str, ...]:
+    """Alternatives of `key`, of which a case may have one."""
     if key == "numerics.error":
         return ("numerics.steps_in_contact",)
     if key == "numerics.steps_in_contact":
@@ -123,11 +123,11 @@ def _rivals(key: str, data: dict[str, Any]) -> tuple[str, ...]:
 
 
 def assign(document: Any, key: str, value: Any) -> None:
-    """Set `key` in a TOML document or plain tables; missing tables are made, rival keys are removed."""
+    """Set `key` in a TOML document or plain tables; missing tables are made, alternatives of the key are removed."""
     *way, last = key.split(".")
-    for rival in _rivals(key, document):
-        table, name = rival.rsplit(".", 1)
-        if rival != key and name in document.get(table, {}):
+    for other in _exclusive_keys(key, document):
+        table, name = other.rsplit(".", 1)
+        if other != key and name in document.get(table, {}):
             del document[table][name]
     table = document
     for name in way:
@@ -149,7 +149,7 @@ _HEAD = re.compile(r"\s*(\S+)\s*(?:\[(.*)\])?\s*")
 
 @dataclass(frozen=True)
 class Range:
-    """From `low` to `high`, both in `unit` ("" for a plain number), evenly spaced, or so in the logarithm."""
+    """Values from `low` to `high` in `unit` ("" for a plain number), evenly spaced, or evenly in the logarithm."""
 
     low: float
     high: float
@@ -189,7 +189,7 @@ Axis = Range | Listed
 
 
 def axis(text: str, key: Key, place: str) -> Axis:
-    """What a person writes as the values of a key: "1 mm,2 mm", "0.5 GPa..2 GPa:16", "log:1 m/s..100 m/s:9".
+    """The values of a key from text: "1 mm,2 mm", "0.5 GPa..2 GPa:16", "log:1 m/s..100 m/s:9".
 
     Raises CaseError, which begins with `place`.
     """
@@ -228,7 +228,7 @@ def _number(part: str, text: str, place: str) -> tuple[float, str]:
 
 
 def _parts(text: str) -> list[str]:
-    """The parts between commas, but not those in quotes and brackets."""
+    """The text split at commas outside quotes and brackets."""
     depth, quoted, parts = 0, False, [""]
     for c in text:
         quoted ^= c == '"'
@@ -241,7 +241,7 @@ def _parts(text: str) -> list[str]:
 
 
 def _value(text: str, place: str) -> Value:
-    """A value of TOML, or else a text."""
+    """The value of TOML that the text is, else the text."""
     if not text.strip():
         raise CaseError(f"{place}: a value is empty; write one between the commas, or remove a comma")
     try:
@@ -255,7 +255,7 @@ def _value(text: str, place: str) -> Value:
 def settings(
     texts: Sequence[str], option: str = "--set", example: str = "impact.body.radius='1 mm,2 mm'"
 ) -> dict[str, str]:
-    """KEY=VALUES as a command gives them behind an option. Raises CaseError, which shows the example."""
+    """Values by key from options KEY=VALUES. Raises CaseError, which shows the example."""
     given: dict[str, str] = {}
     for text in texts:
         key, equals, values = text.partition("=")
@@ -271,7 +271,7 @@ def axes(given: Mapping[str, Any], keys: dict[str, Key], option: str = "--set") 
     """The values of each key, from text as in `axis`, from a sequence, or from one value. Raises CaseError."""
     axes: dict[str, Axis] = {}
     for name, values in given.items():
-        key = known(name, keys, f"{option} {name}")
+        key = require_key(name, keys, f"{option} {name}")
         if isinstance(values, str):
             axes[name] = axis(values, key, f"{option} {name}")
         else:
@@ -309,13 +309,13 @@ def with_units(value: Any, names: dict[str, Key], place: str = "") -> Value:
     return f"{float(value)!r} {unit}" if unit not in (None, "1") and not isinstance(value, str | bool) else value
 
 
-def plain(value: Any) -> Any:
+def as_lists(value: Any) -> Any:
     """Arrays and tuples as lists, at any depth."""
     if isinstance(value, Mapping):
-        return {str(k): plain(v) for k, v in value.items()}
+        return {str(k): as_lists(v) for k, v in value.items()}
     if isinstance(value, np.ndarray):
         return value.tolist()
-    return [plain(v) for v in value] if isinstance(value, list | tuple) else value
+    return [as_lists(v) for v in value] if isinstance(value, list | tuple) else value
 
 
 def grid(all_axes: dict[str, Axis]) -> list[Point]:
@@ -351,7 +351,7 @@ def table(path: Path, keys: dict[str, Key]) -> list[Point]:
         match = _HEAD.fullmatch(head)
         if match is None:
             raise CaseError(f"--points {path}: the heading {head!r} is not KEY or KEY [UNIT]")
-        known(match[1], keys, f"--points {path}")
+        require_key(match[1], keys, f"--points {path}")
         columns.append((match[1], match[2] or ""))
     if not rows:
         raise CaseError(f"--points {path}: no points; write a line of keys and a line of values for each point")

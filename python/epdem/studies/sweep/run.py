@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""A sweep from its command to its table: points, checks, missing points and how each runs, executors."""
+"""A sweep from its command to its table: points, checks, runs of missing points."""
 
 import contextlib
 import errno
@@ -36,7 +36,7 @@ FULL = 1 << 16  # bytes; with less free space on the disk, a failure is a full d
 
 
 def check(sweep: Sweep, number: int, *, plans: bool = False) -> CaseError | None:
-    """What is wrong with the case of a point, if anything; `plans`: also what its engines refuse. Nothing runs."""
+    """The error of the case of a point, or None; `plans`: also errors of its plan and engines. Nothing runs."""
     data, place = sweep.data(number), sweep.place(number)
     try:
         if sweep.scene:
@@ -70,7 +70,7 @@ def evaluate(sweep: Sweep, folder: Path, number: int) -> str:
     except that a scene with restart files goes on from them.
     """
     about = store.begin(sweep, folder, number)
-    place = store.of(sweep, folder, number)
+    place = store.point_folder(sweep, folder, number)
     try:
         rows = _scene(sweep, place) if sweep.scene else _impacts(sweep, number, place)
     except OSError:
@@ -128,7 +128,7 @@ Report = Callable[[int, int], None]  # (points that have run, points of the swee
 
 @dataclass(frozen=True)
 class SweepOutcome:
-    """What a sweep gives its caller: its table (see `table.collect`) and how many points ran just now."""
+    """Outcome of a sweep: its table (see `table.collect`) and the number of points that ran in this call."""
 
     sweep: Sweep
     folder: Path
@@ -136,7 +136,7 @@ class SweepOutcome:
     ran: int
 
     def count(self, state: str) -> int:
-        """How many points are in a state."""
+        """Number of points in a state."""
         return int(self.table[self.table["status"] == state]["point"].nunique())
 
     @property
@@ -212,7 +212,7 @@ def run(
     force: bool = False,
     report: Report = lambda done, total: None,
 ) -> SweepOutcome:
-    """Run what of a sweep is missing or changed, by `jobs` processes on this machine, and write its table.
+    """Run the missing and changed points of a sweep by `jobs` processes on this machine, and write its table.
 
     Raises CaseError before anything runs if a point is wrong, OSError if results cannot be stored. Whatever ends it,
     the same call goes on where it ended.
@@ -232,5 +232,5 @@ def run(
 
 
 def record_death(sweep: Sweep, folder: Path, number: int, how: str) -> None:
-    """Store a point that did not come to its end as failed."""
+    """Store a point whose process died as failed."""
     store.end(sweep, folder, number, store.begin(sweep, folder, number), rows=None, reason=how)

@@ -72,7 +72,7 @@ def share(numbers: Sequence[int], task: int, tasks: int) -> list[int]:
 
 
 class Task:
-    """What a job runs; before its walltime ends it, submitit queues the same again, and so does Slurm on a preemption.
+    """Work of a job; submitit queues it again before its walltime ends, Slurm after a preemption.
 
     A job that receives the signal to stop waits for its end: Slurm does not queue a job again that ends by itself.
     """
@@ -85,7 +85,7 @@ class Task:
                 signal.pause()
 
     def checkpoint(self, folder: Path, numbers: list[int]) -> Any:
-        """What is to be queued again."""
+        """The submission that continues this job."""
         import submitit
 
         return submitit.helpers.DelayedSubmission(self, folder, numbers)
@@ -171,7 +171,7 @@ def run(
     force: bool = False,
     report: Report = lambda done, total: None,
 ) -> SweepOutcome:
-    """Run what of a sweep is missing as jobs of Slurm, wait for their end, and write the table.
+    """Run the missing points of a sweep as jobs of Slurm, wait for their end, and write the table.
 
     Ctrl-C ends the waiting alone; the same call later waits for the jobs that are still there and submits the rest. A
     point whose job ended before it is stored as failed, with the state of the job. Raises CaseError, EngineError.
@@ -185,7 +185,7 @@ def run(
         numbers = store.to_do(sweep, folder, retry_failed=retry_failed)
         new = [n for n in numbers if sweep.identities[n - 1] not in under_way]
         for n in new:
-            (store.of(sweep, folder, n) / store.FINISHED).unlink(missing_ok=True)
+            (store.point_folder(sweep, folder, n) / store.FINISHED).unlink(missing_ok=True)
         if new:
             jobs |= _submit(sweep, folder, new, given)
             with atomic(folder / JOBS) as temporary:
@@ -288,7 +288,7 @@ def write_script(sweep: Sweep, folder: Path, given: Sequence[str], path: Path, *
 
 
 def status(folder: Path) -> dict[str, Any]:
-    """How far a sweep is: counts by state, times [s], reasons of failed points, and whether it is running now."""
+    """Progress of a sweep: counts by state, times [s], reasons of failed points."""
     sweep = store.read(folder)
     records = store.records(sweep, folder)
     here = running(folder)
@@ -303,7 +303,7 @@ def status(folder: Path) -> dict[str, Any]:
     seconds = [a["seconds"] for a in records if "seconds" in a]
     counts = {state: states.count(state) for state in store.STATES}
     failed = [
-        {"point": n, "folder": str(store.of(sweep, folder, n)), "reason": a["reason"]}
+        {"point": n, "folder": str(store.point_folder(sweep, folder, n)), "reason": a["reason"]}
         for n, a in enumerate(records, start=1)
         if a["state"] == store.FAILED
     ]

@@ -7,7 +7,7 @@ from typing import Any
 
 import pandas as pd
 
-from ...base.tables import Hdf5, opened, read_table, write_attributes, write_csv, write_table, write_text
+from ...base.tables import Hdf5, open_results, read_table, write_attributes, write_csv, write_table, write_text
 from ...case.parts import MEASURES
 from ...case.units import to_si
 from ...errors import CaseError
@@ -84,7 +84,7 @@ def read_sweep(folder: Path | str) -> pd.DataFrame:
     path = Path(folder) / TABLE
     if not path.exists():
         raise CaseError(f"{path}: no table of a sweep; 'epdem sweep CASE --out {folder}' writes it")
-    with opened(path, "a table of a sweep") as file:
+    with open_results(path, "a table of a sweep") as file:
         return read_table(file["sweep"])
 
 

@@ -7,7 +7,7 @@ from typing import Annotated
 import typer
 
 from ...base.terminal import status
-from ...cli.options import AsJson, Force, Formats, formats, say_files
+from ...cli.options import AsJson, Force, Formats, formats, print_files
 
 
 def figures(
@@ -24,4 +24,4 @@ def figures(
     with claim(out, force=force), status() as progress:
         progress("four figures")
         paths = draw_all(out, kinds)
-    say_files(paths, as_json)
+    print_files(paths, as_json)
