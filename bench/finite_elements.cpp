@@ -2,9 +2,11 @@
 // Finite elements of a sphere (R = 1, Y = 1) that rigid planes without friction press, the symmetry planes of a
 // lattice:
 //   g++ -std=c++17 -O3 -march=native -ffast-math bench/finite_elements.cpp -o finite_elements
-//   ./finite_elements LATTICE E/Y nu n D [speed] > lattice.csv
-// LATTICE: sc, fcc, bcc, hex (simple hexagonal) or die (simple cubic, four planes stay); n: elements along an edge of
-// the inner cube, D: last relative density, speed of the planes over sqrt(Y/density), 0.02 by default. One octant,
+//   ./finite_elements LATTICE E/Y nu n D [speed [back]] > lattice.csv
+// LATTICE: sc, fcc, bcc, hex (simple hexagonal), tet (simple tetragonal, two planes at 1.1 of the distance of the
+// others) or die (simple cubic, four planes stay); n: elements along an edge of the inner cube, D: last relative
+// density, speed of the planes over sqrt(Y/density), 0.02 by default. With `back`, the speed of the release, the planes
+// stop at D, are held there and go back until they are free; a first column is the phase: 0, 1 and 2. One octant,
 // hexahedra with 2 x 2 x 2 points and one pressure p = K ln(V/V0) each (Q1P0), ideally plastic J2 with the Jaumann rate
 // of the deviator, central differences. Masses of the elements are scaled to one critical time step.
 #include <algorithm>
@@ -24,7 +26,11 @@ using Point = std::array<double, 3>;
 
 constexpr double bulk_viscosity = 0.1, drag = 0.2;  // damping: of the volume rate, and of the velocity [1/time]
 constexpr double courant = 0.6;
-constexpr int rows = 225;  // of the table
+constexpr int rows = 225;  // of the table of the loading
+
+// The planes slow down, stand and start back in these times; then rows of the table are these times and ways apart.
+constexpr double slowing = 0.6, standing = 2.5, starting = 0.5;
+constexpr double held_row = 0.2, back_row = 1e-4;
 
 struct Plane {
   Point normal;
@@ -52,9 +58,11 @@ Lattice lattice_of(const std::string& name) {
             32.0 * t * t * t,
             "force_first,force_second"};
   if (name == "hex") return {{{x, 1, true, 0}, {{0.5, w, 0}, 1, true, 0}, {z, 1, true, 0}}, {8}, 8.0 * w, "force"};
+  if (name == "tet")
+    return {{{x, 1, true, 0}, {y, 1, true, 0}, {z, 1.1, true, 1}}, {4, 2}, 8.8, "force_first,force_second"};
   if (name == "die")
     return {{{x, 1, false, 0}, {y, 1, false, 0}, {z, 1, true, 1}}, {4, 2}, 8.0, "force_side,force_top"};
-  std::fprintf(stderr, "lattice %s: must be sc, fcc, bcc, hex or die\n", name.c_str());
+  std::fprintf(stderr, "lattice %s: must be sc, fcc, bcc, hex, tet or die\n", name.c_str());
   std::exit(2);
 }
 
@@ -206,18 +214,18 @@ void evaluate(Batch& batch, const Real (&x)[8][3], const Real (&u)[8][3], const 
 
 int main(int argc, char** argv) {
   if (argc < 6) {
-    std::fprintf(stderr, "finite_elements LATTICE E/Y nu n D [speed]\n");
+    std::fprintf(stderr, "finite_elements LATTICE E/Y nu n D [speed [back]]\n");
     return 2;
   }
   const std::string name = argv[1];
   const Lattice lattice = lattice_of(name);
   const double E = std::atof(argv[2]), nu = std::atof(argv[3]), density = std::atof(argv[5]);
-  const double speed = argc > 6 ? std::atof(argv[6]) : 0.02;
+  const double speed = argc > 6 ? std::atof(argv[6]) : 0.02, back = argc > 7 ? std::atof(argv[7]) : 0.0;
   const Material material{E / (2 * (1 + nu)), E / (3 * (1 - 2 * nu)), E * (1 - nu) / ((1 + nu) * (1 - 2 * nu))};
   const double ratio = 4.0 / 3.0 * std::acos(-1.0) / (lattice.cell * density);
   const double end = name == "die" ? ratio : std::cbrt(ratio);  // last distance
-  if (!(E > 0.0 && nu > -1.0 && nu < 0.5 && end < 1.0 && speed > 0.0)) {
-    std::fprintf(stderr, "E/Y and the speed must be above 0, nu in (-1, 0.5), D above that of touching spheres\n");
+  if (!(E > 0.0 && nu > -1.0 && nu < 0.5 && end < 1.0 && speed > 0.0 && back >= 0.0)) {
+    std::fprintf(stderr, "E/Y and the speeds must be above 0, nu in (-1, 0.5), D above that of touching spheres\n");
     return 2;
   }
   Mesh mesh = octant(std::atoi(argv[4]));
@@ -265,14 +273,15 @@ int main(int argc, char** argv) {
     for (const int i : mesh.elements[e])
       mass[i] += 0.125 * batches[e / lanes].volume[e % lanes] * std::pow(mean_height / heights[e], 2);
 
-  const double interval = (1.0 - end) / rows;
+  const double interval = (1.0 - end) / rows, turn = end + 0.5 * slowing * speed;
   const std::size_t groups = lattice.counts.size();
   std::vector<Point> v(nodes, Point{});
   std::vector<double> impulse(groups, 0.0);
-  double distance = 1.0, dt = 0.0, time = 0.0;
-  std::printf("distance,%s\n", lattice.header);
+  double distance = 1.0, row_start = 1.0, dt = 0.0, row_time = 0.0, phase_time = 0.0;
+  int phase = 0, free_rows = 0;
+  std::printf("%sdistance,%s\n", back > 0.0 ? "phase," : "", lattice.header);
   f.assign(nodes, Point{});
-  for (long step = 0, row = 1; row <= rows; ++step) {
+  for (long step = 0, row = 1; row <= rows && free_rows < 3; ++step) {
     if (step % 50 == 0) {
       dt = 1e9;
       for (int e = 0; e < elements; ++e)
@@ -280,8 +289,13 @@ int main(int argc, char** argv) {
       dt *= courant * mean_height / std::sqrt(material.M);
       viscosity = bulk_viscosity * std::sqrt(material.M) * mean_height / dt;
     }
-    distance -= speed * dt;
-    time += dt;
+    if ((phase == 0 && back > 0.0 && distance <= turn) || (phase == 1 && phase_time >= slowing + standing))
+      ++phase, phase_time = 0.0, row_time = 0.0, row_start = distance, impulse.assign(groups, 0.0);
+    const double closing = phase == 0   ? speed
+                           : phase == 1 ? speed * std::max(0.0, 1.0 - phase_time / slowing)
+                                        : -back * std::min(1.0, phase_time / starting);
+    distance -= closing * dt;
+    row_time += dt, phase_time += dt;
     for (int i = 0; i < nodes; ++i) {
       for (int k = 0; k < 3; ++k) {
         u[i][k] = held[i][k] ? 0.0 : dt * (v[i][k] + dt * (f[i][k] / mass[i] - drag * v[i][k]));
@@ -304,15 +318,21 @@ int main(int argc, char** argv) {
       v[i] = scaled(u[i], 1.0 / dt);
     }
     internal_forces();
-    if (distance <= 1.0 - row * interval) {
-      std::printf("%.6f", distance + 0.5 * speed * time);
-      for (std::size_t g = 0; g < groups; ++g) std::printf(",%.6g", 8.0 * impulse[g] / time / lattice.counts[g]);
-      std::printf("\n");
-      std::fflush(stdout);
-      impulse.assign(groups, 0.0);
-      time = 0.0;
-      ++row;
-    }
+    const bool ends = phase == 0   ? distance <= 1.0 - row * interval
+                      : phase == 1 ? row_time >= held_row
+                                   : std::abs(distance - row_start) >= back_row;
+    if (!ends) continue;
+    bool free = phase == 2;
+    if (back > 0.0) std::printf("%d,", phase);
+    std::printf("%.6f", 0.5 * (row_start + distance));
+    for (std::size_t g = 0; g < groups; ++g) std::printf(",%.6g", 8.0 * impulse[g] / row_time / lattice.counts[g]);
+    std::printf("\n");
+    std::fflush(stdout);
+    for (const Plane& plane : lattice.planes) free = free && (!plane.moves || impulse[plane.group] == 0.0);
+    free_rows += free;
+    row += phase == 0;
+    impulse.assign(groups, 0.0);
+    row_time = 0.0, row_start = distance;
   }
   return 0;
 }

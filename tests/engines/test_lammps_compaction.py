@@ -1,14 +1,13 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Option compaction of cavity in LAMMPS: forces, order, lattices, contacts alone, ranks, restart, refusals."""
+"""Option compaction of cavity in LAMMPS: forces, order, contacts alone, ranks, restart, refusals."""
 
 import numpy as np
 import pytest
-from lammps_decks import column, lammps, needs_lammps, run
+from lammps_decks import lammps, needs_lammps, run
 from plugin_compaction import NU, E, Y, alone, data
 from test_plugin_compaction import BACK, CLUSTER, FLOOR, HEAVY, RADII, SPEEDS, WAYS, assert_second_order
 
 from epdem.theory.cavity import FINITE_STRAIN, Cavity
-from epdem.verification.theory.compaction import FCC, SC, isotropic_pressure
 
 pytestmark = needs_lammps
 
@@ -60,46 +59,6 @@ def test_forces_are_those_of_grown_spheres_with_an_error_of_second_order(tmp_pat
     found = {steps: cluster(tmp_path / str(steps), steps) for steps in (400, 800, 1600)}
     assert_second_order(found)
     assert found[1600][1600, 5, 2] > 0 == cluster(tmp_path / "off", 400, law=LAW)[400, 5, 2]
-
-
-@pytest.mark.parametrize(("name", "lattice", "density"), [("sc", SC, 0.85), ("fcc", FCC, 0.92)])
-def test_the_pressure_of_a_lattice_is_that_of_equal_contacts(name, lattice, density, tmp_path):
-    """n equal contacts, g = n x^2/(4 - 2 n x): spheres of radius 1 in a periodic box that shrinks."""
-    cells, edge, steps = (4, 2.0, 400) if name == "sc" else (3, 8**0.5, 400)  # edge of a cell at first touch
-    ratio = (4 * np.pi / 3 / lattice.cell / density) ** (1 / 3)
-    text = f"""units si
-atom_style sphere
-atom_modify map array
-comm_modify vel yes
-lattice {name} {edge!r}
-region box block 0 {cells} 0 {cells} 0 {cells}
-create_box 1 box
-create_atoms 1 box
-set group all diameter 2 density 1e15
-pair_style ep
-pair_coeff * * {ON}
-neighbor 0.1 bin
-fix squeeze all deform 1 {" ".join(f"{a} scale {ratio!r}" for a in "xyz")} remap x
-fix move all nve/sphere
-timestep 1e-3
-thermo_style custom step lx press
-thermo_modify format float %.17g
-thermo 40
-run {steps}
-"""
-    out, _ = run(text, tmp_path)
-    d = column(out, "Lx")[1:] / column(out, "Lx")[0]
-    before = d + (1 - ratio) / steps  # LAMMPS shrinks the box after the forces of a step
-    law = Cavity(E_star=E / (1 - NU**2) / 2, R_star=0.5, Y=Y, c_strain=FINITE_STRAIN)
-
-    def force(overlap):  # of a sphere with the symmetry plane
-        return law.force(2 * overlap)
-
-    assert d[-1] == pytest.approx(ratio)
-    by_hand = isotropic_pressure(lattice, force, before, 1.0) * (before / d) ** 3
-    error = np.abs(column(out, "Press")[1:] / by_hand - 1)
-    assert error[1:].max() < 2e-4
-    assert isotropic_pressure(lattice, force, before[-1:], 1.0, grows=False) < 0.9 * by_hand[-1]
 
 
 @pytest.mark.parametrize("ranks", [1, 2])

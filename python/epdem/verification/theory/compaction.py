@@ -1,18 +1,17 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Pressure of regular lattices of equal spheres whose contacts grow by the dents of the others (compaction).
+"""Regular lattices of equal spheres with compaction: pressing, holding and releasing, by symmetry.
 
 Each sphere lies between the symmetry planes of its lattice. A plane at distance d from the centre has the overlap
-alpha = R - d of a sphere with a rigid plane, and x = alpha/R.
+alpha = R - d of a sphere with a rigid plane. Lengths in radii: R = 1.
 """
 
-from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
 
+from ...theory.cavity import FINITE_STRAIN
 from ...theory.numerics import Array
-
-Force = Callable[[Array], Array]  # force of a sphere on a rigid plane [N] at an overlap [m] > 0
+from .bed import PLANE, Bed, Material
 
 
 @dataclass(frozen=True)
@@ -31,47 +30,73 @@ SC = Lattice((6,), (1.0,), 8.0)
 FCC = Lattice((12,), (1.0,), 2.0**2.5)
 HEXAGONAL = Lattice((8,), (1.0,), 48.0**0.5)  # simple hexagonal
 BCC = Lattice((8, 6), (1.0, 2.0 / 3.0**0.5), 32.0 / 27.0**0.5)
+SIDES_AND_TOP = (4, 2)  # planes of a simple cubic lattice in a die
 
 
-def equal_contacts(n: int, x: Array) -> Array:
-    """Growth over the radius of a sphere with n equal dents of depth x R: g = n x^2/(4 - 2 n x), n x < 1.6."""
-    return np.asarray(n * x**2 / (4.0 - 2.0 * n * x))
+@dataclass(frozen=True)
+class Path:
+    """A sphere between groups of planes, whose distances [R] from its centre have the shape (steps, groups)."""
+
+    counts: tuple[int, ...]
+    material: Material
+    distances: Array
 
 
-def added_overlaps(counts: tuple[int, ...], x: Array) -> Array:
-    """Overlap over the radius that each group of planes gains by the dents of all other planes, shape of x.
+def lattice_path(lattice: Lattice, material: Material, distance: Array) -> Path:
+    """All planes move in proportion; distance: of the first group, (steps,)."""
+    return Path(lattice.counts, material, np.multiply.outer(distance, lattice.ratios))
 
-    x: depths of the dents over the radius, shape (groups, ...); negative across a gap.
+
+def die_path(material: Material, distance: Array) -> Path:
+    """A simple cubic lattice in a die whose walls the spheres touch at the start; distance: half of the height."""
+    return Path(SIDES_AND_TOP, material, np.stack([np.ones_like(distance), distance], axis=-1))
+
+
+def press(paths: list[Path], *, c_strain: float = FINITE_STRAIN, grows: bool = True) -> list[Array]:
+    """Forces on one plane of each group, (steps, groups) for each path; all paths have one length."""
+    body = np.concatenate([np.full(sum(p.counts), k) for k, p in enumerate(paths)])
+    materials = [p.material for p in paths]
+    bed = Bed(np.ones(len(paths)), body, np.full(len(body), PLANE), materials, c_strain=c_strain, grows=grows)
+    overlap = 1 - np.concatenate([np.repeat(p.distances, p.counts, axis=1) for p in paths], axis=1)
+    forces = np.array([bed.step(now) for now in overlap])
+    first = np.cumsum([0, *(n for p in paths for n in p.counts)])[:-1]
+    groups = np.cumsum([0, *(len(p.counts) for p in paths)])
+    return [forces[:, first[a:b]] for a, b in zip(groups, groups[1:], strict=False)]
+
+
+def distance_at(lattice: Lattice, density: Array | float) -> Array:
+    """Distance of the first group at a relative density: volume of a sphere over that of its cell."""
+    return np.asarray((4 / 3 * np.pi / (lattice.cell * np.asarray(density))) ** (1 / 3))
+
+
+def isotropic_pressure(lattice: Lattice, forces: Array, distance: Array) -> Array:
+    """Pressure of a lattice pressed equally from all sides: the virial of the forces, (steps, groups)."""
+    moments = forces * np.multiply.outer(distance, lattice.ratios) * lattice.counts
+    return np.asarray(moments.sum(axis=1) / (3 * lattice.cell * distance**3))
+
+
+def die_stresses(forces: Array, distance: Array) -> tuple[Array, Array]:
+    """Axial and lateral stress of a simple cubic lattice in a die."""
+    side, top = forces.T
+    return top / 4, side / (4 * distance)
+
+
+def released(densities: list[tuple[Lattice, Material, float]], *, steps: int = 200, way: float = 0.1) -> list[Array]:
+    """Way of the first group [R] and its force over the peak, (2, steps), after pressing to a relative density.
+
+    way: of the release, which ends there.
     """
-    dents = np.maximum(x, 0.0)
-    n = np.array(counts).reshape(-1, *[1] * (dents.ndim - 1))
-    growth = (n * dents**2).sum(axis=0) / (4.0 - 2.0 * np.minimum((n * dents).sum(axis=0), 1.6))
-    return np.asarray(np.maximum(growth - equal_contacts(1, dents), 0.0))
+    back = way * np.linspace(0.0, 1.0, steps) ** 2
+    paths = []
+    for lattice, material, density in densities:
+        end = distance_at(lattice, density)
+        loading = np.linspace(1.0, end, steps + 1)[1:]
+        paths.append(lattice_path(lattice, material, np.concatenate([loading, end + back[1:]])))
+    found = [F[steps - 1 :, 0] for F in press(paths)]
+    return [np.stack([back, F / F[0]]) for F in found]
 
 
-def _forces(force: Force, counts: tuple[int, ...], x: Array, radius: float, grows: bool) -> Array:
-    overlap = radius * (x + (added_overlaps(counts, x) if grows else 0.0))
-    return np.where(overlap > 0.0, force(np.maximum(overlap, 1e-12 * radius)), 0.0)
-
-
-def isotropic_pressure(lattice: Lattice, force: Force, distance: Array, radius: float, *, grows: bool = True) -> Array:
-    """Pressure [Pa] of a lattice pressed equally from all sides; distance [m] of the first group of planes, (n,)."""
-    distances = np.multiply.outer(lattice.ratios, distance)
-    forces = _forces(force, lattice.counts, 1.0 - distances / radius, radius, grows)
-    counts = np.array(lattice.counts)[:, None]
-    return np.asarray((counts * forces * distances).sum(axis=0) / (3.0 * lattice.cell * distance**3))
-
-
-def die_stresses(force: Force, distance: Array, radius: float, *, grows: bool = True) -> tuple[Array, Array]:
-    """Axial and lateral stress [Pa] of a simple cubic lattice in a die whose walls the spheres touch at the start.
-
-    distance [m]: half of the height of a sphere's cell, (n,).
-    """
-    x = np.stack([np.zeros_like(distance), 1.0 - distance / radius])
-    side, top = _forces(force, (4, 2), x, radius, grows)
-    return top / (4.0 * radius**2), side / (4.0 * radius * distance)
-
-
-def relative_density(lattice: Lattice, distance: Array, radius: float) -> Array:
-    """Volume of the spheres over the volume of their cells."""
-    return np.asarray(4.0 / 3.0 * np.pi * radius**3 / (lattice.cell * distance**3))
+def recovery(curve: Array, share: float) -> float:
+    """Way [R] at which the force has fallen to a share of the peak; curve: of `released`."""
+    way, force = curve
+    return float(np.interp(-share, -force, way))

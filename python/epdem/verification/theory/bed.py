@@ -1,0 +1,202 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Spheres in contact with each other and with planes, whose contacts feel each other: option compaction of cavity.
+
+Overlaps are given, and in each step growth, screening and forces are solved together as a fixed point. No number is
+fitted: those of the growth and of the screening are derived in docs/laws.md, Compaction.
+"""
+
+from dataclasses import dataclass
+from typing import TypeAlias
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ...theory.cavity import FINITE_STRAIN, Cavity
+from ...theory.numerics import Array, gauss
+from ...theory.pair import strain_share
+
+Index: TypeAlias = NDArray[np.intp]
+
+PLANE = -1  # in place of the second sphere of a contact
+FIRST_YIELD, FULL_PLASTICITY = 1.6, 2.8  # c_Y and c_P
+MOST_COVER = 1.6  # S1 above which the growth rises no faster
+LEAST_SCREENING = 0.05
+REACH = 0.25  # growth closes gaps up to this share of the radii
+CHANGE = 1e-13  # of the added overlaps over the radii where the fixed point ends
+
+
+@dataclass(frozen=True)
+class Material:
+    """Elastic constants and yield stress [Pa]; E and Y may be infinite."""
+
+    E: float
+    nu: float
+    Y: float
+
+
+RIGID = Material(np.inf, 0.0, np.inf)
+
+
+def growth(cover: Array, volume: Array) -> Array:
+    """Growth g of a sphere over its radius: S2/(4 - 2 S1), S1 and S2: sums of x and x^2, x: depth over radius.
+
+    A plane at (1 - x) R cuts a cap of the volume pi (x^2 + 2 x g) R^3, to first order in g, off a sphere that grew by g
+    R. All caps have the volume of the growth, 4 pi g R^3.
+    """
+    return np.asarray(volume / (4.0 - 2.0 * np.minimum(cover, MOST_COVER)))
+
+
+def screening(others: Array, own: Array, radius: Array, nu: Array) -> Array:
+    """Recovery of a contact beside others over that of the same contact alone on a half-space, 0.05 to 1.
+
+    others, own: squares of contact radii [m^2]. Constriction (1 - eps)^1.5 of the flux tube of a contact where the
+    other contacts cover the share eps^2 of the surface of the sphere (Cooper, Mikic and Yovanovich 1969), and the
+    compression of the sphere by the mean pressure.
+    """
+    eps = np.minimum(np.sqrt(others) / (2 * radius), 1.0)
+    bulk = (1 - 2 * nu) / (2 * np.pi * (1 - nu**2)) * others / (np.sqrt(own) * radius)
+    return np.asarray(np.maximum((1 - eps) ** 1.5 + bulk, LEAST_SCREENING))
+
+
+def stored_share(y: Array, tau: Array) -> Array:
+    """Elastic energy of a contact at depth y of its unloading, over F^2/(E* a) of its peak: integral of force and way.
+
+    F/F_max = (1-tau) sin^3 t + (2/pi) tau (t - sin t cos t), way = A cos^2 t + B cos t with cos t = y.
+    """
+    nodes, weights = gauss(24)
+    most = np.arccos(np.clip(y, 0.0, 1.0))
+    t = np.multiply.outer(nodes, most)
+    force = (1 - tau) * np.sin(t) ** 3 + 2 / np.pi * tau * (t - np.sin(t) * np.cos(t))
+    slope = (1.5 * (1 - tau) * np.cos(t) + 2 / np.pi * tau) * np.sin(t)
+    return np.asarray(most * np.tensordot(weights, force * slope, 1))
+
+
+def unload(law: Cavity, peak: Array, way: Array, soft: Array) -> tuple[Array, Array]:
+    """Force [N] and elastic energy [J] at a way [m] below the peak overlap with the modulus E*/soft."""
+    F, a, tau = (np.asarray(x) for x in (law.force(peak), law.radius(peak), law.flatness(peak)))
+    A, B = 0.75 * (1 - tau), 2 / np.pi * tau
+    x = way / soft * law.E_star * a / F
+    S = np.maximum(B + np.sqrt(B * B + 4 * A * x), 1e-300)
+    y = np.clip(2 * x / S, 0.0, 1.0)
+    force = law.unloading_force(peak - way / soft, peak)
+    return force, np.asarray(soft * F**2 / (law.E_star * a) * stored_share(y, tau))
+
+
+class Bed:
+    """Contacts (i, j) of spheres, j = PLANE: with a plane. The state after a step is in its arrays, one value each.
+
+    radius [m]: of the spheres; material: of all spheres or of each; plane: material of all planes.
+    """
+
+    def __init__(
+        self,
+        radius: Array,
+        i: Index,
+        j: Index,
+        material: Material | list[Material],
+        *,
+        plane: Material = RIGID,
+        c_strain: float = FINITE_STRAIN,
+        grows: bool = True,
+    ):
+        n, contacts = len(radius), len(i)
+        bodies = [material] * n if isinstance(material, Material) else list(material)
+        E, self._nu, Y = (np.array([getattr(m, k) for m in [*bodies, plane]]) for k in ("E", "nu", "Y"))
+        self.radius, self.i, self.j, self.wall = radius, i, j, j == PLANE
+        self.R_i, self.R_j = radius[i], np.where(self.wall, np.inf, radius[j])  # PLANE is the last of E, nu and Y
+        yields = (1 - self._nu**2) / E
+        self.E_star, self.share_i = 1 / (yields[i] + yields[j]), yields[i] / (yields[i] + yields[j])
+        self.R_star = np.where(self.wall, self.R_i, 1 / (1 / self.R_i + 1 / self.R_j))
+        self.Y = np.minimum(Y[i], Y[j])
+        self.strain_i = strain_share(Y[i], Y[j], hardening=FULL_PLASTICITY / FIRST_YIELD)
+        self._c_strain, self._grows = c_strain, grows
+        self.force, self.stored = np.zeros((2, contacts))  # after a step [N], [J]
+        self.reached = np.full(contacts, -np.inf)  # largest overlap without growth [m]
+        self.grown, self.shift, self.unstored = np.zeros((3, contacts))  # u, q [m] and (1-G) U [J]
+        self.peak, self.peak_force = np.zeros((2, contacts))  # overlap with growth [m] and force [N] at the peak
+        self.gamma = np.ones(contacts)
+        self._near: Index = np.zeros(0, np.intp)
+        self._law: Cavity | None = None
+
+    def _law_of(self, near: Index) -> Cavity:
+        if self._law is None or not np.array_equal(near, self._near):
+            w = self.strain_i[near]
+            self._near, self._law = (
+                near,
+                Cavity(
+                    E_star=self.E_star[near],
+                    R_star=self.R_star[near],
+                    Y=self.Y[near],
+                    c_Y=FIRST_YIELD,
+                    c_P=FULL_PLASTICITY,
+                    c_strain=self._c_strain,
+                    share=np.maximum(w, 1 - w),
+                ),
+            )
+        return self._law
+
+    def _sum(self, k: Index, to_i: Array, to_j: Array) -> Array:
+        """Sums of the spheres; what goes to a plane is lost."""
+        n = len(self.radius)
+        return np.asarray(np.bincount(self.i[k], to_i, n + 1) + np.bincount(self.j[k] % (n + 1), to_j, n + 1), float)
+
+    def _by_others(self, k: Index, residual: Array) -> Array:
+        """Overlap u [m] that each contact gains by the dents of the others."""
+        R_i, wall = self.R_i[k], self.wall[k]
+        R_j, w = np.where(wall, 1.0, self.R_j[k]), self.strain_i[k]
+        half = 0.5 * residual / (R_i + R_j - residual)  # to the plane where both spheres intersect
+        d_i, d_j = np.where(wall, residual, half * (2 * R_j - residual)), np.where(wall, 0, half * (2 * R_i - residual))
+        volume_i = np.minimum(1, 2 * w) * R_i * d_i**2 + np.maximum(0, 2 * w - 1) * R_j * d_j**2
+        volume_j = np.minimum(1, 2 - 2 * w) * R_j * d_j**2 + np.maximum(0, 1 - 2 * w) * R_i * d_i**2
+        own = (d_i / R_i, volume_i / R_i**3), (d_j / R_j, volume_j / R_j**3)
+        g = growth(*(self._sum(k, *both) for both in zip(*own, strict=True)))
+        u_i, u_j = g[self.i[k]] - growth(*own[0]), g[self.j[k]] - growth(*own[1])
+        return np.asarray(R_i * np.maximum(0.0, u_i) + np.where(wall, 0.0, R_j * np.maximum(0.0, u_j)))
+
+    def _screened(self, k: Index, area: Array, yields: NDArray[np.bool_]) -> Array:
+        """gamma of the contacts that yield, 1 of the others; area: m a^2 [m^2]."""
+        total = self._sum(k, area, area)
+        own, s = np.where(yields, area, 1.0), self.share_i[k]
+        found = []
+        for body in (self.i[k], self.j[k]):
+            others = np.where(body == PLANE, 0.0, np.maximum(total[body] - area, 0.0))
+            found.append(screening(others, own, np.append(self.radius, 1.0)[body], self._nu[body]))
+        return np.where(yields, np.clip(s * found[0] + (1 - s) * found[1], LEAST_SCREENING, 1.0), 1.0)
+
+    def step(self, overlap: Array) -> Array:
+        """Forces [N] of all contacts at overlaps without growth [m], negative across a gap."""
+        k = np.flatnonzero(overlap > -REACH * (self.R_i + np.where(self.wall, 0.0, self.R_j)))
+        law, R = self._law_of(k), self.R_star[k]
+        reached = np.maximum(self.reached[k], overlap[k])
+        u, q, F_before = self.grown[k], self.shift[k], self.peak_force[k]
+        touches = np.ones(len(k), bool)
+        for turn in range(100):
+            v = u + q
+            on = overlap[k] + v > 0.0
+            touches = on if turn < 30 else touches & on  # one that ends in this step does not come back in it
+            b = np.maximum(reached + v, 1e-12 * R)
+            F = np.where(touches, law.force(b), 0.0)
+            yields = touches & (b > law.yield_overlap)
+            m = np.where(yields, 1 - law.yield_overlap / b, 0.0)
+            area = m * law.radius(b) ** 2
+            gamma = np.where(touches, np.minimum(self.gamma[k], self._screened(k, area, yields)), 1.0)
+            gamma = gamma if self._grows else np.ones(len(k))
+            soft = 1 - (1 - gamma) * m
+            residual = np.where(yields, np.maximum(np.maximum(reached, 0) - soft * law.recovered_overlap(b), 0), 0.0)
+            unstored = np.where(yields, (1 - soft) * law.recovered_work(b), 0.0)
+            mean = np.where(F_before > 0, 0.5 * (F + F_before), F)
+            q = self.shift[k] + np.where(yields, (unstored - self.unstored[k]) / np.where(yields, mean, 1.0), 0.0)
+            u = self._by_others(k, residual) if self._grows else u
+            if np.all(np.abs(u + q - v) <= CHANGE * R):
+                break
+        else:
+            raise ArithmeticError(f"growth of {np.max(np.abs(u + q - v) / R):.1e} R* per turn after 100 turns")
+        force, stored = unload(law, b, np.maximum(reached - overlap[k], 0.0), soft)
+        after = {"force": force, "stored": stored, "grown": u, "shift": q, "unstored": unstored}
+        after |= {"peak": b, "peak_force": F, "gamma": gamma, "reached": reached}
+        for name, values in after.items():
+            empty = {"gamma": 1.0, "reached": -np.inf}.get(name, 0.0)
+            kept: Array = getattr(self, name)
+            kept[:] = empty
+            kept[k] = np.where(touches, values, empty)
+        return self.force.copy()
