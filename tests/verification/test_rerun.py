@@ -50,6 +50,17 @@ def test_a_file_that_does_not_say_how_it_was_made_is_refused(tmp_path):
         rerun(path)
 
 
+def test_a_stored_case_that_is_no_longer_valid_is_named_by_its_results_file(tmp_path):
+    path = stored(tmp_path)
+    with h5py.File(path, "a") as file:
+        text = file["case"][0].decode()
+        del file["case"]
+        write_text(file, "case", text.replace("[law]\n", "[law]\nstiffness = 1\n"))
+    with pytest.raises(CaseError) as refused:
+        rerun(path)
+    assert str(refused.value).startswith(f"{path}: the stored case: law.stiffness: law ")
+
+
 @pytest.mark.liggghts
 def test_a_scene_and_impacts_in_liggghts_have_the_same_decks_and_numbers_again(tmp_path):
     """The scene from a file that names a sieve table, both of which have gone since."""

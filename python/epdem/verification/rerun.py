@@ -20,6 +20,7 @@ from ..scenes import run as scenes
 from .models import engine
 
 Progress = Callable[[str], None]
+CASE = "case.toml"  # in the scratch folder
 
 
 @dataclass(frozen=True)
@@ -44,11 +45,14 @@ def rerun(path: Path, progress: Progress = lambda text: None) -> Rerun:
     with open_results(path, "a results file of epdem") as file:
         scene = attributes(file).get("kind") == "scene"
     with tempfile.TemporaryDirectory(prefix="epdem-rerun-") as scratch:
-        return (_scene if scene else _impacts)(path, Path(scratch), progress)
+        try:
+            return (_scene if scene else _impacts)(path, Path(scratch), progress)
+        except CaseError as error:
+            raise CaseError(str(error).replace(str(Path(scratch) / CASE), f"{path}: the stored case")) from None
 
 
 def _case(text: str, folder: Path) -> Path:
-    path = folder / "case.toml"
+    path = folder / CASE
     path.write_text(text, encoding="utf-8")
     return path
 
