@@ -84,7 +84,7 @@ def results_folder(out: Path | None, *names: str) -> Path:
 
 
 @dataclass(frozen=True)
-class Results:
+class ResultsFolder:
     """A folder that this process may write to; `foreign` are the files in it that are the user's.
 
     versions: of the programs that made its files, by name; none where no run has noted them.
@@ -114,16 +114,16 @@ class Results:
 
 
 Known = dict[str, Any]  # content of the marker
-_held: dict[Path, Results] = {}  # folders that this process keeps now
+_held: dict[Path, ResultsFolder] = {}  # folders that this process keeps now
 
 
-def stored_results(folder: Path) -> Results:
+def stored_results(folder: Path) -> ResultsFolder:
     """The claimed folder of this process; without a claim no file in it is foreign."""
-    return _held.get(folder.resolve(), Results(folder))
+    return _held.get(folder.resolve(), ResultsFolder(folder))
 
 
 @contextlib.contextmanager
-def claim(folder: Path, *, force: bool = False, files: Collection[str] = ()) -> Iterator[Results]:
+def claim(folder: Path, *, force: bool = False, files: Collection[str] = ()) -> Iterator[ResultsFolder]:
     """Keep `folder` (made where it is missing) for one run, until the block ends; blocks of one process may nest.
 
     Raises CaseError if another process is at work in it, or if it holds files of the user's where a run would write,
@@ -149,7 +149,7 @@ def claim(folder: Path, *, force: bool = False, files: Collection[str] = ()) -> 
                 path.rmdir()
 
 
-def _claimed(folder: Path, place: Path, force: bool, files: Collection[str]) -> Iterator[Results]:
+def _claimed(folder: Path, place: Path, force: bool, files: Collection[str]) -> Iterator[ResultsFolder]:
     try:
         for path in _folders(folder):
             remove_stale(path)
@@ -157,7 +157,7 @@ def _claimed(folder: Path, place: Path, force: bool, files: Collection[str]) -> 
         foreign = _foreign(folder, known)
         if not force:
             _refuse(folder, foreign, files, known is not None)
-        results = Results(folder, frozenset(foreign), (known or {}).get("versions", {}))
+        results = ResultsFolder(folder, frozenset(foreign), (known or {}).get("versions", {}))
         results.note(dict(results.versions))
         _held[place] = results
         yield results

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Where the installed parts are, and what a user sets once; hashes of the product and of the inputs of a stage.
+"""Places of the installed parts and the user's settings; hashes of the product and of the inputs of a stage.
 
 A result is stored with the hash of all its inputs, and a rerun with the same hash uses it.
 """
@@ -21,7 +21,7 @@ DEFAULT_ENGINE = "liggghts"  # of every command and function that is given none
 
 
 def config_file() -> Path:
-    """Where the user's configuration file is, if there is one."""
+    """Path of the user's configuration file."""
     return Path(os.environ.get("XDG_CONFIG_HOME") or Path.home() / ".config") / "epdem" / "config.toml"
 
 
@@ -96,14 +96,14 @@ def launcher() -> Path | None:
 
 @cache
 def library_hash() -> str:
-    """Hash of what is compiled: both libraries and the launcher, as far as they are there."""
+    """Hash of the compiled parts: both libraries and the launcher, if built."""
     compiled = [native("libepdem.so"), native("libepdem_liggghts.so"), launcher()]
     return _hash(__version__, [path for path in compiled if path and path.is_file()])
 
 
 @cache
 def product_hash() -> str:
-    """Hash of this product as installed: what is compiled, templates, Python sources and the materials file."""
+    """Hash of the installed product: compiled parts, templates, Python sources and the materials file."""
     package = Path(__file__).parents[1]
     ours = [*beside("templates").rglob("*.j2"), *package.rglob("*.py"), *package.rglob("*.toml")]
     return _hash(library_hash(), sorted(ours))

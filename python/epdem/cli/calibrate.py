@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Annotated, Any
 import typer
 
 from ..errors import CaseError
-from .options import AsJson, CasePath, Force, Out, refuse
+from .options import AsJson, CasePath, Force, Out, refuse_options
 
 if TYPE_CHECKING:
     from ..studies.calibrate import Calibration
@@ -55,13 +55,13 @@ def calibrate(
     hardness = {"hv": hv, "hb": hb, "dent_ratio": dent_ratio}
     of_scene = {"tolerance": tolerance, "engine": engine, "ranks": ranks, "jobs": jobs}
     if target or free:
-        refuse(case, "it does not go with --target and --free", **impacts, **hardness)
+        refuse_options(case, "it does not go with --target and --free", **impacts, **hardness)
         given = {k: v for k, v in (of_scene | {"out": out, "force": force}).items() if v is not None}
         _of_scene(case, target or [], free or [], given, as_json)
         return
-    refuse(case, "it goes with --target and --free", **of_scene)
+    refuse_options(case, "it goes with --target and --free", **of_scene)
     if out is None:
-        refuse(case, "it belongs to --out", force=force)
+        refuse_options(case, "it belongs to --out", force=force)
     found = _from_impacts(case, e_n or [], speed or [], measured, uncertainty, hardness)
     _of_impact(case, found, as_json, out, force)
 
@@ -101,11 +101,11 @@ def _from_impacts(
     if (bool(e_n) + measured + (hv is not None or hb is not None)) != 1:
         raise CaseError("give one measurement: --e-n with --speed, --measured, --hv, or --hb")
     if hb is None:
-        refuse(case, "it belongs to --hb", dent_ratio=dent_ratio)
+        refuse_options(case, "it belongs to --hb", dent_ratio=dent_ratio)
     if not e_n:
-        refuse(case, "it belongs to --e-n", speed=speed)
+        refuse_options(case, "it belongs to --e-n", speed=speed)
     if not (measured or e_n):
-        refuse(case, "it belongs to --e-n and --measured", uncertainty=uncertainty)
+        refuse_options(case, "it belongs to --e-n and --measured", uncertainty=uncertainty)
         test = c.hardness_test(vickers=hv, brinell=hb, dent_ratio=dent_ratio)
         return c.from_hardness(case, test, f"HV {hv:g}" if hv is not None else f"HB {hb:g}")
     if len(e_n) != len(speed):
@@ -114,7 +114,7 @@ def _from_impacts(
     if measured:
         points = c.measured_restitutions(case)
     if len(points) == 1:
-        refuse(case, "it belongs to several e_n", uncertainty=uncertainty)
+        refuse_options(case, "it belongs to several e_n", uncertainty=uncertainty)
         return c.from_restitution(case, points[0][1], points[0][0])
     return c.from_restitutions(case, points, uncertainty)
 

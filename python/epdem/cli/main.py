@@ -22,7 +22,7 @@ from . import predict as cli_predict
 from . import scenes as cli_scene
 from . import sweep as cli_sweep
 from .export import app as export
-from .options import AsJson, CasePath, Engines, Force, Formats, Laws, Out, formats, print_files, refuse, warn
+from .options import AsJson, CasePath, Engines, Force, Formats, Laws, Out, formats, print_files, refuse_options, warn
 
 ABOUT = """Elastic-plastic particle contact for LIGGGHTS, YADE and LAMMPS, checked against theory.
 
@@ -89,15 +89,17 @@ def run(
     if full and as_json:
         raise CaseError("--full: --json holds all rows; leave it out")
     if cli_scene.is_scene(case):
-        refuse(case, "a scene has its own law and time step", law=law, steps=steps)
-        refuse(case, "it is for impacts; a scene prints all its checks", full=full)
+        refuse_options(case, "a scene has its own law and time step", law=law, steps=steps)
+        refuse_options(case, "it is for impacts; a scene prints all its checks", full=full)
         if len(set(engines)) > 1:
             raise CaseError(f"{case}: --engine: a scene runs on one engine; give it once")
         if fresh and resume:
             raise CaseError(f"{case}: --resume continues a run and --fresh begins it again; leave one out")
         code = cli_scene.run_scene(case, engine=engines[0], formats=kinds, as_json=as_json, resume=resume, **options)
         raise typer.Exit(code)
-    refuse(case, "it continues bulk scenes; a run of impacts takes finished stages from its store", resume=resume)
+    refuse_options(
+        case, "it continues bulk scenes; a run of impacts takes finished stages from its store", resume=resume
+    )
     options |= {"steps": steps, "laws": law or []}
     raise typer.Exit(_run_impacts(case, engines=engines, formats=kinds, full=full, as_json=as_json, **options))
 
@@ -153,7 +155,7 @@ def deck(
     Example: epdem deck --convert my.in --set yieldPressure=1e8 -o converted
     """
     if convert:
-        refuse(file, "--convert takes nothing but a LIGGGHTS deck", case=case)
+        refuse_options(file, "--convert takes nothing but a LIGGGHTS deck", case=case)
         if engine != DEFAULT_ENGINE or len(law or []) > 1:
             raise CaseError(
                 f"{file}: --convert writes one LIGGGHTS deck with one law; leave out --engine, name one --law"
@@ -169,7 +171,7 @@ def deck(
     if file.suffix == ".j2":
         if case is None:
             raise CaseError(f"{file}: an own template needs the values of a case; add --case CASE")
-        refuse(file, "the deck of an own template has the law of its case", law=law)
+        refuse_options(file, "the deck of an own template has the law of its case", law=law)
         if engine != DEFAULT_ENGINE:
             raise CaseError(f"{file}: --engine {engine}: own templates are for {DEFAULT_ENGINE}; leave it out")
         from ..engines.liggghts.own_decks import settings
@@ -177,9 +179,9 @@ def deck(
 
         print_files(fill(file, case, settings(given or []), out, force=force), as_json)
         return
-    refuse(file, "it goes with an own template (.j2)", case=case, set=given)
+    refuse_options(file, "it goes with an own template (.j2)", case=case, set=given)
     if cli_scene.is_scene(file):
-        refuse(file, "a scene has its own law", law=law)
+        refuse_options(file, "a scene has its own law", law=law)
     if len(law or []) > 1:
         raise CaseError("--law: a deck has one law; write one deck for each")
     from ..api import deck as write
@@ -198,9 +200,9 @@ def cite(
     """Print what to cite for the law of a case and for the engines that run the case."""
     from ..api import cite as cited
 
-    refuse(case, "--bibtex prints BibTeX", json=as_json and bibtex)
+    refuse_options(case, "--bibtex prints BibTeX", json=as_json and bibtex)
     if cli_scene.is_scene(case):
-        refuse(case, "a scene has its own law", law=law)
+        refuse_options(case, "a scene has its own law", law=law)
     found = cited(case, engines=engine or [DEFAULT_ENGINE], laws=law or [])
     if bibtex:
         print(found.bibtex(), end="")

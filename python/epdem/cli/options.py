@@ -48,8 +48,8 @@ def formats(chosen: list[str] | None) -> tuple[str, ...]:
     return tuple(dict.fromkeys(chosen or ["png"]))
 
 
-def refuse(place: object, reason: str, **given: object) -> None:
-    """Raise CaseError that names the first of the options `given` that has a value, because nothing would use it."""
+def refuse_options(place: object, reason: str, **given: object) -> None:
+    """Raise CaseError for the first option of `given` with a value: no option of these has an effect here."""
     for name, value in given.items():
         if not (value is None or value is False or value == []):
             raise CaseError(f"{place}: --{name.replace('_', '-')}: {reason}; leave it out")

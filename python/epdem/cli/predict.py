@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The command `epdem predict`: what theory says of a case, of its time step, or of one impact for every law."""
+"""The command `epdem predict`: prediction of a case, its time step, or one impact for every law."""
 
 import json
 from dataclasses import asdict
@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 from ..base.terminal import console, status
-from .options import AsJson, Laws, laws_or_own, refuse
+from .options import AsJson, Laws, laws_or_own, refuse_options
 
 if TYPE_CHECKING:  # slow to import
     from ..impacts.experiment import Experiment
@@ -40,13 +40,13 @@ def predict(
     With --error print the time step for a target error. Without a case print one impact on a wall for every law.
     """
     if case is None:
-        refuse("epdem predict", "it belongs to a case", law=law, error=error)
+        refuse_options("epdem predict", "it belongs to a case", law=law, error=error)
         from ..impacts.experiment import one_impact
 
         _show(one_impact(material or "steel", radius or "10 mm", speed or "5 m/s", adhesion), [], as_json)
         return
     own = "the case has its own numbers"
-    refuse(case, own, material=material, radius=radius, speed=speed, work_of_adhesion=adhesion)
+    refuse_options(case, own, material=material, radius=radius, speed=speed, work_of_adhesion=adhesion)
     if error is None:
         _case(case, law, as_json)
     else:

@@ -11,7 +11,7 @@ import typer
 
 from ..base.terminal import bar, console, show_table, table
 from ..errors import CaseError
-from .options import AsJson, CasePath, Engines, Force, Laws, Out, refuse
+from .options import AsJson, CasePath, Engines, Force, Laws, Out, refuse_options
 
 if TYPE_CHECKING:  # slow to import
     from rich.console import Console
@@ -71,8 +71,8 @@ def sweep(
     if dry_run or write_script:
         reason = "nothing runs"
         local = None if executor == "local" else executor
-        refuse(case, reason, executor=local, jobs=jobs if write_script else None, retry_failed=retry_failed)
-        refuse(
+        refuse_options(case, reason, executor=local, jobs=jobs if write_script else None, retry_failed=retry_failed)
+        refuse_options(
             case, reason, json=as_json and write_script, slurm=None if write_script else slurm, force=force and dry_run
         )
     if dry_run:

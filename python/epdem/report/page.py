@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The page of a study: report.html, one file with all that it shows, which needs no network.
+"""The page of a study: report.html, one self-contained file.
 
 A study hands over its parts: words, facts, charts, tables, listings, pictures. The page lays them out.
 """
@@ -49,20 +49,20 @@ class Rows:
         return [f"{name} [{self.units[name]}]" if self.units.get(name) else name for name in map(str, self.frame)]
 
     def cells(self) -> list[list[tuple[str, str]]]:
-        """(text, what sorts it) of each cell of the first rows, as many as a page can hold."""
-        shown = self.frame.head(self.fitting)
+        """(text, sort key) of each cell of the first `row_limit` rows."""
+        shown = self.frame.head(self.row_limit)
         return [[(_cell(v), _key(v)) for v in row] for row in shown.itertuples(index=False)]
 
     @property
-    def fitting(self) -> int:
+    def row_limit(self) -> int:
         """Largest number of rows of the page."""
         return int(max(1, MOST_CELLS // max(1, self.frame.shape[1])))
 
     @property
     def notes(self) -> str:
-        """The note, and how many rows are left out."""
-        left = len(self.frame) - self.fitting
-        return f"{self.note} The first {self.fitting} of {len(self.frame)} rows." if left > 0 else self.note
+        """The note, with the number of rows where some are left out."""
+        left = len(self.frame) - self.row_limit
+        return f"{self.note} The first {self.row_limit} of {len(self.frame)} rows." if left > 0 else self.note
 
 
 @dataclass(frozen=True)
@@ -85,7 +85,7 @@ class Picture:
 
     @property
     def source(self) -> str:
-        """The file, to stand in the page itself."""
+        """The file in base64."""
         return base64.b64encode(self.file.read_bytes()).decode()
 
 
@@ -143,9 +143,9 @@ def render(page: Page, mark: str = "") -> str:
 
 
 def write(path: Path, page: Callable[[], Page], *, mark: str = "") -> Path:
-    """Write what `page` gives to `path`, unless a page with this mark is there. The caller keeps the folder (`claim`).
+    """Write the page that `page()` returns to `path`, unless a page with this mark is there.
 
-    mark: hash of the results that the page shows.
+    The caller claims the folder. mark: hash of the results that the page shows.
     """
     if mark and path.exists():
         with path.open("rb") as stream:

@@ -10,7 +10,7 @@ from pathlib import Path
 import pandas as pd
 
 from ..base import __version__
-from ..base.files import Results, claim, results_folder
+from ..base.files import ResultsFolder, claim, results_folder
 from ..base.paths import DEFAULT_ENGINE, inputs_hash, library_hash
 from ..case.scene import SceneCase, load
 from ..case.toml import Read, named, names_in, text_of
@@ -144,14 +144,14 @@ def _as_run(p: ScenePlan, tables: dict[str, pd.DataFrame]) -> ScenePlan:
     return p.ended(ends, dict(zip(phases["phase"], phases["until"], strict=True)))
 
 
-def _anew(work: _Work, place: Results) -> SceneOutcome:
+def _anew(work: _Work, place: ResultsFolder) -> SceneOutcome:
     start = time.perf_counter()
     place.note(work.versions)
     tables = run_plan(work.plan, work.engine, place.folder, ranks=work.ranks, report=work.report)
     return _finish(work, place.folder, start, tables)
 
 
-def _resumed(work: _Work, place: Results) -> SceneOutcome:
+def _resumed(work: _Work, place: ResultsFolder) -> SceneOutcome:
     start, folder = time.perf_counter(), place.folder
     if not all(
         (folder / name).exists() and (folder / name).read_text(encoding="utf-8") == text

@@ -25,7 +25,7 @@ from ..errors import CaseError, EngineError
 from .sweep import folder as store
 from .sweep import run as study
 from .sweep.folder import Sweep
-from .sweep.points import Point, Range, axes, keys_of
+from .sweep.points import Point, ValueRange, axes, keys_of
 from .sweep.table import unit
 
 Targets = Mapping[str, str | float]
@@ -66,7 +66,7 @@ class _TargetsMet(Exception):
 class _Search:
     """The evaluated points of a fit and their numbers."""
 
-    def __init__(self, base: Sweep, folder: Path, free: dict[str, Range], given: Targets, **options: Any):
+    def __init__(self, base: Sweep, folder: Path, free: dict[str, ValueRange], given: Targets, **options: Any):
         self.base, self.folder, self.free, self.given, self.options = base, folder, free, given, options
         self.shares: list[tuple[float, ...]] = []
         self.found: list[dict[str, float]] = []
@@ -151,9 +151,9 @@ def fit(
         raise CaseError(f"--tolerance {tolerance:g}, must lie in (0, 1)")
     if not targets or not 1 <= len(free) <= MOST:
         raise CaseError(f"a fit needs a --target NAME=VALUE, and one to {MOST} keys --free KEY=LOW..HIGH")
-    ranges: dict[str, Range] = {}
+    ranges: dict[str, ValueRange] = {}
     for name, axis in axes(free, keys_of(data), "--free").items():
-        if not isinstance(axis, Range) or axis.count is not None:
+        if not isinstance(axis, ValueRange) or axis.count is not None:
             raise CaseError(f"--free {name} = {free[name]!r}: write its range as LOW..HIGH or log:LOW..HIGH")
         ranges[name] = axis
     middle = np.full(len(ranges), 0.5)

@@ -39,7 +39,7 @@ Key = tuple[str | int, ...]  # names of tables and numbers of entries
 
 @dataclass(frozen=True)
 class Change:
-    """One value of the case file, before and after, as written there."""
+    """A changed value of the case file, before and after, as text."""
 
     place: str
     before: str

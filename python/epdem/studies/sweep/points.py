@@ -148,7 +148,7 @@ _HEAD = re.compile(r"\s*(\S+)\s*(?:\[(.*)\])?\s*")
 
 
 @dataclass(frozen=True)
-class Range:
+class ValueRange:
     """Values from `low` to `high` in `unit` ("" for a plain number), evenly spaced, or evenly in the logarithm."""
 
     low: float
@@ -185,7 +185,7 @@ class Listed:
         return list(self.all)
 
 
-Axis = Range | Listed
+Axis = ValueRange | Listed
 
 
 def axis(text: str, key: Key, place: str) -> Axis:
@@ -213,7 +213,7 @@ def axis(text: str, key: Key, place: str) -> Axis:
     if low == high or (log and not (low > 0 and high > 0)):
         needs = "two limits > 0" if log else "two limits that differ"
         raise CaseError(f"{place} = {text!r}: a range needs {needs}")
-    return Range(low, high, unit, int(count_text) if count_text else None, log, key.whole)
+    return ValueRange(low, high, unit, int(count_text) if count_text else None, log, key.whole)
 
 
 def _number(part: str, text: str, place: str) -> tuple[float, str]:
@@ -321,7 +321,7 @@ def as_lists(value: Any) -> Any:
 def grid(all_axes: dict[str, Axis]) -> list[Point]:
     """Every combination of the values. Raises CaseError."""
     for name, values in all_axes.items():
-        if isinstance(values, Range) and values.count is None:
+        if isinstance(values, ValueRange) and values.count is None:
             raise CaseError(f"--set {name}: how many values? write LOW..HIGH:COUNT, or add --latin-hypercube")
     columns = {name: values.values() for name, values in all_axes.items()}
     total = math.prod(map(len, columns.values()))

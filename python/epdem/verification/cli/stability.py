@@ -8,7 +8,7 @@ from typing import Annotated
 import typer
 
 from ...base.terminal import console, show_table, status
-from ...cli.options import AsJson, Engines, Laws, Replace, refuse
+from ...cli.options import AsJson, Engines, Laws, Replace, refuse_options
 from ...errors import CaseError
 from ..tables import frame_table
 
@@ -42,7 +42,7 @@ def stability(
         refuse_existing(out, force=force)
         refuse_existing(out.with_suffix(".html"), force=force)
     else:
-        refuse("stability", "it goes with --out", force=force)
+        refuse_options("stability", "it goes with --out", force=force)
     with status() as progress:
         outcome = suite.run(engine or [], law or [], groups=group, every=every, steps=steps, progress=progress)
     if out:
