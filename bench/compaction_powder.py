@@ -21,6 +21,7 @@ LAWS = {
     "cavity, finite_strain": {"name": "cavity", "finite_strain": True},
     "cavity, finite_strain, compaction": {"name": "cavity", "finite_strain": True, "compaction": True},
 }
+OUTPUT = {"rows": 500, "particles": 250, "energy": True}
 ALT = "Force of the plate against its height while it presses and releases a powder, with four laws"
 
 
@@ -29,7 +30,7 @@ def main() -> None:
     curves = []
     print("| law | largest force [N] | contacts per sphere there | without overlap | plastic work [mJ] | recovered |")
     for colour, (name, law) in enumerate(LAWS.items()):
-        case = Scene.from_toml(HERE / "cases" / "compaction_powder.toml").replace(law=law)
+        case = Scene.from_toml(HERE / "cases" / "compaction_powder.toml").replace(law=law, output=OUTPUT)
         with tempfile.TemporaryDirectory() as folder:
             tables = run(case, out=Path(folder) / "run").tables
         rows, contacts, checks = tables["rows"], tables["contacts"], tables["checks"].set_index("key")
