@@ -296,6 +296,18 @@ def test_intervals_of_a_known_uncertainty_are_those_of_a_normal_distribution(tmp
         )
 
 
+def test_a_metal_that_hardly_hardens_is_calibrated_where_noise_lets_e_n_fall_faster_than_without_hardening(tmp_path):
+    """x = 0, noise of half a standard error: the closest exponent is 0, and the interval ends above it."""
+    path, exact = with_law(tmp_path, "meyer"), hardening_metal(1.2e9, 0.0, 2, 5, 16)
+    noisy = [(v, e + d) for (v, e), d in zip(exact, (0.005, 0.0, -0.005), strict=True)]
+    found = from_restitutions(path, noisy, 0.01)
+    (low, high), (least, most) = found.intervals
+    assert found.hardening_exponent == least == 0.0 < most < 0.1 and low < 1.2e9 < high
+    steep = [(v, e + d) for (v, e), d in zip(exact, (0.05, 0.0, -0.05), strict=True)]
+    with pytest.raises(CaseError, match="e_n falls faster than law meyer allows"):
+        from_restitutions(path, steep, 0.01)
+
+
 def test_restitutions_above_1_by_noise_are_data(tmp_path):
     """Noise of both signs near yield: the mean of the two calibrations is the true one."""
     path, (slow, *fast) = with_law(tmp_path, "meyer"), hardening_metal(1.2e9, 0.25, 1.1, 5, 16)

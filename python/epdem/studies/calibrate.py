@@ -246,7 +246,8 @@ def from_restitutions(
     fit = least_squares(residuals, start, bounds=(low, high), x_scale=(1.0, 0.3), xtol=1e-12, ftol=1e-12, gtol=1e-12)
     logarithm, exponent = fit.x.tolist()
     spread = unit if uncertainty else math.sqrt(2.0 * fit.cost / (len(e_n) - 2))
-    information = fit.jac.T @ fit.jac / (1.0 if uncertainty else max(spread, 1e-12) ** 2)
+    scale = 1.0 if uncertainty else max(spread, 1e-12)  # of the residuals
+    information = fit.jac.T @ fit.jac / scale**2
     apart = np.linalg.cond(information) < 1e12
     covariance = np.linalg.inv(information) if apart else np.full((2, 2), math.inf)
     error = np.sqrt(np.diag(covariance))
@@ -255,7 +256,11 @@ def from_restitutions(
             f"these e_n do not tell {uncalibrated.parameter} and {EXPONENT} apart: the standard error of {EXPONENT} is "
             f"{error[1]:.2g}; measure at speeds further apart, or give law.{EXPONENT} and one e_n"
         )
+    reach = stdtrit(math.inf if uncertainty else len(e_n) - 2, 0.5 + CONFIDENCE / 2) * error
+    free = exponent - float((covariance @ (fit.jac.T @ fit.fun))[1]) / scale**2  # below 0 without its limit
     if exponent < 1e-6:
+        exponent = 0.0
+    if free + reach[1] < 0.0:
         raise CaseError(
             f"{path}: e_n falls faster than law {name} allows; {EXPONENT} = 0, which is law thornton, is the closest: "
             "check speeds and e_n, or give one e_n"
@@ -265,7 +270,6 @@ def from_restitutions(
             f"{path}: e_n hardly falls with speed; check speeds and e_n: no {uncalibrated.parameter} above "
             f"{LEAST_STRENGTH:g} E* with {EXPONENT} < 1 gives them"
         )
-    reach = stdtrit(math.inf if uncertainty else len(e_n) - 2, 0.5 + CONFIDENCE / 2) * error
     found = uncalibrated.hardening(exponent).result(math.exp(logarithm), None, f"{len(e_n)} values of e_n")
     return replace(
         found,
@@ -273,11 +277,11 @@ def from_restitutions(
         standard_errors=(float(found.value * error[0]), float(error[1])),
         intervals=(
             (found.value * math.exp(-reach[0]), found.value * math.exp(reach[0])),
-            (max(exponent - reach[1], 0.0), min(exponent + reach[1], LARGEST_EXPONENT)),
+            (max(free - reach[1], 0.0), min(free + reach[1], LARGEST_EXPONENT)),
         ),
         correlation=float(covariance[0, 1] / (error[0] * error[1])),
         measured=tuple(zip(speeds.tolist(), e_n.tolist(), strict=True)),
-        largest_residual=float(np.abs(fit.fun).max() * (1.0 if uncertainty else 1.0 / max(spread, 1e-12))),
+        largest_residual=float(np.abs(fit.fun).max() / scale),
         scatter=None if uncertainty else spread,
     )
 
