@@ -26,6 +26,7 @@ import epdem
 from epdem.base.declarations import declarations
 from epdem.case.fields import Quantity
 from epdem.case.impact import Case
+from epdem.case.law import law_keys
 from epdem.case.scene import SceneCase
 from epdem.verification.cli import app
 
@@ -34,6 +35,11 @@ PAGES = ROOT / "runs/guide/pages"
 BLOCK, INLINE = re.compile(r"\$\$(.+?)\$\$", re.S), re.compile(r"(?<![\\$`\w])\$([^$`\n]+(?:\n[^$`\n]+)?)\$(?![\w`])")
 CODE = re.compile(r"(^```[\s\S]*?^```$|^(?: {4}[^\n]*\n)+|`[^`\n]+`)", re.M)
 OUTSIDE = re.compile(r"\[([^\]]*)\]\(\.\./([^)#]+)(?:#[^)]*)?\)")
+
+OF_OTHER_KEYS = {  # symbol, range and default of keys that are no parameters of a law
+    "compaction": ("", "`true`, `false`", "`false`"),
+    "meyer_index": ("n", "[2, 3), in place of x = n - 2", "2"),
+}
 
 
 def mathematics(text: str, convert: Callable[..., str]) -> str:
@@ -126,6 +132,10 @@ def laws() -> str:
             default = ratio if p.default is None else f"{p.default:g}"
             row = (law.name, f"`law.{p.name}`", p.symbol, f"{p.limits()}{unit}", default, f"`{p.property}`")
             rows.append(f"| {' | '.join(row)} |")
+        known = [p.name for p in law.parameters]
+        ratio = ("", f"`{law.strength}` over the yield stress of the material", f"{law.default_ratio:g}")
+        for key in (key for key in law_keys(law) if key not in known):
+            rows.append(f"| {law.name} | `law.{key}` | {' | '.join(OF_OTHER_KEYS.get(key, ratio))} | |")
     return "\n".join(["## Laws\n", *texts, "", head, *rows, ""])
 
 
