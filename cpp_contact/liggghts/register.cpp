@@ -102,7 +102,7 @@ std::shared_ptr<CohesionModelBase> cohesion_model(const Site& s) {
 }
 
 std::shared_ptr<TangentialModelBase> tangential_model(const Site& s) {
-  if (s.ids.tangential == TANGENTIAL_HISTORY) return make<TangentialModel<TANGENTIAL_HISTORY>>(s);
+  if (s.ids.tangential == TANGENTIAL_HISTORY) return std::make_shared<LiggghtsSpring>(s);
   if (s.ids.tangential == TANGENTIAL_NO_HISTORY) return make<TangentialModel<TANGENTIAL_NO_HISTORY>>(s);
   if (s.ids.tangential == TANGENTIAL_OFF) return make<TangentialModel<TANGENTIAL_OFF>>(s);
   std::shared_ptr<TangentialModelBase> found;

@@ -2,8 +2,10 @@
 // Our models beside a law, as LIGGGHTS's loop sees them: read the contact, call the model, write force and torque.
 #pragma once
 
+#include <cmath>
 #include <cstring>
 #include <string>
+#include <utility>
 
 #include "epdem/sub_models.hpp"
 #include "host.hpp"
@@ -108,6 +110,46 @@ class FrictionModel : public TangentialModelBase {
   const NormalContactState& normal_;
   double** mu_ = nullptr;
   int offset_ = 0;
+};
+
+/// Notes the place of the first value that a model adds to the history.
+struct NotedSetup : LIGGGHTS::IContactHistorySetup {
+  explicit NotedSetup(LIGGGHTS::IContactHistorySetup* of) : of(of) {}
+  int add_history_value(std::string name, std::string newton_flag) override {
+    const int at = of->add_history_value(std::move(name), std::move(newton_flag));
+    if (first < 0) first = at;
+    return at;
+  }
+
+  LIGGGHTS::IContactHistorySetup* const of;
+  int first = -1;
+};
+
+/// LIGGGHTS's tangential history. Its class judges anew whether a contact slides in a step that is evaluated once more.
+class LiggghtsSpring : NotedSetup, public TangentialModel<TANGENTIAL_HISTORY> {
+  using Spring = TangentialModel<TANGENTIAL_HISTORY>;
+
+ public:
+  template <class Site>
+  explicit LiggghtsSpring(const Site& site) : NotedSetup(site.history), Spring(site.lmp, this, site.contact) {}
+
+  void connectToProperties(PropertyRegistry& registry) override {
+    Spring::connectToProperties(registry);
+    registry.connect("coeffFrict", mu_, SlidingSpring::name);
+  }
+
+  void surfacesIntersect(const SurfacesIntersectData& s, ForceData& fi, ForceData& fj) override {
+    if (keeps(s) || !SlidingSpring::still_slides(s.kt * length(vector_of(s.contact_history + first)),
+                                                 mu_[s.itype][s.jtype] * std::fabs(s.Fn)))
+      return Spring::surfacesIntersect(s, fi, fj);
+    SurfacesIntersectData slides = s;
+    slides.gammat = 0.0;
+    Spring::surfacesIntersect(slides, fi, fj);
+    s.P_diss = slides.P_diss;
+  }
+
+ private:
+  double** mu_ = nullptr;
 };
 
 /// Rolling friction.

@@ -1,8 +1,9 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """The same impacts in LIGGGHTS in another order or place: which contact model gives the same answer?
 
-One scene: 12 oblique impacts of unequal spheres and 12 of spheres on a wall, all drifting across x = CENTRE while they
-touch. Each way of telling it (swapped ids, sorted atoms, two ranks, a periodic face, ...) must not change the outcome.
+The main scene: 12 oblique impacts of unequal spheres and 12 of spheres on a wall, all drifting across x = CENTRE while
+they touch. Each way of telling it (swapped ids, sorted atoms, two ranks, a periodic face, ...) must not change the
+outcome.
 `bench/liggghts_invariance.py` writes the table of all models; the tests assert it for the models of epdem.
 """
 
@@ -11,13 +12,14 @@ from dataclasses import replace
 from functools import cache, cached_property, partial
 
 import numpy as np
-from plugin_decks import DUMP, Bodies, contact, good, head, materials, plate
+from plugin_decks import DUMP, Bodies, contact, good, head, materials, per_pair, plate
 
 CENTRE = 0.09375  # 1.5/16 m: on both sides of a face the coordinates have the same spacing of doubles
 BOX = ((-CENTRE, 3 * CENTRE), (-0.02, 0.12), (-0.01, 0.14))
 PERIODIC = ((-CENTRE, CENTRE), *BOX[1:])
 DRIFT, DT, STEPS, MIDDLE, N = 20.0, 2e-8, 2000, 450, 12
 EVERY_STEP = "neigh_modify every 1 delay 0 check no\n"
+HEAP_STEPS = 300
 SELDOM = "neigh_modify every 1 delay 0 check yes\n"
 
 
@@ -173,6 +175,47 @@ class Suite:
         frames = good(self.folder / "revolution", text, files={"box.data": bodies.data(box)}).frames()[1][1:, 0, 1:]
         return np.linalg.norm(frames[-1] - frames[0]) / np.linalg.norm(frames[0])
 
+    def heap(self, runs, *, reverse=False, ranks=1, friction=0.3):
+        """Velocities and spins of 64 spheres in contact that slide and stick on each other, with dashpots."""
+        rng, dt = np.random.default_rng(5), 1e-7
+        places = 3.996e-3 * (np.array(list(np.ndindex(4, 4, 4))) - 1.5) + rng.uniform(-1e-6, 1e-6, (64, 3))
+        radius, speeds = rng.uniform(1.999e-3, 2e-3, 64), rng.uniform(-3, 3, (64, 3))
+        ids = np.arange(64, 0, -1) if reverse else None
+        bodies = Bodies(rng.integers(1, 4, 64), radius, places, speeds, ids=ids)
+        given = materials(self.model, friction=friction)
+        text = (
+            head(ranks=(ranks, 1, 1), sort="0 0")
+            + "read_data box.data\nneighbor 5e-4 bin\nneigh_modify delay 0\n"
+            + given
+            + ("" if "coefficientRestitution" in given else per_pair("coefficientRestitution", 0.6))
+            + contact(self.model, tangential=self.tangential)
+            + f"timestep {dt!r}\nfix move all nve/sphere\nthermo_modify lost error norm no\n"
+            + runs
+            + DUMP.format(every=1)
+            + "run 0\n"
+        )
+        name = f"heap-{reverse}-{ranks}-{friction}-{len(runs)}"
+        return self.outcome(name, text, bodies=bodies, box=[(-0.02, 0.02)] * 3, ranks=ranks)
+
+    def heaps(self):
+        """name -> largest deviation of a heap from the same heap, computed in another order or in several runs."""
+        one, two = f"run {HEAP_STEPS}\n", f"run {HEAP_STEPS // 2}\n" * 2
+        often = f"run {HEAP_STEPS} every 10 NULL\n"
+        heap = cache(self.heap)
+
+        def row(*ways):
+            a, b = (heap(runs, **options) for runs, options in ways)
+            return (self.over_scale(a - b, b).max(), None)
+
+        return {
+            "heap, rows reversed": lambda: row((one, {"reverse": True}), (one, {})),
+            "heap, rows reversed, two runs": lambda: row((two, {"reverse": True}), (two, {})),
+            "heap, rows reversed, runs of 10 steps": lambda: row((often, {"reverse": True}), (often, {})),
+            "heap, 2 ranks, two runs": lambda: row((two, {"ranks": 2}), (two, {})),
+            "heap, two runs in place of one": lambda: row((two, {}), (one, {})),
+            "heap, runs of 10 steps in place of one": lambda: row((often, {}), (one, {})),
+        }
+
     def variants(self):
         """name -> outcome; the names are the rows of the table in the documentation."""
         b = self.bodies
@@ -233,12 +276,17 @@ class Suite:
         rows["rigid rotation, one revolution"] = lambda: (self.revolution(), None)
         rows["second impact in one list"] = lambda: (self.second_impact(fast=False), None)
         rows["second impact, fast parting"] = lambda: (self.second_impact(fast=True), None)
+        rows |= self.heaps()
         return {name: cache(row) for name, row in rows.items()}
+
+    @staticmethod
+    def over_scale(off, outcome):
+        """Absolute deviations of velocities and spins over the largest velocity and spin."""
+        return np.abs(off) / np.repeat([np.abs(outcome[:, :3]).max(), np.abs(outcome[:, 3:]).max()], 3)
 
     def deviation(self, run):
         """Largest deviation of (pairs, wall impacts) of a run from the plain one."""
-        scale = np.repeat([np.abs(self.plain[:, :3]).max(), np.abs(self.plain[:, 3:]).max()], 3)
-        off = np.abs(run() - self.plain) / scale
+        off = self.over_scale(run() - self.plain, self.plain)
         return off[: 2 * N].max(), off[2 * N :].max()
 
     def deviations(self):

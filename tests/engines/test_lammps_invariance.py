@@ -12,8 +12,21 @@ from lammps_decks import DUMP, THORNTON, column, needs_lammps, run, spheres
 pytestmark = needs_lammps
 
 LAWS = {  # of the two materials
-    "thornton": ("1e8 0.3 4e5 {}", "2e8 0.25 2e5 {}", "tangential partial_slip 0.3 rolling epsd2 0.1"),
-    "thornton_ning": ("1e8 0.3 0.5 4e5 {}", "2e8 0.25 0.3 2e5 {}", "tangential history 0.3 rolling epsd2 0.1"),
+    "thornton": (
+        "thornton 1e8 0.3 4e5 {}",
+        "thornton 2e8 0.25 2e5 {}",
+        "tangential partial_slip 0.3 rolling epsd2 0.1",
+    ),
+    "thornton_ning": (
+        "thornton_ning 1e8 0.3 0.5 4e5 {}",
+        "thornton_ning 2e8 0.25 0.3 2e5 {}",
+        "tangential history 0.3 rolling epsd2 0.1",
+    ),
+}
+DAMPED = "tangential history 0.3 tangential_restitution 0.6"
+WORDS = LAWS | {
+    "frictionless": ("thornton 1e8 0.3 4e5 {}", "thornton 2e8 0.25 2e5 {}", DAMPED.replace("0.3", "0.0")),
+    "damped": ("thornton 1e8 0.3 4e5 {}", "thornton 2e8 0.25 2e5 {}", DAMPED),
 }
 WALL = "fix floor all wall/ep zplane -0.01 NULL WORDS_2\n"
 HALF, STEPS = 0.02, 600  # [m] of the box
@@ -63,8 +76,8 @@ timestep 5e-7
 {WALL}fix motion all nve/sphere
 {steps}
 {DUMP}"""
-    for k, words in enumerate(LAWS[law][:2], 1):
-        text = text.replace(f"WORDS_{k}", f"{law} {words.format(LAWS[law][2])}")
+    for k, words in enumerate(WORDS[law][:2], 1):
+        text = text.replace(f"WORDS_{k}", words.format(WORDS[law][2]))
     return run(text, folder, ranks=ranks)[1][:, 4:]
 
 
@@ -125,6 +138,30 @@ run {STEPS - 250}"""
 )
 def test_a_stop_in_mid_contact_changes_nothing_but_rounding(steps, law, plain, tmp_path):
     assert deviation(end_of(law, tmp_path, steps=steps), plain) <= 1e-11
+
+
+def heap():
+    """64 spheres on the wall and on each other that slide and stick, on both sides of the border of two ranks."""
+    rng = np.random.default_rng(5)
+    cell = np.array(list(np.ndindex(4, 4, 4))) - (1.5, 1.5, 0.0)
+    places = (0.0, 0.0, -0.009) + 1.998e-3 * cell + rng.uniform(-1e-6, 1e-6, (64, 3))
+    kind, diameter = rng.integers(1, 3, (64, 1)), rng.uniform(1.999e-3, 2e-3, (64, 1))
+    motion = np.hstack([rng.uniform(-0.5, 0.5, (64, 3)), np.zeros((64, 3))])
+    return np.hstack([kind, diameter, np.full((64, 1), 2500.0), places, motion])
+
+
+@pytest.mark.parametrize("steps", ["run 300", "run 150\nrun 150", "run 300 every 10 NULL"])
+def test_rows_ranks_and_runs_change_a_heap_with_dashpots_by_round_off(steps, tmp_path):
+    """The evaluation before a run takes a contact that slides as one that slides, whatever the last digit says."""
+    end = end_of("damped", tmp_path / "as it is", heap(), steps=steps)
+    reversed_rows = end_of("damped", tmp_path / "reversed", heap()[::-1], steps=steps)[::-1]
+    ranks = end_of("damped", tmp_path / "ranks", heap(), steps=steps, head="processors 2 1 1", ranks=2)
+    assert deviation(reversed_rows, end) <= 1e-12 and deviation(ranks, end) <= 1e-12
+
+
+def test_a_second_run_without_friction_has_no_dashpot_beside_it(tmp_path):
+    one, two = (end_of("frictionless", tmp_path / s[4:7], heap(), steps=s) for s in ("run 100", "run 50\nrun 50"))
+    assert np.abs(two - one).max() <= 1e-12 and np.abs(one[:, 3:]).max() <= 1e-12
 
 
 SAME, MIRROR = np.eye(3), np.diag([-1.0, 1.0, 1.0])

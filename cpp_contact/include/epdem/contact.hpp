@@ -144,7 +144,7 @@ EPDEM_INLINE Pressed<Number<Law>> pressed_by(const Step<Law>& now, const Number<
 template <class Law>
 EPDEM_INLINE Sliding<Number<Law>> sliding_of(const ContactConstants<Law>& pair, const NormalContact<Law>& now,
                                              const Vec<Number<Law>>& normal, const Vec<Number<Law>>& velocity,
-                                             Number<Law> turn, double dt, bool damped) noexcept {
+                                             Number<Law> turn, double dt, bool damped, bool keeps = true) noexcept {
   return {pressed_by<Law>(now.step, now.load),
           normal,
           velocity,
@@ -156,7 +156,7 @@ EPDEM_INLINE Sliding<Number<Law>> sliding_of(const ContactConstants<Law>& pair, 
           now.damping,
           1.0 / dt * now.damping,
           damped,
-          true};
+          keeps};
 }
 
 /// The history of a contact: the values of the law, then the values of the models beside the law. RollingHistory
@@ -226,7 +226,8 @@ inline ContactLoads<Number<Law>> contact(const ContactConstants<Law>& pair, cons
 
   if constexpr (!std::is_same_v<Friction, NoFriction>) {
     const T turn = 0.5 * settings.dt * dot(c.normal, c.spin);
-    const auto sliding = sliding_of(pair, now, c.normal, c.slip_velocity, turn, settings.dt, settings.damped);
+    const auto sliding =
+        sliding_of(pair, now, c.normal, c.slip_velocity, turn, settings.dt, settings.damped, !settings.repeats);
     const Vec<T> F = Friction::template force<Law::flattens>(sliding, history.friction, observer);
     const Vec<T> lever = cross(c.normal, F);
     loads.force = loads.force + F;

@@ -37,7 +37,7 @@ struct Sliding {
   T damping;           // of the dashpot [N s/m]
   T damping_per_step;  // over the time step [N/m]
   bool damped;         // whether there may be a dashpot
-  bool keeps;          // the host stores the history of this step
+  bool keeps;          // the host stores the history of this step; else the last step is evaluated once more
 };
 
 /// Work that friction took in a step and elastic energy of its springs [J].
