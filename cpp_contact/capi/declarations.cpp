@@ -5,6 +5,7 @@
 #include <string>
 
 #include "epdem.h"
+#include "epdem/compaction.hpp"
 #include "epdem/laws.hpp"
 
 namespace {
@@ -31,6 +32,15 @@ std::string parameter(const Parameter& p) {
          field("of_pair", p.of_pair) + ", " + field("below", p.below) + "}";
 }
 
+/// Names of the values that compaction keeps behind those of the law.
+template <class Law>
+std::string growth_slots() {
+  std::string names;
+  if constexpr (compacts<Law>)
+    for (const char* slot : GrowthState<double>::slots) names += (names.empty() ? "" : ", ") + json(slot);
+  return names;
+}
+
 template <class Law>
 std::string declaration() {
   std::string parameters;
@@ -41,6 +51,7 @@ std::string declaration() {
          field("sources", Law::sources) + ", " + field("condition", static_cast<const char*>(Law::condition)) +
          ", \"parameters\": [" + parameters + "], " + field("strength", strength) + ", " +
          field("default_ratio", Law::default_ratio) + ", " + field("memory", history_size<Law>) + ", " +
+         "\"growth\": [" + growth_slots<Law>() + "], " +
          field("yields", Law::yields) + ", " + field("flattens", Law::flattens) + ", " +
          field("adheres", adheres<Law>) + ", " + field("without_adhesion", without_adhesion<Law>()) + "}";
 }

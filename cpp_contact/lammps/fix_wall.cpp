@@ -234,7 +234,8 @@ void FixWall::note(int n) {
     local_.insert(local_.end(), {double(atom->tag[b.i[k]]), double(b.j[k]), overlap,
                                  most < 0 ? overlap : std::max(overlap, b.history[k][most]),
                                  double(root < 0 || b.history[k][root] > 0.0),
-                                 layout_.growth < 0 ? 0.0 : added_overlap_of(b.history[k] + layout_.growth)});
+                                 layout_.growth < 0 ? 0.0 : added_overlap_of(b.history[k] + layout_.growth),
+                                 layout_.growth < 0 ? 0.0 : screening_of(b.history[k] + layout_.growth)});
   }
 }
 

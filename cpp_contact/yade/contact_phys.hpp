@@ -22,6 +22,8 @@ class EpPhys : public FrictPhys {
             [slot](EpPhys& p) { return p.kept(slot); });
       add(python, "addedOverlap", "overlap [m] that the growth of the bodies adds, with compaction",
           [](EpPhys& p) { return p.addedOverlap(); });
+      add(python, "screening", "elastic recovery over that of the contact alone, with compaction; 0: a new contact",
+          [](EpPhys& p) { return p.screening(); });
       for (int k = 0; k < iy::parameter_count; ++k)
         if (iy::is_first(k)) {
           const epdem::Parameter& p = *iy::parameters[k].declared;
@@ -74,6 +76,7 @@ class EpPhys : public FrictPhys {
     return at;
   }
   double addedOverlap() const { return growthAt() < 0 ? 0.0 : epdem::added_overlap_of(&history[growthAt()]); }
+  double screening() const { return growthAt() < 0 ? 0.0 : epdem::screening_of(&history[growthAt()]); }
 
   boost::python::dict pyDictCustom() const override {
     namespace iy = epdem::in_yade;

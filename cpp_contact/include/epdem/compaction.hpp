@@ -71,6 +71,8 @@ inline constexpr int growth_values = sizeof(GrowthState<double>) / sizeof(double
 
 /// v [m] of the values of a GrowthState.
 inline double added_overlap_of(const double* state) noexcept { return state[1]; }
+/// gamma of the same; 0: a new contact.
+inline double screening_of(const double* state) noexcept { return state[4]; }
 
 /// A contact that grows, in one step.
 template <bool wall, class T>

@@ -50,9 +50,9 @@ class Declaration:
     `index` is its place in the C interface, `id` the number of the LIGGGHTS model "ep/" + name in restart files;
     `sources` are short names of publications; `condition` is what the parameters must fulfil together; `strength` the
     parameter at which a body yields [Pa], None for a law without yield; `default_ratio` its value over the yield stress
-    Y of the softer body, 1 without; `memory` the number of doubles that a contact keeps from step to step; `flattens`
-    whether unloading differs from Hertz's; `adheres` whether bodies attract each other, and `without_adhesion` the law
-    for a work of adhesion of 0.
+    Y of the softer body, 1 without; `memory` the number of doubles that a contact keeps from step to step; `growth`
+    names those that it keeps for compaction, none of a law without; `flattens` whether unloading differs from Hertz's;
+    `adheres` whether bodies attract each other, and `without_adhesion` the law for a work of adhesion of 0.
     """
 
     index: int
@@ -65,6 +65,7 @@ class Declaration:
     strength: str | None
     default_ratio: float
     memory: int
+    growth: tuple[str, ...]
     yields: bool
     flattens: bool
     adheres: bool
@@ -108,6 +109,7 @@ def declarations() -> dict[str, Declaration]:
         for p in law["parameters"]:
             p["below"] = math.inf if p["below"] is None else p["below"]
         law["parameters"] = tuple(Parameter(**p) for p in law["parameters"])
+        law["growth"] = tuple(law["growth"])
         law["sources"] = tuple(law["sources"].split("; "))
         law["default_ratio"] = 1.0 if law["default_ratio"] is None else law["default_ratio"]
         laws[law["name"]] = Declaration(index=index, **law)

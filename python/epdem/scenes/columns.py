@@ -56,6 +56,7 @@ COLUMNS = {
     "j": Quantity("", "id of the second sphere, 0 for a wall"),
     "overlap": Quantity("m", "overlap"),
     "added_overlap": Quantity("m", "overlap that the growth of both spheres adds (compaction)"),
+    "screening": Quantity("", "elastic recovery over that of the contact alone (compaction)"),
     "force": Quantity("N", "normal force"),
     "delta_max": Quantity("m", "largest overlap so far"),
     "residual_overlap": Quantity("m", "overlap at which the unloaded contact has no force"),
@@ -175,13 +176,14 @@ def plate_height(p: ScenePlan, time: np.ndarray) -> np.ndarray:
 
 Array = npt.NDArray[np.float64]
 
+GROWTH = ["added_overlap", "screening"]  # that an engine gives with compaction
 BY_LAW = ["force", "residual_overlap", "dent_radius", "plastic_work", "elastic_energy"]
 _NODES, _WEIGHTS = gauss(16)  # on [0, 1]
 
 
 def contact_columns(p: ScenePlan) -> list[str]:
     """The columns of the table of contacts."""
-    return ["step", "wall", "i", "j", "overlap", "delta_max", *["added_overlap"] * p.model.compaction, *BY_LAW]
+    return ["step", "wall", "i", "j", "overlap", "delta_max", *GROWTH * p.model.compaction, *BY_LAW]
 
 
 def complete(p: ScenePlan, raw: pd.DataFrame, spheres: pd.DataFrame, folder: Path) -> pd.DataFrame:
@@ -189,7 +191,7 @@ def complete(p: ScenePlan, raw: pd.DataFrame, spheres: pd.DataFrame, folder: Pat
 
     raw: step, wall, i, j, overlap, delta_max; i < j are ids of spheres, or j = 0 and `wall` the name of a wall; with
     adhesion also whether the bodies are attached, for they may overlap in a dent without a contact; with compaction
-    added_overlap, with which the law's overlaps are larger than those of the spheres.
+    added_overlap, with which the law's overlaps are larger than those of the spheres, and screening.
     spheres: the particles' table. Raises EngineError, which names `folder`, for a contact of spheres that it lacks.
     """
     if raw.empty:
@@ -207,9 +209,10 @@ def complete(p: ScenePlan, raw: pd.DataFrame, spheres: pd.DataFrame, folder: Pat
     radius_i, type_i = first["radius"].to_numpy(), first["type"].to_numpy(int)
     R_star = 1.0 / (1.0 / radius_i + 1.0 / radius_j)
     attached = raw["attached"].to_numpy(bool) if "attached" in raw else np.ones(len(raw), bool)
-    added = raw["added_overlap"].to_numpy() if p.model.compaction else 0.0
+    added, screening = (raw[name].to_numpy() for name in GROWTH) if p.model.compaction else (0.0, np.ones(len(raw)))
     overlap, largest = raw["overlap"].to_numpy() + added, raw["delta_max"].to_numpy() + added
-    law = energies(p, type_i, type_j, R_star, overlap, largest, attached)
+    screening = np.where(screening > 0.0, screening, 1.0)  # 0: of a new contact
+    law = energies(p, type_i, type_j, R_star, overlap, largest, attached, screening)
     table = raw[contact_columns(p)[: -len(BY_LAW)]].reset_index(drop=True).join(law)
     table = table.astype({"step": "int64", "i": "int64", "j": "int64"})
     return table.sort_values(["step", "wall", "i", "j"], kind="stable").reset_index(drop=True)
@@ -223,6 +226,7 @@ def energies(
     overlap: Array,
     delta_max: Array,
     attached: npt.NDArray[np.bool_],
+    screening: Array,
 ) -> pd.DataFrame:
     """force, residual_overlap, dent_radius, plastic_work, elastic_energy of contacts; arrays of shape (n,)."""
     out = pd.DataFrame(0.0, index=range(len(overlap)), columns=BY_LAW)
@@ -231,22 +235,36 @@ def energies(
     keys = pd.DataFrame({"a": low, "b": high})
     for (a, b), rows in keys.groupby(["a", "b"]).groups.items():
         at = rows.to_numpy()
-        values = _one_kind(p.case, material[a], material[b], R_star[at], overlap[at], delta_max[at], attached[at])
+        of_contacts = (x[at] for x in (R_star, overlap, delta_max, attached, screening))
+        values = _one_kind(p.case, material[a], material[b], *of_contacts)
         for name, value in values.items():
             out.loc[at, name] = value
     return out
 
 
 def _one_kind(
-    case: SceneCase, a: str, b: str, R: np.ndarray, overlap: np.ndarray, largest: np.ndarray, attached: np.ndarray
+    case: SceneCase,
+    a: str,
+    b: str,
+    R: np.ndarray,
+    overlap: np.ndarray,
+    largest: np.ndarray,
+    attached: np.ndarray,
+    screening: np.ndarray,
 ) -> dict[str, np.ndarray]:
-    """Contacts of one pair of materials; R* [m] and the other arrays have the shape (n,)."""
+    """Contacts of one pair of materials; R* [m] and the other arrays have the shape (n,).
+
+    A screened contact gives back G = 1 - (1 - gamma) (1 - alpha_Y/b) of the overlap that it would give back alone from
+    its largest overlap b: the force is that of the contact alone at b - (b - overlap)/G.
+    """
     spec, E_star = pair_law(case, a, b)
     theory = spec.theory(E_star=E_star, R_star=R)
     if isinstance(theory, JKR):
         return _with_adhesion(theory, overlap, np.maximum(largest, overlap), attached)
     law = Law(spec.name, E_star=E_star, share=spec.share, **spec.parameters)
     largest = np.maximum(largest, overlap)
+    given_back = 1.0 - (1.0 - screening) * np.maximum(1.0 - theory.yield_overlap / np.maximum(largest, 1e-300), 0.0)
+    overlap = largest - (largest - overlap) / given_back
     force, _, _ = law.step(R_star=R, delta_max=largest, delta=overlap)
     _, dent, _, plastic = law.backbone(R_star=R, delta=largest)
     residual = np.asarray(theory.residual_overlap(largest), float) * (plastic > 0.0)
@@ -258,10 +276,10 @@ def _one_kind(
     elastic = 2.0 * (F.reshape(delta.shape) * _NODES * _WEIGHTS).sum(axis=1) * way  # 2 from the square
     return {
         "force": force,
-        "residual_overlap": residual,
+        "residual_overlap": largest - given_back * (largest - residual),
         "dent_radius": np.where(plastic > 0.0, dent, 0.0),
         "plastic_work": plastic,
-        "elastic_energy": elastic,
+        "elastic_energy": given_back * elastic,
     }
 
 

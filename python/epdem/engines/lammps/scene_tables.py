@@ -47,7 +47,7 @@ def particles(p: ScenePlan, folder: Path, without: Collection[int] = ()) -> pd.D
 
 def contact_table(p: ScenePlan, folder: Path, spheres: pd.DataFrame, without: Collection[int] = ()) -> pd.DataFrame:
     """Every contact of every frame."""
-    values = ["overlap", "delta_max", "attached", *["added_overlap"] * p.model.compaction]
+    values = ["overlap", "delta_max", "attached", *columns.GROWTH * p.model.compaction]
     pairs = _frames(p, folder, "contacts", p.contacts, ["one", "two", *values], without)
     pairs = pairs.assign(wall="", i=pairs[["one", "two"]].min(axis=1), j=pairs[["one", "two"]].max(axis=1))
     across = pairs["added_overlap"] if p.model.compaction else 0.0

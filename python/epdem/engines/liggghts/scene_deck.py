@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from ...base import rendering as decks
 from ...base.declarations import declarations
 from ...errors import CaseError
+from ...scenes.columns import GROWTH
 from ...scenes.model import Model
 from ...scenes.plan import ScenePlan
 from ..input_script import SKIN, SKIN_OF_GROWTH, default_skin, row_words, wall_id
@@ -65,24 +66,26 @@ def _settings(p: ScenePlan) -> tuple[str, ...]:
 
 
 def memory(m: Model, *, wall: bool = False) -> int:
-    """History values of one contact in LIGGGHTS, in this order: law, step, friction, rolling, two of compaction."""
+    """History values of one contact in LIGGGHTS, in this order: law, step, friction, rolling, compaction."""
     law = declarations()[m.law].memory
     friction = 3 * m.nodes + 1 if m.nodes else 3 * m.sliding
     others = friction + 3 * (m.rolling is not None and m.rolling.model in ("epsd", "epsd2"))
     stamp = 0 if wall else int(law + others > 0)
-    return law + stamp + others + 2 * m.compaction
+    return law + stamp + others + (len(declarations()[m.law].growth) if m.compaction else 0)
 
 
 def history_columns(m: Model) -> tuple[str, ...]:
     """What a table of contacts takes of the law's memory, which begins with it: the largest overlap of a law that
-    yields, whether bodies that adhere are attached (its root is above 0); last the added overlap of compaction."""
-    return ("largest overlap",) * m.yields + ("root of the attached",) * m.adheres + ("added overlap",) * m.compaction
+    yields, whether bodies that adhere are attached (its root is above 0); last what compaction adds."""
+    columns = ("largest overlap",) * m.yields + ("root of the attached",) * m.adheres
+    return columns + tuple(name.replace("_", " ") for name in GROWTH) * m.compaction
 
 
 def history_slots(m: Model, *, wall: bool = False) -> tuple[int, ...]:
     """Where the history of a contact has these columns, from 1."""
-    first = (*range(1, 1 + m.yields + m.adheres),)
-    return (*first, memory(m, wall=wall)) if m.compaction else first
+    first, growth = (*range(1, 1 + m.yields + m.adheres),), declarations()[m.law].growth
+    begin = memory(m, wall=wall) + 1 - len(growth)
+    return first + tuple(begin + growth.index(name) for name in GROWTH if m.compaction)
 
 
 def contact_columns(slots: Sequence[int], values: int) -> tuple[int, ...]:

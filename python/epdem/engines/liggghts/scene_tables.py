@@ -52,7 +52,7 @@ def _particle_names(p: ScenePlan) -> list[str]:
 
 def _slots(p: ScenePlan) -> list[str]:
     """The columns of `scene_deck.history_columns`."""
-    return ["delta_max"] * p.model.yields + ["attached"] * p.model.adheres + ["added_overlap"] * p.model.compaction
+    return ["delta_max"] * p.model.yields + ["attached"] * p.model.adheres + [*columns.GROWTH] * p.model.compaction
 
 
 def particles(p: ScenePlan, folder: Path, without: Collection[int] = ()) -> pd.DataFrame:

@@ -16,8 +16,8 @@ from .scene_parts import is_endless, wall_names
 
 PRESETS = {"floor_force_z": "floor_load", "plate_force_z": "plate_force", "drum_torque_y": "torque"}  # columns of kinds
 # of a contact: number of the sphere and of the other body (from 0; walls after the spheres), overlaps [m]; of the
-# classes also whether the bodies are attached, and with compaction the overlap that growth adds [m]
-CONTACT = ["i", "j", "overlap", "delta_max", "attached", "added_overlap"]
+# classes also whether the bodies are attached, and what compaction adds
+CONTACT = ["i", "j", "overlap", "delta_max", "attached", *columns.GROWTH]
 
 
 def _frames(
@@ -71,7 +71,7 @@ def contact_table(p: ScenePlan, folder: Path, spheres: pd.DataFrame, without: Co
 
 def _contacts(p: ScenePlan, folder: Path, spheres: pd.DataFrame, without: Collection[int]) -> pd.DataFrame:
     """Every contact of every frame; with overlap 0 those that ended since the frame before."""
-    of_classes = CONTACT[4 : 5 + p.model.compaction]
+    of_classes = CONTACT[4:] if p.model.compaction else CONTACT[4:5]
     raw = _frames(p, folder, "contacts", p.contacts, CONTACT[:4], of_classes, without)
     raw["delta_max"] = raw["delta_max"].fillna(raw["overlap"])  # of a law without history
     attached = raw["attached"] > 0 if p.model.adheres else False

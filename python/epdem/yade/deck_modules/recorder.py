@@ -22,19 +22,16 @@ class Classes:
 
     def __init__(self, law: Any):
         self.law = law
-        self.columns = 5 + law.compaction
+        self.columns = 7 if law.compaction else 5
 
     def strain(self) -> tuple[float, float]:
         """Largest contact radius and overlap over R*, times the share of the weaker body in the strain, so far."""
         return self.law.largestRadiusRatio, self.law.largestOverlapRatio
 
     def table(self) -> list[tuple[float, ...]]:
-        """As above, and 1 if the bodies are attached; with compaction the overlap that growth adds [m]."""
-        rows = [
-            (i.id1, i.id2, i.geom.penetrationDepth, i.phys.deltaMax, i.phys.contactRadius > 0.0, i.phys.addedOverlap)
-            for i in O.interactions
-            if i.isReal
-        ]
+        """As above, and 1 if the bodies are attached; with compaction the overlap that growth adds [m] and gamma."""
+        real = [(i.id1, i.id2, i.geom.penetrationDepth, i.phys) for i in O.interactions if i.isReal]
+        rows = [(*k, x.deltaMax, x.contactRadius > 0.0, x.addedOverlap, x.screening) for *k, x in real]
         return [row[: self.columns] for row in rows]
 
 
