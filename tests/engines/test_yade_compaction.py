@@ -4,7 +4,7 @@
 import numpy as np
 import pytest
 from plugin_compaction import NU, E, Y, alone
-from test_plugin_compaction import CLUSTER, FLOOR, RADII, SPEEDS, WAYS, assert_second_order
+from test_plugin_compaction import CLUSTER, FLOOR, MOVES, RADII, assert_second_order
 from yade_native import ROOT, classes, needs_source, yade
 
 from scenes.parts_cases import parts
@@ -14,7 +14,6 @@ from scenes.scene_runs import write_case
 pytestmark = [pytest.mark.yade, needs_source]
 
 __all__ = ["classes"]
-WAY = -SPEEDS[:, None] * WAYS
 
 SCENES = f"""
 import os
@@ -82,7 +81,7 @@ moving = []
 
 ALL = """
 found = {}
-for steps in (400, 1600):
+for steps in (200, 400, 800):
     cluster(steps)
     found[f"n{steps}"] = back(steps)
 found["energies"] = np.array(energies)
@@ -155,7 +154,7 @@ def scene(folder, text, threads=1):
     page = (ROOT / "docs/yade.md").read_text().split("```python in engines/test_yade_compaction.py\n")[1]
     (folder / "page.py").write_text(page.split("```")[0])
     impacts = dict(zip(("alone", "radii_alone", "way_alone"), alone(12, aside=20.0), strict=True))
-    np.savez(folder / "job.npz", x=CLUSTER, radius=RADII, way=WAY, floor=FLOOR, **impacts)
+    np.savez(folder / "job.npz", x=CLUSTER, radius=RADII, way=MOVES, floor=FLOOR, **impacts)
     done = yade(SCENES + text, folder, threads)
     assert done.returncode == 0, done.stdout[-2000:] + done.stderr[-3000:]
     return dict(np.load(folder / "found.npz")), done.stderr
@@ -167,7 +166,7 @@ def found(tmp_path_factory):
 
 
 def test_forces_are_those_of_grown_spheres_with_an_error_of_second_order(found):
-    assert_second_order({steps: found[0][f"n{steps}"] for steps in (400, 1600)})
+    assert_second_order({steps: found[0][f"n{steps}"] for steps in (200, 800)})
 
 
 def test_facets_and_boxes_press_as_walls_do(found):
@@ -191,9 +190,9 @@ def test_six_equal_contacts_have_the_growth_of_theory(found):
 
 def test_plastic_work_and_elastic_energy_are_the_work_of_the_spheres(found):
     """The spheres begin in the floor, which rests. The contacts and the bodies have the energies of O.energy, too."""
-    forces, energies = found[0]["n1600"], found[0]["energies"]
+    forces, energies = found[0]["n800"], found[0]["energies"]
     steps = len(forces) - 1
-    rate = np.where(np.arange(steps) < 1600, 1.0, -0.3)[:, None, None] * WAY / 1600
+    rate = np.where(np.arange(steps) < 800, 1.0, -0.3)[:, None, None] * MOVES / 800
     work = -np.cumsum((0.5 * (forces[1:] + forces[:-1]) * rate).sum(axis=(1, 2)))
     assert np.abs(work - energies[1:].sum(axis=1) + energies[0].sum()).max() < 2e-4 * work.max()
     assert found[0]["of_contacts"] == pytest.approx(energies[-1], rel=1e-9)
