@@ -3,9 +3,6 @@
 
 #include <cstring>
 
-#include "epdem/contact.hpp"
-#include "epdem/laws.hpp"
-
 namespace epdem::kernels {
 
 const Kernels* kernels_of(const char* name) {
@@ -18,40 +15,6 @@ const Kernels* kernels_of(const char* name) {
   if (__builtin_cpu_supports("avx2") && wanted("avx2")) return &kernels_avx2;
 #endif
   return wanted("sse2") ? &kernels_sse2 : nullptr;
-}
-
-namespace {
-
-template <class Law, bool wall>
-bool closes(const Gap& gap) {
-  ContactConstants<Law> pair;
-  std::memcpy(static_cast<void*>(&pair), gap.constants, sizeof pair);
-  Growing<wall, double> c{gap.radius_i, gap.radius_j, {gap.sums_i[0], gap.sums_i[1]}, {}, {}, {}};
-  if constexpr (!wall) c.j = {gap.sums_j[0], gap.sums_j[1]};
-  State<Law> before{};
-  if (gap.history) {
-    std::memcpy(static_cast<void*>(&before), gap.history, sizeof before);
-    std::memcpy(static_cast<void*>(&c.state), gap.growth, sizeof c.state);
-  }
-  const double R_star = wall ? gap.radius_i : reduced_finite(gap.radius_i, gap.radius_j);
-  return epdem::closes_gap(pair.law, pair.bodies, R_star, before, c, gap.overlap, gap.repeats);
-}
-
-template <class Law>
-bool closes_of(int law, const Gap& gap) {
-  if constexpr (compacts<Law>)
-    if (law == detail::place<Law>()) return gap.sums_j ? closes<Law, false>(gap) : closes<Law, true>(gap);
-  return false;
-}
-
-}  // namespace
-
-bool closes_gap(int law, const Gap& gap) {
-#define EPDEM_CLOSES(Class) \
-  if (closes_of<Class<double>>(law, gap)) return true;
-  EPDEM_LAWS(EPDEM_CLOSES)
-#undef EPDEM_CLOSES
-  return false;
 }
 
 void pad(Block& b, int n) {

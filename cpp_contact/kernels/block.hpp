@@ -56,7 +56,9 @@ struct Kernels {
   static constexpr int most_laws = 16, most_frictions = 16;
   Kernel of[most_laws][most_frictions][2];
   SphereKernels spheres;
-  Kernel grown[most_laws][most_frictions][2];  // with compaction
+  // with compaction; 1 of the last index also computes energies and repeats steps, whose many numbers would stay in
+  // registers beside each contact
+  Kernel grown[most_laws][most_frictions][2][2];
 };
 
 extern const Kernels kernels_sse2, kernels_avx2, kernels_avx512;
@@ -64,19 +66,6 @@ extern const Kernels kernels_sse2, kernels_avx2, kernels_avx512;
 /// The kernels of the instruction set `name` (sse2, avx2 or avx512); an empty name means the widest set of this
 /// processor. nullptr: the processor lacks the set, or there is no set of this name.
 const Kernels* kernels_of(const char* name);
-
-/// A sphere and its partner across a gap, with compaction.
-struct Gap {
-  const double* constants;         // of the pair of materials
-  const double *history, *growth;  // of the contact: values of the law and of GrowthState; null: a new contact
-  double radius_i, radius_j;
-  const double *sums_i, *sums_j;  // BodySums; sums_j is null at a wall
-  double overlap;                 // negative [m]
-  bool repeats;                   // as ContactSettings
-};
-
-/// Whether growth closes a gap; `law`: place in the list of laws.
-bool closes_gap(int law, const Gap& gap);
 
 /// Gives the lanes behind the last of n contacts something harmless.
 void pad(Block& block, int n);

@@ -55,12 +55,9 @@ EPDEM_INLINE Vec<Lanes> difference(const double* base, const int* i, const int* 
 
 /// Growth and area of the spheres of lanes k, k + 1, ..., which lie side by side.
 EPDEM_INLINE BodySums<Lanes> sums_of(const double* base, const int* index) {
-  BodySums<Lanes> sums;
-  for (int l = 0; l < lane_count; ++l) {
-    sums.growth[l] = base[2 * long(index[l])];
-    sums.area[l] = base[2 * long(index[l]) + 1];
-  }
-  return sums;
+  // rows of four begin at each sphere's two numbers; two numbers can be read behind the last row
+  const Columns c = columns([=](int l) __attribute__((always_inline)) { return load<Row>(base + 2 * long(index[l])); });
+  return {c.a, c.b};
 }
 
 EPDEM_INLINE void put(Line* lines, int k, Vec<Lanes> t) {
@@ -88,7 +85,9 @@ EPDEM_INLINE void largest(Block& b, int k, int n, Lanes radius, Lanes overlap, L
   keep(b.overlap_ratio, overlap);
 }
 
-/// Writes energies and the largest strain of contacts k, k + 1, ... of n into their block.
+/// Writes energies and the largest strain of contacts k, k + 1, ... of n into their block. books: whether energies can
+/// be requested.
+template <bool books>
 struct Recorder {
   Block& b;
   const int k, n;
@@ -98,12 +97,14 @@ struct Recorder {
   void normal(const ContactConstants<Law>& pair, Lanes R_star, const Step<Law>& now, Lanes overlap,
               const Energies& energies) const {
     if (rarely(pass.strain)) largest(b, k, n, now.radius, overlap, larger_share(pair.bodies) / R_star);
-    if (!rarely(pass.work)) return;
-    const NormalEnergies<Lanes> e = energies();
-    store(b.stored_energy.a + k, e.stored);
-    store(b.plastic_work_step.a + k, e.plastic_work_step);
-    store(b.contact_radius.a + k, now.radius);
-    if constexpr (adheres<Law>) store(b.adhesion_loss.a + k, e.adhesion_loss);
+    if constexpr (books) {
+      if (!rarely(pass.work)) return;
+      const NormalEnergies<Lanes> e = energies();
+      store(b.stored_energy.a + k, e.stored);
+      store(b.plastic_work_step.a + k, e.plastic_work_step);
+      store(b.contact_radius.a + k, now.radius);
+      if constexpr (adheres<Law>) store(b.adhesion_loss.a + k, e.adhesion_loss);
+    }
   }
 
   template <class Work>
@@ -159,18 +160,22 @@ struct RollingHistory {
 
 /// History of a contact: the values of the law, of pairs the step of the last evaluation (hosts end the contacts of
 /// walls), friction, rolling friction, with compaction the values of GrowthState.
-template <class Law, class Friction, bool wall, bool grows = false>
+/// Without `books` no step computes energies or repeats the last step.
+template <class Law, class Friction, bool wall, bool grows = false, bool books = true>
 [[gnu::flatten]] void contacts(Block& b, int n, const Pass& pass) {
   constexpr int law_values = history_size<Law>, friction_values = values_of<Friction, Lanes>;
   constexpr int last_step = law_values, sliding = law_values + !wall, rolling = sliding + friction_values;
   constexpr int values = law_values || friction_values ? rolling : 0, grown_values = grows ? growth_values : 0;
   [[maybe_unused]] const int growth_at = rolling + (grows && has_history(Rollings{}, pass.rolling) ? 3 : 0);
+  ContactSettings settings = pass;
+  if constexpr (!books) settings.repeats = false;
   using Pair = ContactConstants<Law>;
-  constexpr int bodies_at = offsetof(Pair, bodies) / sizeof(Lanes), constants = (bodies_at + 3) / 4 * 4;
-  static_assert(sizeof(Pair) <= most_constants * sizeof(Lanes) && offsetof(Pair, law) == law_data * sizeof(Lanes));
-  static_assert(sizeof(BodyShares<Lanes>) == 4 * sizeof(Lanes));
-  Lanes numbers[most_constants];
-  for (int c = 0; c < most_constants; ++c) numbers[c] = constant<Lanes>(b.material[0][c]);
+  constexpr int bodies_at = offsetof(Pair, bodies) / sizeof(Lanes), all_constants = sizeof(Pair) / sizeof(Lanes);
+  static_assert(all_constants <= most_constants && offsetof(Pair, law) == law_data * sizeof(Lanes));
+  static_assert(sizeof(BodyShares<Lanes>) == 4 * sizeof(Lanes) && bodies_at + 4 == all_constants);
+  Pair pair;
+  Lanes* const numbers = reinterpret_cast<Lanes*>(&pair);  // a Pair is made of numbers only
+  for (int c = 0; c < all_constants; ++c) numbers[c] = constant<Lanes>(b.material[0][c]);
   // The history of the next block lies behind the history of this block: fetch a long history during the computation.
   const auto ahead = reinterpret_cast<std::uintptr_t>(b.history[n - 1]);
   const auto behind = reinterpret_cast<std::uintptr_t>(b.history[0]);
@@ -186,11 +191,9 @@ template <class Law, class Friction, bool wall, bool grows = false>
             columns([&](int l) __attribute__((always_inline)) { return load<Row>(b.material[k + l] + c); });
         numbers[c] = four.a, numbers[c + 1] = four.b, numbers[c + 2] = four.c, numbers[c + 3] = four.d;
       };
-      for (int c = 0; c < constants; c += 4) read_four(c);
+      for (int c = 0; c < bodies_at; c += 4) read_four(c);
       if (grows || pass.strain) read_four(bodies_at);
     }
-    Pair pair;
-    __builtin_memcpy(static_cast<void*>(&pair), numbers, sizeof pair);
 
     Kinematics<Lanes> c;
     const Vec<Lanes> spin_i = of(pass.omega, b.i + k);
@@ -223,6 +226,8 @@ template <class Law, class Friction, bool wall, bool grows = false>
     if constexpr (grows) {
       history.growth.radius_i = c.radius_i;
       history.growth.radius_j = c.radius_j;
+      history.growth.curvature_i = 1.0 / c.radius_i;
+      if constexpr (!wall) history.growth.curvature_j = 1.0 / c.radius_j;
       history.growth.i = sums_of(pass.sums, b.i + k);
       if constexpr (!wall) history.growth.j = sums_of(pass.sums, b.j + k);
       copy<grown_values>(value + values, &history.growth.state);
@@ -232,7 +237,7 @@ template <class Law, class Friction, bool wall, bool grows = false>
       return wall ? at(b.mass_i, k) : effective_mass(b, k, pass.freeze);
     };
     ContactLoads<Lanes> loads;  // assigned below: GCC leaves in memory what it initialises with the result
-    loads = contact<Friction, wall>(pair, pass, c, history, mass, Recorder{b, k, n, pass});
+    loads = contact<Friction, wall>(pair, settings, c, history, mass, Recorder<books>{b, k, n, pass});
 
     if constexpr (values > 0) {
       copy<law_values>(&history.law, value);
@@ -275,8 +280,10 @@ constexpr void fill(Kernels& kernels) noexcept {
     kernels.of[law][friction][0] = offered<Law, Friction, false>();
     kernels.of[law][friction][1] = offered<Law, Friction, true>();
     if constexpr (compacts<Law>) {
-      kernels.grown[law][friction][0] = &contacts<Law, Friction, false, true>;
-      kernels.grown[law][friction][1] = &contacts<Law, Friction, true, true>;
+      kernels.grown[law][friction][0][0] = &contacts<Law, Friction, false, true, false>;
+      kernels.grown[law][friction][0][1] = &contacts<Law, Friction, false, true, true>;
+      kernels.grown[law][friction][1][0] = &contacts<Law, Friction, true, true, false>;
+      kernels.grown[law][friction][1][1] = &contacts<Law, Friction, true, true, true>;
     }
   });
 }

@@ -81,7 +81,7 @@ void FixHistory::book(const kernels::Block& b, int k, int i, double share, const
 }
 
 void FixHistory::close_growth(bool counts) {
-  bodies_.resize(2L * rows_);
+  bodies_.resize(2L * rows_ + 2);  // kernels read two numbers behind the last sphere
   largest_ = growth_reach;
   if (counts) {
     for (int i = 0; i < atom->nlocal; ++i) {

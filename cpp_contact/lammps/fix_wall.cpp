@@ -47,7 +47,7 @@ FixWall::FixWall(LAMMPS* lmp, int count, char** word)
 void FixWall::read(int first, int count, char** word, int most) {
   words_ = read_words(lmp, place_, count - first, word + first);
   layout_ = layout_of(words_.models, true);
-  kernel_ = kernel_of(lmp, place_, words_.models, true);
+  for (const bool complete : {false, true}) kernel_[complete] = kernel_of(lmp, place_, words_.models, true, complete);
   most_ = most;
   stride_ = 1 + layout_.values;
   maxexchange = 1 + most_ * stride_;
@@ -167,23 +167,16 @@ void FixWall::drop_parted(int i, std::vector<Contact>& found) {
   found.erase(std::remove_if(found.begin(), found.end(), parted), found.end());
 }
 
-bool FixWall::stands(int i, const Contact& c) {
+bool FixWall::stands(int i, const Contact& contact) {
   const double* history = nullptr;
   for (int k = 0; k < count_[i]; ++k)
-    if (record(i, k)[0] == c.part) history = record(i, k) + 1;
+    if (record(i, k)[0] == contact.part) history = record(i, k) + 1;
   if (layout_.growth < 0)
     return history && (history[layout_.root] > 0.0 || (pass_.repeats && history[layout_.jump] != 0.0));
   if (pass_.repeats && !history) return false;
-  const kernels::Gap gap{constants_.data() + most_constants * atom->type[i],
-                         history,
-                         history ? history + layout_.growth : nullptr,
-                         atom->radius[i],
-                         0.0,
-                         pass_.sums + 2L * i,
-                         nullptr,
-                         atom->radius[i] - c.distance,
-                         pass_.repeats};
-  return kernels::closes_gap(words_.models.law->place, gap);
+  const double radius = atom->radius[i];
+  const auto c = growing_at_wall(radius, sums_of(pass_.sums, i), history ? history + layout_.growth : nullptr);
+  return closes_gap(c, radius - contact.distance, pass_.repeats);
 }
 
 /// Puts the records of a sphere in the order of its contacts; the history of a new contact begins with zeros.
@@ -206,7 +199,7 @@ void FixWall::finish(int n) {
   kernels::Block& b = *block_;
   pass_.several = std::any_of(b.material, b.material + n, [&](const double* m) { return m != b.material[0]; });
   kernels::pad(b, n);
-  kernel_(b, n, pass_);
+  kernel_[pass_.work || pass_.repeats](b, n, pass_);
   for (int k = 0; k < n; ++k) {
     const int i = b.i[k];
     const auto point = [&](int axis) { return atom->x[i][axis] - b.from_wall[axis].a[k]; };

@@ -75,8 +75,8 @@ class FixWall : public LAMMPS_NS::Fix {
   std::vector<double> held_;  // `most` records for each atom: number of the part, history of the contact
   std::vector<int> count_;    // of records in use, for each atom
   PairEp* pair_ = nullptr;
-  std::vector<double> constants_;  // by type
-  kernels::Kernel kernel_ = nullptr;
+  std::vector<double> constants_;   // by type
+  kernels::Kernel kernel_[2] = {};  // the second one is complete
   kernels::Pass pass_{};
   std::unique_ptr<kernels::Block> block_;
   std::vector<double> copies_[2], scratch_;

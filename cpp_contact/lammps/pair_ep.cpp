@@ -140,7 +140,8 @@ void PairEp::init_style() {
       }
   if (damped) refuse_rigid_bodies(lmp, "pair_style ep");
   if (!models_.law) error->all(FLERR, "pair_style ep: no pair_coeff names a law; give pair_coeff 1 1 LAW E nu ...");
-  kernel_ = kernel_of(lmp, "pair_style ep", models_, false);
+  for (const bool complete : {false, true})
+    kernel_[complete] = kernel_of(lmp, "pair_style ep", models_, false, complete);
   layout_ = layout_of(models_, false);
   // lists by radius end at the skin, lists by type at the cutoff of init_one
   const int by_radius = models_.compaction ? NeighConst::REQ_DEFAULT : NeighConst::REQ_SIZE;
@@ -287,16 +288,9 @@ bool PairEp::growth_closes(int i, int j, const double* history, double rsq) cons
   const bool known = history && pass_.now - history[layout_.last_step] <= 1.0;
   if (pass_.repeats && !known) return false;
   const double ri = atom->radius[i], rj = atom->radius[j];
-  const kernels::Gap gap{constants_.data() + most_constants * (atom->type[i] * width_ + atom->type[j]),
-                         known ? history : nullptr,
-                         history + layout_.growth,
-                         ri,
-                         rj,
-                         pass_.sums + 2L * i,
-                         pass_.sums + 2L * j,
-                         ri + rj - std::sqrt(rsq),
-                         pass_.repeats};
-  return kernels::closes_gap(models_.law->place, gap);
+  const auto c =
+      growing_pair(ri, rj, sums_of(pass_.sums, i), sums_of(pass_.sums, j), known ? history + layout_.growth : nullptr);
+  return closes_gap(c, ri + rj - std::sqrt(rsq), pass_.repeats);
 }
 
 /// Fills the block with n > 0 pairs; history_at(i, k) is the history of pair k.
@@ -319,7 +313,7 @@ void PairEp::finish(int n) {
   if (n == 0) return;
   kernels::Block& b = *block_;
   fetch(n, [&](int i, int k) { return history_->at(i, slot_[k]); });
-  kernel_(b, n, pass_);
+  kernel_[pass_.work || pass_.repeats](b, n, pass_);
   if (strain_) history_->note_strain(b);
   if (models_.compaction) history_->note_dents(b, n, false);
   pass_.work ? scatter<true>(n) : scatter<false>(n);
@@ -392,7 +386,7 @@ double PairEp::single(int i, int j, int, int, double rsq, double, double, double
   b.i[0] = i;
   b.j[0] = j;
   fetch(1, [&](int, int) { return history.data(); });
-  kernel_(b, 1, pass_);
+  kernel_[true](b, 1, pass_);
   const double *const xi = atom->x[i], *const xj = atom->x[j];
   for (int axis = 0; axis < 3; ++axis) fforce += b.force[axis].a[0] * (xi[axis] - xj[axis]) / rsq;
   single_[0] = overlap;

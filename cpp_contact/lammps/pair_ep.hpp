@@ -75,7 +75,7 @@ class PairEp : public LAMMPS_NS::Pair {
   std::string fix_id_;
   FixHistory* history_ = nullptr;
 
-  kernels::Kernel kernel_ = nullptr;
+  kernels::Kernel kernel_[2] = {};  // the second one is complete
   kernels::Pass pass_{};
   std::unique_ptr<kernels::Block> block_;
   int slot_[kernels::block_size + kernels::most_lanes];

@@ -84,8 +84,10 @@ void refuse_rigid_bodies(LAMMPS_NS::LAMMPS* lmp, const std::string& place);
 double checked_gap(LAMMPS_NS::LAMMPS* lmp, const std::string& place, const Law& law, const double* constants,
                    double R_star);
 
-/// The kernel of these models; ends the run if the models have no kernel.
-kernels::Kernel kernel_of(LAMMPS_NS::LAMMPS* lmp, const std::string& place, const Models& models, bool wall);
+/// The kernel of these models; ends the run if the models have no kernel. complete: it can compute energies and repeat
+/// a step, with compaction at a cost.
+kernels::Kernel kernel_of(LAMMPS_NS::LAMMPS* lmp, const std::string& place, const Models& models, bool wall,
+                          bool complete);
 
 /// Values in the history of a contact.
 struct Layout {

@@ -42,18 +42,20 @@ class Growth {
   /// At the start of a kept pass over all pairs: the sums of the step before give the growth. Collective.
   void close(const LAMMPS_NS::Atom& atom) {
     const int nlocal = atom.nlocal;
-    for (int i = 0; i < nlocal; ++i) {
-      double *const sums = sums_->array_atom[i], *const body = bodies_->array_atom[i];
+    if (nlocal == 0 && atom.nghost == 0) return static_cast<void>(bodies_->do_forward_comm());
+    double *sums = sums_->array_atom[0], *body = bodies_->array_atom[0];
+    for (int i = 0; i < nlocal; ++i, sums += 3, body += 2) {
       body[0] = growth(sums[0], sums[1]);
       body[1] = sums[2];
-      std::fill_n(sums, 3, 0.0);
+      sums[0] = sums[1] = sums[2] = 0.0;
     }
     bodies_->do_forward_comm();
     largest_ = 0.0;
-    for (int i = 0; i < nlocal + atom.nghost; ++i) largest_ = std::max(largest_, bodies_->array_atom[i][0]);
+    const double* const all = of_all();
+    for (long i = 0; i < nlocal + atom.nghost; ++i) largest_ = std::max(largest_, all[2 * i]);
   }
 
-  BodySums<double> of(int body) const { return {bodies_->array_atom[body][0], bodies_->array_atom[body][1]}; }
+  BodySums<double> of(int body) const { return sums_of(of_all(), body); }
   const double* of_all() const { return bodies_->array_atom[0]; }
 
   /// No grown spheres touch whose squared distance is above this factor times the squared sum of their radii.

@@ -156,10 +156,11 @@ class LawModel : public NormalModel {
   /// The growth of a contact whose state lies in its history; a contact that is new has none.
   template <bool wall>
   Growing<wall, double> growing(const SurfacesCloseData& s, bool is_new) const {
-    Growing<wall, double> growth{s.radi, wall ? 0.0 : s.radj, growth_.of(s.i), {}, {}, {}};
-    if constexpr (!wall) growth.j = growth_.of(s.j);
-    if (!is_new) std::memcpy(static_cast<void*>(&growth.state), s.contact_history + growth_slot_, sizeof growth.state);
-    return growth;
+    const double* const state = is_new ? nullptr : s.contact_history + growth_slot_;
+    if constexpr (wall)
+      return growing_at_wall(s.radi, growth_.of(s.i), state);
+    else
+      return growing_pair(s.radi, s.radj, growth_.of(s.i), growth_.of(s.j), state);
   }
 
   /// The normal contact with growth; a step that is kept stores the state and adds the dents to the bodies.
@@ -180,13 +181,9 @@ class LawModel : public NormalModel {
     const bool keep = s.computeflag && s.shearupdate;
     const bool known = !has_step() || now_ - s.contact_history[step_slot_] <= keep;
     if (!keep && !known) return false;
-    const ContactConstants<Law>& pair = table_[s.itype * width_ + s.jtype];
-    State<Law> before{};
-    if (known) std::memcpy(static_cast<void*>(&before), s.contact_history + offset_, sizeof before);
     const double overlap = s.radsum - std::sqrt(s.rsq);
-    if (wall_) return closes_gap(pair.law, pair.bodies, s.radi, before, growing<true>(s, !known), overlap, !keep);
-    const double R_star = reduced_finite(s.radi, s.radj);
-    return closes_gap(pair.law, pair.bodies, R_star, before, growing<false>(s, !known), overlap, !keep);
+    return wall_ ? closes_gap(growing<true>(s, !known), overlap, !keep)
+                 : closes_gap(growing<false>(s, !known), overlap, !keep);
   }
 
   static Declaration declaration() {

@@ -216,12 +216,12 @@ class Law2_ScGeom_EpPhys : public LawFunctor {
         const auto& body = static_cast<const EpState&>(state);
         return epdem::BodySums<double>{body.growth, body.dentedArea};
       };
-      history.growth = {c.radius_i, c.radius_j, sums_of(swapped ? s2 : s1), {}, {}, {}};
-      if constexpr (!wall) history.growth.j = sums_of(s2);
-      load(phys, epdem::in_yade::growth_at<Law>, history.growth.state);
-      if (!(c.overlap > 0.0) &&
-          !closes_gap(pair.law, pair.bodies, c.R_star, history.law, history.growth, c.overlap, false))
-        return false;
+      const double* const state = &phys.history[epdem::in_yade::growth_at<Law>];
+      if constexpr (wall)
+        history.growth = epdem::growing_at_wall(c.radius_i, sums_of(swapped ? s2 : s1), state);
+      else
+        history.growth = epdem::growing_pair(c.radius_i, c.radius_j, sums_of(s1), sums_of(s2), state);
+      if (!(c.overlap > 0.0) && !closes_gap(history.growth, c.overlap, false)) return false;
     } else if constexpr (epdem::adheres<Law>) {
       if (!(c.overlap > 0.0 || history.law.root > 0.0)) return false;
     } else {

@@ -59,12 +59,15 @@ struct Dents {
 template <class T>
 struct GrowthState {
   static constexpr const char* slots[] = {"step_overlap", "added_overlap", "screened_overlap", "raw_screening",
-                                          "screening"};
-  T last;   // u + q of the sums of the step before [m]
-  T added;  // v [m]: u + q extrapolated to the step
-  T shift;  // q [m]
-  T raw;    // least gamma of the sums so far
-  T gamma;  // the same extrapolated to the step, which the force uses
+                                          "screening",    "own_growth",    "dented_area",      "unstored_work"};
+  T last;      // u + q of the sums of the step before [m]
+  T added;     // v [m]: u + q extrapolated to the step
+  T shift;     // q [m]
+  T raw;       // least gamma of the sums so far
+  T gamma;     // the same extrapolated to the step, which the force uses
+  T own;       // growth of both bodies by the dents of this contact alone [m]
+  T area;      // m a^2 [m^2]
+  T unstored;  // (1-G) U [J]
 };
 
 inline constexpr int growth_values = sizeof(GrowthState<double>) / sizeof(double);
@@ -78,80 +81,83 @@ inline double screening_of(const double* state) noexcept { return state[4]; }
 template <bool wall, class T>
 struct Growing {
   static constexpr bool at_wall = wall;
-  T radius_i, radius_j;  // [m]; radius_j of two spheres only
+  T radius_i, radius_j;        // [m]; of j between two spheres only
+  T curvature_i, curvature_j;  // 1/radius
   BodySums<T> i, j;
   GrowthState<T> state;  // before the step, then after it
   Dents<T> dents;        // after the step
 };
 
+/// The sums of one body of a host, which stores those of all side by side.
+inline BodySums<double> sums_of(const double* all, long body) noexcept { return {all[2 * body], all[2 * body + 1]}; }
+
+/// A contact as a host stores it: radii [m], sums of the bodies, values of its GrowthState; null: a new contact.
+inline Growing<false, double> growing_pair(double radius_i, double radius_j, BodySums<double> i, BodySums<double> j,
+                                           const double* state) noexcept {
+  Growing<false, double> c{radius_i, radius_j, 1.0 / radius_i, 1.0 / radius_j, i, j, {}, {}};
+  if (state) __builtin_memcpy(static_cast<void*>(&c.state), state, sizeof c.state);
+  return c;
+}
+inline Growing<true, double> growing_at_wall(double radius, BodySums<double> i, const double* state) noexcept {
+  Growing<true, double> c{radius, 0.0, 1.0 / radius, 0.0, i, {}, {}, {}};
+  if (state) __builtin_memcpy(static_cast<void*>(&c.state), state, sizeof c.state);
+  return c;
+}
+
 namespace detail {
 
-/// A contact at its peak.
-template <class T>
-struct Indent {
-  T yielded;   // m
-  T softness;  // G
-  T residual;  // overlap, without growth, at which the force returns to 0 [m]
-  T area;      // m a^2 [m^2]
-  T unstored;  // (1-G) U [J]
-};
-
+/// m of a contact of peak overlap b.
 template <class Law, class T = Number<Law>>
-EPDEM_INLINE Indent<T> indent_of(const Law& law, T R_star, T delta_max, const Point<T>& peak, T added,
-                                 T gamma) noexcept {
-  const T b = delta_max + added, delta_Y = law.elastic_overlap(R_star);
-  const auto dented = (b > delta_Y) & (peak.force > 0.0);
-  const T m = select(dented, 1.0 - delta_Y / b, T{}), soft = (1.0 - gamma) * m, G = 1.0 - soft;
-  const T one = constant<T>(1.0);
-  const Point<T> p = select(dented, peak, Point<T>{one, one, T{}});
-  const T residual = max(T{}, max(T{}, delta_max) - G * recovered_overlap(law.E_star, p));
-  return {m, G, select(dented, residual, T{}), m * (p.radius * p.radius), soft * recovered_work(law.E_star, p)};
+EPDEM_INLINE T yielded_share(const Law& law, T R_star, T b) noexcept {
+  const T delta_Y = law.elastic_overlap(R_star);
+  return select(b > delta_Y, 1.0 - delta_Y / b, T{});
+}
+
+/// Growth of both bodies [m] over growth g_i, g_j.
+template <bool wall, class T>
+EPDEM_INLINE T grown(const Growing<wall, T>& c, T g_i, T g_j) noexcept {
+  if constexpr (wall) return c.radius_i * g_i;
+  return c.radius_i * g_i + c.radius_j * g_j;
 }
 
 /// Depths of a residual overlap in both bodies, to the plane where the spheres intersect, as parts of their sums.
 template <bool wall, class T>
-EPDEM_INLINE Dents<T> dents_of(T radius_i, T radius_j, T strain_i, T residual, T area) noexcept {
-  const auto twice = min(constant<T>(1.0), 2.0 * strain_i);
+EPDEM_INLINE Dents<T> dents_of(const Growing<wall, T>& c, T strain_i, T residual, T area) noexcept {
+  const T more = 2.0 * strain_i - 1.0, one = constant<T>(1.0);
   if constexpr (wall) {
-    (void)radius_j;
-    const T depth = residual / radius_i;
-    return {depth, T{}, twice * (depth * depth), T{}, area};
+    const T x = residual * c.curvature_i;
+    return {x, T{}, min(one, 1.0 + more) * (x * x), T{}, area};
   } else {
-    // volume R d^2 of each dent; the weaker body takes of the other's what this body's share is short of 1/2
-    const T half = 0.5 * residual / (radius_i + radius_j - residual);
-    const T d_i = half * (2.0 * radius_j - residual), d_j = half * (2.0 * radius_i - residual);
-    const T x_i = d_i / radius_i, x_j = d_j / radius_j, V_i = radius_i * d_i * d_i, V_j = radius_j * d_j * d_j;
-    const T more = 2.0 * strain_i - 1.0, to_i = max(T{}, more) * V_j, to_j = max(T{}, -more) * V_i;
-    return {x_i, x_j, twice * (x_i * x_i) + to_i / (radius_i * radius_i * radius_i),
-            min(constant<T>(1.0), 1.0 - more) * (x_j * x_j) + to_j / (radius_j * radius_j * radius_j), area};
+    const T half = 0.5 * residual / (c.radius_i + c.radius_j - residual);
+    const T d_i = half * (2.0 * c.radius_j - residual), d_j = half * (2.0 * c.radius_i - residual);
+    const T x_i = d_i * c.curvature_i, x_j = d_j * c.curvature_j;
+    T S_i = x_i * x_i, S_j = x_j * x_j;  // volume R d^2 of each dent over R^3
+    if (any(more != 0.0)) {  // the weaker body has of the other's dent what it has more than half of the strain
+      const T ratio = c.radius_j * c.curvature_i, cube = ratio * ratio * ratio;
+      const T to_i = max(T{}, more) * cube * S_j, to_j = max(T{}, -more) * S_i / cube;
+      S_i = min(one, 1.0 + more) * S_i + to_i;
+      S_j = min(one, 1.0 - more) * S_j + to_j;
+    }
+    return {x_i, x_j, S_i, S_j, area};
   }
 }
 
-/// u [m] that the sums of the bodies add to a contact with these dents.
-template <bool wall, class T>
-EPDEM_INLINE T grown_by_others(const Growing<wall, T>& c, const Dents<T>& own) noexcept {
-  const T u_i = c.radius_i * max(T{}, c.i.growth - growth(own.cover_i, own.volume_i));
-  if constexpr (wall) return u_i;
-  return u_i + c.radius_j * max(T{}, c.j.growth - growth(own.cover_j, own.volume_j));
-}
-
-/// gamma of a contact of this own area > 0 [m^2] in the sums.
+/// gamma of a contact of this own area [m^2] in the sums, where it is above 0.
 template <bool wall, class T>
 EPDEM_INLINE T screening(const Growing<wall, T>& c, const BodyShares<T>& bodies, T own) noexcept {
-  const T root_own = sqrt(own);
-  const auto lost = [](T others, T radius) {  // of 1 by the constriction
-    const T free = max(T{}, 1.0 - sqrt(others) / (2.0 * radius));
+  const auto lost = [](T others, T curvature) {  // of 1 by the constriction
+    const T free = max(T{}, 1.0 - 0.5 * sqrt(others) * curvature);
     return 1.0 - free * sqrt(free);
   };
   const T others_i = max(T{}, c.i.area - own);
-  T gamma = 1.0 - bodies.compliance_i * lost(others_i, c.radius_i);
-  T bulk = bodies.bulk_i * others_i / c.radius_i;
+  T gamma = 1.0 - bodies.compliance_i * lost(others_i, c.curvature_i);
+  T bulk = bodies.bulk_i * others_i * c.curvature_i;
   if constexpr (!wall) {
     const T others_j = max(T{}, c.j.area - own);
-    gamma = gamma - (1.0 - bodies.compliance_i) * lost(others_j, c.radius_j);
-    bulk = bulk + bodies.bulk_j * others_j / c.radius_j;
+    gamma = gamma - (1.0 - bodies.compliance_i) * lost(others_j, c.curvature_j);
+    bulk = bulk + bodies.bulk_j * others_j * c.curvature_j;
   }
-  return max(constant<T>(least_screening), min(constant<T>(1.0), gamma + bulk / root_own));
+  return max(constant<T>(least_screening), min(constant<T>(1.0), gamma + bulk / sqrt(own)));
 }
 
 }  // namespace detail
@@ -164,21 +170,16 @@ struct Added {
 };
 
 template <bool wall, class T>
-EPDEM_INLINE Added<T> added_overlap(const Growing<wall, T>& c, const BodyShares<T>& bodies,
-                                    const detail::Indent<T>& old, bool repeats) noexcept {
+EPDEM_INLINE Added<T> added_overlap(const Growing<wall, T>& c, bool repeats) noexcept {
   if (repeats) return {c.state.last, c.state.added};
-  const auto own = detail::dents_of<wall>(c.radius_i, c.radius_j, bodies.strain_i, old.residual, old.area);
-  const T now = detail::grown_by_others(c, own) + c.state.shift;
+  const T now = max(T{}, detail::grown(c, c.i.growth, c.j.growth) - c.state.own) + c.state.shift;
   return {now, select(c.state.raw > 0.0, max(now, 2.0 * now - c.state.last), now)};
 }
 
 /// Whether growth closes the gap of a contact of overlap < 0.
-template <bool wall, class Law>
-inline bool closes_gap(const Law& law, const BodyShares<double>& bodies, double R_star, const State<Law>& before,
-                       const Growing<wall, double>& c, double overlap, bool repeats) noexcept {
-  const double gamma = c.state.raw > 0.0 ? c.state.gamma : 1.0;
-  const auto old = detail::indent_of(law, R_star, before.delta_max, before.point, c.state.added, gamma);
-  return overlap + added_overlap(c, bodies, old, repeats).extrapolated > 0.0;
+template <bool wall>
+inline bool closes_gap(const Growing<wall, double>& c, double overlap, bool repeats) noexcept {
+  return overlap + added_overlap(c, repeats).extrapolated > 0.0;
 }
 
 /// Grown spheres whose growth over the radius is at most `largest` touch below this factor of the squared sum of their
@@ -191,16 +192,13 @@ inline double touch_factor(double largest) noexcept {
 /// A step of a contact that grows.
 template <class Law>
 struct GrownStep {
-  Law law;                // with E*/G
-  State<Law> before;      // of the overlap with growth
-  Step<Law> step;         // the same
-  Number<Law> overlap;    // with growth [m]
-  Number<Law> reached;    // largest overlap without growth before the step [m]
-  Number<Law> delta_max;  // the same after the step
-  Point<Number<Law>> peak_before;
-  detail::Indent<Number<Law>> old, now;
-  GrowthState<Number<Law>> last;  // before the step
-  Number<Law> added;              // v of the step
+  State<Law> before;                     // of the overlap with growth
+  Step<Law> step;                        // the same
+  Number<Law> overlap;                   // with growth [m]
+  Number<Law> reached;                   // largest overlap without growth before the step [m]
+  Number<Law> delta_max;                 // the same after the step
+  Number<Law> softness;                  // G
+  GrowthState<Number<Law>> last, state;  // before and after the step
 };
 
 /// As `step`, for a contact whose law's history is `before`, with the largest overlap without growth. Writes the state
@@ -208,63 +206,68 @@ struct GrownStep {
 template <bool wall, class Law, class T = Number<Law>>
 EPDEM_INLINE GrownStep<Law> grown_step(const Law& law, const BodyShares<T>& bodies, T R_star, const State<Law>& before,
                                        T overlap, Growing<wall, T>& c, bool repeats) noexcept {
-  const T zero{}, one = constant<T>(1.0), least = constant<T>(least_screening);
+  const T zero{}, one = constant<T>(1.0);
   GrownStep<Law> s;
   s.last = c.state;
-  s.peak_before = before.point;
   const auto known = c.state.raw > 0.0;
-  const T raw_before = select(known, c.state.raw, one), gamma_before = select(known, c.state.gamma, one);
+  const T raw_before = select(known, c.state.raw, one);
+  T raw = raw_before, gamma = select(known, c.state.gamma, one);
   s.reached = select(known, before.delta_max, min(overlap, zero));
-  s.old = detail::indent_of(law, R_star, s.reached, before.point, c.state.added, gamma_before);
-  const Added<T> v = added_overlap(c, bodies, s.old, repeats);
-  s.added = v.extrapolated;
-  s.overlap = overlap + s.added;
   s.delta_max = select((overlap < s.reached) & (s.reached < no_overlap), s.reached, overlap);
-  const T b = s.delta_max + s.added, delta_Y = law.elastic_overlap(R_star);
-  const auto beyond = b > delta_Y;
-
-  T raw = raw_before, gamma = gamma_before;
+  const Added<T> v = added_overlap(c, repeats);
+  s.overlap = overlap + v.extrapolated;
+  const T m = detail::yielded_share(law, R_star, s.delta_max + v.extrapolated);
   if (!repeats) {
-    const auto screened = beyond & (s.old.area > 0.0);
-    if (any(screened))
-      raw = select(screened, min(raw, detail::screening(c, bodies, select(screened, s.old.area, one))), raw);
-    gamma = min(gamma, max(least, min(raw, 2.0 * raw - raw_before)));
+    const auto screened = (m > 0.0) & (c.state.area > 0.0);
+    if (any(screened)) raw = select(screened, min(raw, detail::screening(c, bodies, c.state.area)), raw);
+    gamma = min(gamma, max(constant<T>(least_screening), min(raw, 2.0 * raw - raw_before)));
   }
-  s.law = law;
-  s.law.E_star = law.E_star / (1.0 - (1.0 - gamma) * select(beyond, 1.0 - delta_Y / b, zero));
+  const T soft = (1.0 - gamma) * m;
+  s.softness = 1.0 - soft;
 
   // a stored peak of another overlap is not plausible, and the step computes a new one
   s.before = before;
-  s.before.delta_max = s.reached + s.added;
-  s.before.point.force = select(known & (s.added == c.state.added), before.point.force, zero);
-  s.step = step(s.law, R_star, s.before, s.overlap);
+  s.before.delta_max = s.reached + v.extrapolated;
+  s.before.point.force = select(known & (v.extrapolated == c.state.added), before.point.force, zero);
+  s.step = step_of_modulus(law, law.E_star / s.softness, R_star, s.before, s.overlap);
 
-  const auto stands = s.overlap > 0.0;
   const Point<T>& peak = s.step.after.point;
-  s.now = detail::indent_of(law, R_star, s.delta_max, peak, s.added, gamma);
-  c.dents = detail::dents_of<wall>(c.radius_i, c.radius_j, bodies.strain_i, select(stands, s.now.residual, zero),
-                                   select(stands, s.now.area, zero));
-  s.delta_max = select(stands, s.delta_max, zero);
-  if (repeats) return s;
-  const T before_force = select(known, before.point.force, zero);
-  const T mean = select(before_force > 0.0, 0.5 * (peak.force + before_force), peak.force);
-  const T shift = c.state.shift + select(s.now.yielded > 0.0, (s.now.unstored - s.old.unstored) / mean, zero);
-  c.state = {select(stands, v.now, zero), select(stands, s.added, zero), select(stands, shift, zero),
-             select(stands, raw, zero), select(stands, gamma, zero)};
+  const auto dented = m > 0.0, parts = !(s.overlap > 0.0);
+  const T recovered = recovered_overlap(law.E_star, peak);
+  const T residual = max(zero, s.delta_max) - s.softness * recovered;
+  const T area = select(dented, m * (peak.radius * peak.radius), zero);
+  c.dents = detail::dents_of(c, bodies.strain_i, select(dented & (residual > 0.0), residual, zero), area);
+  if (!repeats) {
+    const T own =
+        detail::grown(c, growth(c.dents.cover_i, c.dents.volume_i), growth(c.dents.cover_j, c.dents.volume_j));
+    const T unstored = select(dented, soft * recovered_work(law.E_star, peak), zero);
+    const T before_force = select(c.state.area > 0.0, before.point.force, peak.force);
+    const T shift = select(dented, (unstored - c.state.unstored) / (0.5 * (peak.force + before_force)), zero);
+    c.state = {v.now, v.extrapolated, c.state.shift + shift, raw, gamma, own, area, unstored};
+  }
+  if (any(parts)) {
+    s.delta_max = select(parts, zero, s.delta_max);
+    const Dents<T>& d = c.dents;
+    c.dents = {select(parts, zero, d.cover_i), select(parts, zero, d.cover_j), select(parts, zero, d.volume_i),
+               select(parts, zero, d.volume_j), select(parts, zero, d.area)};
+    const GrowthState<T>& g = c.state;
+    c.state = {select(parts, zero, g.last), select(parts, zero, g.added),   select(parts, zero, g.shift),
+               select(parts, zero, g.raw),  select(parts, zero, g.gamma),   select(parts, zero, g.own),
+               select(parts, zero, g.area), select(parts, zero, g.unstored)};
+  }
+  s.state = c.state;
   return s;
 }
 
 /// Energies of a step that grows, of second order in the time step; closing: closing speed at the half step times the
 /// time step [m]. The plastic work of one contact may be negative: what grows a contact is paid by the dents of others.
 template <class Law, class T = Number<Law>>
-[[gnu::noinline]] NormalEnergies<T> grown_energies(const Law& law, T R_star, const GrownStep<Law>& s, T overlap,
-                                                   T closing) noexcept {
-  const T delta_Y = law.elastic_overlap(R_star);
-  const auto known = s.last.raw > 0.0;
-  const T v0 = select(known, s.last.added, s.added), b0 = max(T{}, select(known, s.reached + v0, T{}));
-  const T b = s.delta_max + s.added;
+[[gnu::noinline]] NormalEnergies<T> grown_energies(const Law& law, T R_star, const Point<T>& peak_before,
+                                                   const GrownStep<Law>& s, T overlap, T closing) noexcept {
+  const auto known = s.last.raw > 0.0, was_dented = s.last.area > 0.0, dented = s.state.area > 0.0;
+  const T v = s.state.added, v0 = select(known, s.last.added, v), b = s.delta_max + v;
+  const T soft_before = 1.0 - (1.0 - s.last.gamma) * detail::yielded_share(law, R_star, s.reached + v0);
   const Point<T>& peak = s.step.after.point;
-  const auto was_dented = s.old.yielded > 0.0, dented = s.now.yielded > 0.0;
   const auto stored = [&](auto yielded, const Point<T>& p, T softness, T delta_max, T delta) {
     const T at = max(T{}, delta), one = constant<T>(1.0);
     const Point<T> safe = select(yielded, p, Point<T>{one, one, T{}});
@@ -272,23 +275,24 @@ template <class Law, class T = Number<Law>>
   };
   // below the peak the overlap moves on a branch, which the sums change: the change at the middle of the step
   const T middle = min(overlap - 0.5 * closing, select(was_dented, s.reached, overlap));
-  T lost = stored(was_dented, s.peak_before, s.old.softness, s.reached + v0, middle + v0) -
-           stored(dented, peak, s.now.softness, b, middle + s.added);
+  T lost = stored(was_dented, peak_before, soft_before, s.reached + v0, middle + v0) -
+           stored(dented, peak, s.softness, b, middle + v);
   const auto yields = dented & (overlap >= s.reached);
   if (any(yields)) {
-    const T from = select(yields, b0, delta_Y), to = select(yields, b, delta_Y);
+    const T delta_Y = law.elastic_overlap(R_star), b0 = select(known, s.reached + v0, T{});
+    const T from = select(yields, max(T{}, b0), delta_Y), to = select(yields, b, delta_Y);
     T F0 = hertz_point(law.E_star, R_star, from).force, U0 = hertz_work(law.E_star, R_star, from);
     if (any(was_dented)) {
-      const Point<T> safe = select(was_dented, s.peak_before, peak);
+      const Point<T> safe = select(was_dented, peak_before, peak);
       F0 = select(was_dented, safe.force, F0);
       U0 = select(was_dented, recovered_work(law.E_star, safe), U0);
     }
-    const T U = stored_work(law.E_star, select(yields, peak, s.peak_before), to, to);
+    const T U = stored_work(law.E_star, select(yields, peak, peak_before), to, to);
     const T work = law.work(R_star, from, to) + U0 - U;
-    const T paid = 0.5 * (F0 + peak.force) * (s.added - v0);
-    lost = select(yields, work - paid + (s.now.unstored - s.old.unstored), lost);
+    const T paid = 0.5 * (F0 + peak.force) * (v - v0);
+    lost = select(yields, work - paid + (s.state.unstored - s.last.unstored), lost);
   }
-  return {lost, stored(dented, peak, s.now.softness, b, s.overlap), T{}};
+  return {lost, stored(dented, peak, s.softness, b, s.overlap), T{}};
 }
 
 }  // namespace epdem

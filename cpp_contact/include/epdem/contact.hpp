@@ -113,7 +113,8 @@ inline NormalContact<Law> normal_contact(const ContactConstants<Law>& pair, Numb
     delta_max = grown.delta_max;
     observer.normal(pair, R_star, now.step, now.overlap, [&]() __attribute__((always_inline)) {
       const GrownStep<Law> copy = grown;
-      return grown_energies(law, R_star, copy, overlap, closing);
+      const auto peak = before.point;
+      return grown_energies(law, R_star, peak, copy, overlap, closing);
     });
   }
   if constexpr (adheres<Law>)

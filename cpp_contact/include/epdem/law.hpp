@@ -65,11 +65,12 @@ inline auto plausible(const Point<T>& p) noexcept {
          (p.flatness <= 1.0);
 }
 
-/// Force and contact radius at overlap `delta` [m] of a contact that remembers `before`.
-/// Never NaN for finite input; zero force for delta <= 0. The memory only grows: forgetting is the host's decision.
+/// As `step`, with another modulus [Pa] than E* below the largest overlap.
 template <class Law>
-inline Step<Law> step(const Law& law, Number<Law> R_star, const State<Law>& before, Number<Law> delta) noexcept {
+inline Step<Law> step_of_modulus(const Law& law, Number<Law> modulus, Number<Law> R_star, const State<Law>& before,
+                                 Number<Law> delta) noexcept {
   using T = Number<Law>;
+  (void)modulus;
   const auto touches = delta > 0.0;
   if (!any(touches)) return {T{}, T{}, before};
   Point<T> now{};
@@ -93,12 +94,19 @@ inline Step<Law> step(const Law& law, Number<Law> R_star, const State<Law>& befo
       } else {
         peak = law.load(R_star, delta_max);
       }
-      if (any(falls)) peak = select(falls, unload<Law::flattens>(law.E_star, peak, delta_max, delta), peak);
+      if (any(falls)) peak = select(falls, unload<Law::flattens>(modulus, peak, delta_max, delta), peak);
       now = select(elastic, now, peak);
     }
     after.delta_max = select(touches, delta_max, before.delta_max);
   }
   return {select(touches, now.force, T{}), select(touches, now.radius, T{}), after};
+}
+
+/// Force and contact radius at overlap `delta` [m] of a contact that remembers `before`.
+/// Never NaN for finite input; zero force for delta <= 0. The memory only grows: forgetting is the host's decision.
+template <class Law>
+inline Step<Law> step(const Law& law, Number<Law> R_star, const State<Law>& before, Number<Law> delta) noexcept {
+  return step_of_modulus(law, law.E_star, R_star, before, delta);
 }
 
 /// The same with a closing speed at the half step times the time step [m], which only laws with adhesion ask for.

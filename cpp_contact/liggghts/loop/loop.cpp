@@ -208,16 +208,9 @@ bool PairLoop::closes_gap(const Plan& plan, int i, int j, int slot) {
   const double sum = radius[i] + radius[j], rsq = dx * dx + dy * dy + dz * dz;
   const double* const h = pair_->listgranhistory->firstdouble[i] + pair_->dnum() * slot;
   const bool is_new = pass_.now - h[plan.last_step] > 1.0;
-  const Gap gap{plan.constants.data() + most_constants * (atom->type[i] * plan.width + atom->type[j]),
-                is_new ? nullptr : h,
-                h + pair_->dnum() - growth_values,
-                radius[i],
-                radius[j],
-                pass_.sums + 2L * i,
-                pass_.sums + 2L * j,
-                sum - std::sqrt(rsq),
-                false};
-  if (epdem::kernels::closes_gap(plan.law, gap)) return true;
+  const auto c = growing_pair(radius[i], radius[j], sums_of(pass_.sums, i), sums_of(pass_.sums, j),
+                              is_new ? nullptr : h + pair_->dnum() - growth_values);
+  if (epdem::closes_gap(c, sum - std::sqrt(rsq), false)) return true;
   pair_->listgranhistory->firstneigh[i][slot] &= ~flags_;
   return false;
 }

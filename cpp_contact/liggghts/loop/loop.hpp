@@ -25,7 +25,7 @@ const SphereKernels& sphere_kernels(LAMMPS_NS::LAMMPS* lmp);
 
 /// Settings and properties of a run.
 struct Plan {
-  int law = 0, friction = 0;  // places in their lists
+  int friction = 0;  // place in Frictions
   ContactSettings settings{};
   bool rolls = false;               // rolling friction has a history
   bool books_friction = false;      // friction computes its work

@@ -17,7 +17,6 @@ class Planned {
   Planned(LAMMPS_NS::LAMMPS* lmp, int64_t hash, bool wall)
       : lmp_(lmp), model_(*Model::latest), ids_(Ids::of(hash)), missing_(what_is_missing(ids_)), wall_(wall) {
     refuse_unknown_loop(lmp);
-    plan_.law = model_.normal().place();
     plan_.friction = std::max(0, Frictions::place(ids_.tangential));
     plan_.settings.rolling = std::max(0, Rollings::place(ids_.rolling));
     plan_.settings.cohesion = std::max(0, Cohesions::place(ids_.cohesion));
@@ -28,7 +27,7 @@ class Planned {
     if (wall && plan_.root >= 0 && !missing_) missing_ = "contacts with adhesion";
   }
 
-  Kernel kernel() const { return chosen_kernels(lmp_).of[plan_.law][plan_.friction][wall_]; }
+  Kernel kernel() const { return chosen_kernels(lmp_).of[model_.normal().place()][plan_.friction][wall_]; }
 
   /// What our loop does not include, by models and settings; nullptr: nothing.
   const char* missing() const { return missing_ ? missing_ : model_.loop_settings().missing(); }
@@ -42,7 +41,7 @@ class Planned {
     plan_.ledger = normal.ledger();
     plan_.strain = normal.strain();
     plan_.growth = normal.growth();
-    plan_.grown = chosen_kernels(lmp_).grown[plan_.law][plan_.friction][wall_];
+    plan_.grown = chosen_kernels(lmp_).grown[normal.place()][plan_.friction][wall_][plan_.ledger != nullptr];
     plan_.width = normal.width();
     double** const mu = plan_.friction ? property("coeffFrict", &MODEL_PARAMS::createCoeffFrict) : nullptr;
     double** const rolling =
