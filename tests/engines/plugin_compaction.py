@@ -4,11 +4,9 @@
 import numpy as np
 from plugin_decks import good
 
-from epdem.theory.cavity import Cavity
+from epdem.verification.theory.bed import Bed, Material
 
 E, NU, Y = 120e6, 0.34, 1e6
-E_STAR = E / (1 - NU**2) / 2  # of two spheres; a wall has the same material
-GROWTH = 1.6  # S1 above which growth rises no faster
 
 HEAD = f"""atom_style granular
 atom_modify map array sort 0 0
@@ -73,83 +71,11 @@ def geometry(x, radius, planes):
     return *np.array(pairs).T, np.array(overlap).T, np.moveaxis(np.array(normal), 0, 1)
 
 
-class Bodies:
-    """Contacts of like spheres with each other and with walls of their material, whose sums are those of the step itself.
-
-    Hosts take the sums of the step before, extrapolated. E = 120 Y, both bodies of a contact share strain and compliance
-    alike: w = s = 1/2.
-    """
-
-    def __init__(self, radius, i, j):
-        self.radius, self.sides = radius, ((i, i >= 0), (j, j >= 0))
-        R_i, R_j = radius[i], np.where(j >= 0, radius[j], np.inf)
-        self.R = [R_i, R_j]
-        self.law = Cavity(E_star=E_STAR, R_star=1 / (1 / R_i + 1 / R_j), Y=Y, c_strain=0.82, share=0.5)
-        self.forget(np.full(len(i), True))
-
-    def forget(self, ended):
-        zero = dict.fromkeys(("q", "unstored", "peak", "residual", "area"), 0.0)
-        for name, value in {"most": -np.inf, "least": 1.0, **zero}.items():
-            old = getattr(self, name, np.full(len(ended), value))
-            setattr(self, name, np.where(ended, value, old))
-
-    def total(self, of_sides):
-        """Sums over the contacts of each body."""
-        sums = np.zeros(len(self.radius))
-        for (body, real), values in zip(self.sides, of_sides, strict=True):
-            np.add.at(sums, body[real], values[real])
-        return sums
-
-    def depths(self, residual):
-        """Depths of the dents over the radii, to the plane in which the surfaces intersect."""
-        R_i, R_j = self.R
-        wall = np.isinf(R_j)
-        R_2 = np.where(wall, 1.0, R_j)
-        distance = R_i + R_2 - residual
-        plane = (distance**2 + R_i**2 - R_2**2) / (2 * distance)  # from the centre of i
-        return np.where(wall, residual, R_i - plane) / R_i, np.where(wall, 0.0, R_2 - distance + plane) / R_2
-
-    def step(self, overlap):
-        """Forces [N] at these overlaps [m]."""
-        most = np.maximum(self.most, overlap)
-        residual, area = self.residual, self.area
-        for _ in range(6):  # the sums follow from the contacts, and these from the sums
-            depths = self.depths(residual)
-            cover, volume = self.total(depths), self.total([x**2 for x in depths])
-            area_of = self.total([area, area])
-            growth = volume / (4 - 2 * np.minimum(cover, GROWTH))
-            u, gamma = 0.0, 0.0
-            for (body, real), x, R in zip(self.sides, depths, self.R, strict=True):
-                own = x**2 / (4 - 2 * np.minimum(x, GROWTH))
-                u = u + np.where(real, np.where(real, R, 0.0) * np.maximum(growth[body] - own, 0.0), 0.0)
-                others = np.where(real, np.maximum(area_of[body] - area, 0.0), 0.0)
-                bulk = others / np.sqrt(np.where(area > 0, area, np.inf)) / R * (1 - 2 * NU) / (2 * np.pi * (1 - NU**2))
-                gamma = gamma + 0.5 * ((1 - np.minimum(np.sqrt(others) / (2 * R), 1)) ** 1.5 + bulk)
-            v = u + self.q if _ == 0 else u + q
-            on = overlap + v > 0
-            b = np.where(on, most + v, 0.5 * self.law.yield_overlap)
-            peak, a = self.law.force(b), self.law.radius(b)
-            yields = on & (b > self.law.yield_overlap)
-            m = np.where(yields, 1 - self.law.yield_overlap / b, 0.0)
-            least = np.where(yields & (self.area > 0), np.minimum(self.least, np.clip(gamma, 0.05, 1)), self.least)
-            G = 1 - (1 - least) * m
-            unstored = np.where(yields, (1 - G) * self.law.recovered_work(b), 0.0)
-            mean = np.where(self.peak > 0, 0.5 * (peak + self.peak), peak)
-            q = self.q + np.where(yields, (unstored - self.unstored) / mean, 0.0)
-            recovered = np.maximum(most, 0.0) - G * self.law.recovered_overlap(b)
-            residual, area = np.where(yields, np.maximum(recovered, 0.0), 0.0), m * a**2
-        back = np.maximum(b - np.maximum(most - overlap, 0.0) / np.where(yields, G, 1.0), 1e-12)
-        F = np.where(yields, self.law.unloading_force(back, b), self.law.force(np.maximum(overlap + v, 0.0)))
-        self.most, self.least, self.q, self.unstored, self.peak = most, least, q, unstored, np.where(yields, peak, 0.0)
-        self.residual, self.area = residual, area
-        self.forget(~on)
-        return np.where(on, np.nan_to_num(F), 0.0)
-
-
 def forces(x, radius, planes):
-    """Forces on spheres along a path, shape (steps, n, 3)."""
+    """Forces on spheres along a path, shape (steps, n, 3), with the sums of each step itself: the exact limit."""
     i, j, overlap, normal = geometry(x, radius, planes)
-    bodies = Bodies(radius, i, j)
+    like = Material(E, NU, Y)
+    bodies = Bed(np.asarray(radius, float), i, j, like, plane=like)
     F = np.zeros(x.shape)
     for t in range(len(x)):
         f = bodies.step(overlap[t])[:, None] * normal[t]

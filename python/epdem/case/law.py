@@ -3,7 +3,7 @@
 
 from typing import Any
 
-from ..base.declarations import Declaration
+from ..base.declarations import Declaration, declarations
 from ..errors import CaseError
 from ..laws.strengths import ADHESION, LawNumbers, law_named
 from ..theory.cavity import FINITE_STRAIN
@@ -11,7 +11,6 @@ from .fields import LawChoice
 from .messages import cut_quotes
 from .units import read_number
 
-COMPACTS = ("cavity",)  # the laws that have compaction
 EXPONENT, INDEX = "hardening_exponent", "meyer_index"
 
 
@@ -20,7 +19,7 @@ def law_keys(law: Declaration) -> dict[str, str | None]:
     keys: dict[str, str | None] = {}
     for p in law.parameters:
         keys |= dict.fromkeys(alternatives(law, p.name), "1") | {p.name: p.unit}
-    return keys | ({"compaction": None} if law.name in COMPACTS else {})
+    return keys | ({"compaction": None} if law.growth else {})
 
 
 def alternatives(law: Declaration, key: str) -> tuple[str, ...]:
@@ -36,14 +35,15 @@ def law_numbers(name: str, given: dict[str, Any]) -> LawNumbers:
     A strength X [Pa] is given as `X = "2.8 GPa"` for all bodies or as `X_ratio = 2.8` of each body's yield stress, the
     work of adhesion as `work_of_adhesion = "0.1 J/m^2"` for all pairs or by the surface energies of the materials;
     finite_strain = true or false stands for its number, meyer_index = 2 + x for hardening_exponent = x.
-    compaction = true or false belongs to the laws of COMPACTS.
+    compaction = true or false belongs to the laws that declare it.
     """
     law = law_named(name)
     compaction = given.get("compaction", False)
     if not isinstance(compaction, bool):
         raise CaseError(f"law.compaction = {compaction!r}: it is true or false")
-    if compaction and name not in COMPACTS:
-        raise CaseError(f"law.compaction: law {name} has none; take law.name = {COMPACTS[0]!r}")
+    if compaction and not law.growth:
+        others = " or ".join(repr(n) for n, other in declarations().items() if other.growth)
+        raise CaseError(f"law.compaction: law {name} has none; take law.name = {others}")
     given = {key: value for key, value in given.items() if key != "compaction"}
     none = next((p.default for p in law.parameters if p.name == "finite_strain"), None)
     if none is not None and isinstance(given.get("finite_strain"), bool):
