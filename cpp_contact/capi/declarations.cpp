@@ -51,9 +51,9 @@ std::string declaration() {
          field("sources", Law::sources) + ", " + field("condition", static_cast<const char*>(Law::condition)) +
          ", \"parameters\": [" + parameters + "], " + field("strength", strength) + ", " +
          field("default_ratio", Law::default_ratio) + ", " + field("memory", history_size<Law>) + ", " +
-         "\"growth\": [" + growth_slots<Law>() + "], " +
-         field("yields", Law::yields) + ", " + field("flattens", Law::flattens) + ", " +
-         field("adheres", adheres<Law>) + ", " + field("without_adhesion", without_adhesion<Law>()) + "}";
+         "\"growth\": [" + growth_slots<Law>() + "], " + field("yields", Law::yields) + ", " +
+         field("flattens", Law::flattens) + ", " + field("adheres", adheres<Law>) + ", " +
+         field("without_adhesion", without_adhesion<Law>()) + "}";
 }
 
 std::string all() {
