@@ -28,8 +28,8 @@ class Law2_ScGeom_EpPhys : public LawFunctor {
     ((string, cohesion, "off", Attr::triggerPostLoad, "cohesion beside a law without adhesion: off, sjkr (cohesionEnergyDensity times the area of the overlap's lens) or sjkr2"))
     ((bool, compaction, false, Attr::triggerPostLoad, "whether spheres grow at each contact by the dents of their other contacts, of cavity; takes :yref:`EpGrowth`, Bo1_Sphere_Aabb(aabbEnlargeFactor=1.25) and Ig2_..._ScGeomGrown in place of Ig2_..._ScGeom"))
     ((bool, recordStrain, false, , "whether largestRadiusRatio and largestOverlapRatio are recorded"))
-    ((Real, largestRadiusRatio, 0., Attr::readonly, "largest contact radius over R* of all contacts so far"))
-    ((Real, largestOverlapRatio, 0., Attr::readonly, "largest overlap over R* of all contacts so far")));
+    ((Real, largestRadiusRatio, 0., Attr::readonly, "largest strain w a/R* of all contacts so far, w: share of the weaker body"))
+    ((Real, largestOverlapRatio, 0., Attr::readonly, "largest w delta/R* of all contacts so far, delta: overlap")));
   // clang-format on
 
  protected:
