@@ -176,7 +176,7 @@ bool FixWall::stands(int i, const Contact& contact) {
   if (pass_.repeats && !history) return false;
   const double radius = atom->radius[i];
   const auto c = growing_at_wall(radius, sums_of(pass_.sums, i), history ? history + layout_.growth : nullptr);
-  return closes_gap(c, radius - contact.distance, pass_.repeats);
+  return closes_gap(c, contact.distance * contact.distance, pass_.repeats);
 }
 
 /// Puts the records of a sphere in the order of its contacts; the history of a new contact begins with zeros.

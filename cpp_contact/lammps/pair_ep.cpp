@@ -290,7 +290,7 @@ bool PairEp::growth_closes(int i, int j, const double* history, double rsq) cons
   const double ri = atom->radius[i], rj = atom->radius[j];
   const auto c =
       growing_pair(ri, rj, sums_of(pass_.sums, i), sums_of(pass_.sums, j), known ? history + layout_.growth : nullptr);
-  return closes_gap(c, ri + rj - std::sqrt(rsq), pass_.repeats);
+  return closes_gap(c, rsq, pass_.repeats);
 }
 
 /// Fills the block with n > 0 pairs; history_at(i, k) is the history of pair k.

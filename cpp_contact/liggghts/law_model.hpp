@@ -181,9 +181,8 @@ class LawModel : public NormalModel {
     const bool keep = s.computeflag && s.shearupdate;
     const bool known = !has_step() || now_ - s.contact_history[step_slot_] <= keep;
     if (!keep && !known) return false;
-    const double overlap = s.radsum - std::sqrt(s.rsq);
-    return wall_ ? closes_gap(growing<true>(s, !known), overlap, !keep)
-                 : closes_gap(growing<false>(s, !known), overlap, !keep);
+    return wall_ ? closes_gap(growing<true>(s, !known), s.rsq, !keep)
+                 : closes_gap(growing<false>(s, !known), s.rsq, !keep);
   }
 
   static Declaration declaration() {

@@ -176,10 +176,10 @@ EPDEM_INLINE Added<T> added_overlap(const Growing<wall, T>& c, bool repeats) noe
   return {now, select(c.state.raw > 0.0, max(now, 2.0 * now - c.state.last), now)};
 }
 
-/// Whether growth closes the gap of a contact of overlap < 0.
+/// Whether growth closes the gap of a contact whose centres, or centre and wall, are sqrt(rsq) apart.
 template <bool wall>
-inline bool closes_gap(const Growing<wall, double>& c, double overlap, bool repeats) noexcept {
-  return overlap + added_overlap(c, repeats).extrapolated > 0.0;
+inline bool closes_gap(const Growing<wall, double>& c, double rsq, bool repeats) noexcept {
+  return c.radius_i + c.radius_j - std::sqrt(rsq) + added_overlap(c, repeats).extrapolated > 0.0;
 }
 
 /// Grown spheres whose growth over the radius is at most `largest` touch below this factor of the squared sum of their

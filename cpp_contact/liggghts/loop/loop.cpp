@@ -210,7 +210,7 @@ bool PairLoop::closes_gap(const Plan& plan, int i, int j, int slot) {
   const bool is_new = pass_.now - h[plan.last_step] > 1.0;
   const auto c = growing_pair(radius[i], radius[j], sums_of(pass_.sums, i), sums_of(pass_.sums, j),
                               is_new ? nullptr : h + pair_->dnum() - growth_values);
-  if (epdem::closes_gap(c, sum - std::sqrt(rsq), false)) return true;
+  if (epdem::closes_gap(c, rsq, false)) return true;
   pair_->listgranhistory->firstneigh[i][slot] &= ~flags_;
   return false;
 }
