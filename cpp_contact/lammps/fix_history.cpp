@@ -2,6 +2,8 @@
 #include "fix_history.hpp"
 
 #include <algorithm>
+#include <numeric>
+#include <unordered_map>
 
 #include "atom.h"
 #include "comm.h"
@@ -15,7 +17,9 @@ using namespace LAMMPS_NS;
 
 namespace {
 
-constexpr int most_beside = 1 + FixHistory::columns + 3;  // of an atom that is sent, beside its contacts
+constexpr int most_beside = 2 + FixHistory::columns + 3;  // of an atom that is sent, beside its contacts
+/// First number of a restart file; files of before begin with the place of a law, from 0 on.
+constexpr double restart_form = -2.0;
 
 }  // namespace
 
@@ -46,8 +50,8 @@ FixHistory::~FixHistory() {
 
 void FixHistory::prepare(NeighList* const* list, const Layout& layout, const Models& models) {
   list_ = list;
-  const std::vector<double> identity{double(models.law->place), double(models.friction), double(models.rolling),
-                                     double(layout.values)};
+  std::vector<double> identity = ids_of(models);
+  identity.push_back(layout.values);
   if (!identity_.empty() && identity_ != identity) {
     if (comm->me == 0)
       error->warning(FLERR, "pair_style ep: law or models changed; all contacts begin without a history");
@@ -56,6 +60,7 @@ void FixHistory::prepare(NeighList* const* list, const Layout& layout, const Mod
   }
   identity_ = identity;
   layout_ = layout;
+  rename_partners();
   dents_.resize(models.compaction ? dent_sums * long(rows_) : 0);
 }
 
@@ -158,7 +163,40 @@ void FixHistory::collect() {
       if (j < nlocal) remember(j, tag[i], history, true);
     }
   }
+  std::copy_n(tag, nlocal, own_.begin());
   maxexchange = static_cast<int>(longest()) + most_beside;
+}
+
+/// From tags of the last run to those of now; the history with an atom that is gone ends.
+void FixHistory::rename_partners() {
+  const int nlocal = atom->nlocal;
+  const tagint* const tag = atom->tag;
+  const int same_here = std::equal(tag, tag + nlocal, own_.begin());
+  int same;
+  MPI_Allreduce(&same_here, &same, 1, MPI_INT, MPI_MIN, world);
+  if (same) return;
+  std::vector<tagint> mine;
+  for (int i = 0; i < nlocal; ++i)
+    if (own_[i]) mine.insert(mine.end(), {own_[i], tag[i]});
+  const int count = static_cast<int>(mine.size());
+  std::vector<int> counts(comm->nprocs), first(comm->nprocs);
+  MPI_Allgather(&count, 1, MPI_INT, counts.data(), 1, MPI_INT, world);
+  std::exclusive_scan(counts.begin(), counts.end(), first.begin(), 0);
+  std::vector<tagint> all(first.back() + counts.back());
+  MPI_Allgatherv(mine.data(), count, MPI_LMP_TAGINT, all.data(), counts.data(), first.data(), MPI_LMP_TAGINT, world);
+  std::unordered_map<tagint, tagint> now;
+  for (size_t k = 0; k < all.size(); k += 2) now[all[k]] = all[k + 1];
+  for (int i = 0; i < nlocal; ++i) {
+    std::vector<double> kept;
+    for (auto at = held_[i].begin(); at != held_[i].end(); at += stride()) {
+      const auto found = now.find(static_cast<tagint>(ubuf(*at).i));
+      if (found == now.end()) continue;
+      kept.push_back(ubuf(found->second).d);
+      kept.insert(kept.end(), at + 1, at + stride());
+    }
+    held_[i].swap(kept);
+    own_[i] = tag[i];
+  }
 }
 
 /// Commands between two runs may add, remove and sort atoms.
@@ -198,6 +236,7 @@ void FixHistory::distribute() {
 
 void FixHistory::grow_arrays(int atoms) {
   held_.resize(atoms);
+  own_.resize(atoms);
   if (!dents_.empty()) dents_.resize(dent_sums * long(atoms));
   memory->grow(array_atom, atoms, columns, "ep:energies");
   for (int i = rows_; i < atoms; ++i) std::fill_n(array_atom[i], int(columns), 0.0);
@@ -206,12 +245,14 @@ void FixHistory::grow_arrays(int atoms) {
 
 void FixHistory::copy_arrays(int from, int to, int) {
   held_[to] = held_[from];
+  own_[to] = own_[from];
   if (!dents_.empty()) std::copy_n(&dents_[dent_sums * long(from)], dent_sums, &dents_[dent_sums * long(to)]);
   std::copy_n(array_atom[from], int(columns), array_atom[to]);
 }
 
 void FixHistory::set_arrays(int i) {
   held_[i].clear();
+  own_[i] = 0;
   if (!dents_.empty()) std::fill_n(&dents_[dent_sums * long(i)], dent_sums, 0.0);
   std::fill_n(array_atom[i], int(columns), 0.0);
 }
@@ -219,6 +260,7 @@ void FixHistory::set_arrays(int i) {
 int FixHistory::pack_exchange(int i, double* buffer) {
   double* end = std::copy_n(array_atom[i], int(columns), buffer);
   if (!dents_.empty()) end = std::copy_n(&dents_[dent_sums * long(i)], dent_sums, end);
+  *end++ = ubuf(own_[i]).d;
   *end = ubuf(bigint(held_[i].size())).d;
   return static_cast<int>(std::copy(held_[i].begin(), held_[i].end(), end + 1) - buffer);
 }
@@ -230,6 +272,7 @@ int FixHistory::unpack_exchange(int i, double* buffer) {
     std::copy_n(values, dent_sums, &dents_[dent_sums * long(i)]);
     values += dent_sums;
   }
+  own_[i] = static_cast<tagint>(ubuf(*values++).i);
   const auto size = ubuf(*values++).i;
   held_[i].assign(values, values + size);
   return static_cast<int>(values + size - buffer);
@@ -237,9 +280,11 @@ int FixHistory::unpack_exchange(int i, double* buffer) {
 
 void FixHistory::write_restart(FILE* file) {
   collect();
+  const double strain[] = {compute_vector(0), compute_vector(1)};
   if (comm->me != 0) return;
-  std::vector<double> stored = identity_;
-  stored.push_back(evaluations_);
+  std::vector<double> stored{restart_form};
+  stored.insert(stored.end(), identity_.begin(), identity_.end());
+  stored.insert(stored.end(), {evaluations_, strain[0], strain[1]});
   const int bytes = static_cast<int>(stored.size() * sizeof(double));
   fwrite(&bytes, sizeof bytes, 1, file);
   fwrite(stored.data(), 1, bytes, file);
@@ -247,9 +292,12 @@ void FixHistory::write_restart(FILE* file) {
 
 void FixHistory::restart(char* stored) {
   const double* const values = reinterpret_cast<const double*>(stored);
-  identity_.assign(values, values + 4);
-  layout_.values = static_cast<int>(values[3]);
-  evaluations_ = values[4];
+  if (values[0] != restart_form)
+    error->all(FLERR, "pair_style ep: the restart file comes from a former version of epdem; run its deck again");
+  identity_.assign(values + 1, values + 5);
+  layout_.values = static_cast<int>(values[4]);
+  evaluations_ = values[5];
+  std::copy_n(values + 6, 2, strain_);
 }
 
 int FixHistory::size_restart(int i) { return static_cast<int>(held_[i].size()) + 1 + columns; }
@@ -269,10 +317,11 @@ void FixHistory::unpack_restart(int i, int nth) {
   const int size = static_cast<int>(values[0]);
   std::copy_n(values + 1, int(columns), array_atom[i]);
   held_[i].assign(values + 1 + columns, values + size);
+  own_[i] = atom->tag[i];
 }
 
 double FixHistory::memory_usage() {
-  size_t numbers = page_.capacity() + columns * held_.size() + dents_.capacity() + bodies_.capacity();
+  size_t numbers = page_.capacity() + (columns + 1) * held_.size() + dents_.capacity() + bodies_.capacity();
   for (const auto& held : held_) numbers += held.capacity();
   return static_cast<double>(numbers * sizeof(double));
 }

@@ -12,7 +12,8 @@
 namespace epdem::lammps {
 
 /// Between two lists, the histories lie beside the list (`at`); while a list is made, with their atoms, by the tag of
-/// the partner. A pair that spans two ranks is on both lists and has two equal histories.
+/// the partner. A pair that spans two ranks is on both lists and has two equal histories. Commands between two runs may
+/// give atoms new tags; each atom keeps the tag that it had when partners were named.
 class FixHistory : public LAMMPS_NS::Fix {
  public:
   static constexpr const char* style_name = "EP_HISTORY";
@@ -21,7 +22,7 @@ class FixHistory : public LAMMPS_NS::Fix {
   FixHistory(LAMMPS_NS::LAMMPS* lmp, int count, char** word);
   ~FixHistory() override;
 
-  /// Before each run. `models` as numbers that a restart file keeps.
+  /// Before each run. Collective.
   void prepare(LAMMPS_NS::NeighList* const* list, const Layout& layout, const Models& models);
 
   double* at(int i, int slot) { return page_.data() + first_[i] + long(layout_.values) * slot; }
@@ -85,13 +86,14 @@ class FixHistory : public LAMMPS_NS::Fix {
  private:
   void collect();
   void distribute();
+  void rename_partners();
   int stride() const { return layout_.values + 1; }
   void remember(int i, LAMMPS_NS::tagint partner, const double* values, bool mirrored);
   size_t longest() const;
 
   LAMMPS_NS::NeighList* const* list_ = nullptr;
   Layout layout_;
-  std::vector<double> identity_;  // of the models whose histories these are
+  std::vector<double> identity_;  // of the models whose histories these are: their ids, numbers of a contact
   double evaluations_ = 0.0;
   double strain_[2] = {};
   static constexpr int dent_sums = 3;
@@ -103,6 +105,7 @@ class FixHistory : public LAMMPS_NS::Fix {
   std::vector<double> page_;               // by slot of the list
   std::vector<long> first_;                // of an atom in the page
   std::vector<std::vector<double>> held_;  // by atom: tag of the partner, values
+  std::vector<LAMMPS_NS::tagint> own_;     // by atom: its tag when partners were named, 0: a new atom
 };
 
 }  // namespace epdem::lammps

@@ -7,6 +7,7 @@
 #include <cstring>
 
 #include "atom.h"
+#include "comm.h"
 #include "domain.h"
 #include "epdem/compaction.hpp"
 #include "error.h"
@@ -27,6 +28,12 @@ std::string place_of(int count, char** word) {
   for (int k = 0; k < std::min(count, 4); ++k)
     if (k != 1) text += std::string(" ") + word[k];
   return text;
+}
+
+/// Adds a region and its parts.
+void add_parts(Region& region, std::vector<Region*>& parts) {
+  parts.push_back(&region);
+  for (int k = 0; region.reglist && k < region.nregion; ++k) add_parts(*region.reglist[k], parts);
 }
 
 }  // namespace
@@ -315,6 +322,7 @@ FixWallRegion::FixWallRegion(LAMMPS* lmp, int count, char** word)
   region_ = domain->get_region_by_id(name_);
   if (!region_) error->all(FLERR, "{}: there is no region {}", place_, name_);
   read(4, count, word, region_->tmax);
+  restart_global = 1;
 }
 
 void FixWallRegion::init() {
@@ -328,6 +336,42 @@ void FixWallRegion::begin() {
   if (!moves_) return;
   region_->prematch();
   region_->set_velocity();
+  // LAMMPS finds the wall at rest before the first step of a run, and after read_restart moved by its way so far
+  exchange_motion(update->setupflag);
+}
+
+/// Recalls the motion of the last step, or notes that of this step.
+void FixWallRegion::exchange_motion(bool recalls) {
+  std::vector<Region*> parts;
+  add_parts(*region_, parts);
+  motion_.resize(numbers_of_motion * parts.size());
+  double* number = motion_.data();
+  for (Region* const part : parts) {
+    for (double* const of : {part->v, part->omega}) {
+      recalls ? std::copy_n(number, 3, of) : std::copy_n(of, 3, number);
+      number += 3;
+    }
+    double& growth = *number++;
+    if (!part->varshape) continue;
+    if (recalls)
+      part->rprev = part->prev[4] - growth;
+    else
+      growth = part->prev[4] - part->rprev;
+  }
+}
+
+void FixWallRegion::write_restart(FILE* file) {
+  if (comm->me != 0) return;
+  const int bytes = static_cast<int>((1 + motion_.size()) * sizeof(double));
+  const double count = motion_.size();
+  fwrite(&bytes, sizeof bytes, 1, file);
+  fwrite(&count, sizeof count, 1, file);
+  fwrite(motion_.data(), sizeof(double), motion_.size(), file);
+}
+
+void FixWallRegion::restart(char* stored) {
+  const double* const values = reinterpret_cast<const double*>(stored);
+  motion_.assign(values + 1, values + 1 + static_cast<size_t>(values[0]));
 }
 
 void FixWallRegion::find(int i, std::vector<Contact>& found) {

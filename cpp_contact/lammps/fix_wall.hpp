@@ -107,15 +107,21 @@ class FixWallRegion : public FixWall {
   static constexpr const char* style_name = "wall/ep/region";
   FixWallRegion(LAMMPS_NS::LAMMPS* lmp, int count, char** word);
   void init() override;
+  void write_restart(FILE* file) override;
+  void restart(char* stored) override;
 
  protected:
   void begin() override;
   void find(int i, std::vector<Contact>& found) override;
 
  private:
+  void exchange_motion(bool recalls);
+
   const std::string name_;
   LAMMPS_NS::Region* region_ = nullptr;
   bool moves_ = false;
+  static constexpr int numbers_of_motion = 7;
+  std::vector<double> motion_;  // in the last step: velocity, spin, growth of a radius of the region and of its parts
 };
 
 }  // namespace epdem::lammps

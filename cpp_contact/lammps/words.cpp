@@ -36,6 +36,7 @@ template <class Class>
 Law law_of() {
   static_assert(sizeof(ContactConstants<Class>) <= kernels::most_constants * sizeof(double));
   return {Class::name,
+          Class::id,
           Class::parameters,
           Class::n_parameters,
           Class::strength,
@@ -200,6 +201,18 @@ const std::vector<Law>& all_laws() {
   static const std::vector<Law> laws{EPDEM_LAWS(EPDEM_LAW_OF)};
 #undef EPDEM_LAW_OF
   return laws;
+}
+
+std::vector<double> ids_of(const Models& models) {
+  std::vector<double> ids{double(models.law->id)};
+  const auto add = [&](auto list, int place) {
+    list.each([&](auto model, int at) {
+      if (at == place) ids.push_back(decltype(model)::id);
+    });
+  };
+  add(Frictions{}, models.friction);
+  add(Rollings{}, models.rolling);
+  return ids;
 }
 
 Words read_words(LAMMPS* lmp, const std::string& place, int count, char** word) {

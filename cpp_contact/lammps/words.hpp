@@ -14,6 +14,7 @@ namespace epdem::lammps {
 /// A law as its class declares it; laws.hpp lists the classes.
 struct Law {
   const char* name;
+  int id;  // of restart files
   const Parameter* parameters;
   int parameter_count;
   int strength;  // index of the parameter, -1: none
@@ -46,6 +47,9 @@ struct Models {
   bool books_friction = false;  // friction computes its work
   bool compaction = false;
 };
+
+/// The ids of law, friction and rolling friction, which restart files keep.
+std::vector<double> ids_of(const Models& models);
 
 /// Coefficients of a pair of bodies; 0: no such force. A restitution of 0 means no dashpot.
 struct Coefficients {

@@ -1,0 +1,90 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""A run in LAMMPS that goes on: atoms with new numbers, walls that move, restart files."""
+
+import re
+
+import numpy as np
+import pytest
+from lammps_decks import DUMP, THORNTON, bed, column, lammps, needs_lammps, run, spheres
+
+pytestmark = needs_lammps
+
+HALF = "region half block 0.01 0.02 0.004 0.012 INF INF units box\ngroup half region half\n"
+NUMBERS = {  # what numbers the atoms anew between two runs
+    "delete_atoms": "delete_atoms group half\n",
+    "reset_atoms": "delete_atoms group half compress no\nreset_atoms id\n",
+    "reset_atoms sorted": "delete_atoms group half compress no\nreset_atoms id sort yes\n",
+    "reset_atoms twice": "delete_atoms group half\nreset_atoms id sort yes\nrun 0\nreset_atoms id\n",
+}
+
+
+def in_order(rows):
+    """Rows of end.txt by place, because numbers of atoms differ."""
+    return rows[np.lexsort(rows[:, 1:4].T)]
+
+
+@pytest.mark.parametrize("ranks", [1, 2])
+@pytest.mark.parametrize("what", NUMBERS)
+def test_atoms_with_new_numbers_keep_their_dents(what, ranks, tmp_path):
+    """The same bed, whose atoms keep their numbers, ends with the same motion."""
+    deck = bed().replace("atom_modify map array", "atom_modify map array sort 0 0") + "run 400\n" + HALF
+    between = NUMBERS["reset_atoms"].splitlines()[0] + "\n" + "run 0\n" * NUMBERS[what].count("run 0")
+    one, kept = run(deck + between + "run 400\n" + DUMP, tmp_path / "kept", ranks=ranks)
+    two, anew = run(deck + NUMBERS[what] + "run 400\n" + DUMP, tmp_path / "anew", ranks=ranks)
+    assert 100 < len(kept) == len(anew) < 1990
+    assert np.abs(in_order(kept)[:, 4:] - in_order(anew)[:, 4:]).max() <= 1e-9 * np.abs(kept[:, 4:]).max()
+    assert column(two, "KinEng")[-1] == pytest.approx(column(one, "KinEng")[-1], rel=1e-12)
+
+
+def test_a_sphere_that_takes_the_number_of_a_deleted_one_has_no_dent(tmp_path):
+    """Sphere 2 dents sphere 1 by 0.5 mm and goes; another sphere 2 comes to 0.49 mm: the force is that of first loading."""
+    other = "region upper block INF INF 0.01 INF INF INF\ndelete_atoms region upper compress no\n"
+    new = "create_atoms 1 single 0 0.01951 0\nset group all diameter 0.02 density 7850\nrun 0\n"
+    deck = "fix hold all setforce 0 0 0\nfix motion all nve/sphere\ncompute p all stress/atom NULL pair\n"
+    deck += "compute s all reduce sum c_p[2]\nthermo_style custom step c_s\nthermo_modify format float %.17g\n"
+    again, _ = run(spheres((0, 0, 0), (0, 0.0195, 0), pair=THORNTON) + deck + "run 10\n" + other + new, tmp_path / "a")
+    once, _ = run(spheres((0, 0, 0), (0, 0.01951, 0), pair=THORNTON) + deck + "run 0\n", tmp_path / "b")
+    assert column(again, "c_s")[-1] == pytest.approx(column(once, "c_s")[-1], rel=1e-9)
+
+
+LAW = "thornton 1e8 0.3 4e5 tangential history 0.5 restitution 0.3"
+MOVING = {  # variables and region of a wall that spheres lie on
+    "moved": "variable way equal 0.05*step*dt\nregion wall plane 0 0 0 0 0 1 move v_way NULL v_way\n",
+    "vibrating": "variable way equal 2e-5*sin(2000*step*dt)\nregion wall plane 0 0 0 0 0 1 move v_way NULL v_way\n",
+    "turning": "variable angle equal 5*step*dt\n"
+    "region wall plane 0 0 0 0 0 1 rotate v_angle 0.01 0 0 0 0 1\n",
+}
+STEPS = 400
+
+
+def moving_wall(what):
+    """Head of the deck, and what a deck behind read_restart repeats."""
+    head = spheres((-0.02, 0, 0.00999), (0.02, 0, 0.00998), (0.03, 0.05, 0.00997), pair=LAW)
+    wall = MOVING[what] + f"fix wall all wall/ep/region wall {LAW}\nfix fall all gravity 9.81 vector 0 0 -1\n"
+    wall += "fix motion all nve/sphere\ntimestep 2e-6\nthermo_style custom step f_wall[1] f_wall[3] f_wall[7]\n"
+    return head, wall + "thermo_modify format float %.17g\nthermo 1\n"
+
+
+@pytest.mark.parametrize("ranks", [1, 2])
+@pytest.mark.parametrize("what", MOVING)
+def test_a_wall_that_moves_goes_on_after_a_restart_to_the_bit(what, ranks, tmp_path):
+    """With restitution: force, power and motion are those of a second run."""
+    head, wall = moving_wall(what)
+    more = "clear\natom_modify map array\ncomm_modify vel yes\nread_restart here\nneighbor 0.002 bin\n"
+    deck = head + wall + f"run {STEPS}\n"
+    one, plain = run(f"{deck}run {STEPS}\n{DUMP}", tmp_path / "plain", ranks=ranks)
+    two, again = run(f"{deck}write_restart here\n{more}{wall}run {STEPS}\n{DUMP}", tmp_path / "again", ranks=ranks)
+    assert np.abs(column(one, "f_wall[7]")).max() > 0
+    for value in ("f_wall[1]", "f_wall[3]", "f_wall[7]"):
+        assert np.array_equal(column(one, value), column(two, value)), value
+    assert np.array_equal(plain, again)
+
+
+@pytest.mark.parametrize("what", ["moved", "vibrating"])
+def test_a_wall_that_moves_goes_on_in_runs_of_one_step(what, tmp_path):
+    """A dashpot sees velocities of the full step before the first step of a run, of the half step else: first order."""
+    head, wall = (text.replace(LAW, "hertz 1e8 0.3 restitution 0.3") for text in moving_wall(what))
+    _, whole = run(head + wall + f"run {STEPS}\n" + DUMP, tmp_path / "whole")
+    pieces = f"variable k loop {STEPS}\nlabel again\nrun 1 post no\nnext k\njump SELF again\n"
+    _, parts = run(head + wall + pieces + DUMP, tmp_path / "parts")
+    assert np.abs(whole - parts).max() <= 5e-3 * np.abs(whole[:, 4:]).max()
