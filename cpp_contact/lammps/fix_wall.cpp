@@ -86,7 +86,7 @@ void FixWall::init() {
     error->all(FLERR, "{}: compaction is {} here and {} in pair_coeff; give `compaction on` to both or to none", place_,
                words_.models.compaction ? "on" : "off", words_.models.compaction ? "off" : "on");
   constants_.assign(most_constants * (atom->ntypes + 1), 0.0);
-  for (int type = 1; type <= atom->ntypes; ++type)
+  for (const int type : types_of_group())
     put_constants(*words_.models.law, pair_->words_of(type, place_).material, words_.material, words_.coefficients,
                   constants_.data() + most_constants * type);
   pass_ = {};
@@ -98,9 +98,20 @@ void FixWall::init() {
   if (words_.models.compaction) reach_factor_ = 1.0 + growth_reach;
   if (layout_.root < 0) return;
   reach_ = neighbor->skin;
-  for (int type = 1; type <= atom->ntypes; ++type)
+  for (const int type : types_of_group())
     checked_gap(lmp, place_, *words_.models.law, constants_.data() + most_constants * type,
                 pair_->largest_radius(type));
+}
+
+/// Types with a material, and types of spheres that are there: without a material they are an error.
+std::vector<int> FixWall::types_of_group() const {
+  std::vector<int> here(atom->ntypes + 1, 0), there(atom->ntypes + 1), types;
+  for (int i = 0; i < atom->nlocal; ++i)
+    if (atom->mask[i] & groupbit) here[atom->type[i]] = 1;
+  MPI_Allreduce(here.data(), there.data(), atom->ntypes + 1, MPI_INT, MPI_MAX, world);
+  for (int type = 1; type <= atom->ntypes; ++type)
+    if (there[type] || pair_->has_material(type)) types.push_back(type);
+  return types;
 }
 
 /// LAMMPS also computes forces before the first step of a run; that evaluation changes no history.
@@ -143,6 +154,9 @@ void FixWall::post_force(int) {
       b.i[n] = i;
       b.history[n] = record(i, static_cast<int>(k)) + 1;
       b.material[n] = constants_.data() + most_constants * atom->type[i];
+      if (*b.material[n] == 0.0)
+        error->one(FLERR, "{}: atom {} came during the run, and its type {} has no material; add pair_coeff {} {}",
+                   place_, atom->tag[i], atom->type[i], atom->type[i], atom->type[i]);
       b.radius_i.a[n] = atom->radius[i];
       b.mass_i.a[n] = atom->rmass[i];
       b.j[n] = c.part;
@@ -302,6 +316,13 @@ FixWallPlanes::FixWallPlanes(LAMMPS* lmp, int count, char** word) : FixWall(lmp,
   high_ = position(word[5], HUGE_VAL);
   if (!(low_ <= high_)) error->all(FLERR, "{}: lo = {} must lie below hi = {}", place_, word[4], word[5]);
   read(6, count, word, 2);
+}
+
+void FixWallPlanes::init() {
+  if (domain->periodicity[axis_])
+    error->all(FLERR, "{}: the box is periodic along {}; give boundary f, s or m, or another plane", place_,
+               "xyz"[axis_]);
+  FixWall::init();
 }
 
 void FixWallPlanes::find(int i, std::vector<Contact>& found) {

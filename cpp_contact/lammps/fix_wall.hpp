@@ -61,6 +61,7 @@ class FixWall : public LAMMPS_NS::Fix {
 
  private:
   double* record(int i, int k) { return held_.data() + (long(i) * most_ + k) * stride_; }
+  std::vector<int> types_of_group() const;
   void drop_parted(int i, std::vector<Contact>& found);
   bool stands(int i, const Contact& c);
   void keep_records(int i, const std::vector<Contact>& found);
@@ -92,6 +93,7 @@ class FixWallPlanes : public FixWall {
  public:
   static constexpr const char* style_name = "wall/ep";
   FixWallPlanes(LAMMPS_NS::LAMMPS* lmp, int count, char** word);
+  void init() override;
 
  protected:
   void find(int i, std::vector<Contact>& found) override;

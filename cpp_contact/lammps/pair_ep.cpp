@@ -99,12 +99,12 @@ void PairEp::coeff(int count, char** word) {
   int i_low, i_high, j_low, j_high;
   utils::bounds_typelabel(FLERR, word[0], 1, atom->ntypes, i_low, i_high, lmp, Atom::ATOM);
   utils::bounds_typelabel(FLERR, word[1], 1, atom->ntypes, j_low, j_high, lmp, Atom::ATOM);
+  if (i_low > j_high)
+    error->all(FLERR, "pair_coeff {} {}: the first type is above the second; exchange them", word[0], word[1]);
   std::string text;
   for (int k = 2; k < count; ++k) text += std::string(k > 2 ? " " : "") + word[k];
   for (int i = i_low; i <= i_high; ++i)
     for (int j = std::max(i, j_low); j <= j_high; ++j) set_words(i, j, text);
-  if (std::max(i_low, j_low) > j_high && i_low > j_high)
-    error->all(FLERR, "pair_coeff {} {}: the first type is above the second; exchange them", word[0], word[1]);
 }
 
 void PairEp::set_words(int i, int j, const std::string& text) {
@@ -118,10 +118,9 @@ void PairEp::set_words(int i, int j, const std::string& text) {
 }
 
 const Words& PairEp::words_of(int type, const std::string& place) const {
-  const PairOfTypes& like = types_.at(type * width_ + type);
-  if (like.text.empty())
+  if (!has_material(type))
     lmp->error->all(FLERR, "{}: spheres of type {} have no material; add pair_coeff {} {}", place, type, type, type);
-  return like.words;
+  return types_[type * width_ + type].words;
 }
 
 void PairEp::init_style() {

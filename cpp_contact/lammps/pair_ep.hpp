@@ -32,6 +32,7 @@ class PairEp : public LAMMPS_NS::Pair {
 
   /// What a wall reads: models of all contacts, the material of a type, energies.
   const Models& models() const { return models_; }
+  bool has_material(int type) const { return !types_.at(type * width_ + type).text.empty(); }
   const Words& words_of(int type, const std::string& place) const;
   FixHistory* history() const { return history_; }
   bool energies() const { return energies_; }

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """A run in LAMMPS that goes on: atoms with new numbers, walls that move, restart files."""
 
-import re
+import struct
 
 import numpy as np
 import pytest
@@ -51,8 +51,7 @@ LAW = "thornton 1e8 0.3 4e5 tangential history 0.5 restitution 0.3"
 MOVING = {  # variables and region of a wall that spheres lie on
     "moved": "variable way equal 0.05*step*dt\nregion wall plane 0 0 0 0 0 1 move v_way NULL v_way\n",
     "vibrating": "variable way equal 2e-5*sin(2000*step*dt)\nregion wall plane 0 0 0 0 0 1 move v_way NULL v_way\n",
-    "turning": "variable angle equal 5*step*dt\n"
-    "region wall plane 0 0 0 0 0 1 rotate v_angle 0.01 0 0 0 0 1\n",
+    "turning": "variable angle equal 5*step*dt\nregion wall plane 0 0 0 0 0 1 rotate v_angle 0.01 0 0 0 0 1\n",
 }
 STEPS = 400
 
@@ -88,3 +87,42 @@ def test_a_wall_that_moves_goes_on_in_runs_of_one_step(what, tmp_path):
     pieces = f"variable k loop {STEPS}\nlabel again\nrun 1 post no\nnext k\njump SELF again\n"
     _, parts = run(head + wall + pieces + DUMP, tmp_path / "parts")
     assert np.abs(whole - parts).max() <= 5e-3 * np.abs(whole[:, 4:]).max()
+
+
+AGAIN = "clear\natom_modify map array\ncomm_modify vel yes\nread_restart here\nneighbor 0.002 bin\n"
+STRAIN = """fix motion all nve/sphere
+timestep 2e-6
+thermo 100
+thermo_style custom step f_EP_HISTORY0[1] f_EP_HISTORY0[2]
+thermo_modify format float %.17g
+"""
+
+
+@pytest.mark.parametrize("ranks", [1, 2])
+def test_a_restart_file_holds_the_strain_so_far(ranks, tmp_path):
+    """Two spheres have met and parted."""
+    head = spheres((-0.01, 0, 0), (0.0099, 0, 0), pair=f"{THORNTON} tangential history 0.3")
+    head = head.replace("pair_style ep", "pair_style ep strain") + STRAIN + "run 3000\nwrite_restart here\n"
+    out, rows = run(
+        head + AGAIN + "fix motion all nve/sphere\nrun 0\nunfix motion\n" + STRAIN + "run 100\n" + DUMP,
+        tmp_path,
+        ranks=ranks,
+    )
+    assert rows[1, 1] - rows[0, 1] > 0.02
+    for value in ("f_EP_HISTORY0[1]", "f_EP_HISTORY0[2]"):
+        strain = column(out, value)
+        assert strain.max() > 5e-3 and np.all(strain[-2:] == strain.max())
+
+
+def test_a_restart_file_names_models_by_their_ids_and_a_former_one_is_refused(tmp_path):
+    """Ids of restart files: law thornton 41; tangential history 2 and no rolling friction 0, as in LIGGGHTS."""
+    head = spheres((-0.01, 0, 0), (0.0099, 0, 0), pair=f"{THORNTON} tangential history 0.3")
+    run(head + "fix motion all nve/sphere\nrun 10\nwrite_restart here\n", tmp_path)
+    file = tmp_path / "here"
+    stored, numbers = file.read_bytes(), struct.pack("4d", -2.0, 41.0, 2.0, 0.0)
+    assert stored.count(numbers) == 1
+    file.write_bytes(stored.replace(numbers, struct.pack("4d", 1.0, 2.0, 0.0, 7.0)))
+    code, out = lammps("atom_modify map array\ncomm_modify vel yes\nread_restart here\nrun 0\n", tmp_path)
+    errors = [line for line in out.splitlines() if line.startswith("ERROR")]
+    assert code != 0 and len(errors) == 1
+    assert "pair_style ep: the restart file comes from a former version of epdem; run its deck again" in errors[0]

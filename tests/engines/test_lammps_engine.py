@@ -125,6 +125,17 @@ def test_oblique_impacts_end_as_in_liggghts_to_the_bit(tangential, tmp_path):
     assert np.array_equal(ours.tangential, theirs.tangential)
 
 
+@needs_lammps
+@pytest.mark.parametrize("radius", ["10 mm", "4 mm"])
+def test_oblique_impacts_of_two_spheres_end_as_in_the_embedded_engine(radius, tmp_path):
+    """The line of centres turns with the spheres, and the embedded engine keeps it."""
+    spheres = {"kind": "sphere-sphere", "target": {"material": "steel", "radius": radius}}
+    p, _ = prepared("oblique_steel", tangential="history", target=spheres)
+    ours, theirs = (run(name, p, tmp_path / name) for name in ("lammps", "embedded"))
+    for a, b, limit in ((ours.tangential, theirs.tangential, 0.02), (ours.spin, theirs.spin, 0.06)):
+        assert a.shape == (p.n,) and np.abs(a - b).max() <= limit * np.abs(b).max()
+
+
 def test_the_deck_names_material_and_coefficients_once(tmp_path):
     p, _ = prepared("oblique_steel", tangential="history")
     engine("lammps").write(p, tmp_path)

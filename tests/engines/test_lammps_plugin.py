@@ -108,6 +108,30 @@ def test_hybrid_overlay_adds_another_style(tmp_path):
     assert relative(column(plain, "KinEng"), column(both, "KinEng")) <= 1e-12
 
 
+HYBRID = """fix fall all gravity 9.81 vector 0 0 -1
+fix ground hard wall/ep zplane 0 NULL hertz 1e7 0.3
+fix motion all nve/sphere
+timestep 1e-6
+run 2000
+"""
+
+
+@pytest.mark.parametrize(("late", "sentence"), [("", ""), ("set atom 2 type 2", "spheres of type 2 have no material")])
+def test_beside_another_style_a_wall_needs_the_materials_of_its_group(late, sentence, tmp_path):
+    """Spheres of type 2 have a pair style of another law, and are not in the group."""
+    deck = spheres((-0.05, 0, 0.0099), (0.05, 0, 0.0099), (0, 0.05, 0.0099), pair="ep hertz 1e7 0.3")
+    deck = deck.replace("create_box 1", "create_box 2").replace("pair_style ep", "pair_style hybrid ep lj/cut 1e-6")
+    deck = deck.replace("pair_coeff * *", "pair_coeff 1 1").replace(
+        "neighbor", "pair_coeff 2 2 lj/cut 0 1e-6\nneighbor"
+    )
+    deck = deck.replace("pair_style", "set atom 3 type 2\ngroup hard id 1 2\npair_style")
+    code, out = lammps(deck + "pair_coeff 1 2 lj/cut 0 1e-6\n" + late + "\n" + HYBRID + DUMP, tmp_path)
+    assert (code != 0) == bool(sentence) and sentence in out, out[-2000:]
+    if not sentence:
+        z = np.loadtxt(tmp_path / "end.txt", skiprows=9)[:, 4]
+        assert z[0] == z[1] > 0.0099 > z[2]
+
+
 def test_a_region_is_the_plane(tmp_path):
     region = "region walls block INF INF INF INF 0 0.02 units box\n"
     other = WALLS.replace("wall/ep zplane 0 0.02", "wall/ep/region walls")
@@ -293,6 +317,11 @@ WRONG = {
         "fix w wall/ep zplane: the material of the spheres comes from a pair_style ep of law hertz",
     ),
     "wall upside down": ("run 1", f"fix w all wall/ep zplane 1 0 {THORNTON}", "lo = 1 must lie below hi = 0"),
+    "wall across a periodic direction": (
+        "run 1",
+        f"fix w all wall/ep yplane NULL 0.02 {THORNTON}\nrun 1",
+        "fix w wall/ep yplane: the box is periodic along y; give boundary f, s or m, or another plane",
+    ),
     "wall without place": ("run 1", f"fix w all wall/ep zcylinder 1 0 {THORNTON}", "must be xplane, yplane or zplane"),
     "gap at a wall": (
         f"{THORNTON} tangential history 0.3",
@@ -322,6 +351,14 @@ def test_wrong_words_end_with_one_sentence(what, tmp_path):
     errors = [line for line in out.splitlines() if line.startswith("ERROR")]
     assert code != 0 and len(errors) == 1 and sentence in errors[0], out[-2000:]
     assert len(errors[0]) < 330 and "Segmentation" not in out
+
+
+def test_types_in_the_wrong_order_end_with_one_sentence(tmp_path):
+    """LAMMPS itself exchanges two numbers, and no ranges."""
+    code, out = lammps(
+        bed(TWO_TYPES, types=2).replace("pair_coeff 2 2", "pair_coeff 2*2 1 hertz 1 0\npair_coeff 2 2"), tmp_path
+    )
+    assert code != 0 and "pair_coeff 2*2 1: the first type is above the second; exchange them" in out
 
 
 def test_unlike_types_have_the_lower_strength_and_the_mean_of_the_coefficients(tmp_path):

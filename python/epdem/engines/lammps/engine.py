@@ -79,10 +79,14 @@ class Lammps(Host):
         wall = launcher.run("in.impact", folder, ranks=ranks, log=LOG, seconds=120 + 1e-5 * plan.n * plan.steps)
         bodies = plan.n if math.isinf(plan.experiment.target.radius) else 2 * plan.n
         z, vz, fz = np.moveaxis(frames(folder / PATH, plan.steps + 1, bodies), 2, 0)
-        end = frames(folder / END, 2, bodies)[-1].T if plan.experiment.oblique else (None, None)
+        tangential, spin = None, None
+        if plan.experiment.oblique:
+            vx, spins = frames(folder / END, 2, bodies)[-1].T
+            spin = spins[: plan.n]
+            tangential = vx if bodies == plan.n else vx[: plan.n] - vx[plan.n :]
         (folder / PATH).unlink()  # large
         overlap, velocity = approach(plan, z, vz)
-        return Trajectory(plan.time_step, overlap, fz[:, : plan.n].T, velocity, {"total": wall}, *end)
+        return Trajectory(plan.time_step, overlap, fz[:, : plan.n].T, velocity, {"total": wall}, tangential, spin)
 
     def run_scene(self, plan: ScenePlan, folder: Path, ranks: int, report: Report) -> None:
         launcher.run("in.scene", folder, ranks=ranks, log=LOG, report=report)
