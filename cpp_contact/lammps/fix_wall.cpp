@@ -319,10 +319,10 @@ FixWallPlanes::FixWallPlanes(LAMMPS* lmp, int count, char** word) : FixWall(lmp,
 }
 
 void FixWallPlanes::init() {
+  FixWall::init();
   if (domain->periodicity[axis_])
     error->all(FLERR, "{}: the box is periodic along {}; give boundary f, s or m, or another plane", place_,
                "xyz"[axis_]);
-  FixWall::init();
 }
 
 void FixWallPlanes::find(int i, std::vector<Contact>& found) {
