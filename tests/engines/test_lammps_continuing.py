@@ -37,7 +37,7 @@ def test_atoms_with_new_numbers_keep_their_dents(what, ranks, tmp_path):
 
 
 def test_a_sphere_that_takes_the_number_of_a_deleted_one_has_no_dent(tmp_path):
-    """Sphere 2 dents sphere 1 by 0.5 mm and goes; another sphere 2 comes to 0.49 mm and loads sphere 1 for the first time."""
+    """Sphere 2 dents sphere 1 by 0.5 mm and goes; another sphere 2 comes to 0.49 mm, for the first time."""
     other = "region upper block INF INF 0.01 INF INF INF\ndelete_atoms region upper compress no\n"
     new = "create_atoms 1 single 0 0.01951 0\nset group all diameter 0.02 density 7850\nrun 0\n"
     deck = "fix hold all setforce 0 0 0\nfix motion all nve/sphere\ncompute p all stress/atom NULL pair\n"
