@@ -103,6 +103,7 @@ class NormalModel : protected LAMMPS_NS::Pointers {
   /// LIGGGHTS calls it before the loop over all pairs, never for walls.
   void beginPass(const SurfacesIntersectData& s) {
     const bool keep = s.computeflag && s.shearupdate;
+    if (contact_strain_) strain_.keep(*lmp, neighbor->lastcall == update->ntimestep);
     if (plastic_work_ && keep) ledger_.open(atom->nlocal);
     if (compaction_ && keep) growth_.close(*atom);
     if (!has_step()) return;

@@ -24,7 +24,13 @@ FEATURES = {
     "mesh": ("at rest", "moves"),
 }
 PLAIN = {name: options[0] for name, options in FEATURES.items()} | {"ranks": 1}
-SCENES = [{}, {"mesh": "moves", "ranks": 2}, *({k: v} for k, options in FEATURES.items() for v in options[1:])]
+SQUEEZED = {"boundary": "p p p", "then": "fix squeeze all deform 1 x erate -50 remap x"}  # moves spheres after forces
+SCENES = [
+    {},
+    {"mesh": "moves", "ranks": 2},
+    SQUEEZED,
+    *({k: v} for k, options in FEATURES.items() for v in options[1:]),
+]
 
 
 def bodies(scene):

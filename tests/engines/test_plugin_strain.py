@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Setting computeContactStrain: the largest w a/R* and w overlap/R* of all contacts and steps."""
 
+import re
 from dataclasses import replace
 from itertools import product
 
@@ -92,6 +93,30 @@ def test_the_largest_strain_goes_on_after_a_restart(tmp_path):
     good(tmp_path, deck(scene, steps=40, before=ROWS, end="write_restart half.bin\n"), files=files)
     rest = rows(good(tmp_path, deck(scene, steps=20, before=ROWS, restart="half.bin")).text)
     assert np.array_equal(rest[-1], whole[-1])
+
+
+@pytest.mark.parametrize("ranks", [1, 2])
+@pytest.mark.parametrize("way", ["through a face", "by delete_atoms", "before a restart"])
+def test_the_largest_strain_stays_when_its_sphere_leaves(tmp_path, way, ranks):
+    """On two ranks the sphere is the only one of its rank."""
+    body, box = {
+        "through a face": ("run 20000\n", 0.0053),
+        "by delete_atoms": ("run 2000\ngroup out id 1\ndelete_atoms group out\nrun 0\n", 0.1),
+        "before a restart": ("run 20000\nwrite_restart left.bin\n", 0.0053),
+    }[way]
+    text = impact("thornton", "primitive", steps=0, every=20000).replace("run 0\n", body)
+    text = text.replace("delay 0", "every 1 delay 0 check no").replace("c_strain[2]\n", "c_strain[2] atoms\n")
+    text = text.replace("processors 1", f"processors {ranks}")
+    places, speeds = np.array([[-0.01, 0, 5.1e-3], [0.03, 0, 5.1e-3]]), np.array([[0, 0, -10.0], [0, 0, 0]])
+    spheres = Bodies(np.array([1, 1]), np.full(2, 5e-3), places, speeds)
+    files = {"box.data": spheres.data(((-0.05, 0.05), (-0.05, 0.05), (-0.01, box)))}
+    out = good(tmp_path, text, files=files, ranks=ranks).text
+    if way == "before a restart":
+        again = text.replace("read_data box.data", "read_restart left.bin").replace(body, "run 1\n")
+        out = good(tmp_path / "again", again.replace("left.bin", "../left.bin"), ranks=ranks).text
+    last = [line.split() for line in out.splitlines() if re.fullmatch(r" *\d+ +[\d.e-]+ +[\d.e-]+ +\d+ *", line)][-1]
+    assert last[3] == "1"
+    np.testing.assert_allclose(np.array(last[1:3], float), expected("thornton"), rtol=3e-4)
 
 
 def test_a_wall_that_records_alone_is_refused(tmp_path):

@@ -8,7 +8,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <unordered_map>
+#include <memory>
 #include <vector>
 
 #include "fix_contact_history_mesh.h"
@@ -39,7 +39,8 @@ class NearSpheres {
   /// For a step.
   void update(TriMesh& mesh, FixNeighlistMesh& lists, const LAMMPS_NS::Atom& atom, const SphereKernels& kernels,
               double slack) {
-    const bool searched = search_ != mesh_searches;
+    const bool left = mesh.sizeLocal() + mesh.sizeGhost() == 0;  // without triangles here there is no search
+    const bool searched = left || search_ != mesh_searches;
     if (searched) take(mesh, Lists::of(lists), atom.nlocal);
     if (spheres_.empty()) return;
     double moved = std::sqrt(moved_spheres(atom));
@@ -150,15 +151,13 @@ class NearSpheres {
   std::vector<int> found_;
 };
 
-std::unordered_map<const TriMesh*, NearSpheres> near_spheres;
-
 /// The spheres in contact with a mesh, once per contact: in the last step of our loop, and in the step before.
 struct Touching {
   bigint step = -1;
   std::vector<int> spheres, before;
 };
 
-std::unordered_map<const FixContactHistoryMesh*, Touching> touching;
+Touching* touching = nullptr;    // of the mesh over which a loop of ours runs
 OurWall* active_wall = nullptr;  // the wall of our models over which a loop runs
 bool ours = false;               // whether it is a mesh wall, and the loop ours
 
@@ -183,6 +182,12 @@ bool settled(const Touching& contacts, const LAMMPS_NS::Update& update, const LA
 }
 
 }  // namespace
+
+struct OfMesh {
+  NearSpheres near;
+  Touching touching;
+};
+
 }  // namespace epdem::liggghts::loop
 
 namespace LAMMPS_NS {
@@ -208,10 +213,14 @@ namespace loop = epdem::liggghts::loop;
   const loop::SphereKernels& kernels = loop::sphere_kernels(lmp);
   LIGGGHTS::ContactModels::SurfacesIntersectData contact;
   contact.is_wall = true;
+  auto& kept = loop::active_wall->meshes;
+  kept.resize(n_FixMesh_);
   for (int m = 0; m < n_FixMesh_; ++m) {
     FixMeshSurface& fix = *FixMesh_list_[m];
     TriMesh& mesh = *fix.triMesh();
     FixContactHistoryMesh* const history = fix.contactHistory();
+    if (!kept[m]) kept[m] = std::make_shared<loop::OfMesh>();
+    loop::touching = &kept[m]->touching;
     if (history) history->markAllContacts();
     if (store_force_contact_) fix_wallforce_contact_ = fix.meshforceContact();
     if (store_force_contact_stress_) fix_wallforce_contact_stress_ = fix.meshforceContactStress();
@@ -221,8 +230,7 @@ namespace loop = epdem::liggghts::loop;
     double v_wall[3] = {}, delta[3], weight[3];
     contact.mesh = &mesh;
     contact.fix_mesh = &fix;
-    loop::NearSpheres& near = loop::near_spheres[&mesh];
-    loop::Touching& touching = loop::touching[history];
+    loop::NearSpheres& near = kept[m]->near;
     near.update(mesh, *fix.meshNeighlist(), *atom, kernels, neighbor->skin / 4.0);
     near.each(kernels, [&](int triangle, int i) {
       int side;
@@ -233,7 +241,7 @@ namespace loop = epdem::liggghts::loop;
       if (!(gap <= 0.0)) return;
       if (history) {
         if (!history->handleContact(i, mesh.id(triangle), contact.contact_history, true, side == face)) return;
-        touching.spheres.push_back(i);
+        loop::touching->spheres.push_back(i);
       }
       for (int x = 0; x < 3; ++x) {
         if (v)
@@ -252,7 +260,7 @@ namespace loop = epdem::liggghts::loop;
   static const auto original =
       loop::next<FixContactHistoryMesh*>("_ZN9LAMMPS_NS21FixContactHistoryMesh15markAllContactsEv");
   if (!loop::ours) return original(this);
-  loop::Touching& contacts = loop::touching[this];
+  loop::Touching& contacts = *loop::touching;
   contacts.before.swap(contacts.spheres);
   contacts.spheres.clear();
   if (!loop::settled(contacts, *update, *neighbor)) return original(this);
@@ -268,7 +276,7 @@ namespace loop = epdem::liggghts::loop;
   static const auto original =
       loop::next<FixContactHistoryMesh*>("_ZN9LAMMPS_NS21FixContactHistoryMesh15cleanUpContactsEv");
   if (!loop::ours) return original(this);
-  loop::Touching& contacts = loop::touching[this];
+  loop::Touching& contacts = *loop::touching;
   if (!loop::settled(contacts, *update, *neighbor)) {
     original(this);
   } else {

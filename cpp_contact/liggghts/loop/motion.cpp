@@ -69,14 +69,15 @@ namespace loop = epdem::liggghts::loop;
   static const auto original = loop::next<FixGravity*, int>("_ZN9LAMMPS_NS10FixGravity10post_forceEi");
   const int n = atom->nlocal;
   constexpr int constant = 0;  // in LIGGGHTS's source alone
-  if (varflag != constant || fm || fix_relax || !atom->rmass || !loop::has_all(lmp, groupbit, n))
+  if (varflag != constant || fm || fix_relax || domain->deform_flag || !atom->rmass || !loop::has_all(lmp, groupbit, n))
     return original(this, vflag);
   const double *const mass = atom->rmass, g[3] = {xacc, yacc, zacc};
   double* const f = atom->f[0];
   for (int i = 0; i < n; ++i)
     for (int c = 0; c < 3; ++c) f[3 * i + c] += mass[i] * g[c];
   eflag = 0;
-  egrav = std::numeric_limits<double>::quiet_NaN();  // compute_scalar sums it where a command reads it
+  egrav =
+      std::numeric_limits<double>::quiet_NaN();  // compute_scalar sums it where a command reads it: none moved since
 }
 
 [[gnu::visibility("default")]] double FixGravity::compute_scalar() {

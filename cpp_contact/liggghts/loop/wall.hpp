@@ -4,21 +4,28 @@
 // where nothing stands around LIGGGHTS's loops (mesh.cpp), all is left to them.
 #pragma once
 
+#include <memory>
+#include <vector>
+
 #include "planned.hpp"
 
 #ifdef EPDEM_BUILT_FOR
 
 namespace epdem::liggghts::loop {
 
+/// What mesh.cpp keeps of a mesh of a wall.
+struct OfMesh;
+
 /// What LIGGGHTS's loops over walls know of ours; mesh.cpp stands around them.
 class OurWall {
  public:
   virtual ~OurWall() = default;
 
-  /// Before and after LIGGGHTS's loop over the spheres at a wall, and before it moves histories of contacts.
+  /// Before and after LIGGGHTS's loop over the spheres at a wall.
   virtual void open(LAMMPS_NS::FixWallGran& wall) = 0;
-  virtual void compute() = 0;
   virtual void close() = 0;
+
+  std::vector<std::shared_ptr<OfMesh>> meshes;
 };
 
 /// The contacts of walls, noted one by one.
@@ -37,10 +44,9 @@ class WallLoop : protected LAMMPS_NS::Pointers {
   void note(const LIGGGHTS::ContactModels::SurfacesIntersectData& s, const double* v_wall,
             LAMMPS_NS::FixMeshSurface* mesh, int triangle);
 
+ private:
   /// All that is noted.
   void compute();
-
- private:
   void scatter();
 
   const Kernel kernel_;
@@ -74,7 +80,6 @@ class Wall : public LIGGGHTS::Walls::Granular<Model>, public OurWall, private Pl
     else
       loop_.open(wall, plan_);
   }
-  void compute() override { loop_.compute(); }
   void close() override { loop_.close(); }
 
   void compute_force(LAMMPS_NS::FixWallGran* wall, SurfacesIntersectData& s, bool intersects, double* v_wall,

@@ -1,0 +1,61 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""delete_atoms between two runs of LIGGGHTS: numbers of spheres change, histories stay with their contacts."""
+
+import numpy as np
+import pytest
+from plugin_decks import DUMP, Bodies, contact, good, head, materials, per_pair
+
+pytestmark = pytest.mark.liggghts
+
+HALVES = "group one id 3 17 40:44 90\ngroup two id 5 60:70 101\n"
+BOTH = HALVES + "group both union one two\n"
+
+
+def bed():
+    """125 spheres that touch, yield and slide on each other."""
+    rng = np.random.default_rng(3)
+    places = 1.99e-3 * (np.array(list(np.ndindex(5, 5, 5))) - 2.0) + rng.uniform(-2e-6, 2e-6, (125, 3))
+    return Bodies(rng.integers(1, 4, 125), np.full(125, 1e-3), places, rng.uniform(-3, 3, (125, 3)))
+
+
+def end(folder, between, *, tangential="history", ranks=1, env=None):
+    """Places, velocities and spins at the end, in the order of the places; the second run is one of many contacts."""
+    text = (
+        head(ranks=(ranks, 1, 1))
+        + "read_data box.data\nneighbor 2e-4 bin\nneigh_modify delay 0\n"
+        + materials("ep/thornton")
+        + per_pair("coefficientRollingFriction", 0.1)
+        + contact("ep/thornton", tangential=tangential, models="rolling_friction epsd2")
+        + f"timestep 5e-8\nfix move all nve/sphere\nthermo_modify lost error norm no\nrun 200\n{between}"
+        + f"run 200\n{DUMP.format(every=1)}run 0\n"
+    )
+    files = {"box.data": bed().data([(-0.01, 0.01)] * 3)}
+    rows = good(folder, text, files=files, ranks=ranks, env=env).last[:, 1:]
+    return rows[np.lexsort(np.round(rows[:, :3], 5).T)]
+
+
+@pytest.mark.parametrize("tangential", ["history", "ep/partial_slip"])
+def test_new_numbers_change_no_bit(tmp_path, tangential):
+    """`compress no` keeps the numbers."""
+    old = end(tmp_path / "old", BOTH + "delete_atoms group both compress no\n", tangential=tangential)
+    new = end(tmp_path / "new", BOTH + "delete_atoms group both\n", tangential=tangential)
+    other = end(
+        tmp_path / "loop", BOTH + "delete_atoms group both\n", tangential=tangential, env={"EPDEM_LOOP": "generic"}
+    )
+    assert len(old) == 125 - 21 and np.array_equal(new, old) and np.array_equal(other, old)
+
+
+@pytest.mark.parametrize("compress", ["yes", "no"])
+def test_two_deletions_are_one(tmp_path, compress):
+    """The second finds the spheres at other places in memory than the lists of the first run say."""
+    once = end(tmp_path / "once", BOTH + "delete_atoms group both compress no\n")
+    two = HALVES + "".join(f"delete_atoms group {name} compress {compress}\n" for name in ("one", "two"))
+    twice = end(tmp_path / "twice", two)
+    assert len(once) == len(twice) and np.abs(twice - once).max() <= 1e-9 * np.abs(once).max()
+
+
+def test_ranks_give_partners_the_same_numbers(tmp_path):
+    one = end(tmp_path / "one", BOTH + "delete_atoms group both\n")
+    two = end(tmp_path / "two", BOTH + "delete_atoms group both\n", ranks=2)
+    scale = np.abs(one).max(axis=0)
+    assert len(one) == len(two) and (np.abs(two - one) / scale).max() <= 1e-9
