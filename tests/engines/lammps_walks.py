@@ -97,14 +97,23 @@ def falls(work, elastic, later=0):
     return (np.maximum.accumulate(least, axis=0) - most).max(axis=0) / work.max(axis=0)
 
 
-def fly(folder, materials, steps, *, seed=2, density=1.0, speed=0.05):
-    """Nine free spheres of radii 1 to 4 fly together: places, kinetic, elastic and plastic energies of all steps."""
+def nine_spheres(seed=2, speed=0.05):
+    """Places, radii 1 to 4 and velocities of a large sphere and eight small ones that fly towards it."""
     rng = np.random.default_rng(seed)
     radius = np.array([4.0, *rng.uniform(1.0, 2.0, 8)])
     ways = np.array([[i, j, k] for i in (-1, 1) for j in (-1, 1) for k in (-1, 1)]) / 3**0.5
     x = np.concatenate([np.zeros((1, 3)), ways * (4.0 + radius[1:, None] + 0.02)])
     v = np.concatenate([np.zeros((1, 3)), -speed * ways * rng.uniform(0.5, 1.5, (8, 1))])
     v[1:] += 0.2 * speed * rng.normal(size=(8, 3))
+    return x, radius, v
+
+
+FLIGHT = 12.0  # duration
+
+
+def fly(folder, materials, steps, *, density=1.0):
+    """Nine free spheres fly together: places, kinetic, elastic and plastic energies of all steps."""
+    x, radius, v = nine_spheres()
     mass = 4 / 3 * np.pi * radius**3 * density
     atoms = "".join(
         f"{k + 1} {1 + k % len(materials)} {2 * r!r} {density!r} {' '.join(map(repr, p))}\n"
@@ -122,7 +131,7 @@ read_data spheres.data
 pair_style ep energies
 {laws(materials)}neighbor 0.1 bin
 fix move all nve/sphere
-timestep {12.0 / steps!r}
+timestep {FLIGHT / steps!r}
 dump d all custom 1 frames.txt x y z vx vy vz f_EP_HISTORY0[1] f_EP_HISTORY0[2]
 dump_modify d sort id header no format float %.15g
 run {steps}

@@ -5,7 +5,9 @@ import lammps_lattices
 import numpy as np
 import pytest
 from lammps_decks import column, needs_lammps, run
-from lammps_walks import falls, fly, one_body, two_bodies, walks
+from lammps_walks import FLIGHT, falls, fly, nine_spheres, one_body, two_bodies, walks
+from plugin_compaction import NU, E, Y, data, deck
+from plugin_compaction import run as run_liggghts
 
 from epdem.theory.cavity import FINITE_STRAIN, Cavity
 from epdem.verification.theory.bed import Bed, Material
@@ -74,6 +76,18 @@ def test_nine_free_spheres_gain_no_energy(materials, tmp_path):
         assert elastic.max() > 0.2 * kinetic[0]
     assert found[0][0] < 5e-5 and found[1][0] < 0.3 * found[0][0]
     assert found[0][1] < 2e-4 and found[1][1] < 0.3 * found[0][1]
+
+
+@pytest.mark.liggghts
+def test_nine_free_spheres_fly_alike_in_liggghts(tmp_path):
+    """Places at all steps; LAMMPS writes fifteen digits."""
+    x, radius, v = nine_spheres()
+    steps = 1500
+    lammps, *_ = fly(tmp_path / "lammps", [(E, NU, Y)], steps, density=Y)
+    text = deck("compaction on", runs=f"run {steps}\n", dt=FLIGHT / steps, columns="x y z")
+    (tmp_path / "liggghts").mkdir()
+    liggghts = run_liggghts(tmp_path / "liggghts", text, data(x, radius, v, Y, half=15.0))[..., 1:]
+    assert np.abs(liggghts - lammps).max() < 1e-12 * np.abs(x).max()
 
 
 def in_numpy(frames, radius, materials):
