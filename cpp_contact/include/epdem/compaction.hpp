@@ -183,9 +183,9 @@ inline bool closes_gap(const Growing<wall, double>& c, double rsq, bool repeats)
 }
 
 /// Grown spheres whose growth over the radius is at most `largest` touch below this factor of the squared sum of their
-/// radii; half as much more is for q and for the extrapolation.
+/// radii; half as much more is for the extrapolation, and 0.02 for q, which does not vanish with the growth.
 inline double touch_factor(double largest) noexcept {
-  const double reach = 1.0 + std::fmin(1.5 * largest, growth_reach);
+  const double reach = 1.0 + std::fmin(1.5 * largest + 0.02, growth_reach);
   return reach * reach;
 }
 
