@@ -12,6 +12,7 @@ from epdem.verification.theory.compaction import (
     FCC,
     HEXAGONAL,
     SC,
+    Lattice,
     die_path,
     die_stresses,
     distance_at,
@@ -21,12 +22,14 @@ from epdem.verification.theory.compaction import (
 )
 
 TABLES = Path(__file__).parents[1] / "data" / "compaction"
-LATTICES = {"fcc": FCC, "bcc": BCC, "sc": SC, "hex": HEXAGONAL}
+TETRAGONAL = Lattice((4, 2), (1.0, 1.1), 8.8)
+LATTICES = {"fcc": FCC, "bcc": BCC, "sc": SC, "hex": HEXAGONAL, "tet": TETRAGONAL}
 MATERIALS = {
     "": Material(120.0, 0.34, 1.0),
     "_soft": Material(30.0, 0.2, 1.0),
     "_60": Material(60.0, 0.3, 1.0),
     "_300": Material(300.0, 0.3, 1.0),
+    "_300_25": Material(300.0, 0.25, 1.0),
 }
 STEPS = 200  # of a press: the forces are within 1e-3 of those of many steps
 
@@ -46,6 +49,7 @@ DEVIATIONS = {
     "sc_60": ((0.65, 0.70, 0.80, 0.90, 0.95), (3, 14, 12, -2, -15)),
     "hex_60": ((0.65, 0.75, 0.85, 0.92, 0.95), (1, 12, 19, 10, 4)),
     "fcc_300": ((0.80, 0.85, 0.90, 0.95), (-8, -1, 1, -8)),
+    "tet_300_25": ((0.60, 0.65, 0.70, 0.75, 0.80, 0.85, 0.90, 0.95), (14, 6, 4, 3, 1, -4, -13, -28)),
     "sc_300": ((0.65, 0.70, 0.80, 0.90, 0.95), (-4, 2, 0, -13, -28)),
 }
 
