@@ -6,6 +6,7 @@ import pytest
 from lammps_decks import lammps, needs_lammps, run
 from plugin_compaction import NU, E, Y, alone, data
 from test_plugin_compaction import BACK, CLUSTER, FLOOR, HEAVY, MOVES, RADII, assert_second_order
+from test_plugin_compaction import cluster as cluster_of_liggghts
 
 from epdem.theory.cavity import FINITE_STRAIN, Cavity
 
@@ -59,6 +60,12 @@ def test_forces_are_those_of_grown_spheres_with_an_error_of_second_order(tmp_pat
     found = {steps: cluster(tmp_path / str(steps), steps) for steps in (200, 800)}
     assert_second_order(found)
     assert found[800][800, 5, 2] > 0 == cluster(tmp_path / "off", 400, law=LAW)[400, 5, 2]
+
+
+@pytest.mark.liggghts
+def test_forces_are_those_of_liggghts(tmp_path):
+    found, other = cluster(tmp_path / "lammps", 200), cluster_of_liggghts(tmp_path / "liggghts", 200)
+    assert np.abs(found - other).max() <= 1e-12 * np.abs(other).max()
 
 
 @pytest.mark.parametrize("ranks", [1, 2])

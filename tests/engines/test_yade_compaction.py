@@ -6,6 +6,7 @@ import pytest
 from plugin_compaction import NU, E, Y, alone
 from scipy.optimize import brentq
 from test_plugin_compaction import CLUSTER, FLOOR, MOVES, RADII, assert_second_order
+from test_plugin_compaction import cluster as cluster_of_liggghts
 from yade_native import ROOT, classes, needs_source, yade
 
 from epdem.verification.theory.bed import Bed, Material
@@ -169,6 +170,13 @@ def found(tmp_path_factory):
 
 def test_forces_are_those_of_grown_spheres_with_an_error_of_second_order(found):
     assert_second_order({steps: found[0][f"n{steps}"] for steps in (200, 800)})
+
+
+@pytest.mark.liggghts
+def test_forces_are_those_of_liggghts(found, tmp_path):
+    """Areas of contacts that have just yielded, under a root, make more of round-off."""
+    other = cluster_of_liggghts(tmp_path, 200)
+    assert np.abs(found[0]["n200"] - other).max() < 1e-8 * np.abs(other).max()
 
 
 def test_facets_and_boxes_press_as_walls_do(found):
