@@ -2,6 +2,8 @@
 // Ip2_EpMat_EpMat_EpPhys: the contact of two materials.
 #pragma once
 
+#include <core/InteractionLoop.hpp>
+
 #include "contact_phys.hpp"
 
 namespace yade {
@@ -11,6 +13,7 @@ class Ip2_EpMat_EpMat_EpPhys : public IPhysFunctor {
   void go(const shared_ptr<Material>& b1, const shared_ptr<Material>& b2,
           const shared_ptr<Interaction>& contact) override {
     if (contact->phys) return;
+    require_one_law();
     try {
       contact->phys = pair(static_cast<const EpMat&>(*b1), static_cast<const EpMat&>(*b2), *contact);
     } catch (const std::exception& error) {
@@ -31,6 +34,26 @@ class Ip2_EpMat_EpMat_EpPhys : public IPhysFunctor {
   // clang-format on
 
  private:
+  /// Ends the program unless one law of these contacts is among the engines: without it YADE's own law reads a
+  /// stiffness of 0, and of two YADE takes the last.
+  void require_one_law() const {
+    string names;
+    int laws = 0;
+    for (const auto& engine : scene->engines) {
+      const auto* const loop = dynamic_cast<const InteractionLoop*>(engine.get());
+      const auto* const laws_of = loop ? loop->lawDispatcher.get() : dynamic_cast<const LawDispatcher*>(engine.get());
+      if (!laws_of || engine->dead) continue;
+      for (const auto& functor : laws_of->functors) {
+        const string name = functor->getClassName();
+        laws += name.rfind("Law2_ScGeom_EpPhys_", 0) == 0;
+        names += (names.empty() ? "" : ", ") + name;
+      }
+    }
+    if (laws != 1)
+      epdem::in_yade::refuse("Ip2_EpMat_EpMat_EpPhys: laws of the engines = [" + names +
+                             "], must have one Law2_ScGeom_EpPhys_<Law>; " + (laws ? "keep one" : "add one"));
+  }
+
   static double checked(const char* name, double value, const epdem::Range& range, const Interaction& i) {
     if (!range.holds(value))
       throw std::invalid_argument(std::string(name) + " of bodies " + std::to_string(i.getId1()) + " and " +

@@ -294,6 +294,18 @@ def test_bad_values_raise_with_attribute_value_and_limit(tmp_path):
             "Jkr(cohesion='sjkr')",
             "Law2_ScGeom_EpPhys_Jkr.cohesion = 'sjkr': the law has its adhesion already, must be off",
         ),
+        (  # kn is 0 for it: no force at all
+            'Law2_ScGeom_EpPhys_Thornton(tangential="partial_slip")',
+            "Law2_ScGeom_FrictPhys_CundallStrack()",
+            "Ip2_EpMat_EpMat_EpPhys: laws of the engines = [Law2_ScGeom_FrictPhys_CundallStrack], "
+            "must have one Law2_ScGeom_EpPhys_<Law>; add one",
+        ),
+        (  # YADE takes the last
+            'Law2_ScGeom_EpPhys_Thornton(tangential="partial_slip")',
+            "Law2_ScGeom_EpPhys_Thornton(), Law2_ScGeom_EpPhys_Hertz()",
+            "Ip2_EpMat_EpMat_EpPhys: laws of the engines = [Law2_ScGeom_EpPhys_Thornton, Law2_ScGeom_EpPhys_Hertz], "
+            "must have one Law2_ScGeom_EpPhys_<Law>; keep one",
+        ),
     ],
 )
 def test_a_contact_without_its_parameters_ends_with_one_sentence(before, after, sentence, tmp_path):
