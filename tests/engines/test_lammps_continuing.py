@@ -79,10 +79,11 @@ def test_a_wall_that_moves_goes_on_after_a_restart_to_the_bit(what, ranks, tmp_p
     assert np.array_equal(plain, again)
 
 
+@pytest.mark.parametrize("law", ["hertz 1e8 0.3 restitution 0.3", f"{THORNTON} restitution 0.3"])
 @pytest.mark.parametrize("what", ["moved", "vibrating"])
-def test_a_wall_that_moves_goes_on_in_runs_of_one_step(what, tmp_path):
+def test_a_wall_that_moves_goes_on_in_runs_of_one_step(what, law, tmp_path):
     """A dashpot sees velocities of the full step before the first step of a run, of the half step else: first order."""
-    head, wall = (text.replace(LAW, "hertz 1e8 0.3 restitution 0.3") for text in moving_wall(what))
+    head, wall = (text.replace(LAW, law) for text in moving_wall(what))
     _, whole = run(head + wall + f"run {STEPS}\n" + DUMP, tmp_path / "whole")
     pieces = f"variable k loop {STEPS}\nlabel again\nrun 1 post no\nnext k\njump SELF again\n"
     _, parts = run(head + wall + pieces + DUMP, tmp_path / "parts")

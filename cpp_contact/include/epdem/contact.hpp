@@ -125,7 +125,8 @@ inline NormalContact<Law> normal_contact(const ContactConstants<Law>& pair, Numb
   now.damping = T{};
   if (damped || viscous) {
     const T mass = m_star();
-    if (viscous) now.force = damped_force(law, R_star, from, now.step, pair.dashpot, mass, approach_speed);
+    if (viscous)
+      now.force = damped_force(law, R_star, from, now.step, pair.dashpot, mass, approach_speed, now.overlap, repeats);
     now.damping = tangential_damping(pair.damping, now.k_t, mass);
   }
   now.load = sliding_load(law, R_star, now.step, now.force);

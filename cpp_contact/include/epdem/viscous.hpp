@@ -35,19 +35,22 @@ inline auto has_yielded(const Law& law, Number<Law> R_star, const State<Law>& no
 
 /// The step's force with the dashpot: 2 sqrt(5/6) zeta sqrt(k_n m*) times the approach speed [m/s], k_n = 2 E* a.
 /// It acts where the force is below the backbone or on its elastic start, not while the contact yields; never attracts
-/// where the law does not.
+/// where the law does not. repeats: the last step is evaluated once more, whose overlap is the largest if it yielded.
 template <class Law>
 inline Number<Law> damped_force(const Law& law, Number<Law> R_star, const State<Law>& before, const Step<Law>& now,
-                                Number<Law> number, Number<Law> m_star, Number<Law> approach_speed) noexcept {
+                                Number<Law> number, Number<Law> m_star, Number<Law> approach_speed, Number<Law> overlap,
+                                bool repeats) noexcept {
   using T = Number<Law>;
   const T force = now.force + number * sqrt(2.0 * law.E_star * now.radius * m_star) * approach_speed;
   const T damped = adheres<Law> ? force : max(T{}, force);
   if constexpr (!Law::yields) {
     (void)R_star;
     (void)before;
+    (void)overlap;
+    (void)repeats;
     return damped;
   } else {
-    const auto grows = now.after.delta_max > before.delta_max;
+    const auto grows = repeats ? (1.0 + 1e-9) * overlap > before.delta_max : now.after.delta_max > before.delta_max;
     return select(grows & has_yielded(law, R_star, now.after), now.force, damped);
   }
 }
