@@ -9,7 +9,8 @@ import pytest
 from yade_native import HEAD, ROOT, module_folder, needs_source, yade
 
 from epdem.engines import sources
-from epdem.engines.yade.launcher import environment
+from epdem.engines.yade.launcher import environment, module
+from epdem.errors import EngineError
 
 pytestmark = [pytest.mark.yade, needs_source]
 
@@ -42,6 +43,19 @@ def test_a_build_without_source_says_what_to_do(source, sentence, tmp_path):
     command = ["cmake", "-S", str(ROOT / "cpp_contact/yade"), "-B", str(tmp_path), f"-DYADE_SOURCE={source}"]
     done = subprocess.run(command, env=os.environ | nowhere, capture_output=True, text=True, check=False)
     assert done.returncode != 0 and sentence in " ".join(done.stderr.split())
+
+
+def test_a_named_module_is_that_of_runs(tmp_path, monkeypatch):
+    """By its file or its folder; another name is refused before anything runs."""
+    built = tmp_path / "epdem_yade.so"
+    built.write_bytes(b"")
+    for named in (built, tmp_path):
+        monkeypatch.setenv("EPDEM_YADE_MODULE", str(named))
+        assert module() == built
+    for named in (tmp_path / "none", tmp_path / "other.so"):
+        monkeypatch.setenv("EPDEM_YADE_MODULE", str(named))
+        with pytest.raises(EngineError, match=f"EPDEM_YADE_MODULE = {named}: there is no epdem_yade.so"):
+            module()
 
 
 @pytest.mark.slow  # builds the module

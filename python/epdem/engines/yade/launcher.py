@@ -11,6 +11,7 @@ from pathlib import Path
 from ...base import paths
 from ...base.declarations import library_path
 from ...base.files import atomic, write_texts
+from ...errors import EngineError
 from ...yade.deck_modules.law import LIBRARY
 
 MODULE, PROGRAM = "epdem_yade.so", "epdem_yade.program"  # the module, and the path of the program that it is built for
@@ -23,7 +24,18 @@ def command() -> str:
 
 
 def module() -> Path | None:
-    """The module epdem_yade, if `make yade` has built it for the program in use; None: decks call the C library."""
+    """The module epdem_yade: of EPDEM_YADE_MODULE (its file or folder), else of `make yade` for the program in use.
+
+    None: decks call the C library. Raises EngineError if EPDEM_YADE_MODULE names no module.
+    """
+    if named := os.environ.get("EPDEM_YADE_MODULE"):
+        path = Path(named) / MODULE if Path(named).is_dir() else Path(named)
+        if path.name != MODULE or not path.is_file():
+            raise EngineError(
+                f"EPDEM_YADE_MODULE = {named}: there is no {MODULE}; name the folder in which the commands of 'epdem "
+                "export yade' have built it, or leave the variable unset"
+            )
+        return path
     built, program = paths.native(MODULE), paths.native(PROGRAM)
     found = shutil.which(command())
     if program and found and Path(found).resolve() != Path(program.read_text(encoding="utf-8").strip()):
