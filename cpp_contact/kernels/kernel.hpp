@@ -173,7 +173,7 @@ template <class Law, class Friction, bool wall, bool grows = false, bool books =
   constexpr int bodies_at = offsetof(Pair, bodies) / sizeof(Lanes), all_constants = sizeof(Pair) / sizeof(Lanes);
   static_assert(all_constants <= most_constants && offsetof(Pair, law) == law_data * sizeof(Lanes));
   static_assert(sizeof(BodyShares<Lanes>) == 4 * sizeof(Lanes) && bodies_at + 4 == all_constants);
-  Pair pair;
+  Pair pair{};
   Lanes* const numbers = reinterpret_cast<Lanes*>(&pair);  // a Pair is made of numbers only
   for (int c = 0; c < all_constants; ++c) numbers[c] = constant<Lanes>(b.material[0][c]);
   // The history of the next block lies behind the history of this block: fetch a long history during the computation.

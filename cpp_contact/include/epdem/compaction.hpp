@@ -207,7 +207,7 @@ template <bool wall, class Law, class T = Number<Law>>
 EPDEM_INLINE GrownStep<Law> grown_step(const Law& law, const BodyShares<T>& bodies, T R_star, const State<Law>& before,
                                        T overlap, Growing<wall, T>& c, bool repeats) noexcept {
   const T zero{}, one = constant<T>(1.0);
-  GrownStep<Law> s;
+  GrownStep<Law> s{};
   s.last = c.state;
   const auto known = c.state.raw > 0.0;
   const T raw_before = select(known, c.state.raw, one);

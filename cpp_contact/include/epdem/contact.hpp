@@ -89,10 +89,10 @@ inline NormalContact<Law> normal_contact(const ContactConstants<Law>& pair, Numb
                                          Growth&& growth = {}) noexcept {
   using T = Number<Law>;
   const Law& law = pair.law;
-  NormalContact<Law> now;
+  NormalContact<Law> now{};
   now.overlap = overlap;
-  State<Law> from = before;
-  [[maybe_unused]] T delta_max{};
+  [[maybe_unused]] T reached{}, delta_max{};  // largest overlap before the step; after it without growth
+  if constexpr (Law::yields) reached = before.delta_max;
   if constexpr (std::is_same_v<std::decay_t<Growth>, NoGrowth>) {
     (void)growth;
     now.step = step(law, R_star, before, overlap, closing);
@@ -109,7 +109,7 @@ inline NormalContact<Law> normal_contact(const ContactConstants<Law>& pair, Numb
     const GrownStep<Law> grown = grown_step(law, pair.bodies, R_star, before, overlap, growth, repeats);
     now.step = grown.step;
     now.overlap = grown.overlap;
-    from = grown.before;
+    reached = grown.before.delta_max;
     delta_max = grown.delta_max;
     observer.normal(pair, R_star, now.step, now.overlap, [&]() __attribute__((always_inline)) {
       const GrownStep<Law> copy = grown;
@@ -126,7 +126,8 @@ inline NormalContact<Law> normal_contact(const ContactConstants<Law>& pair, Numb
   if (damped || viscous) {
     const T mass = m_star();
     if (viscous)
-      now.force = damped_force(law, R_star, from, now.step, pair.dashpot, mass, approach_speed, now.overlap, repeats);
+      now.force =
+          damped_force(law, R_star, reached, now.step, pair.dashpot, mass, approach_speed, now.overlap, repeats);
     now.damping = tangential_damping(pair.damping, now.k_t, mass);
   }
   now.load = sliding_load(law, R_star, now.step, now.force);

@@ -35,9 +35,10 @@ inline auto has_yielded(const Law& law, Number<Law> R_star, const State<Law>& no
 
 /// The step's force with the dashpot: 2 sqrt(5/6) zeta sqrt(k_n m*) times the approach speed [m/s], k_n = 2 E* a.
 /// It acts where the force is below the backbone or on its elastic start, not while the contact yields; never attracts
-/// where the law does not. repeats: the last step is evaluated once more, whose overlap is the largest if it yielded.
+/// where the law does not. reached: largest overlap before the step [m]; repeats: the last step is evaluated once more,
+/// whose overlap is the largest if it yielded.
 template <class Law>
-inline Number<Law> damped_force(const Law& law, Number<Law> R_star, const State<Law>& before, const Step<Law>& now,
+inline Number<Law> damped_force(const Law& law, Number<Law> R_star, Number<Law> reached, const Step<Law>& now,
                                 Number<Law> number, Number<Law> m_star, Number<Law> approach_speed, Number<Law> overlap,
                                 bool repeats) noexcept {
   using T = Number<Law>;
@@ -45,12 +46,12 @@ inline Number<Law> damped_force(const Law& law, Number<Law> R_star, const State<
   const T damped = adheres<Law> ? force : max(T{}, force);
   if constexpr (!Law::yields) {
     (void)R_star;
-    (void)before;
+    (void)reached;
     (void)overlap;
     (void)repeats;
     return damped;
   } else {
-    const auto grows = repeats ? (1.0 + 1e-9) * overlap > before.delta_max : now.after.delta_max > before.delta_max;
+    const auto grows = repeats ? (1.0 + 1e-9) * overlap > reached : now.after.delta_max > reached;
     return select(grows & has_yielded(law, R_star, now.after), now.force, damped);
   }
 }

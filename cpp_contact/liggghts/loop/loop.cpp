@@ -205,7 +205,7 @@ int PairLoop::without_gaps(const Plan& plan, int n, int found) {
 bool PairLoop::closes_gap(const Plan& plan, int i, int j, int slot) {
   const double *const x = atom->x[0], *const radius = atom->radius;
   const double dx = x[3 * i] - x[3 * j], dy = x[3 * i + 1] - x[3 * j + 1], dz = x[3 * i + 2] - x[3 * j + 2];
-  const double sum = radius[i] + radius[j], rsq = dx * dx + dy * dy + dz * dz;
+  const double rsq = dx * dx + dy * dy + dz * dz;
   const double* const h = pair_->listgranhistory->firstdouble[i] + pair_->dnum() * slot;
   const bool is_new = pass_.now - h[plan.last_step] > 1.0;
   const auto c = growing_pair(radius[i], radius[j], sums_of(pass_.sums, i), sums_of(pass_.sums, j),
