@@ -310,3 +310,16 @@ def test_the_message_of_a_mistake_in_a_part_begins_with_file_and_key(old, tmp_pa
     path.write_text(text.replace(old, new))
     with pytest.raises(CaseError, match=re.escape(f"bowl.toml: {words}")), named(path):
         plan(load(path))
+
+
+@pytest.mark.parametrize(("side", "vector"), [("-z", [0.0, 0.0, -1.0]), ("+x", [1.0, 0.0, 0.0])])
+def test_a_direction_is_a_side_or_a_vector(side, vector):
+    def case_with(direction):
+        lid = {"name": "lid", "kind": "plate", "axis": "z", "center": ["0 mm", "0 mm", "39 mm"], "material": "steel"}
+        press = {"wall": "lid", "kind": "press", "direction": direction, "force": "1 N", "highest_speed": "0.1 m/s"}
+        flow = {"name": "out", "kind": "flow", "direction": direction, "at": "1 mm"}
+        phase = {"name": "press", "duration": "20 ms", "move": [press]}
+        return parse(parts(wall=[FLOOR, lid | {"size": ["2 mm", "2 mm"]}], phase=[phase], measure=[flow])).scene
+
+    assert case_with(side) == case_with(vector)
+    assert case_with(side).phase[0].move[0].direction == vector and case_with(side).measure[0].direction == side

@@ -236,3 +236,18 @@ def test_figures_need_no_backend(tmp_path, monkeypatch):
     (tmp_path / "steel.toml").write_text(CASE.read_text())
     run(tmp_path, "-e", "embedded")
     assert (tmp_path / "out/e_n.png").stat().st_size > 10_000
+
+
+@pytest.mark.parametrize(
+    ("passed", "warnings", "words"),
+    [
+        (True, [], '"verdict good">✓ All checks hold</p>'),
+        (True, ["a/R* is 1.01"], '"verdict warned">⚠ All checks hold, with a warning:</p>\n<p class="warning">'),
+        (True, ["a", "b"], '"verdict warned">⚠ All checks hold, with 2 warnings:</p>'),
+        (False, ["a"], '"verdict bad">✗ A check fails, with a warning:</p>'),
+    ],
+)
+def test_the_headline_names_the_warnings(passed, warnings, words):
+    found = page.render(page.Page("title", ["said"], [], passed=passed, warnings=warnings))
+    assert words in found and found.index("verdict") < found.index("said")
+    assert all(f"</strong> {warning}</p>" in found for warning in warnings)

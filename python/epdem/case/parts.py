@@ -307,6 +307,13 @@ class Parts(Frozen):
         return [*of_files, *(b.sphere for b in self.body if b.phase in (None, first))]
 
     @property
+    def images(self) -> list[tuple[float, float, float]]:
+        """Shifts [m] from a sphere to itself and, in a periodic room, to its nearest images."""
+        ways = (-1, 0, 1) if self.periodic else (0,)
+        (xlo, xhi), (ylo, yhi) = self.room.x, self.room.y
+        return [(a * (xhi - xlo), b * (yhi - ylo), 0.0) for a in ways for b in ways]
+
+    @property
     def planes(self) -> list[PlaneWall]:
         """The planes that are there in every phase."""
         return [w for w in self.wall if isinstance(w, PlaneWall) and not w.phases]

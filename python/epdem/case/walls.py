@@ -6,18 +6,32 @@ import math
 from abc import ABC, abstractmethod
 from typing import Annotated, Literal, Self
 
-from pydantic import Discriminator, Field, model_validator
+from pydantic import BeforeValidator, Discriminator, Field, model_validator
 
 from .fields import Frozen, Length, Name, Quantity, Speed, Spin, nothing
 from .sizes import FileName
 
 Place = Annotated[float, Quantity("m")]
 Vector = Annotated[list[Place], Field(min_length=3, max_length=3)]
-Direction = Annotated[list[float], Field(min_length=3, max_length=3)]
 Axis = Literal["x", "y", "z"]
 PartName = Annotated[str, Field(pattern=r"^[A-Za-z][A-Za-z0-9_]{0,31}$")]
 Span = Annotated[list[Place], Field(min_length=2, max_length=2)]
-Side = Literal["-x", "+x", "-y", "+y", "-z", "+z"]
+SIDES = {"-x": [-1.0, 0.0, 0.0], "-y": [0.0, -1.0, 0.0], "-z": [0.0, 0.0, -1.0]}
+SIDES |= {f"+{side[1]}": [abs(x) for x in vector] for side, vector in SIDES.items()}
+
+
+def _vector(value: object) -> object:
+    return SIDES.get(value, value) if isinstance(value, str) else value
+
+
+def _side(value: object) -> object:
+    return next((side for side, vector in SIDES.items() if value == vector), value)
+
+
+Side = Annotated[Literal["-x", "+x", "-y", "+y", "-z", "+z"], BeforeValidator(_side)]  # or a vector of length 1
+
+
+Direction = Annotated[list[float], BeforeValidator(_vector), Field(min_length=3, max_length=3)]  # or a Side
 
 
 Limits = tuple[float, float, float, float, float, float]  # xlo xhi ylo yhi zlo zhi [m]

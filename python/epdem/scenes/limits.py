@@ -93,8 +93,9 @@ def refuse_combinations(case: SceneCase, s: Parts) -> None:
             )
 
 
-def overlaps(spheres: Sequence[Sphere]) -> tuple[IntArray, IntArray, FloatArray]:
-    """(i, j, overlap over the smaller radius) of the pairs of spheres that overlap, except pairs of frozen ones.
+def overlaps(spheres: Sequence[Sphere], s: Parts) -> tuple[IntArray, IntArray, FloatArray]:
+    """(i, j, overlap over the smaller radius) of the pairs of spheres of a scene that overlap, except pairs of frozen
+    ones; in a periodic room also through its faces.
 
     If centres lie in other spheres, only the nearest neighbours are found: a table of one position has too many pairs.
     """
@@ -102,13 +103,18 @@ def overlaps(spheres: Sequence[Sphere]) -> tuple[IntArray, IntArray, FloatArray]
 
     if len(spheres) < 2:
         return np.zeros(0, int), np.zeros(0, int), np.zeros(0)
-    positions = np.array([s.place for s in spheres])
-    radius = np.array([s.radius for s in spheres])
-    frozen = np.array([s.frozen for s in spheres])
+    low = np.array([s.room.x[0], s.room.y[0], 0.0])
+    period = np.array([np.ptp(s.room.x), np.ptp(s.room.y), 0.0]) * s.periodic
+    positions = np.array([x.place for x in spheres])
+    positions[:, period > 0] = ((positions - low) % np.where(period > 0, period, 1.0))[:, period > 0]
+    radius = np.array([x.radius for x in spheres])
+    frozen = np.array([x.frozen for x in spheres])
     every = np.arange(len(spheres))
 
     def found(i: IntArray, j: IntArray) -> tuple[IntArray, IntArray, FloatArray]:
-        distance = np.linalg.norm(positions[i] - positions[j], axis=1)
+        way = positions[i] - positions[j]
+        way -= period * np.round(way / np.where(period > 0, period, np.inf))
+        distance = np.linalg.norm(way, axis=1)
         share = (radius[i] + radius[j] - distance) / np.minimum(radius[i], radius[j])
         chosen = (share > 0) & ~(frozen[i] & frozen[j])
         return i[chosen], j[chosen], share[chosen]
@@ -118,7 +124,7 @@ def overlaps(spheres: Sequence[Sphere]) -> tuple[IntArray, IntArray, FloatArray]
     same = found(first[group.ravel()[again]], again)
     if len(same[0]):
         return same
-    tree = cKDTree(positions)
+    tree = cKDTree(positions, boxsize=period if s.periodic else None)
     two = tree.query(positions, k=2)[1]  # of spheres at one position itself and another one, in any order
     nearest = found(every, np.where(two[:, 0] == every, two[:, 1], two[:, 0]))
     if (nearest[2] >= 1.0).any():
@@ -157,7 +163,7 @@ def refuse_positions(s: Parts) -> None:
                 raise CaseError(
                     f"{name}: {tuple(x.place)} m lies beyond scene.room or on its limit; move it, or enlarge the room"
                 )
-        i, j, share = overlaps([x for _, x in group])
+        i, j, share = overlaps([x for _, x in group], s)
         if len(share) and share.max() >= 1.0:
             worst = int(share.argmax())
             one, other = group[max(i[worst], j[worst])][0], group[min(i[worst], j[worst])][0]

@@ -104,9 +104,10 @@ def _angle(m: Repose, frame: pd.DataFrame) -> float:
     return float(math.atan(abs(np.polyfit(middle, surface, 1)[0])))
 
 
-def _porosity(m: Porosity, frame: pd.DataFrame) -> float:
-    """The share of a region that lies in no sphere: along z exact, by the union of what spheres cut out of lines that
-    are evenly spread over x and y; the error is below 1e-4 (tests/scenes/test_parts_measures.py)."""
+def _porosity(p: ScenePlan, m: Porosity, frame: pd.DataFrame) -> float:
+    """The share of a region that lies in no sphere and, in a periodic room, in no image of one: along z exact, by the
+    union of what spheres cut out of lines that are evenly spread over x and y; the error is below 1e-4
+    (tests/scenes/test_parts_measures.py)."""
     from scipy.spatial import cKDTree
     from scipy.stats import qmc
 
@@ -115,7 +116,9 @@ def _porosity(m: Porosity, frame: pd.DataFrame) -> float:
     if isinstance(m.region, Upright):
         lines = lines[np.hypot(*(lines - m.region.center).T) <= m.region.diameter / 2]
     x, radius = frame[["x", "y", "z"]].to_numpy(), frame["radius"].to_numpy()
-    near = (x[:, 2] + radius > low[2]) & (x[:, 2] - radius < high[2])
+    images = p.scene.images
+    x, radius = np.concatenate([x + shift for shift in images]), np.tile(radius, len(images))
+    near = ((x + radius[:, None] > low) & (x - radius[:, None] < high)).all(axis=1)
     x, radius = x[near], radius[near]
     found = cKDTree(lines).query_ball_point(x[:, :2], radius)
     sphere = np.repeat(np.arange(len(x)), [len(some) for some in found])
@@ -186,7 +189,7 @@ def curves(p: ScenePlan, tables: dict[str, pd.DataFrame]) -> pd.DataFrame:
             case Flow():
                 table[m.name] = _flow(p, m, spheres, steps)
             case Porosity():
-                table[m.name] = [_porosity(m, frames[step]) for step in steps]
+                table[m.name] = [_porosity(p, m, frames[step]) for step in steps]
             case Load() | Histogram():
                 pass
     table.attrs["units"] = {m.name: MEASURES[m.kind].unit for m in p.case.scene.measure if m.name in table}

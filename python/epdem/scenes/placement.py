@@ -50,21 +50,23 @@ def spheres(p: ScenePlan, phase: str = "") -> FloatArray:
     first = p.phases[0].name
     rng = random.Random(p.case.numerics.seed)
     placed: list[tuple[float, ...]] = []
-    cells: dict[tuple[int, ...], list[int]] = {}
+    cells: dict[tuple[int, ...], list[tuple[FloatArray, float]]] = {}
     edge = 2.0 * p.largest  # no sphere touches one beyond the next cell
 
     def put(place: tuple[float, ...], radius: float, kind: int) -> None:
-        cells.setdefault(tuple(math.floor(x / edge) for x in place), []).append(len(placed))
+        for shift in p.scene.images:
+            image = np.add(place, shift)
+            cells.setdefault(tuple(math.floor(x / edge) for x in image), []).append((image, radius))
         placed.append((*place, radius, kind))
 
     def is_free(place: tuple[float, ...], radius: float) -> bool:
         cell = tuple(math.floor(x / edge) for x in place)
         near = (
-            k
+            other
             for shift in product((-1, 0, 1), repeat=3)
-            for k in cells.get(tuple(c + d for c, d in zip(cell, shift, strict=True)), ())
+            for other in cells.get(tuple(c + d for c, d in zip(cell, shift, strict=True)), ())
         )
-        return all(math.dist(place, placed[k][:3]) > radius + placed[k][3] for k in near)
+        return all(math.dist(place, image) > radius + own for image, own in near)
 
     bodies = [b.sphere for b in p.scene.later if b.phase == phase]
     for s in bodies:

@@ -106,7 +106,7 @@ def _phases(p: ScenePlan) -> list[str]:
 
 def _overlaps(p: ScenePlan) -> list[str]:
     """Spheres of a table that lie in each other at the start."""
-    i, j, share = overlaps(p.scene.table)
+    i, j, share = overlaps(p.scene.table, p.scene)
     if not (many := int((share > OVERLAP).sum())):
         return []
     worst = int(share.argmax())
