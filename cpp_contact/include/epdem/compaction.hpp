@@ -80,7 +80,6 @@ inline double screening_of(const double* state) noexcept { return state[4]; }
 /// A contact that grows, in one step.
 template <bool wall, class T>
 struct Growing {
-  static constexpr bool at_wall = wall;
   T radius_i, radius_j;        // [m]; of j between two spheres only
   T curvature_i, curvature_j;  // 1/radius
   BodySums<T> i, j;
