@@ -19,14 +19,14 @@ COUNT = 100
 
 @pytest.fixture(scope="module")
 def poured(tmp_path_factory):
-    """(plan, folder with its restart files, particles): beads poured in three lots in the first 40 % of the run."""
+    """(plan, folder with its restart files, particles): beads poured in three lots in the first quarter of the run."""
     folder = tmp_path_factory.mktemp("poured")
     data = read_toml(Path(__file__).parents[2] / "cases/settle_glass.toml")
     scene = {
         "box": ["16 mm", "16 mm", "40 mm"],
         "count": COUNT,
         "rate": "1000 Hz",
-        "duration": "0.25 s",
+        "duration": "0.4 s",
         "particles": [{"material": "glass", "radius": "1.5 mm"}],
     }
     output = {"rows": 20, "particles": 20, "restarts": 20}
