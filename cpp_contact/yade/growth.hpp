@@ -36,9 +36,11 @@ class EpGrowth : public GlobalEngine {
       const Body* const body = bodies[id].get();
       if (!body || !exactly<Sphere>(body->shape.get())) continue;
       auto* const state = exactly<EpState>(body->state.get());
-      if (!state)
-        epdem::in_yade::refuse("EpGrowth: body " + std::to_string(id) +
-                               " has no EpState; give the sphere its EpMat when it is made");
+      if (!state) {
+        epdem::in_yade::raise_in_python("EpGrowth: body " + std::to_string(id) +
+                                        " has no EpState; give the sphere its EpMat when it is made");
+        continue;
+      }
       double cover = 0.0, volume = 0.0, area = 0.0;
       for (const auto& [other, contact] : body->intrs) {
         if (!contact->isReal()) continue;
@@ -69,7 +71,7 @@ class EpFindsGrown {
  public:
   virtual ~EpFindsGrown() = default;
 
-  /// Ends the program unless the engines compute growth and find each contact that growth brings about.
+  /// Refuses a contact unless the engines compute growth and find each contact that growth brings about.
   static void require(const Scene& scene, const string& law) {
     using epdem::in_yade::refuse;
     bool grows = false;

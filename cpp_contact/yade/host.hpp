@@ -2,8 +2,6 @@
 // YADE's headers, and what the classes here read of YADE.
 #pragma once
 
-#include <unistd.h>
-
 #include <array>
 #include <atomic>
 #include <boost/serialization/array.hpp>

@@ -13,12 +13,16 @@ class Ip2_EpMat_EpMat_EpPhys : public IPhysFunctor {
   void go(const shared_ptr<Material>& b1, const shared_ptr<Material>& b2,
           const shared_ptr<Interaction>& contact) override {
     if (contact->phys) return;
-    require_one_law();
-    try {
-      contact->phys = pair(static_cast<const EpMat&>(*b1), static_cast<const EpMat&>(*b2), *contact);
-    } catch (const std::exception& error) {
-      epdem::in_yade::refuse(std::string("Ip2_EpMat_EpMat_EpPhys: ") + error.what());
-    }
+    epdem::in_yade::unless_refused([&] {
+      try {
+        require_one_law();
+        contact->phys = pair(static_cast<const EpMat&>(*b1), static_cast<const EpMat&>(*b2), *contact);
+      } catch (const std::exception& error) {
+        contact->phys = boost::make_shared<EpPhys>();  // YADE ends a run where a contact has none
+        epdem::in_yade::refuse(std::string("Ip2_EpMat_EpMat_EpPhys: ") + error.what());
+      }
+      return true;
+    });
   }
 
   FUNCTOR2D(EpMat, EpMat);
@@ -34,7 +38,7 @@ class Ip2_EpMat_EpMat_EpPhys : public IPhysFunctor {
   // clang-format on
 
  private:
-  /// Ends the program unless one law of these contacts is among the engines: without it YADE's own law reads a
+  /// Refuses a contact unless one law of these contacts is among the engines: without it YADE's own law reads a
   /// stiffness of 0, and of two YADE takes the last.
   void require_one_law() const {
     string names;
@@ -50,8 +54,8 @@ class Ip2_EpMat_EpMat_EpPhys : public IPhysFunctor {
       }
     }
     if (laws != 1)
-      epdem::in_yade::refuse("Ip2_EpMat_EpMat_EpPhys: laws of the engines = [" + names +
-                             "], must have one Law2_ScGeom_EpPhys_<Law>; " + (laws ? "keep one" : "add one"));
+      throw std::invalid_argument("laws of the engines = [" + names + "], must have one Law2_ScGeom_EpPhys_<Law>; " +
+                                  (laws ? "keep one" : "add one"));
   }
 
   static double checked(const char* name, double value, const epdem::Range& range, const Interaction& i) {

@@ -39,7 +39,8 @@ class Law2_ScGeom_EpPhys : public LawFunctor {
   /// One contact; false: it has ended.
   template <class Law>
   bool act(const ScGeom& geom, EpPhys& phys, const Interaction& contact) {
-    if (phys.constantsOf != Law::id) prepare<Law>(phys, contact);
+    if (phys.constantsOf != Law::id && !epdem::in_yade::unless_refused([&] { return prepare<Law>(phys, contact); }))
+      return true;
     bool goes_on = false;
     epdem::Frictions::each([&](auto model, int place) {
       if (place == frictionModel_) goes_on = act<decltype(model), Law>(geom, phys, contact);
@@ -123,7 +124,7 @@ class Law2_ScGeom_EpPhys : public LawFunctor {
 
   /// Constants of the contact from its attributes.
   template <class Law>
-  void prepare(EpPhys& phys, const Interaction& contact) const {
+  bool prepare(EpPhys& phys, const Interaction& contact) const {
     namespace iy = epdem::in_yade;
     if (epdem::adheres<Law> && cohesionModel_ != 0)
       iy::refuse(getClassName() + ".cohesion = '" + cohesion + "': the law has its adhesion already, must be off");
@@ -154,6 +155,7 @@ class Law2_ScGeom_EpPhys : public LawFunctor {
     new (phys.constants.bytes) epdem::ContactConstants<Law>(pair);
     if (phys.lawId != Law::id) phys.history = {};
     phys.lawId = phys.constantsOf = Law::id;
+    return true;
   }
 
   /// Shares of the bodies; i is the first sphere.

@@ -4,7 +4,9 @@
 
 #include <cctype>
 #include <cstddef>
+#include <memory>
 #include <new>
+#include <stdexcept>
 
 #include "epdem/contact.hpp"
 #include "epdem/laws.hpp"
@@ -127,11 +129,37 @@ inline std::string camel(const std::string& name) {
 /// Values of a parameter of one body; a strength may be infinite.
 inline Range range_of_body(const Parameter& p) { return {0.0, p.below, p.may_vanish, std::isinf(p.below)}; }
 
-/// Ends the program with one sentence. YADE calls functors in a parallel region, which no exception can leave.
-[[noreturn]] inline void refuse(const std::string& sentence) {
-  std::fflush(nullptr);
-  std::cerr << "epdem_yade: " << sentence << std::endl;
-  _exit(1);
+/// A value that a contact cannot have, in one sentence.
+struct Refusal : std::runtime_error {
+  using std::runtime_error::runtime_error;
+};
+
+[[noreturn]] inline void refuse(const std::string& sentence) { throw Refusal(sentence); }
+
+/// Pauses the simulation and raises RuntimeError in Python's main thread, in the statement that runs the simulation.
+inline void raise_in_python(const std::string& sentence) {
+  static std::atomic<bool> waits{false};  // of all contacts of a step one raises
+  if (waits.exchange(true)) return;
+  yade::Omega::instance().pause();
+  Py_AddPendingCall(
+      [](void* text) {
+        const std::unique_ptr<std::string> owned(static_cast<std::string*>(text));
+        PyErr_SetString(PyExc_RuntimeError, owned->c_str());
+        waits = false;
+        return -1;
+      },
+      new std::string("epdem_yade: " + sentence));
+}
+
+/// Result of an action of a functor, which no exception can leave, because YADE calls functors in a parallel region.
+template <class Action>
+bool unless_refused(const Action& action) {
+  try {
+    return action();
+  } catch (const Refusal& refusal) {
+    raise_in_python(refusal.what());
+    return false;
+  }
 }
 
 }  // namespace epdem::in_yade

@@ -311,8 +311,15 @@ def test_bad_values_raise_with_attribute_value_and_limit(tmp_path):
 def test_a_contact_without_its_parameters_ends_with_one_sentence(before, after, sentence, tmp_path):
     done = yade(PAIR.replace(before, after), tmp_path)
     assert done.returncode == 1
-    assert done.stderr.strip().splitlines()[-1] == f"epdem_yade: {sentence}"
-    assert "Traceback" not in done.stderr
+    assert done.stderr.strip().splitlines()[-1] == f"RuntimeError: epdem_yade: {sentence}"
+
+
+def test_a_session_goes_on_after_a_refusal(tmp_path):
+    wrong = "".join(f"    {line}\n" for line in PAIR.replace(", yieldPressure=2.8e9", "").strip().splitlines())
+    text = f"try:\n{wrong}except RuntimeError as error:\n    print(error)\nO.reset()\n{PAIR}print('steps', O.iter)\n"
+    done = yade(text, tmp_path)
+    assert done.returncode == 0, done.stderr
+    assert "yieldPressure of bodies 0 and 1 = nan" in done.stdout and "steps 150" in done.stdout
 
 
 THREADS = (
