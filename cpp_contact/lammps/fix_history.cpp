@@ -281,6 +281,8 @@ int FixHistory::unpack_exchange(int i, double* buffer) {
 void FixHistory::write_restart(FILE* file) {
   collect();
   const double strain[] = {compute_vector(0), compute_vector(1)};
+  const int most_here = static_cast<int>(longest());
+  MPI_Allreduce(&most_here, &stored_most_, 1, MPI_INT, MPI_MAX, world);
   if (comm->me != 0) return;
   std::vector<double> stored{restart_form};
   stored.insert(stored.end(), identity_.begin(), identity_.end());
@@ -302,7 +304,7 @@ void FixHistory::restart(char* stored) {
 
 int FixHistory::size_restart(int i) { return static_cast<int>(held_[i].size()) + 1 + columns; }
 
-int FixHistory::maxsize_restart() { return static_cast<int>(longest()) + 1 + columns; }
+int FixHistory::maxsize_restart() { return stored_most_ + 1 + columns; }
 
 int FixHistory::pack_restart(int i, double* buffer) {
   const int size = size_restart(i);
@@ -318,6 +320,7 @@ void FixHistory::unpack_restart(int i, int nth) {
   std::copy_n(values + 1, int(columns), array_atom[i]);
   held_[i].assign(values + 1 + columns, values + size);
   own_[i] = atom->tag[i];
+  maxexchange = std::max(maxexchange, size + most_beside);
 }
 
 double FixHistory::memory_usage() {

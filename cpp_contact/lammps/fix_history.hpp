@@ -102,6 +102,7 @@ class FixHistory : public LAMMPS_NS::Fix {
   double largest_ = 0.0;                   // growth
   bool page_holds_ = false;                // else the atoms hold the histories
   int rows_ = 0;                           // of array_atom
+  int stored_most_ = 0;                    // numbers of the contacts of an atom in a restart file, of all ranks
   std::vector<double> page_;               // by slot of the list
   std::vector<long> first_;                // of an atom in the page
   std::vector<std::vector<double>> held_;  // by atom: tag of the partner, values

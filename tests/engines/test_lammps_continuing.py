@@ -99,6 +99,17 @@ thermo_modify format float %.17g
 """
 
 
+def test_a_restart_file_holds_all_contacts_of_the_rank_that_has_more(tmp_path):
+    """Seven spheres pressed together on the second rank, two on the first."""
+    cross = 0.0195 * np.vstack([np.zeros(3), np.eye(3), -np.eye(3)]) + [0.05, 0, 0]
+    head = "processors 2 1 1\n" + spheres((-0.05, 0, 0), (-0.0305, 0, 0), *cross.tolist(), pair=LAW)
+    motion = f"fix motion all nve/sphere\ntimestep 2e-6\nrun {STEPS}\n"
+    _, plain = run(f"{head}{motion}run {STEPS}\n{DUMP}", tmp_path / "plain", ranks=2)
+    _, again = run(f"{head}{motion}write_restart here\n{AGAIN}{motion}{DUMP}", tmp_path / "again", ranks=2)
+    assert np.abs(plain[:, 5:8]).max() > 0
+    assert np.array_equal(plain, again)
+
+
 @pytest.mark.parametrize("ranks", [1, 2])
 def test_a_restart_file_holds_the_strain_so_far(ranks, tmp_path):
     """Two spheres have met and parted."""
