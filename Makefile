@@ -1,3 +1,4 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
 # Each target calls scripts and tools.
 .PHONY: setup demo trixie container lammps yade test guide browser walltime bench bench-community docs tidy sanitize sanitize-yade versions fuzz valgrind reliability tutorials wheel deb release trees clean
 

@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-2.0-or-later
+// SPDX-License-Identifier: BSD-3-Clause
 // Contacts on their way through the loops of a host: gathered into a block, computed as lanes, scattered in the order
 // of the host's list. No header of a host in this folder, and no inline function in this file: sources that are
 // compiled for newer processors include it.

@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-2.0-or-later
+// SPDX-License-Identifier: BSD-3-Clause
 // Fills a block with pairs of spheres of a host. For hosts alone: sources that are compiled for newer processors hold
 // no inline function that others share.
 #pragma once

@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-2.0-or-later
+// SPDX-License-Identifier: BSD-3-Clause
 // The contacts of a block, computed as lanes. Compiled once per instruction set, which EPDEM_KERNELS names: everything
 // is in unnamed namespaces or depends on the width of Lanes, so that no function compiled for a newer processor can
 // stand in for one of the same name compiled for an older one.

@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-2.0-or-later
+// SPDX-License-Identifier: BSD-3-Clause
 // The loops of spheres.hpp as lanes; compiled once per instruction set, as kernel.hpp says.
 #pragma once
 

@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-2.0-or-later
+// SPDX-License-Identifier: BSD-3-Clause
 // Loops over spheres beside the loop over contacts, as lanes: half a step of motion, and the search for spheres near a
 // sphere or a triangle. Each number has the bits of a loop over single spheres.
 #pragma once

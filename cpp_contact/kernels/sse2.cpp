@@ -1,3 +1,3 @@
-// SPDX-License-Identifier: GPL-2.0-or-later
+// SPDX-License-Identifier: BSD-3-Clause
 #define EPDEM_KERNELS kernels_sse2
 #include "kernels/kernel.hpp"

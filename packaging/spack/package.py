@@ -10,7 +10,7 @@ class PyEpdem(PythonPackage):
     pypi = "epdem/epdem-0.2.0.tar.gz"
 
     maintainers()
-    license("GPL-2.0-or-later")
+    license("GPL-2.0-or-later AND BSD-3-Clause")
 
     version("0.2.0")  # spack checksum py-epdem adds the checksum of the release
 

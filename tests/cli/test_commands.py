@@ -29,6 +29,11 @@ FEW_BEADS = (
 FEW_BEADS = FEW_BEADS.replace("error = 1e-2", "time_step = '5e-5 s'")
 TITLE = "[/y] [red]steel[/] :smile: $\\\\frac$ [mm]"
 
+
+def licences(folder):
+    return {f"{folder}/LICENSES/{name}.txt" for name in ("BSD-3-Clause", "GPL-2.0-or-later")}
+
+
 DOCUMENTS = {  # words, and what the document must hold
     "run": (["steel.toml", "-e", "embedded"], lambda d: d["passed"] and d["rows"][0]["speed"] == 5.0),
     "deck": (["steel.toml", "-o", "d"], lambda d: d["files"][0] == "d/in.impact"),
@@ -60,8 +65,11 @@ DOCUMENTS = {  # words, and what the document must hold
     "status": (["swept"], lambda d: (d["points"], d["done"], d["waiting"]) == (2, 0, 2)),
     "cite": (["steel.toml"], lambda d: "Thornton" in d["law thornton, Thornton 1997"] and "Kloss" in d["liggghts"]),
     "export liggghts": (["-o", "."], lambda d: d["files"][0] == "normal_model_ep.cpp" and not d["lacks"]),
-    "export lammps": (["-o", "plugin"], lambda d: "plugin/cpp_contact/kernels/block.hpp" in d["files"]),
-    "export yade": (["-o", "module"], lambda d: "module/epdem/laws.hpp" in d["files"]),
+    "export lammps": (
+        ["-o", "plugin"],
+        lambda d: {"plugin/cpp_contact/kernels/block.hpp", *licences("plugin")} <= {*d["files"]},
+    ),
+    "export yade": (["-o", "module"], lambda d: {"module/epdem/laws.hpp", *licences("module")} <= {*d["files"]}),
     "verify data": (
         ["-s", "leeb_G", "-e", "embedded", "-l", "hertz"],
         lambda d: [round(row["error"], 4) for row in d["rows"] if row["quantity"] == "e_n"] == [0.3333],

@@ -80,6 +80,8 @@ def test_the_wheel_holds_library_templates_cases_and_sources_for_trees(wheel):
         "include/epdem/laws.hpp",
     ):
         assert f"epdem/{name}" in names
+    for licence in ("BSD-3-Clause", "GPL-2.0-or-later"):
+        assert [n for n in names if n.endswith(f".dist-info/licenses/LICENSES/{licence}.txt")]
     assert not [n for n in names if "liggghts.so" in n or n.endswith(("epdem-liggghts", ".o", ".pyc"))]
 
 

@@ -97,7 +97,9 @@ PFM = [SOURCES / name for name in ("pfm/models.cpp", "materials.cpp", "cohesion.
 def test_the_files_hold_every_line_of_the_sources_that_they_need_and_no_other(pfm):
     files = header.files(pfm)
     named = ["normal_model_ep.cpp", "normal_model_ep_avx2.cpp", "normal_model_ep_avx512.cpp"]
-    assert list(files) == ([named[0], "normal_model_ep.h"] if pfm else named)
+    licence = "normal_model_ep_BSD-3-Clause.txt"
+    assert list(files) == ([named[0], "normal_model_ep.h", licence] if pfm else [*named, licence])
+    assert files.pop(licence) == (ROOT / "LICENSES/BSD-3-Clause.txt").read_text()
     if pfm:
         assert files.pop("normal_model_ep.h") == (SOURCES / "pfm" / "commands.h").read_text()
     parts = {name: set() for name in files}
@@ -109,7 +111,13 @@ def test_the_files_hold_every_line_of_the_sources_that_they_need_and_no_other(pf
     for name, text in files.items():
         assert len(parts[name]) > 10
         top, _, body = text.partition("#define EPDEM_VERSION")
-        assert "C++17" in top and "SPDX" in top
+        assert "C++17" in top and "-Identifier: GPL-2.0-or-later AND BSD-3-Clause\n" in top
+        for part in parts[name]:  # each under its own licence
+            folder = next(f for f in (SOURCES, SOURCES.parent / "include", SOURCES.parent) if part.is_relative_to(f))
+            licence = (
+                "BSD-3-Clause" if part.parts[len(ROOT.parts) + 1] in ("include", "kernels") else "GPL-2.0-or-later"
+            )
+            assert f"\n// {part.relative_to(folder)}, {licence}\n" in body
         expected = sorted(line for part in parts[name] for line in code(part.read_text()))
         assert sorted(code(body)[1:-1]) == expected  # without the version and the last #endif
 
@@ -129,7 +137,7 @@ def base_of_inl(folder):
 def test_with_superquadrics_and_the_base_of_inl_the_files_compile_without_a_warning(sources):
     """The structure of a contact then has 392 bytes; a user's tree has them on by default."""
     base = base_of_inl(sources)
-    for name in header.files():
+    for name in (name for name in header.files() if name.endswith(".cpp")):
         line = compiler("-fsyntax-only", "-include", base, *SUPERQUADRICS, sources / name)
         done = subprocess.run(line, capture_output=True, text=True, check=False)
         assert (done.returncode, done.stderr) == (0, "")
@@ -258,8 +266,8 @@ def test_check_says_what_a_tree_lacks(tmp_path):
     for name, (text, _) in OLD.items():
         (tmp_path / name).write_text(text)
     lacks = header.check(tmp_path)
-    assert len(lacks) == 3 + len(OLD) and all("is not there; run 'epdem export liggghts --out" in s for s in lacks[:3])
-    for sentence, (name, (_, says)) in zip(lacks[3:], OLD.items(), strict=True):
+    assert len(lacks) == 4 + len(OLD) and all("is not there; run 'epdem export liggghts --out" in s for s in lacks[:4])
+    for sentence, (name, (_, says)) in zip(lacks[4:], OLD.items(), strict=True):
         assert sentence.startswith(f"{tmp_path / name}{says}")
     header.write(tmp_path)
     for name, text in NEW.items():
@@ -271,7 +279,8 @@ def test_check_says_what_a_tree_lacks(tmp_path):
 
 def test_a_tree_of_liggghts_pfm_gets_a_file_of_its_own(tmp_path):
     (tmp_path / "contact_models.h").write_text("void noCollision();\n")
-    assert [f.name for f in header.write(tmp_path)] == ["normal_model_ep.cpp", "normal_model_ep.h"]
+    names = ["normal_model_ep.cpp", "normal_model_ep.h", "normal_model_ep_BSD-3-Clause.txt"]
+    assert [f.name for f in header.write(tmp_path)] == names
     assert header.check(tmp_path) == []
     assert "class NoFriction" in (tmp_path / "normal_model_ep.cpp").read_text()
     (tmp_path / "normal_model_ep.cpp").write_text(header.files()["normal_model_ep.cpp"])

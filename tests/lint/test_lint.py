@@ -24,6 +24,7 @@ TOOLS = {
     "mypy": ["mypy"],
     "lint-imports": ["lint-imports", "--no-cache"],
     "clang-format": ["clang-format", "--dry-run", "--Werror", *CPP],
+    "reuse": ["reuse", "lint", "--lines"],
     "clang-tidy": ["clang-tidy", "--quiet", *LAWS],
     # single quotes keep $ for another shell or for dpkg-query (SC2016)
     "shellcheck": ["shellcheck", "--exclude=SC2016", *SHELL],
@@ -40,10 +41,30 @@ def test_the_tool_finds_nothing(command):
 
 
 def test_every_source_states_its_licence():
+    """The physics is free for every code; an adapter of a host under GPL is not."""
     python = [path for room in PYTHON[:4] for path in (ROOT / room).rglob("*.py")]
     scripts = [path for path in (ROOT / "scripts").iterdir() if not path.suffix]
-    for path in [*python, *scripts, *CPP]:
-        assert "SPDX-License-Identifier: GPL-2.0-or-later" in Path(path).read_text()[:200], path
+    cmake = [path for path in (ROOT / "cpp_contact").rglob("CMakeLists.txt")]
+    seen = set()
+    for path in [*python, *scripts, *cmake, *map(Path, CPP)]:
+        free = path.is_relative_to(ROOT / "cpp_contact/include") or path.is_relative_to(ROOT / "cpp_contact/kernels")
+        licence = "BSD-3-Clause" if free else "GPL-2.0-or-later"
+        stated = re.search(r"SPDX-License" + r"-Identifier: (.+)", path.read_text()[:200])
+        assert stated and stated[1] == licence, path
+        seen.add(licence)
+    assert seen == {path.stem for path in (ROOT / "LICENSES").iterdir()}
+    for name in ("pyproject.toml", "packaging/spack/package.py"):
+        assert f'"{" AND ".join(sorted(seen, reverse=True))}"' in (ROOT / name).read_text()
+
+
+def test_the_physics_includes_itself_and_the_standard_library_alone():
+    folders = [ROOT / "cpp_contact/include/epdem", ROOT / "cpp_contact/kernels"]
+    files = [path for folder in folders for path in folder.rglob("*.[hc]pp")]
+    for path in files:
+        for quoted, system in re.findall(r'#\s*include (?:"(.+)"|<(.+)>)', path.read_text()):
+            places = [path.parent, ROOT / "cpp_contact/include", ROOT / "cpp_contact"]
+            assert not quoted or (next(p / quoted for p in places if (p / quoted).exists())).resolve() in files, path
+            assert not system or "." not in system or system == "immintrin.h", path
 
 
 def test_adapters_leave_powers_and_roots_to_the_laws():

@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-2.0-or-later
+// SPDX-License-Identifier: BSD-3-Clause
 // What adhesive laws share: the curve of an elastic contact (Johnson, Kendall and Roberts 1971) by y = sqrt(a), and the
 // forces of the two steps in which a contact forms and ends.
 //

@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-2.0-or-later
+// SPDX-License-Identifier: BSD-3-Clause
 // What every law's loading backbone returns and declares. A law is one header beside this one.
 #pragma once
 

@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-2.0-or-later
+// SPDX-License-Identifier: BSD-3-Clause
 // Compaction: contacts of one body that feel each other. No number is fitted, and a lone contact keeps its law bit by
 // bit.
 // 1. Growth. A sphere that other contacts dent is thicker at this one, because the displaced volume moves to the free

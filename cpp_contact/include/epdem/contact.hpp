@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-2.0-or-later
+// SPDX-License-Identifier: BSD-3-Clause
 // One contact in one step: normal law, dashpot, adhesion, cohesion, friction, rolling friction and their energies, a
 // pure function of constants, history and motion. Hosts gather and scatter; the order of a contact stands here only.
 #pragma once

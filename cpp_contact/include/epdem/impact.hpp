@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-2.0-or-later
+// SPDX-License-Identifier: BSD-3-Clause
 // One normal impact of two bodies by velocity Verlet, as a DEM engine integrates it: the embedded engine.
 #pragma once
 

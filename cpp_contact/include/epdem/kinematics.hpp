@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-2.0-or-later
+// SPDX-License-Identifier: BSD-3-Clause
 // Geometry and motion of one contact in one step, by the operations of LIGGGHTS's surface model, so that the bits
 // agree.
 #pragma once

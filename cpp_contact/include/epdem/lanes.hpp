@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-2.0-or-later
+// SPDX-License-Identifier: BSD-3-Clause
 // The numbers that laws are written on: double for one contact, long double for the study of round-off, and Lanes, a
 // vector, for many contacts at once. A condition on T is a bool, or a mask with one answer per lane. The only file that
 // knows instruction sets: Lanes is as wide as those allow that the including file is compiled for.

@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-2.0-or-later
+// SPDX-License-Identifier: BSD-3-Clause
 // One step of a contact: a pure function of (law, R*, before, delta). The host keeps `after` only when the step counts.
 //
 // A law object holds the constants of a pair of materials (E* and the law's parameters); R* comes apart because it

@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-2.0-or-later
+// SPDX-License-Identifier: BSD-3-Clause
 // The register of laws: a new law is its header and a line at the end of this list, whose order numbers the laws of the
 // C interface and of LIGGGHTS-PFM. X(class template)
 #pragma once

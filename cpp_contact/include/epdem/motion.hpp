@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-2.0-or-later
+// SPDX-License-Identifier: BSD-3-Clause
 // One contact of two bodies whose motion is prescribed: every step of it counts.
 #pragma once
 

@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-2.0-or-later
+// SPDX-License-Identifier: BSD-3-Clause
 // Oblique impact of solid spheres by velocity Verlet: the normal impact with friction beside it, of a plane motion.
 #pragma once
 

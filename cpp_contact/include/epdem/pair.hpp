@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-2.0-or-later
+// SPDX-License-Identifier: BSD-3-Clause
 // What two bodies in contact have in common: effective modulus, radius and mass (Johnson 1985, section 4.2).
 #pragma once
 

@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-2.0-or-later
+// SPDX-License-Identifier: BSD-3-Clause
 // Friction of a contact circle with partial slip, for any history of load and shear: Cattaneo and Mindlin by springs
 // along a contact line (Jaeger 1993; Popov and Hess 2015), of which 2 or 3 nodes of Gauss and Lobatto's rule are left.
 //

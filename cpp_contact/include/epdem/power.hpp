@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-2.0-or-later
+// SPDX-License-Identifier: BSD-3-Clause
 // Logarithm, exponential and power in all lanes at once, with the bits of one contact: libm's functions take one lane
 // each. The polynomials are sums of pairs: the terms of a long chain would wait for each other.
 #pragma once

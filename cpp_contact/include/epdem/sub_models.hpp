@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-2.0-or-later
+// SPDX-License-Identifier: BSD-3-Clause
 // The models beside a law: a new one is its header and one line in its list. The first of each list is no model.
 #pragma once
 

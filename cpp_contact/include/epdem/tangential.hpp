@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-2.0-or-later
+// SPDX-License-Identifier: BSD-3-Clause
 // Tangential spring and dashpot of a contact circle (Mindlin 1949; dashpot as in Tsuji, Tanaka and Ishida 1992).
 #pragma once
 

@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-2.0-or-later
+// SPDX-License-Identifier: BSD-3-Clause
 // The shared elastic branch below alpha_max: superposed rigid punches between the contact circle and a_max
 // (Mossakovskii 1963; Mesarovic and Johnson 2000, eq. 8.82), in closed form for any flatness tau.
 #pragma once

@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-2.0-or-later
+// SPDX-License-Identifier: BSD-3-Clause
 // Optional viscous part of the elastic branches, for bodies that must come to rest: the restitution at low speed.
 #pragma once
 

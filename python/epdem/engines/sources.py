@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The contact models as a CMake project for a machine without epdem: the files by their places in its folder."""
+"""The contact models as a CMake project for a machine without epdem: files by their places in its folder."""
 
 from pathlib import Path
 
@@ -9,10 +9,14 @@ CODE = (".hpp", ".cpp", ".txt")
 
 
 def yade() -> dict[Path, Path]:
-    """The module epdem_yade: adapter, laws."""
+    """The module epdem_yade: adapter, laws, licences."""
     adapter, laws = paths.cpp_sources("yade")
     found = {f.relative_to(adapter): f for f in adapter.iterdir() if f.suffix in (*CODE, ".py")}
-    return found | {f.relative_to(laws): f for f in (laws / "epdem").rglob("*.hpp")}
+    return found | {f.relative_to(laws): f for f in (laws / "epdem").rglob("*.hpp")} | _licences()
+
+
+def _licences() -> dict[Path, Path]:
+    return {Path("LICENSES") / f.name: f for f in paths.licences()}
 
 
 def yade_commands(folder: Path) -> list[str]:
@@ -25,13 +29,14 @@ def yade_commands(folder: Path) -> list[str]:
 
 
 def lammps() -> dict[Path, Path]:
-    """The plugin epdemplugin.so: plugin, kernels, laws."""
+    """The plugin epdemplugin.so: plugin, kernels, laws, licences."""
     plugin, laws = paths.cpp_sources("lammps")
     found = {Path("CMakeLists.txt"): plugin / "export" / "CMakeLists.txt"}
     for source in (plugin, plugin.parent / "kernels"):
         here = Path("cpp_contact") / source.name
         found |= {here / f.name: f for f in source.iterdir() if f.suffix in CODE}
-    return found | {Path("cpp_contact/include") / f.relative_to(laws): f for f in (laws / "epdem").rglob("*.hpp")}
+    found |= {Path("cpp_contact/include") / f.relative_to(laws): f for f in (laws / "epdem").rglob("*.hpp")}
+    return found | _licences()
 
 
 def lammps_commands(folder: Path) -> list[str]:

@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-2.0-or-later
+// SPDX-License-Identifier: BSD-3-Clause
 // A cohesion model is a header beside this one and a line in sub_models.hpp:
 //   name, id        of LIGGGHTS's cohesion; restart files keep the id
 //   of_liggghts     LIGGGHTS has a class of the same model

@@ -1,4 +1,4 @@
-// SPDX-License-Identifier: GPL-2.0-or-later
+// SPDX-License-Identifier: BSD-3-Clause
 // What a model of rolling friction reads of a contact. A model is a header beside this one and a line in
 // sub_models.hpp:
 //   name, id        of LIGGGHTS's rolling_friction; restart files keep the id

@@ -37,8 +37,9 @@ _OBSTACLES = (
 )
 _INCLUDE = re.compile(r'\s*#include "([^"]+)"')
 _OPTIONS = re.compile(r'set_source_files_properties\((\S+) PROPERTIES COMPILE_OPTIONS\s+"([^"]+)"\)')
+# REUSE-IgnoreStart
 _TOP = """\
-// SPDX-License-Identifier: GPL-2.0-or-later
+// SPDX-License-Identifier: GPL-2.0-or-later AND BSD-3-Clause
 // epdem {version}: elastic-plastic contact models for LIGGGHTS. Made by `epdem export liggghts`; changes here are lost.
 // Copy every {name}* into the folder src of a LIGGGHTS tree and build as usual.
 #if __cplusplus < 201703L
@@ -53,21 +54,24 @@ _TOP = """\
 {target}#endif
 #define EPDEM_VERSION "{version}"
 """
+_LICENCE = re.compile(r"// SPDX-License-Identifier: (\S+)")
+# REUSE-IgnoreEnd
 
 
 def files(pfm: bool = False) -> dict[str, str]:
     """Names and texts of the files; one for the models, one for each set of instructions that is compiled apart.
 
     The first is for the processor that the tree is built for. For LIGGGHTS-PFM (`pfm`) it is the only one, because the
-    pair loop does not run there; beside it is a header with two commands of decks that are unknown there. Raises
-    EngineError if the sources are not installed.
+    pair loop does not run there; beside it is a header with two commands of decks that are unknown there. The last file
+    is the licence of the physics; a tree has its own copy of the other. Raises EngineError if the sources are not
+    installed.
     """
     host, laws = paths.cpp_sources()
     kernels, roots = host.parent / "kernels", (host, laws, host.parent)
     if pfm:
         sources = [host / PFM / "models.cpp", host / "materials.cpp", host / "cohesion.cpp"]
         commands = (host / PFM / "commands.h").read_text(encoding="utf-8")
-        return {f"{NAME}.cpp": _together(sources, roots), f"{NAME}.h": commands}
+        return {f"{NAME}.cpp": _together(sources, roots), f"{NAME}.h": commands, **_licence()}
     apart = dict(_OPTIONS.findall((kernels / "CMakeLists.txt").read_text(encoding="utf-8")))
     common = [f for f in sorted(host.rglob("*.cpp")) if f.name != "main.cpp" and f.parent.name != PFM]
     common += [f for f in sorted(kernels.glob("*.cpp")) if f.name not in apart]
@@ -75,7 +79,12 @@ def files(pfm: bool = False) -> dict[str, str]:
     for name, options in apart.items():
         source = kernels / name
         found[f"{NAME}_{source.stem}.cpp"] = _together([source], roots, options)
-    return found
+    return found | _licence()
+
+
+def _licence() -> dict[str, str]:
+    file = paths.licences()[0]
+    return {f"{NAME}_{file.name}": file.read_text(encoding="utf-8")}
 
 
 def write(folder: Path) -> list[Path]:
@@ -142,12 +151,15 @@ def _together(sources: list[Path], roots: tuple[Path, ...], options: str = "") -
 def _lines(file: Path, roots: tuple[Path, ...], seen: set[Path]) -> list[str]:
     """The lines of a file with our headers in place of their inclusion; headers of LIGGGHTS stay included."""
     seen.add(file)
-    found = ["", f"// {next(file.relative_to(r) for r in roots if file.is_relative_to(r))}"]
-    for line in file.read_text(encoding="utf-8").splitlines():
+    name = next(file.relative_to(r) for r in roots if file.is_relative_to(r))
+    first, *lines = file.read_text(encoding="utf-8").splitlines()
+    licence = _LICENCE.match(first)
+    found = ["", f"// {name}" + (f", {licence[1]}" if licence else "")]
+    for line in lines if licence else [first, *lines]:
         match = _INCLUDE.match(line)
         ours = [p for p in (folder / match[1] for folder in (file.parent, *roots)) if p.is_file()] if match else []
         if ours:
             found += [] if ours[0].resolve() in seen else _lines(ours[0].resolve(), roots, seen)
-        elif not line.startswith(("// SPDX-", "#pragma once")):
+        elif not line.startswith("#pragma once"):
             found.append(line)
     return found
