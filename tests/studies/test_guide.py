@@ -3,7 +3,8 @@
 
 The first word of a block is its language, the others say what happens to it. `sh` and `python` run in the order of the
 page; `sh in FILE` is run by that test; `sh by hand` takes minutes, another tree or root. `toml CASE` changes a case,
-`toml config` is the file of settings. `deck` is a deck of LIGGGHTS, or lines of one. `text` is output or a formula.
+`toml config` is the file of settings. `deck` is a deck of LIGGGHTS, or lines of one. `cmake` and `cpp` are
+built in test_stranger.py. `text` is output or a formula.
 """
 
 import importlib.util
@@ -60,7 +61,7 @@ def small(folder):
 def test_every_block_says_what_it_is_and_none_is_only_indented():
     for name, words, text in ALL:
         where = f"{name}: {' '.join(words)}\n{text}"
-        assert words and words[0] in ("sh", "python", "toml", "deck", "jinja", "text"), where
+        assert words and words[0] in ("sh", "python", "toml", "deck", "jinja", "text", "cmake", "cpp"), where
         if words[1:2] == ["in"]:
             assert (ROOT / "tests" / words[2]).exists(), where
         elif words[0] == "sh":
@@ -83,7 +84,18 @@ def test_programs_files_and_commands_of_blocks_that_run_elsewhere_exist():
             }
             known[".venv/bin/python"] = lambda r: all((ROOT / w).exists() for w in r if w.endswith(".py"))
             known["python"] = known[".venv/bin/python"]
-            others = ("epdem-liggghts", "mpirun", "liggghts", "pip", "apt-get", "cmake", "yade", "podman", "apptainer")
+            others = (
+                "epdem-liggghts",
+                "mpirun",
+                "liggghts",
+                "pip",
+                "apt-get",
+                "cmake",
+                "yade",
+                "podman",
+                "apptainer",
+                "echo",
+            )
             known |= dict.fromkeys(others, lambda r: True)
             assert known[program](rest), line
             seen += 1

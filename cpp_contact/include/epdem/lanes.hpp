@@ -5,16 +5,55 @@
 #pragma once
 
 #include <cmath>
+#include <cstring>
 #include <limits>
 #include <type_traits>
 
-#if defined __SSE2__
+// A device takes one contact per thread: its compilers have no vectors of GCC, and the functions of <cmath> are global.
+#if defined __CUDACC__ || defined __CUDA__ || defined __HIP__ || defined __HIPCC_RTC__
+#define EPDEM_DEVICE
+#elif defined __SSE2__
 #include <immintrin.h>
 #endif
 
 #define EPDEM_INLINE [[gnu::always_inline]] inline
 
 namespace epdem {
+
+#if defined EPDEM_DEVICE
+using ::cbrt;
+using ::exp;
+using ::expm1;
+using ::fabs;
+using ::log;
+using ::sqrt;
+#else
+using std::cbrt;
+using std::exp;
+using std::expm1;
+using std::fabs;
+using std::log;
+using std::sqrt;
+#endif
+
+template <class T>
+inline constexpr bool is_vector = false;
+/// The same number in every lane.
+template <class T>
+EPDEM_INLINE T constant(double x) noexcept {
+  return T{} + x;
+}
+
+EPDEM_INLINE bool any(bool m) noexcept { return m; }
+template <class T, class = std::enable_if_t<std::is_arithmetic_v<T>>>
+EPDEM_INLINE T select(bool m, T a, T b) noexcept {
+  return m ? a : b;
+}
+#if defined EPDEM_DEVICE
+
+using Words = unsigned long long;
+
+#else
 
 #if defined __AVX512F__
 constexpr int lane_count = 8;
@@ -28,25 +67,9 @@ typedef double Lanes __attribute__((vector_size(8 * lane_count)));
 using Mask = decltype(Lanes{} < Lanes{});
 typedef unsigned long long Words __attribute__((vector_size(8 * lane_count)));
 
-using std::cbrt;
-using std::exp;
-using std::expm1;
-using std::fabs;
-using std::log;
-using std::sqrt;
-
-template <class T>
-inline constexpr bool is_vector = false;
 template <>
 inline constexpr bool is_vector<Lanes> = true;
 
-/// The same number in every lane.
-template <class T>
-EPDEM_INLINE T constant(double x) noexcept {
-  return T{} + x;
-}
-
-EPDEM_INLINE bool any(bool m) noexcept { return m; }
 EPDEM_INLINE bool any(Mask m) noexcept {
 #if defined __AVX512DQ__
   return _mm512_movepi64_mask(reinterpret_cast<__m512i>(m)) != 0;
@@ -61,24 +84,7 @@ EPDEM_INLINE bool any(Mask m) noexcept {
 #endif
 }
 
-template <class T, class = std::enable_if_t<std::is_arithmetic_v<T>>>
-EPDEM_INLINE T select(bool m, T a, T b) noexcept {
-  return m ? a : b;
-}
 EPDEM_INLINE Lanes select(Mask m, Lanes a, Lanes b) noexcept { return m ? a : b; }
-
-/// A condition that rarely holds: the compiler keeps the registers for the other branch.
-EPDEM_INLINE bool rarely(bool x) noexcept { return __builtin_expect(x, false); }
-
-/// As std::min and std::max.
-template <class T>
-EPDEM_INLINE T min(T a, T b) noexcept {
-  return select(b < a, b, a);
-}
-template <class T>
-EPDEM_INLINE T max(T a, T b) noexcept {
-  return select(a < b, b, a);
-}
 
 EPDEM_INLINE Lanes fabs(Lanes x) noexcept {
   constexpr long long all_but_sign = 0x7fffffffffffffff;
@@ -108,23 +114,6 @@ EPDEM_INLINE Lanes sqrt(Lanes x) noexcept {
 EPDEM_LANE_BY_LANE(cbrt)
 EPDEM_LANE_BY_LANE(expm1)
 #undef EPDEM_LANE_BY_LANE
-
-/// `x` in the lanes of the mask, NaN in the others: for an argument of a library function that only they need.
-template <class M, class T>
-EPDEM_INLINE T only(M mask, T x) noexcept {
-  return select(mask, x, constant<T>(std::numeric_limits<double>::quiet_NaN()));
-}
-
-template <class T>
-EPDEM_INLINE T load(const double* p) noexcept {
-  T x;
-  __builtin_memcpy(&x, p, sizeof x);
-  return x;
-}
-template <class T>
-EPDEM_INLINE void store(double* p, const T& x) noexcept {
-  __builtin_memcpy(p, &x, sizeof x);
-}
 
 /// Four numbers that lie side by side in memory.
 typedef double Row __attribute__((vector_size(32)));
@@ -193,6 +182,38 @@ EPDEM_INLINE void rows(const Columns& from, F write) noexcept {
   write(0, Row{from.a[0], from.b[0], from.c[0], from.d[0]});
   write(1, Row{from.a[1], from.b[1], from.c[1], from.d[1]});
 #endif
+}
+
+#endif
+
+/// A condition that rarely holds: the compiler keeps the registers for the other branch.
+EPDEM_INLINE bool rarely(bool x) noexcept { return __builtin_expect(x, false); }
+
+/// As std::min and std::max.
+template <class T>
+EPDEM_INLINE T min(T a, T b) noexcept {
+  return select(b < a, b, a);
+}
+template <class T>
+EPDEM_INLINE T max(T a, T b) noexcept {
+  return select(a < b, b, a);
+}
+
+/// `x` in the lanes of the mask, NaN in the others: for an argument of a library function that only they need.
+template <class M, class T>
+EPDEM_INLINE T only(M mask, T x) noexcept {
+  return select(mask, x, constant<T>(std::numeric_limits<double>::quiet_NaN()));
+}
+
+template <class T>
+EPDEM_INLINE T load(const double* p) noexcept {
+  T x;
+  std::memcpy(&x, p, sizeof x);
+  return x;
+}
+template <class T>
+EPDEM_INLINE void store(double* p, const T& x) noexcept {
+  std::memcpy(p, &x, sizeof x);
 }
 
 }  // namespace epdem
