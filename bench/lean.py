@@ -87,8 +87,8 @@ wall loads), the same time step, and coefficients of 1e-9 for models that the ca
 |---|---|---|---|---|---|---|---|
 """
 TAIL = """
-`epdem explain CASE` prints each line of a deck with its reason. `tests/scenes/test_lean.py` removes each line of the
-deck of every case in turn and runs the deck again.
+`epdem deck CASE --reasons` writes a deck with the reason of each line. `tests/scenes/test_lean.py` removes each line of
+the deck of every case in turn and runs the deck again.
 """
 
 

@@ -3,7 +3,7 @@
 
     .venv/bin/python bench/yade_speed.py [rounds] [folder of epdem_yade.so]
 
-The classes of epdem_yade (`make yade`; every law) and the C library in a deck (every law without adhesion).
+The classes of epdem_yade (`make yade`), every law.
 
 A cubic lattice of spheres, every sphere in contact with its neighbours: at rest before any yield; in uniform
 compression, where every contact yields in every step; and at rest after it. One YADE process per law and round, laws
@@ -23,7 +23,6 @@ from epdem.engines.yade.classes import title
 
 NATIVE = "YADE's Hertz-Mindlin"
 CLASSES = tuple(f"C++ {title(law)}" for law in declarations())
-LAWS = tuple(name for name, law in declarations().items() if not law.adheres)
 # of each law that yields, by the names of its LIGGGHTS properties [Pa]
 STRENGTHS = {
     law.parameter(law.strength).property: 1e9 if law.strength == "yield_stress" else 2.8e9
@@ -36,7 +35,6 @@ LIMIT = 0.9  # of the classes
 
 SCRIPT = """
 import json, sys, time
-sys.path.insert(0, {python!r})
 from yade import O
 from yade.utils import sphere
 from yade.wrapper import *
@@ -47,7 +45,7 @@ if law.startswith("YADE"):
     O.materials.append(steel)
     loop = [InteractionLoop([Ig2_Sphere_Sphere_ScGeom()], [Ip2_FrictMat_FrictMat_MindlinPhys()],
                             [Law2_ScGeom_MindlinPhys_Mindlin()])]
-elif law.startswith("C++"):
+else:
     sys.path.insert(0, {module!r})
     import epdem_yade
     steel = epdem_yade.EpMat(young=208e9, poisson=0.3, density=7850, frictionAngle=0.3, surfaceEnergy=0.1,
@@ -55,13 +53,6 @@ elif law.startswith("C++"):
     O.materials.append(steel)
     loop = [InteractionLoop([Ig2_Sphere_Sphere_ScGeom()], [epdem_yade.Ip2_EpMat_EpMat_EpPhys()],
                             [getattr(epdem_yade, "Law2_ScGeom_EpPhys_" + law.split()[1])()])]
-else:
-    from epdem.yade.deck_modules.contacts import Contacts
-    contacts = Contacts(law)
-    strength = {{contacts.strength_name: {{"yield_stress": 1e9}}.get(contacts.strength_name, 2.8e9)}}
-    strength = strength if contacts.strength_name else {{}}
-    steel = contacts.material("steel", young_modulus=208e9, poisson_ratio=0.3, density=7850, friction=0.3, **strength)
-    loop = contacts.engines()
 spacing, middle = 2 * R - overlap, 0.5 * (side - 1)
 for i in range(side ** 3):
     place = [i % side - middle, i // side % side - middle, i // side ** 2 - middle]
@@ -103,7 +94,7 @@ print("RESULT " + json.dumps([rest, loading, steps(20)]), n)
 def once(law: str, folder: Path, module: str) -> tuple[list[float], int]:
     """Microseconds per contact and step of one law in each of STATES, and the number of contacts."""
     path = folder / f"{law.replace(' ', '_')}.py"
-    path.write_text(SCRIPT.format(python=str(folder), module=module, law=law, side=SIDE, strengths=STRENGTHS))
+    path.write_text(SCRIPT.format(module=module, law=law, side=SIDE, strengths=STRENGTHS))
     done = subprocess.run(
         ["yade", "-n", "-x", path.name],
         cwd=folder,
@@ -120,13 +111,12 @@ def once(law: str, folder: Path, module: str) -> tuple[list[float], int]:
     return json.loads(values), int(n)
 
 
-def measure(rounds: int, module: Path | None) -> tuple[dict[str, list[float]], int]:
+def measure(rounds: int, module: Path) -> tuple[dict[str, list[float]], int]:
     """Best times of every law, laws interleaved."""
     best: dict[str, list[float]] = {}
     with tempfile.TemporaryDirectory() as folder:
-        launcher.write_deck_modules(Path(folder), classes=False)
         for _ in range(rounds):
-            for law in (NATIVE, *(CLASSES if module else ()), *LAWS):
+            for law in (NATIVE, *CLASSES):
                 times, n = once(law, Path(folder), str(module))
                 best[law] = [min(a, b) for a, b in zip(times, best.get(law, times), strict=True)]
     return best, n
@@ -135,16 +125,16 @@ def measure(rounds: int, module: Path | None) -> tuple[dict[str, list[float]], i
 def main() -> int:
     """Print the table in Markdown; 1 if a contact of a class costs more than LIMIT times that of YADE's own law."""
     built = launcher.module()
-    module = Path(sys.argv[2]).resolve() if len(sys.argv) > 2 else built and built.parent
+    if len(sys.argv) < 3 and built is None:
+        raise SystemExit(f"the module epdem_yade is not built; {launcher.BUILD}")
+    module = Path(sys.argv[2]).resolve() if len(sys.argv) > 2 else built.parent
     best, n = measure(int(sys.argv[1]) if len(sys.argv) > 1 else 3, module)
     print(f"{n} contacts, microseconds per contact and step (and over YADE's own Hertz-Mindlin)")
     print("| law |" + "".join(f" {state} |" for state in STATES) + "\n|---|" + "---|" * len(STATES))
     for law, times in best.items():
         cells = (f" {t:.2f} ({t / own:.2f}) |" for t, own in zip(times, best[NATIVE], strict=True))
         print(f"| {law} |" + "".join(cells))
-    ratios = {
-        law: max(t / own for t, own in zip(best[law], best[NATIVE], strict=True)) for law in CLASSES if law in best
-    }
+    ratios = {law: max(t / own for t, own in zip(best[law], best[NATIVE], strict=True)) for law in CLASSES}
     worst = max(ratios.values(), default=0.0)
     print(f"classes at most {worst:.2f} (limit {LIMIT}: {'kept' if worst <= LIMIT else 'EXCEEDED'})")
     return int(worst > LIMIT)

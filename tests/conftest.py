@@ -69,12 +69,15 @@ def one_yade(request, monkeypatch):
 
 
 def pytest_collection_modifyitems(items):
-    """An engine test is skipped, with its reason, only where the engine is not installed; never in CI."""
+    """An engine test is skipped, with its reason, only where the engine is not installed; never in CI. A test of YADE's
+    module is skipped where nothing can build it."""
     items[:] = in_shares(items, int(os.environ.get("PYTEST_XDIST_WORKER_COUNT", 1)))
     for item in items:
         for name, command in ENGINES.items():
             if item.get_closest_marker(name) and not shutil.which(name) and not os.environ.get("CI"):
                 item.add_marker(pytest.mark.skip(reason=f"{name} is not installed ({command})"))
+        if needs_module(item) and not {"YADE_SOURCE", "EPDEM_YADE_MODULE"} & {*os.environ}:
+            item.add_marker(pytest.mark.skip(reason="YADE_SOURCE names no source of YADE; its headers are needed"))
 
 
 def in_shares(items, processes):
@@ -98,7 +101,20 @@ def in_shares(items, processes):
     return [item for share in shares for item in share]
 
 
+def needs_module(item):
+    """Whether a test runs YADE with the module epdem_yade."""
+    mark = item.get_closest_marker("yade")
+    return mark is not None and "module" in mark.args
+
+
 @pytest.fixture(autouse=True)
-def decks_of_yade_call_the_c_library(monkeypatch):
-    """Whether epdem_yade is built here or not; tests of the module set its path again."""
-    monkeypatch.setattr("epdem.engines.yade.launcher.module", lambda: None)
+def module_of_yade(request, monkeypatch):
+    """Tests with the mark `yade("module")` run YADE with epdem_yade, in commands, too; other tests without it."""
+    module = None
+    if needs_module(request.node):
+        from engines.yade_native import module_folder
+
+        module = module_folder() / "epdem_yade.so"
+    monkeypatch.setattr("epdem.engines.yade.launcher.module", lambda: module)
+    if module:
+        monkeypatch.setenv("EPDEM_YADE_MODULE", str(module.parent))

@@ -8,9 +8,11 @@ import pytest
 
 from epdem.case.impact import parse
 from epdem.case.toml import read_toml
+from epdem.engines import reasoned
 from epdem.impacts.experiment import experiment
-from epdem.impacts.plan import plan
+from epdem.impacts.plan import Plan, plan
 from epdem.impacts.prediction import predict
+from epdem.scenes.plan import ScenePlan
 
 CASES = Path(__file__).parents[1] / "cases"
 BRASS = {"young_modulus": "100 GPa", "poisson_ratio": 0.35, "density": "8500 kg/m^3", "yield_stress": "0.3 GPa"}
@@ -33,6 +35,13 @@ def compare(folder: Path, name: str, text: str) -> None:
         stored.write_text(text)
         pytest.fail(f"{stored} did not exist and was written; look at it and run again")
     assert rounded(text) == rounded(stored.read_text())
+
+
+def reasons(job: Plan | ScenePlan) -> list[tuple[str, str, str]]:
+    """(file, line, reason) of every line of a LIGGGHTS deck that does something."""
+    scripts = {name: text for name, text in reasoned("liggghts", job).items() if "in" in name.split(".")}
+    split = [(name, *line.partition("  # ")[::2]) for name, text in scripts.items() for line in text.split("\n")]
+    return [(name, line.rstrip(), reason) for name, line, reason in split if line.strip() and line[0] != "#"]
 
 
 def rounded(text: str) -> str:

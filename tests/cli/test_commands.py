@@ -16,7 +16,7 @@ from calls import CASES, COMMANDS, call, make_sweep, quick_figures
 from epdem.base import paths, terminal
 from epdem.base.declarations import declarations
 from epdem.engines import ENGINES
-from epdem.engines.reasons import of_laws
+from epdem.engines.citations import of_laws
 from epdem.scenes import report
 from epdem.verification import engine_comparison as crosscheck
 
@@ -53,7 +53,6 @@ DOCUMENTS = {  # words, and what the document must hold
         ["-g", "poisson", "-l", "hertz", "--every", "2"],
         lambda d: d["passed"] and len(d["rows"]) == 1,
     ),
-    "explain": (["steel.toml"], lambda d: all(line["reason"] for line in d)),
     "soften": (["steel.toml", "-k", "32"], lambda d: d["file"] == "steel_soft32.toml" and len(d["changes"]) == 3),
     "sweep": (
         ["steel.toml", "-e", "embedded", "--set", "impact.body.radius=1 mm,2 mm", "-j", "1"],
@@ -61,7 +60,6 @@ DOCUMENTS = {  # words, and what the document must hold
     ),
     "verify rerun": (["stored/results.h5"], lambda d: d["same"] and len(d["differences"]) == 1),
     "view": (["beads.toml"], lambda d: d == {"file": "settle_glass.png", "spheres": 30, "drawn": 30}),
-    "tune": (["beads.toml"], lambda d: d["ranks"] == 1 and len(d["trials"]) == 15 and not d["written"]),
     "status": (["swept"], lambda d: (d["points"], d["done"], d["waiting"]) == (2, 0, 2)),
     "cite": (["steel.toml"], lambda d: "Thornton" in d["law thornton, Thornton 1997"] and "Kloss" in d["liggghts"]),
     "export liggghts": (["-o", "."], lambda d: d["files"][0] == "normal_model_ep.cpp" and not d["lacks"]),
@@ -86,11 +84,9 @@ MISTAKES = {  # words, and what the sentence must hold
     "verify figures": (["-o", "steel.toml"], "steel.toml"),
     "verify cost": (["steel.toml", "-l", "hook"], "steel.toml: law.name = 'hook' does not exist"),
     "verify stability": (["-g", "modulu"], "--group 'modulu' does not exist; there are modulus"),
-    "explain": (["bad.toml"], "bad.toml: not valid TOML"),
     "soften": (["steel.toml", "-k", "-3"], "--factor -3, must lie in (0, 1e12)"),
     "calibrate": (["steel.toml"], "give one measurement"),
     "view": (["beads.toml", "-o", "beads.txt"], "--out beads.txt: no picture has this ending; name it beads.png"),
-    "tune": (["steel.toml"], "steel.toml is a case of impacts"),
     "cite": (["steel.toml", "-e", "abaqus"], "'abaqus' does not exist; there are embedded"),
     "export liggghts": (["--check", "."], "contact_models.h is not there; name the folder src"),
     "export lammps": (["-o", "."], "--out .: it has files; name a new folder"),

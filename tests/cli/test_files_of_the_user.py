@@ -15,7 +15,7 @@ from epdem.verification import stability
 WRITERS = {  # words of a command that writes, and a file of the user's in its way
     "deck of impacts": (["deck", "steel.toml", "-o", "d"], "d/in.impact"),
     "deck of a scene": (["deck", "scene.toml", "-o", "d"], "d/setup.in"),
-    "deck for YADE": (["deck", "scene.toml", "-o", "d", "-e", "yade"], "d/scene.py"),
+    "deck for YADE": (["deck", "steel.toml", "-o", "d", "-e", "yade"], "d/impact.py"),
     "own template": (["deck", "mill.j2", "--case", "steel.toml", "-o", "d"], "d/mill"),
     "figures": (["verify", "figures", "-o", "d"], "d/figure_8_17.png"),
     "cost": (["verify", "cost", "steel.toml", "-e", "embedded", "--repetitions", "1", "-o", "d"], "d/cost.png"),

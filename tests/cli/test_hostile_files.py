@@ -18,13 +18,11 @@ COMMANDS = {
     "run": (),
     "predict": (),
     "deck": ("-o", "d"),
-    "explain": (),
     "view": (),
     "soften": ("--factor", "100"),
     "verify cost": (),
     "verify crosscheck": (),
     "sweep": SET,
-    "tune": (),
     "calibrate": ("--target", "height_last=1 mm", "--free", "contact.friction=0.1..0.5"),
 }
 NESTED = "nested more than 20 deep"

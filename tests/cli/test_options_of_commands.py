@@ -14,7 +14,6 @@ import pytest
 from calls import CASES, COMMANDS, call, make_sweep
 
 from epdem.engines import engine
-from epdem.engines.liggghts import tune
 from epdem.errors import CaseError
 from epdem.impacts import report as impacts_report
 from epdem.impacts import run as impacts_run
@@ -38,7 +37,7 @@ TARGET = ("--target", "floor_load_max=1 N", "--free", "contact.friction=0.1..0.5
 RUN = {"engine": "yade", "law": "cavity", "ranks": "2", "steps": "100", "out": "there", "fresh": None, "resume": None}
 RUN |= {"full": None, "pictures": "svg", "force": None}
 DECK = {"out": "there", "engine": "yade", "law": "cavity", "case": "other.toml", "given": "a=1", "force": None}
-DECK |= {"convert": None}
+DECK |= {"convert": None, "reasons": None}
 MY_DECK = """fix m all property/global youngsModulus peratomtype 1e7
 pair_style gran model hertz
 """
@@ -78,9 +77,6 @@ KINDS = {  # words of a call without the option, and the value of every option
         {"engine": "yade", "law": "cavity", "group": "poisson", "every": "2", "steps": "1000", "out": "there.csv"}
         | {"force": None},
     ),
-    "tune a scene": (("tune", "scene.toml"), {"ranks": "2", "seconds": "5", "write": None}),
-    "explain impacts": (("explain", "steel.toml"), {}),
-    "explain a scene": (("explain", "scene.toml"), {}),
     "view a scene": (("view", "scene.toml"), {"out": "there.png", "force": None}),
     "soften impacts": (("soften", "steel.toml", "-k", "10"), {"factor": "3", "out": "there.toml", "force": None}),
     "soften a scene": (("soften", "scene.toml", "-k", "10"), {"factor": "3", "out": "there.toml", "force": None}),
@@ -139,13 +135,6 @@ def outcomes(tmp_path_factory):
         "run": impacts_run.run(twelve, engines=[engine("embedded")], out=path.parent / "run"),
         "cost": cost.run(path, engines=["embedded"], laws=[], steps=(30, 100), repetitions=1),
         "bulk": pd.DataFrame([{"model": "x", "spheres": 8, "seconds_spread": 1e-3, "ratio_spread": 0.1} | numbers]),
-        "tuned": tune.Tuned(
-            tuple(
-                tune.Trial(tune.Choice(skin), {"fill": (seconds, seconds)}, {"fill": 500})
-                for skin, seconds in ((1e-3, 2.0), (2e-3, 1.0))
-            ),
-            1,
-        ),
         "stability": stability.run(["embedded"], ["hertz"], groups=["poisson"]),
     }
 
@@ -176,7 +165,6 @@ def library(tmp_path, monkeypatch, outcomes):
     record(cost, "run", outcomes["cost"])
     record(bulk_cost, "run", outcomes["bulk"])
     record(stability, "run", outcomes["stability"])
-    record(tune, "tune", outcomes["tuned"])
     record(figures, "draw_all", [Path("drawn.png")])
     record(slurm, "execute")
     record(fit, "fit")

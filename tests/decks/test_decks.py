@@ -51,10 +51,8 @@ def test_the_deck_of_another_engine_is_as_stored(engine, name, tmp_path):
 
 
 @pytest.mark.parametrize("name", ["settle_glass", "compaction_powder"])
-@pytest.mark.parametrize("classes", [True, False])
-def test_the_deck_of_a_scene_in_yade_is_as_stored(name, classes):
-    texts = yade_scene.files(scene_plan(load_scene(CASES / f"{name}.toml")), classes=classes)
-    compare(HERE, f"yade_{name}" + "_classes" * classes, texts["scene.py"])
+def test_the_deck_of_a_scene_in_yade_is_as_stored(name):
+    compare(HERE, f"yade_{name}", yade_scene.files(scene_plan(load_scene(CASES / f"{name}.toml")))["scene.py"])
 
 
 @pytest.mark.parametrize("path", SCENES, ids=lambda p: p.stem)
@@ -68,8 +66,7 @@ def test_the_deck_of_a_scene_in_lammps_is_as_stored(name):
     compare(HERE, f"lammps_{name}", lammps_scene.files(scene_plan(load_scene(CASES / f"{name}.toml")))["in.scene"])
 
 
-@pytest.mark.parametrize("classes", [True, False])
-def test_the_deck_of_a_scene_of_parts_in_yade_is_as_stored(classes):
+def test_the_deck_of_a_scene_of_parts_in_yade_is_as_stored():
     """Facets, motions of each kind, a phase of another time step that a condition ends, a stream, loads and power."""
     data = read_toml(CASES / "sieve_cylinder.toml")
     scene, sides = data["scene"], {"kind": "plate", "axis": "z", "size": ["9 mm", "9 mm"], "material": "steel"}
@@ -83,8 +80,8 @@ def test_the_deck_of_a_scene_of_parts_in_yade_is_as_stored(classes):
     scene["phase"] += [work | {"move": [shake, down, turn, hold]}]
     scene["fill"] += [scene["fill"][0] | {"name": "stream", "count": 3, "rate": "30 kHz", "phase": "work"}]
     scene["fill"][-1].pop("mass", None)
-    texts = yade_scene.files(scene_plan(parse_scene(data, CASES / "sieve_cylinder.toml")), classes=classes)
-    compare(HERE, "yade_moving_parts" + "_classes" * classes, texts["scene.py"])
+    texts = yade_scene.files(scene_plan(parse_scene(data, CASES / "sieve_cylinder.toml")))
+    compare(HERE, "yade_moving_parts", texts["scene.py"])
 
 
 def test_the_deck_of_a_scene_of_moving_parts_is_as_stored():

@@ -11,7 +11,7 @@ import pytest
 from typer.testing import CliRunner
 
 from epdem.case import toml
-from epdem.engines.reasons import of_laws
+from epdem.engines.citations import of_laws
 from epdem.verification.cli import app
 
 pytestmark = pytest.mark.figures

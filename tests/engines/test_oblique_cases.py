@@ -128,12 +128,13 @@ def test_liggghts_takes_walls_only(tmp_path):
 @pytest.mark.yade
 def test_yade_without_its_module_refuses_friction_and_says_how_to_build_it(tmp_path):
     """YADE's own spring differs from the spring of the module: psi_2 would be off by 0.5."""
-    with pytest.raises(CaseError, match="epdem_yade, which is not built; run 'make yade', or use --engine embedded"):
+    words = "epdem_yade, which is not built; run 'make yade', or name one by EPDEM_YADE_MODULE, or use"
+    with pytest.raises(CaseError, match=words):
         outcome(tmp_path, ["yade"], angles=["20 deg", "70 deg"], speeds=["0.1 m/s"])
 
 
-def test_predict_and_explain_know_oblique_impacts(capsys):
-    for words in (["predict", str(CASE), "--json"], ["explain", str(CASE)]):
+def test_predict_and_the_reasons_of_a_deck_know_oblique_impacts(capsys, tmp_path):
+    for words in (["predict", str(CASE), "--json"], ["deck", str(CASE), "--reasons", "-o", str(tmp_path / "deck")]):
         app(words, standalone_mode=False)
-    text = capsys.readouterr().out
+    text = capsys.readouterr().out + (tmp_path / "deck/in.impact").read_text()
     assert "psi_2" in text and "tangential ep/partial_slip" in text and "velocity and spin after the impact" in text

@@ -7,16 +7,14 @@ from plugin_compaction import NU, E, Y, alone
 from scipy.optimize import brentq
 from test_plugin_compaction import CLUSTER, FLOOR, MOVES, RADII, assert_second_order
 from test_plugin_compaction import cluster as cluster_of_liggghts
-from yade_native import ROOT, classes, needs_source, yade
+from yade_native import ROOT, yade
 
 from epdem.verification.theory.bed import Bed, Material
 from scenes.parts_cases import parts
 from scenes.scene_runs import run as run_scene
 from scenes.scene_runs import write_case
 
-pytestmark = [pytest.mark.yade, needs_source]
-
-__all__ = ["classes"]
+pytestmark = pytest.mark.yade("module")
 
 SCENES = f"""
 import os
@@ -270,7 +268,7 @@ def bed(folder, **law):
 
 
 @pytest.mark.liggghts
-def test_a_bed_under_a_press_has_force_and_energies_of_liggghts(classes, tmp_path):
+def test_a_bed_under_a_press_has_force_and_energies_of_liggghts(tmp_path):
     found = {}
     for tool in ("yade", "liggghts"):
         case = write_case(bed(tmp_path), tmp_path)

@@ -5,12 +5,11 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from yade_native import needs_source, result
+from yade_native import result
 
 EXAMPLES = Path("/usr/share/doc/yade/examples")
 pytestmark = [
-    pytest.mark.yade,
-    needs_source,
+    pytest.mark.yade("module"),
     pytest.mark.skipif(not EXAMPLES.exists(), reason=f"{EXAMPLES}: YADE's package came without its examples"),
 ]
 EXCHANGED = (

@@ -6,13 +6,13 @@ import re
 import subprocess
 
 import pytest
-from yade_native import HEAD, ROOT, module_folder, needs_source, yade
+from yade_native import HEAD, ROOT, module_folder, yade
 
 from epdem.engines import sources
 from epdem.engines.yade.launcher import environment, module
 from epdem.errors import EngineError
 
-pytestmark = [pytest.mark.yade, needs_source]
+pytestmark = pytest.mark.yade("module")
 
 
 @pytest.mark.parametrize(

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from yade_native import ROOT, impacts, needs_source, result, title, yade
+from yade_native import ROOT, impacts, result, title, yade
 
 from epdem.base.declarations import declarations
 from epdem.case.impact import Numerics, parse
@@ -17,7 +17,7 @@ from epdem.impacts.measurement import measure
 from epdem.impacts.plan import plan
 from epdem.impacts.prediction import predict
 
-pytestmark = [pytest.mark.yade, needs_source]
+pytestmark = pytest.mark.yade("module")
 
 CASES = ROOT / "cases"
 LAWS = declarations()
@@ -238,7 +238,7 @@ for _ in range(150):
 """
 
 
-@pytest.mark.yade("alone")
+@pytest.mark.yade("alone", "module")
 def test_one_contact_continues_to_the_bit_in_another_process(tmp_path):
     more = """
 import pathlib

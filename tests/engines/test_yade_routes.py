@@ -6,7 +6,7 @@ import json
 import numpy as np
 import pytest
 from test_yade_native import CASES, prepared
-from yade_native import classes, module_folder, needs_source
+from yade_native import module_folder
 
 from epdem.base.declarations import declarations
 from epdem.case.scene import parse
@@ -21,9 +21,8 @@ from scenes.parts_cases import FLOOR, parts
 from scenes.scene_runs import run as run_scene
 from scenes.scene_runs import write_case
 
-pytestmark = [pytest.mark.yade, needs_source]
+pytestmark = pytest.mark.yade("module")
 
-__all__ = ["classes"]
 LAWS = [name for name, law in declarations().items() if not law.adheres]
 MEASURED = ("e_n", "contact_time", "force_max", "overlap_max", "residual_overlap")
 HERE = launcher.module
@@ -61,22 +60,7 @@ def test_impacts_are_those_of_the_c_library_in_a_deck(law, kind, both):
         assert np.abs((two - one) / scale).max() <= 1e-9, name
 
 
-def test_spheres_in_a_box_are_those_of_the_c_library_in_a_deck(both, tmp_path):
-    """Without friction, of which the C library in a deck has none; plastic work and strain by two ways."""
-    data = parts()
-    data["scene"]["phase"][0]["duration"] = "40 ms"
-    path = write_case(data, tmp_path)
-    library, ours = (o.results for o in both(lambda folder: run_scene(path, "yade", out=folder)))
-    one, two = library.energy_balance, ours.energy_balance
-    assert [*one] == [*two] and one["plastic"].iloc[-1] > 0.1 * one["kinetic"].max()
-    scale = one["kinetic"].max()
-    for name in set(one) - {"step", "time"}:
-        assert np.abs(two[name] - one[name]).max() <= 1e-9 * scale, name
-    assert len(ours.contacts) == len(library.contacts)
-    assert ours.rows["largest_radius_ratio"].to_numpy() == pytest.approx(library.rows["largest_radius_ratio"], rel=1e-9)
-
-
-def test_prescribed_motions_with_friction_have_the_forces_of_the_embedded_engine(classes, tmp_path):
+def test_prescribed_motions_with_friction_have_the_forces_of_the_embedded_engine(tmp_path):
     outcome = compare(CASES / "oblique_steel.toml", engines=["embedded", "yade"], laws=["cavity"], out=tmp_path)
     rows = outcome.rows[outcome.rows["engine"] == "yade"]
     assert outcome.passed and set(rows["friction"]) == {"partial_slip"}
@@ -89,7 +73,7 @@ def error_of_psi_2(p, prediction, found):
 
 
 @pytest.mark.liggghts
-def test_the_rebound_of_maw_barber_and_fawcett_is_at_least_as_good_as_that_of_liggghts(classes, tmp_path):
+def test_the_rebound_of_maw_barber_and_fawcett_is_at_least_as_good_as_that_of_liggghts(tmp_path):
     p, prediction = prepared("oblique_steel")
     errors = {}
     for name in ("yade", "liggghts"):
@@ -99,7 +83,7 @@ def test_the_rebound_of_maw_barber_and_fawcett_is_at_least_as_good_as_that_of_li
     assert errors["yade"] <= 1.01 * errors["liggghts"] < 0.03, errors
 
 
-def test_oblique_impacts_of_two_spheres_have_the_rebound_of_theory(classes, tmp_path):
+def test_oblique_impacts_of_two_spheres_have_the_rebound_of_theory(tmp_path):
     """At low speed, where the normal does not turn during the contact."""
     impact = {"kind": "sphere-sphere", "target": {"material": "steel", "radius": "6 mm"}, "speeds": ["0.1 m/s"]}
     p, prediction = prepared("oblique_steel", **impact, angles=["10 deg", "30 deg", "50 deg", "65 deg"])
@@ -107,12 +91,12 @@ def test_oblique_impacts_of_two_spheres_have_the_rebound_of_theory(classes, tmp_
 
 
 @pytest.mark.parametrize("case", ["viscous_steel", "adhesion_thornton_1998"])
-def test_a_case_that_needs_the_classes_passes_its_checks(case, classes, tmp_path):
+def test_a_case_that_needs_the_classes_passes_its_checks(case, tmp_path):
     outcome = run_impacts(CASES / f"{case}.toml", engines=[engine("yade")], out=tmp_path)
     assert outcome.passed
 
 
-def test_doctor_and_results_say_which_laws_yade_runs(classes, tmp_path, monkeypatch):
+def test_doctor_and_results_say_which_laws_yade_runs(tmp_path, monkeypatch):
     (found,) = (f for f in doctor.examine() if f.part == "engine yade")
     assert "epdem_yade " in found.detail
     monkeypatch.setattr(launcher, "module", lambda: None)
@@ -123,7 +107,7 @@ def test_doctor_and_results_say_which_laws_yade_runs(classes, tmp_path, monkeypa
 def test_the_rolling_model_that_the_classes_lack_is_refused():
     data = parts() | {"contact": {"friction": 0.4, "rolling": {"model": "epsd", "coefficient": 0.1, "damping": 0.3}}}
     with pytest.raises(CaseError, match=r"contact\.rolling = 'epsd': YADE's laws have cdt and epsd2; remove it or use"):
-        scene_deck.deck(plan(parse(data)), classes=True)
+        scene_deck.deck(plan(parse(data)))
 
 
 GRANULAR = {
@@ -139,7 +123,7 @@ GRANULAR = {
 
 @pytest.mark.liggghts
 @pytest.mark.parametrize("name", GRANULAR)
-def test_spheres_that_fall_from_the_same_places_have_the_energies_of_liggghts(name, classes, tmp_path):
+def test_spheres_that_fall_from_the_same_places_have_the_energies_of_liggghts(name, tmp_path):
     contact, viscous, law = GRANULAR[name]
     draw = np.random.default_rng(1)
     places = [(4.2 * i, 4.2 * j, 2.2 + 4.2 * k) for i in (-1, 0, 1) for j in (-1, 0, 1) for k in range(3)]

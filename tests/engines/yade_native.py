@@ -12,7 +12,6 @@ from math import isfinite, isinf
 from pathlib import Path
 
 import numpy as np
-import pytest
 
 from epdem.base.declarations import declarations
 from epdem.cli.main import app
@@ -24,16 +23,6 @@ from epdem.impacts.plan import Plan
 
 ROOT = Path(__file__).resolve().parents[2]
 EXPORTED = ROOT / "build/yade_exported"
-
-needs_source = pytest.mark.skipif(
-    not os.environ.get("YADE_SOURCE"), reason="YADE_SOURCE names no source of YADE; its headers are needed"
-)
-
-
-@pytest.fixture
-def classes(monkeypatch):
-    """Decks of YADE import the module."""
-    monkeypatch.setattr("epdem.engines.yade.launcher.module", lambda: module_folder() / "epdem_yade.so")
 
 
 def title(law: str) -> str:

@@ -1,8 +1,12 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
+import os
+
 import pytest
 from planting import faults, with_switches
 from sub_models import add_models
 from workshop import Runner, build_plugin, copy_of_project
+
+from engines.yade_native import module_folder
 
 
 @pytest.fixture(scope="module")
@@ -14,7 +18,7 @@ def copy(tmp_path_factory):
 @pytest.fixture(scope="module")
 def tests_of_copy(copy):
     """Runs tests of that copy."""
-    tests = Runner(copy)
+    tests = Runner(copy, {"EPDEM_YADE_MODULE": str(module_folder())} if "YADE_SOURCE" in os.environ else None)
     yield tests
     tests.close()
 

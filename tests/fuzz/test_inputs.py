@@ -22,6 +22,7 @@ from epdem.case.warnings import case_warnings
 from epdem.cli import main as cli
 from epdem.engines import scene_engine
 from epdem.engines.liggghts.own_decks import write
+from epdem.engines.yade import scene_deck
 from epdem.errors import CaseError
 from epdem.impacts.experiment import experiment
 from epdem.impacts.plan import plan
@@ -43,7 +44,7 @@ def carried_out(data: dict) -> None:
         assert case_warnings(p.case) is not None
         assert all(files(scene_engine("liggghts"), p).values())
         if p.case.scene.count <= 2000:
-            files(scene_engine("yade"), p)
+            scene_deck.files(p)
         return
     x = experiment(impact.parse(data))
     found = predict(x)
@@ -108,7 +109,6 @@ def test_any_material_of_any_size_at_any_speed_has_finite_numbers_or_is_refused(
 COMMANDS = [
     "predict",
     "deck",
-    "explain",
     "soften",
     "calibrate",
     "export",

@@ -6,6 +6,7 @@ cd tests/scenes && ../../.venv/bin/python stored_runs.py    # makes them anew; l
 
 import shutil
 import tempfile
+from collections.abc import Collection
 from pathlib import Path
 
 from scene_runs import write_case
@@ -68,6 +69,11 @@ def data_of(name: str) -> dict:
     return without | {"scene": data["scene"] | scene, "output": OUTPUT, "numerics": {"time_step": step}}
 
 
+def is_of_run(path: Path, deck: Collection[str]) -> bool:
+    """Whether a file is of the run, not of the deck."""
+    return path.is_file() and path.name not in deck and path.suffix != ".so"
+
+
 def store(name: str) -> None:
     """Run and keep what the engine wrote, without its deck."""
     engine = scene_engine(RUNS[name][0])
@@ -77,7 +83,7 @@ def store(name: str) -> None:
     deck = texts(engine, p)
     with tempfile.TemporaryDirectory() as scratch:
         run_plan(p, engine, Path(scratch))
-        written = [path for path in Path(scratch).iterdir() if path.is_file() and path.name not in deck]
+        written = [path for path in Path(scratch).iterdir() if is_of_run(path, deck)]
         write_case(data_of(name), folder)
         for path in written:
             shutil.copy(path, folder)

@@ -15,7 +15,6 @@ from epdem.case.toml import read_toml
 from epdem.engines import scene_engine
 from epdem.engines.liggghts import launcher, resume
 from epdem.engines.liggghts import scene_tables as tables
-from epdem.engines.yade import scene_deck as yade_deck
 from epdem.errors import CaseError
 from epdem.scenes.plan import plan
 
@@ -136,11 +135,6 @@ def test_a_skin_that_growth_exceeds_is_refused():
         liggghts.check(plan(parse(pressed(law, numerics={"skin": f"{share * radius!r} m"}))))
     with pytest.raises(CaseError, match=r"numerics.skin = .* give at least 0.2 of the largest radius"):
         liggghts.check(plan(parse(pressed(COMPACT, numerics={"skin": f"{0.19 * radius!r} m"}))))
-
-
-def test_yade_without_its_module_refuses_compaction():
-    with pytest.raises(CaseError, match=r"law.compaction = True: .* epdem_yade, .* not built; run 'make yade'"):
-        yade_deck.deck(plan(parse(pressed(COMPACT))), classes=False)
 
 
 def test_a_deck_without_compaction_names_it_nowhere():

@@ -13,13 +13,12 @@ from epdem.base.declarations import declarations
 from epdem.case import impact as impacts
 from epdem.case.scene import is_scene, parse
 from epdem.case.toml import read_toml
-from epdem.engines import engine, reasons
-from epdem.engines.liggghts.engine import Liggghts
-from epdem.engines.liggghts.scene_deck import deck
+from epdem.engines import engine
 from epdem.impacts.experiment import experiment
 from epdem.impacts.plan import plan
 from epdem.impacts.prediction import predict
 from epdem.scenes.plan import plan as scene_plan
+from stored_decks import reasons
 
 CASES = sorted((Path(__file__).parents[2] / "cases").glob("*.toml"))
 SCENES = [path for path in CASES if is_scene(read_toml(path))]  # of impacts: tests/decks/test_lean_impacts.py
@@ -94,22 +93,24 @@ def test_a_line_that_does_nothing_is_found(tmp_path):
     assert [r.line for r in found if r.effect == "nothing"] == ["compute idle all ke"]
 
 
-def explained(path: Path) -> list[tuple[str, str, str]]:
-    """What `explain` says of the deck that `decks_of` writes."""
+def job_of(path: Path):
+    """The plan of the deck that `decks_of` writes."""
     data = read_toml(path)
     if is_scene(data):
-        return reasons.explain(reasons.SCENE, deck(scene_plan(parse(small(data), path))))
+        return scene_plan(parse(small(data), path))
     x = experiment(impacts.parse(data | {"numerics": {"steps_in_contact": 40, "phases": 2}}))
-    return reasons.explain(reasons.IMPACT, Liggghts().deck(plan(x, predict(x))))
+    return plan(x, predict(x))
 
 
 @pytest.mark.parametrize("path", CASES, ids=lambda p: p.stem)
 def test_every_line_of_a_deck_has_a_reason(path, tmp_path):
     _, files = decks_of(path, tmp_path)
-    lines = explained(path)
+    lines = reasons(job_of(path))
     assert [line for _, line, reason in lines if not reason] == []
-    for name in files:  # what is explained is the deck that is written, line by line
-        written = [x.rstrip() for x in (tmp_path / name).read_text().split("\n") if x.strip() and x[0] != "#"]
+    for name in files:  # but for comments it is the deck that is written
+        written = [
+            x.split("  # ")[0].rstrip() for x in (tmp_path / name).read_text().split("\n") if x[:1] not in ("", "#")
+        ]
         assert [line for file, line, _ in lines if file == name] == written
     assert len(lines) > 8
 
@@ -121,17 +122,17 @@ def test_every_line_of_a_deck_with_any_law_has_a_reason(law):
     parameters = {p.name: 1.1 * p.default or 0.1 for p in declarations()[law].parameters if p.default is not None}
     parameters |= {"work_of_adhesion": "0.5 J/m^2"} if declarations()[law].adheres else {}
     x = experiment(impacts.parse(data | {"law": {"name": law} | parameters}))
-    found = reasons.explain(reasons.IMPACT, Liggghts().deck(plan(x, predict(x))))
+    found = reasons(plan(x, predict(x)))
     assert sum("property/global" in line for _, line, _ in found) == 2 + len(declarations()[law].parameters)
     assert [line for _, line, reason in found if not reason] == []
 
 
-def test_a_line_without_a_reason_is_found(tmp_path, monkeypatch):
-    (tmp_path / "bad.j2").write_text('units si  # guard: said\nfix a all nve{{ why("moves") }}\nrun 3\n# words\n')
+def test_reasons_follow_the_comments_of_a_line_and_a_line_without_one_stays(tmp_path, monkeypatch):
+    lines = 'units si  # guard: said\nfix a all nve{{ why("moves") }}\ndump 1  # raw{{ why("read") }}\nrun 3\n'
+    (tmp_path / "own.j2").write_text(lines)
     own = jinja2.Environment(loader=jinja2.FileSystemLoader(tmp_path), **rendering.OPTIONS)
     monkeypatch.setattr(rendering, "environment", lambda **words: rendering.prepared(own, **words))
-    assert reasons.explain({"in.bad": "bad.j2"}, None) == [
-        ("in.bad", "units si  # guard: said", "guard: said"),
-        ("in.bad", "fix a all nve", "moves"),
-        ("in.bad", "run 3", ""),
-    ]
+    assert rendering.render("own.j2") == "units si  # guard: said\nfix a all nve\ndump 1  # raw\nrun 3\n"
+    with rendering.with_reasons():
+        found = rendering.render("own.j2")
+    assert found == "units si  # guard: said\nfix a all nve  # moves\ndump 1  # raw; read\nrun 3\n"

@@ -16,7 +16,7 @@ from epdem.case.toml import read_toml
 from epdem.engines import engine, log
 from epdem.engines.lammps import launcher as lammps_launcher
 from epdem.engines.lammps.engine import Lammps
-from epdem.engines.liggghts import dump, launcher, own_decks, scene_tables, tune
+from epdem.engines.liggghts import dump, launcher, own_decks, scene_tables
 from epdem.engines.liggghts import engine as liggghts
 from epdem.engines.liggghts.launcher import OUT
 from epdem.engines.yade import scene_tables as yade_tables
@@ -31,7 +31,6 @@ from epdem.studies.sweep import slurm
 from epdem.verification.stability import variants
 from epdem.verification.stability.edits import Edit
 from epdem.verification.theory.criteria import principal
-from epdem.yade.deck_modules.law import Law
 
 CASES = Path(__file__).parents[2] / "cases"
 
@@ -152,16 +151,12 @@ def test_decks_and_studies(tmp_path):
     deck.write_text("run 1\nrun 2\n")
     with says("2 lines start with 'run', expected 1"):
         variants.edit(deck, Edit("run", ()))
-    with says("the trials ended before each skin had two turns; give them more time"):
-        tune._trials([], {"x": []}, [1e-3])
     with says("deck cannot be made into another set-up"):
         variants.edits(variants.PositionSampler(engine("embedded"), tmp_path))
     with says(r"a template's name ends in \.j2; the deck is written without it", CaseError):
         own_decks.write(Path(".j2"), CASES / "steel_wall.toml", {}, tmp_path)
     with says(r"stress has shape \(3,\), must end in \(3, 3\)", ValueError):
         principal([1.0, 2.0, 3.0])
-    with says("law cavity: .*no energy created at yield", ValueError):
-        Law("cavity", 1e9, 1e6, first_yield_ratio=1.0, plastic_ratio=9.0)
 
 
 def test_folders_and_files_of_a_user(tmp_path, monkeypatch):

@@ -43,7 +43,7 @@ def expected_end(p):
     return int(steps[0.012 - 2.0 * p.time_step * steps <= SOLID][0])
 
 
-ENGINES = {"liggghts": pytest.mark.liggghts, "lammps": needs_lammps, "yade": pytest.mark.yade}
+ENGINES = {"liggghts": pytest.mark.liggghts, "lammps": needs_lammps, "yade": pytest.mark.yade("module")}
 PRESSES = [("liggghts", "linear", FORCE), ("liggghts", "press", FORCE), ("liggghts", "press", None)]
 PRESSES += [
     (engine, kind, until) for engine in ("lammps", "yade") for kind, until in (("linear", FORCE), ("press", None))

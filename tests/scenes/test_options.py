@@ -13,10 +13,10 @@ from typer.testing import CliRunner
 from epdem.case.scene import parse
 from epdem.case.toml import read_toml
 from epdem.cli.main import app
-from epdem.engines import reasons
 from epdem.engines.liggghts.scene_deck import deck
 from epdem.errors import CaseError
 from epdem.scenes.plan import plan
+from stored_decks import reasons
 
 CASES = Path(__file__).parents[2] / "cases"
 
@@ -55,7 +55,7 @@ def tiny() -> dict:
 @pytest.mark.parametrize("data", [poured(), bed(), tiny()], ids=["poured", "bed", "tiny"])
 def test_a_deck_with_rare_options_runs_and_repeats_itself(data, tmp_path):
     write_deck(parse(data), tmp_path / "deck")
-    lines = reasons.explain(reasons.SCENE, deck(plan(parse(data))))
+    lines = reasons(plan(parse(data)))
     assert [line for _, line, reason in lines if not reason] == []
     found = fingerprint(tmp_path / "deck", "in.scene")
     assert found is not None

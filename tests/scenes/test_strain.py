@@ -12,7 +12,7 @@ from epdem.scenes.columns import STRAINS
 from epdem.scenes.timestep import wall_impact
 from epdem.studies.pages import scene_sentences as sentences
 
-ENGINES = [pytest.param(name, marks=getattr(pytest.mark, name)) for name in ("liggghts", "yade")]
+ENGINES = [pytest.param("liggghts", marks=pytest.mark.liggghts), pytest.param("yade", marks=pytest.mark.yade("module"))]
 
 
 def one_impact(law: str, speed: float) -> dict:

@@ -9,11 +9,11 @@ from scene_runs import run
 
 from epdem.case.scene import parse
 from epdem.case.toml import read_toml
-from epdem.engines import reasons
-from epdem.engines.liggghts.scene_deck import deck, files
+from epdem.engines.liggghts.scene_deck import files
 from epdem.errors import CaseError
 from epdem.scenes.plan import plan
 from epdem.scenes.timestep import time_step
+from stored_decks import reasons
 
 CASES = Path(__file__).parents[2] / "cases"
 
@@ -35,7 +35,7 @@ def test_a_scene_has_the_dashpot_in_pair_and_walls_only_if_it_asks():
         assert text.count("viscous on") == expected
         assert ("coefficientRestitution peratomtypepair 1 0.7 " in text) is (expected > 0)
         assert "tangential_damping" not in text, "there is no friction, so nothing to switch off"
-        lines = reasons.explain(reasons.SCENE, deck(plan(parse(data, "case.toml"))))
+        lines = reasons(plan(parse(data, "case.toml")))
         assert [line for _, line, why in lines if not why] == []
 
 

@@ -10,13 +10,11 @@ from hypothesis import strategies as st
 from parts_cases import BED, STEEL, parts
 from scene_runs import run, write_case
 
-from engines.yade_native import classes, needs_source
 from epdem.case.scene import parse
 from epdem.engines.liggghts import scene_deck
 from epdem.errors import CaseError
 from epdem.scenes.plan import plan
 
-__all__ = ["classes"]
 BOX = {"name": "box", "kind": "box", "x": ["-9 mm", "9 mm"], "y": ["-9 mm", "9 mm"], "z": ["0 mm", "40 mm"]}
 BOX |= {"material": "steel"}
 
@@ -91,10 +89,9 @@ def test_walls_of_two_materials_wear_by_their_own_constants(tmp_path):
     assert wear["right"] == pytest.approx(3 * wear["left"], rel=1e-6) and wear["left"] > 0
 
 
-@pytest.mark.yade
+@pytest.mark.yade("module")
 @pytest.mark.liggghts
-@needs_source
-def test_stress_and_wear_in_yade_are_those_in_liggghts(classes, tmp_path):
+def test_stress_and_wear_in_yade_are_those_in_liggghts(tmp_path):
     """Spheres strike a plate at rest steeply and a moving plate at a small angle, beside the edge of the triangles."""
     data = sliding_on_two_plates()
     data["contact"] = {"friction": 0.3}
@@ -113,7 +110,7 @@ def test_stress_and_wear_in_yade_are_those_in_liggghts(classes, tmp_path):
             assert np.abs(one - two).max() <= 0.01 * two.max() > 0, (column, wall)
 
 
-@pytest.mark.yade
+@pytest.mark.yade("module")
 def test_spheres_at_rest_press_a_periodic_plate_in_yade_with_their_weight(tmp_path):
     """At the overlap at which Hertz's force is the weight; YADE has the plate as one triangle."""
     plate = {"name": "plate", "kind": "plate", "axis": "z", "center": ["0 mm"] * 3, "size": ["20 mm", "20 mm"]}

@@ -12,15 +12,14 @@ from scene_runs import run, write_deck
 from epdem.case.scene import parse
 from epdem.case.toml import read_toml
 from epdem.cli import main as cli
-from epdem.engines import log, scene_engine
+from epdem.engines import log
 from epdem.engines.liggghts import launcher
-from epdem.engines.yade import scene_deck as yade
+from epdem.engines.yade import scene_deck
 from epdem.engines.yade import scene_tables as yade_tables
 from epdem.engines.yade.engine import Yade
 from epdem.engines.yade.launcher import environment
 from epdem.errors import CaseError, EngineError
 from epdem.scenes import placement
-from epdem.scenes.engine import files
 from epdem.scenes.plan import plan
 
 CASES = Path(__file__).parents[2] / "cases"
@@ -47,7 +46,7 @@ def verdicts(outcome) -> dict[str, bool]:
     return dict(zip(table["key"], table["passed"], strict=True))
 
 
-@pytest.mark.yade
+@pytest.mark.yade("module")
 @pytest.mark.parametrize("sides", ["walls", "periodic"])
 def test_the_floor_of_a_yade_bed_carries_its_weight(sides, tmp_path):
     path = small("settle_glass", tmp_path, BEADS | {"walls": '"glass"' + "\nperiodic = true" * (sides == "periodic")})
@@ -62,11 +61,10 @@ def test_the_floor_of_a_yade_bed_carries_its_weight(sides, tmp_path):
     assert all(verdicts(outcome).values()) and "floor_load" in verdicts(outcome)
     assert len(radius) == 40 and (rows["particles"] == 40).all()
     assert reported == [(step, outcome.plan.steps) for step in rows["step"]], "progress by rows"
-    assert outcome.warnings[0] == yade.NO_DASHPOT
     assert run(path, engine="yade", out=tmp_path / "out").reused
 
 
-@pytest.mark.yade
+@pytest.mark.yade("module")
 @pytest.mark.parametrize("law", ["hertz", "thornton", "cavity"])
 def test_the_energy_of_a_frictionless_bed_in_yade_leaves_nothing_over(law, tmp_path):
     path = small("settle_glass", tmp_path, FALL, "")
@@ -101,7 +99,7 @@ def pressed(path: Path, folder: Path):
     return outcome, log.scene_rows(outcome.plan, folder / "liggghts" / launcher.OUT)
 
 
-@pytest.mark.yade
+@pytest.mark.yade("module")
 @pytest.mark.liggghts
 def test_spheres_under_a_press_take_the_same_way_in_yade_and_liggghts_until_it_is_chaos(tmp_path):
     outcome, other = pressed(small("compaction_powder", tmp_path, POWDER, ""), tmp_path)
@@ -113,7 +111,7 @@ def test_spheres_under_a_press_take_the_same_way_in_yade_and_liggghts_until_it_i
     assert (outcome.results.contacts["wall"] == "").any(), "not the plate alone"
 
 
-@pytest.mark.yade
+@pytest.mark.yade("module")
 @pytest.mark.liggghts
 def test_a_press_on_rubbing_spheres_has_its_peak_force_and_a_steeper_unloading_in_both_codes(tmp_path):
     outcome, other = pressed(small("compaction_powder", tmp_path, POWDER), tmp_path)
@@ -137,7 +135,7 @@ def test_a_press_on_rubbing_spheres_has_its_peak_force_and_a_steeper_unloading_i
     assert np.diff(balance["friction"]).min() > -0.02 * balance["friction"].max() < 0.0
 
 
-@pytest.mark.yade
+@pytest.mark.yade("module")
 def test_walls_rougher_than_the_spheres_make_them_spin_in_yade(tmp_path):
     """YADE's own rule is the smaller of two friction angles: then none would turn."""
     keys = FALL | {"error": "1e-2", "duration": '"0.06 s"'}
@@ -147,7 +145,7 @@ def test_walls_rougher_than_the_spheres_make_them_spin_in_yade(tmp_path):
     assert np.abs(last[["omega_x", "omega_y"]]).to_numpy().max() > 1.0
 
 
-@pytest.mark.yade("alone")
+@pytest.mark.yade("alone", "module")
 def test_the_folder_of_a_yade_scene_runs_by_hand_and_repeats_itself(tmp_path):
     path = small("settle_glass", tmp_path, FALL | {"error": "1e-2", "duration": '"0.02 s"'})
     assert (
@@ -190,36 +188,28 @@ def test_spheres_begin_without_overlap_inside_the_box_and_with_their_shares_of_t
 @pytest.mark.parametrize(
     ("name", "place", "value", "words"),
     [
-        ("adhesive_powder", "output", {}, r"law.name = 'thornton_ning': engine yade has no law with adhesion"),
-        ("settle_glass", "contact", {"rolling": {"coefficient": 0.1}}, r"contact.rolling = 'epsd2': .*run 'make yade'"),
-        ("settle_glass", "contact", {"cohesion": "1e3 J/m^3"}, r"contact.cohesion = 1000.0: .*run 'make yade'"),
-        ("compaction_powder", "viscous", {"restitution": 0.8}, r"viscous.restitution = 0.8: .*run 'make yade'"),
         ("settle_glass", "output", {"restarts": 2}, r"output.restarts = 2"),
         ("settle_glass", "output", {"vtk": 2}, r"output.vtk = 2"),
-        (
-            "settle_glass",
-            "materials",
-            {
-                "glass": {
-                    "young_modulus": "5 MPa",
-                    "poisson_ratio": 0.25,
-                    "density": "2500 kg/m^3",
-                    "yield_stress": "2 MPa",
-                }
-            },
-            "takes less than",
-        ),
     ],
 )
-def test_what_yade_cannot_is_refused_with_place_value_and_next_step(name, place, value, words, tmp_path):
+def test_what_yade_cannot_is_refused_with_place_value_and_next_step(name, place, value, words):
     data = read_toml(CASES / f"{name}.toml")
     data[place] = data.get(place, {}) | value
     with pytest.raises(CaseError, match=words) as found:
-        files(scene_engine("yade"), plan(parse(data)))
-    assert re.search(r"use (another --engine|--engine liggghts)$", str(found.value))
+        scene_deck.deck(plan(parse(data)))
+    assert str(found.value).endswith("use --engine liggghts")
     assert found.value.exit_code == 2
 
 
+def test_without_the_module_a_scene_names_the_command_that_builds_it(tmp_path):
+    for words in (["run"], ["deck"]):
+        with pytest.raises(CaseError, match=r"scene: YADE has it with the module epdem_yade, .* run 'make yade', or"):
+            command = [*words, str(CASES / "settle_glass.toml"), "--engine", "yade", "--out", str(tmp_path / "out")]
+            cli.app(command, standalone_mode=False)
+        assert not (tmp_path / "out").exists()
+
+
+@pytest.mark.yade("module")
 @pytest.mark.parametrize("option", [{"resume": True}, {"ranks": 2}])
 def test_a_yade_scene_has_one_core_and_no_restart(option, tmp_path):
     with pytest.raises(CaseError, match="leave it out"):
@@ -227,6 +217,7 @@ def test_a_yade_scene_has_one_core_and_no_restart(option, tmp_path):
     assert not (tmp_path / "out").exists()
 
 
+@pytest.mark.yade("module")
 def test_without_yade_a_scene_says_how_to_get_it_and_writes_nothing(tmp_path, monkeypatch):
     monkeypatch.setenv("EPDEM_YADE", "no-such-yade")
     with pytest.raises(EngineError, match="apt-get install yade") as found:

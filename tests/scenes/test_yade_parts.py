@@ -10,14 +10,12 @@ from scene_runs import run, write_case
 from test_parts_motions import FALL, PLATE, assert_the_lid_shakes_on, moved
 
 from epdem.case.scene import parse
-from epdem.engines import scene_engine
 from epdem.engines.yade import scene_deck
 from epdem.errors import CaseError
-from epdem.scenes.engine import files
 from epdem.scenes.plan import plan
 
 
-@pytest.mark.yade
+@pytest.mark.yade("module")
 @pytest.mark.parametrize("kind", ["vibrate", "rotate"])
 def test_energy_closes_with_the_work_of_walls_that_move_in_yade(kind, tmp_path):
     outcome = run(write_case(moved(kind), tmp_path), engine="yade", out=tmp_path / "out")
@@ -30,7 +28,7 @@ def test_energy_closes_with_the_work_of_walls_that_move_in_yade(kind, tmp_path):
     assert any("once for each triangle" in text for text in outcome.warnings)
 
 
-@pytest.mark.yade
+@pytest.mark.yade("module")
 def test_beads_leave_a_hopper_when_its_shutter_is_gone_in_yade(tmp_path):
     data = own("hopper_beads")
     data["scene"] |= {"bin_diameter": "20 mm", "bin_height": "30 mm", "outlet": "10 mm", "outlet_height": "10 mm"}
@@ -47,7 +45,7 @@ def test_beads_leave_a_hopper_when_its_shutter_is_gone_in_yade(tmp_path):
     assert {"hopper", "shutter"} <= {*contacts[resting]["wall"]} and "shutter" not in {*contacts[~resting]["wall"]}
 
 
-@pytest.mark.yade
+@pytest.mark.yade("module")
 def test_phases_without_record_have_no_frames_in_yade(tmp_path):
     phases = [FALL | {"name": name, "duration": "2 ms", "record": name in "ad"} for name in "abcd"]
     data = parts(phase=phases) | {"output": {"rows": 16, "particles": 16}, "numerics": {"time_step": "2e-5 s"}}
@@ -64,7 +62,7 @@ BODIES = """x,y,z,radius,vx,vy,vz
 """
 
 
-@pytest.mark.yade
+@pytest.mark.yade("module")
 @pytest.mark.liggghts
 def test_the_same_bodies_do_the_same_in_both_engines(tmp_path):
     """Without friction (YADE has another); of a file, one frozen; a plate of triangles rises; two time steps."""
@@ -104,7 +102,7 @@ def test_the_same_bodies_do_the_same_in_both_engines(tmp_path):
     assert np.abs(other[:, 2]).max() > 1e-3 and found["yade"].phases.equals(found["liggghts"].phases)
 
 
-@pytest.mark.yade
+@pytest.mark.yade("module")
 @pytest.mark.liggghts
 def test_planes_across_a_periodic_room_throw_spheres_back_on_both_sides_as_in_liggghts(tmp_path):
     """At the faces of the room and some periods on; YADE has the planes as triangles larger than the room."""
@@ -129,14 +127,13 @@ def test_planes_across_a_periodic_room_throw_spheres_back_on_both_sides_as_in_li
         assert force.min() < 0 < force.max() and np.abs(ours.rows[force.name] - force).max() < 1e-3 * force.max()
 
 
-@pytest.mark.parametrize("classes", [True, False])
-def test_every_pair_has_its_friction_if_one_is_not_the_smaller_of_two(classes):
+def test_every_pair_has_its_friction_if_one_is_not_the_smaller_of_two():
     """Of a pair that its MatchMaker does not name YADE takes the mean of two angles."""
     data = parts() | {"contact": {"friction": 0.3, "wall_friction": 0.6}}
-    found = scene_deck.deck(plan(parse(data)), classes=classes)
+    found = scene_deck.deck(plan(parse(data)))
     angles = dict.fromkeys([(0, 0)], math.atan(0.3)) | dict.fromkeys([(0, 1), (1, 1)], math.atan(0.6))
-    assert found.frictions == tuple((*pair, pytest.approx(angle)) for pair, angle in angles.items())
-    assert not classes or next(v for v in found.functors.pairs if v.name == "frictAngle").matches == found.frictions
+    (friction,) = [v for v in found.functors.pairs if v.name == "frictAngle"]
+    assert friction.matches == tuple((*pair, pytest.approx(angle)) for pair, angle in angles.items())
 
 
 def test_a_wall_whose_surface_turns_has_no_other_motion_in_yade():
@@ -146,11 +143,10 @@ def test_a_wall_whose_surface_turns_has_no_other_motion_in_yade():
     with pytest.raises(
         CaseError, match=r"scene\.wall\.tube\.angular_velocity: YADE turns the wall itself, which moves otherwise"
     ):
-        files(scene_engine("yade"), plan(parse(data)))
+        scene_deck.deck(plan(parse(data)))
 
 
-@pytest.mark.parametrize("classes", [True, False])
-def test_a_wall_of_any_name_leaves_the_table_of_the_spheres(classes):
-    texts = scene_deck.files(plan(parse(parts(wall=[FLOOR, PLATE | {"name": "spheres"}]))), classes=classes)
+def test_a_wall_of_any_name_leaves_the_table_of_the_spheres():
+    texts = scene_deck.files(plan(parse(parts(wall=[FLOOR, PLATE | {"name": "spheres"}]))))
     assert len(texts["spheres.txt"].splitlines()) == 1 + BED["count"]
     assert len(texts["wall_spheres.txt"].splitlines()) == 1 + 2  # triangles of a plate

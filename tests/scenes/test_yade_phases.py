@@ -8,15 +8,13 @@ from scene_runs import run, write_case
 from test_parts_motions import BOX, FALL, PLATE
 
 from engines.lammps_decks import needs_lammps
-from engines.yade_native import classes, needs_source
 from epdem.case.scene import parse
 from epdem.engines import scene_engine
 from epdem.errors import EngineError
 from epdem.scenes.columns import last_frame
 from epdem.scenes.plan import plan
 
-pytestmark = pytest.mark.yade
-__all__ = ["classes"]
+pytestmark = pytest.mark.yade("module")
 
 BALL = {"material": "glass", "radius": "1.5 mm"}
 UP = {"wall": "lid", "kind": "linear", "velocity": ["0 m/s", "0 m/s", "0.2 m/s"]}
@@ -175,9 +173,8 @@ def test_motions_that_phases_name_in_another_order_go_on():
 
 
 @needs_lammps
-@needs_source
 @pytest.mark.liggghts
-def test_a_plate_that_changes_its_motion_rubs_spheres_in_all_hosts_alike(classes, tmp_path):
+def test_a_plate_that_changes_its_motion_rubs_spheres_in_all_hosts_alike(tmp_path):
     """Pressed, at rest and drawn back: the slip of each step is that of its own motion."""
     body = [
         BALL | {"name": f"b{k}", "position": [f"{x} mm", f"{y} mm", "1.5 mm"]}
@@ -236,8 +233,7 @@ def test_a_plate_shakes_spheres_of_a_periodic_room_as_in_liggghts(size, tmp_path
     assert (np.abs(np.diff(theirs.particles.query("id == 1")["vx"])) > 0.05).any(), "met across the side"
 
 
-@needs_source
-def test_the_torque_of_a_drum_gives_its_bed_the_energy_that_it_has(classes, tmp_path):
+def test_the_torque_of_a_drum_gives_its_bed_the_energy_that_it_has(tmp_path):
     """With partial slip, of which every energy is known, so that a wrong torque leaves a balance."""
     data = own("drum_beads")
     data["scene"] |= {"duration": "40 ms", "count": 60, "angular_velocity": "600 rpm"}

@@ -24,7 +24,6 @@ from epdem import Scene
 from epdem.base import paths
 from epdem.case.impact import parse
 from epdem.case.toml import read_toml
-from epdem.engines.yade.launcher import write_deck_modules
 from epdem.errors import CaseError, EngineError
 
 spec = importlib.util.spec_from_file_location("guide", ROOT / "docs/guide.py")
@@ -114,7 +113,7 @@ def test_every_block_of_the_tour_runs(tmp_path):
 
 
 @pytest.mark.liggghts
-@pytest.mark.yade
+@pytest.mark.yade("module")
 @pytest.mark.parametrize("page", ["laws", "adhesion", "partial_slip", "yade", "scenes"])
 def test_every_block_of_a_page_runs_with_small_cases(page, tmp_path):
     small(tmp_path)
@@ -128,15 +127,6 @@ def test_no_page_has_blocks_that_no_test_runs():
     played = {"tutorial.md", "choose.md", "results.md", "faq.md", "laws.md", "adhesion.md", "partial_slip.md"}
     played |= {"yade.md", "scenes.md", *OWN}
     assert {name for name, words, _ in ALL if words in (["sh"], ["python"])} <= played
-
-
-@pytest.mark.yade
-def test_the_script_for_yade_runs(tmp_path):
-    ((_, _, text),) = [b for b in of("python") if b[1] == ["yade"]]
-    write_deck_modules(tmp_path, classes=False)
-    (tmp_path / "beds.py").write_text(text.replace("/path/to/deck", str(tmp_path)).replace("100000", "500"))
-    done = subprocess.run(["yade", "-n", "-x", "beds.py"], cwd=tmp_path, capture_output=True, text=True, timeout=120)
-    assert done.returncode == 0 and "Traceback" not in done.stderr, done.stderr
 
 
 def merged(base: dict, more: dict) -> dict:

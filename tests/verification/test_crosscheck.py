@@ -31,7 +31,7 @@ CASES = Path(__file__).parents[2] / "cases"
 STEEL = CASES / "steel_wall.toml"
 LAWS = ("hertz", "thornton", "johnson", "cavity")
 CLOSED = [name for name in OWN_LAW if name != "lammps-mdr"]
-in_liggghts, in_yade = pytest.mark.liggghts, pytest.mark.yade
+in_liggghts, in_yade = pytest.mark.liggghts, pytest.mark.yade("module")
 in_lammps = pytest.mark.skipif(launcher.missing() is not None, reason=str(launcher.missing()))
 
 

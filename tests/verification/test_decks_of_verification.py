@@ -26,6 +26,12 @@ from stored_decks import CASES, SPHERE, compare, planned
 HERE = Path(__file__).parent
 
 
+@pytest.fixture
+def module(monkeypatch):
+    """YADE has its module as far as decks are concerned."""
+    monkeypatch.setattr("epdem.engines.yade.launcher.module", lambda: HERE)
+
+
 def test_the_deck_of_mdr_is_as_stored(tmp_path):
     LammpsMdr().write(planned({}), tmp_path)
     compare(HERE, "lammps-mdr_wall", (tmp_path / "in.impact").read_text())
@@ -40,14 +46,14 @@ def test_the_header_of_the_deck_of_mdr_is_comments(tmp_path):
 
 
 @pytest.mark.parametrize(("engine", "script"), [(liggghts_motions, "in.motion"), (yade_motions, "motion.py")])
-def test_the_deck_of_a_motion_is_as_stored(engine, script):
+def test_the_deck_of_a_motion_is_as_stored(engine, script, module):
     """The materials are of one name each: the second sphere is of the wall's."""
     touch = touch_of(CASES / "oblique_steel.toml")
     compare(HERE, f"motion_{script[-2:]}", engine.files(touch, shear_elastic(touch))[script])
 
 
 @pytest.mark.parametrize("variant", ["swap", "sort", "migration", "restart"])
-def test_the_decks_of_a_variant_are_as_stored(variant):
+def test_the_decks_of_a_variant_are_as_stored(variant, module):
     found = pairs.pairs(planned(SPHERE), 1e-5)
     compare(HERE, f"pairs_{variant}", "".join(liggghts_pairs.scripts(Liggghts().deck(found.plan), found, variant)))
     if variant in yade_pairs.VARIANTS:

@@ -10,9 +10,9 @@ import pytest
 
 from epdem.case.toml import read_toml
 from epdem.engines.lammps import launcher
-from epdem.errors import CaseError
+from epdem.errors import CaseError, EngineError
 from epdem.verification.motion import paths as motions
-from epdem.verification.motion.compare import ENGINES, compare, touch_of
+from epdem.verification.motion.compare import compare, touch_of
 from epdem.verification.motion.embedded import EmbeddedMotions
 from epdem.verification.motion.prescribed import read, refuse, text
 
@@ -140,14 +140,10 @@ def test_lammps_agrees_on_two_laws(tmp_path):
 
 
 @pytest.mark.yade
-def test_yade_has_the_force_of_the_law(tmp_path):
-    pair = touch(law="thornton")
-    for name in ("normal_loading", "rotation_out_of_plane"):
-        motion, loads = embedded(pair, name)
-        found = ENGINES["yade"]().loads(pair, motion, tmp_path / name)
-        assert np.abs(found.normal - loads.normal).max() < 1e-9 * loads.peak
-        off = np.linalg.norm(found.force - loads.force, axis=2).max()
-        assert (off < 1e-9 * loads.peak) == (name == "normal_loading")  # its own spring turns with the pair
+def test_motions_in_yade_need_its_module(tmp_path):
+    with pytest.raises(EngineError, match="motions need the module epdem_yade, which is not built; run 'make yade'"):
+        compare(CASES / "oblique_steel.toml", engines=["yade"], out=tmp_path / "o")
+    assert not (tmp_path / "o").exists()
 
 
 def test_a_motion_comes_back_from_json_and_csv(tmp_path):

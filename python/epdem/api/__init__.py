@@ -20,7 +20,7 @@ from ..case.toml import named, read_toml
 from ..case.warnings import case_warnings
 from ..engines import DEFAULT_ENGINE, scene_engine
 from ..engines import engine as engine_named
-from ..engines.reasons import Citations, citations
+from ..engines.citations import Citations, citations
 from ..errors import CaseError
 from ..impacts.comparison import UNITS
 from ..impacts.experiment import experiment

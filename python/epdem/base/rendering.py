@@ -1,6 +1,9 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Decks and templates to text: undefined names are errors, numbers keep every digit, templates compute nothing."""
 
+from collections.abc import Iterator
+from contextlib import contextmanager
+from contextvars import ContextVar
 from functools import cache
 from types import SimpleNamespace
 from typing import Any, TypeVar
@@ -34,6 +37,7 @@ class Deck(SimpleNamespace):
 
 
 REASON = "\x1f"  # between a line and its reason
+_WITH_REASONS = ContextVar("reasons of lines", default=False)
 OPTIONS: dict[str, Any] = {
     "undefined": jinja2.StrictUndefined,
     "trim_blocks": True,
@@ -70,12 +74,29 @@ def environment(*, reasons: bool = False) -> jinja2.Environment:
     return prepared(jinja2.Environment(loader=loader, **OPTIONS), reasons=reasons)
 
 
-def render(template: str, /, *, reasons: bool = False, **context: object) -> str:
-    """The text of a template; `reasons` as of `environment`.
-
-    Raises CaseError that names the template and the undefined name.
-    """
+@contextmanager
+def with_reasons() -> Iterator[None]:
+    """In this context `render` writes the reason of each line, where the template has one, as its comment."""
+    token = _WITH_REASONS.set(True)
     try:
-        return environment(reasons=reasons).get_template(template).render(context)
+        yield
+    finally:
+        _WITH_REASONS.reset(token)
+
+
+def render(template: str, /, **context: object) -> str:
+    """The text of a template. Raises CaseError that names the template and the undefined name."""
+    reasons = _WITH_REASONS.get()
+    try:
+        text = environment(reasons=reasons).get_template(template).render(context)
     except jinja2.TemplateError as error:
         raise CaseError(f"template {template}: {error}") from None
+    return "\n".join(map(_commented, text.split("\n"))) if reasons else text
+
+
+def _commented(line: str) -> str:
+    """A line whose reason is a comment, behind the comment that it has."""
+    text, _, reason = line.partition(REASON)
+    command, _, comment = text.partition("  # ")
+    comments = dict.fromkeys(filter(None, (comment, reason)))
+    return f"{command.rstrip()}  # {'; '.join(comments)}" if reason else line

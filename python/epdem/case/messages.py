@@ -39,7 +39,7 @@ RENAMED = {  # keys of version 0.1.0
 }
 OTHER_KIND = {
     "impact": "is a bulk scene ([scene]) and this needs impacts ([impact]); "
-    "run, deck, explain, cite, view, soften, tune, sweep and calibrate --target take scenes",
+    "run, deck, cite, view, soften, sweep and calibrate --target take scenes",
     "scene": "is a case of impacts ([impact]) and this needs a bulk scene ([scene])",
 }
 

@@ -107,7 +107,7 @@ class SceneNumerics(Frozen):
 
     skin: by how much neighbour lists reach farther than contacts [m]. processors: axes along which ranks divide the
     room. sort_interval: steps after which the next search sorts the spheres in memory by their positions.
-    None of them changes results beyond round-off; `epdem tune` measures which are fastest.
+    None of them changes results beyond round-off (docs/speed.md).
     """
 
     error: Annotated[float, Field(ge=1e-9, le=0.1)] = 1e-3

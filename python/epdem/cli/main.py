@@ -8,6 +8,7 @@ import os
 import shutil
 import signal
 import sys
+from contextlib import nullcontext
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -147,6 +148,7 @@ def deck(
     convert: Annotated[
         bool, typer.Option("--convert", help="change the model of a LIGGGHTS deck to --law (default: thornton)")
     ] = False,
+    reasons: Annotated[bool, typer.Option("--reasons", help="the reason of each line as its comment")] = False,
     force: Force = False,
     as_json: AsJson = False,
 ) -> None:
@@ -155,7 +157,7 @@ def deck(
     Example: epdem deck --convert my.in --set yieldPressure=1e8 -o converted
     """
     if convert:
-        refuse_options(file, "--convert takes nothing but a LIGGGHTS deck", case=case)
+        refuse_options(file, "--convert takes nothing but a LIGGGHTS deck", case=case, reasons=reasons)
         if engine != DEFAULT_ENGINE or len(law or []) > 1:
             raise CaseError(
                 f"{file}: --convert writes one LIGGGHTS deck with one law; leave out --engine, name one --law"
@@ -171,7 +173,7 @@ def deck(
     if file.suffix == ".j2":
         if case is None:
             raise CaseError(f"{file}: an own template needs the values of a case; add --case CASE")
-        refuse_options(file, "the deck of an own template has the law of its case", law=law)
+        refuse_options(file, "the deck of an own template has the law of its case", law=law, reasons=reasons)
         if engine != DEFAULT_ENGINE:
             raise CaseError(f"{file}: --engine {engine}: own templates are for {DEFAULT_ENGINE}; leave it out")
         from ..engines.liggghts.own_decks import settings
@@ -185,8 +187,11 @@ def deck(
     if len(law or []) > 1:
         raise CaseError("--law: a deck has one law; write one deck for each")
     from ..api import deck as write
+    from ..base.rendering import with_reasons
 
-    print_files(write(file, out, engine=engine, law=law[0] if law else None, force=force, warn=warn), as_json)
+    with with_reasons() if reasons else nullcontext():
+        files = write(file, out, engine=engine, law=law[0] if law else None, force=force, warn=warn)
+    print_files(files, as_json)
 
 
 @app.command()
@@ -224,8 +229,6 @@ def doctor(as_json: AsJson = False) -> None:
 
 for command in (
     cli_predict.predict,
-    cli_scene.explain,
-    cli_scene.tune,
     cli_scene.view,
     cli_scene.soften,
     cli_calibrate.calibrate,

@@ -43,22 +43,6 @@ def run_scene(case: Path, *, engine: str, formats: tuple[str, ...], as_json: boo
     return 0 if outcome.passed else 1
 
 
-def explain(case: CasePath, as_json: AsJson = False) -> None:
-    """Print each line of the LIGGGHTS deck of a case with its reason."""
-    from ..engines.reasons import explain_case
-
-    lines = explain_case(case)
-    if as_json:
-        print(json.dumps([{"file": f, "line": text, "reason": reason} for f, text, reason in lines], indent=1))
-        return
-    file = None
-    for name, text, reason in lines:
-        if name != file:
-            print(f"{name}:")
-            file = name
-        print(f"  {text.split('  # ')[0].rstrip()}\n      {reason}")
-
-
 def view(
     case: CasePath,
     out: Annotated[Path | None, typer.Option("--out", "-o", help="PNG file (default: NAME.png here)")] = None,
@@ -82,40 +66,6 @@ def view(
             drawn = pictures.before(p, path)
     said = {"file": str(path), "spheres": p.count, "drawn": drawn}
     print(json.dumps(said) if as_json else f"{path}: walls, regions and {drawn} of {p.count} spheres")
-
-
-def tune(
-    case: CasePath,
-    ranks: Annotated[int, typer.Option(min=1, max=1024, help="MPI ranks of LIGGGHTS")] = 1,
-    seconds: Annotated[float, typer.Option(min=1.0, max=1e6, help="longest time of all trials")] = 60.0,
-    write: Annotated[bool, typer.Option("--write", help="put the choices into the case file")] = False,
-    as_json: AsJson = False,
-) -> None:
-    """Find the fastest neighbour skin and sorting of a scene in LIGGGHTS and, with --ranks, the processor grid."""
-    from ..base.terminal import status
-    from ..engines.liggghts import tune as t
-
-    with status() as line:
-        tuned = t.tune(case, ranks=ranks, seconds=seconds, progress=lambda text: line(f"{case.stem}: {text}"))
-    if write:
-        t.write(case, tuned)
-    rows = [(str(x.choice), x.seconds, *x.saves(tuned.trials[0])) for x in tuned.trials]
-    stages = {stage: str(fastest) if fastest else None for stage, fastest in tuned.stages.items()}
-    if as_json:
-        named = ("trial", "seconds_per_step", "saves", "error")
-        trials = [dict(zip(named, row, strict=True)) for row in rows]
-        said = {"trials": trials, "stages": stages, "ranks": tuned.ranks, "numerics": tuned.lines}
-        print(json.dumps(said | {"written": write and bool(tuned.lines)}))
-        return
-    for name, per_step, saved, error in rows:
-        print(f"{name}: {per_step * 1e6:.4g} us per step, saves {saved:.1%} +- {error:.1%}")
-    for stage, fastest in stages.items():
-        print(f"stage {stage}: {f'fastest with {fastest}' if fastest else 'not reached, not counted'}")
-    if not tuned.lines:
-        print(f"nothing saves more than {t.WORTH:.0%} for certain: the case stays as it is")
-        return
-    place = f"written to {case}, under [numerics]:" if write else "for the case, under [numerics] (or with --write):"
-    print(place, *tuned.lines, sep="\n")
 
 
 def soften(

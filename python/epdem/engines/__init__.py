@@ -4,9 +4,12 @@
 from collections.abc import Callable
 
 from ..base.paths import DEFAULT_ENGINE
+from ..base.rendering import with_reasons
 from ..errors import CaseError
-from ..impacts.engine import Feature, ImpactEngine, Trajectory
+from ..impacts.engine import Feature, ImpactEngine, Trajectory, texts
+from ..impacts.plan import Plan
 from ..scenes.engine import SceneEngine
+from ..scenes.plan import ScenePlan
 from .embedded import Embedded
 from .lammps.engine import Lammps
 from .liggghts.engine import Liggghts
@@ -35,4 +38,12 @@ def scene_engine(name: str) -> SceneEngine:
     return SCENES[name]()
 
 
-__all__ = ["DEFAULT_ENGINE", "ENGINES", "SCENES", "ImpactEngine", "Trajectory", "engine", "scene_engine"]
+def reasoned(name: str, job: Plan | ScenePlan) -> dict[str, str]:
+    """The text files of a deck with the reason of each line as its comment; empty for templates without reasons."""
+    if name != DEFAULT_ENGINE:
+        return {}
+    with with_reasons():
+        return texts(engine(name), job) if isinstance(job, Plan) else texts(scene_engine(name), job)
+
+
+__all__ = ["DEFAULT_ENGINE", "ENGINES", "SCENES", "ImpactEngine", "Trajectory", "engine", "reasoned", "scene_engine"]

@@ -15,7 +15,8 @@ from ..base.files import claim
 from ..base.paths import library_hash, product_hash
 from ..base.tables import unit_of
 from ..case.impact import load
-from ..engines.reasons import citations, reasons
+from ..engines import reasoned
+from ..engines.citations import citations
 from ..impacts import charts
 from ..impacts.charts import SPEED
 from ..impacts.comparison import CHECKED, UNITS
@@ -52,17 +53,15 @@ def case_lines(text: str) -> Lines:
 
 
 def decks(engine: str, job: Plan | ScenePlan | None, stored: Mapping[str, str], of: str = "") -> list[Lines]:
-    """The files of a deck with the reasons of the engine's templates; a comment that equals the reason is left out.
-
-    Without these the `stored` texts by name, their comments as reasons. of: end of the titles.
-    """
-    lines: dict[str, list[tuple[str, str]]] = {}
-    for name, line, why in reasons(engine, job) if job else []:
-        lines.setdefault(name, []).append((line.removesuffix(why).rstrip(" #") if why else line, why))
-    for name, text in {} if lines else stored.items():
-        split = [line.partition("  # ") for line in text.splitlines()]
-        lines[name] = [(line.rstrip(), reason) for line, _, reason in split]
-    return [Lines(f"Deck {name}{of}", found) for name, found in lines.items()]
+    """The `stored` scripts of a deck by name, line by line with their comments; with the reasons of the engine's
+    templates if the job is known. of: end of the titles."""
+    texts = {name: text for name, text in stored.items() if name.startswith("in.") or name.endswith((".in", ".py"))}
+    texts |= {name: text for name, text in (reasoned(engine, job) if job else {}).items() if name in texts}
+    return [
+        Lines(f"Deck {name}{of}", [(command.rstrip(), why) for command, _, why in split])
+        for name, text in texts.items()
+        for split in [[line.partition("  # ") for line in text.splitlines()]]
+    ]
 
 
 def origin(about: Mapping[str, object], hashes: Mapping[str, object]) -> Facts:

@@ -1,21 +1,17 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Materials, bodies, values of pairs and the law in a deck of YADE: words of epdem_yade, numbers of the deck's laws."""
+"""Materials, bodies, values of pairs and the law in a deck of YADE, in words of epdem_yade."""
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
-from math import atan, inf
+from math import atan
 
 from ...base.declarations import Declaration, declarations
 from ...case.fields import NODES, Tangential
-from ...errors import CaseError
-from ...laws.strengths import law_named
-from ...yade.deck_modules import cone
-from ...yade.deck_modules.law import trigger_factor
 
 
 @dataclass(frozen=True)
 class Material:
-    """A material of a deck: keywords of `Contacts.material`, of EpMat or of a material of YADE's own, SI."""
+    """A material of a deck: keywords of EpMat or of a material of YADE's own, SI."""
 
     name: str
     values: Mapping[str, float]
@@ -52,22 +48,6 @@ class Group:
     data: str
     radius: float
     material: str
-
-
-def strength_values(
-    law: str, ratios: dict[str, float], strength: float, young_modulus: float, material: str
-) -> dict[str, float]:
-    """The law's strength [Pa] by its name, nothing for a law without one. Raises CaseError where YADE's class ends."""
-    name = law_named(law).strength
-    if name is None:
-        return {}
-    limit = cone.strongest(young_modulus, trigger_factor(law, **ratios))
-    if limit <= strength < inf:
-        raise CaseError(
-            f"materials.{material}: {name} = {strength:.6g} Pa, YADE's law takes less than "
-            f"{limit:.6g} Pa at this young_modulus; use --engine liggghts"
-        )
-    return {name: strength}
 
 
 def material(

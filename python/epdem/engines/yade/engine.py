@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """YADE with our laws: impacts side by side in one Python deck, and bulk scenes.
 
-Where the module epdem_yade is built, a deck has a copy of it, else a copy of the C library and modules that call it.
+A deck has a copy of the module epdem_yade. Without the module a deck of normal impacts has a copy of the C library.
 """
 
 import re
@@ -23,7 +23,7 @@ from ...scenes.plan import ScenePlan
 from ...theory.sources import Source
 from ..host import Host
 from . import classes, launcher, scene_deck, scene_tables
-from .classes import Functors, Group, Material, PairValue, strength_values
+from .classes import Functors, Group, Material, PairValue
 from .launcher import command, environment, module_version, write_deck_modules
 from .scene_parts import table_text
 
@@ -50,7 +50,7 @@ class Yade(Host):
     own_law = False  # a law of YADE, which needs no module
     template = "yade/impact.py.j2"
     out = "out.yade"
-    scene_tables = scene_tables
+    scene_deck, scene_tables = scene_deck, scene_tables
     leftovers = ("particles.*.npy", "contacts.*.npy", "triangles.*.npy")
 
     def __init__(self) -> None:
@@ -64,26 +64,47 @@ class Yade(Host):
 
     def version(self) -> str:
         match = re.search(r"version: (\S+)", captured_output([command(), "--version"], environment()))
-        laws = (
-            module_version() if self.classes else "laws of the C library in the deck ('make yade' builds C++ classes)"
-        )
+        laws = module_version() if self.classes else "normal impacts with the C library ('make yade' builds all else)"
         return f"YADE {match.group(1) if match else '(version unknown)'}, {laws}"
 
+    def require_module(self, job: Plan | ScenePlan) -> None:
+        """Raise CaseError without epdem_yade for all but normal impacts without adhesion and dashpot."""
+        if self.classes or self.own_law:
+            return
+        if isinstance(job, ScenePlan):
+            place = "scene"
+        elif job.experiment.law.adheres:
+            place = f"law.name = {job.experiment.law.name!r}"
+        elif job.experiment.oblique:
+            place = "impact.angles"
+        elif job.experiment.viscous_restitution is not None:
+            place = "viscous"
+        else:
+            return
+        raise CaseError(
+            f"{place}: YADE has it with the module epdem_yade, which is not built; {launcher.BUILD}, or use --engine "
+            "liggghts"
+        )
+
+    def check(self, job: Plan | ScenePlan) -> list[str]:
+        self.require_module(job)
+        return super().check(job)
+
     def material(self, x: Experiment, body: Body, strength: float) -> Material:
-        """The material of one body. Raises CaseError for a strength beyond the law of a deck without epdem_yade."""
-        values = {
-            "young_modulus": body.young_modulus,
-            "poisson_ratio": body.poisson_ratio,
-            "density": body.density if isfinite(body.density) else 1.0,  # of a rigid wall: not used
-        }
-        if self.classes:
-            friction = x.oblique.friction if x.oblique else 0.0
-            law = x.law
-            return classes.material(
-                body.material, law.name, law.parameters, strength=strength, friction=friction, **values
-            )
-        own = strength_values(x.law.name, x.law.ratios(), strength, values["young_modulus"], body.material)
-        return Material(body.material, values | own)
+        """The material of one body; with the C library its mass alone counts."""
+        density = body.density if isfinite(body.density) else 1.0  # of a rigid wall: not used
+        if not self.classes:
+            return Material(body.material, {"density": density})
+        return classes.material(
+            body.material,
+            x.law.name,
+            x.law.parameters,
+            strength=strength,
+            young_modulus=body.young_modulus,
+            poisson_ratio=body.poisson_ratio,
+            density=density,
+            friction=x.oblique.friction if x.oblique else 0.0,
+        )
 
     def functors(self, x: Experiment) -> Functors | None:
         """What the functors of epdem_yade are given; None without the module."""
@@ -97,18 +118,18 @@ class Yade(Host):
         shape = "Wall" if isinf(x.target.radius) else "Sphere"
         return Functors(classes.title(x.law.name), (shape,), pairs, classes.settings(tangential))
 
-    def ratios(self, x: Experiment) -> dict[str, float]:
-        """The law's dimensionless parameters in the deck."""
-        return x.law.ratios()
+    def of_pair(self, x: Experiment) -> dict[str, float]:
+        """Numbers of the pair for the C library; none with the module or YADE's own law."""
+        if self.classes or self.own_law:
+            return {}
+        given = {p.name: p.default for p in declarations()[x.law.name].parameters} | x.law.parameters
+        values = {"E_star": x.E_star, "R_star": x.R_star, **given, "share": x.law.share}
+        return {name: value for name, value in values.items() if value is not None}
 
     def deck(self, plan: Plan) -> decks.Deck:
         """The deck of a plan. Raises CaseError for what YADE cannot do."""
         x, wall = plan.experiment, isinf(plan.experiment.target.radius)
-        if x.oblique and not self.classes:  # YADE's own spring is off by up to 0.5 of psi_2
-            raise CaseError(
-                "impact.angles: YADE has the friction of an impact with the module epdem_yade, which is not built; run "
-                "'make yade', or use --engine embedded, liggghts or lammps"
-            )
+        self.require_module(plan)
         check_features(self, x)
         materials = {
             x.target.material: self.material(x, x.target, x.law.strengths[1]),
@@ -127,7 +148,7 @@ class Yade(Host):
             native=self.own_law,
             functors=self.functors(x),
             anvil=None,
-            ratios=self.ratios(x),
+            of_pair=self.of_pair(x),
             materials=tuple(materials.values()),
             wall_material=x.target.material if wall else None,
             bodies=tuple(bodies),
@@ -135,15 +156,11 @@ class Yade(Host):
             skin=0.1 * min(x.body.radius, x.target.radius),
             samples=plan.steps + 2,  # one more than the plan has: a velocity is the mean of those half a step away
             path="path.bin",
-            remembers=False,  # contacts that ended
         )
 
     def check_scene(self, plan: ScenePlan) -> list[str]:
-        scene_deck.deck(plan, classes=self.classes)
-        return scene_deck.notes(plan, classes=self.classes)
-
-    def files(self, plan: ScenePlan) -> dict[str, str]:
-        return scene_deck.files(plan, classes=self.classes)
+        super().check_scene(plan)
+        return scene_deck.notes(plan)
 
     def impact_files(self, plan: Plan) -> dict[str, str]:
         deck = self.deck(plan)
@@ -154,6 +171,7 @@ class Yade(Host):
         return {"impact.py": decks.render(self.template, deck=deck)} | data
 
     def write(self, job: Plan | ScenePlan, folder: Path) -> list[Path]:
+        self.require_module(job)
         scene = isinstance(job, ScenePlan)
         files = super().write(job, folder)
         return files if self.own_law else files + write_deck_modules(folder, classes=self.classes, scene=scene)

@@ -12,9 +12,9 @@ from ...base import paths
 from ...base.declarations import library_path
 from ...base.files import atomic, write_texts
 from ...errors import EngineError
-from ...yade.deck_modules.law import LIBRARY
 
 MODULE, PROGRAM = "epdem_yade.so", "epdem_yade.program"  # the module, and the path of the program that it is built for
+BUILD = "run 'make yade', or name one by EPDEM_YADE_MODULE"  # the module
 MODULES = Path(__file__).parents[2] / "yade/deck_modules"
 
 
@@ -26,7 +26,7 @@ def command() -> str:
 def module() -> Path | None:
     """The module epdem_yade: of EPDEM_YADE_MODULE (its file or folder), else of `make yade` for the program in use.
 
-    None: decks call the C library. Raises EngineError if EPDEM_YADE_MODULE names no module.
+    None: only normal impacts run, with the C library. Raises EngineError if EPDEM_YADE_MODULE names no module.
     """
     if named := os.environ.get("EPDEM_YADE_MODULE"):
         path = Path(named) / MODULE if Path(named).is_dir() else Path(named)
@@ -50,28 +50,25 @@ def module_version() -> str:
     return f"epdem_yade {hashlib.sha256(path.read_bytes()).hexdigest()[:12]}" if path else "no epdem_yade"
 
 
-def deck_modules(names: Sequence[str] | None = None) -> dict[str, str]:
-    """The Python modules of a deck by path beside the deck; names: of these modules only."""
+def deck_modules(names: Sequence[str]) -> dict[str, str]:
+    """These Python modules of a deck by path beside the deck."""
     note = '"""The part of epdem that YADE needs; it came with the deck."""\n'
     files = {"epdem/__init__.py": note, "epdem/yade/__init__.py": note, "epdem/yade/deck_modules/__init__.py": note}
     return files | {
-        f"epdem/yade/deck_modules/{p.name}": p.read_text(encoding="utf-8")
-        for p in sorted(MODULES.glob("*.py"))
-        if names is None or p.stem in names
+        f"epdem/yade/deck_modules/{name}.py": (MODULES / f"{name}.py").read_text(encoding="utf-8") for name in names
     }
 
 
 def write_deck_modules(folder: Path, *, classes: bool, scene: bool = False) -> list[Path]:
     """Write what a deck imports into its folder. Raises EngineError.
 
-    classes: a copy of epdem_yade, else Python modules and a copy of the C library. scene: the modules of a scene, too.
+    classes: a copy of epdem_yade, and the modules of a scene; else the contacts of impacts and a copy of the C library.
     """
     path = module() if classes else library_path()
     assert path is not None  # `classes` says so
-    copy = folder / (MODULE if classes else f"epdem/yade/deck_modules/{LIBRARY}")
-    written = (
-        write_texts(folder, deck_modules(("recorder", "spheres") if classes else None)) if scene or not classes else []
-    )
+    copy = folder / (MODULE if classes else f"epdem/yade/deck_modules/{path.name}")
+    names = ("recorder", "spheres") if scene else () if classes else ("contacts",)
+    written = write_texts(folder, deck_modules(names)) if names else []
     copy.parent.mkdir(parents=True, exist_ok=True)
     with atomic(copy, sync=False) as temporary:
         shutil.copyfile(path, temporary)

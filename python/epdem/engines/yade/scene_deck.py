@@ -2,16 +2,15 @@
 """Scenes in YADE: one Python deck, tables of spheres and triangles, and modules with a copy of the compiled laws."""
 
 from itertools import combinations_with_replacement
+from math import atan
 
 from ...base import rendering as decks
-from ...errors import CaseError
 from ...scenes import placement
 from ...scenes.plan import ScenePlan
-from ...yade.deck_modules import cone
 from ..host import refuse as refuse_value
 from ..input_script import phases
 from . import classes as words
-from .classes import Functors, Material, PairValue, of_pairs, strength_values
+from .classes import Functors, Material, PairValue, of_pairs
 from .scene_parts import (
     EDGES,
     HEAD,
@@ -32,50 +31,33 @@ Square = tuple[tuple[float, ...], ...]
 SCRIPT, SPHERES = "scene.py", "spheres.txt"
 WORKS = {"plastic_work": "plasticWork", "adhesive_work": "adhesionLoss", "friction_work": "frictionWork"}  # of EpState
 SKIN = 0.25  # of the smallest radius: few sortings and few idle neighbours
-NO_DASHPOT = (
-    "contact.tangential_restitution: YADE's law has no dashpot, it was left out; make yade builds a law with it"
-)
 NO_RANKS = "numerics.processors: a scene in YADE has one rank, it was left out"
 NO_SORTING = "numerics.sort_interval: YADE does not sort the spheres in memory, it was left out"
 
 
-def refuse(p: ScenePlan, *, classes: bool) -> None:
-    """Raise CaseError for parts of a scene that YADE does not have; classes: whether epdem_yade is built."""
-    m, out = p.model, p.output
+def refuse(p: ScenePlan) -> None:
+    """Raise CaseError for parts of a scene that YADE does not have."""
+    out = p.output
     refuse_parts(p)
-    rolling = m.rolling and m.rolling.model
+    rolling = p.model.rolling and p.model.rolling.model
     unknown: dict[str, tuple[object, str]] = {
         "contact.rolling": (rolling == "epsd" and rolling, "YADE's laws have cdt and epsd2"),
         "output.restarts": (out.restarts, "a YADE scene is not continued"),
         "output.vtk": (out.vtk, "there is no VTK output; output.particles holds the same"),
         "output.pictures": (out.pictures, "YADE draws none without a display"),
     }
-    of_classes: dict[str, object] = {
-        "viscous.restitution": p.case.viscous and p.case.viscous.restitution,
-        "contact.tangential": m.nodes and m.tangential,
-        "contact.rolling": rolling,
-        "contact.cohesion": m.cohesion,
-        "law.compaction": m.compaction,
-    }
     for place, (value, reason) in unknown.items():
         refuse_value(place, value, reason)
-    for place, value in of_classes.items():
-        if value and not classes:
-            raise CaseError(
-                f"{place} = {value!r}: YADE has it with the module epdem_yade, which is not built; run 'make yade', "
-                "remove it or use --engine liggghts"
-            )
 
 
-def notes(p: ScenePlan, *, classes: bool) -> list[str]:
+def notes(p: ScenePlan) -> list[str]:
     """Sentences on the parts of a case that a YADE scene leaves out."""
-    found = [NO_DASHPOT] if p.model.tangential_restitution is not None and not classes else []
-    found += [NO_RANKS] if p.case.numerics.processors else []
+    found = [NO_RANKS] if p.case.numerics.processors else []
     found += [NO_SORTING] if p.case.numerics.sort_interval else []
     return [*found, EDGES] if any(not is_endless(p, name) for name in p.scene.meshes) else found
 
 
-def _materials(p: ScenePlan, friction: Square, *, classes: bool) -> tuple[Material, ...]:
+def _materials(p: ScenePlan, friction: Square) -> tuple[Material, ...]:
     materials, m = [], p.model
     for i, t in enumerate(m.types):
         x = p.case.materials[t.material]
@@ -85,11 +67,7 @@ def _materials(p: ScenePlan, friction: Square, *, classes: bool) -> tuple[Materi
             "density": x.density,
             "friction": friction[i][i],
         }
-        if classes:
-            materials.append(words.material(t.name, m.law, m.parameters, strength=t.strength, **values))
-            continue
-        own = strength_values(p.model.law, p.model.ratios(), t.strength, x.young_modulus, t.material)
-        materials.append(Material(t.name, values | own))
+        materials.append(words.material(t.name, m.law, m.parameters, strength=t.strength, **values))
     return tuple(materials)
 
 
@@ -98,7 +76,7 @@ def _pairs(friction: Square) -> tuple[tuple[int, int, float], ...]:
     pairs = list(combinations_with_replacement(range(len(friction)), 2))
     if all(friction[a][b] == min(friction[a][a], friction[b][b]) for a, b in pairs):
         return ()
-    return tuple((a, b, cone.friction_angle(friction[a][b])) for a, b in pairs)
+    return tuple((a, b, atan(friction[a][b])) for a, b in pairs)
 
 
 def _functors(p: ScenePlan, friction: Square) -> Functors:
@@ -139,9 +117,9 @@ def _placed(p: ScenePlan) -> bool:
     return bool(p.scene.table) or any(f.phase == first and f.rate is None for f in p.insertions)
 
 
-def deck(p: ScenePlan, *, classes: bool) -> decks.Deck:
+def deck(p: ScenePlan) -> decks.Deck:
     """The YADE deck of a scene. Raises CaseError for what YADE cannot do."""
-    refuse(p, classes=classes)
+    refuse(p)
     m, friction, every_phase, every_wall = p.model, p.model.friction, _phases(p), walls(p)
     xlo, xhi, ylo, yhi, zlo, zhi = p.box
     sides = () if p.scene.periodic else ((xlo, xhi), (ylo, yhi))
@@ -153,10 +131,8 @@ def deck(p: ScenePlan, *, classes: bool) -> decks.Deck:
         source=p.case.case.source,
         law=m.law,
         native=False,
-        functors=_functors(p, friction) if classes else None,
-        ratios=m.ratios(),
-        materials=_materials(p, friction, classes=classes),
-        frictions=_pairs(friction),
+        functors=_functors(p, friction),
+        materials=_materials(p, friction),
         periodic=p.scene.periodic,
         cell=(xhi - xlo, yhi - ylo, 2.0 * (zhi - zlo)),
         walls=[every_wall[name] for name in every_wall if name in there],
@@ -173,15 +149,14 @@ def deck(p: ScenePlan, *, classes: bool) -> decks.Deck:
         motions=[motion for phase in every_phase for motion in phase.motions],
         sampling=1 if every_step else p.sampling if p.output.loads or p.loads else p.every,
         spins=m.spins,
-        remembers="plastic_work" in p.works and not classes,  # contacts that ended, of which the plastic work follows
-        works=[WORKS[name] for name in p.works if name in WORKS] if classes else [],
+        works=[WORKS[name] for name in p.works if name in WORKS],
         loads=loads(p),
     )
 
 
-def files(p: ScenePlan, *, classes: bool) -> dict[str, str]:
+def files(p: ScenePlan) -> dict[str, str]:
     """All files of a YADE scene by name; they run by hand in one folder. Raises CaseError."""
-    deck_files = {SCRIPT: decks.render("yade/scene.py.j2", deck=deck(p, classes=classes))}
+    deck_files = {SCRIPT: decks.render("yade/scene.py.j2", deck=deck(p))}
     if _placed(p):
         deck_files[SPHERES] = table_text(HEAD, [*placement.moving_spheres(p)])
     return deck_files | files_of_parts(p)

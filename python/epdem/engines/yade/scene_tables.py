@@ -15,19 +15,18 @@ from ..host import frames
 from .scene_parts import is_endless, wall_names
 
 PRESETS = {"floor_force_z": "floor_load", "plate_force_z": "plate_force", "drum_torque_y": "torque"}  # columns of kinds
-# of a contact: number of the sphere and of the other body (from 0; walls after the spheres), overlaps [m]; of the
-# classes also whether the bodies are attached, and what compaction adds
+# of a contact: number of the sphere and of the other body (from 0; walls after the spheres), overlaps [m], whether the
+# bodies are attached; with compaction what growth adds
 CONTACT = ["i", "j", "overlap", "delta_max", "attached", *columns.GROWTH]
 
 
 def _frames(
-    p: ScenePlan, folder: Path, kind: str, every: int, names: list[str], of_classes: list[str], without: Collection[int]
+    p: ScenePlan, folder: Path, kind: str, every: int, names: list[str], without: Collection[int]
 ) -> pd.DataFrame:
-    """The frames of a kind. A deck with epdem_yade writes the columns `of_classes`, too."""
+    """The frames of a kind."""
 
     def read(path: Path) -> pd.DataFrame:
-        values = np.load(path)
-        return pd.DataFrame(values, columns=[*names, *(of_classes if values.shape[1] > len(names) else [])])
+        return pd.DataFrame(np.load(path), columns=names)
 
     return frames(p, folder, f"{kind}.{{}}.npy", every, read, without)
 
@@ -53,8 +52,7 @@ def rows(p: ScenePlan, log: Path) -> pd.DataFrame:
 
 def particles(p: ScenePlan, folder: Path, without: Collection[int] = ()) -> pd.DataFrame:
     """Every sphere of every frame, SI. Raises EngineError for an incomplete frame."""
-    names = columns.columns_of_frames(p)
-    table = _frames(p, folder, "particles", p.frames, names[: len(names) - len(p.works)], [*p.works], without)
+    table = _frames(p, folder, "particles", p.frames, columns.columns_of_frames(p), without)
     if p.scene.periodic:  # YADE does not put back what leaves its periodic cell
         for axis, low, high in zip("xy", p.box[0:4:2], p.box[1:4:2], strict=True):
             table[axis] = (table[axis] - low) % (high - low) + low
@@ -62,17 +60,8 @@ def particles(p: ScenePlan, folder: Path, without: Collection[int] = ()) -> pd.D
 
 
 def contact_table(p: ScenePlan, folder: Path, spheres: pd.DataFrame, without: Collection[int] = ()) -> pd.DataFrame:
-    """Every contact of every frame. Where no frame has the plastic work, `spheres` gets it from the contacts."""
-    every = _contacts(p, folder, spheres, without)
-    if "plastic_work" in p.works and "plastic_work" not in spheres:
-        spheres["plastic_work"] = _plastic_work(every, spheres)
-    return every[(every["overlap"] > 0) | (every["force"] != 0)].reset_index(drop=True)
-
-
-def _contacts(p: ScenePlan, folder: Path, spheres: pd.DataFrame, without: Collection[int]) -> pd.DataFrame:
-    """Every contact of every frame; with overlap 0 those that ended since the frame before."""
-    of_classes = CONTACT[4:] if p.model.compaction else CONTACT[4:5]
-    raw = _frames(p, folder, "contacts", p.contacts, CONTACT[:4], of_classes, without)
+    """Every contact of every frame."""
+    raw = _frames(p, folder, "contacts", p.contacts, CONTACT if p.model.compaction else CONTACT[:5], without)
     raw["delta_max"] = raw["delta_max"].fillna(raw["overlap"])  # of a law without history
     attached = raw["attached"] > 0 if p.model.adheres else False
     overlap = raw["overlap"] + raw.get("added_overlap", 0.0)
@@ -86,7 +75,8 @@ def _contacts(p: ScenePlan, folder: Path, spheres: pd.DataFrame, without: Collec
     beyond = raw["j"] - p.count + 1
     raw["wall"] = walls[beyond.clip(lower=0)]
     raw["i"], raw["j"] = raw["i"] + 1, np.where(beyond > 0, 0, raw["j"] + 1)
-    return columns.complete(p, raw, spheres, folder)
+    every = columns.complete(p, raw, spheres, folder)
+    return every[(every["overlap"] > 0) | (every["force"] != 0)].reset_index(drop=True)
 
 
 def wall_table(p: ScenePlan, folder: Path, without: Collection[int] = ()) -> pd.DataFrame:
@@ -94,7 +84,7 @@ def wall_table(p: ScenePlan, folder: Path, without: Collection[int] = ()) -> pd.
 
     A plate without edges is one triangle in YADE; each triangle of the plate's mesh has the mean of the plate.
     """
-    raw = _frames(p, folder, "triangles", p.frames, ["normal_stress", "shear_stress", "wear"], [], without)
+    raw = _frames(p, folder, "triangles", p.frames, ["normal_stress", "shear_stress", "wear"], without)
     steps = raw["step"].unique()
     values, begin, tables = raw.iloc[:, 1:].to_numpy().reshape(len(steps), -1, 3), 0, []
     for name in p.stress_walls:
@@ -107,22 +97,3 @@ def wall_table(p: ScenePlan, folder: Path, without: Collection[int] = ()) -> pd.
         columns = dict(zip(raw.columns[1:], found.reshape(-1, 3).T, strict=True))
         tables.append(pd.DataFrame({"step": np.repeat(steps, len(area)), "wall": name} | each | columns))
     return pd.concat(tables, ignore_index=True)
-
-
-def _plastic_work(every: pd.DataFrame, spheres: pd.DataFrame) -> np.ndarray:
-    """Plastic work [J] of each sphere up to each frame: half of that of its contacts, all of it at a wall.
-
-    Contacts that are there count as they are, those that have ended with their last value from then on.
-    """
-    at_wall = every["wall"] != ""
-    first = every.assign(id=every["i"], share=np.where(at_wall, 1.0, 0.5))
-    sides = pd.concat([first, every[~at_wall].assign(id=every["j"], share=0.5)])
-    work = (sides["share"] * sides["plastic_work"]).groupby([sides["overlap"] > 0, sides["step"], sides["id"]]).sum()
-    frames = spheres.pivot_table(index="step", columns="id", values="mass") * 0.0
-
-    def part(there: bool) -> pd.DataFrame:
-        chosen = work[there] if there in work.index.get_level_values(0) else work.iloc[:0].droplevel(0)
-        return chosen.unstack().reindex(index=frames.index, columns=frames.columns).fillna(0.0)
-
-    total = part(True) + part(False).cumsum()
-    return np.asarray(total.stack().reindex(pd.MultiIndex.from_frame(spheres[["step", "id"]])))

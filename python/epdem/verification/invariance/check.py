@@ -53,6 +53,8 @@ class _Host(Protocol):
 def _host(tool: ImpactEngine) -> _Host | None:
     if tool.name == "lammps-mdr":  # walls only
         return None
+    if isinstance(tool, Yade) and not (tool.classes or tool.own_law):  # a deck with the C library does not continue
+        return None
     hosts: dict[type, _Host] = {Liggghts: liggghts, Lammps: lammps, Yade: yade}
     return next((host for kind, host in hosts.items() if isinstance(tool, kind)), None)
 

@@ -62,9 +62,6 @@ class YadeLuding(Yade):
         }
         return Material(body.material, values)
 
-    def ratios(self, x: Experiment) -> dict[str, float]:
-        return {}
-
     def deck(self, plan: Plan) -> Deck:
         x, deck = plan.experiment, super().deck(plan)
         anvil = None

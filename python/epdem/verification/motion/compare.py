@@ -37,8 +37,8 @@ TOLERANCE = 1e-9  # of the largest force
 class Outcome:
     """rows: motion, law, engine, friction, force_max [N], deviations from the first engine over its largest force.
 
-    normal: of the law's forces; force: of all forces; torque: of the torques, over the smaller radius, too. An engine
-    with a spring of its own answers for `normal` alone. turned: see `paths.objectivity`; NaN for other motions.
+    normal: of the law's forces; force: of all forces; torque: of the torques, over the smaller radius, too.
+    turned: see `paths.objectivity`; NaN for other motions.
     """
 
     rows: pd.DataFrame
@@ -111,17 +111,14 @@ def compare(
                 found = tool.loads(touch, motion, place)
                 write_texts(place, {"motion.json": text(motion.columns() | found.columns())})
                 first = first or found
-                friction = "own" if tool.own_spring else touch.tangential
-                row = {"motion": motion.name, "law": law, "engine": tool.name, "friction": friction}
-                rows.append(row | deviations(touch, motion, found, first, own_spring=tool.own_spring))
+                row = {"motion": motion.name, "law": law, "engine": tool.name, "friction": touch.tangential}
+                rows.append(row | deviations(touch, motion, found, first))
         table = pd.DataFrame(rows)
         write_csv(folder / TABLE, table)
     return Outcome(table, folder)
 
 
-def deviations(
-    touch: Touch, motion: Motion, found: Loads, first: Loads, *, own_spring: bool
-) -> dict[str, float | bool]:
+def deviations(touch: Touch, motion: Motion, found: Loads, first: Loads) -> dict[str, float | bool]:
     """How far forces and torques lie from the first ones; see `Outcome`."""
     normals, scale = unit_normals(motion), max(first.peak, 1e-300)
     off = {
@@ -130,6 +127,6 @@ def deviations(
         "torque": np.linalg.norm(found.torque - first.torque, axis=2).max() / min(touch.radii),
     }
     shares = {name: float(value / scale) for name, value in off.items()}
-    wrong = any(not shares[name] <= TOLERANCE for name in (["normal"] if own_spring else shares))
+    wrong = any(not share <= TOLERANCE for share in shares.values())
     turned = objectivity(found) if motion.name == rigid_rotation.__name__ else math.nan
     return {"force_max": found.peak} | shares | {"turned": turned, "wrong": wrong}

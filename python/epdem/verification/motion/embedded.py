@@ -16,7 +16,6 @@ class EmbeddedMotions:
     name = Embedded.name
     laws: tuple[str, ...] | None = None
     features = Embedded.features
-    own_spring = False
 
     def missing(self) -> str | None:
         return Embedded().missing()

@@ -20,7 +20,6 @@ class LammpsMotions:
     name = Lammps.name
     laws: tuple[str, ...] | None = None
     features = Lammps.features
-    own_spring = False
 
     def missing(self) -> str | None:
         return launcher.missing()

@@ -20,12 +20,11 @@ SET = [f"{name}{axis}" for name in ("", "v", "omega") for axis in "xyz"]
 
 
 class LiggghtsMotions:
-    """LIGGGHTS with a law and a friction of ours, or with its own spring."""
+    """LIGGGHTS with a law and a friction of ours."""
 
     name = Liggghts.name
     laws: tuple[str, ...] | None = None
     features = Liggghts.features
-    own_spring = False
 
     def missing(self) -> str | None:
         return launcher.missing()

@@ -120,7 +120,6 @@ class MotionEngine(Protocol):
     name: str
     laws: tuple[str, ...] | None  # as in `Engine`
     features: frozenset[Feature]  # as in `Engine`
-    own_spring: bool  # its own spring runs for any tangential model
 
     def missing(self) -> str | None:
         """None if the engine can run here, else a sentence with the command that installs it."""

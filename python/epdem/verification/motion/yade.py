@@ -13,7 +13,7 @@ from ...base.processes import call
 from ...base.rendering import Deck
 from ...engines.yade.classes import Material, settings
 from ...engines.yade.engine import Yade
-from ...engines.yade.launcher import command, environment, write_deck_modules
+from ...engines.yade.launcher import BUILD, command, environment, write_deck_modules
 from ...errors import EngineError
 from .prescribed import Loads, Motion, Touch, summary
 
@@ -21,20 +21,22 @@ SCRIPT, STEPS = "motion.py", "motion.txt"
 
 
 class YadeMotions:
-    """YADE with our laws; without epdem_yade its own friction, one spring whose kinematics are YADE's."""
+    """YADE with the classes of epdem_yade."""
 
     name = Yade.name
     laws: tuple[str, ...] | None = None
 
     def __init__(self) -> None:
-        self.features, self.own_spring = Yade().features, not Yade().classes
+        self.features = Yade().features
 
     def missing(self) -> str | None:
-        return Yade().missing()
+        if reason := Yade().missing():
+            return reason
+        return None if Yade().classes else f"motions need the module epdem_yade, which is not built; {BUILD}"
 
     def loads(self, touch: Touch, motion: Motion, folder: Path) -> Loads:
         write_texts(folder, files(touch, motion))
-        write_deck_modules(folder, classes=Yade().classes)
+        write_deck_modules(folder, classes=True)
         path = folder / "path.npy"
         path.unlink(missing_ok=True)
         call([command(), "-n", "-x", SCRIPT], folder, log="out.yade", seconds=300, env=environment())
@@ -49,14 +51,11 @@ class YadeMotions:
 def deck(touch: Touch, motion: Motion) -> Deck:
     """The deck of a motion. Raises CaseError for what YADE cannot do."""
     plain = Yade().deck(touch.plan(motion))
-    friction, functors = {"friction": touch.friction}, plain.functors
-    if functors:
-        friction = {"frictionAngle": math.atan(touch.friction)}
-        functors = replace(functors, settings=settings(touch.tangential))
+    friction = {"frictionAngle": math.atan(touch.friction)}
     return plain.but(
         summary=summary(touch, motion),
         materials=tuple(Material(m.name, {**m.values, **friction}) for m in plain.materials),
-        functors=functors,
+        functors=replace(plain.functors, settings=settings(touch.tangential)),
         path="path.npy",
     )
 

@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The laws inside YADE: `law` (the C library for one contact) and `contacts` (what a YADE script imports)."""
+"""Parts of decks: phases and output of a scene (`recorder`, `spheres`), impacts without epdem_yade (`contacts`)."""

@@ -29,7 +29,7 @@ class Classes:
         return self.law.largestRadiusRatio, self.law.largestOverlapRatio
 
     def table(self) -> list[tuple[float, ...]]:
-        """As above, and 1 if the bodies are attached; with compaction the overlap that growth adds [m] and gamma."""
+        """Bodies, overlap, largest overlap [m], 1 if attached; with compaction added overlap [m] and gamma."""
         real = [(i.id1, i.id2, i.geom.penetrationDepth, i.phys) for i in O.interactions if i.isReal]
         rows = [(*k, x.deltaMax, x.contactRadius > 0.0, x.addedOverlap, x.screening) for *k, x in real]
         return [row[: self.columns] for row in rows]
