@@ -108,8 +108,6 @@ def test_programs_that_are_not_there(tmp_path, monkeypatch):
     with says("/no/program: cannot be started"):
         processes.call(["/no/program"], tmp_path, log="out", seconds=9)
     monkeypatch.setattr(launcher, "command", lambda *words: ["/no/program"])
-    with says("/no/program: cannot be started"):
-        launcher.Session()._started(tmp_path)
     monkeypatch.setattr(paths, "_first", lambda *candidates: None)
     with says("templates not found beside the package; install epdem again"):
         paths.beside.__wrapped__("templates")

@@ -19,6 +19,8 @@ from pathlib import Path
 from types import FrameType
 from typing import IO, Any
 
+import psutil
+
 from ..errors import EngineError, Stopped
 
 SIGNALS = (signal.SIGINT, signal.SIGTERM, signal.SIGHUP)
@@ -211,29 +213,18 @@ def end_with_parent() -> None:
 
 
 def kill(process: subprocess.Popen[bytes]) -> None:
-    """Stop a process and all of its session: mpirun gives each rank its own process group."""
-    for sign in (signal.SIGTERM, signal.SIGKILL):
-        end = time.monotonic() + PATIENCE
-        for member in session(process.pid):
-            with contextlib.suppress(ProcessLookupError):
-                os.kill(member, sign)
-        while time.monotonic() < end:
-            process.poll()  # takes the ended process away
-            if not session(process.pid):
-                return
-            time.sleep(0.02)
-
-
-def session(leader: int) -> list[int]:
-    """The living processes of the session that `leader` began."""
-    pids = []
-    for entry in Path("/proc").iterdir():
-        if entry.name.isdigit():
-            with contextlib.suppress(OSError):
-                state, _, _, its_session = (entry / "stat").read_text(encoding="utf-8").rpartition(")")[2].split()[:4]
-                if int(its_session) == leader and state != "Z":
-                    pids.append(int(entry.name))
-    return pids
+    """Stop a process and all that it started: mpirun gives each rank its own process group."""
+    try:
+        leader = psutil.Process(process.pid)
+        family = [*leader.children(recursive=True), leader]
+    except psutil.NoSuchProcess:
+        family = []
+    for stop in (psutil.Process.terminate, psutil.Process.kill):
+        for member in family:
+            with contextlib.suppress(psutil.NoSuchProcess):
+                stop(member)
+        _, family = psutil.wait_procs(family, timeout=PATIENCE)
+    process.wait()
 
 
 def most_ranks() -> int:

@@ -1,12 +1,10 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """The engines by name. A new engine is a module here and one line below."""
 
-from collections.abc import Callable
-
 from ..base.paths import DEFAULT_ENGINE
 from ..base.rendering import with_reasons
 from ..errors import CaseError
-from ..impacts.engine import Feature, ImpactEngine, Trajectory, texts
+from ..impacts.engine import ImpactEngine, Trajectory, texts
 from ..impacts.plan import Plan
 from ..scenes.engine import SceneEngine
 from ..scenes.plan import ScenePlan
@@ -20,15 +18,14 @@ ENGINES: dict[str, type[ImpactEngine]] = {tool.name: tool for tool in (Embedded,
 SCENES: dict[str, type[SceneEngine]] = {tool.name: tool for tool in (Liggghts, Yade, Lammps)}
 
 
-def engine(name: str, *, stay: bool = False) -> ImpactEngine:
-    """The engine of that name; with `stay` its process stays for the next plan where it can. Raises CaseError."""
+def engine(name: str) -> ImpactEngine:
+    """The engine of that name. Raises CaseError."""
     if name not in ENGINES:
         raise CaseError(
             f"--engine {name!r} does not exist; there are {', '.join(ENGINES)}, and 'epdem verify crosscheck' runs "
             "models of other codes"
         )
-    kind: Callable[..., ImpactEngine] = ENGINES[name]
-    return kind(stay=True) if stay and Feature.STAY in ENGINES[name].features else kind()
+    return ENGINES[name]()
 
 
 def scene_engine(name: str) -> SceneEngine:

@@ -51,7 +51,6 @@ class Feature(StrEnum):
     DECK = "deck"  # the engine reads a deck, which runs without epdem
     POSITIONS = "positions"  # an overlap is a difference of positions
     RESTART = "restart"  # an interrupted scene continues from a restart file
-    STAY = "stay"  # one process runs plan after plan; the class takes `stay`
 
 
 Report = Callable[[int], None]  # takes the step that a run has reached

@@ -20,7 +20,6 @@ from .. import log
 from ..host import Host
 from ..input_script import atom_types, finite
 from . import dump, launcher, resume, scene_deck, scene_tables
-from .launcher import Session
 from .properties import HARD, SOFT, Property, of_law, tangential
 
 PATH, END = "path.bin", "end.bin"
@@ -54,9 +53,6 @@ class Liggghts(Host):
         "picture.*.ppm",
         "in.resume",
     )
-
-    def __init__(self, *, stay: bool = False):
-        self.session = Session() if stay else None
 
     def missing(self) -> str | None:
         return launcher.missing()
@@ -112,10 +108,7 @@ class Liggghts(Host):
         path.unlink(missing_ok=True)
         (folder / END).unlink(missing_ok=True)
         allowed = 120 + 2e-6 * plan.n * plan.steps
-        if self.session and ranks == 1:
-            wall = self.session.run("in.impact", folder, log=launcher.LOG, seconds=allowed)
-        else:
-            wall = launcher.run("in.impact", folder, ranks=ranks, log=launcher.LOG, seconds=allowed)
+        wall = launcher.run("in.impact", folder, ranks=ranks, log=launcher.LOG, seconds=allowed)
         result = trajectory(plan, path, {"total": wall, "stepping": log.loop_seconds(folder / launcher.LOG)})
         path.unlink()  # large
         return result

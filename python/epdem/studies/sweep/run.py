@@ -7,7 +7,7 @@ import shutil
 import tomllib
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import dataclass, replace
-from functools import cache, partial
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -19,7 +19,7 @@ from ...case.scene import is_scene
 from ...case.toml import located, named, text_for_anywhere
 from ...engines import DEFAULT_ENGINE, engine, scene_engine
 from ...errors import CaseError, EngineError, EpdemError
-from ...impacts.engine import Feature, ImpactEngine, refuse, require
+from ...impacts.engine import Feature, refuse, require
 from ...impacts.experiment import Experiment, experiment
 from ...impacts.plan import plan as plan_impacts
 from ...impacts.prediction import predict
@@ -86,19 +86,13 @@ def evaluate(sweep: Sweep, folder: Path, number: int) -> str:
     return ""
 
 
-@cache
-def _tools(names: tuple[str, ...]) -> tuple[ImpactEngine, ...]:
-    """Engines of impacts; a process that works at many points starts each of them once."""
-    return tuple(engine(name, stay=True) for name in names)
-
-
 def _impacts(sweep: Sweep, number: int, place: Path) -> dict[str, list[Any]]:
     case, tables = impact.parse(sweep.data(number), sweep.place(number)), []
     for law in sweep.laws or (None,):
         x = experiment(case, law)
         prediction = predict(x)
         p = plan_impacts(x, prediction)
-        for tool in _tools(sweep.engines):
+        for tool in map(engine, sweep.engines):
             refuse(tool, p, prediction, ranks=sweep.ranks)
             at = place / x.law.name / tool.name if Feature.DECK in tool.features else place
             tables.append(run_and_compare(p, prediction, tool, at, ranks=sweep.ranks)[0])
