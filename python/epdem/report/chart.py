@@ -5,9 +5,7 @@ A drawing is a PNG, SVG or PDF file with the data as CSV beside it, or an SVG el
 """
 
 import csv
-import html
 import io
-import json
 import math
 import re
 from collections.abc import Sequence
@@ -149,16 +147,13 @@ def save(
 def svg(chart: Chart) -> str:
     """A chart without its title as an element `svg` of a page.
 
-    Black and PALETTE's dark colours are CSS variables of the page; `data-axes` holds for each panel its place in the
-    drawing, as fractions from the lower left corner, and its axes: label, limits, whether logarithmic.
+    Black and PALETTE's dark colours are CSS variables of the page.
     """
     from matplotlib import rc_context
 
     text = io.StringIO()
     with rc_context(STYLE | {"svg.fonttype": "none"}):  # type: ignore[arg-type]
-        figure = draw(chart, title=False)
-        figure.savefig(text, format="svg", transparent=True, metadata={"Date": None})
-        panels = [_place(axes, panel) for axes, panel in zip(figure.axes, chart.panels, strict=False)]
+        draw(chart, title=False).savefig(text, format="svg", transparent=True, metadata={"Date": None})
     drawn = text.getvalue()
     drawn = re.sub(
         r"<metadata>.*?</metadata>|<style.*?</style>|<!--.*?-->", "", drawn[drawn.index("<svg") :], flags=re.S
@@ -166,19 +161,7 @@ def svg(chart: Chart) -> str:
     drawn = re.sub(r'<g id="[^"]*">', "<g>", drawn)  # one page has several drawings
     for colour, variable in VARIABLES.items():
         drawn = drawn.replace(colour, f"var(--{variable})")
-    return drawn.replace("<svg", f"<svg data-axes='{html.escape(json.dumps(panels))}'", 1)
-
-
-def _place(axes: "Axes", panel: Panel) -> dict[str, object]:
-    box = axes.get_position()
-    sides = ((panel.x, axes.get_xlim()), (panel.y, axes.get_ylim()))
-    return {
-        "box": [round(float(v), 5) for v in (box.x0, box.y0, box.x1, box.y1)],
-        **{
-            k: {"label": plain(axis.label), "unit": axis.unit, "log": axis.log, "limits": list(map(float, limits))}
-            for k, (axis, limits) in zip("xy", sides, strict=True)
-        },
-    }
+    return drawn
 
 
 def draw(chart: Chart, *, title: bool = True) -> "Figure":
