@@ -28,6 +28,7 @@ class PyEpdem(PythonPackage):
     depends_on("py-typer@0.29:", type=("build", "run"))
     depends_on("py-rich@15:", type=("build", "run"))
     depends_on("py-matplotlib@3.8:", type=("build", "run"))
+    depends_on("py-psutil@5.9.8:", type=("build", "run"))
     depends_on("py-scipy@1.11.1:", type=("build", "run"))
     depends_on("py-trimesh@4.5:", type=("build", "run"))
 

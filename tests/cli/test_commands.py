@@ -222,11 +222,3 @@ def test_the_message_for_a_name_that_begins_with_a_dash_says_how_to_write_it(fol
 def test_every_law_has_a_source_to_cite():
     for law in declarations():
         assert any(what.startswith(f"law {law}, ") for what in of_laws([law]))
-
-
-def test_the_former_name_of_a_command_of_the_proof_is_refused_with_its_new_one(folder, capsys, monkeypatch):
-    names = {name: name for name in ("cost", "crosscheck", "figures", "motion", "rerun", "stability")}
-    for name, new in (names | {"validate": "data", "stress": "stability"}).items():
-        done = call([name, "case.toml"], capsys, monkeypatch)
-        new = f"epdem verify {new}"
-        assert done.code == 2 and done.err == f"epdem: 'epdem {name}' is now '{new}'; see {new} --help\n"

@@ -145,12 +145,7 @@ def test_impacts(case, changes, says, tmp_path):
             "has its attraction already; remove one of them",
         ),
         ("adhesive_powder", {"contact.tangential": "partial_slip"}, "laws with adhesion have 'history' only; take it"),
-        (
-            "drum_beads",
-            {"scene.turn": "18 rpm"},
-            "scene.turn = '18 rpm', unknown key; its name is now angular_velocity",
-        ),
-        ("settle_glass", {"numerics.cut": "x"}, "numerics.cut = 'x', unknown key; its name is now processors"),
+        ("settle_glass", {"numerics.cut": "x"}, "numerics.cut = 'x', unknown key; remove it or correct its spelling"),
         ("compaction_powder", {"scene.height": "4 mm"}, "must be below the box's height (0.0032 m)"),
         (
             "compaction_powder",

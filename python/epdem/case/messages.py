@@ -24,19 +24,6 @@ TEXTS = {
     "greater_than_equal": "must be at least {ge}",
     "literal_error": "must be {expected}",
 }
-RENAMED = {  # keys of version 0.1.0
-    "turn": "angular_velocity",
-    "back": "unload_stroke",
-    "back_speed": "unload_speed",
-    "fall": "settle_time",
-    "fill": "fill_time",
-    "bed_fill": "bed_settle_time",
-    "drop": "outlet_height",
-    "side": "width",
-    "leave": "open_boundary",
-    "place": "position",
-    "cut": "processors",
-}
 OTHER_KIND = {
     "impact": "is a bulk scene ([scene]) and this needs impacts ([impact]); "
     "run, deck, cite, view, soften, sweep and calibrate --target take scenes",
@@ -109,8 +96,6 @@ def explain(path: object, data: dict[str, Any], error: ValidationError, kind: st
         text = f"has {given} values, must have at least {least}" if given else "is empty; give at least one value"
     elif problem["type"] in SHAPES[:3]:
         text = f"must be a table; write [{place}] and its keys below"
-    elif problem["type"] == "extra_forbidden" and keys and keys[-1] in RENAMED:
-        text = f"unknown key; its name is now {RENAMED[keys[-1]]}"
     else:
         text = TEXTS[problem["type"]].format(**context) if problem["type"] in TEXTS else problem["msg"]
     text = cut_quotes(text.removeprefix("Value error, "))

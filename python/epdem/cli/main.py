@@ -31,13 +31,6 @@ Begin with: epdem run cases/steel_wall.toml -e embedded -e liggghts
 
 Exit codes: 0 all within tolerance, 1 a check failed, 2 bad input, 3 an engine failed, 130 stopped.
 """
-MOVED = {name: f"epdem verify {name}" for name in ("cost", "crosscheck", "figures", "motion", "rerun", "stability")} | {
-    "validate": "epdem verify data",
-    "stress": "epdem verify stability",
-    "theory": "epdem predict",
-    "timestep": "epdem predict CASE --error",
-    "header": "epdem export liggghts",
-}
 UsageError: Any = typer.BadParameter.__base__  # typer gives its own name to its children only
 app = typer.Typer(
     no_args_is_help=True,
@@ -245,8 +238,6 @@ def _usage(error: Any) -> int:
         error.show()
         return 2
     name = error.ctx.command_path if error.ctx else "epdem"
-    if name == "epdem" and (moved := MOVED.get(next(iter(sys.argv[1:]), ""))):
-        text, name = f"'epdem {sys.argv[1]}' is now '{moved}'", moved
     dash = next((word for word in sys.argv[1:] if word.startswith("-") and Path(word).exists()), None)
     advice = f"write the file as ./{dash}" if dash else f"see {name} --help"
     print(f"epdem: {text.rstrip('.').replace('Input should be', 'must be')}; {advice}", file=sys.stderr)
