@@ -25,6 +25,7 @@ class PyEpdem(PythonPackage):
     depends_on("py-pint@0.24.4:", type=("build", "run"))
     depends_on("py-pydantic@2.7:", type=("build", "run"))
     depends_on("py-tomlkit@0.12:", type=("build", "run"))
+    depends_on("py-pyyaml@6:", type=("build", "run"))
     depends_on("py-typer@0.29:", type=("build", "run"))
     depends_on("py-rich@15:", type=("build", "run"))
     depends_on("py-matplotlib@3.8:", type=("build", "run"))

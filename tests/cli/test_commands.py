@@ -44,6 +44,10 @@ DOCUMENTS = {  # words, and what the document must hold
         ["steel.toml", "-e", "embedded"],
         lambda d: d["passed"] and len(d["rows"]) == 6 and d["rows"][0]["force_max"] > 1e3,
     ),
+    "verify contacts": (
+        [str(CASES.parent / "data/plastic_contacts/3_ten_times_yield.yaml"), "-e", "embedded"],
+        lambda d: d["passed"] and [row["quantity"] for row in d["rows"]] == ["force", "torque"],
+    ),
     "verify figures": (["-o", "f"], lambda d: len(d["files"]) == 8),
     "verify cost": (
         ["steel.toml", "-e", "embedded", "--repetitions", "1"],
@@ -81,6 +85,7 @@ MISTAKES = {  # words, and what the sentence must hold
     "doctor": (["steel.toml"], "extra argument(s) (steel.toml); see epdem doctor --help"),
     "verify crosscheck": (["steel.toml", "nowhere.toml"], "nowhere.toml: no such file"),
     "verify motion": (["steel.toml", "-m", "bad.toml"], "bad.toml: no line of names that begins with t"),
+    "verify contacts": (["bad.toml"], "bad.toml: not a mapping with the keys variables, pair_style"),
     "verify figures": (["-o", "steel.toml"], "steel.toml"),
     "verify cost": (["steel.toml", "-l", "hook"], "steel.toml: law.name = 'hook' does not exist"),
     "verify stability": (["-g", "modulu"], "--group 'modulu' does not exist; there are modulus"),

@@ -79,9 +79,7 @@ def cpp_sources(host: str = "liggghts") -> tuple[Path, Path]:
 
 def licences() -> tuple[Path, Path]:
     """The texts of the two licences: of the physics, and of all else."""
-    folder = _first(_PACKAGE.parents[1] / "LICENSES", _PACKAGE / "LICENSES")
-    if folder is None:
-        raise EngineError("licences not found beside the package; install epdem again: pip install .")
+    folder = beside("LICENSES")
     return folder / "BSD-3-Clause.txt", folder / "GPL-2.0-or-later.txt"
 
 

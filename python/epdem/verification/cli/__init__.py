@@ -4,6 +4,7 @@
 import typer
 
 from ...cli.main import app
+from .contacts import contacts
 from .cost import cost
 from .crosscheck import crosscheck
 from .data import data
@@ -17,6 +18,6 @@ __all__ = ["app"]
 verify = typer.Typer(
     no_args_is_help=True, help="Verify laws and engines against theory, measurements, each other and other codes."
 )
-for command in (crosscheck, cost, stability, motion, data, figures, rerun):
+for command in (crosscheck, cost, stability, motion, contacts, data, figures, rerun):
     verify.command()(command)
 app.add_typer(verify, name="verify")

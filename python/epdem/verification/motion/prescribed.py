@@ -140,8 +140,7 @@ def read(path: Path) -> Motion:
     JSON holds lists by these names; a CSV file a line of names, each for its 3 (q: 4, t: 1) columns, with commas or
     spaces. Other names are passed over, in a CSV file from the first one on. Raises CaseError.
     """
-    text = text_of(path, LARGEST_FILE)
-    columns = _json(path, text) if path.suffix == ".json" else _csv(path, text)
+    columns = columns_of(path)
     for name in NEEDED:
         if name not in columns:
             raise CaseError(f"{path}: {name} is missing; a motion has {', '.join(NEEDED)} in every step")
@@ -166,6 +165,12 @@ def read(path: Path) -> Motion:
     if quaternions is not None and np.abs(np.linalg.norm(quaternions, axis=2) - 1).max() > 1e-6:
         raise CaseError(f"{path}: q_i, q_j must have the length 1; divide them by theirs")
     return Motion(path.stem, float(times.mean()), both("x"), both("v"), both("omega"), quaternions)
+
+
+def columns_of(path: Path) -> dict[str, Array]:
+    """The columns of a JSON or CSV file by name, see `read`; also forces and torques. Raises CaseError."""
+    text = text_of(path, LARGEST_FILE)
+    return _json(path, text) if path.suffix == ".json" else _csv(path, text)
 
 
 def _json(path: Path, text: str) -> dict[str, Array]:
