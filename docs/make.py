@@ -37,6 +37,7 @@ PAGES = {
     "cost.md": ".venv/bin/python docs/cost.py",
     "benchmarks.md": ".venv/bin/python docs/benchmarks.py",
     "stability.md": ".venv/bin/python docs/stability.py",
+    "decks.md": ".venv/bin/python docs/decks.py",
     "validation.md": ".venv/bin/python docs/validation.py",
 }
 

@@ -21,7 +21,7 @@ from epdem.scenes import report as scenes_report
 from epdem.scenes import run as scenes_run
 from epdem.studies import fit, pages
 from epdem.studies.sweep import slurm
-from epdem.verification import cost, figures, stability
+from epdem.verification import contacts, cost, figures, stability
 from epdem.verification import engine_comparison as crosscheck
 from epdem.verification import measured_data as validate
 from epdem.verification.motion import compare as motions
@@ -65,6 +65,7 @@ KINDS = {  # words of a call without the option, and the value of every option
         ("verify motion", "steel.toml"),
         {"file": "other.toml", "engine": "yade", "law": "cavity", "out": "there", "force": None},
     ),
+    "contacts": (("verify contacts",), {"engine": "yade", "out": "there", "force": None}),
     "one impact": (("predict",), {"law": "cavity", "error": "1e-2"} | ONE_IMPACT),
     "figures": (("verify figures",), {"pictures": "svg", "out": "there", "force": None}),
     "cost of impacts": (
@@ -162,6 +163,7 @@ def library(tmp_path, monkeypatch, outcomes):
     record(pages, "write_scene_page", Path("page.html"))
     record(crosscheck, "crosscheck")
     record(motions, "compare")
+    record(contacts, "compare")
     record(cost, "run", outcomes["cost"])
     record(bulk_cost, "run", outcomes["bulk"])
     record(stability, "run", outcomes["stability"])

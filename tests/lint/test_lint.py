@@ -3,6 +3,7 @@
 
 import re
 import subprocess
+import tomllib
 from pathlib import Path
 
 import pytest
@@ -79,6 +80,17 @@ def test_a_recipe_of_easybuild_is_python_with_its_keys():
         given: dict[str, object] = {}
         exec(compile(path.read_text(), str(path), "exec"), given)
         assert path.name == f"{given['name']}-{given['version']}-{'-'.join(given['toolchain'].values())}.eb"
+
+
+def test_recipes_name_every_package_that_epdem_imports():
+    project = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
+    spack = (ROOT / "packaging/spack/package.py").read_text()
+    (easybuild,) = (ROOT / "packaging/easybuild").glob("*.eb")
+    bundles = dict.fromkeys(("numpy", "pandas", "scipy"), "SciPy-bundle") | {"jinja2": "Python-bundle-PyPI"}
+    for requirement in project["dependencies"]:
+        name, least = requirement.split(">=")
+        assert f'depends_on("py-{name}@{least}:"' in spack, name
+        assert f'("{bundles.get(name, name)}", "'.lower() in easybuild.read_text().lower(), name
 
 
 def test_the_paper_cites_what_its_bibliography_has():
