@@ -59,7 +59,7 @@ YADE, with materials `EpMat(young=208e9, poisson=0.3, density=7850, frictionAngl
 ```sh in decks/test_deck_page.py
 epdem doctor --json                                               # engines and models of this machine: part, ok, advice
 epdem predict --material steel --radius "10 mm" --speed "5 m/s" --json  # e_n, contact time, peak force, and warnings
-epdem deck cases/steel_wall.toml -e lammps -o example --json      # a deck to compare with, a reason on each line
+epdem deck cases/steel_wall.toml -e lammps -o example --reasons   # a deck to compare with, the reason of each line
 epdem deck --convert my.in --set yieldPressure=2.8e9 -o converted # a deck of LIGGGHTS with a law; changes on stderr
 epdem verify contacts -e lammps --json                            # the laws on this machine, against closed forms
 ```

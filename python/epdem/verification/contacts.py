@@ -28,7 +28,7 @@ from ..impacts.experiment import experiment
 from ..laws.library import Array
 from ..laws.strengths import law_named
 from .motion.compare import DEFAULT, engine
-from .motion.prescribed import Loads, Motion, MotionEngine, Touch, columns_of, read, unit_normals
+from .motion.prescribed import Loads, Motion, MotionEngine, Touch, columns_of, read
 
 TABLE, DECK = "contacts.csv", "in.contacts"
 NEEDED = ("variables", "pair_style", "pair_coeff", "pre_commands", "post_commands", "run_segments", "epsilon")
@@ -157,15 +157,9 @@ def compare(
 
 
 def motion_errors(test: ContactTest, tool: MotionEngine, folder: Path) -> dict[str, tuple[float, float]]:
-    """(error, tolerance) of forces and torques: over the largest force, torques also over the smaller radius.
-
-    An engine with a friction of its own answers for the normal force alone.
-    """
+    """(error, tolerance) of forces and torques: over the largest force, torques also over the smaller radius."""
     touch, limit = test.touch(), test.value("force_tol")
-    found, normals, scale = tool.loads(touch, test.motion, folder), unit_normals(test.motion), test.reference.peak
-    if tool.own_spring:
-        off = np.abs(found.along(normals) - test.reference.along(normals)).max()
-        return {"normal force": (float(off / scale), limit)}
+    found, scale = tool.loads(touch, test.motion, folder), test.reference.peak
     off = np.linalg.norm(found.force - test.reference.force, axis=2).max()
     turning = np.linalg.norm(found.torque - test.reference.torque, axis=2).max() / min(touch.radii)
     return {"force": (float(off / scale), limit), "torque": (float(turning / scale), limit)}
