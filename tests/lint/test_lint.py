@@ -86,7 +86,8 @@ def test_recipes_name_every_package_that_epdem_imports():
     project = tomllib.loads((ROOT / "pyproject.toml").read_text())["project"]
     spack = (ROOT / "packaging/spack/package.py").read_text()
     (easybuild,) = (ROOT / "packaging/easybuild").glob("*.eb")
-    bundles = dict.fromkeys(("numpy", "pandas", "scipy"), "SciPy-bundle") | {"jinja2": "Python-bundle-PyPI"}
+    bundles = dict.fromkeys(("numpy", "pandas", "scipy"), "SciPy-bundle")
+    bundles |= dict.fromkeys(("jinja2", "psutil"), "Python-bundle-PyPI")
     for requirement in project["dependencies"]:
         name, least = requirement.split(">=")
         assert f'depends_on("py-{name}@{least}:"' in spack, name
