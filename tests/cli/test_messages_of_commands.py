@@ -20,6 +20,8 @@ SENTENCES = {
     ("predict", "steel.toml", "--error", "1"): "'--error': must be less than or equal to 0.1; see epdem predict",
     ("predict", "steel.toml", "--speed", "1 m/s"): "steel.toml: --speed: the case has its own numbers; leave it out",
     ("predict", "--law", "hertz"): "--law: it belongs to a case; leave it out",
+    ("calibrate", "steel.toml", "--hv", "-o"): "'--hv': must be a number; see epdem calibrate --help",
+    ("run", "steel.toml", "--ranks", "x"): "'--ranks': must be a whole number; see epdem run --help",
     ("predict", "--speed", "3"): "'3' has no unit; write \"3 m/s\" if that is what is meant",
     ("export liggghts",): "epdem export liggghts: name a folder by --out or --check",
     ("deck", "own.j2", *CASE, "--set", "1=2"): "must be key=value with a key of letters",

@@ -80,7 +80,7 @@ def test_edinburgh_forgets_its_dent_when_atoms_are_sorted_while_they_part(tmp_pa
 @pytest.mark.parametrize("case", ["steel_wall", "two_materials", "pair"])
 @pytest.mark.parametrize(
     "name",
-    [pytest.param(n, marks=in_yade if n.startswith("yade") else in_liggghts) for n in CLOSED],
+    [pytest.param(n, marks=pytest.mark.yade if n.startswith("yade") else in_liggghts) for n in CLOSED],
 )
 def test_laws_of_others_have_their_own_closed_restitution(name, case, tmp_path):
     """At 400 steps in contact velocity Verlet leaves 2e-5 of e_n; the contact ends within a step, 1/400."""
@@ -98,7 +98,7 @@ def test_laws_of_others_have_their_own_closed_restitution(name, case, tmp_path):
 
 
 @pytest.mark.parametrize(
-    "name", [pytest.param("liggghts-luding", marks=in_liggghts), pytest.param("yade-luding", marks=in_yade)]
+    "name", [pytest.param("liggghts-luding", marks=in_liggghts), pytest.param("yade-luding", marks=pytest.mark.yade)]
 )
 def test_luding_of_two_steel_spheres_at_10_m_per_s_is_0_8910_in_both_codes(name, tmp_path, monkeypatch):
     """k_1 = 1e9 N/m, k_p/k_1 = 5, phi_f = 0.05, R = 10 mm, 7850 kg/m^3; by hand in the test of the closed form."""

@@ -5,6 +5,7 @@ import errno
 import io
 import json
 import os
+import re
 import shutil
 import signal
 import sys
@@ -31,6 +32,7 @@ Begin with: epdem run cases/steel_wall.toml -e embedded -e liggghts
 
 Exit codes: 0 all within tolerance, 1 a check failed, 2 bad input, 3 an engine failed, 130 stopped.
 """
+NUMBERS = {"number": "a number", "integer": "a whole number"}  # by the words of pydantic
 UsageError: Any = typer.BadParameter.__base__  # typer gives its own name to its children only
 app = typer.Typer(
     no_args_is_help=True,
@@ -240,6 +242,9 @@ def _usage(error: Any) -> int:
     name = error.ctx.command_path if error.ctx else "epdem"
     dash = next((word for word in sys.argv[1:] if word.startswith("-") and Path(word).exists()), None)
     advice = f"write the file as ./{dash}" if dash else f"see {name} --help"
+    text = re.sub(
+        r"Input should be an? valid (\w+), unable to parse.*", lambda kind: f"must be {NUMBERS[kind[1]]}", text
+    )
     print(f"epdem: {text.rstrip('.').replace('Input should be', 'must be')}; {advice}", file=sys.stderr)
     return 2
 
