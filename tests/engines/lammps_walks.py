@@ -27,26 +27,43 @@ def two_bodies(ratio):
     return x, radii, np.concatenate([ways, outer, outer])
 
 
-def laws(materials):
+RATE = [2 * np.pi, 4.6 * np.pi, 8.2 * np.pi]  # of the sines of a walk, which takes the time 1
+
+
+def swings(cluster, count, depth, seed):
+    """Amplitudes and phases of the sines of the spheres of `count` clusters, shape (count n, 3) each."""
+    rng = np.random.default_rng(seed)
+    shape = (count * len(cluster[0]), 3)
+    return rng.uniform(0.0, 0.6 * depth, shape), rng.uniform(0.0, 2 * np.pi, shape)
+
+
+def paths(cluster, steps, *, count=4, seed=7, depth=0.05):
+    """Places on `count` random walks, shape (steps + 1, count n, 3), and radii."""
+    x, radius, ways = cluster
+    swing, phase = swings(cluster, count, depth, seed)
+    t = np.arange(steps + 1)[:, None, None] / steps
+    along = -depth * t[..., 0] + (swing * (np.sin(RATE * t + phase) - np.sin(phase))).sum(-1)
+    start = (x + SPACING * np.arange(count)[:, None, None] * [1.0, 0, 0]).reshape(-1, 3)
+    return start + np.tile(ways * radius[:, None], (count, 1)) * along[..., None], np.tile(radius, count)
+
+
+def laws(materials, friction=""):
     """Lines of pair_coeff for one type of each material."""
     words = [f"{k} {k} cavity {E!r} {nu!r} {Y!r} 1.6 2.8 {FINITE_STRAIN}" for k, (E, nu, Y) in enumerate(materials, 1)]
     words += [f"{k} {m} mixed" for m in range(1, len(materials) + 1) for k in range(1, m)]
-    return "".join(f"pair_coeff {w} compaction on\n" for w in words)
+    return "".join(f"pair_coeff {w}{friction} compaction on\n" for w in words)
 
 
-def walks(folder, cluster, materials, steps, *, count=4, seed=7, depth=0.05):
-    """Work and elastic energy of `count` random walks of a cluster, shape (steps + 1, count).
+def walks(folder, cluster, materials, steps, *, count=4, seed=7, depth=0.05, friction=""):
+    """Work, elastic energy and energy lost of `count` random walks of a cluster, shape (steps + 1, count).
 
-    materials: E, nu, Y of the types, which alternate over the spheres. A walk approaches by `depth` R and
-    oscillates by three sines of up to 0.6 of it.
+    materials: E, nu, Y of the types, which alternate over the spheres; friction: words of pair_coeff. A walk approaches
+    by `depth` R and oscillates by three sines of up to 0.6 of it.
     """
-    rng = np.random.default_rng(seed)
     x, radius, ways = cluster
     n = len(x)
     places = (x + SPACING * np.arange(count)[:, None, None] * [1.0, 0, 0]).reshape(-1, 3).tolist()
-    swing = rng.uniform(0.0, 0.6 * depth, (count * n, 3))
-    phase = rng.uniform(0.0, 2 * np.pi, (count * n, 3))
-    rate = [2 * np.pi, 4.6 * np.pi, 8.2 * np.pi]
+    swing, phase = swings(cluster, count, depth, seed)
     values = np.hstack([np.tile(ways * radius[:, None], (count, 1)), swing, phase])
     names = [f"d_{name}{k}" for name in ("way", "swing", "phase") for k in range(3)]
     half = SPACING * count
@@ -59,8 +76,8 @@ def walks(folder, cluster, materials, steps, *, count=4, seed=7, depth=0.05):
     data += (
         "".join(f"{-half!r} {half!r} {a}lo {a}hi\n" for a in "xyz") + f"\nAtoms # sphere\n\n{atoms}\nWalks\n\n{rows}"
     )
-    sines = "+".join(f"d_swing{k}*(sin({w!r}*v_t+d_phase{k})-sin(d_phase{k}))" for k, w in enumerate(rate))
-    slopes = "+".join(f"d_swing{k}*{w!r}*cos({w!r}*v_t+d_phase{k})" for k, w in enumerate(rate))
+    sines = "+".join(f"d_swing{k}*(sin({w!r}*v_t+d_phase{k})-sin(d_phase{k}))" for k, w in enumerate(RATE))
+    slopes = "+".join(f"d_swing{k}*{w!r}*cos({w!r}*v_t+d_phase{k})" for k, w in enumerate(RATE))
     moves = "".join(f"variable x{k} atom d_way{k}*v_s\nvariable v{k} atom d_way{k}*v_u\n" for k in range(3))
     text = f"""units si
 atom_style sphere
@@ -70,23 +87,23 @@ comm_modify vel yes
 fix own all property/atom {" ".join(names)}
 read_data spheres.data fix own NULL Walks
 pair_style ep energies
-{laws(materials)}neighbor 0.1 bin
+{laws(materials, friction)}neighbor 0.1 bin
 variable t equal step*{1.0 / steps!r}
 variable s atom -{depth!r}*v_t+{sines}
 variable u atom -{depth!r}+{slopes}
 {moves}fix move all move variable v_x0 v_x1 v_x2 v_v0 v_v1 v_v2
 timestep {1.0 / steps!r}
-dump d all custom 1 frames.txt x y z fx fy fz f_EP_HISTORY0[1] f_EP_HISTORY0[2]
+dump d all custom 1 frames.txt x y z fx fy fz {" ".join(f"f_EP_HISTORY0[{k}]" for k in (1, 2, 4, 5))}
 dump_modify d sort id header no format float %.15g
 run {steps}
 """
     folder.mkdir(parents=True, exist_ok=True)
     (folder / "spheres.data").write_text(data)
     run(text, folder)
-    frames = np.fromstring((folder / "frames.txt").read_text(), sep=" ").reshape(-1, count, n, 8)
+    frames = np.fromstring((folder / "frames.txt").read_text(), sep=" ").reshape(-1, count, n, 10)
     power = -0.5 * ((frames[1:, ..., 3:6] + frames[:-1, ..., 3:6]) * np.diff(frames[..., :3], axis=0)).sum((-1, -2))
     work = np.concatenate([np.zeros((1, count)), np.cumsum(power, axis=0)])
-    return work, frames[..., 7].sum(-1), frames[..., 6].sum(-1)
+    return work, frames[..., [7, 9]].sum((-1, -2)), frames[..., [6, 8]].sum((-1, -2))
 
 
 def falls(work, elastic, later=0):

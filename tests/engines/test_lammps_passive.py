@@ -63,6 +63,21 @@ def test_walks_create_no_energy(cluster, materials, tmp_path):
     assert found[0][1] < 4e-4 and found[1][1] < 0.35 * found[0][1]
 
 
+@pytest.mark.parametrize("name", ["E/Y 120", "unlike"])
+def test_walks_with_friction_create_no_energy(name, tmp_path):
+    """Two bodies of two sizes, whose neighbors slide: plastic work and work of friction are what is lost."""
+    found = []
+    for steps in (500, 1000):
+        work, elastic, lost = walks(
+            tmp_path, two_bodies(0.5), BEDS[name], steps, friction=" tangential partial_slip 0.3"
+        )
+        found.append(
+            (falls(work, elastic, 10).max(), (np.abs(work - elastic - lost).max(axis=0) / work.max(axis=0)).max())
+        )
+    assert found[0][0] < 1e-5 and found[1][0] < 1e-5
+    assert found[0][1] < 1e-3 and found[1][1] < 0.6 * found[0][1]
+
+
 @pytest.mark.parametrize("materials", BEDS.values(), ids=BEDS)
 def test_nine_free_spheres_gain_no_energy(materials, tmp_path):
     """Radii 1 to 4: falls of the dissipation and errors of the ledger over the energy, of second order."""
@@ -123,6 +138,6 @@ def test_a_hard_sphere_among_soft_ones_does_not_grow(tmp_path):
 def beside_numpy(folder, cluster, materials, steps=1000):
     """(difference of the forces of each step over the largest force, the contacts in numpy at the end)."""
     walks(folder, cluster, materials, steps, count=1)
-    frames = np.fromstring((folder / "frames.txt").read_text(), sep=" ").reshape(steps + 1, -1, 8)
+    frames = np.fromstring((folder / "frames.txt").read_text(), sep=" ").reshape(steps + 1, -1, 10)
     F, bed = in_numpy(frames, cluster[1], materials)
     return np.abs(frames[..., 3:6] - F).max(axis=(1, 2)) / np.abs(F).max(), bed
