@@ -41,9 +41,12 @@ LAWS = {
     "hertz": {"name": "hertz"},
     "thornton": {"name": "thornton"},
     "cavity": {"name": "cavity"},
+    "cavity, finite strain": {"name": "cavity", "finite_strain": True},
+    "cavity, compaction": {"name": "cavity", "finite_strain": True, "compaction": True},
     "johnson, one strength": {"name": "johnson", "yield_pressure": "0.2 MPa"},
     "meyer": {"name": "meyer", "hardening_exponent": 0.3},
     "jkr": {"name": "jkr", "work_of_adhesion": "0.02 J/m^2"},
+    "thornton_ning": {"name": "thornton_ning", "work_of_adhesion": "0.02 J/m^2"},
 }
 PAIRS = [{"between": ["glass", "wall"], "friction": 0.7}, {"between": ["glass", "steel"], "friction": 0.1}]
 CONTACTS = {
@@ -102,6 +105,7 @@ PHASES = {
 }
 OUTPUTS = {
     "frames": {"rows": 20, "particles": 4},
+    "frames that do not divide the rows": {"rows": 17, "particles": 5},
     "energy": {"rows": 20, "particles": 4, "energy": True},
     "loads": {"rows": 20, "particles": 4, "loads": True},
     "contacts": {"rows": 20, "particles": 4, "contacts": 2},
@@ -118,7 +122,9 @@ MEASURES = {
     "speeds of impacts": {"kind": "impact_speed", "bins": 4},
     "plastic work": {"kind": "plastic_work", "bins": 4},
 }
+ROOMS = {"open": {}, "periodic": {"periodic": True}}
 SLOTS = {
+    "room": ROOMS,
     "walls": WALLS,
     "law": LAWS,
     "contact": CONTACTS,
@@ -145,7 +151,11 @@ def case_of(chosen: dict[str, str]) -> dict:
     fill = {"name": "bed", "region": REGION, "particles": MIXTURES[chosen["mixture"]]} | AMOUNTS[chosen["amount"]]
     bodies = BODIES[chosen["bodies"]]
     first, second = PHASES[chosen["phases"]]
-    scene = CASE["scene"] | {"wall": walls, "fill": [fill, *bodies.get("fill", [])], "body": bodies.get("body", [])}
+    scene = (
+        CASE["scene"]
+        | ROOMS[chosen["room"]]
+        | {"wall": walls, "fill": [fill, *bodies.get("fill", [])], "body": bodies.get("body", [])}
+    )
     data = CASE | {"materials": CASE["materials"] | {"glass": GLASS, "rubber": RUBBER}, "law": LAWS[chosen["law"]]}
     data |= {"scene": scene | {"phase": [FIRST | first, SECOND | second]}, "output": OUTPUTS[chosen["output"]]}
     data |= {"numerics": {"time_step": "5e-6 s"}, "contact": CONTACTS[chosen["contact"]]}

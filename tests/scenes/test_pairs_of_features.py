@@ -18,6 +18,7 @@ from hypothesis import Phase, assume, example, given, settings
 from hypothesis import strategies as st
 from scene_runs import run, write_case
 
+from engines.lammps_decks import needs_lammps
 from epdem.case.scene import parse
 from epdem.engines import scene_engine
 from epdem.errors import CaseError
@@ -28,14 +29,16 @@ from epdem.studies.soften import soften
 from epdem.studies.sweep.folder import Sweep
 from epdem.studies.sweep.points import keys_of
 
-ADHESIVE, FRAMELESS = {"law": {"jkr"}}, {"output": {"rows alone"}}
+ADHESIVE, FRAMELESS = {"law": {"jkr", "thornton_ning"}}, {"output": {"rows alone"}}
 NOT_LINEAR = {"phases": {"wall vibrates", "wall presses"}}
 WORN = {"walls": {"plates of two worn materials"}}
 BOTH_MATERIALS_OF_WALLS = {"mixture": {"two materials"}, "bodies": {"body", "frozen body", "late body"}}
+WITHOUT_CONTACTS = {"frames", "frames that do not divide the rows", "loads", "restarts"}
 SHARED_TYPES = {"contact": set(SLOTS["contact"]) - {"wall friction", "friction of pairs"}}  # of spheres and walls
 # Features that exclude each other, and the sentence that says so. A case with none of these is never refused.
 EXCLUDED = [
     (ADHESIVE | {"contact": {"cohesion"}}, "has its attraction already"),
+    ({"law": {"cavity, compaction"}, "contact": {"cohesion"}}, "contacts with law.compaction have no cohesion"),
     (ADHESIVE | {"contact": {"partial slip"}}, "laws with adhesion have 'history' only"),
     (ADHESIVE | {"measure": {"speeds of impacts"}}, "impact speeds follow from contacts without adhesion"),
     (FRAMELESS | {"measure": {"flow", "height", "porosity", "speeds of impacts", "plastic work"}}, "taken from frames"),
@@ -45,7 +48,7 @@ EXCLUDED = [
     ({"mixture": {"rare component first"}}, "of one sphere of steel, so that the fill has none"),
     ({"measure": {"plastic work"}, "output": set(SLOTS["output"]) - {"energy"}}, "known with output.energy"),
     ({"measure": {"plastic work"}, "law": {"hertz", "jkr"}}, "a law that yields"),
-    ({"measure": {"speeds of impacts"}, "output": {"frames", "loads", "restarts"}}, "give output.contacts"),
+    ({"measure": {"speeds of impacts"}, "output": WITHOUT_CONTACTS}, "give output.contacts"),
     (WORN | BOTH_MATERIALS_OF_WALLS | SHARED_TYPES, "one value for each pair"),
 ]
 
@@ -214,14 +217,17 @@ def value_of(data, key):
     return data
 
 
+RANKS = st.sampled_from([1, 2])
+
+
 @pytest.mark.liggghts
 @settings(max_examples=8, phases=[Phase.explicit, Phase.generate])
-@example(chosen=PLAIN | {"contact": "cohesion"})  # of all models cohesion alone has a history
-@example(chosen=PLAIN | {"output": "rows alone", "measure": "force", "phases": "own step"})
-@given(chosen=CHOICES)
-def test_liggghts_runs_what_is_drawn(chosen, folder):
+@example(chosen=PLAIN | {"contact": "cohesion"}, ranks=1)  # of all models cohesion alone has a history
+@example(chosen=PLAIN | {"output": "rows alone", "measure": "force", "phases": "own step"}, ranks=1)
+@given(chosen=CHOICES, ranks=RANKS)
+def test_liggghts_runs_what_is_drawn(chosen, ranks, folder):
     assume(not sentences_against(chosen))
-    assert_runs("liggghts", chosen, folder)
+    assert_runs("liggghts", chosen, folder, ranks)
 
 
 @pytest.mark.yade("module")
@@ -230,13 +236,31 @@ def test_liggghts_runs_what_is_drawn(chosen, folder):
 @example(chosen=PLAIN | {"walls": "gate", "output": "loads", "phases": "wall presses", "measure": "torque"})
 @given(chosen=CHOICES)
 def test_yade_runs_what_is_drawn(chosen, folder):
-    assume(not sentences_against(chosen) and chosen["output"] != "restarts")
-    assert_runs("yade", chosen, folder)
+    assume(not sentences_against(chosen))
+    assert_runs_or_names_liggghts("yade", chosen, folder)
 
 
-def assert_runs(tool, chosen, folder):
+@needs_lammps
+@settings(max_examples=8, phases=[Phase.explicit, Phase.generate])
+@given(chosen=CHOICES, ranks=RANKS)
+def test_lammps_runs_what_is_drawn(chosen, ranks, folder):
+    assume(not sentences_against(chosen))
+    assert_runs_or_names_liggghts("lammps", chosen, folder, ranks)
+
+
+def assert_runs_or_names_liggghts(tool, chosen, folder, ranks=1):
+    """What an engine lacks is refused before the run, in a sentence that names the engine that has it."""
+    try:
+        assert_runs(tool, chosen, folder, ranks)
+    except CaseError as error:
+        assert "use --engine liggghts" in str(error)
+
+
+def assert_runs(tool, chosen, folder, ranks=1):
     """The frames have the planned spheres of each material, the rows finite numbers and the measured curve."""
-    outcome = run(write_case(case_of(chosen), folder, "run.toml"), tool, out=folder / f"out_{tool}", fresh=True)
+    outcome = run(
+        write_case(case_of(chosen), folder, "run.toml"), tool, out=folder / f"out_{tool}", ranks=ranks, fresh=True
+    )
     p, tables = outcome.plan, outcome.results.tables
     assert outcome.passed, tables["checks"]
     assert tables["rows"]["particles"].max() == p.count
