@@ -178,7 +178,7 @@ def test_other_units_make_the_same_deck(chosen, folder):
 @given(chosen=CHOICES, other=CHOICES)
 def test_a_point_of_a_sweep_is_the_case_that_it_says(chosen, other, folder):
     """The tables of one case, set as the values of a sweep over another one, give the one."""
-    base, wanted = case_of(chosen), case_of(other)
+    base, wanted = case_of(chosen), case_of(other | {"room": chosen["room"]})
     wanted = {key: wanted[key] if key == "scene" else table for key, table in base.items()}
     wanted["scene"].setdefault("measure", [])
     keys = [f"scene.{key}" for key in ("wall", "fill", "body", "phase", "measure")]
