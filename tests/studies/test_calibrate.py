@@ -20,6 +20,7 @@ from epdem.report.page import write
 from epdem.studies import pages
 from epdem.studies.calibrate import (
     from_hardness,
+    from_indentation,
     from_restitution,
     from_restitutions,
     hardness_test,
@@ -381,3 +382,48 @@ def test_a_wrong_meyer_index_is_refused(line, said, tmp_path):
     path.write_text(path.read_text().replace('name = "meyer"\n', f'name = "meyer"\n{line}\n'))
     with pytest.raises(CaseError, match=said):
         experiment(load(path))
+
+
+def indentation(tmp_path, p_y, noise=0.0, unit=(1e9, 1e3), deepest=100.0):
+    """A curve of the steel sphere on the steel wall up to `deepest` yield overlaps and back, by thornton's lines."""
+    E_star, R = 208e9 / 2 / (1 - 0.3**2), 0.01
+    first = R * (math.pi * p_y / 2 / E_star) ** 2
+    depth = np.linspace(0.0, deepest * first, 60)
+    hertz = 4 / 3 * E_star * math.sqrt(R) * np.minimum(depth, first) ** 1.5
+    force = hertz + math.pi * p_y * R * np.maximum(depth - first, 0.0)
+    force *= 1 + noise * np.random.default_rng(1).standard_normal(depth.size)
+    rows = [*zip(depth * unit[0], force * unit[1], strict=True), (0.9 * depth[-1] * unit[0], 0.1 * force[-1] * unit[1])]
+    path = tmp_path / "curve.csv"
+    path.write_text("depth [nm],force [mN]\n" + "\n".join(f"{a!r},{b!r}" for a, b in np.array(rows).tolist()))
+    return path
+
+
+def test_the_strength_of_an_indentation_curve_is_the_one_that_made_it(tmp_path):
+    found = from_indentation(STEEL, indentation(tmp_path, 2.2e9))
+    assert found.value == pytest.approx(2.2e9, rel=1e-5)
+    assert from_indentation(STEEL, indentation(tmp_path, 2.2e9, noise=0.02)).value == pytest.approx(2.2e9, rel=0.01)
+    said = CliRunner().invoke(app, ["calibrate", str(STEEL), "--indentation", str(tmp_path / "curve.csv")]).stdout
+    assert "yield_pressure = 2" in said and "59 points of curve.csv" in said and "% of the largest force" in said
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ("depth [nm],load [mN]\n1,1\n", "must be depth and force, as 'depth [nm],force [mN]'"),
+        ("depth [nm],force [mN]\n1,1\n2,x\n3,1\n", "line 3: force = 'x'"),
+        ("depth [nm],force [kg]\n1,1\n2,2\n", "has the wrong dimension"),
+        ("depth [nm],force [mN]\n1,1\n2,2\n", "2 points of loading with a depth > 0, must be at least 3"),
+        ("", "must be depth and force"),
+    ],
+)
+def test_a_curve_that_cannot_be_read_is_named_with_its_line(text, words, tmp_path):
+    path = tmp_path / "curve.csv"
+    path.write_text(text)
+    with pytest.raises(CaseError) as caught:
+        from_indentation(STEEL, path)
+    assert words in str(caught.value)
+
+
+def test_an_elastic_curve_has_no_strength(tmp_path):
+    with pytest.raises(CaseError, match="the curve is that of an elastic contact"):
+        from_indentation(STEEL, indentation(tmp_path, 2.2e9, deepest=0.9))

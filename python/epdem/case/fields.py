@@ -2,12 +2,14 @@
 """What cases of impacts and scenes have in common: quantities, names, materials, law, dashpot; SI values out."""
 
 from dataclasses import dataclass
-from typing import Annotated, Any, Literal
+from typing import Annotated, Any, Literal, Self
 
 import numpy as np
-from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, GetCoreSchemaHandler
+from pydantic import BaseModel, BeforeValidator, ConfigDict, Field, GetCoreSchemaHandler, model_validator
 from pydantic_core.core_schema import CoreSchema, no_info_before_validator_function
 
+from ..theory.indentation import VICKERS
+from .toml import strength_keys
 from .units import to_si, within_limits
 
 
@@ -33,6 +35,17 @@ class Quantity:
 
     def __get_pydantic_core_schema__(self, source: type[float], handler: GetCoreSchemaHandler) -> CoreSchema:
         return no_info_before_validator_function(self.read, handler(source))
+
+
+@dataclass(frozen=True)
+class Hardness(Quantity):
+    """A mean contact pressure [Pa]: of nanoindentation as "1.9 GPa", of Vickers tests as "180 HV"."""
+
+    def read(self, value: object) -> float:
+        number, _, unit = value.strip().partition(" ") if isinstance(value, str) else ("", "", "")
+        if unit.strip() != "HV":
+            return super().read(value)
+        return super().read(f"{to_si(f'{number} Pa', 'Pa') * VICKERS!r} Pa")
 
 
 Length = Annotated[float, Quantity("m", above=0.0)]
@@ -80,14 +93,28 @@ class Header(Frozen):
 
 
 class Material(Frozen):
-    """Elastic constants, density, (if the law yields) the yield stress in simple compression and (if it adheres) the
-    surface energy, of which the work of adhesion of a pair is 2 sqrt(gamma_i gamma_j); SI."""
+    """Elastic constants, density, (if the law yields) the strength and (if it adheres) the surface energy, of which the
+    work of adhesion of a pair is 2 sqrt(gamma_i gamma_j); SI.
+
+    The strength is one of: the yield stress in simple compression; the hardness, which is load over projected area
+    ("1.9 GPa") or Vickers's number ("180 HV"); yield_ratio, which is the overlap at first yield of two like spheres
+    over their diameter (half of the number where a paper divides by the radius).
+    """
 
     young_modulus: Pressure
     poisson_ratio: Annotated[float, Quantity("1", ge=-0.99, le=0.5, hint="percent?")]
     density: Annotated[float, Quantity("kg/m^3", above=0.0)]
     yield_stress: Pressure | None = None
+    hardness: Annotated[float, Hardness("Pa", above=0.0)] | None = None
+    yield_ratio: Annotated[float, Quantity("1", above=0.0, le=0.1, hint="percent?")] | None = None
     surface_energy: Annotated[float, Quantity("J/m^2", ge=0.0)] | None = None
+
+    @model_validator(mode="after")
+    def _one_strength(self) -> Self:
+        given = [k for k in strength_keys() if (getattr(self, k, None) or (self.model_extra or {}).get(k)) is not None]
+        if len(given) > 1:
+            raise ValueError(f"both {given[0]} and {given[1]} are given, each the strength; keep one")
+        return self
 
 
 class LawChoice(BaseModel):

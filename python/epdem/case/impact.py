@@ -229,7 +229,7 @@ def parse(data: dict[str, Any], path: object = "case") -> Case:
         case = Case.model_validate(data)
     except ValidationError as error:
         raise CaseError(explain(path, data, error, "impact")) from None
-    check_law(case.law, path)
+    check_law(case.law, case.materials, path)
     return case
 
 

@@ -1,13 +1,14 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """The [law] of a case: its numbers in SI, each checked against the declaration of the law."""
 
+from collections.abc import Mapping
 from typing import Any
 
 from ..base.declarations import Declaration, declarations
 from ..errors import CaseError
 from ..laws.strengths import ADHESION, LawNumbers, law_named
 from ..theory.cavity import FINITE_STRAIN
-from .fields import LawChoice
+from .fields import LawChoice, Material
 from .messages import cut_quotes
 from .units import read_number
 
@@ -72,10 +73,16 @@ def law_numbers(name: str, given: dict[str, Any]) -> LawNumbers:
     )
 
 
-def check_law(law: LawChoice, place: object) -> None:
-    """Raise CaseError, which begins with `place`, for keys and values that the law does not have."""
+def check_law(law: LawChoice, materials: Mapping[str, Material], place: object) -> None:
+    """Raise CaseError, which begins with `place`, for keys and values that the law does not have, and for a strength
+    that the law gives all bodies beside a material's own hardness or yield_ratio."""
     try:
-        law_numbers(law.name, law.parameters())
+        numbers = law_numbers(law.name, law.parameters())
+        for name, m in materials.items():
+            own = "hardness" if m.hardness is not None else "yield_ratio" if m.yield_ratio is not None else ""
+            if own and numbers.absolute is not None:
+                key = law_named(law.name).strength
+                raise CaseError(f"both law.{key} and materials.{name}.{own} are given, each the strength; keep one")
     except CaseError as error:
         raise CaseError(f"{place}: {cut_quotes(str(error))}") from None
 

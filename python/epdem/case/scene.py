@@ -172,7 +172,7 @@ def parse(data: dict[str, Any], path: object = "case") -> SceneCase:
         case = SceneCase.model_validate(data, context=context(path))
     except ValidationError as error:
         raise CaseError(explain(path, data, error, "scene")) from None
-    check_law(case.law, path)
+    check_law(case.law, case.materials, path)
     return case
 
 

@@ -11,6 +11,7 @@ from functools import cache
 from pathlib import Path
 from typing import Any, NamedTuple
 
+from ..base.declarations import declarations
 from ..errors import CaseError
 
 KEYS = ("file", "sieve")  # of the names of files
@@ -132,6 +133,12 @@ def text_for_anywhere(path: Path | str) -> str:
     return renamed(text, {name: (folder / name).resolve() for name in names_in(tables(text, path))})
 
 
+def strength_keys() -> tuple[str, ...]:
+    """Keys of a material's strength, of which one may be given: its own ones, then those of the laws."""
+    laws = [law.strength for law in declarations().values() if law.strength]
+    return tuple(dict.fromkeys(["yield_stress", "hardness", "yield_ratio", *laws]))
+
+
 @cache
 def entries() -> dict[str, dict[str, Any]]:
     """Every material of the file as it is written there, by name."""
@@ -156,5 +163,6 @@ def _filled(name: str, material: Any, path: object) -> Any:
     if not isinstance(origin, str) or origin not in entries():
         have = ", ".join(entries())
         raise CaseError(f"{path}: materials.{name}.from = {origin!r} is not in the materials file; there are {have}")
-    known = {key: value for key, value in entries()[origin].items() if key != "source"}
+    own = {"source"} | ({"yield_stress"} if any(key in material for key in strength_keys()) else set())
+    known = {key: value for key, value in entries()[origin].items() if key not in own}
     return known | {key: value for key, value in material.items() if key != "from"}

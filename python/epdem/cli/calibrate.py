@@ -31,6 +31,12 @@ def calibrate(
         float | None,
         typer.Option(help="Brinell test: diameter of the indentation over diameter of the ball (default: 0.375)"),
     ] = None,
+    indentation: Annotated[
+        Path | None,
+        typer.Option(
+            metavar="CURVE.csv", help="measured curve of the contact, as 'depth [nm],force [mN]', instead of an impact"
+        ),
+    ] = None,
     target: Annotated[
         list[str] | None,
         typer.Option(metavar="NAME=VALUE", help='number of a scene\'s results, as plate_force_max="12 N"; repeat'),
@@ -47,22 +53,23 @@ def calibrate(
     force: Force = False,
     as_json: AsJson = False,
 ) -> None:
-    """Compute the strength of a law from e_n or a hardness, or keys of a scene from numbers of its results.
+    """Compute the strength of a law from e_n, a hardness or an indentation, or keys of a scene from its results.
 
     A fit of a scene leaves report.html in its folder; for a strength, --out says where.
     """
     impacts = {"e_n": e_n, "speed": speed, "measured": measured, "uncertainty": uncertainty}
     hardness = {"hv": hv, "hb": hb, "dent_ratio": dent_ratio}
+    curve = {"indentation": indentation}
     of_scene = {"tolerance": tolerance, "engine": engine, "ranks": ranks, "jobs": jobs}
     if target or free:
-        refuse_options(case, "it does not go with --target and --free", **impacts, **hardness)
+        refuse_options(case, "it does not go with --target and --free", **impacts, **hardness, **curve)
         given = {k: v for k, v in (of_scene | {"out": out, "force": force}).items() if v is not None}
         _of_scene(case, target or [], free or [], given, as_json)
         return
     refuse_options(case, "it goes with --target and --free", **of_scene)
     if out is None:
         refuse_options(case, "it belongs to --out", force=force)
-    found = _from_impacts(case, e_n or [], speed or [], measured, uncertainty, hardness)
+    found = _from_measurement(case, e_n or [], speed or [], measured, uncertainty, hardness, indentation)
     _of_impact(case, found, as_json, out, force)
 
 
@@ -86,26 +93,29 @@ def _of_scene(case: Path, target: list[str], free: list[str], options: dict[str,
     print(f"{found.points} scenes, {found.ran} of them just now; the case with these values: {found.case}; see {page}")
 
 
-def _from_impacts(
+def _from_measurement(
     case: Path,
     e_n: list[float],
     speed: list[str],
     measured: bool,
     uncertainty: float | None,
     hardness: dict[str, float | None],
+    indentation: Path | None,
 ) -> "Calibration":
     from ..case.units import read_number
     from ..studies import calibrate as c
 
     hv, hb, dent_ratio = hardness.values()
-    if (bool(e_n) + measured + (hv is not None or hb is not None)) != 1:
-        raise CaseError("give one measurement: --e-n with --speed, --measured, --hv, or --hb")
+    if (bool(e_n) + measured + (hv is not None or hb is not None) + (indentation is not None)) != 1:
+        raise CaseError("give one measurement: --e-n with --speed, --measured, --hv, --hb, or --indentation")
     if hb is None:
         refuse_options(case, "it belongs to --hb", dent_ratio=dent_ratio)
     if not e_n:
         refuse_options(case, "it belongs to --e-n", speed=speed)
     if not (measured or e_n):
         refuse_options(case, "it belongs to --e-n and --measured", uncertainty=uncertainty)
+        if indentation is not None:
+            return c.from_indentation(case, indentation)
         test = c.hardness_test(vickers=hv, brinell=hb, dent_ratio=dent_ratio)
         return c.from_hardness(case, test, f"HV {hv:g}" if hv is not None else f"HB {hb:g}")
     if len(e_n) != len(speed):

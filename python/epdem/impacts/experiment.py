@@ -33,6 +33,8 @@ class Body:
     poisson_ratio: float
     yield_stress: float | None  # [Pa]; inf for a rigid body
     material: str
+    hardness: float | None = None  # [Pa]
+    yield_ratio: float | None = None  # overlap at first yield of two of them over the diameter
     surface_energy: float | None = None  # [J/m^2]
 
     @property
@@ -148,7 +150,7 @@ class Experiment:
 
 def pair_of(numbers: LawNumbers, body: Body, target: Body) -> LawSpec:
     """The law of two bodies. Raises CaseError where a yield stress or surface energy is missing."""
-    strong = [numbers.strength(b.material, b.yield_stress) for b in (body, target)]
+    strong = [numbers.strength(b.material, b) for b in (body, target)]
     surfaces = [Surface(b.material, b.surface_energy) for b in (body, target)]
     spec = numbers.pair(strong[0], strong[1], numbers.work_of_adhesion(*surfaces))
     return replace(spec, common=numbers.absolute is not None)

@@ -4,14 +4,18 @@
 import math
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
+from typing import Protocol
 
 from ..base.declarations import Declaration, declarations
 from ..errors import CaseError
 from ..theory.backbones import ADHESIVE, JKR, LAWS, Backbone
-from ..theory.numerics import Real
-from ..theory.pair import HARDENING, strain_share
+from ..theory.indentation import PYRAMID, Indentation, mean_pressure
+from ..theory.indentation import yield_stress as yield_stress_of
+from ..theory.numerics import Real, bisect
+from ..theory.pair import HARDENING, E_star, strain_share
 
 ADHESION = "work_of_adhesion"  # the parameter of laws with adhesion [J/m^2]
+LEAST_STRENGTH = 1e-8  # of E*; the largest is E* itself
 
 
 def law_named(name: str) -> Declaration:
@@ -24,6 +28,21 @@ def law_named(name: str) -> Declaration:
 def yields_by_stress(name: str) -> bool:
     """Whether the strength of a law is the yield stress itself, not a contact pressure. Raises CaseError."""
     return law_named(name).strength == "yield_stress"
+
+
+class Solid(Protocol):
+    """Elastic constants of a material and what is known of its strength: yield_stress, hardness [Pa], yield_ratio."""
+
+    @property
+    def young_modulus(self) -> float: ...
+    @property
+    def poisson_ratio(self) -> float: ...
+    @property
+    def yield_stress(self) -> float | None: ...
+    @property
+    def hardness(self) -> float | None: ...
+    @property
+    def yield_ratio(self) -> float | None: ...
 
 
 @dataclass(frozen=True)
@@ -104,11 +123,13 @@ class LawNumbers:
     adhesion: float | None = None
     compaction: bool = False
 
-    def strength(self, material: str, yield_stress: float | None, own: float | None = None) -> float:
+    def strength(self, material: str, solid: Solid, own: float | None = None) -> float:
         """Strength [Pa] of a body of `material`: its `own`, else by the law's rule; inf for a law without one.
 
-        Raises CaseError if the rule needs a yield stress [Pa] that the material does not have.
+        The rule is the strength for all bodies, else what the hardness, the overlap of first yield or the yield stress
+        of the material gives. Raises CaseError if the material has none of them.
         """
+        yield_stress = solid.yield_stress
         name = law_named(self.name).strength
         if name is None or yield_stress == math.inf:
             return math.inf
@@ -116,9 +137,15 @@ class LawNumbers:
             return own
         if self.absolute is not None:
             return self.absolute
+        if solid.hardness is not None:
+            place = f"materials.{material}.hardness"
+            return strength_of_hardness(self, Indentation(solid.hardness, PYRAMID), solid, place)
+        if solid.yield_ratio is not None:
+            return strength_of_yield_ratio(self, solid.yield_ratio, solid)
         if yield_stress is None:
             raise CaseError(
-                f"law {self.name} needs materials.{material}.yield_stress (or law.{name}, the same for all); add it"
+                f"law {self.name} needs the yield_stress, hardness or yield_ratio of materials.{material} "
+                f"(or law.{name}, the same for all); add it"
             )
         return self.ratio * yield_stress
 
@@ -164,3 +191,59 @@ def default_numbers(name: str) -> LawNumbers:
     law = law_named(name)
     ratios = {p.name: p.default for p in law.parameters if p.default is not None}
     return LawNumbers(name, ratios, None, law.default_ratio)
+
+
+def strength_of_hardness(law: LawNumbers, test: Indentation, solid: Solid, source: str) -> float:
+    """Strength [Pa] with which `solid` has the mean pressure of a hardness test with a rigid indenter.
+
+    A yield stress follows from the constraint of an expanding cavity, a contact pressure from the law's own mean
+    pressure at a/R of the test. Raises CaseError, which begins with `source`, for pressures that no strength gives.
+    """
+    E, nu = solid.young_modulus, solid.poisson_ratio
+    plane = float(E_star(E, nu, math.inf, 0.0))
+    elastic = 4 / (3 * math.pi) * test.slope  # p_m/E* of Hertz at this a/R
+    unit = "a hardness is in kgf/mm^2 (HV, for steel 100 to 1000) or in Pa"
+    if not LEAST_STRENGTH <= test.pressure / plane < elastic:
+        raise CaseError(
+            f"{source}: its mean pressure {test.pressure:.3g} Pa must lie between {LEAST_STRENGTH:g} and {elastic:.2g} "
+            f"of E* = {plane:.3g} Pa; {unit}"
+        )
+    if yields_by_stress(law.name):
+        try:
+            return yield_stress_of(test, young_modulus=E, poisson_ratio=nu, most=law.ratios["plastic_ratio"])
+        except ValueError as error:
+            raise CaseError(f"{source}: {error}; {unit}") from None
+
+    def too_soft(p_y: float) -> bool:
+        return mean_pressure(_alone(law, p_y, plane), test.slope) < test.pressure
+
+    if not too_soft(LEAST_STRENGTH * plane):
+        raise CaseError(
+            f"{source}: no {law_named(law.name).strength} above {LEAST_STRENGTH:g} of E* = {plane:.3g} Pa gives "
+            f"{test.pressure:.3g} Pa with these parameters of {law.name}; lower law.hardening_exponent"
+        )
+    return float(bisect(too_soft, LEAST_STRENGTH * plane, 2.0 * test.pressure, steps=80)[1])
+
+
+def strength_of_yield_ratio(law: LawNumbers, ratio: float, solid: Solid) -> float:
+    """Strength [Pa] with which two like spheres first yield at an overlap of `ratio` times their diameter.
+
+    The overlap at first yield goes as the square of the strength, alpha_y/R* = 4 ratio.
+    """
+    like = float(E_star(*(solid.young_modulus, solid.poisson_ratio) * 2))
+    unit = 1e-3 * like
+    return unit * math.sqrt(4.0 * ratio / float(_alone(law, unit, like).yield_overlap))
+
+
+def yield_ratio_of(law: LawNumbers, strength: float, solid: Solid) -> float:
+    """The inverse of `strength_of_yield_ratio`."""
+    like = float(E_star(*(solid.young_modulus, solid.poisson_ratio) * 2))
+    return float(_alone(law, strength, like).yield_overlap) / 4.0
+
+
+def _alone(law: LawNumbers, strength: float, modulus: float) -> Backbone:
+    """The law without adhesion at R* = 1, of two bodies of this strength [Pa] and E* = `modulus` [Pa]."""
+    dry = law_named(law.name).without_adhesion or law.name  # attraction plays no part in the strength
+    theory = replace(law, name=dry, absolute=strength).pair(strength, strength).theory(E_star=modulus, R_star=1.0)
+    assert not isinstance(theory, JKR)
+    return theory

@@ -195,7 +195,7 @@ def strengths(case: SceneCase) -> dict[str, float]:
             own = read_number(f"materials.{name}.{strength}", extra.pop(strength), "Pa")
         for key in extra:
             raise CaseError(f"materials.{name}.{key}: unknown key; remove it or correct its spelling")
-        strengths[name] = law.strength(name, material.yield_stress, own)
+        strengths[name] = law.strength(name, material, own)
     return strengths
 
 

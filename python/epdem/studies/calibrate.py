@@ -1,7 +1,10 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""The strength of a law from one e_n or a hardness; strength and hardening exponent from several e_n."""
+"""The strength of a law from one e_n, a hardness or an indentation curve; strength and hardening exponent from e_n."""
 
+import csv
+import io
 import math
+import re
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from pathlib import Path
@@ -10,20 +13,18 @@ import numpy as np
 
 from ..case.impact import HIGHEST_E_N, Case, load
 from ..case.law import law_numbers
-from ..case.toml import named
+from ..case.toml import named, text_of
+from ..case.units import to_si
 from ..errors import CaseError
 from ..impacts.experiment import Body, Experiment, bodies, pair_of, rated
 from ..impacts.prediction import predict
-from ..laws.strengths import LawNumbers, law_named, yields_by_stress
-from ..theory import adhesion, pair
-from ..theory.backbones import JKR
-from ..theory.indentation import PYRAMID, Indentation, mean_pressure, yield_stress
+from ..laws.strengths import LEAST_STRENGTH, LawNumbers, law_named, strength_of_hardness
+from ..theory import adhesion
+from ..theory.backbones import JKR, Backbone
+from ..theory.indentation import KGF_PER_MM2, PYRAMID, VICKERS, Indentation
 from ..theory.numerics import bisect
 
-KGF_PER_MM2 = 9.80665e6  # Pa
-VICKERS_FACETS = 2 / 1.8544  # area of the facets of a Vickers indentation over its projected area, 1/sin(136 deg/2)
 BRINELL_DENT = 0.375  # dent over ball diameter in a usual Brinell test (0.24 to 0.6)
-LEAST_STRENGTH = 1e-8  # of E*; the largest is E* itself
 
 
 def hardness_test(
@@ -43,7 +44,7 @@ def hardness_test(
     if not (math.isfinite(hardness) and hardness > 0):
         raise CaseError(f"hardness {hardness:g}, must be > 0")
     if vickers is not None:
-        return Indentation(hardness * KGF_PER_MM2 * VICKERS_FACETS, PYRAMID)
+        return Indentation(hardness * VICKERS, PYRAMID)
     x = BRINELL_DENT if dent_ratio is None else dent_ratio
     if not 0.0 < x <= 1.0:
         raise CaseError(f"--dent-ratio {x:g}, must lie in (0, 1]")
@@ -53,40 +54,6 @@ def hardness_test(
 def specimen(body: Body, target: Body) -> Body:
     """The body that the hardness belongs to: the lower yield stress, else the lower modulus."""
     return min((b for b in (body, target) if not b.rigid), key=lambda b: (b.yield_stress or math.inf, b.young_modulus))
-
-
-def strength(law: LawNumbers, test: Indentation, body: Body, source: str) -> float:
-    """Strength [Pa] with which `body` has the mean pressure of a hardness test with a rigid indenter.
-
-    A yield stress follows from the constraint of an expanding cavity, a contact pressure from the law's own mean
-    pressure at a/R of the test. Raises CaseError for pressures that no strength gives.
-    """
-    E, nu = body.young_modulus, body.poisson_ratio
-    plane = float(pair.E_star(E, nu, math.inf, 0.0))
-    elastic = 4 / (3 * math.pi) * test.slope  # p_m/E* of Hertz at this a/R
-    if not LEAST_STRENGTH <= test.pressure / plane < elastic:
-        raise CaseError(
-            f"{source}: its mean pressure {test.pressure:.3g} Pa must lie between {LEAST_STRENGTH:g} and {elastic:.2g} "
-            f"of E* = {plane:.3g} Pa; a hardness is in kgf/mm^2, for steel 100 to 1000"
-        )
-    if yields_by_stress(law.name):
-        try:
-            return yield_stress(test, young_modulus=E, poisson_ratio=nu, most=law.ratios["plastic_ratio"])
-        except ValueError as error:
-            raise CaseError(f"{source}: {error}; a hardness is in kgf/mm^2, for steel 100 to 1000") from None
-    dry = law_named(law.name).without_adhesion or law.name  # attraction plays no part in a hardness test
-
-    def too_soft(p_y: float) -> bool:
-        theory = replace(law, name=dry, absolute=p_y).pair(p_y, p_y).theory(E_star=plane, R_star=1.0)
-        assert not isinstance(theory, JKR)
-        return mean_pressure(theory, test.slope) < test.pressure
-
-    if not too_soft(LEAST_STRENGTH * plane):
-        raise CaseError(
-            f"{source}: no {law_named(law.name).strength} above {LEAST_STRENGTH:g} of E* = {plane:.3g} Pa gives "
-            f"{test.pressure:.3g} Pa with these parameters of {law.name}; lower law.hardening_exponent"
-        )
-    return float(bisect(too_soft, LEAST_STRENGTH * plane, 2.0 * test.pressure, steps=80)[1])
 
 
 EXPONENT = "hardening_exponent"
@@ -205,8 +172,74 @@ def from_hardness(path: Path, test: Indentation, source: str) -> Calibration:
     """The strength from a hardness test of the softer body of the case. Raises CaseError."""
     uncalibrated = _uncalibrated(path)
     return uncalibrated.result(
-        strength(uncalibrated.law, test, specimen(*bodies(uncalibrated.case)), source), None, source
+        strength_of_hardness(uncalibrated.law, test, specimen(*bodies(uncalibrated.case)), source), None, source
     )
+
+
+CURVE = {"depth": "m", "force": "N"}  # columns of an indentation curve
+
+
+def from_indentation(path: Path, curve: Path) -> Calibration:
+    """The strength with which the contact of the case follows a measured curve of force and depth, by least squares.
+
+    The depth is the overlap of the contact of body and target; points behind the largest force, the unloading, play no
+    part. Raises CaseError for a curve that does not yield, and for one that no strength gives.
+    """
+    from scipy.optimize import minimize_scalar
+
+    uncalibrated = _uncalibrated(path)
+    depth, force = _loading(curve)
+    modulus = uncalibrated.experiment(1e9, 1.0).E_star
+
+    def branch(logarithm: float) -> Backbone:
+        theory = uncalibrated.experiment(math.exp(logarithm), 1.0).theory()
+        if isinstance(theory, JKR):
+            dry = law_named(uncalibrated.law.name).without_adhesion
+            raise CaseError(f"{path}: an indentation curve has no adhesion here; take law.name = {dry!r}")
+        return theory
+
+    def misfit(logarithm: float) -> float:
+        return float(np.sum((branch(logarithm).force(depth) / force.max() - force / force.max()) ** 2))
+
+    low, high = math.log(LEAST_STRENGTH * modulus), math.log(modulus)
+    grid = np.linspace(low, high, 200)
+    best = int(np.argmin([misfit(x) for x in grid]))
+    bounds = (grid[max(best - 1, 0)], grid[min(best + 1, 199)])
+    found = float(minimize_scalar(misfit, bounds=bounds, method="bounded", options={"xatol": 1e-10}).x)
+    if float(branch(found).yield_overlap) >= depth.max():
+        raise CaseError(
+            f"{curve}: the curve is that of an elastic contact up to {depth.max():.3g} m; check young_modulus and "
+            "radius of the case, or press deeper"
+        )
+    if best == 0:
+        raise CaseError(f"{curve}: no strength above {LEAST_STRENGTH:g} of E* = {modulus:.3g} Pa gives it; check units")
+    rms = 100.0 * math.sqrt(misfit(found) / len(depth))
+    source = f"{len(depth)} points of {curve.name}, which it meets within {rms:.2g} % of the largest force (rms)"
+    return uncalibrated.result(math.exp(found), None, source)
+
+
+def _loading(curve: Path) -> tuple[np.ndarray, np.ndarray]:
+    """Depths [m] > 0 and forces [N] of a curve's file up to the largest force. Raises CaseError."""
+    heads, *rows = [row for row in csv.reader(io.StringIO(text_of(curve))) if any(map(str.strip, row))] or [[]]
+    titles = [re.fullmatch(r"\s*(\w+)\s*\[(.+)\]\s*", head) for head in heads]
+    units = {match[1]: match[2] for match in titles if match}
+    if sorted(units) != sorted(CURVE) or len(heads) != 2:
+        raise CaseError(f"{curve}: the heading {','.join(heads)!r} must be depth and force, as 'depth [nm],force [mN]'")
+    columns: dict[str, list[float]] = {name: [] for name in units}
+    for n, row in enumerate(rows, 2):
+        if len(row) != 2:
+            raise CaseError(f"{curve} line {n}: {len(row)} values, must be 2")
+        for name, cell in zip(units, row, strict=True):
+            try:
+                columns[name].append(to_si(f"{cell.strip()} {units[name]}", CURVE[name]))
+            except ValueError as error:
+                raise CaseError(f"{curve} line {n}: {name} = {cell!r}, {error}") from None
+    depth, force = (np.array(columns[name]) for name in CURVE)
+    loading = slice(0, int(np.argmax(force)) + 1 if force.size else 0)
+    kept = depth[loading] > 0
+    if kept.sum() < 3:
+        raise CaseError(f"{curve}: {kept.sum()} points of loading with a depth > 0, must be at least 3")
+    return depth[loading][kept], force[loading][kept]
 
 
 def from_restitutions(

@@ -122,7 +122,9 @@ def write_calibration_page(case: Path, found: Calibration, folder: Path, *, forc
         series.append(Series("measured", speeds, values, 1, None, charts.MEASURED))
     alt = f"Coefficient of restitution of law {found.law} with {found.parameter} = {found.value:.4g} Pa against speed."
     chart = Chart("e_n", "Restitution with this strength", alt, [Panel(charts.SPEED, Axis("e_n"), series)])
-    bare = [replace(b, yield_stress=None) for b in (x.body, x.target)]  # whose own strength plays no part
+    bare = [
+        replace(b, yield_stress=None, hardness=None, yield_ratio=None) for b in (x.body, x.target)
+    ]  # whose own strength plays no part
     facts = Facts("Bodies and law", _impact_facts(replace(x, body=bare[0], target=bare[1], source=found.source)))
     cited = Facts("What to cite", citations(load(case), [found.law], []))
     parts: list[Part] = [chart, facts, origin({}, {}), cited]
@@ -223,6 +225,8 @@ def _body(b: Body) -> str:
     if b.rigid:
         return f"{shape}, rigid"
     strength = "" if b.yield_stress is None else f", Y = {b.yield_stress:.4g} Pa"
+    strength += "" if b.hardness is None else f", hardness {b.hardness:.4g} Pa"
+    strength += "" if b.yield_ratio is None else f", first yield at an overlap of {b.yield_ratio:.4g} diameters"
     return f"{shape}, {b.material}: E = {b.young_modulus:.4g} Pa, nu = {b.poisson_ratio:g}{strength}"
 
 

@@ -10,6 +10,9 @@ overlaps and sqrt(2 Gamma E*/(pi a)) falls as p_y: all lengths and pressures of 
 The force of a contact at a speed, its yield force and its pull-off force fall as k^0.4. Forces that a scene prescribes
 fall with them, weight does not.
 
+The overlap of first yield goes as (p_y/E*)^2: yield_ratio k^0.4. The constraint of a hardness depends on E/Y, so that a
+hardness becomes the yield_ratio of the same strength.
+
 What depends on a/R itself follows it: finite strain takes c k^0.14 in exp(-c (w a/R*)^-0.7), and the reference of a
 strength that grows with the rate 0.2 w v/a falls as the rate. The area that finite strain takes off goes with
 overlap/R*, which no parameter scales: there e_n changes.
@@ -23,10 +26,12 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 import tomlkit
 
+from ..case.fields import Material
 from ..case.impact import Rate
+from ..case.law import law_numbers
 from ..case.toml import named, read_toml, text_for_anywhere, text_of, with_library
 from ..errors import CaseError
-from ..laws.strengths import ADHESION, law_named
+from ..laws.strengths import ADHESION, law_named, yield_ratio_of
 from ..theory.cavity import FINITE_STRAIN, STRAIN_EXPONENT
 from ..theory.validity import SMALL_DEFORMATION
 
@@ -34,6 +39,7 @@ if TYPE_CHECKING:
     from ..impacts.prediction import Prediction
 
 STRENGTH_POWER, ADHESION_POWER, FORCE_POWER, STEP_POWER, STRAIN_POWER = 0.8, 0.4, 0.4, 0.4, 0.2
+OVERLAP_POWER = 0.4  # of overlaps over the radius
 Key = tuple[str | int, ...]  # names of tables and numbers of entries
 
 
@@ -85,6 +91,13 @@ def _replacements(data: dict[str, Any], factor: float) -> dict[Key, str | float]
     texts: dict[Key, str | float] = {}
     for name, material in data["materials"].items():
         texts["materials", name, "young_modulus"] = _scaled(material["young_modulus"], 1.0 / factor)
+        ratio = material.get("yield_ratio")
+        if "hardness" in material and strength:
+            numbers = law_numbers(law["name"], {key: value for key, value in law.items() if key != "name"})
+            solid = Material.model_validate(material)
+            ratio = yield_ratio_of(numbers, numbers.strength(name, solid), solid)
+        if ratio is not None:
+            texts["materials", name, "yield_ratio"] = float(f"{ratio * factor**OVERLAP_POWER:.15g}")
         for key in ("yield_stress", *([strength] if strength else [])):
             if key in material:
                 texts["materials", name, key] = _scaled(material[key], factor**-STRENGTH_POWER)
@@ -111,8 +124,11 @@ def _change(document: tomlkit.TOMLDocument, data: Any, keys: Key, after: str | f
     table: Any = document
     for key in keys[:-1]:
         table, data = table[key], data[key]
+    before = data.get(keys[-1], "the default")
+    if keys[-1] == "yield_ratio" and "hardness" in table:
+        before = f"hardness = {table.pop('hardness')}"
     table[keys[-1]] = after
-    return Change(".".join(map(str, keys)), str(data.get(keys[-1], "the default")), str(after))
+    return Change(".".join(map(str, keys)), str(before), str(after))
 
 
 def _prediction(data: dict[str, Any], path: Path) -> "Prediction":

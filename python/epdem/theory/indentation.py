@@ -11,6 +11,8 @@ from .numerics import bisect
 
 PYRAMID = math.tan(math.radians(19.7))  # slope of the cone with the volume of a Vickers pyramid
 FULLY_PLASTIC = 2.8  # p_m/Y of a fully plastic indentation (Tabor 1951)
+KGF_PER_MM2 = 9.80665e6  # Pa
+VICKERS = KGF_PER_MM2 * 2 / 1.8544  # p_m [Pa] of 1 HV: area of the facets over its projection, 1/sin(136 deg/2)
 
 
 @dataclass(frozen=True)

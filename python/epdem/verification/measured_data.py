@@ -25,8 +25,8 @@ from ..impacts.experiment import Experiment, bodies, experiment
 from ..impacts.plan import plan
 from ..impacts.prediction import predict
 from ..impacts.run import run_and_compare
-from ..laws.strengths import default_numbers, law_named
-from ..studies.calibrate import EXPONENT, hardness_test, specimen, strength
+from ..laws.strengths import default_numbers, law_named, strength_of_hardness
+from ..studies.calibrate import EXPONENT, hardness_test, specimen
 from ..theory.backbones import JKR
 from .models import engine
 
@@ -104,7 +104,7 @@ def case_of(measured: Measured, material: str, value: float, speeds: Sequence[fl
     if measured.given == "hardness" and law_named(law).strength:
         numbers = default_numbers(law)
         body = specimen(*bodies(parse(data, path)))
-        value = strength(numbers, hardness_test(vickers=value), body, f"HV {value:g}") / numbers.ratio
+        value = strength_of_hardness(numbers, hardness_test(vickers=value), body, f"HV {value:g}") / numbers.ratio
     if measured.given == "yield_stress" or law_named(law).strength:
         data["materials"][material]["yield_stress"] = f"{value!r} Pa"
     return parse(data, path)

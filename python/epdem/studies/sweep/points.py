@@ -24,7 +24,7 @@ from ...case.impact import Case
 from ...case.law import alternatives, law_keys
 from ...case.scene import SceneCase, SceneMaterial, is_scene
 from ...case.sizes import LARGEST_FILE
-from ...case.toml import text_of
+from ...case.toml import strength_keys, text_of
 from ...case.units import to_si
 from ...errors import CaseError
 from ...laws.strengths import ADHESION
@@ -119,6 +119,9 @@ def _exclusive_keys(key: str, data: dict[str, Any]) -> tuple[str, ...]:
     if key == "numerics.steps_in_contact":
         return ("numerics.error",)
     law, (table, _, name) = _law(data), key.partition(".")
+    material, _, last = name.rpartition(".")
+    if table == "materials" and last in strength_keys():
+        return tuple(f"materials.{material}.{other}" for other in strength_keys())
     return tuple(f"law.{other}" for other in alternatives(law, name)) if law and table == "law" else ()
 
 
@@ -126,9 +129,12 @@ def assign(document: Any, key: str, value: Any) -> None:
     """Set `key` in a TOML document or plain tables; missing tables are made, alternatives of the key are removed."""
     *way, last = key.split(".")
     for other in _exclusive_keys(key, document):
-        table, name = other.rsplit(".", 1)
-        if other != key and name in document.get(table, {}):
-            del document[table][name]
+        *path, name = other.split(".")
+        table = document
+        for part in path:
+            table = table.get(part, {})
+        if other != key and name in table:
+            del table[name]
     table = document
     for name in way:
         if isinstance(table, list):
