@@ -26,7 +26,8 @@ import store
 
 from epdem.base import paths, rendering
 from epdem.base.files import write_texts
-from epdem.case.scene import load
+from epdem.case.scene import parse
+from epdem.case.toml import read_toml
 from epdem.engines.lammps import launcher as lammps_launcher
 from epdem.engines.lammps import scene_deck as lammps_deck
 from epdem.engines.liggghts import launcher, scene_deck
@@ -46,8 +47,9 @@ ENVIRONMENT = {"hertz": {"EPDEM_LOOP": "generic"}, "ep": {}, "ep, AVX2": {"EPDEM
 
 
 def files(case: Path, model: str) -> dict[str, str]:
-    """The deck of a case with its own law, for LIGGGHTS or LAMMPS, or with LIGGGHTS's hertz."""
-    p = plan(load(case))
+    """The deck of a case, a press with thornton, for LIGGGHTS or LAMMPS, or with LIGGGHTS's hertz."""
+    data = read_toml(case)
+    p = plan(parse(data | {"law": {"name": "thornton"}} if data["law"].get("compaction") else data, case))
     if model == LAMMPS:
         return lammps_deck.files(p)
     if model != "hertz":
@@ -56,14 +58,13 @@ def files(case: Path, model: str) -> dict[str, str]:
     properties = d.properties
     if not any(x.name == "coefficientRestitution" for x in properties):
         properties = (*properties, per_pair("coefficientRestitution", d.n_types, 0.5, "-"))
-    columns = scene_deck.contact_columns(0, 0)
     of_hertz = d.but(
         model="hertz",
         properties=properties,
         settings=tuple(s for s in d.settings if not re.match("computePlasticWork|computeContactStrain", s)),
         row_words=tuple(word for word in d.row_words if not word.startswith("c_ratio")),
-        contact_columns=columns,
-        wall_contact_columns=columns,
+        contact_columns=scene_deck.contact_columns((), 0, 1),
+        wall_contact_columns=scene_deck.contact_columns((), 0, 2),
         history_columns=(),
         yields=False,
         work_words=[],

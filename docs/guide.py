@@ -197,7 +197,7 @@ def main() -> None:
     PAGES.mkdir(parents=True)
     for page in (ROOT / "docs").glob("*.md"):
         text = OUTSIDE.sub(r"\1 (`\2`)", page.read_text(encoding="utf-8"))
-        text = mathematics(languages(text), convert).replace("](notebook.ipynb)", "](#)")
+        text = re.sub(r"\]\(\w+\.ipynb\)", "](#)", mathematics(languages(text), convert))
         (PAGES / page.name).write_text(text, encoding="utf-8")
     shutil.copytree(ROOT / "docs/figures", PAGES / "figures")
     (PAGES / "reference_commands.md").write_text(commands(), encoding="utf-8")

@@ -244,12 +244,14 @@ void FixWall::note(int n) {
   const kernels::Block& b = *block_;
   const int most = words_.models.law->most, root = layout_.root;
   for (int k = 0; k < n; ++k) {
-    const double overlap = b.overlap.a[k];
+    const double overlap = b.overlap.a[k], distance = atom->radius[b.i[k]] - overlap;
     local_.insert(local_.end(), {double(atom->tag[b.i[k]]), double(b.j[k]), overlap,
                                  most < 0 ? overlap : std::max(overlap, b.history[k][most]),
                                  double(root < 0 || b.history[k][root] > 0.0),
                                  layout_.growth < 0 ? 0.0 : added_overlap_of(b.history[k] + layout_.growth),
                                  layout_.growth < 0 ? 0.0 : screening_of(b.history[k] + layout_.growth)});
+    for (const auto& force : b.force) local_.push_back(force.a[k]);
+    for (const auto& from : b.from_wall) local_.push_back(distance > 0.0 ? from.a[k] / distance : 0.0);
   }
 }
 

@@ -81,7 +81,7 @@ class FixWall : public LAMMPS_NS::Fix {
   kernels::Pass pass_{};
   std::unique_ptr<kernels::Block> block_;
   std::vector<double> copies_[2], scratch_;
-  static constexpr int sums = 7, local_columns = 7;
+  static constexpr int sums = 7, local_columns = 13;
   double sum_[sums] = {}, total_[sums] = {};
   std::vector<double> local_;  // of each contact: id, part, overlap, largest overlap, attached, added overlap
   std::vector<double*> local_row_;

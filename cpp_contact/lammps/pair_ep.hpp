@@ -82,7 +82,7 @@ class PairEp : public LAMMPS_NS::Pair {
   int slot_[kernels::block_size + kernels::most_lanes];
   std::vector<double> copies_[3];  // of x, v, omega, if no number can be read behind the last atom
   int frozen_ = 0;                 // group bit
-  double single_[6];               // svector
+  double single_[9];               // svector
 };
 
 }  // namespace epdem::lammps

@@ -15,7 +15,7 @@ from epdem.engines import log, scene_engine
 from epdem.engines.liggghts import scene_tables
 from epdem.errors import EngineError
 from epdem.scenes import checks
-from epdem.scenes.columns import COLUMNS, STRAINS
+from epdem.scenes.columns import COLUMNS, NORMAL, STRAINS
 
 
 @pytest.fixture(scope="module", params=RUNS)
@@ -155,7 +155,7 @@ def test_every_column_has_a_sentence_and_a_unit_unless_it_is_a_name_or_a_count(s
         f"delta_max_{w.name}" for w in p.scene.planes if f"delta_max_{w.name}" in tables["particles"]
     }
     without = {c for c in found & set(COLUMNS) if not COLUMNS[c].unit}
-    assert without == {"step", "particles", "id", "type", "wall", "i", "j", *STRAINS}
+    assert without == {"step", "particles", "id", "type", "wall", "i", "j", *NORMAL, *STRAINS}
     assert all(COLUMNS[c].sentence for c in found & set(COLUMNS))
 
 

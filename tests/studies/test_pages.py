@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """Every block of docs/studies.md runs as it stands, in the order of the page; the notebook runs from top to end."""
 
+import math
 import os
 import re
 import shutil
@@ -48,6 +49,22 @@ def test_on_my_cluster(tmp_path):
     with cluster(tmp_path / "slurm") as nodes:
         play([(kind, text) for kind, text in blocks("studies") if kind == "sh slurm"], tmp_path, nodes.env)
     assert pd.read_csv(tmp_path / "runs/byhand/sweep.csv")["status"].tolist() == ["done"] * 64
+
+
+@pytest.mark.liggghts
+def test_the_notebook_of_conductivity_gives_that_of_a_lattice_of_hertz_s_contacts(tmp_path, monkeypatch):
+    """All contacts of a chain have one force: overlaps d of pairs and d/2^(1/3) at walls add up to the stroke."""
+    import nbformat
+    from nbclient import NotebookClient
+
+    monkeypatch.setenv("PATH", f"{Path(sys.executable).parent}:{os.environ['PATH']}")
+    notebook = nbformat.read(ROOT / "docs/conductivity.ipynb", as_version=4)
+    NotebookClient(notebook, timeout=300, resources={"metadata": {"path": str(tmp_path)}}).execute()
+    d = 60e-6 / (2 + 2 * 2 ** (-1 / 3))
+    a, a_wall = math.sqrt(5e-4 * d), math.sqrt(1e-3 * d * 2 ** (-1 / 3))
+    chain = 2 / (2 * a) + 2 / (4 * a_wall)
+    found = float(re.search(r"conductivity ([\d.e-]+)", notebook.cells[-1].outputs[0].text)[1])
+    assert found == pytest.approx(9 / chain * 5.94e-3 / 36e-6, rel=1e-4)
 
 
 @pytest.mark.liggghts

@@ -80,7 +80,8 @@ def run(
 
     Its page report.html is beside the results.
     """
-    kinds, engines = formats(pictures), engine or [DEFAULT_ENGINE]
+    table, engines = "csv" in (pictures or []), engine or [DEFAULT_ENGINE]
+    kinds = formats([name for name in pictures or [] if name != "csv"])
     options: dict[str, Any] = {"out": out, "ranks": ranks, "fresh": fresh, "force": force}
     if full and as_json:
         raise CaseError("--full: --json holds all rows; leave it out")
@@ -91,8 +92,12 @@ def run(
             raise CaseError(f"{case}: --engine: a scene runs on one engine; give it once")
         if fresh and resume:
             raise CaseError(f"{case}: --resume continues a run and --fresh begins it again; leave one out")
-        code = cli_scene.run_scene(case, engine=engines[0], formats=kinds, as_json=as_json, resume=resume, **options)
+        code = cli_scene.run_scene(
+            case, engine=engines[0], formats=kinds, csv=table, as_json=as_json, resume=resume, **options
+        )
         raise typer.Exit(code)
+    if table:
+        raise CaseError("--format csv: it is for the contacts of scenes; impacts have results.csv; leave it out")
     refuse_options(
         case, "it continues bulk scenes; a run of impacts takes finished stages from its store", resume=resume
     )

@@ -30,7 +30,10 @@ Force = Annotated[bool, typer.Option("--force", help="write into a folder that h
 Replace = Annotated[bool, typer.Option("--force", help="replace an existing file")]
 Formats = Annotated[
     list[str] | None,
-    typer.Option("--format", help="of the figures: png, svg or pdf (default: png); repeat for more"),
+    typer.Option(
+        "--format",
+        help="of the figures: png, svg or pdf (default: png); csv: also contacts.csv of a scene; repeat for more",
+    ),
 ]
 AsJson = Annotated[bool, typer.Option("--json", help="print one JSON document and nothing else")]
 

@@ -9,6 +9,7 @@ from typing import Annotated, Any
 import typer
 
 from ..base.terminal import bar, console
+from ..errors import CaseError
 from .options import AsJson, CasePath, Replace
 
 
@@ -20,21 +21,28 @@ def is_scene(path: Path) -> bool:
     return holds_scene(read_toml(path))
 
 
-def run_scene(case: Path, *, engine: str, formats: tuple[str, ...], as_json: bool, **options: Any) -> int:
+def run_scene(case: Path, *, engine: str, formats: tuple[str, ...], csv: bool, as_json: bool, **options: Any) -> int:
     """Run a scene with a progress bar; print its checks. Exit code: 0, or 1 if a check failed."""
     from rich.progress import TextColumn, TimeRemainingColumn
 
+    from ..base.tables import write_csv
+    from ..case.scene import load
     from ..engines import scene_engine
     from ..scenes import report
+    from ..scenes.plan import plan
     from ..scenes.run import run
     from ..studies.pages import write_scene_page
 
     tool = scene_engine(engine)
+    if csv and not plan(load(case)).contacts:
+        raise CaseError(f"{case}: --format csv: the scene has no table of contacts; give output.contacts")
     with bar(TextColumn("{task.completed}/{task.total} steps"), TimeRemainingColumn()) as progress:
         task = progress.add_task(Path(case).stem, total=None)
         options["report"] = lambda step, steps: progress.update(task, completed=step, total=steps)
         outcome = run(case, tool, **options)
     report.figures(outcome, formats)
+    if csv:
+        write_csv(outcome.folder / "contacts.csv", outcome.results.contacts)
     write_scene_page(outcome)
     if as_json:
         print(report.as_json(outcome))

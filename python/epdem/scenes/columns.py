@@ -57,7 +57,12 @@ COLUMNS = {
     "overlap": Quantity("m", "overlap"),
     "added_overlap": Quantity("m", "overlap that the growth of both spheres adds (compaction)"),
     "screening": Quantity("", "elastic recovery over that of the contact alone (compaction)"),
+    **{
+        f"normal_{axis}": Quantity("", f"{axis} of the unit vector from the second body to the first") for axis in "xyz"
+    },
+    **{f"force_{axis}": Quantity("N", f"{axis} of the force on the first sphere, friction included") for axis in "xyz"},
     "force": Quantity("N", "normal force"),
+    "contact_radius": Quantity("m", "radius of the contact, 0 without force"),
     "delta_max": Quantity("m", "largest overlap so far"),
     "residual_overlap": Quantity("m", "overlap at which the unloaded contact has no force"),
     "dent_radius": Quantity("m", "contact radius at the largest overlap, 0 without plastic work"),
@@ -177,13 +182,14 @@ def plate_height(p: ScenePlan, time: np.ndarray) -> np.ndarray:
 Array = npt.NDArray[np.float64]
 
 GROWTH = ["added_overlap", "screening"]  # that an engine gives with compaction
-BY_LAW = ["force", "residual_overlap", "dent_radius", "plastic_work", "elastic_energy"]
+NORMAL, FORCE = ([f"{name}_{axis}" for axis in "xyz"] for name in ("normal", "force"))  # force: that of the engine
+BY_LAW = ["force", "contact_radius", "residual_overlap", "dent_radius", "plastic_work", "elastic_energy"]
 _NODES, _WEIGHTS = gauss(16)  # on [0, 1]
 
 
 def contact_columns(p: ScenePlan) -> list[str]:
     """The columns of the table of contacts."""
-    return ["step", "wall", "i", "j", "overlap", "delta_max", *GROWTH * p.model.compaction, *BY_LAW]
+    return ["step", "wall", "i", "j", "overlap", "delta_max", *GROWTH * p.model.compaction, *NORMAL, *FORCE, *BY_LAW]
 
 
 def complete(p: ScenePlan, raw: pd.DataFrame, spheres: pd.DataFrame, folder: Path) -> pd.DataFrame:
@@ -191,12 +197,13 @@ def complete(p: ScenePlan, raw: pd.DataFrame, spheres: pd.DataFrame, folder: Pat
 
     raw: step, wall, i, j, overlap, delta_max; i < j are ids of spheres, or j = 0 and `wall` the name of a wall; with
     adhesion also whether the bodies are attached, for they may overlap in a dent without a contact; with compaction
-    added_overlap, with which the law's overlaps are larger than those of the spheres, and screening.
+    added_overlap, with which the law's overlaps are larger than those of the spheres, and screening; the force on i,
+    and at walls the normal.
     spheres: the particles' table. Raises EngineError, which names `folder`, for a contact of spheres that it lacks.
     """
     if raw.empty:
         return pd.DataFrame(columns=contact_columns(p))
-    known = spheres.set_index(["step", "id"])[["radius", "type"]]
+    known = spheres.set_index(["step", "id"])[["radius", "type", *"xyz"]]
     first = known.reindex(pd.MultiIndex.from_frame(raw[["step", "i"]].astype("int64")))
     second = known.reindex(pd.MultiIndex.from_frame(raw[["step", "j"]].astype("int64")))
     unknown = first["radius"].isna().to_numpy() | (second["radius"].isna().to_numpy() & (raw["j"] != 0).to_numpy())
@@ -212,10 +219,23 @@ def complete(p: ScenePlan, raw: pd.DataFrame, spheres: pd.DataFrame, folder: Pat
     added, screening = (raw[name].to_numpy() for name in GROWTH) if p.model.compaction else (0.0, np.ones(len(raw)))
     overlap, largest = raw["overlap"].to_numpy() + added, raw["delta_max"].to_numpy() + added
     screening = np.where(screening > 0.0, screening, 1.0)  # 0: of a new contact
+    between = (raw["j"] != 0).to_numpy()[:, None]
+    apart = np.where(between, first[[*"xyz"]].to_numpy() - second[[*"xyz"]].to_numpy(), 0.0)
+    if p.scene.periodic:
+        sides = np.subtract(p.box[1:4:2], p.box[0:4:2])
+        apart[:, :2] -= sides * np.round(apart[:, :2] / sides)
+    at_walls = raw[NORMAL].to_numpy(float) if NORMAL[0] in raw else np.zeros((len(raw), 3))
+    raw = raw.assign(**dict(zip(NORMAL, np.where(between, _unit(apart), at_walls).T, strict=True)))
     law = energies(p, type_i, type_j, R_star, overlap, largest, attached, screening)
     table = raw[contact_columns(p)[: -len(BY_LAW)]].reset_index(drop=True).join(law)
     table = table.astype({"step": "int64", "i": "int64", "j": "int64"})
     return table.sort_values(["step", "wall", "i", "j"], kind="stable").reset_index(drop=True)
+
+
+def _unit(vectors: Array) -> Array:
+    """The vectors with length 1; zero vectors stay."""
+    length = np.linalg.norm(vectors, axis=1, keepdims=True)
+    return np.asarray(vectors / np.where(length > 0.0, length, 1.0))
 
 
 def energies(
@@ -228,7 +248,7 @@ def energies(
     attached: npt.NDArray[np.bool_],
     screening: Array,
 ) -> pd.DataFrame:
-    """force, residual_overlap, dent_radius, plastic_work, elastic_energy of contacts; arrays of shape (n,)."""
+    """The columns BY_LAW of contacts; arrays of shape (n,)."""
     out = pd.DataFrame(0.0, index=range(len(overlap)), columns=BY_LAW)
     material = ["", *(t.material for t in p.model.types)]
     low, high = np.minimum(type_i, type_j), np.maximum(type_i, type_j)
@@ -265,7 +285,7 @@ def _one_kind(
     largest = np.maximum(largest, overlap)
     given_back = 1.0 - (1.0 - screening) * np.maximum(1.0 - theory.yield_overlap / np.maximum(largest, 1e-300), 0.0)
     overlap = largest - (largest - overlap) / given_back
-    force, _, _ = law.step(R_star=R, delta_max=largest, delta=overlap)
+    force, radius, _ = law.step(R_star=R, delta_max=largest, delta=overlap)
     _, dent, _, plastic = law.backbone(R_star=R, delta=largest)
     residual = np.asarray(theory.residual_overlap(largest), float) * (plastic > 0.0)
     # elastic energy: the force below delta_max, integrated from where it begins; squared nodes take its root away there
@@ -276,6 +296,7 @@ def _one_kind(
     elastic = 2.0 * (F.reshape(delta.shape) * _NODES * _WEIGHTS).sum(axis=1) * way  # 2 from the square
     return {
         "force": force,
+        "contact_radius": np.where(force > 0.0, radius, 0.0),
         "residual_overlap": largest - given_back * (largest - residual),
         "dent_radius": np.where(plastic > 0.0, dent, 0.0),
         "plastic_work": plastic,
@@ -290,6 +311,7 @@ def _with_adhesion(law: JKR, overlap: np.ndarray, largest: np.ndarray, attached:
     a = np.where(attached, branch.radius(overlap - dent), 0.0)
     return {
         "force": np.where(attached, branch.force(a), 0.0),
+        "contact_radius": a,
         "residual_overlap": dent,
         "dent_radius": np.where(dented, top, 0.0),
         "plastic_work": plastic_work(law, top),

@@ -18,7 +18,7 @@ import pandas as pd
 from ..base import tables as h5
 from ..base.tables import write_array, write_attributes
 from . import walls
-from .columns import SPINS, units
+from .columns import FORCE, NORMAL, SPINS, units
 from .plan import ScenePlan
 from .walls import FloatArray, at_end
 
@@ -108,6 +108,8 @@ def write_vtkhdf(file: h5py.File, p: ScenePlan, tables: dict[str, pd.DataFrame])
     for name in [c for c in spheres if c not in OTHERS | {*chain(*vectors.values())}]:
         data[NAMES.get(name, name)] = file["particles"][name]
     blocks.offsets(block, "PointData", first)
+    if not (contacts := tables.get("contacts", pd.DataFrame())).empty:
+        _add_contacts(blocks, file["contacts"], contacts, spheres, steps)
 
     for name, points, triangles, shown in _walls(p, steps):
         places, start = _distinct(points)
@@ -119,6 +121,27 @@ def write_vtkhdf(file: h5py.File, p: ScenePlan, tables: dict[str, pd.DataFrame])
             for column in [c for c in stress if c not in OTHERS]:
                 data[column] = file["walls"][column]
             blocks.offsets(block, "CellData", pd.Series(rows).groupby(stress["step"].to_numpy()[rows]).min()[steps])
+
+
+def _add_contacts(
+    blocks: "_Blocks", stored: h5py.Group, contacts: pd.DataFrame, spheres: pd.DataFrame, steps: np.ndarray
+) -> None:
+    """A line for each contact, from the centre of the first sphere to that of the second or to the wall."""
+    known = spheres.set_index(["step", "id"])
+    one, other = (known.reindex(pd.MultiIndex.from_frame(contacts[["step", body]])) for body in ("i", "j"))
+    begin = one[[*"xyz"]].to_numpy()
+    length = one["radius"].to_numpy() + other["radius"].fillna(0.0).to_numpy() - contacts["overlap"].to_numpy()
+    end = begin - length[:, None] * contacts[NORMAL].to_numpy()
+    count = contacts.groupby("step").size().reindex(steps, fill_value=0).to_numpy()
+    first, every = np.cumsum(count) - count, np.arange(2 * count.max()).reshape(-1, 2)
+    block = blocks.add("contacts", 2 * first, 2 * count, "Lines", every, count)
+    write_array(block, "Points", np.stack([begin, end], axis=1).reshape(-1, 3).astype(np.float32))
+    data = block.create_group("CellData")
+    for name, columns in {"normal": NORMAL, "contact_force": FORCE}.items():
+        _vector(data, name, stored, columns)
+    for name in [c for c in contacts if c not in {"step", "wall", *NORMAL, *FORCE}]:
+        data[name] = stored[name]
+    blocks.offsets(block, "CellData", first)
 
 
 def _group(parent: h5py.Group, name: str, kind: str = "") -> h5py.Group:

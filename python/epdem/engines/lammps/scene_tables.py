@@ -47,13 +47,14 @@ def particles(p: ScenePlan, folder: Path, without: Collection[int] = ()) -> pd.D
 
 def contact_table(p: ScenePlan, folder: Path, spheres: pd.DataFrame, without: Collection[int] = ()) -> pd.DataFrame:
     """Every contact of every frame."""
-    values = ["overlap", "delta_max", "attached", *columns.GROWTH * p.model.compaction]
+    values = ["overlap", "delta_max", "attached", *columns.GROWTH * p.model.compaction, *columns.FORCE]
     pairs = _frames(p, folder, "contacts", p.contacts, ["one", "two", *values], without)
+    pairs.loc[pairs["one"] > pairs["two"], columns.FORCE] *= -1.0
     pairs = pairs.assign(wall="", i=pairs[["one", "two"]].min(axis=1), j=pairs[["one", "two"]].max(axis=1))
     across = pairs["added_overlap"] if p.model.compaction else 0.0
     found = [pairs[(pairs["overlap"] + across > 0) | (p.model.adheres & (pairs["attached"] > 0))]]
     for name in contact_walls(p):
-        table = _frames(p, folder, f"contacts_{wall_id(p, name)}", p.contacts, ["i", *values], without)
+        table = _frames(p, folder, f"contacts_{wall_id(p, name)}", p.contacts, ["i", *values, *columns.NORMAL], without)
         found.append(table.assign(wall=name, j=0))
     raw = pd.concat([part for part in found if len(part)] or found[:1], ignore_index=True)
     raw = raw.assign(attached=raw["attached"] > 0) if p.model.adheres else raw.drop(columns="attached")

@@ -88,10 +88,12 @@ def history_slots(m: Model, *, wall: bool = False) -> tuple[int, ...]:
     return first + tuple(begin + growth.index(name) for name in GROWTH if m.compaction)
 
 
-def contact_columns(slots: Sequence[int], values: int) -> tuple[int, ...]:
-    """Where a local compute has these numbers of the history and the overlap: behind three ids and `values` of
-    history."""
-    return (*(3 + slot for slot in slots), 4 + values) if slots else (4,)
+def contact_columns(slots: Sequence[int], values: int, vectors: int) -> tuple[int, ...]:
+    """Where a local compute has these numbers of the history, the overlap and `vectors` of force: the vectors stand
+    behind three ids, then `values` of history, the overlap last."""
+    begin = 3 + 3 * vectors
+    history = (*(begin + slot for slot in slots), begin + values + 1) if slots else (begin + 1,)
+    return (*history, *range(4, begin + 1))
 
 
 def _refuse_room(p: ScenePlan) -> None:
@@ -158,8 +160,8 @@ def deck(p: ScenePlan) -> decks.Deck:
         work_words=[WORKS[name] for name in p.works],
         history_columns=history_columns(m),
         wall_history_slots=history_slots(m, wall=True),
-        contact_columns=contact_columns(history_slots(m), memory(m)),
-        wall_contact_columns=contact_columns(history_slots(m, wall=True), memory(m, wall=True)),
+        contact_columns=contact_columns(history_slots(m), memory(m), 1),
+        wall_contact_columns=contact_columns(history_slots(m, wall=True), memory(m, wall=True), 2),
         row_words=["c_ratio[1]", "c_ratio[2]", *row_words(p)],
         from_restart=None,
         resumed_phase=0,

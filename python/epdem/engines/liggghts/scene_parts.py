@@ -115,7 +115,7 @@ def plane(p: ScenePlan, w: PlaneWall, *, force: bool = False) -> decks.Deck:
 def planes(p: ScenePlan) -> tuple[decks.Deck, ...]:
     """The planes that are always there."""
     stored = {"floor"} if "floor_load" in p.row_columns else {*p.loads}
-    return tuple(plane(p, w, force=w.name in stored) for w in p.scene.planes)
+    return tuple(plane(p, w, force=w.name in stored or bool(p.contacts)) for w in p.scene.planes)
 
 
 def _press(p: ScenePlan, name: str) -> PressMove | None:

@@ -46,7 +46,8 @@ def damaged(p: ScenePlan, folder: Path, upto: int) -> list[int]:
 
 def _particle_names(p: ScenePlan) -> list[str]:
     names = [*columns.PARTICLES, *(columns.SPINS if p.model.spins else [])]
-    names += [f"{slot}_{w.name}" for w in p.scene.planes for slot in _slots(p)] if p.contacts else []
+    values = [*_slots(p), *columns.FORCE]
+    names += [f"{value}_{w.name}" for w in p.scene.planes for value in values] if p.contacts else []
     return [*names, *p.works]
 
 
@@ -69,8 +70,9 @@ def particles(p: ScenePlan, folder: Path, without: Collection[int] = ()) -> pd.D
 
 
 def _local(p: ScenePlan, kind: str, folder: Path, ids: list[str], without: Collection[int]) -> pd.DataFrame:
-    """The rows of a `dump local`, by step: `ids`, delta_max and overlap [m]; what only comes near is left out."""
-    names = [*ids, *_slots(p), "overlap"]
+    """The rows of a `dump local`, by step: `ids`, delta_max and overlap [m], force [N] on the first body, at walls the
+    normal; what only comes near is left out."""
+    names = [*ids, *_slots(p), "overlap", *columns.FORCE, *(columns.NORMAL if kind == MESHES else [])]
 
     def read(path: Path) -> pd.DataFrame:
         values = dump.local(path)
@@ -93,6 +95,7 @@ def _in_contact(table: pd.DataFrame) -> pd.DataFrame:
 def _pairs(p: ScenePlan, folder: Path, without: Collection[int]) -> pd.DataFrame:
     table = _local(p, PAIRS, folder, ["i", "j"], without).assign(wall="")
     # LIGGGHTS's order of the two is arbitrary, and another one after a restart
+    table.loc[table["i"] > table["j"], columns.FORCE] *= -1.0
     return table.assign(i=table[["i", "j"]].min(axis=1), j=table[["i", "j"]].max(axis=1))
 
 
@@ -102,22 +105,32 @@ def _planes(p: ScenePlan, spheres: pd.DataFrame) -> list[pd.DataFrame]:
     for w in p.scene.planes:
         overlap = spheres["radius"] - (spheres[w.axis] - w.at).abs()
         largest = np.maximum(spheres[f"delta_max_{w.name}"], overlap) if p.model.yields else overlap
-        columns = {"step": spheres["step"], "wall": w.name, "i": spheres["id"], "j": 0, "overlap": overlap}
-        others = {slot: spheres[f"{slot}_{w.name}"] for slot in _slots(p) if slot != "delta_max"}
-        planes.append(_in_contact(pd.DataFrame(columns | {"delta_max": largest} | others)))
+        values = {"step": spheres["step"], "wall": w.name, "i": spheres["id"], "j": 0, "overlap": overlap}
+        others = {slot: spheres[f"{slot}_{w.name}"] for slot in [*_slots(p), *columns.FORCE] if slot != "delta_max"}
+        others |= {f"normal_{axis}": np.sign(spheres[axis] - w.at) if axis == w.axis else 0.0 for axis in "xyz"}
+        planes.append(_in_contact(pd.DataFrame(values | {"delta_max": largest} | others)))
     return planes
 
 
 def contact_table(p: ScenePlan, folder: Path, spheres: pd.DataFrame, without: Collection[int] = ()) -> pd.DataFrame:
-    """Every contact of every frame; `spheres` is the particles' table. Raises EngineError as `particles` does."""
+    """Every contact of every frame; `spheres` is the particles' table, which loses the forces of the planes.
+
+    Raises EngineError as `particles` does.
+    """
     parts = [_pairs(p, folder, without), *_planes(p, spheres)]
+    for name in [f"{force}_{w.name}" for w in p.scene.planes for force in columns.FORCE]:
+        del spheres[name]
     if p.scene.meshes:
         names = [*p.scene.meshes]
         touched = _local(p, MESHES, folder, ["mesh", "i"] if len(names) > 1 else ["i"], without)
         wall = [names[int(k)] for k in touched["mesh"]] if len(names) > 1 else names[0]
+        length = np.linalg.norm(touched[columns.NORMAL], axis=1)  # of the normal force: 0 without force
+        touched[columns.NORMAL] = touched[columns.NORMAL].div(np.where(length > 0.0, length, 1.0), axis=0)
         parts.append(touched.assign(j=0, wall=wall))
     raw = pd.concat([part for part in parts if len(part)] or parts[:1], ignore_index=True)
-    return columns.complete(p, raw, spheres, folder)
+    found = columns.complete(p, raw, spheres, folder)
+    found.loc[found["wall"].isin([*p.scene.meshes]) & (found["force"] < 0.0), columns.NORMAL] *= -1.0  # attraction
+    return found
 
 
 def _fields(path: Path) -> dict[str, np.ndarray]:

@@ -16,8 +16,8 @@ from .scene_parts import is_endless, wall_names
 
 PRESETS = {"floor_force_z": "floor_load", "plate_force_z": "plate_force", "drum_torque_y": "torque"}  # columns of kinds
 # of a contact: number of the sphere and of the other body (from 0; walls after the spheres), overlaps [m], whether the
-# bodies are attached; with compaction what growth adds
-CONTACT = ["i", "j", "overlap", "delta_max", "attached", *columns.GROWTH]
+# bodies are attached, force on the first [N], unit normal; with compaction what growth adds
+CONTACT = ["i", "j", "overlap", "delta_max", "attached", *columns.FORCE, *columns.NORMAL, *columns.GROWTH]
 
 
 def _frames(
@@ -61,7 +61,7 @@ def particles(p: ScenePlan, folder: Path, without: Collection[int] = ()) -> pd.D
 
 def contact_table(p: ScenePlan, folder: Path, spheres: pd.DataFrame, without: Collection[int] = ()) -> pd.DataFrame:
     """Every contact of every frame."""
-    raw = _frames(p, folder, "contacts", p.contacts, CONTACT if p.model.compaction else CONTACT[:5], without)
+    raw = _frames(p, folder, "contacts", p.contacts, CONTACT if p.model.compaction else CONTACT[:11], without)
     raw["delta_max"] = raw["delta_max"].fillna(raw["overlap"])  # of a law without history
     attached = raw["attached"] > 0 if p.model.adheres else False
     overlap = raw["overlap"] + raw.get("added_overlap", 0.0)

