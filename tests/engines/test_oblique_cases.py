@@ -8,6 +8,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from lammps_decks import needs_lammps
 
 from epdem.base.terminal import console
 from epdem.case import impact as cases
@@ -138,3 +139,16 @@ def test_predict_and_the_reasons_of_a_deck_know_oblique_impacts(capsys, tmp_path
         app(words, standalone_mode=False)
     text = capsys.readouterr().out + (tmp_path / "deck/in.impact").read_text()
     assert "psi_2" in text and "tangential ep/partial_slip" in text and "velocity and spin after the impact" in text
+
+
+@needs_lammps
+def test_the_turn_of_two_spheres_is_warned_of_with_the_error_of_e_n(tmp_path):
+    """The estimate bounds what LAMMPS finds, and is not twice of it."""
+    sphere = {"radius": "10 mm", "material": "steel"}
+    for angle, warned in (("5 deg", False), ("60 deg", True), ("75 deg", True)):
+        changes = {"kind": "sphere-sphere", "target": sphere, "angles": [angle], "speeds": ["2.8 m/s"]}
+        found = outcome(tmp_path / angle, ["lammps"], **changes)
+        said = [re.search(r"by up to ([\d.e-]+)$", w) for w in found.warnings if "line of centres" in w]
+        lower = 0.6584 - found.results.comparison["e_n"].min()  # of the impact along the normal, of LAMMPS and of theory
+        assert len(said) == warned
+        assert lower < 1e-3 if not warned else 0.5 * float(said[0][1]) < lower < float(said[0][1])

@@ -15,6 +15,7 @@ from . import oblique
 from .experiment import Experiment, strain_rate
 
 FASTEST = 1e4  # strain rate [1/s] up to which the strength of metals grows with its logarithm
+LARGEST_TURN = 1e-3  # error of e_n by the turn of the line of centres that is not worth a sentence
 
 
 @dataclass(frozen=True)
@@ -100,7 +101,11 @@ def predict(experiment: Experiment) -> Prediction:
         yields=_softer(x) if yielded else (),
         yield_speeds=speeds,
         rebound=oblique.predict(x, columns["e_n"]) if x.oblique else None,
-        caveats=(*validity.caveats(law, **pair), *_too_fast(x, columns["radius_max"])),
+        caveats=(
+            *validity.caveats(law, **pair),
+            *_too_fast(x, columns["radius_max"]),
+            *_turning(x, columns["contact_time"]),
+        ),
         finite_strain=tuple(validity.finite_strain_of_impacts(columns["strain"], x.speed)),
         observation_time=observed,
         **columns,
@@ -115,6 +120,22 @@ def _too_fast(x: Experiment, radius: np.ndarray) -> list[str]:
     return [
         f"the strain rate reaches {rate.max():.2g} per s, above {FASTEST:g} per s from "
         f"{x.speed[rate > FASTEST].min():.3g} m/s on: [rate] is an extrapolation there"
+    ]
+
+
+def _turning(x: Experiment, contact_time: np.ndarray) -> list[str]:
+    """A sentence on oblique impacts of two spheres whose line of centres turns during contact, for theory holds it."""
+    if not x.oblique or not np.isfinite(x.target.radius):
+        return []
+    slip = x.speed * np.tan(x.friction_of_oblique().angle)
+    turn = slip * contact_time / (x.body.radius + x.target.radius)
+    error = turn * slip / x.speed
+    if not (error > LARGEST_TURN).any():
+        return []
+    angle = np.degrees(x.friction_of_oblique().angle[error > LARGEST_TURN].min())
+    return [
+        f"the line of centres turns by up to {np.degrees(np.nanmax(turn)):.2g} deg during contact, which theory "
+        f"neglects: from {angle:.3g} deg on, e_n of engines with positions is lower, by up to {np.nanmax(error):.2g}"
     ]
 
 
