@@ -15,7 +15,7 @@ FOLDER = Path(next(iter(nvidia.__path__)))
 # NVRTC has no standard headers; docs/embed.md names these
 STANDARD = ("cmath", "cstddef", "cstdint", "iterator", "limits", "type_traits", "utility")
 HEADERS = {name: f"#include <cuda/std/{name}>\nnamespace std {{ using namespace cuda::std; }}" for name in STANDARD}
-HEADERS["cstring"] = "namespace std { using ::memcpy; }"
+HEADERS["cstring"] = ""
 OPTIONS = (
     "-std=c++17",
     "-default-device",

@@ -94,12 +94,12 @@ inline BodySums<double> sums_of(const double* all, long body) noexcept { return 
 inline Growing<false, double> growing_pair(double radius_i, double radius_j, BodySums<double> i, BodySums<double> j,
                                            const double* state) noexcept {
   Growing<false, double> c{radius_i, radius_j, 1.0 / radius_i, 1.0 / radius_j, i, j, {}, {}};
-  if (state) std::memcpy(static_cast<void*>(&c.state), state, sizeof c.state);
+  if (state) ::memcpy(static_cast<void*>(&c.state), state, sizeof c.state);
   return c;
 }
 inline Growing<true, double> growing_at_wall(double radius, BodySums<double> i, const double* state) noexcept {
   Growing<true, double> c{radius, 0.0, 1.0 / radius, 0.0, i, {}, {}, {}};
-  if (state) std::memcpy(static_cast<void*>(&c.state), state, sizeof c.state);
+  if (state) ::memcpy(static_cast<void*>(&c.state), state, sizeof c.state);
   return c;
 }
 

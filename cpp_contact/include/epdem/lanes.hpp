@@ -208,12 +208,12 @@ EPDEM_INLINE T only(M mask, T x) noexcept {
 template <class T>
 EPDEM_INLINE T load(const double* p) noexcept {
   T x;
-  std::memcpy(&x, p, sizeof x);
+  ::memcpy(&x, p, sizeof x);
   return x;
 }
 template <class T>
 EPDEM_INLINE void store(double* p, const T& x) noexcept {
-  std::memcpy(p, &x, sizeof x);
+  ::memcpy(p, &x, sizeof x);
 }
 
 }  // namespace epdem

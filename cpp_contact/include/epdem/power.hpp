@@ -14,7 +14,7 @@ using Bits = std::conditional_t<is_vector<T>, Words, unsigned long long>;
 template <class To, class From>
 EPDEM_INLINE To bits_as(const From& x) noexcept {
   To y;
-  std::memcpy(&y, &x, sizeof y);
+  ::memcpy(&y, &x, sizeof y);
   return y;
 }
 
