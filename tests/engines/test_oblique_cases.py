@@ -149,6 +149,6 @@ def test_the_turn_of_two_spheres_is_warned_of_with_the_error_of_e_n(tmp_path):
         changes = {"kind": "sphere-sphere", "target": sphere, "angles": [angle], "speeds": ["2.8 m/s"]}
         found = outcome(tmp_path / angle, ["lammps"], **changes)
         said = [re.search(r"by up to ([\d.e-]+)$", w) for w in found.warnings if "line of centres" in w]
-        lower = 0.6584 - found.results.comparison["e_n"].min()  # of the impact along the normal, of LAMMPS and of theory
+        lower = 0.6584 - found.results.comparison["e_n"].min()  # e_n along the normal, in LAMMPS and theory
         assert len(said) == warned
         assert lower < 1e-3 if not warned else 0.5 * float(said[0][1]) < lower < float(said[0][1])
