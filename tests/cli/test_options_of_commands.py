@@ -37,7 +37,7 @@ TARGET = ("--target", "floor_load_max=1 N", "--free", "contact.friction=0.1..0.5
 RUN = {"engine": "yade", "law": "cavity", "ranks": "2", "steps": "100", "out": "there", "fresh": None, "resume": None}
 RUN |= {"full": None, "pictures": "svg", "force": None}
 DECK = {"out": "there", "engine": "yade", "law": "cavity", "case": "other.toml", "given": "a=1", "force": None}
-DECK |= {"convert": None, "reasons": None}
+DECK |= {"convert": None, "check": None, "reasons": None}
 MY_DECK = """fix m all property/global youngsModulus peratomtype 1e7
 pair_style gran model hertz
 """

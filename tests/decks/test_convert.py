@@ -1,12 +1,17 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """`epdem deck --convert`: only the words of the contact model change, and one property is added."""
 
+import json
+import math
 import re
 
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
+from typer.testing import CliRunner
 
+from epdem.cli.main import app
+from epdem.engines.liggghts.deck_checks import check
 from epdem.engines.liggghts.own_decks import convert
 from epdem.errors import CaseError
 
@@ -108,3 +113,69 @@ def test_what_cannot_be_converted_is_one_sentence(change, law, values, words):
 def test_a_deck_without_a_contact_model_says_so():
     with pytest.raises(CaseError, match="pair_style gran model hertz"):
         converted("units si\n")
+
+
+HYSTERESIS = """units si
+fix m1 all property/global youngsModulus peratomtype 1.4e8 0.135e7  # softened
+fix m2 all property/global poissonsRatio peratomtype 0.25 0.30
+fix m3 all property/global coefficientRestitution peratomtypepair 2 0.3 0.3 &
+  0.3 0.3
+fix m6 all property/global coefficientMaxElasticStiffness peratomtypepair 2 1.5 3 3 5
+fix m7 all property/global coefficientAdhesionStiffness peratomtypepair 2 1e5 2e5 2e5 1e6
+fix m8 all property/global coefficientPlasticityDepth peratomtypepair 2 .05 .01 .01 .005
+fix m9 all property/global characteristicVelocity scalar 2.0
+pair_style gran model hooke/hysteresis tangential history cohesion sjkr
+timestep 1.0e-6
+variable r equal 5e-4
+fix pts all particletemplate/sphere 1 atom_type 2 density constant 2000 radius constant ${r}
+"""
+
+
+def test_a_deck_with_hysteresis_gets_its_real_modulus_a_strength_and_shorter_steps():
+    done = converted(HYSTERESIS, youngsModulus="140e9,24e9", yieldPressure="1.9e9")
+    lines = done.text.splitlines()
+    assert lines[1] == "hard_particles yes"
+    assert lines[2] == "fix m1 all property/global youngsModulus peratomtype 140e9 24e9  # softened"
+    assert lines[3] == "fix epdem_yieldPressure all property/global yieldPressure peratomtype 1.9e9 1.9e9"
+    assert "pair_style gran model ep/thornton tangential history cohesion sjkr" in lines
+    assert "timestep 3.16e-08" in lines  # sqrt(1.4e8/140e9)
+    assert [line.split()[1] for line in lines if line.startswith("#")] == ["m6", "m7", "m8", "m9"]
+    said = "\n".join(done.notes)
+    assert all(f"my.in, line {n}: " in said for n in (6, 7, 8, 9)) and "epdem soften" in said
+    with pytest.raises(CaseError, match=r"model hooke/hysteresis has no yield.*add --set youngsModulus=VALUE"):
+        converted(HYSTERESIS, yieldPressure="1.9e9")
+    with pytest.raises(CaseError, match="line 10: law thornton_ning has its attraction already; remove cohesion"):
+        converted(HYSTERESIS, "thornton_ning", youngsModulus="24e9", yieldPressure="1.9e9", workOfAdhesion="0.1")
+    with pytest.raises(CaseError, match="give one value > 0, or 2, one for each type"):
+        converted(HYSTERESIS, youngsModulus="1e9,2e9,3e9", yieldPressure="1.9e9")
+
+
+def test_the_check_names_inputs_that_are_probably_wrong():
+    found = check(HYSTERESIS, "my.in")
+    assert [text.split(":")[0] for text in found] == ["my.in, line 7", "my.in, line 4"]
+    assert "coefficientAdhesionStiffness = 1e+06 is the ratio" in found[0] and "restitution acts twice" in found[1]
+    limit = math.pi * 5e-4 * math.sqrt(2000 * 2 * 1.25 / 1.4e8) / (0.1631 * 0.25 + 0.8766)  # Rayleigh's time
+    for factor, many in ((0.99, 0), (1.01, 1)):
+        step = [
+            text for text in check(HYSTERESIS.replace("1.0e-6", f"{factor * limit!r}"), "my.in") if "timestep" in text
+        ]
+        assert len(step) == many and all("my.in, line 11" in text for text in step)
+    E_star = 1.35e6 / (2 * (1 - 0.3**2))
+    for factor, many in ((0.099, 0), (0.101, 1)):
+        strength = f"fix y all property/global yieldPressure peratomtype 1e6 {factor * E_star!r}\n"
+        hard = [text for text in check(HYSTERESIS + strength, "my.in") if "yieldPressure of type 2" in text]
+        assert len(hard) == many and all("epdem soften" in text for text in hard)
+
+
+def test_a_good_deck_and_values_that_the_deck_computes_give_no_sentence(tmp_path):
+    good = HYSTERESIS.replace("1e5 2e5 2e5 1e6", "0.1 0.2 0.2 ${kc}").replace("0.3 0.3", "0.9 0.9")
+    assert check(good, "my.in") == []
+    path = tmp_path / "my.in"
+    path.write_text(good)
+    assert CliRunner().invoke(app, ["deck", str(path), "--check"]).stdout.endswith("my.in: nothing found\n")
+    path.write_text(HYSTERESIS)
+    done = CliRunner().invoke(app, ["deck", str(path), "--check", "--json"])
+    assert done.exit_code == 1 and len(json.loads(done.stdout)["warnings"]) == 2
+    assert "--out is missing" in str(CliRunner().invoke(app, ["deck", str(path)]).exception)
+    path.write_text("units si\n")
+    assert "name a LIGGGHTS deck" in str(CliRunner().invoke(app, ["deck", str(path), "--check"]).exception)

@@ -137,7 +137,7 @@ def deck(
             metavar="CASE|TEMPLATE|DECK", help="case file (TOML), a template of your own (.j2), a deck to convert"
         ),
     ],
-    out: Annotated[Path, typer.Option("--out", "-o", help="folder for the deck")],
+    out: Annotated[Path | None, typer.Option("--out", "-o", help="folder for the deck")] = None,
     engine: Annotated[str, typer.Option("--engine", "-e", help="liggghts, yade or lammps")] = DEFAULT_ENGINE,
     law: Laws = None,
     case: Annotated[Path | None, typer.Option("--case", help="the case that fills the template")] = None,
@@ -148,6 +148,9 @@ def deck(
     convert: Annotated[
         bool, typer.Option("--convert", help="change the model of a LIGGGHTS deck to --law (default: thornton)")
     ] = False,
+    check: Annotated[
+        bool, typer.Option("--check", help="name inputs of a LIGGGHTS deck that are probably wrong; writes nothing")
+    ] = False,
     reasons: Annotated[bool, typer.Option("--reasons", help="the reason of each line as its comment")] = False,
     force: Force = False,
     as_json: AsJson = False,
@@ -156,6 +159,20 @@ def deck(
 
     Example: epdem deck --convert my.in --set yieldPressure=1e8 -o converted
     """
+    if check:
+        refuse_options(
+            file, "--check takes nothing but a LIGGGHTS deck", out=out, law=law, case=case, set=given, convert=convert
+        )
+        refuse_options(file, "--check takes nothing but a LIGGGHTS deck", reasons=reasons, force=force)
+        if engine != DEFAULT_ENGINE:
+            raise CaseError(f"{file}: --check reads LIGGGHTS decks; leave out --engine")
+        from ..engines.liggghts.deck_checks import check_file
+
+        found = check_file(file)
+        print(json.dumps({"warnings": found}) if as_json else "\n".join(found or [f"{file}: nothing found"]))
+        raise typer.Exit(1 if found else 0)
+    if out is None:
+        raise CaseError(f"{file}: --out is missing; name a folder for the deck")
     if convert:
         refuse_options(file, "--convert takes nothing but a LIGGGHTS deck", case=case, reasons=reasons)
         if engine != DEFAULT_ENGINE or len(law or []) > 1:

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Decks of a user for LIGGGHTS: with a law in place of `hertz` or `hooke`, and own templates with values of a case."""
+"""Decks of a user for LIGGGHTS: with a law in place of their model, and own templates with values of a case."""
 
 import math
 import re
@@ -23,10 +23,20 @@ from ...scenes.plan import ScenePlan
 from ..host import job_of
 from ..input_script import data_text
 from .engine import Liggghts
+from .properties import HARD
 from .scene_deck import deck as scene_deck
 from .scene_parts import stl_text
 
-REPLACED = ("hertz", "hooke")  # normal models with the elastic constants of a law
+HYSTERESIS = "hooke/hysteresis"
+REPLACED = ("hertz", "hooke", HYSTERESIS)  # normal models with the elastic constants of a law
+MODULUS = "youngsModulus"
+WITHOUT_COUNTERPART = {  # properties of hooke/hysteresis
+    "coefficientMaxElasticStiffness": "the law unloads with the stiffness 2 E* a",
+    "coefficientPlasticityDepth": "the law has no depth from which on a contact is elastic",
+    "coefficientAdhesionStiffness": "no law has adhesion that plastic work makes; --law thornton_ning --set "
+    "workOfAdhesion=VALUE has that of the surfaces",
+    "characteristicVelocity": "the stiffness of a law depends on no speed",
+}
 SETTINGS = (  # of these models, refused or unknown beside a law
     "viscous",
     "ktToKnUser",
@@ -60,6 +70,8 @@ def _converted(command: str, words: list[re.Match[str]], law: Declaration, place
             f"{place}: model {texts[at]} has parameters that no law replaces; only {' and '.join(REPLACED)} are "
             "converted, choose one of these first"
         )
+    if law.adheres and "cohesion" in texts:
+        raise CaseError(f"{place}: law {law.name} has its attraction already; remove cohesion, or take another law")
     cuts, notes = [(words[at].start(), words[at].end(), f"ep/{law.name}")], []
     for k, name in enumerate(texts[:-1]):
         if k > at and name in SETTINGS:
@@ -68,6 +80,65 @@ def _converted(command: str, words: list[re.Match[str]], law: Declaration, place
     for start, end, new in sorted(cuts, reverse=True):
         command = command[:start] + new + command[end:]
     return command, notes
+
+
+def commands(text: str, place: object) -> Iterator[tuple[str, list[str]]]:
+    """(place, words without the comment) of each command of a deck."""
+    for _, where, words in _split(text, place):
+        yield where, [word.group() for word in words]
+
+
+def _split(text: str, place: object) -> Iterator[tuple[str, str, list[re.Match[str]]]]:
+    """(text, place, words) of each command; comments reach over continuation lines as in LIGGGHTS."""
+    for found in _COMMAND.finditer(text):
+        where = f"{place}, line {text.count(chr(10), 0, found.start()) + 1}"
+        words = takewhile(lambda word: not word.group().startswith("#"), _WORD.finditer(found.group()))
+        yield found.group(), where, [*words]
+
+
+def _with_words(command: str, words: list[re.Match[str]], new: list[str]) -> str:
+    """The command with other words in place of `words`."""
+    for word, text in sorted(zip(words, new, strict=True), key=lambda pair: -pair[0].start()):
+        command = command[: word.start()] + text + command[word.end() :]
+    return command
+
+
+def _numbers(place: str, texts: list[str]) -> list[float]:
+    try:
+        return [float(text) for text in texts]
+    except ValueError:
+        raise CaseError(f"{place}: {' '.join(texts)!r} is no list of numbers; write the numbers") from None
+
+
+def _with_modulus(text: str, given: str, place: Path) -> tuple[str, list[str]]:
+    """The deck with the `given` youngsModulus, one value or one for each type, the time step that it needs, and
+    properties of hooke/hysteresis as comments; sentences on the changes."""
+    parts, notes, growth = [], [], 1.0
+    for command, where, words in _split(text, place):
+        texts = [word.group() for word in words]
+        name = texts[4] if texts[:1] == ["fix"] and texts[3:4] == ["property/global"] and len(texts) > 5 else ""
+        if name in WITHOUT_COUNTERPART:
+            notes.append(f"{where}: {name} is dropped: {WITHOUT_COUNTERPART[name]}")
+            command = f"#{command}"
+        elif name == MODULUS:
+            old, new = words[6:], given.split(",")
+            new = new * len(old) if len(new) == 1 else new
+            values, before = _numbers(f"--set {MODULUS}", new), _numbers(where, texts[6:])
+            if len(new) != len(old) or min(values) <= 0.0:
+                raise CaseError(f"--set {MODULUS}={given}: give one value > 0, or {len(old)}, one for each type")
+            command = _with_words(command, old, new)
+            growth = max(values) / max(before)
+        parts.append(command)
+    parts, steps = _shorter_steps(parts, place, growth)
+    return "".join(parts), notes + steps
+
+
+def _allow_hard(text: str, modulus: str) -> tuple[str, list[str]]:
+    """The deck with the word that LIGGGHTS requires for a modulus above HARD; a sentence on it."""
+    if max(map(float, modulus.split(","))) <= HARD or "hard_particles" in text:
+        return text, []
+    text = re.sub(r"(?m)^([ \t]*units[ \t]+si\b.*\n)", r"\1hard_particles yes\n", text, count=1)
+    return text, [f"added: hard_particles yes, which LIGGGHTS requires above {HARD:g} Pa"]
 
 
 def _property_lines(law: Declaration, given: dict[str, str], present: set[str], types: int, place: Path) -> list[str]:
@@ -106,19 +177,28 @@ def convert(text: str, law_name: str, given: dict[str, str], place: Path) -> Con
     law = declarations().get(law_name)
     if law is None:
         raise CaseError(f"--law {law_name}: does not exist; there are {', '.join(declarations())}")
+    modulus = given.get(MODULUS)
+    given = {name: value for name, value in given.items() if name != MODULUS}
+    if modulus is None and any(HYSTERESIS in words for _, words in commands(text, place)):
+        raise CaseError(
+            f"{place}: model {HYSTERESIS} has no yield, and its modulus is mostly softened; add --set {MODULUS}=VALUE "
+            "with the real one (of each type, with commas)"
+        )
+    changed, changes = (text, []) if modulus is None else _with_modulus(text, modulus, place)
     parts: list[str] = []
     notes: list[str] = []
     present: set[str] = set()
     models = moduli = types = 0
-    for found in _COMMAND.finditer(text):
-        command, where = found.group(), f"{place}, line {text.count(chr(10), 0, found.start()) + 1}"
-        # before the comment, which reaches over continuation lines as in LIGGGHTS
-        words = [*takewhile(lambda word: not word.group().startswith("#"), _WORD.finditer(command))]
+    for command, where, words in _split(changed, place):
         texts = [word.group() for word in words]
         pairs = texts[:1] == ["pair_style"] and "gran" in texts
         if pairs or (texts[:1] == ["fix"] and texts[3:4] == ["wall/gran"]):
             command, dropped = _converted(command, words, law, where)
             models, notes = models + 1, notes + dropped
+            if "cohesion" in texts and law.adheres:
+                raise CaseError(
+                    f"{where}: law {law.name} has its attraction already; remove cohesion, or take another law"
+                )
         elif texts[:1] == ["fix"] and texts[3:4] == ["property/global"]:
             present.add(texts[4] if len(texts) > 4 else "")
             if texts[4:6] == ["youngsModulus", "peratomtype"]:
@@ -147,8 +227,33 @@ def convert(text: str, law_name: str, given: dict[str, str], place: Path) -> Con
             "follows from the law; 'viscous on' at the end of pair_style and fix wall/gran adds the normal dashpot"
         )
     notes.append(f"{models} contact models are ep/{law.name} now")
-    notes += [f"added: {line.strip()}" for line in lines]
-    return Conversion("".join(parts), notes)
+    notes += changes + [f"added: {line.strip()}" for line in lines]
+    text, hard = ("".join(parts), []) if modulus is None else _allow_hard("".join(parts), modulus)
+    return Conversion(text, notes + hard)
+
+
+def _shorter_steps(parts: list[str], place: Path, growth: float) -> tuple[list[str], list[str]]:
+    """The commands with the time step that a stiffest modulus `growth` times larger needs: contacts of the same radius
+    have a stiffness proportional to it."""
+    if growth <= 1.0:
+        return parts, []
+    factor, done, notes = growth**-0.5, [], []
+    for part in parts:
+        words = [*takewhile(lambda word: not word.group().startswith("#"), _WORD.finditer(part))]
+        if [word.group() for word in words[:1]] == ["timestep"] and len(words) > 1:
+            try:
+                step = f"{factor * float(words[1].group()):.3g}"
+            except ValueError:
+                notes.append(f"{place}: {part.strip()}: give {factor:.3g} of this step by hand")
+            else:
+                part = _with_words(part, words[1:2], [step])
+                notes.append(f"timestep is {step} now, sqrt(E before/E now) = {factor:.3g} of the step before")
+        done.append(part)
+    notes.append(
+        f"the same time takes {1 / factor:.3g} times as many steps: correct run, every and the like; a softer twin "
+        "with the same e_n has a modulus E/k, a strength p_y/k^0.8 and steps k^0.4 longer (epdem soften)"
+    )
+    return done, notes
 
 
 def convert_file(

@@ -1,0 +1,159 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Inputs of any LIGGGHTS deck that are probably wrong: `epdem deck --check my.in`. A value of variables that the deck
+computes is not judged."""
+
+import math
+import re
+from collections.abc import Iterator
+from dataclasses import dataclass, field
+from pathlib import Path
+
+import numpy as np
+
+from ...base.declarations import declarations
+from ...case.toml import text_of
+from ...errors import CaseError
+from .own_decks import HYSTERESIS, commands
+
+LARGEST_RATIO = 10.0  # of adhesion stiffness over loading stiffness; of materials below 1
+LARGEST_STRENGTH = 0.1  # of E*, above which the plugin's contacts stay elastic
+RAYLEIGH = 1.0  # largest time step over Rayleigh's time of the smallest sphere
+_VARIABLE = re.compile(r"\$\{(\w+)\}|\$(\w)")
+
+
+@dataclass
+class _Deck:
+    """What a deck says: properties with their places and values, words of the models, smallest sphere, time steps."""
+
+    properties: dict[str, tuple[str, list[float]]] = field(default_factory=dict)
+    models: list[tuple[str, list[str]]] = field(default_factory=list)
+    spheres: list[tuple[float, float]] = field(default_factory=list)  # radius, density, in the units of the deck
+    steps: list[tuple[str, float]] = field(default_factory=list)
+    known: dict[str, str] = field(default_factory=dict)  # variables with a plain value
+
+    def number(self, word: str) -> float:
+        """The value of a word; NaN if the deck computes it."""
+        word = _VARIABLE.sub(lambda m: self.known.get(m[1] or m[2], "nan"), word)
+        try:
+            return float(word)
+        except ValueError:
+            return math.nan
+
+    def values(self, name: str) -> list[float]:
+        """The values of a property; none if it is absent."""
+        return self.properties.get(name, ("", []))[1]
+
+
+def _read(text: str, place: Path) -> _Deck:
+    deck = _Deck()
+    for where, words in commands(text, place):
+        match words:
+            case ["variable", name, "equal" | "string" | "index", value, *_]:
+                deck.known[name] = value.strip("\"'")
+            case ["fix", _, _, "property/global", name, kind, *values]:
+                values = values[1:] if kind == "peratomtypepair" else values
+                deck.properties[name] = (where, [deck.number(v) for v in values])
+            case ["pair_style", *rest] if "gran" in rest:
+                deck.models.append((where, rest))
+            case ["fix", _, _, "wall/gran", *rest]:
+                deck.models.append((where, rest))
+            case ["timestep", value]:
+                deck.steps.append((where, deck.number(value)))
+            case ["fix", _, _, "particletemplate/sphere", *rest]:
+                deck.spheres += _template(deck, rest)
+    return deck
+
+
+def _template(deck: _Deck, words: list[str]) -> Iterator[tuple[float, float]]:
+    if "radius" not in words or "density" not in words:
+        return
+    radius, density = (words[words.index(key) + 1 :] for key in ("radius", "density"))
+    if radius[:1] == ["constant"] and density[:1] == ["constant"] and len(radius) > 1 and len(density) > 1:
+        yield deck.number(radius[1]), deck.number(density[1])
+
+
+def _model(words: list[str]) -> str:
+    return words[words.index("model") + 1] if "model" in words[:-1] else ""
+
+
+def check(text: str, place: Path) -> list[str]:
+    """A sentence for each input of the deck `text` that is probably wrong; `place` names the deck."""
+    deck = _read(text, place)
+    return [*_adhesion(deck), *_strength(deck), *_restitution(deck), *_steps(deck)]
+
+
+def check_file(path: Path) -> list[str]:
+    """The sentences on a deck's file. Raises CaseError for a file without a contact model."""
+    text = text_of(path)
+    if not _read(text, path).models:
+        raise CaseError(f"{path}: no line 'pair_style gran ...' or 'fix ... wall/gran ...'; name a LIGGGHTS deck")
+    return check(text, path)
+
+
+def _adhesion(deck: _Deck) -> Iterator[str]:
+    name = "coefficientAdhesionStiffness"
+    where, values = deck.properties.get(name, ("", []))
+    most = max((v for v in values if v == v), default=0.0)
+    if most > LARGEST_RATIO:
+        yield (
+            f"{where}: {name} = {most:g} is the ratio of the adhesion stiffness to the loading stiffness, not in N/m, "
+            "and of materials below 1; above it a contact pulls with this multiple of the force that pressed it"
+        )
+
+
+def _elastic(deck: _Deck) -> list[tuple[float, float]]:
+    """(E, nu) of each type; none where the deck computes them."""
+    pairs = [*zip(deck.values("youngsModulus"), deck.values("poissonsRatio"), strict=False)]
+    return pairs if pairs and not np.isnan(pairs).any() else []
+
+
+def _strength(deck: _Deck) -> Iterator[str]:
+    """A strength of a type that its E* does not allow: the modulus is softened, or the unit is wrong."""
+    ratios = {
+        law.parameter(law.strength).property: law.default_ratio for law in declarations().values() if law.strength
+    }
+    for name, ratio in ratios.items():
+        where, values = deck.properties.get(name, ("", []))
+        peak = 1.6 if ratio == 1.0 else 1.0  # of a yield stress: the pressure at first yield
+        for n, ((E, nu), value) in enumerate(zip(_elastic(deck), values, strict=False), 1):
+            E_star = E / (2 * (1 - nu**2))
+            if value < 1e25 and peak * value > LARGEST_STRENGTH * E_star:
+                yield (
+                    f"{where}: {name} of type {n} = {value:g} is {value / E_star:.2g} E* (youngsModulus {E:g}): such "
+                    "contacts stay elastic; give the real modulus, or soften the strength with it, by k^0.8 where the "
+                    "modulus has 1/k (epdem soften)"
+                )
+
+
+def _restitution(deck: _Deck) -> Iterator[str]:
+    """Plastic loss and a normal dashpot in one contact."""
+    least = min((v for v in deck.values("coefficientRestitution") if v == v), default=1.0)
+    where = deck.properties.get("coefficientRestitution", ("", []))[0]
+    stiffer = max((v for v in deck.values("coefficientMaxElasticStiffness") if v == v), default=1.0)
+    plastic = any(_model(words) == HYSTERESIS for _, words in deck.models)
+    if plastic and stiffer > 1.0 and least <= math.sqrt(1.0 / stiffer):
+        yield (
+            f"{where}: coefficientRestitution = {least:g} is a dashpot beside the plastic loss of {HYSTERESIS}, "
+            f"which alone gives e_n down to {math.sqrt(1.0 / stiffer):.2g} (coefficientMaxElasticStiffness = "
+            f"{stiffer:g}): restitution acts twice; give 1 for the plastic loss alone"
+        )
+
+
+def _steps(deck: _Deck) -> Iterator[str]:
+    elastic = _elastic(deck)
+    spheres = [(r, rho) for r, rho in deck.spheres if r > 0 and rho > 0]
+    if not elastic or not spheres:
+        return
+    times = [
+        math.pi * r * math.sqrt(rho * 2 * (1 + nu) / E) / (0.1631 * nu + 0.8766)
+        for r, rho in spheres
+        for E, nu in elastic
+        if E < 1e25
+    ]
+    limit = RAYLEIGH * min(times, default=math.inf)
+    for where, step in deck.steps:
+        if step > limit:
+            yield (
+                f"{where}: timestep {step:g} is above Rayleigh's time of the smallest sphere, {limit:.3g}: contacts "
+                "create energy; give a fifth of it, or less"
+            )
