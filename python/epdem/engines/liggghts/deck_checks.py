@@ -16,7 +16,7 @@ from ...errors import CaseError
 from .own_decks import HYSTERESIS, commands
 
 LARGEST_RATIO = 10.0  # of adhesion stiffness over loading stiffness; of materials below 1
-LARGEST_STRENGTH = 0.1  # of E*, above which the plugin's contacts stay elastic
+LARGEST_STRENGTH = 0.1  # of E*, above which contacts stay elastic up to overlaps of 2.5 % of R*
 RAYLEIGH = 1.0  # largest time step over Rayleigh's time of the smallest sphere
 _VARIABLE = re.compile(r"\$\{(\w+)\}|\$(\w)")
 
