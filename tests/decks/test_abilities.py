@@ -10,10 +10,11 @@ from epdem.case.impact import parse
 from epdem.case.toml import read_toml
 from epdem.engines import ENGINES
 from epdem.errors import CaseError
-from epdem.impacts.engine import Feature, refuse
+from epdem.impacts.engine import refuse
 from epdem.impacts.experiment import experiment
 from epdem.impacts.plan import plan
 from epdem.impacts.prediction import predict
+from epdem.jobs.engine import Feature
 from epdem.verification.models import OWN_LAW, SAME_LAW
 
 ROOT = Path(__file__).parents[2]

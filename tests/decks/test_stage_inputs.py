@@ -3,11 +3,14 @@
 
 from pathlib import Path
 
+import pandas as pd
 import pytest
 
 from epdem.base import paths
 from epdem.engines.embedded import Embedded
+from epdem.impacts import store
 from epdem.impacts.run import run
+from epdem.jobs.stage import without_comments
 
 CASES = Path(__file__).parents[2] / "cases"
 CASE = (CASES / "steel_wall.toml").read_text().replace("count = 32", "count = 3")
@@ -18,12 +21,19 @@ class Recorded(Embedded):
 
     release, deck = "1.0", "run 100\n"
 
+    def __init__(self, folder):
+        self.part = folder / "plugin.so"
+        self.part.write_bytes(b"compiled")
+
+    def parts(self):
+        return [self.part]
+
     def version(self):
         return self.release
 
     def write(self, plan, folder):
         folder.mkdir(parents=True, exist_ok=True)
-        (folder / "in.impact").write_text(self.deck)
+        (folder / "in.impact").write_text(f"# {plan.experiment.title}\n{self.deck}")
         return [folder / "in.impact"]
 
 
@@ -75,22 +85,68 @@ def reruns(tmp_path, tool, text=CASE, **options):
         ("phases = 8", "phases = 9"),
     ],
 )
-def test_a_change_of_the_case_runs_again(old, new, tmp_path, monkeypatch):
-    monkeypatch.setattr(paths, "product_hash", lambda: "product")
+def test_a_change_of_the_case_runs_again(old, new, tmp_path):
+    tool = Recorded(tmp_path)
     assert old in CASE
-    assert reruns(tmp_path, Recorded()) and not reruns(tmp_path, Recorded())
-    assert reruns(tmp_path, Recorded(), CASE.replace(old, new))
-
-
-@pytest.mark.parametrize("change", ["product", "release", "deck", "steps"])
-def test_a_change_of_product_engine_deck_or_steps_runs_again(change, tmp_path, monkeypatch):
-    monkeypatch.setattr(paths, "product_hash", lambda: "product")
-    tool, options = Recorded(), {}
     assert reruns(tmp_path, tool) and not reruns(tmp_path, tool)
-    if change == "product":
-        monkeypatch.setattr(paths, "product_hash", lambda: "another")
-    elif change == "steps":
+    assert reruns(tmp_path, tool, CASE.replace(old, new))
+
+
+@pytest.mark.parametrize("change", ["release", "deck", "part", "steps"])
+def test_a_change_of_engine_deck_compiled_part_or_steps_runs_again(change, tmp_path):
+    tool, options = Recorded(tmp_path), {}
+    assert reruns(tmp_path, tool) and not reruns(tmp_path, tool)
+    if change == "steps":
         options["steps"] = 401
+    elif change == "part":
+        (tmp_path / "plugin.so").write_bytes(b"compiled again")
     else:
         setattr(tool, change, "another\n")
     assert reruns(tmp_path, tool, **options)
+
+
+@pytest.mark.parametrize(
+    ("old", "new"),
+    [
+        ('title = "', 'title = "A better title: '),
+        ('source = "', 'source = "Another source. '),
+        ("[check]", "[check]\npsi_2 = 0.5"),
+        ("[case]", "# a comment\n[case]"),
+    ],
+)
+def test_a_title_a_source_a_tolerance_and_a_comment_run_nothing_again(old, new, tmp_path):
+    tool = Recorded(tmp_path)
+    assert reruns(tmp_path, tool)
+    assert old in CASE and not reruns(tmp_path, tool, CASE.replace(old, new, 1))
+    assert store.read(tmp_path / "out/results.h5").case_text == CASE.replace(old, new, 1)
+
+
+def test_another_product_with_the_same_files_runs_nothing_again(tmp_path, monkeypatch):
+    tool = Recorded(tmp_path)
+    assert reruns(tmp_path, tool)
+    monkeypatch.setattr(paths, "product_hash", lambda: "another page")
+    monkeypatch.setattr(paths, "library_hash", lambda: "another host's plugin")
+    assert not reruns(tmp_path, tool)
+
+
+def test_stored_impacts_are_judged_anew(tmp_path):
+    tool, strict = Recorded(tmp_path), CASE.replace("contact_time = 5e-3", "contact_time = 1e-12")
+    (tmp_path / "a.toml").write_text(CASE)
+    assert run(tmp_path / "a.toml", engines=[tool], out=tmp_path / "out").passed
+    (tmp_path / "a.toml").write_text(strict)
+    again = run(tmp_path / "a.toml", engines=[tool], out=tmp_path / "out")
+    assert again.reused and not again.passed and not pd.read_csv(tmp_path / "out/results.csv")["passed"].any()
+
+
+@pytest.mark.parametrize(
+    ("text", "left"),
+    [
+        ("# title\nrun 10  # until the end\n", "\nrun 10\n"),
+        ('print "step # of x"  # says it\n', 'print "step # of x"\n'),
+        ("x = '#'\n", "x = '#'\n"),
+        ("a #b\n", "a\n"),
+        ("pair a#b\n", "pair a#b\n"),
+    ],
+)
+def test_comments_go_and_texts_stay(text, left):
+    assert without_comments(text) == left

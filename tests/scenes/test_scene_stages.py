@@ -8,11 +8,10 @@ import pytest
 from scene_runs import write_case
 from stored_runs import STORED, data_of
 
-from epdem.base import paths
 from epdem.case.scene import parse
 from epdem.engines.liggghts.engine import Liggghts
 from epdem.errors import CaseError, EngineError
-from epdem.impacts.engine import Feature
+from epdem.jobs.engine import Feature
 from epdem.scenes import results
 from epdem.scenes.model import pair_law
 from epdem.scenes.plan import plan
@@ -62,7 +61,8 @@ def test_the_second_call_takes_the_stored_results(case, tmp_path):
 
 
 def change_case(case, engine, monkeypatch):
-    write_case(data_of("drum") | {"output": data_of("drum")["output"] | {"loads": False}}, case.parent)
+    beads = data_of("drum")["materials"]["beads"] | {"young_modulus": "11 MPa"}
+    write_case(data_of("drum") | {"materials": {"beads": beads}}, case.parent)
 
 
 def change_triangles(case, engine, monkeypatch):
@@ -74,8 +74,9 @@ def change_version(case, engine, monkeypatch):
     engine.says = "LIGGGHTS 3.8.1"
 
 
-def change_product(case, engine, monkeypatch):
-    monkeypatch.setattr(paths, "product_hash", lambda: "another library, template or source")
+def change_part(case, engine, monkeypatch):
+    (case.parent / "plugin.so").write_bytes(b"compiled again")
+    monkeypatch.setattr(engine, "parts", lambda: [case.parent / "plugin.so"])
 
 
 def change_file(case, engine, monkeypatch):
@@ -83,7 +84,7 @@ def change_file(case, engine, monkeypatch):
     monkeypatch.setattr(engine, "files", lambda p: files(p) | {"drum.stl": files(p)["drum.stl"] + "\n"})
 
 
-@pytest.mark.parametrize("change", [change_case, change_triangles, change_version, change_product, change_file])
+@pytest.mark.parametrize("change", [change_case, change_triangles, change_version, change_part, change_file])
 def test_each_input_that_changes_makes_it_run_again(change, case, tmp_path, monkeypatch):
     engine = Stored()
     run(case, engine, out=tmp_path / "out")

@@ -15,7 +15,7 @@ from epdem.engines import log, scene_engine
 from epdem.engines.liggghts import scene_tables
 from epdem.errors import EngineError
 from epdem.scenes import checks
-from epdem.scenes.columns import COLUMNS, NORMAL, STRAINS
+from epdem.scenes.columns import COLUMNS, NORMAL, STRAINS, columns_of_rows
 
 
 @pytest.fixture(scope="module", params=RUNS)
@@ -38,6 +38,7 @@ def test_rows_and_frames_tell_of_the_same_motion(stored):
     table = tables["particles"]
     energy = (0.5 * table["mass"] * (table[["vx", "vy", "vz"]] ** 2).sum(axis=1)).groupby(table["step"]).sum()
     assert len(energy) >= 4 and energy.max() > 0
+    assert set(rows.columns) <= columns_of_rows(p)
     # 10 digits of the row in YADE, 8 in LIGGGHTS
     assert rows.loc[energy.index, "kinetic_energy"].to_numpy() == pytest.approx(energy.to_numpy(), rel=1e-7, abs=1e-300)
     assert (table.groupby("step")["id"].count() == rows.loc[energy.index, "particles"]).all()

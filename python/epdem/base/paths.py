@@ -1,8 +1,5 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
-"""Places of the installed parts and the user's settings; hashes of the product and of the inputs of a stage.
-
-A result is stored with the hash of all its inputs, and a rerun with the same hash uses it.
-"""
+"""Places of the installed parts and the user's settings; hashes of the product."""
 
 import hashlib
 import os
@@ -119,16 +116,4 @@ def _hash(first: str, files: Iterable[Path]) -> str:
     sha = hashlib.sha256(first.encode())
     for path in files:
         sha.update(path.name.encode() + path.read_bytes())
-    return sha.hexdigest()
-
-
-def inputs_hash(files: Iterable[Path], *facts: object) -> str:
-    """Hash of a stage's inputs: this product, the files written for an engine, and `facts` (plan, engine, version).
-
-    `facts` count by their repr, which must hold every digit and no address.
-    """
-    sha = hashlib.sha256(product_hash().encode())
-    for path in sorted(files):
-        sha.update(path.name.encode() + b"\0" + path.read_bytes())
-    sha.update(repr(facts).encode())
     return sha.hexdigest()

@@ -4,8 +4,9 @@
 from ..base.paths import DEFAULT_ENGINE
 from ..base.rendering import with_reasons
 from ..errors import CaseError
-from ..impacts.engine import ImpactEngine, Trajectory, texts
+from ..impacts.engine import ImpactEngine, Trajectory
 from ..impacts.plan import Plan
+from ..jobs.stage import texts
 from ..scenes.engine import SceneEngine
 from ..scenes.plan import ScenePlan
 from .embedded import Embedded

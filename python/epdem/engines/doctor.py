@@ -12,7 +12,7 @@ from ..base import paths
 from ..base.declarations import declarations, library_path
 from ..base.processes import captured_output
 from ..errors import EngineError, EpdemError
-from ..impacts.engine import Feature
+from ..jobs.engine import Feature
 from ..laws import library as claw
 from . import ENGINES
 from .liggghts import launcher

@@ -5,9 +5,11 @@ import time
 from pathlib import Path
 
 from ..base import paths
+from ..base.declarations import library_path
 from ..impacts import oblique
-from ..impacts.engine import Feature, Report, Trajectory, check_features, silent
+from ..impacts.engine import Trajectory, check_features
 from ..impacts.plan import Plan
+from ..jobs.engine import Feature, Report, silent
 from ..laws import library as claw
 from ..laws.library import ImpactNumbers
 from ..theory.sources import Source
@@ -29,6 +31,9 @@ class Embedded:
 
     def version(self) -> str:
         return f"epdem {claw.version()}"
+
+    def parts(self) -> list[Path]:
+        return [library_path()]
 
     def check(self, job: Plan) -> list[str]:
         check_features(self, job.experiment)

@@ -15,11 +15,13 @@ from ..case import impact, scene
 from ..case.parts import Parts
 from ..case.toml import named, read_toml
 from ..errors import CaseError, EngineError
-from ..impacts.engine import Feature, Report, Trajectory, check_law, silent
+from ..impacts.engine import Trajectory
 from ..impacts.experiment import experiment
 from ..impacts.plan import Plan, plan
 from ..impacts.prediction import predict
-from ..scenes.engine import Resumed, Tables
+from ..jobs.engine import Feature, Report, check_law, silent
+from ..jobs.stage import Tables
+from ..scenes.engine import Resumed
 from ..scenes.plan import ScenePlan
 from ..scenes.plan import plan as plan_scene
 from ..theory.sources import Source
@@ -45,6 +47,10 @@ class Host(ABC):
     @abstractmethod
     def missing(self) -> str | None:
         """None if the program can run here, else a sentence with the command that installs it."""
+
+    @abstractmethod
+    def parts(self) -> list[Path]:
+        """The compiled parts of epdem that the program loads."""
 
     @abstractmethod
     def deck(self, plan: Plan) -> decks.Deck:

@@ -1,11 +1,9 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """From a case to results: predict, plan, run each engine, measure, compare, store.
 
-A stage is done when its result is stored with the hash of its inputs: a second run takes it from there.
+Judgement is made anew at each call, from the tables of a run or from stored ones (jobs/stage.py).
 """
 
-import tempfile
-import time
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
@@ -14,14 +12,15 @@ import pandas as pd
 
 from ..base import __version__
 from ..base.files import claim, results_folder
-from ..base.paths import inputs_hash
 from ..case.impact import Case, parse
 from ..case.toml import Read, named, read_toml, text_of
 from ..case.warnings import case_warnings
 from ..errors import CaseError
+from ..jobs.engine import Feature, require
+from ..jobs.stage import Inputs, Stage, Tables, compute
 from . import store
 from .comparison import compare, impacts_table
-from .engine import Feature, ImpactEngine, is_text, refuse, require
+from .engine import ImpactEngine, Trajectory, refuse
 from .experiment import Experiment, experiment
 from .measurement import chosen, measure
 from .plan import Plan, plan
@@ -47,30 +46,29 @@ class Outcome:
         return bool(self.results.comparison["passed"].all())
 
 
-@dataclass(frozen=True)
-class Stage:
-    """The result of one engine for one plan: impacts as in `impacts_table`, its times [s], the texts of its deck,
-    and chosen impacts step by step."""
+def run_plan(
+    p: Plan, tool: ImpactEngine, folder: Path, *, ranks: int = 1, version: str = "", stored: Stage | None = None
+) -> Stage:
+    """Tables `impacts` (see `impacts_table`) and `paths` (chosen impacts step by step) of a plan: the `stored` ones, or
+    those of a run in `folder`.
 
-    impacts: pd.DataFrame
-    seconds: dict[str, float]
-    decks: dict[str, str]
-    paths: pd.DataFrame
-
-
-def run_plan(p: Plan, tool: ImpactEngine, folder: Path, *, ranks: int = 1) -> Stage:
-    """Write a plan's deck into `folder`, run it and measure it.
-
-    Raises EngineError, and CaseError for what the engine cannot do.
+    version: of the engine, for results that are stored. Raises EngineError, and CaseError for what the engine cannot
+    do.
     """
-    start = time.perf_counter()
-    folder.mkdir(parents=True, exist_ok=True)
-    files = tool.write(p, folder)
-    path = tool.run(p, folder, ranks=ranks)
-    table = impacts_table(p, measure(p, path))
-    seconds = {f"seconds_{k}": v for k, v in path.seconds.items()} | {"seconds": time.perf_counter() - start}
-    decks = {f.name: f.read_text(encoding="utf-8") for f in files if is_text(f) and f.suffix != ".data"}
-    return Stage(table, seconds, decks, chosen(p, path))
+
+    def read(path: Trajectory) -> tuple[Tables, dict[str, float]]:
+        tables = {"impacts": impacts_table(p, measure(p, path)), "paths": chosen(p, path)}
+        return tables, {f"seconds_{name}": seconds for name, seconds in path.seconds.items()}
+
+    return compute(tool, p, folder, read, version=version, facts=_facts(p), ranks=ranks, stored=stored)
+
+
+def _facts(p: Plan) -> object:
+    """Numbers of a plan, which an engine without a deck reads and from which impacts are measured."""
+    x, o = p.experiment, p.experiment.oblique
+    friction = (o.angle.tobytes(), o.spin.tobytes(), o.friction, o.tangential) if o else None
+    numbers = (p.time_step, p.steps, p.phases, p.speed.tobytes(), p.gap.tobytes())
+    return x.law, x.body, x.target, x.viscous_restitution, friction, numbers
 
 
 def run_and_compare(
@@ -87,7 +85,7 @@ def run_and_compare(
     `law` is the name in the rows (None: the plan's law).
     """
     stage, x = run_plan(p, tool, folder, ranks=ranks), p.experiment
-    return compare(tool.name, law or x.law.name, stage.impacts, prediction, x.check), stage
+    return compare(tool.name, law or x.law.name, stage.tables["impacts"], prediction, x.check), stage
 
 
 def write_deck(x: Experiment, tool: ImpactEngine, folder: Path, *, force: bool = False) -> list[Path]:
@@ -99,22 +97,21 @@ def write_deck(x: Experiment, tool: ImpactEngine, folder: Path, *, force: bool =
         return tool.write(p, folder)
 
 
-def _inputs(p: Plan, tool: ImpactEngine, version: str, ranks: int) -> str:
-    """Hash of all that the result of a stage depends on: the plan, the files an engine reads, its version, ours."""
-    x = p.experiment
-    numbers = (p.time_step, p.steps, p.phases, p.speed.tobytes(), p.gap.tobytes())
-    bodies = (x.law, x.body, x.target, x.viscous_restitution)
-    o = x.oblique
-    friction = (o.angle.tobytes(), o.spin.tobytes(), o.friction, o.tangential) if o else None
-    with tempfile.TemporaryDirectory(prefix="epdem-") as scratch:
-        return inputs_hash(tool.write(p, Path(scratch)), numbers, bodies, friction, tool.name, version, ranks)
-
-
 def _stored(path: Path) -> store.Results:
     try:
         return store.read(path)
     except CaseError:
         return store.Results()
+
+
+def _stage(results: store.Results, key: str) -> Stage | None:
+    """The stored stage of a law and an engine."""
+    about = results.runs.get(key)
+    if about is None:
+        return None
+    tables = {"impacts": results.impacts[key], "paths": results.paths[key]}
+    seconds = {name: float(str(value)) for name, value in about.items() if name.startswith("seconds")}
+    return Stage(Inputs({}, str(about.get("inputs"))), tables, seconds)
 
 
 def _beside_earlier(results: store.Results, old: store.Results) -> store.Results:
@@ -214,20 +211,18 @@ def _run(text: str, work: _Work, folder: Path, ranks: int, fresh: bool, progress
         outcome.warnings += [f"{tool.name}: {note}" for tool in work.tools for note in tool.check(p)]
         results.predictions[law] = prediction.table()
         for tool in work.tools:
-            key, inputs = f"{law}/{tool.name}", _inputs(p, tool, work.versions[tool.name], ranks)
+            key = f"{law}/{tool.name}"
             progress(f"{tool.name}, {law}: {p.n} impacts")
-            if not fresh and old.runs.get(key, {}).get("inputs") == inputs:
-                results.impacts[key], results.runs[key] = old.impacts[key], old.runs[key]
-                results.paths[key] = old.paths[key]
-                results.decks |= {k: v for k, v in old.decks.items() if k.startswith(key + "/")}
+            stored_stage = None if fresh else _stage(old, key)
+            version = work.versions[tool.name]
+            stage = run_plan(p, tool, folder / law / tool.name, ranks=ranks, version=version, stored=stored_stage)
+            results.impacts[key], results.paths[key] = stage.tables["impacts"], stage.tables["paths"]
+            results.runs[key] = stage.seconds | {"inputs": stage.inputs.key, "time_step": p.time_step} | work.how
+            decks = {Path(name).name: text for name, text in stage.inputs.files.items() if not name.endswith(".data")}
+            results.decks |= {f"{key}/{name}": text for name, text in decks.items()}
+            if stage.reused:
                 outcome.reused.append(key)
-            else:
-                stage = run_plan(p, tool, folder / law / tool.name, ranks=ranks)
-                results.impacts[key], results.paths[key] = stage.impacts, stage.paths
-                results.runs[key] = stage.seconds | {"inputs": inputs, "time_step": p.time_step} | work.how
-                results.decks |= {f"{key}/{name}": text for name, text in stage.decks.items()}
-            spent = float(str(results.runs[key]["seconds"]))
-            outcome.seconds[tool.name] = outcome.seconds.get(tool.name, 0.0) + spent
+            outcome.seconds[tool.name] = outcome.seconds.get(tool.name, 0.0) + stage.seconds["seconds"]
             rows.append(compare(tool.name, law, results.impacts[key], prediction, work.case.check))
             results.comparison = pd.concat(rows, ignore_index=True)
             store.write(stored, _beside_earlier(results, old))  # results are stored after each engine

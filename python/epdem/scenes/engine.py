@@ -5,14 +5,11 @@ from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Protocol
 
-import pandas as pd
-
 from ..base.files import claim
 from ..errors import CaseError, EngineError
-from ..impacts.engine import Engine, Feature, Report, refuse_ranks, texts
+from ..jobs.engine import Engine, Feature, Report, refuse_ranks
+from ..jobs.stage import Tables, texts
 from .plan import ScenePlan
-
-Tables = dict[str, pd.DataFrame]  # rows, particles and contacts, as far as the plan has them; SI
 
 
 @dataclass(frozen=True)
@@ -24,7 +21,7 @@ class Resumed:
 
 
 class SceneEngine(Engine[ScenePlan, Tables], Protocol):
-    """One way to run a scene."""
+    """An engine of scenes, whose tables are rows, particles, contacts, walls and phases, as far as a plan has them."""
 
     def resume(self, job: ScenePlan, folder: Path, *, ranks: int, report: Report) -> tuple[Tables, Resumed]:
         """Continue a run from its newest restart file. Raises CaseError if there is none, EngineError."""

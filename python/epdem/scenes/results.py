@@ -17,11 +17,13 @@ import pandas as pd
 
 from ..base import tables as h5
 from ..base.tables import write_array, write_attributes
+from ..jobs.stage import Tables
 from . import walls
-from .columns import FORCE, NORMAL, SPINS, units
+from .columns import FORCE, NORMAL, SPINS, columns_of_rows, units
 from .plan import ScenePlan
 from .walls import FloatArray, at_end
 
+ENGINE_TABLES = ("rows", "particles", "contacts", "walls", "phases")
 FILES = "files"  # group of the files that the case names
 
 
@@ -37,6 +39,18 @@ class SceneResults:
     tables: dict[str, pd.DataFrame] = field(default_factory=dict)
     decks: dict[str, str] = field(default_factory=dict)
     files: dict[str, bytes] | None = field(default_factory=dict)
+
+    def equals(self, other: "SceneResults") -> bool:
+        """Whether a file of the other results holds these."""
+        if self.tables.keys() != other.tables.keys():
+            return False
+        texts = [(x.case_text, x.attributes, x.decks, x.files) for x in (self, other)]
+        return texts[0] == texts[1] and all(
+            table.columns.equals(other.tables[name].columns)
+            and table.astype(str).equals(other.tables[name].astype(str))
+            for name, table in self.tables.items()
+            if table is not other.tables[name]
+        )
 
     def __getattr__(self, name: str) -> pd.DataFrame:
         tables: dict[str, pd.DataFrame] = self.__dict__.get("tables", {})
@@ -77,6 +91,13 @@ def read(path: Path | str) -> SceneResults:
         stored = file[FILES].values() if FILES in file else None
         results.files = None if stored is None else {h5.attributes(x)["name"]: x[()].tobytes() for x in stored}
         return results
+
+
+def engine_tables(p: ScenePlan, tables: Tables) -> Tables:
+    """The tables of an engine run among those of a results file, without what measures and checks have added."""
+    found = {name: tables[name] for name in ENGINE_TABLES if name in tables}
+    rows = found["rows"]
+    return found | {"rows": rows[[name for name in rows if name in columns_of_rows(p)]]}
 
 
 CELLS = ("Vertices", "Lines", "Polygons", "Strips")  # VTK's order in CellOffsets

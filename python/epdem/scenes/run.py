@@ -11,14 +11,15 @@ import pandas as pd
 
 from ..base import __version__
 from ..base.files import ResultsFolder, claim, results_folder
-from ..base.paths import DEFAULT_ENGINE, inputs_hash, library_hash
+from ..base.paths import DEFAULT_ENGINE
 from ..case.scene import SceneCase, load
 from ..case.toml import Read, named, names_in, text_of
 from ..case.toml import tables as toml_tables
 from ..case.warnings import case_warnings
 from ..errors import CaseError, EngineError
-from ..impacts.engine import Report, silent, texts
 from ..impacts.prediction import predict
+from ..jobs.engine import Report, silent
+from ..jobs.stage import Inputs, Stage, Tables, compute, inputs, parts_hash, without_comments
 from . import checks, measures, pictures, results
 from .engine import Resumed, SceneEngine, check_run
 from .plan import ScenePlan, plan
@@ -53,12 +54,13 @@ class SceneOutcome:
 
 @dataclass(frozen=True)
 class _Work:
-    """A checked case with its plan, engine and files."""
+    """A checked case with its plan, engine and inputs."""
 
     text: str  # of the case
     plan: ScenePlan
     engine: SceneEngine
-    files: dict[str, str]
+    version: str  # of the engine
+    inputs: Inputs
     notes: list[str]
     named: dict[str, bytes]  # the files that the case names
     ranks: int
@@ -66,19 +68,18 @@ class _Work:
 
     @cached_property
     def versions(self) -> dict[str, str]:
-        """Of the programs on which the numbers of a run depend."""
-        return {self.engine.name: self.engine.version(), "epdem": f"{__version__} ({library_hash()[:12]})"}
-
-    @cached_property
-    def inputs(self) -> str:
-        """Hash of all inputs of a result: case, files for the engine, version of the engine, sources of epdem."""
-        facts = (self.plan.case, sorted(self.files.items()), self.engine.name, self.engine.version(), self.ranks)
-        return inputs_hash([], *facts)
+        """Versions of the programs that a continued run needs again."""
+        return {self.engine.name: self.version, "epdem": f"{__version__} ({parts_hash(self.engine)[:12]})"}
 
 
-def _stored(path: Path) -> results.SceneResults | None:
+def _facts(p: ScenePlan) -> object:
+    """Names in the tables that the engine's files may lack."""
+    return [wall.name for wall in p.scene.wall], [(phase.name, phase.end) for phase in p.phases]
+
+
+def _stored(folder: Path) -> results.SceneResults | None:
     try:
-        return results.read(path)
+        return results.read(folder / "results.h5")
     except CaseError:
         return None  # of another version: made anew
 
@@ -88,8 +89,11 @@ def run_plan(
 ) -> dict[str, pd.DataFrame]:
     """Write a plan's deck into `folder`, run it, read its tables. Raises CaseError, EngineError."""
     engine.check(p)
-    engine.write(p, folder)
-    return engine.run(p, folder, ranks=ranks, report=report)
+    return compute(engine, p, folder, _as_they_are, version="", ranks=ranks, report=report).tables
+
+
+def _as_they_are(tables: Tables) -> tuple[Tables, dict[str, float]]:
+    return tables, {}
 
 
 def run(
@@ -115,25 +119,18 @@ def run(
         pictures.refuse_color(p)
         domain = predict(leading_impact(model)).caveats  # of the law, at the highest speed of the scene
         notes = [*engine.check(p), *planned_warnings(p), *case_warnings(model), *domain]
-        files = texts(engine, p)
     check_run(engine, ranks=ranks, resume=resume)
+    version = engine.version()
+    with named(place):
+        given = inputs(engine, p, version=version, facts=_facts(p), ranks=ranks)
     beside = Path(str(place)).parent
     contents = {name: (beside / name).read_bytes() for name in sorted(names_in(toml_tables(text, place)))}
-    work = _Work(text, p, engine, files, notes, contents, ranks, lambda step: report(step, p.steps))
+    work = _Work(text, p, engine, version, given, notes, contents, ranks, lambda step: report(step, p.steps))
     folder = results_folder(out, p.case.name, "" if engine.name == DEFAULT_ENGINE else engine.name)
     if resume and not folder.exists():
         raise CaseError(f"{folder}: no such folder, so no run to continue; run the case without --resume")
-    with claim(folder, force=force, files=files) as place:
-        return _resumed(work, place) if resume else _reused(work, folder, fresh) or _anew(work, place)
-
-
-def _reused(work: _Work, folder: Path, fresh: bool) -> SceneOutcome | None:
-    old = None if fresh else _stored(folder / "results.h5")
-    if old is None or old.attributes.get("inputs") != work.inputs:
-        return None
-    p = _as_run(work.plan, old.tables)
-    warnings = [*work.notes, *measured_warnings(p, old.tables), *lost_spheres(p, old.tables)]
-    return SceneOutcome(p, folder, old, 0.0, reused=True, warnings=warnings)
+    with claim(folder, force=force, files=given.files) as place:
+        return _resumed(work, place) if resume else _computed(work, place, None if fresh else _stored(folder))
 
 
 def _as_run(p: ScenePlan, tables: dict[str, pd.DataFrame]) -> ScenePlan:
@@ -144,18 +141,34 @@ def _as_run(p: ScenePlan, tables: dict[str, pd.DataFrame]) -> ScenePlan:
     return p.ended(ends, dict(zip(phases["phase"], phases["until"], strict=True)))
 
 
-def _anew(work: _Work, place: ResultsFolder) -> SceneOutcome:
-    start = time.perf_counter()
-    place.note(work.versions)
-    tables = run_plan(work.plan, work.engine, place.folder, ranks=work.ranks, report=work.report)
-    return _finish(work, place.folder, start, tables)
+def _computed(work: _Work, place: ResultsFolder, old: results.SceneResults | None) -> SceneOutcome:
+    """The outcome of stored tables if they belong to these inputs, else of a run."""
+    stored = None
+    if old and old.attributes.get("inputs") == work.inputs.key:
+        stored = Stage(work.inputs, results.engine_tables(work.plan, old.tables), {})
+    else:
+        place.note(work.versions)
+    stage = compute(
+        work.engine,
+        work.plan,
+        place.folder,
+        _as_they_are,
+        version=work.version,
+        facts=_facts(work.plan),
+        ranks=work.ranks,
+        report=work.report,
+        stored=stored,
+        given=work.inputs,
+    )
+    return _finish(work, place.folder, stage, old if stored else None)
 
 
 def _resumed(work: _Work, place: ResultsFolder) -> SceneOutcome:
     start, folder = time.perf_counter(), place.folder
     if not all(
-        (folder / name).exists() and (folder / name).read_text(encoding="utf-8") == text
-        for name, text in work.files.items()
+        (folder / name).exists()
+        and without_comments((folder / name).read_text(encoding="utf-8")) == without_comments(text)
+        for name, text in work.inputs.files.items()
     ):
         raise CaseError(f"{folder}: the case has changed since the run that is to be continued; run it anew (--fresh)")
     if place.versions != work.versions:
@@ -163,13 +176,13 @@ def _resumed(work: _Work, place: ResultsFolder) -> SceneOutcome:
         begun = f"{folder}: begun by {was or 'programs of unknown versions'}, and here is {now}"
         raise CaseError(f"{begun}; run it anew (--fresh)")
     tables, went_on = work.engine.resume(work.plan, folder, ranks=work.ranks, report=work.report)
-    return _finish(work, folder, start, tables, went_on)
+    stage = Stage(work.inputs, tables, {"seconds": time.perf_counter() - start})
+    return _finish(work, folder, stage, None, went_on)
 
 
-def _finish(
-    work: _Work, folder: Path, start: float, tables: dict[str, pd.DataFrame], went_on: Resumed | None = None
-) -> SceneOutcome:
-    p = _as_run(work.plan, tables)
+def _judge(p: ScenePlan, tables: Tables, folder: Path) -> Tables:
+    """The tables of an engine with energy balance, checks and measures. Raises EngineError."""
+    tables = dict(tables)
     if p.output.energy:
         if tables["particles"].empty:
             raise EngineError(
@@ -180,26 +193,36 @@ def _finish(
     if p.case.scene.measure:
         tables["rows"] = measures.with_loads(p, tables["rows"])
         tables["measures"], tables["histograms"] = measures.curves(p, tables), measures.histograms(p, tables)
-    seconds = time.perf_counter() - start
-    attributes = {
+    return tables
+
+
+def _finish(
+    work: _Work, folder: Path, stage: Stage, old: results.SceneResults | None, went_on: Resumed | None = None
+) -> SceneOutcome:
+    """Judge the tables of a stage and store them; `old`: the file from which they come."""
+    p = _as_run(work.plan, stage.tables)
+    tables = _judge(p, stage.tables, folder)
+    about = {
         "case": p.case.name,
         "epdem": __version__,
         "engine": work.engine.name,
-        f"version_{work.engine.name}": work.engine.version(),
+        f"version_{work.engine.name}": work.version,
         "ranks": work.ranks,
         "time_step": p.time_step,
         "steps": p.steps,
-        "inputs": work.inputs,
-        "seconds": seconds,
+        "inputs": work.inputs.key,
+        "seconds": stage.seconds.get("seconds", 0.0),
     }
-    decks = {name: text for name, text in work.files.items() if "/" not in name}  # without the modules of a deck
+    decks = {name: text for name, text in work.inputs.files.items() if "/" not in name}  # without modules
     left_out = []
     if went_on and went_on.lost:
         steps = ("step " if len(went_on.lost) == 1 else "steps ") + ", ".join(map(str, went_on.lost))
         advice = "are missing or not whole, and left out; --fresh runs the scene anew"
         left_out = [f"{folder}: the frames of {steps} {advice}"]
-    kept = results.SceneResults(work.text, attributes, tables, decks, work.named)
-    results.write(folder / "results.h5", p, kept)
+    kept = results.SceneResults(work.text, old.attributes if old else about, tables, decks, work.named)
+    if old is None or not kept.equals(old):
+        results.write(folder / "results.h5", p, kept)
     warnings = [*work.notes, *measured_warnings(p, tables), *lost_spheres(p, tables), *left_out]
     begin = went_on.step if went_on else None
-    return SceneOutcome(p, folder, kept, seconds, resumed_from=begin, warnings=warnings)
+    seconds = stage.seconds.get("seconds", 0.0)
+    return SceneOutcome(p, folder, kept, seconds, stage.reused, begin, warnings)

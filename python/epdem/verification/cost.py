@@ -19,11 +19,11 @@ from ..case.toml import named
 from ..engines import DEFAULT_ENGINE, ImpactEngine
 from ..engines.embedded import Embedded
 from ..errors import EngineError
-from ..impacts.engine import require
 from ..impacts.experiment import experiment, pair_of
 from ..impacts.plan import Plan, plan
 from ..impacts.prediction import Prediction, predict
 from ..impacts.run import run_and_compare
+from ..jobs.engine import require
 from ..laws.strengths import default_numbers
 from .models import REFERENCE, SAME_LAW, engine, only_law
 from .stability.cases import HARDENING

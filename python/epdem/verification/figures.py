@@ -104,7 +104,7 @@ def adhesion_by_strength() -> Chart:
         if tool.missing() is None:
             points = replace(x, speed=np.geomspace(0.008, 30, 16))
             with tempfile.TemporaryDirectory(prefix="epdem-figure-") as scratch:
-                found = run_plan(plan(points, predict(points)), tool, Path(scratch)).impacts
+                found = run_plan(plan(points, predict(points)), tool, Path(scratch)).tables["impacts"]
             series.append(Series("", points.speed, found["e_n"].to_numpy().reshape(16, -1)[:, 0], k, None, 0))
     axes = Axis("impact speed $v$", "m/s", log=True), Axis("$e_n$")
     alt = "Coefficient of restitution of adhesive spheres against impact speed: theory as lines, LIGGGHTS as points."

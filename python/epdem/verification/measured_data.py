@@ -20,11 +20,11 @@ from ..case.toml import named, read_toml
 from ..engines import DEFAULT_ENGINE, ImpactEngine
 from ..engines.embedded import Embedded
 from ..errors import CaseError
-from ..impacts.engine import require
 from ..impacts.experiment import Experiment, bodies, experiment
 from ..impacts.plan import plan
 from ..impacts.prediction import predict
 from ..impacts.run import run_and_compare
+from ..jobs.engine import require
 from ..laws.strengths import default_numbers, law_named, strength_of_hardness
 from ..studies.calibrate import EXPONENT, hardness_test, specimen
 from ..theory.backbones import JKR

@@ -6,13 +6,15 @@ from pathlib import Path
 
 import numpy as np
 
+from ...base import paths
 from ...base import rendering as decks
 from ...base.files import stored_results
 from ...base.processes import most_ranks
 from ...errors import EngineError
-from ...impacts.engine import Feature, Report, Trajectory, check_features
+from ...impacts.engine import Trajectory, check_features
 from ...impacts.experiment import Body
 from ...impacts.plan import Plan, approach
+from ...jobs.engine import Feature, Report
 from ...scenes.plan import ScenePlan
 from ...theory.sources import Source
 from ..host import Host
@@ -53,6 +55,10 @@ class Lammps(Host):
 
     def version(self) -> str:
         return launcher.version()
+
+    def parts(self) -> list[Path]:
+        plugin = paths.native("lammps/epdemplugin.so")
+        return [plugin] if plugin else []
 
     def deck(self, plan: Plan) -> decks.Deck:
         """The deck of a plan. Raises CaseError for what the plugin cannot do."""

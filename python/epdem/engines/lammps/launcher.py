@@ -12,7 +12,7 @@ from typing import Any
 from ...base import paths
 from ...base.processes import call, captured_output, most_ranks
 from ...errors import EngineError
-from ...impacts.engine import refuse_ranks
+from ...jobs.engine import refuse_ranks
 
 OUT = "out.lammps"  # both streams
 INSTALL = "run 'make lammps' (docs/lammps.md)"

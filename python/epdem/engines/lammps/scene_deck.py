@@ -123,7 +123,7 @@ def _data(p: ScenePlan, phase: str) -> str:
         velocities.append(f"{n} {' '.join(map(decks.number, motion))}")
     limits = zip("xyz", p.box[::2], p.box[1::2], strict=True)
     sides = [f"{decks.number(low)} {decks.number(high)} {a}lo {a}hi" for a, low, high in limits]
-    head = [f"spheres of {decks.line(p.case.case.title)}", "", f"{len(rows)} atoms", f"{len(density) - 1} atom types"]
+    head = [f"spheres of {p.case.name}", "", f"{len(rows)} atoms", f"{len(density) - 1} atom types"]
     return "\n".join([*head, *sides, "", "Atoms # sphere", "", *atoms, "", "Velocities", "", *velocities, ""])
 
 

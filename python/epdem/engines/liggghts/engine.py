@@ -11,9 +11,11 @@ from ...base import rendering as decks
 from ...base.declarations import declarations
 from ...base.processes import most_ranks
 from ...errors import CaseError, EngineError
-from ...impacts.engine import Feature, Report, Trajectory, check_features
+from ...impacts.engine import Trajectory, check_features
 from ...impacts.plan import Plan, approach
-from ...scenes.engine import Resumed, Tables
+from ...jobs.engine import Feature, Report
+from ...jobs.stage import Tables
+from ...scenes.engine import Resumed
 from ...scenes.plan import ScenePlan
 from ...theory.sources import Source
 from .. import log
@@ -60,6 +62,10 @@ class Liggghts(Host):
     def version(self) -> str:
         path = paths.launcher()
         return (launcher.version(path) if path else "") or "LIGGGHTS (version unknown)"
+
+    def parts(self) -> list[Path]:
+        found = (paths.native("libepdem_liggghts.so"), paths.launcher())
+        return [path for path in found if path]
 
     def model(self, plan: Plan) -> str:
         return f"ep/{plan.experiment.law.name}"

@@ -13,7 +13,7 @@ from ...base import paths
 from ...base.paths import config_file
 from ...base.processes import call, captured_output, most_ranks
 from ...errors import EngineError
-from ...impacts.engine import refuse_ranks
+from ...jobs.engine import refuse_ranks
 
 MPIRUN = "mpirun"
 INSTALL = "apt-get install liggghts libliggghts-dev libopenmpi-dev, then 'make setup'"

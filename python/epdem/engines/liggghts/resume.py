@@ -13,7 +13,7 @@ from ...base import rendering as decks
 from ...base.files import stored_results
 from ...base.processes import ROW
 from ...errors import CaseError, EngineError
-from ...impacts.engine import Report
+from ...jobs.engine import Report
 from ...scenes.engine import Resumed
 from ...scenes.plan import ScenePlan
 from .. import log

@@ -13,12 +13,13 @@ from pathlib import Path
 import numpy as np
 
 from ...base import rendering as decks
-from ...base.declarations import declarations
+from ...base.declarations import declarations, library_path
 from ...base.processes import call, captured_output
 from ...errors import CaseError, EngineError
-from ...impacts.engine import Feature, Report, Trajectory, check_features
+from ...impacts.engine import Trajectory, check_features
 from ...impacts.experiment import Body, Experiment
 from ...impacts.plan import Plan, approach, side_by_side
+from ...jobs.engine import Feature, Report
 from ...scenes.plan import ScenePlan
 from ...theory.sources import Source
 from ..host import Host
@@ -89,6 +90,9 @@ class Yade(Host):
     def check(self, job: Plan | ScenePlan) -> list[str]:
         self.require_module(job)
         return super().check(job)
+
+    def parts(self) -> list[Path]:
+        return [launcher.module() or library_path()]
 
     def material(self, x: Experiment, body: Body, strength: float) -> Material:
         """The material of one body; with the C library its mass alone counts."""

@@ -1,9 +1,10 @@
 # SPDX-License-Identifier: GPL-2.0-or-later
 """A sweep on disk: its definition, and for each point a folder with its record.
 
-A folder has the hash of the case and of what runs it as its name, so that a sweep that has grown or changed finds
-again what is finished. `point.json` is written whole or not at all: state and results never disagree. While a point
-runs it has `running.json` instead.
+The name of a folder is the hash of the data that the engines get and of the engines, so that a sweep that has grown or
+changed finds again what is finished. `point.json` is written whole or not at all: state and results never disagree.
+While a point runs it has `running.json` instead. `stages.json` holds the tables of impacts, which are judged anew when
+the case or epdem has changed and the inputs of the engines have not.
 """
 
 import copy
@@ -18,17 +19,21 @@ from functools import cached_property
 from pathlib import Path
 from typing import Any
 
+import pandas as pd
 import tomlkit
 
+from ...base import paths
 from ...base.files import MARKER, atomic, results_folder
-from ...base.paths import inputs_hash
 from ...case.messages import shorten
 from ...case.scene import is_scene
 from ...case.toml import names_in
 from ...errors import CaseError
+from ...jobs.stage import Inputs, Stage
 from .points import Point, assign, keys_of
 
 DEFINITION, CASE, POINTS, FINISHED, STARTED = "sweep.json", "case.toml", "points", "point.json", "running.json"
+STAGES = "stages.json"
+JUDGED = ("case.title", "case.source", "check", "output.color", "scene.measure")  # keys that no engine reads
 WAITING, RUNNING, DONE, FAILED = "waiting", "running", "done", "failed"
 STATES = (WAITING, RUNNING, DONE, FAILED)
 
@@ -95,10 +100,19 @@ class Sweep:
     @cached_property
     def identities(self) -> tuple[str, ...]:
         """The names of the points' folders."""
-        rest = repr((self.engines, self.laws, self.ranks)).encode()
-        return tuple(
-            hashlib.sha256(self.text(n).encode() + rest).hexdigest()[:32] for n in range(1, len(self.points) + 1)
-        )
+        rest = repr((self.engines, self.laws, self.ranks))
+        data = (self._without_judgement(n) for n in range(1, len(self.points) + 1))
+        return tuple(hashlib.sha256(f"{tables!r}{rest}".encode()).hexdigest()[:32] for tables in data)
+
+    def _without_judgement(self, number: int) -> dict[str, Any]:
+        """The data of a point without the keys of JUDGED, unless the points set them."""
+        data, swept = self.data(number), self.points[number - 1]
+        for key in JUDGED:
+            table, _, name = key.rpartition(".")
+            holder = data.get(table) if table else data
+            if isinstance(holder, dict) and not any(f"{one}.".startswith(f"{key}.") for one in swept):
+                holder.pop(name, None)
+        return data
 
     def place(self, number: int) -> str:
         """The number and keys of a point, for messages."""
@@ -115,10 +129,12 @@ class Sweep:
         return names_in([{key.rpartition(".")[2]: value} for key, value in point.items()])
 
     def inputs(self, number: int) -> str:
-        """Hash of all inputs of the result of a point."""
+        """Hash of the case of a point with its files, of the engines and of epdem: a point with another one is looked
+        at again, and its engines run if their own inputs have changed."""
         names = names_in(self.data(number)) if self._files(self.points[number - 1]) else names_in(self.tables)
         contents = [self._hashes[name] for name in sorted(names) if name in self._hashes]
-        return inputs_hash([], self.identities[number - 1], sorted(self.versions.items()), *contents)
+        known = (self.text(number), self.identities[number - 1], sorted(self.versions.items()), contents)
+        return hashlib.sha256(f"{paths.product_hash()}{known!r}".encode()).hexdigest()
 
 
 def write(sweep: Sweep, folder: Path) -> None:
@@ -200,6 +216,28 @@ def end(
     with atomic(place / FINISHED, sync=False) as temporary:
         temporary.write_text(json.dumps(about | state | {"rows": rows or {}}), encoding="utf-8")
     (place / STARTED).unlink(missing_ok=True)
+
+
+def write_stages(place: Path, stages: dict[str, Stage]) -> None:
+    """Store the impacts of each law and engine of a point."""
+    content = {
+        name: {"key": s.inputs.key, "seconds": s.seconds, "impacts": s.tables["impacts"].to_dict("list")}
+        for name, s in stages.items()
+    }
+    with atomic(place / STAGES, sync=False) as temporary:
+        temporary.write_text(json.dumps(content), encoding="utf-8")
+
+
+def read_stages(place: Path) -> dict[str, Stage]:
+    """What `write_stages` stored; nothing of a file that is missing or damaged."""
+    try:
+        content = json.loads((place / STAGES).read_text(encoding="utf-8"))
+        return {
+            name: Stage(Inputs({}, s["key"]), {"impacts": pd.DataFrame(s["impacts"])}, s["seconds"])
+            for name, s in content.items()
+        }
+    except (OSError, ValueError, KeyError, TypeError, AttributeError):
+        return {}
 
 
 def to_do(sweep: Sweep, folder: Path, *, retry_failed: bool) -> list[int]:

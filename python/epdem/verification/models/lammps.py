@@ -8,10 +8,11 @@ from typing import Any
 from ...base import rendering as decks
 from ...engines.lammps import launcher
 from ...engines.lammps.engine import END, PATH, Lammps
-from ...impacts.engine import Feature, Report, check_features, silent
+from ...impacts.engine import check_features
 from ...impacts.experiment import Experiment
 from ...impacts.plan import Plan
 from ...impacts.prediction import Prediction
+from ...jobs.engine import Feature, Report, silent
 from . import predictions
 
 BULK = 0.5  # share of free surface below which mdr's bulk responds; one contact stays far above

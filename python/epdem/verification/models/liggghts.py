@@ -9,10 +9,10 @@ from typing import Any
 from ...base.rendering import Deck
 from ...engines.liggghts.engine import Liggghts
 from ...engines.liggghts.properties import Property, of_friction, of_impacts, per_pair, per_type, scalar
-from ...impacts.engine import Feature, Report, silent
 from ...impacts.experiment import Experiment
 from ...impacts.plan import Plan
 from ...impacts.prediction import Prediction
+from ...jobs.engine import Feature, Report, silent
 from . import predictions
 
 

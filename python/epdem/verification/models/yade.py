@@ -9,10 +9,10 @@ from typing import Any
 from ...base.rendering import Deck
 from ...engines.yade.classes import Material
 from ...engines.yade.engine import Yade
-from ...impacts.engine import Report, silent
 from ...impacts.experiment import Body, Experiment
 from ...impacts.plan import Plan
 from ...impacts.prediction import Prediction
+from ...jobs.engine import Report, silent
 from . import predictions
 
 

@@ -15,8 +15,8 @@ from ...base.tables import write_csv
 from ...case.impact import load
 from ...case.toml import named
 from ...errors import CaseError
-from ...impacts.engine import check_law, require
 from ...impacts.experiment import experiment
+from ...jobs.engine import check_law, require
 from ...theory.pair import sphere_mass
 from .embedded import EmbeddedMotions
 from .lammps import LammpsMotions

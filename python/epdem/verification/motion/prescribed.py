@@ -18,9 +18,9 @@ from ...case.fields import NODES, Tangential
 from ...case.sizes import LARGEST_FILE
 from ...case.toml import text_of
 from ...errors import CaseError
-from ...impacts.engine import Feature
 from ...impacts.experiment import Experiment
 from ...impacts.plan import Plan
+from ...jobs.engine import Feature
 from ...laws.library import Array
 
 WIDTHS = {"t": 1, "dt": 1} | {f"{name}_{side}": n for name, n in (("x", 3), ("v", 3), ("q", 4)) for side in "ij"}

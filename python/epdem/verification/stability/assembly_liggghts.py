@@ -14,7 +14,7 @@ from ...engines.liggghts.engine import Liggghts
 from ...engines.liggghts.properties import SOFT, elastic, per_pair, strength
 from ...engines.liggghts.scene_deck import contact_columns
 from ...engines.liggghts.scene_parts import stl_text
-from ...impacts.engine import require
+from ...jobs.engine import require
 from ...scenes.walls import rectangle
 from .assembly import Assembly, AssemblyPlan, ContactFrame
 

@@ -13,7 +13,7 @@ from ...engines import ImpactEngine
 from ...engines.embedded import Embedded
 from ...engines.yade.engine import Yade
 from ...errors import CaseError
-from ...impacts.engine import Feature, check_law, has_law, require
+from ...jobs.engine import Feature, check_law, has_law, require
 from ...theory.backbones import ADHESIVE, LAWS
 from ..models import engine
 from . import bulk_checks, precisions, precisions_yade

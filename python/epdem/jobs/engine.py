@@ -1,0 +1,110 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""The interface of an engine: a job goes in, a result comes out."""
+
+import shutil
+from collections.abc import Callable
+from enum import StrEnum
+from pathlib import Path
+from typing import Protocol, TypeVar
+
+from ..errors import CaseError, EngineError
+from ..laws.strengths import law_named
+from ..theory.sources import Source
+
+
+class Feature(StrEnum):
+    """A named ability of an engine; other code never tests the name of the engine."""
+
+    ADHESION = "adhesion"  # laws with adhesion
+    DASHPOT = "dashpot"  # [viscous] of a case of impacts
+    FRICTION = "friction"  # oblique impacts on walls
+    SPHERE_FRICTION = "friction of two spheres"  # oblique impacts of two spheres
+    DECK = "deck"  # the engine reads a deck, which runs without epdem
+    POSITIONS = "positions"  # an overlap is a difference of positions
+    RESTART = "restart"  # an interrupted scene continues from a restart file
+
+
+Report = Callable[[int], None]  # takes the step that a run has reached
+Job = TypeVar("Job", contravariant=True)
+Result = TypeVar("Result", covariant=True)
+
+
+def silent(step: int) -> None:
+    """Report nothing."""
+
+
+class Engine(Protocol[Job, Result]):
+    """One way to run a job: the plan of impacts gives a trajectory, the plan of a scene gives tables."""
+
+    name: str
+    source: Source | None  # what to cite for its program; None: epdem itself
+    laws: tuple[str, ...] | None  # the laws of epdem that the engine has; None: every one
+    ranks: int  # the largest number on this machine
+    features: frozenset[Feature]
+
+    @property
+    def mpirun(self) -> str:
+        """The program that starts several ranks."""
+
+    def missing(self) -> str | None:
+        """None if the engine can run here, else a sentence with the command that installs it."""
+
+    def version(self) -> str:
+        """One line: the version of the engine and of epdem's part in it."""
+
+    def parts(self) -> list[Path]:
+        """The compiled parts of epdem that the engine loads."""
+
+    def check(self, job: Job) -> list[str]:
+        """Sentences on what the engine leaves out or replaces. Raises CaseError for a job that it cannot run."""
+
+    def write(self, job: Job, folder: Path) -> list[Path]:
+        """Write the deck and its data files into `folder`, where they run without epdem; their paths, the deck first.
+
+        Raises CaseError for a job that the engine cannot run.
+        """
+
+    def run(self, job: Job, folder: Path, *, ranks: int = 1, report: Report = silent) -> Result:
+        """Run what `write` wrote. Raises EngineError with the end of the engine's log."""
+
+
+class Tool(Protocol):
+    """An engine of any kind: its laws, its features, and whether it can run here."""
+
+    name: str
+    laws: tuple[str, ...] | None
+    features: frozenset[Feature]
+
+    def missing(self) -> str | None:
+        """None if it can run here, else a sentence with the command that installs it."""
+
+
+def require(*tools: Tool) -> None:
+    """Raise EngineError for the first of `tools` that cannot run here."""
+    for tool in tools:
+        if reason := tool.missing():
+            raise EngineError(f"engine {tool.name}: {reason}")
+
+
+def has_law(tool: Tool, law: str) -> bool:
+    """Whether an engine has a law of epdem."""
+    named = tool.laws is None or law in tool.laws
+    return named and (Feature.ADHESION in tool.features or not law_named(law).adheres)
+
+
+def check_law(tool: Tool, law: str) -> None:
+    """Raise CaseError for a law that an engine does not have."""
+    if not has_law(tool, law):
+        known = "no law with adhesion" if tool.laws is None else f"{', '.join(tool.laws)} only"
+        raise CaseError(f"law.name = {law!r}: engine {tool.name} has {known}; use another --engine")
+
+
+def refuse_ranks(engine: str, most: int, ranks: int, mpirun: str) -> None:
+    """Raise CaseError for a number of ranks outside 1 to `most`, EngineError if the program `mpirun` is not there."""
+    if ranks < 1:
+        raise CaseError(f"--ranks {ranks}: must be at least 1; leave it out for one rank")
+    if ranks > most:
+        limit = "one rank; leave it out" if most == 1 else f"at most {most} ranks here; ask for no more"
+        raise CaseError(f"--ranks {ranks}: engine {engine} runs on {limit}")
+    if ranks > 1 and shutil.which(mpirun) is None:
+        raise EngineError(f"--ranks needs {mpirun}, which was not found; apt-get install openmpi-bin")

@@ -1,0 +1,120 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""A stage: one engine runs one job. Its tables are stored with the hash of the inputs from which they follow."""
+
+import hashlib
+import re
+import tempfile
+import time
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+from functools import cache
+from pathlib import Path
+from typing import TypeVar
+
+import pandas as pd
+
+from .engine import Engine, Report, silent
+
+Tables = dict[str, pd.DataFrame]
+Job = TypeVar("Job")
+Result = TypeVar("Result")
+
+FORMAT = 1  # raise it with each change of the way in which tables are made from what an engine has written
+_COMMENT = re.compile(r"""^#.*|[ \t]+#[^"'\n]*$""", re.M)
+
+
+@dataclass(frozen=True)
+class Inputs:
+    """Inputs of a stage. files: texts of the engine's files by their path. key: hash of all inputs."""
+
+    files: dict[str, str]
+    key: str
+
+
+@dataclass(frozen=True)
+class Stage:
+    """Result of a stage. seconds: times that the run took, by name; reused: the tables come from an earlier run."""
+
+    inputs: Inputs
+    tables: Tables
+    seconds: dict[str, float]
+    reused: bool = False
+
+
+def without_comments(text: str) -> str:
+    """The text of a deck without titles, sources and reasons.
+
+    A comment behind a command stays if a quotation mark follows its #, which may then stand inside of a text.
+    """
+    return _COMMENT.sub("", text)
+
+
+def parts_hash(tool: Engine[Job, Result]) -> str:
+    """Hash of the compiled parts of epdem that an engine loads."""
+    sha = hashlib.sha256()
+    for path in tool.parts():
+        status = path.stat()
+        sha.update(_file_hash(path, status.st_mtime_ns, status.st_size))
+    return sha.hexdigest()
+
+
+@cache
+def _file_hash(path: Path, changed: int, size: int) -> bytes:
+    return path.name.encode() + hashlib.sha256(path.read_bytes()).digest()
+
+
+def texts(tool: Engine[Job, Result], job: Job, folder: Path | None = None) -> dict[str, str]:
+    """The texts of a job's files by their path, which are written into `folder` (None: nowhere). Raises CaseError."""
+    if folder is None:
+        with tempfile.TemporaryDirectory(prefix="epdem-") as scratch:
+            return texts(tool, job, Path(scratch))
+    written = [path for path in tool.write(job, folder) if path.suffix != ".so"]  # a copy of a compiled part
+    return {path.relative_to(folder).as_posix(): path.read_text(encoding="utf-8") for path in written}
+
+
+def inputs(
+    tool: Engine[Job, Result],
+    job: Job,
+    *,
+    version: str,
+    facts: object = (),
+    ranks: int = 1,
+    folder: Path | None = None,
+) -> Inputs:
+    """Inputs of a job, whose files are written as by `texts`. Raises CaseError.
+
+    version: of the engine. facts: numbers and names on which tables depend and that no file of the engine holds; they
+    count by their repr.
+    """
+    files = texts(tool, job, folder)
+    read = sorted((name, without_comments(text)) for name, text in files.items())
+    known = (FORMAT, read, facts, tool.name, version, parts_hash(tool), ranks)
+    return Inputs(files, hashlib.sha256(repr(known).encode()).hexdigest())
+
+
+def compute(
+    tool: Engine[Job, Result],
+    job: Job,
+    folder: Path,
+    read: Callable[[Result], tuple[Tables, dict[str, float]]],
+    *,
+    version: str,
+    facts: object = (),
+    ranks: int = 1,
+    report: Report = silent,
+    stored: Stage | None = None,
+    given: Inputs | None = None,
+) -> Stage:
+    """The `stored` stage if its inputs are those of the job, else one run in `folder`. Raises CaseError, EngineError.
+
+    read: tables and times of the engine's result. version, facts: as of `inputs`, which may be `given`.
+    """
+    if stored is not None:
+        now = given or inputs(tool, job, version=version, facts=facts, ranks=ranks)
+        if stored.inputs.key == now.key:
+            return replace(stored, inputs=now, reused=True)
+    start = time.perf_counter()
+    folder.mkdir(parents=True, exist_ok=True)
+    now = inputs(tool, job, version=version, facts=facts, ranks=ranks, folder=folder)
+    tables, seconds = read(tool.run(job, folder, ranks=ranks, report=report))
+    return Stage(now, tables, seconds | {"seconds": time.perf_counter() - start})

@@ -1,0 +1,148 @@
+# SPDX-License-Identifier: GPL-2.0-or-later
+"""Every host starts again for what changes its input, and for nothing else: a test counts its starts."""
+
+import copy
+from pathlib import Path
+
+import h5py
+import pytest
+from parts_cases import parts
+from scene_runs import write_case
+
+from epdem.base import paths
+from epdem.engines import engine, scene_engine
+from epdem.impacts.run import run as run_impacts
+from epdem.scenes.run import run as run_scene
+from epdem.studies.sweep import run as sweeps
+
+HOSTS = [
+    pytest.param("liggghts", marks=pytest.mark.liggghts),
+    pytest.param("yade", marks=pytest.mark.yade("alone")),
+    "lammps",
+]
+STEEL = (Path(__file__).parents[2] / "cases/steel_wall.toml").read_text()
+IMPACTS = STEEL.replace('{ from = "0.05 m/s", to = "150 m/s", count = 32 }', '["1 m/s", "5 m/s"]')
+
+
+def counted(tool, monkeypatch):
+    """An engine, and a list that grows with each of its starts."""
+    starts, run = [], tool.run
+
+    def start(*job, **how):
+        starts.append(how)
+        return run(*job, **how)
+
+    monkeypatch.setattr(tool, "run", start)
+    return tool, starts
+
+
+def compiled_again(tool, folder, monkeypatch):
+    """Another compiled part of epdem in an engine."""
+    (folder / "part.so").write_bytes(b"compiled again")
+    monkeypatch.setattr(tool, "parts", lambda: [folder / "part.so"])
+
+
+@pytest.mark.parametrize("host", ["embedded", *HOSTS])
+def test_impacts_run_again_for_what_the_engine_reads_alone(host, tmp_path, monkeypatch):
+    tool, starts = counted(engine(host), monkeypatch)
+    many = 2 if tool.ranks > 1 else 1
+
+    def again(text, ranks=1):
+        """The starts of a run with this case."""
+        (tmp_path / "case.toml").write_text(text)
+        starts.clear()
+        run_impacts(tmp_path / "case.toml", engines=[tool], out=tmp_path / "out", ranks=ranks)
+        return len(starts)
+
+    assert again(IMPACTS) == 1
+    for old, new in (
+        ('title = "Steel', 'title = "Any steel'),
+        ("e_n = 1e-4", "e_n = 1e-9"),
+        ('source = "phys', 'source = "a phys'),
+    ):
+        assert old in IMPACTS and again(IMPACTS.replace(old, new)) == 0
+    monkeypatch.setattr(paths, "product_hash", lambda: "another page")
+    assert again(IMPACTS) == 0
+    for old, new in (
+        ('name = "thornton"', 'name = "cavity"'),
+        ("poisson_ratio = 0.3", "poisson_ratio = 0.31"),
+        ("steps_in_contact = 400", "steps_in_contact = 401"),
+    ):
+        text = IMPACTS.replace(old, new)
+        if "cavity" in new:
+            text = text.replace("yield_pressure_ratio = 2.8\n", "")
+        assert again(text) == 1 and again(text) == 0
+    again(IMPACTS)
+    if many > 1:
+        assert again(IMPACTS, ranks=many) == 1
+        again(IMPACTS)
+    compiled_again(tool, tmp_path, monkeypatch)
+    assert again(IMPACTS) == 1
+
+
+HEIGHT = {"name": "height", "kind": "height", "share": 0.5}
+
+
+def scene(**changes):
+    data = parts() | {"output": {"rows": 10, "particles": 2}}
+    for table, keys in changes.items():
+        data[table] = data.get(table, {}) | keys
+    return data
+
+
+@pytest.mark.parametrize("host", HOSTS)
+def test_a_scene_runs_again_for_what_the_engine_reads_alone(host, tmp_path, monkeypatch):
+    tool, starts = counted(scene_engine(host), monkeypatch)
+
+    def again(data, ranks=1):
+        starts.clear()
+        found = run_scene(write_case(copy.deepcopy(data), tmp_path), tool, out=tmp_path / "out", ranks=ranks)
+        assert found.reused == (not starts)
+        return len(starts)
+
+    def stored(name):
+        with h5py.File(tmp_path / "out/results.h5") as file:
+            return name in file
+
+    assert again(scene()) == 1
+    first = (tmp_path / "out/results.h5").read_bytes()
+    assert again(scene()) == 0 and (tmp_path / "out/results.h5").read_bytes() == first, "nothing is written anew"
+    assert again(scene(case={"title": "Another title"})) == 0
+    assert again(scene(output={"rows": 10, "particles": 2, "color": "z"})) == 0
+    assert again(scene(scene={"measure": [HEIGHT]})) == 0 and stored("measures")
+    assert again(scene()) == 0 and not stored("measures")
+    monkeypatch.setattr(paths, "product_hash", lambda: "another page")
+    assert again(scene()) == 0
+    for changes in (
+        {"law": {"yield_pressure_ratio": 2.5}},
+        {"numerics": {"time_step": "1.9e-5 s"}},
+        {"output": {"rows": 10, "particles": 5}},
+    ):
+        assert again(scene(**changes)) == 1 and again(scene(**changes)) == 0
+    if tool.ranks > 1:
+        assert again(scene()) == 1 and again(scene(), ranks=2) == 1
+    again(scene())
+    compiled_again(tool, tmp_path, monkeypatch)
+    assert again(scene()) == 1
+
+
+@pytest.mark.liggghts
+def test_a_sweep_of_impacts_is_judged_anew_without_a_start(tmp_path, monkeypatch):
+    tool, starts = counted(engine("liggghts"), monkeypatch)
+    monkeypatch.setattr(sweeps, "engine", lambda name: tool)
+    monkeypatch.setattr(sweeps.local, "each", lambda function, items, jobs: ((n, function(n)) for n in items))
+
+    def swept(text):
+        (tmp_path / "case.toml").write_text(text)
+        starts.clear()
+        plan = sweeps.plan(tmp_path / "case.toml", {"impact.body.radius": "5 mm,10 mm"}, engines=["liggghts"])
+        return sweeps.run(plan, tmp_path / "out"), len(starts)
+
+    first, runs = swept(IMPACTS)
+    assert first.passed and runs == 2
+    strict, runs = swept(IMPACTS.replace("contact_time = 5e-3", "contact_time = 1e-12"))
+    assert not strict.passed and runs == 0 and strict.table["e_n"].equals(first.table["e_n"])
+    monkeypatch.setattr(paths, "product_hash", lambda: "another page")
+    later, runs = swept(IMPACTS.replace('title = "Steel', 'title = "Any steel'))
+    assert later.passed and (later.ran, runs) == (2, 0)
+    assert swept(IMPACTS.replace("yield_pressure_ratio = 2.8", "yield_pressure_ratio = 2.7"))[1] == 2
