@@ -141,10 +141,10 @@ def test_a_point_that_fails_is_a_row_with_its_reason_and_runs_again_when_asked(c
 
     real = Embedded.run
 
-    def fails(self, plan, at, *, ranks=1):
+    def fails(self, plan, at, **how):
         if plan.experiment.body.radius == 0.002:
             raise EngineError(f"{at}/log: out of steel")
-        return real(self, plan, at, ranks=ranks)
+        return real(self, plan, at, **how)
 
     out = tmp_path / "out"
     monkeypatch.setattr(Embedded, "run", fails)
